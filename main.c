@@ -22,10 +22,13 @@
 
 typedef struct RoomList {
     const void *first;
-    size_t      size;  /* of one */
+    size_t      size; /* of one */
     const int  *count;
 } RoomList;
-#define ROOM_LIST(list, count) {list, sizeof *(list), &(count)}
+#define ROOM_LIST(list, count)                                                                                         \
+    {                                                                                                                  \
+        list, sizeof *(list), &(count)                                                                                 \
+    }
 
 static const RoomList probe_lists[] = {
     ROOM_LIST(terrain_probes, terrain_probe_count),
@@ -57,7 +60,8 @@ static void probe_usage(FILE *to)
           "columns pass\n"
           "through; a row that cannot be computed has the reason in column `error`. $: text column, ?: optional "
           "column.\n"
-          "-c FILE, or --config: settings, whose models.materials are read.\n", to);
+          "-c FILE, or --config: settings, whose models.materials are read.\n",
+          to);
     for (const Probe *probe; (probe = next_probe(state));)
         fprintf(to, "\n  %s%s%s\n      %s\n      in:  %s\n      out: %s\n", probe->name, probe->arguments ? " " : "",
                 probe->arguments ? probe->arguments : "", probe->help, probe->in, probe->out);
@@ -66,7 +70,8 @@ static void probe_usage(FILE *to)
 static int probe_command(int argc, char **argv)
 {
     size_t state[2] = {0};
-    if (argc < 2) return command_line_wrong("probe", "no probe is named: usage: pitviper probe WHAT [ARGUMENT ...] < rows.csv");
+    if (argc < 2)
+        return command_line_wrong("probe", "no probe is named: usage: pitviper probe WHAT [ARGUMENT ...] < rows.csv");
     WordMeant meant = word_meant(argv[1]);
     for (int i = 1; i < argc; i++)
         if (strcmp(argv[i], "--help") == 0 || strcmp(argv[i], "-h") == 0) {
@@ -83,11 +88,13 @@ static int probe_command(int argc, char **argv)
         word_consider(&meant, probe->name);
         if (strcmp(argv[1], probe->name) != 0) continue;
         if (!probe->arguments && argc > 2)
-            return command_line_wrong("probe", "%s takes no argument, but '%s' was given; rows are read from standard input",
-                              probe->name, argv[2]);
+            return command_line_wrong("probe",
+                                      "%s takes no argument, but '%s' was given; rows are read from standard input",
+                                      probe->name, argv[2]);
         return probe_run(probe, argc - 1, argv + 1, stdin, stdout) == STATUS_OK ? 0 : 1;
     }
-    return command_line_wrong("probe", "no such %s: %s%s", argv[1][0] == '-' ? "option" : "probe", argv[1], word_hint(&meant));
+    return command_line_wrong("probe", "no such %s: %s%s", argv[1][0] == '-' ? "option" : "probe", argv[1],
+                              word_hint(&meant));
 }
 
 /* ---- the benches ------------------------------------------------------------------------------------ */
@@ -114,8 +121,10 @@ static int run_bench(int argc, char **argv)
     execvp(name, words);
     const int reason = errno;
     free(words);
-    log_error("bench: cannot run pitviper-bench, neither beside pitviper nor on PATH: %s; build it (cmake --build FOLDER "
-              "--target pitviper-bench) or install it beside pitviper", strerror(reason));
+    log_error(
+        "bench: cannot run pitviper-bench, neither beside pitviper nor on PATH: %s; build it (cmake --build FOLDER "
+        "--target pitviper-bench) or install it beside pitviper",
+        strerror(reason));
     return 1;
 }
 
@@ -139,9 +148,12 @@ static const struct Command {
     {"record", record_command, "record an exercise from the network", false, false},
     {"model", model_command, "list models; describe or draw one, built in or from a file", true, false},
     {"heat", heat_command, "a vehicle's temperatures over a clear day: table, plot and thermal images", true, false},
-    {"rcs", rcs_command, "a target's radar cross section over aspect: table, polar plot and a radar image", true, false},
-    {"terrain", terrain_command, "make a terrain store from elevation, land cover and photographs; describe one", true, false},
-    {"probe", probe_command, "evaluate one model for rows of CSV: Planck, sun, geoid, atmosphere, rays ...", false, true},
+    {"rcs", rcs_command, "a target's radar cross section over aspect: table, polar plot and a radar image", true,
+     false},
+    {"terrain", terrain_command, "make a terrain store from elevation, land cover and photographs; describe one", true,
+     false},
+    {"probe", probe_command, "evaluate one model for rows of CSV: Planck, sun, geoid, atmosphere, rays ...", false,
+     true},
     {"bench", run_bench, "benchmark this build on this machine: times with their errors", false, false},
 };
 enum { command_count = sizeof commands / sizeof commands[0] };
@@ -149,7 +161,8 @@ enum { command_count = sizeof commands / sizeof commands[0] };
 static void usage(FILE *to)
 {
     fputs("pitviper " PITVIPER_VERSION ": multispectral sensor simulation on DIS networks\n\n"
-          "usage: pitviper COMMAND ...; `pitviper COMMAND --help` lists its options\n\n", to);
+          "usage: pitviper COMMAND ...; `pitviper COMMAND --help` lists its options\n\n",
+          to);
     for (int i = 0; i < command_count; i++) fprintf(to, "  %-10s %s\n", commands[i].name, commands[i].help);
     fprintf(to, "\nEvery command takes, before or after its name:\n\n%s", program_common_help);
     fputs("\nevery field of every product, with Python to read it: `pitviper help TOPIC`; topics:\n", to);

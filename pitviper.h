@@ -41,14 +41,15 @@ typedef void LogSink(void *user, LogLevel level, const char *line);
 /* One line, `module: what happened: key=value`, without a newline. Default sink: stderr. Thread-safe.
  * log_set_sink(NULL, NULL) restores the default. log_set_level hides everything below; at first below LOG_INFO.
  * log_suppress: suppresses messages of the calling thread only, until it is undone. */
-void log_set_sink(LogSink *sink, void *user);
-void log_set_level(LogLevel lowest);
+void        log_set_sink(LogSink *sink, void *user);
+void        log_set_level(LogLevel lowest);
 const char *log_head(LogLevel level); /* what precedes a line on stderr: "pitviper: error: "; of information "" */
-void log_suppress(bool hushed);
+void        log_suppress(bool hushed);
 /* A line at the end of a terminal, rewritten in place and out of the way of what is logged; NULL: none. Nothing where
  * stderr is no terminal, where information is hidden, and with a sink. Standard output: set it to NULL before. */
 void log_status(const char *text);
-/* What --quiet and --verbose have set. Quiet: no choices, progress or notices; warnings, errors and requested output stay. */
+/* What --quiet and --verbose have set. Quiet: no choices, progress or notices; warnings, errors and requested output
+ * stay. */
 bool log_is_quiet(void);
 bool log_is_verbose(void);
 /* To standard output, output not requested: choices, a summary at the end. Nothing when quiet. */
@@ -69,7 +70,7 @@ Arena *arena_create(void);
 void   arena_destroy(Arena *arena);
 void   arena_reset(Arena *arena);
 /* 64-byte aligned, zeroed; NULL when memory is out or count * size overflows. */
-void  *arena_alloc(Arena *arena, size_t count, size_t size);
+void *arena_alloc(Arena *arena, size_t count, size_t size);
 /* The same not zeroed: for what is written before it is read. */
 void  *arena_alloc_raw(Arena *arena, size_t count, size_t size);
 size_t arena_bytes(const Arena *arena);
@@ -85,18 +86,19 @@ Status pool_create(Pool **out, int threads);
 void   pool_destroy(Pool *pool);
 int    pool_threads(const Pool *pool);
 /* Runs task(user, worker, i) once for each i, in any order, and returns when all are done. */
-void   pool_run(Pool *pool, int count, PoolTask *task, void *user);
-/* Work of minutes that a stop ends where it is, such as an import: how it learns of one, from now on. NULL: nothing ends it. */
-void   work_stop_when(bool (*asked)(void));
-bool   work_stop_asked(void);
-/* pool_run, or the caller alone without a pool (NULL); once a stop is asked for tasks that have not begun are left out. False:
- * some may have been. */
-bool   pool_run_unless_stopped(Pool *pool, int count, PoolTask *task, void *user);
+void pool_run(Pool *pool, int count, PoolTask *task, void *user);
+/* Work of minutes that a stop ends where it is, such as an import: how it learns of one, from now on. NULL: nothing
+ * ends it. */
+void work_stop_when(bool (*asked)(void));
+bool work_stop_asked(void);
+/* pool_run, or the caller alone without a pool (NULL); once a stop is asked for tasks that have not begun are left out.
+ * False: some may have been. */
+bool pool_run_unless_stopped(Pool *pool, int count, PoolTask *task, void *user);
 /* Flush-to-zero and denormals-are-zero for the calling thread; main and the workers call it once. */
-void   thread_flush_denormals(void);
+void thread_flush_denormals(void);
 
 /* Processors that this process may run on, at least 1. */
-int    thread_processors(void);
+int thread_processors(void);
 
 /* Monotonic wall clock, s: for pacing and reports, never for results. */
 double wall_clock_s(void);
@@ -109,7 +111,7 @@ void random_u32x4(uint32_t out[4], const uint32_t counter[4], const uint32_t key
 double random_uniform(uint64_t seed, uint32_t stream, uint32_t frame, uint64_t index);
 double random_normal(uint64_t seed, uint32_t stream, uint32_t frame, uint64_t index);
 /* Those of indices first .. first + count - 1: the same numbers, several times as fast. */
-void   random_normals(double *out, size_t count, uint64_t seed, uint32_t stream, uint32_t frame, uint64_t first);
+void random_normals(double *out, size_t count, uint64_t seed, uint32_t stream, uint32_t frame, uint64_t first);
 
 /* ---- text --------------------------------------------------------------------------------- */
 
@@ -127,7 +129,7 @@ Status table_open(Table *out, const char *path);
 void   table_close(Table *table);
 int    table_column(const Table *table, const char *name); /* -1: none */
 /* column[count] of these names; false, logged as the module's, where one is missing. */
-bool table_columns(int *column, const Table *table, const char *const *name, int count, const char *module);
+bool        table_columns(int *column, const Table *table, const char *const *name, int count, const char *module);
 const char *table_text(const Table *table, int row, int column); /* row 0 .. rows - 1 */
 /* Finite numbers in [low, high] only; logs file, line, column, value and range otherwise. */
 Status table_number(double *out, const Table *table, int row, int column, double low, double high);
@@ -160,10 +162,10 @@ typedef struct WordMeant {
 WordMeant   word_meant(const char *typed);
 void        word_consider(WordMeant *meant, const char *known);
 void        word_consider_list(WordMeant *meant, const char *list, char separator); /* "a|b|c" */
-const char *word_hint(WordMeant *meant); /* "; did you mean WORD?", or "" */
+const char *word_hint(WordMeant *meant);                                            /* "; did you mean WORD?", or "" */
 
-/* A file of what put prints, by output_begin (pitviper_output.h): it has its name only when it is whole. STATUS_IO: logged as the
- * module's. */
+/* A file of what put prints, by output_begin (pitviper_output.h): it has its name only when it is whole. STATUS_IO:
+ * logged as the module's. */
 Status text_write_file(const char *module, const char *path, void (*put)(FILE *to, const void *user), const void *user);
 /* A whole file of at most `most` octets and a 0 behind them; the caller frees it. Failures are logged as the
  * module's. */
@@ -183,13 +185,17 @@ bool etc_is_complete(void);
 /* A user's table beside catalog.csv, materials.csv or sensors.csv of etc/: its rows take precedence. path
  * NULL or empty: none. False: too long, or no such table. Set before work begins, by one thread. etc_own: NULL:
  * none. */
-bool etc_own_set(const char *name, const char *path);
+bool        etc_own_set(const char *name, const char *path);
 const char *etc_own(const char *name);
 
 /* ---- settings: YAML files with validated keys ------------------------------------------------- */
 
 typedef enum SettingType {
-    SETTING_DOUBLE, SETTING_INT, SETTING_LONG /* long long */, SETTING_BOOL, SETTING_TEXT /* char[] */,
+    SETTING_DOUBLE,
+    SETTING_INT,
+    SETTING_LONG /* long long */,
+    SETTING_BOOL,
+    SETTING_TEXT /* char[] */,
     SETTING_WORDS,   /* char[]: words separated by commas, blanks around them dropped; in YAML a list too */
     SETTING_NUMBERS, /* NumberList; in YAML a list of numbers, or of lists of numbers, which become one row */
     /* char[], the names of files. In a file of settings they are relative to that file's folder, on a command line to
@@ -198,9 +204,9 @@ typedef enum SettingType {
     SETTING_PATHS,        /* several, separated by commas; in YAML a list too */
     SETTING_NAME_OR_PATH, /* a path has a dot or a slash in it; a name is kept unchanged */
     /* Read by the table's own function, in files alone; choices: what is accepted, for messages */
-    SETTING_OWN,          /* one text; a list is its words with blanks between */
-    SETTING_EACH,         /* one text, or a list of them: one call each */
-    SETTING_MAP,          /* `key: text` with free keys: one call each */
+    SETTING_OWN,  /* one text; a list is its words with blanks between */
+    SETTING_EACH, /* one text, or a list of them: one call each */
+    SETTING_MAP,  /* `key: text` with free keys: one call each */
 } SettingType;
 
 enum { number_list_capacity = 256 };
@@ -211,17 +217,17 @@ typedef struct NumberList {
 
 /* One key of a struct. SETTING_AT(Config, sensor.width_px) gives offset and size. */
 typedef struct Setting {
-    const char *name;          /* `section.key`, or `key` at the top */
+    const char *name; /* `section.key`, or `key` at the top */
     SettingType type;
     size_t      offset, size;
-    double      low, high;     /* of each number; low NaN: any finite one */
-    const char *choices;       /* of text: one of these, separated by `|`; NULL: any. Of SETTING_OWN: see there */
+    double      low, high; /* of each number; low NaN: any finite one */
+    const char *choices;   /* of text: one of these, separated by `|`; NULL: any. Of SETTING_OWN: see there */
     const char *unit, *help;
 } Setting;
 typedef struct SettingValue {
-    const char *key, *text;    /* key: of a map; else NULL */
+    const char *key, *text; /* key: of a map; else NULL */
     int         line;
-    bool        wrong_key;     /* set by the reader: the key is wrong, not the text */
+    bool        wrong_key; /* set by the reader: the key is wrong, not the text */
 } SettingValue;
 /* STATUS_BAD_VALUE: logged as "'text' is not <choices>", or with a complaint as "'text' is <complaint>". */
 typedef Status SettingOwn(const char **complaint, void *out, const Setting *row, SettingValue *value);
@@ -232,16 +238,16 @@ typedef struct SettingTable SettingTable;
 typedef struct SettingList {
     const char         *name;
     const SettingTable *item;
-    void             *(*add)(void *owner); /* a new item with its defaults; NULL: there are too many */
+    void *(*add)(void *owner); /* a new item with its defaults; NULL: there are too many */
 } SettingList;
 
 struct SettingTable {
     const char        *module; /* prefix of the messages: `config` */
     const Setting     *row;
     int                count;
-    const SettingList *list;   /* NULL: none */
+    const SettingList *list; /* NULL: none */
     int                list_count;
-    size_t             line_at; /* of an item: offset of an int for the line of its start; 0: none */
+    size_t             line_at;  /* of an item: offset of an int for the line of its start; 0: none */
     const char        *all_keys; /* the command that prints them: `pitviper check --default`; NULL: none */
     const char        *prefix;   /* before its keys in messages, `joints.`; NULL: none */
     SettingOwn        *own;      /* of rows of SETTING_OWN, _EACH and _MAP */
@@ -254,8 +260,8 @@ enum { settings_file_octets = 1 << 20 };
 Status yaml_check(const char *module, const char *path, const char *text, size_t octets);
 
 /* Overwrites *out. Absent keys keep their values; what is unknown, given twice, of the wrong kind or out of range
- * is STATUS_BAD_VALUE with file, line, key, value and the accepted range in one logged line; each of them, up to 50. given[row], may be NULL,
- * is set for each key at the top level. On failure *out is half filled: read into a copy. */
+ * is STATUS_BAD_VALUE with file, line, key, value and the accepted range in one logged line; each of them, up to 50.
+ * given[row], may be NULL, is set for each key at the top level. On failure *out is half filled: read into a copy. */
 Status settings_read(void *out, bool *given, const SettingTable *table, const char *path);
 /* The same from memory; path is for the messages. */
 Status settings_parse(void *out, bool *given, const SettingTable *table, const char *path, const char *text,
@@ -268,29 +274,29 @@ Status settings_set(void *out, bool *given, const SettingTable *table, const cha
 /* The same as if it were in that file, for paths relative to the file's folder. file NULL: as settings_set. */
 Status settings_set_from(void *out, bool *given, const SettingTable *table, const char *name, const char *value,
                          const char *source, const char *file);
-/* Whether each path is of a regular file, of a folder, or of nothing that is there; else logged: a FIFO or a device would
- * be waited for. outputs: names of keys, `a.b,c.d`, that may be of anything. */
-bool   settings_paths_good(const void *from, const SettingTable *table, const char *outputs);
+/* Whether each path is of a regular file, of a folder, or of nothing that is there; else logged: a FIFO or a device
+ * would be waited for. outputs: names of keys, `a.b,c.d`, that may be of anything. */
+bool settings_paths_good(const void *from, const SettingTable *table, const char *outputs);
 /* Paths become absolute, as far as they fit: for files in other folders, and for hashes. */
-void   settings_absolute(void *out, const SettingTable *table);
+void settings_absolute(void *out, const SettingTable *table);
 /* Line of a key in a file that was read; 0: absent. */
-int    settings_line(const SettingTable *table, const char *name, const char *path);
-int    settings_find(const SettingTable *table, const char *name); /* row; -1: no such key */
+int settings_line(const SettingTable *table, const char *name, const char *path);
+int settings_find(const SettingTable *table, const char *name); /* row; -1: no such key */
 /* Every key and value, in table order, one per line: the input of the hash. */
-void   settings_text(char *out, size_t out_size, const SettingTable *table, const void *from);
+void settings_text(char *out, size_t out_size, const SettingTable *table, const void *from);
 /* A file that reads back as *from: sections, each key with its help, unit and range as a comment. Keys for which
  * shown (may be NULL) is false, and those that are unset (NaN), are commented out. */
-void   settings_write(FILE *to, const SettingTable *table, const void *from, const bool *shown);
+void settings_write(FILE *to, const SettingTable *table, const void *from, const bool *shown);
 /* Every key with its accepted values and its help. */
-void   settings_write_keys(FILE *to, const SettingTable *table);
+void settings_write_keys(FILE *to, const SettingTable *table);
 
 /* ---- probes: one model at a time, for comparison with other programs --------------------------- */
 
 enum { probe_max_columns = 24, probe_text_size = 96 };
 
 typedef struct ProbeValue {
-    double      number;                /* of an input: its cell as a number. Of an output: written when text is NULL */
-    const char *text;                  /* of an input: its cell. Of an output: written when not NULL */
+    double      number; /* of an input: its cell as a number. Of an output: written when text is NULL */
+    const char *text;   /* of an input: its cell. Of an output: written when not NULL */
     char        buffer[probe_text_size]; /* buffer size of an output's text */
 } ProbeValue;
 
@@ -298,14 +304,14 @@ typedef struct ProbeValue {
  * NAME` finds them. Column names carry units and are separated by commas. An input with a `$` behind its name is text,
  * all others must be finite numbers; with a `?` it may be missing, or empty, and is then NaN (or "" for text). */
 typedef struct Probe {
-    const char *name, *help;           /* help: one line, what it computes and from what source */
-    const char *arguments;             /* of the command line after NAME, as usage shows them: "MODEL"; NULL: none */
-    const char *in, *out;              /* result columns that could not be computed are NaN, and written empty */
+    const char *name, *help; /* help: one line, what it computes and from what source */
+    const char *arguments;   /* of the command line after NAME, as usage shows them: "MODEL"; NULL: none */
+    const char *in, *out;    /* result columns that could not be computed are NaN, and written empty */
     /* May be NULL. On failure logs why; *state is then not closed. argv[0] is the probe's name. */
-    Status    (*open)(void **state, int argc, char **argv);
+    Status (*open)(void **state, int argc, char **argv);
     /* NULL: success; else the reason, for the row's error column (in static storage, or in out[0].buffer). */
     const char *(*row)(void *state, const ProbeValue *in, ProbeValue *out);
-    void      (*close)(void *state);   /* may be NULL */
+    void (*close)(void *state); /* may be NULL */
 } Probe;
 
 /* Reads CSV with a header from in, writes to out: its columns, those of the probe, and `error`. Extra columns pass
@@ -319,10 +325,7 @@ Status probe_run(const Probe *probe, int argc, char **argv, FILE *in, FILE *out)
 static const double pi_rad = 3.14159265358979323846;
 static const double rad_per_deg = 0.017453292519943295769;
 
-static inline double v3_dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
+static inline double v3_dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 static inline double v3_length(const double a[3]) { return sqrt(v3_dot(a, a)); }
 
@@ -364,10 +367,7 @@ static inline bool v3_normalize(double out[3], const double a[3])
     return true;
 }
 
-static inline bool v3_is_finite(const double a[3])
-{
-    return isfinite(a[0]) && isfinite(a[1]) && isfinite(a[2]);
-}
+static inline bool v3_is_finite(const double a[3]) { return isfinite(a[0]) && isfinite(a[1]) && isfinite(a[2]); }
 
 /* out = m a; out must not alias a. */
 static inline void m3_mul_v3(double out[3], const double m[9], const double a[3])
@@ -393,8 +393,7 @@ static inline void m3_mul(double out[9], const double a[9], const double b[9])
 static inline void m3_tmul(double out[9], const double a[9], const double b[9])
 {
     for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++)
-            out[3 * i + j] = a[i] * b[j] + a[3 + i] * b[3 + j] + a[6 + i] * b[6 + j];
+        for (int j = 0; j < 3; j++) out[3 * i + j] = a[i] * b[j] + a[3 + i] * b[3 + j] + a[6 + i] * b[6 + j];
 }
 
 static inline void m3_identity(double out[9])

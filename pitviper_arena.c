@@ -1,5 +1,6 @@
-/* pitviper_arena.c: per-frame memory, in blocks that are reused. What is larger than a block has one of its own, in steps of a
- * quarter of a power of two, so that a request that grows from frame to frame finds the block of the frame before. */
+/* pitviper_arena.c: per-frame memory, in blocks that are reused. What is larger than a block has one of its own, in
+ * steps of a quarter of a power of two, so that a request that grows from frame to frame finds the block of the frame
+ * before. */
 #include "pitviper.h"
 
 #include <pthread.h>
@@ -16,7 +17,7 @@ typedef struct ArenaBlock {
 struct Arena {
     ArenaBlock     *first, *current; /* all of one size */
     ArenaBlock     *large;           /* each for one request */
-    pthread_mutex_t mutex; /* of arena_alloc */
+    pthread_mutex_t mutex;           /* of arena_alloc */
 };
 
 Arena *arena_create(void)
@@ -95,7 +96,7 @@ static void *take_large(Arena *arena, size_t octets)
     if (!best) {
         best = new_block(rounded(octets));
         if (!best) return NULL;
-        best->next   = arena->large;
+        best->next = arena->large;
         arena->large = best;
     }
     best->used = octets;

@@ -38,8 +38,8 @@ static bool edge_of(double *edge_m, const char *um)
 /* What is wrong with a row; NULL: nothing. */
 static const char *read_channel(ChannelList *list, const Table *t, int row, const int column[5])
 {
-    const char *text[5];
-    SpectralChannel     c = {0};
+    const char     *text[5];
+    SpectralChannel c = {0};
     for (int k = 0; k < 5; k++) text[k] = table_text(t, row, column[k]);
     const size_t length = strlen(text[0]);
     for (size_t i = 0; i < length; i++)
@@ -61,7 +61,9 @@ static const char *read_channel(ChannelList *list, const Table *t, int row, cons
     c.standard = strcmp(c.name, text[4]) == 0;
     if (!c.standard && place_of(c.name) < SPECTRAL_PLACES) return "a standard channel has its own place";
     if (!c.standard && place < SPECTRAL_NIR) return "place: nir, mwir or lwir";
-    if (kind != (place < SPECTRAL_MWIR ? SPECTRAL_REFLECTIVE : place == SPECTRAL_MWIR ? SPECTRAL_BOTH : SPECTRAL_EMISSIVE))
+    if (kind != (place < SPECTRAL_MWIR    ? SPECTRAL_REFLECTIVE
+                 : place == SPECTRAL_MWIR ? SPECTRAL_BOTH
+                                          : SPECTRAL_EMISSIVE))
         return "kind: nir's place is reflective, mwir's both, lwir's emissive";
     list->channel[list->count++] = c;
     return NULL;
@@ -70,9 +72,9 @@ static const char *read_channel(ChannelList *list, const Table *t, int row, cons
 static Status read_list(ChannelList *list, const char *path)
 {
     static const char *const columns[5] = {"name", "low_um", "high_um", "kind", "place"};
-    Table  t = {0};
-    int    column[5];
-    Status status = table_open(&t, path);
+    Table                    t = {0};
+    int                      column[5];
+    Status                   status = table_open(&t, path);
     if (status != STATUS_OK) return status;
     for (int k = 0; k < 5; k++)
         if ((column[k] = table_column(&t, columns[k])) < 0) {
@@ -109,7 +111,7 @@ Status channels_check(const char *path)
 static void load(void)
 {
     static const SpectralChannel none = {.name = "", .low_m = 1e-6, .high_m = 2e-6};
-    char path[4096];
+    char                         path[4096];
     for (int p = 0; p < SPECTRAL_PLACES; p++) table.in[p] = &none;
     table.status = etc_path(path, sizeof path, "channels.csv") ? read_list(&table.list, path) : STATUS_BAD_VALUE;
     if (table.status == STATUS_NO_MEMORY) log_error("channels: %s: out of memory", path);

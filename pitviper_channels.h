@@ -10,7 +10,14 @@
 
 /* Places, named after the standard channel of each. */
 typedef enum ChannelPlace {
-    SPECTRAL_B, SPECTRAL_G, SPECTRAL_R, SPECTRAL_PAN, SPECTRAL_NIR, SPECTRAL_MWIR, SPECTRAL_LWIR, SPECTRAL_PLACES
+    SPECTRAL_B,
+    SPECTRAL_G,
+    SPECTRAL_R,
+    SPECTRAL_PAN,
+    SPECTRAL_NIR,
+    SPECTRAL_MWIR,
+    SPECTRAL_LWIR,
+    SPECTRAL_PLACES
 } ChannelPlace;
 
 typedef enum ChannelKind { SPECTRAL_REFLECTIVE, SPECTRAL_EMISSIVE, SPECTRAL_BOTH } ChannelKind;
@@ -23,7 +30,7 @@ typedef struct SpectralChannel {
     double       low_m, high_m;
     ChannelKind  kind;
     ChannelPlace place;
-    bool         standard;                /* it is in its place where no other is chosen */
+    bool         standard; /* it is in its place where no other is chosen */
 } SpectralChannel;
 
 /* Reads the table once, at the first call. Later calls return the same status; failures are logged with file and

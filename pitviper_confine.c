@@ -46,12 +46,12 @@ static bool failed(char why[confine_why_size], const char *call)
 /* Of <linux/landlock.h>, which may be older than the kernel. */
 enum {
     call_create_ruleset = 444,
-    call_add_rule       = 445,
-    call_restrict_self  = 446,
-    want_version        = 1 << 0,
-    rule_path_beneath   = 1,
-    right_read_file     = 1 << 2,
-    right_read_folder   = 1 << 3,
+    call_add_rule = 445,
+    call_restrict_self = 446,
+    want_version = 1 << 0,
+    rule_path_beneath = 1,
+    right_read_file = 1 << 2,
+    right_read_folder = 1 << 3,
 };
 typedef struct LandlockRuleset {
     uint64_t files, network, scoped;
@@ -65,12 +65,12 @@ bool confine_files(char why[confine_why_size], const char *const *readable, int 
 {
     const long version = syscall(call_create_ruleset, NULL, 0, want_version);
     if (version < 1) return failed(why, "Landlock");
-    /* all that this version can forbid: 13 rights over files at first, then moving between folders, truncating, ioctl of
-     * devices; TCP ports from 4 on; abstract sockets and signals from 6 on */
+    /* all that this version can forbid: 13 rights over files at first, then moving between folders, truncating, ioctl
+     * of devices; TCP ports from 4 on; abstract sockets and signals from 6 on */
     const int       file_rights = version >= 5 ? 16 : version >= 3 ? 15 : version == 2 ? 14 : 13;
     LandlockRuleset all = {(1u << file_rights) - 1, version >= 4 ? 3 : 0, version >= 6 ? 3 : 0};
-    const size_t    size = version >= 6 ? sizeof all : version >= 4 ? offsetof(LandlockRuleset, scoped) : sizeof all.files;
-    const int       set = (int)syscall(call_create_ruleset, &all, size, 0);
+    const size_t size = version >= 6 ? sizeof all : version >= 4 ? offsetof(LandlockRuleset, scoped) : sizeof all.files;
+    const int    set = (int)syscall(call_create_ruleset, &all, size, 0);
     if (set < 0) return failed(why, "landlock_create_ruleset");
     bool good = true;
     for (int k = 0; good && k < count; k++) {
@@ -102,24 +102,104 @@ enum { this_machine = (int)AUDIT_ARCH_AARCH64 };
 /* Whatever their arguments. */
 static const int harmless[] = {
     /* files and descriptors that are there */
-    SYS_read, SYS_write, SYS_readv, SYS_writev, SYS_pread64, SYS_preadv, SYS_lseek, SYS_close, SYS_close_range, SYS_fstat,
-    SYS_newfstatat, SYS_statx, SYS_faccessat, SYS_faccessat2, SYS_readlinkat, SYS_getdents64, SYS_getcwd, SYS_statfs,
-    SYS_fstatfs, SYS_fcntl, SYS_dup, SYS_dup3, SYS_fadvise64, SYS_readahead, SYS_flock, SYS_umask,
+    SYS_read,
+    SYS_write,
+    SYS_readv,
+    SYS_writev,
+    SYS_pread64,
+    SYS_preadv,
+    SYS_lseek,
+    SYS_close,
+    SYS_close_range,
+    SYS_fstat,
+    SYS_newfstatat,
+    SYS_statx,
+    SYS_faccessat,
+    SYS_faccessat2,
+    SYS_readlinkat,
+    SYS_getdents64,
+    SYS_getcwd,
+    SYS_statfs,
+    SYS_fstatfs,
+    SYS_fcntl,
+    SYS_dup,
+    SYS_dup3,
+    SYS_fadvise64,
+    SYS_readahead,
+    SYS_flock,
+    SYS_umask,
     /* waiting */
-    SYS_ppoll, SYS_pselect6, SYS_pipe2, SYS_eventfd2, SYS_epoll_create1, SYS_epoll_ctl, SYS_epoll_pwait, SYS_futex,
-    SYS_nanosleep, SYS_clock_nanosleep, SYS_restart_syscall,
+    SYS_ppoll,
+    SYS_pselect6,
+    SYS_pipe2,
+    SYS_eventfd2,
+    SYS_epoll_create1,
+    SYS_epoll_ctl,
+    SYS_epoll_pwait,
+    SYS_futex,
+    SYS_nanosleep,
+    SYS_clock_nanosleep,
+    SYS_restart_syscall,
     /* memory */
-    SYS_mmap, SYS_munmap, SYS_mremap, SYS_mprotect, SYS_madvise, SYS_brk, SYS_mincore, SYS_membarrier, SYS_mlock, SYS_munlock,
+    SYS_mmap,
+    SYS_munmap,
+    SYS_mremap,
+    SYS_mprotect,
+    SYS_madvise,
+    SYS_brk,
+    SYS_mincore,
+    SYS_membarrier,
+    SYS_mlock,
+    SYS_munlock,
     /* threads, signals of this process, time, what the machine is */
-    SYS_set_robust_list, SYS_get_robust_list, SYS_rseq, SYS_set_tid_address, SYS_gettid, SYS_getpid, SYS_getppid, SYS_getuid,
-    SYS_geteuid, SYS_getgid, SYS_getegid, SYS_getpgid, SYS_sched_yield, SYS_sched_getaffinity, SYS_sched_getparam,
-    SYS_sched_getscheduler, SYS_sched_get_priority_max, SYS_sched_get_priority_min, SYS_getpriority, SYS_getcpu,
-    SYS_rt_sigaction, SYS_rt_sigprocmask, SYS_rt_sigreturn, SYS_sigaltstack, SYS_clock_gettime, SYS_clock_getres,
-    SYS_gettimeofday, SYS_getrusage, SYS_times, SYS_uname, SYS_sysinfo, SYS_getrandom, SYS_getrlimit, SYS_exit,
+    SYS_set_robust_list,
+    SYS_get_robust_list,
+    SYS_rseq,
+    SYS_set_tid_address,
+    SYS_gettid,
+    SYS_getpid,
+    SYS_getppid,
+    SYS_getuid,
+    SYS_geteuid,
+    SYS_getgid,
+    SYS_getegid,
+    SYS_getpgid,
+    SYS_sched_yield,
+    SYS_sched_getaffinity,
+    SYS_sched_getparam,
+    SYS_sched_getscheduler,
+    SYS_sched_get_priority_max,
+    SYS_sched_get_priority_min,
+    SYS_getpriority,
+    SYS_getcpu,
+    SYS_rt_sigaction,
+    SYS_rt_sigprocmask,
+    SYS_rt_sigreturn,
+    SYS_sigaltstack,
+    SYS_clock_gettime,
+    SYS_clock_getres,
+    SYS_gettimeofday,
+    SYS_getrusage,
+    SYS_times,
+    SYS_uname,
+    SYS_sysinfo,
+    SYS_getrandom,
+    SYS_getrlimit,
+    SYS_exit,
     SYS_exit_group,
 #if defined(__x86_64__)
-    SYS_stat, SYS_lstat, SYS_access, SYS_readlink, SYS_getdents, SYS_dup2, SYS_poll, SYS_select, SYS_pipe, SYS_epoll_wait,
-    SYS_time, SYS_arch_prctl,
+    SYS_stat,
+    SYS_lstat,
+    SYS_access,
+    SYS_readlink,
+    SYS_getdents,
+    SYS_dup2,
+    SYS_poll,
+    SYS_select,
+    SYS_pipe,
+    SYS_epoll_wait,
+    SYS_time,
+    SYS_arch_prctl,
 #endif
 };
 
@@ -136,7 +216,8 @@ static void put(Filter *f, uint16_t code, uint32_t k, uint8_t yes, uint8_t no)
 /* Half of an argument, 0 the low one: these machines have that first. */
 static void load_argument(Filter *f, int number, uint32_t half)
 {
-    put(f, BPF_LD | BPF_W | BPF_ABS, (uint32_t)offsetof(struct seccomp_data, args) + 8 * (uint32_t)number + 4 * half, 0, 0);
+    put(f, BPF_LD | BPF_W | BPF_ABS, (uint32_t)offsetof(struct seccomp_data, args) + 8 * (uint32_t)number + 4 * half, 0,
+        0);
 }
 
 static void put_return(Filter *f, uint32_t action) { put(f, BPF_RET | BPF_K, action, 0, 0); }
@@ -173,16 +254,16 @@ bool confine_calls(char why[confine_why_size])
     put_if(&f, SYS_open, 1, writing, 0, EACCES);
 #endif
     put_if(&f, SYS_clone, 0, thread, thread, EPERM);
-    put_if(&f, SYS_tgkill, 0, UINT32_MAX, (uint32_t)getpid(), EPERM);    /* abort() */
-    put_if(&f, SYS_prctl, 0, UINT32_MAX, PR_SET_NAME, EPERM);            /* of threads */
-    put(&f, BPF_JMP | BPF_JEQ | BPF_K, SYS_prlimit64, 0, 6);             /* asks for limits, and sets none */
+    put_if(&f, SYS_tgkill, 0, UINT32_MAX, (uint32_t)getpid(), EPERM); /* abort() */
+    put_if(&f, SYS_prctl, 0, UINT32_MAX, PR_SET_NAME, EPERM);         /* of threads */
+    put(&f, BPF_JMP | BPF_JEQ | BPF_K, SYS_prlimit64, 0, 6);          /* asks for limits, and sets none */
     for (uint32_t half = 0; half < 2; half++) {
         load_argument(&f, 2, half);
         put(&f, BPF_JMP | BPF_JEQ | BPF_K, 0, 0, half ? 1 : 3);
     }
     put_return(&f, SECCOMP_RET_ALLOW);
     put_return(&f, fails_with(EPERM));
-    put(&f, BPF_JMP | BPF_JEQ | BPF_K, SYS_clone3, 1, 0);                /* its flags are out of a filter's sight */
+    put(&f, BPF_JMP | BPF_JEQ | BPF_K, SYS_clone3, 1, 0); /* its flags are out of a filter's sight */
     put(&f, BPF_JMP | BPF_JGT | BPF_K, newest, 0, 1);
     put_return(&f, fails_with(ENOSYS));
     put_return(&f, fails_with(EPERM));

@@ -19,13 +19,13 @@ void confine_limits(uint64_t more_octets);
  * configured), or refused: why says which, and nothing is confined. */
 bool confine_files(char why[confine_why_size], const char *const *readable, int count);
 
-/* From here on only those system calls work that reading, memory, threads and time need (a seccomp filter): no socket, not
- * even a local one; no new process or program; no signal to others; no file opened for writing, made, renamed or removed.
- * False: why says what the kernel refused. */
+/* From here on only those system calls work that reading, memory, threads and time need (a seccomp filter): no socket,
+ * not even a local one; no new process or program; no signal to others; no file opened for writing, made, renamed or
+ * removed. False: why says what the kernel refused. */
 bool confine_calls(char why[confine_why_size]);
 
-/* From here on no socket can be made (a seccomp filter), by this process and by programs that it becomes: for programs of
- * others, which need what confine_calls refuses. Async-signal-safe but for `why`. */
+/* From here on no socket can be made (a seccomp filter), by this process and by programs that it becomes: for programs
+ * of others, which need what confine_calls refuses. Async-signal-safe but for `why`. */
 bool confine_network(char why[confine_why_size]);
 
 #endif

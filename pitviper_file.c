@@ -21,19 +21,26 @@ bool file_stop_asked(void) { return stop_asked && stop_asked(); }
 static const char *kind_name(mode_t mode)
 {
     switch (mode & S_IFMT) {
-    case S_IFDIR: return "a directory";
-    case S_IFIFO: return "a FIFO (named pipe)";
-    case S_IFSOCK: return "a socket";
-    case S_IFCHR: return "a character device";
-    case S_IFBLK: return "a block device";
-    default: return "of an unknown kind";
+    case S_IFDIR:
+        return "a directory";
+    case S_IFIFO:
+        return "a FIFO (named pipe)";
+    case S_IFSOCK:
+        return "a socket";
+    case S_IFCHR:
+        return "a character device";
+    case S_IFBLK:
+        return "a block device";
+    default:
+        return "of an unknown kind";
     }
 }
 
 /* A descriptor of this process by its name, as a shell gives it for `<(...)`. */
 static bool is_own_descriptor(const char *path)
 {
-    return strncmp(path, "/dev/fd/", 8) == 0 || strncmp(path, "/proc/self/fd/", 14) == 0 || strcmp(path, "/dev/stdin") == 0;
+    return strncmp(path, "/dev/fd/", 8) == 0 || strncmp(path, "/proc/self/fd/", 14) == 0 ||
+           strcmp(path, "/dev/stdin") == 0;
 }
 
 static bool is_wanted(char why[file_why_size], const struct stat *about, const char *path, FileFrom from)
@@ -72,7 +79,7 @@ int file_open(char why[file_why_size], uint64_t *octets, const char *path, FileF
 
 FILE *file_open_stream(char why[file_why_size], const char *path)
 {
-    const int file   = file_open(why, NULL, path, FILE_FROM_DISK);
+    const int file = file_open(why, NULL, path, FILE_FROM_DISK);
     FILE     *stream = file >= 0 ? fdopen(file, "rb") : NULL;
     if (file >= 0 && !stream) {
         failed(why);
@@ -111,7 +118,7 @@ long file_read(int file, void *out, size_t octets)
 {
     struct stat about;
     const bool  pipe = fstat(file, &about) == 0 && !S_ISREG(about.st_mode);
-    size_t      got  = 0;
+    size_t      got = 0;
     while (got < octets) {
         if (pipe && !wait_for(file)) return -1;
         const ssize_t now = read(file, (char *)out + got, octets - got);
@@ -146,7 +153,7 @@ Status file_read_whole(char **out, size_t *octets, const char *module, const cha
         return STATUS_IO;
     }
     Status status = STATUS_OK;
-    char  *text   = malloc(capacity);
+    char  *text = malloc(capacity);
     if (!text) status = STATUS_NO_MEMORY;
     while (status == STATUS_OK) {
         const long got = file_read(file, text + size, capacity - size - 1);
@@ -171,8 +178,8 @@ Status file_read_whole(char **out, size_t *octets, const char *module, const cha
         return status;
     }
     text[size] = 0;
-    *out       = text;
-    *octets    = size;
+    *out = text;
+    *octets = size;
     return STATUS_OK;
 }
 
@@ -238,7 +245,7 @@ bool etc_path(char *out, size_t out_size, const char *name)
     if (from_environment) return join(out, out_size, from_environment, name);
     share_beside_program(beside, sizeof beside);
     const char *const folders[] = {beside, PITVIPER_ETC_DIR, PITVIPER_ETC_INSTALLED};
-    bool              fits      = false;
+    bool              fits = false;
     for (int i = 0; i < 3; i++) {
         fits = join(out, out_size, folders[i], name);
         if (fits && access(out, R_OK) == 0) break;
@@ -248,8 +255,9 @@ bool etc_path(char *out, size_t out_size, const char *name)
 
 bool etc_is_complete(void)
 {
-    static const char *const needed[] = {"catalog.csv", "materials.csv", "surfaces.csv", "ground_heat.csv", "ground_detail.csv",
-                                         "heat.csv", "effects.csv", "sensors.csv", "channels.csv", "atmosphere/bands.csv"};
+    static const char *const needed[] = {
+        "catalog.csv", "materials.csv", "surfaces.csv", "ground_heat.csv", "ground_detail.csv",
+        "heat.csv",    "effects.csv",   "sensors.csv",  "channels.csv",    "atmosphere/bands.csv"};
     char   path[4096], beside[4096], missing[256] = "";
     size_t n = 0;
     for (size_t i = 0; i < sizeof needed / sizeof *needed; i++)

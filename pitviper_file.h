@@ -1,8 +1,8 @@
 /* pitviper_file.h: opens every file from outside for reading.
  *
- * A name that a user or another file gives may be of anything: a FIFO without a writer would be waited for without end, a
- * device has no end. What is opened here is a regular file, or a pipe where the caller says that one makes sense; a stop
- * that was requested ends the wait for a pipe. A library that opens by name itself is given the name only after
+ * A name that a user or another file gives may be of anything: a FIFO without a writer would be waited for without end,
+ * a device has no end. What is opened here is a regular file, or a pipe where the caller says that one makes sense; a
+ * stop that was requested ends the wait for a pipe. A library that opens by name itself is given the name only after
  * file_is_regular. */
 #ifndef PITVIPER_FILE_H
 #define PITVIPER_FILE_H
@@ -17,15 +17,16 @@ typedef enum FileFrom {
 
 enum { file_why_size = 128 };
 
-/* A descriptor, closed on exec; -1: why says what it is, or the system's reason. octets, may be NULL: of a regular file;
- * UINT64_MAX: of a pipe. */
+/* A descriptor, closed on exec; -1: why says what it is, or the system's reason. octets, may be NULL: of a regular
+ * file; UINT64_MAX: of a pipe. */
 int file_open(char why[file_why_size], uint64_t *octets, const char *path, FileFrom from);
 /* The same as a stream of a regular file. */
 FILE *file_open_stream(char why[file_why_size], const char *path);
 /* Whether there is a regular file of that name (or a link to one) that can be read; why as above. */
 bool file_is_regular(char why[file_why_size], const char *path);
 
-/* Octets read: fewer than wanted at the end alone. -1: errno; ECANCELED: a stop was requested while a pipe was waited for. */
+/* Octets read: fewer than wanted at the end alone. -1: errno; ECANCELED: a stop was requested while a pipe was waited
+ * for. */
 long file_read(int file, void *out, size_t octets);
 /* The same from a place in a regular file. */
 long file_read_at(int file, void *out, size_t octets, uint64_t at);

@@ -20,7 +20,7 @@ static void *find(void *handle, const LibraryFunction *function)
 static Status load(Library *library)
 {
     const char *install = library->package ? "; install it: apt install " : "", *package = library->package;
-    void       *handle  = dlopen(library->file, RTLD_LAZY | RTLD_GLOBAL);
+    void       *handle = dlopen(library->file, RTLD_LAZY | RTLD_GLOBAL);
     if (!handle) {
         log_error("%s cannot be loaded: %s%s%s", library->name, dlerror(), install, package ? package : "");
         return STATUS_IO;
@@ -39,7 +39,7 @@ static Status load(Library *library)
 Status library_load(Library *library)
 {
     if (__atomic_load_n(&library->loaded, __ATOMIC_ACQUIRE)) return STATUS_OK;
-    const unsigned modes  = _mm_getcsr();
+    const unsigned modes = _mm_getcsr();
     Status         status = STATUS_OK;
     pthread_mutex_lock(&lock);
     if (!library->loaded) {
@@ -55,8 +55,8 @@ bool library_module(char *out, size_t out_size, const char *name)
 {
     /* installed; built; of a test, and of a mutant */
     static const char *const beside[] = {"/../lib/pitviper", "", "/..", "/../.."};
-    char          program[4096];
-    const ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
+    char                     program[4096];
+    const ssize_t            length = readlink("/proc/self/exe", program, sizeof program - 1);
     program[length > 0 ? length : 0] = 0;
     char *slash = strrchr(program, '/');
     if (slash) *slash = 0;
@@ -65,8 +65,9 @@ bool library_module(char *out, size_t out_size, const char *name)
                             : snprintf(out, out_size, "%s/%s", PITVIPER_MODULES_INSTALLED, name);
         if (n < (int)out_size && access(out, R_OK) == 0) return true;
     }
-    log_error("the program's module %s is missing: looked beside %s, in %s/../lib/pitviper and in %s; install the whole (`cmake "
-              "--install BUILD --prefix DIR`) and run DIR/bin/pitviper, or copy lib/pitviper beside the program's folder",
-              name, program, program, PITVIPER_MODULES_INSTALLED);
+    log_error(
+        "the program's module %s is missing: looked beside %s, in %s/../lib/pitviper and in %s; install the whole (`cmake "
+        "--install BUILD --prefix DIR`) and run DIR/bin/pitviper, or copy lib/pitviper beside the program's folder",
+        name, program, program, PITVIPER_MODULES_INSTALLED);
     return false;
 }

@@ -6,22 +6,28 @@
 #include <stdio.h>
 #include <unistd.h>
 
-static pthread_mutex_t log_lock = PTHREAD_MUTEX_INITIALIZER;
-static LogSink        *log_sink;
-static void           *log_user;
-static LogLevel        log_lowest = LOG_INFO;
+static pthread_mutex_t    log_lock = PTHREAD_MUTEX_INITIALIZER;
+static LogSink           *log_sink;
+static void              *log_user;
+static LogLevel           log_lowest = LOG_INFO;
 static _Thread_local bool suppressed_here;
-static char            status_line[256]; /* progress line of the terminal, below the log */
+static char               status_line[256]; /* progress line of the terminal, below the log */
 
 const char *status_name(Status status)
 {
     switch (status) {
-    case STATUS_OK: return "ok";
-    case STATUS_TRUNCATED: return "truncated";
-    case STATUS_BAD_VALUE: return "bad value";
-    case STATUS_UNSUPPORTED: return "unsupported";
-    case STATUS_IO: return "input/output error";
-    case STATUS_NO_MEMORY: return "out of memory";
+    case STATUS_OK:
+        return "ok";
+    case STATUS_TRUNCATED:
+        return "truncated";
+    case STATUS_BAD_VALUE:
+        return "bad value";
+    case STATUS_UNSUPPORTED:
+        return "unsupported";
+    case STATUS_IO:
+        return "input/output error";
+    case STATUS_NO_MEMORY:
+        return "out of memory";
     }
     return "unknown status";
 }
@@ -67,10 +73,8 @@ static void log_line(LogLevel level, const char *format, va_list arguments)
     text_show(line, sizeof line, raw, false); /* names in files and messages of libraries may contain any octets */
     pthread_mutex_lock(&log_lock);
     if (level >= log_lowest) {
-        if (log_sink)
-            log_sink(log_user, level, line);
-        else
-            fprintf(stderr, "%s%s%s\n%s", *status_line ? "\r\x1b[K" : "", log_head(level), line, status_line);
+        if (log_sink) log_sink(log_user, level, line);
+        else fprintf(stderr, "%s%s%s\n%s", *status_line ? "\r\x1b[K" : "", log_head(level), line, status_line);
     }
     pthread_mutex_unlock(&log_lock);
 }

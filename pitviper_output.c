@@ -18,7 +18,8 @@ enum { lock_tries = 500 }; /* a millisecond apart */
  * and with them the locks of what was closed meanwhile, for the moment until it is loaded. */
 static bool lock_file(int file)
 {
-    for (int k = 0; flock(file, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK; k++) { /* else: a file system without locks */
+    for (int k = 0; flock(file, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+         k++) { /* else: a file system without locks */
         if (k == lock_tries) return false;
         nanosleep(&(struct timespec){.tv_nsec = 1000000}, NULL);
     }
@@ -65,7 +66,7 @@ static const Held *held_above(const char *path)
 Status output_hold(const char *module, const char *folder)
 {
     const size_t length = length_of(folder);
-    Held        *h      = find_held(folder, length);
+    Held        *h = find_held(folder, length);
     if (h) {
         h->times++;
         return STATUS_OK;
@@ -75,7 +76,7 @@ Status output_hold(const char *module, const char *folder)
     *h = (Held){.next = held, .times = 1, .length = length};
     memcpy(h->path, folder, length);
     h->path[length] = 0;
-    h->folder       = open(h->path, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    h->folder = open(h->path, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     const int error = h->folder < 0 ? errno : 0;
     if (!error && lock_file(h->folder)) {
         held = h;
@@ -83,7 +84,8 @@ Status output_hold(const char *module, const char *folder)
     }
     if (error) log_error("%s: cannot write in %s: %s", module, folder, strerror(error));
     else
-        log_error("%s: another process is writing into %s; wait until it is done, or choose another folder", module, folder);
+        log_error("%s: another process is writing into %s; wait until it is done, or choose another folder", module,
+                  folder);
     if (!error) close(h->folder);
     free(h);
     return STATUS_IO;
@@ -136,19 +138,19 @@ static bool enter(Place *at, const char *name, bool make)
     return true;
 }
 
-/* The folder of a path, and its last part. make: creates the folders between; whole: enters the last part as well, and the
- * name is "." then. */
+/* The folder of a path, and its last part. make: creates the folders between; whole: enters the last part as well, and
+ * the name is "." then. */
 static bool place_of(Place *at, const char *path, bool make, bool whole)
 {
     const Held *above = held_above(path);
     *at = (Place){.folder = AT_FDCWD, .name = path};
     if (!above) return true;
     at->folder = above->folder;
-    at->name   = ".";
+    at->name = ".";
     for (const char *part = path + above->length; *(part += strspn(part, "/"));) {
         char         name[NAME_MAX + 1];
         const size_t length = strcspn(part, "/");
-        const bool   last   = part[length + strspn(part + length, "/")] == 0;
+        const bool   last = part[length + strspn(part + length, "/")] == 0;
         if (last && !whole && part[length] == 0) {
             at->name = part;
             return true;
@@ -176,7 +178,7 @@ static bool place_of(Place *at, const char *path, bool make, bool whole)
 static int descriptor_of(const char *path)
 {
     static const char *const folder[] = {"/dev/fd/", "/proc/self/fd/"};
-    long long number;
+    long long                number;
     if (strcmp(path, "/dev/stdout") == 0) return STDOUT_FILENO;
     if (strcmp(path, "/dev/stderr") == 0) return STDERR_FILENO;
     for (int i = 0; i < 2; i++)
@@ -193,7 +195,10 @@ static int fail(int file, int error)
     return -1;
 }
 
-static bool same_file(const struct stat *a, const struct stat *b) { return a->st_dev == b->st_dev && a->st_ino == b->st_ino; }
+static bool same_file(const struct stat *a, const struct stat *b)
+{
+    return a->st_dev == b->st_dev && a->st_ino == b->st_ino;
+}
 
 static int open_at(const Place *at, unsigned how)
 {
@@ -235,7 +240,7 @@ int output_open(const char *path, unsigned how)
 FILE *output_file(const char *path, unsigned how)
 {
     const int descriptor = output_open(path, how);
-    FILE     *file       = descriptor >= 0 ? fdopen(descriptor, how & OUTPUT_READ ? "w+" : "w") : NULL;
+    FILE     *file = descriptor >= 0 ? fdopen(descriptor, how & OUTPUT_READ ? "w+" : "w") : NULL;
     if (!file && descriptor >= 0) fail(descriptor, errno);
     return file;
 }
@@ -327,10 +332,10 @@ static bool is_part(FILE *file, const char *part)
 
 bool output_end(FILE *file, const char *path)
 {
-    char      part[PATH_MAX];
-    const bool named  = part_of(part, path) && is_part(file, part);
-    const int  locked = dup(fileno(file)); /* until it is renamed: another writer would take what has PATH's name then */
-    bool       whole  = !ferror(file);
+    char       part[PATH_MAX];
+    const bool named = part_of(part, path) && is_part(file, part);
+    const int locked = dup(fileno(file)); /* until it is renamed: another writer would take what has PATH's name then */
+    bool      whole = !ferror(file);
     if (fclose(file) != 0) whole = false;
     if (named && whole) whole = output_rename(part, path) == 0;
     const int error = errno;
@@ -351,8 +356,8 @@ const char *output_ending(const char *path)
 {
     struct stat about;
     const char *slash = strrchr(path, '/'), *last = slash ? slash + 1 : path, *point = strrchr(last, '.');
-    const bool  stream = descriptor_of(path) >= 0 ||
-                        (lstat(path, &about) == 0 && !S_ISREG(about.st_mode) && !S_ISDIR(about.st_mode) && !S_ISLNK(about.st_mode));
+    const bool  stream = descriptor_of(path) >= 0 || (lstat(path, &about) == 0 && !S_ISREG(about.st_mode) &&
+                                                     !S_ISDIR(about.st_mode) && !S_ISLNK(about.st_mode));
     return point && point > last && !stream ? point : "";
 }
 
@@ -373,7 +378,7 @@ int output_folder(const char *path)
     for (char *end = part + 1; *part; end++) {
         if (*end != '/' && *end) continue;
         const char kept = *end;
-        *end            = 0;
+        *end = 0;
         if (mkdir(part, 0777) != 0 && errno != EEXIST && !(kept && stat(part, &about) == 0)) return -1;
         *end = kept;
         if (!kept) break;
@@ -420,10 +425,14 @@ DIR *output_list(const char *path)
 const char *output_reason(int error)
 {
     switch (error) {
-    case ELOOP: return "it is, or lies below, a symbolic link, and none is followed where files are written; name its target, or "
-                       "remove the link";
-    case EBUSY: return "another process is writing it";
-    case EMEDIUMTYPE: return "it is a pipe, a socket or a device, not a file";
-    default: return strerror(error);
+    case ELOOP:
+        return "it is, or lies below, a symbolic link, and none is followed where files are written; name its target, or "
+               "remove the link";
+    case EBUSY:
+        return "another process is writing it";
+    case EMEDIUMTYPE:
+        return "it is a pipe, a socket or a device, not a file";
+    default:
+        return strerror(error);
     }
 }

@@ -1,9 +1,9 @@
 /* pitviper_output.h: files and folders that are written. Every file that a user sees is opened here.
  *
- * A symbolic link in the last part of a file's name is not followed, and below a folder that is held (output_hold) none in
- * any part: a link that lies among the products of an earlier run is refused. The folders that the user names
- * may be links. What is opened is a regular file, empty and locked until it is closed: of two processes that write one
- * file the second is refused.
+ * A symbolic link in the last part of a file's name is not followed, and below a folder that is held (output_hold) none
+ * in any part: a link that lies among the products of an earlier run is refused. The folders that the user names may be
+ * links. What is opened is a regular file, empty and locked until it is closed: of two processes that write one file
+ * the second is refused.
  *
  * Functions that return an int or a pointer say why they failed in errno, for output_reason. */
 #ifndef PITVIPER_OUTPUT_H
@@ -19,8 +19,8 @@ extern "C" {
 
 enum {
     OUTPUT_STREAM = 1, /* also a pipe, a device, /dev/stdout or another open descriptor: for a name that a user gives */
-    OUTPUT_READ   = 2, /* for reading too */
-    OUTPUT_KEEP   = 4, /* what is in it stays for now */
+    OUTPUT_READ = 2,   /* for reading too */
+    OUTPUT_KEEP = 4,   /* what is in it stays for now */
     OUTPUT_FOLDER = 8, /* of output_check: a folder, which output_folder would make */
 };
 
@@ -28,14 +28,15 @@ enum {
 int   output_open(const char *path, unsigned how);
 FILE *output_file(const char *path, unsigned how);
 
-/* A file that has its name only when it is whole: begin opens PATH.part, end closes it and renames it to PATH, or removes
- * it when a write or the closing failed; abandon removes it. A stream is written directly. end is false when it failed. */
+/* A file that has its name only when it is whole: begin opens PATH.part, end closes it and renames it to PATH, or
+ * removes it when a write or the closing failed; abandon removes it. A stream is written directly. end is false when it
+ * failed. */
 FILE *output_begin(const char *path, unsigned how);
 bool  output_end(FILE *file, const char *path);
 void  output_abandon(FILE *file, const char *path);
 
-/* Whether output_begin, output_open or output_folder would fail for what is there now: a link, no folder, no permission. 0: they
- * would not; nothing is created. */
+/* Whether output_begin, output_open or output_folder would fail for what is there now: a link, no folder, no
+ * permission. 0: they would not; nothing is created. */
 int output_check(const char *path, unsigned how);
 
 /* The ending of a file's name with its point, `.png`; empty: it has none, or is that of a stream. */

@@ -17,10 +17,10 @@ static int read_columns(Column *column, const char *list)
     int count = 0;
     for (const char *at = list; *at;) {
         const size_t length = strcspn(at, ",");
-        size_t       name   = length;
-        Column       c      = {.cell = -1};
+        size_t       name = length;
+        Column       c = {.cell = -1};
         for (; name > 0 && (at[name - 1] == '$' || at[name - 1] == '?'); name--) {
-            c.text     = c.text || at[name - 1] == '$';
+            c.text = c.text || at[name - 1] == '$';
             c.optional = c.optional || at[name - 1] == '?';
         }
         if (count == probe_max_columns || name >= sizeof c.name) abort();
@@ -79,7 +79,7 @@ static void write_number(FILE *out, double number)
 static const char *read_row(ProbeValue *in, const Column *column, int columns, char **cell, char reason[static 128])
 {
     for (int i = 0; i < columns; i++) {
-        in[i].text   = column[i].cell >= 0 ? cell[column[i].cell] : "";
+        in[i].text = column[i].cell >= 0 ? cell[column[i].cell] : "";
         in[i].number = NAN;
         if (!*in[i].text && column[i].optional) continue;
         if (column[i].text ? *in[i].text != 0 : text_to_double(&in[i].number, in[i].text)) continue;
@@ -130,7 +130,7 @@ Status probe_run(const Probe *probe, int argc, char **argv, FILE *in, FILE *out)
     } while (!unusable && (!*line || *line == '#'));
     strcpy(copy, line);
     const int cells = text_split(cell, row_max_cells, copy);
-    status          = cells < 0 || cells > row_max_cells || unusable ? STATUS_BAD_VALUE : STATUS_OK;
+    status = cells < 0 || cells > row_max_cells || unusable ? STATUS_BAD_VALUE : STATUS_OK;
     if (status != STATUS_OK) {
         log_error("probe: %s: the header is not CSV of at most %d columns%s%s", probe->name, row_max_cells,
                   unusable ? ": " : "", unusable ? unusable : "");
@@ -156,7 +156,7 @@ Status probe_run(const Probe *probe, int argc, char **argv, FILE *in, FILE *out)
         }
         if (!error) error = read_row(value, column, columns, cell, reason);
         for (int i = 0; i < results; i++) {
-            answer[i].text   = NULL;
+            answer[i].text = NULL;
             answer[i].number = NAN;
         }
         if (!error) error = probe->row(state, value, answer);
@@ -164,10 +164,8 @@ Status probe_run(const Probe *probe, int argc, char **argv, FILE *in, FILE *out)
         for (int i = 0; i < results; i++) {
             fputc(',', out);
             if (error) continue;
-            if (answer[i].text)
-                write_text(out, answer[i].text);
-            else
-                write_number(out, answer[i].number);
+            if (answer[i].text) write_text(out, answer[i].text);
+            else write_number(out, answer[i].number);
         }
         fputc(',', out);
         if (error) write_text(out, error);

@@ -52,8 +52,8 @@ static inline double log_of(double x)
 {
     static const uint64_t half_root = 0x3FE6A09E667F3BCD, bias = 1024; /* bits of sqrt(1/2) */
     static const double   ln2_high = 0x1.62e42fee00000p-1, ln2_low = 0x1.a39ef35793c76p-33;
-    uint64_t bits;
-    double   m;
+    uint64_t              bits;
+    double                m;
     memcpy(&bits, &x, sizeof bits);
     const uint64_t k = (bits - half_root + (bias << 52)) >> 52;
     const double   e = (double)((int32_t)(uint32_t)k - (int32_t)bias);

@@ -43,8 +43,14 @@ Status settings_say_unknown(const SettingTable *table, const char *source, const
     const char *best = *meant.word ? meant.word : NULL;
     text_escape(shown, sizeof shown, name, strlen(name));
     log_error("%s: %s: no such key: %s%s%s%s%s%s", table->module, source, settings_prefix(table), shown,
-              best ? "; did you mean " : table->all_keys ? "; all keys: " : "", best ? settings_prefix(table) : "",
-              best ? best : table->all_keys ? table->all_keys : "", best ? "?" : "");
+              best              ? "; did you mean "
+              : table->all_keys ? "; all keys: "
+                                : "",
+              best ? settings_prefix(table) : "",
+              best              ? best
+              : table->all_keys ? table->all_keys
+                                : "",
+              best ? "?" : "");
     return STATUS_BAD_VALUE;
 }
 
@@ -61,8 +67,9 @@ const char *settings_prefix(const SettingTable *table) { return table->prefix ? 
 
 void settings_accepted(char *out, size_t out_size, const Setting *row)
 {
-    const char *kind = row->type == SETTING_DOUBLE ? "a number" : row->type == SETTING_NUMBERS ? "numbers"
-                                                                                               : "a whole number";
+    const char *kind = row->type == SETTING_DOUBLE    ? "a number"
+                       : row->type == SETTING_NUMBERS ? "numbers"
+                                                      : "a whole number";
     if (row->type == SETTING_OWN || row->type == SETTING_EACH || row->type == SETTING_MAP)
         snprintf(out, out_size, "%s", row->choices);
     else if (row->choices) snprintf(out, out_size, "one of %s", row->choices);
@@ -78,9 +85,8 @@ void settings_accepted(char *out, size_t out_size, const Setting *row)
 static void report_bad(const SettingTable *table, const char *source, const Setting *row, const char *value)
 {
     char       shown[160], accepted[512];
-    const bool long_text =
-        !row->choices && (row->type == SETTING_TEXT || row->type == SETTING_WORDS || is_path(row));
-    WordMeant meant = word_meant(value);
+    const bool long_text = !row->choices && (row->type == SETTING_TEXT || row->type == SETTING_WORDS || is_path(row));
+    WordMeant  meant = word_meant(value);
     text_escape(shown, sizeof shown, value, strnlen(value, sizeof shown));
     if (long_text) snprintf(accepted, sizeof accepted, "longer than %zu characters", row->size - 1);
     else settings_accepted(accepted, sizeof accepted, row);
@@ -204,7 +210,7 @@ bool settings_paths_good(const void *from, const SettingTable *table, const char
 {
     for (int i = 0; i < table->count; i++) {
         const Setting *row = &table->row[i];
-        const char    *at  = (const char *)from + row->offset;
+        const char    *at = (const char *)from + row->offset;
         if (!is_path(row) || is_among(row->name, outputs)) continue;
         if (row->type == SETTING_NAME_OR_PATH && !strpbrk(at, "/.")) continue;
         while (*at) {
@@ -250,7 +256,7 @@ void settings_absolute(void *out, const SettingTable *table)
 
 /* file: its source; NULL: the command line. */
 Status settings_store(void *out, const SettingTable *table, const Setting *row, const char *value, const char *source,
-                    const char *file)
+                      const char *file)
 {
     char      *at = (char *)out + row->offset;
     double     number;
@@ -294,7 +300,8 @@ Status settings_store(void *out, const SettingTable *table, const Setting *row, 
         return STATUS_OK;
     case SETTING_OWN:
     case SETTING_EACH:
-    case SETTING_MAP: break; /* in files alone */
+    case SETTING_MAP:
+        break; /* in files alone */
     }
     report_bad(table, source, row, value);
     return STATUS_BAD_VALUE;
@@ -321,10 +328,10 @@ Status settings_set_from(void *out, bool *given, const SettingTable *table, cons
 /* Writes a value in the form that reads back; returns as snprintf. */
 static int value_text(char *out, size_t out_size, const Setting *row, const void *from, const char *number_format)
 {
-    const char *at = (const char *)from + row->offset;
-    double      number;
-    long long   whole;
-    int         small, n = 0;
+    const char       *at = (const char *)from + row->offset;
+    double            number;
+    long long         whole;
+    int               small, n = 0;
     const NumberList *list;
     switch (row->type) {
     case SETTING_DOUBLE:
@@ -336,15 +343,17 @@ static int value_text(char *out, size_t out_size, const Setting *row, const void
     case SETTING_LONG:
         memcpy(&whole, at, sizeof whole);
         return snprintf(out, out_size, "%lld", whole);
-    case SETTING_BOOL: return snprintf(out, out_size, "%s", *(const bool *)at ? "true" : "false");
+    case SETTING_BOOL:
+        return snprintf(out, out_size, "%s", *(const bool *)at ? "true" : "false");
     case SETTING_TEXT:
     case SETTING_WORDS:
     case SETTING_PATH:
     case SETTING_PATHS:
-    case SETTING_NAME_OR_PATH: return snprintf(out, out_size, "%s", at);
+    case SETTING_NAME_OR_PATH:
+        return snprintf(out, out_size, "%s", at);
     case SETTING_NUMBERS:
         list = (const NumberList *)at;
-        n    = snprintf(out, out_size, "[");
+        n = snprintf(out, out_size, "[");
         for (int i = 0; i < list->count; i++) {
             n += snprintf(out + n, (size_t)n < out_size ? out_size - (size_t)n : 0, "%s", i ? ", " : "");
             n += snprintf(out + n, (size_t)n < out_size ? out_size - (size_t)n : 0, number_format, list->number[i]);
@@ -352,7 +361,8 @@ static int value_text(char *out, size_t out_size, const Setting *row, const void
         return n + snprintf(out + n, (size_t)n < out_size ? out_size - (size_t)n : 0, "]");
     case SETTING_OWN:
     case SETTING_EACH:
-    case SETTING_MAP: break;
+    case SETTING_MAP:
+        break;
     }
     *out = 0;
     return 0;
@@ -375,7 +385,7 @@ void settings_text(char *out, size_t out_size, const SettingTable *table, const 
 static void readable(char *out, size_t out_size, const Setting *row, const void *from)
 {
     static const char *const formats[] = {"%g", "%.9g", "%.17g"};
-    double want, got;
+    double                   want, got;
     for (int i = 0; i < 3; i++) {
         value_text(out, out_size, row, from, formats[i]);
         if (row->type != SETTING_DOUBLE) return;
@@ -402,7 +412,7 @@ void settings_write(FILE *to, const SettingTable *table, const void *from, const
 {
     char value[value_size], section[64] = "";
     for (int i = 0; i < table->count; i++) {
-        const Setting *row   = &table->row[i];
+        const Setting *row = &table->row[i];
         const char    *point = strchr(row->name, '.'), *key = point ? point + 1 : row->name;
         const size_t   length = point ? (size_t)(point - row->name) : 0;
         const char    *indent = point ? "  " : "";
@@ -415,8 +425,7 @@ void settings_write(FILE *to, const SettingTable *table, const void *from, const
         fprintf(to, "%s# %s", indent, row->help);
         if (row->choices) fprintf(to, "%s%s", *row->help ? "; " : "", row->choices);
         else if (row->type == SETTING_BOOL) fprintf(to, "%strue or false", *row->help ? "; " : "");
-        else if (row->type != SETTING_TEXT && row->type != SETTING_WORDS && !is_path(row) &&
-                 !isnan(row->low))
+        else if (row->type != SETTING_TEXT && row->type != SETTING_WORDS && !is_path(row) && !isnan(row->low))
             fprintf(to, "%s%g .. %g%s%s", *row->help ? "; " : "", row->low, row->high, *row->unit ? " " : "",
                     row->unit);
         else if (*row->unit) fprintf(to, "%s%s", *row->help ? "; " : "", row->unit);
@@ -426,7 +435,8 @@ void settings_write(FILE *to, const SettingTable *table, const void *from, const
         if (row->type == SETTING_DOUBLE) memcpy(&number, (const char *)from + row->offset, sizeof number);
         const bool unset = isnan(number), hidden = unset || (shown && !shown[i]);
         fprintf(to, "%s%s%s:%s", indent, hidden ? "# " : "", key, unset ? "" : " ");
-        if ((row->type == SETTING_TEXT || row->type == SETTING_WORDS || is_path(row)) && !is_plain(value)) put_quoted(to, value);
+        if ((row->type == SETTING_TEXT || row->type == SETTING_WORDS || is_path(row)) && !is_plain(value))
+            put_quoted(to, value);
         else fputs(unset ? "" : value, to);
         fputc('\n', to);
     }

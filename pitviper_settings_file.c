@@ -22,13 +22,24 @@ static const char *too_much(Tally *tally, const yaml_event_t *event)
 {
     const yaml_char_t *anchor = NULL;
     switch (event->type) {
-    case YAML_DOCUMENT_START_EVENT: tally->documents++; break;
-    case YAML_SCALAR_EVENT: anchor = event->data.scalar.anchor; break;
-    case YAML_SEQUENCE_START_EVENT: anchor = event->data.sequence_start.anchor, tally->depth++; break;
-    case YAML_MAPPING_START_EVENT: anchor = event->data.mapping_start.anchor, tally->depth++; break;
+    case YAML_DOCUMENT_START_EVENT:
+        tally->documents++;
+        break;
+    case YAML_SCALAR_EVENT:
+        anchor = event->data.scalar.anchor;
+        break;
+    case YAML_SEQUENCE_START_EVENT:
+        anchor = event->data.sequence_start.anchor, tally->depth++;
+        break;
+    case YAML_MAPPING_START_EVENT:
+        anchor = event->data.mapping_start.anchor, tally->depth++;
+        break;
     case YAML_SEQUENCE_END_EVENT:
-    case YAML_MAPPING_END_EVENT: tally->depth--; break;
-    default: break;
+    case YAML_MAPPING_END_EVENT:
+        tally->depth--;
+        break;
+    default:
+        break;
     }
     tally->anchors += anchor != NULL;
     return tally->depth > most_depth       ? "lists and mappings nest deeper than 32"
@@ -76,7 +87,7 @@ Status yaml_check(const char *module, const char *path, const char *text, size_t
 typedef struct Reading {
     const char      *path, *file; /* file: paths are relative to its folder */
     yaml_document_t *document;
-    int             *wrong;       /* values refused so far: all are reported, up to most_wrong */
+    int             *wrong; /* values refused so far: all are reported, up to most_wrong */
 } Reading;
 
 enum { key_size = 160, source_size = 512, words_size = 512, list_size = 4096, most_wrong = 50 };
@@ -111,8 +122,7 @@ static const char *shown(const yaml_node_t *node)
 static bool flatten(NumberList *out, const Reading *r, const Setting *row, const yaml_node_t *node, int depth)
 {
     if (node->type == YAML_SCALAR_NODE)
-        return out->count < number_list_capacity &&
-               settings_number(&out->number[out->count++], row, text_of(node));
+        return out->count < number_list_capacity && settings_number(&out->number[out->count++], row, text_of(node));
     if (node->type != YAML_SEQUENCE_NODE || depth == 2) return false;
     for (const yaml_node_item_t *item = node->data.sequence.items.start; item < node->data.sequence.items.top; item++)
         if (!flatten(out, r, row, yaml_document_get_node(r->document, *item), depth + 1)) return false;
@@ -188,13 +198,17 @@ static Status fill_own(void *out, const Reading *r, const SettingTable *table, c
     if (map) {
         for (const yaml_node_pair_t *pair = value->data.mapping.pairs.start;
              pair < value->data.mapping.pairs.top &&
-             goes_on(&status, r, fill_one(out, r, table, row, yaml_document_get_node(r->document, pair->key),
-                                          yaml_document_get_node(r->document, pair->value), NULL)); pair++) {}
+             goes_on(&status, r,
+                     fill_one(out, r, table, row, yaml_document_get_node(r->document, pair->key),
+                              yaml_document_get_node(r->document, pair->value), NULL));
+             pair++) {
+        }
     } else if (list && row->type == SETTING_EACH) {
         for (const yaml_node_item_t *item = value->data.sequence.items.start;
              item < value->data.sequence.items.top &&
              goes_on(&status, r, fill_one(out, r, table, row, NULL, yaml_document_get_node(r->document, *item), NULL));
-             item++) {}
+             item++) {
+        }
     } else {
         status = fill_one(out, r, table, row, NULL, value, list ? words : NULL);
     }
@@ -243,8 +257,8 @@ static Status fill_value(void *out, const Reading *r, const SettingTable *table,
         char accepted[512], said[64];
         settings_accepted(accepted, sizeof accepted, row);
         text_escape(said, sizeof said, shown(value), strlen(shown(value)));
-        log_error("%s: %s: %s%s needs one value, not '%s': %s", table->module, source, settings_prefix(table), row->name,
-                  said, accepted);
+        log_error("%s: %s: %s%s needs one value, not '%s': %s", table->module, source, settings_prefix(table),
+                  row->name, said, accepted);
         return STATUS_BAD_VALUE;
     }
     return settings_store(out, table, row, text_of(value), source, r->file);
@@ -381,8 +395,8 @@ static Status fill_document(void *out, bool *given, const SettingTable *table, c
     if (!seen) return STATUS_NO_MEMORY;
     const Status status = fill_mapping(out, given, seen, &reading, table, "", root);
     if (wrong >= most_wrong)
-        log_error("%s: %s: too many errors; correct these first, the rest of the file has not been read",
-                  table->module, path);
+        log_error("%s: %s: too many errors; correct these first, the rest of the file has not been read", table->module,
+                  path);
     free(seen);
     return status;
 }
@@ -445,7 +459,8 @@ int settings_line(const SettingTable *table, const char *name, const char *path)
     size_t          octets;
     yaml_document_t document;
     int             line = 0;
-    if (file_read_whole(&text, &octets, table->module, path, settings_file_octets, FILE_FROM_SHELL) != STATUS_OK) return 0;
+    if (file_read_whole(&text, &octets, table->module, path, settings_file_octets, FILE_FROM_SHELL) != STATUS_OK)
+        return 0;
     if (load(&document, table, path, text, octets) == STATUS_OK) {
         const yaml_node_t *root = yaml_document_get_root_node(&document);
         if (root && root->type == YAML_MAPPING_NODE) line = line_in(table, &document, "", name, root);

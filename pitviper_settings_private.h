@@ -12,7 +12,7 @@ Status settings_store(void *out, const SettingTable *table, const Setting *row, 
 /* Logged with the key that was perhaps meant. */
 Status settings_say_unknown(const SettingTable *table, const char *source, const char *name);
 /* What a row accepts, in words: `a number in 0 .. 10 m`. */
-void   settings_accepted(char *out, size_t out_size, const Setting *row);
+void        settings_accepted(char *out, size_t out_size, const Setting *row);
 const char *settings_prefix(const SettingTable *table); /* of its keys in messages */
 
 #endif

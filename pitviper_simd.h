@@ -37,7 +37,7 @@ static inline F32x8 f32x8_and_not(F32x8 a, F32x8 not_b) { return _mm256_andnot_p
 static inline F32x8 f32x8_select(F32x8 mask, F32x8 yes, F32x8 no) { return _mm256_blendv_ps(no, yes, mask); }
 /* One bit a lane, and back. */
 static inline unsigned f32x8_bits(F32x8 mask) { return (unsigned)_mm256_movemask_ps(mask); }
-static inline F32x8 f32x8_mask(unsigned bits)
+static inline F32x8    f32x8_mask(unsigned bits)
 {
     const I32x8 bit = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
     return _mm256_castsi256_ps(_mm256_cmpeq_epi32(_mm256_and_si256(_mm256_set1_epi32((int)bits), bit), bit));
@@ -73,13 +73,12 @@ static inline F32x8 f32x8_exp2(F32x8 x)
 {
     x = f32x8_max(x, f32x8_set(-126));
     const F32x8 n = _mm256_round_ps(x, _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC), f = x - n;
-    F32x8 p = f32x8_fma(f32x8_set(0.0013264723896), f, f32x8_set(0.0096715128699));
+    F32x8       p = f32x8_fma(f32x8_set(0.0013264723896), f, f32x8_set(0.0096715128699));
     p = f32x8_fma(p, f, f32x8_set(0.0555073375424));
     p = f32x8_fma(p, f, f32x8_set(0.2402224208036));
     p = f32x8_fma(p, f, f32x8_set(0.6931469775915));
     p = f32x8_fma(p, f, f32x8_set(1));
-    return _mm256_castsi256_ps(
-        _mm256_add_epi32(_mm256_castps_si256(p), _mm256_slli_epi32(_mm256_cvtps_epi32(n), 23)));
+    return _mm256_castsi256_ps(_mm256_add_epi32(_mm256_castps_si256(p), _mm256_slli_epi32(_mm256_cvtps_epi32(n), 23)));
 }
 
 /* ---- integers ---------------------------------------------------------------------------------- */
@@ -110,23 +109,23 @@ static inline I32x8 i32x8_gather(const int32_t *p, I32x8 at) { return _mm256_i32
 
 static inline F64x4 f64x4_set(double x) { return _mm256_set1_pd(x); }
 /* load, store: of 32-byte aligned arrays; loadu, storeu: of any. */
-static inline F64x4 f64x4_load(const double *p) { return _mm256_load_pd(p); }
-static inline F64x4 f64x4_loadu(const double *p) { return _mm256_loadu_pd(p); }
-static inline void  f64x4_store(double *p, F64x4 x) { _mm256_store_pd(p, x); }
-static inline void  f64x4_storeu(double *p, F64x4 x) { _mm256_storeu_pd(p, x); }
-static inline F64x4 f64x4_min(F64x4 a, F64x4 b) { return _mm256_min_pd(a, b); } /* a < b ? a : b */
-static inline F64x4 f64x4_max(F64x4 a, F64x4 b) { return _mm256_max_pd(a, b); } /* a > b ? a : b */
-static inline F64x4 f64x4_sqrt(F64x4 x) { return _mm256_sqrt_pd(x); }
-static inline F64x4 f64x4_abs(F64x4 x) { return _mm256_andnot_pd(_mm256_set1_pd(-0.0), x); }
-static inline F64x4 f64x4_floor(F64x4 x) { return _mm256_floor_pd(x); }
-static inline F64x4 f64x4_less(F64x4 a, F64x4 b) { return _mm256_cmp_pd(a, b, _CMP_LT_OQ); }
-static inline F64x4 f64x4_at_most(F64x4 a, F64x4 b) { return _mm256_cmp_pd(a, b, _CMP_LE_OQ); }
-static inline F64x4 f64x4_equal(F64x4 a, F64x4 b) { return _mm256_cmp_pd(a, b, _CMP_EQ_OQ); }
-static inline F64x4 f64x4_and(F64x4 a, F64x4 b) { return _mm256_and_pd(a, b); }
-static inline F64x4 f64x4_or(F64x4 a, F64x4 b) { return _mm256_or_pd(a, b); }
-static inline F64x4 f64x4_and_not(F64x4 a, F64x4 not_b) { return _mm256_andnot_pd(not_b, a); }
-static inline F64x4 f64x4_select(F64x4 mask, F64x4 yes, F64x4 no) { return _mm256_blendv_pd(no, yes, mask); }
+static inline F64x4    f64x4_load(const double *p) { return _mm256_load_pd(p); }
+static inline F64x4    f64x4_loadu(const double *p) { return _mm256_loadu_pd(p); }
+static inline void     f64x4_store(double *p, F64x4 x) { _mm256_store_pd(p, x); }
+static inline void     f64x4_storeu(double *p, F64x4 x) { _mm256_storeu_pd(p, x); }
+static inline F64x4    f64x4_min(F64x4 a, F64x4 b) { return _mm256_min_pd(a, b); } /* a < b ? a : b */
+static inline F64x4    f64x4_max(F64x4 a, F64x4 b) { return _mm256_max_pd(a, b); } /* a > b ? a : b */
+static inline F64x4    f64x4_sqrt(F64x4 x) { return _mm256_sqrt_pd(x); }
+static inline F64x4    f64x4_abs(F64x4 x) { return _mm256_andnot_pd(_mm256_set1_pd(-0.0), x); }
+static inline F64x4    f64x4_floor(F64x4 x) { return _mm256_floor_pd(x); }
+static inline F64x4    f64x4_less(F64x4 a, F64x4 b) { return _mm256_cmp_pd(a, b, _CMP_LT_OQ); }
+static inline F64x4    f64x4_at_most(F64x4 a, F64x4 b) { return _mm256_cmp_pd(a, b, _CMP_LE_OQ); }
+static inline F64x4    f64x4_equal(F64x4 a, F64x4 b) { return _mm256_cmp_pd(a, b, _CMP_EQ_OQ); }
+static inline F64x4    f64x4_and(F64x4 a, F64x4 b) { return _mm256_and_pd(a, b); }
+static inline F64x4    f64x4_or(F64x4 a, F64x4 b) { return _mm256_or_pd(a, b); }
+static inline F64x4    f64x4_and_not(F64x4 a, F64x4 not_b) { return _mm256_andnot_pd(not_b, a); }
+static inline F64x4    f64x4_select(F64x4 mask, F64x4 yes, F64x4 no) { return _mm256_blendv_pd(no, yes, mask); }
 static inline unsigned f64x4_bits(F64x4 mask) { return (unsigned)_mm256_movemask_pd(mask); }
-static inline F64x4 f64x4_of_ints(__m128i i) { return _mm256_cvtepi32_pd(i); }
+static inline F64x4    f64x4_of_ints(__m128i i) { return _mm256_cvtepi32_pd(i); }
 
 #endif

@@ -16,7 +16,7 @@ bool text_to_double(double *out, const char *text)
 {
     if (!*text || strchr(" \t\n\v\f\r", *text) || strpbrk(text, "xX")) return false;
     char *end;
-    errno          = 0;
+    errno = 0;
     const double v = strtod(text, &end);
     if (end == text || *end || !isfinite(v)) return false;
     *out = v;
@@ -27,7 +27,7 @@ bool text_to_long(long long *out, const char *text)
 {
     if (!*text || strchr(" \t\n\v\f\r", *text)) return false;
     char *end;
-    errno             = 0;
+    errno = 0;
     const long long v = strtoll(text, &end, 10);
     if (end == text || *end || errno == ERANGE) return false;
     *out = v;
@@ -37,9 +37,9 @@ bool text_to_long(long long *out, const char *text)
 void text_escape(char *out, size_t out_size, const char *bytes, size_t count)
 {
     static const char digits[] = "0123456789abcdef";
-    size_t            n        = 0;
+    size_t            n = 0;
     for (size_t i = 0; i < count; i++) {
-        const unsigned char c     = (unsigned char)bytes[i];
+        const unsigned char c = (unsigned char)bytes[i];
         const bool          plain = c >= 0x20 && c < 0x7f && c != '\\';
         if (n + (plain ? 1 : 4) + 1 > out_size) break;
         if (plain) {
@@ -58,7 +58,7 @@ void text_escape(char *out, size_t out_size, const char *bytes, size_t count)
 static size_t utf8_octets(uint32_t *code, const unsigned char *at)
 {
     static const uint32_t least[5] = {0, 0, 0x80, 0x800, 0x10000};
-    const size_t octets = *at < 0x80 ? 1 : *at >> 5 == 6 ? 2 : *at >> 4 == 14 ? 3 : *at >> 3 == 30 ? 4 : 0;
+    const size_t          octets = *at < 0x80 ? 1 : *at >> 5 == 6 ? 2 : *at >> 4 == 14 ? 3 : *at >> 3 == 30 ? 4 : 0;
     if (octets == 0) return 0;
     uint32_t c = octets == 1 ? *at : *at & (0x7Fu >> octets);
     for (size_t i = 1; i < octets; i++) {
@@ -82,10 +82,10 @@ void text_show(char *out, size_t out_size, const char *text, bool lines)
 {
     size_t n = 0;
     for (const unsigned char *at = (const unsigned char *)text; *at;) {
-        uint32_t     code   = 0;
+        uint32_t     code = 0;
         const size_t octets = utf8_octets(&code, at);
-        const bool   kept   = octets > 0 && (!steers_terminals(code) || (lines && (*at == '\n' || *at == '\t')));
-        const size_t taken  = octets > 0 ? octets : 1;
+        const bool   kept = octets > 0 && (!steers_terminals(code) || (lines && (*at == '\n' || *at == '\t')));
+        const size_t taken = octets > 0 ? octets : 1;
         if (n + (kept ? taken : 4 * taken) + 1 > out_size) break;
         if (kept) {
             memcpy(out + n, at, taken);
@@ -102,9 +102,9 @@ void text_show(char *out, size_t out_size, const char *text, bool lines)
 void text_vprint(FILE *to, const char *format, va_list arguments)
 {
     enum { usual = 16384 };
-    char      text[usual], shown[4 * usual];
-    char     *long_text = NULL, *long_shown = NULL;
-    va_list   again;
+    char    text[usual], shown[4 * usual];
+    char   *long_text = NULL, *long_shown = NULL;
+    va_list again;
     va_copy(again, arguments);
     const int length = vsnprintf(text, sizeof text, format, arguments);
     if (length < 0) *text = 0;
@@ -147,7 +147,7 @@ static char *trim(char *text)
 int text_split(char **cell, int capacity, char *line)
 {
     int   count = 0;
-    char *at    = line;
+    char *at = line;
     for (;;) {
         while (*at == ' ' || *at == '\t') at++;
         char *start = at, *end;
@@ -166,7 +166,7 @@ int text_split(char **cell, int capacity, char *line)
             end = at;
         }
         const bool more = *at == ',';
-        *end            = 0;
+        *end = 0;
         if (count < capacity) cell[count] = trim(start);
         count++;
         if (!more) return count;
@@ -176,7 +176,7 @@ int text_split(char **cell, int capacity, char *line)
 
 Status table_open(Table *out, const char *path)
 {
-    Table  table  = {0};
+    Table  table = {0};
     size_t octets = 0;
     Status status = text_read_file(&table.text, &octets, "text", path, table_max_octets);
     if (status != STATUS_OK) return status;
@@ -185,7 +185,7 @@ Status table_open(Table *out, const char *path)
         status = STATUS_BAD_VALUE;
         goto fail;
     }
-    status     = STATUS_NO_MEMORY;
+    status = STATUS_NO_MEMORY;
     table.path = strdup(path);
     if (!table.path) goto fail;
 
@@ -213,14 +213,12 @@ Status table_open(Table *out, const char *path)
             if (!table.cell) goto fail;
             table.columns = columns;
         }
-        char    **row   = table.cell + (size_t)(table.rows + 1) * (size_t)table.columns;
+        char    **row = table.cell + (size_t)(table.rows + 1) * (size_t)table.columns;
         const int cells = text_split(row, table.columns, line);
         if (table.rows < 0 && cells > 0) table.columns = cells;
         if (cells != table.columns) {
-            if (cells < 0)
-                log_error("text: %s:%d: a quote is not closed", path, number);
-            else
-                log_error("text: %s:%d: %d columns where the header has %d", path, number, cells, table.columns);
+            if (cells < 0) log_error("text: %s:%d: a quote is not closed", path, number);
+            else log_error("text: %s:%d: %d columns where the header has %d", path, number, cells, table.columns);
             status = STATUS_BAD_VALUE;
             goto fail;
         }
@@ -289,7 +287,7 @@ Status table_number(double *out, const Table *table, int row, int column, double
  * algorithms", by the count of days in 400-year eras. */
 static long long days_from_date(int year, int month, int day)
 {
-    const long long y   = month <= 2 ? year - 1 : year;
+    const long long y = month <= 2 ? year - 1 : year;
     const long long era = (y >= 0 ? y : y - 399) / 400;
     const long long yoe = y - era * 400;
     const long long doy = (153 * (month + (month > 2 ? -3 : 9)) + 2) / 5 + day - 1;
@@ -299,8 +297,8 @@ static long long days_from_date(int year, int month, int day)
 bool text_to_unix_s(double *unix_s, const char *text)
 {
     static const int days[12] = {31, 28, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31};
-    int    year, month, day, hour, minute, used = 0;
-    double second;
+    int              year, month, day, hour, minute, used = 0;
+    double           second;
     if (sscanf(text, "%4d-%2d-%2dT%2d:%2d:%lfZ%n", &year, &month, &day, &hour, &minute, &second, &used) != 6 ||
         text[used] || year < 1900 || year > 2100 || month < 1 || month > 12 || day < 1 ||
         day > days[month - 1] + (month == 2 && year % 4 == 0 && (year % 100 != 0 || year % 400 == 0)) || hour < 0 ||

@@ -17,21 +17,18 @@ typedef struct Worker {
 
 struct Pool {
     int             threads;
-    Worker         *worker;    /* [threads - 1]; the caller is worker 0 */
+    Worker         *worker; /* [threads - 1]; the caller is worker 0 */
     pthread_mutex_t lock;
     pthread_cond_t  work, done;
-    uint64_t        round;     /* counts pool_run calls */
-    int             busy;      /* workers still running */
+    uint64_t        round; /* counts pool_run calls */
+    int             busy;  /* workers still running */
     bool            stop;
     PoolTask       *task;
     void           *user;
     int             count, next;
 };
 
-void thread_flush_denormals(void)
-{
-    _mm_setcsr(_mm_getcsr() | 0x8040); /* FTZ and DAZ */
-}
+void thread_flush_denormals(void) { _mm_setcsr(_mm_getcsr() | 0x8040); /* FTZ and DAZ */ }
 
 static void run_tasks(Pool *pool, int worker)
 {
@@ -72,15 +69,15 @@ Status pool_create(Pool **out, int threads)
     pthread_cond_init(&pool->work, NULL);
     pthread_cond_init(&pool->done, NULL);
     pool->threads = 1;
-    pool->worker  = calloc((size_t)threads, sizeof *pool->worker);
+    pool->worker = calloc((size_t)threads, sizeof *pool->worker);
     if (!pool->worker) {
         pool_destroy(pool);
         return STATUS_NO_MEMORY;
     }
     for (int i = 1; i < threads; i++) {
         Worker *worker = &pool->worker[i - 1];
-        worker->pool   = pool;
-        worker->index  = i;
+        worker->pool = pool;
+        worker->index = i;
         if (pthread_create(&worker->thread, NULL, worker_main, worker) != 0) {
             pool_destroy(pool);
             return STATUS_NO_MEMORY;
@@ -112,11 +109,11 @@ void pool_run(Pool *pool, int count, PoolTask *task, void *user)
 {
     if (count <= 0) return;
     pthread_mutex_lock(&pool->lock);
-    pool->task  = task;
-    pool->user  = user;
+    pool->task = task;
+    pool->user = user;
     pool->count = count;
-    pool->next  = 0;
-    pool->busy  = pool->threads - 1;
+    pool->next = 0;
+    pool->busy = pool->threads - 1;
     pool->round++;
     pthread_cond_broadcast(&pool->work);
     pthread_mutex_unlock(&pool->lock);

@@ -39,8 +39,10 @@ const Probe entities_probes[] = {
      .help = "position and attitude of an Entity State extrapolated by dt_s (IEEE 1278.1 Annex E): ECEF metres, Euler "
              "angles in "
              "radians, velocity and acceleration in world axes for algorithms 1-5, body axes for 6-9",
-     .in = "algorithm,x_m,y_m,z_m,psi_rad,theta_rad,phi_rad,vx_mps,vy_mps,vz_mps,ax_mps2?,ay_mps2?,az_mps2?,wx_rps?,wy_rps?,"
-           "wz_rps?,dt_s",
-     .out = "dr_x_m,dr_y_m,dr_z_m,dr_psi_rad,dr_theta_rad,dr_phi_rad", .row = dead_reckon_row},
+     .in =
+         "algorithm,x_m,y_m,z_m,psi_rad,theta_rad,phi_rad,vx_mps,vy_mps,vz_mps,ax_mps2?,ay_mps2?,az_mps2?,wx_rps?,wy_rps?,"
+         "wz_rps?,dt_s",
+     .out = "dr_x_m,dr_y_m,dr_z_m,dr_psi_rad,dr_theta_rad,dr_phi_rad",
+     .row = dead_reckon_row},
 };
 const int entities_probe_count = sizeof entities_probes / sizeof *entities_probes;

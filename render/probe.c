@@ -26,10 +26,10 @@ static const char *planck_row(void *state, const ProbeValue *in, ProbeValue *out
 /* ---- rays: one model, its joints at 0 ------------------------------------------------ */
 
 typedef struct RayProbe {
-    Model        model;
-    Tracer      *tracer;
-    PosedEntity  entity;
-    double       scale_m, r_body_from_file[9], p_origin_file[3]; /* of the rows' axes */
+    Model       model;
+    Tracer     *tracer;
+    PosedEntity entity;
+    double      scale_m, r_body_from_file[9], p_origin_file[3]; /* of the rows' axes */
 } RayProbe;
 
 static void rays_close(void *state)
@@ -45,9 +45,9 @@ static void rays_close(void *state)
 static Status rays_open(void **state, int argc, char **argv)
 {
     static const double origin[3] = {0, 0, 0};
-    double      attitude[9];
-    ModelImport report = {0};
-    bool        imported = false;
+    double              attitude[9];
+    ModelImport         report = {0};
+    bool                imported = false;
     if (argc < 2 || argc > 3 || (argc == 3 && strcmp(argv[2], "file") != 0 && strcmp(argv[2], "body") != 0)) {
         log_error("rays: usage: probe rays MODEL [file|body]: a built-in name or a file; and the axes of the rows "
                   "in");
@@ -158,7 +158,7 @@ static const char *atmosphere_row(void *state, const ProbeValue *in, ProbeValue 
     if (band == AIR_BAND_COUNT) return "band must be b, g, r, pan, nir, mwir or lwir";
     const double visibility_m = in[1].number * 1e3, temp_k = in[6].number;
     if (!(visibility_m > 0)) return "visibility_km must be above 0";
-    const bool sun = isfinite(in[7].number);
+    const bool    sun = isfinite(in[7].number);
     const AirPath path = {in[3].number, in[4].number, in[5].number * 1e3, sun ? in[7].number * rad_per_deg : pi_rad,
                           isfinite(in[8].number) ? in[8].number * rad_per_deg : 0};
     if (!(path.observer_m >= 0 && path.target_m >= 0)) return "heights must be at or above the ground";
@@ -176,68 +176,101 @@ static const char *atmosphere_row(void *state, const ProbeValue *in, ProbeValue 
 }
 
 const Probe render_probes[] = {
-    {.name = "planck", .help = "in-band radiance of a black body and its derivative in temperature",
-     .in = "lo_um,hi_um,temp_k", .out = "radiance_w_m2_sr,dldt", .row = planck_row},
-    {.name = "rays", .arguments = "MODEL [file|body]",
+    {.name = "planck",
+     .help = "in-band radiance of a black body and its derivative in temperature",
+     .in = "lo_um,hi_um,temp_k",
+     .out = "radiance_w_m2_sr,dldt",
+     .row = planck_row},
+    {.name = "rays",
+     .arguments = "MODEL [file|body]",
      .help = "first hit on a model, its joints at 0; in the file's own axes, origin and units (distances in m) if it "
              "has no "
              "sidecar, else in body axes",
-     .in = "ox_m,oy_m,oz_m,dx,dy,dz", .out = "hit,dist_m,nx,ny,nz,part$",
-     .open = rays_open, .row = rays_row, .close = rays_close},
-    {.name = "atmosphere", .help = "transmittance and path radiance from the tables of etc/atmosphere",
+     .in = "ox_m,oy_m,oz_m,dx,dy,dz",
+     .out = "hit,dist_m,nx,ny,nz,part$",
+     .open = rays_open,
+     .row = rays_row,
+     .close = rays_close},
+    {.name = "atmosphere",
+     .help = "transmittance and path radiance from the tables of etc/atmosphere",
      .in = "model$,visibility_km,band$,observer_m,target_m,range_km,temp_k,sun_zenith_deg?,rel_azimuth_deg?",
-     .out = "tau,path_radiance,sun_tau,scattered", .open = atmosphere_probe_open,
-     .row = atmosphere_row, .close = atmosphere_probe_close},
-    {.name = "heat-ground", .arguments = PROBE_WEATHER_ARGUMENTS,
-     .help = "temperature of the ground, warmed up over the two days before each local day, and what it takes and gives; surface: "
-             "of etc/ground_heat.csv; aspect: where the slope faces, clockwise from north; shade: share of the direct sun "
-             "taken, all day; depth: of level ground in the open; weather as of `weather`",
+     .out = "tau,path_radiance,sun_tau,scattered",
+     .open = atmosphere_probe_open,
+     .row = atmosphere_row,
+     .close = atmosphere_probe_close},
+    {.name = "heat-ground",
+     .arguments = PROBE_WEATHER_ARGUMENTS,
+     .help =
+         "temperature of the ground, warmed up over the two days before each local day, and what it takes and gives; surface: "
+         "of etc/ground_heat.csv; aspect: where the slope faces, clockwise from north; shade: share of the direct sun "
+         "taken, all day; depth: of level ground in the open; weather as of `weather`",
      .in = "unix_s,surface$,slope_deg?,aspect_deg?,shade?,depth_m?",
      .out = "temp_k,air_temp_k,absorbed_w_m2,direct_w_m2,diffuse_w_m2,longwave_w_m2,film_w_m2k,latent_w_m2",
-     .open = heat_probe_open, .row = heat_probe_row, .close = heat_probe_close},
-    {.name = "heat-node", .arguments = PROBE_WEATHER_ARGUMENTS,
-     .help = "temperature of a part of a vehicle on level grass, mean by area and range over its patches; each row is an "
-             "entity that begins then: it stood a day with its engine stopped, and for the last hour did what the row says; "
-             "part: as `model info` lists them, empty: all; heading: clockwise from north (270); engine: share of full power "
-             "(0); weather as of `weather`",
-     .in = "unix_s,model$,part$?,heading_deg?,engine?,speed_mps?", .out = "temp_k,low_k,high_k,air_k,ground_k",
-     .open = heat_node_probe_open, .row = heat_node_probe_row, .close = heat_node_probe_close},
-    {.name = "propagation", .arguments = "[MODEL]",
-     .help = "what air, rain, fog and cloud take from a radio wave on a straight path, one way (ITU-R P.676-13, P.838-3, "
-             "P.840-9), and its two-way factor; MODEL: of etc/atmosphere (us1976), for temperatures; heights above its "
-             "ground; tilt: of the polarisation, 0 horizontal, 90 vertical, 45 circular too; visibility: fog from 1000 m "
-             "down, below fog_top_m (empty: everywhere); the figures per km are those at from_m",
+     .open = heat_probe_open,
+     .row = heat_probe_row,
+     .close = heat_probe_close},
+    {.name = "heat-node",
+     .arguments = PROBE_WEATHER_ARGUMENTS,
+     .help =
+         "temperature of a part of a vehicle on level grass, mean by area and range over its patches; each row is an "
+         "entity that begins then: it stood a day with its engine stopped, and for the last hour did what the row says; "
+         "part: as `model info` lists them, empty: all; heading: clockwise from north (270); engine: share of full power "
+         "(0); weather as of `weather`",
+     .in = "unix_s,model$,part$?,heading_deg?,engine?,speed_mps?",
+     .out = "temp_k,low_k,high_k,air_k,ground_k",
+     .open = heat_node_probe_open,
+     .row = heat_node_probe_row,
+     .close = heat_node_probe_close},
+    {.name = "propagation",
+     .arguments = "[MODEL]",
+     .help =
+         "what air, rain, fog and cloud take from a radio wave on a straight path, one way (ITU-R P.676-13, P.838-3, "
+         "P.840-9), and its two-way factor; MODEL: of etc/atmosphere (us1976), for temperatures; heights above its "
+         "ground; tilt: of the polarisation, 0 horizontal, 90 vertical, 45 circular too; visibility: fog from 1000 m "
+         "down, below fog_top_m (empty: everywhere); the figures per km are those at from_m",
      .in = "frequency_ghz,from_m,to_m,range_m,air_temp_k?,pressure_mbar?,humidity?,rain_mm_h?,tilt_deg?,visibility_m?,"
            "fog_top_m?,cloud_low_m?,cloud_high_m?,cloud_g_m3?",
      .out = "gas_db,rain_db,cloud_db,two_way_db,amplitude,phase_rad,dry_db_km,wet_db_km,rain_db_km,cloud_db_km,"
             "rain_top_m,vapour_g_m3,fog_g_m3",
-     .open = propagation_probe_open, .row = propagation_probe_row, .close = propagation_probe_close},
+     .open = propagation_probe_open,
+     .row = propagation_probe_row,
+     .close = propagation_probe_close},
     {.name = "radar-equation",
      .help = "power of an echo, thermal noise at 290 K and their ratio; loss: both ways, of the system and of the "
              "air together",
      .in = "power_w,gain_db,frequency_ghz,rcs_dbsm,range_m,bandwidth_hz,noise_figure_db,loss_db?",
-     .out = "received_dbw,noise_dbw,snr_db", .row = radar_equation_probe_row},
+     .out = "received_dbw,noise_dbw,snr_db",
+     .row = radar_equation_probe_row},
     {.name = "rcs",
-     .help = "scattered field and radar cross section of a target by ray tubes, physical optics and edges, as received and transmitted "
-             "polarisation; target: a built-in model, a file, or sphere:R, plate:AxB, disc:R, cylinder:RxL, dihedral:AxB, "
-             "trihedral:A, corner:A in m, of metal; azimuth: clockwise from the nose; range: empty, far field; rx: the receiver's, "
-             "empty: at the transmitter; joints at rest",
+     .help =
+         "scattered field and radar cross section of a target by ray tubes, physical optics and edges, as received and transmitted "
+         "polarisation; target: a built-in model, a file, or sphere:R, plate:AxB, disc:R, cylinder:RxL, dihedral:AxB, "
+         "trihedral:A, corner:A in m, of metal; azimuth: clockwise from the nose; range: empty, far field; rx: the receiver's, "
+         "empty: at the transmitter; joints at rest",
      .in = "target$,f_ghz,az_deg,el_deg,range_m?,rx_az_deg?,rx_el_deg?",
      .out = "hh_dbsm,hv_dbsm,vh_dbsm,vv_dbsm,hh_re_m,hh_im_m,hv_re_m,hv_im_m,vh_re_m,vh_im_m,vv_re_m,vv_im_m",
-     .open = rcs_probe_open, .row = rcs_probe_row, .close = rcs_probe_close},
+     .open = rcs_probe_open,
+     .row = rcs_probe_row,
+     .close = rcs_probe_close},
     {.name = "clutter",
-     .help = "what ground sends back to a radar, by etc/radar/clutter.csv: backscatter by area, shape of the texture (0: "
-             "Rayleigh), internal motion in wind (share of the power that is still, spread of the exponential spectrum, rms "
-             "Doppler width of the moving part), loss of a path through foliage (1 m), one way, and its backscatter by volume",
+     .help =
+         "what ground sends back to a radar, by etc/radar/clutter.csv: backscatter by area, shape of the texture (0: "
+         "Rayleigh), internal motion in wind (share of the power that is still, spread of the exponential spectrum, rms "
+         "Doppler width of the moving part), loss of a path through foliage (1 m), one way, and its backscatter by volume",
      .in = "surface$,frequency_ghz,grazing_deg,wind_mps?,depth_m?",
      .out = "sigma0_vv_db,sigma0_hh_db,sigma0_hv_db,rho,nu,texture_m,still,spread_mps,width_hz,foliage_db,volume_1_m",
-     .open = clutter_probe_open, .row = clutter_probe_row, .close = clutter_probe_close},
+     .open = clutter_probe_open,
+     .row = clutter_probe_row,
+     .close = clutter_probe_close},
     {.name = "clutter-cell",
-     .help = "scattering of one resolution cell of level ground, the square of side_m (1) that holds x, y, summed over its 16 "
-             "scatterers about its middle, m; relative: intensity over its mean. A row a place for the distribution, a row a "
-             "time or azimuth (of the antenna, clockwise from north) for the correlation",
+     .help =
+         "scattering of one resolution cell of level ground, the square of side_m (1) that holds x, y, summed over its 16 "
+         "scatterers about its middle, m; relative: intensity over its mean. A row a place for the distribution, a row a "
+         "time or azimuth (of the antenna, clockwise from north) for the correlation",
      .in = "surface$,frequency_ghz,grazing_deg,x_m,y_m,side_m?,azimuth_deg?,wind_mps?,t_s?,seed?",
      .out = "vv_re,vv_im,hh_re,hh_im,hv_re,hv_im,relative",
-     .open = clutter_probe_open, .row = clutter_cell_probe_row, .close = clutter_probe_close},
+     .open = clutter_probe_open,
+     .row = clutter_cell_probe_row,
+     .close = clutter_probe_close},
 };
 const int render_probe_count = sizeof render_probes / sizeof *render_probes;

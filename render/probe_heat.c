@@ -1,8 +1,9 @@
 /* render/probe_heat.c: `pitviper probe heat-ground`: the ground's heat for rows of CSV, as frames have it, without a
  * scene.
  *
- * Each local day (by the sun's mean time at the place) is an exercise of its own: warmed up over the two days before its
- * midnight, so that a row's answer depends on no other row. Rows in the order of time are answered without starting again. */
+ * Each local day (by the sun's mean time at the place) is an exercise of its own: warmed up over the two days before
+ * its midnight, so that a row's answer depends on no other row. Rows in the order of time are answered without starting
+ * again. */
 
 #include "render/probe_private.h"
 #include "render/frame/world.h"
@@ -11,15 +12,15 @@
 #include <stdlib.h>
 
 typedef struct HeatProbe {
-    Materials    materials;
-    GroundKinds  kinds;
-    PlanckTable *planck[2];
-    Atmosphere  *atmosphere;
+    Materials      materials;
+    GroundKinds    kinds;
+    PlanckTable   *planck[2];
+    Atmosphere    *atmosphere;
     WeatherCourse *course;
-    HeatDrive    drive;
-    Arena       *arena;
-    Pool        *pool;
-    Heat        *heat;         /* of the day of drive.exercise_s; NULL: none yet */
+    HeatDrive      drive;
+    Arena         *arena;
+    Pool          *pool;
+    Heat          *heat; /* of the day of drive.exercise_s; NULL: none yet */
 } HeatProbe;
 
 static const double day_s = 86400;
@@ -40,8 +41,8 @@ void heat_probe_close(void *state)
 static Status open_tables(HeatProbe *p)
 {
     char materials[512], surfaces[512], ground[512];
-    if (!etc_path(materials, sizeof materials, "materials.csv") || !etc_path(surfaces, sizeof surfaces, "surfaces.csv") ||
-        !etc_path(ground, sizeof ground, "ground_heat.csv")) {
+    if (!etc_path(materials, sizeof materials, "materials.csv") ||
+        !etc_path(surfaces, sizeof surfaces, "surfaces.csv") || !etc_path(ground, sizeof ground, "ground_heat.csv")) {
         log_error("probe: path of the tables is too long; set PITVIPER_ETC to a shorter one");
         return STATUS_BAD_VALUE;
     }
@@ -62,7 +63,8 @@ Status heat_probe_open(void **state, int argc, char **argv)
     if (!p) return STATUS_NO_MEMORY;
     Status status = probe_weather(&p->course, &p->drive.place, argc, argv);
     if (status == STATUS_OK) status = open_tables(p);
-    if (status == STATUS_OK) status = pool_create(&p->pool, thread_processors() < ground_kinds ? thread_processors() : ground_kinds);
+    if (status == STATUS_OK)
+        status = pool_create(&p->pool, thread_processors() < ground_kinds ? thread_processors() : ground_kinds);
     if (status == STATUS_OK && !(p->arena = arena_create())) status = STATUS_NO_MEMORY;
     if (status != STATUS_OK) {
         heat_probe_close(p);
@@ -77,7 +79,8 @@ Status heat_probe_open(void **state, int argc, char **argv)
 /* The heat of the day of a time. */
 static Status warm(HeatProbe *p, double unix_s)
 {
-    const double east_s = day_s * p->drive.place.lon_rad / (2 * pi_rad), begin_s = floor((unix_s + east_s) / day_s) * day_s - east_s;
+    const double east_s = day_s * p->drive.place.lon_rad / (2 * pi_rad),
+                 begin_s = floor((unix_s + east_s) / day_s) * day_s - east_s;
     if (p->heat && p->drive.exercise_s == begin_s) return STATUS_OK;
     heat_destroy(p->heat);
     p->heat = NULL;
@@ -107,16 +110,17 @@ static const char *balance(ProbeValue *out, const GroundColumn *ground, const Gr
 const char *heat_probe_row(void *state, const ProbeValue *in, ProbeValue *out)
 {
     static const double least_s = -2208988800, most_s = 4102444800; /* 1900, 2100 */
-    HeatProbe   *p = state;
-    const double unix_s = in[0].number, slope_deg = or_zero(&in[2]), aspect_rad = or_zero(&in[3]) * rad_per_deg;
-    const double shade = or_zero(&in[4]), depth_m = or_zero(&in[5]);
-    const int    kind = ground_kind_find(in[1].text);
+    HeatProbe          *p = state;
+    const double        unix_s = in[0].number, slope_deg = or_zero(&in[2]), aspect_rad = or_zero(&in[3]) * rad_per_deg;
+    const double        shade = or_zero(&in[4]), depth_m = or_zero(&in[5]);
+    const int           kind = ground_kind_find(in[1].text);
     if (!(unix_s >= least_s && unix_s < most_s)) return "unix_s must be a time in 1900 .. 2100";
     if (kind < 0) return "surface is no row of etc/ground_heat.csv";
     if (!(slope_deg >= 0 && slope_deg <= 90)) return "slope_deg must be in 0 .. 90";
     if (!(fabs(aspect_rad) <= 4 * pi_rad)) return "aspect_deg must be within 720";
     if (!(shade >= 0 && shade <= 1)) return "shade must be in 0 .. 1";
-    if (depth_m != 0 && (slope_deg != 0 || shade != 0)) return "depth_m is of level ground in the open: slope_deg and shade must be 0";
+    if (depth_m != 0 && (slope_deg != 0 || shade != 0))
+        return "depth_m is of level ground in the open: slope_deg and shade must be 0";
 
     HeatNow      *now;
     GroundColumn  ground;
@@ -130,9 +134,11 @@ const char *heat_probe_row(void *state, const ProbeValue *in, ProbeValue *out)
         return out[0].buffer;
     }
     const double   slope_rad = slope_deg * rad_per_deg;
-    GroundExposure e = {{sin(slope_rad) * sin(aspect_rad), sin(slope_rad) * cos(aspect_rad), cos(slope_rad)}, 1 - shade, 1,
+    GroundExposure e = {{sin(slope_rad) * sin(aspect_rad), sin(slope_rad) * cos(aspect_rad), cos(slope_rad)},
+                        1 - shade,
+                        1,
                         ground.state.temp_k[0]};
-    const double surface_k = heat_ground_k(now, kind, e.n_enu, shade, 1, 1);
+    const double   surface_k = heat_ground_k(now, kind, e.n_enu, shade, 1, 1);
     out[0].number = depth_m > 0 ? column_temp_k(&ground.state, ground.column, depth_m) : surface_k;
     ground.state.temp_k[0] = surface_k; /* its water is that of level ground */
     world_heat_weather(&w, unix_s, &p->drive);
@@ -150,13 +156,13 @@ const char *heat_probe_row(void *state, const ProbeValue *in, ProbeValue *out)
 
 typedef struct NodeProbe {
     Geodetic       place;
-    WeatherCourse *course;       /* NULL while the world has it */
+    WeatherCourse *course; /* NULL while the world has it */
     char           name[probe_text_size];
-    Catalog       *catalog;      /* of the model of that name; NULL: none */
+    Catalog       *catalog; /* of the model of that name; NULL: none */
     int            model;
     bool           opened;
-    World          world;        /* where opened */
-    double         begin_s;      /* the day that it is warm for; NaN: none */
+    World          world;   /* where opened */
+    double         begin_s; /* the day that it is warm for; NaN: none */
     Arena         *arena;
     Pool          *pool;
 } NodeProbe;
@@ -174,7 +180,7 @@ static void close_world(NodeProbe *p)
     keep_course(p);
     if (p->opened) world_close(&p->world);
     catalog_close(p->catalog);
-    p->world   = (World){0};
+    p->world = (World){0};
     p->catalog = NULL, p->opened = false, p->begin_s = NAN;
     *p->name = 0;
 }
@@ -228,7 +234,7 @@ static Status warm_entity(NodeProbe *p, double unix_s)
     HeatConfig   config = heat_default_config();
     if (p->begin_s == begin_s) return STATUS_OK;
     keep_course(p);
-    p->begin_s    = NAN;
+    p->begin_s = NAN;
     config.unix_s = begin_s;
     WeatherCourse *course = p->course;
     p->course = NULL;
@@ -270,8 +276,8 @@ static Status begin(Snapshot *snapshot, SnapshotEntity *entity, NodeProbe *p, do
     model_pose(pose, model, NULL);
     const double t_s = unix_s - p->begin_s;
     *entity = (SnapshotEntity){.id = {1, 1, 1}, .type = {.kind = 1, .domain = 1}, .model = p->model, .first_patch = -1};
-    entity->drives = (EntityDrives){.since_s = t_s, .engine = (float)drive[1], .speed_mps = (float)drive[2],
-                                    .alive = 1};
+    entity->drives =
+        (EntityDrives){.since_s = t_s, .engine = (float)drive[1], .speed_mps = (float)drive[2], .alive = 1};
     ecef_from_enu(entity->p_ecef, &p->world.frame, origin_enu);
     m3_mul(entity->r_ecef_from_body, p->world.frame.r_ecef_from_enu, r_enu_from_body);
     for (int k = 0; k < 3; k++) entity->v_ecef_mps[k] = drive[2] * entity->r_ecef_from_body[3 * k];
@@ -283,14 +289,14 @@ const char *heat_node_probe_row(void *state, const ProbeValue *in, ProbeValue *o
 {
     static const double least_s = -2208988800, most_s = 4102444800; /* 1900, 2100 */
     static const double up[3] = {0, 0, 1}, origin_enu[3] = {0, 0, 0};
-    NodeProbe     *p = state;
-    const double   unix_s = in[0].number, heading_deg = isnan(in[3].number) ? 270 : in[3].number;
-    const double   drive[3] = {heading_deg * rad_per_deg, isnan(in[4].number) ? 0 : in[4].number,
-        isnan(in[5].number) ? 0 : in[5].number};
-    Snapshot       snapshot;
-    SnapshotEntity entity;
-    HeatScene     *scene;
-    double         lifted_k;
+    NodeProbe          *p = state;
+    const double        unix_s = in[0].number, heading_deg = isnan(in[3].number) ? 270 : in[3].number;
+    const double        drive[3] = {heading_deg * rad_per_deg, isnan(in[4].number) ? 0 : in[4].number,
+                             isnan(in[5].number) ? 0 : in[5].number};
+    Snapshot            snapshot;
+    SnapshotEntity      entity;
+    HeatScene          *scene;
+    double              lifted_k;
     if (!(unix_s >= least_s && unix_s < most_s)) return "unix_s must be a time in 1900 .. 2100";
     if (!(fabs(heading_deg) <= 720)) return "heading_deg must be within 720";
     if (!(drive[1] >= 0 && drive[1] <= 1)) return "engine must be in 0 .. 1";

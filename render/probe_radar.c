@@ -14,7 +14,7 @@
 
 typedef struct PropagationProbe {
     Atmosphere *atmosphere;
-    GasLines lines;
+    GasLines    lines;
 } PropagationProbe;
 
 void propagation_probe_close(void *state)
@@ -43,8 +43,20 @@ static double or_else(double given, double otherwise) { return isnan(given) ? ot
 
 /* Columns of a row. */
 enum {
-    in_f, in_from, in_to, in_range, in_temp, in_pressure, in_humidity, in_rain, in_tilt, in_visibility, in_fog_top,
-    in_cloud_low, in_cloud_high, in_cloud
+    in_f,
+    in_from,
+    in_to,
+    in_range,
+    in_temp,
+    in_pressure,
+    in_humidity,
+    in_rain,
+    in_tilt,
+    in_visibility,
+    in_fog_top,
+    in_cloud_low,
+    in_cloud_high,
+    in_cloud
 };
 
 static const char *air_of_row(RadarAir *air, const PropagationProbe *p, const ProbeValue *in)
@@ -78,9 +90,9 @@ static const char *air_of_row(RadarAir *air, const PropagationProbe *p, const Pr
 static void specific(ProbeValue out[4], const PropagationProbe *p, const RadarAir *air, const RadarPath *path,
                      double elevation_rad)
 {
-    GasState state;
+    GasState       state;
     GasAttenuation gas;
-    double g_m3 = 0;
+    double         g_m3 = 0;
     radar_air_at(&state, air, path->a_m);
     gas_attenuation(&gas, &p->lines, path->f_ghz, &state);
     for (int i = 0; i < radar_air_liquids; i++)
@@ -97,13 +109,13 @@ static void specific(ProbeValue out[4], const PropagationProbe *p, const RadarAi
 const char *propagation_probe_row(void *state, const ProbeValue *in, ProbeValue *out)
 {
     const PropagationProbe *p = state;
-    const RadarPath path = {.a_m = in[in_from].number,
-                            .b_m = in[in_to].number,
-                            .range_m = in[in_range].number,
-                            .f_ghz = in[in_f].number,
-                            .tilt_rad = or_else(in[in_tilt].number, 0) * rad_per_deg};
-    RadarAir air;
-    RadarLoss loss;
+    const RadarPath         path = {.a_m = in[in_from].number,
+                                    .b_m = in[in_to].number,
+                                    .range_m = in[in_range].number,
+                                    .f_ghz = in[in_f].number,
+                                    .tilt_rad = or_else(in[in_tilt].number, 0) * rad_per_deg};
+    RadarAir                air;
+    RadarLoss               loss;
     if (!(path.f_ghz >= 1 && path.f_ghz <= 1000)) return "frequency_ghz must be in 1 .. 1000";
     if (!(path.a_m >= 0 && path.a_m <= 20000 && path.b_m >= 0 && path.b_m <= 20000))
         return "heights must be in 0 .. 20000 m";
@@ -139,15 +151,15 @@ const char *radar_equation_probe_row(void *state, const ProbeValue *in, ProbeVal
     for (int i = 0; i < 8; i++)
         if (fabs(in[i].number) > (i == 0 || i == 4 || i == 5 ? 1e15 : i == 2 ? 1e6 : 300))
             return "a value is beyond all radars";
-    const double gain = of_db(in[1].number), loss_db = or_else(in[7].number, 0);
+    const double    gain = of_db(in[1].number), loss_db = or_else(in[7].number, 0);
     const RadarLink link = {.transmitted_w = in[0].number,
                             .transmit_gain = gain,
                             .receive_gain = gain,
                             .wavelength_m = 299792458.0 / (1e9 * in[2].number),
                             .range_m = in[4].number,
                             .loss = of_db(loss_db)};
-    const double received_w = radar_received_w(&link, of_db(in[3].number));
-    const double noise_w = radar_noise_w(in[5].number, of_db(in[6].number));
+    const double    received_w = radar_received_w(&link, of_db(in[3].number));
+    const double    noise_w = radar_noise_w(in[5].number, of_db(in[6].number));
     if (isnan(received_w)) return "power_w, frequency_ghz and range_m must be above 0, loss_db at least 0";
     if (isnan(noise_w)) return "bandwidth_hz must be above 0, noise_figure_db at least 0";
     out[0].number = 10 * log10(received_w);
@@ -159,13 +171,13 @@ const char *radar_equation_probe_row(void *state, const ProbeValue *in, ProbeVal
 /* ---- rcs: the scattered field of a target ------------------------------------------------------- */
 
 typedef struct RcsProbe {
-    RadarMaterials materials;
-    Pool          *pool;
-    RadarModel    *model;     /* of the last row; NULL: none */
-    GivenSignature *given;    /* likewise, of a target given:FILE */
-    char           name[512];
-    double         sag_m;
-    TotalField     field;
+    RadarMaterials  materials;
+    Pool           *pool;
+    RadarModel     *model; /* of the last row; NULL: none */
+    GivenSignature *given; /* likewise, of a target given:FILE */
+    char            name[512];
+    double          sag_m;
+    TotalField      field;
 } RcsProbe;
 
 static void drop_model(RcsProbe *p)
@@ -283,10 +295,8 @@ Status clutter_probe_open(void **state, int argc, char **argv)
     ClutterTable *table = malloc(sizeof *table);
     if (!table) return STATUS_NO_MEMORY;
     const Status status = clutter_table_open(table, path);
-    if (status == STATUS_OK)
-        *state = table;
-    else
-        free(table);
+    if (status == STATUS_OK) *state = table;
+    else free(table);
     return status;
 }
 
@@ -344,8 +354,8 @@ const char *clutter_cell_probe_row(void *state, const ProbeValue *in, ProbeValue
     const double side_m = or_else(in[5].number, 1), psi = in[2].number * rad_per_deg;
     const double azimuth = or_else(in[6].number, 0) * rad_per_deg;
     const double seed = or_else(in[9].number, 0);
-    ClutterLook  look = {.frequency_hz = 1e9 * in[1].number, .wind_mps = or_else(in[7].number, 0),
-                         .t_s = or_else(in[8].number, 0)};
+    ClutterLook  look = {
+         .frequency_hz = 1e9 * in[1].number, .wind_mps = or_else(in[7].number, 0), .t_s = or_else(in[8].number, 0)};
     if (!(fabs(in[3].number) <= 1e6 && fabs(in[4].number) <= 1e6)) return "x_m and y_m must be within 1e6 of 0";
     if (!(side_m >= 0.01 && side_m <= 1e4)) return "side_m must be in 0.01 .. 10000";
     if (!(look.wind_mps >= 0 && look.wind_mps <= 100)) return "wind_mps must be in 0 .. 100";
@@ -378,15 +388,15 @@ const char *clutter_cell_probe_row(void *state, const ProbeValue *in, ProbeValue
     for (int a = 0; a < 3; a++) look.antenna_enu[a] = far_m * antenna.u[a];
     clutter_see(seen, &grid, table, scatterer, &ground, &look);
     for (int i = 0; i < count; i++) {
-        const double from_middle[3] = {p[0][i] - middle[0], p[1][i] - middle[1], 0};
-        double       u[3];
+        const double         from_middle[3] = {p[0][i] - middle[0], p[1][i] - middle[1], 0};
+        double               u[3];
         const double complex turn = cexp(-I * k * 2 * scatter_path(u, &antenna, from_middle));
         sum.vv += seen[i].vv * turn, sum.hh += seen[i].hh * turn, sum.hv += seen[i].hv * turn;
     }
     const double complex s[3] = {sum.vv, sum.hh, sum.hv};
     for (int i = 0; i < 3; i++) out[2 * i].number = creal(s[i]), out[2 * i + 1].number = cimag(s[i]);
     const double sigma0 = clutter_sigma0(&table->row[surface][band], psi, light_mps / look.frequency_hz);
-    out[6].number = 4 * pi_rad * (creal(sum.vv) * creal(sum.vv) + cimag(sum.vv) * cimag(sum.vv)) /
-                    (sigma0 * side_m * side_m);
+    out[6].number =
+        4 * pi_rad * (creal(sum.vv) * creal(sum.vv) + cimag(sum.vv) * cimag(sum.vv)) / (sigma0 * side_m * side_m);
     return NULL;
 }

@@ -21,8 +21,11 @@ static const char *mtf_row(void *state, const ProbeValue *in, ProbeValue *out)
 {
     (void)state;
     const double   wavelength_um = in[0].number, f_number = in[1].number, pitch_um = in[3].number, f = in[6].number;
-    const MtfChain chain = {.cutoff_cyc_px = pitch_um / (wavelength_um * f_number), .obscuration = or_else(&in[2], 0),
-                            .footprint_px = 1, .places = 1, .smear_px = {or_else(&in[4], 0), 0},
+    const MtfChain chain = {.cutoff_cyc_px = pitch_um / (wavelength_um * f_number),
+                            .obscuration = or_else(&in[2], 0),
+                            .footprint_px = 1,
+                            .places = 1,
+                            .smear_px = {or_else(&in[4], 0), 0},
                             .jitter_px = or_else(&in[5], 0)};
     if (!(wavelength_um > 0 && f_number > 0 && pitch_um > 0))
         return "wavelength_um, f_number and pitch_um must be above 0";
@@ -41,9 +44,14 @@ static const char *mtf_row(void *state, const ProbeValue *in, ProbeValue *out)
 static const char *netd_row(void *state, const ProbeValue *in, ProbeValue *out)
 {
     (void)state;
-    const PhotonDetector d = {.low_m = in[0].number * 1e-6, .high_m = in[1].number * 1e-6, .f_number = in[3].number,
-                              .transmission = in[4].number, .qe = in[5].number, .pitch_m = in[6].number * 1e-6,
-                              .integration_s = in[7].number * 1e-3, .dark_e = or_else(&in[8], 0),
+    const PhotonDetector d = {.low_m = in[0].number * 1e-6,
+                              .high_m = in[1].number * 1e-6,
+                              .f_number = in[3].number,
+                              .transmission = in[4].number,
+                              .qe = in[5].number,
+                              .pitch_m = in[6].number * 1e-6,
+                              .integration_s = in[7].number * 1e-3,
+                              .dark_e = or_else(&in[8], 0),
                               .read_e = or_else(&in[9], 0)};
     if (!(d.low_m > 0 && d.high_m > d.low_m)) return "lo_um must be above 0 and below hi_um";
     if (!(in[2].number > 0)) return "temp_k must be above 0";

@@ -105,9 +105,10 @@ Status probe_weather(WeatherCourse **out, Geodetic *place, int argc, char **argv
     WeatherCourseConfig config = {.base = weather_default(), .air_range_k = 10};
     double              lat_deg = 0, lon_deg = 0;
     if ((argc != 1 && argc != 2 && argc != 4) ||
-        (argc == 4 && !(text_to_double(&lat_deg, argv[2]) && fabs(lat_deg) <= 90 &&
-                        text_to_double(&lon_deg, argv[3]) && fabs(lon_deg) <= 360))) {
-        log_error("probe: %s takes FILE, `clear` or `constant`, then LAT_DEG within 90 and LON_DEG within 360", argv[0]);
+        (argc == 4 && !(text_to_double(&lat_deg, argv[2]) && fabs(lat_deg) <= 90 && text_to_double(&lon_deg, argv[3]) &&
+                        fabs(lon_deg) <= 360))) {
+        log_error("probe: %s takes FILE, `clear` or `constant`, then LAT_DEG within 90 and LON_DEG within 360",
+                  argv[0]);
         return STATUS_BAD_VALUE;
     }
     config.latitude_rad = lat_deg * rad_per_deg;
@@ -132,8 +133,9 @@ static const char *weather_row(void *state, const ProbeValue *in, ProbeValue *ou
 {
     Weather w;
     weather_at(&w, state, in[0].number);
-    const double number[] = {w.air_temp_k, w.humidity, w.pressure_mbar, w.wind_mps, w.wind_from_rad / rad_per_deg,
-                             w.direct_w_m2, w.diffuse_w_m2, w.longwave_w_m2, w.cloud, w.rain_mm_h, w.visibility_m};
+    const double number[] = {w.air_temp_k,  w.humidity,     w.pressure_mbar, w.wind_mps, w.wind_from_rad / rad_per_deg,
+                             w.direct_w_m2, w.diffuse_w_m2, w.longwave_w_m2, w.cloud,    w.rain_mm_h,
+                             w.visibility_m};
     for (size_t i = 0; i < sizeof number / sizeof *number; i++) out[i].number = number[i];
     return NULL;
 }

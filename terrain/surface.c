@@ -5,12 +5,23 @@
 const char *surface_name(SurfaceClass surface)
 {
     static const char *const name[SURFACE_COUNT] = {
-        [SURFACE_NONE] = "none",           [SURFACE_GRASS] = "grass",       [SURFACE_DRY_GRASS] = "dry_grass",
-        [SURFACE_CROP] = "crop",           [SURFACE_BARE_SOIL] = "bare_soil", [SURFACE_PLOUGHED] = "ploughed",
-        [SURFACE_TRACK] = "track",         [SURFACE_ROCK] = "rock",         [SURFACE_SCRUB] = "scrub",
-        [SURFACE_WATER] = "water",         [SURFACE_BUILT] = "built",       [SURFACE_ROAD] = "road",
-        [SURFACE_SAND] = "sand",           [SURFACE_SNOW] = "snow",         [SURFACE_WETLAND] = "wetland",
-        [SURFACE_FOREST_BROADLEAF] = "forest_broadleaf", [SURFACE_FOREST_CONIFER] = "forest_conifer",
+        [SURFACE_NONE] = "none",
+        [SURFACE_GRASS] = "grass",
+        [SURFACE_DRY_GRASS] = "dry_grass",
+        [SURFACE_CROP] = "crop",
+        [SURFACE_BARE_SOIL] = "bare_soil",
+        [SURFACE_PLOUGHED] = "ploughed",
+        [SURFACE_TRACK] = "track",
+        [SURFACE_ROCK] = "rock",
+        [SURFACE_SCRUB] = "scrub",
+        [SURFACE_WATER] = "water",
+        [SURFACE_BUILT] = "built",
+        [SURFACE_ROAD] = "road",
+        [SURFACE_SAND] = "sand",
+        [SURFACE_SNOW] = "snow",
+        [SURFACE_WETLAND] = "wetland",
+        [SURFACE_FOREST_BROADLEAF] = "forest_broadleaf",
+        [SURFACE_FOREST_CONIFER] = "forest_conifer",
     };
     return surface >= 0 && surface < SURFACE_COUNT ? name[surface] : "none";
 }
@@ -31,7 +42,7 @@ static Status surface_table_read(SurfaceTable *out, const char *path)
     Status status = table_open(&table, path);
     if (status != STATUS_OK) return status;
     SurfaceTable t = {0};
-    const int code_column = table_column(&table, "code"), surface_column = table_column(&table, "surface");
+    const int    code_column = table_column(&table, "code"), surface_column = table_column(&table, "surface");
     status = STATUS_BAD_VALUE;
     if (code_column < 0 || surface_column < 0) {
         log_error("cover: %s needs the columns code and surface", path);
@@ -49,10 +60,10 @@ static Status surface_table_read(SurfaceTable *out, const char *path)
                 path, table.line[row + 1], code, name);
             goto done;
         }
-        t.known[(int)code]   = true;
+        t.known[(int)code] = true;
         t.surface[(int)code] = (uint8_t)surface;
     }
-    *out   = t;
+    *out = t;
     status = STATUS_OK;
 done:
     table_close(&table);
@@ -76,15 +87,15 @@ Status surface_table_choose(SurfaceTable *out, const char **name, const char *as
     long best = -1;
     for (size_t k = 0; k < sizeof built_in / sizeof *built_in; k++) {
         SurfaceTable table;
-        long       known = 0;
+        long         known = 0;
         snprintf(file, sizeof file, "cover_%s.csv", built_in[k]);
         if (!etc_path(path, sizeof path, file)) return STATUS_BAD_VALUE;
         const Status status = surface_table_read(&table, path);
         if (status != STATUS_OK) return status;
         for (int c = 1; c < surface_codes_most; c++) known += table.known[c] ? histogram[c] : 0;
         if (known <= best) continue;
-        best  = known;
-        *out  = table;
+        best = known;
+        *out = table;
         *name = built_in[k];
     }
     return STATUS_OK;

@@ -21,16 +21,16 @@
 static inline double cpu_s(void) { return (double)clock() / CLOCKS_PER_SEC; }
 
 /* Written as !(error <= tolerance) so that a NaN fails. */
-#define CHECK_NEAR(got, want, tolerance)                                                              \
-    do {                                                                                              \
-        const double got_ = (got), want_ = (want), tolerance_ = (tolerance);                          \
-        if (!(fabs(got_ - want_) <= tolerance_))                                                      \
-            fail_msg("%s:%d: %s = %.17g, want %.17g +- %g", __FILE__, __LINE__, #got, got_, want_, tolerance_); \
+#define CHECK_NEAR(got, want, tolerance)                                                                               \
+    do {                                                                                                               \
+        const double got_ = (got), want_ = (want), tolerance_ = (tolerance);                                           \
+        if (!(fabs(got_ - want_) <= tolerance_))                                                                       \
+            fail_msg("%s:%d: %s = %.17g, want %.17g +- %g", __FILE__, __LINE__, #got, got_, want_, tolerance_);        \
     } while (0)
 
-#define CHECK(condition)                                                             \
-    do {                                                                             \
-        if (!(condition)) fail_msg("%s:%d: %s", __FILE__, __LINE__, #condition);     \
+#define CHECK(condition)                                                                                               \
+    do {                                                                                                               \
+        if (!(condition)) fail_msg("%s:%d: %s", __FILE__, __LINE__, #condition);                                       \
     } while (0)
 
 /* Reference data outside the repository: $PITVIPER_DATA, default ../shared/data; an absolute path, which means the same
@@ -46,7 +46,7 @@ static inline bool reference_path(char out[512], const char *name)
     }
     fclose(file);
     char      *whole = realpath(out, NULL);
-    const bool fits  = whole && snprintf(out, 512, "%s", whole) < 512;
+    const bool fits = whole && snprintf(out, 512, "%s", whole) < 512;
     free(whole);
     return fits;
 }
@@ -57,7 +57,7 @@ enum { text_file_size = 64 };
 static inline void text_file(char path[text_file_size], const char *text)
 {
     strcpy(path, "/tmp/pitviper-test-XXXXXX");
-    const int    file   = mkstemp(path);
+    const int    file = mkstemp(path);
     const size_t octets = strlen(text);
     CHECK(file >= 0 && write(file, text, octets) == (ssize_t)octets && close(file) == 0);
 }
@@ -76,7 +76,7 @@ static inline void check_full_disk(bool full)
 }
 
 /* What was said last at warning level or above, while log_set_sink(check_listen, NULL). */
-static char check_said[1024] __attribute__((unused));
+static char        check_said[1024] __attribute__((unused));
 static inline void check_listen(void *user, LogLevel level, const char *line)
 {
     (void)user;

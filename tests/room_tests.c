@@ -1,4 +1,5 @@
-/* tests/room_tests.c: the tests of one room: ROOM_tests test_NAME runs one file's. The list is tests/CMakeLists.txt's. */
+/* tests/room_tests.c: the tests of one room: ROOM_tests test_NAME runs one file's. The list is tests/CMakeLists.txt's.
+ */
 #include <stdio.h>
 #include <string.h>
 
@@ -9,7 +10,7 @@ ROOM_TESTS
 #define X(name) {#name, name##_main},
 static const struct {
     const char *name;
-    int       (*run)(void);
+    int (*run)(void);
 } tests[] = {ROOM_TESTS};
 
 int main(int argc, char **argv)

@@ -18,18 +18,18 @@ enum { stride = 1 << 18, window_octets = stride + dis_log_file_most, windows = 1
 static const uint64_t in_scratch = (uint64_t)1 << 63;
 
 typedef struct Window {
-    uint64_t block;   /* of stride octets; UINT64_MAX: none. With in_scratch */
+    uint64_t block; /* of stride octets; UINT64_MAX: none. With in_scratch */
     size_t   count;
-    uint64_t used;    /* when last */
-    uint8_t *octet;   /* [window_octets] */
+    uint64_t used;  /* when last */
+    uint8_t *octet; /* [window_octets] */
 } Window;
 
 struct DisLogFile {
     int      file, scratch; /* -1: none */
     char    *path;
     uint64_t written, uses;
-    size_t   waiting;       /* octets in the buffer, not written yet */
-    uint8_t *buffer;        /* [buffer_octets] */
+    size_t   waiting; /* octets in the buffer, not written yet */
+    uint8_t *buffer;  /* [buffer_octets] */
     bool     failed;
     Window   window[windows];
 };
@@ -51,8 +51,8 @@ static Status log_file_create(DisLogFile **out, int file, const char *path)
     DisLogFile *f = calloc(1, sizeof *f);
     if (!f) return STATUS_NO_MEMORY;
     f->scratch = -1;
-    f->file    = fcntl(file, F_DUPFD_CLOEXEC, 0);
-    f->path    = strdup(path);
+    f->file = fcntl(file, F_DUPFD_CLOEXEC, 0);
+    f->path = strdup(path);
     for (int w = 0; w < windows; w++) f->window[w].block = UINT64_MAX;
     if (f->file < 0 || !f->path) {
         log_file_destroy(f);
@@ -66,8 +66,10 @@ static Status log_file_create(DisLogFile **out, int file, const char *path)
 
 static Status scratch_failed(const DisLogFile *f)
 {
-    log_error("log: %s: its datagrams cannot be kept in a scratch file: %s; set TMPDIR to a folder with room for the log "
-              "expanded, or expand it with its own program first", f->path, strerror(errno));
+    log_error(
+        "log: %s: its datagrams cannot be kept in a scratch file: %s; set TMPDIR to a folder with room for the log "
+        "expanded, or expand it with its own program first",
+        f->path, strerror(errno));
     return STATUS_IO;
 }
 
@@ -129,7 +131,8 @@ const uint8_t *dis_log_file_octets(DisLogFile *f, uint64_t at, size_t octets)
 {
     const uint64_t within = (at & ~in_scratch) % stride;
     errno = 0;
-    Window *w = (at & in_scratch) == 0 || f->waiting == 0 || flush_scratch(f) == STATUS_OK ? window_of(f, at - within) : NULL;
+    Window *w =
+        (at & in_scratch) == 0 || f->waiting == 0 || flush_scratch(f) == STATUS_OK ? window_of(f, at - within) : NULL;
     if (w) w->used = ++f->uses;
     if (w && within + octets <= w->count) return w->octet + within;
     if (!f->failed)
@@ -202,10 +205,8 @@ static Status scan_capture(Scan *scan, DisCapture *capture, const char *path)
     while (dis_capture_next(&packet, capture)) {
         scan->log->counters.packets++;
         Status read = STATUS_OK;
-        if (dis_packet_reads(packet.link))
-            read = dis_packet_read(scan->reader, &packet);
-        else
-            skip_packet(scan, packet.link);
+        if (dis_packet_reads(packet.link)) read = dis_packet_read(scan->reader, &packet);
+        else skip_packet(scan, packet.link);
         if (read == STATUS_IO) return read; /* of the scratch file; logged */
         if (read != STATUS_OK) {
             log_error("log: %s: out of memory after %d datagrams", path, scan->log->count);
@@ -213,7 +214,7 @@ static Status scan_capture(Scan *scan, DisCapture *capture, const char *path)
         }
     }
     const char  *problem = dis_capture_problem(capture);
-    const Status status  = dis_capture_status(capture);
+    const Status status = dis_capture_status(capture);
     if (status != STATUS_OK) {
         log_error("log: cannot use %s: after packet %llu: %s", path, (unsigned long long)scan->log->counters.packets,
                   problem);

@@ -11,21 +11,21 @@
 
 enum { dis_port_any = 0, dis_port_default = -1 };
 
-/* Datagrams of up to so many octets in all are in memory; of the rest 32 octets each are, and they are read from the file,
- * or, where that is compressed or a pipe, from a scratch file in $TMPDIR. */
+/* Datagrams of up to so many octets in all are in memory; of the rest 32 octets each are, and they are read from the
+ * file, or, where that is compressed or a pipe, from a scratch file in $TMPDIR. */
 enum { dis_log_in_memory = 32 << 20 };
 /* What a compressed file expands to: at most so many times what was read, and so many octets beyond it. */
 enum { dis_stream_ratio_most = 256, dis_stream_free_octets = 1 << 24 };
 
 typedef struct DisDatagram {
-    double         capture_s;  /* Unix time: dis_unix_s */
-    double         packet_s;   /* the same as in the file, where dis_log_retime made another */
-    uint32_t       packet;     /* 1-based number of the packet in the file, as tshark's frame.number. With
-                                * dis_datagram_on_disk: of a large log, whose datagrams dis_log_datagram reads */
-    uint32_t       octets;
+    double   capture_s; /* Unix time: dis_unix_s */
+    double   packet_s;  /* the same as in the file, where dis_log_retime made another */
+    uint32_t packet;    /* 1-based number of the packet in the file, as tshark's frame.number. With
+                         * dis_datagram_on_disk: of a large log, whose datagrams dis_log_datagram reads */
+    uint32_t octets;
     union {
-        const uint8_t *bytes;  /* owned by the log */
-        uint64_t       at;     /* on disk */
+        const uint8_t *bytes; /* owned by the log */
+        uint64_t       at;    /* on disk */
     };
 } DisDatagram;
 
@@ -42,14 +42,14 @@ static inline uint64_t dis_log_dropped(const DisLogCounters *c)
 }
 
 typedef struct DisLog {
-    int            count;
-    DisDatagram   *datagram; /* in file order */
-    DisLogCounters counters;
-    bool           truncated; /* the file ended inside a packet; what came before is here */
-    bool           retimed;   /* packet times did not keep pace with the stamps: made from these */
-    const char    *notes;     /* of dis_recorder_note, a line each; empty: none; NULL: not of a file */
-    bool           any_port;  /* datagrams of any port were taken */
-    void          *storage;
+    int                count;
+    DisDatagram       *datagram; /* in file order */
+    DisLogCounters     counters;
+    bool               truncated; /* the file ended inside a packet; what came before is here */
+    bool               retimed;   /* packet times did not keep pace with the stamps: made from these */
+    const char        *notes;     /* of dis_recorder_note, a line each; empty: none; NULL: not of a file */
+    bool               any_port;  /* datagrams of any port were taken */
+    void              *storage;
     struct DisLogFile *file; /* of datagrams on disk; NULL: none */
 } DisLog;
 
@@ -60,27 +60,27 @@ typedef struct DisLog {
 Status dis_log_open(DisLog *out, const char *path, int port);
 /* The same, the file being read once. read: gets all of its octets in order, for a hash. */
 typedef void DisLogRead(void *user, const void *octets, size_t count);
-Status dis_log_open_read(DisLog *out, const char *path, int port, DisLogRead *read, void *user);
-void   dis_log_close(DisLog *log);
+Status       dis_log_open_read(DisLog *out, const char *path, int port, DisLogRead *read, void *user);
+void         dis_log_close(DisLog *log);
 
-/* Datagram i with its octets, which are valid until the next call but one; one thread at a time. One that cannot be read any
- * more has none, see dis_log_failed. */
+/* Datagram i with its octets, which are valid until the next call but one; one thread at a time. One that cannot be
+ * read any more has none, see dis_log_failed. */
 DisDatagram dis_log_datagram(const DisLog *log, int i);
 /* Whether a datagram could not be read, which was logged. */
-bool        dis_log_failed(const DisLog *log);
+bool dis_log_failed(const DisLog *log);
 
 /* dis_log_open does this. Packet times that run at another rate than the stamps of the sender with the most PDUs are
  * replaced by these, from the first packet on, in file order; true when they were. Stamps are used when
  * they step like a clock (-1 .. 120 s), span 5 s or more, and are not 20 times slower than the packets. */
-bool   dis_log_retime(DisLog *log);
+bool dis_log_retime(DisLog *log);
 
 /* ---- times ------------------------------------------------------------------------------------ */
 
 /* Exercise times of all PDUs of a recording, each by what the whole recording tells of its sender's clock. */
 
 typedef struct DisLogTimes {
-    ExerciseInstant       *pdu; /* [count]: of every PDU of dis_next_pdu, in its order, that is of the exercise; t_s NaN
-                                 * for one that names no sender */
+    ExerciseInstant *pdu; /* [count]: of every PDU of dis_next_pdu, in its order, that is of the exercise; t_s NaN
+                           * for one that names no sender */
     size_t                 count;
     ExerciseClockAnomalies doubts;
 } DisLogTimes;
@@ -97,7 +97,7 @@ typedef struct DisLogFile DisLogFile;
 
 enum { dis_log_file_most = 65536 }; /* octets of one look-up; a datagram has fewer */
 
-/* Octets at a place: an offset in the log, or of dis_log_file_keep. Valid until the next call but one; one thread at a time.
- * NULL: they cannot be read any more, which is logged once. */
+/* Octets at a place: an offset in the log, or of dis_log_file_keep. Valid until the next call but one; one thread at a
+ * time. NULL: they cannot be read any more, which is logged once. */
 const uint8_t *dis_log_file_octets(DisLogFile *file, uint64_t at, size_t octets);
 #endif

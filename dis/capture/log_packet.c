@@ -22,12 +22,12 @@ enum {
     protocol_mobility = 135,
     ethertype_ipv4 = 0x0800,
     ethertype_ipv6 = 0x86DD,
-    ethertype_vlan = 0x8100,          /* 802.1Q */
-    ethertype_service_vlan = 0x88A8,  /* 802.1ad */
+    ethertype_vlan = 0x8100,         /* 802.1Q */
+    ethertype_service_vlan = 0x88A8, /* 802.1ad */
     ethertype_old_service_vlan = 0x9100,
-    assemblies = 64,                  /* datagrams in reassembly at a time; the oldest is dropped */
+    assemblies = 64, /* datagrams in reassembly at a time; the oldest is dropped */
     ip_payload_limit = 65535,
-    fragment_unit = 8,                /* octets; every fragment but the last is whole units */
+    fragment_unit = 8, /* octets; every fragment but the last is whole units */
     fragment_units = 8192,
     link_null = 0, /* LINKTYPE_ */
     link_ethernet = 1,
@@ -57,28 +57,28 @@ typedef struct Assembly {
     uint64_t age;     /* order of the first fragment */
     double   first_s;
     uint32_t packets;
-    uint8_t  next;    /* IPv6: header after the fragment header of the first fragment */
+    uint8_t  next; /* IPv6: header after the fragment header of the first fragment */
     bool     first_seen;
-    size_t   total;   /* octets, 0: the last fragment is missing so far */
+    size_t   total; /* octets, 0: the last fragment is missing so far */
     size_t   furthest;
-    size_t   units;   /* received */
+    size_t   units; /* received */
     uint64_t have[fragment_units / 64];
-    uint8_t *bytes;   /* [ip_payload_limit + 1] */
+    uint8_t *bytes; /* [ip_payload_limit + 1] */
 } Assembly;
 
 struct DisPacketReader {
-    DisLog  *log;
-    Arena   *arena;
-    int      capacity;
-    int      port;
-    bool     sure;      /* of dis_port_default: one went to 3000 */
-    uint64_t maybe;     /* packets of datagrams to other ports, which are in the log until then */
-    size_t   in_memory; /* octets */
+    DisLog                 *log;
+    Arena                  *arena;
+    int                     capacity;
+    int                     port;
+    bool                    sure;      /* of dis_port_default: one went to 3000 */
+    uint64_t                maybe;     /* packets of datagrams to other ports, which are in the log until then */
+    size_t                  in_memory; /* octets */
     const DisCapturePacket *packet;
-    double   capture_s;
-    Assembly assembly[assemblies];
-    uint64_t fragments; /* ever, for age */
-    Status   status;    /* STATUS_NO_MEMORY stops the reading */
+    double                  capture_s;
+    Assembly                assembly[assemblies];
+    uint64_t                fragments; /* ever, for age */
+    Status                  status;    /* STATUS_NO_MEMORY stops the reading */
 };
 
 /* ---- UDP ----------------------------------------------------------------------------------------- */
@@ -117,8 +117,8 @@ static void keep_datagram(DisPacketReader *reader, Span payload)
     DisLog *log = reader->log;
     if (log->count == reader->capacity) {
         const int capacity = reader->capacity ? reader->capacity > INT_MAX / 2 ? INT_MAX : 2 * reader->capacity : 1024;
-        DisDatagram *grown = log->count == INT_MAX ? NULL
-                                                   : realloc(log->datagram, (size_t)capacity * sizeof *log->datagram);
+        DisDatagram *grown =
+            log->count == INT_MAX ? NULL : realloc(log->datagram, (size_t)capacity * sizeof *log->datagram);
         if (!grown) {
             reader->status = STATUS_NO_MEMORY;
             return;
@@ -126,8 +126,10 @@ static void keep_datagram(DisPacketReader *reader, Span payload)
         log->datagram = grown;
         reader->capacity = capacity;
     }
-    DisDatagram kept = {.capture_s = reader->capture_s, .packet_s = reader->capture_s,
-                        .packet = (uint32_t)log->counters.packets, .octets = (uint32_t)payload.octets};
+    DisDatagram kept = {.capture_s = reader->capture_s,
+                        .packet_s = reader->capture_s,
+                        .packet = (uint32_t)log->counters.packets,
+                        .octets = (uint32_t)payload.octets};
     reader->status = keep_octets(&kept, reader, payload);
     if (reader->status == STATUS_OK) log->datagram[log->count++] = kept;
 }
@@ -148,7 +150,7 @@ static void read_udp(DisPacketReader *reader, Span ip_payload, uint32_t packets)
     }
     const Span payload = {ip_payload.at + 8, length - 8};
     if (reader->port == dis_port_default && port == dis_port && !reader->sure) {
-        reader->sure      = true;
+        reader->sure = true;
         reader->log->count = 0;
         counters->other_port += reader->maybe;
         arena_reset(reader->arena);
@@ -213,8 +215,8 @@ static Assembly *add_fragment(DisPacketReader *reader, const uint8_t key[40], si
 
     const size_t end = offset + part.octets;
     const bool   fits = part.octets > 0 && end <= ip_payload_limit && (!more || part.octets % fragment_unit == 0);
-    const bool   agrees = more ? a->total == 0 || end <= a->total
-                               : (a->total == 0 || a->total == end) && end >= a->furthest;
+    const bool   agrees =
+        more ? a->total == 0 || end <= a->total : (a->total == 0 || a->total == end) && end >= a->furthest;
     if (!fits || !agrees) {
         give_up(reader, a);
         return NULL;
@@ -290,8 +292,8 @@ static void read_ipv6_payload(DisPacketReader *reader, const uint8_t *addresses,
             read_udp(reader, payload, packets);
             return;
         }
-        const bool options = next == protocol_hop_by_hop || next == protocol_routing ||
-                             next == protocol_destination || next == protocol_mobility;
+        const bool options = next == protocol_hop_by_hop || next == protocol_routing || next == protocol_destination ||
+                             next == protocol_mobility;
         if (!options && next != protocol_authentication && next != protocol_fragment) {
             counters->other_protocol += packets;
             return;
@@ -356,12 +358,9 @@ static void read_ipv6(DisPacketReader *reader, Span packet)
 
 static void read_ip(DisPacketReader *reader, Span packet)
 {
-    if (packet.octets == 0)
-        reader->log->counters.cut_short++;
-    else if (packet.at[0] >> 4 == 6)
-        read_ipv6(reader, packet);
-    else
-        read_ipv4(reader, packet);
+    if (packet.octets == 0) reader->log->counters.cut_short++;
+    else if (packet.at[0] >> 4 == 6) read_ipv6(reader, packet);
+    else read_ipv4(reader, packet);
 }
 
 /* ---- link layers ------------------------------------------------------------------------------------- */
@@ -383,12 +382,9 @@ static void read_ethertype(DisPacketReader *reader, uint16_t type, Span rest)
         type = dis_load_u16(rest.at + 6);
         rest = (Span){rest.at + 8, rest.octets - 8};
     }
-    if (type == ethertype_ipv4)
-        read_ipv4(reader, rest);
-    else if (type == ethertype_ipv6)
-        read_ipv6(reader, rest);
-    else
-        reader->log->counters.other_protocol++;
+    if (type == ethertype_ipv4) read_ipv4(reader, rest);
+    else if (type == ethertype_ipv6) read_ipv6(reader, rest);
+    else reader->log->counters.other_protocol++;
 }
 
 /* BSD loopback: an address family in the byte order of the machine that captured. 2 is IPv4 everywhere; IPv6
@@ -403,12 +399,17 @@ static bool is_ip_family(uint32_t family)
 static size_t link_header_octets(int link)
 {
     switch (link) {
-    case link_ethernet: return 14;
-    case link_sll: return 16;
-    case link_sll2: return 20;
+    case link_ethernet:
+        return 14;
+    case link_sll:
+        return 16;
+    case link_sll2:
+        return 20;
     case link_null:
-    case link_loop: return 4;
-    default: return 0;
+    case link_loop:
+        return 4;
+    default:
+        return 0;
     }
 }
 
@@ -427,17 +428,23 @@ static void read_frame(DisPacketReader *reader, int link, Span frame)
     }
     const Span rest = {frame.at + header, frame.octets - header};
     switch (link) {
-    case link_ethernet: read_ethertype(reader, dis_load_u16(frame.at + 12), rest); break;
-    case link_sll: read_ethertype(reader, dis_load_u16(frame.at + 14), rest); break;
-    case link_sll2: read_ethertype(reader, dis_load_u16(frame.at), rest); break;
+    case link_ethernet:
+        read_ethertype(reader, dis_load_u16(frame.at + 12), rest);
+        break;
+    case link_sll:
+        read_ethertype(reader, dis_load_u16(frame.at + 14), rest);
+        break;
+    case link_sll2:
+        read_ethertype(reader, dis_load_u16(frame.at), rest);
+        break;
     case link_null:
     case link_loop:
-        if (is_ip_family(dis_load_u32(frame.at)))
-            read_ip(reader, rest);
-        else
-            reader->log->counters.other_protocol++;
+        if (is_ip_family(dis_load_u32(frame.at))) read_ip(reader, rest);
+        else reader->log->counters.other_protocol++;
         break;
-    default: read_ip(reader, frame); break;
+    default:
+        read_ip(reader, frame);
+        break;
     }
 }
 
@@ -447,10 +454,10 @@ Status dis_packet_reader_create(DisPacketReader **out, DisLog *log, Arena *arena
 {
     DisPacketReader *reader = calloc(1, sizeof *reader);
     if (!reader) return STATUS_NO_MEMORY;
-    reader->log   = log;
+    reader->log = log;
     reader->arena = arena;
-    reader->port  = port;
-    *out          = reader;
+    reader->port = port;
+    *out = reader;
     return STATUS_OK;
 }
 
@@ -463,7 +470,7 @@ void dis_packet_reader_destroy(DisPacketReader *reader)
 
 Status dis_packet_read(DisPacketReader *reader, const DisCapturePacket *packet)
 {
-    reader->packet    = packet;
+    reader->packet = packet;
     reader->capture_s = packet->capture_s;
     read_frame(reader, packet->link, (Span){packet->bytes, packet->octets});
     return reader->status;

@@ -20,8 +20,8 @@ enum {
     option_end = 0,
     option_tsresol = 9,
     option_tsoffset = 14,
-    packet_most = 262144,            /* octets of a packet: libpcap's limit */
-    body_most = packet_most + 32,    /* octets of a block that are read */
+    packet_most = 262144,         /* octets of a packet: libpcap's limit */
+    body_most = packet_most + 32, /* octets of a block that are read */
     interfaces_most = 65536,
 };
 
@@ -36,17 +36,17 @@ typedef struct Interface {
 
 struct DisCapture {
     DisStream *stream;
-    bool       ng, big;          /* big: the most significant octet first */
-    size_t     record_octets;    /* pcap: of a packet's header */
-    Interface *interface;        /* pcap: one */
+    bool       ng, big;       /* big: the most significant octet first */
+    size_t     record_octets; /* pcap: of a packet's header */
+    Interface *interface;     /* pcap: one */
     int        count, capacity;
     double     last_s;
-    char      *notes;            /* terminated; NULL: none yet */
+    char      *notes; /* terminated; NULL: none yet */
     size_t     note_octets, note_capacity;
     Status     status;
     char       problem[200];
-    uint64_t       body_at;        /* offset in the file; UINT64_MAX: none */
-    uint8_t        body[body_most];
+    uint64_t   body_at; /* offset in the file; UINT64_MAX: none */
+    uint8_t    body[body_most];
 };
 
 __attribute__((format(printf, 2, 3))) static bool stop(DisCapture *c, const char *format, ...)
@@ -85,8 +85,8 @@ static bool magic_is(bool *big, const uint8_t *p, uint32_t magic)
 static double stamp_s(const Interface *face, uint64_t ticks)
 {
     static const int64_t most_s = 9000000000; /* times beyond it, or below 0, are clamped */
-    uint64_t per_s = face->per_s, part = ticks % per_s, ns;
-    const uint64_t whole_s = ticks / per_s;
+    uint64_t             per_s = face->per_s, part = ticks % per_s, ns;
+    const uint64_t       whole_s = ticks / per_s;
     if (ns_per_s % per_s == 0) {
         ns = part * (ns_per_s / per_s);
     } else if (per_s % ns_per_s == 0) {
@@ -118,14 +118,14 @@ static bool add_interface(DisCapture *c, Interface face)
     if (c->count == interfaces_most) return stop(c, "more than %d interfaces", interfaces_most);
     if (c->count == c->capacity) {
         const int  capacity = c->capacity ? 2 * c->capacity : 4;
-        Interface *grown    = realloc(c->interface, (size_t)capacity * sizeof *grown);
+        Interface *grown = realloc(c->interface, (size_t)capacity * sizeof *grown);
         if (!grown) {
             stop(c, "out of memory");
             c->status = STATUS_NO_MEMORY;
             return false;
         }
         c->interface = grown;
-        c->capacity  = capacity;
+        c->capacity = capacity;
     }
     c->interface[c->count++] = face;
     return true;
@@ -270,9 +270,9 @@ static bool next_record(DisCapturePacket *out, DisCapture *c)
     if (dis_stream_read(c->stream, c->body, captured) < captured) return stop(c, "it ends inside a packet");
     const Interface *face = c->interface;
     Interface        whole = *face; /* seconds of 32 bits, then a fraction that may be more than one */
-    whole.offset_s         = (int64_t)load_u32(c, head);
-    c->last_s              = stamp_s(&whole, load_u32(c, head + 4));
-    *out                   = (DisCapturePacket){c->last_s, face->link, captured, c->body, c->body_at};
+    whole.offset_s = (int64_t)load_u32(c, head);
+    c->last_s = stamp_s(&whole, load_u32(c, head + 4));
+    *out = (DisCapturePacket){c->last_s, face->link, captured, c->body, c->body_at};
     return true;
 }
 
@@ -324,7 +324,7 @@ Status dis_capture_open_tapped(DisCapture **out, const char *path, DisStreamTap 
     Status status = dis_stream_open_tapped(&c->stream, path, tap, user);
     if (status == STATUS_OK && !begin(c)) {
         const char *packing = dis_stream_packing(c->stream);
-        status              = c->status != STATUS_OK ? c->status : STATUS_UNSUPPORTED;
+        status = c->status != STATUS_OK ? c->status : STATUS_UNSUPPORTED;
         if (status != STATUS_NO_MEMORY)
             log_error(
                 "log: %s is not a capture (%s%s%s): pcap and pcapng files are read, as written by tcpdump -w, dumpcap "
@@ -358,4 +358,4 @@ bool dis_capture_next(DisCapturePacket *out, DisCapture *c)
 
 const char *dis_capture_problem(const DisCapture *c) { return *c->problem ? c->problem : NULL; }
 Status      dis_capture_status(const DisCapture *c) { return c->status; }
-int dis_capture_link(const DisCapture *c, int i) { return i >= 0 && i < c->count ? c->interface[i].link : -1; }
+int         dis_capture_link(const DisCapture *c, int i) { return i >= 0 && i < c->count ? c->interface[i].link : -1; }

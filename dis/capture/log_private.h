@@ -17,26 +17,27 @@ typedef struct DisStream DisStream;
 
 /* A file that cannot be opened or read, or is empty: a logged reason and the status. */
 Status dis_stream_open(DisStream **out, const char *path);
-/* Gets all octets of the file in order, before they are expanded; from the first on when it is given before any is read. */
+/* Gets all octets of the file in order, before they are expanded; from the first on when it is given before any is
+ * read. */
 typedef void DisStreamTap(void *user, const void *octets, size_t count);
-Status dis_stream_open_tapped(DisStream **out, const char *path, DisStreamTap *tap, void *user);
+Status       dis_stream_open_tapped(DisStream **out, const char *path, DisStreamTap *tap, void *user);
 /* Reads what is left of the file, for the tap alone. */
-void   dis_stream_drain(DisStream *stream);
+void dis_stream_drain(DisStream *stream);
 /* Offset in the file of what is read next; UINT64_MAX: compressed, or a pipe. */
 uint64_t dis_stream_offset(const DisStream *stream);
-int    dis_stream_file(const DisStream *stream); /* its descriptor */
-void   dis_stream_close(DisStream *stream);
+int      dis_stream_file(const DisStream *stream); /* its descriptor */
+void     dis_stream_close(DisStream *stream);
 
 /* Fewer than requested: end of file, or an error, see dis_stream_problem. */
 size_t dis_stream_read(DisStream *stream, void *out, size_t octets);
 /* Reads over them; whether they were all there. */
-bool   dis_stream_skip(DisStream *stream, uint64_t octets);
+bool dis_stream_skip(DisStream *stream, uint64_t octets);
 
 /* Why the octets stopped before the end; NULL: they did not. */
 const char *dis_stream_problem(const DisStream *stream);
 /* STATUS_OK also where the file is cut or damaged: what came before can be used. STATUS_NO_MEMORY, STATUS_IO;
  * STATUS_UNSUPPORTED: it expands to more than a capture does. */
-Status      dis_stream_status(const DisStream *stream);
+Status dis_stream_status(const DisStream *stream);
 /* `gzip`, `zstd`, `bzip2`, `xz`; NULL: not compressed. */
 const char *dis_stream_packing(const DisStream *stream);
 
@@ -66,28 +67,28 @@ void   dis_capture_close(DisCapture *capture);
 bool        dis_capture_next(DisCapturePacket *out, DisCapture *capture);
 const char *dis_capture_problem(const DisCapture *capture); /* NULL: the file ended as it should */
 /* STATUS_OK, also where the file is cut or damaged; else what was read must not be used. */
-Status      dis_capture_status(const DisCapture *capture);
+Status dis_capture_status(const DisCapture *capture);
 /* Comments of its blocks of interface statistics so far, a line each; those beyond 16 MiB in all are left out. */
 const char *dis_capture_notes(const DisCapture *capture);
 /* The LINKTYPE_ of interface i of the present section; -1: there is no such interface. */
-int         dis_capture_link(const DisCapture *capture, int i);
+int dis_capture_link(const DisCapture *capture, int i);
 
 /* ---- datagrams: log_packet.c ---------------------------------------------------------------- */
 
 typedef struct DisPacketReader DisPacketReader;
 
-/* Datagrams to `port` (dis_port_any: payloads that start with a DIS header; dis_port_default: to 3000, and those while there
- * are none) are appended to the log, their octets in the arena, beyond dis_log_in_memory in log->file; packets without one are
- * counted there. */
+/* Datagrams to `port` (dis_port_any: payloads that start with a DIS header; dis_port_default: to 3000, and those while
+ * there are none) are appended to the log, their octets in the arena, beyond dis_log_in_memory in log->file; packets
+ * without one are counted there. */
 Status dis_packet_reader_create(DisPacketReader **out, DisLog *log, Arena *arena, int port);
 void   dis_packet_reader_destroy(DisPacketReader *reader);
 
-bool   dis_packet_reads(int link); /* LINKTYPE_; whether this link layer is read */
+bool dis_packet_reads(int link); /* LINKTYPE_; whether this link layer is read */
 /* One packet of a link layer that is read; the log's counters.packets is its number. STATUS_NO_MEMORY. */
 Status dis_packet_read(DisPacketReader *reader, const DisCapturePacket *packet);
-/* There are no more: datagrams in reassembly are dropped. True: of dis_port_default, none went to 3000, and other UDP was
- * there. */
-bool   dis_packet_reader_end(DisPacketReader *reader);
+/* There are no more: datagrams in reassembly are dropped. True: of dis_port_default, none went to 3000, and other UDP
+ * was there. */
+bool dis_packet_reader_end(DisPacketReader *reader);
 
 /* ---- octets on disk: log.c --------------------------------------------------------------------- */
 

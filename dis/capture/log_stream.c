@@ -25,23 +25,23 @@ typedef enum Packing { PACKING_NONE, PACKING_GZIP, PACKING_ZSTD, PACKING_BZIP2, 
 static const char *const packing_name[PACKING_COUNT] = {NULL, "gzip", "zstd", "bzip2", "xz"};
 
 struct DisStream {
-    int         file; /* a descriptor */
-    char       *path;
-    Packing     packing;
-    bool        pipe;
-    DisStreamTap *tap;      /* NULL: none */
-    void       *tap_user;
-    bool        file_over;  /* end of the file */
-    bool        over;       /* nor from the decoder */
-    Status      status;
-    const char *problem;
-    uint64_t    read, made; /* octets of the file; octets handed out */
-    size_t      at, count;  /* of what is in `in`: next, end */
-    uint8_t     in[in_octets];
-    z_stream    gzip;
+    int           file; /* a descriptor */
+    char         *path;
+    Packing       packing;
+    bool          pipe;
+    DisStreamTap *tap; /* NULL: none */
+    void         *tap_user;
+    bool          file_over; /* end of the file */
+    bool          over;      /* nor from the decoder */
+    Status        status;
+    const char   *problem;
+    uint64_t      read, made; /* octets of the file; octets handed out */
+    size_t        at, count;  /* of what is in `in`: next, end */
+    uint8_t       in[in_octets];
+    z_stream      gzip;
     ZSTD_DStream *zstd;
-    bz_stream   bzip2;
-    lzma_stream xz;
+    bz_stream     bzip2;
+    lzma_stream   xz;
 };
 
 /* How one call of a decoder ended. */
@@ -51,8 +51,8 @@ typedef enum Step { STEP_MORE, STEP_STREAM_ENDS, STEP_DAMAGED, STEP_NO_MEMORY, S
 
 static void stop(DisStream *s, Status status, const char *problem)
 {
-    s->over    = true;
-    s->status  = status;
+    s->over = true;
+    s->status = status;
     s->problem = problem;
 }
 
@@ -78,7 +78,11 @@ static Packing packing_of(const uint8_t *p, size_t octets)
     if (octets >= 4 && p[0] >> 4 == 5 && p[1] == 0x2A && p[2] == 0x4D && p[3] == 0x18)
         return PACKING_ZSTD; /* skippable */
     if (octets >= 4 && memcmp(p, "BZh", 3) == 0 && p[3] >= '1' && p[3] <= '9') return PACKING_BZIP2;
-    if (octets >= 6 && memcmp(p, "\xFD" "7zXZ", 6) == 0) return PACKING_XZ;
+    if (octets >= 6 && memcmp(p,
+                              "\xFD"
+                              "7zXZ",
+                              6) == 0)
+        return PACKING_XZ;
     return PACKING_NONE;
 }
 
@@ -86,13 +90,13 @@ static Packing packing_of(const uint8_t *p, size_t octets)
 
 static Step step_gzip(DisStream *s, uint8_t *out, size_t room, size_t *made)
 {
-    s->gzip.next_in   = s->in + s->at;
-    s->gzip.avail_in  = (uInt)(s->count - s->at);
-    s->gzip.next_out  = out;
+    s->gzip.next_in = s->in + s->at;
+    s->gzip.avail_in = (uInt)(s->count - s->at);
+    s->gzip.next_out = out;
     s->gzip.avail_out = (uInt)room;
-    const int result  = inflate(&s->gzip, Z_NO_FLUSH);
-    s->at             = s->count - s->gzip.avail_in;
-    *made             = room - s->gzip.avail_out;
+    const int result = inflate(&s->gzip, Z_NO_FLUSH);
+    s->at = s->count - s->gzip.avail_in;
+    *made = room - s->gzip.avail_out;
     if (result == Z_STREAM_END) return STEP_STREAM_ENDS;
     if (result == Z_OK || result == Z_BUF_ERROR) return STEP_MORE;
     return result == Z_MEM_ERROR ? STEP_NO_MEMORY : STEP_DAMAGED;
@@ -100,28 +104,31 @@ static Step step_gzip(DisStream *s, uint8_t *out, size_t room, size_t *made)
 
 static Step step_zstd(DisStream *s, uint8_t *out, size_t room, size_t *made)
 {
-    ZSTD_inBuffer  in     = {s->in, s->count, s->at};
-    ZSTD_outBuffer to     = {out, room, 0};
+    ZSTD_inBuffer  in = {s->in, s->count, s->at};
+    ZSTD_outBuffer to = {out, room, 0};
     const size_t   result = ZSTD_decompressStream(s->zstd, &to, &in);
     s->at = in.pos;
     *made = to.pos;
     if (!ZSTD_isError(result)) return result == 0 ? STEP_STREAM_ENDS : STEP_MORE;
     switch (ZSTD_getErrorCode(result)) {
-    case ZSTD_error_memory_allocation: return STEP_NO_MEMORY;
-    case ZSTD_error_frameParameter_windowTooLarge: return STEP_TOO_WIDE;
-    default: return STEP_DAMAGED;
+    case ZSTD_error_memory_allocation:
+        return STEP_NO_MEMORY;
+    case ZSTD_error_frameParameter_windowTooLarge:
+        return STEP_TOO_WIDE;
+    default:
+        return STEP_DAMAGED;
     }
 }
 
 static Step step_bzip2(DisStream *s, uint8_t *out, size_t room, size_t *made)
 {
-    s->bzip2.next_in   = (char *)s->in + s->at;
-    s->bzip2.avail_in  = (unsigned)(s->count - s->at);
-    s->bzip2.next_out  = (char *)out;
+    s->bzip2.next_in = (char *)s->in + s->at;
+    s->bzip2.avail_in = (unsigned)(s->count - s->at);
+    s->bzip2.next_out = (char *)out;
     s->bzip2.avail_out = (unsigned)room;
-    const int result   = BZ2_bzDecompress(&s->bzip2);
-    s->at              = s->count - s->bzip2.avail_in;
-    *made              = room - s->bzip2.avail_out;
+    const int result = BZ2_bzDecompress(&s->bzip2);
+    s->at = s->count - s->bzip2.avail_in;
+    *made = room - s->bzip2.avail_out;
     if (result == BZ_STREAM_END) return STEP_STREAM_ENDS;
     if (result == BZ_OK) return STEP_MORE;
     return result == BZ_MEM_ERROR ? STEP_NO_MEMORY : STEP_DAMAGED;
@@ -129,13 +136,13 @@ static Step step_bzip2(DisStream *s, uint8_t *out, size_t room, size_t *made)
 
 static Step step_xz(DisStream *s, uint8_t *out, size_t room, size_t *made)
 {
-    s->xz.next_in         = s->in + s->at;
-    s->xz.avail_in        = s->count - s->at;
-    s->xz.next_out        = out;
-    s->xz.avail_out       = room;
+    s->xz.next_in = s->in + s->at;
+    s->xz.avail_in = s->count - s->at;
+    s->xz.next_out = out;
+    s->xz.avail_out = room;
     const lzma_ret result = lzma_code(&s->xz, LZMA_RUN);
-    s->at                 = s->count - s->xz.avail_in;
-    *made                 = room - s->xz.avail_out;
+    s->at = s->count - s->xz.avail_in;
+    *made = room - s->xz.avail_out;
     if (result == LZMA_STREAM_END) return STEP_STREAM_ENDS;
     if (result == LZMA_OK || result == LZMA_BUF_ERROR) return STEP_MORE;
     return result == LZMA_MEM_ERROR ? STEP_NO_MEMORY : result == LZMA_MEMLIMIT_ERROR ? STEP_TOO_WIDE : STEP_DAMAGED;
@@ -144,23 +151,31 @@ static Step step_xz(DisStream *s, uint8_t *out, size_t room, size_t *made)
 static Step step(DisStream *s, uint8_t *out, size_t room, size_t *made)
 {
     switch (s->packing) {
-    case PACKING_GZIP: return step_gzip(s, out, room, made);
-    case PACKING_ZSTD: return step_zstd(s, out, room, made);
-    case PACKING_BZIP2: return step_bzip2(s, out, room, made);
-    default: return step_xz(s, out, room, made);
+    case PACKING_GZIP:
+        return step_gzip(s, out, room, made);
+    case PACKING_ZSTD:
+        return step_zstd(s, out, room, made);
+    case PACKING_BZIP2:
+        return step_bzip2(s, out, room, made);
+    default:
+        return step_xz(s, out, room, made);
     }
 }
 
 static bool begin_decoder(DisStream *s)
 {
     switch (s->packing) {
-    case PACKING_GZIP: return inflateInit2(&s->gzip, 15 + 16) == Z_OK; /* 32 KiB of window, gzip's header alone */
+    case PACKING_GZIP:
+        return inflateInit2(&s->gzip, 15 + 16) == Z_OK; /* 32 KiB of window, gzip's header alone */
     case PACKING_ZSTD:
         s->zstd = ZSTD_createDStream();
         return s->zstd && !ZSTD_isError(ZSTD_DCtx_setParameter(s->zstd, ZSTD_d_windowLogMax, window_log_most));
-    case PACKING_BZIP2: return BZ2_bzDecompressInit(&s->bzip2, 0, 0) == BZ_OK;
-    case PACKING_XZ: return lzma_stream_decoder(&s->xz, xz_memory_most, 0) == LZMA_OK;
-    default: return true;
+    case PACKING_BZIP2:
+        return BZ2_bzDecompressInit(&s->bzip2, 0, 0) == BZ_OK;
+    case PACKING_XZ:
+        return lzma_stream_decoder(&s->xz, xz_memory_most, 0) == LZMA_OK;
+    default:
+        return true;
     }
 }
 
@@ -170,10 +185,10 @@ static void end_decoder(DisStream *s)
     if (s->packing == PACKING_ZSTD) ZSTD_freeDStream(s->zstd);
     if (s->packing == PACKING_BZIP2) BZ2_bzDecompressEnd(&s->bzip2);
     if (s->packing == PACKING_XZ) lzma_end(&s->xz);
-    s->gzip  = (z_stream){0};
-    s->zstd  = NULL;
+    s->gzip = (z_stream){0};
+    s->zstd = NULL;
     s->bzip2 = (bz_stream){0};
-    s->xz    = (lzma_stream)LZMA_STREAM_INIT;
+    s->xz = (lzma_stream)LZMA_STREAM_INIT;
 }
 
 /* Behind the end of one stream: another of the same kind, padding, or something else, which is left. */
@@ -204,23 +219,30 @@ static size_t expand(DisStream *s, uint8_t *out, size_t room)
     fill(s, 1);
     if (s->over) return 0;
     const size_t before = s->at;
-    const bool   bare   = s->at == s->count; /* the decoder may still hold some */
-    const Step   how    = step(s, out, room, &made);
+    const bool   bare = s->at == s->count; /* the decoder may still hold some */
+    const Step   how = step(s, out, room, &made);
     switch (how) {
-    case STEP_STREAM_ENDS: next_stream(s); break;
+    case STEP_STREAM_ENDS:
+        next_stream(s);
+        break;
     case STEP_MORE:
         if (made == 0 && s->at == before && (bare || s->file_over))
             stop(s, STATUS_OK, bare ? "the compressed stream ends before its end" : "the compressed stream is damaged");
         break;
-    case STEP_DAMAGED: stop(s, STATUS_OK, "the compressed stream is damaged"); break;
-    case STEP_NO_MEMORY: stop(s, STATUS_NO_MEMORY, "out of memory"); break;
+    case STEP_DAMAGED:
+        stop(s, STATUS_OK, "the compressed stream is damaged");
+        break;
+    case STEP_NO_MEMORY:
+        stop(s, STATUS_NO_MEMORY, "out of memory");
+        break;
     case STEP_TOO_WIDE:
         stop(s, STATUS_UNSUPPORTED, "expanding it takes too large a window; expand it with its own program first");
         break;
     }
     if (s->made + made > dis_stream_free_octets + dis_stream_ratio_most * s->read)
-        stop(s, STATUS_UNSUPPORTED, "it expands to more than 256 times its size, which no capture does; if it is one, "
-                                    "expand it with its own program first");
+        stop(s, STATUS_UNSUPPORTED,
+             "it expands to more than 256 times its size, which no capture does; if it is one, "
+             "expand it with its own program first");
     return made;
 }
 
@@ -228,7 +250,7 @@ static size_t expand(DisStream *s, uint8_t *out, size_t room)
 
 size_t dis_stream_read(DisStream *s, void *out, size_t octets)
 {
-    uint8_t *to   = out;
+    uint8_t *to = out;
     size_t   done = 0;
     while (done < octets && !s->over) {
         size_t made = 0;
@@ -308,10 +330,10 @@ Status dis_stream_open_tapped(DisStream **out, const char *path, DisStreamTap *t
 {
     DisStream *s = calloc(1, sizeof *s);
     if (!s) return STATUS_NO_MEMORY;
-    s->file             = -1;
-    s->tap              = tap;
-    s->tap_user         = user;
-    s->xz               = (lzma_stream)LZMA_STREAM_INIT;
+    s->file = -1;
+    s->tap = tap;
+    s->tap_user = user;
+    s->xz = (lzma_stream)LZMA_STREAM_INIT;
     const Status status = open_stream(s, path);
     if (status == STATUS_OK) *out = s;
     else dis_stream_close(s);

@@ -13,12 +13,12 @@
 
 enum { sender_limit = 256, least_pdus = 10, entity_slots = 4096 };
 
-static const double least_span_s = 5;      /* shorter logs are too short to check the clock */
+static const double least_span_s = 5;                 /* shorter logs are too short to check the clock */
 static const double pace_low = 0.8, pace_high = 1.25; /* ratio of capture time to stamp time that is accepted */
-static const double counter_pace = 20;     /* stamps this much slower than packets count something else */
+static const double counter_pace = 20;                /* stamps this much slower than packets count something else */
 static const double back_s = 1, ahead_s = 120; /* step of a clock: network order, and the longest heartbeat twice */
 static const double least_path_m = 30, least_speed_mps = 1, motion_pace = 0.2, longest_step_s = 60; /* of what moves */
-static const double gap_s = 1500;          /* a gap too long for the hour of a stamp */
+static const double gap_s = 1500; /* a gap too long for the hour of a stamp */
 
 typedef struct Voice {
     uint16_t sender[2];
@@ -39,9 +39,9 @@ static bool loudest_sender(uint16_t out[2], const DisLog *log)
     Voice voice[sender_limit];
     int   voices = 0, loudest = -1;
     for (int i = 0; i < log->count; i++) {
-        DisHeader header;
-        uint16_t  sender[2];
-        int       v = 0;
+        DisHeader         header;
+        uint16_t          sender[2];
+        int               v = 0;
         const DisDatagram datagram = dis_log_datagram(log, i);
         if (!first_pdu(&header, sender, &datagram)) continue;
         while (v < voices && (voice[v].sender[0] != sender[0] || voice[v].sender[1] != sender[1])) v++;
@@ -65,26 +65,26 @@ static bool walk(DisLog *log, const uint16_t sender[2], bool write, double *stam
     uint32_t last_stamp = 0;
     double   first_s = 0, last_s = 0, now_s = 0, most_s = 0;
     for (int i = 0; i < log->count; i++) {
-        DisDatagram *datagram = &log->datagram[i];
-        DisHeader    header;
-        uint16_t     who[2];
+        DisDatagram      *datagram = &log->datagram[i];
+        DisHeader         header;
+        uint16_t          who[2];
         const DisDatagram there = dis_log_datagram(log, i);
         if (first_pdu(&header, who, &there) && who[0] == sender[0] && who[1] == sender[1]) {
             if (!begun) {
-                begun   = true;
+                begun = true;
                 first_s = last_s = datagram->capture_s;
             }
             const double step = last_stamp ? dis_timestamp_step_s(last_stamp, header.timestamp) : 0;
             if (!write && (!(step >= -back_s && step <= ahead_s) || !(fabs(datagram->capture_s - last_s) < gap_s)))
                 return false;
             last_stamp = header.timestamp;
-            last_s     = datagram->capture_s;
+            last_s = datagram->capture_s;
             now_s += step;
             most_s = fmax(most_s, now_s);
         }
         if (write) datagram->capture_s = first_s + most_s;
     }
-    *stamps_s  = now_s;
+    *stamps_s = now_s;
     *packets_s = last_s - first_s;
     return begun;
 }
@@ -102,23 +102,23 @@ static bool motion_is_at_packet_pace(const DisLog *log, const uint16_t sender[2]
     double path_m = 0, by_stamps_m = 0, by_packets_m = 0;
     Seen  *seen = calloc(entity_slots, sizeof *seen);
     for (int i = 0; seen && i < log->count; i++) {
-        DisCounters    ignored = {0};
-        DisHeader      header;
-        DisPdu         decoded;
-        uint16_t       who[2];
+        DisCounters       ignored = {0};
+        DisHeader         header;
+        DisPdu            decoded;
+        uint16_t          who[2];
         const DisDatagram d = dis_log_datagram(log, i);
-        const uint8_t *at = d.bytes, *pdu, *end = at + d.octets;
+        const uint8_t    *at = d.bytes, *pdu, *end = at + d.octets;
         while (dis_next_pdu(&header, &pdu, &at, end, &ignored)) {
             if (header.type != dis_pdu_entity_state || !dis_pdu_sender(who, &header, pdu) || who[0] != sender[0] ||
                 who[1] != sender[1] || dis_decode(&decoded, pdu, header.length) != STATUS_OK)
                 continue;
             const DisEntityState *state = &decoded.entity_state;
-            const double *p = state->p_ecef, capture_s = d.capture_s;
-            Seen         *s = &seen[state->id.entity % entity_slots], now = {true, state->id.entity, header.timestamp,
-                                                                            capture_s, {p[0], p[1], p[2]}, 0};
-            const double  v[3] = {state->velocity_mps[0], state->velocity_mps[1], state->velocity_mps[2]};
-            const double  stamps_s = dis_timestamp_step_s(s->stamp, now.stamp), packets_s = capture_s - s->capture_s;
-            double        moved[3];
+            const double         *p = state->p_ecef, capture_s = d.capture_s;
+            Seen                 *s = &seen[state->id.entity % entity_slots],
+                 now = {true, state->id.entity, header.timestamp, capture_s, {p[0], p[1], p[2]}, 0};
+            const double v[3] = {state->velocity_mps[0], state->velocity_mps[1], state->velocity_mps[2]};
+            const double stamps_s = dis_timestamp_step_s(s->stamp, now.stamp), packets_s = capture_s - s->capture_s;
+            double       moved[3];
             now.speed_mps = v3_length(v);
             v3_sub(moved, now.p_ecef, s->p_ecef);
             if (s->used && s->entity == now.entity && stamps_s > 0 && stamps_s <= longest_step_s && packets_s >= 0 &&
@@ -156,10 +156,10 @@ static Status add(DisLogTimes *times, size_t *capacity, ExerciseInstant at)
 {
     if (times->count == *capacity) {
         const size_t     larger = *capacity ? 2 * *capacity : 4096;
-        ExerciseInstant *grown  = realloc(times->pdu, larger * sizeof *grown);
+        ExerciseInstant *grown = realloc(times->pdu, larger * sizeof *grown);
         if (!grown) return STATUS_NO_MEMORY;
         times->pdu = grown;
-        *capacity  = larger;
+        *capacity = larger;
     }
     times->pdu[times->count++] = at;
     return STATUS_OK;

@@ -31,8 +31,8 @@ struct DisRecorder {
     char    *path;
     char    *comment;
     bool     pcapng, failed;
-    bool     older, begun;          /* there was another recording; it is this one's file now */
-    uint16_t identification;     /* of the next IPv4 packet */
+    bool     older, begun;   /* there was another recording; it is this one's file now */
+    uint16_t identification; /* of the next IPv4 packet */
     uint8_t  to4[16], to6[16];
     uint16_t to_port;
 };
@@ -83,9 +83,9 @@ static void put_section(DisRecorder *r, const char *comment)
     enum { section = 0x0A0D0D0A, byte_order = 0x1A2B3C4D, opt_comment = 1, shb_userappl = 4, end_of_options = 4 };
     static const char program[] = "Pitviper " PITVIPER_VERSION;
     const size_t      said = comment ? strnlen(comment, longest_text) : 0;
-    const uint32_t    length = (uint32_t)(28 + (said ? option_octets(said) : 0) + option_octets(strlen(program)) +
-                                       end_of_options);
-    const uint32_t    head[] = {section, length, byte_order, 1 /* version 1.0 */, UINT32_MAX, UINT32_MAX };
+    const uint32_t    length =
+        (uint32_t)(28 + (said ? option_octets(said) : 0) + option_octets(strlen(program)) + end_of_options);
+    const uint32_t head[] = {section, length, byte_order, 1 /* version 1.0 */, UINT32_MAX, UINT32_MAX};
     put(r, head, sizeof head);
     if (said) put_option(r, opt_comment, comment, (uint16_t)said);
     put_option(r, shb_userappl, program, (uint16_t)strlen(program));
@@ -159,8 +159,8 @@ static size_t make_headers(uint8_t out[ipv6_octets + udp_octets], DisRecorder *r
     dis_store_u16(udp + 4, udp_length);
     /* over both addresses, protocol and length too; 0 would mean that there is none */
     const size_t   addresses = v4 ? 8 : 32;
-    const uint64_t sum = sum_words(udp - addresses, addresses + udp_octets) + protocol_udp + udp_length +
-                         sum_words(bytes, octets);
+    const uint64_t sum =
+        sum_words(udp - addresses, addresses + udp_octets) + protocol_udp + udp_length + sum_words(bytes, octets);
     const uint16_t check = checksum(sum);
     dis_store_u16(udp + 6, check ? check : 0xFFFF);
     return ip + udp_octets;
@@ -172,8 +172,10 @@ static void put_pcapng_packet(DisRecorder *r, uint64_t ns, const uint8_t *header
     enum { enhanced_packet = 6 };
     const size_t   whole = header_octets + octets;
     const uint32_t length = (uint32_t)(32 + whole + padding(whole));
-    put(r, (const uint32_t[]){enhanced_packet, length, 0 /* the interface */, (uint32_t)(ns >> 32), (uint32_t)ns,
-                              (uint32_t)whole, (uint32_t)whole}, 28);
+    put(r,
+        (const uint32_t[]){enhanced_packet, length, 0 /* the interface */, (uint32_t)(ns >> 32), (uint32_t)ns,
+                           (uint32_t)whole, (uint32_t)whole},
+        28);
     put(r, headers, header_octets);
     put(r, bytes, octets);
     put_padding(r, whole);
@@ -212,7 +214,8 @@ Status dis_recorder_note(DisRecorder *r, int64_t capture_ns, const char *text)
     const uint64_t ns = (uint64_t)capture_ns;
     const size_t   said = strnlen(text, longest_text);
     const uint32_t length = (uint32_t)(24 + option_octets(said) + end_of_options);
-    put(r, (const uint32_t[]){interface_statistics, length, 0 /* the interface */, (uint32_t)(ns >> 32), (uint32_t)ns}, 20);
+    put(r, (const uint32_t[]){interface_statistics, length, 0 /* the interface */, (uint32_t)(ns >> 32), (uint32_t)ns},
+        20);
     put_option(r, opt_comment, text, (uint16_t)said);
     put_option(r, 0, NULL, 0);
     put(r, &length, 4);
@@ -233,7 +236,7 @@ Status dis_recorder_open(DisRecorder **out, const char *path, const char *commen
 {
     DisRecorder *r = calloc(1, sizeof *r);
     if (!r) return STATUS_NO_MEMORY;
-    r->path    = strdup(path);
+    r->path = strdup(path);
     r->comment = comment ? strdup(comment) : NULL;
     if (!r->path || (comment && !r->comment)) {
         dis_recorder_close(r);
@@ -243,8 +246,7 @@ Status dis_recorder_open(DisRecorder **out, const char *path, const char *commen
     dis_recorder_to(r, NULL, dis_port);
     r->file = output_file(path, OUTPUT_STREAM | OUTPUT_KEEP);
     if (!r->file) {
-        log_error("recorder: cannot make %s: %s; the folder must exist and be writable", path,
-                  output_reason(errno));
+        log_error("recorder: cannot make %s: %s; the folder must exist and be writable", path, output_reason(errno));
         dis_recorder_close(r);
         return STATUS_IO;
     }

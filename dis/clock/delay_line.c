@@ -1,9 +1,9 @@
 /* dis/clock/delay_line.c: lower convex hull of delays, kept while points arrive; and their trend. */
 #include "dis/clock/exercise_clock_private.h"
 
-static const double dead_s = 1e-4;        /* a change of offset below it is not applied */
-static const double drift_most = 2e-4;    /* of a clock; a larger slope is no drift */
-static const double slope_least_s = 1e-3; /* over all points, to be applied */
+static const double dead_s = 1e-4;            /* a change of offset below it is not applied */
+static const double drift_most = 2e-4;        /* of a clock; a larger slope is no drift */
+static const double slope_least_s = 1e-3;     /* over all points, to be applied */
 enum { slope_points = 64, slope_noise = 30 }; /* chance makes slopes of some J / N over all points */
 
 void delay_line_begin(DelayLine *line, double x_s, double y_s)
@@ -61,7 +61,7 @@ static bool insert(DelayLine *line, double x_s, double y_s)
 double delay_line_edge(double *span_s, double *middle_s, const DelayLine *line)
 {
     int i = 0;
-    *span_s   = line->x_s[line->count - 1] - line->x_s[0];
+    *span_s = line->x_s[line->count - 1] - line->x_s[0];
     *middle_s = line->y_s[0];
     if (line->count < 2) return 0;
     while (i + 2 < line->count && line->x_s[i + 1] < line->mean_x_s) i++;
@@ -84,8 +84,8 @@ void delay_line_add(DelayLine *line, double x_s, double y_s)
     const double jitter_s = 2 * fmax(line->mean_y_s - middle_s, 0);
     const bool   drifts = line->points >= slope_points && fabs(slope) <= drift_most &&
                         fabs(slope) * span_s > fmax(slope_least_s, slope_noise * jitter_s / (double)line->points);
-    fit.slope    = drifts ? slope : 0;
-    fit.at_s     = line->mean_x_s;
+    fit.slope = drifts ? slope : 0;
+    fit.at_s = line->mean_x_s;
     fit.offset_s = middle_s;
     if (!drifts)
         for (int i = 0; i < line->count; i++) fit.offset_s = i ? fmin(fit.offset_s, line->y_s[i]) : line->y_s[0];
@@ -94,8 +94,8 @@ void delay_line_add(DelayLine *line, double x_s, double y_s)
         fabs(delay_line_at(&fit, last_s) - delay_line_at(line, last_s)) <= dead_s)
         return;
     line->offset_s = fit.offset_s;
-    line->slope    = fit.slope;
-    line->at_s     = fit.at_s;
+    line->slope = fit.slope;
+    line->at_s = fit.at_s;
 }
 
 /* ---- trend ------------------------------------------------------------------------------------ */
@@ -113,7 +113,7 @@ void delay_trend_add(DelayTrend *t, double x_s, double y_s)
     t->xy += dx * (y_s - t->mean_y_s);
     t->yy += dy * (y_s - t->mean_y_s);
     t->first_x_s = fmin(t->first_x_s, x_s);
-    t->last_x_s  = fmax(t->last_x_s, x_s);
+    t->last_x_s = fmax(t->last_x_s, x_s);
 }
 
 static const double tick2_s2 = 4e-12; /* of stamps and arrivals */

@@ -12,7 +12,7 @@
 #include <stdlib.h>
 
 enum {
-    sender_limit  = 4096, /* beyond that capture time is used */
+    sender_limit = 4096, /* beyond that capture time is used */
     segment_limit = 1 << 20,
 };
 
@@ -85,15 +85,15 @@ void exercise_clock_tie(ExerciseClock *clock, Sender *sender, Moment now, double
 {
     const bool  absolute = dis_timestamp_is_absolute(now.stamp);
     const Scale scale = clock->first_is_absolute ? SCALE_EPOCH : SCALE_ABSOLUTE;
-    sender->scale  = SCALE_OWN;
+    sender->scale = SCALE_OWN;
     sender->founds = false;
-    sender->tie    = (Tie){now.stamp, ruler_s};
+    sender->tie = (Tie){now.stamp, ruler_s};
     if (absolute && on_absolute_scale(&sender->tie, clock, scale, now.stamp, ruler_s)) {
         sender->scale = scale;
     } else if (may_found && !clock->scales[SCALE_EPOCH]) {
         sender->scale = SCALE_EPOCH;
     } else if (may_found && absolute && !clock->scales[scale]) {
-        sender->scale   = SCALE_ABSOLUTE;
+        sender->scale = SCALE_ABSOLUTE;
         clock->absolute = (Tie){now.stamp, ruler_s};
     }
     if (sender->scale == SCALE_OWN) sender->tie = (Tie){now.stamp, ruler_s};
@@ -105,9 +105,9 @@ void exercise_clock_tie(ExerciseClock *clock, Sender *sender, Moment now, double
     sender->segment = sender->next_segment ? sender->next_segment : ++clock->segments;
     sender->next_segment = 0;
     sender->renewed = false;
-    sender->trend   = (DelayTrend){0};
+    sender->trend = (DelayTrend){0};
     delay_trend_add(&sender->trend, sender->tie.t_s, ruler_s - sender->tie.t_s);
-    sender->mark_s  = now.capture_s;
+    sender->mark_s = now.capture_s;
     sender->agree = sender->odd = 0;
     const int times = sender->standing == SENDER_INCONSISTENT ? 1 << (sender->failures - 1) : 1;
     sender->next_vote_s = now.capture_s + vote_s * times;
@@ -118,12 +118,12 @@ void exercise_clock_keep(ExerciseClock *clock, const Sender *sender)
     if (clock->valid_count == segment_limit) return;
     if (clock->valid_count == clock->valid_capacity) {
         const int larger = clock->valid_capacity ? 2 * clock->valid_capacity : 64;
-        Segment  *grown  = realloc(clock->valid, (size_t)larger * sizeof *grown);
+        Segment  *grown = realloc(clock->valid, (size_t)larger * sizeof *grown);
         if (!grown) {
             clock->lost_segment = true;
             return;
         }
-        clock->valid          = grown;
+        clock->valid = grown;
         clock->valid_capacity = larger;
     }
     clock->valid[clock->valid_count++] = (Segment){sender->segment, sender->scale, sender->tie, sender->line};
@@ -147,8 +147,8 @@ ExerciseInstant exercise_clock_instant(ExerciseClock *clock, uint16_t site, uint
         clock->start_s = dis_timestamp_seconds(timestamp);
         clock->start_capture_s = capture_s;
     }
-    const double ruler_s = clock->start_s + (capture_s - clock->start_capture_s);
-    const Moment now = {timestamp, capture_s};
+    const double          ruler_s = clock->start_s + (capture_s - clock->start_capture_s);
+    const Moment          now = {timestamp, capture_s};
     const ExerciseInstant arrival = {.t_s = ruler_s, .ruler_s = ruler_s, .stamp = timestamp};
 
     /* All bits zero: a sender that does not stamp, or one that does, on the hour. */
@@ -169,7 +169,10 @@ ExerciseInstant exercise_clock_instant(ExerciseClock *clock, uint16_t site, uint
     if (entity >= 0) exercise_clock_stands_still(clock, (uint64_t)key << 16 | (uint16_t)entity, now);
     exercise_clock_tie(clock, sender, now, ruler_s, true);
     return (ExerciseInstant){.t_s = exercise_clock_shifted_time(clock, sender->scale, &sender->line, sender->tie.t_s),
-                             .ruler_s = ruler_s, .stamp = timestamp, .segment = sender->segment, .by_stamp = true,
+                             .ruler_s = ruler_s,
+                             .stamp = timestamp,
+                             .segment = sender->segment,
+                             .by_stamp = true,
                              .sender = (uint16_t)(sender - clock->slot)};
 }
 
@@ -178,7 +181,8 @@ ExerciseInstant exercise_clock_pdu_instant(ExerciseClock *clock, const DisHeader
 {
     uint16_t sender[2];
     if (!dis_pdu_sender(sender, header, pdu)) return (ExerciseInstant){.t_s = NAN, .ruler_s = NAN};
-    return exercise_clock_instant(clock, sender[0], sender[1], dis_pdu_entity(header, pdu), header->timestamp, capture_s);
+    return exercise_clock_instant(clock, sender[0], sender[1], dis_pdu_entity(header, pdu), header->timestamp,
+                                  capture_s);
 }
 
 /* ---- of a whole recording --------------------------------------------------------------------------- */

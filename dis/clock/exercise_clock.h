@@ -19,8 +19,8 @@
  *     their lower edge too: a clock at another rate. Jitter has none.
  * A sender's second PDU counts from its arrival when that is 0.15 s from its stamp: nothing tells the rate yet.
  * Rate checks over 2 s, 4 s, .. 32 s: two that know the rate, to 2 %, as that of the arrivals validate a sender, new or
- * rejected; its stamps are then used again with a new offset. A validated sender's datagram that is seconds late keeps its
- * stamp. Clocks may drift by 1e-4. */
+ * rejected; its stamps are then used again with a new offset. A validated sender's datagram that is seconds late keeps
+ * its stamp. Clocks may drift by 1e-4. */
 #ifndef DIS_CLOCK_EXERCISE_CLOCK_H
 #define DIS_CLOCK_EXERCISE_CLOCK_H
 
@@ -34,8 +34,8 @@ void   exercise_clock_destroy(ExerciseClock *clock);
 typedef struct ExerciseInstant {
     double   t_s, ruler_s; /* exercise time; that of the arrival */
     uint32_t stamp, segment;
-    uint16_t sender;       /* its slot */
-    bool     by_stamp;     /* t_s, as the PDU came */
+    uint16_t sender;   /* its slot */
+    bool     by_stamp; /* t_s, as the PDU came */
 } ExerciseInstant;
 
 /* capture_s: when the datagram was captured or received (Unix time, s). entity: of which of the sender's entities it is
@@ -58,15 +58,17 @@ static inline double exercise_clock_time(ExerciseClock *clock, uint16_t site, ui
 ExerciseInstant exercise_clock_pdu_instant(ExerciseClock *clock, const DisHeader *header, const uint8_t *pdu,
                                            double capture_s);
 
-/* After the last PDU of a recording, once: what is then known of each sender counts for all its PDUs. Then the second, once
- * for each of them: sets its time, and counts those timed by arrival anew. Fails for want of memory. */
+/* After the last PDU of a recording, once: what is then known of each sender counts for all its PDUs. Then the second,
+ * once for each of them: sets its time, and counts those timed by arrival anew. Fails for want of memory. */
 Status exercise_clock_whole(ExerciseClock *clock);
 void   exercise_clock_whole_time(ExerciseClock *clock, ExerciseInstant *at);
 
 /* ---- senders with rejected stamps ------------------------------------------------------------- */
 
 typedef enum ExerciseClockReason {
-    EXERCISE_CLOCK_STILL, EXERCISE_CLOCK_RATE, EXERCISE_CLOCK_JUMP,
+    EXERCISE_CLOCK_STILL,
+    EXERCISE_CLOCK_RATE,
+    EXERCISE_CLOCK_JUMP,
     EXERCISE_CLOCK_SHARED /* two senders of one site and application */
 } ExerciseClockReason;
 
@@ -83,10 +85,10 @@ typedef struct ExerciseClockAnomaly {
 enum { exercise_clock_anomalies_listed_max = 16, exercise_clock_anomaly_text_size = 160 };
 
 typedef struct ExerciseClockAnomalies {
-    uint64_t           by_arrival; /* stamped PDUs of all senders that are timed by arrival; also those of senders
-                                    * beyond the 4096 that are checked */
-    uint64_t           stamped, unstamped; /* PDUs; unstamped: all bits zero, which count from their arrival too */
-    int                count;      /* senders below, in the order of their first anomaly; later ones are not listed */
+    uint64_t by_arrival; /* stamped PDUs of all senders that are timed by arrival; also those of senders
+                          * beyond the 4096 that are checked */
+    uint64_t             stamped, unstamped; /* PDUs; unstamped: all bits zero, which count from their arrival too */
+    int                  count; /* senders below, in the order of their first anomaly; later ones are not listed */
     ExerciseClockAnomaly sender[exercise_clock_anomalies_listed_max];
 } ExerciseClockAnomalies;
 
@@ -106,6 +108,6 @@ static inline double dis_timestamp_step_s(uint32_t from, uint32_t to)
     const int32_t ticks = (int32_t)(((to >> 1) - (from >> 1)) << 1) / 2; /* 31 bits, sign-extended */
     return ticks * (3600.0 / 2147483648.0);
 }
-static inline bool   dis_timestamp_is_absolute(uint32_t timestamp) { return timestamp & 1; }
+static inline bool dis_timestamp_is_absolute(uint32_t timestamp) { return timestamp & 1; }
 
 #endif

@@ -5,21 +5,21 @@
 #include <stdio.h>
 
 enum {
-    odd_limit    = 2,     /* consecutive reports against a sender */
-    votes_needed = 2,     /* consecutive, for a new or rejected sender */
-    most_failures = 5,    /* the validation time is doubled at most this often: 2 minutes */
-    switches_needed = 6,  /* from one clock to another and back, to be two senders */
-    points_again = 30,    /* before a trend is judged that begins amid stamps that were right */
-    points_known = 8,     /* a new sender with that many stamps in order may have one that is not */
+    odd_limit = 2,       /* consecutive reports against a sender */
+    votes_needed = 2,    /* consecutive, for a new or rejected sender */
+    most_failures = 5,   /* the validation time is doubled at most this often: 2 minutes */
+    switches_needed = 6, /* from one clock to another and back, to be two senders */
+    points_again = 30,   /* before a trend is judged that begins amid stamps that were right */
+    points_known = 8,    /* a new sender with that many stamps in order may have one that is not */
 };
 
-/* Of PDUs in the order of their arrival the latest stamps are of those that were quick: that is a trend too, over as long a
- * time as the jitter. So a trend is one where it exceeds the scatter about it by this. */
+/* Of PDUs in the order of their arrival the latest stamps are of those that were quick: that is a trend too, over as
+ * long a time as the jitter. So a trend is one where it exceeds the scatter about it by this. */
 static const double trend_over_scatter = 12;
 /* A stamp that far behind its sender's latest is of a reordered datagram, not of a counter. */
 static const double overtaken_s = 0.1;
 static const double longest_vote_s = 32.0; /* the longest span over which the rate of stamps is checked */
-static const double rate_known = 0.02; /* to be validated: three standard errors of the rate */
+static const double rate_known = 0.02;     /* to be validated: three standard errors of the rate */
 /* Two reports of one entity that far apart, with stamps that advance less than a twentieth of it: they are constant.
  * Jitter makes that of stamps that advance by more than still_step_s, but not over leave_s. */
 static const double still_least_s = 0.1, still_most_s = 1800, still_rate = 0.05, still_step_s = 0.005;
@@ -33,7 +33,7 @@ static double gained_s(Moment since, Moment now)
 
 int exercise_clock_stands_still(ExerciseClock *clock, uint64_t entity_key, Moment now)
 {
-    Memory      *memory = &clock->memory[(entity_key * 0x9E3779B97F4A7C15u) >> 50];
+    Memory *memory = &clock->memory[(entity_key * 0x9E3779B97F4A7C15u) >> 50];
     _Static_assert(memory_slots == 1 << (64 - 50), "the hash has as many bits as there are slots");
     const double passed_s = now.capture_s - memory->last.capture_s;
     const bool   known = memory->key_plus_1 == entity_key + 1;
@@ -55,7 +55,8 @@ static bool is_overtaken(const Sender *sender, uint32_t stamp)
 static bool advances(const Sender *sender, Moment now)
 {
     const double passed_s = now.capture_s - sender->first.capture_s;
-    return passed_s >= still_least_s && dis_timestamp_step_s(sender->first.stamp, sender->latest_stamp) >= 0.5 * passed_s;
+    return passed_s >= still_least_s &&
+           dis_timestamp_step_s(sender->first.stamp, sender->latest_stamp) >= 0.5 * passed_s;
 }
 
 /* Whether stamps alternate between two clocks that both run: two senders of one id. */
@@ -111,8 +112,8 @@ static void observe(ExerciseClock *clock, Sender *sender, double t_s, double rul
     if (sender->founds) clock->founder[sender->scale] = sender->line;
 }
 
-/* Whether the stamps run at another rate than their arrivals: by the trend of all PDUs, of a validated sender by the lower
- * edge too, which a queue that fills does not move. */
+/* Whether the stamps run at another rate than their arrivals: by the trend of all PDUs, of a validated sender by the
+ * lower edge too, which a queue that fills does not move. */
 static bool runs_wrong(const Sender *sender)
 {
     const DelayTrend *trend = &sender->trend;
@@ -140,10 +141,10 @@ static bool runs_right(const Sender *sender)
 static void vote(ExerciseClock *clock, Sender *sender, Moment now, double t_s, double ruler_s)
 {
     if (now.capture_s < sender->mark_s) { /* the capture clock stepped back */
-        sender->mark_s      = now.capture_s;
+        sender->mark_s = now.capture_s;
         sender->next_vote_s = now.capture_s + vote_s;
-        sender->renewed     = true;
-        sender->trend       = (DelayTrend){0};
+        sender->renewed = true;
+        sender->trend = (DelayTrend){0};
         delay_trend_add(&sender->trend, t_s, ruler_s - t_s);
     }
     if (runs_wrong(sender)) {
@@ -152,13 +153,13 @@ static void vote(ExerciseClock *clock, Sender *sender, Moment now, double t_s, d
     }
     if (now.capture_s < sender->next_vote_s) return;
     const double span_s = now.capture_s - sender->mark_s;
-    const bool   right  = runs_right(sender);
+    const bool   right = runs_right(sender);
     if (right && sender->agree < votes_needed) sender->agree++;
     if (sender->agree == votes_needed) sender->standing = SENDER_PROVEN;
     if (span_s >= longest_vote_s && (right || span_s >= 4 * longest_vote_s)) {
-        sender->mark_s  = now.capture_s;
+        sender->mark_s = now.capture_s;
         sender->renewed = true;
-        sender->trend   = (DelayTrend){0};
+        sender->trend = (DelayTrend){0};
         delay_trend_add(&sender->trend, t_s, ruler_s - t_s);
     }
     sender->next_vote_s = now.capture_s + (span_s >= longest_vote_s ? longest_vote_s : fmax(span_s, vote_s));
@@ -169,13 +170,13 @@ static void note_inconsistent(ExerciseClock *clock, const Sender *sender, Moment
     clock->doubts.by_arrival++;
     if (sender->doubt < 0) return;
     ExerciseClockAnomaly *d = &clock->doubts.sender[sender->doubt];
-    const double        passed_s = now.capture_s - sender->first.capture_s;
+    const double          passed_s = now.capture_s - sender->first.capture_s;
     d->by_arrival++;
     d->pdus = sender->pdus;
     if (!(passed_s > 0)) return;
     d->passed_s = passed_s;
     d->raw_hz = (uint32_t)(now.stamp - sender->first.stamp) / passed_s;
-    d->rate   = dis_timestamp_step_s(sender->first.stamp, now.stamp) / passed_s;
+    d->rate = dis_timestamp_step_s(sender->first.stamp, now.stamp) / passed_s;
     d->counted = (uint32_t)(now.stamp - sender->first.stamp) / fmax((double)(sender->pdus - 1), 1);
 }
 
@@ -185,7 +186,7 @@ static void note_shared(ExerciseClock *clock, Sender *sender, Moment now)
     sender->shared = true;
     const int d = list_doubt(clock, sender, EXERCISE_CLOCK_SHARED);
     if (d < 0) return;
-    clock->doubts.sender[d].pdus    = sender->pdus;
+    clock->doubts.sender[d].pdus = sender->pdus;
     clock->doubts.sender[d].apart_s = fabs(gained_s(sender->one, sender->other));
 }
 
@@ -196,13 +197,13 @@ ExerciseInstant exercise_clock_judge(ExerciseClock *clock, Sender *sender, Momen
     note_shared(clock, sender, now);
     if (!overtaken) sender->latest_stamp = now.stamp;
 
-    const uint64_t entity_key = (uint64_t)sender->key << 16 | (uint16_t)entity;
-    const int    repeats = entity < 0 ? 0 : exercise_clock_stands_still(clock, entity_key, now);
-    const bool   stands = repeats > 0;
-    const double t_s = exercise_clock_tied_time(&sender->tie, now.stamp, ruler_s);
-    const bool   leaves = !(fabs(ruler_s - t_s - delay_line_at(&sender->line, t_s)) <= leave_s);
+    const uint64_t            entity_key = (uint64_t)sender->key << 16 | (uint16_t)entity;
+    const int                 repeats = entity < 0 ? 0 : exercise_clock_stands_still(clock, entity_key, now);
+    const bool                stands = repeats > 0;
+    const double              t_s = exercise_clock_tied_time(&sender->tie, now.stamp, ruler_s);
+    const bool                leaves = !(fabs(ruler_s - t_s - delay_line_at(&sender->line, t_s)) <= leave_s);
     const ExerciseClockReason reason = leaves ? EXERCISE_CLOCK_JUMP : EXERCISE_CLOCK_STILL;
-    bool by_arrival = leaves;
+    bool                      by_arrival = leaves;
 
     sender->odd = leaves ? sender->odd + 1 : 0;
     if (leaves && !sender->next_segment) sender->next_segment = ++clock->segments;
@@ -218,14 +219,17 @@ ExerciseInstant exercise_clock_judge(ExerciseClock *clock, Sender *sender, Momen
         by_arrival = sender->standing == SENDER_NEW && !overtaken && !is_utc(sender, now) && is_undecided(sender, now);
         vote(clock, sender, now, t_s, ruler_s);
     }
-    ExerciseInstant at = {.t_s = ruler_s, .ruler_s = ruler_s, .stamp = now.stamp, .segment = sender->segment,
+    ExerciseInstant at = {.t_s = ruler_s,
+                          .ruler_s = ruler_s,
+                          .stamp = now.stamp,
+                          .segment = sender->segment,
                           .sender = (uint16_t)(sender - clock->slot)};
     if (leaves && sender->next_segment) at.segment = sender->next_segment;
     if (sender->standing == SENDER_INCONSISTENT) {
         note_inconsistent(clock, sender, now);
     } else if (!by_arrival) {
-        at.t_s     = exercise_clock_shifted_time(clock, sender->scale, &sender->line,
-                                                 exercise_clock_tied_time(&sender->tie, now.stamp, ruler_s));
+        at.t_s = exercise_clock_shifted_time(clock, sender->scale, &sender->line,
+                                             exercise_clock_tied_time(&sender->tie, now.stamp, ruler_s));
         at.by_stamp = true;
     }
     return at;
@@ -241,14 +245,18 @@ static bool near_rate(double hz, double of_hz, double passed_s)
 
 void exercise_clock_anomaly_text(char *out, size_t size, const ExerciseClockAnomaly *d)
 {
-    static const struct { double hz; const char *what; } unit[] = {
-        {1e6, "look like microseconds"}, {2e6, "look like microseconds"}, {1e3, "look like milliseconds"},
-        {2e3, "look like milliseconds"}, {1, "look like seconds"}, {2, "look like seconds"}};
+    static const struct {
+        double      hz;
+        const char *what;
+    } unit[] = {{1e6, "look like microseconds"}, {2e6, "look like microseconds"}, {1e3, "look like milliseconds"},
+                {2e3, "look like milliseconds"}, {1, "look like seconds"},        {2, "look like seconds"}};
     char        rate[64];
     const char *what = "jump about";
     if (d->reason == EXERCISE_CLOCK_SHARED) {
-        snprintf(out, size, "time stamps of %u:%u follow two clocks %.1f s apart: two senders have this site and "
-                 "application; give one another", d->site, d->application, d->apart_s);
+        snprintf(out, size,
+                 "time stamps of %u:%u follow two clocks %.1f s apart: two senders have this site and "
+                 "application; give one another",
+                 d->site, d->application, d->apart_s);
         return;
     }
     if (d->reason != EXERCISE_CLOCK_JUMP) {

@@ -20,14 +20,14 @@ ClockReading steady_clock_reading(void)
 {
     enum { tries = 4 };
     static const int64_t close_ns = 2000;
-    ClockReading best = {0};
-    int64_t      least_ns = INT64_MAX;
+    ClockReading         best = {0};
+    int64_t              least_ns = INT64_MAX;
     for (int i = 0; i < tries && least_ns > close_ns; i++) {
         const int64_t before_ns = read_ns(CLOCK_MONOTONIC), system_ns = read_ns(CLOCK_REALTIME);
         const int64_t after_ns = read_ns(CLOCK_MONOTONIC);
         if (after_ns - before_ns >= least_ns) continue;
         least_ns = after_ns - before_ns;
-        best     = (ClockReading){system_ns, before_ns + least_ns / 2};
+        best = (ClockReading){system_ns, before_ns + least_ns / 2};
     }
     return best;
 }

@@ -39,7 +39,7 @@ int64_t steady_clock_of_stamp(const SteadyClock *clock, int64_t stamp_ns, ClockR
 
 /* ---- the program's own, begun by the first call of any of these; thread-safe ----------------------------- */
 
-SteadyClock     steady_clock(void);        /* as it began */
+SteadyClock     steady_clock(void); /* as it began */
 int64_t         steady_clock_now_ns(void);
 struct timespec steady_clock_monotonic(int64_t unix_ns); /* for waits by CLOCK_MONOTONIC; not before its 0 */
 

@@ -20,7 +20,13 @@
 #include <time.h>
 #include <unistd.h>
 
-enum { batch = 64, buffer_octets = dis_max_datagram + 1, control_octets = 128, pause_ms = 100, check_interval_ms = 1000 };
+enum {
+    batch = 64,
+    buffer_octets = dis_max_datagram + 1,
+    control_octets = 128,
+    pause_ms = 100,
+    check_interval_ms = 1000
+};
 
 static const int64_t ns_per_s = 1000000000;
 
@@ -30,31 +36,31 @@ struct DisUdp {
     char             name[dis_udp_where_size];
     DisUdpConfig     config;
     DisTie           tie;
-    DisLink          link;         /* of the receiving thread; in a sender under sending */
-    pthread_mutex_t  sending;      /* socket and to are replaced under it, and under receive */
-    int64_t          checked_ns;    /* sender: time of the last link check */
+    DisLink          link;       /* of the receiving thread; in a sender under sending */
+    pthread_mutex_t  sending;    /* socket and to are replaced under it, and under receive */
+    int64_t          checked_ns; /* sender: time of the last link check */
 
     /* under receive */
     pthread_mutex_t  receive;
-    pthread_cond_t   turn;         /* the tick is closed, the thread may continue */
-    int64_t          last_ns;      /* no arrival time is below this */
+    pthread_cond_t   turn;    /* the tick is closed, the thread may continue */
+    int64_t          last_ns; /* no arrival time is below this */
     SteadyClock      clock;
     bool             complained;
-    DisUdpTap        tap;          /* NULL: none */
+    DisUdpTap        tap; /* NULL: none */
     void            *tap_user;
     struct mmsghdr   message[batch];
     struct iovec     vector[batch];
     DisSocketAddress from[batch];
-    uint8_t         *buffer;       /* [batch][buffer_octets] */
+    uint8_t         *buffer; /* [batch][buffer_octets] */
     _Alignas(struct cmsghdr) uint8_t control[batch][control_octets];
 
     /* under queue */
-    pthread_mutex_t  queue;
-    pthread_cond_t   arrived;
-    bool             taker_waits;
-    DisRing          ring;
-    uint32_t         kernel_drops;                 /* its counter, modulo 2^32 */
-    DisUdpCounters   counters;
+    pthread_mutex_t queue;
+    pthread_cond_t  arrived;
+    bool            taker_waits;
+    DisRing         ring;
+    uint32_t        kernel_drops; /* its counter, modulo 2^32 */
+    DisUdpCounters  counters;
 
     atomic_bool          closing, stopping;
     atomic_uint_fast64_t sent, send_failed;
@@ -74,10 +80,7 @@ void dis_udp_where(char out[dis_udp_where_size], const DisUdpConfig *config)
              config->port, config->interface[0] ? " on " : "", config->interface);
 }
 
-int64_t dis_udp_now_ns(void)
-{
-    return steady_clock_now_ns();
-}
+int64_t dis_udp_now_ns(void) { return steady_clock_now_ns(); }
 
 void dis_udp_sleep_until(int64_t until_ns)
 {
@@ -181,7 +184,7 @@ static void read_control(int64_t *kernel_ns, uint32_t *drops, bool *dropped, str
 /* Step of the system clock, and so of the kernel's time stamps; reported above one second. */
 static ClockReading look_at_clock(DisUdp *u)
 {
-    const ClockReading now   = steady_clock_reading();
+    const ClockReading now = steady_clock_reading();
     const double       set_s = 1e-9 * (double)steady_clock_look(&u->clock, now);
     if (fabs(set_s) >= 1)
         log_warn("udp: the system's clock was set %s by %.0f s; arrival times go on without that step",
@@ -208,8 +211,8 @@ static int receive_batch(DisUdp *u, int64_t *newest_ns)
     const ClockReading now = look_at_clock(u);
     *newest_ns = 0;
     DisRingRecord record[batch];
-    uint32_t drops = 0;
-    bool     dropped = false;
+    uint32_t      drops = 0;
+    bool          dropped = false;
     for (int i = 0; i < came; i++) {
         struct msghdr *header = &u->message[i].msg_hdr;
         int64_t        kernel_ns = 0;
@@ -269,7 +272,7 @@ static bool remake_socket(DisUdp *u)
         pthread_mutex_unlock(&u->queue);
     }
     dup3(made, u->socket, O_CLOEXEC);
-    u->to  = to;
+    u->to = to;
     u->tie = tie;
     if (listens) pthread_mutex_unlock(&u->sending);
     close(made);
@@ -303,8 +306,8 @@ static void *receive_loop(void *user)
                              {.fd = u->link.watch, .events = POLLIN}};
     int64_t       checked_ns = dis_udp_now_ns();
     while (!atomic_load(&u->stopping)) {
-        int64_t newest_ns;
-        const int ready = poll(what, 3, dis_link_unreported(&u->link) ? pause_ms : check_interval_ms);
+        int64_t       newest_ns;
+        const int     ready = poll(what, 3, dis_link_unreported(&u->link) ? pause_ms : check_interval_ms);
         const int64_t now_ns = dis_udp_now_ns();
         if (ready == 0 || what[2].revents || llabs(now_ns - checked_ns) >= check_interval_ms * 1000000ll) {
             pthread_mutex_lock(&u->receive);
@@ -332,7 +335,8 @@ void dis_udp_close_tick(DisUdp *u, int64_t until_ns)
     atomic_store(&u->closing, true);
     pthread_mutex_lock(&u->receive);
     /* until the socket is empty, or its datagrams arrived after the call: a flood would never end */
-    while (receive_batch(u, &newest_ns) == batch && newest_ns <= called_ns) {}
+    while (receive_batch(u, &newest_ns) == batch && newest_ns <= called_ns) {
+    }
     if (u->last_ns <= until_ns) u->last_ns = until_ns + 1;
     atomic_store(&u->closing, false);
     pthread_cond_signal(&u->turn);
@@ -343,7 +347,7 @@ void dis_udp_tap(DisUdp *u, DisUdpTap tap, void *user)
 {
     atomic_store(&u->closing, true);
     pthread_mutex_lock(&u->receive);
-    u->tap      = tap;
+    u->tap = tap;
     u->tap_user = user;
     atomic_store(&u->closing, false);
     pthread_cond_signal(&u->turn);
@@ -442,7 +446,7 @@ Status dis_udp_open(DisUdp **out, const DisUdpConfig *config)
     DisUdp *u = make(config);
     if (!u) return STATUS_NO_MEMORY;
     u->link.listens = true;
-    u->link.watch   = dis_link_watch(); /* first: changes during socket creation are then notified */
+    u->link.watch = dis_link_watch(); /* first: changes during socket creation are then notified */
     Status status = dis_udp_socket(&u->socket, &u->to, &u->tie, config, true);
     if (status != STATUS_OK) goto fail;
     check_link(u);
@@ -474,7 +478,8 @@ void dis_udp_close(DisUdp *u)
     if (u->running) {
         const uint64_t one = 1;
         atomic_store(&u->stopping, true);
-        while (write(u->wake, &one, sizeof one) < 0 && errno == EINTR) {}
+        while (write(u->wake, &one, sizeof one) < 0 && errno == EINTR) {
+        }
         pthread_join(u->thread, NULL);
     }
     if (u->socket >= 0) close(u->socket);

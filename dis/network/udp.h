@@ -22,9 +22,9 @@ typedef struct DisUdpConfig {
                                          * another machine's: all datagrams, and no other program may listen */
     char interface[32];                 /* name, `eth0`: the only interface used (implied by an address of this
                                          * machine); empty: receives on all, and the system chooses where to send */
-    int  port;                          /* 1 .. 65535 */
-    int  ttl;                           /* hops of multicast, 0 .. 255; 0: this machine alone */
-    int  queue_octets;                  /* most that waits to be taken, headers of 32 octets included, 131072 .. 2^30;
+    int port;                           /* 1 .. 65535 */
+    int ttl;                            /* hops of multicast, 0 .. 255; 0: this machine alone */
+    int queue_octets;                   /* most that waits to be taken, headers of 32 octets included, 131072 .. 2^30;
                                          * beyond: the oldest stay, new ones are counted lost */
 } DisUdpConfig;
 
@@ -42,51 +42,51 @@ typedef struct DisUdpCounters {
     uint64_t lost_kernel;       /* came and found the socket full: the kernel's own count */
     uint64_t lost_queue;        /* not taken in time */
     uint64_t sent, send_failed;
-    int      send_error;        /* errno of the latest that failed */
-    bool     away;              /* the interface, its address or the way to the group is not available; already
-                                 * reported */
+    int      send_error; /* errno of the latest that failed */
+    bool     away;       /* the interface, its address or the way to the group is not available; already
+                          * reported */
 } DisUdpCounters;
 
 typedef struct DisUdp DisUdp;
 
 /* One datagram as taken; bytes are the taker's until its next take. */
 typedef struct DisArrival {
-    int64_t        capture_ns;    /* Unix time; dis_unix_s converts it to the time of a recording */
-    uint32_t       octets;        /* may be 0 */
+    int64_t        capture_ns; /* Unix time; dis_unix_s converts it to the time of a recording */
+    uint32_t       octets;     /* may be 0 */
     const uint8_t *bytes;
-    uint8_t        from[16];      /* IPv4 as ::ffff:a.b.c.d */
+    uint8_t        from[16]; /* IPv4 as ::ffff:a.b.c.d */
     uint16_t       from_port;
 } DisArrival;
 
 /* STATUS_BAD_VALUE or STATUS_IO with one logged line: which address, port or interface, why, and what to do next. */
-Status dis_udp_open(DisUdp **out, const DisUdpConfig *config);   /* listens, and may send */
+Status dis_udp_open(DisUdp **out, const DisUdpConfig *config);        /* listens, and may send */
 Status dis_udp_open_sender(DisUdp **out, const DisUdpConfig *config); /* sends only: no port is bound */
 /* NULL is fine. No thread may be inside another function by then. */
-void   dis_udp_close(DisUdp *udp);
+void dis_udp_close(DisUdp *udp);
 
 /* From now on tap is called for each datagram received, before it is queued, also when the queue is full: by the
  * receiving thread or the one that closes a tick, one at a time. tap: NULL: none; after the call it is not inside. It
  * must not call anything here. */
 typedef void (*DisUdpTap)(void *user, const DisArrival *arrival);
-void   dis_udp_tap(DisUdp *udp, DisUdpTap tap, void *user);
+void dis_udp_tap(DisUdp *udp, DisUdpTap tap, void *user);
 /* Queues what has arrived so far; after it has returned no datagram gets an arrival time at or before until_ns: a later
  * one with such a kernel time stamp gets until_ns + 1. Then call dis_udp_take(.., until_ns) until it returns false.
  * A live node closes a frame's tick this way, so its recording replays bit-identically: dis_unix_ns_until
  * gives the until_ns of a frame time. One thread at a time. */
-void   dis_udp_close_tick(DisUdp *udp, int64_t until_ns);
+void dis_udp_close_tick(DisUdp *udp, int64_t until_ns);
 /* The next in order of arrival, not after until_ns (INT64_MAX: any). False when none waits. One thread at a time. */
-bool   dis_udp_take(DisArrival *out, DisUdp *udp, int64_t until_ns);
+bool dis_udp_take(DisArrival *out, DisUdp *udp, int64_t until_ns);
 /* Waits until the queue is not empty (true) or until the Unix time until_ns (false). */
-bool   dis_udp_wait(DisUdp *udp, int64_t until_ns);
+bool dis_udp_wait(DisUdp *udp, int64_t until_ns);
 /* A full or missing network is counted, never fatal: STATUS_IO then. Thread-safe. */
-Status dis_udp_send(DisUdp *udp, const uint8_t *bytes, size_t octets);
+Status         dis_udp_send(DisUdp *udp, const uint8_t *bytes, size_t octets);
 DisUdpCounters dis_udp_counters(const DisUdp *udp);
 /* Unix time in the nanoseconds that arrivals are stamped in: steady_clock.h, not moved when the system's clock is
  * set. */
 int64_t dis_udp_now_ns(void);
 /* Sleeps until that Unix time, or until a signal. */
-void    dis_udp_sleep_until(int64_t until_ns);
+void dis_udp_sleep_until(int64_t until_ns);
 /* The address that dis_udp_send sends to, in the form of DisArrival's from. */
-void    dis_udp_destination(uint8_t to[16], const DisUdp *udp);
+void dis_udp_destination(uint8_t to[16], const DisUdp *udp);
 
 #endif

@@ -28,7 +28,7 @@ int dis_link_watch(void)
 {
     const struct sockaddr_nl at = {.nl_family = AF_NETLINK,
                                    .nl_groups = RTMGRP_LINK | RTMGRP_IPV4_IFADDR | RTMGRP_IPV6_IFADDR};
-    const int watch = socket(AF_NETLINK, SOCK_RAW | SOCK_CLOEXEC | SOCK_NONBLOCK, NETLINK_ROUTE);
+    const int                watch = socket(AF_NETLINK, SOCK_RAW | SOCK_CLOEXEC | SOCK_NONBLOCK, NETLINK_ROUTE);
     if (watch < 0 || bind(watch, (const struct sockaddr *)&at, sizeof at) == 0) return watch;
     close(watch);
     return -1;
@@ -100,7 +100,7 @@ static DisLinkState look(bool *remake, const DisLink *link, int socket, const Di
 }
 
 void dis_link_check(DisLink *link, bool *remake, int socket, const DisSocketAddress *to, const DisTie *tie,
-                   const DisUdpConfig *config)
+                    const DisUdpConfig *config)
 {
     *remake = false;
     const DisLinkState state = look(remake, link, socket, to, tie, config);
@@ -117,7 +117,9 @@ enum { link_text_size = 256 };
 static void link_text(char out[link_text_size], DisLinkState state, const DisUdpConfig *config)
 {
     switch (state) {
-    case DIS_LINK_UP: snprintf(out, link_text_size, "the network is there"); break;
+    case DIS_LINK_UP:
+        snprintf(out, link_text_size, "the network is there");
+        break;
     case DIS_LINK_GONE:
         if (!config->interface[0]) snprintf(out, link_text_size, "the interface it was joined on is gone");
         else snprintf(out, link_text_size, "the interface %s is gone", config->interface);
@@ -134,8 +136,7 @@ static void link_text(char out[link_text_size], DisLinkState state, const DisUdp
         snprintf(out, link_text_size, "%s is no longer an address of this machine (`ip addr`)", config->address);
         break;
     case DIS_LINK_NO_ROUTE:
-        snprintf(out, link_text_size, "no interface leads to %s (`ip route`; or name an interface)",
-                 config->address);
+        snprintf(out, link_text_size, "no interface leads to %s (`ip route`; or name an interface)", config->address);
         break;
     }
 }
@@ -156,7 +157,6 @@ void dis_link_report(DisLink *link, const char *where, const DisUdpConfig *confi
         log_info("udp: %s: the network is there again, %s", where, link->listens ? "listening" : "sending");
     else if (monotonic_ns() - link->since_ns >= (link->said == DIS_LINK_UP ? settle_ns : other_ns))
         say(where, link->state, config);
-    else
-        return;
+    else return;
     link->said = link->state;
 }

@@ -56,26 +56,26 @@ typedef enum DisLinkState {
 } DisLinkState;
 
 typedef struct DisLink {
-    int          watch;        /* announcements; -1: none, or a sender */
+    int          watch; /* announcements; -1: none, or a sender */
     bool         listens;
-    bool         lost;         /* its interface was deleted since the socket was made */
-    DisLinkState state, said;  /* reported: the state last logged */
-    int64_t      since_ns;     /* of the state; monotonic */
+    bool         lost;        /* its interface was deleted since the socket was made */
+    DisLinkState state, said; /* reported: the state last logged */
+    int64_t      since_ns;    /* of the state; monotonic */
 } DisLink;
 
 /* A descriptor of the kernel's notifications, to be polled for POLLIN; -1 where the system has none. */
-int  dis_link_watch(void);
+int dis_link_watch(void);
 /* Reads all announcements; notes whether an interface that the socket depends on was deleted. */
 void dis_link_read(DisLink *link, int socket, const DisSocketAddress *to, const DisTie *tie);
 /* Polls the state, and joins the group again where no interface was named. remake: the socket must be recreated; the
  * caller then clears lost. Once a second and after notifications. */
 void dis_link_check(DisLink *link, bool *remake, int socket, const DisSocketAddress *to, const DisTie *tie,
-                   const DisUdpConfig *config);
+                    const DisUdpConfig *config);
 /* Logs what the last read or poll found: one line when the link is no longer up, one when it is again; one more when
  * the reason is another for two seconds. where: of dis_udp_where. dis_link_unreported: to be checked again in a tenth
  * of a second. */
 static inline bool dis_link_unreported(const DisLink *link) { return link->state != link->said; }
-void dis_link_report(DisLink *link, const char *where, const DisUdpConfig *config);
+void               dis_link_report(DisLink *link, const char *where, const DisUdpConfig *config);
 
 /* ---- udp_ring.c: the queue --------------------------------------------------------------------- */
 
@@ -99,9 +99,9 @@ typedef struct DisRing {
 Status dis_ring_create(DisRing *out, uint64_t octets);
 void   dis_ring_destroy(DisRing *ring); /* a zeroed one is fine */
 /* head: with its number of octets, which follow from bytes. False: the ring is full, and the oldest are kept. */
-bool   dis_ring_put(DisRing *ring, const DisRingRecord *head, const uint8_t *bytes);
+bool dis_ring_put(DisRing *ring, const DisRingRecord *head, const uint8_t *bytes);
 /* The next, not after until_ns, its octets behind it; NULL: none. The previous one becomes invalid. */
 const DisRingRecord *dis_ring_take(DisRing *ring, int64_t until_ns);
-static inline bool dis_ring_waits(const DisRing *ring) { return ring->next != ring->end; }
+static inline bool   dis_ring_waits(const DisRing *ring) { return ring->next != ring->end; }
 
 #endif

@@ -54,7 +54,7 @@ const DisRingRecord *dis_ring_take(DisRing *r, int64_t until_ns)
     if (record->octets == skip) {
         r->next += r->octets - r->next % r->octets;
         r->held = r->next;
-        record  = record_at(r, r->next);
+        record = record_at(r, r->next);
     }
     if (record->capture_ns > until_ns) return NULL;
     r->next += units(sizeof *record + record->octets);

@@ -10,8 +10,13 @@
 #include <stdio.h>
 #include <unistd.h>
 
-enum { receive_buffer_octets = 64 << 20, send_buffer_octets = 4 << 20, least_queue_octets = 128 << 10,
-       most_queue_octets = 1 << 30, text_size = 256 };
+enum {
+    receive_buffer_octets = 64 << 20,
+    send_buffer_octets = 4 << 20,
+    least_queue_octets = 128 << 10,
+    most_queue_octets = 1 << 30,
+    text_size = 256
+};
 
 /* The kind of address determines how to listen for it. */
 typedef enum Reach {
@@ -25,7 +30,7 @@ typedef struct Plan {
     const DisUdpConfig *config;
     DisSocketAddress    to;
     Reach               reach;
-    unsigned            interface; /* index; 0: none given */
+    unsigned            interface;                       /* index; 0: none given */
     char                name[dis_udp_address_size + 64]; /* `239.1.2.3 port 3000 on eth0`, for messages */
 } Plan;
 
@@ -55,7 +60,7 @@ static void list_interfaces(char out[text_size])
 
 static bool is_broadcast(struct in_addr address)
 {
-    const uint32_t host = ntohl(address.s_addr);
+    const uint32_t  host = ntohl(address.s_addr);
     struct ifaddrs *all = NULL;
     bool            found = host == INADDR_BROADCAST || host == 0x7FFFFFFF; /* loopback's is not listed */
     if (found || getifaddrs(&all) != 0) return found;
@@ -113,11 +118,11 @@ static bool check_range(const char *what, int value, int low, int high)
 
 static Status read_config(Plan *plan, const DisUdpConfig *config)
 {
-    const struct addrinfo hints = {.ai_family = AF_UNSPEC, .ai_socktype = SOCK_DGRAM,
-                                   .ai_flags = AI_NUMERICHOST | AI_NUMERICSERV};
-    struct addrinfo      *found = NULL;
-    char                  text[text_size];
-    const char *address = config->address[0] ? config->address : "255.255.255.255";
+    const struct addrinfo hints = {
+        .ai_family = AF_UNSPEC, .ai_socktype = SOCK_DGRAM, .ai_flags = AI_NUMERICHOST | AI_NUMERICSERV};
+    struct addrinfo *found = NULL;
+    char             text[text_size];
+    const char      *address = config->address[0] ? config->address : "255.255.255.255";
     if (!check_range("port", config->port, 1, 65535) || !check_range("ttl", config->ttl, 0, 255) ||
         !check_range("queue octets", config->queue_octets, least_queue_octets, most_queue_octets))
         return STATUS_BAD_VALUE;
@@ -132,7 +137,8 @@ static Status read_config(Plan *plan, const DisUdpConfig *config)
     snprintf(text, sizeof text, "%d", config->port);
     if (getaddrinfo(address, text, &hints, &found) != 0) {
         log_error("udp: address: `%s` is not an IPv4 or IPv6 address in numbers, such as 192.168.1.255, 239.1.2.3 or "
-                  "ff15::d15", address);
+                  "ff15::d15",
+                  address);
         return STATUS_BAD_VALUE;
     }
     memcpy(&plan->to, found->ai_addr, found->ai_addrlen);
@@ -142,7 +148,8 @@ static Status read_config(Plan *plan, const DisUdpConfig *config)
     if (v6 ? IN6_IS_ADDR_UNSPECIFIED(&v6->sin6_addr) || IN6_IS_ADDR_V4MAPPED(&v6->sin6_addr)
            : plan->to.v4.sin_addr.s_addr == htonl(INADDR_ANY)) {
         log_error("udp: address: nothing can be sent to `%s`; leave it empty to hear all and to send "
-                  "to 255.255.255.255", address);
+                  "to 255.255.255.255",
+                  address);
         return STATUS_BAD_VALUE;
     }
     if (v6 && is_link_local(&v6->sin6_addr)) {
@@ -155,8 +162,8 @@ static Status read_config(Plan *plan, const DisUdpConfig *config)
         }
     }
     plan->reach = reach_of(&plan->to);
-    snprintf(plan->name, sizeof plan->name, "%s port %d%s%s", address, config->port,
-             config->interface[0] ? " on " : "", config->interface);
+    snprintf(plan->name, sizeof plan->name, "%s port %d%s%s", address, config->port, config->interface[0] ? " on " : "",
+             config->interface);
     return STATUS_OK;
 }
 
@@ -189,7 +196,8 @@ static Status refused(const Plan *plan, const char *what)
         snprintf(text, sizeof text, "; no route leads there: name an interface that carries it, of: %s", interfaces);
         next = text;
         break;
-    default: break;
+    default:
+        break;
     }
     log_error("udp: cannot %s %s: %s%s", what, plan->name, strerror(error), next);
     return STATUS_IO;
@@ -228,8 +236,7 @@ static bool bind_to(const Plan *plan, int socket)
     if (plan->reach == REACH_PEER || plan->reach == REACH_BROADCAST) {
         if (at.any.sa_family == AF_INET6)
             at.v6 = (struct sockaddr_in6){.sin6_family = AF_INET6, .sin6_port = at.v6.sin6_port};
-        else
-            at.v4.sin_addr.s_addr = htonl(INADDR_ANY);
+        else at.v4.sin_addr.s_addr = htonl(INADDR_ANY);
     }
     return bind(socket, &at.any, dis_socket_address_octets(&at)) == 0;
 }
@@ -258,9 +265,9 @@ bool dis_udp_leave(int socket, const DisSocketAddress *group, unsigned interface
 static bool port_shared(int port)
 {
     static const char *const tables[2] = {"/proc/net/udp", "/proc/net/udp6"};
-    char     line[512], address[40];
-    unsigned local;
-    bool     shared = false;
+    char                     line[512], address[40];
+    unsigned                 local;
+    bool                     shared = false;
     for (int t = 0; t < 2 && !shared; t++) {
         FILE *table = fopen(tables[t], "r");
         while (table && !shared && fgets(line, sizeof line, table))
@@ -282,8 +289,7 @@ static Status listen_there(const Plan *plan, int socket)
     set_buffer(socket, SO_RCVBUFFORCE, SO_RCVBUF, receive_buffer_octets);
     const bool other = plan->reach == REACH_BROADCAST && port_shared(plan->config->port);
     if (!bind_to(plan, socket)) return refused(plan, "listen on");
-    if (plan->reach == REACH_GROUP && !dis_udp_join(socket, &plan->to, plan->interface))
-        return refused(plan, "join");
+    if (plan->reach == REACH_GROUP && !dis_udp_join(socket, &plan->to, plan->interface)) return refused(plan, "join");
     if (other)
         log_info("udp: another program of this machine listens on port %d, too: a broadcast (127.255.255.255 within "
                  "this machine) or a multicast group reaches all of them, what is sent to one address only one",
@@ -303,21 +309,18 @@ Status dis_udp_socket(int *out, DisSocketAddress *to, DisTie *tie, const DisUdpC
     set_buffer(made, SO_SNDBUFFORCE, SO_SNDBUF, send_buffer_octets);
     /* datagrams to an own address arrive by loopback, so no interface then */
     const bool narrow = config->interface[0] && plan.reach != REACH_OWN;
-    if (family == AF_INET6 && !set_flag(made, IPPROTO_IPV6, IPV6_V6ONLY, 1))
-        status = refused(&plan, "set up");
+    if (family == AF_INET6 && !set_flag(made, IPPROTO_IPV6, IPV6_V6ONLY, 1)) status = refused(&plan, "set up");
     else if (narrow && setsockopt(made, SOL_SOCKET, SO_BINDTODEVICE, config->interface,
                                   (socklen_t)strnlen(config->interface, sizeof config->interface)) != 0)
         status = refused(&plan, "use the interface for");
-    else if (!aim(&plan, made))
-        status = refused(&plan, "set up");
-    else if (listen)
-        status = listen_there(&plan, made);
+    else if (!aim(&plan, made)) status = refused(&plan, "set up");
+    else if (listen) status = listen_there(&plan, made);
     if (status != STATUS_OK) {
         close(made);
         return status;
     }
     *out = made;
-    *to  = plan.to;
+    *to = plan.to;
     *tie = (DisTie){plan.interface, narrow, listen && plan.reach == REACH_GROUP, listen && plan.reach == REACH_OWN};
     return STATUS_OK;
 }

@@ -91,9 +91,9 @@ static size_t encode_data(uint8_t *out, size_t capacity, const DisPdu *pdu)
  * The lengths of the others are not validated. */
 typedef struct PduType {
     const char *name;
-    unsigned    least_octets; /* before variable records; 0: not acted upon */
-    Status    (*decode)(DisPdu *out, const uint8_t *pdu, size_t octets); /* NULL: not decoded */
-    size_t    (*encode)(uint8_t *out, size_t capacity, const DisPdu *pdu);
+    unsigned    least_octets;                                         /* before variable records; 0: not acted upon */
+    Status (*decode)(DisPdu *out, const uint8_t *pdu, size_t octets); /* NULL: not decoded */
+    size_t (*encode)(uint8_t *out, size_t capacity, const DisPdu *pdu);
 } PduType;
 
 static const PduType pdu_type[256] = {
@@ -180,8 +180,8 @@ static unsigned least_octets(uint8_t type)
     return pdu_type[type].least_octets ? pdu_type[type].least_octets : dis_header_octets;
 }
 
-/* How many octets the PDU at pdu has by its type and its own counts, whatever its length field says; 0: not known of its
- * type, or more than there are octets. */
+/* How many octets the PDU at pdu has by its type and its own counts, whatever its length field says; 0: not known of
+ * its type, or more than there are octets. */
 static size_t whole_octets(const uint8_t *pdu, size_t octets)
 {
     static const struct {
@@ -241,8 +241,8 @@ static const uint8_t *past_padding(const uint8_t *at, const uint8_t *end)
     return next - at <= padding_most && version_known(*next) ? next : at;
 }
 
-/* Octets of a PDU with a length field of 0, as some libraries leave it: by its type and counts, where these, and those of
- * the PDUs behind it, end exactly with the datagram. 0: not certain. */
+/* Octets of a PDU with a length field of 0, as some libraries leave it: by its type and counts, where these, and those
+ * of the PDUs behind it, end exactly with the datagram. 0: not certain. */
 static size_t certain_length(const uint8_t *pdu, const uint8_t *end)
 {
     const uint8_t *at = pdu;
@@ -259,11 +259,10 @@ static size_t certain_length(const uint8_t *pdu, const uint8_t *end)
     return at == end ? first : 0;
 }
 
-bool dis_next_pdu(DisHeader *header, const uint8_t **pdu, const uint8_t **at, const uint8_t *end,
-                  DisCounters *counters)
+bool dis_next_pdu(DisHeader *header, const uint8_t **pdu, const uint8_t **at, const uint8_t *end, DisCounters *counters)
 {
     const uint8_t *const begin = past_padding(*at, end);
-    const size_t         left  = (size_t)(end - begin);
+    const size_t         left = (size_t)(end - begin);
     DisDrop              why;
     counters->padded += begin != *at;
     *at = begin;

@@ -11,43 +11,43 @@ enum { dis_variable_articulated = 0, dis_variable_attached = 1 };
 
 /* One 16-octet record. Records other than articulated and attached are kept in `octets` alone. */
 typedef struct DisVariableParameter {
-    uint8_t  record_type;
-    uint8_t  change;      /* articulated: change indicator; attached: 1 = detached */
-    uint16_t attached_to; /* 0 = hull, else the ordinal of a part in this PDU */
-    uint32_t parameter;   /* articulated: class (multiple of 32) + metric (1 .. 16); attached: station */
-    float    value;       /* articulated: metres, radians, or per second; may be NaN on the wire */
-    DisEntityType type;   /* attached: what hangs there */
-    uint8_t  octets[16];  /* as on the wire; the encoder starts from these */
+    uint8_t       record_type;
+    uint8_t       change;      /* articulated: change indicator; attached: 1 = detached */
+    uint16_t      attached_to; /* 0 = hull, else the ordinal of a part in this PDU */
+    uint32_t      parameter;   /* articulated: class (multiple of 32) + metric (1 .. 16); attached: station */
+    float         value;       /* articulated: metres, radians, or per second; may be NaN on the wire */
+    DisEntityType type;        /* attached: what hangs there */
+    uint8_t       octets[16];  /* as on the wire; the encoder starts from these */
 } DisVariableParameter;
 
 typedef struct DisEntityState {
-    DisHeader     header;
-    DisEntityId   id;
-    uint8_t       force;
-    uint8_t       variable_count;
-    DisEntityType type, alternative_type;
-    float         velocity_mps[3];      /* world axes for dead reckoning 1..5, body axes for 6..9 */
-    double        p_ecef[3];
-    float         psi_rad, theta_rad, phi_rad; /* geocentric Euler angles */
-    uint32_t      appearance;
-    uint8_t       dead_reckoning;       /* algorithm */
-    uint8_t       dead_reckoning_other[15];
-    float         acceleration_mps2[3]; /* axes as velocity */
-    float         angular_rate_rps[3];  /* body axes always */
-    uint8_t       marking_set;
-    char          marking[11];          /* any bytes, not terminated */
-    uint32_t      capabilities;
+    DisHeader            header;
+    DisEntityId          id;
+    uint8_t              force;
+    uint8_t              variable_count;
+    DisEntityType        type, alternative_type;
+    float                velocity_mps[3]; /* world axes for dead reckoning 1..5, body axes for 6..9 */
+    double               p_ecef[3];
+    float                psi_rad, theta_rad, phi_rad; /* geocentric Euler angles */
+    uint32_t             appearance;
+    uint8_t              dead_reckoning; /* algorithm */
+    uint8_t              dead_reckoning_other[15];
+    float                acceleration_mps2[3]; /* axes as velocity */
+    float                angular_rate_rps[3];  /* body axes always */
+    uint8_t              marking_set;
+    char                 marking[11]; /* any bytes, not terminated */
+    uint32_t             capabilities;
     DisVariableParameter variable[dis_max_variable_parameters]; /* [variable_count] */
 } DisEntityState;
 
 typedef struct DisEntityStateUpdate {
-    DisHeader   header;
-    DisEntityId id;
-    uint8_t     padding, variable_count;
-    float       velocity_mps[3];
-    double      p_ecef[3];
-    float       psi_rad, theta_rad, phi_rad;
-    uint32_t    appearance;
+    DisHeader            header;
+    DisEntityId          id;
+    uint8_t              padding, variable_count;
+    float                velocity_mps[3];
+    double               p_ecef[3];
+    float                psi_rad, theta_rad, phi_rad;
+    uint32_t             appearance;
     DisVariableParameter variable[dis_max_variable_parameters];
 } DisEntityStateUpdate;
 
@@ -75,8 +75,13 @@ static inline bool dis_entity_state_update_is_usable(DisDrop *why, const DisEnti
 
 /* ---- Fire (type 2) and Detonation (3) ------------------------------------------------------- */
 
-enum { dis_result_entity_impact = 1, dis_result_entity_proximate = 2, dis_result_ground_impact = 3,
-       dis_result_detonation = 5, dis_result_none = 6 };
+enum {
+    dis_result_entity_impact = 1,
+    dis_result_entity_proximate = 2,
+    dis_result_ground_impact = 3,
+    dis_result_detonation = 5,
+    dis_result_none = 6
+};
 
 typedef struct DisDescriptor {
     DisEntityType type;
@@ -95,16 +100,16 @@ typedef struct DisFire {
 } DisFire;
 
 typedef struct DisDetonation {
-    DisHeader     header;
-    DisEntityId   firing, target, munition; /* target 0:0:0: none */
-    DisEventId    event;
-    float         velocity_mps[3];
-    double        p_ecef[3];
-    DisDescriptor descriptor;
-    float         p_target_m[3]; /* where on the target, its body axes */
-    uint8_t       result;
-    uint8_t       variable_count;
-    uint8_t       padding[2];
+    DisHeader            header;
+    DisEntityId          firing, target, munition; /* target 0:0:0: none */
+    DisEventId           event;
+    float                velocity_mps[3];
+    double               p_ecef[3];
+    DisDescriptor        descriptor;
+    float                p_target_m[3]; /* where on the target, its body axes */
+    uint8_t              result;
+    uint8_t              variable_count;
+    uint8_t              padding[2];
     DisVariableParameter variable[dis_max_variable_parameters];
 } DisDetonation;
 
@@ -212,7 +217,7 @@ Status dis_decode(DisPdu *out, const uint8_t *pdu, size_t octets);
 /* Writes header.length as computed. Returns the octets written; 0: capacity is too small, or no such type. */
 size_t dis_encode(uint8_t *out, size_t capacity, const DisPdu *pdu);
 /* Counts a PDU that dis_decode refused, by reason; one of a type that is not acted upon is no drop. */
-void   dis_count_refused(DisCounters *counters, uint8_t type, Status status);
+void dis_count_refused(DisCounters *counters, uint8_t type, Status status);
 /* `Entity State`, `Attribute`, ...; `unknown type` beyond 72. */
 const char *dis_pdu_type_name(uint8_t type);
 
@@ -220,8 +225,8 @@ const char *dis_pdu_type_name(uint8_t type);
 
 /* Next PDU of a datagram: *at advances by the length field. True and header/pdu set when there is one;
  * false at the end or at the first inconsistent length, which is counted. PDUs returned are counted by type.
- * Up to 7 zeros before a PDU or at the end are padding. A length field of 0 is replaced in header, and counted, where the
- * types and counts of the PDUs from there on end exactly with the datagram.
+ * Up to 7 zeros before a PDU or at the end are padding. A length field of 0 is replaced in header, and counted, where
+ * the types and counts of the PDUs from there on end exactly with the datagram.
  *
  *     for (const uint8_t *at = bytes; dis_next_pdu(&header, &pdu, &at, bytes + count, counters);) ...
  *
@@ -233,6 +238,6 @@ bool dis_next_pdu(DisHeader *header, const uint8_t **pdu, const uint8_t **at, co
  * False, and out untouched, for a type outside it or one too short. */
 bool dis_pdu_sender(uint16_t site_application[2], const DisHeader *header, const uint8_t *pdu);
 /* The entity number that a PDU reports of (Entity State, Entity State Update); -1: it is no report. */
-int  dis_pdu_entity(const DisHeader *header, const uint8_t *pdu);
+int dis_pdu_entity(const DisHeader *header, const uint8_t *pdu);
 
 #endif

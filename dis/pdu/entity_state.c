@@ -20,10 +20,8 @@ static void load_variable_parameters(DisVariableParameter *out, const uint8_t *r
         v->change = records[1];
         v->attached_to = dis_load_u16(records + 2);
         v->parameter = dis_load_u32(records + 4);
-        if (v->record_type == dis_variable_articulated)
-            v->value = dis_load_f32(records + 8);
-        else
-            v->type = dis_load_entity_type(records + 8);
+        if (v->record_type == dis_variable_articulated) v->value = dis_load_f32(records + 8);
+        else v->type = dis_load_entity_type(records + 8);
     }
 }
 
@@ -37,10 +35,8 @@ static void store_variable_parameters(uint8_t *records, const DisVariableParamet
         records[1] = v->change;
         dis_store_u16(records + 2, v->attached_to);
         dis_store_u32(records + 4, v->parameter);
-        if (v->record_type == dis_variable_articulated)
-            dis_store_f32(records + 8, &v->value);
-        else
-            dis_store_entity_type(records + 8, v->type);
+        if (v->record_type == dis_variable_articulated) dis_store_f32(records + 8, &v->value);
+        else dis_store_entity_type(records + 8, v->type);
     }
 }
 

@@ -65,14 +65,14 @@ static inline DisEntityType dis_load_entity_type(const uint8_t *p)
 /* The first 12 octets of every PDU. */
 static inline DisHeader dis_load_header(const uint8_t *p)
 {
-    return (DisHeader){.version   = p[0],
-                       .exercise  = p[1],
-                       .type      = p[2],
-                       .family    = p[3],
+    return (DisHeader){.version = p[0],
+                       .exercise = p[1],
+                       .type = p[2],
+                       .family = p[3],
                        .timestamp = dis_load_u32(p + 4),
-                       .length    = dis_load_u16(p + 8),
-                       .status    = p[10],
-                       .padding   = p[11]};
+                       .length = dis_load_u16(p + 8),
+                       .status = p[10],
+                       .padding = p[11]};
 }
 
 static inline void dis_store_u16(uint8_t *p, uint16_t v)
@@ -126,7 +126,7 @@ static inline void dis_store_entity_type(uint8_t *p, DisEntityType type)
 static inline const uint8_t *dis_take(DisReader *r, size_t octets)
 {
     if ((size_t)(r->end - r->at) < octets) {
-        r->at        = r->end;
+        r->at = r->end;
         r->truncated = true;
         return NULL;
     }
@@ -156,10 +156,8 @@ static inline uint32_t dis_read_u32(DisReader *r)
 static inline void dis_read_octets(void *out, DisReader *r, size_t octets)
 {
     const uint8_t *p = dis_take(r, octets);
-    if (p)
-        memcpy(out, p, octets);
-    else
-        memset(out, 0, octets);
+    if (p) memcpy(out, p, octets);
+    else memset(out, 0, octets);
 }
 
 static inline void dis_read_f32(float *out, DisReader *r, int count)
@@ -210,7 +208,7 @@ static inline DisReader dis_pdu_reader(const uint8_t *pdu, size_t octets)
 static inline uint8_t *dis_give(DisWriter *w, size_t octets)
 {
     if ((size_t)(w->end - w->at) < octets) {
-        w->at       = w->end;
+        w->at = w->end;
         w->overflow = true;
         return NULL;
     }

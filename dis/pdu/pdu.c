@@ -54,18 +54,18 @@ void dis_entity_type_text(char out[dis_type_text_size], DisEntityType type)
 const char *dis_drop_name(DisDrop drop)
 {
     static const char *const name[DIS_DROP_COUNT] = {
-        [DIS_DROP_SHORT_HEADER]     = "short_header",
-        [DIS_DROP_BAD_VERSION]      = "bad_version",
-        [DIS_DROP_LENGTH_ZERO]      = "length_zero",
+        [DIS_DROP_SHORT_HEADER] = "short_header",
+        [DIS_DROP_BAD_VERSION] = "bad_version",
+        [DIS_DROP_LENGTH_ZERO] = "length_zero",
         [DIS_DROP_LENGTH_TOO_SHORT] = "length_too_short",
-        [DIS_DROP_LENGTH_TOO_LONG]  = "length_too_long",
-        [DIS_DROP_TRUNCATED]        = "truncated",
-        [DIS_DROP_BAD_COUNT]        = "bad_count",
-        [DIS_DROP_NOT_FINITE]       = "not_finite",
-        [DIS_DROP_BAD_POSITION]     = "bad_position",
-        [DIS_DROP_NO_IDENTITY]      = "no_identity",
-        [DIS_DROP_OTHER_EXERCISE]   = "other_exercise",
-        [DIS_DROP_TABLE_FULL]       = "table_full",
+        [DIS_DROP_LENGTH_TOO_LONG] = "length_too_long",
+        [DIS_DROP_TRUNCATED] = "truncated",
+        [DIS_DROP_BAD_COUNT] = "bad_count",
+        [DIS_DROP_NOT_FINITE] = "not_finite",
+        [DIS_DROP_BAD_POSITION] = "bad_position",
+        [DIS_DROP_NO_IDENTITY] = "no_identity",
+        [DIS_DROP_OTHER_EXERCISE] = "other_exercise",
+        [DIS_DROP_TABLE_FULL] = "table_full",
     };
     return (unsigned)drop < DIS_DROP_COUNT ? name[drop] : "unknown";
 }
@@ -73,18 +73,18 @@ const char *dis_drop_name(DisDrop drop)
 const char *dis_drop_cause(DisDrop drop)
 {
     static const char *const cause[DIS_DROP_COUNT] = {
-        [DIS_DROP_SHORT_HEADER]     = "fewer octets than a PDU header",
-        [DIS_DROP_BAD_VERSION]      = "a protocol version other than 5, 6 or 7",
-        [DIS_DROP_LENGTH_ZERO]      = "a length field of 0",
+        [DIS_DROP_SHORT_HEADER] = "fewer octets than a PDU header",
+        [DIS_DROP_BAD_VERSION] = "a protocol version other than 5, 6 or 7",
+        [DIS_DROP_LENGTH_ZERO] = "a length field of 0",
         [DIS_DROP_LENGTH_TOO_SHORT] = "a length field below what its PDU type needs",
-        [DIS_DROP_LENGTH_TOO_LONG]  = "a length field beyond the end of the datagram",
-        [DIS_DROP_TRUNCATED]        = "a record that ends before its fields do",
-        [DIS_DROP_BAD_COUNT]        = "a count of records that its length cannot hold",
-        [DIS_DROP_NOT_FINITE]       = "a position or attitude that is not a number",
-        [DIS_DROP_BAD_POSITION]     = "a position that is not near the Earth",
-        [DIS_DROP_NO_IDENTITY]      = "an entity id that names no single entity",
-        [DIS_DROP_OTHER_EXERCISE]   = "another exercise id",
-        [DIS_DROP_TABLE_FULL]       = "a full entity table",
+        [DIS_DROP_LENGTH_TOO_LONG] = "a length field beyond the end of the datagram",
+        [DIS_DROP_TRUNCATED] = "a record that ends before its fields do",
+        [DIS_DROP_BAD_COUNT] = "a count of records that its length cannot hold",
+        [DIS_DROP_NOT_FINITE] = "a position or attitude that is not a number",
+        [DIS_DROP_BAD_POSITION] = "a position that is not near the Earth",
+        [DIS_DROP_NO_IDENTITY] = "an entity id that names no single entity",
+        [DIS_DROP_OTHER_EXERCISE] = "another exercise id",
+        [DIS_DROP_TABLE_FULL] = "a full entity table",
     };
     return (unsigned)drop < DIS_DROP_COUNT ? cause[drop] : "unknown";
 }
@@ -100,10 +100,8 @@ int64_t dis_unix_ns_until(double unix_s)
     int64_t       low = guess > around ? guess - around : 0, high = guess + around;
     while (low < high) { /* the last that is not after */
         const int64_t middle = high - (high - low) / 2;
-        if (dis_unix_s(middle) <= unix_s)
-            low = middle;
-        else
-            high = middle - 1;
+        if (dis_unix_s(middle) <= unix_s) low = middle;
+        else high = middle - 1;
     }
     return low;
 }

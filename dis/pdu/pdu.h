@@ -8,18 +8,18 @@
 #include "pitviper.h"
 
 enum {
-    dis_pdu_entity_state        = 1,
-    dis_pdu_fire                = 2,
-    dis_pdu_detonation          = 3,
-    dis_pdu_remove_entity       = 12,
-    dis_pdu_start_resume        = 13,
-    dis_pdu_stop_freeze         = 14,
-    dis_pdu_remove_entity_r     = 52, /* with reliability: the same, with a reliability octet more */
-    dis_pdu_start_resume_r      = 53,
-    dis_pdu_stop_freeze_r       = 54,
+    dis_pdu_entity_state = 1,
+    dis_pdu_fire = 2,
+    dis_pdu_detonation = 3,
+    dis_pdu_remove_entity = 12,
+    dis_pdu_start_resume = 13,
+    dis_pdu_stop_freeze = 14,
+    dis_pdu_remove_entity_r = 52, /* with reliability: the same, with a reliability octet more */
+    dis_pdu_start_resume_r = 53,
+    dis_pdu_stop_freeze_r = 54,
     dis_pdu_entity_state_update = 67,
-    dis_header_octets           = 12,
-    dis_port                    = 3000,
+    dis_header_octets = 12,
+    dis_port = 3000,
     dis_max_variable_parameters = 255,
 };
 
@@ -57,18 +57,18 @@ void dis_entity_type_text(char out[dis_type_text_size], DisEntityType type);
 
 /* Why bytes were dropped. Names appear in run.json. */
 typedef enum DisDrop {
-    DIS_DROP_SHORT_HEADER,    /* fewer than 12 octets left */
-    DIS_DROP_BAD_VERSION,     /* not 5, 6 or 7 */
-    DIS_DROP_LENGTH_ZERO,     /* length field 0, and the datagram's own length does not say what belongs there */
-    DIS_DROP_LENGTH_TOO_SHORT,/* length field below 12, or below what its type needs */
-    DIS_DROP_LENGTH_TOO_LONG, /* length field beyond the datagram */
-    DIS_DROP_TRUNCATED,       /* the record ends before its fields do */
-    DIS_DROP_BAD_COUNT,       /* a count that the length cannot hold */
-    DIS_DROP_NOT_FINITE,      /* NaN or infinity in a kinematic field */
-    DIS_DROP_BAD_POSITION,    /* finite, but not a place near the Earth: the centre, beyond 1e8 m */
-    DIS_DROP_NO_IDENTITY,     /* id with 0, 0xFFFF or 0xFFFE where one entity is needed */
-    DIS_DROP_OTHER_EXERCISE,  /* filtered by exercise id */
-    DIS_DROP_TABLE_FULL,      /* the entity table refused a new entity */
+    DIS_DROP_SHORT_HEADER,     /* fewer than 12 octets left */
+    DIS_DROP_BAD_VERSION,      /* not 5, 6 or 7 */
+    DIS_DROP_LENGTH_ZERO,      /* length field 0, and the datagram's own length does not say what belongs there */
+    DIS_DROP_LENGTH_TOO_SHORT, /* length field below 12, or below what its type needs */
+    DIS_DROP_LENGTH_TOO_LONG,  /* length field beyond the datagram */
+    DIS_DROP_TRUNCATED,        /* the record ends before its fields do */
+    DIS_DROP_BAD_COUNT,        /* a count that the length cannot hold */
+    DIS_DROP_NOT_FINITE,       /* NaN or infinity in a kinematic field */
+    DIS_DROP_BAD_POSITION,     /* finite, but not a place near the Earth: the centre, beyond 1e8 m */
+    DIS_DROP_NO_IDENTITY,      /* id with 0, 0xFFFF or 0xFFFE where one entity is needed */
+    DIS_DROP_OTHER_EXERCISE,   /* filtered by exercise id */
+    DIS_DROP_TABLE_FULL,       /* the entity table refused a new entity */
     DIS_DROP_COUNT
 } DisDrop;
 
@@ -77,7 +77,7 @@ const char *dis_drop_cause(DisDrop drop); /* a few words for people: `a length f
 
 typedef struct DisCounters {
     uint64_t datagrams;
-    uint64_t pdus[256];    /* by type, every well-formed header */
+    uint64_t pdus[256]; /* by type, every well-formed header */
     uint64_t dropped[DIS_DROP_COUNT];
     uint64_t lengths_made;   /* PDUs with a length field of 0, taken by their type and the datagram's length */
     uint64_t padded;         /* runs of zeros behind a PDU, passed over */
@@ -102,22 +102,31 @@ int64_t dis_unix_ns_until(double unix_s);
 /* The values of SISO-REF-010 that Pitviper uses. */
 
 enum {
-    dis_kind_platform = 1, dis_kind_munition = 2, dis_kind_life_form = 3, dis_kind_cultural_feature = 5,
-    dis_kind_supply = 6, dis_kind_expendable = 8, dis_kind_sensor_emitter = 9
+    dis_kind_platform = 1,
+    dis_kind_munition = 2,
+    dis_kind_life_form = 3,
+    dis_kind_cultural_feature = 5,
+    dis_kind_supply = 6,
+    dis_kind_expendable = 8,
+    dis_kind_sensor_emitter = 9
 };
 enum { dis_munition_guided = 1, dis_munition_fixed = 3 }; /* category of a munition; 2: ballistic; fixed: mines */
 enum {
-    dis_domain_land = 1, dis_domain_air = 2, dis_domain_surface = 3, dis_domain_subsurface = 4, dis_domain_space = 5
+    dis_domain_land = 1,
+    dis_domain_air = 2,
+    dis_domain_surface = 3,
+    dis_domain_subsurface = 4,
+    dis_domain_space = 5
 };
 
 /* Appearance: bits that platforms of every domain share, and those of land platforms. */
 enum {
-    dis_appearance_damage_shift    = 3, /* two bits; 3: destroyed */
-    dis_appearance_smoke_shift     = 5, /* two bits; 1: plume, 2: engine smoke, 3: both */
-    dis_appearance_trail_shift     = 7, /* two bits; 0: none .. 3: large; dust, contrail or motor smoke by domain */
-    dis_appearance_flaming_bit     = 15,
+    dis_appearance_damage_shift = 3, /* two bits; 3: destroyed */
+    dis_appearance_smoke_shift = 5,  /* two bits; 1: plume, 2: engine smoke, 3: both */
+    dis_appearance_trail_shift = 7,  /* two bits; 0: none .. 3: large; dust, contrail or motor smoke by domain */
+    dis_appearance_flaming_bit = 15,
     dis_appearance_afterburner_bit = 16, /* air platforms */
-    dis_appearance_frozen_bit      = 21,
+    dis_appearance_frozen_bit = 21,
     dis_appearance_power_plant_bit = 22,
     dis_appearance_deactivated_bit = 23,
 };

@@ -10,42 +10,42 @@
 #include <unistd.h>
 
 enum { type_fields = 7, any = -1, catalog_columns = 7 };
-static const char *const column_name[catalog_columns] = {"type", "model", "origin", "length_m", "width_m", "height_m",
-                                                         "note"};
+static const char *const column_name[catalog_columns] = {"type",    "model",    "origin", "length_m",
+                                                         "width_m", "height_m", "note"};
 
 typedef struct CatalogRow {
-    int    field[type_fields]; /* any: a star */
-    int    length;             /* fields up to the last one named */
-    int    named;              /* fields that are not a star */
-    int    order;              /* in the file */
-    int    model;
-    Origin origin;
-    bool   own;                /* of the user's catalog, which takes precedence */
-    int    line;
-    ModelSize size;            /* from the row; of a file: its expected size */
-    char  *note;            /* may be NULL */
+    int       field[type_fields]; /* any: a star */
+    int       length;             /* fields up to the last one named */
+    int       named;              /* fields that are not a star */
+    int       order;              /* in the file */
+    int       model;
+    Origin    origin;
+    bool      own; /* of the user's catalog, which takes precedence */
+    int       line;
+    ModelSize size; /* from the row; of a file: its expected size */
+    char     *note; /* may be NULL */
 } CatalogRow;
 
 /* A model of the catalog. A built-in shape is built coarsely when the catalog is opened, once for all sizes of it:
  * nodes and parts, with their materials and heat, depend on neither size nor facets. With fine facets and in its size
  * it is built at the first look-up of one of its types: an exercise uses some ten of two hundred models. */
 typedef struct CatalogModel {
-    char *source;          /* its built-in name, or its file */
-    ModelSize size;        /* zeroes: its own */
-    int shape;             /* index of the entry of which this is another size: `first` */
-    int class;             /* index of the first of the same name */
-    ModelImport *import;   /* of a file, else NULL */
-    Model first;           /* of shape == own index alone: coarse, or of a file */
-    _Atomic(Model *) fine; /* NULL: not asked for yet, or of a file */
-    atomic_bool failed;    /* no memory when it was asked for */
+    char            *source;    /* its built-in name, or its file */
+    ModelSize        size;      /* zeroes: its own */
+    int              shape;     /* index of the entry of which this is another size: `first` */
+    int              same_name; /* index of the first of the same name */
+    ModelImport     *import;    /* of a file, else NULL */
+    Model            first;     /* of shape == own index alone: coarse, or of a file */
+    _Atomic(Model *) fine;      /* NULL: not asked for yet, or of a file */
+    atomic_bool      failed;    /* no memory when it was asked for */
 } CatalogModel;
 
 struct Catalog {
-    int row_count, model_count;
-    char *own_path, *path;
-    CatalogRow *row;
-    CatalogModel *model; /* model[0]: unknown */
-    double sag_m;
+    int              row_count, model_count;
+    char            *own_path, *path;
+    CatalogRow      *row;
+    CatalogModel    *model; /* model[0]: unknown */
+    double           sag_m;
     pthread_mutex_t *building;
 };
 
@@ -56,9 +56,9 @@ static bool parse_type(int field[type_fields], const char *text)
 {
     for (int f = 0; f < type_fields; f++) field[f] = any;
     for (int f = 0; f < type_fields; f++) {
-        char part[8];
+        char         part[8];
         const size_t length = strcspn(text, ".");
-        long long value;
+        long long    value;
 
         if (length == 0 || length >= sizeof part) return false;
         memcpy(part, text, length);
@@ -78,7 +78,8 @@ static bool parse_type(int field[type_fields], const char *text)
 static Status open_file(CatalogModel *model, bool *imported, const char *source, double sag_m)
 {
     model->import = calloc(1, sizeof *model->import);
-    const Status status = model->import ? model_open(&model->first, model->import, imported, source, sag_m) : STATUS_NO_MEMORY;
+    const Status status =
+        model->import ? model_open(&model->first, model->import, imported, source, sag_m) : STATUS_NO_MEMORY;
     if (status == STATUS_OK && *imported) model_import_say(model->import, &model->first);
     return status;
 }
@@ -121,10 +122,11 @@ static Status find_or_add(int *out, Catalog *catalog, const char *name, const Mo
         return status;
     }
     added->size = *size;
-    added->class = 0;
-    while (added->class < catalog->model_count && strcmp(catalog->model[catalog->model[added->class].shape].first.name,
-                                                         catalog->model[added->shape].first.name) != 0)
-        added->class++;
+    added->same_name = 0;
+    while (added->same_name < catalog->model_count &&
+           strcmp(catalog->model[catalog->model[added->same_name].shape].first.name,
+                  catalog->model[added->shape].first.name) != 0)
+        added->same_name++;
     *out = catalog->model_count++;
     return STATUS_OK;
 }
@@ -136,7 +138,7 @@ static void build_fine(const Catalog *catalog, int index)
     if (atomic_load(&m->fine) || atomic_load(&m->failed) || !parametric_known(m->source)) return;
     pthread_mutex_lock(catalog->building);
     if (!atomic_load(&m->fine) && !atomic_load(&m->failed)) {
-        Model *fine = calloc(1, sizeof *fine);
+        Model       *fine = calloc(1, sizeof *fine);
         const Status status =
             fine ? parametric_build_size(fine, m->source, &m->size, catalog->sag_m) : STATUS_NO_MEMORY;
         if (status == STATUS_OK) {
@@ -166,13 +168,14 @@ static Status read_size(ModelSize *size, const Table *table, int r, const int co
 static Status read_row(CatalogRow *row, Catalog *catalog, const Table *table, int r, const int column[catalog_columns])
 {
     static const ModelSize own_size = {0};
-    const char *type = table_text(table, r, column[0]), *model = table_text(table, r, column[1]);
-    const char *origin = table_text(table, r, column[2]);
-    const int line = row->line = table->line[r + 1];
+    const char            *type = table_text(table, r, column[0]), *model = table_text(table, r, column[1]);
+    const char            *origin = table_text(table, r, column[2]);
+    const int              line = row->line = table->line[r + 1];
 
     if (!parse_type(row->field, type)) {
         log_error("catalog: not an entity type: file=%s line=%d type=\"%s\" want=kind.domain.country... of 0 .. 255 "
-                  "(country 0 .. 65535) or *", table->path, line, type);
+                  "(country 0 .. 65535) or *",
+                  table->path, line, type);
         return STATUS_BAD_VALUE;
     }
     row->length = row->named = 0;
@@ -194,8 +197,8 @@ static Status read_row(CatalogRow *row, Catalog *catalog, const Table *table, in
     status = find_or_add(&row->model, catalog, model, model_is_path(model) ? &own_size : &row->size, table->path);
     if (status != STATUS_OK)
         log_error("catalog: cannot use this model: file=%s line=%d model=\"%s\" reason=%s; `pitviper model list` lists "
-                  "what is built in, `pitviper model info FILE` says what is in a file", table->path, line, model,
-                  status_name(status));
+                  "what is built in, `pitviper model info FILE` says what is in a file",
+                  table->path, line, model, status_name(status));
     return status == STATUS_UNSUPPORTED ? STATUS_BAD_VALUE : status;
 }
 
@@ -217,7 +220,7 @@ static const CatalogRow *row_behind(const Catalog *catalog, const CatalogRow *ro
 {
     for (int r = 0; r < catalog->row_count; r++) {
         const CatalogRow *other = catalog->row + r;
-        int f = 0;
+        int               f = 0;
         if (other->own || other == row || !parametric_known(catalog->model[other->model].source)) continue;
         while (f < type_fields && (other->field[f] == any || other->field[f] == row->field[f])) f++;
         if (f == type_fields && other->length > 1) return catalog_has_shape(catalog, other->model) ? other : NULL;
@@ -228,8 +231,8 @@ static const CatalogRow *row_behind(const Catalog *catalog, const CatalogRow *ro
 void catalog_size(double size_m[3], const Catalog *catalog, int model)
 {
     const CatalogModel *m = catalog->model + (model >= 0 && model < catalog->model_count ? model : 0);
-    const Model *first = &catalog->model[m->shape].first;
-    double factor[3] = {1, 1, 1};
+    const Model        *first = &catalog->model[m->shape].first;
+    double              factor[3] = {1, 1, 1};
     if (!m->import) model_scale_to(factor, first, &m->size);
     size_m[0] = factor[0] * first->length_m;
     size_m[1] = factor[1] * first->width_m;
@@ -241,8 +244,8 @@ void catalog_size_range(SizeRange *out, const Catalog *catalog, int kind, int do
     *out = (SizeRange){0};
     for (int r = 0; r < catalog_row_count(catalog); r++) {
         CatalogRowInfo row;
-        double m[3];
-        char who[64];
+        double         m[3];
+        char           who[64];
         catalog_row(&row, catalog, r);
         if (row.own || model_is_path(row.source) || !catalog_has_shape(catalog, row.model)) continue;
         if ((kind >= 0 && row.kind != kind) || (domain >= 0 && row.domain >= 0 && row.domain != domain)) continue;
@@ -256,15 +259,16 @@ void catalog_size_range(SizeRange *out, const Catalog *catalog, int kind, int do
 static void warn_odd_size(const Catalog *catalog, const CatalogRow *row, const CatalogModel *m)
 {
     static const double slack = 3;
-    const double largest_m = model_size_largest_m(&catalog->model[m->shape].first);
-    SizeRange range;
-    char advice[200];
+    const double        largest_m = model_size_largest_m(&catalog->model[m->shape].first);
+    SizeRange           range;
+    char                advice[200];
     catalog_size_range(&range, catalog, row->field[0], row->field[1]);
     if (!model_size_is_odd(advice, largest_m, &range, slack, m->import)) return;
-    log_warn("catalog: %s:%d: %s is %.3g m large, but what etc/catalog.csv has of its kind is %.3g m (%s) to %.3g m (%s) large: %s; "
-             "if it is right, say so with length_m, width_m, height_m in the row",
-             row->own ? catalog->own_path : catalog->path, row->line, m->source, largest_m, range.low_m, range.low, range.high_m,
-             range.high, advice);
+    log_warn(
+        "catalog: %s:%d: %s is %.3g m large, but what etc/catalog.csv has of its kind is %.3g m (%s) to %.3g m (%s) large: %s; "
+        "if it is right, say so with length_m, width_m, height_m in the row",
+        row->own ? catalog->own_path : catalog->path, row->line, m->source, largest_m, range.low_m, range.low,
+        range.high_m, range.high, advice);
 }
 
 /* Reports a model from a file with another size than in its row, or, without one there, than in the built-in table of
@@ -273,14 +277,14 @@ static void warn_sizes(const Catalog *catalog)
 {
     static const double said = 1.1, usual = 1.6;
     for (int r = 0; r < catalog->row_count; r++) {
-        const CatalogRow *row = catalog->row + r;
+        const CatalogRow   *row = catalog->row + r;
         const CatalogModel *m = catalog->model + row->model;
-        ModelSize want = row->size;
-        char from[200] = "the row";
-        double size[3];
-        ModelFit fit;
+        ModelSize           want = row->size;
+        char                from[200] = "the row";
+        double              size[3];
+        ModelFit            fit;
         if (!m->import) continue;
-        const bool stated = want.length_m > 0 || want.width_m > 0 || want.height_m > 0;
+        const bool        stated = want.length_m > 0 || want.width_m > 0 || want.height_m > 0;
         const CatalogRow *behind = stated ? NULL : row_behind(catalog, row);
         if (!stated && !behind) {
             warn_odd_size(catalog, row, m);
@@ -296,12 +300,12 @@ static void warn_sizes(const Catalog *catalog)
         const Model *model = &catalog->model[m->shape].first;
         model_fit(&fit, model, m->import, &want, behind ? usual : said);
         if (fit.fits) continue;
-        const double want_m = fmax(want.length_m, fmax(want.width_m, want.height_m));
+        const double    want_m = fmax(want.length_m, fmax(want.width_m, want.height_m));
         const SizeRange about = {.low_m = want_m, .high_m = want_m};
-        char advice[200];
+        char            advice[200];
         if (fit.factor == 0 && model_size_is_odd(advice, model_size_largest_m(model), &about, 3, m->import))
             snprintf(fit.advice, sizeof fit.advice, "%s", advice);
-        char text[3][24];
+        char         text[3][24];
         const double figure[3] = {want.length_m, want.width_m, want.height_m};
         for (int k = 0; k < 3; k++) snprintf(text[k], sizeof text[k], figure[k] > 0 ? "%.3g" : "?", figure[k]);
         log_warn("catalog: %s:%d: %s is %.3g x %.3g x %.3g m (length, width, height), but %s says %s x %s x %s: %s%s",
@@ -328,7 +332,7 @@ static Status find_columns(int column[catalog_columns], const Table *table)
 
 static Status read_table(Catalog *catalog, const Table *table, bool own)
 {
-    int column[catalog_columns];
+    int    column[catalog_columns];
     Status status = find_columns(column, table);
     for (int r = 0; r < table->rows && status == STATUS_OK; r++) {
         CatalogRow *row = catalog->row + catalog->row_count;
@@ -342,10 +346,10 @@ static Status read_table(Catalog *catalog, const Table *table, bool own)
 Status catalog_open(Catalog **out, const char *path, double sag_m)
 {
     static const ModelSize own_size = {0};
-    const char *own_path = etc_own("catalog.csv");
-    Table    table = {0}, own = {0};
-    int      unknown;
-    Catalog *catalog = NULL;
+    const char            *own_path = etc_own("catalog.csv");
+    Table                  table = {0}, own = {0};
+    int                    unknown;
+    Catalog               *catalog = NULL;
 
     if (!(sag_m >= 1e-5 && sag_m <= 0.1)) {
         log_error("catalog: sag out of range: sag_m=%g range=1e-5..0.1", sag_m);
@@ -388,7 +392,7 @@ void catalog_close(Catalog *catalog)
     if (!catalog) return;
     for (int m = 0; m < catalog->model_count; m++) {
         CatalogModel *model = catalog->model + m;
-        Model *fine = atomic_load(&model->fine);
+        Model        *fine = atomic_load(&model->fine);
         if (fine) model_destroy(fine);
         free(fine);
         if (model->shape == m) model_destroy(&model->first);
@@ -410,10 +414,13 @@ int catalog_row_count(const Catalog *catalog) { return catalog->row_count; }
 void catalog_row(CatalogRowInfo *out, const Catalog *catalog, int index)
 {
     const CatalogRow *row = catalog->row + index;
-    size_t n = 0;
-    *out = (CatalogRowInfo){.model = row->model, .own = row->own, .line = row->line,
+    size_t            n = 0;
+    *out = (CatalogRowInfo){.model = row->model,
+                            .own = row->own,
+                            .line = row->line,
                             .path = row->own ? catalog->own_path : catalog->path,
-                            .note = row->note ? row->note : "", .source = catalog->model[row->model].source};
+                            .note = row->note ? row->note : "",
+                            .source = catalog->model[row->model].source};
     for (int f = 0; f < type_fields; f++) {
         if (row->field[f] == any) n += (size_t)snprintf(out->type + n, sizeof out->type - n, "%s*", f ? "." : "");
         else n += (size_t)snprintf(out->type + n, sizeof out->type - n, "%s%d", f ? "." : "", row->field[f]);
@@ -426,7 +433,7 @@ int catalog_model_count(const Catalog *catalog) { return catalog->model_count; }
 const Model *catalog_model(const Catalog *catalog, int model)
 {
     const CatalogModel *m = catalog->model + (model >= 0 && model < catalog->model_count ? model : 0);
-    const Model *fine = atomic_load(&m->fine);
+    const Model        *fine = atomic_load(&m->fine);
     return fine ? fine : &catalog->model[m->shape].first;
 }
 
@@ -449,17 +456,17 @@ bool catalog_is_chaff(const Catalog *catalog, int model)
 
 int catalog_class(const Catalog *catalog, int model)
 {
-    return catalog->model[model >= 0 && model < catalog->model_count ? model : 0].class;
+    return catalog->model[model >= 0 && model < catalog->model_count ? model : 0].same_name;
 }
 
 int catalog_find(const Catalog *catalog, DisEntityType type, Origin *origin, int *matched)
 {
-    const int field[type_fields] = {type.kind, type.domain, type.country, type.category,
+    const int field[type_fields] = {type.kind,        type.domain,   type.country, type.category,
                                     type.subcategory, type.specific, type.extra};
 
     for (int r = 0; r < catalog->row_count; r++) {
         const CatalogRow *row = catalog->row + r;
-        int f = 0;
+        int               f = 0;
         while (f < row->length && (row->field[f] == any || row->field[f] == field[f])) f++;
         if (f < row->length) continue;
         if (origin) *origin = row->origin;

@@ -25,42 +25,42 @@ typedef struct Catalog Catalog;
  * A malformed row: STATUS_BAD_VALUE, file and line logged. sag_m: as
  * parametric_build. */
 Status catalog_open(Catalog **out, const char *path, double sag_m);
-/* One model for all entity types. name: a built-in name, or a file relative to the current folder. Rows of the user's own
- * catalog would still precede it. */
+/* One model for all entity types. name: a built-in name, or a file relative to the current folder. Rows of the user's
+ * own catalog would still precede it. */
 Status catalog_open_one(Catalog **out, int *model, const char *name, double sag_m);
 void   catalog_close(Catalog *catalog);
 /* One model for each shape and size; those of one shape have one name. */
-int    catalog_model_count(const Catalog *catalog);
+int catalog_model_count(const Catalog *catalog);
 /* False: entities of this model are received and tracked, but not rendered. */
-bool   catalog_has_shape(const Catalog *catalog, int model);
+bool catalog_has_shape(const Catalog *catalog, int model);
 /* A cloud of chaff, which has no shape either: of the radar's scene alone. */
-bool   catalog_is_chaff(const Catalog *catalog, int model);
+bool catalog_is_chaff(const Catalog *catalog, int model);
 /* The first model of the same name: identifies a class of targets independent of size. */
-int    catalog_class(const Catalog *catalog, int model);
+int catalog_class(const Catalog *catalog, int model);
 /* Once catalog_find has named it: the model. Before: a coarse form of its shape, in the shape's own size, whose
  * nodes and parts are in number, name, material and heat the model's. Either lives as long as the catalog. */
 const Model *catalog_model(const Catalog *catalog, int model);
 /* Whether it is the model. */
-bool   catalog_is_built(const Catalog *catalog, int model);
+bool catalog_is_built(const Catalog *catalog, int model);
 /* Length, width and height (ModelSize) that a model has, or will have once it is built. */
-void   catalog_size(double size_m[3], const Catalog *catalog, int model);
+void catalog_size(double size_m[3], const Catalog *catalog, int model);
 /* Sizes of the program's own rows of a kind and domain; < 0: of any. */
-void   catalog_size_range(SizeRange *out, const Catalog *catalog, int kind, int domain);
+void catalog_size_range(SizeRange *out, const Catalog *catalog, int kind, int domain);
 
 /* A row, in search order. */
 typedef struct CatalogRowInfo {
-    char        type[48];         /* 1.1.225.1.*.*.* */
-    int         kind, domain;     /* -1: any */
+    char        type[48];     /* 1.1.225.1.*.*.* */
+    int         kind, domain; /* -1: any */
     int         model, line;
     bool        own;
     const char *path, *note, *source; /* source: of the model: a built-in name, or its file */
 } CatalogRowInfo;
-int    catalog_row_count(const Catalog *catalog);
-void   catalog_row(CatalogRowInfo *out, const Catalog *catalog, int row);
+int  catalog_row_count(const Catalog *catalog);
+void catalog_row(CatalogRowInfo *out, const Catalog *catalog, int row);
 
 /* Never fails: an unmatched type gets the `unknown` model, model 0. matched (may be NULL): how many leading fields
  * of the type the row covers, up to the last it names; 0 for unmatched. Builds the model the first time; without
  * memory its coarse form stays, logged. Any number of threads. */
-int    catalog_find(const Catalog *catalog, DisEntityType type, Origin *origin, int *matched);
+int catalog_find(const Catalog *catalog, DisEntityType type, Origin *origin, int *matched);
 
 #endif

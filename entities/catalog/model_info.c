@@ -18,13 +18,14 @@ static void print_import(const ModelImport *r)
 {
     static const char *const source[MATERIAL_SOURCE_COUNT] = {"the sidecar", "the name in the file",
                                                               "the nearest colour", "nothing: paint_olive"};
-    static const char otherwise[] = "in a sidecar says otherwise";
-    char axis[2][4];
+    static const char        otherwise[] = "in a sidecar says otherwise";
+    char                     axis[2][4];
     text_print(stdout, "file: %s, %lld octets\nsidecar: %s\n", r->file, r->octets, r->sidecar[0] ? r->sidecar : "none");
     text_print(stdout, "axes of the file: %s forward, %s up (%s%s%s)\n", model_info_axis(axis[0], r, 0),
-               model_info_axis(axis[1], r, 1), r->axes_from, r->axes_assumed ? "; `axes` " : "", r->axes_assumed ? otherwise : "");
-    text_print(stdout, "scale: %.9g m a unit (%s%s%s)\n", r->scale_m, r->unit_from, r->scale_assumed ? "; `scale` " : "",
-               r->scale_assumed ? otherwise : "");
+               model_info_axis(axis[1], r, 1), r->axes_from, r->axes_assumed ? "; `axes` " : "",
+               r->axes_assumed ? otherwise : "");
+    text_print(stdout, "scale: %.9g m a unit (%s%s%s)\n", r->scale_m, r->unit_from,
+               r->scale_assumed ? "; `scale` " : "", r->scale_assumed ? otherwise : "");
     text_print(stdout, "origin in the file: %g %g %g\n", r->p_origin_file[0], r->p_origin_file[1], r->p_origin_file[2]);
     text_print(stdout, "in the file: %d nodes, %d meshes, %d materials\n", r->source_nodes, r->source_meshes,
                r->source_materials);
@@ -51,12 +52,9 @@ static void print_import(const ModelImport *r)
 static void print_limits(const ModelNode *node)
 {
     const bool turns = node->joint == JOINT_ROTATION;
-    if (node->low > node->high)
-        text_print(stdout, " free");
-    else if (turns)
-        text_print(stdout, " %g .. %g deg", node->low / rad_per_deg, node->high / rad_per_deg);
-    else
-        text_print(stdout, " %g .. %g m", node->low, node->high);
+    if (node->low > node->high) text_print(stdout, " free");
+    else if (turns) text_print(stdout, " %g .. %g deg", node->low / rad_per_deg, node->high / rad_per_deg);
+    else text_print(stdout, " %g .. %g m", node->low, node->high);
 }
 
 static void print_nodes(const Model *m)
@@ -64,7 +62,7 @@ static void print_nodes(const Model *m)
     text_print(stdout, "\nnodes: %d\n", m->node_count);
     for (int i = 0; i < m->node_count; i++) {
         const ModelNode *node = &m->node[i];
-        char text[32];
+        char             text[32];
         const char *named = sidecar_class_text(text, node->dis_class), *metric = sidecar_metric_text(node->dis_metric);
         text_print(stdout, "  %3d %s", i, node->name);
         if (node->parent >= 0)
@@ -94,8 +92,7 @@ static void print_parts(const Model *m)
                    part->material, heat_role_name(part->role), part->triangle_count);
         if (part->thickness_m > 0) text_print(stdout, ", skin %g mm", 1e3 * part->thickness_m);
         for (int state = 1; state < model_damage_states; state++) {
-            if (part->damage_hidden >> state & 1)
-                text_print(stdout, ", damage %d: hidden", state);
+            if (part->damage_hidden >> state & 1) text_print(stdout, ", damage %d: hidden", state);
             else if (part->damage_material[state][0])
                 text_print(stdout, ", damage %d: %s", state, part->damage_material[state]);
         }
@@ -108,24 +105,26 @@ static void print_parts(const Model *m)
 static void judge_size(ModelInfo *info, const char *name)
 {
     static const double slack = 1.5, named_slack = 3;
-    const ModelImport *import = &info->import;
+    const ModelImport  *import = &info->import;
     /* a file that says centimetres may be drawn in metres all the same: 8 cm are then 8 m */
     const double least_m = import->scale_assumed && import->scale_m != 1 ? 0.3 : 0.05;
     const double largest_m = model_size_largest_m(&info->model);
-    const char *slash = strrchr(name, '/');
-    char path[4096], advice[200];
-    Catalog *catalog;
-    SizeRange range = {.high_m = 100}, named;
+    const char  *slash = strrchr(name, '/');
+    char         path[4096], advice[200];
+    Catalog     *catalog;
+    SizeRange    range = {.high_m = 100}, named;
     log_suppress(true); /* a catalog that is broken is not of this model; what is smaller needs none */
-    if (largest_m > range.high_m && etc_path(path, sizeof path, "catalog.csv") && catalog_open(&catalog, path, 0.1) == STATUS_OK) {
+    if (largest_m > range.high_m && etc_path(path, sizeof path, "catalog.csv") &&
+        catalog_open(&catalog, path, 0.1) == STATUS_OK) {
         catalog_size_range(&range, catalog, -1, -1);
         catalog_close(catalog);
     }
     log_suppress(false);
     range.low_m = slack * least_m; /* which model_size_is_odd divides by slack */
-    if (model_size_range_named(&named, slash ? slash + 1 : name) && model_size_is_odd(advice, largest_m, &named, named_slack, &info->import))
-        snprintf(info->advice, sizeof info->advice, "it is %.3g m large, and `%s`, as it is called, %.3g m: %s", largest_m,
-                 named.high, named.high_m, advice);
+    if (model_size_range_named(&named, slash ? slash + 1 : name) &&
+        model_size_is_odd(advice, largest_m, &named, named_slack, &info->import))
+        snprintf(info->advice, sizeof info->advice, "it is %.3g m large, and `%s`, as it is called, %.3g m: %s",
+                 largest_m, named.high, named.high_m, advice);
     else if (model_size_is_odd(advice, largest_m, &range, slack, &info->import))
         snprintf(info->advice, sizeof info->advice, "it is %.3g m large, and %s %.3g m%s%s: %s", largest_m,
                  largest_m > range.high_m ? "nothing of etc/catalog.csv is larger than" : "few things are smaller than",
@@ -138,9 +137,9 @@ static void judge_size(ModelInfo *info, const char *name)
 Status model_info_open(ModelInfo *out, const char *name, const ModelSize *size, double sag_m)
 {
     ModelInfo info = {.sized = size->length_m > 0 || size->width_m > 0 || size->height_m > 0};
-    Status status = info.sized && parametric_known(name)
-                        ? parametric_build_size(&info.model, name, size, sag_m)
-                        : model_open(&info.model, &info.import, &info.imported, name, sag_m);
+    Status    status = info.sized && parametric_known(name)
+                           ? parametric_build_size(&info.model, name, size, sag_m)
+                           : model_open(&info.model, &info.import, &info.imported, name, sag_m);
     if (status == STATUS_NO_MEMORY) log_error("model: %s: %s", name, status_name(status));
     if (status != STATUS_OK) return status; /* all other errors were reported where they occurred */
     info.sized = info.sized && info.imported;
@@ -159,22 +158,26 @@ void model_info_close(ModelInfo *info) { model_destroy(&info->model); }
 
 void model_info_print(const ModelInfo *info)
 {
-    const Model *m = &info->model;
+    const Model      *m = &info->model;
     const ModelEdges *edges = &info->edges;
     text_print(stdout, "model: %s\n", m->name);
     if (info->imported) print_import(&info->import);
     else text_print(stdout, "built in, facets within %g m of their surfaces\n", m->sag_m);
     text_print(stdout, "size: %.3f x %.3f x %.3f m (length, width, height)\n", m->length_m, m->width_m, m->height_m);
-    if (info->sized) text_print(stdout, "size asked for: %s%s\n", info->fit.fits ? "as it is" : "not so: ", info->fit.advice);
+    if (info->sized)
+        text_print(stdout, "size asked for: %s%s\n", info->fit.fits ? "as it is" : "not so: ", info->fit.advice);
     if (info->imported && m->width_m > 2 * m->length_m && m->length_m > 0) {
-        char axis[2][4];
+        char          axis[2][4];
         const double *right = info->import.r_body_from_file + 3;
-        int side = 0;
+        int           side = 0;
         for (int i = 1; i < 3; i++)
             if (fabs(right[i]) > fabs(right[side])) side = i;
         snprintf(axis[0], sizeof axis[0], "+%c", "xyz"[side]);
-        text_print(stdout, "wider than long: if it faces along its length, `axes: '%s %s'` in a sidecar turns it (- in place of + "
-                   "the other way)\n", axis[0], model_info_axis(axis[1], &info->import, 1));
+        text_print(
+            stdout,
+            "wider than long: if it faces along its length, `axes: '%s %s'` in a sidecar turns it (- in place of + "
+            "the other way)\n",
+            axis[0], model_info_axis(axis[1], &info->import, 1));
     }
     text_print(stdout, "box: %.3f %.3f %.3f .. %.3f %.3f %.3f m (forward, right, down of the base's centre)\n",
                m->box_low[0], m->box_low[1], m->box_low[2], m->box_high[0], m->box_high[1], m->box_high[2]);
@@ -192,8 +195,8 @@ void model_info_print(const ModelInfo *info)
 static const char *kind_name(int kind, int domain)
 {
     static const char *const domains[] = {"other", "land", "air", "surface", "subsurface", "space"};
-    static const char *const kinds[] = {"other",   "platform", "munition", "life form", "environmental",
-                                        "cultural", "supply",  "radio",    "expendable", "sensor/emitter"};
+    static const char *const kinds[] = {"other",    "platform", "munition", "life form",  "environmental",
+                                        "cultural", "supply",   "radio",    "expendable", "sensor/emitter"};
     if (kind == 1 && domain >= 1 && domain <= 5) return domains[domain];
     return kind >= 0 && kind <= 9 ? kinds[kind] : "any";
 }
@@ -202,12 +205,12 @@ static const char *kind_name(int kind, int domain)
 static void parts_of(char *out, size_t out_size, const Model *model)
 {
     size_t n = 0;
-    int wheels = 0, spinning = 0;
+    int    wheels = 0, spinning = 0;
     *out = 0;
     for (int i = 0; i < model->node_count && n < out_size; i++) {
         const ModelNode *node = &model->node[i];
-        char text[32];
-        const char *metric = sidecar_metric_text(node->dis_metric);
+        char             text[32];
+        const char      *metric = sidecar_metric_text(node->dis_metric);
         if (node->joint == JOINT_FIXED) continue;
         if (node->dis_class)
             n += (size_t)snprintf(out + n, out_size - n, "%s%s %s", n ? ", " : "",
@@ -226,8 +229,8 @@ static Status list_shapes(FILE *to)
     static const double coarse_chord_error_m = 0.1; /* nodes and sizes do not depend on it */
     text_print(to, "Built-in shapes: name, size in metres (length x width x height), articulated parts\n\n");
     for (int i = 0; i < parametric_count(); i++) {
-        Model model;
-        char parts[400], size[40];
+        Model        model;
+        char         parts[400], size[40];
         const Status status = parametric_build(&model, parametric_name(i), coarse_chord_error_m);
         if (status != STATUS_OK) return status;
         parts_of(parts, sizeof parts, &model);
@@ -242,15 +245,15 @@ static Status list_shapes(FILE *to)
 Status model_list(FILE *to, const char *catalog_path)
 {
     Catalog *catalog;
-    Status status = catalog_open(&catalog, catalog_path, 0.1);
+    Status   status = catalog_open(&catalog, catalog_path, 0.1);
     if (status != STATUS_OK) return status;
     status = list_shapes(to);
     text_print(to, "\nCatalog, in the order in which it is searched: entity type, kind, model, size, row, note%s\n\n",
-            etc_own("catalog.csv") ? "; your own first" : "");
+               etc_own("catalog.csv") ? "; your own first" : "");
     for (int r = 0; r < catalog_row_count(catalog) && status == STATUS_OK; r++) {
         CatalogRowInfo row;
-        double m[3];
-        char size[40] = "not seen", parts[400] = "";
+        double         m[3];
+        char           size[40] = "not seen", parts[400] = "";
         catalog_row(&row, catalog, r);
         catalog_size(m, catalog, row.model);
         if (catalog_has_shape(catalog, row.model)) snprintf(size, sizeof size, "%.2f x %.2f x %.2f", m[0], m[1], m[2]);

@@ -10,17 +10,17 @@
 /* A model and what there is to say of it. */
 typedef struct ModelInfo {
     Model       model;
-    ModelImport import;      /* of a file */
+    ModelImport import; /* of a file */
     bool        imported;
     ModelEdges  edges;
-    bool        sized;       /* a size was asked for: whether a file has it */
+    bool        sized; /* a size was asked for: whether a file has it */
     ModelFit    fit;
     bool        odd;         /* of a size that no thing of the catalog, or of its name, has */
     char        advice[500]; /* on that */
 } ModelInfo;
 
-/* A built-in model or a file; size: what a built-in one is scaled to and a file is compared with, 0: not given. What is wrong
- * is logged; an odd size is a warning. */
+/* A built-in model or a file; size: what a built-in one is scaled to and a file is compared with, 0: not given. What is
+ * wrong is logged; an odd size is a warning. */
 Status model_info_open(ModelInfo *out, const char *name, const ModelSize *size, double sag_m);
 void   model_info_print(const ModelInfo *info);
 void   model_info_close(ModelInfo *info);

@@ -34,7 +34,7 @@ static bool has_word(const char *name, const char *word)
 bool model_size_range_named(SizeRange *out, const char *name)
 {
     static const double coarse_m = 0.1;
-    const char *best = NULL;
+    const char         *best = NULL;
     for (int i = 0; i < parametric_count(); i++) {
         const char *shape = parametric_name(i);
         if (strcmp(shape, "unknown") != 0 && has_word(name, shape) && (!best || strlen(shape) > strlen(best)))
@@ -53,18 +53,19 @@ double model_size_largest_m(const Model *model)
     return fmax(model->length_m, fmax(model->width_m, fmax(model->box_high[2], 0) - model->box_low[2]));
 }
 
-bool model_size_is_odd(char advice[200], double largest_m, const SizeRange *range, double slack, const ModelImport *import)
+bool model_size_is_odd(char advice[200], double largest_m, const SizeRange *range, double slack,
+                       const ModelImport *import)
 {
     static const struct {
-        double factor;
+        double      factor;
         const char *unit;
     } units[] = {{0.01, "centimetres"}, {0.001, "millimetres"}, {0.0254, "inches"}, {0.3048, "feet"},
                  {100, NULL},           {1000, NULL},           {1 / 0.0254, NULL}, {1 / 0.3048, NULL}};
     advice[0] = 0;
     if (range->high_m == 0 || (largest_m <= slack * range->high_m && slack * largest_m >= range->low_m)) return false;
     const double middle = sqrt(range->low_m * range->high_m);
-    int best = -1;
-    double nearest = INFINITY;
+    int          best = -1;
+    double       nearest = INFINITY;
     for (int u = 0; u < (int)(sizeof units / sizeof *units); u++) {
         const double size = largest_m * units[u].factor, off = fabs(log(size / middle));
         if (size > slack * range->high_m || slack * size < range->low_m || off > nearest - 1e-9) continue;
@@ -86,8 +87,9 @@ bool model_size_is_odd(char advice[200], double largest_m, const SizeRange *rang
 static const struct {
     double      factor;
     const char *unit;
-} units[] = {{1, NULL},           {0.001, "millimetres"}, {0.01, "centimetres"}, {0.0254, "inches"}, {0.3048, "feet"},
-             {1000, NULL},        {100, NULL},            {1 / 0.0254, NULL},    {1 / 0.3048, NULL}};
+} units[] = {{1, NULL},          {0.001, "millimetres"}, {0.01, "centimetres"},
+             {0.0254, "inches"}, {0.3048, "feet"},       {1000, NULL},
+             {100, NULL},        {1 / 0.0254, NULL},     {1 / 0.3048, NULL}};
 
 /* The axes as loaded come first, then a turn about the vertical, then what a file with another upward axis gives. */
 static const int orders[6][3] = {{0, 1, 2}, {1, 0, 2}, {2, 0, 1}, {0, 2, 1}, {1, 2, 0}, {2, 1, 0}};
@@ -140,8 +142,10 @@ static void advise(ModelFit *fit, const ModelImport *import, const char *unit)
     if (fabs(fit->factor - 1) > 1e-9)
         snprintf(scale, sizeof scale, "`scale: %.4g`%s%s%s", import->scale_m * fit->factor,
                  unit ? " (the file is in " : "", unit ? unit : "", unit ? ")" : "");
-    snprintf(fit->advice, sizeof fit->advice, "%s%s%s in its sidecar would give that size; look at it with `pitviper "
-             "model show`", axes, *axes && *scale ? " and " : "", scale);
+    snprintf(fit->advice, sizeof fit->advice,
+             "%s%s%s in its sidecar would give that size; look at it with `pitviper "
+             "model show`",
+             axes, *axes && *scale ? " and " : "", scale);
 }
 
 void model_fit(ModelFit *out, const Model *model, const ModelImport *import, const ModelSize *want, double tolerance)
@@ -162,7 +166,8 @@ void model_fit(ModelFit *out, const Model *model, const ModelImport *import, con
     for (size_t o = 0; o < 6; o++)
         for (size_t u = 0; u < sizeof units / sizeof *units; u++) {
             const double wrong = misfit(has_m, want_m, orders[o], units[u].factor);
-            const double cost = rms_size_error(has_m, want_m, orders[o], units[u].factor) + dearer * ((o > 0) + (u > 0));
+            const double cost =
+                rms_size_error(has_m, want_m, orders[o], units[u].factor) + dearer * ((o > 0) + (u > 0));
             if (wrong > most || cost >= best) continue;
             best = cost;
             memcpy(out->axis, orders[o], sizeof out->axis);

@@ -13,7 +13,7 @@
 /* The range of the largest sides of things, and the names of the smallest and the largest thing. */
 typedef struct SizeRange {
     double low_m, high_m; /* high_m 0: there is none of the kind */
-    char low[64], high[64];
+    char   low[64], high[64];
 } SizeRange;
 
 /* Widens the range to hold a thing of that size; who: its name. */
@@ -24,7 +24,8 @@ bool model_size_range_named(SizeRange *out, const char *name);
 double model_size_largest_m(const Model *model);
 /* False where a model's largest side is beyond `slack` times the range. Else `advice`: the sidecar's `scale` that would
  * bring it there, or that none of the usual units does. */
-bool model_size_is_odd(char advice[200], double largest_m, const SizeRange *range, double slack, const ModelImport *import);
+bool model_size_is_odd(char advice[200], double largest_m, const SizeRange *range, double slack,
+                       const ModelImport *import);
 
 /* ---- an expected size ----------------------------------------------------------------------- */
 

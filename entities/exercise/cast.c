@@ -4,7 +4,7 @@
 #include "dis/pdu/pdu.h"
 
 static const double g_mps2 = 9.80665;
-static const double roll_out_s = 2;   /* of an entity hit on the ground */
+static const double roll_out_s = 2; /* of an entity hit on the ground */
 
 /* ---- distance along --------------------------------------------------------------------------- */
 
@@ -12,10 +12,10 @@ static const double roll_out_s = 2;   /* of an entity hit on the ground */
  * stationary. */
 static double travelled(double *speed_mps, const Cast *cast, int group, double t_s)
 {
-    static const double swing_rps = 0.25;
+    static const double  swing_rps = 0.25;
     const ScenarioGroup *g = &cast->scenario->group[group];
-    const double v = g->speed_mps, begins_s = g->start_s, stops_s = cast->stop_s[group];
-    double way, speed, pace = 1;
+    const double         v = g->speed_mps, begins_s = g->start_s, stops_s = cast->stop_s[group];
+    double               way, speed, pace = 1;
     if (v <= 0) {
         *speed_mps = 0;
         return 0;
@@ -67,7 +67,7 @@ void cast_axes(double r_enu_from_body[9], const double forward[3], const double 
     v3_normalize(y, y);
     v3_cross(z, x, y);
     for (int i = 0; i < 3; i++) {
-        r_enu_from_body[3 * i]     = x[i];
+        r_enu_from_body[3 * i] = x[i];
         r_enu_from_body[3 * i + 1] = y[i];
         r_enu_from_body[3 * i + 2] = z[i];
     }
@@ -150,9 +150,9 @@ void cast_pose(CastPose *out, const Cast *cast, int entity, double t_s)
 void cast_kinematics(Kinematics *out, const Cast *cast, int entity, double t_s)
 {
     static const double h_s = 0.01;
-    const double *r = cast->ground.frame.r_ecef_from_enu;
-    CastPose at, before, after;
-    double   v_enu[3], a_enu[3], change[9], spin[9];
+    const double       *r = cast->ground.frame.r_ecef_from_enu;
+    CastPose            at, before, after;
+    double              v_enu[3], a_enu[3], change[9], spin[9];
     cast_pose(&at, cast, entity, t_s);
     cast_pose(&before, cast, entity, t_s - h_s);
     cast_pose(&after, cast, entity, t_s + h_s);
@@ -162,7 +162,7 @@ void cast_kinematics(Kinematics *out, const Cast *cast, int entity, double t_s)
     }
     for (int i = 0; i < 9; i++) change[i] = (after.r_enu_from_body[i] - before.r_enu_from_body[i]) / (2 * h_s);
     m3_tmul(spin, at.r_enu_from_body, change); /* dR/dt = R skew(w) */
-    out->algorithm     = 4;
+    out->algorithm = 4;
     out->w_body_rps[0] = 0.5 * (spin[7] - spin[5]);
     out->w_body_rps[1] = 0.5 * (spin[2] - spin[6]);
     out->w_body_rps[2] = 0.5 * (spin[3] - spin[1]);
@@ -190,7 +190,7 @@ static const double flash_s = 0.5; /* a munition's launch flash */
 uint32_t cast_appearance(const Cast *cast, int entity, double t_s)
 {
     static const uint32_t launch_flash = 1u << 16, engine = 1u << dis_appearance_power_plant_bit;
-    const CastEntity *e = &cast->entity[entity];
+    const CastEntity     *e = &cast->entity[entity];
     if (e->group < 0) return t_s < cast->round[e->round].fire_s + flash_s ? launch_flash : 0;
 
     const ScenarioGroup *g = &cast->scenario->group[e->group];
@@ -207,8 +207,11 @@ uint32_t cast_appearance(const Cast *cast, int entity, double t_s)
         double speed_mps;
         way_of(&speed_mps, cast, e, t_s);
         /* tracks raise more dust than wheels */
-        const uint32_t trail = *g->dust == 'a' ? (e->type.category <= 4 ? 2 : 1)
-                             : *g->dust == 's' ? 1 : *g->dust == 'm' ? 2 : *g->dust == 'l' ? 3 : 0;
+        const uint32_t trail = *g->dust == 'a'   ? (e->type.category <= 4 ? 2 : 1)
+                               : *g->dust == 's' ? 1
+                               : *g->dust == 'm' ? 2
+                               : *g->dust == 'l' ? 3
+                                                 : 0;
         if (fabs(speed_mps) > 1 && g->route_m.count > 2) bits |= trail << dis_appearance_trail_shift;
     }
     return bits;
@@ -225,7 +228,7 @@ int cast_joints(JointReport joint[cast_max_joints], const Cast *cast, int entity
     if (isfinite(e->rest_s)) t_s = fmin(t_s, e->hit_s);
     for (int k = 0; k < cast_max_joints && cast->joint[e->joints + k].dis_class; k++) {
         const CastJoint *j = &cast->joint[e->joints + k];
-        double value = 0, slew = 0;
+        double           value = 0, slew = 0;
         if (swings && j->metric == 11) {
             value = 1.1 * sin(rate * t_s + phase), slew = 1.1 * rate * cos(rate * t_s + phase);
             if (j->low <= j->high && (value < j->low || value > j->high))
@@ -233,8 +236,8 @@ int cast_joints(JointReport joint[cast_max_joints], const Cast *cast, int entity
         } else if (swings) {
             value = 0.06 + 0.05 * sin(0.6 * t_s + phase), slew = 0.03 * cos(0.6 * t_s + phase);
         }
-        joint[count++] = (JointReport){.parameter = j->dis_class + j->metric, .value = (float)value,
-                                       .rate = (float)(halted * slew)};
+        joint[count++] =
+            (JointReport){.parameter = j->dis_class + j->metric, .value = (float)value, .rate = (float)(halted * slew)};
     }
     return count;
 }
@@ -242,7 +245,7 @@ int cast_joints(JointReport joint[cast_max_joints], const Cast *cast, int entity
 bool cast_still(const Cast *cast, int entity, double t_s)
 {
     static const double over_s = 0.02; /* step of the differences */
-    const CastEntity *e = &cast->entity[entity];
+    const CastEntity   *e = &cast->entity[entity];
     if (e->group < 0) return false;
     const ScenarioGroup *g = &cast->scenario->group[e->group];
     if (t_s > e->rest_s + over_s) return true;
@@ -262,7 +265,7 @@ double cast_next_change(const Cast *cast, int entity, double t_s)
         times[4] = round->impact_s - cast->scenario->shot[round->shot].silent_s;
     } else {
         const ScenarioGroup *g = &cast->scenario->group[e->group];
-        const double bent_s = g->speed_mps > 0 ? g->unsteady_m / g->speed_mps + 0.02 : 0;
+        const double         bent_s = g->speed_mps > 0 ? g->unsteady_m / g->speed_mps + 0.02 : 0;
         times[2] = g->appears_s, times[3] = g->leaves_s, times[4] = g->start_s - bent_s;
         times[5] = cast->stop_s[e->group] - bent_s;
     }
@@ -274,9 +277,9 @@ double cast_next_change(const Cast *cast, int entity, double t_s)
 void cast_marking(char marking[11], const Cast *cast, int entity)
 {
     const CastEntity *e = &cast->entity[entity];
-    const char *name = e->group < 0 ? cast->scenario->shot[cast->round[e->round].shot].name
-                                    : cast->scenario->group[e->group].name;
-    char        text[scenario_name_size + 8];
+    const char       *name =
+        e->group < 0 ? cast->scenario->shot[cast->round[e->round].shot].name : cast->scenario->group[e->group].name;
+    char text[scenario_name_size + 8];
     memset(marking, 0, 11);
     snprintf(text, sizeof text, "%s %u", name, e->number);
     memcpy(marking, text, strnlen(text, 11));

@@ -26,7 +26,7 @@ typedef struct ExerciseGround {
     bool       real;
     double     smooth_m;
     Elevation  elevation;
-    Landscape  stored;            /* of a terrain store, in its own frame; cover NULL: none */
+    Landscape  stored; /* of a terrain store, in its own frame; cover NULL: none */
 } ExerciseGround;
 
 /* Reads the files of ground.elevation. Failures are logged. */
@@ -51,14 +51,14 @@ double exercise_level_at(double slope[2], const ExerciseGround *ground, double x
 enum { route_max_points = 128 };
 
 typedef struct Route {
-    bool    loop;
-    double  length_m, step_m;   /* of the plane curve; between knots */
-    int     knots;
-    double (*control)[3];       /* [knots + 3] (loop: periodic) */
+    bool   loop;
+    double length_m, step_m; /* of the plane curve; between knots */
+    int    knots;
+    double (*control)[3]; /* [knots + 3] (loop: periodic) */
 } Route;
 
 typedef struct RoutePoint {
-    double p[3], d[3], dd[3];   /* p by distance; |d_xy| = 1 within 1e-3 */
+    double p[3], d[3], dd[3]; /* p by distance; |d_xy| = 1 within 1e-3 */
 } RoutePoint;
 
 /* point: x, y, z; at least 2 (loop: 3), neighbours at least 0.1 m apart in the plane. Distances are those of the
@@ -67,7 +67,7 @@ typedef struct RoutePoint {
 Status route_create(Route *out, const double (*point)[3], int count, bool loop);
 void   route_destroy(Route *route);
 /* Before the start and after the end it continues straight; a loop is periodic. */
-void   route_at(RoutePoint *out, const Route *route, double distance_m);
+void route_at(RoutePoint *out, const Route *route, double distance_m);
 
 /* ---- entities --------------------------------------------------------------------------------- */
 
@@ -75,17 +75,22 @@ enum { cast_max_joints = 4 };
 static const double cast_ramp_s = 3; /* from standstill to full speed and back */
 
 typedef enum Carriage { /* how it moves */
-    CARRIAGE_LAND, CARRIAGE_LIFE, CARRIAGE_SEA, CARRIAGE_ROTARY, CARRIAGE_FIXED_WING, CARRIAGE_MUNITION
+                        CARRIAGE_LAND,
+                        CARRIAGE_LIFE,
+                        CARRIAGE_SEA,
+                        CARRIAGE_ROTARY,
+                        CARRIAGE_FIXED_WING,
+                        CARRIAGE_MUNITION
 } Carriage;
 
 typedef struct CastEntity {
     DisEntityType type;
-    uint16_t      number;     /* of its DIS id */
+    uint16_t      number; /* of its DIS id */
     uint8_t       force, algorithm;
     Carriage      carriage;
-    int           group;      /* -1: a munition */
-    int           round;      /* of a munition */
-    int           joints;     /* first joint of its model, -1: no articulation parameters sent */
+    int           group;             /* -1: a munition */
+    int           round;             /* of a munition */
+    int           joints;            /* first joint of its model, -1: no articulation parameters sent */
     float         behind_m, aside_m; /* in its formation: of the route's beginning, to the left */
     double        hit_s, rest_s;     /* INFINITY: never */
     uint8_t       damage;            /* since the hit */
@@ -93,11 +98,11 @@ typedef struct CastEntity {
 
 /* One shot of one munition. */
 typedef struct CastRound {
-    int    shot, shooter, target, munition; /* entities; -1: none */
-    double fire_s, impact_s;
-    double launch_enu[3], impact_enu[3];
+    int           shot, shooter, target, munition; /* entities; -1: none */
+    double        fire_s, impact_s;
+    double        launch_enu[3], impact_enu[3];
     DisEntityType type;
-    int    result;                          /* of its Detonation */
+    int           result; /* of its Detonation */
 } CastRound;
 
 /* A joint that its model has and the scenario moves. */
@@ -112,9 +117,9 @@ typedef struct Cast {
     int             entity_count, round_count, joint_count;
     CastEntity     *entity;
     CastRound      *round;
-    CastJoint      *joint;      /* cast_max_joints for each kind of entity that has them; class 0 ends */
-    Route          *route;      /* of each group; without knots: stationary */
-    double         *stop_s;     /* of each group: starts to stop; INFINITY: does not */
+    CastJoint      *joint;  /* cast_max_joints for each kind of entity that has them; class 0 ends */
+    Route          *route;  /* of each group; without knots: stationary */
+    double         *stop_s; /* of each group: starts to stop; INFINITY: does not */
 } Cast;
 
 /* The scenario must outlive the cast. Logs what is wrong with names of types, files of ground, shots that do not
@@ -132,15 +137,15 @@ void cast_pose(CastPose *out, const Cast *cast, int entity, double t_s);
  * algorithm: 4. */
 void cast_kinematics(Kinematics *out, const Cast *cast, int entity, double t_s);
 /* Whether it is reported at that time; a munition from its Fire to its Detonation. */
-bool cast_present(const Cast *cast, int entity, double t_s);
+bool     cast_present(const Cast *cast, int entity, double t_s);
 uint32_t cast_appearance(const Cast *cast, int entity, double t_s);
 /* Angles and rates of turret and gun; returns how many. */
-int    cast_joints(JointReport joint[cast_max_joints], const Cast *cast, int entity, double t_s);
+int cast_joints(JointReport joint[cast_max_joints], const Cast *cast, int entity, double t_s);
 /* Whether it is stationary until the next change; the next time of a start, an end or a hit. */
 bool   cast_still(const Cast *cast, int entity, double t_s);
 double cast_next_change(const Cast *cast, int entity, double t_s);
 /* `NAME NUMBER` as its marking; 11 octets, not terminated. */
-void   cast_marking(char marking[11], const Cast *cast, int entity);
+void cast_marking(char marking[11], const Cast *cast, int entity);
 
 /* Private to the cast: shots are solved after all entities are placed, in file order.
  * entities/exercise/cast_shots.c */

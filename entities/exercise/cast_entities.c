@@ -38,7 +38,7 @@ static bool find_type(DisEntityType *out, const Cast *cast, const Table *catalog
     known[0] = 0;
     for (int row = 0; name >= 0 && row < catalog->rows; row++) {
         const char *model = table_text(catalog, row, name);
-        bool        met   = false;
+        bool        met = false;
         for (int k = 0; k < row && !met; k++) met = strcmp(table_text(catalog, k, name), model) == 0;
         if (!met && n < (int)sizeof known - 80)
             n += snprintf(known + n, sizeof known - (size_t)n, "%s%.64s", n ? ", " : "", model);
@@ -55,7 +55,8 @@ static Carriage carriage_of(DisEntityType type)
     if (type.kind == dis_kind_life_form) return CARRIAGE_LIFE;
     if (type.kind == dis_kind_platform && type.domain == dis_domain_air)
         return (type.category >= 20 && type.category <= 26) || (type.category >= 90 && type.category <= 92)
-                   ? CARRIAGE_ROTARY : CARRIAGE_FIXED_WING;
+                   ? CARRIAGE_ROTARY
+                   : CARRIAGE_FIXED_WING;
     if (type.kind == dis_kind_platform && (type.domain == sea || type.domain == undersea)) return CARRIAGE_SEA;
     return CARRIAGE_LAND;
 }
@@ -70,8 +71,8 @@ static int joints_of(Cast *cast, const Catalog *catalog, DisEntityType type)
     int          count = 0;
     for (int n = 0; n < model->node_count && count < cast_max_joints; n++) {
         const ModelNode *node = &model->node[n];
-        const bool turret = node->dis_class == 4096 && node->dis_metric == 11;
-        const bool gun = (node->dis_class == 4416 || node->dis_class == 4736) && node->dis_metric == 13;
+        const bool       turret = node->dis_class == 4096 && node->dis_metric == 11;
+        const bool       gun = (node->dis_class == 4416 || node->dis_class == 4736) && node->dis_metric == 13;
         if (turret || gun) joint[count++] = (CastJoint){node->dis_class, node->dis_metric, node->low, node->high};
     }
     if (count == 0) return -1;
@@ -92,13 +93,13 @@ static void turned(double out[2], const Scenario *s, const double xy[2])
     out[1] = c * xy[1] - d * xy[0];
 }
 
-/* Over real ground a path may meet a ridge between its points: it then goes over what lies within a hundredth or so of its
- * length ahead and behind, at its height. One that stays above half its height everywhere is left as it is. */
+/* Over real ground a path may meet a ridge between its points: it then goes over what lies within a hundredth or so of
+ * its length ahead and behind, at its height. One that stays above half its height everywhere is left as it is. */
 static Status over_ridges(Route *route, const ExerciseGround *ground, double height_m)
 {
     enum { points = 120, fine = 8, samples = points * fine };
-    double   *z = malloc((samples + 1) * sizeof *z), point[points + 1][3];
-    bool      clear = true;
+    double    *z = malloc((samples + 1) * sizeof *z), point[points + 1][3];
+    bool       clear = true;
     RoutePoint at;
     if (!z) return STATUS_NO_MEMORY;
     for (int n = 0; n <= samples; n++) {
@@ -117,7 +118,7 @@ static Status over_ridges(Route *route, const ExerciseGround *ground, double hei
     free(z);
     if (clear || route->length_m < points) return STATUS_OK;
     Route        higher = {0};
-    const Status status = route_create(&higher, (const double (*)[3])point, points + !route->loop, route->loop);
+    const Status status = route_create(&higher, (const double(*)[3])point, points + !route->loop, route->loop);
     if (status != STATUS_OK) return status;
     route_destroy(route);
     *route = higher;
@@ -142,7 +143,7 @@ static Status make_route(Cast *cast, int group, bool flies)
         count = 2;
     }
     Route       *route = &cast->route[group];
-    const Status status = route_create(route, (const double (*)[3])point, count, g->loop);
+    const Status status = route_create(route, (const double(*)[3])point, count, g->loop);
     return status == STATUS_OK && flies && cast->ground.real ? over_ridges(route, &cast->ground, g->height_m) : status;
 }
 
@@ -163,9 +164,13 @@ static Status cast_group(Cast *cast, int group, int first, int first_id, const T
 {
     const Scenario      *s = cast->scenario;
     const ScenarioGroup *g = &s->group[group];
-    CastEntity e = {.force = (uint8_t)g->force, .group = group, .round = -1, .joints = -1, .hit_s = INFINITY,
-                    .rest_s = INFINITY,
-                    .algorithm = (uint8_t)(g->dead_reckoning ? g->dead_reckoning : s->dis.dead_reckoning)};
+    CastEntity           e = {.force = (uint8_t)g->force,
+                              .group = group,
+                              .round = -1,
+                              .joints = -1,
+                              .hit_s = INFINITY,
+                              .rest_s = INFINITY,
+                              .algorithm = (uint8_t)(g->dead_reckoning ? g->dead_reckoning : s->dis.dead_reckoning)};
     if (!find_type(&e.type, cast, types, g->line, "vehicles", g->type)) return STATUS_BAD_VALUE;
     e.carriage = carriage_of(e.type);
     if (g->parked && (e.carriage == CARRIAGE_ROTARY || e.carriage == CARRIAGE_FIXED_WING)) e.carriage = CARRIAGE_LAND;
@@ -185,9 +190,9 @@ static Status cast_group(Cast *cast, int group, int first, int first_id, const T
         const uint64_t at = 2 * (uint64_t)(first + k);
         const double   u = 2 * random_uniform((uint64_t)s->seed, 4, 0, at) - 1;
         const double   v = 2 * random_uniform((uint64_t)s->seed, 4, 0, at + 1) - 1;
-        e.number   = (uint16_t)(first_id + k);
+        e.number = (uint16_t)(first_id + k);
         e.behind_m = (float)(g->behind_m + k / g->columns * g->spacing_m + u * g->spread_m);
-        e.aside_m  = (float)((k % g->columns - 0.5 * (g->columns - 1)) * g->column_m + v * g->spread_m);
+        e.aside_m = (float)((k % g->columns - 0.5 * (g->columns - 1)) * g->column_m + v * g->spread_m);
         cast->entity[first + k] = e;
     }
     return STATUS_OK;
@@ -200,14 +205,24 @@ static Status cast_shot(Cast *cast, int shot, int *entity, int *round, int first
     DisEntityType       type;
     if (!find_type(&type, cast, types, each->line, "shots", each->type)) return STATUS_BAD_VALUE;
     for (int k = 0; k < each->rounds; k++, (*round)++) {
-        cast->round[*round] = (CastRound){.shot = shot, .munition = -1, .target = -1, .type = type,
-                                          .fire_s = each->time_s + k * each->every_s, .impact_s = INFINITY};
+        cast->round[*round] = (CastRound){.shot = shot,
+                                          .munition = -1,
+                                          .target = -1,
+                                          .type = type,
+                                          .fire_s = each->time_s + k * each->every_s,
+                                          .impact_s = INFINITY};
         if (!each->entity) continue;
-        cast->entity[*entity] = (CastEntity){
-            .type = type, .number = (uint16_t)(first_id + k), .force = (uint8_t)each->force,
-            .carriage = CARRIAGE_MUNITION,
-            .algorithm = (uint8_t)(each->dead_reckoning ? each->dead_reckoning : s->dis.dead_reckoning), .group = -1,
-            .round = *round, .joints = -1, .hit_s = INFINITY, .rest_s = INFINITY};
+        cast->entity[*entity] =
+            (CastEntity){.type = type,
+                         .number = (uint16_t)(first_id + k),
+                         .force = (uint8_t)each->force,
+                         .carriage = CARRIAGE_MUNITION,
+                         .algorithm = (uint8_t)(each->dead_reckoning ? each->dead_reckoning : s->dis.dead_reckoning),
+                         .group = -1,
+                         .round = *round,
+                         .joints = -1,
+                         .hit_s = INFINITY,
+                         .rest_s = INFINITY};
         cast->round[*round].munition = (*entity)++;
     }
     return STATUS_OK;
@@ -223,18 +238,18 @@ static bool needs_models(const Scenario *s)
 static Status fill(Cast *cast, int *ids, int *first)
 {
     static const double coarse_chord_error_m = 0.1; /* only joints are needed, not shapes */
-    const Scenario *s = cast->scenario;
-    char     path[4096];
-    Table    types;
-    Catalog *catalog = NULL;
-    int      entity = 0, round = 0;
+    const Scenario     *s = cast->scenario;
+    char                path[4096];
+    Table               types;
+    Catalog            *catalog = NULL;
+    int                 entity = 0, round = 0;
     if (!etc_path(path, sizeof path, "catalog.csv")) return STATUS_BAD_VALUE;
     Status status = table_open(&types, path);
     if (status != STATUS_OK) return status;
     if (needs_models(s)) status = catalog_open(&catalog, path, coarse_chord_error_m);
     for (int g = 0; g < s->group_count && status == STATUS_OK; g++) {
         first[g] = entity;
-        status   = cast_group(cast, g, entity, ids[g], &types, catalog);
+        status = cast_group(cast, g, entity, ids[g], &types, catalog);
         entity += scenario_group_size(s, &s->group[g]);
     }
     for (int i = 0; i < s->shot_count && status == STATUS_OK; i++)
@@ -257,8 +272,8 @@ Status cast_create(Cast **out, const Scenario *scenario)
     }
     const size_t groups = (size_t)scenario->group_count, items = groups + (size_t)scenario->shot_count;
     cast->entity = calloc((size_t)cast->entity_count + 1, sizeof *cast->entity);
-    cast->round  = calloc((size_t)cast->round_count + 1, sizeof *cast->round);
-    cast->route  = calloc(groups + 1, sizeof *cast->route);
+    cast->round = calloc((size_t)cast->round_count + 1, sizeof *cast->round);
+    cast->route = calloc(groups + 1, sizeof *cast->route);
     cast->stop_s = calloc(groups + 1, sizeof *cast->stop_s);
     int *ids = calloc(items + 1, sizeof *ids), *first = calloc(groups + 1, sizeof *first);
 

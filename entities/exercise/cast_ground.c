@@ -12,7 +12,7 @@ static const double horizon_m = 60000;
 static void set_curvature(ExerciseGround *ground)
 {
     static const double a_m = 6378137, e2 = 0.0066943799901413165;
-    const double s = sin(ground->frame.origin.lat_rad), w2 = 1 - e2 * s * s, prime_m = a_m / sqrt(w2);
+    const double        s = sin(ground->frame.origin.lat_rad), w2 = 1 - e2 * s * s, prime_m = a_m / sqrt(w2);
     ground->half_curvature[0] = 0.5 / (prime_m + ground->frame.origin.h_m);
     ground->half_curvature[1] = 0.5 / (prime_m * (1 - e2) / w2 + ground->frame.origin.h_m);
 }
@@ -55,8 +55,8 @@ Status exercise_ground_create(ExerciseGround *out, const Scenario *scenario)
         ground.real = true;
         if (!isfinite(post_at(&ground, 0, 0))) {
             log_error("scenario: ground.store: %s has no ground at place.lat_deg, place.lon_deg: %.4f, %.4f; `pitviper "
-                      "terrain info` says where it lies", scenario->ground.store, scenario->place.lat_deg,
-                      scenario->place.lon_deg);
+                      "terrain info` says where it lies",
+                      scenario->ground.store, scenario->place.lat_deg, scenario->place.lon_deg);
             landscape_destroy(&ground.stored);
             return STATUS_BAD_VALUE;
         }
@@ -64,7 +64,8 @@ Status exercise_ground_create(ExerciseGround *out, const Scenario *scenario)
     if (*scenario->ground.elevation) {
         const char          *vertical = scenario->ground.vertical;
         ElevationReport      report;
-        const ElevationFiles files = {.paths = scenario->ground.elevation, .geoid_path = scenario->ground.geoid,
+        const ElevationFiles files = {.paths = scenario->ground.elevation,
+                                      .geoid_path = scenario->ground.geoid,
                                       .vertical = *vertical == 'g'   ? ELEVATION_GEOID
                                                   : *vertical == 'e' ? ELEVATION_ELLIPSOID
                                                                      : ELEVATION_BY_FILE,
@@ -147,7 +148,7 @@ static void natural_spline(double *second, const double *u, const double *value,
         const double pivot = share * second[i - 1] + 2;
         const double slope = (value[stride * (i + 1)] - value[stride * i]) / after -
                              (value[stride * i] - value[stride * (i - 1)]) / before;
-        second[i]  = (share - 1) / pivot;
+        second[i] = (share - 1) / pivot;
         scratch[i] = (6 * slope / (before + after) - share * scratch[i - 1]) / pivot;
     }
     second[count - 1] = 0;
@@ -166,17 +167,17 @@ static double spline_at(const double *u, const double *value, int stride, const 
 enum { around = 24, most_rolled = route_max_points + 2 * around + 2 };
 
 typedef struct Through {
-    int    count, first, last;  /* rolled out; the part that counts */
+    int    count, first, last; /* rolled out; the part that counts */
     double u[most_rolled], p[most_rolled][3], second[3][most_rolled];
 } Through;
 
 static void through_points(Through *t, const double (*point)[3], int count, bool loop)
 {
-    double scratch[most_rolled];
+    double    scratch[most_rolled];
     const int extra = loop ? around : 0;
     t->count = count + 2 * extra + (loop ? 1 : 0);
     t->first = extra;
-    t->last  = extra + count - (loop ? 0 : 1);
+    t->last = extra + count - (loop ? 0 : 1);
     for (int i = 0; i < t->count; i++) {
         const int k = ((i - extra) % count + count) % count;
         memcpy(t->p[i], point[k], sizeof t->p[i]);
@@ -242,12 +243,12 @@ static void sample_evenly(double (*sample)[3], int samples, double step_m, const
 
 static double *measure(const Through *t)
 {
-    const int chords  = (t->last - t->first) * pieces;
+    const int chords = (t->last - t->first) * pieces;
     double   *length_m = calloc((size_t)chords + 1, sizeof *length_m), p[3], q[3];
     if (!length_m) return NULL;
     at_u(p, t, t->first, 0);
     for (int k = 0; k < chords; k++) {
-        double middle[3];
+        double    middle[3];
         const int leg = t->first + k / pieces;
         at_u(middle, t, leg, (k % pieces + 0.5) / pieces);
         at_u(q, t, leg, (k % pieces + 1.0) / pieces);
@@ -277,12 +278,12 @@ Status route_create(Route *out, const double (*point)[3], int count, bool loop)
     }
     const int legs = t->last - t->first, steps = legs * knots_a_leg;
     Route     route = {.loop = loop, .length_m = length_m[legs * pieces], .knots = loop ? steps : steps + 1};
-    route.step_m  = route.length_m / steps;
+    route.step_m = route.length_m / steps;
     route.control = calloc((size_t)route.knots + 3, sizeof *route.control);
-    double (*sample)[3] = calloc((size_t)route.knots, sizeof *sample);
+    double(*sample)[3] = calloc((size_t)route.knots, sizeof *sample);
     if (route.control && sample) {
         sample_evenly(sample, route.knots, route.step_m, t, length_m);
-        control_from_samples(route.control, (const double (*)[3])sample, route.knots, loop);
+        control_from_samples(route.control, (const double(*)[3])sample, route.knots, loop);
     }
     const bool done = route.control && sample;
     free(sample);
@@ -304,14 +305,14 @@ void route_destroy(Route *route)
 
 static void spline_point(RoutePoint *out, const Route *route, int k, double t)
 {
-    const double (*c)[3] = (const double (*)[3])route->control + k;
+    const double(*c)[3] = (const double(*)[3])route->control + k;
     const double s = 1 - t, per = 1 / route->step_m;
     const double w[4] = {s * s * s / 6, (4 - 3 * t * t * (2 - t)) / 6, (4 - 3 * s * s * (2 - s)) / 6, t * t * t / 6};
     const double d[4] = {-0.5 * s * s, t * (1.5 * t - 2), s * (2 - 1.5 * s), 0.5 * t * t};
     const double e[4] = {s, 3 * t - 2, 3 * s - 2, t};
     for (int i = 0; i < 3; i++) {
-        out->p[i]  = w[0] * c[0][i] + w[1] * c[1][i] + w[2] * c[2][i] + w[3] * c[3][i];
-        out->d[i]  = (d[0] * c[0][i] + d[1] * c[1][i] + d[2] * c[2][i] + d[3] * c[3][i]) * per;
+        out->p[i] = w[0] * c[0][i] + w[1] * c[1][i] + w[2] * c[2][i] + w[3] * c[3][i];
+        out->d[i] = (d[0] * c[0][i] + d[1] * c[1][i] + d[2] * c[2][i] + d[3] * c[3][i]) * per;
         out->dd[i] = (e[0] * c[0][i] + e[1] * c[1][i] + e[2] * c[2][i] + e[3] * c[3][i]) * per * per;
     }
 }

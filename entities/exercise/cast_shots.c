@@ -47,7 +47,7 @@ void cast_munition_pose(CastPose *out, const Cast *cast, const CastRound *round,
 {
     static const double h_s = 0.005;
     const ScenarioShot *shot = &cast->scenario->shot[round->shot];
-    double line[3], up[3], right[3] = {1, 0, 0}, p[3][3], nose[3];
+    double              line[3], up[3], right[3] = {1, 0, 0}, p[3][3], nose[3];
     v3_sub(line, round->impact_enu, round->launch_enu);
     const double range_m = v3_length(line);
     up_at(up, &cast->ground, round->launch_enu);
@@ -74,8 +74,9 @@ static void launch_place(CastRound *round, const Cast *cast)
     const Carriage      carriage = cast->entity[round->shooter].carriage;
     CastPose            pose;
     double              off_enu[3];
-    const double *from = shot->launch_m.count == 3 ? shot->launch_m.number
-                       : carriage == CARRIAGE_ROTARY || carriage == CARRIAGE_FIXED_WING ? wing : turret;
+    const double       *from = shot->launch_m.count == 3                                        ? shot->launch_m.number
+                               : carriage == CARRIAGE_ROTARY || carriage == CARRIAGE_FIXED_WING ? wing
+                                                                                                : turret;
     cast_pose(&pose, cast, round->shooter, round->fire_s);
     m3_mul_v3(off_enu, pose.r_enu_from_body, from);
     v3_add(round->launch_enu, pose.p_enu, off_enu);
@@ -93,7 +94,7 @@ static void impact_place(double p_enu[3], const Cast *cast, const CastRound *rou
         cast_pose(&pose, cast, round->target, t_s);
         memcpy(p_enu, pose.p_enu, sizeof pose.p_enu);
     } else {
-        const double c = cos(s->place.turn_deg * rad_per_deg), d = sin(s->place.turn_deg * rad_per_deg);
+        const double  c = cos(s->place.turn_deg * rad_per_deg), d = sin(s->place.turn_deg * rad_per_deg);
         const double *at = shot->at_m.number;
         p_enu[0] = c * at[0] + d * at[1];
         p_enu[1] = c * at[1] - d * at[0];
@@ -117,7 +118,7 @@ static void impact_place(double p_enu[3], const Cast *cast, const CastRound *rou
 static bool solve(CastRound *round, const Cast *cast)
 {
     const ScenarioShot *shot = &cast->scenario->shot[round->shot];
-    double at_s = round->fire_s, line[3];
+    double              at_s = round->fire_s, line[3];
     launch_place(round, cast);
     for (int i = 0; i < 200; i++) {
         impact_place(round->impact_enu, cast, round, at_s);
@@ -137,7 +138,7 @@ static bool solve(CastRound *round, const Cast *cast)
 static bool beyond_barrel(CastRound *round, const ScenarioShot *shot)
 {
     static const double barrel_m = 6;
-    double line[3];
+    double              line[3];
     v3_sub(line, round->impact_enu, round->launch_enu);
     const double range_m = v3_length(line);
     if (range_m < 2 * barrel_m) return false;
@@ -149,8 +150,8 @@ static bool beyond_barrel(CastRound *round, const ScenarioShot *shot)
 static void damage(Cast *cast, const CastRound *round)
 {
     static const double stops_s = 2, g_mps2 = 9.80665;
-    const char *name = cast->scenario->shot[round->shot].damage;
-    CastEntity *e = &cast->entity[round->target];
+    const char         *name = cast->scenario->shot[round->shot].damage;
+    CastEntity         *e = &cast->entity[round->target];
     if (isfinite(e->hit_s) || *name == 'n') return;
     e->damage = *name == 's' ? 1 : *name == 'm' ? 2 : 3;
     if (e->damage > 1 && e->carriage != CARRIAGE_ROTARY && e->carriage != CARRIAGE_FIXED_WING) {
@@ -184,7 +185,8 @@ Status cast_solve_shots(Cast *cast, const int *ids, const int *first)
             double line[3];
             v3_sub(line, round->impact_enu, round->launch_enu);
             log_error("scenario: %s:%d: shots: what is fired at %g s does not get there: %.0f m; see launch_mps, "
-                      "boost_mps, drag_mps2", s->path, shot->line, round->fire_s, v3_length(line));
+                      "boost_mps, drag_mps2",
+                      s->path, shot->line, round->fire_s, v3_length(line));
             return STATUS_BAD_VALUE;
         }
         round->result = *shot->hit == 'e'   ? dis_result_entity_impact

@@ -24,19 +24,19 @@ typedef struct Event {
 } Event;
 
 struct Exercise {
-    const Cast    *cast;
-    ExerciseLink   link;
-    long long      tick, last_tick;
-    double         tick_s;
-    long long      bad; /* sent so far */
-    int            event_count, next_event, heard;
-    Event         *event;
-    long long     *look; /* tick of the next check of each [entity_count] */
-    Said          *said;
+    const Cast          *cast;
+    ExerciseLink         link;
+    long long            tick, last_tick;
+    double               tick_s;
+    long long            bad; /* sent so far */
+    int                  event_count, next_event, heard;
+    Event               *event;
+    long long           *look; /* tick of the next check of each [entity_count] */
+    Said                *said;
     DisEntityState       es;
     DisEntityStateUpdate esu;
     DisDetonation        detonation;
-    uint8_t        bytes[8192];
+    uint8_t              bytes[8192];
 };
 
 static int compare_events(const void *a, const void *b)
@@ -105,9 +105,10 @@ static int joint_records(DisVariableParameter *record, const JointReport *joint,
 {
     for (int i = 0; i < count; i++)
         for (int rate = 0; rate < 2; rate++)
-            record[2 * i + rate] = (DisVariableParameter){
-                .record_type = dis_variable_articulated, .attached_to = (uint16_t)(i > 0),
-                .parameter = joint[i].parameter + rate, .value = rate ? joint[i].rate : joint[i].value};
+            record[2 * i + rate] = (DisVariableParameter){.record_type = dis_variable_articulated,
+                                                          .attached_to = (uint16_t)(i > 0),
+                                                          .parameter = joint[i].parameter + rate,
+                                                          .value = rate ? joint[i].rate : joint[i].value};
     return 2 * count;
 }
 
@@ -180,8 +181,8 @@ static bool wrong(double *again_s, const Exercise *x, const Said *said, const Ki
     if (!(off_m < s->dis.threshold_m) || !(angle_rad < threshold_rad)) return true;
 
     /* both can change by their accelerations, with a margin */
-    const double turned_mps2 = dead_reckoning_in_body_axes(said->k.algorithm)
-                                   ? v3_length(said->k.w_body_rps) * v3_length(said->k.v_mps) : 0;
+    const double turned_mps2 =
+        dead_reckoning_in_body_axes(said->k.algorithm) ? v3_length(said->k.w_body_rps) * v3_length(said->k.v_mps) : 0;
     const double bend_mps2 = v3_length(truth->a_mps2) + v3_length(said->k.a_mps2) + turned_mps2 + 0.3;
     if (dead_reckoning_turns(said->k.algorithm)) v3_sub(spin, truth->w_body_rps, said->k.w_body_rps);
     else memcpy(spin, truth->w_body_rps, sizeof spin);
@@ -205,7 +206,8 @@ static void send_removal(Exercise *x, int entity, double t_s)
 {
     DisRemoveEntity pdu = {.header = link_header(&x->link, dis_pdu_remove_entity, 5, t_s),
                            .originating = id_of(x, entity),
-                           .receiving = id_of(x, entity), .request = (uint32_t)entity + 2};
+                           .receiving = id_of(x, entity),
+                           .request = (uint32_t)entity + 2};
     pdu.originating.entity = 0;
     link_pdu(&x->link, t_s, x->bytes, dis_encode_remove_entity(x->bytes, sizeof x->bytes, &pdu));
 }
@@ -235,8 +237,8 @@ static bool said_still(const Kinematics *k)
 static bool outdated(const Said *said, const Cast *cast, int entity, const Kinematics *k)
 {
     static const double unfelt_mps2 = 1, unfelt_rps = 0.1;
-    Kinematics now = *k;
-    double     a[3], w[3];
+    Kinematics          now = *k;
+    double              a[3], w[3];
     into_axes(&now, cast->entity[entity].algorithm);
     v3_sub(a, now.a_mps2, said->k.a_mps2);
     v3_sub(w, now.w_body_rps, said->k.w_body_rps);
@@ -246,9 +248,9 @@ static bool outdated(const Said *said, const Cast *cast, int entity, const Kinem
 static void look_at(Exercise *x, int entity, double t_s)
 {
     static const double longest_look_s = 1; /* bounds the delay when the bend was underestimated */
-    const Scenario *s = x->cast->scenario;
-    Said           *said = &x->said[entity];
-    const double    change_s = cast_next_change(x->cast, entity, t_s + 0.5 * x->tick_s), age_s = t_s - said->t_s;
+    const Scenario     *s = x->cast->scenario;
+    Said               *said = &x->said[entity];
+    const double        change_s = cast_next_change(x->cast, entity, t_s + 0.5 * x->tick_s), age_s = t_s - said->t_s;
     if (!cast_present(x->cast, entity, t_s)) {
         if (said->known || !isfinite(change_s)) leave(x, entity, t_s);
         else x->look[entity] = ticks_until(x, change_s);
@@ -264,7 +266,7 @@ static void look_at(Exercise *x, int entity, double t_s)
     cast_kinematics(&k, x->cast, entity, t_s);
     if (!sends) {
         joints = cast_joints(joint, x->cast, entity, t_s);
-        sends  = wrong(&again_s, x, said, &k, joint, joints, age_s);
+        sends = wrong(&again_s, x, said, &k, joint, joints, age_s);
     }
     if (sends) {
         const bool whole = !said->known || beats || !s->dis.updates || outdated(said, x->cast, entity, &k);
@@ -272,7 +274,7 @@ static void look_at(Exercise *x, int entity, double t_s)
         if (wrong(&again_s, x, said, &k, said->joint, said->joints, 0)) again_s = 0;
     }
     const double beat_s = said->t_s + s->dis.heartbeat_s;
-    double next_s = t_s + fmin(again_s, longest_look_s);
+    double       next_s = t_s + fmin(again_s, longest_look_s);
     if (said->joints == 0 && said_still(&said->k) && cast_still(x->cast, entity, t_s)) next_s = beat_s;
     const long long next = ticks_until(x, fmin(fmin(next_s, beat_s - 0.5 * x->tick_s), change_s));
     x->look[entity] = next > x->tick ? next : x->tick + 1;
@@ -283,9 +285,9 @@ static void look_at(Exercise *x, int entity, double t_s)
 static void shot_kinematics(Kinematics *out, const Cast *cast, const CastRound *round, double t_s)
 {
     static const double h_s = 0.005;
-    const double *r = cast->ground.frame.r_ecef_from_enu;
-    CastPose      at, before, after;
-    double        v_enu[3];
+    const double       *r = cast->ground.frame.r_ecef_from_enu;
+    CastPose            at, before, after;
+    double              v_enu[3];
     cast_munition_pose(&at, cast, round, t_s);
     cast_munition_pose(&before, cast, round, t_s - h_s);
     cast_munition_pose(&after, cast, round, t_s + h_s);
@@ -312,10 +314,13 @@ static void send_fire(Exercise *x, const CastRound *round)
     Kinematics   k;
     shot_kinematics(&k, x->cast, round, t_s);
     v3_sub(line, round->impact_enu, round->launch_enu);
-    DisFire pdu = {.header = link_header(&x->link, dis_pdu_fire, 2, t_s), .firing = id_of(x, round->shooter),
-                   .target = id_of(x, round->target), .munition = id_of(x, round->munition),
+    DisFire pdu = {.header = link_header(&x->link, dis_pdu_fire, 2, t_s),
+                   .firing = id_of(x, round->shooter),
+                   .target = id_of(x, round->target),
+                   .munition = id_of(x, round->munition),
                    .event = event_of(x, round),
-                   .descriptor = descriptor_of(round), .range_m = (float)v3_length(line)};
+                   .descriptor = descriptor_of(round),
+                   .range_m = (float)v3_length(line)};
     for (int i = 0; i < 3; i++) pdu.p_ecef[i] = k.p_ecef[i], pdu.velocity_mps[i] = (float)k.v_mps[i];
     link_pdu(&x->link, t_s, x->bytes, dis_encode_fire(x->bytes, sizeof x->bytes, &pdu));
 }
@@ -371,7 +376,9 @@ static void send_start(Exercise *x)
     const DisClockTime   clock = {(uint32_t)(clock_s / 3600), dis_timestamp(clock_s, true)};
     const DisStartResume start = {.header = link_header(&x->link, dis_pdu_start_resume, 5, 0),
                                   .originating = {(uint16_t)s->dis.site, (uint16_t)s->dis.application, 0},
-                                  .receiving = {65535, 65535, 65535}, .real_world = clock, .simulation = clock,
+                                  .receiving = {65535, 65535, 65535},
+                                  .real_world = clock,
+                                  .simulation = clock,
                                   .request = 1};
     link_pdu(&x->link, 0, x->bytes, dis_encode_start_resume(x->bytes, sizeof x->bytes, &start));
 }
@@ -381,16 +388,16 @@ Status exercise_create(Exercise **out, const Cast *cast, double epoch_unix_s, Ex
     const Scenario *s = cast->scenario;
     Exercise       *x = calloc(1, sizeof *x);
     if (!x) return STATUS_NO_MEMORY;
-    x->cast  = cast;
-    x->link  = (ExerciseLink){.scenario = s, .epoch_unix_s = epoch_unix_s, .sink = sink, .user = user};
+    x->cast = cast;
+    x->link = (ExerciseLink){.scenario = s, .epoch_unix_s = epoch_unix_s, .sink = sink, .user = user};
     x->event = calloc(2 * (size_t)cast->round_count + 1, sizeof *x->event);
-    x->look  = calloc((size_t)cast->entity_count + 1, sizeof *x->look);
-    x->said  = calloc((size_t)cast->entity_count + 1, sizeof *x->said);
+    x->look = calloc((size_t)cast->entity_count + 1, sizeof *x->look);
+    x->said = calloc((size_t)cast->entity_count + 1, sizeof *x->said);
     if (!x->event || !x->look || !x->said) {
         exercise_destroy(x);
         return STATUS_NO_MEMORY;
     }
-    x->tick_s    = 1 / s->dis.rate_hz;
+    x->tick_s = 1 / s->dis.rate_hz;
     x->last_tick = (long long)floor(s->duration_s * s->dis.rate_hz + 1e-6);
     for (int i = 0; i < cast->round_count; i++) {
         x->event[x->event_count++] = (Event){cast->round[i].fire_s, i, false};
@@ -427,7 +434,8 @@ bool exercise_step(Exercise *x)
     for (int i = 0; i < x->cast->entity_count; i++)
         if (x->look[i] <= x->tick) look_at(x, i, t_s);
     link_flush(&x->link);
-    for (; s->faults.bad_every_s > 0 && !x->link.stopped && ((double)x->bad + 0.5) * s->faults.bad_every_s <= t_s; x->bad++)
+    for (; s->faults.bad_every_s > 0 && !x->link.stopped && ((double)x->bad + 0.5) * s->faults.bad_every_s <= t_s;
+         x->bad++)
         exercise_send_bad(&x->link, x->cast, &x->es, (int)(x->bad % exercise_bad_kinds), t_s);
     x->tick++;
     return true;

@@ -29,10 +29,10 @@ void   exercise_destroy(Exercise *exercise);
 /* Exercise time of the next step, s: whole ticks from 0. */
 double exercise_time(const Exercise *exercise);
 /* One tick. False when it is over: the duration has passed, or the sink returned false. */
-bool   exercise_step(Exercise *exercise);
+bool exercise_step(Exercise *exercise);
 /* Sends the datagrams still delayed; exercise_step calls it at the end. */
-void   exercise_finish(Exercise *exercise);
+void                  exercise_finish(Exercise *exercise);
 const ExerciseCounts *exercise_counts(const Exercise *exercise);
-int    exercise_most_received(const Exercise *exercise); /* entities that were sent */
+int                   exercise_most_received(const Exercise *exercise); /* entities that were sent */
 
 #endif

@@ -15,9 +15,9 @@ typedef struct ExerciseLink {
     ExerciseSink   *sink;
     void           *user;
     bool            stopped;
-    uint64_t        number;       /* of datagrams generated */
+    uint64_t        number; /* of datagrams generated */
     ExerciseCounts  counts;
-    size_t          pending, held;  /* octets of a bundle; of a datagram reordered with the next */
+    size_t          pending, held; /* octets of a bundle; of a datagram reordered with the next */
     double          pending_s;
     uint8_t         bundle[link_capacity], behind[link_capacity];
 } ExerciseLink;

@@ -5,9 +5,9 @@
 
 /* ---- keys ------------------------------------------------------------------------------------- */
 
-#define AT(member) SETTING_AT(Scenario, member)
+#define AT(member)    SETTING_AT(Scenario, member)
 #define GROUP(member) SETTING_AT(ScenarioGroup, member)
-#define SHOT(member) SETTING_AT(ScenarioShot, member)
+#define SHOT(member)  SETTING_AT(ScenarioShot, member)
 
 static const Setting group_keys[] = {
     {"name", SETTING_TEXT, GROUP(name), 0, 0, NULL, "", "marking; the id is appended"},
@@ -17,7 +17,8 @@ static const Setting group_keys[] = {
     {"force", SETTING_INT, GROUP(force), 0, 255, NULL, "", "1 friendly, 2 opposing, 3 neutral"},
     {"count", SETTING_INT, GROUP(count), 1, 50000, NULL, "", "number of entities"},
     {"columns", SETTING_INT, GROUP(columns), 1, 1000, NULL, "", "side by side"},
-    {"spacing_m", SETTING_DOUBLE, GROUP(spacing_m), 0, 1e4, NULL, "m", "distance from each entity to the next one behind it"},
+    {"spacing_m", SETTING_DOUBLE, GROUP(spacing_m), 0, 1e4, NULL, "m",
+     "distance from each entity to the next one behind it"},
     {"column_m", SETTING_DOUBLE, GROUP(column_m), 0, 1e4, NULL, "m", "distance between columns"},
     {"spread_m", SETTING_DOUBLE, GROUP(spread_m), 0, 1e4, NULL, "m",
      "largest random displacement from their places, along and across"},
@@ -26,8 +27,10 @@ static const Setting group_keys[] = {
     {"route_m", SETTING_NUMBERS, GROUP(route_m), -50000, 50000, NULL, "m", "[[x, y], ...] east and north of the place"},
     {"loop", SETTING_BOOL, GROUP(loop), 0, 1, NULL, "", "the route is repeated"},
     {"speed_mps", SETTING_DOUBLE, GROUP(speed_mps), 0, 2000, NULL, "m/s", ""},
-    {"unsteady_m", SETTING_DOUBLE, GROUP(unsteady_m), 0, 100, NULL, "m", "amplitude of the motion ahead and behind of its place; period 25 s"},
-    {"heading_deg", SETTING_DOUBLE, GROUP(heading_deg), -360, 360, NULL, "deg", "of entities that stand, clockwise from north"},
+    {"unsteady_m", SETTING_DOUBLE, GROUP(unsteady_m), 0, 100, NULL, "m",
+     "amplitude of the motion ahead and behind of its place; period 25 s"},
+    {"heading_deg", SETTING_DOUBLE, GROUP(heading_deg), -360, 360, NULL, "deg",
+     "of entities that stand, clockwise from north"},
     {"height_m", SETTING_DOUBLE, GROUP(height_m), -1000, 100000, NULL, "m", "above the ground at each point"},
     {"start_s", SETTING_DOUBLE, GROUP(start_s), 0, 1e6, NULL, "s",
      "stands until then; absent: moves from the beginning"},
@@ -36,7 +39,8 @@ static const Setting group_keys[] = {
     {"appears_s", SETTING_DOUBLE, GROUP(appears_s), 0, 1e6, NULL, "s", "no report before then"},
     {"leaves_s", SETTING_DOUBLE, GROUP(leaves_s), 0, 1e6, NULL, "s", "no report afterwards"},
     {"leaves", SETTING_TEXT, GROUP(leaves), 0, 0, "silent|deactivated|removed", "", "how it leaves"},
-    {"turret", SETTING_TEXT, GROUP(turret), 0, 0, "none|still|swing", "", "articulation reported for primary turret and gun"},
+    {"turret", SETTING_TEXT, GROUP(turret), 0, 0, "none|still|swing", "",
+     "articulation reported for primary turret and gun"},
     {"dust", SETTING_TEXT, GROUP(dust), 0, 0, "auto|none|small|medium|large", "", "dust trail reported while it moves"},
     {"engine", SETTING_BOOL, GROUP(engine), 0, 1, NULL, "", "runs"},
     {"parked", SETTING_BOOL, GROUP(parked), 0, 1, NULL, "", "an aircraft stands on the ground"},
@@ -67,7 +71,8 @@ static const Setting shot_keys[] = {
     {"weave_m", SETTING_DOUBLE, SHOT(weave_m), 0, 100, NULL, "m", "about it"},
     {"hit", SETTING_TEXT, SHOT(hit), 0, 0, "entity|ground|miss", "",
      "the entity, the ground beside it, or past it into the air"},
-    {"damage", SETTING_TEXT, SHOT(damage), 0, 0, "none|slight|moderate|destroyed", "", "damage of the entity that is hit"},
+    {"damage", SETTING_TEXT, SHOT(damage), 0, 0, "none|slight|moderate|destroyed", "",
+     "damage of the entity that is hit"},
     {"silent_s", SETTING_DOUBLE, SHOT(silent_s), 0, 1000, NULL, "s", "time between its last Entity State and its end"},
     {"dead_reckoning", SETTING_INT, SHOT(dead_reckoning), 0, 9, NULL, "", "algorithm 1 .. 9; 0: as dis.dead_reckoning"},
 };
@@ -80,7 +85,8 @@ static const Setting keys[] = {
     {"place.lon_deg", SETTING_DOUBLE, AT(place.lon_deg), -180, 180, NULL, "deg", ""},
     {"place.height_m", SETTING_DOUBLE, AT(place.height_m), -400, 8000, NULL, "m",
      "height of synthetic ground above the ellipsoid"},
-    {"place.turn_deg", SETTING_DOUBLE, AT(place.turn_deg), -360, 360, NULL, "deg", "rotation of all routes and places, clockwise"},
+    {"place.turn_deg", SETTING_DOUBLE, AT(place.turn_deg), -360, 360, NULL, "deg",
+     "rotation of all routes and places, clockwise"},
     {"ground.swell_m", SETTING_DOUBLE, AT(ground.swell_m), 0, 20, NULL, "m",
      "height of the swells of synthetic ground, which are 0.4 to 0.6 km long"},
     {"ground.store", SETTING_PATH, AT(ground.store), 0, 0, NULL, "",
@@ -102,10 +108,11 @@ static const Setting keys[] = {
      "an Attribute or Data PDU after each PDU, as some simulators send"},
     {"dis.updates", SETTING_BOOL, AT(dis.updates), 0, 1, NULL, "",
      "Entity State Update between heartbeats; versions 6 and 7"},
-    {"dis.stamps", SETTING_TEXT, AT(dis.stamps), 0, 0, 
+    {"dis.stamps", SETTING_TEXT, AT(dis.stamps), 0, 0,
      "relative|absolute|none|constant|counter|milliseconds|microseconds|unix|half-rate|double-rate", "",
      "kind of time stamps; all but the first two are errors that senders are known to make"},
-    {"dis.stamp_s", SETTING_DOUBLE, AT(dis.stamp_s), 0, 3600, NULL, "s", "time past the hour at which relative time stamps begin"},
+    {"dis.stamp_s", SETTING_DOUBLE, AT(dis.stamp_s), 0, 3600, NULL, "s",
+     "time past the hour at which relative time stamps begin"},
     {"dis.date", SETTING_TEXT, AT(dis.date), 0, 0, NULL, "",
      "UTC of the beginning in a recording, 2024-06-21T18:00:00Z"},
     {"dis.clock", SETTING_TEXT, AT(dis.clock), 0, 0, NULL, "",
@@ -125,7 +132,8 @@ static const Setting keys[] = {
     {"faults.reorder", SETTING_DOUBLE, AT(faults.reorder), 0, 1, NULL, "", "share overtaken by the next one"},
 };
 enum {
-    key_count = sizeof keys / sizeof *keys, group_key_count = sizeof group_keys / sizeof *group_keys,
+    key_count = sizeof keys / sizeof *keys,
+    group_key_count = sizeof group_keys / sizeof *group_keys,
     shot_key_count = sizeof shot_keys / sizeof *shot_keys
 };
 
@@ -133,16 +141,39 @@ enum {
 
 static ScenarioGroup default_group(void)
 {
-    return (ScenarioGroup){.name = "Entity", .type = "tank", .count = 1, .columns = 1, .force = 1, .spacing_m = 40,
-                           .column_m = 40, .engine = true, .start_s = NAN, .stop_s = NAN, .appears_s = NAN,
-                           .leaves_s = NAN, .leaves = "deactivated", .turret = "none", .dust = "auto"};
+    return (ScenarioGroup){.name = "Entity",
+                           .type = "tank",
+                           .count = 1,
+                           .columns = 1,
+                           .force = 1,
+                           .spacing_m = 40,
+                           .column_m = 40,
+                           .engine = true,
+                           .start_s = NAN,
+                           .stop_s = NAN,
+                           .appears_s = NAN,
+                           .leaves_s = NAN,
+                           .leaves = "deactivated",
+                           .turret = "none",
+                           .dust = "auto"};
 }
 
 static ScenarioShot default_shot(void)
 {
-    return (ScenarioShot){.name = "Missile", .type = "missile", .force = 1, .rounds = 1, .every_s = 6, .launch_mps = 65,
-                          .boost_mps = 280, .boost_s = 0.6, .drag_mps2 = 5, .loft_m = 3, .weave_m = 0.8, .entity = true,
-                          .hit = "entity", .damage = "destroyed"};
+    return (ScenarioShot){.name = "Missile",
+                          .type = "missile",
+                          .force = 1,
+                          .rounds = 1,
+                          .every_s = 6,
+                          .launch_mps = 65,
+                          .boost_mps = 280,
+                          .boost_s = 0.6,
+                          .drag_mps2 = 5,
+                          .loft_m = 3,
+                          .weave_m = 0.8,
+                          .entity = true,
+                          .hit = "entity",
+                          .damage = "destroyed"};
 }
 
 /* Capacity for one more, doubled at each power of two. NULL: too many, or no memory. */
@@ -159,7 +190,7 @@ static void *grown(void **items, int count, int most, size_t size)
 
 static void *add_group(void *owner)
 {
-    Scenario      *s    = owner;
+    Scenario      *s = owner;
     void          *room = s->group;
     ScenarioGroup *item = grown(&room, s->group_count, scenario_max_groups, sizeof *item);
     s->group = room;
@@ -171,7 +202,7 @@ static void *add_group(void *owner)
 
 static void *add_shot(void *owner)
 {
-    Scenario     *s    = owner;
+    Scenario     *s = owner;
     void         *room = s->shot;
     ScenarioShot *item = grown(&room, s->shot_count, scenario_max_shots, sizeof *item);
     s->shot = room;
@@ -182,22 +213,40 @@ static void *add_shot(void *owner)
 }
 
 #define ALL_KEYS "`pitviper exercise --keys`"
-static const SettingTable group_table = {.module = "scenario", .row = group_keys, .count = group_key_count,
-                                         .line_at = offsetof(ScenarioGroup, line), .all_keys = ALL_KEYS};
-static const SettingTable shot_table = {.module = "scenario", .row = shot_keys, .count = shot_key_count,
-                                        .line_at = offsetof(ScenarioShot, line), .all_keys = ALL_KEYS};
-static const SettingList lists[] = {{"vehicles", &group_table, add_group}, {"shots", &shot_table, add_shot}};
-static const SettingTable table = {.module = "scenario", .row = keys, .count = key_count, .list = lists,
-                                   .list_count = 2, .all_keys = ALL_KEYS};
+static const SettingTable group_table = {.module = "scenario",
+                                         .row = group_keys,
+                                         .count = group_key_count,
+                                         .line_at = offsetof(ScenarioGroup, line),
+                                         .all_keys = ALL_KEYS};
+static const SettingTable shot_table = {.module = "scenario",
+                                        .row = shot_keys,
+                                        .count = shot_key_count,
+                                        .line_at = offsetof(ScenarioShot, line),
+                                        .all_keys = ALL_KEYS};
+static const SettingList  lists[] = {{"vehicles", &group_table, add_group}, {"shots", &shot_table, add_shot}};
+static const SettingTable table = {
+    .module = "scenario", .row = keys, .count = key_count, .list = lists, .list_count = 2, .all_keys = ALL_KEYS};
 
 static Scenario default_scenario(void)
 {
-    return (Scenario){.duration_s = 30, .scale = 1, .seed = 1,
+    return (Scenario){.duration_s = 30,
+                      .scale = 1,
+                      .seed = 1,
                       .place = {.lat_deg = 36, .lon_deg = -123, .height_m = 120},
                       .ground = {.swell_m = 1.5, .smooth_m = 2, .vertical = "file"},
-                      .dis = {.site = 1, .application = 3001, .exercise = 1, .version = 7, .mtu = 1400,
-                              .dead_reckoning = 4, .stamps = "relative", .stamp_s = 1350, .heartbeat_s = 5,
-                              .threshold_m = 1, .threshold_deg = 3, .rate_hz = 60, .announce_per_s = 4000}};
+                      .dis = {.site = 1,
+                              .application = 3001,
+                              .exercise = 1,
+                              .version = 7,
+                              .mtu = 1400,
+                              .dead_reckoning = 4,
+                              .stamps = "relative",
+                              .stamp_s = 1350,
+                              .heartbeat_s = 5,
+                              .threshold_m = 1,
+                              .threshold_deg = 3,
+                              .rate_hz = 60,
+                              .announce_per_s = 4000}};
 }
 
 /* ---- checks across keys ------------------------------------------------------------------------- */
@@ -205,7 +254,7 @@ static Scenario default_scenario(void)
 bool scenario_type_parse(DisEntityType *out, const char *text)
 {
     static const int most[7] = {255, 255, 65535, 255, 255, 255, 255};
-    int  field[7] = {0}, count = 0;
+    int              field[7] = {0}, count = 0;
     for (const char *at = text;; at++) {
         int digits = 0;
         for (; *at >= '0' && *at <= '9' && digits < 6; at++, digits++) field[count] = 10 * field[count] + (*at - '0');
@@ -233,15 +282,15 @@ static int munitions(const ScenarioShot *shot) { return shot->entity ? shot->rou
 bool scenario_ids(int *ids, const Scenario *scenario)
 {
     enum { all = 65534 };
-    bool taken[all] = {false}, fits = true;
+    bool      taken[all] = {false}, fits = true;
     const int groups = scenario->group_count, items = groups + scenario->shot_count;
     /* those that name theirs first */
     for (int pass = 0; pass < 2 && fits; pass++) {
         int next = 1;
         for (int i = 0; i < items && fits; i++) {
             const int named = i < groups ? scenario->group[i].id : scenario->shot[i - groups].id;
-            const int size  = i < groups ? scenario_group_size(scenario, &scenario->group[i])
-                                         : munitions(&scenario->shot[i - groups]);
+            const int size = i < groups ? scenario_group_size(scenario, &scenario->group[i])
+                                        : munitions(&scenario->shot[i - groups]);
             if (size == 0) ids[i] = 0;
             if ((named != 0) != (pass == 0) || size == 0) continue;
             int first = named ? named : next;
@@ -266,11 +315,10 @@ bool scenario_find(int *group, int *member, const Scenario *scenario, const int 
     if (!blank || !text_to_long(&id, blank + 1)) return false;
     for (int g = 0; g < scenario->group_count; g++) {
         const ScenarioGroup *each = &scenario->group[g];
-        if (strlen(each->name) != (size_t)(blank - name) ||
-            strncmp(each->name, name, (size_t)(blank - name)) != 0)
+        if (strlen(each->name) != (size_t)(blank - name) || strncmp(each->name, name, (size_t)(blank - name)) != 0)
             continue;
         if (id < ids[g] || id >= ids[g] + scenario_group_size(scenario, each)) continue;
-        *group  = g;
+        *group = g;
         *member = (int)(id - ids[g]);
         return true;
     }
@@ -286,7 +334,8 @@ static bool type_fits(const Scenario *s, int line, const char *key, const char *
     char shown[128];
     text_escape(shown, sizeof shown, type, strlen(type));
     log_error("scenario: %s:%d: %s: type: '%s' is neither seven numbers with dots, 1.1.222.1.1.1.0, nor a model of "
-              "etc/catalog.csv", s->path, line, key, shown);
+              "etc/catalog.csv",
+              s->path, line, key, shown);
     return false;
 }
 
@@ -348,7 +397,8 @@ static bool shot_fits(const Scenario *s, const int *ids, const ScenarioShot *sho
         return false;
     }
     if (!*shot->at && strcmp(shot->hit, "entity") == 0) {
-        log_error("scenario: %s:%d: shots: hit: a place is not an entity; use hit: ground, or miss", s->path, shot->line);
+        log_error("scenario: %s:%d: shots: hit: a place is not an entity; use hit: ground, or miss", s->path,
+                  shot->line);
         return false;
     }
     if (shot->launch_m.count != 0 && shot->launch_m.count != 3) {
@@ -437,9 +487,9 @@ void scenario_destroy(Scenario *scenario)
 
 void scenario_write_keys(FILE *to)
 {
-    const Scenario      s     = default_scenario();
+    const Scenario      s = default_scenario();
     const ScenarioGroup group = default_group();
-    const ScenarioShot  shot  = default_shot();
+    const ScenarioShot  shot = default_shot();
     settings_write(to, &table, &s, NULL);
     fputs("\nvehicles:  # a list, `- name: ...`; each item has\n", to);
     settings_write(to, &group_table, &group, NULL);

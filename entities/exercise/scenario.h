@@ -8,25 +8,28 @@
 #include "dis/pdu/pdu.h"
 
 enum {
-    scenario_name_size = 24, scenario_type_size = 40, scenario_path_size = 1024,
-    scenario_max_groups = 1000, scenario_max_shots = 1000,
+    scenario_name_size = 24,
+    scenario_type_size = 40,
+    scenario_path_size = 1024,
+    scenario_max_groups = 1000,
+    scenario_max_shots = 1000,
     scenario_max_entities = 50000, /* clones and munitions */
     scenario_max_rounds = 20000,
 };
 
 /* One line of `vehicles`: one entity, or many of one kind on one route. x east, y north of the place, metres. */
 typedef struct ScenarioGroup {
-    char       name[scenario_name_size]; /* marking and name for shots: `NAME ID` */
-    int        line;                     /* in the file */
-    char       type[scenario_type_size]; /* seven numbers with dots, or a model of etc/catalog.csv */
+    char       name[scenario_name_size];                  /* marking and name for shots: `NAME ID` */
+    int        line;                                      /* in the file */
+    char       type[scenario_type_size];                  /* seven numbers with dots, or a model of etc/catalog.csv */
     int        id, count, columns, force, dead_reckoning; /* id 0: the next free one; dead_reckoning 0: that of dis */
     double     spacing_m, column_m, spread_m, behind_m;
-    NumberList route_m;                  /* x, y, x, y ... smooth through them; a single point: stationary */
+    NumberList route_m; /* x, y, x, y ... smooth through them; a single point: stationary */
     bool       loop, engine, parked;
     double     speed_mps, unsteady_m, heading_deg, height_m;
     double     start_s, stop_s, appears_s, leaves_s; /* NaN: moving from the beginning, to the end of the route, ... */
     char       leaves[16], turret[8], dust[8];
-    int        appearance;               /* more bits */
+    int        appearance; /* more bits */
 } ScenarioGroup;
 
 /* One line of `shots`: a missile or rounds. */
@@ -34,11 +37,11 @@ typedef struct ScenarioShot {
     char       name[scenario_name_size], type[scenario_type_size];
     int        line;
     char       from[2 * scenario_name_size], at[2 * scenario_name_size]; /* `NAME ID`; at empty: at_m */
-    NumberList at_m, launch_m;           /* x, y of a place; forward, right, down of the firing entity */
+    NumberList at_m, launch_m; /* x, y of a place; forward, right, down of the firing entity */
     int        id, force, rounds, dead_reckoning;
     double     time_s, every_s, launch_mps, boost_mps, boost_s, drag_mps2, loft_m, weave_m, silent_s;
     char       hit[8], damage[12];
-    bool       entity;                   /* it sends Entity States */
+    bool       entity; /* it sends Entity States */
 } ScenarioShot;
 
 typedef struct Scenario {
@@ -76,7 +79,7 @@ Status scenario_set(Scenario *scenario, const char *key, const char *value, cons
 Status scenario_check(const Scenario *scenario);
 void   scenario_destroy(Scenario *scenario); /* accepts zeroes */
 /* Every key, with range and default, as text for people. */
-void   scenario_write_keys(FILE *to);
+void scenario_write_keys(FILE *to);
 
 /* How many of a group there are: count, times `scale` where count is above 1. */
 int scenario_group_size(const Scenario *scenario, const ScenarioGroup *group);

@@ -9,10 +9,12 @@
 #include <stdlib.h>
 
 /* The functions of assimp that are called here. */
-#define ASSIMP(X)                                                                                                     \
-    X(aiCreatePropertyStore) X(aiGetErrorString) X(aiGetMaterialColor) X(aiGetMaterialString)                          \
-    X(aiGetMaterialTextureCount) X(aiImportFileExWithProperties) X(aiIsExtensionSupported)                             \
-    X(aiSetImportPropertyInteger)
+#define ASSIMP(X)                                                                                                      \
+    X(aiCreatePropertyStore)                                                                                           \
+    X(aiGetErrorString)                                                                                                \
+    X(aiGetMaterialColor)                                                                                              \
+    X(aiGetMaterialString) X(aiGetMaterialTextureCount) X(aiImportFileExWithProperties) X(aiIsExtensionSupported)      \
+        X(aiSetImportPropertyInteger)
 LIBRARY(assimp_library, ASSIMP, "assimp", PITVIPER_ASSIMP_FILE, "libassimp5");
 
 /* ---- assimp's files --------------------------------------------------------------------------------- */
@@ -20,27 +22,27 @@ LIBRARY(assimp_library, ASSIMP, "assimp", PITVIPER_ASSIMP_FILE, "libassimp5");
 /* What the text of the model itself says, which assimp does not hand on. */
 typedef struct FileText {
     const char *extension;
-    bool has_unit, has_up;      /* FBX, COLLADA */
-    char unit[24], up[24];      /* COLLADA: as it says it */
-    double stated_m, comment_m; /* unit that the format, or a comment, names; 0: none */
-    char stated[24], comment[24];
+    bool        has_unit, has_up;    /* FBX, COLLADA */
+    char        unit[24], up[24];    /* COLLADA: as it says it */
+    double      stated_m, comment_m; /* unit that the format, or a comment, names; 0: none */
+    char        stated[24], comment[24];
 } FileText;
 
 typedef struct Files {
     ReaderFiles *files;
-    ReaderSaid *said;
+    ReaderSaid  *said;
     ImportScene *scene;
-    FileText text;
-    Status status; /* of the model's own text */
-    char *bytes;   /* that text; NULL: not read yet. assimp opens it several times */
-    size_t octets;
+    FileText     text;
+    Status       status; /* of the model's own text */
+    char        *bytes;  /* that text; NULL: not read yet. assimp opens it several times */
+    size_t       octets;
 } Files;
 
 typedef struct OpenFile {
     struct aiFile file;
-    char *bytes;
-    size_t octets, at;
-    bool shared; /* with others that read it */
+    char         *bytes;
+    size_t        octets, at;
+    bool          shared; /* with others that read it */
 } OpenFile;
 
 static size_t file_read(struct aiFile *file, char *out, size_t size, size_t count)
@@ -62,11 +64,11 @@ static size_t file_write(struct aiFile *file, const char *in, size_t size, size_
 
 static size_t file_tell(struct aiFile *file) { return ((OpenFile *)file)->at; }
 static size_t file_size(struct aiFile *file) { return ((OpenFile *)file)->octets; }
-static void file_flush(struct aiFile *file) { (void)file; }
+static void   file_flush(struct aiFile *file) { (void)file; }
 
 static enum aiReturn file_seek(struct aiFile *file, size_t offset, enum aiOrigin origin)
 {
-    OpenFile *f = (OpenFile *)file;
+    OpenFile    *f = (OpenFile *)file;
     const size_t from = origin == aiOrigin_SET ? 0 : origin == aiOrigin_CUR ? f->at : f->octets;
     const size_t to = from + offset; /* a negative offset arrives as a large one, and wraps back */
     if (to > f->octets) return aiReturn_FAILURE;
@@ -91,14 +93,14 @@ static bool find_after(char out[24], const char *bytes, size_t octets, const cha
 static Status see_model(Files *file)
 {
     FileText *t = &file->text;
-    char none[24];
+    char      none[24];
     if (strcmp(t->extension, "fbx") == 0) {
         t->has_unit = find_after(none, file->bytes, file->octets, "UnitScaleFactor", "");
         t->has_up = find_after(none, file->bytes, file->octets, "UpAxis", "");
     } else if (strcmp(t->extension, "dae") == 0) {
-        const char *unit = memmem(file->bytes, file->octets, "<unit", 5);
+        const char  *unit = memmem(file->bytes, file->octets, "<unit", 5);
         const size_t left = unit ? file->octets - (size_t)(unit - file->bytes) : 0;
-        const char *end = unit ? memchr(unit, '>', left) : NULL;
+        const char  *end = unit ? memchr(unit, '>', left) : NULL;
         t->has_unit = end && find_after(t->unit, unit, (size_t)(end - unit), "meter=\"", "\"");
         t->has_up = find_after(t->up, file->bytes, file->octets, "<up_axis>", "< \t\r\n");
     } else {
@@ -116,8 +118,8 @@ static struct aiFile *files_open(struct aiFileIO *io, const char *name, const ch
     Files *files = (Files *)io->UserData;
     (void)mode;
     const bool is_model = strcmp(name, files->files->shown) == 0;
-    OpenFile *f = calloc(1, sizeof *f);
-    Status status = f ? STATUS_OK : STATUS_NO_MEMORY;
+    OpenFile  *f = calloc(1, sizeof *f);
+    Status     status = f ? STATUS_OK : STATUS_NO_MEMORY;
     if (status == STATUS_OK && !is_model) status = reader_read(&f->bytes, &f->octets, files->files, name);
     if (status == STATUS_OK && is_model && !files->bytes) {
         status = reader_read(&files->bytes, &files->octets, files->files, name);
@@ -152,19 +154,17 @@ static void copy_name(char out[model_name_size], const struct aiString *name)
 }
 
 typedef struct Flat {
-    ImportScene scene;
+    ImportScene           scene;
     const struct aiScene *source;
-    const char *said; /* what is wrong */
+    const char           *said; /* what is wrong */
 } Flat;
 
 /* Counts what the nodes below draw, meshes as often as they are drawn. */
 static bool count_node(Flat *flat, const struct aiNode *node, int depth)
 {
     ImportScene *s = &flat->scene;
-    if (depth > import_max_depth)
-        flat->said = "more than 256 levels of nodes";
-    else if (++s->node_count > import_max_nodes)
-        flat->said = "more than 65536 nodes";
+    if (depth > import_max_depth) flat->said = "more than 256 levels of nodes";
+    else if (++s->node_count > import_max_nodes) flat->said = "more than 65536 nodes";
     for (unsigned i = 0; i < node->mNumMeshes && !flat->said; i++) {
         const struct aiMesh *mesh = flat->source->mMeshes[node->mMeshes[i]];
         if (!(mesh->mPrimitiveTypes & aiPrimitiveType_TRIANGLE)) continue;
@@ -172,8 +172,7 @@ static bool count_node(Flat *flat, const struct aiNode *node, int depth)
             flat->said = "more than 8 M vertices";
         else if (mesh->mNumFaces > (unsigned)(import_max_triangles - s->triangle_count))
             flat->said = "more than 8 M triangles";
-        else if (++s->mesh_count > import_max_meshes)
-            flat->said = "more than 16384 parts";
+        else if (++s->mesh_count > import_max_meshes) flat->said = "more than 16384 parts";
         if (flat->said) return false;
         s->vertex_count += (int)mesh->mNumVertices;
         s->triangle_count += (int)mesh->mNumFaces;
@@ -193,7 +192,7 @@ static void fill_mesh(ImportScene *s, const struct aiMesh *mesh, int node)
                       .has_normals = mesh->mNormals != NULL};
     for (unsigned v = 0; v < mesh->mNumVertices; v++) {
         double *p = s->vertex[s->vertex_count];
-        float *n = s->normal[s->vertex_count++];
+        float  *n = s->normal[s->vertex_count++];
         p[0] = mesh->mVertices[v].x, p[1] = mesh->mVertices[v].y, p[2] = mesh->mVertices[v].z;
         if (mesh->mNormals) n[0] = mesh->mNormals[v].x, n[1] = mesh->mNormals[v].y, n[2] = mesh->mNormals[v].z;
     }
@@ -207,10 +206,10 @@ static void fill_mesh(ImportScene *s, const struct aiMesh *mesh, int node)
 
 static void fill_node(Flat *flat, const struct aiNode *node, int parent)
 {
-    ImportScene *s = &flat->scene;
+    ImportScene              *s = &flat->scene;
     const struct aiMatrix4x4 *t = &node->mTransformation;
-    const int index = s->node_count++;
-    ImportNode *n = &s->node[index];
+    const int                 index = s->node_count++;
+    ImportNode               *n = &s->node[index];
     copy_name(n->name, &node->mName);
     n->parent = parent;
     const double m[12] = {t->a1, t->a2, t->a3, t->a4, t->b1, t->b2, t->b3, t->b4, t->c1, t->c2, t->c3, t->c4};
@@ -224,7 +223,7 @@ static void fill_node(Flat *flat, const struct aiNode *node, int parent)
 
 static void fill_material(ImportMaterial *out, const struct aiMaterial *material)
 {
-    struct aiString name = {0};
+    struct aiString  name = {0};
     struct aiColor4D colour;
     if (aiGetMaterialString(material, AI_MATKEY_NAME, &name) == aiReturn_SUCCESS) copy_name(out->name, &name);
     out->has_colour = aiGetMaterialColor(material, AI_MATKEY_BASE_COLOR, &colour) == aiReturn_SUCCESS ||
@@ -265,8 +264,8 @@ static double metadata(const struct aiScene *source, const char *key, double oth
     for (unsigned i = 0; m && i < m->mNumProperties; i++) {
         if (strcmp(m->mKeys[i].data, key) != 0) continue;
         const void *data = m->mValues[i].mData;
-        char text[32];
-        double value;
+        char        text[32];
+        double      value;
         switch (m->mValues[i].mType) {
         case AI_INT32:
             return *(const int32_t *)data;
@@ -298,9 +297,9 @@ static bool fbx_axis(double out[3], const struct aiScene *source, const char *ax
  * CoordAxis, to the right of who looks, only tells left-handed axes, which are mirrored. */
 static void fbx_frame(ImportScene *s, const struct aiScene *source, const FileText *text, ReaderSaid *said)
 {
-    double forward[3], up[3], right[3], coordinate[3];
+    double       forward[3], up[3], right[3], coordinate[3];
     const double factor = metadata(source, "UnitScaleFactor", 1);
-    const bool fine = factor > 1e-6 && factor < 1e9;
+    const bool   fine = factor > 1e-6 && factor < 1e9;
     if (!fine)
         reader_warns(said, "UnitScaleFactor %g is no unit: taken as centimetres; `scale` in its sidecar says otherwise",
                      factor);
@@ -332,8 +331,8 @@ static void fbx_frame(ImportScene *s, const struct aiScene *source, const FileTe
 static void frame(ImportScene *s, const struct aiScene *source, const FileText *text, ReaderSaid *said)
 {
     const char *e = text->extension;
-    const bool printed = strcmp(e, "3mf") == 0 || strcmp(e, "amf") == 0;
-    const bool z_up = printed || strcmp(e, "ply") == 0 || strcmp(e, "stl") == 0;
+    const bool  printed = strcmp(e, "3mf") == 0 || strcmp(e, "amf") == 0;
+    const bool  z_up = printed || strcmp(e, "ply") == 0 || strcmp(e, "stl") == 0;
     memset(s->forward, 0, sizeof s->forward);
     memset(s->up, 0, sizeof s->up);
     s->forward[z_up ? 0 : 2] = 1;
@@ -345,19 +344,15 @@ static void frame(ImportScene *s, const struct aiScene *source, const FileText *
     if (strcmp(e, "dae") == 0) {
         if (text->has_unit)
             snprintf(s->unit_from, sizeof s->unit_from, "the file's <unit meter=\"%.20s\">, applied", text->unit);
-        else
-            snprintf(s->unit_from, sizeof s->unit_from, "COLLADA's default, metres: the file says none");
+        else snprintf(s->unit_from, sizeof s->unit_from, "COLLADA's default, metres: the file says none");
         if (text->has_up)
             snprintf(s->axes_from, sizeof s->axes_from, "the file's <up_axis> %.20s, turned to y up", text->up);
-        else
-            snprintf(s->axes_from, sizeof s->axes_from, "COLLADA's default: the file says none");
+        else snprintf(s->axes_from, sizeof s->axes_from, "COLLADA's default: the file says none");
     }
     if (text->stated_m > 0) {
         s->unit_m = text->stated_m;
-        if (text->stated[0])
-            snprintf(s->unit_from, sizeof s->unit_from, "the file's unit, %s", text->stated);
-        else
-            snprintf(s->unit_from, sizeof s->unit_from, "the format's default, millimetres: the file says none");
+        if (text->stated[0]) snprintf(s->unit_from, sizeof s->unit_from, "the file's unit, %s", text->stated);
+        else snprintf(s->unit_from, sizeof s->unit_from, "the format's default, millimetres: the file says none");
     }
     if (text->comment_m > 0 && text->comment_m != 1)
         reader_warns(
@@ -368,9 +363,9 @@ static void frame(ImportScene *s, const struct aiScene *source, const FileText *
 
 static Status assimp_read(ImportScene *s, ReaderSaid *said, ReaderFiles *files, const char *extension)
 {
-    Flat flat = {0};
-    Files own = {.files = files, .said = said, .scene = s, .text = {.extension = extension}};
-    struct aiFileIO io = {files_open, files_close, (char *)&own};
+    Flat                    flat = {0};
+    Files                   own = {.files = files, .said = said, .scene = s, .text = {.extension = extension}};
+    struct aiFileIO         io = {files_open, files_close, (char *)&own};
     struct aiPropertyStore *store = aiCreatePropertyStore();
     if (!store) return STATUS_NO_MEMORY;
     /* later versions turn FBX by themselves, but do not scale it */
@@ -401,7 +396,7 @@ static Status assimp_read(ImportScene *s, ReaderSaid *said, ReaderFiles *files, 
 
 Status import_assimp(ImportScene *out, const char *path, const char *extension)
 {
-    char dotted[40];
+    char   dotted[40];
     Status status = library_load(&assimp_library);
     if (status != STATUS_OK) return status;
     snprintf(dotted, sizeof dotted, ".%s", extension);

@@ -16,7 +16,7 @@ static bool is_blank(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
 /* A word of a text: what is between blanks. */
 typedef struct Word {
     const char *at;
-    size_t length;
+    size_t      length;
 } Word;
 
 /* The next word of [*at, end), which it moves; length 0: none. */
@@ -47,16 +47,16 @@ static bool word_is(Word word, const char *text)
 enum { most_shift = 60 }; /* of an exponent: beyond it a number is 0 or too large anyway */
 
 typedef struct Out {
-    char *text;
+    char  *text;
     size_t octets, room;
-    bool no_memory;
+    bool   no_memory;
 } Out;
 
 static void put(Out *out, const char *bytes, size_t count)
 {
     if (out->octets + count + 1 > out->room && !out->no_memory) {
         const size_t room = 2 * out->room + count + 4096;
-        char *larger = realloc(out->text, room);
+        char        *larger = realloc(out->text, room);
         out->no_memory = !larger;
         if (larger) out->text = larger, out->room = room;
     }
@@ -69,7 +69,7 @@ static bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 static void put_index(Out *out, long value)
 {
-    char text[16];
+    char   text[16];
     size_t at = sizeof text;
     for (long rest = labs(value); rest > 0; rest /= 10) text[--at] = (char)('0' + rest % 10);
     if (value < 0) text[--at] = '-';
@@ -81,9 +81,9 @@ static void put_index(Out *out, long value)
 static bool put_number(Out *out, Word word)
 {
     const char *at = word.at, *end = at + word.length;
-    char digits[512];
-    int count = 0, before = 0, shift = 0;
-    bool point = false;
+    char        digits[512];
+    int         count = 0, before = 0, shift = 0;
+    bool        point = false;
     const char *plain = at + (at < end && *at == '-'), *fraction = plain;
     while (fraction < end && is_digit(*fraction)) fraction++;
     if (fraction > plain && (fraction == end || (*fraction == '.' && end - fraction > 1))) {
@@ -103,22 +103,19 @@ static bool put_number(Out *out, Word word)
     for (; at < end && (is_digit(*at) || (*at == '.' && !point)); at++) {
         point = point || *at == '.';
         if (*at == '.') continue;
-        if (count < (int)sizeof digits - 2 * most_shift)
-            digits[count++] = *at;
-        else if (point)
-            continue; /* digits that no double holds */
-        else
-            return false;
+        if (count < (int)sizeof digits - 2 * most_shift) digits[count++] = *at;
+        else if (point) continue; /* digits that no double holds */
+        else return false;
         before += !point;
     }
     if (count == 0) return false;
     if (at < end && (*at == 'e' || *at == 'E')) {
-        char exponent[16];
+        char         exponent[16];
         const size_t length = (size_t)(end - at - 1);
         if (length == 0 || length >= sizeof exponent) return false;
         memcpy(exponent, at + 1, length);
         exponent[length] = 0;
-        char *rest;
+        char      *rest;
         const long value = strtol(exponent, &rest, 10);
         if (*rest || isspace((unsigned char)*exponent)) return false;
         shift = value > most_shift ? most_shift : value < -most_shift ? -most_shift : (int)value;
@@ -143,8 +140,8 @@ static bool put_number(Out *out, Word word)
 /* `v` x y z [w | r g b ...], `vn` x y z: numbers beyond those are colours. */
 static bool put_numbers(Out *out, const char *name, const char *at, const char *end)
 {
-    Word word[8];
-    int count = 0;
+    Word       word[8];
+    int        count = 0;
     const bool normal = name[1] == 'n';
     for (Word w; (w = next_word(&at, end)).length > 0 && w.at[0] != '#';)
         if (count < 8) word[count++] = w;
@@ -162,10 +159,10 @@ static bool put_numbers(Out *out, const char *name, const char *at, const char *
 /* Reads `5`, `-2`, `+1`, `007`; false: none, or 0. */
 static bool read_index(long *out, const char **at, const char *end)
 {
-    const bool minus = *at < end && **at == '-';
+    const bool  minus = *at < end && **at == '-';
     const char *from = *at + (*at < end && (**at == '-' || **at == '+'));
-    long value = 0;
-    int digits = 0;
+    long        value = 0;
+    int         digits = 0;
     for (; from < end && is_digit(*from) && value < 1000000000; from++, digits++) value = 10 * value + (*from - '0');
     *at = from;
     *out = minus ? -value : value;
@@ -176,12 +173,12 @@ static bool read_index(long *out, const char **at, const char *end)
 static bool put_corners(Out *out, const char *name, const char *at, const char *end)
 {
     const char *again = at;
-    bool normals = name[0] == 'f';
+    bool        normals = name[0] == 'f';
     for (int pass = 0; pass < 2; pass++, at = again) {
         if (pass) put(out, name, 1);
         for (Word w; (w = next_word(&at, end)).length > 0 && w.at[0] != '#';) {
             const char *c = w.at, *stop = w.at + w.length;
-            long v, vt, vn = 0;
+            long        v, vt, vn = 0;
             if (!read_index(&v, &c, stop)) return false;
             if (c < stop && *c == '/') {
                 c++;
@@ -205,7 +202,7 @@ static bool put_corners(Out *out, const char *name, const char *at, const char *
 
 static void look_for(ReaderFiles *files, ReaderSaid *said, const char *at, const char *end)
 {
-    char path[1024], *bytes = NULL;
+    char   path[1024], *bytes = NULL;
     size_t octets;
     while (at < end && isspace((unsigned char)*at)) at++;
     if (!files || at == end) return;
@@ -219,11 +216,11 @@ static void look_for(ReaderFiles *files, ReaderSaid *said, const char *at, const
 Status import_obj_plain(char **text, size_t *octets, int lost[IMPORT_LOST_COUNT], ReaderSaid *said, ReaderFiles *files)
 {
     const char *at = *text, *end = *text + *octets;
-    Out out = {0}, joined = {0};
-    Status status = STATUS_OK;
+    Out         out = {0}, joined = {0};
+    Status      status = STATUS_OK;
     for (int line = 1; at < end && status == STATUS_OK;) {
         /* a statement: lines that end with `\` go on */
-        const int first = line;
+        const int   first = line;
         const char *s = at, *tail = at;
         joined.octets = 0;
         for (bool more = true; more && at < end; line++) {
@@ -245,16 +242,12 @@ Status import_obj_plain(char **text, size_t *octets, int lost[IMPORT_LOST_COUNT]
         if (joined.octets > 0) s = joined.text, tail = s + joined.octets;
         while (tail > s && (isspace((unsigned char)tail[-1]) || tail[-1] == '\\')) tail--;
         const Word word = next_word(&s, tail);
-        bool fine = true;
+        bool       fine = true;
         if (word.length == 0 || word.at[0] == '#' || word_is(word, "vt")) continue;
-        if (word_is(word, "v"))
-            fine = put_numbers(&out, "v", s, tail);
-        else if (word_is(word, "vn"))
-            fine = put_numbers(&out, "vn", s, tail);
-        else if (word_is(word, "f"))
-            fine = put_corners(&out, "f", s, tail);
-        else if (word_is(word, "l"))
-            fine = put_corners(&out, "l", s, tail);
+        if (word_is(word, "v")) fine = put_numbers(&out, "v", s, tail);
+        else if (word_is(word, "vn")) fine = put_numbers(&out, "vn", s, tail);
+        else if (word_is(word, "f")) fine = put_corners(&out, "f", s, tail);
+        else if (word_is(word, "l")) fine = put_corners(&out, "l", s, tail);
         else {
             lost[LOST_OTHER] += word_is(word, "surf") || word_is(word, "curv");
             if (word_is(word, "mtllib")) look_for(files, said, s, tail);
@@ -286,7 +279,7 @@ Status import_obj_plain(char **text, size_t *octets, int lost[IMPORT_LOST_COUNT]
 /* Longest first: `centimetres` has `metres` in it. */
 static const struct {
     const char *word;
-    double unit_m;
+    double      unit_m;
 } units[] = {{"millimet", 0.001}, {"centimet", 0.01}, {"decimet", 0.1}, {"kilomet", 1000}, {"inches", 0.0254},
              {"inch", 0.0254},    {"feet", 0.3048},   {"foot", 0.3048}, {"yard", 0.9144},  {"meter", 1},
              {"metre", 1},        {"mm", 0.001},      {"cm", 0.01},     {"ft", 0.3048},    {"m", 1}};
@@ -297,15 +290,14 @@ double import_comment_unit(char word[24], const char *text, size_t octets)
     for (int line = 0; at < end && line < 200; line++) {
         const char *stop = memchr(at, '\n', (size_t)(end - at));
         if (!stop) stop = end;
-        Word first = next_word(&at, stop);
-        const bool comment =
-            first.length > 0 && (first.at[0] == '#' || word_is(first, "comment") ||
-                                 word_is(first, "obj_info") || (line == 0 && word_is(first, "solid")));
+        Word        first = next_word(&at, stop);
+        const bool  comment = first.length > 0 && (first.at[0] == '#' || word_is(first, "comment") ||
+                                                  word_is(first, "obj_info") || (line == 0 && word_is(first, "solid")));
         const char *unit = NULL;
         for (const char *c = first.at; comment && c + 4 <= stop && !unit; c++)
             if (strncasecmp(c, "unit", 4) == 0) unit = c;
         if (unit) {
-            char lower[200];
+            char   lower[200];
             size_t n = 0;
             for (const char *c = first.at; c < stop && n < sizeof lower - 1; c++)
                 lower[n++] = c >= unit && c < unit + 5    ? ' '
@@ -339,11 +331,11 @@ static size_t unzip_model(char *out, size_t size, const char *bytes, size_t octe
         if (!head || (size_t)(b + octets - head) < 30) return 0;
         const size_t name = head[26] | (size_t)head[27] << 8, extra = head[28] | (size_t)head[29] << 8;
         const size_t left = (size_t)(b + octets - head) - 30;
-        const int method = head[8] | head[9] << 8;
+        const int    method = head[8] | head[9] << 8;
         at = (size_t)(head - b) + 4;
         if (name < 6 || name + extra > left || memcmp(head + 30 + name - 6, ".model", 6) != 0) continue;
         const uint8_t *from = head + 30 + name + extra;
-        const size_t rest = left - name - extra;
+        const size_t   rest = left - name - extra;
         if (method == 0) {
             memcpy(out, from, rest < size ? rest : size);
             return rest < size ? rest : size;
@@ -365,7 +357,7 @@ static double printed_unit(char word[24], const char *text, size_t octets)
 {
     static const struct {
         const char *word;
-        double unit_m;
+        double      unit_m;
     } known[] = {{"micron", 1e-6}, {"millimeter", 0.001}, {"centimeter", 0.01}, {"inch", 0.0254},
                  {"foot", 0.3048}, {"feet", 0.3048},      {"meter", 1}};
     const char *element = memmem(text, octets, "<model", 6), *at;
@@ -387,9 +379,9 @@ static double drawing_unit(char word[24], const char *text, size_t octets)
 {
     static const double unit_m[] = {0, 0.0254, 0.3048, 1609.344, 0.001, 0.01, 1,  1000, 0,
                                     0, 0.9144, 0,      0,        1e-6,  0.1,  10, 100};
-    const char *at = memmem(text, octets, "$INSUNITS", 9), *end = text + octets;
-    char number[8] = "";
-    long long code;
+    const char         *at = memmem(text, octets, "$INSUNITS", 9), *end = text + octets;
+    char                number[8] = "";
+    long long           code;
     if (!at) return 0;
     at += 9;
     const bool integer = word_is(next_word(&at, end), "70");

@@ -12,7 +12,7 @@ bool gltf_room(void *list, int *room, int count, size_t size)
     void **at = list;
     if (count < *room) return true;
     const int more = 2 * *room + 16;
-    void *larger = realloc(*at, (size_t)more * size);
+    void     *larger = realloc(*at, (size_t)more * size);
     if (!larger) return false;
     *at = larger;
     *room = more;
@@ -48,7 +48,7 @@ static void place_from_parts(double out[12], const double t[3], const double q[4
 static Status node_place(double out[12], Gltf *g, const json_t *node)
 {
     double m[16], t[3] = {0, 0, 0}, q[4] = {0, 0, 0, 1}, s[3] = {1, 1, 1};
-    bool wrong = false;
+    bool   wrong = false;
     if (gltf_numbers(m, &wrong, node, "matrix", 16)) {
         for (int i = 0; i < 12; i++) out[i] = m[4 * (i % 4) + i / 4]; /* by columns there */
     } else {
@@ -80,11 +80,11 @@ static Status add_instances(GltfDrawn *drawn, Gltf *g, const json_t *attributes,
 {
     static const struct {
         const char *name;
-        int components;
+        int         components;
     } part[3] = {{"TRANSLATION", 3}, {"ROTATION", 4}, {"SCALE", 3}};
     double *numbers[3] = {0};
-    int count = -1;
-    Status status = STATUS_OK;
+    int     count = -1;
+    Status  status = STATUS_OK;
     for (int k = 0; k < 3 && status == STATUS_OK; k++) {
         int n;
         if (!json_object_get(attributes, part[k].name)) continue;
@@ -100,9 +100,9 @@ static Status add_instances(GltfDrawn *drawn, Gltf *g, const json_t *attributes,
     drawn->count = 0;
     for (int i = 0; i < count && status == STATUS_OK; i++) {
         static const double none[4] = {0, 0, 0, 1}, one[3] = {1, 1, 1};
-        char name[32];
-        double m[12];
-        int at;
+        char                name[32];
+        double              m[12];
+        int                 at;
         place_from_parts(m, numbers[0] ? numbers[0] + 3 * i : none, numbers[1] ? numbers[1] + 4 * i : none,
                          numbers[2] ? numbers[2] + 3 * i : one);
         snprintf(name, sizeof name, "instance_%d", i);
@@ -121,11 +121,11 @@ static Status walk(Gltf *g, const json_t *index, int parent, const double above[
             ? gltf_item(g, "nodes", (int)json_integer_value(index))
             : NULL;
     const char *name = json_string_value(json_object_get(node, "name"));
-    char unnamed[32];
-    double m[12];
-    int at;
-    size_t i;
-    json_t *child;
+    char        unnamed[32];
+    double      m[12];
+    int         at;
+    size_t      i;
+    json_t     *child;
     if (!node) return reader_fails(g->said, STATUS_BAD_VALUE, "a scene or node names a node that is not there");
     if (depth > import_max_depth) return reader_fails(g->said, STATUS_BAD_VALUE, "more than 256 levels of nodes");
     if (json_is_false(json_object_get(gltf_extension(node, "KHR_node_visibility"), "visible"))) {
@@ -160,17 +160,17 @@ static Status walk(Gltf *g, const json_t *index, int parent, const double above[
 static Status walk_scene(Gltf *g)
 {
     static const double here[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
-    const size_t scenes = json_array_size(json_object_get(g->root, "scenes"));
-    json_t *roots =
+    const size_t        scenes = json_array_size(json_object_get(g->root, "scenes"));
+    json_t             *roots =
         json_incref(json_object_get(gltf_item(g, "scenes",
                                               json_object_get(g->root, "scene") ? gltf_index(g->root, "scene", scenes)
                                               : scenes > 0                      ? 0
                                                                                 : -1),
                                     "nodes"));
     json_t *item, *node;
-    size_t i, k;
-    int root = -1;
-    Status status = STATUS_OK;
+    size_t  i, k;
+    int     root = -1;
+    Status  status = STATUS_OK;
     if (!roots && scenes == 0) {
         bool *child = calloc(g->nodes + 1, sizeof *child);
         roots = json_array();
@@ -204,14 +204,12 @@ static void fill_material(ImportMaterial *out, const json_t *material)
 {
     const json_t *metallic = json_object_get(material, "pbrMetallicRoughness");
     const json_t *specular = gltf_extension(material, "KHR_materials_pbrSpecularGlossiness");
-    const char *name = json_string_value(json_object_get(material, "name"));
-    double rgba[4] = {1, 1, 1, 1};
-    bool wrong = false;
+    const char   *name = json_string_value(json_object_get(material, "name"));
+    double        rgba[4] = {1, 1, 1, 1};
+    bool          wrong = false;
     snprintf(out->name, sizeof out->name, "%s", name ? name : "");
-    if (specular)
-        gltf_numbers(rgba, &wrong, specular, "diffuseFactor", 4);
-    else
-        gltf_numbers(rgba, &wrong, metallic, "baseColorFactor", 4);
+    if (specular) gltf_numbers(rgba, &wrong, specular, "diffuseFactor", 4);
+    else gltf_numbers(rgba, &wrong, metallic, "baseColorFactor", 4);
     /* a texture on white gives no colour */
     out->has_colour =
         !json_object_get(specular ? specular : metallic, specular ? "diffuseTexture" : "baseColorTexture");
@@ -220,9 +218,9 @@ static void fill_material(ImportMaterial *out, const json_t *material)
 
 static void count_lost(Gltf *g)
 {
-    int *lost = g->scene->lost;
+    int    *lost = g->scene->lost;
     json_t *item;
-    size_t i;
+    size_t  i;
     lost[LOST_TEXTURES] = gltf_textures(g);
     lost[LOST_LIGHTS] = (int)json_array_size(json_object_get(gltf_extension(g->root, "KHR_lights_punctual"), "lights"));
     lost[LOST_CAMERAS] = (int)json_array_size(json_object_get(g->root, "cameras"));
@@ -235,10 +233,10 @@ static void count_lost(Gltf *g)
 
 static bool fill_scene(Gltf *g)
 {
-    ImportScene *s = g->scene;
-    ImportNode *node = s->node;
+    ImportScene    *s = g->scene;
+    ImportNode     *node = s->node;
     ImportMaterial *material = s->material;
-    const int meshes = g->draw_count;
+    const int       meshes = g->draw_count;
     s->node = NULL;
     s->material = NULL;
     const bool room = import_scene_room(s);
@@ -286,15 +284,13 @@ static Status take_apart(const char **json, size_t *octets, Gltf *g)
                             word_at(g->text + 4));
     for (size_t at = 12; g->octets - at >= 8;) {
         const size_t length = word_at(g->text + at), kind = word_at(g->text + at + 4);
-        const bool first = at == 12;
+        const bool   first = at == 12;
         at += 8;
         if (length > g->octets - at)
             return reader_fails(g->said, STATUS_BAD_VALUE, "ends within a chunk: is it whole?");
         if (first && kind != 0x4e4f534a) return reader_fails(g->said, STATUS_BAD_VALUE, "its first chunk is no JSON");
-        if (first)
-            *json = g->text + at, *octets = length;
-        else if (kind == 0x004e4942 && !g->binary)
-            g->binary = g->text + at, g->binary_octets = length;
+        if (first) *json = g->text + at, *octets = length;
+        else if (kind == 0x004e4942 && !g->binary) g->binary = g->text + at, g->binary_octets = length;
         at += length;
     }
     return STATUS_OK;
@@ -302,18 +298,18 @@ static Status take_apart(const char **json, size_t *octets, Gltf *g)
 
 static Status open_document(Gltf *g)
 {
-    const char *json;
-    size_t octets;
+    const char  *json;
+    size_t       octets;
     json_error_t why;
-    Status status = take_apart(&json, &octets, g);
+    Status       status = take_apart(&json, &octets, g);
     if (status != STATUS_OK) return status;
     if (octets >= 3 && memcmp(json, "\xef\xbb\xbf", 3) == 0) json += 3, octets -= 3;
     while (octets > 0 && (json[octets - 1] == 0 || json[octets - 1] == ' ')) octets--; /* padding */
     g->root = json_loadb(json, octets, JSON_ALLOW_NUL, &why);
     if (!g->root) return reader_fails(g->said, STATUS_BAD_VALUE, "no glTF: line %d: %s", why.line, why.text);
     const json_t *asset = json_object_get(g->root, "asset");
-    const char *version = json_string_value(json_object_get(asset, "version"));
-    const char *least = json_string_value(json_object_get(asset, "minVersion"));
+    const char   *version = json_string_value(json_object_get(asset, "version"));
+    const char   *least = json_string_value(json_object_get(asset, "minVersion"));
     if (!version || strncmp(version, "2.", 2) != 0 || (least && strcmp(least, "2.0") != 0))
         return reader_fails(g->said, STATUS_UNSUPPORTED, "glTF of version %.20s; 2.0 is read: convert it",
                             least && version ? least
@@ -336,7 +332,7 @@ static Status open_document(Gltf *g)
 static Status read_document(Gltf *g)
 {
     ImportScene *s = g->scene;
-    Status status = open_document(g);
+    Status       status = open_document(g);
     if (status == STATUS_OK) status = gltf_extensions(g);
     if (status != STATUS_OK) return status;
     const json_t *materials = json_object_get(g->root, "materials");
@@ -358,7 +354,7 @@ static Status read_document(Gltf *g)
 
 Status import_gltf_text(ImportScene *s, ReaderSaid *said, ReaderFiles *files, char *text, size_t octets)
 {
-    Gltf g = {.files = files, .said = said, .scene = s, .text = text, .octets = octets};
+    Gltf         g = {.files = files, .said = said, .scene = s, .text = text, .octets = octets};
     const Status status = read_document(&g);
     gltf_shapes_close(&g);
     gltf_buffers_close(&g);
@@ -371,7 +367,7 @@ Status import_gltf_text(ImportScene *s, ReaderSaid *said, ReaderFiles *files, ch
 
 static Status gltf_read(ImportScene *s, ReaderSaid *said, ReaderFiles *files, const char *extension)
 {
-    char *text;
+    char  *text;
     size_t octets;
     (void)extension;
     Status status = reader_read(&text, &octets, files, files->shown);

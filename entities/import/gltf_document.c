@@ -21,7 +21,7 @@ static Status from_base64(GltfBuffer *out, ReaderSaid *said, const char *text)
     if (!out->bytes) return STATUS_NO_MEMORY;
     out->owned = true;
     uint32_t bits = 0;
-    int held = 0;
+    int      held = 0;
     for (size_t i = 0; i < length && text[i] != '='; i++) {
         const int value = base64_value(text[i]);
         if (value < 0) return reader_fails(said, STATUS_BAD_VALUE, "a buffer's base64 has a character that is none");
@@ -37,7 +37,7 @@ static bool from_percent(char *out, size_t size, const char *uri)
 {
     size_t n = 0;
     for (; *uri && n + 1 < size; uri++) {
-        unsigned value;
+        unsigned   value;
         const bool coded = uri[0] == '%' && isxdigit((unsigned char)uri[1]) && isxdigit((unsigned char)uri[2]) &&
                            sscanf(uri + 1, "%2x", &value) == 1 && value != 0;
         out[n++] = coded ? (char)value : *uri;
@@ -49,13 +49,13 @@ static bool from_percent(char *out, size_t size, const char *uri)
 
 static Status read_buffer(Gltf *g, int index)
 {
-    GltfBuffer *b = &g->buffer[index];
+    GltfBuffer   *b = &g->buffer[index];
     const json_t *object = gltf_item(g, "buffers", index), *length = json_object_get(object, "byteLength");
-    const char *uri = json_string_value(json_object_get(object, "uri"));
-    Status status = STATUS_OK;
+    const char   *uri = json_string_value(json_object_get(object, "uri"));
+    Status        status = STATUS_OK;
     if (b->bytes) return STATUS_OK;
     if (!uri) {
-        json_t *extensions = json_object_get(object, "extensions");
+        json_t     *extensions = json_object_get(object, "extensions");
         const char *packed = json_object_iter_key(json_object_iter(extensions));
         if (packed) /* stands for what the extension unpacks */
             return reader_fails(g->said, STATUS_UNSUPPORTED,
@@ -128,12 +128,12 @@ static int size_of(int64_t type)
 /* KHR_mesh_quantization: normalised numbers are fractions of the largest; the least of signed ones is -1 too. */
 static double number_at(const char *at, int64_t type, bool normalised)
 {
-    int8_t i8;
-    uint8_t u8;
-    int16_t i16;
+    int8_t   i8;
+    uint8_t  u8;
+    int16_t  i16;
     uint16_t u16;
     uint32_t u32;
-    float f;
+    float    f;
     switch (type) {
     case 5120:
         memcpy(&i8, at, 1);
@@ -159,17 +159,17 @@ static double number_at(const char *at, int64_t type, bool normalised)
 /* Elements of a view: `count` of `size` octets; all lie within it. */
 typedef struct Elements {
     const char *what; /* for messages */
-    size_t size, count;
-    bool strided;     /* the view may say how far apart they are */
+    size_t      size, count;
+    bool        strided; /* the view may say how far apart they are */
 } Elements;
 
 /* Where element i of a view begins: *base + i * *stride. */
 static Status view_at(const char **base, size_t *stride, Gltf *g, int view, int64_t offset, const Elements *elements)
 {
-    const char *what = elements->what;
-    const size_t size = elements->size, count = elements->count;
+    const char   *what = elements->what;
+    const size_t  size = elements->size, count = elements->count;
     const json_t *object = gltf_item(g, "bufferViews", view);
-    const int buffer = gltf_index(object, "buffer", g->buffer_count);
+    const int     buffer = gltf_index(object, "buffer", g->buffer_count);
     const int64_t from = octets_of(object, "byteOffset", 0), length = octets_of(object, "byteLength", -1);
     const int64_t step = elements->strided ? octets_of(object, "byteStride", (int64_t)size) : (int64_t)size;
     if (buffer < 0 || from < 0 || length < 0 || offset < 0 || step < (int64_t)size || step > 252 + (int64_t)size)
@@ -187,30 +187,31 @@ static Status view_at(const char **base, size_t *stride, Gltf *g, int view, int6
 
 /* How the numbers of an accessor are written. */
 typedef struct Numbers {
-    int components;
-    int64_t type;     /* of a component, as glTF has it */
-    bool normalised;
+    int         components;
+    int64_t     type; /* of a component, as glTF has it */
+    bool        normalised;
     const char *what; /* for messages */
 } Numbers;
 
 /* Other numbers at some places: `indices` and `values`. */
 static Status sparse(double *out, size_t count, Gltf *g, const json_t *object, const Numbers *numbers)
 {
-    const int components = numbers->components;
+    const int     components = numbers->components;
     const int64_t type = numbers->type;
-    const char *what = numbers->what;
+    const char   *what = numbers->what;
     const json_t *indices = json_object_get(object, "indices"), *values = json_object_get(object, "values");
-    const size_t views = json_array_size(json_object_get(g->root, "bufferViews"));
+    const size_t  views = json_array_size(json_object_get(g->root, "bufferViews"));
     const int64_t n = octets_of(object, "count", -1), index_type = octets_of(indices, "componentType", -1);
-    const int index_view = gltf_index(indices, "bufferView", views),
+    const int     index_view = gltf_index(indices, "bufferView", views),
               value_view = gltf_index(values, "bufferView", views);
     const char *at, *from;
-    size_t at_step, from_step;
+    size_t      at_step, from_step;
     if (n < 1 || (size_t)n > count || (index_type != 5121 && index_type != 5123 && index_type != 5125) ||
         index_view < 0 || value_view < 0)
         return reader_fails(g->said, STATUS_BAD_VALUE, "%s: its sparse numbers are wrong", what);
-    const size_t size = (size_t)size_of(type) * (size_t)components;
-    const Elements places = {what, (size_t)size_of(index_type), (size_t)n, false}, others = {what, size, (size_t)n, false};
+    const size_t   size = (size_t)size_of(type) * (size_t)components;
+    const Elements places = {what, (size_t)size_of(index_type), (size_t)n, false},
+                   others = {what, size, (size_t)n, false};
     Status status = view_at(&at, &at_step, g, index_view, octets_of(indices, "byteOffset", 0), &places);
     if (status == STATUS_OK)
         status = view_at(&from, &from_step, g, value_view, octets_of(values, "byteOffset", 0), &others);
@@ -234,23 +235,23 @@ bool gltf_accessor_is_stored(const Gltf *g, int accessor)
 Status gltf_accessor(double **out, int *count, Gltf *g, int accessor, int components, const char *what)
 {
     static const char *const type_name[] = {"", "SCALAR", "VEC2", "VEC3", "VEC4"};
-    const json_t *object = gltf_item(g, "accessors", accessor), *extra = json_object_get(object, "sparse");
-    const char *type = json_string_value(json_object_get(object, "type"));
-    const int64_t component = octets_of(object, "componentType", -1), n = octets_of(object, "count", -1);
-    const int size = size_of(component);
+    const json_t            *object = gltf_item(g, "accessors", accessor), *extra = json_object_get(object, "sparse");
+    const char              *type = json_string_value(json_object_get(object, "type"));
+    const int64_t            component = octets_of(object, "componentType", -1), n = octets_of(object, "count", -1);
+    const int                size = size_of(component);
     *out = NULL;
     if (!type || strcmp(type, components == 16 ? "MAT4" : type_name[components]) != 0 || size == 0 || n < 1 ||
         n > 3 * (int64_t)import_max_triangles)
         return reader_fails(g->said, STATUS_BAD_VALUE, "%s: accessor %d is wrong, or has more than 24 M elements", what,
                             accessor);
     const bool normalised = json_is_true(json_object_get(object, "normalized")) && component < 5125;
-    double *numbers = calloc((size_t)n * (size_t)components, sizeof *numbers);
+    double    *numbers = calloc((size_t)n * (size_t)components, sizeof *numbers);
     if (!numbers) return STATUS_NO_MEMORY;
     Status status = STATUS_OK;
     if (json_object_get(object, "bufferView")) {
-        const int view = gltf_index(object, "bufferView", json_array_size(json_object_get(g->root, "bufferViews")));
+        const int   view = gltf_index(object, "bufferView", json_array_size(json_object_get(g->root, "bufferViews")));
         const char *base = NULL;
-        size_t stride = 0;
+        size_t      stride = 0;
         const Elements all = {what, (size_t)size * (size_t)components, (size_t)n, true};
         status = view_at(&base, &stride, g, view, octets_of(object, "byteOffset", 0), &all);
         for (size_t i = 0; i < (size_t)n && status == STATUS_OK; i++)
@@ -341,14 +342,14 @@ typedef struct Left {
     int kinds;
     struct {
         const char *name;
-        int count;
+        int         count;
     } kind[16];
 } Left;
 
 static void look_at(Left *left, const json_t *object)
 {
     const char *name;
-    json_t *value;
+    json_t     *value;
     json_object_foreach(json_object_get(object, "extensions"), name, value)
     {
         if (HAS(read_here, name) || HAS(of_textures, name) || HAS(no_shape, name)) continue;
@@ -364,9 +365,9 @@ static void look_at(Left *left, const json_t *object)
 Status gltf_extensions(Gltf *g)
 {
     static const char *const lists[] = {"nodes", "meshes", "accessors", "bufferViews", "buffers", "skins", "scenes"};
-    size_t i, j;
-    json_t *value, *item;
-    Left left = {0};
+    size_t                   i, j;
+    json_t                  *value, *item;
+    Left                     left = {0};
     json_array_foreach(json_object_get(g->root, "extensionsRequired"), i, value)
     {
         const char *name = json_string_value(value);
@@ -400,24 +401,23 @@ Status gltf_extensions(Gltf *g)
 static int textures_below(const json_t *object, int depth)
 {
     const char *key;
-    json_t *value;
-    int count = 0;
+    json_t     *value;
+    int         count = 0;
     json_object_foreach((json_t *)(uintptr_t)object, key, value)
     {
         const size_t length = strlen(key);
         if (length >= 7 && strcasecmp(key + length - 7, "texture") == 0)
             count += json_object_get(value, "index") != NULL;
-        else if (json_is_object(value) && depth < 4)
-            count += textures_below(value, depth + 1);
+        else if (json_is_object(value) && depth < 4) count += textures_below(value, depth + 1);
     }
     return count;
 }
 
 int gltf_textures(const Gltf *g)
 {
-    size_t i;
+    size_t  i;
     json_t *material;
-    int count = 0;
+    int     count = 0;
     json_array_foreach(json_object_get(g->root, "materials"), i, material) count += textures_below(material, 0);
     return count;
 }

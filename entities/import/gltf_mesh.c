@@ -8,9 +8,9 @@ enum { most_targets = 4096, most_joints = 65536, most_sets = 4 };
 
 /* What a node adds to its mesh. */
 typedef struct Pose {
-    int weights;
+    int    weights;
     double weight[most_targets];
-    int joints;          /* 0: no skin */
+    int    joints;       /* 0: no skin */
     double (*joint)[12]; /* p_node = joint (p_mesh, 1) */
 } Pose;
 
@@ -36,8 +36,8 @@ static int corner_of(int mode, int t, int k)
 static Status read_triangles(GltfShape *s, Gltf *g, const json_t *primitive, int mode)
 {
     double *index = NULL;
-    int corners = s->vertices;
-    Status status = STATUS_OK;
+    int     corners = s->vertices;
+    Status  status = STATUS_OK;
     if (json_object_get(primitive, "indices"))
         status = gltf_accessor(&index, &corners, g, attribute(g, primitive, "indices"), 1, "indices");
     if (status != STATUS_OK) return status;
@@ -46,12 +46,10 @@ static Status read_triangles(GltfShape *s, Gltf *g, const json_t *primitive, int
     if (!s->triangle) status = STATUS_NO_MEMORY;
     for (int t = 0; t < s->triangles && status == STATUS_OK; t++)
         for (int k = 0; k < 3; k++) {
-            const int corner = corner_of(mode, t, k);
+            const int    corner = corner_of(mode, t, k);
             const double v = index ? index[corner] : corner;
-            if (!(v >= 0 && v < s->vertices))
-                status = wrong(g, "an index is beyond its vertices");
-            else
-                s->triangle[t][k] = (uint32_t)v;
+            if (!(v >= 0 && v < s->vertices)) status = wrong(g, "an index is beyond its vertices");
+            else s->triangle[t][k] = (uint32_t)v;
         }
     free(index);
     return status;
@@ -65,8 +63,8 @@ static Status blend(double *numbers, int count, Gltf *g, const json_t *primitive
     const json_t *targets = json_object_get(primitive, "targets");
     for (int i = 0; i < pose->weights; i++) {
         const json_t *target = json_array_get(targets, (size_t)i);
-        double *delta;
-        int deltas;
+        double       *delta;
+        int           deltas;
         if (pose->weight[i] == 0 || !json_object_get(target, name)) continue;
         const Status status = gltf_accessor(&delta, &deltas, g, attribute(g, target, name), 3, "a morph target");
         if (status != STATUS_OK) return status;
@@ -86,11 +84,11 @@ static void mul_point(double out[3], const double m[12], const double p[3])
 static Status pose_vertices(bool *moved, GltfShape *s, Gltf *g, const json_t *attributes, const Pose *pose)
 {
     double *joint[most_sets] = {0}, *weight[most_sets] = {0}, reach = 0;
-    int sets = 0;
-    Status status = STATUS_OK;
+    int     sets = 0;
+    Status  status = STATUS_OK;
     for (; sets < most_sets && status == STATUS_OK; sets++) {
         char name[2][24];
-        int count[2] = {0};
+        int  count[2] = {0};
         snprintf(name[0], sizeof name[0], "JOINTS_%d", sets);
         snprintf(name[1], sizeof name[1], "WEIGHTS_%d", sets);
         if (!json_object_get(attributes, name[0]) || !json_object_get(attributes, name[1])) break;
@@ -106,7 +104,7 @@ static Status pose_vertices(bool *moved, GltfShape *s, Gltf *g, const json_t *at
         double sum[3] = {0, 0, 0}, total = 0;
         for (int i = 0; i < 4 * sets; i++) {
             const double w = weight[i / 4][4 * v + i % 4], j = joint[i / 4][4 * v + i % 4];
-            double p[3];
+            double       p[3];
             if (!(w > 0)) continue;
             if (!(j >= 0 && j < pose->joints)) {
                 status = wrong(g, "a skin's joint is beyond its list");
@@ -116,10 +114,8 @@ static Status pose_vertices(bool *moved, GltfShape *s, Gltf *g, const json_t *at
             v3_add_scaled(sum, sum, w, p);
             total += w;
         }
-        if (total > 0)
-            v3_scale(posed[v], 1 / total, sum);
-        else
-            memcpy(posed[v], s->vertex[v], sizeof posed[v]);
+        if (total > 0) v3_scale(posed[v], 1 / total, sum);
+        else memcpy(posed[v], s->vertex[v], sizeof posed[v]);
         for (int i = 0; i < 3; i++) reach = fmax(reach, fabs(s->vertex[v][i]));
     }
     for (int v = 0; v < s->vertices && posed && status == STATUS_OK && !*moved; v++)
@@ -133,9 +129,9 @@ static Status pose_vertices(bool *moved, GltfShape *s, Gltf *g, const json_t *at
 static Status read_vertices(GltfShape *s, Gltf *g, const json_t *primitive, const Pose *pose)
 {
     const json_t *attributes = json_object_get(primitive, "attributes");
-    double *position = NULL, *normal = NULL;
-    int normals = 0;
-    bool moved = false;
+    double       *position = NULL, *normal = NULL;
+    int           normals = 0;
+    bool          moved = false;
     Status status = gltf_accessor(&position, &s->vertices, g, attribute(g, attributes, "POSITION"), 3, "POSITION");
     if (status != STATUS_OK) return status;
     s->vertex = (double(*)[3])(void *)position;
@@ -161,7 +157,7 @@ static Status read_vertices(GltfShape *s, Gltf *g, const json_t *primitive, cons
 static Status read_shape(GltfShape *s, bool *drawn, Gltf *g, const json_t *primitive, const Pose *pose)
 {
     const json_t *mode = json_object_get(primitive, "mode"), *attributes = json_object_get(primitive, "attributes");
-    const int kind = mode ? (int)json_integer_value(mode) : 4;
+    const int     kind = mode ? (int)json_integer_value(mode) : 4;
     *drawn = false;
     *s = (GltfShape){0};
     if (kind < 4 || kind > 6) {
@@ -214,7 +210,7 @@ static Status read_weights(Pose *pose, Gltf *g, const json_t *node, const json_t
 static bool invert(double out[12], const double m[12])
 {
     const double a[3] = {m[0], m[1], m[2]}, b[3] = {m[4], m[5], m[6]}, c[3] = {m[8], m[9], m[10]};
-    double bc[3], ca[3], ab[3];
+    double       bc[3], ca[3], ab[3];
     v3_cross(bc, b, c);
     v3_cross(ca, c, a);
     v3_cross(ab, a, b);
@@ -232,9 +228,9 @@ static Status read_skin(Pose *pose, Gltf *g, const json_t *node, int document_no
     const json_t *skin =
         gltf_item(g, "skins", gltf_index(node, "skin", json_array_size(json_object_get(g->root, "skins"))));
     const json_t *list = json_object_get(skin, "joints");
-    const size_t count = json_array_size(list);
-    double to_node[12], *inverse = NULL;
-    int inverses = 0;
+    const size_t  count = json_array_size(list);
+    double        to_node[12], *inverse = NULL;
+    int           inverses = 0;
     if (!skin || count == 0) return STATUS_OK;
     if (count > most_joints) return wrong(g, "more than 65536 joints of a skin");
     if (!invert(to_node, g->world[document_node])) return STATUS_OK; /* drawn flat anyway */
@@ -248,9 +244,9 @@ static Status read_skin(Pose *pose, Gltf *g, const json_t *node, int document_no
     if (inverse && (size_t)inverses < count && status == STATUS_OK)
         status = wrong(g, "inverseBindMatrices are fewer than the skin's joints");
     for (size_t j = 0; j < count && status == STATUS_OK; j++) {
-        const json_t *value = json_array_get(list, j);
+        const json_t    *value = json_array_get(list, j);
         const json_int_t joint = json_integer_value(value);
-        double bind[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}, world[12];
+        double           bind[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}, world[12];
         if (!json_is_integer(value) || joint < 0 || (size_t)joint >= g->nodes || !g->in_scene[joint]) {
             status = wrong(g, "a skin's joint is no node of the scene");
             break;
@@ -268,7 +264,7 @@ static Status read_skin(Pose *pose, Gltf *g, const json_t *node, int document_no
 /* Adds a shape that is read to what is drawn, as often as it is. */
 static Status add_draws(Gltf *g, const GltfDrawn *drawn, int shape)
 {
-    ImportScene *s = g->scene;
+    ImportScene     *s = g->scene;
     const GltfShape *of = &g->shape[shape];
     for (int i = 0; i < drawn->count; i++) {
         if (of->vertices > import_max_vertices - s->vertex_count) return wrong(g, "more than 8 M vertices");
@@ -286,13 +282,13 @@ static Status add_draws(Gltf *g, const GltfDrawn *drawn, int shape)
 Status gltf_draw(Gltf *g, const GltfDrawn *drawn)
 {
     const json_t *node = gltf_item(g, "nodes", drawn->document_node);
-    const int mesh = gltf_index(node, "mesh", g->meshes);
+    const int     mesh = gltf_index(node, "mesh", g->meshes);
     const json_t *object = gltf_item(g, "meshes", mesh);
-    json_t *primitive;
-    size_t i;
+    json_t       *primitive;
+    size_t        i;
     if (mesh < 0) return wrong(g, "a node's mesh is not there");
     const bool own = json_object_get(node, "weights") || json_object_get(node, "skin");
-    Status status = STATUS_OK;
+    Status     status = STATUS_OK;
     if (!own && g->cached[mesh][0] >= 0) {
         for (int k = 0; k < g->cached[mesh][1] && status == STATUS_OK; k++)
             status = add_draws(g, drawn, g->cached[mesh][0] + k);
@@ -306,7 +302,7 @@ Status gltf_draw(Gltf *g, const GltfDrawn *drawn)
     json_array_foreach(json_object_get(object, "primitives"), i, primitive)
     {
         GltfShape shape;
-        bool any = false;
+        bool      any = false;
         if (status != STATUS_OK) break;
         status = read_shape(&shape, &any, g, primitive, pose);
         if (any && !gltf_room(&g->shape, &g->shape_room, g->shape_count, sizeof *g->shape)) status = STATUS_NO_MEMORY;

@@ -8,9 +8,9 @@
 #include <jansson.h>
 
 typedef struct GltfBuffer {
-    char *bytes; /* NULL: not read yet */
+    char  *bytes; /* NULL: not read yet */
     size_t octets;
-    bool owned;
+    bool   owned;
 } GltfBuffer;
 
 /* A primitive's triangles as they are drawn: morphed, and posed by a skin. */
@@ -31,29 +31,29 @@ typedef struct GltfDraw {
 } GltfDraw;
 
 typedef struct Gltf {
-    json_t *root;
+    json_t      *root;
     ReaderFiles *files;
-    ReaderSaid *said;
+    ReaderSaid  *said;
     ImportScene *scene;
-    char *text; /* the file */
-    size_t octets;
-    const char *binary; /* GLB's second chunk; NULL: none */
-    size_t binary_octets;
-    GltfBuffer *buffer;
-    size_t buffer_count;
-    size_t nodes, meshes; /* of the document */
-    double (*world)[12];  /* of its nodes: p_file = world (p_node, 1) */
-    bool *in_scene;       /* whether there is a world */
-    int node_room, drawn_room, drawn_count;
+    char        *text; /* the file */
+    size_t       octets;
+    const char  *binary; /* GLB's second chunk; NULL: none */
+    size_t       binary_octets;
+    GltfBuffer  *buffer;
+    size_t       buffer_count;
+    size_t       nodes, meshes; /* of the document */
+    double (*world)[12];        /* of its nodes: p_file = world (p_node, 1) */
+    bool      *in_scene;        /* whether there is a world */
+    int        node_room, drawn_room, drawn_count;
     GltfDrawn *drawn;
-    int shape_count, shape_room, draw_count, draw_room;
+    int        shape_count, shape_room, draw_count, draw_room;
     GltfShape *shape;
-    GltfDraw *draw;
+    GltfDraw  *draw;
     int (*cached)[2]; /* of meshes: their first shape and how many; -1: not read yet */
 } Gltf;
 
 /* Member `key` when it is an index below `count`, else -1. */
-int gltf_index(const json_t *object, const char *key, size_t count);
+int     gltf_index(const json_t *object, const char *key, size_t count);
 json_t *gltf_item(const Gltf *g, const char *list, int index); /* NULL: none */
 json_t *gltf_extension(const json_t *object, const char *name);
 /* `count` numbers; false where there is no such array, *wrong where it is none of `count` numbers. */
@@ -72,13 +72,13 @@ void gltf_buffers_close(Gltf *g);
 
 /* Reads what `drawn` draws: adds to shapes and draws, and to the scene's counts. */
 Status gltf_draw(Gltf *g, const GltfDrawn *drawn);
-void gltf_shapes_close(Gltf *g);
+void   gltf_shapes_close(Gltf *g);
 
 /* ---- gltf_document.c ---------------------------------------------------------------------------- */
 
 /* Refuses what the file requires and this reader has not; warns of what it leaves out that has to do with shape. */
 Status gltf_extensions(Gltf *g);
-int gltf_textures(const Gltf *g); /* uses of them by materials */
+int    gltf_textures(const Gltf *g); /* uses of them by materials */
 
 /* Room for one more of *list, whose items have `size` octets. */
 bool gltf_room(void *list, int *room, int count, size_t size);

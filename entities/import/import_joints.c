@@ -72,7 +72,7 @@ static Status place_nodes(ImportPlace *place, const ImportScene *scene, const Si
 {
     for (int i = 0; i < scene->node_count; i++) {
         const ImportNode *node = &scene->node[i];
-        char path[path_max + model_name_size + 2];
+        char              path[path_max + model_name_size + 2];
         if (node->parent < 0) {
             memcpy(place[i].m, node->m, sizeof place[i].m);
             snprintf(path, sizeof path, "%s", node->name);
@@ -95,12 +95,12 @@ static Status place_nodes(ImportPlace *place, const ImportScene *scene, const Si
 
 typedef struct Builder {
     const ImportScene *scene;
-    const Sidecar *sidecar;
-    const double *r_body_from_file;
-    double scale_m;
-    ImportJoints *out;
-    int spec[sidecar_max_joints + 1]; /* of the sidecar, by joint; -1: none */
-    int first[sidecar_max_joints];    /* joint of a spec that has one; -1: not yet */
+    const Sidecar     *sidecar;
+    const double      *r_body_from_file;
+    double             scale_m;
+    ImportJoints      *out;
+    int                spec[sidecar_max_joints + 1]; /* of the sidecar, by joint; -1: none */
+    int                first[sidecar_max_joints];    /* joint of a spec that has one; -1: not yet */
 } Builder;
 
 static Status refuse_joint(const Builder *b, const SidecarJoint *spec, const char *what, const char *which)
@@ -144,8 +144,8 @@ static void turn_to_dis_sign(ImportJoint *joint)
 /* Properties of a degree of freedom in the file. OpenFlight has no articulation class; it may follow from the name. */
 static void fill_from_dof(ImportJoint *joint, const Builder *b, const ImportDof *dof)
 {
-    const int parent = b->scene->node[dof->node].parent;
-    double axis_file[3];
+    const int   parent = b->scene->node[dof->node].parent;
+    double      axis_file[3];
     const char *name = b->scene->node[dof->node].name;
     joint->from_file = true;
     joint->kind = dof->slides ? JOINT_TRANSLATION : JOINT_ROTATION;
@@ -177,7 +177,7 @@ static void fill_from_dof(ImportJoint *joint, const Builder *b, const ImportDof 
 static void walk_vertices(const Builder *b, int joint, void (*each)(void *user, const double p_file[3]), void *user)
 {
     for (int i = 0; i < b->scene->mesh_count; i++) {
-        const ImportMesh *mesh = &b->scene->mesh[i];
+        const ImportMesh  *mesh = &b->scene->mesh[i];
         const ImportPlace *place = &b->out->place[mesh->node];
         if (place->joint != joint || place->dropped) continue;
         for (int v = mesh->first_vertex; v < mesh->first_vertex + mesh->vertex_count; v++) {
@@ -199,13 +199,13 @@ static void grow_box(void *user, const double p_file[3])
 
 typedef struct Radius {
     const double *p_pivot_file, *axis_file;
-    double most;
+    double        most;
 } Radius;
 
 static void grow_radius(void *user, const double p_file[3])
 {
     Radius *radius = user;
-    double off[3];
+    double  off[3];
     v3_sub(off, p_file, radius->p_pivot_file);
     v3_add_scaled(off, off, -v3_dot(off, radius->axis_file), radius->axis_file);
     radius->most = fmax(radius->most, v3_length(off));
@@ -215,11 +215,9 @@ static void grow_radius(void *user, const double p_file[3])
 static Status fill_from_spec(ImportJoint *joint, const Builder *b, const SidecarJoint *spec, int index)
 {
     const char *node = b->scene->node[joint->source].name;
-    const bool sided = !joint->from_file || spec->axis != AXIS_DEFAULT; /* the sign of the axis is set explicitly */
-    if (spec->slides)
-        joint->kind = JOINT_TRANSLATION;
-    else if (!joint->from_file || spec->dis_metric >= 11)
-        joint->kind = JOINT_ROTATION;
+    const bool  sided = !joint->from_file || spec->axis != AXIS_DEFAULT; /* the sign of the axis is set explicitly */
+    if (spec->slides) joint->kind = JOINT_TRANSLATION;
+    else if (!joint->from_file || spec->dis_metric >= 11) joint->kind = JOINT_ROTATION;
     if (spec->dis_class) {
         joint->dis_class = spec->dis_class;
         joint->dis_metric = spec->dis_metric;
@@ -229,7 +227,7 @@ static Status fill_from_spec(ImportJoint *joint, const Builder *b, const Sidecar
     } else if (spec->axis == AXIS_FILE) {
         m3_mul_v3(joint->axis_body, b->r_body_from_file, spec->axis_xyz);
     } else if (!joint->from_file) {
-        const double yaw[3] = {0, 0, 1}, pitch[3] = {0, 1, 0}, rolling[3] = {0, -1, 0};
+        const double  yaw[3] = {0, 0, 1}, pitch[3] = {0, 1, 0}, rolling[3] = {0, -1, 0};
         const double *axis = joint->dis_metric == 11    ? yaw
                              : joint->dis_metric == 13  ? pitch
                              : spec->roll_radius_m != 0 ? rolling
@@ -300,9 +298,9 @@ static Status assign_joints(Builder *b)
     for (int j = 0; j < sidecar_max_joints; j++) b->first[j] = -1;
     for (int i = 0; i < b->scene->node_count; i++) {
         ImportPlace *place = &b->out->place[i];
-        const int parent = b->scene->node[i].parent, spec = spec_of(b, i);
-        const int above = parent >= 0 ? b->out->place[parent].joint : -1;
-        Status status = STATUS_OK;
+        const int    parent = b->scene->node[i].parent, spec = spec_of(b, i);
+        const int    above = parent >= 0 ? b->out->place[parent].joint : -1;
+        Status       status = STATUS_OK;
         place->joint = above;
         if (place->dropped) continue;
         if (spec < 0) {
@@ -329,9 +327,9 @@ static Status assign_joints(Builder *b)
 static Status find_parents(Builder *b)
 {
     for (int j = 0; j < b->out->count; j++) {
-        ImportJoint *joint = &b->out->joint[j];
+        ImportJoint        *joint = &b->out->joint[j];
         const SidecarJoint *spec = b->spec[j] >= 0 ? &b->sidecar->joint[b->spec[j]] : NULL;
-        const int above = b->scene->node[joint->source].parent;
+        const int           above = b->scene->node[joint->source].parent;
         joint->parent = above >= 0 ? b->out->place[above].joint : -1;
         if (!spec || !spec->parent[0]) continue;
         for (joint->parent = b->out->count - 1; joint->parent >= 0; joint->parent--)
@@ -345,8 +343,8 @@ static Status find_parents(Builder *b)
 static Status sort_joints(Builder *b)
 {
     ImportJoint sorted[sidecar_max_joints];
-    int to[sidecar_max_joints];
-    int count = 0, before;
+    int         to[sidecar_max_joints];
+    int         count = 0, before;
     for (int j = 0; j < b->out->count; j++) to[j] = -1;
     do {
         before = count;
@@ -373,8 +371,8 @@ Status import_joints(ImportJoints *out, const ImportScene *scene, const Sidecar 
 {
     ImportJoints joints = {.joint = calloc(sidecar_max_joints, sizeof *joints.joint),
                            .place = calloc((size_t)scene->node_count, sizeof *joints.place)};
-    Builder *b = calloc(1, sizeof *b);
-    Status status = b && joints.joint && joints.place ? STATUS_OK : STATUS_NO_MEMORY;
+    Builder     *b = calloc(1, sizeof *b);
+    Status       status = b && joints.joint && joints.place ? STATUS_OK : STATUS_NO_MEMORY;
     if (status == STATUS_OK) {
         *b = (Builder){.scene = scene,
                        .sidecar = sidecar,
@@ -392,10 +390,8 @@ Status import_joints(ImportJoints *out, const ImportScene *scene, const Sidecar 
     }
     if (status == STATUS_OK) status = sort_joints(b);
     free(b);
-    if (status == STATUS_OK)
-        *out = joints;
-    else
-        import_joints_close(&joints, scene->node_count);
+    if (status == STATUS_OK) *out = joints;
+    else import_joints_close(&joints, scene->node_count);
     return status;
 }
 

@@ -21,7 +21,7 @@ static int times_named(const ImportScene *scene, const char *name)
 /* The node with the name most similar to the words of a pattern, ignoring case; -1: none has them. */
 static int nearest(const ImportScene *scene, const char *pattern)
 {
-    char word[model_name_size];
+    char   word[model_name_size];
     size_t n = 0;
     for (const char *c = strrchr(pattern, '/') ? strrchr(pattern, '/') + 1 : pattern; *c && n + 1 < sizeof word; c++)
         if (*c != '*' && *c != '?') word[n++] = *c;
@@ -37,10 +37,10 @@ void import_report_missing_node(const ImportScene *scene, const ImportPlace *pla
 {
     enum { most_listed = 16 };
     const SidecarJoint *spec = &sidecar->joint[joint];
-    const char *pattern = spec->pattern[0];
-    char list[700] = "", safe[3 * model_name_size];
-    size_t n = 0;
-    int listed = 0, unnamed = 0;
+    const char         *pattern = spec->pattern[0];
+    char                list[700] = "", safe[3 * model_name_size];
+    size_t              n = 0;
+    int                 listed = 0, unnamed = 0;
     for (int i = 0; i < scene->node_count; i++)
         for (int p = 0; p < spec->pattern_count; p++)
             if (import_matches(spec->pattern[p], scene->node[i].name) ||
@@ -53,7 +53,7 @@ void import_report_missing_node(const ImportScene *scene, const ImportPlace *pla
             }
     for (int i = 0; i < scene->node_count; i++) {
         const char *name = scene->node[i].name;
-        bool before = false;
+        bool        before = false;
         unnamed += is_unnamed(name);
         for (int k = 0; k < i && !before; k++) before = strcmp(scene->node[k].name, name) == 0;
         if (!*name || before || listed++ >= most_listed || n >= sizeof list - 120) continue;
@@ -101,8 +101,8 @@ void import_warn_names(const ImportScene *scene, const ImportPlace *place, const
         for (int p = 0; p < sidecar->joint[j].pattern_count && !sidecar->joint[j].each; p++)
             if (!strpbrk(sidecar->joint[j].pattern[p], "*?"))
                 warn_duplicate(scene, sidecar, &sidecar->joint[j], sidecar->joint[j].pattern[p], place);
-    const bool by_name = sidecar->joint_count || sidecar->roles.count || sidecar->thickness.count || sidecar->node_materials.count ||
-                         sidecar->drop.count || sidecar->damage_hide.count;
+    const bool by_name = sidecar->joint_count || sidecar->roles.count || sidecar->thickness.count ||
+                         sidecar->node_materials.count || sidecar->drop.count || sidecar->damage_hide.count;
     for (int m = 0; m < scene->mesh_count; m++, meshes++) unnamed += is_unnamed(scene->node[scene->mesh[m].node].name);
     if (by_name && unnamed > 0)
         log_warn("model: %s: %d of %d meshes hang on nodes without a name, which a sidecar's patterns can hardly tell "

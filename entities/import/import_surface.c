@@ -8,7 +8,7 @@
 
 static Status read_paints(ImportPaints *paints, const char *path)
 {
-    Table table;
+    Table  table;
     Status status = table_open(&table, path);
     if (status != STATUS_OK) return status;
     const int name = table_column(&table, "name"), before = paints->count,
@@ -24,7 +24,8 @@ static Status read_paints(ImportPaints *paints, const char *path)
         status = STATUS_BAD_VALUE;
     }
     for (int r = 0; r < table.rows && status == STATUS_OK; r++) {
-        int row = 0; /* of the same name: the user's own replaces it in its place, since the first of two equals counts */
+        int row =
+            0; /* of the same name: the user's own replaces it in its place, since the first of two equals counts */
         while (row < paints->count && strcmp(paints->name[row], table_text(&table, r, name)) != 0) row++;
         snprintf(paints->name[row], sizeof paints->name[0], "%s", table_text(&table, r, name));
         for (int c = 0; c < 3 && status == STATUS_OK; c++) {
@@ -40,16 +41,14 @@ static Status read_paints(ImportPaints *paints, const char *path)
 
 Status import_paints_open(ImportPaints *out)
 {
-    char path[4096];
-    const char *own = etc_own("materials.csv");
+    char         path[4096];
+    const char  *own = etc_own("materials.csv");
     ImportPaints paints = {0};
     if (!etc_path(path, sizeof path, "materials.csv")) return STATUS_BAD_VALUE;
     Status status = read_paints(&paints, path);
     if (status == STATUS_OK && own) status = read_paints(&paints, own);
-    if (status == STATUS_OK)
-        *out = paints;
-    else
-        import_paints_close(&paints);
+    if (status == STATUS_OK) *out = paints;
+    else import_paints_close(&paints);
     return status;
 }
 
@@ -70,7 +69,7 @@ bool import_paints_have(const ImportPaints *paints, const char *name)
 /* End of a word in the text, ignoring case; 0: not in it. The rightmost counts: the last word is the most specific. */
 static size_t word_end(const char *text, const char *word)
 {
-    size_t end = 0;
+    size_t       end = 0;
     const size_t length = strlen(word);
     for (const char *at = text; (at = strcasestr(at, word)); at++) end = (size_t)(at - text) + length;
     return end;
@@ -108,8 +107,8 @@ const char *import_paint_guess(ImportMaterialSource *source, const ImportPaints 
     static const char *const painted[] = {"paint_olive",       "paint_sand", "paint_grey", "paint_white_missile",
                                           "paint_black_gloss", "steel_worn", "metal_dark", "rubber_black",
                                           "wood_pine",         "brick_red"};
-    const char *best = NULL;
-    size_t end = 0;
+    const char              *best = NULL;
+    size_t                   end = 0;
     for (size_t i = 0; i < sizeof words / sizeof *words; i++) {
         const size_t at = word_end(material->name, words[i].word);
         if (at <= end || !import_paints_have(paints, words[i].material)) continue;
@@ -121,7 +120,7 @@ const char *import_paint_guess(ImportMaterialSource *source, const ImportPaints 
     double least = INFINITY;
     for (int i = 0; i < paints->count && material->has_colour; i++) {
         double distance = 0;
-        bool candidate = false;
+        bool   candidate = false;
         for (size_t k = 0; k < sizeof painted / sizeof *painted; k++)
             candidate |= strcmp(painted[k], paints->name[i]) == 0;
         if (!candidate) continue;
@@ -141,7 +140,7 @@ HeatRole import_role_guess(const char *path)
 {
     static const struct {
         const char *word;
-        HeatRole role;
+        HeatRole    role;
     } words[] = {
         {"exhaust", HEAT_EXHAUST},    {"muffler", HEAT_EXHAUST}, {"engine", HEAT_ENGINE_DECK},
         {"grille", HEAT_ENGINE_DECK}, {"turret", HEAT_TURRET},   {"gun", HEAT_GUN},
@@ -150,7 +149,7 @@ HeatRole import_role_guess(const char *path)
         {"turbine", HEAT_TURBINE},    {"cabin", HEAT_CABIN},     {"hull", HEAT_HULL},
     };
     HeatRole role = HEAT_PASSIVE;
-    size_t end = 0;
+    size_t   end = 0;
     for (size_t i = 0; i < sizeof words / sizeof *words; i++) {
         const size_t at = word_end(path, words[i].word);
         if (at <= end) continue;
@@ -166,7 +165,7 @@ enum { smooth_max_fan = 256 }; /* triangles about one point; beyond it every one
 
 typedef struct Point {
     double p[3];
-    int corner;
+    int    corner;
 } Point;
 
 static int point_order(const void *a, const void *b)
@@ -183,7 +182,7 @@ static int point_order(const void *a, const void *b)
 static double corner_angle(const double (*corner)[3], int c)
 {
     const int first = c / 3 * 3;
-    double a[3], b[3];
+    double    a[3], b[3];
     v3_sub(a, corner[first + (c + 1) % 3], corner[c]);
     v3_sub(b, corner[first + (c + 2) % 3], corner[c]);
     if (!v3_normalize(a, a) || !v3_normalize(b, b)) return 0;
@@ -193,10 +192,10 @@ static double corner_angle(const double (*corner)[3], int c)
 int import_smooth(double (*vertex)[3], float (*normal)[3], uint32_t (*triangle)[3], const double (*corner)[3],
                   int triangle_count, double crease_rad)
 {
-    const int corners = 3 * triangle_count;
+    const int    corners = 3 * triangle_count;
     const double least = cos(crease_rad) - 1e-9;
-    int count = 0;
-    Point *point = malloc((size_t)corners * sizeof *point);
+    int          count = 0;
+    Point       *point = malloc((size_t)corners * sizeof *point);
     double(*plane)[3] = malloc((size_t)triangle_count * sizeof *plane);
     if (!point || !plane) {
         count = -1;
@@ -220,8 +219,8 @@ int import_smooth(double (*vertex)[3], float (*normal)[3], uint32_t (*triangle)[
         const int first = count; /* vertices at this place */
         for (int i = from; i < to; i++) {
             const int c = point[i].corner;
-            double sum[3] = {0, 0, 0};
-            float n[3];
+            double    sum[3] = {0, 0, 0};
+            float     n[3];
             if (to - from <= smooth_max_fan)
                 for (int k = from; k < to; k++) {
                     const int other = point[k].corner;

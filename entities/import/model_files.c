@@ -37,7 +37,7 @@ bool model_is_path(const char *name) { return strpbrk(name, "/.") != NULL; }
 
 Status import_find_files(ModelImport *report, Sidecar *sidecar, const char *path)
 {
-    char extension[16];
+    char   extension[16];
     size_t stem;
     if (strlen(path) >= sizeof report->file - 8) {
         log_error("model: the path is longer than %zu characters: %.60s...", sizeof report->file - 8, path);
@@ -53,7 +53,7 @@ Status import_find_files(ModelImport *report, Sidecar *sidecar, const char *path
             return STATUS_BAD_VALUE;
         }
         const char *slash = strrchr(path, '/');
-        const int folder = sidecar->file[0] == '/' || !slash ? 0 : (int)(slash - path) + 1;
+        const int   folder = sidecar->file[0] == '/' || !slash ? 0 : (int)(slash - path) + 1;
         if ((size_t)snprintf(report->file, sizeof report->file, "%.*s%s", folder, path, sidecar->file) >=
             sizeof report->file) {
             log_error("sidecar: %s: file: the path is too long", path);
@@ -89,8 +89,10 @@ Status model_say_unknown(const char *name)
 {
     WordMeant meant = word_meant(name);
     for (int i = 0; i < parametric_count(); i++) word_consider(&meant, parametric_name(i));
-    log_error("model: no built-in model of this name: '%s'; `pitviper model list` lists them, a file's name has a dot or "
-              "a slash in it%s", name, word_hint(&meant));
+    log_error(
+        "model: no built-in model of this name: '%s'; `pitviper model list` lists them, a file's name has a dot or "
+        "a slash in it%s",
+        name, word_hint(&meant));
     return STATUS_UNSUPPORTED;
 }
 

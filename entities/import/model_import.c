@@ -6,9 +6,9 @@
 const char *import_lost_name(ImportLost lost)
 {
     static const char *const name[IMPORT_LOST_COUNT] = {
-        "textures",         "lights",           "cameras",      "animations",          "bones",
-        "morph_targets",    "points_and_lines", "levels_of_detail", "switched_off", "external_references", "freedom_offsets",
-        "other_objects",
+        "textures",        "lights",           "cameras",          "animations",   "bones",
+        "morph_targets",   "points_and_lines", "levels_of_detail", "switched_off", "external_references",
+        "freedom_offsets", "other_objects",
     };
     return (unsigned)lost < IMPORT_LOST_COUNT ? name[lost] : "?";
 }
@@ -16,13 +16,13 @@ const char *import_lost_name(ImportLost lost)
 /* ---- building ------------------------------------------------------------------------------------------------ */
 
 typedef struct Build {
-    const ImportScene *scene;
-    const Sidecar *sidecar;
+    const ImportScene  *scene;
+    const Sidecar      *sidecar;
     const ImportPaints *paints;
-    ImportJoints joints;
-    ModelImport *report;
-    Model model;
-    int vertex_room, triangle_room;
+    ImportJoints        joints;
+    ModelImport        *report;
+    Model               model;
+    int                 vertex_room, triangle_room;
 } Build;
 
 static void to_body(double p_body[3], const ModelImport *r, const double p_file[3])
@@ -40,10 +40,10 @@ static void node_to_file(double p_file[3], const double m[12], const double p[3]
 
 static void set_frame(Build *b)
 {
-    ModelImport *r = b->report;
+    ModelImport   *r = b->report;
     const Sidecar *s = b->sidecar;
-    const double *forward = s->has_axes ? s->forward : b->scene->forward, *up = s->has_axes ? s->up : b->scene->up;
-    double right[3];
+    const double  *forward = s->has_axes ? s->forward : b->scene->forward, *up = s->has_axes ? s->up : b->scene->up;
+    double         right[3];
     v3_cross(right, forward, up);
     for (int i = 0; i < 3; i++) {
         r->r_body_from_file[i] = forward[i];
@@ -64,14 +64,14 @@ static void set_frame(Build *b)
 static Status set_origin(Build *b)
 {
     const double low0[3] = {INFINITY, INFINITY, INFINITY};
-    double low[2][3], high[2][3]; /* in body directions, of the file's origin: [0] all, [1] what does not move */
+    double       low[2][3], high[2][3]; /* in body directions, of the file's origin: [0] all, [1] what does not move */
     for (int k = 0; k < 2; k++)
         for (int i = 0; i < 3; i++) {
             low[k][i] = low0[i];
             high[k][i] = -low0[i];
         }
     for (int m = 0; m < b->scene->mesh_count; m++) {
-        const ImportMesh *mesh = &b->scene->mesh[m];
+        const ImportMesh  *mesh = &b->scene->mesh[m];
         const ImportPlace *place = &b->joints.place[mesh->node];
         if (place->dropped) continue;
         for (int t = 3 * mesh->first_triangle; t < 3 * (mesh->first_triangle + mesh->triangle_count); t++) {
@@ -106,7 +106,7 @@ static Status set_origin(Build *b)
     if (b->sidecar->has_origin) {
         memcpy(b->report->p_origin_file, b->sidecar->p_origin_file, sizeof b->report->p_origin_file);
     } else {
-        const int k = low[1][0] <= high[1][0];
+        const int    k = low[1][0] <= high[1][0];
         const double base[3] = {0.5 * (low[k][0] + high[k][0]), 0.5 * (low[k][1] + high[k][1]), high[0][2]};
         m3_tmul_v3(b->report->p_origin_file, b->report->r_body_from_file, base);
         for (int i = 0; i < 3; i++) b->report->p_origin_file[i] += 0.0; /* no -0 */
@@ -127,12 +127,12 @@ static void clean_name(char out[model_name_size], const char *name, const char *
 /* `name~2`, `name~3` ... for those that are called the same; `step` octets lie from one name to the next. */
 static void make_unique(char name[model_name_size], const char *taken, int count, size_t step)
 {
-    char base[model_name_size];
+    char      base[model_name_size];
     const int room = model_name_size - 12; /* before ~ and a number */
-    int number = 1;
+    int       number = 1;
     memcpy(base, name, sizeof base);
     for (int i = 0; i < count; i++) {
-        const char *other = taken + (size_t)i * step;
+        const char  *other = taken + (size_t)i * step;
         const size_t length = strlen(base);
         number += strcmp(other, base) == 0 || (strncmp(other, base, length) == 0 && other[length] == '~');
     }
@@ -168,8 +168,8 @@ static Status build_nodes(Build *b)
     m3_identity(m->node[0].r_parent_from_node);
     for (int j = 0; j < b->joints.count; j++) {
         const ImportJoint *joint = &b->joints.joint[j];
-        ModelNode *node = &m->node[j + 1];
-        double p_body[3], p_above[3] = {0, 0, 0};
+        ModelNode         *node = &m->node[j + 1];
+        double             p_body[3], p_above[3] = {0, 0, 0};
         clean_name(node->name, joint->name, "joint");
         make_unique(node->name, m->node[0].name, j + 1, sizeof *m->node);
         node->parent = joint->parent + 1;
@@ -197,7 +197,8 @@ static Status check_materials(const Build *b)
         for (int i = 0; i < rules[k]->count; i++)
             if (!import_paints_have(b->paints, rules[k]->rule[i].value)) {
                 log_error("sidecar: %s:%d: materials: '%s' is not a row of etc/materials.csv, nor of your own "
-                          "(models.materials)", b->sidecar->path, rules[k]->rule[i].line, rules[k]->rule[i].value);
+                          "(models.materials)",
+                          b->sidecar->path, rules[k]->rule[i].line, rules[k]->rule[i].value);
                 return STATUS_BAD_VALUE;
             }
     return STATUS_OK;
@@ -208,7 +209,7 @@ static void warn_unused(const Build *b)
 {
     const struct {
         const SidecarRules *rules;
-        const char *key;
+        const char         *key;
     } list[] = {{&b->sidecar->drop, "drop"},
                 {&b->sidecar->node_materials, "node_materials"},
                 {&b->sidecar->roles, "roles"},
@@ -219,7 +220,7 @@ static void warn_unused(const Build *b)
     for (size_t k = 0; k < sizeof list / sizeof *list; k++)
         for (int i = 0; i < list[k].rules->count; i++) {
             const SidecarRule *rule = &list[k].rules->rule[i];
-            bool used = false;
+            bool               used = false;
             if (list[k].rules == &b->sidecar->materials) {
                 for (int m = 0; m < b->scene->material_count && !used; m++)
                     used = import_matches(rule->pattern, b->scene->material[m].name);
@@ -237,10 +238,10 @@ static void warn_unused(const Build *b)
 static void surface_part(Build *b, ModelPart *part, const ImportMesh *mesh)
 {
     const ImportMaterial *material = &b->scene->material[mesh->material];
-    const ImportPlace *place = b->joints.place;
-    const SidecarRule *rule = import_rule(&b->sidecar->node_materials, b->scene, place, mesh->node, 0);
-    ImportMaterialSource source = MATERIAL_BY_SIDECAR;
-    const char *name = rule ? rule->value : NULL;
+    const ImportPlace    *place = b->joints.place;
+    const SidecarRule    *rule = import_rule(&b->sidecar->node_materials, b->scene, place, mesh->node, 0);
+    ImportMaterialSource  source = MATERIAL_BY_SIDECAR;
+    const char           *name = rule ? rule->value : NULL;
     for (int i = b->sidecar->materials.count - 1; i >= 0 && !name; i--)
         if (import_matches(b->sidecar->materials.rule[i].pattern, material->name))
             name = b->sidecar->materials.rule[i].value;
@@ -287,12 +288,12 @@ static double normal_matrix(double out[9], const double m[12])
 /* One mesh of the file -> one part. */
 static Status build_part(Build *b, const ImportMesh *mesh)
 {
-    Model *m = &b->model;
+    Model             *m = &b->model;
     const ImportPlace *place = &b->joints.place[mesh->node];
-    const int node = place->joint + 1;
-    double p_pivot[3] = {0, 0, 0}, flip[9];
-    Status status = STATUS_NO_MEMORY;
-    const double determinant = normal_matrix(flip, place->m);
+    const int          node = place->joint + 1;
+    double             p_pivot[3] = {0, 0, 0}, flip[9];
+    Status             status = STATUS_NO_MEMORY;
+    const double       determinant = normal_matrix(flip, place->m);
     double(*corner)[3] = malloc(((size_t)mesh->triangle_count * 3 + 1) * sizeof *corner);
     uint32_t(*from)[3] = malloc(((size_t)mesh->triangle_count + 1) * sizeof *from);
     if (!corner || !from) goto done;
@@ -304,16 +305,14 @@ static Status build_part(Build *b, const ImportMesh *mesh)
         for (int k = 0; k < 3; k++) {
             /* a mirrored placement turns every triangle inside out */
             const uint32_t v = b->scene->triangle[t][determinant < 0 ? 2 - k : k];
-            double p_file[3];
+            double         p_file[3];
             node_to_file(p_file, place->m, b->scene->vertex[mesh->first_vertex + (int)v]);
             to_body(c[k], b->report, p_file);
             v3_sub(c[k], c[k], p_pivot);
             from[triangles][k] = v;
         }
-        if (has_area(c[0], c[1], c[2]))
-            triangles++;
-        else
-            b->report->degenerate_triangles++;
+        if (has_area(c[0], c[1], c[2])) triangles++;
+        else b->report->degenerate_triangles++;
     }
     if (triangles == 0) {
         b->report->empty_meshes++;
@@ -339,10 +338,10 @@ static Status build_part(Build *b, const ImportMesh *mesh)
         double plane[3];
         for (int t = 0; t < triangles; t++)
             for (int k = 0; k < 3; k++) {
-                const int v = first + (int)from[t][k];
+                const int    v = first + (int)from[t][k];
                 const float *n_node = b->scene->normal[mesh->first_vertex + (int)from[t][k]];
                 const double n[3] = {n_node[0], n_node[1], n_node[2]};
-                double n_file[3], n_body[3], ab[3], ac[3];
+                double       n_file[3], n_body[3], ab[3], ac[3];
                 m3_mul_v3(n_file, flip, n);
                 if (determinant < 0) v3_scale(n_file, -1, n_file);
                 m3_mul_v3(n_body, b->report->r_body_from_file, n_file);
@@ -394,7 +393,7 @@ static Status build_parts(Build *b)
     /* parts of a node must be neighbours */
     for (int node = 0; node < m->node_count; node++)
         for (int i = 0; i < b->scene->mesh_count; i++) {
-            const ImportMesh *mesh = &b->scene->mesh[i];
+            const ImportMesh  *mesh = &b->scene->mesh[i];
             const ImportPlace *place = &b->joints.place[mesh->node];
             if (place->joint + 1 != node) continue;
             if (place->dropped) {
@@ -413,8 +412,8 @@ static Status build_parts(Build *b)
 
 static void name_model(Build *b)
 {
-    char extension[16], stem_name[model_name_size];
-    size_t stem;
+    char        extension[16], stem_name[model_name_size];
+    size_t      stem;
     const char *slash = strrchr(b->report->file, '/');
     import_split_extension(extension, &stem, b->report->file);
     const size_t from = slash ? (size_t)(slash - b->report->file) + 1 : 0;
@@ -442,13 +441,13 @@ static Status build_model(Build *b)
 
 Status model_import(Model *out, ModelImport *report, const char *path)
 {
-    ModelImport filled = {0};
-    Sidecar sidecar = sidecar_default();
-    ImportScene scene = {0};
+    ModelImport  filled = {0};
+    Sidecar      sidecar = sidecar_default();
+    ImportScene  scene = {0};
     ImportPaints paints = {0};
-    char extension[16];
-    size_t stem;
-    Status status = import_find_files(&filled, &sidecar, path);
+    char         extension[16];
+    size_t       stem;
+    Status       status = import_find_files(&filled, &sidecar, path);
     if (status == STATUS_OK) {
         import_split_extension(extension, &stem, filled.file);
         if (strcmp(extension, "flt") == 0) status = import_openflight(&scene, filled.file);
@@ -480,13 +479,14 @@ Status model_import(Model *out, ModelImport *report, const char *path)
 
 void model_import_say(const ModelImport *r, const Model *model)
 {
-    char lost[400] = "nothing";
+    char   lost[400] = "nothing";
     size_t n = 0;
     for (int i = 0; i < IMPORT_LOST_COUNT && n < sizeof lost; i++)
         if (r->lost[i] > 0)
             n += (size_t)snprintf(lost + n, sizeof lost - n, "%s%d %s", n ? ", " : "", r->lost[i],
                                   import_lost_name((ImportLost)i));
     log_info("model: %s: %.4g x %.4g x %.4g m, %d triangles; %.9g m a unit (%s), axes by %s; lost: %s; sidecar: %s%s",
-             r->file, model->length_m, model->width_m, model->height_m, model->triangle_count, r->scale_m, r->unit_from, r->axes_from, lost,
-             r->sidecar[0] ? r->sidecar : "none", r->scale_assumed || r->axes_assumed ? " (`scale`, `axes` there say otherwise)" : "");
+             r->file, model->length_m, model->width_m, model->height_m, model->triangle_count, r->scale_m, r->unit_from,
+             r->axes_from, lost, r->sidecar[0] ? r->sidecar : "none",
+             r->scale_assumed || r->axes_assumed ? " (`scale`, `axes` there say otherwise)" : "");
 }

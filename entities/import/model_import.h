@@ -1,11 +1,11 @@
 /* entities/import/model_import.h: imports 3D models from files.
  *
- * glTF 2.0; OBJ, FBX, AC3D, 3DS, ASE, PLY, STL and other formats of assimp, plain or as `.gz`; OpenFlight (`.flt`) through
- * osgconv of Debian's openscenegraph. Unit and axes are the file's where it or its format states them. Nodes and materials
- * become parts, named after their nodes; joints come from the file (OpenFlight's degrees of freedom) or the sidecar, see
- * entities/import/sidecar.h. All other nodes are merged into the moving node above them. Facets keep their own plane;
- * shading normals are the file's, else by crease angle. The reader runs in a separate process with limits on time and
- * memory: a hostile file causes an error line only. */
+ * glTF 2.0; OBJ, FBX, AC3D, 3DS, ASE, PLY, STL and other formats of assimp, plain or as `.gz`; OpenFlight (`.flt`)
+ * through osgconv of Debian's openscenegraph. Unit and axes are the file's where it or its format states them. Nodes
+ * and materials become parts, named after their nodes; joints come from the file (OpenFlight's degrees of freedom) or
+ * the sidecar, see entities/import/sidecar.h. All other nodes are merged into the moving node above them. Facets keep
+ * their own plane; shading normals are the file's, else by crease angle. The reader runs in a separate process with
+ * limits on time and memory: a hostile file causes an error line only. */
 #ifndef ENTITIES_IMPORT_MODEL_IMPORT_H
 #define ENTITIES_IMPORT_MODEL_IMPORT_H
 
@@ -18,13 +18,13 @@ typedef enum ImportLost {
     LOST_CAMERAS,
     LOST_ANIMATIONS,
     LOST_BONES,
-    LOST_MORPH_TARGETS,      /* glTF's stand at their default weights */
-    LOST_POINTS_AND_LINES,   /* meshes of them */
-    LOST_LEVELS_OF_DETAIL,   /* all but the finest */
-    LOST_SWITCHED_OFF,       /* children of switches */
+    LOST_MORPH_TARGETS,    /* glTF's stand at their default weights */
+    LOST_POINTS_AND_LINES, /* meshes of them */
+    LOST_LEVELS_OF_DETAIL, /* all but the finest */
+    LOST_SWITCHED_OFF,     /* children of switches */
     LOST_EXTERNAL_REFERENCES,
-    LOST_FREEDOM_OFFSETS,    /* degrees of freedom drawn off their zero, or scaling */
-    LOST_OTHER,              /* objects of a kind unknown here, with all below them */
+    LOST_FREEDOM_OFFSETS, /* degrees of freedom drawn off their zero, or scaling */
+    LOST_OTHER,           /* objects of a kind unknown here, with all below them */
     IMPORT_LOST_COUNT
 } ImportLost;
 
@@ -33,32 +33,32 @@ const char *import_lost_name(ImportLost lost);
 /* Where a part's material comes from. */
 typedef enum ImportMaterialSource {
     MATERIAL_BY_SIDECAR,
-    MATERIAL_BY_NAME,        /* words in the file's name for it */
-    MATERIAL_BY_COLOUR,      /* nearest paint */
-    MATERIAL_BY_DEFAULT,     /* paint_olive */
+    MATERIAL_BY_NAME,    /* words in the file's name for it */
+    MATERIAL_BY_COLOUR,  /* nearest paint */
+    MATERIAL_BY_DEFAULT, /* paint_olive */
     MATERIAL_SOURCE_COUNT
 } ImportMaterialSource;
 
 /* Statistics of an import. */
 typedef struct ModelImport {
-    char   file[1024];                 /* the model's own */
-    char   sidecar[1024];              /* empty: none */
-    long long octets;                  /* of the model's own file, on disk */
-    char   unit_from[96], axes_from[96]; /* where scale and axes come from */
-    double scale_m;                    /* p_body = scale_m r_body_from_file (p_file - p_origin_file) */
-    double r_body_from_file[9], p_origin_file[3];
-    bool   axes_assumed;               /* not from the sidecar */
-    bool   scale_assumed;
-    bool   mirrored;                   /* the file's axes are left-handed */
-    int    source_nodes, source_meshes, source_materials;
-    int    unnamed_nodes, shared_names; /* nodes without a name; with one that another has, too */
-    int    dropped_meshes;             /* by the sidecar */
-    int    empty_meshes;               /* nothing left of them */
-    int    degenerate_triangles;       /* dropped */
-    int    smoothed_parts;             /* the file had no normals */
-    int    joints_from_file;
-    int    material_parts[MATERIAL_SOURCE_COUNT];
-    int    lost[IMPORT_LOST_COUNT];
+    char       file[1024];                   /* the model's own */
+    char       sidecar[1024];                /* empty: none */
+    long long  octets;                       /* of the model's own file, on disk */
+    char       unit_from[96], axes_from[96]; /* where scale and axes come from */
+    double     scale_m;                      /* p_body = scale_m r_body_from_file (p_file - p_origin_file) */
+    double     r_body_from_file[9], p_origin_file[3];
+    bool       axes_assumed; /* not from the sidecar */
+    bool       scale_assumed;
+    bool       mirrored; /* the file's axes are left-handed */
+    int        source_nodes, source_meshes, source_materials;
+    int        unnamed_nodes, shared_names; /* nodes without a name; with one that another has, too */
+    int        dropped_meshes;              /* by the sidecar */
+    int        empty_meshes;                /* nothing left of them */
+    int        degenerate_triangles;        /* dropped */
+    int        smoothed_parts;              /* the file had no normals */
+    int        joints_from_file;
+    int        material_parts[MATERIAL_SOURCE_COUNT];
+    int        lost[IMPORT_LOST_COUNT];
     ModelEdges edges;
 } ModelImport;
 
@@ -69,9 +69,9 @@ typedef struct ModelImport {
 Status model_import(Model *out, ModelImport *report, const char *path);
 
 /* Says in a line what was taken for what: unit, axes, size, what was lost, and the keys that say otherwise. */
-void   model_import_say(const ModelImport *report, const Model *model);
+void model_import_say(const ModelImport *report, const Model *model);
 /* Whether a name means a file: it has a slash or a dot. */
-bool   model_is_path(const char *name);
+bool model_is_path(const char *name);
 /* Logs that there is no built-in model of this name, with the nearest one. Returns STATUS_UNSUPPORTED. */
 Status model_say_unknown(const char *name);
 /* Parametric by its name, or imported by its path (*imported: which of them). sag_m: of parametric_build. Logs. */

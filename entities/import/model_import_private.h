@@ -23,22 +23,22 @@ enum {
 
 /* A degree of freedom that the file itself has (OpenFlight). Axes are unit. */
 typedef struct ImportDof {
-    int node;
-    bool slides, limited;
+    int    node;
+    bool   slides, limited;
     double p_pivot_parent[3],
         axis_parent[3]; /* in the axes of the node's parent; the node itself stands at rest there */
     double low, high;   /* rad or units of the file */
 } ImportDof;
 
 typedef struct ImportNode {
-    char name[model_name_size];
-    int parent;   /* an earlier node; -1: the root, node 0 */
-    double m[12]; /* 3 x 4, row by row: p_parent = m (p_node, 1) */
+    char   name[model_name_size];
+    int    parent; /* an earlier node; -1: the root, node 0 */
+    double m[12];  /* 3 x 4, row by row: p_parent = m (p_node, 1) */
 } ImportNode;
 
 typedef struct ImportMaterial {
-    char name[model_name_size];
-    int has_colour;
+    char  name[model_name_size];
+    int   has_colour;
     float rgb[3]; /* 0 .. 1, linear */
 } ImportMaterial;
 
@@ -49,19 +49,19 @@ typedef struct ImportMesh {
 } ImportMesh;
 
 typedef struct ImportScene {
-    int node_count, material_count, mesh_count, vertex_count, triangle_count, dof_count;
-    ImportNode *node;
+    int             node_count, material_count, mesh_count, vertex_count, triangle_count, dof_count;
+    ImportNode     *node;
     ImportMaterial *material; /* at least one */
-    ImportMesh *mesh;
+    ImportMesh     *mesh;
     double (*vertex)[3];     /* of the mesh's node */
     float (*normal)[3];      /* zero where the mesh has none */
     uint32_t (*triangle)[3]; /* from the mesh's first vertex */
     ImportDof *dof;
-    double forward[3], up[3]; /* from the file or its format; along axes */
-    double unit_m;            /* the same: metres a unit */
-    char unit_from[96], axes_from[96]; /* where they come from, for reports */
-    bool mirrored;            /* the file's axes are left-handed: one coordinate has changed its sign */
-    int lost[IMPORT_LOST_COUNT];
+    double     forward[3], up[3];            /* from the file or its format; along axes */
+    double     unit_m;                       /* the same: metres a unit */
+    char       unit_from[96], axes_from[96]; /* where they come from, for reports */
+    bool       mirrored;                     /* the file's axes are left-handed: one coordinate has changed its sign */
+    int        lost[IMPORT_LOST_COUNT];
 } ImportScene;
 
 /* On failure one logged line. path: to a regular file. extension: lower case, without `.gz`. */
@@ -69,38 +69,38 @@ Status import_assimp(ImportScene *out, const char *path, const char *extension);
 Status import_gltf(ImportScene *out, const char *path, const char *extension);
 Status import_openflight(ImportScene *out, const char *path);
 /* The extension in lower case, without its dot and without `.gz`; stem: length of what is before it. */
-void   import_split_extension(char out[16], size_t *stem, const char *path);
+void import_split_extension(char out[16], size_t *stem, const char *path);
 /* The model's file and the sidecar's, from the one that was named; reads the sidecar. */
 Status import_find_files(ModelImport *report, Sidecar *sidecar, const char *path);
 /* An OpenSceneGraph text, as osgconv writes it. path: for messages. text is taken apart. */
 Status import_osgt(ImportScene *out, const char *path, char *text, size_t octets);
-void import_scene_close(ImportScene *scene); /* accepts zeroes */
+void   import_scene_close(ImportScene *scene); /* accepts zeroes */
 /* Everything of it; `.gz` or plain. *out is NUL-terminated. Nothing logged when `quiet`. */
 Status import_read_whole(char **out, size_t *octets, const char *path, bool quiet);
 
 /* ---- import_joints.c ------------------------------------------------------------------ */
 
 typedef struct ImportJoint {
-    char name[model_name_size];
-    int parent; /* joint; -1: the hull */
-    int source; /* the first node that moves with it */
-    double p_pivot_file[3], axis_body[3];
+    char      name[model_name_size];
+    int       parent; /* joint; -1: the hull */
+    int       source; /* the first node that moves with it */
+    double    p_pivot_file[3], axis_body[3];
     JointKind kind;
-    uint32_t dis_class, dis_metric;
-    double low, high, rest; /* rad or m; low > high: none */
-    double spin_rps, roll_radius_m;
-    bool from_file; /* a degree of freedom, not the sidecar's */
+    uint32_t  dis_class, dis_metric;
+    double    low, high, rest; /* rad or m; low > high: none */
+    double    spin_rps, roll_radius_m;
+    bool      from_file; /* a degree of freedom, not the sidecar's */
 } ImportJoint;
 
 typedef struct ImportPlace {
     double m[12]; /* p_file = m (p_node, 1) */
-    char *path;   /* names from the root, with slashes */
-    int joint;    /* that it moves with; -1: none */
-    bool dropped;
+    char  *path;  /* names from the root, with slashes */
+    int    joint; /* that it moves with; -1: none */
+    bool   dropped;
 } ImportPlace;
 
 typedef struct ImportJoints {
-    int count;
+    int          count;
     ImportJoint *joint; /* parents first */
     ImportPlace *place; /* [node_count] */
 } ImportJoints;
@@ -108,7 +108,7 @@ typedef struct ImportJoints {
 /* r_body_from_file: rotation. scale_m: metres a unit. */
 Status import_joints(ImportJoints *out, const ImportScene *scene, const Sidecar *sidecar,
                      const double r_body_from_file[9], double scale_m);
-void import_joints_close(ImportJoints *joints, int node_count);
+void   import_joints_close(ImportJoints *joints, int node_count);
 /* `*` for any text, `?` for one character. */
 bool import_matches(const char *pattern, const char *text);
 /* The last rule that agrees with a node, by name or path; NULL: none. damage: rules of that state alone. */
@@ -134,8 +134,8 @@ typedef struct ImportPaints {
 } ImportPaints;
 
 Status import_paints_open(ImportPaints *out);
-void import_paints_close(ImportPaints *paints);
-bool import_paints_have(const ImportPaints *paints, const char *name);
+void   import_paints_close(ImportPaints *paints);
+bool   import_paints_have(const ImportPaints *paints, const char *name);
 /* The paint of a material: by words in its name, else by colour, else paint_olive; *source: which of these. */
 const char *import_paint_guess(ImportMaterialSource *source, const ImportPaints *paints,
                                const ImportMaterial *material);
@@ -158,11 +158,11 @@ typedef struct OsgElement {
 
 typedef struct OsgText {
     const char *path;
-    int element_count, element_room, word_count, word_room;
+    int         element_count, element_room, word_count, word_room;
     OsgElement *element;
-    char **word;
-    int *by_id; /* element with this UniqueID that has more than the id; -1 */
-    int id_count;
+    char      **word;
+    int        *by_id; /* element with this UniqueID that has more than the id; -1 */
+    int         id_count;
 } OsgText;
 
 /* The tree of a text, which is split in place and must outlive it. STATUS_BAD_VALUE, not logged: it is
@@ -172,10 +172,10 @@ void   osg_text_close(OsgText *text);
 
 const char *osg_word(const OsgText *x, int element, int index); /* "": there is none */
 /* The child with this first word; -1: none. */
-int    osg_find(const OsgText *x, int element, const char *name);
+int osg_find(const OsgText *x, int element, const char *name);
 /* A repeated object is written as its id alone: the element with the full definition. */
-int    osg_resolve(const OsgText *x, int element);
+int osg_resolve(const OsgText *x, int element);
 /* Numbers among an element's words from `from` on; false when there are fewer than count. */
-bool   osg_numbers(double *out, int count, const OsgText *x, int element, int from);
+bool osg_numbers(double *out, int count, const OsgText *x, int element, int from);
 
 #endif

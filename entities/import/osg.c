@@ -9,10 +9,10 @@
 /* ---- the tree as a scene ------------------------------------------------------------------------------------- */
 
 typedef struct Walk {
-    OsgText *x;
+    OsgText    *x;
     ImportScene s;
-    int node_room, mesh_room, vertex_room, triangle_room, dof_room, material_room;
-    int visits;
+    int         node_room, mesh_room, vertex_room, triangle_room, dof_room, material_room;
+    int         visits;
 } Walk;
 
 /* Capacity for `more` in a growing array; false: no memory. */
@@ -68,7 +68,7 @@ typedef struct Freedom {
 
 static bool read_freedom(Freedom *out, const OsgText *x, int element)
 {
-    double put[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}, t[3], lengths = 0;
+    double    put[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}, t[3], lengths = 0;
     const int matrix = osg_find(x, element, "PutMatrix");
     if (matrix >= 0 && !read_matrix(put, x, matrix)) return false;
     for (int i = 0; i < 3; i++) {
@@ -86,9 +86,9 @@ static Status add_freedoms(int *out, Walk *w, int element, const char *name, int
 {
     static const struct {
         const char *low, *high, *step, *current, *tail;
-        int component, axis; /* of H P R or x y z; of the transform's own axes */
-        bool slides;
-        uint32_t limited; /* bit of LimitationFlags */
+        int         component, axis; /* of H P R or x y z; of the transform's own axes */
+        bool        slides;
+        uint32_t    limited; /* bit of LimitationFlags */
     } freedom[6] = {
         {"MinTranslate", "MaxTranslate", "IncrementTranslate", "CurrentTranslate", ".x", 0, 0, true, 1u << 31},
         {"MinTranslate", "MaxTranslate", "IncrementTranslate", "CurrentTranslate", ".y", 1, 1, true, 1u << 30},
@@ -98,10 +98,10 @@ static Status add_freedoms(int *out, Walk *w, int element, const char *name, int
         {"MinHPR", "MaxHPR", "IncrementHPR", "CurrentHPR", ".roll", 2, 1, false, 1u << 27},
     };
     const OsgText *x = w->x;
-    ImportScene *s = &w->s;
-    Freedom zero;
-    long long flags = 0;
-    bool first = true;
+    ImportScene   *s = &w->s;
+    Freedom        zero;
+    long long      flags = 0;
+    bool           first = true;
     if (!read_freedom(&zero, x, element))
         return refuse(w, "the place of a degree of freedom is not a rotation and a point");
     const int flag_element = osg_find(x, element, "LimitationFlags");
@@ -114,7 +114,7 @@ static Status add_freedoms(int *out, Walk *w, int element, const char *name, int
         osg_numbers(high, 3, x, osg_find(x, element, freedom[f].high), 1);
         osg_numbers(step, 3, x, osg_find(x, element, freedom[f].step), 1);
         osg_numbers(current, 3, x, osg_find(x, element, freedom[f].current), 1);
-        const int c = freedom[f].component;
+        const int  c = freedom[f].component;
         const bool limited = (uint32_t)flags & freedom[f].limited;
         if (current[c] != 0) s->lost[LOST_FREEDOM_OFFSETS]++;
         if (!(high[c] > low[c] || (step[c] != 0 && !limited)) || (freedom[f].slides && !limited)) continue;
@@ -144,7 +144,7 @@ static int array_numbers(double *out, int room, const OsgText *x, int property)
 {
     if (property < 0 || x->element[property].child < 0) return -1;
     const int list = osg_find(x, osg_resolve(x, x->element[property].child), "vector");
-    int count = 0;
+    int       count = 0;
     if (list < 0) return -1;
     for (int line = x->element[list].child; line >= 0; line = x->element[line].next)
         for (int i = 0; i < x->element[line].words; i++, count++) {
@@ -157,7 +157,7 @@ static int array_numbers(double *out, int room, const OsgText *x, int property)
 
 static Status add_triangle(Walk *w, ImportMesh *mesh, long long a, long long b, long long c)
 {
-    ImportScene *s = &w->s;
+    ImportScene    *s = &w->s;
     const long long corner[3] = {a, b, c};
     if (s->triangle_count == import_max_triangles) return refuse(w, "more than 8 M triangles");
     if (!grow(&s->triangle, &w->triangle_room, s->triangle_count, 1, sizeof *s->triangle)) return STATUS_NO_MEMORY;
@@ -201,8 +201,8 @@ static Status add_primitive(Walk *w, ImportMesh *mesh, const char *mode, long lo
 static Status add_primitives(Walk *w, ImportMesh *mesh, int set)
 {
     const OsgText *x = w->x;
-    const char *kind = osg_word(x, set, 0);
-    const int mode = osg_find(x, set, "Mode"), first_element = osg_find(x, set, "First"),
+    const char    *kind = osg_word(x, set, 0);
+    const int      mode = osg_find(x, set, "Mode"), first_element = osg_find(x, set, "First"),
               count_element = osg_find(x, set, "Count");
     long long first = 0, count = 0;
     if (mode < 0) return STATUS_OK;
@@ -217,11 +217,11 @@ static Status add_primitives(Walk *w, ImportMesh *mesh, int set)
     }
     /* the numbers lie in the set itself */
     const int list = osg_find(x, set, "vector");
-    int total = 0, at = 0;
+    int       total = 0, at = 0;
     if (list < 0) return STATUS_OK;
     for (int line = x->element[list].child; line >= 0; line = x->element[line].next) total += x->element[line].words;
     double *value = malloc(((size_t)total + 1) * sizeof *value);
-    Status status = value ? STATUS_OK : STATUS_NO_MEMORY;
+    Status  status = value ? STATUS_OK : STATUS_NO_MEMORY;
     for (int line = x->element[list].child; line >= 0 && status == STATUS_OK; line = x->element[line].next)
         for (int i = 0; i < x->element[line].words && status == STATUS_OK; i++, at++)
             if (!text_to_double(value + at, osg_word(x, line, i)) ||
@@ -261,10 +261,10 @@ static Status add_material(int *out, Walk *w, const char *name, const float rgb[
 static Status read_material(int *out, Walk *w, int geometry, int material)
 {
     const OsgText *x = w->x;
-    double rgb[4] = {0};
-    float colour[3] = {0};
-    const int diffuse = osg_find(x, material, "Diffuse"), name = osg_find(x, material, "Name");
-    bool has = osg_numbers(rgb, 3, x, diffuse, 3); /* Diffuse TRUE Front r g b a Back ... */
+    double         rgb[4] = {0};
+    float          colour[3] = {0};
+    const int      diffuse = osg_find(x, material, "Diffuse"), name = osg_find(x, material, "Name");
+    bool           has = osg_numbers(rgb, 3, x, diffuse, 3); /* Diffuse TRUE Front r g b a Back ... */
     if (array_numbers(rgb, 4, x, osg_find(x, geometry, "ColorArray")) >= 3) has = true;
     char text[model_name_size];
     snprintf(text, sizeof text, "%s", name >= 0 ? osg_word(x, name, 1) : "");
@@ -279,9 +279,9 @@ static Status read_material(int *out, Walk *w, int geometry, int material)
 static Status add_geometry(Walk *w, int geometry, int node, int material)
 {
     const OsgText *x = w->x;
-    ImportScene *s = &w->s;
-    const int vertices = osg_find(x, geometry, "VertexArray"), sets = osg_find(x, geometry, "PrimitiveSetList");
-    const int values = array_numbers(NULL, 0, x, vertices);
+    ImportScene   *s = &w->s;
+    const int      vertices = osg_find(x, geometry, "VertexArray"), sets = osg_find(x, geometry, "PrimitiveSetList");
+    const int      values = array_numbers(NULL, 0, x, vertices);
     if (values <= 0 || values % 3 != 0 || sets < 0) return STATUS_OK; /* text, shapes: nothing to trace */
     const int count = values / 3;
     if (count > import_max_vertices - s->vertex_count) return refuse(w, "more than 8 M vertices");
@@ -295,7 +295,7 @@ static Status add_geometry(Walk *w, int geometry, int node, int material)
         .node = node, .first_vertex = s->vertex_count, .vertex_count = count, .first_triangle = s->triangle_count};
     array_numbers(s->vertex[s->vertex_count], values, x, vertices);
     double *normals = malloc((size_t)values * sizeof *normals);
-    Status status = normals ? STATUS_OK : STATUS_NO_MEMORY;
+    Status  status = normals ? STATUS_OK : STATUS_NO_MEMORY;
     if (status == STATUS_OK) {
         mesh.has_normals = array_numbers(normals, values, x, osg_find(x, geometry, "NormalArray")) == values;
         for (int i = 0; i < values; i++)
@@ -326,7 +326,7 @@ static int material_of(const OsgText *x, int object, int above)
 static double nearest_range(const OsgText *x, int object)
 {
     const int list = strstr(osg_word(x, object, 0), "LOD") ? osg_find(x, object, "RangeList") : -1;
-    double least = INFINITY, low;
+    double    least = INFINITY, low;
     for (int line = list >= 0 ? x->element[list].child : -1; line >= 0; line = x->element[line].next)
         if (osg_numbers(&low, 1, x, line, 0) && low < least) least = low;
     return least;
@@ -339,8 +339,8 @@ static bool is_seen(Walk *w, int object, const char *kind, int index, int childr
     if (strstr(kind, "LOD")) {
         /* the finest: the one that is drawn nearest by */
         const int list = osg_find(x, object, "RangeList");
-        double least = INFINITY;
-        int finest = 0, i = 0;
+        double    least = INFINITY;
+        int       finest = 0, i = 0;
         for (int line = list >= 0 ? x->element[list].child : -1; line >= 0; line = x->element[line].next, i++) {
             double low;
             if (!osg_numbers(&low, 1, x, line, 0) || !(low < least)) continue;
@@ -369,10 +369,10 @@ static bool is_seen(Walk *w, int object, const char *kind, int index, int childr
 static Status walk_object(Walk *w, int element, int parent, int material, int depth)
 {
     const OsgText *x = w->x;
-    const int object = osg_resolve(x, element), name_element = osg_find(x, object, "Name");
-    const char *kind = osg_word(x, object, 0), *name = name_element >= 0 ? osg_word(x, name_element, 1) : "";
-    int node = parent;
-    Status status = STATUS_OK;
+    const int      object = osg_resolve(x, element), name_element = osg_find(x, object, "Name");
+    const char    *kind = osg_word(x, object, 0), *name = name_element >= 0 ? osg_word(x, name_element, 1) : "";
+    int            node = parent;
+    Status         status = STATUS_OK;
     if (depth > import_max_depth) return refuse(w, "more than 256 levels of nodes");
     if (++w->visits > 4 * import_max_nodes) return refuse(w, "more than 262144 nodes, as often as they are drawn");
     material = material_of(x, object, material);
@@ -397,7 +397,7 @@ static Status walk_object(Walk *w, int element, int parent, int material, int de
     for (int c = drawables >= 0 ? x->element[drawables].child : -1; c >= 0 && status == STATUS_OK;
          c = x->element[c].next)
         status = walk_object(w, c, node, material, depth + 1);
-    int count = 0, index = 0;
+    int    count = 0, index = 0;
     double near = INFINITY;
     for (int c = children >= 0 ? x->element[children].child : -1; c >= 0; c = x->element[c].next, count++)
         near = fmin(near, nearest_range(x, osg_resolve(x, c)));
@@ -406,8 +406,7 @@ static Status walk_object(Walk *w, int element, int parent, int material, int de
         const double range = nearest_range(x, osg_resolve(x, c));
         if (isfinite(range) && range > near)
             w->s.lost[LOST_LEVELS_OF_DETAIL]++; /* OpenFlight's levels are neighbours */
-        else if (is_seen(w, object, kind, index, count))
-            status = walk_object(w, c, node, material, depth + 1);
+        else if (is_seen(w, object, kind, index, count)) status = walk_object(w, c, node, material, depth + 1);
     }
     return status;
 }
@@ -416,9 +415,12 @@ Status import_osgt(ImportScene *out, const char *path, char *text, size_t octets
 {
     OsgText x;
     Status  status = osg_text_open(&x, path, text, octets);
-    Walk    w = {.x = &x, .s = {.forward = {0, 1, 0}, .up = {0, 0, 1}, .unit_m = 1, /* as OpenFlight has it */
-                                .unit_from = "the unit of the file's header, turned to metres by osgconv",
-                                .axes_from = "OpenFlight's habit"}};
+    Walk    w = {.x = &x,
+                 .s = {.forward = {0, 1, 0},
+                       .up = {0, 0, 1},
+                       .unit_m = 1, /* as OpenFlight has it */
+                       .unit_from = "the unit of the file's header, turned to metres by osgconv",
+                       .axes_from = "OpenFlight's habit"}};
     if (status == STATUS_BAD_VALUE) refuse(&w, "what osgconv wrote is not a whole scene");
     for (int e = 0; e < x.element_count && status == STATUS_OK; e++) {
         const char *kind = osg_word(&x, e, 0);
@@ -426,9 +428,7 @@ Status import_osgt(ImportScene *out, const char *path, char *text, size_t octets
     }
     if (status == STATUS_OK) status = walk_object(&w, 0, -1, -1, 1);
     osg_text_close(&x);
-    if (status == STATUS_OK)
-        *out = w.s;
-    else
-        import_scene_close(&w.s);
+    if (status == STATUS_OK) *out = w.s;
+    else import_scene_close(&w.s);
     return status;
 }

@@ -46,16 +46,16 @@ static char **osg_environment(void)
 
 static Status convert(const char *from, const char *to, const char *path)
 {
-    char program[] = "osgconv", option[] = "-O", options[] = "preserveObject precision 9";
+    char  program[] = "osgconv", option[] = "-O", options[] = "preserveObject precision 9";
     char *argument[] = {program, option, options, (char *)(uintptr_t)from, (char *)(uintptr_t)to, NULL};
     pid_t child;
-    int ended = 0;
+    int   ended = 0;
     enum { not_there = 127 };
     char **environment = osg_environment();
     if (!environment) return STATUS_NO_MEMORY;
     child = fork();
     if (child == 0) { /* without network: osgconv would fetch what a file names by address */
-        char why[confine_why_size];
+        char      why[confine_why_size];
         const int nowhere = open("/dev/null", O_RDWR | O_CLOEXEC);
         for (int fd = 0; fd < 3; fd++) dup2(nowhere, fd);
         if (!confine_network(why)) _exit(not_there - 1);
@@ -77,7 +77,9 @@ static Status convert(const char *from, const char *to, const char *path)
         return STATUS_BAD_VALUE;
     }
     if (WIFEXITED(ended) && WEXITSTATUS(ended) == not_there) {
-        log_error("model: cannot convert: file=%s: there is no osgconv; OpenFlight needs it: apt-get install openscenegraph", path);
+        log_error(
+            "model: cannot convert: file=%s: there is no osgconv; OpenFlight needs it: apt-get install openscenegraph",
+            path);
         return STATUS_IO;
     }
     if (!WIFEXITED(ended) || WEXITSTATUS(ended) != 0 || access(to, R_OK) != 0) {
@@ -88,8 +90,9 @@ static Status convert(const char *from, const char *to, const char *path)
     return STATUS_OK;
 }
 
-/* osgconv fetches what a file names by address, with a plug-in of its own: such a file is refused. Records of OpenFlight: an
- * opcode and a length of 16 bits, highest octet first; 63 is an external reference, 64 a texture, whose names follow. */
+/* osgconv fetches what a file names by address, with a plug-in of its own: such a file is refused. Records of
+ * OpenFlight: an opcode and a length of 16 bits, highest octet first; 63 is an external reference, 64 a texture, whose
+ * names follow. */
 static Status refuse_addresses(const char *path)
 {
     enum { external = 63, texture = 64, name_octets = 200 };
@@ -110,8 +113,10 @@ static Status refuse_addresses(const char *path)
         name[count] = 0;
         if (!strstr(name, "://")) continue;
         text_escape(shown, sizeof shown, name, strlen(name));
-        log_error("model: cannot be read: file=%s: it names an address of the network, and nothing is fetched: put the file beside "
-                  "the model and name that: %s", path, shown);
+        log_error(
+            "model: cannot be read: file=%s: it names an address of the network, and nothing is fetched: put the file beside "
+            "the model and name that: %s",
+            path, shown);
         status = STATUS_BAD_VALUE;
     }
     free(bytes);
@@ -121,9 +126,9 @@ static Status refuse_addresses(const char *path)
 Status import_openflight(ImportScene *out, const char *path)
 {
     const char *root = getenv("TMPDIR");
-    char folder[512], text_path[560], whole[PATH_MAX];
-    char *text = NULL;
-    size_t octets = 0;
+    char        folder[512], text_path[560], whole[PATH_MAX];
+    char       *text = NULL;
+    size_t      octets = 0;
     if (!realpath(path, whole)) { /* so that no name looks like an option */
         log_error("model: cannot open: file=%s: %s", path, strerror(errno));
         return STATUS_IO;
@@ -156,7 +161,7 @@ static bool split_words(OsgText *x, char *line)
         if (!*at) return true;
         if (x->word_count == x->word_room) {
             const int room = x->word_room ? 2 * x->word_room : 4096;
-            char **grown = realloc(x->word, (size_t)room * sizeof *grown);
+            char    **grown = realloc(x->word, (size_t)room * sizeof *grown);
             if (!grown) return false;
             x->word = grown;
             x->word_room = room;
@@ -207,7 +212,7 @@ static Status read_tree(OsgText *x, char *text)
         const bool opens = strcmp(x->word[first + words - 1], "{") == 0;
         if (opens) words--;
         if (x->element_count == x->element_room) {
-            const int room = x->element_room ? 2 * x->element_room : 4096;
+            const int   room = x->element_room ? 2 * x->element_room : 4096;
             OsgElement *grown = realloc(x->element, (size_t)room * sizeof *grown);
             if (!grown) return STATUS_NO_MEMORY;
             x->element = grown;
@@ -215,10 +220,8 @@ static Status read_tree(OsgText *x, char *text)
         }
         const int e = x->element_count++;
         x->element[e] = (OsgElement){first, words, -1, -1};
-        if (last[depth] >= 0)
-            x->element[last[depth]].next = e;
-        else if (open[depth] >= 0)
-            x->element[open[depth]].child = e;
+        if (last[depth] >= 0) x->element[last[depth]].next = e;
+        else if (open[depth] >= 0) x->element[open[depth]].child = e;
         last[depth] = e;
         if (!opens) continue;
         if (++depth == depth_max) return STATUS_BAD_VALUE;
@@ -258,7 +261,7 @@ static Status number_objects(OsgText *x)
     if (!x->by_id) return STATUS_NO_MEMORY;
     for (int i = 0; i < x->id_count; i++) x->by_id[i] = -1;
     for (int e = 0; e < x->element_count; e++) {
-        const int first = x->element[e].child;
+        const int       first = x->element[e].child;
         const long long id = first >= 0 && x->element[first].next >= 0 ? id_of(x, e) : -1;
         if (id >= 0 && x->by_id[id] < 0) x->by_id[id] = e;
     }

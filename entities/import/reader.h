@@ -8,11 +8,11 @@
 
 /* The model `tank.obj.gz` is `tank.obj` to a reader; files it names (materials, buffers) are in the same folder. */
 typedef struct ReaderFiles {
-    const char *path;   /* as it is on disk */
-    char shown[1024];   /* without .gz */
-    size_t folder;      /* length of the folder's name with its slash */
-    bool no_memory;     /* for a file of it */
-    char refused[1100]; /* the first file outside the folder, or that is no file */
+    const char *path;          /* as it is on disk */
+    char        shown[1024];   /* without .gz */
+    size_t      folder;        /* length of the folder's name with its slash */
+    bool        no_memory;     /* for a file of it */
+    char        refused[1100]; /* the first file outside the folder, or that is no file */
 } ReaderFiles;
 
 void reader_files(ReaderFiles *out, const char *path);
@@ -23,7 +23,7 @@ Status reader_read(char **out, size_t *octets, ReaderFiles *files, const char *n
 /* Lines for the user, which the process that asked for the model logs. */
 typedef struct ReaderSaid {
     char error[600]; /* why there is no scene */
-    int warnings;
+    int  warnings;
     char warning[8][300];
 } ReaderSaid;
 

@@ -41,9 +41,9 @@ static Status refuse(ReaderFiles *files, const char *name)
 
 Status reader_read(char **out, size_t *octets, ReaderFiles *files, const char *name)
 {
-    char packed[1100];
+    char        packed[1100];
     struct stat there;
-    const bool is_model = strcmp(name, files->shown) == 0;
+    const bool  is_model = strcmp(name, files->shown) == 0;
     if (!is_model && (strncmp(name, files->shown, files->folder) != 0 || strstr(name + files->folder, "..") ||
                       name[files->folder] == '/'))
         return refuse(files, name);
@@ -78,16 +78,15 @@ void reader_warns(ReaderSaid *said, const char *format, ...)
 
 Status import_read_whole(char **out, size_t *octets, const char *path, bool quiet)
 {
-    char refused[file_why_size];
+    char        refused[file_why_size];
     const char *why = NULL;
-    const int file_at = file_open(refused, NULL, path, FILE_FROM_DISK);
-    gzFile file = NULL;
-    char *text = NULL;
-    size_t size = 0, capacity = 1 << 16;
-    Status status = STATUS_IO;
+    const int   file_at = file_open(refused, NULL, path, FILE_FROM_DISK);
+    gzFile      file = NULL;
+    char       *text = NULL;
+    size_t      size = 0, capacity = 1 << 16;
+    Status      status = STATUS_IO;
 
-    if (file_at < 0)
-        why = refused;
+    if (file_at < 0) why = refused;
     else if (!(file = gzdopen(file_at, "rb"))) {
         why = strerror(errno);
         close(file_at);
@@ -101,7 +100,7 @@ Status import_read_whole(char **out, size_t *octets, const char *path, bool quie
         }
         text = larger;
         const int got = gzread(file, text + size, (unsigned)(capacity - size));
-        int code;
+        int       code;
         if (got > 0) size += (size_t)got;
         gzerror(file, &code);
         if (got < 0 || (code != Z_OK && code != Z_STREAM_END)) {
@@ -132,9 +131,9 @@ Status import_read_whole(char **out, size_t *octets, const char *path, bool quie
 
 /* The scene's pointers mean nothing to the other side. */
 typedef struct Header {
-    int status;
-    ReaderSaid said;
-    char refused[1100];
+    int         status;
+    ReaderSaid  said;
+    char        refused[1100];
     ImportScene scene;
 } Header;
 
@@ -172,7 +171,7 @@ static char *put(char *at, const void *bytes, size_t octets)
 static void child_reads(char *out, Reader *read, const char *path, const char *extension)
 {
     static Header header; /* large for a stack */
-    ReaderFiles files;
+    ReaderFiles   files;
     reader_files(&files, path);
     ImportScene *s = &header.scene;
     header.status = read(s, &header.said, &files, extension);
@@ -201,14 +200,14 @@ static void child_limits(void)
     setrlimit(RLIMIT_CPU, &cpu);
     prctl(PR_SET_PDEATHSIG, SIGKILL);
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) /* their shadows are terabytes of address space */
-    FILE *statm = fopen("/proc/self/statm", "r");
+    FILE         *statm = fopen("/proc/self/statm", "r");
     unsigned long pages = 0;
     if (statm) {
         if (fscanf(statm, "%lu", &pages) != 1) pages = 0;
         fclose(statm);
     }
     if (pages > 0) {
-        const rlim_t most = (rlim_t)pages * (rlim_t)sysconf(_SC_PAGESIZE) + import_max_memory;
+        const rlim_t        most = (rlim_t)pages * (rlim_t)sysconf(_SC_PAGESIZE) + import_max_memory;
         const struct rlimit memory = {most, most};
         setrlimit(RLIMIT_AS, &memory);
     }
@@ -265,7 +264,7 @@ bool import_scene_is_sound(ImportScene *s)
 
 static void log_said(Header *header, const char *path)
 {
-    char said[1400];
+    char      said[1400];
     const int most = (int)(sizeof header->said.warning / sizeof *header->said.warning);
     for (int i = 0; i < header->said.warnings && i < most; i++) {
         header->said.warning[i][sizeof *header->said.warning - 1] = 0;
@@ -281,9 +280,9 @@ static void log_said(Header *header, const char *path)
 
 static Status take_scene(ImportScene *out, const char *bytes, size_t octets, const char *path)
 {
-    const char *at = bytes, *end = bytes + octets;
+    const char                 *at = bytes, *end = bytes + octets;
     static _Thread_local Header header;
-    ImportScene s = {0};
+    ImportScene                 s = {0};
     if (!take(&header, sizeof header, &at, end)) goto broken;
     if (header.status != STATUS_OK) {
         char said[1000];
@@ -331,7 +330,7 @@ Status reader_run(ImportScene *out, Reader *read, const char *path, const char *
                         import_max_vertices * (sizeof(double[3]) + sizeof(float[3])) +
                         import_max_triangles * sizeof(uint32_t[3]);
     Status status = STATUS_IO;
-    char *shared = mmap(NULL, most, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    char  *shared = mmap(NULL, most, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
     if (shared == MAP_FAILED) {
         log_error("model: cannot read: file=%s: no memory for its reader: %s", path, strerror(errno));
         return STATUS_NO_MEMORY;
@@ -339,7 +338,7 @@ Status reader_run(ImportScene *out, Reader *read, const char *path, const char *
     const pid_t child = fork();
     if (child == 0) {
         child_limits();
-        char why[confine_why_size], folder[1100];
+        char        why[confine_why_size], folder[1100];
         const char *slash = strrchr(path, '/');
         snprintf(folder, sizeof folder, "%.*s", slash ? (int)(slash - path) + 1 : 1, slash ? path : ".");
         const char *const readable[] = {folder, path}; /* the model itself may be a link */

@@ -31,16 +31,17 @@ static bool copy_text(char *out, size_t size, const char *text)
 /* SISO-REF-010, articulated parts, type classes (from memory); ten of each, 32 apart. */
 static const struct {
     const char *name;
-    uint32_t first;
-    int numbers;
+    uint32_t    first;
+    int         numbers;
 } classes[] = {
     {"primary_turret", 4096, 10},  {"primary_gun", 4416, 10},        {"primary_launcher", 4736, 10},
     {"primary_defence", 5056, 10}, {"primary_radar", 5376, 10},      {"secondary_turret", 5696, 10},
     {"secondary_gun", 6016, 10},   {"secondary_launcher", 6336, 10}, {"secondary_defence", 6656, 10},
     {"secondary_radar", 6976, 10},
 };
-#define CLASS_ACCEPTED "primary_ or secondary_ and turret, gun, launcher, defence or radar, then _1 .. " \
-                                     "_10, or a multiple of 32 in 1024 .. 8160"
+#define CLASS_ACCEPTED                                                                                                 \
+    "primary_ or secondary_ and turret, gun, launcher, defence or radar, then _1 .. "                                  \
+    "_10, or a multiple of 32 in 1024 .. 8160"
 
 static bool read_class(uint32_t *out, const char *text)
 {
@@ -75,7 +76,7 @@ const char *sidecar_class_text(char out[32], uint32_t dis_class)
 
 static const struct {
     const char *name;
-    uint32_t metric;
+    uint32_t    metric;
 } metrics[] = {{"position", 1}, {"extension", 3}, {"x", 5},          {"y", 7},
                {"z", 9},        {"azimuth", 11},  {"elevation", 13}, {"rotation", 15}};
 
@@ -112,7 +113,7 @@ static bool read_body_axis(double out[3], const char *text)
 {
     static const struct {
         const char *name;
-        double axis[3];
+        double      axis[3];
     } words[] = {
         {"yaw", {0, 0, 1}},   {"pitch", {0, 1, 0}}, {"roll", {1, 0, 0}}, {"forward", {1, 0, 0}}, {"back", {-1, 0, 0}},
         {"right", {0, 1, 0}}, {"left", {0, -1, 0}}, {"up", {0, 0, -1}},  {"down", {0, 0, 1}},
@@ -132,7 +133,7 @@ static bool read_limits(SidecarJoint *j, const char *text, double most, double u
     double limit[2];
     if (!read_numbers(limit, 2, text, -most, most) || !(limit[0] <= limit[1])) return false;
     j->has_limits = true;
-    j->low  = limit[0] * unit;
+    j->low = limit[0] * unit;
     j->high = limit[1] * unit;
     return true;
 }
@@ -164,15 +165,23 @@ static Status joint_own(const char **complaint, void *out, const Setting *row, S
             j->pattern_count < sidecar_max_patterns && copy_text(j->pattern[j->pattern_count], model_name_size, text);
         j->pattern_count += fine;
         break;
-    case offsetof(SidecarJoint, pivot): fine = read_pivot(j, text); break;
-    case offsetof(SidecarJoint, axis): fine = read_axis(j, text); break;
-    case offsetof(SidecarJoint, dis_class): fine = read_class(&j->dis_class, text); break;
-    case offsetof(SidecarJoint, dis_metric): fine = read_metric(&j->dis_metric, text); break;
+    case offsetof(SidecarJoint, pivot):
+        fine = read_pivot(j, text);
+        break;
+    case offsetof(SidecarJoint, axis):
+        fine = read_axis(j, text);
+        break;
+    case offsetof(SidecarJoint, dis_class):
+        fine = read_class(&j->dis_class, text);
+        break;
+    case offsetof(SidecarJoint, dis_metric):
+        fine = read_metric(&j->dis_metric, text);
+        break;
     case offsetof(SidecarJoint, roll_radius_m):
         j->roll_radius_m = -1;
         fine = strcmp(text, "auto") == 0 || read_numbers(&j->roll_radius_m, 1, text, 0.01, 10);
         break;
-    case offsetof(SidecarJoint, low): /* limits_deg */
+    case offsetof(SidecarJoint, low):    /* limits_deg */
     case offsetof(SidecarJoint, slides): /* limits_m */
         if (j->has_limits) {
             *complaint = "a second pair of limits, in degrees and in metres; a joint turns or slides";
@@ -202,8 +211,8 @@ static const Setting joint_keys[] = {
      "yaw, pitch, roll, forward, back, right, left, up, down, +x .. -z, or x y z not all 0", "",
      "else by metric: azimuth yaw, elevation pitch"},
     {"class", OWN(SidecarJoint, dis_class), CLASS_ACCEPTED, "", "of the articulated parameter of DIS that moves it"},
-    {"metric", OWN(SidecarJoint, dis_metric),
-     "one of position, extension, x, y, z, azimuth, elevation, rotation", "", "and its metric"},
+    {"metric", OWN(SidecarJoint, dis_metric), "one of position, extension, x, y, z, azimuth, elevation, rotation", "",
+     "and its metric"},
     {"limits_deg", OWN(SidecarJoint, low), "low high in -3600 .. 3600 deg, low <= high", "", "of what turns"},
     {"limits_m", OWN(SidecarJoint, slides), "low high in -1000 .. 1000 m, low <= high", "", "of what slides"},
     {"rest_deg", SETTING_DOUBLE, SETTING_AT(SidecarJoint, rest), -360, 360, NULL, "deg",
@@ -213,10 +222,13 @@ static const Setting joint_keys[] = {
     {"roll_radius", OWN(SidecarJoint, roll_radius_m), "auto or a number in 0.01 .. 10 m", "",
      "of a wheel: turns as the vehicle travels; auto: by its size"},
 };
-static const SettingTable joint_table = {
-    .module = "sidecar", .row = joint_keys, .count = sizeof joint_keys / sizeof *joint_keys,
-    .line_at = offsetof(SidecarJoint, line), .all_keys = "`pitviper model --keys`", .prefix = "joints.",
-    .own = joint_own};
+static const SettingTable joint_table = {.module = "sidecar",
+                                         .row = joint_keys,
+                                         .count = sizeof joint_keys / sizeof *joint_keys,
+                                         .line_at = offsetof(SidecarJoint, line),
+                                         .all_keys = "`pitviper model --keys`",
+                                         .prefix = "joints.",
+                                         .own = joint_own};
 
 /* Degrees and turns a minute to radians, and what the keys of one joint demand of each other. */
 static Status finish_joint(const Sidecar *s, SidecarJoint *j)
@@ -224,22 +236,16 @@ static Status finish_joint(const Sidecar *s, SidecarJoint *j)
     const char *what = NULL;
     j->rest *= rad_per_deg;
     j->spin_rps *= 2 * pi_rad / 60;
-    if (j->pattern_count == 0)
-        what = "nodes: is missing: which nodes move";
-    else if (j->dis_metric && j->dis_metric < 11 && !j->slides)
-        what = "metric: a length needs limits_m";
-    else if (j->dis_metric >= 11 && j->slides)
-        what = "metric: an angle, but limits_m says that it slides";
-    else if (!j->dis_class != !j->dis_metric)
-        what = "class and metric belong together; one is missing";
+    if (j->pattern_count == 0) what = "nodes: is missing: which nodes move";
+    else if (j->dis_metric && j->dis_metric < 11 && !j->slides) what = "metric: a length needs limits_m";
+    else if (j->dis_metric >= 11 && j->slides) what = "metric: an angle, but limits_m says that it slides";
+    else if (!j->dis_class != !j->dis_metric) what = "class and metric belong together; one is missing";
     else if (j->slides && (j->rest != 0 || j->spin_rps != 0 || j->roll_radius_m != 0))
         what = "rest_deg, spin_rpm and roll_radius are of joints that turn, limits_m of those that slide";
-    else if (j->spin_rps != 0 && j->axis == AXIS_DEFAULT)
-        what = "axis: is missing: about what spin_rpm turns";
+    else if (j->spin_rps != 0 && j->axis == AXIS_DEFAULT) what = "axis: is missing: about what spin_rpm turns";
     else if (j->each && j->pivot == PIVOT_GIVEN)
         what = "pivot: one place for each of many joints; node or centre is accepted";
-    else if (j->each && j->name[0])
-        what = "name: one name for each of many joints; leave it out";
+    else if (j->each && j->name[0]) what = "name: one name for each of many joints; leave it out";
     if (what) log_error("sidecar: %s:%d: joints: %s", s->path, j->line, what);
     return what ? STATUS_BAD_VALUE : STATUS_OK;
 }
@@ -256,7 +262,7 @@ static void *add_joint(void *owner)
 static const char *heat_roles(void)
 {
     static _Thread_local char text[256];
-    size_t n = (size_t)snprintf(text, sizeof text, "not one of ");
+    size_t                    n = (size_t)snprintf(text, sizeof text, "not one of ");
     for (int k = 0; k < HEAT_ROLE_COUNT && n < sizeof text; k++)
         n += (size_t)snprintf(text + n, sizeof text - n, "%s%s", k ? ", " : "", heat_role_name((HeatRole)k));
     return text;
@@ -267,7 +273,7 @@ static Status add_rule(const char **complaint, SidecarRules *rules, SettingValue
 {
     SidecarRule rule = {.line = value->line, .damage = damage};
     value->wrong_key = value->key != NULL;
-    *complaint       = "not a pattern of 1 .. 95 characters";
+    *complaint = "not a pattern of 1 .. 95 characters";
     if (!copy_text(rule.pattern, sizeof rule.pattern, value->key ? value->key : value->text)) return STATUS_BAD_VALUE;
     *complaint = "given twice";
     for (int i = 0; i < rules->count; i++)
@@ -276,7 +282,7 @@ static Status add_rule(const char **complaint, SidecarRules *rules, SettingValue
     *complaint = "one pattern too many; there may be 4096";
     if (rules->count == sidecar_max_rules) return STATUS_BAD_VALUE;
     value->wrong_key = false;
-    *complaint       = "not a name of 1 .. 31 characters";
+    *complaint = "not a name of 1 .. 31 characters";
     if (value->key && !copy_text(rule.value, sizeof rule.value, value->text)) return STATUS_BAD_VALUE;
     if ((rules->count & (rules->count - 1)) == 0) { /* capacity: a power of two */
         SidecarRule *grown = realloc(rules->rule, (rules->count ? 2 * (size_t)rules->count : 1) * sizeof *grown);
@@ -300,7 +306,8 @@ static Status top_own(const char **complaint, void *out, const Setting *row, Set
     HeatRole role;
     double   thickness_mm;
     switch (row->offset) {
-    case offsetof(Sidecar, has_axes): return (s->has_axes = read_axes(s, value->text)) ? STATUS_OK : STATUS_BAD_VALUE;
+    case offsetof(Sidecar, has_axes):
+        return (s->has_axes = read_axes(s, value->text)) ? STATUS_OK : STATUS_BAD_VALUE;
     case offsetof(Sidecar, has_origin):
         s->has_origin = strcmp(value->text, "auto") != 0;
         return !s->has_origin || read_numbers(s->p_origin_file, 3, value->text, -1e9, 1e9) ? STATUS_OK
@@ -319,11 +326,14 @@ static Status top_own(const char **complaint, void *out, const Setting *row, Set
 
 /* A row's lower end is the state of damage that its rules belong to. */
 #define RULES(kind, member, damage) kind, SETTING_AT(Sidecar, member), damage, 0
-#define PATTERNS "a pattern or a list of them"
-#define NAMES "`pattern: name` for each, a row of etc/materials.csv or of models.materials, 1 .. 31 characters"
-#define DAMAGE(name, state)                                                                                       \
-    {"damage." name ".hide", RULES(SETTING_EACH, damage_hide, state), PATTERNS, "", "what is gone in this state"},   \
-    {"damage." name ".materials", RULES(SETTING_MAP, damage_materials, state), NAMES, "", "and what looks otherwise"}
+#define PATTERNS                    "a pattern or a list of them"
+#define NAMES                       "`pattern: name` for each, a row of etc/materials.csv or of models.materials, 1 .. 31 characters"
+#define DAMAGE(name, state)                                                                                            \
+    {"damage." name ".hide", RULES(SETTING_EACH, damage_hide, state), PATTERNS, "", "what is gone in this state"},     \
+    {                                                                                                                  \
+        "damage." name ".materials", RULES(SETTING_MAP, damage_materials, state), NAMES, "",                           \
+            "and what looks otherwise"                                                                                 \
+    }
 
 static const Setting top_keys[] = {
     {"file", SETTING_TEXT, SETTING_AT(Sidecar, file), 0, 0, NULL, "",
@@ -344,12 +354,18 @@ static const Setting top_keys[] = {
      "what warms the part"},
     {"thickness_mm", RULES(SETTING_MAP, thickness, 0), "`pattern: number` for each, 0.1 .. 1000 mm", "mm",
      "of the part's skin, by node; else by role, as etc/heat.csv says"},
-    DAMAGE("slight", 1), DAMAGE("moderate", 2), DAMAGE("destroyed", 3),
+    DAMAGE("slight", 1),
+    DAMAGE("moderate", 2),
+    DAMAGE("destroyed", 3),
 };
 static const SettingList  lists[] = {{"joints", &joint_table, add_joint}};
-static const SettingTable table = {
-    .module = "sidecar", .row = top_keys, .count = sizeof top_keys / sizeof *top_keys, .list = lists, .list_count = 1,
-    .all_keys = "`pitviper model --keys`", .own = top_own};
+static const SettingTable table = {.module = "sidecar",
+                                   .row = top_keys,
+                                   .count = sizeof top_keys / sizeof *top_keys,
+                                   .list = lists,
+                                   .list_count = 1,
+                                   .all_keys = "`pitviper model --keys`",
+                                   .own = top_own};
 
 /* ---- the file --------------------------------------------------------------------------------------- */
 
@@ -393,7 +409,8 @@ Status sidecar_read(Sidecar *out, const char *path)
 void sidecar_write_keys(FILE *to)
 {
     fputs("Keys of a sidecar, NAME.yaml beside a model's file: what each takes, its range and its meaning.\n"
-          "A pattern has * and ?, and is held against a node's name and against its path from the root.\n\n", to);
+          "A pattern has * and ?, and is held against a node's name and against its path from the root.\n\n",
+          to);
     settings_write_keys(to, &table);
     fputs("\nKeys of a joint, `- {nodes: ...}` below joints:\n\n", to);
     settings_write_keys(to, &joint_table);

@@ -32,7 +32,7 @@ typedef struct SidecarRule {
     char pattern[model_name_size];
     char value[32]; /* empty for lists: drop, hide */
     int  line;
-    int  damage;    /* the state it belongs to; 0 outside `damage` */
+    int  damage; /* the state it belongs to; 0 outside `damage` */
 } SidecarRule;
 
 typedef struct SidecarRules {
@@ -48,30 +48,30 @@ typedef struct SidecarJoint {
     char      parent[model_name_size]; /* a joint further up in the list; empty: by the file's hierarchy */
     int       line, pattern_count;
     char      pattern[sidecar_max_patterns][model_name_size];
-    bool      each;                    /* every matched node is a joint of its own */
+    bool      each; /* every matched node is a joint of its own */
     PivotKind pivot;
     double    p_pivot_file[3];
     AxisKind  axis;
-    double    axis_xyz[3];             /* unit; in body or file axes */
-    uint32_t  dis_class, dis_metric;   /* 0: none */
+    double    axis_xyz[3];           /* unit; in body or file axes */
+    uint32_t  dis_class, dis_metric; /* 0: none */
     bool      slides, has_limits;
-    double    low, high;               /* rad or m */
-    double    rest;                    /* value at which the file draws it, rad or m */
-    double    spin_rps;                /* rad/s */
-    double    roll_radius_m;           /* < 0: from the size of the part; 0: does not roll */
+    double    low, high;     /* rad or m */
+    double    rest;          /* value at which the file draws it, rad or m */
+    double    spin_rps;      /* rad/s */
+    double    roll_radius_m; /* < 0: from the size of the part; 0: does not roll */
 } SidecarJoint;
 
 typedef struct Sidecar {
-    char   path[512];      /* as it was opened, for messages */
-    char   file[512];      /* empty: not named */
-    char   name[model_name_size]; /* empty: not named */
-    double scale_m;        /* 0: not named */
-    bool   has_axes;
-    double forward[3], up[3]; /* unit, along the file's axes */
-    bool   has_origin;
-    double p_origin_file[3];
-    double crease_rad;
-    int    joint_count;
+    char          path[512];             /* as it was opened, for messages */
+    char          file[512];             /* empty: not named */
+    char          name[model_name_size]; /* empty: not named */
+    double        scale_m;               /* 0: not named */
+    bool          has_axes;
+    double        forward[3], up[3]; /* unit, along the file's axes */
+    bool          has_origin;
+    double        p_origin_file[3];
+    double        crease_rad;
+    int           joint_count;
     SidecarJoint *joint;
     SidecarRules  drop, materials, node_materials, roles, thickness, damage_hide, damage_materials;
 } Sidecar;
@@ -84,8 +84,8 @@ Status sidecar_read(Sidecar *out, const char *path);
 /* The same from memory; path is for the messages. */
 Status sidecar_parse(Sidecar *out, const char *path, const char *text, size_t octets);
 /* Every key with its type, unit, range and meaning, from the tables of the reader. */
-void   sidecar_write_keys(FILE *to);
-void   sidecar_close(Sidecar *sidecar); /* accepts zeroes */
+void sidecar_write_keys(FILE *to);
+void sidecar_close(Sidecar *sidecar); /* accepts zeroes */
 /* Names as in the files; NULL where there is none (a number is then shown). */
 const char *sidecar_class_text(char out[32], uint32_t dis_class);
 const char *sidecar_metric_text(uint32_t dis_metric);

@@ -5,9 +5,9 @@
 #include <stdlib.h>
 
 static const char *const role_name[HEAT_ROLE_COUNT] = {
-    "passive", "hull", "turret", "engine_deck", "exhaust", "gun", "track",
-    "wheel", "cabin", "rotor", "turbine", "motor", "nose", "airframe",
-    "skin", "clothing", "dwelling", "window", "flue", "flare", "wreck",
+    "passive", "hull",     "turret",   "engine_deck", "exhaust", "gun",   "track",
+    "wheel",   "cabin",    "rotor",    "turbine",     "motor",   "nose",  "airframe",
+    "skin",    "clothing", "dwelling", "window",      "flue",    "flare", "wreck",
 };
 
 const char *heat_role_name(HeatRole role) { return (unsigned)role < HEAT_ROLE_COUNT ? role_name[role] : "?"; }
@@ -72,7 +72,7 @@ void model_pose(NodePose *pose, const Model *model, const double *value)
 {
     for (int i = 0; i < model->node_count; i++) {
         const ModelNode *node = &model->node[i];
-        double p[3], r[9];
+        double           p[3], r[9];
         node_in_parent(p, r, node, joint_value(node, value ? value[i] : 0));
         if (node->parent < 0) {
             memcpy(pose[i].p_body, p, sizeof p);
@@ -80,7 +80,7 @@ void model_pose(NodePose *pose, const Model *model, const double *value)
             continue;
         }
         const NodePose *parent = &pose[node->parent];
-        double moved[3];
+        double          moved[3];
         m3_mul_v3(moved, parent->r_body_from_node, p);
         v3_add(pose[i].p_body, parent->p_body, moved);
         m3_mul(pose[i].r_body_from_node, parent->r_body_from_node, r);
@@ -96,7 +96,7 @@ typedef struct Drum {
 
 static double drum_reach(const Drum *d)
 {
-    double off[3];
+    double       off[3];
     const double h = v3_dot(d->centre, d->axis);
     v3_add_scaled(off, d->centre, -h, d->axis);
     return hypot(fabs(h) + d->along, v3_length(off) + d->across);
@@ -106,7 +106,7 @@ static double drum_reach(const Drum *d)
 static Drum drum_swept(const Drum *d, const double axis[3])
 {
     const double c = fmin(1, fabs(v3_dot(d->axis, axis))), s = sqrt(1 - c * c), h = v3_dot(d->centre, axis);
-    double off[3];
+    double       off[3];
     v3_add_scaled(off, d->centre, -h, axis);
     Drum out = {.along = d->along * c + d->across * s, .across = v3_length(off) + d->along * s + d->across};
     memcpy(out.axis, axis, sizeof out.axis);
@@ -129,8 +129,8 @@ static double farthest(const Model *model, int index, Drum drum, int samples)
 {
     for (; index >= 0; index = model->node[index].parent) {
         const ModelNode *node = &model->node[index];
-        const bool limited = node->low <= node->high && isfinite(node->high - node->low);
-        double p[3], r[9];
+        const bool       limited = node->low <= node->high && isfinite(node->high - node->low);
+        double           p[3], r[9];
         if (node->joint == JOINT_FIXED || (node->joint == JOINT_TRANSLATION && !limited)) {
             node_in_parent(p, r, node, 0);
         } else if (node->joint == JOINT_ROTATION && !limited) {
@@ -138,9 +138,9 @@ static double farthest(const Model *model, int index, Drum drum, int samples)
             node_in_parent(p, r, node, 0);
         } else {
             const double step = samples > 1 ? (node->high - node->low) / (samples - 1) : 0;
-            double most = 0;
+            double       most = 0;
             for (int k = 0; k < samples; k++) {
-                Drum moved = drum;
+                Drum         moved = drum;
                 const double swell = 0.5 * step * (node->joint == JOINT_ROTATION ? drum_reach(&drum) : 1);
                 moved.along += swell;
                 moved.across += swell;
@@ -179,11 +179,11 @@ void model_box_without(double low[3], double high[3], const Model *model, uint32
 Status model_measure(Model *model)
 {
     NodePose *pose = calloc((size_t)(model->node_count ? model->node_count : 1), sizeof *pose);
-    double (*box)[2][3] = calloc((size_t)(model->node_count ? model->node_count : 1), sizeof *box);
+    double(*box)[2][3] = calloc((size_t)(model->node_count ? model->node_count : 1), sizeof *box);
     const bool enough = pose && box;
     if (enough) {
         for (int i = 0; i < 3; i++) {
-            model->box_low[i]  = INFINITY;
+            model->box_low[i] = INFINITY;
             model->box_high[i] = -INFINITY;
         }
         model->radius_m = 0;
@@ -197,12 +197,12 @@ Status model_measure(Model *model)
             const ModelPart *mp = &model->part[part];
             for (int t = 3 * mp->first_triangle; t < 3 * (mp->first_triangle + mp->triangle_count); t++) {
                 const double *v = model->vertex[model->triangle[t / 3][t % 3]];
-                double p[3];
+                double        p[3];
                 m3_mul_v3(p, pose[mp->node].r_body_from_node, v);
                 v3_add(p, p, pose[mp->node].p_body);
                 for (int i = 0; i < 3; i++) {
-                    model->box_low[i]   = fmin(model->box_low[i], p[i]);
-                    model->box_high[i]  = fmax(model->box_high[i], p[i]);
+                    model->box_low[i] = fmin(model->box_low[i], p[i]);
+                    model->box_high[i] = fmax(model->box_high[i], p[i]);
                     box[mp->node][0][i] = fmin(box[mp->node][0][i], v[i]);
                     box[mp->node][1][i] = fmax(box[mp->node][1][i], v[i]);
                 }
@@ -220,13 +220,13 @@ Status model_measure(Model *model)
             /* the farthest point of a convex set is a corner, and the box holds every vertex of the node */
             for (int c = 0; c < 8; c++) {
                 const Drum corner = {.centre = {box[n][c & 1][0], box[n][c >> 1 & 1][1], box[n][c >> 2][2]},
-                                     .axis   = {1, 0, 0}};
+                                     .axis = {1, 0, 0}};
                 model->radius_m = fmax(model->radius_m, farthest(model, n, corner, 64));
             }
         }
         model->radius_m *= 1 + 1e-12; /* rounding of the sums above */
         model->length_m = model->box_high[0] - model->box_low[0];
-        model->width_m  = model->box_high[1] - model->box_low[1];
+        model->width_m = model->box_high[1] - model->box_low[1];
         model->height_m = model->box_high[2] - model->box_low[2];
     }
     free(pose);
@@ -354,12 +354,12 @@ static void part_edges(ModelEdges *out, double *volume_m3, const Model *m, int p
                        uint64_t *edge)
 {
     const ModelPart *p = &m->part[part];
-    size_t count = 0;
+    size_t           count = 0;
     *volume_m3 = 0;
     memset(out, 0, sizeof *out);
     for (int t = p->first_triangle; t < p->first_triangle + p->triangle_count; t++) {
         const uint32_t *v = m->triangle[t];
-        double cross[3];
+        double          cross[3];
         v3_cross(cross, m->vertex[v[1]], m->vertex[v[2]]);
         *volume_m3 += v3_dot(m->vertex[v[0]], cross) / 6;
         for (int k = 0; k < 3; k++) {
@@ -371,7 +371,7 @@ static void part_edges(ModelEdges *out, double *volume_m3, const Model *m, int p
     }
     qsort(edge, count, sizeof *edge, key_order);
     for (size_t i = 0; i < count;) {
-        long long balance = 0, users = 0;
+        long long      balance = 0, users = 0;
         const uint64_t undirected = edge[i] >> 1;
         for (; i < count && edge[i] >> 1 == undirected; i++, users++) balance += edge[i] & 1 ? -1 : 1;
         out->open += balance != 0;
@@ -380,16 +380,17 @@ static void part_edges(ModelEdges *out, double *volume_m3, const Model *m, int p
 }
 
 /* Calls visit for each part until it returns false. */
-static Status walk_edges(const Model *m, Status (*visit)(void *user, const Model *m, int part, const ModelEdges *edges,
-                                                         double volume_m3), void *user)
+static Status
+walk_edges(const Model *m,
+           Status (*visit)(void *user, const Model *m, int part, const ModelEdges *edges, double volume_m3), void *user)
 {
     Status status = STATUS_OK;
     int    most = 0;
     for (int i = 0; i < m->part_count; i++)
         if (m->part[i].triangle_count > most) most = m->part[i].triangle_count;
-    uint32_t *place  = malloc((size_t)m->vertex_count * sizeof *place);
+    uint32_t *place = malloc((size_t)m->vertex_count * sizeof *place);
     Corner   *corner = malloc((size_t)m->vertex_count * sizeof *corner);
-    uint64_t *edge   = malloc((size_t)most * 3 * sizeof *edge);
+    uint64_t *edge = malloc((size_t)most * 3 * sizeof *edge);
     if (!place || !corner || !edge) {
         status = STATUS_NO_MEMORY;
     } else {
@@ -420,7 +421,7 @@ static Status sum_edges(void *user, const Model *m, int part, const ModelEdges *
 
 Status model_edges(ModelEdges *out, const Model *model)
 {
-    ModelEdges sum = {0};
+    ModelEdges   sum = {0};
     const Status status = walk_edges(model, sum_edges, &sum);
     if (status == STATUS_OK) *out = sum;
     return status;

@@ -14,78 +14,78 @@ enum {
 
 /* Heat roles of parts. One driver each; etc/heat.csv gives the figures. */
 typedef enum HeatRole {
-    HEAT_PASSIVE = 0,  /* follows air and sun only */
-    HEAT_HULL,         /* engine, weakly */
+    HEAT_PASSIVE = 0, /* follows air and sun only */
+    HEAT_HULL,        /* engine, weakly */
     HEAT_TURRET,
-    HEAT_ENGINE_DECK,  /* engine, strongly */
-    HEAT_EXHAUST,      /* engine, hottest */
-    HEAT_GUN,          /* firing */
-    HEAT_TRACK,        /* motion */
-    HEAT_WHEEL,        /* motion */
-    HEAT_CABIN,        /* engine: heated or crewed */
-    HEAT_ROTOR,        /* flight: friction and gearbox */
-    HEAT_TURBINE,      /* flight: turbine casing and exhaust */
-    HEAT_MOTOR,        /* burn: rocket motor and nozzle, after launch */
-    HEAT_NOSE,         /* speed: aerodynamic heating */
-    HEAT_AIRFRAME,     /* speed, slower: thin metal skin */
-    HEAT_SKIN,         /* life: bare skin */
-    HEAT_CLOTHING,     /* life: cloth over a body */
-    HEAT_DWELLING,     /* life: walls and door of a house that is lived in */
-    HEAT_WINDOW,       /* life: its panes */
-    HEAT_FLUE,         /* life: chimney */
-    HEAT_FLARE,        /* pyrotechnic: burning since it appeared */
-    HEAT_WRECK,        /* burning: all of a destroyed or flaming platform, on top of the others; no part has it */
+    HEAT_ENGINE_DECK, /* engine, strongly */
+    HEAT_EXHAUST,     /* engine, hottest */
+    HEAT_GUN,         /* firing */
+    HEAT_TRACK,       /* motion */
+    HEAT_WHEEL,       /* motion */
+    HEAT_CABIN,       /* engine: heated or crewed */
+    HEAT_ROTOR,       /* flight: friction and gearbox */
+    HEAT_TURBINE,     /* flight: turbine casing and exhaust */
+    HEAT_MOTOR,       /* burn: rocket motor and nozzle, after launch */
+    HEAT_NOSE,        /* speed: aerodynamic heating */
+    HEAT_AIRFRAME,    /* speed, slower: thin metal skin */
+    HEAT_SKIN,        /* life: bare skin */
+    HEAT_CLOTHING,    /* life: cloth over a body */
+    HEAT_DWELLING,    /* life: walls and door of a house that is lived in */
+    HEAT_WINDOW,      /* life: its panes */
+    HEAT_FLUE,        /* life: chimney */
+    HEAT_FLARE,       /* pyrotechnic: burning since it appeared */
+    HEAT_WRECK,       /* burning: all of a destroyed or flaming platform, on top of the others; no part has it */
     HEAT_ROLE_COUNT
 } HeatRole;
 
 const char *heat_role_name(HeatRole role);
-bool heat_role_find(HeatRole *out, const char *name); /* false: none of that name */
+bool        heat_role_find(HeatRole *out, const char *name); /* false: none of that name */
 
 /* How a node moves in its parent: first translate to `p_parent`, then turn by the joint's value. */
 typedef enum JointKind { JOINT_FIXED, JOINT_ROTATION, JOINT_TRANSLATION } JointKind;
 
 typedef struct ModelNode {
     char      name[model_name_size];
-    int       parent;           /* index of an earlier node; -1 for the hull (node 0) */
-    double    p_parent[3];      /* pivot, in the parent's axes */
+    int       parent;                /* index of an earlier node; -1 for the hull (node 0) */
+    double    p_parent[3];           /* pivot, in the parent's axes */
     double    r_parent_from_node[9]; /* rest attitude */
     JointKind joint;
-    double    axis[3];          /* unit, in the node's rest axes; turning is right-handed about it */
-    uint32_t  dis_class;        /* articulated-parameter class (4096 primary turret 1, ...), 0: none */
-    uint32_t  dis_metric;       /* 11 azimuth, 13 elevation, 15 rotation, 1 position ... */
-    double    low, high;        /* limits of the value; low > high: none */
-    double    spin_rps_moving;  /* turns by itself while the entity runs (rotors), rad/s; 0: no */
-    double    roll_radius_m;    /* wheels: value = distance travelled / radius; 0: no */
-    double    dis_scale;        /* value for a reported 1, where DIS counts 0 .. 1 (doors, gear); 0: as reported */
-    double    value_slow;       /* unreported, the value below articulation_slow_mps (gear down); 0: no */
+    double    axis[3];         /* unit, in the node's rest axes; turning is right-handed about it */
+    uint32_t  dis_class;       /* articulated-parameter class (4096 primary turret 1, ...), 0: none */
+    uint32_t  dis_metric;      /* 11 azimuth, 13 elevation, 15 rotation, 1 position ... */
+    double    low, high;       /* limits of the value; low > high: none */
+    double    spin_rps_moving; /* turns by itself while the entity runs (rotors), rad/s; 0: no */
+    double    roll_radius_m;   /* wheels: value = distance travelled / radius; 0: no */
+    double    dis_scale;       /* value for a reported 1, where DIS counts 0 .. 1 (doors, gear); 0: as reported */
+    double    value_slow;      /* unreported, the value below articulation_slow_mps (gear down); 0: no */
 } ModelNode;
 
 typedef struct ModelPart {
     char     name[model_name_size];
     int      node;
-    char     material[32];      /* a row of etc/materials.csv */
+    char     material[32]; /* a row of etc/materials.csv */
     HeatRole role;
-    double   thickness_m;      /* of its skin; 0: by role */
+    double   thickness_m; /* of its skin; 0: by role */
     int      first_triangle, triangle_count;
     /* Effect of damage, by the damage state of the appearance ([0] is not used): hidden (bit
      * 1 << state), or of another material (empty: the same). Parametric models have none; a sidecar may. */
-    uint8_t  damage_hidden;
-    char     damage_material[model_damage_states][32];
+    uint8_t damage_hidden;
+    char    damage_material[model_damage_states][32];
 } ModelPart;
 
 typedef struct Model {
-    char       name[model_name_size]; /* the name in the truth records: tank, truck, helicopter, missile ... */
+    char       name[model_name_size];       /* the name in the truth records: tank, truck, helicopter, missile ... */
     double     length_m, width_m, height_m; /* bounding box at rest */
     double     box_low[3], box_high[3];     /* at rest, body axes */
-    double     radius_m;        /* of a sphere about the body origin that holds every pose */
-    double     sag_m;           /* largest distance between a curved surface and its facets */
+    double     radius_m;                    /* of a sphere about the body origin that holds every pose */
+    double     sag_m;                       /* largest distance between a curved surface and its facets */
     int        node_count, part_count, vertex_count, triangle_count;
-    ModelNode *node;            /* parents first */
-    ModelPart *part;            /* triangles of a part are contiguous; parts of a node too */
-    double   (*vertex)[3];      /* node axes of the owning part */
-    float    (*normal)[3];      /* unit shading normal a vertex, outward */
-    uint32_t (*triangle)[3];    /* counter-clockwise seen from outside (in right-handed body axes) */
-    uint16_t  *triangle_part;   /* [triangle_count] */
+    ModelNode *node;         /* parents first */
+    ModelPart *part;         /* triangles of a part are contiguous; parts of a node too */
+    double (*vertex)[3];     /* node axes of the owning part */
+    float (*normal)[3];      /* unit shading normal a vertex, outward */
+    uint32_t (*triangle)[3]; /* counter-clockwise seen from outside (in right-handed body axes) */
+    uint16_t *triangle_part; /* [triangle_count] */
 } Model;
 
 /* Where one node is. */
@@ -116,7 +116,7 @@ typedef struct ModelSize {
  * the model is in an undefined state, valid for model_destroy only. */
 Status model_resize(Model *model, const ModelSize *size);
 /* Scale factors along the body axes for the given size; false: outside 0.02 .. 50. */
-bool   model_scale_to(double factor[3], const Model *model, const ModelSize *size);
+bool model_scale_to(double factor[3], const Model *model, const ModelSize *size);
 /* A promise every builder keeps; tests and importers call it: indices in range, closed parts, unit normals,
  * names set, parents first. On failure logs what is wrong. */
 Status model_validate(const Model *model);
@@ -125,8 +125,8 @@ Status model_check(const Model *model);
 
 /* How far a model is from closed parts: edges, by vertex position within a part. */
 typedef struct ModelEdges {
-    long long open;     /* without their reverse */
-    long long crowded;  /* shared by more than two triangles */
+    long long open;                         /* without their reverse */
+    long long crowded;                      /* shared by more than two triangles */
     int       open_parts, inside_out_parts; /* with open edges; closed, and of negative volume */
 } ModelEdges;
 

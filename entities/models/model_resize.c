@@ -61,14 +61,14 @@ static void scale_joint(ModelNode *node, const double scale[9], const double par
 static Status scale_model(Model *m, const double s[3])
 {
     NodePose *pose = calloc((size_t)m->node_count, sizeof *pose);
-    double (*scale)[9] = calloc((size_t)m->node_count, sizeof *scale);
-    bool *round = calloc((size_t)m->node_count, sizeof *round), *done = calloc((size_t)m->vertex_count, sizeof *done);
+    double(*scale)[9] = calloc((size_t)m->node_count, sizeof *scale);
+    bool  *round = calloc((size_t)m->node_count, sizeof *round), *done = calloc((size_t)m->vertex_count, sizeof *done);
     Status status = STATUS_NO_MEMORY;
     if (!pose || !scale || !round || !done) goto done;
     model_pose(pose, m, NULL);
     for (int n = 0; n < m->node_count; n++) {
         const ModelNode *node = m->node + n;
-        const bool spins = node->roll_radius_m > 0 || node->spin_rps_moving != 0;
+        const bool       spins = node->roll_radius_m > 0 || node->spin_rps_moving != 0;
         if (node->parent >= 0 && round[node->parent]) { /* carried by what is round: as that, in its own axes */
             double r[9], half[9];
             m3_tmul(r, pose[node->parent].r_body_from_node, pose[n].r_body_from_node);
@@ -91,7 +91,7 @@ static Status scale_model(Model *m, const double s[3])
         for (int t = m->part[p].first_triangle; t < m->part[p].first_triangle + m->part[p].triangle_count; t++)
             for (int c = 0; c < 3; c++) {
                 const uint32_t v = m->triangle[t][c];
-                double q[3], n[3] = {m->normal[v][0], m->normal[v][1], m->normal[v][2]}, turned[3];
+                double         q[3], n[3] = {m->normal[v][0], m->normal[v][1], m->normal[v][2]}, turned[3];
                 if (done[v]) continue;
                 done[v] = true;
                 m3_mul_v3(q, scale[m->part[p].node], m->vertex[v]);
@@ -120,7 +120,7 @@ bool model_scale_to(double s[3], const Model *m, const ModelSize *size)
     const double now[3] = {m->length_m, m->width_m, height_of(m)},
                  want[3] = {size->length_m, size->width_m, size->height_m};
     double product = 1;
-    int given = 0;
+    int    given = 0;
     for (int i = 0; i < 3; i++) {
         if (!(want[i] > 0)) continue;
         s[i] = want[i] / now[i];

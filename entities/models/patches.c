@@ -3,14 +3,14 @@
 
 #include <stdlib.h>
 
-static const double small_share      = 0.02;  /* cells below this share of their body join another, */
-static const double small_m2         = 0.01;  /* and those below this beside larger ones */
-static const double facing_least     = 1e-6;  /* mean normals shorter than this have no direction */
-static const double better           = 0.9;   /* what fits better by less, as mirrored cells may, fits as well */
-static const double open_least       = 0.01;  /* of a patch; with less of it outside, none of it is */
-static const double sinkage_m        = 0.02;  /* what is lower than this over the base, and faces the ground by a cosine of */
-static const double facing_ground    = 0.5;   /* this, touches it: a tyre of 0.5 m radius over 0.28 m; estimate */
-enum { candidates = 16 };                     /* points of a patch among which some are chosen */
+static const double small_share = 0.02;  /* cells below this share of their body join another, */
+static const double small_m2 = 0.01;     /* and those below this beside larger ones */
+static const double facing_least = 1e-6; /* mean normals shorter than this have no direction */
+static const double better = 0.9;        /* what fits better by less, as mirrored cells may, fits as well */
+static const double open_least = 0.01;   /* of a patch; with less of it outside, none of it is */
+static const double sinkage_m = 0.02; /* what is lower than this over the base, and faces the ground by a cosine of */
+static const double facing_ground = 0.5; /* this, touches it: a tyre of 0.5 m radius over 0.28 m; estimate */
+enum { candidates = 16 };                /* points of a patch among which some are chosen */
 
 /* Ways to cut bodies, from fine to coarse. */
 static const struct Fineness {
@@ -24,9 +24,9 @@ enum { finenesses = sizeof fineness / sizeof fineness[0] };
 /* Sums over the surface of a cell or a patch, in the axes of its body. */
 typedef struct Sums {
     double area_m2;
-    double p[3];    /* area times position */
-    double n[3];    /* area times normal */
-    double square;  /* area times squared distance from the origin */
+    double p[3];   /* area times position */
+    double n[3];   /* area times normal */
+    double square; /* area times squared distance from the origin */
 } Sums;
 
 static void add_piece(Sums *sums, const Facet *f, const Piece *piece, double weight)
@@ -108,9 +108,9 @@ static int expected(const Body *body, const struct Fineness *how, double boxes_m
 /* Maps the cells of a body to its patches. */
 static void map_cells(Body *body, const Sums cell[cells_most], const struct Fineness *how, double boxes_m2)
 {
-    Sums group[cells_most] = {{0}};
-    int  group_of[cells_most], patch_of[cells_most];
-    const bool one     = is_one(body, how, boxes_m2);
+    Sums       group[cells_most] = {{0}};
+    int        group_of[cells_most], patch_of[cells_most];
+    const bool one = is_one(body, how, boxes_m2);
     const int  lengths = body->lengths < how->lengths ? body->lengths : how->lengths;
     for (int k = 0; k < cells_most; k++) {
         int face = k / lengths_most, along = k % lengths_most;
@@ -140,7 +140,7 @@ static void map_cells(Body *body, const Sums cell[cells_most], const struct Fine
             if (patch_of[kept] < 0) continue;
             const double bad = mismatch(&group[g], &group[kept], size_m);
             if (!(bad < best * better)) continue;
-            best         = bad;
+            best = bad;
             body->map[k] = patch_of[kept];
         }
     }
@@ -149,7 +149,7 @@ static void map_cells(Body *body, const Sums cell[cells_most], const struct Fine
 /* Chooses groups and cuts; fills the cutter. */
 static Status cut_model(int *count, Cutter *c)
 {
-    Sums (*cell)[cells_most] = malloc(patches_most * sizeof *cell);
+    Sums(*cell)[cells_most] = malloc(patches_most * sizeof *cell);
     if (!cell) return STATUS_NO_MEMORY;
     Status status = STATUS_OK;
     *count = 0;
@@ -198,16 +198,16 @@ static bool is_hidden(const Cutter *c, int triangle, const double p[3], const do
 
 /* weight: of the triangle's area in patch_m2. Of a triangle that is partly hidden, points that are not, where some
  * tries find them. */
-static void add_candidates(Candidates *c, double patch_m2, const Facet *f, const Piece *piece, double weight, const Cutter *cutter,
-                           int triangle)
+static void add_candidates(Candidates *c, double patch_m2, const Facet *f, const Piece *piece, double weight,
+                           const Cutter *cutter, int triangle)
 {
     static const double golden = 0.6180339887498949, silver = 0.4142135623730950;
     static const int    tries = 48;
-    double whole = 0;
+    double              whole = 0;
     for (int i = 1; i + 1 < piece->corners; i++) {
         const double *o = piece->at[0], *a = piece->at[i], *b = piece->at[i + 1];
         const double  share = (a[1] - o[1]) * (b[2] - o[2]) - (a[2] - o[2]) * (b[1] - o[1]);
-        const double  area  = weight * f->area_m2 * fmax(0, share);
+        const double  area = weight * f->area_m2 * fmax(0, share);
         for (; c->count < candidates; c->count++) {
             const double ahead = patch_m2 * (c->count + 0.5) / candidates - c->seen_m2 - whole;
             if (!(ahead < area)) break;
@@ -241,22 +241,22 @@ static double coordinate(const Candidates *c, int i, int axis, double reach_m)
 static void sort_widest(const Candidates *c, int *index, int count, double reach_m)
 {
     int    widest = 0;
-    double most   = -1;
+    double most = -1;
     for (int axis = 0; axis < 6; axis++) {
         double low = INFINITY, high = -INFINITY;
         for (int i = 0; i < count; i++) {
-            low  = fmin(low, coordinate(c, index[i], axis, reach_m));
+            low = fmin(low, coordinate(c, index[i], axis, reach_m));
             high = fmax(high, coordinate(c, index[i], axis, reach_m));
         }
         if (high - low > most * (1 + 1e-6)) {
-            most   = high - low;
+            most = high - low;
             widest = axis;
         }
     }
     for (int i = 1; i < count; i++) {
         const int    moved = index[i];
-        const double key   = coordinate(c, moved, widest, reach_m);
-        int          k     = i;
+        const double key = coordinate(c, moved, widest, reach_m);
+        int          k = i;
         for (; k > 0 && coordinate(c, index[k - 1], widest, reach_m) > key; k--) index[k] = index[k - 1];
         index[k] = moved;
     }
@@ -268,8 +268,7 @@ static void choose_points(Patch *patch, const Candidates *c)
     int index[candidates], quarter = candidates / patch_points;
     for (int i = 0; i < candidates; i++) index[i] = i < c->count ? i : c->count > 0 ? i % c->count : 0;
     sort_widest(c, index, candidates, patch->reach_m);
-    for (int half = 0; half < 2; half++)
-        sort_widest(c, index + half * candidates / 2, candidates / 2, patch->reach_m);
+    for (int half = 0; half < 2; half++) sort_widest(c, index + half * candidates / 2, candidates / 2, patch->reach_m);
     for (int q = 0; q < patch_points; q++) {
         const int *own = index + q * quarter;
         double     best = INFINITY;
@@ -278,12 +277,12 @@ static void choose_points(Patch *patch, const Candidates *c)
             double sum = 0; /* of squared distances to the others: least in the middle */
             for (int k = 0; k < quarter; k++)
                 for (int axis = 0; axis < 6; axis++) {
-                    const double d = coordinate(c, own[i], axis, patch->reach_m) -
-                                     coordinate(c, own[k], axis, patch->reach_m);
+                    const double d =
+                        coordinate(c, own[i], axis, patch->reach_m) - coordinate(c, own[k], axis, patch->reach_m);
                     sum += d * d;
                 }
             if (!(sum < best * (1 - 1e-9))) continue;
-            best   = sum;
+            best = sum;
             chosen = own[i];
         }
         memcpy(patch->point_node[q], c->p[chosen], sizeof c->p[chosen]);
@@ -295,9 +294,9 @@ static void choose_points(Patch *patch, const Candidates *c)
 static void finish_patch(Patch *patch, const Body *body, const Sums *sums, const Candidates *c, const NodePose *pose)
 {
     static const double up_body[3] = {0, 0, -1};
-    patch->node    = body->node;
-    patch->part    = body->part;
-    patch->role    = body->role;
+    patch->node = body->node;
+    patch->part = body->part;
+    patch->role = body->role;
     m3_tmul_v3(patch->n_node, pose->r_body_from_node, up_body);
     if (sums->area_m2 > 0) {
         double n[3];
@@ -377,15 +376,15 @@ static Status measure_patches(Patches *out, const Cutter *c)
         for (int t = 0; t < c->model->triangle_count; t++) measure_triangle(sums, found, out, c, t, pass);
         for (int i = 0; i < out->count && pass == 0; i++) {
             const double share = sums[i].all.area_m2 > 0 ? sums[i].open.area_m2 / sums[i].all.area_m2 : 0;
-            out->patch[i].area_m2    = sums[i].all.area_m2;
+            out->patch[i].area_m2 = sums[i].all.area_m2;
             out->patch[i].open_share = share >= open_least ? share : 0;
-            out->patch[i].ground_m2  = share >= open_least ? sums[i].ground_m2 : 0;
+            out->patch[i].ground_m2 = share >= open_least ? sums[i].ground_m2 : 0;
         }
     }
     for (int b = 0; b < c->bodies && enough; b++)
         for (int i = c->body[b].first; i < c->body[b].first + c->body[b].count; i++)
-            finish_patch(&out->patch[i], &c->body[b], out->patch[i].open_share > 0 ? &sums[i].open : &sums[i].all, &found[i],
-                         &c->pose[c->body[b].node]);
+            finish_patch(&out->patch[i], &c->body[b], out->patch[i].open_share > 0 ? &sums[i].open : &sums[i].all,
+                         &found[i], &c->pose[c->body[b].node]);
     free(sums);
     free(found);
     return enough ? STATUS_OK : STATUS_NO_MEMORY;
@@ -408,8 +407,8 @@ static Status fill(Patches *out, Cutter *c)
     Status status = hidden_create(&c->hidden, c->model, c->pose);
     if (status == STATUS_OK) status = cut_model(&out->count, c);
     if (status != STATUS_OK) return status;
-    out->bodies        = c->bodies;
-    out->patch         = calloc((size_t)out->count, sizeof *out->patch);
+    out->bodies = c->bodies;
+    out->patch = calloc((size_t)out->count, sizeof *out->patch);
     out->first_of_body = calloc((size_t)out->bodies + 1, sizeof *out->first_of_body);
     if (!out->patch || !out->first_of_body) return STATUS_NO_MEMORY;
     for (int b = 0; b < c->bodies; b++) out->first_of_body[b] = c->body[b].first;
@@ -424,17 +423,17 @@ Status patches_create_of(Patches *out, const Model *model, int wanted)
 {
     memset(out, 0, sizeof *out);
     Status  status = STATUS_NO_MEMORY;
-    Cutter *c      = calloc(1, sizeof *c);
+    Cutter *c = calloc(1, sizeof *c);
     if (!c) return status;
-    c->model        = model;
-    c->wanted       = wanted;
-    c->pose         = calloc((size_t)model->node_count, sizeof *c->pose);
+    c->model = model;
+    c->wanted = wanted;
+    c->pose = calloc((size_t)model->node_count, sizeof *c->pose);
     c->body_of_part = calloc((size_t)model->part_count, sizeof *c->body_of_part);
     if (c->pose && c->body_of_part) {
         model_pose(c->pose, model, NULL);
         status = fill(out, c);
     }
-    out->parts        = model->part_count;
+    out->parts = model->part_count;
     out->body_of_part = c->body_of_part;
     out->body_of_node = c->body_of_node;
     if (status != STATUS_OK) patches_destroy(out);
@@ -453,8 +452,8 @@ double patches_value(const Patches *patches, const float *value, int part, const
      * weight in all directions too, up to `all_ways`: all around a tyre, as against its flat sides. */
     static const double rounding = 0.25, tiny_m2 = 1e-6, all_ways = 0.1, one_way = 0.8;
     if (part < 0 || part >= patches->parts) return value[0];
-    const int first = patches->first_of_body[patches->body_of_part[part]];
-    const int end   = patches->first_of_body[patches->body_of_part[part] + 1];
+    const int    first = patches->first_of_body[patches->body_of_part[part]];
+    const int    end = patches->first_of_body[patches->body_of_part[part] + 1];
     const double base = (double)value[first];
     if (end - first == 1) return base;
     double p[3] = {p_node[0], p_node[1], p_node[2]}, n[3] = {n_node[0], n_node[1], n_node[2]};
@@ -470,13 +469,14 @@ double patches_value(const Patches *patches, const float *value, int part, const
         v3_sub(d, p, k->p_node);
         const double m2 = v3_dot(d, d), cosine = v3_dot(n, k->n_node), ahead = cosine > 0 ? cosine * cosine : 0;
         const double blunt = k->facing < one_way ? all_ways * (one_way - k->facing) / one_way : 0;
-        const double w = k->open_share * (k->facing * ahead * ahead + blunt) / (m2 + rounding * k->reach_m * k->reach_m + tiny_m2);
+        const double w =
+            k->open_share * (k->facing * ahead * ahead + blunt) / (m2 + rounding * k->reach_m * k->reach_m + tiny_m2);
         const double more = (double)value[i] - base;
         sum += w * more;
         weights += w;
         if (m2 < nearest_m2) {
             nearest_m2 = m2;
-            nearest    = more;
+            nearest = more;
         }
     }
     return base + (weights > 1e-30 ? sum / weights : nearest);

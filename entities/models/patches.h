@@ -27,19 +27,19 @@
 enum { patches_most = 160, patches_wanted = 110, patch_points = 4 };
 
 typedef struct Patch {
-    int      node, part;     /* of the model: the node whose axes it is in; the first part of its body */
-    HeatRole role;           /* of its parts */
-    double   area_m2;        /* of all its triangles */
-    double   open_share;     /* of that area: what is not inside other parts; 0: none of it is outside. What follows is of this
-                              * part of it; where it is 0, of all */
-    double   ground_m2;      /* what lies on level ground at the base: within 2 cm of it, facing down */
-    double   p_node[3];      /* centroid by area */
-    double   n_node[3];      /* unit mean normal; up where the mean is nothing */
-    double   facing;         /* length of the mean normal: 1 for a plane, 0 for what faces all ways */
-    double   reach_m;        /* standard distance of its surface from the centroid */
+    int      node, part; /* of the model: the node whose axes it is in; the first part of its body */
+    HeatRole role;       /* of its parts */
+    double   area_m2;    /* of all its triangles */
+    double   open_share; /* of that area: what is not inside other parts; 0: none of it is outside. What follows is of
+                          * this   part of it; where it is 0, of all */
+    double ground_m2;    /* what lies on level ground at the base: within 2 cm of it, facing down */
+    double p_node[3];    /* centroid by area */
+    double n_node[3];    /* unit mean normal; up where the mean is nothing */
+    double facing;       /* length of the mean normal: 1 for a plane, 0 for what faces all ways */
+    double reach_m;      /* standard distance of its surface from the centroid */
     /* Points on its triangles, spread over its area and directions, with those triangles' unit normals: where rays
      * start. Each stands for about a quarter of the area. */
-    double   point_node[patch_points][3], point_n_node[patch_points][3];
+    double point_node[patch_points][3], point_n_node[patch_points][3];
 } Patch;
 
 static inline double patch_open_m2(const Patch *patch) { return patch->area_m2 * patch->open_share; }
@@ -52,9 +52,9 @@ static inline double patch_skin_m2(const Patch *patch)
 /* Two patches that adjoin: conductance = conductivity thickness length / distance. */
 typedef struct PatchLink {
     int    a, b;
-    double length_m;         /* of the border */
-    double distance_m;       /* between centroids, at least 0.02 m */
-    bool   joint;            /* no common border: of different bodies, or of shells of one body that only touch */
+    double length_m;   /* of the border */
+    double distance_m; /* between centroids, at least 0.02 m */
+    bool   joint;      /* no common border: of different bodies, or of shells of one body that only touch */
 } PatchLink;
 
 typedef struct Patches {

@@ -8,10 +8,10 @@
 
 #include <stdlib.h>
 
-static const double length_m         = 1.5;   /* of one length of a body, about */
-static const double length_least_m   = 1.0;   /* bodies shorter than this are not cut along */
-static const double inward_least_m   = 1;     /* bodies less wide than this have no inner sides */
-static const double prefer_axis      = 1.03;  /* an extent is longer when it is by this: x before y before z */
+static const double length_m = 1.5;       /* of one length of a body, about */
+static const double length_least_m = 1.0; /* bodies shorter than this are not cut along */
+static const double inward_least_m = 1;   /* bodies less wide than this have no inner sides */
+static const double prefer_axis = 1.03;   /* an extent is longer when it is by this: x before y before z */
 
 /* ---- bodies ----------------------------------------------------------------------------------- */
 
@@ -32,8 +32,7 @@ bool patches_group(Cutter *c, Grouping grouping)
         int b = 0;
         while (b < c->bodies && !belongs(m, &m->part[i], &c->body[b], grouping)) b++;
         if (b == patches_most) return false;
-        if (b == c->bodies)
-            c->body[c->bodies++] = (Body){.node = m->part[i].node, .part = i, .role = m->part[i].role};
+        if (b == c->bodies) c->body[c->bodies++] = (Body){.node = m->part[i].node, .part = i, .role = m->part[i].role};
         c->body_of_part[i] = b;
     }
     return true;
@@ -53,7 +52,7 @@ static NodePose seen_from(const NodePose *to, const NodePose *from)
 Status patches_choose_nodes(Cutter *c)
 {
     const Model *m = c->model;
-    double largest_m2[patches_most] = {0};
+    double       largest_m2[patches_most] = {0};
     free(c->body_of_node);
     c->body_of_node = calloc((size_t)m->part_count, sizeof *c->body_of_node);
     if (!c->body_of_node) return STATUS_NO_MEMORY;
@@ -69,7 +68,7 @@ Status patches_choose_nodes(Cutter *c)
             area_m2 += 0.5 * v3_length(cross);
         }
         if (!(area_m2 > largest_m2[b] * (1 + 1e-3))) continue;
-        largest_m2[b]   = area_m2;
+        largest_m2[b] = area_m2;
         c->body[b].node = m->part[i].node;
     }
     for (int i = 0; i < m->part_count; i++)
@@ -94,7 +93,7 @@ static bool turns(double axis[3], const Cutter *c, int node)
 static void widen(double low[3], double high[3], const double p[3])
 {
     for (int i = 0; i < 3; i++) {
-        low[i]  = fmin(low[i], p[i]);
+        low[i] = fmin(low[i], p[i]);
         high[i] = fmax(high[i], p[i]);
     }
 }
@@ -120,7 +119,7 @@ static bool arc_top(double top[3], const double p[3], const double q[3], const f
 void patches_measure_bodies(Cutter *c)
 {
     const Model *m = c->model;
-    double low[patches_most][3], high[patches_most][3];
+    double       low[patches_most][3], high[patches_most][3];
     for (int b = 0; b < c->bodies; b++)
         for (int i = 0; i < 3; i++) {
             low[b][i] = c->body[b].box_low[i] = INFINITY;
@@ -128,7 +127,7 @@ void patches_measure_bodies(Cutter *c)
         }
     for (int t = 0; t < m->triangle_count; t++) {
         const int       part = m->triangle_part[t], b = c->body_of_part[part];
-        const uint32_t *v    = m->triangle[t];
+        const uint32_t *v = m->triangle[t];
         Body           *body = &c->body[b];
         for (int k = 0; k < 6; k++) {
             double p[3], q[3];
@@ -146,20 +145,20 @@ void patches_measure_bodies(Cutter *c)
         }
     }
     for (int b = 0; b < c->bodies; b++) {
-        Body *body  = &c->body[b];
+        Body *body = &c->body[b];
         body->faces = turns(body->axis, c, body->node) ? 3 : 6;
         body->along = 0;
         for (int i = 1; i < 3; i++)
             if (high[b][i] - low[b][i] > prefer_axis * (high[b][body->along] - low[b][body->along])) body->along = i;
         const double extent = high[b][body->along] - low[b][body->along];
-        const bool   uncut  = body->faces == 3 || !(extent >= length_least_m);
+        const bool   uncut = body->faces == 3 || !(extent >= length_least_m);
         body->lengths = uncut ? 1 : (int)clamp(floor(extent / length_m + 0.5), 1, lengths_most);
-        body->low_m   = low[b][body->along];
-        body->step_m  = extent / body->lengths;
+        body->low_m = low[b][body->along];
+        body->step_m = extent / body->lengths;
         double size[3];
         v3_sub(size, high[b], low[b]);
         for (int i = 0; i < 3; i++) {
-            body->middle[i]   = 0.5 * (low[b][i] + high[b][i]);
+            body->middle[i] = 0.5 * (low[b][i] + high[b][i]);
             body->inward_m[i] = size[i] > inward_least_m ? 0.15 * size[i] : INFINITY;
         }
         body->box_m2 = 2 * (size[0] * size[1] + size[1] * size[2] + size[2] * size[0]);
@@ -171,7 +170,7 @@ void patches_measure_bodies(Cutter *c)
 /* Planes at 45 degrees are up or down rather than sideways, and left or right rather than fore or aft: an exact tie
  * would be decided by rounding. */
 static const double axis_weight[3] = {0.996, 0.998, 1.0};
-static const double around_score = 0.7; /* cosine of the angle to the axis, below which a surface is around it */
+static const double around_score = 0.7;  /* cosine of the angle to the axis, below which a surface is around it */
 static const double shading_least = 0.3; /* cosine to the facet's normal; below that the shading normal is not used */
 static const double share_least = 1e-13;
 
@@ -220,7 +219,7 @@ bool facet_read(Facet *f, const Cutter *cutter, int triangle)
             f->score[2][k] = around_score;
         } else {
             for (int i = 0; i < 3; i++) {
-                f->score[2 * i][k]     = axis_weight[i] * n[i];
+                f->score[2 * i][k] = axis_weight[i] * n[i];
                 f->score[2 * i + 1][k] = -f->score[2 * i][k];
             }
         }
@@ -282,19 +281,19 @@ static bool looks_inwards(const Facet *f, const Body *body, int face)
 int facet_cut(Piece piece[cells_most], const Facet *f, const Body *body)
 {
     static const Piece whole = {.corners = 3, .share = 1, .at = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, .border = {0, 1, 2}};
-    const double low = fmin(f->along_m[0], fmin(f->along_m[1], f->along_m[2])) - body->low_m;
-    const double high = fmax(f->along_m[0], fmax(f->along_m[1], f->along_m[2])) - body->low_m;
-    int first = 0, last = 0;
+    const double       low = fmin(f->along_m[0], fmin(f->along_m[1], f->along_m[2])) - body->low_m;
+    const double       high = fmax(f->along_m[0], fmax(f->along_m[1], f->along_m[2])) - body->low_m;
+    int                first = 0, last = 0;
     if (body->lengths > 1) {
         /* a corner that stands on a plane, to rounding, does not cross it */
         first = (int)clamp(floor(low / body->step_m + 1e-9), 0, body->lengths - 1);
-        last  = (int)clamp(ceil(high / body->step_m - 1e-9) - 1, first, body->lengths - 1);
+        last = (int)clamp(ceil(high / body->step_m - 1e-9) - 1, first, body->lengths - 1);
     }
     /* a face is a convex cone of normals, so three corners in one face have the triangle in it */
     int face[3];
     for (int k = 0; k < 3; k++) face[k] = best_face(f, body->faces, k);
     const bool one_face = face[0] == face[1] && face[1] == face[2];
-    int count = 0;
+    int        count = 0;
     for (int l = first; l <= last; l++) {
         Piece slab = whole;
         for (int side = 0; side < 2; side++) {

@@ -21,10 +21,10 @@
 #include <stdlib.h>
 
 enum { hinge_values = 8, cells_least = 4, cells_side_most = 256, points_of_triangle = 400 };
-static const double leave_m = 2e-3;       /* a point stands so far before its triangle: gaps of welded faces are narrower */
+static const double leave_m = 2e-3; /* a point stands so far before its triangle: gaps of welded faces are narrower */
 static const double points_of_model = 5000; /* by area, besides one of each triangle */
-static const double entries_most = 64;    /* of cells, a triangle, before the grid is made coarser */
-static const double tests_most = 2e8;     /* of lines with triangles, some 3 s: beyond it nothing counts as hidden */
+static const double entries_most = 64;      /* of cells, a triangle, before the grid is made coarser */
+static const double tests_most = 2e8;       /* of lines with triangles, some 3 s: beyond it nothing counts as hidden */
 
 /* A triangle at rest, in the turned frame. */
 typedef struct Solid {
@@ -33,9 +33,9 @@ typedef struct Solid {
 } Solid;
 
 typedef struct Grid {
-    int     side;               /* cells along u and along v */
+    int     side; /* cells along u and along v */
     double  low[2], per_m[2];
-    size_t *first;              /* [side * side + 1] */
+    size_t *first; /* [side * side + 1] */
     int    *triangle;
 } Grid;
 
@@ -50,12 +50,12 @@ typedef struct Hinge {
 
 struct Hidden {
     const Model *model;
-    int         *group;         /* [node_count]: the node that carries it without a joint between */
+    int         *group; /* [node_count]: the node that carries it without a joint between */
     double       turn[9];
     int          hinges;
-    Hinge       *hinge;         /* [node_count] */
-    Solid       *solid;         /* [triangle_count] */
-    float       *open;          /* [triangle_count] */
+    Hinge       *hinge; /* [node_count] */
+    Solid       *solid; /* [triangle_count] */
+    float       *open;  /* [triangle_count] */
     Grid         grid[3];
     double       tests, points; /* so far */
 };
@@ -115,7 +115,9 @@ static void find_hinges(Hidden *h, const NodePose *pose)
         double           axis_body[3];
         if (h->group[n] != n || node->parent < 0) continue;
         const bool ranges = node->low <= node->high && node->high - node->low < 2 * pi_rad;
-        *hinge = (Hinge){.group = n, .carrier = h->group[node->parent], .slides = node->joint == JOINT_TRANSLATION,
+        *hinge = (Hinge){.group = n,
+                         .carrier = h->group[node->parent],
+                         .slides = node->joint == JOINT_TRANSLATION,
                          .values = hinge_values};
         if (hinge->slides && !(node->low <= node->high)) continue; /* anywhere */
         for (int k = 0; k < hinge_values; k++)
@@ -147,10 +149,11 @@ static void rows_of(int row[2], const Grid *g, const Solid *s, int axis)
 static void cells_of(int cell[2], const Grid *g, const Solid *s, int axis, int row)
 {
     const int    i = (axis + 1) % 3, j = (axis + 2) % 3;
-    const double tall = g->per_m[1] > 0 ? 1 / g->per_m[1] : INFINITY, wide = g->per_m[0] > 0 ? 1 / g->per_m[0] : INFINITY;
+    const double tall = g->per_m[1] > 0 ? 1 / g->per_m[1] : INFINITY,
+                 wide = g->per_m[0] > 0 ? 1 / g->per_m[0] : INFINITY;
     const double low = row > 0 ? g->low[1] + (row - 1e-6) * tall : -INFINITY,
                  high = row + 1 < g->side ? g->low[1] + (row + 1 + 1e-6) * tall : INFINITY;
-    double       from = INFINITY, to = -INFINITY;
+    double from = INFINITY, to = -INFINITY;
     for (int k = 0; k < 3; k++) {
         const double *a = s->q[k], *b = s->q[(k + 1) % 3];
         if (larger(a[j], b[j]) < low || lesser(a[j], b[j]) > high) continue;
@@ -194,13 +197,13 @@ static Status fill_grid(Grid *g, const Hidden *h, int axis)
             const double at = h->solid[t].q[c / 2][(axis + 1 + c % 2) % 3];
             low[c % 2] = lesser(low[c % 2], at), high[c % 2] = larger(high[c % 2], at);
         }
-    g->side  = (int)clamp(0.6 * sqrt(triangles), cells_least, cells_side_most);
+    g->side = (int)clamp(0.6 * sqrt(triangles), cells_least, cells_side_most);
     g->first = malloc(((size_t)g->side * (size_t)g->side + 1) * sizeof *g->first);
     if (!g->first) return STATUS_NO_MEMORY;
     for (;; g->side /= 2) { /* one cell has each triangle once */
         memset(g->first, 0, ((size_t)g->side * (size_t)g->side + 1) * sizeof *g->first);
         for (int k = 0; k < 2; k++) {
-            g->low[k]   = low[k];
+            g->low[k] = low[k];
             g->per_m[k] = high[k] > low[k] ? g->side / (high[k] - low[k]) : 0;
         }
         entries = visit_cells(g, h, axis, false);
@@ -236,7 +239,7 @@ static bool is_within(Hidden *h, int axis, const double q[3], int group)
         const Solid *s = &h->solid[g->triangle[e]];
         double       a, b, c;
         shares_of(&a, &b, &c, s, i, j, q);
-        const int    positive = (a > 0) + (b > 0) + (c > 0), negative = (a < 0) + (b < 0) + (c < 0);
+        const int positive = (a > 0) + (b > 0) + (c > 0), negative = (a < 0) + (b < 0) + (c < 0);
         /* one branch that is hardly ever taken: beside it, seen edge on, or of another group */
         if (((positive > 0) & (negative > 0)) | (positive + negative == 0) | (s->group != group)) continue;
         const double at = (a * s->q[0][axis] + b * s->q[1][axis] + c * s->q[2][axis]) / (a + b + c);
@@ -303,9 +306,9 @@ bool hidden_at(Hidden *h, int triangle, const double p_body[3], const double n_b
 static bool is_double(const Hidden *h, int axis, const double q[3], int t, int group, double n_axis)
 {
     static const double same_m = 1e-6;
-    const Grid  *g = &h->grid[axis];
-    const int    i = (axis + 1) % 3, j = (axis + 2) % 3;
-    const size_t cell = (size_t)cell_of(g, 1, q[j]) * (size_t)g->side + (size_t)cell_of(g, 0, q[i]);
+    const Grid         *g = &h->grid[axis];
+    const int           i = (axis + 1) % 3, j = (axis + 2) % 3;
+    const size_t        cell = (size_t)cell_of(g, 1, q[j]) * (size_t)g->side + (size_t)cell_of(g, 0, q[i]);
     for (size_t e = g->first[cell]; e < g->first[cell + 1] && g->triangle[e] < t; e++) { /* ascending */
         const Solid *s = &h->solid[g->triangle[e]];
         double       a, b, c;
@@ -330,11 +333,11 @@ static double normal_of(double n[3], const Solid *s)
 static float open_share(Hidden *h, int t, double all_m2)
 {
     static const double r2[2] = {0.7548776662466927, 0.5698402909980532}, shrink = 0.02;
-    const Solid *s = &h->solid[t];
-    const int    group = h->group[h->model->part[h->model->triangle_part[t]].node];
-    double       n[3];
-    const double area_m2 = normal_of(n, s);
-    int          hidden = 0;
+    const Solid        *s = &h->solid[t];
+    const int           group = h->group[h->model->part[h->model->triangle_part[t]].node];
+    double              n[3];
+    const double        area_m2 = normal_of(n, s);
+    int                 hidden = 0;
     if (!(area_m2 > 0)) return 1;
     const int steep = fabs(n[0]) > fabs(n[1]) ? fabs(n[0]) > fabs(n[2]) ? 0 : 2 : fabs(n[1]) > fabs(n[2]) ? 1 : 2;
     const int points = 1 + (int)lesser(points_of_model * area_m2 / all_m2, points_of_triangle - 1);
@@ -359,8 +362,10 @@ static void find_open(Hidden *h)
     for (int t = 0; t < triangles; t++) {
         h->open[t] = open_share(h, t, all_m2);
         if (!(h->tests > tests_most)) continue;
-        log_warn("model: too many triangles behind one another to find those inside it, so that all count as its surface: "
-                 "model=%s triangles=%d", h->model->name, triangles);
+        log_warn(
+            "model: too many triangles behind one another to find those inside it, so that all count as its surface: "
+            "model=%s triangles=%d",
+            h->model->name, triangles);
         for (int k = 0; k < triangles; k++) h->open[k] = 1;
         return;
     }
@@ -378,7 +383,7 @@ Status hidden_create(Hidden **out, const Model *model, const NodePose *pose)
     h->model = model;
     h->group = calloc((size_t)model->node_count + 1, sizeof *h->group);
     h->solid = calloc(triangles, sizeof *h->solid);
-    h->open  = calloc(triangles, sizeof *h->open);
+    h->open = calloc(triangles, sizeof *h->open);
     h->hinge = calloc((size_t)model->node_count + 1, sizeof *h->hinge);
     Status status = h->group && h->hinge && h->solid && h->open ? STATUS_OK : STATUS_NO_MEMORY;
     if (status == STATUS_OK) {

@@ -8,11 +8,11 @@
 #include <stdlib.h>
 
 static const double distance_least_m = 0.02;
-static const double border_least     = 0.03; /* of the root of the smaller area: a corner, not a border */
-static const double joint_share      = 0.25; /* length of a joint, as a share of the root of the smaller area */
-static const double touch_m          = 0.03; /* bodies with boxes nearer than this touch */
-static const double nearer           = 0.9;  /* what is nearer by less, as mirrored patches are, is as near */
-enum { users_most = 32 }; /* of an edge, that are compared; two where shells are closed */
+static const double border_least = 0.03; /* of the root of the smaller area: a corner, not a border */
+static const double joint_share = 0.25;  /* length of a joint, as a share of the root of the smaller area */
+static const double touch_m = 0.03;      /* bodies with boxes nearer than this touch */
+static const double nearer = 0.9;        /* what is nearer by less, as mirrored patches are, is as near */
+enum { users_most = 32 };                /* of an edge, that are compared; two where shells are closed */
 
 /* One side of a stretch of an edge, from its lower corner (0) to the higher (1). */
 typedef struct EdgeUse {
@@ -74,7 +74,7 @@ static uint32_t place_of(Borders *b, const Cutter *cutter, const int *body_of_ve
             return vertex;
         }
         const uint32_t found = b->slot[at] - 1;
-        const double  *q     = cutter->model->vertex[found];
+        const double  *q = cutter->model->vertex[found];
         if (body_of_vertex[found] == body_of_vertex[vertex] && p[0] == q[0] && p[1] == q[1] && p[2] == q[2])
             return found;
     }
@@ -84,16 +84,16 @@ static Status borders_create(Borders *b, const Cutter *cutter, int count)
 {
     const Model *m = cutter->model;
     memset(b, 0, sizeof *b);
-    b->count        = count;
-    b->slots        = power_above(2 * (size_t)m->vertex_count);
-    b->edges        = power_above(4 * (size_t)m->triangle_count);
+    b->count = count;
+    b->slots = power_above(2 * (size_t)m->vertex_count);
+    b->edges = power_above(4 * (size_t)m->triangle_count);
     b->use_capacity = 4 * (size_t)m->triangle_count + 256;
-    b->slot         = calloc(b->slots, sizeof *b->slot);
-    b->place        = malloc((size_t)m->vertex_count * sizeof *b->place);
-    b->edge         = malloc(b->edges * sizeof *b->edge);
-    b->use          = malloc(b->use_capacity * sizeof *b->use);
-    b->length_m     = calloc((size_t)count * (size_t)count, sizeof *b->length_m);
-    int *body       = malloc((size_t)m->vertex_count * sizeof *body);
+    b->slot = calloc(b->slots, sizeof *b->slot);
+    b->place = malloc((size_t)m->vertex_count * sizeof *b->place);
+    b->edge = malloc(b->edges * sizeof *b->edge);
+    b->use = malloc(b->use_capacity * sizeof *b->use);
+    b->length_m = calloc((size_t)count * (size_t)count, sizeof *b->length_m);
+    int *body = malloc((size_t)m->vertex_count * sizeof *body);
     if (!b->slot || !b->place || !b->edge || !b->use || !b->length_m || !body) {
         free(body);
         return STATUS_NO_MEMORY;
@@ -123,11 +123,11 @@ static Status add_use(Borders *b, const uint32_t corner[3], const Facet *f, int 
     if (low == high) return STATUS_OK;
     if (low > high) {
         const uint32_t swap = low;
-        low  = high;
+        low = high;
         high = swap;
         const double back = 1 - from;
         from = 1 - to;
-        to   = back;
+        to = back;
     }
     size_t at = mixed((uint64_t)low << 32 | high) & (b->edges - 1);
     while (b->edge[at].use >= 0 && (b->edge[at].low != low || b->edge[at].high != high)) at = (at + 1) & (b->edges - 1);
@@ -141,12 +141,12 @@ static Status add_use(Borders *b, const uint32_t corner[3], const Facet *f, int 
     double along[3];
     v3_sub(along, f->p[(k + 1) % 3], f->p[k]);
     const double length = v3_length(along);
-    int          seen   = 0;
+    int          seen = 0;
     for (int u = b->edge[at].use; u >= 0 && seen < users_most; u = b->use[u].next, seen++)
         if (b->use[u].patch != patch)
             add_border(b, patch, b->use[u].patch, length * (fmin(to, b->use[u].to) - fmax(from, b->use[u].from)));
     b->use[b->uses] = (EdgeUse){patch, b->edge[at].use, (float)from, (float)to};
-    b->edge[at]     = (Edge){low, high, (int)b->uses++};
+    b->edge[at] = (Edge){low, high, (int)b->uses++};
     return STATUS_OK;
 }
 
@@ -242,7 +242,7 @@ static bool nearest_pair(int pair[2], const Network *w, int group, int first, in
             if (group >= 0 && (w->group[a] != group || w->group[b] == group)) continue;
             const double d = distance_m(w, a, b);
             if (!(d < best * nearer)) continue;
-            best    = d;
+            best = d;
             pair[0] = a;
             pair[1] = b;
         }
@@ -276,8 +276,7 @@ static void join_all(Network *w, const Cutter *cutter)
     for (int i = 0; i < cutter->bodies; i++) {
         const int first = cutter->body[i].first;
         bool      alone = true;
-        for (int k = 0; k < cutter->bodies; k++)
-            alone &= k == i || w->group[cutter->body[k].first] != w->group[first];
+        for (int k = 0; k < cutter->bodies; k++) alone &= k == i || w->group[cutter->body[k].first] != w->group[first];
         while (!alone && w->group[first] != w->group[0] && nearest_pair(pair, w, w->group[first], 0, count, 0, count))
             add_joint(w, pair[0], pair[1]);
     }
@@ -303,7 +302,7 @@ Status patches_link(Patches *out, const Cutter *cutter)
 {
     Borders      borders;
     const size_t n = (size_t)out->count;
-    Status status = borders_create(&borders, cutter, out->count);
+    Status       status = borders_create(&borders, cutter, out->count);
     if (status == STATUS_OK) status = measure_borders(&borders, cutter);
     if (status == STATUS_OK) {
         Network w = {.patches = out, .length_m = borders.length_m};

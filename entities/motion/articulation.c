@@ -33,7 +33,7 @@ static int joint_position(const Articulation *articulation, uint32_t parameter)
 /* The joint of a value parameter, new at 0 when absent; NULL when full. */
 static JointReport *joint_for(Articulation *articulation, uint32_t parameter)
 {
-    const int at = joint_position(articulation, parameter);
+    const int    at = joint_position(articulation, parameter);
     JointReport *joint = articulation->joint + at;
 
     if (at < articulation->count && joint->parameter == parameter) return joint;
@@ -91,7 +91,7 @@ bool articulation_value(double *value, const Articulation *articulation, uint32_
                         double t_s, double hold_s)
 {
     const uint32_t parameter = dis_class + dis_metric;
-    const int at = joint_position(articulation, parameter);
+    const int      at = joint_position(articulation, parameter);
 
     if (at == articulation->count || articulation->joint[at].parameter != parameter) return false;
     const double v = joint_value_at(articulation->joint + at, t_s - articulation->t_s, hold_s);

@@ -20,7 +20,7 @@ typedef struct JointReport {
 } JointReport;
 
 typedef struct Articulation {
-    double      t_s;            /* exercise time of the report */
+    double      t_s; /* exercise time of the report */
     int         count;
     int         attached_count; /* attached parts not detached, in the last report; stored, not rendered */
     JointReport joint[articulation_max_joints]; /* sorted by parameter */

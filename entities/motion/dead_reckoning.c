@@ -44,24 +44,59 @@ typedef struct Body {
 /* Eight terms: at x^2 = 1/4 the ninth is below 1e-19 of the sum. */
 ALWAYS_INLINE Turn turn_series(double x2, double t)
 {
-    Turn turn;
+    Turn         turn;
     const double t2 = t * t;
 
-    turn.cos_x = 1 - x2 * (1.0 / 2 - x2 * (1.0 / 24 - x2 * (1.0 / 720 - x2 * (1.0 / 40320 -
-                 x2 * (1.0 / 3628800 - x2 * (1.0 / 479001600 - x2 * (1.0 / 87178291200.0)))))));
-    turn.sin_w = t * (1 - x2 * (1.0 / 6 - x2 * (1.0 / 120 - x2 * (1.0 / 5040 - x2 * (1.0 / 362880 -
-                 x2 * (1.0 / 39916800 - x2 * (1.0 / 6227020800.0 - x2 * (1.0 / 1307674368000.0))))))));
-    turn.vers_w2 = t2 * (1.0 / 2 - x2 * (1.0 / 24 - x2 * (1.0 / 720 - x2 * (1.0 / 40320 - x2 * (1.0 / 3628800 -
-                   x2 * (1.0 / 479001600 - x2 * (1.0 / 87178291200.0 - x2 * (1.0 / 20922789888000.0))))))));
-    turn.c1 = t2 * t * (1.0 / 6 - x2 * (1.0 / 120 - x2 * (1.0 / 5040 - x2 * (1.0 / 362880 - x2 * (1.0 / 39916800 -
-              x2 * (1.0 / 6227020800.0 - x2 * (1.0 / 1307674368000.0 - x2 * (1.0 / 355687428096000.0))))))));
+    turn.cos_x =
+        1 - x2 * (1.0 / 2 -
+                  x2 * (1.0 / 24 - x2 * (1.0 / 720 - x2 * (1.0 / 40320 -
+                                                           x2 * (1.0 / 3628800 - x2 * (1.0 / 479001600 -
+                                                                                       x2 * (1.0 / 87178291200.0)))))));
+    turn.sin_w =
+        t * (1 - x2 * (1.0 / 6 -
+                       x2 * (1.0 / 120 -
+                             x2 * (1.0 / 5040 - x2 * (1.0 / 362880 -
+                                                      x2 * (1.0 / 39916800 - x2 * (1.0 / 6227020800.0 -
+                                                                                   x2 * (1.0 / 1307674368000.0))))))));
+    turn.vers_w2 =
+        t2 * (1.0 / 2 -
+              x2 * (1.0 / 24 -
+                    x2 * (1.0 / 720 -
+                          x2 * (1.0 / 40320 - x2 * (1.0 / 3628800 -
+                                                    x2 * (1.0 / 479001600 - x2 * (1.0 / 87178291200.0 -
+                                                                                  x2 * (1.0 / 20922789888000.0))))))));
+    turn.c1 =
+        t2 * t *
+        (1.0 / 6 -
+         x2 * (1.0 / 120 -
+               x2 * (1.0 / 5040 -
+                     x2 * (1.0 / 362880 - x2 * (1.0 / 39916800 -
+                                                x2 * (1.0 / 6227020800.0 - x2 * (1.0 / 1307674368000.0 -
+                                                                                 x2 * (1.0 / 355687428096000.0))))))));
     /* sum (-1)^k (2k+3)/(2k+4)! x^2k, and likewise below */
-    turn.d1 = t2 * t2 * (3.0 / 24 - x2 * (5.0 / 720 - x2 * (7.0 / 40320 - x2 * (9.0 / 3628800 - x2 * (11.0 / 479001600 -
-              x2 * (13.0 / 87178291200.0 - x2 * (15.0 / 20922789888000.0 - x2 * (17.0 / 6402373705728000.0))))))));
-    turn.d2 = t2 * (1.0 / 2 - x2 * (3.0 / 24 - x2 * (5.0 / 720 - x2 * (7.0 / 40320 - x2 * (9.0 / 3628800 -
-              x2 * (11.0 / 479001600 - x2 * (13.0 / 87178291200.0 - x2 * (15.0 / 20922789888000.0))))))));
-    turn.d3 = t2 * t * (2.0 / 6 - x2 * (4.0 / 120 - x2 * (6.0 / 5040 - x2 * (8.0 / 362880 - x2 * (10.0 / 39916800 -
-              x2 * (12.0 / 6227020800.0 - x2 * (14.0 / 1307674368000.0 - x2 * (16.0 / 355687428096000.0))))))));
+    turn.d1 =
+        t2 * t2 *
+        (3.0 / 24 -
+         x2 * (5.0 / 720 -
+               x2 * (7.0 / 40320 -
+                     x2 * (9.0 / 3628800 - x2 * (11.0 / 479001600 - x2 * (13.0 / 87178291200.0 -
+                                                                          x2 * (15.0 / 20922789888000.0 -
+                                                                                x2 * (17.0 / 6402373705728000.0))))))));
+    turn.d2 =
+        t2 * (1.0 / 2 -
+              x2 * (3.0 / 24 -
+                    x2 * (5.0 / 720 -
+                          x2 * (7.0 / 40320 - x2 * (9.0 / 3628800 - x2 * (11.0 / 479001600 -
+                                                                          x2 * (13.0 / 87178291200.0 -
+                                                                                x2 * (15.0 / 20922789888000.0))))))));
+    turn.d3 =
+        t2 * t *
+        (2.0 / 6 -
+         x2 * (4.0 / 120 -
+               x2 * (6.0 / 5040 -
+                     x2 * (8.0 / 362880 - x2 * (10.0 / 39916800 - x2 * (12.0 / 6227020800.0 -
+                                                                        x2 * (14.0 / 1307674368000.0 -
+                                                                              x2 * (16.0 / 355687428096000.0))))))));
     return turn;
 }
 
@@ -69,7 +104,7 @@ ALWAYS_INLINE Turn turn_series(double x2, double t)
  * 3 % of the displacement by acceleration. */
 static Turn turn_closed(double x2, double t)
 {
-    Turn turn;
+    Turn         turn;
     const double x = sqrt(x2), sin_x = sin(x), cos_x = cos(x), t2 = t * t;
 
     turn.cos_x = cos_x;
@@ -179,7 +214,7 @@ void dead_reckon_series(Motion *out, const Kinematics *k, double dt_s, double be
     memcpy(in.r, k->r_ecef_from_body, sizeof in.r);
 
     const double x2 = turn_angle_squared(in.w, dt_s);
-    const Turn turn = x2 < below_rad2 ? turn_series(x2, dt_s) : turn_closed(x2, dt_s);
+    const Turn   turn = x2 < below_rad2 ? turn_series(x2, dt_s) : turn_closed(x2, dt_s);
 
     reckon(&end, k->algorithm, &in, &turn, dt_s);
     memcpy(out->p_ecef, end.p, sizeof end.p);
@@ -219,7 +254,7 @@ static void turn_block(TurnBlock *block, const KinematicsArrays *k, int first, i
     LANES_ARE_INDEPENDENT
     for (int i = 0; i < count; i++) {
         const double w[3] = {wx[i], wy[i], wz[i]};
-        const Turn turn = turn_series(turn_angle_squared(w, t[i]), t[i]);
+        const Turn   turn = turn_series(turn_angle_squared(w, t[i]), t[i]);
         block->cos_x[i] = turn.cos_x;
         block->sin_w[i] = turn.sin_w;
         block->vers_w2[i] = turn.vers_w2;
@@ -243,15 +278,20 @@ ALWAYS_INLINE void reckon_block(MotionArrays *out, int algorithm, const Kinemati
     LANES_ARE_INDEPENDENT
     for (int i = 0; i < count; i++) {
         const int j = first + i;
-        Body in, end;
+        Body      in, end;
         in.p[0] = k->p_ecef[0][j], in.p[1] = k->p_ecef[1][j], in.p[2] = k->p_ecef[2][j];
         in.v[0] = k->v_mps[0][j], in.v[1] = k->v_mps[1][j], in.v[2] = k->v_mps[2][j];
         in.a[0] = k->a_mps2[0][j], in.a[1] = k->a_mps2[1][j], in.a[2] = k->a_mps2[2][j];
         in.w[0] = k->w_body_rps[0][j], in.w[1] = k->w_body_rps[1][j], in.w[2] = k->w_body_rps[2][j];
         for (int e = 0; e < 9; e++) in.r[e] = k->r_ecef_from_body[e][j];
 
-        const Turn turn = {.cos_x = block->cos_x[i], .sin_w = block->sin_w[i], .vers_w2 = block->vers_w2[i],
-                           .c1 = block->c1[i], .d1 = block->d1[i], .d2 = block->d2[i], .d3 = block->d3[i]};
+        const Turn turn = {.cos_x = block->cos_x[i],
+                           .sin_w = block->sin_w[i],
+                           .vers_w2 = block->vers_w2[i],
+                           .c1 = block->c1[i],
+                           .d1 = block->d1[i],
+                           .d2 = block->d2[i],
+                           .d3 = block->d3[i]};
         reckon(&end, algorithm, &in, &turn, k->dt_s[j]);
 
         out->p_ecef[0][j] = end.p[0], out->p_ecef[1][j] = end.p[1], out->p_ecef[2][j] = end.p[2];
@@ -263,24 +303,42 @@ ALWAYS_INLINE void reckon_block(MotionArrays *out, int algorithm, const Kinemati
 void dead_reckon_arrays(MotionArrays *out, int algorithm, const KinematicsArrays *k)
 {
     /* copies: the pointers then cannot be what the loop writes to */
-    MotionArrays to = *out;
+    MotionArrays           to = *out;
     const KinematicsArrays from = *k;
-    TurnBlock block;
+    TurnBlock              block;
 
     for (int first = 0; first < from.count; first += block_count) {
         const int count = from.count - first < block_count ? from.count - first : block_count;
 
         if (algorithm >= 3 && algorithm <= 9 && algorithm != 5) turn_block(&block, &from, first, count);
         switch (algorithm) {
-        case 2: reckon_block(&to, 2, &from, &block, first, count); break;
-        case 3: reckon_block(&to, 3, &from, &block, first, count); break;
-        case 4: reckon_block(&to, 4, &from, &block, first, count); break;
-        case 5: reckon_block(&to, 5, &from, &block, first, count); break;
-        case 6: reckon_block(&to, 6, &from, &block, first, count); break;
-        case 7: reckon_block(&to, 7, &from, &block, first, count); break;
-        case 8: reckon_block(&to, 8, &from, &block, first, count); break;
-        case 9: reckon_block(&to, 9, &from, &block, first, count); break;
-        default: reckon_block(&to, 1, &from, &block, first, count); break;
+        case 2:
+            reckon_block(&to, 2, &from, &block, first, count);
+            break;
+        case 3:
+            reckon_block(&to, 3, &from, &block, first, count);
+            break;
+        case 4:
+            reckon_block(&to, 4, &from, &block, first, count);
+            break;
+        case 5:
+            reckon_block(&to, 5, &from, &block, first, count);
+            break;
+        case 6:
+            reckon_block(&to, 6, &from, &block, first, count);
+            break;
+        case 7:
+            reckon_block(&to, 7, &from, &block, first, count);
+            break;
+        case 8:
+            reckon_block(&to, 8, &from, &block, first, count);
+            break;
+        case 9:
+            reckon_block(&to, 9, &from, &block, first, count);
+            break;
+        default:
+            reckon_block(&to, 1, &from, &block, first, count);
+            break;
         }
     }
 }
@@ -293,7 +351,7 @@ void r_ecef_from_body_euler(double r_ecef_from_body[9], double psi_rad, double t
     const double sin_psi = sin(psi_rad), cos_psi = cos(psi_rad);
     const double sin_theta = sin(theta_rad), cos_theta = cos(theta_rad);
     const double sin_phi = sin(phi_rad), cos_phi = cos(phi_rad);
-    double *r = r_ecef_from_body;
+    double      *r = r_ecef_from_body;
 
     r[0] = cos_theta * cos_psi;
     r[3] = cos_theta * sin_psi;
@@ -311,9 +369,9 @@ void r_ecef_from_body_euler(double r_ecef_from_body[9], double psi_rad, double t
 void euler_from_r_ecef_from_body(double *psi_rad, double *theta_rad, double *phi_rad, const double r_ecef_from_body[9])
 {
     const double *r = r_ecef_from_body;
-    const double psi = atan2(r[3], r[0]);
-    const double sin_psi = sin(psi), cos_psi = cos(psi);
-    const double phi = atan2(sin_psi * r[2] - cos_psi * r[5], cos_psi * r[4] - sin_psi * r[1]);
+    const double  psi = atan2(r[3], r[0]);
+    const double  sin_psi = sin(psi), cos_psi = cos(psi);
+    const double  phi = atan2(sin_psi * r[2] - cos_psi * r[5], cos_psi * r[4] - sin_psi * r[1]);
 
     *psi_rad = psi == -pi_rad ? pi_rad : psi;
     *theta_rad = atan2(-r[6], hypot(r[0], r[3]));

@@ -7,10 +7,10 @@
 #include "pitviper.h"
 
 typedef struct Kinematics {
-    int    algorithm;        /* 1 .. 9; others are treated as 1 (static) */
+    int    algorithm; /* 1 .. 9; others are treated as 1 (static) */
     double p_ecef[3];
-    double v_mps[3];         /* world for 1..5, body for 6..9 */
-    double a_mps2[3];        /* likewise */
+    double v_mps[3];  /* world for 1..5, body for 6..9 */
+    double a_mps2[3]; /* likewise */
     double w_body_rps[3];
     double r_ecef_from_body[9];
 } Kinematics;

@@ -16,7 +16,7 @@
 
 static const double half_length_m = 15.06 / 2, half_span_m = 9.144 / 2, half_rails_m = 9.45 / 2, height_m = 5.09;
 static const double centre_chord_m = 5.04, tip_chord_m = 1.056, sweep_rad = 40 * rad_per_deg;
-static const double wing_lead_x_m = 2.15, wing_z_m = -2.02;  /* of the leading edge produced to the middle */
+static const double wing_lead_x_m = 2.15, wing_z_m = -2.02; /* of the leading edge produced to the middle */
 static const double wing_root_m = 0.62, flap_in_m = 0.80, flap_out_m = 2.95, flap_share = 0.22;
 static const double tail_pivot_x_m = -6.25, tail_z_m = -1.95, tail_root_m = 0.80, half_tail_m = 5.58 / 2;
 static const double half_track_m = 1.18, main_x_m = -0.95, nose_x_m = 3.05;
@@ -31,17 +31,19 @@ static void build_fuselage(MeshBuilder *b)
 {
     const Place here = place_at(0, 0, 0);
     /* after body around the duct and engine */
-    static const Station after[7] = {
-        {-6.45, 0.54, -2.46, -1.38, 1.0}, {-5.60, 0.60, -2.53, -1.30, 0.95}, {-4.0, 0.66, -2.60, -1.18, 0.85},
-        {-2.0, 0.72, -2.64, -1.06, 0.7},  {0.0, 0.74, -2.66, -1.00, 0.7},    {1.5, 0.68, -2.66, -1.00, 0.75},
-        {2.6, 0.52, -2.60, -1.06, 0.85}};
-    static const Station fore[7] = {
-        {-0.5, 0.50, -2.78, -1.80, 0.9}, {1.5, 0.52, -2.72, -1.72, 0.85}, {3.2, 0.49, -2.62, -1.62, 0.8},
-        {4.4, 0.45, -2.48, -1.60, 0.85}, {5.3, 0.38, -2.32, -1.60, 0.95}, {5.9, 0.32, -2.20, -1.60, 1.0},
-        {6.05, 0.305, -2.17, -1.605, 1.0}};
+    static const Station after[7] = {{-6.45, 0.54, -2.46, -1.38, 1.0}, {-5.60, 0.60, -2.53, -1.30, 0.95},
+                                     {-4.0, 0.66, -2.60, -1.18, 0.85}, {-2.0, 0.72, -2.64, -1.06, 0.7},
+                                     {0.0, 0.74, -2.66, -1.00, 0.7},   {1.5, 0.68, -2.66, -1.00, 0.75},
+                                     {2.6, 0.52, -2.60, -1.06, 0.85}};
+    static const Station fore[7] = {{-0.5, 0.50, -2.78, -1.80, 0.9},  {1.5, 0.52, -2.72, -1.72, 0.85},
+                                    {3.2, 0.49, -2.62, -1.62, 0.8},   {4.4, 0.45, -2.48, -1.60, 0.85},
+                                    {5.3, 0.38, -2.32, -1.60, 0.95},  {5.9, 0.32, -2.20, -1.60, 1.0},
+                                    {6.05, 0.305, -2.17, -1.605, 1.0}};
     /* hump behind the canopy, down to the fin */
-    static const Station spine[5] = {{-4.2, 0.16, -2.78, -2.4, 0.9}, {-2.0, 0.24, -2.86, -2.4, 0.9},
-                                     {0.2, 0.32, -2.92, -2.4, 0.9},  {1.6, 0.36, -2.98, -2.4, 0.9},
+    static const Station spine[5] = {{-4.2, 0.16, -2.78, -2.4, 0.9},
+                                     {-2.0, 0.24, -2.86, -2.4, 0.9},
+                                     {0.2, 0.32, -2.92, -2.4, 0.9},
+                                     {1.6, 0.36, -2.98, -2.4, 0.9},
                                      {2.2, 0.36, -2.96, -2.4, 0.9}};
     mesh_part(b, 0, "fuselage", "paint_air_grey", HEAT_AIRFRAME);
     mesh_loft(b, here, after, 7);
@@ -49,10 +51,10 @@ static void build_fuselage(MeshBuilder *b)
     mesh_loft(b, here, spine, 5);
     /* shelves beside the nozzle that end in the speed brakes; the tail planes turn in them */
     for (int side = -1; side <= 1; side += 2) {
-        static const double root[6][2] = {{-1.6, -2.02}, {-3.0, -2.14}, {-6.2, -2.10}, {-7.15, -1.98}, {-6.2, -1.86},
-                                          {-3.0, -1.88}};
-        static const double edge[6][2] = {{-2.2, -2.02}, {-3.2, -2.10}, {-6.2, -2.06}, {-7.05, -1.98}, {-6.2, -1.90},
-                                          {-3.2, -1.92}};
+        static const double root[6][2] = {{-1.6, -2.02},  {-3.0, -2.14}, {-6.2, -2.10},
+                                          {-7.15, -1.98}, {-6.2, -1.86}, {-3.0, -1.88}};
+        static const double edge[6][2] = {{-2.2, -2.02},  {-3.2, -2.10}, {-6.2, -2.06},
+                                          {-7.05, -1.98}, {-6.2, -1.90}, {-3.2, -1.92}};
         mesh_slab(b, parts_side(side), 6, root, 0.45, edge, tail_root_m - 0.02);
         /* strakes: sharp edges from the canopy to the wing */
         static const double strake[5][2] = {{5.0, 0.38}, {3.4, 0.62}, {1.9, 1.04}, {0.4, 1.10}, {0.4, 0.40}};
@@ -61,8 +63,10 @@ static void build_fuselage(MeshBuilder *b)
     }
     mesh_part(b, 0, "radome", "radome_glass_fibre", HEAT_NOSE);
     {
-        const Station nose[4] = {{6.05, 0.300, -2.165, -1.610, 1.0}, {6.6, 0.215, -2.09, -1.68, 1.0},
-                                 {7.0, 0.120, -2.00, -1.76, 1.0},    {7.20, 0.030, -1.91, -1.85, 1.0}};
+        const Station nose[4] = {{6.05, 0.300, -2.165, -1.610, 1.0},
+                                 {6.6, 0.215, -2.09, -1.68, 1.0},
+                                 {7.0, 0.120, -2.00, -1.76, 1.0},
+                                 {7.20, 0.030, -1.91, -1.85, 1.0}};
         mesh_loft(b, here, nose, 4);
     }
     mesh_part(b, 0, "pitot", "steel_worn", HEAT_NOSE);
@@ -70,8 +74,8 @@ static void build_fuselage(MeshBuilder *b)
 
     /* intake: a duct under the nose, its mouth dark behind a lip */
     mesh_part(b, 0, "intake", "paint_air_grey", HEAT_AIRFRAME);
-    static const Station duct[3] = {{0.6, 0.60, -1.80, -0.99, 0.7}, {2.2, 0.56, -1.72, -0.96, 0.75},
-                                    {3.25, 0.50, -1.56, -0.97, 0.9}};
+    static const Station duct[3] = {
+        {0.6, 0.60, -1.80, -0.99, 0.7}, {2.2, 0.56, -1.72, -0.96, 0.75}, {3.25, 0.50, -1.56, -0.97, 0.9}};
     mesh_loft(b, here, duct, 3);
     mesh_box(b, here, 2.2, -0.20, -1.66, 3.30, 0.20, -1.50); /* diverter under the nose */
     mesh_part(b, 0, "intake_mouth", "metal_dark", HEAT_AIRFRAME);
@@ -160,8 +164,10 @@ static void build_fin(MeshBuilder *b)
     const Place up = parts_upright(0, 0, 0);
     mesh_part(b, 0, "fin", "paint_air_grey", HEAT_AIRFRAME);
     /* base fairing, and the fixed part: from 2.55 m to the top, ahead of the rudder */
-    static const Station base[4] = {{-6.75, 0.09, -2.66, -2.40, 0.8}, {-6.0, 0.17, -2.80, -2.40, 0.8},
-                                    {-4.0, 0.19, -2.86, -2.40, 0.8},  {-2.6, 0.08, -2.80, -2.40, 0.9}};
+    static const Station base[4] = {{-6.75, 0.09, -2.66, -2.40, 0.8},
+                                    {-6.0, 0.17, -2.80, -2.40, 0.8},
+                                    {-4.0, 0.19, -2.86, -2.40, 0.8},
+                                    {-2.6, 0.08, -2.80, -2.40, 0.9}};
     mesh_loft(b, place_at(0, 0, 0), base, 4);
     parts_wing(b, up, -3.30, -6.72, 2.55, 0, -3.62, -6.74, 2.92, 0, 0.04);
     parts_wing(b, up, -3.62, -5.97, 2.92, 0, -5.32, -6.68, 4.72, 0, 0.05);
@@ -190,7 +196,7 @@ static void build_gear(MeshBuilder *b, const Gear *g, int side)
     v3_cross(axis, to, from);
     v3_normalize(axis, axis);
     const double swing = acos(clamp(v3_dot(from, to), -1, 1));
-    const int leg = mesh_node(b, g->name, 0, g->p[0], g->p[1], g->p[2]);
+    const int    leg = mesh_node(b, g->name, 0, g->p[0], g->p[1], g->p[2]);
     mesh_joint(b, leg, axis[0], axis[1], axis[2], 3072, 1, 0, swing);
     ModelNode *node = mesh_node_get(b, leg);
     node->dis_scale = node->value_slow = swing;
@@ -201,8 +207,8 @@ static void build_gear(MeshBuilder *b, const Gear *g, int side)
     const double hub[3] = {g->wheel[0], g->wheel[1] - (side ? side : 1) * (g->half_width_m + 0.04), g->wheel[2]};
     mesh_bar(b, (double[3]){0, 0, 0}, hub, 0.05); /* the leg stands beside the wheel */
     mesh_bar(b, hub, g->wheel, 0.04);
-    const int wheel = parts_wheel_node(b, leg, "wheel", side, side == 0 ? 1 : 0, g->wheel[0], g->wheel[1], g->wheel[2],
-                                       g->radius_m);
+    const int wheel =
+        parts_wheel_node(b, leg, "wheel", side, side == 0 ? 1 : 0, g->wheel[0], g->wheel[1], g->wheel[2], g->radius_m);
     const Place across = place_axis(0, 0, 0, 0, 1, 0);
     mesh_part(b, wheel, "wheel", "rubber_black", HEAT_WHEEL);
     mesh_tube(b, across, -g->half_width_m, g->half_width_m, g->radius_m, 0.55 * g->radius_m);
@@ -223,8 +229,8 @@ Status parametric_aircraft(Model *out, double sag_m)
 
     for (int side = -1; side <= 1; side += 2) {
         const double y = 0.5 * (flap_in_m + flap_out_m), x = wing_hinge(y);
-        const int flap = mesh_node(b, side < 0 ? "flaperon_left" : "flaperon_right", 0, x, side * y, wing_z_m);
-        double axis[3] = {side * (wing_hinge(flap_out_m) - wing_hinge(flap_in_m)), flap_out_m - flap_in_m, 0};
+        const int    flap = mesh_node(b, side < 0 ? "flaperon_left" : "flaperon_right", 0, x, side * y, wing_z_m);
+        double       axis[3] = {side * (wing_hinge(flap_out_m) - wing_hinge(flap_in_m)), flap_out_m - flap_in_m, 0};
         v3_normalize(axis, axis);
         mesh_joint(b, flap, axis[0], axis[1], axis[2], side < 0 ? 1120 : 1152, 13, -23 * rad_per_deg, 20 * rad_per_deg);
         mesh_part(b, flap, "flaperon", "paint_air_grey", HEAT_AIRFRAME);
@@ -235,14 +241,14 @@ Status parametric_aircraft(Model *out, double sag_m)
     for (int side = -1; side <= 1; side += 2) {
         /* all-moving, drooping 10 degrees outwards */
         const char *name = side < 0 ? "stabilator_left" : "stabilator_right";
-        const int tail = mesh_node(b, name, 0, tail_pivot_x_m, 0, tail_z_m);
+        const int   tail = mesh_node(b, name, 0, tail_pivot_x_m, 0, tail_z_m);
         mesh_joint(b, tail, 0, 1, 0, side < 0 ? 1408 : 1440, 13, -25 * rad_per_deg, 25 * rad_per_deg);
         mesh_part(b, tail, "stabilator", "paint_air_grey", HEAT_AIRFRAME);
         parts_wing(b, parts_side(side), 1.35, -0.95, tail_root_m, 0, -0.32, -half_length_m - tail_pivot_x_m,
                    half_tail_m, (half_tail_m - tail_root_m) * tan(10 * rad_per_deg), 0.045);
     }
     const int rudder = mesh_node(b, "rudder", 0, -6.325, 0, -3.82);
-    double hinge[3] = {-6.68 + 5.97, 0, -(4.72 - 2.92)};
+    double    hinge[3] = {-6.68 + 5.97, 0, -(4.72 - 2.92)};
     v3_normalize(hinge, hinge);
     mesh_joint(b, rudder, -hinge[0], 0, -hinge[2], 1024, 11, -30 * rad_per_deg, 30 * rad_per_deg);
     mesh_part(b, rudder, "rudder", "paint_air_grey", HEAT_AIRFRAME);
@@ -254,11 +260,12 @@ Status parametric_aircraft(Model *out, double sag_m)
                            {main_x_m, side * 0.40, -main_drop},
                            {0, side * (half_track_m - 0.40), main_drop - main_radius_m},
                            {1.0, -side * 0.12, 0.02},
-                           main_radius_m, 0.11};
+                           main_radius_m,
+                           0.11};
         build_gear(b, &main, side);
     }
-    const Gear nose = {"gear_nose", {nose_x_m, 0, -nose_drop}, {0, 0, nose_drop - nose_radius_m}, {-1, 0, -0.05},
-                       nose_radius_m, 0.08};
+    const Gear nose = {
+        "gear_nose", {nose_x_m, 0, -nose_drop}, {0, 0, nose_drop - nose_radius_m}, {-1, 0, -0.05}, nose_radius_m, 0.08};
     build_gear(b, &nose, 0);
     return mesh_builder_finish(out, b);
 }

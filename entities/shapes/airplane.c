@@ -23,20 +23,20 @@ typedef enum EnginePlace { UNDER_WING, PROPELLER_ON_WING, REAR_BODY, NOSE_PROPEL
 /* Shape and size; x from the middle of the length, heights above the ground. */
 typedef struct Airplane {
     const char *name, *paint;
-    double length, span, height;
-    double half_width, body_low, body_high, nose, tail,
+    double      length, span, height;
+    double      half_width, body_low, body_high, nose, tail,
         tail_low;                                              /* tail: length of the upswept end, its lowest height */
     double droop;                                              /* height of the nose's tip, as a share of the body's */
     double wing_x, wing_h, root, tip, sweep, rise, wing_thick; /* leading edge at the middle; sweep, rise: of the tip */
     double plane_x, plane_h, plane_half, plane_root, plane_tip, plane_sweep, plane_rise;
     double fin_x, fin_low, fin_root, fin_tip, fin_sweep, fin_y; /* fin_y: 0 one in the middle; else two, so far out */
     EnginePlace engines;
-    int engine_count; /* a side, for those on wings and body */
-    double engine_y[4], engine_ahead, engine_h, engine_radius, engine_length;
-    double propeller_radius;
-    int blades;
-    double gear_y, gear_x, nose_x, wheel_radius;
-    bool gear_folds, airliner_windows, struts;
+    int         engine_count; /* a side, for those on wings and body */
+    double      engine_y[4], engine_ahead, engine_h, engine_radius, engine_length;
+    double      propeller_radius;
+    int         blades;
+    double      gear_y, gear_x, nose_x, wheel_radius;
+    bool        gear_folds, airliner_windows, struts;
 } Airplane;
 
 /* clang-format off */
@@ -117,26 +117,26 @@ static void build_body(MeshBuilder *b, const Airplane *a)
 {
     const double half = 0.5 * a->length, tall = a->body_high - a->body_low, middle = 0.5 * (a->body_low + a->body_high);
     const double tip_h = a->body_low + a->droop * tall, x0 = -half, x1 = half - a->nose;
-    const bool pusher = a->engines == TAIL_PROPELLER, front = a->engines == NOSE_PROPELLER;
+    const bool   pusher = a->engines == TAIL_PROPELLER, front = a->engines == NOSE_PROPELLER;
     /* the propeller makes the last bit of the length */
     const double tail_x = pusher ? x0 + 0.10 * a->propeller_radius : x0,
                  nose_x = front ? half - 0.22 * a->propeller_radius : half;
     const double end = pusher ? 0.5 : 0.16, top = a->body_high;
     const double tail_top = pusher ? a->engine_h + 0.22 : fmin(a->tail_low + 0.32 * tall, top);
     const double tail_low = pusher ? a->engine_h - 0.22 : a->tail_low;
-    Station s[8] = {
-        {tail_x, end * a->half_width, -tail_top, -tail_low, 1},
-        {x0 + 0.5 * a->tail, 0.68 * a->half_width, -(0.5 * (tail_top + top) + 0.06 * tall),
-         -(0.45 * a->tail_low + 0.55 * a->body_low), 1},
-        {x0 + a->tail, a->half_width, -top, -a->body_low, 1},
-        {x1 - 0.3 * (x1 - x0 - a->tail), a->half_width, -top, -a->body_low, 1},
-        {x1, 0.985 * a->half_width, -(top - 0.01 * tall), -(a->body_low + 0.01 * tall), 1},
-        {half - 0.45 * a->nose, 0.82 * a->half_width, -(middle + 0.36 * tall), -(a->body_low + 0.07 * tall), 1},
-        {half - 0.12 * a->nose, 0.42 * a->half_width, -(tip_h + 0.24 * tall), -(tip_h - 0.21 * tall), 1},
-        {nose_x, 0.06 * a->half_width, -(tip_h + 0.03 * tall), -(tip_h - 0.03 * tall), 1},
+    Station      s[8] = {
+             {tail_x, end * a->half_width, -tail_top, -tail_low, 1},
+             {x0 + 0.5 * a->tail, 0.68 * a->half_width, -(0.5 * (tail_top + top) + 0.06 * tall),
+              -(0.45 * a->tail_low + 0.55 * a->body_low), 1},
+             {x0 + a->tail, a->half_width, -top, -a->body_low, 1},
+             {x1 - 0.3 * (x1 - x0 - a->tail), a->half_width, -top, -a->body_low, 1},
+             {x1, 0.985 * a->half_width, -(top - 0.01 * tall), -(a->body_low + 0.01 * tall), 1},
+             {half - 0.45 * a->nose, 0.82 * a->half_width, -(middle + 0.36 * tall), -(a->body_low + 0.07 * tall), 1},
+             {half - 0.12 * a->nose, 0.42 * a->half_width, -(tip_h + 0.24 * tall), -(tip_h - 0.21 * tall), 1},
+             {nose_x, 0.06 * a->half_width, -(tip_h + 0.03 * tall), -(tip_h - 0.03 * tall), 1},
     };
     if (front) { /* cowling, cabin, slim tail boom: the roof falls away behind the wing */
-        const double w = a->half_width, c = a->engine_h;
+        const double  w = a->half_width, c = a->engine_h;
         const Station plane[8] = {
             {x0, 0.08 * w, -1.45, -1.25, 1},         {x0 + 1.5, 0.32 * w, -1.58, -1.02, 0.9},
             {x0 + 3.6, 0.85 * w, -1.95, -0.72, 0.6}, {x0 + 4.4, w, -2.08, -0.64, 0.45},
@@ -162,8 +162,8 @@ static void build_body(MeshBuilder *b, const Airplane *a)
                 parts_box(b, 0.1, 1.3, side < 0 ? -0.575 : 0.54, side < 0 ? -0.54 : 0.575, 1.5, 1.95);
         } else {
             /* the flight deck's panes: a band just outside the lines of the nose */
-            const double x = half - 0.36 * a->nose;
-            Station at = mesh_station_at(s, 8, x), before = mesh_station_at(s, 8, half - 0.20 * a->nose);
+            const double  x = half - 0.36 * a->nose;
+            Station       at = mesh_station_at(s, 8, x), before = mesh_station_at(s, 8, half - 0.20 * a->nose);
             const Station band[2] = {{x, 0.80 * at.half_width, at.top - 0.012 * tall, at.top + 0.30 * tall, 0.8},
                                      {half - 0.20 * a->nose, 0.80 * before.half_width, before.top - 0.012 * tall,
                                       before.top + 0.18 * tall, 0.8}};
@@ -172,7 +172,7 @@ static void build_body(MeshBuilder *b, const Airplane *a)
                 for (int side = -1; side <= 1; side += 2) {
                     const double w = a->half_width, h = middle + 0.02 * tall;
                     parts_box(b, x0 + a->tail, x1, side < 0 ? -w - 0.01 : 0.98 * w, side < 0 ? -0.98 * w : w + 0.01, h,
-                             h + 0.075 * tall);
+                              h + 0.075 * tall);
                 }
         }
     }
@@ -201,7 +201,7 @@ static void build_surfaces(MeshBuilder *b, const Airplane *a)
         for (int side = -1; side <= 1; side += 2)
             if (a->fin_y > 0 || side > 0)
                 parts_fin(b, side * a->fin_y, a->fin_x, a->fin_x - a->fin_root, a->fin_low, a->fin_x - a->fin_sweep,
-                         a->fin_x - a->fin_sweep - a->fin_tip, a->height, 0.09);
+                          a->fin_x - a->fin_sweep - a->fin_tip, a->height, 0.09);
     } else { /* the tail is an inverted V; the antenna and the air scoop on the back make the height */
         mesh_part(b, 0, "scoop", a->paint, HEAT_AIRFRAME);
         const Station scoop[3] = {
@@ -228,7 +228,7 @@ static void build_engines(MeshBuilder *b, const Airplane *a)
             const double h =
                 a->engine_h + (a->engines == UNDER_WING ? a->rise * (y - a->engine_y[0]) / (0.5 * a->span) : 0);
             if (a->engines == PROPELLER_ON_WING) {
-                const double x1 = lead, tall = 1.3 * r;
+                const double  x1 = lead, tall = 1.3 * r;
                 const Station s[4] = {{x1 - l, 0.3 * r, -(h + 0.4 * r), -(h + 0.1 * r), 1},
                                       {x1 - 0.6 * l, r, -(h + tall), -(h - tall), 1},
                                       {x1 - 0.3 * l, r, -(h + tall), -(h - tall), 1},
@@ -254,7 +254,7 @@ static void build_engines(MeshBuilder *b, const Airplane *a)
                     parts_profile(b, 4, pylon, side * y - 0.09 * r, side * y + 0.09 * r);
                 } else {
                     parts_box(b, x0 + 0.25 * l, x1 - 0.3 * l, side < 0 ? -y : 0.1, side < 0 ? -0.1 : y, h - 0.55 * r,
-                             h - 0.25 * r);
+                              h - 0.25 * r);
                 }
             }
         }
@@ -268,8 +268,7 @@ static void build_engines(MeshBuilder *b, const Airplane *a)
             if (a->engines == PROPELLER_ON_WING) /* a pipe out of the nacelle's lower side */
                 mesh_cylinder(b, place_axis(lead - 0.55 * l, side * y, -(h - 1.15 * r), -1, 0, 0.15), 0, 0.9 * r,
                               0.3 * r);
-            else
-                mesh_cone(b, place_at(lead - l, side * y, -h), -0.16 * l, 0.12 * r, 0.05 * l, 0.44 * r);
+            else mesh_cone(b, place_at(lead - l, side * y, -h), -0.16 * l, 0.12 * r, 0.05 * l, 0.44 * r);
         }
     if (a->engines == PROPELLER_ON_WING) {
         int number = 1;
@@ -278,7 +277,7 @@ static void build_engines(MeshBuilder *b, const Airplane *a)
                 char name[24];
                 snprintf(name, sizeof name, "propeller_%d", number++);
                 parts_propeller(b, name, wing_lead(a, a->engine_y[e]) + a->engine_ahead, side * a->engine_y[e],
-                               a->engine_h, a->propeller_radius, a->blades, 1020);
+                                a->engine_h, a->propeller_radius, a->blades, 1020);
             }
     }
 }
@@ -289,9 +288,9 @@ static void build_leg(MeshBuilder *b, const Airplane *a, const char *name, doubl
     const double r = a->wheel_radius;
     const double drop = a->gear_folds ? a->body_low + 0.15 * (a->body_high - a->body_low) : 0;
     const double stowed_y = a->gear_folds ? copysign(fmin(fabs(y), 0.3 * a->half_width), y) : y;
-    const int node = mesh_node(b, name, 0, x, stowed_y, -drop);
+    const int    node = mesh_node(b, name, 0, x, stowed_y, -drop);
     if (a->gear_folds) { /* slides out and down, in a straight line */
-        ModelNode *n = mesh_node_get(b, node);
+        ModelNode   *n = mesh_node_get(b, node);
         const double way_m = hypot(drop, y - stowed_y);
         n->joint = JOINT_TRANSLATION;
         n->axis[0] = 0, n->axis[1] = (y - stowed_y) / way_m, n->axis[2] = drop / way_m;
@@ -300,7 +299,7 @@ static void build_leg(MeshBuilder *b, const Airplane *a, const char *name, doubl
         n->dis_scale = n->value_slow = way_m;
     }
     const double foot = -r; /* of the axle, in the node's axes */
-    const Place outwards = place_axis(0, 0, foot, 0, y < 0 ? -1 : 1, 0);
+    const Place  outwards = place_axis(0, 0, foot, 0, y < 0 ? -1 : 1, 0);
     mesh_part(b, node, "gear", "metal_dark", HEAT_PASSIVE);
     mesh_bar(b, (double[3]){0, 0, foot},
              (double[3]){0,
@@ -326,10 +325,10 @@ Status parametric_airplane(Model *out, const char *name, double sag_m)
     build_engines(b, a);
     if (a->engines == NOSE_PROPELLER)
         parts_propeller(b, "propeller", 0.5 * a->length - 0.22 * a->propeller_radius, 0, a->engine_h,
-                       a->propeller_radius, a->blades, 2400);
+                        a->propeller_radius, a->blades, 2400);
     if (a->engines == TAIL_PROPELLER)
         parts_propeller(b, "propeller", -0.5 * a->length + 0.10 * a->propeller_radius, 0, a->engine_h,
-                       a->propeller_radius, a->blades, 2400);
+                        a->propeller_radius, a->blades, 2400);
     const double leg_m = a->gear_folds ? 2.2 * a->wheel_radius : a->body_low + 0.05;
     build_leg(b, a, "gear_left", a->gear_x, -a->gear_y, leg_m);
     build_leg(b, a, "gear_right", a->gear_x, a->gear_y, leg_m);

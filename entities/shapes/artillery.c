@@ -248,7 +248,7 @@ static void build_gun(MeshBuilder *b)
         static const double end_y = 1.27;
         parts_bar(b, 0.2, side * 0.35, 0.72, -5.20, side * end_y, 0.22, 0.13);
         parts_box(b, -5.50, -5.05, side < 0 ? -end_y - 0.13 : end_y - 0.27, side < 0 ? -end_y + 0.27 : end_y + 0.13, 0,
-                 0.50);
+                  0.50);
     }
     for (int side = -1; side <= 1; side += 2) parts_wheel(b, "wheel", side, 0, 0.75, side * 1.23, 0.55, 0.17);
     const int top = turning(b, "top_carriage", 0, 0.55, 0.95, 4096);

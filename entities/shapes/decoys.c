@@ -16,19 +16,23 @@ static void build_hull(MeshBuilder *b)
 {
     const Place here = place_at(0, 0, 0);
     mesh_part(b, 0, "hull", "decoy_fabric", HEAT_PASSIVE);
-    const Station tub[6] = {
-        {-tank_half_length_m, 1.02, -1.28, -0.62, 0.6}, {-3.05, 1.10, -1.42, -0.45, 0.45}, {0.0, 1.12, -1.42, -0.42, 0.4},
-        {2.10, 1.12, -1.42, -0.44, 0.4},           {3.05, 1.08, -1.20, -0.62, 0.5},
-        {tank_half_length_m, 0.98, -1.04, -0.86, 0.8}};
+    const Station tub[6] = {{-tank_half_length_m, 1.02, -1.28, -0.62, 0.6},
+                            {-3.05, 1.10, -1.42, -0.45, 0.45},
+                            {0.0, 1.12, -1.42, -0.42, 0.4},
+                            {2.10, 1.12, -1.42, -0.44, 0.4},
+                            {3.05, 1.08, -1.20, -0.62, 0.5},
+                            {tank_half_length_m, 0.98, -1.04, -0.86, 0.8}};
     mesh_loft(b, here, tub, 6);
     /* fender beams: each a long bolster with quilted bins on top */
     for (int side = -1; side <= 1; side += 2) {
-        const Station fender[4] = {{-3.40, 0.36, -1.24, -0.96, 0.8}, {-3.1, 0.40, -1.30, -0.93, 0.7},
-                                   {3.0, 0.40, -1.28, -0.93, 0.7},   {3.38, 0.36, -1.14, -0.96, 0.8}};
+        const Station fender[4] = {{-3.40, 0.36, -1.24, -0.96, 0.8},
+                                   {-3.1, 0.40, -1.30, -0.93, 0.7},
+                                   {3.0, 0.40, -1.28, -0.93, 0.7},
+                                   {3.38, 0.36, -1.14, -0.96, 0.8}};
         mesh_loft(b, place_at(0, side * (tank_half_width_m - 0.40), 0), fender, 4);
         for (int i = 0; i < 4; i++) {
-            static const Station bin[3] = {{-0.6, 0.25, -1.40, -1.20, 0.8}, {0, 0.30, -1.47, -1.20, 0.6},
-                                           {0.6, 0.25, -1.40, -1.20, 0.8}};
+            static const Station bin[3] = {
+                {-0.6, 0.25, -1.40, -1.20, 0.8}, {0, 0.30, -1.47, -1.20, 0.6}, {0.6, 0.25, -1.40, -1.20, 0.8}};
             mesh_loft(b, place_at(-2.4 + 1.4 * i, side * 1.40, 0), bin, 3);
         }
     }
@@ -112,11 +116,11 @@ Status parametric_flare(Model *out, double sag_m)
     mesh_part(b, body, "grain", "flare_grain", HEAT_FLARE);
     mesh_cylinder(b, axis, -grain_half_length_m + piston_m, grain_half_length_m, 0.9 * grain_radius_m);
     for (int i = 0; i < 6; i++) { /* lands between the grooves; one lies lowest */
-        const Place land = place_turned(axis, (double[3]){1, 0, 0}, pi_rad / 3 * i);
+        const Place         land = place_turned(axis, (double[3]){1, 0, 0}, pi_rad / 3 * i);
         static const double outline[4][2] = {{-0.0055, 0.015}, {0.0055, 0.015}, {0.0045, 0.018}, {-0.0045, 0.018}};
         /* shape (x, y, z) = (across, along, out) */
         const double turn[9] = {0, 1, 0, 1, 0, 0, 0, 0, 1};
-        Place along = land;
+        Place        along = land;
         m3_mul(along.m, land.m, turn);
         mesh_prism(b, along, 4, outline, -grain_half_length_m + piston_m, grain_half_length_m - 0.002);
     }

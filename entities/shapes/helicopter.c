@@ -19,12 +19,12 @@ static Place mirrored(int side)
 
 static void build_fuselage(MeshBuilder *b)
 {
-    const Place here = place_at(0, 0, 0);
+    const Place          here = place_at(0, 0, 0);
     static const Station body[12] = {
-        {6.795, 0.07, -1.42, -1.22, 1.0},  {6.68, 0.20, -1.56, -1.06, 1.0}, {6.40, 0.31, -1.70, -0.93, 0.9},
-        {5.90, 0.39, -1.83, -0.82, 0.75},  {5.00, 0.46, -1.98, -0.74, 0.6}, {3.80, 0.495, -2.10, -0.70, 0.5},
-        {2.20, 0.495, -2.20, -0.70, 0.5},  {0.60, 0.495, -2.20, -0.72, 0.5}, {-0.60, 0.46, -2.16, -0.82, 0.55},
-        {-1.80, 0.36, -2.10, -1.12, 0.7},  {-3.20, 0.27, -2.05, -1.38, 0.9}, {-6.30, 0.14, -1.98, -1.66, 1.0},
+        {6.795, 0.07, -1.42, -1.22, 1.0}, {6.68, 0.20, -1.56, -1.06, 1.0},  {6.40, 0.31, -1.70, -0.93, 0.9},
+        {5.90, 0.39, -1.83, -0.82, 0.75}, {5.00, 0.46, -1.98, -0.74, 0.6},  {3.80, 0.495, -2.10, -0.70, 0.5},
+        {2.20, 0.495, -2.20, -0.70, 0.5}, {0.60, 0.495, -2.20, -0.72, 0.5}, {-0.60, 0.46, -2.16, -0.82, 0.55},
+        {-1.80, 0.36, -2.10, -1.12, 0.7}, {-3.20, 0.27, -2.05, -1.38, 0.9}, {-6.30, 0.14, -1.98, -1.66, 1.0},
     };
     Station ascending[12];
     for (int i = 0; i < 12; i++) ascending[i] = body[11 - i];
@@ -35,12 +35,12 @@ static void build_fuselage(MeshBuilder *b)
     mesh_part(b, 0, "fin", "paint_olive", HEAT_PASSIVE);
     {
         /* drawn flat as (x, thickness) and lofted upwards: shape y is up */
-        static const double root[6][2] = {{-5.30, 0}, {-5.65, 0.09}, {-6.30, 0.06}, {-6.50, 0},
-                                          {-6.30, -0.06}, {-5.65, -0.09}};
-        static const double tip[6][2]  = {{-6.22, 0}, {-6.36, 0.045}, {-6.66, 0.03}, {-6.795, 0},
-                                          {-6.66, -0.03}, {-6.36, -0.045}};
-        Place up = here;
-        const double m[9] = {1, 0, 0, 0, 0, 1, 0, -1, 0};
+        static const double root[6][2] = {{-5.30, 0}, {-5.65, 0.09},  {-6.30, 0.06},
+                                          {-6.50, 0}, {-6.30, -0.06}, {-5.65, -0.09}};
+        static const double tip[6][2] = {{-6.22, 0},  {-6.36, 0.045}, {-6.66, 0.03},
+                                         {-6.795, 0}, {-6.66, -0.03}, {-6.36, -0.045}};
+        Place               up = here;
+        const double        m[9] = {1, 0, 0, 0, 0, 1, 0, -1, 0};
         for (int i = 0; i < 9; i++) up.m[i] = m[i];
         mesh_slab(b, up, 6, root, 1.75, tip, 3.25);
         /* tail rotor gearbox and its shaft, out to the right */
@@ -54,10 +54,10 @@ static void build_fuselage(MeshBuilder *b)
     mesh_sphere(b, place_at(6.52, 0, -1.10), 0.19);
     /* stabiliser across the boom */
     mesh_part(b, 0, "stabiliser", "paint_olive", HEAT_PASSIVE);
-    static const double root[6][2] = {{-3.60, -1.80}, {-3.75, -1.845}, {-4.15, -1.83}, {-4.32, -1.80},
-                                      {-4.15, -1.785}, {-3.75, -1.775}};
-    static const double tip[6][2]  = {{-3.80, -1.80}, {-3.90, -1.825}, {-4.15, -1.82}, {-4.28, -1.80},
-                                      {-4.15, -1.79}, {-3.90, -1.785}};
+    static const double root[6][2] = {{-3.60, -1.80}, {-3.75, -1.845}, {-4.15, -1.83},
+                                      {-4.32, -1.80}, {-4.15, -1.785}, {-3.75, -1.775}};
+    static const double tip[6][2] = {{-3.80, -1.80}, {-3.90, -1.825}, {-4.15, -1.82},
+                                     {-4.28, -1.80}, {-4.15, -1.79},  {-3.90, -1.785}};
     for (int side = -1; side <= 1; side += 2) mesh_slab(b, mirrored(side), 6, root, 0.05, tip, 1.05);
 }
 
@@ -128,8 +128,8 @@ static void build_wings_and_stores(MeshBuilder *b)
     /* wings: an aerofoil of eight sides, slightly tapered, leading edge first */
     static const double root[8][2] = {{2.12, -1.52}, {2.02, -1.57}, {1.80, -1.59}, {1.50, -1.56},
                                       {1.22, -1.51}, {1.50, -1.48}, {1.80, -1.47}, {2.02, -1.48}};
-    static const double tip[8][2]  = {{1.95, -1.52}, {1.88, -1.55}, {1.72, -1.565}, {1.50, -1.545},
-                                      {1.28, -1.51}, {1.50, -1.49}, {1.72, -1.485}, {1.88, -1.49}};
+    static const double tip[8][2] = {{1.95, -1.52}, {1.88, -1.55}, {1.72, -1.565}, {1.50, -1.545},
+                                     {1.28, -1.51}, {1.50, -1.49}, {1.72, -1.485}, {1.88, -1.49}};
     mesh_part(b, 0, "wings", "paint_olive", HEAT_PASSIVE);
     for (int side = -1; side <= 1; side += 2) {
         mesh_slab(b, mirrored(side), 8, root, 0.42, tip, half_span_m);
@@ -170,8 +170,8 @@ static void build_skids(MeshBuilder *b)
     for (int side = -1; side <= 1; side += 2) {
         const double y = side * half_skid_track_m;
         /* straight on the ground, the tip turned up in three steps; balls close the joints */
-        const double bend[5][3] = {{0.10, y, z}, {3.55, y, z}, {3.85, y, z - 0.05}, {4.08, y, z - 0.16},
-                                   {4.20, y, z - 0.32}};
+        const double bend[5][3] = {
+            {0.10, y, z}, {3.55, y, z}, {3.85, y, z - 0.05}, {4.08, y, z - 0.16}, {4.20, y, z - 0.32}};
         for (int i = 0; i < 4; i++) {
             mesh_bar(b, bend[i], bend[i + 1], skid_radius_m);
             if (i > 0) mesh_sphere(b, place_at(bend[i][0], y, bend[i][2]), skid_radius_m);
@@ -192,11 +192,11 @@ static void build_blade(MeshBuilder *b, Place place, double root_m, double tip_m
 {
     /* slab axes: outline in (chord, thickness), drawn along the span */
     const double c = chord_m;
-    const double outline[6][2] = {{0.30 * c, 0}, {0.18 * c, 0.047 * c}, {-0.05 * c, 0.047 * c},
+    const double outline[6][2] = {{0.30 * c, 0},  {0.18 * c, 0.047 * c},   {-0.05 * c, 0.047 * c},
                                   {-0.70 * c, 0}, {-0.05 * c, -0.047 * c}, {0.18 * c, -0.047 * c}};
     /* shape (x, y, z) = (chord, span, thickness) */
     const double turn[9] = {0, 1, 0, 1, 0, 0, 0, 0, 1};
-    Place along = place;
+    Place        along = place;
     m3_mul(along.m, place.m, turn);
     mesh_prism(b, along, 6, outline, root_m, tip_m);
 }
@@ -230,7 +230,7 @@ static void build_tail_rotor(MeshBuilder *b, int rotor)
     for (int i = 0; i < 2; i++) {
         /* span up or down, chord along x, thickness along y */
         const double s = i ? 1 : -1, m[9] = {0, 1, 0, 0, 0, s, s, 0, 0};
-        Place place = place_at(0, 0.02, 0);
+        Place        place = place_at(0, 0.02, 0);
         memcpy(place.m, m, sizeof m);
         build_blade(b, place, 0.05, tail_radius_m, 0.29);
     }

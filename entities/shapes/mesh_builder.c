@@ -16,20 +16,20 @@ Place place_at(double x, double y, double z)
 
 Place place_axis(double x, double y, double z, double dx, double dy, double dz)
 {
-    Place  place = place_at(x, y, z);
-    double d[3] = {dx, dy, dz}, side[3], third[3];
+    Place      place = place_at(x, y, z);
+    double     d[3] = {dx, dy, dz}, side[3], third[3];
     const bool ok = v3_normalize(d, d);
     assert(ok);
     (void)ok;
     /* shape y is the body axis least along d, made perpendicular: a right angle stays exactly one */
     const double ax = fabs(d[0]), ay = fabs(d[1]), az = fabs(d[2]);
-    double other[3] = {0, 0, 0};
+    double       other[3] = {0, 0, 0};
     other[ay <= ax && ay <= az ? 1 : az <= ax ? 2 : 0] = 1;
     v3_add_scaled(side, other, -v3_dot(other, d), d);
     v3_normalize(side, side);
     v3_cross(third, d, side);
     for (int i = 0; i < 3; i++) {
-        place.m[3 * i]     = d[i];
+        place.m[3 * i] = d[i];
         place.m[3 * i + 1] = side[i];
         place.m[3 * i + 2] = third[i];
     }
@@ -47,9 +47,8 @@ static void rotation_about(double r[9], const double axis[3], double angle_rad)
 {
     const double c = cos(angle_rad), s = sin(angle_rad), v = 1 - c;
     const double x = axis[0], y = axis[1], z = axis[2];
-    const double m[9] = {c + v * x * x,     v * x * y - s * z, v * x * z + s * y,
-                         v * x * y + s * z, c + v * y * y,     v * y * z - s * x,
-                         v * x * z - s * y, v * y * z + s * x, c + v * z * z};
+    const double m[9] = {c + v * x * x,     v * x * y - s * z, v * x * z + s * y, v * x * y + s * z, c + v * y * y,
+                         v * y * z - s * x, v * x * z - s * y, v * y * z + s * x, c + v * z * z};
     memcpy(r, m, sizeof m);
 }
 
@@ -71,7 +70,7 @@ Place place_mirror_y(Place place)
 
 Warp mesh_warp(const Place *place)
 {
-    Warp warp = {0};
+    Warp   warp = {0};
     double column[3][3], cross[3];
     for (int j = 0; j < 3; j++) {
         for (int i = 0; i < 3; i++) column[j][i] = place->m[3 * i + j];
@@ -95,12 +94,12 @@ bool mesh_grow(MeshBuilder *b, void *array, int *capacity, int needed, size_t si
     int wanted = *capacity ? *capacity : 64;
     while (wanted < needed) wanted += wanted / 2;
     void **pointer = array;
-    void  *moved   = realloc(*pointer, (size_t)wanted * size);
+    void  *moved = realloc(*pointer, (size_t)wanted * size);
     if (!moved) {
         b->status = STATUS_NO_MEMORY;
         return false;
     }
-    *pointer  = moved;
+    *pointer = moved;
     *capacity = wanted;
     return true;
 }
@@ -131,10 +130,8 @@ Status mesh_builder_finish(Model *out, MeshBuilder *b)
         }
         status = model_measure(m);
     }
-    if (status == STATUS_OK)
-        *out = *m;
-    else
-        model_destroy(m);
+    if (status == STATUS_OK) *out = *m;
+    else model_destroy(m);
     free(b);
     return status;
 }
@@ -163,14 +160,14 @@ void mesh_joint(MeshBuilder *b, int node, double ax, double ay, double az, uint3
                 double low_rad, double high_rad)
 {
     ModelNode *n = mesh_node_get(b, node);
-    n->joint     = JOINT_ROTATION;
-    n->axis[0]   = ax;
-    n->axis[1]   = ay;
-    n->axis[2]   = az;
+    n->joint = JOINT_ROTATION;
+    n->axis[0] = ax;
+    n->axis[1] = ay;
+    n->axis[2] = az;
     n->dis_class = dis_class;
     n->dis_metric = dis_metric;
-    n->low        = low_rad;
-    n->high       = high_rad;
+    n->low = low_rad;
+    n->high = high_rad;
 }
 
 void mesh_part(MeshBuilder *b, int node, const char *name, const char *material, HeatRole role)
@@ -195,7 +192,7 @@ bool mesh_reserve(MeshBuilder *b, long long vertices, long long triangles)
         return false;
     }
     const int vertex_need = m->vertex_count + (int)vertices, triangle_need = m->triangle_count + (int)triangles;
-    int normal_capacity = b->vertex_capacity; /* grows in step with the vertices */
+    int       normal_capacity = b->vertex_capacity; /* grows in step with the vertices */
     return mesh_grow(b, &m->vertex, &normal_capacity, vertex_need, sizeof *m->vertex) &&
            mesh_grow(b, &m->normal, &b->vertex_capacity, vertex_need, sizeof *m->normal) &&
            mesh_grow(b, &m->triangle, &b->triangle_capacity, triangle_need, sizeof *m->triangle);
@@ -209,7 +206,7 @@ void mesh_place_point(double out[3], const Place *place, const double p_shape[3]
 }
 
 uint32_t mesh_add_vertex(MeshBuilder *b, const Place *place, const Warp *warp, const double p_shape[3],
-                           const double n_shape[3])
+                         const double n_shape[3])
 {
     Model *m = &b->model;
     double n[3];
@@ -224,7 +221,7 @@ uint32_t mesh_add_vertex(MeshBuilder *b, const Place *place, const Warp *warp, c
 
 void mesh_add_triangle(MeshBuilder *b, const Warp *warp, uint32_t i, uint32_t j, uint32_t k)
 {
-    Model *m = &b->model;
+    Model       *m = &b->model;
     const size_t size = sizeof m->vertex[0];
     if (!memcmp(m->vertex[i], m->vertex[j], size) || !memcmp(m->vertex[j], m->vertex[k], size) ||
         !memcmp(m->vertex[k], m->vertex[i], size))
@@ -262,4 +259,3 @@ int mesh_circle_sides(double radius_m, double sag_m)
     const double sides = ceil(2 * pi_rad / mesh_chord_angle(radius_m, sag_m) - 1e-9);
     return (int)clamp(sides, sides_least, sides_most);
 }
-

@@ -25,25 +25,25 @@ typedef struct Place {
     double m[9];
 } Place;
 
-Place place_at(double x, double y, double z);              /* shape axes = node axes */
+Place place_at(double x, double y, double z);                                    /* shape axes = node axes */
 Place place_axis(double x, double y, double z, double dx, double dy, double dz); /* shape x along d, any roll */
-Place place_scaled(Place place, double sx, double sy, double sz);   /* scale along the shape's own axes */
-Place place_turned(Place place, const double axis[3], double angle_rad); /* shape turned about its own origin */
-Place place_mirror_y(Place place);                         /* the same shape on the other side, y -> -y */
+Place place_scaled(Place place, double sx, double sy, double sz);                /* scale along the shape's own axes */
+Place place_turned(Place place, const double axis[3], double angle_rad);         /* shape turned about its own origin */
+Place place_mirror_y(Place place); /* the same shape on the other side, y -> -y */
 
 MeshBuilder *mesh_builder_create(const char *model_name, double sag_m); /* NULL: no memory */
 /* Returns the model (measured, validated by tests) and frees the builder, for any status. */
-Status       mesh_builder_finish(Model *out, MeshBuilder *b);
+Status mesh_builder_finish(Model *out, MeshBuilder *b);
 
 /* A node that does not move; the caller may then set the rest through mesh_node_get (valid until the next
  * mesh_node). */
 int        mesh_node(MeshBuilder *b, const char *name, int parent, double x, double y, double z);
 ModelNode *mesh_node_get(MeshBuilder *b, int node);
 /* Makes a node turn: unit axis, limits in rad (low > high: none). */
-void       mesh_joint(MeshBuilder *b, int node, double ax, double ay, double az, uint32_t dis_class,
-                      uint32_t dis_metric, double low_rad, double high_rad);
+void mesh_joint(MeshBuilder *b, int node, double ax, double ay, double az, uint32_t dis_class, uint32_t dis_metric,
+                double low_rad, double high_rad);
 /* Begins a part; nodes must come in ascending order. */
-void       mesh_part(MeshBuilder *b, int node, const char *name, const char *material, HeatRole role);
+void mesh_part(MeshBuilder *b, int node, const char *name, const char *material, HeatRole role);
 
 /* Sides of a full circle for a radius and a chord error. */
 int mesh_circle_sides(double radius_m, double sag_m);
@@ -71,8 +71,8 @@ void mesh_bar(MeshBuilder *b, const double from[3], const double to[3], double r
 void mesh_box(MeshBuilder *b, Place place, double x0, double y0, double z0, double x1, double y1, double z1);
 /* A polygon (x, z) drawn at y0 and again, perhaps moved and scaled, at y1 (same count, 3 .. 64, no crossing,
  * either winding, y0 < y1), joined by faces. Both must triangulate alike; concave ones are allowed. */
-void mesh_slab(MeshBuilder *b, Place place, int count, const double (*at_y0)[2], double y0,
-               const double (*at_y1)[2], double y1);
+void mesh_slab(MeshBuilder *b, Place place, int count, const double (*at_y0)[2], double y0, const double (*at_y1)[2],
+               double y1);
 void mesh_prism(MeshBuilder *b, Place place, int count, const double (*outline)[2], double y0, double y1);
 
 /* ---- lofted bodies along the shape's x axis -------------------------------------------------- */
@@ -85,7 +85,7 @@ typedef struct Station {
 /* The true section between stations (monotone cubic in x for width, top and bottom; linear for round). */
 Station mesh_station_at(const Station *station, int count, double x);
 /* Smooth in both directions, flat at both ends. x ascending. */
-void    mesh_loft(MeshBuilder *b, Place place, const Station *station, int count);
+void mesh_loft(MeshBuilder *b, Place place, const Station *station, int count);
 
 /* ---- tracks ----------------------------------------------------------------------------------- */
 
@@ -96,7 +96,7 @@ typedef struct BeltWheel {
 /* A closed band from y0 to y1. */
 typedef struct Belt {
     double thickness, y0, y1; /* thickness: outwards */
-    int    cleats;            /* boxes of cleat_length along the band standing cleat_height proud of it, evenly spaced */
+    int    cleats; /* boxes of cleat_length along the band standing cleat_height proud of it, evenly spaced */
     double cleat_height, cleat_length;
 } Belt;
 

@@ -23,8 +23,8 @@ struct MeshBuilder {
 
 /* What a place does to lengths, normals and winding. */
 typedef struct Warp {
-    double largest;      /* longest column: lengths grow by no more than this */
-    double normal_m[9];  /* inverse transpose, up to length */
+    double largest;     /* longest column: lengths grow by no more than this */
+    double normal_m[9]; /* inverse transpose, up to length */
     bool   flips;
 } Warp;
 

@@ -21,7 +21,7 @@ static double station_slope(const Station *s, int count, int i, int field)
 {
     const double here = station_field(&s[i], field);
     const double before = i > 0 ? (here - station_field(&s[i - 1], field)) / (s[i].x - s[i - 1].x) : 0;
-    const double after  = i + 1 < count ? (station_field(&s[i + 1], field) - here) / (s[i + 1].x - s[i].x) : 0;
+    const double after = i + 1 < count ? (station_field(&s[i + 1], field) - here) / (s[i + 1].x - s[i].x) : 0;
     if (i == 0) return after;
     if (i + 1 == count) return before;
     if (!(before * after > 0)) return 0;
@@ -39,8 +39,8 @@ typedef struct Section {
 static Section section_at(const Station *s, int count, int interval, double x)
 {
     const Station *a = &s[interval], *c = a + 1;
-    const double h = c->x - a->x, t = (x - a->x) / h;
-    double value[loft_fields], slope[loft_fields], bends[loft_fields];
+    const double   h = c->x - a->x, t = (x - a->x) / h;
+    double         value[loft_fields], slope[loft_fields], bends[loft_fields];
     for (int f = 0; f < loft_fields; f++) {
         const double p = station_field(a, f), q = station_field(c, f);
         const double u = station_slope(s, count, interval, f) * h, v = station_slope(s, count, interval + 1, f) * h;
@@ -54,14 +54,14 @@ static Section section_at(const Station *s, int count, int interval, double x)
     const double round_slope = (c->round - a->round) / h;
     /* a point moves with the width in y and between top and bottom in z; the corner's share moves too: twice
      * the product of slopes, times at most 1 - cos 45 */
-    const double bend = hypot(bends[loft_width], fmax(bends[loft_top], bends[loft_bottom])) +
-                        2 * 0.3 * fabs(round_slope) *
-                            (fabs(slope[loft_width]) + fabs(slope[loft_bottom] - slope[loft_top]));
+    const double bend =
+        hypot(bends[loft_width], fmax(bends[loft_top], bends[loft_bottom])) +
+        2 * 0.3 * fabs(round_slope) * (fabs(slope[loft_width]) + fabs(slope[loft_bottom] - slope[loft_top]));
     return (Section){
-        .at    = {x, value[loft_width], value[loft_top], value[loft_bottom],
-                  x == c->x ? c->round : a->round + (x - a->x) * round_slope},
+        .at = {x, value[loft_width], value[loft_top], value[loft_bottom],
+               x == c->x ? c->round : a->round + (x - a->x) * round_slope},
         .slope = {1, slope[loft_width], slope[loft_top], slope[loft_bottom], round_slope},
-        .bend  = bend,
+        .bend = bend,
     };
 }
 
@@ -77,16 +77,16 @@ Station mesh_station_at(const Station *station, int count, double x)
 static void section_point(double p[3], double n[3], const Section *s, int corner, int step, int steps)
 {
     static const double quarter[4][2] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
-    const double t = 0.5 * pi_rad * step / steps;
-    const double ct = step == steps ? 0 : cos(t), st = step == steps ? 1 : sin(t);
-    const double c = quarter[corner][0] * ct - quarter[corner][1] * st;
-    const double d = quarter[corner][1] * ct + quarter[corner][0] * st;
-    const double sign_y = corner == 0 || corner == 3 ? 1 : -1, sign_z = corner < 2 ? 1 : -1;
-    const double k = s->at.round, k1 = s->slope.round;
-    const double a = s->at.half_width, a1 = s->slope.half_width;
-    const double h = 0.5 * (s->at.bottom - s->at.top), h1 = 0.5 * (s->slope.bottom - s->slope.top);
-    const double mid = 0.5 * (s->at.bottom + s->at.top), mid1 = 0.5 * (s->slope.bottom + s->slope.top);
-    const double u = sign_y + k * (c - sign_y), v = sign_z + k * (d - sign_z); /* 1: on the full width */
+    const double        t = 0.5 * pi_rad * step / steps;
+    const double        ct = step == steps ? 0 : cos(t), st = step == steps ? 1 : sin(t);
+    const double        c = quarter[corner][0] * ct - quarter[corner][1] * st;
+    const double        d = quarter[corner][1] * ct + quarter[corner][0] * st;
+    const double        sign_y = corner == 0 || corner == 3 ? 1 : -1, sign_z = corner < 2 ? 1 : -1;
+    const double        k = s->at.round, k1 = s->slope.round;
+    const double        a = s->at.half_width, a1 = s->slope.half_width;
+    const double        h = 0.5 * (s->at.bottom - s->at.top), h1 = 0.5 * (s->slope.bottom - s->slope.top);
+    const double        mid = 0.5 * (s->at.bottom + s->at.top), mid1 = 0.5 * (s->slope.bottom + s->slope.top);
+    const double        u = sign_y + k * (c - sign_y), v = sign_z + k * (d - sign_z); /* 1: on the full width */
     p[0] = s->at.x;
     p[1] = a * u;
     p[2] = mid + h * v;
@@ -101,15 +101,15 @@ void mesh_loft(MeshBuilder *b, Place place, const Station *station, int count)
 {
     assert(count >= 2);
     const Warp   warp = mesh_warp(&place);
-    const double sag  = 0.4 * b->model.sag_m / warp.largest; /* around, and again along; see the header */
-    double corner_radius = 0;
+    const double sag = 0.4 * b->model.sag_m / warp.largest; /* around, and again along; see the header */
+    double       corner_radius = 0;
     for (int i = 0; i < count; i++) {
         const Station *s = &station[i];
         assert(s->half_width > 0 && s->top < s->bottom && s->round > 0 && s->round <= 1 && (i == 0 || s[-1].x < s->x));
         corner_radius = fmax(corner_radius, s->round * fmax(s->half_width, 0.5 * (s->bottom - s->top)));
     }
     const int steps = (mesh_circle_sides(corner_radius, sag) + 3) / 4, sides = 4 * (steps + 1);
-    uint32_t last = 0;
+    uint32_t  last = 0;
     for (int i = 0; i + 1 < count; i++) {
         const double h = station[i + 1].x - station[i].x;
         /* a straight line errs by h^2 / 8 times the second derivative */
@@ -171,10 +171,11 @@ typedef struct BeltLine {
 } BeltLine;
 
 /* out_y: how far out along the band's normal, and y. */
-static void belt_vertex(MeshBuilder *b, const BeltLine *line, const BeltPoint *p, const double out_y[2], const double n[3])
+static void belt_vertex(MeshBuilder *b, const BeltLine *line, const BeltPoint *p, const double out_y[2],
+                        const double n[3])
 {
-    mesh_add_vertex(b, line->place, &line->warp, (double[3]){p->x + out_y[0] * p->nx, out_y[1], -(p->up + out_y[0] * p->nup)},
-                    n);
+    mesh_add_vertex(b, line->place, &line->warp,
+                    (double[3]){p->x + out_y[0] * p->nx, out_y[1], -(p->up + out_y[0] * p->nup)}, n);
 }
 
 /* A closed strip between two lines that follow the band: (out, y) of the first, of the second, and which way
@@ -205,14 +206,14 @@ static void belt_cleats(MeshBuilder *b, const BeltLine *line)
     const BeltPoint *point = line->point;
     const int        count = line->count;
     const double     thickness = belt->thickness;
-    double round_m = 0;
+    double           round_m = 0;
     for (int pass = 0, next = 0; pass < 2; pass++) {
         double at_m = 0;
         for (int i = 0; i < count; i++) {
             const BeltPoint *p = &point[i], *q = &point[(i + 1) % count];
-            const double px = p->x + thickness * p->nx, pup = p->up + thickness * p->nup;
-            const double dx = q->x + thickness * q->nx - px, dup = q->up + thickness * q->nup - pup;
-            const double run = hypot(dx, dup);
+            const double     px = p->x + thickness * p->nx, pup = p->up + thickness * p->nup;
+            const double     dx = q->x + thickness * q->nx - px, dup = q->up + thickness * q->nup - pup;
+            const double     run = hypot(dx, dup);
             for (; pass == 1 && next < belt->cleats && round_m * next / belt->cleats < at_m + run && run > 0; next++) {
                 const double s = (round_m * next / belt->cleats - at_m) / run;
                 /* shape z along the band's own normal, which turns with the bend even where facets are long;
@@ -221,13 +222,13 @@ static void belt_cleats(MeshBuilder *b, const BeltLine *line)
                 const double nx = (p->nx + s * (q->nx - p->nx)) / n, nup = (p->nup + s * (q->nup - p->nup)) / n;
                 const double local[9] = {-nup, 0, nx, 0, 1, 0, -nx, 0, -nup};
                 const double p_shape[3] = {px + s * dx, 0, -(pup + s * dup)};
-                double m[9];
-                Place  cleat;
+                double       m[9];
+                Place        cleat;
                 m3_mul(m, place->m, local);
                 memcpy(cleat.m, m, sizeof m);
                 mesh_place_point(cleat.p, place, p_shape);
-                mesh_box(b, cleat, -0.5 * belt->cleat_length, belt->y0, -0.2 * thickness, 0.5 * belt->cleat_length, belt->y1,
-                         belt->cleat_height);
+                mesh_box(b, cleat, -0.5 * belt->cleat_length, belt->y0, -0.2 * thickness, 0.5 * belt->cleat_length,
+                         belt->y1, belt->cleat_height);
             }
             at_m += run;
         }
@@ -240,10 +241,10 @@ void mesh_belt(MeshBuilder *b, Place place, const BeltWheel *wheel, int count, c
     const double thickness = belt->thickness, y0 = belt->y0, y1 = belt->y1;
     assert(count >= 2 && count <= wheel_capacity && thickness > 0 && y0 < y1);
     const Warp   warp = mesh_warp(&place);
-    const double sag  = b->model.sag_m / warp.largest;
-    BeltWheel w[wheel_capacity];
-    double    area = 0;
-    int       point_count = 0;
+    const double sag = b->model.sag_m / warp.largest;
+    BeltWheel    w[wheel_capacity];
+    double       area = 0;
+    int          point_count = 0;
     for (int i = 0; i < count; i++) {
         const BeltWheel *p = &wheel[i], *q = &wheel[(i + 1) % count];
         area += q->x * p->z - p->x * q->z; /* in (x, up = -z) */
@@ -254,11 +255,11 @@ void mesh_belt(MeshBuilder *b, Place place, const BeltWheel *wheel, int count, c
     int        capacity = 0;
     for (int i = 0; i < count; i++) {
         const BeltWheel *a = &w[(i + count - 1) % count], *c = &w[i], *e = &w[(i + 1) % count];
-        double n0[2], n1[2];
+        double           n0[2], n1[2];
         belt_tangent(n0, a, c);
         belt_tangent(n1, c, e);
         const double from = atan2(n0[1], n0[0]);
-        double turn = atan2(n0[0] * n1[1] - n0[1] * n1[0], n0[0] * n1[0] + n0[1] * n1[1]);
+        double       turn = atan2(n0[0] * n1[1] - n0[1] * n1[0], n0[0] * n1[0] + n0[1] * n1[1]);
         if (turn < 0) turn += 2 * pi_rad;
         const int steps = (int)fmax(1, ceil(turn / mesh_chord_angle(c->radius + thickness, sag) - 1e-9));
         if (!mesh_grow(b, &point, &capacity, point_count + steps + 1, sizeof *point)) break;
@@ -269,7 +270,7 @@ void mesh_belt(MeshBuilder *b, Place place, const BeltWheel *wheel, int count, c
     }
     if (b->status == STATUS_OK) {
         const BeltLine line = {belt, &place, warp, point, point_count};
-        const double   inner0[2] = {0, y0}, inner1[2] = {0, y1}, outer0[2] = {thickness, y0}, outer1[2] = {thickness, y1};
+        const double inner0[2] = {0, y0}, inner1[2] = {0, y1}, outer0[2] = {thickness, y0}, outer1[2] = {thickness, y1};
         belt_strip(b, &line, outer0, outer1, 1, 0);
         belt_strip(b, &line, inner1, inner0, -1, 0);
         belt_strip(b, &line, inner0, outer0, 0, -1);

@@ -32,10 +32,10 @@ void mesh_profile_line(MeshBuilder *b, double x, double r)
 
 void mesh_profile_arc(MeshBuilder *b, double cx, double cr, double turn_rad)
 {
-    Piece *piece    = next_piece(b);
-    piece->cx       = cx;
-    piece->cr       = cr;
-    piece->radius   = hypot(piece->x0 - cx, piece->r0 - cr);
+    Piece *piece = next_piece(b);
+    piece->cx = cx;
+    piece->cr = cr;
+    piece->radius = hypot(piece->x0 - cx, piece->r0 - cr);
     piece->from_rad = atan2(piece->r0 - cr, piece->x0 - cx);
     piece->turn_rad = turn_rad;
     piece->x1 = cx + piece->radius * cos(piece->from_rad + turn_rad);
@@ -47,14 +47,14 @@ void mesh_profile_arc(MeshBuilder *b, double cx, double cr, double turn_rad)
 }
 
 typedef struct Lathe {
-    MeshBuilder  *b;
-    const Place  *place;
-    const Warp   *warp;
-    int           sides;
-    double       *unit;            /* cosines and sines [sides][2] */
-    uint32_t      last_ring;       /* ring at the end of the last strip, and its meridian point and normal */
-    double        last[4];
-    bool          has_last;
+    MeshBuilder *b;
+    const Place *place;
+    const Warp  *warp;
+    int          sides;
+    double      *unit;      /* cosines and sines [sides][2] */
+    uint32_t     last_ring; /* ring at the end of the last strip, and its meridian point and normal */
+    double       last[4];
+    bool         has_last;
 } Lathe;
 
 static uint32_t lathe_ring(Lathe *l, double x, double r, double nx, double nr)
@@ -71,20 +71,20 @@ static uint32_t lathe_ring(Lathe *l, double x, double r, double nx, double nr)
 static void lathe_strip(Lathe *l, const double from[4], const double to[4])
 {
     if (!mesh_reserve(l->b, 2LL * l->sides, 2LL * l->sides)) return;
-    const bool shared = l->has_last && !memcmp(l->last, from, sizeof l->last);
+    const bool     shared = l->has_last && !memcmp(l->last, from, sizeof l->last);
     const uint32_t ring0 = shared ? l->last_ring : lathe_ring(l, from[0], from[1], from[2], from[3]);
     const uint32_t ring1 = lathe_ring(l, to[0], to[1], to[2], to[3]);
     mesh_add_band(l->b, l->warp, ring0, ring1, l->sides);
     memcpy(l->last, to, sizeof l->last);
     l->last_ring = ring1;
-    l->has_last  = true;
+    l->has_last = true;
 }
 
 void mesh_lathe(MeshBuilder *b, Place place)
 {
     const Warp warp = mesh_warp(&place);
-    double radius = 0;
-    bool   curved = false;
+    double     radius = 0;
+    bool       curved = false;
     assert(b->piece_count > 0);
     for (int i = 0; i < b->piece_count; i++) {
         const Piece *p = &b->piece[i];
@@ -93,7 +93,7 @@ void mesh_lathe(MeshBuilder *b, Place place)
             curved = true;
             /* the arc's own top, when it passes there: a quarter turn lies between its ends */
             const double to_top = p->turn_rad < 0 ? p->from_rad - 0.5 * pi_rad : 0.5 * pi_rad - p->from_rad;
-            const double ahead  = to_top < 0 ? to_top + 2 * pi_rad : to_top;
+            const double ahead = to_top < 0 ? to_top + 2 * pi_rad : to_top;
             if (ahead <= fabs(p->turn_rad)) radius = fmax(radius, p->cr + p->radius);
         }
     }
@@ -102,14 +102,14 @@ void mesh_lathe(MeshBuilder *b, Place place)
     assert((b->begin_r == 0 && end->r1 == 0) || hypot(end->x1 - b->begin_x, end->r1 - b->begin_r) < 1e-9);
 
     const double sag = b->model.sag_m / warp.largest / (curved ? 2 : 1);
-    Lathe l = {.b = b, .place = &place, .warp = &warp, .sides = mesh_circle_sides(radius, sag)};
+    Lathe        l = {.b = b, .place = &place, .warp = &warp, .sides = mesh_circle_sides(radius, sag)};
     l.unit = malloc((size_t)l.sides * 2 * sizeof *l.unit);
     if (!l.unit) {
         b->status = STATUS_NO_MEMORY;
         return;
     }
     for (int j = 0; j < l.sides; j++) {
-        l.unit[2 * j]     = cos(2 * pi_rad * j / l.sides);
+        l.unit[2 * j] = cos(2 * pi_rad * j / l.sides);
         l.unit[2 * j + 1] = sin(2 * pi_rad * j / l.sides);
     }
     for (int i = 0; i < b->piece_count; i++) {
@@ -124,10 +124,10 @@ void mesh_lathe(MeshBuilder *b, Place place)
                         (double[4]){x1, r1, -dr / length, dx / length});
             continue;
         }
-        const double step   = mesh_chord_angle(p->radius, sag);
-        const int    steps  = (int)fmax(1, ceil(fabs(p->turn_rad) / step - 1e-9));
+        const double step = mesh_chord_angle(p->radius, sag);
+        const int    steps = (int)fmax(1, ceil(fabs(p->turn_rad) / step - 1e-9));
         const double facing = p->turn_rad < 0 ? 1 : -1; /* a hollow faces its centre */
-        double from[4] = {p->x0, p->r0, facing * cos(p->from_rad), facing * sin(p->from_rad)};
+        double       from[4] = {p->x0, p->r0, facing * cos(p->from_rad), facing * sin(p->from_rad)};
         for (int k = 1; k <= steps; k++) {
             const double a = p->from_rad + p->turn_rad * k / steps;
             double to[4] = {p->cx + p->radius * cos(a), p->cr + p->radius * sin(a), facing * cos(a), facing * sin(a)};
@@ -213,12 +213,12 @@ static void clip_ears(int (*triangle)[3], int count, const double (*p)[2])
         int ear = -1;
         for (int i = 0; i < remaining && ear < 0; i++) {
             const int a = left[(i + remaining - 1) % remaining], v = left[i], c = left[(i + 1) % remaining];
-            bool free_of_others = cross2(p[a], p[v], p[c]) > 0;
+            bool      free_of_others = cross2(p[a], p[v], p[c]) > 0;
             for (int k = 0; k < remaining && free_of_others; k++) {
                 const int o = left[k];
                 if (o == a || o == v || o == c) continue;
-                free_of_others = cross2(p[a], p[v], p[o]) < 0 || cross2(p[v], p[c], p[o]) < 0 ||
-                                 cross2(p[c], p[a], p[o]) < 0;
+                free_of_others =
+                    cross2(p[a], p[v], p[o]) < 0 || cross2(p[v], p[c], p[o]) < 0 || cross2(p[c], p[a], p[o]) < 0;
             }
             if (free_of_others) ear = i;
         }
@@ -233,8 +233,8 @@ static void clip_ears(int (*triangle)[3], int count, const double (*p)[2])
     for (int k = 0; k < 3; k++) triangle[made][k] = left[k];
 }
 
-void mesh_slab(MeshBuilder *b, Place place, int count, const double (*at_y0)[2], double y0,
-               const double (*at_y1)[2], double y1)
+void mesh_slab(MeshBuilder *b, Place place, int count, const double (*at_y0)[2], double y0, const double (*at_y1)[2],
+               double y1)
 {
     assert(count >= 3 && count <= outline_capacity && y0 < y1);
     double p[2][outline_capacity][3], outline[outline_capacity][2], area = 0;
@@ -244,14 +244,14 @@ void mesh_slab(MeshBuilder *b, Place place, int count, const double (*at_y0)[2],
         area += u[0] * v[1] - v[0] * u[1];
     }
     for (int i = 0; i < count; i++) {
-        const int k = area > 0 ? i : count - 1 - i; /* counter-clockwise in (x, z), which is seen from -y */
+        const int    k = area > 0 ? i : count - 1 - i; /* counter-clockwise in (x, z), which is seen from -y */
         const double a[3] = {at_y0[k][0], y0, at_y0[k][1]}, c[3] = {at_y1[k][0], y1, at_y1[k][1]};
         memcpy(p[0][i], a, sizeof a);
         memcpy(p[1][i], c, sizeof c);
         outline[i][0] = a[0];
         outline[i][1] = a[2];
     }
-    clip_ears(face, count, (const double (*)[2])outline);
+    clip_ears(face, count, (const double(*)[2])outline);
     if (!mesh_reserve(b, 12LL * count, 4LL * count)) return;
     const Warp warp = mesh_warp(&place);
     for (int t = 0; t < count - 2; t++) {
@@ -276,4 +276,3 @@ void mesh_box(MeshBuilder *b, Place place, double x0, double y0, double z0, doub
     const double outline[4][2] = {{x0, z0}, {x1, z0}, {x1, z1}, {x0, z1}};
     mesh_prism(b, place, 4, outline, y0, y1);
 }
-

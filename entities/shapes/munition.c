@@ -14,18 +14,18 @@
 #include "entities/shapes/parts.h"
 
 typedef struct Fins {
-    int count;
+    int    count;
     double lead0, trail0, lead1, trail1, root, tip; /* root, tip: distances from the axis */
 } Fins;
 
 typedef struct Munition {
     const char *name, *paint, *nose_paint, *fin_paint;
-    double length, radius, ogive,
+    double      length, radius, ogive,
         boat; /* nose's length; tapered tail's length and its end's radius: 0.6 of the body's */
     double boat_end;
-    bool round_nose, motor;
+    bool   round_nose, motor;
     double turn_rad; /* of the fins: pi / 4 is an X */
-    Fins fins[2];
+    Fins   fins[2];
 } Munition;
 
 static const Munition munitions[] = {
@@ -113,10 +113,10 @@ static const Munition munitions[] = {
 static void build_body(MeshBuilder *b, const Munition *m)
 {
     const double half = 0.5 * m->length, r = m->radius;
-    double reach = r; /* how far below the axis anything comes */
+    double       reach = r; /* how far below the axis anything comes */
     for (int f = 0; f < 2; f++)
         if (m->fins[f].count > 2) reach = fmax(reach, m->fins[f].tip * cos(m->turn_rad));
-    const Place axis = place_at(0, 0, -reach);
+    const Place  axis = place_at(0, 0, -reach);
     const double shoulder = half - m->ogive;
     mesh_part(b, 0, "nose", m->nose_paint, HEAT_NOSE);
     mesh_profile_begin(b, shoulder, 0);
@@ -177,16 +177,14 @@ static void build_mine(MeshBuilder *b)
 Status parametric_munition(Model *out, const char *name, double sag_m)
 {
     const bool mine = strcmp(name, "mine") == 0;
-    int k = 0;
+    int        k = 0;
     while (!mine && strcmp(munitions[k].name, name) != 0) k++;
     /* calibres are small against the chord error: here no coarser than a fiftieth of the radius */
     MeshBuilder *b = mesh_builder_create(name, fmin(sag_m, 0.02 * (mine ? 0.17 : munitions[k].radius)));
     if (!b) return STATUS_NO_MEMORY;
     mesh_node(b, "body", -1, 0, 0, 0);
-    if (mine)
-        build_mine(b);
-    else
-        build_body(b, munitions + k);
+    if (mine) build_mine(b);
+    else build_body(b, munitions + k);
     const Status status = mesh_builder_finish(out, b);
     if (status == STATUS_OK) out->sag_m = sag_m;
     return status;
@@ -216,10 +214,10 @@ static void build_fin(MeshBuilder *b, double axis_z, double turn_rad, const doub
 Status parametric_missile(Model *out, double sag_m)
 {
     static const double wing_root[4][2] = {{0.16, 0.000}, {0.02, 0.004}, {-0.11, 0.000}, {0.02, -0.004}};
-    static const double wing_tip[4][2]  = {{-0.02, 0.000}, {-0.07, 0.002}, {-0.11, 0.000}, {-0.07, -0.002}};
-    static const double fin_root[4][2]  = {{-0.42, 0.000}, {-0.48, 0.004}, {-0.54, 0.000}, {-0.48, -0.004}};
-    static const double fin_tip[4][2]   = {{-0.48, 0.000}, {-0.51, 0.002}, {-0.54, 0.000}, {-0.51, -0.002}};
-    MeshBuilder *b = mesh_builder_create("missile", sag_m);
+    static const double wing_tip[4][2] = {{-0.02, 0.000}, {-0.07, 0.002}, {-0.11, 0.000}, {-0.07, -0.002}};
+    static const double fin_root[4][2] = {{-0.42, 0.000}, {-0.48, 0.004}, {-0.54, 0.000}, {-0.48, -0.004}};
+    static const double fin_tip[4][2] = {{-0.48, 0.000}, {-0.51, 0.002}, {-0.54, 0.000}, {-0.51, -0.002}};
+    MeshBuilder        *b = mesh_builder_create("missile", sag_m);
     if (!b) return STATUS_NO_MEMORY;
     /* wing tips are 4 mm lozenges whose corners lie on the chord: the tip's chord is the lowest line */
     const double axis_z = -half_span_m * sqrt(0.5) - 0.002;
@@ -232,9 +230,9 @@ Status parametric_missile(Model *out, double sag_m)
     {
         /* cap of radius 0.045 tangent to a cone of half angle 0.20 rad */
         static const double cap_m = 0.045, slope_rad = 0.20;
-        const double cap_x = half_length_m - cap_m;
-        const double join_x = cap_x + cap_m * sin(slope_rad), join_r = cap_m * cos(slope_rad);
-        const double base_x = join_x - (r - join_r) / tan(slope_rad);
+        const double        cap_x = half_length_m - cap_m;
+        const double        join_x = cap_x + cap_m * sin(slope_rad), join_r = cap_m * cos(slope_rad);
+        const double        base_x = join_x - (r - join_r) / tan(slope_rad);
         mesh_profile_begin(b, 0.25, 0);
         mesh_profile_line(b, 0.25, r);
         mesh_profile_line(b, base_x, r);
@@ -256,8 +254,7 @@ Status parametric_missile(Model *out, double sag_m)
     for (int i = 0; i < 4; i++)
         build_fin(b, axis_z, (0.25 + 0.5 * i) * pi_rad, wing_root, wing_tip, 0.070, half_span_m);
     mesh_part(b, body, "fins", "paint_grey", HEAT_PASSIVE);
-    for (int i = 0; i < 4; i++)
-        build_fin(b, axis_z, (0.25 + 0.5 * i) * pi_rad, fin_root, fin_tip, 0.070, 0.17);
+    for (int i = 0; i < 4; i++) build_fin(b, axis_z, (0.25 + 0.5 * i) * pi_rad, fin_root, fin_tip, 0.070, 0.17);
 
     mesh_part(b, body, "tail", "metal_dark", HEAT_MOTOR);
     mesh_profile_begin(b, -half_length_m + 0.04, 0);

@@ -9,8 +9,8 @@
 static Status parametric_unknown(Model *out, double sag_m)
 {
     static const double side[5][2] = {{-2, -0.2}, {-2, -1.2}, {0.8, -1.2}, {2, -0.5}, {2, -0.2}};
-    static const double fin[3][2]  = {{-1.9, -1.15}, {-1.9, -1.6}, {-0.7, -1.15}};
-    MeshBuilder *b = mesh_builder_create("unknown", sag_m);
+    static const double fin[3][2] = {{-1.9, -1.15}, {-1.9, -1.6}, {-0.7, -1.15}};
+    MeshBuilder        *b = mesh_builder_create("unknown", sag_m);
     if (!b) return STATUS_NO_MEMORY;
     const int hull = mesh_node(b, "hull", -1, 0, 0, 0);
     mesh_part(b, hull, "body", "paint_grey", HEAT_HULL);
@@ -126,8 +126,8 @@ static int find_builder(const char *name)
     return -1;
 }
 
-bool parametric_known(const char *name) { return find_builder(name) >= 0; }
-int parametric_count(void) { return builder_count; }
+bool        parametric_known(const char *name) { return find_builder(name) >= 0; }
+int         parametric_count(void) { return builder_count; }
 const char *parametric_name(int index) { return builders[index].name; }
 
 static bool chord_error_is_valid(const char *name, double sag_m)
@@ -153,8 +153,8 @@ Status parametric_build(Model *out, const char *name, double sag_m)
 Status parametric_build_size(Model *out, const char *name, const ModelSize *size, double sag_m)
 {
     static const double coarsest_m = 0.1, finest_m = 1e-5;
-    Model model = {0};
-    double factor[3];
+    Model               model = {0};
+    double              factor[3];
     if (!size || !(size->length_m > 0 || size->width_m > 0 || size->height_m > 0))
         return parametric_build(out, name, sag_m);
     if (!chord_error_is_valid(name, sag_m)) return STATUS_BAD_VALUE;

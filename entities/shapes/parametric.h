@@ -18,9 +18,9 @@
 Status parametric_build(Model *out, const char *name, double sag_m);
 /* The same of another size, NULL: its own. Facets keep to sag_m at that size. STATUS_BAD_VALUE, logged: a figure
  * outside 0.02 .. 50 times the shape's own. */
-Status parametric_build_size(Model *out, const char *name, const ModelSize *size, double sag_m);
-bool   parametric_known(const char *name);
-int    parametric_count(void); /* of built-in shapes */
+Status      parametric_build_size(Model *out, const char *name, const ModelSize *size, double sag_m);
+bool        parametric_known(const char *name);
+int         parametric_count(void); /* of built-in shapes */
 const char *parametric_name(int index);
 
 /* One builder a file; sag_m as above, already checked. */

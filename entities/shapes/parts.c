@@ -13,7 +13,7 @@ Place parts_side(int side) { return parts_mirrored(place_at(0, 0, 0), side); }
 Place parts_upright(double x, double y, double z)
 {
     static const double m[9] = {1, 0, 0, 0, 0, 1, 0, -1, 0};
-    Place place = place_at(x, y, z);
+    Place               place = place_at(x, y, z);
     memcpy(place.m, m, sizeof m);
     return place;
 }
@@ -21,8 +21,8 @@ Place parts_upright(double x, double y, double z)
 void parts_block(MeshBuilder *b, Rectangle at_low, double low_m, Rectangle at_high, double high_m)
 {
     const Rectangle *l = &at_low, *h = &at_high;
-    const double base[4][2] = {{l->x0, l->y0}, {l->x1, l->y0}, {l->x1, l->y1}, {l->x0, l->y1}};
-    const double roof[4][2] = {{h->x0, h->y0}, {h->x1, h->y0}, {h->x1, h->y1}, {h->x0, h->y1}};
+    const double     base[4][2] = {{l->x0, l->y0}, {l->x1, l->y0}, {l->x1, l->y1}, {l->x0, l->y1}};
+    const double     roof[4][2] = {{h->x0, h->y0}, {h->x1, h->y0}, {h->x1, h->y1}, {h->x0, h->y1}};
     mesh_slab(b, parts_upright(0, 0, 0), 4, base, low_m, roof, high_m);
 }
 
@@ -33,12 +33,12 @@ void parts_wing(MeshBuilder *b, Place place, double lead0, double trail0, double
     for (int end = 0; end < 2; end++) {
         const double lead = end ? lead1 : lead0, chord = lead - (end ? trail1 : trail0), z = end ? z1 : z0;
         const double half = 0.5 * thickness * chord;
-        const double points[6][2] = {{lead, z}, {lead - 0.25 * chord, z - half}, {lead - 0.60 * chord, z - half},
-                                     {lead - chord, z}, {lead - 0.60 * chord, z + half},
-                                     {lead - 0.25 * chord, z + half}};
+        const double points[6][2] = {
+            {lead, z},         {lead - 0.25 * chord, z - half}, {lead - 0.60 * chord, z - half},
+            {lead - chord, z}, {lead - 0.60 * chord, z + half}, {lead - 0.25 * chord, z + half}};
         memcpy(section[end], points, sizeof points);
     }
-    mesh_slab(b, place, 6, (const double (*)[2])section[0], y0, (const double (*)[2])section[1], y1);
+    mesh_slab(b, place, 6, (const double(*)[2])section[0], y0, (const double(*)[2])section[1], y1);
 }
 
 void parts_limb(MeshBuilder *b, const double from[3], double from_radius, const double to[3], double to_radius)
@@ -62,16 +62,20 @@ static double wheel_z(const RunningGear *g) { return -(g->road_radius_m + g->ban
 void parts_tracks(MeshBuilder *b, const RunningGear *gear)
 {
     const RunningGear *g = gear;
-    const BeltWheel wheel[4] = {
-        {g->first_x_m, wheel_z(g), g->road_radius_m},
-        {g->front_x_m, g->front_z_m, g->front_radius_m},
-        {g->rear_x_m, g->rear_z_m, g->rear_radius_m},
-        {g->first_x_m - (g->road_wheels - 1) * g->step_m, wheel_z(g), g->road_radius_m},
+    const BeltWheel    wheel[4] = {
+           {g->first_x_m, wheel_z(g), g->road_radius_m},
+           {g->front_x_m, g->front_z_m, g->front_radius_m},
+           {g->rear_x_m, g->rear_z_m, g->rear_radius_m},
+           {g->first_x_m - (g->road_wheels - 1) * g->step_m, wheel_z(g), g->road_radius_m},
     };
     for (int side = -1; side <= 1; side += 2) {
         mesh_part(b, 0, side < 0 ? "track_left" : "track_right", "steel_worn", HEAT_TRACK);
-        const Belt band = {g->band_m, g->half_gauge_m - 0.5 * g->track_width_m, g->half_gauge_m + 0.5 * g->track_width_m,
-                           g->links, g->cleat_m, g->cleat_length_m};
+        const Belt band = {g->band_m,
+                           g->half_gauge_m - 0.5 * g->track_width_m,
+                           g->half_gauge_m + 0.5 * g->track_width_m,
+                           g->links,
+                           g->cleat_m,
+                           g->cleat_length_m};
         mesh_belt(b, parts_side(side), wheel, 4, &band);
     }
 }
@@ -79,7 +83,7 @@ void parts_tracks(MeshBuilder *b, const RunningGear *gear)
 int parts_wheel_node(MeshBuilder *b, int parent, const char *kind, int side, int number, double x, double y, double z,
                      double radius_m)
 {
-    char name[24];
+    char        name[24];
     const char *where = side < 0 ? "_left" : side > 0 ? "_right" : "";
     if (number > 0) snprintf(name, sizeof name, "%s%s_%d", kind, where, number);
     else snprintf(name, sizeof name, "%s%s", kind, where);
@@ -117,8 +121,8 @@ void parts_disc(MeshBuilder *b, Place place, double radius_m, double half_width_
 void parts_track_wheels(MeshBuilder *b, const RunningGear *gear, int side)
 {
     const RunningGear *g = gear;
-    const Place  outwards = place_axis(0, 0, 0, 0, side, 0);
-    const double y = side * g->half_gauge_m, half = 0.32 * g->track_width_m, r = g->road_radius_m;
+    const Place        outwards = place_axis(0, 0, 0, 0, side, 0);
+    const double       y = side * g->half_gauge_m, half = 0.32 * g->track_width_m, r = g->road_radius_m;
     for (int i = 0; i < g->road_wheels; i++) {
         const int node = parts_wheel_node(b, 0, "wheel", side, i + 1, g->first_x_m - i * g->step_m, y, wheel_z(g), r);
         mesh_part(b, node, "wheel_disc", "paint_olive", HEAT_WHEEL);
@@ -132,7 +136,7 @@ void parts_track_wheels(MeshBuilder *b, const RunningGear *gear, int side)
         const bool   front = end == 0, drives = front == g->front_drives;
         const double x = front ? g->front_x_m : g->rear_x_m, z = front ? g->front_z_m : g->rear_z_m;
         const double radius = front ? g->front_radius_m : g->rear_radius_m;
-        const int node = parts_wheel_node(b, 0, drives ? "sprocket" : "idler", side, 0, x, y, z, radius);
+        const int    node = parts_wheel_node(b, 0, drives ? "sprocket" : "idler", side, 0, x, y, z, radius);
         mesh_part(b, node, drives ? "sprocket" : "idler", drives ? "steel_worn" : "paint_olive", HEAT_WHEEL);
         parts_disc(b, outwards, drives ? radius - 0.03 : radius, half, drives ? 7 : 5);
         for (int i = 0; drives && i < 12; i++) {
@@ -162,7 +166,7 @@ void parts_profile(MeshBuilder *b, int count, const double (*outline)[2], double
         down[i][0] = outline[i][0];
         down[i][1] = -outline[i][1];
     }
-    mesh_prism(b, place_at(0, 0, 0), count, (const double (*)[2])down, y0, y1);
+    mesh_prism(b, place_at(0, 0, 0), count, (const double(*)[2])down, y0, y1);
 }
 
 void parts_bar(MeshBuilder *b, double x0, double y0, double h0, double x1, double y1, double h1, double radius)
@@ -171,16 +175,16 @@ void parts_bar(MeshBuilder *b, double x0, double y0, double h0, double x1, doubl
 }
 
 void parts_fin(MeshBuilder *b, double y, double lead0, double trail0, double low_m, double lead1, double trail1,
-              double high_m, double thickness)
+               double high_m, double thickness)
 {
     parts_wing(b, parts_upright(0, y, 0), lead0, trail0, low_m, 0, lead1, trail1, high_m, 0, thickness);
 }
 
 void parts_wheel(MeshBuilder *b, const char *kind, int side, int number, double x, double y, double radius,
-                double half_width)
+                 double half_width)
 {
-    const int node = parts_wheel_node(b, 0, kind, side, number, x, y, -radius, radius);
-    const Place outwards = place_axis(0, 0, 0, 0, side < 0 ? -1 : 1, 0);
+    const int    node = parts_wheel_node(b, 0, kind, side, number, x, y, -radius, radius);
+    const Place  outwards = place_axis(0, 0, 0, 0, side < 0 ? -1 : 1, 0);
     const double r = radius, w = half_width;
     mesh_part(b, node, "tyre", "rubber_black", HEAT_WHEEL);
     mesh_profile_begin(b, -0.8 * w, 0.60 * r);
@@ -204,7 +208,7 @@ void parts_wheel(MeshBuilder *b, const char *kind, int side, int number, double 
 }
 
 void parts_propeller(MeshBuilder *b, const char *name, double x, double y, double h, double radius, int blades,
-                    double rpm)
+                     double rpm)
 {
     const int node = mesh_node(b, name, 0, x, y, -h);
     mesh_joint(b, node, 1, 0, 0, 0, 0, 1, -1);
@@ -218,8 +222,8 @@ void parts_propeller(MeshBuilder *b, const char *name, double x, double y, doubl
                    0.08 * radius, 0, 0.05 * radius, -0.05 * radius, radius, 0, 0.10);
 }
 
-void parts_rotor(MeshBuilder *b, const char *name, double x, double y, double h, double radius, double chord, int blades,
-                double rpm)
+void parts_rotor(MeshBuilder *b, const char *name, double x, double y, double h, double radius, double chord,
+                 int blades, double rpm)
 {
     const int node = mesh_node(b, name, 0, x, y, -h);
     mesh_joint(b, node, 0, 0, -1, 0, 0, 1, -1);

@@ -30,11 +30,11 @@ typedef struct RunningGear {
     double half_gauge_m, track_width_m;
     double band_m, cleat_m, cleat_length_m; /* thickness of the track under the wheel, and of its links' bars */
     int    links;
-    int    road_wheels;                     /* the first at first_x_m, each step_m behind the one before */
+    int    road_wheels; /* the first at first_x_m, each step_m behind the one before */
     double first_x_m, step_m, road_radius_m;
     double front_x_m, front_z_m, front_radius_m;
     double rear_x_m, rear_z_m, rear_radius_m;
-    bool   front_drives;                    /* the sprocket is in front, the idler behind; else the other way */
+    bool   front_drives; /* the sprocket is in front, the idler behind; else the other way */
 } RunningGear;
 
 /* Both bands, as parts track_left and track_right of node 0. */
@@ -42,8 +42,8 @@ void parts_tracks(MeshBuilder *b, const RunningGear *gear);
 /* Wheels of one side: a rolling node each, wheel_<side>_1 .., idler_<side>, sprocket_<side>. */
 void parts_track_wheels(MeshBuilder *b, const RunningGear *gear, int side);
 /* A rolling node; number 0: none in the name. */
-int  parts_wheel_node(MeshBuilder *b, int parent, const char *kind, int side, int number, double x, double y, double z,
-                      double radius_m);
+int parts_wheel_node(MeshBuilder *b, int parent, const char *kind, int side, int number, double x, double y, double z,
+                     double radius_m);
 /* A dished wheel disc with ribs; place: x outwards. */
 void parts_disc(MeshBuilder *b, Place place, double radius_m, double half_width_m, int ribs);
 
@@ -59,15 +59,15 @@ void parts_profile(MeshBuilder *b, int count, const double (*outline)[2], double
 void parts_bar(MeshBuilder *b, double x0, double y0, double h0, double x1, double y1, double h1, double radius);
 /* A fin that stands: quarter outline in x at two heights, thick_m across at the foot. */
 void parts_fin(MeshBuilder *b, double y, double lead0, double trail0, double low_m, double lead1, double trail1,
-              double high_m, double thickness);
+               double high_m, double thickness);
 
 /* A rolling node `wheel_<side>_<number>` with parts tyre and rim, standing on the ground: its axle is at its radius. */
 void parts_wheel(MeshBuilder *b, const char *kind, int side, int number, double x, double y, double radius,
-                double half_width);
+                 double half_width);
 /* A spinning node of `blades` blades about the x axis (a propeller) or the z axis (a rotor), hub at x, y, height. */
 void parts_propeller(MeshBuilder *b, const char *name, double x, double y, double h, double radius, int blades,
-                    double rpm);
-void parts_rotor(MeshBuilder *b, const char *name, double x, double y, double h, double radius, double chord, int blades,
-                double rpm);
+                     double rpm);
+void parts_rotor(MeshBuilder *b, const char *name, double x, double y, double h, double radius, double chord,
+                 int blades, double rpm);
 
 #endif

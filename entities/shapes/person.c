@@ -74,9 +74,10 @@ static void build_kit(MeshBuilder *b)
 {
     /* plate carrier front and back, pouches, pack */
     mesh_part(b, 0, "vest", "cloth_olive", HEAT_PASSIVE);
-    const Station plates[4] = {
-        {at(0.600), 0.160, -0.150, 0.155, 0.5}, {at(0.660), 0.178, -0.155, 0.165, 0.5},
-        {at(0.760), 0.178, -0.155, 0.160, 0.5}, {at(0.810), 0.140, -0.130, 0.130, 0.6}};
+    const Station plates[4] = {{at(0.600), 0.160, -0.150, 0.155, 0.5},
+                               {at(0.660), 0.178, -0.155, 0.165, 0.5},
+                               {at(0.760), 0.178, -0.155, 0.160, 0.5},
+                               {at(0.810), 0.140, -0.130, 0.130, 0.6}};
     mesh_loft(b, standing(0, 0), plates, 4);
     for (int i = 0; i < 3; i++) {
         const double y = -0.13 + 0.09 * i;
@@ -86,15 +87,19 @@ static void build_kit(MeshBuilder *b)
     const Station belt[2] = {{at(0.570) - belt_m, 0.168, -0.125, 0.130, 0.9}, {at(0.570), 0.165, -0.125, 0.130, 0.9}};
     mesh_loft(b, standing(0, 0), belt, 2);
     mesh_part(b, 0, "pack", "canvas", HEAT_PASSIVE);
-    const Station pack[4] = {{at(0.585), 0.130, -0.330, -0.14, 0.4}, {at(0.640), 0.160, -0.360, -0.14, 0.4},
-                             {at(0.770), 0.155, -0.340, -0.14, 0.4}, {at(0.815), 0.120, -0.270, -0.14, 0.5}};
+    const Station pack[4] = {{at(0.585), 0.130, -0.330, -0.14, 0.4},
+                             {at(0.640), 0.160, -0.360, -0.14, 0.4},
+                             {at(0.770), 0.155, -0.340, -0.14, 0.4},
+                             {at(0.815), 0.120, -0.270, -0.14, 0.5}};
     mesh_loft(b, standing(0, 0), pack, 4);
 
     mesh_part(b, 0, "boots", "rubber_black", HEAT_PASSIVE);
     for (int side = -1; side <= 1; side += 2) {
         /* toe to heel along x, sole flat on the ground; shaft over the ankle */
-        const Station foot[4] = {{-0.090, 0.036, -0.095, 0, 0.35}, {0.000, 0.044, -0.100, 0, 0.35},
-                                 {0.110, 0.050, -0.075, 0, 0.35}, {0.190, 0.036, -0.040, 0, 0.5}};
+        const Station foot[4] = {{-0.090, 0.036, -0.095, 0, 0.35},
+                                 {0.000, 0.044, -0.100, 0, 0.35},
+                                 {0.110, 0.050, -0.075, 0, 0.35},
+                                 {0.190, 0.036, -0.040, 0, 0.5}};
         mesh_loft(b, place_turned(place_at(-0.01, side * 0.118, 0), (double[3]){0, 0, 1}, side * 0.12), foot, 4);
         mesh_cone(b, standing(-0.015, side * 0.115), 0.06, 0.062, 0.27, 0.074);
     }
@@ -104,7 +109,7 @@ static void build_kit(MeshBuilder *b)
 static void build_rifle(MeshBuilder *b)
 {
     static const double butt[3] = {0.085, 0.150, -1.360}, muzzle[3] = {0.585, -0.330, -0.895};
-    double along[3], side[3], down[3];
+    double              along[3], side[3], down[3];
     v3_sub(along, muzzle, butt);
     v3_normalize(along, along);
     const double vertical[3] = {0, 0, 1};
@@ -113,14 +118,14 @@ static void build_rifle(MeshBuilder *b)
     v3_cross(down, along, side);
     Place place = place_at(butt[0], butt[1], butt[2]);
     for (int i = 0; i < 3; i++) {
-        place.m[3 * i]     = along[i];
+        place.m[3 * i] = along[i];
         place.m[3 * i + 1] = side[i];
         place.m[3 * i + 2] = down[i];
     }
     mesh_part(b, 0, "rifle", "metal_dark", HEAT_GUN);
     static const double stock[4][2] = {{0, -0.02}, {0.22, -0.03}, {0.22, 0.01}, {0, 0.11}};
-    static const double receiver[6][2] = {{0.20, -0.04}, {0.44, -0.04}, {0.44, 0.03}, {0.36, 0.05}, {0.24, 0.05},
-                                          {0.20, 0.02}};
+    static const double receiver[6][2] = {{0.20, -0.04}, {0.44, -0.04}, {0.44, 0.03},
+                                          {0.36, 0.05},  {0.24, 0.05},  {0.20, 0.02}};
     static const double grip[4][2] = {{0.24, 0.04}, {0.285, 0.04}, {0.255, 0.14}, {0.215, 0.135}};
     static const double magazine[4][2] = {{0.35, 0.04}, {0.41, 0.04}, {0.435, 0.20}, {0.375, 0.21}};
     mesh_prism(b, place, 4, stock, -0.018, 0.018);

@@ -24,7 +24,7 @@ static void tail_rotor(MeshBuilder *b, double x, double y, double h, double radi
     for (int i = 0; i < blades; i++) {
         /* blades along shape y, laid into the x-z plane */
         const double a = 2 * pi_rad * i / blades + 0.5 * pi_rad, c = cos(a), s = sin(a);
-        Place place = place_at(0, 0, 0);
+        Place        place = place_at(0, 0, 0);
         const double m[9] = {-s, c, 0, 0, 0, 1, c, s, 0};
         memcpy(place.m, m, sizeof m);
         parts_wing(b, place, 0.06 * radius, -0.06 * radius, 0.06 * radius, 0, 0.05 * radius, -0.05 * radius, radius, 0,
@@ -121,7 +121,7 @@ static void build_tandem(MeshBuilder *b)
     parts_rotor(b, "fore_rotor", fore, 0, 4.30, radius, 0.81, 3, 225);
     parts_rotor(b, "aft_rotor", aft, 0, 5.52, radius, 0.81, 3, 225);
     /* they mesh, and turn against each other: the aft one rests a blade's third turned, and goes the other way */
-    ModelNode *n = mesh_node_get(b, 2);
+    ModelNode   *n = mesh_node_get(b, 2);
     const double half_turn[9] = {-1, 0, 0, 0, -1, 0, 0, 0, 1};
     memcpy(n->r_parent_from_node, half_turn, sizeof half_turn);
     n->axis[2] = 1;
@@ -203,7 +203,7 @@ static void build_quadcopter(MeshBuilder *b)
 static void build_airship(MeshBuilder *b)
 {
     const double r = 14.6 / 2, middle = 3.0 + r, half = 58.5 / 2;
-    Station s[9];
+    Station      s[9];
     for (int i = 0; i < 9; i++) { /* an ellipsoid, fuller in front */
         static const double at[9] = {-1, -0.9, -0.7, -0.4, 0, 0.4, 0.7, 0.9, 1};
         static const double share[9] = {0.02, 0.26, 0.57, 0.86, 1, 0.97, 0.79, 0.48, 0.03};

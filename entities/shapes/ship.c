@@ -14,8 +14,8 @@
 #include <stdlib.h>
 
 static const double half_length_m = 93.5 / 2, half_beam_m = 14.0 / 2, draught_m = 4.3;
-static const double stern_wl_m = -42.2, stem_wl_m = 43.0; /* the waterline's ends: 85.2 m */
-static const double fore_foot_m = 36.0, run_m = -14.0;    /* the keel is level between */
+static const double stern_wl_m = -42.2, stem_wl_m = 43.0;        /* the waterline's ends: 85.2 m */
+static const double fore_foot_m = 36.0, run_m = -14.0;           /* the keel is level between */
 static const double deck_aft_m = 4.4, deck_m = 5.2, bow_m = 7.6; /* heights of the upper deck */
 static const double bilge_power = 11; /* how full the midship section is: chosen for the displacement */
 
@@ -26,7 +26,7 @@ static double smooth(double t) { return t <= 0 ? 0 : t >= 1 ? 1 : t * t * (3 - 2
 /* Keel's depth below the waterline; the transom and the raked stem are above it. */
 static double keel_z(double x)
 {
-    if (x < run_m) return draught_m - (draught_m) * pow((run_m - x) / (run_m - stern_wl_m), 2.0);
+    if (x < run_m) return draught_m - (draught_m)*pow((run_m - x) / (run_m - stern_wl_m), 2.0);
     if (x <= fore_foot_m) return draught_m;
     if (x <= stem_wl_m) return draught_m * (1 - pow((x - fore_foot_m) / (stem_wl_m - fore_foot_m), 1.5));
     return -bow_m * (x - stem_wl_m) / (half_length_m - stem_wl_m) * 0.995;
@@ -58,8 +58,8 @@ enum { levels = 5, hull_points = 2 * levels };
 static void section_at(double outline[hull_points][2], double x, bool below)
 {
     static const double below_share[levels] = {0, 0.14, 0.36, 0.68, 1}, above_share[levels] = {0, 0.2, 0.4, 0.7, 1};
-    const double keel = keel_z(x), deck = deck_z(x);
-    const double low = below ? keel : fmin(keel, 0), high = below ? 0 : deck;
+    const double        keel = keel_z(x), deck = deck_z(x);
+    const double        low = below ? keel : fmin(keel, 0), high = below ? 0 : deck;
     for (int i = 0; i < levels; i++) {
         const double z = low + (high - low) * (below ? below_share : above_share)[i];
         const double y = half_breadth_m(x, (keel - z) / (keel - deck));
@@ -97,7 +97,7 @@ static double span_error_m(double x0, double x1, bool below)
 static void build_shell(MeshBuilder *b, double sag_m, double from_m, double to_m, bool below)
 {
     const Place along = {{0, 0, 0}, {0, 1, 0, 1, 0, 0, 0, 0, 1}}; /* shape x across, y forward, z down */
-    double x = from_m, step = 2.0;
+    double      x = from_m, step = 2.0;
     while (x < to_m) {
         step = fmin(2 * step, 6.0);
         while (step > 0.01 && span_error_m(x, fmin(x + step, to_m), below) > sag_m) step *= 0.7;
@@ -106,7 +106,7 @@ static void build_shell(MeshBuilder *b, double sag_m, double from_m, double to_m
         double a[hull_points][2], c[hull_points][2];
         section_at(a, x, below);
         section_at(c, next, below);
-        mesh_slab(b, along, hull_points, (const double (*)[2])a, x, (const double (*)[2])c, next);
+        mesh_slab(b, along, hull_points, (const double(*)[2])a, x, (const double(*)[2])c, next);
         x = next;
     }
 }
@@ -124,7 +124,7 @@ static void build_hull(MeshBuilder *b, double sag_m)
         const double y0 = deck_half_m(x0) - 0.25, y1 = deck_half_m(x1) - 0.25, z0 = deck_z(x0), z1 = deck_z(x1);
         const double near[4][2] = {{-y0, z0 + 0.3}, {y0, z0 + 0.3}, {y0, z0 - 0.03}, {-y0, z0 - 0.03}};
         const double far[4][2] = {{-y1, z1 + 0.3}, {y1, z1 + 0.3}, {y1, z1 - 0.03}, {-y1, z1 - 0.03}};
-        const Place along = {{0, 0, 0}, {0, 1, 0, 1, 0, 0, 0, 0, 1}};
+        const Place  along = {{0, 0, 0}, {0, 1, 0, 1, 0, 0, 0, 0, 1}};
         if (y1 > 0.3) mesh_slab(b, along, 4, near, x0, far, x1);
     }
     /* stanchions and two wires along the edge */
@@ -176,7 +176,7 @@ static void build_superstructure(MeshBuilder *b)
     }
     mesh_part(b, 0, "windows", "glass_window", HEAT_CABIN);
     for (int i = 0; i < 9; i++) { /* the bridge's front leans back: set each pane proud of it */
-        const double y = -4.35 + 0.97 * i;
+        const double        y = -4.35 + 0.97 * i;
         static const double pane[4][2] = {{14.50, -11.55}, {14.56, -11.55}, {14.25, -12.55}, {14.19, -12.55}};
         mesh_prism(b, place_at(0, 0, 0), 4, pane, y, y + 0.80);
     }
@@ -308,7 +308,7 @@ Status parametric_ship(Model *out, double sag_m)
     build_mast(b);
 
     static const double gun_x_m = 27.5;
-    const int mount = mesh_node(b, "turret", 0, gun_x_m, 0, deck_z(gun_x_m));
+    const int           mount = mesh_node(b, "turret", 0, gun_x_m, 0, deck_z(gun_x_m));
     mesh_joint(b, mount, 0, 0, 1, 4096, 11, 1, -1);
     build_gun_mount(b, mount);
     const int gun = mesh_node(b, "gun", mount, 1.35, 0, -1.75);

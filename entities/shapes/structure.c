@@ -26,7 +26,7 @@ static void build_crates(MeshBuilder *b)
     for (int side = -1; side <= 1; side += 2)
         for (int i = 0; i < 2; i++)
             parts_box(b, -0.40 + 0.61 * i, -0.30 + 0.61 * i, side < 0 ? -0.51 : 0.49, side < 0 ? -0.49 : 0.51, 0.15,
-                     1.17);
+                      1.17);
 }
 
 static void build_radar(MeshBuilder *b)
@@ -128,7 +128,7 @@ static void bogie(MeshBuilder *b, double x, int first, int axles, double step, d
     for (int i = 0; i < axles; i++)
         for (int side = -1; side <= 1; side += 2) {
             const double at = x + step * (0.5 * (axles - 1) - i);
-            const int node = parts_wheel_node(b, 0, "wheel", side, first + i, at, side * 0.75, -radius, radius);
+            const int    node = parts_wheel_node(b, 0, "wheel", side, first + i, at, side * 0.75, -radius, radius);
             mesh_part(b, node, "wheel", "steel_worn", HEAT_WHEEL);
             parts_disc(b, place_axis(0, 0, 0, 0, side, 0), radius, 0.07, 6);
         }
@@ -178,7 +178,7 @@ static void build_railcar(MeshBuilder *b)
         for (int i = 0; i < 11; i++)
             if (i != 5)
                 parts_box(b, -7.5 + 1.48 * i, -7.4 + 1.48 * i, side < 0 ? -1.57 : 1.49, side < 0 ? -1.49 : 1.57, 1.15,
-                         4.29);
+                          4.29);
     mesh_part(b, 0, "doors", "paint_deck_grey", HEAT_PASSIVE);
     parts_boxes(b, -1.25, 1.25, 1.45, 1.60, 1.20, 4.20);
     mesh_part(b, 0, "frame", "metal_dark", HEAT_PASSIVE);
@@ -272,8 +272,11 @@ static void build_walls(MeshBuilder *b)
              half_width_m + 0.03, 0);
     mesh_box(b, place_at(0, 0, 0), half_depth_m, -1.0, -0.17, half_depth_m + 1.1, 1.0, 0); /* step */
     mesh_part(b, 0, "walls", "brick_red", HEAT_DWELLING);
-    const double gable[5][2] = {{-half_depth_m, -plinth_m}, {half_depth_m, -plinth_m}, {half_depth_m, -eaves_m},
-                                {0, -ridge_m}, {-half_depth_m, -eaves_m}};
+    const double gable[5][2] = {{-half_depth_m, -plinth_m},
+                                {half_depth_m, -plinth_m},
+                                {half_depth_m, -eaves_m},
+                                {0, -ridge_m},
+                                {-half_depth_m, -eaves_m}};
     mesh_prism(b, place_at(0, 0, 0), 5, gable, -half_width_m, half_width_m);
 }
 
@@ -284,8 +287,10 @@ static void build_roof(MeshBuilder *b)
     const double ridge_m = eaves_m + half_depth_m * tan(pitch_rad), thick = tiles_m / cos(pitch_rad);
     mesh_part(b, 0, "roof", "roof_tile_clay", HEAT_PASSIVE);
     for (int side = -1; side <= 1; side += 2) {
-        const double slope[4][2] = {{0, -ridge_m}, {side * reach, -ridge_m + drop},
-                                    {side * reach, -ridge_m + drop - thick}, {0, -ridge_m - thick}};
+        const double slope[4][2] = {{0, -ridge_m},
+                                    {side * reach, -ridge_m + drop},
+                                    {side * reach, -ridge_m + drop - thick},
+                                    {0, -ridge_m - thick}};
         mesh_prism(b, place_at(0, 0, 0), 4, slope, -half_width_m - overhang_m, half_width_m + overhang_m);
     }
     mesh_bar(b, (double[3]){0, -half_width_m - overhang_m, -ridge_m - thick},
@@ -309,8 +314,8 @@ static void build_frame(MeshBuilder *b, Place place, double width_m, double heig
     mesh_box(b, place, -0.02, w - f, -h, 0.05, w, h);
     mesh_box(b, place, -0.02, -w + f, -h, 0.05, w - f, -h + f);
     mesh_box(b, place, -0.02, -w + f, h - f, 0.05, w - f, h);
-    mesh_box(b, place, -0.02, -0.03, -h + f, 0.045, 0.03, h - f);       /* mullion */
-    mesh_box(b, place, -0.02, -w - 0.05, h, 0.12, w + 0.05, h + 0.05);  /* sill */
+    mesh_box(b, place, -0.02, -0.03, -h + f, 0.045, 0.03, h - f);      /* mullion */
+    mesh_box(b, place, -0.02, -w - 0.05, h, 0.12, w + 0.05, h + 0.05); /* sill */
 }
 
 enum { window_capacity = 24 };
@@ -326,8 +331,7 @@ static int window_places(Place *place)
                 if (side > 0 && storey == 0 && i == 0) continue;
                 place[count++] = place_axis(side * half_depth_m, 3.1 * i, z, side, 0, 0);
             }
-            for (int i = -1; i <= 1; i += 2)
-                place[count++] = place_axis(1.9 * i, side * half_width_m, z, 0, side, 0);
+            for (int i = -1; i <= 1; i += 2) place[count++] = place_axis(1.9 * i, side * half_width_m, z, 0, side, 0);
         }
     }
     return count;
@@ -335,11 +339,11 @@ static int window_places(Place *place)
 
 static void build_openings(MeshBuilder *b)
 {
-    Place place[window_capacity];
+    Place     place[window_capacity];
     const int count = window_places(place);
     for (int i = 0; i < count; i++) { /* shape z must be down: place_axis leaves the roll open */
         const double *m = place[i].m;
-        const double upright[9] = {m[0], -m[3], 0, m[3], m[0], 0, 0, 0, 1};
+        const double  upright[9] = {m[0], -m[3], 0, m[3], m[0], 0, 0, 0, 1};
         memcpy(place[i].m, upright, sizeof upright);
     }
     mesh_part(b, 0, "window_frames", "paint_white_wood", HEAT_PASSIVE);

@@ -19,17 +19,17 @@ static const double sprocket_x_m = -2.95, sprocket_z_m = -0.80, sprocket_radius_
 static const double first_wheel_x_m = 2.03, wheel_step_m = 0.854; /* 5 steps: 4.27 m on the ground */
 static const double deck_z_m = -1.40;
 static const double turret_x_m = 0.20;
-static const double trunnion_x_m = 1.02, trunnion_z_m = -0.32;    /* in the turret */
-static const double muzzle_x_m = 9.53 - 6.95 / 2;                 /* of the body */
+static const double trunnion_x_m = 1.02, trunnion_z_m = -0.32; /* in the turret */
+static const double muzzle_x_m = 9.53 - 6.95 / 2;              /* of the body */
 
 static Place mirrored(Place place, int side) { return side < 0 ? place_mirror_y(place) : place; }
 
 static void build_hull(MeshBuilder *b)
 {
     /* between the tracks: belly, lower nose plate, glacis, deck, rear plate */
-    static const double tub[8][2] = {{-3.20, -0.47}, {2.45, -0.47}, {3.475, -0.98}, {3.40, -1.02},
+    static const double tub[8][2] = {{-3.20, -0.47}, {2.45, -0.47},  {3.475, -0.98},  {3.40, -1.02},
                                      {2.36, -1.40},  {-3.40, -1.40}, {-3.475, -1.28}, {-3.475, -0.85}};
-    const Place here = place_at(0, 0, 0);
+    const Place         here = place_at(0, 0, 0);
     mesh_part(b, 0, "hull", "paint_olive", HEAT_HULL);
     mesh_prism(b, here, 8, tub, -1.08, 1.08);
     /* splash board on the glacis, an open V that sheds water to both sides */
@@ -50,17 +50,17 @@ static void build_hull(MeshBuilder *b)
     mesh_box(b, here, -3.475, -0.25, -1.25, -3.45, 0.25, -1.05);
 
     mesh_part(b, 0, "fenders", "paint_olive", HEAT_PASSIVE);
-    static const double fender[6][2] = {{-3.43, -0.98}, {-3.40, -0.98}, {-3.25, -1.195}, {3.10, -1.195}, {3.40, -1.00},
-                                        {3.43, -1.02}};
+    static const double fender[6][2] = {{-3.43, -0.98}, {-3.40, -0.98}, {-3.25, -1.195},
+                                        {3.10, -1.195}, {3.40, -1.00},  {3.43, -1.02}};
     static const double fender_top[4][2] = {{3.12, -1.225}, {-3.27, -1.225}, {-3.43, -0.98}, {3.43, -1.02}};
-    double outline[8][2];
+    double              outline[8][2];
     for (int i = 0; i < 6; i++)
         for (int k = 0; k < 2; k++) outline[i][k] = fender[i][k];
     for (int i = 0; i < 2; i++)
         for (int k = 0; k < 2; k++) outline[6 + i][k] = fender_top[i][k];
     for (int side = -1; side <= 1; side += 2) {
         const Place place = mirrored(here, side);
-        mesh_prism(b, place, 8, (const double (*)[2])outline, 1.07, 1.76);
+        mesh_prism(b, place, 8, (const double(*)[2])outline, 1.07, 1.76);
         /* stowage bins and fuel cells along the fender; on the left they stop before the exhaust */
         mesh_box(b, place, 0.85, 1.12, -1.42, 2.30, 1.70, -1.21);
         mesh_box(b, place, -0.65, 1.12, -1.44, 0.75, 1.72, -1.21);
@@ -147,8 +147,8 @@ static void build_running_gear(MeshBuilder *b, int side)
     const double wheel_z = -(road_wheel_radius_m + band_m + cleat_m + tread_m);
     const Place  outwards = place_axis(0, 0, 0, 0, side, 0);
     for (int i = 0; i < 6; i++) {
-        const int node = add_wheel_node(b, "wheel", side, i + 1, first_wheel_x_m - i * wheel_step_m, wheel_z,
-                                        road_wheel_radius_m);
+        const int node =
+            add_wheel_node(b, "wheel", side, i + 1, first_wheel_x_m - i * wheel_step_m, wheel_z, road_wheel_radius_m);
         mesh_part(b, node, "wheel_disc", "paint_olive", HEAT_WHEEL);
         build_disc(b, outwards, 0.315, 6);
         mesh_part(b, node, "wheel_tyre", "rubber_black", HEAT_WHEEL);
@@ -170,7 +170,7 @@ static void build_running_gear(MeshBuilder *b, int side)
 
 static void build_tracks(MeshBuilder *b)
 {
-    const double wheel_z = -(road_wheel_radius_m + band_m + cleat_m + tread_m);
+    const double    wheel_z = -(road_wheel_radius_m + band_m + cleat_m + tread_m);
     const BeltWheel wheel[4] = {
         {first_wheel_x_m, wheel_z, road_wheel_radius_m},
         {idler_x_m, idler_z_m, idler_radius_m},
@@ -180,8 +180,9 @@ static void build_tracks(MeshBuilder *b)
     for (int side = -1; side <= 1; side += 2) {
         /* 96 links of 137 mm, as the real track */
         mesh_part(b, 0, side < 0 ? "track_left" : "track_right", "steel_worn", HEAT_TRACK);
-        const Belt band = {band_m, track_half_gauge_m - 0.5 * track_width_m, track_half_gauge_m + 0.5 * track_width_m, 96,
-                           cleat_m, 0.055};
+        const Belt band = {
+            band_m, track_half_gauge_m - 0.5 * track_width_m, track_half_gauge_m + 0.5 * track_width_m, 96, cleat_m,
+            0.055};
         mesh_belt(b, mirrored(place_at(0, 0, 0), side), wheel, 4, &band);
     }
 }
@@ -190,7 +191,7 @@ static void build_turret(MeshBuilder *b, int turret)
 {
     /* low casting: ring skirt, bulge, rounded shoulder, nearly flat roof 0.78 m over the deck */
     static const double roof_m = 0.79;
-    const Place here = place_at(0, 0, 0);
+    const Place         here = place_at(0, 0, 0);
     mesh_part(b, turret, "turret", "paint_olive", HEAT_TURRET);
     mesh_profile_begin(b, 0.0, 0);
     mesh_profile_line(b, 0.0, 1.08);
@@ -219,7 +220,7 @@ static void build_turret(MeshBuilder *b, int turret)
     /* smoke dischargers: seven on the left, five on the right, fanned forward */
     mesh_part(b, turret, "smoke_dischargers", "metal_dark", HEAT_PASSIVE);
     for (int i = 0; i < 12; i++) {
-        const int side = i < 7 ? -1 : 1, k = i < 7 ? i : i - 7;
+        const int    side = i < 7 ? -1 : 1, k = i < 7 ? i : i - 7;
         const double bearing = side * (0.55 + 0.13 * k);
         const double x = 1.12 * cos(bearing) + 0.10, y = 1.06 * sin(bearing);
         mesh_cylinder(b, place_axis(x, y, -0.40, cos(bearing), sin(bearing), -0.55), 0, 0.26, 0.042);

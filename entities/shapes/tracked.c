@@ -20,19 +20,31 @@ static const double ramp_x_m = -2.47, ramp_z_m = -0.62;
 static const double ramp_down_rad = 2.02; /* its outer face then rests on the ground */
 
 static const RunningGear carrier_gear = {
-    .half_gauge_m = 2.159 / 2, .track_width_m = 0.381,
-    .band_m = 0.03, .cleat_m = 0.02, .cleat_length_m = 0.07, .links = 64,
-    .road_wheels = 5, .first_x_m = 1.28, .step_m = 2.667 / 4, .road_radius_m = 0.305,
-    .front_x_m = 2.05, .front_z_m = -0.70, .front_radius_m = 0.24,
-    .rear_x_m = -2.02, .rear_z_m = -0.58, .rear_radius_m = 0.20, .front_drives = true,
+    .half_gauge_m = 2.159 / 2,
+    .track_width_m = 0.381,
+    .band_m = 0.03,
+    .cleat_m = 0.02,
+    .cleat_length_m = 0.07,
+    .links = 64,
+    .road_wheels = 5,
+    .first_x_m = 1.28,
+    .step_m = 2.667 / 4,
+    .road_radius_m = 0.305,
+    .front_x_m = 2.05,
+    .front_z_m = -0.70,
+    .front_radius_m = 0.24,
+    .rear_x_m = -2.02,
+    .rear_z_m = -0.58,
+    .rear_radius_m = 0.20,
+    .front_drives = true,
 };
 
 static void build_carrier_hull(MeshBuilder *b)
 {
     const Place here = place_at(0, 0, 0);
     /* between the tracks, with a nose that turns up; the rear is open for the ramp */
-    const double tub[6][2] = {{-2.40, -clearance_m}, {1.95, -clearance_m}, {2.52, -0.80}, {2.60, -1.10}, {2.60, -1.20},
-                                     {-2.43, -1.20}};
+    const double tub[6][2] = {{-2.40, -clearance_m}, {1.95, -clearance_m}, {2.52, -0.80},
+                              {2.60, -1.10},         {2.60, -1.20},        {-2.43, -1.20}};
     mesh_part(b, 0, "hull", "paint_olive", HEAT_HULL);
     mesh_prism(b, here, 6, tub, -0.87, 0.87);
     /* over the tracks: straight sides, then leaning in; glacis in front, a little rake behind */
@@ -62,7 +74,7 @@ static void build_carrier_hull(MeshBuilder *b)
     mesh_cylinder(b, place_axis(1.25, -0.62, -top_m + 0.01, 0, 0, -1), 0, 0.08, 0.33);
     for (int i = 0; i < 4; i++) {
         const double a = -0.9 + 0.6 * i;
-        const Place turn = place_turned(place_at(1.25, -0.62, 0), (double[3]){0, 0, 1}, a);
+        const Place  turn = place_turned(place_at(1.25, -0.62, 0), (double[3]){0, 0, 1}, a);
         mesh_box(b, turn, 0.34, -0.09, -top_m - 0.10, 0.44, 0.09, -top_m + 0.01);
     }
     mesh_box(b, here, -2.25, -0.60, -top_m - 0.05, -1.05, 0.60, -top_m + 0.01); /* troop hatch */
@@ -74,8 +86,8 @@ static void build_carrier_hull(MeshBuilder *b)
     mesh_box(b, here, 0.75, -0.10, -top_m - 0.035, 1.80, 1.02, -top_m + 0.01);
     for (int i = 0; i < 9; i++) {
         const double x = 0.82 + 0.105 * i;
-        const double slat[4][2] = {{x, -top_m - 0.03}, {x + 0.03, -top_m - 0.03}, {x + 0.07, -top_m - 0.075},
-                                   {x + 0.04, -top_m - 0.075}};
+        const double slat[4][2] = {
+            {x, -top_m - 0.03}, {x + 0.03, -top_m - 0.03}, {x + 0.07, -top_m - 0.075}, {x + 0.04, -top_m - 0.075}};
         mesh_prism(b, here, 4, slat, -0.05, 0.68);
     }
     mesh_part(b, 0, "exhaust", "metal_dark", HEAT_EXHAUST);
@@ -91,8 +103,7 @@ static void build_carrier_hull(MeshBuilder *b)
     mesh_part(b, 0, "troop_bay", "metal_dark", HEAT_CABIN);
     mesh_box(b, here, -2.475, -0.70, -1.80, -2.38, 0.70, -0.68);
     mesh_part(b, 0, "mudguards", "rubber_black", HEAT_PASSIVE);
-    for (int side = -1; side <= 1; side += 2)
-        mesh_box(b, parts_side(side), 2.34, 0.90, -1.10, 2.40, 1.27, -0.72);
+    for (int side = -1; side <= 1; side += 2) mesh_box(b, parts_side(side), 2.34, 0.90, -1.10, 2.40, 1.27, -0.72);
 }
 
 static void build_ramp(MeshBuilder *b, int ramp)
@@ -113,8 +124,8 @@ static void build_turret(MeshBuilder *b, int turret)
     /* welded box, sloped all round */
     parts_block(b, (Rectangle){-0.66, 0.78, -0.64, 0.64}, 0.05, (Rectangle){-0.66, 0.72, -0.62, 0.62}, 0.22);
     parts_block(b, (Rectangle){-0.66, 0.72, -0.62, 0.62}, 0.22, (Rectangle){-0.48, 0.30, -0.42, 0.42}, rise);
-    mesh_cylinder(b, place_axis(-0.14, 0.02, -rise + 0.01, 0, 0, -1), 0, 0.05, 0.30);   /* hatch */
-    mesh_box(b, place_at(0, 0, 0), -0.98, -0.50, -0.42, -0.60, 0.50, -0.10);            /* bustle rack */
+    mesh_cylinder(b, place_axis(-0.14, 0.02, -rise + 0.01, 0, 0, -1), 0, 0.05, 0.30); /* hatch */
+    mesh_box(b, place_at(0, 0, 0), -0.98, -0.50, -0.42, -0.60, 0.50, -0.10);          /* bustle rack */
     mesh_part(b, turret, "sight", "metal_dark", HEAT_TURRET);
     mesh_box(b, place_at(0, 0, 0), 0.12, -0.40, -(sight_m - top_m), 0.34, -0.14, -rise + 0.05);
     mesh_part(b, turret, "sight_glass", "glass_window", HEAT_PASSIVE);
@@ -193,25 +204,37 @@ Status parametric_carrier(Model *out, double sag_m)
  * (4736 primary launcher, elevation). */
 
 static const double launcher_half_width_m = 3.18 / 2, height_m = 3.45, overall_m = 7.389, deck_m = 1.55;
-static const double rear_x_m = -3.45;                        /* hull 6.79 m: its nose is at 3.34 m */
+static const double rear_x_m = -3.45;                          /* hull 6.79 m: its nose is at 3.34 m */
 static const double turntable_x_m = -0.55, table_top_m = 2.02; /* above the ground */
-static const double hinge_x_m = -0.95, hinge_m = 2.42;       /* of the rails: x from the turntable, height */
+static const double hinge_x_m = -0.95, hinge_m = 2.42;         /* of the rails: x from the turntable, height */
 static const double spacing_m = 0.93, middle_lift_m = 0.07, missile_m = 5.80, body_radius_m = 0.1675;
 static const double half_span_m = 1.245 / 2;
 
 static const RunningGear launcher_gear = {
-    .half_gauge_m = 1.31, .track_width_m = 0.36,
-    .band_m = 0.03, .cleat_m = 0.02, .cleat_length_m = 0.06, .links = 93,
-    .road_wheels = 6, .first_x_m = 2.08, .step_m = 0.78, .road_radius_m = 0.335,
-    .front_x_m = 2.85, .front_z_m = -0.66, .front_radius_m = 0.27,
-    .rear_x_m = -2.80, .rear_z_m = -0.72, .rear_radius_m = 0.30, .front_drives = false,
+    .half_gauge_m = 1.31,
+    .track_width_m = 0.36,
+    .band_m = 0.03,
+    .cleat_m = 0.02,
+    .cleat_length_m = 0.06,
+    .links = 93,
+    .road_wheels = 6,
+    .first_x_m = 2.08,
+    .step_m = 0.78,
+    .road_radius_m = 0.335,
+    .front_x_m = 2.85,
+    .front_z_m = -0.66,
+    .front_radius_m = 0.27,
+    .rear_x_m = -2.80,
+    .rear_z_m = -0.72,
+    .rear_radius_m = 0.30,
+    .front_drives = false,
 };
 
 static void build_launcher_hull(MeshBuilder *b)
 {
-    const Place here = place_at(0, 0, 0);
-    static const double tub[7][2] = {{-3.20, -0.40}, {2.55, -0.40}, {3.34, -0.98}, {3.34, -1.12}, {2.70, -1.16},
-                                     {-3.45, -1.16}, {-3.45, -0.75}};
+    const Place         here = place_at(0, 0, 0);
+    static const double tub[7][2] = {{-3.20, -0.40}, {2.55, -0.40},  {3.34, -0.98}, {3.34, -1.12},
+                                     {2.70, -1.16},  {-3.45, -1.16}, {-3.45, -0.75}};
     mesh_part(b, 0, "hull", "paint_olive", HEAT_HULL);
     mesh_prism(b, here, 7, tub, -1.10, 1.10);
     /* over the tracks: shelf, then the low box of the fighting compartment with a raked cab front */
@@ -220,10 +243,10 @@ static void build_launcher_hull(MeshBuilder *b)
                 deck_m);
     for (int side = -1; side <= 1; side += 2) {
         mesh_box(b, parts_side(side), -3.20, 1.52, -1.22, 2.80, launcher_half_width_m, -1.10); /* fender's rim */
-        mesh_box(b, parts_side(side), -1.9, 1.40, -1.46, -0.9, 1.56, -1.23);          /* bins */
+        mesh_box(b, parts_side(side), -1.9, 1.40, -1.46, -0.9, 1.56, -1.23);                   /* bins */
         mesh_box(b, parts_side(side), 0.2, 1.40, -1.46, 1.3, 1.56, -1.23);
-        mesh_box(b, parts_side(side), 3.20, 0.66, -1.02, 3.36, 0.76, -0.88);          /* tow hooks */
-        for (int i = 0; i < 3; i++) /* return rollers, fixed */
+        mesh_box(b, parts_side(side), 3.20, 0.66, -1.02, 3.36, 0.76, -0.88); /* tow hooks */
+        for (int i = 0; i < 3; i++)                                          /* return rollers, fixed */
             mesh_cylinder(b, place_axis(1.5 - 1.6 * i, side * 1.31, -0.93, 0, side, 0), -0.10, 0.10, 0.075);
     }
     mesh_part(b, 0, "cab", "paint_olive", HEAT_CABIN);
@@ -244,8 +267,8 @@ static void build_launcher_hull(MeshBuilder *b)
     mesh_box(b, here, -3.30, -1.20, -deck_m - 0.05, -2.05, 1.20, -deck_m + 0.02);
     for (int i = 0; i < 10; i++) {
         const double x = -3.22 + 0.11 * i;
-        const double slat[4][2] = {{x, -deck_m - 0.04}, {x + 0.03, -deck_m - 0.04}, {x + 0.07, -deck_m - 0.10},
-                                   {x + 0.04, -deck_m - 0.10}};
+        const double slat[4][2] = {
+            {x, -deck_m - 0.04}, {x + 0.03, -deck_m - 0.04}, {x + 0.07, -deck_m - 0.10}, {x + 0.04, -deck_m - 0.10}};
         mesh_prism(b, here, 4, slat, -1.05, 1.05);
     }
     mesh_part(b, 0, "exhaust", "metal_dark", HEAT_EXHAUST);
@@ -304,8 +327,7 @@ static void build_rails(MeshBuilder *b, int rails, double tail_x)
     /* the upper wing tips of the middle one make the height: the span, and half the tip's 3 % of 0.35 m */
     const double axis_m = height_m - hinge_m - middle_lift_m - (half_span_m + 0.5 * 0.03 * 0.35) * sqrt(0.5);
     mesh_part(b, rails, "missiles", "paint_grey", HEAT_PASSIVE);
-    for (int i = -1; i <= 1; i++)
-        build_missile_body(b, tail_x, spacing_m * i, -axis_m - (i == 0 ? middle_lift_m : 0));
+    for (int i = -1; i <= 1; i++) build_missile_body(b, tail_x, spacing_m * i, -axis_m - (i == 0 ? middle_lift_m : 0));
     mesh_part(b, rails, "radomes", "radome_glass_fibre", HEAT_PASSIVE);
     for (int i = -1; i <= 1; i++) {
         /* tangent ogive 1.05 m long: radius (l^2 + r^2) / 2 r */

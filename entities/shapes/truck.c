@@ -30,8 +30,8 @@ static void build_chassis(MeshBuilder *b)
         mesh_box(b, mirrored(side), -2.35, 0.50, -0.84, -0.90, 0.62, -0.74);
     }
     for (int i = 0; i < 3; i++) {
-        mesh_bar(b, (double[3]){axle_x_m[i], -0.82, -wheel_radius_m},
-                 (double[3]){axle_x_m[i], 0.82, -wheel_radius_m}, 0.075);
+        mesh_bar(b, (double[3]){axle_x_m[i], -0.82, -wheel_radius_m}, (double[3]){axle_x_m[i], 0.82, -wheel_radius_m},
+                 0.075);
         mesh_sphere(b, place_at(axle_x_m[i], 0, -wheel_radius_m), 0.22);
     }
     mesh_bar(b, (double[3]){axle_x_m[2], 0, -0.66}, (double[3]){1.2, 0, -0.85}, 0.05); /* propeller shaft */
@@ -57,13 +57,13 @@ static void build_cab(MeshBuilder *b)
 {
     const Place here = place_at(0, 0, 0);
     /* seen from the side: floor, scuttle, raked windscreen, roof, back wall */
-    static const double cab[6][2] = {{0.42, -1.02}, {1.95, -1.02}, {1.95, -1.80}, {1.62, -2.52},
-                                     {1.45, -2.60}, {0.42, -2.58}};
+    static const double cab[6][2] = {{0.42, -1.02}, {1.95, -1.02}, {1.95, -1.80},
+                                     {1.62, -2.52}, {1.45, -2.60}, {0.42, -2.58}};
     mesh_part(b, 0, "cab", "paint_olive", HEAT_CABIN);
     mesh_prism(b, here, 6, cab, -1.10, 1.10);
     for (int side = -1; side <= 1; side += 2) {
         const Place place = mirrored(side);
-        mesh_box(b, place, 0.95, 1.09, -0.86, 1.62, 1.20, -0.80); /* step */
+        mesh_box(b, place, 0.95, 1.09, -0.86, 1.62, 1.20, -0.80);  /* step */
         mesh_box(b, place, 0.80, 1.09, -1.55, 0.95, 1.125, -1.52); /* door handle */
         /* mirror on its arm */
         mesh_bar(b, (double[3]){1.80, side * 1.08, -2.02}, (double[3]){1.95, side * 1.20, -2.02}, 0.012);
@@ -160,7 +160,7 @@ static void build_wheel(MeshBuilder *b, int axle, int side)
     mesh_joint(b, node, 0, -1, 0, 0, 0, 1, -1); /* travelling forward takes the top forward */
     mesh_node_get(b, node)->roll_radius_m = wheel_radius_m;
 
-    const Place outwards = place_axis(0, 0, 0, 0, side, 0);
+    const Place  outwards = place_axis(0, 0, 0, 0, side, 0);
     const double shoulder = 0.07, bead = 0.29, w = half_tyre_m, r = wheel_radius_m;
     mesh_part(b, node, "tyre", "rubber_black", HEAT_WHEEL);
     mesh_profile_begin(b, -0.85 * w, bead);
@@ -176,7 +176,7 @@ static void build_wheel(MeshBuilder *b, int axle, int side)
     /* cross-country lugs on the shoulders, within the tyre's radius */
     const double axle_line[3] = {0, side, 0};
     for (int i = 0; i < 20; i++) {
-        const Place lug = place_turned(outwards, axle_line, 2 * pi_rad * i / 20);
+        const Place  lug = place_turned(outwards, axle_line, 2 * pi_rad * i / 20);
         const double outer = sqrt((r - 0.002) * (r - 0.002) - 0.035 * 0.035);
         mesh_box(b, lug, w - 0.06, -0.035, r - 0.12, w + 0.004, 0.035, outer - 0.005);
         mesh_box(b, lug, -w - 0.004, -0.035, r - 0.12, -w + 0.06, 0.035, outer - 0.005);

@@ -26,15 +26,15 @@ static void hull(MeshBuilder *b, int count, const Section *s, const char *bottom
             double at[2][4][2];
             for (int k = 0; k < 2; k++) {
                 const Section *c = s + i + k;
-                const double low = part ? 0 : c->keel_half, high = part ? c->deck_half : c->water_half;
+                const double   low = part ? 0 : c->keel_half, high = part ? c->deck_half : c->water_half;
                 const double foot = part ? c->water_half : low, z0 = part ? 0 : -c->keel_h, z1 = part ? -c->deck_h : 0;
                 const double outline[4][2] = {{foot, z0}, {high, z1}, {-high, z1}, {-foot, z0}};
                 memcpy(at[k], outline, sizeof outline);
             }
-            Place place = place_at(0, 0, 0);
+            Place        place = place_at(0, 0, 0);
             const double m[9] = {0, 1, 0, 1, 0, 0, 0, 0, 1};
             memcpy(place.m, m, sizeof m);
-            mesh_slab(b, place, 4, (const double (*)[2])at[0], s[i].x, (const double (*)[2])at[1], s[i + 1].x);
+            mesh_slab(b, place, 4, (const double(*)[2])at[0], s[i].x, (const double(*)[2])at[1], s[i + 1].x);
         }
     }
 }
@@ -120,19 +120,19 @@ static void build_carrier_ship(MeshBuilder *b)
     /* seen from above: the angled deck juts out to the left; island on the right */
     const double plan[11][2] = {{-166.4, -24}, {-166.4, 26}, {-125, 30}, {-100, 38.3}, {30, 38.5},  {62, 26},
                                 {166.4, 17},   {166.4, -16}, {95, -20},  {72, -38.3},  {-60, -38.3}};
-    double low[11][2], high[11][2];
+    double       low[11][2], high[11][2];
     for (int i = 0; i < 11; i++) {
         high[i][0] = plan[i][0], high[i][1] = plan[i][1];
         low[i][0] = 0.995 * plan[i][0], low[i][1] = 0.94 * plan[i][1];
     }
-    mesh_slab(b, parts_upright(0, 0, 0), 11, (const double (*)[2])low, 15.6, (const double (*)[2])high, 19.6);
+    mesh_slab(b, parts_upright(0, 0, 0), 11, (const double(*)[2])low, 15.6, (const double(*)[2])high, 19.6);
     mesh_part(b, 0, "sponsons", "paint_ship_grey", HEAT_HULL);
     parts_boxes(b, -110, 60, 18, 34, 11.5, 15.7);
     mesh_part(b, 0, "landing_line", "paint_white_wood", HEAT_PASSIVE);
     const double strip[4][2] = {{-164, 9}, {-164, 10.5}, {74, -27}, {74, -28.5}};
-    double above[4][2];
+    double       above[4][2];
     memcpy(above, strip, sizeof above);
-    mesh_slab(b, parts_upright(0, 0, 0), 4, strip, 19.5, (const double (*)[2])above, 19.64);
+    mesh_slab(b, parts_upright(0, 0, 0), 4, strip, 19.5, (const double(*)[2])above, 19.64);
     mesh_part(b, 0, "island", "paint_ship_grey", HEAT_CABIN);
     static const double island[6][2] = {{-55, 19.5}, {-15, 19.5}, {-15, 34}, {-20, 42}, {-42, 42}, {-55, 32}};
     parts_profile(b, 6, island, 26, 36);
@@ -150,7 +150,7 @@ static void build_carrier_ship(MeshBuilder *b)
 static void build_submarine(MeshBuilder *b)
 {
     /* at the surface: the deck stands a little out of the water, the sail above it */
-    const double half = 110.3 / 2, r = 10.1 / 2, axis_h = r - 9.4;
+    const double  half = 110.3 / 2, r = 10.1 / 2, axis_h = r - 9.4;
     const Station s[9] = {{-half, 0.15, -axis_h - 0.15, -axis_h + 0.15, 1},
                           {-half + 9, 1.6, -axis_h - 1.6, -axis_h + 1.6, 1},
                           {-half + 19, 3.5, -axis_h - 3.5, -axis_h + 3.5, 1},
@@ -165,12 +165,12 @@ static void build_submarine(MeshBuilder *b)
     mesh_part(b, 0, "sail", "paint_black_gloss", HEAT_CABIN);
     const double low[8][2] = {{14, 0}, {16.5, 0.9}, {20, 1.25},  {24, 1.0},
                               {26, 0}, {24, -1.0},  {20, -1.25}, {16.5, -0.9}};
-    double top[8][2];
+    double       top[8][2];
     for (int i = 0; i < 8; i++) {
         top[i][0] = 20 + 0.94 * (low[i][0] - 20);
         top[i][1] = 0.85 * low[i][1];
     }
-    mesh_slab(b, parts_upright(0, 0, 0), 8, low, axis_h + 0.7 * r, (const double (*)[2])top, 6.0);
+    mesh_slab(b, parts_upright(0, 0, 0), 8, low, axis_h + 0.7 * r, (const double(*)[2])top, 6.0);
     mesh_part(b, 0, "planes", "paint_black_gloss", HEAT_PASSIVE);
     for (int side = -1; side <= 1; side += 2) {
         parts_wing(b, parts_side(side), 22.3, 19.3, 0.4, -3.4, 21.6, 19.8, 5.0, -3.4, 0.16);
@@ -200,7 +200,7 @@ static void build_cargo_ship(MeshBuilder *b)
     mesh_part(b, 0, "containers", "brick_red", HEAT_PASSIVE);
     for (int i = 0; i < 11; i++) {
         static const int tiers[11] = {4, 5, 5, 0, 5, 6, 5, 6, 5, 4, 3};
-        const double x = -128 + 22 * i;
+        const double     x = -128 + 22 * i;
         if (tiers[i] > 0)
             parts_box(b, x, x + 20, -(i == 10 ? 11 : 15.5), i == 10 ? 11 : 15.5, 9.4, 9.5 + 2.6 * tiers[i]);
     }

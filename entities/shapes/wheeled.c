@@ -82,7 +82,7 @@ static void build_jeep(MeshBuilder *b)
         parts_profile(b, 4, screen, side < 0 ? -0.86 : 0.06, side < 0 ? -0.06 : 0.86);
         for (int door = 0; door < 2; door++)
             parts_box(b, -0.98 + 0.70 * door, -0.40 + 0.70 * door, side < 0 ? -0.935 : 0.915, side < 0 ? -0.915 : 0.935,
-                     1.26, 1.66);
+                      1.26, 1.66);
     }
     mesh_part(b, 0, "bonnet", "paint_olive", HEAT_ENGINE_DECK);
     static const double bonnet[4][2] = {{0.72, 1.10}, {2.12, 1.02}, {2.12, 1.07}, {0.72, 1.19}};
@@ -165,7 +165,7 @@ static void build_bus(MeshBuilder *b)
         for (int i = 0; i < 7; i++) {
             const double x = -5.6 + 1.58 * i;
             parts_box(b, x, x + 1.45, side < 0 ? -1.275 : 1.255, side < 0 ? -1.255 : 1.275,
-                     side > 0 && (i == 3 || i == 6) ? 0.45 : 1.25, 2.55);
+                      side > 0 && (i == 3 || i == 6) ? 0.45 : 1.25, 2.55);
         }
     static const double screen[4][2] = {{5.955, 1.25}, {5.83, 2.55}, {5.84, 2.56}, {5.975, 1.26}};
     parts_profile(b, 4, screen, -1.15, 1.15);
@@ -367,7 +367,7 @@ Status parametric_wheeled(Model *out, const char *name, double sag_m)
     };
     int k = 0;
     while (strcmp(kinds[k].name, name) != 0) k++;
-    const bool small = kinds[k].build == build_robot || kinds[k].build == build_motorcycle;
+    const bool   small = kinds[k].build == build_robot || kinds[k].build == build_motorcycle;
     MeshBuilder *b = mesh_builder_create(name, small ? fmin(sag_m, 0.002) : sag_m);
     if (!b) return STATUS_NO_MEMORY;
     mesh_node(b, "chassis", -1, 0, 0, 0);

@@ -17,7 +17,7 @@ enum {
 
 static const double largest_speed_mps = 2e4; /* as entity_table.c: nothing is faster and stays */
 static const double year_1990_s = 631152000, year_2100_s = 4102444800;
-static const double absolute_agree_s = 10; /* clocks of one exercise, and what a network delays */
+static const double absolute_agree_s = 10;  /* clocks of one exercise, and what a network delays */
 static const double invented_epoch_s = 1e9; /* captures converted from logs without dates start here */
 
 typedef struct TrackBuild {
@@ -26,19 +26,19 @@ typedef struct TrackBuild {
 } TrackBuild;
 
 typedef struct Building {
-    Survey        *survey;
-    DisLogTimes    times;
-    size_t         next; /* of them */
-    DisPdu         pdu;   /* the log that is read */
-    EntityIndex    index;
-    int            track_capacity;
-    TrackBuild    *build; /* beside survey->track */
-    WarfareEvent  *warfare;
-    int            warfare_count, warfare_capacity;
-    uint64_t       points;
-    bool           date_is_credible;
-    double        *absolute_unix_s; /* one an absolute stamp: Unix time of exercise time 0, in the order received */
-    int            absolute_capacity;
+    Survey       *survey;
+    DisLogTimes   times;
+    size_t        next; /* of them */
+    DisPdu        pdu;  /* the log that is read */
+    EntityIndex   index;
+    int           track_capacity;
+    TrackBuild   *build; /* beside survey->track */
+    WarfareEvent *warfare;
+    int           warfare_count, warfare_capacity;
+    uint64_t      points;
+    bool          date_is_credible;
+    double       *absolute_unix_s; /* one an absolute stamp: Unix time of exercise time 0, in the order received */
+    int           absolute_capacity;
 } Building;
 
 /* ---- tracks ------------------------------------------------------------------------------- */
@@ -47,7 +47,7 @@ static Status grow(void **array, int *capacity, size_t size, int at_least)
 {
     if (at_least <= *capacity) return STATUS_OK;
     const int larger = *capacity < 8 ? 16 : *capacity < 4096 ? *capacity * 2 : *capacity + *capacity / 4;
-    void *moved = realloc(*array, (size_t)larger * size);
+    void     *moved = realloc(*array, (size_t)larger * size);
     if (!moved) return STATUS_NO_MEMORY;
     *array = moved;
     *capacity = larger;
@@ -61,7 +61,7 @@ static Status find_or_add_track(int *out, Building *b, DisEntityId id, bool add)
     *out = entity_index_find(&b->index, entity_key(id));
     if (*out >= 0 || !add || survey->track_count == most_tracks) return STATUS_OK;
 
-    int build_capacity = b->track_capacity;
+    int    build_capacity = b->track_capacity;
     Status status = grow((void **)&b->build, &build_capacity, sizeof *b->build, survey->track_count + 1);
     if (status == STATUS_OK)
         status = grow((void **)&survey->track, &b->track_capacity, sizeof *survey->track, survey->track_count + 1);
@@ -90,10 +90,11 @@ static Status add_point(Building *b, int t, const double p_ecef[3], const float 
     const Status status = grow((void **)&track->point, &b->build[t].capacity, sizeof *track->point, track->count + 1);
     if (status != STATUS_OK) return status;
 
-    TrackPoint *point = track->point + track->count++;
+    TrackPoint  *point = track->point + track->count++;
     const double v[3] = {v_mps[0], v_mps[1], v_mps[2]};
     b->points++;
-    *point = (TrackPoint){.t_s = t_s, .frozen = appearance >> dis_appearance_frozen_bit & 1,
+    *point = (TrackPoint){.t_s = t_s,
+                          .frozen = appearance >> dis_appearance_frozen_bit & 1,
                           .deactivated = appearance >> dis_appearance_deactivated_bit & 1,
                           .engine = appearance >> dis_appearance_power_plant_bit & 1};
     memcpy(point->p_ecef, p_ecef, sizeof point->p_ecef);
@@ -110,8 +111,8 @@ static Status add_point(Building *b, int t, const double p_ecef[3], const float 
 static Status receive_entity_state(Building *b, const DisEntityState *pdu, double t_s)
 {
     const float euler_rad[3] = {pdu->psi_rad, pdu->theta_rad, pdu->phi_rad};
-    DisDrop why;
-    int t;
+    DisDrop     why;
+    int         t;
 
     if (!dis_entity_state_is_usable(&why, pdu)) {
         b->survey->counters.dropped[why]++;
@@ -134,8 +135,8 @@ static Status receive_entity_state(Building *b, const DisEntityState *pdu, doubl
 static Status receive_entity_state_update(Building *b, const DisEntityStateUpdate *pdu, double t_s)
 {
     const float euler_rad[3] = {pdu->psi_rad, pdu->theta_rad, pdu->phi_rad};
-    DisDrop why;
-    int t;
+    DisDrop     why;
+    int         t;
 
     if (!dis_entity_state_update_is_usable(&why, pdu)) {
         b->survey->counters.dropped[why]++;
@@ -163,15 +164,20 @@ static Status add_warfare(Building *b, const WarfareEvent *event)
 static Status receive_detonation(Building *b, const DisDetonation *pdu, double t_s)
 {
     const DisEntityId any_id = {1, 1, 1}; /* only the position is checked */
-    const float euler_rad[3] = {0, 0, 0};
-    DisDrop why;
+    const float       euler_rad[3] = {0, 0, 0};
+    DisDrop           why;
 
     if (!dis_entity_is_usable(&why, any_id, pdu->p_ecef, euler_rad, euler_rad)) {
         b->survey->counters.dropped[why]++;
         return STATUS_OK;
     }
-    WarfareEvent event = {.t_s = t_s, .firing = pdu->firing, .target = pdu->target, .munition = pdu->munition,
-                          .event = pdu->event, .result = pdu->result, .is_detonation = true};
+    WarfareEvent event = {.t_s = t_s,
+                          .firing = pdu->firing,
+                          .target = pdu->target,
+                          .munition = pdu->munition,
+                          .event = pdu->event,
+                          .result = pdu->result,
+                          .is_detonation = true};
     memcpy(event.p_ecef, pdu->p_ecef, sizeof event.p_ecef);
     return add_warfare(b, &event);
 }
@@ -208,8 +214,8 @@ static int compare_doubles(const void *a, const void *b)
  * date. */
 static Status settle_date(Building *b)
 {
-    Survey      *survey = b->survey;
-    const int    count  = survey->absolute_stamps;
+    Survey   *survey = b->survey;
+    const int count = survey->absolute_stamps;
     if (count == 0) return STATUS_OK;
     double *sorted = malloc((size_t)count * sizeof *sorted);
     if (!sorted) return STATUS_NO_MEMORY;
@@ -233,22 +239,32 @@ static Status settle_date(Building *b)
 static Status hear(Building *b, const DisPdu *pdu, double t_s)
 {
     switch (pdu->type) {
-    case dis_pdu_entity_state: return receive_entity_state(b, &pdu->entity_state, t_s);
-    case dis_pdu_entity_state_update: return receive_entity_state_update(b, &pdu->update, t_s);
+    case dis_pdu_entity_state:
+        return receive_entity_state(b, &pdu->entity_state, t_s);
+    case dis_pdu_entity_state_update:
+        return receive_entity_state_update(b, &pdu->update, t_s);
     case dis_pdu_fire:
-        return add_warfare(b, &(WarfareEvent){.t_s = t_s, .firing = pdu->fire.firing, .target = pdu->fire.target,
-                                              .munition = pdu->fire.munition, .event = pdu->fire.event});
-    case dis_pdu_detonation: return receive_detonation(b, &pdu->detonation, t_s);
-    case dis_pdu_start_resume: case dis_pdu_start_resume_r: receive_start(b, &pdu->start, t_s); return STATUS_OK;
-    default: return STATUS_OK;
+        return add_warfare(b, &(WarfareEvent){.t_s = t_s,
+                                              .firing = pdu->fire.firing,
+                                              .target = pdu->fire.target,
+                                              .munition = pdu->fire.munition,
+                                              .event = pdu->fire.event});
+    case dis_pdu_detonation:
+        return receive_detonation(b, &pdu->detonation, t_s);
+    case dis_pdu_start_resume:
+    case dis_pdu_start_resume_r:
+        receive_start(b, &pdu->start, t_s);
+        return STATUS_OK;
+    default:
+        return STATUS_OK;
     }
 }
 
 static Status receive_datagram(Building *b, int d, const DisDatagram *datagram, int exercise)
 {
-    Survey *survey = b->survey;
+    Survey        *survey = b->survey;
     const uint8_t *at = datagram->bytes, *pdu;
-    DisHeader header;
+    DisHeader      header;
 
     survey->counters.datagrams++;
     while (dis_next_pdu(&header, &pdu, &at, datagram->bytes + datagram->octets, &survey->counters)) {
@@ -257,7 +273,7 @@ static Status receive_datagram(Building *b, int d, const DisDatagram *datagram, 
             continue;
         }
         const ExerciseInstant *instant = &b->times.pdu[b->next++];
-        const double           t_s     = instant->t_s;
+        const double           t_s = instant->t_s;
         if (isnan(t_s)) continue; /* of unknown type, and without a sender */
         if (d < survey_times_most && isnan(survey->datagram_s[d])) survey->datagram_s[d] = t_s;
         if (!(survey->first_s <= t_s)) survey->first_s = t_s;
@@ -293,13 +309,13 @@ static Status end_flights(Building *b)
     static const double longest_silence_s = 60;
     for (int i = 0; i < b->survey->shot_count; i++) {
         const Shot *shot = &b->survey->shot[i];
-        int         t    = -1;
+        int         t = -1;
         Status      status = find_or_add_track(&t, b, shot->munition, false);
         if (status != STATUS_OK) return status;
         if (t < 0 || b->survey->track[t].count == 0 || !isfinite(shot->detonation_s)) continue;
         Track           *track = b->survey->track + t;
-        const TrackPoint last  = track->point[track->count - 1];
-        const double     dt_s  = shot->detonation_s - last.t_s;
+        const TrackPoint last = track->point[track->count - 1];
+        const double     dt_s = shot->detonation_s - last.t_s;
         double           way_ecef[3];
         v3_sub(way_ecef, shot->p_burst_ecef, last.p_ecef);
         if (track->type.kind != dis_kind_munition || !(dt_s > 1e-3 && dt_s < longest_silence_s) || last.deactivated ||
@@ -308,8 +324,8 @@ static Status end_flights(Building *b)
         status = grow((void **)&track->point, &b->build[t].capacity, sizeof *track->point, track->count + 1);
         if (status != STATUS_OK) return status;
         TrackPoint *end = track->point + track->count++;
-        *end            = last;
-        end->t_s        = shot->detonation_s;
+        *end = last;
+        end->t_s = shot->detonation_s;
         memcpy(end->p_ecef, shot->p_burst_ecef, sizeof end->p_ecef);
         v3_scale(end->v_ecef_mps, 1 / dt_s, way_ecef);
     }
@@ -318,7 +334,7 @@ static Status end_flights(Building *b)
 
 Status survey_log(Survey *out, const DisLog *log, int exercise)
 {
-    Survey survey = {.first_s = NAN, .last_s = NAN, .clock_start_unix_s = NAN, .absolute_unix_s = NAN};
+    Survey   survey = {.first_s = NAN, .last_s = NAN, .clock_start_unix_s = NAN, .absolute_unix_s = NAN};
     Building b = {.survey = &survey};
     b.date_is_credible = log->count > 0 && !(fabs(log->datagram[0].capture_s - invented_epoch_s) <= 1);
 
@@ -338,7 +354,7 @@ Status survey_log(Survey *out, const DisLog *log, int exercise)
     if (status == STATUS_OK) status = end_flights(&b);
     if (status == STATUS_OK) status = settle_date(&b);
     if (status == STATUS_OK) {
-        survey.doubts                  = b.times.doubts;
+        survey.doubts = b.times.doubts;
         survey.counters.stamps_doubted = survey.doubts.by_arrival;
         drop_empty_tracks(&survey);
         if (survey.track_count > 1) qsort(survey.track, (size_t)survey.track_count, sizeof *survey.track, track_order);
@@ -388,7 +404,7 @@ const Shot *survey_shot(const Survey *survey, DisEntityId munition)
         return NULL;
     }
     while (low < high) { /* the first that is not before */
-        const int middle = low + (high - low) / 2;
+        const int   middle = low + (high - low) / 2;
         const Shot *shot = survey->shot + survey->shot_by_munition[middle];
         if (dis_entity_id_compare(shot->munition, munition) < 0) low = middle + 1;
         else high = middle;

@@ -13,15 +13,15 @@ typedef struct Shot {
     double      fire_s;                   /* NaN: no Fire received */
     double      detonation_s;             /* NaN: no Detonation received */
     double      p_burst_ecef[3];
-    DisEntityId hit;                      /* target of the Detonation, 0:0:0: none */
+    DisEntityId hit; /* target of the Detonation, 0:0:0: none */
     uint8_t     result;
 } Shot;
 
 /* One report of where an entity was: 72 octets, and a long log has millions. */
 typedef struct TrackPoint {
     double t_s;
-    double p_ecef[3], v_ecef_mps[3]; /* velocity in world axes for all algorithms */
-    float  euler_rad[3];             /* psi, theta, phi as reported: survey_point_rotation */
+    double p_ecef[3], v_ecef_mps[3];    /* velocity in world axes for all algorithms */
+    float  euler_rad[3];                /* psi, theta, phi as reported: survey_point_rotation */
     bool   frozen, deactivated, engine; /* engine: its power-plant bit */
 } TrackPoint;
 
@@ -31,36 +31,36 @@ typedef struct Track {
     char          marking[12];
     uint8_t       force;
     int           count;
-    TrackPoint   *point;          /* in order of time; of a munition with a later Detonation, that is the last */
+    TrackPoint   *point; /* in order of time; of a munition with a later Detonation, that is the last */
 } Track;
 
 enum { survey_times_most = 65536 };
 
 typedef struct Survey {
-    int       track_count, shot_count;
-    Track    *track;                      /* sorted by id */
-    Shot     *shot;                       /* in order of fire (else detonation) time */
-    int      *shot_by_munition;           /* [shot_count] of shot, sorted by munition, then by time; NULL: not made */
-    double    first_s, last_s;            /* exercise time of the first and last PDU; NaN: none */
-    double    clock_start_unix_s;         /* Unix time of exercise time 0 from Start/Resume; NaN: none received */
-    double    absolute_unix_s;            /* the same from absolute stamps with a credible capture date
-                                           * (1990 .. 2100, not 2001-09-09's round 1e9 s): of those that agree within
-                                           * 10 s, when they are two at least and more than half; NaN: none */
-    int       absolute_stamps, absolute_left_out; /* how many there were, and of them how many disagree */
-    ExerciseClockAnomalies doubts;           /* senders with rejected time stamps */
-    DisCounters counters;                 /* all received and dropped PDUs, whole log */
-    double   *datagram_s;                 /* exercise time of the first PDU of each datagram [log->count, of a long log
-                                           * the first survey_times_most]; NaN: none */
-    uint64_t  refused;                    /* track points dropped because they exceed the memory bound */
-    uint64_t  late;                       /* reports older than the one before them, left out */
+    int    track_count, shot_count;
+    Track *track;              /* sorted by id */
+    Shot  *shot;               /* in order of fire (else detonation) time */
+    int   *shot_by_munition;   /* [shot_count] of shot, sorted by munition, then by time; NULL: not made */
+    double first_s, last_s;    /* exercise time of the first and last PDU; NaN: none */
+    double clock_start_unix_s; /* Unix time of exercise time 0 from Start/Resume; NaN: none received */
+    double absolute_unix_s;    /* the same from absolute stamps with a credible capture date
+                                * (1990 .. 2100, not 2001-09-09's round 1e9 s): of those that agree within
+                                * 10 s, when they are two at least and more than half; NaN: none */
+    int                    absolute_stamps, absolute_left_out; /* how many there were, and of them how many disagree */
+    ExerciseClockAnomalies doubts;                             /* senders with rejected time stamps */
+    DisCounters            counters;                           /* all received and dropped PDUs, whole log */
+    double                *datagram_s; /* exercise time of the first PDU of each datagram [log->count, of a long log
+                                        * the first survey_times_most]; NaN: none */
+    uint64_t refused;                  /* track points dropped because they exceed the memory bound */
+    uint64_t late;                     /* reports older than the one before them, left out */
 } Survey;
 
 /* Reads every PDU of the log once. exercise: only this exercise id; -1: all. */
-Status survey_log(Survey *out, const DisLog *log, int exercise);
-void   survey_destroy(Survey *survey);
+Status       survey_log(Survey *out, const DisLog *log, int exercise);
+void         survey_destroy(Survey *survey);
 const Track *survey_track(const Survey *survey, DisEntityId id); /* NULL: never received */
 /* The first shot of that munition; NULL: none received. O(log shots). */
-const Shot  *survey_shot(const Survey *survey, DisEntityId munition);
+const Shot *survey_shot(const Survey *survey, DisEntityId munition);
 
 /* Where a track was at t_s, between its reports (cubic in position, shortest turn in attitude); held at the
  * ends. For a replay's own host only: a live node does not have the next report. */

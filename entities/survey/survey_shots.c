@@ -4,9 +4,9 @@
 
 #include <stdlib.h>
 
-static const double same_s = 0.5;        /* a repeated PDU */
-static const double clock_slack_s = 1;   /* a Detonation may be stamped by another sender's clock than the Fire */
-enum { most_tries = 64 };                /* candidates checked: bounds the cost of a hostile log */
+static const double same_s = 0.5;      /* a repeated PDU */
+static const double clock_slack_s = 1; /* a Detonation may be stamped by another sender's clock than the Fire */
+enum { most_tries = 64 };              /* candidates checked: bounds the cost of a hostile log */
 
 /* Fires by one of their keys, then by time. */
 typedef struct FireKey {
@@ -78,11 +78,11 @@ static int open_fire(const Joining *j, const FireKey *list, uint64_t key, int de
                      double slack_s)
 {
     const WarfareEvent *d = j->event + detonation;
-    const int end = keys_end(list, j->fires, key, d->t_s + slack_s);
+    const int           end = keys_end(list, j->fires, key, d->t_s + slack_s);
 
     for (int i = end - 1; i >= 0 && i >= end - most_tries && list[i].key == key; i--) {
         const WarfareEvent *f = j->event + list[i].fire;
-        const int partner = j->partner[list[i].fire];
+        const int           partner = j->partner[list[i].fire];
         if (contradicts(f->munition, d->munition) || contradicts(f->firing, d->firing)) continue;
         if (same_number && event_key(f) != event_key(d)) continue;
         if (partner >= 0 && same_event(j->event + partner, d)) return -2;
@@ -96,17 +96,15 @@ static int open_fire(const Joining *j, const FireKey *list, uint64_t key, int de
 static void join_detonation(Joining *j, int detonation)
 {
     const WarfareEvent *d = j->event + detonation;
-    const bool has_munition = !dis_entity_id_is_none(d->munition), has_number = event_key(d) != 0;
-    int fire = -1;
+    const bool          has_munition = !dis_entity_id_is_none(d->munition), has_number = event_key(d) != 0;
+    int                 fire = -1;
 
     if (has_munition && has_number)
         fire = open_fire(j, j->by_munition, munition_key(d), detonation, true, clock_slack_s);
-    if (has_munition && fire == -1)
-        fire = open_fire(j, j->by_munition, munition_key(d), detonation, false, 0);
+    if (has_munition && fire == -1) fire = open_fire(j, j->by_munition, munition_key(d), detonation, false, 0);
     if (has_munition && fire == -1)
         fire = open_fire(j, j->by_munition, munition_key(d), detonation, false, clock_slack_s);
-    if (has_number && fire == -1)
-        fire = open_fire(j, j->by_event, event_key(d), detonation, true, clock_slack_s);
+    if (has_number && fire == -1) fire = open_fire(j, j->by_event, event_key(d), detonation, true, clock_slack_s);
     j->partner[detonation] = fire;
     if (fire >= 0) j->partner[fire] = detonation;
 }
@@ -115,9 +113,12 @@ static Shot shot_of(const Joining *j, int e)
 {
     const WarfareEvent *first = j->event + e;
     const WarfareEvent *end = first->is_detonation ? first : j->partner[e] >= 0 ? j->event + j->partner[e] : NULL;
-    Shot shot = {.firing = first->firing, .target = first->target, .munition = first->munition,
-                 .fire_s = first->is_detonation ? NAN : first->t_s, .detonation_s = NAN,
-                 .p_burst_ecef = {NAN, NAN, NAN}};
+    Shot                shot = {.firing = first->firing,
+                                .target = first->target,
+                                .munition = first->munition,
+                                .fire_s = first->is_detonation ? NAN : first->t_s,
+                                .detonation_s = NAN,
+                                .p_burst_ecef = {NAN, NAN, NAN}};
     if (end) {
         if (dis_entity_id_is_none(shot.munition)) shot.munition = end->munition;
         if (dis_entity_id_is_none(shot.firing)) shot.firing = end->firing;
@@ -189,7 +190,7 @@ static int by_shot_key(const void *a, const void *b)
 
 Status survey_order_shots(int **by_munition, const Shot *shot, int count)
 {
-    ShotKey *key   = malloc(((size_t)count + 1) * sizeof *key);
+    ShotKey *key = malloc(((size_t)count + 1) * sizeof *key);
     int     *order = malloc(((size_t)count + 1) * sizeof *order);
     if (!key || !order) {
         free(key);

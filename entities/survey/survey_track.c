@@ -11,7 +11,7 @@ static void quaternion_from_rotation(double q[4], const double r[9])
 {
     const double four[4] = {1 + r[0] + r[4] + r[8], 1 + r[0] - r[4] - r[8], 1 - r[0] + r[4] - r[8],
                             1 - r[0] - r[4] + r[8]};
-    int largest = 0;
+    int          largest = 0;
     for (int i = 1; i < 4; i++)
         if (four[i] > four[largest]) largest = i;
 
@@ -19,7 +19,7 @@ static void quaternion_from_rotation(double q[4], const double r[9])
                                   {r[7] - r[5], four[1], r[3] + r[1], r[2] + r[6]},
                                   {r[2] - r[6], r[3] + r[1], four[2], r[7] + r[5]},
                                   {r[3] - r[1], r[2] + r[6], r[7] + r[5], four[3]}};
-    double length = 0;
+    double       length = 0;
     for (int i = 0; i < 4; i++) length += product[largest][i] * product[largest][i];
     length = sqrt(length);
     for (int i = 0; i < 4; i++) q[i] = product[largest][i] / length;
@@ -69,7 +69,7 @@ static const double step_speeds = 1.3, step_floor_mps = 5;
 static void safe_tangent(double out[3], const double v_mps[3], const double chord_mps[3])
 {
     const double chord = v3_length(chord_mps);
-    double unit[3];
+    double       unit[3];
 
     memset(out, 0, 3 * sizeof *out);
     if (!v3_normalize(unit, chord_mps)) return;
@@ -119,7 +119,7 @@ void survey_track_at(TrackPose *out, const Track *track, double t_s)
         return;
     }
     const double h_s = b->t_s - a->t_s, u = (t_s - a->t_s) / h_s, w = 1 - u;
-    double d[3], chord_mps[3], va[3], vb[3], ra[9], rb[9];
+    double       d[3], chord_mps[3], va[3], vb[3], ra[9], rb[9];
 
     /* from a, not from the Earth's centre: the cubic then works on metres */
     v3_sub(d, b->p_ecef, a->p_ecef);
@@ -128,7 +128,7 @@ void survey_track_at(TrackPose *out, const Track *track, double t_s)
     safe_tangent(vb, b->v_ecef_mps, chord_mps);
     /* A sender that stamps late moves an entity metres within a millisecond: a step, not a speed. */
     const double reported_mps = fmax(v3_length(a->v_ecef_mps), v3_length(b->v_ecef_mps));
-    const bool step = v3_length(chord_mps) > step_speeds * reported_mps + step_floor_mps;
+    const bool   step = v3_length(chord_mps) > step_speeds * reported_mps + step_floor_mps;
     for (int i = 0; i < 3; i++) {
         out->p_ecef[i] = a->p_ecef[i] + u * u * (3 - 2 * u) * d[i] + h_s * u * w * (w * va[i] - u * vb[i]);
         out->v_ecef_mps[i] = step ? w * a->v_ecef_mps[i] + u * b->v_ecef_mps[i]

@@ -12,22 +12,16 @@ static bool leans(DisEntityType type)
 
 bool contact_applies(DisEntityType type)
 {
-    const bool lies = type.kind == dis_kind_cultural_feature || type.kind == dis_kind_supply ||
-                      type.kind == dis_kind_sensor_emitter;
+    const bool lies =
+        type.kind == dis_kind_cultural_feature || type.kind == dis_kind_supply || type.kind == dis_kind_sensor_emitter;
     return leans(type) || (lies && type.domain <= dis_domain_land);
 }
 
-bool contact_floats(DisEntityType type)
-{
-    return type.kind == dis_kind_platform && type.domain == dis_domain_surface;
-}
+bool contact_floats(DisEntityType type) { return type.kind == dis_kind_platform && type.domain == dis_domain_surface; }
 
-/* Aircraft below the ground that all entities are clamped to, as over real relief that their sender did not know: those that
- * stand still are moved onto it; others as far above it as they are below, at most 20 m. */
-static bool is_lifted(DisEntityType type)
-{
-    return type.kind == dis_kind_platform && type.domain == dis_domain_air;
-}
+/* Aircraft below the ground that all entities are clamped to, as over real relief that their sender did not know: those
+ * that stand still are moved onto it; others as far above it as they are below, at most 20 m. */
+static bool is_lifted(DisEntityType type) { return type.kind == dis_kind_platform && type.domain == dis_domain_air; }
 
 double contact_share(DisEntityType type, double above_m)
 {
@@ -41,7 +35,8 @@ static bool vertical(double up_ecef[3], const double p_ecef[3])
 {
     Geodetic place;
     double   same_ecef[3], r_ecef_from_enu[9];
-    if (geodetic_from_ecef(&place, p_ecef) != STATUS_OK || ecef_from_geodetic(same_ecef, r_ecef_from_enu, &place) != STATUS_OK)
+    if (geodetic_from_ecef(&place, p_ecef) != STATUS_OK ||
+        ecef_from_geodetic(same_ecef, r_ecef_from_enu, &place) != STATUS_OK)
         return false;
     for (int k = 0; k < 3; k++) up_ecef[k] = r_ecef_from_enu[3 * k + 2];
     return true;
@@ -128,21 +123,22 @@ void contact_move(double p_ecef[3], DisEntityType type, const double v_ecef_mps[
 static void lift(SnapshotEntity *e, const ContactGround *ground)
 {
     static const double still_mps = 0.3, most_m = 20;
-    double up_ecef[3], up[3], p[3];
+    double              up_ecef[3], up[3], p[3];
     enu_from_ecef(p, ground->frame, e->p_ecef);
     if (!(p[2] < elevation_height(ground->elevation, p[0], p[1], NULL)) || !vertical(up_ecef, e->p_ecef)) return;
     m3_tmul_v3(up, ground->frame->r_ecef_from_enu, up_ecef);
     const double way_m = way_up_m(ground, p, up);
     if (!(way_m > 0)) return;
-    v3_add_scaled(e->p_ecef, e->p_ecef, way_m + (v3_length(e->v_ecef_mps) < still_mps ? 0 : fmin(way_m, most_m)), up_ecef);
+    v3_add_scaled(e->p_ecef, e->p_ecef, way_m + (v3_length(e->v_ecef_mps) < still_mps ? 0 : fmin(way_m, most_m)),
+                  up_ecef);
 }
 
 void contact_set(SnapshotEntity *e, const ContactGround *ground, const Model *model)
 {
     enum { along = 5, across = 3 };
     static const double steepest = 1; /* tan 45 degrees: a wall of a surface model is not a road */
-    double r_enu_from_body[9], forward[3], right[3];
-    WayUp  w;
+    double              r_enu_from_body[9], forward[3], right[3];
+    WayUp               w;
     if (ground->elevation && !ground->landscape && is_lifted(e->type)) lift(e, ground);
     if (!way_to_ground(&w, e->type, e->p_ecef, e->v_ecef_mps, ground)) return;
     const double *up = w.up, *up_ecef = w.up_ecef, *p = w.p, share = w.share;
@@ -152,16 +148,18 @@ void contact_set(SnapshotEntity *e, const ContactGround *ground, const Model *mo
     const double down[3] = {r_enu_from_body[2], r_enu_from_body[5], r_enu_from_body[8]};
 
     v3_add_scaled(forward, nose, -v3_dot(nose, up), up);
-    const bool upright = leans(e->type) && v3_length(forward) > 0.3 && v3_dot(down, up) < -0.3 && v3_normalize(forward, forward);
+    const bool upright =
+        leans(e->type) && v3_length(forward) > 0.3 && v3_dot(down, up) < -0.3 && v3_normalize(forward, forward);
     double slope_forward = 0, slope_right = 0;
     if (upright) {
         v3_cross(right, forward, up);
         const double half_length_m = fmax(fmin(-model->box_low[0], model->box_high[0]), 0.2);
         const double half_width_m = fmax(fmin(-model->box_low[1], model->box_high[1]), 0.2);
-        double sum = 0, sum_a = 0, sum_b = 0, sum_aa = 0, sum_bb = 0;
+        double       sum = 0, sum_a = 0, sum_b = 0, sum_aa = 0, sum_bb = 0;
         for (int i = 0; i < along; i++)
             for (int j = 0; j < across; j++) {
-                const double a = half_length_m * (2.0 * i / (along - 1) - 1), b = half_width_m * (2.0 * j / (across - 1) - 1);
+                const double a = half_length_m * (2.0 * i / (along - 1) - 1),
+                             b = half_width_m * (2.0 * j / (across - 1) - 1);
                 double q[3];
                 v3_add_scaled(q, p, a, forward);
                 v3_add_scaled(q, q, b, right);
@@ -173,9 +171,9 @@ void contact_set(SnapshotEntity *e, const ContactGround *ground, const Model *mo
                 sum_bb += b * b;
             }
         if (!isfinite(sum)) return; /* partly outside of the elevation data */
-        way_m         = sum / (along * across);
+        way_m = sum / (along * across);
         slope_forward = clamp(sum_a / sum_aa, -steepest, steepest);
-        slope_right   = clamp(sum_b / sum_bb, -steepest, steepest);
+        slope_right = clamp(sum_b / sum_bb, -steepest, steepest);
     }
     v3_add_scaled(e->p_ecef, e->p_ecef, share * way_m, up_ecef);
     if (!upright) return;
@@ -183,7 +181,7 @@ void contact_set(SnapshotEntity *e, const ContactGround *ground, const Model *mo
         const double own[3] = {r_enu_from_body[1], r_enu_from_body[4], r_enu_from_body[7]};
         const double forward_m = v3_dot(nose, forward), right_m = fmax(v3_dot(own, right), 0.1);
         slope_forward = v3_dot(nose, up) / forward_m + share * (slope_forward - v3_dot(nose, up) / forward_m);
-        slope_right   = v3_dot(own, up) / right_m + share * (slope_right - v3_dot(own, up) / right_m);
+        slope_right = v3_dot(own, up) / right_m + share * (slope_right - v3_dot(own, up) / right_m);
     }
 
     double x[3], y[3], z[3], v[3];
@@ -193,7 +191,7 @@ void contact_set(SnapshotEntity *e, const ContactGround *ground, const Model *mo
     if (!v3_normalize(x, x) || !v3_normalize(z, z)) return;
     v3_cross(y, z, x);
     for (int k = 0; k < 3; k++) {
-        r_enu_from_body[3 * k]     = x[k];
+        r_enu_from_body[3 * k] = x[k];
         r_enu_from_body[3 * k + 1] = y[k];
         r_enu_from_body[3 * k + 2] = z[k];
     }

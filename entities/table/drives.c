@@ -3,16 +3,16 @@
 
 #include "dis/pdu/pdu.h"
 
-static const double moving_mps = 0.3;       /* above the jitter of reports of a stationary vehicle */
+static const double moving_mps = 0.3;          /* above the jitter of reports of a stationary vehicle */
 static const double engine_after_stop_s = 120; /* crews halt with the engine on; estimate */
-static const double full_speed_mps = 10;    /* estimate: a vehicle's usual off-road speed */
+static const double full_speed_mps = 10;       /* estimate: a vehicle's usual off-road speed */
 /* Estimates: full power is some 1.2 W a newton of weight (600 kW for 50 t), which would lift it at 1.2 m/s; a turn
  * of 1 rad/s takes all of it in a tracked vehicle. */
 static const double full_climb_mps = 1.2, full_turn_rps = 1;
-static const double burn_s = 2;             /* a TOW's launch and flight motors together: under 2 s */
-static const double flare_s = 4;            /* decoy flares of the MJU class burn for 3 .. 5 s; estimate */
-static const double wreck_s = 600;          /* fuel, rubber and ammunition of a vehicle burn out; estimate */
-static const float  smoulder = 0.1f;        /* of what flames give: a fire inside that is not seen; estimate */
+static const double burn_s = 2;      /* a TOW's launch and flight motors together: under 2 s */
+static const double flare_s = 4;     /* decoy flares of the MJU class burn for 3 .. 5 s; estimate */
+static const double wreck_s = 600;   /* fuel, rubber and ammunition of a vehicle burn out; estimate */
+static const float  smoulder = 0.1f; /* of what flames give: a fire inside that is not seen; estimate */
 static const double most_fired_kg = 1e9;
 
 /* Two bits, 3 = destroyed, in the same place for every platform domain, for buildings, and (fatally injured) for
@@ -27,7 +27,8 @@ static bool is_destroyed(const DriveEvidence *evidence)
 /* 0 .. 1 of what is between idling and full power. */
 static double load_of(const DriveEvidence *e, double speed_mps)
 {
-    const double climb_mps = isfinite(e->climb_mps) ? e->climb_mps : 0, turn_rps = isfinite(e->turn_rps) ? fabs(e->turn_rps) : 0;
+    const double climb_mps = isfinite(e->climb_mps) ? e->climb_mps : 0,
+                 turn_rps = isfinite(e->turn_rps) ? fabs(e->turn_rps) : 0;
     return clamp(speed_mps / full_speed_mps + climb_mps / full_climb_mps + turn_rps / full_turn_rps, 0, 1);
 }
 
@@ -35,7 +36,8 @@ static void take(DriveState *state, const DriveEvidence *evidence, double t_s)
 {
     const bool platform = evidence->type.kind == dis_kind_platform,
                air = platform && evidence->type.domain == dis_domain_air;
-    const int  smoke = (int)(evidence->appearance >> dis_appearance_smoke_shift & 3); /* 1: a plume from it, 2: engine smoke */
+    const int smoke =
+        (int)(evidence->appearance >> dis_appearance_smoke_shift & 3); /* 1: a plume from it, 2: engine smoke */
     const bool works = !is_destroyed(evidence), was_moving = state->moving;
     const bool lives = evidence->type.kind == dis_kind_life_form || evidence->type.kind == dis_kind_cultural_feature;
 
@@ -46,9 +48,9 @@ static void take(DriveState *state, const DriveEvidence *evidence, double t_s)
     state->engine = (DriveUntil){0, INFINITY};
     if (!works) state->engine.value = 0;
     else if (air) state->engine.value = 1;
-    else if (state->moving)
-        state->engine.value = drives_idle + (1 - drives_idle) * load_of(evidence, state->speed_mps);
-    else if (platform && (evidence->appearance >> dis_appearance_power_plant_bit & 1 || smoke & 2)) state->engine.value = drives_idle;
+    else if (state->moving) state->engine.value = drives_idle + (1 - drives_idle) * load_of(evidence, state->speed_mps);
+    else if (platform && (evidence->appearance >> dis_appearance_power_plant_bit & 1 || smoke & 2))
+        state->engine.value = drives_idle;
     else if (platform && t_s < state->moved_s + engine_after_stop_s)
         state->engine = (DriveUntil){drives_idle, state->moved_s + engine_after_stop_s};
 
@@ -86,15 +88,21 @@ static float now(DriveUntil drive, double t_s) { return t_s < drive.until_s ? (f
 
 void drives_at(EntityDrives *out, const DriveState *state, double t_s)
 {
-    *out = (EntityDrives){.since_s = state->since_s, .engine = now(state->engine, t_s),
-                          .speed_mps = (float)state->speed_mps, .flying = state->flying, .alive = state->alive,
-                          .burning = fmaxf(fmaxf(state->flaming, state->smoulders ? smoulder : 0), now(state->wreck, t_s)), .motor = now(state->motor, t_s),
-                          .flare = now(state->flare, t_s), .fired_kg = {state->fired_kg[0], state->fired_kg[1]}};
+    *out =
+        (EntityDrives){.since_s = state->since_s,
+                       .engine = now(state->engine, t_s),
+                       .speed_mps = (float)state->speed_mps,
+                       .flying = state->flying,
+                       .alive = state->alive,
+                       .burning = fmaxf(fmaxf(state->flaming, state->smoulders ? smoulder : 0), now(state->wreck, t_s)),
+                       .motor = now(state->motor, t_s),
+                       .flare = now(state->flare, t_s),
+                       .fired_kg = {state->fired_kg[0], state->fired_kg[1]}};
 }
 
-double drives_engine(const DriveState *state, double t_s) { return t_s < state->engine.until_s ? state->engine.value : 0; }
-
-double drives_run_until(const DriveState *state)
+double drives_engine(const DriveState *state, double t_s)
 {
-    return state->engine.value > 0 ? state->engine.until_s : -INFINITY;
+    return t_s < state->engine.until_s ? state->engine.value : 0;
 }
+
+double drives_run_until(const DriveState *state) { return state->engine.value > 0 ? state->engine.until_s : -INFINITY; }

@@ -42,11 +42,11 @@ void entity_effects_end(EntityTable *table, EntitySlot *slot, double t_s)
 void entity_effects_report(EntityTable *table, EntitySlot *slot, double t_s)
 {
     static const double trail_rate[4] = {0, 0.35, 1, 2.5}; /* small, medium, large: estimate */
-    const uint32_t bits = slot->appearance;
-    const bool     platform = slot->type.kind == dis_kind_platform, munition = slot->type.kind == dis_kind_munition;
-    const bool     air = slot->type.domain == dis_domain_air;
-    const int      smoke = bits >> dis_appearance_smoke_shift & 3, trail = bits >> dis_appearance_trail_shift & 3;
-    const bool     flames = bits >> dis_appearance_flaming_bit & 1;
+    const uint32_t      bits = slot->appearance;
+    const bool platform = slot->type.kind == dis_kind_platform, munition = slot->type.kind == dis_kind_munition;
+    const bool air = slot->type.domain == dis_domain_air;
+    const int  smoke = bits >> dis_appearance_smoke_shift & 3, trail = bits >> dis_appearance_trail_shift & 3;
+    const bool flames = bits >> dis_appearance_flaming_bit & 1;
 
     entity_effects_end(table, slot, t_s);
     if (!(platform || munition) || !(flames || smoke || trail || motor_burns(slot, t_s))) return;
@@ -54,10 +54,14 @@ void entity_effects_report(EntityTable *table, EntitySlot *slot, double t_s)
     const Model *model = catalog_model(table->catalog, slot->model);
     const bool   stands = entity_slot_frozen(slot) || slot->stopped;
     const double below_m = base_below_m(slot, model), top_m = below_m - model->height_m;
-    EffectSource source = {.key = entity_key(slot->id) + 1, .from_s = t_s,
+    EffectSource source = {.key = entity_key(slot->id) + 1,
+                           .from_s = t_s,
                            .to_s = slot->stopped ? INFINITY : slot->report_s + slot->paused_s + slot->timeout_s,
-                           .motion = slot->reported, .motion_s = slot->report_s + slot->paused_s,
-                           .hold_s = slot->hold_s, .scale = size_of(model), .below_m = below_m,
+                           .motion = slot->reported,
+                           .motion_s = slot->report_s + slot->paused_s,
+                           .hold_s = slot->hold_s,
+                           .scale = size_of(model),
+                           .below_m = below_m,
                            .grounded = contact_applies(slot->type)};
     if (stands) {
         Motion motion;
@@ -117,20 +121,25 @@ typedef struct Plume {
  * between. */
 static int plume_behind(EffectPuff *out, const SnapshotEntity *e, const Model *model, const Plume *plume, double t_s)
 {
-    const EffectKind kind = plume->kind;
-    const double     across_scale = plume->across_scale;
+    const EffectKind    kind = plume->kind;
+    const double        across_scale = plume->across_scale;
     static const double breath_hz = 50;
-    const double at = t_s * breath_hz, floor_at = floor(at);
-    double       length = 0, tail_body[3] = {0}, tail_ecef[3];
-    const uint64_t key = entity_key(e->id);
+    const double        at = t_s * breath_hz, floor_at = floor(at);
+    double              length = 0, tail_body[3] = {0}, tail_ecef[3];
+    const uint64_t      key = entity_key(e->id);
 
     for (int k = 0; k < 2; k++) {
         const double   share = k ? at - floor_at : 1 - (at - floor_at);
         const uint64_t breath = (uint64_t)(int64_t)floor_at + (uint64_t)k;
         length += share * plume->length_m * (0.8 + 0.4 * random_uniform(key, 78, kind, breath));
     }
-    *out = (EffectPuff){.kind = kind, .owner = key + 1, .group = (uint32_t)(key * 31 + kind),
-                        .seed = (uint32_t)(int64_t)floor_at, .throw_s = 1, .scale = across_scale, .along_m = 0.5 * length,
+    *out = (EffectPuff){.kind = kind,
+                        .owner = key + 1,
+                        .group = (uint32_t)(key * 31 + kind),
+                        .seed = (uint32_t)(int64_t)floor_at,
+                        .throw_s = 1,
+                        .scale = across_scale,
+                        .along_m = 0.5 * length,
                         .mass_kg = plume->law->mass_kg * across_scale * across_scale * length};
     tail_body[0] = model->box_low[0] - 0.36 * length; /* a seventh of it inside: at its very end it is thin */
     tail_body[2] = -0.5 * model->height_m;
@@ -183,11 +192,12 @@ void entity_effects_outlet(EntityTable *table, int model)
 {
     ModelOutlet *outlet = &table->outlet[model];
     if (outlet->known) return;
-    const HeatRole role = is_rotorcraft(table->model_roles[model]) ? HEAT_TURBINE : HEAT_EXHAUST;
+    const HeatRole     role = is_rotorcraft(table->model_roles[model]) ? HEAT_TURBINE : HEAT_EXHAUST;
     const Model       *shape = catalog_model(table->catalog, model);
     const bool         turbine = role == HEAT_TURBINE;
-    const EffectModel *law = &effect_history_table(table->effects)->law[turbine ? EFFECT_TURBINE_EXHAUST : EFFECT_EXHAUST];
-    ExhaustJet        *jet = &outlet->jet;
+    const EffectModel *law =
+        &effect_history_table(table->effects)->law[turbine ? EFFECT_TURBINE_EXHAUST : EFFECT_EXHAUST];
+    ExhaustJet *jet = &outlet->jet;
     outlet->is_there = outlet_of(jet->at_body, jet->d_body, shape, role);
     jet->radius_m = law->radius_start_m * (turbine ? 1 : size_of(shape));
     jet->speed_mps = turbine ? 40 : 12; /* estimates */
@@ -210,9 +220,9 @@ static int exhaust_behind(EffectPuff *out, const SnapshotEntity *e, const ModelO
     const EffectKind kind = exhaust->kind;
     const double     drive = exhaust->drive, scale = exhaust->scale;
     enum { puffs = 5 };
-    const double jet_mps = outlet->jet.speed_mps;
+    const double        jet_mps = outlet->jet.speed_mps;
     static const double jet_decay_s = 0.12;
-    double at_ecef[3], d_ecef[3];
+    double              at_ecef[3], d_ecef[3];
     if (!(drive > 0) || !outlet->is_there) return 0;
     const uint64_t key = entity_key(e->id);
     const double   interval_s = exhaust->law->life_s / (puffs + 0.5), begun = floor(t_s / interval_s);
@@ -221,8 +231,12 @@ static int exhaust_behind(EffectPuff *out, const SnapshotEntity *e, const ModelO
     m3_mul_v3(d_ecef, e->r_ecef_from_body, outlet->jet.d_body);
     for (int k = 0; k < puffs; k++) {
         EffectPuff *puff = &out[k];
-        *puff = (EffectPuff){.kind = kind, .owner = key + 1, .group = (uint32_t)(key * 31 + kind),
-                             .throw_s = jet_decay_s, .seed = (uint32_t)((int64_t)begun - k), .scale = scale,
+        *puff = (EffectPuff){.kind = kind,
+                             .owner = key + 1,
+                             .group = (uint32_t)(key * 31 + kind),
+                             .throw_s = jet_decay_s,
+                             .seed = (uint32_t)((int64_t)begun - k),
+                             .scale = scale,
                              .age_s = (k + phase + 0.5) * interval_s};
         puff->mass_kg = exhaust->law->mass_kg * scale * scale * drive * interval_s * (k == 0 ? phase : 1);
         v3_add(puff->p_ecef, e->p_ecef, at_ecef);
@@ -246,8 +260,12 @@ static int exhaust_behind(EffectPuff *out, const SnapshotEntity *e, const ModelO
 static int fire_about(EffectPuff *out, const SnapshotEntity *e, const EffectTable *table)
 {
     const uint64_t key = entity_key(e->id);
-    *out = (EffectPuff){.kind = EFFECT_FLARE_FIRE, .owner = key + 1, .group = (uint32_t)(key * 31), .throw_s = 1,
-                        .scale = 1, .mass_kg = table->law[EFFECT_FLARE_FIRE].mass_kg};
+    *out = (EffectPuff){.kind = EFFECT_FLARE_FIRE,
+                        .owner = key + 1,
+                        .group = (uint32_t)(key * 31),
+                        .throw_s = 1,
+                        .scale = 1,
+                        .mass_kg = table->law[EFFECT_FLARE_FIRE].mass_kg};
     memcpy(out->p_ecef, e->p_ecef, sizeof out->p_ecef);
     v3_scale(out->up_ecef, 1 / v3_length(e->p_ecef), e->p_ecef);
     memcpy(out->axis_ecef, out->up_ecef, sizeof out->axis_ecef);
@@ -266,18 +284,21 @@ int entity_effects_carried(EffectPuff out[entity_carried_max], const EntityTable
     if (!(fabs(t_s) < effect_latest_s)) return 0;
     if (motor_burns(slot, t_s)) /* a light missile of 1.2 m: 1.5 m of flame */
         return plume_behind(out, entity, model,
-                            &(Plume){EFFECT_MOTOR_PLUME, &effects->law[EFFECT_MOTOR_PLUME], fmax(1.25 * model->length_m, 0.5),
-                                     clamp(model->width_m / 0.3, 0.5, 4)}, t_s);
+                            &(Plume){EFFECT_MOTOR_PLUME, &effects->law[EFFECT_MOTOR_PLUME],
+                                     fmax(1.25 * model->length_m, 0.5), clamp(model->width_m / 0.3, 0.5, 4)},
+                            t_s);
     if (slot->type.kind == dis_kind_expendable && slot->roles >> HEAT_FLARE & 1 && slot->drives.flare.until_s > t_s)
         return fire_about(out, entity, effects);
     if (platform && air && entity->appearance >> dis_appearance_afterburner_bit & 1)
-        return plume_behind(out, entity, model, &(Plume){EFFECT_AFTERBURNER, &effects->law[EFFECT_AFTERBURNER], 4, 1}, t_s);
+        return plume_behind(out, entity, model, &(Plume){EFFECT_AFTERBURNER, &effects->law[EFFECT_AFTERBURNER], 4, 1},
+                            t_s);
     if (!(drive > 0)) return 0;
     if (air && is_rotorcraft(slot->roles))
         return exhaust_behind(out, entity, outlet,
                               &(Exhaust){EFFECT_TURBINE_EXHAUST, &effects->law[EFFECT_TURBINE_EXHAUST], drive, 1}, t_s);
     if (air && slot->roles >> HEAT_TURBINE & 1)
-        return plume_behind(out, entity, model, &(Plume){EFFECT_JET_EXHAUST, &effects->law[EFFECT_JET_EXHAUST], 6, 1}, t_s);
+        return plume_behind(out, entity, model, &(Plume){EFFECT_JET_EXHAUST, &effects->law[EFFECT_JET_EXHAUST], 6, 1},
+                            t_s);
     if (!air)
         return exhaust_behind(out, entity, outlet,
                               &(Exhaust){EFFECT_EXHAUST, &effects->law[EFFECT_EXHAUST], drive, size_of(model)}, t_s);
@@ -288,7 +309,7 @@ int entity_effects_carried(EffectPuff out[entity_carried_max], const EntityTable
 static void set_onto_ground(EffectPuff *puff, const ContactGround *ground)
 {
     static const DisEntityType vehicle = {.kind = dis_kind_platform, .domain = dis_domain_land};
-    double way_m = puff->grounded ? puff->above_m - contact_above_m(ground, puff->p_ecef) : 0;
+    double                     way_m = puff->grounded ? puff->above_m - contact_above_m(ground, puff->p_ecef) : 0;
     if (ground->landscape) way_m *= contact_share(vehicle, way_m); /* clamped by the same distance as its entity */
     if (isfinite(way_m)) v3_add_scaled(puff->p_ecef, puff->p_ecef, way_m, puff->up_ecef);
 }

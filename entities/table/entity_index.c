@@ -66,7 +66,7 @@ void entity_index_remove(EntityIndex *index, uint64_t key)
 
 Status entity_index_grow(EntityIndex *index)
 {
-    EntityIndex larger;
+    EntityIndex    larger;
     const uint64_t cells = (uint64_t)index->mask + 1;
     if (cells >= UINT32_C(1) << 30) return STATUS_NO_MEMORY;
     const Status status = entity_index_create(&larger, (int)cells);

@@ -25,8 +25,8 @@ Status entity_index_create(EntityIndex *out, int capacity);
 void   entity_index_destroy(EntityIndex *index);
 int    entity_index_find(const EntityIndex *index, uint64_t key); /* -1: not there */
 /* The key must not be there, and no more than capacity keys ever at once. */
-void   entity_index_insert(EntityIndex *index, uint64_t key, int value);
-void   entity_index_remove(EntityIndex *index, uint64_t key);
+void entity_index_insert(EntityIndex *index, uint64_t key, int value);
+void entity_index_remove(EntityIndex *index, uint64_t key);
 /* Doubles the capacity; on failure the index is unchanged. */
 Status entity_index_grow(EntityIndex *index);
 

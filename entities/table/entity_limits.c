@@ -8,38 +8,38 @@
 #include <stdlib.h>
 
 enum {
-    tier_count = 4, /* known * 2 + near: evicted from in this order */
+    tier_count = 4,                       /* known * 2 + near: evicted from in this order */
     list_count = 2 * entity_rank_classes, /* known * entity_rank_classes + class */
-    nothing    = -1,
+    nothing = -1,
 };
 
-static const double first_class_m = 625;
+static const double   first_class_m = 625;
 static const uint32_t near_lists = (UINT32_C(1) << entity_rank_near_classes) - 1,
-                      new_lists  = (UINT32_C(1) << entity_rank_classes) - 1;
+                      new_lists = (UINT32_C(1) << entity_rank_classes) - 1;
 
 typedef struct Node {
-    int     older, newer; /* in its list */
+    int     older, newer;  /* in its list */
     int     before, after; /* of all, in the order of their last reports */
-    int     sender;       /* none: not present */
+    int     sender;        /* none: not present */
     uint8_t list;
 } Node;
 
 typedef struct Sender {
-    uint32_t key;                     /* site, application */
-    uint32_t lists;                   /* bit l: list l holds any */
-    int      count[tier_count], at[tier_count]; /* at: in the heap of the tier, where count > 0 */
+    uint32_t key;                                    /* site, application */
+    uint32_t lists;                                  /* bit l: list l holds any */
+    int      count[tier_count], at[tier_count];      /* at: in the heap of the tier, where count > 0 */
     int      oldest[list_count], newest[list_count]; /* as given by lists */
 } Sender;
 
 struct EntityRanks {
-    int         room, first, last;    /* room: of a tier; first, last: least and most recently reported */
-    Node       *node;                 /* [slots] */
-    Sender     *sender;               /* [slots]; used below sender_end */
+    int         room, first, last; /* room: of a tier; first, last: least and most recently reported */
+    Node       *node;              /* [slots] */
+    Sender     *sender;            /* [slots]; used below sender_end */
     int        *free_sender;
     int         sender_end, free_count;
-    EntityIndex index;                /* of senders */
+    EntityIndex index; /* of senders */
     int         total[tier_count], heap_count[tier_count];
-    int        *heap[tier_count];     /* [slots], of senders */
+    int        *heap[tier_count]; /* [slots], of senders */
 };
 
 Status entity_ranks_create(EntityRanks **out, int slots, int capacity)
@@ -47,12 +47,12 @@ Status entity_ranks_create(EntityRanks **out, int slots, int capacity)
     EntityRanks *r = calloc(1, sizeof *r);
     if (!r) return STATUS_NO_MEMORY;
     const size_t n = (size_t)slots;
-    r->room        = capacity / tier_count;
-    r->first       = r->last = nothing;
-    r->node        = calloc(n, sizeof *r->node);
-    r->sender      = calloc(n, sizeof *r->sender);
+    r->room = capacity / tier_count;
+    r->first = r->last = nothing;
+    r->node = calloc(n, sizeof *r->node);
+    r->sender = calloc(n, sizeof *r->sender);
     r->free_sender = calloc(n, sizeof *r->free_sender);
-    bool made      = r->node && r->sender && r->free_sender;
+    bool made = r->node && r->sender && r->free_sender;
     for (int t = 0; t < tier_count; t++) made = (r->heap[t] = calloc(n, sizeof *r->heap[t])) && made;
     if (!made || entity_index_create(&r->index, slots) != STATUS_OK) {
         entity_ranks_destroy(r);
@@ -77,10 +77,10 @@ void entity_ranks_destroy(EntityRanks *r)
 int entity_rank_class(const double p_ecef[3], const double from_ecef[3])
 {
     double d[3], reach_m = first_class_m;
-    int    class = 0;
+    int    rank = 0;
     v3_sub(d, p_ecef, from_ecef);
-    for (const double far_m = v3_length(d); class < entity_rank_classes - 1 && !(far_m <= reach_m); class++) reach_m *= 2;
-    return class;
+    for (const double far_m = v3_length(d); rank < entity_rank_classes - 1 && !(far_m <= reach_m); rank++) reach_m *= 2;
+    return rank;
 }
 
 /* ---- ranks: the heap of a tier: the sender with the most is first -------------------------------------- */
@@ -93,7 +93,7 @@ static bool goes_before(const EntityRanks *r, int tier, int a, int b)
 
 static void set_place(EntityRanks *r, int tier, int place, int sender)
 {
-    r->heap[tier][place]       = sender;
+    r->heap[tier][place] = sender;
     r->sender[sender].at[tier] = place;
 }
 
@@ -147,7 +147,10 @@ static void drop_if_empty(EntityRanks *r, int sender)
 /* ---- ranks: lists ---------------------------------------------------------------------------------------- */
 
 static int list_of(bool known, int class) { return known * entity_rank_classes + class; }
-static int tier_of(int list) { return list / entity_rank_classes * 2 + (list % entity_rank_classes < entity_rank_near_classes); }
+static int tier_of(int list)
+{
+    return list / entity_rank_classes * 2 + (list % entity_rank_classes < entity_rank_near_classes);
+}
 
 static uint32_t lists_of(int tier)
 {
@@ -168,13 +171,13 @@ static void unlink_node(EntityRanks *r, int slot)
 
 static void append_node(EntityRanks *r, int slot, int sender, int list)
 {
-    Node   *n = r->node + slot;
-    Sender *s = r->sender + sender;
+    Node      *n = r->node + slot;
+    Sender    *s = r->sender + sender;
     const bool empty = !(s->lists >> list & 1);
-    n->older  = empty ? nothing : s->newest[list];
-    n->newer  = nothing;
+    n->older = empty ? nothing : s->newest[list];
+    n->newer = nothing;
     n->sender = sender;
-    n->list   = (uint8_t)list;
+    n->list = (uint8_t)list;
     if (empty) s->oldest[list] = slot;
     else r->node[n->older].newer = slot;
     s->newest[list] = slot;
@@ -197,7 +200,7 @@ static void receive_last(EntityRanks *r, int slot)
 {
     Node *n = r->node + slot;
     n->before = r->last;
-    n->after  = nothing;
+    n->after = nothing;
     if (r->last != nothing) r->node[r->last].after = slot;
     else r->first = slot;
     r->last = slot;
@@ -216,7 +219,7 @@ static void forget(EntityRanks *r, int slot)
 
 void entity_ranks_put(EntityRanks *r, int slot, DisEntityId id, bool known, int class)
 {
-    Node     *n    = r->node + slot;
+    Node     *n = r->node + slot;
     const int list = list_of(known, class);
     if (n->sender != nothing) {
         forget(r, slot);
@@ -261,13 +264,13 @@ int entity_ranks_worst(const EntityRanks *r)
 int entity_ranks_largest(DisEntityId *sender, const EntityRanks *r)
 {
     int      most = 0;
-    uint32_t key  = 0;
+    uint32_t key = 0;
     for (int i = 0; i < r->sender_end; i++) {
         const Sender *s = r->sender + i;
         const int     count = s->lists ? s->count[0] + s->count[1] + s->count[2] + s->count[3] : 0;
         if (count < most || count == 0 || (count == most && s->key < key)) continue;
-        most    = count;
-        key     = s->key;
+        most = count;
+        key = s->key;
         *sender = (DisEntityId){.site = (uint16_t)(s->key >> 16), .application = (uint16_t)s->key};
     }
     return most;
@@ -313,7 +316,7 @@ static Bucket *find_or_add(EntityRate *r, uint64_t key, double t_s)
 {
     int place = entity_index_find(&r->index, key);
     if (place >= 0) return r->bucket + place;
-    place   = r->next;
+    place = r->next;
     r->next = (r->next + 1) % sender_limit;
     if (r->count < sender_limit) r->count++;
     else entity_index_remove(&r->index, r->bucket[place].key);
@@ -327,7 +330,7 @@ bool entity_rate_take(EntityRate *r, DisEntityId id, double t_s)
     id.entity = 0;
     Bucket *b = find_or_add(r, entity_key(id), t_s);
     if (t_s > b->filled_s) {
-        b->tokens   = fmin(b->tokens + (t_s - b->filled_s) * r->new_per_s, r->new_per_s);
+        b->tokens = fmin(b->tokens + (t_s - b->filled_s) * r->new_per_s, r->new_per_s);
         b->filled_s = t_s;
     }
     if (b->tokens < 1) return false;
@@ -355,8 +358,8 @@ Status tombstones_create(Tombstones **out, int capacity, double keep_s)
     Tombstones *t = calloc(1, sizeof *t);
     if (!t) return STATUS_NO_MEMORY;
     t->capacity = capacity + tombstones_beyond_capacity;
-    t->keep_s   = keep_s;
-    t->stone    = calloc((size_t)t->capacity, sizeof *t->stone);
+    t->keep_s = keep_s;
+    t->stone = calloc((size_t)t->capacity, sizeof *t->stone);
     if (!t->stone || entity_index_create(&t->index, t->capacity) != STATUS_OK) {
         tombstones_destroy(t);
         return STATUS_NO_MEMORY;
@@ -390,10 +393,10 @@ static int make_room(Tombstones *t, double now_s)
 
 void tombstones_put(Tombstones *t, DisEntityId id, double end_s, bool detonated)
 {
-    const uint64_t key   = entity_key(id);
+    const uint64_t key = entity_key(id);
     int            place = entity_index_find(&t->index, key);
     if (place < 0) {
-        place           = make_room(t, end_s);
+        place = make_room(t, end_s);
         t->stone[place] = (Tombstone){key, -INFINITY, -INFINITY};
         entity_index_insert(&t->index, key, place);
     }

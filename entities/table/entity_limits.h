@@ -27,16 +27,16 @@ enum { entity_rank_classes = 16, entity_rank_near_classes = 5, entity_rank_unkno
 Status entity_ranks_create(EntityRanks **out, int slots, int capacity);
 void   entity_ranks_destroy(EntityRanks *ranks);
 
-int    entity_rank_class(const double p_ecef[3], const double from_ecef[3]);
+int entity_rank_class(const double p_ecef[3], const double from_ecef[3]);
 
 /* A report of it was received: inserts it, or marks it the most recent. */
-void   entity_ranks_put(EntityRanks *ranks, int slot, DisEntityId id, bool known, int distance_class);
+void entity_ranks_put(EntityRanks *ranks, int slot, DisEntityId id, bool known, int distance_class);
 /* Updates the distances of all; times of reports are unchanged. O(slots). */
-void   entity_ranks_again(EntityRanks *ranks, int (*distance_class)(const void *user, int slot), const void *user);
-void   entity_ranks_remove(EntityRanks *ranks, int slot); /* not there: nothing happens */
-int    entity_ranks_worst(const EntityRanks *ranks);      /* -1: none is there */
+void entity_ranks_again(EntityRanks *ranks, int (*distance_class)(const void *user, int slot), const void *user);
+void entity_ranks_remove(EntityRanks *ranks, int slot); /* not there: nothing happens */
+int  entity_ranks_worst(const EntityRanks *ranks);      /* -1: none is there */
 /* The sender with the most entities; returns how many. O(senders). */
-int    entity_ranks_largest(DisEntityId *sender, const EntityRanks *ranks);
+int entity_ranks_largest(DisEntityId *sender, const EntityRanks *ranks);
 
 /* ---- rates ------------------------------------------------------------------------------------- */
 
@@ -52,7 +52,7 @@ typedef struct EntityRate EntityRate;
 Status entity_rate_create(EntityRate **out, double new_per_s);
 void   entity_rate_destroy(EntityRate *rate);
 /* One more of this sender at t_s: whether it is admitted, and then counted. Decreasing times add no tokens. */
-bool   entity_rate_take(EntityRate *rate, DisEntityId id, double t_s);
+bool entity_rate_take(EntityRate *rate, DisEntityId id, double t_s);
 
 /* ---- tombstones -------------------------------------------------------------------------------- */
 
@@ -69,9 +69,9 @@ Status tombstones_create(Tombstones **out, int capacity, double keep_s);
 void   tombstones_destroy(Tombstones *tombstones);
 
 /* An entity ended at end_s; detonated: by its Detonation. */
-void   tombstones_put(Tombstones *tombstones, DisEntityId id, double end_s, bool detonated);
+void tombstones_put(Tombstones *tombstones, DisEntityId id, double end_s, bool detonated);
 /* Whether a report at t_s is of one that had ended: before its end, or sooner than after_s after its Detonation. */
-bool   tombstones_ended(const Tombstones *tombstones, DisEntityId id, double t_s, double after_s);
+bool tombstones_ended(const Tombstones *tombstones, DisEntityId id, double t_s, double after_s);
 /* Those that went younger than keep_s. */
 uint64_t tombstones_dropped(const Tombstones *tombstones);
 

@@ -65,7 +65,9 @@ static bool blows(EntityTable *table, const EntitySlot *slot, EntityMarks *m, bo
     if (began && b->to_s < t_s) return false;
     if (!began) {
         const ExhaustJet *jet = &outlet->jet;
-        *b = (GroundBlow){.radius_m = (float)jet->radius_m, .speed_mps = (float)jet->speed_mps, .excess_k = (float)jet->excess_k,
+        *b = (GroundBlow){.radius_m = (float)jet->radius_m,
+                          .speed_mps = (float)jet->speed_mps,
+                          .excess_k = (float)jet->excess_k,
                           .from_s = is_first ? fmax(t_s - before_s, m->from_s) : t_s};
         for (int k = 0; k < 3; k++) b->at_m[k] = (float)jet->at_body[k], b->d[k] = (float)jet->d_body[k];
     }
@@ -162,8 +164,10 @@ static GroundTrack track_of(const EntitySlot *slot, const Model *model)
     const double width_m = share * model->width_m;
     const double weight_n = 1000 * t_m3 * model->length_m * model->width_m * model->height_m * gravity_mps2;
     const double heat_j_m2 = width_m > 0 ? in_ground * resistance * weight_n / (2 * width_m) : 0;
-    return (GroundTrack){.width_m = (float)width_m, .apart_m = (float)(model->width_m - width_m),
-                         .heat_j_m2 = (float)fmin(heat_j_m2, 1e6), .tracked = tracked,
+    return (GroundTrack){.width_m = (float)width_m,
+                         .apart_m = (float)(model->width_m - width_m),
+                         .heat_j_m2 = (float)fmin(heat_j_m2, 1e6),
+                         .tracked = tracked,
                          .owner = entity_key(slot->id) + 1};
 }
 
@@ -177,11 +181,11 @@ static double speed_of(const EntitySlot *slot)
 static double step_of(const EntitySlot *slot, double span_s, int most)
 {
     static const double turn_rad = 3 * rad_per_deg, least_m = 1, tick_s = 0.0625;
-    const int    algorithm = slot->reported.algorithm;
-    const double speed_mps = speed_of(slot);
-    const bool   body = dead_reckoning_in_body_axes(algorithm);
-    const double w_rps = body && dead_reckoning_turns(algorithm) ? v3_length(slot->reported.w_body_rps) : 0;
-    const double turn_rps = w_rps + v3_length(slot->reported.a_mps2) / fmax(speed_mps, 1);
+    const int           algorithm = slot->reported.algorithm;
+    const double        speed_mps = speed_of(slot);
+    const bool          body = dead_reckoning_in_body_axes(algorithm);
+    const double        w_rps = body && dead_reckoning_turns(algorithm) ? v3_length(slot->reported.w_body_rps) : 0;
+    const double        turn_rps = w_rps + v3_length(slot->reported.a_mps2) / fmax(speed_mps, 1);
     if (algorithm <= 1 || !(speed_mps > 0) || !(turn_rps * span_s > turn_rad)) return INFINITY;
     double step_s = tick_s;
     while (2 * step_s <= fmax(turn_rad / turn_rps, least_m / speed_mps) || step_s * most < span_s) step_s *= 2;
@@ -207,8 +211,8 @@ static void path_point(TrailSink *sink, GroundTrail *trail, double own_s, bool l
 {
     const EntityTable *table = sink->table;
     const EntitySlot  *slot = sink->slot;
-    Motion motion;
-    double p_ecef[3];
+    Motion             motion;
+    double             p_ecef[3];
     dead_reckon(&motion, &slot->reported, own_s - slot->report_s);
     base_of(p_ecef, slot, catalog_model(table->catalog, slot->model), motion.p_ecef, motion.r_ecef_from_body);
     settle(p_ecef, table, slot, motion.v_ecef_mps);
@@ -225,10 +229,7 @@ static void follow(TrailSink *sink, GroundTrail *trail, double from_s, double to
 }
 
 /* End of the extrapolation for t_s, the entity's own time. */
-static double own_end_s(const EntitySlot *slot, double t_s)
-{
-    return slot->report_s + entity_slot_dt(slot, t_s);
-}
+static double own_end_s(const EntitySlot *slot, double t_s) { return slot->report_s + entity_slot_dt(slot, t_s); }
 
 enum { most_points = 64, most_tail_points = 7 };
 
@@ -243,8 +244,8 @@ void entity_marks_before(EntityTable *table, EntitySlot *slot, double t_s)
 }
 
 /* After a report. */
-static void report_trail(EntityTable *table, EntitySlot *slot, EntityMarks *m, const double p_base_ecef[3], double speed_mps,
-                         double t_s)
+static void report_trail(EntityTable *table, EntitySlot *slot, EntityMarks *m, const double p_base_ecef[3],
+                         double speed_mps, double t_s)
 {
     const bool moves = speed_mps >= moving_mps;
     Motion     motion;
@@ -256,7 +257,8 @@ static void report_trail(EntityTable *table, EntitySlot *slot, EntityMarks *m, c
         m->trail.speed_mps = fmax(m->trail.speed_mps, speed_mps);
         ground_trail_point(table->ground, &m->trail, p_ecef, t_s, !moves);
     } else if (moves) {
-        m->trail = (GroundTrail){.on = true, .t_s = t_s, .shape = track_of(slot, catalog_model(table->catalog, slot->model))};
+        m->trail =
+            (GroundTrail){.on = true, .t_s = t_s, .shape = track_of(slot, catalog_model(table->catalog, slot->model))};
         memcpy(m->trail.p_ecef, p_ecef, sizeof m->trail.p_ecef);
     }
     m->trail.speed_mps = speed_mps;
@@ -277,7 +279,7 @@ void entity_marks_report(EntityTable *table, EntitySlot *slot, bool is_first, do
     EntityMarks *m = marks_of(table, slot);
     if (!slot->marks) memset(m, 0, sizeof *m);
     slot->marks = true;
-    double p_ecef[3];
+    double        p_ecef[3];
     const double *r = slot->reported.r_ecef_from_body;
     base_of(p_ecef, slot, catalog_model(table->catalog, slot->model), slot->reported.p_ecef, r);
     if (vehicle) report_trail(table, slot, m, p_ecef, speed_mps, t_s);
@@ -337,15 +339,15 @@ void entity_marks_detonation(EntityTable *table, const DisDetonation *pdu, doubl
 {
     static const double radius_m = 2.5, crater_m = 0.4;
     static const float  heat_j_m2 = 1e5f;
-    const double r_m = v3_length(pdu->p_ecef), size = cbrt(effect_charge_kg(&pdu->descriptor, false));
+    const double        r_m = v3_length(pdu->p_ecef), size = cbrt(effect_charge_kg(&pdu->descriptor, false));
     if (!(r_m >= 1e5 && r_m <= 1e8) || !(fabs(t_s) < effect_latest_s) || effect_is_kinetic(&pdu->descriptor) ||
         effect_result_is_none(pdu->result) || effect_result_is_water(pdu->result))
         return;
     if (!effect_result_is_ground(pdu->result) &&
         !(fabs(contact_above_m(&table->config.ground, pdu->p_ecef)) <= near_ground_m))
         return;
-    GroundBurn burn = {.t_s = t_s, .radius_m = (float)(radius_m * size), .crater_m = (float)(crater_m * size),
-                       .heat_j_m2 = heat_j_m2};
+    GroundBurn burn = {
+        .t_s = t_s, .radius_m = (float)(radius_m * size), .crater_m = (float)(crater_m * size), .heat_j_m2 = heat_j_m2};
     static const DisEntityType vehicle = {.kind = dis_kind_platform, .domain = dis_domain_land};
     static const double        still[3] = {0};
     memcpy(burn.p_ecef, pdu->p_ecef, sizeof burn.p_ecef);
@@ -361,7 +363,7 @@ Status entity_marks_snapshot(Snapshot *snapshot, const EntityTable *table, const
     enum { most_tail = most_tail_points + 1, most_trailing = (ground_tracks_most - ground_track_capacity) / most_tail };
     GroundTrack *tail;
     if (count > most_trailing) count = most_trailing;
-    const int room = most_tail * count;
+    const int    room = most_tail * count;
     const Status status = ground_marks_at(&snapshot->marks, &tail, table->ground, snapshot->t_s, room, arena);
     if (status != STATUS_OK) return status;
     TrailSink sink = {.table = table, .out = tail};
@@ -369,7 +371,8 @@ Status entity_marks_snapshot(Snapshot *snapshot, const EntityTable *table, const
         const EntitySlot *slot = table->slot + trailing[i];
         GroundTrail       trail = marks_of(table, slot)->trail;
         sink.slot = slot;
-        follow(&sink, &trail, marks_of(table, slot)->followed_s, own_end_s(slot, snapshot->t_s), most_tail_points, true);
+        follow(&sink, &trail, marks_of(table, slot)->followed_s, own_end_s(slot, snapshot->t_s), most_tail_points,
+               true);
     }
     snapshot->marks.tracks += sink.count;
     return STATUS_OK;

@@ -14,9 +14,9 @@ static const double largest_speed_mps = 2e4, largest_acceleration_mps2 = 1e4;
 static double timeout_of(const EntityTable *table, const EntitySlot *slot, uint8_t version)
 {
     const double *v = slot->reported.v_mps;
-    const bool flies = slot->type.domain == dis_domain_air || slot->type.domain == dis_domain_space;
-    const bool quick = slot->type.kind == dis_kind_munition || (slot->type.kind == dis_kind_platform && flies);
-    const bool stands = v[0] == 0 && v[1] == 0 && v[2] == 0 && slot->type.kind != dis_kind_munition;
+    const bool    flies = slot->type.domain == dis_domain_air || slot->type.domain == dis_domain_space;
+    const bool    quick = slot->type.kind == dis_kind_munition || (slot->type.kind == dis_kind_platform && flies);
+    const bool    stands = v[0] == 0 && v[1] == 0 && v[2] == 0 && slot->type.kind != dis_kind_munition;
     return version >= 7 && (!quick || stands) ? table->config.timeout_land_v7_s : table->config.timeout_s;
 }
 
@@ -69,9 +69,9 @@ static void close_interval(EntitySlot *slot, const double p_next_ecef[3], const 
     double missed_m[3], turn[9];
     v3_sub(missed_m, p_next_ecef, motion.p_ecef);
     m3_tmul(turn, motion.r_ecef_from_body, r_next);
-    slot->missed.m   = v3_length(missed_m);
+    slot->missed.m = v3_length(missed_m);
     slot->missed.rad = acos(clamp(0.5 * (turn[0] + turn[4] + turn[8] - 1), -1, 1));
-    slot->missed.s   = fmax(t_s - slot->report_s, 0);
+    slot->missed.s = fmax(t_s - slot->report_s, 0);
     if (slot->reported.algorithm == 1) slot->distance_m += entity_slot_forward(slot, p_next_ecef, r_next);
     else slot->distance_m += entity_slot_forward(slot, motion.p_ecef, motion.r_ecef_from_body);
     if (!isfinite(slot->distance_m) || fabs(slot->distance_m) > 1e9) slot->distance_m = 0;
@@ -91,7 +91,7 @@ static void take_shift(const EntityTable *table, EntitySlot *slot, uint32_t stam
     const double left_s = entity_slot_shift_left(slot->shift_s, table->arrival_s - slot->shift_from_s);
     const double moved_s = t_s - slot->report_s - dis_timestamp_step_s(before, stamp);
     const double shift_s = (slot->shift_s != 0 ? left_s : 0) + (fabs(moved_s) >= least_s ? moved_s : 0);
-    slot->shift_s      = fabs(shift_s) <= most_s ? shift_s : 0;
+    slot->shift_s = fabs(shift_s) <= most_s ? shift_s : 0;
     slot->shift_from_s = table->arrival_s;
 }
 
@@ -140,10 +140,12 @@ static void take_state(EntityTable *table, EntitySlot *slot, const ReportedState
 
     const Kinematics   *k = &slot->reported;
     const bool          frozen = entity_slot_frozen(slot), turns = !frozen && dead_reckoning_turns(k->algorithm);
-    const DriveEvidence evidence = {.type = slot->type, .appearance = appearance,
-                                   .speed_mps = frozen ? 0 : v3_length(k->v_mps), .climb_mps = frozen ? 0 : climb_mps(k),
-                                   .turn_rps = turns ? k->w_body_rps[2] : 0};
-    const bool was_destroyed = slot->drives.destroyed;
+    const DriveEvidence evidence = {.type = slot->type,
+                                    .appearance = appearance,
+                                    .speed_mps = frozen ? 0 : v3_length(k->v_mps),
+                                    .climb_mps = frozen ? 0 : climb_mps(k),
+                                    .turn_rps = turns ? k->w_body_rps[2] : 0};
+    const bool          was_destroyed = slot->drives.destroyed;
     if (is_first) drives_begin(&slot->drives, &evidence, t_s);
     else drives_report(&slot->drives, &evidence, t_s);
     table->changes += is_first || slot->drives.destroyed != was_destroyed;

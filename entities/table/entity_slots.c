@@ -10,8 +10,8 @@ EntitySlot *entity_slot_find(const EntityTable *table, DisEntityId id)
 
 EntitySlot *entity_slot_new(EntityTable *table, DisEntityId id, double t_s)
 {
-    const int   s    = table->free_count > 0 ? table->free_slot[--table->free_count] : table->slot_end++;
-    EntitySlot *slot = table->slot + s;
+    const int      s = table->free_count > 0 ? table->free_slot[--table->free_count] : table->slot_end++;
+    EntitySlot    *slot = table->slot + s;
     const uint32_t generation = slot->generation + 1;
     memset(slot, 0, sizeof *slot);
     slot->generation = generation;
@@ -56,8 +56,8 @@ double entity_slot_spin(const EntitySlot *slot, double t_s)
 double entity_slot_forward(const EntitySlot *slot, const double p_ecef[3], const double r_ecef_from_body[9])
 {
     const double *r0 = slot->reported.r_ecef_from_body;
-    const double sum[3] = {r0[0] + r_ecef_from_body[0], r0[3] + r_ecef_from_body[3], r0[6] + r_ecef_from_body[6]};
-    double forward[3], moved[3];
+    const double  sum[3] = {r0[0] + r_ecef_from_body[0], r0[3] + r_ecef_from_body[3], r0[6] + r_ecef_from_body[6]};
+    double        forward[3], moved[3];
     if (!v3_normalize(forward, sum)) return 0;
     v3_sub(moved, p_ecef, slot->reported.p_ecef);
     return v3_dot(moved, forward);
@@ -90,9 +90,9 @@ static void rank_all_again(EntityTable *table, double t_s)
 static void place_focus(EntityTable *table, const double p_ecef[3], double t_s)
 {
     static const double far_m = 500, often_s = 1;
-    EntityFocus *focus = &table->focus;
-    const bool   first = !focus->placed || !focus->of_host;
-    double       went[3];
+    EntityFocus        *focus = &table->focus;
+    const bool          first = !focus->placed || !focus->of_host;
+    double              went[3];
     memcpy(focus->p_ecef, p_ecef, sizeof focus->p_ecef);
     focus->placed = focus->of_host = true;
     v3_sub(went, focus->p_ecef, focus->ranked_ecef);
@@ -107,15 +107,14 @@ void entity_slot_rank(EntityTable *table, EntitySlot *slot, const double p_ecef[
     if (same_id(slot->id, table->focus.host)) place_focus(table, p_ecef, t_s);
     if (same_id(slot->id, table->focus.host) || same_id(slot->id, table->focus.also))
         entity_ranks_remove(table->ranks, s);
-    else
-        entity_ranks_put(table->ranks, s, slot->id, slot->known, distance_class(table, p_ecef));
+    else entity_ranks_put(table->ranks, s, slot->id, slot->known, distance_class(table, p_ecef));
 }
 
 bool entity_slot_admit(EntityTable *table, EntitySlot *newcomer, double t_s)
 {
     if (table->count <= table->config.capacity) return true;
     const int   worst = entity_ranks_worst(table->ranks);
-    EntitySlot *slot  = worst < 0 ? newcomer : table->slot + worst;
+    EntitySlot *slot = worst < 0 ? newcomer : table->slot + worst;
     if (slot != newcomer) {
         entity_slot_remove(table, slot, t_s, &table->counters.evicted);
         return true;

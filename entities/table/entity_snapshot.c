@@ -26,11 +26,11 @@ void snapshot_drift(double *drift_m, double *drift_rad, double age_s, const Snap
                     double heartbeat_s)
 {
     static const double threshold_rad = 3 * (3.14159265358979323846 / 180);
-    *drift_m   = otherwise_m;
+    *drift_m = otherwise_m;
     *drift_rad = threshold_rad * fmin(fmax(age_s, 0) / heartbeat_s, 1);
     if (!(missed->s > 0)) return;
     const double share = clamp(age_s / missed->s, 0, 1);
-    *drift_m   = missed->m * share * share;
+    *drift_m = missed->m * share * share;
     *drift_rad = missed->rad * share;
 }
 
@@ -186,9 +186,9 @@ static bool is_near_earth(const double p_ecef[3])
 static void reckon_block(SnapshotEntity *entity, const EntityTable *table, const Ordered *order, int algorithm,
                          const int *member, int count, double t_s)
 {
-    MotionBlock block;
+    MotionBlock      block;
     KinematicsArrays k;
-    MotionArrays m;
+    MotionArrays     m;
 
     block_arrays(&k, &m, &block, count);
     for (int b = 0; b < count; b++) {
@@ -206,8 +206,8 @@ static void reckon_block(SnapshotEntity *entity, const EntityTable *table, const
 
     for (int b = 0; b < count; b++) {
         const EntitySlot *slot = table->slot + order[member[b]].slot;
-        const bool stands = entity_slot_frozen(slot) || slot->stopped;
-        SnapshotEntity *e = entity + member[b];
+        const bool        stands = entity_slot_frozen(slot) || slot->stopped;
+        SnapshotEntity   *e = entity + member[b];
         for (int i = 0; i < 3; i++) {
             e->p_ecef[i] = m.p_ecef[i][b];
             e->v_ecef_mps[i] = stands ? 0 : m.v_ecef_mps[i][b];
@@ -260,7 +260,8 @@ static JointDrive drive_joints(const EntitySlot *slot, const SnapshotEntity *e, 
     const bool   stands = entity_slot_frozen(slot) || slot->stopped;
     const double forward_m =
         entity_slot_dt(slot, t_s) != 0 ? entity_slot_forward(slot, e->p_ecef, e->r_ecef_from_body) : 0;
-    return (JointDrive){.spin_s = entity_slot_spin(slot, t_s), .distance_m = slot->distance_m + forward_m,
+    return (JointDrive){.spin_s = entity_slot_spin(slot, t_s),
+                        .distance_m = slot->distance_m + forward_m,
                         .speed_mps = stands ? 0 : v3_length(e->v_ecef_mps)};
 }
 
@@ -271,7 +272,8 @@ typedef struct Joints {
     double              time_s, hold_s;
 } Joints;
 
-static void pose_nodes(NodePose *pose, double *joint_value, const Model *model, const Joints *joints, const SnapshotEntity *e)
+static void pose_nodes(NodePose *pose, double *joint_value, const Model *model, const Joints *joints,
+                       const SnapshotEntity *e)
 {
     articulation_joint_values(joint_value, model, joints->articulation, &joints->drive, joints->time_s, joints->hold_s);
     entity_effects_wreck_joints(joint_value, model, e, joints->articulation->count);
@@ -287,19 +289,21 @@ void snapshot_pose(NodePose *pose, double *joint_value, const Snapshot *snapshot
     }
     const SnapshotJoints *joints = &snapshot->joints[index];
     Articulation          articulation;
-    articulation.t_s   = joints->report_s;
+    articulation.t_s = joints->report_s;
     articulation.count = joints->count;
     if (joints->count > 0)
-        memcpy(articulation.joint, snapshot->joint_report + joints->first, (size_t)joints->count * sizeof *articulation.joint);
+        memcpy(articulation.joint, snapshot->joint_report + joints->first,
+               (size_t)joints->count * sizeof *articulation.joint);
     pose_nodes(pose, joint_value, model, &(Joints){&articulation, joints->drive, joints->time_s, joints->hold_s}, e);
 }
 
-static void keep_joints(SnapshotJoints *to, JointReport *report, const EntitySlot *slot, const SnapshotEntity *e, double t_s)
+static void keep_joints(SnapshotJoints *to, JointReport *report, const EntitySlot *slot, const SnapshotEntity *e,
+                        double t_s)
 {
     to->report_s = slot->articulation.t_s;
-    to->hold_s   = slot->hold_s;
-    to->time_s   = entity_slot_time(slot, t_s);
-    to->drive    = drive_joints(slot, e, t_s);
+    to->hold_s = slot->hold_s;
+    to->time_s = entity_slot_time(slot, t_s);
+    to->drive = drive_joints(slot, e, t_s);
     memcpy(report + to->first, slot->articulation.joint, (size_t)to->count * sizeof *report);
 }
 
@@ -316,8 +320,9 @@ static void finish_entity(SnapshotEntity *e, SnapshotJoints *joints, JointReport
     e->model = slot->model;
     e->age_s = fmax(t_s - slot->report_s, 0);
     const double moved_s = fmax(e->age_s - slot->paused_s, 0); /* time stopped does not add to an error */
-    e->position_error_m = stands ? 0 : position_error_m(moved_s, slot->timeout_s / timeout_per_heartbeat, slot->hold_s,
-                                                        v3_length(e->v_ecef_mps));
+    e->position_error_m = stands ? 0
+                                 : position_error_m(moved_s, slot->timeout_s / timeout_per_heartbeat, slot->hold_s,
+                                                    v3_length(e->v_ecef_mps));
     snapshot_drift(&e->drift_m, &e->drift_rad, moved_s, &slot->missed, e->position_error_m,
                    slot->timeout_s / timeout_per_heartbeat);
     if (stands) e->drift_m = e->drift_rad = 0;
@@ -362,8 +367,8 @@ static Status add_puffs(Snapshot *snapshot, const EntityTable *table, const Orde
         if (pass == 1 && !(carried = arena_alloc(arena, (size_t)found, sizeof *carried))) return STATUS_NO_MEMORY;
         count = 0;
         for (int e = 0; e < snapshot->count; e++) {
-            const int more = entity_effects_carried(some, table, table->slot + order[e].slot, snapshot->entity + e,
-                                                    snapshot->t_s);
+            const int more =
+                entity_effects_carried(some, table, table->slot + order[e].slot, snapshot->entity + e, snapshot->t_s);
             if (pass == 1) memcpy(carried + count, some, (size_t)more * sizeof *some);
             count += more;
             if (pass == 1 && count == found) break;
@@ -372,7 +377,8 @@ static Status add_puffs(Snapshot *snapshot, const EntityTable *table, const Orde
     return entity_effects_snapshot(snapshot, table, carried, count, arena);
 }
 
-/* A cloud of chaff, or of a cartridge of chaff and flare (SISO-REF-010, expendables, category 3), which is a flare too. */
+/* A cloud of chaff, or of a cartridge of chaff and flare (SISO-REF-010, expendables, category 3), which is a flare too.
+ */
 static bool is_chaff(const EntityTable *table, const EntitySlot *slot)
 {
     return catalog_is_chaff(table->catalog, slot->model) || (slot->type.kind == 8 && slot->type.category == 3);
@@ -410,8 +416,8 @@ Status entity_table_snapshot(Snapshot *out, const EntityTable *table, double t_s
 
     if (!isfinite(t_s)) return STATUS_BAD_VALUE;
     const size_t capacity = (size_t)table->count + 1;
-    Ordered *order = arena_alloc(arena, capacity, sizeof *order);
-    Ordered *scratch = arena_alloc(arena, capacity, sizeof *scratch);
+    Ordered     *order = arena_alloc(arena, capacity, sizeof *order);
+    Ordered     *scratch = arena_alloc(arena, capacity, sizeof *scratch);
     if (!order || !scratch) return STATUS_NO_MEMORY;
 
     int clouds = 0;
@@ -427,11 +433,11 @@ Status entity_table_snapshot(Snapshot *out, const EntityTable *table, double t_s
         order[snapshot.count++] = (Ordered){entity_key(slot->id), s};
     }
     if (snapshot.count > 0) order = sort_by_id(order, scratch, snapshot.count);
-    const int    found   = snapshot.count;
+    const int    found = snapshot.count;
     const Status nearest = keep_nearest(order, &snapshot.count, table, arena);
     if (nearest != STATUS_OK) return nearest;
     snapshot.left_out = found - snapshot.count;
-    snapshot.entity   = arena_alloc(arena, (size_t)snapshot.count + 1, sizeof *snapshot.entity);
+    snapshot.entity = arena_alloc(arena, (size_t)snapshot.count + 1, sizeof *snapshot.entity);
     if (!snapshot.entity) return STATUS_NO_MEMORY;
 
     snapshot.joints = arena_alloc(arena, (size_t)snapshot.count + 1, sizeof *snapshot.joints);
@@ -448,7 +454,8 @@ Status entity_table_snapshot(Snapshot *out, const EntityTable *table, double t_s
             __builtin_prefetch(&next->articulation.count);
         }
         const int nodes = catalog_model(table->catalog, slot->model)->node_count;
-        if (nodes > INT_MAX - snapshot.node_count || slot->articulation.count > INT_MAX - reports) return STATUS_NO_MEMORY;
+        if (nodes > INT_MAX - snapshot.node_count || slot->articulation.count > INT_MAX - reports)
+            return STATUS_NO_MEMORY;
         snapshot.entity[e].first_node = snapshot.node_count;
         snapshot.node_count += nodes;
         snapshot.joints[e].first = reports;
@@ -458,7 +465,7 @@ Status entity_table_snapshot(Snapshot *out, const EntityTable *table, double t_s
     }
     snapshot.joint_report = arena_alloc(arena, (size_t)reports + 1, sizeof *snapshot.joint_report);
     if (!snapshot.joint_report) return STATUS_NO_MEMORY;
-    Pool     *pool   = table->config.pool;
+    Pool     *pool = table->config.pool;
     const int chunks = (snapshot.count + block_count - 1) / block_count;
 
     Chunks all = {&snapshot, table, order};
@@ -479,13 +486,18 @@ bool entity_table_pose_nodes(SnapshotEntity *out, NodePose *node, double *joint_
     const EntitySlot *slot = table->slot + handle.slot;
     if (entity_slot_silent(slot, t_s)) return false;
 
-    SnapshotEntity e = {.id = slot->id, .type = slot->type, .force = slot->force, .appearance = slot->appearance,
-                        .model = slot->model, .age_s = fmax(t_s - slot->report_s, 0)};
-    const Ordered order = {entity_key(slot->id), (int)handle.slot};
-    const int     only = 0;
+    SnapshotEntity e = {.id = slot->id,
+                        .type = slot->type,
+                        .force = slot->force,
+                        .appearance = slot->appearance,
+                        .model = slot->model,
+                        .age_s = fmax(t_s - slot->report_s, 0)};
+    const Ordered  order = {entity_key(slot->id), (int)handle.slot};
+    const int      only = 0;
     reckon_block(&e, table, &order, slot->reported.algorithm, &only, 1, t_s);
     if (node) {
-        const Joints joints = {&slot->articulation, drive_joints(slot, &e, t_s), entity_slot_time(slot, t_s), slot->hold_s};
+        const Joints joints = {&slot->articulation, drive_joints(slot, &e, t_s), entity_slot_time(slot, t_s),
+                               slot->hold_s};
         pose_nodes(node, joint_value, catalog_model(table->catalog, slot->model), &joints, &e);
     }
     place_origin(&e, table, slot);

@@ -8,8 +8,14 @@ enum { capacity_limit = 1 << 22 };
 
 EntityTableConfig entity_table_default_config(void)
 {
-    return (EntityTableConfig){.capacity = 16384, .shown = capacity_limit, .timeout_s = 12, .timeout_land_v7_s = 132,
-                               .extrapolation_limit_s = 12, .rate_limit_rps = 20, .ambient_s = 3600, .new_per_s = 65536};
+    return (EntityTableConfig){.capacity = 16384,
+                               .shown = capacity_limit,
+                               .timeout_s = 12,
+                               .timeout_land_v7_s = 132,
+                               .extrapolation_limit_s = 12,
+                               .rate_limit_rps = 20,
+                               .ambient_s = 3600,
+                               .new_per_s = 65536};
 }
 
 static bool config_is_usable(const EntityTableConfig *config)
@@ -54,7 +60,8 @@ Status entity_table_create(EntityTable **out, const EntityTableConfig *config, c
         goto fail;
     status = entity_index_create(&table->index, slots);
     if (status == STATUS_OK) status = entity_ranks_create(&table->ranks, slots, config->capacity);
-    if (status == STATUS_OK) status = tombstones_create(&table->tombstones, config->capacity, config->timeout_land_v7_s);
+    if (status == STATUS_OK)
+        status = tombstones_create(&table->tombstones, config->capacity, config->timeout_land_v7_s);
     if (status == STATUS_OK) status = entity_rate_create(&table->rate, config->new_per_s);
     if (status != STATUS_OK) goto fail;
     status = ground_history_create(&table->ground);
@@ -63,8 +70,7 @@ Status entity_table_create(EntityTable **out, const EntityTableConfig *config, c
     status = STATUS_BAD_VALUE;
     if (etc_path(path, sizeof path, "effects.csv")) status = effect_history_create(&table->effects, path);
     if (status != STATUS_OK) goto fail;
-    for (int m = 0; m < catalog_model_count(catalog); m++)
-        table->model_roles[m] = roles_of(catalog_model(catalog, m));
+    for (int m = 0; m < catalog_model_count(catalog); m++) table->model_roles[m] = roles_of(catalog_model(catalog, m));
 
     *out = table;
     return STATUS_OK;
@@ -139,14 +145,16 @@ const EffectCounters *entity_table_effect_counters(const EntityTable *table)
 static const uint16_t all_ids = 0xFFFF;
 
 enum { frozen_transmits = 1 << 1 }; /* frozen behaviour: entities go on transmitting updates */
-enum { most_rounds = 1000 }; /* of one Fire PDU: a burst, not a number that a sender made up */
+enum { most_rounds = 1000 };        /* of one Fire PDU: a burst, not a number that a sender made up */
 
 void entity_table_fire(EntityTable *table, const DisFire *pdu, double t_s)
 {
     effect_history_fire(table->effects, pdu, t_s);
     EntitySlot *firing = entity_slot_find(table, pdu->firing), *munition = entity_slot_find(table, pdu->munition);
-    const int rounds = pdu->descriptor.quantity > 0 ? pdu->descriptor.quantity : 1;
-    if (firing) drives_fire(&firing->drives, effect_charge_kg(&pdu->descriptor, true), rounds < most_rounds ? rounds : most_rounds);
+    const int   rounds = pdu->descriptor.quantity > 0 ? pdu->descriptor.quantity : 1;
+    if (firing)
+        drives_fire(&firing->drives, effect_charge_kg(&pdu->descriptor, true),
+                    rounds < most_rounds ? rounds : most_rounds);
     if (munition && munition->type.kind == dis_kind_munition) drives_launch(&munition->drives, t_s);
     if (firing || munition) table->changes++;
 }
@@ -254,7 +262,7 @@ static Status take_report(EntityTable *table, const DisPdu *pdu, double t_s, Dis
 void entity_table_arrival(EntityTable *table, double now_s, bool by_stamp)
 {
     table->arrival_s = now_s;
-    table->by_stamp  = by_stamp;
+    table->by_stamp = by_stamp;
 }
 
 void entity_table_pdu(EntityTable *table, const DisPdu *pdu, double t_s, DisCounters *counters)
@@ -265,11 +273,25 @@ void entity_table_pdu(EntityTable *table, const DisPdu *pdu, double t_s, DisCoun
     case dis_pdu_entity_state_update:
         if (take_report(table, pdu, t_s, counters) == STATUS_UNSUPPORTED) counters->dropped[DIS_DROP_TABLE_FULL]++;
         break;
-    case dis_pdu_fire: entity_table_fire(table, &pdu->fire, t_s); break;
-    case dis_pdu_detonation: entity_table_detonation(table, &pdu->detonation, t_s); break;
-    case dis_pdu_remove_entity: case dis_pdu_remove_entity_r: entity_table_remove(table, &pdu->remove, t_s); break;
-    case dis_pdu_start_resume: case dis_pdu_start_resume_r: entity_table_start(table, &pdu->start, t_s); break;
-    case dis_pdu_stop_freeze: case dis_pdu_stop_freeze_r: entity_table_stop(table, &pdu->stop, t_s); break;
-    default: break;
+    case dis_pdu_fire:
+        entity_table_fire(table, &pdu->fire, t_s);
+        break;
+    case dis_pdu_detonation:
+        entity_table_detonation(table, &pdu->detonation, t_s);
+        break;
+    case dis_pdu_remove_entity:
+    case dis_pdu_remove_entity_r:
+        entity_table_remove(table, &pdu->remove, t_s);
+        break;
+    case dis_pdu_start_resume:
+    case dis_pdu_start_resume_r:
+        entity_table_start(table, &pdu->start, t_s);
+        break;
+    case dis_pdu_stop_freeze:
+    case dis_pdu_stop_freeze_r:
+        entity_table_stop(table, &pdu->stop, t_s);
+        break;
+    default:
+        break;
     }
 }

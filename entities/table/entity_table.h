@@ -26,26 +26,26 @@ typedef struct EntityTableConfig {
                                    * 132 */
     double extrapolation_limit_s; /* longest dead reckoning, then the entity is held; 12. Longer in proportion for
                                    * those with the long timeout, whose heartbeat is longer too */
-    double rate_limit_rps;        /* a larger angular rate is not extrapolated; 20 */
-    double new_per_s;             /* new entities of a sender per second, and at once; 65536: all its ids */
-    double ambient_s;             /* time for which a new entity is assumed to have been in its first state; 3600 */
-    Pool  *pool;                  /* helps with snapshots; NULL: the caller alone. The same bits either way */
+    double        rate_limit_rps; /* a larger angular rate is not extrapolated; 20 */
+    double        new_per_s;      /* new entities of a sender per second, and at once; 65536: all its ids */
+    double        ambient_s;      /* time for which a new entity is assumed to have been in its first state; 3600 */
+    Pool         *pool;           /* helps with snapshots; NULL: the caller alone. The same bits either way */
     ContactGround ground;         /* ground entities are clamped to it in every pose; none: not clamped */
 } EntityTableConfig;
 
 /* Why entities came and went, and what was refused, how many. */
 typedef struct EntityCounters {
     uint64_t created, timed_out, deactivated, removed, updates_without_entity, unknown_articulation;
-    uint64_t detonated;      /* munitions ended by their Detonation */
-    uint64_t late;           /* reports older than the latest or than the entity's end, or of a munition after
-                              * its Detonation */
-    uint64_t motion_refused; /* reports with a velocity, acceleration or angular rate that is not finite or not
-                              * possible (2e4 m/s, 1e4 m/s2, rate_limit_rps): that one vector is taken as zero */
-    uint64_t evicted;        /* evicted for others when the table was full */
-    uint64_t refused;        /* refused by a full table, as they would be evicted at once */
-    uint64_t over_rate;      /* reports of new ones, not taken in because their sender added more than new_per_s */
+    uint64_t detonated;          /* munitions ended by their Detonation */
+    uint64_t late;               /* reports older than the latest or than the entity's end, or of a munition after
+                                  * its Detonation */
+    uint64_t motion_refused;     /* reports with a velocity, acceleration or angular rate that is not finite or not
+                                  * possible (2e4 m/s, 1e4 m/s2, rate_limit_rps): that one vector is taken as zero */
+    uint64_t evicted;            /* evicted for others when the table was full */
+    uint64_t refused;            /* refused by a full table, as they would be evicted at once */
+    uint64_t over_rate;          /* reports of new ones, not taken in because their sender added more than new_per_s */
     uint64_t tombstones_dropped; /* tombstones dropped for lack of space while a late report was still possible */
-    uint64_t marks_forgotten; /* the oldest ground marks, beyond the capacity */
+    uint64_t marks_forgotten;    /* the oldest ground marks, beyond the capacity */
 } EntityCounters;
 
 EntityTableConfig entity_table_default_config(void);
@@ -56,9 +56,9 @@ void   entity_table_destroy(EntityTable *table);
 /* What a full table keeps: the host, `also` (its aim), and entities with last reports near the host's last report.
  * 0:0:0: none. Without a host, or after its end: the previous position. A snapshot of more than config.shown takes the
  * nearest to that position. Extrapolated positions are not used, so the result does not depend on snapshot times. */
-void   entity_table_focus(EntityTable *table, DisEntityId host, DisEntityId also);
+void entity_table_focus(EntityTable *table, DisEntityId host, DisEntityId also);
 /* The sender that has most entities here; returns how many. O(senders). */
-int    entity_table_largest_sender(DisEntityId *sender, const EntityTable *table);
+int entity_table_largest_sender(DisEntityId *sender, const EntityTable *table);
 
 /* A report that deactivates (appearance bit 23) removes. A frozen entity (bit 21) is stationary, and so is one named by
  * Stop/Freeze (0xFFFF: any; entity 0: a whole application) until Start/Resume or its own next report.
@@ -73,15 +73,15 @@ void   entity_table_remove(EntityTable *table, const DisRemoveEntity *pdu, doubl
 void   entity_table_start(EntityTable *table, const DisStartResume *pdu, double t_s);
 void   entity_table_stop(EntityTable *table, const DisStopFreeze *pdu, double t_s);
 /* Removes those silent for too long at t_s. */
-void   entity_table_expire(EntityTable *table, double t_s);
+void entity_table_expire(EntityTable *table, double t_s);
 
-/* For PDUs in order of arrival: the next one arrived at now_s, and t_s is by its sender's stamps. The sender's clock may then
- * have been set since an entity's last report: the pose does not jump for that, but comes round within seconds, at most
- * half as fast again or half as slow. Not called: poses are those of t_s. */
-void   entity_table_arrival(EntityTable *table, double now_s, bool by_stamp);
+/* For PDUs in order of arrival: the next one arrived at now_s, and t_s is by its sender's stamps. The sender's clock
+ * may then have been set since an entity's last report: the pose does not jump for that, but comes round within
+ * seconds, at most half as fast again or half as slow. Not called: poses are those of t_s. */
+void entity_table_arrival(EntityTable *table, double now_s, bool by_stamp);
 /* Any decoded PDU: checked, and passed to the function above of its type; types that the table does not need are
  * ignored, and an instant that is not finite. Every drop is counted. This is what replay and the node call. */
-void   entity_table_pdu(EntityTable *table, const DisPdu *pdu, double t_s, DisCounters *counters);
+void entity_table_pdu(EntityTable *table, const DisPdu *pdu, double t_s, DisCounters *counters);
 
 int          entity_table_count(const EntityTable *table);
 EntityHandle entity_table_find(const EntityTable *table, DisEntityId id);

@@ -23,7 +23,7 @@ typedef struct EntitySlot {
     uint32_t      appearance;
     int           model;
     Origin        origin;
-    uint32_t      roles;      /* of the model's parts: 1 << HeatRole */
+    uint32_t      roles; /* of the model's parts: 1 << HeatRole */
     double        created_s, report_s;
     double        timeout_s;  /* silence longer than this ends it */
     double        hold_s;     /* longest extrapolation */
@@ -33,13 +33,13 @@ typedef struct EntitySlot {
     bool          trails;     /* its trail is on */
     bool          reports_on; /* the Stop/Freeze lets it go on reporting: a report does not end it */
     double        stop_s;
-    double        paused_s;   /* spent stopped since the report */
-    uint32_t      stamp;      /* of its last report */
+    double        paused_s;              /* spent stopped since the report */
+    uint32_t      stamp;                 /* of its last report */
     double        shift_s, shift_from_s; /* ahead of its time by this at that time, and less and less since */
-    double        spin_s, spin_from_s; /* running clock at spin_from_s */
-    double        distance_m; /* distance travelled forward, at the report */
+    double        spin_s, spin_from_s;   /* running clock at spin_from_s */
+    double        distance_m;            /* distance travelled forward, at the report */
     SnapshotMiss  missed;
-    Kinematics    reported;   /* as sanitized: entity_report.c */
+    Kinematics    reported; /* as sanitized: entity_report.c */
     DriveState    drives;
     Articulation  articulation;
     uint64_t      effect[entity_effect_positions]; /* what it gives off now: handles of effect_history.h */
@@ -47,21 +47,21 @@ typedef struct EntitySlot {
 
 /* What an entity leaves on the ground at present, beside its slot. */
 typedef struct EntityMarks {
-    bool        stands;        /* at this place, since from_s */
-    double      p_ecef[3];     /* of the model's origin */
+    bool        stands;    /* at this place, since from_s */
+    double      p_ecef[3]; /* of the model's origin */
     double      r_ecef_from_body[9];
     double      from_s;
-    GroundBlow  blow;          /* of its exhaust, from this place */
-    uint64_t    stand;         /* handle of ground_marks.h; 0: not recorded yet */
+    GroundBlow  blow;  /* of its exhaust, from this place */
+    uint64_t    stand; /* handle of ground_marks.h; 0: not recorded yet */
     GroundTrail trail;
-    double      followed_s;    /* the entity's own time up to which the trail has been followed */
+    double      followed_s; /* the entity's own time up to which the trail has been followed */
 } EntityMarks;
 
 /* Where what matters is: entity_table_focus. */
 typedef struct EntityFocus {
     DisEntityId host, also;
-    bool        placed;        /* p_ecef: of the last report of a host that was in the table */
-    bool        of_host;       /* of this one */
+    bool        placed;  /* p_ecef: of the last report of a host that was in the table */
+    bool        of_host; /* of this one */
     double      p_ecef[3];
     double      ranked_ecef[3], ranked_s; /* from where, and when, all distances were last taken */
 } EntityFocus;
@@ -86,23 +86,26 @@ struct EntityTable {
     ModelStand       *stood;       /* [catalog_model_count], of models that have stood */
     uint64_t          changes;     /* entity_table_changes */
     EntityIndex       index;
-    EntityRanks      *ranks;       /* of all but the focus' own */
+    EntityRanks      *ranks; /* of all but the focus' own */
     EntityFocus       focus;
-    EntitySlot       *slot;        /* [config.capacity + 1]: a newcomer's too; used below slot_end */
-    int              *free_slot;   /* stack of those below slot_end that are free */
+    EntitySlot       *slot;      /* [config.capacity + 1]: a newcomer's too; used below slot_end */
+    int              *free_slot; /* stack of those below slot_end that are free */
     int               slot_end, free_count, count, stopped_count;
-    double            arrival_s;   /* entity_table_arrival; NaN: not called */
+    double            arrival_s; /* entity_table_arrival; NaN: not called */
     bool              by_stamp;
     Tombstones       *tombstones;
     EntityRate       *rate;
     EntityCounters    counters;
     EffectHistory    *effects;
-    EntityMarks      *mark;        /* [config.capacity + 1] */
+    EntityMarks      *mark; /* [config.capacity + 1] */
     GroundHistory    *ground;
 };
 
 static inline bool entity_slot_lives(const EntitySlot *slot) { return slot->generation & 1; }
-static inline bool entity_slot_frozen(const EntitySlot *slot) { return slot->appearance >> dis_appearance_frozen_bit & 1; }
+static inline bool entity_slot_frozen(const EntitySlot *slot)
+{
+    return slot->appearance >> dis_appearance_frozen_bit & 1;
+}
 /* Stopped entities are not expected to report, and the time that they were does not count afterwards. */
 static inline bool entity_slot_silent(const EntitySlot *slot, double t_s)
 {
@@ -114,8 +117,8 @@ static inline bool entity_slot_silent(const EntitySlot *slot, double t_s)
 static inline double entity_slot_shift_left(double shift_s, double dt_s)
 {
     static const double fast = 0.5, fall_s = 0.5, slow = 0.02;
-    const double high_s = fast * fall_s, low_s = slow * fall_s, sign = shift_s < 0 ? -1 : 1;
-    double       left_s = fabs(shift_s), rest_s = fmax(dt_s, 0);
+    const double        high_s = fast * fall_s, low_s = slow * fall_s, sign = shift_s < 0 ? -1 : 1;
+    double              left_s = fabs(shift_s), rest_s = fmax(dt_s, 0);
     if (left_s > high_s) {
         const double took_s = fmin((left_s - high_s) / fast, rest_s);
         left_s -= fast * took_s;
@@ -169,8 +172,8 @@ void entity_effects_report(EntityTable *table, EntitySlot *slot, double t_s);
 void entity_effects_end(EntityTable *table, EntitySlot *slot, double t_s);
 /* What it carries along at t_s: the flame behind a motor, exhaust gas, a decoy's fire. Returns how many puffs. */
 enum { entity_carried_max = 6 };
-int  entity_effects_carried(EffectPuff out[entity_carried_max], const EntityTable *table, const EntitySlot *slot,
-                            const SnapshotEntity *entity, double t_s);
+int    entity_effects_carried(EffectPuff out[entity_carried_max], const EntityTable *table, const EntitySlot *slot,
+                              const SnapshotEntity *entity, double t_s);
 Status entity_effects_snapshot(Snapshot *snapshot, const EntityTable *table, const EffectPuff *carried,
                                int carried_count, Arena *arena);
 /* reports: of joints, by the sender. */
@@ -187,5 +190,6 @@ void entity_marks_start(EntityTable *table, EntitySlot *slot, double t_s);
 void entity_marks_end(EntityTable *table, EntitySlot *slot, bool silent, double t_s);
 void entity_marks_detonation(EntityTable *table, const DisDetonation *pdu, double t_s);
 /* trailing[count]: slots of the snapshot that trail, by id. */
-Status entity_marks_snapshot(Snapshot *snapshot, const EntityTable *table, const int *trailing, int count, Arena *arena);
+Status entity_marks_snapshot(Snapshot *snapshot, const EntityTable *table, const int *trailing, int count,
+                             Arena *arena);
 #endif

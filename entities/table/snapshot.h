@@ -20,16 +20,17 @@
 
 /* What heats an entity at one instant. */
 typedef struct EntityDrives {
-    double since_s;      /* exercise time of its first report */
-    float  engine;       /* share of full power: 0.6 idling, 1 at 10 m/s on level ground, or at less uphill and in turns; air
-                          * platforms 1; 0: stopped */
-    float  speed_mps;    /* as reported; 0 when frozen */
-    float  flying;       /* 1: an air platform that is not destroyed */
-    float  alive;        /* 1: a life form alive; a building not destroyed */
-    float  burning;      /* 1: in flames, or destroyed before our eyes in the last ten minutes; 0.1: damaged, a plume of smoke from it */
-    float  motor;        /* 1: a munition's motor burns, in its first two seconds */
-    float  flare;        /* 1: an expendable's grain burns, in its first four seconds */
-    double fired_kg[2];  /* propellant of all its shots: of small guns (below drives_large_kg a shot), of large ones */
+    double since_s; /* exercise time of its first report */
+    float  engine;  /* share of full power: 0.6 idling, 1 at 10 m/s on level ground, or at less uphill and in turns; air
+                     * platforms 1; 0: stopped */
+    float speed_mps; /* as reported; 0 when frozen */
+    float flying;    /* 1: an air platform that is not destroyed */
+    float alive;     /* 1: a life form alive; a building not destroyed */
+    float burning; /* 1: in flames, or destroyed before our eyes in the last ten minutes; 0.1: damaged, a plume of smoke
+                      from it */
+    float  motor;  /* 1: a munition's motor burns, in its first two seconds */
+    float  flare;  /* 1: an expendable's grain burns, in its first four seconds */
+    double fired_kg[2]; /* propellant of all its shots: of small guns (below drives_large_kg a shot), of large ones */
 } EntityDrives;
 
 static const double drives_idle = 0.6;   /* engine of one that idles; estimate */
@@ -42,7 +43,7 @@ typedef struct DriveUntil {
 typedef struct DriveState {
     double     since_s, speed_mps;
     DriveUntil engine, motor, flare, wreck;
-    double     moved_s;  /* when it was last known to move; -INFINITY: never */
+    double     moved_s; /* when it was last known to move; -INFINITY: never */
     bool       moving, flying, alive, flaming, smoulders, destroyed;
     double     fired_kg[2];
 } DriveState;
@@ -74,24 +75,24 @@ double drives_engine(const DriveState *state, double t_s);
 /* ---- the snapshot ----------------------------------------------------------------------------- */
 
 typedef struct SnapshotEntity {
-    DisEntityId   id;
-    DisEntityType type;
-    uint8_t       force;
-    char          marking[12];     /* terminated, raw bytes */
-    uint32_t      appearance;
-    int           model;           /* of the catalog */
-    double        p_ecef[3];       /* of the model's origin (base centre), independent of the sender's origin */
-    double        v_ecef_mps[3];
-    double        w_body_rps[3];   /* of the rendered attitude: 0 where the algorithm holds it, and when frozen */
-    double        r_ecef_from_body[9];
-    double        age_s;           /* since the report it was extrapolated from */
-    double        position_error_m;/* how far from the truth it may be; estimate */
-    double        drift_m, drift_rad; /* expected distance and angle from the truth: snapshot_drift */
-    int           first_node;      /* into Snapshot.node */
-    EntityDrives  drives;          /* what heats it */
-    const ExhaustJet *exhaust;     /* of its model; NULL: no outlet is known */
-    int           first_patch, patches; /* into Snapshot.patch_k; -1, 0: none of its temperatures are known */
-    float         dt_k;            /* mean temperature of its surface less that of open ground where it is; with patches */
+    DisEntityId       id;
+    DisEntityType     type;
+    uint8_t           force;
+    char              marking[12]; /* terminated, raw bytes */
+    uint32_t          appearance;
+    int               model;     /* of the catalog */
+    double            p_ecef[3]; /* of the model's origin (base centre), independent of the sender's origin */
+    double            v_ecef_mps[3];
+    double            w_body_rps[3]; /* of the rendered attitude: 0 where the algorithm holds it, and when frozen */
+    double            r_ecef_from_body[9];
+    double            age_s;                /* since the report it was extrapolated from */
+    double            position_error_m;     /* how far from the truth it may be; estimate */
+    double            drift_m, drift_rad;   /* expected distance and angle from the truth: snapshot_drift */
+    int               first_node;           /* into Snapshot.node */
+    EntityDrives      drives;               /* what heats it */
+    const ExhaustJet *exhaust;              /* of its model; NULL: no outlet is known */
+    int               first_patch, patches; /* into Snapshot.patch_k; -1, 0: none of its temperatures are known */
+    float             dt_k; /* mean temperature of its surface less that of open ground where it is; with patches */
 } SnapshotEntity;
 
 /* Joint state of an entity, kept for its nodes: snapshot_pose. */
@@ -99,34 +100,34 @@ typedef struct SnapshotJoints {
     double     report_s, hold_s; /* of the joints' report; longest time a rate is followed */
     double     time_s;           /* the entity's own, of the snapshot */
     JointDrive drive;
-    int        first, count;     /* into Snapshot.joint_report */
+    int        first, count; /* into Snapshot.joint_report */
 } SnapshotJoints;
 
 /* A cloud of chaff: radar alone sees it (sensor/radar/shot_volume.c). */
 typedef struct SnapshotChaff {
-    DisEntityId   id;
-    double        p_ecef[3], v_ecef_mps[3]; /* of its middle, as reported and extrapolated */
-    double        age_s;                    /* since its first report */
+    DisEntityId id;
+    double      p_ecef[3], v_ecef_mps[3]; /* of its middle, as reported and extrapolated */
+    double      age_s;                    /* since its first report */
 } SnapshotChaff;
 
 typedef struct Snapshot {
-    double          t_s;
-    int             count, node_count;
-    SnapshotEntity *entity; /* sorted by id */
-    NodePose       *node;   /* of entity k: entity[k].first_node .. + model's node_count - 1. NULL: snapshot_pose */
-    SnapshotJoints *joints; /* [count]; NULL where node is not */
-    JointReport    *joint_report;
-    int             puff_count;
-    EffectPuff     *puff;   /* what burns, smokes and bursts */
-    int64_t         puffs_left_out; /* the oldest, beyond effect_puff_capacity */
-    int             chaff_count;
-    SnapshotChaff  *chaff;          /* sorted by id; none of them is an entity */
-    int             left_out;       /* entities beyond the table's config.shown: the farthest */
+    double             t_s;
+    int                count, node_count;
+    SnapshotEntity    *entity; /* sorted by id */
+    NodePose          *node;   /* of entity k: entity[k].first_node .. + model's node_count - 1. NULL: snapshot_pose */
+    SnapshotJoints    *joints; /* [count]; NULL where node is not */
+    JointReport       *joint_report;
+    int                puff_count;
+    EffectPuff        *puff;           /* what burns, smokes and bursts */
+    int64_t            puffs_left_out; /* the oldest, beyond effect_puff_capacity */
+    int                chaff_count;
+    SnapshotChaff     *chaff;        /* sorted by id; none of them is an entity */
+    int                left_out;     /* entities beyond the table's config.shown: the farthest */
     const EffectTable *effect_table; /* NULL where there are no puffs */
-    GroundMarks     marks;  /* what was left on the ground until t_s */
-    int             patch_count;
-    float          *patch_k; /* temperatures of the patches (entities/models/patches.h) of entities, K; filled in by
-                              * render/heat/vehicle_heat.h. NULL: parts are as warm as the air */
+    GroundMarks        marks;        /* what was left on the ground until t_s */
+    int                patch_count;
+    float             *patch_k; /* temperatures of the patches (entities/models/patches.h) of entities, K; filled in by
+                                 * render/heat/vehicle_heat.h. NULL: parts are as warm as the air */
 } Snapshot;
 
 /* A munition or an expendable: it did nothing before it appeared. */
@@ -134,7 +135,7 @@ bool snapshot_is_short_lived(const SnapshotEntity *entity);
 /* Whether a puff came out of this entity: its own trail, flames or plume. */
 bool snapshot_owns_puff(const Snapshot *snapshot, int index, const EffectPuff *puff);
 /* Reported damage of a platform: 0 none, 1 slight, 2 moderate, 3 destroyed; others: 0. */
-int  snapshot_damage(const SnapshotEntity *entity);
+int snapshot_damage(const SnapshotEntity *entity);
 /* A platform that its sender calls destroyed. */
 bool snapshot_is_wreck(const SnapshotEntity *entity);
 

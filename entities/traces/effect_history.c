@@ -14,7 +14,7 @@ typedef struct EffectEvent {
 
 struct EffectHistory {
     EffectTable    table;
-    double         event_life_s; /* of the longest-lived puff of any event */
+    double         event_life_s;    /* of the longest-lived puff of any event */
     uint64_t       events, sources; /* ever; the last is at (n - 1) % capacity */
     EffectCounters counters;
     EffectEvent    event[effect_event_capacity];
@@ -39,7 +39,7 @@ Status effect_history_create(EffectHistory **out, const char *path)
     return STATUS_OK;
 }
 
-void effect_history_destroy(EffectHistory *history) { free(history); }
+void                  effect_history_destroy(EffectHistory *history) { free(history); }
 const EffectTable    *effect_history_table(const EffectHistory *history) { return &history->table; }
 const EffectCounters *effect_history_counters(const EffectHistory *history) { return &history->counters; }
 
@@ -53,10 +53,13 @@ bool effect_is_kinetic(const DisDescriptor *d) { return d->warhead >= 5000 && d-
 
 double effect_charge_kg(const DisDescriptor *d, bool fire)
 {
-    static const struct { uint8_t domain; double guided[2], ballistic[2]; } rows[] = {
+    static const struct {
+        uint8_t domain;
+        double  guided[2], ballistic[2];
+    } rows[] = {
         /* burst, propellant at the muzzle: kg */
-        {1, {8, 4}, {0.1, 0.15}},   {2, {4, 2}, {2, 8}},   {6, {150, 20}, {8, 10}},
-        {8, {1, 0.5}, {0.02, 0.005}}, {9, {40, 10}, {8, 8}}, {10, {300, 50}, {100, 50}}, {11, {100, 30}, {50, 20}},
+        {1, {8, 4}, {0.1, 0.15}}, {2, {4, 2}, {2, 8}},        {6, {150, 20}, {8, 10}},   {8, {1, 0.5}, {0.02, 0.005}},
+        {9, {40, 10}, {8, 8}},    {10, {300, 50}, {100, 50}}, {11, {100, 30}, {50, 20}},
     };
     const bool guided = d->type.category == category_guided;
     double     kg = guided ? (fire ? 2 : 4) : (fire ? 1 : 1);
@@ -85,7 +88,7 @@ static uint64_t id_bits(uint16_t a, uint16_t b, uint16_t c) { return (uint64_t)a
 static void add_event(EffectHistory *h, const EffectEvent *event, const float velocity_mps[3])
 {
     static const double same_s = 0.5; /* a repeated PDU */
-    const double r_m = v3_length(event->p_ecef);
+    const double        r_m = v3_length(event->p_ecef);
     if (!(r_m >= 1e5 && r_m <= 1e8) || !isfinite(event->t_s)) {
         h->counters.refused++;
         return;
@@ -116,7 +119,8 @@ static void add_event(EffectHistory *h, const EffectEvent *event, const float ve
 
 void effect_history_fire(EffectHistory *h, const DisFire *pdu, double t_s)
 {
-    EffectEvent e = {.t_s = t_s, .guided = pdu->descriptor.type.category == category_guided,
+    EffectEvent e = {.t_s = t_s,
+                     .guided = pdu->descriptor.type.category == category_guided,
                      .key = mix(id_bits(pdu->event.site, pdu->event.application, pdu->event.number)) ^
                             id_bits(pdu->munition.site, pdu->munition.application, pdu->munition.entity),
                      .charge_kg = effect_charge_kg(&pdu->descriptor, true)};
@@ -126,7 +130,10 @@ void effect_history_fire(EffectHistory *h, const DisFire *pdu, double t_s)
 
 void effect_history_detonation(EffectHistory *h, const DisDetonation *pdu, double t_s)
 {
-    EffectEvent e = {.t_s = t_s, .detonation = true, .kinetic = effect_is_kinetic(&pdu->descriptor), .result = pdu->result,
+    EffectEvent e = {.t_s = t_s,
+                     .detonation = true,
+                     .kinetic = effect_is_kinetic(&pdu->descriptor),
+                     .result = pdu->result,
                      .key = mix(id_bits(pdu->event.site, pdu->event.application, pdu->event.number)) ^
                             id_bits(pdu->munition.site, pdu->munition.application, pdu->munition.entity),
                      .charge_kg = effect_charge_kg(&pdu->descriptor, false)};
@@ -156,8 +163,8 @@ void effect_history_close(EffectHistory *h, uint64_t handle, double t_s)
 /* ---- puffs -------------------------------------------------------------------------------- */
 
 typedef struct PuffList {
-    EffectPuff *out;
-    size_t      capacity, count;
+    EffectPuff        *out;
+    size_t             capacity, count;
     const EffectTable *table;
 } PuffList;
 
@@ -169,19 +176,16 @@ static void put(PuffList *list, const EffectPuff *puff)
 }
 
 /* A number in -1 .. 1 for place n of puff i. */
-static double draw(uint64_t seed, int i, int n)
-{
-    return 2 * random_uniform(seed, 77, (uint32_t)i, (uint64_t)n) - 1;
-}
+static double draw(uint64_t seed, int i, int n) { return 2 * random_uniform(seed, 77, (uint32_t)i, (uint64_t)n) - 1; }
 
 typedef struct Cloud {
     EffectKind kind;
     int        puffs;
-    double     delay_s;              /* times scale */
-    double     ahead, off;           /* from the place along the direction, and about it; times scale */
+    double     delay_s;    /* times scale */
+    double     ahead, off; /* from the place along the direction, and about it; times scale */
     double     throw_out_mps, throw_up_mps, throw_ahead_mps, throw_s; /* speeds times scale */
-    double     mass, size;           /* shares of the row's */
-    double     stretch;              /* along the direction, over the radius at birth; 0: round */
+    double     mass, size;                                            /* shares of the row's */
+    double     stretch; /* along the direction, over the radius at birth; 0: round */
 } Cloud;
 
 /* Hits on a building: 18 .. 20. */
@@ -193,8 +197,11 @@ static bool result_is_entity(int result)
 static void put_cloud(PuffList *list, const EffectEvent *event, int which, const Cloud *c, double t_s)
 {
     const double scale = cbrt(event->charge_kg);
-    EffectPuff   puff = {.kind = c->kind, .group = (uint32_t)event->seed, .scale = scale * c->size,
-                         .throw_s = c->throw_s, .age_s = t_s - event->t_s - c->delay_s * scale,
+    EffectPuff   puff = {.kind = c->kind,
+                         .group = (uint32_t)event->seed,
+                         .scale = scale * c->size,
+                         .throw_s = c->throw_s,
+                         .age_s = t_s - event->t_s - c->delay_s * scale,
                          .mass_kg = list->table->law[c->kind].mass_kg * event->charge_kg * c->mass};
     if (!(puff.age_s >= 0)) return;
     puff.grounded = event->detonation && effect_result_is_ground(event->result);
@@ -307,14 +314,17 @@ static double share_of(int64_t number, double age_s, double full_s, double *toge
 static void put_source(PuffList *list, const EffectSource *source, double t_s)
 {
     const EffectModel *law = &list->table->law[source->kind];
-    const double     life_s = effect_life_s(list->table, source->kind, source->scale);
-    double           interval_s, full_s;
+    const double       life_s = effect_life_s(list->table, source->kind, source->scale);
+    double             interval_s, full_s;
 
     if (source->from_s > t_s || source->to_s + life_s <= t_s || source->to_s <= source->from_s) return;
     rhythm(&interval_s, &full_s, source->kind);
-    EffectPuff puff = {.kind = source->kind, .owner = source->key, .scale = source->scale, .throw_s = 0.6,
-                       .group = (uint32_t)mix(source->key * EFFECT_KIND_COUNT + source->kind)};
-    const double first_s = fmax(source->from_s, t_s - life_s), last_s = fmin(source->to_s, t_s);
+    EffectPuff    puff = {.kind = source->kind,
+                          .owner = source->key,
+                          .scale = source->scale,
+                          .throw_s = 0.6,
+                          .group = (uint32_t)mix(source->key * EFFECT_KIND_COUNT + source->kind)};
+    const double  first_s = fmax(source->from_s, t_s - life_s), last_s = fmin(source->to_s, t_s);
     const int64_t first = (int64_t)ceil(first_s / interval_s), last = (int64_t)floor(last_s / interval_s);
 
     for (int64_t k = last; k >= first; k--) {

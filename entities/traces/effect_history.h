@@ -15,16 +15,16 @@ enum { effect_event_capacity = 4096, effect_source_capacity = 16384, effect_puff
 /* One interval of emission: the entity's motion, and its sources. */
 typedef struct EffectSource {
     EffectKind kind;
-    uint64_t   key;              /* of the entity; the puffs' owner */
-    double     from_s, to_s;     /* puffs are emitted in from_s <= t < to_s */
-    Kinematics motion;           /* at motion_s */
+    uint64_t   key;          /* of the entity; the puffs' owner */
+    double     from_s, to_s; /* puffs are emitted in from_s <= t < to_s */
+    Kinematics motion;       /* at motion_s */
     double     motion_s;
-    double     hold_s;           /* longest extrapolation of it */
+    double     hold_s;                     /* longest extrapolation of it */
     double     at_body[3], spread_body[3]; /* source, relative to the reported position, and its radius */
-    double     speed_mps;        /* along the path: puffs are stretched to join */
-    bool       grounded;         /* clamped to the ground, its base below_m under the reported position */
+    double     speed_mps;                  /* along the path: puffs are stretched to join */
+    bool       grounded;                   /* clamped to the ground, its base below_m under the reported position */
     double     below_m;
-    double     scale, rate;      /* lengths; share of the row's mass a second */
+    double     scale, rate; /* lengths; share of the row's mass a second */
 } EffectSource;
 
 typedef struct EffectCounters {
@@ -40,8 +40,8 @@ static const double effect_latest_s = 1e12;
 typedef struct EffectHistory EffectHistory;
 
 /* path: etc/effects.csv. */
-Status effect_history_create(EffectHistory **out, const char *path);
-void   effect_history_destroy(EffectHistory *history);
+Status                effect_history_create(EffectHistory **out, const char *path);
+void                  effect_history_destroy(EffectHistory *history);
 const EffectTable    *effect_history_table(const EffectHistory *history);
 const EffectCounters *effect_history_counters(const EffectHistory *history);
 
@@ -57,9 +57,9 @@ void     effect_history_close(EffectHistory *history, uint64_t handle, double t_
 double effect_charge_kg(const DisDescriptor *descriptor, bool fire);
 bool   effect_is_kinetic(const DisDescriptor *descriptor); /* a penetrator, without explosive */
 /* Result of a Detonation: nothing burst; on the ground; on water. */
-bool   effect_result_is_none(int result);
-bool   effect_result_is_ground(int result);
-bool   effect_result_is_water(int result);
+bool effect_result_is_none(int result);
+bool effect_result_is_ground(int result);
+bool effect_result_is_water(int result);
 
 /* All visible puffs at t_s, newest first, at most capacity. Returns how many there are (more than capacity when
  * they do not all fit). out may be NULL with capacity 0. */

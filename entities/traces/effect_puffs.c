@@ -7,9 +7,9 @@
 static const double mean_density = 8.0 / 35;
 
 static const char *const kind_names[EFFECT_KIND_COUNT] = {
-    "muzzle_flash", "muzzle_smoke", "launch_flash", "launch_smoke", "burst_flash", "fireball", "burst_smoke",
-    "burst_dust", "sparks", "flame", "smoke", "engine_smoke", "dust", "contrail", "motor_plume", "motor_smoke",
-    "afterburner", "exhaust", "turbine_exhaust", "jet_exhaust", "flare_fire"};
+    "muzzle_flash", "muzzle_smoke", "launch_flash", "launch_smoke", "burst_flash",     "fireball",    "burst_smoke",
+    "burst_dust",   "sparks",       "flame",        "smoke",        "engine_smoke",    "dust",        "contrail",
+    "motor_plume",  "motor_smoke",  "afterburner",  "exhaust",      "turbine_exhaust", "jet_exhaust", "flare_fire"};
 
 /* ---- table -------------------------------------------------------------------------------- */
 
@@ -62,7 +62,7 @@ static Status read_row(EffectTable *effects, bool seen[EFFECT_KIND_COUNT], const
                        const int column[column_count], const ChannelColumns *channels)
 {
     const char *name = table_text(table, row, name_column);
-    int kind = 0;
+    int         kind = 0;
     while (kind < EFFECT_KIND_COUNT && strcmp(kind_names[kind], name) != 0) kind++;
     if (kind == EFFECT_KIND_COUNT || seen[kind]) {
         log_error("effects: %s: file=%s line=%d name=\"%s\"",
@@ -73,7 +73,7 @@ static Status read_row(EffectTable *effects, bool seen[EFFECT_KIND_COUNT], const
     seen[kind] = true;
     EffectModel *law = &effects->law[kind];
     for (int c = 0; c < column_count; c++) {
-        double *to = (double *)((char *)law + columns[c].offset);
+        double      *to = (double *)((char *)law + columns[c].offset);
         const Status status = table_number(to, table, row, column[c], columns[c].low, columns[c].high);
         if (status != STATUS_OK) return status;
     }
@@ -140,8 +140,8 @@ bool effect_volume(EffectVolume *out, const EffectTable *table, const EffectPuff
                    const LocalFrame *frame)
 {
     const EffectModel *law = &table->law[puff->kind];
-    const double     times = time_scale(law, puff->scale), age_s = puff->age_s, lived = age_s / (law->life_s * times);
-    double           p_ecef[3], way[3];
+    const double       times = time_scale(law, puff->scale), age_s = puff->age_s, lived = age_s / (law->life_s * times);
+    double             p_ecef[3], way[3];
 
     if (!(age_s >= 0 && lived < 1 && puff->mass_kg > 0)) return false;
 

@@ -11,31 +11,54 @@
 #include "terrain/weather/weather.h"
 
 typedef enum EffectKind {
-    EFFECT_MUZZLE_FLASH, EFFECT_MUZZLE_SMOKE, EFFECT_LAUNCH_FLASH, EFFECT_LAUNCH_SMOKE,
-    EFFECT_BURST_FLASH, EFFECT_FIREBALL, EFFECT_BURST_SMOKE, EFFECT_BURST_DUST, EFFECT_SPARKS,
-    EFFECT_FLAME, EFFECT_SMOKE, EFFECT_ENGINE_SMOKE, EFFECT_DUST, EFFECT_CONTRAIL,
-    EFFECT_MOTOR_PLUME, EFFECT_MOTOR_SMOKE, EFFECT_AFTERBURNER,
-    EFFECT_EXHAUST, EFFECT_TURBINE_EXHAUST, EFFECT_JET_EXHAUST, EFFECT_FLARE_FIRE,
+    EFFECT_MUZZLE_FLASH,
+    EFFECT_MUZZLE_SMOKE,
+    EFFECT_LAUNCH_FLASH,
+    EFFECT_LAUNCH_SMOKE,
+    EFFECT_BURST_FLASH,
+    EFFECT_FIREBALL,
+    EFFECT_BURST_SMOKE,
+    EFFECT_BURST_DUST,
+    EFFECT_SPARKS,
+    EFFECT_FLAME,
+    EFFECT_SMOKE,
+    EFFECT_ENGINE_SMOKE,
+    EFFECT_DUST,
+    EFFECT_CONTRAIL,
+    EFFECT_MOTOR_PLUME,
+    EFFECT_MOTOR_SMOKE,
+    EFFECT_AFTERBURNER,
+    EFFECT_EXHAUST,
+    EFFECT_TURBINE_EXHAUST,
+    EFFECT_JET_EXHAUST,
+    EFFECT_FLARE_FIRE,
     EFFECT_KIND_COUNT
 } EffectKind;
 
 /* Places of channels (pitviper_channels.h); pan is the mean of b, g and r. */
-enum { effect_band_b = SPECTRAL_B, effect_band_g = SPECTRAL_G, effect_band_r = SPECTRAL_R, effect_band_pan = SPECTRAL_PAN,
-       effect_band_nir = SPECTRAL_NIR, effect_band_mwir = SPECTRAL_MWIR, effect_band_lwir = SPECTRAL_LWIR,
-       effect_band_count = SPECTRAL_PLACES };
+enum {
+    effect_band_b = SPECTRAL_B,
+    effect_band_g = SPECTRAL_G,
+    effect_band_r = SPECTRAL_R,
+    effect_band_pan = SPECTRAL_PAN,
+    effect_band_nir = SPECTRAL_NIR,
+    effect_band_mwir = SPECTRAL_MWIR,
+    effect_band_lwir = SPECTRAL_LWIR,
+    effect_band_count = SPECTRAL_PLACES
+};
 
 /* One row of etc/effects.csv. */
 typedef struct EffectModel {
     double extinction_m2_kg[effect_band_count], albedo[effect_band_count];
     double asymmetry;
-    double mass_kg;                     /* of a puff; per second for emissions of an entity */
+    double mass_kg; /* of a puff; per second for emissions of an entity */
     double radius_start_m, radius_end_m, grow_s, spread_mps;
     double rise_mps, rise_s;
     double temp_rise_k, cool_s;
     double life_s;
     double time_power;
     double billow;
-    double co2_share, h2o_share;        /* of the mass: hot gas, which emits and absorbs in the thermal bands */
+    double co2_share, h2o_share; /* of the mass: hot gas, which emits and absorbs in the thermal bands */
 } EffectModel;
 
 typedef struct EffectTable {
@@ -67,7 +90,7 @@ typedef struct EffectPuff {
 /* A spheroid whose density falls off as (1 - q^2)^2 from its centre to its surface (q = 1). */
 typedef struct EffectVolume {
     double p_enu[3], axis_enu[3];
-    double along_m, across_m;           /* half axes; along the axis, and across it */
+    double along_m, across_m; /* half axes; along the axis, and across it */
     double temp_k;
     double extinction_per_m[effect_band_count]; /* at the centre, without gas */
     double co2_kg_m3, h2o_kg_m3;                /* at the centre */
@@ -77,14 +100,14 @@ typedef struct EffectVolume {
 double effect_life_s(const EffectTable *table, EffectKind kind, double scale);
 /* False when it has ended. The wind carries a free puff at its full speed from the first moment:
  * drift = wind age, exactly. */
-bool   effect_volume(EffectVolume *out, const EffectTable *table, const EffectPuff *puff, const Weather *weather,
-                     const LocalFrame *frame);
+bool effect_volume(EffectVolume *out, const EffectTable *table, const EffectPuff *puff, const Weather *weather,
+                   const LocalFrame *frame);
 
 /* The gas of an engine where it leaves a model. */
 typedef struct ExhaustJet {
-    double at_body[3], d_body[3];    /* from the centre of the model's base; unit */
-    double radius_m, speed_mps;      /* of the jet */
-    double excess_k;                 /* over the air, mixed with that of its first metre */
+    double at_body[3], d_body[3]; /* from the centre of the model's base; unit */
+    double radius_m, speed_mps;   /* of the jet */
+    double excess_k;              /* over the air, mixed with that of its first metre */
 } ExhaustJet;
 
 #endif

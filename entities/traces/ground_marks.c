@@ -21,7 +21,7 @@ bool ground_stand_same_place(const double p_ecef[3], const double r_ecef_from_bo
                              const double r_other[9])
 {
     static const double near_m = 0.5, cos_5_deg = 0.99619469809174555;
-    double away[3], trace = 0;
+    double              away[3], trace = 0;
     v3_sub(away, p_ecef, q_ecef);
     for (int i = 0; i < 9; i++) trace += r_ecef_from_body[i] * r_other[i]; /* of the rotation between them */
     return v3_dot(away, away) <= near_m * near_m && 0.5 * (trace - 1) >= cos_5_deg;
@@ -117,10 +117,9 @@ static void begin_again(GroundTrail *trail, const double p_ecef[3], double t_s)
 static bool is_driven(const GroundTrail *trail, const double way_m[3], double length_m, double dt_s)
 {
     static const double fastest_mps = 60, correction_m = 10, margin = 1.5;
-    const double rise_m = v3_dot(way_m, trail->p_ecef) / v3_length(trail->p_ecef);
+    const double        rise_m = v3_dot(way_m, trail->p_ecef) / v3_length(trail->p_ecef);
     return dt_s > 0 && length_m <= fmin(fastest_mps * dt_s, ground_track_longest_m) &&
-           length_m <= correction_m + margin * trail->speed_mps * dt_s &&
-           fabs(rise_m) <= 0.71 * length_m;
+           length_m <= correction_m + margin * trail->speed_mps * dt_s && fabs(rise_m) <= 0.71 * length_m;
 }
 
 /* The next piece of a trail, from its end; false: none yet. */
@@ -128,7 +127,7 @@ static bool next_piece(GroundTrack *piece, double *length_m, GroundTrail *trail,
                        bool last)
 {
     static const double least_m = 1, least_last_m = 0.5, often_m = 4;
-    double way[3];
+    double              way[3];
     v3_sub(way, p_ecef, trail->p_ecef);
     *length_m = v3_length(way);
     if (!trail->on || !isfinite(*length_m) || *length_m < (last ? least_last_m : least_m)) return false;
@@ -158,11 +157,12 @@ void ground_trail_point(GroundHistory *h, GroundTrail *trail, const double p_ece
     if (merge_piece(h, trail, &piece, length_m)) return;
 
     const int   parts = (int)clamp(ceil(length_m / longest_piece_m), 1, most_divisions);
-    GroundTrack part  = piece;
+    GroundTrack part = piece;
     for (int i = 1; i <= parts; i++) {
         const double share = (double)i / parts;
         for (int k = 0; k < 3; k++)
-            part.b_ecef[k] = i < parts ? piece.a_ecef[k] + share * (piece.b_ecef[k] - piece.a_ecef[k]) : piece.b_ecef[k];
+            part.b_ecef[k] =
+                i < parts ? piece.a_ecef[k] + share * (piece.b_ecef[k] - piece.a_ecef[k]) : piece.b_ecef[k];
         part.b_s = i < parts ? piece.a_s + share * (piece.b_s - piece.a_s) : piece.b_s;
         add_piece(h, &part);
         memcpy(part.a_ecef, part.b_ecef, sizeof part.a_ecef);
@@ -182,7 +182,7 @@ int ground_trail_tail(GroundTrack *out, GroundTrail *trail, const double p_ecef[
 void ground_burn(GroundHistory *h, const GroundBurn *burn)
 {
     static const double same_s = 0.5; /* a repeated PDU */
-    const uint64_t look = h->burns < 8 ? h->burns : 8;
+    const uint64_t      look = h->burns < 8 ? h->burns : 8;
     for (uint64_t i = 1; i <= look; i++) {
         const GroundBurn *was = &h->burn[(h->burns - i) % ground_burn_capacity];
         if (memcmp(was->p_ecef, burn->p_ecef, sizeof was->p_ecef) == 0 && fabs(was->t_s - burn->t_s) <= same_s) return;
@@ -221,13 +221,14 @@ static void leave_out_later(GroundMarks *m, GroundStand *stand, GroundTrack *tra
 Status ground_marks_at(GroundMarks *out, GroundTrack **tail, const GroundHistory *h, double t_s, int tail_capacity,
                        Arena *arena)
 {
-    GroundMarks m = {.stands = ring_count(h->stands, ground_stand_capacity),
-                     .tracks = ring_count(h->tracks, ground_track_capacity),
-                     .burns  = ring_count(h->burns, ground_burn_capacity), .forgotten = h->forgotten};
+    GroundMarks  m = {.stands = ring_count(h->stands, ground_stand_capacity),
+                      .tracks = ring_count(h->tracks, ground_track_capacity),
+                      .burns = ring_count(h->burns, ground_burn_capacity),
+                      .forgotten = h->forgotten};
     const size_t tracks = (size_t)m.tracks + (size_t)tail_capacity;
     GroundStand *stand = m.stands ? arena_alloc(arena, (size_t)m.stands, sizeof *stand) : NULL;
     GroundTrack *track = tracks ? arena_alloc(arena, tracks, sizeof *track) : NULL;
-    GroundBurn  *burn  = m.burns ? arena_alloc(arena, (size_t)m.burns, sizeof *burn) : NULL;
+    GroundBurn  *burn = m.burns ? arena_alloc(arena, (size_t)m.burns, sizeof *burn) : NULL;
     if ((m.stands && !stand) || (tracks && !track) || (m.burns && !burn)) return STATUS_NO_MEMORY;
 
     copy_ring(stand, h->stand, sizeof *stand, h->stands, ground_stand_capacity);
@@ -237,7 +238,7 @@ Status ground_marks_at(GroundMarks *out, GroundTrack **tail, const GroundHistory
     for (int i = 0; i < m.stands; i++)
         if (stand[i].to_s > t_s) stand[i].to_s = INFINITY;
     m.stand = stand, m.track = track, m.burn = burn;
-    *out  = m;
+    *out = m;
     *tail = track ? track + m.tracks : NULL;
     return STATUS_OK;
 }

@@ -5,15 +5,72 @@
 
 /* Columns; numbers from column `from_unix_s` on. Empty where a kind does not have it. */
 enum {
-    at_kind, at_owner, at_from, at_to, at_p, at_q = at_p + 3, at_r = at_q + 3, at_low = at_r + 9, at_high = at_low + 3,
-    at_width = at_high + 3, at_apart, at_tracked, at_radius, at_crater, at_heat, at_blow,
-    at_blow_d = at_blow + 3, at_blow_radius = at_blow_d + 3, at_blow_speed, at_blow_excess, at_blow_from, at_blow_to, column_count
+    at_kind,
+    at_owner,
+    at_from,
+    at_to,
+    at_p,
+    at_q = at_p + 3,
+    at_r = at_q + 3,
+    at_low = at_r + 9,
+    at_high = at_low + 3,
+    at_width = at_high + 3,
+    at_apart,
+    at_tracked,
+    at_radius,
+    at_crater,
+    at_heat,
+    at_blow,
+    at_blow_d = at_blow + 3,
+    at_blow_radius = at_blow_d + 3,
+    at_blow_speed,
+    at_blow_excess,
+    at_blow_from,
+    at_blow_to,
+    column_count
 };
-static const char *const column_name[column_count] = {
-    "kind", "owner", "from_unix_s", "to_unix_s", "x_m", "y_m", "z_m", "to_x_m", "to_y_m", "to_z_m", "r11", "r12", "r13",
-    "r21", "r22", "r23", "r31", "r32", "r33", "low_x_m", "low_y_m", "low_z_m", "high_x_m", "high_y_m", "high_z_m",
-    "width_m", "apart_m", "tracked", "radius_m", "crater_m", "heat_j_m2", "outlet_x_m", "outlet_y_m", "outlet_z_m", "blow_x",
-    "blow_y", "blow_z", "blow_radius_m", "blow_mps", "blow_excess_k", "blow_from_unix_s", "blow_to_unix_s"};
+static const char *const column_name[column_count] = {"kind",
+                                                      "owner",
+                                                      "from_unix_s",
+                                                      "to_unix_s",
+                                                      "x_m",
+                                                      "y_m",
+                                                      "z_m",
+                                                      "to_x_m",
+                                                      "to_y_m",
+                                                      "to_z_m",
+                                                      "r11",
+                                                      "r12",
+                                                      "r13",
+                                                      "r21",
+                                                      "r22",
+                                                      "r23",
+                                                      "r31",
+                                                      "r32",
+                                                      "r33",
+                                                      "low_x_m",
+                                                      "low_y_m",
+                                                      "low_z_m",
+                                                      "high_x_m",
+                                                      "high_y_m",
+                                                      "high_z_m",
+                                                      "width_m",
+                                                      "apart_m",
+                                                      "tracked",
+                                                      "radius_m",
+                                                      "crater_m",
+                                                      "heat_j_m2",
+                                                      "outlet_x_m",
+                                                      "outlet_y_m",
+                                                      "outlet_z_m",
+                                                      "blow_x",
+                                                      "blow_y",
+                                                      "blow_z",
+                                                      "blow_radius_m",
+                                                      "blow_mps",
+                                                      "blow_excess_k",
+                                                      "blow_from_unix_s",
+                                                      "blow_to_unix_s"};
 
 static const double latest_unix_s = 1e12, earth_m = 1e8, largest_m = 1000, hottest_j_m2 = 1e9;
 static const double longest_s = 3.2e10; /* of a stand: a thousand years */
@@ -105,11 +162,15 @@ static void put_all(FILE *to, const void *user)
 {
     const GroundHistory *h = ((const Saved *)user)->history;
     const double         unix_s = ((const Saved *)user)->unix_s;
-    fputs("# Ground marks of Pitviper: where entities stood, tracks of vehicles, burnt ground. Times: Unix time, s; an "
-          "empty to_unix_s:\n# without a known end. Places: WGS 84 geocentric, m. Written and read again by the program.\n", to);
+    fputs(
+        "# Ground marks of Pitviper: where entities stood, tracks of vehicles, burnt ground. Times: Unix time, s; an "
+        "empty to_unix_s:\n# without a known end. Places: WGS 84 geocentric, m. Written and read again by the program.\n",
+        to);
     for (int c = 0; c < column_count; c++) fprintf(to, "%s%c", column_name[c], c < column_count - 1 ? ',' : '\n');
-    const int stands = ring_count(h->stands, ground_stand_capacity), stand = ring_first(h->stands, ground_stand_capacity);
-    const int tracks = ring_count(h->tracks, ground_track_capacity), track = ring_first(h->tracks, ground_track_capacity);
+    const int stands = ring_count(h->stands, ground_stand_capacity),
+              stand = ring_first(h->stands, ground_stand_capacity);
+    const int tracks = ring_count(h->tracks, ground_track_capacity),
+              track = ring_first(h->tracks, ground_track_capacity);
     const int burns = ring_count(h->burns, ground_burn_capacity), burn = ring_first(h->burns, ground_burn_capacity);
     for (int i = 0; i < stands; i++) put_stand(to, &h->stand[(stand + i) % ground_stand_capacity], unix_s);
     for (int i = 0; i < tracks; i++) put_track(to, &h->track[(track + i) % ground_track_capacity], unix_s);
@@ -161,7 +222,8 @@ static void place(double p_ecef[3], Row *r, int at)
 {
     numbers(p_ecef, r, at, 3, earth_m);
     const double r_m = v3_length(p_ecef);
-    if (r->status == STATUS_OK && !(r_m >= 1e5 && r_m <= earth_m)) r->status = complain(r, "a place far from the Earth's surface");
+    if (r->status == STATUS_OK && !(r_m >= 1e5 && r_m <= earth_m))
+        r->status = complain(r, "a place far from the Earth's surface");
 }
 
 static bool is_rotation(const double m[9])
@@ -183,21 +245,22 @@ static void take_blow(GroundBlow *b, Row *r, double stand_to_s)
     lengths(&b->speed_mps, r, at_blow_speed, 1, 0, 1000);
     lengths(&b->excess_k, r, at_blow_excess, 1, 0, 5000);
     b->from_s = time_of(r, at_blow_from);
-    b->to_s   = *to ? fmin(time_of(r, at_blow_to), stand_to_s) : stand_to_s;
+    b->to_s = *to ? fmin(time_of(r, at_blow_to), stand_to_s) : stand_to_s;
 }
 
 static void take_stand(GroundHistory *h, Row *r)
 {
     GroundStand s = {0};
     const char *to = table_text(r->table, r->row, r->column[at_to]);
-    s.owner  = (uint64_t)number(r, at_owner, 1, 0x1p49);
+    s.owner = (uint64_t)number(r, at_owner, 1, 0x1p49);
     s.from_s = time_of(r, at_from);
-    s.to_s   = *to ? time_of(r, at_to) : fmax(s.from_s, 0); /* of a paused exercise */
+    s.to_s = *to ? time_of(r, at_to) : fmax(s.from_s, 0); /* of a paused exercise */
     place(s.p_ecef, r, at_p);
     numbers(s.r_ecef_from_body, r, at_r, 9, 2);
     lengths(s.low_m, r, at_low, 3, -largest_m, largest_m);
     lengths(s.high_m, r, at_high, 3, -largest_m, largest_m);
-    if (r->column[at_blow_from] >= 0 && *table_text(r->table, r->row, r->column[at_blow_from])) take_blow(&s.blow, r, s.to_s);
+    if (r->column[at_blow_from] >= 0 && *table_text(r->table, r->row, r->column[at_blow_from]))
+        take_blow(&s.blow, r, s.to_s);
     if (r->status != STATUS_OK) return;
     if (!is_rotation(s.r_ecef_from_body)) r->status = complain(r, "r11 to r33 are no rotation");
     else if (!(s.from_s <= s.to_s && (!*to || s.to_s - s.from_s <= longest_s)))
@@ -253,8 +316,8 @@ static Status take_rows(GroundHistory *h, const Table *table, const int column[c
         else if (strcmp(kind, "track") == 0) take_track(h, &r);
         else if (strcmp(kind, "burn") == 0) take_burn(h, &r);
         else r.status = complain(&r, "kind is not stand, track or burn");
-        if (r.status == STATUS_OK && (h->stands > ground_stand_capacity || h->tracks > ground_track_capacity ||
-                                      h->burns > ground_burn_capacity))
+        if (r.status == STATUS_OK &&
+            (h->stands > ground_stand_capacity || h->tracks > ground_track_capacity || h->burns > ground_burn_capacity))
             r.status = complain(&r, "more marks than the program keeps");
     }
     return r.status;

@@ -15,10 +15,7 @@ struct GroundHistory {
 };
 
 /* How many of a ring are there, and where the oldest is. */
-static inline int ring_count(uint64_t ever, int capacity)
-{
-    return ever < (uint64_t)capacity ? (int)ever : capacity;
-}
+static inline int ring_count(uint64_t ever, int capacity) { return ever < (uint64_t)capacity ? (int)ever : capacity; }
 static inline int ring_first(uint64_t ever, int capacity)
 {
     return ever < (uint64_t)capacity ? 0 : (int)(ever % (uint64_t)capacity);

@@ -36,12 +36,12 @@ typedef struct Brightest {
 
 static Brightest brightest(const PitviperMemory *m, uint32_t k)
 {
-    const PitviperMemoryPlane *p    = &m->plane[k];
+    const PitviperMemoryPlane *p = &m->plane[k];
     const void                *plane = pitviper_memory_plane(m, k);
     Brightest                  best = {-1e300, 0, 0};
     for (uint32_t row = 0; row < p->height; row++)
         for (uint32_t column = 0; column < p->width; column++) {
-            const size_t i     = (size_t)row * p->width + column;
+            const size_t i = (size_t)row * p->width + column;
             const double value = p->type == PITVIPER_PLANE_FLOAT32 ? (double)((const float *)plane)[i]
                                                                    : (double)((const uint16_t *)plane)[i];
             if (value > best.value) best = (Brightest){value, column, row};
@@ -90,7 +90,8 @@ static int dump(const PitviperMemory *m, const char *folder)
 /* The brightest spot of each band, with a box of 9 x 9 pixels about it. */
 static void detect(const PitviperMemory *m, int to)
 {
-    const struct sockaddr_in node = {.sin_family = AF_INET, .sin_port = htons((uint16_t)m->header.detections_port),
+    const struct sockaddr_in node = {.sin_family = AF_INET,
+                                     .sin_port = htons((uint16_t)m->header.detections_port),
                                      .sin_addr = {.s_addr = htonl(INADDR_LOOPBACK)}};
     for (uint32_t k = 0; k < m->header.plane_count; k++) {
         const PitviperMemoryPlane *p = &m->plane[k];
@@ -99,18 +100,18 @@ static void detect(const PitviperMemory *m, int to)
         PitviperDetections d;
         memset(&d, 0, sizeof d);
         memcpy(d.magic, PITVIPER_DETECTIONS_MAGIC, sizeof d.magic);
-        d.byte_order     = PITVIPER_MEMORY_BYTE_ORDER;
-        d.version        = PITVIPER_DETECTIONS_VERSION;
+        d.byte_order = PITVIPER_MEMORY_BYTE_ORDER;
+        d.version = PITVIPER_DETECTIONS_VERSION;
         d.detection_size = sizeof d.detection[0];
-        d.frame          = m->record.frame;
-        d.band           = p->band;
-        d.count          = 1;
-        d.detection[0].left   = b.column < 4 ? 0 : (float)b.column - 4;
-        d.detection[0].top    = b.row < 4 ? 0 : (float)b.row - 4;
-        d.detection[0].right  = b.column + 5 > p->width ? (float)p->width : (float)b.column + 5;
+        d.frame = m->record.frame;
+        d.band = p->band;
+        d.count = 1;
+        d.detection[0].left = b.column < 4 ? 0 : (float)b.column - 4;
+        d.detection[0].top = b.row < 4 ? 0 : (float)b.row - 4;
+        d.detection[0].right = b.column + 5 > p->width ? (float)p->width : (float)b.column + 5;
         d.detection[0].bottom = b.row + 5 > p->height ? (float)p->height : (float)b.row + 5;
-        d.detection[0].score  = 0.5f;
-        d.detection[0].track  = 1;
+        d.detection[0].score = 0.5f;
+        d.detection[0].track = 1;
         strcpy(d.detection[0].class_name, "bright");
         if (sendto(to, &d, PITVIPER_DETECTIONS_SIZE(1), 0, (const struct sockaddr *)&node, sizeof node) < 0)
             perror("send");

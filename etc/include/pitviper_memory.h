@@ -25,7 +25,8 @@
 #define PITVIPER_MEMORY_H
 
 #ifndef _GNU_SOURCE
-#define _GNU_SOURCE /* for syscall() and clock_gettime() with -std=c99; include this header first, or define it there */
+#define _GNU_SOURCE  /* for syscall() and clock_gettime() with -std=c99; include this header first, or define it there \
+                      */
 #endif
 
 #include <errno.h>
@@ -64,100 +65,100 @@ typedef enum PitviperMemoryState { PITVIPER_MEMORY_RUNNING = 1, PITVIPER_MEMORY_
 
 /* At the start of the segment. */
 typedef struct PitviperMemoryHeader {
-    char     magic[8];             /*   0 PITVIPER_MEMORY_MAGIC, without a 0 */
-    uint32_t byte_order;           /*   8 */
-    uint16_t version, revision;    /*  12 */
-    uint32_t header_size;          /*  16 of this structure; the sizes of the others follow */
-    uint32_t plane_entry_size;     /*  20 */
-    uint32_t record_size;          /*  24 */
-    uint32_t target_size;          /*  28 */
-    uint64_t segment_size;         /*  32 */
-    uint64_t plane_offset;         /*  40 of the plane descriptors, from the start of the segment */
-    uint64_t slot_offset;          /*  48 of the first slot */
-    uint64_t slot_size;            /*  56 from a slot to the next */
-    uint64_t target_offset;        /*  64 of a slot's targets, from the slot's start, where its record is */
-    uint32_t slot_count;           /*  72 */
-    uint32_t plane_count;          /*  76 */
-    uint32_t target_room;          /*  80 targets for which a slot has room */
-    uint32_t kind;                 /*  84 PitviperMemoryKind */
-    uint64_t epoch;                /*  88 another one for each ring: Unix time of its creation, ns */
-    int32_t  writer_pid;           /*  96 */
-    uint32_t detections_port;      /* 100 UDP on 127.0.0.1 (PitviperDetections); 0: none */
-    char     host[24];             /* 104 site:application:entity, or observer; of a run of several hosts; else empty */
-    char     program[24];          /* 128 version of the node */
-    char     config_sha256[72];    /* 152 of all settings that the pictures depend on, as in run.json */
-    uint32_t detections_version;   /* 224 newest version of detections that the node takes; revision 0: 0, and takes 1 */
-    uint8_t  reserved[28];         /* 228 */
+    char     magic[8];           /*   0 PITVIPER_MEMORY_MAGIC, without a 0 */
+    uint32_t byte_order;         /*   8 */
+    uint16_t version, revision;  /*  12 */
+    uint32_t header_size;        /*  16 of this structure; the sizes of the others follow */
+    uint32_t plane_entry_size;   /*  20 */
+    uint32_t record_size;        /*  24 */
+    uint32_t target_size;        /*  28 */
+    uint64_t segment_size;       /*  32 */
+    uint64_t plane_offset;       /*  40 of the plane descriptors, from the start of the segment */
+    uint64_t slot_offset;        /*  48 of the first slot */
+    uint64_t slot_size;          /*  56 from a slot to the next */
+    uint64_t target_offset;      /*  64 of a slot's targets, from the slot's start, where its record is */
+    uint32_t slot_count;         /*  72 */
+    uint32_t plane_count;        /*  76 */
+    uint32_t target_room;        /*  80 targets for which a slot has room */
+    uint32_t kind;               /*  84 PitviperMemoryKind */
+    uint64_t epoch;              /*  88 another one for each ring: Unix time of its creation, ns */
+    int32_t  writer_pid;         /*  96 */
+    uint32_t detections_port;    /* 100 UDP on 127.0.0.1 (PitviperDetections); 0: none */
+    char     host[24];           /* 104 site:application:entity, or observer; of a run of several hosts; else empty */
+    char     program[24];        /* 128 version of the node */
+    char     config_sha256[72];  /* 152 of all settings that the pictures depend on, as in run.json */
+    uint32_t detections_version; /* 224 newest version of detections that the node takes; revision 0: 0, and takes 1 */
+    uint8_t  reserved[28];       /* 228 */
     /* What follows changes while the node runs. */
-    uint64_t newest;               /* 256 the newest complete frame, 1, 2, 3 ...; 0: none yet */
-    uint32_t wake;                 /* 264 changes with each frame and at the end: a futex */
-    uint32_t state;                /* 268 PitviperMemoryState */
-    int64_t  changed_ns;           /* 272 CLOCK_MONOTONIC of the last change */
-    uint8_t  reserved_changing[40];/* 280 */
+    uint64_t newest;                /* 256 the newest complete frame, 1, 2, 3 ...; 0: none yet */
+    uint32_t wake;                  /* 264 changes with each frame and at the end: a futex */
+    uint32_t state;                 /* 268 PitviperMemoryState */
+    int64_t  changed_ns;            /* 272 CLOCK_MONOTONIC of the last change */
+    uint8_t  reserved_changing[40]; /* 280 */
 } PitviperMemoryHeader;
 
 /* A plane, at the same place in every slot: [height][width], rows top down, without gaps. */
 typedef struct PitviperMemoryPlane {
-    uint32_t band;                 /*  0 */
-    uint32_t type;                 /*  4 PitviperPlaneType */
-    uint32_t width, height;        /*  8 */
-    uint64_t offset;               /* 16 from the slot's start */
-    uint32_t bits;                 /* 24 significant ones of counts; 0: floating point */
-    uint32_t reserved;             /* 28 */
-    char     band_name[16];        /* 32 `optical`, `mwir`, `lwir`, `radar`, or the channel in its place: `swir` */
-    char     name[16];             /* 48 `R`, `G`, `B`, `Y`: the channel of the EXR file with the same values */
-    char     unit[16];             /* 64 `W/(m2 sr)`; `relative` (radar power); `counts` */
-    uint8_t  reserved_end[16];     /* 80 */
+    uint32_t band;             /*  0 */
+    uint32_t type;             /*  4 PitviperPlaneType */
+    uint32_t width, height;    /*  8 */
+    uint64_t offset;           /* 16 from the slot's start */
+    uint32_t bits;             /* 24 significant ones of counts; 0: floating point */
+    uint32_t reserved;         /* 28 */
+    char     band_name[16];    /* 32 `optical`, `mwir`, `lwir`, `radar`, or the channel in its place: `swir` */
+    char     name[16];         /* 48 `R`, `G`, `B`, `Y`: the channel of the EXR file with the same values */
+    char     unit[16];         /* 64 `W/(m2 sr)`; `relative` (radar power); `counts` */
+    uint8_t  reserved_end[16]; /* 80 */
 } PitviperMemoryPlane;
 
 /* One frame, at the start of its slot. */
 typedef struct PitviperMemoryRecord {
-    uint64_t lock;                 /*   0 see above */
-    uint64_t sequence;             /*   8 1, 2, 3 ... in this ring */
-    int32_t  frame;                /*  16 number in the run, as in file names and truth.jsonl */
-    uint32_t flags;                /*  20 1: the gimbal is at its limit; 2: the sensor is below the ground */
-    double   time_s;               /*  24 of the exercise */
-    int64_t  unix_us;              /*  32 the same as Unix time, us: exercise time too, never the wall clock */
-    double   p_ecef[3];            /*  40 sensor position, m, WGS 84 Earth-centred Earth-fixed */
-    double   v_ecef[3];            /*  64 m/s */
-    double   r_ecef_from_cam[9];   /*  88 rows of a rotation; camera: x right, y down, z along the boresight */
-    double   r_ecef_from_body[9];  /* 160 of the host: x forward, y right, z down */
-    double   boresight_ecef[3];    /* 232 unit vector: the third column of r_ecef_from_cam */
-    double   hfov_rad, vfov_rad;   /* 256 */
-    double   focal_px;             /* 272 principal point at the image's centre; pixel (0, 0)'s centre is (0.5, 0.5) */
-    double   distortion[5];        /* 280 k1 k2 p1 p2 k3, as in OpenCV; all 0: none */
-    double   scene_rate_px_s[2];   /* 320 columns, rows: image motion of a stationary point at the centre */
+    uint64_t lock;                /*   0 see above */
+    uint64_t sequence;            /*   8 1, 2, 3 ... in this ring */
+    int32_t  frame;               /*  16 number in the run, as in file names and truth.jsonl */
+    uint32_t flags;               /*  20 1: the gimbal is at its limit; 2: the sensor is below the ground */
+    double   time_s;              /*  24 of the exercise */
+    int64_t  unix_us;             /*  32 the same as Unix time, us: exercise time too, never the wall clock */
+    double   p_ecef[3];           /*  40 sensor position, m, WGS 84 Earth-centred Earth-fixed */
+    double   v_ecef[3];           /*  64 m/s */
+    double   r_ecef_from_cam[9];  /*  88 rows of a rotation; camera: x right, y down, z along the boresight */
+    double   r_ecef_from_body[9]; /* 160 of the host: x forward, y right, z down */
+    double   boresight_ecef[3];   /* 232 unit vector: the third column of r_ecef_from_cam */
+    double   hfov_rad, vfov_rad;  /* 256 */
+    double   focal_px;            /* 272 principal point at the image's centre; pixel (0, 0)'s centre is (0.5, 0.5) */
+    double   distortion[5];       /* 280 k1 k2 p1 p2 k3, as in OpenCV; all 0: none */
+    double   scene_rate_px_s[2];  /* 320 columns, rows: image motion of a stationary point at the centre */
     /* Steady clock (CLOCK_MONOTONIC), ns, for latency; 0: not known. */
-    int64_t  arrived_ns;           /* 336 the newest datagram that the frame shows */
-    int64_t  begun_ns;             /* 344 work on the frame began */
-    int64_t  posed_ns;             /* 352 the poses were sampled */
-    int64_t  rendered_ns;          /* 360 */
-    int64_t  written_ns;           /* 368 the frame is complete in this slot */
-    int64_t  seed;                 /* 376 of all random numbers */
-    uint64_t datagrams;            /* 384 received, or of the recording, when it was rendered */
-    uint32_t target_count;         /* 392 in this slot */
-    uint32_t targets_left_out;     /* 396 further ones, for which there was no room */
-    char     host[24];             /* 400 site:application:entity, or observer */
-    char     config_sha256[72];    /* 424 */
-    uint8_t  reserved[16];         /* 496 */
+    int64_t  arrived_ns;        /* 336 the newest datagram that the frame shows */
+    int64_t  begun_ns;          /* 344 work on the frame began */
+    int64_t  posed_ns;          /* 352 the poses were sampled */
+    int64_t  rendered_ns;       /* 360 */
+    int64_t  written_ns;        /* 368 the frame is complete in this slot */
+    int64_t  seed;              /* 376 of all random numbers */
+    uint64_t datagrams;         /* 384 received, or of the recording, when it was rendered */
+    uint32_t target_count;      /* 392 in this slot */
+    uint32_t targets_left_out;  /* 396 further ones, for which there was no room */
+    char     host[24];          /* 400 site:application:entity, or observer */
+    char     config_sha256[72]; /* 424 */
+    uint8_t  reserved[16];      /* 496 */
 } PitviperMemoryRecord;
 
 /* A target in one band. */
 typedef struct PitviperMemoryTargetBand {
-    double contrast_k;             /*  0 mwir, lwir: mean of its pixels less that of a ring about it, apparent K */
-    double dt_rss_k;               /*  8 with the target's own variance */
-    double contrast;               /* 16 optical, radar: the same difference over the ring's mean */
-    double snr;                    /* 24 contrast over the ring's sigma and the detector's noise */
-    double intensity_w_sr;         /* 32 in band, at the aperture */
-    double smoke_transmittance;    /* 40 of smoke and dust before it; 1: none */
-    double reserved[2];            /* 48 */
+    double contrast_k;          /*  0 mwir, lwir: mean of its pixels less that of a ring about it, apparent K */
+    double dt_rss_k;            /*  8 with the target's own variance */
+    double contrast;            /* 16 optical, radar: the same difference over the ring's mean */
+    double snr;                 /* 24 contrast over the ring's sigma and the detector's noise */
+    double intensity_w_sr;      /* 32 in band, at the aperture */
+    double smoke_transmittance; /* 40 of smoke and dust before it; 1: none */
+    double reserved[2];         /* 48 */
 } PitviperMemoryTargetBand;
 
 /* Kind truth only: a target in the field of view. The same values as in truth.jsonl. */
 typedef struct PitviperMemoryTarget {
     uint16_t site, application, entity; /* 0 */
-    uint16_t class_number;         /*   6 as category_id of coco.json */
-    uint32_t plane_value;          /*   8 of its pixels in the truth plane `entity` */
+    uint16_t class_number;              /*   6 as category_id of coco.json */
+    uint32_t plane_value;               /*   8 of its pixels in the truth plane `entity` */
     uint32_t flags;                /*  12 hidden, the larger part: 1 by the ground, 2 by another entity, 4 by plants */
     char     class_name[24];       /*  16 `tank`, `truck` ... */
     char     marking[16];          /*  40 raw octets */
@@ -167,15 +168,15 @@ typedef struct PitviperMemoryTarget {
     double   range_m, closing_mps; /* 136 */
     double   aspect_rad;           /* 152 0: nose on */
     double   depression_rad;       /* 160 */
-    double   los_az_rad, los_el_rad; /* 168 line of sight from north, and up */
-    double   los_rate_rps[2];      /* 184 inertial; camera right and up */
-    double   boresight_error_rad[2]; /* 200 camera right and up */
-    double   pixels;               /* 216 visible area */
-    double   visible_fraction;     /* 224 of its area */
-    double   p_ecef[3], v_ecef[3]; /* 232 of the model's origin, m; m/s */
-    double   age_s;                /* 280 since its last report */
-    double   position_error_m;     /* 288 estimate */
-    uint8_t  reserved[24];         /* 296 */
+    double   los_az_rad, los_el_rad;  /* 168 line of sight from north, and up */
+    double   los_rate_rps[2];         /* 184 inertial; camera right and up */
+    double   boresight_error_rad[2];  /* 200 camera right and up */
+    double   pixels;                  /* 216 visible area */
+    double   visible_fraction;        /* 224 of its area */
+    double   p_ecef[3], v_ecef[3];    /* 232 of the model's origin, m; m/s */
+    double   age_s;                   /* 280 since its last report */
+    double   position_error_m;        /* 288 estimate */
+    uint8_t  reserved[24];            /* 296 */
     PitviperMemoryTargetBand band[4]; /* 320 */
 } PitviperMemoryTarget;
 
@@ -189,22 +190,22 @@ enum { pitviper_detections_most = 64 };
 
 typedef struct PitviperDetection {
     float    left, top, right, bottom; /*  0 px, within the image; right and bottom beyond it */
-    float    score;                /* 16 0 .. 1 */
-    uint32_t track;                /* 20 the same number for the same object in later frames; 0: none */
-    char     class_name[32];       /* 24 printable ASCII, then zeros; the last octet is 0 */
-    uint32_t reserved[2];          /* 56 0 */
+    float    score;                    /* 16 0 .. 1 */
+    uint32_t track;                    /* 20 the same number for the same object in later frames; 0: none */
+    char     class_name[32];           /* 24 printable ASCII, then zeros; the last octet is 0 */
+    uint32_t reserved[2];              /* 56 0 */
 } PitviperDetection;
 
 /* Only the first `count` detections are sent: PITVIPER_DETECTIONS_SIZE(count) octets. */
 typedef struct PitviperDetections {
-    char     magic[8];             /*  0 PITVIPER_DETECTIONS_MAGIC, without a 0 */
-    uint32_t byte_order;           /*  8 PITVIPER_MEMORY_BYTE_ORDER */
-    uint16_t version;              /* 12 PITVIPER_DETECTIONS_VERSION */
-    uint16_t detection_size;       /* 14 of one: 64 */
-    int32_t  frame;                /* 16 PitviperMemoryRecord.frame of the frame they were found in */
-    uint32_t band;                 /* 20 */
-    uint32_t count;                /* 24 */
-    uint32_t reserved;             /* 28 0 */
+    char              magic[8];       /*  0 PITVIPER_DETECTIONS_MAGIC, without a 0 */
+    uint32_t          byte_order;     /*  8 PITVIPER_MEMORY_BYTE_ORDER */
+    uint16_t          version;        /* 12 PITVIPER_DETECTIONS_VERSION */
+    uint16_t          detection_size; /* 14 of one: 64 */
+    int32_t           frame;          /* 16 PitviperMemoryRecord.frame of the frame they were found in */
+    uint32_t          band;           /* 20 */
+    uint32_t          count;          /* 24 */
+    uint32_t          reserved;       /* 28 0 */
     PitviperDetection detection[pitviper_detections_most]; /* 32 */
 } PitviperDetections;
 
@@ -212,7 +213,7 @@ typedef struct PitviperDetections {
 
 /* ---- the layout holds on this compiler --------------------------------------------------------------- */
 
-#define PITVIPER_HOLDS_(name, condition) typedef char pitviper_holds_##name[(condition) ? 1 : -1]
+#define PITVIPER_HOLDS_(name, condition)  typedef char pitviper_holds_##name[(condition) ? 1 : -1]
 #define PITVIPER_AT_(type, field, octets) PITVIPER_HOLDS_(type##_##field, offsetof(type, field) == (octets))
 PITVIPER_HOLDS_(header, sizeof(PitviperMemoryHeader) == 320);
 PITVIPER_AT_(PitviperMemoryHeader, segment_size, 32);
@@ -240,7 +241,9 @@ PITVIPER_AT_(PitviperDetections, detection, 32);
 
 /* The sizes of revision 0: none is smaller. */
 enum {
-    pitviper_memory_header_least = 320, pitviper_memory_plane_least = 96, pitviper_memory_record_least = 512,
+    pitviper_memory_header_least = 320,
+    pitviper_memory_plane_least = 96,
+    pitviper_memory_record_least = 512,
     pitviper_memory_target_least = 576
 };
 
@@ -255,16 +258,16 @@ enum {
 };
 
 typedef struct PitviperMemory {
-    PitviperMemoryHeader header;   /* as checked */
+    PitviperMemoryHeader header;                             /* as checked */
     PitviperMemoryPlane  plane[pitviper_memory_planes_most]; /* [header.plane_count] */
-    PitviperMemoryRecord record;   /* of the frame taken last */
-    uint64_t             taken;    /* its sequence; 0: none */
-    uint64_t             missed;   /* frames never taken since the first one */
-    uint64_t             torn;     /* copies discarded because the slot was rewritten meanwhile */
+    PitviperMemoryRecord record;                             /* of the frame taken last */
+    uint64_t             taken;                              /* its sequence; 0: none */
+    uint64_t             missed;                             /* frames never taken since the first one */
+    uint64_t             torn; /* copies discarded because the slot was rewritten meanwhile */
     /* for the functions below */
     const unsigned char *at;
     uint64_t             size;
-    unsigned char       *copy;     /* [header.slot_size] */
+    unsigned char       *copy; /* [header.slot_size] */
     int                  file, begun;
 } PitviperMemory;
 
@@ -289,7 +292,7 @@ static inline int64_t pitviper_memory_now_ns(void)
 static inline void pitviper_memory_copy_(void *to, const unsigned char *from, uint64_t octets)
 {
     const uint64_t *word = (const uint64_t *)(const void *)from;
-    unsigned char  *out  = (unsigned char *)to;
+    unsigned char  *out = (unsigned char *)to;
     for (uint64_t i = 0; i < octets / 8; i++) {
         const uint64_t value = __atomic_load_n(&word[i], __ATOMIC_ACQUIRE);
         memcpy(out + 8 * i, &value, 8);
@@ -318,16 +321,20 @@ static inline int pitviper_memory_within_(uint64_t offset, uint64_t octets, uint
 static inline int pitviper_memory_header_good_(const PitviperMemoryHeader *h, uint64_t size)
 {
     if (memcmp(h->magic, PITVIPER_MEMORY_MAGIC, 8) != 0 || h->byte_order != PITVIPER_MEMORY_BYTE_ORDER ||
-        h->version != PITVIPER_MEMORY_VERSION || h->segment_size > size) return 0;
+        h->version != PITVIPER_MEMORY_VERSION || h->segment_size > size)
+        return 0;
     if (h->header_size < pitviper_memory_header_least || h->plane_entry_size < pitviper_memory_plane_least ||
-        h->record_size < pitviper_memory_record_least || h->target_size < pitviper_memory_target_least) return 0;
+        h->record_size < pitviper_memory_record_least || h->target_size < pitviper_memory_target_least)
+        return 0;
     if (h->header_size % 8 || h->plane_entry_size % 8 || h->record_size % 8 || h->target_size % 8) return 0;
     if (h->slot_count < 1 || h->slot_count > pitviper_memory_slots_most || h->plane_count < 1 ||
-        h->plane_count > pitviper_memory_planes_most || h->target_room > pitviper_memory_targets_most) return 0;
+        h->plane_count > pitviper_memory_planes_most || h->target_room > pitviper_memory_targets_most)
+        return 0;
     if (!pitviper_memory_within_(h->plane_offset, (uint64_t)h->plane_count * h->plane_entry_size, h->segment_size))
         return 0;
     if (h->slot_size % 8 || h->slot_size > h->segment_size / h->slot_count ||
-        !pitviper_memory_within_(h->slot_offset, h->slot_size * h->slot_count, h->segment_size)) return 0;
+        !pitviper_memory_within_(h->slot_offset, h->slot_size * h->slot_count, h->segment_size))
+        return 0;
     return h->record_size <= h->slot_size &&
            pitviper_memory_within_(h->target_offset, (uint64_t)h->target_room * h->target_size, h->slot_size);
 }
@@ -335,7 +342,8 @@ static inline int pitviper_memory_header_good_(const PitviperMemoryHeader *h, ui
 static inline int pitviper_memory_plane_good_(const PitviperMemoryPlane *p, uint64_t slot_size)
 {
     if (p->band >= pitviper_memory_bands || p->width < 1 || p->width > 65536 || p->height < 1 || p->height > 65536 ||
-        (p->type != PITVIPER_PLANE_FLOAT32 && p->type != PITVIPER_PLANE_UINT16)) return 0;
+        (p->type != PITVIPER_PLANE_FLOAT32 && p->type != PITVIPER_PLANE_UINT16))
+        return 0;
     return pitviper_memory_within_(p->offset, (pitviper_memory_plane_octets_(p) + 7) / 8 * 8, slot_size);
 }
 
@@ -354,7 +362,7 @@ static inline int pitviper_memory_map_(PitviperMemory *m)
     if (fstat(m->file, &status) != 0) return PITVIPER_MEMORY_SYSTEM;
     if (!S_ISREG(status.st_mode) || status.st_size < (off_t)pitviper_memory_header_least)
         return PITVIPER_MEMORY_REFUSED;
-    m->size     = (uint64_t)status.st_size;
+    m->size = (uint64_t)status.st_size;
     void *const at = mmap(NULL, (size_t)m->size, PROT_READ, MAP_SHARED, m->file, 0);
     if (at == MAP_FAILED) return PITVIPER_MEMORY_SYSTEM;
     m->at = (const unsigned char *)at;
@@ -379,7 +387,7 @@ static inline int pitviper_memory_map_(PitviperMemory *m)
 static inline int pitviper_memory_open_file(PitviperMemory *m, int file)
 {
     memset(m, 0, sizeof *m);
-    m->file          = file;
+    m->file = file;
     const int result = pitviper_memory_map_(m);
     if (result < 0) {
         const int reason = errno;
@@ -396,7 +404,7 @@ static inline int pitviper_memory_is_alive(const PitviperMemory *m)
     const PitviperMemoryHeader *h = (const PitviperMemoryHeader *)(const void *)m->at;
     struct flock                lock;
     memset(&lock, 0, sizeof lock);
-    lock.l_type   = F_RDLCK;
+    lock.l_type = F_RDLCK;
     lock.l_whence = SEEK_SET;
     if (__atomic_load_n(&h->state, __ATOMIC_ACQUIRE) != PITVIPER_MEMORY_RUNNING) return 0;
     enum { query_lock_of_open_file = 36 }; /* F_OFD_GETLK, which needs _GNU_SOURCE before the first system header */
@@ -407,7 +415,7 @@ static inline int pitviper_memory_is_alive(const PitviperMemory *m)
 static inline int pitviper_memory_open(PitviperMemory *m, const char *name)
 {
     char   path[256] = PITVIPER_MEMORY_FOLDER "/";
-    size_t length    = strlen(path);
+    size_t length = strlen(path);
     memset(m, 0, sizeof *m);
     m->file = -1;
     if (!*name || strchr(name, '/') || length + strlen(name) >= sizeof path) return PITVIPER_MEMORY_ABSENT;
@@ -425,12 +433,13 @@ static inline int pitviper_memory_open(PitviperMemory *m, const char *name)
 static inline void pitviper_memory_sleep_(const PitviperMemoryHeader *h, uint32_t wake, int64_t ns)
 {
     struct timespec time;
-    time.tv_sec  = (time_t)(ns / 1000000000);
+    time.tv_sec = (time_t)(ns / 1000000000);
     time.tv_nsec = (long)(ns % 1000000000);
     enum { futex_wait = 0 };
     if (syscall(SYS_futex, &h->wake, futex_wait, wake, &time, (void *)0, 0) == 0 || errno == EAGAIN || errno == EINTR ||
-        errno == ETIMEDOUT) return;
-    time.tv_sec  = 0;
+        errno == ETIMEDOUT)
+        return;
+    time.tv_sec = 0;
     time.tv_nsec = ns < 500000 ? (long)ns : 500000;
     nanosleep(&time, NULL);
 }
@@ -439,7 +448,7 @@ static inline void pitviper_memory_sleep_(const PitviperMemoryHeader *h, uint32_
  * limit); PITVIPER_MEMORY_ENDED: no further frame will come. */
 static inline int pitviper_memory_wait(PitviperMemory *m, int timeout_ms)
 {
-    static const int64_t slice_ns = 200000000; /* a node that was killed wakes no reader: asked for this often */
+    static const int64_t        slice_ns = 200000000; /* a node that was killed wakes no reader: asked for this often */
     const PitviperMemoryHeader *h = (const PitviperMemoryHeader *)(const void *)m->at;
     const int64_t end_ns = timeout_ms < 0 ? INT64_MAX : pitviper_memory_now_ns() + (int64_t)timeout_ms * 1000000;
     for (;;) {
@@ -458,7 +467,7 @@ static inline int pitviper_memory_wait(PitviperMemory *m, int timeout_ms)
 /* Copies frame n out of its slot. False: it is not there, or was overwritten meanwhile. */
 static inline int pitviper_memory_copy_frame_(PitviperMemory *m, uint64_t n)
 {
-    const PitviperMemoryHeader *h    = &m->header;
+    const PitviperMemoryHeader *h = &m->header;
     const unsigned char        *slot = m->at + h->slot_offset + (n - 1) % h->slot_count * h->slot_size;
     const uint64_t             *lock = (const uint64_t *)(const void *)slot;
     PitviperMemoryRecord        record;
@@ -476,7 +485,7 @@ static inline int pitviper_memory_copy_frame_(PitviperMemory *m, uint64_t n)
         return 0;
     }
     record.host[sizeof record.host - 1] = record.config_sha256[sizeof record.config_sha256 - 1] = 0;
-    m->record          = record;
+    m->record = record;
     m->record.sequence = n;
     return 1;
 }
@@ -484,7 +493,7 @@ static inline int pitviper_memory_copy_frame_(PitviperMemory *m, uint64_t n)
 static inline int pitviper_memory_take_(PitviperMemory *m, int in_order)
 {
     enum { tries = 16 };
-    const PitviperMemoryHeader *h     = (const PitviperMemoryHeader *)(const void *)m->at;
+    const PitviperMemoryHeader *h = (const PitviperMemoryHeader *)(const void *)m->at;
     const uint64_t              slots = m->header.slot_count;
     uint64_t                    least = m->taken + 1; /* earlier ones are taken, or gone */
     for (int i = 0; i < tries; i++) {
@@ -534,7 +543,7 @@ static inline const unsigned char *pitviper_memory_in_place(const PitviperMemory
 {
     const PitviperMemoryHeader *h = (const PitviperMemoryHeader *)(const void *)m->at;
     const uint64_t              n = __atomic_load_n(&h->newest, __ATOMIC_ACQUIRE);
-    *sequence                     = n;
+    *sequence = n;
     if (n == 0 || n > UINT64_MAX / 2) return NULL;
     const unsigned char *slot = m->at + m->header.slot_offset + (n - 1) % m->header.slot_count * m->header.slot_size;
     return __atomic_load_n((const uint64_t *)(const void *)slot, __ATOMIC_ACQUIRE) == 2 * n ? slot : NULL;

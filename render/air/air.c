@@ -81,7 +81,7 @@ Status air_at(Air *out, const AirSource *source, const Weather *weather, const S
     const bool on_ground = out->eye_height_m < 10;
     AirJob     job;
     Status     status = daylight_begin(&job.light, &out->light, source, weather, sun, eye->bands,
-                                       on_ground ? NULL : out->sky_eye, out->eye_height_m, arena);
+                                   on_ground ? NULL : out->sky_eye, out->eye_height_m, arena);
     if (status != STATUS_OK) return status;
     if (eye->view) out->light.zero_z_m = daylight_height(&out->light, eye->view->p_enu) - eye->height_m;
     sun_at_eye(out, source->atmosphere, sun, eye->bands);
@@ -109,11 +109,10 @@ void air_even(Air *out, const double sun_d_enu[3], double sun_w_m2, const double
         light->sky_w_m2[b] = pi_rad * sky_w_m2_sr[b];
         if (b >= AIR_MWIR) light->ground_w_m2_sr[b] = sky_w_m2_sr[b];
         for (int i = 0; i <= air_sky_ups; i++)
-            light->sky[b].thermal_w_m2_sr[i] = light->sky_light[b].thermal_w_m2_sr[i] = out->sky_eye[b].thermal_w_m2_sr[i] =
-                (float)sky_w_m2_sr[b];
+            light->sky[b].thermal_w_m2_sr[i] = light->sky_light[b].thermal_w_m2_sr[i] =
+                out->sky_eye[b].thermal_w_m2_sr[i] = (float)sky_w_m2_sr[b];
         for (int i = 0; i <= air_plane_ups; i++)
-            for (int a = 0; a <= air_plane_azimuths; a++)
-                light->plane_w_m2[b][i][a] = (float)light->sky_w_m2[b];
+            for (int a = 0; a <= air_plane_azimuths; a++) light->plane_w_m2[b][i][a] = (float)light->sky_w_m2[b];
     }
     light->solar_direct_w_m2 = sun_w_m2;
     light->solar_diffuse_w_m2 = light->sky_w_m2[AIR_PAN];
@@ -162,10 +161,10 @@ static void sky_ray(AirPaths out[AIR_BAND_COUNT], const Air *air, unsigned bands
 static void solid_ray(AirPaths out[AIR_BAND_COUNT], const Air *air, unsigned bands, const double o_enu[3],
                       const double d_enu[3], double range_m, double temp_k, int i)
 {
-    double       seen[1][AIR_BAND_COUNT], sun[AIR_BAND_COUNT];
-    const double climb = d_enu[2] + (o_enu[0] * d_enu[0] + o_enu[1] * d_enu[1]) / earth_radius_m;
-    const double level2 = d_enu[0] * d_enu[0] + d_enu[1] * d_enu[1], azimuth_rad = azimuth_from_sun_rad(air, d_enu);
-    const double far_m = air->eye_height_m + range_m * climb + range_m * range_m * level2 / (2 * earth_radius_m);
+    double        seen[1][AIR_BAND_COUNT], sun[AIR_BAND_COUNT];
+    const double  climb = d_enu[2] + (o_enu[0] * d_enu[0] + o_enu[1] * d_enu[1]) / earth_radius_m;
+    const double  level2 = d_enu[0] * d_enu[0] + d_enu[1] * d_enu[1], azimuth_rad = azimuth_from_sun_rad(air, d_enu);
+    const double  far_m = air->eye_height_m + range_m * climb + range_m * range_m * level2 / (2 * earth_radius_m);
     const AirPath path = {.observer_m = air->eye_height_m, .target_m = clamp(far_m, 0, air_top_m), .range_m = range_m};
     DayPath       way;
     air_day_path(&way, air->light.day, &path);
@@ -174,7 +173,8 @@ static void solid_ray(AirPaths out[AIR_BAND_COUNT], const Air *air, unsigned ban
         if (!(bands >> b & 1)) continue;
         const double scattered = b == AIR_LWIR ? 0 : seen[0][b] * air->light.scattered_scale;
         if (b < AIR_MWIR) {
-            out[b].transmittance[i] = out[b].sun_transmittance[i] = out[b].air_transmittance[i] = (float)exp(-way.sun[b]);
+            out[b].transmittance[i] = out[b].sun_transmittance[i] = out[b].air_transmittance[i] =
+                (float)exp(-way.sun[b]);
             out[b].added_w_m2_sr[i] = (float)scattered;
             continue;
         }
@@ -182,12 +182,13 @@ static void solid_ray(AirPaths out[AIR_BAND_COUNT], const Air *air, unsigned ban
         out[b].air_transmittance[i] = (float)own;
         out[b].sun_transmittance[i] = (float)(b == AIR_MWIR && air->light.scattered_scale > 0 ? exp(-way.sun[b]) : own);
         out[b].transmittance[i] = temp_k > 0 ? (float)exp(-depth_of(depth, temp_k)) : out[b].sun_transmittance[i];
-        out[b].added_w_m2_sr[i] = (float)(way.thermal_w_m2_sr[b - AIR_MWIR] * air->light.thermal_scale[b - AIR_MWIR] + scattered);
+        out[b].added_w_m2_sr[i] =
+            (float)(way.thermal_w_m2_sr[b - AIR_MWIR] * air->light.thermal_scale[b - AIR_MWIR] + scattered);
     }
 }
 
-void air_paths_directly(AirPaths out[AIR_BAND_COUNT], const Air *air, unsigned bands, const Hits *hits, const Rays *rays,
-                        const float *temp_k, const AirPaths tables[AIR_BAND_COUNT])
+void air_paths_directly(AirPaths out[AIR_BAND_COUNT], const Air *air, unsigned bands, const Hits *hits,
+                        const Rays *rays, const float *temp_k, const AirPaths tables[AIR_BAND_COUNT])
 {
     for (int b = 0; b < AIR_BAND_COUNT; b++)
         if (bands >> b & 1) out[b] = tables[b];

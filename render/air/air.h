@@ -23,9 +23,9 @@
  * Weather. Extinction is the model's at the visibility given. Air warmer or colder than the model's own ground
  * (weather.air_temp_k) scales the thermal radiance of path and sky by the ratio of the two Planck radiances in the
  * band, and the longwave flux by that of the fourth powers; its transmittance, and so its water vapour, stay the
- * model's. With height the air's temperature changes as the model's does. Clouds are a mean: the direct sun is dimmed by
- * their share, sun and sky together by 1 - 0.75 cloud^3.4 (Kasten & Czeplak, Solar Energy 24, 1980), in every band and
- * towards every direction alike; they fill that share of the thermal sky with air temperature, and longwave follows
+ * model's. With height the air's temperature changes as the model's does. Clouds are a mean: the direct sun is dimmed
+ * by their share, sun and sky together by 1 - 0.75 cloud^3.4 (Kasten & Czeplak, Solar Energy 24, 1980), in every band
+ * and towards every direction alike; they fill that share of the thermal sky with air temperature, and longwave follows
  * Unsworth & Monteith (Q. J. R. Meteorol. Soc. 101, 1975). Measured radiation (Weather) takes the place of both. */
 
 /* Sky radiance, without the sun's disc: thermal[height] + around_sun[angle from the sun] *
@@ -47,31 +47,31 @@ enum { air_warmer_nodes = 33 };
 /* daylight_at fills in the members before the tables. */
 typedef struct Daylight {
     Weather weather;
-    double  sun_d_enu[3];                  /* towards the sun; below the horizon: no direct light */
-    double  sun_w_m2[AIR_BAND_COUNT];      /* direct, on a plane facing the sun, at the ground */
-    double  sky_w_m2[AIR_BAND_COUNT];      /* of the sky on a level plane; with tables: the integral of its radiance */
-    double  ground_w_m2_sr[AIR_BAND_COUNT];/* thermal bands: of ground seen from below, and of ground beyond the
-                                            * terrain's edge. Others: 0, since it depends on the materials */
+    double  sun_d_enu[3];                   /* towards the sun; below the horizon: no direct light */
+    double  sun_w_m2[AIR_BAND_COUNT];       /* direct, on a plane facing the sun, at the ground */
+    double  sky_w_m2[AIR_BAND_COUNT];       /* of the sky on a level plane; with tables: the integral of its radiance */
+    double  ground_w_m2_sr[AIR_BAND_COUNT]; /* thermal bands: of ground seen from below, and of ground beyond the
+                                             * terrain's edge. Others: 0, since it depends on the materials */
     /* all wavelengths, for temperatures: direct facing the sun, diffuse, net thermal loss of a horizontal plane */
-    double  solar_direct_w_m2, solar_diffuse_w_m2, longwave_loss_w_m2;
-    double  zero_z_m;                      /* ENU z of the model's 0 km; heights bend with the Earth: daylight_height */
-    float   warmer_k[air_warmer_nodes];    /* of the air every 500 m up from there, against weather.air_temp_k */
+    double solar_direct_w_m2, solar_diffuse_w_m2, longwave_loss_w_m2;
+    double zero_z_m;                   /* ENU z of the model's 0 km; heights bend with the Earth: daylight_height */
+    float  warmer_k[air_warmer_nodes]; /* of the air every 500 m up from there, against weather.air_temp_k */
     const PlanckTable *planck_mwir, *planck_lwir;
-    double  day_zenith_rad;                /* of the sun, at which the tables are evaluated */
-    double  sun_above;                     /* share of its disc above the horizon, over the square of its distance */
-    double  thermal_scale[2], scattered_scale; /* air of another temperature than the model's; twilight, distance */
-    double  cloud_sky, cloud_thermal;      /* clouds: factor on the sky's scattered light; share of the thermal sky that
-                                            * is cloud of air temperature */
+    double             day_zenith_rad;        /* of the sun, at which the tables are evaluated */
+    double             sun_above;             /* share of its disc above the horizon, over the square of its distance */
+    double thermal_scale[2], scattered_scale; /* air of another temperature than the model's; twilight, distance */
+    double cloud_sky, cloud_thermal; /* clouds: factor on the sky's scattered light; share of the thermal sky that
+                                      * is cloud of air temperature */
 
     /* by direction; only of the requested bands */
-    AirSky  sky[AIR_BAND_COUNT];           /* from the ground: for mirror reflections in the scene */
-    AirSky  sky_light[AIR_BAND_COUNT];     /* the same scaled: what lights the scene */
+    AirSky sky[AIR_BAND_COUNT];       /* from the ground: for mirror reflections in the scene */
+    AirSky sky_light[AIR_BAND_COUNT]; /* the same scaled: what lights the scene */
     /* Radiance and irradiance of a sky in the tables come from two computations and differ slightly: the visible
      * sky, also in a mirror, is the radiance; what lights a surface is that times this factor, so that its integral
      * is the irradiance. */
-    double  sky_scale[AIR_BAND_COUNT];
-    float   plane_w_m2[AIR_BAND_COUNT][air_plane_ups + 1][air_plane_azimuths + 1]; /* tilted plane, over its share */
-    const struct AirDay *day;              /* what the tables were made from; in the arena. NULL: none */
+    double sky_scale[AIR_BAND_COUNT];
+    float  plane_w_m2[AIR_BAND_COUNT][air_plane_ups + 1][air_plane_azimuths + 1]; /* tilted plane, over its share */
+    const struct AirDay *day; /* what the tables were made from; in the arena. NULL: none */
 } Daylight;
 
 /* Data that does not change between frames. */
@@ -83,7 +83,7 @@ typedef struct AirSource {
 
 /* Totals alone, of pan and all wavelengths, and the air's temperature: microseconds, no arena (bench speed: daylight).
  * weather->air_temp_k: NaN for the model's own; the Daylight's is then filled in. */
-void   daylight_at(Daylight *out, const AirSource *source, const Weather *weather, const Sun *sun);
+void daylight_at(Daylight *out, const AirSource *source, const Weather *weather, const Sun *sun);
 /* And the tables by direction of these bands (1 << AirBand). pool: may be NULL. STATUS_NO_MEMORY: of the arena, in
  * which the AirDay lives. */
 Status daylight_by_direction(Daylight *out, const AirSource *source, const Weather *weather, const Sun *sun,
@@ -101,7 +101,7 @@ static inline double daylight_height(const Daylight *light, const double p_enu[3
 static inline double daylight_temp_at(const Daylight *light, const double p_enu[3])
 {
     const double at = clamp(daylight_height(light, p_enu) / air_warmer_step_m, air_warmer_low, air_warmer_nodes - 1);
-    const int    i  = at < 0 ? 0 : at < air_warmer_nodes - 2 ? (int)at : air_warmer_nodes - 2;
+    const int    i = at < 0 ? 0 : at < air_warmer_nodes - 2 ? (int)at : air_warmer_nodes - 2;
     const double low_k = (double)light->warmer_k[i], high_k = (double)light->warmer_k[i + 1];
     return light->weather.air_temp_k + low_k + (at - i) * (high_k - low_k);
 }
@@ -171,15 +171,15 @@ double daylight_sun_disc(const Daylight *light, const double d_enu[3]);
 typedef struct AirTable AirTable; /* paths from this eye */
 
 typedef struct Air {
-    Daylight  light;
-    AirSky    sky_eye[AIR_BAND_COUNT];      /* from the eye */
-    double    sun_eye_w_m2[AIR_BAND_COUNT]; /* direct irradiance at the eye: gives the radiance of the sun's visible
-                                             * disc */
-    double    eye_height_m;
-    AirTable *table;                        /* in the arena of air_at; NULL: homogeneous atmosphere, see air_even */
-    const struct HeatScene *heat;           /* of the ground (render/heat/heat.h); NULL: all of it as warm as the air */
-    double    even_per_m;                   /* extinction of a homogeneous atmosphere, whose radiance is that of its
-                                             * sky */
+    Daylight light;
+    AirSky   sky_eye[AIR_BAND_COUNT];      /* from the eye */
+    double   sun_eye_w_m2[AIR_BAND_COUNT]; /* direct irradiance at the eye: gives the radiance of the sun's visible
+                                            * disc */
+    double                  eye_height_m;
+    AirTable               *table;      /* in the arena of air_at; NULL: homogeneous atmosphere, see air_even */
+    const struct HeatScene *heat;       /* of the ground (render/heat/heat.h); NULL: all of it as warm as the air */
+    double                  even_per_m; /* extinction of a homogeneous atmosphere, whose radiance is that of its
+                                         * sky */
 } Air;
 
 /* Parameters of an eye. */
@@ -208,7 +208,7 @@ void air_even(Air *out, const double sun_d_enu[3], double sun_w_m2, const double
 typedef struct AirPaths {
     float transmittance[hits_capacity], sun_transmittance[hits_capacity], air_transmittance[hits_capacity];
     float added_w_m2_sr[hits_capacity];
-    float range_m[hits_capacity];       /* of the path; INFINITY: sky */
+    float range_m[hits_capacity]; /* of the path; INFINITY: sky */
 } AirPaths;
 
 /* bands: 1 << AirBand, those of out to fill, of the AirEye's; several bands in one call cost less, with the same
@@ -218,8 +218,8 @@ void air_paths_of(AirPaths out[AIR_BAND_COUNT], const Air *air, unsigned bands, 
                   const float *temp_k);
 /* The same, computed from the atmosphere path by path, without the frame's tables: air.c. A microsecond or
  * two a ray. tables: the result of air_paths_of for these rays. Homogeneous atmosphere: the same as with tables. */
-void air_paths_directly(AirPaths out[AIR_BAND_COUNT], const Air *air, unsigned bands, const Hits *hits, const Rays *rays,
-                        const float *temp_k, const AirPaths tables[AIR_BAND_COUNT]);
+void air_paths_directly(AirPaths out[AIR_BAND_COUNT], const Air *air, unsigned bands, const Hits *hits,
+                        const Rays *rays, const float *temp_k, const AirPaths tables[AIR_BAND_COUNT]);
 /* One band. */
 void air_path(AirPaths *out, const Air *air, AirBand band, const Hits *hits, const Rays *rays, const float *temp_k);
 

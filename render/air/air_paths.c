@@ -23,19 +23,19 @@ typedef struct Places {
 /* Constants for all eights of a block. */
 typedef struct Look {
     const AirTable *table;
-    __m128i row_shift;
-    __m256i row_mask;
-    F32x8 eye_m, down_m, row_share, height_most_m, per_fall_m, per_climb_m;
-    F32x8 sun_east, sun_north, slope_low, slope_steps, turn_low, turn_steps, turn_most;
-    F32x8 temp_low, per_ln_temp; /* of each step of emitter_temp_k */
+    __m128i         row_shift;
+    __m256i         row_mask;
+    F32x8           eye_m, down_m, row_share, height_most_m, per_fall_m, per_climb_m;
+    F32x8           sun_east, sun_north, slope_low, slope_steps, turn_low, turn_steps, turn_most;
+    F32x8           temp_low, per_ln_temp; /* of each step of emitter_temp_k */
 } Look;
 
 static Look look_from(const Air *air)
 {
     const AirTable *table = air->table;
-    const double level = hypot(air->light.sun_d_enu[0], air->light.sun_d_enu[1]), eye_m = air->eye_height_m;
-    const float top_m = air_step_up(air_low_m, table->rows, table->row_shift);
-    float temp_low[8] = {0}, per_ln_temp[8] = {0};
+    const double    level = hypot(air->light.sun_d_enu[0], air->light.sun_d_enu[1]), eye_m = air->eye_height_m;
+    const float     top_m = air_step_up(air_low_m, table->rows, table->row_shift);
+    float           temp_low[8] = {0}, per_ln_temp[8] = {0};
     for (int k = 0; k < air_temps - 1; k++) {
         temp_low[k] = (float)emitter_temp_k[k];
         per_ln_temp[k] = (float)(1 / log(emitter_temp_k[k + 1] / emitter_temp_k[k]));
@@ -81,8 +81,8 @@ static inline void find_places(Places *p, const Look *look, const float *range_m
     const F32x8 rise_m = _mm256_max_ps(mul(at, f32x8_fma(at, bend, climb)), look->down_m);
 
     /* height and range from the bits of the floats */
-    const F32x8 h = _mm256_min_ps(add(add(look->eye_m, rise_m), f32x8_set(air_low_m)), look->height_most_m);
-    const F32x8 r = mul(at, f32x8_set(1 / air_near_m));
+    const F32x8   h = _mm256_min_ps(add(add(look->eye_m, rise_m), f32x8_set(air_low_m)), look->height_most_m);
+    const F32x8   r = mul(at, f32x8_set(1 / air_near_m));
     const __m256i hb = bits_above(_mm256_max_ps(h, f32x8_set(air_low_m)), air_low_m);
     const __m256i rb = bits_above(_mm256_max_ps(r, f32x8_set(1)), 1);
     const __m256i hi = _mm256_srl_epi32(hb, look->row_shift), ri = _mm256_srli_epi32(rb, air_range_shift);
@@ -94,20 +94,20 @@ static inline void find_places(Places *p, const Look *look, const float *range_m
 
     const F32x8 rise = _mm256_div_ps(rise_m, _mm256_max_ps(at, f32x8_set(1e-3)));
     const F32x8 root = _mm256_or_ps(_mm256_sqrt_ps(f32x8_abs(rise)), _mm256_and_ps(rise, f32x8_set(-0.0)));
-    const F32x8 s = within(mul(sub(root, look->slope_low), look->slope_steps), f32x8_set(0),
-                     f32x8_set(air_slopes - 1e-3));
+    const F32x8 s =
+        within(mul(sub(root, look->slope_low), look->slope_steps), f32x8_set(0), f32x8_set(air_slopes - 1e-3));
     const __m256i si = _mm256_cvttps_epi32(s);
     /* range over the complete path, which ends at the ground or the top, and within its limits */
     const F32x8 per_m = _mm256_blendv_ps(look->per_climb_m, look->per_fall_m, rise);
     const F32x8 gone = within(mul(f32x8_abs(rise_m), per_m), mul(at, f32x8_set(1 / air_longest_way_m)),
                               mul(at, f32x8_set(1 / air_shortest_way_m)));
-    const F32x8 w = within(mul(_mm256_sqrt_ps(gone), f32x8_set(air_shares)), f32x8_set(0),
-                     f32x8_set(air_shares - 1e-3));
+    const F32x8 w =
+        within(mul(_mm256_sqrt_ps(gone), f32x8_set(air_shares)), f32x8_set(0), f32x8_set(air_shares - 1e-3));
     const __m256i wi = _mm256_cvttps_epi32(w);
-    const F32x8 level = _mm256_sqrt_ps(_mm256_max_ps(level2, f32x8_set(1e-12)));
-    const F32x8 cosine = _mm256_div_ps(f32x8_fma(dx, look->sun_east, mul(dy, look->sun_north)), level);
-    const F32x8 turn = _mm256_sqrt_ps(_mm256_max_ps(sub(f32x8_set(1), cosine), f32x8_set(0)));
-    const F32x8 a = within(mul(sub(turn, look->turn_low), look->turn_steps), f32x8_set(0), look->turn_most);
+    const F32x8   level = _mm256_sqrt_ps(_mm256_max_ps(level2, f32x8_set(1e-12)));
+    const F32x8   cosine = _mm256_div_ps(f32x8_fma(dx, look->sun_east, mul(dy, look->sun_north)), level);
+    const F32x8   turn = _mm256_sqrt_ps(_mm256_max_ps(sub(f32x8_set(1), cosine), f32x8_set(0)));
+    const F32x8   a = within(mul(sub(turn, look->turn_low), look->turn_steps), f32x8_set(0), look->turn_most);
     const __m256i ai = _mm256_cvttps_epi32(a);
     _mm256_store_ps(p->slope, sub(s, _mm256_cvtepi32_ps(si)));
     _mm256_store_ps(p->share, sub(w, _mm256_cvtepi32_ps(wi)));
@@ -120,8 +120,8 @@ static inline void find_places(Places *p, const Look *look, const float *range_m
  * terms leave 1e-4 over the widest step. */
 static inline void find_temps(Places *p, const Look *look, const float *temp_k)
 {
-    const F32x8 t = within(_mm256_loadu_ps(temp_k), f32x8_set(emitter_temp_k[0]),
-                     f32x8_set(emitter_temp_k[air_temps - 1]));
+    const F32x8 t =
+        within(_mm256_loadu_ps(temp_k), f32x8_set(emitter_temp_k[0]), f32x8_set(emitter_temp_k[air_temps - 1]));
     __m256i k = _mm256_setzero_si256();
     for (int step = 1; step < air_temps - 1; step++) /* true is -1 */
         k = _mm256_sub_epi32(k, _mm256_castps_si256(_mm256_cmp_ps(t, f32x8_set(emitter_temp_k[step]), _CMP_GE_OQ)));
@@ -158,22 +158,22 @@ static inline void depths(F32x8 out[air_lights], const AirLight *light, const Pl
     __m128 row[8];
     for (int j = 0; j < 8; j++) {
         const float *low = light->depth[p->node[j]], *high = low + air_range_row * air_lights;
-        row[j] = along(f32x8_lerp(_mm256_loadu_ps(low), _mm256_loadu_ps(high), _mm256_set1_ps(p->height[j])),
-                         p->range[j]);
+        row[j] =
+            along(f32x8_lerp(_mm256_loadu_ps(low), _mm256_loadu_ps(high), _mm256_set1_ps(p->height[j])), p->range[j]);
     }
     turn_four(out, row);
 }
 
 static inline void scattered_sources(F32x8 out[air_lights], const AirLight *light, const Places *p)
 {
-    __m128 row[8];
+    __m128       row[8];
     const float *nodes = light->log2_source[0][0];
     for (int j = 0; j < 8; j++) {
         const float *low = nodes + p->turn_node[j] * air_lights, *high = low + air_slope_nodes * air_lights;
-        const F32x8 turn = _mm256_set1_ps(p->turn[j]);
-        const F32x8 a = f32x8_lerp(_mm256_loadu_ps(low), _mm256_loadu_ps(high), turn);
-        const F32x8 b = f32x8_lerp(_mm256_loadu_ps(low + air_share_row * air_lights),
-                                _mm256_loadu_ps(high + air_share_row * air_lights), turn);
+        const F32x8  turn = _mm256_set1_ps(p->turn[j]);
+        const F32x8  a = f32x8_lerp(_mm256_loadu_ps(low), _mm256_loadu_ps(high), turn);
+        const F32x8  b = f32x8_lerp(_mm256_loadu_ps(low + air_share_row * air_lights),
+                                    _mm256_loadu_ps(high + air_share_row * air_lights), turn);
         row[j] = along(f32x8_lerp(a, b, _mm256_set1_ps(p->slope[j])), p->share[j]);
     }
     turn_four(out, row);
@@ -184,14 +184,14 @@ static inline void scattered_sources(F32x8 out[air_lights], const AirLight *ligh
 static inline void heats(F32x8 out[2 * air_warm_values], const AirHeat *heat, const Places *p)
 {
     enum { values = 2 * air_warm_values };
-    F32x8 row[8], pair[8];
+    F32x8        row[8], pair[8];
     const float *nodes = heat->value[0][0]; /* of all temperatures */
     for (int j = 0; j < 8; j++) {
         const float *low = nodes + p->heat_node[j] * values, *high = low + air_range_row * values;
-        const F32x8 height = _mm256_set1_ps(p->height[j]);
+        const F32x8  height = _mm256_set1_ps(p->height[j]);
         row[j] = f32x8_lerp(f32x8_lerp(_mm256_loadu_ps(low), _mm256_loadu_ps(high), height),
-                         f32x8_lerp(_mm256_loadu_ps(low + values), _mm256_loadu_ps(high + values), height),
-                         _mm256_set1_ps(p->range[j]));
+                            f32x8_lerp(_mm256_loadu_ps(low + values), _mm256_loadu_ps(high + values), height),
+                            _mm256_set1_ps(p->range[j]));
     }
     for (int j = 0; j < 8; j += 4) {
         const F32x8 a = _mm256_unpacklo_ps(row[j], row[j + 1]), b = _mm256_unpackhi_ps(row[j], row[j + 1]);
@@ -223,14 +223,14 @@ static void path_lanes(AirPaths *const out[AIR_BAND_COUNT], const Look *look, co
                        const float *temp_k, int i)
 {
     const AirTable *table = look->table;
-    Places p;
+    Places          p;
     find_places(&p, look, range_m, rays, i);
 
     F32x8 mwir_sun = f32x8_set(0), mwir_scattered = f32x8_set(0);
     for (int g = 0; g < table->lights; g++) {
         const AirLight *light = table->light[g];
-        F32x8 depth[air_lights], source[air_lights];
-        bool any = false;
+        F32x8           depth[air_lights], source[air_lights];
+        bool            any = false;
         for (int k = 0; k < light->bands; k++) any |= out[light->band[k]] != NULL;
         if (!any) continue;
         depths(depth, light, &p);
@@ -240,10 +240,8 @@ static void path_lanes(AirPaths *const out[AIR_BAND_COUNT], const Look *look, co
             const AirBand band = light->band[k];
             if (!out[band]) continue;
             const F32x8 sun = transmit(depth[k], &p), added = mul(sub(f32x8_set(1), sun), source[k]);
-            if (band == AIR_MWIR)
-                mwir_sun = sun, mwir_scattered = added;
-            else
-                store_path(out[band], i, sun, sun, sun, added);
+            if (band == AIR_MWIR) mwir_sun = sun, mwir_scattered = added;
+            else store_path(out[band], i, sun, sun, sun, added);
         }
     }
     if (!out[AIR_MWIR] && !out[AIR_LWIR]) return;
@@ -257,12 +255,12 @@ static void path_lanes(AirPaths *const out[AIR_BAND_COUNT], const Look *look, co
     heats(value, table->heat, &p);
     for (int t = 0; t < 2; t++) {
         const AirBand band = t ? AIR_LWIR : AIR_MWIR;
-        const F32x8 *v = value + t * air_warm_values;
+        const F32x8  *v = value + t * air_warm_values;
         if (!out[band]) continue;
         const F32x8 own = transmit(v[air_warm_own], &p);
         const F32x8 sun = band == AIR_MWIR && table->scattered ? mwir_sun : own;
         const F32x8 emitted = temp_k ? transmit(f32x8_lerp(v[air_warm_low], v[air_warm_high], p.temp), &p) : sun;
-        F32x8 added = mul(sub(f32x8_set(1), own), v[air_warm_source]);
+        F32x8       added = mul(sub(f32x8_set(1), own), v[air_warm_source]);
         if (band == AIR_MWIR) added = add(added, mwir_scattered);
         store_path(out[band], i, emitted, sun, own, added);
     }
@@ -310,7 +308,7 @@ static void path_homogeneous(AirPaths *out, const Air *air, AirBand band, const 
 }
 
 static void smoke_bands(AirPaths *const out[AIR_BAND_COUNT], const Air *air, const Hits *hits, const Rays *rays,
-                       const float *temp_k)
+                        const float *temp_k)
 {
     if (!air->table) {
         for (int b = 0; b < AIR_BAND_COUNT; b++)
@@ -318,7 +316,7 @@ static void smoke_bands(AirPaths *const out[AIR_BAND_COUNT], const Air *air, con
         return;
     }
     const Look look = look_from(air);
-    float range_m[hits_capacity];
+    float      range_m[hits_capacity];
     find_ranges(range_m, air, hits, rays);
     for (int i = hits->count; i < hits_capacity && i % 8 != 0; i++) range_m[i] = 0;
     for (int i = 0; i < hits->count; i += 8)
@@ -329,7 +327,7 @@ static void smoke_bands(AirPaths *const out[AIR_BAND_COUNT], const Air *air, con
     for (int i = 0; i < hits->count; i++) {
         if (range_m[i] < INFINITY) continue;
         const double d_enu[3] = {rays->d_enu[0][i], rays->d_enu[1][i], rays->d_enu[2][i]};
-        SkyPlace place;
+        SkyPlace     place;
         daylight_sky_place(&place, &air->light, d_enu);
         for (int b = 0; b < AIR_BAND_COUNT; b++) {
             if (!out[b]) continue;

@@ -23,13 +23,13 @@ void daylight_sums(Daylight *out, const AirSource *source, const Weather *weathe
 /* other: [AIR_BAND_COUNT], filled in with the sky from another height; NULL: not requested. */
 Status daylight_begin(DaylightJob **out, Daylight *light, const AirSource *source, const Weather *weather,
                       const Sun *sun, unsigned bands, AirSky *other, double other_m, Arena *arena);
-int  daylight_asks(const DaylightJob *job);
-void daylight_ask(DaylightJob *job, int ask);
-int  daylight_draws(const DaylightJob *job);
-void daylight_draw(DaylightJob *job, int draw);
-int  daylight_planes(const DaylightJob *job);
-void daylight_plane(DaylightJob *job, int plane);
-void daylight_end(DaylightJob *job);
+int    daylight_asks(const DaylightJob *job);
+void   daylight_ask(DaylightJob *job, int ask);
+int    daylight_draws(const DaylightJob *job);
+void   daylight_draw(DaylightJob *job, int draw);
+int    daylight_planes(const DaylightJob *job);
+void   daylight_plane(DaylightJob *job, int plane);
+void   daylight_end(DaylightJob *job);
 
 /* The pool's tasks, or in order where there is none. */
 void air_run(Pool *pool, int count, PoolTask *task, void *user);
@@ -83,14 +83,14 @@ typedef struct AirHeat {
 } AirHeat;
 
 struct AirTable {
-    int   rows, row_shift;        /* steps of height; bits of a number within one: 20 or 21, 8 or 4 to an octave */
-    bool  scattered;
-    float slope_low, slope_steps; /* s at the first step, steps per unit of s */
-    float turn_low, turn_steps;   /* the same of sqrt(1 - cos azimuth); beyond the first and last the nearest */
-    int   turns;                  /* steps between them, .. air_turns */
-    int   lights;                 /* of light[] */
+    int       rows, row_shift; /* steps of height; bits of a number within one: 20 or 21, 8 or 4 to an octave */
+    bool      scattered;
+    float     slope_low, slope_steps; /* s at the first step, steps per unit of s */
+    float     turn_low, turn_steps;   /* the same of sqrt(1 - cos azimuth); beyond the first and last the nearest */
+    int       turns;                  /* steps between them, .. air_turns */
+    int       lights;                 /* of light[] */
     AirLight *light[2];
-    AirHeat  *heat;               /* NULL: no thermal band */
+    AirHeat  *heat; /* NULL: no thermal band */
 };
 
 /* The float whose bits are this number of steps of 2^shift above those of low. */
@@ -107,16 +107,16 @@ static inline float air_step_up(double low, int steps, int shift)
 
 /* Extent of air->table: these bands, between two azimuths from the sun and two slopes, up to a height. */
 typedef struct TableInput {
-    double azimuth_low_rad, azimuth_high_rad, slope_low, slope_high, height_high_m; /* slopes as rise over range */
+    double   azimuth_low_rad, azimuth_high_rad, slope_low, slope_high, height_high_m; /* slopes as rise over range */
     unsigned bands;
 } TableInput;
 
 /* First every evaluation of the atmosphere, in any order and by any thread, then every interpolation. */
 typedef struct TableJob TableJob;
-Status air_table_begin(TableJob **out, Air *air, const TableInput *input, Arena *arena);
-int    air_table_asks(const TableJob *job);
-void   air_table_ask(TableJob *job, int ask);
-int    air_table_draws(const TableJob *job);
-void   air_table_draw(TableJob *job, int draw);
+Status                  air_table_begin(TableJob **out, Air *air, const TableInput *input, Arena *arena);
+int                     air_table_asks(const TableJob *job);
+void                    air_table_ask(TableJob *job, int ask);
+int                     air_table_draws(const TableJob *job);
+void                    air_table_draw(TableJob *job, int draw);
 
 #endif

@@ -27,12 +27,12 @@ typedef double Side[side_nodes];
 typedef double Octaves[air_octaves + 1];
 
 struct TableJob {
-    Air *air;
+    Air       *air;
     TableInput in;
-    int turns, middle; /* evaluated steps of azimuth, and the one that is evaluated in full */
-    double azimuth_rad[coarse_turns + 1];
-    Coarse log2_source[AIR_BAND_COUNT];            /* of scattered light at the middle azimuth */
-    Side   side[AIR_BAND_COUNT][coarse_turns + 1]; /* the same elsewhere */
+    int        turns, middle; /* evaluated steps of azimuth, and the one that is evaluated in full */
+    double     azimuth_rad[coarse_turns + 1];
+    Coarse     log2_source[AIR_BAND_COUNT];            /* of scattered light at the middle azimuth */
+    Side       side[AIR_BAND_COUNT][coarse_turns + 1]; /* the same elsewhere */
 };
 
 /* log2(1 / tau) per metre, from an optical depth. */
@@ -101,20 +101,21 @@ static void ask_height(TableJob *job, int row)
 {
     const Air      *air = job->air;
     const AirTable *table = air->table;
-    Octaves sun[AIR_BAND_COUNT], own[2], source[2], emitted[2][air_temps];
-    Curve   curve, warm[2][air_temps + 2]; /* of emitters; own, source */
-    DayPath here;
-    AirPath path = {.observer_m = air->eye_height_m,
-                    .target_m = fmin((double)air_step_up(air_low_m, row, table->row_shift) - air_low_m, air_top_m)};
-    const double straight_m = fabs(path.target_m - path.observer_m) * 1.0001;
+    Octaves         sun[AIR_BAND_COUNT], own[2], source[2], emitted[2][air_temps];
+    Curve           curve, warm[2][air_temps + 2]; /* of emitters; own, source */
+    DayPath         here;
+    AirPath         path = {.observer_m = air->eye_height_m,
+                            .target_m = fmin((double)air_step_up(air_low_m, row, table->row_shift) - air_low_m, air_top_m)};
+    const double    straight_m = fabs(path.target_m - path.observer_m) * 1.0001;
     for (int r = 0; r <= air_octaves; r++) {
         /* no path is shorter than the vertical one: such nodes hold that one */
         path.range_m = fmax(ldexp(air_near_m, r), straight_m);
         if (r == 0 || ldexp(air_near_m, r) > straight_m) air_day_path(&here, job->air->light.day, &path);
         for (int b = 0; b < AIR_BAND_COUNT; b++) sun[b][r] = extinction(here.sun[b], path.range_m);
         for (int t = 0; t < 2; t++) {
-            own[t][r]    = extinction(here.emitted[t][air_temps], path.range_m);
-            source[t][r] = mean_source(here.thermal_w_m2_sr[t] * job->air->light.thermal_scale[t], here.emitted[t][air_temps]);
+            own[t][r] = extinction(here.emitted[t][air_temps], path.range_m);
+            source[t][r] =
+                mean_source(here.thermal_w_m2_sr[t] * job->air->light.thermal_scale[t], here.emitted[t][air_temps]);
             for (int k = 0; k < air_temps; k++) emitted[t][k][r] = extinction(here.emitted[t][k], path.range_m);
         }
     }
@@ -132,9 +133,9 @@ static void ask_height(TableJob *job, int row)
         for (int k = 0; k < air_temps - 1; k++) {
             float *out = &table->heat->value[k][first][t * air_warm_values];
             for (int r = 0; r <= air_ranges; r++, out += 2 * air_warm_values) {
-                out[air_warm_own]    = warm[t][air_temps][r];
-                out[air_warm_low]    = warm[t][k][r];
-                out[air_warm_high]   = warm[t][k + 1][r];
+                out[air_warm_own] = warm[t][air_temps][r];
+                out[air_warm_low] = warm[t][k][r];
+                out[air_warm_high] = warm[t][k + 1][r];
                 out[air_warm_source] = warm[t][air_temps + 1][r];
             }
         }
@@ -147,20 +148,20 @@ static void ask_height(TableJob *job, int row)
 static AirPath path_at(const TableJob *job, int slope_step, int share_step)
 {
     const AirTable *table = job->air->table;
-    const double eye_m = job->air->eye_height_m;
-    const double s = (double)(table->slope_low + (float)(2 * slope_step) / table->slope_steps);
-    const double slope = clamp(s * fabs(s), -1, 1);
-    const double whole_m = slope < 0 ? fmax(eye_m, air_least_fall_m) : air_top_m - eye_m;
-    const double end_m = clamp(whole_m / fmax(fabs(slope), 1e-9), air_shortest_way_m, air_longest_way_m);
-    const double share = fmax((double)share_step / coarse_shares, 0.01); /* not quite nothing */
-    const double range_m = share * share * end_m;
+    const double    eye_m = job->air->eye_height_m;
+    const double    s = (double)(table->slope_low + (float)(2 * slope_step) / table->slope_steps);
+    const double    slope = clamp(s * fabs(s), -1, 1);
+    const double    whole_m = slope < 0 ? fmax(eye_m, air_least_fall_m) : air_top_m - eye_m;
+    const double    end_m = clamp(whole_m / fmax(fabs(slope), 1e-9), air_shortest_way_m, air_longest_way_m);
+    const double    share = fmax((double)share_step / coarse_shares, 0.01); /* not quite nothing */
+    const double    range_m = share * share * end_m;
     return (AirPath){.observer_m = eye_m, .range_m = range_m, .target_m = clamp(eye_m + slope * range_m, 0, air_top_m)};
 }
 
 /* One slope: at the middle azimuth, and on a subset of the paths at all azimuths. */
 static void ask_slope(TableJob *job, int i)
 {
-    double seen[coarse_turns + 1][AIR_BAND_COUNT], sun[AIR_BAND_COUNT];
+    double        seen[coarse_turns + 1][AIR_BAND_COUNT], sun[AIR_BAND_COUNT];
     const double *azimuth = job->azimuth_rad;
     for (int c = 0; c <= coarse_shares; c++) {
         const AirPath path = path_at(job, i, c);
@@ -182,9 +183,9 @@ static void halve_steps(double *out, int out_stride, const double *in, int in_st
 {
     for (int i = 0; i < steps; i++) {
         const double *p = in + i * in_stride;
-        const double b = p[0], c = p[in_stride];
-        const double a = i > 0 ? p[-in_stride] : 3 * (b - c) + p[2 * in_stride];
-        const double d = i + 2 <= steps ? p[2 * in_stride] : 3 * (c - b) + p[-in_stride];
+        const double  b = p[0], c = p[in_stride];
+        const double  a = i > 0 ? p[-in_stride] : 3 * (b - c) + p[2 * in_stride];
+        const double  d = i + 2 <= steps ? p[2 * in_stride] : 3 * (c - b) + p[-in_stride];
         out[2 * i * out_stride] = b;
         out[(2 * i + 1) * out_stride] = (9 * (b + c) - (a + d)) * (1.0 / 16);
     }
@@ -195,7 +196,7 @@ static void halve_steps(double *out, int out_stride, const double *in, int in_st
 static void halve_both(double *fine, const double *coarse, int slopes, int shares)
 {
     const int row = 2 * shares + 1;
-    double wide[(2 * coarse_slopes + 1) * (coarse_shares + 1)];
+    double    wide[(2 * coarse_slopes + 1) * (coarse_shares + 1)];
     for (int c = 0; c <= shares; c++) halve_steps(wide + c, shares + 1, coarse + c, shares + 1, slopes);
     for (int i = 0; i <= 2 * slopes; i++) halve_steps(fine + i * row, 1, wide + i * (shares + 1), 1, shares);
 }
@@ -203,9 +204,9 @@ static void halve_both(double *fine, const double *coarse, int slopes, int share
 void air_table_draw(TableJob *job, int task)
 {
     const AirTable *table = job->air->table;
-    const int group = task / air_lights, lane = task % air_lights;
+    const int       group = task / air_lights, lane = task % air_lights;
     if (group >= table->lights || lane >= table->light[group]->bands) return;
-    AirLight *light = table->light[group];
+    AirLight     *light = table->light[group];
     const AirBand band = light->band[lane];
     /* every evaluated azimuth, on the coarse nodes; then as many between them */
     Coarse asked[coarse_turns + 1], turned[air_turns + 1];

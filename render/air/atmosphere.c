@@ -10,7 +10,7 @@ const char *air_band_name(AirBand band)
 
 void air_band_edges(double *low_m, double *high_m, AirBand band)
 {
-    *low_m  = channel_in(band)->low_m;
+    *low_m = channel_in(band)->low_m;
     *high_m = channel_in(band)->high_m;
 }
 
@@ -46,15 +46,15 @@ void blend_at(Blend *out, const Atmosphere *atmosphere, double visibility_m)
 
 static double value_at(const AirColumn *column, const double *value, double height_m)
 {
-    double t;
+    double    t;
     const int i = interval_of(&t, column->height_m, column->nodes, height_m);
     return value[i] + t * (value[i + 1] - value[i]);
 }
 
 static double sum_at(const AirColumn *column, const double *value, const double *sum, double height_m)
 {
-    double t;
-    const int i = interval_of(&t, column->height_m, column->nodes, height_m);
+    double       t;
+    const int    i = interval_of(&t, column->height_m, column->nodes, height_m);
     const double step_m = t * (column->height_m[i + 1] - column->height_m[i]);
     return sum[i] + step_m * (value[i] + t / 2 * (value[i + 1] - value[i]));
 }
@@ -107,7 +107,7 @@ double black_air(const Atmosphere *atmosphere, AirBand band, double height_m)
 double mean_black(const Atmosphere *atmosphere, AirBand band, double a_m, double b_m)
 {
     const AirColumn *clear = &atmosphere->clear;
-    const int i = band == AIR_LWIR;
+    const int        i = band == AIR_LWIR;
     return mean_of(clear, clear->black_per_m[i], clear->black_sum[i], a_m, b_m) / column_mean(clear, band, a_m, b_m);
 }
 
@@ -125,8 +125,8 @@ double path_weight_value(const PathTable *table, const Stencil *at, double temp_
 {
     if (isnan(temp_k) || table->weights < 2) return stencil_value(at, table, 0);
     if (table->weights == 2) return stencil_value(at, table, 1);
-    double t;
-    const int i = 1 + interval_of(&t, table->weight_temp_k + 1, table->weights - 1, temp_k);
+    double       t;
+    const int    i = 1 + interval_of(&t, table->weight_temp_k + 1, table->weights - 1, temp_k);
     const double a = 1 / table->weight_temp_k[i], b = 1 / table->weight_temp_k[i + 1];
     const double share = clamp((1 / temp_k - a) / (b - a), 0, 1), low = stencil_value(at, table, i);
     return share > 0 ? low + share * (stencil_value(at, table, i + 1) - low) : low;
@@ -143,7 +143,8 @@ typedef struct Look {
 
 static void look_at(Look *out, const Atmosphere *atmosphere, const Blend *blend, AirBand band, const AirPath *path)
 {
-    const double sag_m = mean_chord_error_m(path->range_m), a_m = path->observer_m - sag_m, b_m = path->target_m - sag_m;
+    const double sag_m = mean_chord_error_m(path->range_m), a_m = path->observer_m - sag_m,
+                 b_m = path->target_m - sag_m;
     out->atmosphere = atmosphere;
     out->blend = blend;
     out->band = band;
@@ -158,10 +159,10 @@ static void look_at(Look *out, const Atmosphere *atmosphere, const Blend *blend,
 
 static double look_depth(const Look *look, double temp_k)
 {
-    const Blend *blend = look->blend;
-    const AirBand band = look->band;
+    const Blend     *blend = look->blend;
+    const AirBand    band = look->band;
     const PathTable *clear = &look->atmosphere->clear_path[band];
-    double depth = look->clear_plain * exp(path_weight_value(clear, &look->clear, temp_k));
+    double           depth = look->clear_plain * exp(path_weight_value(clear, &look->clear, temp_k));
     if (!blend) return depth;
     double haze = path_weight_value(&blend->low->path[band], &look->low, temp_k);
     if (blend->low != blend->high)
@@ -172,13 +173,14 @@ static double look_depth(const Look *look, double temp_k)
 /* ln of the ratio of the radiance of the path, if it were opaque, to mean_black. */
 static double look_ln_opaque(const Look *look)
 {
-    const Blend *blend = look->blend;
+    const Blend     *blend = look->blend;
     const PathTable *low = &blend->low->path[look->band], *high = &blend->high->path[look->band];
-    const double value = stencil_value(&look->low, low, low->weights);
+    const double     value = stencil_value(&look->low, low, low->weights);
     return low == high ? value : blend_of(blend, value, stencil_value(&look->high, high, high->weights));
 }
 
-void clear_depths(double *out, const Atmosphere *atmosphere, AirBand band, const AirPath *path, const double *temp_k, int temps)
+void clear_depths(double *out, const Atmosphere *atmosphere, AirBand band, const AirPath *path, const double *temp_k,
+                  int temps)
 {
     Look look;
     look_at(&look, atmosphere, NULL, band, path);
@@ -196,8 +198,8 @@ double path_depth(const Atmosphere *atmosphere, const Blend *blend, AirBand band
 static AirPath sane_path(const Atmosphere *atmosphere, const AirPath *path)
 {
     const PathTable *table = &atmosphere->clear_path[AIR_B];
-    const double top_m = fmin(table->axis[0][table->nodes[0] - 1], table->axis[1][table->nodes[1] - 1]);
-    AirPath p = *path;
+    const double     top_m = fmin(table->axis[0][table->nodes[0] - 1], table->axis[1][table->nodes[1] - 1]);
+    AirPath          p = *path;
     p.observer_m = clamp(p.observer_m, 0, top_m);
     p.target_m = clamp(p.target_m, 0, top_m);
     p.range_m = fmax(p.range_m, fabs(p.target_m - p.observer_m));
@@ -207,7 +209,7 @@ static AirPath sane_path(const Atmosphere *atmosphere, const AirPath *path)
 
 double scattered_value(const PathTable *table, const Stencil *at, double sun_x, double azimuth_deg, int tabled)
 {
-    double s, a, sum = 0;
+    double    s, a, sum = 0;
     const int i = interval_of(&s, table->sun_x, table->suns, sun_x);
     const int j = interval_of(&a, table->azimuth_deg, table->azimuths, azimuth_deg);
     for (int corner = 0; corner < 4; corner++) {
@@ -234,10 +236,9 @@ static double scattered(const Atmosphere *atmosphere, const Blend *blend, AirBan
     ScatterParts parts;
     scatter_parts(&parts, atmosphere, blend, band, path, depth);
     double ratio = scattered_ratio(&blend->low->scattered, band, path);
-    if (blend->low != blend->high)
-        ratio = blend_of(blend, ratio, scattered_ratio(&blend->high->scattered, band, path));
-    return fmax(ratio, 0) * scatter_estimate(&parts, atmosphere, band, path_up(path), path->sun_zenith_rad,
-                                             path->rel_azimuth_rad);
+    if (blend->low != blend->high) ratio = blend_of(blend, ratio, scattered_ratio(&blend->high->scattered, band, path));
+    return fmax(ratio, 0) *
+           scatter_estimate(&parts, atmosphere, band, path_up(path), path->sun_zenith_rad, path->rel_azimuth_rad);
 }
 
 static void tabled_path(PathAir *out, const Atmosphere *atmosphere, const Blend *blend, AirBand band,
@@ -256,8 +257,7 @@ static void tabled_path(PathAir *out, const Atmosphere *atmosphere, const Blend 
                                mean_black(atmosphere, band, path->observer_m, path->target_m) *
                                -expm1(-look_depth(&look, table->weight_temp_k[path_emission_weight(table)]));
     }
-    if (path->sun_zenith_rad <= pi_rad / 2)
-        out->scattered_w_m2_sr = scattered(atmosphere, blend, band, path, depth);
+    if (path->sun_zenith_rad <= pi_rad / 2) out->scattered_w_m2_sr = scattered(atmosphere, blend, band, path, depth);
 }
 
 void atmosphere_path(PathAir *out, const Atmosphere *atmosphere, double visibility_m, AirBand band, const AirPath *path,
@@ -288,9 +288,9 @@ void blend_sun(SunAir *out, const Atmosphere *atmosphere, const Blend *blend, Ai
 {
     *out = (SunAir){0};
     if (!(sun_zenith_rad <= pi_rad / 2)) return;
-    double low[2], high[2]; /* ln depth, ln (diffuse / top) */
+    double       low[2], high[2]; /* ln depth, ln (diffuse / top) */
     const double at[2] = {observer_m, slant_x(sun_zenith_rad)}, top = atmosphere->sun_top_w_m2[band];
-    const int i = air_tabled_index(band);
+    const int    i = air_tabled_index(band);
     grid_some(low, &blend->low->sun, at, i, air_tabled_count, 2);
     double depth = exp(low[0]), diffuse = exp(low[1]);
     if (blend->high != blend->low) {

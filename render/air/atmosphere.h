@@ -37,23 +37,23 @@ void   atmosphere_close(Atmosphere *atmosphere);
 /* Valid visibilities, m; outside them the nearest is used: 0.4 of the least to 2.2 of the greatest that has a table.
  * Between tables and beyond them haze's extinction at the model's own heights (temperature.csv) is a straight line in
  * 1 / visibility, between these heights one in its logarithm (render/air/atmosphere_slices.c). */
-void   atmosphere_visibilities(const Atmosphere *atmosphere, double *low_m, double *high_m);
+void atmosphere_visibilities(const Atmosphere *atmosphere, double *low_m, double *high_m);
 
 /* One straight path over a round Earth. Heights above the model's ground (its 0 km), of both ends; the
  * path may go up, down or along. Any range: below the tables' shortest depth is in proportion to range, beyond the
  * longest too. */
 typedef struct AirPath {
-    double observer_m, target_m;   /* 0 .. the top of the tables, 20 km; clamped */
-    double range_m;                /* raised to |target_m - observer_m|; 0: empty path */
-    double sun_zenith_rad;         /* for scattered sunlight; > pi / 2: none */
-    double rel_azimuth_rad;        /* between the view and the sun, 0: towards the sun */
+    double observer_m, target_m; /* 0 .. the top of the tables, 20 km; clamped */
+    double range_m;              /* raised to |target_m - observer_m|; 0: empty path */
+    double sun_zenith_rad;       /* for scattered sunlight; > pi / 2: none */
+    double rel_azimuth_rad;      /* between the view and the sun, 0: towards the sun */
 } AirPath;
 
 typedef struct PathAir {
-    double transmittance;          /* weighted by Planck(temp_k) in the thermal bands, by the sun elsewhere */
-    double sun_transmittance;      /* weighted by sunlight: of what is reflected */
-    double thermal_w_m2_sr;        /* path radiance by emission */
-    double scattered_w_m2_sr;      /* path radiance by scattered sunlight, single and multiple */
+    double transmittance;     /* weighted by Planck(temp_k) in the thermal bands, by the sun elsewhere */
+    double sun_transmittance; /* weighted by sunlight: of what is reflected */
+    double thermal_w_m2_sr;   /* path radiance by emission */
+    double scattered_w_m2_sr; /* path radiance by scattered sunlight, single and multiple */
 } PathAir;
 
 /* temp_k: of the emitter, 200 .. 3000, clamped. About 0.5 us at night and 3 us by day, pan three times that. */
@@ -68,8 +68,8 @@ void atmosphere_sky(SkyAir *out, const Atmosphere *atmosphere, double visibility
                     double zenith_rad, double sun_zenith_rad, double rel_azimuth_rad);
 
 typedef struct SunAir {
-    double direct_normal_w_m2;     /* facing the sun, at 1 AU */
-    double diffuse_horizontal_w_m2;/* scattered sunlight from the whole sky on a level plane */
+    double direct_normal_w_m2;      /* facing the sun, at 1 AU */
+    double diffuse_horizontal_w_m2; /* scattered sunlight from the whole sky on a level plane */
 } SunAir;
 void atmosphere_sun(SunAir *out, const Atmosphere *atmosphere, double visibility_m, AirBand band, double observer_m,
                     double sun_zenith_rad);
@@ -97,9 +97,9 @@ Status air_day_at(const AirDay **out, const Atmosphere *atmosphere, double visib
 
 /* Of one path: ln(1 / tau). */
 typedef struct DayPath {
-    double sun[AIR_BAND_COUNT];                                         /* of sunlight */
-    double emitted[2][day_temps_max];                                   /* of emitters; mwir, lwir */
-    double thermal_w_m2_sr[2];                                          /* the air's own radiance */
+    double sun[AIR_BAND_COUNT];       /* of sunlight */
+    double emitted[2][day_temps_max]; /* of emitters; mwir, lwir */
+    double thermal_w_m2_sr[2];        /* the air's own radiance */
 } DayPath;
 void air_day_path(DayPath *out, const AirDay *day, const AirPath *path);
 

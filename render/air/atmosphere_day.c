@@ -55,7 +55,10 @@ static inline Place place_at(const DayColumn *c, double height_m)
     return (Place){i, fmin(t, 1), fmin(t, 1) * step_m};
 }
 
-static inline double value_at(const double *value, const Place *p) { return value[p->i] + p->t * (value[p->i + 1] - value[p->i]); }
+static inline double value_at(const double *value, const Place *p)
+{
+    return value[p->i] + p->t * (value[p->i + 1] - value[p->i]);
+}
 static inline double sum_at(const double *value, const double *sum, const Place *p)
 {
     return sum[p->i] + p->part_m * (value[p->i] + 0.5 * p->t * (value[p->i + 1] - value[p->i]));
@@ -110,7 +113,8 @@ typedef struct Stencils {
     Stencil at[shapes_max];
 } Stencils;
 
-static const Stencil *stencil_in(Stencils *known, const PathTable *table, double observer_m, double second, double range_m)
+static const Stencil *stencil_in(Stencils *known, const PathTable *table, double observer_m, double second,
+                                 double range_m)
 {
     int k = 0;
     while (k < known->count && known->shape[k] != table->shape) k++;
@@ -138,8 +142,8 @@ static AirPath sane(const AirDay *day, const AirPath *path)
 {
     AirPath p = *path;
     p.observer_m = clamp(p.observer_m, 0, day->top_m);
-    p.target_m   = clamp(p.target_m, 0, day->top_m);
-    p.range_m    = fmax(p.range_m, fabs(p.target_m - p.observer_m));
+    p.target_m = clamp(p.target_m, 0, day->top_m);
+    p.range_m = fmax(p.range_m, fabs(p.target_m - p.observer_m));
     return p;
 }
 
@@ -208,11 +212,12 @@ void air_day_path(DayPath *out, const AirDay *day, const AirPath *path)
         DayTemp          at[3];
         for (int which = 0; which < 3; which++) at[which] = temp_in(table_of(day, b, which), emit_k);
         for (int t = 0; t < day->temps; t++)
-            out->emitted[k][t] = depth_of(day, plain, weight_of(value[0], day->temp[k][0][t]), weight_of(value[1], day->temp[k][1][t]),
-                                          day->hazes ? weight_of(value[2], day->temp[k][2][t]) : 0);
+            out->emitted[k][t] =
+                depth_of(day, plain, weight_of(value[0], day->temp[k][0][t]), weight_of(value[1], day->temp[k][1][t]),
+                         day->hazes ? weight_of(value[2], day->temp[k][2][t]) : 0);
         const double own = depth_of(day, plain, weight_of(value[0], at[0]), weight_of(value[1], at[1]),
                                     day->hazes ? weight_of(value[2], at[2]) : 0);
-        double ln_opaque = value[1][low->weights];
+        double       ln_opaque = value[1][low->weights];
         if (day->hazes) ln_opaque += day->blend.share * (value[2][high->weights] - ln_opaque);
         out->thermal_w_m2_sr[k] =
             exp_here(ln_opaque) * mean_black(day->atmosphere, b, p.observer_m, p.target_m) * -expm1(-own);
@@ -236,9 +241,9 @@ static void add_step(Steps *s, const AirDay *day, double a_m, double b_m, double
     const int    k = s->count++;
     const double middle_m = (a_m + b_m) / 2;
     s->step_m[k] = step_m;
-    s->span[k]   = (Span){k > 0 ? s->span[k - 1].b : place_at(&day->column, a_m), place_at(&day->column, b_m),
-                          place_at(&day->column, middle_m),
-                          clamp(b_m, 0, day->column.top_m) - clamp(a_m, 0, day->column.top_m)};
+    s->span[k] =
+        (Span){k > 0 ? s->span[k - 1].b : place_at(&day->column, a_m), place_at(&day->column, b_m),
+               place_at(&day->column, middle_m), clamp(b_m, 0, day->column.top_m) - clamp(a_m, 0, day->column.top_m)};
     s->sun_i[0][k] = interval_of(&s->sun_t[0][k], day->sun[0].height_m, day->sun[0].nodes, middle_m);
     if (day->hazes && day->suns_alike) {
         s->sun_i[1][k] = s->sun_i[0][k];
@@ -250,24 +255,28 @@ static void add_step(Steps *s, const AirDay *day, double a_m, double b_m, double
     s->phase_i[k] = interval_of(&s->phase_t[k], phase->axis[0], phase->nodes[0], middle_m);
 }
 
-static double between(const double *value, int i, double t) { return t > 0 ? value[i] + t * (value[i + 1] - value[i]) : value[i]; }
+static double between(const double *value, int i, double t)
+{
+    return t > 0 ? value[i] + t * (value[i + 1] - value[i]) : value[i];
+}
 
 /* Exponentials are computed in eights; the arrays behind the steps are padded for that. */
 static int lanes_of(const Steps *s) { return (s->count + 7) & ~7; }
 
 /* Direct and diffuse sunlight over their top, at the middle of every step. */
-static void sun_at_steps(double direct[steps_room], double diffuse[steps_room], const AirDay *day, AirBand band, const Steps *s)
+static void sun_at_steps(double direct[steps_room], double diffuse[steps_room], const AirDay *day, AirBand band,
+                         const Steps *s)
 {
     const int lanes = lanes_of(s);
     double    ln_depth[2][steps_room] = {{0}}, ln_diffuse[2][steps_room] = {{0}};
     for (int which = 0; which <= day->hazes; which++)
         for (int k = 0; k < s->count; k++) {
-            ln_depth[which][k]   = between(day->sun[which].ln_depth[band], s->sun_i[which][k], s->sun_t[which][k]);
+            ln_depth[which][k] = between(day->sun[which].ln_depth[band], s->sun_i[which][k], s->sun_t[which][k]);
             ln_diffuse[which][k] = between(day->sun[which].ln_diffuse[band], s->sun_i[which][k], s->sun_t[which][k]);
         }
     if (!day->hazes) {
         for (int k = 0; k < lanes; k++) {
-            direct[k]  = exp_here(-exp_here(ln_depth[0][k]));
+            direct[k] = exp_here(-exp_here(ln_depth[0][k]));
             diffuse[k] = exp_here(ln_diffuse[0][k]);
         }
         return;
@@ -347,7 +356,8 @@ static double estimate(const ScatterParts *parts, const AirDay *day, AirBand ban
     double        sum = 0.75 * (1 + a->cosine * a->cosine) * parts->clear + parts->glow;
     for (int i = 0; i < phase->nodes[0]; i++, ln_haze += phase->nodes[1] * air_tabled_count)
         if (parts->haze[i] > 0)
-            sum += parts->haze[i] * exp_here(a->t > 0 ? ln_haze[0] + a->t * (ln_haze[air_tabled_count] - ln_haze[0]) : ln_haze[0]);
+            sum += parts->haze[i] *
+                   exp_here(a->t > 0 ? ln_haze[0] + a->t * (ln_haze[air_tabled_count] - ln_haze[0]) : ln_haze[0]);
     return sum;
 }
 
@@ -358,10 +368,11 @@ static void add_pan(double w_m2_sr[AIR_BAND_COUNT])
 }
 
 /* Between two azimuths of [azimuths][air_tabled_count] values. */
-static void at_azimuth(double out[air_tabled_count], const double *value, const double *azimuth_deg, int azimuths, double azimuth_rad)
+static void at_azimuth(double out[air_tabled_count], const double *value, const double *azimuth_deg, int azimuths,
+                       double azimuth_rad)
 {
-    double       t;
-    const int    j = interval_of(&t, azimuth_deg, azimuths, azimuth_rad / rad_per_deg);
+    double        t;
+    const int     j = interval_of(&t, azimuth_deg, azimuths, azimuth_rad / rad_per_deg);
     const double *low = value + j * air_tabled_count, *high = t > 0 ? low + air_tabled_count : low;
     for (int k = 0; k < air_tabled_count; k++) out[k] = low[k] + t * (high[k] - low[k]);
 }
@@ -389,7 +400,8 @@ void air_day_scattered(double (*w_m2_sr)[AIR_BAND_COUNT], double sun[AIR_BAND_CO
         depths_of(value, plain, &d, day, b);
         sun[b] = depth_of(day, plain, value[0][0], value[1][0], value[2][0]);
         if (!lit) continue;
-        parts_of(&parts[b], day, b, &steps, sun[b] / (clear_mean(day, b, &whole) + haze_mean(day, b, &whole)) / p.range_m);
+        parts_of(&parts[b], day, b, &steps,
+                 sun[b] / (clear_mean(day, b, &whole) + haze_mean(day, b, &whole)) / p.range_m);
     }
     if (wants(day->bands, AIR_PAN)) pan_of(sun, day);
     if (!lit) return;
@@ -424,7 +436,8 @@ void air_day_scattered(double (*w_m2_sr)[AIR_BAND_COUNT], double sun[AIR_BAND_CO
 /* ---- the sky ------------------------------------------------------------------------------------ */
 
 /* The ratios of one visibility at a height and a zenith angle: [azimuth][air_tabled_count]. */
-static void sky_ratio(double out[azimuths_room * air_tabled_count], const AirDay *day, int which, double observer_m, double x)
+static void sky_ratio(double out[azimuths_room * air_tabled_count], const AirDay *day, int which, double observer_m,
+                      double x)
 {
     const Grid *grid = &slice_of(day, which)->sky_scattered;
     const int   inner = grid->nodes[3] * grid->values;
@@ -444,12 +457,13 @@ void air_day_sky(double (*w_m2_sr)[AIR_BAND_COUNT], double thermal_w_m2_sr[2], c
                  double zenith_rad, const double *azimuth_rad, int azimuths)
 {
     const AirColumn *clear = &day->atmosphere->clear;
-    const double     zenith = clamp(zenith_rad, 0, pi_rad / 2), eye_m = fmax(observer_m, 0), x = slant_x(zenith), up = cos(zenith);
-    const double     at[2] = {eye_m, x}, slant = air_mass(zenith);
-    const double     rise_m = fmin(clear->height_m[clear->nodes - 1], 40000) - eye_m;
-    double           ratio[2][azimuths_room * air_tabled_count], here[2][air_tabled_count];
-    ScatterParts     parts[AIR_BAND_COUNT];
-    Steps            steps = {0};
+    const double     zenith = clamp(zenith_rad, 0, pi_rad / 2), eye_m = fmax(observer_m, 0), x = slant_x(zenith),
+                 up = cos(zenith);
+    const double at[2] = {eye_m, x}, slant = air_mass(zenith);
+    const double rise_m = fmin(clear->height_m[clear->nodes - 1], 40000) - eye_m;
+    double       ratio[2][azimuths_room * air_tabled_count], here[2][air_tabled_count];
+    ScatterParts parts[AIR_BAND_COUNT];
+    Steps        steps = {0};
     memset(w_m2_sr, 0, (size_t)azimuths * sizeof *w_m2_sr);
     for (int k = 0; k < 2; k++) {
         double low[2], high[2];

@@ -30,8 +30,8 @@ static Status fill_column(AirDay *day, Arena *arena)
     DayColumn             *c = &day->column;
     c->height_m = arena_alloc(arena, 3 * column_max, sizeof *c->height_m);
     if (!c->height_m) return STATUS_NO_MEMORY;
-    c->nodes        = merge_nodes(c->height_m, from, 3);
-    c->top_m        = a->clear.height_m[a->clear.nodes - 1];
+    c->nodes = merge_nodes(c->height_m, from, 3);
+    c->top_m = a->clear.height_m[a->clear.nodes - 1];
     c->per_bucket_m = day_buckets / (c->height_m[c->nodes - 1] * (1 + 1e-9));
     for (int k = 0, i = 0; k < day_buckets; k++) {
         while (i + 2 < c->nodes && c->height_m[i + 1] * c->per_bucket_m <= k) i++;
@@ -39,17 +39,17 @@ static Status fill_column(AirDay *day, Arena *arena)
     }
     for (AirBand b = 0; b < AIR_BAND_COUNT; b++) {
         if (!wants(day->parts, b)) continue;
-        double **const row[] = {&c->clear[b], &c->clear_sum[b], &c->clear_scatter[b],
+        double **const row[] = {&c->clear[b],   &c->clear_sum[b],   &c->clear_scatter[b],
                                 &c->haze[0][b], &c->haze_sum[0][b], &c->haze_scatter[0][b],
                                 &c->haze[1][b], &c->haze_sum[1][b], &c->haze_scatter[1][b]};
         for (size_t k = 0; k < sizeof row / sizeof *row; k++)
             if (!(*row[k] = arena_alloc(arena, (size_t)c->nodes, sizeof(double)))) return STATUS_NO_MEMORY;
         for (int i = 0; i < c->nodes; i++) {
             const double h_m = c->height_m[i];
-            c->clear[b][i]         = column_mean(&a->clear, b, h_m, h_m);
+            c->clear[b][i] = column_mean(&a->clear, b, h_m, h_m);
             c->clear_scatter[b][i] = column_scatter(&a->clear, b, h_m);
             for (int which = 0; which < 2; which++) {
-                c->haze[which][b][i]         = column_mean(from[1 + which], b, h_m, h_m);
+                c->haze[which][b][i] = column_mean(from[1 + which], b, h_m, h_m);
                 c->haze_scatter[which][b][i] = column_scatter(from[1 + which], b, h_m);
             }
         }
@@ -65,13 +65,15 @@ static void fill_sun(AirDay *day, int which)
     DaySun     *sun = &day->sun[which];
     double      t;
     const int   j = interval_of(&t, grid->axis[1], grid->nodes[1], slant_x(day->sun_zenith_rad));
-    sun->nodes    = grid->nodes[0];
+    sun->nodes = grid->nodes[0];
     sun->height_m = grid->axis[0];
     for (int i = 0; i < grid->nodes[0]; i++) {
-        const double *low = grid->value + (i * grid->nodes[1] + j) * grid->values, *high = t > 0 ? low + grid->values : low;
+        const double *low = grid->value + (i * grid->nodes[1] + j) * grid->values,
+                     *high = t > 0 ? low + grid->values : low;
         for (int k = 0; k < air_tabled_count; k++) {
-            sun->ln_depth[air_tabled[k]][i]   = low[k] + t * (high[k] - low[k]);
-            sun->ln_diffuse[air_tabled[k]][i] = low[k + air_tabled_count] + t * (high[k + air_tabled_count] - low[k + air_tabled_count]);
+            sun->ln_depth[air_tabled[k]][i] = low[k] + t * (high[k] - low[k]);
+            sun->ln_diffuse[air_tabled[k]][i] =
+                low[k + air_tabled_count] + t * (high[k + air_tabled_count] - low[k + air_tabled_count]);
         }
     }
 }
@@ -81,7 +83,8 @@ static double *without_sun(const double *value, size_t blocks, int suns, int inn
 {
     double *out = arena_alloc(arena, blocks * (size_t)inner, sizeof *out);
     for (size_t k = 0; out && k < blocks; k++) {
-        const double *low = value + (k * (size_t)suns + (size_t)sun) * (size_t)inner, *high = share > 0 ? low + inner : low;
+        const double *low = value + (k * (size_t)suns + (size_t)sun) * (size_t)inner,
+                     *high = share > 0 ? low + inner : low;
         for (int i = 0; i < inner; i++) out[k * (size_t)inner + (size_t)i] = low[i] + share * (high[i] - low[i]);
     }
     return out;
@@ -109,8 +112,13 @@ Status air_day_at(const AirDay **out, const Atmosphere *atmosphere, double visib
     if (!day) return STATUS_NO_MEMORY;
     assert(temps <= day_temps_max);
     const PathTable *heights = &atmosphere->clear_path[AIR_B];
-    *day = (AirDay){.atmosphere = atmosphere, .sun_zenith_rad = sun_zenith_rad, .sun_cos = cos(sun_zenith_rad),
-                    .sun_sin = sin(sun_zenith_rad), .bands = bands, .parts = bands & ~(1u << AIR_PAN), .temps = temps,
+    *day = (AirDay){.atmosphere = atmosphere,
+                    .sun_zenith_rad = sun_zenith_rad,
+                    .sun_cos = cos(sun_zenith_rad),
+                    .sun_sin = sin(sun_zenith_rad),
+                    .bands = bands,
+                    .parts = bands & ~(1u << AIR_PAN),
+                    .temps = temps,
                     .top_m = fmin(heights->axis[0][heights->nodes[0] - 1], heights->axis[1][heights->nodes[1] - 1])};
     if (wants(bands, AIR_PAN)) day->parts |= 1u << AIR_B | 1u << AIR_G | 1u << AIR_R;
     blend_at(&day->blend, atmosphere, visibility_m);
@@ -120,8 +128,9 @@ Status air_day_at(const AirDay **out, const Atmosphere *atmosphere, double visib
         fill_sun(day, which);
         status = fill_scattered(day, which, arena);
     }
-    day->suns_alike = day->hazes && day->sun[0].nodes == day->sun[1].nodes && day->sun[0].nodes > 0 &&
-                      memcmp(day->sun[0].height_m, day->sun[1].height_m, (size_t)day->sun[0].nodes * sizeof(double)) == 0;
+    day->suns_alike =
+        day->hazes && day->sun[0].nodes == day->sun[1].nodes && day->sun[0].nodes > 0 &&
+        memcmp(day->sun[0].height_m, day->sun[1].height_m, (size_t)day->sun[0].nodes * sizeof(double)) == 0;
     for (int b = 0; b < 2; b++)
         for (int which = 0; which < 3; which++)
             for (int k = 0; k < temps; k++)

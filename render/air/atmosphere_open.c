@@ -30,7 +30,7 @@ static void choose_tables(bool need[slices_max], const bool has[slices_max], con
 static Status make_slices(Atmosphere *atmosphere, const Slice *tabled, int count, double visibility_m)
 {
     double step_m[slices_made_max] = {visibility_m};
-    int steps = 1;
+    int    steps = 1;
     if (isnan(visibility_m)) steps = visibility_steps(step_m, tabled, count, atmosphere->low_m, atmosphere->high_m);
     atmosphere->slice = calloc((size_t)steps, sizeof *atmosphere->slice);
     if (!atmosphere->slice) return STATUS_NO_MEMORY;
@@ -50,11 +50,11 @@ static const double visibility_below = 0.4, visibility_above = 2.2;
  * sky_scattered.csv no scattered light; the neighbours' count there. */
 static Status open_slices(Atmosphere *atmosphere, const char *folder, const Grid *list, double visibility_m)
 {
-    const int count = list->nodes[0];
+    const int     count = list->nodes[0];
     const double *table_m = list->axis[0];
-    bool paths[slices_max] = {false}, light[slices_max] = {false}, need[slices_max] = {false}, all[slices_max];
-    bool any_paths = false, any_light = false;
-    char slice_folder[slices_max][1024], name[32];
+    bool          paths[slices_max] = {false}, light[slices_max] = {false}, need[slices_max] = {false}, all[slices_max];
+    bool          any_paths = false, any_light = false;
+    char          slice_folder[slices_max][1024], name[32];
     for (int i = 0; i < count; i++) {
         snprintf(name, sizeof name, "%.0f", table_m[i]);
         if (atmosphere_file(slice_folder[i], folder, name) != STATUS_OK) return STATUS_BAD_VALUE;
@@ -77,7 +77,7 @@ static Status open_slices(Atmosphere *atmosphere, const char *folder, const Grid
 
     Slice *tabled = calloc((size_t)count, sizeof *tabled);
     if (!tabled) return STATUS_NO_MEMORY;
-    int read = 0;
+    int    read = 0;
     Status status = STATUS_OK;
     for (int i = 0; i < count && status == STATUS_OK; i++) {
         if (!need[i]) continue;
@@ -96,9 +96,9 @@ static Status open_slices(Atmosphere *atmosphere, const char *folder, const Grid
 static Status open_model(Atmosphere *atmosphere, const char *folder, double visibility_m)
 {
     static const GridColumn visibility = {"visibility_m", 100, 500000}, longwave = {"longwave_down_w_m2", 1, 1000};
-    char path[1024];
-    Status status = atmosphere_file(path, folder, "visibilities.csv");
-    Grid list = {0};
+    char                    path[1024];
+    Status                  status = atmosphere_file(path, folder, "visibilities.csv");
+    Grid                    list = {0};
     if (status == STATUS_OK) status = grid_open(&list, path, &visibility, 1, &longwave, 1);
     if (status != STATUS_OK) return status;
     if (list.nodes[0] > slices_max) {
@@ -135,7 +135,7 @@ Status atmosphere_open(Atmosphere **out, const char *model) { return atmosphere_
 /* Logs the available models, by their folders. */
 static Status no_model(const char *model)
 {
-    char folder[1024], path[1400], list[512] = "";
+    char            folder[1024], path[1400], list[512] = "";
     struct dirent **entry;
     const int count = etc_path(folder, sizeof folder, "atmosphere") ? scandir(folder, &entry, NULL, alphasort) : -1;
     for (int i = 0; i < count; i++) {
@@ -153,15 +153,16 @@ static Status no_model(const char *model)
 
 Status atmosphere_open_at(Atmosphere **out, const char *model, double visibility_m)
 {
-    char name[96], folder[512];
-    bool plain = *model && strlen(model) < 64;
+    char       name[96], folder[512];
+    bool       plain = *model && strlen(model) < 64;
     const bool named = strpbrk(model, "/."); /* a folder */
     for (const char *c = model; *c; c++)
         plain = plain && ((*c >= 'a' && *c <= 'z') || (*c >= '0' && *c <= '9') || *c == '_');
     if (!plain && !named) {
         char shown[64];
         text_escape(shown, sizeof shown, model, strlen(model));
-        log_error("atmosphere: a model's name is of a-z, 0-9 and _, not '%s'; a folder has a dot or a slash: ./NAME", shown);
+        log_error("atmosphere: a model's name is of a-z, 0-9 and _, not '%s'; a folder has a dot or a slash: ./NAME",
+                  shown);
         return STATUS_BAD_VALUE;
     }
     if (!named) snprintf(name, sizeof name, "atmosphere/%s", model);
@@ -171,7 +172,8 @@ Status atmosphere_open_at(Atmosphere **out, const char *model, double visibility
         return STATUS_BAD_VALUE;
     }
     if (named && access(folder, F_OK) != 0) {
-        log_error("atmosphere: there is no folder %s (weather.atmosphere); etc/atmosphere/README.md is the format", model);
+        log_error("atmosphere: there is no folder %s (weather.atmosphere); etc/atmosphere/README.md is the format",
+                  model);
         return STATUS_IO;
     }
     if (access(folder, F_OK) != 0) return no_model(model);
@@ -250,7 +252,7 @@ int axis_from(double *axis, int capacity, const double *values, int count)
 
 static int axis_find(const double *axis, int count, double x)
 {
-    double share;
+    double    share;
     const int i = interval_of(&share, axis, count, x);
     return count > 1 && axis[i + 1] == x ? i + 1 : i;
 }
@@ -298,7 +300,7 @@ static void report_missing(const Grid *grid, const Table *table, const GridColum
 {
     size_t node = 0;
     while (seen[node]) node++;
-    char text[256] = "";
+    char   text[256] = "";
     double at[grid_max_axes];
     for (int i = grid->axes - 1; i >= 0; i--) {
         at[i] = grid->axis[i][node % (size_t)grid->nodes[i]];
@@ -314,14 +316,14 @@ static void report_missing(const Grid *grid, const Table *table, const GridColum
 
 Status grid_open(Grid *out, const char *path, const GridColumn *axis, int axes, const GridColumn *value, int values)
 {
-    Table table = {0};
+    Table  table = {0};
     Status status = table_open(&table, path);
     if (status != STATUS_OK) return status;
 
-    Grid grid = {.axes = axes, .values = values};
-    int axis_column[grid_max_axes], value_column[grid_max_values];
+    Grid    grid = {.axes = axes, .values = values};
+    int     axis_column[grid_max_axes], value_column[grid_max_values];
     double *scratch = calloc((size_t)table.rows + 1, sizeof *scratch);
-    bool *seen = calloc((size_t)table.rows + 1, sizeof *seen);
+    bool   *seen = calloc((size_t)table.rows + 1, sizeof *seen);
     status = STATUS_NO_MEMORY;
     if (!scratch || !seen) goto done;
     status = STATUS_BAD_VALUE;
@@ -386,12 +388,12 @@ void grid_some(double *out, const Grid *grid, const double *at, int first, int s
 {
     size_t offset[1 << grid_max_axes] = {0};
     double share[1 << grid_max_axes] = {1};
-    int corners = 1;
+    int    corners = 1;
     for (int i = 0; i < grid->axes; i++) {
-        double t;
+        double       t;
         const size_t nodes = (size_t)grid->nodes[i];
         const size_t cell = (size_t)interval_of(&t, grid->axis[i], grid->nodes[i], at[i]);
-        const bool both = t > 0;
+        const bool   both = t > 0;
         for (int c = 0; c < corners; c++) {
             if (both) {
                 offset[c + corners] = offset[c] * nodes + cell + 1;

@@ -23,9 +23,9 @@ static void add_step(ScatterParts *sum, const Atmosphere *atmosphere, const Blen
     const double haze = seen_m * blend_haze_scatter(blend, band, height_m);
     const double glow = 2 * sun.diffuse_horizontal_w_m2 +
                         0.4 * (sun.diffuse_horizontal_w_m2 + sun.direct_normal_w_m2 * cos(sun_zenith_rad));
-    double t;
+    double      t;
     const Grid *phase = &atmosphere->phase;
-    const int i = interval_of(&t, phase->axis[0], phase->nodes[0], height_m);
+    const int   i = interval_of(&t, phase->axis[0], phase->nodes[0], height_m);
     sum->clear += clear * sun.direct_normal_w_m2;
     sum->haze[i] += (1 - t) * haze * sun.direct_normal_w_m2;
     if (t > 0) sum->haze[i + 1] += t * haze * sun.direct_normal_w_m2;
@@ -35,12 +35,12 @@ static void add_step(ScatterParts *sum, const Atmosphere *atmosphere, const Blen
 double scatter_estimate(const ScatterParts *parts, const Atmosphere *atmosphere, AirBand band, double up,
                         double sun_zenith_rad, double rel_azimuth_rad)
 {
-    const Grid *phase = &atmosphere->phase;
-    const double cosine = up * cos(sun_zenith_rad) +
-                          sqrt(fmax(1 - up * up, 0)) * sin(sun_zenith_rad) * cos(rel_azimuth_rad);
-    double sum = 0.75 * (1 + cosine * cosine) * parts->clear + parts->glow; /* clear air: Rayleigh's */
-    double t;
-    const int a = interval_of(&t, phase->axis[1], phase->nodes[1], acos(clamp(cosine, -1, 1)));
+    const Grid  *phase = &atmosphere->phase;
+    const double cosine =
+        up * cos(sun_zenith_rad) + sqrt(fmax(1 - up * up, 0)) * sin(sun_zenith_rad) * cos(rel_azimuth_rad);
+    double        sum = 0.75 * (1 + cosine * cosine) * parts->clear + parts->glow; /* clear air: Rayleigh's */
+    double        t;
+    const int     a = interval_of(&t, phase->axis[1], phase->nodes[1], acos(clamp(cosine, -1, 1)));
     const double *ln_haze = phase->value + a * air_tabled_count + air_tabled_index(band);
     for (int i = 0; i < phase->nodes[0]; i++, ln_haze += phase->nodes[1] * air_tabled_count)
         if (parts->haze[i] > 0)
@@ -70,9 +70,9 @@ void scatter_parts_sky(ScatterParts *out, const Atmosphere *atmosphere, const Bl
     /* heights in steps that grow upwards */
     enum { steps = 12 };
     const AirColumn *clear = &atmosphere->clear;
-    const double rise_m = fmin(clear->height_m[clear->nodes - 1], 40000) - observer_m;
-    const double slant = air_mass(zenith_rad);
-    double depth = 0;
+    const double     rise_m = fmin(clear->height_m[clear->nodes - 1], 40000) - observer_m;
+    const double     slant = air_mass(zenith_rad);
+    double           depth = 0;
     *out = (ScatterParts){0};
     if (!(rise_m > 0)) return;
     for (int i = 0; i < steps; i++) {
@@ -107,10 +107,12 @@ static int compare_keys(const void *a, const void *b)
 }
 
 /* Of paths_*.csv the first three, of scattered.csv all, with a direction instead of a target. */
-static const GridColumn path_key[5] = {{"observer_m", 0, height_max_m}, {"target_m", 0, height_max_m},
-                                       {"range_m", 1, range_max_m}, {"sun_zenith_deg", 0, 90},
-                                       {"rel_azimuth_deg", 0, 180}};
-static const GridColumn direction_key = {"zenith_deg", 0, 180};
+static const GridColumn  path_key[5] = {{"observer_m", 0, height_max_m},
+                                        {"target_m", 0, height_max_m},
+                                        {"range_m", 1, range_max_m},
+                                        {"sun_zenith_deg", 0, 90},
+                                        {"rel_azimuth_deg", 0, 180}};
+static const GridColumn  direction_key = {"zenith_deg", 0, 180};
 static const GridColumn *key_column(int keys, int k) { return keys == 5 && k == 1 ? &direction_key : &path_key[k]; }
 
 /* Rows in order; their keys are read, and the lengths are valid. */
@@ -174,7 +176,7 @@ static int block_length(const PathTable *paths, const Table *table, const PathKe
     const int inner = paths->suns * paths->azimuths;
     for (int i = 0; i < inner; i++) {
         const PathKey *k = &key[row + i];
-        const bool same = row + i < table->rows && memcmp(k->at, key[row].at, 3 * sizeof *k->at) == 0;
+        const bool     same = row + i < table->rows && memcmp(k->at, key[row].at, 3 * sizeof *k->at) == 0;
         if (same && (keys < 5 || (k->at[3] == paths->sun_x[i / paths->azimuths] &&
                                   k->at[4] == paths->azimuth_deg[i % paths->azimuths])))
             continue;
@@ -188,7 +190,7 @@ static int block_length(const PathTable *paths, const Table *table, const PathKe
 /* Axes of the sorted keys; checks that every pair of nodes has ranges, and every range every sun and azimuth. */
 static Status arrange(PathTable *out, const Table *table, const PathKey *key, int keys)
 {
-    const int rows = table->rows;
+    const int    rows = table->rows;
     const Status status = find_path_axes(out, table, key, keys);
     if (status != STATUS_OK) return status;
     const int pairs = out->nodes[0] * out->nodes[1];
@@ -229,17 +231,16 @@ void paths_close(PathTable *table)
     *table = (PathTable){0};
 }
 
-Status paths_open(PathTable *out, const char *path, int keys, const GridColumn *value, int values,
-                  PathColumns *choose)
+Status paths_open(PathTable *out, const char *path, int keys, const GridColumn *value, int values, PathColumns *choose)
 {
-    Table table = {0};
+    Table  table = {0};
     Status status = table_open(&table, path);
     if (status != STATUS_OK) return status;
 
-    PathTable paths = {0};
+    PathTable  paths = {0};
     GridColumn column[path_max_weights + 1];
-    int at[path_max_weights + 1], count = values;
-    PathKey *key = calloc((size_t)table.rows + 1, sizeof *key);
+    int        at[path_max_weights + 1], count = values;
+    PathKey   *key = calloc((size_t)table.rows + 1, sizeof *key);
     status = STATUS_NO_MEMORY;
     if (!key) goto done;
     status = STATUS_BAD_VALUE;
@@ -309,7 +310,7 @@ bool paths_alike(const PathTable *a, const PathTable *b)
  * shortest range of all and beyond a pair's longest one: the value of the end. */
 static int range_stencil(int *row, double *share, const PathTable *table, int pair, double x)
 {
-    const int first = table->first[pair], count = table->first[pair + 1] - first;
+    const int     first = table->first[pair], count = table->first[pair + 1] - first;
     const double *node = table->ln_range + first;
     x = clamp(x, table->ln_range_low, node[count - 1]);
     int low, points;
@@ -320,7 +321,7 @@ static int range_stencil(int *row, double *share, const PathTable *table, int pa
         low = 0;
         points = 2;
     } else {
-        double t;
+        double    t;
         const int cell = interval_of(&t, node, count, x);
         low = cell > 0 ? cell - 1 : 0;
         const int high = cell + 2 < count ? cell + 2 : count - 1;
@@ -337,9 +338,9 @@ static int range_stencil(int *row, double *share, const PathTable *table, int pa
 
 void stencil_at(Stencil *out, const PathTable *table, double observer_m, double second, double range_m)
 {
-    double s, t;
-    const int i = interval_of(&s, table->axis[0], table->nodes[0], observer_m);
-    const int j = interval_of(&t, table->axis[1], table->nodes[1], second);
+    double       s, t;
+    const int    i = interval_of(&s, table->axis[0], table->nodes[0], observer_m);
+    const int    j = interval_of(&t, table->axis[1], table->nodes[1], second);
     const double x = log(fmax(range_m, 1e-3));
     out->count = 0;
     for (int corner = 0; corner < 4; corner++) {

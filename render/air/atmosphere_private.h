@@ -8,8 +8,8 @@
 /* Bands that have tables of their own; AIR_PAN is the sum of b, g and r. */
 enum { air_tabled_count = 6 };
 extern const AirBand air_tabled[air_tabled_count];
-int air_tabled_index(AirBand band);
-static inline bool air_band_is_thermal(AirBand band) { return band == AIR_MWIR || band == AIR_LWIR; }
+int                  air_tabled_index(AirBand band);
+static inline bool   air_band_is_thermal(AirBand band) { return band == AIR_MWIR || band == AIR_LWIR; }
 
 /* ---- a table over a full grid of up to four axes ------------------------------------------- */
 
@@ -31,9 +31,9 @@ typedef struct Grid {
 Status grid_open(Grid *out, const char *path, const GridColumn *axis, int axes, const GridColumn *value, int values);
 void   grid_close(Grid *grid);
 /* Multilinear, clamped to the axes; out [values]. */
-void   grid_at(double *out, const Grid *grid, const double *at);
+void grid_at(double *out, const Grid *grid, const double *at);
 /* Only count of them, from first on in steps. */
-void   grid_some(double *out, const Grid *grid, const double *at, int first, int step, int count);
+void grid_some(double *out, const Grid *grid, const double *at, int first, int step, int count);
 
 /* Index of the interval that holds x, 0 .. count - 2, and the share of its upper end, 0 .. 1. */
 int interval_of(double *share, const double *ascending, int count, double x);
@@ -56,10 +56,10 @@ typedef struct PathTable {
      * to the column's; of a visibility the ratio of the depth that haze adds to its column's, and, of thermal bands,
      * ln of the ratio of what the path would radiate if it were opaque to mean_black; of scattered.csv, which goes by
      * direction, the ratio to scatter_estimate by sun zenith, relative azimuth, band */
-    int     weights;
-    double  weight_temp_k[path_max_weights];
-    int     suns, azimuths;
-    double  sun_x[path_max_suns], azimuth_deg[path_max_suns]; /* sun: slant_x of its zenith angle */
+    int    weights;
+    double weight_temp_k[path_max_weights];
+    int    suns, azimuths;
+    double sun_x[path_max_suns], azimuth_deg[path_max_suns]; /* sun: slant_x of its zenith angle */
 } PathTable;
 
 /* Selects the value columns of a header; logs the reason on failure. */
@@ -67,12 +67,11 @@ typedef Status PathColumns(PathTable *out, const Table *table, GridColumn *colum
 /* Rows keyed by the first keys (3 or 5) of observer_m, target_m (5: zenith_deg), range_m, sun_zenith_deg,
  * rel_azimuth_deg; as value columns those given or, with choose, those it finds. Values as they are in the file, by
  * rising keys; axis 1 and sun_x in metres or degrees. */
-Status paths_open(PathTable *out, const char *path, int keys, const GridColumn *value, int values,
-                  PathColumns *choose);
+Status paths_open(PathTable *out, const char *path, int keys, const GridColumn *value, int values, PathColumns *choose);
 void   paths_close(PathTable *table);
 /* The same heights and ranges; and equal columns as well. */
-bool   paths_same_shape(const PathTable *a, const PathTable *b);
-bool   paths_alike(const PathTable *a, const PathTable *b);
+bool paths_same_shape(const PathTable *a, const PathTable *b);
+bool paths_alike(const PathTable *a, const PathTable *b);
 
 /* The weight for the path's own emission: that of the temperature nearest the air's. */
 int path_emission_weight(const PathTable *table);
@@ -104,25 +103,25 @@ typedef struct AirColumn {
 
 typedef struct Slice {
     double    visibility_m, longwave_down_w_m2;
-    bool      has_paths, has_scattered;  /* files of its own for path; for scattered and sky_scattered */
+    bool      has_paths, has_scattered; /* files of its own for path; for scattered and sky_scattered */
     AirColumn haze;
     PathTable path[AIR_BAND_COUNT];
-    PathTable scattered;                 /* ratio to scatter_estimate */
-    Grid      sky_thermal;               /* observer_m, slant_x of the zenith angle; ln ratio to black air, mwir lwir */
-    Grid      sky_scattered;             /* observer, view, sun, azimuth: ratio to the estimate */
-    Grid      sun;                       /* observer, sun: ln depth [6], then ln (diffuse / top) [6] */
+    PathTable scattered;     /* ratio to scatter_estimate */
+    Grid      sky_thermal;   /* observer_m, slant_x of the zenith angle; ln ratio to black air, mwir lwir */
+    Grid      sky_scattered; /* observer, view, sun, azimuth: ratio to the estimate */
+    Grid      sun;           /* observer, sun: ln depth [6], then ln (diffuse / top) [6] */
 } Slice;
 
 struct Atmosphere {
     int          slices;
-    Slice       *slice;                  /* rising visibility: every table's and some between and beyond, or only one */
-    double       low_m, high_m;          /* valid visibilities */
+    Slice       *slice;         /* rising visibility: every table's and some between and beyond, or only one */
+    double       low_m, high_m; /* valid visibilities */
     double       sun_top_w_m2[AIR_BAND_COUNT];
     AirColumn    clear;
     PathTable    clear_path[AIR_BAND_COUNT];
     Grid         temperature;
-    PlanckTable *planck[2];              /* mwir, lwir */
-    Grid         phase;                  /* height_m, scattering angle in rad: ln of haze's phase function, mean 1 */
+    PlanckTable *planck[2]; /* mwir, lwir */
+    Grid         phase;     /* height_m, scattering angle in rad: ln of haze's phase function, mean 1 */
 };
 
 /* Relative length of a path to space: 1 at the zenith, 40 at the horizon. After Rozenberg (Twilight, 1966). */
@@ -136,8 +135,8 @@ static inline double slant_x(double zenith_rad) { return log(air_mass(zenith_rad
 
 /* Inputs of a path at one visibility: two slices and their shares. */
 typedef struct Blend {
-    const Slice *low, *high;  /* of visibility; may be the same */
-    double       share;       /* of high, 0 .. 1, linear in 1 / visibility */
+    const Slice *low, *high;          /* of visibility; may be the same */
+    double       share;               /* of high, 0 .. 1, linear in 1 / visibility */
     double       haze_low, haze_high; /* shares for haze; of a single table at another visibility its scale, 0 */
 } Blend;
 
@@ -154,7 +153,7 @@ Status sun_top_open(double sun_top_w_m2[AIR_BAND_COUNT]);
 /* FOLDER/NAME; a logged error where that is too long. */
 Status atmosphere_file(char path[1024], const char *folder, const char *name);
 /* Visibilities close enough for linear interpolation, in rising order: the tables', the ends, some between. */
-int    visibility_steps(double out[slices_made_max], const Slice *tabled, int count, double low_m, double high_m);
+int visibility_steps(double out[slices_made_max], const Slice *tabled, int count, double low_m, double high_m);
 
 void   blend_at(Blend *out, const Atmosphere *atmosphere, double visibility_m);
 double column_mean(const AirColumn *column, AirBand band, double a_m, double b_m);
@@ -184,8 +183,8 @@ void   clear_depths(double *out, const Atmosphere *atmosphere, AirBand band, con
                     int temps);
 double path_depth(const Atmosphere *atmosphere, const Blend *blend, AirBand band, const AirPath *path, double temp_k);
 /* Direct and diffuse sunlight. */
-void   blend_sun(SunAir *out, const Atmosphere *atmosphere, const Blend *blend, AirBand band, double observer_m,
-                 double sun_zenith_rad);
+void blend_sun(SunAir *out, const Atmosphere *atmosphere, const Blend *blend, AirBand band, double observer_m,
+               double sun_zenith_rad);
 
 /* Estimate of scattered sunlight: single scattering along the profile plus a uniform diffuse term. It only gives the
  * shape between the tables' points, which hold the ratio of the true value to it. The part that is independent of
@@ -197,10 +196,10 @@ typedef struct ScatterParts {
 } ScatterParts;
 
 /* depth: of sunlight, over the whole path. */
-void   scatter_parts(ScatterParts *out, const Atmosphere *atmosphere, const Blend *blend, AirBand band,
-                     const AirPath *path, double depth);
-void   scatter_parts_sky(ScatterParts *out, const Atmosphere *atmosphere, const Blend *blend, AirBand band,
-                         double observer_m, double zenith_rad, double sun_zenith_rad);
+void scatter_parts(ScatterParts *out, const Atmosphere *atmosphere, const Blend *blend, AirBand band,
+                   const AirPath *path, double depth);
+void scatter_parts_sky(ScatterParts *out, const Atmosphere *atmosphere, const Blend *blend, AirBand band,
+                       double observer_m, double zenith_rad, double sun_zenith_rad);
 /* up: cosine of the view's zenith angle. */
 double scatter_estimate(const ScatterParts *parts, const Atmosphere *atmosphere, AirBand band, double up,
                         double sun_zenith_rad, double rel_azimuth_rad);
@@ -235,19 +234,19 @@ typedef struct DayTemp {
 struct AirDay {
     const Atmosphere *atmosphere;
     Blend             blend;
-    bool              hazes;            /* two different slices */
-    bool              suns_alike;       /* both have the same heights */
-    unsigned          bands, parts;     /* requested; the tabled bands that these are made of */
+    bool              hazes;        /* two different slices */
+    bool              suns_alike;   /* both have the same heights */
+    unsigned          bands, parts; /* requested; the tabled bands that these are made of */
     double            sun_zenith_rad, sun_cos, sun_sin, top_m;
     DayColumn         column;
-    DaySun            sun[2];           /* low, high */
-    double           *ratio[2];         /* scattered: [rows][azimuths][air_tabled_count] */
-    double           *sky[2];           /* sky_scattered: [observer][view][azimuth][air_tabled_count] */
+    DaySun            sun[2];   /* low, high */
+    double           *ratio[2]; /* scattered: [rows][azimuths][air_tabled_count] */
+    double           *sky[2];   /* sky_scattered: [observer][view][azimuth][air_tabled_count] */
     int               temps;
     DayTemp           temp[2][3][day_temps_max]; /* of mwir, lwir; clear, low, high */
 };
 
-static inline bool wants(unsigned bands, int band) { return bands >> band & 1; }
+static inline bool         wants(unsigned bands, int band) { return bands >> band & 1; }
 static inline const Slice *slice_of(const AirDay *day, int which) { return which ? day->blend.high : day->blend.low; }
 
 /* As weight_value of atmosphere.c has it. */

@@ -14,17 +14,18 @@ static Status choose_weights(PathTable *out, const Table *table, GridColumn *col
     int n = 0;
     column[n++] = (GridColumn){"depth_sun", 1e-12, depth_max};
     for (int c = 0; c < table->columns; c++) {
-        const char *name = table->cell[c];
-        char text[32];
+        const char  *name = table->cell[c];
+        char         text[32];
         const size_t length = strlen(name);
         if (strncmp(name, "depth_", 6) != 0 || strcmp(name, "depth_sun") == 0) continue;
-        double temp_k;
+        double     temp_k;
         const bool fits = length > 7 && length < sizeof text && name[length - 1] == 'k';
         if (fits) snprintf(text, length - 6, "%s", name + 6);
         if (!fits || !text_to_double(&temp_k, text) || !(temp_k >= 50 && temp_k <= 1e4) || n == path_max_weights ||
             (n > 1 && !(temp_k > out->weight_temp_k[n - 1]))) {
             log_error("atmosphere: %s:%d: column %s: want depth_sun and depth_<kelvin>k, 50 to 10000 K rising, at most "
-                      "%d", table->path, table->line[0], name, path_max_weights - 1);
+                      "%d",
+                      table->path, table->line[0], name, path_max_weights - 1);
             return STATUS_BAD_VALUE;
         }
         out->weight_temp_k[n] = temp_k;
@@ -46,7 +47,8 @@ static Status choose_weights_and_radiance(PathTable *out, const Table *table, Gr
 static AirPath path_of_row(const PathTable *paths, int pair, int row)
 {
     return (AirPath){.observer_m = paths->axis[0][pair / paths->nodes[1]],
-                     .target_m = paths->axis[1][pair % paths->nodes[1]], .range_m = exp(paths->ln_range[row])};
+                     .target_m = paths->axis[1][pair % paths->nodes[1]],
+                     .range_m = exp(paths->ln_range[row])};
 }
 
 static void normalize_clear(PathTable *paths, const AirColumn *clear, AirBand band)
@@ -54,8 +56,8 @@ static void normalize_clear(PathTable *paths, const AirColumn *clear, AirBand ba
     for (int pair = 0; pair < paths->nodes[0] * paths->nodes[1]; pair++)
         for (int row = paths->first[pair]; row < paths->first[pair + 1]; row++) {
             const AirPath path = path_of_row(paths, pair, row);
-            const double plain = path.range_m * column_mean(clear, band, path.observer_m, path.target_m);
-            double *value = paths->value + (size_t)row * (size_t)paths->values;
+            const double  plain = path.range_m * column_mean(clear, band, path.observer_m, path.target_m);
+            double       *value = paths->value + (size_t)row * (size_t)paths->values;
             for (int w = 0; w < paths->weights; w++) value[w] = log(value[w] / plain);
         }
 }
@@ -65,9 +67,9 @@ static void flat_clear_depths(double *out, const Atmosphere *atmosphere, AirBand
                               const double *temp_k, int temps)
 {
     const AirColumn *clear = &atmosphere->clear;
-    const double sag_m = mean_chord_error_m(path->range_m);
-    const double flat = column_mean(clear, band, path->observer_m, path->target_m);
-    const double bent = column_mean(clear, band, path->observer_m - sag_m, path->target_m - sag_m);
+    const double     sag_m = mean_chord_error_m(path->range_m);
+    const double     flat = column_mean(clear, band, path->observer_m, path->target_m);
+    const double     bent = column_mean(clear, band, path->observer_m - sag_m, path->target_m - sag_m);
     clear_depths(out, atmosphere, band, path, temp_k, temps);
     for (int t = 0; t < temps; t++) out[t] = out[t] * flat / bent;
 }
@@ -79,14 +81,15 @@ static void normalize_hazy(PathTable *paths, const Atmosphere *atmosphere, const
     for (int pair = 0; pair < paths->nodes[0] * paths->nodes[1]; pair++)
         for (int row = paths->first[pair]; row < paths->first[pair + 1]; row++) {
             const AirPath path = path_of_row(paths, pair, row);
-            const double plain = path.range_m * column_mean(haze, band, path.observer_m, path.target_m);
-            double *value = paths->value + (size_t)row * (size_t)paths->values;
+            const double  plain = path.range_m * column_mean(haze, band, path.observer_m, path.target_m);
+            double       *value = paths->value + (size_t)row * (size_t)paths->values;
             if (paths->weights > 1) {
                 const double opaque = value[paths->weights] / -expm1(-value[path_emission_weight(paths)]);
                 value[paths->weights] = log(opaque / mean_black(atmosphere, band, path.observer_m, path.target_m));
             }
             flat_clear_depths(clear, atmosphere, band, &path, temp_k, paths->weights);
-            for (int w = 0; w < paths->weights; w++) value[w] = clamp((value[w] - clear[w]) / fmax(plain, 1e-12), -1, 3);
+            for (int w = 0; w < paths->weights; w++)
+                value[w] = clamp((value[w] - clear[w]) / fmax(plain, 1e-12), -1, 3);
         }
 }
 
@@ -114,7 +117,7 @@ static Status path_beside(char out[1024], const char *path, AirBand band)
 static void name_column(GridColumn *out, char name[48], const ChannelColumn *c, bool beside)
 {
     static const char *const standard[AIR_BAND_COUNT] = {"b", "g", "r", "pan", "nir", "mwir", "lwir"};
-    const bool seen = beside || is_standard(c->band);
+    const bool               seen = beside || is_standard(c->band);
     snprintf(name, 48, "%s%s", c->prefix, beside ? air_band_name(c->band) : standard[c->band]);
     *out = (GridColumn){name, seen ? c->low : -1e300, seen ? c->high : 1e300};
 }
@@ -151,7 +154,8 @@ static Status channels_open(Grid *out, const char *path, const GridColumn *axis,
             log_error("atmosphere: %s: its rows are not those of %s", beside, path);
             status = STATUS_BAD_VALUE;
         }
-        for (size_t n = 0; n < nodes && status == STATUS_OK; n++) out->value[n * (size_t)columns + (size_t)i] = one.value[n];
+        for (size_t n = 0; n < nodes && status == STATUS_OK; n++)
+            out->value[n * (size_t)columns + (size_t)i] = one.value[n];
         grid_close(&one);
     }
     if (status != STATUS_OK) grid_close(out);
@@ -170,10 +174,10 @@ void column_sum_up(const AirColumn *column, const double *value, double *sum)
 static Status read_column(AirColumn *out, const char *path, double low)
 {
     static const GridColumn axis = {"height_m", 0, height_max_m};
-    ChannelColumn column[2 * air_tabled_count];
+    ChannelColumn           column[2 * air_tabled_count];
     for (int i = 0; i < 2 * air_tabled_count; i++)
         column[i] = (ChannelColumn){i % 2 ? "scatter_" : "extinction_", air_tabled[i / 2], i % 2 ? 0 : low, 1e3};
-    Grid grid;
+    Grid   grid;
     Status status = channels_open(&grid, path, &axis, 1, column, 2 * air_tabled_count);
     if (status != STATUS_OK) return status;
     out->nodes = grid.nodes[0];
@@ -213,9 +217,9 @@ static void zenith_axis(Grid *grid, int axis)
 
 static Status read_sky_thermal(Grid *out, const Atmosphere *atmosphere, const char *path)
 {
-    static const GridColumn axis[2] = {{"observer_m", 0, height_max_m}, {"zenith_deg", 0, 90}};
+    static const GridColumn    axis[2] = {{"observer_m", 0, height_max_m}, {"zenith_deg", 0, 90}};
     static const ChannelColumn value[2] = {{"", AIR_MWIR, 1e-30, 1e4}, {"", AIR_LWIR, 1e-30, 1e4}};
-    const Status status = channels_open(out, path, axis, 2, value, 2);
+    const Status               status = channels_open(out, path, axis, 2, value, 2);
     if (status != STATUS_OK) return status;
     zenith_axis(out, 1);
     for (int i = 0; i < out->nodes[0] * out->nodes[1] * 2; i++) {
@@ -228,7 +232,7 @@ static Status read_sky_thermal(Grid *out, const Atmosphere *atmosphere, const ch
 static Status read_sun(Grid *out, const char *path, const double sun_top_w_m2[AIR_BAND_COUNT])
 {
     static const GridColumn axis[2] = {{"observer_m", 0, height_max_m}, {"sun_zenith_deg", 0, 90}};
-    ChannelColumn column[2 * air_tabled_count];
+    ChannelColumn           column[2 * air_tabled_count];
     for (int i = 0; i < air_tabled_count; i++) {
         const double top = sun_top_w_m2[air_tabled[i]];
         column[i] = (ChannelColumn){"direct_", air_tabled[i], 0, top};
@@ -240,7 +244,7 @@ static Status read_sun(Grid *out, const char *path, const double sun_top_w_m2[AI
     for (int n = 0; n < out->nodes[0] * out->nodes[1]; n++)
         for (int i = 0; i < air_tabled_count; i++) {
             const double top = sun_top_w_m2[air_tabled[i]];
-            double *direct = &out->value[n * 2 * air_tabled_count + i], *diffuse = direct + air_tabled_count;
+            double      *direct = &out->value[n * 2 * air_tabled_count + i], *diffuse = direct + air_tabled_count;
             /* depth 0 and 700 keep the logarithms finite; neither affects a product */
             *direct = log(clamp(-log(fmax(*direct, 1e-300) / top), 1e-12, 690));
             *diffuse = log(fmax(*diffuse / top, 1e-30));
@@ -266,7 +270,8 @@ static Status open_scattered(PathTable *out, const char *path)
         name_column(&of[i], name[i], &scattered_column[i], true);
         status = path_beside(beside, path, air_tabled[i]);
         if (status == STATUS_OK) status = paths_open(&one, beside, 5, &of[i], 1, NULL);
-        if (status == STATUS_OK && (!paths_same_shape(out, &one) || one.suns != out->suns || one.azimuths != out->azimuths)) {
+        if (status == STATUS_OK &&
+            (!paths_same_shape(out, &one) || one.suns != out->suns || one.azimuths != out->azimuths)) {
             log_error("atmosphere: %s: its rows are not those of %s", beside, path);
             status = STATUS_BAD_VALUE;
         }
@@ -283,7 +288,7 @@ static double ratio_to(double truth, double estimate) { return estimate > 1e-30 
 
 static Status read_scattered(Slice *slice, const Atmosphere *atmosphere, const Blend *blend, const char *path)
 {
-    PathTable table;
+    PathTable    table;
     const Status status = open_scattered(&table, path);
     if (status != STATUS_OK) return status;
     for (int j = 0; j < table.nodes[1]; j++) table.axis[1][j] = -cos(table.axis[1][j] * rad_per_deg);
@@ -291,8 +296,8 @@ static Status read_scattered(Slice *slice, const Atmosphere *atmosphere, const B
     for (int pair = 0; pair < table.nodes[0] * table.nodes[1]; pair++)
         for (int row = table.first[pair]; row < table.first[pair + 1]; row++)
             for (int s = 0; s < table.suns; s++, value += table.azimuths * air_tabled_count) {
-                const double up = -table.axis[1][pair % table.nodes[1]], range_m = exp(table.ln_range[row]);
-                const double observer_m = table.axis[0][pair / table.nodes[1]];
+                const double  up = -table.axis[1][pair % table.nodes[1]], range_m = exp(table.ln_range[row]);
+                const double  observer_m = table.axis[0][pair / table.nodes[1]];
                 const AirPath at = {observer_m, fmax(observer_m + up * range_m, 0), range_m,
                                     table.sun_x[s] * rad_per_deg, 0};
                 for (int b = 0; b < air_tabled_count; b++) {
@@ -315,11 +320,11 @@ static Status read_sky_scattered(Slice *slice, const Atmosphere *atmosphere, con
 {
     static const GridColumn axis[4] = {
         {"observer_m", 0, height_max_m}, {"zenith_deg", 0, 90}, {"sun_zenith_deg", 0, 90}, {"rel_azimuth_deg", 0, 180}};
-    Grid grid;
+    Grid         grid;
     const Status status = channels_open(&grid, path, axis, 4, scattered_column, air_tabled_count);
     if (status != STATUS_OK) return status;
     const int azimuths = grid.nodes[3];
-    double *value = grid.value;
+    double   *value = grid.value;
     for (int o = 0; o < grid.nodes[0]; o++)
         for (int z = 0; z < grid.nodes[1]; z++)
             for (int s = 0; s < grid.nodes[2]; s++, value += azimuths * air_tabled_count) {
@@ -376,9 +381,9 @@ static Status open_paths(PathTable *out, const char *folder, AirBand band, bool 
 /* The haze itself, the sun and the sky's own light; paths and scattered light where the slice says that it has them. */
 Status slice_open(Slice *slice, const Atmosphere *atmosphere, const char *folder)
 {
-    char path[1024];
+    char        path[1024];
     const Blend blend = {slice, slice, 0, 1, 0};
-    Status status = atmosphere_file(path, folder, "haze.csv");
+    Status      status = atmosphere_file(path, folder, "haze.csv");
     if (status == STATUS_OK) status = read_column(&slice->haze, path, 0);
     if (status == STATUS_OK) status = atmosphere_file(path, folder, "sky_thermal.csv");
     if (status == STATUS_OK) status = read_sky_thermal(&slice->sky_thermal, atmosphere, path);
@@ -403,7 +408,7 @@ Status sun_top_open(double sun_top_w_m2[AIR_BAND_COUNT])
 {
     char path[1024];
     if (!etc_path(path, sizeof path, "atmosphere/bands.csv")) return STATUS_BAD_VALUE;
-    Table table = {0};
+    Table  table = {0};
     Status status = table_open(&table, path);
     if (status != STATUS_OK) return status;
     status = STATUS_BAD_VALUE;
@@ -413,9 +418,9 @@ Status sun_top_open(double sun_top_w_m2[AIR_BAND_COUNT])
         goto done;
     }
     for (int row = 0; row < table.rows; row++) {
-        const char    *text = table_text(&table, row, name);
+        const char            *text = table_text(&table, row, name);
         const SpectralChannel *channel = channel_named(text, strlen(text));
-        const AirBand  band = channel ? channel->place : AIR_BAND_COUNT;
+        const AirBand          band = channel ? channel->place : AIR_BAND_COUNT;
         if (channel && channel_in(band) != channel) continue; /* another channel replaces it */
         if (band == AIR_BAND_COUNT || air_tabled_index(band) < 0 || sun_top_w_m2[band] > 0) {
             log_error("atmosphere: %s:%d: band %s is unknown or there twice", path, table.line[row + 1],
@@ -440,9 +445,9 @@ Status clear_open(Atmosphere *atmosphere, const char *folder)
 {
     static const GridColumn height = {"height_m", 0, height_max_m}, temp = {"temp_k", 100, 400};
     static const GridColumn angle[2] = {{"height_m", 0, height_max_m}, {"angle_deg", 0, 180}};
-    ChannelColumn phase[air_tabled_count];
+    ChannelColumn           phase[air_tabled_count];
     for (int i = 0; i < air_tabled_count; i++) phase[i] = (ChannelColumn){"", air_tabled[i], 1e-6, 1e6};
-    char path[1024], clear[1024];
+    char   path[1024], clear[1024];
     Status status = atmosphere_file(path, folder, "temperature.csv");
     if (status == STATUS_OK) status = grid_open(&atmosphere->temperature, path, &height, 1, &temp, 1);
     if (status == STATUS_OK) status = atmosphere_file(path, folder, "phase.csv");

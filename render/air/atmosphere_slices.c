@@ -25,7 +25,7 @@ static double share_of_depth(double low, double high, double wanted, double othe
 
 static double column_value(const AirColumn *column, const double *value, double height_m)
 {
-    double t;
+    double    t;
     const int i = interval_of(&t, column->height_m, column->nodes, height_m);
     return value[i] + t * (value[i + 1] - value[i]);
 }
@@ -82,11 +82,11 @@ static void column_between(AirColumn *out, const Atmosphere *atmosphere, const S
     for (int k = 0; k < air_tabled_count; k++)
         for (int part = 0; part < 2; part++) {
             const AirBand b = air_tabled[k];
-            const Pair pair = {&low->haze, &high->haze, part ? low->haze.scatter_per_m[b] : low->haze.per_m[b],
+            const Pair    pair = {&low->haze, &high->haze, part ? low->haze.scatter_per_m[b] : low->haze.per_m[b],
                                part ? high->haze.scatter_per_m[b] : high->haze.per_m[b], share};
-            double *to = part ? out->scatter_per_m[b] : out->per_m[b];
+            double       *to = part ? out->scatter_per_m[b] : out->per_m[b];
             for (int n = 0; n < out->nodes; n++) {
-                double t;
+                double    t;
                 const int i = interval_of(&t, level->axis[0], level->nodes[0], out->height_m[n]);
                 const int next = i + (level->nodes[0] > 1);
                 to[n] = between_levels(&pair, out->height_m[n], level->axis[0][i], level->axis[0][next], t);
@@ -143,7 +143,7 @@ static Status path_between(PathTable *out, const Slice *slice, const Slice *low,
                            double share)
 {
     const PathTable *from = &low->path[band], *other = &high->path[band];
-    const Status status = paths_like(out, from);
+    const Status     status = paths_like(out, from);
     if (status != STATUS_OK || low == high) return status;
     const bool alike = paths_alike(from, other);
     for (int pair = 0; pair < from->nodes[0] * from->nodes[1]; pair++) {
@@ -152,9 +152,9 @@ static Status path_between(PathTable *out, const Slice *slice, const Slice *low,
         const double thick = column_mean(&low->haze, band, a_m, b_m), thin = column_mean(&high->haze, band, a_m, b_m);
         const double of_depth = share_of_depth(thick, thin, here, clamp(share, 0, 1));
         for (int row = from->first[pair]; row < from->first[pair + 1]; row++) {
-            double *value = out->value + (size_t)row * (size_t)out->values;
+            double       *value = out->value + (size_t)row * (size_t)out->values;
             const double *beside = other->value + (size_t)row * (size_t)other->values;
-            Stencil at;
+            Stencil       at;
             if (!alike) stencil_at(&at, other, a_m, b_m, exp(from->ln_range[row]));
             for (int w = 0; w < from->weights; w++) {
                 const double temp_k = w > 0 ? from->weight_temp_k[w] : NAN;
@@ -172,12 +172,12 @@ static Status path_between(PathTable *out, const Slice *slice, const Slice *low,
 static Status scattered_between(PathTable *out, const Slice *low, const Slice *high, double share)
 {
     const PathTable *from = &low->scattered, *other = &high->scattered;
-    const Status status = paths_like(out, from);
+    const Status     status = paths_like(out, from);
     share = clamp(share, 0, 1);
     if (status != STATUS_OK || share == 0) return status;
-    const bool alike = paths_alike(from, other);
+    const bool    alike = paths_alike(from, other);
     const double *beside = other->value;
-    double *value = out->value;
+    double       *value = out->value;
     for (int pair = 0; pair < from->nodes[0] * from->nodes[1]; pair++)
         for (int row = from->first[pair]; row < from->first[pair + 1]; row++) {
             Stencil at;
@@ -201,7 +201,7 @@ static Status grid_between(Grid *out, const Grid *from, const Grid *other, doubl
     share = clamp(share, 0, 1);
     if (status != STATUS_OK || share == 0) return status;
     size_t nodes = 1;
-    bool alike = true;
+    bool   alike = true;
     for (int i = 0; i < from->axes; i++) {
         nodes *= (size_t)from->nodes[i];
         alike = alike && from->nodes[i] == other->nodes[i] &&
@@ -227,7 +227,7 @@ static Status grid_between(Grid *out, const Grid *from, const Grid *other, doubl
 static double cosine_of_slant(double x)
 {
     const double least = exp(-x);
-    double c = least;
+    double       c = least;
     for (int i = 0; i < 30; i++) c = least - 0.025 * exp(-11 * c);
     return fmax(c, 0);
 }
@@ -258,13 +258,13 @@ static Status sun_between(Grid *out, const Slice *slice, const Slice *low, const
     for (int n = 0; n < out->nodes[0] * out->nodes[1]; n++) {
         const double at[2] = {out->axis[0][n / out->nodes[1]], out->axis[1][n % out->nodes[1]]};
         const double cosine = cosine_of_slant(at[1]);
-        double other[2 * air_tabled_count], *value = out->value + n * out->values;
+        double       other[2 * air_tabled_count], *value = out->value + n * out->values;
         grid_at(other, &high->sun, at);
         for (int k = 0; k < air_tabled_count; k++) {
             const AirBand b = air_tabled[k];
-            const double thick = column_mean(&low->haze, b, at[0], top_m);
-            const double thin = column_mean(&high->haze, b, at[0], top_m);
-            const double of_depth =
+            const double  thick = column_mean(&low->haze, b, at[0], top_m);
+            const double  thin = column_mean(&high->haze, b, at[0], top_m);
+            const double  of_depth =
                 share_of_depth(thick, thin, column_mean(&slice->haze, b, at[0], top_m), clamp(share, 0, 1));
             const SunPart first = {exp(value[k]), exp(value[k + air_tabled_count])};
             const SunPart second = {exp(other[k]), exp(other[k + air_tabled_count])};
@@ -279,9 +279,9 @@ static Status sun_between(Grid *out, const Slice *slice, const Slice *low, const
 /* ---- a visibility --------------------------------------------------------------------------------- */
 
 typedef bool SliceHas(const Slice *slice);
-static bool has_haze(const Slice *slice) { return slice->visibility_m > 0; }
-static bool has_paths(const Slice *slice) { return slice->has_paths; }
-static bool has_scattered(const Slice *slice) { return slice->has_scattered; }
+static bool  has_haze(const Slice *slice) { return slice->visibility_m > 0; }
+static bool  has_paths(const Slice *slice) { return slice->has_paths; }
+static bool  has_scattered(const Slice *slice) { return slice->has_scattered; }
 
 /* The two slices with data between which a visibility lies, beyond them the last two; and the share of the second. */
 typedef struct Sides {
@@ -292,7 +292,7 @@ typedef struct Sides {
 static Sides sides_of(const Slice *slice, int count, SliceHas *has, double visibility_m)
 {
     const Slice *of[slices_max] = {slice};
-    int n = 0, i = 0;
+    int          n = 0, i = 0;
     for (int k = 0; k < count; k++)
         if (has(&slice[k])) of[n++] = &slice[k];
     while (i + 2 < n && visibility_m > of[i + 1]->visibility_m) i++;
@@ -302,12 +302,13 @@ static Sides sides_of(const Slice *slice, int count, SliceHas *has, double visib
 
 Status slice_between(Slice *out, const Atmosphere *atmosphere, const Slice *tabled, int count, double visibility_m)
 {
-    const Sides any = sides_of(tabled, count, has_haze, visibility_m);
-    const Sides path = sides_of(tabled, count, has_paths, visibility_m);
-    const Sides light = sides_of(tabled, count, has_scattered, visibility_m);
+    const Sides  any = sides_of(tabled, count, has_haze, visibility_m);
+    const Sides  path = sides_of(tabled, count, has_paths, visibility_m);
+    const Sides  light = sides_of(tabled, count, has_scattered, visibility_m);
     const double longwave[2] = {any.low->longwave_down_w_m2, any.high->longwave_down_w_m2};
     *out = (Slice){.visibility_m = count > 1 ? visibility_m : any.low->visibility_m,
-                   .has_paths = true, .has_scattered = true,
+                   .has_paths = true,
+                   .has_scattered = true,
                    .longwave_down_w_m2 = longwave[0] + clamp(any.share, 0, 1) * (longwave[1] - longwave[0])};
     column_between(&out->haze, atmosphere, any.low, any.high, any.share);
     Status status = sun_between(&out->sun, out, any.low, any.high, any.share);

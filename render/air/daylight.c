@@ -68,7 +68,7 @@ void daylight_plane_place(PlanePlace *out, const Daylight *light, const double n
 }
 
 void daylight_facing(Facing *out, const Daylight *light, const Materials *materials, const Hits *hits, const Rays *rays,
-                const uint16_t *material)
+                     const uint16_t *material)
 {
     for (int i = 0; i < hits->count; i++) {
         if (!(hits->range_m[i] < INFINITY)) continue;
@@ -76,7 +76,7 @@ void daylight_facing(Facing *out, const Daylight *light, const Materials *materi
         daylight_plane_place(&out->plane[i], light, n_enu);
         if (!(materials->material[material[i]].gloss > 0)) continue;
         const double d_enu[3] = {rays->d_enu[0][i], rays->d_enu[1][i], rays->d_enu[2][i]};
-        double mirror_enu[3];
+        double       mirror_enu[3];
         v3_add_scaled(mirror_enu, d_enu, 2 * fmax(-v3_dot(n_enu, d_enu), 0), n_enu);
         /* facets tilted by the roughness deflect the ray by twice that: grass does not mirror the ring about the sun */
         place_in_sky(&out->mirror[i], light->sun_d_enu, mirror_enu, 2 * materials->material[material[i]].roughness);
@@ -125,8 +125,8 @@ static void set_lamp(Lamps *out, int k, const double sun_d_enu[3], const double 
 static void place_grid(Lamps *out, int i, const double sun_d_enu[3])
 {
     static const double step_rad = 2 * 3.14159265358979323846 / lamp_azimuths;
-    const double u0 = (double)i / lamp_ups, u1 = (i + 1.0) / lamp_ups;
-    const double up = 0.5 * (u0 * u0 + u1 * u1), flat = sqrt(1 - up * up);
+    const double        u0 = (double)i / lamp_ups, u1 = (i + 1.0) / lamp_ups;
+    const double        up = 0.5 * (u0 * u0 + u1 * u1), flat = sqrt(1 - up * up);
     for (int a = 0; a < lamp_azimuths; a++) {
         const double d[3] = {flat * sin((a + 0.5) * step_rad), flat * cos((a + 0.5) * step_rad), up};
         const double angle = acos(clamp(v3_dot(d, sun_d_enu), -1, 1));
@@ -147,7 +147,7 @@ static void place_ring(Lamps *out, int r, const double sun_d_enu[3])
     const double along = cos(angle), across = sin(angle);
     for (int p = 0; p < lamp_spokes; p++) {
         const double turn = (p + 0.5) * 2 * pi_rad / lamp_spokes, c = across * cos(turn), s = across * sin(turn);
-        double d[3];
+        double       d[3];
         for (int k = 0; k < 3; k++) d[k] = along * sun_d_enu[k] + c * east[k] + s * other[k];
         set_lamp(out, lamp_ups * lamp_azimuths + r * lamp_spokes + p, sun_d_enu, d, solid_angle);
     }
@@ -164,7 +164,7 @@ static void light_lamps(float w_m2[lamps], const Lamps *lamp, const AirSky *sky)
 static double on_plane(const float w_m2[lamps], const Lamps *lamp, const double n_enu[3])
 {
     const float n0 = (float)n_enu[0], n1 = (float)n_enu[1], n2 = (float)n_enu[2];
-    float part[8] = {0};
+    float       part[8] = {0};
     for (int k = 0; k < lamps; k += 8)
         for (int j = 0; j < 8; j++) {
             const float cosine = n0 * lamp->d[0][k + j] + n1 * lamp->d[1][k + j] + n2 * lamp->d[2][k + j];
@@ -192,16 +192,16 @@ typedef struct SkyAnswers {
 } SkyAnswers;
 
 struct DaylightJob {
-    Daylight *light;
-    AirSky *other; /* [AIR_BAND_COUNT], the sky from other_m up; NULL: of the ground alone */
-    double other_m;
+    Daylight     *light;
+    AirSky       *other; /* [AIR_BAND_COUNT], the sky from other_m up; NULL: of the ground alone */
+    double        other_m;
     const AirDay *day;
-    unsigned bands;
-    double diffuse_w_m2[AIR_BAND_COUNT];
-    double azimuth_rad[asked_azimuths + 1];
-    SkyAnswers answer[2]; /* from the ground, from other_m */
-    Lamps lamp;
-    float w_m2[AIR_BAND_COUNT][lamps];
+    unsigned      bands;
+    double        diffuse_w_m2[AIR_BAND_COUNT];
+    double        azimuth_rad[asked_azimuths + 1];
+    SkyAnswers    answer[2]; /* from the ground, from other_m */
+    Lamps         lamp;
+    float         w_m2[AIR_BAND_COUNT][lamps];
 };
 
 static double height_of(const DaylightJob *job, int other) { return other ? job->other_m : 0; }
@@ -214,16 +214,16 @@ static void ask_around_sun(DaylightJob *job, int other, int k)
     const double zenith_rad = fmax(job->light->day_zenith_rad - angle_rad, -0.5 * pi_rad),
                  azimuth_rad = zenith_rad < 0 ? pi_rad : 0;
     double thermal[2];
-    air_day_sky(&job->answer[other].around[k], thermal, job->day, height_of(job, other), fabs(zenith_rad),
-                &azimuth_rad, 1);
+    air_day_sky(&job->answer[other].around[k], thermal, job->day, height_of(job, other), fabs(zenith_rad), &azimuth_rad,
+                1);
 }
 
 /* One height of the sky. */
 static void ask_sky(DaylightJob *job, int other, int i)
 {
     const double u = (double)i / asked_ups;
-    const int azimuths = i == asked_ups ? 1 : asked_azimuths + 1; /* the zenith has none */
-    SkyAnswers *answer = &job->answer[other];
+    const int    azimuths = i == asked_ups ? 1 : asked_azimuths + 1; /* the zenith has none */
+    SkyAnswers  *answer = &job->answer[other];
     air_day_sky(answer->scattered[i], answer->thermal[i], job->day, height_of(job, other), acos(u * u),
                 job->azimuth_rad, azimuths);
     for (int a = azimuths; a <= asked_azimuths; a++)
@@ -244,14 +244,15 @@ static void without_ring(AskedSky *asked, const DaylightJob *job, const AirSky *
     for (int i = 0; i <= asked_ups; i++) {
         const double u = (double)i / asked_ups, up = u * u, flat = sqrt(1 - up * up);
         for (int a = 0; a <= asked_azimuths; a++) {
-            const int azimuth = i == asked_ups ? 0 : a;
+            const int    azimuth = i == asked_ups ? 0 : a;
             const double d[3] = {flat * cos(job->azimuth_rad[azimuth]), flat * sin(job->azimuth_rad[azimuth]), up};
-            SkyPlace place;
+            SkyPlace     place;
             place_in_sky(&place, sun, d, 0);
             const float *ring = &sky->around_sun[place.angle];
             const double around = (double)(ring[0] + place.angle_share * (ring[1] - ring[0]));
-            asked->scattered_w_m2_sr[i][a] =
-                b == AIR_LWIR ? 0 : answer->scattered[i][a][b] * job->light->scattered_scale * job->light->cloud_sky / around;
+            asked->scattered_w_m2_sr[i][a] = b == AIR_LWIR ? 0
+                                                           : answer->scattered[i][a][b] * job->light->scattered_scale *
+                                                                 job->light->cloud_sky / around;
         }
         if (b < AIR_MWIR) {
             asked->thermal_w_m2_sr[i] = 0;
@@ -260,7 +261,8 @@ static void without_ring(AskedSky *asked, const DaylightJob *job, const AirSky *
         const Daylight    *light = job->light;
         const PlanckTable *planck = b == AIR_MWIR ? light->planck_mwir : light->planck_lwir;
         const double       clear = answer->thermal[i][b - AIR_MWIR] * light->thermal_scale[b - AIR_MWIR];
-        const double       cloud = light->cloud_thermal > 0 ? planck_table_radiance(planck, light->weather.air_temp_k) : clear;
+        const double       cloud =
+            light->cloud_thermal > 0 ? planck_table_radiance(planck, light->weather.air_temp_k) : clear;
         asked->thermal_w_m2_sr[i] = clear + light->cloud_thermal * (cloud - clear);
     }
 }
@@ -272,15 +274,15 @@ static void draw_sky(AirSky *sky, const AskedSky *asked)
     for (int i = 0; i <= asked_ups; i++)
         for (int a = 0; a <= air_sky_azimuths; a++) {
             const double *v = asked->scattered_w_m2_sr[i];
-            const int low = a / sky_stride < asked_azimuths ? a / sky_stride : asked_azimuths - 1;
+            const int     low = a / sky_stride < asked_azimuths ? a / sky_stride : asked_azimuths - 1;
             const int below = low > 0 ? low - 1 : 1, above = low + 2 <= asked_azimuths ? low + 2 : asked_azimuths - 1;
             along[i][a] =
                 cubic_between(v[below], v[low], v[low + 1], v[above], (double)(a - low * sky_stride) / sky_stride);
         }
     const double *v = asked->thermal_w_m2_sr;
     for (int i = 0; i <= air_sky_ups; i++) {
-        const int low = i / sky_stride < asked_ups ? i / sky_stride : asked_ups - 1;
-        const int below = low > 0 ? low - 1 : 0, above = low + 2 <= asked_ups ? low + 2 : asked_ups;
+        const int    low = i / sky_stride < asked_ups ? i / sky_stride : asked_ups - 1;
+        const int    below = low > 0 ? low - 1 : 0, above = low + 2 <= asked_ups ? low + 2 : asked_ups;
         const double t = (double)(i - low * sky_stride) / sky_stride;
         for (int a = 0; a <= air_sky_azimuths; a++)
             sky->scattered_w_m2_sr[i][a] =
@@ -294,9 +296,9 @@ static void fill_sky(DaylightJob *job, int band)
 {
     Daylight *light = job->light;
     if (!(job->bands >> band & 1)) return;
-    AirSky *sky = &light->sky[band], *sky_light = &light->sky_light[band];
+    AirSky             *sky = &light->sky[band], *sky_light = &light->sky_light[band];
     static const double up_enu[3] = {0, 0, 1};
-    AskedSky asked;
+    AskedSky            asked;
     fill_around_sun(sky, &job->answer[0], band);
     without_ring(&asked, job, sky, &job->answer[0], band);
     draw_sky(sky, &asked);
@@ -319,7 +321,7 @@ static void fill_sky(DaylightJob *job, int band)
 /* Irradiance of planes of one tilt by the lights, in every band. */
 static void light_planes(DaylightJob *job, int i)
 {
-    Daylight *light = job->light;
+    Daylight    *light = job->light;
     const double level = hypot(light->sun_d_enu[0], light->sun_d_enu[1]);
     const double sun_east = level > 1e-10 ? light->sun_d_enu[0] / level : 1;
     const double sun_north = level > 1e-10 ? light->sun_d_enu[1] / level : 0;
@@ -414,8 +416,7 @@ static void plane_task(void *user, int worker, int task)
 
 void air_run(Pool *pool, int count, PoolTask *task, void *user)
 {
-    if (pool)
-        pool_run(pool, count, task, user);
+    if (pool) pool_run(pool, count, task, user);
     else
         for (int i = 0; i < count; i++) task(user, 0, i);
 }

@@ -11,7 +11,7 @@
 static double twilight(double elevation_rad)
 {
     static const double at_deg[] = {-18, -12, -6, 0, 5}, decades[] = {-6.5, -5.7, -3.1, -0.77, 0};
-    const double e_deg = elevation_rad / rad_per_deg;
+    const double        e_deg = elevation_rad / rad_per_deg;
     if (e_deg <= at_deg[0]) return pow(10, decades[0]);
     for (int i = 1; i < 5; i++)
         if (e_deg <= at_deg[i]) {
@@ -63,14 +63,17 @@ static double share_of(double measured_w_m2, double clear_w_m2, double otherwise
 static void cloud_over(Daylight *light, double diffuse_w_m2[AIR_BAND_COUNT])
 {
     const Weather *w = &light->weather;
-    const double cloud = clamp(w->cloud, 0, 1), high = fmax(light->sun_d_enu[2], 0);
-    const double direct = light->solar_direct_w_m2, diffuse = light->solar_diffuse_w_m2, global = direct * high + diffuse;
+    const double   cloud = clamp(w->cloud, 0, 1), high = fmax(light->sun_d_enu[2], 0);
+    const double   direct = light->solar_direct_w_m2, diffuse = light->solar_diffuse_w_m2,
+                 global = direct * high + diffuse;
     const double sun = share_of(w->direct_w_m2, direct, 1 - cloud);
     const double under = global * (1 - 0.75 * pow(cloud, 3.4)) - sun * direct * high;
     const double sky = share_of(w->diffuse_w_m2, diffuse, diffuse > 0 ? fmax(under / diffuse, 0) : 1);
     const double black_w_m2 = sigma_w_m2_k4 * pow(w->air_temp_k, 4), clear_w_m2 = light->longwave_loss_w_m2;
-    light->longwave_loss_w_m2 = isfinite(w->longwave_w_m2) ? black_w_m2 - w->longwave_w_m2 : (1 - 0.84 * cloud) * clear_w_m2;
-    light->cloud_thermal = isfinite(w->longwave_w_m2) && clear_w_m2 > 0 ? clamp(1 - light->longwave_loss_w_m2 / clear_w_m2, 0, 1) : cloud;
+    light->longwave_loss_w_m2 =
+        isfinite(w->longwave_w_m2) ? black_w_m2 - w->longwave_w_m2 : (1 - 0.84 * cloud) * clear_w_m2;
+    light->cloud_thermal =
+        isfinite(w->longwave_w_m2) && clear_w_m2 > 0 ? clamp(1 - light->longwave_loss_w_m2 / clear_w_m2, 0, 1) : cloud;
     light->cloud_sky = sky;
     light->solar_direct_w_m2 *= sun;
     light->solar_diffuse_w_m2 *= sky;
@@ -88,7 +91,7 @@ void daylight_sums(Daylight *out, const AirSource *source, const Weather *weathe
                    double diffuse_w_m2[AIR_BAND_COUNT])
 {
     const Atmosphere *atmosphere = source->atmosphere;
-    const double model_temp_k = atmosphere_temp_k(atmosphere, 0);
+    const double      model_temp_k = atmosphere_temp_k(atmosphere, 0);
     out->weather = *weather;
     out->planck_mwir = source->planck_mwir, out->planck_lwir = source->planck_lwir;
     memcpy(out->sun_d_enu, sun->d_enu, sizeof out->sun_d_enu);

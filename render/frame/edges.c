@@ -6,8 +6,8 @@
  * ground. Parts that fall between the samples (a barrel, a mast) lie within the bounding box of their target: pixels
  * in the boxes of targets that are too large for a target grid and small enough to have such parts are always
  * sampled again, and so are thin pieces of larger targets and the ground where a small target's shadow falls. Plants
- * are no edges among themselves or against the ground behind them, or every pixel of a wood would be one: they are filtered (leaf_filter.c). Within a few
- * pixels of a target they are refined. */
+ * are no edges among themselves or against the ground behind them, or every pixel of a wood would be one: they are
+ * filtered (leaf_filter.c). Within a few pixels of a target they are refined. */
 
 #include "render/frame/frame_private.h"
 #include "render/trace/parts/parts.h"
@@ -16,7 +16,7 @@
  * barrel is a sixtieth of its tank's length. */
 static const double middling_px = 64;
 static const double about_px = 3; /* plants so near a target's box hide parts of it: they are refined */
-static const double thin_px = 6; /* a shadow of more rows than this is met by samples, and its edges are found */
+static const double thin_px = 6;  /* a shadow of more rows than this is met by samples, and its edges are found */
 static const double sharp_cosine = 0.866; /* 30 degrees: a seventh of the light, with the sun at 45 degrees */
 static const double step_part = 0.05, step_ground = 0.5; /* of the range */
 static const double kinds_bent = 1; /* of the change of range from pixel to pixel: real ground is not planar */
@@ -48,10 +48,10 @@ static bool sphere_box(double box[4], const View *view, const double centre_enu[
 static bool shadow_box(double box[4], const Job *job, int index)
 {
     const SnapshotEntity *entity = &job->scene.snapshot->entity[index];
-    const double         *sun    = job->scene.air->light.sun_d_enu;
+    const double         *sun = job->scene.air->light.sun_d_enu;
     double                foot_enu[3], tip_enu[3], foot[4], tip[4];
     if (entity->model < 0) return false;
-    const Model          *model  = catalog_model(job->scene.world->catalog, entity->model);
+    const Model *model = catalog_model(job->scene.world->catalog, entity->model);
     if (!job->scene.world->landscape || !(sun[2] > 0.05)) return false; /* below 3 degrees: a faint streak */
     enu_from_ecef(foot_enu, &job->scene.world->frame, entity->p_ecef);
     /* the shadow of an aircraft is elsewhere, and fainter with distance */
@@ -64,7 +64,7 @@ static bool shadow_box(double box[4], const Job *job, int index)
         !sphere_box(tip, &job->request->view, tip_enu, 0.5 * model->radius_m))
         return false;
     for (int k = 0; k < 2; k++) {
-        box[k]     = fmin(foot[k], tip[k]);
+        box[k] = fmin(foot[k], tip[k]);
         box[k + 2] = fmax(foot[k + 2], tip[k + 2]);
     }
     return fmin(box[2] - box[0], box[3] - box[1]) <= thin_px && fmax(box[2] - box[0], box[3] - box[1]) <= middling_px;
@@ -104,7 +104,8 @@ static bool line_of_box(ThinLine *out, const View *view, const PosedNode *node, 
     memcpy(out->end_px, end_px[longest], sizeof out->end_px);
     out->width_px = 0;
     for (int a = 0; a < 3; a++)
-        out->width_px += fabs(along_px[a][0] * along_px[longest][1] - along_px[a][1] * along_px[longest][0]) / longest_px;
+        out->width_px +=
+            fabs(along_px[a][0] * along_px[longest][1] - along_px[a][1] * along_px[longest][0]) / longest_px;
     return true;
 }
 
@@ -122,9 +123,9 @@ static void mark_line(Job *job, const ThinLine *line, uint8_t flag)
     const double reach = half_px * sqrt(1 + slope * slope) + 0.5 * fabs(slope);
     for (int k = (int)clamp(floor(low), 0, size[axis]); k < (int)clamp(ceil(high), 0, size[axis]); k++) {
         const double on = line->end_px[0][!axis] + (k + 0.5 - line->end_px[0][axis]) * slope;
-        const int    from = (int)clamp(floor(on - reach), 0, size[!axis]), to = (int)clamp(ceil(on + reach), 0, size[!axis]);
-        for (int l = from; l < to; l++)
-            job->refine[axis ? pixel_index(job, l, k) : pixel_index(job, k, l)] |= flag;
+        const int    from = (int)clamp(floor(on - reach), 0, size[!axis]),
+                  to = (int)clamp(ceil(on + reach), 0, size[!axis]);
+        for (int l = from; l < to; l++) job->refine[axis ? pixel_index(job, l, k) : pixel_index(job, k, l)] |= flag;
     }
 }
 
@@ -138,7 +139,8 @@ static void mark_thin_lines(Job *job, int index, uint8_t flag)
         const ThinBox *box = parts_node_thin(&entity->node[n], &count);
         for (int k = 0; k < count; k++) {
             ThinLine line;
-            if (line_of_box(&line, &job->request->view, &entity->node[n], &box[k]) && line.width_px < thin_box_px) mark_line(job, &line, flag);
+            if (line_of_box(&line, &job->request->view, &entity->node[n], &box[k]) && line.width_px < thin_box_px)
+                mark_line(job, &line, flag);
         }
     }
 }
@@ -208,12 +210,13 @@ static unsigned edge_between(const Job *job, int xa, int ya, int xb, int yb, boo
     if (sky_a != sky_b) return refine_step;
     if (plants) return leaves ? refine_plants : 0; /* most neighbours differ in light or kind */
     const bool   other = p->material[a] != p->material[b];
-    const double cosine = p->normal[0][a] * p->normal[0][b] + p->normal[1][a] * p->normal[1][b] +
-                          p->normal[2][a] * p->normal[2][b];
+    const double cosine =
+        p->normal[0][a] * p->normal[0][b] + p->normal[1][a] * p->normal[1][b] + p->normal[2][a] * p->normal[2][b];
     const double near_m = fmin(p->range_m[a], p->range_m[b]);
     const bool   kinds = other && !part; /* a crest between two ground classes is worth refining when it is low */
-    const double step_m = part ? step_part * near_m : kinds ? near_m / job->request->view.focal_px
-                                                             : step_ground * near_m;
+    const double step_m = part    ? step_part * near_m
+                          : kinds ? near_m / job->request->view.focal_px
+                                  : step_ground * near_m;
     if (!(cosine > sharp_cosine) || steps_in_depth(job, a, b, xa, ya, xb, yb, step_m, kinds ? kinds_bent : 0, kinds))
         return part ? refine_all : refine_step;
     if (part && other) return refine_all;
@@ -233,9 +236,9 @@ static void find_plain(uint32_t *restrict plain, const Job *job, size_t a, size_
         const size_t   k = a + (size_t)i, l = b + (size_t)i;
         const uint32_t other = (entity[k] ^ entity[l]) | (part[k] ^ part[l]) | (material[k] ^ material[l]) |
                                (plant[k] ^ plant[l]) | (uint32_t)(job->sun[k] != job->sun[l]);
-        const float    turn = nx[k] * nx[l] + ny[k] * ny[l] + nz[k] * nz[l];
-        const float    near_m = range_m[k] < range_m[l] ? range_m[k] : range_m[l];
-        const float    deep_m = fabsf(range_m[k] - range_m[l]);
+        const float turn = nx[k] * nx[l] + ny[k] * ny[l] + nz[k] * nz[l];
+        const float near_m = range_m[k] < range_m[l] ? range_m[k] : range_m[l];
+        const float deep_m = fabsf(range_m[k] - range_m[l]);
         plain[i] = (uint32_t)(other == 0) & (uint32_t)(turn > cosine) & (uint32_t)(deep_m <= step * near_m);
     }
 }
@@ -244,14 +247,14 @@ void refine_flags(uint8_t flags[hits_capacity], const Job *job, int x0, int y0, 
 {
     enum { side = tile_side_samples };
     static const int beside[4][2] = {{-1, 0}, {1, 0}, {0, -1}, {0, 1}};
-    const View      *view  = &job->request->view;
+    const View      *view = &job->request->view;
     const int        width = x1 - x0;
-    uint32_t         across[side + 1] = {0}, above[side] = {0}, below[side] = {0}; /* across[k]: pixels x0 + k - 1 and x0 + k */
-    uint32_t         alike[side];
-    uint16_t         corner[corner_capacity];
-    const bool       grounds = job->scene.world->landscape && job->request->samples == 1 &&
-                         job->request->bands & ~(1u << BAND_RADAR);
-    const int        left = x0 > 0 ? x0 - 1 : 0, right = x1 < view->width ? x1 : view->width - 1;
+    uint32_t across[side + 1] = {0}, above[side] = {0}, below[side] = {0}; /* across[k]: pixels x0 + k - 1 and x0 + k */
+    uint32_t alike[side];
+    uint16_t corner[corner_capacity];
+    const bool grounds =
+        job->scene.world->landscape && job->request->samples == 1 && job->request->bands & ~(1u << BAND_RADAR);
+    const int left = x0 > 0 ? x0 - 1 : 0, right = x1 < view->width ? x1 : view->width - 1;
     if (grounds) corner_materials(corner, job, x0, y0, x1, y1);
     if (y0 > 0) find_plain(above, job, pixel_index(job, x0, y0 - 1), pixel_index(job, x0, y0), width);
     for (int y = y0; y < y1; y++) {
@@ -274,7 +277,8 @@ void refine_flags(uint8_t flags[hits_capacity], const Job *job, int x0, int y0, 
                 corners_differ(corner + (y - y0) * (width + 1) + k, width + 1, job->picture->material[px]))
                 flag |= refine_ground;
             if (leafy && !(flag & refine_leaves)) flag &= ~(unsigned)(refine_sun | refine_ground);
-            if (job->request->samples > 1) flag &= ~(unsigned)(refine_step | refine_plants | refine_ground); /* all flags set */
+            if (job->request->samples > 1)
+                flag &= ~(unsigned)(refine_step | refine_plants | refine_ground); /* all flags set */
             flags[(y - y0) * width + k] = (uint8_t)(flag & ~(unsigned)refine_leaves);
         }
         if (y + 1 < y1) memcpy(above, below, sizeof above);
@@ -285,12 +289,12 @@ void refine_flags(uint8_t flags[hits_capacity], const Job *job, int x0, int y0, 
 
 void recall_ground(Worker *w, const Job *job)
 {
-    const View       *view  = &job->request->view;
-    const Picture    *p     = job->picture;
+    const View       *view = &job->request->view;
+    const Picture    *p = job->picture;
     const PixelBlock *block = &w->block;
-    Hits             *hits  = &w->samples.hits;
-    Rays             *rays  = &w->samples.rays;
-    hits->count   = rays->count = block->pixels;
+    Hits             *hits = &w->samples.hits;
+    Rays             *rays = &w->samples.rays;
+    hits->count = rays->count = block->pixels;
     hits->columns = rays->columns = 0;
     hits->several = false;
     for (int i = 0; i < hits->count; i++) {
@@ -298,8 +302,8 @@ void recall_ground(Worker *w, const Job *job)
         double       d_enu[3];
         view_ray(d_enu, view, block->x[i] + 0.5, block->y[i] + 0.5);
         hits->range_m[i] = p->range_m[px];
-        hits->kind[i]    = hit_ground;
-        hits->entity[i]  = 0;
+        hits->kind[i] = hit_ground;
+        hits->entity[i] = 0;
         hits->part[i] = hits->model[i] = 0;
         hits->inside[i] = 0;
         hits->plant[i] = 0;
@@ -314,6 +318,5 @@ void recall_ground(Worker *w, const Job *job)
     }
     landscape_surfaces(hits->surface, job->scene.world->landscape, hits->count, hits->p_enu[0], hits->p_enu[1]);
     for (int i = 0; i < hits->count; i++)
-        hits->material[i] =
-            (uint16_t)(hits->surface[i] ? job->scene.world->materials.surface[hits->surface[i]] : 0);
+        hits->material[i] = (uint16_t)(hits->surface[i] ? job->scene.world->materials.surface[hits->surface[i]] : 0);
 }

@@ -6,18 +6,25 @@
 #include "render/frame/render.h"
 #include "render/frame/frame_private.h"
 
-enum { probes_a_block = 64, blocks_most = 12, candidates_a_probe = 4, tables_probes = 48, hottest_probes = 2,
-       tables_blocks = 4 /* of them, for as many threads */, target_candidates = 512,
-       target_blocks = 4 };
-static const double large_target = 1.0 / 16; /* of the picture: a box above it has fields enough */
-static const double pixels_a_probe = 1200; /* 16 rays each: 1.3 % of a frame of one ray a pixel */
-static const uint32_t stream = 0x6275;     /* "bu" */
+enum {
+    probes_a_block = 64,
+    blocks_most = 12,
+    candidates_a_probe = 4,
+    tables_probes = 48,
+    hottest_probes = 2,
+    tables_blocks = 4 /* of them, for as many threads */,
+    target_candidates = 512,
+    target_blocks = 4
+};
+static const double   large_target = 1.0 / 16; /* of the picture: a box above it has fields enough */
+static const double   pixels_a_probe = 1200;   /* 16 rays each: 1.3 % of a frame of one ray a pixel */
+static const uint32_t stream = 0x6275;         /* "bu" */
 
 typedef struct Candidate {
     uint16_t x, y;
-    double   area;                          /* number of pixels that it represents */
-    double   weight;                        /* to be drawn */
-    unsigned planes;                        /* 1 << plane: those whose error its own samples do not estimate */
+    double   area;   /* number of pixels that it represents */
+    double   weight; /* to be drawn */
+    unsigned planes; /* 1 << plane: those whose error its own samples do not estimate */
     float    value[picture_plane_count], contrast[picture_plane_count];
 } Candidate;
 
@@ -28,31 +35,31 @@ typedef struct ProbeOf {
 
 /* A block of re-sampled pixels. */
 typedef struct ProbeTask {
-    bool           of_tables; /* computed directly, without tables, and nothing else */
-    int            count;
-    const ProbeOf *probe; /* [count] */
+    bool             of_tables; /* computed directly, without tables, and nothing else */
+    int              count;
+    const ProbeOf   *probe; /* [count] */
     const Candidate *candidate;
-    float          base[picture_plane_count][probes_a_block];
-    double         image_px[probes_a_block];   /* displacement of the ground on the image */
-    double         sampling[picture_plane_count], detail[picture_plane_count], tables[picture_plane_count];
-    double         tables_px;
-    int            first;     /* of its probes, those at hand; of squares: all of the block */
-    float         *square[error_thermal_planes];
+    float            base[picture_plane_count][probes_a_block];
+    double           image_px[probes_a_block]; /* displacement of the ground on the image */
+    double           sampling[picture_plane_count], detail[picture_plane_count], tables[picture_plane_count];
+    double           tables_px;
+    int              first; /* of its probes, those at hand; of squares: all of the block */
+    float           *square[error_thermal_planes];
 } ProbeTask;
 
 typedef struct Budget {
-    const Job  *job;
-    int         field_px, columns, rows, candidates, probes, blocks, n;
-    int         target_first;  /* the first of their candidates */
-    int         target_px;     /* number of pixels in boxes of targets that are not refined */
-    uint8_t    *of_target;     /* 1: one of them; NULL: none */
-    bool        law;       /* too many rays to re-sample more finely: the sampling variance is used */
-    Candidate  *candidate;
-    ProbeOf    *probe, tables_probe[tables_probes + hottest_probes];
-    ProbeTask  *task;      /* [blocks + tables_blocks] */
-    AirPaths     (*direct)[AIR_BAND_COUNT]; /* [workers] */
-    double       *probe_px;                 /* ErrorBudget's */
-    float        *square[error_thermal_planes];
+    const Job *job;
+    int        field_px, columns, rows, candidates, probes, blocks, n;
+    int        target_first; /* the first of their candidates */
+    int        target_px;    /* number of pixels in boxes of targets that are not refined */
+    uint8_t   *of_target;    /* 1: one of them; NULL: none */
+    bool       law;          /* too many rays to re-sample more finely: the sampling variance is used */
+    Candidate *candidate;
+    ProbeOf   *probe, tables_probe[tables_probes + hottest_probes];
+    ProbeTask *task;                    /* [blocks + tables_blocks] */
+    AirPaths (*direct)[AIR_BAND_COUNT]; /* [workers] */
+    double *probe_px;                   /* ErrorBudget's */
+    float  *square[error_thermal_planes];
 } Budget;
 
 /* ---- which pixels ---------------------------------------------------------------------------- */
@@ -65,7 +72,8 @@ static unsigned planes_to_ask(const Job *job, size_t px)
     if (flags & refine_all || (job->picture->covered && job->picture->covered[px] > 0)) return 0;
     for (int k = 0; k < picture_plane_count; k++) {
         const bool sunlit = picture_band(k) == BAND_OPTICAL || picture_band(k) == BAND_MWIR;
-        if (picture_plane(job->picture, k) && !(flags & refine_sun && !(flags & (refine_step | refine_plants)) && sunlit))
+        if (picture_plane(job->picture, k) &&
+            !(flags & refine_sun && !(flags & (refine_step | refine_plants)) && sunlit))
             planes |= 1u << k;
     }
     return planes;
@@ -99,7 +107,7 @@ static void read_candidate(Candidate *c, const Job *job)
     for (int k = 0; k < picture_plane_count; k++) {
         const float *value = picture_plane(p, k);
         if (!value) continue;
-        c->value[k]    = value[pixel_index(job, c->x, c->y)];
+        c->value[k] = value[pixel_index(job, c->x, c->y)];
         c->contrast[k] = (float)picture_contrast(p, value, c->x, c->y);
     }
 }
@@ -148,8 +156,8 @@ static void candidate_task(void *user, int worker, int row)
         const int      x0 = column * b->field_px, y0 = row * b->field_px;
         const int      w = p->width - x0 < b->field_px ? p->width - x0 : b->field_px;
         const int      h = p->height - y0 < b->field_px ? p->height - y0 : b->field_px;
-        c->x    = (uint16_t)(x0 + (int)(random_uniform(1, stream, 0, 2 * field) * w));
-        c->y    = (uint16_t)(y0 + (int)(random_uniform(1, stream, 0, 2 * field + 1) * h));
+        c->x = (uint16_t)(x0 + (int)(random_uniform(1, stream, 0, 2 * field) * w));
+        c->y = (uint16_t)(y0 + (int)(random_uniform(1, stream, 0, 2 * field + 1) * h));
         c->area = (double)w * h;
         if (b->of_target) leave_targets_out(c, b, x0, y0, w, h);
         read_candidate(c, b->job);
@@ -216,8 +224,11 @@ static int add_hottest(ProbeOf *out, const Budget *b)
             if (value[i] > value[most]) most = i;
         if (!value || !planes_to_ask(b->job, most)) continue;
         Candidate *c = &b->candidate[b->candidates + count];
-        *c = (Candidate){.x = (uint16_t)(most % (size_t)p->width), .y = (uint16_t)(most / (size_t)p->width), .area = 1,
-                         .planes = planes_to_ask(b->job, most), .weight = 1};
+        *c = (Candidate){.x = (uint16_t)(most % (size_t)p->width),
+                         .y = (uint16_t)(most / (size_t)p->width),
+                         .area = 1,
+                         .planes = planes_to_ask(b->job, most),
+                         .weight = 1};
         for (int k = 0; k < picture_plane_count; k++)
             if (picture_plane(p, k)) c->value[k] = picture_plane(p, k)[most];
         out[count] = (ProbeOf){b->candidates + count, 1};
@@ -399,21 +410,21 @@ static Status plan(Budget *b, Pool *pool, Arena *arena)
     const Picture *p = b->job->picture;
     const int      samples = b->job->request->samples;
     const double   pixels = (double)p->width * p->height;
-    b->law      = 4 * samples > 16;
-    b->n        = b->law ? samples : 4 * samples;
-    b->blocks   = (int)clamp(ceil(pixels / pixels_a_probe / probes_a_block), 1, blocks_most);
-    b->probes   = b->blocks * probes_a_block;
+    b->law = 4 * samples > 16;
+    b->n = b->law ? samples : 4 * samples;
+    b->blocks = (int)clamp(ceil(pixels / pixels_a_probe / probes_a_block), 1, blocks_most);
+    b->probes = b->blocks * probes_a_block;
     b->field_px = (int)fmax(floor(sqrt(pixels / (b->probes * candidates_a_probe))), 1);
-    b->columns  = (p->width + b->field_px - 1) / b->field_px;
-    b->rows     = (p->height + b->field_px - 1) / b->field_px;
+    b->columns = (p->width + b->field_px - 1) / b->field_px;
+    b->rows = (p->height + b->field_px - 1) / b->field_px;
     b->candidates = b->columns * b->rows;
     b->candidate = arena_alloc(arena, (size_t)b->candidates + target_candidates + hottest_probes, sizeof *b->candidate);
     const size_t most = (size_t)(b->probes + target_blocks * probes_a_block);
     b->target_first = b->candidates;
-    b->probe     = arena_alloc(arena, most, sizeof *b->probe);
-    b->task      = arena_alloc(arena, (size_t)b->blocks + target_blocks + tables_blocks, sizeof *b->task);
-    b->direct    = arena_alloc(arena, (size_t)pool_threads(pool), sizeof *b->direct);
-    b->probe_px  = arena_alloc(arena, most, sizeof *b->probe_px);
+    b->probe = arena_alloc(arena, most, sizeof *b->probe);
+    b->task = arena_alloc(arena, (size_t)b->blocks + target_blocks + tables_blocks, sizeof *b->task);
+    b->direct = arena_alloc(arena, (size_t)pool_threads(pool), sizeof *b->direct);
+    b->probe_px = arena_alloc(arena, most, sizeof *b->probe_px);
     bool ok = b->candidate && b->probe && b->task && b->direct && b->probe_px;
     for (int k = 0; k < error_thermal_planes; k++)
         ok = (b->square[k] = arena_alloc(arena, most, sizeof *b->square[k])) && ok;
@@ -431,11 +442,14 @@ static int deal(Budget *b, int probes, int of_tables)
     const int a_block = (of_tables + tables_blocks - 1) / tables_blocks;
     int       tasks = 0;
     for (int first = 0; first < probes; first += probes_a_block)
-        b->task[tasks++] = (ProbeTask){.probe = b->probe + first, .candidate = b->candidate,
+        b->task[tasks++] = (ProbeTask){.probe = b->probe + first,
+                                       .candidate = b->candidate,
                                        .count = probes - first < probes_a_block ? probes - first : probes_a_block,
                                        .square = {b->square[0] + first, b->square[1] + first}};
     for (int first = 0; first < of_tables; first += a_block)
-        b->task[tasks++] = (ProbeTask){.of_tables = true, .probe = b->tables_probe + first, .candidate = b->candidate,
+        b->task[tasks++] = (ProbeTask){.of_tables = true,
+                                       .probe = b->tables_probe + first,
+                                       .candidate = b->candidate,
                                        .count = of_tables - first < a_block ? of_tables - first : a_block};
     return tasks;
 }
@@ -457,7 +471,8 @@ Status error_estimate(const Job *job, Pool *pool, Arena *arena)
     for (int k = 0; k < picture_plane_count; k++) out->mean[k] /= pixels;
     out->probes = draw_probes(b.probe, b.probes, &b, 0, b.target_first);
     if (b.candidates > b.target_first)
-        out->probes += draw_probes(b.probe + out->probes, target_blocks * probes_a_block, &b, b.target_first, b.candidates);
+        out->probes +=
+            draw_probes(b.probe + out->probes, target_blocks * probes_a_block, &b, b.target_first, b.candidates);
     const int tasks = deal(&b, out->probes, draw_tables(&b, out->mean));
     pool_run(pool, tasks, probe_task, &b);
 
@@ -474,9 +489,9 @@ Status error_estimate(const Job *job, Pool *pool, Arena *arena)
             tables += b.task[t].tables[k];
         }
         const bool there = picture_plane(picture, k) != NULL;
-        out->sampling[k]        = there ? sqrt(sampling / pixels) : NAN;
+        out->sampling[k] = there ? sqrt(sampling / pixels) : NAN;
         out->level_of_detail[k] = there ? sqrt(detail / pixels) : NAN;
-        out->tables[k]          = there ? sqrt(tables_px > 0 ? tables / tables_px : 0) : NAN;
+        out->tables[k] = there ? sqrt(tables_px > 0 ? tables / tables_px : 0) : NAN;
         if (!there) out->mean[k] = NAN;
     }
     out->probe_px = b.probe_px;

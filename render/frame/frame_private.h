@@ -18,7 +18,7 @@ typedef struct PixelBlock {
 
 static inline void pixels_add(PixelBlock *block, int x, int y)
 {
-    block->x[block->pixels]   = (uint16_t)x;
+    block->x[block->pixels] = (uint16_t)x;
     block->y[block->pixels++] = (uint16_t)y;
 }
 
@@ -48,7 +48,8 @@ void pixels_box(double box_px[4], const PixelBlock *block);
 
 /* ---- sums over targets: target_sums.c -------------------------------------------------------- */
 
-/* Results of each target, summed over the samples of all tiles: visible and hidden areas, its occluders, its own radiance; and the radar's range profile.
+/* Results of each target, summed over the samples of all tiles: visible and hidden areas, its occluders, its own
+ * radiance; and the radar's range profile.
  *
  * Sums are integers in fixed steps, one set per worker, added at the end: independent of the order in which threads
  * finish. A share of a block's samples may be taken back (share below 0) when others join them. */
@@ -85,11 +86,11 @@ typedef struct SumRules {
     const Visibility *visibility;
     const int32_t    *coverer; /* [pixels]: snapshot index of the small target that covers most; valid where any does */
     int               smoke_channel[BAND_COUNT]; /* the channel whose smoke transmittance applies to a band; -1: none */
-    Arena            *arena; /* where tables of pairs grow while threads run */
+    Arena            *arena;                     /* where tables of pairs grow while threads run */
     int64_t           steps_per_px;
     /* fixed point: fine enough to be exact in float's terms, coarse enough that all samples of a picture at the
      * limit stay below 2^62 quanta */
-    double            profile_limit, profile_quantum, radiance_limit, radiance_quantum;
+    double profile_limit, profile_quantum, radiance_limit, radiance_quantum;
 } SumRules;
 
 /* Sums of a worker. */
@@ -105,7 +106,7 @@ typedef struct TargetSums {
 
 Status target_sums_create(TargetSums *out, int entities, int profile_bins, Arena *arena);
 /* Steps and quanta for a request. */
-void   sum_rules_choose(SumRules *rules, const RenderRequest *request, const RadarConfig *radar);
+void sum_rules_choose(SumRules *rules, const RenderRequest *request, const RadarConfig *radar);
 
 /* cos^3 of the angle off the axis at a pixel's centre: what its solid angle has less than 1 / focal_px^2. */
 double pixel_cosine3(const View *view, int x, int y);
@@ -115,8 +116,8 @@ void target_sums_areas(TargetSums *sums, const SumRules *rules, const Samples *s
                        const int *list, int listed, VisibilityCounters *counters);
 /* The block's radiance of a plane, weighted by area, to the targets that it shows. target_sums_view comes first. */
 void target_sums_view(TargetSums *sums, const PixelBlock *block, const View *view);
-void target_sums_radiance(TargetSums *sums, const SumRules *rules, const Hits *hits, const PixelBlock *block, double share,
-                          const float *value, int plane);
+void target_sums_radiance(TargetSums *sums, const SumRules *rules, const Hits *hits, const PixelBlock *block,
+                          double share, const float *value, int plane);
 /* Radar returns of samples of these areas (px; below 0: taken back) to the range profile. */
 void target_sums_profile(TargetSums *sums, const SumRules *rules, const RenderRequest *request, const Samples *s,
                          const double *area_px);
@@ -146,17 +147,17 @@ enum { tile_side_samples = 32 };
 typedef struct Worker {
     Shader         shader;
     Samples        samples;
-    PixelBlock     block;   /* base and edges, error estimate */
+    PixelBlock     block; /* base and edges, error estimate */
     TargetSums     sums;
     RenderCounters counters; /* without visibility, which is in shader.counters */
-    int           *list;    /* [snapshot count]: entities */
-    int           *outline; /* [snapshot count]: those whose areas are sampled again */
-    int           *volume;  /* [volumes of the effects] */
+    int           *list;     /* [snapshot count]: entities */
+    int           *outline;  /* [snapshot count]: those whose areas are sampled again */
+    int           *volume;   /* [volumes of the effects] */
     uint64_t       key[hits_capacity];
     double         area_px[hits_capacity];
     uint8_t        meets[hits_capacity];
     EntityHits     known;
-    Hits           hits;    /* before some of them are removed or split */
+    Hits           hits; /* before some of them are removed or split */
     Rays           rays;
 } Worker;
 
@@ -166,29 +167,29 @@ typedef struct TargetGrid TargetGrid; /* a small target: frame_private.h */
 typedef struct Job {
     const RenderRequest *request;
     ShadeScene           scene;
-    Picture             *picture; /* truth planes where requested or where edges are looked for */
+    Picture             *picture;                /* truth planes where requested or where edges are looked for */
     PictureChannel       channel[picture_radar]; /* [channels] of the request */
     int                  channels;
     Worker             **worker;
     int                  side_px, tiles_x, tiles_y;
     SumRules             rules;
-    TargetPixels        *boxes;     /* [snapshot count]: projected and projected_box only */
-    bool                *is_small;  /* [snapshot count]: sampled on its own grid; the pixels' samples do not see it */
+    TargetPixels        *boxes;    /* [snapshot count]: projected and projected_box only */
+    bool                *is_small; /* [snapshot count]: sampled on its own grid; the pixels' samples do not see it */
     /* small targets */
-    int                  grid_side;  /* cells a side of a grid at least: target_samples, or as many as fit */
-    TargetGrid           *footprint; /* [small targets], by entity */
-    int                  footprints;
-    int                 *target_grid_order; /* [small targets]: the order in which they are sampled */
-    float               *before;    /* [pixels]: share of what hides small targets, which their grids know */
-    int32_t             *coverer;   /* [pixels]: snapshot index of the small target that covers most; valid where
-                                     * any does */
-    double               target_variance[picture_plane_count]; /* squared errors over the pixels, summed */
+    int         grid_side; /* cells a side of a grid at least: target_samples, or as many as fit */
+    TargetGrid *footprint; /* [small targets], by entity */
+    int         footprints;
+    int        *target_grid_order; /* [small targets]: the order in which they are sampled */
+    float      *before;            /* [pixels]: share of what hides small targets, which their grids know */
+    int32_t    *coverer;           /* [pixels]: snapshot index of the small target that covers most; valid where
+                                    * any does */
+    double target_variance[picture_plane_count]; /* squared errors over the pixels, summed */
     /* edges; NULL: not looked for */
-    uint8_t             *refine;    /* a pixel: RefineFlag */
-    float               *sun;       /* a pixel: Samples.sun of the sample that truth is of */
-    float              **smoothed; /* [channels]: each plane's pixels, smoothed (leaf_filter.c); NULL: they are not */
-    bool                *leafy;    /* [tiles]: some plant is in or beside it */
-    double             (*law)[picture_plane_count]; /* [tiles]: squared errors, summed; NULL: no error estimate */
+    uint8_t *refine;   /* a pixel: RefineFlag */
+    float   *sun;      /* a pixel: Samples.sun of the sample that truth is of */
+    float  **smoothed; /* [channels]: each plane's pixels, smoothed (leaf_filter.c); NULL: they are not */
+    bool    *leafy;    /* [tiles]: some plant is in or beside it */
+    double (*law)[picture_plane_count]; /* [tiles]: squared errors, summed; NULL: no error estimate */
 } Job;
 
 typedef struct Tile {
@@ -196,12 +197,12 @@ typedef struct Tile {
 } Tile;
 
 /* The pixels of a task. */
-Tile tile_of(const Job *job, int task);
+Tile                 tile_of(const Job *job, int task);
 static inline size_t pixel_index(const Job *job, int x, int y) { return picture_index(job->picture, x, y); }
 
 /* Entities that samples within a box of the image may see, into worker->list; without `small_ones` small targets are
  * left to their grids. Returns their number. */
-int  list_entities(Worker *w, const Job *job, const double box_px[4], bool small_ones);
+int list_entities(Worker *w, const Job *job, const double box_px[4], bool small_ones);
 /* Channels that the samples need: those of `bands`. */
 void ask_bands(Worker *w, const Job *job, unsigned bands);
 /* Smoke that samples within a box of the image may meet. */
@@ -211,7 +212,8 @@ void ask_smoke(Worker *w, const Job *job, const double box_px[4]);
 void block_trace(Worker *w, const Job *job, unsigned bands, int listed);
 /* Light of the block's hits. */
 void block_light(Worker *w, const Job *job);
-/* Adds a share of the block's contribution to the sums of the targets and of the range profile; below 0: takes it back. */
+/* Adds a share of the block's contribution to the sums of the targets and of the range profile; below 0: takes it back.
+ */
 void block_add(Worker *w, const Job *job, double share);
 /* A share of the areas of the listed targets to the sums. */
 void block_add_areas(Worker *w, const Job *job, double share, const int *list, int listed);
@@ -228,10 +230,10 @@ void base_tile(void *job, int worker, int task);
 /* Refinement that a pixel needs. What only the shadow-sensitive bands need must not affect the others, whose bits
  * would then depend on the requested bands; and bare ground must stay cheap. */
 typedef enum RefineFlag {
-    refine_all    = 1, /* edge_samples a side, every band */
-    refine_step   = 2, /* 2 a side, each split by ground class; every band: a crest of the ground, the horizon */
-    refine_sun    = 4, /* edge_samples a side, optical and MWIR: the edge of a shadow */
-    refine_ground = 8, /* the plane of the existing hit, split by ground class, no ray; not the radar */
+    refine_all = 1,     /* edge_samples a side, every band */
+    refine_step = 2,    /* 2 a side, each split by ground class; every band: a crest of the ground, the horizon */
+    refine_sun = 4,     /* edge_samples a side, optical and MWIR: the edge of a shadow */
+    refine_ground = 8,  /* the plane of the existing hit, split by ground class, no ray; not the radar */
     refine_plants = 16, /* leaf_samples a side, which join the first one; every band: plants about a target */
     refine_leaves = 32, /* a mark: plants are refined here */
 } RefineFlag;
@@ -248,10 +250,10 @@ void recall_ground(Worker *w, const Job *job);
 /* ---- samples that cover several ground classes: ground_mix.c --------------------------------- */
 
 enum {
-    ground_mix_places = 256,  /* most points a sample at which the class is looked up */
-    ground_mix_most   = 4,    /* most classes that a sample is split into */
-    corner_capacity   = (tile_side_samples + 1) * (tile_side_samples + 1),
-    material_unknown  = 0xffff,
+    ground_mix_places = 256, /* most points a sample at which the class is looked up */
+    ground_mix_most = 4,     /* most classes that a sample is split into */
+    corner_capacity = (tile_side_samples + 1) * (tile_side_samples + 1),
+    material_unknown = 0xffff,
 };
 
 /* Materials of the ground at the corners of the pixels x0 .. x1 - 1, y0 .. y1 - 1, (x1 - x0 + 1) a row;
@@ -274,16 +276,16 @@ void refine_tile(void *job, int worker, int task);
  * One sample a pixel shows one leaf, lit or shaded, or the ground in a gap: it has more contrast than the pixel's mean.
  * Neighbouring samples know more of that mean than a single one does: the weighted mean over 3 x 3 pixels (11 parts for
  * the pixel, 2 for those beside it, 1 for those at its corners) of those that show plants, or ground beside a plant. It
- * costs no ray. Beside 144 rays a pixel, in three frames of the demonstration: rms 15 % of the mean in red (23 % smoothed
- * among leaves alone), 3.7 and 1.9 % in 3.4-4.8 and 8-12 um, deviations 0.99, 1.01 and 1.02 of the true ones; where a
- * pixel is far larger than a leaf the deviation stays too large (tests/render/test_leaf_filter.c). The radar's picture
- * keeps its own samples. */
+ * costs no ray. Beside 144 rays a pixel, in three frames of the demonstration: rms 15 % of the mean in red (23 %
+ * smoothed among leaves alone), 3.7 and 1.9 % in 3.4-4.8 and 8-12 um, deviations 0.99, 1.01 and 1.02 of the true ones;
+ * where a pixel is far larger than a leaf the deviation stays too large (tests/render/test_leaf_filter.c). The radar's
+ * picture keeps its own samples. */
 
 /* Memory for it where the picture has plants, one sample a pixel, and edges that are refined: Job.smoothed.
  * STATUS_NO_MEMORY. */
 Status leaf_filter_prepare(Job *job, Arena *arena);
 /* After the edges: smooths those pixels that were not refined. */
-void   leaf_filter(Job *job, Pool *pool);
+void leaf_filter(Job *job, Pool *pool);
 
 /* Where targets lie on the image. */
 
@@ -295,17 +297,17 @@ void project_target(void *job, int worker, int index);
 /* Selects the small targets and allocates their grids. */
 Status target_grids_plan(Job *job, Arena *arena);
 /* A pool task: samples one grid. */
-void   target_grid_task(void *job, int worker, int index);
+void target_grid_task(void *job, int worker, int index);
 /* After all tasks: whether an entity has a grid, all of which is hidden. */
-bool   target_grid_hidden(const Job *job, int entity);
+bool target_grid_hidden(const Job *job, int entity);
 /* After all tasks: the pixels that the grids cover. */
-void   target_grids_cover(Job *job);
+void target_grids_cover(Job *job);
 /* Errors of every grid, from its samples' variance, before compositing: into Job.target_variance and the targets. */
-void   target_grids_error(Job *job);
+void target_grids_error(Job *job);
 /* Composites the grids over the finished pixels, in order of entity. */
-void   target_grids_composite(Job *job);
+void target_grids_composite(Job *job);
 /* Their areas and radiance into the picture's targets, after target_sums_gather. */
-void   target_grids_sample(const Job *job);
+void target_grids_sample(const Job *job);
 
 /* ---- the error estimate: error_estimate.c; its meaning: render.h ----------------------------- */
 
@@ -322,23 +324,24 @@ typedef struct TargetGridTruth {
 } TargetGridTruth;
 
 struct TargetGrid {
-    int     entity;                    /* snapshot index */
-    double  box[4];                    /* of all its vertices, px */
-    int     columns, rows;             /* cells; 0: seen edge-on, nothing to sample */
-    int     x0, y0, x1, y1;            /* pixels that it may touch */
-    double *sum[picture_plane_count];  /* of area x radiance, a pixel [(y1 - y0) (x1 - x0)] */
-    double *area;                      /* px, a pixel */
-    double *before_sum[picture_plane_count], *before; /* the same of what hides the target, a pixel that shows some of it */
-    TargetGridTruth *truth;             /* [pixels]; NULL: not needed */
+    int     entity;                   /* snapshot index */
+    double  box[4];                   /* of all its vertices, px */
+    int     columns, rows;            /* cells; 0: seen edge-on, nothing to sample */
+    int     x0, y0, x1, y1;           /* pixels that it may touch */
+    double *sum[picture_plane_count]; /* of area x radiance, a pixel [(y1 - y0) (x1 - x0)] */
+    double *area;                     /* px, a pixel */
+    double *before_sum[picture_plane_count],
+        *before;            /* the same of what hides the target, a pixel that shows some of it */
+    TargetGridTruth *truth; /* [pixels]; NULL: not needed */
     /* over the target, px within the image */
-    double  visible, amodal, hidden_ground, hidden_entity, hidden_plants;
-    double  veiled[BAND_COUNT];          /* area x the share that smoke absorbs */
-    double  square[picture_plane_count]; /* area x radiance^2 */
-    float  *cell[picture_plane_count]; /* radiance of each; NULL: neither needed for the budget nor for a detector */
-    float  *behind[picture_plane_count]; /* [pixels], before small targets are composited; NULL: not needed for a
-                                          * detector */
-    bool   *met;                       /* cells that show the target */
-    int     amodal_box[4];
+    double visible, amodal, hidden_ground, hidden_entity, hidden_plants;
+    double veiled[BAND_COUNT];          /* area x the share that smoke absorbs */
+    double square[picture_plane_count]; /* area x radiance^2 */
+    float *cell[picture_plane_count];   /* radiance of each; NULL: neither needed for the budget nor for a detector */
+    float *behind[picture_plane_count]; /* [pixels], before small targets are composited; NULL: not needed for a
+                                         * detector */
+    bool *met;                          /* cells that show the target */
+    int   amodal_box[4];
 };
 
 /* The first and last pixels, of a box that is all 0 at first. */

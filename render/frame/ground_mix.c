@@ -29,13 +29,14 @@ static void place_corners(double *x_m, double *y_m, const Job *job, int x0, int 
     double         column_px[2][most], row_px[2][most], hit[3][most], way[3][most], n[3][most], hit_m[most];
     bool           ground[most];
     for (int k = 0; k < columns; k++) {
-        /* the pixel below and to the right of the corner gives the plane of the ground; at the picture's end the last */
+        /* the pixel below and to the right of the corner gives the plane of the ground; at the picture's end the last
+         */
         const int    x = x0 + k, px = x < view->width ? x : view->width - 1;
         const size_t at = pixel_index(job, px, py);
         column_px[0][k] = px + 0.5, row_px[0][k] = py + 0.5;
         column_px[1][k] = x, row_px[1][k] = y;
         for (int c = 0; c < 3; c++) n[c][k] = (double)p->normal[c][at];
-        hit_m[k]  = (double)p->range_m[at];
+        hit_m[k] = (double)p->range_m[at];
         ground[k] = p->cover[at] != SURFACE_NONE;
     }
     view_rays((double *const[3]){hit[0], hit[1], hit[2]}, view, columns, column_px[0], row_px[0]);
@@ -43,7 +44,8 @@ static void place_corners(double *x_m, double *y_m, const Job *job, int x0, int 
     for (int k = 0; k < columns; k++) { /* plane_through */
         const double above = n[0][k] * hit[0][k] + n[1][k] * hit[1][k] + n[2][k] * hit[2][k];
         const double along = n[0][k] * way[0][k] + n[1][k] * way[1][k] + n[2][k] * way[2][k];
-        const double at_m = hit_m[k] * above / along, range_m = at_m < 2 * hit_m[k] && at_m > 0.5 * hit_m[k] ? at_m : hit_m[k];
+        const double at_m = hit_m[k] * above / along,
+                     range_m = at_m < 2 * hit_m[k] && at_m > 0.5 * hit_m[k] ? at_m : hit_m[k];
         x_m[k] = ground[k] ? view->p_enu[0] + range_m * way[0][k] : NAN;
         y_m[k] = ground[k] ? view->p_enu[1] + range_m * way[1][k] : NAN;
     }
@@ -88,20 +90,21 @@ typedef struct SquarePlaces {
 } SquarePlaces;
 
 /* Their places on the picture, from the sample's, for a square of 1 / n px. */
-static void places_about(SquarePlaces *out, double offset_px[2][ground_mix_places], const double centre_px[2], int places)
+static void places_about(SquarePlaces *out, double offset_px[2][ground_mix_places], const double centre_px[2],
+                         int places)
 {
     for (int c = 0; c < 2; c++)
         for (int k = 0; k < places; k++) out->at_px[c][k] = centre_px[c] + offset_px[c][k];
 }
 
 /* As plane_through, of many directions: without a lens they are linear in the place on the picture. */
-static void places_on_plane(SquarePlaces *out, const View *view, const double n[3], const double d_hit[3], double range_m,
-                            const double centre_px[2], int places)
+static void places_on_plane(SquarePlaces *out, const View *view, const double n[3], const double d_hit[3],
+                            double range_m, const double centre_px[2], int places)
 {
     const double *r = view->r_enu_from_cam, per_px = 1 / view->focal_px;
     double        d_centre[3], axis_x[3], axis_y[3];
     for (int k = 0; k < 3; k++) {
-        axis_x[k]   = r[3 * k] * per_px, axis_y[k] = r[3 * k + 1] * per_px;
+        axis_x[k] = r[3 * k] * per_px, axis_y[k] = r[3 * k + 1] * per_px;
         d_centre[k] = r[3 * k + 2] + axis_x[k] * (centre_px[0] - 0.5 * view->width) +
                       axis_y[k] * (centre_px[1] - 0.5 * view->height);
     }
@@ -130,8 +133,8 @@ static void places_through_lens(SquarePlaces *out, const View *view, const doubl
 
 /* Classes of the points over a square of 1 / n px about a sample's position, the most frequent first; the rest is
  * counted to the first. Returns their number, 1 .. most; 0: no ground there. */
-static int find_patches(GroundPatch patch[ground_mix_most], const Worker *w, const Job *job, int i, const double centre_px[2],
-                        double offset_px[2][ground_mix_places], int side, int most)
+static int find_patches(GroundPatch patch[ground_mix_most], const Worker *w, const Job *job, int i,
+                        const double centre_px[2], double offset_px[2][ground_mix_places], int side, int most)
 {
     const View  *view = &job->request->view;
     const Hits  *hits = &w->samples.hits;
@@ -187,13 +190,13 @@ static void move_sample(Hits *hits, Rays *rays, int i, const View *view, const d
 void split_ground(Worker *w, const Job *job, int side, int most)
 {
     const PixelBlock *block = &w->block;
-    Samples  *s = &w->samples;
-    const int samples = block->n * block->n, before = s->hits.count;
-    Hits     *hits = &w->hits;
-    Rays     *rays = &w->rays;
-    float     sun[hits_capacity];
-    int       count = 0;
-    double    offset_px[2][ground_mix_places];
+    Samples          *s = &w->samples;
+    const int         samples = block->n * block->n, before = s->hits.count;
+    Hits             *hits = &w->hits;
+    Rays             *rays = &w->rays;
+    float             sun[hits_capacity];
+    int               count = 0;
+    double            offset_px[2][ground_mix_places];
     assert(before * most <= hits_capacity && most <= ground_mix_most && side * side <= ground_mix_places);
     for (int k = 0; k < side * side; k++) {
         double place[2];
@@ -201,20 +204,20 @@ void split_ground(Worker *w, const Job *job, int side, int most)
         for (int c = 0; c < 2; c++) offset_px[c][k] = (place[c] - 0.5) / block->n;
     }
     for (int i = 0; i < before; i++) {
-        GroundPatch        patch[ground_mix_most];
-        const int    pixel = i / samples;
-        const bool   ground = s->hits.surface[i] && !s->hits.entity[i] && s->hits.range_m[i] < INFINITY;
-        double       centre_px[2];
+        GroundPatch patch[ground_mix_most];
+        const int   pixel = i / samples;
+        const bool  ground = s->hits.surface[i] && !s->hits.entity[i] && s->hits.range_m[i] < INFINITY;
+        double      centre_px[2];
         sample_place(centre_px, block->n, i % samples);
         centre_px[0] += block->x[pixel], centre_px[1] += block->y[pixel];
         const int patches = ground ? find_patches(patch, w, job, i, centre_px, offset_px, side, most) : 0;
         for (int k = 0; k < (patches > 1 ? patches : 1); k++, count++) {
             hits_copy(hits, rays, count, &s->hits, &s->rays, i);
-            sun[count]          = s->sun[i];
-            hits->ray[count]    = (uint16_t)i;
+            sun[count] = s->sun[i];
+            hits->ray[count] = (uint16_t)i;
             hits->weight[count] = 1;
             if (patches == 0) continue;
-            hits->weight[count]  = (float)patch[k].count / (float)(side * side);
+            hits->weight[count] = (float)patch[k].count / (float)(side * side);
             hits->surface[count] = patch[k].surface;
             hits->material[count] = (uint16_t)job->scene.world->materials.surface[patch[k].surface];
             if (patches > 1) move_sample(hits, rays, count, &job->request->view, patch[k].place);

@@ -7,7 +7,7 @@ Status leaf_filter_prepare(Job *job, Arena *arena)
 {
     const size_t px = (size_t)job->picture->width * (size_t)job->picture->height;
     if (!job->picture->instance || !looks_for_edges(job->request) || job->request->samples > 1) return STATUS_OK;
-    job->leafy    = arena_alloc(arena, (size_t)job->tiles_x * (size_t)job->tiles_y, sizeof *job->leafy);
+    job->leafy = arena_alloc(arena, (size_t)job->tiles_x * (size_t)job->tiles_y, sizeof *job->leafy);
     job->smoothed = arena_alloc(arena, picture_radar, sizeof *job->smoothed);
     if (!job->smoothed || !job->leafy) return STATUS_NO_MEMORY;
     for (int k = 0; k < job->channels; k++)
@@ -41,10 +41,10 @@ static bool find_leaves(bool leaf[halo_side][halo_side], const Job *job, const T
 static void smooth_tile(void *user, int worker, int task)
 {
     static const float of[9] = {1, 2, 1, 2, 11, 2, 1, 2, 1}; /* frame_private.h */
-    const Job *job = user;
-    const Tile tile = tile_of(job, task);
-    const int  width = job->picture->width;
-    bool       leaf[halo_side][halo_side];
+    const Job         *job = user;
+    const Tile         tile = tile_of(job, task);
+    const int          width = job->picture->width;
+    bool               leaf[halo_side][halo_side];
     (void)worker;
     if (!(job->leafy[task] = find_leaves(leaf, job, &tile))) return;
     for (int y = tile.y0; y < tile.y1; y++)

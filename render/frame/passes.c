@@ -11,13 +11,14 @@ void pixels_rays(Rays *rays, const PixelBlock *block, const View *view)
     const double *r = view->r_enu_from_cam, centre_x = 0.5 * view->width, centre_y = 0.5 * view->height;
     const double  focal_px = view->focal_px;
     double        place[256][2], column_px[hits_capacity], row_px[hits_capacity];
-    double *const restrict dx = rays->d_enu[0], *const restrict dy = rays->d_enu[1], *const restrict dz = rays->d_enu[2];
-    const int     count = block->pixels * samples;
+    double *const restrict dx = rays->d_enu[0], *const restrict dy = rays->d_enu[1],
+                           *const restrict dz = rays->d_enu[2];
+    const int count = block->pixels * samples;
     for (int k = 0; k < samples; k++) sample_place(place[k], block->n, k);
     for (int p = 0, i = 0; p < block->pixels; p++)
         for (int k = 0; k < samples; k++, i++) {
             column_px[i] = block->x[p] + place[k][0];
-            row_px[i]    = block->y[p] + place[k][1];
+            row_px[i] = block->y[p] + place[k][1];
         }
     if (view_has_lens(view)) {
         for (int i = 0; i < count; i++) {
@@ -34,7 +35,7 @@ void pixels_rays(Rays *rays, const PixelBlock *block, const View *view)
         for (int k = 0; k < 3; k++) rays->o_enu[k][i] = view->p_enu[k];
         rays->far_m[i] = INFINITY;
     }
-    rays->count   = count;
+    rays->count = count;
     rays->columns = block->columns;
 }
 
@@ -92,10 +93,10 @@ static int pixels_run(const PixelBlock *block, int p)
     return run;
 }
 
-/* Mean of a value over each pixel's hits, with this share, and what the plane holds there with the rest, into a plane of
- * this width. */
+/* Mean of a value over each pixel's hits, with this share, and what the plane holds there with the rest, into a plane
+ * of this width. */
 static void pixels_average(float *plane, int width, const PixelBlock *block, const Hits *hits, const float *value,
-                    double share)
+                           double share)
 {
     const int samples = block->n * block->n;
     if (hits->several) {
@@ -133,9 +134,8 @@ Tile tile_of(const Job *job, int task)
 
 int list_entities(Worker *w, const Job *job, const double box_px[4], bool small_ones)
 {
-    const int all =
-        visibility_block_entities(w->list, job->scene.visibility, &job->request->view, box_px[0], box_px[1], box_px[2],
-                                  box_px[3], job->request->hidden_entity, &w->shader.counters);
+    const int all = visibility_block_entities(w->list, job->scene.visibility, &job->request->view, box_px[0], box_px[1],
+                                              box_px[2], box_px[3], job->request->hidden_entity, &w->shader.counters);
     int       listed = 0;
     if (small_ones) return all;
     for (int k = 0; k < all; k++)
@@ -145,8 +145,8 @@ int list_entities(Worker *w, const Job *job, const double box_px[4], bool small_
 
 void ask_bands(Worker *w, const Job *job, unsigned bands)
 {
-    w->samples.channels    = render_air_bands(bands, job->request->optical);
-    w->samples.radar       = has_band(bands, BAND_RADAR);
+    w->samples.channels = render_air_bands(bands, job->request->optical);
+    w->samples.radar = has_band(bands, BAND_RADAR);
     w->samples.temperature = job->request->truth;
 }
 
@@ -156,11 +156,11 @@ void ask_smoke(Worker *w, const Job *job, const double box_px[4])
     int                volumes = effects->count;
     for (int n = 0; n < volumes; n++) w->volume[n] = n;
     if (volumes > 0 && skips(job->request->skips_off, SKIP_SMOKE)) {
-        volumes = smoke_cull_block(w->volume, effects->volume, volumes, &job->request->view, box_px[0], box_px[1], box_px[2],
-                             box_px[3]);
+        volumes = smoke_cull_block(w->volume, effects->volume, volumes, &job->request->view, box_px[0], box_px[1],
+                                   box_px[2], box_px[3]);
         w->shader.counters.skipped[SKIP_SMOKE] += (uint64_t)(effects->count - volumes);
     }
-    w->samples.volume  = w->volume;
+    w->samples.volume = w->volume;
     w->samples.volumes = volumes;
 }
 
@@ -206,9 +206,9 @@ void block_add(Worker *w, const Job *job, double share)
     if (!s->radar || job->request->profile_bins == 0) return;
     /* samples behind which a small target lies count with the share of their pixel that it leaves uncovered */
     for (int i = 0; i < s->hits.count; i++) {
-        const int    p  = hit_pixel(&w->block, &s->hits, i);
+        const int    p = hit_pixel(&w->block, &s->hits, i);
         const size_t px = pixel_index(job, w->block.x[p], w->block.y[p]);
-        w->area_px[i]   = share * (job->picture->covered ? 1 - (double)job->picture->covered[px] : 1) *
+        w->area_px[i] = share * (job->picture->covered ? 1 - (double)job->picture->covered[px] : 1) *
                         hit_share(&w->block, &s->hits, i);
     }
     target_sums_profile(&w->sums, &job->rules, job->request, s, w->area_px);
@@ -224,7 +224,8 @@ void block_write(Worker *w, const Job *job, double share)
     for (int plane = 0; plane < picture_plane_count; plane++) {
         const float *value = block_values(w, job, plane);
         if (value)
-            pixels_average(picture_plane(job->picture, plane), job->picture->width, &w->block, &w->samples.hits, value, share);
+            pixels_average(picture_plane(job->picture, plane), job->picture->width, &w->block, &w->samples.hits, value,
+                           share);
     }
 }
 
@@ -232,11 +233,11 @@ void block_write(Worker *w, const Job *job, double share)
 
 static void write_truth(const Worker *w, const Job *job)
 {
-    const Picture *picture = job->picture;
+    const Picture    *picture = job->picture;
     const PixelBlock *block = &w->block;
-    const Samples *s       = &w->samples;
-    const Hits    *hits    = &s->hits;
-    const int      samples = block->n * block->n, centre = pixels_centre_sample(block->n);
+    const Samples    *s = &w->samples;
+    const Hits       *hits = &s->hits;
+    const int         samples = block->n * block->n, centre = pixels_centre_sample(block->n);
     for (int p = 0, run; p < block->pixels; p += run) {
         run = pixels_run(block, p);
         /* plane by plane: one stream of writes at a time */
@@ -249,7 +250,8 @@ static void write_truth(const Worker *w, const Job *job)
         for (int k = 0; k < run; k++) part[k] = hits->part[first + k * samples];
         for (int k = 0; k < run; k++) material[k] = s->hits.material[first + k * samples];
         for (int k = 0; k < run; k++) picture->cover[px + (size_t)k] = hits->surface[first + k * samples];
-        for (int k = 0; picture->instance && k < run; k++) picture->instance[px + (size_t)k] = hits->plant[first + k * samples];
+        for (int k = 0; picture->instance && k < run; k++)
+            picture->instance[px + (size_t)k] = hits->plant[first + k * samples];
         for (int k = 0; k < run; k++) picture->temp_k[px + (size_t)k] = s->temp_k[first + k * samples];
         for (int c = 0; c < 3; c++)
             for (int k = 0; k < run; k++) picture->normal[c][px + (size_t)k] = hits->n_enu[c][first + k * samples];
@@ -259,15 +261,15 @@ static void write_truth(const Worker *w, const Job *job)
 
 void base_tile(void *user, int worker, int task)
 {
-    const Job    *job   = user;
-    Worker       *w     = job->worker[worker];
-    const Tile    tile  = tile_of(job, task);
-    PixelBlock   *block = &w->block;
-    const double  box_px[4] = {tile.x0, tile.y0, tile.x1, tile.y1};
+    const Job   *job = user;
+    Worker      *w = job->worker[worker];
+    const Tile   tile = tile_of(job, task);
+    PixelBlock  *block = &w->block;
+    const double box_px[4] = {tile.x0, tile.y0, tile.x1, tile.y1};
 
-    block->n       = job->request->samples;
+    block->n = job->request->samples;
     block->columns = block->n == 1 ? tile.x1 - tile.x0 : 0;
-    block->pixels  = 0;
+    block->pixels = 0;
     for (int y = tile.y0; y < tile.y1; y++)
         for (int x = tile.x0; x < tile.x1; x++) pixels_add(block, x, y);
     const int listed = list_entities(w, job, box_px, false);

@@ -7,11 +7,12 @@ int picture_channels(PictureChannel out[picture_radar], unsigned bands, OpticalC
     int                  count = 0;
     if (has_band(bands, BAND_OPTICAL)) {
         if (optical == OPTICAL_RGB) {
-            for (int c = 0; c < 3; c++)
-                out[count++] = (PictureChannel){picture_optical + c, BAND_OPTICAL, rgb[c]};
+            for (int c = 0; c < 3; c++) out[count++] = (PictureChannel){picture_optical + c, BAND_OPTICAL, rgb[c]};
         } else {
-            const AirBand one = optical == OPTICAL_NIR ? AIR_NIR : optical == OPTICAL_RED ? AIR_R
-                              : optical == OPTICAL_BLUE ? AIR_B : AIR_PAN;
+            const AirBand one = optical == OPTICAL_NIR    ? AIR_NIR
+                                : optical == OPTICAL_RED  ? AIR_R
+                                : optical == OPTICAL_BLUE ? AIR_B
+                                                          : AIR_PAN;
             out[count++] = (PictureChannel){picture_optical, BAND_OPTICAL, one};
         }
     }
@@ -40,14 +41,18 @@ unsigned render_air_bands(unsigned bands, OpticalChannels optical)
 
 Band picture_band(int plane)
 {
-    return plane == picture_mwir ? BAND_MWIR : plane == picture_lwir ? BAND_LWIR : plane == picture_radar ? BAND_RADAR
-         : BAND_OPTICAL;
+    return plane == picture_mwir    ? BAND_MWIR
+           : plane == picture_lwir  ? BAND_LWIR
+           : plane == picture_radar ? BAND_RADAR
+                                    : BAND_OPTICAL;
 }
 
 static float **plane_slot(Picture *picture, int plane)
 {
-    return plane == picture_mwir ? &picture->mwir : plane == picture_lwir ? &picture->lwir
-         : plane == picture_radar ? &picture->radar : &picture->optical[plane - picture_optical];
+    return plane == picture_mwir    ? &picture->mwir
+           : plane == picture_lwir  ? &picture->lwir
+           : plane == picture_radar ? &picture->radar
+                                    : &picture->optical[plane - picture_optical];
 }
 
 float *picture_plane(const Picture *picture, int plane) { return *plane_slot((Picture *)picture, plane); }
@@ -57,7 +62,7 @@ Status picture_create(Picture *picture, const RenderRequest *request, int entiti
     const size_t px = (size_t)request->view.width * (size_t)request->view.height;
     bool         ok = true;
     *picture = (Picture){0};
-    picture->width  = request->view.width;
+    picture->width = request->view.width;
     picture->height = request->view.height;
 
     PictureChannel of[picture_radar];
@@ -66,8 +71,9 @@ Status picture_create(Picture *picture, const RenderRequest *request, int entiti
     if (has_band(request->bands, BAND_RADAR)) {
         ok = (picture->radar = arena_alloc(arena, px, sizeof(float))) && ok;
         if (request->profile_bins > 0)
-            ok = (picture->profile = arena_alloc(arena, (size_t)request->profile_bins * radar_bounces,
-                                                 sizeof(double))) && ok;
+            ok = (picture->profile =
+                      arena_alloc(arena, (size_t)request->profile_bins * radar_bounces, sizeof(double))) &&
+                 ok;
     }
     if (request->truth || looks_for_edges(request)) { /* edges are where truth changes */
         ok = (picture->range_m = arena_alloc(arena, px, sizeof(float))) && ok;
@@ -106,7 +112,7 @@ double picture_contrast(const Picture *p, const float *value, int x, int y)
 
 void render_counters_add(RenderCounters *sum, const RenderCounters *more)
 {
-    VisibilityCounters       *to   = &sum->visibility;
+    VisibilityCounters       *to = &sum->visibility;
     const VisibilityCounters *from = &more->visibility;
     sum->rays_primary += more->rays_primary;
     sum->rays_edges += more->rays_edges;

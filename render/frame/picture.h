@@ -1,4 +1,5 @@
-/* render/frame/picture.h: what is asked of a frame, and what it is: radiance planes, truth planes, targets, counters. */
+/* render/frame/picture.h: what is asked of a frame, and what it is: radiance planes, truth planes, targets, counters.
+ */
 #ifndef RENDER_FRAME_PICTURE_H
 #define RENDER_FRAME_PICTURE_H
 
@@ -8,28 +9,29 @@
 #include "render/trace/visibility/visibility.h"
 
 typedef struct RenderRequest {
-    View     view;
-    unsigned bands;          /* 1 << Band, the bands that have consumers */
-    bool     truth;          /* id, part, material, range, normal, temperature planes and target counts */
+    View            view;
+    unsigned        bands; /* 1 << Band, the bands that have consumers */
+    bool            truth; /* id, part, material, range, normal, temperature planes and target counts */
     OpticalChannels optical;
-    double   lateral[2]; /* lateral colour of R G B: magnification of R, and of B, over that of G, less 1 */
-    int      sky_samples;    /* directions a hit over which light from sky and surroundings is sampled; 0: the quick
-                              * form */
-    bool     sky_visibility; /* with the quick form: nearby objects hide sky and ground
-                              * (render/light/sky_visibility.h) */
-    int      samples;        /* a side: samples^2 rays a pixel, on a rotated grid, box-averaged. 1 .. 16 */
-    int      edge_samples;   /* the same where neighbours disagree, 2 .. 16; not above samples: nowhere */
-    int      target_samples; /* rays a side over the whole of a target that is small on the image, 8 .. 256; 0: as
-                              * all others */
-    int      hidden_entity;  /* snapshot index of the entity whose parts the eye does not see (they cast shadows);
-                              * -1: none */
-    unsigned skips_off;      /* 1 << Skip (render/trace/visibility/visibility.h): skips to disable; must give the same bits */
-    bool     budget;         /* estimate the error of the planes: Picture.budget */
-    bool     hand_over_cells; /* keep the samples of small targets for a detector behind optics: Picture.small */
-    double   t_s;            /* exercise time: plants sway by it */
-    double   low_plants_m;   /* low plants stand within this of the eye; 0: none */
-    double   profile_near_m, profile_bin_m; /* radar range profile */
-    int      profile_bins;
+    double          lateral[2];  /* lateral colour of R G B: magnification of R, and of B, over that of G, less 1 */
+    int             sky_samples; /* directions a hit over which light from sky and surroundings is sampled; 0: the quick
+                                  * form */
+    bool sky_visibility;         /* with the quick form: nearby objects hide sky and ground
+                                  * (render/light/sky_visibility.h) */
+    int samples;                 /* a side: samples^2 rays a pixel, on a rotated grid, box-averaged. 1 .. 16 */
+    int edge_samples;            /* the same where neighbours disagree, 2 .. 16; not above samples: nowhere */
+    int target_samples;          /* rays a side over the whole of a target that is small on the image, 8 .. 256; 0: as
+                                  * all others */
+    int hidden_entity;           /* snapshot index of the entity whose parts the eye does not see (they cast shadows);
+                                  * -1: none */
+    unsigned
+           skips_off; /* 1 << Skip (render/trace/visibility/visibility.h): skips to disable; must give the same bits */
+    bool   budget;    /* estimate the error of the planes: Picture.budget */
+    bool   hand_over_cells; /* keep the samples of small targets for a detector behind optics: Picture.small */
+    double t_s;             /* exercise time: plants sway by it */
+    double low_plants_m;    /* low plants stand within this of the eye; 0: none */
+    double profile_near_m, profile_bin_m; /* radar range profile */
+    int    profile_bins;
 } RenderRequest;
 
 /* ---- the picture ----------------------------------------------------------------------------- */
@@ -44,36 +46,37 @@ enum { error_thermal_planes = picture_radar - picture_mwir };
 typedef struct ErrorBudget {
     double mean[picture_plane_count];            /* of the plane, estimated from the candidate pixels */
     double sampling[picture_plane_count];        /* rays a pixel, edges, small targets */
-    double level_of_detail[picture_plane_count]; /* posts of the ground, simplified plants. Facets of models: sensor/truth/frame_error.h */
+    double level_of_detail[picture_plane_count]; /* posts of the ground, simplified plants. Facets of models:
+                                                    sensor/truth/frame_error.h */
     double tables[picture_plane_count];          /* air and shading; radar: 0, it has none */
     int    probes;                               /* re-sampled pixels */
-    /* the thermal planes pixel by pixel: of each probe the pixels that it stands for, and the squared error by sampling and
-     * level of detail; NaN: of a plane that its own samples estimate. Those are the rest, `refined` in all. */
-    const double *probe_px;                      /* [probes] */
-    const float  *probe_square[error_thermal_planes]; /* [probes] mwir, lwir */
+    /* the thermal planes pixel by pixel: of each probe the pixels that it stands for, and the squared error by sampling
+     * and level of detail; NaN: of a plane that its own samples estimate. Those are the rest, `refined` in all. */
+    const double *probe_px;                             /* [probes] */
+    const float  *probe_square[error_thermal_planes];   /* [probes] mwir, lwir */
     double        refined_square[error_thermal_planes]; /* sum of theirs */
-    double ms;                                   /* wall time */
+    double        ms;                                   /* wall time */
 } ErrorBudget;
 
-/* Result of a target in this view, in units of pixels: areas, which may be fractions. Where more than 40 boxes share a tile the
- * outlines of hidden ones (amodal, occluded_*) are of one sample a pixel (refine.c). */
+/* Result of a target in this view, in units of pixels: areas, which may be fractions. Where more than 40 boxes share a
+ * tile the outlines of hidden ones (amodal, occluded_*) are of one sample a pixel (refine.c). */
 typedef struct TargetPixels {
     double visible, amodal;
     /* its own radiance at the aperture, by the area it fills, less by the cube of the cosine off the axis:
      * over focal_px^2 and times range^2 this is its intensity. px W/(m2 sr); radar: relative */
     double radiance[picture_plane_count];
-    bool   small;                 /* sampled on its own grid: what follows is of its samples, too */
+    bool   small; /* sampled on its own grid: what follows is of its samples, too */
     double mean[picture_plane_count], variance[picture_plane_count]; /* of radiance over its visible area */
-    double radiance_error[picture_plane_count]; /* rms, of `radiance`; with a budget, else 0 */
-    double peak_area;             /* of the pixel that it fills most */
+    double radiance_error[picture_plane_count];                      /* rms, of `radiance`; with a budget, else 0 */
+    double peak_area;                                                /* of the pixel that it fills most */
     int    box[4], amodal_box[4]; /* first column, first row, last column + 1, last row + 1; empty: all 0 */
     bool   projected;             /* in front of the eye and its bounding sphere meets the image */
     double projected_box[4];      /* of all of it, px, not clipped to the image; where `projected` */
     double occluded_ground;       /* pixels hidden by the ground, and by other entities */
     double occluded_entity;
     double occluded_plants;
-    double veiled[BAND_COUNT];    /* share of its light that smoke and dust take, mean over what is visible, 0 .. 1 */
-    int    occluder;              /* snapshot index of the entity that hides most; -1 */
+    double veiled[BAND_COUNT]; /* share of its light that smoke and dust take, mean over what is visible, 0 .. 1 */
+    int    occluder;           /* snapshot index of the entity that hides most; -1 */
 } TargetPixels;
 
 /* Smaller than this one way, and than the other the other way, a target is sampled on its own grid. */
@@ -99,18 +102,18 @@ typedef struct SmallTargets {
 
 typedef struct RenderCounters {
     VisibilityCounters visibility;
-    uint64_t rays_primary;                 /* all from the eye; of these: */
-    uint64_t rays_edges, rays_small_targets;
-    uint64_t pixels, pixels_refined, small_targets;
-    uint64_t small_targets_by_pixels;      /* beyond the limit of cells a frame (target_grid.c) */
-    uint64_t tiles, tiles_without_entities;
+    uint64_t           rays_primary; /* all from the eye; of these: */
+    uint64_t           rays_edges, rays_small_targets;
+    uint64_t           pixels, pixels_refined, small_targets;
+    uint64_t           small_targets_by_pixels; /* beyond the limit of cells a frame (target_grid.c) */
+    uint64_t           tiles, tiles_without_entities;
 } RenderCounters;
 
 void render_counters_add(RenderCounters *sum, const RenderCounters *more);
 
 typedef struct RenderTimes {
     double prepare_ms, visibility_ms, shadow_ms, shade_ms, radar_ms; /* summed over threads, except prepare */
-    double target_grids_ms, base_ms, edges_ms; /* wall times of the passes */
+    double target_grids_ms, base_ms, edges_ms;                       /* wall times of the passes */
 } RenderTimes;
 
 /* Planes are width * height, rows top down; NULL where not requested. All in the frame's arena.
@@ -119,23 +122,23 @@ typedef struct RenderTimes {
  * pixel, and then that of the target's sample nearest the centre. */
 typedef struct Picture {
     int       width, height;
-    float    *optical[3];           /* R G B, or pan or near infrared in [0] alone: W/(m2 sr) */
-    double    white_w_m2_sr[3];     /* R G B: of white, level ground in the open (optical_white); 0 without RGB */
-    float    *mwir, *lwir;          /* W/(m2 sr) */
-    float    *radar;                /* relative */
-    double   *profile;              /* [profile_bins][radar_bounces], relative power */
-    float    *range_m;              /* +inf: sky */
-    uint32_t *entity;               /* snapshot index + 1; 0: none */
-    uint32_t *part, *material;      /* + 1; 0: none */
-    uint32_t *instance;             /* plant: 1 + its index in the woods; low plants: forest_low_bit and a number; 0:
-                                     * none. NULL where the world has no plants */
-    uint8_t  *cover;                /* SurfaceClass of the ground that is seen, 0: none is */
-    float    *temp_k;               /* NaN: sky */
-    float    *normal[3];            /* ENU of the terrain origin */
-    float    *covered;              /* share of the pixel that small targets cover; NULL: there are none */
-    TargetPixels *target;           /* [snapshot count]; NULL without truth */
-    SmallTargets  small;            /* none: not requested */
-    ErrorBudget  *budget;           /* NULL: not requested */
+    float    *optical[3];       /* R G B, or pan or near infrared in [0] alone: W/(m2 sr) */
+    double    white_w_m2_sr[3]; /* R G B: of white, level ground in the open (optical_white); 0 without RGB */
+    float    *mwir, *lwir;      /* W/(m2 sr) */
+    float    *radar;            /* relative */
+    double   *profile;          /* [profile_bins][radar_bounces], relative power */
+    float    *range_m;          /* +inf: sky */
+    uint32_t *entity;           /* snapshot index + 1; 0: none */
+    uint32_t *part, *material;  /* + 1; 0: none */
+    uint32_t *instance;         /* plant: 1 + its index in the woods; low plants: forest_low_bit and a number; 0:
+                                 * none. NULL where the world has no plants */
+    uint8_t       *cover;       /* SurfaceClass of the ground that is seen, 0: none is */
+    float         *temp_k;      /* NaN: sky */
+    float         *normal[3];   /* ENU of the terrain origin */
+    float         *covered;     /* share of the pixel that small targets cover; NULL: there are none */
+    TargetPixels  *target;      /* [snapshot count]; NULL without truth */
+    SmallTargets   small;       /* none: not requested */
+    ErrorBudget   *budget;      /* NULL: not requested */
     RenderCounters counters;
     RenderTimes    times;
 } Picture;
@@ -162,8 +165,11 @@ Band picture_band(int plane);
 /* Whether pixels are sampled again where neighbours differ. */
 static inline bool looks_for_edges(const RenderRequest *request) { return request->edge_samples > request->samples; }
 /* Samples a side of plants about a target, beside the first one: half as many as at edges, at least 2. */
-static inline int leaf_samples(const RenderRequest *request) { return request->edge_samples < 4 ? 2 : request->edge_samples / 2; }
-static inline bool has_band(unsigned bands, Band band) { return bands >> band & 1; }
+static inline int leaf_samples(const RenderRequest *request)
+{
+    return request->edge_samples < 4 ? 2 : request->edge_samples / 2;
+}
+static inline bool   has_band(unsigned bands, Band band) { return bands >> band & 1; }
 static inline size_t picture_index(const Picture *picture, int x, int y)
 {
     return (size_t)y * (size_t)picture->width + (size_t)x;
@@ -180,7 +186,7 @@ static inline bool picture_shows_plant(const Picture *picture, size_t px)
  * STATUS_NO_MEMORY: of the arena. */
 Status picture_create(Picture *out, const RenderRequest *request, int entities, bool plants, Arena *arena);
 /* Removes from the picture the planes that only the search for edges needed. */
-void   picture_forget_truth(Picture *picture);
+void picture_forget_truth(Picture *picture);
 
 /* Mean squared difference of a pixel to its neighbours, left, right, above and below. */
 double picture_contrast(const Picture *picture, const float *value, int x, int y);

@@ -5,7 +5,6 @@
 #include "render/frame/frame_private.h"
 #include "render/frame/render.h"
 
-
 #include <stdlib.h>
 
 /* One kind of refinement, and the pixels that get it. */
@@ -16,7 +15,7 @@ typedef struct Refinement {
 } Refinement;
 
 enum {
-    few_entities   = 8, /* of a tile: up to here a closer list saves nothing */
+    few_entities = 8,   /* of a tile: up to here a closer list saves nothing */
     crowd_entities = 40 /* in a tile: beyond, list_outlines */
 };
 
@@ -31,17 +30,17 @@ static bool planes_remember(const Job *job)
 static void restore_first(Worker *w, const Job *job)
 {
     const Picture *picture = job->picture;
-    PixelBlock    *block   = &w->block;
-    Samples       *s       = &w->samples;
+    PixelBlock    *block = &w->block;
+    Samples       *s = &w->samples;
     block->n = 1;
     pixels_rays(&s->rays, block, &job->request->view);
-    s->hits.count   = block->pixels;
+    s->hits.count = block->pixels;
     s->hits.several = false;
-    s->smoke.any    = false;
+    s->smoke.any = false;
     for (size_t p = 0; p < (size_t)block->pixels; p++) {
         const size_t px = pixel_index(job, block->x[p], block->y[p]);
-        s->hits.entity[p]  = picture->entity[px];
-        s->hits.plant[p]   = picture->instance ? picture->instance[px] : 0;
+        s->hits.entity[p] = picture->entity[px];
+        s->hits.plant[p] = picture->instance ? picture->instance[px] : 0;
         s->hits.range_m[p] = picture->range_m[px] * (1 - 1e-6); /* a float's: no farther than it was */
     }
 }
@@ -51,7 +50,7 @@ static void restore_first(Worker *w, const Job *job)
 static void take_back(Worker *w, const Job *job, unsigned bands, double share)
 {
     const Picture *picture = job->picture;
-    PixelBlock    *block   = &w->block;
+    PixelBlock    *block = &w->block;
     restore_first(w, job);
     ask_bands(w, job, bands);
     for (int plane = 0; plane < picture_plane_count; plane++) {
@@ -81,9 +80,9 @@ static bool is_crowd(const Job *job, const Tile *tile)
     return count > crowd_entities;
 }
 
-/* The entities whose areas are sampled again, into w->outline. In a crowd only those that the block's first samples or its
- * present ones show: of what it hides the outline stays as the first samples have it, one a pixel, or every sample would
- * ask for every hidden vehicle behind it. The error of that: tests/render/test_crowd_areas.c. */
+/* The entities whose areas are sampled again, into w->outline. In a crowd only those that the block's first samples or
+ * its present ones show: of what it hides the outline stays as the first samples have it, one a pixel, or every sample
+ * would ask for every hidden vehicle behind it. The error of that: tests/render/test_crowd_areas.c. */
 static int list_outlines(Worker *w, const Job *job, int listed, bool crowd)
 {
     const PixelBlock *block = &w->block;
@@ -94,7 +93,8 @@ static int list_outlines(Worker *w, const Job *job, int listed, bool crowd)
         return listed;
     }
     for (int i = 0; i < hits->count; i++)
-        if (hits->entity[i] && (i == 0 || hits->entity[i] != hits->entity[i - 1])) shown[count++] = (int)hits->entity[i] - 1;
+        if (hits->entity[i] && (i == 0 || hits->entity[i] != hits->entity[i - 1]))
+            shown[count++] = (int)hits->entity[i] - 1;
     for (int p = 0; p < block->pixels; p++) {
         const uint32_t first = job->picture->entity[pixel_index(job, block->x[p], block->y[p])];
         if (first) shown[count++] = (int)first - 1;
@@ -133,11 +133,12 @@ static void add_variance(const Worker *w, const Job *job, double sum[picture_pla
 /* Samples the block's pixels with n more samples a side. law: receives their squared errors; NULL: not needed. */
 static void refine_block(Worker *w, const Job *job, const Refinement *how, int listed, bool crowd, double *law)
 {
-    PixelBlock *block = &w->block;
-    Samples    *s     = &w->samples;
-    const bool  areas = job->picture->target && !(how->has & refine_sun), ground = how->has & refine_ground;
-    const bool  sums  = job->picture->target || job->picture->profile, remembered = planes_remember(job);
-    const double share = how->has & refine_plants ? (double)(how->n * how->n) / (1 + how->n * how->n) : 1; /* of them in all */
+    PixelBlock  *block = &w->block;
+    Samples     *s = &w->samples;
+    const bool   areas = job->picture->target && !(how->has & refine_sun), ground = how->has & refine_ground;
+    const bool   sums = job->picture->target || job->picture->profile, remembered = planes_remember(job);
+    const double share =
+        how->has & refine_plants ? (double)(how->n * how->n) / (1 + how->n * how->n) : 1; /* of them in all */
     if (sums && remembered && !ground) take_back(w, job, how->bands, share);
     block->n = how->n;
     if (ground) {
@@ -190,14 +191,14 @@ static int list_block(Worker *w, const Job *job, int listed)
 
 void refine_tile(void *user, int worker, int task)
 {
-    const Job     *job    = user;
-    Worker        *w      = job->worker[worker];
-    const Tile     tile   = tile_of(job, task);
+    const Job     *job = user;
+    Worker        *w = job->worker[worker];
+    const Tile     tile = tile_of(job, task);
     const double   box_px[4] = {tile.x0, tile.y0, tile.x1, tile.y1};
-    const int      edge   = job->request->edge_samples;
-    const unsigned all    = job->request->bands, no_radar = all & ~(1u << BAND_RADAR);
+    const int      edge = job->request->edge_samples;
+    const unsigned all = job->request->bands, no_radar = all & ~(1u << BAND_RADAR);
     const unsigned sunlit = all & (1u << BAND_OPTICAL | 1u << BAND_MWIR), lwir = all & 1u << BAND_LWIR;
-    unsigned       any    = 0;
+    unsigned       any = 0;
 
     const Refinement ways[] = {
         {refine_all, 0, all, edge},
@@ -229,8 +230,10 @@ void refine_tile(void *user, int worker, int task)
                 const unsigned flags = job->refine[pixel_index(job, x, y)];
                 if ((flags & how->has) != how->has || flags & how->lacks) continue;
                 pixels_add(&w->block, x, y);
-                const int each = how->n * how->n * (how->has & refine_ground ? ground_mix_most
-                                                    : how->has & refine_step ? step_kinds : 1);
+                const int each = how->n * how->n *
+                                 (how->has & refine_ground ? ground_mix_most
+                                  : how->has & refine_step ? step_kinds
+                                                           : 1);
                 if ((w->block.pixels + 1) * each <= hits_capacity) continue;
                 refine_block(w, job, how, list_block(w, job, listed), crowd, law);
                 w->block.pixels = 0;

@@ -18,7 +18,7 @@ static Status create_worker(Worker **out, const Job *job, Arena *arena)
     const int entities = job->scene.snapshot->count;
     Worker   *w = *out = arena_alloc(arena, 1, sizeof *w);
     if (!w) return STATUS_NO_MEMORY;
-    w->list   = arena_alloc(arena, (size_t)entities, sizeof *w->list);
+    w->list = arena_alloc(arena, (size_t)entities, sizeof *w->list);
     w->volume = arena_alloc(arena, (size_t)job->scene.effects.count + 1, sizeof *w->volume);
     w->outline = arena_alloc(arena, (size_t)entities, sizeof *w->outline);
     if (!w->list || !w->outline || !w->volume) return STATUS_NO_MEMORY;
@@ -29,14 +29,14 @@ static Status create_worker(Worker **out, const Job *job, Arena *arena)
 static Status create_job(Job *job, int workers, Arena *arena)
 {
     const size_t entities = (size_t)job->scene.snapshot->count, tiles = (size_t)job->tiles_x * (size_t)job->tiles_y;
-    job->worker   = arena_alloc(arena, (size_t)workers, sizeof *job->worker);
-    job->boxes    = arena_alloc(arena, entities, sizeof *job->boxes);
+    job->worker = arena_alloc(arena, (size_t)workers, sizeof *job->worker);
+    job->boxes = arena_alloc(arena, entities, sizeof *job->boxes);
     job->is_small = arena_alloc(arena, entities, sizeof *job->is_small);
     if (!job->worker || !job->boxes || !job->is_small) return STATUS_NO_MEMORY;
     if (looks_for_edges(job->request)) {
         const size_t px = (size_t)job->picture->width * (size_t)job->picture->height;
-        job->refine     = arena_alloc(arena, px, sizeof *job->refine);
-        job->sun        = arena_alloc(arena, px, sizeof *job->sun);
+        job->refine = arena_alloc(arena, px, sizeof *job->refine);
+        job->sun = arena_alloc(arena, px, sizeof *job->sun);
         if (!job->refine || !job->sun) return STATUS_NO_MEMORY;
         if (job->request->budget && !(job->law = arena_alloc(arena, tiles, sizeof *job->law))) return STATUS_NO_MEMORY;
     }
@@ -55,17 +55,22 @@ static void ask_sky(void *user, int worker, int task)
 static Status prepare_sky(Job *job, Pool *pool, Arena *arena)
 {
     const RenderRequest *request = job->request;
-    const World         *world   = job->scene.world;
-    const unsigned       bands   = render_air_bands(request->bands, request->optical);
-    if (!request->sky_visibility || request->sky_samples > 0 || !bands || job->scene.snapshot->count == 0) return STATUS_OK;
-    double (*box_px)[4] = arena_alloc(arena, (size_t)job->scene.snapshot->count, sizeof *box_px);
+    const World         *world = job->scene.world;
+    const unsigned       bands = render_air_bands(request->bands, request->optical);
+    if (!request->sky_visibility || request->sky_samples > 0 || !bands || job->scene.snapshot->count == 0)
+        return STATUS_OK;
+    double(*box_px)[4] = arena_alloc(arena, (size_t)job->scene.snapshot->count, sizeof *box_px);
     if (!box_px) return STATUS_NO_MEMORY;
     for (int k = 0; k < job->scene.snapshot->count; k++)
         for (int c = 0; c < 4; c++) box_px[k][c] = job->boxes[k].projected ? job->boxes[k].projected_box[c] : NAN;
     const SkyVisibilityScene scene = {
         .gather = {job->scene.bare, job->scene.air, &world->materials, world->patches, job->scene.snapshot},
-        .landscape = world->landscape, .view = &request->view, .box_px = (const double (*)[4])box_px,
-        .air_bands = bands, .skips_off = request->skips_off, .hidden_entity = request->hidden_entity,
+        .landscape = world->landscape,
+        .view = &request->view,
+        .box_px = (const double(*)[4])box_px,
+        .air_bands = bands,
+        .skips_off = request->skips_off,
+        .hidden_entity = request->hidden_entity,
         .kept = world->sky};
     Status status = sky_visibility_create(&job->scene.sky, &scene, arena);
     for (int w = 0; w < pool_threads(pool) && status == STATUS_OK; w++)
@@ -83,14 +88,13 @@ static bool request_is_good(const RenderRequest *r)
            (r->target_samples == 0 || (r->target_samples >= 8 && r->target_samples <= 256)) && r->view.width >= 1 &&
            r->view.height >= 1 && r->view.width <= 8192 && r->view.height <= 8192 && r->view.focal_px > 0 &&
            v3_is_finite(r->view.p_enu) && r->profile_bins >= 0 && fabs(r->lateral[0]) <= view_most_lateral &&
-           fabs(r->lateral[1]) <= view_most_lateral &&
-           r->sky_samples >= 0 && r->sky_samples <= hemisphere_samples_max;
+           fabs(r->lateral[1]) <= view_most_lateral && r->sky_samples >= 0 && r->sky_samples <= hemisphere_samples_max;
 }
 
 static void choose_rules(Job *job)
 {
     const RenderRequest *request = job->request;
-    job->rules.picture    = job->picture;
+    job->rules.picture = job->picture;
     job->rules.visibility = job->scene.visibility;
     for (int b = 0; b < BAND_COUNT; b++)
         job->rules.smoke_channel[b] = picture_smoke_channel((Band)b, request->bands, request->optical);
@@ -103,9 +107,9 @@ static Status prepare(Job *job, Pool *pool, Arena *arena)
     const RenderRequest *request = job->request;
     ShadeScene          *scene = &job->scene;
     const World         *world = scene->world;
-    job->side_px  = tile_side_samples / request->samples;
-    job->tiles_x  = (request->view.width + job->side_px - 1) / job->side_px;
-    job->tiles_y  = (request->view.height + job->side_px - 1) / job->side_px;
+    job->side_px = tile_side_samples / request->samples;
+    job->tiles_x = (request->view.width + job->side_px - 1) / job->side_px;
+    job->tiles_y = (request->view.height + job->side_px - 1) / job->side_px;
     job->channels = picture_channels(job->channel, request->bands, request->optical);
 
     Status status = picture_create(job->picture, request, scene->snapshot->count, world->forest != NULL, arena);
@@ -132,7 +136,7 @@ static Status gather_sums(Job *job, int workers, Arena *arena)
     const TargetSums **sums = arena_alloc(arena, (size_t)workers, sizeof *sums);
     if (!sums) return STATUS_NO_MEMORY;
     for (int k = 0; k < workers; k++) {
-        const Worker *w = job->worker[k];
+        const Worker  *w = job->worker[k];
         RenderCounters counters = w->counters;
         sums[k] = &w->sums;
         counters.visibility = w->shader.counters;
@@ -164,8 +168,8 @@ static Status run_passes(Job *job, Pool *pool, Arena *arena)
     if (looks_for_edges(request)) pool_run(pool, job->tiles_x * job->tiles_y, refine_tile, job);
     if (job->smoothed) leaf_filter(job, pool);
     picture->times.target_grids_ms = 1e3 * (small_s - prepared_s);
-    picture->times.base_ms       = 1e3 * (base_s - small_s);
-    picture->times.edges_ms      = 1e3 * (wall_clock_s() - base_s);
+    picture->times.base_ms = 1e3 * (base_s - small_s);
+    picture->times.edges_ms = 1e3 * (wall_clock_s() - base_s);
     const Status status = gather_sums(job, pool_threads(pool), arena);
     if (status != STATUS_OK) return status;
     if (request->budget) target_grids_error(job);
@@ -179,7 +183,9 @@ static Status render_once(Picture *out, const World *world, const Snapshot *snap
 {
     const double start_s = wall_clock_s();
     Picture      picture = {0};
-    Job          job = {.request = request, .picture = &picture, .rules = {.arena = arena},
+    Job          job = {.request = request,
+                        .picture = &picture,
+                        .rules = {.arena = arena},
                         .scene = {.world = world, .snapshot = snapshot, .air = air}};
     Status       status = prepare(&job, pool, arena);
     picture.times.prepare_ms = 1e3 * (wall_clock_s() - start_s);
@@ -210,7 +216,7 @@ Status render(Picture *out, const World *world, const Snapshot *snapshot, const 
         RenderRequest one = *request;
         Picture       colour;
         if (request->lateral[k] == 0) continue;
-        one.bands   = 1u << BAND_OPTICAL;
+        one.bands = 1u << BAND_OPTICAL;
         one.optical = k == 0 ? OPTICAL_RED : OPTICAL_BLUE;
         one.truth = one.budget = false;
         one.view.focal_px *= 1 + request->lateral[k];
@@ -255,8 +261,8 @@ bool render_error_coarser(double turn_enu[3], double *rise_m, const Elevation *e
 {
     for (int n = 0; n < elevation->level_count; n++) {
         const ElevationLevel *l = &elevation->level[n];
-        const double fx = (x_m - l->x0_m) / l->spacing_m, fy = (y_m - l->y0_m) / l->spacing_m;
-        double       fine[3], coarse[3];
+        const double          fx = (x_m - l->x0_m) / l->spacing_m, fy = (y_m - l->y0_m) / l->spacing_m;
+        double                fine[3], coarse[3];
         if (!(fx >= 0 && fy >= 0 && fx <= l->nx - 1 && fy <= l->ny - 1)) continue;
         const int i = (int)fx, j = (int)fy;
         if (i / 2 * 2 + 2 > l->nx - 1 || j / 2 * 2 + 2 > l->ny - 1) return false;

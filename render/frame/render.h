@@ -14,8 +14,8 @@
 int render_places(int samples, int edge_samples);
 
 /* An entity whose model is -1 keeps its index in the snapshot and is not drawn: no pixel, no shadow, no echo. */
-Status render(Picture *out, const World *world, const Snapshot *snapshot, const RenderRequest *request,
-              const Air *air, Pool *pool, Arena *arena);
+Status render(Picture *out, const World *world, const Snapshot *snapshot, const RenderRequest *request, const Air *air,
+              Pool *pool, Arena *arena);
 
 /* ---- the error estimate ---------------------------------------------------------------------- */
 

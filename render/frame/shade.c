@@ -6,7 +6,8 @@
 #include "render/light/thermal.h"
 
 /* The plants as this frame's eye sees them. */
-static Status open_plants(ShadeScene *scene, Visibility *visibility, const RenderRequest *request, Pool *pool, Arena *arena)
+static Status open_plants(ShadeScene *scene, Visibility *visibility, const RenderRequest *request, Pool *pool,
+                          Arena *arena)
 {
     const Weather *weather = &scene->air->light.weather;
     const double   wind_mps[2] = {-weather->wind_mps * sin(weather->wind_from_rad),
@@ -15,9 +16,9 @@ static Status open_plants(ShadeScene *scene, Visibility *visibility, const Rende
         scene->bare = scene->full = visibility;
         return STATUS_OK;
     }
-    const Status status = forest_frame_open(&scene->plants, scene->world->forest, request->view.p_enu,
-                                            request->view.focal_px, request->low_plants_m, request->t_s, wind_mps, pool,
-                                            arena);
+    const Status status =
+        forest_frame_open(&scene->plants, scene->world->forest, request->view.p_enu, request->view.focal_px,
+                          request->low_plants_m, request->t_s, wind_mps, pool, arena);
     if (status != STATUS_OK) return status;
     visibility_plants(visibility, &scene->plants);
     scene->bare = visibility_without_plants(visibility, arena);
@@ -29,16 +30,20 @@ Status shade_scene_create(ShadeScene *out, const World *world, const Snapshot *s
                           const RenderRequest *request, unsigned channels, Pool *pool, Arena *arena)
 {
     Visibility *posed = NULL;
-    *out = (ShadeScene){.world = world, .snapshot = snapshot, .air = air, .sky_samples = request->sky_samples,
+    *out = (ShadeScene){.world = world,
+                        .snapshot = snapshot,
+                        .air = air,
+                        .sky_samples = request->sky_samples,
                         .hidden_entity = request->hidden_entity};
-    Status status = smoke_effects_scene(&out->effects, snapshot, request->hidden_entity, &world->frame, &request->view, air,
-                                  world->materials.ground_rho, channels, arena);
+    Status status = smoke_effects_scene(&out->effects, snapshot, request->hidden_entity, &world->frame, &request->view,
+                                        air, world->materials.ground_rho, channels, arena);
     if (status != STATUS_OK) return status;
     int *volume = arena_alloc(arena, (size_t)out->effects.count + 1, sizeof *volume);
     if (!volume) return STATUS_NO_MEMORY;
     for (int n = 0; n < out->effects.count; n++) volume[n] = n;
     out->all_volumes = volume;
-    status = visibility_create(&posed, world->tracer, world->landscape, &world->frame, snapshot, request->skips_off, arena);
+    status =
+        visibility_create(&posed, world->tracer, world->landscape, &world->frame, snapshot, request->skips_off, arena);
     if (status != STATUS_OK) return status;
     visibility_materials(posed, &world->materials);
     out->visibility = posed;
@@ -113,21 +118,23 @@ void shade_samples_smoke(const ShadeScene *scene, Samples *s)
 /* What an orthophoto gives for a channel: its own colour, or the brightness of all three. */
 static int albedo_of_channel(int channel)
 {
-    return channel == optical_channel_r ? albedo_red : channel == optical_channel_g ? albedo_green
-         : channel == optical_channel_b ? albedo_blue : albedo_all;
+    return channel == optical_channel_r   ? albedo_red
+           : channel == optical_channel_g ? albedo_green
+           : channel == optical_channel_b ? albedo_blue
+                                          : albedo_all;
 }
 
 /* A sample's footprint on the ground, that its detail is filtered to: longer along a grazing view. */
 static void find_footprints(Shader *shader, const Samples *s)
 {
     static const float least_graze = 0.01f;
-    const Hits *hits = &s->hits;
-    const Rays *rays = &s->rays;
+    const Hits        *hits = &s->hits;
+    const Rays        *rays = &s->rays;
     for (int i = 0; i < hits->count; i++) {
         float graze = 0;
         for (int k = 0; k < 3; k++) graze -= hits->n_geo[k][i] * (float)rays->d_enu[k][i];
         shader->across_m[i] = (float)(hits->range_m[i] / s->per_rad);
-        shader->along_m[i]  = shader->across_m[i] / (graze > least_graze ? graze : least_graze);
+        shader->along_m[i] = shader->across_m[i] / (graze > least_graze ? graze : least_graze);
     }
 }
 
@@ -157,12 +164,13 @@ static void resolve_detail(Shader *shader, const ShadeScene *scene, const Sample
     find_footprints(shader, s);
     for (int i = 0; i < hits->count; i++) pattern[i] = shader->radar[i] = 1, shader->warmth_k[i] = 0;
     if (landscape && scene->world->detail) {
-        const GroundDetail out = {.albedo = optical ? pattern : NULL, .warmth_k = thermal ? shader->warmth_k : NULL,
+        const GroundDetail out = {.albedo = optical ? pattern : NULL,
+                                  .warmth_k = thermal ? shader->warmth_k : NULL,
                                   .radar = s->radar ? shader->radar : NULL,
                                   .slope_x = s->channels ? shader->slope_x : NULL,
                                   .slope_y = s->channels ? shader->slope_y : NULL};
-        detail_at(&out, scene->world->detail, landscape, hits->count, hits->surface, hits->p_enu[0],
-                          hits->p_enu[1], &(GroundFootprint){shader->across_m, shader->along_m});
+        detail_at(&out, scene->world->detail, landscape, hits->count, hits->surface, hits->p_enu[0], hits->p_enu[1],
+                  &(GroundFootprint){shader->across_m, shader->along_m});
         for (int i = 0; i < hits->count && out.slope_x; i++)
             shader->sloped |= shader->slope_x[i] != 0 || shader->slope_y[i] != 0;
         for (int i = 0; i < hits->count && shader->sloped && optical; i++) pattern[i] *= bent_area(shader, hits, i);
@@ -222,8 +230,13 @@ static void find_far(Shader *shader, const ShadeScene *scene, const Samples *s)
     const size_t n = (size_t)s->hits.count;
     shader->any_far = scene->far && far_woods_find(&shader->far, scene->world->far_woods, &s->hits);
     if (!shader->any_far) return;
-    FarInputs in = {.places = &shader->far, .sun = s->sun, .material = shader->far_material,
-                    .far_sun = shader->far_sun, .radar = shader->radar, .warmer_k = shader->far_k, .of_far = shader->of_far};
+    FarInputs in = {.places = &shader->far,
+                    .sun = s->sun,
+                    .material = shader->far_material,
+                    .far_sun = shader->far_sun,
+                    .radar = shader->radar,
+                    .warmer_k = shader->far_k,
+                    .of_far = shader->of_far};
     memcpy(in.material, s->hits.material, n * sizeof *in.material);
     memcpy(in.far_sun, s->sun, n * sizeof *in.far_sun);
     for (int c = 0; c < optical_channel_count; c++) in.texture[c] = s->channels >> c & 1 ? shader->texture[c] : NULL;
@@ -236,7 +249,8 @@ static void warm_far(Shader *shader, const ShadeScene *scene, Samples *s)
     for (int i = 0; i < s->hits.count && shader->any_far; i++) {
         const double p_enu[3] = {s->hits.p_enu[0][i], s->hits.p_enu[1][i], s->hits.p_enu[2][i]};
         if (!shader->far.stand[i]) continue;
-        const float canopy_k = (float)daylight_temp_at(&scene->air->light, p_enu) + shader->far_k[i] + shader->warmth_k[i];
+        const float canopy_k =
+            (float)daylight_temp_at(&scene->air->light, p_enu) + shader->far_k[i] + shader->warmth_k[i];
         s->temp_k[i] += shader->of_far[i] * (canopy_k - s->temp_k[i]);
     }
 }
@@ -254,7 +268,8 @@ static void open_far(Shader *shader, const Samples *s)
 /* ---- light ------------------------------------------------------------------------------------ */
 
 /* Rays that met nothing. */
-static void shade_beyond(const Shader *shader, const ShadeScene *scene, const Samples *s, float *const out[AIR_BAND_COUNT])
+static void shade_beyond(const Shader *shader, const ShadeScene *scene, const Samples *s,
+                         float *const out[AIR_BAND_COUNT])
 {
     const Air *air = scene->air;
     double     ground_w_m2[optical_channel_count];
@@ -274,20 +289,29 @@ static const uint16_t *material_of(const Shader *shader, const Samples *s)
 {
     return shader->any_far ? shader->far_material : s->hits.material;
 }
-static const float *sun_of(const Shader *shader, const Samples *s) { return shader->any_far ? shader->far_sun : s->sun; }
+static const float *sun_of(const Shader *shader, const Samples *s)
+{
+    return shader->any_far ? shader->far_sun : s->sun;
+}
 
 static void light_channels(Shader *shader, const ShadeScene *scene, Samples *s)
 {
     const World *world = scene->world;
     if (s->channels & (1u << AIR_MWIR | 1u << AIR_LWIR) || s->temperature)
         thermal_temperature(s->temp_k, scene->air, &world->materials,
-                            &(PartTemps){scene->snapshot, world->patches, scene->visibility}, &s->hits, s->hits.material, s->sun, shader->photo, shader->warmth_k);
+                            &(PartTemps){scene->snapshot, world->patches, scene->visibility}, &s->hits,
+                            s->hits.material, s->sun, shader->photo, shader->warmth_k);
     if (s->channels & (1u << AIR_MWIR | 1u << AIR_LWIR) || s->temperature) warm_far(shader, scene, s);
     if (!s->channels) return;
     air_paths_of(shader->air, scene->air, s->channels, &s->hits, &s->rays, s->temp_k);
 
-    SurfaceBlock block = {.hits = &s->hits, .rays = &s->rays, .material = material_of(shader, s), .temp_k = s->temp_k,
-                          .sun = sun_of(shader, s), .veils = shader->air, .canopy = shader->any_canopy ? &shader->canopy : NULL};
+    SurfaceBlock block = {.hits = &s->hits,
+                          .rays = &s->rays,
+                          .material = material_of(shader, s),
+                          .temp_k = s->temp_k,
+                          .sun = sun_of(shader, s),
+                          .veils = shader->air,
+                          .canopy = shader->any_canopy ? &shader->canopy : NULL};
     float       *out[AIR_BAND_COUNT] = {NULL};
     for (int b = 0; b < AIR_BAND_COUNT; b++) {
         if (!(s->channels >> b & 1)) continue;
@@ -318,19 +342,20 @@ static void light_radar(Shader *shader, const ShadeScene *scene, Samples *s)
 
 void shade_samples_light(Shader *shader, const ShadeScene *scene, Samples *s)
 {
-    const double      t0 = wall_clock_s();
+    const double          t0 = wall_clock_s();
     const HemisphereScene around = {scene->visibility, scene->air, &scene->world->materials, scene->world->patches,
-                                scene->snapshot};
+                                    scene->snapshot};
     resolve_detail(shader, scene, s);
     find_far(shader, scene, s);
     shade_samples_smoke(scene, s);
     if (scene->sky_samples > 0)
-        hemisphere_light(&shader->gathered, &around, &s->hits, s->channels, scene->sky_samples, s->key, &shader->counters);
+        hemisphere_light(&shader->gathered, &around, &s->hits, s->channels, scene->sky_samples, s->key,
+                         &shader->counters);
     shader->any_open = scene->sky && s->channels &&
                        sky_visibility_open(&shader->open, scene->sky, shader->sky, &s->hits, &shader->counters);
     shader->any_canopy = scene->world->canopy && scene->sky_samples == 0 && s->channels &&
-                         canopy_light(&shader->canopy, scene->world->canopy, scene->world->landscape, &scene->air->light,
-                                      scene->world->materials.ground_rho, &s->hits, s->channels);
+                         canopy_light(&shader->canopy, scene->world->canopy, scene->world->landscape,
+                                      &scene->air->light, scene->world->materials.ground_rho, &s->hits, s->channels);
     open_far(shader, s);
     light_channels(shader, scene, s);
     const double t1 = wall_clock_s();
@@ -367,13 +392,15 @@ static const float *light_around(float room[hits_capacity], const Shader *shader
     const Air *air = scene->air;
     if (scene->sky_samples > 0) return shader->gathered.w_m2[b];
     if (!shader->any_open && !(shader->any_canopy && b < AIR_MWIR)) return NULL;
-    const double level_w_m2 =
-        b >= AIR_MWIR ? air->light.ground_w_m2_sr[b] * pi_rad : optical_ground_w_m2((int)b, air, &scene->world->materials);
+    const double level_w_m2 = b >= AIR_MWIR ? air->light.ground_w_m2_sr[b] * pi_rad
+                                            : optical_ground_w_m2((int)b, air, &scene->world->materials);
     for (int i = 0; i < s->hits.count; i++) {
         const double n_enu[3] = {s->hits.n_enu[0][i], s->hits.n_enu[1][i], s->hits.n_enu[2][i]};
         const double through = material_through(&scene->world->materials.material[material_of(shader, s)[i]], (int)b);
         double       both = light_on_side(shader, scene, b, i, n_enu, level_w_m2);
-        if (through > 0) both += through * light_on_side(shader, scene, b, i, (const double[3]){-n_enu[0], -n_enu[1], -n_enu[2]}, level_w_m2);
+        if (through > 0)
+            both += through *
+                    light_on_side(shader, scene, b, i, (const double[3]){-n_enu[0], -n_enu[1], -n_enu[2]}, level_w_m2);
         room[i] = (float)((shader->any_open ? (double)shader->open.factor[b][i] : 1) * both);
     }
     return room;
@@ -385,15 +412,15 @@ void shade_samples_light_directly(Shader *shader, const ShadeScene *scene, Sampl
     keep_normals(shader, &s->hits);
     air_paths_directly(direct, scene->air, s->channels, &s->hits, &s->rays, s->temp_k, shader->air);
     for (int b = 0; b < AIR_BAND_COUNT; b++) {
-        float        room[hits_capacity], *out = s->radiance[b];
+        float room[hits_capacity], *out = s->radiance[b];
         if (!(s->channels >> b & 1)) continue;
         const float *around = light_around(room, shader, scene, s, (AirBand)b);
         if (b >= AIR_MWIR)
             thermal_shade(out, b == AIR_MWIR ? BAND_MWIR : BAND_LWIR, scene->air, materials, &s->hits, &s->rays,
                           material_of(shader, s), s->temp_k, sun_of(shader, s), around, &direct[b], NULL);
         else
-            optical_shade(out, b, scene->air, materials, &s->hits, &s->rays, material_of(shader, s), shader->texture[b], sun_of(shader, s),
-                          around, &direct[b], NULL);
+            optical_shade(out, b, scene->air, materials, &s->hits, &s->rays, material_of(shader, s), shader->texture[b],
+                          sun_of(shader, s), around, &direct[b], NULL);
         smoke_apply(out, &s->smoke, b, s->hits.count);
     }
     restore_normals(shader, &s->hits);

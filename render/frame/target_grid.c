@@ -5,10 +5,10 @@
  * sampled once. The grid moves with the target, not with the pixels: its sum does not change as the target crosses
  * them. A cell's result is distributed to the pixels below it by exact shares of its area, so that the sum over pixels
  * is that over the target. The pixels' own samples exclude small targets; the composite pixel is its own value times
- * the share that the target's silhouette leaves, plus the grids' contribution: the target where a cell shows it, and what
- * hides it where one does not (leaves, a crest, a larger entity). The pixel's own samples cannot tell what lies before the
- * target from what lies behind it: with their mean in place of the leaves, ground would shine through gaps that the target
- * fills.
+ * the share that the target's silhouette leaves, plus the grids' contribution: the target where a cell shows it, and
+ * what hides it where one does not (leaves, a crest, a larger entity). The pixel's own samples cannot tell what lies
+ * before the target from what lies behind it: with their mean in place of the leaves, ground would shine through gaps
+ * that the target fills.
  *
  * Beside a silhouette the pixel's mean is used: exact where the ground is uniform over a pixel. */
 #include "render/frame/frame_private.h"
@@ -34,14 +34,15 @@ static void cells_of(int *columns, int *rows, const Job *job, int index)
     *columns = *rows = 0;
     if (!(w > 0 && h > 0)) return;
     *columns = (int)fmax(job->grid_side, ceil(w) * per_px);
-    *rows    = (int)fmax(job->grid_side, ceil(h) * per_px);
+    *rows = (int)fmax(job->grid_side, ceil(h) * per_px);
 }
 
 /* ---- a limit for many targets ------------------------------------------------------------------ */
 
 /* The grids of a frame have at most so many cells for each of its pixels, or 2^17 (56 targets of 48 x 48) where that
- * is more. Grids finer than the default's become coarser to stay within the limit: without one, a target errs four times as
- * much as with 48 x 48. Where those are too many, targets are sampled by pixels and their edges, as larger ones are. */
+ * is more. Grids finer than the default's become coarser to stay within the limit: without one, a target errs four
+ * times as much as with 48 x 48. Where those are too many, targets are sampled by pixels and their edges, as larger
+ * ones are. */
 enum { cells_per_pixel = 4, cells_always = 1 << 17, usual_side = 48 };
 
 static int64_t cells_allowed(const Job *job)
@@ -158,11 +159,12 @@ Status target_grids_plan(Job *job, Arena *arena)
     const Status limited = limit_cells(&count, job, arena);
     if (limited != STATUS_OK) return limited;
     job->footprint = arena_alloc(arena, (size_t)count, sizeof *job->footprint);
-    job->picture->covered   = arena_alloc(arena, px, sizeof *job->picture->covered);
-    job->coverer   = arena_alloc(arena, px, sizeof *job->coverer);
-    job->before    = arena_alloc(arena, px, sizeof *job->before);
+    job->picture->covered = arena_alloc(arena, px, sizeof *job->picture->covered);
+    job->coverer = arena_alloc(arena, px, sizeof *job->coverer);
+    job->before = arena_alloc(arena, px, sizeof *job->before);
     job->target_grid_order = arena_alloc(arena, (size_t)count, sizeof *job->target_grid_order);
-    if (!job->footprint || !job->target_grid_order || !job->picture->covered || !job->coverer || !job->before) return STATUS_NO_MEMORY;
+    if (!job->footprint || !job->target_grid_order || !job->picture->covered || !job->coverer || !job->before)
+        return STATUS_NO_MEMORY;
     Status status = STATUS_OK;
     for (int i = 0; i < job->scene.snapshot->count && status == STATUS_OK; i++)
         if (job->is_small[i]) status = plan_one(&job->footprint[job->footprints++], job, i, arena);
@@ -173,7 +175,7 @@ Status target_grids_plan(Job *job, Arena *arena)
     /* the largest first, so that no worker is still busy with one when the others have finished */
     for (int n = 0; n < job->footprints; n++) {
         const TargetGrid *f = &job->footprint[n];
-        int              at = n;
+        int               at = n;
         for (; at > 0; at--) {
             const TargetGrid *before = &job->footprint[job->target_grid_order[at - 1]];
             if (before->columns * before->rows >= f->columns * f->rows) break;
@@ -232,8 +234,8 @@ static double cell_area(const TargetGrid *f, int cell)
 static void cell_sample(double at_px[2], const TargetGrid *f, int cell)
 {
     static const double golden = 0.6180339887498949;
-    const int    column = cell % f->columns, row = cell / f->columns;
-    const double u = 0.5 + row * golden, v = 0.5 + column * golden;
+    const int           column = cell % f->columns, row = cell / f->columns;
+    const double        u = 0.5 + row * golden, v = 0.5 + column * golden;
     at_px[0] = f->box[0] + (f->box[2] - f->box[0]) * (column + u - floor(u)) / f->columns;
     at_px[1] = f->box[1] + (f->box[3] - f->box[1]) * (row + v - floor(v)) / f->rows;
 }
@@ -279,18 +281,20 @@ typedef struct TruthSample {
 
 static void offer_truth(const TruthSample *t, const TargetGrid *f, int pixel, int x, int y)
 {
-    const double       dx = t->at_px[0] - x - 0.5, dy = t->at_px[1] - y - 0.5, square_px = dx * dx + dy * dy;
-    TargetGridTruth    *to = &f->truth[pixel];
-    const Samples     *s = t->s;
+    const double     dx = t->at_px[0] - x - 0.5, dy = t->at_px[1] - y - 0.5, square_px = dx * dx + dy * dy;
+    TargetGridTruth *to = &f->truth[pixel];
+    const Samples   *s = t->s;
     if (!(square_px < to->square_px)) return;
-    *to = (TargetGridTruth){.square_px = square_px, .range_m = (float)s->hits.range_m[t->sample],
-                           .temp_k = s->temp_k[t->sample], .part = s->hits.part[t->sample],
-                           .material = s->hits.material[t->sample]};
+    *to = (TargetGridTruth){.square_px = square_px,
+                            .range_m = (float)s->hits.range_m[t->sample],
+                            .temp_k = s->temp_k[t->sample],
+                            .part = s->hits.part[t->sample],
+                            .material = s->hits.material[t->sample]};
     for (int k = 0; k < 3; k++) to->normal[k] = s->hits.n_enu[k][t->sample];
 }
 
-/* Compacts the cells whose ray would meet the target if it were alone in the world: no other ray is traced, and the target
- * itself not again. Without SKIP_CELL all stay, and are. Returns their number. */
+/* Compacts the cells whose ray would meet the target if it were alone in the world: no other ray is traced, and the
+ * target itself not again. Without SKIP_CELL all stay, and are. Returns their number. */
 static int keep_amodal(int *cell, TargetGrid *f, Worker *w, const Job *job, int first_cell)
 {
     Rays      *rays = &w->samples.rays;
@@ -303,7 +307,7 @@ static int keep_amodal(int *cell, TargetGrid *f, Worker *w, const Job *job, int 
         if (leave_out) w->meets[i] = w->known.range_m[i] < INFINITY;
         if (!w->meets[i] && leave_out) continue;
         w->known.range_m[kept] = w->known.range_m[i], w->known.hit[kept] = w->known.hit[i];
-        cell[kept]     = first_cell + i;
+        cell[kept] = first_cell + i;
         w->meets[kept] = w->meets[i];
         for (int k = 0; k < 3; k++) {
             rays->o_enu[k][kept] = rays->o_enu[k][i];
@@ -312,7 +316,7 @@ static int keep_amodal(int *cell, TargetGrid *f, Worker *w, const Job *job, int 
         rays->far_m[kept++] = rays->far_m[i];
     }
     w->shader.counters.skipped[SKIP_CELL] += (uint64_t)(count - kept);
-    rays->count   = kept;
+    rays->count = kept;
     rays->columns = 0;
     return kept;
 }
@@ -341,9 +345,9 @@ static void count_hidden(TargetGrid *f, Worker *w, const Job *job, const int *ce
     }
 }
 
-/* Splits the samples into those that met the target, which stay, and those of its silhouette that something hides, which
- * go to the worker's hits and `before`: no other is shaded here. What small targets hide is left to their own grids.
- * Returns how many stay. */
+/* Splits the samples into those that met the target, which stay, and those of its silhouette that something hides,
+ * which go to the worker's hits and `before`: no other is shaded here. What small targets hide is left to their own
+ * grids. Returns how many stay. */
 static int part_samples(const TargetGrid *f, Worker *w, const Job *job, int *cell, int *before)
 {
     const uint32_t id = (uint32_t)f->entity + 1;
@@ -359,9 +363,9 @@ static int part_samples(const TargetGrid *f, Worker *w, const Job *job, int *cel
             hits_copy(&w->hits, &w->rays, hidden++, hits, rays, i);
         }
     }
-    hits->count    = rays->count = kept;
-    w->hits.count  = w->rays.count = hidden;
-    hits->columns  = rays->columns = w->hits.columns = w->rays.columns = 0;
+    hits->count = rays->count = kept;
+    w->hits.count = w->rays.count = hidden;
+    hits->columns = rays->columns = w->hits.columns = w->rays.columns = 0;
     w->hits.several = false;
     return kept;
 }
@@ -370,7 +374,7 @@ static void light_cells(const TargetGrid *f, Worker *w, const Job *job, const in
 {
     Samples *s = &w->samples;
     for (int i = 0; i < s->hits.count && job->scene.sky_samples > 0; i++) w->key[i] = cell_key(f, cell[i]);
-    s->key     = w->key;
+    s->key = w->key;
     s->per_rad = job->request->view.focal_px;
     shade_samples_sun(&w->shader, &job->scene, s);
     shade_samples_light(&w->shader, &job->scene, s);
@@ -452,7 +456,7 @@ static void sample_cells(TargetGrid *f, Worker *w, const Job *job, int first_cel
         }
         s->rays.far_m[i] = INFINITY;
     }
-    s->rays.count   = count;
+    s->rays.count = count;
     s->rays.columns = f->columns;
     w->counters.rays_primary += (uint64_t)count;
     w->counters.rays_small_targets += (uint64_t)count;
@@ -471,10 +475,10 @@ static void sample_cells(TargetGrid *f, Worker *w, const Job *job, int first_cel
 
 void target_grid_task(void *user, int worker, int index)
 {
-    const Job *job = user;
-    Worker    *w = job->worker[worker];
+    const Job  *job = user;
+    Worker     *w = job->worker[worker];
     TargetGrid *f = &job->footprint[job->target_grid_order[index]];
-    const int  cells = f->columns * f->rows;
+    const int   cells = f->columns * f->rows;
     w->counters.small_targets++;
     if (cells == 0) return;
     const int listed = list_entities(w, job, f->box, true);

@@ -3,7 +3,6 @@
 #include "render/frame/frame_private.h"
 #include "render/frame/render.h"
 
-
 void target_grids_cover(Job *job)
 {
     for (int n = 0; n < job->footprints; n++) {
@@ -74,7 +73,7 @@ void target_grids_error(Job *job)
 {
     for (int n = 0; n < job->footprints; n++) {
         const TargetGrid *f = &job->footprint[n];
-        const int        cells = f->columns * f->rows;
+        const int         cells = f->columns * f->rows;
         if (cells == 0) continue;
         const double cell_px = (f->box[2] - f->box[0]) * (f->box[3] - f->box[1]) / cells;
         for (int plane = 0; plane < picture_plane_count; plane++) {
@@ -82,7 +81,7 @@ void target_grids_error(Job *job)
             if (!f->cell[plane]) continue;
             cell_pairs(sums, f, job, plane);
             job->target_variance[plane] += mean_variance_factor * cell_px * cell_px * sums[0] +
-                                         hidden_ground(f, job, picture_plane(job->picture, plane));
+                                           hidden_ground(f, job, picture_plane(job->picture, plane));
             if (job->picture->target)
                 job->picture->target[f->entity].radiance_error[plane] = cell_px * sqrt(mean_variance_factor * sums[1]);
         }
@@ -91,16 +90,16 @@ void target_grids_error(Job *job)
 
 static void put_truth_on(const Job *job, const TargetGrid *f, int k, size_t px)
 {
-    Picture              *picture = job->picture;
+    Picture               *picture = job->picture;
     const TargetGridTruth *t = &f->truth[k];
     if (!(f->area[k] > 0.5)) return;
-    picture->entity[px]   = (uint32_t)f->entity + 1;
-    picture->range_m[px]  = t->range_m;
-    picture->part[px]     = t->part;
+    picture->entity[px] = (uint32_t)f->entity + 1;
+    picture->range_m[px] = t->range_m;
+    picture->part[px] = t->part;
     picture->material[px] = t->material;
-    picture->cover[px]    = SURFACE_NONE;
+    picture->cover[px] = SURFACE_NONE;
     if (picture->instance) picture->instance[px] = 0;
-    picture->temp_k[px]   = t->temp_k;
+    picture->temp_k[px] = t->temp_k;
     for (int a = 0; a < 3; a++) picture->normal[a][px] = t->normal[a];
 }
 
@@ -110,8 +109,14 @@ static void hand_over(const Job *job, TargetGrid *f)
     SmallTargets *small = &job->picture->small;
     if (!(f->visible > 0)) return;
     SmallTarget *t = &small->target[small->count++];
-    *t = (SmallTarget){.columns = f->columns, .rows = f->rows, .x0 = f->x0, .y0 = f->y0, .x1 = f->x1, .y1 = f->y1,
-                       .met = f->met, .area = f->area};
+    *t = (SmallTarget){.columns = f->columns,
+                       .rows = f->rows,
+                       .x0 = f->x0,
+                       .y0 = f->y0,
+                       .x1 = f->x1,
+                       .y1 = f->y1,
+                       .met = f->met,
+                       .area = f->area};
     memcpy(t->box_px, f->box, sizeof t->box_px);
     for (int plane = 0; plane < picture_plane_count; plane++) {
         const float *value = picture_plane(job->picture, plane);
@@ -122,7 +127,7 @@ static void hand_over(const Job *job, TargetGrid *f)
                 const float  open = 1 - job->picture->covered[px];
                 f->behind[plane][k] = open > 0 ? value[px] / open : 0;
             }
-        t->cell[plane]   = f->cell[plane];
+        t->cell[plane] = f->cell[plane];
         t->behind[plane] = f->behind[plane];
     }
 }
@@ -171,9 +176,9 @@ void target_grids_composite(Job *job)
 
 static void gather_one(TargetPixels *target, const Job *job, const TargetGrid *f)
 {
-    target->small           = true;
-    target->visible         = f->visible;
-    target->amodal          = f->amodal;
+    target->small = true;
+    target->visible = f->visible;
+    target->amodal = f->amodal;
     target->occluded_ground = f->hidden_ground;
     target->occluded_entity = f->hidden_entity;
     target->occluded_plants = f->hidden_plants;

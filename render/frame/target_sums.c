@@ -7,7 +7,7 @@
 
 Status target_sums_create(TargetSums *out, int entities, int profile_bins, Arena *arena)
 {
-    out->target  = arena_alloc(arena, (size_t)entities, sizeof *out->target);
+    out->target = arena_alloc(arena, (size_t)entities, sizeof *out->target);
     out->profile = arena_alloc(arena, (size_t)profile_bins * radar_bounces, sizeof *out->profile);
     return out->target && out->profile ? STATUS_OK : STATUS_NO_MEMORY;
 }
@@ -17,16 +17,17 @@ Status target_sums_create(TargetSums *out, int entities, int profile_bins, Arena
  * the truth (not in pictures). Powers of two, so that scaling is exact. */
 void sum_rules_choose(SumRules *rules, const RenderRequest *request, const RadarConfig *radar)
 {
-    const double         pixels  = (double)request->view.width * request->view.height;
-    const int            edge = looks_for_edges(request) ? request->edge_samples : 1, leaf = leaf_samples(request);
+    const double pixels = (double)request->view.width * request->view.height;
+    const int    edge = looks_for_edges(request) ? request->edge_samples : 1, leaf = leaf_samples(request);
     /* areas divide by samples^2 (every pixel), edge^2, 2^2 (steps) and 1 + leaf^2, and those by leaf^2 when the first
      * sample's share falls; below 2^34 a pixel, of 2^26 */
-    rules->steps_per_px = (int64_t)request->samples * request->samples * edge * edge * leaf * leaf * (1 + leaf * leaf) * 4;
+    rules->steps_per_px =
+        (int64_t)request->samples * request->samples * edge * edge * leaf * leaf * (1 + leaf * leaf) * 4;
     while (rules->steps_per_px < (int64_t)1 << 33) rules->steps_per_px *= 2;
     const double lobe_rad = fmax(radar->lobe_rad, 1e-9); /* as radar_lobe has it */
-    rules->profile_limit    = exp2(ceil(log2(2 / (pi_rad * lobe_rad * lobe_rad))));
-    rules->profile_quantum  = rules->profile_limit * exp2(ceil(log2(pixels)) - 61);
-    rules->radiance_limit   = exp2(20);
+    rules->profile_limit = exp2(ceil(log2(2 / (pi_rad * lobe_rad * lobe_rad))));
+    rules->profile_quantum = rules->profile_limit * exp2(ceil(log2(pixels)) - 61);
+    rules->radiance_limit = exp2(20);
     rules->radiance_quantum = rules->radiance_limit * exp2(ceil(log2(pixels)) - 61);
 }
 
@@ -96,7 +97,8 @@ static bool sort_pairs(Occlusion **pair, size_t count, int entities, Arena *aren
 }
 
 /* The entity that hides most of each target; of equals, the lowest index. */
-static Status name_occluders(TargetPixels *target, int entities, const TargetSums *const *sums, int workers, Arena *arena)
+static Status name_occluders(TargetPixels *target, int entities, const TargetSums *const *sums, int workers,
+                             Arena *arena)
 {
     size_t most = 0, count = 0;
     for (int w = 0; w < workers; w++) {
@@ -120,8 +122,8 @@ static Status name_occluders(TargetPixels *target, int entities, const TargetSum
         for (; i < count && pair[i].target == of && pair[i].occluder == by; i++)
             steps += pair[i].steps, area_px += pair[i].area_px;
         if (steps > most_steps || area_px > most_px) {
-            most_steps          = steps;
-            most_px             = area_px;
+            most_steps = steps;
+            most_px = area_px;
             target[of].occluder = by;
         }
     }
@@ -186,7 +188,7 @@ void target_sums_areas(TargetSums *sums, const SumRules *rules, const Samples *s
     assert(!s->hits.several); /* areas are of the samples as they were shot */
     for (int n = 0; n < listed; n++) {
         const int      index = list[n];
-        const uint32_t id    = (uint32_t)index + 1;
+        const uint32_t id = (uint32_t)index + 1;
         TargetCount   *count = &sums->target[index];
         uint64_t       left_out = 0;
 
@@ -238,13 +240,13 @@ void target_sums_view(TargetSums *sums, const PixelBlock *block, const View *vie
     for (int p = 0; p < block->pixels; p++) sums->cosine3[p] = pixel_cosine3(view, block->x[p], block->y[p]);
 }
 
-void target_sums_radiance(TargetSums *sums, const SumRules *rules, const Hits *hits, const PixelBlock *block, double share,
-                          const float *value, int plane)
+void target_sums_radiance(TargetSums *sums, const SumRules *rules, const Hits *hits, const PixelBlock *block,
+                          double share, const float *value, int plane)
 {
-    const double  per_quantum = 1 / rules->radiance_quantum; /* powers of two: exact */
-    const float  *covered = rules->picture->covered;
-    uint32_t      of = 0;
-    int64_t       sum = 0;
+    const double per_quantum = 1 / rules->radiance_quantum; /* powers of two: exact */
+    const float *covered = rules->picture->covered;
+    uint32_t     of = 0;
+    int64_t      sum = 0;
     for (int i = 0; i < hits->count; i++) {
         if (!hits->entity[i] || !isfinite(value[i])) continue;
         if (hits->entity[i] != of) {
@@ -252,7 +254,8 @@ void target_sums_radiance(TargetSums *sums, const SumRules *rules, const Hits *h
             of = hits->entity[i], sum = 0;
         }
         const int    pixel = hit_pixel(block, hits, i);
-        const double open = covered ? 1 - (double)covered[picture_index(rules->picture, block->x[pixel], block->y[pixel])] : 1;
+        const double open =
+            covered ? 1 - (double)covered[picture_index(rules->picture, block->x[pixel], block->y[pixel])] : 1;
         const double held = clamp(value[i], -rules->radiance_limit, rules->radiance_limit);
         sum += llrint(held * (share * open * hit_share(block, hits, i)) * sums->cosine3[pixel] * per_quantum);
     }
@@ -268,8 +271,8 @@ void target_sums_profile(TargetSums *sums, const SumRules *rules, const RenderRe
             if (!(power > 0)) continue;
             const double bin = floor((s->returns.slant_m[b][i] - request->profile_near_m) / request->profile_bin_m);
             if (!(bin >= 0 && bin < request->profile_bins)) continue;
-            sums->profile[(int)bin * radar_bounces + b] +=
-                llrint(area_px[i] * (power < rules->profile_limit ? power : rules->profile_limit) / rules->profile_quantum);
+            sums->profile[(int)bin * radar_bounces + b] += llrint(
+                area_px[i] * (power < rules->profile_limit ? power : rules->profile_limit) / rules->profile_quantum);
         }
 }
 
@@ -292,13 +295,13 @@ static void gather_target(TargetPixels *target, const SumRules *rules, const Tar
         merge_box(sum.box, t->box);
         merge_box(sum.amodal_box, t->amodal_box);
     }
-    *target                 = boxes[index];
-    target->visible         = (double)sum.visible * share;
-    target->amodal          = (double)sum.amodal * share;
+    *target = boxes[index];
+    target->visible = (double)sum.visible * share;
+    target->amodal = (double)sum.amodal * share;
     target->occluded_ground = (double)sum.hidden_ground * share;
     target->occluded_entity = (double)sum.hidden_entity * share;
     target->occluded_plants = (double)sum.hidden_plants * share;
-    target->occluder        = -1;
+    target->occluder = -1;
     for (int k = 0; k < picture_plane_count; k++)
         target->radiance[k] = (double)sum.radiance[k] * rules->radiance_quantum;
     for (int b = 0; b < BAND_COUNT; b++)
@@ -330,9 +333,9 @@ Status target_sums_gather(Picture *picture, const SumRules *rules, const TargetS
 void project_target(void *user, int worker, int index)
 {
     (void)worker;
-    const Job            *job    = user;
+    const Job            *job = user;
     TargetPixels         *target = &job->boxes[index];
-    const View           *view   = &job->request->view;
+    const View           *view = &job->request->view;
     const SnapshotEntity *entity = &job->scene.snapshot->entity[index];
     double                p_enu[3], offset_enu[3], p_cam[3];
     if (index == job->request->hidden_entity || entity->model < 0) return;

@@ -14,9 +14,9 @@ Status world_open(World *out, const Catalog *catalog, const Landscape *landscape
     char   materials[512], surfaces[512], detail[512], parts[512], machines[512];
     Status status = STATUS_BAD_VALUE;
 
-    if (!etc_path(materials, sizeof materials, "materials.csv") || !etc_path(surfaces, sizeof surfaces, "surfaces.csv") ||
-        !etc_path(detail, sizeof detail, "ground_detail.csv") || !etc_path(parts, sizeof parts, "heat.csv") ||
-        !etc_path(machines, sizeof machines, "heat_machines.csv")) {
+    if (!etc_path(materials, sizeof materials, "materials.csv") ||
+        !etc_path(surfaces, sizeof surfaces, "surfaces.csv") || !etc_path(detail, sizeof detail, "ground_detail.csv") ||
+        !etc_path(parts, sizeof parts, "heat.csv") || !etc_path(machines, sizeof machines, "heat_machines.csv")) {
         log_error("render: path of the tables is too long; set PITVIPER_ETC to a shorter one");
         return STATUS_BAD_VALUE;
     }
@@ -48,7 +48,8 @@ Status world_need_patches(const World *world, const Snapshot *snapshot)
         const SnapshotEntity *e = &snapshot->entity[i];
         if (e->first_patch < 0 || e->model < 0 || e->model >= tracer_model_count(world->tracer)) continue;
         status = tracer_need(world->tracer, e->model);
-        if (status == STATUS_OK) status = heat_patches_need(world->patches, e->model, tracer_model(world->tracer, e->model));
+        if (status == STATUS_OK)
+            status = heat_patches_need(world->patches, e->model, tracer_model(world->tracer, e->model));
     }
     return status;
 }
@@ -56,7 +57,7 @@ Status world_need_patches(const World *world, const Snapshot *snapshot)
 Status world_plant(World *world, const Woods *woods, const ForestConfig *config, const char *isa, Pool *pool)
 {
     static const uint64_t plants_seed = 1995; /* the prototypes are the same in every world */
-    char   optics[512], ground[512];
+    char                  optics[512], ground[512];
     if (!etc_path(optics, sizeof optics, "plant_optics.csv") || !etc_path(ground, sizeof ground, "woods.csv")) {
         log_error("render: path of the tables is too long; set PITVIPER_ETC to a shorter one");
         return STATUS_BAD_VALUE;
@@ -102,9 +103,10 @@ void world_close(World *world)
 /* ---- what drives the ground: the weather, with the sun and sky of the atmosphere --------------- */
 
 /* Sun and all of its radiation at a place under this weather. STATUS_BAD_VALUE: sun_at's. */
-static Status heat_drive_daylight(Daylight *out, const AirSource *source, const Geodetic *place, const Weather *weather, double unix_s)
+static Status heat_drive_daylight(Daylight *out, const AirSource *source, const Geodetic *place, const Weather *weather,
+                                  double unix_s)
 {
-    Sun sun;
+    Sun          sun;
     const double air_k = isfinite(weather->air_temp_k) ? weather->air_temp_k : 288.15;
     const Status status = sun_at(&sun, unix_s, place, weather->pressure_mbar, air_k - 273.15, NAN);
     if (status == STATUS_OK) daylight_at(out, source, weather, &sun);
@@ -114,14 +116,17 @@ static Status heat_drive_daylight(Daylight *out, const AirSource *source, const 
 void world_heat_weather(GroundWeather *out, double unix_s, const void *user)
 {
     static const double thermometer_m = 2, anemometer_m = 10;
-    const HeatDrive *drive = user;
-    Weather          w;
-    Daylight         light = {0};
+    const HeatDrive    *drive = user;
+    Weather             w;
+    Daylight            light = {0};
     weather_at(&w, drive->course, unix_s);
-    if (heat_drive_daylight(&light, &drive->source, &drive->place, &w, unix_s) != STATUS_OK) light.weather = w; /* beyond 1900 .. 2100: night */
+    if (heat_drive_daylight(&light, &drive->source, &drive->place, &w, unix_s) != STATUS_OK)
+        light.weather = w; /* beyond 1900 .. 2100: night */
     const double air_k = light.weather.air_temp_k;
-    *out = (GroundWeather){.air = {air_k, w.humidity * saturation_pa(air_k), 100 * w.pressure_mbar, w.wind_mps, thermometer_m, anemometer_m},
-                           .direct_w_m2 = light.solar_direct_w_m2, .diffuse_w_m2 = light.solar_diffuse_w_m2,
+    *out = (GroundWeather){.air = {air_k, w.humidity * saturation_pa(air_k), 100 * w.pressure_mbar, w.wind_mps,
+                                   thermometer_m, anemometer_m},
+                           .direct_w_m2 = light.solar_direct_w_m2,
+                           .diffuse_w_m2 = light.solar_diffuse_w_m2,
                            .longwave_w_m2 = stefan_w_m2k4 * pow(air_k, 4) - light.longwave_loss_w_m2,
                            .rain_kg_m2s = w.rain_mm_h / 3600};
     memcpy(out->sun_d_enu, light.sun_d_enu, sizeof out->sun_d_enu);
@@ -144,7 +149,7 @@ static Status cast_shadows(World *world, double shadow_m, Pool *pool)
     const int slots = heat_slots(d_enu, world->heat);
     _Static_assert((int)shadow_most_slots >= (int)heat_day_slots, "room for a day");
     return heat_shadow_create(&world->shadow, &world->landscape->elevation, shadow_m, slots, d_enu,
-                             world->canopy ? stand_there : NULL, world->canopy, pool);
+                              world->canopy ? stand_there : NULL, world->canopy, pool);
 }
 
 /* The wood of the plants that stand, each material once. */
@@ -157,7 +162,8 @@ static int branch_kinds(BranchKind out[branch_most_kinds], const Materials *m)
         for (int i = 0; i < count; i++) known |= out[i].material == row;
         if (known || count == branch_most_kinds) continue;
         const Material *bark = &m->material[row];
-        out[count++] = (BranchKind){row, (double)bark->conductivity_w_mk, (double)bark->density_kg_m3 * (double)bark->heat_capacity_j_kgk,
+        out[count++] = (BranchKind){row, (double)bark->conductivity_w_mk,
+                                    (double)bark->density_kg_m3 * (double)bark->heat_capacity_j_kgk,
                                     (double)bark->solar_absorptance, 1 - (double)bark->rho_lwir};
     }
     return count;
@@ -170,12 +176,13 @@ Status world_warm(World *world, WeatherCourse *course, const HeatConfig *config,
     GroundKinds kinds;
     world_cool(world);
     world->course = course;
-    world->drive  = calloc(1, sizeof *world->drive);
+    world->drive = calloc(1, sizeof *world->drive);
     if (!world->drive) return STATUS_NO_MEMORY;
-    *world->drive = (HeatDrive){course, {world->atmosphere, world->planck_mwir, world->planck_lwir, 0}, world->frame.origin, config->unix_s};
+    *world->drive = (HeatDrive){
+        course, {world->atmosphere, world->planck_mwir, world->planck_lwir, 0}, world->frame.origin, config->unix_s};
     c.weather = world_heat_weather, c.user = world->drive, c.pool = pool;
     if (!etc_path(path, sizeof path, "ground_heat.csv")) return STATUS_BAD_VALUE;
-    Status status = ground_kinds_open(&kinds, path, &world->materials);
+    Status     status = ground_kinds_open(&kinds, path, &world->materials);
     BranchKind branch[branch_most_kinds];
     const int  branches = world->forest ? branch_kinds(branch, &world->materials) : 0;
     if (status == STATUS_OK) status = heat_create(&world->heat, &kinds, &c, branch, branches);
@@ -225,10 +232,14 @@ enum { weather_kept = 64, vehicle_capacity = 512 };
 struct WorldVehicles {
     const World *world;
     VehicleHeat *heat;
-    Arena       *arena;                 /* of scene */
-    HeatScene   *scene;                 /* of scene_s */
+    Arena       *arena; /* of scene */
+    HeatScene   *scene; /* of scene_s */
     double       scene_s;
-    struct { double unix_s; GroundWeather weather; double wind_enu_mps[3]; } kept[weather_kept]; /* by time */
+    struct {
+        double        unix_s;
+        GroundWeather weather;
+        double        wind_enu_mps[3];
+    } kept[weather_kept]; /* by time */
 };
 
 static double wind_share_of_low_things(void)
@@ -266,7 +277,8 @@ static double sun_share(const HeatScene *scene, const double sun_d_enu[3], const
     if (!scene->shadow || !(sun_d_enu[2] > 0)) return 1;
     heat_shadow_at(shadow, &open, scene->shadow, p_enu[0], p_enu[1]);
     for (int k = 0; k < scene->now->slots; k++) {
-        const double d = (double)scene->now->slot_d_enu[0][k] * sun_d_enu[0] + (double)scene->now->slot_d_enu[1][k] * sun_d_enu[1] +
+        const double d = (double)scene->now->slot_d_enu[0][k] * sun_d_enu[0] +
+                         (double)scene->now->slot_d_enu[1][k] * sun_d_enu[1] +
                          (double)scene->now->slot_d_enu[2][k] * sun_d_enu[2];
         if (d > nearest) nearest = d, slot = k;
     }
@@ -289,11 +301,11 @@ static Status ground_there(PlaceHeat *out, WorldVehicles *v, double unix_s, cons
     SurfaceClass surface = SURFACE_GRASS;
     if (world->landscape) surface = landscape_surface(world->landscape, p_enu[0], p_enu[1]);
     if (surface == SURFACE_NONE) surface = SURFACE_GRASS;
-    out->ground_k   = heat_scene_ground_k(&lifted_k, v->scene, (int)surface, p_enu, up, 1);
-    out->under_k    = (double)v->scene->now->table.hidden_k[v->scene->now->kind_of[surface]];
-    double       unlit_k;
-    out->water      = surface == SURFACE_WATER;
-    out->water_k    = fmax(heat_scene_ground_k(&unlit_k, v->scene, SURFACE_WATER, p_enu, up, 1), sea_freezes_k);
+    out->ground_k = heat_scene_ground_k(&lifted_k, v->scene, (int)surface, p_enu, up, 1);
+    out->under_k = (double)v->scene->now->table.hidden_k[v->scene->now->kind_of[surface]];
+    double unlit_k;
+    out->water = surface == SURFACE_WATER;
+    out->water_k = fmax(heat_scene_ground_k(&unlit_k, v->scene, SURFACE_WATER, p_enu, up, 1), sea_freezes_k);
     out->ground_rho = 1 - (double)world->materials.material[world->materials.surface[surface]].solar_absorptance;
     out->direct_w_m2 *= sun_share(v->scene, out->sun_d_enu, p_enu);
     return STATUS_OK;
@@ -307,19 +319,19 @@ static Status place_there(PlaceHeat *out, const void *user, double unix_s, const
     *out = (PlaceHeat){.ground_rho = ground_rho};
     const GroundWeather *w = weather_then(out->wind_enu_mps, v, unix_s);
     const Elevation     *elevation = world->landscape ? &world->landscape->elevation : NULL;
-    const double ground_m = elevation ? elevation_height(elevation, p_enu[0], p_enu[1], NULL) : 0;
-    const double zero_m = elevation ? elevation_height(elevation, 0, 0, NULL) : 0;
+    const double         ground_m = elevation ? elevation_height(elevation, p_enu[0], p_enu[1], NULL) : 0;
+    const double         zero_m = elevation ? elevation_height(elevation, 0, 0, NULL) : 0;
     /* heights as in the atmosphere: over the ground at the origin, and the tangent plane departs from the Earth */
     const double high_m = p_enu[2] - zero_m + (p_enu[0] * p_enu[0] + p_enu[1] * p_enu[1]) / (2 * 6371e3);
     const double colder_k = lapse_k_m * clamp(high_m, -500, 11000);
-    out->air_k        = w->air.temp_k - colder_k;
-    out->air_density  = exp(-clamp(high_m, -500, 30000) / scale_m);
-    out->direct_w_m2  = w->direct_w_m2;
+    out->air_k = w->air.temp_k - colder_k;
+    out->air_density = exp(-clamp(high_m, -500, 30000) / scale_m);
+    out->direct_w_m2 = w->direct_w_m2;
     out->diffuse_w_m2 = w->diffuse_w_m2;
     out->longwave_w_m2 = w->longwave_w_m2 * pow(out->air_k / w->air.temp_k, 4);
-    out->above_m      = isfinite(ground_m) ? p_enu[2] - ground_m : 0;
+    out->above_m = isfinite(ground_m) ? p_enu[2] - ground_m : 0;
     out->ground_k = out->under_k = w->air.temp_k;
-    out->water_k  = fmax(w->air.temp_k, sea_freezes_k);
+    out->water_k = fmax(w->air.temp_k, sea_freezes_k);
     memcpy(out->sun_d_enu, w->sun_d_enu, sizeof out->sun_d_enu);
     return present ? ground_there(out, v, unix_s, p_enu) : STATUS_OK;
 }
@@ -331,11 +343,16 @@ Status world_vehicles_create(WorldVehicles **out, const World *world, const Worl
     v->world = world;
     v->arena = arena_create();
     for (int k = 0; k < weather_kept; k++) v->kept[k].unix_s = NAN;
-    const VehicleHeatConfig config = {.first_step_s = fmin(1, about->step_s), .step_s = about->step_s,
-                                      .window_us = about->window_us, .past_parts = about->past_parts,
-                                      .unix_s = world->drive->exercise_s, .capacity = vehicle_capacity, .place = place_there, .user = v};
-    const VehicleHeatWorld  of = {world->catalog, &world->materials, &world->parts, &world->frame, world->tracer, world->patches,
-                                  about->given, about->kept};
+    const VehicleHeatConfig config = {.first_step_s = fmin(1, about->step_s),
+                                      .step_s = about->step_s,
+                                      .window_us = about->window_us,
+                                      .past_parts = about->past_parts,
+                                      .unix_s = world->drive->exercise_s,
+                                      .capacity = vehicle_capacity,
+                                      .place = place_there,
+                                      .user = v};
+    const VehicleHeatWorld  of = {world->catalog, &world->materials, &world->parts, &world->frame,
+                                  world->tracer,  world->patches,    about->given,  about->kept};
     const Status            status = v->arena ? vehicle_heat_create(&v->heat, &config, &of) : STATUS_NO_MEMORY;
     if (status == STATUS_OK) *out = v;
     else world_vehicles_destroy(v);

@@ -15,35 +15,36 @@
 #include "terrain/weather/weather.h"
 
 typedef struct World {
-    const Catalog   *catalog;
-    const Landscape *landscape;      /* NULL: no ground */
-    LocalFrame       frame;          /* the ENU frame of the views */
-    Tracer          *tracer;
-    Materials        materials;
-    DetailTable     *detail;         /* of the ground; the caller may close it and set NULL: classes of one value */
-    Plants          *plants;         /* NULL after world_open, with forest: no plants */
-    Forest          *forest;
-    Canopy          *canopy;
-    FarWoods        *far_woods;      /* NULL: every plant stands */
-    PlanckTable     *planck_mwir, *planck_lwir;
-    Atmosphere      *atmosphere;     /* NULL after world_open; the caller may open one here; world_close closes it */
-    RadarConfig      radar;
-    WeatherCourse   *course;         /* NULL after world_open, with heat and shadow: ground as warm as the air */
-    Heat            *heat;
-    ShadowMap       *shadow;         /* NULL with heat: nothing shaded the ground */
-    struct HeatDrive *drive;         /* of heat */
-    PartTable        parts;          /* what is behind the skin of parts */
-    PatchSet        *patches;        /* of the models that have been seen with temperatures */
-    struct SkyKept  *sky;            /* what frames leave for the next (render/light/sky_visibility.h) */
+    const Catalog    *catalog;
+    const Landscape  *landscape; /* NULL: no ground */
+    LocalFrame        frame;     /* the ENU frame of the views */
+    Tracer           *tracer;
+    Materials         materials;
+    DetailTable      *detail; /* of the ground; the caller may close it and set NULL: classes of one value */
+    Plants           *plants; /* NULL after world_open, with forest: no plants */
+    Forest           *forest;
+    Canopy           *canopy;
+    FarWoods         *far_woods; /* NULL: every plant stands */
+    PlanckTable      *planck_mwir, *planck_lwir;
+    Atmosphere       *atmosphere; /* NULL after world_open; the caller may open one here; world_close closes it */
+    RadarConfig       radar;
+    WeatherCourse    *course; /* NULL after world_open, with heat and shadow: ground as warm as the air */
+    Heat             *heat;
+    ShadowMap        *shadow;  /* NULL with heat: nothing shaded the ground */
+    struct HeatDrive *drive;   /* of heat */
+    PartTable         parts;   /* what is behind the skin of parts */
+    PatchSet         *patches; /* of the models that have been seen with temperatures */
+    struct SkyKept   *sky;     /* what frames leave for the next (render/light/sky_visibility.h) */
 } World;
 
 /* frame: the landscape's, or any where there is none. */
-Status world_open(World *out, const Catalog *catalog, const Landscape *landscape, const LocalFrame *frame, const char *isa);
+Status world_open(World *out, const Catalog *catalog, const Landscape *landscape, const LocalFrame *frame,
+                  const char *isa);
 /* Grows the prototypes and opens the forest over woods, which must outlive the world. Once, before the first frame; on
  * failure only world_close may follow. */
 Status world_plant(World *world, const Woods *woods, const ForestConfig *config, const char *isa, Pool *pool);
-/* Warms the ground up to unix_s, that of exercise time 0. course becomes the world's, on failure too. shadow_m: cells of
- * its shadow map; 0: none. After world_plant, with an atmosphere. */
+/* Warms the ground up to unix_s, that of exercise time 0. course becomes the world's, on failure too. shadow_m: cells
+ * of its shadow map; 0: none. After world_plant, with an atmosphere. */
 Status world_warm(World *world, WeatherCourse *course, const HeatConfig *config, double shadow_m, Pool *pool);
 /* The same for a clear day of the atmosphere's own temperature: what benches and pictures of models stand on. */
 Status world_warm_clear(World *world, const HeatConfig *config, double shadow_m, Pool *pool);
@@ -66,7 +67,7 @@ typedef struct HeatDrive {
 } HeatDrive;
 
 /* HeatWeather; user: a HeatDrive. Thermometer at 2 m, anemometer at 10 m. Beyond 1900 .. 2100 there is no sun. */
-void   world_heat_weather(GroundWeather *out, double unix_s, const void *drive);
+void world_heat_weather(GroundWeather *out, double unix_s, const void *drive);
 
 /* ---- entities: vehicle_heat.h with the weather's course, and the heat of the world's ground -- */
 
@@ -76,10 +77,10 @@ typedef struct WorldVehicles WorldVehicles;
 static const double vehicle_window_us = 3300;
 
 typedef struct WorldVehiclesConfig {
-    double step_s;            /* of entities whose drives do not change */
-    double window_us;         /* VehicleHeatConfig */
-    int    past_parts;        /* VehicleHeatConfig; 0: 1 */
-    const GivenHeat *given;   /* VehicleHeatWorld; so is: */
+    double           step_s;     /* of entities whose drives do not change */
+    double           window_us;  /* VehicleHeatConfig */
+    int              past_parts; /* VehicleHeatConfig; 0: 1 */
+    const GivenHeat *given;      /* VehicleHeatWorld; so is: */
     const KeptHeat  *kept;
 } WorldVehiclesConfig;
 
@@ -87,8 +88,8 @@ typedef struct WorldVehiclesConfig {
 Status world_vehicles_create(WorldVehicles **out, const World *world, const WorldVehiclesConfig *config);
 void   world_vehicles_destroy(WorldVehicles *vehicles); /* accepts NULL */
 /* Of VehicleHeat: ticks in order of time; the frame's snapshot after those up to its time. */
-Status world_vehicles_tick(WorldVehicles *vehicles, const Snapshot *snapshot);
-Status world_vehicles_show(const WorldVehicles *vehicles, Snapshot *snapshot, Arena *arena);
+Status             world_vehicles_tick(WorldVehicles *vehicles, const Snapshot *snapshot);
+Status             world_vehicles_show(const WorldVehicles *vehicles, Snapshot *snapshot, Arena *arena);
 const VehicleHeat *world_vehicles_heat(const WorldVehicles *vehicles);
 
 /* Temperatures of a snapshot that has no past: as entities begin. What benches and pictures of models need. */

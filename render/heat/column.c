@@ -7,7 +7,8 @@ Status column_create(Column *out, const ColumnLayer *layer, int layers, double f
     if (layers < 1 || !(first_m > 0) || !(growth >= 1)) return STATUS_BAD_VALUE;
     for (int l = 0; l < layers; l++) {
         const ColumnLayer *at = &layer[l];
-        if (!(at->thickness_m > 0) || !(at->conductivity_w_mk > 0) || !(at->capacity_j_m3k > 0)) return STATUS_BAD_VALUE;
+        if (!(at->thickness_m > 0) || !(at->conductivity_w_mk > 0) || !(at->capacity_j_m3k > 0))
+            return STATUS_BAD_VALUE;
         /* as many elements as it takes, then scaled to fill the layer */
         int    count = 0;
         double sum = 0;
@@ -67,7 +68,7 @@ static double surface_root(const ColumnBoundary *b, const void *law, double line
             const double secant = (last - miss) / (temp_k - last_k);
             if (secant > 0.2 * slope && secant < 5 * slope) slope = secant;
         }
-        double next_k = temp_k + miss / slope;
+        double     next_k = temp_k + miss / slope;
         const bool open = isinf(low_k) || isinf(high_k), near = fabs(next_k - temp_k) < 1e-11 * fmax(fabs(temp_k), 1);
         /* T^4 far from its root: Newton's steps up and the secant's down may go round in circles */
         if (!(next_k > low_k && next_k < high_k) || (!open && !near && fabs(miss) > 0.5 * fabs(before))) {
@@ -75,7 +76,7 @@ static double surface_root(const ColumnBoundary *b, const void *law, double line
             if (next_k == low_k || next_k == high_k) break;
         }
         if (next_k < 0) next_k = 0.5 * temp_k; /* no temperature below 0 K */
-        before = last; /* two steps ago */
+        before = last;                         /* two steps ago */
         last_k = temp_k, last = miss;
         if (fabs(next_k - temp_k) < 1e-11 * fmax(fabs(temp_k), 1)) {
             temp_k = next_k;
@@ -110,8 +111,8 @@ void column_factors(ColumnFactors *out, const Column *column, double dt_s)
 }
 
 /* (C / stage + K) T = right + flux(T_0) e_0. */
-static void solve_stage(double temp_k[], const Column *c, const ColumnFactors *f, const ColumnBoundary *b, const void *law,
-                        const double right[])
+static void solve_stage(double temp_k[], const Column *c, const ColumnFactors *f, const ColumnBoundary *b,
+                        const void *law, const double right[])
 {
     const int last = c->nodes - 1;
     double    line[column_most_nodes];
@@ -142,7 +143,8 @@ typedef struct Step {
 } Step;
 
 /* Of (C / stage + K + falls) x = right / stage, x at the surface. */
-static double filtered_k(const Column *c, const ColumnFactors *f, const double right_j_m2[], double falls, double stage_s)
+static double filtered_k(const Column *c, const ColumnFactors *f, const double right_j_m2[], double falls,
+                         double stage_s)
 {
     double line = right_j_m2[c->nodes - 1];
     for (int i = c->nodes - 2; i >= 0; i--) line = right_j_m2[i] + f->share[i] * line;
@@ -152,12 +154,12 @@ static double filtered_k(const Column *c, const ColumnFactors *f, const double r
 /* Backward Euler over [from, from + width] of the step: first order, and without overshoot whatever its length. */
 static void euler(ColumnState *s, const Step *step, double from, double width)
 {
-    const Column *c = step->column;
+    const Column     *c = step->column;
     _Alignas(16) char law[column_law_octets];
-    ColumnFactors f;
-    double       right[column_most_nodes] = {0}, falls;
-    const double h_s = width * step->dt_s;
-    const int    last = c->nodes - 1;
+    ColumnFactors     f;
+    double            right[column_most_nodes] = {0}, falls;
+    const double      h_s = width * step->dt_s;
+    const int         last = c->nodes - 1;
     eliminate(&f, c, h_s);
     step->boundary->at(law, from + width, step->boundary->user);
     for (int i = 0; i <= last; i++) right[i] = c->capacity_j_m2k[i] / h_s * s->temp_k[i];
@@ -167,10 +169,11 @@ static void euler(ColumnState *s, const Step *step, double from, double width)
 }
 
 /* Heat into each node, conducted and through the surface under this law. */
-static void flows(double out[], double *q, double *deep, double *falls, const Step *step, const void *law, const double temp_k[])
+static void flows(double out[], double *q, double *deep, double *falls, const Step *step, const void *law,
+                  const double temp_k[])
 {
     const ColumnBoundary *b = step->boundary;
-    *q    = b->flux(falls, temp_k[0], law);
+    *q = b->flux(falls, temp_k[0], law);
     *deep = b->deep_k - temp_k[step->column->nodes - 1];
     conducted(out, step->column, b, temp_k);
     out[0] += *q;
@@ -180,15 +183,16 @@ static void flows(double out[], double *q, double *deep, double *falls, const St
  * Shampine, Applied Numerical Mathematics 20, 1996). */
 static double tr_bdf2(ColumnState *s, const Step *step, const ColumnFactors *f, double from, double width)
 {
-    static const double gamma = 0.58578643762690495, w = 0.35355339059327376; /* 2 - sqrt 2; sqrt 2 / 4 */
-    const double alpha = 1 / (gamma * (2 - gamma)), beta = (1 - gamma) * (1 - gamma) / (gamma * (2 - gamma));
+    static const double   gamma = 0.58578643762690495, w = 0.35355339059327376; /* 2 - sqrt 2; sqrt 2 / 4 */
+    const double          alpha = 1 / (gamma * (2 - gamma)), beta = (1 - gamma) * (1 - gamma) / (gamma * (2 - gamma));
     const Column         *c = step->column;
     const ColumnBoundary *b = step->boundary;
-    _Alignas(16) char law[column_law_octets];
+    _Alignas(16) char     law[column_law_octets];
     double       flow[3][column_most_nodes] = {{0}}, right[column_most_nodes] = {0}, before_k[column_most_nodes];
     double       q[3], deep[3], falls;
     const int    n = c->nodes;
-    const double h_s = width * step->dt_s, stage_s = 0.5 * gamma * h_s, per_s = 1 / stage_s; /* the same for both stages */
+    const double h_s = width * step->dt_s, stage_s = 0.5 * gamma * h_s,
+                 per_s = 1 / stage_s; /* the same for both stages */
 
     b->at(law, from, b->user);
     flows(flow[0], &q[0], &deep[0], &falls, step, law, s->temp_k);
@@ -231,7 +235,8 @@ static void advance(ColumnState *s, const Step *step, const ColumnFactors *given
     advance(s, step, NULL, from + 0.5 * width, 0.5 * width, depth + 1);
 }
 
-void column_step(ColumnState *state, const Column *column, const ColumnFactors *factors, const ColumnBoundary *boundary, double dt_s)
+void column_step(ColumnState *state, const Column *column, const ColumnFactors *factors, const ColumnBoundary *boundary,
+                 double dt_s)
 {
     const Step step = {column, boundary, dt_s};
     advance(state, &step, factors && factors->dt_s == dt_s ? factors : NULL, 0, 1, 0);

@@ -9,11 +9,11 @@ enum { by_any = 0, by_kind, by_name };
 
 /* Rows of one entity and part: [first, last) of GivenHeat's. */
 typedef struct GivenPart {
-    int         entity_by;          /* kind: of a model */
+    int         entity_by; /* kind: of a model */
     DisEntityId id;
     bool        any_part, has_role; /* part is *; a role is called part */
     HeatRole    role;
-    const char *model, *part;       /* the table's */
+    const char *model, *part; /* the table's */
     int         first, last;
 } GivenPart;
 
@@ -21,7 +21,7 @@ struct GivenHeat {
     Table      table;
     int        count;
     GivenPart *part;
-    double    *t_s, *temp_k;        /* [rows], those of a part together */
+    double    *t_s, *temp_k; /* [rows], those of a part together */
 };
 
 /* A row, to be brought together with those of its part. */
@@ -50,8 +50,11 @@ static Status complain(const Table *table, int row, const char *what)
 static Status begin_part(GivenPart *out, const Table *table, const GivenRow *row, int at)
 {
     *out = (GivenPart){.model = row->entity, .part = row->part, .first = at, .last = at};
-    if (!*row->entity || !*row->part) return complain(table, row->row, "entity or part is empty; * stands for all of them");
-    out->entity_by = strcmp(row->entity, "*") == 0 ? by_any : dis_entity_id_parse(&out->id, row->entity) ? by_name : by_kind;
+    if (!*row->entity || !*row->part)
+        return complain(table, row->row, "entity or part is empty; * stands for all of them");
+    out->entity_by = strcmp(row->entity, "*") == 0                ? by_any
+                     : dis_entity_id_parse(&out->id, row->entity) ? by_name
+                                                                  : by_kind;
     out->any_part = strcmp(row->part, "*") == 0;
     out->has_role = heat_role_find(&out->role, row->part);
     return STATUS_OK;
@@ -62,17 +65,20 @@ static Status take_rows(GivenHeat *g, GivenRow *row, const int column[4])
     Status status = STATUS_OK;
     for (int i = 0; i < g->table.rows; i++) {
         DisEntityId id;
-        row[i] = (GivenRow){.entity = table_text(&g->table, i, column[0]), .part = table_text(&g->table, i, column[1]), .row = i};
+        row[i] = (GivenRow){
+            .entity = table_text(&g->table, i, column[0]), .part = table_text(&g->table, i, column[1]), .row = i};
         if (dis_entity_id_parse(&id, row[i].entity)) dis_entity_id_text(row[i].id, id);
     }
     qsort(row, (size_t)g->table.rows, sizeof *row, by_part);
     for (int i = 0; i < g->table.rows && status == STATUS_OK; i++) {
-        const bool same = i > 0 && strcmp(entity_of(&row[i]), entity_of(&row[i - 1])) == 0 && strcmp(row[i].part, row[i - 1].part) == 0;
+        const bool same = i > 0 && strcmp(entity_of(&row[i]), entity_of(&row[i - 1])) == 0 &&
+                          strcmp(row[i].part, row[i - 1].part) == 0;
         if (!same) status = begin_part(&g->part[g->count++], &g->table, &row[i], i);
         if (status == STATUS_OK) status = table_number(&g->t_s[i], &g->table, row[i].row, column[2], -1e9, 1e9);
         if (status == STATUS_OK) status = table_number(&g->temp_k[i], &g->table, row[i].row, column[3], 1, 4000);
         if (status == STATUS_OK && same && !(g->t_s[i] > g->t_s[i - 1]))
-            status = complain(&g->table, row[i].row, "t_s does not ascend for this entity and part; sort the rows by time");
+            status =
+                complain(&g->table, row[i].row, "t_s does not ascend for this entity and part; sort the rows by time");
         g->part[g->count - 1].last = i + 1;
     }
     return status;
@@ -81,15 +87,15 @@ static Status take_rows(GivenHeat *g, GivenRow *row, const int column[4])
 Status given_heat_open(GivenHeat **out, const char *path)
 {
     static const char *const name[4] = {"entity", "part", "t_s", "temp_k"};
-    int        column[4];
-    GivenHeat *g = calloc(1, sizeof *g);
+    int                      column[4];
+    GivenHeat               *g = calloc(1, sizeof *g);
     if (!g) return STATUS_NO_MEMORY;
     Status status = table_open(&g->table, path);
     if (status == STATUS_OK && !table_columns(column, &g->table, name, 4, "heat.given")) status = STATUS_BAD_VALUE;
     const size_t rows = status == STATUS_OK ? (size_t)g->table.rows : 0;
     GivenRow    *row = calloc(rows + 1, sizeof *row);
-    g->part   = calloc(rows + 1, sizeof *g->part);
-    g->t_s    = calloc(rows + 1, sizeof *g->t_s);
+    g->part = calloc(rows + 1, sizeof *g->part);
+    g->t_s = calloc(rows + 1, sizeof *g->t_s);
     g->temp_k = calloc(rows + 1, sizeof *g->temp_k);
     if (status == STATUS_OK && !(row && g->part && g->t_s && g->temp_k)) status = STATUS_NO_MEMORY;
     if (status == STATUS_OK) status = take_rows(g, row, column);
@@ -111,7 +117,8 @@ void given_heat_close(GivenHeat *g)
 
 static bool is_entity(const GivenPart *p, DisEntityId id, const Model *model)
 {
-    return p->entity_by == by_any || (p->entity_by == by_name ? dis_entity_id_compare(p->id, id) == 0 : strcmp(p->model, model->name) == 0);
+    return p->entity_by == by_any ||
+           (p->entity_by == by_name ? dis_entity_id_compare(p->id, id) == 0 : strcmp(p->model, model->name) == 0);
 }
 
 /* by_any, by_kind, by_name; -1: another part. */
@@ -202,9 +209,10 @@ static Status take_kept_rows(KeptHeat *k, const int column[4])
     if (!k->entity || !k->temp_k) return STATUS_NO_MEMORY;
     for (int row = 0; row < k->table.rows; row++) {
         KeptNodes *e = &k->entity[k->count];
-        e->model  = table_text(&k->table, row, column[1]);
+        e->model = table_text(&k->table, row, column[1]);
         e->temp_k = k->temp_k + at;
-        if (!dis_entity_id_parse(&e->id, table_text(&k->table, row, column[0]))) return complain_kept(&k->table, row, "entity is no id such as 1:2:3");
+        if (!dis_entity_id_parse(&e->id, table_text(&k->table, row, column[0])))
+            return complain_kept(&k->table, row, "entity is no id such as 1:2:3");
         const Status status = table_number(&e->unix_s, &k->table, row, column[2], -1e12, 1e12);
         if (status != STATUS_OK) return status;
         e->nodes = read_numbers(k->temp_k + at, table_text(&k->table, row, column[3]));
@@ -218,8 +226,8 @@ static Status take_kept_rows(KeptHeat *k, const int column[4])
 Status heat_kept_open(KeptHeat **out, const char *path)
 {
     static const char *const name[4] = {"entity", "model", "unix_s", "node_k"};
-    int       column[4];
-    KeptHeat *k = calloc(1, sizeof *k);
+    int                      column[4];
+    KeptHeat                *k = calloc(1, sizeof *k);
     if (!k) return STATUS_NO_MEMORY;
     Status status = table_open(&k->table, path);
     if (status == STATUS_OK && !table_columns(column, &k->table, name, 4, "heat.vehicles")) status = STATUS_BAD_VALUE;
@@ -259,7 +267,9 @@ static void put_all(FILE *to, const void *user)
 {
     const Kept *kept = user;
     char        id[dis_id_text_size];
-    fputs("# Temperatures of entities' thermal networks, K. Written and read again by Pitviper.\nentity,model,unix_s,node_k\n", to);
+    fputs(
+        "# Temperatures of entities' thermal networks, K. Written and read again by Pitviper.\nentity,model,unix_s,node_k\n",
+        to);
     for (int i = 0; i < kept->count; i++) {
         const KeptNodes *e = &kept->nodes[i];
         dis_entity_id_text(id, e->id);

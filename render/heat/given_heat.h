@@ -15,9 +15,10 @@
  *     tank,engine_deck,600,331.5
  *     1:1:7,*,0,290
  *
- * entity: a DIS entity id, the name of a model, or * for all; part: the name of a part, a role of etc/heat.csv, or *. t_s:
- * exercise time (time_s of truth.jsonl); temp_k: 1 .. 4000. Straight lines between rows, the first and last temperature before and after them. What
- * names an entity wins over a model, that over *; then the part over its role, that over *. */
+ * entity: a DIS entity id, the name of a model, or * for all; part: the name of a part, a role of etc/heat.csv, or *.
+ * t_s: exercise time (time_s of truth.jsonl); temp_k: 1 .. 4000. Straight lines between rows, the first and last
+ * temperature before and after them. What names an entity wins over a model, that over *; then the part over its role,
+ * that over *. */
 
 typedef struct GivenHeat GivenHeat;
 

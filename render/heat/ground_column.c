@@ -13,9 +13,10 @@ Status ground_layers(Column *out, const GroundKind *kind, const GroundGrid *grid
         above_m += layer[i].thickness_m;
     }
     const bool soil = kind->porosity > 0;
-    layer[layers++] = (ColumnLayer){fmax(grid->depth_m - above_m, 0.5),
-                                    soil ? ground_soil_conductivity_w_mk(kind->porosity, kind->quartz, kind->saturation) : kind->rock_w_mk,
-                                    soil ? ground_soil_capacity_j_m3k(kind->porosity, kind->saturation) : kind->rock_j_m3k};
+    layer[layers++] = (ColumnLayer){
+        fmax(grid->depth_m - above_m, 0.5),
+        soil ? ground_soil_conductivity_w_mk(kind->porosity, kind->quartz, kind->saturation) : kind->rock_w_mk,
+        soil ? ground_soil_capacity_j_m3k(kind->porosity, kind->saturation) : kind->rock_j_m3k};
     return column_create(out, layer, layers, grid->first_m, grid->growth);
 }
 
@@ -33,15 +34,17 @@ static double soil_darkening(double saturation) { return 1 - 0.5 * saturation; }
 static double ground_absorbed_w_m2(const GroundColumn *c, const GroundWeather *w, const GroundExposure *e)
 {
     const GroundKind *k = c->kind;
-    const double up = 0.5 * (1 + e->n_enu[2]), sky = up * e->sky;
-    const double dark = k->vapour == GROUND_SOIL ? 1 - (1 - k->absorptance) * soil_darkening(c->saturation) : k->absorptance;
-    const double along = fmax(v3_dot(e->n_enu, w->sun_d_enu), 0), level = w->direct_w_m2 * fmax(w->sun_d_enu[2], 0) + w->diffuse_w_m2;
+    const double      up = 0.5 * (1 + e->n_enu[2]), sky = up * e->sky;
+    const double      dark =
+        k->vapour == GROUND_SOIL ? 1 - (1 - k->absorptance) * soil_darkening(c->saturation) : k->absorptance;
+    const double along = fmax(v3_dot(e->n_enu, w->sun_d_enu), 0),
+                 level = w->direct_w_m2 * fmax(w->sun_d_enu[2], 0) + w->diffuse_w_m2;
     const double sun = e->sun * w->direct_w_m2 * along + w->diffuse_w_m2 * sky + (1 - up) * (1 - dark) * level;
     return dark * sun + k->emissivity * (sky * w->longwave_w_m2 + (1 - sky) * stefan_w_m2k4 * pow(e->around_k, 4));
 }
 
-/* Leaves: as Noilhan & Planton, Mon. Weather Rev. 117, 1989, whose stomata close in the dark (eq. 33, RGL 100 W/m2, leaf
- * area index 3). */
+/* Leaves: as Noilhan & Planton, Mon. Weather Rev. 117, 1989, whose stomata close in the dark (eq. 33, RGL 100 W/m2,
+ * leaf area index 3). */
 static double leaves_s_m(double full_sun_s_m, double sun_w_m2)
 {
     const double f = 0.55 * sun_w_m2 / 100 * (2.0 / 3);
@@ -55,8 +58,10 @@ static double soil_resistance_s_m(double saturation) { return exp(8.206 - 4.255 
 void ground_flux(SurfaceFlux *out, const GroundColumn *c, const GroundWeather *w, const GroundExposure *e)
 {
     const GroundKind *k = c->kind;
-    const double level = w->direct_w_m2 * fmax(w->sun_d_enu[2], 0) * e->sun + w->diffuse_w_m2 * e->sky;
-    *out = (SurfaceFlux){.air = w->air, .absorbed_w_m2 = ground_absorbed_w_m2(c, w, e), .emissivity = k->emissivity,
+    const double      level = w->direct_w_m2 * fmax(w->sun_d_enu[2], 0) * e->sun + w->diffuse_w_m2 * e->sky;
+    *out = (SurfaceFlux){.air = w->air,
+                         .absorbed_w_m2 = ground_absorbed_w_m2(c, w, e),
+                         .emissivity = k->emissivity,
                          .roughness_m = k->roughness_m,
                          .resistance_s_m = k->vapour == GROUND_SOIL     ? soil_resistance_s_m(c->saturation)
                                            : k->vapour == GROUND_LEAVES ? leaves_s_m(k->resistance_s_m, level)
@@ -73,8 +78,8 @@ typedef struct Between {
 /* Straight between the two. */
 static void law_between(void *law, double share, const void *user)
 {
-    const Between *b = user;
-    SurfaceFlux   *out = law;
+    const Between     *b = user;
+    SurfaceFlux       *out = law;
     const SurfaceFlux *p = &b->from, *q = &b->to;
     _Static_assert(sizeof *out <= column_law_octets, "room for the law");
     *out = *p;
@@ -90,12 +95,13 @@ static void law_between(void *law, double share, const void *user)
 
 /* Water at the top after dt_s: rain and evaporation (kg/(m2 s)) change it, water from below restores it within a day
  * (force-restore: Deardorff, J. Geophys. Res. 83, 1978). Saturations, 0 .. 1. */
-static double soil_water_step(double top, double deep, double porosity, double rain_kg_m2s, double evaporates_kg_m2s, double dt_s)
+static double soil_water_step(double top, double deep, double porosity, double rain_kg_m2s, double evaporates_kg_m2s,
+                              double dt_s)
 {
     static const double depth_m = 0.1, day_s = 86400, restores = 0.9;
-    const double c1 = top >= 0.75 ? 0.5 : top <= 0.15 ? 14 : 14 - 22.5 * (top - 0.15);
-    const double gain = c1 * (rain_kg_m2s - evaporates_kg_m2s) / (1000 * depth_m * porosity);
-    const double back = exp(-restores * dt_s / day_s), held = deep + gain * day_s / restores;
+    const double        c1 = top >= 0.75 ? 0.5 : top <= 0.15 ? 14 : 14 - 22.5 * (top - 0.15);
+    const double        gain = c1 * (rain_kg_m2s - evaporates_kg_m2s) / (1000 * depth_m * porosity);
+    const double        back = exp(-restores * dt_s / day_s), held = deep + gain * day_s / restores;
     return clamp(held + (top - held) * back, 0.01, 1);
 }
 
@@ -106,16 +112,18 @@ void ground_column_step(GroundColumn *c, double tolerance_k, const GroundWeather
     ground_flux(&between.from, c, before, exposure);
     ground_flux(&between.to, c, after, exposure);
     const ColumnBoundary boundary = {surface_flux_w_m2, law_between, &between, 0, tolerance_k};
-    const double begun_k = c->state.temp_k[0];
+    const double         begun_k = c->state.temp_k[0];
     column_step(&c->state, c->column, c->factors, &boundary, dt_s);
     if (c->state.temp_k[0] > c->kind->melts_k) { /* what is too much melts, and runs off */
         for (int i = 0; i < c->column->nodes && c->state.temp_k[i] > c->kind->melts_k; i++)
             c->state.temp_k[i] = c->kind->melts_k;
     }
     if (c->kind->vapour != GROUND_SOIL) return;
-    const double evaporates = 0.5 * (surface_latent_w_m2(&between.from, begun_k) + surface_latent_w_m2(&between.to, c->state.temp_k[0]));
+    const double evaporates =
+        0.5 * (surface_latent_w_m2(&between.from, begun_k) + surface_latent_w_m2(&between.to, c->state.temp_k[0]));
     const double rain = 0.5 * (before->rain_kg_m2s + after->rain_kg_m2s);
-    c->saturation = soil_water_step(c->saturation, c->kind->saturation, c->kind->porosity, rain, evaporates / vapour_j_kg, dt_s);
+    c->saturation =
+        soil_water_step(c->saturation, c->kind->saturation, c->kind->porosity, rain, evaporates / vapour_j_kg, dt_s);
 }
 
 /* ---- soil ------------------------------------------------------------------------------------ */
@@ -139,7 +147,9 @@ double ground_soil_capacity_j_m3k(double porosity, double saturation)
 
 static const char *ground_kind_name(int kind)
 {
-    return kind == ground_forest_floor ? "forest_floor" : kind == ground_burnt ? "burnt" : surface_name((SurfaceClass)kind);
+    return kind == ground_forest_floor ? "forest_floor"
+           : kind == ground_burnt      ? "burnt"
+                                       : surface_name((SurfaceClass)kind);
 }
 
 int ground_kind_find(const char *name)
@@ -208,16 +218,19 @@ static Status read_row(GroundKinds *out, const Table *table, int row, const int 
     GroundKind     *kind = &out->kind[k];
     const Material *m = &materials->material[materials->surface[k < SURFACE_COUNT ? k : SURFACE_BARE_SOIL]];
     for (int c = 0; c < columns; c++)
-        if (table_number((double *)((char *)kind + column[c].offset), table, row, at[c], column[c].low, column[c].high) != STATUS_OK)
+        if (table_number((double *)((char *)kind + column[c].offset), table, row, at[c], column[c].low,
+                         column[c].high) != STATUS_OK)
             return STATUS_BAD_VALUE;
     if (read_vapour(kind, table, row, at[columns + 1]) != STATUS_OK) return STATUS_BAD_VALUE;
     kind->absorptance = (double)m->solar_absorptance;
-    kind->emissivity  = 1 - (double)m->rho_lwir;
-    kind->melts_k     = k == SURFACE_SNOW ? 273.15 : INFINITY;
-    if (*sun && table_number(&kind->absorptance, table, row, at[columns + 2], 0, 1) != STATUS_OK) return STATUS_BAD_VALUE;
+    kind->emissivity = 1 - (double)m->rho_lwir;
+    kind->melts_k = k == SURFACE_SNOW ? 273.15 : INFINITY;
+    if (*sun && table_number(&kind->absorptance, table, row, at[columns + 2], 0, 1) != STATUS_OK)
+        return STATUS_BAD_VALUE;
     if (!layers_fit(kind) || (kind->porosity == 0 && !(kind->rock_w_mk > 0 && kind->rock_j_m3k > 0))) {
         log_error("ground heat: a layer needs conductivity and capacity, and ground without pores rock_w_mk and "
-                  "rock_j_m3k: file=%s line=%d", table->path, table->line[row + 1]);
+                  "rock_j_m3k: file=%s line=%d",
+                  table->path, table->line[row + 1]);
         return STATUS_BAD_VALUE;
     }
     snprintf(kind->name, sizeof kind->name, "%s", name);
@@ -226,8 +239,8 @@ static Status read_row(GroundKinds *out, const Table *table, int row, const int 
 
 Status ground_kinds_open(GroundKinds *out, const char *path, const Materials *materials)
 {
-    Table       table = {0};
-    int         at[columns + 3];
+    Table             table = {0};
+    int               at[columns + 3];
     const char *const text[] = {"surface", "vapour", "absorptance"};
     *out = (GroundKinds){0};
     Status status = table_open(&table, path);
@@ -239,7 +252,8 @@ Status ground_kinds_open(GroundKinds *out, const char *path, const Materials *ma
         log_error("ground heat: column missing: file=%s column=%s", path, name);
         status = STATUS_BAD_VALUE;
     }
-    for (int row = 0; row < table.rows && status == STATUS_OK; row++) status = read_row(out, &table, row, at, materials);
+    for (int row = 0; row < table.rows && status == STATUS_OK; row++)
+        status = read_row(out, &table, row, at, materials);
     table_close(&table);
     for (int k = 1; k < ground_kinds && status == STATUS_OK; k++)
         if (!*out->kind[k].name) {

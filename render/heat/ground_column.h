@@ -13,15 +13,15 @@ typedef enum GroundVapour { GROUND_DRY, GROUND_SOIL, GROUND_LEAVES, GROUND_WATER
 /* Row of etc/ground_heat.csv, with the optics of its material. */
 typedef struct GroundKind {
     char         name[32];
-    ColumnLayer  layer[2];        /* above the soil: thatch, paving, snow, water */
+    ColumnLayer  layer[2]; /* above the soil: thatch, paving, snow, water */
     int          layers;
     double       porosity, quartz, saturation; /* of the soil below; porosity 0: rock, of: */
     double       rock_w_mk, rock_j_m3k;
     double       roughness_m;
     GroundVapour vapour;
-    double       resistance_s_m;  /* of leaves in full sun */
+    double       resistance_s_m; /* of leaves in full sun */
     double       absorptance, emissivity;
-    double       melts_k;         /* no warmer than this; INFINITY: any */
+    double       melts_k; /* no warmer than this; INFINITY: any */
 } GroundKind;
 
 /* Weather at one instant, as ground feels it. */
@@ -35,17 +35,17 @@ typedef struct GroundWeather {
 /* What of the sky a piece of ground sees. */
 typedef struct GroundExposure {
     double n_enu[3];
-    double sun;        /* share of the direct sun that arrives, 0 .. 1 */
-    double sky;        /* share of the hemisphere over the surface that is sky, beyond what its tilt takes, 0 .. 1 */
-    double around_k;   /* temperature of what fills the rest */
+    double sun;      /* share of the direct sun that arrives, 0 .. 1 */
+    double sky;      /* share of the hemisphere over the surface that is sky, beyond what its tilt takes, 0 .. 1 */
+    double around_k; /* temperature of what fills the rest */
 } GroundExposure;
 
 typedef struct GroundColumn {
-    const GroundKind *kind;
-    const Column     *column;     /* ground_layers of that kind */
+    const GroundKind    *kind;
+    const Column        *column;  /* ground_layers of that kind */
     const ColumnFactors *factors; /* of its usual step; NULL: found at each */
-    ColumnState       state;
-    double            saturation; /* at the top */
+    ColumnState          state;
+    double               saturation; /* at the top */
 } GroundColumn;
 
 /* Elements: first at the top, growing. Defaults: bench precision has rows of time against error. */
@@ -58,10 +58,11 @@ static const GroundGrid ground_grid_default = {0.003, 1.3, 3, 0.02};
 Status ground_layers(Column *out, const GroundKind *kind, const GroundGrid *grid);
 void   ground_column_start(GroundColumn *out, const GroundKind *kind, const Column *layers, double temp_k);
 /* From before to after; both exposures the same piece of ground. */
-void   ground_column_step(GroundColumn *column, double tolerance_k, const GroundWeather *before,
-                          const GroundWeather *after, const GroundExposure *exposure, double dt_s);
+void ground_column_step(GroundColumn *column, double tolerance_k, const GroundWeather *before,
+                        const GroundWeather *after, const GroundExposure *exposure, double dt_s);
 /* Its balance there and then. */
-void   ground_flux(SurfaceFlux *out, const GroundColumn *column, const GroundWeather *weather, const GroundExposure *exposure);
+void ground_flux(SurfaceFlux *out, const GroundColumn *column, const GroundWeather *weather,
+                 const GroundExposure *exposure);
 
 /* ---- what the ground of each surface class is made of (etc/ground_heat.csv) ------------------ */
 
@@ -73,14 +74,14 @@ typedef struct GroundKinds {
 } GroundKinds;
 
 /* path: etc/ground_heat.csv. Every kind must have its row; failures are logged with file, line, column and range. */
-Status      ground_kinds_open(GroundKinds *out, const char *path, const Materials *materials);
+Status ground_kinds_open(GroundKinds *out, const char *path, const Materials *materials);
 /* Soil and what grows on it, that tracks and wheels tear open. */
 static inline bool ground_kind_loosens(int kind)
 {
     return (kind >= SURFACE_GRASS && kind <= SURFACE_TRACK) || kind == SURFACE_SCRUB || kind == SURFACE_WETLAND ||
            kind == ground_forest_floor;
 }
-int         ground_kind_find(const char *name); /* -1: none */
+int ground_kind_find(const char *name); /* -1: none */
 
 /* ---- soil ------------------------------------------------------------------------------------ */
 

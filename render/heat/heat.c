@@ -52,28 +52,27 @@ static GroundWeather no_sun(const GroundWeather *w)
     return out;
 }
 
-
 /* In steps. */
 static int64_t half_hour(const Heat *h) { return (int64_t)fmax(1, round(slot_s / h->config.step_s)); }
 
 typedef struct StepJob {
-    Heat  *heat;
-    double dt_s;
+    Heat                *heat;
+    double               dt_s;
     const GroundWeather *before, *after;
 } StepJob;
 
 static void step_kind(void *user, int worker, int task)
 {
-    const StepJob *job = user;
-    Heat          *h = job->heat;
-    KindState     *s = &h->state[task];
-    const int      level = h->config.facets * h->config.facets / 2;
-    const double   level_k = s->column[level].state.temp_k[0];
+    const StepJob      *job = user;
+    Heat               *h = job->heat;
+    KindState          *s = &h->state[task];
+    const int           level = h->config.facets * h->config.facets / 2;
+    const double        level_k = s->column[level].state.temp_k[0];
     const GroundWeather dark[2] = {no_sun(job->before), no_sun(job->after)};
     (void)worker;
     if (task == SURFACE_NONE) return;
     for (int c = 0; c < h->columns; c++) {
-        const bool night = without_sun(h, c), hidden = c == h->columns - 1;
+        const bool           night = without_sun(h, c), hidden = c == h->columns - 1;
         const GroundExposure e = exposure_of(h, c, hidden ? job->before->air.temp_k : level_k);
         s->column[c].factors = &h->factors[job->dt_s > h->config.step_s][task];
         ground_column_step(&s->column[c], h->config.grid.tolerance_k, night ? &dark[0] : job->before,
@@ -87,7 +86,8 @@ static void step_branches(Heat *h, const GroundWeather *after, double dt_s)
     const double grass_k = h->state[SURFACE_GRASS].column[h->config.facets * h->config.facets / 2].state.temp_k[0];
     for (int k = 0; k < h->branches; k++)
         for (int r = 0; r < branch_radii; r++)
-            for (int shade = 0; shade < 2; shade++) heat_branch_step(&h->branch[k][r][shade], after, shade ? 0 : 1, grass_k, dt_s);
+            for (int shade = 0; shade < 2; shade++)
+                heat_branch_step(&h->branch[k][r][shade], after, shade ? 0 : 1, grass_k, dt_s);
 }
 
 static void run(const Heat *h, PoolTask *task, void *user)
@@ -143,20 +143,21 @@ static int slot_at(double unix_s) { return (int)((unix_s - floor(unix_s / day_s)
 static void fill_table(Heat *h, GroundHeatTable *out, const HeatPast *past)
 {
     const int all = h->config.facets * h->config.facets;
-    *out = (GroundHeatTable){.unix_s = (double)h->index * h->config.step_s, .facets = h->config.facets,
-                       .air_k = h->weather[1].air.temp_k};
+    *out = (GroundHeatTable){
+        .unix_s = (double)h->index * h->config.step_s, .facets = h->config.facets, .air_k = h->weather[1].air.temp_k};
     for (int k = 1; k < ground_kinds; k++) {
         const GroundColumn *c = h->state[k].column;
         for (int i = 0; i < all; i++) out->sun_k[k][i] = (float)c[i].state.temp_k[0];
         for (int i = 0; i < heat_ups; i++) {
             out->shade_k[k][i] = (float)c[all + i].state.temp_k[0];
-            out->dark_k[k][i]  = (float)c[all + heat_ups + i].state.temp_k[0];
+            out->dark_k[k][i] = (float)c[all + heat_ups + i].state.temp_k[0];
         }
         out->hidden_k[k] = (float)c[h->columns - 1].state.temp_k[0];
     }
     for (int k = 0; k < h->branches; k++)
         for (int r = 0; r < branch_radii; r++)
-            for (int shade = 0; shade < 2; shade++) heat_branch_sides(&out->branch[k][r][shade], &h->branch[k][r][shade]);
+            for (int shade = 0; shade < 2; shade++)
+                heat_branch_sides(&out->branch[k][r][shade], &h->branch[k][r][shade]);
     for (int i = 0; i < past->count; i++) {
         /* by halves of an hour: what is longer falls on several */
         const int parts = (int)fmax(1, round(past->span_s[i] / slot_s));
@@ -169,8 +170,8 @@ static void fill_table(Heat *h, GroundHeatTable *out, const HeatPast *past)
     }
 }
 
-/* The next step is worked at in parts, ahead of its time, some with each frame, so that no frame pays for all of it: first
- * the columns of each kind, then what they share, then the responses of each kind. */
+/* The next step is worked at in parts, ahead of its time, some with each frame, so that no frame pays for all of it:
+ * first the columns of each kind, then what they share, then the responses of each kind. */
 enum { ahead_parts = 2 * ground_kinds + 1, ahead_a_frame = 8 };
 
 static void work_ahead(Heat *h, int parts)
@@ -249,7 +250,8 @@ static void start_columns(Heat *h)
         h->config.weather(&w[0], (double)h->first * h->config.step_s, h->config.user);
         for (int64_t i = 0; i < day; i += stride) {
             h->config.weather(&w[1], (double)(h->first + i + stride) * h->config.step_s, h->config.user);
-            ground_column_step(&column, h->config.grid.tolerance_k, &w[0], &w[1], &level, (double)stride * h->config.step_s);
+            ground_column_step(&column, h->config.grid.tolerance_k, &w[0], &w[1], &level,
+                               (double)stride * h->config.step_s);
             sum += column.state.temp_k[0];
             w[0] = w[1];
         }
@@ -258,7 +260,8 @@ static void start_columns(Heat *h)
     }
     for (int k = 0; k < h->branches; k++)
         for (int r = 0; r < branch_radii; r++)
-            for (int shade = 0; shade < 2; shade++) heat_branch_start(&h->branch[k][r][shade], &h->branch_kind[k], branch_radius_m[r], air_k);
+            for (int shade = 0; shade < 2; shade++)
+                heat_branch_start(&h->branch[k][r][shade], &h->branch_kind[k], branch_radius_m[r], air_k);
 }
 
 static void keep_begun(Heat *h)
@@ -289,11 +292,13 @@ static void back_to_begun(Heat *h)
     next_table(h);
 }
 
-Status heat_create(Heat **out, const GroundKinds *kinds, const HeatConfig *config, const BranchKind *branch, int branches)
+Status heat_create(Heat **out, const GroundKinds *kinds, const HeatConfig *config, const BranchKind *branch,
+                   int branches)
 {
     const double steps = config->spin_up_s / config->step_s;
-    if (!(config->facets >= 3 && config->facets <= heat_most_facets && config->facets % 2 == 1 && config->step_s >= 60 &&
-          config->step_s <= 3600 && steps >= 1 && steps <= 1e5 && fabs(config->unix_s) < 1e11 && branches >= 0 && branches <= branch_most_kinds))
+    if (!(config->facets >= 3 && config->facets <= heat_most_facets && config->facets % 2 == 1 &&
+          config->step_s >= 60 && config->step_s <= 3600 && steps >= 1 && steps <= 1e5 && fabs(config->unix_s) < 1e11 &&
+          branches >= 0 && branches <= branch_most_kinds))
         return STATUS_BAD_VALUE;
     Heat *h = calloc(1, sizeof *h);
     if (!h) return STATUS_NO_MEMORY;
@@ -301,7 +306,7 @@ Status heat_create(Heat **out, const GroundKinds *kinds, const HeatConfig *confi
     h->config = *config;
     h->columns = config->facets * config->facets + 2 * heat_ups + 1;
     h->table = calloc(2, sizeof *h->table);
-    h->past  = calloc(2, sizeof *h->past);
+    h->past = calloc(2, sizeof *h->past);
     h->ahead = calloc(1, sizeof *h->ahead);
     h->begun = calloc((size_t)ground_kinds * (size_t)h->columns, sizeof *h->begun);
     Status status = h->table && h->past && h->begun && h->ahead ? STATUS_OK : STATUS_NO_MEMORY;
@@ -328,7 +333,8 @@ Status heat_create(Heat **out, const GroundKinds *kinds, const HeatConfig *confi
     start_columns(h);
     config->weather(&h->weather[1], (double)h->index * config->step_s, config->user);
     remember(h, 1);
-    while (begun - h->index > fine && begun - h->index > wide) advance(h, (int)wide); /* by half hours, till the morning before */
+    while (begun - h->index > fine && begun - h->index > wide)
+        advance(h, (int)wide); /* by half hours, till the morning before */
     while (h->index < begun) advance(h, 1);
     keep_begun(h);
     back_to_begun(h);
@@ -356,14 +362,16 @@ double heat_spent_s(const Heat *h, int *steps)
 
 size_t heat_bytes(const Heat *h)
 {
-    return sizeof *h + sizeof *h->ahead + 2 * (sizeof *h->table + sizeof *h->past) + 2 * (size_t)ground_kinds * (size_t)h->columns * sizeof *h->begun;
+    return sizeof *h + sizeof *h->ahead + 2 * (sizeof *h->table + sizeof *h->past) +
+           2 * (size_t)ground_kinds * (size_t)h->columns * sizeof *h->begun;
 }
 
 void heat_level(GroundColumn *out, const Heat *h, int kind, double share)
 {
     const GroundColumn *from = &h->level[0][kind], *to = &h->level[1][kind];
     *out = *from;
-    for (int i = 0; i < from->column->nodes; i++) out->state.temp_k[i] += share * (to->state.temp_k[i] - from->state.temp_k[i]);
+    for (int i = 0; i < from->column->nodes; i++)
+        out->state.temp_k[i] += share * (to->state.temp_k[i] - from->state.temp_k[i]);
     out->saturation += share * (to->saturation - from->saturation);
 }
 
@@ -389,9 +397,10 @@ Status heat_now(HeatNow **out, Heat *h, double unix_s, Arena *arena)
     HeatNow *now = arena_alloc(arena, 1, sizeof *now);
     if (!now) return STATUS_NO_MEMORY;
     const GroundHeatTable *a = &h->table[0], *b = &h->table[1];
-    const float      share = (float)(at - (double)(h->shown - 1));
+    const float            share = (float)(at - (double)(h->shown - 1));
     now->share = (double)share;
-    now->table = (GroundHeatTable){.unix_s = unix_s, .facets = a->facets, .air_k = a->air_k + (double)share * (b->air_k - a->air_k)};
+    now->table = (GroundHeatTable){
+        .unix_s = unix_s, .facets = a->facets, .air_k = a->air_k + (double)share * (b->air_k - a->air_k)};
     const size_t floats = (sizeof(GroundHeatTable) - offsetof(GroundHeatTable, sun_k)) / sizeof(float);
     blend(&now->table.sun_k[0][0], &a->sun_k[0][0], &b->sun_k[0][0], share, floats);
     memcpy(now->slot_d_enu, h->slot_d_enu, sizeof now->slot_d_enu);

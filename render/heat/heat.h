@@ -14,8 +14,8 @@
  *
  * Temperature over the sides of a cylinder in three parts, each of which conducts by itself: the mean, the side towards
  * the sun or sky (cosine), and how much narrower the sunlit side is than that (cosine of twice the angle, of upright
- * trunks). Rings of the radius, backward Euler. Thin branches are taken to point everywhere, those thicker than 30 mm to
- * stand upright. The film is that of a cylinder across the wind (Churchill & Bernstein, J. Heat Transfer 99, 1977).
+ * trunks). Rings of the radius, backward Euler. Thin branches are taken to point everywhere, those thicker than 30 mm
+ * to stand upright. The film is that of a cylinder across the wind (Churchill & Bernstein, J. Heat Transfer 99, 1977).
  *
  * Error: test_branch.c, against finite volumes over rings and sides. */
 
@@ -35,9 +35,9 @@ typedef struct BranchSides {
 
 typedef struct Branch {
     const BranchKind *kind;
-    double radius_m;
-    double part[6][branch_rings]; /* mean, side, twice; outermost ring first */
-    double face_k[6];             /* of the bark's face */
+    double            radius_m;
+    double            part[6][branch_rings]; /* mean, side, twice; outermost ring first */
+    double            face_k[6];             /* of the bark's face */
 } Branch;
 
 void heat_branch_start(Branch *out, const BranchKind *kind, double radius_m, double temp_k);
@@ -58,15 +58,15 @@ double heat_branch_film_w_m2k(double radius_m, double wind_mps);
 /* Temperatures of the ground over an exercise: what stays of sun, shade and wind of the hours before.
  *
  * Columns. Each kind of ground is conduction in layers (ground_column.h) under the weather, for normals over the whole
- * upper hemisphere: in the open, in the shade of the direct sun, without any sun, and beneath something that hides the sky.
- * They advance on a fixed grid of time, step_s, from two days before the exercise, whatever frames are rendered:
- * temperatures at any time are straight lines between two times of the grid. A frame at a time before the last one starts
- * again from the beginning of the exercise.
+ * upper hemisphere: in the open, in the shade of the direct sun, without any sun, and beneath something that hides the
+ * sky. They advance on a fixed grid of time, step_s, from two days before the exercise, whatever frames are rendered:
+ * temperatures at any time are straight lines between two times of the grid. A frame at a time before the last one
+ * starts again from the beginning of the exercise.
  *
  * Shade of the hours before. A column's response to a loss of flux at a time in the past is that of a pulse of heat at
- * its surface now, computed backwards (conduction is its own adjoint), about the losses of that day. It gives a weight for
- * each half hour of the day past: the kelvins that the ground here lost if it was in the shade then. Their sum is scaled so
- * that shade all day is exactly the column in the shade, so that only the order of the hours is linear.
+ * its surface now, computed backwards (conduction is its own adjoint), about the losses of that day. It gives a weight
+ * for each half hour of the day past: the kelvins that the ground here lost if it was in the shade then. Their sum is
+ * scaled so that shade all day is exactly the column in the shade, so that only the order of the hours is linear.
  *
  * Errors: rows of `bench precision` (step, elements, facets, hours of the past), tests/render/test_heat.c. */
 
@@ -84,61 +84,62 @@ typedef struct HeatConfig {
     double       unix_s;            /* of the exercise's beginning */
     HeatWeather *weather;
     const void  *user;
-    Pool        *pool;              /* NULL: one thread */
+    Pool        *pool; /* NULL: one thread */
 } HeatConfig;
 HeatConfig heat_default_config(void); /* without weather */
 
-/* What flux over past intervals does to the surface by now, for each kind: kelvins for 1 W/m2; for the direct sun that was, per
- * unit cosine; for the sky that was, its light and its cold. Newest first. */
+/* What flux over past intervals does to the surface by now, for each kind: kelvins for 1 W/m2; for the direct sun that
+ * was, per unit cosine; for the sky that was, its light and its cold. Newest first. */
 typedef struct HeatPast {
     int    count;
     double unix_s[heat_past], span_s[heat_past]; /* middle of each interval, and its length */
     double sun_d_enu[heat_past][3];
     float  watt_k[ground_kinds][heat_past], sun_k[ground_kinds][heat_past], sky_k[ground_kinds][heat_past];
-    float  effusivity[ground_kinds];        /* of what lies on top, J/(m2 K s^1/2) */
+    float  effusivity[ground_kinds]; /* of what lies on top, J/(m2 K s^1/2) */
 } HeatPast;
 
 /* At a time of the grid, or between two. */
 typedef struct GroundHeatTable {
-    double unix_s;
-    int    facets;
-    double air_k;
-    float  sun_k[ground_kinds][heat_most_facets * heat_most_facets]; /* [v * facets + u] */
-    float  shade_k[ground_kinds][heat_ups], dark_k[ground_kinds][heat_ups], hidden_k[ground_kinds];
-    float  slot_k[ground_kinds][heat_day_slots];                     /* of slot_d_enu: per unit cosine */
-    BranchSides branch[branch_most_kinds][branch_radii][2];          /* in the sun, in the shade */
+    double      unix_s;
+    int         facets;
+    double      air_k;
+    float       sun_k[ground_kinds][heat_most_facets * heat_most_facets]; /* [v * facets + u] */
+    float       shade_k[ground_kinds][heat_ups], dark_k[ground_kinds][heat_ups], hidden_k[ground_kinds];
+    float       slot_k[ground_kinds][heat_day_slots];       /* of slot_d_enu: per unit cosine */
+    BranchSides branch[branch_most_kinds][branch_radii][2]; /* in the sun, in the shade */
 } GroundHeatTable;
 
 typedef struct HeatNow {
     GroundHeatTable table;
-    int       slots;                       /* half hours with the sun up; padded to a multiple of 8 with weight 0 */
-    float     slot_d_enu[3][heat_day_slots];
-    int       kind_of[SURFACE_COUNT];      /* forest floor for forests whose plants stand */
-    int       branches, branch_material[branch_most_kinds];
-    double    share;                       /* between the two times of the grid */
-    HeatPast  past[2];
+    int             slots; /* half hours with the sun up; padded to a multiple of 8 with weight 0 */
+    float           slot_d_enu[3][heat_day_slots];
+    int             kind_of[SURFACE_COUNT]; /* forest floor for forests whose plants stand */
+    int             branches, branch_material[branch_most_kinds];
+    double          share; /* between the two times of the grid */
+    HeatPast        past[2];
 } HeatNow;
 
 typedef struct Heat Heat;
 
-/* Spins up. kinds and branch are copied. STATUS_NO_MEMORY, STATUS_BAD_VALUE. branches: 0 .. branch_most_kinds, of the plants
- * that stand; with some, forests are seen as their floor. */
-Status heat_create(Heat **out, const GroundKinds *kinds, const HeatConfig *config, const BranchKind *branch, int branches);
+/* Spins up. kinds and branch are copied. STATUS_NO_MEMORY, STATUS_BAD_VALUE. branches: 0 .. branch_most_kinds, of the
+ * plants that stand; with some, forests are seen as their floor. */
+Status heat_create(Heat **out, const GroundKinds *kinds, const HeatConfig *config, const BranchKind *branch,
+                   int branches);
 void   heat_destroy(Heat *heat); /* accepts NULL */
-/* In the arena. Advances the state, and works ahead at the next step, some of it each time; times before the exercise: as at
- * its beginning. */
+/* In the arena. Advances the state, and works ahead at the next step, some of it each time; times before the exercise:
+ * as at its beginning. */
 Status heat_now(HeatNow **out, Heat *heat, double unix_s, Arena *arena);
-/* Level ground of a kind in the open, its temperatures with depth and its water, at the time of the last heat_now: share as
- * that has it. It points into heat. */
-void   heat_level(GroundColumn *out, const Heat *heat, int kind, double share);
+/* Level ground of a kind in the open, its temperatures with depth and its water, at the time of the last heat_now:
+ * share as that has it. It points into heat. */
+void heat_level(GroundColumn *out, const Heat *heat, int kind, double share);
 /* Directions towards the sun of the slots, as HeatNow has them. Returns their number. */
 int    heat_slots(float d_enu[3][heat_day_slots], const Heat *heat);
 double heat_spent_s(const Heat *heat, int *steps); /* wall clock in steps since the spin-up, and how many */
 size_t heat_bytes(const Heat *heat);
 
-/* Temperatures of ground of a kind and normal, K, at the height of the weather's thermometer. share: of the direct sun of
- * the past, weighted by what is left of it, that was taken; 0: none, 1: all. open: share of its sky that is open. dark: its
- * absorptance over that of its kind. */
+/* Temperatures of ground of a kind and normal, K, at the height of the weather's thermometer. share: of the direct sun
+ * of the past, weighted by what is left of it, that was taken; 0: none, 1: all. open: share of its sky that is open.
+ * dark: its absorptance over that of its kind. */
 double heat_ground_k(const HeatNow *now, int kind, const double n_enu[3], double taken, double open, double dark);
 
 /* The same of several places side by side: a lane's temperature depends on its place alone. */
@@ -149,13 +150,13 @@ typedef struct HeatPlaces {
 } HeatPlaces;
 void heat_grounds_k(double temp_k[heat_lanes], const HeatNow *now, const HeatPlaces *place);
 
-/* Bark of this material, radius and normal, K, at the height of the weather's thermometer. open: share of sun and sky that
- * reached it. Of other materials: the first; NAN where there is none. */
+/* Bark of this material, radius and normal, K, at the height of the weather's thermometer. open: share of sun and sky
+ * that reached it. Of other materials: the first; NAN where there is none. */
 double heat_branch_k(const HeatNow *now, int material, double radius_m, const double n_enu[3], double open);
 
-/* Kelvins that shade of all the past takes from level ground, and a hidden sky, over the sums of their responses: what linear
- * responses are scaled by. 1 where there is little to scale. */
-void   heat_scales(double *sun, double *sky, const HeatNow *now, int kind);
+/* Kelvins that shade of all the past takes from level ground, and a hidden sky, over the sums of their responses: what
+ * linear responses are scaled by. 1 where there is little to scale. */
+void heat_scales(double *sun, double *sky, const HeatNow *now, int kind);
 
 /* Share of the past direct sun on a normal that shade took: shadow[slot], 0 .. 255, are the shares of each slot. */
 double heat_taken(const HeatNow *now, int kind, const double n_enu[3], const uint8_t *shadow);
@@ -166,8 +167,8 @@ double heat_taken(const HeatNow *now, int kind, const double n_enu[3], const uin
  *
  * A grid over the finest level of the terrain. For each direction to the sun the height below which it is shaded is
  * carried from cell to cell away from the sun (one pass over the grid, straight between two cells of the row before);
- * among plants, the direct light that their leaves let through is added up along the ray. Shares of a cell, so that edges
- * are as soft as a cell is wide: narrower shadows, of single trunks and boulders, are not in it. */
+ * among plants, the direct light that their leaves let through is added up along the ray. Shares of a cell, so that
+ * edges are as soft as a cell is wide: narrower shadows, of single trunks and boulders, are not in it. */
 
 typedef struct ShadowMap ShadowMap;
 
@@ -180,13 +181,13 @@ typedef void ShadowPlants(ShadowStand *out, const void *user, double x_m, double
 
 enum { shadow_most_slots = 48, shadow_most_cells = 4000000 };
 
-/* cell_m: made larger where the grid would have more than shadow_most_cells. d_enu: towards the sun, d_enu[2] > 0. plants:
- * NULL: none. pool: NULL: one thread; the same bits either way. */
+/* cell_m: made larger where the grid would have more than shadow_most_cells. d_enu: towards the sun, d_enu[2] > 0.
+ * plants: NULL: none. pool: NULL: one thread; the same bits either way. */
 Status heat_shadow_create(ShadowMap **out, const Elevation *elevation, double cell_m, int slots,
-                         float d_enu[3][shadow_most_slots], ShadowPlants *plants, const void *user, Pool *pool);
+                          float d_enu[3][shadow_most_slots], ShadowPlants *plants, const void *user, Pool *pool);
 void   heat_shadow_destroy(ShadowMap *map); /* accepts NULL */
-/* Shares in the shade at a place, of 255, shadow[slots, padded to a multiple of 8 with 0]; and the share of its sky that
- * is open past plants. Beyond the grid: open. */
+/* Shares in the shade at a place, of 255, shadow[slots, padded to a multiple of 8 with 0]; and the share of its sky
+ * that is open past plants. Beyond the grid: open. */
 void   heat_shadow_at(uint8_t shadow[shadow_most_slots], double *open, const ShadowMap *map, double x_m, double y_m);
 size_t heat_shadow_bytes(const ShadowMap *map);
 double heat_shadow_cell_m(const ShadowMap *map);
@@ -196,30 +197,31 @@ double heat_shadow_cell_m(const ShadowMap *map);
 /* What entities left in the ground's heat: shadows of those that stood there, trails, burnt ground.
  *
  * A stand hid the sun along its box's shadow, and sky, while it stood: each past interval of HeatPast that it overlaps
- * gives kelvins by the kind's response, scaled as the shade of heat.h is: sun hidden all day, or all of the sky hidden, are the
- * columns that see none. A track was rubbed warm once, by a pulse of heat that the same response lets
- * fade, and lies loosened: some of the way to ploughed ground, for good. A burst burnt its ground but for the crater, which is loose soil,
- * and left heat.
- * The exhaust of what stands warms the ground that it reaches (vehicle_load.h, in still air: what reaches the ground does so within
- * metres of the outlet, before a wind bends it): a flux by the film of its speed (vehicle_heat.h) that falls as the ground warms, through
- * the kind's response; ground that the sun has made warmer than the gas is not cooled, and the gas' radiation is left out.
- * Estimates: the loosened share (0.6 of tracks, 0.3 of wheels), the burnt edge. */
+ * gives kelvins by the kind's response, scaled as the shade of heat.h is: sun hidden all day, or all of the sky hidden,
+ * are the columns that see none. A track was rubbed warm once, by a pulse of heat that the same response lets fade, and
+ * lies loosened: some of the way to ploughed ground, for good. A burst burnt its ground but for the crater, which is
+ * loose soil, and left heat. The exhaust of what stands warms the ground that it reaches (vehicle_load.h, in still air:
+ * what reaches the ground does so within metres of the outlet, before a wind bends it): a flux by the film of its speed
+ * (vehicle_heat.h) that falls as the ground warms, through the kind's response; ground that the sun has made warmer
+ * than the gas is not cooled, and the gas' radiation is left out. Estimates: the loosened share (0.6 of tracks, 0.3 of
+ * wheels), the burnt edge. */
 
 typedef struct MarkHeat MarkHeat;
 
 /* Of the snapshot's marks, in the arena. exercise_s: Unix time of exercise time 0. *out NULL: there are none. */
-Status heat_marks_create(MarkHeat **out, const GroundMarks *marks, const LocalFrame *frame, double exercise_s, double unix_s,
-                        const HeatNow *now, Arena *arena);
+Status heat_marks_create(MarkHeat **out, const GroundMarks *marks, const LocalFrame *frame, double exercise_s,
+                         double unix_s, const HeatNow *now, Arena *arena);
 
 /* At a place of the ground: its kind may be mixed with another, and its temperature changed. */
 typedef struct MarkedGround {
-    double add_k;      /* to the temperature of the kind */
-    double loose;      /* share of ploughed ground */
-    double burnt;      /* share of burnt ground */
+    double add_k; /* to the temperature of the kind */
+    double loose; /* share of ploughed ground */
+    double burnt; /* share of burnt ground */
 } MarkedGround;
 
 /* lit: share of the past sun that relief and plants left. False: no marks near; out is zero then. */
-bool heat_marks_at(MarkedGround *out, const MarkHeat *marks, int kind, const double p_enu[3], const double n_enu[3], double lit);
+bool heat_marks_at(MarkedGround *out, const MarkHeat *marks, int kind, const double p_enu[3], const double n_enu[3],
+                   double lit);
 
 /* ---- the ground in one frame ----------------------------------------------------------------- */
 
@@ -235,12 +237,13 @@ typedef struct GroundPlaces {
     double p_enu[3][heat_lanes], n_enu[3][heat_lanes], dark[heat_lanes];
 } GroundPlaces;
 
-/* Temperatures of the ground, K, at the height of the weather's thermometer, and how far the sun of the past lifted them. A
- * lane's depends on its place alone. */
-void heat_scene_grounds_k(double temp_k[heat_lanes], double lifted_k[heat_lanes], const HeatScene *scene, const GroundPlaces *at);
+/* Temperatures of the ground, K, at the height of the weather's thermometer, and how far the sun of the past lifted
+ * them. A lane's depends on its place alone. */
+void heat_scene_grounds_k(double temp_k[heat_lanes], double lifted_k[heat_lanes], const HeatScene *scene,
+                          const GroundPlaces *at);
 
 /* The same of one place. */
-double heat_scene_ground_k(double *lifted_k, const HeatScene *scene, int surface, const double p_enu[3], const double n_enu[3],
-                           double dark);
+double heat_scene_ground_k(double *lifted_k, const HeatScene *scene, int surface, const double p_enu[3],
+                           const double n_enu[3], double dark);
 
 #endif

@@ -25,30 +25,33 @@ static inline F64x4 by_up(const float table[ground_kinds][heat_ups], __m128i nod
 void heat_grounds_k(double temp_k[heat_lanes], const HeatNow *now, const HeatPlaces *place)
 {
     const GroundHeatTable *t = &now->table;
-    const __m128i kind = _mm_loadu_si128((const __m128i *)place->kind);
-    const F64x4   none = f64x4_set(0), one = f64x4_set(1), last = f64x4_set(t->facets - 1);
-    const F64x4   nx = f64x4_loadu(place->n_enu[0]), ny = f64x4_loadu(place->n_enu[1]), nz = f64x4_loadu(place->n_enu[2]);
+    const __m128i          kind = _mm_loadu_si128((const __m128i *)place->kind);
+    const F64x4            none = f64x4_set(0), one = f64x4_set(1), last = f64x4_set(t->facets - 1);
+    const F64x4 nx = f64x4_loadu(place->n_enu[0]), ny = f64x4_loadu(place->n_enu[1]), nz = f64x4_loadu(place->n_enu[2]);
     /* coordinates of the normal on the square of facets, -1 .. 1; below the horizon: the wall of that side */
     const F64x4 sum = f64x4_abs(nx) + f64x4_abs(ny) + f64x4_max(nz, none);
     const F64x4 over = f64x4_and(f64x4_less(none, sum), one / sum);
-    const F64x4 x = f64x4_set(0.5) * ((nx + ny) * over + one) * last, y = f64x4_set(0.5) * ((nx - ny) * over + one) * last;
-    const __m128i i = _mm256_cvttpd_epi32(clamp4(x, 0, t->facets - 2)), j = _mm256_cvttpd_epi32(clamp4(y, 0, t->facets - 2));
+    const F64x4 x = f64x4_set(0.5) * ((nx + ny) * over + one) * last,
+                y = f64x4_set(0.5) * ((nx - ny) * over + one) * last;
+    const __m128i i = _mm256_cvttpd_epi32(clamp4(x, 0, t->facets - 2)),
+                  j = _mm256_cvttpd_epi32(clamp4(y, 0, t->facets - 2));
     const __m128i facets = _mm_set1_epi32(t->facets), of_kind = _mm_set1_epi32(heat_most_facets * heat_most_facets);
     const __m128i at = _mm_add_epi32(_mm_mullo_epi32(kind, of_kind), _mm_add_epi32(_mm_mullo_epi32(j, facets), i));
     const __m128i above = _mm_add_epi32(at, facets);
     const float  *sun = &t->sun_k[0][0];
-    const F64x4   in_x = x - f64x4_of_ints(i), low_west = lanes_of_table(sun, at), high_west = lanes_of_table(sun, above);
-    const F64x4   low = low_west + in_x * (lanes_of_table(sun + 1, at) - low_west);
-    const F64x4   high = high_west + in_x * (lanes_of_table(sun + 1, above) - high_west);
-    const F64x4   sun_k = low + (y - f64x4_of_ints(j)) * (high - low);
-    const F64x4   up = clamp4(nz, 0, 1) * f64x4_set(heat_ups - 1);
+    const F64x4 in_x = x - f64x4_of_ints(i), low_west = lanes_of_table(sun, at), high_west = lanes_of_table(sun, above);
+    const F64x4 low = low_west + in_x * (lanes_of_table(sun + 1, at) - low_west);
+    const F64x4 high = high_west + in_x * (lanes_of_table(sun + 1, above) - high_west);
+    const F64x4 sun_k = low + (y - f64x4_of_ints(j)) * (high - low);
+    const F64x4 up = clamp4(nz, 0, 1) * f64x4_set(heat_ups - 1);
     const __m128i node = _mm256_cvttpd_epi32(f64x4_min(up, f64x4_set(heat_ups - 2)));
     const __m128i of_up = _mm_add_epi32(_mm_mullo_epi32(kind, _mm_set1_epi32(heat_ups)), node);
     const F64x4   share = up - f64x4_of_ints(node);
     const F64x4   shade_k = by_up(t->shade_k, of_up, share), dark_k = by_up(t->dark_k, of_up, share);
     const F64x4   hidden_k = lanes_of_table(t->hidden_k, kind), dark = f64x4_loadu(place->dark);
-    const F64x4   lit_k = sun_k + f64x4_loadu(place->taken) * (shade_k - sun_k), seen_k = dark_k + dark * (lit_k - dark_k);
-    const F64x4   closed = one - f64x4_loadu(place->open);
+    const F64x4   lit_k = sun_k + f64x4_loadu(place->taken) * (shade_k - sun_k),
+                seen_k = dark_k + dark * (lit_k - dark_k);
+    const F64x4 closed = one - f64x4_loadu(place->open);
     f64x4_storeu(temp_k, seen_k + closed * (hidden_k - (dark_k + dark * (shade_k - dark_k))));
 }
 
@@ -71,8 +74,9 @@ double heat_taken(const HeatNow *now, int kind, const double n_enu[3], const uin
     F32x8        all = none, taken = none;
     float        sum[2][8];
     for (int s = 0; s < now->slots; s += 8) {
-        const F32x8 along = f32x8_fma(nx, f32x8_load(now->slot_d_enu[0] + s),
-                                      f32x8_fma(ny, f32x8_load(now->slot_d_enu[1] + s), nz * f32x8_load(now->slot_d_enu[2] + s)));
+        const F32x8 along =
+            f32x8_fma(nx, f32x8_load(now->slot_d_enu[0] + s),
+                      f32x8_fma(ny, f32x8_load(now->slot_d_enu[1] + s), nz * f32x8_load(now->slot_d_enu[2] + s)));
         const F32x8 k = f32x8_max(along, none) * f32x8_load(weight + s);
         all = all + k;
         taken = f32x8_fma(k, f32x8_of_ints(i32x8_of_bytes(shadow + s)), taken);
@@ -122,8 +126,8 @@ double heat_branch_k(const HeatNow *now, int material, double radius_m, const do
 
 /* The temperature of the ground of one frame: shade of the hours before, and marks. */
 
-static double with_mark(double temp_k, const HeatScene *scene, const MarkedGround *mark, int kind, const double n_enu[3],
-                        double taken, double open, double dark)
+static double with_mark(double temp_k, const HeatScene *scene, const MarkedGround *mark, int kind,
+                        const double n_enu[3], double taken, double open, double dark)
 {
     const HeatNow *now = scene->now;
     if (mark->loose > 0 && ground_kind_loosens(kind))
@@ -132,7 +136,8 @@ static double with_mark(double temp_k, const HeatScene *scene, const MarkedGroun
     return temp_k + mark->add_k;
 }
 
-void heat_scene_grounds_k(double temp_k[heat_lanes], double lifted_k[heat_lanes], const HeatScene *scene, const GroundPlaces *at)
+void heat_scene_grounds_k(double temp_k[heat_lanes], double lifted_k[heat_lanes], const HeatScene *scene,
+                          const GroundPlaces *at)
 {
     const HeatNow *now = scene->now;
     HeatPlaces     place;
@@ -157,12 +162,13 @@ void heat_scene_grounds_k(double temp_k[heat_lanes], double lifted_k[heat_lanes]
         const double n_enu[3] = {at->n_enu[0][k], at->n_enu[1][k], at->n_enu[2][k]};
         MarkedGround mark;
         if (heat_marks_at(&mark, scene->marks, place.kind[k], p_enu, n_enu, 1 - place.taken[k]))
-            temp_k[k] = with_mark(temp_k[k], scene, &mark, place.kind[k], n_enu, place.taken[k], place.open[k], at->dark[k]);
+            temp_k[k] =
+                with_mark(temp_k[k], scene, &mark, place.kind[k], n_enu, place.taken[k], place.open[k], at->dark[k]);
     }
 }
 
-double heat_scene_ground_k(double *lifted_k, const HeatScene *scene, int surface, const double p_enu[3], const double n_enu[3],
-                           double dark)
+double heat_scene_ground_k(double *lifted_k, const HeatScene *scene, int surface, const double p_enu[3],
+                           const double n_enu[3], double dark)
 {
     GroundPlaces at;
     double       temps_k[heat_lanes], lifts_k[heat_lanes];

@@ -21,17 +21,17 @@ static const double tolerance_k = 3e-3, tolerance_full_k = 100;
 /* A link or an exchange. */
 typedef struct Flow {
     int    a, b;
-    double size;             /* conductance, W/K, or area, m2 */
-    double inward;           /* what goes from a to b comes from outside: 1, as a is held; -1: b is; 0 */
-    int    a_row, b_row;     /* places in the matrix: row a of column b, row b of column a; -1: one is held */
+    double size;         /* conductance, W/K, or area, m2 */
+    double inward;       /* what goes from a to b comes from outside: 1, as a is held; -1: b is; 0 */
+    int    a_row, b_row; /* places in the matrix: row a of column b, row b of column a; -1: one is held */
 } Flow;
 
 struct Network {
     int     nodes, links, exchanges;
-    double  sum_j_k;                  /* of the capacities that are not held; 1: all are */
-    double *capacity_j_k;             /* [nodes]; 0: held */
-    double *per_j_k;                  /* 1 / capacity; 0: held [nodes] */
-    Flow   *flow;                     /* links, then exchanges */
+    double  sum_j_k;                       /* of the capacities that are not held; 1: all are */
+    double *capacity_j_k;                  /* [nodes]; 0: held */
+    double *per_j_k;                       /* 1 / capacity; 0: held [nodes] */
+    Flow   *flow;                          /* links, then exchanges */
     double *flow_w, *fourth, *outside_w_k; /* scratch [nodes] */
 
     const NetworkLoad *load, *load_end; /* of the step */
@@ -145,7 +145,9 @@ static int factor(SUNLinearSolver solver, SUNMatrix matrix)
 {
     SuiteSparse_long *column = SUNSparseMatrix_IndexPointers(matrix), *row = SUNSparseMatrix_IndexValues(matrix);
     return klu_l_refactor(column, row, SUNSparseMatrix_Data(matrix), SUNLinSol_KLUGetSymbolic(solver),
-                          SUNLinSol_KLUGetNumeric(solver), SUNLinSol_KLUGetCommon(solver)) ? 0 : 1;
+                          SUNLinSol_KLUGetNumeric(solver), SUNLinSol_KLUGetCommon(solver))
+               ? 0
+               : 1;
 }
 
 static Status prepare_solver(Network *n)
@@ -372,8 +374,8 @@ static Status solve(Network *n, double dt_s, bool once)
     return code >= 0 ? STATUS_OK : STATUS_UNSUPPORTED;
 }
 
-static Status run(double *temp_k, double *heat_in_j, Network *network, const NetworkLoad *load, const NetworkLoad *load_end,
-                  double dt_s, bool once)
+static Status run(double *temp_k, double *heat_in_j, Network *network, const NetworkLoad *load,
+                  const NetworkLoad *load_end, double dt_s, bool once)
 {
     Network *n = network;
     double  *state = N_VGetArrayPointer(n->state);
@@ -395,7 +397,7 @@ static Status run(double *temp_k, double *heat_in_j, Network *network, const Net
 }
 
 Status heat_network_step(double *temp_k, double *heat_in_j, Network *network, const NetworkLoad *load,
-                    const NetworkLoad *load_end, double dt_s)
+                         const NetworkLoad *load_end, double dt_s)
 {
     return run(temp_k, heat_in_j, network, load, load_end, dt_s, false);
 }

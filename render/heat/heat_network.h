@@ -27,7 +27,7 @@ typedef struct NetworkExchange {
 } NetworkExchange;
 
 typedef struct NetworkShape {
-    int nodes, links, exchanges;
+    int                    nodes, links, exchanges;
     const double          *capacity_j_k; /* [nodes], > 0; INFINITY: held at its temperature */
     const NetworkLink     *link;         /* [links]; two of one pair of nodes add up */
     const NetworkExchange *exchange;     /* [exchanges] */
@@ -49,9 +49,9 @@ Status heat_network_create(Network **out, const NetworkShape *shape);
 void   heat_network_destroy(Network *network); /* accepts NULL */
 int    heat_network_nodes(const Network *network);
 /* New areas, [exchanges], finite and >= 0; nothing else changes. */
-void   heat_network_exchange(Network *network, const double *area_m2);
+void heat_network_exchange(Network *network, const double *area_m2);
 /* New conductances, [links], likewise. */
-void   heat_network_conductances(Network *network, const double *w_k);
+void heat_network_conductances(Network *network, const double *w_k);
 
 /* temp_k[nodes], > 0, over dt_s > 0. load[nodes]: at its start; load_end: at its end, each number straight between
  * (NULL: as load). heat_in_j (may be NULL): the heat that came from outside, held nodes included, is added to it; it is
@@ -62,13 +62,14 @@ void   heat_network_conductances(Network *network, const double *w_k);
  * that take a node to 0 K; STATUS_UNSUPPORTED: more than network_most_steps internal steps, or no solution found;
  * STATUS_NO_MEMORY. On failure temp_k and heat_in_j are untouched. */
 Status heat_network_step(double *temp_k, double *heat_in_j, Network *network, const NetworkLoad *load,
-                    const NetworkLoad *load_end, double dt_s);
+                         const NetworkLoad *load_end, double dt_s);
 enum { network_most_steps = 20000 };
 
 /* The same in one step of the method, whatever its error: L-stable, so that what settles faster than dt_s has settled.
  * For a past that is assumed; on failure temp_k is untouched. */
 Status heat_network_leap(double *temp_k, Network *network, const NetworkLoad *load, double dt_s);
 
-double heat_network_heat_j(const Network *network, const double *temp_k); /* stored above 0 K in nodes that are not held */
+double heat_network_heat_j(const Network *network,
+                           const double  *temp_k); /* stored above 0 K in nodes that are not held */
 
 #endif

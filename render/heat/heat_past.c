@@ -40,11 +40,11 @@ static int past_intervals(Interval out[heat_past], const Heat *h)
 /* K now for 1 W/m2 over each interval: what a pulse of heat, marched back in time, gives off through the surface. */
 void heat_past_respond(void *user, int worker, int kind)
 {
-    const PastJob *job = user;
-    const Heat    *h = job->heat;
-    const Column  *c = &h->layers[kind];
+    const PastJob    *job = user;
+    const Heat       *h = job->heat;
+    const Column     *c = &h->layers[kind];
     const GroundKind *k = &h->kinds.kind[kind];
-    ColumnState    state;
+    ColumnState       state;
     (void)worker;
     if (kind == SURFACE_NONE) return;
     column_start(&state, c, pulse_base_k);
@@ -59,9 +59,10 @@ void heat_past_respond(void *user, int worker, int kind)
             falls += (double)h->state[kind].falls_w_m2k[place_of(t)] / count;
             direct += sky->direct_w_m2 / count, diffuse += sky->diffuse_w_m2 / count, loss += sky->loss_w_m2 / count;
         }
-        const double dt_s = (double)(p->to - p->from) * h->config.step_s;
-        const ColumnBoundary b = {linear_flux, linear_law, &(Linear){falls}, 0, 1e-4 * pulse_j_m2 / c->capacity_j_m2k[0]};
-        const double before = state.heat_j_m2;
+        const double         dt_s = (double)(p->to - p->from) * h->config.step_s;
+        const ColumnBoundary b = {linear_flux, linear_law, &(Linear){falls}, 0,
+                                  1e-4 * pulse_j_m2 / c->capacity_j_m2k[0]};
+        const double         before = state.heat_j_m2;
         column_step(&state, c, NULL, &b, dt_s);
         const double per_w_m2 = (before - state.heat_j_m2) / falls / pulse_j_m2;
         job->past->watt_k[kind][i] = (float)per_w_m2;

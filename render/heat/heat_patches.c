@@ -133,7 +133,8 @@ static int patch_met(const PatchPose *pose, const PartHit *hit, const double p_e
         double away[3];
         if (!(patches->patch[i].open_share > 0)) continue; /* it is inside */
         v3_sub(away, patches->patch[i].p_node, p_node);
-        const double facing = v3_dot(patches->patch[i].n_node, b_node), d2 = v3_dot(away, away) + (facing > 0 ? 0 : 1e3);
+        const double facing = v3_dot(patches->patch[i].n_node, b_node),
+                     d2 = v3_dot(away, away) + (facing > 0 ? 0 : 1e3);
         if (d2 < best) best = d2, found = i;
     }
     return found;
@@ -199,8 +200,8 @@ static double meets_other(int *slot, PartHit *hit, const PatchPose *const *other
 {
     double nearest_m = INFINITY;
     for (int n = 0; n < others; n++) {
-        PartHit      met;
-        double       to[3];
+        PartHit met;
+        double  to[3];
         if (!passes[n]) continue;
         v3_sub(to, other[n]->posed->centre_enu, o_enu);
         const double along_m = v3_dot(to, d_enu), radius_m = other[n]->posed->radius_m;
@@ -214,7 +215,9 @@ static double meets_other(int *slot, PartHit *hit, const PatchPose *const *other
 void vehicle_view_near(NearView *out, const PatchPose *pose, int patch, const PatchPose *const *other, int others)
 {
     enum { most = patch_points * patch_near_rays };
-    struct { int slot, patch, rays; } met[most];
+    struct {
+        int slot, patch, rays;
+    } met[most];
     bool passes[patch_others];
     int  kinds = 0;
     *out = (NearView){0};
@@ -261,7 +264,8 @@ void vehicle_view_near(NearView *out, const PatchPose *pose, int patch, const Pa
     }
 }
 
-void vehicle_view_sun(float *out, const PatchPose *pose, const double sun_d_enu[3], const PosedEntity *const *other, int others)
+void vehicle_view_sun(float *out, const PatchPose *pose, const double sun_d_enu[3], const PosedEntity *const *other,
+                      int others)
 {
     for (int i = 0; i < pose->patches->count; i++) {
         double     sum = 0;
@@ -293,6 +297,6 @@ void vehicle_view_gas(float *excess_k, float *speed_mps, const PatchPose *pose, 
         if (parts_first_hit(&hit, pose->posed, o_enu, way, far_m, false) < far_m) continue;
         sum_k += here_k, sum_mps += here_mps;
     }
-    *excess_k  = (float)(sum_k / patch_points);
+    *excess_k = (float)(sum_k / patch_points);
     *speed_mps = (float)(sum_mps / patch_points);
 }

@@ -12,7 +12,7 @@ typedef struct KindState {
     float         falls_w_m2k[history]; /* of the level column, by step */
 } KindState;
 
-typedef struct Sky { /* of one step of the past */
+typedef struct Sky {                             /* of one step of the past */
     double direct_w_m2, diffuse_w_m2, loss_w_m2; /* loss: of a black level plane of air temperature to the sky */
 } Sky;
 
@@ -29,31 +29,31 @@ typedef struct Ahead {
 } Ahead;
 
 struct Heat {
-    GroundKinds   kinds;
-    HeatConfig    config;
-    Column        layers[ground_kinds];
-    ColumnFactors factors[2][ground_kinds]; /* of step_s, and of half hours */
-    int           columns;              /* a kind */
-    KindState     state[ground_kinds];
-    GroundColumn  level[2][ground_kinds]; /* level ground at the times of the tables */
-    Ahead        *ahead;
-    GroundColumn *begun;                /* all columns at the beginning of the exercise */
-    float         begun_falls[ground_kinds][history];
-    Sky           sky[history], begun_sky[history];
-    int64_t       index, begun_index;   /* time of the columns: unix = index * step_s */
-    int64_t       shown;                /* of table[1]; the columns may be a step ahead of it */
-    int64_t       first;                /* of the spin-up */
-    GroundWeather weather[2];           /* at the columns' time, and a step before */
-    GroundHeatTable *table;             /* [2]: a step before, and at shown; past alike */
-    HeatPast     *past;
-    int           slots, slot_of[heat_day_slots]; /* place of each half hour of UTC; -1: night */
-    float         slot_d_enu[3][heat_day_slots];
-    int           kind_of[SURFACE_COUNT];
-    int           branches;
-    BranchKind    branch_kind[branch_most_kinds];
-    Branch        branch[branch_most_kinds][branch_radii][2], begun_branch[branch_most_kinds][branch_radii][2];
-    double        spent_s;
-    int           steps;
+    GroundKinds      kinds;
+    HeatConfig       config;
+    Column           layers[ground_kinds];
+    ColumnFactors    factors[2][ground_kinds]; /* of step_s, and of half hours */
+    int              columns;                  /* a kind */
+    KindState        state[ground_kinds];
+    GroundColumn     level[2][ground_kinds]; /* level ground at the times of the tables */
+    Ahead           *ahead;
+    GroundColumn    *begun; /* all columns at the beginning of the exercise */
+    float            begun_falls[ground_kinds][history];
+    Sky              sky[history], begun_sky[history];
+    int64_t          index, begun_index; /* time of the columns: unix = index * step_s */
+    int64_t          shown;              /* of table[1]; the columns may be a step ahead of it */
+    int64_t          first;              /* of the spin-up */
+    GroundWeather    weather[2];         /* at the columns' time, and a step before */
+    GroundHeatTable *table;              /* [2]: a step before, and at shown; past alike */
+    HeatPast        *past;
+    int              slots, slot_of[heat_day_slots]; /* place of each half hour of UTC; -1: night */
+    float            slot_d_enu[3][heat_day_slots];
+    int              kind_of[SURFACE_COUNT];
+    int              branches;
+    BranchKind       branch_kind[branch_most_kinds];
+    Branch           branch[branch_most_kinds][branch_radii][2], begun_branch[branch_most_kinds][branch_radii][2];
+    double           spent_s;
+    int              steps;
 };
 
 /* Place of a time of the grid, before 1970 too, in what is remembered. */
@@ -69,7 +69,7 @@ typedef struct PastJob {
 } PastJob;
 
 /* All but the responses; returns how many intervals there are. */
-int  heat_past_begin(Heat *h, HeatPast *out, Interval interval[heat_past]);
+int heat_past_begin(Heat *h, HeatPast *out, Interval interval[heat_past]);
 /* The responses of a kind of ground, a PoolTask: K now for 1 W/m2 over each interval. user: PastJob. */
 void heat_past_respond(void *user, int worker, int kind);
 

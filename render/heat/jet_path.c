@@ -15,7 +15,7 @@ typedef struct JetNow {
 
 static bool jet_now(JetNow *out, const JetState *s, double air_k)
 {
-    out->excess_k  = s->heat / s->mass;
+    out->excess_k = s->heat / s->mass;
     out->speed_mps = v3_length(s->momentum) / s->mass;
     const double density = air_k / (air_k + out->excess_k);
     out->radius_m = sqrt(s->mass / (density * out->speed_mps));
@@ -29,7 +29,8 @@ static void jet_slope(JetState *out, const JetNow *now, double mixes, const doub
     const double along_mps = v3_dot(flow, now->d), density = air_k / (air_k + now->excess_k);
     v3_add_scaled(across, flow, -along_mps, now->d);
     memcpy(out->p, now->d, sizeof out->p);
-    out->mass = 2 * now->radius_m * (mixes * along_share * fabs(now->speed_mps - along_mps) + across_share * v3_length(across));
+    out->mass =
+        2 * now->radius_m * (mixes * along_share * fabs(now->speed_mps - along_mps) + across_share * v3_length(across));
     for (int k = 0; k < 3; k++) out->momentum[k] = flow[k] * out->mass;
     out->momentum[2] += now->radius_m * now->radius_m * (1 - density) * gravity_mps2;
     out->heat = 0;
@@ -67,21 +68,21 @@ static void put_boxes(JetPath *path)
             const JetPoint *at = &path->point[i];
             radius_m = fmax(radius_m, at->radius_m), excess_k = fmax(excess_k, at->excess_k);
             for (int k = 0; k < 3; k++) {
-                box->low_m[k]  = fmin(box->low_m[k], at->p_enu[k]);
+                box->low_m[k] = fmin(box->low_m[k], at->p_enu[k]);
                 box->high_m[k] = fmax(box->high_m[k], at->p_enu[k]);
             }
         }
         const double reach_m = radius_m * sqrt(widest(excess_k));
         for (int k = 0; k < 3; k++) {
             box->low_m[k] -= reach_m, box->high_m[k] += reach_m;
-            path->box.low_m[k]  = fmin(path->box.low_m[k], box->low_m[k]);
+            path->box.low_m[k] = fmin(path->box.low_m[k], box->low_m[k]);
             path->box.high_m[k] = fmax(path->box.high_m[k], box->high_m[k]);
         }
     }
 }
 
-void jet_path(JetPath *out, const ExhaustJet *jet, const double p_enu[3], const double d_enu[3], const double flow_enu_mps[3],
-              double air_k)
+void jet_path(JetPath *out, const ExhaustJet *jet, const double p_enu[3], const double d_enu[3],
+              const double flow_enu_mps[3], double air_k)
 {
     const double density = air_k / (air_k + jet->excess_k), developed_m = 2 * developed * jet->radius_m;
     JetState     s = {.mass = density * jet->radius_m * jet->radius_m * jet->speed_mps};
@@ -96,7 +97,8 @@ void jet_path(JetPath *out, const ExhaustJet *jet, const double p_enu[3], const 
         JetPoint *at = &out->point[out->count];
         JetState  slope;
         /* a Gaussian of the same flux is twice as high on the axis, but not before it has mixed that far */
-        *at = (JetPoint){.radius_m = now.radius_m, .excess_k = fmin(2 * now.excess_k, jet->excess_k),
+        *at = (JetPoint){.radius_m = now.radius_m,
+                         .excess_k = fmin(2 * now.excess_k, jet->excess_k),
                          .speed_mps = fmin(2 * now.speed_mps, fmax(jet->speed_mps, now.speed_mps))};
         memcpy(at->p_enu, s.p, sizeof at->p_enu);
         if (!(at->excess_k >= least_k)) break;
@@ -117,9 +119,13 @@ void jet_path(JetPath *out, const ExhaustJet *jet, const double p_enu[3], const 
     put_boxes(out);
 }
 
-static double away_m(const double a[3], const double b[3]) { return hypot(hypot(a[0] - b[0], a[1] - b[1]), a[2] - b[2]); }
+static double away_m(const double a[3], const double b[3])
+{
+    return hypot(hypot(a[0] - b[0], a[1] - b[1]), a[2] - b[2]);
+}
 
-bool jet_path_at(double *excess_k, double *speed_mps, double from_enu[3], const JetPath *path, const double p_enu[3], bool wall)
+bool jet_path_at(double *excess_k, double *speed_mps, double from_enu[3], const JetPath *path, const double p_enu[3],
+                 bool wall)
 {
     double best = 0;
     *excess_k = *speed_mps = 0;
@@ -139,11 +145,11 @@ bool jet_path_at(double *excess_k, double *speed_mps, double from_enu[3], const 
         v3_sub(off, p_enu, at);
         const double radius_m = a->radius_m + share * (b->radius_m - a->radius_m), off_m2 = v3_dot(off, off);
         if (off_m2 > path->widest * radius_m * radius_m) continue;
-        const double profile  = fmin((wall ? 2 : 1) * exp(-2 * off_m2 / (radius_m * radius_m)), 1);
-        const double here_k   = profile * (a->excess_k + share * (b->excess_k - a->excess_k));
+        const double profile = fmin((wall ? 2 : 1) * exp(-2 * off_m2 / (radius_m * radius_m)), 1);
+        const double here_k = profile * (a->excess_k + share * (b->excess_k - a->excess_k));
         if (!(here_k > best)) continue;
         best = here_k;
-        *excess_k  = here_k;
+        *excess_k = here_k;
         *speed_mps = profile * (a->speed_mps + share * (b->speed_mps - a->speed_mps));
         int up = i;
         for (double off_m = away_m(at, path->point[up].p_enu); up > 0 && off_m < 2 * radius_m;)

@@ -8,9 +8,9 @@ static const double cell_m = 32, least_sun = 0.1; /* lower suns cast no lasting 
 static const double touches_m = 1.5;              /* of a mark's height over the ground that it belongs to */
 
 typedef struct Stand {
-    double p_enu[3], axis[3][3], low_m[3], high_m[3], from_s, to_s, reach_m;
-    double blow_from_s, blow_to_s;
-    const JetPath *jet;   /* NULL: none reaches the ground */
+    double         p_enu[3], axis[3][3], low_m[3], high_m[3], from_s, to_s, reach_m;
+    double         blow_from_s, blow_to_s;
+    const JetPath *jet; /* NULL: none reaches the ground */
 } Stand;
 typedef struct Track {
     double a_enu[3], d[2], length_m, a_s, b_s, width_m, apart_m, heat_j_m2, loose;
@@ -28,14 +28,14 @@ enum { most_entries = 1 << 20 };
 
 struct MarkHeat {
     const HeatNow *now;
-    double unix_s, sun_scale[ground_kinds], sky_scale[ground_kinds];
-    int    stands, tracks, burns;
-    Stand *stand;
-    Track *track;
-    Burn  *burn;
-    int    buckets, entries, capacity;
-    int32_t *bucket;
-    Entry   *entry;
+    double         unix_s, sun_scale[ground_kinds], sky_scale[ground_kinds];
+    int            stands, tracks, burns;
+    Stand         *stand;
+    Track         *track;
+    Burn          *burn;
+    int            buckets, entries, capacity;
+    int32_t       *bucket;
+    Entry         *entry;
 };
 
 /* ---- index ------------------------------------------------------------------------------------- */
@@ -57,8 +57,10 @@ static void put(MarkHeat *m, int mark, int32_t x, int32_t y)
 /* Cells of a square about a place. */
 static void put_square(MarkHeat *m, int mark, const double p_enu[3], double reach_m)
 {
-    const int32_t x0 = (int32_t)floor((p_enu[0] - reach_m) / cell_m), x1 = (int32_t)floor((p_enu[0] + reach_m) / cell_m);
-    const int32_t y0 = (int32_t)floor((p_enu[1] - reach_m) / cell_m), y1 = (int32_t)floor((p_enu[1] + reach_m) / cell_m);
+    const int32_t x0 = (int32_t)floor((p_enu[0] - reach_m) / cell_m),
+                  x1 = (int32_t)floor((p_enu[0] + reach_m) / cell_m);
+    const int32_t y0 = (int32_t)floor((p_enu[1] - reach_m) / cell_m),
+                  y1 = (int32_t)floor((p_enu[1] + reach_m) / cell_m);
     for (int32_t y = y0; y <= y1; y++)
         for (int32_t x = x0; x <= x1; x++) put(m, mark, x, y);
 }
@@ -87,8 +89,9 @@ static void put_line(MarkHeat *m, int mark, const Track *t)
 static Status blow_of(Stand *out, const GroundBlow *b, double air_k, double exercise_s, Arena *arena)
 {
     static const double still[3] = {0};
-    const ExhaustJet    jet = {.radius_m = (double)b->radius_m, .speed_mps = (double)b->speed_mps, .excess_k = (double)b->excess_k};
-    double              at_enu[3], d_enu[3] = {0};
+    const ExhaustJet    jet = {
+           .radius_m = (double)b->radius_m, .speed_mps = (double)b->speed_mps, .excess_k = (double)b->excess_k};
+    double at_enu[3], d_enu[3] = {0};
     if (!(b->to_s > b->from_s) || !(jet.radius_m > 0 && jet.speed_mps > 0 && jet.excess_k > 0)) return STATUS_OK;
     memcpy(at_enu, out->p_enu, sizeof at_enu);
     for (int a = 0; a < 3; a++) {
@@ -96,7 +99,7 @@ static Status blow_of(Stand *out, const GroundBlow *b, double air_k, double exer
         v3_add_scaled(d_enu, d_enu, (double)b->d[a], out->axis[a]);
     }
     if (!v3_normalize(d_enu, d_enu)) return STATUS_OK;
-    JetPath  found;
+    JetPath found;
     jet_path(&found, &jet, at_enu, d_enu, still, air_k);
     if (found.count < 2 || found.box.low_m[2] > out->p_enu[2] + touches_m) return STATUS_OK;
     JetPath *path = arena_alloc(arena, 1, sizeof *path);
@@ -105,12 +108,16 @@ static Status blow_of(Stand *out, const GroundBlow *b, double air_k, double exer
     out->jet = path;
     out->blow_from_s = exercise_s + b->from_s, out->blow_to_s = exercise_s + b->to_s;
     for (int k = 0; k < 2; k++)
-        out->reach_m = fmax(out->reach_m, fmax(path->box.high_m[k] - out->p_enu[k], out->p_enu[k] - path->box.low_m[k]));
+        out->reach_m =
+            fmax(out->reach_m, fmax(path->box.high_m[k] - out->p_enu[k], out->p_enu[k] - path->box.low_m[k]));
     return STATUS_OK;
 }
 
 /* Within what a float's cell can count; hostile places are left out. */
-static bool near_enough(const double p_enu[3]) { return fabs(p_enu[0]) < 5e5 && fabs(p_enu[1]) < 5e5 && fabs(p_enu[2]) < 5e4; }
+static bool near_enough(const double p_enu[3])
+{
+    return fabs(p_enu[0]) < 5e5 && fabs(p_enu[1]) < 5e5 && fabs(p_enu[2]) < 5e4;
+}
 
 static Status take_stand(MarkHeat *m, const GroundStand *s, const LocalFrame *frame, double exercise_s, Arena *arena)
 {
@@ -124,7 +131,8 @@ static Status take_stand(MarkHeat *m, const GroundStand *s, const LocalFrame *fr
     }
     const double high_m = fmin(fmax(-out->low_m[2], 0), 40);
     out->from_s = exercise_s + s->from_s, out->to_s = exercise_s + s->to_s;
-    out->reach_m = fmin(0.5 * hypot(out->high_m[0] - out->low_m[0], out->high_m[1] - out->low_m[1]) + high_m / least_sun, 120);
+    out->reach_m =
+        fmin(0.5 * hypot(out->high_m[0] - out->low_m[0], out->high_m[1] - out->low_m[1]) + high_m / least_sun, 120);
     out->jet = NULL;
     if (!near_enough(out->p_enu)) return STATUS_OK;
     const Status status = blow_of(out, &s->blow, m->now->table.air_k, exercise_s, arena);
@@ -151,13 +159,16 @@ static void take_burn(MarkHeat *m, const GroundBurn *b, const LocalFrame *frame,
 {
     Burn *out = &m->burn[m->burns];
     enu_from_ecef(out->p_enu, frame, b->p_ecef);
-    *out = (Burn){{out->p_enu[0], out->p_enu[1], out->p_enu[2]}, exercise_s + b->t_s, fmin((double)b->radius_m, 100),
-                   (double)b->crater_m, (double)b->heat_j_m2};
+    *out = (Burn){{out->p_enu[0], out->p_enu[1], out->p_enu[2]},
+                  exercise_s + b->t_s,
+                  fmin((double)b->radius_m, 100),
+                  (double)b->crater_m,
+                  (double)b->heat_j_m2};
     if (near_enough(out->p_enu)) put_square(m, m->stands + m->tracks + m->burns++, out->p_enu, out->radius_m);
 }
 
-Status heat_marks_create(MarkHeat **out, const GroundMarks *marks, const LocalFrame *frame, double exercise_s, double unix_s,
-                        const HeatNow *now, Arena *arena)
+Status heat_marks_create(MarkHeat **out, const GroundMarks *marks, const LocalFrame *frame, double exercise_s,
+                         double unix_s, const HeatNow *now, Arena *arena)
 {
     const int64_t all = (int64_t)marks->stands + marks->tracks + marks->burns;
     *out = NULL;
@@ -169,11 +180,11 @@ Status heat_marks_create(MarkHeat **out, const GroundMarks *marks, const LocalFr
     while (m->buckets < all && m->buckets < 1 << 17) m->buckets *= 2;
     const int64_t room = 96 * (int64_t)marks->stands + 8 * (int64_t)marks->tracks + 64 * (int64_t)marks->burns + 4096;
     m->capacity = (int)(room < most_entries ? room : most_entries);
-    m->stand  = arena_alloc(arena, (size_t)marks->stands + 1, sizeof *m->stand);
-    m->track  = arena_alloc(arena, (size_t)marks->tracks + 1, sizeof *m->track);
-    m->burn   = arena_alloc(arena, (size_t)marks->burns + 1, sizeof *m->burn);
+    m->stand = arena_alloc(arena, (size_t)marks->stands + 1, sizeof *m->stand);
+    m->track = arena_alloc(arena, (size_t)marks->tracks + 1, sizeof *m->track);
+    m->burn = arena_alloc(arena, (size_t)marks->burns + 1, sizeof *m->burn);
     m->bucket = arena_alloc(arena, (size_t)m->buckets, sizeof *m->bucket);
-    m->entry  = arena_alloc(arena, (size_t)m->capacity, sizeof *m->entry);
+    m->entry = arena_alloc(arena, (size_t)m->capacity, sizeof *m->entry);
     if (!m->stand || !m->track || !m->burn || !m->bucket || !m->entry) return STATUS_NO_MEMORY;
     for (int b = 0; b < m->buckets; b++) m->bucket[b] = -1;
     for (int i = 0; i < marks->stands; i++) {
@@ -201,7 +212,7 @@ static bool box_hides(const Stand *s, const double p_enu[3], const double d_enu[
             continue;
         }
         near_m = fmax(near_m, fmin(t0, t1));
-        far_m  = fmin(far_m, fmax(t0, t1));
+        far_m = fmin(far_m, fmax(t0, t1));
     }
     return near_m < far_m;
 }
@@ -232,8 +243,8 @@ static void sun_then(double d_enu[3], const HeatPast *p, int i, double unix_s)
 }
 
 /* Kelvins that the stand took from the ground, by one time of the grid. Samples ten minutes apart. */
-static double stand_k(const MarkHeat *m, const Stand *s, const HeatPast *p, int kind, const double p_enu[3], const double n_enu[3],
-                      double lit)
+static double stand_k(const MarkHeat *m, const Stand *s, const HeatPast *p, int kind, const double p_enu[3],
+                      const double n_enu[3], double lit)
 {
     double taken_k = 0, sky_k = 0;
     for (int i = 0; i < p->count; i++) {
@@ -265,8 +276,9 @@ static double blow_k(const Stand *s, const HeatPast *p, int kind, double excess_
     const double lasted_s = fmin(s->blow_to_s, newest_s) - s->blow_from_s;
     double       now_k = 0, ended_k = 0; /* for 1 W/m2: now; when it ended, or now */
     for (int i = 0; i < p->count; i++) {
-        const double begin_s = p->unix_s[i] - 0.5 * p->span_s[i], end_s = begin_s + p->span_s[i], k = (double)p->watt_k[kind][i];
-        now_k   += k * fmax(fmin(end_s, s->blow_to_s) - fmax(begin_s, s->blow_from_s), 0) / p->span_s[i];
+        const double begin_s = p->unix_s[i] - 0.5 * p->span_s[i], end_s = begin_s + p->span_s[i],
+                     k = (double)p->watt_k[kind][i];
+        now_k += k * fmax(fmin(end_s, s->blow_to_s) - fmax(begin_s, s->blow_from_s), 0) / p->span_s[i];
         ended_k += k * fmax(end_s - fmax(begin_s, newest_s - lasted_s), 0) / p->span_s[i];
     }
     return film * excess_k * now_k / (1 + film * ended_k);
@@ -297,7 +309,8 @@ static void add_track(MarkedGround *out, const MarkHeat *m, const Track *t, int 
     if (fabs(p_enu[2] - t->a_enu[2]) > touches_m + 0.5 * t->length_m) return;
     /* what grows there is pressed into the soil that takes the heat */
     const int warmed = ground_kind_loosens(kind) ? SURFACE_PLOUGHED : kind;
-    out->add_k += pulse_k(&m->now->past[1], warmed, t->heat_j_m2, m->unix_s - t->a_s - along_m / t->length_m * (t->b_s - t->a_s));
+    out->add_k +=
+        pulse_k(&m->now->past[1], warmed, t->heat_j_m2, m->unix_s - t->a_s - along_m / t->length_m * (t->b_s - t->a_s));
     out->loose = fmax(out->loose, t->loose);
 }
 
@@ -311,7 +324,8 @@ static void add_burn(MarkedGround *out, const MarkHeat *m, const Burn *b, const 
     out->add_k += share * pulse_k(&m->now->past[1], SURFACE_PLOUGHED, b->heat_j_m2, m->unix_s - b->t_s);
 }
 
-bool heat_marks_at(MarkedGround *out, const MarkHeat *m, int kind, const double p_enu[3], const double n_enu[3], double lit)
+bool heat_marks_at(MarkedGround *out, const MarkHeat *m, int kind, const double p_enu[3], const double n_enu[3],
+                   double lit)
 {
     const int32_t x = (int32_t)floor(p_enu[0] / cell_m), y = (int32_t)floor(p_enu[1] / cell_m);
     const double  from_enu[3] = {p_enu[0] + 0.02 * n_enu[0], p_enu[1] + 0.02 * n_enu[1], p_enu[2] + 0.02 * n_enu[2]};

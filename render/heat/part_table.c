@@ -26,15 +26,15 @@ static bool columns_of(int *column, const Table *table, const char *const *names
 
 static Status read_role(PartTable *out, bool seen[HEAT_ROLE_COUNT], const Table *table, int row, const int column[7])
 {
-    static const char *const insides[INSIDE_COUNT] = {"none", "engine", "cabin", "exhaust", "turbine",
-                                                      "motor", "body", "room", "flue", "grain"};
+    static const char *const insides[INSIDE_COUNT] = {"none",  "engine", "cabin", "exhaust", "turbine",
+                                                      "motor", "body",   "room",  "flue",    "grain"};
     static const char *const drives[PART_DRIVE_COUNT] = {"none", "motion", "firing"};
-    const char *name = table_text(table, row, column[0]), *inside_name = table_text(table, row, column[2]),
+    const char              *name = table_text(table, row, column[0]), *inside_name = table_text(table, row, column[2]),
                *drive_name = table_text(table, row, column[5]);
-    const int   line = table->line[row + 1];
-    HeatRole    role;
-    int         inside, drive;
-    double      thickness_mm;
+    const int line = table->line[row + 1];
+    HeatRole  role;
+    int       inside, drive;
+    double    thickness_mm;
 
     if (!heat_role_find(&role, name)) {
         log_error("heat: no such role: file=%s line=%d role=\"%s\"", table->path, line, name);
@@ -46,12 +46,15 @@ static Status read_role(PartTable *out, bool seen[HEAT_ROLE_COUNT], const Table 
     }
     seen[role] = true;
     if (!find_name(&inside, insides, INSIDE_COUNT, inside_name)) {
-        log_error("heat: no such inside: file=%s line=%d inside=\"%s\" want=none, engine, cabin, exhaust, turbine, motor, "
-                  "body, room, flue or grain", table->path, line, inside_name);
+        log_error(
+            "heat: no such inside: file=%s line=%d inside=\"%s\" want=none, engine, cabin, exhaust, turbine, motor, "
+            "body, room, flue or grain",
+            table->path, line, inside_name);
         return STATUS_BAD_VALUE;
     }
     if (!find_name(&drive, drives, PART_DRIVE_COUNT, drive_name)) {
-        log_error("heat: no such drive: file=%s line=%d drive=\"%s\" want=none, motion or firing", table->path, line, drive_name);
+        log_error("heat: no such drive: file=%s line=%d drive=\"%s\" want=none, motion or firing", table->path, line,
+                  drive_name);
         return STATUS_BAD_VALUE;
     }
     PartRow *to = &out->role[role];
@@ -66,15 +69,17 @@ static Status read_role(PartTable *out, bool seen[HEAT_ROLE_COUNT], const Table 
 
 Status part_table_roles(PartTable *out, const char *path)
 {
-    static const char *const names[7] = {"role", "thickness_mm", "inside", "inside_w_m2k", "running_w_m2k", "drive", "drive_value"};
-    bool   seen[HEAT_ROLE_COUNT] = {false};
-    Table  table = {0};
-    int    column[7];
-    Status status = table_open(&table, path);
+    static const char *const names[7] = {"role",          "thickness_mm", "inside",     "inside_w_m2k",
+                                         "running_w_m2k", "drive",        "drive_value"};
+    bool                     seen[HEAT_ROLE_COUNT] = {false};
+    Table                    table = {0};
+    int                      column[7];
+    Status                   status = table_open(&table, path);
 
     if (status != STATUS_OK) return status;
     if (!columns_of(column, &table, names, 7)) status = STATUS_BAD_VALUE;
-    for (int row = 0; row < table.rows && status == STATUS_OK; row++) status = read_role(out, seen, &table, row, column);
+    for (int row = 0; row < table.rows && status == STATUS_OK; row++)
+        status = read_role(out, seen, &table, row, column);
     for (int role = 0; role < HEAT_ROLE_COUNT && status == STATUS_OK; role++) {
         if (seen[role]) continue;
         log_error("heat: a role has no row: file=%s role=%s", path, heat_role_name((HeatRole)role));
@@ -88,10 +93,12 @@ Status part_table_roles(PartTable *out, const char *path)
 
 static Status read_machine(MachineRow *to, const Table *table, int row, const int column[9])
 {
-    static const struct { double low, high; } range[8] = {{0, 1e6}, {1e-3, 1e7}, {200, 500}, {200, 2500}, {1e-3, 1e7}, {0, 1e7}, {0, 1e7}, {0, 1e5}};
+    static const struct {
+        double low, high;
+    } range[8] = {{0, 1e6}, {1e-3, 1e7}, {200, 500}, {200, 2500}, {1e-3, 1e7}, {0, 1e7}, {0, 1e7}, {0, 1e5}};
     static const double unit[8] = {1e3, 1e3, 1, 1, 1e3, 1, 1e3, 1};
-    double *const       value[8] = {&to->engine_w, &to->engine_j_k, &to->engine_k, &to->exhaust_k, &to->cabin_j_k, &to->cabin_w,
-                                   &to->fuel_j_k, &to->fuel_w_k};
+    double *const       value[8] = {&to->engine_w,  &to->engine_j_k, &to->engine_k, &to->exhaust_k,
+                                    &to->cabin_j_k, &to->cabin_w,    &to->fuel_j_k, &to->fuel_w_k};
     const char         *name = table_text(table, row, column[0]);
     if (strlen(name) == 0 || strlen(name) >= sizeof to->model) {
         log_error("heat: name of a model empty or too long: file=%s line=%d", table->path, table->line[row + 1]);
@@ -108,17 +115,18 @@ static Status read_machine(MachineRow *to, const Table *table, int row, const in
 
 Status part_table_machines(PartTable *out, const char *path)
 {
-    static const char *const names[9] = {"model", "engine_kw", "engine_kj_k", "engine_k", "exhaust_k", "cabin_kj_k", "cabin_w",
-                                         "fuel_kj_k", "fuel_w_k"};
-    Table  table = {0};
-    int    column[9];
-    Status status = table_open(&table, path);
+    static const char *const names[9] = {"model",      "engine_kw", "engine_kj_k", "engine_k", "exhaust_k",
+                                         "cabin_kj_k", "cabin_w",   "fuel_kj_k",   "fuel_w_k"};
+    Table                    table = {0};
+    int                      column[9];
+    Status                   status = table_open(&table, path);
 
     out->machines = 0;
     if (status != STATUS_OK) return status;
     if (!columns_of(column, &table, names, 9)) status = STATUS_BAD_VALUE;
     if (status == STATUS_OK && (table.rows < 1 || table.rows > part_table_most)) {
-        log_error("heat: too few or too many rows: file=%s rows=%d want=1 .. %d", path, table.rows, (int)part_table_most);
+        log_error("heat: too few or too many rows: file=%s rows=%d want=1 .. %d", path, table.rows,
+                  (int)part_table_most);
         status = STATUS_BAD_VALUE;
     }
     for (int row = 0; row < table.rows && status == STATUS_OK; row++)
@@ -133,8 +141,8 @@ Status part_table_machines(PartTable *out, const char *path)
 
 Status part_table_open(PartTable *out, const char *parts_path, const char *machines_path)
 {
-    PartTable    table = {0};
-    Status       status = part_table_roles(&table, parts_path);
+    PartTable table = {0};
+    Status    status = part_table_roles(&table, parts_path);
     if (status == STATUS_OK) status = part_table_machines(&table, machines_path);
     if (status == STATUS_OK) *out = table;
     return status;

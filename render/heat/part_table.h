@@ -6,8 +6,17 @@
 #include "entities/models/model.h"
 
 typedef enum PartInside {
-    INSIDE_NONE = 0, INSIDE_ENGINE, INSIDE_CABIN, INSIDE_EXHAUST, INSIDE_TURBINE, INSIDE_MOTOR, INSIDE_BODY, INSIDE_ROOM,
-    INSIDE_FLUE, INSIDE_GRAIN, INSIDE_COUNT
+    INSIDE_NONE = 0,
+    INSIDE_ENGINE,
+    INSIDE_CABIN,
+    INSIDE_EXHAUST,
+    INSIDE_TURBINE,
+    INSIDE_MOTOR,
+    INSIDE_BODY,
+    INSIDE_ROOM,
+    INSIDE_FLUE,
+    INSIDE_GRAIN,
+    INSIDE_COUNT
 } PartInside;
 
 typedef enum PartDrive { PART_DRIVE_NONE = 0, PART_DRIVE_MOTION, PART_DRIVE_FIRING, PART_DRIVE_COUNT } PartDrive;
@@ -22,14 +31,15 @@ typedef struct PartRow {
 
 typedef struct MachineRow {
     char   model[model_name_size];
-    double engine_w, engine_j_k, engine_k, exhaust_k, cabin_j_k, cabin_w, fuel_j_k, fuel_w_k; /* fuel_j_k 0: no node of it */
+    double engine_w, engine_j_k, engine_k, exhaust_k, cabin_j_k, cabin_w, fuel_j_k,
+        fuel_w_k; /* fuel_j_k 0: no node of it */
 } MachineRow;
 
 enum { part_table_most = 64 };
 
 typedef struct PartTable {
     PartRow    role[HEAT_ROLE_COUNT];
-    int        machines;            /* the last: of a cubic metre, of all others */
+    int        machines; /* the last: of a cubic metre, of all others */
     MachineRow machine[part_table_most];
 } PartTable;
 

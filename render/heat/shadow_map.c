@@ -4,13 +4,13 @@
 #include <stdlib.h>
 
 struct ShadowMap {
-    int      nx, ny, slots, stride; /* stride: slots, padded */
-    double   x0_m, y0_m, cell_m;
-    float   *z_m;                   /* while it is made, as all of these */
+    int          nx, ny, slots, stride; /* stride: slots, padded */
+    double       x0_m, y0_m, cell_m;
+    float       *z_m; /* while it is made, as all of these */
     ShadowStand *stand;
-    float    most_m;                /* highest plant */
-    uint8_t *shadow;                /* [ny][nx][stride] */
-    uint8_t *open;                  /* [ny][nx] of 255 */
+    float        most_m; /* highest plant */
+    uint8_t     *shadow; /* [ny][nx][stride] */
+    uint8_t     *open;   /* [ny][nx] of 255 */
 };
 
 /* Unit direction from cell to cell, along the axis on which the sun stands nearer. */
@@ -28,7 +28,7 @@ static Sweep sweep_of(const ShadowMap *m, double x, double y, double up)
     Sweep        s = {.along_x = fabs(x) >= fabs(y)};
     const double major = s.along_x ? x : y, minor = s.along_x ? y : x, rows = s.along_x ? m->nx : m->ny;
     s.from = major > 0 ? (int)rows - 1 : 0;
-    s.to   = major > 0 ? -1 : (int)rows;
+    s.to = major > 0 ? -1 : (int)rows;
     s.step = major > 0 ? -1 : 1;
     s.across = fabs(major) > 1e-12 ? minor / fabs(major) : 0;
     s.drop_m = m->cell_m * hypot(1, s.across) * tangent;
@@ -42,18 +42,19 @@ static size_t cell_at(const ShadowMap *m, const Sweep *s, int row, int k)
 }
 
 typedef struct Job {
-    ShadowMap          *map;
-    ShadowPlants       *plants;
-    const void         *user;
-    float             (*d_enu)[shadow_most_slots];
-    const Elevation    *elevation;
-    bool                failed[shadow_most_slots];
+    ShadowMap    *map;
+    ShadowPlants *plants;
+    const void   *user;
+    float (*d_enu)[shadow_most_slots];
+    const Elevation *elevation;
+    bool             failed[shadow_most_slots];
 } Job;
 
 static double area_above(const ShadowStand *s, double height_m)
 {
     if (height_m >= (double)s->top_m) return 0;
-    return (double)s->leaf_area * (height_m <= (double)s->base_m ? 1 : ((double)s->top_m - height_m) / (double)(s->top_m - s->base_m));
+    return (double)s->leaf_area *
+           (height_m <= (double)s->base_m ? 1 : ((double)s->top_m - height_m) / (double)(s->top_m - s->base_m));
 }
 
 /* Direct light that plants let through on its way to the ground of a cell: a cell's width at a time. */
@@ -63,7 +64,8 @@ static double light_through(const ShadowMap *m, int i, int j, double x, double y
     const double most = (double)m->most_m / up, stride_m = level > 1e-3 ? fmin(m->cell_m / level, most) : most;
     double       depth = 0;
     for (double way_m = 0; way_m < most && depth < 8; way_m += stride_m) {
-        const double ci = i + (way_m + 0.5 * stride_m) * x / m->cell_m, cj = j + (way_m + 0.5 * stride_m) * y / m->cell_m;
+        const double ci = i + (way_m + 0.5 * stride_m) * x / m->cell_m,
+                     cj = j + (way_m + 0.5 * stride_m) * y / m->cell_m;
         if (!(ci >= 0 && cj >= 0 && ci <= m->nx - 1 && cj <= m->ny - 1)) break;
         const size_t       there = (size_t)(cj + 0.5) * (size_t)m->nx + (size_t)(ci + 0.5);
         const ShadowStand *stand = &m->stand[there];
@@ -85,12 +87,12 @@ static double edge_at(const double *before, const Sweep *s, int k, int wide)
 
 static void fill_slot(void *user, int worker, int slot)
 {
-    Job          *job = user;
-    ShadowMap    *m = job->map;
-    const double  x = (double)job->d_enu[0][slot], y = (double)job->d_enu[1][slot], up = (double)job->d_enu[2][slot];
-    const Sweep   s = sweep_of(m, x, y, up);
-    const int     wide = s.along_x ? m->ny : m->nx;
-    double       *edge = malloc(4 * (size_t)wide * sizeof *edge); /* of the ground and of plants, two rows of each */
+    Job         *job = user;
+    ShadowMap   *m = job->map;
+    const double x = (double)job->d_enu[0][slot], y = (double)job->d_enu[1][slot], up = (double)job->d_enu[2][slot];
+    const Sweep  s = sweep_of(m, x, y, up);
+    const int    wide = s.along_x ? m->ny : m->nx;
+    double      *edge = malloc(4 * (size_t)wide * sizeof *edge); /* of the ground and of plants, two rows of each */
     (void)worker;
     job->failed[slot] = !edge;
     if (!edge) return;
@@ -104,8 +106,10 @@ static void fill_slot(void *user, int worker, int slot)
             ground[1][k] = fmax(z_m, shade_m);
             if (m->most_m > 0) {
                 const ShadowStand *stand = &m->stand[cell];
-                const double       crowns_m = fmax(edge_at(plants[0], &s, k, wide), z_m + (stand->leaf_area > 0 ? (double)stand->top_m : -1e6));
-                if (lit > 0 && crowns_m > z_m - s.drop_m) lit *= light_through(m, s.along_x ? row : k, s.along_x ? k : row, x, y, up);
+                const double       crowns_m =
+                    fmax(edge_at(plants[0], &s, k, wide), z_m + (stand->leaf_area > 0 ? (double)stand->top_m : -1e6));
+                if (lit > 0 && crowns_m > z_m - s.drop_m)
+                    lit *= light_through(m, s.along_x ? row : k, s.along_x ? k : row, x, y, up);
                 plants[1][k] = crowns_m;
             }
             m->shadow[cell * (size_t)m->stride + (size_t)slot] = (uint8_t)lround(255 * (1 - lit));
@@ -140,7 +144,7 @@ static void run(Pool *pool, int count, PoolTask *task, void *user)
 }
 
 Status heat_shadow_create(ShadowMap **out, const Elevation *elevation, double cell_m, int slots,
-                         float d_enu[3][shadow_most_slots], ShadowPlants *plants, const void *user, Pool *pool)
+                          float d_enu[3][shadow_most_slots], ShadowPlants *plants, const void *user, Pool *pool)
 {
     if (elevation->level_count < 1 || !(cell_m > 0) || slots < 0 || slots > shadow_most_slots) return STATUS_BAD_VALUE;
     const ElevationLevel *level = &elevation->level[0];
@@ -153,15 +157,16 @@ Status heat_shadow_create(ShadowMap **out, const Elevation *elevation, double ce
     m->x0_m = level->x0_m, m->y0_m = level->y0_m;
     m->slots = slots, m->stride = (slots + 7) / 8 * 8;
     const size_t cells = (size_t)m->nx * (size_t)m->ny;
-    m->z_m    = malloc(cells * sizeof *m->z_m);
+    m->z_m = malloc(cells * sizeof *m->z_m);
     m->stand = plants ? malloc(cells * sizeof *m->stand) : NULL;
-    m->open   = malloc(cells);
+    m->open = malloc(cells);
     m->shadow = calloc(cells, (size_t)(m->stride > 0 ? m->stride : 1));
     Job    job = {m, plants, user, d_enu, elevation, {false}};
     Status status = m->z_m && (m->stand || !plants) && m->open && m->shadow ? STATUS_OK : STATUS_NO_MEMORY;
     if (status == STATUS_OK) {
         run(pool, m->ny, fill_row, &job);
-        for (size_t k = 0; plants && k < cells; k++) m->most_m = fmaxf(m->most_m, m->stand[k].leaf_area > 0 ? m->stand[k].top_m : 0);
+        for (size_t k = 0; plants && k < cells; k++)
+            m->most_m = fmaxf(m->most_m, m->stand[k].leaf_area > 0 ? m->stand[k].top_m : 0);
         run(pool, slots, fill_slot, &job);
         for (int s = 0; s < slots; s++)
             if (job.failed[s]) status = STATUS_NO_MEMORY;
@@ -195,11 +200,12 @@ void heat_shadow_at(uint8_t shadow[shadow_most_slots], double *open, const Shado
     const int      i = (int)fmin(x, m->nx - 2), j = (int)fmin(y, m->ny - 2);
     const unsigned u = (unsigned)lround(16 * (x - i)), v = (unsigned)lround(16 * (y - j));
     const unsigned w00 = (16 - u) * (16 - v), w01 = u * (16 - v), w10 = (16 - u) * v, w11 = u * v; /* 256 in all */
-    const size_t   cell = (size_t)j * (size_t)m->nx + (size_t)i, above = cell + (size_t)m->nx, stride = (size_t)m->stride;
+    const size_t cell = (size_t)j * (size_t)m->nx + (size_t)i, above = cell + (size_t)m->nx, stride = (size_t)m->stride;
     const uint8_t *a = m->shadow + cell * stride, *b = a + stride, *c = m->shadow + above * stride, *d = c + stride;
     for (size_t s = 0; s < stride; s++)
         shadow[s] = (uint8_t)((a[s] * w00 + b[s] * w01 + c[s] * w10 + d[s] * w11 + 128) >> 8);
-    *open = (m->open[cell] * w00 + m->open[cell + 1] * w01 + m->open[above] * w10 + m->open[above + 1] * w11) / (255.0 * 256);
+    *open = (m->open[cell] * w00 + m->open[cell + 1] * w01 + m->open[above] * w10 + m->open[above + 1] * w11) /
+            (255.0 * 256);
 }
 
 size_t heat_shadow_bytes(const ShadowMap *m) { return (size_t)m->nx * (size_t)m->ny * (size_t)(m->stride + 1); }

@@ -15,14 +15,14 @@ double saturation_pa(double temp_k)
 void surface_flux_prepare(SurfaceFlux *l)
 {
     const SurfaceAir *a = &l->air;
-    const double z0 = l->roughness_m, u_mps = fmax(a->wind_mps, least_wind_mps);
-    const double log_m = log(a->wind_height_m / z0 + 1), friction_mps = karman * u_mps / log_m;
-    const double log_h = log(a->height_m / z0 + 1) + 0.1 * karman * sqrt(friction_mps * z0 / air_viscosity_m2s);
-    const double neutral = karman * karman / (log_m * log_h);
-    l->neutral_mps  = neutral * u_mps;
+    const double      z0 = l->roughness_m, u_mps = fmax(a->wind_mps, least_wind_mps);
+    const double      log_m = log(a->wind_height_m / z0 + 1), friction_mps = karman * u_mps / log_m;
+    const double      log_h = log(a->height_m / z0 + 1) + 0.1 * karman * sqrt(friction_mps * z0 / air_viscosity_m2s);
+    const double      neutral = karman * karman / (log_m * log_h);
+    l->neutral_mps = neutral * u_mps;
     l->stable_per_k = gravity * a->height_m / (u_mps * u_mps);
-    l->unstable     = 75 * neutral * sqrt(a->height_m / z0 + 1);
-    l->air_kg_m3    = a->pressure_pa / (air_gas_j_kgk * a->temp_k);
+    l->unstable = 75 * neutral * sqrt(a->height_m / z0 + 1);
+    l->air_kg_m3 = a->pressure_pa / (air_gas_j_kgk * a->temp_k);
 }
 
 /* Speed of heat between surface and air, m/s. */
@@ -51,8 +51,8 @@ double surface_latent_w_m2(const SurfaceFlux *l, double temp_k) { return latent(
 double surface_flux_w_m2(double *falls, double temp_k, const void *law)
 {
     const SurfaceFlux *l = law;
-    const double t2 = temp_k * temp_k, speed_mps = transfer_mps(l, temp_k);
-    const double film = l->air_kg_m3 * air_j_kgk * speed_mps, evaporates = latent(l, temp_k, speed_mps);
+    const double       t2 = temp_k * temp_k, speed_mps = transfer_mps(l, temp_k);
+    const double       film = l->air_kg_m3 * air_j_kgk * speed_mps, evaporates = latent(l, temp_k, speed_mps);
     *falls = 4 * l->emissivity * stefan_w_m2k4 * t2 * temp_k + film + fmax(0.06 * evaporates, 0);
     return l->absorbed_w_m2 - l->emissivity * stefan_w_m2k4 * t2 * t2 - film * (temp_k - l->air.temp_k) - evaporates;
 }

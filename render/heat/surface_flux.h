@@ -20,12 +20,12 @@ typedef struct SurfaceAir {
 
 typedef struct SurfaceFlux {
     SurfaceAir air;
-    double     absorbed_w_m2;      /* of sun and longwave */
+    double     absorbed_w_m2; /* of sun and longwave */
     double     emissivity;
     double     roughness_m;
-    double     resistance_s_m;     /* to vapour; INFINITY: nothing evaporates */
+    double     resistance_s_m; /* to vapour; INFINITY: nothing evaporates */
     /* of surface_flux_prepare: speed of heat in neutral air; Richardson number of 1 K; the unstable form's factor */
-    double     neutral_mps, stable_per_k, unstable, air_kg_m3;
+    double neutral_mps, stable_per_k, unstable, air_kg_m3;
 } SurfaceFlux;
 
 /* After the members above: what does not depend on the surface's temperature. */
@@ -35,8 +35,8 @@ void surface_flux_prepare(SurfaceFlux *law);
 double saturation_pa(double temp_k);
 /* Of the heat that the air takes per kelvin, W/(m2 K). */
 double surface_film_w_m2k(const SurfaceFlux *law, double temp_k);
-/* Of a plate of some metre in air of 288 K at sea level: turbulent flow (Incropera & DeWitt: Nu = 0.037 Re^0.8 Pr^(1/3)) over
- * free convection; 10 % of McAdams's 5.7 + 3.8 v up to 10 m/s. */
+/* Of a plate of some metre in air of 288 K at sea level: turbulent flow (Incropera & DeWitt: Nu = 0.037 Re^0.8
+ * Pr^(1/3)) over free convection; 10 % of McAdams's 5.7 + 3.8 v up to 10 m/s. */
 static inline double plate_film_w_m2k(double speed_mps) { return 4 + 6.1 * pow(speed_mps, 0.8); }
 /* Latent heat that leaves, W/m2; negative: dew. */
 double surface_latent_w_m2(const SurfaceFlux *law, double temp_k);

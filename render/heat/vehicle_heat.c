@@ -8,12 +8,12 @@ Status vehicle_heat_create(VehicleHeat **out, const VehicleHeatConfig *config, c
     VehicleHeat *h = calloc(1, sizeof *h);
     if (!h) return STATUS_NO_MEMORY;
     h->config = *config;
-    h->world  = *world;
+    h->world = *world;
     h->models = catalog_model_count(world->catalog);
-    h->shape  = calloc((size_t)h->models + 1, sizeof *h->shape);
+    h->shape = calloc((size_t)h->models + 1, sizeof *h->shape);
     h->shaped = calloc((size_t)h->models + 1, sizeof *h->shaped);
-    h->met_s  = malloc(((size_t)h->models + 1) * sizeof *h->met_s);
-    h->arena  = arena_create();
+    h->met_s = malloc(((size_t)h->models + 1) * sizeof *h->met_s);
+    h->arena = arena_create();
     if (!h->shape || !h->shaped || !h->met_s || !h->arena) {
         vehicle_heat_destroy(h);
         return STATUS_NO_MEMORY;
@@ -206,7 +206,7 @@ Status vehicle_heat_tick(VehicleHeat *h, const Snapshot *snapshot)
     int          due = 0;
     if (status != STATUS_OK) return status;
     work_window_open(&h->window, t_s);
-    status  = meet(h, snapshot);
+    status = meet(h, snapshot);
     h->near = (NearScene){snapshot, h->world.tracer, h->shape, h->world.frame, h->state, h->body, h->count};
     h->bodied = false;
     for (int i = 0; i < h->count && status == STATUS_OK; i++) {
@@ -240,7 +240,8 @@ static const VehicleState *find_state(const VehicleHeat *h, DisEntityId id)
 static double mean_of(const Patches *p, const float *value)
 {
     double sum = 0, m2 = 0;
-    for (int i = 0; i < p->count; i++) sum += patch_open_m2(&p->patch[i]) * (double)value[i], m2 += patch_open_m2(&p->patch[i]);
+    for (int i = 0; i < p->count; i++)
+        sum += patch_open_m2(&p->patch[i]) * (double)value[i], m2 += patch_open_m2(&p->patch[i]);
     return m2 > 0 ? sum / m2 : 0;
 }
 
@@ -257,7 +258,7 @@ Status vehicle_heat_show(const VehicleHeat *h, Snapshot *snapshot, Arena *arena)
         const VehicleState *s = find_state(h, e->id);
         e->first_patch = -1, e->patches = 0, e->dt_k = 0;
         if (!s || !s->shown || !is_same(s, e)) continue;
-        const int   count = h->shape[s->model].patches->count;
+        const int count = h->shape[s->model].patches->count;
         e->first_patch = snapshot->patch_count;
         for (int k = 0; k < count; k++)
             patch_k[e->first_patch + k] = (float)vehicle_state_k(s, h->world.given, k, snapshot->t_s);
@@ -290,8 +291,8 @@ Status vehicle_heat_keep(const VehicleHeat *h, const char *path)
     for (int i = 0; i < h->count; i++) {
         const VehicleState *s = h->state[i];
         if (s->shown)
-            nodes[count++] = (KeptNodes){s->id, tracer_model(h->world.tracer, s->model)->name, h->config.unix_s + s->t_s,
-                                         h->shape[s->model].nodes, s->temp_k};
+            nodes[count++] = (KeptNodes){s->id, tracer_model(h->world.tracer, s->model)->name,
+                                         h->config.unix_s + s->t_s, h->shape[s->model].nodes, s->temp_k};
     }
     const Status status = heat_kept_save(nodes, count, path);
     free(nodes);

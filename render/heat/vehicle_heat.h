@@ -15,9 +15,9 @@
  * it by a thread of its own. */
 
 typedef struct PatchSet {
-    int      models;
-    Patches *of;  /* [models] */
-    bool    *cut; /* [models] */
+    int               models;
+    Patches          *of;    /* [models] */
+    bool             *cut;   /* [models] */
     struct PatchCut **ahead; /* [models]: being cut; NULL: not */
 } PatchSet;
 
@@ -27,7 +27,7 @@ void   heat_patches_destroy(PatchSet *set); /* accepts zeroes */
 Status heat_patches_need(PatchSet *set, int index, const Model *model);
 /* Begins to cut a model in another thread, for which heat_patches_need then waits. Where there is none to be had, that
  * cuts it. */
-void   heat_patches_begin(PatchSet *set, int index, const Model *model);
+void heat_patches_begin(PatchSet *set, int index, const Model *model);
 
 /* Temperature of an entity's surface at a place of one of its parts, of node axes, K; NAN: none is known. Its model
  * must have been needed. */
@@ -55,14 +55,15 @@ static inline double patch_set_temp_k(const PatchSet *set, const Snapshot *snaps
  * that read another's temperatures read those of its beginning, so the order of work decides nothing.
  *
  * Work is done in pieces, those that have waited longest first, and no more of it in any 0.1 s of exercise time than
- * window_us (vehicle_heat_private.h), but for what neighbours add to a piece: at most eight that are posed, four jets that
- * are followed. The first tick, before any frame, has no limit. So no frame pays for a crowd that appears at once:
+ * window_us (vehicle_heat_private.h), but for what neighbours add to a piece: at most eight that are posed, four jets
+ * that are followed. The first tick, before any frame, has no limit. So no frame pays for a crowd that appears at once:
  * an entity is as warm as the air until its past is worked out.
  *
  * Before its first report an entity is taken to have stood there for a day with its engine stopped, and for its last
  * hour to have done what it then does: in single steps of the solver (tests/render/test_vehicle_heat_error.c).
  * Munitions and expendables start as warm as the air that flows past them. One whose temperatures were kept less
- * than three hours before (vehicle_heat.h) begins with those, and is taken to have done since then what it then does. */
+ * than three hours before (vehicle_heat.h) begins with those, and is taken to have done since then what it then does.
+ */
 
 /* present: the time of the tick; else earlier, when a ground as warm as the air will do. */
 typedef Status VehiclePlace(PlaceHeat *out, const void *user, double unix_s, const double p_enu[3], bool present);
@@ -87,15 +88,15 @@ typedef struct VehicleHeatWorld {
     const LocalFrame *frame;
     Tracer           *tracer;
     PatchSet         *patches;
-    const GivenHeat  *given;   /* shown instead, where it has a part; NULL: nothing is given */
-    const KeptHeat   *kept;    /* of a run before; NULL: none */
+    const GivenHeat  *given; /* shown instead, where it has a part; NULL: nothing is given */
+    const KeptHeat   *kept;  /* of a run before; NULL: none */
 } VehicleHeatWorld;
 
 typedef struct VehicleHeatCounters {
     uint64_t steps, begun, left_out;
-    uint64_t neighbours_left_out;       /* beyond the numbers of vehicle_load.h, at each look for them */
-    uint64_t failed;                    /* steps that the solver gave up; the entity stays as it was */
-    double   spent_s, longest_s;             /* wall clock; of the longest tick */
+    uint64_t neighbours_left_out; /* beyond the numbers of vehicle_load.h, at each look for them */
+    uint64_t failed;              /* steps that the solver gave up; the entity stays as it was */
+    double   spent_s, longest_s;  /* wall clock; of the longest tick */
 } VehicleHeatCounters;
 
 Status vehicle_heat_create(VehicleHeat **out, const VehicleHeatConfig *config, const VehicleHeatWorld *world);
@@ -103,17 +104,17 @@ void   vehicle_heat_destroy(VehicleHeat *heat); /* accepts NULL */
 /* At a time not before the last. */
 Status vehicle_heat_tick(VehicleHeat *heat, const Snapshot *snapshot);
 /* Whether work is left for the next tick. */
-bool   vehicle_heat_waits(const VehicleHeat *heat);
+bool vehicle_heat_waits(const VehicleHeat *heat);
 /* Fills first_patch and patch_k of a snapshot at or after the last tick. */
-Status vehicle_heat_show(const VehicleHeat *heat, Snapshot *snapshot, Arena *arena);
+Status                     vehicle_heat_show(const VehicleHeat *heat, Snapshot *snapshot, Arena *arena);
 const VehicleHeatCounters *vehicle_heat_counters(const VehicleHeat *heat);
-size_t vehicle_heat_bytes(const VehicleHeat *heat);
+size_t                     vehicle_heat_bytes(const VehicleHeat *heat);
 
 /* Network of an entity at its last own time: nodes, and heat that came from outside since it began, J. NULL: it has
  * none. */
 typedef struct VehicleNodes {
     const VehicleShape *shape;
-    const double       *temp_k;    /* [shape->nodes] */
+    const double       *temp_k; /* [shape->nodes] */
     double              heat_in_j, t_s;
 } VehicleNodes;
 /* What heat_kept_open reads, of all that are shown. */
@@ -121,7 +122,10 @@ Status vehicle_heat_keep(const VehicleHeat *heat, const char *path);
 
 /* Error that steps and the past's single steps leave in a patch's temperature, K, rms: within a factor of 2 of a
  * solution in small steps in nine of ten (tests/render/test_vehicle_heat_error.c). */
-static inline double vehicle_heat_error_k(double temp_k, double air_k) { return 0.038 + 0.0045 * fmax(fabs(temp_k - air_k) - 15, 0); }
+static inline double vehicle_heat_error_k(double temp_k, double air_k)
+{
+    return 0.038 + 0.0045 * fmax(fabs(temp_k - air_k) - 15, 0);
+}
 
 bool vehicle_heat_nodes(VehicleNodes *out, const VehicleHeat *heat, DisEntityId id);
 

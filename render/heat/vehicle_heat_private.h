@@ -23,17 +23,17 @@ void work_window_open(WorkWindow *window, double t_s);
 struct VehicleHeat {
     VehicleHeatConfig   config;
     VehicleHeatWorld    world;
-    VehicleShape       *shape;    /* [models] */
+    VehicleShape       *shape; /* [models] */
     bool               *shaped;
-    double             *met_s;    /* [models]: when it was first met, while its patches are cut; NAN: not */
+    double             *met_s; /* [models]: when it was first met, while its patches are cut; NAN: not */
     int                 models, count, room, waiting;
     VehicleState      **state, **was; /* [count], by id; of the tick before */
-    VehicleState      **due;      /* [room]: those whose work waits, of a tick */
-    NearBody           *body;     /* [room] */
-    NearScene           near;     /* of a tick */
-    bool                bodied;   /* its bodies are filled in */
+    VehicleState      **due;          /* [room]: those whose work waits, of a tick */
+    NearBody           *body;         /* [room] */
+    NearScene           near;         /* of a tick */
+    bool                bodied;       /* its bodies are filled in */
     WorkWindow          window;
-    Arena              *arena;    /* of one entity's step */
+    Arena              *arena; /* of one entity's step */
     VehicleHeatCounters counters;
 };
 

@@ -3,9 +3,9 @@
 
 #include "render/heat/surface_flux.h"
 
-static const double leak_s = 25000;        /* engine that has stopped, and a cabin: to the air through its bay; estimate */
-static const double moving_mps = 0.3;      /* above the jitter of reports of a vehicle that stands */
-static const double flame_w_m2 = 20e3;     /* into the skin of what burns: fires of fuel and rubber inside; estimate */
+static const double leak_s = 25000;    /* engine that has stopped, and a cabin: to the air through its bay; estimate */
+static const double moving_mps = 0.3;  /* above the jitter of reports of a vehicle that stands */
+static const double flame_w_m2 = 20e3; /* into the skin of what burns: fires of fuel and rubber inside; estimate */
 
 double vehicle_recovery_k(double speed_mps)
 {
@@ -13,7 +13,10 @@ double vehicle_recovery_k(double speed_mps)
     return recovery * speed_mps * speed_mps / (2 * cp_air_j_kgk);
 }
 
-static double film_at(double speed_mps, double air_density) { return plate_film_w_m2k(speed_mps) * pow(air_density, 0.8); }
+static double film_at(double speed_mps, double air_density)
+{
+    return plate_film_w_m2k(speed_mps) * pow(air_density, 0.8);
+}
 
 /* Speed of the air past a patch: of the entity, and of blades that turn. */
 static double air_speed(const VehicleMoment *m, const Patch *patch, const EntityDrives *drives)
@@ -37,22 +40,36 @@ static void add_film(NetworkLoad *load, double w_k, double fluid_k)
 }
 
 /* What is behind a skin, where that is no node of the network. */
-static void add_inside(NetworkLoad *load, const PartRow *row, const MachineRow *machine, const EntityDrives *d, double area_m2,
-                       double air_k)
+static void add_inside(NetworkLoad *load, const PartRow *row, const MachineRow *machine, const EntityDrives *d,
+                       double area_m2, double air_k)
 {
-    const double engine = (double)d->engine, alive = (double)d->alive, film = row->inside_w_m2k, running = row->running_w_m2k;
-    const double idle = 0.5, gas_k = air_k + (machine->exhaust_k - air_k) *
-                                                 (idle + (1 - idle) * clamp((engine - drives_idle) / (1 - drives_idle), 0, 1));
+    const double engine = (double)d->engine, alive = (double)d->alive, film = row->inside_w_m2k,
+                 running = row->running_w_m2k;
+    const double idle = 0.5,
+                 gas_k = air_k + (machine->exhaust_k - air_k) *
+                                     (idle + (1 - idle) * clamp((engine - drives_idle) / (1 - drives_idle), 0, 1));
     switch (row->inside) {
-    case INSIDE_EXHAUST: case INSIDE_TURBINE:
+    case INSIDE_EXHAUST:
+    case INSIDE_TURBINE:
         add_film(load, area_m2 * (film + (running - film) * engine), engine > 0 ? gas_k : air_k);
         break;
-    case INSIDE_MOTOR: add_film(load, area_m2 * running * (double)d->motor, 2500); break;
-    case INSIDE_BODY: add_film(load, area_m2 * film * alive, 310); break;
-    case INSIDE_ROOM: add_film(load, area_m2 * film * alive, 293); break;
-    case INSIDE_FLUE: add_film(load, area_m2 * film * alive, 400); break;
-    case INSIDE_GRAIN: add_film(load, area_m2 * film * (double)d->flare, 1900); break;
-    default: break;
+    case INSIDE_MOTOR:
+        add_film(load, area_m2 * running * (double)d->motor, 2500);
+        break;
+    case INSIDE_BODY:
+        add_film(load, area_m2 * film * alive, 310);
+        break;
+    case INSIDE_ROOM:
+        add_film(load, area_m2 * film * alive, 293);
+        break;
+    case INSIDE_FLUE:
+        add_film(load, area_m2 * film * alive, 400);
+        break;
+    case INSIDE_GRAIN:
+        add_film(load, area_m2 * film * (double)d->flare, 1900);
+        break;
+    default:
+        break;
     }
 }
 
@@ -113,7 +130,7 @@ static double water_film_w_m2k(double speed_mps) { return 200 + 1500 * pow(speed
 static double ground_w_k(const SkinNode *skin, const VehicleMoment *m, const EntityDrives *d)
 {
     static const double near_m = 0.5, longest_s = 3600;
-    static const double soil = 1000;    /* J/(m2 K s^1/2): 620 dry, 1400 moist; estimate */
+    static const double soil = 1000;      /* J/(m2 K s^1/2): 620 dry, 1400 moist; estimate */
     static const double gaps_w_m2k = 200; /* 0.13 mm of air and grit between; estimate */
     if (d->flying > 0 || !(fabs(m->place.above_m) < near_m) || !(skin->rolls_m2 > 0)) return 0;
     const bool   moves = (double)d->speed_mps > moving_mps;
@@ -122,7 +139,8 @@ static double ground_w_k(const SkinNode *skin, const VehicleMoment *m, const Ent
     return (moves ? skin->rolls_m2 : skin->ground_m2) / (1 / bodies + 1 / gaps_w_m2k);
 }
 
-static void load_patch(NetworkLoad *load, const VehicleMoment *m, const PatchView *view, const double *temp_k, int i, const EntityDrives *d)
+static void load_patch(NetworkLoad *load, const VehicleMoment *m, const PatchView *view, const double *temp_k, int i,
+                       const EntityDrives *d)
 {
     const Patch     *patch = &m->shape->patches->patch[i];
     const SkinNode  *skin = &m->shape->skin[i];
@@ -134,7 +152,8 @@ static void load_patch(NetworkLoad *load, const VehicleMoment *m, const PatchVie
 
     const double level_w_m2 = p->direct_w_m2 * fmax(p->sun_d_enu[2], 0) + p->diffuse_w_m2;
     const double sun_w_m2 = p->direct_w_m2 * (double)m->lit[i] + p->diffuse_w_m2 * left.sky +
-                            p->ground_rho * level_w_m2 * left.ground + (m->near ? left.near * (double)m->near_sun_w_m2[i] : 0);
+                            p->ground_rho * level_w_m2 * left.ground +
+                            (m->near ? left.near * (double)m->near_sun_w_m2[i] : 0);
     double around_w_m2 = p->longwave_w_m2 * left.sky + stefan_w_m2k4 * pow(p->ground_k, 4) * left.ground +
                          stefan_w_m2k4 * pow(p->under_k, 4) * left.under;
     for (int k = 0; k < view->partners; k++) {
@@ -155,7 +174,8 @@ static void load_patch(NetworkLoad *load, const VehicleMoment *m, const PatchVie
         load[skin->inner].heat_w += 0.5 * w;
     }
     /* a grain burns at its surface */
-    add_inside(&load[skin->row.inside == INSIDE_GRAIN ? skin->surface : skin->inner], &skin->row, &m->shape->machine, d, area, p->air_k);
+    add_inside(&load[skin->row.inside == INSIDE_GRAIN ? skin->surface : skin->inner], &skin->row, &m->shape->machine, d,
+               area, p->air_k);
 }
 
 static void add_gas(VehicleMoment *m, const JetPath *path)
@@ -193,7 +213,8 @@ void vehicle_jet(JetPath *out, const ExhaustJet *exhaust, const double p_enu[3],
     jet_path(out, exhaust, at_enu, d_enu, flow, place->air_k);
 }
 
-void vehicle_loads(NetworkLoad *load, VehicleMoment *m, const PatchView *view, const double *temp_k, const EntityDrives *d)
+void vehicle_loads(NetworkLoad *load, VehicleMoment *m, const PatchView *view, const double *temp_k,
+                   const EntityDrives *d)
 {
     const VehicleShape *shape = m->shape;
     const MachineRow   *machine = &shape->machine;
@@ -218,7 +239,8 @@ void vehicle_links(const VehicleShape *shape, const EntityDrives *d)
     for (int i = 0; i < shape->patches->count; i++) {
         const SkinNode *skin = &shape->skin[i];
         if (skin->inside_link < 0) continue;
-        const double w_m2k = skin->row.inside_w_m2k + (skin->row.running_w_m2k - skin->row.inside_w_m2k) * (double)d->engine;
+        const double w_m2k =
+            skin->row.inside_w_m2k + (skin->row.running_w_m2k - skin->row.inside_w_m2k) * (double)d->engine;
         shape->conductance_w_k[skin->inside_link] = w_m2k * skin->area_m2;
     }
     if (shape->fuel_link >= 0) shape->conductance_w_k[shape->fuel_link] = shape->machine.fuel_w_k * (double)d->engine;

@@ -18,19 +18,19 @@
  * the air, bends with its flow and rises.
  *
  * Balances of mass, momentum and heat along the jet's axis, with one value across it (Hoult & Weil 1972, Atmospheric
- * Environment 6, 513): air enters at 0.08 of the difference in speed along the axis (round jets: Fischer et al. 1979, 0.0535 for
- * a Gaussian profile, times the root of two) and 0.6 of the flow across it. Across the axis a Gaussian of the same flux.
- * The former grows to that over the first 13 diameters (Hill 1972, J. Fluid Mech. 51, 773).
- * Error: speed on the axis of a free jet within 10 % of what is measured (Pope 2000), rise of a hot one in a wind
- * within 15 % of Briggs's law (tests/render/test_jet_path.c). Swirl, the wake of the vehicle and rotor wash are not known. */
+ * Environment 6, 513): air enters at 0.08 of the difference in speed along the axis (round jets: Fischer et al. 1979,
+ * 0.0535 for a Gaussian profile, times the root of two) and 0.6 of the flow across it. Across the axis a Gaussian of
+ * the same flux. The former grows to that over the first 13 diameters (Hill 1972, J. Fluid Mech. 51, 773). Error: speed
+ * on the axis of a free jet within 10 % of what is measured (Pope 2000), rise of a hot one in a wind within 15 % of
+ * Briggs's law (tests/render/test_jet_path.c). Swirl, the wake of the vehicle and rotor wash are not known. */
 
 enum { jet_points = 64, jet_run = 8, jet_boxes = jet_points / jet_run };
 
 typedef struct JetPoint {
-    double p_enu[3];                 /* on the axis */
-    double way_enu[3], per_m2;       /* to the next point; 1 over its square */
-    double radius_m;                 /* where excess and speed are exp(-2) of those on the axis */
-    double excess_k, speed_mps;      /* on the axis; excess: over the air */
+    double p_enu[3];            /* on the axis */
+    double way_enu[3], per_m2;  /* to the next point; 1 over its square */
+    double radius_m;            /* where excess and speed are exp(-2) of those on the axis */
+    double excess_k, speed_mps; /* on the axis; excess: over the air */
 } JetPoint;
 
 /* About all of a jet, or a run of it, that is warmer than the air by 1 K or more. */
@@ -41,18 +41,19 @@ typedef struct JetBox {
 typedef struct JetPath {
     int      count;
     JetPoint point[jet_points];
-    double   widest;                 /* squared radii from the axis, beyond which it is nowhere warmer by 1 K */
-    JetBox   box, run[jet_boxes];    /* run[k]: between points jet_run k and jet_run (k + 1) */
+    double   widest;              /* squared radii from the axis, beyond which it is nowhere warmer by 1 K */
+    JetBox   box, run[jet_boxes]; /* run[k]: between points jet_run k and jet_run (k + 1) */
 } JetPath;
 
-/* From p_enu, leaving in direction d_enu, in air that flows at flow_enu_mps: in axes that move with the outlet. Ends where it
- * is less than 1 K over the air. */
-void jet_path(JetPath *out, const ExhaustJet *jet, const double p_enu[3], const double d_enu[3], const double flow_enu_mps[3],
-              double air_k);
+/* From p_enu, leaving in direction d_enu, in air that flows at flow_enu_mps: in axes that move with the outlet. Ends
+ * where it is less than 1 K over the air. */
+void jet_path(JetPath *out, const ExhaustJet *jet, const double p_enu[3], const double d_enu[3],
+              const double flow_enu_mps[3], double air_k);
 
 /* At a place. wall: it is on the ground or a skin, behind which there is a mirrored jet. False: no warmer there. from:
  * the point of the axis two radii upstream, or the outlet: where what flows past comes from (may be NULL). */
-bool jet_path_at(double *excess_k, double *speed_mps, double from_enu[3], const JetPath *path, const double p_enu[3], bool wall);
+bool jet_path_at(double *excess_k, double *speed_mps, double from_enu[3], const JetPath *path, const double p_enu[3],
+                 bool wall);
 
 /* ---- neighbours ------------------------------------------------------------------------------ */
 
@@ -63,31 +64,37 @@ bool jet_path_at(double *excess_k, double *speed_mps, double from_enu[3], const 
  * (radius / distance)^2, the view factor of a sphere before a plate that faces it; distance is from the nearest
  * place of the entity's own sphere, and at least the radius. Largest shares first, ties by id. */
 
-enum { near_seen_most = 8, near_sun_most = 8, near_jet_most = 4, near_most = near_seen_most + near_sun_most + near_jet_most };
+enum {
+    near_seen_most = 8,
+    near_sun_most = 8,
+    near_jet_most = 4,
+    near_most = near_seen_most + near_sun_most + near_jet_most
+};
 
 typedef enum NearWhy { NEAR_SEEN = 1, NEAR_SUN = 2, NEAR_JET = 4 } NearWhy;
 
 typedef struct NearBody {
     DisEntityId id;
     double      p_enu[3], v_enu_mps[3];
-    double      radius_m;          /* 0: it counts as no neighbour */
-    double      jet_m;             /* how far its exhaust may reach; 0: it has none */
+    double      radius_m; /* 0: it counts as no neighbour */
+    double      jet_m;    /* how far its exhaust may reach; 0: it has none */
 } NearBody;
 
 typedef struct Neighbour {
     int      body;
-    unsigned why;                  /* NearWhy */
-    double   share, fill;          /* at most, of a view; (radius / distance of origins)^2 */
+    unsigned why;         /* NearWhy */
+    double   share, fill; /* at most, of a view; (radius / distance of origins)^2 */
 } Neighbour;
 
 typedef struct Neighbours {
-    int       count, left_out;     /* left_out: beyond the numbers above */
-    Neighbour of[near_most];       /* largest shares first */
+    int       count, left_out; /* left_out: beyond the numbers above */
+    Neighbour of[near_most];   /* largest shares first */
 } Neighbours;
 
 /* body[count], by id. sun_d_enu: towards the sun; below the horizon it has none. resting: of those alone that do not
  * move against it, by 1 m/s. */
-void vehicle_neighbours_find(Neighbours *out, const NearBody *body, int count, int me, const double sun_d_enu[3], bool resting);
+void vehicle_neighbours_find(Neighbours *out, const NearBody *body, int count, int me, const double sun_d_enu[3],
+                             bool resting);
 
 /* ---- what patches see ------------------------------------------------------------------------ */
 
@@ -102,27 +109,27 @@ void vehicle_neighbours_find(Neighbours *out, const NearBody *body, int count, i
 enum { patch_view_rays = 12, patch_partners = 8, patch_near_rays = 24, near_partners = 6, patch_others = 8 };
 
 typedef struct PatchView {
-    float   sky, ground, under;       /* under: ground within the outline of the entity, in its shade */
-    uint8_t partners;                 /* the rest: other patches, at most so many; shares add up to 1 */
+    float   sky, ground, under; /* under: ground within the outline of the entity, in its shade */
+    uint8_t partners;           /* the rest: other patches, at most so many; shares add up to 1 */
     uint8_t partner[patch_partners];
     float   share[patch_partners];
 } PatchView;
 
 /* What other entities take of a patch's view, in rays of patch_points patch_near_rays. */
 typedef struct NearView {
-    uint8_t sky, ground, under, own;  /* that met these before, own: its entity's parts; the sum met others */
-    uint8_t partners;                 /* patches of others, at most so many: the most seen ones stand for all */
+    uint8_t sky, ground, under, own; /* that met these before, own: its entity's parts; the sum met others */
+    uint8_t partners;                /* patches of others, at most so many: the most seen ones stand for all */
     uint8_t slot[near_partners], patch[near_partners], rays[near_partners]; /* slot: which of the others */
 } NearView;
 
 /* An entity as it is posed now, at the origin of ENU. */
 typedef struct PatchPose {
-    const Patches *patches;
-    const Model   *model;
-    const PosedEntity *posed;         /* at p_enu 0; another one: from there */
+    const Patches     *patches;
+    const Model       *model;
+    const PosedEntity *posed; /* at p_enu 0; another one: from there */
     const NodePose    *node;
-    double r_enu_from_body[9];
-    double above_m;                   /* of its base over the ground */
+    double             r_enu_from_body[9];
+    double             above_m; /* of its base over the ground */
 } PatchPose;
 
 void vehicle_view_look(PatchView *out, const PatchPose *pose, int patch);
@@ -130,7 +137,8 @@ void vehicle_view_look(PatchView *out, const PatchPose *pose, int patch);
 void vehicle_view_near(NearView *out, const PatchPose *pose, int patch, const PatchPose *const *other, int others);
 /* out[patches->count]. Share of the direct sun that each patch takes: mean cosine of its points, 0 where its own
  * parts, or others, are between. */
-void vehicle_view_sun(float *out, const PatchPose *pose, const double sun_d_enu[3], const PosedEntity *const *other, int others);
+void vehicle_view_sun(float *out, const PatchPose *pose, const double sun_d_enu[3], const PosedEntity *const *other,
+                      int others);
 /* Of a jet that flows past a patch: means over its points, 0 where its own parts are between them and the jet
  * upstream. */
 void vehicle_view_gas(float *excess_k, float *speed_mps, const PatchPose *pose, int patch, const JetPath *path);
@@ -150,33 +158,34 @@ void vehicle_view_normal(double n_enu[3], const PatchPose *pose, int patch);
 
 typedef struct SkinNode {
     PartRow row;
-    int     surface, inner;    /* nodes; the same where the skin is thin */
-    int     inside_link;       /* to engine or cabin; -1: none */
-    double  area_m2, open_m2;  /* of the node; of that what meets the outside: all of it, or nothing */
-    double  ground_m2, rolls_m2; /* on level ground as it stands; as it rolls: of the whole body, in proportion to area */
-    double  print_m;           /* side of the body's print on the ground */
-    double  effusivity;        /* root of conductivity, density and heat capacity, J/(m2 K s^1/2) */
-    double  absorptance, emissivity;
-    double  friction;          /* share of the row's drive_value */
+    int     surface, inner;   /* nodes; the same where the skin is thin */
+    int     inside_link;      /* to engine or cabin; -1: none */
+    double  area_m2, open_m2; /* of the node; of that what meets the outside: all of it, or nothing */
+    double  ground_m2,
+        rolls_m2;      /* on level ground as it stands; as it rolls: of the whole body, in proportion to area */
+    double print_m;    /* side of the body's print on the ground */
+    double effusivity; /* root of conductivity, density and heat capacity, J/(m2 K s^1/2) */
+    double absorptance, emissivity;
+    double friction; /* share of the row's drive_value */
 } SkinNode;
 
 typedef struct VehicleShape {
     const Patches *patches;
     MachineRow     machine;
     int            nodes, links, engine, cabin, fuel; /* nodes; -1: it has none */
-    int            fuel_link;  /* between engine and fuel; -1: none */
+    int            fuel_link;                         /* between engine and fuel; -1: none */
     double        *capacity_j_k;
     NetworkLink   *link;
-    SkinNode      *skin;       /* [patches->count] */
-    int            gun_body[2];/* of patches: what fires small, large charges; -1: none */
-    double         gun_m2[2];  /* their areas */
+    SkinNode      *skin;        /* [patches->count] */
+    int            gun_body[2]; /* of patches: what fires small, large charges; -1: none */
+    double         gun_m2[2];   /* their areas */
     Network       *network;
     double        *conductance_w_k; /* [links]: scratch of the moment */
 } VehicleShape;
 
 /* patches must outlive it. index: of the model in the catalog. */
-Status vehicle_shape_create(VehicleShape *out, const Patches *patches, const Model *model, int index, const PartTable *table,
-                            const Materials *materials);
+Status vehicle_shape_create(VehicleShape *out, const Patches *patches, const Model *model, int index,
+                            const PartTable *table, const Materials *materials);
 void   vehicle_shape_destroy(VehicleShape *shape); /* accepts zeroes */
 
 /* ---- loads ----------------------------------------------------------------------------------- */
@@ -203,15 +212,15 @@ void   vehicle_shape_destroy(VehicleShape *shape); /* accepts zeroes */
 
 /* Weather and ground about a place. */
 typedef struct PlaceHeat {
-    double air_k, air_density;         /* at its height; over that at sea level */
+    double air_k, air_density; /* at its height; over that at sea level */
     double wind_enu_mps[3];
     double direct_w_m2, diffuse_w_m2, longwave_w_m2; /* facing the sun; on level ground; down on level ground */
     double sun_d_enu[3];
-    double ground_k, under_k;          /* in the open; in the shade of the entity */
-    double ground_rho;                 /* reflectance for sunlight */
-    double above_m;                    /* of the place over the ground or the water */
-    double water_k;                    /* surface of water there, or of the sea nearby */
-    bool   water;                      /* it is water */
+    double ground_k, under_k; /* in the open; in the shade of the entity */
+    double ground_rho;        /* reflectance for sunlight */
+    double above_m;           /* of the place over the ground or the water */
+    double water_k;           /* surface of water there, or of the sea nearby */
+    bool   water;             /* it is water */
 } PlaceHeat;
 
 /* An entity as it is posed at a time, with what is about it. */
@@ -224,20 +233,21 @@ typedef struct VehicleMoment {
     NodePose             *node;
     double               *joint;
     double                p_enu[3], v_enu_mps[3];
-    float                *lit;      /* [patches]: vehicle_view_sun */
-    float                *gas_k, *gas_mps; /* [patches]: of exhaust that flows past, over the air; vehicle_loads fills them */
-    float                *sent_w_m2; /* [patches]: sunlight that they reflect; vehicle_loads fills it */
-    const NearView       *near;     /* [patches]: what its neighbours take of its views; NULL: nothing */
-    float                *near_w_m2, *near_sun_w_m2; /* [patches]: of what is seen of them, on average: longwave, sunlight */
-    const JetPath        *jet[near_jet_most];        /* of neighbours; from its own origin */
-    const PosedEntity    *shade[near_sun_most];      /* neighbours before its sun; likewise */
-    int                   jets, shades;
-    PlaceHeat             place;
-    bool                  afloat;   /* in water, as vehicle_loads finds it */
+    float                *lit;       /* [patches]: vehicle_view_sun */
+    float          *gas_k, *gas_mps; /* [patches]: of exhaust that flows past, over the air; vehicle_loads fills them */
+    float          *sent_w_m2;       /* [patches]: sunlight that they reflect; vehicle_loads fills it */
+    const NearView *near;            /* [patches]: what its neighbours take of its views; NULL: nothing */
+    float          *near_w_m2, *near_sun_w_m2; /* [patches]: of what is seen of them, on average: longwave, sunlight */
+    const JetPath  *jet[near_jet_most];        /* of neighbours; from its own origin */
+    const PosedEntity *shade[near_sun_most];   /* neighbours before its sun; likewise */
+    int                jets, shades;
+    PlaceHeat          place;
+    bool               afloat; /* in water, as vehicle_loads finds it */
 } VehicleMoment;
 
 /* load[shape->nodes]. view[patches]; temp_k[shape->nodes]: of the patches that others see. */
-void vehicle_loads(NetworkLoad *load, VehicleMoment *moment, const PatchView *view, const double *temp_k, const EntityDrives *drives);
+void vehicle_loads(NetworkLoad *load, VehicleMoment *moment, const PatchView *view, const double *temp_k,
+                   const EntityDrives *drives);
 /* Sets the conductances of the shape's network to engine and cabin. */
 void vehicle_links(const VehicleShape *shape, const EntityDrives *drives);
 /* Exhaust of an entity whose origin is at p_enu. */

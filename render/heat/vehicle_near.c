@@ -26,7 +26,7 @@ static void key_of(NearKey *out, const NearScene *scene, int me, const Neighbour
 {
     const SnapshotEntity *mine = &scene->snapshot->entity[scene->state[me]->index];
     const SnapshotEntity *its = &scene->snapshot->entity[scene->state[n->body]->index];
-    double to_ecef[3];
+    double                to_ecef[3];
     out->id = its->id, out->why = n->why;
     v3_sub(to_ecef, its->p_ecef, mine->p_ecef);
     m3_tmul_v3(out->p_body, mine->r_ecef_from_body, to_ecef);
@@ -81,7 +81,7 @@ Status vehicle_near_check(bool *changed, int *left_out, const NearScene *scene, 
     NearKey       key[near_most];
     vehicle_neighbours_find(&found, scene->body, scene->count, me, sun_d_enu, false);
     *left_out = found.left_out;
-    *changed  = false;
+    *changed = false;
     if (found.count == 0) {
         *changed = s->near != NULL;
         free(s->near);
@@ -95,9 +95,10 @@ Status vehicle_near_check(bool *changed, int *left_out, const NearScene *scene, 
         int was = 0;
         key_of(&key[k], scene, me, &found.of[k]);
         while (was < s->near->count && dis_entity_id_compare(s->near->key[was].id, key[k].id) != 0) was++;
-        const bool new = was == s->near->count || s->near->key[was].why != key[k].why || moved(&s->near->key[was], &key[k]);
+        const bool new =
+            was == s->near->count || s->near->key[was].why != key[k].why || moved(&s->near->key[was], &key[k]);
         *changed |= new;
-        looks |= new && key[k].why & NEAR_SEEN;
+        looks |= new &&key[k].why &NEAR_SEEN;
     }
     if (!*changed) return STATUS_OK;
     int seen = 0, was_seen = 0;
@@ -118,17 +119,18 @@ static const PatchPose *pose_of(Status *status, const NearScene *scene, int body
     const SnapshotEntity *e = &scene->snapshot->entity[index];
     const Model          *model = tracer_model(scene->tracer, e->model);
     const size_t          nodes = (size_t)model->node_count;
-    PatchPose   *pose = arena_alloc(arena, 1, sizeof *pose);
-    PosedEntity *posed = arena_alloc(arena, 1, sizeof *posed);
-    NodePose    *node = arena_alloc(arena, nodes, sizeof *node);
-    double      *joint = arena_alloc(arena, nodes, sizeof *joint), from_enu[3];
-    PosedNode   *posed_node = arena_alloc(arena, (size_t)parts_node_count(scene->tracer, e->model) + 1, sizeof *posed_node);
+    PatchPose            *pose = arena_alloc(arena, 1, sizeof *pose);
+    PosedEntity          *posed = arena_alloc(arena, 1, sizeof *posed);
+    NodePose             *node = arena_alloc(arena, nodes, sizeof *node);
+    double               *joint = arena_alloc(arena, nodes, sizeof *joint), from_enu[3];
+    PosedNode            *posed_node =
+        arena_alloc(arena, (size_t)parts_node_count(scene->tracer, e->model) + 1, sizeof *posed_node);
     if (!pose || !posed || !node || !joint || !posed_node) {
         *status = STATUS_NO_MEMORY;
         return NULL;
     }
     *posed = (PosedEntity){.node = posed_node};
-    *pose  = (PatchPose){.patches = scene->shape[e->model].patches, .model = model, .posed = posed, .node = node};
+    *pose = (PatchPose){.patches = scene->shape[e->model].patches, .model = model, .posed = posed, .node = node};
     m3_tmul(pose->r_enu_from_body, scene->frame->r_ecef_from_enu, e->r_ecef_from_body);
     v3_sub(from_enu, scene->body[body].p_enu, p_enu);
     snapshot_pose(node, joint, scene->snapshot, index, model);
@@ -161,7 +163,8 @@ void vehicle_near_look(VehicleState *s, const VehicleMoment *m, const PatchPose 
 /* ---- what they do ------------------------------------------------------------------------- */
 
 /* Longwave and sunlight from what of its neighbours each patch sees. */
-static Status shine(VehicleMoment *m, const NearScene *scene, const VehicleState *s, double t_s, bool past, Arena *arena)
+static Status shine(VehicleMoment *m, const NearScene *scene, const VehicleState *s, double t_s, bool past,
+                    Arena *arena)
 {
     const PlaceHeat    *p = &m->place;
     const size_t        patches = (size_t)m->shape->patches->count;
@@ -221,8 +224,8 @@ static Status blow(VehicleMoment *m, const NearScene *scene, int body, Arena *ar
     return STATUS_OK;
 }
 
-Status vehicle_near_moment(NearWork *work, VehicleMoment *m, const NearScene *scene, int me, double t_s, bool past, bool lately,
-                           Arena *arena)
+Status vehicle_near_moment(NearWork *work, VehicleMoment *m, const NearScene *scene, int me, double t_s, bool past,
+                           bool lately, Arena *arena)
 {
     Neighbours found;
     vehicle_neighbours_find(&found, scene->body, scene->count, me, m->place.sun_d_enu, past);

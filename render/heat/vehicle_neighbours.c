@@ -39,7 +39,8 @@ static void merge(Neighbours *out, const Ranks *r, unsigned why)
     }
 }
 
-void vehicle_neighbours_find(Neighbours *out, const NearBody *body, int count, int me, const double sun_d_enu[3], bool resting)
+void vehicle_neighbours_find(Neighbours *out, const NearBody *body, int count, int me, const double sun_d_enu[3],
+                             bool resting)
 {
     Ranks seen = {.most = near_seen_most}, sun = {.most = near_sun_most}, jet = {.most = near_jet_most};
     _Static_assert(near_sun_most <= near_seen_most && near_jet_most <= near_seen_most, "Ranks has room");

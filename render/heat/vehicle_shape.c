@@ -30,9 +30,12 @@ static void add_skin(VehicleShape *s, SkinNode *skin, const Material *m)
     }
     const double *depth = depth_of[row->drive == PART_DRIVE_FIRING];
     for (int i = 0; i < skin_depths; i++) {
-        const double above = i > 0 ? depth[i] - depth[i - 1] : 0, below = i + 1 < skin_depths ? depth[i + 1] - depth[i] : 0;
+        const double above = i > 0 ? depth[i] - depth[i - 1] : 0,
+                     below = i + 1 < skin_depths ? depth[i + 1] - depth[i] : 0;
         s->capacity_j_k[s->nodes++] = 0.5 * (above + below) * capacity;
-        if (i > 0) s->link[s->links++] = (NetworkLink){s->nodes - 2, s->nodes - 1, (double)m->conductivity_w_mk * area / (above * t)};
+        if (i > 0)
+            s->link[s->links++] =
+                (NetworkLink){s->nodes - 2, s->nodes - 1, (double)m->conductivity_w_mk * area / (above * t)};
     }
     skin->inner = s->nodes - 1;
 }
@@ -42,18 +45,24 @@ static const Material *material_at(const Materials *materials, int index, const 
     return &materials->material[material_of_part(materials, index, patch->part, 0)];
 }
 
-static void add_skins(VehicleShape *s, const Model *model, int index, const PartTable *table, const Materials *materials)
+static void add_skins(VehicleShape *s, const Model *model, int index, const PartTable *table,
+                      const Materials *materials)
 {
     static const double rubber_w_mk = 1, stiff_share = 0.2;
-    const Patches *p = s->patches;
+    const Patches      *p = s->patches;
     for (int i = 0; i < p->count; i++) {
         const Material *m = material_at(materials, index, &p->patch[i]);
         SkinNode       *skin = &s->skin[i];
         const PartRow  *row = &table->role[p->patch[i].role];
         const bool      yields = (double)m->conductivity_w_mk < rubber_w_mk || p->patch[i].role == HEAT_TRACK;
-        *skin = (SkinNode){.row = *row, .inside_link = -1, .area_m2 = patch_skin_m2(&p->patch[i]), .open_m2 = patch_open_m2(&p->patch[i]),
-                           .effusivity = sqrt((double)m->conductivity_w_mk * rho_c(m)), .absorptance = (double)m->solar_absorptance,
-                           .emissivity = 1 - (double)m->rho_lwir, .friction = yields ? 1 : stiff_share};
+        *skin = (SkinNode){.row = *row,
+                           .inside_link = -1,
+                           .area_m2 = patch_skin_m2(&p->patch[i]),
+                           .open_m2 = patch_open_m2(&p->patch[i]),
+                           .effusivity = sqrt((double)m->conductivity_w_mk * rho_c(m)),
+                           .absorptance = (double)m->solar_absorptance,
+                           .emissivity = 1 - (double)m->rho_lwir,
+                           .friction = yields ? 1 : stiff_share};
         const double own_m = model->part[p->patch[i].part].thickness_m;
         if (own_m > 0) skin->row.thickness_m = own_m;
         add_skin(s, skin, m);
@@ -63,7 +72,8 @@ static void add_skins(VehicleShape *s, const Model *model, int index, const Part
         double           sheet = INFINITY;
         const int        end[2] = {l->a, l->b};
         for (int e = 0; e < 2; e++)
-            sheet = fmin(sheet, (double)material_at(materials, index, &p->patch[end[e]])->conductivity_w_mk * s->skin[end[e]].row.thickness_m);
+            sheet = fmin(sheet, (double)material_at(materials, index, &p->patch[end[e]])->conductivity_w_mk *
+                                    s->skin[end[e]].row.thickness_m);
         const double w_k = sheet * l->length_m / l->distance_m * (l->joint ? joint_share : 1);
         s->link[s->links++] = (NetworkLink){s->skin[l->a].surface, s->skin[l->b].surface, w_k};
     }
@@ -78,7 +88,9 @@ static void add_insides(VehicleShape *s)
     if (any[INSIDE_ENGINE]) s->engine = s->nodes, s->capacity_j_k[s->nodes++] = s->machine.engine_j_k;
     if (any[INSIDE_CABIN]) s->cabin = s->nodes, s->capacity_j_k[s->nodes++] = s->machine.cabin_j_k;
     for (int i = 0; i < s->patches->count; i++) {
-        const int node = s->skin[i].row.inside == INSIDE_ENGINE ? s->engine : s->skin[i].row.inside == INSIDE_CABIN ? s->cabin : -1;
+        const int node = s->skin[i].row.inside == INSIDE_ENGINE  ? s->engine
+                         : s->skin[i].row.inside == INSIDE_CABIN ? s->cabin
+                                                                 : -1;
         if (node < 0) continue;
         s->skin[i].inside_link = s->links;
         s->link[s->links++] = (NetworkLink){s->skin[i].inner, node, s->skin[i].row.inside_w_m2k * s->skin[i].area_m2};
@@ -90,7 +102,8 @@ static void add_insides(VehicleShape *s)
 /* Fuel, in tanks along hull or airframe. */
 static void add_fuel(VehicleShape *s)
 {
-    static const double touched_share = 0.1, film_w_m2k = 30; /* of the skin; natural convection in oil behind it; estimates */
+    static const double touched_share = 0.1,
+                        film_w_m2k = 30; /* of the skin; natural convection in oil behind it; estimates */
     s->fuel = s->fuel_link = -1;
     if (!(s->machine.fuel_j_k > 0)) return;
     for (int i = 0; i < s->patches->count; i++) {
@@ -116,8 +129,8 @@ static void find_prints(VehicleShape *s)
         if (!(ground_m2 > 0)) continue;
         for (int i = first; i < end; i++) {
             s->skin[i].ground_m2 = p->patch[i].ground_m2;
-            s->skin[i].rolls_m2  = ground_m2 * s->skin[i].open_m2 / open_m2;
-            s->skin[i].print_m   = sqrt(ground_m2);
+            s->skin[i].rolls_m2 = ground_m2 * s->skin[i].open_m2 / open_m2;
+            s->skin[i].print_m = sqrt(ground_m2);
         }
     }
 }
@@ -140,16 +153,17 @@ static void find_guns(VehicleShape *s)
     }
 }
 
-Status vehicle_shape_create(VehicleShape *out, const Patches *patches, const Model *model, int index, const PartTable *table,
-                            const Materials *materials)
+Status vehicle_shape_create(VehicleShape *out, const Patches *patches, const Model *model, int index,
+                            const PartTable *table, const Materials *materials)
 {
-    const size_t nodes = (size_t)patches->count * skin_depths + 3, links = nodes + (size_t)patches->links + 2 * (size_t)patches->count + 2;
+    const size_t nodes = (size_t)patches->count * skin_depths + 3,
+                 links = nodes + (size_t)patches->links + 2 * (size_t)patches->count + 2;
     VehicleShape s = {.patches = patches, .machine = part_table_machine(table, model)};
     Status       status = STATUS_NO_MEMORY;
-    s.capacity_j_k    = calloc(nodes, sizeof *s.capacity_j_k);
-    s.link            = calloc(links, sizeof *s.link);
+    s.capacity_j_k = calloc(nodes, sizeof *s.capacity_j_k);
+    s.link = calloc(links, sizeof *s.link);
     s.conductance_w_k = calloc(links, sizeof *s.conductance_w_k);
-    s.skin            = calloc((size_t)patches->count + 1, sizeof *s.skin);
+    s.skin = calloc((size_t)patches->count + 1, sizeof *s.skin);
     if (s.capacity_j_k && s.link && s.conductance_w_k && s.skin) {
         add_skins(&s, model, index, table, materials);
         add_insides(&s);

@@ -20,16 +20,16 @@ VehicleState *vehicle_state_create(const VehicleShape *shape, const Model *model
     if (!at) return NULL;
     VehicleState *s = (VehicleState *)(void *)at;
     s->temp_k = (double *)(void *)(at + sizeof *s);
-    s->joint  = s->temp_k + n;
-    s->load   = (NetworkLoad *)(void *)(s->joint + j);
-    s->view   = (PatchView *)(void *)(s->load + n);
-    s->now_k  = (float *)(void *)(s->view + p);
+    s->joint = s->temp_k + n;
+    s->load = (NetworkLoad *)(void *)(s->joint + j);
+    s->view = (PatchView *)(void *)(s->load + n);
+    s->now_k = (float *)(void *)(s->view + p);
     s->next_k = s->now_k + p;
     s->sent_w_m2 = s->next_k + p;
-    s->was_k  = s->sent_w_m2 + p;
+    s->was_k = s->sent_w_m2 + p;
     s->was_sent_w_m2 = s->was_k + p;
-    s->given  = (int *)(void *)(s->was_sent_w_m2 + p);
-    s->was_s  = s->checked_s = -INFINITY;
+    s->given = (int *)(void *)(s->was_sent_w_m2 + p);
+    s->was_s = s->checked_s = -INFINITY;
     return s;
 }
 
@@ -63,7 +63,8 @@ void vehicle_state_given(VehicleState *s, const GivenHeat *given, const Patches 
     int best[patches_most];
     for (int i = 0; i < patches->count; i++) s->given[i] = best[i] = -1;
     for (int part = 0; given && part < model->part_count; part++) {
-        const int body = patches->body_of_part[part], first = patches->first_of_body[body], end = patches->first_of_body[body + 1];
+        const int body = patches->body_of_part[part], first = patches->first_of_body[body],
+                  end = patches->first_of_body[body + 1];
         int       rank;
         const int found = given_heat_find(&rank, given, s->id, model, part);
         if (first == end || rank <= best[first]) continue;
@@ -133,19 +134,23 @@ bool vehicle_state_sees(const VehicleState *s, const VehicleMoment *m)
 
 void vehicle_state_stay(VehicleState *s, const VehicleMoment *m, double t_s)
 {
-    s->t_s    = t_s;
+    s->t_s = t_s;
     s->drives = m->entity->drives;
     ahead_in_enu(s->ahead_enu, m->pose.r_enu_from_body);
     up_in_body(s->up_body, m->pose.r_enu_from_body);
 }
 
-static bool differs(double a, double b, double share, double least) { return fabs(a - b) > fmax(share * fmax(fabs(a), fabs(b)), least); }
+static bool differs(double a, double b, double share, double least)
+{
+    return fabs(a - b) > fmax(share * fmax(fabs(a), fabs(b)), least);
+}
 
 static bool drives_changed(const EntityDrives *a, const EntityDrives *b)
 {
-    return differs((double)a->engine, (double)b->engine, 0, 0.05) || differs((double)a->speed_mps, (double)b->speed_mps, 0.1, 1) ||
-           a->burning != b->burning || a->motor != b->motor || a->flare != b->flare || a->alive != b->alive ||
-           a->flying != b->flying || a->fired_kg[0] != b->fired_kg[0] || a->fired_kg[1] != b->fired_kg[1];
+    return differs((double)a->engine, (double)b->engine, 0, 0.05) ||
+           differs((double)a->speed_mps, (double)b->speed_mps, 0.1, 1) || a->burning != b->burning ||
+           a->motor != b->motor || a->flare != b->flare || a->alive != b->alive || a->flying != b->flying ||
+           a->fired_kg[0] != b->fired_kg[0] || a->fired_kg[1] != b->fired_kg[1];
 }
 
 bool vehicle_state_changed(const VehicleState *s, const SnapshotEntity *now, const double r_enu_from_body[9])

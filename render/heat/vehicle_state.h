@@ -22,8 +22,8 @@ typedef struct VehicleNear {
     int         looked;                 /* patches of next; all: view is of the keys' poses */
     NearKey     key[near_most];
     DisEntityId id[near_seen_most], next_id[near_seen_most]; /* others of view, of next */
-    double      fill;                   /* of next: the sum of their (radius / distance)^2, what rays cost */
-    NearView   *view, *next;            /* [patches] */
+    double      fill;        /* of next: the sum of their (radius / distance)^2, what rays cost */
+    NearView   *view, *next; /* [patches] */
 } VehicleNear;
 
 typedef struct VehicleState {
@@ -34,24 +34,24 @@ typedef struct VehicleState {
     EntityDrives drives;
     double       up_body[3], ahead_enu[3];
     double       heat_in_j;
-    double      *temp_k;          /* [nodes] at t_s; zeroes: its past has not begun */
-    float       *now_k, *next_k;  /* [patches] at t_s, next_s */
-    double      *joint;           /* [model nodes]: as view saw them */
+    double      *temp_k;         /* [nodes] at t_s; zeroes: its past has not begun */
+    float       *now_k, *next_k; /* [patches] at t_s, next_s */
+    double      *joint;          /* [model nodes]: as view saw them */
     double       view_up_body[3];
-    PatchView   *view;            /* [patches] */
+    PatchView   *view; /* [patches] */
     double       view_above_m;
-    int          looked, lived;   /* patches whose view is of that pose; steps of its past that are done */
-    bool         shown, changed;  /* its past is over; its drives are others than those of t_s */
-    double       seen_s, waits_s; /* first seen; since when work waits, INFINITY: none does */
-    NetworkLoad *load;            /* [nodes] at t_s */
-    int         *given;           /* [patches] of GivenHeat, -1: none */
-    int          index;           /* in the snapshot of the tick */
-    float       *sent_w_m2;       /* [patches]: sunlight that they reflect, at t_s */
+    int          looked, lived;         /* patches whose view is of that pose; steps of its past that are done */
+    bool         shown, changed;        /* its past is over; its drives are others than those of t_s */
+    double       seen_s, waits_s;       /* first seen; since when work waits, INFINITY: none does */
+    NetworkLoad *load;                  /* [nodes] at t_s */
+    int         *given;                 /* [patches] of GivenHeat, -1: none */
+    int          index;                 /* in the snapshot of the tick */
+    float       *sent_w_m2;             /* [patches]: sunlight that they reflect, at t_s */
     float       *was_k, *was_sent_w_m2; /* [patches]: as shown at was_s, before its work of that tick */
     double       was_s;
     bool         was_shown;
-    VehicleNear *near;            /* NULL: it has no neighbours */
-    double       checked_s;       /* when they were looked for */
+    VehicleNear *near;      /* NULL: it has no neighbours */
+    double       checked_s; /* when they were looked for */
 } VehicleState;
 
 VehicleState *vehicle_state_create(const VehicleShape *shape, const Model *model);
@@ -64,9 +64,9 @@ void vehicle_state_given(VehicleState *state, const GivenHeat *given, const Patc
 /* Temperature of a patch at t_s, of its own past or given. */
 double vehicle_state_k(const VehicleState *state, const GivenHeat *given, int patch, double t_s);
 /* Of its own past, as it was when the tick of t_s began; false: it was not shown. sent_w_m2: of sunlight. */
-bool   vehicle_state_then(double *temp_k, double *sent_w_m2, const VehicleState *state, int patch, double t_s);
+bool vehicle_state_then(double *temp_k, double *sent_w_m2, const VehicleState *state, int patch, double t_s);
 /* Before its first work of a tick. */
-void   vehicle_state_remember(VehicleState *state, int patches, double t_s);
+void vehicle_state_remember(VehicleState *state, int patches, double t_s);
 
 /* It has come to t_s, by this moment. */
 void vehicle_state_stay(VehicleState *state, const VehicleMoment *moment, double t_s);
@@ -81,8 +81,8 @@ void vehicle_state_look(VehicleState *state, const VehicleMoment *moment);
 /* What entities do to each other's heat: they stand in each other's sun, take each
  * other's sky and ground, and their exhaust blows on each other.
  *
- * Who is a neighbour: vehicle_neighbours_find; once a second it is looked for anew, and a step of the entity ends when one
- * came, went, moved by 0.3 m (and by a twentieth of its distance, where it is seen alone) or turned by 10 degrees
+ * Who is a neighbour: vehicle_neighbours_find; once a second it is looked for anew, and a step of the entity ends when
+ * one came, went, moved by 0.3 m (and by a twentieth of its distance, where it is seen alone) or turned by 10 degrees
  * against it. Seen is a patch of the neighbour, black in the longwave as an entity's own are, as warm as its network
  * had it when the tick began, with the sunlight that it reflected at its own last time; one that is not shown yet,
  * and any neighbour in the past before an entity's first report, is as warm as the air and as bright as the ground.
@@ -94,10 +94,10 @@ void vehicle_state_look(VehicleState *state, const VehicleMoment *moment);
 typedef struct NearScene {
     const Snapshot      *snapshot;
     const Tracer        *tracer;
-    const VehicleShape  *shape;  /* [models] */
+    const VehicleShape  *shape; /* [models] */
     const LocalFrame    *frame;
-    VehicleState *const *state;  /* [count], by id */
-    NearBody            *body;   /* [count]: vehicle_near_bodies fills them */
+    VehicleState *const *state; /* [count], by id */
+    NearBody            *body;  /* [count]: vehicle_near_bodies fills them */
     int                  count;
 } NearScene;
 
@@ -117,7 +117,7 @@ static inline bool vehicle_near_waits(const VehicleState *s, const VehicleShape 
 Status vehicle_near_pose(const PatchPose *pose[near_seen_most], const NearScene *scene, const VehicleState *state,
                          const VehicleMoment *moment, Arena *arena);
 /* The next patch. */
-void   vehicle_near_look(VehicleState *state, const VehicleMoment *moment, const PatchPose *const *pose);
+void vehicle_near_look(VehicleState *state, const VehicleMoment *moment, const PatchPose *const *pose);
 
 /* What its neighbours do to it, into a moment whose place is known. past: before its first report; lately: and
  * engines run as now. Returns how many it posed, and how many jets it followed, in the arena. */

@@ -33,8 +33,8 @@ static void work_window_spend(WorkWindow *w, double us) { w->spent_us[place_of(w
 
 /* What pieces cost, microseconds of one core of 2024: units of account, so that every machine does the same work at the
  * same time (`bench speed` holds them against the clock). */
-static const double look_us = 45; /* of a patch */
-static const double pose_us = 10, jet_us = 60; /* of a neighbour: posed; its exhaust followed */
+static const double look_us = 45;                   /* of a patch */
+static const double pose_us = 10, jet_us = 60;      /* of a neighbour: posed; its exhaust followed */
 static const double near_us = 3, near_fill_us = 12; /* of a patch that looks at neighbours: at all; by what they fill */
 
 static double past_us(const VehicleShape *shape) { return 2.0 * shape->patches->count + 0.6 * shape->nodes; }
@@ -54,14 +54,16 @@ static Status catch_moment(VehicleMoment *m, VehicleHeat *h, const VehicleState 
     const LocalFrame     *frame = h->world.frame;
     static const double   origin[3] = {0, 0, 0};
     *m = (VehicleMoment){.entity = e, .model = tracer_model(h->world.tracer, e->model), .shape = &h->shape[e->model]};
-    m->node  = arena_alloc(h->arena, (size_t)m->model->node_count, sizeof *m->node);
+    m->node = arena_alloc(h->arena, (size_t)m->model->node_count, sizeof *m->node);
     m->joint = arena_alloc(h->arena, (size_t)m->model->node_count, sizeof *m->joint);
-    m->lit   = arena_alloc(h->arena, (size_t)m->shape->patches->count + 1, sizeof *m->lit);
+    m->lit = arena_alloc(h->arena, (size_t)m->shape->patches->count + 1, sizeof *m->lit);
     m->gas_k = arena_alloc(h->arena, (size_t)m->shape->patches->count + 1, sizeof *m->gas_k);
     m->gas_mps = arena_alloc(h->arena, (size_t)m->shape->patches->count + 1, sizeof *m->gas_mps);
     m->sent_w_m2 = arena_alloc(h->arena, (size_t)m->shape->patches->count + 1, sizeof *m->sent_w_m2);
-    m->posed.node = arena_alloc(h->arena, (size_t)parts_node_count(h->world.tracer, e->model) + 1, sizeof *m->posed.node);
-    if (!m->node || !m->joint || !m->lit || !m->gas_k || !m->gas_mps || !m->sent_w_m2 || !m->posed.node) return STATUS_NO_MEMORY;
+    m->posed.node =
+        arena_alloc(h->arena, (size_t)parts_node_count(h->world.tracer, e->model) + 1, sizeof *m->posed.node);
+    if (!m->node || !m->joint || !m->lit || !m->gas_k || !m->gas_mps || !m->sent_w_m2 || !m->posed.node)
+        return STATUS_NO_MEMORY;
     enu_from_ecef(m->p_enu, frame, e->p_ecef);
     m3_tmul_v3(m->v_enu_mps, frame->r_ecef_from_enu, e->v_ecef_mps);
     m3_tmul(m->pose.r_enu_from_body, frame->r_ecef_from_enu, e->r_ecef_from_body);
@@ -76,7 +78,7 @@ static Status catch_moment(VehicleMoment *m, VehicleHeat *h, const VehicleState 
 static Status find_ground(VehicleMoment *m, const VehicleHeat *h, double unix_s, bool present)
 {
     const Status status = h->config.place(&m->place, h->config.user, unix_s, m->p_enu, present);
-    m->pose.posed   = &m->posed;
+    m->pose.posed = &m->posed;
     m->pose.above_m = m->place.above_m;
     return status;
 }
@@ -87,8 +89,8 @@ static Status find_place(VehicleMoment *m, VehicleHeat *h, const VehicleState *s
     NearWork work = {0};
     Status   status = find_ground(m, h, h->config.unix_s + t_s, present);
     if (status == STATUS_OK && h->near.count > 1)
-        status = vehicle_near_moment(&work, m, &h->near, vehicle_state_find(h->state, h->count, s->id), t_s, !present, lately,
-                                     h->arena);
+        status = vehicle_near_moment(&work, m, &h->near, vehicle_state_find(h->state, h->count, s->id), t_s, !present,
+                                     lately, h->arena);
     if (status != STATUS_OK) return status;
     vehicle_view_sun(m->lit, &m->pose, m->place.sun_d_enu, m->shade, m->shades);
     work_window_spend(&h->window, pose_us * work.poses + jet_us * work.jets);
@@ -115,7 +117,8 @@ static void step(VehicleHeat *h, VehicleState *s, double *temp_k, double *heat_i
     vehicle_links(shape, d);
     memcpy(scratch, temp_k, octets);
     h->counters.steps++;
-    if (heat_network_step(scratch, &in_j, shape->network, from, to, dt_s) != STATUS_OK || !is_sound(scratch, shape->nodes)) {
+    if (heat_network_step(scratch, &in_j, shape->network, from, to, dt_s) != STATUS_OK ||
+        !is_sound(scratch, shape->nodes)) {
         h->counters.failed++;
         return;
     }
@@ -165,8 +168,8 @@ static Status predict(VehicleHeat *h, VehicleState *s, const VehicleMoment *m)
 /* ---- the past ----------------------------------------------------------------------------- */
 
 /* A day without its engine, an hour as it is now: steps that shorten towards the present. */
-static const double past_span_s[] = {10800, 10800, 10800, 10800, 7200, 7200, 7200, 3600, 3600, 3600, 3600, 3600, 120, 480,
-                                     900, 900, 600, 300, 300};
+static const double past_span_s[] = {10800, 10800, 10800, 10800, 7200, 7200, 7200, 3600, 3600, 3600,
+                                     3600,  3600,  120,   480,   900,  900,  600,  300,  300};
 enum { past_steps = sizeof past_span_s / sizeof *past_span_s };
 
 /* Drives d for span_s, from loads of the middle of that. */
@@ -187,10 +190,10 @@ static Status live_through(VehicleHeat *h, VehicleState *s, VehicleMoment *m, co
     vehicle_links(m->shape, d);
     h->counters.steps++;
     memcpy(scratch, s->temp_k, octets);
-    if (heat_network_leap(scratch, m->shape->network, s->load, span_s) == STATUS_OK && is_sound(scratch, m->shape->nodes))
+    if (heat_network_leap(scratch, m->shape->network, s->load, span_s) == STATUS_OK &&
+        is_sound(scratch, m->shape->nodes))
         memcpy(s->temp_k, scratch, octets);
-    else
-        step(h, s, s->temp_k, NULL, d, s->load, s->load, span_s, scratch);
+    else step(h, s, s->temp_k, NULL, d, s->load, s->load, span_s, scratch);
     return STATUS_OK;
 }
 
@@ -199,8 +202,9 @@ static const KeptNodes *kept_of(const VehicleHeat *h, const VehicleState *s)
 {
     static const double longest_s = 10800;
     if (!h->world.kept) return NULL;
-    const KeptNodes *k = heat_kept_find(h->world.kept, s->id, tracer_model(h->world.tracer, s->model)->name, h->shape[s->model].nodes);
-    const double     gap_s = k ? h->config.unix_s + s->seen_s - k->unix_s : 0;
+    const KeptNodes *k =
+        heat_kept_find(h->world.kept, s->id, tracer_model(h->world.tracer, s->model)->name, h->shape[s->model].nodes);
+    const double gap_s = k ? h->config.unix_s + s->seen_s - k->unix_s : 0;
     return k && gap_s >= 0 && gap_s <= longest_s ? k : NULL;
 }
 
@@ -242,13 +246,12 @@ static Status appear(VehicleHeat *h, VehicleState *s, VehicleMoment *m, double t
     vehicle_state_remember(s, m->shape->patches->count, t_s);
     if (snapshot_is_short_lived(m->entity)) {
         const double speed_mps = v3_length(m->v_enu_mps);
-        for (int n = 0; n < m->shape->nodes; n++)
-            s->temp_k[n] = m->place.air_k + vehicle_recovery_k(speed_mps);
+        for (int n = 0; n < m->shape->nodes; n++) s->temp_k[n] = m->place.air_k + vehicle_recovery_k(speed_mps);
     }
     vehicle_state_stay(s, m, t_s);
     vehicle_loads(s->load, m, s->view, s->temp_k, &s->drives);
     s->span_s = h->config.first_step_s;
-    s->shown  = true;
+    s->shown = true;
     h->counters.begun++;
     return predict(h, s, m);
 }
@@ -307,7 +310,7 @@ Status vehicle_work_on(VehicleHeat *h, VehicleState *s)
     const double        t_s = h->near.snapshot->t_s;
     const VehicleShape *shape = &h->shape[s->model];
     const int           patches = shape->patches->count;
-    VehicleMoment              m;
+    VehicleMoment       m;
     arena_reset(h->arena);
     Status status = catch_moment(&m, h, s);
     if (status == STATUS_BAD_VALUE) s->waits_s = INFINITY; /* not drawable */

@@ -7,8 +7,8 @@ static const double cell_m = 8;
 static const double leaf_area_step = 1.0 / 16, top_step_m = 0.25;
 
 typedef struct CanopyCell {
-    uint8_t leaf_area;   /* of leaf_area_step */
-    uint8_t top, base;   /* of top_step_m, above the ground */
+    uint8_t leaf_area; /* of leaf_area_step */
+    uint8_t top, base; /* of top_step_m, above the ground */
     uint8_t spare;
 } CanopyCell;
 
@@ -20,7 +20,7 @@ struct Canopy {
     double      x0_m, y0_m;
     CanopyCell *cell;
     float       gap[gap_steps + 2];
-    double      open_up, open_down; /* of a leaf or branch, the mean of all */
+    double      open_up, open_down;               /* of a leaf or branch, the mean of all */
     double      scattered[optical_channel_count]; /* w */
 };
 
@@ -49,12 +49,13 @@ static double gap_at(const Canopy *c, double x)
 /* ---- the grid --------------------------------------------------------------------------------- */
 
 typedef struct Sum {
-    float area;        /* m2 of leaves */
-    float top, base;   /* weighted by it */
+    float area;      /* m2 of leaves */
+    float top, base; /* weighted by it */
 } Sum;
 
 /* A plant's leaves go to the cells under its crown, evenly. */
-static void add_plant(Sum *sum, const Canopy *c, const Woods *woods, const Plants *plants, const Plant *plant, bool leaves)
+static void add_plant(Sum *sum, const Canopy *c, const Woods *woods, const Plants *plants, const Plant *plant,
+                      bool leaves)
 {
     const PlantShape *shape = &plants->shape[plant->kind][0];
     const double      height_m = plant_height_m(plant), wide = plant->width / 128.0;
@@ -63,8 +64,10 @@ static void add_plant(Sum *sum, const Canopy *c, const Woods *woods, const Plant
     const double      x = (double)plant->p_m[0] + woods->origin_enu[0] - c->x0_m;
     const double      y = (double)plant->p_m[1] + woods->origin_enu[1] - c->y0_m;
     if (!leaves && plant_is_deciduous((PlantKind)plant->kind)) return;
-    const int i0 = (int)clamp(floor((x - r) / cell_m), 0, c->nx - 1), i1 = (int)clamp(floor((x + r) / cell_m), 0, c->nx - 1);
-    const int j0 = (int)clamp(floor((y - r) / cell_m), 0, c->ny - 1), j1 = (int)clamp(floor((y + r) / cell_m), 0, c->ny - 1);
+    const int i0 = (int)clamp(floor((x - r) / cell_m), 0, c->nx - 1),
+              i1 = (int)clamp(floor((x + r) / cell_m), 0, c->nx - 1);
+    const int j0 = (int)clamp(floor((y - r) / cell_m), 0, c->ny - 1),
+              j1 = (int)clamp(floor((y + r) / cell_m), 0, c->ny - 1);
     for (int j = j0; j <= j1; j++)
         for (int i = i0; i <= i1; i++) {
             const double across = fmin(x + r, (i + 1) * cell_m) - fmax(x - r, i * cell_m);
@@ -77,8 +80,9 @@ static void add_plant(Sum *sum, const Canopy *c, const Woods *woods, const Plant
         }
 }
 
-/* Areas of a prototype that light meets on its way, half of the leaves' and a quarter of the branches', each as far as it
- * is open: what lies deep in the crown neither gets nor gives much. open_up, open_down: their sums over these areas. */
+/* Areas of a prototype that light meets on its way, half of the leaves' and a quarter of the branches', each as far as
+ * it is open: what lies deep in the crown neither gets nor gives much. open_up, open_down: their sums over these areas.
+ */
 typedef struct Crown {
     double leaf, bark, open_up, open_down;
 } Crown;
@@ -208,9 +212,11 @@ bool canopy_place(CanopyPlace *out, const Canopy *c, double x_m, double y_m, dou
         *out = (CanopyPlace){1, 1, 1, 1, 1};
         return false;
     }
-    *out = (CanopyPlace){.up = gap_at(c, 0.5 * above), .down = gap_at(c, 0.5 * fmax(all - above, 0)),
-                   .up_from_ground = gap_at(c, 0.5 * all), .sun_here = exp(-slant * above),
-                   .sun_on_ground = exp(-slant * all)};
+    *out = (CanopyPlace){.up = gap_at(c, 0.5 * above),
+                         .down = gap_at(c, 0.5 * fmax(all - above, 0)),
+                         .up_from_ground = gap_at(c, 0.5 * all),
+                         .sun_here = exp(-slant * above),
+                         .sun_on_ground = exp(-slant * all)};
     return true;
 }
 
@@ -220,8 +226,8 @@ void canopy_place_of_plant(CanopyPlace *p, const Canopy *c)
 }
 
 /* half: of what a surface scatters. */
-static inline double exitance(double *on_ground_w_m2, const Canopy *c, const CanopyPlace *p, double half, double sun_w_m2,
-                              double sky_w_m2, double sin_sun, double ground_rho)
+static inline double exitance(double *on_ground_w_m2, const Canopy *c, const CanopyPlace *p, double half,
+                              double sun_w_m2, double sky_w_m2, double sin_sun, double ground_rho)
 {
     const double up = fmin(c->open_up, p->up), down = fmin(c->open_down, p->down);
     const double from_above = sun_w_m2 * sin_sun * p->sun_on_ground + sky_w_m2 * p->up_from_ground;
@@ -252,12 +258,13 @@ bool canopy_light(CanopyLight *out, const Canopy *c, const Landscape *landscape,
         if (!(hits->range_m[i] < INFINITY)) continue;
         if (hits->kind[i] != hit_ground && landscape)
             height_m = hits->p_enu[2][i] - elevation_height(&landscape->elevation, x_m, y_m, NULL);
-        any |= canopy_place(&place[i], c, x_m, y_m, isfinite(height_m) ? height_m : 0, sin_sun) | (hits->kind[i] == hit_plant);
+        any |= canopy_place(&place[i], c, x_m, y_m, isfinite(height_m) ? height_m : 0, sin_sun) |
+               (hits->kind[i] == hit_plant);
     }
     if (!any) return false;
     for (int i = 0; i < hits->count; i++) {
         const bool plant = hits->kind[i] == hit_plant;
-        out->up[i]   = (float)(plant ? fmin(place[i].up, (double)hits->open_up[i]) : place[i].up);
+        out->up[i] = (float)(plant ? fmin(place[i].up, (double)hits->open_up[i]) : place[i].up);
         out->down[i] = (float)(plant ? fmin(place[i].down, (double)hits->open_down[i]) : place[i].down);
     }
     for (int k = 0; k < optical_channel_count; k++) {

@@ -50,9 +50,9 @@ typedef struct CanopyPlace {
     double up, down, up_from_ground;
     double sun_here, sun_on_ground;
 } CanopyPlace;
-bool   canopy_place(CanopyPlace *out, const Canopy *canopy, double x_m, double y_m, double height_m, double sin_sun);
+bool canopy_place(CanopyPlace *out, const Canopy *canopy, double x_m, double y_m, double height_m, double sin_sun);
 /* The same for a leaf or branch there, which its own plant leaves no more than the mean of all. */
-void   canopy_place_of_plant(CanopyPlace *place, const Canopy *canopy);
+void canopy_place_of_plant(CanopyPlace *place, const Canopy *canopy);
 /* M there in an optical channel, W/m2, and what falls on its ground, W/m2. sun, facing it, and sky: W/m2. */
 double canopy_exitance(double *on_ground_w_m2, const Canopy *canopy, const CanopyPlace *place, int channel,
                        double sun_w_m2, double sky_w_m2, double sin_sun, double ground_rho);
@@ -61,8 +61,8 @@ double canopy_exitance(double *on_ground_w_m2, const Canopy *canopy, const Canop
  *     up E_sky(n) + down ground E_ground(n) + (1 - up (1 + n_z) / 2 - down (1 - n_z) / 2) leaves_w_m2,
  * E_sky and E_ground as in the open; of leaves, each of both sides. */
 typedef struct CanopyLight {
-    float up[hits_capacity], down[hits_capacity];         /* shares of sky and ground that are seen */
-    float ground[optical_channel_count][hits_capacity];   /* the ground's brightness over that of open ground */
+    float up[hits_capacity], down[hits_capacity];            /* shares of sky and ground that are seen */
+    float ground[optical_channel_count][hits_capacity];      /* the ground's brightness over that of open ground */
     float leaves_w_m2[optical_channel_count][hits_capacity]; /* M */
 } CanopyLight;
 

@@ -38,7 +38,8 @@ static Status add_rows(FarWoods *far, Materials *materials)
     return STATUS_OK;
 }
 
-Status far_woods_create(FarWoods **out, const Woods *woods, const Forest *forest, Materials *materials, bool leaves, Pool *pool)
+Status far_woods_create(FarWoods **out, const Woods *woods, const Forest *forest, Materials *materials, bool leaves,
+                        Pool *pool)
 {
     *out = NULL;
     if (!woods->low) return STATUS_OK;
@@ -46,7 +47,7 @@ Status far_woods_create(FarWoods **out, const Woods *woods, const Forest *forest
     Status    status = far ? STATUS_OK : STATUS_NO_MEMORY;
     for (int k = 0; k < far_stands * far_densities && status == STATUS_OK; k++)
         status = far_stand_create(&far->stand[k / far_densities][k % far_densities], class_of[k / far_densities],
-                              density_of[k % far_densities], forest, materials, leaves, pool);
+                                  density_of[k % far_densities], forest, materials, leaves, pool);
     if (status == STATUS_OK) status = add_rows(far, materials);
     if (status == STATUS_OK) far->woods = woods, *out = far;
     else far_woods_destroy(far);
@@ -56,7 +57,8 @@ Status far_woods_create(FarWoods **out, const Woods *woods, const Forest *forest
 void far_woods_destroy(FarWoods *far)
 {
     if (!far) return;
-    for (int k = 0; k < far_stands * far_densities; k++) far_stand_destroy(far->stand[k / far_densities][k % far_densities]);
+    for (int k = 0; k < far_stands * far_densities; k++)
+        far_stand_destroy(far->stand[k / far_densities][k % far_densities]);
     free(far);
 }
 
@@ -69,12 +71,12 @@ typedef struct Sunlight {
     const Air       *air;
     const Materials *materials;
     double           sin_sun, sun_share;
-    int              sun;         /* lower node */
+    int              sun; /* lower node */
 } Sunlight;
 
 /* One view and azimuth. */
 typedef struct Look {
-    const WoodStand     *stand;
+    const WoodStand *stand;
     const StandView *view;
     StandLit         lit;
     CanopyPlace      among, on_ground;
@@ -88,7 +90,8 @@ static double between(double low, double high, double share) { return low + shar
 static void place_between(CanopyPlace *out, const CanopyPlace *p, double share)
 {
     *out = (CanopyPlace){between(p[0].up, p[1].up, share), between(p[0].down, p[1].down, share),
-                         between(p[0].up_from_ground, p[1].up_from_ground, share), between(p[0].sun_here, p[1].sun_here, share),
+                         between(p[0].up_from_ground, p[1].up_from_ground, share),
+                         between(p[0].sun_here, p[1].sun_here, share),
                          between(p[0].sun_on_ground, p[1].sun_on_ground, share)};
 }
 
@@ -99,7 +102,8 @@ static void normal_of(double n[3], const double mean[2], double azimuth_rad)
     if (!v3_normalize(n, raw)) n[0] = n[1] = 0, n[2] = 1;
 }
 
-/* Thickets shade glades, which stands that are everywhere as dense lack: found beside planted woods (test_far_woods.c). */
+/* Thickets shade glades, which stands that are everywhere as dense lack: found beside planted woods (test_far_woods.c).
+ */
 static double past_thickets(double sin_sun)
 {
     static const double takes = 0.015;
@@ -112,10 +116,11 @@ static Look look_of(const Sunlight *s, const WoodStand *stand, int view, int azi
     const double    x = s->air->light.sun_d_enu[0], y = s->air->light.sun_d_enu[1];
     const double    towards_rad = atan2(y, x) + far_stand_azimuth(azimuth); /* the eye */
     const StandLit *a = &stand->lit[view][s->sun][azimuth], *b = &stand->lit[view][s->sun + 1][azimuth];
-    const double share = s->sun_share, past = past_thickets(s->sin_sun);
-    look.lit = (StandLit){past * between(a->leaf, b->leaf, share), past * between(a->leaf_front, b->leaf_front, share),
-                          past * between(a->leaf_back, b->leaf_back, share), past * between(a->bark_front, b->bark_front, share),
-                          past * between(a->ground, b->ground, share)};
+    const double    share = s->sun_share, past = past_thickets(s->sin_sun);
+    look.lit =
+        (StandLit){past * between(a->leaf, b->leaf, share), past * between(a->leaf_front, b->leaf_front, share),
+                   past * between(a->leaf_back, b->leaf_back, share),
+                   past * between(a->bark_front, b->bark_front, share), past * between(a->ground, b->ground, share)};
     place_between(&look.among, &look.view->among[s->sun], s->sun_share);
     place_between(&look.on_ground, &look.view->on_ground[s->sun], s->sun_share);
     look.through = between(look.view->ground_through[s->sun], look.view->ground_through[s->sun + 1], s->sun_share);
@@ -141,7 +146,8 @@ static double around(double up, double down, double all, double sky_w_m2, double
 }
 
 /* Radiance times pi in an optical channel: of what comes from all around, and of direct sun. */
-static void optical_of(double *shaded, double *sunlit, const Look *l, const Sunlight *s, int channel, const Material *ground)
+static void optical_of(double *shaded, double *sunlit, const Look *l, const Sunlight *s, int channel,
+                       const Material *ground)
 {
     const AirBand     band = (AirBand)channel;
     const StandOrgan *leaf = &l->view->leaf, *bark = &l->view->bark;
@@ -149,14 +155,20 @@ static void optical_of(double *shaded, double *sunlit, const Look *l, const Sunl
     const double      sun_w_m2 = s->air->light.sun_w_m2[channel], sky_w_m2 = s->air->light.sky_w_m2[channel];
     const double      land = (double)s->materials->ground_rho[channel];
     double            below_w_m2, floor_w_m2;
-    const double      leaves = canopy_exitance(&below_w_m2, l->stand->canopy, &l->among, channel, sun_w_m2, sky_w_m2, s->sin_sun, land);
-    const double      near_ground = canopy_exitance(&floor_w_m2, l->stand->canopy, &l->on_ground, channel, sun_w_m2, sky_w_m2, s->sin_sun, land);
+    const double      leaves =
+        canopy_exitance(&below_w_m2, l->stand->canopy, &l->among, channel, sun_w_m2, sky_w_m2, s->sin_sun, land);
+    const double near_ground =
+        canopy_exitance(&floor_w_m2, l->stand->canopy, &l->on_ground, channel, sun_w_m2, sky_w_m2, s->sin_sun, land);
     below_w_m2 *= land;
     const double both = leaf->bright;
-    *shaded = (double)m->rho[channel] * around(leaf->front_up, leaf->front_down, both, sky_at(s, band, l->n_leaf[0]), below_w_m2, leaves) +
-              (double)m->tau[channel] * around(leaf->back_up, leaf->back_down, both, sky_at(s, band, l->n_leaf[1]), below_w_m2, leaves) +
-              (double)wood->rho[channel] * around(bark->front_up, bark->front_down, bark->bright, sky_at(s, band, l->n_bark), below_w_m2, leaves);
-    *shaded += l->view->ground * (double)ground->rho[channel] * around(l->view->ground_up, 0, 1, sky_w_m2, 0, near_ground);
+    *shaded = (double)m->rho[channel] *
+                  around(leaf->front_up, leaf->front_down, both, sky_at(s, band, l->n_leaf[0]), below_w_m2, leaves) +
+              (double)m->tau[channel] *
+                  around(leaf->back_up, leaf->back_down, both, sky_at(s, band, l->n_leaf[1]), below_w_m2, leaves) +
+              (double)wood->rho[channel] * around(bark->front_up, bark->front_down, bark->bright,
+                                                  sky_at(s, band, l->n_bark), below_w_m2, leaves);
+    *shaded +=
+        l->view->ground * (double)ground->rho[channel] * around(l->view->ground_up, 0, 1, sky_w_m2, 0, near_ground);
     *sunlit = sun_w_m2 * ((double)m->rho[channel] * l->lit.leaf_front + (double)m->tau[channel] * l->lit.leaf_back +
                           (double)wood->rho[channel] * l->lit.bark_front +
                           (double)ground->rho[channel] * l->lit.ground * s->sin_sun);
@@ -181,7 +193,8 @@ static double ground_k(const Look *l, const Air *air, int surface)
     for (int k = 0; k < now->slots; k++) {
         double    share;
         const int at = far_stand_at_sun(&share, asin(clamp((double)now->slot_d_enu[2][k], 0, 1)));
-        shadow[k] = (uint8_t)lround(255 * (1 - between(l->view->ground_through[at], l->view->ground_through[at + 1], share)));
+        shadow[k] =
+            (uint8_t)lround(255 * (1 - between(l->view->ground_through[at], l->view->ground_through[at + 1], share)));
     }
     return heat_ground_k(now, kind, level, heat_taken(now, kind, level, shadow), l->view->ground_open, 1);
 }
@@ -193,7 +206,8 @@ static double bark_k(const Look *l, const HeatNow *now)
     const double        azimuth_rad = atan2(l->n_bark[1], l->n_bark[0]);
     double              sum = 0, weights = 0;
     for (int k = 0; k < 15; k++) {
-        const double turned_rad = turned_deg[k % 5] * rad_per_deg, up = clamp(l->view->bark.n[1] + tilt[k / 5], -0.95, 0.95);
+        const double turned_rad = turned_deg[k % 5] * rad_per_deg,
+                     up = clamp(l->view->bark.n[1] + tilt[k / 5], -0.95, 0.95);
         const double level = sqrt(1 - up * up), weight = cos(turned_rad) * level;
         const double n[3] = {level * cos(azimuth_rad + turned_rad), level * sin(azimuth_rad + turned_rad), up};
         sum += weight * heat_branch_k(now, l->stand->bark_row, l->view->bark.radius_m, n, l->view->bark.open);
@@ -208,7 +222,8 @@ static Warm warm_of(const Look *l, const Air *air, int surface, bool sunlit)
     Warm         w = {.bark_k = air_k};
     w.leaf[1] = sunlit && air->light.sun_d_enu[2] > 0 ? l->lit.leaf : 0;
     w.leaf[0] = l->view->leaf.share - w.leaf[1];
-    for (int k = 0; k < 2; k++) w.leaf_k[k] = thermal_leaf_k(&air->light, &l->stand->leaf, air_k, l->view->leaf.open, k);
+    for (int k = 0; k < 2; k++)
+        w.leaf_k[k] = thermal_leaf_k(&air->light, &l->stand->leaf, air_k, l->view->leaf.open, k);
     if (air->heat && air->heat->now->branches > 0) w.bark_k = bark_k(l, air->heat->now);
     w.ground_k = ground_k(l, air, surface);
     return w;
@@ -220,11 +235,11 @@ static double thermal_of(const Look *l, const Sunlight *s, const Warm *w, const 
     const PlanckTable *planck = s->air->light.planck_lwir;
     const Material    *m = &l->stand->leaf, *wood = &l->stand->bark;
     const StandOrgan  *leaf = &l->view->leaf, *bark = &l->view->bark;
-    const double       floor = s->air->light.ground_w_m2_sr[AIR_LWIR], rho = (double)m->rho_lwir, tau = (double)m->tau_lwir;
-    const double       up = 0.5 * (1 + leaf->n[1]), bark_up = 0.5 * (1 + bark->n[1]);
-    const double       sky[3] = {sky_at(s, AIR_LWIR, l->n_leaf[0]) / pi_rad, sky_at(s, AIR_LWIR, l->n_leaf[1]) / pi_rad,
-                                 sky_at(s, AIR_LWIR, l->n_bark) / pi_rad};
-    double             sum = 0;
+    const double floor = s->air->light.ground_w_m2_sr[AIR_LWIR], rho = (double)m->rho_lwir, tau = (double)m->tau_lwir;
+    const double up = 0.5 * (1 + leaf->n[1]), bark_up = 0.5 * (1 + bark->n[1]);
+    const double sky[3] = {sky_at(s, AIR_LWIR, l->n_leaf[0]) / pi_rad, sky_at(s, AIR_LWIR, l->n_leaf[1]) / pi_rad,
+                           sky_at(s, AIR_LWIR, l->n_bark) / pi_rad};
+    double       sum = 0;
     for (int k = 0; k < 2; k++) sum += w->leaf[k] * (1 - rho - tau) * planck_table_radiance(planck, w->leaf_k[k]);
     sum += bark->share * (1 - (double)wood->rho_lwir) * planck_table_radiance(planck, w->bark_k);
     sum += l->view->ground * (1 - (double)ground->rho_lwir) * planck_table_radiance(planck, w->ground_k);
@@ -235,7 +250,10 @@ static double thermal_of(const Look *l, const Sunlight *s, const Warm *w, const 
 
 /* ---- once a frame: nodes ---------------------------------------------------------------------- */
 
-static bool has_band(const Air *air, AirBand band) { return air->light.sky_w_m2[band] > 0 || air->light.sun_w_m2[band] > 0; }
+static bool has_band(const Air *air, AirBand band)
+{
+    return air->light.sky_w_m2[band] > 0 || air->light.sun_w_m2[band] > 0;
+}
 
 /* Level ground of the row's own reflectance and of a share of the sun, that shows the same. */
 static void fill_node(FarNode *out, const Look *l, const Sunlight *s, const Material *row, int surface)
@@ -247,10 +265,12 @@ static void fill_node(FarNode *out, const Look *l, const Sunlight *s, const Mate
     const double        level = fmax(s->sin_sun, least_sin);
     *out = (FarNode){0};
     const double mwir = (double)m->rho_mwir * l->lit.leaf_front + (double)m->tau_mwir * l->lit.leaf_back +
-                        (double)wood->rho_mwir * l->lit.bark_front + (double)ground->rho_mwir * l->lit.ground * s->sin_sun;
+                        (double)wood->rho_mwir * l->lit.bark_front +
+                        (double)ground->rho_mwir * l->lit.ground * s->sin_sun;
     out->sun = s->sin_sun > 0 && row->rho_mwir > 0 ? (float)(mwir / (double)row->rho_mwir / level) : 0;
-    out->radar = (float)(l->view->leaf.share * (double)m->radar_gamma + l->view->bark.share * (double)wood->radar_gamma +
-                         l->view->ground * (double)ground->radar_gamma);
+    out->radar =
+        (float)(l->view->leaf.share * (double)m->radar_gamma + l->view->bark.share * (double)wood->radar_gamma +
+                l->view->ground * (double)ground->radar_gamma);
     for (int c = 0; c < optical_channel_count; c++) {
         double shaded, sunlit;
         if (!has_band(s->air, (AirBand)c)) continue;
@@ -263,13 +283,16 @@ static void fill_node(FarNode *out, const Look *l, const Sunlight *s, const Mate
     for (int k = 0; k < 2; k++) {
         const Warm   w = warm_of(l, s->air, surface, k);
         const double rho = (double)row->rho_lwir, sky = light->sky_w_m2[AIR_LWIR] / pi_rad;
-        double       temp_k = (w.leaf[0] * w.leaf_k[0] + w.leaf[1] * w.leaf_k[1] + l->view->bark.share * w.bark_k + l->view->ground * w.ground_k);
-        if (has_band(s->air, AIR_LWIR)) temp_k = planck_table_temp(light->planck_lwir, (thermal_of(l, s, &w, ground) - rho * sky) / (1 - rho));
+        double       temp_k = (w.leaf[0] * w.leaf_k[0] + w.leaf[1] * w.leaf_k[1] + l->view->bark.share * w.bark_k +
+                         l->view->ground * w.ground_k);
+        if (has_band(s->air, AIR_LWIR))
+            temp_k = planck_table_temp(light->planck_lwir, (thermal_of(l, s, &w, ground) - rho * sky) / (1 - rho));
         out->warmer_k[k] = (float)(temp_k - light->weather.air_temp_k);
     }
 }
 
-Status far_woods_frame(FarWoodsFrame **out, const FarWoods *far, const Air *air, const Materials *materials, Arena *arena)
+Status far_woods_frame(FarWoodsFrame **out, const FarWoods *far, const Air *air, const Materials *materials,
+                       Arena *arena)
 {
     *out = NULL;
     if (!far) return STATUS_OK;
@@ -282,11 +305,13 @@ Status far_woods_frame(FarWoodsFrame **out, const FarWoods *far, const Air *air,
         f->sky_w_m2[c] = air->light.sky_w_m2[c], f->sun_w_m2[c] = air->light.sun_w_m2[c] * s.sin_sun;
     f->sun_azimuth_rad = atan2(air->light.sun_d_enu[1], air->light.sun_d_enu[0]);
     for (int n = 0; n < far_stands * far_densities * stand_views * stand_azimuths; n++) {
-        const int  a = n % stand_azimuths, v = n / stand_azimuths % stand_views;
-        const int  p = n / (stand_azimuths * stand_views) % far_densities, k = n / (stand_azimuths * stand_views * far_densities);
+        const int a = n % stand_azimuths, v = n / stand_azimuths % stand_views;
+        const int p = n / (stand_azimuths * stand_views) % far_densities,
+                  k = n / (stand_azimuths * stand_views * far_densities);
         const Look look = look_of(&s, far->stand[k][p], v, a);
         for (int g = 0; g < far_grounds; g++)
-            fill_node(&f->node[k][p][g][v][a], &look, &s, &materials->material[far->row[k]], g ? SURFACE_SCRUB : class_of[k]);
+            fill_node(&f->node[k][p][g][v][a], &look, &s, &materials->material[far->row[k]],
+                      g ? SURFACE_SCRUB : class_of[k]);
     }
     *out = f;
     return STATUS_OK;
@@ -297,9 +322,12 @@ Status far_woods_frame(FarWoodsFrame **out, const FarWoods *far, const Air *air,
 bool far_woods_find(FarPlaces *out, const FarWoods *far, const Hits *hits)
 {
     bool any = false;
-    woods_not_standing(out->stand, out->cover, out->density, far->woods, hits->count, hits->surface, hits->p_enu[0], hits->p_enu[1]);
+    woods_not_standing(out->stand, out->cover, out->density, far->woods, hits->count, hits->surface, hits->p_enu[0],
+                       hits->p_enu[1]);
     for (int i = 0; i < hits->count; i++) {
-        out->stand[i] = !out->stand[i] || hits->kind[i] != hit_ground ? 0 : out->stand[i] == SURFACE_FOREST_CONIFER ? 2 : 1;
+        out->stand[i] = !out->stand[i] || hits->kind[i] != hit_ground ? 0
+                        : out->stand[i] == SURFACE_FOREST_CONIFER     ? 2
+                                                                      : 1;
         any |= out->stand[i] > 0;
     }
     return any;
@@ -319,11 +347,13 @@ static void add_node(FarNode *sum, const FarNode *n, float share)
 static void look_there(FarNode *out, const FarWoodsFrame *f, int stand, float dense, double to_eye, const Hits *hits,
                        const Rays *rays, int i)
 {
-    double up_share, azimuth_share;
-    const double from_sun_rad = remainder(atan2(-rays->d_enu[1][i], -rays->d_enu[0][i]) - f->sun_azimuth_rad, 2 * pi_rad);
-    const int    v = far_stand_at_view(&up_share, asin(clamp(to_eye, 0, 1))), a = far_stand_at_azimuth(&azimuth_share, fabs(from_sun_rad));
-    const int    g = hits->surface[i] != class_of[stand];
-    const float  u = (float)up_share, w = (float)azimuth_share;
+    double       up_share, azimuth_share;
+    const double from_sun_rad =
+        remainder(atan2(-rays->d_enu[1][i], -rays->d_enu[0][i]) - f->sun_azimuth_rad, 2 * pi_rad);
+    const int v = far_stand_at_view(&up_share, asin(clamp(to_eye, 0, 1))),
+              a = far_stand_at_azimuth(&azimuth_share, fabs(from_sun_rad));
+    const int   g = hits->surface[i] != class_of[stand];
+    const float u = (float)up_share, w = (float)azimuth_share;
     *out = (FarNode){0};
     for (int p = 0; p < far_densities; p++) {
         const float    of = p ? dense : 1 - dense;
@@ -333,13 +363,17 @@ static void look_there(FarNode *out, const FarWoodsFrame *f, int stand, float de
     }
 }
 
-/* Share of the canopy at a place, and that of the dense stand in it: by the density, or by the cover of a canopy layer. */
+/* Share of the canopy at a place, and that of the dense stand in it: by the density, or by the cover of a canopy layer.
+ */
 static float canopy_share(float *dense, const FarWoods *far, int stand, double cover, double density, double to_eye)
 {
     const double along = hides / fmax(to_eye, 0.2);
-    const double open = exp(-along * density), sparse_open = exp(-along * density_of[0]), dense_open = exp(-along * density_of[1]);
+    const double open = exp(-along * density), sparse_open = exp(-along * density_of[0]),
+                 dense_open = exp(-along * density_of[1]);
     *dense = 1;
-    if (cover >= 0) return (float)fmin(cover / fmax(1 - far->stand[stand][far_densities - 1]->view[stand_views - 1].ground, 0.1), 1);
+    if (cover >= 0)
+        return (float)fmin(cover / fmax(1 - far->stand[stand][far_densities - 1]->view[stand_views - 1].ground, 0.1),
+                           1);
     *dense = (float)clamp((sparse_open - open) / (sparse_open - dense_open), 0, 1);
     return (float)clamp((1 - open) / (1 - sparse_open), 0, 1);
 }
@@ -353,7 +387,8 @@ static float open_too(const FarWoodsFrame *f, int c, float share, float reflects
     return share * reflects + (1 - share) * open * (sky_w_m2 + sun_w_m2) / of_row_w_m2;
 }
 
-void far_woods_apply(const FarInputs *in, const FarWoodsFrame *f, const Materials *materials, const Hits *hits, const Rays *rays)
+void far_woods_apply(const FarInputs *in, const FarWoodsFrame *f, const Materials *materials, const Hits *hits,
+                     const Rays *rays)
 {
     for (int i = 0; i < hits->count; i++) {
         FarNode   node;
@@ -365,7 +400,8 @@ void far_woods_apply(const FarInputs *in, const FarWoodsFrame *f, const Material
         const float     lit = in->sun[i];
         double          to_eye = 0; /* cosine from the ground's normal */
         for (int c = 0; c < 3; c++) to_eye -= (double)hits->n_geo[c][i] * rays->d_enu[c][i];
-        const float share = canopy_share(&dense, f->far, stand, (double)in->places->cover[i], (double)in->places->density[i], to_eye);
+        const float share =
+            canopy_share(&dense, f->far, stand, (double)in->places->cover[i], (double)in->places->density[i], to_eye);
         look_there(&node, f, stand, dense, to_eye, hits, rays, i);
         for (int c = 0; c < optical_channel_count; c++) {
             if (!in->texture[c]) continue;
@@ -373,9 +409,9 @@ void far_woods_apply(const FarInputs *in, const FarWoodsFrame *f, const Material
             in->texture[c][i] *= open_too(f, c, share, reflects, own->rho[c] / row->rho[c], lit, node.sun);
         }
         in->material[i] = (uint16_t)f->far->row[stand];
-        in->far_sun[i]  = lit * node.sun;
+        in->far_sun[i] = lit * node.sun;
         if (own->radar_gamma > 0) in->radar[i] *= share * node.radar / own->radar_gamma + (1 - share);
         in->warmer_k[i] = node.warmer_k[0] + lit * (node.warmer_k[1] - node.warmer_k[0]);
-        in->of_far[i]   = share;
+        in->of_far[i] = share;
     }
 }

@@ -12,7 +12,7 @@ static const double azimuth_deg[stand_azimuths] = {0, 25, 65, 115, 180};
 /* Nodes: elevation of eye or sun over the ground, and azimuth of the sun from that of the eye, rad. */
 static double stand_view(int node) { return view_deg[node] * rad_per_deg; }
 static double stand_sun(int node) { return sun_deg[node] * rad_per_deg; }
-double far_stand_azimuth(int node) { return azimuth_deg[node] * rad_per_deg; }
+double        far_stand_azimuth(int node) { return azimuth_deg[node] * rad_per_deg; }
 
 static int place_among(double *share, const double *node_deg, int nodes, double rad)
 {
@@ -23,9 +23,18 @@ static int place_among(double *share, const double *node_deg, int nodes, double 
     return low;
 }
 
-int far_stand_at_view(double *share, double elevation_rad) { return place_among(share, view_deg, stand_views, elevation_rad); }
-int far_stand_at_sun(double *share, double elevation_rad) { return place_among(share, sun_deg, stand_suns, elevation_rad); }
-int far_stand_at_azimuth(double *share, double azimuth_rad) { return place_among(share, azimuth_deg, stand_azimuths, azimuth_rad); }
+int far_stand_at_view(double *share, double elevation_rad)
+{
+    return place_among(share, view_deg, stand_views, elevation_rad);
+}
+int far_stand_at_sun(double *share, double elevation_rad)
+{
+    return place_among(share, sun_deg, stand_suns, elevation_rad);
+}
+int far_stand_at_azimuth(double *share, double azimuth_rad)
+{
+    return place_among(share, azimuth_deg, stand_azimuths, azimuth_rad);
+}
 
 /* ---- rays ------------------------------------------------------------------------------------- */
 
@@ -35,7 +44,7 @@ typedef struct Seen {
 } Seen;
 
 typedef struct Job {
-    WoodStand             *stand;
+    WoodStand         *stand;
     const Materials   *materials;
     const ForestFrame *frame;
     Seen               seen[stand_views];
@@ -43,15 +52,20 @@ typedef struct Job {
 
 static void towards(double d[3], double elevation_rad, double azimuth_rad)
 {
-    d[0] = cos(elevation_rad) * cos(azimuth_rad), d[1] = cos(elevation_rad) * sin(azimuth_rad), d[2] = sin(elevation_rad);
+    d[0] = cos(elevation_rad) * cos(azimuth_rad), d[1] = cos(elevation_rad) * sin(azimuth_rad),
+    d[2] = sin(elevation_rad);
 }
 
-static double dice(int view, int ray, int what) { return random_uniform((uint64_t)stand_seed, (uint32_t)view, (uint32_t)ray, (uint64_t)what); }
+static double dice(int view, int ray, int what)
+{
+    return random_uniform((uint64_t)stand_seed, (uint32_t)view, (uint32_t)ray, (uint64_t)what);
+}
 
 /* Anywhere within a quarter of the nearer step about a node: the hot spot is not missed between two of them. */
 static double about(const double *node_deg, int nodes, int k, double u)
 {
-    const double below = k > 0 ? node_deg[k] - node_deg[k - 1] : INFINITY, above = k < nodes - 1 ? node_deg[k + 1] - node_deg[k] : INFINITY;
+    const double below = k > 0 ? node_deg[k] - node_deg[k - 1] : INFINITY,
+                 above = k < nodes - 1 ? node_deg[k + 1] - node_deg[k] : INFINITY;
     return (node_deg[k] + 0.25 * fmin(below, above) * (2 * u - 1)) * rad_per_deg;
 }
 
@@ -70,7 +84,7 @@ static void start_ray(double o[3], double d[3], double *azimuth_rad, int view, i
 
 typedef struct Met {
     double p[3], n[3], azimuth_rad, albedo;
-    int    kind, organ;  /* -1: the ground */
+    int    kind, organ; /* -1: the ground */
 } Met;
 
 /* ---- sums ------------------------------------------------------------------------------------- */
@@ -140,7 +154,8 @@ static void ask_suns(Job *job, int view, int ray, const Met *m)
     for (int k = 0; k < most_suns; k++) {
         double sun[3];
         towards(sun, about(sun_deg, stand_suns, k / stand_azimuths, dice(view, ray, 8 + 2 * k)),
-                m->azimuth_rad + (k & 1 ? 1 : -1) * about(azimuth_deg, stand_azimuths, k % stand_azimuths, dice(view, ray, 9 + 2 * k)));
+                m->azimuth_rad + (k & 1 ? 1 : -1) * about(azimuth_deg, stand_azimuths, k % stand_azimuths,
+                                                          dice(view, ray, 9 + 2 * k)));
         const double off_m = v3_dot(m->n, sun) > 0 ? 1e-3 : -1e-3;
         for (int c = 0; c < 3; c++) o[c][k] = m->p[c] + off_m * m->n[c], d[c][k] = sun[c];
         far_m[k] = INFINITY;
@@ -188,8 +203,10 @@ static void by_rays(StandView *v, StandLit lit[stand_suns][stand_azimuths])
     StandOrgan *const organ[2] = {&v->leaf, &v->bark};
     for (int k = 0; k < 2; k++) {
         StandOrgan *o = organ[k];
-        if (o->share > 0) o->n[0] /= o->share, o->n[1] /= o->share, o->open /= o->share, o->radius_m = exp(o->radius_m / o->share);
-        o->share *= per, o->bright *= per, o->front_up *= per, o->front_down *= per, o->back_up *= per, o->back_down *= per;
+        if (o->share > 0)
+            o->n[0] /= o->share, o->n[1] /= o->share, o->open /= o->share, o->radius_m = exp(o->radius_m / o->share);
+        o->share *= per, o->bright *= per, o->front_up *= per, o->front_down *= per, o->back_up *= per,
+            o->back_down *= per;
     }
     if (v->ground > 0) v->ground_up /= v->ground, v->ground_open /= v->ground;
     v->ground *= per;
@@ -212,8 +229,9 @@ static void trace_view(void *user, int worker, int view)
         forest_first_hits(range_m, hit, job->frame, ray_block, (const double *const[3]){o[0], o[1], o[2]},
                           (const double *const[3]){d[0], d[1], d[2]}, NULL);
         for (int k = 0; k < ray_block; k++)
-            take_hit(job, view, first + k, &hit[k], range_m[k] < ground_m[k], (const double[3]){o[0][k], o[1][k], o[2][k]},
-                     (const double[3]){d[0][k], d[1][k], d[2][k]}, range_m[k], azimuth_rad[k]);
+            take_hit(job, view, first + k, &hit[k], range_m[k] < ground_m[k],
+                     (const double[3]){o[0][k], o[1][k], o[2][k]}, (const double[3]){d[0][k], d[1][k], d[2][k]},
+                     range_m[k], azimuth_rad[k]);
     }
     by_rays(&job->stand->view[view], job->stand->lit[view]);
 }
@@ -246,7 +264,8 @@ static void mix_materials(Job *job)
         for (int o = 0; o < 2; o++) {
             const int row = job->materials->plant[k][o ? PLANT_LEAF : PLANT_BARK];
             if (!(seen[k][o] > 0)) continue;
-            add_material(o ? &job->stand->leaf : &job->stand->bark, &job->materials->material[row], seen[k][o] / all[o]);
+            add_material(o ? &job->stand->leaf : &job->stand->bark, &job->materials->material[row],
+                         seen[k][o] / all[o]);
             if (o == 0 && seen[k][0] > most) most = seen[k][0], job->stand->bark_row = row;
         }
     job->stand->top_m = plants > 0 ? height_m / plants : 0;
@@ -264,7 +283,8 @@ static Status trace_stand(WoodStand *stand, const Forest *forest, const Material
     job->stand = stand, job->materials = materials, job->frame = &frame;
     if (status == STATUS_OK) {
         if (pool) pool_run(pool, stand_views, trace_view, job);
-        else for (int v = 0; v < stand_views; v++) trace_view(job, 0, v);
+        else
+            for (int v = 0; v < stand_views; v++) trace_view(job, 0, v);
         mix_materials(job);
         forest_frame_close(&frame);
     }
@@ -272,12 +292,12 @@ static Status trace_stand(WoodStand *stand, const Forest *forest, const Material
     return status;
 }
 
-Status far_stand_create(WoodStand **out, SurfaceClass surface, double density, const Forest *forest, const Materials *materials,
-                    bool leaves, Pool *pool)
+Status far_stand_create(WoodStand **out, SurfaceClass surface, double density, const Forest *forest,
+                        const Materials *materials, bool leaves, Pool *pool)
 {
-    Woods   woods = {0};
-    Forest *own = NULL;
-    WoodStand  *stand = calloc(1, sizeof *stand);
+    Woods      woods = {0};
+    Forest    *own = NULL;
+    WoodStand *stand = calloc(1, sizeof *stand);
     if (!stand) return STATUS_NO_MEMORY;
     Status status = woods_of_class(&woods, surface, density, (uint64_t)stand_seed, squares);
     if (status == STATUS_OK) status = canopy_create(&stand->canopy, &woods, forest_plants(forest), materials, leaves);

@@ -30,8 +30,8 @@ void hemisphere_base_at(Base *out, const Hits *hits, int from)
 int hemisphere_leave_base(Rays *rays, const Base *base, double u, const double turn[2])
 {
     const double s = sqrt(u), c = sqrt(1 - u);
-    const int at = rays->count++;
-    double d_enu[3];
+    const int    at = rays->count++;
+    double       d_enu[3];
     for (int k = 0; k < 3; k++)
         d_enu[k] = c * base->n_enu[k] + s * (turn[0] * base->t_enu[k] + turn[1] * base->b_enu[k]);
     v3_normalize(d_enu, d_enu);
@@ -68,7 +68,8 @@ static float side_share(const Material *m, AirBand band, bool far)
     return 2 * (far ? (float)material_through(m, (int)band) : 1);
 }
 
-void hemisphere_light_met(Paths *p, const HemisphereScene *scene, unsigned bands, bool shadows, VisibilityCounters *counters)
+void hemisphere_light_met(Paths *p, const HemisphereScene *scene, unsigned bands, bool shadows,
+                          VisibilityCounters *counters)
 {
     const PartTemps parts = {scene->snapshot, scene->patches, scene->visibility};
     for (int i = 0; i < p->hits.count; i++) {
@@ -89,7 +90,8 @@ double hemisphere_ground_radiance(const HemisphereScene *scene, AirBand band)
                             : optical_ground_w_m2((int)band, scene->air, scene->materials) / pi_rad;
 }
 
-double hemisphere_met(double *rho, const Paths *p, int i, const HemisphereScene *scene, AirBand band, double ground, bool last)
+double hemisphere_met(double *rho, const Paths *p, int i, const HemisphereScene *scene, AirBand band, double ground,
+                      bool last)
 {
     const Air *air = scene->air;
     *rho = 0;
@@ -98,17 +100,20 @@ double hemisphere_met(double *rho, const Paths *p, int i, const HemisphereScene 
         return d_enu[2] < 0 ? ground : daylight_sky_light(&air->light, band, d_enu);
     }
     const Material *m = &scene->materials->material[p->hits.material[i]];
-    const double n_enu[3] = {p->hits.n_enu[0][i], p->hits.n_enu[1][i], p->hits.n_enu[2][i]};
+    const double    n_enu[3] = {p->hits.n_enu[0][i], p->hits.n_enu[1][i], p->hits.n_enu[2][i]};
     *rho = reflectance(m, band);
     const double tau = *rho * material_through(m, (int)band);
-    double radiance = 0;
+    double       radiance = 0;
     if (band >= AIR_MWIR)
         radiance =
-            (1 - *rho - tau) * planck_table_radiance(band == AIR_MWIR ? air->light.planck_mwir : air->light.planck_lwir, p->temp_k[i]);
+            (1 - *rho - tau) *
+            planck_table_radiance(band == AIR_MWIR ? air->light.planck_mwir : air->light.planck_lwir, p->temp_k[i]);
     if (p->sun[i] > 0 && band != AIR_LWIR)
-        radiance += *rho / pi_rad * air->light.sun_w_m2[band] * fmax(v3_dot(n_enu, air->light.sun_d_enu), 0) * (double)p->sun[i];
+        radiance += *rho / pi_rad * air->light.sun_w_m2[band] * fmax(v3_dot(n_enu, air->light.sun_d_enu), 0) *
+                    (double)p->sun[i];
     if (tau > 0 && p->sun[i] > 0 && band != AIR_LWIR)
-        radiance += tau / pi_rad * air->light.sun_w_m2[band] * fmax(-v3_dot(n_enu, air->light.sun_d_enu), 0) * (double)p->sun[i];
+        radiance += tau / pi_rad * air->light.sun_w_m2[band] * fmax(-v3_dot(n_enu, air->light.sun_d_enu), 0) *
+                    (double)p->sun[i];
     if (last) radiance += *rho * (daylight_on_plane(&air->light, band, n_enu) / pi_rad + ground * 0.5 * (1 - n_enu[2]));
     if (last && tau > 0) radiance += tau / pi_rad * daylight_far_side(&air->light, band, n_enu, ground * pi_rad);
     return radiance;
@@ -135,7 +140,8 @@ static void follow(double sum[AIR_BAND_COUNT][hits_capacity], Paths *p, const He
             if (!(bands >> b & 1)) continue;
             for (int i = 0; i < p->hits.count; i++) {
                 double left;
-                brought[b][p->of_path[i]] += p->share[b][i] * hemisphere_met(&left, p, i, scene, (AirBand)b, ground[b], last);
+                brought[b][p->of_path[i]] +=
+                    p->share[b][i] * hemisphere_met(&left, p, i, scene, (AirBand)b, ground[b], last);
                 rho[b][i] = (float)left;
             }
         }
@@ -144,15 +150,16 @@ static void follow(double sum[AIR_BAND_COUNT][hits_capacity], Paths *p, const He
         p->rays.count = 0;
         for (int i = 0; i < p->hits.count; i++) {
             if (!(p->hits.range_m[i] < INFINITY)) continue;
-            const uint64_t to = key[p->of_hit[i]];
-            const uint32_t draw = (uint32_t)(2 * p->of_sample[i]);
+            const uint64_t  to = key[p->of_hit[i]];
+            const uint32_t  draw = (uint32_t)(2 * p->of_sample[i]);
             const Material *m = &scene->materials->material[p->hits.material[i]];
-            const bool leaf = material_is_leaf(m), far = leaf && random_uniform(0, stream_side, draw, to) < 0.5;
-            const int at = hemisphere_leave(&p->rays, &p->hits, i, far, random_uniform(0, stream_next, draw, to),
-                                 random_uniform(0, stream_next, draw + 1, to));
+            const bool      leaf = material_is_leaf(m), far = leaf && random_uniform(0, stream_side, draw, to) < 0.5;
+            const int       at = hemisphere_leave(&p->rays, &p->hits, i, far, random_uniform(0, stream_next, draw, to),
+                                                  random_uniform(0, stream_next, draw + 1, to));
             p->of_hit[at] = p->of_hit[i], p->of_sample[at] = p->of_sample[i], p->of_path[at] = p->of_path[i];
             for (int b = 0; b < AIR_BAND_COUNT; b++)
-                if (bands >> b & 1) p->share[b][at] = p->share[b][i] * rho[b][i] * (leaf ? side_share(m, (AirBand)b, far) : 1);
+                if (bands >> b & 1)
+                    p->share[b][at] = p->share[b][i] * rho[b][i] * (leaf ? side_share(m, (AirBand)b, far) : 1);
         }
     }
     for (int b = 0; b < AIR_BAND_COUNT; b++)
@@ -161,9 +168,9 @@ static void follow(double sum[AIR_BAND_COUNT][hits_capacity], Paths *p, const He
 }
 
 void hemisphere_light(HemisphereLight *out, const HemisphereScene *scene, const Hits *hits, unsigned bands, int samples,
-                  const uint64_t *key, VisibilityCounters *counters)
+                      const uint64_t *key, VisibilityCounters *counters)
 {
-    Paths paths;
+    Paths  paths;
     double sum[AIR_BAND_COUNT][hits_capacity] = {{0}};
 
     paths.rays.count = paths.rays.columns = 0;
@@ -175,7 +182,7 @@ void hemisphere_light(HemisphereLight *out, const HemisphereScene *scene, const 
             const bool   far = n >= samples;
             const int    k = far ? n - samples : n;
             const double v = v0 + k * golden_ratio;
-            const int at = hemisphere_leave(&paths.rays, hits, i, far, (k + u0) / samples, v - floor(v));
+            const int    at = hemisphere_leave(&paths.rays, hits, i, far, (k + u0) / samples, v - floor(v));
             paths.of_hit[at] = i, paths.of_sample[at] = n;
             for (int b = 0; b < AIR_BAND_COUNT; b++) paths.share[b][at] = far ? (float)material_through(m, b) : 1;
             if (paths.rays.count < hits_capacity) continue;

@@ -19,7 +19,7 @@ typedef struct HemisphereScene {
     const Visibility *visibility;
     const Air        *air;
     const Materials  *materials;
-    const PatchSet   *patches;   /* NULL: parts are as warm as the air */
+    const PatchSet   *patches; /* NULL: parts are as warm as the air */
     const Snapshot   *snapshot;
 } HemisphereScene;
 
@@ -33,7 +33,7 @@ typedef struct HemisphereLight {
 /* bands: 1 << AirBand, those to fill. samples: 1 .. hemisphere_samples_max directions a hit, spread evenly over the
  * hemisphere. key: a number for each hit; same key, same directions, independent of the other hits. */
 void hemisphere_light(HemisphereLight *out, const HemisphereScene *scene, const Hits *hits, unsigned bands, int samples,
-                  const uint64_t *key, VisibilityCounters *counters);
+                      const uint64_t *key, VisibilityCounters *counters);
 
 /* Change of the light of open sky and level, sunlit ground at a point by nearby parts and shadows. */
 typedef struct HemisphereChange {
@@ -45,14 +45,15 @@ typedef struct HemisphereChange {
 
 enum { hemisphere_change_bounces = 3 };
 
-/* out[hits->count]. At each bounce only what is nearer than reach_m counts, and of the listed entities alone, which must
- * include all that bounces times that far; points on the ground are sampled only towards entities within whose own reach, list_reach_m[listed]
- * beyond their sphere, they lie. From points on the ground the ground is not traced: only parts change their light.
- * notes: where meetings are kept (render/light/sky_visibility.h), the same bits; NULL: nowhere.
- * Three bounces; the open form is subtracted direction by direction, so that points with an unobstructed sky get 0,
- * without noise. The bright ring about the sun has separate directions, since it would cause most of the noise. */
-void hemisphere_change(HemisphereChange *out, const HemisphereScene *scene, const Hits *hits, unsigned bands, int samples,
-                       double reach_m, const double *list_reach_m, const uint64_t *key, const int *list, int listed,
-                       struct SkyNotes *notes, VisibilityCounters *counters);
+/* out[hits->count]. At each bounce only what is nearer than reach_m counts, and of the listed entities alone, which
+ * must include all that bounces times that far; points on the ground are sampled only towards entities within whose own
+ * reach, list_reach_m[listed] beyond their sphere, they lie. From points on the ground the ground is not traced: only
+ * parts change their light. notes: where meetings are kept (render/light/sky_visibility.h), the same bits; NULL:
+ * nowhere. Three bounces; the open form is subtracted direction by direction, so that points with an unobstructed sky
+ * get 0, without noise. The bright ring about the sun has separate directions, since it would cause most of the noise.
+ */
+void hemisphere_change(HemisphereChange *out, const HemisphereScene *scene, const Hits *hits, unsigned bands,
+                       int samples, double reach_m, const double *list_reach_m, const uint64_t *key, const int *list,
+                       int listed, struct SkyNotes *notes, VisibilityCounters *counters);
 
 #endif

@@ -23,14 +23,15 @@ static bool may_meet(const HemisphereScene *scene, const double o_enu[3], const 
             const double in_m = a < b ? a : b, out_m = a < b ? b : a;
             /* a ray along a face gives NaN there, which leaves the interval as it is; fmax would be a call */
             near_m = in_m > near_m ? in_m : near_m;
-            far_m  = out_m < far_m ? out_m : far_m;
+            far_m = out_m < far_m ? out_m : far_m;
         }
         if (near_m <= far_m + 1e-6) return true;
     }
     return false;
 }
 
-static bool ray_may_meet(const HemisphereScene *scene, const Rays *rays, int i, double reach_m, const int *list, int listed)
+static bool ray_may_meet(const HemisphereScene *scene, const Rays *rays, int i, double reach_m, const int *list,
+                         int listed)
 {
     const double o_enu[3] = {rays->o_enu[0][i], rays->o_enu[1][i], rays->o_enu[2][i]};
     const double d_enu[3] = {rays->d_enu[0][i], rays->d_enu[1][i], rays->d_enu[2][i]};
@@ -45,8 +46,8 @@ enum { ring_node = 6, ring_directions = 4, ring_sample = -1 };
 static const double ring_rad = 3.14159265358979323846 * ring_node * ring_node / (air_sky_angles * air_sky_angles);
 
 typedef struct Open {
-    bool   ring; /* the sun is up */
-    bool   ring_shines; /* and in some of the bands there is a ring about it */
+    bool   ring;             /* the sun is up */
+    bool   ring_shines;      /* and in some of the bands there is a ring about it */
     double across_enu[2][3]; /* with the sun's direction, a right-angled triad */
     double ring_w_m2[AIR_BAND_COUNT];
     double ground[AIR_BAND_COUNT]; /* radiance of level, open ground */
@@ -92,14 +93,15 @@ static void open_light(Open *out, const HemisphereScene *scene, unsigned bands)
         const SkyPlace edge = ring_edge(&at);
         const double   sr = 2 * pi_rad * ring_rad * sin(off_rad) / (offs * turns);
         for (int b = 0; b < AIR_BAND_COUNT; b++)
-            if (bands >> b & 1) out->ring_w_m2[b] += ring_radiance(&air->light.sky_light[b], &at, &edge) * cos(off_rad) * sr;
+            if (bands >> b & 1)
+                out->ring_w_m2[b] += ring_radiance(&air->light.sky_light[b], &at, &edge) * cos(off_rad) * sr;
     }
     for (int b = 0; b < AIR_BAND_COUNT; b++) out->ring_shines |= out->ring_w_m2[b] != 0;
 }
 
 typedef struct Change {
     double w_m2[AIR_BAND_COUNT];
-    int blocked, sunlit, parts, inside;
+    int    blocked, sunlit, parts, inside;
 } Change;
 
 static void count_first(Change *to, const Paths *p, int i, const HemisphereScene *scene)
@@ -116,16 +118,16 @@ static void count_first(Change *to, const Paths *p, int i, const HemisphereScene
 /* Of one call. */
 typedef struct ChangeJob {
     const HemisphereScene *scene;
-    unsigned            bands;
-    int                 samples;
-    double              reach_m;
-    Open                open;
-    bool                ground_points; /* among the hits */
-    const uint64_t     *key;
-    const int          *list;
-    int                 listed;
-    SkyNotes           *notes; /* NULL: nothing is noted */
-    VisibilityCounters *counters;
+    unsigned               bands;
+    int                    samples;
+    double                 reach_m;
+    Open                   open;
+    bool                   ground_points; /* among the hits */
+    const uint64_t        *key;
+    const int             *list;
+    int                    listed;
+    SkyNotes              *notes; /* NULL: nothing is noted */
+    VisibilityCounters    *counters;
 } ChangeJob;
 
 /* Whether it matters which of the places that paths meet the sun shines on: for light other than thermal, and for what
@@ -144,7 +146,8 @@ static void meet(Paths *p, const ChangeJob *job, int bounce, const SkyMet *const
     } else {
         bool parts_alone = bounce == 0; /* from points on the ground, the ground is not traced */
         for (int i = 0; i < p->rays.count; i++) p->rays.far_m[i] = job->reach_m, parts_alone &= p->from_ground[i];
-        if (parts_alone) visibility_first_part(&p->hits, scene->visibility, &p->rays, job->list, job->listed, job->counters);
+        if (parts_alone)
+            visibility_first_part(&p->hits, scene->visibility, &p->rays, job->list, job->listed, job->counters);
         else visibility_first_hit(&p->hits, scene->visibility, &p->rays, job->list, job->listed, -1, job->counters);
     }
     hemisphere_light_met(p, scene, job->bands, asks_sun(job, bounce), job->counters);
@@ -161,8 +164,8 @@ static int go_on(Paths *p, int i, const ChangeJob *job, int bounce, const SkyMet
     }
     const uint64_t to = job->key[of];
     const uint32_t draw = (uint32_t)(2 * (sample * hemisphere_change_bounces + bounce));
-    const int at = hemisphere_leave(&p->rays, &p->hits, i, false, random_uniform(0, stream_change, draw, to),
-                                    random_uniform(0, stream_change, draw + 1, to));
+    const int      at = hemisphere_leave(&p->rays, &p->hits, i, false, random_uniform(0, stream_change, draw, to),
+                                         random_uniform(0, stream_change, draw + 1, to));
     if (job->notes) {
         const double o_enu[3] = {p->rays.o_enu[0][at], p->rays.o_enu[1][at], p->rays.o_enu[2][at]};
         const double d_enu[3] = {p->rays.d_enu[0][at], p->rays.d_enu[1][at], p->rays.d_enu[2][at]};
@@ -181,9 +184,9 @@ static void follow_change(Change *sum, Paths *p, const ChangeJob *job, const Sky
     const HemisphereScene *scene = job->scene;
     const Open            *open = &job->open;
     const unsigned         bands = job->bands;
-    double    brought[AIR_BAND_COUNT][hits_capacity];
-    int       of_hit[hits_capacity];
-    const int started = p->rays.count;
+    double                 brought[AIR_BAND_COUNT][hits_capacity];
+    int                    of_hit[hits_capacity];
+    const int              started = p->rays.count;
     for (int b = 0; b < AIR_BAND_COUNT; b++)
         if (bands >> b & 1) memset(brought[b], 0, (size_t)started * sizeof *brought[b]);
     for (int i = 0; i < started; i++) p->of_path[i] = i, of_hit[i] = p->of_hit[i];
@@ -267,9 +270,9 @@ static int list_close(int close[close_most], const HemisphereScene *scene, const
 static int leave_to_ring(Paths *p, const Hits *hits, int from, const ChangeJob *job, int n, double u, double v)
 {
     const HemisphereScene *scene = job->scene;
-    const double off_rad = ring_rad * (n + u) / ring_directions;
-    const double n_enu[3] = {hits->n_enu[0][from], hits->n_enu[1][from], hits->n_enu[2][from]};
-    double       d_enu[3];
+    const double           off_rad = ring_rad * (n + u) / ring_directions;
+    const double           n_enu[3] = {hits->n_enu[0][from], hits->n_enu[1][from], hits->n_enu[2][from]};
+    double                 d_enu[3];
     ring_direction(d_enu, &job->open, scene->air->light.sun_d_enu, off_rad, 2 * pi_rad * (v + n * golden_ratio));
     const double along = v3_dot(d_enu, n_enu);
     if (along <= 0 || d_enu[2] < 0) return -1;
@@ -315,16 +318,23 @@ static void follow_known(Change *sum, Paths *p, const ChangeJob *job, const SkyM
     if (p->rays.count > 0) follow_change(sum, p, job, known);
 }
 
-void hemisphere_change(HemisphereChange *out, const HemisphereScene *scene, const Hits *hits, unsigned bands, int samples,
-                       double reach_m, const double *list_reach_m, const uint64_t *key, const int *list, int listed,
-                       SkyNotes *notes, VisibilityCounters *counters)
+void hemisphere_change(HemisphereChange *out, const HemisphereScene *scene, const Hits *hits, unsigned bands,
+                       int samples, double reach_m, const double *list_reach_m, const uint64_t *key, const int *list,
+                       int listed, SkyNotes *notes, VisibilityCounters *counters)
 {
-    Paths  paths;
-    Change sum[hits_capacity];
+    Paths         paths;
+    Change        sum[hits_capacity];
     const SkyMet *known[hits_capacity];
-    ChangeJob job = {.scene = scene, .bands = bands, .samples = samples, .reach_m = reach_m, .key = key, .list = list,
-                     .listed = listed, .notes = notes, .counters = counters};
-    const double golden_turn[2] = {cos(2 * pi_rad * golden_ratio), sin(2 * pi_rad * golden_ratio)};
+    ChangeJob     job = {.scene = scene,
+                         .bands = bands,
+                         .samples = samples,
+                         .reach_m = reach_m,
+                         .key = key,
+                         .list = list,
+                         .listed = listed,
+                         .notes = notes,
+                         .counters = counters};
+    const double  golden_turn[2] = {cos(2 * pi_rad * golden_ratio), sin(2 * pi_rad * golden_ratio)};
     open_light(&job.open, scene, bands);
     memset(sum, 0, (size_t)hits->count * sizeof *sum);
     for (int i = 0; i < hits->count; i++) known[i] = NULL, job.ground_points |= !hits->entity[i];
@@ -365,8 +375,8 @@ void hemisphere_change(HemisphereChange *out, const HemisphereScene *scene, cons
     for (int i = 0; i < hits->count; i++) {
         const Change *s = &sum[i];
         out[i] = (HemisphereChange){.blocked = (float)s->blocked / (float)samples,
-                                .sunlit = (float)s->sunlit / (float)samples,
-                                .inside = s->parts ? (float)s->inside / (float)s->parts : 0};
+                                    .sunlit = (float)s->sunlit / (float)samples,
+                                    .inside = s->parts ? (float)s->inside / (float)s->parts : 0};
         for (int b = 0; b < AIR_BAND_COUNT; b++) out[i].w_m2[b] = (float)(s->w_m2[b] * pi_rad / samples);
     }
 }

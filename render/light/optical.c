@@ -16,7 +16,8 @@ void optical_white(double w_m2_sr[3], const Air *air)
 {
     static const AirBand rgb[3] = {AIR_R, AIR_G, AIR_B};
     for (int c = 0; c < 3; c++)
-        w_m2_sr[c] = (air->light.sun_w_m2[rgb[c]] * fmax(air->light.sun_d_enu[2], 0) + air->light.sky_w_m2[rgb[c]]) / pi_rad;
+        w_m2_sr[c] =
+            (air->light.sun_w_m2[rgb[c]] * fmax(air->light.sun_d_enu[2], 0) + air->light.sky_w_m2[rgb[c]]) / pi_rad;
 }
 
 float optical_beyond(int channel, const Air *air, double ground_w_m2, const double d_enu[3], const AirPaths *v, int i)
@@ -32,11 +33,11 @@ void optical_shade(float *out, int channel, const Air *air, const Materials *mat
 {
     const AirBand band = (AirBand)channel;
     const double *sun_d_enu = air->light.sun_d_enu, sun_w_m2 = air->light.sun_w_m2[channel];
-    const double ground_w_m2 = optical_ground_w_m2(channel, air, materials);
-    AirPaths own;
+    const double  ground_w_m2 = optical_ground_w_m2(channel, air, materials);
+    AirPaths      own;
     if (!veils) air_path(&own, air, band, hits, rays, NULL);
     const AirPaths *v = veils ? veils : &own;
-    Facing found;
+    Facing          found;
     if (!facing) {
         daylight_facing(&found, &air->light, materials, hits, rays, material);
         facing = &found;
@@ -49,29 +50,28 @@ void optical_shade(float *out, int channel, const Air *air, const Materials *mat
             continue;
         }
         const Material *m = &materials->material[material[i]];
-        const double n_enu[3] = {hits->n_enu[0][i], hits->n_enu[1][i], hits->n_enu[2][i]};
-        double rho = fmin(m->rho[channel] * texture[i], 1), tau = 0;
+        const double    n_enu[3] = {hits->n_enu[0][i], hits->n_enu[1][i], hits->n_enu[2][i]};
+        double          rho = fmin(m->rho[channel] * texture[i], 1), tau = 0;
         if (m->tau[channel] > 0) { /* a bright leaf returns no more than it gets */
             const double bright = fmin(texture[i], 1 / ((double)m->rho[channel] + (double)m->tau[channel]));
             rho = m->rho[channel] * bright, tau = m->tau[channel] * bright;
         }
         const double lit = sun ? (double)sun[i] : 1, n_sun = lit > 0 ? fmax(v3_dot(n_enu, sun_d_enu), 0) : 0;
-        const double around =
-            around_w_m2 ? around_w_m2[i]
-                        : daylight_plane_there(&air->light, band, &facing->plane[i]) + ground_w_m2 * 0.5 * (1 - n_enu[2]);
+        const double around = around_w_m2 ? around_w_m2[i]
+                                          : daylight_plane_there(&air->light, band, &facing->plane[i]) +
+                                                ground_w_m2 * 0.5 * (1 - n_enu[2]);
         const double irradiance_w_m2 = sun_w_m2 * n_sun * lit + around;
 
         double radiance;
         if (!(m->gloss > 0)) {
             radiance = rho * irradiance_w_m2 / pi_rad;
             if (tau > 0) { /* a leaf: what falls on its far side shines through */
-                const double behind =
-                    around_w_m2 ? 0 : daylight_far_side(&air->light, band, n_enu, ground_w_m2);
+                const double behind = around_w_m2 ? 0 : daylight_far_side(&air->light, band, n_enu, ground_w_m2);
                 radiance += tau / pi_rad * (sun_w_m2 * lit * fmax(-v3_dot(n_enu, sun_d_enu), 0) + behind);
             }
         } else {
             const double n_eye = fmax(-v3_dot(n_enu, d_enu), 0);
-            double diffuse, lobe_rho;
+            double       diffuse, lobe_rho;
             material_split(&diffuse, &lobe_rho, rho, m->gloss, m->roughness, n_eye);
             radiance = diffuse * irradiance_w_m2 / pi_rad;
 
@@ -79,7 +79,7 @@ void optical_shade(float *out, int channel, const Air *air, const Materials *mat
             v3_add_scaled(mirror_enu, d_enu, 2 * n_eye, n_enu);
             /* a rough lobe near the horizon includes some of both */
             const double sees_sky = clamp(0.5 + 0.5 * mirror_enu[2] / fmax(m->roughness, 0.01), 0, 1);
-            double seen = (1 - sees_sky) * ground_w_m2 / pi_rad;
+            double       seen = (1 - sees_sky) * ground_w_m2 / pi_rad;
             if (sees_sky > 0) seen += sees_sky * daylight_sky_there(&air->light.sky[band], &facing->mirror[i]);
             radiance += lobe_rho * seen;
 

@@ -16,13 +16,14 @@ void optical_shade(float *out, int channel, const Air *air, const Materials *mat
                    const float *around_w_m2, const AirPaths *veils, const Facing *facing);
 
 /* One ray that met nothing: ground beyond the terrain's edge, or sky. ground_w_m2: optical_ground_w_m2. */
-float optical_beyond(int channel, const Air *air, double ground_w_m2, const double d_enu[3], const AirPaths *veils, int hit);
+float optical_beyond(int channel, const Air *air, double ground_w_m2, const double d_enu[3], const AirPaths *veils,
+                     int hit);
 
 /* Radiant exitance of level, sunlit ground of the mean land, W/m2. */
 double optical_ground_w_m2(int channel, const Air *air, const Materials *materials);
 
 /* Radiance of white, level, diffuse ground in the open under this sun and sky, R G B, W/(m2 sr): the white balance
  * of displays. Needs an Air of these three bands. */
-void   optical_white(double w_m2_sr[3], const Air *air);
+void optical_white(double w_m2_sr[3], const Air *air);
 
 #endif

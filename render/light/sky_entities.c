@@ -8,11 +8,11 @@
 
 enum { grid_directions = 28 /* a point */, grid_least = 3, grid_most = 48 /* places over an entity's box, a side */ };
 enum { task_places = 32 }; /* points that are traced together */
-enum { aspect_bins = 12 };  /* a quarter of the way round: 5 to 10 degrees each */
+enum { aspect_bins = 12 }; /* a quarter of the way round: 5 to 10 degrees each */
 static const double grid_px = 2.75;
 
-/* Middle of the bin of a direction: a cube about it has so many a side on each face. Exact operations alone: the same on
- * every machine. */
+/* Middle of the bin of a direction: a cube about it has so many a side on each face. Exact operations alone: the same
+ * on every machine. */
 static void middle_of_bin(double out[3], const double d[3])
 {
     int axis = 0;
@@ -54,7 +54,7 @@ static void grid_of_body(SkyEntity *e, const SkyVisibility *v, const PosedEntity
     const double pitch_m = nearest_step(fmax(v3_length(offset_enu), 1) * v->px_rad * grid_px);
     e->of_body = true;
     e->columns = (int)clamp(ceil((high[0] - low[0]) / pitch_m), grid_least, grid_most);
-    e->rows    = (int)clamp(ceil((high[1] - low[1]) / pitch_m), grid_least, grid_most);
+    e->rows = (int)clamp(ceil((high[1] - low[1]) / pitch_m), grid_least, grid_most);
     for (int k = 0; k < 2; k++) {
         e->low[k] = low[k], e->step[k] = (high[k] - low[k]) / (k == 0 ? e->columns : e->rows);
         m3_mul_v3(e->across_enu[k], posed->r_enu_from_body, across[k]);
@@ -64,7 +64,7 @@ static void grid_of_body(SkyEntity *e, const SkyVisibility *v, const PosedEntity
 }
 
 Status sky_entities_grid(SkyEntity *e, const SkyVisibility *v, const PosedEntity *posed, const double box_px[4],
-                        Arena *arena)
+                         Arena *arena)
 {
     const View  *view = v->scene.view;
     const double x0 = fmax(box_px[0], 0), x1 = fmin(box_px[2], view->width);
@@ -76,7 +76,7 @@ Status sky_entities_grid(SkyEntity *e, const SkyVisibility *v, const PosedEntity
         grid_of_body(e, v, posed, offset_enu);
     } else {
         e->columns = (int)clamp(ceil((x1 - x0) / grid_px), grid_least, grid_most);
-        e->rows    = (int)clamp(ceil((y1 - y0) / grid_px), grid_least, grid_most);
+        e->rows = (int)clamp(ceil((y1 - y0) / grid_px), grid_least, grid_most);
         e->low[0] = x0, e->low[1] = y0;
         e->step[0] = (x1 - x0) / e->columns, e->step[1] = (y1 - y0) / e->rows;
         e->pitch_m = fmax(v3_length(offset_enu), 1) * v->px_rad * fmax(e->step[0], e->step[1]);
@@ -94,13 +94,13 @@ Status sky_entities_tasks(SkyVisibility *v, Arena *arena)
     for (int k = 0; k < v->on_image; k++)
         count += (v->entity[k].columns * v->entity[k].rows + task_places - 1) / task_places;
     v->task_entity = arena_alloc(arena, (size_t)count + 1, sizeof *v->task_entity);
-    v->task_first  = arena_alloc(arena, (size_t)count + 1, sizeof *v->task_first);
+    v->task_first = arena_alloc(arena, (size_t)count + 1, sizeof *v->task_first);
     if (!v->task_entity || !v->task_first) return STATUS_NO_MEMORY;
     for (int k = 0; k < v->on_image; k++) {
         SkyEntity *e = &v->entity[k];
         e->first_task = v->tasks;
         for (int first = 0; first < e->columns * e->rows; first += task_places) {
-            v->task_entity[v->tasks]  = k;
+            v->task_entity[v->tasks] = k;
             v->task_first[v->tasks++] = first;
         }
         e->tasks = v->tasks - e->first_task;
@@ -109,10 +109,7 @@ Status sky_entities_tasks(SkyVisibility *v, Arena *arena)
 }
 
 /* Key of the point: 2, the entity, the cell of its grid. Keys of ground points: sky_visibility.c. */
-static uint64_t spot_key(int entity, int spot)
-{
-    return (uint64_t)2 << 62 | (uint64_t)entity << 20 | (uint64_t)spot;
-}
+static uint64_t spot_key(int entity, int spot) { return (uint64_t)2 << 62 | (uint64_t)entity << 20 | (uint64_t)spot; }
 
 int sky_visibility_tasks(const SkyVisibility *v) { return v->tasks; }
 
@@ -154,8 +151,8 @@ static void leave_body(Rays *rays, int i, const SkyEntity *e, const PosedEntity 
     v3_sub(to_centre, posed->centre_enu, posed->p_enu);
     const double away_m = v3_dot(to_centre, e->from_enu) + posed->radius_m + look_m;
     for (int c = 0; c < 3; c++) {
-        rays->o_enu[c][i] = posed->p_enu[c] + at_m[0] * e->across_enu[0][c] + at_m[1] * e->across_enu[1][c] +
-                            away_m * e->from_enu[c];
+        rays->o_enu[c][i] =
+            posed->p_enu[c] + at_m[0] * e->across_enu[0][c] + at_m[1] * e->across_enu[1][c] + away_m * e->from_enu[c];
         rays->d_enu[c][i] = -e->from_enu[c];
     }
     rays->far_m[i] = INFINITY;
@@ -164,16 +161,16 @@ static void leave_body(Rays *rays, int i, const SkyEntity *e, const PosedEntity 
 /* Traces the visible surface of the entity at some points of its grid, and computes the light there. */
 static void ask_points(const SkyVisibility *v, SkyWorker *w, int task)
 {
-    const SkyEntity    *e = &v->entity[v->task_entity[task]];
-    const int           index = e->index, first = v->task_first[task];
-    const View         *view = v->scene.view;
-    const int           all = e->columns * e->rows;
-    const HemisphereScene  *scene = &v->scene.gather;
-    VisibilityCounters  unused = {0};
-    Rays               *rays = &w->rays;
-    Hits               *met = &w->met, *places = &w->places;
-    int                 of[task_places], point[task_places], count = all - first < task_places ? all - first : task_places;
-    double              box[2][3] = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+    const SkyEntity       *e = &v->entity[v->task_entity[task]];
+    const int              index = e->index, first = v->task_first[task];
+    const View            *view = v->scene.view;
+    const int              all = e->columns * e->rows;
+    const HemisphereScene *scene = &v->scene.gather;
+    VisibilityCounters     unused = {0};
+    Rays                  *rays = &w->rays;
+    Hits                  *met = &w->met, *places = &w->places;
+    int    of[task_places], point[task_places], count = all - first < task_places ? all - first : task_places;
+    double box[2][3] = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
     rays->count = count, rays->columns = 0;
     for (int i = 0; i < count; i++) {
         const double at[2] = {e->low[0] + e->step[0] * ((first + i) % e->columns + 0.5),
@@ -195,9 +192,9 @@ static void ask_points(const SkyVisibility *v, SkyWorker *w, int task)
         /* those that the rows of these points may see: with many entities a fraction of all */
         const double y_px = e->low[1] + e->step[1] * (point[0] / e->columns),
                      end_px = e->low[1] + e->step[1] * (point[count - 1] / e->columns + 1);
-        const int    seen = visibility_block_entities(w->near, scene->visibility, view, e->low[0], y_px,
-                                                      e->low[0] + e->step[0] * e->columns, end_px, v->scene.hidden_entity,
-                                                      &unused);
+        const int seen =
+            visibility_block_entities(w->near, scene->visibility, view, e->low[0], y_px,
+                                      e->low[0] + e->step[0] * e->columns, end_px, v->scene.hidden_entity, &unused);
         visibility_first_hit(met, scene->visibility, rays, w->near, seen, v->scene.hidden_entity, &unused);
     }
     places->count = 0;
@@ -240,7 +237,8 @@ void sky_visibility_task(const SkyVisibility *v, SkyWorker *w, int task)
     atomic_fetch_add_explicit(&e->done, 1, memory_order_release);
 }
 
-/* Each thread takes tasks that no other has taken, then waits for those that others are at. A task itself waits for nothing. */
+/* Each thread takes tasks that no other has taken, then waits for those that others are at. A task itself waits for
+ * nothing. */
 static void complete(const SkyVisibility *v, SkyWorker *w, SkyEntity *e)
 {
     if (atomic_load_explicit(&e->done, memory_order_acquire) == e->tasks) return;
@@ -271,13 +269,13 @@ void sky_entities_complete(const SkyVisibility *v, SkyWorker *w, const Hits *hit
 static float add_spots(F32x8 *sum, const SkyEntity *e, const int span[4], int step, const float p_m[3],
                        const float n_enu[3], uint16_t part)
 {
-    static const float    other_part = 0.05f;
-    const float           pitch_m2 = (float)(e->pitch_m * e->pitch_m);
-    const float *const   *value = (const float *const *)e->spot.value;
-    const F32x8           square_m2 = _mm256_set1_ps(pitch_m2), least_m2 = _mm256_set1_ps(0.1f * pitch_m2);
-    const F32x8           zero = _mm256_setzero_ps(), of_part = _mm256_set1_ps(part);
-    float                 all = 0, each[8];
-    F32x8                 p[3], n[3];
+    static const float  other_part = 0.05f;
+    const float         pitch_m2 = (float)(e->pitch_m * e->pitch_m);
+    const float *const *value = (const float *const *)e->spot.value;
+    const F32x8         square_m2 = _mm256_set1_ps(pitch_m2), least_m2 = _mm256_set1_ps(0.1f * pitch_m2);
+    const F32x8         zero = _mm256_setzero_ps(), of_part = _mm256_set1_ps(part);
+    float               all = 0, each[8];
+    F32x8               p[3], n[3];
     for (int c = 0; c < 3; c++) p[c] = _mm256_set1_ps(p_m[c]), n[c] = _mm256_set1_ps(n_enu[c]);
     for (int row = span[1]; row < span[3]; row += step)
         for (int column = span[0]; column < span[2]; column += 8) {
@@ -328,20 +326,20 @@ void sky_entities_open(SkyOpen *out, int i, const SkyVisibility *v, const Hits *
     static const float enough = 0.3f; /* one point of the part two steps away */
     const int          index = (int)hits->entity[i] - 1;
     if (v->grid_of[index] == 0) return;
-    const SkyEntity   *e = &v->entity[v->grid_of[index] - 1];
-    const double      *centre_enu = visibility_posed(v->scene.gather.visibility, index)->centre_enu;
-    const float        n_enu[3] = {hits->n_geo[0][i], hits->n_geo[1][i], hits->n_geo[2][i]};
-    double             at[2];
-    float              p_m[3], factor[8];
-    int                span[4];
+    const SkyEntity *e = &v->entity[v->grid_of[index] - 1];
+    const double    *centre_enu = visibility_posed(v->scene.gather.visibility, index)->centre_enu;
+    const float      n_enu[3] = {hits->n_geo[0][i], hits->n_geo[1][i], hits->n_geo[2][i]};
+    double           at[2];
+    float            p_m[3], factor[8];
+    int              span[4];
     if (e->columns == 0) return;
     const double p_enu[3] = {hits->p_enu[0][i], hits->p_enu[1][i], hits->p_enu[2][i]};
     for (int c = 0; c < 3; c++) p_m[c] = (float)(p_enu[c] - centre_enu[c]);
     place_on_grid(at, e, v, p_enu);
-    const int    column = (int)clamp(floor((at[0] - e->low[0]) / e->step[0]), 0, e->columns - 1);
-    const int    row = (int)clamp(floor((at[1] - e->low[1]) / e->step[1]), 0, e->rows - 1);
-    F32x8        sum = f32x8_set(0);
-    float        all = 0;
+    const int column = (int)clamp(floor((at[0] - e->low[0]) / e->step[0]), 0, e->columns - 1);
+    const int row = (int)clamp(floor((at[1] - e->low[1]) / e->step[1]), 0, e->rows - 1);
+    F32x8     sum = f32x8_set(0);
+    float     all = 0;
     for (int more = 1; more <= 4 && !(all > enough); more += 3) {
         span_about(span, e, column, row, more);
         sum = f32x8_set(0);

@@ -8,7 +8,7 @@
 
 typedef struct SkyPoint SkyPoint;
 struct SkyPoint {
-    SkyPoint        *next;  /* of a thread's list */
+    SkyPoint        *next; /* of a thread's list */
     uint64_t         key, stamp;
     double           p_enu[3], box[2][3]; /* of its rays */
     float            n_enu[3];
@@ -21,19 +21,19 @@ struct SkyKept {
     atomic_flag busy;
     uint32_t    frame;
     size_t      most_octets, octets, points;
-    size_t      slots;     /* a power of two, of which at most half are taken */
+    size_t      slots; /* a power of two, of which at most half are taken */
     SkyPoint  **slot;
-    int         stood;     /* entities of the frame before */
-    uint64_t   *stood_as;  /* [stood]: their hashes; 0: not known */
+    int         stood;    /* entities of the frame before */
+    uint64_t   *stood_as; /* [stood]: their hashes; 0: not known */
 };
 
 struct SkyKeptFrame {
-    SkyKept           *kept;
-    const Visibility  *visibility;
-    uint64_t           world;
-    int                count;
-    _Atomic uint64_t  *stamp;  /* [count]: hash of an entity's pose; 0: not known yet */
-    SkyNotes          *first;  /* of its threads */
+    SkyKept          *kept;
+    const Visibility *visibility;
+    uint64_t          world;
+    int               count;
+    _Atomic uint64_t *stamp; /* [count]: hash of an entity's pose; 0: not known yet */
+    SkyNotes         *first; /* of its threads */
 };
 
 static const double near_miss_m = 1e-3; /* ample: near misses of 20 um may count as hits */
@@ -102,8 +102,8 @@ static void list_near(SkyNotes *notes, double box[2][3])
     notes->nears = visibility_near(notes->near, notes->frame->visibility, box[0], box[1], near_miss_m);
 }
 
-/* Hash of those listed whose spheres touch a box, which lies in the listed one; *stand: all of them are as they were in the
- * frame before. */
+/* Hash of those listed whose spheres touch a box, which lies in the listed one; *stand: all of them are as they were in
+ * the frame before. */
 static uint64_t stamp_about(bool *stand, const SkyNotes *notes, double box[2][3])
 {
     SkyKeptFrame  *frame = notes->frame;
@@ -191,7 +191,7 @@ static bool rebuild(SkyKept *kept, size_t points, uint32_t since)
 {
     size_t slots = 1024;
     while (slots < 2 * points) slots *= 2;
-    SkyPoint **of = calloc(slots, sizeof *of), **old = kept->slot;
+    SkyPoint   **of = calloc(slots, sizeof *of), **old = kept->slot;
     const size_t before = kept->slots;
     if (!of) return false;
     kept->slot = of, kept->slots = slots;
@@ -238,8 +238,8 @@ Status sky_kept_begin(SkyKeptFrame **out, SkyKept *kept, const Visibility *visib
     if (!kept) return STATUS_OK;
     SkyKeptFrame *frame = arena_alloc(arena, 1, sizeof *frame);
     if (!frame) return STATUS_NO_MEMORY;
-    *frame = (SkyKeptFrame){.kept = kept, .visibility = visibility, .world = stir(1, world),
-                            .count = visibility_count(visibility)};
+    *frame = (SkyKeptFrame){
+        .kept = kept, .visibility = visibility, .world = stir(1, world), .count = visibility_count(visibility)};
     frame->stamp = arena_alloc(arena, (size_t)frame->count + 1, sizeof *frame->stamp);
     if (!frame->stamp) return STATUS_NO_MEMORY;
     if (atomic_flag_test_and_set(&kept->busy)) return STATUS_OK;
@@ -251,10 +251,11 @@ Status sky_kept_begin(SkyKeptFrame **out, SkyKept *kept, const Visibility *visib
 Status sky_notes_create(SkyNotes **out, SkyKeptFrame *frame, Arena *arena)
 {
     SkyNotes *notes = arena_alloc_raw(arena, 1, sizeof *notes);
-    if (!notes || !(notes->near = arena_alloc(arena, (size_t)frame->count + 1, sizeof *notes->near))) return STATUS_NO_MEMORY;
+    if (!notes || !(notes->near = arena_alloc(arena, (size_t)frame->count + 1, sizeof *notes->near)))
+        return STATUS_NO_MEMORY;
     notes->frame = frame;
-    notes->made  = NULL;
-    notes->next  = frame->first;
+    notes->made = NULL;
+    notes->next = frame->first;
     frame->first = notes;
     *out = notes;
     return STATUS_OK;
@@ -313,7 +314,8 @@ static void empty_box(double box[2][3])
     for (int c = 0; c < 3; c++) box[0][c] = INFINITY, box[1][c] = -INFINITY;
 }
 
-void sky_notes_find(const SkyMet *known[hits_capacity], SkyNotes *notes, const Hits *hits, const uint64_t *key, int samples)
+void sky_notes_find(const SkyMet *known[hits_capacity], SkyNotes *notes, const Hits *hits, const uint64_t *key,
+                    int samples)
 {
     const SkyKept *kept = notes->frame->kept;
     SkyPoint      *point[hits_capacity];
@@ -348,16 +350,16 @@ void sky_met_load(Hits *hits, Rays *rays, int i, const SkyMet *met)
         hits->n_enu[k][i] = met->n_enu[k];
         rays->d_enu[k][i] = met->d_enu[k];
     }
-    hits->range_m[i]  = 0; /* not INFINITY: no more is asked */
-    hits->kind[i]     = met->kind;
+    hits->range_m[i] = 0; /* not INFINITY: no more is asked */
+    hits->kind[i] = met->kind;
     hits->material[i] = met->material;
-    hits->facet[i]    = met->facet;
-    hits->entity[i]   = met->entity;
-    hits->part[i]     = met->part;
-    hits->model[i]    = met->model;
-    hits->inside[i]   = met->inside;
-    hits->surface[i]  = met->surface;
-    hits->plant[i]    = 0;
+    hits->facet[i] = met->facet;
+    hits->entity[i] = met->entity;
+    hits->part[i] = met->part;
+    hits->model[i] = met->model;
+    hits->inside[i] = met->inside;
+    hits->surface[i] = met->surface;
+    hits->plant[i] = 0;
 }
 
 void sky_notes_begin(SkyNotes *notes, int points)
@@ -379,9 +381,16 @@ void sky_notes_met(SkyNotes *notes, int point, int sample, int bounce, const Hit
     if (notes->count++ >= notes_most) return;
     Note *note = &notes->note[notes->count - 1];
     note->point = point;
-    note->met = (SkyMet){.facet = hits->facet[i], .entity = hits->entity[i], .material = hits->material[i],
-                         .part = hits->part[i], .model = hits->model[i], .kind = hits->kind[i], .inside = hits->inside[i],
-                         .surface = hits->surface[i], .sample = (uint8_t)sample, .bounce = (uint8_t)bounce};
+    note->met = (SkyMet){.facet = hits->facet[i],
+                         .entity = hits->entity[i],
+                         .material = hits->material[i],
+                         .part = hits->part[i],
+                         .model = hits->model[i],
+                         .kind = hits->kind[i],
+                         .inside = hits->inside[i],
+                         .surface = hits->surface[i],
+                         .sample = (uint8_t)sample,
+                         .bounce = (uint8_t)bounce};
     for (int k = 0; k < 3; k++) {
         note->met.p_enu[k] = hits->p_enu[k][i];
         note->met.n_geo[k] = hits->n_geo[k][i];
@@ -436,7 +445,8 @@ void sky_notes_keep(SkyNotes *notes, const Hits *hits, const uint64_t *key, int 
         if (!stand) continue;
         SkyPoint *p = malloc(sizeof *p + ((size_t)notes->met[i] + 1) * sizeof *p->met);
         if (!p) continue;
-        *p = (SkyPoint){.next = notes->made, .key = key[i], .stamp = stamp, .samples = samples, .used = notes->frame->kept->frame};
+        *p = (SkyPoint){
+            .next = notes->made, .key = key[i], .stamp = stamp, .samples = samples, .used = notes->frame->kept->frame};
         for (int c = 0; c < 3; c++) p->p_enu[c] = p_enu[c], p->n_enu[c] = hits->n_enu[c][i];
         memcpy(p->box, notes->box[i], sizeof p->box);
         notes->made = made[i] = p;

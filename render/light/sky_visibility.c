@@ -6,15 +6,15 @@
 #include "pitviper_simd.h"
 
 enum {
-    ground_directions = 32,    /* a place */
-    cached_slots    = 1 << 15,   /* places on the ground, of the frame */
-    cached_probes   = 16,
-    finer_most    = 3,         /* number of halvings of a ground cell */
+    ground_directions = 32, /* a place */
+    cached_slots = 1 << 15, /* places on the ground, of the frame */
+    cached_probes = 16,
+    finer_most = 3, /* number of halvings of a ground cell */
 };
-static const double hidden_share = 0.02;  /* of a level plane's light: smaller effects are left out */
-static const double fade_share = 0.3;     /* the reach ends over its last 30 % */
-static const double differ = 0.15;        /* shares of directions: where points differ more the grid is refined */
-static const double cell_reach = 0.45; /* coarsest cells, of the reach */
+static const double hidden_share = 0.02; /* of a level plane's light: smaller effects are left out */
+static const double fade_share = 0.3;    /* the reach ends over its last 30 % */
+static const double differ = 0.15;       /* shares of directions: where points differ more the grid is refined */
+static const double cell_reach = 0.45;   /* coarsest cells, of the reach */
 static const double lattice_px = 3.5;
 
 /* ---- of a frame ------------------------------------------------------------------------------- */
@@ -45,9 +45,9 @@ Status sky_visibility_create(SkyVisibility **out, const SkyVisibilityScene *scen
     for (int k = 0; k < v->count; k++) v->on_image += !isnan(scene->box_px[k][0]);
     v->entity = arena_alloc(arena, (size_t)v->on_image + 1, sizeof *v->entity);
     for (int k = 0; k <= coarsest_log2_m + lattice_steps; k++) v->cells_per_m[k] = ldexp(1, lattice_steps - k);
-    v->cached_key  = arena_alloc(arena, cached_slots, sizeof *v->cached_key);
+    v->cached_key = arena_alloc(arena, cached_slots, sizeof *v->cached_key);
     v->cached_done = arena_alloc(arena, cached_slots, sizeof *v->cached_done);
-    v->kept      = arena_alloc_raw(arena, cached_slots, sizeof *v->kept);
+    v->kept = arena_alloc_raw(arena, cached_slots, sizeof *v->kept);
     if (!v->entity || !v->cached_key || !v->cached_done || !v->kept) return STATUS_NO_MEMORY;
     for (int k = 0, at = 0; k < v->count; k++) {
         if (isnan(scene->box_px[k][0])) continue;
@@ -63,7 +63,8 @@ Status sky_visibility_create(SkyVisibility **out, const SkyVisibilityScene *scen
                                          : optical_ground_w_m2(b, scene->gather.air, scene->gather.materials);
     Status status = sky_entities_tasks(v, arena);
     if (status == STATUS_OK && skips(scene->skips_off, SKIP_KEPT))
-        status = sky_kept_begin(&v->keeper, scene->kept, scene->gather.visibility, (uint64_t)(uintptr_t)scene->landscape, arena);
+        status = sky_kept_begin(&v->keeper, scene->kept, scene->gather.visibility,
+                                (uint64_t)(uintptr_t)scene->landscape, arena);
     if (status == STATUS_OK) *out = v;
     return status;
 }
@@ -93,11 +94,11 @@ Status sky_worker_create(SkyWorker **out, const SkyVisibility *v, Arena *arena)
 {
     SkyWorker *w = *out = arena_alloc(arena, 1, sizeof *w);
     if (!w) return STATUS_NO_MEMORY;
-    w->slot       = arena_alloc_raw(arena, known_slots, sizeof *w->slot);
+    w->slot = arena_alloc_raw(arena, known_slots, sizeof *w->slot);
     w->slot_block = arena_alloc(arena, known_slots, sizeof *w->slot_block);
     w->near = arena_alloc(arena, (size_t)v->count + 1, sizeof *w->near);
     w->near_reach_m = arena_alloc(arena, (size_t)v->count + 1, sizeof *w->near_reach_m);
-    w->near_step    = arena_alloc(arena, (size_t)v->count + 1, sizeof *w->near_step);
+    w->near_step = arena_alloc(arena, (size_t)v->count + 1, sizeof *w->near_step);
     if (!w->slot || !w->slot_block || !w->near || !w->near_reach_m || !w->near_step) return STATUS_NO_MEMORY;
     return v->keeper ? sky_notes_create(&w->notes, v->keeper, arena) : STATUS_OK;
 }
@@ -149,7 +150,7 @@ static const SkySlot *slot_of(SkyWorker *w, const SkyVisibility *v, uint64_t key
         if (w->slot_block[k] == w->block && s->key == key) return s;
         if (w->slot_block[k] == w->block) continue;
         w->slot_block[k] = w->block;
-        s->key   = key;
+        s->key = key;
         s->known = find_cached(&s->place, v, key);
         if (!s->known) w->queue[w->queued++] = (int)k;
         return s;
@@ -161,7 +162,7 @@ static const SkySlot *slot_of(SkyWorker *w, const SkyVisibility *v, uint64_t key
 static void place_ground(Hits *to, int i, const SkyVisibility *v, uint64_t key)
 {
     double n_enu[3];
-    to->entity[i]  = 0;
+    to->entity[i] = 0;
     to->p_enu[0][i] = lattice_m(key >> 31);
     to->p_enu[1][i] = lattice_m(key);
     to->p_enu[2][i] = elevation_height(&v->scene.landscape->elevation, to->p_enu[0][i], to->p_enu[1][i], n_enu);
@@ -174,8 +175,8 @@ void sky_answer(SkyAnswer *out, const SkyVisibility *v, const double n_enu[3], c
     for (int b = 0; b < AIR_BAND_COUNT; b++) {
         out->factor[b] = 1;
         if (!(v->scene.air_bands >> b & 1)) continue;
-        const double open_w_m2 = daylight_on_plane(&v->scene.gather.air->light, (AirBand)b, n_enu) +
-                                 v->level_w_m2[b] * 0.5 * (1 - n_enu[2]);
+        const double open_w_m2 =
+            daylight_on_plane(&v->scene.gather.air->light, (AirBand)b, n_enu) + v->level_w_m2[b] * 0.5 * (1 - n_enu[2]);
         if (open_w_m2 > 0) out->factor[b] = (float)clamp(1 + (double)change->w_m2[b] / open_w_m2, 0, 100);
     }
 }
@@ -208,7 +209,7 @@ static bool places_differ(const SkySlot *const s[4])
     for (int k = 0; k < 4; k++) {
         const float share[3] = {s[k]->place.blocked, s[k]->place.sunlit, s[k]->place.inside > 0.5f};
         for (int c = 0; c < 3; c++) {
-            low[c]  = fminf(low[c], share[c]);
+            low[c] = fminf(low[c], share[c]);
             high[c] = fmaxf(high[c], share[c]);
         }
     }
@@ -264,10 +265,14 @@ static void mix(SkyOpen *out, int i, const SkyVisibility *v, const SkyHit *h, co
 /* True: done. All hits in one of the finest cells that start alike end alike: the last such is cached. */
 static bool settle(SkyOpen *out, int i, const SkyVisibility *v, SkyWorker *w, const Hits *hits)
 {
-    SkyHit       *h = &w->hit[i];
-    const double  per_m = v->cells_per_m[h->last_step + lattice_steps];
-    const SkyEnd  like = {.column = floor(hits->p_enu[0][i] * per_m), .row = floor(hits->p_enu[1][i] * per_m),
-                          .block = w->block, .from = h->step, .last = h->last_step, .force = h->force};
+    SkyHit      *h = &w->hit[i];
+    const double per_m = v->cells_per_m[h->last_step + lattice_steps];
+    const SkyEnd like = {.column = floor(hits->p_enu[0][i] * per_m),
+                         .row = floor(hits->p_enu[1][i] * per_m),
+                         .block = w->block,
+                         .from = h->step,
+                         .last = h->last_step,
+                         .force = h->force};
     if (like.block == w->end.block && like.column == w->end.column && like.row == w->end.row &&
         like.from == w->end.from && like.last == w->end.last && like.force == w->end.force)
         h->step = w->end.step, h->force = false;
@@ -315,7 +320,7 @@ static void find_ground(SkyHit *h, const SkyVisibility *v, const SkyWorker *w, c
         if (!(weight > 0)) continue;
         h->weight = fmaxf(h->weight, (float)weight);
         if (w->near_step[k] < h->step) h->step = w->near_step[k];
-        body_m    = fmin(body_m, distance_m);
+        body_m = fmin(body_m, distance_m);
     }
     if (!(h->weight > 0)) return;
     int          shown; /* log2 of the picture's resolution there, rounded */
@@ -352,7 +357,7 @@ int sky_list_near(SkyWorker *w, const SkyVisibility *v, double box[2][3], double
         }
         if (!(square < far_m * far_m)) continue;
         w->near_reach_m[count] = reach_m;
-        w->near_step[count]    = first_step_of(reach_m);
+        w->near_step[count] = first_step_of(reach_m);
         w->near[count++] = k;
     }
     return count;

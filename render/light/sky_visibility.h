@@ -17,11 +17,11 @@
  * the meetings are kept, not the light, and a frame has the same bits whether they were kept or traced, whatever came
  * before it (tests/sensor/test_sky_kept.c).
  *
- * A point is known by its place, its normal and the key of its random directions. Beside its meetings the box of all its
- * rays is kept, and a hash of 64 bits of the poses, to the bit, of every entity near that box: an entity that moves,
- * turns a joint, loses a part, appears, goes or changes its place in the snapshot changes it, and the point is traced
- * again. Rays towards the sun follow it and are never kept. Points are kept only where all that is near has stood
- * since the frame before: what moves costs nothing to remember.
+ * A point is known by its place, its normal and the key of its random directions. Beside its meetings the box of all
+ * its rays is kept, and a hash of 64 bits of the poses, to the bit, of every entity near that box: an entity that
+ * moves, turns a joint, loses a part, appears, goes or changes its place in the snapshot changes it, and the point is
+ * traced again. Rays towards the sun follow it and are never kept. Points are kept only where all that is near has
+ * stood since the frame before: what moves costs nothing to remember.
  *
  * One frame at a time uses the store, others go without. Its memory is bounded: when it is full, what the frame did not
  * use goes, and if that is not enough nothing is added. */
@@ -36,7 +36,7 @@ enum { sky_kept_octets = 32 << 20 }; /* some 60,000 points */
 Status sky_kept_create(SkyKept **out, size_t octets);
 void   sky_kept_destroy(SkyKept *kept); /* accepts NULL */
 /* What is kept: points, and octets. */
-void   sky_kept_size(size_t out[2], SkyKept *kept);
+void sky_kept_size(size_t out[2], SkyKept *kept);
 
 /* *out NULL: kept is NULL, or another frame uses it. world: a hash of what else the meetings depend on. visibility and
  * arena must outlive the frame. */
@@ -56,10 +56,12 @@ typedef struct SkyMet {
     uint8_t  sample, bounce;
 } SkyMet;
 
-/* All that the paths of a point met, path by path, each from its first bounce; after the last one of bounce sky_met_end. */
+/* All that the paths of a point met, path by path, each from its first bounce; after the last one of bounce
+ * sky_met_end. */
 enum { sky_met_end = 255 };
 /* Of every hit; NULL: not kept, or no longer true. */
-void sky_notes_find(const SkyMet *known[hits_capacity], SkyNotes *notes, const Hits *hits, const uint64_t *key, int samples);
+void sky_notes_find(const SkyMet *known[hits_capacity], SkyNotes *notes, const Hits *hits, const uint64_t *key,
+                    int samples);
 void sky_met_load(Hits *hits, Rays *rays, int i, const SkyMet *met);
 
 /* Of points that are traced now, 0 .. points - 1. Rays: all but those towards the sun, whether they are traced or
@@ -100,24 +102,24 @@ typedef struct SkyVisibility SkyVisibility; /* of a frame; shared by its threads
 typedef struct SkyWorker     SkyWorker;     /* of a thread */
 
 typedef struct SkyVisibilityScene {
-    HemisphereScene      gather;
-    const Landscape *landscape;   /* NULL: no ground */
+    HemisphereScene  gather;
+    const Landscape *landscape; /* NULL: no ground */
     const View      *view;
-    const double   (*box_px)[4];  /* [entities]: on the image, as TargetPixels.projected_box; NaN: not on the image */
-    unsigned         air_bands;   /* 1 << AirBand: all that the frame may need */
-    unsigned         skips_off;
-    int              hidden_entity; /* index of the entity whose parts the eye does not see; -1: none */
-    SkyKept         *kept;        /* of earlier frames, over the same ground and materials; NULL: none */
+    const double (*box_px)[4]; /* [entities]: on the image, as TargetPixels.projected_box; NaN: not on the image */
+    unsigned air_bands;        /* 1 << AirBand: all that the frame may need */
+    unsigned skips_off;
+    int      hidden_entity; /* index of the entity whose parts the eye does not see; -1: none */
+    SkyKept *kept;          /* of earlier frames, over the same ground and materials; NULL: none */
 } SkyVisibilityScene;
 
 /* The scene's parts must outlive it. STATUS_NO_MEMORY: of the arena. */
 Status sky_visibility_create(SkyVisibility **out, const SkyVisibilityScene *scene, Arena *arena);
 Status sky_worker_create(SkyWorker **out, const SkyVisibility *v, Arena *arena);
 /* When its threads are done: what they found is kept. Accepts NULL. */
-void   sky_visibility_close(SkyVisibility *v, VisibilityCounters *counters);
+void sky_visibility_close(SkyVisibility *v, VisibilityCounters *counters);
 
-/* Evaluates the points on every entity beforehand, in so many tasks for a pool; hits ask for those of entities that they
- * show otherwise. The same bits. */
+/* Evaluates the points on every entity beforehand, in so many tasks for a pool; hits ask for those of entities that
+ * they show otherwise. The same bits. */
 int  sky_visibility_tasks(const SkyVisibility *v);
 void sky_visibility_task(const SkyVisibility *v, SkyWorker *worker, int task);
 

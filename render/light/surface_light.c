@@ -62,7 +62,9 @@ Status surface_light_prepare(SurfaceLight *out, const Air *air, const Materials 
 
 /* ---- positions in the tables ---------------------------------------------------------------- */
 
-typedef struct Three { F32x8 x, y, z; } Three;
+typedef struct Three {
+    F32x8 x, y, z;
+} Three;
 
 static inline F32x8 dot(Three a, Three b) { return f32x8_fma(a.x, b.x, f32x8_fma(a.y, b.y, a.z * b.z)); }
 static inline F32x8 zero(void) { return _mm256_setzero_ps(); }
@@ -72,7 +74,7 @@ static inline F32x8 square(F32x8 a) { return a * a; }
 /* F32x8 positions in steps of a table: lower nodes and shares of the upper ones. */
 typedef struct Steps {
     I32x8 at;
-    F32x8    share;
+    F32x8 share;
 } Steps;
 
 static inline Steps steps_of(F32x8 x, int most)
@@ -114,7 +116,7 @@ static inline void look_up(F32x8 out[8], const float *table, int row, Steps up, 
         const float *low = table + (ptrdiff_t)at[k] * surface_light_bands, *high = low + row * surface_light_bands;
         const F32x8  a = _mm256_set1_ps(v[k]);
         out[k] = f32x8_lerp(f32x8_lerp(f32x8_load(low), f32x8_load(low + 8), a),
-                           f32x8_lerp(f32x8_load(high), f32x8_load(high + 8), a), _mm256_set1_ps(u[k]));
+                            f32x8_lerp(f32x8_load(high), f32x8_load(high + 8), a), _mm256_set1_ps(u[k]));
     }
 }
 
@@ -196,7 +198,7 @@ static inline F32x8 smith(F32x8 per_slope, F32x8 cosine)
 /* material_lobe towards the sun; the tangent by a cross product, for smooth water. */
 static inline F32x8 lobe(F32x8 slope2, Three n, Three eye, Three sun, F32x8 n_eye, F32x8 n_sun)
 {
-    Three half = {eye.x + sun.x, eye.y + sun.y, eye.z + sun.z};
+    Three       half = {eye.x + sun.x, eye.y + sun.y, eye.z + sun.z};
     const F32x8 length2 = f32x8_max(dot(half, half), f32x8_set(1e-20)), n_half = dot(n, half);
     const Three cross = {n.y * half.z - n.z * half.y, n.z * half.x - n.x * half.z, n.x * half.y - n.y * half.x};
     const F32x8 tangent2 = dot(cross, cross) / f32x8_max(n_half * n_half, f32x8_set(1e-20));
@@ -226,7 +228,7 @@ static inline void material_rows(F32x8 out[8], float (*table)[surface_light_band
 
 /* The far side of leaves: what shines through them. */
 typedef struct FarSide {
-    bool  any;           /* some of the eight lets light through; else the rest is not set */
+    bool  any; /* some of the eight lets light through; else the rest is not set */
     F32x8 tau[8], plane[8], n_sun, below, leaf;
 } FarSide;
 
@@ -259,18 +261,19 @@ static void shade_eight(float *const out[AIR_BAND_COUNT], const SurfaceLight *li
 {
     const Hits *hits = b->hits;
     const Rays *rays = b->rays;
-    const Air  *air  = light->air;
+    const Air  *air = light->air;
     uint16_t    material[8] = {0};
     const int   some = hits->count - i < 8 ? hits->count - i : 8;
     memcpy(material, b->material + i, (size_t)some * sizeof *material);
     const __m128i rows = _mm_loadu_si128((const __m128i *)material);
     const bool    same = _mm_movemask_epi8(_mm_cmpeq_epi16(rows, _mm_set1_epi16((short)material[0]))) == 0xffff;
-    F32x8 rho[8], of[8], plane[8], sky[8];
+    F32x8         rho[8], of[8], plane[8], sky[8];
     material_rows(rho, light->rho, material, same);
     material_rows(of, light->gloss, material, same);
     const bool glossy = f32x8_bits(f32x8_greater(of[gloss_share], zero())) != 0;
 
-    const Three sun = {f32x8_set(air->light.sun_d_enu[0]), f32x8_set(air->light.sun_d_enu[1]), f32x8_set(air->light.sun_d_enu[2])};
+    const Three sun = {f32x8_set(air->light.sun_d_enu[0]), f32x8_set(air->light.sun_d_enu[1]),
+                       f32x8_set(air->light.sun_d_enu[2])};
     const Three n = {f32x8_load(hits->n_enu[0] + i), f32x8_load(hits->n_enu[1] + i), f32x8_load(hits->n_enu[2] + i)};
     const Three d = {f32x8_of_doubles(rays->d_enu[0] + i), f32x8_of_doubles(rays->d_enu[1] + i),
                      f32x8_of_doubles(rays->d_enu[2] + i)};
@@ -299,10 +302,9 @@ static void shade_eight(float *const out[AIR_BAND_COUNT], const SurfaceLight *li
     for (int band = 0; band < AIR_BAND_COUNT; band++) {
         if (!out[band]) continue;
         const AirPaths *veil = &b->veils[band];
-        const F32x8 level = _mm256_set1_ps(light->level_w_m2_sr[band]),
+        const F32x8     level = _mm256_set1_ps(light->level_w_m2_sr[band]),
                     sun_w_m2 = _mm256_set1_ps(light->sun_w_m2[band]);
-        F32x8 all_rho =
-            band >= AIR_MWIR ? rho[band] : f32x8_min(rho[band] * f32x8_load(b->texture[band] + i), one());
+        F32x8 all_rho = band >= AIR_MWIR ? rho[band] : f32x8_min(rho[band] * f32x8_load(b->texture[band] + i), one());
         F32x8 through = zero();
         if (far.any) { /* a bright leaf returns no more than it gets */
             through = far.tau[band];
@@ -314,9 +316,9 @@ static void shade_eight(float *const out[AIR_BAND_COUNT], const SurfaceLight *li
             }
         }
         const bool among = b->canopy && band < AIR_MWIR && !b->around_w_m2[band];
-        F32x8 around =
-            b->around_w_m2[band] ? f32x8_load(b->around_w_m2[band] + i)
-            : among ? among_plants(b->canopy, band, i, n.z, plane[band], level * below) : f32x8_fma(level, below, plane[band]);
+        F32x8      around = b->around_w_m2[band] ? f32x8_load(b->around_w_m2[band] + i)
+                            : among              ? among_plants(b->canopy, band, i, n.z, plane[band], level * below)
+                                                 : f32x8_fma(level, below, plane[band]);
         if (b->open[band]) around = around * f32x8_load(b->open[band] + i);
         F32x8 diffuse = all_rho, mirrored = zero(), mirrors = zero(), flash = zero();
         if (glossy) {
@@ -344,8 +346,8 @@ static void shade_eight(float *const out[AIR_BAND_COUNT], const SurfaceLight *li
             const PlanckTable *planck = band == AIR_MWIR ? air->light.planck_mwir : air->light.planck_lwir;
             float              emitted[8];
             planck_table_radiance8(emitted, planck, b->temp_k + i);
-            seen =
-                f32x8_fma((one() - diffuse - mirrors - through) * f32x8_load(emitted), f32x8_load(veil->transmittance + i), seen);
+            seen = f32x8_fma((one() - diffuse - mirrors - through) * f32x8_load(emitted),
+                             f32x8_load(veil->transmittance + i), seen);
         }
         f32x8_store(out[band] + i, seen);
     }

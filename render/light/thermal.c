@@ -21,37 +21,40 @@ static double part_k(const PartTemps *parts, double air_k, const Hits *hits, int
     double       p_node[3], n_node[3];
     if (!parts || !parts->snapshot->patch_k) return air_k;
     visibility_on_part(p_node, n_node, parts->visibility, hits, i, n_enu);
-    const double temp_k = patch_set_temp_k(parts->patches, parts->snapshot, (int)hits->entity[i] - 1, hits->part[i] - 1, p_node, n_node);
+    const double temp_k =
+        patch_set_temp_k(parts->patches, parts->snapshot, (int)hits->entity[i] - 1, hits->part[i] - 1, p_node, n_node);
     return isfinite(temp_k) ? temp_k : air_k;
 }
 
 /* Temperature of the air at eight hits: straight between the nodes, as air_temp_at. */
 static F32x8 air_k8(const Air *air, const Hits *hits, int first)
 {
-    const F32x8    x = f32x8_of_doubles(hits->p_enu[0] + first), y = f32x8_of_doubles(hits->p_enu[1] + first);
-    const F32x8    level = f32x8_of_doubles(hits->p_enu[2] + first) - f32x8_set(air->light.zero_z_m);
-    const F32x8    height_m = f32x8_fma(f32x8_fma(x, x, y * y), f32x8_set(1 / (2 * 6371e3)), level);
-    const F32x8    at = f32x8_clamp(height_m * f32x8_set(1 / air_warmer_step_m), air_warmer_low, air_warmer_nodes - 1);
+    const F32x8 x = f32x8_of_doubles(hits->p_enu[0] + first), y = f32x8_of_doubles(hits->p_enu[1] + first);
+    const F32x8 level = f32x8_of_doubles(hits->p_enu[2] + first) - f32x8_set(air->light.zero_z_m);
+    const F32x8 height_m = f32x8_fma(f32x8_fma(x, x, y * y), f32x8_set(1 / (2 * 6371e3)), level);
+    const F32x8 at = f32x8_clamp(height_m * f32x8_set(1 / air_warmer_step_m), air_warmer_low, air_warmer_nodes - 1);
     const I32x8 node = i32x8_truncate(f32x8_clamp(at, 0, air_warmer_nodes - 2));
-    const F32x8    low = f32x8_gather(air->light.warmer_k, node), high = f32x8_gather(air->light.warmer_k + 1, node);
+    const F32x8 low = f32x8_gather(air->light.warmer_k, node), high = f32x8_gather(air->light.warmer_k + 1, node);
     return f32x8_lerp(low, high, at - f32x8_of_ints(node)) + f32x8_set(air->light.weather.air_temp_k);
 }
 
 /* Leaves by the sun of now, wood by that of the day (air->heat; NULL: as the air). */
-static double plant_k(const Air *air, const Material *m, int material, double air_k, const Hits *hits, int i, const float *sun)
+static double plant_k(const Air *air, const Material *m, int material, double air_k, const Hits *hits, int i,
+                      const float *sun)
 {
     const double n[3] = {(double)hits->n_enu[0][i], (double)hits->n_enu[1][i], (double)hits->n_enu[2][i]};
     const double open = (double)hits->open_up[i];
     if (material_is_leaf(m)) return thermal_leaf_k(&air->light, m, air_k, open, sun ? (double)sun[i] : open);
     if (!air->heat || air->heat->now->branches == 0) return air_k;
-    return heat_branch_k(air->heat->now, material, (double)hits->radius_m[i], n, open) + air_k - air->light.weather.air_temp_k;
+    return heat_branch_k(air->heat->now, material, (double)hits->radius_m[i], n, open) + air_k -
+           air->light.weather.air_temp_k;
 }
 
 /* Ground at the listed hits, of which temp_k holds that of the air; with the class's noise in kelvins
- * (etc/ground_detail.csv), twice that of the night where the sun has lifted it by 16 K, an estimate. The noise stands for
- * what differs within a class: moisture, cover, reflectance. Darkness is therefore taken from the photograph alone, which
- * shows what the noise does not contain: half of its relative brightness becomes relative absorptance (a guess), within
- * 0.6 .. 1.4. Snow is no warmer than it melts, the sea no colder than it freezes. */
+ * (etc/ground_detail.csv), twice that of the night where the sun has lifted it by 16 K, an estimate. The noise stands
+ * for what differs within a class: moisture, cover, reflectance. Darkness is therefore taken from the photograph alone,
+ * which shows what the noise does not contain: half of its relative brightness becomes relative absorptance (a guess),
+ * within 0.6 .. 1.4. Snow is no warmer than it melts, the sea no colder than it freezes. */
 static void grounds_k(float *temp_k, const Air *air, const Hits *hits, const int *list, int count, const float *photo,
                       const float *warmth_k)
 {
@@ -79,8 +82,8 @@ static void grounds_k(float *temp_k, const Air *air, const Hits *hits, const int
 }
 
 void thermal_temperature(float *temp_k, const Air *air, const Materials *materials, const PartTemps *parts,
-                         const Hits *hits, const uint16_t *material, const float *sun,
-                         const float *photo, const float *warmth_k)
+                         const Hits *hits, const uint16_t *material, const float *sun, const float *photo,
+                         const float *warmth_k)
 {
     int ground[hits_capacity], grounds = 0;
     for (int first = 0; first < hits->count; first += 8) {
@@ -113,8 +116,9 @@ void thermal_temperature(float *temp_k, const Air *air, const Materials *materia
 float thermal_beyond(Band band, const Air *air, const double d_enu[3], const AirPaths *v, int i)
 {
     const AirBand air_band = band == BAND_MWIR ? AIR_MWIR : AIR_LWIR;
-    double seen = air->light.ground_w_m2_sr[air_band] * v->air_transmittance[i] + v->added_w_m2_sr[i];
-    if (band == BAND_MWIR && !(v->range_m[i] < INFINITY)) seen += air->sun_eye_w_m2[AIR_MWIR] * daylight_sun_disc(&air->light, d_enu);
+    double        seen = air->light.ground_w_m2_sr[air_band] * v->air_transmittance[i] + v->added_w_m2_sr[i];
+    if (band == BAND_MWIR && !(v->range_m[i] < INFINITY))
+        seen += air->sun_eye_w_m2[AIR_MWIR] * daylight_sun_disc(&air->light, d_enu);
     return (float)seen;
 }
 
@@ -122,16 +126,16 @@ void thermal_shade(float *out, Band band, const Air *air, const Materials *mater
                    const Rays *rays, const uint16_t *material, const float *temp_k, const float *sun,
                    const float *around_w_m2, const AirPaths *veils, const Facing *facing)
 {
-    const bool mwir = band == BAND_MWIR;
-    const AirBand air_band = mwir ? AIR_MWIR : AIR_LWIR;
+    const bool         mwir = band == BAND_MWIR;
+    const AirBand      air_band = mwir ? AIR_MWIR : AIR_LWIR;
     const PlanckTable *planck = mwir ? air->light.planck_mwir : air->light.planck_lwir;
-    const double ground_w_m2_sr = air->light.ground_w_m2_sr[air_band];
+    const double       ground_w_m2_sr = air->light.ground_w_m2_sr[air_band];
     /* the sun's share of 8-12 um is below a thousandth of what the scene emits, and left out */
     const double sun_w_m2 = mwir ? air->light.sun_w_m2[AIR_MWIR] : 0;
-    AirPaths own;
+    AirPaths     own;
     if (!veils) air_path(&own, air, air_band, hits, rays, temp_k);
     const AirPaths *v = veils ? veils : &own;
-    Facing found;
+    Facing          found;
     if (!facing) {
         daylight_facing(&found, &air->light, materials, hits, rays, material);
         facing = &found;
@@ -144,9 +148,9 @@ void thermal_shade(float *out, Band band, const Air *air, const Materials *mater
             continue;
         }
         const Material *m = &materials->material[material[i]];
-        const double n_enu[3] = {hits->n_enu[0][i], hits->n_enu[1][i], hits->n_enu[2][i]};
-        const double n_eye = fmax(-v3_dot(n_enu, d_enu), 0);
-        double diffuse, lobe_rho;
+        const double    n_enu[3] = {hits->n_enu[0][i], hits->n_enu[1][i], hits->n_enu[2][i]};
+        const double    n_eye = fmax(-v3_dot(n_enu, d_enu), 0);
+        double          diffuse, lobe_rho;
         material_split(&diffuse, &lobe_rho, mwir ? m->rho_mwir : m->rho_lwir, m->gloss, m->roughness, n_eye);
 
         /* Kirchhoff, at this angle: emissivity = 1 - reflectance */
@@ -156,7 +160,7 @@ void thermal_shade(float *out, Band band, const Air *air, const Materials *mater
         const double around = around_w_m2 ? around_w_m2[i] / pi_rad
                                           : daylight_plane_there(&air->light, air_band, &facing->plane[i]) / pi_rad +
                                                 ground_w_m2_sr * 0.5 * (1 - n_enu[2]);
-        double reflected = diffuse * around;
+        double       reflected = diffuse * around;
         if (tau > 0 && !around_w_m2)
             reflected += tau / pi_rad * daylight_far_side(&air->light, air_band, n_enu, ground_w_m2_sr * pi_rad);
         if (lobe_rho > 0) {
@@ -166,7 +170,7 @@ void thermal_shade(float *out, Band band, const Air *air, const Materials *mater
             const double sky = daylight_sky_there(&air->light.sky[air_band], &facing->mirror[i]);
             reflected += lobe_rho * (sees_sky * sky + (1 - sees_sky) * ground_w_m2_sr);
         }
-        double sunlit = 0;
+        double       sunlit = 0;
         const double lit = sun ? (double)sun[i] : 1;
         if (sun_w_m2 > 0 && lit > 0) {
             const double n_sun = v3_dot(n_enu, air->light.sun_d_enu);
@@ -206,7 +210,7 @@ static inline double emission_w_m2_k(double emissivity, double temp_k)
 
 static const double heat_j_mol_k = 29.3, vapour_j_mol = 44000; /* of air; of water's evaporation */
 static const double pressure_pa = 101325;
-static const double leaf_m = 0.05, least_wind_mps = 0.3;       /* free convection takes over below */
+static const double leaf_m = 0.05, least_wind_mps = 0.3; /* free convection takes over below */
 
 /* Saturation over water, Pa, and its slope, Pa/K: Tetens, as in Campbell & Norman (1998), eq. 3.8. */
 static double vapour_pa(double *slope, double temp_k)
@@ -220,7 +224,8 @@ double thermal_leaf_k(const Daylight *light, const Material *m, double air_temp_
 {
     const double wind_mps = fmax(light->weather.wind_mps, least_wind_mps);
     const double layer = 1.4 * 0.135 * sqrt(wind_mps / (0.72 * leaf_m)); /* mol/(m2 s), one side */
-    const double sun_w_m2 = lit * 0.5 * light->solar_direct_w_m2 * (light->sun_d_enu[2] > 0) + open * light->solar_diffuse_w_m2;
+    const double sun_w_m2 =
+        lit * 0.5 * light->solar_direct_w_m2 * (light->sun_d_enu[2] > 0) + open * light->solar_diffuse_w_m2;
     const double humidity = light->weather.humidity;
     const double stomata = 0.2 * (0.05 + 0.95 * fmin(sun_w_m2 / 250, 1)); /* full by half of full sunlight */
     const double vapour = 1 / (1 / stomata + 1 / (1.09 * layer));

@@ -17,10 +17,10 @@ typedef struct PartTemps {
     const Visibility *visibility; /* of the same snapshot: poses */
 } PartTemps;
 
-/* Temperature of each hit, K: parts from the patches of the snapshot (parts; NULL: as warm as the air), ground by what the hours
- * before left in it (air->heat; NULL: that of the air), noise (warmth_k) and photograph (its brightness over the class's;
- * 1: none), leaves by the sun that reaches them now (sun: share, 0 .. 1; NULL: as open as their crown), all over the air of
- * their own height; snow no warmer than 273.15 K, water no colder than 271.35 K. Sky: NaN. */
+/* Temperature of each hit, K: parts from the patches of the snapshot (parts; NULL: as warm as the air), ground by what
+ * the hours before left in it (air->heat; NULL: that of the air), noise (warmth_k) and photograph (its brightness over
+ * the class's; 1: none), leaves by the sun that reaches them now (sun: share, 0 .. 1; NULL: as open as their crown),
+ * all over the air of their own height; snow no warmer than 273.15 K, water no colder than 271.35 K. Sky: NaN. */
 void thermal_temperature(float *temp_k, const Air *air, const Materials *materials, const PartTemps *parts,
                          const Hits *hits, const uint16_t *material, const float *sun, const float *photo,
                          const float *warmth_k);
@@ -38,14 +38,15 @@ float thermal_beyond(Band band, const Air *air, const double d_enu[3], const Air
 /* ---- leaves ---------------------------------------------------------------------------------- */
 
 /* A leaf: the steady balance of what it absorbs of sun and sky with what it radiates, gives to the air and transpires;
- * leaves follow within a minute. open: share of the sky that its place in the crown receives, lit: of the direct sun, 0 ..
- * 1: by the ray that the picture's light uses too. Leaves of a place have every tilt: half of the direct sun on average. Its
- * two sides together face all of the sky, whatever its tilt.
+ * leaves follow within a minute. open: share of the sky that its place in the crown receives, lit: of the direct sun, 0
+ * .. 1: by the ray that the picture's light uses too. Leaves of a place have every tilt: half of the direct sun on
+ * average. Its two sides together face all of the sky, whatever its tilt.
  *
  *   boundary layer  0.135 sqrt(wind / d) mol/(m2 s) each side, d = 0.72 of a leaf 5 cm wide, 1.4 in turbulent wind
  *   stomata         0.2 mol/(m2 s) in full sun, a twentieth in the dark: broad leaves well supplied with water
- * Source: Campbell & Norman, An Introduction to Environmental Biophysics (1998), chapters 7 and 14. Linear about the air's
- * temperature: within 0.1 K of the full balance, for leaves 2 K below to 5 K above the air (test_plant_heat.c). */
+ * Source: Campbell & Norman, An Introduction to Environmental Biophysics (1998), chapters 7 and 14. Linear about the
+ * air's temperature: within 0.1 K of the full balance, for leaves 2 K below to 5 K above the air (test_plant_heat.c).
+ */
 double thermal_leaf_k(const Daylight *light, const Material *m, double air_temp_k, double open, double lit);
 
 #endif

@@ -72,13 +72,14 @@ static Status read_tau(Material *material, const Table *table, int row)
         const Status got = table_number(&value, table, row, column, 0, 1);
         if (got != STATUS_OK) return got;
         if (value + (double)*rho > 1) {
-            log_error("materials: reflectance and transmittance exceed 1 together: file=%s line=%d column=%s", table->path,
-                      table->line[row + 1], wanted);
+            log_error("materials: reflectance and transmittance exceed 1 together: file=%s line=%d column=%s",
+                      table->path, table->line[row + 1], wanted);
             return STATUS_BAD_VALUE;
         }
         if (value > 0 && (!(*rho > 0) || material->gloss > 0)) {
             log_error("materials: what lets light through reflects some as well, and has no gloss: file=%s line=%d "
-                      "column=%s", table->path, table->line[row + 1], wanted);
+                      "column=%s",
+                      table->path, table->line[row + 1], wanted);
             return STATUS_BAD_VALUE;
         }
         *(float *)((char *)material + tau_columns[i].offset) = (float)value;
@@ -100,20 +101,19 @@ static bool name_repeated(const Table *table, int row, int column)
 /* Appends the rows of one file to those present. */
 static Status read_rows(Materials *m, const char *path, RowsOf of)
 {
-    Table table = {0};
+    Table     table = {0};
     const int before = m->count;
-    Status status = channels_load();
+    Status    status = channels_load();
     if (status == STATUS_OK) status = table_open(&table, path);
     if (status != STATUS_OK) return status;
 
     status = STATUS_BAD_VALUE;
     const int name_column = table_column(&table, "name");
-    int column[number_column_count];
+    int       column[number_column_count];
     for (int i = -1; i < number_column_count; i++) {
         char wanted[32] = "name";
         if (i >= 0 && number_columns[i].name) snprintf(wanted, sizeof wanted, "%s", number_columns[i].name);
-        else if (i >= 0)
-            snprintf(wanted, sizeof wanted, "rho_%s", channel_in(number_columns[i].place)->name);
+        else if (i >= 0) snprintf(wanted, sizeof wanted, "rho_%s", channel_in(number_columns[i].place)->name);
         if (i >= 0) column[i] = table_column(&table, wanted);
         if ((i < 0 ? name_column : column[i]) >= 0) continue;
         log_error("materials: column missing: file=%s line=%d column=%s", path, table.line[0], wanted);
@@ -133,9 +133,9 @@ static Status read_rows(Materials *m, const char *path, RowsOf of)
     }
     m->material = larger;
     for (int row = 0; row < table.rows; row++) {
-        const char *name = table_text(&table, row, name_column);
+        const char  *name = table_text(&table, row, name_column);
         const size_t length = strlen(name);
-        const int same = materials_find(m, name);
+        const int    same = materials_find(m, name);
         if (length == 0 || length >= sizeof m->material->name || same == 0 || name_repeated(&table, row, name_column)) {
             log_error("materials: name empty, repeated or longer than %zu: file=%s line=%d name=%s",
                       sizeof m->material->name - 1, path, table.line[row + 1], name);
@@ -144,7 +144,7 @@ static Status read_rows(Materials *m, const char *path, RowsOf of)
         Material material = {0};
         memcpy(material.name, name, length + 1);
         for (int i = 0; i < number_column_count; i++) {
-            double value;
+            double       value;
             const Status got =
                 table_number(&value, &table, row, column[i], number_columns[i].low, number_columns[i].high);
             if (got != STATUS_OK) goto done;
@@ -165,12 +165,12 @@ done:
 static Status read_materials(Materials *m, const char *path)
 {
     const char *own = etc_own("materials.csv");
-    Status status = STATUS_OK;
+    Status      status = STATUS_OK;
     m->material = calloc(1, sizeof *m->material);
     if (!m->material) return STATUS_NO_MEMORY;
     /* row 0: absorbs everything, reflects nothing; its heat is that of dry sand */
-    m->material[0] = (Material){.name = "none", .conductivity_w_mk = 0.24f, .density_kg_m3 = 1600,
-                                .heat_capacity_j_kgk = 800};
+    m->material[0] =
+        (Material){.name = "none", .conductivity_w_mk = 0.24f, .density_kg_m3 = 1600, .heat_capacity_j_kgk = 800};
     m->count = 1;
     status = read_rows(m, path, ROWS_PROGRAM);
     m->own_first = m->count;
@@ -203,12 +203,12 @@ static Status check_materials_used(const bool seen[SURFACE_COUNT], const char *p
 
 static Status read_surfaces(Materials *m, const char *path)
 {
-    Table table = {0};
+    Table  table = {0};
     Status status = table_open(&table, path);
     if (status != STATUS_OK) return status;
 
     status = STATUS_BAD_VALUE;
-    bool seen[SURFACE_COUNT] = {0};
+    bool      seen[SURFACE_COUNT] = {0};
     const int surface_column = table_column(&table, "surface"), material_column = table_column(&table, "material");
     if (surface_column < 0 || material_column < 0) {
         log_error("materials: column missing: file=%s column=%s", path, surface_column < 0 ? "surface" : "material");
@@ -231,11 +231,12 @@ static Status read_surfaces(Materials *m, const char *path)
     status = check_materials_used(seen, path);
     if (status != STATUS_OK) goto done;
 
-    int land = 0;
+    int    land = 0;
     double sum[optical_channel_count] = {0};
     for (int s = SURFACE_NONE + 1; s < SURFACE_COUNT; s++) {
-        if (s >= SURFACE_WATER) continue; /* the common land: neither water nor the classes that only cover files
-                                           * contain */
+        if (s >= SURFACE_WATER)
+            continue; /* the common land: neither water nor the classes that only cover files
+                       * contain */
         for (int c = 0; c < optical_channel_count; c++) sum[c] += m->material[m->surface[s]].rho[c];
         land++;
     }
@@ -245,33 +246,34 @@ done:
     return status;
 }
 
-static Status find_part_material(int *out, const Materials *m, const Model *model, int part, const char *name, const char *path)
+static Status find_part_material(int *out, const Materials *m, const Model *model, int part, const char *name,
+                                 const char *path)
 {
     *out = materials_find(m, name);
     if (*out >= 0) return STATUS_OK;
-    log_error("materials: a part's material is not in the table: file=%s model=%s part=%s material=%s", path, model->name,
-              model->part[part].name, name);
+    log_error("materials: a part's material is not in the table: file=%s model=%s part=%s material=%s", path,
+              model->name, model->part[part].name, name);
     return STATUS_BAD_VALUE;
 }
 
 static Status resolve_parts(Materials *m, const Catalog *catalog, const char *path)
 {
     const int model_count = catalog_model_count(catalog), burnt = materials_find(m, "burnt");
-    m->part    = calloc((size_t)model_count + 1, sizeof *m->part);
+    m->part = calloc((size_t)model_count + 1, sizeof *m->part);
     m->damaged = calloc((size_t)model_count + 1, sizeof *m->damaged);
-    m->parts   = calloc((size_t)model_count + 1, sizeof *m->parts);
+    m->parts = calloc((size_t)model_count + 1, sizeof *m->parts);
     if (!m->part || !m->damaged || !m->parts) return STATUS_NO_MEMORY;
     m->model_count = model_count;
     for (int i = 0; i < model_count; i++) {
         const Model *model = catalog_model(catalog, i);
-        m->part[i]    = calloc((size_t)model->part_count + 1, sizeof **m->part);
+        m->part[i] = calloc((size_t)model->part_count + 1, sizeof **m->part);
         m->damaged[i] = calloc((size_t)model->part_count + 1, model_damage_states * sizeof **m->damaged);
         if (!m->part[i] || !m->damaged[i]) return STATUS_NO_MEMORY;
         m->parts[i] = model->part_count;
         for (int p = 0; p < model->part_count; p++) {
             Status status = find_part_material(&m->part[i][p], m, model, p, model->part[p].material, path);
             for (int state = 0; state < model_damage_states && status == STATUS_OK; state++) {
-                int        *row  = &m->damaged[i][p * model_damage_states + state];
+                int        *row = &m->damaged[i][p * model_damage_states + state];
                 const char *name = model->part[p].damage_material[state];
                 *row = state == model_damage_states - 1 && burnt >= 0 ? burnt : m->part[i][p];
                 if (state > 0 && *name) status = find_part_material(row, m, model, p, name, path);
@@ -285,7 +287,7 @@ static Status resolve_parts(Materials *m, const Catalog *catalog, const char *pa
 Status materials_open(Materials *out, const char *path, const char *surfaces_path, const Catalog *catalog)
 {
     Materials m = {0};
-    Status status = read_materials(&m, path);
+    Status    status = read_materials(&m, path);
     if (status == STATUS_OK) status = read_surfaces(&m, surfaces_path);
     if (status == STATUS_OK && catalog) status = resolve_parts(&m, catalog, path);
     if (status != STATUS_OK) {
@@ -384,13 +386,14 @@ static Status put_own_behind(Materials *m, const Material *own, int own_count, i
 static Status read_plants(Materials *m, const char *path)
 {
     const int first = m->own_first, own_count = m->count - first;
-    Material *own   = malloc(((size_t)own_count + 1) * sizeof *own);
+    Material *own = malloc(((size_t)own_count + 1) * sizeof *own);
     if (!own) return STATUS_NO_MEMORY;
     memcpy(own, m->material + first, (size_t)own_count * sizeof *own);
-    m->count      = first;
+    m->count = first;
     Status status = read_rows(m, path, ROWS_PLANTS);
     if (status == STATUS_OK && m->count > materials_limit - own_count) {
-        log_error("materials: too many rows: file=%s rows=%d limit=%d", path, m->count + own_count, (int)materials_limit);
+        log_error("materials: too many rows: file=%s rows=%d limit=%d", path, m->count + own_count,
+                  (int)materials_limit);
         status = STATUS_BAD_VALUE;
     }
     if (status == STATUS_OK) status = put_own_behind(m, own, own_count, first);

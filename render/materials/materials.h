@@ -11,21 +11,25 @@
 
 /* Reflective channels by place (pitviper_channels.h). */
 enum {
-    optical_channel_b = SPECTRAL_B, optical_channel_g = SPECTRAL_G, optical_channel_r = SPECTRAL_R,
-    optical_channel_pan = SPECTRAL_PAN, optical_channel_nir = SPECTRAL_NIR, optical_channel_count
+    optical_channel_b = SPECTRAL_B,
+    optical_channel_g = SPECTRAL_G,
+    optical_channel_r = SPECTRAL_R,
+    optical_channel_pan = SPECTRAL_PAN,
+    optical_channel_nir = SPECTRAL_NIR,
+    optical_channel_count
 };
 
 typedef struct Material {
     char  name[32];
     float rho[optical_channel_count];
     float rho_mwir, rho_lwir;
-    float tau[optical_channel_count];  /* transmittance, hemispherical: of leaves (etc/plant_optics.csv), else 0 */
+    float tau[optical_channel_count]; /* transmittance, hemispherical: of leaves (etc/plant_optics.csv), else 0 */
     float tau_mwir, tau_lwir;
     float solar_absorptance;
-    float gloss;                      /* share of the reflectance that is a lobe, 0 .. 1; 1: bare metal, glass */
-    float roughness;                  /* width of that lobe, rad rms slope */
-    float metal;                      /* 1: mirrors radar; 0: does not */
-    float radar_gamma;                /* diffuse backscatter, sigma0 = gamma sin(grazing), relative */
+    float gloss;       /* share of the reflectance that is a lobe, 0 .. 1; 1: bare metal, glass */
+    float roughness;   /* width of that lobe, rad rms slope */
+    float metal;       /* 1: mirrors radar; 0: does not */
+    float radar_gamma; /* diffuse backscatter, sigma0 = gamma sin(grazing), relative */
     float conductivity_w_mk, density_kg_m3, heat_capacity_j_kgk; /* of the layer below the surface */
 } Material;
 
@@ -33,24 +37,24 @@ typedef struct Material {
  * a name that the program has stands at that row's place. */
 typedef struct Materials {
     int       count;
-    Material *material;              /* [0] is "none", black */
-    int       more;                  /* rows behind count that no class or part has: canopies (render/light/far_woods.h) */
-    int       own_first;             /* the first with a new name of the user's; count: there is none */
-    int       surface[SURFACE_COUNT];/* material of each surface class */
+    Material *material;  /* [0] is "none", black */
+    int       more;      /* rows behind count that no class or part has: canopies (render/light/far_woods.h) */
+    int       own_first; /* the first with a new name of the user's; count: there is none */
+    int       surface[SURFACE_COUNT];           /* material of each surface class */
     int       plant[PLANT_KINDS][PLANT_ORGANS]; /* rows of etc/plant_optics.csv; 0: the kind has no such organ */
-    int     **part;                  /* [model][part] */
-    int     **damaged;               /* [model][part * model_damage_states + damage]; NULL: as undamaged. The
-                                      * model's own entry, else `burnt` for destroyed, where there is such a row */
-    int       model_count;
-    int      *parts;                 /* [model] parts of it */
-    float     ground_rho[optical_channel_count]; /* mean of the land classes: what lights things from below */
+    int     **part;                             /* [model][part] */
+    int     **damaged;                          /* [model][part * model_damage_states + damage]; NULL: as undamaged. The
+                                                 * model's own entry, else `burnt` for destroyed, where there is such a row */
+    int   model_count;
+    int  *parts;                             /* [model] parts of it */
+    float ground_rho[optical_channel_count]; /* mean of the land classes: what lights things from below */
 } Materials;
 
 /* surfaces_path: CSV surface, material. Every material a model or surface names must exist: otherwise a
  * logged error and STATUS_BAD_VALUE. catalog may be NULL (no models). */
 Status materials_open(Materials *out, const char *path, const char *surfaces_path, const Catalog *catalog);
-/* Adds the rows of plants (etc/plant_optics.csv) before the user's new ones, and fills in plant[][]; ground_path (etc/woods.csv): the material of
- * the ground beneath them replaces that of its class. Once; failures are logged. */
+/* Adds the rows of plants (etc/plant_optics.csv) before the user's new ones, and fills in plant[][]; ground_path
+ * (etc/woods.csv): the material of the ground beneath them replaces that of its class. Once; failures are logged. */
 Status materials_add_plants(Materials *m, const char *path, const char *ground_path);
 void   materials_close(Materials *materials);
 int    materials_find(const Materials *materials, const char *name); /* -1: none */

@@ -31,11 +31,12 @@ double material_fresnel(double gloss_rho, double roughness_rad, double cosine)
 {
     if (!(gloss_rho > 0)) return 0;
     if (gloss_rho >= 1) return 1;
-    const double cover = fmin(gloss_rho / 0.02, 1), normal = fmax(gloss_rho, 0.02), c = clamp(cosine, 0, 1);
-    const double metal = clamp((normal - 0.2) / 0.1, 0, 1);
+    const double        cover = fmin(gloss_rho / 0.02, 1), normal = fmax(gloss_rho, 0.02), c = clamp(cosine, 0, 1);
+    const double        metal = clamp((normal - 0.2) / 0.1, 0, 1);
     static const double water_index2 = 1.7673876858061457; /* of 0.02, below which most ground is */
-    double reflected = 0;
-    if (metal < 1) reflected += (1 - metal) * fresnel_dielectric(gloss_rho > 0.02 ? index_squared(normal) : water_index2, c);
+    double              reflected = 0;
+    if (metal < 1)
+        reflected += (1 - metal) * fresnel_dielectric(gloss_rho > 0.02 ? index_squared(normal) : water_index2, c);
     if (metal > 0) reflected += metal * fresnel_schlick(normal, c);
     const double smooth = 1 - fmin(roughness_rad, 1);
     return gloss_rho + cover * smooth * smooth * (reflected - normal);
@@ -44,7 +45,7 @@ double material_fresnel(double gloss_rho, double roughness_rad, double cosine)
 void material_split(double *diffuse, double *lobe, double rho, double gloss, double roughness_rad, double cosine)
 {
     const double gloss_rho = rho * gloss;
-    *lobe    = material_fresnel(gloss_rho, roughness_rad, cosine);
+    *lobe = material_fresnel(gloss_rho, roughness_rad, cosine);
     /* the increase of the lobe at grazing angles is taken from the diffuse share */
     *diffuse = gloss_rho < 1 ? (rho - gloss_rho) * (1 - *lobe) / (1 - gloss_rho) : 0;
 }

@@ -16,7 +16,7 @@ static const double pi4_over_15 = 6.493939402266829149096;
 double planck_radiance(double wavelength_m, double temp_k)
 {
     if (!(wavelength_m > 0 && temp_k > 0)) return NAN;
-    const double x  = h_j_s * c_mps / (wavelength_m * k_j_k * temp_k);
+    const double x = h_j_s * c_mps / (wavelength_m * k_j_k * temp_k);
     const double w2 = wavelength_m * wavelength_m;
 
     /* half the exponent twice: e^x overflows at x = 710 although the quotient may still be a normal number
@@ -30,9 +30,9 @@ double planck_radiance(double wavelength_m, double temp_k)
 static double scaled_tail(double x)
 {
     const double decay = exp(-x);
-    double sum = 0, power = 1;
+    double       sum = 0, power = 1;
     for (int n = 1; n < 64; n++) {
-        const double r    = 1.0 / n;
+        const double r = 1.0 / n;
         const double term = power * r * (x * x * x + r * (3 * x * x + r * (6 * x + r * 6)));
         sum += term;
         if (term < 1e-17 * sum) break; /* at x = 1: 37 terms */
@@ -46,12 +46,19 @@ static double scaled_tail(double x)
 static double head(double x)
 {
     static const double c[] = {
-        1.0 / 60, -1.0 / 5040, 1.0 / 272160, -1.0 / 13305600, 1.0 / 622702080,
-        -691.0 / 19615115520000.0, 1.0 / 1270312243200.0, -3617.0 / 202741834014720000.0,
-        43867.0 / 107290978560589824000.0, -174611.0 / 18465726242060697600000.0,
+        1.0 / 60,
+        -1.0 / 5040,
+        1.0 / 272160,
+        -1.0 / 13305600,
+        1.0 / 622702080,
+        -691.0 / 19615115520000.0,
+        1.0 / 1270312243200.0,
+        -3617.0 / 202741834014720000.0,
+        43867.0 / 107290978560589824000.0,
+        -174611.0 / 18465726242060697600000.0,
     };
     const double x2 = x * x;
-    double sum = 0;
+    double       sum = 0;
     for (int k = (int)(sizeof c / sizeof *c) - 1; k >= 0; k--) sum = c[k] + x2 * sum;
     return x * x2 * (1.0 / 3 - x / 8 + x2 * sum);
 }
@@ -74,7 +81,7 @@ static const double gauss_weight[8] = {
 static void scaled_narrow(double *value, double *slope, double x1, double width)
 {
     const double half = 0.5 * width;
-    double v = 0, s = 0;
+    double       v = 0, s = 0;
     for (int i = 0; i < 8; i++) {
         for (int side = -1; side <= 1; side += 2) {
             const double step = half * (1 + side * gauss_node[i]);
@@ -111,11 +118,11 @@ double planck_band(double low_m, double high_m, double temp_k, double *derivativ
     } else {
         const double f1 = x1 * x1 * x1 * (x1 > 0 ? x1 / -expm1(-x1) : 1); /* e^x1 x1^4 / (e^x1 - 1) */
         const double tail1 = x1 >= 1 ? scaled_tail(x1) : (pi4_over_15 - head(x1)) * exp(x1);
-        double tail2 = 0, f2 = 0;
+        double       tail2 = 0, f2 = 0;
         if (x2 - x1 < 745) {
             const double between = exp(x1 - x2);
             tail2 = between * scaled_tail(x2);
-            f2    = between * x2 * x2 * x2 * x2 / -expm1(-x2);
+            f2 = between * x2 * x2 * x2 * x2 / -expm1(-x2);
         }
         value = tail1 - tail2;
         slope = (4 * tail1 + f1) - (4 * tail2 + f2);
@@ -137,9 +144,9 @@ double planck_band_inverse(double low_m, double high_m, double radiance_w_m2_sr)
     const double middle_m = 0.5 * (low_m + high_m), target = log(radiance_w_m2_sr);
     const double m5 = middle_m * middle_m * middle_m * middle_m * middle_m;
     const double hc_k = h_j_s * c_mps / k_j_k;
-    double u = middle_m / hc_k * log1p(2 * h_j_s * c_mps * c_mps / m5 * (high_m - low_m) / radiance_w_m2_sr);
+    double       u = middle_m / hc_k * log1p(2 * h_j_s * c_mps * c_mps / m5 * (high_m - low_m) / radiance_w_m2_sr);
     for (int i = 0; i < 100; i++) {
-        double slope;
+        double       slope;
         const double value = planck_band(low_m, high_m, 1 / u, &slope);
         if (!(value > 0 && slope > 0)) {
             u *= 0.75; /* too cold: underflow */
@@ -164,14 +171,14 @@ static const double table_low_k = 180, table_high_k = 1500;
 struct PlanckTable {
     double low_m, high_m;
     double u0, cells_per_u;
-    double knot[table_cells + 2];       /* radiance, falling: cell 0 is the hottest; and nothing below */
-    double c[table_cells][4];           /* L = c0 + t (c1 + t (c2 + t c3)), t = 0 .. 1 across the cell */
-    float  narrow[table_cells][4];      /* the same */
+    double knot[table_cells + 2];  /* radiance, falling: cell 0 is the hottest; and nothing below */
+    double c[table_cells][4];      /* L = c0 + t (c1 + t (c2 + t c3)), t = 0 .. 1 across the cell */
+    float  narrow[table_cells][4]; /* the same */
     /* start of the search for a radiance, by the leading bits of its double: nearly uniform in its logarithm, as
      * cells are */
     int      bin_shift;
     uint64_t first_bin;
-    uint16_t first_cell[table_bins];    /* none of the bin's radiances is in a hotter one */
+    uint16_t first_cell[table_bins]; /* none of the bin's radiances is in a hotter one */
 };
 
 static uint64_t bits_of(double x)
@@ -211,21 +218,21 @@ Status planck_table_create(PlanckTable **out, double low_m, double high_m)
     PlanckTable *table = calloc(1, sizeof *table);
     if (!table) return STATUS_NO_MEMORY;
 
-    table->low_m  = low_m;
+    table->low_m = low_m;
     table->high_m = high_m;
-    table->u0     = 1 / table_high_k;
+    table->u0 = 1 / table_high_k;
     const double step = (1 / table_low_k - table->u0) / table_cells;
     table->cells_per_u = 1 / step;
 
     double last_value = 0, last_slope = 0;
     for (int i = 0; i <= table_cells; i++) {
         const double u = table->u0 + i * step;
-        double slope;
+        double       slope;
         const double value = planck_band(low_m, high_m, 1 / u, &slope);
         slope *= -step / (u * u); /* per cell of u, from per kelvin */
         table->knot[i] = value;
         if (i > 0) {
-            double *c = table->c[i - 1];
+            double      *c = table->c[i - 1];
             const double rise = value - last_value;
             c[0] = last_value;
             c[1] = last_slope;
@@ -242,17 +249,14 @@ Status planck_table_create(PlanckTable **out, double low_m, double high_m)
     return STATUS_OK;
 }
 
-void planck_table_destroy(PlanckTable *table)
-{
-    free(table);
-}
+void planck_table_destroy(PlanckTable *table) { free(table); }
 
 double planck_table_radiance(const PlanckTable *table, double temp_k)
 {
     if (!(temp_k >= table_low_k && temp_k <= table_high_k))
         return planck_band(table->low_m, table->high_m, temp_k, NULL);
     const double at = (1 / temp_k - table->u0) * table->cells_per_u;
-    int cell = (int)at;
+    int          cell = (int)at;
     if (cell < 0) cell = 0; /* rounding at the hot end */
     if (cell >= table_cells) cell = table_cells - 1;
     const double t = at - cell, *c = table->c[cell];
@@ -290,12 +294,13 @@ static bool within_table(const PlanckTable *table, double radiance_w_m2_sr)
 
 double planck_table_temp(const PlanckTable *table, double radiance_w_m2_sr)
 {
-    if (!within_table(table, radiance_w_m2_sr)) return planck_band_inverse(table->low_m, table->high_m, radiance_w_m2_sr);
+    if (!within_table(table, radiance_w_m2_sr))
+        return planck_band_inverse(table->low_m, table->high_m, radiance_w_m2_sr);
     const int low = cell_of_radiance(table, radiance_w_m2_sr);
     /* the cubic bends so little within a cell that three Newton steps from the chord reach rounding */
     const double *c = table->c[low];
-    const double fall = table->knot[low] - table->knot[low + 1];
-    double t = fall > 0 ? (table->knot[low] - radiance_w_m2_sr) / fall : 0;
+    const double  fall = table->knot[low] - table->knot[low + 1];
+    double        t = fall > 0 ? (table->knot[low] - radiance_w_m2_sr) / fall : 0;
     for (int i = 0; i < 3; i++) {
         const double slope = c[1] + t * (2 * c[2] + 3 * t * c[3]);
         if (!(slope < 0)) break;
@@ -316,7 +321,7 @@ static inline __m256d four_temps(const PlanckTable *table, __m256d radiance)
         row[k] = _mm256_loadu_pd(table->c[low[k]]);
     }
     const double *knot = table->knot;
-    top  = _mm256_setr_pd(knot[low[0]], knot[low[1]], knot[low[2]], knot[low[3]]);
+    top = _mm256_setr_pd(knot[low[0]], knot[low[1]], knot[low[2]], knot[low[3]]);
     next = _mm256_setr_pd(knot[low[0] + 1], knot[low[1] + 1], knot[low[2] + 1], knot[low[3] + 1]);
     const __m256d a = _mm256_unpacklo_pd(row[0], row[1]), b = _mm256_unpackhi_pd(row[0], row[1]);
     const __m256d c = _mm256_unpacklo_pd(row[2], row[3]), d = _mm256_unpackhi_pd(row[2], row[3]);
@@ -339,10 +344,9 @@ void planck_table_temps(double *temp_k, const PlanckTable *table, const float *r
     int           i = 0;
     for (; i + 4 <= count; i += 4) {
         const __m256d radiance = _mm256_cvtps_pd(_mm_loadu_ps(radiance_w_m2_sr + i));
-        const __m256d within = _mm256_and_pd(_mm256_cmp_pd(radiance, most, _CMP_LE_OQ),
-                                             _mm256_cmp_pd(radiance, least, _CMP_GE_OQ));
-        if (_mm256_movemask_pd(within) == 0xf)
-            _mm256_storeu_pd(temp_k + i, four_temps(table, radiance));
+        const __m256d within =
+            _mm256_and_pd(_mm256_cmp_pd(radiance, most, _CMP_LE_OQ), _mm256_cmp_pd(radiance, least, _CMP_GE_OQ));
+        if (_mm256_movemask_pd(within) == 0xf) _mm256_storeu_pd(temp_k + i, four_temps(table, radiance));
         else
             for (int k = i; k < i + 4; k++) temp_k[k] = planck_table_temp(table, (double)radiance_w_m2_sr[k]);
     }

@@ -20,10 +20,10 @@ Status planck_table_create(PlanckTable **out, double low_m, double high_m);
 void   planck_table_destroy(PlanckTable *table);
 double planck_table_radiance(const PlanckTable *table, double temp_k);
 /* Eight at once, in float: within 4e-6 of the other; NaN for what is not above 0. */
-void   planck_table_radiance8(float radiance[8], const PlanckTable *table, const float temp_k[8]);
+void planck_table_radiance8(float radiance[8], const PlanckTable *table, const float temp_k[8]);
 /* Inverse by the same table, |error| < 1 mK over 180 .. 1500 K. */
 double planck_table_temp(const PlanckTable *table, double radiance_w_m2_sr);
 /* The same of many, to the bit (test_planck.c), four at a time. */
-void   planck_table_temps(double *temp_k, const PlanckTable *table, const float *radiance_w_m2_sr, int count);
+void planck_table_temps(double *temp_k, const PlanckTable *table, const float *radiance_w_m2_sr, int count);
 
 #endif

@@ -21,17 +21,14 @@ double radar_lobe(double lobe_rad, double cosine)
 
 /* Below this the lobe's value is negligible (its peak is 1 / (pi lobe_rad^2)), and the ray back to the eye is not
  * worth tracing. exp(-40) of the peak. */
-static bool lobe_is_dark(double lobe_rad, double cosine)
-{
-    return !(1 - cosine < 20 * lobe_rad * lobe_rad);
-}
+static bool lobe_is_dark(double lobe_rad, double cosine) { return !(1 - cosine < 20 * lobe_rad * lobe_rad); }
 
 /* Active paths, as arrays: position of the last mirror, direction in which the ray leaves it. */
 typedef struct Paths {
     int    count;
-    int    sample[hits_capacity];       /* of the eye ray it started as */
-    double reflectance[hits_capacity];  /* of all mirrors so far */
-    double travelled_m[hits_capacity];  /* from the eye to the last mirror */
+    int    sample[hits_capacity];      /* of the eye ray it started as */
+    double reflectance[hits_capacity]; /* of all mirrors so far */
+    double travelled_m[hits_capacity]; /* from the eye to the last mirror */
 } Paths;
 
 /* Next rays: from the last mirrors on, clear of them by a millimetre along their own normals. */
@@ -60,15 +57,15 @@ typedef struct Block {
     const RadarConfig  *config;
     const Visibility   *visibility;
     const Materials    *materials;
-    const Rays         *rays;      /* from the eye */
-    int                 hidden;    /* as in visibility_first_hit */
+    const Rays         *rays;   /* from the eye */
+    int                 hidden; /* as in visibility_first_hit */
     VisibilityCounters *counters;
-    Rays   onward, back;
-    Hits   met, between;
-    Paths  paths;
-    int    back_sample[hits_capacity];
-    double back_power[hits_capacity];
-    double back_slant_m[hits_capacity];
+    Rays                onward, back;
+    Hits                met, between;
+    Paths               paths;
+    int                 back_sample[hits_capacity];
+    double              back_power[hits_capacity];
+    double              back_slant_m[hits_capacity];
 } Block;
 
 /* The first bounce: visible from the eye by construction. Starts the paths that continue. */
@@ -79,23 +76,23 @@ static void first_bounce(RadarReturns *out, Block *s, const Hits *hits)
     for (int i = 0; i < hits->count; i++) {
         if (!(hits->range_m[i] < INFINITY)) continue;
         const Material *m = &s->materials->material[hits->material[i]];
-        double power = m->radar_gamma / (4 * pi_rad);
+        double          power = m->radar_gamma / (4 * pi_rad);
         if (m->metal > 0) {
             const double d_enu[3] = {rays->d_enu[0][i], rays->d_enu[1][i], rays->d_enu[2][i]};
-            double exit_enu[3];
+            double       exit_enu[3];
             if (mirror(exit_enu, hits, i, d_enu)) {
                 power += m->metal * radar_lobe(s->config->lobe_rad, -v3_dot(exit_enu, d_enu));
 
-                const int k = s->paths.count++;
+                const int    k = s->paths.count++;
                 const double p_enu[3] = {hits->p_enu[0][i], hits->p_enu[1][i], hits->p_enu[2][i]};
                 const double n_geo[3] = {hits->n_geo[0][i], hits->n_geo[1][i], hits->n_geo[2][i]};
-                s->paths.sample[k]      = i;
+                s->paths.sample[k] = i;
                 s->paths.reflectance[k] = m->metal;
                 s->paths.travelled_m[k] = hits->range_m[i];
                 add_ray(&s->onward, p_enu, n_geo, exit_enu, INFINITY);
             }
         }
-        out->power[0][i]   = (float)power;
+        out->power[0][i] = (float)power;
         out->slant_m[0][i] = (float)hits->range_m[i];
     }
 }
@@ -106,12 +103,12 @@ static void next_bounce(RadarReturns *out, int nth, Block *s)
 {
     const RadarConfig *config = s->config;
     const Rays        *rays = s->rays;
-    const bool beyond = nth >= radar_bounces;
-    const int  bounce = beyond ? radar_bounces - 1 : nth;
+    const bool         beyond = nth >= radar_bounces;
+    const int          bounce = beyond ? radar_bounces - 1 : nth;
     visibility_first_hit(&s->met, s->visibility, &s->onward, NULL, -1, s->hidden, s->counters);
 
     Paths *paths = &s->paths;
-    int going = 0;
+    int    going = 0;
     s->back.count = 0;
     Rays *onward = &s->onward;
     for (int k = 0; k < paths->count; k++) {
@@ -119,17 +116,17 @@ static void next_bounce(RadarReturns *out, int nth, Block *s)
         const Material *m = &s->materials->material[s->met.material[k]];
         if (!(m->metal > 0)) continue;
         const double d_enu[3] = {onward->d_enu[0][k], onward->d_enu[1][k], onward->d_enu[2][k]};
-        double exit_enu[3];
+        double       exit_enu[3];
         if (!mirror(exit_enu, &s->met, k, d_enu)) continue;
 
-        const int sample = paths->sample[k];
+        const int    sample = paths->sample[k];
         const double reflectance = paths->reflectance[k] * m->metal;
         const double travelled_m = paths->travelled_m[k] + s->met.range_m[k];
         const double p_enu[3] = {s->met.p_enu[0][k], s->met.p_enu[1][k], s->met.p_enu[2][k]};
         const double n_geo[3] = {s->met.n_geo[0][k], s->met.n_geo[1][k], s->met.n_geo[2][k]};
 
         const double eye_enu[3] = {rays->o_enu[0][sample], rays->o_enu[1][sample], rays->o_enu[2][sample]};
-        double home_enu[3];
+        double       home_enu[3];
         v3_sub(home_enu, eye_enu, p_enu);
         const double home_m = v3_length(home_enu);
         if (!beyond) out->slant_m[bounce][sample] = (float)(0.5 * (travelled_m + home_m));
@@ -138,12 +135,12 @@ static void next_bounce(RadarReturns *out, int nth, Block *s)
             if (!lobe_is_dark(config->lobe_rad, cosine) && v3_dot(home_enu, n_geo) > 0) {
                 s->back_sample[s->back.count] = sample;
                 s->back_slant_m[s->back.count] = 0.5 * (travelled_m + home_m);
-                s->back_power[s->back.count]  = reflectance * radar_lobe(config->lobe_rad, cosine);
+                s->back_power[s->back.count] = reflectance * radar_lobe(config->lobe_rad, cosine);
                 add_ray(&s->back, p_enu, n_geo, home_enu, home_m);
             }
         }
         /* in place: `going` never passes k, and ray k has been read */
-        paths->sample[going]      = sample;
+        paths->sample[going] = sample;
         paths->reflectance[going] = reflectance;
         paths->travelled_m[going] = travelled_m;
         onward->count = going++;
@@ -165,8 +162,7 @@ static void next_bounce(RadarReturns *out, int nth, Block *s)
 }
 
 void radar_shade(RadarReturns *out, const RadarConfig *config, const Visibility *v, const Materials *materials,
-                 const Hits *hits, const Rays *rays, int hidden,
-                 VisibilityCounters *counters)
+                 const Hits *hits, const Rays *rays, int hidden, VisibilityCounters *counters)
 {
     Block s; /* its working memory is written before it is read, so not cleared: it is large */
     s.config = config, s.visibility = v, s.materials = materials;
@@ -176,6 +172,5 @@ void radar_shade(RadarReturns *out, const RadarConfig *config, const Visibility 
         memset(out->slant_m[b], 0, (size_t)hits->count * sizeof out->slant_m[b][0]);
     }
     first_bounce(out, &s, hits);
-    for (int b = 1; b < radar_mirrors + config->more_bounces && s.paths.count > 0; b++)
-        next_bounce(out, b, &s);
+    for (int b = 1; b < radar_mirrors + config->more_bounces && s.paths.count > 0; b++) next_bounce(out, b, &s);
 }

@@ -13,7 +13,7 @@
 enum { radar_bounces = 3 /* that are reported */, radar_mirrors = 6 /* that are followed */ };
 
 typedef struct RadarConfig {
-    double lobe_rad; /* rms half width of the exit lobe: antenna cone and surface roughness together; 0.05 */
+    double lobe_rad;     /* rms half width of the exit lobe: antenna cone and surface roughness together; 0.05 */
     int    more_bounces; /* followed beyond radar_mirrors; below 0: fewer. For benchmarks */
 } RadarConfig;
 
@@ -30,7 +30,6 @@ double radar_lobe(double lobe_rad, double cosine);
 
 /* Total of a sample = sum of power over the bounces. hidden as in visibility_first_hit. Some 350 KB of stack. */
 void radar_shade(RadarReturns *out, const RadarConfig *config, const Visibility *v, const Materials *materials,
-                 const Hits *hits, const Rays *rays, int hidden,
-                 VisibilityCounters *counters);
+                 const Hits *hits, const Rays *rays, int hidden, VisibilityCounters *counters);
 
 #endif

@@ -50,10 +50,18 @@ double fresnel_rough(double rough_m, double k, double cosine)
 void fresnel_surface(double complex *te, double complex *tm, const RadarSurface *surface, double k, double cosine)
 {
     switch (surface->kind) {
-    case RADAR_HALF_SPACE: fresnel_half_space(te, tm, surface->eps, cosine); break;
-    case RADAR_SLAB: fresnel_slab(te, tm, NULL, NULL, surface->eps, surface->thick_m, k, cosine); break;
-    case RADAR_COATED: fresnel_coated(te, tm, surface->eps, surface->thick_m, k, cosine); break;
-    default: *te = -1, *tm = 1; break;
+    case RADAR_HALF_SPACE:
+        fresnel_half_space(te, tm, surface->eps, cosine);
+        break;
+    case RADAR_SLAB:
+        fresnel_slab(te, tm, NULL, NULL, surface->eps, surface->thick_m, k, cosine);
+        break;
+    case RADAR_COATED:
+        fresnel_coated(te, tm, surface->eps, surface->thick_m, k, cosine);
+        break;
+    default:
+        *te = -1, *tm = 1;
+        break;
     }
     const double rough = fresnel_rough(surface->rough_m, k, cosine);
     *te *= rough, *tm *= rough;
@@ -61,10 +69,19 @@ void fresnel_surface(double complex *te, double complex *tm, const RadarSurface 
 
 /* ---- materials ---------------------------------------------------------------------------------- */
 
-static const char *const column_names[] = {"name", "kind", "f_ghz", "eps_re", "eps_im", "thick_mm", "rough_mm",
-                                           "source"};
-enum { column_name, column_kind, column_f, column_e1, column_e2, column_thick, column_rough, column_source,
-      column_count };
+static const char *const column_names[] = {"name",   "kind",     "f_ghz",    "eps_re",
+                                           "eps_im", "thick_mm", "rough_mm", "source"};
+enum {
+    column_name,
+    column_kind,
+    column_f,
+    column_e1,
+    column_e2,
+    column_thick,
+    column_rough,
+    column_source,
+    column_count
+};
 
 static const char *const kind_names[RADAR_SURFACE_KINDS] = {"metal", "half_space", "slab", "coated"};
 
@@ -103,10 +120,10 @@ static Status read_kind(RadarMaterial *material, const Table *table, int row, co
 /* A row, of a new material or one more frequency of the last. */
 static Status read_row(RadarMaterials *m, const Table *table, int row, const int column[])
 {
-    const char    *name = table_text(table, row, column[column_name]);
-    const int      known = radar_materials_find(m, name);
-    RadarMaterial  next = {0};
-    double         f_ghz, e1, e2;
+    const char   *name = table_text(table, row, column[column_name]);
+    const int     known = radar_materials_find(m, name);
+    RadarMaterial next = {0};
+    double        f_ghz, e1, e2;
     if (!*name || strlen(name) >= sizeof next.name) return refuse(table, row, "name is empty or longer than 31", name);
     if (!*table_text(table, row, column[column_source])) return refuse(table, row, "a row needs its source", name);
     if (known >= 0 && known != m->count - 1) return refuse(table, row, "rows of a material must be together", name);
@@ -201,7 +218,8 @@ void radar_surface(RadarSurface *out, const RadarMaterial *material, double freq
     double share = 0, e1 = material->e1[p], e2 = material->e2[p];
     if (p < material->points - 1) {
         share = clamp(log(frequency_hz / material->frequency_hz[p]) /
-                      log(material->frequency_hz[p + 1] / material->frequency_hz[p]), 0, 1);
+                          log(material->frequency_hz[p + 1] / material->frequency_hz[p]),
+                      0, 1);
         e1 += share * (material->e1[p + 1] - e1);
         e2 += share * (material->e2[p + 1] - e2);
     }

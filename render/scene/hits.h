@@ -7,8 +7,8 @@
 enum { hits_capacity = 1024 }; /* samples in one block; arrays are padded to a multiple of 8 */
 
 typedef struct Rays {
-    int    count;
-    int    columns;                 /* of a picture, in rows one after another; 0: no such order. A hint for speed
+    int count;
+    int columns;                    /* of a picture, in rows one after another; 0: no such order. A hint for speed
                                      * alone */
     double o_enu[3][hits_capacity]; /* origins */
     double d_enu[3][hits_capacity]; /* unit directions */
@@ -24,48 +24,48 @@ typedef enum HitKind { hit_sky, hit_ground, hit_part, hit_plant } HitKind;
  * square): they follow one another, each a row of its own in Hits and Rays, and `several` is set: ray[] is then the
  * index of the traced ray, and weight[] the share of its light of each return. */
 typedef struct Hits {
-    int      count, columns;            /* as Rays */
-    bool     several;                   /* ray[] and weight[] hold; else one return a ray, of weight 1 */
-    uint16_t ray[hits_capacity];        /* index of the traced ray; ascending */
-    float    weight[hits_capacity];     /* 0 .. 1; 1 over the returns of a ray */
+    int      count, columns;        /* as Rays */
+    bool     several;               /* ray[] and weight[] hold; else one return a ray, of weight 1 */
+    uint16_t ray[hits_capacity];    /* index of the traced ray; ascending */
+    float    weight[hits_capacity]; /* 0 .. 1; 1 over the returns of a ray */
     double   range_m[hits_capacity];
     double   p_enu[3][hits_capacity];
-    float    n_geo[3][hits_capacity];   /* unit geometric normal, ENU, on the ray's side */
-    float    n_enu[3][hits_capacity];   /* unit shading normal, on the ray's side */
-    uint8_t  kind[hits_capacity];       /* HitKind */
-    uint16_t material[hits_capacity];   /* row in the table of materials (visibility_materials); 0: sky */
-    uint32_t facet[hits_capacity];      /* triangle of the model, where kind is hit_part */
-    uint32_t entity[hits_capacity];     /* snapshot index + 1; 0: ground or sky */
-    uint16_t part[hits_capacity];       /* part index of the model + 1; 0: ground or sky */
-    uint16_t model[hits_capacity];      /* of the catalog, where entity > 0 */
-    uint8_t  inside[hits_capacity];     /* 1: a part was met from the inner side of its surface */
-    uint8_t  surface[hits_capacity];    /* SurfaceClass where the ground was met, else 0 */
-    uint32_t plant[hits_capacity];      /* 1 + ForestHit.plant, where kind is hit_plant, else 0; of such hits alone: */
-    float    albedo[hits_capacity];     /* reflectance over that of the material */
-    float    radius_m[hits_capacity];   /* of the branch; 0: a leaf */
+    float    n_geo[3][hits_capacity]; /* unit geometric normal, ENU, on the ray's side */
+    float    n_enu[3][hits_capacity]; /* unit shading normal, on the ray's side */
+    uint8_t  kind[hits_capacity];     /* HitKind */
+    uint16_t material[hits_capacity]; /* row in the table of materials (visibility_materials); 0: sky */
+    uint32_t facet[hits_capacity];    /* triangle of the model, where kind is hit_part */
+    uint32_t entity[hits_capacity];   /* snapshot index + 1; 0: ground or sky */
+    uint16_t part[hits_capacity];     /* part index of the model + 1; 0: ground or sky */
+    uint16_t model[hits_capacity];    /* of the catalog, where entity > 0 */
+    uint8_t  inside[hits_capacity];   /* 1: a part was met from the inner side of its surface */
+    uint8_t  surface[hits_capacity];  /* SurfaceClass where the ground was met, else 0 */
+    uint32_t plant[hits_capacity];    /* 1 + ForestHit.plant, where kind is hit_plant, else 0; of such hits alone: */
+    float    albedo[hits_capacity];   /* reflectance over that of the material */
+    float    radius_m[hits_capacity]; /* of the branch; 0: a leaf */
     float    open_up[hits_capacity], open_down[hits_capacity]; /* shares of even light from above and below that
-                                         * reach it past its own plant, 0 .. 1 */
+                                                                * reach it past its own plant, 0 .. 1 */
 } Hits;
 
 /* Row `from` of others is copied to row `to`, as one return of weight 1; rays as well. from and to may be the same
  * arrays. */
 static inline void hits_copy(Hits *hits, Rays *rays, int to, const Hits *from_hits, const Rays *from_rays, int from)
 {
-    hits->range_m[to]  = from_hits->range_m[from];
-    hits->kind[to]     = from_hits->kind[from];
+    hits->range_m[to] = from_hits->range_m[from];
+    hits->kind[to] = from_hits->kind[from];
     hits->material[to] = from_hits->material[from];
-    hits->facet[to]    = from_hits->facet[from];
-    hits->entity[to]   = from_hits->entity[from];
-    hits->part[to]     = from_hits->part[from];
-    hits->model[to]    = from_hits->model[from];
-    hits->inside[to]   = from_hits->inside[from];
-    hits->surface[to]  = from_hits->surface[from];
-    hits->plant[to]    = from_hits->plant[from];
-    hits->albedo[to]   = from_hits->albedo[from];
+    hits->facet[to] = from_hits->facet[from];
+    hits->entity[to] = from_hits->entity[from];
+    hits->part[to] = from_hits->part[from];
+    hits->model[to] = from_hits->model[from];
+    hits->inside[to] = from_hits->inside[from];
+    hits->surface[to] = from_hits->surface[from];
+    hits->plant[to] = from_hits->plant[from];
+    hits->albedo[to] = from_hits->albedo[from];
     hits->radius_m[to] = from_hits->radius_m[from];
-    hits->open_up[to]  = from_hits->open_up[from];
+    hits->open_up[to] = from_hits->open_up[from];
     hits->open_down[to] = from_hits->open_down[from];
-    rays->far_m[to]    = from_rays->far_m[from];
+    rays->far_m[to] = from_rays->far_m[from];
     for (int k = 0; k < 3; k++) {
         hits->p_enu[k][to] = from_hits->p_enu[k][from];
         hits->n_geo[k][to] = from_hits->n_geo[k][from];

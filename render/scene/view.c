@@ -12,11 +12,16 @@ static const char *name_in(ChannelPlace place, const char *standard)
 const char *band_name(Band band)
 {
     switch (band) {
-    case BAND_OPTICAL: return name_in(SPECTRAL_NIR, "optical");
-    case BAND_MWIR:    return name_in(SPECTRAL_MWIR, "mwir");
-    case BAND_LWIR:    return name_in(SPECTRAL_LWIR, "lwir");
-    case BAND_RADAR:   return "radar";
-    case BAND_COUNT:   break;
+    case BAND_OPTICAL:
+        return name_in(SPECTRAL_NIR, "optical");
+    case BAND_MWIR:
+        return name_in(SPECTRAL_MWIR, "mwir");
+    case BAND_LWIR:
+        return name_in(SPECTRAL_LWIR, "lwir");
+    case BAND_RADAR:
+        return "radar";
+    case BAND_COUNT:
+        break;
     }
     return "unknown";
 }
@@ -58,7 +63,7 @@ void view_topped(double r_enu_from_cam[9], const double d_enu[3], const double t
     v3_normalize(right, right);
     v3_cross(down, d_enu, right);
     for (int i = 0; i < 3; i++) {
-        r_enu_from_cam[3 * i]     = right[i];
+        r_enu_from_cam[3 * i] = right[i];
         r_enu_from_cam[3 * i + 1] = down[i];
         r_enu_from_cam[3 * i + 2] = d_enu[i];
     }

@@ -14,10 +14,10 @@
  * Source: Brown, "Decentering distortion of lenses", Photogrammetric Engineering 32 (1966) 444; "Close-range camera
  * calibration", 37 (1971) 855; signs and order of p1, p2 as OpenCV has them.
  *
- * Inverse: Newton's method, a fixed number of steps, so that arrays and single points give the same bits; view_lens_make
- * rejects a lens for which those steps do not converge to 1e-12. Beyond the picture a polynomial may fold back into it;
- * from `reach` on the image of a direction r u is therefore r / reach times that of reach u, a straight line
- * outwards. */
+ * Inverse: Newton's method, a fixed number of steps, so that arrays and single points give the same bits;
+ * view_lens_make rejects a lens for which those steps do not converge to 1e-12. Beyond the picture a polynomial may
+ * fold back into it; from `reach` on the image of a direction r u is therefore r / reach times that of reach u, a
+ * straight line outwards. */
 
 typedef struct Lens {
     double k[3], p[2];
@@ -100,8 +100,8 @@ static inline double view_focal_px(int width, double hfov_rad) { return 0.5 * wi
 /* Unit direction through an image point. */
 static inline void view_ray(double d_enu[3], const View *view, double column_px, double row_px)
 {
-    double d_cam[3] = {(column_px - 0.5 * view->width) / view->focal_px,
-                       (row_px - 0.5 * view->height) / view->focal_px, 1};
+    double d_cam[3] = {(column_px - 0.5 * view->width) / view->focal_px, (row_px - 0.5 * view->height) / view->focal_px,
+                       1};
     if (view_has_lens(view)) view_lens_back(d_cam, &view->lens, d_cam[0], d_cam[1]);
     const double n = 1 / sqrt(d_cam[0] * d_cam[0] + d_cam[1] * d_cam[1] + 1);
     v3_scale(d_cam, n, d_cam);
@@ -128,8 +128,7 @@ static inline void view_project(double image_px[2], const View *view, const doub
 /* Tangents (x / z, y / z: left, top, right, bottom) between which a rectangle of the image lies. */
 static inline void view_box_tangents(double out[4], const View *view, const double box_px[4])
 {
-    for (int k = 0; k < 4; k++)
-        out[k] = (box_px[k] - 0.5 * (k % 2 ? view->height : view->width)) / view->focal_px;
+    for (int k = 0; k < 4; k++) out[k] = (box_px[k] - 0.5 * (k % 2 ? view->height : view->width)) / view->focal_px;
     if (view_has_lens(view)) view_lens_box(out, &view->lens, (const double[4]){out[0], out[1], out[2], out[3]});
 }
 
@@ -156,8 +155,11 @@ static inline double view_pixel_share(const View *view, int x, int y)
 
 /* Of the optical band: three pictures or one. */
 typedef enum OpticalChannels {
-    OPTICAL_PAN, OPTICAL_RGB, OPTICAL_NIR,
-    OPTICAL_RED, OPTICAL_BLUE /* one of the three, as render() requests it where colours differ in magnification */
+    OPTICAL_PAN,
+    OPTICAL_RGB,
+    OPTICAL_NIR,
+    OPTICAL_RED,
+    OPTICAL_BLUE /* one of the three, as render() requests it where colours differ in magnification */
 } OpticalChannels;
 
 static const double view_most_lateral = 0.02; /* less than the margin of a lens */

@@ -64,7 +64,7 @@ void   smoke_gas_passed_at(double at[hot_gas_passed_nodes], double temp_k, doubl
 double smoke_gas_passed_of(const double at[hot_gas_passed_nodes], double co2_atm_m);
 
 /* atm m of `kg_m2` of a gas of molar mass molar_kg at temp_k, by the ideal gas law. */
-double smoke_gas_atm_m(double kg_m2, double molar_kg, double temp_k);
+double              smoke_gas_atm_m(double kg_m2, double molar_kg, double temp_k);
 extern const double hot_gas_co2_molar_kg, hot_gas_h2o_molar_kg;
 
 /* ---- volumes along rays ---------------------------------------------------------------------- */
@@ -88,26 +88,26 @@ enum { smoke_bands = 7, smoke_scatter_orders = 3, smoke_segments_max = 24, veil_
 
 /* Hot gas of a volume, of one temperature. */
 typedef struct SmokeGas {
-    double co2_atm, h2o_atm;                 /* at the centre; at one atmosphere */
-    double weight[2][2][hot_gas_terms];      /* [HotGasBand][gas] */
-    double passed[hot_gas_passed_nodes];     /* smoke_gas_passed_at, for its range */
-    double source[2];                        /* as SmokeVolume.source, of the gas alone */
+    double co2_atm, h2o_atm;             /* at the centre; at one atmosphere */
+    double weight[2][2][hot_gas_terms];  /* [HotGasBand][gas] */
+    double passed[hot_gas_passed_nodes]; /* smoke_gas_passed_at, for its range */
+    double source[2];                    /* as SmokeVolume.source, of the gas alone */
 } SmokeGas;
 
 typedef struct SmokeVolume {
-    double p_enu[3], axis_enu[3];
-    double along_m, across_m;              /* half axes */
-    double range_m;                        /* of the centre, from the eye */
-    bool   even;                           /* uniform density inside; else (1 - q^2)^2 from centre to surface */
-    double extinction_per_m[smoke_bands];   /* at the centre, without gas */
-    const SmokeGas *gas;                   /* of the same shape; NULL: none */
+    double          p_enu[3], axis_enu[3];
+    double          along_m, across_m;             /* half axes */
+    double          range_m;                       /* of the centre, from the eye */
+    bool            even;                          /* uniform density inside; else (1 - q^2)^2 from centre to surface */
+    double          extinction_per_m[smoke_bands]; /* at the centre, without gas */
+    const SmokeGas *gas;                           /* of the same shape; NULL: none */
     /* Source radiance of an optically thick piece at the eye, W/(m2 sr), including the air between: emission plus
      * scattered light of the surroundings; half the difference from top to bottom; and sunlight, to be multiplied by
      * exp(-depth / 2^n) of the path to the sun. */
     double source[smoke_bands], from_top[smoke_bands], sun[smoke_bands][smoke_scatter_orders];
-    double sun_depth[smoke_bands];          /* optical depth of other volumes towards the sun */
+    double sun_depth[smoke_bands]; /* optical depth of other volumes towards the sun */
     double d_sun_enu[3];
-    double billow, pattern[3];             /* amplitude of the noise pattern; its origin */
+    double billow, pattern[3]; /* amplitude of the noise pattern; its origin */
 } SmokeVolume;
 
 /* Transmittance and radiance of the smoke for each ray of a block. */
@@ -118,25 +118,25 @@ typedef struct SmokeRays {
 
 /* Volumes that columns column0_px .. column1_px, rows row0_px .. row1_px may see, nearest first: list holds up to
  * count. volume: sorted by range_m. */
-int  smoke_cull_block(int *list, const SmokeVolume *volume, int count, const View *view, double column0_px, double row0_px,
-                double column1_px, double row1_px);
+int smoke_cull_block(int *list, const SmokeVolume *volume, int count, const View *view, double column0_px,
+                     double row0_px, double column1_px, double row1_px);
 /* far_m: of the solid hit of each ray, INFINITY none. bands: 1 << band, those to compute. Of more than veil_together
  * volumes on a ray each further veil_together, in order of range, are composited behind the previous ones:
  * transmittances stay exact, and the added radiance is that of clouds one behind the other. */
 void smoke_trace_rays(SmokeRays *out, const SmokeVolume *volume, const int *list, int count, const Rays *rays,
-               const double *far_m, unsigned bands);
+                      const double *far_m, unsigned bands);
 void smoke_apply(float *radiance, const SmokeRays *veil, int band, int count);
 
 /* Column of a volume of unit peak density between two distances along o + s d, m; no pattern. */
 double smoke_column_m(const SmokeVolume *volume, const double o_enu[3], const double d_enu[3], double from_m,
-                     double to_m);
+                      double to_m);
 
 /* ---- the volumes of a frame ------------------------------------------------------------------ */
 
 /* The snapshot's puffs as volumes that emit, scatter and absorb: prepared once a frame. */
 
 typedef struct EffectScene {
-    int         count;
+    int          count;
     SmokeVolume *volume; /* sorted by range */
 } EffectScene;
 
@@ -145,7 +145,7 @@ typedef struct EffectScene {
  * positions differ by more than its length at launch, and its trail must not appear ahead of its nose); -1: none.
  * bands: 1 << band of smoke.h that will be requested. ground_rho: of the lit ground below, by optical
  * channel. No puffs: count 0, and nothing is done. */
-Status smoke_effects_scene(EffectScene *out, const Snapshot *snapshot, int hidden, const LocalFrame *frame, const View *view,
-                     const Air *air, const float *ground_rho, unsigned bands, Arena *arena);
+Status smoke_effects_scene(EffectScene *out, const Snapshot *snapshot, int hidden, const LocalFrame *frame,
+                           const View *view, const Air *air, const float *ground_rho, unsigned bands, Arena *arena);
 
 #endif

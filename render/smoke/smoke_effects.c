@@ -12,7 +12,7 @@
 
 _Static_assert((int)effect_band_count == (int)smoke_bands, "a volume's bands are the effects'");
 _Static_assert((int)effect_band_count == (int)AIR_BAND_COUNT && (int)effect_band_pan == (int)AIR_PAN &&
-               (int)effect_band_mwir == (int)AIR_MWIR && (int)optical_channel_count == (int)effect_band_mwir,
+                   (int)effect_band_mwir == (int)AIR_MWIR && (int)optical_channel_count == (int)effect_band_mwir,
                "effects, air and materials have their bands in one order");
 
 static double phase_per_sr(double asymmetry, double cosine)
@@ -31,19 +31,19 @@ static double glow_w_m2_sr(int band, double temp_k)
 }
 
 typedef struct Placed {
-    SmokeVolume       volume;
+    SmokeVolume        volume;
     const EffectModel *law;
-    double           d_eye_enu[3], temp_k; /* from the eye to its centre */
-    double           co2_kg_m3, h2o_kg_m3;  /* at the centre */
-    SmokeGas        *gas;                   /* volume.gas */
-    uint32_t         group;
-    int              index; /* index in the snapshot: order of equals */
+    double             d_eye_enu[3], temp_k; /* from the eye to its centre */
+    double             co2_kg_m3, h2o_kg_m3; /* at the centre */
+    SmokeGas          *gas;                  /* volume.gas */
+    uint32_t           group;
+    int                index; /* index in the snapshot: order of equals */
 } Placed;
 
 /* Source terms of one volume in one band. i: its air path. */
 static void light_volume(Placed *p, int band, const Air *air, const float *ground_rho, const AirPaths *veils, int i)
 {
-    SmokeVolume  *v = &p->volume;
+    SmokeVolume *v = &p->volume;
     const bool   optical = band < effect_band_mwir;
     const double albedo = p->law->albedo[band], sun_w_m2 = air->light.sun_w_m2[band];
     /* mean radiances from above and below: thermal ground emits, ground in daylight reflects */
@@ -51,8 +51,7 @@ static void light_volume(Placed *p, int band, const Air *air, const float *groun
     const double below = optical ? ground_rho[band] * (sun_w_m2 * fmax(air->light.sun_d_enu[2], 0) / pi_rad + above)
                                  : air->light.ground_w_m2_sr[band];
     const double lit = veils->air_transmittance[i] * albedo * 0.5, glow = glow_w_m2_sr(band, p->temp_k);
-    v->source[band] = veils->added_w_m2_sr[i] + lit * (above + below) +
-                      veils->transmittance[i] * (1 - albedo) * glow;
+    v->source[band] = veils->added_w_m2_sr[i] + lit * (above + below) + veils->transmittance[i] * (1 - albedo) * glow;
     if (p->gas && !optical)
         p->gas->source[band == effect_band_lwir] = veils->added_w_m2_sr[i] + veils->transmittance[i] * glow;
     v->from_top[band] = lit * (above - below);
@@ -70,10 +69,10 @@ static void light_volume(Placed *p, int band, const Air *air, const float *groun
 static Status light_volumes(Placed *placed, int count, const View *view, const Air *air, const float *ground_rho,
                             unsigned bands, Arena *arena)
 {
-    Rays  *rays = arena_alloc(arena, 1, sizeof *rays);
-    Hits  *hits = arena_alloc(arena, 1, sizeof *hits);
+    Rays     *rays = arena_alloc(arena, 1, sizeof *rays);
+    Hits     *hits = arena_alloc(arena, 1, sizeof *hits);
     AirPaths *veils = arena_alloc(arena, 1, sizeof *veils);
-    float  temp_k[hits_capacity];
+    float     temp_k[hits_capacity];
     if (!rays || !hits || !veils) return STATUS_NO_MEMORY;
     for (int first = 0; first < count; first += hits_capacity) {
         Placed *some = placed + first;
@@ -85,7 +84,7 @@ static Status light_volumes(Placed *placed, int count, const View *view, const A
                 hits->p_enu[k][i] = some[i].volume.p_enu[k];
             }
             hits->range_m[i] = some[i].volume.range_m;
-            temp_k[i]        = (float)some[i].temp_k;
+            temp_k[i] = (float)some[i].temp_k;
         }
         for (int b = 0; b < effect_band_count; b++) {
             if (!(bands >> b & 1)) continue;
@@ -120,7 +119,7 @@ static void shade_group(Placed *first, int count, unsigned bands)
             if (k == i) continue;
             SmokeVolume       *to = &first[i].volume;
             const SmokeVolume *from = &first[k].volume;
-            const double      column_m = smoke_column_m(from, to->p_enu, to->d_sun_enu, 0, INFINITY);
+            const double       column_m = smoke_column_m(from, to->p_enu, to->d_sun_enu, 0, INFINITY);
             if (!(column_m > 0)) continue;
             for (int b = 0; b < smoke_bands; b++)
                 if (bands >> b & 1) to->sun_depth[b] += from->extinction_per_m[b] * column_m;
@@ -179,8 +178,8 @@ static int keep_visible(Placed *placed, int count, unsigned bands)
     return kept;
 }
 
-Status smoke_effects_scene(EffectScene *out, const Snapshot *snapshot, int hidden, const LocalFrame *frame, const View *view,
-                     const Air *air, const float *ground_rho, unsigned bands, Arena *arena)
+Status smoke_effects_scene(EffectScene *out, const Snapshot *snapshot, int hidden, const LocalFrame *frame,
+                           const View *view, const Air *air, const float *ground_rho, unsigned bands, Arena *arena)
 {
     *out = (EffectScene){0};
     if (snapshot->puff_count == 0 || !snapshot->effect_table || bands == 0) return STATUS_OK;
@@ -189,15 +188,15 @@ Status smoke_effects_scene(EffectScene *out, const Snapshot *snapshot, int hidde
 
     int count = 0;
     for (int i = 0; i < snapshot->puff_count; i++) {
-        const EffectPuff *puff = &snapshot->puff[i];
-        const EffectModel  *law = &snapshot->effect_table->law[puff->kind];
-        EffectVolume      volume;
+        const EffectPuff  *puff = &snapshot->puff[i];
+        const EffectModel *law = &snapshot->effect_table->law[puff->kind];
+        EffectVolume       volume;
         if (hidden >= 0 && snapshot_owns_puff(snapshot, hidden, puff)) continue;
         if (!effect_volume(&volume, snapshot->effect_table, puff, &air->light.weather, frame)) continue;
         if (!may_matter(view, &volume)) continue;
 
         SmokeVolume *v = &placed[count].volume;
-        double     *d_eye_enu = placed[count].d_eye_enu;
+        double      *d_eye_enu = placed[count].d_eye_enu;
         *v = (SmokeVolume){.along_m = volume.along_m, .across_m = volume.across_m, .billow = law->billow};
         memcpy(v->p_enu, volume.p_enu, sizeof v->p_enu);
         memcpy(v->axis_enu, volume.axis_enu, sizeof v->axis_enu);
@@ -208,13 +207,14 @@ Status smoke_effects_scene(EffectScene *out, const Snapshot *snapshot, int hidde
         if (!v3_normalize(d_eye_enu, d_eye_enu)) d_eye_enu[2] = 1;
         for (int k = 0; k < 3; k++) v->pattern[k] = 256 * random_uniform(puff->seed, 80, 0, (uint64_t)k);
         v->pattern[2] -= 0.25 * puff->age_s; /* its pattern moves upwards through its own outline */
-        placed[count].law    = law;
-        placed[count].temp_k = volume.temp_k + daylight_temp_at(&air->light, volume.p_enu) - air->light.weather.air_temp_k;
-        placed[count].group  = puff->group;
+        placed[count].law = law;
+        placed[count].temp_k =
+            volume.temp_k + daylight_temp_at(&air->light, volume.p_enu) - air->light.weather.air_temp_k;
+        placed[count].group = puff->group;
         placed[count].co2_kg_m3 = volume.co2_kg_m3;
         placed[count].h2o_kg_m3 = volume.h2o_kg_m3;
         placed[count].gas = NULL;
-        placed[count].index  = i;
+        placed[count].index = i;
         count++;
     }
     qsort(placed, (size_t)count, sizeof *placed, by_group);

@@ -46,7 +46,8 @@ static double chord_column(const Chord *c, bool even, double from_m, double to_m
     return b > a ? column_to(c, even, b) - column_to(c, even, a) : 0;
 }
 
-double smoke_column_m(const SmokeVolume *volume, const double o_enu[3], const double d_enu[3], double from_m, double to_m)
+double smoke_column_m(const SmokeVolume *volume, const double o_enu[3], const double d_enu[3], double from_m,
+                      double to_m)
 {
     double off[3], o[3], d[3];
     Chord  chord;
@@ -90,7 +91,7 @@ static float lattice_noise(const double p[3])
 static double billows(const double p[3])
 {
     static const double turn[9] = {0.00, 0.80, 0.60, -0.80, 0.36, -0.48, -0.60, -0.48, 0.64};
-    double at[3], turned[3];
+    double              at[3], turned[3];
     m3_mul_v3(turned, turn, p);
     v3_scale(at, 1.7, turned);
     double sum = lattice_noise(at);
@@ -118,9 +119,9 @@ static double pattern_stretch(double *factor, const SmokeVolume *v, const double
 
 typedef struct Crossing {
     const SmokeVolume *volume;
-    Chord  chord;
-    double from_m, to_m, factor;
-    double source[smoke_bands];
+    Chord              chord;
+    double             from_m, to_m, factor;
+    double             source[smoke_bands];
 } Crossing;
 
 /* Source radiance of the volume on this ray, with the sunlight that reaches one point of its chord, in front of the
@@ -128,9 +129,9 @@ typedef struct Crossing {
 static void light_crossing(Crossing *c, const double o[3], const double d[3], unsigned bands)
 {
     const SmokeVolume *v = c->volume;
-    const double      at_m = fmax(c->from_m, c->chord.middle_m - 0.55 * c->chord.half_m);
-    double            at[3], d_sun[3], up[3];
-    Chord             sunward;
+    const double       at_m = fmax(c->from_m, c->chord.middle_m - 0.55 * c->chord.half_m);
+    double             at[3], d_sun[3], up[3];
+    Chord              sunward;
 
     v3_add_scaled(at, o, at_m, d);
     to_ball(d_sun, v, v->d_sun_enu);
@@ -185,11 +186,11 @@ static inline double absorbed(double depth)
 
 /* What a ray has accumulated so far, front to back. */
 typedef struct Passed {
-    double through[smoke_bands], added[smoke_bands];
-    bool   goes_on; /* transmittance above 0 */
-    bool   in_gas;  /* the following hold */
-    HotGasRay gas[2];                       /* [HotGasBand] */
-    double    gas_depth[2];                 /* optical depth that it has made */
+    double    through[smoke_bands], added[smoke_bands];
+    bool      goes_on;                              /* transmittance above 0 */
+    bool      in_gas;                               /* the following hold */
+    HotGasRay gas[2];                               /* [HotGasBand] */
+    double    gas_depth[2];                         /* optical depth that it has made */
     double    co2_atm_m, air[hot_gas_passed_nodes]; /* column; times what the air lets pass */
 } Passed;
 
@@ -240,11 +241,11 @@ static double air_passes(const Passed *p, int which)
 static double gas_adds(Passed *p, Segment *s, int which)
 {
     static const double most = 1 - 1e-12, least = 1e-300;
-    const double per[2] = {1 / fmax(s->column.co2_atm_m, least), 1 / fmax(s->column.h2o_atm_m, least)};
+    const double        per[2] = {1 / fmax(s->column.co2_atm_m, least), 1 / fmax(s->column.h2o_atm_m, least)};
     for (int g = 0; g < 2; g++)
         for (int j = 0; j < hot_gas_terms; j++) s->weighed[which][g][j] *= per[g];
     const double emissivity = smoke_gas_through(&p->gas[which], (HotGasBand)which, s->column,
-                                              (const double(*)[hot_gas_terms])s->weighed[which]);
+                                                (const double(*)[hot_gas_terms])s->weighed[which]);
     const double depth = -log1p(-fmin(emissivity * air_passes(p, which), most));
     const double adds = fmax(depth - p->gas_depth[which], 0);
     p->gas_depth[which] += adds;
@@ -254,7 +255,7 @@ static double gas_adds(Passed *p, Segment *s, int which)
 /* Composites the segments behind those already passed. */
 static void compose(Passed *passed, const Crossing *crossing, int count, unsigned bands)
 {
-    double    cut_m[smoke_segments_max], *const through = passed->through, *const added = passed->added;
+    double cut_m[smoke_segments_max], *const through = passed->through, *const added = passed->added;
     const int cuts = cuts_of(cut_m, crossing, count);
 
     for (int k = 0; k + 1 < cuts; k++) {
@@ -345,8 +346,8 @@ static int list_of_cone(int near[cone_most], const SmokeVolume *volume, const in
 }
 
 /* One ray: what it passes, front to back; the number of volumes crossed. */
-static int trace_ray(Passed *passed, Crossing crossing[veil_together], const SmokeVolume *volume, const int *list, int count,
-                     const double o_enu[3], const double d_enu[3], double far_m, unsigned bands)
+static int trace_ray(Passed *passed, Crossing crossing[veil_together], const SmokeVolume *volume, const int *list,
+                     int count, const double o_enu[3], const double d_enu[3], double far_m, unsigned bands)
 {
     int crossed = 0, composed = 0;
     for (int b = 0; b < smoke_bands; b++) passed->through[b] = 1, passed->added[b] = 0;
@@ -388,7 +389,7 @@ static int trace_ray(Passed *passed, Crossing crossing[veil_together], const Smo
 }
 
 void smoke_trace_rays(SmokeRays *out, const SmokeVolume *volume, const int *list, int count, const Rays *rays,
-               const double *far_m, unsigned bands)
+                      const double *far_m, unsigned bands)
 {
     Crossing crossing[veil_together];
     int      near[cone_most], nears = -1;
@@ -403,8 +404,8 @@ void smoke_trace_rays(SmokeRays *out, const SmokeVolume *volume, const int *list
         const double d_enu[3] = {rays->d_enu[0][r], rays->d_enu[1][r], rays->d_enu[2][r]};
         Passed       passed;
         if (nears == 0) continue;
-        if (trace_ray(&passed, crossing, volume, nears < 0 ? list : near, nears < 0 ? count : nears, o_enu, d_enu, far_m[r],
-                      bands) == 0)
+        if (trace_ray(&passed, crossing, volume, nears < 0 ? list : near, nears < 0 ? count : nears, o_enu, d_enu,
+                      far_m[r], bands) == 0)
             continue;
         if (!out->any)
             for (int b = 0; b < smoke_bands; b++)
@@ -426,12 +427,12 @@ void smoke_apply(float *radiance, const SmokeRays *veil, int band, int count)
 
 /* ---- a block of pixels -------------------------------------------------------------------- */
 
-int smoke_cull_block(int *list, const SmokeVolume *volume, int count, const View *view, double column0_px, double row0_px,
-               double column1_px, double row1_px)
+int smoke_cull_block(int *list, const SmokeVolume *volume, int count, const View *view, double column0_px,
+                     double row0_px, double column1_px, double row1_px)
 {
     /* bounding cone of the block: its axis, and the widest of its corners */
-    const double corner_px[4][2] = {{column0_px, row0_px}, {column1_px, row0_px}, {column0_px, row1_px},
-                                    {column1_px, row1_px}};
+    const double corner_px[4][2] = {
+        {column0_px, row0_px}, {column1_px, row0_px}, {column0_px, row1_px}, {column1_px, row1_px}};
     double middle[3], cosine = 1, tangent[4];
     if (view_has_lens(view)) /* its sides are curved: the straight box about them */
         view_box_tangents(tangent, view, (const double[4]){column0_px, row0_px, column1_px, row1_px});
@@ -448,11 +449,11 @@ int smoke_cull_block(int *list, const SmokeVolume *volume, int count, const View
         cosine = fmin(cosine, v3_dot(middle, d));
     }
     const double sine = sqrt(fmax(1 - cosine * cosine, 0));
-    int listed = 0;
+    int          listed = 0;
     for (int n = 0; n < count; n++) {
         const SmokeVolume *v = &volume[n];
-        const double      reach = fmax(v->along_m, v->across_m) * 1.001;
-        double            off[3];
+        const double       reach = fmax(v->along_m, v->across_m) * 1.001;
+        double             off[3];
         v3_sub(off, v->p_enu, view->p_enu);
         const double along = v3_dot(off, middle), aside = sqrt(fmax(v3_dot(off, off) - along * along, 0));
         /* distance from the cone's surface; inside: negative. Behind the eye by more than its size: culled */

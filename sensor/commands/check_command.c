@@ -40,8 +40,8 @@ typedef struct Check {
 
 /* Tables already validated for an earlier file are not read again. */
 static struct {
-    bool bundled, models;
-    char air[1024];
+    bool   bundled, models;
+    char   air[1024];
     double visibility_m;
 } known;
 
@@ -59,7 +59,8 @@ static bool is_bundled(const Check *c, const char *name, Status (*read)(const ch
     char path[4096];
     if (etc_path(path, sizeof path, name) && read(path) == STATUS_OK) return true;
     log_error("check: %s: the bundled table etc/%s cannot be used, see the error above; reinstall it, or correct the "
-              "folder that PITVIPER_ETC names", c->path, name);
+              "folder that PITVIPER_ETC names",
+              c->path, name);
     return false;
 }
 
@@ -101,12 +102,14 @@ static bool sheets_are_valid(const Check *c, const char *paths, const char *key,
             const RasterSheet *sheet = &set.raster[i].sheet[k];
             status = raster_read(piece, &set.raster[i], 1,
                                  (RasterWindow){sheet->x0 + sheet->width / 2 - side / 2,
-                                                sheet->y0 + sheet->height / 2 - side / 2, side, side}, key);
+                                                sheet->y0 + sheet->height / 2 - side / 2, side, side},
+                                 key);
         }
     raster_set_close(&set);
-    return status == STATUS_OK || report(c, key, "paths in a configuration file are relative to that file; `gdalinfo "
-                                                 "FILE` "
-                                                "shows whether GDAL can read one");
+    return status == STATUS_OK || report(c, key,
+                                         "paths in a configuration file are relative to that file; `gdalinfo "
+                                         "FILE` "
+                                         "shows whether GDAL can read one");
 }
 
 static bool store_is_valid(const Check *c)
@@ -192,9 +195,9 @@ static bool models_are_valid(Check *c)
 {
     /* built-in shapes are valid at any chord error; model files are read in full */
     static const double coarse_chord_error_m = 0.1;
-    char      catalog[4096], materials[4096], surfaces[4096];
-    Materials read = {0};
-    const bool own = etc_own("catalog.csv") || etc_own("materials.csv");
+    char                catalog[4096], materials[4096], surfaces[4096];
+    Materials           read = {0};
+    const bool          own = etc_own("catalog.csv") || etc_own("materials.csv");
     if (known.models && !own) return true;
     if (!etc_path(catalog, sizeof catalog, "catalog.csv") || !etc_path(materials, sizeof materials, "materials.csv") ||
         !etc_path(surfaces, sizeof surfaces, "surfaces.csv"))
@@ -204,14 +207,16 @@ static bool models_are_valid(Check *c)
     materials_close(&read);
     if (status != STATUS_OK) return report(c, "models.materials", "etc/ADDING.md describes a row of materials");
     if (catalog_open(&c->catalog, catalog, coarse_chord_error_m) != STATUS_OK)
-        return report(c, "models.catalog", "etc/ADDING.md describes how to add a vehicle; `pitviper model info FILE` "
-                         "checks "
-                                          "one model");
+        return report(c, "models.catalog",
+                      "etc/ADDING.md describes how to add a vehicle; `pitviper model info FILE` "
+                      "checks "
+                      "one model");
     status = materials_open(&read, materials, surfaces, c->catalog);
     materials_close(&read);
     known.models = known.models || (status == STATUS_OK && !own);
-    return status == STATUS_OK || report(c, "models.materials", "the material of each part needs a row there, or in "
-                                            "etc/materials.csv");
+    return status == STATUS_OK || report(c, "models.materials",
+                                         "the material of each part needs a row there, or in "
+                                         "etc/materials.csv");
 }
 
 static bool sensors_are_valid(const Check *c)
@@ -231,7 +236,8 @@ static bool radar_is_valid(const Check *c)
     if (*own && radar_preset_check(own) != STATUS_OK)
         return report(c, "radar.table", "a .csv with the columns of etc/radars.csv; that file describes them");
     if (strcmp(preset, "none") == 0) return true;
-    if ((!*own && !etc_path(path, sizeof path, "radars.csv")) || radar_preset_read(&radar, *own ? own : path, preset) != STATUS_OK)
+    if ((!*own && !etc_path(path, sizeof path, "radars.csv")) ||
+        radar_preset_read(&radar, *own ? own : path, preset) != STATUS_OK)
         return report(c, "radar.preset", "`none`, or a row of etc/radars.csv or of radar.table");
     return true;
 }
@@ -247,8 +253,8 @@ static bool tables_are_valid(Check *c)
     good &= given_signatures_are_valid(c);
     good &= terrain_is_valid(c);
     if (!known.bundled)
-        known.bundled = is_bundled(c, "sensors.csv", preset_check) && is_bundled(c, "radars.csv", radar_preset_check) && is_bundled(c, "heat.csv", read_heat) &&
-                        is_bundled(c, "heat_machines.csv", read_machines) &&
+        known.bundled = is_bundled(c, "sensors.csv", preset_check) && is_bundled(c, "radars.csv", radar_preset_check) &&
+                        is_bundled(c, "heat.csv", read_heat) && is_bundled(c, "heat_machines.csv", read_machines) &&
                         is_bundled(c, "effects.csv", read_effects);
     good &= known.bundled;
     catalog_close(c->catalog);
@@ -260,7 +266,7 @@ static bool check_file(const char *path)
 {
     static Run run; /* too large for a stack */
     Config    *config = &run.options.config;
-    run  = (Run){0};
+    run = (Run){0};
     *config = config_default();
     const Status read = config_read_checked(config, path);
     if (read != STATUS_OK && read != STATUS_BAD_VALUE) return false;
@@ -283,7 +289,7 @@ int check_command(int argc, char **argv)
 {
     enum { DEFAULT = 1, HELP };
     static const struct option options[] = {{"default", 0, NULL, DEFAULT}, {"help", 0, NULL, HELP}, {NULL, 0, NULL, 0}};
-    bool defaults = false, good = true;
+    bool                       defaults = false, good = true;
     optind = 0;
     for (int option; (option = command_line_option(argc, argv, "", options)) != -1;) {
         if (option == HELP) {

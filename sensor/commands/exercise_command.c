@@ -69,8 +69,8 @@ static bool to_number(char out[dis_udp_address_size], const char *host)
     const struct addrinfo hints = {.ai_socktype = SOCK_DGRAM};
     struct addrinfo      *found = NULL;
     const int             failure = getaddrinfo(host, NULL, &hints, &found);
-    if (failure || getnameinfo(found->ai_addr, found->ai_addrlen, out, dis_udp_address_size, NULL, 0,
-                               NI_NUMERICHOST) != 0) {
+    if (failure ||
+        getnameinfo(found->ai_addr, found->ai_addrlen, out, dis_udp_address_size, NULL, 0, NI_NUMERICHOST) != 0) {
         log_error("exercise: --send: no address is known for '%s': %s; give one in numbers", host,
                   gai_strerror(failure));
         if (!failure) freeaddrinfo(found);
@@ -87,23 +87,24 @@ static bool parse_address(DisUdpConfig *udp, const char *text)
     const char *from = text, *end = text + strlen(text), *port = NULL;
     if (*text == '[') {
         from = text + 1;
-        end  = strchr(from, ']');
+        end = strchr(from, ']');
         if (end && end[1] == ':') port = end + 2;
         else if (end && end[1]) end = NULL;
     } else if (strchr(text, ':') && strchr(text, ':') == strrchr(text, ':')) {
-        end  = strchr(text, ':');
+        end = strchr(text, ':');
         port = end + 1;
     }
     long long number = dis_port;
     if (!end || end == from || end - from >= (long)sizeof host ||
         (port && !(text_to_long(&number, port) && number >= 1 && number <= 65535))) {
         log_error("exercise: --send: '%s' is not HOST, HOST:PORT or [IPv6]:PORT with a port in 1 .. 65535, for example "
-                  "239.1.2.3:3000", text);
+                  "239.1.2.3:3000",
+                  text);
         return false;
     }
     memcpy(host, from, (size_t)(end - from));
     host[end - from] = 0;
-    udp->port        = (int)number;
+    udp->port = (int)number;
     return to_number(udp->address, host);
 }
 
@@ -133,22 +134,37 @@ static bool parse_speed(double *out, const char *text)
 static int parse(Options *o, int argc, char **argv)
 {
     enum { OUT = 'o', HELP = 'h', SEND = 256, SET, DATAGRAMS, INTERFACE, TTL, SPEED, KEYS, OVERWRITE };
-    static const struct option options[] = {
-        {"out", 1, NULL, OUT},   {"send", 1, NULL, SEND},  {"set", 1, NULL, SET},    {"datagrams", 1, NULL, DATAGRAMS},
-        {"ttl", 1, NULL, TTL},   {"speed", 1, NULL, SPEED}, {"keys", 0, NULL, KEYS}, {"interface", 1, NULL, INTERFACE},
-        {"overwrite", 0, NULL, OVERWRITE}, {"help", 0, NULL, HELP}, {NULL, 0, NULL, 0}};
-    const char *of_sending = NULL; /* an option that means nothing without --send */
-    optind = 0;                    /* restart getopt */
+    static const struct option options[] = {{"out", 1, NULL, OUT},
+                                            {"send", 1, NULL, SEND},
+                                            {"set", 1, NULL, SET},
+                                            {"datagrams", 1, NULL, DATAGRAMS},
+                                            {"ttl", 1, NULL, TTL},
+                                            {"speed", 1, NULL, SPEED},
+                                            {"keys", 0, NULL, KEYS},
+                                            {"interface", 1, NULL, INTERFACE},
+                                            {"overwrite", 0, NULL, OVERWRITE},
+                                            {"help", 0, NULL, HELP},
+                                            {NULL, 0, NULL, 0}};
+    const char                *of_sending = NULL; /* an option that means nothing without --send */
+    optind = 0;                                   /* restart getopt */
     for (int option; (option = command_line_option(argc, argv, "o:h", options)) != -1;) {
         bool ok = true;
         if (option == INTERFACE) of_sending = "interface";
         if (option == TTL) of_sending = "ttl";
         if (option == SPEED) of_sending = "speed";
         switch (option) {
-        case OUT: o->out = optarg; break;
-        case SEND: o->send = optarg; break;
-        case OVERWRITE: o->overwrite = true; break;
-        case DATAGRAMS: o->datagrams = optarg; break;
+        case OUT:
+            o->out = optarg;
+            break;
+        case SEND:
+            o->send = optarg;
+            break;
+        case OVERWRITE:
+            o->overwrite = true;
+            break;
+        case DATAGRAMS:
+            o->datagrams = optarg;
+            break;
         case SET:
             ok = o->set_count < max_sets;
             if (ok) o->set[o->set_count++] = optarg;
@@ -159,11 +175,21 @@ static int parse(Options *o, int argc, char **argv)
             if (ok) strcpy(o->udp.interface, optarg);
             else log_error("exercise: --interface: '%s' is not the name of an interface; `ip link` lists them", optarg);
             break;
-        case TTL: ok = whole(&o->udp.ttl, "ttl", optarg, 0, 255); break;
-        case SPEED: ok = parse_speed(&o->speed, optarg); break;
-        case KEYS: scenario_write_keys(stdout); return 1;
-        case HELP: fputs(help, stdout); return 1;
-        default: ok = false; break; /* reported by command_line_option */
+        case TTL:
+            ok = whole(&o->udp.ttl, "ttl", optarg, 0, 255);
+            break;
+        case SPEED:
+            ok = parse_speed(&o->speed, optarg);
+            break;
+        case KEYS:
+            scenario_write_keys(stdout);
+            return 1;
+        case HELP:
+            fputs(help, stdout);
+            return 1;
+        default:
+            ok = false;
+            break; /* reported by command_line_option */
         }
         if (!ok) return 1 + 2;
     }
@@ -171,7 +197,8 @@ static int parse(Options *o, int argc, char **argv)
         return 1 + command_line_wrong("exercise", "one SCENARIO at a time, not also '%s'", argv[optind + 1]);
     if (optind == argc || !(o->out || o->send || o->datagrams))
         return 1 + command_line_wrong("exercise", "%s: usage: pitviper exercise SCENARIO (-o LOG | --send ADDRESS)",
-                              optind == argc ? "no SCENARIO is named" : "neither -o LOG nor --send ADDRESS is given");
+                                      optind == argc ? "no SCENARIO is named"
+                                                     : "neither -o LOG nor --send ADDRESS is given");
     if (of_sending && !o->send) {
         log_error("exercise: --%s is of datagrams that are sent: give --send ADDRESS too, or leave it out", of_sending);
         return 1 + 2;
@@ -229,7 +256,8 @@ static Status read_scenario(Scenario *scenario, const Options *o)
         if (!etc_path(bundled, sizeof bundled, name) || !is_file(bundled)) {
             WordMeant meant = scenario_meant(o->scenario);
             log_error("exercise: there is no file '%s' and no scenario of that name%s `pitviper exercise --help` lists "
-                      "them", o->scenario, *word_hint(&meant) ? meant.hint : ";");
+                      "them",
+                      o->scenario, *word_hint(&meant) ? meant.hint : ";");
             return STATUS_BAD_VALUE;
         }
         memcpy(path, bundled, sizeof path);
@@ -282,7 +310,7 @@ static void wait_until(double until_s)
         const double left_s = until_s - wall_clock_s();
         if (!(left_s > 0)) return;
         const double          part_s = fmin(left_s, 0.1);
-        const struct timespec part   = {0, (long)(part_s * 1e9)};
+        const struct timespec part = {0, (long)(part_s * 1e9)};
         nanosleep(&part, NULL);
     }
 }
@@ -298,8 +326,8 @@ static void show_progress(const Exercise *exercise)
 
 static double epoch_of(const Scenario *scenario, bool live)
 {
-    static const double undated_unix_s = 1e9;           /* a round time, recognisable as not a date */
-    static const double summer_unix_s = 1718992800;     /* 2024-06-21 18:00 UTC */
+    static const double undated_unix_s = 1e9;       /* a round time, recognisable as not a date */
+    static const double summer_unix_s = 1718992800; /* 2024-06-21 18:00 UTC */
     double              unix_s;
     if (live) return 1e-9 * (double)dis_udp_now_ns();
     if (*scenario->dis.date && text_to_unix_s(&unix_s, scenario->dis.date)) return unix_s;
@@ -318,7 +346,7 @@ static Status play(Run *run, const Cast *cast, double epoch_unix_s, double speed
         if (run->udp && isfinite(speed)) wait_until(begun_s + exercise_time(exercise) / speed);
         if (stop_asked()) break;
         time_s = exercise_time(exercise);
-        more   = exercise_step(exercise);
+        more = exercise_step(exercise);
         if (wall_clock_s() - shown_s >= 1) {
             show_progress(exercise);
             shown_s = wall_clock_s();
@@ -330,12 +358,12 @@ static Status play(Run *run, const Cast *cast, double epoch_unix_s, double speed
 
     const ExerciseCounts *counts = exercise_counts(exercise);
     log_print("%.1f s, %d entities, %llu PDUs, %llu datagrams, %llu octets", fmin(time_s, cast->scenario->duration_s),
-           exercise_most_received(exercise), (unsigned long long)counts->pdus, (unsigned long long)counts->datagrams,
-           (unsigned long long)counts->octets);
+              exercise_most_received(exercise), (unsigned long long)counts->pdus, (unsigned long long)counts->datagrams,
+              (unsigned long long)counts->octets);
     if (counts->malformed) log_print(", %llu malformed", (unsigned long long)counts->malformed);
     if (counts->lost || counts->duplicated || counts->overtaken)
         log_print(", %llu lost, %llu twice, %llu overtaken", (unsigned long long)counts->lost,
-               (unsigned long long)counts->duplicated, (unsigned long long)counts->overtaken);
+                  (unsigned long long)counts->duplicated, (unsigned long long)counts->overtaken);
     log_print("\n");
     exercise_destroy(exercise);
     return run->failed ? STATUS_IO : STATUS_OK;
@@ -361,10 +389,10 @@ static Status open_outputs(Run *run, const Options *o, double epoch_unix_s)
 
 int exercise_command(int argc, char **argv)
 {
-    Options  o = {.speed = 1, .udp = dis_udp_default_config()};
-    Scenario scenario = {0};
-    Cast    *cast = NULL;
-    Run      run = {0};
+    Options   o = {.speed = 1, .udp = dis_udp_default_config()};
+    Scenario  scenario = {0};
+    Cast     *cast = NULL;
+    Run       run = {0};
     const int stop = parse(&o, argc, argv);
     if (stop) return stop - 1;
 
@@ -391,8 +419,8 @@ int exercise_command(int argc, char **argv)
         const DisUdpCounters counters = dis_udp_counters(run.udp);
         if (counters.send_failed && !counters.sent) {
             log_error("exercise: --send %s: none of %llu datagrams could be sent: %s; `ip route get` says where they "
-                      "would leave, --interface names another way", o.send, (unsigned long long)counters.send_failed,
-                      strerror(counters.send_error));
+                      "would leave, --interface names another way",
+                      o.send, (unsigned long long)counters.send_failed, strerror(counters.send_error));
             status = STATUS_IO;
         } else if (counters.send_failed) {
             log_warn("exercise: --send %s: %llu of %llu datagrams were not taken by the network: %s", o.send,

@@ -45,19 +45,30 @@ typedef struct FrameOptions {
 static int parse(FrameOptions *o, int argc, char **argv)
 {
     enum { OUT = 256, OVERWRITE, THREADS, NO_SKIP, FORCE, HELP };
-    static const struct option options[] = {
-        {"out", 1, NULL, OUT},         {"overwrite", 0, NULL, OVERWRITE}, {"threads", 1, NULL, THREADS},
-        {"no-skip", 0, NULL, NO_SKIP}, {"force", 0, NULL, FORCE},         {"help", 0, NULL, HELP},
-        {NULL, 0, NULL, 0}};
-    *o     = (FrameOptions){.threads = thread_processors()};
+    static const struct option options[] = {{"out", 1, NULL, OUT},
+                                            {"overwrite", 0, NULL, OVERWRITE},
+                                            {"threads", 1, NULL, THREADS},
+                                            {"no-skip", 0, NULL, NO_SKIP},
+                                            {"force", 0, NULL, FORCE},
+                                            {"help", 0, NULL, HELP},
+                                            {NULL, 0, NULL, 0}};
+    *o = (FrameOptions){.threads = thread_processors()};
     optind = 0; /* start anew */
     for (int option; (option = command_line_option(argc, argv, "h", options)) != -1;) {
         long long number;
         switch (option) {
-        case OUT: o->out = optarg; break;
-        case OVERWRITE: o->overwrite = true; break;
-        case NO_SKIP: o->no_skip = true; break;
-        case FORCE: o->forced = true; break;
+        case OUT:
+            o->out = optarg;
+            break;
+        case OVERWRITE:
+            o->overwrite = true;
+            break;
+        case NO_SKIP:
+            o->no_skip = true;
+            break;
+        case FORCE:
+            o->forced = true;
+            break;
         case THREADS:
             if (!text_to_long(&number, optarg) || number < 1 || number > 256) {
                 return 1 + command_line_wrong("frame", "--threads: '%s' is not a whole number in 1 .. 256", optarg);
@@ -65,8 +76,11 @@ static int parse(FrameOptions *o, int argc, char **argv)
             o->threads = (int)number;
             break;
         case HELP:
-        case 'h': fputs(help, stdout); return 1;
-        default: return 1 + 2; /* reported by command_line_option */
+        case 'h':
+            fputs(help, stdout);
+            return 1;
+        default:
+            return 1 + 2; /* reported by command_line_option */
         }
     }
     if (argc == optind) return 1 + command_line_wrong("frame", "no FILE is named");
@@ -83,7 +97,7 @@ static void describe_ground(const LandscapeParts *g)
     char size[64 * elevation_max_levels] = "";
     if (g->invented) {
         log_print("ground: invented, from %d places, %d clear lines, %d places of sea and land\n", g->said.fix_count,
-                g->said.line_count, g->said.place_count);
+                  g->said.line_count, g->said.place_count);
         return;
     }
     if (g->store && *g->store) {
@@ -113,7 +127,7 @@ static void describe(const SavedFrame *file)
     log_print("frame %d of host %s at %.3f s, %s; made by pitviper %s%s\n", file->frame, host, file->time_s, utc,
               version, strcmp(file->version, PITVIPER_VERSION) == 0 ? "" : ", this is " PITVIPER_VERSION);
     log_print("picture: %d x %d, %s; %d entities of %d models, %d puffs of smoke and dust\n", r->view.width,
-            r->view.height, bands, file->snapshot.count, file->model_count, file->snapshot.puff_count);
+              r->view.height, bands, file->snapshot.count, file->model_count, file->snapshot.puff_count);
     describe_ground(&file->ground);
     log_print("tables: %d of etc/ and models, by SHA-256\n", file->tables.count);
     for (int i = 0; i < file->tables.count; i++)
@@ -126,25 +140,33 @@ static void describe(const SavedFrame *file)
 static Status write_truth(const char *out, const SavedFrame *file, const SavedScene *s, const SavedAgain *again,
                           const TruthNoise *noise, const RadarFrame *radar, Arena *arena)
 {
-    char        path[path_size];
-    Target     *target = arena_alloc(arena, (size_t)s->snapshot.count + 1, sizeof *target);
-    FrameError  error;
-    RadarError  of_radar;
-    const int   host = file->eye.host_index;
+    char       path[path_size];
+    Target    *target = arena_alloc(arena, (size_t)s->snapshot.count + 1, sizeof *target);
+    FrameError error;
+    RadarError of_radar;
+    const int  host = file->eye.host_index;
     if (!target) return STATUS_NO_MEMORY;
-    FrameRecord record = {.frame = file->frame, .time_s = file->time_s, .snapshot = &s->snapshot, .catalog = s->catalog,
-                          .host = host >= 0 ? &s->snapshot.entity[host] : NULL, .request = &file->request,
-                          .hfov_rad = s->config.sensor.hfov_deg * rad_per_deg, .gimbal_at_limit = file->at_limit,
-                          .scene_rate_px_s = {file->rate_px_s[0], file->rate_px_s[1]}, .sun = &again->sun,
-                          .frame_sha256 = again->made.sha256, .radar = radar};
+    FrameRecord record = {.frame = file->frame,
+                          .time_s = file->time_s,
+                          .snapshot = &s->snapshot,
+                          .catalog = s->catalog,
+                          .host = host >= 0 ? &s->snapshot.entity[host] : NULL,
+                          .request = &file->request,
+                          .hfov_rad = s->config.sensor.hfov_deg * rad_per_deg,
+                          .gimbal_at_limit = file->at_limit,
+                          .scene_rate_px_s = {file->rate_px_s[0], file->rate_px_s[1]},
+                          .sun = &again->sun,
+                          .frame_sha256 = again->made.sha256,
+                          .radar = radar};
     memcpy(record.p_eye_ecef, file->eye.p_ecef, sizeof record.p_eye_ecef);
     memcpy(record.v_eye_mps, file->eye.v_ecef_mps, sizeof record.v_eye_mps);
     memcpy(record.r_ecef_from_body, file->r_ecef_from_body, sizeof record.r_ecef_from_body);
     memcpy(record.r_ecef_from_cam, file->eye.r_ecef_from_cam, sizeof record.r_ecef_from_cam);
     record.target_count =
         truth_targets(target, &again->picture, &s->world, &s->snapshot, &file->request, &file->eye, noise);
-    if (frame_error(&error, &(FrameErrorOf){&again->picture, &s->world, &s->snapshot, &file->request, s->config.models.sag_m,
-                                            file->all_on_ground, world_air_k(&s->world, file->unix_s + file->time_s)},
+    if (frame_error(&error,
+                    &(FrameErrorOf){&again->picture, &s->world, &s->snapshot, &file->request, s->config.models.sag_m,
+                                    file->all_on_ground, world_air_k(&s->world, file->unix_s + file->time_s)},
                     target, record.target_count))
         record.error = &error;
     record.target = target_records(target, record.target_count, &s->snapshot, s->catalog, arena);
@@ -154,7 +176,7 @@ static Status write_truth(const char *out, const SavedFrame *file, const SavedSc
         record.radar_error = &of_radar;
     }
     if (snprintf(path, sizeof path, "%s/truth.jsonl", out) >= (int)sizeof path) return STATUS_BAD_VALUE;
-    FILE  *to     = output_file(path, 0);
+    FILE  *to = output_file(path, 0);
     Status status = to ? record_write_frame(to, &record) : STATUS_IO;
     if (to && fclose(to) != 0 && status == STATUS_OK) status = STATUS_IO;
     if (status == STATUS_IO) log_error("frame: cannot write %s: %s", path, output_reason(errno));
@@ -164,8 +186,8 @@ static Status write_truth(const char *out, const SavedFrame *file, const SavedSc
 static Status write_radar(const char *out, const SavedFrame *file, const SavedScene *s, const RadarFrame *radar)
 {
     Consumer *consumer;
-    Frame frame = {
-        .number = file->frame, .time_s = file->time_s, .unix_s = file->unix_s + file->time_s, .radar = radar};
+    Frame     frame = {
+            .number = file->frame, .time_s = file->time_s, .unix_s = file->unix_s + file->time_s, .radar = radar};
     snprintf(frame.host, sizeof frame.host, "%s", file->host);
     Status status = consume_radar(&consumer, &(PictureFiles){.out = out, .config = &s->config});
     if (status != STATUS_OK) return status;
@@ -180,28 +202,42 @@ static Status write_radar(const char *out, const SavedFrame *file, const SavedSc
 static Status write_products(const FrameOptions *o, const SavedFrame *file, SavedScene *s, const SavedAgain *again,
                              const RadarFrame *radar, Pool *pool, Arena *arena)
 {
-    Chain      *chain[BAND_COUNT] = {NULL};
-    FrameLevel *level = arena_alloc(arena, BAND_COUNT, sizeof *level);
+    Chain       *chain[BAND_COUNT] = {NULL};
+    FrameLevel  *level = arena_alloc(arena, BAND_COUNT, sizeof *level);
     FrameDisplay display[BAND_COUNT];
-    TruthNoise  noise;
-    char        hash[sha256_text_size];
-    unsigned    raw = 0;
-    Status      status = level ? sensors_chains(chain, &s->sensors, &s->config) : STATUS_NO_MEMORY;
+    TruthNoise   noise;
+    char         hash[sha256_text_size];
+    unsigned     raw = 0;
+    Status       status = level ? sensors_chains(chain, &s->sensors, &s->config) : STATUS_NO_MEMORY;
     for (int b = 0; b < BAND_COUNT; b++)
         if (chain[b] && s->config.detector.raw) raw |= 1u << b;
     const unsigned kept = file->request.bands | (frame_files_truth(&s->config) ? frame_truth : 0);
     if (status == STATUS_OK) status = frame_files_prepare(o->out, kept, raw);
     if (status == STATUS_OK) {
-        const DisplaysOf of = {.config = &s->config, .picture = &again->picture, .chain = chain, .level = level,
-                               .frame = file->frame, .time_s = file->time_s,
-                               .rate_px_s = {file->rate_px_s[0], file->rate_px_s[1]}, .counts = raw != 0};
+        const DisplaysOf of = {.config = &s->config,
+                               .picture = &again->picture,
+                               .chain = chain,
+                               .level = level,
+                               .frame = file->frame,
+                               .time_s = file->time_s,
+                               .rate_px_s = {file->rate_px_s[0], file->rate_px_s[1]},
+                               .counts = raw != 0};
         status = frame_displays_make(display, &of, file->request.bands, pool, arena);
     }
     if (status == STATUS_OK) {
-        const FrameFiles files = {.out = o->out, .config = &s->config, .world = &s->world, .picture = &again->picture,
-                                  .snapshot = &s->snapshot, .request = &file->request, .host = file->host,
-                                  .config_sha256 = file->config_sha256, .frame = file->frame, .time_s = file->time_s,
-                                  .unix_s = file->unix_s + file->time_s, .png = s->config.publish.png, .raw = raw != 0,
+        const FrameFiles files = {.out = o->out,
+                                  .config = &s->config,
+                                  .world = &s->world,
+                                  .picture = &again->picture,
+                                  .snapshot = &s->snapshot,
+                                  .request = &file->request,
+                                  .host = file->host,
+                                  .config_sha256 = file->config_sha256,
+                                  .frame = file->frame,
+                                  .time_s = file->time_s,
+                                  .unix_s = file->unix_s + file->time_s,
+                                  .png = s->config.publish.png,
+                                  .raw = raw != 0,
                                   .display = display};
         frame_expose(&noise, chain, &again->picture, &s->config);
         status = frame_files_write(hash, &files, pool);
@@ -217,14 +253,15 @@ static Status write_products(const FrameOptions *o, const SavedFrame *file, Save
 /* ---- rendered again ----------------------------------------------------------------------------- */
 
 /* Measures with the radar again; differ grows by one where the map is another. */
-static Status measure(const RadarFrame **out, int *differ, const SavedFrame *file, SavedScene *s, const Picture *picture,
-                      Pool *pool, Arena *arena)
+static Status measure(const RadarFrame **out, int *differ, const SavedFrame *file, SavedScene *s,
+                      const Picture *picture, Pool *pool, Arena *arena)
 {
     bool         same;
     SeekerRadar *radar;
     Status       status = frame_radar_open(&radar, &s->config, "avx2", false);
     if (status != STATUS_OK) return status;
-    status = saved_radar_again(out, radar, &(SavedStage){file, &s->snapshot, &s->world, &s->config, pool, arena}, picture);
+    status =
+        saved_radar_again(out, radar, &(SavedStage){file, &s->snapshot, &s->world, &s->config, pool, arena}, picture);
     if (status == STATUS_OK) status = saved_radar_same(&same, file, *out);
     /* the preset is the radar's own */
     RadarPreset *preset = status == STATUS_OK ? arena_alloc(arena, 1, sizeof *preset) : NULL;
@@ -252,7 +289,8 @@ static Status show(int *differ, const FrameOptions *o, const SavedFrame *file, S
     SavedAgain *again = arena_alloc(arena, 1, sizeof *again);
     if (!again) return STATUS_NO_MEMORY;
     const double begun_s = wall_clock_s();
-    Status status = saved_again(again, &(SavedStage){file, &s->snapshot, &s->world, &s->config, pool, arena}, o->no_skip);
+    Status       status =
+        saved_again(again, &(SavedStage){file, &s->snapshot, &s->world, &s->config, pool, arena}, o->no_skip);
     if (status != STATUS_OK) return status;
     log_detail("frame: rendered in %.0f ms", 1e3 * (wall_clock_s() - begun_s));
     *differ = saved_differences(file, &again->made, true);
@@ -260,8 +298,8 @@ static Status show(int *differ, const FrameOptions *o, const SavedFrame *file, S
         log_print("the same: all %d planes, to the bit; frame %.64s\n", file->plane_count, again->made.sha256);
     else
         log_error("frame: %d of %d planes differ; frame %.64s, was %.64s%s", *differ, file->plane_count,
-                   again->made.sha256, file->frame_sha256,
-                   strcmp(file->version, PITVIPER_VERSION) == 0 ? "" : "; another version of pitviper made it");
+                  again->made.sha256, file->frame_sha256,
+                  strcmp(file->version, PITVIPER_VERSION) == 0 ? "" : "; another version of pitviper made it");
     const RadarFrame *radar = NULL;
     if (file->measured) status = measure(&radar, differ, file, s, &again->picture, pool, arena);
     return status == STATUS_OK && o->out ? write_products(o, file, s, again, radar, pool, arena) : status;
@@ -274,14 +312,14 @@ int frame_command(int argc, char **argv)
     size_t       count;
     int          differ = 0;
     SavedScene  *scene = NULL;
-    SavedFrame   *file = NULL;
+    SavedFrame  *file = NULL;
     Pool        *pool = NULL;
     const int    stop = parse(&o, argc, argv);
     if (stop) return stop - 1;
     thread_flush_denormals();
     Arena *arena = arena_create();
     scene = arena ? arena_alloc(arena, 1, sizeof *scene) : NULL;
-    file  = arena ? arena_alloc(arena, 1, sizeof *file) : NULL;
+    file = arena ? arena_alloc(arena, 1, sizeof *file) : NULL;
     Status status = scene && file ? STATUS_OK : STATUS_NO_MEMORY;
     if (status == STATUS_OK) status = text_read_file(&bytes, &count, "frame", o.path, most_octets);
     if (status == STATUS_OK) status = saved_frame_parse(file, (const uint8_t *)bytes, count, o.path, arena);

@@ -19,10 +19,10 @@ typedef char OutputPath[output_path_size];
 
 /* The files of a command that writes some of fixed names into a folder. */
 typedef struct OutputFiles {
-    const char        *command;  /* for messages, and of the folder's name where none is given */
+    const char        *command; /* for messages, and of the folder's name where none is given */
     int                count;
-    const char *const *name;     /* [count] */
-    const char        *given;    /* the folder; NULL: that of the model's name, without its own folders, and _COMMAND */
+    const char *const *name;  /* [count] */
+    const char        *given; /* the folder; NULL: that of the model's name, without its own folders, and _COMMAND */
     const char        *model, *endings; /* the model's name ends before the first of these characters */
     bool               overwrite;
 } OutputFiles;

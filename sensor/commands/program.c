@@ -1,4 +1,5 @@
-/* sensor/commands/program.c: what the programs of Pitviper do with their streams, the environment and common options. */
+/* sensor/commands/program.c: what the programs of Pitviper do with their streams, the environment and common options.
+ */
 #include "sensor/commands/program.h"
 
 #include <errno.h>
@@ -17,7 +18,8 @@ const char program_common_help[] =
 void program_fill_closed(void)
 {
     int fd;
-    while ((fd = open("/dev/null", O_RDONLY)) >= 0 && fd <= STDERR_FILENO) {}
+    while ((fd = open("/dev/null", O_RDONLY)) >= 0 && fd <= STDERR_FILENO) {
+    }
     if (fd > STDERR_FILENO) close(fd);
 }
 
@@ -57,7 +59,7 @@ bool program_take_verbosity(int *argc, char **argv)
         quiet |= q, verbose |= v;
         if (!q && !v) argv[kept++] = argv[i];
     }
-    argv[*argc = kept] = NULL;
+    argv[ *argc = kept] = NULL;
     if (quiet && verbose) log_error("--quiet and --verbose exclude each other; leave one out");
     else if (quiet) log_set_level(LOG_WARN);
     else if (verbose) log_set_level(LOG_DETAIL);

@@ -1,4 +1,5 @@
-/* sensor/commands/program.h: what pitviper and pitviper-bench do with their streams, the environment and common options. */
+/* sensor/commands/program.h: what pitviper and pitviper-bench do with their streams, the environment and common
+ * options. */
 #ifndef SENSOR_COMMANDS_PROGRAM_H
 #define SENSOR_COMMANDS_PROGRAM_H
 
@@ -17,8 +18,8 @@ bool program_asks_for(const char *name, const char *letter, int argc, char **arg
 /* Whether PITVIPER_ETC, where it is set, is a folder; and, for a command that reads tables, whether they are there.
  * Logged. --default and --keys read none. */
 bool program_tables_there(bool reads, int argc, char **argv);
-/* Flushes standard output. The exit code, 1 instead of 0 when the output could not be written; a reader that has left before
- * the end is no failure. */
-int  program_printed(int code);
+/* Flushes standard output. The exit code, 1 instead of 0 when the output could not be written; a reader that has left
+ * before the end is no failure. */
+int program_printed(int code);
 
 #endif

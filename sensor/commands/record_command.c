@@ -48,18 +48,29 @@ static bool copy_text(char *out, size_t out_size, const char *name, const char *
 static int parse(Options *o, int argc, char **argv)
 {
     enum { OUT = 'o', HELP = 'h', ADDRESS = 256, INTERFACE, PORT, FOR, COUNT, OVERWRITE };
-    static const struct option options[] = {
-        {"out", 1, NULL, OUT},   {"address", 1, NULL, ADDRESS}, {"interface", 1, NULL, INTERFACE},
-        {"port", 1, NULL, PORT}, {"for", 1, NULL, FOR},         {"count", 1, NULL, COUNT},
-        {"overwrite", 0, NULL, OVERWRITE}, {"help", 0, NULL, HELP}, {NULL, 0, NULL, 0}};
+    static const struct option options[] = {{"out", 1, NULL, OUT},
+                                            {"address", 1, NULL, ADDRESS},
+                                            {"interface", 1, NULL, INTERFACE},
+                                            {"port", 1, NULL, PORT},
+                                            {"for", 1, NULL, FOR},
+                                            {"count", 1, NULL, COUNT},
+                                            {"overwrite", 0, NULL, OVERWRITE},
+                                            {"help", 0, NULL, HELP},
+                                            {NULL, 0, NULL, 0}};
     optind = 0; /* restart getopt */
     for (int option; (option = command_line_option(argc, argv, "o:h", options)) != -1;) {
         long long number;
         bool      ok = true;
         switch (option) {
-        case OUT: o->out = optarg; break;
-        case ADDRESS: ok = copy_text(o->udp.address, sizeof o->udp.address, "address", optarg); break;
-        case INTERFACE: ok = copy_text(o->udp.interface, sizeof o->udp.interface, "interface", optarg); break;
+        case OUT:
+            o->out = optarg;
+            break;
+        case ADDRESS:
+            ok = copy_text(o->udp.address, sizeof o->udp.address, "address", optarg);
+            break;
+        case INTERFACE:
+            ok = copy_text(o->udp.interface, sizeof o->udp.interface, "interface", optarg);
+            break;
         case PORT:
             ok = text_to_long(&number, optarg) && number >= 1 && number <= 65535;
             if (ok) o->udp.port = (int)number;
@@ -73,9 +84,14 @@ static int parse(Options *o, int argc, char **argv)
             ok = text_to_long(&o->count, optarg) && o->count >= 1;
             if (!ok) log_error("record: --count: '%s' is not a whole number from 1 on", optarg);
             break;
-        case OVERWRITE: o->overwrite = true; break;
-        case HELP: fputs(help, stdout); return 1;
-        default: return 1 + 2; /* reported by command_line_option */
+        case OVERWRITE:
+            o->overwrite = true;
+            break;
+        case HELP:
+            fputs(help, stdout);
+            return 1;
+        default:
+            return 1 + 2; /* reported by command_line_option */
         }
         if (!ok) return 1 + 2;
     }
@@ -90,7 +106,7 @@ static int parse(Options *o, int argc, char **argv)
 typedef struct Recording {
     DisUdp      *udp;
     DisRecorder *recorder;
-    long long    left;            /* datagrams left to record; -1: any number */
+    long long    left; /* datagrams left to record; -1: any number */
     uint64_t     datagrams, octets;
     double       begun_s, shown_s, flushed_s; /* wall clock */
     uint64_t     shown;
@@ -193,7 +209,8 @@ int record_command(int argc, char **argv)
     if (!begun) log_warn("record: nothing came: %s is the earlier recording, as it was", o.out);
     if (r.datagrams == 0)
         log_warn("record: nothing came on %s; --port, --address and --interface say where to listen, `ss -ulpn` and "
-                 "`ip address` show what there is", where);
+                 "`ip address` show what there is",
+                 where);
     if (lost(&counters))
         log_warn("record: this machine was too slow for some: lost in the kernel %llu, in the queue %llu; a larger "
                  "net.core.rmem_max or a faster disk helps",

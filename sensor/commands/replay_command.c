@@ -43,11 +43,11 @@ static double wall_of(void *clock, double t_s)
 static void pace(Pace *p, double t_s)
 {
     if (!isfinite(p->speed)) return;
-    const double    until_s = wall_of(p, t_s);
+    const double        until_s = wall_of(p, t_s);
     static const double look_s = 0.1; /* a signal that comes just before a wait does not end it */
     for (double now_s = wall_clock_s(); now_s < until_s && !stop_asked(); now_s = wall_clock_s()) {
         const double    next_s = fmin(until_s, now_s + look_s);
-        struct timespec next   = {(time_t)next_s, (long)((next_s - floor(next_s)) * 1e9)};
+        struct timespec next = {(time_t)next_s, (long)((next_s - floor(next_s)) * 1e9)};
         clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &next, NULL);
     }
 }
@@ -66,8 +66,9 @@ static Status take_only(double *last, const Options *o, double first)
 {
     for (int i = 0, at = 0; i < o->save_count; i++)
         if (o->save[i] < first || o->save[i] > *last || !wanted(o, &at, o->save[i])) {
-            log_error("replay: --save-frame: frame %d is not rendered: they go from %.0f to %.0f%s; see also --from, --to and --rate",
-                      o->save[i], first, *last, o->only_count ? ", those of --only" : "");
+            log_error(
+                "replay: --save-frame: frame %d is not rendered: they go from %.0f to %.0f%s; see also --from, --to and --rate",
+                o->save[i], first, *last, o->only_count ? ", those of --only" : "");
             return STATUS_BAD_VALUE;
         }
     if (o->only_count == 0) return STATUS_OK;
@@ -96,21 +97,22 @@ typedef struct FrameSpan {
 } FrameSpan;
 
 /* The span of the plan and of --from and --to, or, causal, to the last datagram received unless --to is later. */
-static Status find_span(FrameSpan *out, const Run *run, const Player *player, const HostPlan *plan, const FrameGrid *grid)
+static Status find_span(FrameSpan *out, const Run *run, const Player *player, const HostPlan *plan,
+                        const FrameGrid *grid)
 {
-    const Options *o      = &run->options;
+    const Options *o = &run->options;
     const Config  *config = &o->config;
     double         from_s = plan->start_s, to_s = plan->end_s;
     const double   first_s = run->survey.first_s, last_s = config->causal ? player_last_s(player) : run->survey.last_s;
     const double   wanted_from_s = config_span_time_s(config->exercise.from, first_s, last_s);
-    const double   wanted_to_s   = config_span_time_s(config->exercise.to, first_s, last_s);
+    const double   wanted_to_s = config_span_time_s(config->exercise.to, first_s, last_s);
     if (config_span_outside(config->exercise.from, config->exercise.to, first_s, last_s)) return STATUS_BAD_VALUE;
     if (!isfinite(to_s) && isnan(wanted_to_s)) to_s = last_s;
     if (wanted_from_s > from_s) from_s = wanted_from_s;
     if (wanted_to_s < to_s) to_s = wanted_to_s;
 
     double     first = ceil(from_s * grid->rate_hz - 1e-9) - grid->origin;
-    double     last  = floor(to_s * grid->rate_hz + 1e-9) - grid->origin;
+    double     last = floor(to_s * grid->rate_hz + 1e-9) - grid->origin;
     const bool single = to_s >= from_s && !(last >= first); /* shorter than an interval: one frame, at its start */
     if (!(last >= first || single) || last > 999999) {
         char host[dis_id_text_size];
@@ -125,7 +127,7 @@ static Status find_span(FrameSpan *out, const Run *run, const Player *player, co
     }
     if (single) last = first;
     const Status status = take_only(&last, o, first);
-    *out                = (FrameSpan){from_s, to_s, first, last, single};
+    *out = (FrameSpan){from_s, to_s, first, last, single};
     return status;
 }
 
@@ -137,11 +139,11 @@ static Status check_span(Run *run, const Player *player, const HostPlan *plan, c
 
 static Status replay_frames(Run *run, Session *session, Player *player, const HostPlan *plan, const FrameGrid *grid)
 {
-    const Options *o       = &run->options;
-    FrameSpan      span    = {0};
-    Status         status  = find_span(&span, run, player, plan, grid);
-    int            next    = 0;
-    Pace          *clock   = run->clock;
+    const Options *o = &run->options;
+    FrameSpan      span = {0};
+    Status         status = find_span(&span, run, player, plan, grid);
+    int            next = 0;
+    Pace          *clock = run->clock;
     const double   begun_s = wall_clock_s();
     *clock = (Pace){begun_s, span.single ? span.from_s : run_frame_s(grid, span.first), o->speed};
     for (double n = span.first; n <= span.last && status == STATUS_OK; n++) {
@@ -159,8 +161,8 @@ static Status replay_frames(Run *run, Session *session, Player *player, const Ho
     if (session_result(session)->frames == 0 && !run->stopped) {
         if (plan->any_munition)
             log_error("replay: exercise.host: munition: none flew at a frame's time between %.3f and %.3f s; `pitviper "
-                      "inspect %s` lists who was there, --host ID or --host observer shows what there is", span.from_s,
-                      span.to_s, o->log);
+                      "inspect %s` lists who was there, --host ID or --host observer shows what there is",
+                      span.from_s, span.to_s, o->log);
         else
             log_error("replay: %s was never there at a frame's time; see `pitviper inspect`, --from, --to and --rate",
                       session_host(session));
@@ -241,21 +243,24 @@ static void log_nothing(const Run *run, const DisLog *log)
             n += (size_t)snprintf(heard + n, sizeof heard - n, "%s%d", n ? ", " : "", e);
             if (first < 0) first = e;
         }
-        log_error("replay: %s holds no Entity State with a usable position of exercise %d (%llu datagrams heard); it holds PDUs "
-                  "of exercise %s: --set exercise.exercise=%d takes that one, -2 all", path, run->exercise,
-                  (unsigned long long)c->datagrams, heard, first);
+        log_error(
+            "replay: %s holds no Entity State with a usable position of exercise %d (%llu datagrams heard); it holds PDUs "
+            "of exercise %s: --set exercise.exercise=%d takes that one, -2 all",
+            path, run->exercise, (unsigned long long)c->datagrams, heard, first);
         return;
     }
     for (int i = 1; i < DIS_DROP_COUNT; i++)
         if (c->dropped[i] > c->dropped[why]) why = i;
     if (c->dropped[why] > 0)
-        log_error("replay: %s holds no Entity State with a usable position (%llu datagrams heard); %llu PDUs are dropped, most for "
-                  "%s; `pitviper inspect %s` says what it holds", path, (unsigned long long)c->datagrams,
-                  (unsigned long long)c->dropped[why], dis_drop_cause((DisDrop)why), path);
+        log_error(
+            "replay: %s holds no Entity State with a usable position (%llu datagrams heard); %llu PDUs are dropped, most for "
+            "%s; `pitviper inspect %s` says what it holds",
+            path, (unsigned long long)c->datagrams, (unsigned long long)c->dropped[why], dis_drop_cause((DisDrop)why),
+            path);
     else
         log_error("replay: %s holds no Entity State with a usable position (%llu datagrams heard); "
-                  "`pitviper inspect %s` says what it holds, --set exercise.port=N takes another port", path,
-                  (unsigned long long)c->datagrams, path);
+                  "`pitviper inspect %s` says what it holds, --set exercise.port=N takes another port",
+                  path, (unsigned long long)c->datagrams, path);
 }
 
 static Status open_log(Run *run, DisLog *log)
@@ -263,8 +268,8 @@ static Status open_log(Run *run, DisLog *log)
     const Options *o = &run->options;
     DisLog         heard;
     Hash           hash = {sha256_begin(), true};
-    Status         status = hash.digest ? dis_log_open_read(log, o->log, o->config.exercise.port, hash_octets, &hash)
-                                        : STATUS_NO_MEMORY;
+    Status         status =
+        hash.digest ? dis_log_open_read(log, o->log, o->config.exercise.port, hash_octets, &hash) : STATUS_NO_MEMORY;
     if (hash.digest) {
         const Status ended = sha256_end(run->log_sha256, hash.digest, hash.good);
         if (status == STATUS_OK) status = ended;
@@ -279,12 +284,13 @@ static Status open_log(Run *run, DisLog *log)
         choice_add(&run->choices, "port: any that carries DIS, nothing went to 3000 (exercise.port)");
     run->own = (uint64_t)player_drop_own(log, &o->config);
     if (run->own > 0)
-        choice_add(&run->choices, "own: %llu datagrams of %d:%d are this node's, left out (node.site, "
+        choice_add(&run->choices,
+                   "own: %llu datagrams of %d:%d are this node's, left out (node.site, "
                    "node.application)",
                    (unsigned long long)run->own, o->config.node.site, o->config.node.application);
     run->view = heard = *log;
     const bool starts = !o->config.causal || player_opening(&run->view, &heard, &run->until_s, log, &o->config);
-    status            = run_survey(run, &heard);
+    status = run_survey(run, &heard);
     if (status == STATUS_OK && dis_log_failed(log)) status = STATUS_IO;
     if (status == STATUS_OK && (!starts || run->survey.track_count == 0)) {
         log_nothing(run, log);
@@ -310,7 +316,7 @@ static Status send_pdu(void *user, const uint8_t *pdu, size_t octets)
  * would flood the network. */
 static Status open_sending(Sending *s, Run *run, const DisLog *log)
 {
-    const Options     *o   = &run->options;
+    const Options     *o = &run->options;
     const DisUdpConfig udp = run_network(&o->config);
     if (strcmp(o->config.publish.dis, "off") == 0) return STATUS_OK;
     if (!isfinite(o->speed)) {
@@ -356,7 +362,7 @@ static Status open_folders(const Run *run, const DisEntityId host[])
 {
     const Options *o = &run->options;
     char           name[run_folder_size];
-    const bool     there  = access(o->out, F_OK) == 0; /* else a video may be meant for it */
+    const bool     there = access(o->out, F_OK) == 0; /* else a video may be meant for it */
     Status         status = STATUS_OK;
     if (there && o->host_count <= 1) status = overwrite_video("replay", &o->config, run->bands, NULL, o->overwrite);
     if (status == STATUS_OK) status = overwrite_folder("replay", o->out, o->overwrite);
@@ -374,7 +380,7 @@ static Status open_folders(const Run *run, const DisEntityId host[])
 /* Finds everything that can be known to be wrong, in seconds, before a file is touched. */
 static Status prepare(Run *run, DisLog *log, DisEntityId host[options_hosts_max])
 {
-    const Options *o      = &run->options;
+    const Options *o = &run->options;
     Status         status = run_prepare(run);
     if (status == STATUS_OK) status = video_hosts_check(&o->config, o->host_count);
     if (status == STATUS_OK) status = open_log(run, log);
@@ -388,7 +394,7 @@ static Status look_at_variant(Run *run)
 {
     DisLog      log = {0};
     DisEntityId host[options_hosts_max];
-    run->check          = check_span;
+    run->check = check_span;
     const Status status = prepare(run, &log, host);
     dis_log_close(&log);
     return status;

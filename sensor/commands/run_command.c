@@ -27,25 +27,25 @@ static const double  flush_s = 0.5, show_s = 1;
 static const int64_t check_ns = 100000000; /* a signal may be delivered to another thread: polled at this interval */
 
 typedef struct Live {
-    Run          run;
-    DisUdp      *udp;
-    LiveRecording *recording;       /* NULL: none, or closed */
-    bool         record_whole;      /* it holds all received datagrams, and can be read again */
-    char         where[dis_udp_where_size];
-    LiveCounters counters;
-    Health       health;
-    double       health_s;          /* when it was last checked */
-    char         host[dis_id_text_size]; /* at the end */
-    char         to[run_network_to_size]; /* destination, for messages */
+    Run            run;
+    DisUdp        *udp;
+    LiveRecording *recording;    /* NULL: none, or closed */
+    bool           record_whole; /* it holds all received datagrams, and can be read again */
+    char           where[dis_udp_where_size];
+    LiveCounters   counters;
+    Health         health;
+    double         health_s;                /* when it was last checked */
+    char           host[dis_id_text_size];  /* at the end */
+    char           to[run_network_to_size]; /* destination, for messages */
     /* datagrams received before the choices, each with its own memory */
-    DisDatagram *heard;
-    int          received_count, received_capacity;
-    const Player *player;           /* once there is one */
+    DisDatagram  *heard;
+    int           received_count, received_capacity;
+    const Player *player; /* once there is one */
     /* wall clock, s */
-    double       begun_s, flushed_s, shown_s;
-    uint64_t     shown_frames;      /* by then */
-    int64_t      due_ns;            /* Unix time of the present frame */
-    double       latency_s;         /* from then until it was rendered, the worst since shown_s; NaN: none */
+    double   begun_s, flushed_s, shown_s;
+    uint64_t shown_frames; /* by then */
+    int64_t  due_ns;       /* Unix time of the present frame */
+    double   latency_s;    /* from then until it was rendered, the worst since shown_s; NaN: none */
 } Live;
 
 /* Whether it is to send Data PDUs. */
@@ -53,10 +53,7 @@ static bool publishes(const Live *l) { return strcmp(l->run.options.config.publi
 
 /* ---- when to stop ------------------------------------------------------------------------------ */
 
-static bool over(const Live *l)
-{
-    return stop_asked() || wall_clock_s() - l->begun_s >= l->run.options.for_s;
-}
+static bool over(const Live *l) { return stop_asked() || wall_clock_s() - l->begun_s >= l->run.options.for_s; }
 
 /* ---- what arrives ------------------------------------------------------------------------------ */
 
@@ -92,23 +89,25 @@ static bool take(DisDatagram *out, Live *l, int64_t until_ns)
     return false;
 }
 
-
 static void read_counters(Live *l)
 {
     const DisUdpCounters c = dis_udp_counters(l->udp);
-    l->counters.datagrams   = c.datagrams;
+    l->counters.datagrams = c.datagrams;
     l->counters.lost_kernel = c.lost_kernel;
-    l->counters.lost_queue  = c.lost_queue;
-    l->counters.sent        = c.sent;
+    l->counters.lost_queue = c.lost_queue;
+    l->counters.sent = c.sent;
     l->counters.send_failed = c.send_failed;
-    l->health.sample.error  = c.send_error;
-    l->health.sample.away   = c.away;
+    l->health.sample.error = c.send_error;
+    l->health.sample.away = c.away;
 }
 
 static HealthNames names_of(const Live *l, const Session *session)
 {
     const Config *config = &l->run.options.config;
-    return (HealthNames){.where = l->where, .to = l->to, .exercise = exercise_to_join(l), .site = config->node.site,
+    return (HealthNames){.where = l->where,
+                         .to = l->to,
+                         .exercise = exercise_to_join(l),
+                         .site = config->node.site,
                          .application = config->node.application,
                          .host = session ? session_host(session) : config->exercise.host};
 }
@@ -123,7 +122,7 @@ static void check_health(Live *l, const Session *session)
     l->health_s = now_s;
     read_counters(l);
     if (session) {
-        l->health.sample.entities  = session_entities(session);
+        l->health.sample.entities = session_entities(session);
         l->health.sample.over_rate = session_over_rate(session);
     }
     const HealthNames names = names_of(l, session);
@@ -133,8 +132,8 @@ static void check_health(Live *l, const Session *session)
     health_line(line, &l->health, (double)(frames - l->shown_frames) / (now_s - l->shown_s), l->latency_s);
     log_status(line);
     l->shown_frames = frames;
-    l->shown_s      = now_s;
-    l->latency_s    = NAN;
+    l->shown_s = now_s;
+    l->latency_s = NAN;
 }
 
 /* ---- listening --------------------------------------------------------------------------------- */
@@ -150,15 +149,15 @@ static Status store_received(Live *l, const DisDatagram *datagram)
 {
     if (l->received_count == l->received_capacity) {
         const int    larger = l->received_capacity ? 2 * l->received_capacity : 4 * player_opening_before;
-        DisDatagram *grown  = realloc(l->heard, (size_t)larger * sizeof *grown);
+        DisDatagram *grown = realloc(l->heard, (size_t)larger * sizeof *grown);
         if (!grown) return STATUS_NO_MEMORY;
-        l->heard          = grown;
+        l->heard = grown;
         l->received_capacity = larger;
     }
     uint8_t *bytes = malloc(datagram->octets + 1);
     if (!bytes) return STATUS_NO_MEMORY;
     memcpy(bytes, datagram->bytes, datagram->octets);
-    l->heard[l->received_count]         = *datagram;
+    l->heard[l->received_count] = *datagram;
     l->heard[l->received_count++].bytes = bytes;
     return STATUS_OK;
 }
@@ -167,7 +166,7 @@ static Status store_received(Live *l, const DisDatagram *datagram)
  * before. */
 static Status listen_first(bool *heard, Live *l)
 {
-    const Config *config   = &l->run.options.config;
+    const Config *config = &l->run.options.config;
     int64_t       until_ns = INT64_MAX; /* not begun */
     DisDatagram   datagram;
     *heard = false;
@@ -180,13 +179,15 @@ static Status listen_first(bool *heard, Live *l)
             if (until_ns < INT64_MAX) continue;
             if (player_starts(&l->run.first, &datagram, config)) {
                 l->run.until_s = player_listens_until_s(&datagram, config);
-                until_ns       = dis_unix_ns_until(l->run.until_s);
+                until_ns = dis_unix_ns_until(l->run.until_s);
                 if (l->received_count > player_opening_before + 1)
                     drop_received(l, l->received_count - player_opening_before - 1);
                 log_info("run: heard the first entity; listening for %g s (exercise.listen_s)",
                          config->exercise.listen_s);
-                log_info("run: what stood or drove before is not known%s; what stands at its first report is taken to have "
-                         "stood there for an hour", *config->heat.marks ? " beyond heat.marks" : " (heat.marks)");
+                log_info(
+                    "run: what stood or drove before is not known%s; what stands at its first report is taken to have "
+                    "stood there for an hour",
+                    *config->heat.marks ? " beyond heat.marks" : " (heat.marks)");
             } else if (l->received_count >= 4 * player_opening_before) {
                 drop_received(l, l->received_count - player_opening_before);
             }
@@ -209,7 +210,7 @@ static Status listen_first(bool *heard, Live *l)
 /* Counts every frame rendered, before it is sent. */
 static void count_frame(void *user, const FrameRecord *frame)
 {
-    Live *l      = user;
+    Live *l = user;
     l->latency_s = fmax(l->latency_s, 1e-9 * (double)(dis_udp_now_ns() - l->due_ns));
     health_frame(&l->health, frame, wall_clock_s());
 }
@@ -232,7 +233,7 @@ static Status send_pdu(void *user, const uint8_t *pdu, size_t octets)
 /* Exercise time as the time of arrival that it stands for, on the clock of wall_clock_s. */
 static double wall_of(void *user, double t_s)
 {
-    const Live           *l  = user;
+    const Live           *l = user;
     const struct timespec at = steady_clock_monotonic(dis_unix_ns_until(player_arrival_s(l->player, t_s)));
     return (double)at.tv_sec + 1e-9 * (double)at.tv_nsec;
 }
@@ -270,16 +271,17 @@ static void conclude(Live *l)
     DisDatagram   datagram;
     const int64_t last_ns = dis_udp_now_ns();
     dis_udp_close_tick(l->udp, last_ns);
-    while (take(&datagram, l, last_ns)) {}
+    while (take(&datagram, l, last_ns)) {
+    }
     read_counters(l);
     if (!l->recording) return;
-    const char *path          = l->run.options.config.record.path;
+    const char *path = l->run.options.config.record.path;
     l->counters.record_failed = live_recording_failed(l->recording);
-    l->record_whole           = live_recording_close(l->recording) == STATUS_OK && l->counters.record_failed == 0;
-    l->recording              = NULL;
+    l->record_whole = live_recording_close(l->recording) == STATUS_OK && l->counters.record_failed == 0;
+    l->recording = NULL;
     if (!l->record_whole) {
         log_error("run: the recording %s ends early: %llu datagrams and more are not in it", path,
-                   (unsigned long long)l->counters.record_failed);
+                  (unsigned long long)l->counters.record_failed);
     } else if (sha256_file(l->run.log_sha256, path) != STATUS_OK) {
         log_error("run: the recording %s cannot be read again, and run.json does not name it by its hash", path);
         l->record_whole = false;
@@ -289,25 +291,25 @@ static void conclude(Live *l)
 /* Renders the newest frame that is due, else the next: when late, frames are dropped, not queued. */
 static Status live_frames(Run *run, Session *session, Player *player, const HostPlan *plan, const FrameGrid *grid)
 {
-    Live          *l      = run->user;
-    const Options *o      = &run->options;
+    Live          *l = run->user;
+    const Options *o = &run->options;
     Status         status = STATUS_OK;
-    double         last   = -1; /* number of the last frame */
-    const double given_s = config_span_time_s(o->config.exercise.from, plan->start_s, NAN); /* NaN: none */
-    const double from_s = fmax(plan->start_s, given_s);
-    const double   to_s   = config_span_time_s(o->config.exercise.to, plan->start_s, NAN);
-    const double   first  = fmax(ceil(from_s * grid->rate_hz - 1e-9) - grid->origin, 0);
-    l->player           = player;
+    double         last = -1; /* number of the last frame */
+    const double   given_s = config_span_time_s(o->config.exercise.from, plan->start_s, NAN); /* NaN: none */
+    const double   from_s = fmax(plan->start_s, given_s);
+    const double   to_s = config_span_time_s(o->config.exercise.to, plan->start_s, NAN);
+    const double   first = fmax(ceil(from_s * grid->rate_hz - 1e-9) - grid->origin, 0);
+    l->player = player;
     l->counters.rate_hz = grid->rate_hz;
     health_rendering(&l->health, wall_clock_s());
-    l->health.sample.host = plan->any_munition                      ? HEALTH_MUNITION
+    l->health.sample.host = plan->any_munition                  ? HEALTH_MUNITION
                             : dis_entity_id_is_none(plan->host) ? HEALTH_OBSERVER
                                                                 : HEALTH_BY_ID;
     while (status == STATUS_OK && !over(l) && !(o->frames && session_result(session)->frames >= o->frames)) {
-        const double now_s  = player_time_s(player, dis_unix_s(dis_udp_now_ns()));
+        const double now_s = player_time_s(player, dis_unix_s(dis_udp_now_ns()));
         const double newest = floor(now_s * grid->rate_hz) - grid->origin;
-        const double n      = fmax(fmax(newest, last + 1), first);
-        const double t_s    = run_frame_s(grid, n);
+        const double n = fmax(fmax(newest, last + 1), first);
+        const double t_s = run_frame_s(grid, n);
         if (t_s > to_s) break;
         const int64_t until_ns = dis_unix_ns_until(player_arrival_s(player, t_s));
         bool          there, shown;
@@ -325,7 +327,7 @@ static Status live_frames(Run *run, Session *session, Player *player, const Host
     }
     if (status == STATUS_OK && last >= 0 && over(l)) { /* those that were due while the last one was made */
         const double ended_s = fmin(player_time_s(player, dis_unix_s(dis_udp_now_ns())), isnan(to_s) ? INFINITY : to_s);
-        const double newest  = floor(ended_s * grid->rate_hz) - grid->origin;
+        const double newest = floor(ended_s * grid->rate_hz) - grid->origin;
         if (newest > last) l->counters.frames_late += (uint64_t)(newest - last);
     }
     log_status(NULL);
@@ -355,7 +357,7 @@ static Status open_network(Live *l)
 /* Opens folder, videos and recording, when everything else is known to be right. */
 static Status open_files(Live *l)
 {
-    const Options *o      = &l->run.options;
+    const Options *o = &l->run.options;
     const Config  *config = &o->config;
     char           comment[dis_udp_where_size + 40];
     Status         status = STATUS_OK;
@@ -365,8 +367,9 @@ static Status open_files(Live *l)
     if (status != STATUS_OK || !*config->record.path) return status;
     snprintf(comment, sizeof comment, "pitviper run: %s", l->where);
     if (strcmp(config->radar.preset, "none") != 0 && strcasecmp(output_ending(config->record.path), ".pcap") == 0)
-        log_warn("run: %s has no room for which frames are without radar (pcap): a replay has it in all; name it .pcapng",
-                 config->record.path);
+        log_warn(
+            "run: %s has no room for which frames are without radar (pcap): a replay has it in all; name it .pcapng",
+            config->record.path);
     return live_recording_open(&l->recording, config->record.path, comment, l->udp, run_network(config).port);
 }
 
@@ -391,7 +394,8 @@ static Status measure_machine(Live *l)
 /* Whether there was nothing to render so far, and nothing is wrong. */
 static bool idle(HealthReason reason)
 {
-    return reason == HEALTH_NOTHING || reason == HEALTH_NO_ENTITY || reason == HEALTH_NO_MUNITION || reason == HEALTH_EARLY;
+    return reason == HEALTH_NOTHING || reason == HEALTH_NO_ENTITY || reason == HEALTH_NO_MUNITION ||
+           reason == HEALTH_EARLY;
 }
 
 /* A run without any result of one requested kind is a failure: no frame, no file of any frame, no PDU of any. One that
@@ -428,12 +432,13 @@ static Status verdict(Live *l)
 
 static Status run_node(Live *l)
 {
-    bool   heard;
+    bool           heard;
     const Options *o = &l->run.options;
-    Status status = measure_machine(l);
+    Status         status = measure_machine(l);
     if (status == STATUS_OK) status = run_prepare(&l->run);
     if (status == STATUS_OK) status = open_network(l);
-    /* now, not hours later when the first entity is received; the socket first: an older recording must not be lost for nothing */
+    /* now, not hours later when the first entity is received; the socket first: an older recording must not be lost for
+     * nothing */
     if (status == STATUS_OK) status = open_files(l);
     if (status != STATUS_OK) return status;
     l->begun_s = l->shown_s = wall_clock_s();
@@ -457,19 +462,19 @@ static Status run_node(Live *l)
 
 int run_command(int argc, char **argv)
 {
-    Live  live = {.run = {.frames = live_frames, .log_name = "live"}};
-    Live *l    = &live;
-    char  name[sizeof l->run.options.config.record.path];
+    Live      live = {.run = {.frames = live_frames, .log_name = "live"}};
+    Live     *l = &live;
+    char      name[sizeof l->run.options.config.record.path];
     const int stop = options_parse(&l->run.options, COMMAND_RUN, argc, argv);
     if (stop) return stop - 1;
     l->run.options.config.causal = true;
-    l->run.live                  = &l->counters;
-    l->run.user                  = l;
-    l->run.publish               = count_frame;
+    l->run.live = &l->counters;
+    l->run.user = l;
+    l->run.publish = count_frame;
     if (publishes(l)) l->run.send = send_pdu;
     if (*l->run.options.config.record.path) l->run.note = note;
-    l->run.wall_s                = wall_of;
-    l->run.clock                 = l;
+    l->run.wall_s = wall_of;
+    l->run.clock = l;
     memcpy(name, l->run.options.config.record.path, sizeof name);
     if (*name) l->run.log_name = basename(name);
     l->latency_s = NAN;

@@ -33,15 +33,16 @@ static void add(float *plane, int width, int height, const Noise3d *noise, const
     const uint64_t seed = draw->seed;
     const uint32_t stream = draw->stream;
     const int      frame = draw->frame;
-    const double *sigma = noise->sigma;
-    const double  whole = axis[0] < noise_axes && sigma[axis[0]] > 0
-                              ? sigma[axis[0]] * noise3d_unit(axis[0], seed, stream, frame, 0, 0) : 0;
+    const double  *sigma = noise->sigma;
+    const double   whole = axis[0] < noise_axes && sigma[axis[0]] > 0
+                               ? sigma[axis[0]] * noise3d_unit(axis[0], seed, stream, frame, 0, 0)
+                               : 0;
     for (int c = 0; c < width; c++)
         columns[c] =
             sigma[axis[2]] > 0 ? whole + sigma[axis[2]] * noise3d_unit(axis[2], seed, stream, frame, 0, c) : whole;
     for (int r = 0; r < height; r++) {
         const double line = sigma[axis[1]] > 0 ? sigma[axis[1]] * noise3d_unit(axis[1], seed, stream, frame, r, 0) : 0;
-        float       *at   = plane + (size_t)r * (size_t)width;
+        float       *at = plane + (size_t)r * (size_t)width;
         if (sigma[axis[3]] > 0)
             for (int c = 0; c < width; c++)
                 at[c] = (float)(at[c] + line + columns[c] +
@@ -54,9 +55,10 @@ static void add(float *plane, int width, int height, const Noise3d *noise, const
 void noise3d_add_fixed(float *plane, int width, int height, const Noise3d *noise, uint64_t seed, uint32_t stream)
 {
     static const NoiseAxis axis[4] = {noise_axes, NOISE_V, NOISE_H, NOISE_VH};
-    double *columns = malloc((size_t)width * sizeof *columns);
+    double                *columns = malloc((size_t)width * sizeof *columns);
     if (!columns) { /* rare, hence without SIMD: the same numbers one by one */
-        const Noise3d fixed = {.sigma = {[NOISE_V] = noise->sigma[NOISE_V], [NOISE_H] = noise->sigma[NOISE_H],
+        const Noise3d fixed = {.sigma = {[NOISE_V] = noise->sigma[NOISE_V],
+                                         [NOISE_H] = noise->sigma[NOISE_H],
                                          [NOISE_VH] = noise->sigma[NOISE_VH]}};
         for (int r = 0; r < height; r++)
             for (int c = 0; c < width; c++)
@@ -109,11 +111,11 @@ static double line_variance(const double *d, int n)
 
 Status noise3d_estimate(Noise3d *out, const float *cube, int frames, int rows, int columns)
 {
-    const int    T = frames, V = rows, H = columns;
-    double      *tv = calloc((size_t)T * (size_t)V, sizeof *tv), *th = calloc((size_t)T * (size_t)H, sizeof *th);
-    double      *vh = calloc((size_t)V * (size_t)H, sizeof *vh), *t = calloc((size_t)T, sizeof *t);
-    double      *v = calloc((size_t)V, sizeof *v), *h = calloc((size_t)H, sizeof *h);
-    Status       status = STATUS_NO_MEMORY;
+    const int T = frames, V = rows, H = columns;
+    double   *tv = calloc((size_t)T * (size_t)V, sizeof *tv), *th = calloc((size_t)T * (size_t)H, sizeof *th);
+    double   *vh = calloc((size_t)V * (size_t)H, sizeof *vh), *t = calloc((size_t)T, sizeof *t);
+    double   *v = calloc((size_t)V, sizeof *v), *h = calloc((size_t)H, sizeof *h);
+    Status    status = STATUS_NO_MEMORY;
     if (!tv || !th || !vh || !t || !v || !h) goto done;
 
     double all = 0;
@@ -147,9 +149,9 @@ Status noise3d_estimate(Noise3d *out, const float *cube, int frames, int rows, i
     if (isnan(S_tv + S_th + S_vh)) goto done;
     const double variance[noise_axes] = {
         [NOISE_TVH] = s_tvh,
-        [NOISE_TV]  = S_tv - s_tvh / H,
-        [NOISE_TH]  = S_th - s_tvh / V,
-        [NOISE_VH]  = S_vh - s_tvh / T,
+        [NOISE_TV] = S_tv - s_tvh / H,
+        [NOISE_TH] = S_th - s_tvh / V,
+        [NOISE_VH] = S_vh - s_tvh / T,
         /* S_tv holds sigma_tv^2 + sigma_tvh^2 / H already: what is subtracted twice is added once */
         [NOISE_T] = line_variance(t, T) - S_tv / V - S_th / H + s_tvh / ((double)V * H),
         [NOISE_V] = line_variance(v, V) - S_tv / T - S_vh / H + s_tvh / ((double)T * H),
@@ -199,13 +201,13 @@ void bad_pixels_make(uint8_t *map, int width, int height, double share, double c
         for (int c = 0; c < width; c++) {
             const uint64_t at = (uint64_t)r << 32 | (uint32_t)c;
             if (!(random_uniform(seed, streams + 4 * stream, 0, at) < begin)) continue;
-            const double  lot  = random_uniform(seed, streams + 4 * stream, 1, at);
+            const double  lot = random_uniform(seed, streams + 4 * stream, 1, at);
             const uint8_t kind = lot < 0.5 ? PIXEL_DEAD : lot < 0.75 ? PIXEL_HOT : PIXEL_BLINKING;
             map[(size_t)r * (size_t)width + (size_t)c] = kind;
             if (!(random_uniform(seed, streams + 4 * stream, 2, at) < clustered)) continue;
-            uint32_t sides[4];
+            uint32_t       sides[4];
             const uint32_t counter[4] = {(uint32_t)c, (uint32_t)r, 3, streams + 4 * stream};
-            const uint32_t key[2]     = {(uint32_t)seed, (uint32_t)(seed >> 32)};
+            const uint32_t key[2] = {(uint32_t)seed, (uint32_t)(seed >> 32)};
             random_u32x4(sides, counter, key);
             for (int k = 0; k < 9; k++) {
                 const int y = r + k / 3 - 1, x = c + k % 3 - 1;
@@ -215,14 +217,12 @@ void bad_pixels_make(uint8_t *map, int width, int height, double share, double c
         }
 }
 
-void bad_pixels_insert(uint16_t *count, const uint8_t *map, int width, int height, uint16_t full,
-                       const NoiseDraw *draw)
+void bad_pixels_insert(uint16_t *count, const uint8_t *map, int width, int height, uint16_t full, const NoiseDraw *draw)
 {
     const size_t pixels = (size_t)width * (size_t)height;
     for (size_t i = 0; i < pixels; i++) {
         if (map[i] == PIXEL_GOOD) continue;
-        if (map[i] == PIXEL_DEAD)
-            count[i] = 0;
+        if (map[i] == PIXEL_DEAD) count[i] = 0;
         else if (map[i] == PIXEL_HOT ||
                  random_uniform(draw->seed, streams + 4 * draw->stream + 1, (uint32_t)draw->frame / 8, i) < 0.5)
             count[i] = full;

@@ -42,8 +42,7 @@ Status noise3d_estimate(Noise3d *out, const float *cube, int frames, int rows, i
 
 /* Plain white noise: out[i] = in[i] + noise_sigma N(0, 1) for pixels first .. first + count - 1 of the frame; in
  * and out begin at `first` and may be the same. Non-finite values stay as they are. */
-void detector_noise(float *out, const float *in, size_t first, size_t count, double noise_sigma,
-                    const NoiseDraw *draw);
+void detector_noise(float *out, const float *in, size_t first, size_t count, double noise_sigma, const NoiseDraw *draw);
 
 /* ---- dead, hot and blinking pixels: inserted, or replaced from neighbours ----------------------- */
 

@@ -10,7 +10,7 @@ static double lens(double x) { return x < 1 ? 2 / pi_rad * (acos(x) - x * sqrt(1
 double mtf_aperture(double x, double obscuration)
 {
     const double e = obscuration;
-    x              = fabs(x);
+    x = fabs(x);
     if (!(x < 1)) return x >= 1 ? 0 : NAN;
     if (x == 0) return 1; /* to the bit, so that a mean is kept */
     if (!(e > 0)) return lens(x);
@@ -62,10 +62,7 @@ double mtf_smear(const MtfChain *c, double fx, double fy)
     return mtf_sinc(c->smear_px[0] * fx + c->smear_px[1] * fy);
 }
 
-double mtf_jitter(const MtfChain *c, double fx, double fy)
-{
-    return mtf_gauss(c->jitter_px, sqrt(fx * fx + fy * fy));
-}
+double mtf_jitter(const MtfChain *c, double fx, double fy) { return mtf_gauss(c->jitter_px, sqrt(fx * fx + fy * fy)); }
 
 double mtf_chain(const MtfChain *c, double fx, double fy)
 {
@@ -75,10 +72,10 @@ double mtf_chain(const MtfChain *c, double fx, double fy)
 /* ---- a plane, by cosine and sine transforms ----------------------------------------------------- */
 
 struct Blur {
-    int       width, height;
-    double   *value, *odd;   /* [height][width]: plane or cosine coefficients; coefficients of the odd part */
-    double   *pass;          /* [height][width]: the chain without smear, over 4 width height */
-    double   *along, *odd_along; /* [width] */
+    int        width, height;
+    double    *value, *odd;       /* [height][width]: plane or cosine coefficients; coefficients of the odd part */
+    double    *pass;              /* [height][width]: the chain without smear, over 4 width height */
+    double    *along, *odd_along; /* [width] */
     Transform *cosines, *back, *back_odd;
 };
 
@@ -90,7 +87,7 @@ struct Blur {
 double blur_tapered(double f_cyc_px)
 {
     static const double from = 0.4, width = 0.1;
-    const double f = fabs(f_cyc_px), u = (f - from) / width;
+    const double        f = fabs(f_cyc_px), u = (f - from) / width;
     return u <= 0 ? f_cyc_px : copysign(from + width * u * (1 - u * u * (1 - 0.5 * u)), f_cyc_px);
 }
 
@@ -113,16 +110,16 @@ Status blur_create(Blur **out, int width, int height, const MtfChain *chain)
 {
     const size_t count = (size_t)width * (size_t)height;
     MtfChain     still = *chain;
-    Blur        *b     = calloc(1, sizeof *b);
+    Blur        *b = calloc(1, sizeof *b);
     if (!b) return STATUS_NO_MEMORY;
     still.smear_px[0] = still.smear_px[1] = 0;
-    b->width  = width;
+    b->width = width;
     b->height = height;
-    b->value  = transform_alloc(count);
-    b->odd    = transform_alloc(count);
-    b->pass   = transform_alloc(count);
-    b->along  = transform_alloc((size_t)width);
-    b->odd_along  = transform_alloc((size_t)width);
+    b->value = transform_alloc(count);
+    b->odd = transform_alloc(count);
+    b->pass = transform_alloc(count);
+    b->along = transform_alloc((size_t)width);
+    b->odd_along = transform_alloc((size_t)width);
     Status status = b->value && b->odd && b->pass && b->along && b->odd_along ? STATUS_OK : STATUS_NO_MEMORY;
     if (status == STATUS_OK)
         status = transform_create(&b->cosines, TRANSFORM_COSINES, height, width, b->value, b->value);
@@ -137,7 +134,8 @@ Status blur_create(Blur **out, int width, int height, const MtfChain *chain)
     for (int r = 0; r < height; r++)
         for (int c = 0; c < width; c++)
             b->pass[(size_t)r * (size_t)width + (size_t)c] =
-                mtf_chain(&still, blur_tapered(0.5 * c / width), blur_tapered(0.5 * r / height)) / (4.0 * (double)count);
+                mtf_chain(&still, blur_tapered(0.5 * c / width), blur_tapered(0.5 * r / height)) /
+                (4.0 * (double)count);
     *out = b;
     return STATUS_OK;
 }
@@ -163,7 +161,7 @@ static void smear(Blur *b, const double smear_px[2], bool oblique)
     const int w = b->width, h = b->height;
     if (oblique) memset(b->odd, 0, (size_t)w * (size_t)h * sizeof *b->odd);
     for (int c = 0; c < w; c++) {
-        b->along[c]     = smear_px[0] * blur_tapered(0.5 * c / w);
+        b->along[c] = smear_px[0] * blur_tapered(0.5 * c / w);
         b->odd_along[c] = odd_share(0.5 * c / w);
     }
     for (int r = 0; r < h; r++) {
@@ -186,7 +184,7 @@ void blur_apply(Blur *b, float *out, const float *in, const double smear_px[2])
 
 void blur_apply_with(Blur *b, float *out, const float *in, const double smear_px[2], const double *more)
 {
-    const size_t count   = (size_t)b->width * (size_t)b->height;
+    const size_t count = (size_t)b->width * (size_t)b->height;
     const bool   oblique = smear_px[0] != 0 && smear_px[1] != 0;
     for (size_t i = 0; i < count; i++) b->value[i] = isfinite(in[i]) ? in[i] : 0;
     transform_run(b->cosines);
@@ -198,6 +196,5 @@ void blur_apply_with(Blur *b, float *out, const float *in, const double smear_px
         for (size_t i = 0; i < count; i++) b->value[i] += b->odd[i];
     }
     for (size_t i = 0; more && i < count; i++) b->value[i] += more[i];
-    for (size_t i = 0; i < count; i++)
-        out[i] = isfinite(in[i]) ? (float)(b->value[i] > 0 ? b->value[i] : 0) : in[i];
+    for (size_t i = 0; i < count; i++) out[i] = isfinite(in[i]) ? (float)(b->value[i] > 0 ? b->value[i] : 0) : in[i];
 }

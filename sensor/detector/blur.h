@@ -17,12 +17,12 @@ double mtf_sinc(double x);
 double mtf_gauss(double sigma_px, double f_cyc_px);
 
 typedef struct MtfChain {
-    double cutoff_cyc_px;  /* pitch / (wavelength x f-number); INFINITY: no diffraction */
+    double cutoff_cyc_px; /* pitch / (wavelength x f-number); INFINITY: no diffraction */
     double obscuration;
-    double footprint_px;   /* side of the sensitive square; 1: the whole pixel */
-    int    places;         /* sample positions per row or column of a pixel that the renderer has averaged, 1 .. */
-    double smear_px[2];    /* of the line of sight within the integration time: column, row */
-    double jitter_px;      /* rms per axis, within the integration time */
+    double footprint_px; /* side of the sensitive square; 1: the whole pixel */
+    int    places;       /* sample positions per row or column of a pixel that the renderer has averaged, 1 .. */
+    double smear_px[2];  /* of the line of sight within the integration time: column, row */
+    double jitter_px;    /* rms per axis, within the integration time */
 } MtfChain;
 
 /* Transfer of the optics at (fx, fy), |f| <= 0.5. */
@@ -60,8 +60,8 @@ double blur_tapered(double f_cyc_px);
 double blur_smear_pass(const double smear_px[2], double fx, double fy);
 void   blur_destroy(Blur *blur);
 /* Rows top down; in and out may be the same. Values that are not finite become 0 before, and come back afterwards. */
-void   blur_apply(Blur *blur, float *out, const float *in, const double smear_px[2]);
+void blur_apply(Blur *blur, float *out, const float *in, const double smear_px[2]);
 /* The same with a plane added before clipping at 0; more: NULL: none. */
-void   blur_apply_with(Blur *blur, float *out, const float *in, const double smear_px[2], const double *more);
+void blur_apply_with(Blur *blur, float *out, const float *in, const double smear_px[2], const double *more);
 
 #endif

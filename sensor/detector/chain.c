@@ -15,8 +15,8 @@ static const double exposed_share = 0.35;
 
 typedef struct Channel {
     PhotonTable *photons;
-    float       *fixed;    /* v, h and vh noise, unit of sigma_ref_e */
-    float       *gain;     /* NULL: none */
+    float       *fixed; /* v, h and vh noise, unit of sigma_ref_e */
+    float       *gain;  /* NULL: none */
     uint8_t     *bad, *patched;
     uint16_t    *count;
     float       *value;
@@ -28,12 +28,12 @@ struct Chain {
     SensorPreset preset;
     int          width, height, channels;
     uint64_t     seed;
-    double       exposure;     /* of the integration time, 0 .. 1 */
-    double       sigma_ref_e;  /* rms temporal noise that the ratios refer to */
+    double       exposure;    /* of the integration time, 0 .. 1 */
+    double       sigma_ref_e; /* rms temporal noise that the ratios refer to */
     double       step_e;
     uint16_t     full;
     Channel      channel[3];
-    double      *more;    /* [height][width]: what small targets add to a channel */
+    double      *more;               /* [height][width]: what small targets add to a channel */
     float       *work, *line, *pool; /* pool: [line_scan_pool][height][width], or NULL */
     double      *columns;
 };
@@ -53,8 +53,8 @@ double chain_wavelength_m(const SensorPreset *p, int channel)
 
 static Status channel_create(Channel *c, const Chain *chain, int index, int places)
 {
-    const SensorPreset *p     = &chain->preset;
-    const int           w     = chain->width, h = chain->height;
+    const SensorPreset *p = &chain->preset;
+    const int           w = chain->width, h = chain->height;
     const size_t        count = (size_t)w * (size_t)h;
     const uint32_t      stream = (uint32_t)(3 * p->band + index);
     PhotonDetector      photons = p->photons;
@@ -62,9 +62,11 @@ static Status channel_create(Channel *c, const Chain *chain, int index, int plac
     Status status = photon_table_create(&c->photons, &photons, p->band != BAND_OPTICAL);
     if (status != STATUS_OK) return status;
     const double   wavelength_m = chain_wavelength_m(p, chain->channels == 3 ? index : -1);
-    const MtfChain mtf = {
-        .cutoff_cyc_px = p->photons.pitch_m / (wavelength_m * p->photons.f_number),
-        .obscuration = p->obscuration, .footprint_px = p->footprint, .places = places, .jitter_px = p->jitter_px};
+    const MtfChain mtf = {.cutoff_cyc_px = p->photons.pitch_m / (wavelength_m * p->photons.f_number),
+                          .obscuration = p->obscuration,
+                          .footprint_px = p->footprint,
+                          .places = places,
+                          .jitter_px = p->jitter_px};
     status = blur_create(&c->blur, w, h, &mtf);
     if (status == STATUS_OK) status = subpixel_create(&c->sub, &mtf);
     if (status != STATUS_OK) return status;
@@ -82,11 +84,11 @@ static Status channel_create(Channel *c, const Chain *chain, int index, int plac
         for (size_t i = 0; i < count; i++) {
             const size_t detector = p->scan.by_columns ? i / (size_t)w : i; /* a row is one detector's */
             c->gain[i] = (float)fmax(0, 1 + p->noise_scale * p->prnu *
-                                            random_normal(chain->seed, 0x3c000000u + stream, 0, detector));
+                                                random_normal(chain->seed, 0x3c000000u + stream, 0, detector));
         }
     }
     if (p->bad_share > 0) {
-        c->bad     = malloc(count);
+        c->bad = malloc(count);
         c->patched = calloc(count, 1); /* PIXEL_GOOD */
         if (!c->bad || !c->patched) return STATUS_NO_MEMORY;
         bad_pixels_make(c->bad, w, h, p->bad_share, p->bad_clustered, chain->seed, stream);
@@ -98,27 +100,27 @@ static Status channel_create(Channel *c, const Chain *chain, int index, int plac
 
 Status chain_create(Chain **out, const SensorPreset *preset, int width, int height, int places, uint64_t seed)
 {
-    const size_t          count = (size_t)width * (size_t)height;
-    Chain                *c     = calloc(1, sizeof *c);
+    const size_t count = (size_t)width * (size_t)height;
+    Chain       *c = calloc(1, sizeof *c);
     if (!c) return STATUS_NO_MEMORY;
-    const PhotonDetector *d     = &c->preset.photons;
-    c->preset         = *preset;
+    const PhotonDetector *d = &c->preset.photons;
+    c->preset = *preset;
     c->preset.photons = preset_photons(preset);
-    c->width    = width;
-    c->height   = height;
+    c->width = width;
+    c->height = height;
     c->channels = preset->band == BAND_OPTICAL && preset->optical == OPTICAL_RGB ? 3 : 1;
-    c->seed     = seed;
+    c->seed = seed;
     c->exposure = 1;
-    c->full     = (uint16_t)((1u << (int)preset->bits) - 1);
-    c->step_e   = d->well_e / c->full;
+    c->full = (uint16_t)((1u << (int)preset->bits) - 1);
+    c->step_e = d->well_e / c->full;
     const double level_e = preset->auto_exposure ? exposed_share * d->well_e : photon_electrons(d, 300, NULL);
-    c->sigma_ref_e       = sqrt(level_e + d->dark_e + d->read_e * d->read_e);
+    c->sigma_ref_e = sqrt(level_e + d->dark_e + d->read_e * d->read_e);
 
     Status status = STATUS_OK;
-    c->work       = calloc(count, sizeof *c->work);
-    c->line       = calloc((size_t)(width > height ? width : height) + line_scan_taps, sizeof *c->line);
-    c->columns    = calloc((size_t)width, sizeof *c->columns);
-    c->more       = calloc(count, sizeof *c->more);
+    c->work = calloc(count, sizeof *c->work);
+    c->line = calloc((size_t)(width > height ? width : height) + line_scan_taps, sizeof *c->line);
+    c->columns = calloc((size_t)width, sizeof *c->columns);
+    c->more = calloc(count, sizeof *c->more);
     if (!c->work || !c->line || !c->columns || !c->more) status = STATUS_NO_MEMORY;
     if (preset->line_noise > 0 && status == STATUS_OK) {
         c->pool = malloc(line_scan_pool * count * sizeof *c->pool);
@@ -175,13 +177,13 @@ double chain_counts_at(const Chain *c, int channel, double radiance)
 /* Rms of all noise at this many electrons of signal. */
 static double sigma_e(const Chain *c, double signal_e)
 {
-    const SensorPreset   *p        = &c->preset;
-    const PhotonDetector *d        = &p->photons;
+    const SensorPreset   *p = &c->preset;
+    const PhotonDetector *d = &p->photons;
     double                pattern = p->line_noise * p->line_noise;
     for (int k = NOISE_TV; k < noise_axes; k++) pattern += p->ratio.sigma[k] * p->ratio.sigma[k];
     const double temporal = signal_e + c->exposure * d->dark_e + d->read_e * d->read_e;
-    const double gain_e   = p->prnu * signal_e;
-    const double all      = temporal + pattern * c->sigma_ref_e * c->sigma_ref_e + gain_e * gain_e;
+    const double gain_e = p->prnu * signal_e;
+    const double all = temporal + pattern * c->sigma_ref_e * c->sigma_ref_e + gain_e * gain_e;
     return sqrt(p->noise_scale * p->noise_scale * all + c->step_e * c->step_e / 12);
 }
 
@@ -190,7 +192,7 @@ double chain_sigma(const Chain *c, int channel, double radiance)
     const PhotonTable *photons = c->channel[channel].photons;
     if (!(radiance > 0)) radiance = 1e-6;
     const double signal = c->exposure * photon_table_electrons(photons, radiance);
-    const double above  = c->exposure * photon_table_electrons(photons, 1.001 * radiance);
+    const double above = c->exposure * photon_table_electrons(photons, 1.001 * radiance);
     return sigma_e(c, signal) * 0.001 * radiance / (above - signal);
 }
 
@@ -206,10 +208,10 @@ double chain_netd_k(const Chain *c, double temp_k)
 
 void chain_expose(Chain *c, const float *const radiance[])
 {
-    const PhotonDetector *d     = &c->preset.photons;
+    const PhotonDetector *d = &c->preset.photons;
     const size_t          count = (size_t)c->width * (size_t)c->height;
-    double                most  = 0; /* the brightest channel's mean */
-    c->exposure                 = 1;
+    double                most = 0; /* the brightest channel's mean */
+    c->exposure = 1;
     if (!c->preset.auto_exposure) return;
     for (int k = 0; k < c->channels; k++) {
         double sum = 0;
@@ -222,14 +224,14 @@ void chain_expose(Chain *c, const float *const radiance[])
 static void run_channel(Chain *c, int index, const float *radiance, const SmallTargets *small, int frame,
                         const double rate_px_s[2])
 {
-    const SensorPreset   *p      = &c->preset;
-    const PhotonDetector *d      = &p->photons;
-    Channel              *ch     = &c->channel[index];
-    const int             w      = c->width, h = c->height;
-    const size_t          count  = (size_t)w * (size_t)h;
+    const SensorPreset   *p = &c->preset;
+    const PhotonDetector *d = &p->photons;
+    Channel              *ch = &c->channel[index];
+    const int             w = c->width, h = c->height;
+    const size_t          count = (size_t)w * (size_t)h;
     const uint32_t        stream = (uint32_t)(3 * p->band + index);
-    const NoiseDraw       draw   = {c->seed, stream, frame};
-    float                *e      = ch->value;
+    const NoiseDraw       draw = {c->seed, stream, frame};
+    float                *e = ch->value;
 
     for (size_t i = 0; i < count; i++) e[i] = (float)(c->exposure * photon_table_electrons(ch->photons, radiance[i]));
 
@@ -238,12 +240,17 @@ static void run_channel(Chain *c, int index, const float *radiance, const SmallT
     const double sweep_px = p->scan.by_columns ? c->exposure * d->integration_s / fmax(p->tdi, 1) / p->scan.line_s : 0;
     const double moving_px[2] = {sweep_px + (p->smear ? rate_px_s[0] * c->exposure * d->integration_s : 0),
                                  p->smear ? rate_px_s[1] * c->exposure * d->integration_s : 0};
-    const int  plane = p->band == BAND_MWIR   ? picture_mwir
-                       : p->band == BAND_LWIR ? picture_lwir
-                                              : picture_optical + index;
-    const bool few = small && small->count > 0;
-    const SubPixelPlane fine = {.electrons = e, .more = c->more, .width = w, .height = h, .plane = plane,
-                                .photons = ch->photons, .exposure = c->exposure};
+    const int    plane = p->band == BAND_MWIR   ? picture_mwir
+                         : p->band == BAND_LWIR ? picture_lwir
+                                                : picture_optical + index;
+    const bool   few = small && small->count > 0;
+    const SubPixelPlane fine = {.electrons = e,
+                                .more = c->more,
+                                .width = w,
+                                .height = h,
+                                .plane = plane,
+                                .photons = ch->photons,
+                                .exposure = c->exposure};
     if (few) subpixel_targets(ch->sub, &fine, small, moving_px);
     blur_apply_with(ch->blur, e, e, moving_px, few ? c->more : NULL);
     if (p->smear && p->scan.line_s > 0 && (rate_px_s[0] != 0 || rate_px_s[1] != 0)) {
@@ -257,7 +264,7 @@ static void run_channel(Chain *c, int index, const float *radiance, const SmallT
         const double pattern_e = scale * c->sigma_ref_e;
         for (int r = 0; r < h; r++)
             for (int k = 0; k < w; k++) {
-                const size_t i     = (size_t)r * (size_t)w + (size_t)k;
+                const size_t i = (size_t)r * (size_t)w + (size_t)k;
                 const double sigma = scale * sqrt((e[i] > 0 ? e[i] : 0) + dark_e + floor_e);
                 e[i] = (float)(e[i] + dark_e + sigma * noise3d_unit(NOISE_TVH, c->seed, stream, frame, r, k));
             }

@@ -57,10 +57,8 @@ static inline double display_code(const Display *d, double x)
 
 static inline void display_write(void *out, size_t at, const Display *d, double x)
 {
-    if (d->full > 255)
-        ((uint16_t *)out)[at] = (uint16_t)display_code(d, x);
-    else
-        ((uint8_t *)out)[at] = (uint8_t)display_code(d, x);
+    if (d->full > 255) ((uint16_t *)out)[at] = (uint16_t)display_code(d, x);
+    else ((uint8_t *)out)[at] = (uint8_t)display_code(d, x);
 }
 
 void detector_display(void *out, const float *in, size_t count, const DetectorConfig *config, DetectorLevel level)
@@ -100,21 +98,17 @@ void detector_display_db(void *out, const float *power, size_t count, double dyn
     const double least = brightest * pow(10, -0.1 * dynamic_range_db);
     for (size_t i = 0; i < count; i++) {
         double x = 0;
-        if (isinf(power[i]) && power[i] > 0)
-            x = 1;
+        if (isinf(power[i]) && power[i] > 0) x = 1;
         else if (power[i] > least && power[i] > 0) /* false for NaN; spares the logarithm of the dark ones */
             x = clamp(1 + 10 * log10(power[i] * per_max) / dynamic_range_db, 0, 1);
-        if (bits == 16)
-            ((uint16_t *)out)[i] = (uint16_t)(x * full + 0.5);
-        else
-            ((uint8_t *)out)[i] = (uint8_t)(x * full + 0.5);
+        if (bits == 16) ((uint16_t *)out)[i] = (uint16_t)(x * full + 0.5);
+        else ((uint8_t *)out)[i] = (uint8_t)(x * full + 0.5);
     }
 }
 
 /* ---- colours: white balance and the matrix from three rectangular bands to linear sRGB ---------- */
 
-static const double matrix[3][3] = {
-    {1.0174, 0.1380, -0.1554}, {-0.1259, 1.1569, -0.0310}, {-0.0079, -0.1236, 1.1315}};
+static const double matrix[3][3] = {{1.0174, 0.1380, -0.1554}, {-0.1259, 1.1569, -0.0310}, {-0.0079, -0.1236, 1.1315}};
 
 static const double luminance[3] = {0.2126, 0.7152, 0.0722}; /* of the primaries, ITU-R BT.709 */
 
@@ -124,10 +118,10 @@ void display_colour(DisplayColour *out, const double white[3], double zero, doub
     const double mean = (white[0] + white[1] + white[2]) / 3;
     if (!(white[0] > 0 && white[1] > 0 && white[2] > 0 && mean < INFINITY)) return;
     out->white = mean;
-    out->most  = INFINITY;
+    out->most = INFINITY;
     for (int c = 0; c < 3; c++) {
         out->gain[c] = mean / white[c];
-        out->most    = fmin(out->most, out->gain[c] * full);
+        out->most = fmin(out->most, out->gain[c] * full);
     }
 }
 
@@ -146,7 +140,7 @@ void display_colour_apply(float *const out[3], const float *const in[3], size_t 
         for (int c = 0; c < 3; c++) balanced[c] = least_of((seen[c] - colour->zero) * colour->gain[c], colour->most);
         for (int c = 0; c < 3; c++)
             rgb[c] = matrix[c][0] * balanced[0] + matrix[c][1] * balanced[1] + matrix[c][2] * balanced[2];
-        const double grey  = luminance[0] * rgb[0] + luminance[1] * rgb[1] + luminance[2] * rgb[2];
+        const double grey = luminance[0] * rgb[0] + luminance[1] * rgb[1] + luminance[2] * rgb[2];
         const double least = least_of(least_of(rgb[0], rgb[1]), rgb[2]);
         const double share = grey > 0 && least < 0 ? grey / (grey - least) : 1;
         for (int c = 0; c < 3; c++)

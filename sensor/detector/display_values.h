@@ -20,7 +20,7 @@ void detector_display_rgb(void *out, const float *const in[3], size_t count, con
 /* Radar: decibels below the brightest finite pixel. 0 dB is full scale, -dynamic_range_db and below is 0, as
  * is any pixel <= 0 or NaN. Power in, linear; bits 8 or 16. */
 static const double detector_radar_range_db = 60;
-void detector_display_db(void *out, const float *power, size_t count, double dynamic_range_db, int bits);
+void                detector_display_db(void *out, const float *power, size_t count, double dynamic_range_db, int bits);
 
 /* ---- colours ------------------------------------------------------------------------------------ */
 
@@ -38,10 +38,10 @@ void detector_display_db(void *out, const float *power, size_t count, double dyn
  * similar spectra not used in the fit, 1.5 and 3.6 (2.3, 4.1): tests/sensor/test_colour.c. Three rectangular bands
  * resolve no more: a peak within a band is lost, and a green paint of hue 145 degrees is displayed at 134. */
 typedef struct DisplayColour {
-    double zero;         /* value of zero light: 0 for radiance, the dark level for counts */
-    double gain[3];      /* R G B; preserves the mean of the three whites */
-    double white;        /* that mean, above zero: value of a white surface in all three channels */
-    double most;         /* after gain: value at which the first channel saturates; INFINITY: none */
+    double zero;    /* value of zero light: 0 for radiance, the dark level for counts */
+    double gain[3]; /* R G B; preserves the mean of the three whites */
+    double white;   /* that mean, above zero: value of a white surface in all three channels */
+    double most;    /* after gain: value at which the first channel saturates; INFINITY: none */
 } DisplayColour;
 
 /* white: value of each channel R G B above zero, in its unit; unless all are positive, gains are 1.

@@ -5,8 +5,14 @@
 
 DetectorConfig detector_default_config(void)
 {
-    return (DetectorConfig){.gain = 1, .bits = 8, .auto_level = true, .percentile_low = 0.01,
-                            .percentile_high = 0.99, .margin = 0.05, .fire_from = INFINITY, .level_low = 0,
+    return (DetectorConfig){.gain = 1,
+                            .bits = 8,
+                            .auto_level = true,
+                            .percentile_low = 0.01,
+                            .percentile_high = 0.99,
+                            .margin = 0.05,
+                            .fire_from = INFINITY,
+                            .level_low = 0,
                             .level_high = 1};
 }
 
@@ -20,7 +26,7 @@ static bool in_range(const char *field, double value, double low, double high)
 Status detector_check_config(const DetectorConfig *c)
 {
     static const double most = 1e30;
-    bool ok = in_range("gain", c->gain, 1e-6, 1e6) & in_range("offset", c->offset, -10, 10) &
+    bool                ok = in_range("gain", c->gain, 1e-6, 1e6) & in_range("offset", c->offset, -10, 10) &
               in_range("noise_sigma", c->noise_sigma, 0, most) & in_range("percentile_low", c->percentile_low, 0, 1) &
               in_range("percentile_high", c->percentile_high, c->percentile_low, 1) &
               in_range("margin", c->margin, 0, 10) & in_range("min_span", c->min_span, 0, most) &
@@ -79,7 +85,8 @@ typedef struct Prefix {
 } Prefix;
 
 /* How many of the values have each digit (key >> shift) & (digits - 1), of those with either prefix. */
-static void count_digits(Prefix prefix[2], const float *const *plane, int plane_count, size_t count, Range of, int shift)
+static void count_digits(Prefix prefix[2], const float *const *plane, int plane_count, size_t count, Range of,
+                         int shift)
 {
     for (int k = 0; k < 2; k++) memset(prefix[k].histogram, 0, sizeof prefix[k].histogram);
     for (int p = 0; p < plane_count; p++)
@@ -128,7 +135,7 @@ static uint64_t order_statistics(double out[2], const float *const *plane, int p
     memcpy(prefix[1].histogram, prefix[0].histogram, sizeof prefix[0].histogram);
     for (int k = 0; k < 2; k++) {
         prefix[k].value = prefix[k].mask = 0;
-        prefix[k].rank  = (uint64_t)(share[k] * (double)(n - 1) + 0.5);
+        prefix[k].rank = (uint64_t)(share[k] * (double)(n - 1) + 0.5);
     }
     for (int pass = 0; pass < 3; pass++) {
         if (pass > 0) count_digits(prefix, plane, plane_count, count, of, shifts[pass]);
@@ -139,10 +146,11 @@ static uint64_t order_statistics(double out[2], const float *const *plane, int p
 }
 
 /* White where fires and plumes take no grey levels from the rest. all: finite values. */
-static double highlight_white(const DetectorConfig *c, const float *const *plane, int plane_count, size_t count, uint64_t all)
+static double highlight_white(const DetectorConfig *c, const float *const *plane, int plane_count, size_t count,
+                              uint64_t all)
 {
     static const double body[2] = {0.1, 0.9};
-    const uint64_t      least   = all / 2 + 1;
+    const uint64_t      least = all / 2 + 1;
     double              value[2];
     if (order_statistics(value, plane, plane_count, count, range_below(c->fire_from), least, body) < least)
         order_statistics(value, plane, plane_count, count, range_below(INFINITY), 0, body);
@@ -156,8 +164,8 @@ DetectorLevel detector_level(const DetectorConfig *config, const float *const *p
 
     DetectorLevel level = {config->level_low, config->level_high};
     if (config->auto_level) {
-        const double share[2] = {config->percentile_low, config->percentile_high};
-        double       value[2];
+        const double   share[2] = {config->percentile_low, config->percentile_high};
+        double         value[2];
         const uint64_t all = order_statistics(value, plane, plane_count, count, range_below(INFINITY), 0, share);
         if (all == 0) return (DetectorLevel){0, 1};
         level = (DetectorLevel){value[0], value[1]};
@@ -180,7 +188,7 @@ static double follow_keep(bool *quick, double left, double step_s, double time_s
 {
     /* spans; of time_s. 1.8 spans are what comes when sky leaves a picture (tests/system/test_level.sh): averaged */
     static const double lost = 2, near = 0.03, faster = 0.1;
-    double keep = 1;
+    double              keep = 1;
     if (!(time_s > 0) || !isfinite(left)) {
         *quick = false;
         return 0;
@@ -205,7 +213,7 @@ void detector_level_follow(DetectorLevel *state, bool *quick, DetectorLevel now,
     const double left = fmax(fabs(state->low - now.low), fabs(state->high - now.high)) / span;
     const double keep = follow_keep(quick, left, step_s, time_s);
     if (keep == 0) *state = now; /* also where it is not finite */
-    state->low  = now.low + keep * (state->low - now.low);
+    state->low = now.low + keep * (state->low - now.low);
     state->high = now.high + keep * (state->high - now.high);
 }
 
@@ -219,7 +227,7 @@ static bool extremes(double out[2], const float *plane, size_t count)
     float low = INFINITY, high = -INFINITY;
     for (size_t i = 0; i < count; i++) {
         if (!isfinite(plane[i])) continue;
-        low  = plane[i] < low ? plane[i] : low;
+        low = plane[i] < low ? plane[i] : low;
         high = plane[i] > high ? plane[i] : high;
     }
     out[0] = low;
@@ -229,10 +237,10 @@ static bool extremes(double out[2], const float *plane, size_t count)
 
 void detector_plateau(DetectorCurve *out, const DetectorConfig *config, const float *plane, size_t count)
 {
-    uint32_t histogram[plateau_bins] = {0};
-    double   range[2] = {0, 1};
-    uint64_t all = 0;
-    const bool   any   = extremes(range, plane, count);
+    uint32_t   histogram[plateau_bins] = {0};
+    double     range[2] = {0, 1};
+    uint64_t   all = 0;
+    const bool any = extremes(range, plane, count);
     /* a span of rounding alone is no image: detector_level */
     const double least = fmax(fmax(config->min_span, 1e-5 * fmax(fabs(range[0]), fabs(range[1]))), 1e-30);
     const double width = fmax(least / bins_a_span, config->step);
@@ -255,7 +263,7 @@ void detector_plateau(DetectorCurve *out, const DetectorConfig *config, const fl
     for (int b = 0; b < plateau_bins; b++) used += fmin(fmin(histogram[b], plateau) / sum, steepest);
 
     double level = 0.5 * (1 - used), from = low; /* grey level at `from` */
-    int    k     = 0;
+    int    k = 0;
     for (; k <= curve_steps && (double)k / curve_steps <= level; k++)
         out->value[k] = low - (level - (double)k / curve_steps) * least;
     for (int b = 0; b < plateau_bins; b++, from = low + b * width) {
@@ -271,8 +279,8 @@ void detector_plateau(DetectorCurve *out, const DetectorConfig *config, const fl
 void detector_plateau_follow(DetectorCurve *state, bool *quick, const DetectorCurve *now, double step_s, double time_s)
 {
     const int    first = curve_steps / 10, last = curve_steps - curve_steps / 10;
-    const double span  = (now->value[last] - now->value[first]) * curve_steps / (last - first);
-    double       off   = 0;
+    const double span = (now->value[last] - now->value[first]) * curve_steps / (last - first);
+    double       off = 0;
     for (int k = first; k <= last; k++) off = fmax(off, fabs(state->value[k] - now->value[k]));
     const double keep = follow_keep(quick, off / span, step_s, time_s);
     for (int k = 0; k <= curve_steps; k++)
@@ -309,10 +317,8 @@ void detector_display_curve(void *out, const float *in, size_t count, const Dete
         curve_levels(level, curve, x);
         for (size_t i = 0; i < n; i++) {
             const double shown = isnan(x[i]) ? 0 : clamp(0.5 + (level[i] - 0.5) * config->gain + config->offset, 0, 1);
-            if (config->bits == 16)
-                ((uint16_t *)out)[first + i] = (uint16_t)(full * shown + 0.5);
-            else
-                ((uint8_t *)out)[first + i] = (uint8_t)(full * shown + 0.5);
+            if (config->bits == 16) ((uint16_t *)out)[first + i] = (uint16_t)(full * shown + 0.5);
+            else ((uint8_t *)out)[first + i] = (uint8_t)(full * shown + 0.5);
         }
     }
 }

@@ -8,22 +8,22 @@
 #include "pitviper.h"
 
 typedef struct DetectorConfig {
-    double gain;            /* 1: full scale spans level low .. high; 2: half of that span, about its middle */
-    double offset;          /* added after gain, in full scales */
-    double noise_sigma;     /* per pixel, in the plane's own unit; 0: none */
-    int    bits;            /* 8 or 16 */
-    bool   auto_level;      /* low and high from the plane, else the two manual ones */
+    double gain;        /* 1: full scale spans level low .. high; 2: half of that span, about its middle */
+    double offset;      /* added after gain, in full scales */
+    double noise_sigma; /* per pixel, in the plane's own unit; 0: none */
+    int    bits;        /* 8 or 16 */
+    bool   auto_level;  /* low and high from the plane, else the two manual ones */
     double percentile_low, percentile_high; /* 0 .. 1 */
-    double margin;          /* automatic: added on both sides, in spans */
-    double min_span;        /* automatic: never less, in the plane's unit; from 0 up where it would reach below */
-    double highlight;       /* automatic: white is at most the value at 90 % plus this many times the distance from that
-                             * at 10 %, of the pixels below fire_from: fires take no grey levels from the rest;
-                             * 0: percentile_high alone */
-    double fire_from;       /* hotter than any ground; ignored where it is half of the pixels */
-    double plateau;         /* share of the pixels that counts in a bin of plateau equalisation (below); 0: linear */
-    double step;            /* between neighbouring values of the plane: 1 of counts, 0 of radiance */
-    double level_low, level_high;           /* manual, in the plane's unit */
-    bool   display_gamma;   /* sRGB transfer curve after gain and level: visible light on a screen */
+    double margin;                          /* automatic: added on both sides, in spans */
+    double min_span;  /* automatic: never less, in the plane's unit; from 0 up where it would reach below */
+    double highlight; /* automatic: white is at most the value at 90 % plus this many times the distance from that
+                       * at 10 %, of the pixels below fire_from: fires take no grey levels from the rest;
+                       * 0: percentile_high alone */
+    double fire_from; /* hotter than any ground; ignored where it is half of the pixels */
+    double plateau;   /* share of the pixels that counts in a bin of plateau equalisation (below); 0: linear */
+    double step;      /* between neighbouring values of the plane: 1 of counts, 0 of radiance */
+    double level_low, level_high; /* manual, in the plane's unit */
+    bool   display_gamma;         /* sRGB transfer curve after gain and level: visible light on a screen */
 } DetectorConfig;
 
 /* gain 1, offset 0, no noise, 8 bits, automatic linear level 1 % .. 99 % with a margin of 0.05; nothing is a fire. */

@@ -4,8 +4,7 @@
 
 double line_scan_time_s(const LineScan *scan, int width, int height, double column_px, int row)
 {
-    if (scan->by_columns)
-        return scan->line_s * (column_px - 0.5 * width + scan->active * ((row + 0.5) / height - 0.5));
+    if (scan->by_columns) return scan->line_s * (column_px - 0.5 * width + scan->active * ((row + 0.5) / height - 0.5));
     double along = column_px / width - 0.5;
     if (scan->bidirectional && row % 2) along = -along;
     return scan->line_s * (row + 0.5 - 0.5 * height + scan->active * along);
@@ -82,7 +81,7 @@ static void resample_columns(float *out, const float *in, int width, int height,
         for (int r = 0; r < height; r++) {
             const double t_s = line_scan_time_s(scan, width, height, c + 0.5, r);
             const int    top = r + split(&phase, rate_px_s[1] * t_s) - before;
-            float     sum = 0;
+            float        sum = 0;
             for (int k = 0; k < line_scan_taps; k++)
                 sum += taps->weight[phase][k] *
                        line[top >= 0 && top + line_scan_taps <= height ? top + k : mirrored(top + k, height)];
@@ -106,7 +105,7 @@ void line_scan_resample(float *out, const float *in, int width, int height, cons
     }
     for (int r = 0; r < height; r++) {
         /* down the columns at the time of the line's centre, then along the line at each pixel's own */
-        int       phase;
+        int          phase;
         const double t_s = line_scan_time_s(scan, width, height, 0.5 * width, r);
         const int    first = r + split(&phase, rate_px_s[1] * t_s) - before;
         memset(line, 0, (size_t)width * sizeof *line);
@@ -119,7 +118,7 @@ void line_scan_resample(float *out, const float *in, int width, int height, cons
         for (int c = 0; c < width; c++) {
             const double at_s = line_scan_time_s(scan, width, height, c + 0.5, r);
             const int    left = c + split(&phase, rate_px_s[0] * at_s) - before;
-            float     sum  = 0;
+            float        sum = 0;
             if (left >= 0 && left + line_scan_taps <= width)
                 for (int k = 0; k < line_scan_taps; k++) sum += taps.weight[phase][k] * line[left + k];
             else
@@ -138,7 +137,7 @@ void line_scan_noise(float *out, int width, int height, const LineScan *scan, co
     double       value = 0;
     for (int r = 0; r < height; r++)
         for (int k = 0; k < width; k++) {
-            const size_t path   = (size_t)r * (size_t)width + (size_t)k;
+            const size_t path = (size_t)r * (size_t)width + (size_t)k;
             const int    column = scan->bidirectional && r % 2 ? width - 1 - k : k;
             const double normal = random_normal(noise->seed, 0x3e000000u + noise->stream, (uint32_t)noise->index, path);
             value = path == 0 || (scan->by_columns && k == 0) ? normal : rho * value + fresh * normal;
@@ -152,7 +151,7 @@ void line_scan_couple(float *plane, int width, int height, const LineScan *scan,
 {
     const size_t count = (size_t)width * (size_t)height;
     const double share = -expm1(-2 * pi_rad * fc_t);
-    double       mean  = 0;
+    double       mean = 0;
     if (!(fc_t > 0)) return;
     for (size_t i = 0; i < count; i++) mean += isfinite(plane[i]) ? plane[i] : 0;
     mean /= (double)count;
@@ -162,7 +161,7 @@ void line_scan_couple(float *plane, int width, int height, const LineScan *scan,
         double     base = mean; /* what the capacitor has taken up */
         for (int k = 0; k < width; k++) {
             float       *at = plane + (size_t)r * (size_t)width + (size_t)(back ? width - 1 - k : k);
-            const double x  = *at;
+            const double x = *at;
             if (!isfinite(x)) continue;
             *at = (float)(x - base + mean);
             base += share * (x - base);

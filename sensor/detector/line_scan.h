@@ -10,11 +10,11 @@
 #include "pitviper.h"
 
 typedef struct LineScan {
-    double line_s;         /* from line to line; 0: global shutter */
-    double active;         /* share of line_s in which the columns of the image are scanned */
-    bool   bidirectional;  /* odd rows run right to left */
-    bool by_columns; /* lines are columns, left to right: a mirror sweeps one column of detectors over the image, so
-                      * that each row comes from a detector of its own. active: share in which the rows pass */
+    double line_s;        /* from line to line; 0: global shutter */
+    double active;        /* share of line_s in which the columns of the image are scanned */
+    bool   bidirectional; /* odd rows run right to left */
+    bool   by_columns; /* lines are columns, left to right: a mirror sweeps one column of detectors over the image, so
+                        * that each row comes from a detector of its own. active: share in which the rows pass */
 } LineScan;
 
 /* Time at which an image position (px; pixel centres at 0.5) is scanned, relative to the frame's time. */

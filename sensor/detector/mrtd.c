@@ -27,7 +27,9 @@ static double mtf_along(const SensorPreset *p, int axis, double f)
 {
     const PhotonDetector *d = &p->photons;
     const MtfChain        mtf = {.cutoff_cyc_px = d->pitch_m / (chain_wavelength_m(p, -1) * d->f_number),
-                                 .obscuration = p->obscuration, .footprint_px = p->footprint, .places = 1,
+                                 .obscuration = p->obscuration,
+                                 .footprint_px = p->footprint,
+                                 .places = 1,
                                  .jitter_px = p->jitter_px};
     const double          sweep_px = axis == 0 && p->scan.by_columns ? d->integration_s / p->scan.line_s : 0;
     return mtf_chain(&mtf, axis == 0 ? f : 0, axis == 0 ? 0 : f) * mtf_sinc(sweep_px * f);
@@ -46,12 +48,12 @@ void mrtd_predict(Mrtd *out, const SensorPreset *p, double f, const MrtdObserver
     const PhotonDetector d = preset_photons(p);
     double               per_k;
     const double signal_e = photon_electrons(&d, observer->temp_k, &per_k), at_300_e = photon_electrons(&d, 300, NULL);
-    const double         floor_e2 = d.dark_e + d.read_e * d.read_e, step_e = d.well_e / (exp2(p->bits) - 1);
-    const double         scale2 = p->noise_scale * p->noise_scale, ref2 = scale2 * (at_300_e + floor_e2);
-    const double         gain2 = scale2 * p->prnu * p->prnu * signal_e * signal_e;
-    const double         tvh2 = scale2 * (signal_e + floor_e2) + step_e * step_e / 12;
-    const double         frames = fmax(observer->frames, 1), in_time = 1 / frames, width_px = 0.5 / f;
-    double               kind2[noise_axes];
+    const double floor_e2 = d.dark_e + d.read_e * d.read_e, step_e = d.well_e / (exp2(p->bits) - 1);
+    const double scale2 = p->noise_scale * p->noise_scale, ref2 = scale2 * (at_300_e + floor_e2);
+    const double gain2 = scale2 * p->prnu * p->prnu * signal_e * signal_e;
+    const double tvh2 = scale2 * (signal_e + floor_e2) + step_e * step_e / 12;
+    const double frames = fmax(observer->frames, 1), in_time = 1 / frames, width_px = 0.5 / f;
+    double       kind2[noise_axes];
     for (int k = 0; k < noise_axes; k++) kind2[k] = ref2 * p->ratio.sigma[k] * p->ratio.sigma[k];
 
     for (int axis = 0; axis < 2; axis++) {
@@ -69,8 +71,8 @@ void mrtd_predict(Mrtd *out, const SensorPreset *p, double f, const MrtdObserver
         else if (line2 > 0) e2 += line2 * line_left(7 * width_px, reach) * across;
 
         const double noise_k = sqrt(e2) / per_k, all = contrast(p, axis, f, 15), first = contrast(p, axis, f, 1);
-        out->mtf[axis]     = mtf_along(p, axis, f);
-        out->all_k[axis]   = all > 1e-12 ? observer->snr * noise_k / all : INFINITY;
+        out->mtf[axis] = mtf_along(p, axis, f);
+        out->all_k[axis] = all > 1e-12 ? observer->snr * noise_k / all : INFINITY;
         out->first_k[axis] = first > 1e-12 ? observer->snr * noise_k / first : INFINITY;
     }
 }

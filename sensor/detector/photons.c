@@ -88,15 +88,15 @@ Status photon_table_create(PhotonTable **out, const PhotonDetector *d, bool emit
     PhotonTable *t = calloc(1, sizeof *t);
     if (!t) return STATUS_NO_MEMORY;
     const double k = photon_etendue(d);
-    t->ratio[0]    = k * 0.5 * (d->low_m + d->high_m) / (h_j_s * c_mps);
+    t->ratio[0] = k * 0.5 * (d->low_m + d->high_m) / (h_j_s * c_mps);
     if (emitted) {
-        t->low     = log(planck_band(d->low_m, d->high_m, 180, NULL));
-        t->high    = log(planck_band(d->low_m, d->high_m, 1500, NULL));
+        t->low = log(planck_band(d->low_m, d->high_m, 180, NULL));
+        t->high = log(planck_band(d->low_m, d->high_m, 1500, NULL));
         t->per_log = (knots - 1) / (t->high - t->low);
         for (int i = 0; i < knots; i++) {
             const double radiance = exp(t->low + i / t->per_log);
-            const double temp_k   = planck_band_inverse(d->low_m, d->high_m, radiance);
-            t->ratio[i]           = k * photon_band(d->low_m, d->high_m, temp_k, NULL) / radiance;
+            const double temp_k = planck_band_inverse(d->low_m, d->high_m, radiance);
+            t->ratio[i] = k * photon_band(d->low_m, d->high_m, temp_k, NULL) / radiance;
         }
     }
     *out = t;
@@ -110,6 +110,6 @@ double photon_table_electrons(const PhotonTable *t, double radiance)
     if (!(radiance > 0)) return isnan(radiance) ? NAN : 0;
     if (t->per_log == 0) return radiance * t->ratio[0];
     const double at = clamp((log(radiance) - t->low) * t->per_log, 0, knots - 1);
-    const int    i  = at < knots - 2 ? (int)at : knots - 2;
+    const int    i = at < knots - 2 ? (int)at : knots - 2;
     return radiance * (t->ratio[i] + (at - i) * (t->ratio[i + 1] - t->ratio[i]));
 }

@@ -14,11 +14,11 @@ double photon_band(double low_m, double high_m, double temp_k, double *derivativ
 double photon_mean_wavelength_m(double low_m, double high_m, double temp_k);
 
 typedef struct PhotonDetector {
-    double low_m, high_m;                 /* the band */
-    double f_number, transmission;        /* of the optics, including the loss by obscuration */
-    double qe;                            /* electrons per photon on the whole pixel */
+    double low_m, high_m;          /* the band */
+    double f_number, transmission; /* of the optics, including the loss by obscuration */
+    double qe;                     /* electrons per photon on the whole pixel */
     double pitch_m, integration_s;
-    double dark_e, read_e;                /* in the integration time; rms */
+    double dark_e, read_e; /* in the integration time; rms */
     double well_e;
 } PhotonDetector;
 

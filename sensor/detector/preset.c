@@ -77,7 +77,7 @@ PhotonDetector preset_photons(const SensorPreset *p)
 void preset_refresh(SensorPreset *p)
 {
     preset_band(&p->photons.low_m, &p->photons.high_m, p->band, p->optical, -1);
-    p->photons.dark_e         = p->dark_e_s * p->photons.integration_s;
+    p->photons.dark_e = p->dark_e_s * p->photons.integration_s;
     p->ratio.sigma[NOISE_TVH] = 1;
 }
 
@@ -103,23 +103,23 @@ static Status read_row(SensorPreset *out, const Table *t, int row)
     snprintf(p.name, sizeof p.name, "%s", table_text(t, row, table_column(t, "name")));
 
     const char *text = table_text(t, row, band);
-    p.channel        = channel_named(text, strlen(text));
+    p.channel = channel_named(text, strlen(text));
     if (p.channel ? p.channel->place < (p.channel->standard ? SPECTRAL_MWIR : SPECTRAL_NIR)
                   : strcmp(text, "optical") != 0)
         return bad_word(t, row, "band", text, "optical, mwir, lwir, or another channel of etc/channels.csv");
     p.band = !p.channel || p.channel->place == SPECTRAL_NIR ? BAND_OPTICAL
              : p.channel->place == SPECTRAL_MWIR            ? BAND_MWIR
                                                             : BAND_LWIR;
-    text   = table_text(t, row, exposure);
+    text = table_text(t, row, exposure);
     if (strcmp(text, "fixed") != 0 && strcmp(text, "auto") != 0)
         return bad_word(t, row, "exposure", text, "fixed, auto");
     p.auto_exposure = text[0] == 'a';
-    text            = table_text(t, row, scan);
+    text = table_text(t, row, scan);
     if (strcmp(text, "stare") != 0 && strcmp(text, "lines") != 0 && strcmp(text, "both") != 0 &&
         strcmp(text, "columns") != 0)
         return bad_word(t, row, "scan", text, "stare, lines, both, columns");
     p.scan.bidirectional = text[0] == 'b';
-    p.scan.by_columns    = text[0] == 'c';
+    p.scan.by_columns = text[0] == 'c';
 
     for (int i = 0; i < column_count; i++) {
         double    value;
@@ -145,22 +145,21 @@ Status preset_read(SensorPreset *out, const char *path, const char *name)
 {
     Table  table;
     char   known[512] = "", before[600] = "";
-    Status status     = table_open(&table, path);
+    Status status = table_open(&table, path);
     if (status != STATUS_OK) return status;
     const int column = need(&table, "name");
-    int       row    = -1;
-    WordMeant meant  = word_meant(name);
-    status           = STATUS_BAD_VALUE;
+    int       row = -1;
+    WordMeant meant = word_meant(name);
+    status = STATUS_BAD_VALUE;
     for (int i = 0; column >= 0 && i < table.rows; i++) {
-        const char  *here   = table_text(&table, i, column);
+        const char  *here = table_text(&table, i, column);
         const size_t length = strlen(known);
         if (strcmp(here, name) == 0 && row < 0) row = i;
         snprintf(known + length, sizeof known - length, "%s%s", i ? ", " : "", here);
         word_consider(&meant, here);
     }
     if (row < 0 && etc_own("sensors.csv")) snprintf(before, sizeof before, " (nor in %s)", etc_own("sensors.csv"));
-    if (row >= 0)
-        status = read_row(out, &table, row);
+    if (row >= 0) status = read_row(out, &table, row);
     else if (column >= 0)
         log_error("sensors: %s: no sensor named '%s'%s; there are: %s%s", path, name, before, known, word_hint(&meant));
     table_close(&table);

@@ -9,25 +9,25 @@
 #include "sensor/detector/photons.h"
 
 typedef struct SensorPreset {
-    char           name[32];
-    Band           band;               /* optical, mwir or lwir */
-    const SpectralChannel *channel;    /* the one it is for; NULL: the visible ones, or all of the band */
-    OpticalChannels optical;           /* its response in the optical band */
-    double         width_px, height_px, hfov_deg;
-    double         lens[5], lateral[2]; /* k1 k2 k3 p1 p2 (render/scene/view.h); R and B over G, less 1 */
-    PhotonDetector photons;            /* low_m, high_m: the band's; dark_e for integration_s; of one stage */
-    double         tdi;                /* stages whose electrons are summed; 0 or 1: no TDI */
-    double         obscuration, footprint, jitter_px;
-    bool           auto_exposure;
-    double         dark_e_s;
-    double         bits;
-    Noise3d        ratio;              /* of the temporal noise of a pixel, as etc/sensors.csv says; tvh: 1 */
-    double         prnu;
-    LineScan       scan;
-    double         ac_per_line, line_noise, line_noise_px;
-    double         bad_share, bad_clustered, bad_patched;
-    double         noise_scale;        /* of all noise and non-uniformity; 1 */
-    bool           smear;              /* motion within the integration time, and between lines */
+    char                   name[32];
+    Band                   band;    /* optical, mwir or lwir */
+    const SpectralChannel *channel; /* the one it is for; NULL: the visible ones, or all of the band */
+    OpticalChannels        optical; /* its response in the optical band */
+    double                 width_px, height_px, hfov_deg;
+    double                 lens[5], lateral[2]; /* k1 k2 k3 p1 p2 (render/scene/view.h); R and B over G, less 1 */
+    PhotonDetector         photons;             /* low_m, high_m: the band's; dark_e for integration_s; of one stage */
+    double                 tdi;                 /* stages whose electrons are summed; 0 or 1: no TDI */
+    double                 obscuration, footprint, jitter_px;
+    bool                   auto_exposure;
+    double                 dark_e_s;
+    double                 bits;
+    Noise3d                ratio; /* of the temporal noise of a pixel, as etc/sensors.csv says; tvh: 1 */
+    double                 prnu;
+    LineScan               scan;
+    double                 ac_per_line, line_noise, line_noise_px;
+    double                 bad_share, bad_clustered, bad_patched;
+    double                 noise_scale; /* of all noise and non-uniformity; 1 */
+    bool                   smear;       /* motion within the integration time, and between lines */
 } SensorPreset;
 
 /* The row of that name. On error logs file, line, column, value and range; for an unknown name the known
@@ -41,9 +41,9 @@ Status preset_has(bool *has, const char *path, const char *name);
  * current add, read noise adds in squares, and NETD improves by the root of their number. */
 PhotonDetector preset_photons(const SensorPreset *preset);
 /* After fields were changed by settings. */
-void   preset_refresh(SensorPreset *preset);
+void preset_refresh(SensorPreset *preset);
 /* Edges of a band in wavelength, as in the renderer. Channel 0 .. 2 of OPTICAL_RGB: R G B; -1: the whole. */
-void   preset_band(double *low_m, double *high_m, Band band, OpticalChannels optical, int channel);
+void preset_band(double *low_m, double *high_m, Band band, OpticalChannels optical, int channel);
 
 /* ---- sheet.c: data sheets ----------------------------------------------------------------------- */
 

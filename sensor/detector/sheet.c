@@ -89,8 +89,8 @@ static Status read_entry(Sheet *s, Lines *lines, int line, const char *key, cons
     if (k == all_entries) {
         text_escape(safe, sizeof safe, key, strnlen(key, 40));
         log_error("sheet: %s:%d: unknown key '%s'; sensor/detector/preset.h lists them, "
-                  "etc/sensors/example_flir2.sheet shows them", lines->path, line,
-                  safe);
+                  "etc/sensors/example_flir2.sheet shows them",
+                  lines->path, line, safe);
         return STATUS_BAD_VALUE;
     }
     if (lines->of[k]) {
@@ -200,9 +200,9 @@ static Status raster(SensorPreset *p, const Sheet *s, const char *path)
     }
     const double pitch_m = 1e-6 * sqrt(h_um * v_um), focal_m = 1e-2 * s->focal_cm;
     p->photons.pitch_m = pitch_m;
-    p->footprint       = 1e-6 * sqrt(s->horz_um * s->vert_um) / pitch_m;
-    p->width_px        = staring ? s->columns : round(2 * focal_m * tan(0.5 * s->fov_deg * rad_per_deg) / pitch_m);
-    p->height_px       = staring ? s->rows : round(s->rows * s->per_v);
+    p->footprint = 1e-6 * sqrt(s->horz_um * s->vert_um) / pitch_m;
+    p->width_px = staring ? s->columns : round(2 * focal_m * tan(0.5 * s->fov_deg * rad_per_deg) / pitch_m);
+    p->height_px = staring ? s->rows : round(s->rows * s->per_v);
     if (floor(s->columns) != s->columns && staring) p->width_px = NAN;
     if (floor(s->rows) != s->rows ||
         !(p->width_px >= 8 && p->width_px <= 8192 && p->height_px >= 8 && p->height_px <= 8192) ||
@@ -213,12 +213,12 @@ static Status raster(SensorPreset *p, const Sheet *s, const char *path)
             path, p->width_px, p->height_px, 1e6 * pitch_m, p->footprint);
         return STATUS_BAD_VALUE;
     }
-    p->hfov_deg  = 2 * atan(0.5 * p->width_px * pitch_m / focal_m) / rad_per_deg;
+    p->hfov_deg = 2 * atan(0.5 * p->width_px * pitch_m / focal_m) / rad_per_deg;
     p->jitter_px = 1e-3 * s->motion_mrad * focal_m / pitch_m;
     if (staring) return STATUS_OK;
     p->scan.by_columns = true;
-    p->scan.line_s     = s->efficiency / (s->frame_hz * p->width_px);
-    p->ac_per_line     = s->cuton_hz * p->scan.line_s;
+    p->scan.line_s = s->efficiency / (s->frame_hz * p->width_px);
+    p->ac_per_line = s->cuton_hz * p->scan.line_s;
     return STATUS_OK;
 }
 
@@ -226,7 +226,7 @@ static Status raster(SensorPreset *p, const Sheet *s, const char *path)
 static double d_star_noise_e(const Sheet *s, double integration_s)
 {
     static const double h_j_s = 6.62607015e-34, c_mps = 299792458.0;
-    const double area_cm2 = 1e-8 * s->horz_um * s->vert_um,
+    const double        area_cm2 = 1e-8 * s->horz_um * s->vert_um,
                  nep_w = sqrt(area_cm2 / (2 * integration_s)) / (1e10 * s->d_star_1e10);
     return s->qe * nep_w * integration_s * 1e-6 * s->cut_off_um / (h_j_s * c_mps);
 }
@@ -260,8 +260,12 @@ static Status noise_of_reading(SensorPreset *p, const Sheet *s, const char *path
 static Status build(SensorPreset *out, const Sheet *s, const char *path)
 {
     static const NoiseAxis axis[6] = {NOISE_TV, NOISE_TH, NOISE_VH, NOISE_T, NOISE_V, NOISE_H};
-    SensorPreset           p = {.noise_scale = 1, .smear = true, .obscuration = s->obscuration, .bits = s->bits,
-                                .dark_e_s = s->dark_e_s, .tdi = s->tdi};
+    SensorPreset           p = {.noise_scale = 1,
+                                .smear = true,
+                                .obscuration = s->obscuration,
+                                .bits = s->bits,
+                                .dark_e_s = s->dark_e_s,
+                                .tdi = s->tdi};
     Status                 status = choose_band(&p.band, s, path);
     if (status == STATUS_OK) status = raster(&p, s, path);
     if (status != STATUS_OK) return status;
@@ -270,9 +274,9 @@ static Status build(SensorPreset *out, const Sheet *s, const char *path)
         return STATUS_BAD_VALUE;
     }
     strcpy(p.name, s->name);
-    p.photons.f_number      = s->f_number;
-    p.photons.transmission  = s->transmission;
-    p.photons.qe            = s->qe * p.footprint * p.footprint; /* relative to the photons on a whole pixel */
+    p.photons.f_number = s->f_number;
+    p.photons.transmission = s->transmission;
+    p.photons.qe = s->qe * p.footprint * p.footprint; /* relative to the photons on a whole pixel */
     p.photons.integration_s = isnan(s->integration_us) ? p.scan.line_s : 1e-6 * s->integration_us;
     for (int k = 0; k < 6; k++) p.ratio.sigma[axis[k]] = s->noise[k];
     preset_refresh(&p);

@@ -9,16 +9,17 @@
 
 enum {
     nodes_per_px = 8,
-    reach_px = 8,                        /* of the difference of point spreads, each way */
+    reach_px = 8, /* of the difference of point spreads, each way */
     side = 2 * reach_px + 1,
-    period_px = 32,                      /* period of both computed point spreads; tails beyond are aliased */
-    fine = period_px * nodes_per_px,     /* samples of the continuous one */
-    fine_half = fine / 2 + 1, coarse_half = period_px / 2 + 1,
+    period_px = 32,                  /* period of both computed point spreads; tails beyond are aliased */
+    fine = period_px * nodes_per_px, /* samples of the continuous one */
+    fine_half = fine / 2 + 1,
+    coarse_half = period_px / 2 + 1,
     phases = nodes_per_px * nodes_per_px,
     /* nodes of the pixels covered by the largest small target, its length plus one, and one beyond each
      * end */
     most_nodes = (small_target_px + 3) * (small_target_long_px + 3) * phases,
-    most_shares = nodes_per_px + 2,      /* nodes that share what lies within one pixel */
+    most_shares = nodes_per_px + 2, /* nodes that share what lies within one pixel */
 };
 
 typedef struct Kernel {
@@ -26,16 +27,16 @@ typedef struct Kernel {
 } Kernel;
 
 struct SubPixel {
-    MtfChain      chain;
-    double        smear_px[2];   /* smear of the present kernels; NaN: none yet */
-    double       *true_pass;     /* [fine][fine_half]: optics, footprint, jitter; over the nodes' own and the period */
-    double       *pixel_pass;    /* [period_px][coarse_half]: transfer of the blur without smear, over the period */
-    double       *fine_value;    /* [fine][fine]: continuous point spread, px^-2 */
-    double       *coarse_value;  /* [period_px][period_px] */
-    double       *fine_wave, *coarse_wave; /* spectra, in pairs */
-    Transform    *to_fine, *to_coarse;
-    Kernel       *kernel;        /* [phases]: node's row, column within its pixel */
-    double       *node;          /* [most_nodes] */
+    MtfChain   chain;
+    double     smear_px[2];  /* smear of the present kernels; NaN: none yet */
+    double    *true_pass;    /* [fine][fine_half]: optics, footprint, jitter; over the nodes' own and the period */
+    double    *pixel_pass;   /* [period_px][coarse_half]: transfer of the blur without smear, over the period */
+    double    *fine_value;   /* [fine][fine]: continuous point spread, px^-2 */
+    double    *coarse_value; /* [period_px][period_px] */
+    double    *fine_wave, *coarse_wave; /* spectra, in pairs */
+    Transform *to_fine, *to_coarse;
+    Kernel    *kernel; /* [phases]: node's row, column within its pixel */
+    double    *node;   /* [most_nodes] */
 };
 
 /* Frequency of an index of a transform of n points, period_px long. */
@@ -62,8 +63,8 @@ static void make_passes(SubPixel *s)
     for (int j = 0; j < period_px; j++)
         for (int k = 0; k < coarse_half; k++) {
             const double fx = blur_tapered(frequency(k, period_px)), fy = blur_tapered(frequency(j, period_px));
-            s->pixel_pass[j * coarse_half + k] = area * mtf_optics(c, fx, fy) * mtf_footprint(c, fx, fy) *
-                                                 mtf_jitter(c, fx, fy);
+            s->pixel_pass[j * coarse_half + k] =
+                area * mtf_optics(c, fx, fy) * mtf_footprint(c, fx, fy) * mtf_jitter(c, fx, fy);
         }
 }
 
@@ -71,16 +72,16 @@ Status subpixel_create(SubPixel **out, const MtfChain *chain)
 {
     SubPixel *s = calloc(1, sizeof *s);
     if (!s) return STATUS_NO_MEMORY;
-    s->chain        = *chain;
-    s->smear_px[0]  = s->smear_px[1] = NAN;
-    s->true_pass    = malloc(sizeof(double) * fine * fine_half);
-    s->pixel_pass   = malloc(sizeof(double) * period_px * coarse_half);
-    s->fine_value   = transform_alloc(fine * fine);
+    s->chain = *chain;
+    s->smear_px[0] = s->smear_px[1] = NAN;
+    s->true_pass = malloc(sizeof(double) * fine * fine_half);
+    s->pixel_pass = malloc(sizeof(double) * period_px * coarse_half);
+    s->fine_value = transform_alloc(fine * fine);
     s->coarse_value = transform_alloc(period_px * period_px);
-    s->fine_wave    = transform_alloc(2 * fine * fine_half);
-    s->coarse_wave  = transform_alloc(2 * period_px * coarse_half);
-    s->kernel       = malloc(phases * sizeof *s->kernel);
-    s->node         = malloc(most_nodes * sizeof *s->node);
+    s->fine_wave = transform_alloc(2 * fine * fine_half);
+    s->coarse_wave = transform_alloc(2 * period_px * coarse_half);
+    s->kernel = malloc(phases * sizeof *s->kernel);
+    s->node = malloc(most_nodes * sizeof *s->node);
     Status status = STATUS_NO_MEMORY;
     if (s->true_pass && s->pixel_pass && s->fine_value && s->coarse_value && s->fine_wave && s->coarse_wave &&
         s->kernel && s->node)
@@ -131,7 +132,7 @@ static void make_kernels(SubPixel *s, const double smear_px[2])
     for (int j = 0, i = 0; j < fine; j++)
         for (int k = 0; k < fine_half; k++, i++) {
             s->fine_wave[2 * i] = s->true_pass[i] * smear_pass(smear_px, frequency(k, fine), frequency(j, fine),
-                                                                   2 * k == fine || 2 * j == fine);
+                                                               2 * k == fine || 2 * j == fine);
             s->fine_wave[2 * i + 1] = 0;
         }
     for (int j = 0, i = 0; j < period_px; j++)
@@ -243,8 +244,8 @@ static void add_target(SubPixel *s, const SubPixelPlane *p, const SmallTarget *t
 {
     const int width = p->width, height = p->height;
     /* pixels that nodes may belong to: a hat at the target's edge reaches one node further */
-    const int x0 = t->x0 > 0 ? t->x0 - 1 : 0, x1 = t->x1 < width ? t->x1 + 1 : width;
-    const int y0 = t->y0 > 0 ? t->y0 - 1 : 0, y1 = t->y1 < height ? t->y1 + 1 : height;
+    const int    x0 = t->x0 > 0 ? t->x0 - 1 : 0, x1 = t->x1 < width ? t->x1 + 1 : width;
+    const int    y0 = t->y0 > 0 ? t->y0 - 1 : 0, y1 = t->y1 < height ? t->y1 + 1 : height;
     const Grid   g = {x0 * nodes_per_px, y0 * nodes_per_px, (x1 - x0) * nodes_per_px};
     const size_t nodes = (size_t)g.columns * (size_t)(y1 - y0) * nodes_per_px;
     assert(nodes <= most_nodes);

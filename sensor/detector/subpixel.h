@@ -35,12 +35,12 @@ void   subpixel_destroy(SubPixel *s);
 
 /* A plane of the image, and how its radiance becomes electrons. */
 typedef struct SubPixelPlane {
-    float             *electrons;     /* [height][width] */
-    double            *more;          /* likewise: what is to be added after the blur */
+    float             *electrons; /* [height][width] */
+    double            *more;      /* likewise: what is to be added after the blur */
     int                width, height;
-    int                plane;         /* of the targets' cells */
+    int                plane; /* of the targets' cells */
     const PhotonTable *photons;
-    double             exposure;      /* factor of the electrons */
+    double             exposure; /* factor of the electrons */
 } SubPixelPlane;
 
 /* Sets the electrons of pixels with small targets, from their background and their cells, and all of `more`. 0.7 ms

@@ -21,7 +21,7 @@ typedef enum TransformKind {
 Status transform_create(Transform **out, TransformKind kind, int rows, int columns, double *from, double *to);
 void   transform_destroy(Transform *t);
 /* No allocation. */
-void   transform_run(const Transform *t);
+void transform_run(const Transform *t);
 
 /* Doubles with the alignment that transforms need; NULL: no memory. */
 double *transform_alloc(size_t count);

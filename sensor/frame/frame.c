@@ -9,8 +9,8 @@
 
 struct FramePool {
     int             count;
-    Frame          *frame;    /* [count] */
-    pthread_mutex_t lock;     /* of the frames' reference counts */
+    Frame          *frame; /* [count] */
+    pthread_mutex_t lock;  /* of the frames' reference counts */
     pthread_cond_t  released;
 };
 
@@ -21,11 +21,11 @@ Status frame_pool_create(FramePool **out, int frames)
     pthread_mutex_init(&pool->lock, NULL);
     pthread_cond_init(&pool->released, NULL);
     pool->frame = calloc((size_t)frames, sizeof *pool->frame);
-    bool whole  = pool->frame != NULL;
+    bool whole = pool->frame != NULL;
     for (int i = 0; i < frames && whole; i++) {
-        pool->count         = i + 1;
+        pool->count = i + 1;
         pool->frame[i].pool = pool;
-        whole               = (pool->frame[i].arena = arena_create()) != NULL;
+        whole = (pool->frame[i].arena = arena_create()) != NULL;
     }
     if (whole) *out = pool;
     else frame_pool_destroy(pool);
@@ -130,9 +130,15 @@ int frame_planes(FrameArray plane[frame_max_planes], const Picture *p, const Ren
     add(&list, truth, PLANE_TRUTH, "temp_k", "K", PLANE_F32, p->temp_k);
     for (int k = 0; k < 3; k++) add(&list, truth, PLANE_TRUTH, normal[k], "", PLANE_F32, p->normal[k]);
     if (p->profile)
-        plane[list.count++] = (FrameArray){.group = band_name(BAND_RADAR), .name = "profile", .unit = relative,
-                                           .model = radar_model, .kind = PLANE_PROFILE, .type = PLANE_F64, .axes = 2,
-                                           .axis = {"bin", "bounce"}, .size = {request->profile_bins, radar_bounces},
+        plane[list.count++] = (FrameArray){.group = band_name(BAND_RADAR),
+                                           .name = "profile",
+                                           .unit = relative,
+                                           .model = radar_model,
+                                           .kind = PLANE_PROFILE,
+                                           .type = PLANE_F64,
+                                           .axes = 2,
+                                           .axis = {"bin", "bounce"},
+                                           .size = {request->profile_bins, radar_bounces},
                                            .values = p->profile};
     return list.count;
 }

@@ -18,15 +18,15 @@ typedef enum PlaneKind { PLANE_RADIANCE, PLANE_TRUTH, PLANE_PROFILE } PlaneKind;
 
 /* A named array. The last axis is contiguous in memory. */
 typedef struct FrameArray {
-    const char *group;                   /* `lwir`, `radar`, `truth`: planes that go into one file */
-    const char *name;                    /* within the group: `Y`, `R`, `range_m`, `profile` */
+    const char *group; /* `lwir`, `radar`, `truth`: planes that go into one file */
+    const char *name;  /* within the group: `Y`, `R`, `range_m`, `profile` */
     const char *unit;
     const char *model, *wavelengths_um; /* of radiance: its sensor, and its channels in the order of the group's
                                          * planes */
     PlaneKind   kind;
     PlaneType   type;
     int         axes;
-    const char *axis[frame_max_axes];    /* `row`, `column`, `bin`, `bounce` */
+    const char *axis[frame_max_axes]; /* `row`, `column`, `bin`, `bounce` */
     int         size[frame_max_axes];
     const void *values;
 } FrameArray;
@@ -44,45 +44,45 @@ typedef struct FrameView {
 typedef struct Provenance {
     const char *version, *config_sha256;
     long long   seed;
-    uint64_t    datagrams;               /* of the log, or received, when it was rendered */
+    uint64_t    datagrams;                    /* of the log, or received, when it was rendered */
     double      begun_s, posed_s, rendered_s; /* wall_clock_s */
 } Provenance;
 
 typedef struct Frame Frame;
 struct Frame {
-    int               number;
-    double            time_s, unix_s;    /* of the exercise */
-    char              host[dis_id_text_size];
-    FrameView         seen;
-    FrameDisplay      display[BAND_COUNT]; /* consume_displays, if a consumer wants it */
-    GroundPoint       footprint[FOOTPRINT_COUNT]; /* if a consumer wants it; as in record */
-    FrameView        *without;           /* the same without the removed entities; NULL: not requested */
-    const DisEntityId *taken;            /* [taken_count] */
-    int               taken_count;
-    RenderRequest     request;
-    const World      *world;             /* materials and catalog alone: the tracer belongs to the next frame */
-    double            rate_px_s[2];      /* image motion of the scene: column, row */
-    Sun               sun;
-    const RadarFrame *radar;             /* NULL: no radar was asked for */
-    FrameError        error;
-    RadarError        radar_error;
-    FrameRecord       record;            /* its lists and all fields of truth.jsonl; frame_sha256 is NULL */
-    Provenance        provenance;
-    bool              buried;            /* the sensor was below the ground */
-    double            publish_begun_s;   /* wall_clock_s; set when the first consumer receives it */
-    LatencyTimes      times;
-    Latency          *latency;           /* the run's ledger; NULL: none is kept */
-    uint64_t          latency_key;
-    Arena            *arena;
-    struct FramePool *pool;
-    int               holds;             /* protected by the pool's lock */
+    int                number;
+    double             time_s, unix_s; /* of the exercise */
+    char               host[dis_id_text_size];
+    FrameView          seen;
+    FrameDisplay       display[BAND_COUNT];        /* consume_displays, if a consumer wants it */
+    GroundPoint        footprint[FOOTPRINT_COUNT]; /* if a consumer wants it; as in record */
+    FrameView         *without;                    /* the same without the removed entities; NULL: not requested */
+    const DisEntityId *taken;                      /* [taken_count] */
+    int                taken_count;
+    RenderRequest      request;
+    const World       *world;        /* materials and catalog alone: the tracer belongs to the next frame */
+    double             rate_px_s[2]; /* image motion of the scene: column, row */
+    Sun                sun;
+    const RadarFrame  *radar; /* NULL: no radar was asked for */
+    FrameError         error;
+    RadarError         radar_error;
+    FrameRecord        record; /* its lists and all fields of truth.jsonl; frame_sha256 is NULL */
+    Provenance         provenance;
+    bool               buried;          /* the sensor was below the ground */
+    double             publish_begun_s; /* wall_clock_s; set when the first consumer receives it */
+    LatencyTimes       times;
+    Latency           *latency; /* the run's ledger; NULL: none is kept */
+    uint64_t           latency_key;
+    Arena             *arena;
+    struct FramePool  *pool;
+    int                holds; /* protected by the pool's lock */
 };
 
 /* The planes of an image in the order of their groups: bands, then truth, profiles last. Borrowed from it. */
-int    frame_planes(FrameArray plane[frame_max_planes], const Picture *picture, const RenderRequest *request);
+int frame_planes(FrameArray plane[frame_max_planes], const Picture *picture, const RenderRequest *request);
 /* As named in the hash: GROUP/NAME, and as a plane of two axes: the first ones are rows, the last one columns. */
 enum { frame_plane_name_size = 64 };
-Plane  frame_plane(char name[frame_plane_name_size], const FrameArray *plane);
+Plane frame_plane(char name[frame_plane_name_size], const FrameArray *plane);
 /* Of all planes. Computed on the first call, in the publishing thread. */
 Status frame_sha256(FrameView *view);
 

@@ -22,9 +22,9 @@ static int band_radiance(const float *plane[3], const Picture *p, int band)
 static double mean_radiance(const Picture *picture, int band)
 {
     const float *plane[3];
-    const size_t count  = (size_t)picture->width * (size_t)picture->height;
+    const size_t count = (size_t)picture->width * (size_t)picture->height;
     const int    planes = band_radiance(plane, picture, band);
-    double       sum    = 0;
+    double       sum = 0;
     for (int c = 0; c < planes; c++)
         for (size_t i = 0; i < count; i++) sum += plane[c][i];
     return planes ? fmax(0, sum / ((double)count * planes)) : 0;
@@ -56,7 +56,7 @@ void frame_expose(TruthNoise *noise, Chain *const chain[BAND_COUNT], const Pictu
         noise->optical_w_m2_sr = chain_sigma(chain[BAND_OPTICAL], 0, mean_radiance(picture, BAND_OPTICAL));
     for (int b = BAND_MWIR; b <= BAND_LWIR; b++) {
         double      *netd_k = b == BAND_MWIR ? &noise->netd_mwir_k : &noise->netd_lwir_k, low_m, high_m, slope;
-        const double mean   = chain[b] ? mean_radiance(picture, b) : 0;
+        const double mean = chain[b] ? mean_radiance(picture, b) : 0;
         if (!(mean > 0)) continue;
         preset_band(&low_m, &high_m, (Band)b, OPTICAL_PAN, -1);
         planck_band(low_m, high_m, planck_band_inverse(low_m, high_m, mean), &slope);
@@ -68,38 +68,38 @@ void frame_expose(TruthNoise *noise, Chain *const chain[BAND_COUNT], const Pictu
  * the band's sensor. */
 static DetectorConfig detector_of(const DisplaysOf *of, int band)
 {
-    const Config  *c     = of->config;
+    const Config  *c = of->config;
     const Chain   *chain = of->chain[band];
-    DetectorConfig d     = detector_default_config();
-    d.bits               = c->detector.bits;
-    d.gain               = c->detector.gain;
-    d.offset             = c->detector.offset;
-    d.auto_level         = strcmp(c->detector.level, "manual") != 0;
-    d.step               = chain != NULL;
+    DetectorConfig d = detector_default_config();
+    d.bits = c->detector.bits;
+    d.gain = c->detector.gain;
+    d.offset = c->detector.offset;
+    d.auto_level = strcmp(c->detector.level, "manual") != 0;
+    d.step = chain != NULL;
     if (band == BAND_OPTICAL) {
         d.display_gamma = true;
         if (!chain) d.min_span = optical_least_span; /* grey surfaces below some 4 lux; a night is displayed dark */
-        d.noise_sigma   = optical_sigma(of->noise_of ? of->noise_of : of->picture, c);
-        d.level_low     = 0;
-        d.level_high    = c->detector.optical_high_w_m2_sr;
+        d.noise_sigma = optical_sigma(of->noise_of ? of->noise_of : of->picture, c);
+        d.level_low = 0;
+        d.level_high = c->detector.optical_high_w_m2_sr;
     } else {
-        const bool   mwir = band == BAND_MWIR;
-        double       low_m, high_m, slope; /* W/(m2 sr K) at 300 K, where the figure is defined */
+        const bool mwir = band == BAND_MWIR;
+        double     low_m, high_m, slope; /* W/(m2 sr K) at 300 K, where the figure is defined */
         preset_band(&low_m, &high_m, (Band)band, OPTICAL_PAN, -1);
         const double at_300_k = planck_band(low_m, high_m, 300, &slope);
         d.noise_sigma = c->detector.noise * slope * (mwir ? c->detector.netd_mwir_k : c->detector.netd_lwir_k);
-        d.highlight   = 1.5; /* with fire on up to half of the pixels normal noise keeps 0.56 of its contrast */
-        d.fire_from   = low_m > 2.9e-6 ? planck_band(low_m, high_m, hottest_ground_k, NULL) : INFINITY;
-        d.plateau     = strcmp(c->detector.level, "plateau") == 0 ? c->detector.plateau : 0;
-        d.min_span    = 2 * slope; /* never stretch less than 2 K over the display */
-        d.level_low   = planck_band(low_m, high_m, mwir ? c->detector.mwir_low_k : c->detector.lwir_low_k, NULL);
-        d.level_high  = planck_band(low_m, high_m, mwir ? c->detector.mwir_high_k : c->detector.lwir_high_k, NULL);
-        if (chain)
-            d.min_span = chain_counts_at(chain, 0, at_300_k + d.min_span) - chain_counts_at(chain, 0, at_300_k);
-        if (chain && d.fire_from < INFINITY) d.fire_from = fmin(chain_counts_at(chain, 0, d.fire_from), chain_full(chain));
+        d.highlight = 1.5; /* with fire on up to half of the pixels normal noise keeps 0.56 of its contrast */
+        d.fire_from = low_m > 2.9e-6 ? planck_band(low_m, high_m, hottest_ground_k, NULL) : INFINITY;
+        d.plateau = strcmp(c->detector.level, "plateau") == 0 ? c->detector.plateau : 0;
+        d.min_span = 2 * slope; /* never stretch less than 2 K over the display */
+        d.level_low = planck_band(low_m, high_m, mwir ? c->detector.mwir_low_k : c->detector.lwir_low_k, NULL);
+        d.level_high = planck_band(low_m, high_m, mwir ? c->detector.mwir_high_k : c->detector.lwir_high_k, NULL);
+        if (chain) d.min_span = chain_counts_at(chain, 0, at_300_k + d.min_span) - chain_counts_at(chain, 0, at_300_k);
+        if (chain && d.fire_from < INFINITY)
+            d.fire_from = fmin(chain_counts_at(chain, 0, d.fire_from), chain_full(chain));
     }
     if (chain) {
-        d.level_low  = chain_counts_at(chain, 0, d.level_low);
+        d.level_low = chain_counts_at(chain, 0, d.level_low);
         d.level_high = chain_counts_at(chain, 0, d.level_high);
     }
     return d;
@@ -138,14 +138,14 @@ static void add_noise(float *const memory[3], const FrameDisplay *d, const Displ
  * balanced. */
 static void detect(FrameDisplay *out, float *const memory[3], const DisplaysOf *of, int band)
 {
-    const Picture *p     = of->picture;
+    const Picture *p = of->picture;
     const size_t   count = (size_t)p->width * (size_t)p->height;
     Chain         *chain = of->chain[band];
     const float   *in[3] = {NULL, NULL, NULL}, *seen[3];
     band_radiance(in, p, band);
     if (chain) chain_run(chain, in, &p->small, of->frame, of->rate_px_s);
     for (int c = 0; c < out->planes; c++) {
-        seen[c]       = chain ? chain_values(chain, c) : memory[c];
+        seen[c] = chain ? chain_values(chain, c) : memory[c];
         out->plane[c] = memory[c];
     }
     if (out->planes == 3) {
@@ -176,7 +176,7 @@ static void set_level(FrameDisplay *d, FrameLevel *state, double time_s, double 
         detector_level_follow(&state->level, &state->quick, d->level, step_s, agc_s);
         d->level = state->level;
     }
-    state->known  = true;
+    state->known = true;
     state->time_s = time_s;
 }
 
@@ -197,11 +197,11 @@ static int noise_tasks(const Picture *p) { return (p->height + noise_rows - 1) /
 
 static void run_noise(void *user, int worker, int task)
 {
-    DisplayJobs      *jobs  = user;
-    const DisplaysOf *of    = jobs->of;
-    const Picture    *p     = of->picture;
-    const int         band  = jobs->band[task / noise_tasks(p)], row = task % noise_tasks(p) * noise_rows;
-    const int         rows  = p->height - row < noise_rows ? p->height - row : noise_rows;
+    DisplayJobs      *jobs = user;
+    const DisplaysOf *of = jobs->of;
+    const Picture    *p = of->picture;
+    const int         band = jobs->band[task / noise_tasks(p)], row = task % noise_tasks(p) * noise_rows;
+    const int         rows = p->height - row < noise_rows ? p->height - row : noise_rows;
     (void)worker;
     if (!of->chain[band])
         add_noise(jobs->memory[band], &jobs->display[band], of, band, (size_t)row * (size_t)p->width,
@@ -210,11 +210,11 @@ static void run_noise(void *user, int worker, int task)
 
 static void run_job(void *user, int worker, int task)
 {
-    DisplayJobs      *jobs  = user;
-    const DisplaysOf *of    = jobs->of;
-    const int         band  = jobs->band[task];
+    DisplayJobs      *jobs = user;
+    const DisplaysOf *of = jobs->of;
+    const int         band = jobs->band[task];
     const size_t      count = (size_t)of->picture->width * (size_t)of->picture->height;
-    FrameDisplay     *d     = &jobs->display[band];
+    FrameDisplay     *d = &jobs->display[band];
     (void)worker;
     detect(d, jobs->memory[band], of, band);
     set_level(d, &of->level[band], of->time_s, of->config->detector.agc_s, count);
@@ -224,9 +224,10 @@ static void run_job(void *user, int worker, int task)
     }
 }
 
-Status frame_displays_make(FrameDisplay display[BAND_COUNT], const DisplaysOf *of, unsigned bands, Pool *pool, Arena *arena)
+Status frame_displays_make(FrameDisplay display[BAND_COUNT], const DisplaysOf *of, unsigned bands, Pool *pool,
+                           Arena *arena)
 {
-    const Picture *p     = of->picture;
+    const Picture *p = of->picture;
     const size_t   count = (size_t)p->width * (size_t)p->height;
     const float   *in[3];
     TruthNoise     ignored;
@@ -255,15 +256,11 @@ Status frame_displays_make(FrameDisplay display[BAND_COUNT], const DisplaysOf *o
 void frame_display_quantise(void *out, const FrameDisplay *display, size_t count, int bits)
 {
     DetectorConfig detector = display->detector;
-    detector.bits           = bits > 8 ? 16 : 8;
-    if (display->decibels)
-        detector_display_db(out, display->plane[0], count, detector_radar_range_db, detector.bits);
-    else if (display->planes == 3)
-        detector_display_rgb(out, display->plane, count, &detector, display->level);
-    else if (detector.plateau > 0)
-        detector_display_curve(out, display->plane[0], count, &detector, &display->curve);
-    else
-        detector_display(out, display->plane[0], count, &detector, display->level);
+    detector.bits = bits > 8 ? 16 : 8;
+    if (display->decibels) detector_display_db(out, display->plane[0], count, detector_radar_range_db, detector.bits);
+    else if (display->planes == 3) detector_display_rgb(out, display->plane, count, &detector, display->level);
+    else if (detector.plateau > 0) detector_display_curve(out, display->plane[0], count, &detector, &display->curve);
+    else detector_display(out, display->plane[0], count, &detector, display->level);
     uint16_t *value = out;
     if (bits > 8 && bits < 16)
         for (size_t i = 0; i < count * (size_t)display->planes; i++) value[i] >>= 16 - bits;

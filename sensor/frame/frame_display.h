@@ -11,9 +11,9 @@
 
 /* A band's image behind its detector, before quantisation. Without a sensor: radiance with noise as configured. */
 typedef struct FrameDisplay {
-    int             planes;    /* 0: none; 1: grey; 3: R, G, B */
-    const float    *plane[3];  /* [height][width] */
-    bool            decibels;  /* radar: power, displayed in dB below the brightest */
+    int             planes;   /* 0: none; 1: grey; 3: R, G, B */
+    const float    *plane[3]; /* [height][width] */
+    bool            decibels; /* radar: power, displayed in dB below the brightest */
     DetectorConfig  detector;
     DetectorLevel   level;     /* displayed as black and white; R G B: balanced */
     DetectorCurve   curve;     /* between the two, where detector.plateau is not 0 */
@@ -26,26 +26,27 @@ typedef struct FrameLevel {
     bool          known, quick; /* quick: detector_level_follow */
     double        time_s;
     DetectorLevel level;
-    DetectorCurve curve;        /* instead, of plateau equalisation */
+    DetectorCurve curve; /* instead, of plateau equalisation */
 } FrameLevel;
 
 typedef struct DisplaysOf {
     const Config  *config;
     const Picture *picture;
-    const Picture *noise_of;       /* the image whose mean white noise is a share of; NULL: picture */
-    Chain *const  *chain;          /* [BAND_COUNT]; NULL: white noise as configured */
-    FrameLevel    *level;          /* [BAND_COUNT] */
+    const Picture *noise_of; /* the image whose mean white noise is a share of; NULL: picture */
+    Chain *const  *chain;    /* [BAND_COUNT]; NULL: white noise as configured */
+    FrameLevel    *level;    /* [BAND_COUNT] */
     int            frame;
     double         time_s;
-    double         rate_px_s[2];   /* image motion of the scene: column, row */
-    bool           counts;         /* raw counts too */
+    double         rate_px_s[2]; /* image motion of the scene: column, row */
+    bool           counts;       /* raw counts too */
 } DisplaysOf;
 
 /* Exposes the sensors for this image, and gives their noise at its mean radiance. */
-void   frame_expose(TruthNoise *noise, Chain *const chain[BAND_COUNT], const Picture *picture, const Config *config);
+void frame_expose(TruthNoise *noise, Chain *const chain[BAND_COUNT], const Picture *picture, const Config *config);
 /* Exposes and runs the detectors of these bands (1 << Band), one task per band. STATUS_NO_MEMORY. */
-Status frame_displays_make(FrameDisplay display[BAND_COUNT], const DisplaysOf *of, unsigned bands, Pool *pool, Arena *arena);
+Status frame_displays_make(FrameDisplay display[BAND_COUNT], const DisplaysOf *of, unsigned bands, Pool *pool,
+                           Arena *arena);
 /* To 8 .. 16 bits: uint8_t (8) or uint16_t values of a grey image, or of R G B interleaved. */
-void   frame_display_quantise(void *out, const FrameDisplay *display, size_t count, int bits);
+void frame_display_quantise(void *out, const FrameDisplay *display, size_t count, int bits);
 
 #endif

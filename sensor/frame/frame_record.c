@@ -77,7 +77,7 @@ static json_t *bands_json(const TargetRecord *t)
     json_t *bands = json_object();
     for (int b = 0; b < BAND_COUNT; b++) {
         json_t           *band = json_object();
-        const TargetBand *v    = &t->band[b];
+        const TargetBand *v = &t->band[b];
         json_set_number(band, "contrast_k", v->contrast_k);
         json_set_number(band, "dt_rss_k", v->dt_rss_k);
         json_set_number(band, "contrast", v->contrast);
@@ -87,10 +87,8 @@ static json_t *bands_json(const TargetRecord *t)
         json_set_number(band, "intensity_error_w_sr", v->intensity_error_w_sr);
         json_set_number(band, "error_rms_k", v->error_rms_k);
         json_set_number(band, "error_median_k", v->error_median_k);
-        if (json_object_size(band) > 0)
-            json_object_set_new(bands, band_name((Band)b), band);
-        else
-            json_decref(band);
+        if (json_object_size(band) > 0) json_object_set_new(bands, band_name((Band)b), band);
+        else json_decref(band);
     }
     return bands;
 }
@@ -145,8 +143,8 @@ static json_t *error_by_source(const double share[error_sources], const double s
 {
     static const char *const name[error_sources] = {"sampling", "level_of_detail", "table",
                                                     "heat",     "dead_reckoning",  "total"};
-    json_t *band = json_object();
-    char    key[32];
+    json_t                  *band = json_object();
+    char                     key[32];
     for (int s = 0; s < error_sources; s++) {
         snprintf(key, sizeof key, "%s_%s", name[s], unit);
         json_set_number(band, name[s], share[s]);
@@ -161,8 +159,9 @@ static void set_if_known(json_t *error, const char *of, json_t *band)
     else json_decref(band);
 }
 
-/* rms over the image as a share of the band's mean; _k: the same in kelvin about that mean. The mean of the pseudo-radar
- * is that of a few mirrors, and no measure. Of the radar over its map; _db: of an entity's cross section. */
+/* rms over the image as a share of the band's mean; _k: the same in kelvin about that mean. The mean of the
+ * pseudo-radar is that of a few mirrors, and no measure. Of the radar over its map; _db: of an entity's cross section.
+ */
 static json_t *error_json(const FrameRecord *r)
 {
     const FrameError *e = r->error;
@@ -173,7 +172,8 @@ static json_t *error_json(const FrameRecord *r)
         json_set_number(band, "beyond_1k", e->beyond_1k[b]);
         set_if_known(error, band_name((Band)b), band);
     }
-    if (r->radar_error) set_if_known(error, "range_doppler", error_by_source(r->radar_error->share, r->radar_error->db, "db"));
+    if (r->radar_error)
+        set_if_known(error, "range_doppler", error_by_source(r->radar_error->share, r->radar_error->db, "db"));
     return error;
 }
 
@@ -215,8 +215,9 @@ Status record_write_text(FILE *file, const char *text, const LatencyLine *latenc
     char *more = latency ? latency_text(latency) : NULL;
     if (latency && !more) return STATUS_NO_MEMORY;
     const int  length = (int)strlen(text) - 1; /* the object is still open: without its last brace */
-    const bool ok     = (more ? fprintf(file, "%.*s,\"latency_ms\":%s}\n", length, text, more)
-                              : fprintf(file, "%s\n", text)) > 0 && fflush(file) == 0;
+    const bool ok =
+        (more ? fprintf(file, "%.*s,\"latency_ms\":%s}\n", length, text, more) : fprintf(file, "%s\n", text)) > 0 &&
+        fflush(file) == 0;
     free(more);
     if (!ok) log_error("records: cannot write truth.jsonl: %s", strerror(errno));
     return ok ? STATUS_OK : STATUS_IO;

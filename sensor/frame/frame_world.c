@@ -20,10 +20,11 @@ Status frame_world(World *out, const Config *config, const Catalog *catalog, con
 Status frame_world_plant(World *world, const Woods *woods, const Config *config, const char *isa, Pool *pool)
 {
     const ForestConfig forest = {.leaves = strcmp(config->terrain.woods_leaves, "on") == 0,
-                                 .level1_px = config->terrain.woods_level1_px, .sway = config->terrain.woods_sway};
+                                 .level1_px = config->terrain.woods_level1_px,
+                                 .sway = config->terrain.woods_sway};
     if (!woods) return STATUS_OK;
     const double begun_s = wall_clock_s();
-    const Status status  = world_plant(world, woods, &forest, isa, pool);
+    const Status status = world_plant(world, woods, &forest, isa, pool);
     log_detail("woods: grown in %.0f ms", 1e3 * (wall_clock_s() - begun_s));
     return status;
 }
@@ -32,14 +33,15 @@ Status frame_world_plant(World *world, const Woods *woods, const Config *config,
 static Weather frame_weather(const Config *config, const World *world)
 {
     Weather base = weather_default();
-    base.visibility_m  = config->weather.visibility_m;
-    base.air_temp_k    = isnan(config->weather.air_temp_k) ? atmosphere_temp_k(world->atmosphere, 0) : config->weather.air_temp_k;
+    base.visibility_m = config->weather.visibility_m;
+    base.air_temp_k =
+        isnan(config->weather.air_temp_k) ? atmosphere_temp_k(world->atmosphere, 0) : config->weather.air_temp_k;
     base.pressure_mbar = config->weather.pressure_mbar;
-    base.wind_mps      = config->weather.wind_mps;
+    base.wind_mps = config->weather.wind_mps;
     base.wind_from_rad = config->weather.wind_from_deg * rad_per_deg;
-    base.humidity      = 0.01 * config->weather.humidity_pct;
-    base.cloud         = config->weather.cloud;
-    base.rain_mm_h     = config->weather.rain_mmh;
+    base.humidity = 0.01 * config->weather.humidity_pct;
+    base.cloud = config->weather.cloud;
+    base.rain_mm_h = config->weather.rain_mmh;
     return base;
 }
 
@@ -52,12 +54,12 @@ Weather frame_weather_at(const Config *config, const World *world, double unix_s
 
 Status frame_world_warm(World *world, const Config *config, double unix_s, Pool *pool)
 {
-    const WeatherCourseConfig about = {frame_weather(config, world), config->weather.air_range_k, world->frame.origin.lon_rad,
-                                       world->frame.origin.lat_rad};
-    WeatherCourse *course;
-    HeatConfig     heat = heat_default_config();
-    const double   begun_s = wall_clock_s();
-    Status         status = weather_course_open(&course, config->weather.day, &about);
+    const WeatherCourseConfig about = {frame_weather(config, world), config->weather.air_range_k,
+                                       world->frame.origin.lon_rad, world->frame.origin.lat_rad};
+    WeatherCourse            *course;
+    HeatConfig                heat = heat_default_config();
+    const double              begun_s = wall_clock_s();
+    Status                    status = weather_course_open(&course, config->weather.day, &about);
     if (status != STATUS_OK) return status;
     log_detail("weather: %s", weather_course_about(course));
     heat.step_s = config->heat.step_s;
@@ -65,8 +67,9 @@ Status frame_world_warm(World *world, const Config *config, double unix_s, Pool 
     heat.unix_s = unix_s;
     status = world_warm(world, course, &heat, config->heat.shadow_m, pool);
     if (status == STATUS_OK)
-        log_detail("heat: ground warmed up over two days in %.0f ms, %.1f MB, %.1f MB of shadows", 1e3 * (wall_clock_s() - begun_s),
-                   1e-6 * (double)heat_bytes(world->heat), world->shadow ? 1e-6 * (double)heat_shadow_bytes(world->shadow) : 0.0);
+        log_detail("heat: ground warmed up over two days in %.0f ms, %.1f MB, %.1f MB of shadows",
+                   1e3 * (wall_clock_s() - begun_s), 1e-6 * (double)heat_bytes(world->heat),
+                   world->shadow ? 1e-6 * (double)heat_shadow_bytes(world->shadow) : 0.0);
     return status;
 }
 
@@ -74,17 +77,21 @@ Status frame_radar_open(SeekerRadar **out, const Config *config, const char *isa
 {
     char catalog[4096];
     if (!etc_path(catalog, sizeof catalog, "catalog.csv")) return STATUS_BAD_VALUE;
-    return seeker_radar_create(out, &(SeekerRadarConfig){.preset = config->radar.preset, .table = config->radar.table,
-                                                         .catalog = catalog, .isa = isa,
+    return seeker_radar_create(out, &(SeekerRadarConfig){.preset = config->radar.preset,
+                                                         .table = config->radar.table,
+                                                         .catalog = catalog,
+                                                         .isa = isa,
                                                          .ground = config->radar.ground,
                                                          .ground_bounce = config->radar.ground_bounce,
                                                          .warp_m = 1e-3 * config->radar.warp_mm,
-                                                         .given = config->radar.given, .wind_mps = config->weather.wind_mps,
+                                                         .given = config->radar.given,
+                                                         .wind_mps = config->weather.wind_mps,
                                                          .chaff_dipoles = config->radar.chaff_dipoles,
                                                          .scan_rad = config->radar.scan_deg * rad_per_deg,
                                                          .scan_step = config->radar.scan_step,
                                                          .seed = (uint64_t)config->seed,
-                                                         .library = config->radar.library, .background = live});
+                                                         .library = config->radar.library,
+                                                         .background = live});
 }
 
 /* ---- sun and atmosphere of one frame, from time, position, weather and view ---------------------- */
@@ -94,9 +101,9 @@ Status frame_light(Air *air, Sun *sun, double r_host_from_enu[9], const World *w
 {
     const Weather weather = frame_weather_at(config, world, eye->unix_s);
     HeatScene    *heat = NULL;
-    Geodetic place;
-    double   p_ecef[3], r_ecef_from_host[9], d_ecef[3];
-    Status   status = geodetic_from_ecef(&place, eye->p_ecef);
+    Geodetic      place;
+    double        p_ecef[3], r_ecef_from_host[9], d_ecef[3];
+    Status        status = geodetic_from_ecef(&place, eye->p_ecef);
     if (status == STATUS_OK) status = ecef_from_geodetic(p_ecef, r_ecef_from_host, &place);
     if (status == STATUS_OK)
         status = sun_at(sun, eye->unix_s, &place, weather.pressure_mbar, weather.air_temp_k - 273.15, NAN);
@@ -108,12 +115,12 @@ Status frame_light(Air *air, Sun *sun, double r_host_from_enu[9], const World *w
     m3_tmul(r_host_from_enu, r_ecef_from_host, world->frame.r_ecef_from_enu);
 
     /* heights in the atmosphere are above the ground at the origin, and the tangent plane departs from the Earth */
-    const double     *p_enu = eye->view->p_enu;
-    const double      ground_m = world->landscape ? elevation_height(&world->landscape->elevation, 0, 0, NULL) : 0;
-    const double      eye_height_m = p_enu[2] - ground_m + (p_enu[0] * p_enu[0] + p_enu[1] * p_enu[1]) / (2 * 6371e3);
-    const double      ground_k = heat ? heat_ground_k(heat->now, SURFACE_GRASS, (const double[3]){0, 0, 1}, 0, 1, 1) : 0;
-    const AirSource   source = {world->atmosphere, world->planck_mwir, world->planck_lwir, ground_k};
-    const AirEye      air_eye = {eye_height_m, render_air_bands(eye->bands, config_optical(config)), eye->view};
+    const double   *p_enu = eye->view->p_enu;
+    const double    ground_m = world->landscape ? elevation_height(&world->landscape->elevation, 0, 0, NULL) : 0;
+    const double    eye_height_m = p_enu[2] - ground_m + (p_enu[0] * p_enu[0] + p_enu[1] * p_enu[1]) / (2 * 6371e3);
+    const double    ground_k = heat ? heat_ground_k(heat->now, SURFACE_GRASS, (const double[3]){0, 0, 1}, 0, 1, 1) : 0;
+    const AirSource source = {world->atmosphere, world->planck_mwir, world->planck_lwir, ground_k};
+    const AirEye    air_eye = {eye_height_m, render_air_bands(eye->bands, config_optical(config)), eye->view};
     status = air_at(air, &source, &weather, &local, &air_eye, pool, arena);
     air->heat = heat;
     return status;

@@ -24,10 +24,10 @@ Status frame_radar_open(SeekerRadar **out, const Config *config, const char *isa
 
 /* The inputs of sun and atmosphere, besides the world and the settings of the weather. */
 typedef struct FrameEye {
-    double      unix_s;
-    double      p_ecef[3];
-    const View *view;
-    unsigned    bands;
+    double             unix_s;
+    double             p_ecef[3];
+    const View        *view;
+    unsigned           bands;
     const GroundMarks *marks; /* NULL: none */
 } FrameEye;
 

@@ -11,9 +11,9 @@ static Status add(JsonValues *out, const char *path, const char *text, double nu
     if (out->count == json_values_most) return STATUS_BAD_VALUE;
     if (out->count == out->capacity) {
         const int  larger = out->capacity ? 2 * out->capacity : 256;
-        JsonValue *grown  = realloc(out->value, (size_t)larger * sizeof *grown);
+        JsonValue *grown = realloc(out->value, (size_t)larger * sizeof *grown);
         if (!grown) return STATUS_NO_MEMORY;
-        out->value    = grown;
+        out->value = grown;
         out->capacity = larger;
     }
     JsonValue value = {strdup(path), text ? strdup(text) : NULL, number};
@@ -36,7 +36,8 @@ static Status flatten(JsonValues *out, char path[path_size], size_t length, cons
     if (depth > deepest) return STATUS_BAD_VALUE;
     switch (json_typeof(json)) {
     case JSON_OBJECT:
-        json_object_foreach((json_t *)json, key, item) {
+        json_object_foreach((json_t *)json, key, item)
+        {
             const int n = snprintf(path + length, path_size - length, "%s%s", length ? "." : "", key);
             if (n < 0 || (size_t)n >= path_size - length) return STATUS_BAD_VALUE;
             status = flatten(out, path, length + (size_t)n, item, depth + 1);
@@ -44,21 +45,32 @@ static Status flatten(JsonValues *out, char path[path_size], size_t length, cons
         }
         break;
     case JSON_ARRAY:
-        json_array_foreach(json, i, item) {
+        json_array_foreach(json, i, item)
+        {
             const char *id = json_string_value(json_object_get(item, "entity"));
-            const int   n  = id ? snprintf(path + length, path_size - length, "[%s]", id)
-                                : snprintf(path + length, path_size - length, "[%zu]", i);
+            const int   n = id ? snprintf(path + length, path_size - length, "[%s]", id)
+                               : snprintf(path + length, path_size - length, "[%zu]", i);
             if (n < 0 || (size_t)n >= path_size - length) return STATUS_BAD_VALUE;
             status = flatten(out, path, length + (size_t)n, item, depth + 1);
             if (status != STATUS_OK) return status;
         }
         break;
-    case JSON_STRING: status = add(out, path, json_string_value(json), NAN); break;
+    case JSON_STRING:
+        status = add(out, path, json_string_value(json), NAN);
+        break;
     case JSON_INTEGER:
-    case JSON_REAL: status = add(out, path, NULL, json_number_value(json)); break;
-    case JSON_TRUE: status = add(out, path, NULL, 1); break;
-    case JSON_FALSE: status = add(out, path, NULL, 0); break;
-    case JSON_NULL: status = add(out, path, NULL, NAN); break;
+    case JSON_REAL:
+        status = add(out, path, NULL, json_number_value(json));
+        break;
+    case JSON_TRUE:
+        status = add(out, path, NULL, 1);
+        break;
+    case JSON_FALSE:
+        status = add(out, path, NULL, 0);
+        break;
+    case JSON_NULL:
+        status = add(out, path, NULL, NAN);
+        break;
     }
     path[length] = 0;
     return status;
@@ -84,7 +96,7 @@ static json_t *object_of(const char *text, size_t octets, const char *module, co
 Status json_values_read(JsonValues *out, const char *text, size_t octets, const char *module, const char *source)
 {
     char path[path_size] = "";
-    *out         = (JsonValues){0};
+    *out = (JsonValues){0};
     json_t *json = object_of(text, octets, module, source);
     if (!json) return STATUS_BAD_VALUE;
     const Status status = flatten(out, path, 0, json, 0);

@@ -5,8 +5,15 @@
 #include <stdlib.h>
 
 /* Fine bins: 100 a decade, 1 us .. 1000 s, and one on each side. 20 of them are one of the published histogram. */
-enum { fine_decade = 100, fine_decades = 9, fine_first = -3, fine_count = fine_decade * fine_decades + 2,
-       edge_decade = 5, edge_first = -2, edge_fine = fine_decade / edge_decade };
+enum {
+    fine_decade = 100,
+    fine_decades = 9,
+    fine_first = -3,
+    fine_count = fine_decade * fine_decades + 2,
+    edge_decade = 5,
+    edge_first = -2,
+    edge_fine = fine_decade / edge_decade
+};
 
 typedef struct Histogram {
     uint64_t count, left_out;
@@ -15,7 +22,7 @@ typedef struct Histogram {
 } Histogram;
 
 typedef struct Entry {
-    uint64_t key;                            /* 0: none */
+    uint64_t key; /* 0: none */
     double   stage_ms[LATENCY_STAGE_COUNT];
     double   done_ms[latency_consumers_max]; /* of the last of that name so far */
     int      waits[latency_consumers_max];   /* how many of that name are outstanding */
@@ -81,7 +88,7 @@ static void count_one(Histogram *h, double ms)
 static double percentile(const Histogram *h, double share)
 {
     const uint64_t rank = (uint64_t)fmax(1, ceil(share * (double)h->count - 1e-9));
-    uint64_t       sum  = 0;
+    uint64_t       sum = 0;
     for (int i = 0; i < fine_count - 1; i++) {
         sum += h->bin[i];
         if (sum >= rank) return fmin(pow(10, fine_first + (double)i / fine_decade), h->max_ms);
@@ -91,18 +98,18 @@ static double percentile(const Histogram *h, double share)
 
 static void summarise(LatencyFigures *out, const Histogram *h)
 {
-    *out = (LatencyFigures){.count = h->count, .left_out = h->left_out, .median_ms = NAN, .p95_ms = NAN, .p99_ms = NAN,
-                            .max_ms = NAN};
+    *out = (LatencyFigures){
+        .count = h->count, .left_out = h->left_out, .median_ms = NAN, .p95_ms = NAN, .p99_ms = NAN, .max_ms = NAN};
     for (int i = 0; i < fine_count; i++) { /* fine bin i > 0 begins at fine_first + (i - 1) / fine_decade */
         const int below = i - 1 - (edge_first - fine_first) * fine_decade;
-        const int k     = i == 0 || below < 0 ? 0 : below / edge_fine + 1;
+        const int k = i == 0 || below < 0 ? 0 : below / edge_fine + 1;
         out->histogram[k < latency_edges ? k : latency_edges] += h->bin[i];
     }
     if (h->count == 0) return;
     out->median_ms = percentile(h, 0.5);
-    out->p95_ms    = percentile(h, 0.95);
-    out->p99_ms    = percentile(h, 0.99);
-    out->max_ms    = h->max_ms;
+    out->p95_ms = percentile(h, 0.95);
+    out->p99_ms = percentile(h, 0.99);
+    out->max_ms = h->max_ms;
 }
 
 void latency_summary(LatencySummary *out, Latency *l)
@@ -128,7 +135,7 @@ uint64_t latency_begin(Latency *l, const LatencyTimes *t)
 {
     pthread_mutex_lock(&l->lock);
     const uint64_t key = ++l->keys;
-    Entry         *e   = &l->entry[key % latency_frames];
+    Entry         *e = &l->entry[key % latency_frames];
     *e = (Entry){.key = key,
                  .stage_ms = {span_ms(t->arrived_s, t->posed_s), span_ms(t->posed_s, t->render_s),
                               span_ms(t->render_s, t->rendered_s), NAN}};
@@ -136,7 +143,7 @@ uint64_t latency_begin(Latency *l, const LatencyTimes *t)
         if (i != LATENCY_ARRIVAL_TO_POSE || t->fresh) count_one(&l->stage[i], e->stage_ms[i]);
     for (int i = 0; i < l->consumers; i++) {
         e->done_ms[i] = NAN;
-        e->waits[i]   = l->expected[i];
+        e->waits[i] = l->expected[i];
         e->outstanding += l->expected[i];
     }
     pthread_mutex_unlock(&l->lock);
@@ -170,7 +177,7 @@ void latency_displayed(Latency *l, uint64_t key, double rendered_s)
 
 void latency_done(Latency *l, uint64_t key, double rendered_s, const char *name)
 {
-    const int    i  = index_of(l, name); /* names do not change any more */
+    const int    i = index_of(l, name); /* names do not change any more */
     const double ms = 1e3 * fmax(0, wall_clock_s() - rendered_s);
     if (i < 0) return;
     pthread_mutex_lock(&l->lock);
@@ -196,7 +203,7 @@ void latency_left_out(Latency *l, uint64_t key, const char *name)
 bool latency_complete(Latency *l, uint64_t key)
 {
     pthread_mutex_lock(&l->lock);
-    const Entry *e        = find(l, key);
+    const Entry *e = find(l, key);
     const bool   complete = !e || e->outstanding == 0;
     pthread_mutex_unlock(&l->lock);
     return complete;

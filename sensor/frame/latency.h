@@ -8,11 +8,19 @@
 
 #include "pitviper.h"
 
-enum { latency_consumers_max = 24, latency_name_size = 24, latency_frames = 16,
-       latency_edges = 31 /* 0.01 ms .. 10 s, five a decade */ };
+enum {
+    latency_consumers_max = 24,
+    latency_name_size = 24,
+    latency_frames = 16,
+    latency_edges = 31 /* 0.01 ms .. 10 s, five a decade */
+};
 
 typedef enum LatencyStage {
-    LATENCY_ARRIVAL_TO_POSE, LATENCY_POSE_TO_RENDER, LATENCY_RENDER, LATENCY_DISPLAY, LATENCY_STAGE_COUNT
+    LATENCY_ARRIVAL_TO_POSE,
+    LATENCY_POSE_TO_RENDER,
+    LATENCY_RENDER,
+    LATENCY_DISPLAY,
+    LATENCY_STAGE_COUNT
 } LatencyStage;
 extern const char *const latency_stage_name[LATENCY_STAGE_COUNT];
 
@@ -53,19 +61,19 @@ Status latency_create(Latency **out);
 void   latency_destroy(Latency *latency); /* NULL is valid */
 /* Before the first frame: one more consumer of this name. Several of one name are done when the last of them is. NULL,
  * or more names than fit: not in the ledger. */
-void   latency_expect(Latency *latency, const char *name);
+void latency_expect(Latency *latency, const char *name);
 
 /* A rendered frame, before its consumers get it; returns its key. */
 uint64_t latency_begin(Latency *latency, const LatencyTimes *times);
 /* The displays of the frame are made, now. */
-void     latency_displayed(Latency *latency, uint64_t key, double rendered_s);
+void latency_displayed(Latency *latency, uint64_t key, double rendered_s);
 /* A consumer of that name has returned, now; or did not get the frame. Also of frames no longer kept. */
-void     latency_done(Latency *latency, uint64_t key, double rendered_s, const char *name);
-void     latency_left_out(Latency *latency, uint64_t key, const char *name);
+void latency_done(Latency *latency, uint64_t key, double rendered_s, const char *name);
+void latency_left_out(Latency *latency, uint64_t key, const char *name);
 /* Whether no consumer of this frame is outstanding. True also for one no longer kept. */
-bool     latency_complete(Latency *latency, uint64_t key);
+bool latency_complete(Latency *latency, uint64_t key);
 /* The frame so far. */
-void     latency_line(LatencyLine *out, Latency *latency, uint64_t key);
-void     latency_summary(LatencySummary *out, Latency *latency);
+void latency_line(LatencyLine *out, Latency *latency, uint64_t key);
+void latency_summary(LatencySummary *out, Latency *latency);
 
 #endif

@@ -36,8 +36,8 @@ static bool update_f64(Sha256 *digest, const double *values, size_t count)
 
 static bool update_plane(Sha256 *digest, const Plane *plane)
 {
-    static const char tag[][4] = {[PLANE_F32] = "f32", [PLANE_U32] = "u32", [PLANE_F64] = "f64",
-                                  [PLANE_C64] = "c64", [PLANE_U8] = "u8"};
+    static const char tag[][4] = {
+        [PLANE_F32] = "f32", [PLANE_U32] = "u32", [PLANE_F64] = "f64", [PLANE_C64] = "c64", [PLANE_U8] = "u8"};
     const uint32_t size[2] = {(uint32_t)plane->width, (uint32_t)plane->height};
     const size_t   count = (size_t)plane->width * (size_t)plane->height;
 
@@ -45,11 +45,16 @@ static bool update_plane(Sha256 *digest, const Plane *plane)
     if (!sha256_add(digest, size, sizeof size)) return false;
     if (!sha256_add(digest, tag[plane->type], sizeof tag[0])) return false;
     switch (plane->type) {
-    case PLANE_F32: return update_f32(digest, plane->values, count);
-    case PLANE_F64: return update_f64(digest, plane->values, count);
-    case PLANE_C64: return update_f32(digest, plane->values, 2 * count);
-    case PLANE_U8: return sha256_add(digest, plane->values, count);
-    case PLANE_U32: break;
+    case PLANE_F32:
+        return update_f32(digest, plane->values, count);
+    case PLANE_F64:
+        return update_f64(digest, plane->values, count);
+    case PLANE_C64:
+        return update_f32(digest, plane->values, 2 * count);
+    case PLANE_U8:
+        return sha256_add(digest, plane->values, count);
+    case PLANE_U32:
+        break;
     }
     return sha256_add(digest, plane->values, count * sizeof(uint32_t));
 }

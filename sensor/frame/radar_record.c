@@ -56,7 +56,8 @@ static json_t *scatterer_json(const RadarScatterer *s, const Model *model)
     json_object_set_new(o, "body_m", at);
     json_object_set_new(o, "bounces", json_integer(s->bounce));
     json_object_set_new(o, "visible", json_boolean(s->seen));
-    if (s->part >= 0 && s->part < model->part_count) json_object_set_new(o, "part", json_string(model->part[s->part].name));
+    if (s->part >= 0 && s->part < model->part_count)
+        json_object_set_new(o, "part", json_string(model->part[s->part].name));
     return o;
 }
 
@@ -83,9 +84,9 @@ static json_t *target_json(const RadarTruth *t, const Snapshot *snapshot, const 
     json_set_number(o, "snr_db", db(t->snr));
     json_object_set_new(o, "centres", json_integer(t->centres));
     if (t->bounce.coherence > 0) {
-        const double *const m2[3] = {t->bounce.rcs_m2, t->bounce.once_m2, t->bounce.twice_m2};
+        const double *const      m2[3] = {t->bounce.rcs_m2, t->bounce.once_m2, t->bounce.twice_m2};
         static const char *const name[3] = {"rcs_dbsm", "once_dbsm", "twice_dbsm"};
-        json_t *bounce = json_object();
+        json_t                  *bounce = json_object();
         json_set_number(bounce, "coherence", t->bounce.coherence);
         for (int i = 0; i < 3; i++) {
             json_t *by = json_object();
@@ -95,7 +96,8 @@ static json_t *target_json(const RadarTruth *t, const Snapshot *snapshot, const 
         json_object_set_new(o, "ground_bounce", bounce);
     }
     const Model *model = catalog_model(catalog, e->model);
-    for (int i = 0; i < t->strongest_count; i++) json_array_append_new(strongest, scatterer_json(&t->strongest[i], model));
+    for (int i = 0; i < t->strongest_count; i++)
+        json_array_append_new(strongest, scatterer_json(&t->strongest[i], model));
     json_object_set_new(o, "strongest", strongest);
     return o;
 }

@@ -76,7 +76,8 @@ static json_t *answers_json(const AnswerCounters *c)
     set_count(answers, "taken", c->datagrams[DETECTIONS_GOOD] + c->datagrams[DETECTIONS_LATE]);
     set_count(answers, "late", c->datagrams[DETECTIONS_LATE]);
     for (int i = 0; i < DETECTIONS_REASONS; i++)
-        if (i != DETECTIONS_GOOD && i != DETECTIONS_LATE) set_if_any(refused, detections_reason_name[i], c->datagrams[i]);
+        if (i != DETECTIONS_GOOD && i != DETECTIONS_LATE)
+            set_if_any(refused, detections_reason_name[i], c->datagrams[i]);
     json_object_set_new(answers, "refused", refused);
     set_count(answers, "lost_kernel", c->lost_kernel);
     set_count(answers, "lines", c->lines);
@@ -218,8 +219,7 @@ static json_t *woods_json(const WoodsRecord *r)
     const Woods *w = r->woods;
     json_t      *woods = json_object(), *kinds = json_object(), *from = json_object();
     set_count(woods, "plants", (uint64_t)w->count);
-    for (int k = 0; k < PLANT_STANDING; k++)
-        set_count(kinds, plant_name((PlantKind)k), (uint64_t)w->by_kind[k]);
+    for (int k = 0; k < PLANT_STANDING; k++) set_count(kinds, plant_name((PlantKind)k), (uint64_t)w->by_kind[k]);
     json_object_set_new(woods, "kinds", kinds);
     set_count(from, "crowns", (uint64_t)w->from_crowns);
     set_count(from, "canopy", (uint64_t)w->from_canopy);
@@ -231,8 +231,9 @@ static json_t *woods_json(const WoodsRecord *r)
     set_count(woods, "paths", (uint64_t)r->paths);
     set_count(woods, "entities", (uint64_t)r->entities);
     set_count(woods, "in_trunks", (uint64_t)r->in_trunks);
-    json_set_number(woods, "list_mb", 1e-6 * (double)((size_t)w->count * sizeof *w->plant +
-                                                 ((size_t)w->nx * (size_t)w->ny + 1) * sizeof *w->first));
+    json_set_number(
+        woods, "list_mb",
+        1e-6 * (double)((size_t)w->count * sizeof *w->plant + ((size_t)w->nx * (size_t)w->ny + 1) * sizeof *w->first));
     return woods;
 }
 

@@ -4,10 +4,11 @@
 
 #include <errno.h>
 
-static const char *const columns[] = {"samples", "edge_samples", "target_samples", "optical_percent", "mwir_percent",
-                                      "lwir_percent", "mwir_k", "lwir_k", "ms_megapixel"};
+static const char *const columns[] = {"samples",         "edge_samples", "target_samples",
+                                      "optical_percent", "mwir_percent", "lwir_percent",
+                                      "mwir_k",          "lwir_k",       "ms_megapixel"};
 enum { column_count = sizeof columns / sizeof *columns };
-static const double lows[column_count]  = {1, 0, 0, 0, 0, 0, 0, 0, 1e-3};
+static const double lows[column_count] = {1, 0, 0, 0, 0, 0, 0, 0, 1e-3};
 static const double highs[column_count] = {16, 16, 256, 1e6, 1e6, 1e6, 1e6, 1e6, 1e9};
 
 static const char *const scene_names[quality_scenes] = {"bare", "woods"};
@@ -31,7 +32,8 @@ static Status read_scene(QualityScene *out, const Table *table, int column, int 
 }
 
 /* scene: its column; -1: none. */
-static Status read_row(QualityRow *out, const Table *table, const int at[column_count], int scene, int row, const char *path)
+static Status read_row(QualityRow *out, const Table *table, const int at[column_count], int scene, int row,
+                       const char *path)
 {
     double       value[column_count];
     QualityScene of;
@@ -49,8 +51,12 @@ static Status read_row(QualityRow *out, const Table *table, const int at[column_
                   path, table->line[row + 1], value[0], value[1], value[2]);
         return STATUS_BAD_VALUE;
     }
-    *out = (QualityRow){.scene = of, .samples = (int)value[0], .edge_samples = (int)value[1], .target_samples = (int)value[2],
-                        .percent = {value[3], value[4], value[5]}, .kelvin = {NAN, value[6], value[7]},
+    *out = (QualityRow){.scene = of,
+                        .samples = (int)value[0],
+                        .edge_samples = (int)value[1],
+                        .target_samples = (int)value[2],
+                        .percent = {value[3], value[4], value[5]},
+                        .kelvin = {NAN, value[6], value[7]},
                         .ms_megapixel = value[8]};
     return STATUS_OK;
 }
@@ -96,8 +102,9 @@ Status quality_open(QualityTable *out, const char *path)
     }
     for (int k = 0; k < quality_scenes && status == STATUS_OK; k++)
         if (!fastest(made, (QualityScene)k)) {
-            log_error("quality: %s: no row of scene `%s`; `pitviper bench quality --table FILE` writes a complete table", path,
-                      scene_names[k]);
+            log_error(
+                "quality: %s: no row of scene `%s`; `pitviper bench quality --table FILE` writes a complete table",
+                path, scene_names[k]);
             status = STATUS_BAD_VALUE;
         }
     table_close(&table);
@@ -115,7 +122,8 @@ Status quality_write(const char *path, const QualityTable *table, const char *co
     for (int k = 0; ok && k < table->count; k++) {
         const QualityRow *r = &table->row[k];
         if (scenes) ok = fprintf(file, "%s,", scene_names[r->scene]) > 0;
-        ok = ok && fprintf(file, "%d,%d,%d,%.3g,%.3g,%.3g,%.3g,%.3g,%.4g\n", r->samples, r->edge_samples, r->target_samples,
+        ok = ok &&
+             fprintf(file, "%d,%d,%d,%.3g,%.3g,%.3g,%.3g,%.3g,%.4g\n", r->samples, r->edge_samples, r->target_samples,
                      r->percent[0], r->percent[1], r->percent[2], r->kelvin[1], r->kelvin[2], r->ms_megapixel) > 0;
     }
     if (file && ok) ok = output_end(file, path);
@@ -158,8 +166,8 @@ int quality_pick(bool *reached, const QualityTable *table, const QualityTarget *
     for (int k = 0; k < table->count; k++) {
         const QualityRow *r = &table->row[k], *b = best >= 0 ? &table->row[best] : NULL;
         if (!holds_in(r, target->scene)) continue;
-        const bool        in_time = isnan(target->frame_ms) || frame_ms(r, target) <= target->frame_ms;
-        bool              better = !b || (in_time && !best_in_time);
+        const bool in_time = isnan(target->frame_ms) || frame_ms(r, target) <= target->frame_ms;
+        bool       better = !b || (in_time && !best_in_time);
         if (b && in_time == best_in_time) {
             const double mine = excess(r, target), others = excess(b, target);
             better = !in_time ? frame_ms(r, target) < frame_ms(b, target) /* none within frame_ms: the fastest */
@@ -178,11 +186,12 @@ bool quality_wanted(const QualityTable *table, int row)
         /* the tightest targets of this row: a faster row that meets them dominates it */
         const QualityTarget target = {
             worst(r->percent, bands, BAND_OPTICAL), worst(r->kelvin, bands, BAND_MWIR), NAN, 1, 1, bands, r->scene};
-        bool                quicker = false;
+        bool quicker = false;
         for (int k = 0; k < table->count; k++) {
             const QualityRow *q = &table->row[k];
             const bool first = q->ms_megapixel < r->ms_megapixel || (q->ms_megapixel == r->ms_megapixel && k < row);
-            quicker |= k != row && first && holds_in(q, r->scene) && worst(q->percent, bands, BAND_OPTICAL) <= target.percent &&
+            quicker |= k != row && first && holds_in(q, r->scene) &&
+                       worst(q->percent, bands, BAND_OPTICAL) <= target.percent &&
                        worst(q->kelvin, bands, BAND_MWIR) <= target.kelvin;
         }
         if (!quicker) return true;
@@ -237,7 +246,7 @@ Status quality_choose(Config *config, Choices *choices, unsigned bands)
                                   config->quality.machine_factor,
                                   bands,
                                   has_plants(config) ? QUALITY_WOODS : QUALITY_BARE};
-    const QualityRow *r = &table.row[quality_pick(&reached, &table, &target)];
+    const QualityRow   *r = &table.row[quality_pick(&reached, &table, &target)];
     take(kept, sizeof kept, &config->sensor.samples, r->samples, config, "sensor.samples");
     if (r->edge_samples > 0) {
         take(kept, sizeof kept, &config->sensor.edge_samples, r->edge_samples, config, "sensor.edge_samples");
@@ -254,10 +263,10 @@ Status quality_choose(Config *config, Choices *choices, unsigned bands)
     if (r->edge_samples > 0)
         snprintf(grids, sizeof grids, ", edge_samples %d, target_samples %d", r->edge_samples, r->target_samples);
     const char *where = target.scene == QUALITY_WOODS ? "in woods" : "on bare ground";
-    choice_add(choices, "quality: samples %d%s for%s%s (%s: at most %.2g %%%s; %.3g ms, %.2g x the fastest)%s", r->samples,
-               grids, wants, reached ? "" : ": NOT reached, the closest",
-               r->scene == quality_any_scene ? "table without scenes" : where, worst(r->percent, bands, BAND_OPTICAL), k_text,
-               frame_ms(r, &target), r->ms_megapixel / fastest(&table, target.scene)->ms_megapixel, kept);
+    choice_add(choices, "quality: samples %d%s for%s%s (%s: at most %.2g %%%s; %.3g ms, %.2g x the fastest)%s",
+               r->samples, grids, wants, reached ? "" : ": NOT reached, the closest",
+               r->scene == quality_any_scene ? "table without scenes" : where, worst(r->percent, bands, BAND_OPTICAL),
+               k_text, frame_ms(r, &target), r->ms_megapixel / fastest(&table, target.scene)->ms_megapixel, kept);
     if (!reached)
         log_warn("quality: no row of the table meets%s; the closest is used (`pitviper bench quality` lists them)",
                  wants);

@@ -15,15 +15,20 @@
 enum { quality_bands = BAND_LWIR + 1, quality_rows_max = 256 };
 
 /* Rays among leaves take several times as long as over bare ground, and err more. */
-typedef enum QualityScene { QUALITY_BARE, QUALITY_WOODS, quality_scenes, quality_any_scene = quality_scenes } QualityScene;
+typedef enum QualityScene {
+    QUALITY_BARE,
+    QUALITY_WOODS,
+    quality_scenes,
+    quality_any_scene = quality_scenes
+} QualityScene;
 const char *quality_scene_name(QualityScene scene); /* bare, woods */
 
 typedef struct QualityRow {
-    QualityScene scene;                           /* that it was measured in; any: a table without that column */
-    int    samples, edge_samples, target_samples; /* as RenderRequest: 0 of both of the latter: antialias off */
-    double percent[quality_bands];                /* rms of radiance over the band's mean */
-    double kelvin[quality_bands];                 /* the same as apparent temperature; of the thermal bands */
-    double ms_megapixel;                          /* three bands and truth, one thread */
+    QualityScene scene;                                 /* that it was measured in; any: a table without that column */
+    int          samples, edge_samples, target_samples; /* as RenderRequest: 0 of both of the latter: antialias off */
+    double       percent[quality_bands];                /* rms of radiance over the band's mean */
+    double       kelvin[quality_bands];                 /* the same as apparent temperature; of the thermal bands */
+    double       ms_megapixel;                          /* three bands and truth, one thread */
 } QualityRow;
 
 typedef struct QualityTable {
@@ -40,14 +45,14 @@ Status quality_write(const char *path, const QualityTable *table, const char *co
 typedef struct QualityTarget {
     double       percent, kelvin, frame_ms;
     double       megapixels, machine_factor;
-    unsigned     bands;         /* 1 << Band: bands to which the targets apply */
+    unsigned     bands; /* 1 << Band: bands to which the targets apply */
     QualityScene scene;
 } QualityTarget;
 
 /* Of the scene's rows: the fastest row that meets every target; if there is none, the closest: within frame_ms if any
  * row is, then with the smallest ratio of error to target. Ties: the first. With frame_ms alone: the smallest error
  * within it. reached: all targets are met. */
-int  quality_pick(bool *reached, const QualityTable *table, const QualityTarget *target);
+int quality_pick(bool *reached, const QualityTable *table, const QualityTarget *target);
 
 /* Whether any targets select this row; else a faster row of its scene is at least as good in all. */
 bool quality_wanted(const QualityTable *table, int row);
@@ -55,6 +60,6 @@ bool quality_wanted(const QualityTable *table, int row);
 /* Applies quality.* to the settings and reports it; keys that were given stay. No target: no change. */
 Status quality_choose(Config *config, Choices *choices, unsigned bands);
 /* Whether the selection depends on the speed of this machine: frame_ms is set, and no factor given. */
-bool   quality_wants_factor(const Config *config);
+bool quality_wants_factor(const Config *config);
 
 #endif

@@ -12,27 +12,27 @@ enum { vehicles = 20, timed_width = 360, timed_height = 240 };
 
 static const struct {
     double back_m, above_m, hfov_deg;
-} views[quality_measure_views] = {{60, 12, 40},   {150, 30, 40}, {300, 40, 20},   {300, 8, 30},
-                              {600, 100, 40}, {900, 60, 8},  {1500, 300, 20}};
+} views[quality_measure_views] = {{60, 12, 40},   {150, 30, 40}, {300, 40, 20},  {300, 8, 30},
+                                  {600, 100, 40}, {900, 60, 8},  {1500, 300, 20}};
 static const int timed[] = {2, 6};
 enum { timed_count = sizeof timed / sizeof *timed };
 
 Status quality_measure_open(QualityMeasure *m, int threads, bool quick)
 {
     static const DisEntityType types[] = {{1, 1, 222, 1, 1, 1, 0}, {1, 1, 222, 2, 1, 0, 0}, {1, 1, 222, 28, 1, 0, 0}};
-    const Geodetic origin = {48 * rad_per_deg, 11 * rad_per_deg, 500};
-    LocalFrame     frame;
-    double         times_s[2];
-    char           catalog[512];
+    const Geodetic             origin = {48 * rad_per_deg, 11 * rad_per_deg, 500};
+    LocalFrame                 frame;
+    double                     times_s[2];
+    char                       catalog[512];
     *m = (QualityMeasure){.width = quick ? 32 : 120, .height = quick ? 24 : 80, .quick = quick};
     Status status = pool_create(&m->pool, threads);
     if (status == STATUS_OK) status = pool_create(&m->many, thread_processors());
     if (status == STATUS_OK) status = local_frame_at(&frame, &origin);
-    if (status == STATUS_OK) status = landscape_quick(&m->ground, times_s, &frame, quality_measure_east_m,
-                                                                 quality_measure_north_m, m->many);
+    if (status == STATUS_OK)
+        status = landscape_quick(&m->ground, times_s, &frame, quality_measure_east_m, quality_measure_north_m, m->many);
     if (status == STATUS_OK && !etc_path(catalog, sizeof catalog, "catalog.csv")) status = STATUS_BAD_VALUE;
     if (status == STATUS_OK) status = trial_scene_open(&m->scene, &m->ground, catalog, types, 3, vehicles);
-    m->arena           = arena_create();
+    m->arena = arena_create();
     m->reference_arena = arena_create();
     return status == STATUS_OK && !(m->arena && m->reference_arena) ? STATUS_NO_MEMORY : status;
 }
@@ -59,8 +59,8 @@ TrialFrame quality_measure_frame(const QualityMeasure *m, int view, QualitySetti
                                 .sky_visibility = true,
                                 .hidden_entity = -1};
     if (m->scene.world.forest) f.request.low_plants_m = config_default().terrain.woods_low_m;
-    f.request.view = trial_view(&m->scene, views[view].back_m, views[view].above_m,
-                                views[view].hfov_deg * rad_per_deg, m->width, m->height);
+    f.request.view = trial_view(&m->scene, views[view].back_m, views[view].above_m, views[view].hfov_deg * rad_per_deg,
+                                m->width, m->height);
     return f;
 }
 
@@ -93,12 +93,13 @@ double quality_measure_time(const QualityMeasure *m, QualitySettings settings, b
 Status quality_machine_factor(double *factor, const char *table_path, int threads)
 {
     QualityMeasure m;
-    QualityTable table;
-    char         text[32];
-    Status       status = quality_open(&table, table_path);
+    QualityTable   table;
+    char           text[32];
+    Status         status = quality_open(&table, table_path);
     if (status != STATUS_OK) return status;
     const QualityRow *first = &table.row[0];
-    if (first->scene == QUALITY_WOODS || first->samples != quality_quickest.samples || first->edge_samples != quality_quickest.edge_samples ||
+    if (first->scene == QUALITY_WOODS || first->samples != quality_quickest.samples ||
+        first->edge_samples != quality_quickest.edge_samples ||
         first->target_samples != quality_quickest.target_samples) {
         log_error(
             "quality: %s: its first row is not samples 1 without edge_samples on bare ground, by which machines are compared; give "

@@ -9,7 +9,7 @@
 typedef struct QualityMeasure {
     Landscape  ground;
     TrialScene scene;
-    Pool      *pool, *many;            /* of the threads asked for; of all processors */
+    Pool      *pool, *many; /* of the threads asked for; of all processors */
     Arena     *arena, *reference_arena;
     int        width, height;
     bool       quick;
@@ -26,12 +26,12 @@ static const QualitySettings quality_quickest = {1, 0, 0};
 enum { quality_measure_views = 7, quality_measure_east_m = 2000, quality_measure_north_m = 4000 };
 
 /* quality_measure_close must follow even on failure. quick: small images. */
-Status quality_measure_open(QualityMeasure *out, int threads, bool quick);
-void   quality_measure_close(QualityMeasure *measure);
+Status     quality_measure_open(QualityMeasure *out, int threads, bool quick);
+void       quality_measure_close(QualityMeasure *measure);
 TrialFrame quality_measure_frame(const QualityMeasure *measure, int view, QualitySettings settings);
 
 /* Larger images for times, except where quick; the cost of small targets is the same in any. */
-void   quality_measure_enlarge(QualityMeasure *measure);
+void quality_measure_enlarge(QualityMeasure *measure);
 /* The timed views, once, in s per megapixel, by the thread's CPU clock, which does not count other programs on the
  * machine, or by the wall clock. NaN: a frame failed. */
 double quality_measure_time(const QualityMeasure *measure, QualitySettings settings, bool wall);

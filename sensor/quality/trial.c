@@ -14,22 +14,22 @@ Status trial_scene_place(const TrialScene *scene, const TrialPlace *place)
     const LocalFrame *frame = &scene->landscape->frame;
     const double      turn = place->turn_rad;
     const double      r_enu_from_body[9] = {sin(turn), cos(turn), 0, cos(turn), -sin(turn), 0, 0, 0, -1};
-    const double p_enu[3] = {place->east_m, place->north_m,
-                             elevation_height(&scene->landscape->elevation, place->east_m, place->north_m, NULL) +
-                                 place->above_m};
+    const double      p_enu[3] = {place->east_m, place->north_m,
+                                  elevation_height(&scene->landscape->elevation, place->east_m, place->north_m, NULL) +
+                                      place->above_m};
     double            r_ecef_from_body[9], euler[3];
-    DisEntityState pdu = {.header = {.version = 7, .type = dis_pdu_entity_state},
-                          .force = 1,
-                          .type = place->type,
-                          .id = {1, 1, (uint16_t)place->number},
-                          .appearance = place->appearance,
-                          .dead_reckoning = 2};
+    DisEntityState    pdu = {.header = {.version = 7, .type = dis_pdu_entity_state},
+                             .force = 1,
+                             .type = place->type,
+                             .id = {1, 1, (uint16_t)place->number},
+                             .appearance = place->appearance,
+                             .dead_reckoning = 2};
     ecef_from_enu(pdu.p_ecef, frame, p_enu);
     m3_mul(r_ecef_from_body, frame->r_ecef_from_enu, r_enu_from_body);
     euler_from_r_ecef_from_body(&euler[0], &euler[1], &euler[2], r_ecef_from_body);
-    pdu.psi_rad   = (float)euler[0];
+    pdu.psi_rad = (float)euler[0];
     pdu.theta_rad = (float)euler[1];
-    pdu.phi_rad   = (float)euler[2];
+    pdu.phi_rad = (float)euler[2];
     /* primary turret 1 azimuth, primary gun 1 elevation */
     pdu.variable[0] = (DisVariableParameter){.parameter = 4096 + 11, .value = (float)(turn - 3)};
     pdu.variable[1] = (DisVariableParameter){.parameter = 4416 + 13, .value = 0.1f};
@@ -40,7 +40,9 @@ Status trial_scene_place(const TrialScene *scene, const TrialPlace *place)
 static TrialPlace vehicle_place(DisEntityType type, int index, int vehicles)
 {
     const int rows = (vehicles + a_row - 1) / a_row;
-    return (TrialPlace){.type = type, .number = index + 1, .appearance = 1u << 22,
+    return (TrialPlace){.type = type,
+                        .number = index + 1,
+                        .appearance = 1u << 22,
                         .east_m = 40.0 * (index % a_row) - 20.0 * (vehicles < a_row ? vehicles - 1 : a_row - 1),
                         .north_m = 40.0 * (index / a_row) - 20.0 * (rows - 1),
                         .turn_rad = vehicles == 1 ? 0.6 : 2 * pi_rad * random_uniform(1, 1, 0, (uint64_t)index)};
@@ -61,8 +63,7 @@ Status trial_scene_open(TrialScene *out, const Landscape *landscape, const char 
     TrialScene        scene = {.landscape = landscape, .sun_now_s = 60};
     EntityTableConfig config = entity_table_default_config();
     config.ground = (ContactGround){.frame = &landscape->frame, .elevation = &landscape->elevation};
-    Status status = text_to_unix_s(&scene.unix_s, "2026-06-21T11:15:00Z")
-                        ? STATUS_OK : STATUS_BAD_VALUE;
+    Status status = text_to_unix_s(&scene.unix_s, "2026-06-21T11:15:00Z") ? STATUS_OK : STATUS_BAD_VALUE;
     if (status == STATUS_OK) status = catalog_open(&scene.catalog, catalog_path, 0.01);
     if (status == STATUS_OK) status = entity_table_create(&scene.table, &config, scene.catalog);
     if (status == STATUS_OK) status = world_open(&scene.world, scene.catalog, landscape, &landscape->frame, "avx2");
@@ -91,9 +92,11 @@ View trial_view(const TrialScene *scene, double back_m, double above_m, double h
 {
     const Elevation *e = &scene->landscape->elevation;
     const double     aim[3] = {0, 0, elevation_height(e, 0, 0, NULL) + 1};
-    View   view = {.p_enu = {0, -back_m, fmax(aim[2], elevation_height(e, 0, -back_m, NULL)) + above_m}, .width = width,
-                   .height = height, .focal_px = view_focal_px(width, hfov_rad)};
-    double d_enu[3];
+    View             view = {.p_enu = {0, -back_m, fmax(aim[2], elevation_height(e, 0, -back_m, NULL)) + above_m},
+                             .width = width,
+                             .height = height,
+                             .focal_px = view_focal_px(width, hfov_rad)};
+    double           d_enu[3];
     v3_sub(d_enu, aim, view.p_enu);
     v3_scale(d_enu, 1 / v3_length(d_enu), d_enu);
     view_upright(view.r_enu_from_cam, d_enu);
@@ -104,13 +107,20 @@ RenderRequest trial_default_request(const TrialScene *scene, const View *view, d
 {
     const Config   c = config_default();
     const unsigned all = 1u << BAND_OPTICAL | 1u << BAND_MWIR | 1u << BAND_LWIR | 1u << BAND_RADAR;
-    return (RenderRequest){.view = *view, .bands = all, .truth = true, .optical = config_optical(&c),
+    return (RenderRequest){.view = *view,
+                           .bands = all,
+                           .truth = true,
+                           .optical = config_optical(&c),
                            .sky_samples = c.sensor.sky_samples,
-                           .sky_visibility = strcmp(c.sensor.sky_visibility, "on") == 0, .samples = c.sensor.samples,
-                           .edge_samples = c.sensor.edge_samples, .target_samples = c.sensor.target_samples,
+                           .sky_visibility = strcmp(c.sensor.sky_visibility, "on") == 0,
+                           .samples = c.sensor.samples,
+                           .edge_samples = c.sensor.edge_samples,
+                           .target_samples = c.sensor.target_samples,
                            .budget = strcmp(c.quality.budget, "on") == 0,
-                           .low_plants_m = scene->world.forest ? c.terrain.woods_low_m : 0, .hidden_entity = -1,
-                           .profile_bins = c.radar.bins, .profile_bin_m = c.radar.bin_m,
+                           .low_plants_m = scene->world.forest ? c.terrain.woods_low_m : 0,
+                           .hidden_entity = -1,
+                           .profile_bins = c.radar.bins,
+                           .profile_bin_m = c.radar.bin_m,
                            .profile_near_m = fmax(0, range_m - 0.5 * c.radar.bins * c.radar.bin_m)};
 }
 
@@ -165,7 +175,8 @@ void trial_frame(void *user)
     const double t0 = wall_clock_s();
     arena_reset(f->arena);
     f->status = entity_table_snapshot(&f->snapshot, f->scene->table, f->scene->sun_now_s + 0.5, f->arena);
-    if (f->status == STATUS_OK) f->status = trial_warm((TrialScene *)f->scene, &f->snapshot, f->arena); /* what it keeps alone changes */
+    if (f->status == STATUS_OK)
+        f->status = trial_warm((TrialScene *)f->scene, &f->snapshot, f->arena); /* what it keeps alone changes */
     const double t1 = wall_clock_s();
     if (f->status == STATUS_OK) f->status = light(f);
     const double t2 = wall_clock_s();
@@ -177,30 +188,30 @@ void trial_frame(void *user)
 
     const RenderTimes *r = &f->picture.times;
     const double       share_s = 1e-3 / pool_threads(f->pool);
-    f->stage_s[STAGE_FRAME]      = t4 - t0;
-    f->stage_s[STAGE_SNAPSHOT]   = t1 - t0;
-    f->stage_s[STAGE_AIR]        = t2 - t1;
-    f->stage_s[STAGE_PREPARE]    = 1e-3 * r->prepare_ms;
+    f->stage_s[STAGE_FRAME] = t4 - t0;
+    f->stage_s[STAGE_SNAPSHOT] = t1 - t0;
+    f->stage_s[STAGE_AIR] = t2 - t1;
+    f->stage_s[STAGE_PREPARE] = 1e-3 * r->prepare_ms;
     f->stage_s[STAGE_VISIBILITY] = share_s * r->visibility_ms;
-    f->stage_s[STAGE_SUN]        = share_s * r->shadow_ms;
-    f->stage_s[STAGE_SHADE]      = share_s * r->shade_ms;
-    f->stage_s[STAGE_RADAR]      = share_s * r->radar_ms;
-    f->stage_s[STAGE_TRUTH]      = t4 - t3;
-    f->stage_s[STAGE_REST]       = t3 - t2;
+    f->stage_s[STAGE_SUN] = share_s * r->shadow_ms;
+    f->stage_s[STAGE_SHADE] = share_s * r->shade_ms;
+    f->stage_s[STAGE_RADAR] = share_s * r->radar_ms;
+    f->stage_s[STAGE_TRUTH] = t4 - t3;
+    f->stage_s[STAGE_REST] = t3 - t2;
     for (int s = STAGE_PREPARE; s <= STAGE_RADAR; s++) f->stage_s[STAGE_REST] -= f->stage_s[s];
     f->stage_s[STAGE_FOOTPRINTS] = 1e-3 * r->target_grids_ms;
-    f->stage_s[STAGE_BASE]       = 1e-3 * r->base_ms;
-    f->stage_s[STAGE_EDGES]      = 1e-3 * r->edges_ms;
+    f->stage_s[STAGE_BASE] = 1e-3 * r->base_ms;
+    f->stage_s[STAGE_EDGES] = 1e-3 * r->edges_ms;
 }
 
 Status trial_frame_hash(char out[sha256_text_size], const TrialFrame *f)
 {
     static const char *const radiance[picture_plane_count] = {"R", "G", "B", "mwir", "lwir", "radar"};
     static const char *const normal[3] = {"nx", "ny", "nz"};
-    const Picture *p = &f->picture;
-    const int      w = p->width, h = p->height;
-    Plane          plane[24];
-    int            n = 0;
+    const Picture           *p = &f->picture;
+    const int                w = p->width, h = p->height;
+    Plane                    plane[24];
+    int                      n = 0;
     for (int k = 0; k < picture_plane_count; k++)
         if (picture_plane(p, k)) plane[n++] = plane_f32(radiance[k], w, h, picture_plane(p, k));
     if (p->range_m) {

@@ -9,12 +9,12 @@
 #include "sensor/frame/plane.h"
 
 typedef struct TrialScene {
-    const Landscape *landscape;   /* not its own */
+    const Landscape *landscape; /* not its own */
     Catalog         *catalog;
     World            world;
     EntityTable     *table;
-    WorldVehicles   *vehicles;    /* of trial_warm */
-    int              past_parts;  /* WorldVehiclesConfig */
+    WorldVehicles   *vehicles;   /* of trial_warm */
+    int              past_parts; /* WorldVehiclesConfig */
     double           unix_s, sun_now_s;
 } TrialScene;
 
@@ -30,7 +30,7 @@ void   trial_scene_close(TrialScene *scene);
 /* One more report at the scene's time: at this distance east and north of the origin, this high above the ground. */
 typedef struct TrialPlace {
     DisEntityType type;
-    int           number;        /* 1 .. 65535: the entity */
+    int           number;                             /* 1 .. 65535: the entity */
     double        east_m, north_m, above_m, turn_rad; /* turn: heading, from north towards east */
     uint32_t      appearance;
 } TrialPlace;
@@ -47,9 +47,20 @@ RenderRequest trial_default_request(const TrialScene *scene, const View *view, d
 /* The stages of a frame, in order. Of those summed over threads the mean per thread: on one thread they add up to
  * the frame. The passes split the same time differently: by the kind of sample. */
 typedef enum TrialStage {
-    STAGE_FRAME, STAGE_SNAPSHOT, STAGE_AIR, STAGE_PREPARE, STAGE_VISIBILITY, STAGE_SUN, STAGE_SHADE, STAGE_RADAR,
-    STAGE_REST,     /* of the pixels: truth planes, areas of targets, edges found */
-    STAGE_TRUTH, STAGE_FOOTPRINTS, STAGE_BASE, STAGE_EDGES, TRIAL_STAGE_COUNT
+    STAGE_FRAME,
+    STAGE_SNAPSHOT,
+    STAGE_AIR,
+    STAGE_PREPARE,
+    STAGE_VISIBILITY,
+    STAGE_SUN,
+    STAGE_SHADE,
+    STAGE_RADAR,
+    STAGE_REST, /* of the pixels: truth planes, areas of targets, edges found */
+    STAGE_TRUTH,
+    STAGE_FOOTPRINTS,
+    STAGE_BASE,
+    STAGE_EDGES,
+    TRIAL_STAGE_COUNT
 } TrialStage;
 
 /* One frame as a node renders it, up to the planes; all in the arena, which is reset first. */
@@ -68,7 +79,7 @@ typedef struct TrialFrame {
 } TrialFrame;
 
 /* user: a TrialFrame. */
-void   trial_frame(void *user);
+void trial_frame(void *user);
 /* Every plane of its picture. */
 Status trial_frame_hash(char out[sha256_text_size], const TrialFrame *frame);
 

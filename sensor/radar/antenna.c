@@ -66,8 +66,8 @@ static double minus_ratio(int n, double scale, double u) { return -scale * u * l
 void antenna_direction(double *cos_right, double *cos_down, const Antenna *a, double right, double down)
 {
     static const double first_zero[] = {3.831705970207512, 5.135622301840683, 6.380161895923984}; /* of J_1, J_2, J_3 */
-    const int    n = a->taper;
-    const double ratio = hypot(right, down);
+    const int           n = a->taper;
+    const double        ratio = hypot(right, down);
     if (!(ratio > 0)) {
         *cos_right = *cos_down = 0;
         return;

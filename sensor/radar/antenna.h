@@ -17,7 +17,7 @@
 
 typedef struct Antenna {
     double diameter_m;
-    int    taper;        /* 0: uniform, 1, 2 */
+    int    taper; /* 0: uniform, 1, 2 */
     double wavelength_m;
 } Antenna;
 

@@ -51,9 +51,10 @@ static int gather(double *cell, const CfarConfig *c, const double *power, int ro
         if (c->wrap_rows) r = (r % rows + rows) % rows;
         if (r < 0 || r >= rows) continue;
         const double *from = power + (size_t)r * (size_t)columns;
-        const int     left = column > across ? column - across : 0, right = column + across < columns ? column + across : columns - 1;
-        const bool    guarded = abs(dr) <= c->guard[0];
-        const int     left_end = guarded ? column - c->guard[1] : right + 1; /* one stretch, or two beside the guard */
+        const int     left = column > across ? column - across : 0,
+                  right = column + across < columns ? column + across : columns - 1;
+        const bool guarded = abs(dr) <= c->guard[0];
+        const int  left_end = guarded ? column - c->guard[1] : right + 1; /* one stretch, or two beside the guard */
         for (int at = left; at < left_end; at++) cell[count++] = from[at];
         for (int at = column + c->guard[1] + 1; guarded && at <= right; at++) cell[count++] = from[at];
     }
@@ -78,8 +79,9 @@ int detect_cfar(CfarHit *out, int most, const CfarConfig *c, const double *power
 {
     enum { least_training = 4, most_training = 1 << 16 };
     const bool fits = rows >= 1 && columns >= 1 && c->guard[0] >= 0 && c->guard[1] >= 0 && c->training[0] >= 0 &&
-                      c->training[1] >= 0 && c->guard[0] + c->training[0] < 4096 && c->guard[1] + c->training[1] < 4096 &&
-                      c->pfa > 0 && c->pfa < 1 && c->ordered >= 0 && c->ordered <= 1;
+                      c->training[1] >= 0 && c->guard[0] + c->training[0] < 4096 &&
+                      c->guard[1] + c->training[1] < 4096 && c->pfa > 0 && c->pfa < 1 && c->ordered >= 0 &&
+                      c->ordered <= 1;
     if (!fits) return -1;
     const int block = (2 * (c->guard[0] + c->training[0]) + 1) * (2 * (c->guard[1] + c->training[1]) + 1);
     /* a wrapped window wider than the plane would count cells twice */
@@ -101,8 +103,8 @@ int detect_cfar(CfarHit *out, int most, const CfarConfig *c, const double *power
             if (n < least_training) continue;
             const int rank = (int)fmax(1, round(c->ordered * n));
             if (isnan(multiplier[n]))
-                multiplier[n] = c->ordered > 0 ? detect_ordered_multiplier(n, rank, c->pfa)
-                                               : detect_cfar_multiplier(n, c->pfa);
+                multiplier[n] =
+                    c->ordered > 0 ? detect_ordered_multiplier(n, rank, c->pfa) : detect_cfar_multiplier(n, c->pfa);
             double sum = 0, statistic, mean = 0;
             for (int i = 0; i < n; i++) sum += cell[i];
             if (c->ordered > 0) {
@@ -154,15 +156,16 @@ static double place(double *rise, const IntervalPlan *plan, bool doppler, double
     return copysign(low, measured);
 }
 
-static void measure(Detection *d, const RangeDoppler *map, const IntervalPlan *plan, const CfarHit *hit, const Antenna *antenna,
-                    const DetectScale *scale)
+static void measure(Detection *d, const RangeDoppler *map, const IntervalPlan *plan, const CfarHit *hit,
+                    const Antenna *antenna, const DetectScale *scale)
 {
     const int    row = hit->row, column = hit->column, rows = map->rows;
-    const size_t plane = (size_t)map->rows * (size_t)map->columns, at = (size_t)row * (size_t)map->columns + (size_t)column;
-    double       inside = 0, rise[2] = {1, 1};
+    const size_t plane = (size_t)map->rows * (size_t)map->columns,
+                 at = (size_t)row * (size_t)map->columns + (size_t)column;
+    double inside = 0, rise[2] = {1, 1};
     if (column > 0 && column < map->columns - 1)
-        inside = place(&rise[0], plan, false, power_at(map, row, column - 1), hit->power,
-                       power_at(map, row, column + 1));
+        inside =
+            place(&rise[0], plan, false, power_at(map, row, column - 1), hit->power, power_at(map, row, column + 1));
     const double between = place(&rise[1], plan, true, power_at(map, (row + rows - 1) % rows, column), hit->power,
                                  power_at(map, (row + 1) % rows, column));
     const double power_w = hit->power * rise[0] * rise[1];
@@ -173,7 +176,8 @@ static void measure(Detection *d, const RangeDoppler *map, const IntervalPlan *p
     const double complex sum = conj(map->cell[at]);
     antenna_direction(&d->cos_right, &d->cos_down, antenna, creal(map->cell[plane + at] * sum) / hit->power,
                       creal(map->cell[2 * plane + at] * sum) / hit->power);
-    const double gain = antenna_gain(antenna, d->cos_right, d->cos_down).sum, g2 = gain * gain, r2 = d->range_m * d->range_m;
+    const double gain = antenna_gain(antenna, d->cos_right, d->cos_down).sum, g2 = gain * gain,
+                 r2 = d->range_m * d->range_m;
     d->rcs_m2 = power_w * r2 * r2 * exp(2 * scale->air_np_m * d->range_m) / (scale->unit_w * g2 * g2);
 }
 

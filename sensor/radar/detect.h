@@ -25,15 +25,16 @@ double detect_cfar_multiplier(int training, double pfa);
 double detect_ordered_multiplier(int training, int rank, double pfa);
 
 typedef struct CfarConfig {
-    double pfa;                        /* in a cell, above 0, below 1 */
-    int    guard[2], training[2];      /* cells on each side in rows and columns: guard are left out, training beyond them counted */
-    double ordered;                    /* 0: cell averaging; else the rank's share of the training cells, 0 .. 1 */
-    bool   wrap_rows;                  /* rows go round: Doppler */
+    double pfa; /* in a cell, above 0, below 1 */
+    int    guard[2],
+        training[2];  /* cells on each side in rows and columns: guard are left out, training beyond them counted */
+    double ordered;   /* 0: cell averaging; else the rank's share of the training cells, 0 .. 1 */
+    bool   wrap_rows; /* rows go round: Doppler */
 } CfarConfig;
 
 typedef struct CfarHit {
     int    row, column;
-    double power, floor;               /* of the cell; mean power of noise there by the training cells */
+    double power, floor; /* of the cell; mean power of noise there by the training cells */
 } CfarHit;
 
 /* power[rows][columns], not below 0. The cells over their threshold that are greatest among their eight neighbours
@@ -50,12 +51,12 @@ int detect_cfar(CfarHit *out, int most, const CfarConfig *config, const double *
  * difference channels to the sum in the peak's cell; cross-section by the radar equation, at the direction found. */
 typedef struct Detection {
     int    row, column;
-    double range_m;                /* of the reference, plus */
-    double range_rate_mps;         /* likewise; folds over at half the interval of the map */
-    double cos_right, cos_down;    /* direction, along the antenna's axes */
-    double snr;                    /* power over the noise about it, less 1 */
-    double rcs_m2;                 /* if one echo from where it was found */
-    bool   moving;                 /* clear of the ground's range rate in its direction (detect_moves); of the caller */
+    double range_m;             /* of the reference, plus */
+    double range_rate_mps;      /* likewise; folds over at half the interval of the map */
+    double cos_right, cos_down; /* direction, along the antenna's axes */
+    double snr;                 /* power over the noise about it, less 1 */
+    double rcs_m2;              /* if one echo from where it was found */
+    bool   moving;              /* clear of the ground's range rate in its direction (detect_moves); of the caller */
 } Detection;
 
 /* What a map's reference stands for. */

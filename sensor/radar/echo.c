@@ -1,4 +1,5 @@
-/* sensor/radar/echo.c: shares echoes out to the grid over delay and Doppler or the grids row by row, and adds up their sums. */
+/* sensor/radar/echo.c: shares echoes out to the grid over delay and Doppler or the grids row by row, and adds up their
+ * sums. */
 #include "sensor/radar/echo.h"
 
 #include "render/scattering/scatter.h"
@@ -11,19 +12,19 @@ static const double part = 2e-3; /* of an amplitude, at the ends of band and int
 
 struct EchoGrid {
     Waveform    wave;
-    PulseGrid  *even;          /* of slow echoes, by delay and Doppler */
-    RowGrid    *rows;          /* of the others */
-    double      wave_rad_m;    /* of a metre of path, at the centre */
-    double      turns_m;       /* a sample, of a metre of path */
-    double      growth_rad_m;  /* of the phase that delay and Doppler leave, at its most, over the growth a row */
-    double      fold_m;        /* of two-way path */
-    double      coupled;       /* path by which an echo appears farther, over its growth a row */
-    double      within_s;      /* of one frequency, over that from row to row */
+    PulseGrid  *even;         /* of slow echoes, by delay and Doppler */
+    RowGrid    *rows;         /* of the others */
+    double      wave_rad_m;   /* of a metre of path, at the centre */
+    double      turns_m;      /* a sample, of a metre of path */
+    double      growth_rad_m; /* of the phase that delay and Doppler leave, at its most, over the growth a row */
+    double      fold_m;       /* of two-way path */
+    double      coupled;      /* path by which an echo appears farther, over its growth a row */
+    double      within_s;     /* of one frequency, over that from row to row */
     double      unfollowed_m;
     Status      status;
-    PulsePoint *point;         /* [chunk] */
-    Echo       *echo;          /* [chunk] */
-    Pool       *pool;          /* of the last that were added */
+    PulsePoint *point; /* [chunk] */
+    Echo       *echo;  /* [chunk] */
+    Pool       *pool;  /* of the last that were added */
 };
 
 void echo_forget(EchoGrid *g)
@@ -133,7 +134,8 @@ void echo_add(EchoGrid *g, const Echo *echo, int count, Pool *pool)
         const int tasks = (job.count + block - 1) / block;
         int       others = 0;
         if (pool) pool_run(pool, tasks, prepare_block, &job);
-        else for (int t = 0; t < tasks; t++) prepare_block(&job, 0, t);
+        else
+            for (int t = 0; t < tasks; t++) prepare_block(&job, 0, t);
         g->status = pulse_grid_add(g->even, g->point, job.count, pool);
         for (int k = 0; k < job.count; k++)
             if (g->point[k].terms == 0) g->echo[others++] = g->echo[k];
@@ -141,7 +143,7 @@ void echo_add(EchoGrid *g, const Echo *echo, int count, Pool *pool)
     }
 }
 
-void echo_unfollowed(EchoGrid *g, double path_per_pulse_m) { g->unfollowed_m = path_per_pulse_m; }
+void   echo_unfollowed(EchoGrid *g, double path_per_pulse_m) { g->unfollowed_m = path_per_pulse_m; }
 Status echo_status(const EchoGrid *g) { return g->status; }
 
 /* What the reference's own path does to a sample. */

@@ -23,7 +23,7 @@
 
 /* One echo: above is what it adds. */
 typedef struct Echo {
-    double path_m, path_per_pulse_m; /* in the middle of the interval; from row to row */
+    double         path_m, path_per_pulse_m; /* in the middle of the interval; from row to row */
     double complex amplitude[interval_channels];
 } Echo;
 
@@ -33,15 +33,15 @@ typedef struct EchoGrid EchoGrid;
 Status echo_grid_create(EchoGrid **out, const Waveform *wave);
 void   echo_grid_destroy(EchoGrid *grid); /* accepts NULL */
 /* Adds to those of earlier calls. pool may be NULL. */
-void   echo_add(EchoGrid *grid, const Echo *echo, int count, Pool *pool);
+void echo_add(EchoGrid *grid, const Echo *echo, int count, Pool *pool);
 /* sample[channels][pulses][samples] of all that were added; forgets them. */
-void   echo_sum(double complex *sample, EchoGrid *grid);
-void   echo_forget(EchoGrid *grid);
+void echo_sum(double complex *sample, EchoGrid *grid);
+void echo_forget(EchoGrid *grid);
 /* Of echoes added from here on: growth of the reference's own two-way path from row to row that the receiver does not
  * follow, so that it is in every echo. 0 at first; while nothing is added. */
-void   echo_unfollowed(EchoGrid *grid, double path_per_pulse_m);
+void echo_unfollowed(EchoGrid *grid, double path_per_pulse_m);
 /* Terms for an echo whose path so grows, on the grid over delay and Doppler; 0: row by row. */
-int    echo_terms(const EchoGrid *grid, double path_per_pulse_m);
+int echo_terms(const EchoGrid *grid, double path_per_pulse_m);
 /* STATUS_NO_MEMORY once a grid could not be had: sums since are wrong. */
 Status echo_status(const EchoGrid *grid);
 

@@ -40,7 +40,7 @@ enum { pulse_terms_most = 8 };
 typedef struct PulsePoint {
     double         per_sample, per_pulse; /* turns; whole ones do not count */
     double         growth_rad;
-    int            terms;                 /* 0: it is left out; up to pulse_terms_most */
+    int            terms; /* 0: it is left out; up to pulse_terms_most */
     double complex amplitude[interval_channels];
 } PulsePoint;
 
@@ -52,8 +52,8 @@ void   pulse_grid_destroy(PulseGrid *grid); /* accepts NULL */
 /* Adds to those of earlier calls. pool may be NULL. STATUS_NO_MEMORY: sums are wrong until it is made to forget. */
 Status pulse_grid_add(PulseGrid *grid, const PulsePoint *point, int count, Pool *pool);
 /* sample[channels][pulses][samples] of all that were added; forgets them. */
-void   pulse_grid_sum(double complex *sample, PulseGrid *grid, Pool *pool);
-void   pulse_grid_forget(PulseGrid *grid);
+void pulse_grid_sum(double complex *sample, PulseGrid *grid, Pool *pool);
+void pulse_grid_forget(PulseGrid *grid);
 
 /* ---- row_grid.c: delay, row by row ------------------------------------------------------------------ */
 
@@ -71,7 +71,7 @@ void   row_grid_destroy(RowGrid *grid); /* accepts NULL */
 /* Adds to those of earlier calls. pool may be NULL. STATUS_NO_MEMORY: sums are wrong until it is made to forget. */
 Status row_grid_add(RowGrid *grid, const Echo *echo, int count, Pool *pool);
 /* Adds all that were added to sample[channels][pulses][samples]; forgets them. */
-void   row_grid_sum(double complex *sample, RowGrid *grid);
-void   row_grid_forget(RowGrid *grid);
+void row_grid_sum(double complex *sample, RowGrid *grid);
+void row_grid_forget(RowGrid *grid);
 
 #endif

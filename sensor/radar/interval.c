@@ -1,4 +1,5 @@
-/* sensor/radar/interval.c: compresses pulses, transforms them over the rows, and what the receiver does to them before. */
+/* sensor/radar/interval.c: compresses pulses, transforms them over the rows, and what the receiver does to them before.
+ */
 #include "sensor/radar/interval.h"
 #include "render/scattering/scatter.h"
 #include "sensor/detector/transform.h"
@@ -10,7 +11,7 @@ enum { lobe_steps = 64, lobe_points = 3 * lobe_steps / 2 + 4 }; /* a cell; from 
 
 struct IntervalPlan {
     int        samples, pulses;
-    double    *range, *doppler;            /* weights, each over its sum */
+    double    *range, *doppler; /* weights, each over its sum */
     double     noise_share;
     double     lobe[2][lobe_points];       /* over range, over Doppler */
     double    *rows[interval_channels];    /* complex: [pulses][samples], compressed */
@@ -85,7 +86,7 @@ void interval_plan_destroy(IntervalPlan *p)
 typedef struct Job {
     IntervalPlan   *plan;
     const Interval *in;
-    double complex *cell;   /* NULL: compressed only */
+    double complex *cell; /* NULL: compressed only */
 } Job;
 
 /* Zero range is in the middle: every second sample turns its sign. */
@@ -137,7 +138,8 @@ static void process_channel(void *user, int worker, int channel)
 static void run(Job *job, int channels, Pool *pool)
 {
     if (pool) pool_run(pool, channels, process_channel, job);
-    else for (int c = 0; c < channels; c++) process_channel(job, 0, c);
+    else
+        for (int c = 0; c < channels; c++) process_channel(job, 0, c);
 }
 
 void interval_compress(IntervalPlan *p, const Interval *in, int channels, Pool *pool)
@@ -225,7 +227,7 @@ static double to_counts(double x, double last, long *saturated)
 }
 
 void interval_receive(ReceiverReport *report, Interval *interval, const Receiver *r, uint64_t seed, uint32_t stream,
-                    uint32_t number)
+                      uint32_t number)
 {
     const Waveform *wave = &interval->wave;
     const size_t    count = interval_channels * (size_t)wave->pulses * (size_t)wave->samples;

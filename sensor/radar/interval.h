@@ -17,7 +17,7 @@ enum { CHANNEL_SUM, CHANNEL_RIGHT, CHANNEL_DOWN, CHANNEL_CROSS, interval_channel
 
 typedef struct Interval {
     Waveform        wave;
-    double complex *sample;         /* [channels][pulses][samples] */
+    double complex *sample; /* [channels][pulses][samples] */
 } Interval;
 
 /* Windowed and transformed: rows of Doppler, from approaching (negative rate of path) to receding, columns of range,
@@ -25,8 +25,8 @@ typedef struct Interval {
 typedef struct RangeDoppler {
     int             rows, columns;
     double          metre_per_column, mps_per_row; /* of range (half the path) and its rate */
-    double          noise_share;    /* of a sample's noise power that is in a cell */
-    double complex *cell;           /* [channels][rows][columns] */
+    double          noise_share;                   /* of a sample's noise power that is in a cell */
+    double complex *cell;                          /* [channels][rows][columns] */
 } RangeDoppler;
 
 /* The two maps for processing; holds the compressed pulses of one interval at a time. */
@@ -34,10 +34,10 @@ typedef struct IntervalPlan IntervalPlan;
 Status interval_plan_create(IntervalPlan **out, const Waveform *wave, const Window *range, const Window *doppler);
 void   interval_plan_destroy(IntervalPlan *plan); /* accepts NULL */
 /* Compresses the pulses of the first so many channels in range. pool may be NULL. */
-void   interval_compress(IntervalPlan *plan, const Interval *in, int channels, Pool *pool);
+void interval_compress(IntervalPlan *plan, const Interval *in, int channels, Pool *pool);
 /* Compresses all channels, and transforms them over the pulses. out->cell: [channels][pulses][samples]; the rest is
  * filled. */
-void   interval_process(RangeDoppler *out, IntervalPlan *plan, const Interval *in, Pool *pool);
+void interval_process(RangeDoppler *out, IntervalPlan *plan, const Interval *in, Pool *pool);
 /* Of a map: RangeDoppler.noise_share. */
 double interval_noise_share(const IntervalPlan *plan);
 /* Amplitude at an offset of up to 1.5 cells of the response to a point, 1 at 0, over range or over Doppler; to 1e-7. */
@@ -45,9 +45,9 @@ double interval_lobe(const IntervalPlan *plan, bool doppler, double cells);
 /* Of a channel that was compressed: all pulses, [pulses][samples] complex. */
 const double *interval_pulses(const IntervalPlan *plan, int channel);
 /* Complex range profile of one pulse: out[samples]. */
-void   interval_pulse(double complex *out, const IntervalPlan *plan, int channel, int pulse);
+void interval_pulse(double complex *out, const IntervalPlan *plan, int channel, int pulse);
 /* Range profile over all pulses, without Doppler: profile[samples], mean power over pulses. */
-void   interval_profile(double *profile, const IntervalPlan *plan, int channel);
+void interval_profile(double *profile, const IntervalPlan *plan, int channel);
 
 /* ---- the receiver ------------------------------------------------------------------------------- */
 
@@ -62,17 +62,18 @@ void   interval_profile(double *profile, const IntervalPlan *plan, int channel);
  * gain control that acts within the interval. Samples go back to sqrt(W) by that gain. Draws are functions of seed,
  * stream and interval number (pitviper_random). */
 typedef struct Receiver {
-    double noise_figure;           /* as a factor, at least 1 */
-    double phase_noise_rad;        /* rms, from pulse to pulse */
-    double iq_gain, iq_phase_rad;  /* Q over I, less 1; Q's axis beyond a right angle: an image at (gain + j phase) / 2 */
-    int    bits;                   /* of a converter, sign included, 2 .. 24; 0: none */
-    double noise_counts;           /* rms of I and of Q that noise fills where nothing is large; 1 */
+    double noise_figure;    /* as a factor, at least 1 */
+    double phase_noise_rad; /* rms, from pulse to pulse */
+    double iq_gain,
+        iq_phase_rad;    /* Q over I, less 1; Q's axis beyond a right angle: an image at (gain + j phase) / 2 */
+    int    bits;         /* of a converter, sign included, 2 .. 24; 0: none */
+    double noise_counts; /* rms of I and of Q that noise fills where nothing is large; 1 */
 } Receiver;
 
 typedef struct ReceiverReport {
-    double noise_w;      /* of a sample, I and Q together */
+    double noise_w; /* of a sample, I and Q together */
     double counts_per_sqrt_w;
-    long   saturated;    /* I or Q values at the end of the converter's range */
+    long   saturated; /* I or Q values at the end of the converter's range */
 } ReceiverReport;
 
 /* In place. number: of the interval, so that each has noise of its own. */

@@ -94,16 +94,16 @@ typedef struct Spread {
 } Spread;
 
 struct PulseGrid {
-    int        samples, pulses, rows, columns, stride; /* rows, columns: of the grid; stride: columns and a margin */
-    double     bend;
-    int        terms;                     /* that were added to */
-    double    *grid[pulse_terms_most][interval_channels]; /* [rows][stride] complex, columns beyond the last being the
-                                                             first again; NULL: not needed yet */
-    double    *turned[interval_channels]; /* [columns][rows] complex */
-    double    *lines[interval_channels];  /* [pulses][columns] complex */
+    int     samples, pulses, rows, columns, stride; /* rows, columns: of the grid; stride: columns and a margin */
+    double  bend;
+    int     terms;                                     /* that were added to */
+    double *grid[pulse_terms_most][interval_channels]; /* [rows][stride] complex, columns beyond the last being the
+                                                          first again; NULL: not needed yet */
+    double    *turned[interval_channels];              /* [columns][rows] complex */
+    double    *lines[interval_channels];               /* [pulses][columns] complex */
     Transform *over_rows[interval_channels], *over_columns[interval_channels];
-    double    *of_sample, *of_pulse;      /* over the kernel's transform */
-    Spread    *spread;                    /* [chunk] */
+    double    *of_sample, *of_pulse; /* over the kernel's transform */
+    Spread    *spread;               /* [chunk] */
 };
 
 static size_t plane(const PulseGrid *g) { return 2 * (size_t)g->rows * (size_t)g->stride; }
@@ -211,14 +211,14 @@ static void add_channel(void *user, int worker, int task)
         const PulsePoint *p = &job->point[i];
         const Spread     *s = &g->spread[i];
         if (term >= p->terms || p->amplitude[channel] == 0) continue;
-        const double   re = s->turn[0], im = s->turn[1];
-        double         a = creal(p->amplitude[channel]), b = cimag(p->amplitude[channel]);
+        const double re = s->turn[0], im = s->turn[1];
+        double       a = creal(p->amplitude[channel]), b = cimag(p->amplitude[channel]);
         for (int r = 1; r <= term; r++) { /* times -j growth / r */
             const double by = p->growth_rad / r, was = a;
             a = b * by, b = -was * by;
         }
-        const double   turned[2] = {a * re - b * im, a * im + b * re};
-        double         wave[2 * width];
+        const double turned[2] = {a * re - b * im, a * im + b * re};
+        double       wave[2 * width];
         for (int k = 0; k < width; k++)
             wave[2 * k] = turned[0] * s->along[k], wave[2 * k + 1] = turned[1] * s->along[k];
         for (int y = 0; y < width; y++) {
@@ -233,7 +233,8 @@ static void add_channel(void *user, int worker, int task)
 static void run(Pool *pool, int tasks, void (*task)(void *user, int worker, int number), void *user)
 {
     if (pool) pool_run(pool, tasks, task, user);
-    else for (int t = 0; t < tasks; t++) task(user, 0, t);
+    else
+        for (int t = 0; t < tasks; t++) task(user, 0, t);
 }
 
 Status pulse_grid_add(PulseGrid *g, const PulsePoint *point, int count, Pool *pool)

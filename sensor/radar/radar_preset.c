@@ -4,8 +4,26 @@
 #include "render/scattering/scatter.h"
 
 enum {
-    CENTRE, BANDWIDTH, SAMPLES, PULSES, REPEAT, PULSE, POWER, LOSS, DISH, TAPER, NOISE_FIGURE, PHASE_NOISE, IQ_GAIN, IQ_PHASE,
-    BITS, PFA, COMPENSATED, FAR, MTI, numbers
+    CENTRE,
+    BANDWIDTH,
+    SAMPLES,
+    PULSES,
+    REPEAT,
+    PULSE,
+    POWER,
+    LOSS,
+    DISH,
+    TAPER,
+    NOISE_FIGURE,
+    PHASE_NOISE,
+    IQ_GAIN,
+    IQ_PHASE,
+    BITS,
+    PFA,
+    COMPENSATED,
+    FAR,
+    MTI,
+    numbers
 };
 
 static const struct {
@@ -38,7 +56,8 @@ static const double most_bend = 1e7;
 
 static Status refuse(const Table *t, int row, const char *column, const char *value, const char *accepted)
 {
-    log_error("radars: %s:%d: %s: '%s' is not accepted; accepted: %s", t->path, t->line[row + 1], column, value, accepted);
+    log_error("radars: %s:%d: %s: '%s' is not accepted; accepted: %s", t->path, t->line[row + 1], column, value,
+              accepted);
     return STATUS_BAD_VALUE;
 }
 
@@ -56,12 +75,14 @@ static Status check_waveform(const Table *t, int row, const Waveform *w, double 
     if (w->pulse_s > most_s * (1 + 1e-12))
         return refuse(t, row, "pulse_us", table_text(t, row, table_column(t, "pulse_us")), "up to 1 / repeat_khz");
     if (w->kind == WAVEFORM_PULSE_DOPPLER && fabs(w->repeat_hz * w->samples / w->bandwidth_hz - 1) > 1e-9) {
-        snprintf(accepted, sizeof accepted, "for pulse_doppler samples times repeat_khz: %.9g", 1e-6 * w->repeat_hz * w->samples);
+        snprintf(accepted, sizeof accepted, "for pulse_doppler samples times repeat_khz: %.9g",
+                 1e-6 * w->repeat_hz * w->samples);
         return refuse(t, row, "bandwidth_mhz", table_text(t, row, table_column(t, "bandwidth_mhz")), accepted);
     }
     const double long_s = waveform_step_s(w) * w->samples;
     if (w->bandwidth_hz * long_s > most_bend) {
-        snprintf(accepted, sizeof accepted, "up to %.4g, for a profile that takes %.4g ms", 1e-6 * most_bend / long_s, 1e3 * long_s);
+        snprintf(accepted, sizeof accepted, "up to %.4g, for a profile that takes %.4g ms", 1e-6 * most_bend / long_s,
+                 1e3 * long_s);
         return refuse(t, row, "bandwidth_mhz", table_text(t, row, table_column(t, "bandwidth_mhz")), accepted);
     }
     if (mti_rows > w->pulses) return refuse(t, row, "mti", table_text(t, row, table_column(t, "mti")), "up to pulses");
@@ -73,9 +94,9 @@ static Status check_waveform(const Table *t, int row, const Waveform *w, double 
 static Status read_row(RadarPreset *out, const Table *t, int row)
 {
     static const char *const words[] = {"name", "waveform", "transmit", "range_window", "doppler_window", "source"};
-    int         column[numbers];
-    double      x[numbers];
-    RadarPreset p = {.receiver.noise_counts = 1};
+    int                      column[numbers];
+    double                   x[numbers];
+    RadarPreset              p = {.receiver.noise_counts = 1};
     if (!table_columns(column, t, words, sizeof words / sizeof *words, "radars")) return STATUS_BAD_VALUE;
     for (int i = 0; i < numbers; i++) {
         if (!table_columns(&column[i], t, &number[i].name, 1, "radars")) return STATUS_BAD_VALUE;
@@ -86,12 +107,14 @@ static Status read_row(RadarPreset *out, const Table *t, int row)
         int         which;
         bool        even;
         const char *accepted;
-    } whole[] = {{SAMPLES, true, "an even number"}, {PULSES, true, "an even number"}, {TAPER, false, "0, 1 or 2"},
-                 {BITS, false, "0, or a whole number in 2 .. 24"}, {COMPENSATED, false, "0 or 1"}, {MTI, false, "2 or 3"}};
+    } whole[] = {{SAMPLES, true, "an even number"}, {PULSES, true, "an even number"},
+                 {TAPER, false, "0, 1 or 2"},       {BITS, false, "0, or a whole number in 2 .. 24"},
+                 {COMPENSATED, false, "0 or 1"},    {MTI, false, "2 or 3"}};
     for (size_t i = 0; i < sizeof whole / sizeof *whole; i++) {
         const double value = x[whole[i].which];
         if (fmod(value, whole[i].even ? 2 : 1) != 0 || (whole[i].which == BITS && value == 1))
-            return refuse(t, row, number[whole[i].which].name, table_text(t, row, column[whole[i].which]), whole[i].accepted);
+            return refuse(t, row, number[whole[i].which].name, table_text(t, row, column[whole[i].which]),
+                          whole[i].accepted);
     }
     if (x[SAMPLES] * x[PULSES] > 1 << 22)
         return refuse(t, row, "pulses", table_text(t, row, column[PULSES]), "samples times pulses up to 4194304");
@@ -106,9 +129,14 @@ static Status read_row(RadarPreset *out, const Table *t, int row)
 
     snprintf(p.name, sizeof p.name, "%s", table_text(t, row, table_column(t, "name")));
     p.transmits_h = *transmit == 'h';
-    p.wave = (Waveform){.kind = (WaveformKind)kind, .uncompensated = x[COMPENSATED] == 0,
-                        .centre_hz = 1e9 * x[CENTRE], .bandwidth_hz = 1e6 * x[BANDWIDTH], .pulse_s = 1e-6 * x[PULSE],
-                        .repeat_hz = 1e3 * x[REPEAT], .samples = (int)x[SAMPLES], .pulses = (int)x[PULSES]};
+    p.wave = (Waveform){.kind = (WaveformKind)kind,
+                        .uncompensated = x[COMPENSATED] == 0,
+                        .centre_hz = 1e9 * x[CENTRE],
+                        .bandwidth_hz = 1e6 * x[BANDWIDTH],
+                        .pulse_s = 1e-6 * x[PULSE],
+                        .repeat_hz = 1e3 * x[REPEAT],
+                        .samples = (int)x[SAMPLES],
+                        .pulses = (int)x[PULSES]};
     if (p.wave.kind == WAVEFORM_STEPPED) p.wave.repeat_hz /= x[SAMPLES]; /* of bursts */
     p.far_m = 1e3 * x[FAR];
     p.mti_rows = (int)x[MTI];
@@ -144,8 +172,8 @@ Status radar_preset_read(RadarPreset *out, const char *path, const char *name)
             status = read_row(out, &t, row);
         } else {
             WordMeant meant = word_meant(name);
-            char   names[400] = "";
-            size_t n = 0;
+            char      names[400] = "";
+            size_t    n = 0;
             for (int i = 0; i < t.rows; i++) word_consider(&meant, table_text(&t, i, column));
             word_consider(&meant, "none");
             for (int i = 0; i < t.rows && n + 40 < sizeof names; i++)

@@ -11,11 +11,11 @@ typedef struct RadarPreset {
     Antenna  antenna;
     Receiver receiver;
     Window   range_window, doppler_window;
-    double   power_w, loss;     /* in a pulse; a factor */
+    double   power_w, loss; /* in a pulse; a factor */
     double   pfa;
-    double   far_m;             /* farthest range whose echoes fold into the window; 0: those within it alone */
-    int      mti_rows;          /* of the canceller: 2 or 3 */
-    bool     transmits_h;       /* else vertical */
+    double   far_m;       /* farthest range whose echoes fold into the window; 0: those within it alone */
+    int      mti_rows;    /* of the canceller: 2 or 3 */
+    bool     transmits_h; /* else vertical */
 } RadarPreset;
 
 /* The row of that name. On error logs file, line, column, value and range; for an unknown name the known ones. */

@@ -7,23 +7,23 @@
 #include <stdlib.h>
 
 enum { width = gridding_width, ranks_most = 64 };
-static const double part_rad = 2e-3;     /* of phase at the band's ends that a delay may be off, or a bend left out */
-static const double term_least = 1e-5;   /* of an amplitude: smaller terms are left out */
-static const double bend_most_rad = 70;  /* Bessel functions of half of it vanish before ranks_most */
+static const double part_rad = 2e-3;    /* of phase at the band's ends that a delay may be off, or a bend left out */
+static const double term_least = 1e-5;  /* of an amplitude: smaller terms are left out */
+static const double bend_most_rad = 70; /* Bessel functions of half of it vanish before ranks_most */
 
 struct RowGrid {
     int        samples, points, pulses;
-    double     wave_rad_m;              /* of a metre of path, at the centre */
-    double     turns_m;                 /* of the grid, of a metre of path */
-    double     edge_rad_m;              /* of a metre of path, at the band's ends against its centre */
-    double     fold_m;                  /* of two-way path */
-    double     coupled;                 /* path by which an echo appears farther, over its growth a row */
-    double     bend_rad_m;              /* q, over the growth a row */
-    int        ranks;                   /* grids that were added to */
-    double    *grid[ranks_most];        /* [channels][pulses][points] complex; NULL: not needed yet */
+    double     wave_rad_m;       /* of a metre of path, at the centre */
+    double     turns_m;          /* of the grid, of a metre of path */
+    double     edge_rad_m;       /* of a metre of path, at the band's ends against its centre */
+    double     fold_m;           /* of two-way path */
+    double     coupled;          /* path by which an echo appears farther, over its growth a row */
+    double     bend_rad_m;       /* q, over the growth a row */
+    int        ranks;            /* grids that were added to */
+    double    *grid[ranks_most]; /* [channels][pulses][points] complex; NULL: not needed yet */
     Transform *transform[ranks_most];
-    double    *correction;              /* [samples]: over the kernel's transform */
-    double    *factor;                  /* [samples]: scratch */
+    double    *correction; /* [samples]: over the kernel's transform */
+    double    *factor;     /* [samples]: scratch */
 };
 
 static size_t grid_size(const RowGrid *g)
@@ -201,7 +201,8 @@ Status row_grid_add(RowGrid *g, const Echo *echo, int count, Pool *pool)
     for (int k = 0; k < count; k++) most = fmax(most, fabs(echo[k].path_per_pulse_m));
     if (have_ranks(g, bends(factor, g->bend_rad_m * most)) != STATUS_OK) return STATUS_NO_MEMORY;
     if (pool) pool_run(pool, tasks, add_block, &job);
-    else for (int t = 0; t < tasks; t++) add_block(&job, 0, t);
+    else
+        for (int t = 0; t < tasks; t++) add_block(&job, 0, t);
     return STATUS_OK;
 }
 

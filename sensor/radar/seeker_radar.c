@@ -37,11 +37,11 @@ static void points_free(RadarPoints *points)
 
 static Status open_tables(SeekerRadar *r, const SeekerRadarConfig *config)
 {
-    char   path[4096], water[4096];
+    char       path[4096], water[4096];
     const bool own = config->table && *config->table;
-    Status status = own || etc_path(path, sizeof path, "radars.csv")
-                        ? radar_preset_read(&r->preset, own ? config->table : path, config->preset)
-                        : STATUS_BAD_VALUE;
+    Status     status = own || etc_path(path, sizeof path, "radars.csv")
+                            ? radar_preset_read(&r->preset, own ? config->table : path, config->preset)
+                            : STATUS_BAD_VALUE;
     if (status != STATUS_OK) return status;
     r->in_band = clutter_band_of(&r->band, r->preset.wave.centre_hz);
     if (!r->in_band && config->ground) {
@@ -84,7 +84,7 @@ Status seeker_radar_create(SeekerRadar **out, const SeekerRadarConfig *config)
     r->wind_mps = config->wind_mps;
     r->seed = config->seed;
     r->chaff_dipoles = config->chaff_dipoles;
-    Status status = open_tables(r, config);
+    Status          status = open_tables(r, config);
     const Waveform *wave = &r->preset.wave;
     if (status == STATUS_OK) status = catalog_open(&r->catalog, config->catalog, radar_sag_m(wave->centre_hz));
     SignaturesConfig signatures = seeker_radar_signatures(&r->preset, config->warp_m, config->isa);
@@ -212,7 +212,8 @@ static Status air_between(RadarShot *shot)
     if (shot->preset->wave.centre_hz <= 200e9) /* P.840's range */
         shot->radar->air.liquid[0] = (RadarLiquid){0, fog_top_m, fog_liquid_g_m3(shot->scene->weather->visibility_m)};
     v3_add_scaled(end, p, shot->frame->reference_m, shot->ahead);
-    const RadarPath path = {.a_m = clamp(p[2] - shot->base_m, 0, 20000), .b_m = clamp(end[2] - shot->base_m, 0, 20000),
+    const RadarPath path = {.a_m = clamp(p[2] - shot->base_m, 0, 20000),
+                            .b_m = clamp(end[2] - shot->base_m, 0, 20000),
                             .range_m = fmin(shot->frame->reference_m, 1e6),
                             .f_ghz = 1e-9 * shot->preset->wave.centre_hz,
                             .tilt_rad = shot->preset->transmits_h ? 0 : 0.5 * pi_rad};
@@ -275,10 +276,10 @@ static bool echo_of(Echo *e, const RadarShot *beam, const RadarPoint *q)
 
 typedef struct BeamJob {
     const RadarShot *beam;
-    int           first, end;
-    bool          sum_alone;
-    Echo         *echo;               /* those of block b from b * block on */
-    int           kept[beam_batch / block];
+    int              first, end;
+    bool             sum_alone;
+    Echo            *echo; /* those of block b from b * block on */
+    int              kept[beam_batch / block];
 } BeamJob;
 
 static void echo_block(void *user, int worker, int task)
@@ -309,7 +310,8 @@ Status shot_echoes(RadarShot *beam, bool sum_alone)
         const int blocks = (end - first + block - 1) / block;
         BeamJob   job = {.beam = beam, .first = first, .end = end, .sum_alone = sum_alone, .echo = r->batch};
         if (beam->pool) pool_run(beam->pool, blocks, echo_block, &job);
-        else for (int b = 0; b < blocks; b++) echo_block(&job, 0, b);
+        else
+            for (int b = 0; b < blocks; b++) echo_block(&job, 0, b);
         int kept = 0; /* moved together: one call for all */
         for (int b = 0; b < blocks; b++) {
             if (kept != b * block)
@@ -332,7 +334,7 @@ static Status indicate_moving(RadarShot *shot, Detection *detection)
     f->mti_w = arena_alloc(shot->arena, (size_t)wave->samples, sizeof *f->mti_w);
     if (!f->mti_w) return STATUS_NO_MEMORY;
     detect_mti_profile(f->mti_w, interval_pulses(shot->radar->plan, CHANNEL_SUM), wave, shot->preset->mti_rows,
-                2 * (f->ground_rate_mps - f->reference_rate_mps) / wave->repeat_hz);
+                       2 * (f->ground_rate_mps - f->reference_rate_mps) / wave->repeat_hz);
     for (int i = 0; i < f->detections; i++) {
         Detection   *d = &detection[i];
         const double along = sqrt(fmax(0, 1 - d->cos_right * d->cos_right - d->cos_down * d->cos_down));
@@ -349,10 +351,10 @@ static Status indicate_moving(RadarShot *shot, Detection *detection)
 /* From the samples of an interval to its map, profiles and detections. */
 static Status process(RadarShot *shot, const Interval *interval)
 {
-    RadarFrame      *f = shot->frame;
+    RadarFrame        *f = shot->frame;
     const RadarPreset *p = shot->preset;
-    const size_t     plane = (size_t)p->wave.pulses * (size_t)p->wave.samples, all = interval_channels * plane;
-    Detection       *detection = arena_alloc(shot->arena, detections_most, sizeof *detection);
+    const size_t       plane = (size_t)p->wave.pulses * (size_t)p->wave.samples, all = interval_channels * plane;
+    Detection         *detection = arena_alloc(shot->arena, detections_most, sizeof *detection);
     f->map.cell = arena_alloc(shot->arena, all, sizeof *f->map.cell);
     f->profile = arena_alloc(shot->arena, 2 * (size_t)p->wave.samples, sizeof *f->profile);
     f->profile_w = arena_alloc(shot->arena, (size_t)p->wave.samples, sizeof *f->profile_w);
@@ -363,12 +365,14 @@ static Status process(RadarShot *shot, const Interval *interval)
     interval_pulse(f->profile + p->wave.samples, shot->radar->plan, CHANNEL_CROSS, p->wave.pulses / 2);
 
     const RadarLink   link = {p->power_w, 1, 1, p->antenna.wavelength_m, 1, p->loss};
-    const DetectScale scale = {.range_m = f->reference_m, .range_rate_mps = f->reference_rate_mps,
-                               .unit_w = radar_received_w(&link, 1), .air_np_m = shot->air_np_m};
+    const DetectScale scale = {.range_m = f->reference_m,
+                               .range_rate_mps = f->reference_rate_mps,
+                               .unit_w = radar_received_w(&link, 1),
+                               .air_np_m = shot->air_np_m};
     /* guards as wide as a vehicle's own returns, 6 m, and the Doppler main lobe */
     const int        extent = (int)clamp(ceil(6 / f->map.metre_per_column), 2, p->wave.samples / 8);
-    const CfarConfig cfar = {.pfa = p->pfa, .guard = {2, extent}, .training = {p->wave.pulses >= 32 ? 3 : 0, extent},
-                             .wrap_rows = true};
+    const CfarConfig cfar = {
+        .pfa = p->pfa, .guard = {2, extent}, .training = {p->wave.pulses >= 32 ? 3 : 0, extent}, .wrap_rows = true};
     f->detections_in_all = detect(detection, detections_most, &f->map, shot->radar->plan, &cfar, &p->antenna, &scale);
     if (f->detections_in_all < 0) return STATUS_NO_MEMORY;
     f->detections = f->detections_in_all < detections_most ? f->detections_in_all : detections_most;
@@ -409,7 +413,7 @@ static Status make(RadarShot *shot)
     echo_sum(interval.sample, shot->radar->echoes);
     if (wave->uncompensated) shot->frame->reference_rate_mps = 0; /* it is in every echo */
     interval_receive(&shot->frame->receiver, &interval, &shot->preset->receiver, shot->radar->seed, stream_noise,
-                   scene->number);
+                     scene->number);
     status = process(shot, &interval);
     return status == STATUS_OK && shot->radar->sector_pulse ? shot_sector(shot, &interval) : status;
 }
@@ -417,13 +421,18 @@ static Status make(RadarShot *shot)
 Status seeker_radar_measure(const RadarFrame **out, SeekerRadar *radar, const RadarScene *scene, Pool *pool,
                             Arena *arena)
 {
-    const double      begun_s = wall_clock_s();
+    const double       begun_s = wall_clock_s();
     const RadarPreset *p = &radar->preset;
-    RadarFrame       *frame = arena_alloc(arena, 1, sizeof *frame);
+    RadarFrame        *frame = arena_alloc(arena, 1, sizeof *frame);
     if (!frame) return STATUS_NO_MEMORY;
-    RadarShot shot = {.radar = radar, .scene = scene, .preset = p, .frame = frame, .pool = pool, .arena = arena,
-                .half_window_m = p->wave.samples * light_mps / (4 * p->wave.bandwidth_hz),
-                .reach = scene->reach > 0 ? scene->reach : 1};
+    RadarShot shot = {.radar = radar,
+                      .scene = scene,
+                      .preset = p,
+                      .frame = frame,
+                      .pool = pool,
+                      .arena = arena,
+                      .half_window_m = p->wave.samples * light_mps / (4 * p->wave.bandwidth_hz),
+                      .reach = scene->reach > 0 ? scene->reach : 1};
     shot.widest = shot.reach * 16 / antenna_u_per_sine(&p->antenna);
     *frame = (RadarFrame){.preset = p, .aim_m = scene->reference_m, .number = scene->number};
     memcpy(frame->v_enu_mps, scene->v_enu_mps, sizeof frame->v_enu_mps);

@@ -30,21 +30,21 @@
 #include "sensor/radar/radar_frame.h"
 
 typedef struct SeekerRadarConfig {
-    const char *preset;          /* a row of the table */
-    const char *table;           /* path; NULL or empty: etc/radars.csv */
-    const char *catalog;         /* path; its models are built anew, as fine as the wavelength needs */
+    const char *preset;  /* a row of the table */
+    const char *table;   /* path; NULL or empty: etc/radars.csv */
+    const char *catalog; /* path; its models are built anew, as fine as the wavelength needs */
     const char *isa;
-    bool        ground;          /* scatterers of the ground and of plants */
-    bool        ground_bounce;   /* the ground mirrors entities */
-    double      scan_rad;        /* sector that the beam scans, about the boresight; 0: it stares */
-    double      scan_step;       /* between its positions, over the beamwidth */
-    double      warp_m;          /* unevenness of surfaces, rms (Warp of tubes.h) */
-    const char *given;           /* a list of given signatures (given_signature.h); empty: none */
+    bool        ground;        /* scatterers of the ground and of plants */
+    bool        ground_bounce; /* the ground mirrors entities */
+    double      scan_rad;      /* sector that the beam scans, about the boresight; 0: it stares */
+    double      scan_step;     /* between its positions, over the beamwidth */
+    double      warp_m;        /* unevenness of surfaces, rms (Warp of tubes.h) */
+    const char *given;         /* a list of given signatures (given_signature.h); empty: none */
     double      wind_mps;
     double      chaff_dipoles; /* resonant ones in a cloud of chaff; 0: chaff is not seen */
     uint64_t    seed;
-    const char  *library;        /* folder of signatures, read and added to; NULL or empty: none */
-    bool background; /* signatures that are missing are made in a thread of their own; the update is left out */
+    const char *library;    /* folder of signatures, read and added to; NULL or empty: none */
+    bool        background; /* signatures that are missing are made in a thread of their own; the update is left out */
 } SeekerRadarConfig;
 
 typedef struct SeekerRadar SeekerRadar;
@@ -55,19 +55,19 @@ void   seeker_radar_destroy(SeekerRadar *radar); /* accepts NULL */
 typedef struct RadarScene {
     const World    *world;
     const Snapshot *snapshot;
-    const double   *joint;       /* values of the joints of its nodes, where these are posed; NULL: by snapshot_pose */
-    const View     *view;        /* where the antenna is, and its axes */
-    int             hidden;      /* snapshot index of the host, -1: none; it is not in its own way */
-    double          v_enu_mps[3];/* of the antenna */
-    double          reference_m; /* range to the aim; NAN: to the ground ahead */
+    const double   *joint;        /* values of the joints of its nodes, where these are posed; NULL: by snapshot_pose */
+    const View     *view;         /* where the antenna is, and its axes */
+    int             hidden;       /* snapshot index of the host, -1: none; it is not in its own way */
+    double          v_enu_mps[3]; /* of the antenna */
+    double          reference_m;  /* range to the aim; NAN: to the ground ahead */
     double          reference_v_enu_mps[3]; /* of the aim; 0: of the ground */
-    double          t_s;         /* exercise time */
-    const Weather  *weather;     /* at the ground */
-    uint32_t        number;      /* of the frame: for its noise */
-    double          reach;       /* factor on the angles beyond which echoes are left out; 0: 1 */
-    bool            apart;       /* each scattering centre is an echo of its own (slower, exact) */
-    const float    *range_m;     /* [view height][width]: of what each pixel shows, INFINITY: sky. NULL: no pixels */
-    const uint32_t *entity;      /* likewise: snapshot index + 1, 0: none */
+    double          t_s;                    /* exercise time */
+    const Weather  *weather;                /* at the ground */
+    uint32_t        number;                 /* of the frame: for its noise */
+    double          reach;                  /* factor on the angles beyond which echoes are left out; 0: 1 */
+    bool            apart;                  /* each scattering centre is an echo of its own (slower, exact) */
+    const float    *range_m; /* [view height][width]: of what each pixel shows, INFINITY: sky. NULL: no pixels */
+    const uint32_t *entity;  /* likewise: snapshot index + 1, 0: none */
 } RadarScene;
 
 /* What a radar of this configuration makes signatures with, now or beforehand. */

@@ -33,7 +33,7 @@ typedef struct RadarPoint {
     double complex same, other;              /* scattered, m: received as transmitted, and in the other polarisation */
     double         share;                    /* of the amplitude that is in sight */
     double         widest, room_m;           /* counts so far off an axis (sine), and beyond the window */
-    bool           own;                      /* of one position, not the frame's: place and path are those at its instant */
+    bool           own; /* of one position, not the frame's: place and path are those at its instant */
 } RadarPoint;
 
 typedef struct RadarPoints {
@@ -49,63 +49,63 @@ RadarPoint *radar_points_room(RadarPoints *points, int more);
 enum { beam_batch = 1 << 16 }; /* echoes of a round */
 
 struct SeekerRadar {
-    RadarPreset    preset;
-    bool           ground, in_band; /* in_band: of the clutter table */
-    double         wind_mps, chaff_dipoles;
-    uint64_t       seed;
-    Catalog       *catalog;      /* its own: as fine as the wavelength needs */
-    RadarMaterials materials;
-    SignatureLibrary *library;   /* NULL: none */
-    Signatures    *signatures;
-    uint64_t       left_out;     /* updates, for want of signatures */
-    GivenList     *given;        /* NULL: none */
-    Centres        centres;      /* of the target at work */
-    ClutterTable   clutter;
-    GroundTable    mirror;       /* how the ground reflects */
-    bool           ground_bounce;
-    ClutterGrid    cells;
-    ClutterCache  *drawn;        /* NULL without ground */
-    ClutterBand    band;
-    Foliage       *foliage;      /* of the world's plants; NULL: none stand */
-    GasLines       gases;
-    RadarAir       air;
-    EchoGrid      *echoes;
-    IntervalPlan  *plan;
-    RadarPoints    points;       /* of the frame at work */
-    int            target_points;/* of them, of entities: the first */
-    Arena         *position;     /* what one position of the sector needs; NULL: it stares */
-    Echo          *batch;        /* [beam_batch] */
-    SectorPlan     sector;       /* positions 1: the beam stares */
-    double complex *sector_pulse;/* [positions][pulses][samples]: compressed in range, sum channel; NULL: it stares */
+    RadarPreset       preset;
+    bool              ground, in_band; /* in_band: of the clutter table */
+    double            wind_mps, chaff_dipoles;
+    uint64_t          seed;
+    Catalog          *catalog; /* its own: as fine as the wavelength needs */
+    RadarMaterials    materials;
+    SignatureLibrary *library; /* NULL: none */
+    Signatures       *signatures;
+    uint64_t          left_out; /* updates, for want of signatures */
+    GivenList        *given;    /* NULL: none */
+    Centres           centres;  /* of the target at work */
+    ClutterTable      clutter;
+    GroundTable       mirror; /* how the ground reflects */
+    bool              ground_bounce;
+    ClutterGrid       cells;
+    ClutterCache     *drawn; /* NULL without ground */
+    ClutterBand       band;
+    Foliage          *foliage; /* of the world's plants; NULL: none stand */
+    GasLines          gases;
+    RadarAir          air;
+    EchoGrid         *echoes;
+    IntervalPlan     *plan;
+    RadarPoints       points;        /* of the frame at work */
+    int               target_points; /* of them, of entities: the first */
+    Arena            *position;      /* what one position of the sector needs; NULL: it stares */
+    Echo             *batch;         /* [beam_batch] */
+    SectorPlan        sector;        /* positions 1: the beam stares */
+    double complex *sector_pulse; /* [positions][pulses][samples]: compressed in range, sum channel; NULL: it stares */
 };
 
 /* One frame of the radar while it is measured; a position of a beam that scans has one of its own. */
 typedef struct RadarShot {
-    SeekerRadar      *radar;
-    const RadarScene *scene;
-    const RadarPreset *preset;
-    const Visibility *visibility;
-    RadarFrame       *frame;
-    double            p_enu[3];                    /* of the antenna */
-    double            right[3], down[3], ahead[3]; /* its axes, ENU */
-    double            aim_m;                       /* range that the window is asked to be about */
-    double            reference_m;                 /* middle of the range window now */
-    double            reference_rate_mps;          /* of the aim: rates of echoes are against it */
-    double            window_rate_mps;             /* at which the window's middle moves: that, or 0 */
-    double            after_s;                     /* since the frame's time */
-    double            sector_half_rad;               /* the beam will turn so far to both sides */
-    double            sweep_m;                     /* and ranges will change by up to this */
-    double            half_window_m;               /* of range */
-    double            near_m, far_m;               /* ranges between which echoes can be in it, fold by fold */
-    double            reach;                       /* RadarScene.reach */
-    double            widest;                      /* sine off the axis beyond which entities are left out */
-    double            air_np_m;                    /* power, one way, 1/m */
-    int               missing;                     /* entities whose signatures are still to be made */
-    const struct ChaffCloud *chaff;                /* [chaff_count] */
-    int               chaff_count;
-    double            base_m;                      /* height of the ground at the reference, ENU */
-    Pool             *pool;
-    Arena            *arena;
+    SeekerRadar             *radar;
+    const RadarScene        *scene;
+    const RadarPreset       *preset;
+    const Visibility        *visibility;
+    RadarFrame              *frame;
+    double                   p_enu[3];                    /* of the antenna */
+    double                   right[3], down[3], ahead[3]; /* its axes, ENU */
+    double                   aim_m;                       /* range that the window is asked to be about */
+    double                   reference_m;                 /* middle of the range window now */
+    double                   reference_rate_mps;          /* of the aim: rates of echoes are against it */
+    double                   window_rate_mps;             /* at which the window's middle moves: that, or 0 */
+    double                   after_s;                     /* since the frame's time */
+    double                   sector_half_rad;             /* the beam will turn so far to both sides */
+    double                   sweep_m;                     /* and ranges will change by up to this */
+    double                   half_window_m;               /* of range */
+    double                   near_m, far_m;               /* ranges between which echoes can be in it, fold by fold */
+    double                   reach;                       /* RadarScene.reach */
+    double                   widest;                      /* sine off the axis beyond which entities are left out */
+    double                   air_np_m;                    /* power, one way, 1/m */
+    int                      missing;                     /* entities whose signatures are still to be made */
+    const struct ChaffCloud *chaff;                       /* [chaff_count] */
+    int                      chaff_count;
+    double                   base_m; /* height of the ground at the reference, ENU */
+    Pool                    *pool;
+    Arena                   *arena;
 } RadarShot;
 
 /* ---- shot_sight.c ---------------------------------------------------------------------------------- */
@@ -130,7 +130,7 @@ double shot_appears_m(const RadarShot *shot, const Sight *sight, double range_ra
 /* Amplitudes in the four channels of what is scattered (m, received h or v along the antenna's right and up by
  * transmitted) at a range and direction, through the air, and the foliage and chaff on the way. */
 void shot_amplitudes(double complex amplitude[interval_channels], const RadarShot *shot, const Sight *sight,
-                       const ScatterMatrix *s);
+                     const ScatterMatrix *s);
 
 /* Sine off the axis of the main lobe's null. */
 double shot_null(const RadarShot *shot);
@@ -149,12 +149,12 @@ Status shot_sees_centres(bool *seen, const RadarShot *shot, int entity, const do
 /* An entity at work. */
 typedef struct Target {
     const SnapshotEntity *entity;
-    int            index, model;            /* in the snapshot; in the radar's catalog */
-    const Model   *of;
-    double         p_enu[3], v_enu_mps[3], r_enu_from_body[9];
-    ScatterAntenna antenna;                 /* seen from it */
-    const NodePose *pose;                   /* [node_count], body axes, as in its list of hits */
-    double        *joint;
+    int                   index, model; /* in the snapshot; in the radar's catalog */
+    const Model          *of;
+    double                p_enu[3], v_enu_mps[3], r_enu_from_body[9];
+    ScatterAntenna        antenna; /* seen from it */
+    const NodePose       *pose;    /* [node_count], body axes, as in its list of hits */
+    double               *joint;
 } Target;
 /* Velocity of a point of a node, ENU: of the entity, its turning, and what spins and rolls on it. node -1: of none. */
 void shot_target_velocity(double v_enu_mps[3], const Target *target, int node, const double p_body[3]);
@@ -171,7 +171,7 @@ Status shot_ground(RadarShot *shot);
  * truth. With signatures missing it asks for its own alone. */
 Status shot_bounce(RadarShot *shot, const Target *target, const ScatterMatrix *direct, RadarTruth *truth);
 /* Rectangle in plan about what the main lobe lights within the window. */
-void   shot_lit_rectangle(double low_m[2], double high_m[2], const RadarShot *shot);
+void shot_lit_rectangle(double low_m[2], double high_m[2], const RadarShot *shot);
 
 /* ---- shot_volume.c --------------------------------------------------------------------------------- */
 
@@ -187,7 +187,7 @@ Status shot_rain(RadarShot *beam);
 /* ---- seeker_radar.c -------------------------------------------------------------------------------- */
 
 /* Makes a position of the beam: turned about the antenna's down axis to the right, after_s from the frame's time. */
-void   shot_position(RadarShot *out, const RadarShot *shot, double azimuth_rad, double after_s);
+void shot_position(RadarShot *out, const RadarShot *shot, double azimuth_rad, double after_s);
 /* Adds the echoes of all points, and of the rain in this position, to the radar's grid; sum_alone: to its sum channel
  * only. In the order of the points, for any number of threads. */
 Status shot_echoes(RadarShot *beam, bool sum_alone);

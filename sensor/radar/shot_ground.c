@@ -13,11 +13,11 @@ void shot_lit_rectangle(double low_m[2], double high_m[2], const RadarShot *shot
 {
     const double *p = shot->scene->view->p_enu, reach = shot->frame->reference_m,
                  lobe_rad = asin(fmin(shot->reach * shot_null(shot), 1));
-    const double  below_m = p[2] - shot->base_m;
-    const double  level = hypot(shot->ahead[0], shot->ahead[1]), azimuth = atan2(shot->ahead[1], shot->ahead[0]);
-    const double  turn = atan2(tan(fmin(shot->sector_half_rad, 1.5)), fmax(level, 0.05));
-    const double  wide = fmin(lobe_rad / fmax(level - lobe_rad, 0.05) + turn, pi_rad), margin_m = 50 + 0.02 * reach;
-    const double  range_m[2] = {shot->near_m, shot->far_m};
+    const double below_m = p[2] - shot->base_m;
+    const double level = hypot(shot->ahead[0], shot->ahead[1]), azimuth = atan2(shot->ahead[1], shot->ahead[0]);
+    const double turn = atan2(tan(fmin(shot->sector_half_rad, 1.5)), fmax(level, 0.05));
+    const double wide = fmin(lobe_rad / fmax(level - lobe_rad, 0.05) + turn, pi_rad), margin_m = 50 + 0.02 * reach;
+    const double range_m[2] = {shot->near_m, shot->far_m};
     low_m[0] = low_m[1] = INFINITY;
     high_m[0] = high_m[1] = -INFINITY;
     for (int end = 0; end < 2; end++) {
@@ -45,19 +45,19 @@ typedef struct Ground {
 } Ground;
 
 typedef struct GroundJob {
-    const RadarShot      *shot;
+    const RadarShot   *shot;
     const ClutterCell *cell;
     int                cells;
-    double             widest;     /* sine off the axis of the main lobe's null */
-    Ground            *ground;     /* [blocks] */
-    RadarPoint        *point;      /* [cells]: those of block b from b * block on */
-    int               *hidden;     /* [blocks] */
+    double             widest; /* sine off the axis of the main lobe's null */
+    Ground            *ground; /* [blocks] */
+    RadarPoint        *point;  /* [cells]: those of block b from b * block on */
+    int               *hidden; /* [blocks] */
 } GroundJob;
 
 /* Where the block's cells lie, those within beam and window alone. */
 static void place_block(Ground *g, const GroundJob *job, int first, int end)
 {
-    const RadarShot    *shot = job->shot;
+    const RadarShot *shot = job->shot;
     const Landscape *land = shot->scene->world->landscape;
     g->count = 0;
     for (int i = first; i < end; i++) {
@@ -115,11 +115,11 @@ static void scatter_block(void *user, int worker, int task)
 {
     static _Thread_local ClutterScatterer scatterer[block];
     static _Thread_local ScatterMatrix    matrix[block];
-    const GroundJob *job = user;
-    const RadarShot    *shot = job->shot;
-    const SeekerRadar *r = shot->radar;
-    Ground          *g = &job->ground[task];
-    const int        first = task * block, end = first + block < job->cells ? first + block : job->cells;
+    const GroundJob                      *job = user;
+    const RadarShot                      *shot = job->shot;
+    const SeekerRadar                    *r = shot->radar;
+    Ground                               *g = &job->ground[task];
+    const int first = task * block, end = first + block < job->cells ? first + block : job->cells;
     (void)worker;
     place_block(g, job, first, end);
     job->hidden[task] = 0;
@@ -130,7 +130,10 @@ static void scatter_block(void *user, int worker, int task)
     const ClutterKind kind = {&r->cells, &r->clutter, r->band};
     clutter_cache_draw(scatterer, r->drawn, &kind, g->count, g->cell, g->surface);
     const double       *p = shot->scene->view->p_enu;
-    const ClutterGround ground = {g->count, g->cell, g->surface, {g->p_enu[0], g->p_enu[1], g->p_enu[2]},
+    const ClutterGround ground = {g->count,
+                                  g->cell,
+                                  g->surface,
+                                  {g->p_enu[0], g->p_enu[1], g->p_enu[2]},
                                   {g->n_enu[0], g->n_enu[1], g->n_enu[2]}};
     const ClutterLook   look = {{p[0], p[1], p[2]}, shot->preset->wave.centre_hz, shot->scene->t_s, r->wind_mps};
     clutter_see(matrix, &r->cells, &r->clutter, scatterer, &ground, &look);
@@ -147,7 +150,8 @@ static void scatter_block(void *user, int worker, int task)
                                 shot->preset->wave.repeat_hz,
             .same = shot->preset->transmits_h ? matrix[i].hh : matrix[i].vv,
             .other = shot->preset->transmits_h ? matrix[i].vh : matrix[i].hv,
-            .share = 1, .widest = job->widest};
+            .share = 1,
+            .widest = job->widest};
     }
 }
 
@@ -156,7 +160,7 @@ Status shot_ground(RadarShot *shot)
     SeekerRadar  *r = shot->radar;
     const double *p = shot->scene->view->p_enu, widest = fmin(shot->reach * shot_null(shot), 1),
                  lobe_rad = asin(shot_null(shot));
-    double        low_m[2], high_m[2];
+    double low_m[2], high_m[2];
     shot_lit_rectangle(low_m, high_m, shot);
 
     /* sides of 1/128 of the beam's width, less where the resolution asks for it near by; coarser where that is too
@@ -167,14 +171,18 @@ Status shot_ground(RadarShot *shot)
     size_t       count;
     if (!cell) return STATUS_NO_MEMORY;
     while ((count = clutter_cells_at(cell, most, &r->cells, low_m, high_m, p, share)) > most) share *= sqrt(2);
-    const int    blocks = (int)((count + block - 1) / block);
-    GroundJob    job = {.shot = shot, .cell = cell, .cells = (int)count, .widest = widest,
-                        .ground = arena_alloc(shot->arena, (size_t)blocks + 1, sizeof *job.ground),
-                        .point = radar_points_room(&r->points, blocks * block + 1),
-                        .hidden = arena_alloc(shot->arena, (size_t)blocks + 1, sizeof *job.hidden)};
+    const int blocks = (int)((count + block - 1) / block);
+    GroundJob job = {.shot = shot,
+                     .cell = cell,
+                     .cells = (int)count,
+                     .widest = widest,
+                     .ground = arena_alloc(shot->arena, (size_t)blocks + 1, sizeof *job.ground),
+                     .point = radar_points_room(&r->points, blocks * block + 1),
+                     .hidden = arena_alloc(shot->arena, (size_t)blocks + 1, sizeof *job.hidden)};
     if (!job.ground || !job.point || !job.hidden) return STATUS_NO_MEMORY;
     if (shot->pool) pool_run(shot->pool, blocks, scatter_block, &job);
-    else for (int b = 0; b < blocks; b++) scatter_block(&job, 0, b);
+    else
+        for (int b = 0; b < blocks; b++) scatter_block(&job, 0, b);
     for (int b = 0; b < blocks; b++) {
         const size_t kept = (size_t)job.ground[b].count;
         memmove(r->points.point + r->points.count, job.point + (size_t)b * block, kept * sizeof *job.point);
@@ -188,13 +196,13 @@ Status shot_ground(RadarShot *shot)
 /* ---- entities by way of the ground: where it mirrors -------------------------------------------- */
 
 enum { steps = 4 };
-static const double near_ground = 2;   /* radii above the ground up to which its plane is that under the entity */
+static const double near_ground = 2; /* radii above the ground up to which its plane is that under the entity */
 static const double slack_m = 0.5, slack_height_m = 0.1; /* ground met so much before the reflection is its own */
 
 typedef struct Bounce {
-    double         p_ground_enu[3], n_enu[3];  /* a point of the plane, its normal */
+    double         p_ground_enu[3], n_enu[3]; /* a point of the plane, its normal */
     double         p_image_enu[3], v_image_enu_mps[3];
-    GroundPlane    plane;                      /* body axes */
+    GroundPlane    plane; /* body axes */
     ScatterAntenna image;
     GroundLeg      direct, by_ground;
 } Bounce;
@@ -259,7 +267,7 @@ static bool reflection_is_seen(const RadarShot *shot, const Target *t, const Bou
 /* One way between the antenna and a place: length, its growth, and the antenna's gain in its direction. */
 typedef struct Way {
     double      range_m, rate_mps;
-    double      volume_np;  /* power lost in foliage and chaff; by the ground: as directly */
+    double      volume_np; /* power lost in foliage and chaff; by the ground: as directly */
     AntennaGain gain;
 } Way;
 
@@ -289,10 +297,10 @@ static Way way_by_ground(const RadarShot *shot, const Bounce *b, const double p_
 static void add_amplitudes(double complex amplitude[interval_channels], const RadarShot *shot, const Way *out,
                            const Way *back, const ScatterMatrix *s)
 {
-    const RadarPreset   *p = shot->preset;
-    const RadarLink link = {p->power_w, 1, 1, p->antenna.wavelength_m, sqrt(out->range_m * back->range_m), p->loss};
-    const double         lost_np = shot->air_np_m * (out->range_m + back->range_m) + out->volume_np + back->volume_np;
-    const double         unit = sqrt(radar_received_w(&link, 4 * pi_rad) * exp(-lost_np));
+    const RadarPreset *p = shot->preset;
+    const RadarLink    link = {p->power_w, 1, 1, p->antenna.wavelength_m, sqrt(out->range_m * back->range_m), p->loss};
+    const double       lost_np = shot->air_np_m * (out->range_m + back->range_m) + out->volume_np + back->volume_np;
+    const double       unit = sqrt(radar_received_w(&link, 4 * pi_rad) * exp(-lost_np));
     const double complex same = unit * out->gain.sum * (p->transmits_h ? s->hh : s->vv);
     const double complex other = unit * out->gain.sum * (p->transmits_h ? s->vh : s->hv);
     amplitude[CHANNEL_SUM] += same * back->gain.sum;
@@ -304,10 +312,10 @@ static void add_amplitudes(double complex amplitude[interval_channels], const Ra
 /* Of the centres at hand, by the ground one way and (once) the other way round, or both ways. */
 static Status add_echoes(RadarShot *shot, const Target *t, const Bounce *b, const RadarTruth *truth, bool once)
 {
-    SeekerRadar  *r = shot->radar;
-    const int     count = r->centres.count;
-    const double  pulse_s = 1 / shot->preset->wave.repeat_hz;
-    Echo         *echo = arena_alloc(shot->arena, (size_t)count + 1, sizeof *echo);
+    SeekerRadar *r = shot->radar;
+    const int    count = r->centres.count;
+    const double pulse_s = 1 / shot->preset->wave.repeat_hz;
+    Echo        *echo = arena_alloc(shot->arena, (size_t)count + 1, sizeof *echo);
     if (!echo) return STATUS_NO_MEMORY;
     for (int i = 0; i < count; i++) {
         const ScatterCentre *c = &r->centres.centre[i];
@@ -339,9 +347,9 @@ static void areas(double m2[3], const ScatterMatrix *s)
 static void add_truth(RadarTruth *truth, const RadarShot *shot, const Bounce *b, const GroundFields *s)
 {
     static const ScatterMatrix none;
-    const double  k = 2 * pi_rad / shot->preset->antenna.wavelength_m;
-    const int     sent = shot->preset->transmits_h ? 0 : 1;
-    ScatterMatrix sum;
+    const double               k = 2 * pi_rad / shot->preset->antenna.wavelength_m;
+    const int                  sent = shot->preset->transmits_h ? 0 : 1;
+    ScatterMatrix              sum;
     ground_sum(&sum, s, &b->direct, &b->by_ground, k);
     areas(truth->bounce.rcs_m2, &sum);
     ground_sum(&sum, &(GroundFields){none, s->once, none}, &b->direct, &b->by_ground, k);
@@ -365,9 +373,9 @@ Status shot_bounce(RadarShot *shot, const Target *t, const ScatterMatrix *direct
     v3_add(b.p_image_enu, b.p_image_enu, t->p_enu);
     v3_add_scaled(b.v_image_enu_mps, shot->scene->v_enu_mps, -2 * v3_dot(shot->scene->v_enu_mps, b.n_enu), b.n_enu);
     for (int twice = 0; twice < 2; twice++) {
-        const SignatureLook  look = {.tx = twice ? b.image : t->antenna, .rx = b.image, .image = {twice, true},
-                                     .plane = b.plane};
-        const Signature     *signature;
+        const SignatureLook look = {
+            .tx = twice ? b.image : t->antenna, .rx = b.image, .image = {twice, true}, .plane = b.plane};
+        const Signature *signature;
         Status status = signatures_find(&signature, r->signatures, t->model, t->joint, snapshot_damage(t->entity),
                                         &look, shot->pool);
         if (status != STATUS_OK) return status;

@@ -3,13 +3,13 @@
 #include "sensor/radar/seeker_radar_private.h"
 
 typedef struct SectorWork {
-    RadarShot    *shot;
-    RadarSector  *sector;
-    RadarShot    *beam;             /* [positions] */
-    double       *weight;           /* [pulses]: Doppler window, over its sum */
-    double        width_bins;       /* of that window at half power */
-    double        beamwidth_rad;    /* one way */
-    double        metre_per_column;
+    RadarShot   *shot;
+    RadarSector *sector;
+    RadarShot   *beam;          /* [positions] */
+    double      *weight;        /* [pulses]: Doppler window, over its sum */
+    double       width_bins;    /* of that window at half power */
+    double       beamwidth_rad; /* one way */
+    double       metre_per_column;
 } SectorWork;
 
 /* What the sector has for a place that is at p_enu at the frame's time and moves evenly. */
@@ -26,7 +26,7 @@ enum { cells_a_resolution = 3, finer_most = 64 };
 static int column_of(Sight *sight, const SectorWork *w, int position, const double p_enu[3], const double v_enu_mps[3])
 {
     const RadarShot *beam = &w->beam[position];
-    double        p[3];
+    double           p[3];
     v3_add_scaled(p, p_enu, beam->after_s, v_enu_mps);
     shot_sight(sight, beam, p, 0);
     const double appears_m = shot_appears_m(beam, sight, shot_range_rate(beam, sight, v_enu_mps));
@@ -38,9 +38,9 @@ static int column_of(Sight *sight, const SectorWork *w, int position, const doub
 static bool real_beam(double *power_w, const SectorWork *w, double x, const double p_enu[3], const double v_enu_mps[3])
 {
     const RadarSector *s = w->sector;
-    const int        last = s->plan.positions - 1, base = (int)clamp(floor(x), 0, last > 0 ? last - 1 : 0);
-    const double     f = clamp(x - base, 0, 1);
-    double           ln[4];
+    const int          last = s->plan.positions - 1, base = (int)clamp(floor(x), 0, last > 0 ? last - 1 : 0);
+    const double       f = clamp(x - base, 0, 1);
+    double             ln[4];
     for (int k = 0; k < 4; k++) {
         Sight     sight;
         const int i = base - 1 + k < 0 ? 0 : base - 1 + k > last ? last : base - 1 + k;
@@ -59,10 +59,10 @@ static bool real_beam(double *power_w, const SectorWork *w, double x, const doub
 static double position_of(const SectorWork *w, const double p_enu[3], const double v_enu_mps[3])
 {
     enum { steps = 8 };
-    const RadarShot   *shot = w->shot;
+    const RadarShot  *shot = w->shot;
     const SectorPlan *plan = &w->sector->plan;
-    const double    middle = plan->positions / 2;
-    double          x = middle;
+    const double      middle = plan->positions / 2;
+    double            x = middle;
     if (plan->positions == 1) return 0;
     for (int i = 0; i < steps; i++) {
         const double t_s = (clamp(x, 0, plan->positions - 1) - middle) * plan->interval_s;
@@ -90,10 +90,10 @@ static double rate_slope(const RadarShot *shot, const double d_enu[3], double tu
 /* Resolution in azimuth by Doppler; INFINITY: it does not sharpen here. */
 static double sharp_rad(const SectorWork *w, const double d_enu[3])
 {
-    const RadarShot   *shot = w->shot;
-    const Waveform *wave = &shot->preset->wave;
-    const double    lambda_m = shot->preset->antenna.wavelength_m, lobe = w->beamwidth_rad;
-    const double    slope = rate_slope(shot, d_enu, 0);
+    const RadarShot *shot = w->shot;
+    const Waveform  *wave = &shot->preset->wave;
+    const double     lambda_m = shot->preset->antenna.wavelength_m, lobe = w->beamwidth_rad;
+    const double     slope = rate_slope(shot, d_enu, 0);
     if (!(slope * rate_slope(shot, d_enu, lobe) > 0 && slope * rate_slope(shot, d_enu, -lobe) > 0)) return INFINITY;
     if (2 * lobe * fabs(slope) > 0.5 * lambda_m * wave->repeat_hz) return INFINITY;
     const double width = w->width_bins * lambda_m * wave->repeat_hz / (2 * wave->pulses * fabs(slope));
@@ -103,15 +103,15 @@ static double sharp_rad(const SectorWork *w, const double d_enu[3])
 /* A position's pulses summed for still ground in a direction. */
 static double sum_power(const SectorWork *w, int position, int column, const Sight *sight)
 {
-    static const double still[3] = {0, 0, 0};
-    const RadarShot   *beam = &w->beam[position];
-    const Waveform *wave = &beam->preset->wave;
-    const size_t    row = (size_t)wave->samples;
+    static const double   still[3] = {0, 0, 0};
+    const RadarShot      *beam = &w->beam[position];
+    const Waveform       *wave = &beam->preset->wave;
+    const size_t          row = (size_t)wave->samples;
     const double complex *pulse = beam->radar->sector_pulse + (size_t)position * row * (size_t)wave->pulses + column;
-    const double    rate_mps = shot_range_rate(beam, sight, still) - beam->frame->reference_rate_mps;
-    const double    phase = 2 * pi_rad / beam->preset->antenna.wavelength_m * (2 * rate_mps / wave->repeat_hz);
-    const double complex turn = cexp(I * phase);
-    double complex  sum = 0, back = 1;
+    const double          rate_mps = shot_range_rate(beam, sight, still) - beam->frame->reference_rate_mps;
+    const double          phase = 2 * pi_rad / beam->preset->antenna.wavelength_m * (2 * rate_mps / wave->repeat_hz);
+    const double complex  turn = cexp(I * phase);
+    double complex        sum = 0, back = 1;
     for (int n = 0; n < wave->pulses; n++) {
         sum += w->weight[n] * pulse[(size_t)n * row] * back;
         back *= turn;
@@ -124,9 +124,9 @@ static double sum_power(const SectorWork *w, int position, int column, const Sig
 /* False: out of sector or window. */
 static bool look_at(SectorLook *out, const SectorWork *w, const double p_enu[3], const double v_enu_mps[3])
 {
-    const RadarShot    *shot = w->shot;
+    const RadarShot   *shot = w->shot;
     const RadarSector *s = w->sector;
-    double           to[3];
+    double             to[3];
     v3_sub(to, p_enu, shot->p_enu);
     const double range_m = v3_length(to), x = position_of(w, p_enu, v_enu_mps);
     if (!(x >= -0.5 && x <= s->plan.positions - 0.5)) return false;
@@ -163,8 +163,8 @@ static void level_place(double p_enu[3], const RadarShot *shot, double azimuth_r
 
 static void sharpen_azimuth(void *user, int worker, int task)
 {
-    const SectorWork     *w = user;
-    RadarSector          *s = w->sector;
+    const SectorWork   *w = user;
+    RadarSector        *s = w->sector;
     static const double still[3] = {0, 0, 0};
     const double        azimuth = task * s->azimuth_step_rad - (s->plan.positions / 2) * s->plan.step_rad;
     (void)worker;
@@ -172,7 +172,7 @@ static void sharpen_azimuth(void *user, int worker, int task)
         const size_t at = (size_t)task * (size_t)s->columns + (size_t)x;
         const double range_m = w->shot->frame->reference_m + (x - s->columns / 2) * w->metre_per_column;
         double       p[3];
-        SectorLook     look;
+        SectorLook   look;
         s->sharp_w[at] = NAN;
         s->resolution_m[at] = NAN;
         s->sharpened[at] = 0;
@@ -189,7 +189,7 @@ static void sharpen_azimuth(void *user, int worker, int task)
 static int finer(const SectorWork *w)
 {
     const RadarSector *s = w->sector;
-    double           finest = s->beam_rad;
+    double             finest = s->beam_rad;
     for (int i = 0; i < s->plan.positions; i++) {
         double p[3], d[3];
         level_place(p, w->shot, (i - s->plan.positions / 2) * s->plan.step_rad, w->shot->frame->reference_m);
@@ -204,7 +204,7 @@ static int finer(const SectorWork *w)
 /* The sharpened picture: the arrays of the sector. */
 static Status sharpen(SectorWork *w)
 {
-    RadarSector   *s = w->sector;
+    RadarSector *s = w->sector;
     Arena       *arena = w->shot->arena;
     const int    steps = finer(w);
     s->azimuths = (s->plan.positions - 1) * steps + 1;
@@ -215,7 +215,8 @@ static Status sharpen(SectorWork *w)
     s->sharpened = arena_alloc(arena, cells, sizeof *s->sharpened);
     if (!s->sharp_w || !s->resolution_m || !s->sharpened) return STATUS_NO_MEMORY;
     if (w->shot->pool) pool_run(w->shot->pool, s->azimuths, sharpen_azimuth, w);
-    else for (int a = 0; a < s->azimuths; a++) sharpen_azimuth(w, 0, a);
+    else
+        for (int a = 0; a < s->azimuths; a++) sharpen_azimuth(w, 0, a);
     size_t count = 0;
     for (size_t i = 0; i < cells; i++) count += s->sharpened[i];
     s->sharpened_share = (double)count / (double)cells;
@@ -226,15 +227,15 @@ static Status sharpen(SectorWork *w)
 
 static void look_row(void *user, int worker, int y)
 {
-    const SectorWork   *w = user;
+    const SectorWork *w = user;
     const RadarScene *scene = w->shot->scene;
     const LocalFrame *frame = &scene->world->frame;
-    RadarSector        *s = w->sector;
+    RadarSector      *s = w->sector;
     (void)worker;
     for (int x = 0; x < s->width; x++) {
-        const size_t at = (size_t)y * (size_t)s->width + (size_t)x;
+        const size_t   at = (size_t)y * (size_t)s->width + (size_t)x;
         const uint32_t entity = scene->entity ? scene->entity[at] : 0;
-        double       d[3], p[3], v[3] = {0, 0, 0};
+        double         d[3], p[3], v[3] = {0, 0, 0};
         SectorLook     look = {0};
         s->view_w[at] = s->view_sharp_w[at] = NAN;
         if (!isfinite(scene->range_m[at])) continue;
@@ -249,7 +250,7 @@ static void look_row(void *user, int worker, int y)
 
 static Status look_at_pixels(SectorWork *w)
 {
-    RadarSector   *s = w->sector;
+    RadarSector *s = w->sector;
     const View  *view = w->shot->scene->view;
     const size_t pixels = (size_t)view->width * (size_t)view->height;
     s->width = view->width;
@@ -258,7 +259,8 @@ static Status look_at_pixels(SectorWork *w)
     s->view_sharp_w = arena_alloc(w->shot->arena, pixels, sizeof *s->view_sharp_w);
     if (!s->view_w || !s->view_sharp_w) return STATUS_NO_MEMORY;
     if (w->shot->pool) pool_run(w->shot->pool, s->height, look_row, w);
-    else for (int y = 0; y < s->height; y++) look_row(w, 0, y);
+    else
+        for (int y = 0; y < s->height; y++) look_row(w, 0, y);
     return STATUS_OK;
 }
 
@@ -279,12 +281,12 @@ static void keep_position(SectorWork *w, const Interval *interval, int i)
 
 static Status measure_positions(SectorWork *w, Interval *middle)
 {
-    RadarShot         *shot = w->shot;
+    RadarShot        *shot = w->shot;
     const SectorPlan *plan = &w->sector->plan;
-    const Waveform *wave = &middle->wave;
-    SeekerRadar    *r = shot->radar;
-    Interval        interval = {.wave = *wave};
-    ReceiverReport  report;
+    const Waveform   *wave = &middle->wave;
+    SeekerRadar      *r = shot->radar;
+    Interval          interval = {.wave = *wave};
+    ReceiverReport    report;
     keep_position(w, middle, plan->positions / 2);
     interval.sample = middle->sample; /* not needed any more */
     for (int i = 0; i < plan->positions; i++) {
@@ -298,7 +300,7 @@ static Status measure_positions(SectorWork *w, Interval *middle)
         if (status != STATUS_OK || shot->missing > 0) return status;
         echo_sum(interval.sample, r->echoes);
         interval_receive(&report, &interval, &shot->preset->receiver, r->seed, stream_scan + 2u * (uint32_t)i,
-                       shot->scene->number);
+                         shot->scene->number);
         keep_position(w, &interval, i);
     }
     return STATUS_OK;
@@ -320,8 +322,8 @@ static Status know_windows(SectorWork *w)
     if (status != STATUS_OK) return status;
     for (int i = 0; i < samples; i++) sum += range[i], squares += range[i] * range[i];
     w->sector->noise_w = interval_receiver_noise_w(&p->receiver, &p->wave) * squares / (sum * sum);
-    w->sector->sharp_noise_w = interval_receiver_noise_w(&p->receiver, &p->wave) *
-                               interval_noise_share(w->shot->radar->plan);
+    w->sector->sharp_noise_w =
+        interval_receiver_noise_w(&p->receiver, &p->wave) * interval_noise_share(w->shot->radar->plan);
     sum = 0;
     for (int i = 0; i < pulses; i++) sum += w->weight[i];
     for (int i = 0; i < pulses; i++) w->weight[i] /= sum;
@@ -332,16 +334,18 @@ static Status know_windows(SectorWork *w)
 Status shot_sector(RadarShot *shot, Interval *middle)
 {
     const RadarPreset *p = shot->preset;
-    const SectorPlan     plan = shot->radar->sector;
+    const SectorPlan   plan = shot->radar->sector;
     RadarSector       *sector = arena_alloc(shot->arena, 1, sizeof *sector);
-    SectorWork           w = {.shot = shot, .sector = sector, .beamwidth_rad = antenna_width_rad(&p->antenna),
+    SectorWork         w = {.shot = shot,
+                            .sector = sector,
+                            .beamwidth_rad = antenna_width_rad(&p->antenna),
                             .metre_per_column = shot->frame->map.metre_per_column};
     w.beam = arena_alloc(shot->arena, (size_t)plan.positions, sizeof *w.beam);
     if (!sector || !w.beam) return STATUS_NO_MEMORY;
-    *sector = (RadarSector){.plan = plan, .columns = p->wave.samples,
-                            .beam_rad = antenna_two_way_width_rad(&p->antenna)};
-    sector->power_w = arena_alloc(shot->arena, (size_t)plan.positions * (size_t)sector->columns,
-                                  sizeof *sector->power_w);
+    *sector =
+        (RadarSector){.plan = plan, .columns = p->wave.samples, .beam_rad = antenna_two_way_width_rad(&p->antenna)};
+    sector->power_w =
+        arena_alloc(shot->arena, (size_t)plan.positions * (size_t)sector->columns, sizeof *sector->power_w);
     if (!sector->power_w) return STATUS_NO_MEMORY;
     Status status = know_windows(&w);
     if (status == STATUS_OK) status = measure_positions(&w, middle);

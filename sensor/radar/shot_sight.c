@@ -41,13 +41,13 @@ double shot_appears_m(const RadarShot *shot, const Sight *sight, double range_ra
 }
 
 void shot_amplitudes(double complex amplitude[interval_channels], const RadarShot *shot, const Sight *sight,
-                       const ScatterMatrix *s)
+                     const ScatterMatrix *s)
 {
-    const RadarPreset   *p = shot->preset;
-    const AntennaGain    gain = antenna_gain(&p->antenna, sight->cos_right, sight->cos_down);
-    const RadarLink      link = {p->power_w, 1, 1, p->antenna.wavelength_m, sight->range_m, p->loss};
-    const double         through_np = shot->air_np_m * sight->range_m + shot_volume_np(shot, sight);
-    const double unit =
+    const RadarPreset *p = shot->preset;
+    const AntennaGain  gain = antenna_gain(&p->antenna, sight->cos_right, sight->cos_down);
+    const RadarLink    link = {p->power_w, 1, 1, p->antenna.wavelength_m, sight->range_m, p->loss};
+    const double       through_np = shot->air_np_m * sight->range_m + shot_volume_np(shot, sight);
+    const double       unit =
         sqrt(radar_received_w(&link, 4 * pi_rad) * exp(-2 * through_np)) * waveform_share(&p->wave, sight->range_m);
     const double complex same = unit * gain.sum * (p->transmits_h ? s->hh : s->vv);
     const double complex other = unit * gain.sum * (p->transmits_h ? s->vh : s->hv);
@@ -66,7 +66,7 @@ double shot_null(const RadarShot *shot)
 /* ---- what stands before places -------------------------------------------------------------------- */
 
 void shot_hidden(bool *hidden, const RadarShot *shot, const double from_enu[3], const Sight *sight,
-                   const double *slack_m, int count, int own)
+                 const double *slack_m, int count, int own)
 {
     static _Thread_local Rays rays;
     static _Thread_local Hits hits;
@@ -97,9 +97,9 @@ static const double least_side_m = 0.05;
 /* Cells of centres, each with one sight line. */
 typedef struct Lines {
     const RadarShot *shot;
-    int           entity, count;
-    double      (*p_enu)[3];  /* [count] the ends of the sight lines */
-    bool         *hidden;     /* [count] */
+    int              entity, count;
+    double (*p_enu)[3]; /* [count] the ends of the sight lines */
+    bool *hidden;       /* [count] */
 } Lines;
 
 static void look_along(void *user, int worker, int task)
@@ -108,7 +108,7 @@ static void look_along(void *user, int worker, int task)
     const Lines        *l = user;
     const double       *p = l->shot->scene->view->p_enu;
     const int first = task * block_rays, left = l->count - first, count = left < block_rays ? left : block_rays;
-    Sight               sight[block_rays];
+    Sight     sight[block_rays];
     (void)worker;
     for (int i = 0; i < count; i++) {
         v3_sub(sight[i].d_enu, l->p_enu[first + i], p);
@@ -149,13 +149,15 @@ static int make_cells(int *of, double (*middle)[3], double *weight, int32_t *gri
 }
 
 Status shot_sees_centres(bool *seen, const RadarShot *shot, int entity, const double p_enu[3],
-                           const double r_enu_from_body[9], const Centres *centres)
+                         const double r_enu_from_body[9], const Centres *centres)
 {
     const size_t n = (size_t)centres->count + 1;
     int         *of = arena_alloc(shot->arena, n, sizeof *of);
     int32_t     *grid = arena_alloc(shot->arena, most_cells, sizeof *grid);
     double      *weight = arena_alloc(shot->arena, n, sizeof *weight);
-    Lines        lines = {.shot = shot, .entity = entity, .p_enu = arena_alloc(shot->arena, n, sizeof *lines.p_enu),
+    Lines        lines = {.shot = shot,
+                          .entity = entity,
+                          .p_enu = arena_alloc(shot->arena, n, sizeof *lines.p_enu),
                           .hidden = arena_alloc(shot->arena, n, sizeof *lines.hidden)};
     if (!of || !grid || !weight || !lines.p_enu || !lines.hidden) return STATUS_NO_MEMORY;
     if (centres->count == 0) return STATUS_OK;
@@ -168,7 +170,8 @@ Status shot_sees_centres(bool *seen, const RadarShot *shot, int entity, const do
     }
     const int tasks = (lines.count + block_rays - 1) / block_rays;
     if (shot->pool) pool_run(shot->pool, tasks, look_along, &lines);
-    else for (int t = 0; t < tasks; t++) look_along(&lines, 0, t);
+    else
+        for (int t = 0; t < tasks; t++) look_along(&lines, 0, t);
     for (int i = 0; i < centres->count; i++) seen[i] = !lines.hidden[of[i]];
     return STATUS_OK;
 }

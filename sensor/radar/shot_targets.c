@@ -18,7 +18,7 @@ enum { axes = 4, worth = 2 };
 static const double step_rad[axes] = {0.4, 0.4, 0.25, 0.25}, together_rad = 0.1;
 
 typedef struct Axis {
-    double low, high, scale;    /* rad of phase, or u, over its unit */
+    double low, high, scale; /* rad of phase, or u, over its unit */
     int    nodes;
 } Axis;
 
@@ -90,8 +90,8 @@ static void share_out(RadarPoint *node, const double *lost_np, const Axis axis[a
         }
     }
     for (int corner = 0; corner < 1 << axes; corner++) {
-        double   size = 1;
-        size_t   i = first;
+        double size = 1;
+        size_t i = first;
         for (int a = 0; a < axes; a++) {
             size *= weight[a][corner >> a & 1];
             i += (corner >> a & 1 && axis[a].nodes > 1) ? stride[a] : 0;
@@ -195,8 +195,8 @@ void shot_target_velocity(double v_enu[3], const Target *t, int node, const doub
 
 /* A centre as the antenna sees it, turned to its axes. */
 typedef struct CentreView {
-    double complex same, other;  /* received as transmitted, and in the other polarisation */
-    double complex wave;         /* exp(-j k path) */
+    double complex same, other; /* received as transmitted, and in the other polarisation */
+    double complex wave;        /* exp(-j k path) */
     double         hh_m2, vv_m2;
 } CentreView;
 
@@ -231,15 +231,15 @@ static void add_error(RadarTruth *truth, const Centres *centres, const double co
 typedef struct CentreJob {
     const RadarShot     *shot;
     const Target        *target;
-    const Sight         *sight;        /* of the target's origin */
-    const ScatterCentre *centre;       /* [count] */
-    CentreView          *view;         /* [count] */
-    const int           *shown;        /* [points]: the centres in sight */
-    RadarPoint          *point;        /* [points] */
-    bool                *spins;        /* [points] */
-    double             (*x)[axes];
-    double               h_enu[3], v_enu[3];
-    int                  count, points;
+    const Sight         *sight;  /* of the target's origin */
+    const ScatterCentre *centre; /* [count] */
+    CentreView          *view;   /* [count] */
+    const int           *shown;  /* [points]: the centres in sight */
+    RadarPoint          *point;  /* [points] */
+    bool                *spins;  /* [points] */
+    double (*x)[axes];
+    double h_enu[3], v_enu[3];
+    int    count, points;
 } CentreJob;
 
 /* field: of the target, in the body's bases. */
@@ -248,8 +248,8 @@ static void add_truth(RadarTruth *truth, ScatterMatrix *field, const CentreJob *
     const RadarShot  *shot = job->shot;
     const Centres    *centres = &shot->radar->centres;
     const CentreView *view = job->view;
-    ScatterMatrix in_sight = {0};
-    double        power = 0, seen_power = 0;
+    ScatterMatrix     in_sight = {0};
+    double            power = 0, seen_power = 0;
     *field = (ScatterMatrix){0};
     for (int i = 0; i < centres->count; i++) {
         const ScatterCentre *c = &centres->centre[i];
@@ -273,9 +273,8 @@ static void add_truth(RadarTruth *truth, ScatterMatrix *field, const CentreJob *
     const RadarPreset *preset = shot->preset;
     double complex     amplitude[interval_channels];
     shot_amplitudes(amplitude, shot, job->sight, &in_sight);
-    truth->snr = scatter_power(amplitude[CHANNEL_SUM]) /
-                 (interval_receiver_noise_w(&preset->receiver, &preset->wave) *
-                  interval_noise_share(shot->radar->plan));
+    truth->snr = scatter_power(amplitude[CHANNEL_SUM]) / (interval_receiver_noise_w(&preset->receiver, &preset->wave) *
+                                                          interval_noise_share(shot->radar->plan));
     truth->range_rate_mps = shot_range_rate(shot, job->sight, job->target->v_enu_mps);
     truth->appears_m = shot_appears_m(shot, job->sight, truth->range_rate_mps);
 }
@@ -304,7 +303,7 @@ enum { block_centres = 512 };
 static void view_block(void *user, int worker, int task)
 {
     const CentreJob *job = user;
-    const RadarShot    *shot = job->shot;
+    const RadarShot *shot = job->shot;
     const double     k = 2 * pi_rad / shot->preset->antenna.wavelength_m;
     const int        end = (task + 1) * block_centres < job->count ? (task + 1) * block_centres : job->count;
     (void)worker;
@@ -321,12 +320,12 @@ static void view_block(void *user, int worker, int task)
 static void point_block(void *user, int worker, int task)
 {
     const CentreJob *job = user;
-    const RadarShot    *shot = job->shot;
+    const RadarShot *shot = job->shot;
     const Target    *t = job->target;
     const double     pulse_s = 1 / shot->preset->wave.repeat_hz, room_m = 2 * t->of->radius_m;
     double           ahead_mps[3];
     m3_tmul_v3(ahead_mps, t->r_enu_from_body, t->v_enu_mps);
-    const int        end = (task + 1) * block_centres < job->points ? (task + 1) * block_centres : job->points;
+    const int end = (task + 1) * block_centres < job->points ? (task + 1) * block_centres : job->points;
     (void)worker;
     for (int i = task * block_centres; i < end; i++) {
         const ScatterCentre *c = &job->centre[job->shown[i]];
@@ -346,8 +345,7 @@ static void point_block(void *user, int worker, int task)
         q->widest = shot->widest + room_m / job->sight->range_m;
         q->room_m = room_m;
         q->own = shot->after_s != 0;
-        memcpy(job->x[i], (double[axes]){q->path_m, q->path_per_pulse_m, to.cos_right, to.cos_down},
-               sizeof job->x[i]);
+        memcpy(job->x[i], (double[axes]){q->path_m, q->path_per_pulse_m, to.cos_right, to.cos_down}, sizeof job->x[i]);
     }
 }
 
@@ -355,7 +353,8 @@ static void in_blocks(CentreJob *job, int count, void (*block)(void *user, int w
 {
     const int blocks = (count + block_centres - 1) / block_centres;
     if (job->shot->pool) pool_run(job->shot->pool, blocks, block, job);
-    else for (int b = 0; b < blocks; b++) block(job, 0, b);
+    else
+        for (int b = 0; b < blocks; b++) block(job, 0, b);
 }
 
 static Status add_target(RadarShot *shot, Target *t, const Sight *sight, RadarTruth *truth)
@@ -364,8 +363,8 @@ static Status add_target(RadarShot *shot, Target *t, const Sight *sight, RadarTr
     ScatterMatrix field;
     bool          found;
     radar_antenna(&t->antenna, shot->p_enu, t->p_enu, t->r_enu_from_body);
-    *truth = (RadarTruth){.entity = t->index, .range_m = sight->range_m, .cos_right = sight->cos_right,
-                          .cos_down = sight->cos_down};
+    *truth = (RadarTruth){
+        .entity = t->index, .range_m = sight->range_m, .cos_right = sight->cos_right, .cos_down = sight->cos_down};
     Status status = find_centres(&found, shot, t, truth);
     if (status != STATUS_OK) return status;
     if (!found) shot->missing++;
@@ -374,16 +373,16 @@ static Status add_target(RadarShot *shot, Target *t, const Sight *sight, RadarTr
     const size_t n = (size_t)r->centres.count + 1;
     bool        *seen = arena_alloc(shot->arena, n, sizeof *seen);
     int         *shown = arena_alloc(shot->arena, n, sizeof *shown);
-    CentreJob job = {.shot = shot,
-                     .target = t,
-                     .sight = sight,
-                     .centre = r->centres.centre,
-                     .count = r->centres.count,
-                     .view = arena_alloc(shot->arena, n, sizeof *job.view),
-                     .shown = shown,
-                     .point = radar_points_room(&r->points, (int)n),
-                     .spins = arena_alloc(shot->arena, n, sizeof *job.spins),
-                     .x = arena_alloc(shot->arena, n, sizeof *job.x)};
+    CentreJob    job = {.shot = shot,
+                        .target = t,
+                        .sight = sight,
+                        .centre = r->centres.centre,
+                        .count = r->centres.count,
+                        .view = arena_alloc(shot->arena, n, sizeof *job.view),
+                        .shown = shown,
+                        .point = radar_points_room(&r->points, (int)n),
+                        .spins = arena_alloc(shot->arena, n, sizeof *job.spins),
+                        .x = arena_alloc(shot->arena, n, sizeof *job.x)};
     if (!seen || !shown || !job.view || !job.point || !job.spins || !job.x) return STATUS_NO_MEMORY;
     status = shot_sees_centres(seen, shot, t->index, t->p_enu, t->r_enu_from_body, &r->centres);
     if (status != STATUS_OK) return status;

@@ -7,9 +7,9 @@
 #include "render/scattering/clutter/volume_scatter.h"
 
 typedef struct VolumePoint {
-    Sight         sight;        /* from the antenna of the RadarShot */
-    ScatterMatrix s;            /* m */
-    bool          turns;        /* s is in the horizontal's basis (scatter.h): to be turned to the antenna's */
+    Sight         sight; /* from the antenna of the RadarShot */
+    ScatterMatrix s;     /* m */
+    bool          turns; /* s is in the horizontal's basis (scatter.h): to be turned to the antenna's */
     double        v_enu_mps[3];
 } VolumePoint;
 
@@ -64,8 +64,8 @@ static void place_point(RadarPoint *q, const RadarShot *shot, const VolumePoint 
 static int keep_seen(RadarPoint *out, VolumePoint *point, int count, const RadarShot *shot, double slack_m,
                      double widest)
 {
-    static _Thread_local Sight sight[hits_capacity];
-    static _Thread_local bool  hidden[hits_capacity];
+    static _Thread_local Sight  sight[hits_capacity];
+    static _Thread_local bool   hidden[hits_capacity];
     static _Thread_local double slacks_m[hits_capacity];
     for (int i = 0; i < count; i++) {
         sight[i] = point[i].sight;
@@ -90,11 +90,11 @@ typedef int (*VolumeMake)(RadarPoint *out, const RadarShot *shot, void *user, in
 
 typedef struct VolumeJob {
     const RadarShot *shot;
-    VolumeMake    make;
-    void         *user;
-    int           each;
-    RadarPoint   *point; /* [tasks * each] */
-    int          *kept; /* [tasks] */
+    VolumeMake       make;
+    void            *user;
+    int              each;
+    RadarPoint      *point; /* [tasks * each] */
+    int             *kept;  /* [tasks] */
 } VolumeJob;
 
 static void volume_task(void *user, int worker, int task)
@@ -106,12 +106,16 @@ static void volume_task(void *user, int worker, int task)
 
 static Status add_points(RadarShot *shot, int tasks, int each, VolumeMake make, void *user)
 {
-    VolumeJob job = {.shot = shot, .each = each, .make = make, .user = user,
+    VolumeJob job = {.shot = shot,
+                     .each = each,
+                     .make = make,
+                     .user = user,
                      .point = radar_points_room(&shot->radar->points, tasks * each + 1),
                      .kept = arena_alloc(shot->arena, (size_t)tasks + 1, sizeof *job.kept)};
     if (!job.point || !job.kept) return STATUS_NO_MEMORY;
     if (shot->pool) pool_run(shot->pool, tasks, volume_task, &job);
-    else for (int t = 0; t < tasks; t++) volume_task(&job, 0, t);
+    else
+        for (int t = 0; t < tasks; t++) volume_task(&job, 0, t);
     RadarPoints *points = &shot->radar->points;
     for (int t = 0; t < tasks; t++) {
         memmove(points->point + points->count, job.point + (size_t)t * (size_t)each,
@@ -186,8 +190,8 @@ Status shot_rain(RadarShot *shot)
     rain->from_m = fmax(shot->near_m, nearest_m);
     rain->null = shot_null(shot);
     rain->key = interval_key(shot);
-    rain->slice_m = fmax(0.25 * light_mps / shot->preset->wave.bandwidth_hz,
-                         (shot->far_m - rain->from_m) / slices_most);
+    rain->slice_m =
+        fmax(0.25 * light_mps / shot->preset->wave.bandwidth_hz, (shot->far_m - rain->from_m) / slices_most);
     rain->slices = (int)ceil((shot->far_m - rain->from_m) / rain->slice_m - 1e-9);
     shot->frame->rain_1_m = rain->scatter.back_1_m;
     return add_points(shot, (rain->slices + slices_a_task - 1) / slices_a_task, hits_capacity, make_rain, rain);
@@ -209,16 +213,16 @@ typedef struct Canopy {
 static int make_crown(RadarPoint *out, const RadarShot *shot, void *user, int task)
 {
     static _Thread_local VolumePoint point[most_each];
-    const Canopy       *canopy = user;
-    const SeekerRadar  *r = shot->radar;
-    const uint32_t      index = (uint32_t)canopy->crown[task];
-    const FoliageCrown *crown = foliage_crown(r->foliage, (int)index);
-    const double       *origin = foliage_origin(r->foliage), *eye = shot->scene->view->p_enu;
-    const ClutterRow   *row = &r->clutter.row[crown->surface][r->band];
-    const double        across = (double)crown->across_m, up = (double)crown->up_m;
-    const double        sigma_m2 = clutter_foliage_volume(row) * 4 / 3.0 * pi_rad * across * across * up / canopy->each;
-    const ClutterLook   look = {{eye[0], eye[1], eye[2]}, shot->preset->wave.centre_hz, shot->scene->t_s, r->wind_mps};
-    int                 count = 0;
+    const Canopy                    *canopy = user;
+    const SeekerRadar               *r = shot->radar;
+    const uint32_t                   index = (uint32_t)canopy->crown[task];
+    const FoliageCrown              *crown = foliage_crown(r->foliage, (int)index);
+    const double                    *origin = foliage_origin(r->foliage), *eye = shot->scene->view->p_enu;
+    const ClutterRow                *row = &r->clutter.row[crown->surface][r->band];
+    const double                     across = (double)crown->across_m, up = (double)crown->up_m;
+    const double      sigma_m2 = clutter_foliage_volume(row) * 4 / 3.0 * pi_rad * across * across * up / canopy->each;
+    const ClutterLook look = {{eye[0], eye[1], eye[2]}, shot->preset->wave.centre_hz, shot->scene->t_s, r->wind_mps};
+    int               count = 0;
     for (int i = 0; i < canopy->each; i++) {
         VolumePoint *to = &point[count];
         double       u[3], p[3];
@@ -318,8 +322,8 @@ static double chaff_np(const RadarShot *shot, const Sight *sight)
     for (int i = 0; i < shot->chaff_count; i++) {
         double centre[3];
         v3_sub(centre, shot->chaff[i].p_enu, shot->p_enu);
-        column += chaff_column_1_m2(shot->chaff[i].dipoles, shot->chaff[i].radius_m, centre, sight->d_enu,
-                                    sight->range_m);
+        column +=
+            chaff_column_1_m2(shot->chaff[i].dipoles, shot->chaff[i].radius_m, centre, sight->d_enu, sight->range_m);
     }
     return column * chaff_taken * wavelength_m * wavelength_m;
 }
@@ -333,12 +337,12 @@ typedef struct ChaffJob {
 static int make_chaff(RadarPoint *out, const RadarShot *shot, void *user, int task)
 {
     static _Thread_local VolumePoint point[points_a_task];
-    const ChaffJob          *job = user;
-    const struct ChaffCloud *cloud = job->cloud;
-    const uint64_t           seed = shot->radar->seed;
-    const double             wavelength_m = shot->preset->antenna.wavelength_m;
-    const double             sigma_m2 = chaff_same * wavelength_m * wavelength_m * cloud->dipoles / job->points;
-    int                      count = 0;
+    const ChaffJob                  *job = user;
+    const struct ChaffCloud         *cloud = job->cloud;
+    const uint64_t                   seed = shot->radar->seed;
+    const double                     wavelength_m = shot->preset->antenna.wavelength_m;
+    const double                     sigma_m2 = chaff_same * wavelength_m * wavelength_m * cloud->dipoles / job->points;
+    int                              count = 0;
     for (int i = task * points_a_task; i < (task + 1) * points_a_task && i < job->points; i++) {
         VolumePoint *to = &point[count];
         double       n[13], p[3];

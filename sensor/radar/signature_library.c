@@ -17,14 +17,14 @@ enum { head_octets = 96, hash_octets = sha256_text_size - 1, most_centres = 1 <<
 static const char magic[] = "PVSIGN1\n";
 
 struct SignatureLibrary {
-    char              folder[3900];
-    SignaturesConfig  config;
-    char              settings[sha256_text_size]; /* of config and materials */
-    pthread_mutex_t   lock;                       /* protects the following */
-    const Model      *model[models_known];
-    char              content[models_known][sha256_text_size];
-    int               models;
-    bool              told;
+    char                     folder[3900];
+    SignaturesConfig         config;
+    char                     settings[sha256_text_size]; /* of config and materials */
+    pthread_mutex_t          lock;                       /* protects the following */
+    const Model             *model[models_known];
+    char                     content[models_known][sha256_text_size];
+    int                      models;
+    bool                     told;
     SignatureLibraryCounters counters;
 };
 
@@ -102,8 +102,8 @@ static Status hash_settings(char out[sha256_text_size], const SignaturesConfig *
                               cells.spin_phase_rad,
                               cells.weak_share,
                               cells.weak_times};
-    Sha256 *d = sha256_begin();
-    bool    ok = d && sha256_add(d, numbers, sizeof numbers);
+    Sha256      *d = sha256_begin();
+    bool         ok = d && sha256_add(d, numbers, sizeof numbers);
     for (int i = 0; i < materials->count && ok; i++) {
         const RadarMaterial *m = &materials->material[i];
         ok = add_text(d, m->name) && add_int(d, (int)m->kind) && add_double(d, m->thick_m) &&
@@ -197,9 +197,9 @@ static void refused(SignatureLibrary *l, const char *path)
 static uint8_t *read_whole(size_t *count, const char *path)
 {
     static const uint64_t most = head_octets + hash_octets + (uint64_t)most_centres * sizeof(SignatureCentre);
-    char      why[file_why_size];
-    uint64_t  there = 0;
-    const int file = file_open(why, &there, path, FILE_FROM_DISK);
+    char                  why[file_why_size];
+    uint64_t              there = 0;
+    const int             file = file_open(why, &there, path, FILE_FROM_DISK);
     if (file < 0) return NULL;
     uint8_t   *octets = there <= most ? malloc((size_t)there + 1) : NULL;
     const long got = octets ? file_read(file, octets, (size_t)there) : 0;
@@ -216,8 +216,8 @@ static bool path_of(char path[4096], const SignatureLibrary *l, const char name[
 /* *out: count, centres and tubes' fields of the file. False: it is not there, or, as is said, damaged. */
 static bool read_file(Signature *out, SignatureLibrary *l, const SignatureKey *key)
 {
-    char              name[sha256_text_size], path[4096];
-    size_t            count = 0;
+    char   name[sha256_text_size], path[4096];
+    size_t count = 0;
     if (name_of(name, l, key) != STATUS_OK || !path_of(path, l, name)) return false;
     uint8_t *octets = read_whole(&count, path);
     if (!octets) return false;

@@ -26,7 +26,7 @@ void   signature_library_close(SignatureLibrary *library); /* accepts NULL */
 /* For signatures_create; valid until the library is closed. */
 SignatureStore signature_library_store(SignatureLibrary *library);
 /* Whether it has its file, and that is whole: it is read. */
-bool   signature_library_has(SignatureLibrary *library, const SignatureKey *key);
+bool signature_library_has(SignatureLibrary *library, const SignatureKey *key);
 /* Octets written; files that were refused. */
 typedef struct SignatureLibraryCounters {
     uint64_t octets, written, refused, failed;

@@ -8,9 +8,12 @@ const char *const waveform_name[waveform_kinds] = {"lfm", "stepped", "pulse_dopp
 double waveform_step_s(const Waveform *w)
 {
     switch (w->kind) {
-    case WAVEFORM_STEPPED: return 1 / (w->repeat_hz * w->samples);
-    case WAVEFORM_PULSE_DOPPLER: return 0;
-    default: return w->pulse_s / w->samples;
+    case WAVEFORM_STEPPED:
+        return 1 / (w->repeat_hz * w->samples);
+    case WAVEFORM_PULSE_DOPPLER:
+        return 0;
+    default:
+        return w->pulse_s / w->samples;
     }
 }
 
@@ -55,7 +58,8 @@ void waveform_timing(WaveformTiming *out, const Waveform *w)
     out->blind_mps = wave_m / 2 * w->repeat_hz;
     out->coupling_s = w->centre_hz * out->profile_s / w->bandwidth_hz;
     out->smear_s = 2 * out->profile_s;
-    if (w->kind == WAVEFORM_LFM || w->kind == WAVEFORM_FMCW) out->beat_hz_m = 2 * w->bandwidth_hz / (light_mps * w->pulse_s);
+    if (w->kind == WAVEFORM_LFM || w->kind == WAVEFORM_FMCW)
+        out->beat_hz_m = 2 * w->bandwidth_hz / (light_mps * w->pulse_s);
 }
 
 double waveform_appears_m(const Waveform *w, double off_m, double rate_mps)

@@ -28,16 +28,22 @@
 
 #include "pitviper.h"
 
-typedef enum WaveformKind { WAVEFORM_LFM, WAVEFORM_STEPPED, WAVEFORM_PULSE_DOPPLER, WAVEFORM_FMCW, waveform_kinds } WaveformKind;
+typedef enum WaveformKind {
+    WAVEFORM_LFM,
+    WAVEFORM_STEPPED,
+    WAVEFORM_PULSE_DOPPLER,
+    WAVEFORM_FMCW,
+    waveform_kinds
+} WaveformKind;
 extern const char *const waveform_name[waveform_kinds];
 
 typedef struct Waveform {
     WaveformKind kind;
-    double centre_hz, bandwidth_hz; /* step between samples: bandwidth / samples */
-    double pulse_s;                 /* that is transmitted: fmcw, the sweep; stepped, each of a burst's pulses */
-    double repeat_hz;               /* of rows: of pulses, sweeps or bursts */
-    int    samples, pulses;         /* of a row; rows. Both even */
-    bool   uncompensated;           /* the receiver does not follow the rate of the reference's path, but its middle */
+    double       centre_hz, bandwidth_hz; /* step between samples: bandwidth / samples */
+    double       pulse_s;                 /* that is transmitted: fmcw, the sweep; stepped, each of a burst's pulses */
+    double       repeat_hz;               /* of rows: of pulses, sweeps or bursts */
+    int          samples, pulses;         /* of a row; rows. Both even */
+    bool         uncompensated; /* the receiver does not follow the rate of the reference's path, but its middle */
 } Waveform;
 
 /* From one sample of a row to the next, s. */
@@ -63,16 +69,17 @@ double waveform_appears_m(const Waveform *wave, double off_m, double rate_mps);
 
 /* Times and limits that follow. */
 typedef struct WaveformTiming {
-    double sample_s;           /* from one sample to the next */
-    double profile_s;          /* over which the samples of a range profile are taken; 0: at once */
-    double row_s;              /* from one profile to the next */
-    double interval_s;         /* coherent interval: rows times row_s */
-    double window_m;           /* range window: of samples, c samples / (2 bandwidth) */
-    double unambiguous_m;      /* c / (2 pulse repetition frequency); stepped: the window; fmcw: of the greatest beat */
-    double blind_mps;          /* range rates apart by it look alike: wavelength / 2 row_s. Multiples are the canceller's blind speeds */
-    double coupling_s;         /* an echo appears farther by it times its range rate */
-    double smear_s;            /* and is smeared in range over it times its range rate: twice profile_s */
-    double beat_hz_m;          /* of beat frequency a metre of range: lfm and fmcw, else 0 */
+    double sample_s;      /* from one sample to the next */
+    double profile_s;     /* over which the samples of a range profile are taken; 0: at once */
+    double row_s;         /* from one profile to the next */
+    double interval_s;    /* coherent interval: rows times row_s */
+    double window_m;      /* range window: of samples, c samples / (2 bandwidth) */
+    double unambiguous_m; /* c / (2 pulse repetition frequency); stepped: the window; fmcw: of the greatest beat */
+    double blind_mps;  /* range rates apart by it look alike: wavelength / 2 row_s. Multiples are the canceller's blind
+                          speeds */
+    double coupling_s; /* an echo appears farther by it times its range rate */
+    double smear_s;    /* and is smeared in range over it times its range rate: twice profile_s */
+    double beat_hz_m;  /* of beat frequency a metre of range: lfm and fmcw, else 0 */
 } WaveformTiming;
 void waveform_timing(WaveformTiming *out, const Waveform *wave);
 

@@ -18,7 +18,8 @@ static double bessel_i0(double x)
 
 static void taylor(double *w, int n, double sidelobe_db, int nbar)
 {
-    const double a = acosh(pow(10, sidelobe_db / 20)) / pi_rad, s2 = nbar * nbar / (a * a + (nbar - 0.5) * (nbar - 0.5));
+    const double a = acosh(pow(10, sidelobe_db / 20)) / pi_rad,
+                 s2 = nbar * nbar / (a * a + (nbar - 0.5) * (nbar - 0.5));
     for (int i = 0; i < n; i++) w[i] = 1;
     for (int m = 1; m < nbar; m++) {
         double over = 1, under = 1;
@@ -39,8 +40,8 @@ static void chebyshev(double *w, int n, double sidelobe_db)
         w[i] = 0;
         for (int k = 0; k < n; k++) {
             const double x = x0 * cos(pi_rad * k / n);
-            const double t = fabs(x) <= 1 ? cos((n - 1) * acos(x))
-                                          : (x < 0 && n % 2 == 0 ? -1 : 1) * cosh((n - 1) * acosh(fabs(x)));
+            const double t =
+                fabs(x) <= 1 ? cos((n - 1) * acos(x)) : (x < 0 && n % 2 == 0 ? -1 : 1) * cosh((n - 1) * acosh(fabs(x)));
             w[i] += t * cos(2 * pi_rad * k * (i - 0.5 * (n - 1)) / n);
         }
     }
@@ -55,8 +56,12 @@ Status window_weights(double *w, int n, const Window *window)
         return STATUS_BAD_VALUE;
     const double last = n - 1;
     switch (window->kind) {
-    case WINDOW_TAYLOR: taylor(w, n, window->sidelobe_db, window->nbar); break;
-    case WINDOW_CHEBYSHEV: chebyshev(w, n, window->sidelobe_db); break;
+    case WINDOW_TAYLOR:
+        taylor(w, n, window->sidelobe_db, window->nbar);
+        break;
+    case WINDOW_CHEBYSHEV:
+        chebyshev(w, n, window->sidelobe_db);
+        break;
     default:
         for (int i = 0; i < n; i++) {
             const double u = 2 * i / last - 1, turn = cos(2 * pi_rad * i / last);
@@ -81,7 +86,8 @@ const char *window_parse(Window *out, const char *text)
     if (strcmp(text, "rect") == 0) w.kind = WINDOW_RECT;
     else if (strcmp(text, "hann") == 0) w.kind = WINDOW_HANN;
     else if (strcmp(text, "hamming") == 0) w.kind = WINDOW_HAMMING;
-    else if (sscanf(text, "taylor:%2d:%lf%n", &w.nbar, &w.sidelobe_db, &used) == 2 && !text[used]) w.kind = WINDOW_TAYLOR;
+    else if (sscanf(text, "taylor:%2d:%lf%n", &w.nbar, &w.sidelobe_db, &used) == 2 && !text[used])
+        w.kind = WINDOW_TAYLOR;
     else if (sscanf(text, "chebyshev:%lf%n", &w.sidelobe_db, &used) == 1 && !text[used]) w.kind = WINDOW_CHEBYSHEV;
     else if (sscanf(text, "kaiser:%lf%n", &w.beta, &used) == 1 && !text[used]) w.kind = WINDOW_KAISER;
     else return accepted;
@@ -105,7 +111,8 @@ Status window_figures(WindowFigures *out, const double *w, int n)
     const int  count = n * window_padding, half = count / 2;
     Transform *transform = NULL;
     double    *wave = transform_alloc(2 * (size_t)count), *power = malloc((size_t)half * sizeof *power);
-    Status     status = wave && power ? transform_create(&transform, TRANSFORM_ROWS, 1, count, wave, wave) : STATUS_NO_MEMORY;
+    Status     status =
+        wave && power ? transform_create(&transform, TRANSFORM_ROWS, 1, count, wave, wave) : STATUS_NO_MEMORY;
     if (status != STATUS_OK) goto done;
 
     memset(wave, 0, 2 * (size_t)count * sizeof *wave);

@@ -8,7 +8,14 @@
 
 #include "pitviper.h"
 
-typedef enum WindowKind { WINDOW_RECT, WINDOW_HANN, WINDOW_HAMMING, WINDOW_TAYLOR, WINDOW_CHEBYSHEV, WINDOW_KAISER } WindowKind;
+typedef enum WindowKind {
+    WINDOW_RECT,
+    WINDOW_HANN,
+    WINDOW_HAMMING,
+    WINDOW_TAYLOR,
+    WINDOW_CHEBYSHEV,
+    WINDOW_KAISER
+} WindowKind;
 
 typedef struct Window {
     WindowKind kind;
@@ -26,11 +33,11 @@ const char *window_parse(Window *out, const char *text);
 /* Of the response to a point, by a transform of n weights zero-padded to window_padding n. */
 enum { window_padding = 256 };
 typedef struct WindowFigures {
-    double width_3db;   /* of the main lobe at half power, in bins of 1 / n: range resolution = width c / (2 bandwidth) */
-    double pslr_db;     /* highest side lobe over the peak */
-    double islr_db;     /* energy of all side lobes over that between the main lobe's first minima */
-    double noise_bins;  /* equivalent noise bandwidth, bins */
-    double loss_db;     /* of signal to noise, by the weights: 10 log10 of noise_bins */
+    double width_3db; /* of the main lobe at half power, in bins of 1 / n: range resolution = width c / (2 bandwidth) */
+    double pslr_db;   /* highest side lobe over the peak */
+    double islr_db;   /* energy of all side lobes over that between the main lobe's first minima */
+    double noise_bins; /* equivalent noise bandwidth, bins */
+    double loss_db;    /* of signal to noise, by the weights: 10 log10 of noise_bins */
 } WindowFigures;
 /* n in 4 .. 4096. STATUS_NO_MEMORY. */
 Status window_figures(WindowFigures *out, const double *w, int n);

@@ -21,15 +21,15 @@ typedef struct ReferenceField {
 /* Values of a placeholder: text, or a list of names with meanings. */
 typedef struct ReferenceWord {
     const char *word, *about;
-    const char *(*name)(int i);  /* returns NULL at the end; NULL: described by about */
-    const char *(*what)(int i);  /* may be NULL */
+    const char *(*name)(int i); /* returns NULL at the end; NULL: described by about */
+    const char *(*what)(int i); /* may be NULL */
 } ReferenceWord;
 
 typedef struct Reference {
-    const char           *topic; /* of `pitviper help TOPIC` */
-    const char           *file;  /* in the folder of the products */
-    const char           *title; /* in one line */
-    const char           *about; /* paragraphs, lines of at most 110 columns */
+    const char           *topic;    /* of `pitviper help TOPIC` */
+    const char           *file;     /* in the folder of the products */
+    const char           *title;    /* in one line */
+    const char           *about;    /* paragraphs, lines of at most 110 columns */
     const char           *notation; /* of path and type, where it is not JSON; may be NULL */
     const ReferenceField *field;
     int                   field_count;
@@ -43,8 +43,8 @@ typedef struct Reference {
 /* In the order of the data path. */
 extern const Reference reference_products, reference_truth, reference_run, reference_exr, reference_png, reference_raw,
     reference_profile, reference_radar, reference_radar_map, reference_radar_scan, reference_radar_azimuths,
-    reference_pairs, reference_coco, reference_answers, reference_manifest, reference_sheet, reference_data_pdu, reference_stream_pdu,
-    reference_radar_pdu, reference_pdus, reference_regress;
+    reference_pairs, reference_coco, reference_answers, reference_manifest, reference_sheet, reference_data_pdu,
+    reference_stream_pdu, reference_radar_pdu, reference_pdus, reference_regress;
 
 /* Names of the topics, separated by blanks. */
 void reference_list(FILE *to);
@@ -57,9 +57,14 @@ void reference_write_markdown(FILE *to);
 
 const char *reference_band(int i); /* optical ...; NULL at the end */
 
-#define REFERENCE_WORD_BAND {"BAND", "one of", reference_band, NULL}
+#define REFERENCE_WORD_BAND                                                                                            \
+    {                                                                                                                  \
+        "BAND", "one of", reference_band, NULL                                                                         \
+    }
 
 #define REFERENCE_WORD_CONSUMER                                                                                        \
-    {"CONSUMER", "what the frame went to: image_files, truth_lines, dis, memory, video and so on", NULL, NULL}
+    {                                                                                                                  \
+        "CONSUMER", "what the frame went to: image_files, truth_lines, dis, memory, video and so on", NULL, NULL       \
+    }
 
 #endif

@@ -26,20 +26,19 @@ static const ReferenceWord words[] = {REFERENCE_WORD_BAND};
 
 const Reference reference_pairs = {
     .topic = "pairs",
-    .file  = "pairs.jsonl",
+    .file = "pairs.jsonl",
     .title = "each frame with and without its target, with and without noise: a line of JSON per frame",
     .about = "With --pairs target or --pairs all. The files lie in frames/ and raw/ (as without --pairs) and in\n"
              "pairs/clean, pairs/background and pairs/background_clean, each with folders of the same names.",
     .field = REFERENCE_FIELDS(pair_fields),
-    .word  = REFERENCE_FIELDS(words),
-    .python =
-        "import json\n"
-        "for line in open('pairs.jsonl'):\n"
-        "    pair = json.loads(line)\n"
-        "    file = {(m['target'], m['noise']): m['bands']['lwir'] for m in pair['members']}\n"
-        "    print('noisy image', file[True, True]['display'])\n"
-        "    print('label: radiance of the target alone =', file[True, False]['radiance'], '-',\n"
-        "          file[False, False]['radiance'], 'of', pair['removed'])\n",
+    .word = REFERENCE_FIELDS(words),
+    .python = "import json\n"
+              "for line in open('pairs.jsonl'):\n"
+              "    pair = json.loads(line)\n"
+              "    file = {(m['target'], m['noise']): m['bands']['lwir'] for m in pair['members']}\n"
+              "    print('noisy image', file[True, True]['display'])\n"
+              "    print('label: radiance of the target alone =', file[True, False]['radiance'], '-',\n"
+              "          file[False, False]['radiance'], 'of', pair['removed'])\n",
 };
 
 static const ReferenceField coco_fields[] = {
@@ -86,7 +85,8 @@ static const ReferenceField coco_fields[] = {
     {"annotations[].snr", "number", "", "", "as in truth.jsonl", "bands.BAND.snr of truth.jsonl, in the image's band"},
     {"annotations[].contrast", "number", "K, apparent, in mwir and lwir; else ratio", "", "as in truth.jsonl",
      "bands.BAND.contrast_k of truth.jsonl in mwir and lwir, bands.BAND.contrast in optical and radar"},
-    {"annotations[].contrast_k", "number", "K, apparent", "", "as in truth.jsonl", "bands.BAND.contrast_k of truth.jsonl"},
+    {"annotations[].contrast_k", "number", "K, apparent", "", "as in truth.jsonl",
+     "bands.BAND.contrast_k of truth.jsonl"},
     {"categories", "list of objects", "", "", "", "a fixed table, the same for every log and version"},
     {"categories[].id", "integer", "", "from 1", "", "number of the category"},
     {"categories[].name", "string", "", "", "", "tank, apc, truck ...: class of truth.jsonl"},
@@ -106,12 +106,12 @@ static const ReferenceField coco_fields[] = {
 
 const Reference reference_coco = {
     .topic = "coco",
-    .file  = "coco.json",
+    .file = "coco.json",
     .title = "boxes and masks of all targets, and ignore regions, in COCO format",
     .about = "With --coco; written at the end of the run. A sweep has one per variant, and one of all variants in its "
              "own folder.",
     .field = REFERENCE_FIELDS(coco_fields),
-    .word  = REFERENCE_FIELDS(words),
+    .word = REFERENCE_FIELDS(words),
     .python =
         "import json\n"
         "coco = json.load(open('coco.json'))\n"
@@ -134,20 +134,22 @@ static const ReferenceField answer_fields[] = {
     {"box_px", "list of 4 numbers", "px", "image: left, top, right, bottom; from 0, the last two beyond it",
      "when nothing was found", "bounding box"},
     {"score", "number", "", "0 .. 1", "when nothing was found", "confidence"},
-    {"track", "integer", "", "", "when the recogniser gave none", "the same number for the same object in later frames"},
+    {"track", "integer", "", "", "when the recogniser gave none",
+     "the same number for the same object in later frames"},
     {"latency_ms", "number", "ms", "", "", "from the end of the frame's rendering until the answer was received"},
     {"late", "boolean", "", "", "", "a newer frame of the band was answered before: not in metadata"},
 };
 
 const Reference reference_answers = {
     .topic = "answers",
-    .file  = "answers.jsonl",
+    .file = "answers.jsonl",
     .title = "the answers of a recogniser: a line of JSON per detection",
-    .about = "With publish.detections_port (etc/reference/memory.md). One answer counts for a frame and band, the first; "
-             "repeated ones,\n"
-             "and all that are refused, are counted in run.json: counters.answers.",
+    .about =
+        "With publish.detections_port (etc/reference/memory.md). One answer counts for a frame and band, the first; "
+        "repeated ones,\n"
+        "and all that are refused, are counted in run.json: counters.answers.",
     .field = REFERENCE_FIELDS(answer_fields),
-    .word  = REFERENCE_FIELDS(words),
+    .word = REFERENCE_FIELDS(words),
     .python =
         "import json\n"
         "for line in open('answers.jsonl'):\n"
@@ -181,22 +183,21 @@ static const ReferenceWord sweep_words[] = {
 
 const Reference reference_manifest = {
     .topic = "manifest",
-    .file  = "manifest.jsonl",
+    .file = "manifest.jsonl",
     .title = "the variants of a sweep: a line of JSON each",
     .about = "Of --sweep FILE. Each variant's line, with status `made`, is also its FOLDER/variant.json: it marks\n"
              "the variant as complete, to be kept by the next run.",
     .field = REFERENCE_FIELDS(sweep_fields),
-    .word  = REFERENCE_FIELDS(sweep_words),
-    .python =
-        "import json, os\n"
-        "for line in open('manifest.jsonl'):\n"
-        "    variant = json.loads(line)\n"
-        "    if variant['status'] == 'failed':\n"
-        "        print(variant['number'], variant['error'])\n"
-        "        continue\n"
-        "    truth = [json.loads(l) for l in open(os.path.join(variant['folder'], 'truth.jsonl'))]\n"
-        "    print(variant['settings'], variant['frames'], 'frames', len(truth[0]['targets']), 'targets in "
-        "the first')\n",
+    .word = REFERENCE_FIELDS(sweep_words),
+    .python = "import json, os\n"
+              "for line in open('manifest.jsonl'):\n"
+              "    variant = json.loads(line)\n"
+              "    if variant['status'] == 'failed':\n"
+              "        print(variant['number'], variant['error'])\n"
+              "        continue\n"
+              "    truth = [json.loads(l) for l in open(os.path.join(variant['folder'], 'truth.jsonl'))]\n"
+              "    print(variant['settings'], variant['frames'], 'frames', len(truth[0]['targets']), 'targets in "
+              "the first')\n",
 };
 
 static const ReferenceField sheet_fields[] = {
@@ -208,20 +209,19 @@ static const ReferenceField sheet_fields[] = {
 
 const Reference reference_sheet = {
     .topic = "sheet",
-    .file  = "manifest.html",
+    .file = "manifest.html",
     .title = "thumbnails of the variants of a sweep",
     .about = "Of --sweep FILE, beside manifest.jsonl, which is machine-readable. FOLDER/thumbnail.png is the image of "
              "a variant.",
     .notation = "Field: element of HTML.",
     .field = REFERENCE_FIELDS(sheet_fields),
-    .python =
-        "import html.parser\n"
-        "class Sheet(html.parser.HTMLParser):\n"
-        "    def handle_starttag(self, tag, attributes):\n"
-        "        if tag == 'img':\n"
-        "            image = dict(attributes)\n"
-        "            print(image['alt'], image['src'][:22], len(image['src']))\n"
-        "Sheet().feed(open('manifest.html').read())\n",
+    .python = "import html.parser\n"
+              "class Sheet(html.parser.HTMLParser):\n"
+              "    def handle_starttag(self, tag, attributes):\n"
+              "        if tag == 'img':\n"
+              "            image = dict(attributes)\n"
+              "            print(image['alt'], image['src'][:22], len(image['src']))\n"
+              "Sheet().feed(open('manifest.html').read())\n",
 };
 
 /* ---- the baseline of a case of `pitviper regress` ------------------------------------------------ */
@@ -259,7 +259,7 @@ static const ReferenceField regress_fields[] = {
 
 const Reference reference_regress = {
     .topic = "regress-record",
-    .file  = "CASE/record/",
+    .file = "CASE/record/",
     .title = "the baseline of a case of `pitviper regress`: NNNNNN.exr, NNNNNN.profile.exr, truth.jsonl, run.json",
     .about = "Written by `pitviper regress --update`. truth.jsonl and run.json are those of the approved run (help "
              "truth,\n"

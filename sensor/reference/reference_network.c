@@ -14,8 +14,7 @@ static const ReferenceField data_fields[] = {
     {"variable 600101+0", "f64", "s", "exercise time", "", "instant of the frame"},
     {"variable 600102+0", "f64[3]", "m", "ecef", "", "position of the sensor"},
     {"variable 600103+0", "f64[3]", "rad",
-     "psi, theta, phi as in an Entity State; x along the boresight, y right, z down", "",
-     "attitude of the camera"},
+     "psi, theta, phi as in an Entity State; x along the boresight, y right, z down", "", "attitude of the camera"},
     {"variable 600104+0", "u16[4]", "", "site, application, entity, 0", "", "the host; 0:0:0: an observer"},
     {"variable 600201+0", "u16[4]", "px", "image: left, top, right, bottom; from 0, the last two beyond it", "",
      "bounding box of its visible pixels"},
@@ -43,13 +42,14 @@ static const ReferenceField data_fields[] = {
 
 const Reference reference_data_pdu = {
     .topic = "data-pdu",
-    .file  = "Data PDU",
+    .file = "Data PDU",
     .title = "what the seeker sees, as Data PDUs (type 20), one per frame and band",
-    .about = "Sent by `pitviper run`, and by `pitviper replay --speed X`, with --set publish.dis=sensor (datum 600201 per\n"
-             "visible target) or truth (datum 600202 per target in the field of view), the largest first. A replay sends\n"
-             "the octets that the node sent which made the recording, with the time stamps of the recorded hour. From node.site:node.application:0 to all (0xFFFF),\n"
-             "request 0, at most 1400 octets. The ids of the datums are experimental: defined by this program, not\n"
-             "registered.",
+    .about =
+        "Sent by `pitviper run`, and by `pitviper replay --speed X`, with --set publish.dis=sensor (datum 600201 per\n"
+        "visible target) or truth (datum 600202 per target in the field of view), the largest first. A replay sends\n"
+        "the octets that the node sent which made the recording, with the time stamps of the recorded hour. From node.site:node.application:0 to all (0xFFFF),\n"
+        "request 0, at most 1400 octets. The ids of the datums are experimental: defined by this program, not\n"
+        "registered.",
     .notation = "Field: `fixed ID`, a fixed datum of 32 bits; `variable ID+OFFSET`, octets within a variable datum. "
                 "Type:\n"
                 "big-endian; u16, u32: unsigned; f32, f64: IEEE 754; [n]: array of n. NaN: not computed.",
@@ -92,11 +92,12 @@ static const ReferenceField stream_fields[] = {
 
 const Reference reference_stream_pdu = {
     .topic = "stream-pdu",
-    .file  = "Stream PDU",
+    .file = "Stream PDU",
     .title = "where the video streams are, as Data PDUs (type 20), one per band every 5 s of exercise time",
-    .about = "Sent with those of data-pdu where publish.stream is set: before the first frame's, and before those of the "
-             "first\n"
-             "frame of each 5 s of exercise time. Without datum 600001; else as those. The streams are MPEG-TS over UDP.",
+    .about =
+        "Sent with those of data-pdu where publish.stream is set: before the first frame's, and before those of the "
+        "first\n"
+        "frame of each 5 s of exercise time. Without datum 600001; else as those. The streams are MPEG-TS over UDP.",
     .notation = "Field and type: as in data-pdu; text: one octet per character, as many as the datum has.",
     .field = REFERENCE_FIELDS(stream_fields),
     .python =
@@ -143,12 +144,13 @@ static const ReferenceField radar_fields[] = {
 
 const Reference reference_radar_pdu = {
     .topic = "radar-pdu",
-    .file  = "Radar PDU",
+    .file = "Radar PDU",
     .title = "what the radar on the sensor's axis detected, as Data PDUs (type 20)",
-    .about = "Sent with those of data-pdu where radar.preset is set, behind the frame's bands: the 128 strongest detections,\n"
-             "strongest first, 32 a PDU; one PDU where there is none. The values are those of radar.detections in "
-             "truth.jsonl.\n"
-             "Without datum 600002; else as those.",
+    .about =
+        "Sent with those of data-pdu where radar.preset is set, behind the frame's bands: the 128 strongest detections,\n"
+        "strongest first, 32 a PDU; one PDU where there is none. The values are those of radar.detections in "
+        "truth.jsonl.\n"
+        "Without datum 600002; else as those.",
     .notation = "Field and type: as in data-pdu. 600402 is there once a detection.",
     .field = REFERENCE_FIELDS(radar_fields),
     .python =
@@ -211,22 +213,20 @@ static const ReferenceField pdu_fields[] = {
     {"alternative_type", "text", "", "kind.domain.country.category.subcategory.specific.extra", "without --full",
      "alternative entity type"},
     {"articulation", "text", "rad, rad/s or m by the parameter", "change:attached:parameter:value; ...",
-     "without --full",
-     "articulation parameters; prefixed attached: for attached parts, record: for other records"},
+     "without --full", "articulation parameters; prefixed attached: for attached parts, record: for other records"},
 };
 
 const Reference reference_pdus = {
     .topic = "pdus",
-    .file  = "PDU table",
+    .file = "PDU table",
     .title = "every Entity State PDU of a log: `pitviper inspect LOG --pdus tsv [--full]`",
     .about = "Tab-separated lines on standard output, a header first; columns and formats of `tshark -T fields`.",
     .notation = "Field: column.",
     .field = REFERENCE_FIELDS(pdu_fields),
-    .python =
-        "import csv, sys\n"
-        "for row in csv.DictReader(sys.stdin, delimiter='\\t', quoting=csv.QUOTE_NONE):\n"
-        "    entity = tuple(int(row['dis.entity_id_' + part]) for part in ('site', 'application', 'entity'))\n"
-        "    p_ecef = [float(row['dis.entity_location.' + axis]) for axis in 'xyz']\n"
-        "    print(float(row['dis.timestamp']), entity, row['dis.entity_marking'], p_ecef)\n"
-        "# pitviper inspect LOG --pdus tsv | python3 this.py\n",
+    .python = "import csv, sys\n"
+              "for row in csv.DictReader(sys.stdin, delimiter='\\t', quoting=csv.QUOTE_NONE):\n"
+              "    entity = tuple(int(row['dis.entity_id_' + part]) for part in ('site', 'application', 'entity'))\n"
+              "    p_ecef = [float(row['dis.entity_location.' + axis]) for axis in 'xyz']\n"
+              "    print(float(row['dis.timestamp']), entity, row['dis.entity_marking'], p_ecef)\n"
+              "# pitviper inspect LOG --pdus tsv | python3 this.py\n",
 };

@@ -1,7 +1,6 @@
 /* sensor/reference/reference_pictures.c: EXR, PNG, raw counts and range profiles. */
 #include "sensor/reference/reference.h"
 
-
 /* ---- EXR ------------------------------------------------------------------------------------- */
 
 static const ReferenceField exr_fields[] = {
@@ -41,14 +40,12 @@ static const ReferenceField exr_fields[] = {
     {"header wavelengths_um", "string", "um", "", "except in optical", "wavelengths of each channel"},
     {"header frame", "int", "", "from 0", "", "number of the frame"},
     {"header time_s", "double", "s", "exercise time", "", "instant of the frame"},
-    {"header capDate", "string", "", "UTC, YYYY:MM:DD HH:MM:SS", "",
-     "the same as a date; DateTime in OpenImageIO"},
+    {"header capDate", "string", "", "UTC, YYYY:MM:DD HH:MM:SS", "", "the same as a date; DateTime in OpenImageIO"},
     {"header host", "string", "", "site:application:entity, or `observer`", "", "the host"},
     {"header seed", "int", "", "", "", "of all random numbers"},
     {"header config_sha256", "string", "", "", "", "as in run.json"},
     {"header entity_ids", "string", "", "site:application:entity, separated by commas; the first is entity 1",
-     "except in truth",
-     "the frame's entities"},
+     "except in truth", "the frame's entities"},
     {"header material_names", "string", "", "separated by commas; the first is material 1", "except in truth",
      "names of etc/materials.csv"},
     {"header part_names", "string", "", "model:part,part,...;model:... ; the first part is part 1", "except in truth",
@@ -61,7 +58,7 @@ static const ReferenceWord bands[] = {REFERENCE_WORD_BAND};
 
 const Reference reference_exr = {
     .topic = "exr",
-    .file  = "frames/BAND/NNNNNN.exr",
+    .file = "frames/BAND/NNNNNN.exr",
     .title = "radiance per pixel, and in frames/truth/NNNNNN.exr ground truth per pixel",
     .about = "OpenEXR, scan lines; truth RLE, radar ZIP, others not compressed. Rows from the top, columns from the\n"
              "left: [row][column] of a plane is the pixel whose centre is (column + 0.5, row + 0.5). Truth is that\n"
@@ -70,19 +67,18 @@ const Reference reference_exr = {
     .notation = "`channel BAND/NAME`: a channel, float (32 bits) or uint (32 bits, exact); `header NAME`: an "
                 "attribute.",
     .field = REFERENCE_FIELDS(exr_fields),
-    .word  = REFERENCE_FIELDS(bands),
-    .python =
-        "import glob, numpy, OpenEXR\n"
-        "path = sorted(glob.glob('frames/truth/*.exr'))[0]\n"
-        "file = OpenEXR.File(path, separate_channels=True)\n"
-        "truth, header = file.channels(), file.header()\n"
-        "range_m, entity = truth['range_m'].pixels, truth['entity'].pixels     # [row][column]\n"
-        "ids = header['entity_ids'].split(',')\n"
-        "for number in numpy.unique(entity[entity > 0]):\n"
-        "    seen = entity == number\n"
-        "    print(ids[number - 1], int(seen.sum()), 'pixels, nearest', range_m[seen].min(), 'm')\n"
-        "lwir = OpenEXR.File(path.replace('truth', 'lwir'), separate_channels=True).channels()['Y'].pixels\n"
-        "print('lwir', lwir.mean(), 'W/(m2 sr); sky:', int(numpy.isinf(range_m).sum()), 'pixels')\n",
+    .word = REFERENCE_FIELDS(bands),
+    .python = "import glob, numpy, OpenEXR\n"
+              "path = sorted(glob.glob('frames/truth/*.exr'))[0]\n"
+              "file = OpenEXR.File(path, separate_channels=True)\n"
+              "truth, header = file.channels(), file.header()\n"
+              "range_m, entity = truth['range_m'].pixels, truth['entity'].pixels     # [row][column]\n"
+              "ids = header['entity_ids'].split(',')\n"
+              "for number in numpy.unique(entity[entity > 0]):\n"
+              "    seen = entity == number\n"
+              "    print(ids[number - 1], int(seen.sum()), 'pixels, nearest', range_m[seen].min(), 'm')\n"
+              "lwir = OpenEXR.File(path.replace('truth', 'lwir'), separate_channels=True).channels()['Y'].pixels\n"
+              "print('lwir', lwir.mean(), 'W/(m2 sr); sky:', int(numpy.isinf(range_m).sum()), 'pixels')\n",
 };
 
 /* ---- PNG ------------------------------------------------------------------------------------- */
@@ -98,7 +94,7 @@ static const ReferenceField png_fields[] = {
 
 const Reference reference_png = {
     .topic = "png",
-    .file  = "frames/BAND/NNNNNN.png",
+    .file = "frames/BAND/NNNNNN.png",
     .title = "display images, after gain and level",
     .about = "Noise, gain, level and quantisation of the detector.* settings. Same pixels as the EXR. detector.bits: "
              "16\n"
@@ -107,13 +103,12 @@ const Reference reference_png = {
              "Python: `pip install pillow numpy`.",
     .notation = "Field: folder below frames/. Type: channels and bits of each.",
     .field = REFERENCE_FIELDS(png_fields),
-    .python =
-        "import glob, numpy\n"
-        "from PIL import Image\n"
-        "for path in sorted(glob.glob('frames/lwir/*.png')):\n"
-        "    shown = numpy.array(Image.open(path))        # [row][column], RGB: [row][column][3]\n"
-        "    row, column = numpy.unravel_index(shown.argmax(), shown.shape)\n"
-        "    print(path, shown.dtype, 'brightest at column', column, 'row', row)\n",
+    .python = "import glob, numpy\n"
+              "from PIL import Image\n"
+              "for path in sorted(glob.glob('frames/lwir/*.png')):\n"
+              "    shown = numpy.array(Image.open(path))        # [row][column], RGB: [row][column][3]\n"
+              "    row, column = numpy.unravel_index(shown.argmax(), shown.shape)\n"
+              "    print(path, shown.dtype, 'brightest at column', column, 'row', row)\n",
 };
 
 static const ReferenceField raw_fields[] = {
@@ -124,7 +119,7 @@ static const ReferenceField raw_fields[] = {
 
 const Reference reference_raw = {
     .topic = "raw",
-    .file  = "raw/BAND/NNNNNN.png",
+    .file = "raw/BAND/NNNNNN.png",
     .title = "counts of a detector's converter, before gain and level",
     .about = "Of bands that have a sensor (sensor.preset, sensor.table) with detector.raw. Counts from 0, not "
              "rescaled;\n"
@@ -168,21 +163,20 @@ static const ReferenceField profile_fields[] = {
 
 const Reference reference_profile = {
     .topic = "profile",
-    .file  = "profiles/radar/NNNNNN.csv",
+    .file = "profiles/radar/NNNNNN.csv",
     .title = "power of the pseudo-radar over range, by number of reflections",
     .about = "CSV: lines that begin with # are comments, then a header, then radar.bins rows, the nearest first. "
              "Linear\n"
              "power, of the same relative scale in a whole run.",
     .notation = "Field: column.",
     .field = REFERENCE_FIELDS(profile_fields),
-    .python =
-        "import csv, glob, math\n"
-        "for path in sorted(glob.glob('profiles/radar/*.csv')):\n"
-        "    rows = list(csv.DictReader(line for line in open(path) if not line.startswith('#')))\n"
-        "    power = [sum(float(row[f'bounce_{b}']) for b in (1, 2, 3)) for row in rows]\n"
-        "    peak = max(range(len(rows)), key=power.__getitem__)\n"
-        "    if power[peak] > 0:\n"
-        "        print(path, rows[peak]['range_m'], 'm', 10 * math.log10(power[peak]), 'dB over 1')\n",
+    .python = "import csv, glob, math\n"
+              "for path in sorted(glob.glob('profiles/radar/*.csv')):\n"
+              "    rows = list(csv.DictReader(line for line in open(path) if not line.startswith('#')))\n"
+              "    power = [sum(float(row[f'bounce_{b}']) for b in (1, 2, 3)) for row in rows]\n"
+              "    peak = max(range(len(rows)), key=power.__getitem__)\n"
+              "    if power[peak] > 0:\n"
+              "        print(path, rows[peak]['range_m'], 'm', 10 * math.log10(power[peak]), 'dB over 1')\n",
 };
 
 /* ---- the radar with phase ---------------------------------------------------------------------- */
@@ -194,30 +188,33 @@ static const ReferenceField radar_fields[] = {
     {"im", "number", "sqrt(W)", "", "", "its imaginary part"},
     {"cross_re", "number", "sqrt(W)", "", "", "the same in the other polarisation"},
     {"cross_im", "number", "sqrt(W)", "", "", "its imaginary part"},
-    {"mti_w", "number", "W", "", "", "power behind the canceller of the ground (moving-target indication), whose gain for noise is 1"},
+    {"mti_w", "number", "W", "", "",
+     "power behind the canceller of the ground (moving-target indication), whose gain for noise is 1"},
 };
 
 const Reference reference_radar = {
     .topic = "radar",
-    .file  = "radar/NNNNNN.csv",
+    .file = "radar/NNNNNN.csv",
     .title = "range profile of the radar of radar.preset",
-    .about = "CSV: lines that begin with # are comments, then a header, then a row a range cell, the nearest first. Voltages\n"
-             "at the antenna's port behind the window and its transform, so scaled that an echo's peak squared is its received\n"
-             "power. Detections and truth are in truth.jsonl, object radar.",
+    .about =
+        "CSV: lines that begin with # are comments, then a header, then a row a range cell, the nearest first. Voltages\n"
+        "at the antenna's port behind the window and its transform, so scaled that an echo's peak squared is its received\n"
+        "power. Detections and truth are in truth.jsonl, object radar.",
     .notation = "Field: column.",
     .field = REFERENCE_FIELDS(radar_fields),
-    .python =
-        "import csv, glob, math\n"
-        "for path in sorted(glob.glob('radar/??????.csv')):\n"
-        "    rows = list(csv.DictReader(line for line in open(path) if not line.startswith('#')))\n"
-        "    peak = max(rows, key=lambda row: float(row['power_w']))\n"
-        "    print(path, peak['range_m'], 'm', 10 * math.log10(float(peak['power_w'])), 'dBW')\n",
+    .python = "import csv, glob, math\n"
+              "for path in sorted(glob.glob('radar/??????.csv')):\n"
+              "    rows = list(csv.DictReader(line for line in open(path) if not line.startswith('#')))\n"
+              "    peak = max(rows, key=lambda row: float(row['power_w']))\n"
+              "    print(path, peak['range_m'], 'm', 10 * math.log10(float(peak['power_w'])), 'dBW')\n",
 };
 
 static const ReferenceField radar_map_fields[] = {
-    {"channel sum_re", "float", "sqrt(W)", "", "", "map, sum beam; a row a cell of range rate, approaching first, a column a cell of range"},
+    {"channel sum_re", "float", "sqrt(W)", "", "",
+     "map, sum beam; a row a cell of range rate, approaching first, a column a cell of range"},
     {"channel sum_im", "float", "sqrt(W)", "", "", "its imaginary part"},
-    {"channel right_re", "float", "sqrt(W)", "", "", "difference beam along the camera's columns: over the sum, above 0 right of the axis"},
+    {"channel right_re", "float", "sqrt(W)", "", "",
+     "difference beam along the camera's columns: over the sum, above 0 right of the axis"},
     {"channel right_im", "float", "sqrt(W)", "", "", "its imaginary part"},
     {"channel down_re", "float", "sqrt(W)", "", "", "difference beam along its rows, above 0 below the axis"},
     {"channel down_im", "float", "sqrt(W)", "", "", "its imaginary part"},
@@ -238,7 +235,7 @@ static const ReferenceField radar_map_fields[] = {
 
 const Reference reference_radar_map = {
     .topic = "radar-map",
-    .file  = "radar/NNNNNN.exr, NNNNNN.png",
+    .file = "radar/NNNNNN.exr, NNNNNN.png",
     .title = "map of range and Doppler of the radar of radar.preset",
     .about = "Four channels of complex voltage, scaled as the profile's. The PNG has the range profile above and the\n"
              "power of the sum beam below, both in decibels from 5 dB below the noise to the greatest, 45 dB at least.",
@@ -283,19 +280,18 @@ static const ReferenceField radar_scan_fields[] = {
 
 const Reference reference_radar_scan = {
     .topic = "radar-scan",
-    .file  = "radar/NNNNNN_scan.exr, NNNNNN_dbs.exr, NNNNNN_view.exr",
+    .file = "radar/NNNNNN_scan.exr, NNNNNN_dbs.exr, NNNNNN_view.exr",
     .title = "scan of radar.preset: real beam, sharpened, on pixels",
     .about = "With radar.scan_deg. An echo's peak is its received power. The PNGs of the same names\n"
              "(NNNNNN_view_scan, NNNNNN_view_dbs) show decibels from 5 dB below the noise to the greatest, 45 dB at\n"
              "least; black: no value. _view has the pixels of the band images.",
     .notation = "Field: `channel` FILE/NAME, or `header`: attribute of each file.",
     .field = REFERENCE_FIELDS(radar_scan_fields),
-    .python =
-        "import glob, math, numpy, OpenEXR\n"
-        "for path in sorted(glob.glob('radar/*_dbs.exr')):\n"
-        "    file = OpenEXR.File(path, separate_channels=True)\n"
-        "    power, fine = file.channels()['Y'].pixels, file.channels()['sharpened'].pixels\n"
-        "    print(path, power.shape, 10 * math.log10(numpy.nanmax(power)), 'dBW;', fine.mean(), 'sharpened')\n",
+    .python = "import glob, math, numpy, OpenEXR\n"
+              "for path in sorted(glob.glob('radar/*_dbs.exr')):\n"
+              "    file = OpenEXR.File(path, separate_channels=True)\n"
+              "    power, fine = file.channels()['Y'].pixels, file.channels()['sharpened'].pixels\n"
+              "    print(path, power.shape, 10 * math.log10(numpy.nanmax(power)), 'dBW;', fine.mean(), 'sharpened')\n",
 };
 
 static const ReferenceField radar_azimuth_fields[] = {
@@ -307,14 +303,13 @@ static const ReferenceField radar_azimuth_fields[] = {
 
 const Reference reference_radar_azimuths = {
     .topic = "radar-azimuths",
-    .file  = "radar/NNNNNN_dbs.csv",
+    .file = "radar/NNNNNN_dbs.csv",
     .title = "resolution of the sharpened scan over azimuth",
     .about = "CSV: lines that begin with # are comments, then a header, then a row an azimuth, left to right.",
     .notation = "Field: column.",
     .field = REFERENCE_FIELDS(radar_azimuth_fields),
-    .python =
-        "import csv, glob\n"
-        "for path in sorted(glob.glob('radar/*_dbs.csv')):\n"
-        "    rows = list(csv.DictReader(line for line in open(path) if not line.startswith('#')))\n"
-        "    print(path, min(float(row['resolution_m']) for row in rows), 'm at best')\n",
+    .python = "import csv, glob\n"
+              "for path in sorted(glob.glob('radar/*_dbs.csv')):\n"
+              "    rows = list(csv.DictReader(line for line in open(path) if not line.startswith('#')))\n"
+              "    print(path, min(float(row['resolution_m']) for row in rows), 'm at best')\n",
 };

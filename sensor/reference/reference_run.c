@@ -43,10 +43,12 @@ static const ReferenceField fields[] = {
      "which entities carried the sensor, one after the other"},
     {"choices", "list of strings", "", "`what: choice`", "", "automatic choices, as printed"},
     {"frames", "integer", "", "", "", "number of frames rendered"},
-    {"frame_sha256", "list of strings", "", "as frame_number", "with publish.truth false", "SHA-256 of all planes before they are encoded"},
+    {"frame_sha256", "list of strings", "", "as frame_number", "with publish.truth false",
+     "SHA-256 of all planes before they are encoded"},
     {"frame_number", "list of integers", "", "from 0", "",
      "numbers of the frames in frame_sha256; of a very long run only the first"},
-    {"materials", "list of strings", "", "", "", "names of the materials: the k-th, from 1, is value k of the material "
+    {"materials", "list of strings", "", "", "",
+     "names of the materials: the k-th, from 1, is value k of the material "
      "planes"},
     {"woods", "object", "", "", "with terrain.woods off", "plants that stand on the ground"},
     {"woods.plants", "integer", "", "", "", "trees, bushes and hedges"},
@@ -85,7 +87,8 @@ static const ReferenceField fields[] = {
     {"counters.live.record_failed", "integer", "", "", "", "datagrams that --record could not write"},
     {"counters.live.frames_late", "integer", "", "", "", "frames dropped because they were too late"},
     {"counters.live.rate_hz", "number", "Hz", "", "without a frame", "frames asked for"},
-    {"counters.live.kept_share", "number", "", "0 .. 1", "without a frame", "of the frames that were due, those that were made"},
+    {"counters.live.kept_share", "number", "", "0 .. 1", "without a frame",
+     "of the frames that were due, those that were made"},
     {"counters.live.files_failed", "integer", "", "", "", "frames whose files could not be written"},
     {"counters.live.files_left_out", "integer", "", "", "", "frames without files because the disk was too slow"},
     {"counters.answers", "object", "", "", "without publish.detections_port", "datagrams of a recogniser"},
@@ -120,8 +123,7 @@ static const ReferenceField fields[] = {
      "ends forgotten while a late report could still come"},
     {"counters.entities.marks_forgotten", "integer", "", "", "when 0",
      "the oldest ground marks (stands, tracks, burns), beyond capacity"},
-    {"counters.entities.shots_forgotten", "integer", "", "", "when 0",
-     "Fire PDUs, of which the latest 1024 are known"},
+    {"counters.entities.shots_forgotten", "integer", "", "", "when 0", "Fire PDUs, of which the latest 1024 are known"},
     {"counters.entities.munitions_forgotten", "integer", "", "", "when 0",
      "munitions, of which the latest 256 of a sort are known"},
     {"counters.entities.most_left_out_of_a_frame", "integer", "", "", "", "beyond the nearest entities.shown"},
@@ -143,7 +145,8 @@ static const ReferenceField fields[] = {
     {"counters.rays_parts", "integer", "", "", "", "rays tested against parts of entities"},
     {"counters.rays_sun_ground", "integer", "", "", "", "shadow rays against the ground"},
     {"counters.rays_sun_parts", "integer", "", "", "", "shadow rays against parts of entities"},
-    {"counters.rays_sun_for_heat", "integer", "", "", "", "rays to the sun from plants that served their light and their "
+    {"counters.rays_sun_for_heat", "integer", "", "", "",
+     "rays to the sun from plants that served their light and their "
      "temperature: so many were saved"},
     {"counters.skipped", "object", "", "", "", "computations skipped, with the same output (--no-skip)"},
     {"counters.skipped.ray_entity_pairs", "integer", "", "", "", "ray-entity pairs in all"},
@@ -176,7 +179,8 @@ static const ReferenceField fields[] = {
     {"latency_ms.consumers.CONSUMER.max", "number", "ms", "", "when it was done with no frame", "as above"},
     {"latency_ms.consumers.CONSUMER.count", "integer", "", "", "", "frames that it was done with"},
     {"latency_ms.consumers.CONSUMER.left_out", "integer", "", "", "", "frames that it was not given, for lack of time"},
-    {"latency_ms.consumers.CONSUMER.histogram", "list of 32 integers", "", "as above", "", "number of frames by latency"},
+    {"latency_ms.consumers.CONSUMER.histogram", "list of 32 integers", "", "as above", "",
+     "number of frames by latency"},
 };
 
 static const ReferenceWord words[] = {
@@ -195,20 +199,19 @@ static const ReferenceWord words[] = {
 
 const Reference reference_run = {
     .topic = "run.json",
-    .file  = "run.json",
+    .file = "run.json",
     .title = "the run: settings, hashes, choices, counters, times",
     .about = "Written at the end of a run, also of one that was stopped. Two runs with the same config_sha256, "
              "log_sha256,\n"
              "tables_sha256, version and libraries have the same frame_sha256.",
     .field = REFERENCE_FIELDS(fields),
-    .word  = REFERENCE_FIELDS(words),
-    .python =
-        "import json\n"
-        "run = json.load(open('run.json'))\n"
-        "print(run['pitviper'], run['frames'], 'frames from', ', '.join(run['hosts']))\n"
-        "for line in run['choices']:\n"
-        "    print('chosen:', line)\n"
-        "hashes = dict(zip(run['frame_number'], run['frame_sha256']))\n"
-        "lost = {why: n for why, n in run['counters']['dropped'].items() if n}\n"
-        "print(lost, run['timings_ms']['frame']['median'], 'ms a frame', len(hashes))\n",
+    .word = REFERENCE_FIELDS(words),
+    .python = "import json\n"
+              "run = json.load(open('run.json'))\n"
+              "print(run['pitviper'], run['frames'], 'frames from', ', '.join(run['hosts']))\n"
+              "for line in run['choices']:\n"
+              "    print('chosen:', line)\n"
+              "hashes = dict(zip(run['frame_number'], run['frame_sha256']))\n"
+              "lost = {why: n for why, n in run['counters']['dropped'].items() if n}\n"
+              "print(lost, run['timings_ms']['frame']['median'], 'ms a frame', len(hashes))\n",
 };

@@ -1,10 +1,9 @@
 /* sensor/reference/reference_truth.c: fields of truth.jsonl, and the list of all products. */
 #include "sensor/reference/reference.h"
 
-
 const Reference reference_products = {
     .topic = "products",
-    .file  = "OUT/",
+    .file = "OUT/",
     .title = "files of a run, in the folder given by --out",
     .about =
         "    truth.jsonl                      help truth     targets: position, signal; a line per frame\n"
@@ -64,7 +63,8 @@ static const ReferenceField fields[] = {
     {"frame_sha256", "string", "", "", "when hashes are not requested",
      "SHA-256 of all planes before they are encoded"},
     {"host", "object", "", "", "", "the entity that carries the sensor"},
-    {"host.entity", "string", "", "site:application:entity", "", "id, or `observer`: a sensor position that is no "
+    {"host.entity", "string", "", "site:application:entity", "",
+     "id, or `observer`: a sensor position that is no "
      "entity"},
     {"host.marking", "string", "", "", "when the host is an observer", "its marking, at most 11 characters"},
     {"host.ecef_m", "list of 3 numbers", "m", "ecef", "", "position of the sensor"},
@@ -78,8 +78,7 @@ static const ReferenceField fields[] = {
     {"host.speed_mps", "number", "m/s", "relative to the rotating Earth", "", "speed of the host"},
     {"sun", "object", "", "", "", "direction of the sun"},
     {"sun.azimuth_deg", "number", "deg", "ENU at the sensor, from north over east", "", "0 .. 360"},
-    {"sun.elevation_deg", "number", "deg", "ENU at the sensor", "",
-     "above the horizontal, with refraction"},
+    {"sun.elevation_deg", "number", "deg", "ENU at the sensor", "", "above the horizontal, with refraction"},
     {"sensors", "list of objects", "", "from 0", "", "one: all bands share the optics and the instant"},
     {"sensors[].name", "string", "", "", "", "`seeker`"},
     {"sensors[].bands", "list of strings", "", "", "", "which of optical, mwir, lwir, radar were rendered"},
@@ -91,8 +90,7 @@ static const ReferenceField fields[] = {
      "without a lens (sensor.lens_*)", "Brown-Conrady coefficients of tangents of angles; boxes and masks follow"},
     {"sensors[].lateral_colour", "list of 2 numbers", "", "red, blue", "without (sensor.lateral_*)",
      "magnification relative to green, minus 1"},
-    {"sensors[].ecef_from_cam", "list of 9 numbers", "", "row by row; its columns are the camera's x, y, z in ecef",
-     "",
+    {"sensors[].ecef_from_cam", "list of 9 numbers", "", "row by row; its columns are the camera's x, y, z in ecef", "",
      "rotation: ecef = R camera"},
     {"sensors[].gimbal_at_limit", "boolean", "", "", "", "the aim point is beyond sensor.gimbal_limit_deg"},
     {"sensors[].scene_rate_px_s", "list of 2 numbers", "px/s", "image: column, row", "",
@@ -109,8 +107,7 @@ static const ReferenceField fields[] = {
     {"targets[].closing_mps", "number", "m/s", "", "", "closing speed: -d(range_m)/dt"},
     {"targets[].aspect_deg", "number", "deg", "its body; clockwise from above", "",
      "direction of the sensor from the target: 0 nose on, 90 from its right, 0 .. 360"},
-    {"targets[].depression_deg", "number", "deg", "ENU at the sensor", "",
-     "angle below the horizontal: -los_el_deg"},
+    {"targets[].depression_deg", "number", "deg", "ENU at the sensor", "", "angle below the horizontal: -los_el_deg"},
     {"targets[].los_az_deg", "number", "deg", "ENU at the sensor, from north over east", "", "line of sight, 0 .. 360"},
     {"targets[].los_el_deg", "number", "deg", "ENU at the sensor", "", "line of sight above the horizontal"},
     {"targets[].los_rate_dps", "list of 2 numbers", "deg/s", "camera right, camera up; inertial space", "",
@@ -126,19 +123,22 @@ static const ReferenceField fields[] = {
      "when it has no pixel of its own", "bounding box of its visible pixels"},
     {"targets[].amodal_box_px", "list of 4 numbers", "px", "image: left, top, right, bottom", "",
      "bounding box of all its vertices, occluded or not, not cropped by the image"},
-    {"targets[].occluded_by", "string", "", "site:application:entity, `ground`, or `trees`", "when less than 1 % of it is "
+    {"targets[].occluded_by", "string", "", "site:application:entity, `ground`, or `trees`",
+     "when less than 1 % of it is "
      "occluded",
      "what occludes most of it"},
-    {"targets[].dt_k", "number", "K", "", "without thermal history", "mean temperature of its surface, by area, less "
+    {"targets[].dt_k", "number", "K", "", "without thermal history",
+     "mean temperature of its surface, by area, less "
      "that of open ground where it is"},
-    {"targets[].patch_temp_k", "list of numbers", "K", "in the order of `pitviper heat MODEL`", "without thermal history",
-     "temperature of each patch of its surface, also of those that are not seen"},
+    {"targets[].patch_temp_k", "list of numbers", "K", "in the order of `pitviper heat MODEL`",
+     "without thermal history", "temperature of each patch of its surface, also of those that are not seen"},
     {"targets[].age_s", "number", "s", "", "", "since its last Entity State"},
     {"targets[].position_error_m", "number", "m", "", "", "error of dead reckoning when it was received"},
     {"targets[].error_px", "number", "px", "", "when it is occluded; with quality.budget off",
      "its own error of position: rms displacement on the image by dead reckoning, facets and the ground"},
     {"targets[].bands", "object", "", "", "", "signal by band; empty: it is occluded"},
-    {"targets[].bands.BAND", "object", "", "", "when the band was not rendered or it is occluded", "its signal in one "
+    {"targets[].bands.BAND", "object", "", "", "when the band was not rendered or it is occluded",
+     "its signal in one "
      "band"},
     {"targets[].bands.BAND.contrast_k", "number", "K, apparent", "", "in optical and radar; without a background",
      "mean of its pixels minus mean of a ring of equal area around it"},
@@ -146,7 +146,8 @@ static const ReferenceField fields[] = {
      "root of contrast_k squared plus the variance over the target"},
     {"targets[].bands.BAND.contrast", "number", "", "", "in mwir and lwir; without a background",
      "the same difference divided by the mean of the ring"},
-    {"targets[].bands.BAND.snr", "number", "", "", "without a background (not in optical); with a contrast, but neither clutter nor noise",
+    {"targets[].bands.BAND.snr", "number", "", "",
+     "without a background (not in optical); with a contrast, but neither clutter nor noise",
      "contrast divided by the rms sum of the ring's standard deviation and the detector's noise; in optical at least 5e-5 "
      "W/(m2 sr) of it without a sensor: a dark image shows nothing. Optical, where nothing surrounds it: its mean over the noise"},
     {"targets[].bands.BAND.veil_transmittance", "number", "", "0 .. 1", "in radar",
@@ -157,22 +158,28 @@ static const ReferenceField fields[] = {
      "in radar, of a target that is not small, with quality.budget off", "rms sampling error of intensity_w_sr"},
     {"targets[].bands.BAND.error_rms_k", "number", "K, apparent", "", "in optical and radar; with quality.budget off",
      "its own error: rms over its pixels, by that displacement, heat and tables"},
-    {"targets[].bands.BAND.error_median_k", "number", "K, apparent", "", "in optical and radar; with quality.budget off",
-     "the same, median of its pixels' expected errors"},
+    {"targets[].bands.BAND.error_median_k", "number", "K, apparent", "",
+     "in optical and radar; with quality.budget off", "the same, median of its pixels' expected errors"},
     {"error", "object", "", "", "with quality.budget off", "the frame's estimate of its own error"},
-    {"error.BAND", "object", "", "", "when the band was not rendered; of the pseudo-radar, whose mean is that of a few mirrors",
+    {"error.BAND", "object", "", "",
+     "when the band was not rendered; of the pseudo-radar, whose mean is that of a few mirrors",
      "rms over the image: that of the brightest pixels, if these may be off"},
     {"error.BAND.median_k", "number", "K, apparent", "", "in optical",
      "median of the pixels' expected errors: half of them are better"},
-    {"error.BAND.beyond_1k", "number", "share of the image", "0 .. 1", "in optical", "pixels that are expected to be off by more than 1 K"},
+    {"error.BAND.beyond_1k", "number", "share of the image", "0 .. 1", "in optical",
+     "pixels that are expected to be off by more than 1 K"},
     {"error.BAND.sampling", "number", "", "share of the band's mean", "", "finite number of rays per pixel"},
-    {"error.BAND.level_of_detail", "number", "", "share of the band's mean", "", "level of detail of ground and "
+    {"error.BAND.level_of_detail", "number", "", "share of the band's mean", "",
+     "level of detail of ground and "
      "models"},
-    {"error.BAND.table", "number", "", "share of the band's mean", "", "interpolation in tables of the atmosphere and "
+    {"error.BAND.table", "number", "", "share of the band's mean", "",
+     "interpolation in tables of the atmosphere and "
      "Planck's law"},
-    {"error.BAND.heat", "number", "", "share of the band's mean", "", "steps, elements and facets of the heat of ground and "
+    {"error.BAND.heat", "number", "", "share of the band's mean", "",
+     "steps, elements and facets of the heat of ground and "
      "parts; 0 in optical"},
-    {"error.BAND.dead_reckoning", "number", "", "share of the band's mean", "", "position errors of dead-reckoned "
+    {"error.BAND.dead_reckoning", "number", "", "share of the band's mean", "",
+     "position errors of dead-reckoned "
      "entities"},
     {"error.BAND.total", "number", "", "share of the band's mean", "", "total of these"},
     {"error.BAND.sampling_k", "number", "K, apparent", "", "in optical", "the same in temperature"},
@@ -196,7 +203,8 @@ static const ReferenceField fields[] = {
     {"error.range_doppler.level_of_detail_db", "number", "dB", "", "likewise", "likewise"},
     {"error.range_doppler.table_db", "number", "dB", "", "likewise", "likewise"},
     {"error.range_doppler.total_db", "number", "dB", "", "likewise", "likewise, of these three"},
-    {"radar", "object", "", "", "with radar.preset none", "what the radar on the sensor's axis measured, and the truth of it"},
+    {"radar", "object", "", "", "with radar.preset none",
+     "what the radar on the sensor's axis measured, and the truth of it"},
     {"radar.preset", "string", "", "", "", "row of etc/radars.csv or radar.table"},
     {"radar.waveform", "object", "", "", "", "its times, and what they limit (etc/reference/radar_waveforms.md)"},
     {"radar.waveform.kind", "string", "", "", "", "lfm, stepped, pulse_doppler or fmcw"},
@@ -207,15 +215,19 @@ static const ReferenceField fields[] = {
     {"radar.waveform.interval_ms", "number", "ms", "", "", "coherent interval, about the frame's time"},
     {"radar.waveform.window_m", "number", "m", "", "", "width of the range window"},
     {"radar.waveform.unambiguous_m", "number", "m", "", "", "range by which echoes fold over"},
-    {"radar.waveform.blind_mps", "number", "m/s", "", "", "range rates apart by it look alike; its multiples from the ground are blind "
+    {"radar.waveform.blind_mps", "number", "m/s", "", "",
+     "range rates apart by it look alike; its multiples from the ground are blind "
      "speeds"},
-    {"radar.waveform.coupling_s", "number", "s", "", "", "an echo appears farther by it times its range rate over the reference's"},
+    {"radar.waveform.coupling_s", "number", "s", "", "",
+     "an echo appears farther by it times its range rate over the reference's"},
     {"radar.waveform.smear_s", "number", "s", "", "", "and is smeared in range over it times the same rate"},
     {"radar.waveform.beat_hz_m", "number", "Hz/m", "", "", "beat frequency of lfm, deramped, and fmcw; else 0"},
-    {"radar.reference_m", "number", "m", "from the sensor", "", "middle of the range window: the aim, else the ground ahead"},
+    {"radar.reference_m", "number", "m", "from the sensor", "",
+     "middle of the range window: the aim, else the ground ahead"},
     {"radar.reference_rate_mps", "number", "m/s", "above 0: receding", "", "range rate in the middle of the map"},
     {"radar.ground_rate_mps", "number", "m/s", "above 0: receding", "", "of still ground on the axis"},
-    {"radar.notch_mps", "number", "m/s", "", "", "detections so near to the ground's range rate in their direction count as ground"},
+    {"radar.notch_mps", "number", "m/s", "", "",
+     "detections so near to the ground's range rate in their direction count as ground"},
     {"radar.air_db", "number", "dB", "one way", "", "loss by gases, rain and fog over that range"},
     {"radar.noise_dbw", "number", "dB over 1 W", "", "", "thermal noise in a cell of the map"},
     {"radar.saturated", "integer", "", "", "", "I and Q values at the end of the converter's range"},
@@ -236,50 +248,62 @@ static const ReferenceField fields[] = {
      "of the sharpened image's cells where Doppler is finer than the beam"},
     {"radar.scan.sha256", "string", "", "", "",
      "SHA-256 of both images over range and azimuth, before they are rounded for a file"},
-    {"radar.detections", "list of objects", "", "strongest first, at most 256", "", "peaks over the threshold of constant false "
+    {"radar.detections", "list of objects", "", "strongest first, at most 256", "",
+     "peaks over the threshold of constant false "
      "alarms"},
     {"radar.detections[].range_m", "number", "m", "from the sensor", "", "between cells"},
-    {"radar.detections[].range_rate_mps", "number", "m/s", "above 0: receding", "", "between cells; folds over at half of the map"},
+    {"radar.detections[].range_rate_mps", "number", "m/s", "above 0: receding", "",
+     "between cells; folds over at half of the map"},
     {"radar.detections[].az_deg", "number", "deg", "camera, right positive", "", "by monopulse"},
     {"radar.detections[].el_deg", "number", "deg", "camera, up positive", "", "by monopulse"},
     {"radar.detections[].snr_db", "number", "dB", "", "", "over the noise and clutter about it"},
-    {"radar.detections[].rcs_dbsm", "number", "dB over 1 m2", "", "", "by the radar equation, as one point where it was found"},
+    {"radar.detections[].rcs_dbsm", "number", "dB over 1 m2", "", "",
+     "by the radar equation, as one point where it was found"},
     {"radar.detections[].moving", "boolean", "", "", "", "clear of the ground's range rate by more than notch_mps"},
     {"radar.detections_in_all", "integer", "", "", "", "how many passed the threshold"},
     {"radar.targets", "list of objects", "", "", "", "truth of each entity near beam and window, in order of ids"},
     {"radar.targets[].entity", "string", "", "site:application:entity", "", "id"},
     {"radar.targets[].range_m", "number", "m", "from the sensor", "", "to the origin of its model"},
     {"radar.targets[].range_rate_mps", "number", "m/s", "above 0: receding", "", "of that origin"},
-    {"radar.targets[].appears_m", "number", "m", "from the sensor", "", "range at which the profile has that origin: folded over, and "
+    {"radar.targets[].appears_m", "number", "m", "from the sensor", "",
+     "range at which the profile has that origin: folded over, and "
      "coupled to its range rate"},
     {"radar.targets[].az_deg", "number", "deg", "camera, right positive", "", "direction of that origin"},
     {"radar.targets[].el_deg", "number", "deg", "camera, up positive", "", "likewise"},
     {"radar.targets[].signature", "string", "", "model, given", "", "by its model, or by a signature of radar.given"},
-    {"radar.targets[].visible_fraction", "number", "", "0 .. 1", "", "share of its scattering centres' power in sight: those centres "
+    {"radar.targets[].visible_fraction", "number", "", "0 .. 1", "",
+     "share of its scattering centres' power in sight: those centres "
      "alone return"},
-    {"radar.targets[].rcs_dbsm", "object", "", "", "", "cross section at the centre frequency, as if wholly in sight, without the ground"},
-    {"radar.targets[].rcs_dbsm.hh", "number", "dB over 1 m2", "received, transmitted", "when it is 0", "h along the camera's columns"},
+    {"radar.targets[].rcs_dbsm", "object", "", "", "",
+     "cross section at the centre frequency, as if wholly in sight, without the ground"},
+    {"radar.targets[].rcs_dbsm.hh", "number", "dB over 1 m2", "received, transmitted", "when it is 0",
+     "h along the camera's columns"},
     {"radar.targets[].rcs_dbsm.vv", "number", "dB over 1 m2", "", "when it is 0", "v along its rows"},
     {"radar.targets[].rcs_dbsm.hv", "number", "dB over 1 m2", "", "when it is 0", "received h, transmitted v"},
-    {"radar.targets[].rcs_error_db", "object", "", "", "of a given signature", "estimated standard deviation of these, by the grid of ray "
+    {"radar.targets[].rcs_error_db", "object", "", "", "of a given signature",
+     "estimated standard deviation of these, by the grid of ray "
      "tubes alone: not by the model or physical optics"},
     {"radar.targets[].rcs_error_db.hh", "number", "dB", "", "when it scatters nothing back", "of HH"},
     {"radar.targets[].rcs_error_db.vv", "number", "dB", "", "when it scatters nothing back", "of VV"},
     {"radar.targets[].rcs_error_db.hv", "number", "dB", "", "when it scatters nothing back", "of HV"},
-    {"radar.targets[].map_error_db", "number", "dB", "", "of a given signature", "error of its cells of the map, over its power in them: by "
+    {"radar.targets[].map_error_db", "number", "dB", "", "of a given signature",
+     "error of its cells of the map, over its power in them: by "
      "ray tubes and by scattering centres"},
-    {"radar.targets[].snr_db", "number", "dB", "", "when none of it is in sight", "by the radar equation, of its centres in sight in "
+    {"radar.targets[].snr_db", "number", "dB", "", "when none of it is in sight",
+     "by the radar equation, of its centres in sight in "
      "one cell, over the thermal noise of a cell"},
     {"radar.targets[].centres", "integer", "", "", "", "scattering centres that it was summed from"},
     {"radar.targets[].ground_bounce", "object", "", "", "where the ground near it mirrors too little, or out of sight",
      "what the ground near it mirrors; as if wholly in sight"},
     {"radar.targets[].ground_bounce.coherence", "number", "", "0.001 .. 1", "",
      "share of the amplitude that the ground mirrors, roughness included; the larger of both polarisations"},
-    {"radar.targets[].ground_bounce.rcs_dbsm", "object", "", "", "", "cross section by all paths together, the direct one included"},
+    {"radar.targets[].ground_bounce.rcs_dbsm", "object", "", "", "",
+     "cross section by all paths together, the direct one included"},
     {"radar.targets[].ground_bounce.rcs_dbsm.hh", "number", "dB over 1 m2", "", "when it is 0", "likewise"},
     {"radar.targets[].ground_bounce.rcs_dbsm.vv", "number", "dB over 1 m2", "", "when it is 0", "likewise"},
     {"radar.targets[].ground_bounce.rcs_dbsm.hv", "number", "dB over 1 m2", "", "when it is 0", "likewise"},
-    {"radar.targets[].ground_bounce.once_dbsm", "object", "", "", "", "by the ground one way alone, both ways round together"},
+    {"radar.targets[].ground_bounce.once_dbsm", "object", "", "", "",
+     "by the ground one way alone, both ways round together"},
     {"radar.targets[].ground_bounce.once_dbsm.hh", "number", "dB over 1 m2", "", "when it is 0", "likewise"},
     {"radar.targets[].ground_bounce.once_dbsm.vv", "number", "dB over 1 m2", "", "when it is 0", "likewise"},
     {"radar.targets[].ground_bounce.once_dbsm.hv", "number", "dB over 1 m2", "", "when it is 0", "likewise"},
@@ -287,14 +311,19 @@ static const ReferenceField fields[] = {
     {"radar.targets[].ground_bounce.twice_dbsm.hh", "number", "dB over 1 m2", "", "when it is 0", "likewise"},
     {"radar.targets[].ground_bounce.twice_dbsm.vv", "number", "dB over 1 m2", "", "when it is 0", "likewise"},
     {"radar.targets[].ground_bounce.twice_dbsm.hv", "number", "dB over 1 m2", "", "when it is 0", "likewise"},
-    {"radar.targets[].strongest", "list of objects", "", "strongest first, at most 8", "", "the strongest of them, by the mean of HH and "
+    {"radar.targets[].strongest", "list of objects", "", "strongest first, at most 8", "",
+     "the strongest of them, by the mean of HH and "
      "VV"},
-    {"radar.targets[].strongest[].rcs_hh_dbsm", "number", "dB over 1 m2", "", "when it returns nothing so", "its cross section"},
-    {"radar.targets[].strongest[].rcs_vv_dbsm", "number", "dB over 1 m2", "", "when it returns nothing so", "its cross section"},
-    {"radar.targets[].strongest[].body_m", "list of 3 numbers", "m", "body", "", "middle of its path's first and last mirror"},
+    {"radar.targets[].strongest[].rcs_hh_dbsm", "number", "dB over 1 m2", "", "when it returns nothing so",
+     "its cross section"},
+    {"radar.targets[].strongest[].rcs_vv_dbsm", "number", "dB over 1 m2", "", "when it returns nothing so",
+     "its cross section"},
+    {"radar.targets[].strongest[].body_m", "list of 3 numbers", "m", "body", "",
+     "middle of its path's first and last mirror"},
     {"radar.targets[].strongest[].bounces", "integer", "", "0: an edge", "", "mirrors on its path"},
     {"radar.targets[].strongest[].visible", "boolean", "", "", "", "nothing else is in its way"},
-    {"radar.targets[].strongest[].part", "string", "", "", "of a given signature", "part of the model with the last mirror"},
+    {"radar.targets[].strongest[].part", "string", "", "", "of a given signature",
+     "part of the model with the last mirror"},
     {"latency_ms", "object", "", "", "in a replay at full speed",
      "when each step of the frame was done; of a run and of replay --speed X"},
     {"latency_ms.arrival_to_pose", "number", "ms", "", "before the first datagram",
@@ -312,21 +341,21 @@ static const ReferenceWord words[] = {REFERENCE_WORD_BAND, REFERENCE_WORD_CONSUM
 
 const Reference reference_truth = {
     .topic = "truth",
-    .file  = "truth.jsonl",
+    .file = "truth.jsonl",
     .title = "targets in the image, their position and signal: a line of JSON per frame",
-    .about = "JSON Lines: each line is one object. A line is appended when its frame is complete; with latency_ms, when\n"
-             "all its consumers are done with the frame, at the latest two frames later.",
+    .about =
+        "JSON Lines: each line is one object. A line is appended when its frame is complete; with latency_ms, when\n"
+        "all its consumers are done with the frame, at the latest two frames later.",
     .field = REFERENCE_FIELDS(fields),
-    .word  = REFERENCE_FIELDS(words),
-    .python =
-        "import json\n"
-        "for line in open('truth.jsonl'):\n"
-        "    frame = json.loads(line)\n"
-        "    for target in frame['targets']:\n"
-        "        if 'box_px' not in target:          # hidden: no pixel of its own\n"
-        "            continue\n"
-        "        left, top, right, bottom = target['box_px']\n"
-        "        width, height = right - left, bottom - top\n"
-        "        snr = target['bands'].get('lwir', {}).get('snr')    # absent: not computed\n"
-        "        print(frame['frame'], target['entity'], target['range_m'], (width, height), snr)\n",
+    .word = REFERENCE_FIELDS(words),
+    .python = "import json\n"
+              "for line in open('truth.jsonl'):\n"
+              "    frame = json.loads(line)\n"
+              "    for target in frame['targets']:\n"
+              "        if 'box_px' not in target:          # hidden: no pixel of its own\n"
+              "            continue\n"
+              "        left, top, right, bottom = target['box_px']\n"
+              "        width, height = right - left, bottom - top\n"
+              "        snr = target['bands'].get('lwir', {}).get('snr')    # absent: not computed\n"
+              "        print(frame['frame'], target['entity'], target['range_m'], (width, height), snr)\n",
 };

@@ -13,7 +13,8 @@ int command_line_wrong(const char *command, const char *format, ...)
     vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
     const size_t length = strlen(text);
-    log_error("%s: %s%s see `pitviper %s --help`", command, text, length && text[length - 1] == '?' ? "" : ";", command);
+    log_error("%s: %s%s see `pitviper %s --help`", command, text, length && text[length - 1] == '?' ? "" : ";",
+              command);
     return 2;
 }
 
@@ -33,12 +34,12 @@ static int matches(const struct option **found, const struct option *list, const
 static void say_long(const char *command, const char *typed, const struct option *list)
 {
     const struct option *found = NULL;
-    const int            length = (int)strcspn(typed, "="), count = matches(&found, list, typed + 2, (size_t)length - 2);
-    char                 text[512] = "";
-    int                  n = 0;
+    const int length = (int)strcspn(typed, "="), count = matches(&found, list, typed + 2, (size_t)length - 2);
+    char      text[512] = "";
+    int       n = 0;
     if (count == 1) {
         command_line_wrong(command, found->has_arg ? "option --%s needs an argument" : "option --%s takes no argument",
-                   found->name);
+                           found->name);
         return;
     }
     if (count > 1) {
@@ -100,7 +101,7 @@ int command_line_option(int argc, char **argv, const char *letters, const struct
 {
     char all[64];
     snprintf(all, sizeof all, "%s%s", letters, strchr(letters, 'h') ? "" : "h");
-    opterr           = 0;
+    opterr = 0;
     const int option = getopt_long(argc, argv, all, list, NULL);
     if (option == 'h' && !strchr(letters, 'h'))
         for (const struct option *o = list; o->name; o++)

@@ -26,14 +26,16 @@ static bool no_bands(const char *text, const char *band, size_t length, const ch
     channels_list(further, sizeof further);
     word_consider_list(&meant, "optical|radar", '|');
     for (const char *at = further; *(at += strspn(at, ", "));) {
-        char one[64];
+        char         one[64];
         const size_t n = strcspn(at, ", ");
         snprintf(one, sizeof one, "%.*s", (int)n, at);
         word_consider(&meant, one);
         at += n;
     }
-    log_error("config: %ssensor.bands: '%s' is not a list of optical, radar or channels of etc/channels.csv: %s; there is "
-              "no '%s'%s", where, text, further, word, word_hint(&meant));
+    log_error(
+        "config: %ssensor.bands: '%s' is not a list of optical, radar or channels of etc/channels.csv: %s; there is "
+        "no '%s'%s",
+        where, text, further, word, word_hint(&meant));
     return false;
 }
 
@@ -85,8 +87,7 @@ static bool bands_parse(unsigned *bands, const SpectralChannel *further[BAND_COU
         *bands |= 1u << found;
         at += length + (at[length] == ',');
     }
-    if (*bands == 0)
-        log_error("config: %ssensor.bands: no band is named; any of optical, mwir, lwir, radar", where);
+    if (*bands == 0) log_error("config: %ssensor.bands: no band is named; any of optical, mwir, lwir, radar", where);
     return *bands != 0;
 }
 
@@ -142,12 +143,16 @@ bool config_span_outside(const char *from, const char *to, double first_s, doubl
 {
     const double from_s = config_span_time_s(from, first_s, last_s), to_s = config_span_time_s(to, first_s, last_s);
     /* a live node renders frames after the last report until the entities time out; --to may ask for them */
-    const bool   late = from_s > last_s + (to_s > last_s ? 60 : 0), early = to_s < first_s, backward = from_s > to_s;
+    const bool late = from_s > last_s + (to_s > last_s ? 60 : 0), early = to_s<first_s, backward = from_s> to_s;
     if (!late && !early && !backward) return false;
-    char which[2 * sizeof ((Config *)0)->exercise.from + 24];
+    char which[2 * sizeof((Config *)0)->exercise.from + 24];
     if (backward && !late && !early) snprintf(which, sizeof which, "--from %s is after --to %s", from, to);
-    else snprintf(which, sizeof which, late ? "--from %s is after its end" : "--to %s is before its "
-                                              "start", late ? from : to);
+    else
+        snprintf(which, sizeof which,
+                 late ? "--from %s is after its end"
+                      : "--to %s is before its "
+                        "start",
+                 late ? from : to);
     log_error(
         "replay: %s: the recording runs from %.3f to %.3f s of exercise time, +0 to +%.3f from its start, -%.3f to "
         "-0 from its "
@@ -158,14 +163,17 @@ bool config_span_outside(const char *from, const char *to, double first_s, doubl
 
 /* ---- checks that involve several settings ----------------------------------------------------------- */
 
-/* Whether a store stands alone: it has all of the ground, so nothing else can be named beside it, and it is not fitted. */
+/* Whether a store stands alone: it has all of the ground, so nothing else can be named beside it, and it is not fitted.
+ */
 static bool store_alone(const Config *config)
 {
     const struct {
         const char *key;
         bool        set;
-    } other[] = {{"elevation", *config->terrain.elevation}, {"cover", *config->terrain.cover},
-                 {"orthophoto", *config->terrain.orthophoto}, {"spacing_m", config->terrain.spacing_m > 0}};
+    } other[] = {{"elevation", *config->terrain.elevation},
+                 {"cover", *config->terrain.cover},
+                 {"orthophoto", *config->terrain.orthophoto},
+                 {"spacing_m", config->terrain.spacing_m > 0}};
     if (!*config->terrain.store) return true;
     for (size_t k = 0; k < sizeof other / sizeof *other; k++)
         if (other[k].set) {
@@ -187,22 +195,25 @@ static bool detector_good(const Config *config)
 {
     bool good = true;
     if (config->detector.bits != 8 && config->detector.bits != 16) {
-        log_error("config: %sdetector.bits: %d is not 8 or 16", config_where(config, "detector.bits"), config->detector.bits);
+        log_error("config: %sdetector.bits: %d is not 8 or 16", config_where(config, "detector.bits"),
+                  config->detector.bits);
         good = false;
     }
     if (!(config->detector.lwir_low_k < config->detector.lwir_high_k)) {
         log_error("config: %sdetector.lwir_low_k: %g is not below detector.lwir_high_k, %g K",
-                  config_where(config, "detector.lwir_low_k"), config->detector.lwir_low_k, config->detector.lwir_high_k);
+                  config_where(config, "detector.lwir_low_k"), config->detector.lwir_low_k,
+                  config->detector.lwir_high_k);
         good = false;
     }
     if (!(config->detector.mwir_low_k < config->detector.mwir_high_k)) {
         log_error("config: %sdetector.mwir_low_k: %g is not below detector.mwir_high_k, %g K",
-                  config_where(config, "detector.mwir_low_k"), config->detector.mwir_low_k, config->detector.mwir_high_k);
+                  config_where(config, "detector.mwir_low_k"), config->detector.mwir_low_k,
+                  config->detector.mwir_high_k);
         good = false;
     }
-    static const char *const of_preset[] = {"detector.f_number", "detector.obscuration", "detector.integration_ms",
-                                            "detector.jitter_px", "detector.bad_share", "detector.ac_per_line",
-                                            "detector.line_noise", "detector.smear", "detector.raw"};
+    static const char *const of_preset[] = {"detector.f_number",   "detector.obscuration", "detector.integration_ms",
+                                            "detector.jitter_px",  "detector.bad_share",   "detector.ac_per_line",
+                                            "detector.line_noise", "detector.smear",       "detector.raw"};
     for (size_t i = 0; i < sizeof of_preset / sizeof *of_preset; i++)
         if (strcmp(config->sensor.preset, "none") == 0 && !*config_sheet(config) &&
             config_given(config, of_preset[i])) {
@@ -241,7 +252,7 @@ static bool terrain_good(const Config *config)
 /* Checks publish.pairs, coco and planes: what they need of other keys. */
 static bool products_good(const Config *config)
 {
-    bool good = true;
+    bool       good = true;
     const bool pairs = strcmp(config->publish.pairs, "off") != 0;
     if ((pairs || config->publish.coco) && !config->publish.files) {
         log_error("config: %spublish.%s: needs image files; set publish.files: true",
@@ -296,13 +307,14 @@ static bool exercise_good(const Config *config)
 {
     DisEntityId id;
     double      unix_s;
-    bool good = true;
+    bool        good = true;
     if (*config->exercise.host && strcmp(config->exercise.host, "munition") != 0 &&
         strcmp(config->exercise.host, "observer") != 0 && !dis_entity_id_parse(&id, config->exercise.host)) {
         WordMeant meant = word_meant(config->exercise.host);
         word_consider_list(&meant, "munition|observer", '|');
         log_error("config: %sexercise.host: '%s' is neither site:application:entity, for example 1:3001:82, nor "
-                  "munition nor observer%s", config_where(config, "exercise.host"), config->exercise.host, word_hint(&meant));
+                  "munition nor observer%s",
+                  config_where(config, "exercise.host"), config->exercise.host, word_hint(&meant));
         good = false;
     }
     if (*config->exercise.aim && !dis_entity_id_parse(&id, config->exercise.aim)) {
@@ -316,8 +328,9 @@ static bool exercise_good(const Config *config)
         good = false;
     }
     if (*config->exercise.local_solar && !config_local_solar(&unix_s, config)) {
-        log_error("config: %sexercise.local_solar: '%s' is not a time such as 2026-06-21T10:00:00, 1900 .. 2100, without a zone",
-                  config_where(config, "exercise.local_solar"), config->exercise.local_solar);
+        log_error(
+            "config: %sexercise.local_solar: '%s' is not a time such as 2026-06-21T10:00:00, 1900 .. 2100, without a zone",
+            config_where(config, "exercise.local_solar"), config->exercise.local_solar);
         good = false;
     }
     if (*config->exercise.local_solar && *config->exercise.utc) {
@@ -326,17 +339,19 @@ static bool exercise_good(const Config *config)
         good = false;
     }
     const char *const moment[2] = {config->exercise.from, config->exercise.to};
-    bool good_spans = true;
+    bool              good_spans = true;
     for (int i = 0; i < 2; i++)
         if (!config_span_good(moment[i])) {
             good_spans = false;
-            log_error("config: %sexercise.%s: '%s' is not a number of seconds: 3471.5 is exercise time, +12 is from the "
-                      "recording's start, -5 from its end", config_where(config, i ? "exercise.to_s" : "exercise.from_s"),
-                      i ? "to_s" : "from_s", moment[i]);
+            log_error(
+                "config: %sexercise.%s: '%s' is not a number of seconds: 3471.5 is exercise time, +12 is from the "
+                "recording's start, -5 from its end",
+                config_where(config, i ? "exercise.to_s" : "exercise.from_s"), i ? "to_s" : "from_s", moment[i]);
             good = false;
         }
     if (good_spans && config_span_backward(config->exercise.from, config->exercise.to)) {
-        log_error("config: %sexercise.from_s: %s is after exercise.to_s: %s", config_where(config, "exercise.from_s"), config->exercise.from, config->exercise.to);
+        log_error("config: %sexercise.from_s: %s is after exercise.to_s: %s", config_where(config, "exercise.from_s"),
+                  config->exercise.from, config->exercise.to);
         good = false;
     }
     return good;
@@ -353,7 +368,7 @@ Status config_check(const Config *config)
     good = exercise_good(config) && good;
     good &= !*config->record.path || dis_recorder_name("config: record.path", config->record.path);
     good &= publish_video_check(config->publish.video, config->publish.stream, config->publish.video_codec,
-                              config->sensor.bands) == STATUS_OK;
+                                config->sensor.bands) == STATUS_OK;
     const bool sensor = strcmp(config->sensor.preset, "none") != 0 || *config_sheet(config);
     good &= publish_memory_check(config->publish.memory, config->publish.memory_planes, sensor) == STATUS_OK;
     return good ? STATUS_OK : STATUS_BAD_VALUE;

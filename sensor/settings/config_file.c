@@ -1,4 +1,5 @@
-/* sensor/settings/config_file.c: sets the settings from files and command lines, says what they are, and writes them. */
+/* sensor/settings/config_file.c: sets the settings from files and command lines, says what they are, and writes them.
+ */
 #include "sensor/settings/config_private.h"
 
 #include "pitviper_channels.h"
@@ -13,8 +14,8 @@ OpticalChannels config_optical(const Config *config)
 {
     /* a channel selected in place of nir is all there is of the band */
     return strcmp(config->sensor.optical, "nir") == 0 || !channel_in(SPECTRAL_NIR)->standard ? OPTICAL_NIR
-           : strcmp(config->sensor.optical, "rgb") == 0                                     ? OPTICAL_RGB
-                                                                                            : OPTICAL_PAN;
+           : strcmp(config->sensor.optical, "rgb") == 0                                      ? OPTICAL_RGB
+                                                                                             : OPTICAL_PAN;
 }
 
 bool config_adaptive(const Config *config) { return strcmp(config->sensor.antialias, "adaptive") == 0; }
@@ -73,7 +74,8 @@ bool config_is_readable(const char *key, const char *path)
     if (!*path || file_is_regular(why, path)) return true;
     log_error("config: %s: cannot read %s: %s; in a file of settings paths are relative to that file, on the command "
               "line "
-              "to the current folder", key, path, why);
+              "to the current folder",
+              key, path, why);
     return false;
 }
 
@@ -114,7 +116,8 @@ Status config_read_checked(Config *config, const char *path)
 {
     Status status = settings_read_as(config, config->given, &config_table, path, path);
     snprintf(config->file, sizeof config->file, "%s", strlen(path) < sizeof config->file ? path : "");
-    if ((status == STATUS_OK || status == STATUS_BAD_VALUE) && config_check(config) != STATUS_OK) status = STATUS_BAD_VALUE;
+    if ((status == STATUS_OK || status == STATUS_BAD_VALUE) && config_check(config) != STATUS_OK)
+        status = STATUS_BAD_VALUE;
     log_suppress(true);
     if (!config_bands_check(config->sensor.bands, "")) /* reported: what follows is checked with all bands */
         strcpy(config->sensor.bands, config_default().sensor.bands);
@@ -125,7 +128,7 @@ Status config_read_checked(Config *config, const char *path)
 const char *config_where(const Config *config, const char *key)
 {
     static _Thread_local char text[sizeof config->file + 16];
-    const int row = settings_find(&config_table, key);
+    const int                 row = settings_find(&config_table, key);
     const int line = *config->file && config->given[row] && !config->later[row] ? config_line(key, config->file) : 0;
     snprintf(text, sizeof text, "%s:%d: ", config->file, line);
     return line > 0 ? text : "";
@@ -135,15 +138,15 @@ const char *config_where(const Config *config, const char *key)
 
 void config_text(char *out, size_t out_size, const Config *config)
 {
-    const Config plain  = config_default();
+    const Config plain = config_default();
     Config       hashed = *config;
-    hashed.network         = plain.network;
-    hashed.publish         = plain.publish;
-    hashed.record          = plain.record;
-    hashed.exercise.port   = plain.exercise.port;
+    hashed.network = plain.network;
+    hashed.publish = plain.publish;
+    hashed.record = plain.record;
+    hashed.exercise.port = plain.exercise.port;
     memcpy(hashed.exercise.from, plain.exercise.from, sizeof hashed.exercise.from);
     memcpy(hashed.exercise.to, plain.exercise.to, sizeof hashed.exercise.to);
-    hashed.quality         = plain.quality; /* the settings that it selects are hashed themselves */
+    hashed.quality = plain.quality; /* the settings that it selects are hashed themselves */
     settings_absolute(&hashed, &config_table);
     settings_text(out, out_size, &config_table, &hashed);
 }
@@ -153,7 +156,8 @@ void config_write(FILE *to, const Config *config)
     static const bool none[config_keys_max] = {false};
     fputs("# Settings of pitviper " PITVIPER_VERSION ": every key with its default. Remove the # to change it.\n"
           "# A key without a value is chosen automatically; the choice is printed.\n"
-          "# `pitviper check FILE` validates a file.\n", to);
+          "# `pitviper check FILE` validates a file.\n",
+          to);
     settings_write(to, &config_table, config, none);
 }
 

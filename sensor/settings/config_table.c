@@ -113,7 +113,8 @@ static const Setting keys[] = {
      "and detections are products"},
     {"radar.table", SETTING_PATH, AT(radar.table), 0, 0, NULL, "",
      "a .csv with the columns of etc/radars.csv, whose rows radar.preset names in place of those"},
-    {"radar.ground", SETTING_BOOL, AT(radar.ground), 0, 1, NULL, "", "that radar's echoes of ground and plants; with a preset"},
+    {"radar.ground", SETTING_BOOL, AT(radar.ground), 0, 1, NULL, "",
+     "that radar's echoes of ground and plants; with a preset"},
     {"radar.ground_bounce", SETTING_BOOL, AT(radar.ground_bounce), 0, 1, NULL, "",
      "reflections of that radar's waves by the ground near entities, on the way in and out; with a preset"},
     {"radar.chaff_dipoles", SETTING_DOUBLE, AT(radar.chaff_dipoles), 0, 1e10, NULL, "",
@@ -335,21 +336,21 @@ static const Setting keys[] = {
 };
 enum { key_count = sizeof keys / sizeof keys[0] };
 _Static_assert((int)key_count <= (int)config_keys_max, "Config.given is too small");
-const SettingTable config_table = {.module = "config", .row = keys, .count = key_count,
-                                   .all_keys = "`pitviper check --default`"};
+const SettingTable config_table = {
+    .module = "config", .row = keys, .count = key_count, .all_keys = "`pitviper check --default`"};
 
 Config config_default(void)
 {
     Config c = {0};
-    c.sensor.width_px         = 720;
-    c.sensor.height_px        = 486;
-    c.sensor.hfov_deg         = 6;
-    c.sensor.samples          = 1;
-    c.sensor.edge_samples     = 4;
-    c.sensor.target_samples   = 48; /* error of a sunlit crescent below 1 %: tests/render/test_small_targets.c */
+    c.sensor.width_px = 720;
+    c.sensor.height_px = 486;
+    c.sensor.hfov_deg = 6;
+    c.sensor.samples = 1;
+    c.sensor.edge_samples = 4;
+    c.sensor.target_samples = 48; /* error of a sunlit crescent below 1 %: tests/render/test_small_targets.c */
     c.sensor.gimbal_limit_deg = 45;
-    c.sensor.gimbal_rate_dps  = 60;
-    c.sensor.gimbal_lag_s     = 0.03;
+    c.sensor.gimbal_rate_dps = 60;
+    c.sensor.gimbal_lag_s = 0.03;
     strcpy(c.sensor.bands, "optical,mwir,lwir,radar");
     strcpy(c.sensor.optical, "rgb");
     strcpy(c.sensor.sky_visibility, "on");
@@ -357,91 +358,91 @@ Config config_default(void)
     strcpy(c.sensor.mount, "auto");
     c.sensor.mount_x_m = c.sensor.mount_y_m = c.sensor.mount_z_m = NAN;
     strcpy(c.detector.level, "auto");
-    c.detector.plateau              = 0.002;
-    c.detector.agc_s                = 2; /* without a lag the display flickers: tests/system/test_level.sh */
-    c.detector.bits                 = 8;
-    c.detector.gain                 = 1;
-    c.detector.noise_optical        = 0.005;
-    c.detector.netd_mwir_k          = 0.03; /* staring arrays of public data sheets: 20 .. 50 mK */
-    c.detector.netd_lwir_k          = 0.05;
-    c.detector.mwir_low_k           = 270;
-    c.detector.mwir_high_k          = 340;
-    c.detector.lwir_low_k           = 270;
-    c.detector.lwir_high_k          = 330;
+    c.detector.plateau = 0.002;
+    c.detector.agc_s = 2; /* without a lag the display flickers: tests/system/test_level.sh */
+    c.detector.bits = 8;
+    c.detector.gain = 1;
+    c.detector.noise_optical = 0.005;
+    c.detector.netd_mwir_k = 0.03; /* staring arrays of public data sheets: 20 .. 50 mK */
+    c.detector.netd_lwir_k = 0.05;
+    c.detector.mwir_low_k = 270;
+    c.detector.mwir_high_k = 340;
+    c.detector.lwir_low_k = 270;
+    c.detector.lwir_high_k = 330;
     c.detector.optical_high_w_m2_sr = 40;
     strcpy(c.sensor.preset, "none");
     c.sensor.lens_k1 = c.sensor.lens_k2 = c.sensor.lens_k3 = c.sensor.lens_p1 = c.sensor.lens_p2 = NAN;
     c.sensor.lateral_r = c.sensor.lateral_b = NAN;
-    c.detector.noise                = 1;
+    c.detector.noise = 1;
     c.detector.f_number = c.detector.obscuration = c.detector.integration_ms = c.detector.jitter_px = NAN;
     c.detector.bad_share = c.detector.ac_per_line = c.detector.line_noise = NAN;
-    c.detector.smear                = true;
-    c.detector.raw                  = true;
-    c.radar.bin_m                   = 0.3; /* 500 MHz of bandwidth */
-    c.radar.bins                    = 512;
-    c.radar.lobe_deg                = 3;
+    c.detector.smear = true;
+    c.detector.raw = true;
+    c.radar.bin_m = 0.3; /* 500 MHz of bandwidth */
+    c.radar.bins = 512;
+    c.radar.lobe_deg = 3;
     strcpy(c.radar.preset, "none");
-    c.radar.ground                  = true;
-    c.radar.ground_bounce           = true;
-    c.radar.warp_mm                 = 1;
-    c.radar.chaff_dipoles           = 1e6; /* of 5.1 million fibres in a cartridge, cut for several bands */
-    c.radar.scan_step               = 0.5;
-    c.exercise.port                 = -1;
-    c.exercise.exercise             = -1;
-    c.exercise.listen_s             = 2;
-    c.network.ttl                   = 1;
-    c.network.queue_mb              = 256; /* a million Entity States; pages are touched only when needed */
-    c.node.site                     = 4711;
-    c.node.application              = 1;
+    c.radar.ground = true;
+    c.radar.ground_bounce = true;
+    c.radar.warp_mm = 1;
+    c.radar.chaff_dipoles = 1e6; /* of 5.1 million fibres in a cartridge, cut for several bands */
+    c.radar.scan_step = 0.5;
+    c.exercise.port = -1;
+    c.exercise.exercise = -1;
+    c.exercise.listen_s = 2;
+    c.network.ttl = 1;
+    c.network.queue_mb = 256; /* a million Entity States; pages are touched only when needed */
+    c.node.site = 4711;
+    c.node.application = 1;
     strcpy(c.publish.dis, "off");
     strcpy(c.publish.pairs, "off");
     strcpy(c.publish.planes, "all");
-    c.publish.files                 = true;
-    c.publish.truth                 = true;
-    c.publish.png                   = true;
-    c.publish.coco_min_pixels       = 5;   /* of 4 no class can be told */
-    c.publish.coco_min_snr          = 0.1; /* in the dark: 3e-6 W/(m2 sr), ten of the display's 255 steps */
+    c.publish.files = true;
+    c.publish.truth = true;
+    c.publish.png = true;
+    c.publish.coco_min_pixels = 5; /* of 4 no class can be told */
+    c.publish.coco_min_snr = 0.1;  /* in the dark: 3e-6 W/(m2 sr), ten of the display's 255 steps */
     strcpy(c.publish.video_codec, "h264");
     strcpy(c.publish.video_labels, "off");
     strcpy(c.publish.klv, "async");
     strcpy(c.publish.vmti, "atr");
     strcpy(c.publish.memory_planes, "float");
     strcpy(c.publish.memory_record, "sensor");
-    c.publish.memory_slots          = 4;
+    c.publish.memory_slots = 4;
     strcpy(c.weather.atmosphere, "us1976");
-    c.weather.visibility_m          = 23000;
-    c.weather.air_temp_k            = NAN;
-    c.weather.pressure_mbar         = 1013.25;
-    c.weather.wind_mps              = 3;
-    c.weather.wind_from_deg         = 270;
-    c.terrain.relief_m              = 15;
+    c.weather.visibility_m = 23000;
+    c.weather.air_temp_k = NAN;
+    c.weather.pressure_mbar = 1013.25;
+    c.weather.wind_mps = 3;
+    c.weather.wind_from_deg = 270;
+    c.terrain.relief_m = 15;
     strcpy(c.weather.day, "clear");
-    c.weather.air_range_k           = 10;
-    c.weather.humidity_pct          = 60;
-    c.heat.step_s                   = 600;
-    c.heat.vehicle_step_s           = 30;
-    c.heat.facets                   = 7;
-    c.heat.shadow_m                 = 16;
+    c.weather.air_range_k = 10;
+    c.weather.humidity_pct = 60;
+    c.heat.step_s = 600;
+    c.heat.vehicle_step_s = 30;
+    c.heat.facets = 7;
+    c.heat.shadow_m = 16;
     strcpy(c.terrain.vertical, "auto");
     strcpy(c.terrain.ground, "auto");
     strcpy(c.terrain.detail, "on");
     strcpy(c.terrain.woods, "on");
     strcpy(c.terrain.woods_leaves, "on");
-    c.terrain.woods_trees           = 300000;
-    c.terrain.woods_low_m           = 60;
-    c.observer.range_m              = 600;
-    c.observer.height_m             = 250;
-    c.observer.rate_dps             = 2;
-    c.models.sag_m                  = 0.002;
-    c.entities.timeout_s            = 12;
-    c.entities.timeout_land_v7_s    = 132;
+    c.terrain.woods_trees = 300000;
+    c.terrain.woods_low_m = 60;
+    c.observer.range_m = 600;
+    c.observer.height_m = 250;
+    c.observer.rate_dps = 2;
+    c.models.sag_m = 0.002;
+    c.entities.timeout_s = 12;
+    c.entities.timeout_land_v7_s = 132;
     c.entities.extrapolation_limit_s = 12;
-    c.entities.capacity             = 100000;
-    c.entities.shown                = 2000;
-    c.entities.new_per_s            = 65536; /* as many as a sender has ids */
+    c.entities.capacity = 100000;
+    c.entities.shown = 2000;
+    c.entities.new_per_s = 65536; /* as many as a sender has ids */
     strcpy(c.quality.budget, "on");
     c.quality.radiance_rmse_percent = c.quality.temperature_rms_k = c.quality.frame_ms = NAN;
-    c.quality.machine_factor        = 1;
-    c.seed                          = 1;
+    c.quality.machine_factor = 1;
+    c.seed = 1;
     return c;
 }

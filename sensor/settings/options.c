@@ -11,8 +11,23 @@
 
 enum { IN_REPLAY = 1, IN_RUN = 2, IN_BOTH = 3 };
 enum {
-    OUT = 256, SIZE, HOST, CONFIG, SET, THREADS, SPEED, FOR, FRAMES, NO_SKIP, ISA, OVERWRITE, ONLY, SAVE, SWEEP,
-    HELP, KEY
+    OUT = 256,
+    SIZE,
+    HOST,
+    CONFIG,
+    SET,
+    THREADS,
+    SPEED,
+    FOR,
+    FRAMES,
+    NO_SKIP,
+    ISA,
+    OVERWRITE,
+    ONLY,
+    SAVE,
+    SWEEP,
+    HELP,
+    KEY
 };
 
 static const char *const names[] = {"replay", "run"};
@@ -35,7 +50,8 @@ static const struct Row {
     {"out", OUT, IN_BOTH, NULL, "DIR", "folder for the products (default: out)"},
     {"overwrite", OVERWRITE, IN_BOTH, NULL, NULL,
      "replace the products of an earlier run in DIR, or a recording of that\nname; without it that is an error"},
-    {"bands", KEY, IN_BOTH, "sensor.bands", "LIST", "bands to render: any of optical,mwir,lwir,radar (default: all); swir in the place of optical"},
+    {"bands", KEY, IN_BOTH, "sensor.bands", "LIST",
+     "bands to render: any of optical,mwir,lwir,radar (default: all); swir in the place of optical"},
     {"size", SIZE, IN_BOTH, NULL, "WxH", "image size in pixels (default: 720x486)"},
     {"rate", KEY, IN_BOTH, "sensor.rate_hz", "HZ",
      "frames per second of exercise time (default: 5 for a munition, 1 for an\nobserver)"},
@@ -86,8 +102,7 @@ static const struct Row {
      "udp://HOST:PORT: live video with metadata (MPEG-TS), one port per band"},
     {"memory", KEY, IN_BOTH, "publish.memory", "NAME",
      "a ring of frames in shared memory, for a recogniser on this machine"},
-    {"latest", KEY, IN_BOTH, "publish.latest=true", NULL,
-     "DIR/latest/BAND.png: the newest display of each band"},
+    {"latest", KEY, IN_BOTH, "publish.latest=true", NULL, "DIR/latest/BAND.png: the newest display of each band"},
     {"sweep", SWEEP, IN_REPLAY, NULL, "FILE",
      "one run for each combination of the settings in a YAML file, in folders\n"
      "of DIR, with manifest.jsonl and manifest.html; resumes when repeated"},
@@ -184,7 +199,8 @@ static bool add_host(Options *o, const char *text)
 {
     if (o->host_count == (o->command == COMMAND_RUN ? 1 : options_hosts_max)) {
         log_error(o->command == COMMAND_RUN ? "options: --host: a live node has %d; start another node for another host"
-                                            : "options: --host: more than %d hosts", o->host_count);
+                                            : "options: --host: more than %d hosts",
+                  o->host_count);
         return false;
     }
     o->host[o->host_count++] = text;
@@ -208,7 +224,8 @@ static bool parse_frames(int out[options_only_max], int *out_count, const char *
         snprintf(one, sizeof one, "%.*s", (int)(length < sizeof one ? length : sizeof one - 1), at);
         if (!text_to_long(&number, one) || number < 0 || number > 999999 || count == options_only_max) {
             log_error("options: --%s: '%s' is not a list of at most %d frame numbers in 0 .. 999999, for example "
-                      "3,7,12", name, text, options_only_max);
+                      "3,7,12",
+                      name, text, options_only_max);
             return false;
         }
         out[count++] = (int)number;
@@ -230,12 +247,19 @@ static bool take(Options *o, const struct Row *row, const char *text)
     case KEY:
         if (!row->argument) return set_pair(&o->config, row->key, source);
         return config_set(&o->config, row->key, text, source) == STATUS_OK;
-    case OUT: o->out = text; return true;
-    case SIZE: return set_size(&o->config, text);
-    case SET: return set_pair(&o->config, text, source);
-    case HOST: return add_host(o, text);
-    case THREADS: return whole(&o->threads, row->name, text, 1, 256);
-    case FRAMES: return whole(&o->frames, row->name, text, 1, 1000000000);
+    case OUT:
+        o->out = text;
+        return true;
+    case SIZE:
+        return set_size(&o->config, text);
+    case SET:
+        return set_pair(&o->config, text, source);
+    case HOST:
+        return add_host(o, text);
+    case THREADS:
+        return whole(&o->threads, row->name, text, 1, 256);
+    case FRAMES:
+        return whole(&o->frames, row->name, text, 1, 1000000000);
     case SPEED:
         if (strcmp(text, "max") == 0) o->speed = INFINITY;
         else ok = text_to_double(&o->speed, text) && o->speed >= 1e-3 && o->speed <= 1e6;
@@ -245,17 +269,26 @@ static bool take(Options *o, const struct Row *row, const char *text)
         ok = text_to_double(&o->for_s, text) && o->for_s > 0 && o->for_s <= 1e8;
         if (!ok) log_error("options: --for: '%s' is not a number of seconds above 0", text);
         return ok;
-    case NO_SKIP: o->no_skip = true; return true;
+    case NO_SKIP:
+        o->no_skip = true;
+        return true;
     case ISA:
         ok = strcmp(text, "avx2") == 0 || strcmp(text, "sse4.2") == 0 || strcmp(text, "avx512") == 0;
         if (!ok) log_error("options: --isa: '%s' is not avx2, sse4.2 or avx512", text);
         o->isa = text;
         return ok;
-    case ONLY: return parse_frames(o->only, &o->only_count, row->name, text);
-    case SAVE: return parse_frames(o->save, &o->save_count, row->name, text);
-    case SWEEP: o->sweep = text; return true;
-    case OVERWRITE: o->overwrite = true; return true;
-    default: return true; /* CONFIG has been read already */
+    case ONLY:
+        return parse_frames(o->only, &o->only_count, row->name, text);
+    case SAVE:
+        return parse_frames(o->save, &o->save_count, row->name, text);
+    case SWEEP:
+        o->sweep = text;
+        return true;
+    case OVERWRITE:
+        o->overwrite = true;
+        return true;
+    default:
+        return true; /* CONFIG has been read already */
     }
 }
 
@@ -296,7 +329,7 @@ static bool note_given(Options *o, const struct Row *row, const char *text)
 void options_variant(const char *argv[options_variant_argv], const Options *o, const char *settings, const char *out)
 {
     const char *const fixed[] = {"pitviper", names[o->command], "--config", settings, "--out", out, "--overwrite"};
-    int               n       = 0;
+    int               n = 0;
     for (size_t i = 0; i < sizeof fixed / sizeof *fixed; i++) argv[n++] = fixed[i];
     for (int i = 0; i < o->given_count; i++) {
         argv[n++] = o->given[i].flag;
@@ -304,7 +337,7 @@ void options_variant(const char *argv[options_variant_argv], const Options *o, c
     }
     argv[n++] = "--";
     argv[n++] = o->log;
-    argv[n]   = NULL;
+    argv[n] = NULL;
 }
 
 /* ---- the command line -------------------------------------------------------------------------------- */
@@ -313,7 +346,7 @@ int options_count(void) { return row_count; }
 
 bool options_option(const char **name, bool *argument, CommandName command, int i)
 {
-    *name     = rows[i].name;
+    *name = rows[i].name;
     *argument = rows[i].argument != NULL;
     return rows[i].where >> command & 1;
 }
@@ -356,8 +389,13 @@ int options_parse(Options *o, CommandName command, int argc, char **argv)
     struct option list[row_count + 1];
     const char   *name = names[command];
     list_options(list, command);
-    *o = (Options){.command = command, .out = "out", .isa = "avx2", .threads = thread_processors(), .speed = INFINITY,
-                   .for_s = INFINITY, .config = config_default()};
+    *o = (Options){.command = command,
+                   .out = "out",
+                   .isa = "avx2",
+                   .threads = thread_processors(),
+                   .speed = INFINITY,
+                   .for_s = INFINITY,
+                   .config = config_default()};
     const Status status = read_config(&o->config, list, argc, argv);
     if (status == STATUS_NO_MEMORY) log_error("%s: out of memory", name);
     if (status != STATUS_OK) return 1 + (status == STATUS_NO_MEMORY ? 1 : 2);
@@ -372,8 +410,9 @@ int options_parse(Options *o, CommandName command, int argc, char **argv)
     }
     if (optind + (command == COMMAND_REPLAY) != argc) {
         if (command == COMMAND_RUN)
-            return 1 + command_line_wrong(name, "'%s' is not an option; a live node takes no log, `pitviper replay` does",
-                                  argv[optind]);
+            return 1 + command_line_wrong(name,
+                                          "'%s' is not an option; a live node takes no log, `pitviper replay` does",
+                                          argv[optind]);
         if (optind == argc)
             return 1 + command_line_wrong(name, "no LOG is named: usage: pitviper replay LOG [options]");
         return 1 + command_line_wrong(name, "one LOG at a time, not also '%s'", argv[optind + 1]);

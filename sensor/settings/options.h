@@ -5,7 +5,9 @@
 #include "sensor/settings/config.h"
 
 enum {
-    options_hosts_max = 64, options_only_max = 256, options_given_max = 64,
+    options_hosts_max = 64,
+    options_only_max = 256,
+    options_given_max = 64,
     options_variant_argv = 10 + 2 * options_given_max,
 };
 
@@ -21,21 +23,22 @@ typedef struct OptionGiven {
 typedef struct Options {
     CommandName command;
     const char *log, *out, *isa;
-    const char *sweep;          /* a file of sensor/commands/sweep/sweep.h; NULL: one run */
+    const char *sweep;                       /* a file of sensor/commands/sweep/sweep.h; NULL: one run */
     int         threads, host_count, frames; /* frames: stop after so many; 0: never */
-    double      speed, for_s;   /* exercise seconds per second, INFINITY: as fast as possible; stop after */
+    double      speed, for_s; /* exercise seconds per second, INFINITY: as fast as possible; stop after */
     bool        no_skip, overwrite;
-    const char *host[options_hosts_max]; /* several ids; a single one is in the configuration */
+    const char *host[options_hosts_max];            /* several ids; a single one is in the configuration */
     int         only_count, only[options_only_max]; /* frames to be made, ascending, each once; 0: all */
     int         save_count, save[options_only_max]; /* frames that are written as frame files, likewise; 0: none */
     int         given_count;
-    OptionGiven given[options_given_max]; /* in order; without settings, which are in config, and the options of the sweep itself */
-    Config      config;
+    OptionGiven given[options_given_max]; /* in order; without settings, which are in config, and the options of the
+                                             sweep itself */
+    Config config;
 } Options;
 
 /* Fills *o with defaults, the configuration file, then the options over it. 0: continue; else exit with this code - 1:
  * help was requested (0), or an error was logged (2). */
-int options_parse(Options *o, CommandName command, int argc, char **argv);
+int         options_parse(Options *o, CommandName command, int argc, char **argv);
 const char *options_command(const Options *o); /* `replay`, `run` */
 
 /* The command line of a variant of a sweep: these options, with the settings from a file and a folder of its own.

@@ -10,13 +10,13 @@
 
 /* ---- truth planes ------------------------------------------------------------------------------------- */
 
-static const char *const plane_name[PLANE_CHOICES] = {"range", "entity", "part", "material", "temperature", "normal",
-                                                    "instance", "cover", "emissivity"};
+static const char *const plane_name[PLANE_CHOICES] = {"range",  "entity",   "part",  "material",  "temperature",
+                                                      "normal", "instance", "cover", "emissivity"};
 
 bool publish_planes_parse(unsigned *planes, const char *text)
 {
     unsigned set = 0;
-    *planes      = planes_none;
+    *planes = planes_none;
     if (strcmp(text, "none") == 0) return true;
     if (strcmp(text, "all") == 0) {
         *planes = planes_all;
@@ -24,9 +24,8 @@ bool publish_planes_parse(unsigned *planes, const char *text)
     }
     for (const char *at = text; at;) {
         const size_t length = strcspn(at, ",");
-        int          k      = 0;
-        while (k < PLANE_CHOICES &&
-               (strlen(plane_name[k]) != length || strncmp(plane_name[k], at, length) != 0)) k++;
+        int          k = 0;
+        while (k < PLANE_CHOICES && (strlen(plane_name[k]) != length || strncmp(plane_name[k], at, length) != 0)) k++;
         if (k == PLANE_CHOICES || set >> k & 1) return false; /* unknown, or named twice */
         set |= 1u << k;
         at = at[length] ? at + length + 1 : NULL;
@@ -71,7 +70,8 @@ Status publish_memory_check(const char *name, const char *planes, bool sensor)
     if (!*name) return STATUS_OK;
     if (!memory_name_good(name)) {
         log_error("config: publish.memory: '%s' is not a name of letters, digits, `-`, `_` and `.` that begins with a "
-                  "letter or a digit, for example seeker", name);
+                  "letter or a digit, for example seeker",
+                  name);
         return STATUS_BAD_VALUE;
     }
     if (strcmp(planes, "counts") == 0 && !sensor) {
@@ -88,7 +88,7 @@ Status publish_memory_check(const char *name, const char *planes, bool sensor)
 static bool read_number(int *out, const char **at, int most)
 {
     int         value = 0;
-    const char *from  = *at;
+    const char *from = *at;
     while (**at >= '0' && **at <= '9') {
         value = 10 * value + (**at - '0');
         if (value > most) return false;
@@ -142,8 +142,10 @@ bool publish_stream_parse(StreamUrl *out, const char **why, const char *text)
 
 VideoKind video_kind(const char *path)
 {
-    static const struct { const char *end; VideoKind kind; } ends[] = {
-        {".mp4", VIDEO_MP4}, {".mkv", VIDEO_MKV}, {".ts", VIDEO_TS}};
+    static const struct {
+        const char *end;
+        VideoKind   kind;
+    } ends[] = {{".mp4", VIDEO_MP4}, {".mkv", VIDEO_MKV}, {".ts", VIDEO_TS}};
     const size_t length = strlen(path);
     if (!length) return VIDEO_NONE;
     for (size_t i = 0; i < sizeof ends / sizeof *ends; i++) {
@@ -159,7 +161,7 @@ static bool other_video(const char *path)
 {
     struct stat about;
     const char *ending = output_ending(path);
-    bool        known  = strcmp(ending, ".264") == 0 || strcmp(ending, ".265") == 0; /* the only ones without a letter */
+    bool        known = strcmp(ending, ".264") == 0 || strcmp(ending, ".265") == 0; /* the only ones without a letter */
     for (const char *at = ending; *at && !known; at++) known = (*at | 32) >= 'a' && (*at | 32) <= 'z';
     return known && !(stat(path, &about) == 0 && S_ISDIR(about.st_mode));
 }
@@ -167,7 +169,7 @@ static bool other_video(const char *path)
 VideoCodec video_codec(const char *name)
 {
     static const char *const names[] = {"h264", "h264-10", "hevc-12", "ffv1"};
-    int                      i       = 0;
+    int                      i = 0;
     while (i < VIDEO_FFV1 && strcmp(name, names[i]) != 0) i++;
     return (VideoCodec)i;
 }
@@ -183,7 +185,7 @@ static int bands_listed(const char *text)
 Status publish_video_check(const char *video, const char *stream, const char *codec, const char *bands)
 {
     const VideoKind kind = video_kind(video);
-    const char     *why  = NULL;
+    const char     *why = NULL;
     StreamUrl       url;
     if (kind == VIDEO_NONE && !*stream) return STATUS_OK;
 #ifndef PITVIPER_VIDEO
@@ -193,8 +195,10 @@ Status publish_video_check(const char *video, const char *stream, const char *co
     return STATUS_BAD_VALUE;
 #endif
     if (kind == VIDEO_FOLDER && other_video(video)) {
-        log_error("config: publish.video: '%s': choose a name that ends with .mp4, .mkv or .ts, or a folder (a name without an "
-                  "ending, or with / at its end)", video);
+        log_error(
+            "config: publish.video: '%s': choose a name that ends with .mp4, .mkv or .ts, or a folder (a name without an "
+            "ending, or with / at its end)",
+            video);
         return STATUS_BAD_VALUE;
     }
     if (*stream && !publish_stream_parse(&url, &why, stream)) {
@@ -204,7 +208,8 @@ Status publish_video_check(const char *video, const char *stream, const char *co
     const int steps = (bands_listed(bands) - 1) * publish_stream_port_step;
     if (*stream && url.port + steps > 65535) {
         log_error("config: publish.stream: port %d: the last of %d bands would be sent to port %d; choose one of at "
-                  "most %d", url.port, steps / publish_stream_port_step + 1, url.port + steps, 65535 - steps);
+                  "most %d",
+                  url.port, steps / publish_stream_port_step + 1, url.port + steps, 65535 - steps);
         return STATUS_BAD_VALUE;
     }
     const bool lossless = video_codec(codec) == VIDEO_FFV1;
@@ -215,7 +220,8 @@ Status publish_video_check(const char *video, const char *stream, const char *co
     }
     if (lossless && (kind == VIDEO_MP4 || kind == VIDEO_TS)) {
         log_error("config: publish.video_codec: ffv1 is for .mkv files; publish.video: %s: choose a name that ends "
-                  "with .mkv, a folder, or another codec", video);
+                  "with .mkv, a folder, or another codec",
+                  video);
         return STATUS_BAD_VALUE;
     }
     return STATUS_OK;

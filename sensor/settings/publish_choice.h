@@ -9,9 +9,15 @@
 /* Truth planes written to files (publish.planes, --planes). All but emissivity are computed in any case: truth.jsonl,
  * coco.json and the hash of a frame do not depend on the choice. */
 typedef enum PlaneChoice {
-    PLANE_RANGE, PLANE_ENTITY, PLANE_PART, PLANE_MATERIAL, PLANE_TEMPERATURE, PLANE_NORMAL,
-    PLANE_INSTANCE, PLANE_COVER, /* of a world with plants */
-    PLANE_EMISSIVITY,            /* of thermal bands, made for the file (sensor/publish/files/frame_files.c) */
+    PLANE_RANGE,
+    PLANE_ENTITY,
+    PLANE_PART,
+    PLANE_MATERIAL,
+    PLANE_TEMPERATURE,
+    PLANE_NORMAL,
+    PLANE_INSTANCE,
+    PLANE_COVER,      /* of a world with plants */
+    PLANE_EMISSIVITY, /* of thermal bands, made for the file (sensor/publish/files/frame_files.c) */
     PLANE_CHOICES
 } PlaneChoice;
 
@@ -39,7 +45,7 @@ typedef struct StreamUrl {
 
 /* udp://A.B.C.D:PORT, decimal without leading zeros, port 1 .. 65535, nothing behind it. False: *out is unchanged; why:
  * what is wrong, in static storage. */
-bool publish_stream_parse(StreamUrl *out, const char **why, const char *text);
+bool               publish_stream_parse(StreamUrl *out, const char **why, const char *text);
 static inline bool publish_stream_multicast(const StreamUrl *url) { return url->address[0] >> 4 == 14; }
 enum { publish_stream_port_step = 2 }; /* from one band to the next */
 

@@ -19,15 +19,15 @@ static void apply_settings(SensorPreset *p, const Config *config)
     over(&p->ac_per_line, config->detector.ac_per_line, 1);
     over(&p->line_noise, config->detector.line_noise, 1);
     p->noise_scale = config->detector.noise;
-    p->smear       = config->detector.smear;
-    p->optical     = config_optical(config);
+    p->smear = config->detector.smear;
+    p->optical = config_optical(config);
     preset_refresh(p);
 }
 
 static void apply_raster(Config *config, const SensorPreset *p)
 {
     if (!config_given(config, "sensor.width_px") && !config_given(config, "sensor.height_px")) {
-        config->sensor.width_px  = (int)p->width_px;
+        config->sensor.width_px = (int)p->width_px;
         config->sensor.height_px = (int)p->height_px;
     }
     if (!config_given(config, "sensor.hfov_deg")) config->sensor.hfov_deg = p->hfov_deg;
@@ -42,7 +42,7 @@ static Status add_sensor(Sensors *s, const Config *config, const char *name, uns
     const char  *own = etc_own("sensors.csv"), *from = path;
     if (name && !etc_path(path, sizeof path, "sensors.csv")) return STATUS_BAD_VALUE;
     if (name && own) {
-        bool has;
+        bool         has;
         const Status opened = preset_has(&has, own, name);
         if (opened != STATUS_OK) return opened;
         if (has) from = own;
@@ -63,7 +63,7 @@ static Status add_sensor(Sensors *s, const Config *config, const char *name, uns
                   p.channel ? p.channel->name : "optical");
         return STATUS_BAD_VALUE;
     }
-    s->has[p.band]    = true;
+    s->has[p.band] = true;
     s->preset[p.band] = p;
     if (!name) s->sheet_band = p.band;
     return STATUS_OK;
@@ -75,7 +75,7 @@ static Status take_sensor(Sensors *s, int *first_band, Config *config, const cha
     const Status status = add_sensor(s, config, name, bands);
     if (status != STATUS_OK || *first_band >= 0) return status;
     for (int b = 0; b < BAND_COUNT; b++)
-        if (s->has[b]) apply_raster(config, &s->preset[*first_band = b]);
+        if (s->has[b]) apply_raster(config, &s->preset[ *first_band = b]);
     return status;
 }
 
@@ -87,7 +87,8 @@ static Status one_noise(const Sensors *s, const Config *config)
     for (int b = 0; b < BAND_COUNT; b++)
         if (s->has[b] && key[b] && config_given(config, key[b])) {
             log_error("replay: %s: the noise of %s is set by its sensor, %s; remove one of them (detector.noise is a "
-                      "factor on both)", key[b], band_name((Band)b), s->preset[b].name);
+                      "factor on both)",
+                      key[b], band_name((Band)b), s->preset[b].name);
             return STATUS_BAD_VALUE;
         }
     return STATUS_OK;
@@ -131,12 +132,12 @@ static Status choose_lens(Sensors *s, Choices *choices, const Config *config, co
 
 Status sensors_choose(Sensors *out, Choices *choices, Config *config, unsigned bands)
 {
-    Sensors s = {0};
-    char         list[sizeof config->sensor.preset];
-    int          first_band = -1;
-    const bool   named = strcmp(config->sensor.preset, "none") != 0;
-    Status       status = STATUS_OK;
-    *out                = s;
+    Sensors    s = {0};
+    char       list[sizeof config->sensor.preset];
+    int        first_band = -1;
+    const bool named = strcmp(config->sensor.preset, "none") != 0;
+    Status     status = STATUS_OK;
+    *out = s;
     if (!named && !*config_sheet(config)) return choose_lens(out, choices, config, NULL);
     if (*config_sheet(config)) status = take_sensor(&s, &first_band, config, NULL, bands);
     strcpy(list, named ? config->sensor.preset : "");
@@ -145,8 +146,7 @@ Status sensors_choose(Sensors *out, Choices *choices, Config *config, unsigned b
         status = take_sensor(&s, &first_band, config, name, bands);
     if (status != STATUS_OK) return status;
     if (first_band < 0) {
-        log_error("replay: sensor.preset: '%s' is empty; `none` or names of etc/sensors.csv",
-                  config->sensor.preset);
+        log_error("replay: sensor.preset: '%s' is empty; `none` or names of etc/sensors.csv", config->sensor.preset);
         return STATUS_BAD_VALUE;
     }
     status = one_noise(&s, config);
@@ -157,8 +157,8 @@ Status sensors_choose(Sensors *out, Choices *choices, Config *config, unsigned b
         if (!s.has[b]) continue;
         apply_settings(p, config);
         const PhotonDetector photons = preset_photons(p);
-        const double step_e = p->photons.well_e / (exp2(p->bits) - 1);
-        char         netd[40] = "";
+        const double         step_e = p->photons.well_e / (exp2(p->bits) - 1);
+        char                 netd[40] = "";
         if (b != BAND_OPTICAL)
             snprintf(netd, sizeof netd, ", NEdT %.3g mK at 300 K", 1e3 * photon_netd_k(&photons, 300, step_e, 0));
         choice_add(choices, "%s: %s, F/%.3g, %.3g um pitch, %.4g ms%s, %g bits of %.4g electrons%s (%s)",

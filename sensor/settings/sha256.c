@@ -56,7 +56,7 @@ Status sha256_file(char out[sha256_text_size], const char *path)
     Sha256 *digest = sha256_begin();
     bool    ok = digest;
     char    chunk[65536];
-    long    n  = 1;
+    long    n = 1;
     while (ok && (n = file_read(file, chunk, sizeof chunk)) > 0) ok = sha256_add(digest, chunk, (size_t)n);
     const int reason = n < 0 ? errno : 0;
     close(file);

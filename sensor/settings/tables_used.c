@@ -33,7 +33,7 @@ static Status add_csv_of(TablesUsed *out, const char *folder, const char *prefix
 {
     struct dirent **entry;
     char            path[path_size], name[table_used_name_size];
-    const int       count  = scandir(folder, &entry, is_csv, alphasort);
+    const int       count = scandir(folder, &entry, is_csv, alphasort);
     Status          status = scanned(count);
     for (int i = 0; i < count; i++) {
         snprintf(path, sizeof path, "%.3500s/%.255s", folder, entry[i]->d_name);
@@ -53,7 +53,7 @@ static Status list_files(FILE *to, const char *folder, const char *below, int de
     struct dirent **entry;
     char            path[path_size], inside[path_size], hash[sha256_text_size];
     if (depth == 4) return STATUS_OK;
-    const int count  = scandir(folder, &entry, is_plain, alphasort);
+    const int count = scandir(folder, &entry, is_plain, alphasort);
     Status    status = scanned(count);
     for (int i = 0; i < count; i++) {
         snprintf(path, sizeof path, "%.3500s/%.255s", folder, entry[i]->d_name);
@@ -77,13 +77,13 @@ static Status add_folder(TablesUsed *out, const char *name)
 {
     char       folder[path_size], *text = NULL;
     size_t     octets = 0;
-    TableUsed *t      = &out->table[out->count];
+    TableUsed *t = &out->table[out->count];
     if (out->count == tables_used_max || !etc_path(folder, sizeof folder, name) || access(folder, R_OK) != 0)
         return STATUS_OK;
     FILE *list = open_memstream(&text, &octets);
     if (!list) return STATUS_NO_MEMORY;
     Status     status = list_files(list, folder, "", 0);
-    const bool whole  = !ferror(list);
+    const bool whole = !ferror(list);
     if ((fclose(list) != 0 || !whole) && status == STATUS_OK) status = STATUS_NO_MEMORY;
     snprintf(t->name, sizeof t->name, "%s", name);
     if (status == STATUS_OK && octets > 0) {
@@ -99,7 +99,7 @@ static Status add_models(TablesUsed *out, const char *catalog)
 {
     Table       table;
     char        path[path_size], name[table_used_name_size];
-    const char *slash  = strrchr(catalog, '/');
+    const char *slash = strrchr(catalog, '/');
     const int   folder = slash ? (int)(slash - catalog) + 1 : 0;
     Status      status = table_open(&table, catalog);
     if (status != STATUS_OK) return status;
@@ -133,7 +133,7 @@ Status tables_used(TablesUsed *out, const Config *config, const char *catalog)
 {
     char   folder[path_size], name[table_used_name_size];
     Status status = STATUS_OK;
-    out->count    = 0;
+    out->count = 0;
     if (etc_path(folder, sizeof folder, "atmosphere")) {
         status = add_csv_of(out, folder, "atmosphere/");
         folder[strlen(folder) - strlen("/atmosphere")] = 0;
@@ -146,7 +146,8 @@ Status tables_used(TablesUsed *out, const Config *config, const char *catalog)
     if (status == STATUS_OK) status = add_folder(out, name);
     if (*config->radar.table && status == STATUS_OK) status = add_in(out, "radar/", config->radar.table);
     if (*config->sensor.table && status == STATUS_OK) status = add_in(out, "", config->sensor.table);
-    if (strpbrk(config->weather.day, "/.") && status == STATUS_OK) status = add_in(out, "weather/", config->weather.day);
+    if (strpbrk(config->weather.day, "/.") && status == STATUS_OK)
+        status = add_in(out, "weather/", config->weather.day);
     return status == STATUS_OK ? add_models(out, catalog) : status;
 }
 

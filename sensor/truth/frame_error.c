@@ -80,7 +80,8 @@ void error_spread_of_displaced(ErrorSpread *touched, ErrorSpread *own, const Dis
                 sum += apart_k * apart_k;
             }
             if (!any) continue;
-            const double square = of->further_k2 + (count > 0 ? shorter * sum / count : 0) + (here > 0 ? here * here * heat_k2(of, at) : 0);
+            const double square = of->further_k2 + (count > 0 ? shorter * sum / count : 0) +
+                                  (here > 0 ? here * here * heat_k2(of, at) : 0);
             error_spread_add(touched, square, (double)step * step);
             if (here > 0) error_spread_add(own, square, here * step * step);
         }
@@ -165,8 +166,8 @@ static Band band_of(int plane)
 static double ground_way_m(const World *world, const SnapshotEntity *e, const Model *model)
 {
     static const double place[4][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}};
-    double       p_enu[3], turn_enu[3], rise_m[4];
-    const double half_m = 0.5 * model->radius_m;
+    double              p_enu[3], turn_enu[3], rise_m[4];
+    const double        half_m = 0.5 * model->radius_m;
     if (!world->landscape || e->type.kind != dis_kind_platform || e->type.domain != dis_domain_land) return 0;
     enu_from_ecef(p_enu, &world->frame, e->p_ecef);
     for (int k = 0; k < 4; k++)
@@ -180,8 +181,8 @@ static double ground_way_m(const World *world, const SnapshotEntity *e, const Mo
     return hypot(mean_m, lean_m);
 }
 
-/* Squared error of temperature that ground, plants and parts have by the steps, elements and facets of their heat: mean over
- * all pixels, K2. Targets smaller than a pixel count with the share that they cover. */
+/* Squared error of temperature that ground, plants and parts have by the steps, elements and facets of their heat: mean
+ * over all pixels, K2. Targets smaller than a pixel count with the share that they cover. */
 static double mean_heat_k2(const Picture *p, const Snapshot *snapshot, double air_k)
 {
     const size_t pixels = (size_t)p->width * (size_t)p->height;
@@ -193,7 +194,8 @@ static double mean_heat_k2(const Picture *p, const Snapshot *snapshot, double ai
         if (!isfinite(temp_k)) continue;
         if (entity < 0) sum += square(0.03 + 0.005 * fabs(temp_k - air_k));
         else if (entity < snapshot->count && snapshot->entity[entity].first_patch >= 0)
-            sum += square((p->covered && p->covered[i] > 0 ? (double)p->covered[i] : 1) * vehicle_heat_error_k(temp_k, air_k));
+            sum += square((p->covered && p->covered[i] > 0 ? (double)p->covered[i] : 1) *
+                          vehicle_heat_error_k(temp_k, air_k));
     }
     return sum / (double)pixels;
 }
@@ -204,12 +206,12 @@ static void error_of_target(ErrorSpread *all, Target *t, const DisplacedTarget *
 {
     ErrorSpread own = {0};
     error_spread_of_displaced(all, &own, of);
-    t->band[band].error_rms_k    = error_spread_rms_k(&own);
+    t->band[band].error_rms_k = error_spread_rms_k(&own);
     t->band[band].error_median_k = error_spread_median_k(&own);
 }
 
-/* The pixels that no displaced target touches: as the probes say, which stand for those whose own samples say nothing; the
- * sum of squares of the others is spread over them as an exponential distribution, of which nine steps are taken.
+/* The pixels that no displaced target touches: as the probes say, which stand for those whose own samples say nothing;
+ * the sum of squares of the others is spread over them as an exponential distribution, of which nine steps are taken.
  * further_k2: the same for all. */
 static void error_of_the_rest(ErrorSpread *all, const ErrorBudget *budget, int plane, double pixels, double kelvin,
                               double further_k2)
@@ -232,15 +234,15 @@ static void error_of_the_rest(ErrorSpread *all, const ErrorBudget *budget, int p
 
 /* A plane's errors of all targets: sums of squares over the image, and pixel by pixel in a thermal plane. */
 typedef struct PlaneOf {
-    const Picture       *picture;
-    const World         *world;
-    const Snapshot      *snapshot;
-    double               focal_px, sag_m, air_k;
-    bool                 clamped;
-    Band                 band;
-    const float         *value;
-    const PlanckTable   *planck;    /* NULL: not thermal */
-    double               tables_k2;
+    const Picture     *picture;
+    const World       *world;
+    const Snapshot    *snapshot;
+    double             focal_px, sag_m, air_k;
+    bool               clamped;
+    Band               band;
+    const float       *value;
+    const PlanckTable *planck; /* NULL: not thermal */
+    double             tables_k2;
 } PlaneOf;
 
 typedef struct PlaneSums {
@@ -265,8 +267,13 @@ static void add_target(PlaneSums *sums, Target *t, const PlaneOf *of)
     sums->facets += shifted(&o, still_m * per_m);
     t->error_px = hypot(way_m, still_m) * per_m;
     if (!of->planck) return;
-    const DisplacedTarget displaced = {.picture = of->picture, .px = px, .index = t->index, .value = of->value,
-                                       .planck = of->planck, .way_px = t->error_px, .further_k2 = of->tables_k2,
+    const DisplacedTarget displaced = {.picture = of->picture,
+                                       .px = px,
+                                       .index = t->index,
+                                       .value = of->value,
+                                       .planck = of->planck,
+                                       .way_px = t->error_px,
+                                       .further_k2 = of->tables_k2,
                                        .air_k = e->first_patch >= 0 ? of->air_k : NAN};
     error_of_target(&sums->spread, t, &displaced, of->band);
 }
@@ -284,9 +291,16 @@ bool frame_error(FrameError *out, const FrameErrorOf *of, Target *target, int ta
     for (int k = 0; k < picture_plane_count; k++) {
         const Band         b = band_of(k);
         const PlanckTable *planck = b == BAND_MWIR ? world->planck_mwir : b == BAND_LWIR ? world->planck_lwir : NULL;
-        PlaneOf            in = {.picture = picture, .world = world, .snapshot = of->snapshot,
-                                 .focal_px = of->request->view.focal_px, .sag_m = of->sag_m, .air_k = of->air_k,
-                                 .clamped = of->clamped, .band = b, .value = picture_plane(picture, k), .planck = planck};
+        PlaneOf            in = {.picture = picture,
+                                 .world = world,
+                                 .snapshot = of->snapshot,
+                                 .focal_px = of->request->view.focal_px,
+                                 .sag_m = of->sag_m,
+                                 .air_k = of->air_k,
+                                 .clamped = of->clamped,
+                                 .band = b,
+                                 .value = picture_plane(picture, k),
+                                 .planck = planck};
         PlaneSums          all = {0};
         if (!in.value || !(budget->mean[k] > 0)) continue;
         const double kelvin = planck ? render_error_kelvin(planck, budget->mean[k], 1) : NAN; /* for 1 W/(m2 sr) */
@@ -305,14 +319,14 @@ bool frame_error(FrameError *out, const FrameErrorOf *of, Target *target, int ta
         planes[b]++;
         if (!planck) continue;
         error_of_the_rest(&all.spread, budget, k, pixels, kelvin, in.tables_k2 + all_heat_k2);
-        out->median_k[b]  = error_spread_median_k(&all.spread);
+        out->median_k[b] = error_spread_median_k(&all.spread);
         out->beyond_1k[b] = error_spread_beyond(&all.spread);
     }
     for (int b = 0; b < BAND_COUNT; b++) {
         const int          plane = b == BAND_MWIR ? picture_mwir : picture_lwir;
         const PlanckTable *planck = b == BAND_MWIR ? world->planck_mwir : world->planck_lwir;
         for (int s = 0; s < error_sources; s++) {
-            out->share[b][s]  = planes[b] > 0 ? sqrt(sums[b][s] / planes[b]) : NAN;
+            out->share[b][s] = planes[b] > 0 ? sqrt(sums[b][s] / planes[b]) : NAN;
             out->kelvin[b][s] =
                 planes[b] > 0 && (b == BAND_MWIR || b == BAND_LWIR)
                     ? render_error_kelvin(planck, budget->mean[plane], out->share[b][s] * budget->mean[plane])
@@ -350,8 +364,7 @@ static double square_of_db(double db)
 static double map_energy(const RangeDoppler *map)
 {
     double sum = 0; /* of the sum channel, which is the first */
-    for (size_t i = 0; i < (size_t)map->rows * (size_t)map->columns; i++)
-        sum += scatter_power(map->cell[i]);
+    for (size_t i = 0; i < (size_t)map->rows * (size_t)map->columns; i++) sum += scatter_power(map->cell[i]);
     return sum;
 }
 
@@ -367,7 +380,8 @@ void radar_error(RadarError *out, const RadarFrame *r, const Snapshot *snapshot)
         const double      energy = t->snr * noise_w * cells;
         if (!(energy > 0)) continue;
         squares[ERROR_DEAD_RECKONING] +=
-            energy * radar_error_of_moving(r->preset, snapshot->entity[t->entity].drift_m / sqrt(3) / r->map.metre_per_column);
+            energy *
+            radar_error_of_moving(r->preset, snapshot->entity[t->entity].drift_m / sqrt(3) / r->map.metre_per_column);
         const double error_db = t->rcs_error_db[r->preset->transmits_h ? 0 : 1];
         if (isnan(error_db)) continue; /* a given signature */
         own += energy;
@@ -380,9 +394,9 @@ void radar_error(RadarError *out, const RadarFrame *r, const Snapshot *snapshot)
         total += s == ERROR_DEAD_RECKONING || s == ERROR_TABLES ? 0 : squares[s];
     }
     for (int s = 0; s < error_sources; s++) {
-        const double of_field = s == ERROR_TABLES ? radar_error_of_gridding()
-                              : s == ERROR_TOTAL  ? hypot(sqrt(total / own), radar_error_of_gridding())
-                                                  : sqrt(squares[s] / own);
+        const double of_field = s == ERROR_TABLES  ? radar_error_of_gridding()
+                                : s == ERROR_TOTAL ? hypot(sqrt(total / own), radar_error_of_gridding())
+                                                   : sqrt(squares[s] / own);
         out->share[s] = all > 0 ? sqrt(squares[s] / all) : NAN;
         out->db[s] = own > 0 ? 10 * log10(1 + sqrt(2) * of_field) : NAN;
     }

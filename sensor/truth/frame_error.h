@@ -19,22 +19,22 @@ typedef struct ErrorSpread {
 } ErrorSpread;
 
 /* So many pixels whose expected error squared is this. */
-void   error_spread_add(ErrorSpread *spread, double square_k2, double px);
-void   error_spread_join(ErrorSpread *spread, const ErrorSpread *more);
+void error_spread_add(ErrorSpread *spread, double square_k2, double px);
+void error_spread_join(ErrorSpread *spread, const ErrorSpread *more);
 /* Within 4 %; NaN: no pixels. */
 double error_spread_median_k(const ErrorSpread *spread);
 double error_spread_rms_k(const ErrorSpread *spread);
-/* Share of the pixels that are off by more than 1 K, each by chance: normally distributed with its expected error. 0 .. 1;
- * NaN: no pixels. */
+/* Share of the pixels that are off by more than 1 K, each by chance: normally distributed with its expected error. 0 ..
+ * 1; NaN: no pixels. */
 double error_spread_beyond(const ErrorSpread *spread);
 
-/* A target that may be way_px off, in an unknown direction: by its pixels and the pixels as far from them as that, of at
- * most some 1024 pixels evenly spread. */
+/* A target that may be way_px off, in an unknown direction: by its pixels and the pixels as far from them as that, of
+ * at most some 1024 pixels evenly spread. */
 typedef struct DisplacedTarget {
     const Picture      *picture;
     const TargetPixels *px;
-    int                 index;      /* of the snapshot */
-    const float        *value;      /* thermal plane */
+    int                 index; /* of the snapshot */
+    const float        *value; /* thermal plane */
     const PlanckTable  *planck;
     double              way_px;
     double              further_k2; /* squared errors from other sources */
@@ -42,7 +42,7 @@ typedef struct DisplacedTarget {
 } DisplacedTarget;
 
 /* Adds the pixels whose value would change, or that are the target's, to touched; of these the target's own to own. */
-void   error_spread_of_displaced(ErrorSpread *touched, ErrorSpread *own, const DisplacedTarget *target);
+void error_spread_of_displaced(ErrorSpread *touched, ErrorSpread *own, const DisplacedTarget *target);
 
 /* Share of a pixel that the target covers; id: index + 1. */
 static inline double pixel_share_of(const Picture *p, const TargetPixels *px, uint32_t id, size_t at)
@@ -66,21 +66,27 @@ static inline double pixel_share_of(const Picture *p, const TargetPixels *px, ui
  * error of the ground (render/frame/render.h).
  *
  * Heat. Temperatures of the ground are off by what its elements, its steps of time and its facets leave out: 0.03 K and
- * 0.5 % of how far a place is from the air (tests/sensor/test_error_budget.c: within a factor of 2); those of parts by their steps
- * and their past (vehicle_heat_error_k). What materials, weather and tables
- * leave out, 0.6 to 1.6 K on measured days, is not included. */
+ * 0.5 % of how far a place is from the air (tests/sensor/test_error_budget.c: within a factor of 2); those of parts by
+ * their steps and their past (vehicle_heat_error_k). What materials, weather and tables leave out, 0.6 to 1.6 K on
+ * measured days, is not included. */
 
 typedef enum ErrorSource {
-    ERROR_SAMPLING, ERROR_LEVEL_OF_DETAIL, ERROR_TABLES, ERROR_HEAT, ERROR_DEAD_RECKONING, ERROR_TOTAL, error_sources
+    ERROR_SAMPLING,
+    ERROR_LEVEL_OF_DETAIL,
+    ERROR_TABLES,
+    ERROR_HEAT,
+    ERROR_DEAD_RECKONING,
+    ERROR_TOTAL,
+    error_sources
 } ErrorSource;
 
 /* rms over the image, as a share of the band's mean; of the optical band the root of its channels' mean square.
- * kelvin: of apparent temperature, by its slope at the mean. Both are those of the brightest pixels, if these may be off:
- * a hot exhaust that is displaced by a pixel outweighs all others. Of the pseudo-radar, whose power is that of a few
- * mirrors, the share says nothing, and truth.jsonl does not have it. median_k, beyond_1k: of the pixels' expected
+ * kelvin: of apparent temperature, by its slope at the mean. Both are those of the brightest pixels, if these may be
+ * off: a hot exhaust that is displaced by a pixel outweighs all others. Of the pseudo-radar, whose power is that of a
+ * few mirrors, the share says nothing, and truth.jsonl does not have it. median_k, beyond_1k: of the pixels' expected
  * errors, in apparent temperature without linearizing what a displacement changes: half of the pixels are better; share
- * of those that are off by more than 1 K. Against finely sampled frames the median is right to 20 %, the share to a factor of 2 in
- * LWIR and of 4 in MWIR (tests/sensor/test_frame_error_spread.c). NaN: no such band, or none. */
+ * of those that are off by more than 1 K. Against finely sampled frames the median is right to 20 %, the share to a
+ * factor of 2 in LWIR and of 4 in MWIR (tests/sensor/test_frame_error_spread.c). NaN: no such band, or none. */
 typedef struct FrameError {
     double share[BAND_COUNT][error_sources], kelvin[BAND_COUNT][error_sources];
     double median_k[BAND_COUNT], beyond_1k[BAND_COUNT];
@@ -97,9 +103,9 @@ typedef struct FrameErrorOf {
     double               air_k;   /* of the weather; NaN: heat is left out */
 } FrameErrorOf;
 
-/* target: receives error_px - the rms displacement on the image of each by dead reckoning, facets and the ground's error,
- * all of it if it lies across the line of sight - and the errors of its bands. False without a budget in the picture or
- * without truth planes. */
+/* target: receives error_px - the rms displacement on the image of each by dead reckoning, facets and the ground's
+ * error, all of it if it lies across the line of sight - and the errors of its bands. False without a budget in the
+ * picture or without truth planes. */
 bool frame_error(FrameError *out, const FrameErrorOf *of, Target *target, int targets);
 
 /* ---- a radar's map ------------------------------------------------------------------------------- */

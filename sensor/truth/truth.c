@@ -32,8 +32,8 @@ static void line_of_sight(Target *t, const SnapshotEntity *entity, const Model *
     for (int k = 0; k < 3; k++) rate_ecef[k] = (v_ecef[k] - v3_dot(v_ecef, u_ecef) * u_ecef[k]) / t->range_m;
     m3_tmul_v3(rate_cam, eye->r_ecef_from_cam, rate_ecef);
     m3_tmul_v3(u_cam, eye->r_ecef_from_cam, u_ecef);
-    t->los_rate_rps[0]        = rate_cam[0];
-    t->los_rate_rps[1]        = -rate_cam[1];
+    t->los_rate_rps[0] = rate_cam[0];
+    t->los_rate_rps[1] = -rate_cam[1];
     t->boresight_error_rad[0] = atan2(u_cam[0], u_cam[2]);
     t->boresight_error_rad[1] = atan2(-u_cam[1], u_cam[2]);
 
@@ -42,8 +42,8 @@ static void line_of_sight(Target *t, const SnapshotEntity *entity, const Model *
     if (geodetic_from_ecef(&place, eye->p_ecef) == STATUS_OK &&
         ecef_from_geodetic(origin_ecef, r_ecef_from_enu, &place) == STATUS_OK) {
         m3_tmul_v3(u_enu, r_ecef_from_enu, u_ecef);
-        t->los_az_rad     = atan2(u_enu[0], u_enu[1]);
-        t->los_el_rad     = asin(clamp(u_enu[2], -1, 1));
+        t->los_az_rad = atan2(u_enu[0], u_enu[1]);
+        t->los_el_rad = asin(clamp(u_enu[2], -1, 1));
         t->depression_rad = -t->los_el_rad;
         if (t->los_az_rad < 0) t->los_az_rad += 2 * pi_rad;
     }
@@ -117,7 +117,7 @@ static void two_moments(Moments *target, Moments *ring, const Target *t, const P
             }
         }
     *target = on;
-    *ring   = about;
+    *ring = about;
 }
 
 typedef struct ThermalPlane {
@@ -189,7 +189,7 @@ static bool look_at(Look *look, const Target *t, const TargetPixels *px, const P
     *look = (Look){.alone = !(ring.n > 0)};
     if (!look->alone) look->ring_mean = moments_mean(&ring), look->ring_variance = moments_variance(&ring);
     if (px->small) return true;
-    look->mean     = moments_mean(&target);
+    look->mean = moments_mean(&target);
     look->variance = moments_variance(&target);
     return true;
 }
@@ -210,13 +210,13 @@ static void thermal_band(TargetBand *out, const Target *t, const TargetPixels *p
     if (px->small) {
         /* temperature is nearly linear in radiance over a target: the slope at its mean is used */
         const double mean = px->mean[plane], step = 1e-3 * mean;
-        look.mean          = planck_table_temp(planck, mean);
+        look.mean = planck_table_temp(planck, mean);
         const double slope = step > 0 ? (planck_table_temp(planck, mean + step) - look.mean) / step : 0;
-        look.variance      = slope * slope * px->variance[plane];
+        look.variance = slope * slope * px->variance[plane];
     }
     out->contrast_k = look.mean - look.ring_mean;
-    out->dt_rss_k   = sqrt(out->contrast_k * out->contrast_k + look.variance);
-    out->snr        = to_noise(&look, px, netd_k);
+    out->dt_rss_k = sqrt(out->contrast_k * out->contrast_k + look.variance);
+    out->snr = to_noise(&look, px, netd_k);
 }
 
 /* The value of a pixel is the mean of so many planes, from `plane` on. */
@@ -247,7 +247,8 @@ static void radiometry(Target *t, const TargetPixels *px, const Picture *picture
     if (picture->optical[0]) {
         const int channels = picture->optical[1] ? 3 : 1;
         /* the noise of the mean of three channels is lower by a factor of sqrt(3) */
-        plain_band(&t->band[BAND_OPTICAL], t, px, picture, &(PlainPlanes){luminance, picture, picture_optical, channels},
+        plain_band(&t->band[BAND_OPTICAL], t, px, picture,
+                   &(PlainPlanes){luminance, picture, picture_optical, channels},
                    noise->optical_w_m2_sr / sqrt(channels));
         t->band[BAND_OPTICAL].intensity_w_sr = 0; /* the channels together: 0.4-0.7 um */
         for (int k = 0; k < channels; k++)
@@ -263,7 +264,8 @@ static void radiometry(Target *t, const TargetPixels *px, const Picture *picture
     }
     intensity_error(t, px, picture, view);
     if (picture->radar)
-        plain_band(&t->band[BAND_RADAR], t, px, picture, &(PlainPlanes){plain_value, picture->radar, picture_radar, 1}, 0);
+        plain_band(&t->band[BAND_RADAR], t, px, picture, &(PlainPlanes){plain_value, picture->radar, picture_radar, 1},
+                   0);
 }
 
 /* The wheels of an entity on the ground are partly below it: a hidden share below truth_occluded_least is no
@@ -289,11 +291,10 @@ int truth_targets(Target *out, const Picture *picture, const World *world, const
     for (int i = 0; i < snapshot->count; i++) {
         const TargetPixels *px = &picture->target[i];
         if (i == eye->host_index || !(px->projected || px->amodal > 0)) continue;
-        Target t = {.index = i, .pixels = px->visible, .visible_fraction = NAN, .foliage_fraction = NAN,
-                    .occluder_index = -1};
+        Target t = {
+            .index = i, .pixels = px->visible, .visible_fraction = NAN, .foliage_fraction = NAN, .occluder_index = -1};
         t.error_px = t.range_m = t.closing_mps = t.aspect_rad = t.depression_rad = t.los_az_rad = t.los_el_rad = NAN;
-        for (int b = 0; b < BAND_COUNT; b++)
-            t.band[b] = (TargetBand){NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN};
+        for (int b = 0; b < BAND_COUNT; b++) t.band[b] = (TargetBand){NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN};
         for (int b = BAND_OPTICAL; b <= BAND_LWIR && px->visible > 0; b++)
             if (request->bands >> b & 1) t.band[b].veil_transmittance = 1 - px->veiled[b];
         line_of_sight(&t, &snapshot->entity[i], catalog_model(world->catalog, snapshot->entity[i].model), eye);

@@ -10,33 +10,33 @@
 /* The target's pixels are those with its id in the truth planes. A small one (TargetPixels.small) has its own
  * samples instead, and a ring of pixels without any small target. */
 typedef struct TargetBand {
-    double contrast_k;      /* mean of the target's pixels less mean of a ring of its own area, apparent K */
-    double dt_rss_k;        /* root of the squared mean difference plus the target's variance */
-    double contrast;        /* optical, radar: the same difference over the ring's mean, dimensionless */
-    double snr;             /* contrast over the ring's sigma and the detector's noise together; of a small target:
-                             * times the share it has of the pixel it fills most. Optical, without a ring: its own
-                             * mean over the noise. 0: no contrast; NaN: no ring, or neither clutter nor noise */
-    double intensity_w_sr;  /* in-band, at the aperture: its own radiance times the area it fills, at its range */
+    double contrast_k;           /* mean of the target's pixels less mean of a ring of its own area, apparent K */
+    double dt_rss_k;             /* root of the squared mean difference plus the target's variance */
+    double contrast;             /* optical, radar: the same difference over the ring's mean, dimensionless */
+    double snr;                  /* contrast over the ring's sigma and the detector's noise together; of a small target:
+                                  * times the share it has of the pixel it fills most. Optical, without a ring: its own
+                                  * mean over the noise. 0: no contrast; NaN: no ring, or neither clutter nor noise */
+    double intensity_w_sr;       /* in-band, at the aperture: its own radiance times the area it fills, at its range */
     double intensity_error_w_sr; /* rms sampling error; of a small target, in a frame with a budget */
-    double veil_transmittance; /* of smoke and dust in front of it, mean over its visible pixels; 1: none */
+    double veil_transmittance;   /* of smoke and dust in front of it, mean over its visible pixels; 1: none */
     double error_rms_k, error_median_k; /* thermal: of its pixels, by its position, heat and tables (frame_error.h) */
 } TargetBand;
 
 typedef struct Target {
-    int    index;                           /* of the snapshot */
-    double range_m, closing_mps, aspect_rad, depression_rad;
-    double los_az_rad, los_el_rad;          /* from the host, in its own ENU */
-    double los_rate_rps[2];                 /* inertial; camera right and up */
-    double boresight_error_rad[2];          /* camera right and up */
-    double pixels;                          /* area, parts of pixels too */
-    double visible_fraction;                /* of its area on the image; 1: an occluder is not named; NaN: no sample */
-    int    box[4];                          /* visible pixels; empty: all 0 */
-    double amodal_box[4];                   /* of its vertices, not clipped to the image */
-    double foliage_fraction;                /* of its area on the image, hidden by plants; NaN: there are none */
-    const char *occluder;                   /* "ground", "trees", "entity" with occluder_index >= 0, or NULL */
-    int    occluder_index;
-    double error_px;                        /* rms displacement on the image (frame_error.h) */
-    TargetBand band[BAND_COUNT];
+    int         index; /* of the snapshot */
+    double      range_m, closing_mps, aspect_rad, depression_rad;
+    double      los_az_rad, los_el_rad; /* from the host, in its own ENU */
+    double      los_rate_rps[2];        /* inertial; camera right and up */
+    double      boresight_error_rad[2]; /* camera right and up */
+    double      pixels;                 /* area, parts of pixels too */
+    double      visible_fraction;       /* of its area on the image; 1: an occluder is not named; NaN: no sample */
+    int         box[4];                 /* visible pixels; empty: all 0 */
+    double      amodal_box[4];          /* of its vertices, not clipped to the image */
+    double      foliage_fraction;       /* of its area on the image, hidden by plants; NaN: there are none */
+    const char *occluder;               /* "ground", "trees", "entity" with occluder_index >= 0, or NULL */
+    int         occluder_index;
+    double      error_px; /* rms displacement on the image (frame_error.h) */
+    TargetBand  band[BAND_COUNT];
 } Target;
 
 /* Hidden share of a target below which it is not occluded: the resolution of a fraction with two decimals, and the
@@ -64,13 +64,17 @@ int truth_targets(Target *out, const Picture *picture, const World *world, const
 
 /* Where a line of sight meets the ground. */
 typedef struct GroundPoint {
-    bool   known;                /* false: it does not, within the terrain */
+    bool   known;                      /* false: it does not, within the terrain */
     double lat_rad, lon_rad, height_m; /* WGS 84, above the ellipsoid */
-    double range_m;              /* from the sensor */
+    double range_m;                    /* from the sensor */
 } GroundPoint;
 /* The boresight, then the image's corners. */
 typedef enum FootprintPoint {
-    FOOTPRINT_CENTRE, FOOTPRINT_UPPER_LEFT, FOOTPRINT_UPPER_RIGHT, FOOTPRINT_LOWER_RIGHT, FOOTPRINT_LOWER_LEFT,
+    FOOTPRINT_CENTRE,
+    FOOTPRINT_UPPER_LEFT,
+    FOOTPRINT_UPPER_RIGHT,
+    FOOTPRINT_LOWER_RIGHT,
+    FOOTPRINT_LOWER_LEFT,
     FOOTPRINT_COUNT
 } FootprintPoint;
 

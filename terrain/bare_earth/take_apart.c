@@ -16,7 +16,7 @@ typedef struct Plane {
 /* Least-squares plane of the roof's cells about (x, y). */
 static Plane fit(const float *roof, int nx, int ny, int x, int y, int r, int spacing)
 {
-    double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0, syy = 0, sz = 0, sxz = 0, syz = 0, szz = 0;
+    double      n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0, syy = 0, sz = 0, sxz = 0, syz = 0, szz = 0;
     const float base = roof[(size_t)y * (size_t)nx + (size_t)x];
     for (int dy = -r; dy <= r; dy++)
         for (int dx = -r; dx <= r; dx++) {
@@ -30,7 +30,7 @@ static Plane fit(const float *roof, int nx, int ny, int x, int y, int r, int spa
     Plane p = {base, 0, 0, INFINITY};
     if (n < 6) return p;
     const double xx = sxx - sx * sx / n, xy = sxy - sx * sy / n, yy = syy - sy * sy / n, xz = sxz - sx * sz / n,
-        yz = syz - sy * sz / n, det = xx * yy - xy * xy;
+                 yz = syz - sy * sz / n, det = xx * yy - xy * xy;
     if (!(det > 1e-6 * xx * yy)) return p;
     const double a = (xz * yy - yz * xy) / det, b = (yz * xx - xz * xy) / det;
     const double rest = szz - sz * sz / n - a * xz - b * yz;
@@ -45,7 +45,7 @@ static Status take_apart_roofs(SurfaceParts *out, const SurfaceModel *model, con
 {
     const int    nx = model->nx, ny = model->ny;
     const size_t n = (size_t)nx * (size_t)ny;
-    int32_t *place = malloc(n * sizeof *place);
+    int32_t     *place = malloc(n * sizeof *place);
     if (!place) return STATUS_NO_MEMORY;
     size_t count = 0;
     for (size_t c = 0; c < n; c++) {
@@ -81,8 +81,8 @@ static Status take_apart_roofs(SurfaceParts *out, const SurfaceModel *model, con
                         const int32_t at = place[(size_t)j * (size_t)nx + (size_t)i];
                         if (at < 0 || !(plane[at].error < best)) continue;
                         best = plane[at].error;
-                        height = plane[at].height - plane[at].east * (float)(dx * spacing)
-                            - plane[at].north * (float)(dy * spacing);
+                        height = plane[at].height - plane[at].east * (float)(dx * spacing) -
+                                 plane[at].north * (float)(dy * spacing);
                     }
                 next[place[c]] = height;
             }
@@ -112,7 +112,7 @@ static void smooth(float *to, float *row, const float *from, int nx, int ny)
 {
     for (int y = 0; y < ny; y++) {
         const float *s = from + (size_t)(y > 0 ? y - 1 : y) * (size_t)nx, *m = from + (size_t)y * (size_t)nx,
-            *t = from + (size_t)(y < ny - 1 ? y + 1 : y) * (size_t)nx;
+                    *t = from + (size_t)(y < ny - 1 ? y + 1 : y) * (size_t)nx;
         for (int x = 0; x < nx; x++) row[x] = (s[x] + 2 * m[x] + t[x]) / 4;
         for (int x = 0; x < nx; x++)
             to[(size_t)y * (size_t)nx + (size_t)x] =
@@ -127,10 +127,10 @@ static Status take_apart_crowns(SurfaceParts *out, const SurfaceModel *model, co
     const int    nx = model->nx, ny = model->ny;
     const size_t n = (size_t)nx * (size_t)ny;
     const float  cell = (float)model->cell_m;
-    float   *raw = malloc(n * sizeof *raw), *canopy = malloc(n * sizeof *canopy);
-    float   *row = malloc((size_t)nx * sizeof *row);
-    int32_t *up = malloc(n * sizeof *up);
-    Status   status = STATUS_NO_MEMORY;
+    float       *raw = malloc(n * sizeof *raw), *canopy = malloc(n * sizeof *canopy);
+    float       *row = malloc((size_t)nx * sizeof *row);
+    int32_t     *up = malloc(n * sizeof *up);
+    Status       status = STATUS_NO_MEMORY;
     if (!raw || !canopy || !up || !row) goto done;
     for (size_t c = 0; c < n; c++) raw[c] = out->kind[c] == CELL_TREE ? fmaxf(surface_m[c] - out->bare_m[c], 0) : 0;
     smooth(canopy, row, raw, nx, ny);
@@ -179,7 +179,8 @@ static Status take_apart_crowns(SurfaceParts *out, const SurfaceModel *model, co
         if (up[c] != (int32_t)c) continue;
         of[c] = out->crown_count;
         out->crown[out->crown_count++] = (Crown){.x_m = ((float)(c % (size_t)nx) + 0.5F) * cell,
-            .y_m = ((float)(c / (size_t)nx) + 0.5F) * cell, .height_m = surface_m[c] - out->bare_m[c]};
+                                                 .y_m = ((float)(c / (size_t)nx) + 0.5F) * cell,
+                                                 .height_m = surface_m[c] - out->bare_m[c]};
     }
     for (size_t c = 0; c < n; c++) {
         if (up[c] < 0) continue;
@@ -224,7 +225,7 @@ static void clean(float *out, const float *z, int nx, int ny)
 static Status find_bare(SurfaceParts *out, const SurfaceModel *model, const float *surface_m, float *work)
 {
     const size_t n = (size_t)model->nx * (size_t)model->ny;
-    uint8_t *is_ground = out->kind;
+    uint8_t     *is_ground = out->kind;
     if (!model->bare_m) return take_apart_ground(out->bare_m, is_ground, model, surface_m, 0);
 
     /* the terrain model is ground but for roofs that were left in it, all of them large */

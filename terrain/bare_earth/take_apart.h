@@ -9,9 +9,9 @@
 typedef struct SurfaceModel {
     int            nx, ny;
     double         cell_m;
-    const float   *surface_m; /* [ny][nx] NAN: void */
-    const float   *bare_m;    /* a terrain model of the same cells, NAN where it has none; NULL: none */
-    const uint8_t *rgb;       /* [ny][nx][3] sRGB of an orthophoto, NULL: none; not used yet */
+    const float   *surface_m;   /* [ny][nx] NAN: void */
+    const float   *bare_m;      /* a terrain model of the same cells, NAN where it has none; NULL: none */
+    const uint8_t *rgb;         /* [ny][nx][3] sRGB of an orthophoto, NULL: none; not used yet */
     int64_t        column, row; /* of the south-west cell in the whole model: overlapping windows agree */
 } SurfaceModel;
 
@@ -24,11 +24,11 @@ typedef struct Crown {
 
 /* Arrays of nx x ny, the caller's, but the crowns: allocated. */
 typedef struct SurfaceParts {
-    float   *bare_m;          /* bare ground, also under roofs and crowns; no NAN unless all is void */
-    float   *roof_m;          /* height of the roof, its planes smoothed; NAN: no building */
-    uint8_t *kind;            /* CellKind */
+    float   *bare_m; /* bare ground, also under roofs and crowns; no NAN unless all is void */
+    float   *roof_m; /* height of the roof, its planes smoothed; NAN: no building */
+    uint8_t *kind;   /* CellKind */
     int      crown_count;
-    Crown   *crown;           /* by place, south-west first; free() */
+    Crown   *crown; /* by place, south-west first; free() */
 } SurfaceParts;
 
 /* A cell's answer depends on cells nearer than this only: windows that overlap by twice as much agree bit for bit where

@@ -7,8 +7,8 @@ enum { max_levels = 16 };
 
 typedef struct Level {
     int    nx, ny;
-    float *value;    /* NAN: not known */
-    bool  *given;    /* has values below it: stays as it is */
+    float *value; /* NAN: not known */
+    bool  *given; /* has values below it: stays as it is */
 } Level;
 
 static float mean_of_known(const Level *l, int x, int y)
@@ -64,10 +64,10 @@ static void refine(const Level *fine, const Level *coarse)
         for (int x = 0; x < fine->nx; x++) {
             float *v = fine->value + (size_t)y * (size_t)fine->nx + (size_t)x;
             if (!isnan(*v)) continue;
-            const int i0 = x / 2, j0 = y / 2, i1 = i0 + (x % 2 ? 1 : -1), j1 = j0 + (y % 2 ? 1 : -1);
+            const int   i0 = x / 2, j0 = y / 2, i1 = i0 + (x % 2 ? 1 : -1), j1 = j0 + (y % 2 ? 1 : -1);
             const float weight[4] = {9, 3, 3, 1};
             const int   at[4][2] = {{i0, j0}, {i1, j0}, {i0, j1}, {i1, j1}};
-            float sum = 0, count = 0;
+            float       sum = 0, count = 0;
             for (int k = 0; k < 4; k++) {
                 if (at[k][0] < 0 || at[k][1] < 0 || at[k][0] >= coarse->nx || at[k][1] >= coarse->ny) continue;
                 const float u = coarse->value[(size_t)at[k][1] * (size_t)coarse->nx + (size_t)at[k][0]];
@@ -98,10 +98,10 @@ static void coarsen(const Level *coarse, const Level *fine)
 /* Over levels as coarse as coarsest_m; near: with the steps that make it harmonic. */
 static Status fill(float *value, const Blocks *blocks, double coarsest_m, bool near)
 {
-    Level  level[max_levels] = {{.nx = blocks->nx, .ny = blocks->ny, .value = value}};
-    int    levels = 1;
+    Level        level[max_levels] = {{.nx = blocks->nx, .ny = blocks->ny, .value = value}};
+    int          levels = 1;
     const size_t all = (size_t)blocks->nx * (size_t)blocks->ny;
-    size_t total = all;
+    size_t       total = all;
     for (double side_m = blocks->block_m; side_m < coarsest_m && levels < max_levels; side_m *= 2, levels++) {
         Level *l = level + levels;
         l->nx = (level[levels - 1].nx + 1) / 2, l->ny = (level[levels - 1].ny + 1) / 2;
@@ -119,7 +119,8 @@ static Status fill(float *value, const Blocks *blocks, double coarsest_m, bool n
         const size_t n = (size_t)level[k].nx * (size_t)level[k].ny;
         level[k].given = free_given, free_given += n;
         if (k > 0) level[k].value = free_value, free_value += n;
-        if (k == 0) for (size_t c = 0; c < n; c++) given[c] = !isnan(value[c]);
+        if (k == 0)
+            for (size_t c = 0; c < n; c++) given[c] = !isnan(value[c]);
         if (k > 0) coarsen(&level[k], &level[k - 1]);
     }
 

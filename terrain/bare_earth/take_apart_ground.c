@@ -37,7 +37,7 @@ static Status take_apart_extreme(float *value, int nx, int ny, int radius, bool 
     const float  sign = greatest ? -1 : 1;
     if (radius <= 0) return STATUS_OK;
     const size_t row = n + 2 * r, strip = (m + 2 * r) * lanes;
-    float *buffer = malloc((row > strip ? row : strip) * sizeof *buffer);
+    float       *buffer = malloc((row > strip ? row : strip) * sizeof *buffer);
     if (!buffer) return STATUS_NO_MEMORY;
 
     for (size_t y = 0; y < m; y++) {
@@ -50,8 +50,7 @@ static Status take_apart_extreme(float *value, int nx, int ny, int radius, bool 
         const size_t some = n - x0 < lanes ? n - x0 : lanes;
         for (size_t i = 0; i < r * lanes; i++) buffer[i] = buffer[(m + r) * lanes + i] = FLT_MAX;
         for (size_t y = 0; y < m; y++)
-            for (size_t x = 0; x < lanes; x++)
-                buffer[(r + y) * lanes + x] = x < some ? value[y * n + x0 + x] : FLT_MAX;
+            for (size_t x = 0; x < lanes; x++) buffer[(r + y) * lanes + x] = x < some ? value[y * n + x0 + x] : FLT_MAX;
         run_least(buffer, m, width, lanes);
         for (size_t y = 0; y < m; y++)
             for (size_t x = 0; x < some; x++) value[y * n + x0 + x] = sign * buffer[y * lanes + x];
@@ -69,13 +68,13 @@ static const double radius_m[scales] = {2, 4, 8, 14, 22, 34, 52};
 typedef struct Ground {
     Blocks   blocks;
     size_t   count;
-    float   *low;      /* lowest return, NAN: void              [ny][nx] */
-    float   *high;     /* highest                                        */
+    float   *low;  /* lowest return, NAN: void              [ny][nx] */
+    float   *high; /* highest                                        */
     float   *opened;
-    float   *slope;    /* of the wide ground, greatest nearby            */
-    float   *height;   /* of the ground, filled                          */
+    float   *slope;  /* of the wide ground, greatest nearby            */
+    float   *height; /* of the ground, filled                          */
     float   *work;
-    uint8_t *object;   /* not ground                                     */
+    uint8_t *object; /* not ground                                     */
 } Ground;
 
 static void ground_destroy(Ground *g)
@@ -88,12 +87,12 @@ static int64_t floor_mod(int64_t a, int64_t b) { return ((a % b) + b) % b; }
 
 static Status ground_create(Ground *out, const SurfaceModel *model)
 {
-    Ground g = {0};
+    Ground  g = {0};
     Blocks *b = &g.blocks;
     b->size = (int)floor(2 / model->cell_m + 0.01);
     if (b->size < 1) b->size = 1;
     b->block_m = b->size * model->cell_m;
-    int lattice = b->size;                     /* cells of the coarsest level of the filling */
+    int lattice = b->size; /* cells of the coarsest level of the filling */
     for (double side_m = b->block_m; side_m < 12; side_m *= 2) lattice *= 2;
     b->left = (int)floor_mod(model->column, lattice), b->below = (int)floor_mod(model->row, lattice);
     const int many = lattice / b->size;
@@ -161,22 +160,22 @@ static Status slope_of_opening(Ground *g, const SurfaceModel *model, int radius,
 {
     const Blocks *b = &g->blocks;
     const int     step = blocks_in(b, 8);
-    Status status = opening(g->opened, g->low, g, radius);
+    Status        status = opening(g->opened, g->low, g, radius);
     if (status != STATUS_OK) return status;
     for (int y = 0; y < b->ny; y++)
         for (int x = 0; x < b->nx; x++) {
             if (edge && !clipped(b, model, x, y, edge_radius)) continue;
-            const int x0 = x > step ? x - step : 0, x1 = x + step < b->nx ? x + step : b->nx - 1;
-            const int y0 = y > step ? y - step : 0, y1 = y + step < b->ny ? y + step : b->ny - 1;
+            const int    x0 = x > step ? x - step : 0, x1 = x + step < b->nx ? x + step : b->nx - 1;
+            const int    y0 = y > step ? y - step : 0, y1 = y + step < b->ny ? y + step : b->ny - 1;
             const float *row = g->opened + (size_t)y * (size_t)b->nx;
-            const float w = row[x0], e = row[x1], s = g->opened[(size_t)y0 * (size_t)b->nx + (size_t)x],
-                n = g->opened[(size_t)y1 * (size_t)b->nx + (size_t)x];
+            const float  w = row[x0], e = row[x1], s = g->opened[(size_t)y0 * (size_t)b->nx + (size_t)x],
+                        n = g->opened[(size_t)y1 * (size_t)b->nx + (size_t)x];
             double gx = 0, gy = 0;
             if (w != FLT_MAX && e != FLT_MAX && x1 > x0) gx = fabs((double)e - w) / ((x1 - x0) * b->block_m);
             if (s != FLT_MAX && n != FLT_MAX && y1 > y0) gy = fabs((double)n - s) / ((y1 - y0) * b->block_m);
             const double steep = sqrt(gx * gx + gy * gy);
-            float *slope = &g->slope[(size_t)y * (size_t)b->nx + (size_t)x];
-            const float least = edge ? *slope : 0;
+            float       *slope = &g->slope[(size_t)y * (size_t)b->nx + (size_t)x];
+            const float  least = edge ? *slope : 0;
             *slope = (float)(steep < 1 ? steep : 1);
             if (*slope < least) *slope = least;
         }
@@ -188,7 +187,7 @@ static Status slope_of_opening(Ground *g, const SurfaceModel *model, int radius,
 static Status find_slope(Ground *g, const SurfaceModel *model)
 {
     const int widest = blocks_in(&g->blocks, radius_m[scales - 1]), narrow = blocks_in(&g->blocks, 16);
-    Status status = slope_of_opening(g, model, widest, false, 0);
+    Status    status = slope_of_opening(g, model, widest, false, 0);
     if (status == STATUS_OK) status = slope_of_opening(g, model, narrow, true, widest);
     if (status != STATUS_OK) return status;
     return take_apart_extreme(g->slope, g->blocks.nx, g->blocks.ny, blocks_in(&g->blocks, 12), true);
@@ -208,7 +207,7 @@ static Status drop_low_points(Ground *g)
     for (int y = 0; y < b->ny; y++)
         for (int x = 0; x < b->nx; x++) {
             const size_t c = (size_t)y * (size_t)b->nx + (size_t)x;
-            float least = FLT_MAX;
+            float        least = FLT_MAX;
             for (int k = 0; k < 9; k++) {
                 const int i = x + (k % 3 - 1) * away, j = y + (k / 3 - 1) * away;
                 if (k == 4 || i < 0 || j < 0 || i >= b->nx || j >= b->ny) continue;
@@ -236,7 +235,7 @@ static Status mark_objects(Ground *g, const SurfaceModel *model, double first_ra
         before_m = radius_m[k];
         for (size_t c = 0; c < g->count; c++) {
             const float steep = g->slope[c] > 0.05F ? g->slope[c] - 0.05F : 0;
-            float most = 0.6F + 0.5F * steep * wider_m;
+            float       most = 0.6F + 0.5F * steep * wider_m;
             /* a square clipped by the edge cuts slopes by its whole width */
             if (clipped(&g->blocks, model, (int)(c % nx), (int)(c / nx), radius)) most += 1.0F * steep * wider_m;
             if (g->height[c] - g->opened[c] > most) g->object[c] = 1;
@@ -252,10 +251,10 @@ static Status mark_objects(Ground *g, const SurfaceModel *model, double first_ra
  * flattened, but no roof behind its wall. */
 static void regrow(Ground *g)
 {
-    const Blocks *b = &g->blocks;
-    const int     nx = b->nx, ny = b->ny;
+    const Blocks    *b = &g->blocks;
+    const int        nx = b->nx, ny = b->ny;
     static const int di[4] = {1, -1, 0, 0}, dj[4] = {0, 0, 1, -1};
-    const float most = (float)(1.2 * b->block_m), size_m = (float)b->block_m;
+    const float      most = (float)(1.2 * b->block_m), size_m = (float)b->block_m;
     /* object: 0 ground, 1 not, k + 2: taken back in step k */
     for (int step = 0; step < regrow_steps; step++) {
         bool any = false;
@@ -265,9 +264,9 @@ static void regrow(Ground *g)
                 if (g->object[c] != 1 || g->low[c] == FLT_MAX) continue;
                 for (int k = 0; k < 4; k++) {
                     const ptrdiff_t d = di[k] + (ptrdiff_t)dj[k] * nx;
-                    const size_t p = (size_t)((ptrdiff_t)c + d), q = (size_t)((ptrdiff_t)c + 2 * d);
-                    if (g->object[p] == 1 || g->object[q] == 1 || g->object[p] == step + 2
-                        || g->object[q] == step + 2) continue;
+                    const size_t    p = (size_t)((ptrdiff_t)c + d), q = (size_t)((ptrdiff_t)c + 2 * d);
+                    if (g->object[p] == 1 || g->object[q] == 1 || g->object[p] == step + 2 || g->object[q] == step + 2)
+                        continue;
                     const float rise = g->low[c] - g->low[p], before = g->low[p] - g->low[q];
                     if (fabsf(rise) > most || fabsf(rise - before) > 0.25F + 0.15F * fabsf(before)) continue;
                     if (g->high[c] - g->low[c] > 0.5F + 2 * fabsf(rise) + 0.3F * size_m * g->slope[c]) continue;
@@ -301,12 +300,12 @@ static void square_sums(float *v, const Blocks *b, int radius, float *line)
  * embankments against a hall. A hill that a square flattened ends on ground all around. */
 static Status give_up_stands(Ground *g)
 {
-    const Blocks *b = &g->blocks;
-    const int     nx = b->nx, ny = b->ny, radius = blocks_in(b, 60);
+    const Blocks    *b = &g->blocks;
+    const int        nx = b->nx, ny = b->ny, radius = blocks_in(b, 60);
     static const int di[4] = {1, -1, 0, 0}, dj[4] = {0, 0, 1, -1};
-    const float wall_m = 2.5F, step_m = (float)(1.2 * b->block_m);
-    float *drops = g->work, *joins = g->opened;
-    float *line = malloc((size_t)(nx > ny ? nx : ny) * sizeof *line);
+    const float      wall_m = 2.5F, step_m = (float)(1.2 * b->block_m);
+    float           *drops = g->work, *joins = g->opened;
+    float           *line = malloc((size_t)(nx > ny ? nx : ny) * sizeof *line);
     if (!line) return STATUS_NO_MEMORY;
     memset(drops, 0, g->count * sizeof *drops), memset(joins, 0, g->count * sizeof *joins);
     for (int y = 2; y < ny - 2; y++)
@@ -316,7 +315,7 @@ static Status give_up_stands(Ground *g)
             for (int k = 0; k < 4; k++) {
                 /* a wall's own block may hold both heights: one block further */
                 const ptrdiff_t d = di[k] + (ptrdiff_t)dj[k] * nx;
-                const size_t p = (size_t)((ptrdiff_t)c + d), q = (size_t)((ptrdiff_t)c + 2 * d);
+                const size_t    p = (size_t)((ptrdiff_t)c + d), q = (size_t)((ptrdiff_t)c + 2 * d);
                 if (g->low[p] == FLT_MAX || g->low[q] == FLT_MAX) continue;
                 if (g->object[p] == 0 && fabsf(g->low[c] - g->low[p]) <= step_m) joins[c] += 1;
                 else if (g->object[q] < 2 && g->low[c] - g->low[q] > wall_m + 2 * step_m * g->slope[c]) drops[c] += 1;
@@ -336,7 +335,7 @@ static float ground_at(float *slope, const Ground *g, int x, int y)
 {
     const Blocks *b = &g->blocks;
     const float   u = ((float)(x + b->left) + 0.5F) / (float)b->size - 0.5F,
-                  v = ((float)(y + b->below) + 0.5F) / (float)b->size - 0.5F;
+                v = ((float)(y + b->below) + 0.5F) / (float)b->size - 0.5F;
     int i = (int)floorf(u), j = (int)floorf(v);
     i = i < 0 ? 0 : i > b->nx - 2 ? b->nx - 2 : i;
     j = j < 0 ? 0 : j > b->ny - 2 ? b->ny - 2 : j;
@@ -358,8 +357,8 @@ static void near_cells(uint8_t *is_ground, const Ground *g, const SurfaceModel *
     for (int y = 0; y < model->ny; y++)
         for (int x = 0; x < model->nx; x++) {
             const size_t c = (size_t)y * (size_t)model->nx + (size_t)x;
-            float slope;
-            const float over = surface_m[c] - ground_at(&slope, g, x, y);
+            float        slope;
+            const float  over = surface_m[c] - ground_at(&slope, g, x, y);
             if (slope > 1.2F) slope = 1.2F;
             is_ground[c] = over > -below_m - above_slope_m * slope && over < above_m + above_slope_m * slope;
         }
@@ -382,7 +381,7 @@ static Status correct(Ground *g, const SurfaceModel *model, const float *surface
     for (int y = 0; y < b->ny; y++)
         for (int x = 0; x < b->nx; x++) {
             const size_t at = (size_t)y * (size_t)b->nx + (size_t)x;
-            float sum = 0, count = 0;
+            float        sum = 0, count = 0;
             /* its own cells alone where it has enough */
             const int r = 4 * g->opened[at] >= (float)(b->size * b->size) && g->opened[at] > 0 ? 0 : 2;
             for (int j = y - r; j <= y + r; j++)

@@ -14,11 +14,11 @@ static int32_t root_of(int32_t *parent, int32_t c)
 
 /* Connected components, edges touching: label[c] is the first cell of c's component, area[label[c]] its cells. Both are
  * allocated, [ny][nx]; NULL on failure. `joins` says whether the neighbours c and d belong together. */
-typedef bool JoinCells(const void *user, size_t c, size_t d);
+typedef bool  JoinCells(const void *user, size_t c, size_t d);
 static Status take_apart_components(int32_t **label, int32_t **area, int nx, int ny, JoinCells *joins, const void *user)
 {
     const size_t n = (size_t)nx * (size_t)ny;
-    int32_t *parent = malloc(n * sizeof *parent), *count = calloc(n, sizeof *count);
+    int32_t     *parent = malloc(n * sizeof *parent), *count = calloc(n, sizeof *count);
     *label = NULL, *area = NULL;
     if (!parent || !count) {
         free(parent), free(count);
@@ -54,10 +54,10 @@ enum { directions = 8, most_samples = 7 };
 static const int direction[directions][2] = {{1, 0}, {0, 1}, {1, 1}, {-1, 1}, {2, 1}, {1, 2}, {-1, 2}, {-2, 1}};
 
 typedef struct Kinds {
-    int nx, ny;
+    int          nx, ny;
     const float *surface_m;
-    uint8_t *object;    /* 0 ground, 1 above it, 2 holds a straight line */
-    uint8_t *kind;
+    uint8_t     *object; /* 0 ground, 1 above it, 2 holds a straight line */
+    uint8_t     *kind;
 } Kinds;
 
 /* Marks the cells of straight lines through objects. */
@@ -66,11 +66,11 @@ static void mark_straight(const Kinds *k, const SurfaceModel *model)
     const int nx = k->nx, ny = k->ny, spacing = (int)fmax(1, floor(1 / model->cell_m + 0.5));
     for (int d = 0; d < directions; d++) {
         const double step_m = spacing * model->cell_m * hypot(direction[d][0], direction[d][1]);
-        int half = (int)floor(3 / step_m + 0.5);
+        int          half = (int)floor(3 / step_m + 0.5);
         half = half < 2 ? 2 : half;
-        const int    dx = direction[d][0] * spacing, dy = direction[d][1] * spacing;
+        const int       dx = direction[d][0] * spacing, dy = direction[d][1] * spacing;
         const ptrdiff_t step = dx + (ptrdiff_t)dy * nx;
-        float sxx = 0;
+        float           sxx = 0;
         for (int i = -half; i <= half; i++) sxx += (float)(i * i);
         const float count = (float)(2 * half + 1), most = straight_m * straight_m * count;
         for (int y = half * abs(dy); y < ny - half * abs(dy); y++)
@@ -79,8 +79,8 @@ static void mark_straight(const Kinds *k, const SurfaceModel *model)
                 if (!k->object[c] || !k->object[(ptrdiff_t)c + half * step] || !k->object[(ptrdiff_t)c - half * step])
                     continue;
                 const float *z = k->surface_m + c;
-                float s = 0, sx = 0, ss = 0;
-                bool  inside = true;
+                float        s = 0, sx = 0, ss = 0;
+                bool         inside = true;
                 for (int i = -half; i <= half; i++) {
                     const float v = z[i * step] - z[0];
                     inside = inside && k->object[(ptrdiff_t)c + i * step];
@@ -132,12 +132,12 @@ static bool same_kind(const void *user, size_t c, size_t d)
 static Status drop_small(const Kinds *k, const SurfaceModel *model)
 {
     int32_t *label, *area;
-    Status status = take_apart_components(&label, &area, k->nx, k->ny, same_kind, k);
+    Status   status = take_apart_components(&label, &area, k->nx, k->ny, same_kind, k);
     if (status != STATUS_OK) return status;
     const double cell_m2 = model->cell_m * model->cell_m;
     /* what touches the window's edge is no gap */
     for (int y = 0; y < k->ny; y++)
-        for (int x = 0; x < k->nx; x += y > 0 && y < k->ny - 1 && k->nx > 1 ? k->nx - 1 : 1) {
+        for (int x = 0; x<k->nx; x += y> 0 && y < k->ny - 1 && k->nx > 1 ? k->nx - 1 : 1) {
             const size_t c = (size_t)y * (size_t)k->nx + (size_t)x;
             if (k->kind[c] != CELL_BUILDING) area[label[c]] = INT32_MAX;
         }
@@ -160,16 +160,16 @@ static bool both_trees(const void *user, size_t c, size_t d)
 static Status drop_small_trees(const Kinds *k, const SurfaceModel *model)
 {
     int32_t *label, *area;
-    Status status = take_apart_components(&label, &area, k->nx, k->ny, both_trees, k);
+    Status   status = take_apart_components(&label, &area, k->nx, k->ny, both_trees, k);
     if (status != STATUS_OK) return status;
     const double cell_m2 = model->cell_m * model->cell_m;
     const size_t nx = (size_t)k->nx, n = nx * (size_t)k->ny;
     for (size_t c = 0; c < n; c++) {
         if (k->kind[c] != CELL_TREE || area[label[c]] < 0 || area[label[c]] * cell_m2 >= least_crown_m2) continue;
-        const bool roof = (c % nx && k->kind[c - 1] == CELL_BUILDING && label[c - 1] != label[c])
-            || ((c + 1) % nx && k->kind[c + 1] == CELL_BUILDING && label[c + 1] != label[c])
-            || (c >= nx && k->kind[c - nx] == CELL_BUILDING && label[c - nx] != label[c])
-            || (c + nx < n && k->kind[c + nx] == CELL_BUILDING && label[c + nx] != label[c]);
+        const bool roof = (c % nx && k->kind[c - 1] == CELL_BUILDING && label[c - 1] != label[c]) ||
+                          ((c + 1) % nx && k->kind[c + 1] == CELL_BUILDING && label[c + 1] != label[c]) ||
+                          (c >= nx && k->kind[c - nx] == CELL_BUILDING && label[c - nx] != label[c]) ||
+                          (c + nx < n && k->kind[c + nx] == CELL_BUILDING && label[c + nx] != label[c]);
         if (roof) area[label[c]] = -1;
     }
     for (size_t c = 0; c < n; c++) {
@@ -196,9 +196,9 @@ Status take_apart_kinds(SurfaceParts *out, const SurfaceModel *model, const floa
 {
     const int    nx = model->nx, ny = model->ny;
     const size_t n = (size_t)nx * (size_t)ny;
-    Kinds k = {nx, ny, surface_m, malloc(n), out->kind};
-    uint16_t *lines = malloc(n * sizeof *lines), *objects = malloc(n * sizeof *objects);
-    Status status = k.object && lines && objects ? STATUS_OK : STATUS_NO_MEMORY;
+    Kinds        k = {nx, ny, surface_m, malloc(n), out->kind};
+    uint16_t    *lines = malloc(n * sizeof *lines), *objects = malloc(n * sizeof *objects);
+    Status       status = k.object && lines && objects ? STATUS_OK : STATUS_NO_MEMORY;
     if (status == STATUS_OK) {
         for (size_t c = 0; c < n; c++) k.object[c] = surface_m[c] - out->bare_m[c] > least_height_m;
         mark_straight(&k, model);

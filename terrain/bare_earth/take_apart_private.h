@@ -7,9 +7,9 @@
 /* Blocks of size x size cells, about 2 m, on which the ground is found. The first block may begin before the window:
  * blocks lie on the whole model's lattice, `left` and `below` cells of the first ones are outside. */
 typedef struct Blocks {
-    int    nx, ny;        /* blocks; both multiples of the coarsest level of the filling */
-    int    size;          /* cells */
-    int    left, below;   /* cells */
+    int    nx, ny;      /* blocks; both multiples of the coarsest level of the filling */
+    int    size;        /* cells */
+    int    left, below; /* cells */
     double block_m;
 } Blocks;
 

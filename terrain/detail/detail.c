@@ -46,11 +46,11 @@ typedef struct Octave {
 
 static const struct {
     double cosine, sine;
-} turn[detail_octaves] = { /* of n + 1 times the golden angle */
-    {-0.73736887807831974, 0.67549029426152385}, {0.087425724716959877, -0.99617104086482777},
-    {0.60843886097886257, 0.79360075129169594}, {-0.98471348531542868, -0.17418195037931164},
-    {0.84375529481239719, -0.53672805262632273}, {-0.25960430490148856, 0.9657150743757783},
-    {-0.4609070247133692, -0.88744842924525458}, {0.93932129632411809, 0.34303863087410202}};
+} turn[detail_octaves] = {/* of n + 1 times the golden angle */
+                          {-0.73736887807831974, 0.67549029426152385}, {0.087425724716959877, -0.99617104086482777},
+                          {0.60843886097886257, 0.79360075129169594},  {-0.98471348531542868, -0.17418195037931164},
+                          {0.84375529481239719, -0.53672805262632273}, {-0.25960430490148856, 0.9657150743757783},
+                          {-0.4609070247133692, -0.88744842924525458}, {0.93932129632411809, 0.34303863087410202}};
 
 /* two: the second values, too; slopes: the slopes, too. */
 static inline Octave octave_eight(uint64_t seed, int n, const double x_m[8], const double y_m[8], bool two, bool slopes)
@@ -67,10 +67,10 @@ static inline Octave octave_eight(uint64_t seed, int n, const double x_m[8], con
     const Lattice     u = lattice_of(u_m, 1 / detail_octave_m[n]), v = lattice_of(v_m, 1 / detail_octave_m[n]);
     const AxisWeights a = axis_weights(u.share), b = axis_weights(v.share);
     const I32x8       key = i32x8_set((int)(uint32_t)(invented_hash(seed + (uint64_t)n, 0, 0) >> 32));
-    const I32x8 sw = i32x8_add(key, i32x8_add(i32x8_mul(u.cell, east), i32x8_mul(v.cell, north)));
-    const I32x8 nw = i32x8_add(sw, north);
-    F32x8       first[4], second[4];
-    const I32x8 word[4] = {sw, i32x8_add(sw, east), nw, i32x8_add(nw, east)};
+    const I32x8       sw = i32x8_add(key, i32x8_add(i32x8_mul(u.cell, east), i32x8_mul(v.cell, north)));
+    const I32x8       nw = i32x8_add(sw, north);
+    F32x8             first[4], second[4];
+    const I32x8       word[4] = {sw, i32x8_add(sw, east), nw, i32x8_add(nw, east)};
     for (int k = 0; k < 4; k++) values_of_word(&first[k], two ? &second[k] : NULL, word[k]);
 
     Octave      out = {.second = f32x8_set(0), .slope_x = f32x8_set(0), .slope_y = f32x8_set(0)};
@@ -82,8 +82,8 @@ static inline Octave octave_eight(uint64_t seed, int n, const double x_m[8], con
                                b.second * f32x8_fma(a.first, second[2], a.second * second[3]));
     if (slopes) { /* second' = rise first, first' = -rise second */
         const F32x8 per_m = f32x8_set(1 / detail_octave_m[n]);
-        const F32x8 south_u = a.first * first[1] - a.second * first[0], top_u = a.first * first[3] - a.second *
-            first[2];
+        const F32x8 south_u = a.first * first[1] - a.second * first[0],
+                    top_u = a.first * first[3] - a.second * first[2];
         const F32x8 along_u = a.rise * f32x8_fma(b.first, south_u, b.second * top_u) * per_m;
         const F32x8 along_v = b.rise * (b.first * top - b.second * south) * per_m;
         out.slope_x = along_u * f32x8_set(c) - along_v * f32x8_set(s);
@@ -97,8 +97,8 @@ static inline Octave octave_eight(uint64_t seed, int n, const double x_m[8], con
 /* Nodes of the footprints of eight places, and how far they are beyond them. */
 typedef struct Nodes {
     int32_t class[8], size[8], elongation[8];
-    float   size_share[8], elongation_share[8];
-    bool    same; /* the eight share class and nodes */
+    float size_share[8], elongation_share[8];
+    bool  same; /* the eight share class and nodes */
 } Nodes;
 
 /* Nodes are equally spaced between powers of 2: exponent and mantissa of a float are their position. Of eight. */
@@ -118,7 +118,7 @@ static void find_nodes(Nodes *out, int some, const uint8_t *surface, const float
 {
     float across[8], along[8];
     for (int k = 0; k < 8; k++) {
-        const int at = k < some ? k : 0; /* places beyond the last repeat the first */
+        const int  at = k < some ? k : 0; /* places beyond the last repeat the first */
         const bool known = surface[at] > SURFACE_NONE && surface[at] < SURFACE_COUNT;
         across[k] = across_m[at], along[k] = along_m[at];
         out->class[k] = known ? surface[at] : SURFACE_NONE;
@@ -126,7 +126,8 @@ static void find_nodes(Nodes *out, int some, const uint8_t *surface, const float
     const F32x8 wide = f32x8_load(across), first = f32x8_set(1);
     const F32x8 longer = f32x8_select(f32x8_greater(wide, f32x8_set(0)), f32x8_load(along) / wide, first);
     const I32x8 size = find_node(out->size_share, wide, 2, detail_least_log2, detail_sizes);
-    const I32x8 elongation = find_node(out->elongation_share, longer, 1, 0, detail_longs), class = i32x8_load(out->class);
+    const I32x8 elongation = find_node(out->elongation_share, longer, 1, 0, detail_longs),
+                class = i32x8_load(out->class);
     const I32x8 lane = i32x8_set(0);
     const F32x8 equal = f32x8_and(i32x8_equal(class, _mm256_permutevar8x32_epi32(class, lane)),
                                   f32x8_and(i32x8_equal(size, _mm256_permutevar8x32_epi32(size, lane)),
@@ -167,9 +168,9 @@ static void find_weights(F32x8 out[detail_octaves], const DetailTable *t, const 
         const F32x8 size = f32x8_load(nodes->size_share), elongation = f32x8_load(nodes->elongation_share);
         for (unsigned left = used; left; left &= left - 1) {
             const int n = __builtin_ctz(left);
-            out[n] = between(_mm256_set1_ps(at[0][j].of[f][n]), _mm256_set1_ps(at[0][j + 1].of[f][n]),
-                             _mm256_set1_ps(at[1][j].of[f][n]), _mm256_set1_ps(at[1][j + 1].of[f][n]), size,
-                                 elongation);
+            out[n] =
+                between(_mm256_set1_ps(at[0][j].of[f][n]), _mm256_set1_ps(at[0][j + 1].of[f][n]),
+                        _mm256_set1_ps(at[1][j].of[f][n]), _mm256_set1_ps(at[1][j + 1].of[f][n]), size, elongation);
         }
         return;
     }
@@ -201,7 +202,7 @@ typedef struct FieldSum {
 
 static inline void add_octave(FieldSum *sum, F32x8 noise, F32x8 weight)
 {
-    sum->value    = f32x8_fma(weight, noise, sum->value);
+    sum->value = f32x8_fma(weight, noise, sum->value);
     sum->variance = f32x8_fma(weight, weight, sum->variance);
 }
 
@@ -228,10 +229,10 @@ static inline F32x8 beyond_photo(int n, F32x8 cell_m)
 static void details(Eight *out, const DetailTable *t, uint64_t seed, const Nodes *nodes, unsigned wanted,
                     const double x_m[8], const double y_m[8], const float photo_m[8])
 {
-    FieldSum    sum[detail_fields];
-    F32x8       slope_x = f32x8_set(0), slope_y = f32x8_set(0);
-    unsigned    used = 0;
-    uint8_t     octaves[detail_fields];
+    FieldSum sum[detail_fields];
+    F32x8    slope_x = f32x8_set(0), slope_y = f32x8_set(0);
+    unsigned used = 0;
+    uint8_t  octaves[detail_fields];
     used_octaves(octaves, t, nodes);
     for (int f = 0; f < detail_fields; f++) {
         sum[f].value = sum[f].variance = f32x8_set(0);
@@ -239,10 +240,10 @@ static void details(Eight *out, const DetailTable *t, uint64_t seed, const Nodes
         if (sum[f].used) find_weights(sum[f].weight, t, nodes, (DetailField)f, sum[f].used);
         used |= sum[f].used;
     }
-    const F32x8 warmth_first = of_class(t->follows, nodes, DETAIL_WARMTH), warmth_second = of_class(t->apart, nodes,
-                                                                                                    DETAIL_WARMTH);
-    const F32x8 radar_first = of_class(t->follows, nodes, DETAIL_RADAR), radar_second = of_class(t->apart, nodes,
-                                                                                                 DETAIL_RADAR);
+    const F32x8 warmth_first = of_class(t->follows, nodes, DETAIL_WARMTH),
+                warmth_second = of_class(t->apart, nodes, DETAIL_WARMTH);
+    const F32x8 radar_first = of_class(t->follows, nodes, DETAIL_RADAR),
+                radar_second = of_class(t->apart, nodes, DETAIL_RADAR);
     for (unsigned left = used; left; left &= left - 1) {
         const int    n = __builtin_ctz(left);
         const bool   warmth = sum[DETAIL_WARMTH].used >> n & 1, radar = sum[DETAIL_RADAR].used >> n & 1;
@@ -301,20 +302,19 @@ static void store_eight(const GroundDetail *out, int first, int some, const Eigh
 }
 
 void detail_at(const GroundDetail *out, const DetailTable *table, const Landscape *landscape, int count,
-                       const uint8_t *surface, const double *x_m, const double *y_m, const GroundFootprint *footprint)
+               const uint8_t *surface, const double *x_m, const double *y_m, const GroundFootprint *footprint)
 {
-    uint64_t       seed;
+    uint64_t seed;
     (void)landscape_seed(&seed, landscape);
     seed += 20;
     const bool     photo = out->albedo && landscape_has_photo(landscape);
-    const unsigned wanted = (unsigned)(out->albedo != NULL) << DETAIL_ALBEDO |
-                            (unsigned)(out->warmth_k != NULL) << DETAIL_WARMTH |
-                            (unsigned)(out->radar != NULL) << DETAIL_RADAR |
-                            (unsigned)(out->slope_x != NULL) << DETAIL_HEIGHT;
+    const unsigned wanted =
+        (unsigned)(out->albedo != NULL) << DETAIL_ALBEDO | (unsigned)(out->warmth_k != NULL) << DETAIL_WARMTH |
+        (unsigned)(out->radar != NULL) << DETAIL_RADAR | (unsigned)(out->slope_x != NULL) << DETAIL_HEIGHT;
     for (int first = 0; first < count; first += 8) {
-        double    x[8] = {0}, y[8] = {0};
-        float     photo_m[8];
-        uint8_t   class[8] = {0};
+        double x[8] = {0}, y[8] = {0};
+        float  photo_m[8];
+        uint8_t class[8] = {0};
         Nodes     nodes;
         Eight     eight;
         unsigned  known = 0;

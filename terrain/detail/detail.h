@@ -18,8 +18,11 @@ enum {
     detail_octaves = 8,
     /* Nodes of the footprint: four for each doubling from 1/64 m to 128 m; the first also means 0, and at the last
      * nothing remains. Nodes of its elongation: two for each doubling from 1 to 32. Between nodes: linear. */
-    detail_least_log2 = -6, detail_doublings = 13, detail_sizes = 4 * detail_doublings + 1,
-    detail_long_doublings = 5, detail_longs = 2 * detail_long_doublings + 1,
+    detail_least_log2 = -6,
+    detail_doublings = 13,
+    detail_sizes = 4 * detail_doublings + 1,
+    detail_long_doublings = 5,
+    detail_longs = 2 * detail_long_doublings + 1,
 };
 
 /* Cells of the lattices, m: exponential covariances from 0.3 m to 10 m are sums of these within 0.02. */
@@ -54,17 +57,18 @@ Status detail_table_create(DetailTable **out, const DetailStatistics statistics[
 /* Logs what is wrong with the file. cut_off: octaves below this share of a field's variance are left out, their
  * variance given to the others. */
 static const double detail_cut_off = 0; /* none is left out: `bench precision`: detail: weakest octave */
-Status detail_table_open(DetailTable **out, const char *path, double cut_off);
-void   detail_table_close(DetailTable *table); /* accepts NULL */
+Status              detail_table_open(DetailTable **out, const char *path, double cut_off);
+void                detail_table_close(DetailTable *table); /* accepts NULL */
 
 /* ---- detail at places ---------------------------------------------------------------------------- */
 
 /* Of count places, one array each, [count], the caller's. NULL: not wanted, and not computed. */
 typedef struct GroundDetail {
-    float *albedo;           /* factor of the reflectance, mean 1, > 0 */
-    float *warmth_k;         /* added to the class's temperature at night, mean 0 (by day more: render/light/thermal.c) */
-    float *radar;            /* factor of the backscatter, mean 1, > 0 */
-    float *slope_x, *slope_y;/* rise of the detail's height eastwards and northwards, metres a metre; both or neither */
+    float *albedo;   /* factor of the reflectance, mean 1, > 0 */
+    float *warmth_k; /* added to the class's temperature at night, mean 0 (by day more: render/light/thermal.c) */
+    float *radar;    /* factor of the backscatter, mean 1, > 0 */
+    float *slope_x,
+        *slope_y; /* rise of the detail's height eastwards and northwards, metres a metre; both or neither */
 } GroundDetail;
 
 /* What a sample covers of the ground, m: across the view and along it (at grazing view longer), [count] each. */
@@ -75,7 +79,7 @@ typedef struct GroundFootprint {
 /* Detail at places of known classes; elsewhere, and with table NULL, factors 1 and the rest 0. Thread-safe. A place's
  * result is independent of the others. */
 void detail_at(const GroundDetail *out, const DetailTable *table, const Landscape *landscape, int count,
-                       const uint8_t *surface, const double *x_m, const double *y_m, const GroundFootprint *footprint);
+               const uint8_t *surface, const double *x_m, const double *y_m, const GroundFootprint *footprint);
 
 /* Wheel paths and worn edges of roads, ruts and the grassy middle of tracks, rows of crops and furrows: multiplied into
  * the factors and added to the rest of what detail holds. Filtered to the footprint (its longer axis); nothing of it is

@@ -75,9 +75,9 @@ static void fit_octaves(double variance[detail_octaves], const Kernel *kernel, c
 {
     enum { distances = 48, rounds = 400 };
     static const double total_weight = 30;
-    double normal[detail_octaves][detail_octaves], right[detail_octaves], sum = 0;
-    const double longest_m = s->far_share > 0 ? fmax(s->length_m, s->far_length_m) : s->length_m;
-    const double first_m = 0.03, ratio = pow(fmax(8 * longest_m, 1) / first_m, 1.0 / (distances - 1));
+    double              normal[detail_octaves][detail_octaves], right[detail_octaves], sum = 0;
+    const double        longest_m = s->far_share > 0 ? fmax(s->length_m, s->far_length_m) : s->length_m;
+    const double        first_m = 0.03, ratio = pow(fmax(8 * longest_m, 1) / first_m, 1.0 / (distances - 1));
     for (int n = 0; n < detail_octaves; n++) {
         right[n] = total_weight, variance[n] = 0;
         for (int m = 0; m < detail_octaves; m++) normal[n][m] = total_weight;
@@ -142,11 +142,11 @@ static void smoother(Transfer *out, int n, double share, double wide_m)
         out->to[n][m] = (float)share;
         return;
     }
-    const double low_m = detail_octave_width * detail_octave_m[m], high_m = detail_octave_width * detail_octave_m[m +
-                                                                                                                  1];
+    const double low_m = detail_octave_width * detail_octave_m[m],
+                 high_m = detail_octave_width * detail_octave_m[m + 1];
     const double low = -expm1(-d_m * d_m / (2 * low_m * low_m)), high = -expm1(-d_m * d_m / (2 * high_m * high_m));
     const double want = -expm1(-d_m * d_m / (2 * width_m * width_m)), part = clamp((want - high) / (low - high), 0, 1);
-    out->to[n][m]     = (float)(share * part);
+    out->to[n][m] = (float)(share * part);
     out->to[n][m + 1] = (float)(share * (1 - part));
 }
 
@@ -203,7 +203,7 @@ Status detail_table_create(DetailTable **out, const DetailStatistics statistics[
                            double cut_off)
 {
     DetailTable *table = calloc(1, sizeof *table);
-    double     (*variance)[detail_fields][detail_octaves] = calloc(SURFACE_COUNT, sizeof *variance);
+    double(*variance)[detail_fields][detail_octaves] = calloc(SURFACE_COUNT, sizeof *variance);
     if (!table || !variance) {
         free(table);
         free(variance);
@@ -218,9 +218,9 @@ Status detail_table_create(DetailTable **out, const DetailStatistics statistics[
             const double            bend = hermite_of_skew(s->skew);
             if (!(s->sigma > 0)) continue;
             fit_octaves(variance[c][f], &kernel, s);
-            table->bend[c][f]    = (float)(bend / (s->sigma / sqrt(1 + 2 * bend * bend)));
+            table->bend[c][f] = (float)(bend / (s->sigma / sqrt(1 + 2 * bend * bend)));
             table->follows[c][f] = (float)s->follows;
-            table->apart[c][f]   = (float)sqrt(1 - s->follows * s->follows);
+            table->apart[c][f] = (float)sqrt(1 - s->follows * s->follows);
         }
     for (int i = 0; i < detail_sizes; i++)
         for (int j = 0; j < detail_longs; j++) {
@@ -231,8 +231,8 @@ Status detail_table_create(DetailTable **out, const DetailStatistics statistics[
                     const DetailStatistics *s = &statistics[c][f];
                     const double bend = hermite_of_skew(s->skew), sigma = s->sigma / sqrt(1 + 2 * bend * bend);
                     if (s->sigma > 0)
-                        fill_weights(table->weights[c][i][j].of[f], &table->used[c][i][j][f], variance[c][f],
-                                     &transfer, sigma, cut_off);
+                        fill_weights(table->weights[c][i][j].of[f], &table->used[c][i][j][f], variance[c][f], &transfer,
+                                     sigma, cut_off);
                 }
         }
     free(variance);
@@ -240,10 +240,7 @@ Status detail_table_create(DetailTable **out, const DetailStatistics statistics[
     return STATUS_OK;
 }
 
-void detail_table_close(DetailTable *table)
-{
-    free(table);
-}
+void detail_table_close(DetailTable *table) { free(table); }
 
 /* ---- the file ----------------------------------------------------------------------------------- */
 
@@ -270,17 +267,20 @@ static Status read_row(DetailStatistics statistics[SURFACE_COUNT][detail_fields]
         double     *to;
         const char *column;
         double      low, high;
-    } number[] = {{&s->sigma, "sigma", 0, field_of[f].most}, {&s->length_m, "length_m", 0.05, 50},
-                  {&s->far_share, "far_share", 0, 1},        {&s->far_length_m, "far_length_m", 0.05, 50},
-                  {&s->skew, "skew", -1.5, 1.5},             {&s->follows, "follows_albedo", -1, 1}};
+    } number[] = {{&s->sigma, "sigma", 0, field_of[f].most},
+                  {&s->length_m, "length_m", 0.05, 50},
+                  {&s->far_share, "far_share", 0, 1},
+                  {&s->far_length_m, "far_length_m", 0.05, 50},
+                  {&s->skew, "skew", -1.5, 1.5},
+                  {&s->follows, "follows_albedo", -1, 1}};
     for (size_t k = 0; k < sizeof number / sizeof *number; k++) {
-        const Status status = table_number(number[k].to, t, row, table_column(t, number[k].column), number[k].low,
-                                           number[k].high);
+        const Status status =
+            table_number(number[k].to, t, row, table_column(t, number[k].column), number[k].low, number[k].high);
         if (status != STATUS_OK) return status;
     }
     if ((f == DETAIL_ALBEDO || f == DETAIL_HEIGHT) && s->follows != 1) {
-        log_error("ground detail: follows_albedo of albedo and height is 1: file=%s line=%d", t->path, t->line[row +
-                                                                                                               1]);
+        log_error("ground detail: follows_albedo of albedo and height is 1: file=%s line=%d", t->path,
+                  t->line[row + 1]);
         return STATUS_BAD_VALUE;
     }
     return STATUS_OK;
@@ -288,12 +288,12 @@ static Status read_row(DetailStatistics statistics[SURFACE_COUNT][detail_fields]
 
 Status detail_table_open(DetailTable **out, const char *path, double cut_off)
 {
-    static const char *const column[] = {"surface", "field", "sigma", "length_m", "far_share", "far_length_m", "skew",
-                                         "follows_albedo"};
-    DetailStatistics statistics[SURFACE_COUNT][detail_fields] = {{{0}}};
-    bool             seen[SURFACE_COUNT][detail_fields] = {{0}};
-    Table            t = {0};
-    Status           status = table_open(&t, path);
+    static const char *const column[] = {"surface",   "field",        "sigma", "length_m",
+                                         "far_share", "far_length_m", "skew",  "follows_albedo"};
+    DetailStatistics         statistics[SURFACE_COUNT][detail_fields] = {{{0}}};
+    bool                     seen[SURFACE_COUNT][detail_fields] = {{0}};
+    Table                    t = {0};
+    Status                   status = table_open(&t, path);
     if (status != STATUS_OK) return status;
     for (size_t k = 0; k < sizeof column / sizeof *column && status == STATUS_OK; k++)
         if (table_column(&t, column[k]) < 0) {
@@ -305,8 +305,7 @@ Status detail_table_open(DetailTable **out, const char *path, double cut_off)
         for (int f = 0; f < detail_fields && status == STATUS_OK; f++)
             if (!seen[s][f]) {
                 log_error("ground detail: row missing: file=%s surface=%s field=%s", path,
-                          surface_name((SurfaceClass)s),
-                          field_of[f].name);
+                          surface_name((SurfaceClass)s), field_of[f].name);
                 status = STATUS_BAD_VALUE;
             }
     table_close(&t);

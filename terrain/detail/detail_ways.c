@@ -10,10 +10,7 @@ typedef struct Added {
 } Added;
 
 /* 1 for a width of four footprints, 0 for two. */
-static double fade(double width_m, double footprint_m)
-{
-    return 1 - smooth_step(0.25, 0.5, footprint_m / width_m);
-}
+static double fade(double width_m, double footprint_m) { return 1 - smooth_step(0.25, 0.5, footprint_m / width_m); }
 
 static void add_at(const GroundDetail *out, int n, const Added *a, const double across[2], bool albedo)
 {
@@ -31,17 +28,20 @@ static void add_at(const GroundDetail *out, int n, const Added *a, const double 
 /* A strip along a way on both sides of its middle, in section a Gaussian. */
 typedef struct Strip {
     double at_m, deviation_m;
-    bool   of_edge;                /* at_m is beyond the edge */
+    bool   of_edge;                 /* at_m is beyond the edge */
     double albedo, warmth_k, radar; /* at its middle; the mean over the way is taken off */
     double height_m;
 } Strip;
 
 static const Strip road_strips[] = {
-    {0.75, 0.28, false, -0.07, 0.15, -0.10, -0.006}, {2.25, 0.28, false, -0.07, 0.15, -0.10, -0.006},
-    {1.5, 0.25, false, -0.04, 0.05, 0, 0},           {0, 0.22, true, 0.22, -0.25, 0.50, -0.010},
+    {0.75, 0.28, false, -0.07, 0.15, -0.10, -0.006},
+    {2.25, 0.28, false, -0.07, 0.15, -0.10, -0.006},
+    {1.5, 0.25, false, -0.04, 0.05, 0, 0},
+    {0, 0.22, true, 0.22, -0.25, 0.50, -0.010},
 };
 static const Strip lane_strips[] = {
-    {0.8, 0.3, false, -0.06, 0.15, -0.10, -0.008}, {0, 0.3, true, 0.25, -0.25, 0.50, -0.015},
+    {0.8, 0.3, false, -0.06, 0.15, -0.10, -0.008},
+    {0, 0.3, true, 0.25, -0.25, 0.50, -0.015},
 };
 static const Strip track_strips[] = {
     {0.8, 0.2, false, 0.12, 0.25, -0.25, -0.045}, {0, 0.3, false, -0.14, -0.35, 0.30, 0.010}, /* twice: the middle */
@@ -81,8 +81,11 @@ static bool field_track(double *away_m, double across[2], uint64_t seed, double 
 static void way_detail(const GroundDetail *out, int n, const Landscape *landscape, SurfaceClass surface, double x_m,
                        double y_m, double footprint_m)
 {
-    enum { roads = sizeof road_strips / sizeof *road_strips, lanes = sizeof lane_strips / sizeof *lane_strips,
-           tracks = sizeof track_strips / sizeof *track_strips };
+    enum {
+        roads = sizeof road_strips / sizeof *road_strips,
+        lanes = sizeof lane_strips / sizeof *lane_strips,
+        tracks = sizeof track_strips / sizeof *track_strips
+    };
     WayPlace way;
     double   across[2], away_m;
     Added    added;
@@ -107,7 +110,7 @@ static void way_detail(const GroundDetail *out, int n, const Landscape *landscap
 
 typedef struct Rows {
     SurfaceClass class;
-    double       apart_m, albedo, warmth_k, radar, height_m; /* amplitudes; height_m: from furrow to ridge */
+    double apart_m, albedo, warmth_k, radar, height_m; /* amplitudes; height_m: from furrow to ridge */
 } Rows;
 
 static const Rows rows_of_class[] = {{SURFACE_CROP, 0.75, 0.08, -0.10, 0.15, 0.020},
@@ -155,8 +158,8 @@ static void rows_detail(const GroundDetail *out, int first, const Landscape *lan
         const double across[2] = {(double)across_x[k], (double)across_y[k]};
         /* a photograph has the rows itself from two of its pixels on */
         const bool  seen = photo_m[k] > 0 && (double)photo_m[k] < rows->apart_m / 2;
-        const Added added = row_at(rows, x_m[k] * across[0] + y_m[k] * across[1],
-                                   fade(rows->apart_m, (double)footprint_m[first + k]));
+        const Added added =
+            row_at(rows, x_m[k] * across[0] + y_m[k] * across[1], fade(rows->apart_m, (double)footprint_m[first + k]));
         add_at(out, first + k, &added, across, !seen);
     }
 }

@@ -8,7 +8,8 @@
 #include <cmath>
 #include <new>
 
-namespace {
+namespace
+{
 
 const double deg_per_rad = 57.295779513082320877;
 const double half_pi_rad = 1.5707963267948966192;

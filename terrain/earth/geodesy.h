@@ -19,7 +19,6 @@ Status geodetic_from_ecef(Geodetic *out, const double p_ecef[3]);
 /* r_ecef_from_enu may be NULL: axes of the local east, north, up at the place. */
 Status ecef_from_geodetic(double p_ecef[3], double r_ecef_from_enu[9], const Geodetic *place);
 
-
 /* ECEF <-> east-north-up about one origin, in double. The matrix is taken once from GeographicLib; a conversion is
  * then a 3x3 and an offset, 1 nm at ECEF size. */
 typedef struct LocalFrame {

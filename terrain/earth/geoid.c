@@ -6,7 +6,7 @@
 
 #include <stdlib.h>
 
-static const char file_name[] = "egm96_15.gtx";
+static const char  file_name[] = "egm96_15.gtx";
 static const float gap_m = -88.8888f; /* .gtx's own mark for no value */
 enum { header_octets = 40, margin = 2, most_posts = 40 << 20 };
 
@@ -29,7 +29,7 @@ static bool find_file(char *out, size_t out_size)
     for (size_t k = 0; k < sizeof lists / sizeof *lists; k++)
         for (const char *at = lists[k]; at && *at;) {
             const size_t length = strcspn(at, ":");
-            const int    n      = snprintf(out, out_size, "%.*s/%s", (int)length, at, file_name);
+            const int    n = snprintf(out, out_size, "%.*s/%s", (int)length, at, file_name);
             if (n > 0 && n < (int)out_size) {
                 char why[file_why_size];
                 if (file_is_regular(why, out)) return true;
@@ -42,21 +42,21 @@ static bool find_file(char *out, size_t out_size)
 /* False: not a plausible grid of the Earth; nothing is allocated. */
 static bool read_header(Geoid *g, const uint8_t header[header_octets])
 {
-    g->south_deg    = read_f64(header);
-    g->west_deg     = read_f64(header + 8);
+    g->south_deg = read_f64(header);
+    g->west_deg = read_f64(header + 8);
     g->step_lat_deg = read_f64(header + 16);
     g->step_lon_deg = read_f64(header + 24);
     const uint32_t rows = read_u32(header + 32), columns = read_u32(header + 36);
     if (rows < 4 || columns < 4 || rows > 65535 || columns > 65535 || (uint64_t)rows * columns > most_posts)
         return false;
-    g->rows    = (int)rows;
+    g->rows = (int)rows;
     g->columns = (int)columns;
     if (!(g->south_deg >= -90 && g->west_deg >= -360 && g->west_deg <= 360)) return false;
     if (!(g->step_lat_deg > 0 && g->step_lon_deg > 0)) return false;
     const double north_deg = g->south_deg + (g->rows - 1) * g->step_lat_deg;
     const double round_deg = g->columns * g->step_lon_deg;
     if (!(north_deg <= 90 + 1e-6 && round_deg <= 360 + 1e-6 + g->step_lon_deg)) return false;
-    g->wraps      = fabs(round_deg - 360) < 1e-6 && g->columns % 2 == 0;
+    g->wraps = fabs(round_deg - 360) < 1e-6 && g->columns % 2 == 0;
     g->south_pole = g->wraps && fabs(g->south_deg + 90) < 1e-6;
     g->north_pole = g->wraps && fabs(north_deg - 90) < 1e-6;
     return true;
@@ -71,14 +71,14 @@ static void fill_margin(const Geoid *g)
 {
     for (int row = 0; row < g->rows; row++)
         for (int k = 1; k <= margin; k++) {
-            *post_at(g, row, -k)                 = g->wraps ? *post_at(g, row, g->columns - k) : NAN;
+            *post_at(g, row, -k) = g->wraps ? *post_at(g, row, g->columns - k) : NAN;
             *post_at(g, row, g->columns - 1 + k) = g->wraps ? *post_at(g, row, k - 1) : NAN;
         }
     for (int k = 1; k <= margin; k++)
         for (int column = -margin; column < g->columns + margin; column++) {
             /* over the pole lies the same latitude half way round */
             const int across = g->wraps ? (column + g->columns + g->columns / 2) % g->columns : 0;
-            *post_at(g, -k, column)              = g->south_pole ? *post_at(g, k, across) : NAN;
+            *post_at(g, -k, column) = g->south_pole ? *post_at(g, k, across) : NAN;
             *post_at(g, g->rows - 1 + k, column) = g->north_pole ? *post_at(g, g->rows - 1 - k, across) : NAN;
         }
 }
@@ -102,7 +102,8 @@ static Status read_posts(Geoid *g, FILE *file, const char *path)
             if (fabsf(n_m - gap_m) < 1e-3f) n_m = NAN;
             else if (!(fabsf(n_m) <= 200)) {
                 log_error("geoid: %s: row %d, column %d is %g m, not within 200 m; install it again: "
-                          "apt-get install --reinstall proj-data", path, row, column, (double)n_m);
+                          "apt-get install --reinstall proj-data",
+                          path, row, column, (double)n_m);
                 status = STATUS_BAD_VALUE;
                 break;
             }
@@ -132,7 +133,8 @@ Status geoid_open(Geoid *out, const char *path)
     char  why[file_why_size];
     FILE *file = file_open_stream(why, path);
     if (!file) {
-        log_error("geoid: cannot open %s: %s; apt-get install proj-data, or name another with terrain.geoid", path, why);
+        log_error("geoid: cannot open %s: %s; apt-get install proj-data, or name another with terrain.geoid", path,
+                  why);
         return STATUS_IO;
     }
     Status status = fread(header, sizeof header, 1, file) == 1 ? STATUS_OK : STATUS_TRUNCATED;

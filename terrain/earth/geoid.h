@@ -9,10 +9,10 @@
 #include "pitviper.h"
 
 typedef struct Geoid {
-    int    rows, columns;      /* from the south, from the west */
+    int    rows, columns; /* from the south, from the west */
     double south_deg, west_deg, step_lat_deg, step_lon_deg;
     bool   wraps, south_pole, north_pole; /* whole circles of latitude; rows that stand on a pole */
-    float *n_m;                /* [rows + 4][columns + 4]: two more posts each side, over the seam and the poles */
+    float *n_m; /* [rows + 4][columns + 4]: two more posts each side, over the seam and the poles */
 } Geoid;
 
 /* path NULL or empty: egm96_15.gtx in $PROJ_DATA, $PROJ_LIB, then where Debian puts it. A grid that is missing or

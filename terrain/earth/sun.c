@@ -97,14 +97,13 @@ Status sun_at(Sun *out, double unix_s, const Geodetic *place, double pressure_mb
     m3_tmul_v3(enu, r_ecef_from_enu, sun_from_place_au);
     double       azimuth_rad = atan2(enu[0], enu[1]);
     const double true_rad = atan2(enu[2], hypot(enu[0], enu[1]));
-    const double elevation_rad =
-        true_rad + refraction_deg(true_rad / rad_per_deg, pressure_mbar, temp_c) * rad_per_deg;
+    const double elevation_rad = true_rad + refraction_deg(true_rad / rad_per_deg, pressure_mbar, temp_c) * rad_per_deg;
     if (azimuth_rad < 0) azimuth_rad += 2 * pi_rad;
 
-    *out = (Sun){.azimuth_rad = azimuth_rad,
-                 .elevation_rad = elevation_rad,
-                 .distance_au = distance_au,
-                 .d_enu = {cos(elevation_rad) * sin(azimuth_rad), cos(elevation_rad) * cos(azimuth_rad),
-                           sin(elevation_rad)}};
+    *out = (Sun){
+        .azimuth_rad = azimuth_rad,
+        .elevation_rad = elevation_rad,
+        .distance_au = distance_au,
+        .d_enu = {cos(elevation_rad) * sin(azimuth_rad), cos(elevation_rad) * cos(azimuth_rad), sin(elevation_rad)}};
     return STATUS_OK;
 }

@@ -9,7 +9,7 @@ typedef struct Sun {
     double azimuth_rad;   /* clockwise from north */
     double elevation_rad; /* apparent (refracted) above the horizon */
     double distance_au;
-    double d_enu[3];      /* unit, towards the sun, at the place */
+    double d_enu[3]; /* unit, towards the sun, at the place */
 } Sun;
 
 /* unix_s: UTC as Unix time, 1900 .. 2100. delta_t_s: TT - UT1; NAN for a built-in estimate. */

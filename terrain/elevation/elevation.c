@@ -26,8 +26,14 @@ Status elevation_level_describe(ElevationLevel *out, int nx, int ny, double x0_m
     if (!(spacing_m > 0 && step_m > 0) || !isfinite(spacing_m) || !isfinite(step_m)) return STATUS_BAD_VALUE;
     if (!isfinite(x0_m) || !isfinite(y0_m) || !isfinite(z0_m)) return STATUS_BAD_VALUE;
 
-    ElevationLevel level = {.nx = nx, .ny = ny, .x0_m = x0_m, .y0_m = y0_m, .spacing_m = spacing_m,
-                            .z0_m = z0_m, .step_m = step_m, .plain = true};
+    ElevationLevel level = {.nx = nx,
+                            .ny = ny,
+                            .x0_m = x0_m,
+                            .y0_m = y0_m,
+                            .spacing_m = spacing_m,
+                            .z0_m = z0_m,
+                            .step_m = step_m,
+                            .plain = true};
     level.tiles_x = (nx - 2) / elevation_tile_cells + 1;
     level.tiles_y = (ny - 2) / elevation_tile_cells + 1;
     if (elevation_level_stored(&level) > INT32_MAX) return STATUS_BAD_VALUE;
@@ -65,12 +71,12 @@ Status elevation_level_create(Elevation *elevation, int index, int nx, int ny, d
     const Status status = elevation_level_describe(&level, nx, ny, x0_m, y0_m, spacing_m, z0_m, step_m);
     if (status != STATUS_OK) return status;
 
-    level.tile   = calloc((size_t)level.tiles_x * (size_t)level.tiles_y, sizeof *level.tile);
+    level.tile = calloc((size_t)level.tiles_x * (size_t)level.tiles_y, sizeof *level.tile);
     level.stored = heights_create(elevation_level_stored(&level), sizeof *level.stored);
     bool whole = level.tile && level.stored;
     for (int k = elevation_pyramid_first; k < level.pyramid_count && whole; k++) {
         const size_t nodes = (size_t)level.pyramid_nx[k] * (size_t)level.pyramid_ny[k];
-        level.pyramid[k]   = heights_create(nodes, sizeof **level.pyramid);
+        level.pyramid[k] = heights_create(nodes, sizeof **level.pyramid);
         if (k >= elevation_rise_level) level.rise[k] = heights_create(nodes, sizeof **level.rise);
         whole = level.pyramid[k] && (k < elevation_rise_level || level.rise[k]);
     }
@@ -95,7 +101,7 @@ double elevation_height(const Elevation *elevation, double x_m, double y_m, doub
 {
     for (int n = 0; n < elevation->level_count; n++) {
         const ElevationLevel *level = &elevation->level[n];
-        const double fx = (x_m - level->x0_m) / level->spacing_m, fy = (y_m - level->y0_m) / level->spacing_m;
+        const double          fx = (x_m - level->x0_m) / level->spacing_m, fy = (y_m - level->y0_m) / level->spacing_m;
         if (!(fx >= 0 && fy >= 0 && fx <= level->nx - 1 && fy <= level->ny - 1)) continue;
 
         /* the northern and eastern outline belong to the last cell */
@@ -170,8 +176,7 @@ void elevation_set_post(ElevationLevel *level, int i, int j, int32_t post)
     for (int tj = b[0]; tj <= b[1]; tj++)
         for (int ti = a[0]; ti <= a[1]; ti++) {
             const size_t tile = (size_t)tj * (size_t)level->tiles_x + (size_t)ti;
-            level->stored[tile * elevation_tile_posts +
-                          (size_t)(j - tj * elevation_tile_cells) * elevation_tile_side +
+            level->stored[tile * elevation_tile_posts + (size_t)(j - tj * elevation_tile_cells) * elevation_tile_side +
                           (size_t)(i - ti * elevation_tile_cells)] = stored_of(level->tile[tile], post);
         }
 }
@@ -197,8 +202,8 @@ static int of_tile(int posts, int tile)
 void elevation_fill_edges(ElevationLevel *level)
 {
     for (int tj = 0; tj < level->tiles_y; tj++)
-        for (int ti = 0; ti < level->tiles_x; ti += tj < level->tiles_y - 1 && ti < level->tiles_x - 1
-                                                        ? level->tiles_x - 1 - ti : 1)
+        for (int ti = 0; ti < level->tiles_x;
+             ti += tj < level->tiles_y - 1 && ti < level->tiles_x - 1 ? level->tiles_x - 1 - ti : 1)
             fill_up(level->stored + ((size_t)tj * (size_t)level->tiles_x + (size_t)ti) * elevation_tile_posts,
                     of_tile(level->nx, ti), of_tile(level->ny, tj));
 }
@@ -243,7 +248,7 @@ void elevation_tile_range(int32_t range[2], const ElevationLevel *level, int til
     for (int j = 0; j < rows; j++) {
         const int32_t *from = row + (size_t)j * (size_t)level->nx + (size_t)tile_i * elevation_tile_cells;
         for (int i = 0; i < columns; i++) {
-            low  = from[i] < low ? from[i] : low;
+            low = from[i] < low ? from[i] : low;
             high = from[i] > high ? from[i] : high;
         }
     }
@@ -265,7 +270,7 @@ Status elevation_fill(ElevationLevel *level, const int32_t *post)
     const size_t posts = (size_t)level->nx * (size_t)level->ny, tile_row = (size_t)level->nx * elevation_tile_cells;
     int32_t      low = INT32_MAX, high = INT32_MIN;
     for (size_t n = 0; n < posts; n++) {
-        low  = post[n] < low ? post[n] : low;
+        low = post[n] < low ? post[n] : low;
         high = post[n] > high ? post[n] : high;
     }
     if (low < elevation_lowest_post || high > elevation_highest_post) return STATUS_BAD_VALUE;
@@ -281,21 +286,12 @@ Status elevation_fill(ElevationLevel *level, const int32_t *post)
 
 enum { square = 1 << elevation_pyramid_first, rise_square = 1 << elevation_rise_level };
 
-static inline uint16_t max_u16(uint16_t a, uint16_t b)
-{
-    return a > b ? a : b;
-}
+static inline uint16_t max_u16(uint16_t a, uint16_t b) { return a > b ? a : b; }
 
 /* A height or a rise in units of 1 << shift, rounded up; at most 65535 by the choice of the shift. */
-static inline uint16_t rounded_up(int32_t posts, int shift)
-{
-    return (uint16_t)((posts + (1 << shift) - 1) >> shift);
-}
+static inline uint16_t rounded_up(int32_t posts, int shift) { return (uint16_t)((posts + (1 << shift) - 1) >> shift); }
 
-static size_t tile_count(const ElevationLevel *level)
-{
-    return (size_t)level->tiles_x * (size_t)level->tiles_y;
-}
+static size_t tile_count(const ElevationLevel *level) { return (size_t)level->tiles_x * (size_t)level->tiles_y; }
 
 /* Finest units that hold the level's heights and rises. */
 static void choose_units(ElevationLevel *level)
@@ -307,12 +303,12 @@ static void choose_units(ElevationLevel *level)
         uint16_t            most = 0;
         for (int n = 0; n < elevation_tile_posts; n++) most = max_u16(most, stored[n]);
         const int32_t high = tile.base + ((int32_t)most << tile.shift);
-        base  = tile.base < base ? tile.base : base;
-        top   = high > top ? high : top;
+        base = tile.base < base ? tile.base : base;
+        top = high > top ? high : top;
         shift = tile.shift > shift ? tile.shift : shift;
     }
     level->pyramid_base = base;
-    level->rise_shift   = shift; /* an edge lies in one tile */
+    level->rise_shift = shift; /* an edge lies in one tile */
     for (level->pyramid_shift = 0; top - base > 65535 << level->pyramid_shift;) level->pyramid_shift++;
 }
 
@@ -357,7 +353,7 @@ static void steepest(uint16_t *restrict to, uint16_t *restrict from, const uint1
 {
     for (int i = 0; i < count; i++) {
         const uint16_t up = (uint16_t)(b[i] > a[i] ? b[i] - a[i] : 0), down = (uint16_t)(a[i] > b[i] ? a[i] - b[i] : 0);
-        to[i]   = max_u16(to[i], up);
+        to[i] = max_u16(to[i], up);
         from[i] = max_u16(from[i], down);
     }
 }
@@ -399,8 +395,8 @@ static void halve_rises(ElevationLevel *level, int k)
                 const int at_i = 2 * i + n % 2, at_j = 2 * j + n / 2;
                 if (at_i >= w || at_j >= h) continue;
                 const ElevationRise *part = &level->rise[k - 1][(size_t)at_j * (size_t)w + (size_t)at_i];
-                most.east  = max_u16(most.east, part->east);
-                most.west  = max_u16(most.west, part->west);
+                most.east = max_u16(most.east, part->east);
+                most.west = max_u16(most.west, part->west);
                 most.north = max_u16(most.north, part->north);
                 most.south = max_u16(most.south, part->south);
             }

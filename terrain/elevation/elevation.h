@@ -36,11 +36,15 @@
 
 enum {
     elevation_max_levels = 4,
-    elevation_most_posts = 65536,     /* a side */
-    elevation_tile_cells = 64, elevation_tile_side = 65, elevation_tile_posts = 65 * 65,
-    elevation_most_shift = 10, elevation_base_unit = 1 << elevation_most_shift,
-    elevation_lowest_post = -(1 << 25), elevation_highest_post = (1 << 25) - elevation_base_unit,
-    elevation_pyramid_first = 2,      /* finest level of the pyramid: squares of 4 x 4 cells */
+    elevation_most_posts = 65536, /* a side */
+    elevation_tile_cells = 64,
+    elevation_tile_side = 65,
+    elevation_tile_posts = 65 * 65,
+    elevation_most_shift = 10,
+    elevation_base_unit = 1 << elevation_most_shift,
+    elevation_lowest_post = -(1 << 25),
+    elevation_highest_post = (1 << 25) - elevation_base_unit,
+    elevation_pyramid_first = 2, /* finest level of the pyramid: squares of 4 x 4 cells */
     elevation_pyramid_levels = 17,
     elevation_rise_level = 3
 };
@@ -57,9 +61,9 @@ typedef struct ElevationRise {
 } ElevationRise;
 
 typedef struct ElevationLevel {
-    int       nx, ny;          /* posts, >= 2; post (i, j) at (x0 + i spacing, y0 + j spacing) */
-    double    x0_m, y0_m, spacing_m;
-    double    z0_m, step_m;    /* dequantisation */
+    int            nx, ny; /* posts, >= 2; post (i, j) at (x0 + i spacing, y0 + j spacing) */
+    double         x0_m, y0_m, spacing_m;
+    double         z0_m, step_m;     /* dequantisation */
     int            tiles_x, tiles_y; /* of elevation_tile_cells a side, the last ones filled up */
     ElevationTile *tile;             /* [tiles_y][tiles_x] */
     uint16_t      *stored;           /* [tiles_y * tiles_x][65][65], row j northwards */
@@ -93,11 +97,11 @@ Status elevation_level_create(Elevation *elevation, int index, int nx, int ny, d
 void   elevation_build_pyramids(Elevation *elevation); /* not those of borrowed levels */
 
 /* The same of one level, in parts: begin, the rows of tiles (on any threads), finish. */
-void   elevation_begin_pyramid(ElevationLevel *level);
-void   elevation_build_pyramid_tiles(ElevationLevel *level, int tile_j);
-void   elevation_finish_pyramid(ElevationLevel *level);
+void elevation_begin_pyramid(ElevationLevel *level);
+void elevation_build_pyramid_tiles(ElevationLevel *level, int tile_j);
+void elevation_finish_pyramid(ElevationLevel *level);
 
-void   elevation_destroy(Elevation *elevation); /* accepts a half-built one */
+void elevation_destroy(Elevation *elevation); /* accepts a half-built one */
 
 /* ---- writing: first the tiles' bases and shifts, then the posts ------------------------------------ */
 
@@ -169,10 +173,9 @@ static inline void elevation_cell(int32_t post[4], const ElevationLevel *level, 
     const size_t tile =
         (size_t)(j / elevation_tile_cells) * (size_t)level->tiles_x + (size_t)(i / elevation_tile_cells);
     const ElevationTile of = level->tile[tile];
-    const uint16_t *south = level->stored + tile * elevation_tile_posts +
+    const uint16_t     *south = level->stored + tile * elevation_tile_posts +
                             (size_t)(j % elevation_tile_cells * elevation_tile_side + i % elevation_tile_cells);
-    for (int k = 0; k < 4; k++)
-        post[k] = elevation_of_tile(of, south[k % 2 + k / 2 * elevation_tile_side]);
+    for (int k = 0; k < 4; k++) post[k] = elevation_of_tile(of, south[k % 2 + k / 2 * elevation_tile_side]);
 }
 
 /* Highest post of node (i, j) of pyramid level k, as rounded. */

@@ -89,7 +89,7 @@ Status levels_bend(Field *posts, const Curve *curve)
         for (int side = 0; side < 2; side++)
             for (int c = 0; c < nx; c++)
                 levels_curve_at(curve, (posts->i0 + c * stride) * posts->spacing_m,
-                         (posts->j0 + j0 + side * stride) * posts->spacing_m, &z_of[side][c], &g_of[side][c]);
+                                (posts->j0 + j0 + side * stride) * posts->spacing_m, &z_of[side][c], &g_of[side][c]);
         for (int j = j0; j < j0 + stride && j < posts->ny; j++) {
             const double v = (double)(j - j0) / stride;
             float       *row = posts->v + (size_t)j * posts->nx;
@@ -123,8 +123,8 @@ void levels_join(WorkLevel *level, const WorkLevel *outer, int band)
             }
             int          corner[3];
             double       weight[3];
-            const double around_m = levels_height(&outer->z, (z->i0 + i) * z->spacing_m, (z->j0 + j) * z->spacing_m,
-                                             corner, weight);
+            const double around_m =
+                levels_height(&outer->z, (z->i0 + i) * z->spacing_m, (z->j0 + j) * z->spacing_m, corner, weight);
             const double share = smooth_step(0, band, d);
             float       *post = &z->v[(size_t)j * z->nx + i];
             *post = (float)(around_m + share * (*post - around_m));
@@ -189,15 +189,16 @@ static void quantise(Elevation *elevation, const WorkLevel *levels, int count, c
             const double coarse = fmax(quanta[k].step_m, level_ratio * quanta[k - 1].step_m);
             for (int j = level->hole_j0; j <= level->hole_j1; j++)
                 for (int i = level->hole_i0; i <= level->hole_i1; i++) {
-                    const bool rim = i == level->hole_i0 || i == level->hole_i1 || j == level->hole_j0 ||
-                                     j == level->hole_j1;
+                    const bool rim =
+                        i == level->hole_i0 || i == level->hole_i1 || j == level->hole_j0 || j == level->hole_j1;
                     if (!rim) {
                         i = level->hole_i1 - 1;
                         continue;
                     }
                     const size_t at = (size_t)(j - z->j0) * z->nx + (i - z->i0);
-                    elevation_set_post(to, i - z->i0, j - z->j0, (uint16_t)((floor(z->v[at] / coarse) * coarse -
-                                                                             quanta[k].z0_m) / quanta[k].step_m));
+                    elevation_set_post(
+                        to, i - z->i0, j - z->j0,
+                        (uint16_t)((floor(z->v[at] / coarse) * coarse - quanta[k].z0_m) / quanta[k].step_m));
                 }
         }
         if (level->outermost) continue;
@@ -259,7 +260,7 @@ static Steps choose_steps(const WorkLevel *levels, int count)
         const Field *z = &levels[k].z;
         const size_t posts = (size_t)z->nx * (size_t)z->ny;
         for (size_t n = 0; n < posts; n++) {
-            low  = low < z->v[n] ? low : z->v[n];
+            low = low < z->v[n] ? low : z->v[n];
             high = high > z->v[n] ? high : z->v[n];
         }
     }
@@ -368,7 +369,8 @@ static void round_hole(ElevationLevel *to, const WorkLevel *level, const Elevati
     for (int j = hole.j0; j <= hole.j1; j++)
         for (int i = hole.i0; i <= hole.i1; i++) {
             if (j > hole.j0 && j < hole.j1 && i > hole.i0) i = hole.i1;
-            const int unit = level_ratio << coarsest_beside(inside, level_ratio * (i - hole.i0), level_ratio * (j - hole.j0));
+            const int unit =
+                level_ratio << coarsest_beside(inside, level_ratio * (i - hole.i0), level_ratio * (j - hole.j0));
             elevation_set_post(to, i, j, elevation_post(to, i, j) / unit * unit);
         }
 }

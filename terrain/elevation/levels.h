@@ -23,11 +23,11 @@ double levels_height(const Field *posts, double x_m, double y_m, int corner[3], 
 enum { level_ratio = 8 }; /* 2^3 between the spacings of neighbouring levels */
 
 typedef struct WorkLevel {
-    Field z;    /* ENU z of the surface; starts as height above the ellipsoid */
+    Field  z;   /* ENU z of the surface; starts as height above the ellipsoid */
     float *cap; /* highest z allowed by clear lines, NULL: no line is near */
     /* posts of the hole, inclusive, in this level's own index; hole_i1 < hole_i0: none */
-    int hole_i0, hole_i1, hole_j0, hole_j1;
-    bool outermost;
+    int      hole_i0, hole_i1, hole_j0, hole_j1;
+    bool     outermost;
     uint8_t *water; /* posts of the sea, which nothing moves; NULL: none */
 } WorkLevel;
 

@@ -157,12 +157,12 @@ static Status measure_holes(Patch *p)
 double patch_hole(const Patch *p, double x_px, double y_px)
 {
     if (!p->share) return 0;
-    const double x = (x_px - p->x0) / p->factor, y = (y_px - p->y0) / p->factor;
-    const double px = clamp(x - 0.5, 0, p->nx[0] - 1), py = clamp(y - 0.5, 0, p->ny[0] - 1);
-    const int    i = (int)px, j = (int)py, e = i + 1 < p->nx[0], n = j + 1 < p->ny[0] ? p->nx[0] : 0;
+    const double   x = (x_px - p->x0) / p->factor, y = (y_px - p->y0) / p->factor;
+    const double   px = clamp(x - 0.5, 0, p->nx[0] - 1), py = clamp(y - 0.5, 0, p->ny[0] - 1);
+    const int      i = (int)px, j = (int)py, e = i + 1 < p->nx[0], n = j + 1 < p->ny[0] ? p->nx[0] : 0;
     const uint8_t *at = &p->hole[(size_t)j * (size_t)p->nx[0] + (size_t)i];
-    const double south = at[0] + (px - i) * (at[e] - at[0]), north = at[n] + (px - i) * (at[n + e] - at[n]);
-    const double here = south + (py - j) * (north - south);
+    const double   south = at[0] + (px - i) * (at[e] - at[0]), north = at[n] + (px - i) * (at[n + e] - at[n]);
+    const double   here = south + (py - j) * (north - south);
     if (!(here > 0)) return 0;
     const int    nx = squares(p->x0, p->nx[0], p), ny = squares(p->y0, p->ny[0], p);
     const double a = x_px / p->factor / square - first_square(p->x0, p),
@@ -206,15 +206,15 @@ static void average_columns(const Reading *r, const float *strip, float value, i
     for (int w = 0; w < r->count; w++) {
         const PatchWindow *of = &r->window[w];
         Patch             *p = &r->patch[w];
-        const int from = y0 > p->y0 ? y0 : p->y0, to = y1 < of->y1 ? y1 : of->y1;
-        const int west = x0 > p->x0 ? x0 : p->x0, east = x1 < of->x1 ? x1 : of->x1;
+        const int          from = y0 > p->y0 ? y0 : p->y0, to = y1 < of->y1 ? y1 : of->y1;
+        const int          west = x0 > p->x0 ? x0 : p->x0, east = x1 < of->x1 ? x1 : of->x1;
         if (west >= east) continue;
         const int i0 = (west - p->x0) / p->factor, nx = (east - p->x0 + p->factor - 1) / p->factor - i0;
         for (int y = from; y < to; y += p->factor) {
             float *out = p->v[0] + (size_t)((y - p->y0) / p->factor) * (size_t)p->nx[0] + (size_t)i0;
             if (strip)
-                average_row(out, nx, strip + (size_t)(y - y0) * (size_t)(x1 - x0) + (size_t)(west - x0), (size_t)(x1 - x0),
-                            east - west, to - y < p->factor ? to - y : p->factor, p->factor);
+                average_row(out, nx, strip + (size_t)(y - y0) * (size_t)(x1 - x0) + (size_t)(west - x0),
+                            (size_t)(x1 - x0), east - west, to - y < p->factor ? to - y : p->factor, p->factor);
             else
                 for (int i = 0; i < nx; i++) out[i] = value;
         }
@@ -250,8 +250,8 @@ static void read_strip(void *user, int worker, int task)
                 r->status[task] = STATUS_NO_MEMORY;
                 break;
             }
-            r->status[task] = raster_read(strip, raster, r->source->band, (RasterWindow){x0, y0, width, y1 - y0},
-                                          r->source->key);
+            r->status[task] =
+                raster_read(strip, raster, r->source->band, (RasterWindow){x0, y0, width, y1 - y0}, r->source->key);
             if (r->status[task] != STATUS_OK) break;
             for (size_t n = 0; n < count; n++) strip[n] = strip[n] >= low && strip[n] <= high ? strip[n] : NAN;
             average_columns(r, strip, 0, x0, x1, y0, y1);
@@ -270,7 +270,7 @@ static Status allocate(Patch *p, const PatchWindow *w)
     for (int k = 0; k < most; k++) {
         p->nx[k] = nx;
         p->ny[k] = ny;
-        p->v[k]  = malloc((size_t)nx * (size_t)ny * sizeof **p->v);
+        p->v[k] = malloc((size_t)nx * (size_t)ny * sizeof **p->v);
         if (!p->v[k]) return STATUS_NO_MEMORY;
         p->mips = k + 1;
         if (nx == 1 && ny == 1 && !w->wider) break;
@@ -286,8 +286,13 @@ Status patches_read(Patch *out, const PatchWindow *window, int count, const Patc
     const Raster *raster = source->raster;
     PatchWindow  *w = calloc((size_t)count, sizeof *w);
     Patch        *p = calloc((size_t)count, sizeof *p);
-    Reading       r = {.source = source, .window = w, .patch = p, .count = count, .x0 = raster->width,
-                       .y0 = raster->height, .rows = raster->row_block > 0 ? raster->row_block : 64};
+    Reading       r = {.source = source,
+                       .window = w,
+                       .patch = p,
+                       .count = count,
+                       .x0 = raster->width,
+                       .y0 = raster->height,
+                       .rows = raster->row_block > 0 ? raster->row_block : 64};
     Status        status = w && p ? STATUS_OK : STATUS_NO_MEMORY;
     for (int k = 0; status == STATUS_OK && k < count; k++) {
         w[k] = window[k];

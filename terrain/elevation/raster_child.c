@@ -17,17 +17,17 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-static const double usual_patience_s = 120;
+static const double   usual_patience_s = 120;
 static _Atomic double patience_s = usual_patience_s;
 
 void raster_child_patience(double s) { atomic_store(&patience_s, s > 0 ? s : usual_patience_s); }
 
 struct RasterChild {
-    pid_t           process;  /* 0: none is left */
+    pid_t           process; /* 0: none is left */
     int             socket[wire_channels];
-    WireChannel    *channel;  /* [wire_channels], shared with it */
+    WireChannel    *channel; /* [wire_channels], shared with it */
     bool            taken[wire_channels];
-    bool            dead;     /* it is asked no more */
+    bool            dead; /* it is asked no more */
     pthread_mutex_t lock;
     pthread_cond_t  given;
 };
@@ -55,8 +55,8 @@ static struct {
 
 static int spawn(pid_t *process, const char *program, int orders)
 {
-    extern char **environ;
-    char         *arguments[] = {(char *)"pitviper-rasters", NULL};
+    extern char              **environ;
+    char                      *arguments[] = {(char *)"pitviper-rasters", NULL};
     posix_spawn_file_actions_t actions;
     posix_spawnattr_t          attributes;
     sigset_t                   none;
@@ -81,9 +81,10 @@ static void starter_gone(void)
     if (starter.socket >= 0) close(starter.socket);
     if (starter.process > 0 && starter.owner == getpid()) {
         kill(starter.process, SIGKILL);
-        while (waitpid(starter.process, NULL, 0) < 0 && errno == EINTR) {}
+        while (waitpid(starter.process, NULL, 0) < 0 && errno == EINTR) {
+        }
     }
-    starter.socket  = -1;
+    starter.socket = -1;
     starter.process = 0;
 }
 
@@ -118,17 +119,17 @@ static bool starter_asked(int32_t *answer, WireOrderKind kind, pid_t process, co
     struct msghdr message = {.msg_iov = &text, .msg_iovlen = 1};
     if (descriptors) {
         memset(&control, 0, sizeof control);
-        message.msg_control    = &control;
+        message.msg_control = &control;
         message.msg_controllen = sizeof control;
         struct cmsghdr *c = CMSG_FIRSTHDR(&message);
         c->cmsg_level = SOL_SOCKET;
-        c->cmsg_type  = SCM_RIGHTS;
-        c->cmsg_len   = CMSG_LEN(wire_descriptors * sizeof(int));
+        c->cmsg_type = SCM_RIGHTS;
+        c->cmsg_len = CMSG_LEN(wire_descriptors * sizeof(int));
         memcpy(CMSG_DATA(c), descriptors, wire_descriptors * sizeof(int));
     }
     ssize_t got = sendmsg(starter.socket, &message, MSG_NOSIGNAL);
-    if (got == (ssize_t)sizeof order)
-        do got = recv(starter.socket, answer, sizeof *answer, 0);
+    if (got == (ssize_t)sizeof order) do
+            got = recv(starter.socket, answer, sizeof *answer, 0);
         while (got < 0 && errno == EINTR);
     return got == (ssize_t)sizeof *answer;
 }
@@ -204,7 +205,8 @@ static int end_process(RasterChild *child)
     int32_t how = 0;
     if (child->process <= 0) return 0;
     pthread_mutex_lock(&starter.lock);
-    if (starter.socket < 0 || starter.owner != getpid() || !starter_asked(&how, WIRE_END, child->process, NULL)) how = 0;
+    if (starter.socket < 0 || starter.owner != getpid() || !starter_asked(&how, WIRE_END, child->process, NULL))
+        how = 0;
     pthread_mutex_unlock(&starter.lock);
     child->process = 0;
     return how;
@@ -264,22 +266,25 @@ static void give_up(RasterChild *child, const WireChannel *channel, Fault fault)
     char path[wire_path_size], key[wire_key_size];
     pthread_mutex_lock(&child->lock);
     if (!child->dead) {
-        child->dead   = true;
+        child->dead = true;
         const int how = end_process(child), number = WIFSIGNALED(how) ? WTERMSIG(how) : WEXITSTATUS(how);
         file_at(path, channel);
         memcpy(key, channel->request.key, sizeof key);
         key[sizeof key - 1] = 0;
         if (fault == FAULT_SILENT)
-            log_error("%s: %s: its reader did nothing for %.0f s and was ended: the file is broken, or its disk does not answer; "
-                      "gdal_translate %s OUT.tif makes a plain copy",
-                      key, path, atomic_load(&patience_s), path);
+            log_error(
+                "%s: %s: its reader did nothing for %.0f s and was ended: the file is broken, or its disk does not answer; "
+                "gdal_translate %s OUT.tif makes a plain copy",
+                key, path, atomic_load(&patience_s), path);
         else if (fault == FAULT_NONSENSE)
-            log_error("%s: %s: its reader sent what no reader sends, and was ended: the file is broken or hostile; leave it out",
-                      key, path);
+            log_error(
+                "%s: %s: its reader sent what no reader sends, and was ended: the file is broken or hostile; leave it out",
+                key, path);
         else if (fault == FAULT_ENDED)
-            log_error("%s: %s: its reader broke off (%s %d): the file is broken, or needs more than %d MB; fetch it again, or "
-                      "gdal_translate -co TILED=YES %s OUT.tif",
-                      key, path, WIFSIGNALED(how) ? "signal" : "exit", number, (int)raster_most_memory_mb, path);
+            log_error(
+                "%s: %s: its reader broke off (%s %d): the file is broken, or needs more than %d MB; fetch it again, or "
+                "gdal_translate -co TILED=YES %s OUT.tif",
+                key, path, WIFSIGNALED(how) ? "signal" : "exit", number, (int)raster_most_memory_mb, path);
     }
     pthread_mutex_unlock(&child->lock);
 }
@@ -323,7 +328,7 @@ Status raster_child_ask(RasterChild *child, WireChannel *channel, WireReply *rep
     const int socket = child->socket[channel - child->channel];
     char      octet = 1;
     if (is_dead(child)) return STATUS_IO;
-    channel->reply  = (WireReply){.status = STATUS_IO};
+    channel->reply = (WireReply){.status = STATUS_IO};
     channel->log[0] = 0;
     if (send(socket, &octet, 1, MSG_NOSIGNAL) != 1) {
         give_up(child, channel, FAULT_ENDED);

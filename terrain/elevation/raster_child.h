@@ -13,15 +13,15 @@
 #include "pitviper.h"
 
 enum {
-    wire_channels     = 8,
-    wire_orders       = 3,                              /* descriptor that orders come from */
-    wire_descriptors  = wire_channels + 1,              /* sent along with WIRE_START: sockets, then the memory */
+    wire_channels = 8,
+    wire_orders = 3,                      /* descriptor that orders come from */
+    wire_descriptors = wire_channels + 1, /* sent along with WIRE_START: sockets, then the memory */
     wire_most_rasters = 4096,
-    wire_most_sheets  = 65536,                          /* of all rasters */
-    wire_path_size    = 4096,
-    wire_key_size     = 128,
-    wire_log_octets   = 16384,
-    wire_data_octets  = 4 << 20,
+    wire_most_sheets = 65536, /* of all rasters */
+    wire_path_size = 4096,
+    wire_key_size = 128,
+    wire_log_octets = 16384,
+    wire_data_octets = 4 << 20,
 };
 
 typedef enum WireOrderKind {
@@ -34,21 +34,22 @@ typedef struct WireOrder {
 } WireOrder;
 
 typedef enum WireAsk {
-    WIRE_OPEN,          /* data: texts, each with its 0: the current folder, paths, folder, folders (raster_set.c). count: rasters */
-    WIRE_RASTER,        /* data: WireRaster of `raster` */
-    WIRE_SHEETS,        /* data: as many as fit of the sheets of `raster` from `first` on; count: how many */
+    WIRE_OPEN,   /* data: texts, each with its 0: the current folder, paths, folder, folders (raster_set.c). count:
+                    rasters */
+    WIRE_RASTER, /* data: WireRaster of `raster` */
+    WIRE_SHEETS, /* data: as many as fit of the sheets of `raster` from `first` on; count: how many */
     WIRE_PX_FROM_EARTH, /* data: x[count], y[count], replaced */
     WIRE_EARTH_FROM_PX,
-    WIRE_READ,          /* data: float [height][width], unless it is uniform: then `value` is all of them */
-    WIRE_READ_BYTES,    /* data: uint8_t [height][width][count], then valid [height][width] */
-    WIRE_UNIFORM,       /* whether a window of any size is known to be uniform without being read */
+    WIRE_READ,       /* data: float [height][width], unless it is uniform: then `value` is all of them */
+    WIRE_READ_BYTES, /* data: uint8_t [height][width][count], then valid [height][width] */
+    WIRE_UNIFORM,    /* whether a window of any size is known to be uniform without being read */
 } WireAsk;
 
 typedef struct WireRequest {
     uint32_t ask;
     int32_t  raster, first, count; /* first, count: of bands, sheets, places */
     int32_t  x0, y0, width, height;
-    double   low, high;  /* of pixels: numbers outside are voids */
+    double   low, high; /* of pixels: numbers outside are voids */
     char     key[wire_key_size];
 } WireRequest;
 
@@ -76,9 +77,9 @@ typedef struct WireSheet {
 typedef struct WireChannel {
     WireRequest request;
     WireReply   reply;
-    uint64_t    alive;                  /* counts on while a request is worked at, at each file */
-    char        at[wire_path_size];     /* the file that is worked at */
-    char        log[wire_log_octets];   /* lines, each a LogLevel as a digit, its text, and a 0; an empty one is the last */
+    uint64_t    alive;              /* counts on while a request is worked at, at each file */
+    char        at[wire_path_size]; /* the file that is worked at */
+    char log[wire_log_octets];      /* lines, each a LogLevel as a digit, its text, and a 0; an empty one is the last */
     _Alignas(64) uint8_t data[wire_data_octets];
 } WireChannel;
 
@@ -104,7 +105,7 @@ Status raster_child_distrust(RasterChild *child, WireChannel *channel);
 
 /* For tests. Seconds without a sign of life after which a reader is given up; 0: as at the start, 120. Another program
  * in the place of pitviper-rasters, NULL: that again; no set may be open. */
-void   raster_child_patience(double s);
-void   raster_child_program(const char *path);
+void raster_child_patience(double s);
+void raster_child_program(const char *path);
 
 #endif

@@ -70,7 +70,7 @@ static bool take_one(RasterChoice *c, const char **why, const char *text)
     else if (strcmp(text, "nodata=none") == 0) c->no_void = true;
     else if (strncmp(text, "nodata=", 7) == 0) {
         c->has_void = text_to_double(&c->void_value, text + 7);
-        *why        = "nodata= needs a number, or `none`";
+        *why = "nodata= needs a number, or `none`";
         return c->has_void;
     } else if (strncmp(text, "srs=", 4) == 0) {
         *why = "srs= needs a coordinate system by its number: EPSG:32633, or EPSG:32633+5773 with heights";
@@ -80,7 +80,8 @@ static bool take_one(RasterChoice *c, const char **why, const char *text)
         return text[5] && snprintf(c->part, sizeof c->part, "%s", text + 5) < (int)sizeof c->part;
     } else if (strlen(text) < sizeof c->unit && raster_unit_m(text) > 0) strcpy(c->unit, text);
     else {
-        *why = "after @ there is geoid, ellipsoid, a unit (m, dm, cm, ft, us-ft), up, down, nodata=N, nodata=none, srs=EPSG:N or part=NAME";
+        *why =
+            "after @ there is geoid, ellipsoid, a unit (m, dm, cm, ft, us-ft), up, down, nodata=N, nodata=none, srs=EPSG:N or part=NAME";
         return false;
     }
     return true;
@@ -124,7 +125,7 @@ bool raster_choice_take(RasterChoice *out, const char **why, char *path)
         char *next = strchr(at + 1, '@');
         if (next) *next = 0;
         good = take_one(&c, why, at + 1);
-        at   = next;
+        at = next;
     }
     for (char *at = end ? NULL : strrchr(path, '@'); at && take_one(&c, why, at + 1); at = strrchr(path, '@'))
         *at = 0; /* no file's name: one of GDAL's own, such as a subdataset's */
@@ -144,6 +145,6 @@ bool raster_choice_write(char *out, size_t out_size, const char *name, const Ras
     snprintf(number, sizeof number, "%.17g", all->void_value);
     return snprintf(out, out_size, "%s%s%s%s%s%s%s%s", name, unit ? "@" : "", unit ? all->unit : "", srs ? "@srs=" : "",
                     srs ? all->srs : "", all->has_void && !own_void ? "@nodata=" : "",
-                    all->has_void && !own_void ? number : "", all->no_void && !own_void ? "@nodata=none" : "") <
-           (int)out_size;
+                    all->has_void && !own_void ? number : "",
+                    all->no_void && !own_void ? "@nodata=none" : "") < (int)out_size;
 }

@@ -16,7 +16,10 @@ static char only_within[PATH_MAX], sources_from[sources_size]; /* empty: anywher
 
 void raster_stay_within(const char *folder) { snprintf(only_within, sizeof only_within, "%s", folder ? folder : ""); }
 
-void raster_sources_from(const char *folders) { snprintf(sources_from, sizeof sources_from, "%s", folders ? folders : ""); }
+void raster_sources_from(const char *folders)
+{
+    snprintf(sources_from, sizeof sources_from, "%s", folders ? folders : "");
+}
 
 const char *raster_sources(void) { return sources_from; }
 
@@ -52,8 +55,8 @@ void raster_keep(Raster *raster, int band, const char *folder, double most_octet
     enum { most_marks = 1 << 28 };
     RasterKept *kept = raster->kept || !(most_octets >= 1) ? NULL : calloc(1, sizeof *kept);
     if (!kept) return;
-    kept->band   = band;
-    kept->piece  = raster_piece(raster);
+    kept->band = band;
+    kept->piece = raster_piece(raster);
     kept->pieces = (raster->width - 1) / kept->piece + 1;
     atomic_init(&kept->left, (long long)fmin(most_octets, 0x1p62));
     if ((double)raster->height * kept->pieces <= most_marks)
@@ -82,7 +85,7 @@ static bool whole_io(bool write, int file, float *at, size_t count, size_t offse
 /* Whole pieces (raster_piece) of rows into the file; a full disk only costs another reading. */
 static void keep_rows(const Raster *raster, float *rows, RasterWindow window)
 {
-    const int x0 = window.x0, y0 = window.y0, width = window.width, height = window.height;
+    const int   x0 = window.x0, y0 = window.y0, width = window.width, height = window.height;
     RasterKept *kept = raster->kept;
     const bool  whole = x0 % kept->piece == 0 && (x0 + width == raster->width || width % kept->piece == 0);
     if (x0 < 0 || y0 < 0 || x0 + width > raster->width || y0 + height > raster->height || !whole) return;
@@ -107,7 +110,7 @@ static void keep_rows(const Raster *raster, float *rows, RasterWindow window)
 /* False: not all of the window is there. */
 static bool read_kept(float *out, const Raster *raster, RasterWindow window)
 {
-    const int x0 = window.x0, y0 = window.y0, width = window.width, height = window.height;
+    const int         x0 = window.x0, y0 = window.y0, width = window.width, height = window.height;
     const RasterKept *kept = raster->kept;
     if (x0 < 0 || y0 < 0 || x0 + width > raster->width || y0 + height > raster->height) return false;
     for (int y = y0; y < y0 + height; y++)
@@ -117,7 +120,7 @@ static bool read_kept(float *out, const Raster *raster, RasterWindow window)
         return whole_io(false, kept->file, out, (size_t)width * (size_t)height, (size_t)y0 * (size_t)width);
     for (int y = y0; y < y0 + height; y++)
         if (!whole_io(false, kept->file, out + (size_t)(y - y0) * (size_t)width, (size_t)width,
-                        (size_t)y * (size_t)raster->width + (size_t)x0))
+                      (size_t)y * (size_t)raster->width + (size_t)x0))
             return false;
     return true;
 }
@@ -127,8 +130,10 @@ static bool read_kept(float *out, const Raster *raster, RasterWindow window)
 static void begin(WireChannel *channel, WireAsk ask, const Raster *raster, const char *key)
 {
     WireRequest *r = &channel->request;
-    *r     = (WireRequest){.ask = ask, .raster = raster ? raster->index : 0, .low = raster ? raster->low : -INFINITY,
-                           .high = raster ? raster->high : INFINITY};
+    *r = (WireRequest){.ask = ask,
+                       .raster = raster ? raster->index : 0,
+                       .low = raster ? raster->low : -INFINITY,
+                       .high = raster ? raster->high : INFINITY};
     snprintf(r->key, sizeof r->key, "%s", key);
 }
 
@@ -162,7 +167,8 @@ static void take_stated(Raster *out, const WireRaster *w)
     take_text(t->crs_unit, w->crs_unit, sizeof t->crs_unit);
     take_text(t->vertical, w->vertical_name, sizeof t->vertical);
     take_text(u->unit, w->chosen_unit, sizeof u->unit);
-    t->unit_of_crs = w->unit_of_crs != 0, t->down = w->down != 0, t->coloured = w->coloured != 0, t->grey = w->grey != 0;
+    t->unit_of_crs = w->unit_of_crs != 0, t->down = w->down != 0, t->coloured = w->coloured != 0,
+    t->grey = w->grey != 0;
     t->crs_unit_m = w->crs_unit_m, t->has_nodata = w->has_nodata != 0, t->nodata = w->nodata;
     u->vertical = (RasterVertical)w->vertical, u->band = w->band, u->sense = w->sense;
     u->has_void = w->has_void != 0, u->no_void = w->no_void != 0, u->void_value = w->void_value;
@@ -181,23 +187,23 @@ static bool take_raster(Raster *out, const uint8_t *data)
                        in_range(w.sheet_count, 1, wire_most_sheets) && in_range(w.band, 0, w.bands) &&
                        in_range(w.sense, -1, 1) && w.crs_unit_m >= 0 && isfinite(w.crs_unit_m);
     if (!sound) return false;
-    out->width           = w.width;
-    out->height          = w.height;
-    out->bands           = w.bands;
-    out->posting_m[0]    = w.posting_m[0];
-    out->posting_m[1]    = w.posting_m[1];
-    out->ellipsoidal     = w.ellipsoidal != 0;
-    out->low             = -INFINITY;
-    out->high            = INFINITY;
+    out->width = w.width;
+    out->height = w.height;
+    out->bands = w.bands;
+    out->posting_m[0] = w.posting_m[0];
+    out->posting_m[1] = w.posting_m[1];
+    out->ellipsoidal = w.ellipsoidal != 0;
+    out->low = -INFINITY;
+    out->high = INFINITY;
     take_stated(out, &w);
-    out->order           = w.order;
-    out->row_block       = w.row_block;
+    out->order = w.order;
+    out->row_block = w.row_block;
     out->metres_per_unit = w.metres_per_unit;
-    out->bytes           = w.bytes != 0;
-    out->whole           = w.whole != 0;
-    out->sparse          = w.sparse != 0;
-    out->data_share      = w.data_share;
-    out->sheet_count     = w.sheet_count;
+    out->bytes = w.bytes != 0;
+    out->whole = w.whole != 0;
+    out->sparse = w.sparse != 0;
+    out->data_share = w.data_share;
+    out->sheet_count = w.sheet_count;
     return true;
 }
 
@@ -212,11 +218,16 @@ static Status take_sheets(Raster *raster, int first, int count, const uint8_t *d
         memcpy(&w, data + at, sizeof w);
         at += sizeof w;
         if (!in_range(w.path_octets, 1, wire_path_size) || wire_data_octets - at < (size_t)w.path_octets ||
-            !in_range(w.width, 2, most_side) || !in_range(w.height, 2, most_side) || !in_range(w.x0, 0, raster->width - w.width) ||
-            !in_range(w.y0, 0, raster->height - w.height) || !in_range(w.band, 0, raster->bands))
+            !in_range(w.width, 2, most_side) || !in_range(w.height, 2, most_side) ||
+            !in_range(w.x0, 0, raster->width - w.width) || !in_range(w.y0, 0, raster->height - w.height) ||
+            !in_range(w.band, 0, raster->bands))
             return STATUS_BAD_VALUE;
-        *s = (RasterSheet){.path = malloc((size_t)w.path_octets), .x0 = w.x0, .y0 = w.y0, .width = w.width,
-                           .height = w.height, .band = w.band};
+        *s = (RasterSheet){.path = malloc((size_t)w.path_octets),
+                           .x0 = w.x0,
+                           .y0 = w.y0,
+                           .width = w.width,
+                           .height = w.height,
+                           .band = w.band};
         if (!s->path) return STATUS_NO_MEMORY;
         memcpy(s->path, data + at, (size_t)w.path_octets);
         s->path[w.path_octets - 1] = 0;
@@ -236,8 +247,8 @@ static Status take_set(RasterSet *set, WireChannel *channel, int count, const ch
     if (!set->raster) return STATUS_NO_MEMORY;
     for (int k = 0; k < count; k++) {
         Raster *raster = &set->raster[set->count++];
-        raster->child  = child;
-        raster->index  = k;
+        raster->child = child;
+        raster->index = k;
         begin(channel, WIRE_RASTER, raster, key);
         Status status = answer(child, channel, &reply);
         if (status == STATUS_OK && !take_raster(raster, channel->data)) status = raster_child_distrust(child, channel);
@@ -364,7 +375,7 @@ void raster_enu_box(double low_m[2], double high_m[2], const Raster *raster, con
         if (ecef_from_geodetic(p_ecef, NULL, &place) != STATUS_OK) continue;
         enu_from_ecef(p_enu, frame, p_ecef);
         for (int c = 0; c < 2; c++) {
-            low_m[c]  = fmin(low_m[c], p_enu[c]);
+            low_m[c] = fmin(low_m[c], p_enu[c]);
             high_m[c] = fmax(high_m[c], p_enu[c]);
         }
     }
@@ -388,7 +399,7 @@ static bool next_part(Part *p, int width, int height, size_t octets)
     } else {
         p->x = 0;
         p->y += p->height;
-        p->width  = width < most ? width : most;
+        p->width = width < most ? width : most;
         p->height = width < most ? most / width : 1;
     }
     if (p->x + p->width > width) p->width = width - p->x;
@@ -434,7 +445,8 @@ Status raster_read(float *out, const Raster *raster, int band, RasterWindow wind
             if (reply.uniform)
                 for (int i = 0; i < part.width; i++) to[i] = reply.value;
             else
-                memcpy(to, channel->data + (size_t)row * (size_t)part.width * sizeof *to, (size_t)part.width * sizeof *to);
+                memcpy(to, channel->data + (size_t)row * (size_t)part.width * sizeof *to,
+                       (size_t)part.width * sizeof *to);
         }
     }
     raster_child_give(raster->child, channel);

@@ -20,9 +20,9 @@ static bool reserve(Samples *s, int more)
     const int capacity = 2 * s->capacity > s->count + more ? 2 * s->capacity : s->count + more;
     bool     *at_post = realloc(s->at_post, (size_t)capacity * sizeof *at_post);
     if (at_post) s->at_post = at_post;
-    double (*p_enu)[3] = at_post ? realloc(s->p_enu, (size_t)capacity * sizeof *p_enu) : NULL;
+    double(*p_enu)[3] = at_post ? realloc(s->p_enu, (size_t)capacity * sizeof *p_enu) : NULL;
     if (!p_enu) return false;
-    s->p_enu    = p_enu;
+    s->p_enu = p_enu;
     s->capacity = capacity;
     return true;
 }
@@ -39,9 +39,9 @@ void samples_free(Samples *samples)
 Status samples_draw(Samples *samples, const Import *m, const Patch *patch, int first, int end, int at_posts)
 {
     enum { block = 1000 };
-    const Grid *g = &m->grid[m->main];
-    double      x[block], y[block], h[block];
-    bool        at_post[block];
+    const Grid  *g = &m->grid[m->main];
+    double       x[block], y[block], h[block];
+    bool         at_post[block];
     const double w = patch->nx[0] - 1, d = patch->ny[0] - 1;
     for (; first < end; first += block) {
         int drawn = 0;
@@ -50,9 +50,9 @@ Status samples_draw(Samples *samples, const Import *m, const Patch *patch, int f
             if (n >= at_posts) u = floor(u), v = floor(v);
             const uint8_t *hole = patch->hole + (size_t)v * (size_t)patch->nx[0] + (size_t)u;
             if (hole[0] || hole[1] || hole[patch->nx[0]] || hole[patch->nx[0] + 1]) continue;
-            x[drawn]       = patch->x0 + u + 0.5;
-            y[drawn]       = patch->y0 + v + 0.5;
-            h[drawn]       = patch_at(patch, x[drawn], y[drawn], 0) * g->raster->metres_per_unit;
+            x[drawn] = patch->x0 + u + 0.5;
+            y[drawn] = patch->y0 + v + 0.5;
+            h[drawn] = patch_at(patch, x[drawn], y[drawn], 0) * g->raster->metres_per_unit;
             at_post[drawn] = n >= at_posts;
             drawn++;
         }
@@ -109,15 +109,18 @@ Status samples_measure(ElevationReport *report, const Samples *samples, const El
 /* ---- all levels ---------------------------------------------------------------------------------- */
 
 enum { most_side_0 = 6 << 10 }; /* 36 M posts */
-static const double most_read_gb = 1024; /* decoded: an hour; a file of 300 octets may ask for a million times as much */
+static const double most_read_gb =
+    1024; /* decoded: an hour; a file of 300 octets may ask for a million times as much */
 
 static Status refuse_vast(const Import *m)
 {
     double px = 0;
     for (int k = 0; k < m->set.count; k++) px += elevation_import_reads_px(m, k);
     if (1e-9 * sizeof(float) * px <= most_read_gb) return STATUS_OK;
-    log_error("terrain.elevation: %s and what else is named: %.0f GB to decode, more than %.0f; gdal_translate -srcwin cuts out what is "
-              "needed, -tr makes its pixels larger", m->set.raster[0].sheet[0].path, 1e-9 * sizeof(float) * px, most_read_gb);
+    log_error(
+        "terrain.elevation: %s and what else is named: %.0f GB to decode, more than %.0f; gdal_translate -srcwin cuts out what is "
+        "needed, -tr makes its pixels larger",
+        m->set.raster[0].sheet[0].path, 1e-9 * sizeof(float) * px, most_read_gb);
     return STATUS_BAD_VALUE;
 }
 
@@ -137,12 +140,12 @@ Status elevation_import(Elevation *out, ElevationReport *report, const Elevation
     if (status != STATUS_OK) goto done;
     elevation_import_plan(&m, most_side_0);
     m.geoid_m = m.geoid.n_m ? geoid_height_m(&m.geoid, frame->origin.lat_rad, frame->origin.lon_rad) : 0;
-    status    = elevation_import_levels(&m, true, &view);
+    status = elevation_import_levels(&m, true, &view);
     if (status == STATUS_OK && fix_count > 0)
         status = invented_correct(m.level, m.level_count, frame, files->horizon_m, fix, fix_count, &r.correction_m);
     for (int k = m.level_count - 1; status == STATUS_OK && k >= 0; k--) {
         Field *z = &m.level[k].z;
-        status   = view_bend(z->v, &m, z, 0, z->ny);
+        status = view_bend(z->v, &m, z, 0, z->ny);
         if (status == STATUS_OK && !m.level[k].outermost) view_join(z->v, z, 0, z->ny, &m.level[k + 1].z);
     }
     if (status == STATUS_OK) status = levels_store_fine(&elevation, m.level, m.level_count);
@@ -156,8 +159,8 @@ Status elevation_import(Elevation *out, ElevationReport *report, const Elevation
 
     r.voids = patch->voids;
     elevation_import_describe(&r, &m);
-    *report   = r;
-    *out      = elevation;
+    *report = r;
+    *out = elevation;
     elevation = (Elevation){0};
 
 done:
@@ -178,10 +181,11 @@ Status landscape_import(Landscape *out, LandscapeReport *report, const Landscape
     LandscapeParts  parts = {.frame = *frame, .cover_seed = landscape_cover_seed(files->seed)};
     LandscapeReport r = {0};
     float           mean[SURFACE_COUNT][photo_channels];
-    Status status = elevation_import(&parts.elevation, &r.elevation, &files->elevation, frame, fix, fix_count);
+    Status          status = elevation_import(&parts.elevation, &r.elevation, &files->elevation, frame, fix, fix_count);
     if (status != STATUS_OK) return status;
 
-    parts.config = (LandscapeConfig){.seed = files->seed, .spacing_m = r.elevation.spacing_m,
+    parts.config = (LandscapeConfig){.seed = files->seed,
+                                     .spacing_m = r.elevation.spacing_m,
                                      .half_width_m = 0.5 * fmax(r.elevation.width_m[0], r.elevation.width_m[1]),
                                      .horizon_m = files->elevation.horizon_m};
     parts.geoid_m = r.elevation.geoid_m;

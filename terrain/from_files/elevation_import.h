@@ -17,16 +17,16 @@
 enum { survey_most_voids = 8 };
 
 typedef struct ElevationSurvey {
-    const Raster *raster;            /* its sheets, size, posting, unit and coordinate system */
-    bool     whole;                  /* every post was looked at; else a part, and counts are of that part */
-    double   posts;                  /* looked at */
-    double   voids;                  /* of them declared: nodata, masked, between sheets, or named by the user */
-    double   outside;                /* of them no height on Earth, -12 500 .. 9500 m */
-    double   low_m, high_m;          /* range of the others, suspected voids left out; NaN: none */
-    int      suspects;               /* numbers taken for voids that no tag declares */
-    double   suspect[survey_most_voids], suspect_posts; /* as the file has them, lowest height first */
-    double   gap_m;                  /* from the highest suspect to the lowest height */
-    bool     ellipsoidal;            /* heights are taken as above the ellipsoid; set by the caller */
+    const Raster *raster;        /* its sheets, size, posting, unit and coordinate system */
+    bool          whole;         /* every post was looked at; else a part, and counts are of that part */
+    double        posts;         /* looked at */
+    double        voids;         /* of them declared: nodata, masked, between sheets, or named by the user */
+    double        outside;       /* of them no height on Earth, -12 500 .. 9500 m */
+    double        low_m, high_m; /* range of the others, suspected voids left out; NaN: none */
+    int           suspects;      /* numbers taken for voids that no tag declares */
+    double        suspect[survey_most_voids], suspect_posts; /* as the file has them, lowest height first */
+    double        gap_m;                                     /* from the highest suspect to the lowest height */
+    bool          ellipsoidal; /* heights are taken as above the ellipsoid; set by the caller */
 } ElevationSurvey;
 
 /* Looks at a raster and sets its low and high, so that suspected voids are read as voids. STATUS_BAD_VALUE, logged
@@ -48,7 +48,7 @@ extern const double elevation_lowest_m, elevation_highest_m; /* below the deepes
  * grid ends within a coarser one, within eight of the coarser's posts. Inside a grid nothing is blended. */
 
 typedef enum ElevationVertical {
-    ELEVATION_BY_FILE,     /* above the ellipsoid where the CRS is three-dimensional, else above the geoid */
+    ELEVATION_BY_FILE, /* above the ellipsoid where the CRS is three-dimensional, else above the geoid */
     ELEVATION_GEOID,
     ELEVATION_ELLIPSOID
 } ElevationVertical;
@@ -58,12 +58,12 @@ typedef struct ElevationFiles {
     struct RasterSet *opened;     /* the same, opened already: taken over; NULL, or empty: they are opened */
     const char       *geoid_path; /* empty: EGM96 of proj-data */
     ElevationVertical vertical;
-    double            spacing_m;  /* of level 0; 0: the posting of the finest data at the origin */
-    double            horizon_m;  /* half width of the outermost level */
-    double            size_m[2];  /* width of level 0, about the origin, x and y; 0: all data */
-    const char       *keep_folder; /* large files are decoded once into a nameless file here; NULL: as often as needed */
-    void            (*heard)(void *user, const ElevationSurvey *survey); /* of each grid, before its use; NULL: it is not told */
-    void             *heard_user;
+    double            spacing_m; /* of level 0; 0: the posting of the finest data at the origin */
+    double            horizon_m; /* half width of the outermost level */
+    double            size_m[2]; /* width of level 0, about the origin, x and y; 0: all data */
+    const char *keep_folder;     /* large files are decoded once into a nameless file here; NULL: as often as needed */
+    void (*heard)(void *user, const ElevationSurvey *survey); /* of each grid, before its use; NULL: it is not told */
+    void *heard_user;
 } ElevationFiles;
 
 typedef struct ElevationReport {
@@ -80,7 +80,7 @@ typedef struct ElevationReport {
      * largest is that of 100 000 such places and as many posts; others may exceed it a little. */
     int    places;
     double error_rms_m, error_p99_m, error_max_m;
-    double correction_m;          /* largest change by the fit to fixes; 0: none */
+    double correction_m; /* largest change by the fit to fixes; 0: none */
 } ElevationReport;
 
 /* fix: ground places to lead the surface through by a smooth correction (fix_count 0: none). Failures are logged with
@@ -111,15 +111,16 @@ Status elevation_stream_open(ElevationStream **out, const ElevationFiles *files,
  * rows that may lie in files->keep_folder meanwhile. */
 Status elevation_stream_begin(ElevationStream *stream, double keep_octets);
 /* Pixels that this reads, at most. */
-double elevation_stream_reads_px(const ElevationStream *stream);
-void   elevation_stream_close(ElevationStream *stream); /* accepts NULL */
+double           elevation_stream_reads_px(const ElevationStream *stream);
+void             elevation_stream_close(ElevationStream *stream); /* accepts NULL */
 const RasterSet *elevation_stream_files(const ElevationStream *stream);
-int    elevation_stream_levels(const ElevationStream *stream);
-void   elevation_stream_level(StreamLevel *out, const ElevationStream *stream, int level);
+int              elevation_stream_levels(const ElevationStream *stream);
+void             elevation_stream_level(StreamLevel *out, const ElevationStream *stream, int level);
 /* Heights above the ellipsoid of rows of level 0, h_m [rows][nx]. from_file, may be NULL, [rows][nx]: 1 where the post
  * is of the files, 2 in a void of theirs filled from its surroundings, 3 from a coarser file, 0 beyond them. counted:
  * the voids and samples of these rows are added to the report: true once for each row, from the south. */
-Status elevation_stream_heights(ElevationStream *stream, int row0, int rows, float *h_m, uint8_t *from_file, bool counted);
+Status elevation_stream_heights(ElevationStream *stream, int row0, int rows, float *h_m, uint8_t *from_file,
+                                bool counted);
 /* In place: to ENU z, blended into level 1 near the outline. */
 Status elevation_stream_bend(const ElevationStream *stream, int row0, int rows, float *h_m);
 /* Surface of the levels from 1 on; 0 beyond them. */
@@ -141,7 +142,7 @@ typedef struct LandscapeFiles {
 
 typedef struct LandscapeReport {
     ElevationReport elevation;
-    CoverReport     cover;        /* where cover is named */
+    CoverReport     cover; /* where cover is named */
     double          photo_posting_m;
 } LandscapeReport;
 

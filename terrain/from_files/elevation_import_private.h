@@ -19,42 +19,42 @@ typedef struct Grid {
     const Raster *raster;
     bool          ellipsoidal;
     double        short_m, long_m; /* beyond its edge it fades out over this: into another grid, into nothing */
-    double        units[2];      /* metres a pixel, x and y */
+    double        units[2];        /* metres a pixel, x and y */
 } Grid;
 
 /* Rows of posts of a level, and what the grids hold there. The lattice's nodes are every stride-th post from the
  * level's first on, whichever rows a view has, so that any rows give the same posts. */
 typedef struct View {
-    Field  level;                /* all posts of the level; v unused */
-    int    row0, rows;           /* those of the view */
-    int    stride, node_row0, nodes_x, nodes_y;
-    double *n_m;                 /* [nodes] geoid */
-    Sight  sight[import_most_grids];
-    Patch  patch[import_most_grids];
+    Field   level;      /* all posts of the level; v unused */
+    int     row0, rows; /* those of the view */
+    int     stride, node_row0, nodes_x, nodes_y;
+    double *n_m; /* [nodes] geoid */
+    Sight   sight[import_most_grids];
+    Patch   patch[import_most_grids];
 } View;
 
 typedef struct Import {
     const ElevationFiles *files;
     const LocalFrame     *frame;
-    Pool      *pool;             /* NULL: one thread */
-    bool       streamed;         /* level 0 is made in strips: there is a level around it */
-    Curve      curve;
-    Geoid      geoid;
-    RasterSet  set;
-    int        grids;            /* finest first */
-    Grid       grid[import_most_grids];
-    int        main;             /* grid of level 0 */
-    double     base_h_m;         /* beyond all data */
-    double     geoid_m;          /* at the origin */
-    int        level_count;
-    double     spacing_m[elevation_max_levels];
-    WorkLevel  level[elevation_max_levels];
+    Pool                 *pool;     /* NULL: one thread */
+    bool                  streamed; /* level 0 is made in strips: there is a level around it */
+    Curve                 curve;
+    Geoid                 geoid;
+    RasterSet             set;
+    int                   grids; /* finest first */
+    Grid                  grid[import_most_grids];
+    int                   main;     /* grid of level 0 */
+    double                base_h_m; /* beyond all data */
+    double                geoid_m;  /* at the origin */
+    int                   level_count;
+    double                spacing_m[elevation_max_levels];
+    WorkLevel             level[elevation_max_levels];
 } Import;
 
 /* Places of the main grid, and the surface that its file has there, in ENU. */
 typedef struct Samples {
-    int    count, capacity;
-    bool  *at_post;
+    int   count, capacity;
+    bool *at_post;
     double (*p_enu)[3];
 } Samples;
 
@@ -77,10 +77,10 @@ void   view_join(float *rows_m, const Field *level, int row0, int rows, const Fi
 
 /* elevation_plan.c: heights of every level from with_0 ? 0 : 1 on; reads each grid once. finest: the view of the finest
  * level that was read, with its patches; the caller frees it. */
-Status elevation_import_levels(Import *m, bool with_0, View *finest);
+Status      elevation_import_levels(Import *m, bool with_0, View *finest);
 PatchSource elevation_import_source(const Import *m, int grid);
 /* All of a report but what is measured. */
-void   elevation_import_describe(ElevationReport *r, const Import *m);
+void elevation_import_describe(ElevationReport *r, const Import *m);
 
 enum { samples_places = 100000 };
 /* Draws those numbered first .. end - 1 at random over a patch: posts of the file from number at_posts on. */

@@ -9,7 +9,7 @@ Status elevation_import_open(Import *m)
 {
     RasterSet *opened = m->files->opened;
     if (opened && opened->count) {
-        m->set  = *opened;
+        m->set = *opened;
         *opened = (RasterSet){0};
     } else {
         const Status status = raster_set_open(&m->set, m->files->paths, key);
@@ -26,22 +26,22 @@ Status elevation_import_open(Import *m)
         Raster         *raster = &m->set.raster[k];
         Grid           *g = &m->grid[k];
         ElevationSurvey survey;
-        const Status status = elevation_survey(&survey, raster, key, m->pool);
+        const Status    status = elevation_survey(&survey, raster, key, m->pool);
         if (status != STATUS_OK) return status;
-        g->raster      = raster;
-        g->units[0]    = raster->posting_m[0];
-        g->units[1]    = raster->posting_m[1];
+        g->raster = raster;
+        g->units[0] = raster->posting_m[0];
+        g->units[1] = raster->posting_m[1];
         g->ellipsoidal = raster->choice.vertical != RASTER_VERTICAL_BY_CRS
                              ? raster->choice.vertical == RASTER_VERTICAL_ELLIPSOID
-                         : m->files->vertical == ELEVATION_BY_FILE  ? raster->ellipsoidal
-                                                                    : m->files->vertical == ELEVATION_ELLIPSOID;
+                         : m->files->vertical == ELEVATION_BY_FILE ? raster->ellipsoidal
+                                                                   : m->files->vertical == ELEVATION_ELLIPSOID;
         wants_geoid |= !g->ellipsoidal;
         survey.ellipsoidal = g->ellipsoidal;
         if (m->files->heard) m->files->heard(m->files->heard_user, &survey);
         /* into the coarser grid around: some of its posts */
         g->short_m =
             k + 1 < m->grids ? 8 * fmax(m->set.raster[k + 1].posting_m[0], m->set.raster[k + 1].posting_m[1]) : 0;
-        g->long_m  = 30000; /* until its edge has been seen */
+        g->long_m = 30000; /* until its edge has been seen */
     }
     return wants_geoid ? geoid_open(&m->geoid, m->files->geoid_path) : STATUS_OK;
 }
@@ -79,7 +79,7 @@ static void grid_reach(double reach_m[2], const Raster *raster, const LocalFrame
 Status elevation_import_choose(Import *m, ElevationReport *report)
 {
     static const double nearest_m = 20000;
-    double best_m = -INFINITY;
+    double              best_m = -INFINITY;
     m->main = -1;
     report->reach_m[0] = -INFINITY;
     report->reach_m[1] = 0;
@@ -115,7 +115,8 @@ void elevation_import_plan(Import *m, int most_side)
     enum { least_ring = 2 * level_ratio, margin = 32 };
     const Raster *raster = m->grid[m->main].raster;
     double        s = m->files->spacing_m > 0 ? m->files->spacing_m : fmin(raster->posting_m[0], raster->posting_m[1]);
-    s = fmax(rint(s * 64) / 64, 0x1p-4); /* dyadic, so that every post's place is exact; near a pole pixels are narrower */
+    s = fmax(rint(s * 64) / 64,
+             0x1p-4); /* dyadic, so that every post's place is exact; near a pole pixels are narrower */
 
     double low[2], high[2];
     int    first[2], last[2];
@@ -125,34 +126,34 @@ void elevation_import_plan(Import *m, int most_side)
         if (fmin(m->grid[k].units[0], m->grid[k].units[1]) > 2 * s || k == m->main) continue;
         raster_enu_box(other_low, other_high, m->grid[k].raster, m->frame, 0.5);
         for (int c = 0; c < 2; c++) {
-            low[c]  = fmin(low[c], other_low[c]);
+            low[c] = fmin(low[c], other_low[c]);
             high[c] = fmax(high[c], other_high[c]);
         }
     }
     const int half = most_side / 2 / level_ratio * level_ratio - level_ratio;
     for (int c = 0; c < 2; c++) {
         if (m->files->size_m[c] > 0) { /* about the origin, whether there are data or not */
-            low[c]  = -0.5 * m->files->size_m[c] + margin * s;
+            low[c] = -0.5 * m->files->size_m[c] + margin * s;
             high[c] = 0.5 * m->files->size_m[c] - margin * s;
         }
         const double a = fmin(low[c] / s, 0) - margin, b = fmax(high[c] / s, 0) + margin;
         first[c] = round_out(fmax(a, -half));
-        last[c]  = round_out(fmin(b, half));
+        last[c] = round_out(fmin(b, half));
     }
     set_window(&m->level[0], s, first[0], last[0], first[1], last[1]);
     m->level_count = 1;
     while (m->level_count < elevation_max_levels) {
         const WorkLevel *in = &m->level[m->level_count - 1];
-        const int i1 = in->z.i0 + in->z.nx - 1, j1 = in->z.j0 + in->z.ny - 1;
+        const int        i1 = in->z.i0 + in->z.nx - 1, j1 = in->z.j0 + in->z.ny - 1;
         const double narrowest = fmin(fmin(-in->z.i0, i1), fmin(-in->z.j0, j1)) * s; /* data may be one long strip */
         if (narrowest >= m->files->horizon_m && !(m->streamed && m->level_count == 1)) break;
         s *= level_ratio;
         const bool ends = m->level_count == elevation_max_levels - 1 || outer_half_posts * s >= m->files->horizon_m;
         const int  wide = round_out(fmin(ends ? last_half_posts : outer_half_posts, m->files->horizon_m / s));
         WorkLevel *level = &m->level[m->level_count++];
-        int w[4] = {-wide, wide, -wide, wide};
-        const int need[4] = {round_out(in->z.i0 / level_ratio - least_ring), round_out(i1 / level_ratio + least_ring),
-                             round_out(in->z.j0 / level_ratio - least_ring), round_out(j1 / level_ratio + least_ring)};
+        int        w[4] = {-wide, wide, -wide, wide};
+        const int  need[4] = {round_out(in->z.i0 / level_ratio - least_ring), round_out(i1 / level_ratio + least_ring),
+                              round_out(in->z.j0 / level_ratio - least_ring), round_out(j1 / level_ratio + least_ring)};
         for (int e = 0; e < 4; e++)
             if (e & 1 ? need[e] > w[e] : need[e] < w[e]) w[e] = need[e];
         set_window(level, s, w[0], w[1], w[2], w[3]);
@@ -172,7 +173,8 @@ PatchSource elevation_import_source(const Import *m, int grid)
 {
     const Raster *raster = m->grid[grid].raster;
     const double  a = elevation_lowest_m / raster->metres_per_unit, b = elevation_highest_m / raster->metres_per_unit;
-    return (PatchSource){.raster = raster, .band = 1, .low = fmin(a, b), .high = fmax(a, b), .key = key, .pool = m->pool};
+    return (PatchSource){
+        .raster = raster, .band = 1, .low = fmin(a, b), .high = fmax(a, b), .key = key, .pool = m->pool};
 }
 
 /* Mean and spread of each grid's outline: for the blending from it, and the height beyond the coarsest. */
@@ -191,13 +193,13 @@ static bool measure_edges(Import *m, const View *view)
                 if (j > 0 && j < ny - 1 && i > 0 && i < nx - 1) i = nx - 1;
                 const double h_m = (double)p->v[0][(size_t)j * (size_t)nx + (size_t)i] * g->raster->metres_per_unit;
                 sum += h_m;
-                low  = fmin(low, h_m);
+                low = fmin(low, h_m);
                 high = fmax(high, h_m);
                 count++;
             }
         m->base_h_m = sum / (double)count + (g->ellipsoidal ? 0 : m->geoid_m);
-        g->long_m   = clamp(15 * (high - low), 2000, 30000); /* a slope of one in fifteen */
-        any         = true;
+        g->long_m = clamp(15 * (high - low), 2000, 30000); /* a slope of one in fifteen */
+        any = true;
     }
     return any;
 }
@@ -241,7 +243,7 @@ Status elevation_import_levels(Import *m, bool with_0, View *finest)
         if (status == STATUS_OK && (k > 0 || with_0)) status = view_heights(z->v, &view[k], m);
     }
     if (status == STATUS_OK) {
-        *finest     = view[first];
+        *finest = view[first];
         view[first] = (View){0};
     }
     for (int k = 0; k < elevation_max_levels; k++) view_free(&view[k]);
@@ -253,13 +255,13 @@ void elevation_import_describe(ElevationReport *r, const Import *m)
     const Grid *main_grid = &m->grid[m->main];
     r->sheets = 0;
     for (int k = 0; k < m->set.count; k++) r->sheets += m->set.raster[k].sheet_count;
-    r->grids       = m->grids;
-    r->posting_m   = fmin(main_grid->units[0], main_grid->units[1]);
-    r->spacing_m   = m->spacing_m[0];
-    r->width_m[0]  = (m->level[0].z.nx - 1) * m->spacing_m[0];
-    r->width_m[1]  = (m->level[0].z.ny - 1) * m->spacing_m[0];
-    r->blend_m     = m->grid[m->grids - 1].long_m;
-    r->beyond_h_m  = m->base_h_m;
+    r->grids = m->grids;
+    r->posting_m = fmin(main_grid->units[0], main_grid->units[1]);
+    r->spacing_m = m->spacing_m[0];
+    r->width_m[0] = (m->level[0].z.nx - 1) * m->spacing_m[0];
+    r->width_m[1] = (m->level[0].z.ny - 1) * m->spacing_m[0];
+    r->blend_m = m->grid[m->grids - 1].long_m;
+    r->beyond_h_m = m->base_h_m;
     r->ellipsoidal = main_grid->ellipsoidal;
-    r->geoid_m     = r->ellipsoidal ? 0 : m->geoid_m;
+    r->geoid_m = r->ellipsoidal ? 0 : m->geoid_m;
 }

@@ -16,7 +16,8 @@ static Status lattice_places(double *lon, double *lat, const Import *m, const Vi
     for (int b = 0; b < view->nodes_y; b++)
         for (int a = 0; a < view->nodes_x; a++) {
             double p_enu[3] = {(z->i0 + a * view->stride) * z->spacing_m,
-                               (z->j0 + view->node_row0 + b * view->stride) * z->spacing_m, 0}, p_ecef[3];
+                               (z->j0 + view->node_row0 + b * view->stride) * z->spacing_m, 0},
+                   p_ecef[3];
             double z_m, dz_per_h;
             levels_curve_at(&m->curve, p_enu[0], p_enu[1], &z_m, &dz_per_h);
             p_enu[2] = z_m + h_m * dz_per_h;
@@ -49,10 +50,10 @@ void view_free(View *view)
 Status view_create(View *out, const Import *m, const Field *level, int row0, int rows)
 {
     View v = {.level = *level, .row0 = row0, .rows = rows};
-    v.stride    = level->spacing_m * 16 >= 128 ? 16 : (int)(128 / level->spacing_m);
+    v.stride = level->spacing_m * 16 >= 128 ? 16 : (int)(128 / level->spacing_m);
     v.node_row0 = row0 / v.stride * v.stride;
-    v.nodes_x   = (level->nx - 1) / v.stride + 2; /* one more than the last post stands on */
-    v.nodes_y   = (row0 + rows - 1 - v.node_row0) / v.stride + 2;
+    v.nodes_x = (level->nx - 1) / v.stride + 2; /* one more than the last post stands on */
+    v.nodes_y = (row0 + rows - 1 - v.node_row0) / v.stride + 2;
     const int    nodes = v.nodes_x * v.nodes_y;
     const size_t size = (size_t)nodes * sizeof(double);
     double      *lon = malloc(size), *lat = malloc(size);
@@ -97,14 +98,14 @@ bool view_window(PatchWindow *out, const View *view, const Import *m, int grid)
     const Grid  *g = &m->grid[grid];
     const Sight *s = &view->sight[grid];
     const int    nodes = view->nodes_x * view->nodes_y;
-    double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+    double       low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
     for (int n = 0; n < nodes; n++)
         for (int side = 0; side < 2; side++) {
             const double h_m = side ? highest_view_m : lowest_view_m, x = s->x[n] + h_m * s->dx[n],
                          y = s->y[n] + h_m * s->dy[n];
             if (!isfinite(x) || !isfinite(y)) continue;
-            low[0]  = fmin(low[0], x);
-            low[1]  = fmin(low[1], y);
+            low[0] = fmin(low[0], x);
+            low[1] = fmin(low[1], y);
             high[0] = fmax(high[0], x);
             high[1] = fmax(high[1], y);
         }
@@ -114,7 +115,7 @@ bool view_window(PatchWindow *out, const View *view, const Import *m, int grid)
         const double reach = g->long_m / g->units[c];
         if (!(high[c] > -reach && low[c] < size[c] + reach)) return false;
         from[c] = (int)clamp(floor(low[c]) - 2, 0, size[c] - 2);
-        to[c]   = (int)clamp(ceil(high[c]) + 3, from[c] + 2, size[c]);
+        to[c] = (int)clamp(ceil(high[c]) + 3, from[c] + 2, size[c]);
     }
     int factor = 1;
     while (2 * factor * fmax(g->units[0], g->units[1]) <= view->level.spacing_m * 1.001) factor *= 2;
@@ -223,7 +224,7 @@ static double run_of_grids(float *h_m, const Import *m, const View *view, size_t
     const int nx = view->nodes_x;
     for (int i = 0; i < count; i++) {
         const double a = (double)(from + i) / view->stride;
-        double x0[import_most_grids] = {0}, y0[import_most_grids] = {0}, dx[import_most_grids] = {0},
+        double       x0[import_most_grids] = {0}, y0[import_most_grids] = {0}, dx[import_most_grids] = {0},
                dy[import_most_grids] = {0};
         for (int k = 0; k < m->grids; k++) {
             const Sight *s = &view->sight[k];
@@ -234,7 +235,7 @@ static double run_of_grids(float *h_m, const Import *m, const View *view, size_t
             dy[k] = mix(s->dy + node, nx, a, b);
         }
         guess_m = height_at(m, view, x0, y0, dx, dy, mix(view->n_m + node, nx, a, b), guess_m);
-        h_m[i]  = (float)guess_m;
+        h_m[i] = (float)guess_m;
     }
     return guess_m;
 }
@@ -244,22 +245,22 @@ static double run_of_grids(float *h_m, const Import *m, const View *view, size_t
 static void run_of_one(float *h_m, const Import *m, const View *view, int grid, size_t node, const double *b, int from,
                        int count, int rows, double *guess_m)
 {
-    const int     nx = view->nodes_x, level_nx = view->level.nx;
-    const Sight  *s = &view->sight[grid];
-    const Grid   *g = &m->grid[grid];
-    const Patch  *p = &view->patch[grid];
-    const float  *v = p->v[0];
-    const double  w = g->raster->width - 0.5, h = g->raster->height - 0.5, unit = g->raster->metres_per_unit;
-    const double  inv_factor = 1.0 / p->factor, most_x = p->nx[0] - 1, most_y = p->ny[0] - 1;
-    double        x0[rows_at_once][most_run], y0[rows_at_once][most_run], dx[rows_at_once][most_run],
+    const int    nx = view->nodes_x, level_nx = view->level.nx;
+    const Sight *s = &view->sight[grid];
+    const Grid  *g = &m->grid[grid];
+    const Patch *p = &view->patch[grid];
+    const float *v = p->v[0];
+    const double w = g->raster->width - 0.5, h = g->raster->height - 0.5, unit = g->raster->metres_per_unit;
+    const double inv_factor = 1.0 / p->factor, most_x = p->nx[0] - 1, most_y = p->ny[0] - 1;
+    double       x0[rows_at_once][most_run], y0[rows_at_once][most_run], dx[rows_at_once][most_run],
         dy[rows_at_once][most_run], n_m[rows_at_once][most_run];
     for (int r = 0; r < rows; r++)
         for (int i = 0; i < count; i++) {
             const double a = (double)(from + i) / view->stride;
-            x0[r][i]  = mix(s->x + node, nx, a, b[r]);
-            y0[r][i]  = mix(s->y + node, nx, a, b[r]);
-            dx[r][i]  = mix(s->dx + node, nx, a, b[r]);
-            dy[r][i]  = mix(s->dy + node, nx, a, b[r]);
+            x0[r][i] = mix(s->x + node, nx, a, b[r]);
+            y0[r][i] = mix(s->y + node, nx, a, b[r]);
+            dx[r][i] = mix(s->dx + node, nx, a, b[r]);
+            dy[r][i] = mix(s->dy + node, nx, a, b[r]);
             n_m[r][i] = mix(view->n_m + node, nx, a, b[r]);
         }
     for (int i = 0; i < count; i++)
@@ -272,8 +273,8 @@ static void run_of_one(float *h_m, const Import *m, const View *view, int grid, 
                 if (x >= 0.5 && x <= w && y >= 0.5 && y <= h) {
                     const double px = clamp((x - p->x0) * inv_factor - 0.5, 0, most_x),
                                  py = clamp((y - p->y0) * inv_factor - 0.5, 0, most_y);
-                    const int    c = (int)px < p->nx[0] - 1 ? (int)px : p->nx[0] - 2,
-                                 q = (int)py < p->ny[0] - 1 ? (int)py : p->ny[0] - 2;
+                    const int c = (int)px < p->nx[0] - 1 ? (int)px : p->nx[0] - 2,
+                              q = (int)py < p->ny[0] - 1 ? (int)py : p->ny[0] - 2;
                     const double t = px - c, f = py - q;
                     const float *lo = v + (size_t)q * (size_t)p->nx[0] + c, *hi = lo + p->nx[0];
                     const double south = (double)lo[0] + t * (double)(lo[1] - lo[0]),
@@ -283,7 +284,7 @@ static void run_of_one(float *h_m, const Import *m, const View *view, int grid, 
                     double at_x[import_most_grids] = {0}, at_y[import_most_grids] = {0};
                     at_x[grid] = x;
                     at_y[grid] = y;
-                    next_m     = composed(m, view, at_x, at_y, n_m[r][i]);
+                    next_m = composed(m, view, at_x, at_y, n_m[r][i]);
                 }
                 const double moved_px = fabs(next_m - h_of) * lean;
                 h_of = next_m;
@@ -308,11 +309,11 @@ static void find_rows(void *user, int worker, int task)
     const int      nx = view->level.nx, after = (task + 1) * rows_a_task, end = after < view->rows ? after : view->rows;
     (void)worker;
     for (int r = task * rows_a_task, rows; r < end; r += rows) {
-        const int    j = view->row0 + r - view->node_row0, node_row = j / view->stride;
-        double       b[rows_at_once], guess_m[rows_at_once];
+        const int j = view->row0 + r - view->node_row0, node_row = j / view->stride;
+        double    b[rows_at_once], guess_m[rows_at_once];
         for (rows = 0; rows < (f->only >= 0 ? rows_at_once : 1) && r + rows < end; rows++) {
             if ((j + rows) / view->stride != node_row) break;
-            b[rows]       = (double)((j + rows) % view->stride) / view->stride;
+            b[rows] = (double)((j + rows) % view->stride) / view->stride;
             guess_m[rows] = f->m->base_h_m;
         }
         for (int i = 0; i < nx;) {
@@ -338,7 +339,8 @@ Status view_heights(float *h_m, const View *view, const Import *m)
         f.only = k;
     }
     if (some != 1 || view->patch[f.only].nx[0] < 2 || view->patch[f.only].ny[0] < 2) f.only = -1;
-    return pool_run_unless_stopped(m->pool, (view->rows + rows_a_task - 1) / rows_a_task, find_rows, &f) ? STATUS_OK : STATUS_IO;
+    return pool_run_unless_stopped(m->pool, (view->rows + rows_a_task - 1) / rows_a_task, find_rows, &f) ? STATUS_OK
+                                                                                                         : STATUS_IO;
 }
 
 /* ---- into ENU -------------------------------------------------------------------------------- */
@@ -363,8 +365,7 @@ static void bend_rows(void *user, int worker, int task)
     for (int side = 0; side < 2; side++)
         for (int c = 0; c < nx; c++)
             levels_curve_at(&b->m->curve, (z->i0 + c * stride) * z->spacing_m,
-                            (z->j0 + group + side * stride) * z->spacing_m,
-                     &z_of[side][c], &g_of[side][c]);
+                            (z->j0 + group + side * stride) * z->spacing_m, &z_of[side][c], &g_of[side][c]);
     const int from = group > b->row0 ? group : b->row0;
     const int to = group + stride < b->row0 + b->rows ? group + stride : b->row0 + b->rows;
     for (int j = from; j < to; j++) {
@@ -410,7 +411,7 @@ void view_join(float *rows_m, const Field *level, int row0, int rows, const Fiel
             int          corner[3];
             double       weight[3];
             const double around_m = levels_height(outer, (level->i0 + i) * level->spacing_m,
-                                             (level->j0 + j) * level->spacing_m, corner, weight);
+                                                  (level->j0 + j) * level->spacing_m, corner, weight);
             const double share = smooth_step(0, band, d);
             float       *post = &rows_m[(size_t)(j - row0) * (size_t)level->nx + (size_t)i];
             *post = (float)(around_m + share * ((double)*post - around_m));

@@ -11,7 +11,7 @@ struct ElevationStream {
     Import          m;
     ElevationFiles  files;
     LocalFrame      frame;
-    View            wide;        /* of level 1 */
+    View            wide; /* of level 1 */
     Samples         samples;
     ElevationReport report;
     int             drawn;
@@ -22,9 +22,9 @@ Status elevation_stream_open(ElevationStream **out, const ElevationFiles *files,
 {
     ElevationStream *s = calloc(1, sizeof *s);
     if (!s) return STATUS_NO_MEMORY;
-    s->files  = *files;
-    s->frame  = *frame;
-    s->m      = (Import){.files = &s->files, .frame = &s->frame, .pool = pool, .streamed = true};
+    s->files = *files;
+    s->frame = *frame;
+    s->m = (Import){.files = &s->files, .frame = &s->frame, .pool = pool, .streamed = true};
     Import *m = &s->m;
     levels_curve(&m->curve, frame);
     Status status = elevation_import_open(m);
@@ -33,7 +33,7 @@ Status elevation_stream_open(ElevationStream **out, const ElevationFiles *files,
     if (status == STATUS_OK && like) {
         m->level_count = like->m.level_count;
         for (int k = 0; k < m->level_count; k++) {
-            m->level[k]     = like->m.level[k];
+            m->level[k] = like->m.level[k];
             m->level[k].z.v = NULL;
             m->spacing_m[k] = like->m.spacing_m[k];
         }
@@ -66,7 +66,7 @@ Status elevation_stream_begin(ElevationStream *s, double keep_octets)
     Status status = elevation_import_levels(m, false, &s->wide);
     for (int k = m->level_count - 1; status == STATUS_OK && k >= 1; k--) {
         Field *z = &m->level[k].z;
-        status   = view_bend(z->v, m, z, 0, z->ny);
+        status = view_bend(z->v, m, z, 0, z->ny);
         if (status == STATUS_OK && !m->level[k].outermost) view_join(z->v, z, 0, z->ny, &m->level[k + 1].z);
     }
     return status;
@@ -102,7 +102,7 @@ static Status read_patch(View *view, bool *borrowed, const ElevationStream *s, i
     if (wide->mips == 0 || !view_window(&w, view, &s->m, grid)) return STATUS_OK;
     if (w.factor >= wide->factor) {
         view->patch[grid] = *wide;
-        *borrowed         = true;
+        *borrowed = true;
         return STATUS_OK;
     }
     w.x0 -= margin_px * w.factor; /* voids are filled alike from strip to strip */
@@ -167,11 +167,11 @@ static void count_voids(ElevationStream *s, const View *view)
 
 Status elevation_stream_heights(ElevationStream *s, int row0, int rows, float *h_m, uint8_t *from_file, bool counted)
 {
-    Import    *m = &s->m;
-    View       view = {0};
-    bool       borrowed[import_most_grids] = {false};
-    const int  ny = m->level[0].z.ny;
-    Status     status = view_create(&view, m, &m->level[0].z, row0, rows);
+    Import   *m = &s->m;
+    View      view = {0};
+    bool      borrowed[import_most_grids] = {false};
+    const int ny = m->level[0].z.ny;
+    Status    status = view_create(&view, m, &m->level[0].z, row0, rows);
     for (int grid = 0; grid < m->grids && status == STATUS_OK; grid++)
         status = read_patch(&view, &borrowed[grid], s, grid);
     if (status == STATUS_OK) status = view_heights(h_m, &view, m);

@@ -26,10 +26,10 @@ static void lowest_add(Lowest *l, double h_m, double posts)
     if (at == survey_most_voids + 1) return;
     if (l->count <= survey_most_voids) l->count++;
     for (int k = l->count - 1; k > at; k--) {
-        l->h_m[k]   = l->h_m[k - 1];
+        l->h_m[k] = l->h_m[k - 1];
         l->posts[k] = l->posts[k - 1];
     }
-    l->h_m[at]   = h_m;
+    l->h_m[at] = h_m;
     l->posts[at] = posts;
 }
 
@@ -47,8 +47,8 @@ static int alone(const Lowest *l, double gap_m)
 typedef struct Counts {
     Lowest lowest;
     double posts, voids, outside, high_m;
-    double lengths;      /* of those outside: what might be heights in another unit, 1e7 at most */
-    bool   beside;       /* numbers that are alone were seen beside others */
+    double lengths; /* of those outside: what might be heights in another unit, 1e7 at most */
+    bool   beside;  /* numbers that are alone were seen beside others */
     double least_out_m, most_out_m;
 } Counts;
 
@@ -60,9 +60,9 @@ static void counts_add(Counts *to, const Counts *from)
     to->voids += from->voids;
     to->outside += from->outside;
     to->lengths += from->lengths;
-    to->high_m      = fmax(to->high_m, from->high_m);
+    to->high_m = fmax(to->high_m, from->high_m);
     to->least_out_m = fmin(to->least_out_m, from->least_out_m);
-    to->most_out_m  = fmax(to->most_out_m, from->most_out_m);
+    to->most_out_m = fmax(to->most_out_m, from->most_out_m);
     to->beside |= from->beside;
     for (int k = 0; k < from->lowest.count; k++) lowest_add(&to->lowest, from->lowest.h_m[k], from->lowest.posts[k]);
 }
@@ -78,7 +78,7 @@ static void count_posts(Counts *c, const float *value, size_t count, double unit
             c->outside++;
             c->lengths += fabs(h_m) <= 1e7;
             c->least_out_m = fmin(c->least_out_m, h_m);
-            c->most_out_m  = fmax(c->most_out_m, h_m);
+            c->most_out_m = fmax(c->most_out_m, h_m);
         } else {
             if (h_m <= last) {
                 lowest_add(&c->lowest, h_m, 1);
@@ -94,11 +94,11 @@ static void count_posts(Counts *c, const float *value, size_t count, double unit
 typedef struct Job {
     const Raster *raster;
     const char   *key;
-    bool    whole;
-    int     band, rows;     /* whole: of a strip */
-    double  gap_m;
-    Counts *counts;         /* [tasks] */
-    Status *status;
+    bool          whole;
+    int           band, rows; /* whole: of a strip */
+    double        gap_m;
+    Counts       *counts; /* [tasks] */
+    Status       *status;
 } Job;
 
 static void look_at(Job *job, int task, int x0, int y0, int width, int height)
@@ -174,13 +174,15 @@ static Status judge_stated(const Raster *raster, const char *key)
     }
     if (*unit && !(raster_unit_m(unit) > 0)) {
         log_error("%s: %s: its unit is '%s', which is no length that is known here; say what its heights are in: %s@m, "
-                  "%s@ft or %s@us-ft (terrain import: --unit)", key, path, unit, path, path, path);
+                  "%s@ft or %s@us-ft (terrain import: --unit)",
+                  key, path, unit, path, path, path);
         return STATUS_BAD_VALUE;
     }
     if (!*unit && s->crs_unit_m > 0 && fabs(s->crs_unit_m - 1) > 1e-6) {
-        log_error("%s: %s does not say the unit of its heights, and its coordinate system %s is in '%s'; say it: %s@m or "
-                  "%s@%s (terrain import: --unit)", key, path, s->crs, s->crs_unit, path, path,
-                  fabs(s->crs_unit_m - 0.3048) < 1e-9 ? "ft" : "us-ft");
+        log_error(
+            "%s: %s does not say the unit of its heights, and its coordinate system %s is in '%s'; say it: %s@m or "
+            "%s@%s (terrain import: --unit)",
+            key, path, s->crs, s->crs_unit, path, path, fabs(s->crs_unit_m - 0.3048) < 1e-9 ? "ft" : "us-ft");
         return STATUS_BAD_VALUE;
     }
     return STATUS_OK;
@@ -203,8 +205,8 @@ static void warn_of_voids(const ElevationSurvey *s, const char *key)
         snprintf(numbers + used, sizeof numbers - used, "%s%.7g", k ? ", " : "", s->suspect[k]);
     }
     if (!(s->gap_m > 0)) {
-        log_warn("%s: %s holds %s alone: taken for voids that no tag declares; %s@nodata=none reads them as heights", key, path,
-                 numbers, path);
+        log_warn("%s: %s holds %s alone: taken for voids that no tag declares; %s@nodata=none reads them as heights",
+                 key, path, numbers, path);
         return;
     }
     log_warn("%s: %s: %s%.0f posts of %s%s lie %.0f m below all others: taken for voids that no tag declares, and "
@@ -217,30 +219,35 @@ static Status judge_counts(ElevationSurvey *s, Raster *raster, const Counts *c, 
 {
     const double unit_m = raster->metres_per_unit, heights = c->posts - c->voids - c->outside;
     const char  *path = path_of(raster);
-    const bool constant = !(c->least_out_m < c->most_out_m); /* one number, however often, is a void */
+    const bool   constant = !(c->least_out_m < c->most_out_m); /* one number, however often, is a void */
     if (!constant && (c->lengths > heights || !(heights > 0))) {
-        log_error("%s: %s: numbers of %.6g .. %.6g, which are no heights on Earth in %s; say what they are: %s@cm, %s@dm "
-                  "(terrain import: --unit), or declare its voids: %s@nodata=%.7g", key, path,
-                  fmin(c->least_out_m / unit_m, c->most_out_m / unit_m),
-                  fmax(c->least_out_m / unit_m, c->most_out_m / unit_m),
-                  *raster->choice.unit ? raster->choice.unit : *raster->stated.unit ? raster->stated.unit : "metres", path,
-                  path, path, c->least_out_m / unit_m);
+        log_error(
+            "%s: %s: numbers of %.6g .. %.6g, which are no heights on Earth in %s; say what they are: %s@cm, %s@dm "
+            "(terrain import: --unit), or declare its voids: %s@nodata=%.7g",
+            key, path, fmin(c->least_out_m / unit_m, c->most_out_m / unit_m),
+            fmax(c->least_out_m / unit_m, c->most_out_m / unit_m),
+            *raster->choice.unit   ? raster->choice.unit
+            : *raster->stated.unit ? raster->stated.unit
+                                   : "metres",
+            path, path, path, c->least_out_m / unit_m);
         return STATUS_BAD_VALUE;
     }
     if (c->outside > 0)
-        log_warn("%s: %s: %s%.0f posts are no heights on Earth (%.6g .. %.6g m): taken for voids that no tag declares, and "
-                 "filled; %s@nodata=%.7g says so (terrain import: --nodata)", key, path, s->whole ? "" : "at least ",
-                 c->outside, c->least_out_m, c->most_out_m, path, c->least_out_m / unit_m);
+        log_warn(
+            "%s: %s: %s%.0f posts are no heights on Earth (%.6g .. %.6g m): taken for voids that no tag declares, and "
+            "filled; %s@nodata=%.7g says so (terrain import: --nodata)",
+            key, path, s->whole ? "" : "at least ", c->outside, c->least_out_m, c->most_out_m, path,
+            c->least_out_m / unit_m);
     int n = raster->choice.no_void || heights < least_posts ? 0 : alone(&c->lowest, least_gap_m(raster));
     if (n > 0 && !s->whole && !c->beside)
         for (int k = 0; k < n; k++)
             if (!is_usual(c->lowest.h_m[k] / unit_m)) n = 0;
     const bool empty = n == 0 && !raster->choice.no_void && c->lowest.count == 1 && is_usual(c->lowest.h_m[0] / unit_m);
-    s->low_m  = heights > 0 && !empty ? c->lowest.h_m[n] : NAN;
+    s->low_m = heights > 0 && !empty ? c->lowest.h_m[n] : NAN;
     s->high_m = heights > 0 && !empty ? c->high_m : NAN;
     if (n == 0 && !empty) return STATUS_OK;
     s->suspects = n + empty;
-    s->gap_m    = empty ? 0 : c->lowest.h_m[n] - c->lowest.h_m[n - 1];
+    s->gap_m = empty ? 0 : c->lowest.h_m[n] - c->lowest.h_m[n - 1];
     for (int k = 0; k < s->suspects; k++) {
         s->suspect[k] = c->lowest.h_m[k] / unit_m;
         s->suspect_posts += c->lowest.posts[k];
@@ -255,16 +262,19 @@ static Status judge_counts(ElevationSurvey *s, Raster *raster, const Counts *c, 
 Status elevation_survey(ElevationSurvey *out, Raster *raster, const char *key, Pool *pool)
 {
     ElevationSurvey s = {.raster = raster, .low_m = NAN, .high_m = NAN};
-    Job job = {.raster = raster, .key = key, .band = 1, .rows = raster->row_block > 0 ? raster->row_block : 64,
-               .gap_m = least_gap_m(raster)};
-    Counts counts = no_counts;
-    Status status = judge_stated(raster, key);
+    Job             job = {.raster = raster,
+                           .key = key,
+                           .band = 1,
+                           .rows = raster->row_block > 0 ? raster->row_block : 64,
+                           .gap_m = least_gap_m(raster)};
+    Counts          counts = no_counts;
+    Status          status = judge_stated(raster, key);
     if (status == STATUS_OK) {
         s.whole = job.whole = (double)raster->width * raster->height <= whole_posts;
-        status  = look_all(&counts, &job, pool);
+        status = look_all(&counts, &job, pool);
     }
-    s.posts   = counts.posts;
-    s.voids   = counts.voids;
+    s.posts = counts.posts;
+    s.voids = counts.voids;
     s.outside = counts.outside;
     if (status == STATUS_OK) status = judge_counts(&s, raster, &counts, key);
     *out = s;
@@ -277,9 +287,9 @@ void elevation_survey_words(const char **unit, const char **unit_from, const cha
     const Raster       *raster = survey->raster;
     const RasterStated *s = &raster->stated;
     const RasterChoice *c = &raster->choice;
-    *unit      = *c->unit ? c->unit : *s->unit ? s->unit : "metre";
+    *unit = *c->unit ? c->unit : *s->unit ? s->unit : "metre";
     *unit_from = *c->unit ? "named" : !*s->unit ? "not stated" : s->unit_of_crs ? "of its vertical system" : "stated";
-    *datum     = survey->ellipsoidal ? "the ellipsoid" : "the geoid";
+    *datum = survey->ellipsoidal ? "the ellipsoid" : "the geoid";
     *datum_from = c->vertical != RASTER_VERTICAL_BY_CRS ? "named"
                   : *s->vertical                        ? s->vertical
                   : raster->ellipsoidal                 ? "its coordinate system has three axes"

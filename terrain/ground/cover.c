@@ -47,7 +47,7 @@ static unsigned mapped_surfaces(int32_t surface[8], const Cover *cover, const do
     const double reach_m = 0.5 * cell_m;
     unsigned     none = 0, near = 0;
     for (unsigned left = lanes; left; left &= left - 1) {
-        const int k = __builtin_ctz(left);
+        const int    k = __builtin_ctz(left);
         SurfaceClass corner[4];
         for (int c = 0; c < 4; c++)
             corner[c] = cover_grid_at(cover->grid, x_m[k] + (c & 1 ? reach_m : -reach_m),
@@ -77,8 +77,8 @@ static unsigned mapped_surfaces(int32_t surface[8], const Cover *cover, const do
     return none;
 }
 
-static void real_surfaces(int32_t surface[8], const Landscape *landscape, const double x_m[8],
-                          const double y_m[8], unsigned lanes)
+static void real_surfaces(int32_t surface[8], const Landscape *landscape, const double x_m[8], const double y_m[8],
+                          unsigned lanes)
 {
     const Cover   *cover = landscape->cover;
     const uint64_t seed = cover->invented.seed;
@@ -122,8 +122,8 @@ static unsigned coast_surfaces(int32_t surface[8], const Coast *coast, const dou
 }
 
 /* nodes: NULL, or about the places. */
-static void find_surfaces(uint8_t *surface, const Landscape *landscape, const SlowNodes *nodes, int count, const double *x_m,
-                          const double *y_m)
+static void find_surfaces(uint8_t *surface, const Landscape *landscape, const SlowNodes *nodes, int count,
+                          const double *x_m, const double *y_m)
 {
     const Cover *cover = landscape->cover;
     for (int first = 0; first < count; first += 8) {
@@ -157,20 +157,22 @@ static bool looks_first(int side, int row, int column)
     return side < 8 ? (row + column) % 2 == 0 : row % 2 == 0 && (column + row / 2) % 2 == 0;
 }
 
-void landscape_surfaces_square(uint8_t *surface, const Landscape *landscape, int side, const double *x_m, const double *y_m)
+void landscape_surfaces_square(uint8_t *surface, const Landscape *landscape, int side, const double *x_m,
+                               const double *y_m)
 {
     const Cover *cover = landscape->cover;
-    double    x[landscape_square_most], y[landscape_square_most];
-    uint8_t   found[landscape_square_most];
-    int       place[landscape_square_most], differ = 0;
-    SlowNodes nodes = {.known = false};
+    double       x[landscape_square_most], y[landscape_square_most];
+    uint8_t      found[landscape_square_most];
+    int          place[landscape_square_most], differ = 0;
+    SlowNodes    nodes = {.known = false};
     assert(side * side <= landscape_square_most);
     if (landscape_is_synthetic(landscape))
         invented_nodes(&nodes, &cover->invented, &landscape->elevation, side * side, x_m, y_m);
     for (int pass = 0; pass == 0 || (pass == 1 && differ); pass++) {
         int count = 0;
         for (int k = 0; k < side * side; k++)
-            if (looks_first(side, k / side, k % side) == (pass == 0)) place[count] = k, x[count] = x_m[k], y[count++] = y_m[k];
+            if (looks_first(side, k / side, k % side) == (pass == 0))
+                place[count] = k, x[count] = x_m[k], y[count++] = y_m[k];
         find_surfaces(found, landscape, &nodes, count, x, y);
         for (int k = 0; k < count; k++) surface[place[k]] = found[k], differ |= found[k] != found[0];
     }
@@ -225,14 +227,13 @@ void cover_measure_photo(Landscape *landscape)
 {
     /* classes of few pixels lean on the mean of all: a class of a single dark pixel would amplify the others */
     static const double enough = 200, most = 400e3;
-    Cover *cover = landscape->cover;
-    Photo *p = &cover->photo;
+    Cover              *cover = landscape->cover;
+    Photo              *p = &cover->photo;
     if (p->mips == 0) return;
     int k = 0;
     while (k < p->mips - 1 && (double)p->nx[k] * p->ny[k] > most) k++;
     const double cell_m = p->cell_m * exp2(k);
-    double       sum[SURFACE_COUNT][photo_channels] = {{0}}, count[SURFACE_COUNT] = {0}, all[photo_channels] = {0},
-        total = 0;
+    double sum[SURFACE_COUNT][photo_channels] = {{0}}, count[SURFACE_COUNT] = {0}, all[photo_channels] = {0}, total = 0;
     for (int j = 0; j < p->ny[k]; j++)
         for (int i = 0; i < p->nx[k]; i++) {
             const double x_m = p->x0_m + (i + 0.5) * cell_m, y_m = p->y0_m + (j + 0.5) * cell_m;
@@ -264,8 +265,8 @@ void landscape_albedo(float factor[albedo_channels], const Landscape *landscape,
                       double y_m, double footprint_m)
 {
     static const double brightest = 6; /* of a class's mean: a white roof in a dark wood */
-    const Cover *cover = landscape->cover;
-    double       linear[photo_channels], share = 0, all = 0;
+    const Cover        *cover = landscape->cover;
+    double              linear[photo_channels], share = 0, all = 0;
     for (int c = 0; c < albedo_channels; c++) factor[c] = 1;
     if (!cover || cover->photo.mips == 0 || !(surface > SURFACE_NONE && surface < SURFACE_COUNT)) return;
     share = photo_at(linear, &cover->photo, x_m, y_m, footprint_m);

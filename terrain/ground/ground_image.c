@@ -19,12 +19,12 @@ enum { block_cells = 32 };
 /* Pixel of the raster under each cell's centre, a row of blocks at a time: exact at the corners of blocks on the
  * surface itself, linear between (over 32 cells of 1 m the lean of a 100 m cliff 8 km out would show as 0.1 m). */
 typedef struct Finder {
-    const Raster    *raster;
-    const Elevation *elevation;
+    const Raster     *raster;
+    const Elevation  *elevation;
     const LocalFrame *frame;
-    Window           window;
-    double          *x, *y; /* [2][blocks + 1] */
-    int              blocks, row; /* row of blocks that is loaded */
+    Window            window;
+    double           *x, *y;       /* [2][blocks + 1] */
+    int               blocks, row; /* row of blocks that is loaded */
 } Finder;
 
 static Status finder_create(Finder *f, const Raster *raster, const Elevation *elevation, const LocalFrame *frame,
@@ -44,8 +44,9 @@ static void finder_load(Finder *f, int row)
     for (int side = 0; side < 2; side++)
         for (int c = 0; c < corners; c++) {
             double p_enu[3] = {f->window.x0_m + c * block_cells * f->window.cell_m,
-                               f->window.y0_m + (row + side) * block_cells * f->window.cell_m, 0}, p_ecef[3];
-            Geodetic place = {NAN, NAN, 0};
+                               f->window.y0_m + (row + side) * block_cells * f->window.cell_m, 0},
+                   p_ecef[3];
+            Geodetic     place = {NAN, NAN, 0};
             const double z_m = elevation_height(f->elevation, p_enu[0], p_enu[1], NULL);
             p_enu[2] = isfinite(z_m) ? z_m : 0;
             ecef_from_enu(p_ecef, f->frame, p_enu);
@@ -61,8 +62,8 @@ static void finder_load(Finder *f, int row)
 static void finder_at(double px[2], Finder *f, int i, int j)
 {
     if (j / block_cells != f->row) finder_load(f, j / block_cells);
-    const int    corners = f->blocks + 1, c = i / block_cells;
-    const double u = (i % block_cells + 0.5) / block_cells, v = (j % block_cells + 0.5) / block_cells;
+    const int     corners = f->blocks + 1, c = i / block_cells;
+    const double  u = (i % block_cells + 0.5) / block_cells, v = (j % block_cells + 0.5) / block_cells;
     const double *of[2] = {f->x, f->y};
     for (int k = 0; k < 2; k++) {
         const double *a = of[k] + c, *b = a + corners;
@@ -71,10 +72,7 @@ static void finder_at(double px[2], Finder *f, int i, int j)
     }
 }
 
-static void finder_free(Finder *f)
-{
-    free(f->x);
-}
+static void finder_free(Finder *f) { free(f->x); }
 
 /* Pixels of the raster that one row of blocks can touch; false: none. Reading row by row keeps memory small. */
 static bool finder_bounds(int box[4], Finder *f, int row)
@@ -83,9 +81,9 @@ static bool finder_bounds(int box[4], Finder *f, int row)
     finder_load(f, row);
     for (int c = 0; c < 2 * (f->blocks + 1); c++) {
         if (!isfinite(f->x[c]) || !isfinite(f->y[c])) continue;
-        low[0]  = fmin(low[0], f->x[c]);
+        low[0] = fmin(low[0], f->x[c]);
         high[0] = fmax(high[0], f->x[c]);
-        low[1]  = fmin(low[1], f->y[c]);
+        low[1] = fmin(low[1], f->y[c]);
         high[1] = fmax(high[1], f->y[c]);
     }
     if (!(high[0] > 0 && high[1] > 0 && low[0] < f->raster->width && low[1] < f->raster->height)) return false;
@@ -102,9 +100,9 @@ static bool window_of(Window *out, const Raster *raster, const LocalFrame *frame
     double low[2], high[2];
     raster_enu_box(low, high, raster, frame, 0);
     const double margin_m = 0.01 * (high[0] - low[0]) + 10 * cell_m; /* heights lean outwards */
-    int n[2];
+    int          n[2];
     for (int c = 0; c < 2; c++) {
-        low[c]  = floor(fmax(low[c] - margin_m, -half_m) / cell_m) * cell_m;
+        low[c] = floor(fmax(low[c] - margin_m, -half_m) / cell_m) * cell_m;
         high[c] = fmin(high[c] + margin_m, half_m);
         if (!(high[c] > low[c])) return false;
         n[c] = ((int)((high[c] - low[c]) / cell_m) / block_cells + 1) * block_cells;
@@ -143,8 +141,8 @@ static Status cover_codes(uint16_t *code, const Window *window, const Raster *ra
         if (!finder_bounds(box, &f, j0 / block_cells)) continue;
         const size_t w = (size_t)(box[2] - box[0]), h = (size_t)(box[3] - box[1]);
         float       *px = malloc(w * h * sizeof *px);
-        status = px ? raster_read(px, raster, band, (RasterWindow){box[0], box[1], (int)w, (int)h},
-                                  cover_key) : STATUS_NO_MEMORY;
+        status = px ? raster_read(px, raster, band, (RasterWindow){box[0], box[1], (int)w, (int)h}, cover_key)
+                    : STATUS_NO_MEMORY;
         for (int j = j0; status == STATUS_OK && j < j0 + block_cells && j < window->ny; j++)
             for (int i = 0; i < window->nx; i++) {
                 double at[2];
@@ -153,7 +151,8 @@ static Status cover_codes(uint16_t *code, const Window *window, const Raster *ra
                 if (!(x >= 0 && y >= 0 && x < (double)w && y < (double)h)) continue;
                 const float value = px[(size_t)y * w + (size_t)x];
                 uint16_t   *to = &code[(size_t)j * (size_t)window->nx + (size_t)i];
-                if (value >= 0 && value < surface_codes_most && (value > 0 ? *to <= 1 : *to == 0)) *to = (uint16_t)(value + 1);
+                if (value >= 0 && value < surface_codes_most && (value > 0 ? *to <= 1 : *to == 0))
+                    *to = (uint16_t)(value + 1);
             }
         free(px);
     }
@@ -165,15 +164,15 @@ Status cover_grid_read(CoverGrid out[cover_windows], CoverReport *report, const 
                        int band, const Elevation *elevation, const LocalFrame *frame)
 {
     static const double most_cells[cover_windows] = {16e6, 4e6};
-    RasterSet   set = {0};
-    CoverGrid   grid[cover_windows] = {{0}};
-    uint16_t   *code[cover_windows] = {NULL};
-    CoverReport r = {0};
-    SurfaceTable  chosen;
-    Status      status = open_whole(&set, paths, cover_key, "classes");
+    RasterSet           set = {0};
+    CoverGrid           grid[cover_windows] = {{0}};
+    uint16_t           *code[cover_windows] = {NULL};
+    CoverReport         r = {0};
+    SurfaceTable        chosen;
+    Status              status = open_whole(&set, paths, cover_key, "classes");
     if (status != STATUS_OK) return status;
     const Raster *first = &set.raster[0];
-    r.band      = band > 0 ? band : first->bands >= 8 ? 4 : 1;
+    r.band = band > 0 ? band : first->bands >= 8 ? 4 : 1;
     r.posting_m = fmin(first->posting_m[0], first->posting_m[1]);
     for (int k = 0; k < set.count; k++)
         if (r.band > set.raster[k].bands) {
@@ -185,12 +184,12 @@ Status cover_grid_read(CoverGrid out[cover_windows], CoverReport *report, const 
     const double cell_m = fmax(rint(r.posting_m * 4) / 4, 0.25);
     for (int w = 0; w < cover_windows; w++) {
         const double size_m = w ? 8 * cell_m : cell_m;
-        double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+        double       low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
         for (int k = 0; k < set.count; k++) {
             Window one;
             if (!window_of(&one, &set.raster[k], frame, size_m, 0.5 * sqrt(most_cells[w]) * size_m)) continue;
-            low[0]  = fmin(low[0], one.x0_m);
-            low[1]  = fmin(low[1], one.y0_m);
+            low[0] = fmin(low[0], one.x0_m);
+            low[1] = fmin(low[1], one.y0_m);
             high[0] = fmax(high[0], one.x0_m + one.nx * size_m);
             high[1] = fmax(high[1], one.y0_m + one.ny * size_m);
         }
@@ -200,7 +199,7 @@ Status cover_grid_read(CoverGrid out[cover_windows], CoverReport *report, const 
         g->nx = (int)((high[0] - low[0]) / size_m) + 1;
         g->ny = (int)((high[1] - low[1]) / size_m) + 1;
         g->surface = calloc((size_t)g->nx * (size_t)g->ny, 1);
-        code[w]    = calloc((size_t)g->nx * (size_t)g->ny, sizeof *code[w]);
+        code[w] = calloc((size_t)g->nx * (size_t)g->ny, sizeof *code[w]);
         status = g->surface && code[w] ? STATUS_OK : STATUS_NO_MEMORY;
         const Window window = {g->x0_m, g->y0_m, size_m, g->nx, g->ny};
         for (int k = 0; status == STATUS_OK && k < set.count; k++)
@@ -277,9 +276,9 @@ static Status white_of(double *white, const Raster *raster, int bands)
     for (int b = 1; status == STATUS_OK && b <= bands; b++) {
         size_t kept = 0;
         for (int r = 0; status == STATUS_OK && r < rows; r++)
-            status = raster_read(some + (size_t)r * w, raster, b,
-                                 (RasterWindow){0, (int)((int64_t)r * raster->height / rows), raster->width, 1},
-                                 photo_key);
+            status =
+                raster_read(some + (size_t)r * w, raster, b,
+                            (RasterWindow){0, (int)((int64_t)r * raster->height / rows), raster->width, 1}, photo_key);
         for (size_t n = 0; status == STATUS_OK && n < rows * w; n++)
             if (isfinite(some[n])) some[kept++] = some[n];
         if (status != STATUS_OK || kept == 0) continue;
@@ -313,8 +312,8 @@ static void photo_cell(uint8_t to[4], const PhotoBox *box, double x, double y)
         double       sum = 0;
         for (int n = 0; n < 4; n++) {
             if (!isfinite(four[n])) return;
-            sum += weight[n] *
-                   (box->bytes ? (double)photo_linear((uint8_t)clamp(four[n], 0, 255)) : four[n] / box->white);
+            sum +=
+                weight[n] * (box->bytes ? (double)photo_linear((uint8_t)clamp(four[n], 0, 255)) : four[n] / box->white);
         }
         value[k] = photo_encoded((float)clamp(sum, 0, 1));
     }
@@ -339,8 +338,8 @@ static Status photo_pixels(uint8_t *rgba, const Photo *p, const Raster *raster, 
         PhotoBox  some = {.bands = bands, .w = w, .h = h, .bytes = raster->bytes, .white = white};
         for (int b = 0; status == STATUS_OK && b < bands; b++) {
             float *px = some.px[b] = malloc((size_t)w * (size_t)h * sizeof *px);
-            status = px ? raster_read(px, raster, b + 1, (RasterWindow){box[0], box[1], w, h},
-                                         photo_key) : STATUS_NO_MEMORY;
+            status =
+                px ? raster_read(px, raster, b + 1, (RasterWindow){box[0], box[1], w, h}, photo_key) : STATUS_NO_MEMORY;
         }
         for (int j = j0; status == STATUS_OK && j < j0 + block_cells && j < window.ny; j++)
             for (int i = 0; i < window.nx; i++) {
@@ -378,20 +377,20 @@ static Status photo_from_pixels(Photo *p, uint8_t *rgba)
 Status photo_read(Photo *out, double *posting_m, const char *paths, const Elevation *elevation, const LocalFrame *frame)
 {
     static const double most_cells = 36e6;
-    RasterSet set = {0};
-    Photo     p = {0};
-    Window    window;
-    uint8_t  *rgba = NULL;
-    Status    status = open_whole(&set, paths, photo_key, "a photograph");
+    RasterSet           set = {0};
+    Photo               p = {0};
+    Window              window;
+    uint8_t            *rgba = NULL;
+    Status              status = open_whole(&set, paths, photo_key, "a photograph");
     if (status != STATUS_OK) return status;
     const Raster *first = &set.raster[0];
     *posting_m = fmin(first->posting_m[0], first->posting_m[1]);
-    p.cell_m   = *posting_m;
+    p.cell_m = *posting_m;
     double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
     for (int k = 0; k < set.count; k++) {
         if (!window_of(&window, &set.raster[k], frame, p.cell_m, 0.5 * sqrt(most_cells) * p.cell_m)) continue;
-        low[0]  = fmin(low[0], window.x0_m);
-        low[1]  = fmin(low[1], window.y0_m);
+        low[0] = fmin(low[0], window.x0_m);
+        low[1] = fmin(low[1], window.y0_m);
         high[0] = fmax(high[0], window.x0_m + window.nx * p.cell_m);
         high[1] = fmax(high[1], window.y0_m + window.ny * p.cell_m);
     }
@@ -401,19 +400,19 @@ Status photo_read(Photo *out, double *posting_m, const char *paths, const Elevat
         status = STATUS_BAD_VALUE;
         goto done;
     }
-    p.x0_m  = low[0];
-    p.y0_m  = low[1];
+    p.x0_m = low[0];
+    p.y0_m = low[1];
     p.nx[0] = (int)((high[0] - low[0]) / p.cell_m + 0.5);
     p.ny[0] = (int)((high[1] - low[1]) / p.cell_m + 0.5);
-    p.mips  = photo_mips(p.nx, p.ny);
-    rgba    = calloc((size_t)p.nx[0] * (size_t)p.ny[0], 4);
-    status  = rgba ? STATUS_OK : STATUS_NO_MEMORY;
+    p.mips = photo_mips(p.nx, p.ny);
+    rgba = calloc((size_t)p.nx[0] * (size_t)p.ny[0], 4);
+    status = rgba ? STATUS_OK : STATUS_NO_MEMORY;
     for (int k = 0; status == STATUS_OK && k < set.count; k++)
         status = photo_pixels(rgba, &p, &set.raster[k], elevation, frame);
     if (status == STATUS_OK) status = photo_from_pixels(&p, rgba);
     if (status != STATUS_OK) goto done;
     *out = p;
-    p    = (Photo){0};
+    p = (Photo){0};
 done:
     free(rgba);
     photo_free(&p);

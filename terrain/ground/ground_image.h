@@ -27,16 +27,16 @@ typedef struct PhotoBlock {
 
 /* A photograph: linear light encoded as sRGB, and coverage, in blocks of 4 x 4 pixels. */
 typedef struct Photo {
-    int      mips;         /* 0: none */
-    int      nx[ground_image_mips], ny[ground_image_mips];
-    double   x0_m, y0_m, cell_m; /* corner; of mip 0 */
-    PhotoBlock *block[ground_image_mips]; /* [(ny + 3) / 4][(nx + 3) / 4] */
-    bool     borrowed;     /* the blocks are another's: not freed */
-    float    mean[SURFACE_COUNT][photo_channels]; /* linear, over each class: filled in by the caller, which has the
-                                                   * classes */
+    int         mips; /* 0: none */
+    int         nx[ground_image_mips], ny[ground_image_mips];
+    double      x0_m, y0_m, cell_m;                  /* corner; of mip 0 */
+    PhotoBlock *block[ground_image_mips];            /* [(ny + 3) / 4][(nx + 3) / 4] */
+    bool        borrowed;                            /* the blocks are another's: not freed */
+    float       mean[SURFACE_COUNT][photo_channels]; /* linear, over each class: filled in by the caller, which has the
+                                                      * classes */
 } Photo;
 
-void   photo_free(Photo *photo);
+void photo_free(Photo *photo);
 /* Linear light averaged over the footprint, and how much of it the photograph covers (0 .. 1). */
 double photo_at(double linear[photo_channels], const Photo *photo, double x_m, double y_m, double footprint_m);
 /* The second of these alone, of the finest pixels. */
@@ -55,7 +55,7 @@ void photo_block_row(PhotoBlock *out, const uint8_t *rgba, int nx, int rows);
 /* One row of the next mip, (nx + 1) / 2 pixels: the mean of the covered linear light. north NULL: there is none. */
 void photo_halve_row(uint8_t *out, const uint8_t *south, const uint8_t *north, int nx);
 /* Sizes of all mips from those of the first; returns their count. */
-int  photo_mips(int nx[ground_image_mips], int ny[ground_image_mips]);
+int                  photo_mips(int nx[ground_image_mips], int ny[ground_image_mips]);
 static inline size_t photo_blocks_across(int n) { return ((size_t)n + 3) / 4; }
 /* Blocks of one mip. */
 static inline size_t photo_block_count(const Photo *p, int k)
@@ -73,26 +73,26 @@ enum { cover_windows = 2 };
 
 /* Classes by nearest pixel. Window 0 is fine and about the origin, window 1 eight times coarser and wider. */
 typedef struct CoverGrid {
-    int      nx, ny;       /* 0: none */
+    int      nx, ny;             /* 0: none */
     double   x0_m, y0_m, cell_m; /* south-west corner of the first cell */
-    uint8_t *surface;      /* [ny][nx]; SURFACE_NONE where the files have no data */
-    bool     borrowed;     /* the classes are another's: not freed */
+    uint8_t *surface;            /* [ny][nx]; SURFACE_NONE where the files have no data */
+    bool     borrowed;           /* the classes are another's: not freed */
 } CoverGrid;
 
 typedef struct CoverReport {
-    const char *table;     /* in static storage, or the caller's */
+    const char *table; /* in static storage, or the caller's */
     double      posting_m;
     int         band;
-    long        unknown;   /* cells with a code that the table lacks */
+    long        unknown;              /* cells with a code that the table lacks */
     double      share[SURFACE_COUNT]; /* of the cells of window 0 that have a class */
 } CoverReport;
 
 /* table: a CSV (code, surface, note), a name such as worldcover, nlcd or fbfm40 for etc/cover_NAME.csv, or empty: the
  * one of these three with the most of the codes found. band 0: the only one, or FBFM's fourth where there are eight or
  * more, as in landscape files. Failures are logged. */
-Status cover_grid_read(CoverGrid out[cover_windows], CoverReport *report, const char *paths, const char *table,
-                       int band, const Elevation *elevation, const LocalFrame *frame);
-void   cover_grid_free(CoverGrid grid[cover_windows]);
+Status       cover_grid_read(CoverGrid out[cover_windows], CoverReport *report, const char *paths, const char *table,
+                             int band, const Elevation *elevation, const LocalFrame *frame);
+void         cover_grid_free(CoverGrid grid[cover_windows]);
 SurfaceClass cover_grid_at(const CoverGrid grid[cover_windows], double x_m, double y_m);
 
 #endif

@@ -13,15 +13,15 @@ LandscapeConfig landscape_default_config(void)
 /* The evidence outlives its owner here: the same landscape can be made again from it. */
 static Status keep_evidence(LandscapeEvidence *out, const LandscapeEvidence *from)
 {
-    const size_t fixes  = (size_t)from->fix_count * sizeof *from->fix;
-    const size_t lines  = (size_t)from->line_count * sizeof *from->line;
+    const size_t fixes = (size_t)from->fix_count * sizeof *from->fix;
+    const size_t lines = (size_t)from->line_count * sizeof *from->line;
     const size_t places = (size_t)from->place_count * sizeof *from->place;
-    GroundFix  *fix   = fixes ? malloc(fixes) : NULL;
-    ClearLine  *line  = lines ? malloc(lines) : NULL;
-    CoastPlace *place = places ? malloc(places) : NULL;
-    *out      = *from;
-    out->fix   = fix;
-    out->line  = line;
+    GroundFix   *fix = fixes ? malloc(fixes) : NULL;
+    ClearLine   *line = lines ? malloc(lines) : NULL;
+    CoastPlace  *place = places ? malloc(places) : NULL;
+    *out = *from;
+    out->fix = fix;
+    out->line = line;
     out->place = place;
     if ((fixes && !fix) || (lines && !line) || (places && !place)) return STATUS_NO_MEMORY;
     if (fixes) memcpy(fix, from->fix, fixes);
@@ -37,8 +37,8 @@ static void free_evidence(LandscapeEvidence *evidence)
     free((void *)evidence->place);
 }
 
-Status landscape_create(Landscape *out, const LandscapeConfig *config, const LocalFrame *frame,
-                        const GroundFix *fix, int fix_count, const ClearLine *line, int line_count)
+Status landscape_create(Landscape *out, const LandscapeConfig *config, const LocalFrame *frame, const GroundFix *fix,
+                        int fix_count, const ClearLine *line, int line_count)
 {
     const LandscapeEvidence evidence = {.fix = fix, .fix_count = fix_count, .line = line, .line_count = line_count};
     return landscape_create_from(out, config, frame, &evidence);
@@ -58,10 +58,10 @@ Status landscape_create_from(Landscape *out, const LandscapeConfig *config, cons
         free(cover);
         return status;
     }
-    cover->invented         = terrain.ground;
-    landscape.cover         = cover;
-    landscape.elevation     = terrain.elevation;
-    landscape.fit_worst_m   = terrain.fit_worst_m;
+    cover->invented = terrain.ground;
+    landscape.cover = cover;
+    landscape.elevation = terrain.elevation;
+    landscape.fit_worst_m = terrain.fit_worst_m;
     landscape.fixes_dropped = terrain.fixes_dropped;
     status = keep_evidence(&landscape.fitted_to, evidence);
     if (status == STATUS_OK) *out = landscape;
@@ -88,18 +88,18 @@ enum { octaves = 10, longest_posts = 4096, rows_a_task = elevation_tile_cells };
 static const double span_m = 250; /* valley to top, about: three sigma each way of the octaves' sum */
 
 typedef struct Octave {
-    int    posts;               /* of a lattice cell; a power of two */
-    int    nx, ny;              /* lattice points */
-    float *z;                   /* [ny][nx], m */
+    int    posts;                    /* of a lattice cell; a power of two */
+    int    nx, ny;                   /* lattice points */
+    float *z;                        /* [ny][nx], m */
     float  weight[4][longest_posts]; /* by place in the cell */
 } Octave;
 
 typedef struct Maker {
     ElevationLevel *level;
-    int32_t        *post;       /* [threads][elevation_tile_side][level->nx] */
-    Octave         *octave;     /* [octaves] */
-    float          *line;       /* [threads][level->nx + longest_posts], a row of heights */
-    float          *knots;      /* [threads][most nx] */
+    int32_t        *post;   /* [threads][elevation_tile_side][level->nx] */
+    Octave         *octave; /* [octaves] */
+    float          *line;   /* [threads][level->nx + longest_posts], a row of heights */
+    float          *knots;  /* [threads][most nx] */
     int             line_size, knots_size;
 } Maker;
 
@@ -116,9 +116,9 @@ static void spline_weights(double w[4], double t)
 static Status make_octave(Octave *o, int index, int nx, int ny, uint64_t seed)
 {
     o->posts = longest_posts >> index;
-    o->nx    = nx / o->posts + 4;
-    o->ny    = ny / o->posts + 4;
-    o->z     = malloc((size_t)o->nx * (size_t)o->ny * sizeof *o->z);
+    o->nx = nx / o->posts + 4;
+    o->ny = ny / o->posts + 4;
+    o->z = malloc((size_t)o->nx * (size_t)o->ny * sizeof *o->z);
     if (!o->z) return STATUS_NO_MEMORY;
     const double height_m = 0.95 * span_m * exp2(-index) * (index > 6 ? exp2(6 - index) : 1);
     for (int j = 0; j < o->ny; j++)
@@ -145,7 +145,7 @@ static void add_octave(float *restrict line, float *restrict knots, const Octave
     }
     for (int c = 0; c * o->posts < nx; c++) {
         float *restrict out = line + c * o->posts;
-        const float     a = knots[c], b = knots[c + 1], d = knots[c + 2], e = knots[c + 3];
+        const float a = knots[c], b = knots[c + 1], d = knots[c + 2], e = knots[c + 3];
         for (int p = 0; p < o->posts; p++)
             out[p] += a * o->weight[0][p] + b * o->weight[1][p] + d * o->weight[2][p] + e * o->weight[3][p];
     }
@@ -181,28 +181,28 @@ Status landscape_quick(Landscape *out, double times_s[2], const LocalFrame *fram
                        Pool *pool)
 {
     static const uint64_t seed = 1;
-    Landscape      landscape = {.frame = *frame, .config = landscape_default_config()};
-    Cover         *cover = calloc(1, sizeof *cover);
-    Maker          maker = {.octave = calloc(octaves, sizeof *maker.octave)};
-    const double   start_s = wall_clock_s();
-    Status         status = cover && maker.octave ? STATUS_OK : STATUS_NO_MEMORY;
+    Landscape             landscape = {.frame = *frame, .config = landscape_default_config()};
+    Cover                *cover = calloc(1, sizeof *cover);
+    Maker                 maker = {.octave = calloc(octaves, sizeof *maker.octave)};
+    const double          start_s = wall_clock_s();
+    Status                status = cover && maker.octave ? STATUS_OK : STATUS_NO_MEMORY;
     if (!(east_m >= 200 && east_m <= 32000 && north_m >= 200 && north_m <= 32000)) status = STATUS_BAD_VALUE;
     landscape.cover = cover;
     if (status != STATUS_OK) goto done;
 
     const int nx = (int)east_m + 1, ny = (int)north_m + 1;
     cover->invented.seed = invented_hash(seed, 2, 0);
-    status      = elevation_level_create(&landscape.elevation, 0, nx, ny, -floor(0.5 * east_m), -floor(0.5 * north_m),
-                                         1, -512, landscape_quick_step_m);
+    status = elevation_level_create(&landscape.elevation, 0, nx, ny, -floor(0.5 * east_m), -floor(0.5 * north_m), 1,
+                                    -512, landscape_quick_step_m);
     for (int o = 0; o < octaves && status == STATUS_OK; o++)
         status = make_octave(&maker.octave[o], o, nx, ny, invented_hash(seed, 3, 0));
     if (status != STATUS_OK) goto done;
-    maker.level      = &landscape.elevation.level[0];
-    maker.line_size  = nx + longest_posts;
+    maker.level = &landscape.elevation.level[0];
+    maker.line_size = nx + longest_posts;
     maker.knots_size = maker.octave[octaves - 1].nx;
-    maker.line  = malloc((size_t)pool_threads(pool) * (size_t)maker.line_size * sizeof *maker.line);
+    maker.line = malloc((size_t)pool_threads(pool) * (size_t)maker.line_size * sizeof *maker.line);
     maker.knots = malloc((size_t)pool_threads(pool) * (size_t)maker.knots_size * sizeof *maker.knots);
-    maker.post  = malloc((size_t)pool_threads(pool) * elevation_tile_side * (size_t)nx * sizeof *maker.post);
+    maker.post = malloc((size_t)pool_threads(pool) * elevation_tile_side * (size_t)nx * sizeof *maker.post);
     if (!maker.line || !maker.knots || !maker.post) {
         status = STATUS_NO_MEMORY;
         goto done;
@@ -286,7 +286,7 @@ static Status reserve_place(HedgePlace **place, int *room, int count)
     HedgePlace *more = realloc(*place, (size_t)wanted * sizeof *more);
     if (!more) return STATUS_NO_MEMORY;
     *place = more;
-    *room  = wanted;
+    *room = wanted;
     return STATUS_OK;
 }
 

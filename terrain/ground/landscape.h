@@ -15,16 +15,16 @@ typedef struct Landscape {
     LocalFrame      frame;
     Elevation       elevation;
     LandscapeConfig config;
-    double          fit_worst_m;  /* largest |surface - fix| over the fixes that were kept */
-    int             fixes_dropped;/* inconsistent with their neighbours, above a clear line, or outside of the
-                                   * terrain */
-    LandscapeEvidence fitted_to;  /* a copy of the inputs of a synthetic terrain: landscape_parts.h */
-    void           *cover;        /* private; surface and texture need it */
+    double          fit_worst_m;   /* largest |surface - fix| over the fixes that were kept */
+    int             fixes_dropped; /* inconsistent with their neighbours, above a clear line, or outside of the
+                                    * terrain */
+    LandscapeEvidence fitted_to;   /* a copy of the inputs of a synthetic terrain: landscape_parts.h */
+    void             *cover;       /* private; surface and texture need it */
 } Landscape;
 
 /* The mapped file of a landscape from a terrain store (terrain/store/store.h). */
 typedef struct LandscapeMap {
-    char    *path;    /* absolute; NULL: of no store */
+    char    *path; /* absolute; NULL: of no store */
     void    *map;
     size_t   octets;
     uint64_t content; /* hash of the store */
@@ -37,8 +37,8 @@ LandscapeConfig landscape_default_config(void);
  * before that, source entities that are outliers against their neighbours are dropped as a whole
  * (invented_inconsistent). With neither fixes nor low lines the terrain is at ellipsoid height 0. fix, line may be
  * NULL when their count is 0. */
-Status landscape_create(Landscape *out, const LandscapeConfig *config, const LocalFrame *frame,
-                        const GroundFix *fix, int fix_count, const ClearLine *line, int line_count);
+Status landscape_create(Landscape *out, const LandscapeConfig *config, const LocalFrame *frame, const GroundFix *fix,
+                        int fix_count, const ClearLine *line, int line_count);
 /* The same with a sea: flat at sea_h_m, wherever a place of sea is nearer than a place of dry land, the line between
  * bent by up to a third of the distance; a third of the way from a place to its nearest opposite is always of its own
  * kind. Land comes down to the water within 400 m of the shore, less where a place of dry land is nearer. Fixes on the
@@ -48,7 +48,7 @@ Status landscape_create_from(Landscape *out, const LandscapeConfig *config, cons
 void   landscape_destroy(Landscape *landscape);
 
 /* Whether it is the synthetic terrain, not one from files. */
-bool         landscape_is_synthetic(const Landscape *landscape);
+bool landscape_is_synthetic(const Landscape *landscape);
 /* Surface class at a place, anchored to the ground; SURFACE_NONE where there is none, and for NaN. Thread-safe. For
  * many positions at once a tenth of the time each, and the same results. */
 SurfaceClass landscape_surface(const Landscape *landscape, double x_m, double y_m);
@@ -58,20 +58,21 @@ void landscape_surfaces(uint8_t *surface, const Landscape *landscape, int count,
  * 12 x 4 m what the synthetic cover follows over 17 m and more is interpolated, which moves borders by some decimetres
  * (tests/terrain/test_cover.c). */
 enum { landscape_square_most = 256 };
-void landscape_surfaces_square(uint8_t *surface, const Landscape *landscape, int side, const double *x_m, const double *y_m);
+void landscape_surfaces_square(uint8_t *surface, const Landscape *landscape, int side, const double *x_m,
+                               const double *y_m);
 /* Where there is a photograph: its brightness relative to its own mean over that class, a channel, averaged over the
  * footprint; multiplied by a material's reflectance the mean over the class is that of the material. 1 without. The
  * detail (terrain/detail/detail.h) then adds only what is finer than the photograph's pixels. factor: red, green,
  * blue, and all three together. */
-bool   landscape_has_photo(const Landscape *landscape);
+bool landscape_has_photo(const Landscape *landscape);
 /* Side of the photograph's pixels at each of the places in `lanes`, 0: no photograph there. */
-void   landscape_photo_cells(float cell_m[8], const Landscape *landscape, const double x_m[8], const double y_m[8],
-                             unsigned lanes);
+void landscape_photo_cells(float cell_m[8], const Landscape *landscape, const double x_m[8], const double y_m[8],
+                           unsigned lanes);
 /* Seed of what is drawn at random on its surface; false, and 0: it has none. */
-bool   landscape_seed(uint64_t *out, const Landscape *landscape);
+bool landscape_seed(uint64_t *out, const Landscape *landscape);
 enum { albedo_red, albedo_green, albedo_blue, albedo_all, albedo_channels };
-void   landscape_albedo(float factor[albedo_channels], const Landscape *landscape, SurfaceClass surface, double x_m,
-                        double y_m, double footprint_m);
+void landscape_albedo(float factor[albedo_channels], const Landscape *landscape, SurfaceClass surface, double x_m,
+                      double y_m, double footprint_m);
 
 /* ---- what only an invented landscape has ------------------------------------------------------- */
 
@@ -109,6 +110,6 @@ static const double landscape_quick_step_m = 1.0 / 64;
 Status landscape_quick(Landscape *out, double times_s[2], const LocalFrame *frame, double east_m, double north_m,
                        Pool *pool);
 /* Bytes of posts, and of the pyramids above them: of heights, and of rises. */
-void   landscape_quick_bytes(size_t *posts, size_t *pyramids, const Elevation *elevation);
+void landscape_quick_bytes(size_t *posts, size_t *pyramids, const Elevation *elevation);
 
 #endif

@@ -10,17 +10,21 @@ static const double farthest_m = 2e7; /* no place of a local frame is farther fr
 void landscape_parts(LandscapeParts *out, const Landscape *landscape)
 {
     const Cover *cover = landscape->cover;
-    *out = (LandscapeParts){.frame = landscape->frame, .config = landscape->config, .invented = !cover->real,
-                            .said = landscape->fitted_to, .cover_seed = cover->invented.seed, .geoid_m = cover->geoid_m,
+    *out = (LandscapeParts){.frame = landscape->frame,
+                            .config = landscape->config,
+                            .invented = !cover->real,
+                            .said = landscape->fitted_to,
+                            .cover_seed = cover->invented.seed,
+                            .geoid_m = cover->geoid_m,
                             .treeline_m = cover->treeline_m};
     if (out->invented) return;
     if (cover->store.path) {
-        out->store         = cover->store.path;
+        out->store = cover->store.path;
         out->store_content = cover->store.content;
         return;
     }
     out->elevation = landscape->elevation;
-    out->photo     = cover->photo;
+    out->photo = cover->photo;
     memcpy(out->cover, cover->grid, sizeof out->cover);
 }
 
@@ -32,8 +36,7 @@ static const char *evidence_fault(const LandscapeEvidence *said)
 {
     const int count[3] = {said->fix_count, said->line_count, said->place_count};
     for (int k = 0; k < 3; k++)
-        if (count[k] < 0 || count[k] > landscape_parts_rows)
-            return "too many places that the ground was fitted to";
+        if (count[k] < 0 || count[k] > landscape_parts_rows) return "too many places that the ground was fitted to";
     if (!is_place(said->sea_h_m)) return "the height of the sea";
     for (int i = 0; i < said->fix_count; i++) {
         const GroundFix *fix = &said->fix[i];
@@ -50,10 +53,7 @@ static const char *evidence_fault(const LandscapeEvidence *said)
 }
 
 /* Whether x is a whole number, at least `low`, to what rounding leaves. */
-static bool is_whole(double x, double low)
-{
-    return x >= low && x <= 1e6 && fabs(x - rint(x)) <= 1e-6;
-}
+static bool is_whole(double x, double low) { return x >= low && x <= 1e6 && fabs(x - rint(x)) <= 1e-6; }
 
 bool landscape_parts_nested(const ElevationLevel *fine, const ElevationLevel *coarse)
 {
@@ -74,7 +74,7 @@ static const char *levels_fault(const Elevation *e)
     if (e->level_count < 1 || e->level_count > elevation_max_levels) return "the number of levels";
     for (int n = 0; n < e->level_count; n++) {
         const ElevationLevel *l = &e->level[n];
-        const int most = elevation_most_posts;
+        const int             most = elevation_most_posts;
         if (l->nx < 2 || l->ny < 2 || l->nx > most || l->ny > most || !l->stored || !l->tile ||
             l->tiles_x != (l->nx - 2) / elevation_tile_cells + 1 ||
             l->tiles_y != (l->ny - 2) / elevation_tile_cells + 1)
@@ -84,7 +84,8 @@ static const char *levels_fault(const Elevation *e)
         if (!(l->spacing_m >= 0.1 && l->spacing_m <= 1e5) || !(l->step_m > 0 && l->step_m <= 100) ||
             !is_place(l->x0_m) || !is_place(l->y0_m) || !is_place(l->z0_m))
             return "the place or the steps of a level";
-        if (n > 0 && !landscape_parts_nested(&e->level[n - 1], l)) return "a level that does not lie on the next one's cells";
+        if (n > 0 && !landscape_parts_nested(&e->level[n - 1], l))
+            return "a level that does not lie on the next one's cells";
     }
     return NULL;
 }
@@ -141,8 +142,7 @@ static Status copy_levels(Elevation *out, const Elevation *from)
     for (int n = 0; n < from->level_count && status == STATUS_OK; n++) {
         const ElevationLevel *l = &from->level[n];
         status = elevation_level_create(out, n, l->nx, l->ny, l->x0_m, l->y0_m, l->spacing_m, l->z0_m, l->step_m);
-        if (status == STATUS_OK)
-            copy_posts(&out->level[n], l);
+        if (status == STATUS_OK) copy_posts(&out->level[n], l);
     }
     if (status == STATUS_OK) elevation_build_pyramids(out);
     return status;
@@ -153,7 +153,7 @@ static Status copy_cover(Cover *out, const LandscapeParts *parts)
     for (int w = 0; w < cover_windows; w++) {
         const CoverGrid *from = &parts->cover[w];
         if (from->nx == 0) continue;
-        out->grid[w]          = *from;
+        out->grid[w] = *from;
         out->grid[w].borrowed = false;
         out->grid[w].surface = copied(from->surface, (size_t)from->nx * (size_t)from->ny);
         if (!out->grid[w].surface) return STATUS_NO_MEMORY;
@@ -174,9 +174,9 @@ static Status from_arrays(Landscape *out, const LandscapeParts *parts)
     Landscape landscape = {.frame = parts->frame, .config = parts->config};
     Cover    *cover = landscape.cover = calloc(1, sizeof *cover);
     if (!cover) return STATUS_NO_MEMORY;
-    cover->invented.seed       = parts->cover_seed;
-    cover->real       = true;
-    cover->geoid_m    = parts->geoid_m;
+    cover->invented.seed = parts->cover_seed;
+    cover->real = true;
+    cover->geoid_m = parts->geoid_m;
     cover->treeline_m = parts->treeline_m;
     levels_curve(&cover->curve, &parts->frame);
     Status status = copy_levels(&landscape.elevation, &parts->elevation);
@@ -213,20 +213,17 @@ Status landscape_from_parts(Landscape *out, const char **why, const LandscapePar
 
 /* Height above the sea up to which trees grow, a rough guess: they end at some 3900 m within 30 degrees of the
  * equator, and at the sea at 70. */
-static double treeline_m(double lat_rad)
-{
-    return clamp(3900 - 97.5 * (fabs(lat_rad) / rad_per_deg - 30), 0, 3900);
-}
+static double treeline_m(double lat_rad) { return clamp(3900 - 97.5 * (fabs(lat_rad) / rad_per_deg - 30), 0, 3900); }
 
 Status landscape_borrow(Landscape *out, const LandscapeParts *parts, const LandscapeMap *map)
 {
     Cover *cover = calloc(1, sizeof *cover);
     if (!cover) return STATUS_NO_MEMORY;
-    cover->invented.seed       = parts->cover_seed;
-    cover->real       = true;
-    cover->geoid_m    = parts->geoid_m;
+    cover->invented.seed = parts->cover_seed;
+    cover->real = true;
+    cover->geoid_m = parts->geoid_m;
     cover->treeline_m = treeline_m(parts->frame.origin.lat_rad);
-    cover->photo      = parts->photo;
+    cover->photo = parts->photo;
     memcpy(cover->grid, parts->cover, sizeof cover->grid);
     levels_curve(&cover->curve, &parts->frame);
     if (map) cover->store = *map;

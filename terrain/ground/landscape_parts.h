@@ -14,10 +14,10 @@ typedef struct LandscapeParts {
     LocalFrame        frame;
     LandscapeConfig   config;
     bool              invented;
-    const char       *store;               /* path of the terrain store; NULL or empty: none */
-    uint64_t          store_content;       /* its hash; config.seed is the seed it was opened with */
-    LandscapeEvidence said;                /* synthetic: the evidence it was fitted to */
-    Elevation         elevation;           /* of files: levels and posts; the pyramids are not used */
+    const char       *store;         /* path of the terrain store; NULL or empty: none */
+    uint64_t          store_content; /* its hash; config.seed is the seed it was opened with */
+    LandscapeEvidence said;          /* synthetic: the evidence it was fitted to */
+    Elevation         elevation;     /* of files: levels and posts; the pyramids are not used */
     CoverGrid         cover[cover_windows];
     Photo             photo;
     uint64_t          cover_seed;
@@ -46,7 +46,9 @@ bool landscape_parts_nested(const ElevationLevel *fine, const ElevationLevel *co
 /* Bounds that landscape_from_parts keeps: posts of all levels, cells of a cover window, pixels of a photograph, and
  * rows of each kind of evidence. */
 enum {
-    landscape_parts_posts = 1 << 26, landscape_parts_cells = 1 << 26, landscape_parts_pixels = 1 << 27,
+    landscape_parts_posts = 1 << 26,
+    landscape_parts_cells = 1 << 26,
+    landscape_parts_pixels = 1 << 27,
     landscape_parts_rows = 1 << 21,
 };
 

@@ -7,17 +7,17 @@
 #include "terrain/ground/landscape.h"
 
 typedef struct Cover {
-    InventedGround invented;     /* its seed is that of real ground, too */
-    bool         real;           /* elevation from files: no fields on steep slopes, woods instead */
-    Curve        curve;          /* real: heights above the sea are needed */
-    double       geoid_m, treeline_m;
-    CoverGrid    grid[cover_windows];
-    Photo        photo;
-    LandscapeMap store;          /* grid, photo and the elevation borrow from it */
+    InventedGround invented; /* its seed is that of real ground, too */
+    bool           real;     /* elevation from files: no fields on steep slopes, woods instead */
+    Curve          curve;    /* real: heights above the sea are needed */
+    double         geoid_m, treeline_m;
+    CoverGrid      grid[cover_windows];
+    Photo          photo;
+    LandscapeMap   store; /* grid, photo and the elevation borrow from it */
 } Cover;
 
 /* Means of the photograph over each class, once the classes are known. */
 void cover_measure_photo(Landscape *landscape);
-void cover_free(Cover *cover);   /* accepts NULL */
+void cover_free(Cover *cover); /* accepts NULL */
 
 #endif

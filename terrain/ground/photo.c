@@ -19,7 +19,7 @@ static double encoded_of(double linear)
 
 enum { sixths = 6, sums = 255 * sixths + 1 };
 
-static float          linear_of_sum[sums];   /* of the sum of six octets: every mixture of two colours is one */
+static float          linear_of_sum[sums];     /* of the sum of six octets: every mixture of two colours is one */
 static uint8_t        encoded_of_linear[4096]; /* finer than an octet's steps where they are finest */
 static pthread_once_t tables_once = PTHREAD_ONCE_INIT;
 
@@ -97,8 +97,8 @@ static inline void unpacked(int colour[3], uint16_t packed565)
 static const uint8_t first_sixths[2][4] = {{6, 0, 4, 2}, {6, 0, 3, 0}};
 
 typedef struct Pixels {
-    int     count;         /* covered */
-    float   value[3][16];  /* red, green and blue of each */
+    int     count;        /* covered */
+    float   value[3][16]; /* red, green and blue of each */
     uint8_t place[16];
 } Pixels;
 
@@ -108,7 +108,7 @@ static float choose(PhotoBlock *block, const Pixels *px, bool holes)
     int end[2][3];
     if (holes != (block->first <= block->second)) {
         const uint16_t swapped = block->first;
-        block->first  = block->second;
+        block->first = block->second;
         block->second = swapped;
     }
     const bool three = block->first <= block->second; /* equal: one colour */
@@ -125,13 +125,13 @@ static float choose(PhotoBlock *block, const Pixels *px, bool holes)
     uint32_t best[16];
     for (int n = 0; n < 16; n++) {
         least[n] = INFINITY;
-        best[n]  = 0;
+        best[n] = 0;
     }
     for (uint32_t k = 0; k < (three ? 3u : 4u); k++)
         for (int n = 0; n < 16; n++) {
             const float r = px->value[0][n] - colour[k][0], g = px->value[1][n] - colour[k][1],
                         b = px->value[2][n] - colour[k][2], d2 = r * r + g * g + b * b;
-            best[n]  = d2 < least[n] ? k : best[n];
+            best[n] = d2 < least[n] ? k : best[n];
             least[n] = d2 < least[n] ? d2 : least[n];
         }
     block->index = 0xffffffff; /* not covered, unless set below */
@@ -179,7 +179,7 @@ static void ends_of(float end[2][3], const Pixels *px)
     for (int n = 0; n < px->count && length2 > 0; n++) {
         float t = 0;
         for (int c = 0; c < 3; c++) t += (px->value[c][n] - mean[c]) * axis[c];
-        low  = t < low ? t : low;
+        low = t < low ? t : low;
         high = t > high ? t : high;
     }
     if (length2 > 0) {
@@ -221,15 +221,15 @@ static void even_ends(float end[2][3], const float colour[3])
 {
     static const int most[3] = {31, 63, 31};
     for (int c = 0; c < 3; c++) {
-        const int   near = (int)(colour[c] * (float)most[c] / 255);
-        float       least = INFINITY;
+        const int near = (int)(colour[c] * (float)most[c] / 255);
+        float     least = INFINITY;
         for (int a = near > 0 ? near - 1 : 0; a <= near + 2 && a <= most[c]; a++)
             for (int b = near > 0 ? near - 1 : 0; b <= near + 2 && b <= most[c]; b++) {
                 const int   shift = c == 1 ? 2 : 3, back = c == 1 ? 4 : 2;
                 const float mixed = (2.0f * (float)(a << shift | a >> back) + (float)(b << shift | b >> back)) / 3;
                 const float off = fabsf(mixed - colour[c]);
                 if (off >= least) continue;
-                least     = off;
+                least = off;
                 end[0][c] = (float)a * 255 / (float)most[c];
                 end[1][c] = (float)b * 255 / (float)most[c];
             }
@@ -251,7 +251,7 @@ PhotoBlock photo_block(const uint8_t rgba[16][4])
     const bool holes = px.count < 16;
     PhotoBlock best = {0, 0, 0xffffffff};
     if (px.count == 0) return best;
-    float end[2][3];
+    float       end[2][3];
     const float first[3] = {px.value[0][0], px.value[1][0], px.value[2][0]};
     if (even && !holes) even_ends(end, first);
     else ends_of(end, &px);
@@ -262,7 +262,7 @@ PhotoBlock photo_block(const uint8_t rgba[16][4])
         const float left = choose(&next, &px, holes);
         if (!(left < least)) break;
         least = left;
-        best  = next;
+        best = next;
     }
     return best;
 }
@@ -299,7 +299,7 @@ static void mip_at(double sum[4], const Photo *p, int k, double x, double y, dou
         if (a < 0 || b < 0 || a >= nx || b >= ny) continue;
         const PhotoBlock *block = p->block[k] + (size_t)(b >> 2) * across + (size_t)(a >> 2);
         if (block != last) {
-            last  = block;
+            last = block;
             three = block->first <= block->second;
             unpacked(end[0], block->first);
             unpacked(end[1], block->second);
@@ -308,8 +308,7 @@ static void mip_at(double sum[4], const Photo *p, int k, double x, double y, dou
         if (three && index == 3) continue;
         const int    w = first_sixths[three][index];
         const double weight = share * (n & 1 ? u : 1 - u) * (n >> 1 ? v : 1 - v);
-        for (int c = 0; c < 3; c++)
-            sum[c] += weight * (double)linear_of_sum[w * end[0][c] + (sixths - w) * end[1][c]];
+        for (int c = 0; c < 3; c++) sum[c] += weight * (double)linear_of_sum[w * end[0][c] + (sixths - w) * end[1][c]];
         sum[3] += weight;
     }
 }

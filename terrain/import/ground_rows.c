@@ -10,15 +10,15 @@ enum { node_cells = 64, rows_a_task = 16 };
 /* Exact at every node_cells-th corner of cells, on the ground itself, linear between. */
 typedef struct Nodes {
     int     nx, ny;
-    double *x, *y;      /* [ny][nx] pixels */
-    int     box[4];     /* of pixels: x0, y0, x1, y1 */
+    double *x, *y;  /* [ny][nx] pixels */
+    int     box[4]; /* of pixels: x0, y0, x1, y1 */
 } Nodes;
 
 /* False: the raster has nothing here, or there is no memory (*status). */
 static bool nodes_create(Nodes *out, Status *status, const Raster *raster, const CellRows *cells,
                          const GroundView *view)
 {
-    Nodes n = {.nx = (cells->nx - 1) / node_cells + 2, .ny = (cells->rows - 1) / node_cells + 2};
+    Nodes     n = {.nx = (cells->nx - 1) / node_cells + 2, .ny = (cells->rows - 1) / node_cells + 2};
     const int count = n.nx * n.ny;
     n.x = malloc(2 * (size_t)count * sizeof *n.x);
     if (!n.x) {
@@ -27,8 +27,9 @@ static bool nodes_create(Nodes *out, Status *status, const Raster *raster, const
     }
     n.y = n.x + count;
     for (int k = 0; k < count; k++) {
-        double   p_enu[3] = {cells->x0_m + k % n.nx * node_cells * cells->cell_m,
-                             cells->y0_m + k / n.nx * node_cells * cells->cell_m, 0}, p_ecef[3];
+        double p_enu[3] = {cells->x0_m + k % n.nx * node_cells * cells->cell_m,
+                           cells->y0_m + k / n.nx * node_cells * cells->cell_m, 0},
+               p_ecef[3];
         Geodetic place = {NAN, NAN, 0};
         p_enu[2] = view->z(view->z_user, p_enu[0], p_enu[1]);
         ecef_from_enu(p_ecef, view->frame, p_enu);
@@ -40,9 +41,9 @@ static bool nodes_create(Nodes *out, Status *status, const Raster *raster, const
     double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
     for (int k = 0; k < count; k++) {
         if (!isfinite(n.x[k]) || !isfinite(n.y[k])) continue;
-        low[0]  = fmin(low[0], n.x[k]);
+        low[0] = fmin(low[0], n.x[k]);
         high[0] = fmax(high[0], n.x[k]);
-        low[1]  = fmin(low[1], n.y[k]);
+        low[1] = fmin(low[1], n.y[k]);
         high[1] = fmax(high[1], n.y[k]);
     }
     if (!(high[0] > 0 && high[1] > 0 && low[0] < raster->width && low[1] < raster->height)) {
@@ -60,8 +61,8 @@ static bool nodes_create(Nodes *out, Status *status, const Raster *raster, const
 /* Pixels under the centres of a run of cells of row j, from cell i on, within one cell of the nodes. */
 static void places(double *x, double *y, const Nodes *n, int i, int j, int count)
 {
-    const int    c = i / node_cells, r = j / node_cells;
-    const double v = (j % node_cells + 0.5) / node_cells;
+    const int     c = i / node_cells, r = j / node_cells;
+    const double  v = (j % node_cells + 0.5) / node_cells;
     const double *of[2] = {n->x + (size_t)r * (size_t)n->nx + (size_t)c, n->y + (size_t)r * (size_t)n->nx + (size_t)c};
     for (int k = 0; k < 2; k++) {
         const double *a = of[k], *b = a + n->nx;
@@ -92,13 +93,13 @@ static void read_rows(void *user, int worker, int task)
     const Job *job = user;
     const int *box = job->nodes.box, block = job->raster->row_block;
     (void)worker;
-    const int from = (box[1] / block + task) * block, to = from + block;
-    const int y0 = from > box[1] ? from : box[1], y1 = to < box[3] ? to : box[3];
+    const int    from = (box[1] / block + task) * block, to = from + block;
+    const int    y0 = from > box[1] ? from : box[1], y1 = to < box[3] ? to : box[3];
     const size_t at = (size_t)(y0 - box[1]) * (size_t)box_w(job);
     if (job->bytes)
-        job->status[task] = raster_read_bytes(job->bytes + at * (size_t)job->bands, job->valid + at, job->raster,
-                                              job->band, job->bands, (RasterWindow){box[0], y0, box_w(job), y1 - y0},
-                                              job->view->key);
+        job->status[task] =
+            raster_read_bytes(job->bytes + at * (size_t)job->bands, job->valid + at, job->raster, job->band, job->bands,
+                              (RasterWindow){box[0], y0, box_w(job), y1 - y0}, job->view->key);
     else
         job->status[task] = raster_read(job->number + at, job->raster, job->band,
                                         (RasterWindow){box[0], y0, box_w(job), y1 - y0}, job->view->key);
@@ -118,11 +119,11 @@ static Status each_raster(void *out, const RasterSet *set, int band, const Sampl
 {
     const Samples samples = how->samples;
     const int     most_bands = how->most_bands;
-    Status status = STATUS_OK;
+    Status        status = STATUS_OK;
     for (int k = 0; k < set->count && status == STATUS_OK; k++) {
         const Raster *raster = &set->raster[k];
         const bool    numbers = samples == AS_NUMBERS || (samples == AS_THEY_ARE && !raster->bytes);
-        Job job = {.raster = raster, .cells = cells, .view = view, .band = band > 0 ? band : 1, .out = out};
+        Job           job = {.raster = raster, .cells = cells, .view = view, .band = band > 0 ? band : 1, .out = out};
         job.bands = raster->bands >= most_bands ? most_bands : 1;
         if (!nodes_create(&job.nodes, &status, raster, cells, view)) continue;
         const size_t count = (size_t)box_w(&job) * (size_t)(job.nodes.box[3] - job.nodes.box[1]);
@@ -208,13 +209,13 @@ static void codes_fill(void)
 /* Linear light of the pixels about a place; false: one of them is not valid. */
 static inline bool light_at(float sum[3], const Job *job, double x, double y, float share)
 {
-    const int *box = job->nodes.box, w = box_w(job), h = box[3] - box[1], bands = job->bands;
+    const int   *box = job->nodes.box, w = box_w(job), h = box[3] - box[1], bands = job->bands;
     const double px = clamp(x - box[0] - 0.5, 0, w - 1), py = clamp(y - box[1] - 0.5, 0, h - 1);
     const int    a = (int)px < w - 1 ? (int)px : w > 1 ? w - 2 : 0, b = (int)py < h - 1 ? (int)py : h > 1 ? h - 2 : 0;
     const size_t e = w > 1, n = h > 1 ? (size_t)w : 0, at = (size_t)b * (size_t)w + (size_t)a;
     if (!(job->valid[at] && job->valid[at + e] && job->valid[at + n] && job->valid[at + n + e])) return false;
-    const float  u = (float)(px - a), v = (float)(py - b);
-    const float  weight[4] = {(1 - u) * (1 - v), u * (1 - v), (1 - u) * v, u * v};
+    const float    u = (float)(px - a), v = (float)(py - b);
+    const float    weight[4] = {(1 - u) * (1 - v), u * (1 - v), (1 - u) * v, u * v};
     const uint8_t *q = job->bytes + at * (size_t)bands;
     for (int c = 0; c < 3; c++) {
         const size_t k = bands == 3 ? (size_t)c : 0;
@@ -227,11 +228,11 @@ static inline bool light_at(float sum[3], const Job *job, double x, double y, fl
 
 static void sample_colours(void *user, int worker, int task)
 {
-    const Job *job = user;
+    const Job    *job = user;
     const Raster *raster = job->raster;
-    const double posting_m = fmin(raster->posting_m[0], raster->posting_m[1]);
-    const int    side = (int)clamp(job->cells->cell_m / posting_m + 0.25, 1, 16); /* samples a cell, each way */
-    double       x[node_cells], y[node_cells];
+    const double  posting_m = fmin(raster->posting_m[0], raster->posting_m[1]);
+    const int     side = (int)clamp(job->cells->cell_m / posting_m + 0.25, 1, 16); /* samples a cell, each way */
+    double        x[node_cells], y[node_cells];
     (void)worker;
     for (int j = task * rows_a_task; j < (task + 1) * rows_a_task && j < job->cells->rows; j++)
         for (int i0 = 0; i0 < job->cells->nx; i0 += node_cells) {

@@ -7,19 +7,19 @@
 enum { core_cells = 1024, fade_posts = 24 };
 
 typedef struct Work {
-    StreamLevel level;
-    int         row0, rows;       /* asked for */
-    int         r0, r1;           /* with the margins */
-    int         margin;
-    float      *surface_m, *bare_m, *plain_m; /* [r1 - r0][nx]; plain: of all posts, also beyond the data */
-    uint8_t    *of_file;          /* [r1 - r0][nx] */
-    uint8_t    *rgb;              /* [r1 - r0][nx][3]; NULL: none */
-    uint8_t    *away;             /* [r1 - r0][nx] posts from the data, at most fade_posts */
+    StreamLevel   level;
+    int           row0, rows; /* asked for */
+    int           r0, r1;     /* with the margins */
+    int           margin;
+    float        *surface_m, *bare_m, *plain_m; /* [r1 - r0][nx]; plain: of all posts, also beyond the data */
+    uint8_t      *of_file;                      /* [r1 - r0][nx] */
+    uint8_t      *rgb;                          /* [r1 - r0][nx][3]; NULL: none */
+    uint8_t      *away;                         /* [r1 - r0][nx] posts from the data, at most fade_posts */
     SurfaceStrip *out;
-    int         windows;
-    Crown     **crown;            /* [windows] */
-    int        *crowns;
-    Status     *status;
+    int           windows;
+    Crown       **crown; /* [windows] */
+    int          *crowns;
+    Status       *status;
 } Work;
 
 void surface_strip_free(SurfaceStrip *strip)
@@ -71,8 +71,8 @@ static void keep_window(Work *w, const SurfaceParts *parts, int task, int i0, in
             h_m += share * share * (3 - 2 * share) * ((double)w->plain_m[src] - h_m);
             if (kind == CELL_BUILDING && isfinite(parts->roof_m[n])) h_m = (double)parts->roof_m[n];
             else if (kind == CELL_BUILDING) kind = CELL_BARE;
-            w->out->h_m[at]      = (float)h_m;
-            w->out->kind[at]     = kind;
+            w->out->h_m[at] = (float)h_m;
+            w->out->kind[at] = kind;
             w->out->canopy_m[at] = kind == CELL_TREE && canopy_m > 0 ? (float)canopy_m : 0;
         }
     for (int k = 0; k < parts->crown_count; k++) { /* those whose top is in the middle */
@@ -95,8 +95,8 @@ static void take_window(void *user, int worker, int task)
     float       *surface_m = malloc(cells * sizeof *surface_m);
     float       *bare_in_m = w->bare_m ? malloc(cells * sizeof *bare_in_m) : NULL;
     uint8_t     *rgb = w->rgb ? malloc(3 * cells) : NULL;
-    SurfaceParts parts = {.bare_m = malloc(cells * sizeof(float)), .roof_m = malloc(cells * sizeof(float)),
-                          .kind = malloc(cells)};
+    SurfaceParts parts = {
+        .bare_m = malloc(cells * sizeof(float)), .roof_m = malloc(cells * sizeof(float)), .kind = malloc(cells)};
     (void)worker;
     w->status[task] = STATUS_NO_MEMORY;
     if (!surface_m || !parts.bare_m || !parts.roof_m || !parts.kind || (w->bare_m && !bare_in_m) || (w->rgb && !rgb))
@@ -107,8 +107,14 @@ static void take_window(void *user, int worker, int task)
         if (bare_in_m) memcpy(bare_in_m + to, w->bare_m + from, (size_t)nx * sizeof *bare_in_m);
         if (rgb) memcpy(rgb + 3 * to, w->rgb + 3 * from, 3 * (size_t)nx);
     }
-    const SurfaceModel model = {.nx = nx, .ny = ny, .cell_m = w->level.spacing_m, .surface_m = surface_m,
-                                .bare_m = bare_in_m, .rgb = rgb, .column = i0, .row = w->r0};
+    const SurfaceModel model = {.nx = nx,
+                                .ny = ny,
+                                .cell_m = w->level.spacing_m,
+                                .surface_m = surface_m,
+                                .bare_m = bare_in_m,
+                                .rgb = rgb,
+                                .column = i0,
+                                .row = w->r0};
     w->status[task] = take_apart_surface(&parts, &model);
     if (w->status[task] != STATUS_OK) goto done;
     w->crown[task] = malloc(((size_t)parts.crown_count + 1) * sizeof **w->crown);
@@ -124,10 +130,7 @@ done:
     free(parts.crown);
 }
 
-static double around(void *user, double x_m, double y_m)
-{
-    return elevation_stream_around(user, x_m, y_m);
-}
+static double around(void *user, double x_m, double y_m) { return elevation_stream_around(user, x_m, y_m); }
 
 static Status read_colours(Work *w, const SurfaceSources *from)
 {
@@ -149,9 +152,9 @@ static Status read_models(Work *w, const SurfaceSources *from)
     const int    rows = w->r1 - w->r0;
     const size_t posts = (size_t)rows * (size_t)w->level.nx;
     w->surface_m = malloc(posts * sizeof *w->surface_m);
-    w->plain_m   = malloc(posts * sizeof *w->plain_m);
-    w->of_file   = malloc(posts);
-    w->away      = malloc(posts);
+    w->plain_m = malloc(posts * sizeof *w->plain_m);
+    w->of_file = malloc(posts);
+    w->away = malloc(posts);
     if (from->bare) w->bare_m = malloc(posts * sizeof *w->bare_m);
     if (!w->surface_m || !w->plain_m || !w->of_file || !w->away || (from->bare && !w->bare_m)) return STATUS_NO_MEMORY;
     Status status = STATUS_OK;
@@ -183,14 +186,14 @@ Status surface_strip_make(SurfaceStrip *out, const SurfaceSources *from, int row
     Work         w = {.row0 = row0, .rows = rows, .out = &strip};
     elevation_stream_level(&w.level, from->surface, 0);
     w.margin = (int)ceil(take_apart_reach_m / w.level.spacing_m) + 1;
-    w.r0     = row0 > w.margin ? row0 - w.margin : 0;
-    w.r1     = row0 + rows + w.margin < w.level.ny ? row0 + rows + w.margin : w.level.ny;
+    w.r0 = row0 > w.margin ? row0 - w.margin : 0;
+    w.r1 = row0 + rows + w.margin < w.level.ny ? row0 + rows + w.margin : w.level.ny;
     w.windows = (w.level.nx + core_cells - 1) / core_cells;
     const size_t posts = (size_t)rows * (size_t)w.level.nx;
-    strip.h_m      = malloc(posts * sizeof *strip.h_m);
-    strip.kind     = malloc(posts);
+    strip.h_m = malloc(posts * sizeof *strip.h_m);
+    strip.kind = malloc(posts);
     strip.canopy_m = malloc(posts * sizeof *strip.canopy_m);
-    w.crown  = calloc((size_t)w.windows, sizeof *w.crown);
+    w.crown = calloc((size_t)w.windows, sizeof *w.crown);
     w.crowns = calloc((size_t)w.windows, sizeof *w.crowns);
     w.status = calloc((size_t)w.windows, sizeof *w.status);
     const bool whole = strip.h_m && strip.kind && strip.canopy_m && w.crown && w.crowns && w.status;
@@ -235,8 +238,8 @@ Status terrain_buildings_count(TerrainBuildings *b, int nx, const uint8_t *kind)
 {
     const size_t most = 2 * (size_t)nx + 2;
     if (!b->label) {
-        b->label   = calloc((size_t)nx, sizeof *b->label);
-        b->parent  = malloc(most * sizeof *b->parent);
+        b->label = calloc((size_t)nx, sizeof *b->label);
+        b->parent = malloc(most * sizeof *b->parent);
         b->compact = malloc(most * sizeof *b->compact);
         if (!b->label || !b->parent || !b->compact) return STATUS_NO_MEMORY;
     }

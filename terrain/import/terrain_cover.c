@@ -6,10 +6,7 @@
 
 /* ---- what covers the ground ------------------------------------------------------------------ */
 
-static double ground_z(void *user, double x_m, double y_m)
-{
-    return elevation_stream_around(user, x_m, y_m);
-}
+static double ground_z(void *user, double x_m, double y_m) { return elevation_stream_around(user, x_m, y_m); }
 
 static GroundView view_of(const StoreImport *m, const char *key)
 {
@@ -31,7 +28,7 @@ static bool rows_of(CellRows *out, int *first, const StoreGrid *g, const StoreIm
     const double to = last ? g->ny : ceil((y_m + (row0 + rows) * s - g->y0_m) / g->cell_m - 1e-6);
     const int    a = (int)clamp(from, 0, g->ny), b = (int)clamp(to, 0, g->ny);
     if (b <= a) return false;
-    *out   = (CellRows){g->nx, b - a, g->x0_m, g->y0_m + a * g->cell_m, g->cell_m};
+    *out = (CellRows){g->nx, b - a, g->x0_m, g->y0_m + a * g->cell_m, g->cell_m};
     *first = a;
     return true;
 }
@@ -54,7 +51,8 @@ Status import_cover_wide(StoreImport *m)
     uint8_t         *surface = malloc(count);
     long             histogram[surface_codes_most] = {0};
     m->cover_band = raster->sheet[0].band ? 0 : raster->bands >= 8 ? 4 : 1;
-    Status status = code && surface ? ground_rows_codes(code, &m->cover, m->cover_band, &cells, &view) : STATUS_NO_MEMORY;
+    Status status =
+        code && surface ? ground_rows_codes(code, &m->cover, m->cover_band, &cells, &view) : STATUS_NO_MEMORY;
     for (size_t n = 0; status == STATUS_OK && n < count; n++)
         if (code[n]) histogram[code[n] - 1]++;
     if (status == STATUS_OK) status = surface_table_choose(&m->table, &m->r.cover.table, m->o->cover_table, histogram);
@@ -70,7 +68,7 @@ Status import_cover_wide(StoreImport *m)
     }
     if (status == STATUS_OK) status = store_write_surface(m->writer, 1, g->ny, surface);
     m->r.cover.posting_m = import_finest_m(&m->cover);
-    m->r.cover.band      = raster->sheet[0].band ? raster->sheet[0].band : m->cover_band;
+    m->r.cover.band = raster->sheet[0].band ? raster->sheet[0].band : m->cover_band;
     free(code);
     free(surface);
     return status;
@@ -114,7 +112,7 @@ Status import_albedo(StoreImport *m, int row0, int rows)
     int      first;
     if (!rows_of(&all, &first, &m->plan.albedo, m, row0, rows)) return STATUS_OK;
     const GroundView view = view_of(m, "terrain import: --photo");
-    Status status = STATUS_OK;
+    Status           status = STATUS_OK;
     for (int j = 0; j < all.rows && status == STATUS_OK; j += some_rows) {
         CellRows cells = all;
         cells.rows = all.rows - j < some_rows ? all.rows - j : some_rows;
@@ -141,12 +139,14 @@ Status import_canopy_look(StoreImport *m)
     if (*unit) {
         m->r.canopy_scale_m = raster_unit_m(unit);
         if (m->r.canopy_scale_m > 0) return STATUS_OK;
-        log_error("terrain import: --canopy-height: %s: its unit is '%s', which is no length that is known here; say it: "
-                  "%s@m, or %s@dm", raster->sheet[0].path, unit, raster->sheet[0].path, raster->sheet[0].path);
+        log_error(
+            "terrain import: --canopy-height: %s: its unit is '%s', which is no length that is known here; say it: "
+            "%s@m, or %s@dm",
+            raster->sheet[0].path, unit, raster->sheet[0].path, raster->sheet[0].path);
         return STATUS_BAD_VALUE;
     }
-    float        *some = malloc((size_t)raster->width * sizeof *some), most = 0;
-    Status        status = some ? STATUS_OK : STATUS_NO_MEMORY;
+    float *some = malloc((size_t)raster->width * sizeof *some), most = 0;
+    Status status = some ? STATUS_OK : STATUS_NO_MEMORY;
     for (int r = 0; r < rows && status == STATUS_OK; r++) {
         status = raster_read(some, raster, band,
                              (RasterWindow){0, (int)((int64_t)r * raster->height / rows), raster->width, 1},
@@ -161,8 +161,8 @@ Status import_canopy_look(StoreImport *m)
 static Status canopy_of_file(StoreImport *m, bool height, int row0, int rows)
 {
     const RasterSet *set = height ? &m->canopy_height : &m->canopy_cover;
-    CellRows cells;
-    int      first;
+    CellRows         cells;
+    int              first;
     const StoreGrid *g = height ? &m->plan.canopy_height : &m->plan.canopy_cover;
     if (!rows_of(&cells, &first, g, m, row0, rows)) return STATUS_OK;
     const GroundView view = view_of(m, height ? "terrain import: --canopy-height" : "terrain import: --canopy-cover");
@@ -185,8 +185,8 @@ static Status canopy_of_file(StoreImport *m, bool height, int row0, int rows)
 /* Of the crowns that were found: highest, and share of the posts in each cell. */
 static Status canopy_of_strip(StoreImport *m, bool height, int row0, int rows, const SurfaceStrip *strip)
 {
-    CellRows cells;
-    int      first;
+    CellRows         cells;
+    int              first;
     const StoreGrid *g = height ? &m->plan.canopy_height : &m->plan.canopy_cover;
     if (!rows_of(&cells, &first, g, m, row0, rows)) return STATUS_OK;
     const int nx = m->level.nx, side = (int)lrint(g->cell_m / m->level.spacing_m);

@@ -3,7 +3,6 @@
 #include "pitviper_file.h"
 #include "terrain/import/terrain_import_private.h"
 
-
 #include <stdlib.h>
 #include <sys/statvfs.h>
 
@@ -39,8 +38,8 @@ static Status open_set(RasterSet *out, const char *paths, const char *option, bo
 static Status open_sources(StoreImport *m)
 {
     const TerrainOptions *o = m->o;
-    Geodetic origin = {o->origin_deg[0] * rad_per_deg, o->origin_deg[1] * rad_per_deg, 0};
-    Status   status = STATUS_OK;
+    Geodetic              origin = {o->origin_deg[0] * rad_per_deg, o->origin_deg[1] * rad_per_deg, 0};
+    Status                status = STATUS_OK;
     for (int k = 0; k < 2 && status == STATUS_OK; k++) {
         m->list[k] = malloc(options_size);
         if (!m->list[k]) return STATUS_NO_MEMORY;
@@ -52,12 +51,15 @@ static Status open_sources(StoreImport *m)
     if (status == STATUS_OK) status = local_frame_at(&m->frame, &origin);
     if (status != STATUS_OK) return status;
     for (int k = 0; k < 2; k++)
-        m->files[k] = (ElevationFiles){.paths = m->list[k], .geoid_path = o->geoid,
+        m->files[k] = (ElevationFiles){.paths = m->list[k],
+                                       .geoid_path = o->geoid,
                                        .vertical = o->vertical,
-                                       .spacing_m = o->spacing_m, .horizon_m = 1000 * o->horizon_km,
+                                       .spacing_m = o->spacing_m,
+                                       .horizon_m = 1000 * o->horizon_km,
                                        .size_m = {1000 * o->size_km[0], 1000 * o->size_km[1]},
                                        .keep_folder = m->folder,
-                                       .heard = m->watch.heard, .heard_user = m->watch.user,
+                                       .heard = m->watch.heard,
+                                       .heard_user = m->watch.user,
                                        .opened = (k == 1) == (*o->surface != 0) ? &m->opened : NULL};
     if (*o->surface && status == STATUS_OK)
         status = elevation_stream_open(&m->surface, &m->files[1], &m->frame, NULL, m->pool);
@@ -93,7 +95,7 @@ static void plan_grid(StoreGrid *out, const StoreImport *m, double posting_m, co
         double one_low[2], one_high[2];
         raster_enu_box(one_low, one_high, &set->raster[k], &m->frame, 0);
         for (int c = 0; c < 2; c++) {
-            low[c]  = fmin(low[c], one_low[c]);
+            low[c] = fmin(low[c], one_low[c]);
             high[c] = fmax(high[c], one_high[c]);
         }
     }
@@ -129,8 +131,11 @@ static void plan_wide(StoreGrid *out, const StoreImport *m, double cell_m)
 static Status list_sources(StoreImport *m)
 {
     const RasterSet *sets[] = {m->terrain ? elevation_stream_files(m->terrain) : NULL,
-                               m->surface ? elevation_stream_files(m->surface) : NULL, &m->cover, &m->photo,
-                               &m->canopy_height, &m->canopy_cover};
+                               m->surface ? elevation_stream_files(m->surface) : NULL,
+                               &m->cover,
+                               &m->photo,
+                               &m->canopy_height,
+                               &m->canopy_cover};
     m->source = calloc(most_sources, sizeof *m->source);
     if (!m->source) return STATUS_NO_MEMORY;
     for (size_t s = 0; s < sizeof sets / sizeof *sets; s++)
@@ -151,13 +156,17 @@ static Status list_sources(StoreImport *m)
 static Status plan(StoreImport *m)
 {
     StorePlan *p = &m->plan;
-    p->origin      = m->frame.origin;
+    p->origin = m->frame.origin;
     p->level_count = elevation_stream_levels(m->first);
     for (int k = 0; k < p->level_count; k++) {
         StreamLevel l;
         elevation_stream_level(&l, m->first, k);
-        p->level[k] = (StoreLevel){.nx = l.nx, .ny = l.ny, .x0_m = l.i0 * l.spacing_m, .y0_m = l.j0 * l.spacing_m,
-                                   .spacing_m = l.spacing_m, .seam_shift = -1};
+        p->level[k] = (StoreLevel){.nx = l.nx,
+                                   .ny = l.ny,
+                                   .x0_m = l.i0 * l.spacing_m,
+                                   .y0_m = l.j0 * l.spacing_m,
+                                   .spacing_m = l.spacing_m,
+                                   .seam_shift = -1};
         if (k == 0) m->level = l;
     }
     m->strip_rows = m->surface ? rows_apart : rows_plain;
@@ -179,7 +188,7 @@ static Status plan(StoreImport *m)
     if (m->canopy_cover.count)
         plan_grid(&p->canopy_cover, m, fmax(import_finest_m(&m->canopy_cover), 4), &m->canopy_cover, 0);
     ElevationReport e;
-    Status status = elevation_stream_report(&e, m->first, NULL);
+    Status          status = elevation_stream_report(&e, m->first, NULL);
     if (status == STATUS_OK) status = list_sources(m);
     if (status != STATUS_OK) return status;
     m->options = malloc(options_size);
@@ -189,9 +198,9 @@ static Status plan(StoreImport *m)
         return STATUS_BAD_VALUE;
     }
     p->posting_m = e.posting_m;
-    p->geoid_m   = e.geoid_m;
-    p->options   = m->options;
-    p->crs       = "east, north, up at the origin, WGS 84";
+    p->geoid_m = e.geoid_m;
+    p->options = m->options;
+    p->crs = "east, north, up at the origin, WGS 84";
     snprintf(m->datum, sizeof m->datum, "%s",
              e.ellipsoidal ? "files above the ellipsoid"
                            : "files above the geoid (EGM96 unless --geoid), converted at each post");
@@ -222,21 +231,25 @@ static Status say_size(StoreImport *m, const char *path)
     if (statvfs(m->folder, &disk) == 0) free_octets = (double)disk.f_bavail * (double)disk.f_frsize;
     const double posts = (double)m->level.nx * m->level.ny, store = (double)octets;
     m->keep_octets = fmax(fmin(fmin(most - store, 0.5 * (free_octets - store)), sizeof(float) * px), 0);
-    snprintf(text, sizeof text,
-             "to do: %.1f M posts, %.3g m apart over %.2f x %.2f km; %.1f M pixels to read; %.2f GB to write, and at most %.2f GB of "
-             "decoded rows meanwhile", 1e-6 * posts, m->level.spacing_m, 1e-3 * m->level.nx * m->level.spacing_m,
-             1e-3 * m->level.ny * m->level.spacing_m, 1e-6 * px, 1e-9 * store, 1e-9 * m->keep_octets);
+    snprintf(
+        text, sizeof text,
+        "to do: %.1f M posts, %.3g m apart over %.2f x %.2f km; %.1f M pixels to read; %.2f GB to write, and at most %.2f GB of "
+        "decoded rows meanwhile",
+        1e-6 * posts, m->level.spacing_m, 1e-3 * m->level.nx * m->level.spacing_m,
+        1e-3 * m->level.ny * m->level.spacing_m, 1e-6 * px, 1e-9 * store, 1e-9 * m->keep_octets);
     if (m->watch.progress && !m->watch.progress(m->watch.user, text, -1)) m->r.stopped = true;
     if (m->r.stopped) return STATUS_IO;
     if (store > most || sizeof(float) * px > reads_per_octet * most) {
-        log_error("%s: that is %.2f GB to write and %.2f GB to decode, more than %.3g and %.3g; --size takes a part, --spacing fewer "
-                  "posts, --horizon less around them, --most-gb allows more",
-                  module, 1e-9 * store, 1e-9 * sizeof(float) * px, m->o->most_gb, reads_per_octet * m->o->most_gb);
+        log_error(
+            "%s: that is %.2f GB to write and %.2f GB to decode, more than %.3g and %.3g; --size takes a part, --spacing fewer "
+            "posts, --horizon less around them, --most-gb allows more",
+            module, 1e-9 * store, 1e-9 * sizeof(float) * px, m->o->most_gb, reads_per_octet * m->o->most_gb);
         return STATUS_BAD_VALUE;
     }
     if (store > free_octets) {
-        log_error("%s: that is %.2f GB to write, and %s has room for %.2f; -o names a store on another disk, --size takes a part",
-                  module, 1e-9 * store, m->folder, 1e-9 * free_octets);
+        log_error(
+            "%s: that is %.2f GB to write, and %s has room for %.2f; -o names a store on another disk, --size takes a part",
+            module, 1e-9 * store, m->folder, 1e-9 * free_octets);
         return STATUS_IO;
     }
     return STATUS_OK;
@@ -273,15 +286,15 @@ static Status count_kinds(StoreImport *m, int rows, const SurfaceStrip *strip)
 static Status make_strip(StoreImport *m, int row0, int rows)
 {
     const SurfaceSources from = {m->surface, m->terrain, m->photo.count ? &m->photo : NULL, &m->frame, m->pool};
-    SurfaceStrip strip = {0};
-    const double begun_s = wall_clock_s();
-    Status       status = STATUS_OK;
+    SurfaceStrip         strip = {0};
+    const double         begun_s = wall_clock_s();
+    Status               status = STATUS_OK;
     if (m->surface) {
         status = surface_strip_make(&strip, &from, row0, rows);
         if (status == STATUS_OK) status = count_kinds(m, rows, &strip);
     } else {
         strip.h_m = malloc((size_t)rows * (size_t)m->level.nx * sizeof *strip.h_m);
-        status    = STATUS_NO_MEMORY;
+        status = STATUS_NO_MEMORY;
         if (strip.h_m) status = elevation_stream_heights(m->terrain, row0, rows, strip.h_m, NULL, true);
     }
     if (status == STATUS_OK) status = elevation_stream_bend(m->first, row0, rows, strip.h_m);
@@ -342,10 +355,10 @@ static Status finish(StoreImport *m, const char *path)
     for (int s = 1; s < SURFACE_COUNT; s++) m->r.cover.share[s] /= cells > 0 ? cells : 1;
     for (int k = 0; k < 3; k++) posts += (double)m->kinds[k];
     for (int k = 0; k < 3; k++) m->r.kind_share[k] = (double)m->kinds[k] / (posts > 0 ? posts : 1);
-    m->r.apart  = m->surface != NULL;
+    m->r.apart = m->surface != NULL;
     m->r.beside = m->surface && m->terrain;
-    m->r.nx     = m->level.nx;
-    m->r.ny     = m->level.ny;
+    m->r.nx = m->level.nx;
+    m->r.ny = m->level.ny;
     m->r.photo_posting_m = import_finest_m(&m->photo);
     return status;
 }
@@ -355,8 +368,8 @@ Status terrain_import(TerrainReport *out, const TerrainOptions *options, const c
 {
     StoreImport *m = calloc(1, sizeof *m);
     if (!m) return STATUS_NO_MEMORY;
-    m->o        = options;
-    m->pool     = pool;
+    m->o = options;
+    m->pool = pool;
     if (watch) m->watch = *watch;
     const char *slash = strrchr(path, '/');
     snprintf(m->folder, sizeof m->folder, "%.*s", slash ? (int)(slash - path + 1) : 1, slash ? path : ".");
@@ -365,7 +378,7 @@ Status terrain_import(TerrainReport *out, const TerrainOptions *options, const c
     char        *sources = strdup(raster_sources());
     if (*options->sources_from) raster_sources_from(options->sources_from);
     if (m->watch.progress) work_stop_when(file_stop_asked);
-    Status       status = fault ? STATUS_BAD_VALUE : STATUS_OK;
+    Status status = fault ? STATUS_BAD_VALUE : STATUS_OK;
     if (fault) log_error("%s: %s", module, fault);
     if (status == STATUS_OK && !go_on(m, "levels around", 0, true)) status = STATUS_IO;
     if (status == STATUS_OK) status = open_sources(m);

@@ -14,33 +14,33 @@ enum { terrain_paths_size = 16384, terrain_path_size = 4096 };
 
 typedef struct TerrainOptions {
     /* lists of files and folders, separated by commas; empty: none */
-    char   elevation[terrain_paths_size], surface[terrain_paths_size], cover[terrain_paths_size],
+    char elevation[terrain_paths_size], surface[terrain_paths_size], cover[terrain_paths_size],
         photo[terrain_paths_size], canopy_height[terrain_path_size], canopy_cover[terrain_path_size];
-    char   cover_table[terrain_path_size], geoid[terrain_path_size]; /* empty: chosen; EGM96 */
-    char   unit[16], srs[128], nodata[32]; /* of elevation and surface files that have none after their name */
-    char   sources_from[terrain_path_size]; /* folders of files that other files name (raster_sources_from) */
+    char cover_table[terrain_path_size], geoid[terrain_path_size]; /* empty: chosen; EGM96 */
+    char unit[16], srs[128], nodata[32];  /* of elevation and surface files that have none after their name */
+    char sources_from[terrain_path_size]; /* folders of files that other files name (raster_sources_from) */
     ElevationVertical vertical;
-    double spacing_m;             /* 0: the posting of the finest data */
-    double origin_deg[2];         /* latitude, longitude; NaN: middle of the finest data */
-    double size_km[2];            /* 0: all data */
-    double horizon_km;
-    double most_gb;               /* that may be written; 64 times as much decoded */
+    double            spacing_m;     /* 0: the posting of the finest data */
+    double            origin_deg[2]; /* latitude, longitude; NaN: middle of the finest data */
+    double            size_km[2];    /* 0: all data */
+    double            horizon_km;
+    double            most_gb; /* that may be written; 64 times as much decoded */
 } TerrainOptions;
 
-void   terrain_options_default(TerrainOptions *out);
+void terrain_options_default(TerrainOptions *out);
 /* One option by its name: elevation (added to those before), surface, cover, cover-table, photo, canopy-height,
  * canopy-cover, geoid, sources-from, vertical, unit, srs, nodata, spacing, origin, size, horizon, most-gb. False: *why
  * says what is accepted, in static storage, and nothing has changed. */
-bool   terrain_options_set(TerrainOptions *o, const char **why, const char *name, const char *value);
+bool terrain_options_set(TerrainOptions *o, const char **why, const char *name, const char *value);
 /* The names of a list of elevation or surface files, each with what the options choose for it after it
  * (raster.h). False: too long. */
-bool   terrain_options_sources(char *out, size_t out_size, const TerrainOptions *o, const char *list);
+bool terrain_options_sources(char *out, size_t out_size, const TerrainOptions *o, const char *list);
 /* What is missing or contradicts, in static storage; NULL: nothing. */
 const char *terrain_options_fault(const TerrainOptions *o);
 /* `name value`, a line each, paths absolute; those that have their default are left out. False: too long. */
-bool   terrain_options_text(char *out, size_t out_size, const TerrainOptions *o);
+bool terrain_options_text(char *out, size_t out_size, const TerrainOptions *o);
 /* The text of a store's header. False: *why, and *line from 1 on. */
-bool   terrain_options_parse(TerrainOptions *out, const char **why, int *line, const char *text);
+bool terrain_options_parse(TerrainOptions *out, const char **why, int *line, const char *text);
 
 /* ---- the import ---------------------------------------------------------------------------------- */
 
@@ -49,22 +49,23 @@ bool   terrain_options_parse(TerrainOptions *out, const char **why, int *line, c
 typedef bool TerrainProgress(void *user, const char *stage, double share);
 
 typedef struct TerrainWatch {
-    TerrainProgress *progress;                                   /* NULL: never stopped */
-    void (*heard)(void *user, const ElevationSurvey *survey);    /* of each grid of heights, before it is used; NULL: it is not told */
+    TerrainProgress *progress; /* NULL: never stopped */
+    void (*heard)(void                  *user,
+                  const ElevationSurvey *survey); /* of each grid of heights, before it is used; NULL: it is not told */
     void *user;
 } TerrainWatch;
 
 typedef struct TerrainReport {
     ElevationReport elevation;
     StoreReport     store;
-    bool            apart, beside;      /* a surface model was taken apart; with a terrain model beside it */
-    int             nx, ny;             /* posts of level 0 */
-    CoverReport     cover;              /* posting_m 0: none */
-    double          photo_posting_m;    /* 0: none */
-    double          canopy_scale_m;     /* of a canopy height file's numbers; 0: none */
-    double          kind_share[3];      /* of the posts: bare, building, tree */
-    double          seconds[4];         /* levels around, posts, cover and photograph, writing */
-    bool            stopped;            /* by the progress function */
+    bool            apart, beside;   /* a surface model was taken apart; with a terrain model beside it */
+    int             nx, ny;          /* posts of level 0 */
+    CoverReport     cover;           /* posting_m 0: none */
+    double          photo_posting_m; /* 0: none */
+    double          canopy_scale_m;  /* of a canopy height file's numbers; 0: none */
+    double          kind_share[3];   /* of the posts: bare, building, tree */
+    double          seconds[4];      /* levels around, posts, cover and photograph, writing */
+    bool            stopped;         /* by the progress function */
 } TerrainReport;
 
 /* pool NULL: one thread. watch may be NULL. Failures are logged with the file and the next step; PATH is replaced
@@ -76,7 +77,7 @@ Status terrain_import(TerrainReport *out, const TerrainOptions *options, const c
  * anywhere: whatever it names. A requested stop ends it, and leaves the store as it was. */
 Status terrain_store_rebuild(const char *path, const char *options, bool anywhere);
 /* Whether its options name a source outside its own folder; outside: the first. */
-bool   terrain_store_foreign(char *outside, size_t outside_size, const char *path, const char *options);
+bool terrain_store_foreign(char *outside, size_t outside_size, const char *path, const char *options);
 
 /* ---- buildings ----------------------------------------------------------------------------------- */
 

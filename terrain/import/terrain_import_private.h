@@ -29,7 +29,7 @@ typedef struct GroundView {
     GroundZ          *z;
     void             *z_user;
     Pool             *pool;
-    const char       *key;   /* for messages */
+    const char       *key; /* for messages */
 } GroundView;
 
 /* Where a cell has no value yet (coverage 0, NaN) it gets that of the first raster of the set that has one. code: 0:
@@ -44,17 +44,17 @@ Status ground_rows_numbers(float *value, const RasterSet *set, int band, const C
 
 typedef struct SurfaceSources {
     ElevationStream  *surface;
-    ElevationStream  *bare;       /* a terrain model over the same levels; NULL: none */
-    const RasterSet  *photo;      /* NULL: none */
+    ElevationStream  *bare;  /* a terrain model over the same levels; NULL: none */
+    const RasterSet  *photo; /* NULL: none */
     const LocalFrame *frame;
     Pool             *pool;
 } SurfaceSources;
 
 /* Rows of level 0, [rows][nx]; crowns in ENU, allocated. */
 typedef struct SurfaceStrip {
-    float   *h_m;       /* above the ellipsoid: bare ground, and roofs where there are buildings */
-    uint8_t *kind;      /* CellKind */
-    float   *canopy_m;  /* surface above bare ground where kind is CELL_TREE, else 0 */
+    float   *h_m;      /* above the ellipsoid: bare ground, and roofs where there are buildings */
+    uint8_t *kind;     /* CellKind */
+    float   *canopy_m; /* surface above bare ground where kind is CELL_TREE, else 0 */
     int      crowns;
     Crown   *crown;
     long     voids, voids_coarser; /* posts filled from their surroundings; from a coarser file */
@@ -69,27 +69,27 @@ void   surface_strip_free(SurfaceStrip *strip); /* accepts zeroes */
 /* A store in the making: what it is made from, and what is known of it so far. */
 typedef struct StoreImport {
     const TerrainOptions *o;
-    Pool            *pool;
-    TerrainWatch     watch;
-    double           told_s, keep_octets;
-    LocalFrame       frame;
-    ElevationFiles   files[2];        /* terrain model, surface model */
-    ElevationStream *terrain, *surface, *first; /* first: whose levels are made */
-    RasterSet        opened; /* the first's files, until it has them */
-    RasterSet        cover, photo, canopy_height, canopy_cover;
-    SurfaceTable       table;
-    int              cover_band;
-    StorePlan        plan;
-    StoreSource     *source;
-    char            *list[2];         /* terrain model, surface model: with what the options say of them */
-    char            *options, notes[2048], datum[256], folder[terrain_path_size];
-    StoreWriter     *writer;
-    StreamLevel      level;
-    int              strip_rows;
-    long             kinds[3];
-    TerrainBuildings    buildings;
-    long             voids, voids_coarser;
-    TerrainReport    r;
+    Pool                 *pool;
+    TerrainWatch          watch;
+    double                told_s, keep_octets;
+    LocalFrame            frame;
+    ElevationFiles        files[2];                  /* terrain model, surface model */
+    ElevationStream      *terrain, *surface, *first; /* first: whose levels are made */
+    RasterSet             opened;                    /* the first's files, until it has them */
+    RasterSet             cover, photo, canopy_height, canopy_cover;
+    SurfaceTable          table;
+    int                   cover_band;
+    StorePlan             plan;
+    StoreSource          *source;
+    char                 *list[2]; /* terrain model, surface model: with what the options say of them */
+    char                 *options, notes[2048], datum[256], folder[terrain_path_size];
+    StoreWriter          *writer;
+    StreamLevel           level;
+    int                   strip_rows;
+    long                  kinds[3];
+    TerrainBuildings      buildings;
+    long                  voids, voids_coarser;
+    TerrainReport         r;
 } StoreImport;
 
 /* ---- terrain_cover.c ---- */

@@ -69,12 +69,13 @@ bool terrain_options_set(TerrainOptions *o, const char **why, const char *name, 
 {
     for (int k = 0; k < row_count; k++) {
         const struct Row *row = &rows[k];
-        char  *at = (char *)o + row->offset;
-        double number[2];
+        char             *at = (char *)o + row->offset;
+        double            number[2];
         if (strcmp(name, row->name) != 0) continue;
         *why = row->why;
         switch (row->kind) {
-        case LIST: return take_list(at, row->size, value, k < 4);
+        case LIST:
+            return take_list(at, row->size, value, k < 4);
         case CHOICE:
             for (int v = 0; v < 3; v++)
                 if (strcmp(value, verticals[v]) == 0) {
@@ -154,7 +155,7 @@ static bool absolute_list(char *out, size_t size, const char *list)
         (void)raster_choice_take(&choice, &why, bare);
         const bool relative = stat(bare, &about) == 0 && *name != '/';
         const int  n = snprintf(out + used, size - used, "%s%s%s%s", used ? "," : "", relative ? folder : "",
-                                relative ? "/" : "", name);
+                               relative ? "/" : "", name);
         if (n < 0 || (size_t)n >= size - used) return false;
         used += (size_t)n;
     }
@@ -188,9 +189,9 @@ bool terrain_options_text(char *out, size_t out_size, const TerrainOptions *o)
     *out = 0;
     for (int k = 0; k < row_count; k++) {
         const struct Row *row = &rows[k];
-        const char *at = (const char *)o + row->offset;
-        char        value[terrain_paths_size] = "";
-        double      number[2] = {0};
+        const char       *at = (const char *)o + row->offset;
+        char              value[terrain_paths_size] = "";
+        double            number[2] = {0};
         switch (row->kind) {
         case LIST:
             if (strcmp(row->name, "cover-table") == 0 && !strpbrk(at, "./")) snprintf(value, sizeof value, "%s", at);
@@ -199,7 +200,9 @@ bool terrain_options_text(char *out, size_t out_size, const TerrainOptions *o)
         case CHOICE:
             if (o->vertical != ELEVATION_BY_FILE) snprintf(value, sizeof value, "%s", verticals[o->vertical]);
             break;
-        case SAYS: snprintf(value, sizeof value, "%s", at); break;
+        case SAYS:
+            snprintf(value, sizeof value, "%s", at);
+            break;
         case NUMBER:
             memcpy(number, at, sizeof *number);
             if (number[0] != row->initial) snprintf(value, sizeof value, "%.17g", number[0]);

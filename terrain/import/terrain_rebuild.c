@@ -40,8 +40,9 @@ static bool lies_within(char *name, const char *folder)
  * outside. outside: the first of the sources that does, "" for none. */
 static bool sources_within(char *outside, size_t outside_size, const TerrainOptions *o, const char *folder)
 {
-    const char *const lists[] = {o->elevation, o->surface, o->cover, o->photo, o->canopy_height, o->canopy_cover, o->geoid,
-                                 strpbrk(o->cover_table, "./") ? o->cover_table : ""};
+    const char *const lists[] = {
+        o->elevation,     o->surface,      o->cover, o->photo,
+        o->canopy_height, o->canopy_cover, o->geoid, strpbrk(o->cover_table, "./") ? o->cover_table : ""};
     *outside = 0;
     for (size_t k = 0; k < sizeof lists / sizeof *lists; k++)
         for (const char *at = lists[k]; *at;) {
@@ -105,7 +106,8 @@ Status terrain_store_rebuild(const char *path, const char *options, bool anywher
         if (status == STATUS_OK && !sources_within(outside, sizeof outside, o, folder)) status = STATUS_BAD_VALUE;
         if (status == STATUS_BAD_VALUE)
             log_error("terrain.store: %s is not made again: it names %s, outside its own folder; where you trust that, "
-                      "`pitviper terrain again %s` makes it", path, outside, path);
+                      "`pitviper terrain again %s` makes it",
+                      path, outside, path);
     }
     if (status == STATUS_OK) status = pool_create(&pool, thread_processors());
     if (status == STATUS_OK) {

@@ -118,8 +118,7 @@ static double touch_distance_m(const LineSet *lines, const double p[3])
         for (int64_t i = ci - 1; i <= ci + 1; i++) {
             int first, end;
             near_grid_bucket(near, i, j, &first, &end);
-            for (int n = first; n < end; n++)
-                best = fmin(best, squared_distance(p, lines->touch + 3 * near->item[n]));
+            for (int n = first; n < end; n++) best = fmin(best, squared_distance(p, lines->touch + 3 * near->item[n]));
         }
     return sqrt(best);
 }
@@ -179,9 +178,9 @@ enum { tile_posts = 64 };
 /* Highest post of each square of 64 x 64, with the eight squares around it. */
 static Status tile_maxima(Field *out, const Field *z)
 {
-    const int    nx = (z->nx + tile_posts - 1) / tile_posts, ny = (z->ny + tile_posts - 1) / tile_posts;
-    Field        own, around;
-    Status status = levels_field_create(&own, z->spacing_m * tile_posts, 0, 0, nx, ny);
+    const int nx = (z->nx + tile_posts - 1) / tile_posts, ny = (z->ny + tile_posts - 1) / tile_posts;
+    Field     own, around;
+    Status    status = levels_field_create(&own, z->spacing_m * tile_posts, 0, 0, nx, ny);
     if (status != STATUS_OK) return status;
     status = levels_field_create(&around, own.spacing_m, 0, 0, nx, ny);
     if (status != STATUS_OK) {
@@ -214,11 +213,11 @@ typedef struct Cutter {
     const LineSet *lines;
     const FixSet  *fixes;
     Field          tiles;
-    double         core_m;  /* a cell's diagonal */
-    double         top_m;   /* highest post of the level */
+    double         core_m;         /* a cell's diagonal */
+    double         top_m;          /* highest post of the level */
     int            i0, i1, j0, j1; /* posts that are seeded; none: i1 < i0 */
-    double         lowest_m; /* lowest seed */
-    bool           any_fix;  /* on this level */
+    double         lowest_m;       /* lowest seed */
+    bool           any_fix;        /* on this level */
 } Cutter;
 
 /* How far below z_m, a height of the line about p, the ground is held. */
@@ -331,8 +330,8 @@ static void seed_line(Cutter *cutter, const ClearLine *line)
         for (int k = 0; k < 3; k++) mid[k] = 0.5 * (a[k] + b[k]);
         const double low_m = fmin(a[2], b[2]);
 
-        const int tile_i = (int)clamp((mid[0] / z->spacing_m - z->i0) / tile_posts, 0, cutter->tiles.nx - 1);
-        const int tile_j = (int)clamp((mid[1] / z->spacing_m - z->j0) / tile_posts, 0, cutter->tiles.ny - 1);
+        const int    tile_i = (int)clamp((mid[0] / z->spacing_m - z->i0) / tile_posts, 0, cutter->tiles.nx - 1);
+        const int    tile_j = (int)clamp((mid[1] / z->spacing_m - z->j0) / tile_posts, 0, cutter->tiles.ny - 1);
         const double around_m = cutter->tiles.v[(size_t)tile_j * cutter->tiles.nx + tile_i];
         if (low_m - full_clearance_m < around_m && !in_hole(cutter->level, mid)) {
             const double touch_distance = touch_distance_m(cutter->lines, mid);
@@ -378,8 +377,16 @@ Status line_cut(WorkLevel *level, int index, const LineSet *lines, FixSet *fixes
     if (!lines->count) return STATUS_OK;
     Field       *z = &level->z;
     const size_t posts = (size_t)z->nx * z->ny;
-    Cutter       cutter = {.level = level, .lines = lines, .fixes = fixes, .core_m = sqrt(2.0) * z->spacing_m * 1.001,
-                           .top_m = -INFINITY, .i0 = z->nx, .i1 = -1, .j0 = z->ny, .j1 = -1, .lowest_m = INFINITY};
+    Cutter       cutter = {.level = level,
+                           .lines = lines,
+                           .fixes = fixes,
+                           .core_m = sqrt(2.0) * z->spacing_m * 1.001,
+                           .top_m = -INFINITY,
+                           .i0 = z->nx,
+                           .i1 = -1,
+                           .j0 = z->ny,
+                           .j1 = -1,
+                           .lowest_m = INFINITY};
     const Status status = tile_maxima(&cutter.tiles, z);
     if (status != STATUS_OK) return status;
     for (int n = 0; n < fixes->count && !cutter.any_fix; n++)

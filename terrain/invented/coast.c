@@ -8,14 +8,14 @@
 #include <stdlib.h>
 
 enum { most_places = 512, block_posts = 16 };
-static const double wander = 0.3;           /* of the distance to the nearest place of either kind */
+static const double wander = 0.3; /* of the distance to the nearest place of either kind */
 static const double most_wander_m = 400;
-static const double innermost_m = 1024;     /* half width of the finest grid of the cache; each next is four times it */
-static const double shore_land_m = 400;     /* the land has its own height from here on */
-static const double own_land_m = 50;        /* of a land fix: the terrain there may be lower than the sea */
-static const double wild_m = 300;           /* from it: no longer */
+static const double innermost_m = 1024; /* half width of the finest grid of the cache; each next is four times it */
+static const double shore_land_m = 400; /* the land has its own height from here on */
+static const double own_land_m = 50;    /* of a land fix: the terrain there may be lower than the sea */
+static const double wild_m = 300;       /* from it: no longer */
 static const double beach_m = 12;
-static const double own_share = 0.8;        /* or so near to a place of land, of the way from the shore */
+static const double own_share = 0.8; /* or so near to a place of land, of the way from the shore */
 
 /* ---- nearest places ----------------------------------------------------------------------- */
 
@@ -115,7 +115,7 @@ static int thin(double (*out)[2], const LandscapeEvidence *e, bool sea)
         for (int n = 0; n < e->place_count && kept <= most_places; n++) {
             const CoastPlace *p = &e->place[n];
             if (p->sea != sea || !(fabs(p->x_m) < 1e7 && fabs(p->y_m) < 1e7)) continue;
-            if (nearest_m((const double (*)[2])out, kept, p->x_m, p->y_m) < apart_m) continue;
+            if (nearest_m((const double(*)[2])out, kept, p->x_m, p->y_m) < apart_m) continue;
             if (kept < most_places) out[kept][0] = p->x_m, out[kept][1] = p->y_m;
             kept++;
         }
@@ -123,13 +123,13 @@ static int thin(double (*out)[2], const LandscapeEvidence *e, bool sea)
     return kept;
 }
 
-static int keep_contradicted(double (*out)[2], int count, const double (*other)[2], int others, const LandscapeEvidence *e,
-                        bool sea)
+static int keep_contradicted(double (*out)[2], int count, const double (*other)[2], int others,
+                             const LandscapeEvidence *e, bool sea)
 {
     for (int n = 0; n < e->place_count && count < 2 * most_places; n++) {
         const CoastPlace *p = &e->place[n];
         if (p->sea != sea || !(fabs(p->x_m) < 1e7 && fabs(p->y_m) < 1e7)) continue;
-        const double own_m = nearest_m((const double (*)[2])out, count, p->x_m, p->y_m);
+        const double own_m = nearest_m((const double(*)[2])out, count, p->x_m, p->y_m);
         if (own_m > 0.1 * nearest_m(other, others, p->x_m, p->y_m)) out[count][0] = p->x_m, out[count++][1] = p->y_m;
     }
     return count;
@@ -175,10 +175,11 @@ Status coast_create(Coast *out, const LandscapeEvidence *evidence, uint64_t seed
     if (status == STATUS_OK) {
         coast.sea_count = thin(coast.sea, evidence, true);
         coast.land_count = thin(coast.land, evidence, false);
-        const int land = keep_contradicted(coast.land, coast.land_count, (const double (*)[2])coast.sea, coast.sea_count,
-                                      evidence, false);
-        if (land) coast.sea_count = keep_contradicted(coast.sea, coast.sea_count, (const double (*)[2])coast.land,
-                                                 coast.land_count, evidence, true);
+        const int land = keep_contradicted(coast.land, coast.land_count, (const double(*)[2])coast.sea, coast.sea_count,
+                                           evidence, false);
+        if (land)
+            coast.sea_count = keep_contradicted(coast.sea, coast.sea_count, (const double(*)[2])coast.land,
+                                                coast.land_count, evidence, true);
         coast.land_count = land;
         if (coast.sea_count && land) status = make_grids(&coast);
     }
@@ -236,7 +237,7 @@ typedef struct Block {
 static void shape_block(WorkLevel *level, const Coast *coast, const Coast *local, BlockKind kind, const Block *block)
 {
     const int i0 = block->i0, i1 = block->i1, j0 = block->j0, j1 = block->j1;
-    Field *z = &level->z;
+    Field    *z = &level->z;
     for (int j = j0; kind == BLOCK_WATER && j < j1; j++)
         for (int i = i0; i < i1; i++) {
             z->v[(size_t)j * z->nx + i] = (float)coast->h_m;
@@ -255,7 +256,7 @@ static void shape_block(WorkLevel *level, const Coast *coast, const Coast *local
             const double to_sea_m = nearest_m(local->sea, local->sea_count, x, y);
             const double to_land_m = nearest_m(local->land, local->land_count, x, y);
             const double inland = inland_m(coast, to_sea_m, to_land_m, x, y);
-            level->water[at] = (uint8_t)!(inland > 0);
+            level->water[at] = (uint8_t) !(inland > 0);
             const double above_m = (double)z->v[at] - coast->h_m;
             z->v[at] = (float)coast->h_m;
             if (!level->water[at]) z->v[at] = (float)(coast->h_m + led_down_m(above_m, inland, to_sea_m, to_land_m));
@@ -272,17 +273,17 @@ Status coast_shape(WorkLevel *level, const Coast *coast)
     const Status status = local.sea && local.land && level->water ? STATUS_OK : STATUS_NO_MEMORY;
     for (int j = 0; status == STATUS_OK && j < z->ny; j += block_posts)
         for (int i = 0; i < z->nx; i += block_posts) {
-            const int    i1 = i + block_posts < z->nx ? i + block_posts : z->nx;
-            const int    j1 = j + block_posts < z->ny ? j + block_posts : z->ny;
-            const double x = (z->i0 + 0.5 * (i + i1 - 1)) * z->spacing_m;
-            const double y = (z->j0 + 0.5 * (j + j1 - 1)) * z->spacing_m;
-            const double reach_m = 0.5 * block_posts * sqrt(2.0) * z->spacing_m;
+            const int       i1 = i + block_posts < z->nx ? i + block_posts : z->nx;
+            const int       j1 = j + block_posts < z->ny ? j + block_posts : z->ny;
+            const double    x = (z->i0 + 0.5 * (i + i1 - 1)) * z->spacing_m;
+            const double    y = (z->j0 + 0.5 * (j + j1 - 1)) * z->spacing_m;
+            const double    reach_m = 0.5 * block_posts * sqrt(2.0) * z->spacing_m;
             const BlockKind kind = kind_of_block(coast, x, y, reach_m);
             if (kind == BLOCK_MIXED) {
-                local.sea_count = may_be_nearest(local.sea, (const double (*)[2])coast->sea, coast->sea_count, x, y,
-                                                 reach_m);
-                local.land_count = may_be_nearest(local.land, (const double (*)[2])coast->land, coast->land_count, x, y,
-                                                  reach_m);
+                local.sea_count =
+                    may_be_nearest(local.sea, (const double(*)[2])coast->sea, coast->sea_count, x, y, reach_m);
+                local.land_count =
+                    may_be_nearest(local.land, (const double(*)[2])coast->land, coast->land_count, x, y, reach_m);
             }
             shape_block(level, coast, &local, kind, &(Block){i, i1, j, j1});
         }

@@ -9,10 +9,7 @@
 
 #include <stdlib.h>
 
-static int half_down(int i)
-{
-    return i >= 0 ? i / 2 : -((1 - i) / 2);
-}
+static int half_down(int i) { return i >= 0 ? i / 2 : -((1 - i) / 2); }
 
 /* Rows refined west to east: even points take (1 6 1) / 8 of their neighbours, odd ones (1 1) / 2. */
 static void refine_row(float *restrict out, int i0, int nx, const float *restrict c, int c_i0)
@@ -61,10 +58,8 @@ Status field_refine(Field *out, const Field *coarse, int i0, int j0, int nx, int
     for (int j = j0; j < j0 + ny; j++) {
         const float *b = rows.v + (size_t)(half_down(j) - row0) * nx;
         float       *to = fine.v + (size_t)(j - j0) * nx;
-        if (j & 1)
-            mix_rows_11(to, nx, b, b + nx);
-        else
-            mix_rows_161(to, nx, b - nx, b, b + nx);
+        if (j & 1) mix_rows_11(to, nx, b, b + nx);
+        else mix_rows_161(to, nx, b - nx, b, b + nx);
     }
     levels_field_destroy(&rows);
     *out = fine;
@@ -225,9 +220,9 @@ Status calm_create(Calm *out, const FixSet *fixes, double cell_m)
 
     const double wide_m = fmax(high[0] - low[0], high[1] - low[1]) + 2 * reach_m;
     while (wide_m / cell_m > most_cells) cell_m *= 2;
-    const int i0 = (int)floor((low[0] - reach_m) / cell_m) - 1, i1 = (int)ceil((high[0] + reach_m) / cell_m) + 1;
-    const int j0 = (int)floor((low[1] - reach_m) / cell_m) - 1, j1 = (int)ceil((high[1] + reach_m) / cell_m) + 1;
-    Field     d;
+    const int    i0 = (int)floor((low[0] - reach_m) / cell_m) - 1, i1 = (int)ceil((high[0] + reach_m) / cell_m) + 1;
+    const int    j0 = (int)floor((low[1] - reach_m) / cell_m) - 1, j1 = (int)ceil((high[1] + reach_m) / cell_m) + 1;
+    Field        d;
     const Status status = levels_field_create(&d, cell_m, i0, j0, i1 - i0 + 1, j1 - j0 + 1);
     if (status != STATUS_OK) return status;
 
@@ -262,14 +257,14 @@ Status invented_correct(WorkLevel *level, int levels, const LocalFrame *frame, d
 {
     enum { margin = 6 };
     static const double widest_m = 16384;
-    FixSet    set = {0};
-    FieldAim *aim = NULL;
-    Field     spline = {0};
-    int       count = 0;
-    Status    status = fix_set_create(&set, frame, fix, fix_count, horizon_m);
+    FixSet              set = {0};
+    FieldAim           *aim = NULL;
+    Field               spline = {0};
+    int                 count = 0;
+    Status              status = fix_set_create(&set, frame, fix, fix_count, horizon_m);
     if (status != STATUS_OK) return status;
     status = STATUS_NO_MEMORY;
-    aim    = malloc(((size_t)set.count + 1) * sizeof *aim);
+    aim = malloc(((size_t)set.count + 1) * sizeof *aim);
     if (!aim) goto done;
     double reach_m = 0;
     for (int n = 0; n < set.count; n++) {

@@ -84,10 +84,7 @@ static int by_site_then_height(const void *pa, const void *pb)
     return a->row.fix < b->row.fix ? -1 : a->row.fix > b->row.fix;
 }
 
-static double distance_m(const FixRow *a, const FixRow *b)
-{
-    return hypot(a->x_m - b->x_m, a->y_m - b->y_m);
-}
+static double distance_m(const FixRow *a, const FixRow *b) { return hypot(a->x_m - b->x_m, a->y_m - b->y_m); }
 
 static bool contradict(const FixRow *a, const FixRow *b)
 {
@@ -107,7 +104,8 @@ static int gather_candidates(Candidate *out, const LocalFrame *frame, const Grou
         ecef_from_enu(p_ecef, frame, p);
         if (geodetic_from_ecef(&place, p_ecef) != STATUS_OK) continue;
         if (!(place.h_m >= lowest_ground_m && place.h_m <= highest_h_m)) continue;
-        out[count++] = (Candidate){(int64_t)floor(p[0] / site_m), (int64_t)floor(p[1] / site_m),
+        out[count++] = (Candidate){(int64_t)floor(p[0] / site_m),
+                                   (int64_t)floor(p[1] / site_m),
                                    {.x_m = p[0], .y_m = p[1], .z_m = p[2], .h_m = place.h_m, .fix = n, .weight = 1}};
     }
     qsort(out, (size_t)count, sizeof *out, by_site_then_height);
@@ -156,10 +154,7 @@ static int most_contradicted_first(const void *pa, const void *pb)
     return a->row < b->row ? -1 : a->row > b->row;
 }
 
-static double weight_of(const FixRow *row)
-{
-    return row->weight < most_weight ? row->weight : most_weight;
-}
+static double weight_of(const FixRow *row) { return row->weight < most_weight ? row->weight : most_weight; }
 
 /* Inconsistent neighbours of a row, weighted: four for each lower one, one for each higher one. Dense cells are
  * sampled, so the cost is bounded. */
@@ -215,10 +210,10 @@ static Status drop_contradicted(FixRow *rows, int count, double reach_m)
 static Status drop_contradicted_squares(FixSet *set)
 {
     static const double square_m = 64, reach_m = 512;
-    FixRow *speaker = calloc((size_t)set->count + 1, sizeof *speaker);
-    int    *square_of = calloc((size_t)set->count + 1, sizeof *square_of);
-    Candidate *order = calloc((size_t)set->count + 1, sizeof *order);
-    Status     status = speaker && square_of && order ? STATUS_OK : STATUS_NO_MEMORY;
+    FixRow             *speaker = calloc((size_t)set->count + 1, sizeof *speaker);
+    int                *square_of = calloc((size_t)set->count + 1, sizeof *square_of);
+    Candidate          *order = calloc((size_t)set->count + 1, sizeof *order);
+    Status              status = speaker && square_of && order ? STATUS_OK : STATUS_NO_MEMORY;
 
     int live = 0, squares = 0;
     for (int n = 0; status == STATUS_OK && n < set->count; n++)

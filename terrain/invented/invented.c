@@ -11,10 +11,7 @@
 
 enum { ratio = level_ratio };
 
-double invented_taper_m(const LandscapeConfig *config)
-{
-    return taper_of_spacing_m(config->spacing_m);
-}
+double invented_taper_m(const LandscapeConfig *config) { return taper_of_spacing_m(config->spacing_m); }
 
 /* ---- plan --------------------------------------------------------------------------------- */
 
@@ -37,10 +34,7 @@ typedef struct Work {
     double    base_h_m;
 } Work;
 
-static int round_out(double posts)
-{
-    return (int)(posts < 0 ? floor(posts / ratio) : ceil(posts / ratio)) * ratio;
-}
+static int round_out(double posts) { return (int)(posts < 0 ? floor(posts / ratio) : ceil(posts / ratio)) * ratio; }
 
 /* Level 0 is centred on the origin; it grows to hold the fixes while that stays affordable. */
 static Window innermost(const LandscapeConfig *config, const FixSet *fixes)
@@ -287,8 +281,7 @@ static void count_fixes(InventedTerrain *terrain, const Work *work, const Ground
         const FixRow *row = number < 0 ? NULL : &work->fixes.row[number];
         const double  z_m = elevation_height(&terrain->elevation, fix[n].p_enu[0], fix[n].p_enu[1], NULL);
         const double  off_m = fabs(z_m - fix[n].p_enu[2]);
-        if (!row || row->dropped ||
-            (row->fix != n && off_m > 0.05 * fmax(1, work->spacing_m[row->level] / 4))) {
+        if (!row || row->dropped || (row->fix != n && off_m > 0.05 * fmax(1, work->spacing_m[row->level] / 4))) {
             terrain->fixes_dropped++;
             continue;
         }
@@ -333,8 +326,10 @@ Status invented_create(InventedTerrain *out, const LandscapeConfig *config, cons
     if (status != STATUS_OK) goto done;
 
     count_fixes(&terrain, &work, fix, fix_count);
-    status = ways_create(&terrain.ground.ways, &(WaysGround){.elevation = &terrain.elevation, .coast = &work.coast,
-                                                             .seed = terrain.ground.seed, .fix_count = fix_count,
+    status = ways_create(&terrain.ground.ways, &(WaysGround){.elevation = &terrain.elevation,
+                                                             .coast = &work.coast,
+                                                             .seed = terrain.ground.seed,
+                                                             .fix_count = fix_count,
                                                              .fix = fix});
     if (status != STATUS_OK) goto done;
     terrain.ground.coast = work.coast;

@@ -23,10 +23,7 @@ static inline uint64_t invented_hash(uint64_t seed, int64_t a, int64_t b)
 }
 
 /* Top 53 bits as [0, 1). */
-static inline double invented_unit(uint64_t h)
-{
-    return (double)(h >> 11) * 0x1p-53;
-}
+static inline double invented_unit(uint64_t h) { return (double)(h >> 11) * 0x1p-53; }
 
 /* ---- evidence --------------------------------------------------------------------------------- */
 
@@ -54,10 +51,10 @@ typedef struct ClearLine {
 
 typedef struct LandscapeConfig {
     uint64_t seed;
-    double   relief_m;       /* rms height of the hills far from any fix, 0 .. 200 */
-    double   spacing_m;      /* of level 0, 1 .. 30 */
-    double   half_width_m;   /* of level 0 */
-    double   horizon_m;      /* half width of the outermost level */
+    double   relief_m;     /* rms height of the hills far from any fix, 0 .. 200 */
+    double   spacing_m;    /* of level 0, 1 .. 30 */
+    double   half_width_m; /* of level 0 */
+    double   horizon_m;    /* half width of the outermost level */
 } LandscapeConfig;
 
 /* All evidence of an exercise on its ground. Without a sea fix there is no sea. */
@@ -86,7 +83,7 @@ enum { coast_grids = 6, coast_cells = 256 };
 /* Thinned places, and for quick answers nested grids about the origin that give for each cell whether it is all sea,
  * all land away from the beach, or must be evaluated position by position. */
 typedef struct Coast {
-    int      sea_count, land_count; /* sea_count 0: no sea */
+    int sea_count, land_count; /* sea_count 0: no sea */
     double (*sea)[2], (*land)[2];
     double   h_m;
     uint64_t seed;
@@ -111,7 +108,7 @@ typedef struct InventedGround {
 typedef struct InventedTerrain {
     Elevation      elevation;
     InventedGround ground;
-    double         fit_worst_m;   /* as in Landscape */
+    double         fit_worst_m; /* as in Landscape */
     int            fixes_dropped;
 } InventedTerrain;
 
@@ -146,22 +143,22 @@ typedef struct WayPlace {
 
 /* A village's plot: a rectangle beside its lane, with a place for a house. */
 typedef struct HousePlot {
-    double x_m, y_m;           /* middle of the plot */
-    double direction[2];       /* unit vector along the lane */
+    double x_m, y_m;     /* middle of the plot */
+    double direction[2]; /* unit vector along the lane */
     double half_along_m, half_across_m;
-    double house[2];           /* middle of the house from the middle of the plot: along, and towards the lane */
-    double house_half[2];      /* half the house's sides: along, and across */
+    double house[2];      /* middle of the house from the middle of the plot: along, and towards the lane */
+    double house_half[2]; /* half the house's sides: along, and across */
 } HousePlot;
 
 /* NULL is no ways. The nearest about a place; false: none within some metres of its edge. */
-bool   ways_at(WayPlace *out, const Ways *ways, double x_m, double y_m);
+bool ways_at(WayPlace *out, const Ways *ways, double x_m, double y_m);
 /* Vertices of a way in order, `most` of them at most; returns their number. */
-int    ways_vertices(double (*out)[2], WayKind *kind, const Ways *ways, int way, int most);
+int              ways_vertices(double (*out)[2], WayKind *kind, const Ways *ways, int way, int most);
 const HousePlot *ways_plots(const Ways *ways, int *count);
-bool   ways_village(double place_m[2], const Ways *ways, int index);
-double ways_wetness(const Ways *ways, double x_m, double y_m);
+bool             ways_village(double place_m[2], const Ways *ways, int index);
+double           ways_wetness(const Ways *ways, double x_m, double y_m);
 /* Whether anything of them reaches into its cell of the index. */
-bool   ways_touch(const Ways *ways, double x_m, double y_m);
+bool ways_touch(const Ways *ways, double x_m, double y_m);
 
 /* ---- hedgerows -------------------------------------------------------------------------------- */
 

@@ -37,7 +37,7 @@ static double slope_about(const Elevation *elevation, double x_m, double y_m)
 static Lattice level_cells(const double x_m[8], double x0_m, double per_m)
 {
     const F64x4 x0 = f64x4_set(x0_m), most = f64x4_set(1 << 20), least = f64x4_set(-(1 << 20));
-    double        cells[8];
+    double      cells[8];
     for (int k = 0; k < 8; k += 4) {
         const F64x4 g = (f64x4_loadu(x_m + k) - x0) * f64x4_set(per_m);
         f64x4_storeu(cells + k, f64x4_min(f64x4_max(g, least), most));
@@ -74,13 +74,13 @@ static inline F32x8 level_heights(const ElevationLevel *level, Lattice x, Lattic
     const I32x8 post = i32x8_set(0xffff), none = i32x8_set(0), mask = _mm256_castps_si256(lanes);
     const I32x8 inside = i32x8_set(elevation_tile_cells - 1), tile = tiles_of(level, x, y);
     const I32x8 row = i32x8_mul(i32x8_and(y.cell, inside), i32x8_set(elevation_tile_side));
-    const I32x8 at = i32x8_add(i32x8_mul(tile, i32x8_set(elevation_tile_posts)),
-                               i32x8_add(row, i32x8_and(x.cell, inside)));
+    const I32x8 at =
+        i32x8_add(i32x8_mul(tile, i32x8_set(elevation_tile_posts)), i32x8_add(row, i32x8_and(x.cell, inside)));
     const uint16_t *north_of = level->stored + elevation_tile_side;
-    const I32x8 south = _mm256_mask_i32gather_epi32(none, (const int *)(const void *)level->stored, at, mask, 2);
-    const I32x8 north = _mm256_mask_i32gather_epi32(none, (const int *)(const void *)north_of, at, mask, 2);
-    I32x8       sw = i32x8_and(south, post), se = i32x8_shift_right(south, 16);
-    I32x8       nw = i32x8_and(north, post), ne = i32x8_shift_right(north, 16);
+    const I32x8     south = _mm256_mask_i32gather_epi32(none, (const int *)(const void *)level->stored, at, mask, 2);
+    const I32x8     north = _mm256_mask_i32gather_epi32(none, (const int *)(const void *)north_of, at, mask, 2);
+    I32x8           sw = i32x8_and(south, post), se = i32x8_shift_right(south, 16);
+    I32x8           nw = i32x8_and(north, post), ne = i32x8_shift_right(north, 16);
     if (!level->plain) {
         const I32x8 base = i32x8_sub(of_tiles(&level->tile->base, tile, mask), about);
         const I32x8 shift = of_tiles(&level->tile->shift, tile, mask);
@@ -99,8 +99,8 @@ static inline F32x8 level_heights(const ElevationLevel *level, Lattice x, Lattic
 static F32x8 slopes_about(const Elevation *elevation, const double x_m[8], const double y_m[8], unsigned lanes)
 {
     const I32x8 outside = i32x8_set(-1);
-    F32x8          slope = f32x8_set(0);
-    unsigned       left = lanes, alone = 0; /* not yet found; on the seam of two levels */
+    F32x8       slope = f32x8_set(0);
+    unsigned    left = lanes, alone = 0; /* not yet found; on the seam of two levels */
     for (int n = 0; n < elevation->level_count && left; n++) {
         const ElevationLevel *level = &elevation->level[n];
         const double          per_m = 1 / level->spacing_m;
@@ -108,7 +108,7 @@ static F32x8 slopes_about(const Elevation *elevation, const double x_m[8], const
         const Lattice         x = level_cells(x_m, level->x0_m, per_m), y = level_cells(y_m, level->y0_m, per_m);
         const Lattice         west = moved(x, back), east = moved(x, arm);
         const Lattice         south = moved(y, back), north = moved(y, arm);
-        const I32x8        nx = i32x8_set(level->nx), ny = i32x8_set(level->ny), one = i32x8_set(1);
+        const I32x8           nx = i32x8_set(level->nx), ny = i32x8_set(level->ny), one = i32x8_set(1);
         /* cells 0 .. n - 2; about them and the outline */
         F32x8 in = f32x8_and(i32x8_greater(west.cell, outside), i32x8_greater(south.cell, outside));
         in = f32x8_and(in, i32x8_greater(i32x8_sub(nx, one), east.cell));
@@ -122,12 +122,11 @@ static F32x8 slopes_about(const Elevation *elevation, const double x_m[8], const
         left &= ~(near | here);
         if (!here) continue;
         const F32x8 found = f32x8_mask(here);
-        const I32x8 about = level->plain ? i32x8_set(0) : of_tiles(&level->tile->base, tiles_of(level, x, y),
-                                                                   _mm256_castps_si256(found));
-        const F32x8 dx =
-            level_heights(level, east, y, found, about) - level_heights(level, west, y, found, about);
-        const F32x8 dy =
-            level_heights(level, x, north, found, about) - level_heights(level, x, south, found, about);
+        const I32x8 about = level->plain
+                                ? i32x8_set(0)
+                                : of_tiles(&level->tile->base, tiles_of(level, x, y), _mm256_castps_si256(found));
+        const F32x8 dx = level_heights(level, east, y, found, about) - level_heights(level, west, y, found, about);
+        const F32x8 dy = level_heights(level, x, north, found, about) - level_heights(level, x, south, found, about);
         const F32x8 rise = f32x8_sqrt(f32x8_fma(dx, dx, dy * dy)) * f32x8_set(level->step_m / (2 * arm_m));
         slope = f32x8_select(found, rise, slope);
     }
@@ -215,14 +214,14 @@ void invented_fields(SlowFields *out, const InventedGround *ground, const double
 {
     const uint64_t seed = ground->seed;
     out->middle = noise_eight(seed + 11, 83, x_m, y_m), out->patch = noise_eight(seed + 12, 17, x_m, y_m);
-    out->wet    = ground->ways ? ways_wet(ground->ways, x_m, y_m) : f32x8_set(0);
-    out->large  = noise_eight(seed + 10, 310, x_m, y_m);
-    out->slope  = slope;
+    out->wet = ground->ways ? ways_wet(ground->ways, x_m, y_m) : f32x8_set(0);
+    out->large = noise_eight(seed + 10, 310, x_m, y_m);
+    out->slope = slope;
     plot_bend_by(&out->bend_x, &out->bend_y, seed, x_m, y_m);
 }
 
-void invented_surfaces(int32_t surface[8], const InventedGround *ground, const double x_m[8],
-                              const double y_m[8], const SlowFields *slow, unsigned lanes)
+void invented_surfaces(int32_t surface[8], const InventedGround *ground, const double x_m[8], const double y_m[8],
+                       const SlowFields *slow, unsigned lanes)
 {
     static const double wild_wander = 0.02; /* some metres of the patches' borders */
     const uint64_t      seed = ground->seed;
@@ -233,18 +232,18 @@ void invented_surfaces(int32_t surface[8], const InventedGround *ground, const d
     F32x8       wild = f32x8_fma(f32x8_set(0.5), middle, slow->large);
     wild = f32x8_fma(f32x8_set(0.14), patch, wild);
     wild = f32x8_fma(f32x8_set(4), slope, wild);
-    F32x8       grown = f32x8_fma(f32x8_set(0.2), f32x8_max(wet, zero), wild) - f32x8_set(0.88);
-    F32x8       stony = f32x8_fma(f32x8_set(-0.3), wet, wild) - f32x8_set(1.24);
+    F32x8 grown = f32x8_fma(f32x8_set(0.2), f32x8_max(wet, zero), wild) - f32x8_set(0.88);
+    F32x8 stony = f32x8_fma(f32x8_set(-0.3), wet, wild) - f32x8_set(1.24);
     stony = f32x8_fma(f32x8_set(0.12), f32x8_clamp(slope * f32x8_set(5), 0, 1), stony);
-    F32x8       marsh = f32x8_fma(f32x8_set(0.35), middle, wet) - f32x8_set(0.92);
+    F32x8 marsh = f32x8_fma(f32x8_set(0.35), middle, wet) - f32x8_set(0.92);
     marsh = f32x8_fma(f32x8_set(0.22), patch, marsh);
     const F32x8 dry_from = f32x8_set(-0.1), soil_from = f32x8_set(-0.16);
 
-    double   i[8], j[8], bent_x[8], bent_y[8];
-    float    in_x[8], in_y[8], wander_of[8], patch_of[8];
-    int32_t  site_of[8], other_of[8], found[8], cell_of[8];
-    F32x8    x, y;
-    I32x8    class = i32x8_set(SURFACE_NONE), sites = i32x8_set(0), others = i32x8_set(0);
+    double  i[8], j[8], bent_x[8], bent_y[8];
+    float   in_x[8], in_y[8], wander_of[8], patch_of[8];
+    int32_t site_of[8], other_of[8], found[8], cell_of[8];
+    F32x8   x, y;
+    I32x8 class = i32x8_set(SURFACE_NONE), sites = i32x8_set(0), others = i32x8_set(0);
     unsigned near = 0, touched = 0;
     plot_bent(bent_x, bent_y, seed, x_m, y_m, slow->bend_x, slow->bend_y);
     plot_cells_of(i, j, &x, &y, bent_x, bent_y);
@@ -288,7 +287,7 @@ void invented_surfaces(int32_t surface[8], const InventedGround *ground, const d
     SurfaceClass on_border[8];
     unsigned     bordered = 0;
     for (unsigned left = near & ~f32x8_bits(rock); left; left &= left - 1) {
-        const int       k = __builtin_ctz(left);
+        const int k = __builtin_ctz(left);
         PlotCell *cell = plot_cell_at(seed, (int64_t)i[k], (int64_t)j[k]);
         on_border[k] = border_surface(&found[k], cell, seed, site_of[k], other_of[k], in_x[k], in_y[k], wander_of[k]);
         if (on_border[k] != SURFACE_NONE) bordered |= 1u << k;
@@ -329,14 +328,14 @@ void invented_nodes(SlowNodes *out, const InventedGround *ground, const Elevatio
                     const double *x_m, const double *y_m)
 {
     static const double margin_m = 0.01;
-    double low[2], high[2], x[8], y[8];
+    double              low[2], high[2], x[8], y[8];
     *out = (SlowNodes){.known = false};
     span_of(&low[0], &high[0], count, x_m);
     span_of(&low[1], &high[1], count, y_m);
     const double wide_m = high[0] - low[0] + 2 * margin_m, high_m = high[1] - low[1] + 2 * margin_m;
     out->east = wide_m > high_m;
     if (!(fmax(wide_m, high_m) <= slow_long_m && fmin(wide_m, high_m) <= slow_short_m)) return;
-    out->x0_m    = low[0] - margin_m, out->y0_m = low[1] - margin_m;
+    out->x0_m = low[0] - margin_m, out->y0_m = low[1] - margin_m;
     out->per_x_m = (out->east ? 3 : 1) / wide_m, out->per_y_m = (out->east ? 1 : 3) / high_m;
     for (int k = 0; k < 8; k++) {
         const int along = k & 3, across = k >> 2;
@@ -351,10 +350,10 @@ void invented_nodes(SlowNodes *out, const InventedGround *ground, const Elevatio
 static inline F32x8 between_nodes(F32x8 node, I32x8 cell, F32x8 along, F32x8 across)
 {
     const I32x8 one = i32x8_set(1), four = i32x8_set(4);
-    const F32x8 near = f32x8_lerp(_mm256_permutevar8x32_ps(node, cell),
-                                  _mm256_permutevar8x32_ps(node, i32x8_add(cell, one)), along);
-    const F32x8 far  = f32x8_lerp(_mm256_permutevar8x32_ps(node, i32x8_add(cell, four)),
-                                  _mm256_permutevar8x32_ps(node, i32x8_add(cell, i32x8_add(four, one))), along);
+    const F32x8 near =
+        f32x8_lerp(_mm256_permutevar8x32_ps(node, cell), _mm256_permutevar8x32_ps(node, i32x8_add(cell, one)), along);
+    const F32x8 far = f32x8_lerp(_mm256_permutevar8x32_ps(node, i32x8_add(cell, four)),
+                                 _mm256_permutevar8x32_ps(node, i32x8_add(cell, i32x8_add(four, one))), along);
     return f32x8_lerp(near, far, across);
 }
 
@@ -365,12 +364,12 @@ void invented_between(SlowFields *out, const SlowNodes *nodes, const double x_m[
         const double x = (x_m[k] - nodes->x0_m) * nodes->per_x_m, y = (y_m[k] - nodes->y0_m) * nodes->per_y_m;
         along[k] = nodes->east ? x : y, across[k] = nodes->east ? y : x;
     }
-    const F32x8 at = f32x8_clamp(f32x8_of_doubles(along), 0, 2.999f), whole = f32x8_floor(at);
-    const F32x8 u = at - whole, v = f32x8_clamp(f32x8_of_doubles(across), 0, 1);
-    const I32x8 cell = i32x8_truncate(whole);
+    const F32x8       at = f32x8_clamp(f32x8_of_doubles(along), 0, 2.999f), whole = f32x8_floor(at);
+    const F32x8       u = at - whole, v = f32x8_clamp(f32x8_of_doubles(across), 0, 1);
+    const I32x8       cell = i32x8_truncate(whole);
     const SlowFields *f = &nodes->field;
-    *out = (SlowFields){between_nodes(f->large, cell, u, v),  between_nodes(f->middle, cell, u, v),
-                        between_nodes(f->patch, cell, u, v),  between_nodes(f->slope, cell, u, v),
-                        between_nodes(f->wet, cell, u, v),    between_nodes(f->bend_x, cell, u, v),
+    *out = (SlowFields){between_nodes(f->large, cell, u, v), between_nodes(f->middle, cell, u, v),
+                        between_nodes(f->patch, cell, u, v), between_nodes(f->slope, cell, u, v),
+                        between_nodes(f->wet, cell, u, v),   between_nodes(f->bend_x, cell, u, v),
                         between_nodes(f->bend_y, cell, u, v)};
 }

@@ -11,7 +11,7 @@
 /* Eight coordinates in cells of a lattice: whole ones, and how far into them, 0 .. 1. */
 typedef struct Lattice {
     I32x8 cell;
-    F32x8    share;
+    F32x8 share;
 } Lattice;
 
 static inline Lattice lattice_of(const double x_m[8], double cells_per_m)
@@ -42,7 +42,7 @@ static inline F32x8 second_of_word(I32x8 h)
 
 /* The lattice cells of eight places in one wavelength, and their weights. */
 typedef struct NoiseCells {
-    I32x8 sw;   /* word of the south-western corner; the others are added */
+    I32x8 sw; /* word of the south-western corner; the others are added */
     F32x8 u, v;
     bool  same; /* one cell holds the eight: its four corners are mixed at once */
 } NoiseCells;
@@ -54,10 +54,11 @@ static inline NoiseCells noise_cells(uint64_t seed, double wavelength_m, const d
 {
     const Lattice x = lattice_of(x_m, 1 / wavelength_m), y = lattice_of(y_m, 1 / wavelength_m);
     const I32x8   key = i32x8_set((int)(uint32_t)(invented_hash(seed, 0, 0) >> 32));
-    const I32x8   sw = i32x8_add(key, i32x8_add(i32x8_mul(x.cell, i32x8_set((int)noise_east)),
-                                                i32x8_mul(y.cell, i32x8_set((int)noise_north))));
-    const F32x8   equal = i32x8_equal(sw, _mm256_permutevar8x32_epi32(sw, i32x8_set(0)));
-    return (NoiseCells){.sw = sw, .u = x.share * x.share * (f32x8_set(3) - f32x8_set(2) * x.share),
+    const I32x8   sw = i32x8_add(
+          key, i32x8_add(i32x8_mul(x.cell, i32x8_set((int)noise_east)), i32x8_mul(y.cell, i32x8_set((int)noise_north))));
+    const F32x8 equal = i32x8_equal(sw, _mm256_permutevar8x32_epi32(sw, i32x8_set(0)));
+    return (NoiseCells){.sw = sw,
+                        .u = x.share * x.share * (f32x8_set(3) - f32x8_set(2) * x.share),
                         .v = y.share * y.share * (f32x8_set(3) - f32x8_set(2) * y.share),
                         .same = f32x8_bits(equal) == 0xff};
 }
@@ -78,8 +79,7 @@ static inline F32x8 noise_between(const NoiseCells *c, F32x8 sw, F32x8 se, F32x8
 static inline F32x8 noise_between_same(const NoiseCells *c, F32x8 corner)
 {
     return noise_between(c, _mm256_permutevar8x32_ps(corner, i32x8_set(0)),
-                         _mm256_permutevar8x32_ps(corner, i32x8_set(1)),
-                         _mm256_permutevar8x32_ps(corner, i32x8_set(2)),
+                         _mm256_permutevar8x32_ps(corner, i32x8_set(1)), _mm256_permutevar8x32_ps(corner, i32x8_set(2)),
                          _mm256_permutevar8x32_ps(corner, i32x8_set(3)));
 }
 
@@ -126,9 +126,9 @@ typedef struct PlotCell {
     uint64_t seed;
     bool     known;
     float    x_m[plot_sites], y_m[plot_sites];
-    uint64_t id[plot_sites];                          /* of the field; several sites may share one */
-    int32_t  field[plot_sites];                       /* the same within this cell: the first site of the field */
-    int32_t  crop[plot_sites];                        /* SurfaceClass */
+    uint64_t id[plot_sites];                             /* of the field; several sites may share one */
+    int32_t  field[plot_sites];                          /* the same within this cell: the first site of the field */
+    int32_t  crop[plot_sites];                           /* SurfaceClass */
     float    across_x[plot_sites], across_y[plot_sites]; /* unit vector across its rows */
     PlotEdge edge[plot_sites][plot_sites];
 } PlotCell;
@@ -170,8 +170,8 @@ static inline void plot_bend_by(F32x8 *by_x, F32x8 *by_y, uint64_t seed, const d
 }
 
 /* Where eight places are on that plane. */
-static inline void plot_bent(double bent_x[8], double bent_y[8], uint64_t seed, const double x_m[8], const double y_m[8],
-                             F32x8 dx, F32x8 dy)
+static inline void plot_bent(double bent_x[8], double bent_y[8], uint64_t seed, const double x_m[8],
+                             const double y_m[8], F32x8 dx, F32x8 dy)
 {
     float by_x[8], by_y[8];
     f32x8_store(by_x, dx), f32x8_store(by_y, dy);
@@ -183,7 +183,8 @@ static inline void plot_bent(double bent_x[8], double bent_y[8], uint64_t seed, 
     }
 }
 
-static inline void plot_bend(double bent_x[8], double bent_y[8], uint64_t seed, const double x_m[8], const double y_m[8])
+static inline void plot_bend(double bent_x[8], double bent_y[8], uint64_t seed, const double x_m[8],
+                             const double y_m[8])
 {
     F32x8 dx, dy;
     plot_bend_by(&dx, &dy, seed, x_m, y_m);
@@ -196,9 +197,9 @@ PlotCell *plot_cell_at(uint64_t seed, int64_t i, int64_t j);
 /* Of the places in `left`, those in the same cell as the first of them. */
 static inline unsigned plot_cell_lanes(const double i[8], const double j[8], unsigned left)
 {
-    const int     first = __builtin_ctz(left);
+    const int   first = __builtin_ctz(left);
     const F64x4 fi = f64x4_set(i[first]), fj = f64x4_set(j[first]);
-    unsigned      same = 0;
+    unsigned    same = 0;
     for (int half = 0; half < 2; half++) {
         const F64x4 eq_i = f64x4_equal(f64x4_loadu(i + 4 * half), fi);
         const F64x4 eq_j = f64x4_equal(f64x4_loadu(j + 4 * half), fj);
@@ -221,7 +222,7 @@ static inline void plot_cells_of(double i[8], double j[8], F32x8 *x, F32x8 *y, c
 /* The nearest site of a cell to each of eight places from its corner; of equals the first. */
 static inline F32x8 plot_nearest(I32x8 *site, const PlotCell *cell, F32x8 x_m, F32x8 y_m)
 {
-    F32x8    least = f32x8_set(INFINITY);
+    F32x8 least = f32x8_set(INFINITY);
     I32x8 best = i32x8_set(0);
     for (int n = 0; n < plot_sites; n++) {
         const F32x8 dx = x_m - f32x8_set((double)cell->x_m[n]), dy = y_m - f32x8_set((double)cell->y_m[n]);
@@ -233,10 +234,7 @@ static inline F32x8 plot_nearest(I32x8 *site, const PlotCell *cell, F32x8 x_m, F
     return least;
 }
 
-static inline I32x8 plot_look(const int32_t value[plot_sites], I32x8 site)
-{
-    return i32x8_gather(value, site);
-}
+static inline I32x8 plot_look(const int32_t value[plot_sites], I32x8 site) { return i32x8_gather(value, site); }
 
 /* ---- classes ------------------------------------------------------------------------------ */
 
@@ -244,7 +242,7 @@ static inline I32x8 plot_look(const int32_t value[plot_sites], I32x8 site)
 typedef struct SlowFields {
     F32x8 large, middle, patch; /* noise of 310, 83 and 17 m */
     F32x8 slope, wet;
-    F32x8 bend_x, bend_y;       /* plot_bend_by */
+    F32x8 bend_x, bend_y; /* plot_bend_by */
 } SlowFields;
 
 /* Nodes about places of a few metres, two by four: between them the slow fields are linear. */
@@ -259,7 +257,7 @@ typedef struct SlowNodes {
 /* Lanes where there is ground: the outermost level encloses the others. NaN: none. */
 unsigned invented_grounded(const Elevation *elevation, const double x_m[8], const double y_m[8]);
 /* Slope of the terrain about the places, without the tilt of the plane far from its origin. */
-F32x8    invented_slopes(const Elevation *elevation, const double x_m[8], const double y_m[8], unsigned lanes);
+F32x8 invented_slopes(const Elevation *elevation, const double x_m[8], const double y_m[8], unsigned lanes);
 
 void invented_fields(SlowFields *out, const InventedGround *ground, const double x_m[8], const double y_m[8],
                      F32x8 slope);
@@ -270,6 +268,6 @@ void invented_nodes(SlowNodes *out, const InventedGround *ground, const Elevatio
 void invented_between(SlowFields *out, const SlowNodes *nodes, const double x_m[8], const double y_m[8]);
 /* Surface classes of these lanes. */
 void invented_surfaces(int32_t surface[8], const InventedGround *ground, const double x_m[8], const double y_m[8],
-                        const SlowFields *slow, unsigned lanes);
+                       const SlowFields *slow, unsigned lanes);
 
 #endif

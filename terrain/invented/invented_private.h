@@ -18,22 +18,19 @@
 
 /* Point numbers sorted by square cell; every query walks the 3 x 3 cells about a place. */
 typedef struct NearGrid {
-    double  cell_m;
-    int     count;
+    double   cell_m;
+    int      count;
     uint32_t mask;
-    int    *start; /* [mask + 2] first of each bucket in item */
-    int    *item;  /* [count] ascending within a bucket */
+    int     *start; /* [mask + 2] first of each bucket in item */
+    int     *item;  /* [count] ascending within a bucket */
 } NearGrid;
 
 Status near_grid_create(NearGrid *out, double cell_m, int count, const double *x_m, const double *y_m, size_t stride);
 void   near_grid_destroy(NearGrid *grid);
 
 /* Bucket of a cell: items [*first, *end) of grid->item. Other cells share buckets: check the distance. */
-void near_grid_bucket(const NearGrid *grid, int64_t ci, int64_t cj, int *first, int *end);
-static inline int64_t near_grid_cell(const NearGrid *grid, double x_m)
-{
-    return (int64_t)floor(x_m / grid->cell_m);
-}
+void                  near_grid_bucket(const NearGrid *grid, int64_t ci, int64_t cj, int *first, int *end);
+static inline int64_t near_grid_cell(const NearGrid *grid, double x_m) { return (int64_t)floor(x_m / grid->cell_m); }
 
 enum { lowest_ground_m = -1000 }; /* nothing on the ground or above it is lower; the Dead Sea's shore is at -430 */
 
@@ -50,10 +47,10 @@ typedef struct FixRow {
 } FixRow;
 
 typedef struct FixSet {
-    int     count;
-    FixRow *row;
-    int    *row_of_fix; /* [fix_count] row each fix shares, -1: dropped by itself */
-    NearGrid near;      /* of the rows */
+    int      count;
+    FixRow  *row;
+    int     *row_of_fix; /* [fix_count] row each fix shares, -1: dropped by itself */
+    NearGrid near;       /* of the rows */
 } FixSet;
 
 Status fix_set_create(FixSet *out, const LocalFrame *frame, const GroundFix *fix, int fix_count, double horizon_m);
@@ -90,17 +87,14 @@ void fit_posts(WorkLevel *level, int index, FixSet *fixes);
 
 /* Within this distance of an end at a fix the line sets no limit. Two diagonals of a cell and a little: closer, the
  * line would limit the posts of the fix. */
-static inline double taper_of_spacing_m(double spacing_m)
-{
-    return 3.5 * spacing_m;
-}
+static inline double taper_of_spacing_m(double spacing_m) { return 3.5 * spacing_m; }
 
 typedef struct LineSet {
-    int       count;
-    ClearLine *line;       /* the usable ones */
-    int       touch_count; /* positions where a line ends at a fix */
-    double   *touch;       /* [touch_count][3] */
-    NearGrid  near_touch;
+    int        count;
+    ClearLine *line;        /* the usable ones */
+    int        touch_count; /* positions where a line ends at a fix */
+    double    *touch;       /* [touch_count][3] */
+    NearGrid   near_touch;
 } LineSet;
 
 Status line_set_create(LineSet *out, const ClearLine *line, int count, const LocalFrame *frame, const FixSet *fixes,

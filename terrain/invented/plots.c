@@ -19,8 +19,8 @@ static SurfaceClass crop_of_field(uint64_t id, bool arable)
         double       arable, pasture; /* up to this share */
         SurfaceClass surface;
     } share[] = {
-        {0.38, 0.10, SURFACE_CROP},      {0.58, 0.15, SURFACE_PLOUGHED},  {0.70, 0.20, SURFACE_BARE_SOIL},
-        {0.88, 0.62, SURFACE_GRASS},     {1.00, 0.90, SURFACE_DRY_GRASS}, {1.00, 1.00, SURFACE_SCRUB},
+        {0.38, 0.10, SURFACE_CROP},  {0.58, 0.15, SURFACE_PLOUGHED},  {0.70, 0.20, SURFACE_BARE_SOIL},
+        {0.88, 0.62, SURFACE_GRASS}, {1.00, 0.90, SURFACE_DRY_GRASS}, {1.00, 1.00, SURFACE_SCRUB},
     };
     const double u = invented_unit(invented_hash(id, 7, 0));
     for (size_t n = 0; n < sizeof share / sizeof share[0]; n++)
@@ -39,7 +39,7 @@ static void find_cell(PlotCell *cell, uint64_t seed, int64_t ci, int64_t cj)
         const double   ux = (double)(h & 0xffffffffu) * 0x1p-32 - 0.5, uy = (double)(h >> 32) * 0x1p-32 - 0.5;
         cell->x_m[n] = (float)(((double)di + 0.5 + jitter * ux) * plot_m);
         cell->y_m[n] = (float)(((double)dj + 0.5 + jitter * uy) * plot_m);
-        cell->id[n]  = field_of_site(seed, i, j);
+        cell->id[n] = field_of_site(seed, i, j);
         cell->field[n] = n;
         for (int k = n - 1; k >= 0; k--)
             if (cell->id[k] == cell->id[n]) cell->field[n] = k;
@@ -60,7 +60,7 @@ static void find_cell(PlotCell *cell, uint64_t seed, int64_t ci, int64_t cj)
 PlotCell *plot_cell_at(uint64_t seed, int64_t i, int64_t j)
 {
     static _Thread_local PlotCell kept[plot_cells_kept];
-    PlotCell *cell = &kept[(uint64_t)(i + 11 * j) % plot_cells_kept];
+    PlotCell                     *cell = &kept[(uint64_t)(i + 11 * j) % plot_cells_kept];
     if (!cell->known || cell->i != i || cell->j != j || cell->seed != seed) find_cell(cell, seed, i, j);
     return cell;
 }
@@ -74,12 +74,14 @@ static uint64_t block_of(const PlotCell *cell, uint64_t seed, int site)
 /* The line between two sites: what all its places share. */
 static PlotEdge find_edge(const PlotCell *cell, uint64_t seed, int site, int other)
 {
-    const double dx = (double)(cell->x_m[other] - cell->x_m[site]), dy = (double)(cell->y_m[other] - cell->y_m[site]);
+    const double   dx = (double)(cell->x_m[other] - cell->x_m[site]), dy = (double)(cell->y_m[other] - cell->y_m[site]);
     const uint64_t one = block_of(cell, seed, site), two = block_of(cell, seed, other);
     const double   u = invented_unit(invented_hash(seed + 6, (int64_t)(cell->id[other] ^ cell->id[site]), 0));
     const double   v = invented_unit(invented_hash(seed + 9, (int64_t)(one ^ two), 0));
-    return (PlotEdge){.known = true, .first = cell->id[site] < cell->id[other], .track = one != two ? v < 0.7 : u < 0.05,
-                      .hedge = u > 0.66, .apart_m = fmax(sqrt(dx * dx + dy * dy), 1e-3)};
+    return (PlotEdge){.known = true,
+                      .first = cell->id[site] < cell->id[other],
+                      .track = one != two ? v < 0.7 : u<0.05, .hedge = u> 0.66,
+                      .apart_m = fmax(sqrt(dx * dx + dy * dy), 1e-3)};
 }
 
 PlotBorder plot_border(PlotCell *cell, uint64_t seed, int site, int other, float x_m, float y_m)
@@ -88,10 +90,10 @@ PlotBorder plot_border(PlotCell *cell, uint64_t seed, int site, int other, float
     const double own_x = (double)(x_m - cell->x_m[site]), own_y = (double)(y_m - cell->y_m[site]);
     const double off_x = (double)(x_m - cell->x_m[other]), off_y = (double)(y_m - cell->y_m[other]);
     const double more = off_x * off_x + off_y * off_y - (own_x * own_x + own_y * own_y);
-    PlotEdge *edge = &cell->edge[site][other];
+    PlotEdge    *edge = &cell->edge[site][other];
     if (!edge->known) *edge = find_edge(cell, seed, site, other);
-    return (PlotBorder){.away_m = 0.5 * more / edge->apart_m, .first = edge->first, .track = edge->track,
-                        .hedge = edge->hedge};
+    return (PlotBorder){
+        .away_m = 0.5 * more / edge->apart_m, .first = edge->first, .track = edge->track, .hedge = edge->hedge};
 }
 
 bool plot_border_about(PlotBorder *out, double away_from[2], uint64_t *fields, uint64_t seed, double x_m, double y_m)

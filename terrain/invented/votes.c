@@ -29,11 +29,11 @@ typedef struct ConsensusPoint {
 
 /* The positions of all source entities, sorted by entity. */
 typedef struct Assembly {
-    int        voters, places;
-    int       *first; /* [voters + 2] of place; voter 0 has none */
+    int             voters, places;
+    int            *first; /* [voters + 2] of place; voter 0 has none */
     ConsensusPoint *place;
-    uint8_t   *out;   /* [voters + 1] rejected */
-    NearGrid   near;
+    uint8_t        *out; /* [voters + 1] rejected */
+    NearGrid        near;
 } Assembly;
 
 /* ---- places ------------------------------------------------------------------------------- */
@@ -140,7 +140,7 @@ typedef struct Plane {
 static void weigh(Plane *plane, const Neighbour *q, int count)
 {
     static const double per_slope = 0.3;
-    double all = 0, lost = 0;
+    double              all = 0, lost = 0;
     plane->support_m = reach_m;
     for (int n = 0; n < count; n++) {
         const double off_m = fabs(plane->z_m + plane->slope[0] * q[n].d[0] + plane->slope[1] * q[n].d[1] - q[n].d[2]);
@@ -154,7 +154,7 @@ static void weigh(Plane *plane, const Neighbour *q, int count)
 
 static bool plane_through(Plane *out, const Neighbour *a, const Neighbour *b, const Neighbour *c)
 {
-    double slope[2];
+    double       slope[2];
     const double ux = b->d[0] - a->d[0], uy = b->d[1] - a->d[1], uz = b->d[2] - a->d[2];
     if (!c) { /* along the line, level across it */
         const double square = ux * ux + uy * uy;
@@ -191,10 +191,10 @@ static int candidates(Plane plane[most_planes], const Neighbour *q, int count)
 static double contradiction(Assembly *a, const ConsensusPoint *from, double *nearest_m)
 {
     static const double benefit = 0.25;
-    Neighbour q[most_neighbours];
-    Plane     plane[most_planes];
-    double    best = INFINITY, least = INFINITY;
-    const int count = find_neighbours(q, a, from);
+    Neighbour           q[most_neighbours];
+    Plane               plane[most_planes];
+    double              best = INFINITY, least = INFINITY;
+    const int           count = find_neighbours(q, a, from);
     *nearest_m = count ? q[0].away_m : INFINITY;
     if (count < 2) return 0;
     const int planes = candidates(plane, q, count);
@@ -284,8 +284,8 @@ Status invented_consensus_height(double *above_m, double *nearest_m, const doubl
     if (a.voters < 0) return STATUS_BAD_VALUE;
     const Status status = assemble(&a, fix, fix_count);
     for (int n = 0; status == STATUS_OK && n < count; n++) {
-        Neighbour q[most_neighbours];
-        Plane     plane[most_planes];
+        Neighbour      q[most_neighbours];
+        Plane          plane[most_planes];
         ConsensusPoint from = {.voter = 0};
         memcpy(from.p, p_enu[n], sizeof from.p);
         const int neighbours = find_neighbours(q, &a, &from), planes = candidates(plane, q, neighbours);

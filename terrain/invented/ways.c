@@ -28,17 +28,23 @@ Status ways_append(Ways *ways, WayKind kind, const double (*p)[2], int count, do
     if (count < 2 || ways->ways >= UINT16_MAX) return STATUS_OK;
     for (int n = 1; n < count; n++) total_m += hypot(p[n][0] - p[n - 1][0], p[n][1] - p[n - 1][1]);
     if (!(total_m > 0)) return STATUS_OK;
-    const Status status = ways_reserve((void **)&ways->segment, &ways->segments_room, ways->segments + count,
-                                       sizeof *ways->segment);
+    const Status status =
+        ways_reserve((void **)&ways->segment, &ways->segments_room, ways->segments + count, sizeof *ways->segment);
     if (status != STATUS_OK) return status;
     const double widens = (half_end_m - half_m) / total_m;
     for (int n = 1; n < count; n++) {
         const double dx = p[n][0] - p[n - 1][0], dy = p[n][1] - p[n - 1][1], length_m = hypot(dx, dy);
         if (length_m < 0.01) continue;
         ways->segment[ways->segments++] = (WaySegment){
-            .x_m = (float)p[n - 1][0], .y_m = (float)p[n - 1][1], .dx = (float)(dx / length_m),
-            .dy = (float)(dy / length_m), .length_m = (float)length_m, .along_m = (float)along_m,
-            .half_m = (float)(half_m + widens * along_m), .widens = (float)widens, .way = (uint16_t)ways->ways,
+            .x_m = (float)p[n - 1][0],
+            .y_m = (float)p[n - 1][1],
+            .dx = (float)(dx / length_m),
+            .dy = (float)(dy / length_m),
+            .length_m = (float)length_m,
+            .along_m = (float)along_m,
+            .half_m = (float)(half_m + widens * along_m),
+            .widens = (float)widens,
+            .way = (uint16_t)ways->ways,
             .kind = (uint8_t)kind,
         };
         along_m += length_m;
@@ -115,7 +121,7 @@ static Box item_box(const Ways *ways, WayItem type, int n)
 {
     if (type == WAY_ITEM_SEGMENT) {
         const WaySegment *s = &ways->segment[n];
-        const double x = (double)s->x_m, y = (double)s->y_m, dx = (double)(s->dx * s->length_m),
+        const double      x = (double)s->x_m, y = (double)s->y_m, dx = (double)(s->dx * s->length_m),
                      dy = (double)(s->dy * s->length_m);
         const double reach = (double)fmaxf(s->half_m, s->half_m + s->widens * s->length_m) + beside_m[s->kind];
         return (Box){fmin(x, x + dx) - reach, fmax(x, x + dx) + reach, fmin(y, y + dy) - reach,
@@ -245,7 +251,9 @@ static bool ways_nearest(WayPlace *out, const Ways *ways, int32_t cell, double x
         least = beyond_m, best = s, across = across_m, along = along_m;
     }
     if (!best) return false;
-    *out = (WayPlace){.kind = (WayKind)best->kind, .way = best->way, .across_m = across,
+    *out = (WayPlace){.kind = (WayKind)best->kind,
+                      .way = best->way,
+                      .across_m = across,
                       .along_m = (double)best->along_m + along,
                       .half_m = (double)best->half_m + (double)best->widens * along,
                       .direction = {(double)best->dx, (double)best->dy}};
@@ -282,7 +290,8 @@ static SurfaceClass way_surface(WayKind kind, double beyond_m, double half_m, fl
     case WAY_GULLY:
         if (beyond_m + 0.5 * w < 0) return patch > 0.35f ? SURFACE_ROCK : SURFACE_BARE_SOIL;
         return patch > -0.2f && beyond_m + 1.2 * w < 1.5 + (double)patch ? SURFACE_SCRUB : SURFACE_NONE;
-    default: return SURFACE_NONE;
+    default:
+        return SURFACE_NONE;
     }
 }
 
@@ -323,7 +332,8 @@ SurfaceClass ways_surface(const Ways *ways, int32_t cell, double x_m, double y_m
     for (int n = ways->start[cell]; n < ways->start[cell + 1]; n++) {
         const uint32_t number = ways->item[n] & 0xfffffff;
         switch ((WayItem)(ways->item[n] >> 28)) {
-        case WAY_ITEM_SEGMENT: break;
+        case WAY_ITEM_SEGMENT:
+            break;
         case WAY_ITEM_POND: {
             const Pond  *p = &ways->pond[number];
             const double dx = x - (double)p->x_m, dy = y - (double)p->y_m;
@@ -361,7 +371,7 @@ SurfaceClass ways_surface(const Ways *ways, int32_t cell, double x_m, double y_m
 Status ways_create(Ways **out, const WaysGround *ground)
 {
     const ElevationLevel *level = &ground->elevation->level[0];
-    Ways *ways = calloc(1, sizeof *ways);
+    Ways                 *ways = calloc(1, sizeof *ways);
     *out = NULL;
     if (!ways) return STATUS_NO_MEMORY;
     ways->x0_m = level->x0_m, ways->y0_m = level->y0_m;

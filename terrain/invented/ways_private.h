@@ -16,7 +16,7 @@ enum { pond_radii = 32, ways_most_villages = 64, clear_radius_m = 8 };
 typedef struct WaySegment {
     float    x_m, y_m, dx, dy; /* start, and unit vector along it */
     float    length_m, along_m;
-    float    half_m, widens;   /* half the width at its start, and its growth a metre */
+    float    half_m, widens; /* half the width at its start, and its growth a metre */
     uint16_t way;
     uint8_t  kind;
 } WaySegment;
@@ -34,27 +34,28 @@ typedef enum WayItem { WAY_ITEM_SEGMENT, WAY_ITEM_POND, WAY_ITEM_PLOT, WAY_ITEM_
 
 struct Ways {
     double      x0_m, y0_m, side_m[2];
-    double      index_m;            /* side of an index cell */
+    double      index_m; /* side of an index cell */
     int         nx, ny;
-    int32_t    *start;              /* [nx ny + 1] first of each cell in item */
-    uint32_t   *item;               /* WayItem << 28 | number */
+    int32_t    *start; /* [nx ny + 1] first of each cell in item */
+    uint32_t   *item;  /* WayItem << 28 | number */
     int         segments, ponds, plots, clears, ways, villages;
     int         segments_room, ponds_room, plots_room, clears_room;
     WaySegment *segment;
     Pond       *pond;
     HousePlot  *plot;
     ClearPlace *clear;
-    NearGrid    clear_near;         /* of the clear places, while ways are laid */
-    NearGrid    stream_near;        /* of the starts of streams' segments, while roads are laid */
+    NearGrid    clear_near;  /* of the clear places, while ways are laid */
+    NearGrid    stream_near; /* of the starts of streams' segments, while roads are laid */
     double      village[ways_most_villages][2];
-    /* coarse grid: how wet (hollows, valleys) or worn (crests) the ground is, -127 .. 127: the four corners of a cell */
-    double      coarse_m;
-    int         cx, cy;             /* posts */
-    uint32_t   *wet;                /* [cy][cx] corners SW, SE, NW, NE from the lowest octet */
+    /* coarse grid: how wet (hollows, valleys) or worn (crests) the ground is, -127 .. 127: the four corners of a cell
+     */
+    double    coarse_m;
+    int       cx, cy; /* posts */
+    uint32_t *wet;    /* [cy][cx] corners SW, SE, NW, NE from the lowest octet */
     /* while ways are laid */
-    float      *height;             /* [cy][cx] above the ellipsoid's curve */
-    float      *flow;               /* [cy][cx] cells that drain through this one */
-    int32_t    *road_vertex;        /* [cy][cx] a segment of a road in this cell, -1: none */
+    float   *height;      /* [cy][cx] above the ellipsoid's curve */
+    float   *flow;        /* [cy][cx] cells that drain through this one */
+    int32_t *road_vertex; /* [cy][cx] a segment of a road in this cell, -1: none */
 };
 
 Status ways_lay_streams(Ways *ways, const WaysGround *ground);
@@ -64,13 +65,13 @@ Status ways_lay_roads(Ways *ways, const WaysGround *ground);
 /* Villages: on gentle dry land without vehicles, one in most squares of this side, chosen before there are roads; and,
  * once roads join them, their lanes and plots. */
 static const double ways_village_grid_m = 2600;
-Status ways_choose_villages(Ways *ways, const WaysGround *ground);
-Status ways_lay_villages(Ways *ways, const WaysGround *ground);
+Status              ways_choose_villages(Ways *ways, const WaysGround *ground);
+Status              ways_lay_villages(Ways *ways, const WaysGround *ground);
 
 /* A line from the square's corner. */
 typedef struct WayLine {
     double (*p)[2];
-    int    count, room;
+    int count, room;
 } WayLine;
 
 Status ways_line_add(WayLine *line, double x, double y);

@@ -28,7 +28,7 @@ Status ways_draw_spline(WayLine *out, const WayLine *control)
         for (int m = 0; m < 4; m++) /* mirrored beyond the ends */
             for (int a = 0; a < 2; a++) {
                 const int i = k - 1 + m;
-                c[m][a] = i < 0 ? 2 * control->p[0][a] - control->p[-i < n ? -i : n - 1][a]
+                c[m][a] = i < 0    ? 2 * control->p[0][a] - control->p[-i < n ? -i : n - 1][a]
                           : i >= n ? 2 * control->p[n - 1][a] - control->p[2 * n - 2 - i > 0 ? 2 * n - 2 - i : 0][a]
                                    : control->p[i][a];
             }
@@ -62,7 +62,7 @@ Status ways_lay_line(Ways *ways, WayKind kind, WayLine *line, double half_m)
     Status              status = STATUS_OK;
     for (int n = 0, from = 0; n <= line->count && status == STATUS_OK; n++) {
         if (n < line->count && !ways_vehicle_near(ways, line->p[n][0], line->p[n][1], near_m)) continue;
-        status = ways_append(ways, kind, (const double (*)[2])line->p + from, n - from, half_m, half_m);
+        status = ways_append(ways, kind, (const double(*)[2])line->p + from, n - from, half_m, half_m);
         from = n + 1;
     }
     for (int n = first; n < ways->segments && kind == WAY_ROAD; n++)
@@ -78,17 +78,14 @@ typedef struct Open {
 } Open;
 
 typedef struct Search {
-    float *cost;    /* [posts] so far */
-    int   *from;    /* [posts] */
-    float *dear;    /* [posts] factor of a post: vehicles, water */
+    float *cost; /* [posts] so far */
+    int   *from; /* [posts] */
+    float *dear; /* [posts] factor of a post: vehicles, water */
     Open  *heap;
     int    heap_count, heap_room;
 } Search;
 
-static void search_free(Search *s)
-{
-    free(s->cost), free(s->from), free(s->dear), free(s->heap);
-}
+static void search_free(Search *s) { free(s->cost), free(s->from), free(s->dear), free(s->heap); }
 
 static Status heap_push(Search *s, Open o)
 {
@@ -115,15 +112,12 @@ static Open heap_pop(Search *s)
 }
 
 /* Whole posts to a neighbour: sixteen directions, so that routes turn by half a right angle's half. */
-static const int8_t neighbour[16][2] = {{1, 0},  {0, 1},  {-1, 0}, {0, -1}, {1, 1},  {-1, 1}, {-1, -1}, {1, -1},
-                                        {2, 1},  {1, 2},  {-1, 2}, {-2, 1}, {-2, -1}, {-1, -2}, {1, -2}, {2, -1}};
+static const int8_t neighbour[16][2] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}, {1, 1},   {-1, 1},  {-1, -1}, {1, -1},
+                                        {2, 1}, {1, 2}, {-1, 2}, {-2, 1}, {-2, -1}, {-1, -2}, {1, -2},  {2, -1}};
 
 static const double least_cost = 0.3; /* of a post's distance: along a road */
 
-static double root_of(int di, int dj)
-{
-    return sqrt((double)(di * di + dj * dj));
-}
+static double root_of(int di, int dj) { return sqrt((double)(di * di + dj * dj)); }
 
 /* Cheapest route between two posts; path from goal to start. Returns its length, 0: none. */
 static Status find_route(int **path, int *count, Search *s, const Ways *ways, int start, int goal)
@@ -134,10 +128,10 @@ static Status find_route(int **path, int *count, Search *s, const Ways *ways, in
     for (int n = 0; n < posts; n++) s->cost[n] = INFINITY;
     s->heap_count = 0;
     s->cost[start] = 0, s->from[start] = -1;
-    const int    gi = goal % ways->cx, gj = goal / ways->cx;
-    double       run_of[16];
+    const int gi = goal % ways->cx, gj = goal / ways->cx;
+    double    run_of[16];
     for (int n = 0; n < 16; n++) run_of[n] = root_of(neighbour[n][0], neighbour[n][1]);
-    Status       status = heap_push(s, (Open){0, start});
+    Status status = heap_push(s, (Open){0, start});
     while (s->heap_count && status == STATUS_OK) {
         const Open o = heap_pop(s);
         const int  at = o.at, i = at % ways->cx, j = at / ways->cx;
@@ -151,8 +145,8 @@ static Status find_route(int **path, int *count, Search *s, const Ways *ways, in
             const double slope = fabs((double)(ways->height[to] - ways->height[at])) / (run * ways->coarse_m);
             const bool   road = ways->road_vertex[at] >= 0 && ways->road_vertex[to] >= 0;
             const double each = 1 + 400 * slope * slope + 8 * slope;
-            const double cost = (double)s->cost[at] +
-                                run * each * (road ? least_cost : 0.5 * (double)(s->dear[at] + s->dear[to]));
+            const double cost =
+                (double)s->cost[at] + run * each * (road ? least_cost : 0.5 * (double)(s->dear[at] + s->dear[to]));
             if (!(cost < (double)s->cost[to])) continue;
             s->cost[to] = (float)cost, s->from[to] = at;
             status = heap_push(s, (Open){(float)(cost + least_cost * root_of(gi - ni, gj - nj)), to});
@@ -172,7 +166,7 @@ static Status lay_route(Ways *ways, const int *path, int count)
 {
     enum { skip = 3 };
     WayLine   control = {0}, line = {0};
-    Status status = STATUS_OK;
+    Status    status = STATUS_OK;
     const int before = ways->segments;
     for (int n = 0; n < count && status == STATUS_OK;) {
         if (ways->road_vertex[path[n]] >= 0 && ways->road_vertex[path[n]] < before &&
@@ -185,9 +179,9 @@ static Status lay_route(Ways *ways, const int *path, int count)
         if (end == count) end--;
         control.count = 0;
         for (int k = n; k <= end && status == STATUS_OK; k++) {
-            const bool   tip = k == n || k == end;
-            const int    met = tip ? ways->road_vertex[path[k]] : -1;
-            double       x = (path[k] % ways->cx) * ways->coarse_m, y = (path[k] / ways->cx) * ways->coarse_m;
+            const bool tip = k == n || k == end;
+            const int  met = tip ? ways->road_vertex[path[k]] : -1;
+            double     x = (path[k] % ways->cx) * ways->coarse_m, y = (path[k] / ways->cx) * ways->coarse_m;
             if (met >= 0) x = (double)ways->segment[met].x_m, y = (double)ways->segment[met].y_m;
             if (tip || ((k - n) % skip == 0 && end - k >= 2)) status = ways_line_add(&control, x, y);
         }
@@ -215,10 +209,10 @@ static Status join(Ways *ways, Search *s, int start, int goal)
 static Status lay_columns(Ways *ways, const WaysGround *ground)
 {
     static const double longest_m = 160, least_m = 10, shortest_route_m = 120, beside_route_m = 7;
-    WayLine     control = {0}, line = {0};
-    Status   status = STATUS_OK;
-    uint32_t mask = (1 << 16) - 1, used = 0;
-    uint64_t *taken = calloc((size_t)mask + 1, sizeof *taken);
+    WayLine             control = {0}, line = {0};
+    Status              status = STATUS_OK;
+    uint32_t            mask = (1 << 16) - 1, used = 0;
+    uint64_t           *taken = calloc((size_t)mask + 1, sizeof *taken);
     if (!taken) return STATUS_NO_MEMORY;
     for (int n = 0; n < ground->fix_count && status == STATUS_OK;) {
         const GroundFix *fix = ground->fix;
@@ -241,8 +235,8 @@ static Status lay_columns(Ways *ways, const WaysGround *ground)
                 length_m += step;
             }
             /* another's track */
-            const uint64_t key = ((uint64_t)(int64_t)(x / beside_route_m) << 32 |
-                                  (uint64_t)(int64_t)(y / beside_route_m)) + 1;
+            const uint64_t key =
+                ((uint64_t)(int64_t)(x / beside_route_m) << 32 | (uint64_t)(int64_t)(y / beside_route_m)) + 1;
             uint32_t at = (uint32_t)invented_hash(2, (int64_t)key, 0) & mask;
             while (taken[at] && taken[at] >> 1 != key) at = (at + 1) & mask;
             if (taken[at]) break;
@@ -253,8 +247,8 @@ static Status lay_columns(Ways *ways, const WaysGround *ground)
             for (int k = 0; k < control.count && status == STATUS_OK; k++) /* through the reports themselves */
                 status = ways_line_add(&line, control.p[k][0], control.p[k][1]);
             if (status == STATUS_OK)
-                status = ways_append(ways, WAY_TRACK, (const double (*)[2])line.p, line.count, track_half_m,
-                                     track_half_m);
+                status =
+                    ways_append(ways, WAY_TRACK, (const double(*)[2])line.p, line.count, track_half_m, track_half_m);
             for (int k = 1; k < control.count && used < mask / 2; k++) {
                 const double *a = control.p[k - 1], *b = control.p[k];
                 const int     parts = (int)ceil(hypot(b[0] - a[0], b[1] - a[1]) / (0.5 * beside_route_m));
@@ -292,8 +286,8 @@ static Status join_villages(Ways *ways, Search *s)
         for (int a = 0; a < ways->villages; a++)
             for (int b = 0; b < ways->villages && joined[a]; b++) {
                 if (joined[b]) continue;
-                const double apart = hypot(ways->village[a][0] - ways->village[b][0],
-                                           ways->village[a][1] - ways->village[b][1]);
+                const double apart =
+                    hypot(ways->village[a][0] - ways->village[b][0], ways->village[a][1] - ways->village[b][1]);
                 if (apart < least) least = apart, from = a, to = b;
             }
         if (to < 0) break;
@@ -311,8 +305,8 @@ static Status join_villages(Ways *ways, Search *s)
     }
     for (int a = 0; a < ways->villages && status == STATUS_OK; a++)
         for (int b = a + 1; b < ways->villages && status == STATUS_OK; b++) {
-            const double apart = hypot(ways->village[a][0] - ways->village[b][0],
-                                       ways->village[a][1] - ways->village[b][1]);
+            const double apart =
+                hypot(ways->village[a][0] - ways->village[b][0], ways->village[a][1] - ways->village[b][1]);
             if (apart < 1.15 * ways_village_grid_m) status = join(ways, s, post[a], post[b]);
         }
     return status;
@@ -321,7 +315,8 @@ static Status join_villages(Ways *ways, Search *s)
 static Status search_create(Search *s, const Ways *ways, const WaysGround *ground)
 {
     const int posts = ways->cx * ways->cy;
-    *s = (Search){.cost = malloc((size_t)posts * sizeof *s->cost), .from = malloc((size_t)posts * sizeof *s->from),
+    *s = (Search){.cost = malloc((size_t)posts * sizeof *s->cost),
+                  .from = malloc((size_t)posts * sizeof *s->from),
                   .dear = malloc((size_t)posts * sizeof *s->dear)};
     if (!s->cost || !s->from || !s->dear) return STATUS_NO_MEMORY;
     for (int n = 0; n < posts; n++) {
@@ -338,7 +333,7 @@ static Status search_create(Search *s, const Ways *ways, const WaysGround *groun
     for (int n = 0; n < ways->ponds; n++)
         for (int k = 0; k < 9; k++)
             s->dear[ways_post_near(ways, (double)ways->pond[n].x_m + 60 * (k % 3 - 1),
-                              (double)ways->pond[n].y_m + 60 * (k / 3 - 1))] += 30;
+                                   (double)ways->pond[n].y_m + 60 * (k / 3 - 1))] += 30;
     return STATUS_OK;
 }
 

@@ -174,8 +174,7 @@ static void follow(Trace *t, const Ways *ways, const WaysGround *ground, const L
             t->end = TRACE_RIM;
             return;
         }
-        if (ground->coast->sea_count &&
-            coast_at(ground->coast, ways->x0_m + x, ways->y0_m + y) == COAST_SEA) {
+        if (ground->coast->sea_count && coast_at(ground->coast, ways->x0_m + x, ways->y0_m + y) == COAST_SEA) {
             t->end = TRACE_SEA;
             return;
         }
@@ -233,7 +232,7 @@ static Status lay_pond(Ways *ways, const WaysGround *ground, const double p[2])
         pond.radius_m[n] = (float)r;
     }
     for (int pass = 0; pass < 2; pass++) { /* no spikes */
-        float before = pond.radius_m[pond_radii - 1];
+        float       before = pond.radius_m[pond_radii - 1];
         const float first = pond.radius_m[0];
         for (int n = 0; n < pond_radii; n++) {
             const float here = pond.radius_m[n], after = n + 1 < pond_radii ? pond.radius_m[n + 1] : first;
@@ -280,7 +279,7 @@ static Status lay_stream(Ways *ways, const WaysGround *ground, Laid *laid, Trace
     const double half_m = 0.5, end_m = clamp(0.5 + 0.12 * sqrt(flow_at(ways, t->p[last])), 0.6, 3.2);
     const int    first = ways->segments;
     const Status status =
-        ways_append(ways, WAY_STREAM, (const double (*)[2])t->p + from, t->count - from, half_m, end_m);
+        ways_append(ways, WAY_STREAM, (const double(*)[2])t->p + from, t->count - from, half_m, end_m);
     for (int n = first; n < ways->segments; n++)
         laid_put(laid, (double)ways->segment[n].x_m, (double)ways->segment[n].y_m, n);
     return status;
@@ -300,7 +299,7 @@ static Status lay_gully(Ways *ways, const WaysGround *ground, Laid *laid, Trace 
     }
     if (count < 8) return STATUS_OK;
     const int    first = ways->segments;
-    const Status status = ways_append(ways, WAY_GULLY, (const double (*)[2])t->p, count, 0.4, 1.4);
+    const Status status = ways_append(ways, WAY_GULLY, (const double(*)[2])t->p, count, 0.4, 1.4);
     for (int n = first; n < ways->segments; n++)
         laid_put(laid, (double)ways->segment[n].x_m, (double)ways->segment[n].y_m, n);
     return status;
@@ -321,9 +320,9 @@ static bool is_head(const Ways *ways, int at, double limit)
 Status ways_lay_streams(Ways *ways, const WaysGround *ground)
 {
     static const double gully_slope = 0.12;
-    Laid   laid = {.mask = (1 << 17) - 1};
-    Trace *t = malloc(sizeof *t);
-    Status status = gather_flow(ways, ground);
+    Laid                laid = {.mask = (1 << 17) - 1};
+    Trace              *t = malloc(sizeof *t);
+    Status              status = gather_flow(ways, ground);
     if (status == STATUS_OK) status = measure_wet(ways);
     laid.key = calloc((size_t)laid.mask + 1, sizeof *laid.key);
     laid.segment = calloc((size_t)laid.mask + 1, sizeof *laid.segment);

@@ -27,7 +27,7 @@ static void choose_villages(Ways *ways, const WaysGround *ground)
             for (int m = 0; m < 9 && !busy; m++)
                 busy = ways_vehicle_near(ways, x + 130 * (m % 3 - 1), y + 130 * (m / 3 - 1), vehicle_m) ||
                        (ground->coast->sea_count && coast_at(ground->coast, ways->x0_m + x + 250 * (m % 3 - 1),
-                                                            ways->y0_m + y + 250 * (m / 3 - 1)) != COAST_LAND);
+                                                             ways->y0_m + y + 250 * (m / 3 - 1)) != COAST_LAND);
             if (busy) continue;
             const double arm_m = 120, here = ways_height(ways, ground, x, y);
             const double dx = ways_height(ways, ground, x + arm_m, y) - ways_height(ways, ground, x - arm_m, y);
@@ -78,8 +78,7 @@ static bool stream_near(const Ways *ways, double x, double y, double near_m)
             }
         }
     for (int n = 0; n < ways->ponds; n++)
-        if (hypot((double)ways->pond[n].x_m - x, (double)ways->pond[n].y_m - y) <
-            near_m + (double)ways->pond[n].most_m)
+        if (hypot((double)ways->pond[n].x_m - x, (double)ways->pond[n].y_m - y) < near_m + (double)ways->pond[n].most_m)
             return true;
     return false;
 }
@@ -102,9 +101,9 @@ static double other_road_m(const Ways *ways, const int *near, int count, int way
 static Status lay_plots(Ways *ways, const WaysGround *ground, const double centre[2], double radius_m)
 {
     static const double back_m = 1.4; /* of the way's edge */
-    int    near[4096], nears = 0;
-    const int first_plot = ways->plots;
-    Status status = STATUS_OK;
+    int                 near[4096], nears = 0;
+    const int           first_plot = ways->plots;
+    Status              status = STATUS_OK;
     for (int n = 0; n < ways->segments && nears < 4096; n++)
         if (ways->segment[n].kind <= WAY_LANE &&
             hypot((double)ways->segment[n].x_m - centre[0], (double)ways->segment[n].y_m - centre[1]) < radius_m + 80)
@@ -119,10 +118,10 @@ static Status lay_plots(Ways *ways, const WaysGround *ground, const double centr
             if ((double)s->along_m < next[side]) continue;
             const uint64_t h =
                 invented_hash(ground->seed + 61, (int64_t)(s->x_m * 16), (int64_t)(s->y_m * 16) * 2 + side);
-            const double   u = invented_unit(h), v = invented_unit(invented_hash(h, 1, 0));
-            const double   z = invented_unit(invented_hash(h, 2, 0));
-            HousePlot      p = {.half_along_m = 9 + 6 * u, .half_across_m = 15 + 9 * v};
-            const double   sign = side ? -1 : 1, off_m = (double)s->half_m + back_m + p.half_across_m;
+            const double u = invented_unit(h), v = invented_unit(invented_hash(h, 1, 0));
+            const double z = invented_unit(invented_hash(h, 2, 0));
+            HousePlot    p = {.half_along_m = 9 + 6 * u, .half_across_m = 15 + 9 * v};
+            const double sign = side ? -1 : 1, off_m = (double)s->half_m + back_m + p.half_across_m;
             p.direction[0] = (double)s->dx, p.direction[1] = (double)s->dy;
             const double x = (double)s->x_m + p.half_along_m * (double)s->dx - sign * off_m * (double)s->dy;
             const double y = (double)s->y_m + p.half_along_m * (double)s->dy + sign * off_m * (double)s->dx;
@@ -152,7 +151,7 @@ static Status lay_plots(Ways *ways, const WaysGround *ground, const double centr
 /* Lanes that leave the roads about a village, bent, to the left and right in turn; some meet at their ends. */
 static Status lay_lanes(Ways *ways, const WaysGround *ground, const double centre[2], double radius_m)
 {
-    WayLine      control = {0}, line = {0};
+    WayLine   control = {0}, line = {0};
     Status    status = STATUS_OK;
     const int roads = ways->segments;
     int       lanes = 0;

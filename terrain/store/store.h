@@ -16,7 +16,7 @@
 /* A raster in ENU, row 0 southernmost; nx 0: none. */
 typedef struct StoreGrid {
     int    nx, ny;
-    double x0_m, y0_m, cell_m;    /* south-west corner of the first cell */
+    double x0_m, y0_m, cell_m; /* south-west corner of the first cell */
 } StoreGrid;
 
 typedef struct StoreLevel {
@@ -33,18 +33,18 @@ typedef struct StoreSource {
 } StoreSource;
 
 typedef struct StorePlan {
-    Geodetic           origin;    /* of the local frame */
+    Geodetic           origin;      /* of the local frame */
     int                level_count; /* level 0 finest */
     StoreLevel         level[elevation_max_levels];
     StoreGrid          surface[cover_windows]; /* classes, as CoverGrid: 0 fine, 1 coarse and wide */
-    StoreGrid          albedo;    /* a photograph, linear light encoded as sRGB */
+    StoreGrid          albedo;                 /* a photograph, linear light encoded as sRGB */
     StoreGrid          canopy_height, canopy_cover;
     double             posting_m; /* of the finest source, for reports */
     double             geoid_m;   /* at the origin; 0 where heights were above the ellipsoid */
     uint64_t           seed;      /* of surfaces where no file says: for the photograph's means */
     int                source_count;
-    const StoreSource *source;    /* [source_count] */
-    const char        *options;   /* arguments of the import, a line each: what rebuilds the store */
+    const StoreSource *source;  /* [source_count] */
+    const char        *options; /* arguments of the import, a line each: what rebuilds the store */
     const char        *crs, *vertical_datum, *provenance; /* notes, free text */
 } StorePlan;
 
@@ -82,7 +82,7 @@ typedef struct StoreReport {
  * The writer is freed in any case; on failure PATH.tmp is removed and PATH untouched. report may be NULL. */
 Status store_writer_finish(StoreWriter *writer, uint64_t buildings, StoreReport *report);
 /* Frees the writer and removes PATH.tmp; accepts NULL. */
-void   store_writer_abandon(StoreWriter *writer);
+void store_writer_abandon(StoreWriter *writer);
 
 /* Size and time of modification of source->path. False: it cannot be looked at. */
 bool store_source_look(StoreSource *source);
@@ -93,16 +93,16 @@ bool store_source_look(StoreSource *source);
 typedef struct TerrainStore {
     const uint8_t *map;
     size_t         octets;
-    void          *header;        /* a copy: its texts */
+    void          *header; /* a copy: its texts */
     LocalFrame     frame;
-    uint64_t       content;       /* hash of everything in it but where its sources lay */
-    char           made[32];      /* UTC */
+    uint64_t       content;  /* hash of everything in it but where its sources lay */
+    char           made[32]; /* UTC */
     double         posting_m, geoid_m;
-    Elevation      elevation;     /* borrowed */
+    Elevation      elevation; /* borrowed */
     CoverGrid      surface[cover_windows];
     Photo          photo;
     StoreGrid      canopy_height_grid, canopy_cover_grid;
-    const uint8_t *canopy_height, *canopy_cover; /* NULL: none */
+    const uint8_t *canopy_height, *canopy_cover;  /* NULL: none */
     double         worst_m[elevation_max_levels]; /* largest error of a post's quantisation */
     uint64_t       crown_count, building_count;
     const Crown   *crown;
@@ -119,7 +119,7 @@ void   store_close(TerrainStore *store);
 Status store_open_why(TerrainStore *out, const char **why, const char *path);
 /* The import's options in a file that cannot be used, by a checksum of their own; malloc'd. NULL: no store, or nothing
  * of them is left. */
-char  *store_recall(const char *path);
+char *store_recall(const char *path);
 
 typedef enum StoreSources { STORE_FRESH, STORE_CHANGED, STORE_SOURCES_MISSING } StoreSources;
 /* Looks at the sources; CHANGED before MISSING. which: the first one that differs; "" for FRESH. */
@@ -135,8 +135,8 @@ typedef struct StorePart {
     uint64_t    octets;
 } StorePart;
 /* Sections that are not empty, the header first; returns their count. */
-int    store_parts(StorePart out[store_sections_most], const TerrainStore *store);
+int store_parts(StorePart out[store_sections_most], const TerrainStore *store);
 /* Whether the data still have the hash they were written with: reads all of it. */
-bool   store_verify(const TerrainStore *store, Pool *pool);
+bool store_verify(const TerrainStore *store, Pool *pool);
 
 #endif

@@ -64,11 +64,18 @@ static void hash_piece(void *user, int worker, int task)
 
 uint64_t store_content(const StoreHeader *header, const uint8_t *map, Pool *pool)
 {
-    StoreHeader plain = {.version = header->version, .classes = header->classes, .lat_rad = header->lat_rad,
-                         .lon_rad = header->lon_rad, .h_m = header->h_m, .geoid_m = header->geoid_m,
-                         .level_count = header->level_count, .albedo = header->albedo,
-                         .canopy_height = header->canopy_height, .canopy_cover = header->canopy_cover,
-                         .crown_count = header->crown_count, .building_count = header->building_count};
+    StoreHeader plain = {.version = header->version,
+                         .classes = header->classes,
+                         .lat_rad = header->lat_rad,
+                         .lon_rad = header->lon_rad,
+                         .h_m = header->h_m,
+                         .geoid_m = header->geoid_m,
+                         .level_count = header->level_count,
+                         .albedo = header->albedo,
+                         .canopy_height = header->canopy_height,
+                         .canopy_cover = header->canopy_cover,
+                         .crown_count = header->crown_count,
+                         .building_count = header->building_count};
     memcpy(plain.level, header->level, sizeof plain.level);
     memcpy(plain.surface, header->surface, sizeof plain.surface);
     memcpy(plain.mean, header->mean, sizeof plain.mean);
@@ -112,7 +119,7 @@ static size_t store_pyramid(ElevationLevel *to, uint8_t *at, const ElevationLeve
 
 static size_t store_mips(Photo *to, uint8_t *at, int nx, int ny)
 {
-    Photo p = {.nx = {nx}, .ny = {ny}};
+    Photo  p = {.nx = {nx}, .ny = {ny}};
     size_t sum = 0;
     if (nx == 0) return 0;
     p.mips = photo_mips(p.nx, p.ny);
@@ -137,14 +144,14 @@ bool store_layout(StoreHeader *h)
     for (int n = 0; n < h->level_count; n++) {
         ElevationLevel level;
         if (describe(&level, &h->level[n]) != STATUS_OK) return false;
-        octets[STORE_TILES + n]   = (uint64_t)level.tiles_x * (uint64_t)level.tiles_y * sizeof(ElevationTile);
-        octets[STORE_POSTS + n]   = elevation_level_stored(&level) * sizeof(uint16_t);
+        octets[STORE_TILES + n] = (uint64_t)level.tiles_x * (uint64_t)level.tiles_y * sizeof(ElevationTile);
+        octets[STORE_POSTS + n] = elevation_level_stored(&level) * sizeof(uint16_t);
         octets[STORE_PYRAMID + n] = store_pyramid(NULL, NULL, &level);
     }
     for (int w = 0; w < cover_windows; w++) octets[STORE_SURFACE + w] = cells_of(&h->surface[w]);
-    octets[STORE_ALBEDO]        = store_mips(NULL, NULL, h->albedo.nx, h->albedo.ny);
+    octets[STORE_ALBEDO] = store_mips(NULL, NULL, h->albedo.nx, h->albedo.ny);
     octets[STORE_CANOPY_HEIGHT] = cells_of(&h->canopy_height);
-    octets[STORE_CANOPY_COVER]  = cells_of(&h->canopy_cover);
+    octets[STORE_CANOPY_COVER] = cells_of(&h->canopy_cover);
     if (h->crown_count > (uint64_t)1 << 40) return false;
     octets[STORE_CROWNS] = h->crown_count * sizeof(Crown);
     for (int s = 0; s < STORE_SECTIONS; s++) {
@@ -320,16 +327,26 @@ char *store_recall(const char *path)
 
 static CoverGrid cover_of(const StoreGrid *g, uint8_t *at)
 {
-    return (CoverGrid){.nx = g->nx, .ny = g->ny, .x0_m = g->x0_m, .y0_m = g->y0_m, .cell_m = g->cell_m,
-                       .surface = g->nx ? at : NULL, .borrowed = true};
+    return (CoverGrid){.nx = g->nx,
+                       .ny = g->ny,
+                       .x0_m = g->x0_m,
+                       .y0_m = g->y0_m,
+                       .cell_m = g->cell_m,
+                       .surface = g->nx ? at : NULL,
+                       .borrowed = true};
 }
 
 void store_attach(TerrainStore *out, const StoreHeader *h, uint8_t *map)
 {
     const StoreSection *at = h->section;
-    *out = (TerrainStore){.map = map, .octets = (size_t)h->file_octets, .content = h->content,
-                          .posting_m = h->posting_m, .geoid_m = h->geoid_m, .canopy_height_grid = h->canopy_height,
-                          .canopy_cover_grid = h->canopy_cover, .crown_count = h->crown_count,
+    *out = (TerrainStore){.map = map,
+                          .octets = (size_t)h->file_octets,
+                          .content = h->content,
+                          .posting_m = h->posting_m,
+                          .geoid_m = h->geoid_m,
+                          .canopy_height_grid = h->canopy_height,
+                          .canopy_cover_grid = h->canopy_cover,
+                          .crown_count = h->crown_count,
                           .building_count = h->building_count};
     memcpy(out->made, h->made, sizeof out->made);
     out->elevation.level_count = h->level_count;
@@ -337,30 +354,30 @@ void store_attach(TerrainStore *out, const StoreHeader *h, uint8_t *map)
         const StoreHeaderLevel *l = &h->level[n];
         ElevationLevel         *level = &out->elevation.level[n];
         if (describe(level, l) != STATUS_OK) continue; /* was checked */
-        level->tile   = (ElevationTile *)(void *)(map + at[STORE_TILES + n].offset);
+        level->tile = (ElevationTile *)(void *)(map + at[STORE_TILES + n].offset);
         level->stored = (uint16_t *)(void *)(map + at[STORE_POSTS + n].offset);
         store_pyramid(level, map + at[STORE_PYRAMID + n].offset, level);
-        level->pyramid_base  = l->pyramid_base;
+        level->pyramid_base = l->pyramid_base;
         level->pyramid_shift = l->pyramid_shift;
-        level->rise_shift    = l->rise_shift;
-        level->plain         = l->plain;
-        level->borrowed      = true;
-        out->worst_m[n]      = l->worst_m;
+        level->rise_shift = l->rise_shift;
+        level->plain = l->plain;
+        level->borrowed = true;
+        out->worst_m[n] = l->worst_m;
     }
     for (int w = 0; w < cover_windows; w++)
         out->surface[w] = cover_of(&h->surface[w], map + at[STORE_SURFACE + w].offset);
     store_mips(&out->photo, map + at[STORE_ALBEDO].offset, h->albedo.nx, h->albedo.ny);
-    out->photo.x0_m     = h->albedo.x0_m;
-    out->photo.y0_m     = h->albedo.y0_m;
-    out->photo.cell_m   = h->albedo.cell_m;
+    out->photo.x0_m = h->albedo.x0_m;
+    out->photo.y0_m = h->albedo.y0_m;
+    out->photo.cell_m = h->albedo.cell_m;
     out->photo.borrowed = true;
     for (int s = 0; s < SURFACE_COUNT; s++) memcpy(out->photo.mean[s], h->mean[s], sizeof out->photo.mean[s]);
     if (h->canopy_height.nx) out->canopy_height = map + at[STORE_CANOPY_HEIGHT].offset;
     if (h->canopy_cover.nx) out->canopy_cover = map + at[STORE_CANOPY_COVER].offset;
     if (h->crown_count) out->crown = (const Crown *)(const void *)(map + at[STORE_CROWNS].offset);
-    out->sources        = store_text(h, STORE_SOURCES);
-    out->options        = store_record_options(store_text(h, STORE_OPTIONS));
-    out->crs            = store_text(h, STORE_CRS);
+    out->sources = store_text(h, STORE_SOURCES);
+    out->options = store_record_options(store_text(h, STORE_OPTIONS));
+    out->crs = store_text(h, STORE_CRS);
     out->vertical_datum = store_text(h, STORE_DATUM);
-    out->provenance     = store_text(h, STORE_PROVENANCE);
+    out->provenance = store_text(h, STORE_PROVENANCE);
 }

@@ -18,17 +18,25 @@ static const char store_magic[8] = "PVTERR\r\n"; /* the line end shows a copy th
 /* Sections in the order of the file. Of each level: its tiles, its posts, its pyramid (of each k from
  * elevation_pyramid_first on the heights, then from elevation_rise_level on the rises, each from a multiple of 64). */
 enum {
-    STORE_TILES, STORE_POSTS = STORE_TILES + elevation_max_levels, STORE_PYRAMID = STORE_POSTS + elevation_max_levels,
+    STORE_TILES,
+    STORE_POSTS = STORE_TILES + elevation_max_levels,
+    STORE_PYRAMID = STORE_POSTS + elevation_max_levels,
     STORE_SURFACE = STORE_PYRAMID + elevation_max_levels,
     STORE_ALBEDO = STORE_SURFACE + cover_windows, /* blocks of all mips, largest first, each from a multiple of 64 */
-    STORE_CANOPY_HEIGHT, STORE_CANOPY_COVER,
+    STORE_CANOPY_HEIGHT,
+    STORE_CANOPY_COVER,
     STORE_CROWNS,
     STORE_SECTIONS
 };
 _Static_assert((int)STORE_SECTIONS < (int)store_sections_most, "and the header");
 
 typedef enum StoreText {
-    STORE_SOURCES, STORE_OPTIONS, STORE_CRS, STORE_DATUM, STORE_PROVENANCE, STORE_TEXTS
+    STORE_SOURCES,
+    STORE_OPTIONS,
+    STORE_CRS,
+    STORE_DATUM,
+    STORE_PROVENANCE,
+    STORE_TEXTS
 } StoreText;
 
 typedef struct StoreSection {
@@ -43,12 +51,12 @@ typedef struct StoreHeaderLevel {
 
 typedef struct StoreHeader {
     char             magic[8];
-    uint32_t         version, classes;    /* classes: SURFACE_COUNT, whose meaning the octets have */
+    uint32_t         version, classes; /* classes: SURFACE_COUNT, whose meaning the octets have */
     uint64_t         file_octets;
-    uint64_t         header_octets;       /* with its texts; a multiple of a page */
-    uint64_t         checksum;            /* of header and texts, this field being 0 */
-    uint64_t         content;             /* hash of all sections, levels and rasters */
-    char             made[32];            /* UTC */
+    uint64_t         header_octets;         /* with its texts; a multiple of a page */
+    uint64_t         checksum;              /* of header and texts, this field being 0 */
+    uint64_t         content;               /* hash of all sections, levels and rasters */
+    char             made[32];              /* UTC */
     double           lat_rad, lon_rad, h_m; /* origin */
     double           posting_m, geoid_m;
     int32_t          level_count, spare;
@@ -57,12 +65,13 @@ typedef struct StoreHeader {
     float            mean[store_classes][photo_channels];
     uint64_t         crown_count, building_count;
     StoreSection     section[STORE_SECTIONS];
-    uint32_t         text[STORE_TEXTS];   /* octets of each, its 0 included; one after the other behind the header */
+    uint32_t         text[STORE_TEXTS]; /* octets of each, its 0 included; one after the other behind the header */
 } StoreHeader;
 _Static_assert(sizeof(StoreHeader) <= store_page && sizeof(StoreGrid) == 32 && sizeof(StoreHeaderLevel) == 72,
                "no padding");
 _Static_assert(sizeof(PhotoBlock) == 8 && sizeof(ElevationTile) == 8 && sizeof(Crown) == 16 &&
-                   sizeof(ElevationRise) == 8, "as in the file");
+                   sizeof(ElevationRise) == 8,
+               "as in the file");
 
 uint64_t store_checksum(const StoreHeader *header); /* its texts follow it in memory */
 
@@ -73,11 +82,11 @@ bool store_layout(StoreHeader *header);
  * STATUS_UNSUPPORTED, and the reason in *why (static storage). */
 Status store_header_size(size_t *octets, const char **why, const StoreHeader *first, uint64_t file_octets);
 /* All of the header, with its texts: every size, offset and number in range. */
-Status store_header_check(const char **why, const StoreHeader *header, size_t octets, uint64_t file_octets);
+Status      store_header_check(const char **why, const StoreHeader *header, size_t octets, uint64_t file_octets);
 const char *store_text(const StoreHeader *header, StoreText text);
 
 /* The text STORE_OPTIONS of some options, malloc'd, and the options in it. */
-char       *store_record(const char *options);
+char *store_record(const char *options);
 
 /* Levels, rasters and texts of a checked header, whose sections are at map + offset. */
 void store_attach(TerrainStore *out, const StoreHeader *header, uint8_t *map);

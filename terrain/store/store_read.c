@@ -18,13 +18,13 @@ static StoreHeader *read_header(const char **why, Status *status, int file, uint
     if (file_octets < sizeof first) *why = "it is shorter than a header";
     if (*why) return NULL;
     *status = STATUS_IO;
-    errno   = EIO;
+    errno = EIO;
     if (pread(file, &first, sizeof first, 0) != (ssize_t)sizeof first) return NULL;
     *status = store_header_size(&octets, why, &first, file_octets);
     if (*status != STATUS_OK) return NULL;
-    all     = malloc(octets);
+    all = malloc(octets);
     *status = STATUS_IO;
-    errno   = ENOMEM;
+    errno = ENOMEM;
     if (!all) return NULL;
     errno = EIO;
     if (pread(file, all, octets, 0) == (ssize_t)octets) *status = store_header_check(why, all, octets, file_octets);
@@ -36,8 +36,8 @@ static StoreHeader *read_header(const char **why, Status *status, int file, uint
 Status store_open_why(TerrainStore *out, const char **why, const char *path)
 {
     static _Thread_local char refused[file_why_size];
-    uint64_t octets = 0;
-    Status   status = STATUS_IO;
+    uint64_t                  octets = 0;
+    Status                    status = STATUS_IO;
     *out = (TerrainStore){0};
     *why = NULL;
     const int file = file_open(refused, &octets, path, FILE_FROM_DISK);
@@ -108,15 +108,26 @@ bool store_verify(const TerrainStore *store, Pool *pool)
 
 int store_parts(StorePart out[store_sections_most], const TerrainStore *store)
 {
-    static const char *const name[STORE_SECTIONS] = {
-        [STORE_TILES] = "tiles, level 0", "tiles, level 1", "tiles, level 2", "tiles, level 3",
-        [STORE_POSTS] = "posts, level 0", "posts, level 1", "posts, level 2", "posts, level 3",
-        [STORE_PYRAMID] = "pyramid, level 0", "pyramid, level 1", "pyramid, level 2", "pyramid, level 3",
-        [STORE_SURFACE] = "classes", "classes, wide",
-        [STORE_ALBEDO] = "photograph", [STORE_CANOPY_HEIGHT] = "canopy height", [STORE_CANOPY_COVER] = "canopy cover",
-        [STORE_CROWNS] = "crowns"};
-    const StoreHeader *h = store->header;
-    int                count = 0;
+    static const char *const name[STORE_SECTIONS] = {[STORE_TILES] = "tiles, level 0",
+                                                     "tiles, level 1",
+                                                     "tiles, level 2",
+                                                     "tiles, level 3",
+                                                     [STORE_POSTS] = "posts, level 0",
+                                                     "posts, level 1",
+                                                     "posts, level 2",
+                                                     "posts, level 3",
+                                                     [STORE_PYRAMID] = "pyramid, level 0",
+                                                     "pyramid, level 1",
+                                                     "pyramid, level 2",
+                                                     "pyramid, level 3",
+                                                     [STORE_SURFACE] = "classes",
+                                                     "classes, wide",
+                                                     [STORE_ALBEDO] = "photograph",
+                                                     [STORE_CANOPY_HEIGHT] = "canopy height",
+                                                     [STORE_CANOPY_COVER] = "canopy cover",
+                                                     [STORE_CROWNS] = "crowns"};
+    const StoreHeader       *h = store->header;
+    int                      count = 0;
     out[count++] = (StorePart){"header", h->header_octets};
     for (int s = 0; s < STORE_SECTIONS; s++)
         if (h->section[s].octets) out[count++] = (StorePart){name[s], h->section[s].octets};
@@ -129,9 +140,13 @@ Status store_landscape(Landscape *out, const TerrainStore *store, uint64_t seed,
 {
     const ElevationLevel *fine = &store->elevation.level[0];
     const ElevationLevel *wide = &store->elevation.level[store->elevation.level_count - 1];
-    LandscapeParts        parts = {.frame = store->frame, .elevation = store->elevation, .photo = store->photo,
-                                   .cover_seed = landscape_cover_seed(seed), .geoid_m = store->geoid_m};
-    parts.config = (LandscapeConfig){.seed = seed, .spacing_m = fine->spacing_m,
+    LandscapeParts        parts = {.frame = store->frame,
+                                   .elevation = store->elevation,
+                                   .photo = store->photo,
+                                   .cover_seed = landscape_cover_seed(seed),
+                                   .geoid_m = store->geoid_m};
+    parts.config = (LandscapeConfig){.seed = seed,
+                                     .spacing_m = fine->spacing_m,
                                      .half_width_m = 0.5 * fine->spacing_m * fmax(fine->nx - 1, fine->ny - 1),
                                      .horizon_m = 0.5 * wide->spacing_m * fmax(wide->nx - 1, wide->ny - 1)};
     memcpy(parts.cover, store->surface, sizeof parts.cover);
@@ -143,8 +158,10 @@ Status store_open_landscape(Landscape *out, const char *path, uint64_t seed)
     TerrainStore store;
     Status       status = store_open(&store, path);
     if (status != STATUS_OK) return status;
-    const LandscapeMap map = {.path = realpath(path, NULL), .map = (void *)(uintptr_t)store.map,
-                              .octets = store.octets, .content = store.content};
+    const LandscapeMap map = {.path = realpath(path, NULL),
+                              .map = (void *)(uintptr_t)store.map,
+                              .octets = store.octets,
+                              .content = store.content};
     status = map.path ? store_landscape(out, &store, seed, &map) : STATUS_NO_MEMORY;
     if (status == STATUS_OK) store.map = NULL; /* the landscape's now */
     else free(map.path);

@@ -21,9 +21,9 @@ Status store_posts_begin(StoreWriter *w, int index, int seam_shift)
     const ElevationLevel *level = &w->elevation.level[index];
     const int bands = w->pool ? pool_threads(w->pool) : 1, most = level->tiles_y < bands ? level->tiles_y : bands;
     /* the last row of tiles waits for the next one's shifts: edge posts have the coarser unit */
-    rows->capacity   = (most + 1) * cells + 1;
+    rows->capacity = (most + 1) * cells + 1;
     rows->seam_shift = seam_shift;
-    rows->row        = malloc((size_t)rows->capacity * (size_t)level->nx * sizeof *rows->row);
+    rows->row = malloc((size_t)rows->capacity * (size_t)level->nx * sizeof *rows->row);
     return rows->row ? STATUS_OK : STATUS_NO_MEMORY;
 }
 
@@ -37,7 +37,7 @@ void store_posts_end(StoreWriter *w)
 /* The outline of the level inside, in posts of this one: i0 .. i1, j0 .. j1. */
 typedef struct Hole {
     int     i0, i1, j0, j1;
-    int32_t unit;        /* posts on it are multiples of this many steps; 0: there is none */
+    int32_t unit; /* posts on it are multiples of this many steps; 0: there is none */
 } Hole;
 
 static Hole hole_of(const StoreWriter *w, int index)
@@ -54,18 +54,15 @@ static Hole hole_of(const StoreWriter *w, int index)
     return h;
 }
 
-static int32_t to_unit(int32_t post, int32_t unit)
-{
-    return (int32_t)floor((double)post / unit + 0.5) * unit;
-}
+static int32_t to_unit(int32_t post, int32_t unit) { return (int32_t)floor((double)post / unit + 0.5) * unit; }
 
 typedef struct RowsJob {
     StoreWriter *writer;
-    int          index;  /* of the level */
-    int          first;  /* row of z_m[0] */
+    int          index; /* of the level */
+    int          first; /* row of z_m[0] */
     const float *z_m;
     Hole         hole;
-    bool         bad;    /* set by any task: a post that is no number, or beyond what a level holds */
+    bool         bad; /* set by any task: a post that is no number, or beyond what a level holds */
 } RowsJob;
 
 /* The post on the straight edge between two posts of the level around. */
@@ -73,13 +70,13 @@ static int32_t edge_post(const RowsJob *job, int i, int j)
 {
     const ElevationLevel *in = &job->writer->elevation.level[job->index];
     const ElevationLevel *out = &job->writer->elevation.level[job->index + 1];
-    const int    ratio = (int)lrint(out->spacing_m / in->spacing_m);
-    const int    oi = (int)lrint((in->x0_m - out->x0_m) / out->spacing_m);
-    const int    oj = (int)lrint((in->y0_m - out->y0_m) / out->spacing_m);
-    const bool   along_x = i % ratio != 0;
-    const int    part = along_x ? i % ratio : j % ratio, a = oi + i / ratio, b = oj + j / ratio;
-    const double za = elevation_post_m(out, a, b);
-    const double zb = part ? elevation_post_m(out, a + along_x, b + !along_x) : za;
+    const int             ratio = (int)lrint(out->spacing_m / in->spacing_m);
+    const int             oi = (int)lrint((in->x0_m - out->x0_m) / out->spacing_m);
+    const int             oj = (int)lrint((in->y0_m - out->y0_m) / out->spacing_m);
+    const bool            along_x = i % ratio != 0;
+    const int             part = along_x ? i % ratio : j % ratio, a = oi + i / ratio, b = oj + j / ratio;
+    const double          za = elevation_post_m(out, a, b);
+    const double          zb = part ? elevation_post_m(out, a + along_x, b + !along_x) : za;
     return (int32_t)lrint((za + (zb - za) * part / ratio - in->z0_m) / in->step_m);
 }
 
@@ -182,11 +179,11 @@ static void finish_level(StoreWriter *w, int index)
     elevation_begin_pyramid(level);
     run(w->pool, level->tiles_y, pyramid_tiles, level);
     elevation_finish_pyramid(level);
-    l->worst_m       = 0.5 * level->step_m * (shift ? 1 + (1 << shift) : 1); /* rounded to steps, then to units */
-    l->pyramid_base  = level->pyramid_base;
+    l->worst_m = 0.5 * level->step_m * (shift ? 1 + (1 << shift) : 1); /* rounded to steps, then to units */
+    l->pyramid_base = level->pyramid_base;
     l->pyramid_shift = level->pyramid_shift;
-    l->rise_shift    = level->rise_shift;
-    l->plain         = level->plain;
+    l->rise_shift = level->rise_shift;
+    l->plain = level->plain;
     free(w->posts[index].row);
     w->posts[index].row = NULL;
     const StoreSection *s = w->header->section;
@@ -208,11 +205,11 @@ Status store_write_posts(StoreWriter *w, int index, int count, const float *z_m)
     while (count > 0) {
         const int room = rows->capacity - rows->count, take = count < room ? count : room;
         job.first = rows->done;
-        job.z_m   = z_m;
+        job.z_m = z_m;
         run(w->pool, take, quantise_row, &job);
         if (job.bad) {
-            log_error("store: %s: level %d, rows %d to %d: a height is not a number, or is beyond %.0f km", w->path, index,
-                      job.first, job.first + take - 1, 1e-3 * level->step_m * elevation_highest_post);
+            log_error("store: %s: level %d, rows %d to %d: a height is not a number, or is beyond %.0f km", w->path,
+                      index, job.first, job.first + take - 1, 1e-3 * level->step_m * elevation_highest_post);
             return STATUS_BAD_VALUE;
         }
         rows->done += take;

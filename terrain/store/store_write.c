@@ -16,7 +16,7 @@ bool store_source_look(StoreSource *source)
 {
     struct stat about;
     if (stat(source->path, &about) != 0) return false;
-    source->octets   = about.st_size;
+    source->octets = about.st_size;
     source->mtime_ns = (int64_t)about.st_mtim.tv_sec * 1000000000 + about.st_mtim.tv_nsec;
     return true;
 }
@@ -47,7 +47,8 @@ static bool is_power_of_two(double x)
 static double deepest_m(const StoreHeaderLevel *l)
 {
     static const double radius_m = 6.4e6;
-    const double x_m = fmax(-l->x0_m, l->x0_m + (l->nx - 1) * l->spacing_m), y_m = fmax(-l->y0_m, l->y0_m + (l->ny - 1) * l->spacing_m);
+    const double        x_m = fmax(-l->x0_m, l->x0_m + (l->nx - 1) * l->spacing_m),
+                 y_m = fmax(-l->y0_m, l->y0_m + (l->ny - 1) * l->spacing_m);
     const double far_m = fmin(hypot(x_m, y_m), radius_m);
     return radius_m - sqrt(radius_m * radius_m - far_m * far_m);
 }
@@ -96,16 +97,27 @@ static Status make_header(StoreHeader **out, const StorePlan *plan)
         free(record);
         return STATUS_NO_MEMORY;
     }
-    StoreHeader h = {.version = store_version, .classes = SURFACE_COUNT, .lat_rad = plan->origin.lat_rad,
-                     .lon_rad = plan->origin.lon_rad, .h_m = plan->origin.h_m, .posting_m = plan->posting_m,
-                     .geoid_m = plan->geoid_m, .level_count = plan->level_count, .albedo = plan->albedo,
-                     .canopy_height = plan->canopy_height, .canopy_cover = plan->canopy_cover};
+    StoreHeader h = {.version = store_version,
+                     .classes = SURFACE_COUNT,
+                     .lat_rad = plan->origin.lat_rad,
+                     .lon_rad = plan->origin.lon_rad,
+                     .h_m = plan->origin.h_m,
+                     .posting_m = plan->posting_m,
+                     .geoid_m = plan->geoid_m,
+                     .level_count = plan->level_count,
+                     .albedo = plan->albedo,
+                     .canopy_height = plan->canopy_height,
+                     .canopy_cover = plan->canopy_cover};
     memcpy(h.magic, store_magic, sizeof h.magic);
     memcpy(h.surface, plan->surface, sizeof h.surface);
     for (int n = 0; n < plan->level_count && n < elevation_max_levels; n++) {
         const StoreLevel *l = &plan->level[n];
-        h.level[n] = (StoreHeaderLevel){.nx = l->nx, .ny = l->ny, .x0_m = l->x0_m, .y0_m = l->y0_m,
-                                        .spacing_m = l->spacing_m, .z0_m = l->z0_m,
+        h.level[n] = (StoreHeaderLevel){.nx = l->nx,
+                                        .ny = l->ny,
+                                        .x0_m = l->x0_m,
+                                        .y0_m = l->y0_m,
+                                        .spacing_m = l->spacing_m,
+                                        .z0_m = l->z0_m,
                                         .step_m = l->step_m > 0 ? l->step_m : store_step_m};
     }
     fwrite(&h, sizeof h, 1, to);
@@ -142,18 +154,19 @@ static Status open_part(StoreWriter *w)
 {
     w->file = output_check(w->path, 0) == 0 ? output_open(w->part, OUTPUT_READ) : -1;
     if (w->file < 0) {
-        log_error("store: cannot write %s: %s%s", w->path, output_reason(errno), errno == EBUSY ? "; wait until it is done" : "");
+        log_error("store: cannot write %s: %s%s", w->path, output_reason(errno),
+                  errno == EBUSY ? "; wait until it is done" : "");
         return STATUS_IO;
     }
     const uint64_t octets = w->header->file_octets;
-    const int full = posix_fallocate(w->file, 0, (off_t)octets); /* a full disk is found here, not by SIGBUS */
+    const int      full = posix_fallocate(w->file, 0, (off_t)octets); /* a full disk is found here, not by SIGBUS */
     if (full != 0) {
         errno = full;
         return io_fault(w, "reserve the space of");
     }
     void *map = mmap(NULL, octets, PROT_READ | PROT_WRITE, MAP_SHARED, w->file, 0);
     if (map == MAP_FAILED) return io_fault(w, "map");
-    w->map        = map;
+    w->map = map;
     w->map_octets = w->end = octets;
     return STATUS_OK;
 }
@@ -164,7 +177,7 @@ static Status begin(StoreWriter *w, const StorePlan *plan)
     TerrainStore at;
     store_attach(&at, w->header, w->map);
     w->elevation = at.elevation;
-    w->photo     = at.photo;
+    w->photo = at.photo;
     Status status = STATUS_OK;
     for (int n = 0; n < w->elevation.level_count && status == STATUS_OK; n++) {
         StoreLevel level = plan->level[n];
@@ -379,7 +392,8 @@ static Status seal(StoreWriter *w)
     for (size_t at = 0; at < w->map_octets; at += synced_at_once) {
         const size_t left = w->map_octets - at;
         if (work_stop_asked()) return STATUS_IO;
-        if (msync((char *)w->map + at, left < synced_at_once ? left : synced_at_once, MS_SYNC) != 0) return io_fault(w, "write");
+        if (msync((char *)w->map + at, left < synced_at_once ? left : synced_at_once, MS_SYNC) != 0)
+            return io_fault(w, "write");
     }
     if (fsync(w->file) != 0) return io_fault(w, "write");
     if (output_rename(w->part, w->path) != 0) {
@@ -405,7 +419,7 @@ Status store_writer_finish(StoreWriter *w, uint64_t buildings, StoreReport *repo
     if (report) {
         *report = (StoreReport){.octets = w->header->file_octets, .crowns = w->crowns, .buildings = buildings};
         for (int n = 0; n < w->header->level_count; n++) {
-            report->step_m[n]  = w->header->level[n].step_m;
+            report->step_m[n] = w->header->level[n].step_m;
             report->worst_m[n] = w->header->level[n].worst_m;
         }
     }

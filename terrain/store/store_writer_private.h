@@ -9,34 +9,34 @@
 
 /* Rows of one level that are not in tiles yet. */
 typedef struct PostRows {
-    int      done;       /* rows given */
-    int      first;      /* row of the buffer's first one: a multiple of elevation_tile_cells */
+    int      done;  /* rows given */
+    int      first; /* row of the buffer's first one: a multiple of elevation_tile_cells */
     int      count, capacity;
-    int      shaped;     /* rows of tiles that have base and shift */
-    int32_t *row;        /* [capacity][nx] */
+    int      shaped; /* rows of tiles that have base and shift */
+    int32_t *row;    /* [capacity][nx] */
     int      seam_shift;
 } PostRows;
 
 /* Rows of one mip, up to four: a row of blocks. */
 typedef struct MipRows {
-    int      done;       /* rows given */
-    uint8_t *row;        /* [4][nx][4] */
+    int      done; /* rows given */
+    uint8_t *row;  /* [4][nx][4] */
 } MipRows;
 
 struct StoreWriter {
-    char         *path, *part;
-    int           file;
-    uint8_t      *map;
-    uint64_t      map_octets, end; /* end: of the crowns so far */
-    Pool         *pool;
-    StoreHeader  *header;          /* header_octets, with its texts */
-    uint64_t      seed, crowns;
-    Elevation     elevation;       /* in the map */
-    PostRows      posts[elevation_max_levels];
-    Photo         photo;           /* in the map */
-    MipRows       mip[ground_image_mips];
-    uint8_t      *halved;          /* a row of the next mip */
-    int           surface_rows[cover_windows], canopy_height_rows, canopy_cover_rows;
+    char        *path, *part;
+    int          file;
+    uint8_t     *map;
+    uint64_t     map_octets, end; /* end: of the crowns so far */
+    Pool        *pool;
+    StoreHeader *header; /* header_octets, with its texts */
+    uint64_t     seed, crowns;
+    Elevation    elevation; /* in the map */
+    PostRows     posts[elevation_max_levels];
+    Photo        photo; /* in the map */
+    MipRows      mip[ground_image_mips];
+    uint8_t     *halved; /* a row of the next mip */
+    int          surface_rows[cover_windows], canopy_height_rows, canopy_cover_rows;
 };
 
 Status store_posts_begin(StoreWriter *writer, int level, int seam_shift);

@@ -1,4 +1,5 @@
-/* terrain/weather/weather_course.c: weather at a time: a clear day's course, or rows of a file and what lies between. */
+/* terrain/weather/weather_course.c: weather at a time: a clear day's course, or rows of a file and what lies between.
+ */
 #include "terrain/weather/weather_private.h"
 
 #include <stdlib.h>
@@ -43,10 +44,10 @@ static const double lag_max_h = 1.86, lag_min_h = -0.17, night_decay = 2.20; /* 
 
 /* One day's course: from its minimum to the next day's. */
 typedef struct Cycle {
-    double min_s;     /* Unix time of the minimum */
-    double day_h;     /* from there to sunset */
-    double period_h;  /* half a period of the sine */
-    double range;     /* of the nominal one: 1, less towards polar night and within 5 degrees of a pole */
+    double min_s;    /* Unix time of the minimum */
+    double day_h;    /* from there to sunset */
+    double period_h; /* half a period of the sine */
+    double range;    /* of the nominal one: 1, less towards polar night and within 5 degrees of a pole */
 } Cycle;
 
 static Cycle cycle_of(const WeatherCourseConfig *config, double day)
@@ -57,7 +58,8 @@ static Cycle cycle_of(const WeatherCourseConfig *config, double day)
     return (Cycle){.min_s = noon_s + (lag_min_h - shape_h / 2) * 3600,
                    .day_h = shape_h - lag_min_h,
                    .period_h = shape_h + 2 * (lag_max_h - lag_min_h),
-                   .range = fmin(1, length_h / 4) * fmin(1, (pi_rad / 2 - fabs(config->latitude_rad)) / (5 * rad_per_deg))};
+                   .range =
+                       fmin(1, length_h / 4) * fmin(1, (pi_rad / 2 - fabs(config->latitude_rad)) / (5 * rad_per_deg))};
 }
 
 /* Mean of a cycle above its minimum, as a share of the nominal range. night_h: from sunset to the next minimum. */
@@ -82,8 +84,8 @@ static double clear_share(const WeatherCourseConfig *config, double unix_s)
 
     double mean[3];
     for (int i = 0; i < 3; i++) mean[i] = cycle_mean(&c[i], (c[i + 1].min_s - c[i].min_s) / 3600 - c[i].day_h);
-    /* the mean changes from day to day: at a minimum it is that of both days, or the course would step there; 6 u (1 - u)
-     * has a mean of 1, so that the whole cycle's is still its own */
+    /* the mean changes from day to day: at a minimum it is that of both days, or the course would step there; 6 u (1 -
+     * u) has a mean of 1, so that the whole cycle's is still its own */
     const double u = (unix_s - c[1].min_s) / (c[2].min_s - c[1].min_s);
     const double at_min = 0.5 * (mean[0] + mean[1]), at_next = 0.5 * (mean[1] + mean[2]);
     const double mean_here = (1 - u) * at_min + u * at_next + 6 * u * (1 - u) * (mean[1] - 0.5 * (at_min + at_next));
@@ -116,9 +118,9 @@ static double second_of_year(double local_s)
 
 /* Where a time lies in the rows. */
 typedef struct Between {
-    int    a, b;   /* rows */
-    double u;      /* 0: at a, 1: at b */
-    double gap_s;  /* from a to b */
+    int    a, b;  /* rows */
+    double u;     /* 0: at a, 1: at b */
+    double gap_s; /* from a to b */
 } Between;
 
 static Between between(const WeatherRows *rows, double unix_s)
@@ -179,7 +181,8 @@ static double value_at(const WeatherRows *rows, int column, const Between *at)
     return mix(column, value[at->a], value[at->b], at->u);
 }
 
-/* Fills one run of rows without a value, from row a to row b, which have one; b may be beyond the last: of next year. */
+/* Fills one run of rows without a value, from row a to row b, which have one; b may be beyond the last: of next year.
+ */
 static void fill_run(WeatherRows *rows, int column, int a, int b)
 {
     double      *value = rows->value[column];
@@ -217,11 +220,16 @@ static void rows_at(Weather *w, const WeatherRows *rows, double unix_s)
     const Between at = between(rows, unix_s);
     const Between at_mean = rows->mean_s > 0 ? between(rows, unix_s + 0.5 * rows->mean_s) : at;
     double *const out[weather_columns] = {
-        [WEATHER_AIR_K] = &w->air_temp_k,          [WEATHER_HUMIDITY] = &w->humidity,
-        [WEATHER_PRESSURE_MBAR] = &w->pressure_mbar, [WEATHER_WIND_MPS] = &w->wind_mps,
-        [WEATHER_WIND_FROM_RAD] = &w->wind_from_rad, [WEATHER_CLOUD] = &w->cloud,
-        [WEATHER_VISIBILITY_M] = &w->visibility_m, [WEATHER_RAIN_MM_H] = &w->rain_mm_h,
-        [WEATHER_DIRECT] = &w->direct_w_m2,        [WEATHER_DIFFUSE] = &w->diffuse_w_m2,
+        [WEATHER_AIR_K] = &w->air_temp_k,
+        [WEATHER_HUMIDITY] = &w->humidity,
+        [WEATHER_PRESSURE_MBAR] = &w->pressure_mbar,
+        [WEATHER_WIND_MPS] = &w->wind_mps,
+        [WEATHER_WIND_FROM_RAD] = &w->wind_from_rad,
+        [WEATHER_CLOUD] = &w->cloud,
+        [WEATHER_VISIBILITY_M] = &w->visibility_m,
+        [WEATHER_RAIN_MM_H] = &w->rain_mm_h,
+        [WEATHER_DIRECT] = &w->direct_w_m2,
+        [WEATHER_DIFFUSE] = &w->diffuse_w_m2,
         [WEATHER_LONGWAVE] = &w->longwave_w_m2,
     };
     for (int c = 0; c < weather_columns; c++)
@@ -231,8 +239,8 @@ static void rows_at(Weather *w, const WeatherRows *rows, double unix_s)
 void weather_at(Weather *out, const WeatherCourse *course, double unix_s)
 {
     const WeatherCourseConfig *config = &course->config;
-    const double t_s = isfinite(unix_s) ? clamp(unix_s, -1e12, 1e12) : 0;
-    Weather      w = config->base;
+    const double               t_s = isfinite(unix_s) ? clamp(unix_s, -1e12, 1e12) : 0;
+    Weather                    w = config->base;
     if (course->kind == COURSE_ROWS) {
         rows_at(&w, &course->rows, t_s);
     } else if (course->kind == COURSE_CLEAR) {
@@ -251,11 +259,15 @@ static Status check_config(const WeatherCourseConfig *config)
         const char *name;
         double      value, low, high;
     } limit[] = {
-        {"air_temp_k", b->air_temp_k, 220, 330},     {"visibility_m", b->visibility_m, 100, 300000},
-        {"pressure_mbar", b->pressure_mbar, 300, 1100}, {"wind_mps", b->wind_mps, 0, 60},
+        {"air_temp_k", b->air_temp_k, 220, 330},
+        {"visibility_m", b->visibility_m, 100, 300000},
+        {"pressure_mbar", b->pressure_mbar, 300, 1100},
+        {"wind_mps", b->wind_mps, 0, 60},
         {"wind_from_rad", b->wind_from_rad, -2 * pi_rad, 2 * pi_rad},
-        {"humidity", b->humidity, 0, 1},             {"cloud", b->cloud, 0, 1},
-        {"rain_mm_h", b->rain_mm_h, 0, 300},         {"air_range_k", config->air_range_k, 0, 60},
+        {"humidity", b->humidity, 0, 1},
+        {"cloud", b->cloud, 0, 1},
+        {"rain_mm_h", b->rain_mm_h, 0, 300},
+        {"air_range_k", config->air_range_k, 0, 60},
         {"longitude_rad", config->longitude_rad, -2 * pi_rad, 2 * pi_rad},
         {"latitude_rad", config->latitude_rad, -pi_rad / 2, pi_rad / 2},
     };
@@ -288,9 +300,9 @@ static double distance_km(double lat_a, double lon_a, double lat_b, double lon_b
     return 2 * 6371 * asin(fmin(1, sqrt(s * s + cos(lat_a) * cos(lat_b) * o * o)));
 }
 
-static const char *const column_name[weather_columns] = {
-    "air temperature", "humidity", "pressure", "wind speed", "wind direction", "cloud", "visibility", "rain",
-    "direct", "diffuse", "longwave"};
+static const char *const column_name[weather_columns] = {"air temperature", "humidity", "pressure",   "wind speed",
+                                                         "wind direction",  "cloud",    "visibility", "rain",
+                                                         "direct",          "diffuse",  "longwave"};
 
 static void describe_rows(WeatherCourse *course, const char *path)
 {
@@ -319,7 +331,8 @@ static void describe_rows(WeatherCourse *course, const char *path)
                                       rows->longitude_rad);
         snprintf(about + strlen(about), size - strlen(about), "; %.0f km away", km);
         if (km > 100)
-            log_warn("weather: %s: its station is %.0f km from the terrain: its radiation follows another sun", path, km);
+            log_warn("weather: %s: its station is %.0f km from the terrain: its radiation follows another sun", path,
+                     km);
     }
     const char *before = "; not in the file: ";
     for (int c = 0; c < weather_columns; c++)
@@ -334,8 +347,10 @@ static void warn_of_gaps(const WeatherRows *rows, const char *path)
     double widest_s = rows->each_year ? rows->time_s[0] + weather_year_s - rows->time_s[rows->count - 1] : 0;
     for (int i = 1; i < rows->count; i++) widest_s = fmax(widest_s, rows->time_s[i] - rows->time_s[i - 1]);
     if (widest_s > radiation_gap_s)
-        log_warn("weather: %s: up to %.3g h without a row: air temperature is linear there, radiation is not taken from "
-                 "the file", path, widest_s / 3600);
+        log_warn(
+            "weather: %s: up to %.3g h without a row: air temperature is linear there, radiation is not taken from "
+            "the file",
+            path, widest_s / 3600);
 }
 
 static Status open_rows(WeatherCourse *course, const char *path)

@@ -73,7 +73,8 @@ static const char *cell_text(const Reader *r, int cell)
 
 static Status bad_number(const Reader *r, const char *name, const char *text, double low, double high)
 {
-    log_error("weather: %s:%d: column %s: '%.80s' is not a number in %g .. %g", r->path, r->line, name, text, low, high);
+    log_error("weather: %s:%d: column %s: '%.80s' is not a number in %g .. %g", r->path, r->line, name, text, low,
+              high);
     return STATUS_BAD_VALUE;
 }
 
@@ -107,14 +108,14 @@ static Status fields_of(double *value, const Reader *r, const Field *field, int 
 static void finish_fields(double *value)
 {
     if (isnan(value[WEATHER_HUMIDITY])) /* NaN stays where either temperature is not given */
-        value[WEATHER_HUMIDITY] = weather_saturation_pa(value[field_dew_point_k]) /
-                                  weather_saturation_pa(value[WEATHER_AIR_K]);
+        value[WEATHER_HUMIDITY] =
+            weather_saturation_pa(value[field_dew_point_k]) / weather_saturation_pa(value[WEATHER_AIR_K]);
     if (isnan(value[WEATHER_CLOUD])) value[WEATHER_CLOUD] = value[field_opaque_cloud];
     if (value[field_rain_h] > 1) value[WEATHER_RAIN_MM_H] /= value[field_rain_h];
     if (value[WEATHER_RAIN_MM_H] > 300) value[WEATHER_RAIN_MM_H] = 300; /* NREL's 703165TY has 508 mm in an hour */
-    if (value[WEATHER_LONGWAVE] <= 0) value[WEATHER_LONGWAVE] = NAN; /* files without it hold 0 */
+    if (value[WEATHER_LONGWAVE] <= 0) value[WEATHER_LONGWAVE] = NAN;    /* files without it hold 0 */
     if (value[WEATHER_HUMIDITY] > 1) value[WEATHER_HUMIDITY] = 1;
-    if (value[WEATHER_DIRECT] < 0) value[WEATHER_DIRECT] = 0;        /* offsets of instruments at night */
+    if (value[WEATHER_DIRECT] < 0) value[WEATHER_DIRECT] = 0; /* offsets of instruments at night */
     if (value[WEATHER_DIFFUSE] < 0) value[WEATHER_DIFFUSE] = 0;
     value[WEATHER_VISIBILITY_M] = clamp(value[WEATHER_VISIBILITY_M], 100, 300000);
 }
@@ -191,20 +192,20 @@ static Status add_row_of_year(Reader *r, const char *date, int month, int day, i
 static Status read_epw(Reader *r)
 {
     static const Field field[] = {
-        {"dry bulb temperature",           WEATHER_AIR_K,         -53.15, 56.85, 1, 273.15, 99.9, 6},
-        {"dew point temperature",          field_dew_point_k,     -100, 70, 1, 273.15, 99.9, 7},
-        {"relative humidity",              WEATHER_HUMIDITY,      0, 110, 0.01, 0, 999, 8},
-        {"atmospheric station pressure",   WEATHER_PRESSURE_MBAR, 30000, 110000, 0.01, 0, 999999, 9},
-        {"horizontal infrared radiation",  WEATHER_LONGWAVE,      0, 1000, 1, 0, 9999, 12},
-        {"direct normal radiation",        WEATHER_DIRECT,        0, 1500, 1, 0, 9999, 14},
-        {"diffuse horizontal radiation",   WEATHER_DIFFUSE,       0, 1500, 1, 0, 9999, 15},
-        {"wind direction",                 WEATHER_WIND_FROM_RAD, 0, 360, rad_per_deg, 0, 999, 20},
-        {"wind speed",                     WEATHER_WIND_MPS,      0, 60, 1, 0, 999, 21},
-        {"total sky cover",                WEATHER_CLOUD,         0, 10, 0.1, 0, 99, 22},
-        {"opaque sky cover",               field_opaque_cloud,    0, 10, 0.1, 0, 99, 23},
-        {"visibility",                     WEATHER_VISIBILITY_M,  0, 9999, 1000, 0, 9999, 24},
-        {"liquid precipitation depth",     WEATHER_RAIN_MM_H,     0, 999, 1, 0, 999, 33},
-        {"liquid precipitation quantity",  field_rain_h,          0, 99, 1, 0, 99, 34},
+        {"dry bulb temperature", WEATHER_AIR_K, -53.15, 56.85, 1, 273.15, 99.9, 6},
+        {"dew point temperature", field_dew_point_k, -100, 70, 1, 273.15, 99.9, 7},
+        {"relative humidity", WEATHER_HUMIDITY, 0, 110, 0.01, 0, 999, 8},
+        {"atmospheric station pressure", WEATHER_PRESSURE_MBAR, 30000, 110000, 0.01, 0, 999999, 9},
+        {"horizontal infrared radiation", WEATHER_LONGWAVE, 0, 1000, 1, 0, 9999, 12},
+        {"direct normal radiation", WEATHER_DIRECT, 0, 1500, 1, 0, 9999, 14},
+        {"diffuse horizontal radiation", WEATHER_DIFFUSE, 0, 1500, 1, 0, 9999, 15},
+        {"wind direction", WEATHER_WIND_FROM_RAD, 0, 360, rad_per_deg, 0, 999, 20},
+        {"wind speed", WEATHER_WIND_MPS, 0, 60, 1, 0, 999, 21},
+        {"total sky cover", WEATHER_CLOUD, 0, 10, 0.1, 0, 99, 22},
+        {"opaque sky cover", field_opaque_cloud, 0, 10, 0.1, 0, 99, 23},
+        {"visibility", WEATHER_VISIBILITY_M, 0, 9999, 1000, 0, 9999, 24},
+        {"liquid precipitation depth", WEATHER_RAIN_MM_H, 0, 999, 1, 0, 999, 33},
+        {"liquid precipitation quantity", field_rain_h, 0, 99, 1, 0, 99, 34},
     };
     static const char data_periods[] = "DATA PERIODS,";
     enum { header_lines = 8, least_cells = 16 };
@@ -214,7 +215,8 @@ static Status read_epw(Reader *r)
     Status status = station_of(r, 1, 6, 7, 8);
     if (status != STATUS_OK) return status;
     char *line = NULL;
-    while (r->line < header_lines && (line = next_line(r))) {}
+    while (r->line < header_lines && (line = next_line(r))) {
+    }
     if (!line || strncasecmp(line, data_periods, sizeof data_periods - 1) != 0) {
         log_error("weather: %s:%d: an EPW file has `%s...` in line %d", r->path, r->line, data_periods, header_lines);
         return STATUS_BAD_VALUE;
@@ -232,8 +234,8 @@ static Status read_epw(Reader *r)
         double month, day, hour;
         char   date[64];
         if (r->cells < least_cells) {
-            log_error("weather: %s:%d: %d columns; a row of an EPW file has 35, at least %d", r->path, r->line, r->cells,
-                      least_cells);
+            log_error("weather: %s:%d: %d columns; a row of an EPW file has 35, at least %d", r->path, r->line,
+                      r->cells, least_cells);
             return STATUS_BAD_VALUE;
         }
         status = number_of(&month, r, "month", 1, 1, 12);
@@ -242,8 +244,8 @@ static Status read_epw(Reader *r)
         if (status != STATUS_OK) return status;
         snprintf(date, sizeof date, "%g, %g, %g", month, day, hour);
         const bool whole = month == floor(month) && day == floor(day) && hour == floor(hour);
-        status = add_row_of_year(r, date, whole ? (int)month : 0, (int)day, (int)hour, field,
-                                 sizeof field / sizeof *field);
+        status =
+            add_row_of_year(r, date, whole ? (int)month : 0, (int)day, (int)hour, field, sizeof field / sizeof *field);
         if (status != STATUS_OK) return status;
     }
     return status;
@@ -251,7 +253,8 @@ static Status read_epw(Reader *r)
 
 /* ---- tables whose header names the columns -------------------------------------------------- */
 
-/* Sets the cell of each field whose name the last line has. other: names that are no fields, up to a NULL; NULL: any. */
+/* Sets the cell of each field whose name the last line has. other: names that are no fields, up to a NULL; NULL: any.
+ */
 static Status find_columns(Reader *r, Field *field, int count, const char *const *other)
 {
     if (r->cells > most_cells) {
@@ -273,7 +276,8 @@ static Status find_columns(Reader *r, Field *field, int count, const char *const
         for (int i = 0; i < c; i++) twice |= strcmp(r->cell[i], name) == 0;
         if (!found || twice) {
             char known[512] = "";
-            for (int i = 0; other[i]; i++) snprintf(known + strlen(known), sizeof known - strlen(known), "%s ", other[i]);
+            for (int i = 0; other[i]; i++)
+                snprintf(known + strlen(known), sizeof known - strlen(known), "%s ", other[i]);
             for (int i = 0; i < count; i++)
                 snprintf(known + strlen(known), sizeof known - strlen(known), "%s ", field[i].name);
             if (twice) log_error("weather: %s:%d: column %.80s is given twice", r->path, r->line, name);
@@ -303,19 +307,19 @@ static const char tmy3_date[] = "Date (MM/DD/YYYY)", tmy3_time[] = "Time (HH:MM)
 static Status read_tmy3(Reader *r)
 {
     Field field[] = {
-        {"Dry-bulb (C)",          WEATHER_AIR_K,         -53.15, 56.85, 1, 273.15, -9900, 0},
-        {"Dew-point (C)",         field_dew_point_k,     -100, 70, 1, 273.15, -9900, 0},
-        {"RHum (%)",              WEATHER_HUMIDITY,      0, 110, 0.01, 0, -9900, 0},
-        {"Pressure (mbar)",       WEATHER_PRESSURE_MBAR, 300, 1100, 1, 0, -9900, 0},
-        {"DNI (W/m^2)",           WEATHER_DIRECT,        0, 1500, 1, 0, -9900, 0},
-        {"DHI (W/m^2)",           WEATHER_DIFFUSE,       0, 1500, 1, 0, -9900, 0},
-        {"Wdir (degrees)",        WEATHER_WIND_FROM_RAD, 0, 360, rad_per_deg, 0, -9900, 0},
-        {"Wspd (m/s)",            WEATHER_WIND_MPS,      0, 60, 1, 0, -9900, 0},
-        {"TotCld (tenths)",       WEATHER_CLOUD,         0, 10, 0.1, 0, -9900, 0},
-        {"OpqCld (tenths)",       field_opaque_cloud,    0, 10, 0.1, 0, -9900, 0},
-        {"Hvis (m)",              WEATHER_VISIBILITY_M,  0, 1e6, 1, 0, -9900, 0},
-        {"Lprecip depth (mm)",    WEATHER_RAIN_MM_H,     0, 9999, 1, 0, -9900, 0},
-        {"Lprecip quantity (hr)", field_rain_h,          0, 99, 1, 0, -9900, 0},
+        {"Dry-bulb (C)", WEATHER_AIR_K, -53.15, 56.85, 1, 273.15, -9900, 0},
+        {"Dew-point (C)", field_dew_point_k, -100, 70, 1, 273.15, -9900, 0},
+        {"RHum (%)", WEATHER_HUMIDITY, 0, 110, 0.01, 0, -9900, 0},
+        {"Pressure (mbar)", WEATHER_PRESSURE_MBAR, 300, 1100, 1, 0, -9900, 0},
+        {"DNI (W/m^2)", WEATHER_DIRECT, 0, 1500, 1, 0, -9900, 0},
+        {"DHI (W/m^2)", WEATHER_DIFFUSE, 0, 1500, 1, 0, -9900, 0},
+        {"Wdir (degrees)", WEATHER_WIND_FROM_RAD, 0, 360, rad_per_deg, 0, -9900, 0},
+        {"Wspd (m/s)", WEATHER_WIND_MPS, 0, 60, 1, 0, -9900, 0},
+        {"TotCld (tenths)", WEATHER_CLOUD, 0, 10, 0.1, 0, -9900, 0},
+        {"OpqCld (tenths)", field_opaque_cloud, 0, 10, 0.1, 0, -9900, 0},
+        {"Hvis (m)", WEATHER_VISIBILITY_M, 0, 1e6, 1, 0, -9900, 0},
+        {"Lprecip depth (mm)", WEATHER_RAIN_MM_H, 0, 9999, 1, 0, -9900, 0},
+        {"Lprecip quantity (hr)", field_rain_h, 0, 99, 1, 0, -9900, 0},
     };
     enum { fields = sizeof field / sizeof *field };
 
@@ -352,18 +356,18 @@ static Status read_tmy3(Reader *r)
 static Status read_plain(Reader *r)
 {
     Field field[] = {
-        {"air_temp_c",     WEATHER_AIR_K,         -53.15, 56.85, 1, 273.15, 0, 0},
-        {"air_temp_k",     WEATHER_AIR_K,         220, 330, 1, 0, 0, 0},
-        {"humidity_pct",   WEATHER_HUMIDITY,      0, 110, 0.01, 0, 0, 0},
-        {"pressure_hpa",   WEATHER_PRESSURE_MBAR, 300, 1100, 1, 0, 0, 0},
-        {"wind_mps",       WEATHER_WIND_MPS,      0, 60, 1, 0, 0, 0},
-        {"wind_from_deg",  WEATHER_WIND_FROM_RAD, 0, 360, rad_per_deg, 0, 0, 0},
-        {"direct_w_m2",    WEATHER_DIRECT,        -20, 1500, 1, 0, 0, 0},
-        {"diffuse_w_m2",   WEATHER_DIFFUSE,       -20, 1500, 1, 0, 0, 0},
-        {"longwave_w_m2",  WEATHER_LONGWAVE,      0, 1000, 1, 0, 0, 0},
-        {"rain_mm_h",      WEATHER_RAIN_MM_H,     0, 300, 1, 0, 0, 0},
-        {"cloud",          WEATHER_CLOUD,         0, 1, 1, 0, 0, 0},
-        {"visibility_m",   WEATHER_VISIBILITY_M,  100, 300000, 1, 0, 0, 0},
+        {"air_temp_c", WEATHER_AIR_K, -53.15, 56.85, 1, 273.15, 0, 0},
+        {"air_temp_k", WEATHER_AIR_K, 220, 330, 1, 0, 0, 0},
+        {"humidity_pct", WEATHER_HUMIDITY, 0, 110, 0.01, 0, 0, 0},
+        {"pressure_hpa", WEATHER_PRESSURE_MBAR, 300, 1100, 1, 0, 0, 0},
+        {"wind_mps", WEATHER_WIND_MPS, 0, 60, 1, 0, 0, 0},
+        {"wind_from_deg", WEATHER_WIND_FROM_RAD, 0, 360, rad_per_deg, 0, 0, 0},
+        {"direct_w_m2", WEATHER_DIRECT, -20, 1500, 1, 0, 0, 0},
+        {"diffuse_w_m2", WEATHER_DIFFUSE, -20, 1500, 1, 0, 0, 0},
+        {"longwave_w_m2", WEATHER_LONGWAVE, 0, 1000, 1, 0, 0, 0},
+        {"rain_mm_h", WEATHER_RAIN_MM_H, 0, 300, 1, 0, 0, 0},
+        {"cloud", WEATHER_CLOUD, 0, 1, 1, 0, 0, 0},
+        {"visibility_m", WEATHER_VISIBILITY_M, 100, 300000, 1, 0, 0, 0},
     };
     static const char *const times[] = {"time_utc", "unix_s", NULL};
     static const double      first_s = -2208988800, last_s = 4133980799; /* 1900 .. 2100 */
@@ -380,7 +384,8 @@ static Status read_plain(Reader *r)
     const int utc_at = column_called(r, times[0]), unix_at = column_called(r, times[1]), columns = r->cells;
     if ((utc_at < 0) == (unix_at < 0) || (field[0].cell < 0) == (field[1].cell < 0)) {
         log_error("weather: %s:%d: one of the columns time_utc and unix_s is needed, and one of air_temp_c and "
-                  "air_temp_k", r->path, r->line);
+                  "air_temp_k",
+                  r->path, r->line);
         return STATUS_BAD_VALUE;
     }
     while (next_row(r, true, &status)) {

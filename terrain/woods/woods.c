@@ -31,8 +31,8 @@ int woods_low_plants(Plant plant[woods_low_most], const Woods *woods, int64_t i,
     landscape_surfaces(surface, s->landscape, low_cells, x_m, y_m);
     for (int k = 0; k < low_cells; k++) {
         const WoodsClass *class = &s->table.of[surface[k]];
-        const double      u = woods_unit(woods_hash(hash[k], 3, 0, 0));
-        double            place[2] = {x_m[k], y_m[k]};
+        const double u = woods_unit(woods_hash(hash[k], 3, 0, 0));
+        double       place[2] = {x_m[k], y_m[k]};
         if (class->floor == PLANT_KINDS || !(u < class->floor_per_m2 * low_cell_m * low_cell_m)) continue;
         if (class->floor == PLANT_CROP) detail_row(place, s->landscape, (SurfaceClass)surface[k], x_m[k], y_m[k]);
         x_m[count] = place[0], y_m[count] = place[1];
@@ -41,7 +41,7 @@ int woods_low_plants(Plant plant[woods_low_most], const Woods *woods, int64_t i,
     woods_bears(bears, s, count, x_m, y_m, -0.8, true);
     for (int k = 0; k < count; k++) {
         const WoodsClass *class = &s->table.of[kept_surface[k]];
-        const double      z_m = elevation_height(&s->landscape->elevation, x_m[k], y_m[k], NULL);
+        const double z_m = elevation_height(&s->landscape->elevation, x_m[k], y_m[k], NULL);
         if (!bears[k] || !isfinite(z_m)) continue;
         const double u = woods_unit(woods_hash(kept_hash[k], 4, 0, 0));
         const double height_m = class->floor_low_m + u * u * (class->floor_high_m - class->floor_low_m);
@@ -59,12 +59,16 @@ int woods_low_plants(Plant plant[woods_low_most], const Woods *woods, int64_t i,
 
 static bool is_planted(const Woods *w, double x_m, double y_m)
 {
-    const double i = floor((x_m - w->origin_enu[0]) / woods_square_m), j = floor((y_m - w->origin_enu[1]) / woods_square_m);
+    const double i = floor((x_m - w->origin_enu[0]) / woods_square_m),
+                 j = floor((y_m - w->origin_enu[1]) / woods_square_m);
     if (!(i >= 0 && j >= 0 && i < w->nx && j < w->ny)) return false;
     return !w->bare || !w->bare[(size_t)j * (size_t)w->nx + (size_t)i];
 }
 
-static bool is_forest(SurfaceClass class) { return class == SURFACE_FOREST_BROADLEAF || class == SURFACE_FOREST_CONIFER; }
+static bool is_forest(SurfaceClass class)
+{
+    return class == SURFACE_FOREST_BROADLEAF || class == SURFACE_FOREST_CONIFER;
+}
 
 static bool can_bear(uint8_t surface)
 {
@@ -72,14 +76,15 @@ static bool can_bear(uint8_t surface)
            surface != SURFACE_SNOW;
 }
 
-void woods_not_standing(uint8_t *stand, float *cover, float *density, const Woods *woods, int count, const uint8_t *surface,
-                        const double *x_m, const double *y_m)
+void woods_not_standing(uint8_t *stand, float *cover, float *density, const Woods *woods, int count,
+                        const uint8_t *surface, const double *x_m, const double *y_m)
 {
     const WoodsSource *s = woods->low;
     for (int k = 0; k < count; k++) {
         double layer, height_m;
         stand[k] = SURFACE_NONE, cover[k] = -1, density[k] = 1;
-        if (!can_bear(surface[k]) || (!is_forest((SurfaceClass)surface[k]) && surface[k] != SURFACE_SCRUB && !s->has_store))
+        if (!can_bear(surface[k]) ||
+            (!is_forest((SurfaceClass)surface[k]) && surface[k] != SURFACE_SCRUB && !s->has_store))
             continue;
         if (is_planted(woods, x_m[k], y_m[k])) continue;
         if (woods_canopy_at(&layer, &height_m, s, x_m[k], y_m[k])) {
@@ -88,7 +93,7 @@ void woods_not_standing(uint8_t *stand, float *cover, float *density, const Wood
             cover[k] = (float)layer;
         } else {
             const SurfaceClass class = woods_class_at(s, surface[k], x_m[k], y_m[k]);
-            if (is_forest(class)) stand[k] = (uint8_t)class, density[k] = (float)woods_density(s, x_m[k], y_m[k]);
+            if (is_forest(class)) stand[k] = (uint8_t) class, density[k] = (float)woods_density(s, x_m[k], y_m[k]);
         }
         if (stand[k] && woods_is_cleared(&s->clearings, x_m[k], y_m[k], 0, false)) stand[k] = SURFACE_NONE;
     }
@@ -103,7 +108,7 @@ Status woods_of_class(Woods *out, SurfaceClass surface, double density, uint64_t
     SquarePlants all = {0};
     const int    half = squares / 2;
     WoodsSource  s = {.seed = seed, .i0 = -half, .j0 = -half};
-    Woods        woods = {.nx = squares, .ny = squares, .origin_enu = {-half * woods_square_m, -half * woods_square_m, 0}};
+    Woods woods = {.nx = squares, .ny = squares, .origin_enu = {-half * woods_square_m, -half * woods_square_m, 0}};
     if (!etc_path(path, sizeof path, "woods.csv")) return STATUS_BAD_VALUE;
     const Status status = woods_table_read(&s.table, path);
     if (status != STATUS_OK) return status;
@@ -117,7 +122,8 @@ Status woods_of_class(Woods *out, SurfaceClass surface, double density, uint64_t
             double         x_m, y_m, far_m[2]; /* far: where groves are others for each plant */
             Plant          plant;
             const uint64_t hash = woods_candidate(&x_m, &y_m, &s, n % squares, n / squares, k);
-            if (!(woods_unit(woods_hash(hash, 7, 0, 0)) < density * class->per_m2 * woods_cell_m * woods_cell_m)) continue;
+            if (!(woods_unit(woods_hash(hash, 7, 0, 0)) < density * class->per_m2 * woods_cell_m * woods_cell_m))
+                continue;
             for (int c = 0; c < 2; c++) far_m[c] = 1e6 * woods_unit(woods_hash(hash, c, 0, 90));
             woods_draw_of_class(&plant, &s, class, far_m[0], far_m[1], hash);
             woods_add_plant(&all, &s, plant, x_m, y_m);
@@ -161,7 +167,7 @@ static Status sort_crowns(WoodsSource *s)
     size_t       n;
     if (!s->has_store || s->store.crown_count == 0) return STATUS_OK;
     c->first = calloc(squares + 2, sizeof *c->first);
-    c->item  = calloc(s->store.crown_count, sizeof *c->item);
+    c->item = calloc(s->store.crown_count, sizeof *c->item);
     if (!c->first || !c->item) return STATUS_NO_MEMORY;
     for (int k = 0; k < 2; k++) c->low[k] = INFINITY, c->high[k] = -INFINITY;
     for (uint64_t k = 0; k < s->store.crown_count; k++) {
@@ -326,7 +332,8 @@ Status woods_create(Woods *out, const Landscape *landscape, const WoodsConfig *c
         status = STATUS_NO_MEMORY;
     } else {
         if (pool) pool_run(pool, source->ny, fill_row, &filling);
-        else for (int j = 0; j < source->ny; j++) fill_row(&filling, 0, j);
+        else
+            for (int j = 0; j < source->ny; j++) fill_row(&filling, 0, j);
         for (size_t n = 0; n < squares; n++)
             if (filling.square[n].lost) status = STATUS_NO_MEMORY;
         if (status == STATUS_OK) status = keep_nearest(&woods, source, filling.square, config->most_trees);
@@ -376,7 +383,8 @@ int woods_near(int *index, int most, const Woods *woods, double x_m, double y_m,
             for (uint32_t k = woods->first[n]; k < woods->first[n + 1]; k++) {
                 const Plant *p = &woods->plant[k];
                 const double trunk_m = woods_trunk_m(p);
-                if (!(trunk_m > 0) || hypot((double)p->p_m[0] - x, (double)p->p_m[1] - y) > radius_m + trunk_m) continue;
+                if (!(trunk_m > 0) || hypot((double)p->p_m[0] - x, (double)p->p_m[1] - y) > radius_m + trunk_m)
+                    continue;
                 if (found < most) index[found] = (int)k;
                 found++;
             }

@@ -19,12 +19,12 @@ typedef struct WoodsPath {
 
 typedef struct WoodsConfig {
     uint64_t seed;
-    double   centre_m[2];   /* ENU: trees beyond most_trees are left out, farthest from here first, whole cells at a time */
-    double   half_width_m;  /* of the square about it in which plants stand; 50 .. 50000 */
-    int      most_trees;    /* 0 .. woods_most_trees */
-    const char *store;      /* path of the terrain store of the landscape, for its canopy layers and crowns; NULL: none */
-    int      path_count;
-    const WoodsPath *path;  /* cleared of plants */
+    double centre_m[2]; /* ENU: trees beyond most_trees are left out, farthest from here first, whole cells at a time */
+    double half_width_m; /* of the square about it in which plants stand; 50 .. 50000 */
+    int    most_trees;   /* 0 .. woods_most_trees */
+    const char *store;   /* path of the terrain store of the landscape, for its canopy layers and crowns; NULL: none */
+    int         path_count;
+    const WoodsPath *path; /* cleared of plants */
 } WoodsConfig;
 
 enum { woods_most_trees = 4000000 };
@@ -34,18 +34,18 @@ enum { woods_most_trees = 4000000 };
 static const double woods_square_m = 64;
 
 typedef struct Woods {
-    double    origin_enu[3];   /* of plant positions, and of the squares (its x and y) */
-    int       nx, ny;          /* squares */
-    uint32_t *first;           /* [nx * ny + 1] */
-    int       count;
-    Plant    *plant;           /* [count] square by square, and in a fixed order within a square */
-    int       by_kind[PLANT_KINDS];
-    int       left_out;        /* trees beyond most_trees */
-    uint8_t  *bare;            /* [nx * ny] 1: of such a square; NULL: none is */
-    double    reach_m;         /* from centre_m: trees within are complete */
-    int       from_crowns, from_canopy, from_classes, from_hedges; /* sources of the plants */
-    const Landscape *landscape; /* borrowed */
-    void     *low;             /* private: what woods_low_plants needs */
+    double           origin_enu[3]; /* of plant positions, and of the squares (its x and y) */
+    int              nx, ny;        /* squares */
+    uint32_t        *first;         /* [nx * ny + 1] */
+    int              count;
+    Plant           *plant; /* [count] square by square, and in a fixed order within a square */
+    int              by_kind[PLANT_KINDS];
+    int              left_out; /* trees beyond most_trees */
+    uint8_t         *bare;     /* [nx * ny] 1: of such a square; NULL: none is */
+    double           reach_m;  /* from centre_m: trees within are complete */
+    int              from_crowns, from_canopy, from_classes, from_hedges; /* sources of the plants */
+    const Landscape *landscape;                                           /* borrowed */
+    void            *low;                                                 /* private: what woods_low_plants needs */
 } Woods;
 
 /* pool may be NULL. STATUS_BAD_VALUE: a value outside its range, logged. */
@@ -61,25 +61,25 @@ int woods_low_plants(Plant plant[woods_low_most], const Woods *woods, int64_t i,
 /* Woods of which nothing stands: of squares that were left out, and beyond them all. stand[count]: the class of forest
  * whose canopy covers the ground there, SURFACE_NONE: none; cover[count]: the share of it by a store's canopy layer,
  * -1: that of the class; density[count]: plants there over the class's mean. surface: of the places. */
-void   woods_not_standing(uint8_t *stand, float *cover, float *density, const Woods *woods, int count, const uint8_t *surface,
-                          const double *x_m, const double *y_m);
+void woods_not_standing(uint8_t *stand, float *cover, float *density, const Woods *woods, int count,
+                        const uint8_t *surface, const double *x_m, const double *y_m);
 /* Plants of one class alone on level ground of height 0, squares x squares about the origin, everywhere as many, over
  * the class's mean, and with all its kinds. */
 Status woods_of_class(Woods *out, SurfaceClass surface, double density, uint64_t seed, int squares);
 
 /* The standing plants whose trunk or stem (woods_trunk_m of radius) a circle touches: at most `most` of their indices;
  * returns how many there are. */
-int    woods_near(int *index, int most, const Woods *woods, double x_m, double y_m, double radius_m);
+int woods_near(int *index, int most, const Woods *woods, double x_m, double y_m, double radius_m);
 /* Radius of a plant's trunk at breast height, m; 0 for kinds without one. */
 double woods_trunk_m(const Plant *plant);
 
 /* ---- what grows on each surface class (etc/woods.csv) -------------------------------------------- */
 
 typedef struct WoodsClass {
-    double    per_m2;               /* woody plants */
+    double    per_m2; /* woody plants */
     double    low_m, high_m;
     double    share[PLANT_STANDING]; /* their sum is 1, or 0 where per_m2 is 0 */
-    PlantKind floor;                /* PLANT_KINDS: none */
+    PlantKind floor;                 /* PLANT_KINDS: none */
     double    floor_per_m2, floor_low_m, floor_high_m;
 } WoodsClass;
 

@@ -8,16 +8,16 @@
 /* Pieces of paths, and vehicles' places, by the squares of woods_square_m that they reach into. */
 typedef struct WoodsClearings {
     int        count;
-    WoodsPath *path;     /* [count] */
+    WoodsPath *path; /* [count] */
     int64_t    i0, j0;
     int        nx, ny;
-    uint32_t  *first;    /* [nx * ny + 1] */
+    uint32_t  *first; /* [nx * ny + 1] */
     uint32_t  *item;
 } WoodsClearings;
 
 /* Crowns of a terrain store by squares. */
 typedef struct WoodsCrowns {
-    uint32_t *first;     /* [nx * ny + 1] of the woods' squares; NULL: none */
+    uint32_t *first; /* [nx * ny + 1] of the woods' squares; NULL: none */
     uint32_t *item;
     double    low[2], high[2]; /* where crowns were looked for: about all of them */
 } WoodsCrowns;
@@ -48,11 +48,11 @@ static inline uint64_t woods_hash(uint64_t seed, int64_t a, int64_t b, uint64_t 
 static inline double woods_unit(uint64_t hash) { return (double)(hash >> 11) * 0x1p-53; }
 
 /* Fills in all but p_m: kind and height are given; lean, twist and width drawn. */
-Plant  woods_draw_plant(uint64_t hash, PlantKind kind, double height_m, double width);
+Plant woods_draw_plant(uint64_t hash, PlantKind kind, double height_m, double width);
 /* Whether the ground there bears a trunk: none on roads, tracks, water, roofs, in clearings. Many places of one square
  * at a time; bears[count]: 1 or 0. */
-void   woods_bears(uint8_t *bears, const WoodsSource *s, int count, const double *x_m, const double *y_m, double room_m,
-                   bool low);
+void woods_bears(uint8_t *bears, const WoodsSource *s, int count, const double *x_m, const double *y_m, double room_m,
+                 bool low);
 
 Status woods_clearings_create(WoodsClearings *out, const WoodsSource *s, const WoodsConfig *config);
 bool   woods_is_cleared(const WoodsClearings *c, double x_m, double y_m, double room_m, bool low);
@@ -65,18 +65,19 @@ typedef struct SquarePlants {
     int    from_crowns, from_canopy, from_classes, from_hedges;
     bool   lost;
 } SquarePlants;
-void   woods_fill_square(SquarePlants *out, const WoodsSource *s, int i, int j);
-void   woods_add_plant(SquarePlants *out, const WoodsSource *s, Plant plant, double x_m, double y_m);
+void woods_fill_square(SquarePlants *out, const WoodsSource *s, int i, int j);
+void woods_add_plant(SquarePlants *out, const WoodsSource *s, Plant plant, double x_m, double y_m);
 
 /* Square (i, j) has woods_side_cells squared candidates: place of number k, and the hash that it is drawn with. */
 enum { woods_cell_m = 4, woods_side_cells = 16 };
 uint64_t woods_candidate(double *x_m, double *y_m, const WoodsSource *s, int i, int j, int k);
 /* A plant of a class, of the kinds that are frequent there; and plants there over the class's mean. */
-void   woods_draw_of_class(Plant *out, const WoodsSource *s, const WoodsClass *class, double x_m, double y_m, uint64_t hash);
+void   woods_draw_of_class(Plant *out, const WoodsSource *s, const WoodsClass *class, double x_m, double y_m,
+                           uint64_t hash);
 double woods_density(const WoodsSource *s, double x_m, double y_m);
 /* The class whose plants stand on a surface. */
 SurfaceClass woods_class_at(const WoodsSource *s, uint8_t surface, double x_m, double y_m);
 /* The canopy layers of the store; false: none there. */
-bool   woods_canopy_at(double *cover, double *height_m, const WoodsSource *s, double x_m, double y_m);
+bool woods_canopy_at(double *cover, double *height_m, const WoodsSource *s, double x_m, double y_m);
 
 #endif

@@ -29,8 +29,8 @@ static void walk_squares(WoodsClearings *c, uint32_t *at, bool put)
         const WoodsPath *p = &c->path[n];
         int64_t          from[2], end[2];
         for (int k = 0; k < 2; k++) {
-            const double low = fmin(p->a_m[k], p->b_m[k]) - p->half_m - reach_m;
-            const double high = fmax(p->a_m[k], p->b_m[k]) + p->half_m + reach_m;
+            const double  low = fmin(p->a_m[k], p->b_m[k]) - p->half_m - reach_m;
+            const double  high = fmax(p->a_m[k], p->b_m[k]) + p->half_m + reach_m;
             const int64_t first = k ? c->j0 : c->i0;
             const int     squares = k ? c->ny : c->nx;
             from[k] = (int64_t)clamp(floor(low / woods_square_m) - (double)first, 0, squares);
@@ -52,7 +52,7 @@ Status woods_clearings_create(WoodsClearings *out, const WoodsSource *s, const W
     const LandscapeEvidence *known = &s->landscape->fitted_to;
     const size_t             squares = (size_t)s->nx * (size_t)s->ny;
     WoodsClearings           c = {.i0 = s->i0, .j0 = s->j0, .nx = s->nx, .ny = s->ny};
-    c.path  = calloc((size_t)config->path_count + (size_t)known->fix_count + 1, sizeof *c.path);
+    c.path = calloc((size_t)config->path_count + (size_t)known->fix_count + 1, sizeof *c.path);
     c.first = calloc(squares + 2, sizeof *c.first);
     if (!c.path || !c.first) goto lost;
     for (int n = 0; n < config->path_count; n++) c.path[c.count++] = config->path[n];
@@ -139,8 +139,9 @@ static double woods_noise(uint64_t seed, uint64_t stream, double x_m, double y_m
     const double  u = x - i, v = y - j, s = u * u * (3 - 2 * u), t = v * v * (3 - 2 * v);
     const int64_t a = (int64_t)i, b = (int64_t)j;
     const double  sw = woods_unit(woods_hash(seed, a, b, stream)), se = woods_unit(woods_hash(seed, a + 1, b, stream));
-    const double  nw = woods_unit(woods_hash(seed, a, b + 1, stream)), ne = woods_unit(woods_hash(seed, a + 1, b + 1, stream));
-    const double  south = sw + s * (se - sw), north = nw + s * (ne - nw);
+    const double  nw = woods_unit(woods_hash(seed, a, b + 1, stream)),
+                 ne = woods_unit(woods_hash(seed, a + 1, b + 1, stream));
+    const double south = sw + s * (se - sw), north = nw + s * (ne - nw);
     return 2 * (south + t * (north - south)) - 1;
 }
 
@@ -153,7 +154,7 @@ Plant woods_draw_plant(uint64_t hash, PlantKind kind, double height_m, double wi
         p.lean[k] = (int8_t)lrint(clamp(u * 62, -89, 89)); /* both at once stay within 15 degrees */
     }
     p.height = (uint16_t)clamp(rint(height_m / plant_height_step_m), 1, 65535);
-    p.width  = (uint8_t)clamp(rint(128 * width), 16, 255);
+    p.width = (uint8_t)clamp(rint(128 * width), 16, 255);
     return p;
 }
 
@@ -164,7 +165,8 @@ static double height_of(uint64_t hash, double low_m, double high_m)
 }
 
 /* By the class's shares, each kind more where its own noise is high: groves. */
-static PlantKind kind_at(const WoodsSource *s, const double share[PLANT_STANDING], double x_m, double y_m, uint64_t hash)
+static PlantKind kind_at(const WoodsSource *s, const double share[PLANT_STANDING], double x_m, double y_m,
+                         uint64_t hash)
 {
     double weight[PLANT_STANDING], sum = 0;
     for (int k = 0; k < PLANT_STANDING; k++) {
@@ -185,7 +187,8 @@ static PlantKind kind_at(const WoodsSource *s, const double share[PLANT_STANDING
 /* Denser and thinner in patches; mean 1. */
 double woods_density(const WoodsSource *s, double x_m, double y_m)
 {
-    return 1 + 0.7 * woods_noise(s->seed, 30, x_m, y_m, patch_m) + 0.3 * woods_noise(s->seed, 31, x_m, y_m, 4 * patch_m);
+    return 1 + 0.7 * woods_noise(s->seed, 30, x_m, y_m, patch_m) +
+           0.3 * woods_noise(s->seed, 31, x_m, y_m, 4 * patch_m);
 }
 
 void woods_add_plant(SquarePlants *out, const WoodsSource *s, Plant plant, double x_m, double y_m)
@@ -244,7 +247,8 @@ static void add_crowns(SquarePlants *out, const WoodsSource *s, int i, int j)
         if (woods_is_cleared(&s->clearings, x_m, y_m, 0, false)) continue;
         const PlantKind kind = crown->height_m < 3 ? PLANT_BUSH : kind_at(s, shares_of(s, surface), x_m, y_m, hash);
         const double    width = (double)crown->radius_m / ((double)crown->height_m * plant_crown_share(kind));
-        woods_add_plant(out, s, woods_draw_plant(hash, kind, (double)crown->height_m, clamp(width, 0.4, 1.99)), x_m, y_m);
+        woods_add_plant(out, s, woods_draw_plant(hash, kind, (double)crown->height_m, clamp(width, 0.4, 1.99)), x_m,
+                        y_m);
         out->from_crowns++;
     }
 }
@@ -270,7 +274,8 @@ bool woods_canopy_at(double *cover, double *height_m, const WoodsSource *s, doub
 }
 
 /* A plant of the canopy layers; false: none here. found: the layers have a value. */
-static bool from_canopy(Plant *out, bool *found, const WoodsSource *s, uint8_t surface, double x_m, double y_m, uint64_t hash)
+static bool from_canopy(Plant *out, bool *found, const WoodsSource *s, uint8_t surface, double x_m, double y_m,
+                        uint64_t hash)
 {
     double cover, height_m;
     *found = woods_canopy_at(&cover, &height_m, s, x_m, y_m);
@@ -280,7 +285,7 @@ static bool from_canopy(Plant *out, bool *found, const WoodsSource *s, uint8_t s
     const double    radius_m = each_m * plant_crown_share(kind), area_m2 = pi_rad * radius_m * radius_m;
     const double    per_cell = -log(1 - fmin(cover, 0.97)) * cell_m * cell_m / area_m2;
     /* where one plant a cell is not enough, it is wider */
-    const double    width = clamp(sqrt(fmax(per_cell / 0.9, 1)), 1, 1.99);
+    const double width = clamp(sqrt(fmax(per_cell / 0.9, 1)), 1, 1.99);
     if (!(woods_unit(woods_hash(hash, 6, 0, 0)) < per_cell / (width * width))) return false;
     *out = woods_draw_plant(hash, kind, each_m, width);
     return true;
@@ -295,7 +300,8 @@ SurfaceClass woods_class_at(const WoodsSource *s, uint8_t surface, double x_m, d
     return woods_noise(s->seed, 33, x_m, y_m, 3 * wood_m) > 0.3 ? SURFACE_FOREST_CONIFER : SURFACE_FOREST_BROADLEAF;
 }
 
-void woods_draw_of_class(Plant *out, const WoodsSource *s, const WoodsClass *class, double x_m, double y_m, uint64_t hash)
+void woods_draw_of_class(Plant *out, const WoodsSource *s, const WoodsClass *class, double x_m, double y_m,
+                         uint64_t hash)
 {
     const PlantKind kind = kind_at(s, class->share, x_m, y_m, hash);
     double          height_m = height_of(hash, class->low_m, class->high_m);
@@ -306,8 +312,8 @@ void woods_draw_of_class(Plant *out, const WoodsSource *s, const WoodsClass *cla
 static bool from_class(Plant *out, const WoodsSource *s, uint8_t surface, double x_m, double y_m, uint64_t hash)
 {
     const WoodsClass *class = &s->table.of[woods_class_at(s, surface, x_m, y_m)];
-    const double      chance = class->per_m2 * cell_m * cell_m;
-    const double      u = woods_unit(woods_hash(hash, 7, 0, 0));
+    const double chance = class->per_m2 * cell_m * cell_m;
+    const double u = woods_unit(woods_hash(hash, 7, 0, 0));
     if (!(u < 2 * chance) || !(u < chance * woods_density(s, x_m, y_m))) return false;
     woods_draw_of_class(out, s, class, x_m, y_m, hash);
     return true;
@@ -336,12 +342,15 @@ static bool add_hedge(SquarePlants *out, const WoodsSource *s, double x_m, doubl
         woods_bears(&bears, s, 1, &h->x_m, &h->y_m, 0, false);
         if (!bears) continue;
         if (tree) {
-            static const double share[PLANT_STANDING] = {[PLANT_ALDER] = 0.3, [PLANT_BIRCH] = 0.2, [PLANT_ENGLISH_OAK] = 0.5};
-            const PlantKind     kind = kind_at(s, share, h->x_m, h->y_m, hash);
+            static const double share[PLANT_STANDING] = {
+                [PLANT_ALDER] = 0.3, [PLANT_BIRCH] = 0.2, [PLANT_ENGLISH_OAK] = 0.5};
+            const PlantKind kind = kind_at(s, share, h->x_m, h->y_m, hash);
             woods_add_plant(out, s, woods_draw_plant(hash, kind, 6 + 9 * u, 1), h->x_m, h->y_m);
         } else {
-            woods_add_plant(out, s, woods_draw_plant(hash, h->height == HEDGE_CUT ? PLANT_HEDGE : PLANT_BUSH, height_m,
-                                               clamp(1.5 / (height_m * 0.44), 0.6, 1.99)), h->x_m, h->y_m);
+            woods_add_plant(out, s,
+                            woods_draw_plant(hash, h->height == HEDGE_CUT ? PLANT_HEDGE : PLANT_BUSH, height_m,
+                                             clamp(1.5 / (height_m * 0.44), 0.6, 1.99)),
+                            h->x_m, h->y_m);
         }
         out->from_hedges++;
     }
@@ -370,7 +379,8 @@ static void offer(Candidates *c, SquarePlants *out, const WoodsSource *s, int k)
 
 uint64_t woods_candidate(double *x_m, double *y_m, const WoodsSource *s, int i, int j, int k)
 {
-    const int64_t  a = (s->i0 + i) * woods_side_cells + k % woods_side_cells, b = (s->j0 + j) * woods_side_cells + k / woods_side_cells;
+    const int64_t a = (s->i0 + i) * woods_side_cells + k % woods_side_cells,
+                  b = (s->j0 + j) * woods_side_cells + k / woods_side_cells;
     const uint64_t hash = woods_hash(s->seed, a, b, 20);
     *x_m = ((double)a + 0.1 + 0.8 * woods_unit(woods_hash(hash, 1, 0, 0))) * cell_m;
     *y_m = ((double)b + 0.1 + 0.8 * woods_unit(woods_hash(hash, 2, 0, 0))) * cell_m;

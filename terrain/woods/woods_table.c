@@ -8,13 +8,20 @@ static const struct {
     bool        deciduous;
     double      crown;
 } kinds[PLANT_KINDS] = {
-    [PLANT_PINE] = {"pine", false, 0.16},           [PLANT_ALDER] = {"alder", true, 0.18},
-    [PLANT_BIRCH] = {"birch", true, 0.22},          [PLANT_ENGLISH_OAK] = {"english_oak", true, 0.29},
-    [PLANT_SESSILE_OAK] = {"sessile_oak", true, 0.24}, [PLANT_RED_OAK] = {"red_oak", true, 0.24},
-    [PLANT_WHITE_OAK] = {"white_oak", true, 0.32},  [PLANT_BUSH] = {"bush", true, 0.49},
-    [PLANT_HEDGE] = {"hedge", true, 0.44},          [PLANT_REED] = {"reed", false, 0.17},
-    [PLANT_GRASS] = {"grass_tuft", false, 0.75},    [PLANT_DRY_GRASS] = {"dry_tuft", false, 0.66},
-    [PLANT_CROP] = {"crop_plant", false, 0.22},     [PLANT_ROCK] = {"boulder", false, 0.65},
+    [PLANT_PINE] = {"pine", false, 0.16},
+    [PLANT_ALDER] = {"alder", true, 0.18},
+    [PLANT_BIRCH] = {"birch", true, 0.22},
+    [PLANT_ENGLISH_OAK] = {"english_oak", true, 0.29},
+    [PLANT_SESSILE_OAK] = {"sessile_oak", true, 0.24},
+    [PLANT_RED_OAK] = {"red_oak", true, 0.24},
+    [PLANT_WHITE_OAK] = {"white_oak", true, 0.32},
+    [PLANT_BUSH] = {"bush", true, 0.49},
+    [PLANT_HEDGE] = {"hedge", true, 0.44},
+    [PLANT_REED] = {"reed", false, 0.17},
+    [PLANT_GRASS] = {"grass_tuft", false, 0.75},
+    [PLANT_DRY_GRASS] = {"dry_tuft", false, 0.66},
+    [PLANT_CROP] = {"crop_plant", false, 0.22},
+    [PLANT_ROCK] = {"boulder", false, 0.65},
 };
 
 const char *plant_name(PlantKind kind) { return kind >= 0 && kind < PLANT_KINDS ? kinds[kind].name : "none"; }
@@ -65,8 +72,8 @@ static Status read_row(WoodsTable *out, bool seen[SURFACE_COUNT], const Table *t
     static const struct {
         const char *name;
         double      low, high;
-    } columns[] = {{"per_ha", 0, 600}, {"low_m", 0.2, 60}, {"high_m", 0.2, 60}, {"floor_per_m2", 0, 4},
-                   {"floor_low_m", 0.02, 3}, {"floor_high_m", 0.02, 3}};
+    } columns[] = {{"per_ha", 0, 600},     {"low_m", 0.2, 60},       {"high_m", 0.2, 60},
+                   {"floor_per_m2", 0, 4}, {"floor_low_m", 0.02, 3}, {"floor_high_m", 0.02, 3}};
     const char        *name = table_text(table, row, table_column(table, "surface"));
     const char        *floor_name = table_text(table, row, table_column(table, "floor"));
     const SurfaceClass surface = surface_find(name);
@@ -76,12 +83,17 @@ static Status read_row(WoodsTable *out, bool seen[SURFACE_COUNT], const Table *t
         return STATUS_BAD_VALUE;
     }
     for (int k = 0; k < 6; k++) {
-        const Status got = table_number(&value[k], table, row, table_column(table, columns[k].name), columns[k].low,
-                                        columns[k].high);
+        const Status got =
+            table_number(&value[k], table, row, table_column(table, columns[k].name), columns[k].low, columns[k].high);
         if (got != STATUS_OK) return got;
     }
-    WoodsClass c = {.per_m2 = 1e-4 * value[0], .low_m = value[1], .high_m = value[2], .floor = plant_find(floor_name),
-                    .floor_per_m2 = value[3], .floor_low_m = value[4], .floor_high_m = value[5]};
+    WoodsClass c = {.per_m2 = 1e-4 * value[0],
+                    .low_m = value[1],
+                    .high_m = value[2],
+                    .floor = plant_find(floor_name),
+                    .floor_per_m2 = value[3],
+                    .floor_low_m = value[4],
+                    .floor_high_m = value[5]};
     for (int k = 0; k < PLANT_STANDING; k++) {
         const int column = table_column(table, plant_name((PlantKind)k));
         if (column < 0) continue;
@@ -91,8 +103,9 @@ static Status read_row(WoodsTable *out, bool seen[SURFACE_COUNT], const Table *t
     }
     const bool low_kind = c.floor == PLANT_KINDS ? strcmp(floor_name, "none") == 0 : c.floor >= PLANT_STANDING;
     if (c.high_m < c.low_m || c.floor_high_m < c.floor_low_m || !low_kind || (c.per_m2 > 0 && !(sum > 0))) {
-        log_error("woods: %s:%d: high below low, shares that are all 0, or a floor that is neither none nor a low plant: %s",
-                  table->path, table->line[row + 1], floor_name);
+        log_error(
+            "woods: %s:%d: high below low, shares that are all 0, or a floor that is neither none nor a low plant: %s",
+            table->path, table->line[row + 1], floor_name);
         return STATUS_BAD_VALUE;
     }
     for (int k = 0; k < PLANT_STANDING && sum > 0; k++) c.share[k] /= sum;
@@ -103,12 +116,12 @@ static Status read_row(WoodsTable *out, bool seen[SURFACE_COUNT], const Table *t
 
 Status woods_table_read(WoodsTable *out, const char *path)
 {
-    static const char *const needed[] = {"surface", "per_ha", "low_m", "high_m", "floor", "floor_per_m2", "floor_low_m",
-                                         "floor_high_m"};
-    WoodsTable woods = {0};
-    Table      table = {0};
-    bool       seen[SURFACE_COUNT] = {0};
-    Status     status = table_open(&table, path);
+    static const char *const needed[] = {"surface", "per_ha",       "low_m",       "high_m",
+                                         "floor",   "floor_per_m2", "floor_low_m", "floor_high_m"};
+    WoodsTable               woods = {0};
+    Table                    table = {0};
+    bool                     seen[SURFACE_COUNT] = {0};
+    Status                   status = table_open(&table, path);
     if (status != STATUS_OK) return status;
     for (int s = 0; s < SURFACE_COUNT; s++) woods.of[s].floor = PLANT_KINDS;
     for (size_t k = 0; k < sizeof needed / sizeof *needed && status == STATUS_OK; k++)

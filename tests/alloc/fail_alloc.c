@@ -22,23 +22,23 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
-void *__libc_malloc(size_t size);
-void *__libc_calloc(size_t count, size_t size);
-void *__libc_realloc(void *old, size_t size);
-void *__libc_memalign(size_t alignment, size_t size);
-void _ZSt17__throw_bad_allocv(void) __attribute__((noreturn)); /* of libstdc++ */
+void        *__libc_malloc(size_t size);
+void        *__libc_calloc(size_t count, size_t size);
+void        *__libc_realloc(void *old, size_t size);
+void        *__libc_memalign(size_t alignment, size_t size);
+void         _ZSt17__throw_bad_allocv(void) __attribute__((noreturn)); /* of libstdc++ */
 #pragma weak _ZSt17__throw_bad_allocv
 
 /* list_octets: lines, then zeros; where the next line goes at the end. */
 enum { list_octets = 1 << 21, depth_most = 4, unwound_most = 24, places_most = 1 << 16 };
 
-static uintptr_t       base, text_begin, text_end;
-static char           *list;      /* FILE in memory, shared by all processes: one that is confined may write no file */
-static uint64_t        chosen;
-static bool            has_chosen, stays;
-static atomic_bool     failed;
+static uintptr_t          base, text_begin, text_end;
+static char              *list; /* FILE in memory, shared by all processes: one that is confined may write no file */
+static uint64_t           chosen;
+static bool               has_chosen, stays;
+static atomic_bool        failed;
 static _Thread_local bool busy;
-static _Atomic uint64_t seen[places_most];
+static _Atomic uint64_t   seen[places_most];
 
 static int find_text(struct dl_phdr_info *info, size_t size, void *user)
 {
@@ -63,7 +63,8 @@ __attribute__((constructor)) static void begin(void)
     if (path) {
         const int file = open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0644);
         void     *shared = file >= 0 && ftruncate(file, list_octets) == 0
-                               ? mmap(NULL, list_octets, PROT_READ | PROT_WRITE, MAP_SHARED, file, 0) : MAP_FAILED;
+                               ? mmap(NULL, list_octets, PROT_READ | PROT_WRITE, MAP_SHARED, file, 0)
+                               : MAP_FAILED;
         if (shared == MAP_FAILED) abort();
         close(file);
         list = shared;
@@ -80,7 +81,8 @@ __attribute__((constructor)) static void begin(void)
 static void say(const char *line, int length)
 {
     if (!list || length <= 0) return;
-    const uint64_t at = atomic_fetch_add((_Atomic uint64_t *)(void *)(list + list_octets - sizeof(uint64_t)), (uint64_t)length);
+    const uint64_t at =
+        atomic_fetch_add((_Atomic uint64_t *)(void *)(list + list_octets - sizeof(uint64_t)), (uint64_t)length);
     if (at + (uint64_t)length > list_octets - sizeof(uint64_t)) abort();
     memcpy(list + at, line, (size_t)length);
 }
@@ -101,11 +103,11 @@ static bool fails(const void *caller)
     if ((uintptr_t)caller < text_begin || (uintptr_t)caller >= text_end || busy) return false;
     if (failed) return stays;
     busy = true;
-    void      *at[unwound_most];
-    const int  count = backtrace(at, unwound_most);
-    uint64_t   place = UINT64_C(0xcbf29ce484222325);
-    uintptr_t  chain[depth_most];
-    int        depth = 0;
+    void     *at[unwound_most];
+    const int count = backtrace(at, unwound_most);
+    uint64_t  place = UINT64_C(0xcbf29ce484222325);
+    uintptr_t chain[depth_most];
+    int       depth = 0;
     for (int i = 0; i < count && depth < depth_most; i++) {
         if ((uintptr_t)at[i] < text_begin || (uintptr_t)at[i] >= text_end) continue;
         chain[depth++] = (uintptr_t)at[i] - base;

@@ -11,7 +11,8 @@ static void count(void *user, int worker, int task)
     (void)worker, (void)task;
     const double start_s = wall_clock_s();
     atomic_fetch_add_explicit(&arrived, 1, memory_order_relaxed);
-    while (atomic_load_explicit(&arrived, memory_order_relaxed) < 2 && wall_clock_s() < start_s + 20) {}
+    while (atomic_load_explicit(&arrived, memory_order_relaxed) < 2 && wall_clock_s() < start_s + 20) {
+    }
     ++*(volatile int *)user;
 }
 

@@ -1,4 +1,5 @@
-/* Memory of frames: aligned and zero, kept over resets, and no more of it when requests grow a little from frame to frame. */
+/* Memory of frames: aligned and zero, kept over resets, and no more of it when requests grow a little from frame to
+ * frame. */
 #include "tests/check.h"
 
 static bool is_zero(const unsigned char *p, size_t octets)
@@ -12,7 +13,7 @@ static void memory_is_aligned_and_zero(void **state)
 {
     (void)state;
     static const size_t octets[] = {0, 1, 63, 64, 65, 1000, (1 << 20) - 1, 1 << 20, (1 << 20) + 1, 5 << 20};
-    Arena *arena = arena_create();
+    Arena              *arena = arena_create();
     for (int frame = 0; frame < 3; frame++) {
         unsigned char *last = NULL;
         for (size_t i = 0; i < sizeof octets / sizeof *octets; i++) {
@@ -53,6 +54,7 @@ static void growing_requests_reuse_memory(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(memory_is_aligned_and_zero), cmocka_unit_test(growing_requests_reuse_memory)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(memory_is_aligned_and_zero),
+                                       cmocka_unit_test(growing_requests_reuse_memory)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

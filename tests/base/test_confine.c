@@ -1,5 +1,5 @@
-/* tests/base/test_confine.c: a process that has confined itself is asked to do what it may not, and what it must still do. The
- * twin does the same without: there all of it works, so that what fails is refused by the confinement alone. */
+/* tests/base/test_confine.c: a process that has confined itself is asked to do what it may not, and what it must still
+ * do. The twin does the same without: there all of it works, so that what fails is refused by the confinement alone. */
 #include "tests/check.h"
 
 #include "pitviper_confine.h"
@@ -100,7 +100,7 @@ static int try_link(void)
 }
 
 static void *nothing(void *user) { return user; }
-static int try_thread(void)
+static int   try_thread(void)
 {
     pthread_t thread;
     const int error = pthread_create(&thread, NULL, nothing, NULL);
@@ -146,8 +146,8 @@ static int try_stat(void)
 typedef enum Part { CALLS = 1, FILES = 2, LIMITS = 4 } Part;
 static const struct Try {
     const char *what;
-    int       (*act)(void);
-    int         refused_by, perhaps_by; /* perhaps: by newer kernels' Landlock */
+    int (*act)(void);
+    int refused_by, perhaps_by; /* perhaps: by newer kernels' Landlock */
 } tries[] = {
     {"a TCP socket", try_inet, CALLS, 0},
     {"a UDP socket", try_inet6, CALLS, 0},
@@ -181,7 +181,7 @@ enum { try_count = sizeof tries / sizeof *tries };
 /* The error of each, in a process that has confined itself so. */
 static void tried(int error[try_count], int parts, bool *held)
 {
-    int       ends[2], how;
+    int ends[2], how;
     CHECK(pipe(ends) == 0);
     const pid_t process = fork();
     CHECK(process >= 0);
@@ -224,7 +224,8 @@ static void only_what_reading_needs_goes_on(void **state)
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
             by &= ~LIMITS;
 #endif
-            const bool denied = error[n] == EPERM || error[n] == EACCES || error[n] == ENOSYS || (by & LIMITS && error[n] == ENOMEM);
+            const bool denied =
+                error[n] == EPERM || error[n] == EACCES || error[n] == ENOSYS || (by & LIMITS && error[n] == ENOMEM);
             if (!by && denied && tries[n].perhaps_by & parts[p]) continue;
             if (by ? !denied : error[n] != 0)
                 fail_msg("confined by %d: %s: %s", parts[p], tries[n].what, error[n] ? strerror(error[n]) : "it works");
@@ -259,7 +260,9 @@ int main(void)
     snprintf(outside, sizeof outside, "%s-out", folder);
     snprintf(link, sizeof link, "%s/link", folder);
     FILE *in = fopen(inside, "w"), *out = fopen(outside, "w");
-    if (!in || !out || fputs("here", in) < 0 || fputs("there", out) < 0 || fclose(in) || fclose(out) || symlink(outside, link)) return 1;
+    if (!in || !out || fputs("here", in) < 0 || fputs("there", out) < 0 || fclose(in) || fclose(out) ||
+        symlink(outside, link))
+        return 1;
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(only_what_reading_needs_goes_on),
         cmocka_unit_test(abort_is_an_abort),

@@ -8,7 +8,7 @@
 #include <xmmintrin.h>
 
 /* zlib is linked to nothing here */
-const char *zlibVersion(void);
+const char   *zlibVersion(void);
 unsigned long crc32(unsigned long crc, const unsigned char *bytes, unsigned count);
 #define ZLIB(X) X(zlibVersion) X(crc32)
 LIBRARY(zlib, ZLIB, "zlib", "libz.so.1", "zlib1g");
@@ -37,7 +37,8 @@ static void what_is_missing_is_said(void **state)
     (void)state;
     log_set_sink(check_listen, NULL);
     CHECK(library_load(&absent) == STATUS_IO);
-    CHECK(strstr(check_said, "Nothing cannot be loaded: libpitviper-nothing.so.7") && strstr(check_said, "apt install libnothing7"));
+    CHECK(strstr(check_said, "Nothing cannot be loaded: libpitviper-nothing.so.7") &&
+          strstr(check_said, "apt install libnothing7"));
     CHECK(library_load(&lacking) == STATUS_IO);
     CHECK(strstr(check_said, "has no pitviper_no_such_function"));
     char path[512];

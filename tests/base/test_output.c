@@ -44,12 +44,13 @@ static bool holds(const char *name, const char *text)
 
 static bool refused(const char *name, unsigned how, int error)
 {
-    errno          = 0;
+    errno = 0;
     const int file = output_open(in(name), how);
-    const int why  = errno;
+    const int why = errno;
     if (file >= 0) close(file);
     errno = 0;
-    return file < 0 && why == error && (output_begin(in(name), how) == NULL) && errno == error && output_check(in(name), how) != 0;
+    return file < 0 && why == error && (output_begin(in(name), how) == NULL) && errno == error &&
+           output_check(in(name), how) != 0;
 }
 
 static void links_are_not_followed(void **state)
@@ -85,7 +86,8 @@ static void below_a_held_folder_no_folder_is_a_link(void **state)
     CHECK(output_remove(in("out/frames/000000.png")) != 0 && holds("other/000000.png", "other's"));
     CHECK(output_open(in("out/../new"), 0) < 0 && errno == EINVAL && !there("new"));
     /* folders of its own, as deep as they are asked for, with slashes as they come */
-    CHECK(output_folder(in("out//a/b/c/")) == 0 && there("out/a/b/c") && output_check(in("out/a/x/y"), OUTPUT_FOLDER) == 0);
+    CHECK(output_folder(in("out//a/b/c/")) == 0 && there("out/a/b/c") &&
+          output_check(in("out/a/x/y"), OUTPUT_FOLDER) == 0);
     FILE *file = output_begin(in("out/a//b/file"), 0);
     CHECK(file && fputs("text", file) >= 0 && output_end(file, in("out/a//b/file")) && holds("out/a/b/file", "text"));
     DIR *list = output_list(in("out"));
@@ -93,14 +95,18 @@ static void below_a_held_folder_no_folder_is_a_link(void **state)
     /* the folder that is held may have been a link: the user names it */
     CHECK(symlink("out", in("named")) == 0 && output_folder(in("named")) == 0);
     output_release(in("out"));
-    CHECK(output_hold("test", in("named/")) == STATUS_OK && output_open(in("named/frames/new"), 0) < 0 && errno == ELOOP);
+    CHECK(output_hold("test", in("named/")) == STATUS_OK && output_open(in("named/frames/new"), 0) < 0 &&
+          errno == ELOOP);
     output_release(in("named"));
-    CHECK(output_remove(in("out/a/b/file")) == 0 && output_remove(in("out/a/b/c")) == 0 && output_remove(in("out/a/b")) == 0);
+    CHECK(output_remove(in("out/a/b/file")) == 0 && output_remove(in("out/a/b/c")) == 0 &&
+          output_remove(in("out/a/b")) == 0);
     CHECK(output_remove(in("out/a")) == 0 && output_remove(in("out/frames")) == 0 && output_remove(in("named")) == 0);
-    CHECK(output_remove(in("other/000000.png")) == 0 && output_remove(in("other")) == 0 && output_remove(in("out")) == 0);
+    CHECK(output_remove(in("other/000000.png")) == 0 && output_remove(in("other")) == 0 &&
+          output_remove(in("out")) == 0);
 }
 
-/* A file that was closed is written again while a process that was started meanwhile still has a copy of its descriptor. */
+/* A file that was closed is written again while a process that was started meanwhile still has a copy of its
+ * descriptor. */
 static void a_program_being_started_is_no_writer(void **state)
 {
     (void)state;
@@ -113,7 +119,8 @@ static void a_program_being_started_is_no_writer(void **state)
     }
     CHECK(child > 0 && close(first) == 0);
     const int probe = open(in("file"), O_WRONLY);
-    CHECK(flock(probe, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK && close(probe) == 0); /* the copy has the lock */
+    CHECK(flock(probe, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK &&
+          close(probe) == 0); /* the copy has the lock */
     const int second = output_open(in("file"), 0);
     CHECK(second >= 0 && close(second) == 0);
     CHECK(waitpid(child, NULL, 0) == child && output_remove(in("file")) == 0);
@@ -136,7 +143,8 @@ static void a_second_writer_is_refused(void **state)
     const int other = open(in("out"), O_RDONLY | O_DIRECTORY);
     CHECK(other >= 0 && flock(other, LOCK_EX) == 0);
     CHECK(output_hold("test", in("out")) == STATUS_IO && strstr(check_said, "another process is writing into"));
-    CHECK(close(other) == 0 && output_hold("test", in("out")) == STATUS_OK && output_hold("test", in("out/")) == STATUS_OK);
+    CHECK(close(other) == 0 && output_hold("test", in("out")) == STATUS_OK &&
+          output_hold("test", in("out/")) == STATUS_OK);
     output_release(in("out"));
     const int later = open(in("out"), O_RDONLY | O_DIRECTORY);
     CHECK(later >= 0 && flock(later, LOCK_EX | LOCK_NB) != 0); /* held twice, released once */
@@ -157,10 +165,11 @@ static void a_file_is_whole_or_absent(void **state)
     CHECK(file && fputs("much more", file) >= 0);
     check_full_disk(true);
     const bool whole = output_end(file, in("file"));
-    const int  why   = errno;
+    const int  why = errno;
     check_full_disk(false);
     CHECK(!whole && why == EFBIG && holds("file", "newer") && !there("file.part"));
-    CHECK(output_begin(in("no/such"), 0) == NULL && errno == ENOENT && output_check(in("no/such"), 0) != 0 && errno == ENOENT);
+    CHECK(output_begin(in("no/such"), 0) == NULL && errno == ENOENT && output_check(in("no/such"), 0) != 0 &&
+          errno == ENOENT);
     const int kept = output_open(in("file"), OUTPUT_KEEP);
     CHECK(kept >= 0 && holds("file", "newer") && close(kept) == 0);
     CHECK(output_remove(in("file")) == 0);
@@ -187,9 +196,10 @@ static void pipes_and_devices_where_they_make_sense(void **state)
 static void endings(void **state)
 {
     (void)state;
-    static const char *const names[][2] = {{"a.png", ".png"}, {"a.b/c", ""}, {".pcap", ""}, {"a.b.TS", ".TS"}, {"a.", "."},
-                                           {"/dev/stdout", ""}, {"v1/", ""}};
-    for (size_t i = 0; i < sizeof names / sizeof *names; i++) CHECK(strcmp(output_ending(names[i][0]), names[i][1]) == 0);
+    static const char *const names[][2] = {{"a.png", ".png"}, {"a.b/c", ""},       {".pcap", ""}, {"a.b.TS", ".TS"},
+                                           {"a.", "."},       {"/dev/stdout", ""}, {"v1/", ""}};
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+        CHECK(strcmp(output_ending(names[i][0]), names[i][1]) == 0);
 }
 
 int main(void)

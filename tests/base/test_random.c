@@ -10,7 +10,8 @@ static void philox_gives_the_published_vectors(void **state)
     } known[] = {
         {{0, 0, 0, 0}, {0, 0}, {0x6627e8d5, 0xe169c58d, 0xbc57ac4c, 0x9b00dbd8}},
         {{~0u, ~0u, ~0u, ~0u}, {~0u, ~0u}, {0x408f276d, 0x41c83b0e, 0xa20bc7c6, 0x6d5451fd}},
-        {{0x243f6a88, 0x85a308d3, 0x13198a2e, 0x03707344}, {0xa4093822, 0x299f31d0},
+        {{0x243f6a88, 0x85a308d3, 0x13198a2e, 0x03707344},
+         {0xa4093822, 0x299f31d0},
          {0xd16cfe09, 0x94fdcceb, 0x5001e420, 0x24126ea1}},
     };
     for (size_t i = 0; i < sizeof known / sizeof known[0]; i++) {
@@ -61,11 +62,11 @@ static void normals_are_box_mullers(void **state)
 {
     (void)state;
     enum { n = 100003 };
-    static double many[n];
+    static double  many[n];
     const uint64_t first = (1ull << 32) - 50000; /* across a word */
     random_normals(many, n, 7, 2, 3, first);
     for (int i = 0; i < n; i++) {
-        const uint64_t index      = first + (uint64_t)i;
+        const uint64_t index = first + (uint64_t)i;
         const uint32_t counter[4] = {(uint32_t)index, (uint32_t)(index >> 32), 3, 2}, key[2] = {7, 0};
         uint32_t       word[4];
         random_u32x4(word, counter, key);

@@ -32,17 +32,17 @@ static const Setting thing_rows[] = {
 };
 static const SettingTable thing_table = {.module = "test", .row = thing_rows, .count = 3};
 static const SettingList  lists[] = {{"things", &thing_table, add_thing}};
-static const Setting box_rows[] = {
-    {"count", SETTING_INT, SETTING_AT(Box, count), 0, 9, NULL, "", "how many"},
-    {"inside.deep", SETTING_INT, SETTING_AT(Box, deep), -5, 5, NULL, "px", "of it"},
-    {"inside.weight_kg", SETTING_DOUBLE, SETTING_AT(Box, weight_kg), NAN, NAN, NULL, "kg", ""},
-    {"inside.unset", SETTING_DOUBLE, SETTING_AT(Box, unset), 0, 1, NULL, "", "or not"},
-    {"inside.open", SETTING_BOOL, SETTING_AT(Box, open), 0, 1, NULL, "", ""},
-    {"inside.label", SETTING_TEXT, SETTING_AT(Box, label), 0, 0, NULL, "", "on the lid"},
-    {"seed", SETTING_LONG, SETTING_AT(Box, seed), 0, 1e15, NULL, "", ""},
+static const Setting      box_rows[] = {
+         {"count", SETTING_INT, SETTING_AT(Box, count), 0, 9, NULL, "", "how many"},
+         {"inside.deep", SETTING_INT, SETTING_AT(Box, deep), -5, 5, NULL, "px", "of it"},
+         {"inside.weight_kg", SETTING_DOUBLE, SETTING_AT(Box, weight_kg), NAN, NAN, NULL, "kg", ""},
+         {"inside.unset", SETTING_DOUBLE, SETTING_AT(Box, unset), 0, 1, NULL, "", "or not"},
+         {"inside.open", SETTING_BOOL, SETTING_AT(Box, open), 0, 1, NULL, "", ""},
+         {"inside.label", SETTING_TEXT, SETTING_AT(Box, label), 0, 0, NULL, "", "on the lid"},
+         {"seed", SETTING_LONG, SETTING_AT(Box, seed), 0, 1e15, NULL, "", ""},
 };
-static const SettingTable table = {.module = "test", .row = box_rows, .count = 7, .list = lists, .list_count = 1,
-                                   .all_keys = "ask"};
+static const SettingTable table = {
+    .module = "test", .row = box_rows, .count = 7, .list = lists, .list_count = 1, .all_keys = "ask"};
 
 /* What a table reads itself: a text, a list as words, each of several, a map. */
 typedef struct Own {
@@ -68,8 +68,8 @@ static const Setting own_rows[] = {
     {"map", SETTING_MAP, SETTING_AT(Own, said), 0, 0, "`word: word`", "", ""},
     {"a.b.deep", SETTING_INT, SETTING_AT(Own, deep), 0, 9, NULL, "", ""},
 };
-static const SettingTable own_table = {.module = "test", .row = own_rows, .count = 4, .prefix = "own.", .own = own,
-                                       .all_keys = "ask"};
+static const SettingTable own_table = {
+    .module = "test", .row = own_rows, .count = 4, .prefix = "own.", .own = own, .all_keys = "ask"};
 
 static Status parse_own(Own *o, const char *text)
 {
@@ -139,8 +139,9 @@ static void sections_lists_and_numbers(void **state)
     (void)state;
     Box  box = {.deep = 3};
     bool given[7] = {false};
-    assert_int_equal(read_text(&box, given, "count: 4\ninside:\n  weight_kg: -1e300\n  open: true\nseed: 123456789012\n"
-                                            "things:\n  - name: a\n    way: [[1, 2], [3, -4.5]]\n  - {size_m: 2, way: [7]}\n"),
+    assert_int_equal(read_text(&box, given,
+                               "count: 4\ninside:\n  weight_kg: -1e300\n  open: true\nseed: 123456789012\n"
+                               "things:\n  - name: a\n    way: [[1, 2], [3, -4.5]]\n  - {size_m: 2, way: [7]}\n"),
                      STATUS_OK);
     CHECK(box.count == 4 && box.deep == 3 && box.open && box.seed == 123456789012);
     CHECK_NEAR(box.weight_kg, -1e300, 0);
@@ -200,9 +201,14 @@ static void what_is_wrong_is_said_with_its_line(void **state)
 static void written_settings_read_back(void **state)
 {
     (void)state;
-    const Box box = {.count = 7, .deep = -2, .weight_kg = 0.1 + 0.2, .unset = NAN, .open = true, .seed = 999999999999,
+    const Box box = {.count = 7,
+                     .deep = -2,
+                     .weight_kg = 0.1 + 0.2,
+                     .unset = NAN,
+                     .open = true,
+                     .seed = 999999999999,
                      .label = "it's: #1 'here'"};
-    char  path[text_file_size];
+    char      path[text_file_size];
     text_file(path, "");
     FILE *file = fopen(path, "w");
     assert_non_null(file);
@@ -259,7 +265,8 @@ static void paths_are_relative_to_their_file(void **state)
     assert_string_equal(p.one, "c"); /* a pipe is in no folder */
     log_set_sink(check_listen, NULL);
     assert_int_equal(settings_set_from(&p, NULL, &place_table, "one", "1234567890123456789012345678901234567890", "x:1",
-                                       "/a/folder/with/a/long/name/x.yaml"), STATUS_BAD_VALUE);
+                                       "/a/folder/with/a/long/name/x.yaml"),
+                     STATUS_BAD_VALUE);
     log_set_sink(NULL, NULL);
     CHECK(strstr(check_said, "longer than 63"));
     assert_int_equal(settings_set(&p, NULL, &place_table, "several", "none/a,none/b", "--set"), STATUS_OK);
@@ -272,10 +279,8 @@ static void paths_are_relative_to_their_file(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(sections_lists_and_numbers),
-        cmocka_unit_test(what_is_wrong_is_said_with_its_line),
-        cmocka_unit_test(what_a_table_reads_itself),
-        cmocka_unit_test(written_settings_read_back),
+        cmocka_unit_test(sections_lists_and_numbers),       cmocka_unit_test(what_is_wrong_is_said_with_its_line),
+        cmocka_unit_test(what_a_table_reads_itself),        cmocka_unit_test(written_settings_read_back),
         cmocka_unit_test(paths_are_relative_to_their_file),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -2,8 +2,8 @@
 #include "pitviper_simd.h"
 #include "tests/check.h"
 
-static const double extremes[] = {0, -0.0, 1, -1, 0.5, -0.5, 1.5, -2.5, 126.9, -126.9, 1e-40, -1e-40, 1e30, -1e30,
-                                  INFINITY, -INFINITY, NAN, 3e38, 0x1p-149, 2147483000};
+static const double extremes[] = {0,     -0.0,   1,    -1,    0.5,      -0.5,      1.5, -2.5, 126.9,    -126.9,
+                                  1e-40, -1e-40, 1e30, -1e30, INFINITY, -INFINITY, NAN, 3e38, 0x1p-149, 2147483000};
 enum { extreme_count = sizeof extremes / sizeof *extremes, rounds = 2000 };
 
 static double number(int round, int lane)
@@ -16,30 +16,31 @@ static double number(int round, int lane)
 static bool same_f(float a, float b) { return memcmp(&a, &b, sizeof a) == 0 || (isnan(a) && isnan(b)); }
 static bool same_d(double a, double b) { return memcmp(&a, &b, sizeof a) == 0 || (isnan(a) && isnan(b)); }
 
-#define FLOATS(word, plain)                                                                                  \
-    do {                                                                                                     \
-        f32x8_store(got, word);                                                                              \
-        for (int k = 0; k < 8; k++) {                                                                        \
-            const float x = a[k], y = b[k], z = c[k], want_ = (plain);                                       \
-            (void)x, (void)y, (void)z;                                                                       \
-            if (!same_f(got[k], want_)) fail_msg("%s of %g %g %g: %g, want %g", #word, (double)x, (double)y, \
-                                                 (double)z, (double)got[k], (double)want_);                  \
-        }                                                                                                    \
+#define FLOATS(word, plain)                                                                                            \
+    do {                                                                                                               \
+        f32x8_store(got, word);                                                                                        \
+        for (int k = 0; k < 8; k++) {                                                                                  \
+            const float x = a[k], y = b[k], z = c[k], want_ = (plain);                                                 \
+            (void)x, (void)y, (void)z;                                                                                 \
+            if (!same_f(got[k], want_))                                                                                \
+                fail_msg("%s of %g %g %g: %g, want %g", #word, (double)x, (double)y, (double)z, (double)got[k],        \
+                         (double)want_);                                                                               \
+        }                                                                                                              \
     } while (0)
-#define DOUBLES(word, plain)                                                                                  \
-    do {                                                                                                      \
-        f64x4_storeu(got, word);                                                                              \
-        for (int k = 0; k < 4; k++) {                                                                         \
-            const double x = a[k], y = b[k], want_ = (plain);                                                 \
-            (void)x, (void)y;                                                                                 \
-            if (!same_d(got[k], want_)) fail_msg("%s of %g %g: %g, want %g", #word, x, y, got[k], want_);     \
-        }                                                                                                     \
+#define DOUBLES(word, plain)                                                                                           \
+    do {                                                                                                               \
+        f64x4_storeu(got, word);                                                                                       \
+        for (int k = 0; k < 4; k++) {                                                                                  \
+            const double x = a[k], y = b[k], want_ = (plain);                                                          \
+            (void)x, (void)y;                                                                                          \
+            if (!same_d(got[k], want_)) fail_msg("%s of %g %g: %g, want %g", #word, x, y, got[k], want_);              \
+        }                                                                                                              \
     } while (0)
-#define BITS(word, count, plain)                                                                              \
-    do {                                                                                                      \
-        unsigned want_ = 0;                                                                                   \
-        for (int k = 0; k < (count); k++) want_ |= (unsigned)(plain) << k;                                    \
-        assert_int_equal(word, want_);                                                                        \
+#define BITS(word, count, plain)                                                                                       \
+    do {                                                                                                               \
+        unsigned want_ = 0;                                                                                            \
+        for (int k = 0; k < (count); k++) want_ |= (unsigned)(plain) << k;                                             \
+        assert_int_equal(word, want_);                                                                                 \
     } while (0)
 
 static void floats_lane_by_lane(void **state)
@@ -102,10 +103,10 @@ static void integers_lane_by_lane(void **state)
             b[k] = n % 3 ? (int32_t)(uint32_t)(4294967295.0 * random_uniform(3, 1, (uint64_t)k, (uint64_t)n)) : a[k];
         }
         const I32x8 p = i32x8_load(a), q = i32x8_load(b), low = i32x8_and(p, i32x8_set(15));
-#define INTEGERS(word, plain)                                                                                 \
-    do {                                                                                                      \
-        i32x8_store(got, word);                                                                               \
-        for (int k = 0; k < 8; k++) assert_int_equal((uint32_t)got[k], (uint32_t)(plain));                    \
+#define INTEGERS(word, plain)                                                                                          \
+    do {                                                                                                               \
+        i32x8_store(got, word);                                                                                        \
+        for (int k = 0; k < 8; k++) assert_int_equal((uint32_t)got[k], (uint32_t)(plain));                             \
     } while (0)
         INTEGERS(i32x8_add(p, q), (uint32_t)a[k] + (uint32_t)b[k]);
         INTEGERS(i32x8_sub(p, q), (uint32_t)a[k] - (uint32_t)b[k]);
@@ -120,7 +121,7 @@ static void integers_lane_by_lane(void **state)
         f32x8_store(place, f32x8_gather(floats, low));
         for (int k = 0; k < 8; k++) CHECK(place[k] == floats[a[k] & 15]);
     }
-    F32x8 rows[8];
+    F32x8       rows[8];
     const I32x8 columns = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
     for (int k = 0; k < 8; k++) rows[k] = f32x8_set(10.0 * k) + f32x8_of_ints(columns);
     f32x8_transpose(rows);

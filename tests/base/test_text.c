@@ -16,8 +16,9 @@ static void a_table_reads_comments_quotes_and_numbers(void **state)
 {
     (void)state;
     Table table = {0};
-    assert_int_equal(open_text(&table, "# about\n\nname, value ,\"a, b\"\r\n x ,1.5, \"say \"\"hi\"\", ok\" \ny,-2e3,\n"),
-                     STATUS_OK);
+    assert_int_equal(
+        open_text(&table, "# about\n\nname, value ,\"a, b\"\r\n x ,1.5, \"say \"\"hi\"\", ok\" \ny,-2e3,\n"),
+        STATUS_OK);
     assert_int_equal(table.columns, 3);
     assert_int_equal(table.rows, 2);
     assert_int_equal(table_column(&table, "value"), 1);
@@ -111,15 +112,21 @@ static void what_a_terminal_is_shown(void **state)
                 {"a\033[31mb\a", "a\\x1b[31mb\\x07", false},
                 {"a\tb\nc", "a\\x09b\\x0ac", false},
                 {"a\tb\nc\r", "a\tb\nc\\x0d", true},
-                {"\xc2\x9b" "31m", "\\xc2\\x9b31m", true},         /* CSI of C1 */
-                {"\x9b" "31m", "\\x9b31m", true},                     /* and bare */
-                {"\xe2\x80\xae" "gpj", "\\xe2\\x80\\xaegpj", true}, /* right-to-left override */
+                {"\xc2\x9b"
+                 "31m",
+                 "\\xc2\\x9b31m", true}, /* CSI of C1 */
+                {"\x9b"
+                 "31m",
+                 "\\x9b31m", true}, /* and bare */
+                {"\xe2\x80\xae"
+                 "gpj",
+                 "\\xe2\\x80\\xaegpj", true}, /* right-to-left override */
                 {"\xef\xbb\xbfx", "\\xef\\xbb\\xbfx", true},
-                {"\xc0\xaf", "\\xc0\\xaf", true},                    /* too long a form of '/' */
+                {"\xc0\xaf", "\\xc0\\xaf", true}, /* too long a form of '/' */
                 {"\xe0\x9b\x9b", "\\xe0\\x9b\\x9b", true},
-                {"\xed\xa0\x80", "\\xed\\xa0\\x80", true},          /* half of a pair */
+                {"\xed\xa0\x80", "\\xed\\xa0\\x80", true}, /* half of a pair */
                 {"\xf4\x90\x80\x80", "\\xf4\\x90\\x80\\x80", true},
-                {"\xe2\x82", "\\xe2\\x82", true},                    /* it ends too soon */
+                {"\xe2\x82", "\\xe2\\x82", true}, /* it ends too soon */
                 {"\xe2\x82\033", "\\xe2\\x82\\x1b", true}};
     char out[200];
     for (size_t i = 0; i < sizeof text / sizeof *text; i++) {

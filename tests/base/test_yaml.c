@@ -46,9 +46,12 @@ static void too_much_is_refused(void **state)
         int         times;
         const char *tail, *reason;
     } cases[] = {
-        {"", "[", 33, "", "nest deeper"},       {"", "[", 1000000, "", "nest deeper"},
-        {"", "{a: ", 100000, "", "nest deeper"}, {"", "- ", 500000, "x", "nest deeper"},
-        {"", "? ", 500000, "x", "nest deeper"},  {"[", "&a 1,", 200000, "]", "more than 256 anchors"},
+        {"", "[", 33, "", "nest deeper"},
+        {"", "[", 1000000, "", "nest deeper"},
+        {"", "{a: ", 100000, "", "nest deeper"},
+        {"", "- ", 500000, "x", "nest deeper"},
+        {"", "? ", 500000, "x", "nest deeper"},
+        {"[", "&a 1,", 200000, "]", "more than 256 anchors"},
         {"", "%TAG !a! b\n", 90000, "--- x\n", "more than 8 directives"},
         {"a: 1\n", "---\nb: 2\n", 1, "", "a second document"},
         {"{ not: [ closed", "", 0, "", "did not find"},

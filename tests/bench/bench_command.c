@@ -59,7 +59,8 @@ static void usage(FILE *to, BenchNext *next)
           "       pitviper bench compare A.csv B.csv [--report FILE] [--slower FACTOR]\n\n"
           "Speed of this build on this machine, each figure with its error beside it. Ratios are of runs in turn.\n"
           "compare says what two runs' tables have in common and what became faster, slower or worse; it ends with 1\n"
-          "when an error went beyond its limit, or a row is slower than by this factor.\n\n", to);
+          "when an error went beyond its limit, or a row is slower than by this factor.\n\n",
+          to);
     fputs(common_options, to);
     for (const BenchSuite *suite; (suite = next(state));)
         if (is_first(suite, next)) usage_parts(to, suite->name, next);
@@ -92,8 +93,8 @@ static bool is_asked(const Bench *bench, const BenchSuite *suite)
 /* The options of every bench, then those of the suites that are to run; their names go into bench->option. */
 static void list_options(struct option list[list_most], Bench *bench, BenchNext *next)
 {
-    static const struct option common[] = {{"csv", 1, NULL, CSV},     {"report", 1, NULL, REPORT},
-                                           {"plots", 1, NULL, PLOTS}, {"quick", 0, NULL, QUICK},
+    static const struct option common[] = {{"csv", 1, NULL, CSV},         {"report", 1, NULL, REPORT},
+                                           {"plots", 1, NULL, PLOTS},     {"quick", 0, NULL, QUICK},
                                            {"threads", 1, NULL, THREADS}, {"help", 0, NULL, HELP}};
     enum { count = sizeof common / sizeof *common };
     size_t state[2] = {0};
@@ -118,13 +119,20 @@ static int parse(Bench *bench, Outputs *out, int argc, char **argv, BenchNext *n
     struct option list[list_most];
     list_options(list, bench, next);
     argv[0] = called; /* of messages */
-    optind  = 0;      /* restart getopt */
-    for (int option; (option = command_line_option(argc, argv, "", list)) != -1;)
-        switch (option) {
-        case CSV: out->csv = optarg; break;
-        case REPORT: out->report = optarg; break;
-        case PLOTS: bench->plots = optarg; break;
-        case QUICK: bench->quick = true; break;
+    optind = 0;       /* restart getopt */
+    for (int option; (option = command_line_option(argc, argv, "", list)) != -1;) switch (option) {
+        case CSV:
+            out->csv = optarg;
+            break;
+        case REPORT:
+            out->report = optarg;
+            break;
+        case PLOTS:
+            bench->plots = optarg;
+            break;
+        case QUICK:
+            bench->quick = true;
+            break;
         case THREADS:
             if (!parse_threads(&bench->threads, optarg)) return 1 + 2;
             break;
@@ -132,8 +140,10 @@ static int parse(Bench *bench, Outputs *out, int argc, char **argv, BenchNext *n
             if (bench->all) usage(stdout, next);
             else usage_of(stdout, bench->suite, next);
             return 1 + 0;
-        case '?': return 1 + 2; /* reported by command_line_option */
-        default: bench->option[option - OF_SUITE].value = optarg;
+        case '?':
+            return 1 + 2; /* reported by command_line_option */
+        default:
+            bench->option[option - OF_SUITE].value = optarg;
         }
     if (optind < argc) return 1 + command_line_wrong("bench", "%s takes no '%s'", bench->suite, argv[optind]);
     return 0;
@@ -151,7 +161,8 @@ static int check(const Bench *bench, const Outputs *out, BenchNext *next)
         return 1;
     }
     if (bench->plots && output_folder(bench->plots) != 0) {
-        log_error("bench: --plots: cannot make the folder %s: %s; choose another place", bench->plots, output_reason(errno));
+        log_error("bench: --plots: cannot make the folder %s: %s; choose another place", bench->plots,
+                  output_reason(errno));
         return 1;
     }
     return 0;
@@ -162,7 +173,7 @@ static int check(const Bench *bench, const Outputs *out, BenchNext *next)
 /* Header lines are `# key: value`; compare reads them. */
 static void csv_head(const Bench *bench, const BenchMachine *m, const char *line)
 {
-    char when[32];
+    char         when[32];
     const time_t now = time(NULL);
     struct tm    utc;
     strftime(when, sizeof when, "%Y-%m-%dT%H:%M:%SZ", gmtime_r(&now, &utc));
@@ -183,7 +194,7 @@ static void run_part(Bench *bench, const char *name, BenchNext *next)
     const double begun_s = wall_clock_s();
     size_t       state[2] = {0};
     BenchPart   *part = &bench->part[bench->parts++];
-    *part        = (BenchPart){.name = name, .first = bench->kept_count};
+    *part = (BenchPart){.name = name, .first = bench->kept_count};
     bench->suite = name;
     for (const BenchSuite *suite; (suite = next(state));) {
         if (strcmp(suite->name, name) != 0 || !is_asked(bench, suite)) continue;
@@ -191,7 +202,7 @@ static void run_part(Bench *bench, const char *name, BenchNext *next)
         if (!part->reads) part->reads = suite->reads;
         part->failed += suite->run(bench) != STATUS_OK;
     }
-    part->count  = bench->kept_count - part->first;
+    part->count = bench->kept_count - part->first;
     part->took_s = wall_clock_s() - begun_s;
 }
 
@@ -210,8 +221,8 @@ static void run_all(Bench *bench, BenchNext *next)
     log_status(NULL);
 }
 
-/* The bench's name as it was typed, which is cut: SUITE, `all`, or either with /ROOM behind it, for the suites of one room
- * alone, as tests/CMakeLists.txt has them run. False, and said: there is none. */
+/* The bench's name as it was typed, which is cut: SUITE, `all`, or either with /ROOM behind it, for the suites of one
+ * room alone, as tests/CMakeLists.txt has them run. False, and said: there is none. */
 static bool read_name(Bench *bench, char *typed, BenchNext *next)
 {
     size_t    state[2] = {0};
@@ -219,7 +230,7 @@ static bool read_name(Bench *bench, char *typed, BenchNext *next)
     WordMeant meant = word_meant(typed);
     if (slash) *slash = 0, bench->room = slash + 1;
     bench->suite = typed;
-    bench->all   = strcmp(typed, "all") == 0;
+    bench->all = strcmp(typed, "all") == 0;
     if (bench->all && !bench->room) return true;
     word_consider_list(&meant, "all|compare", '|');
     for (const BenchSuite *suite; (suite = next(state));) {

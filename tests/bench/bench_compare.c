@@ -17,9 +17,9 @@ typedef struct Entry {
 
 typedef struct Run {
     Table  table;
-    Entry *entry;              /* [count] */
-    int   *order;              /* [count] by bench, what, row */
-    int   *other;              /* [count] the same row of the other run; -1: none */
+    Entry *entry; /* [count] */
+    int   *order; /* [count] by bench, what, row */
+    int   *other; /* [count] the same row of the other run; -1: none */
     int    count;
     bool   quartiles;
     char   version[64], machine[256], rounds[16], threads[16];
@@ -31,7 +31,7 @@ typedef enum Change { SAME, FASTER, SLOWER, LESS, MORE, OTHER_UNIT } Change;
 
 typedef struct Verdict {
     Change change;
-    double ratio;              /* b / a; NaN: nothing to compare */
+    double ratio; /* b / a; NaN: nothing to compare */
     bool   error_worse, error_better, broken, limit_wider;
 } Verdict;
 
@@ -64,8 +64,8 @@ static const char *read_text(const Run *run, int row, const char *name)
 
 static void read_key(char *out, size_t out_size, const char *text, const char *key)
 {
-    char       begin[32];
-    const int  length = snprintf(begin, sizeof begin, "# %s: ", key);
+    char      begin[32];
+    const int length = snprintf(begin, sizeof begin, "# %s: ", key);
     snprintf(out, out_size, "unknown");
     for (const char *at = text; at && *at == '#';) {
         if (strncmp(at, begin, (size_t)length) == 0) {
@@ -80,8 +80,8 @@ static void read_key(char *out, size_t out_size, const char *text, const char *k
 
 static Status read_head(Run *run, const char *path)
 {
-    char  *text = NULL;
-    size_t octets;
+    char        *text = NULL;
+    size_t       octets;
     const Status status = text_read_file(&text, &octets, "bench", path, most_octets);
     if (status != STATUS_OK) return status;
     read_key(run->version, sizeof run->version, text, "version");
@@ -102,7 +102,7 @@ static int by_name(const void *pa, const void *pb, void *user)
 static Status run_read(Run *run, const char *path)
 {
     static const char *const needed[] = {"bench", "what", "median", "unit", "error", "error_limit"};
-    Status status = read_head(run, path);
+    Status                   status = read_head(run, path);
     if (status == STATUS_OK) status = table_open(&run->table, path);
     if (status != STATUS_OK) return status;
     for (size_t k = 0; k < sizeof needed / sizeof *needed; k++)
@@ -110,11 +110,11 @@ static Status run_read(Run *run, const char *path)
             log_error("bench: %s: no column `%s`; is this a table of `pitviper bench --csv`?", path, needed[k]);
             return STATUS_BAD_VALUE;
         }
-    run->count     = run->table.rows;
+    run->count = run->table.rows;
     run->quartiles = table_column(&run->table, "lower_quartile") >= 0;
-    run->entry     = calloc((size_t)run->count + 1, sizeof *run->entry);
-    run->order     = calloc((size_t)run->count + 1, sizeof *run->order);
-    run->other     = calloc((size_t)run->count + 1, sizeof *run->other);
+    run->entry = calloc((size_t)run->count + 1, sizeof *run->entry);
+    run->order = calloc((size_t)run->count + 1, sizeof *run->order);
+    run->other = calloc((size_t)run->count + 1, sizeof *run->other);
     if (!run->entry || !run->order || !run->other) return STATUS_NO_MEMORY;
     for (int i = 0; i < run->count; i++) {
         Entry *e = &run->entry[i];
@@ -183,17 +183,17 @@ static Verdict judge(const Entry *a, const Entry *b, double least)
     const bool same_error_unit = strcmp(a->error_unit, b->error_unit) == 0;
     const bool judged = !isnan(b->limit), known = !isnan(a->error) && !isnan(b->error) && same_error_unit;
     const bool held = isnan(a->limit) || a->error <= a->limit;
-    v.error_worse  = (known && b->error > 1.1 * a->error) || (!isnan(a->error) && isnan(b->error));
+    v.error_worse = (known && b->error > 1.1 * a->error) || (!isnan(a->error) && isnan(b->error));
     v.error_better = known && 1.1 * b->error < a->error;
-    v.broken       = judged && !(b->error <= b->limit) && (held || v.error_worse);
-    v.limit_wider  = (b->limit > a->limit && same_error_unit) || (!isnan(a->limit) && isnan(b->limit));
+    v.broken = judged && !(b->error <= b->limit) && (held || v.error_worse);
+    v.limit_wider = (b->limit > a->limit && same_error_unit) || (!isnan(a->limit) && isnan(b->limit));
     return v;
 }
 
 static void verdict_text(char out[128], const Verdict *v)
 {
     static const char *const word[] = {"", "faster", "slower", "less", "more", "another unit"};
-    int n = 0;
+    int                      n = 0;
     out[0] = 0;
     if (v->change == OTHER_UNIT) n = snprintf(out, 128, "another unit");
     else if (v->change != SAME)
@@ -215,8 +215,8 @@ typedef struct Tally {
 } Tally;
 
 typedef struct Limits {
-    double least;              /* factor below which a time is noise */
-    double slower;             /* factor beyond which a row fails */
+    double least;  /* factor below which a time is noise */
+    double slower; /* factor beyond which a row fails */
 } Limits;
 
 typedef struct Line { /* a row of both, or of one */
@@ -322,7 +322,8 @@ static void show_rows(FILE *page, const Run *a, const Run *b, const Limits *limi
     printf("\n%-70s %10s %10s  %-20s %12s %12s\n", "", "first", "second", "ratio", "error", "error");
     if (page)
         fputs("<table><tr><th>row</th><th class=\"n\">first</th><th class=\"n\">second</th><th class=\"n\">ratio</th>"
-              "<th class=\"n\">error, first</th><th class=\"n\">error, second</th><th>verdict</th></tr>\n", page);
+              "<th class=\"n\">error, first</th><th class=\"n\">error, second</th><th>verdict</th></tr>\n",
+              page);
     for (int i = 0; i < b->count; i++) {
         line_of(&line, b->other[i] < 0 ? NULL : &a->entry[b->other[i]], &b->entry[i], limits, tally);
         show_line(page, &line);
@@ -375,10 +376,11 @@ int bench_compare(int argc, char **argv)
         {"report", 1, NULL, REPORT}, {"slower", 1, NULL, LIMIT}, {"help", 0, NULL, HELP}, {NULL, 0, NULL, 0}};
     static char called[] = "pitviper bench";
     argv[0] = called; /* of messages */
-    optind  = 0;      /* restart getopt */
-    for (int option; (option = command_line_option(argc, argv, "", options)) != -1;)
-        switch (option) {
-        case REPORT: report = optarg; break;
+    optind = 0;       /* restart getopt */
+    for (int option; (option = command_line_option(argc, argv, "", options)) != -1;) switch (option) {
+        case REPORT:
+            report = optarg;
+            break;
         case LIMIT:
             if (!text_to_double(&slower, optarg) || !(slower >= 1))
                 return command_line_wrong("bench", "--slower: '%s' is not a factor from 1 up", optarg);
@@ -386,7 +388,8 @@ int bench_compare(int argc, char **argv)
         case HELP:
             fputs("usage: pitviper bench compare A.csv B.csv [--report FILE] [--slower FACTOR]\n", stdout);
             return 0;
-        default: return 2; /* reported by command_line_option */
+        default:
+            return 2; /* reported by command_line_option */
         }
     if (argc - optind != 2)
         return command_line_wrong("bench", "compare needs two tables: pitviper bench compare A.csv B.csv");

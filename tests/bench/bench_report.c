@@ -194,8 +194,10 @@ static void show_overview(FILE *page, const Bench *bench, const BenchPart *part)
         fputs("</td>", page);
         cell(page, row->error, row->error_unit);
         cell(page, row->error_limit, row->error_unit);
-        fprintf(page, "<td class=\"%s\">%s</td></tr>\n", b->broken ? "bad" : "good", !b->broken ? "holds"
-                : bench_holds(row) ? "another setting is better" : "misses its stated error");
+        fprintf(page, "<td class=\"%s\">%s</td></tr>\n", b->broken ? "bad" : "good",
+                !b->broken         ? "holds"
+                : bench_holds(row) ? "another setting is better"
+                                   : "misses its stated error");
     }
     if (begun) end_table(page);
 }
@@ -248,7 +250,7 @@ static void show_part(FILE *page, const Bench *bench, const BenchPart *part)
 
 Status bench_report(const Bench *bench, const BenchMachine *machine, const char *path, double took_s)
 {
-    char  title[128];
+    char title[128];
     snprintf(title, sizeof title, "pitviper bench %.80s", bench->all ? "all" : bench->suite);
     FILE *page = html_begin(path, title);
     if (!page) return STATUS_IO;

@@ -37,8 +37,8 @@ static int add_library(struct dl_phdr_info *info, size_t size, void *user)
 {
     static const char *const shown[] = {"embree", "OpenImageIO", "GeographicLib", "assimp", "erfa",
                                         "pcap",   "fftw3",       "jansson",       "crypto", "yaml"};
-    Libraries *l = user;
-    char       real[PATH_MAX];
+    Libraries               *l = user;
+    char                     real[PATH_MAX];
     (void)size;
     if (!info->dlpi_name || !realpath(info->dlpi_name, real)) return 0;
     const char *name = basename(real), *so = strstr(name, ".so.");
@@ -63,7 +63,7 @@ void bench_machine_read(BenchMachine *out)
     line_of(out->governor, sizeof out->governor, "/sys/devices/system/cpu/cpu0/cpufreq/scaling_governor", NULL);
     if (getloadavg(&load, 1) != 1) load = NAN;
     out->load = load;
-    out->isa  = __builtin_cpu_supports("avx512f") ? "AVX-512" : __builtin_cpu_supports("avx2") ? "AVX2" : "no AVX2";
+    out->isa = __builtin_cpu_supports("avx512f") ? "AVX-512" : __builtin_cpu_supports("avx2") ? "AVX2" : "no AVX2";
     out->memory_gb = 1e-9 * (double)sysconf(_SC_PHYS_PAGES) * (double)sysconf(_SC_PAGESIZE);
     uname(&system);
     snprintf(out->system, sizeof out->system, "Linux %.60s", system.release);

@@ -49,7 +49,7 @@ double bench_quantile(const double *value, int count, double share)
 void bench_time_finish(BenchTime *time)
 {
     time->median_s = bench_quantile(time->item_s, time->rounds, 0.5);
-    time->best_s   = INFINITY;
+    time->best_s = INFINITY;
     for (int r = 0; r < time->rounds; r++) time->best_s = fmin(time->best_s, time->item_s[r]);
 }
 
@@ -91,21 +91,28 @@ double bench_ratio(const BenchTime *a, const BenchTime *b)
 
 BenchRow bench_row(const char *what)
 {
-    return (BenchRow){.what = what, .median = NAN, .best = NAN, .rate = NAN, .ratio = NAN, .error = NAN,
-                      .error_limit = NAN, .low = NAN, .high = NAN};
+    return (BenchRow){.what = what,
+                      .median = NAN,
+                      .best = NAN,
+                      .rate = NAN,
+                      .ratio = NAN,
+                      .error = NAN,
+                      .error_limit = NAN,
+                      .low = NAN,
+                      .high = NAN};
 }
 
 BenchRow bench_row_of(const char *what, const BenchTime *time, const char *rate_unit, double per_rate)
 {
-    BenchRow row  = bench_row(what);
-    row.median    = time->median_s;
-    row.best      = time->best_s;
+    BenchRow row = bench_row(what);
+    row.median = time->median_s;
+    row.best = time->best_s;
     if (time->rounds > 0) {
-        row.low  = bench_quantile(time->item_s, time->rounds, 0.25);
+        row.low = bench_quantile(time->item_s, time->rounds, 0.25);
         row.high = bench_quantile(time->item_s, time->rounds, 0.75);
     }
-    row.unit      = "s";
-    row.rate      = rate_unit ? 1 / (time->median_s * per_rate) : NAN;
+    row.unit = "s";
+    row.rate = rate_unit ? 1 / (time->median_s * per_rate) : NAN;
     row.rate_unit = rate_unit;
     return row;
 }
@@ -114,7 +121,10 @@ static const char *or_empty(const char *text) { return text ? text : ""; }
 
 void bench_show(char out[32], double value, const char *unit)
 {
-    static const struct { double s; const char *unit; } steps[] = {{1, "s"}, {1e-3, "ms"}, {1e-6, "us"}, {1e-9, "ns"}};
+    static const struct {
+        double      s;
+        const char *unit;
+    } steps[] = {{1, "s"}, {1e-3, "ms"}, {1e-6, "us"}, {1e-9, "ns"}};
     *out = 0;
     if (isnan(value)) return;
     if (unit && strcmp(unit, "s") == 0) {
@@ -131,8 +141,8 @@ void bench_show(char out[32], double value, const char *unit)
 
 static void show_head(const Bench *bench)
 {
-    printf("\n%-*s %10s %10s  %-18s %-22s %s\n", what_width, bench->suite, "median", "best", "rate",
-           "ratio to", "error");
+    printf("\n%-*s %10s %10s  %-18s %-22s %s\n", what_width, bench->suite, "median", "best", "rate", "ratio to",
+           "error");
 }
 
 static void csv_text(FILE *file, const char *text)
@@ -188,15 +198,15 @@ static bool keep_text(const char **text)
 void bench_forget(Bench *bench)
 {
     for (int i = 0; i < bench->kept_count; i++) {
-        const BenchRow *row = &bench->kept[i].row;
+        const BenchRow   *row = &bench->kept[i].row;
         const char *const texts[] = {row->what,       row->unit,    row->rate_unit, row->to,
                                      row->error_unit, row->against, row->mark,      bench->kept[i].plot};
         for (size_t k = 0; k < sizeof texts / sizeof *texts; k++) free((void *)(uintptr_t)texts[k]);
     }
     free(bench->kept);
     free(bench->block);
-    bench->kept       = NULL;
-    bench->block      = NULL;
+    bench->kept = NULL;
+    bench->block = NULL;
     bench->kept_count = bench->blocks = 0;
 }
 
@@ -206,14 +216,14 @@ static bool keep(Bench *bench, const BenchRow *row)
         const int  larger = bench->kept_capacity ? 2 * bench->kept_capacity : 64;
         BenchKept *grown = realloc(bench->kept, (size_t)larger * sizeof *grown);
         if (!grown) return false;
-        bench->kept          = grown;
+        bench->kept = grown;
         bench->kept_capacity = larger;
     }
     BenchRow *kept = &bench->kept[bench->kept_count].row;
     bench->kept[bench->kept_count++] = (BenchKept){.row = *row};
     const char **texts[] = {&kept->what,       &kept->unit,    &kept->rate_unit, &kept->to,
                             &kept->error_unit, &kept->against, &kept->mark};
-    bool ok = true;
+    bool         ok = true;
     for (size_t k = 0; k < sizeof texts / sizeof *texts; k++) ok = keep_text(texts[k]) && ok;
     return ok;
 }
@@ -250,10 +260,10 @@ void bench_worse(double *worst, double error)
 
 void bench_stress(Bench *bench, const char *what, double error, double limit, const char *unit, const char *against)
 {
-    BenchRow row    = bench_row(what);
-    row.error       = error;
+    BenchRow row = bench_row(what);
+    row.error = error;
     row.error_limit = limit;
-    row.error_unit  = unit;
-    row.against     = against;
+    row.error_unit = unit;
+    row.against = against;
     bench_add(bench, &row);
 }

@@ -5,8 +5,17 @@
 
 #include <stdlib.h>
 
-enum { width_px = 640, height_px = 418, left_px = 76, right_px = 20, top_px = 52, bottom_px = 74, zero_px = 34,
-       points_max = 64, ticks_max = 16 };
+enum {
+    width_px = 640,
+    height_px = 418,
+    left_px = 76,
+    right_px = 20,
+    top_px = 52,
+    bottom_px = 74,
+    zero_px = 34,
+    points_max = 64,
+    ticks_max = 16
+};
 
 static const double letter_px = 6.7, line_px = 14, dot_px = 4.5;
 
@@ -24,7 +33,7 @@ static const char style[] =
     "</style>";
 
 typedef struct Axis {
-    double low, high;   /* log10 */
+    double low, high; /* log10 */
     double from_px, to_px;
     int    ticks;
     double tick[ticks_max];
@@ -36,14 +45,14 @@ typedef struct Box {
 
 typedef struct Plot {
     Axis   time, error;
-    double zero_y_px;                          /* where an error of 0 is plotted; NaN: there is none */
-    int    points, index[points_max];          /* those that can be plotted */
+    double zero_y_px;                 /* where an error of 0 is plotted; NaN: there is none */
+    int    points, index[points_max]; /* those that can be plotted */
     double x_px[points_max], y_px[points_max];
     bool   front[points_max];
-    double stated_y_px;                        /* NaN: not plotted */
+    double stated_y_px; /* NaN: not plotted */
     int    boxes;
-    Box    box[points_max + 4];                /* labels so far */
-    int    line[points_max], lines;            /* the front's points by time, each better than the previous one */
+    Box    box[points_max + 4];     /* labels so far */
+    int    line[points_max], lines; /* the front's points by time, each better than the previous one */
 } Plot;
 
 /* ---- axes ------------------------------------------------------------------------------------- */
@@ -62,7 +71,10 @@ static void add_tick(Axis *a, double value)
 /* Whole decades where there are enough of them, else 1-3, 1-2-5, else uniform steps. */
 static void choose_ticks(Axis *a)
 {
-    static const struct { int count; double m[3]; } steps[] = {{1, {1}}, {2, {1, 3}}, {3, {1, 2, 5}}};
+    static const struct {
+        int    count;
+        double m[3];
+    } steps[] = {{1, {1}}, {2, {1, 3}}, {3, {1, 2, 5}}};
     const int decades = (int)ceil(a->high - a->low), every = decades > 8 ? (decades + 7) / 8 : 1;
     for (int s = 0; s < 3; s++) {
         a->ticks = 0;
@@ -80,7 +92,7 @@ static void choose_ticks(Axis *a)
 /* From the least to the greatest with a margin, at least a factor of two. */
 static Axis axis_of(double least, double most, double from_px, double to_px)
 {
-    Axis a = {.low = log10(least), .high = log10(most), .from_px = from_px, .to_px = to_px};
+    Axis         a = {.low = log10(least), .high = log10(most), .from_px = from_px, .to_px = to_px};
     const double room = fmax(0.08 * (a.high - a.low), 0.5 * (0.3 - (a.high - a.low)));
     a.low -= room;
     a.high += room;
@@ -95,7 +107,7 @@ static void number_text(char out[24], double value)
         snprintf(out, 24, "%.4g", value);
         return;
     }
-    const int exponent = (int)floor(log10(size) + 1e-9);
+    const int    exponent = (int)floor(log10(size) + 1e-9);
     const double m = value / pow(10, exponent);
     snprintf(out, 24, fabs(m - round(m)) < 1e-6 ? "%.0fe%d" : "%.2ge%d", m, exponent);
 }
@@ -129,8 +141,8 @@ static double crossed(const Box *b, double x0, double y0, double x1, double y1)
 
 static double cost_of(const Plot *p, const Box *b)
 {
-    double     cost = 0;
-    const Box  page = {left_px + 2, top_px, width_px - 2, height_px - bottom_px - 2};
+    double       cost = 0;
+    const Box    page = {left_px + 2, top_px, width_px - 2, height_px - bottom_px - 2};
     const double area = (b->x1 - b->x0) * (b->y1 - b->y0);
     cost += 20 * (area - shared(b, &page));
     for (int k = 0; k < p->boxes; k++) cost += 10 * shared(b, &p->box[k]);
@@ -150,8 +162,8 @@ static double cost_of(const Plot *p, const Box *b)
 static Box place_label(const Plot *p, int k, double near_px, double wide_px, double *leader)
 {
     static const double turn[8][2] = {{1, 0}, {-1, 0}, {0, -1}, {0, 1}, {1, -1}, {-1, -1}, {1, 1}, {-1, 1}};
-    Box    best = {0};
-    double least = INFINITY;
+    Box                 best = {0};
+    double              least = INFINITY;
     for (int ring = 0; ring < 5; ring++)
         for (int t = 0; t < 8; t++) {
             const double away = near_px + 14 * ring, slant = turn[t][0] != 0 && turn[t][1] != 0 ? 0.75 : 1;
@@ -215,14 +227,14 @@ static void lay_out(Plot *p, const BenchTunable *tunable, const BenchSetting *po
     if (stated) least = fmin(least, tunable->stated), most = fmax(most, tunable->stated);
     if (!(most > 0)) least = most = 1;
     const double floor_px = height_px - bottom_px;
-    p->time  = axis_of(fast, slow, left_px, width_px - right_px);
+    p->time = axis_of(fast, slow, left_px, width_px - right_px);
     p->error = axis_of(least, most, zero ? floor_px - zero_px : floor_px, top_px);
     if (zero) p->zero_y_px = floor_px - 0.4 * zero_px;
     if (stated) p->stated_y_px = at_px(&p->error, tunable->stated);
     for (int k = 0; k < p->points; k++) {
         const BenchSetting *at = &point[p->index[k]];
-        p->x_px[k]  = at_px(&p->time, shown_s(point, count, p->index[k]) / unit_s);
-        p->y_px[k]  = at->error > 0 ? at_px(&p->error, at->error) : p->zero_y_px;
+        p->x_px[k] = at_px(&p->time, shown_s(point, count, p->index[k]) / unit_s);
+        p->y_px[k] = at->error > 0 ? at_px(&p->error, at->error) : p->zero_y_px;
         p->front[k] = bench_on_front(tunable, point, count, p->index[k]);
     }
     for (double after = -1;;) { /* by time, along the front, each lower than the previous one */
@@ -251,8 +263,10 @@ static void draw_axes(FILE *to, const Plot *p, const BenchTunable *tunable, cons
     for (int k = 0; k < p->error.ticks; k++) {
         const double y = at_px(&p->error, p->error.tick[k]);
         number_text(text, p->error.tick[k]);
-        fprintf(to, "<line class=\"g\" x1=\"%d\" y1=\"%.1f\" x2=\"%d\" y2=\"%.1f\"/><text text-anchor=\"end\" x=\"%d\" "
-                "y=\"%.1f\">%s</text>\n", left_px, y, width_px - right_px, y, left_px - 6, y + 4, text);
+        fprintf(to,
+                "<line class=\"g\" x1=\"%d\" y1=\"%.1f\" x2=\"%d\" y2=\"%.1f\"/><text text-anchor=\"end\" x=\"%d\" "
+                "y=\"%.1f\">%s</text>\n",
+                left_px, y, width_px - right_px, y, left_px - 6, y + 4, text);
     }
     if (!isnan(p->zero_y_px))
         fprintf(to,
@@ -277,8 +291,10 @@ static void draw_legend(FILE *to, const Plot *p, const BenchSetting *point)
             "<circle class=\"f\" cx=\"%d\" cy=\"%d\" r=\"%.1f\"/><circle class=\"df\" cx=\"%d\" cy=\"%d\" r=\"%.1f\"/>"
             "<text class=\"d\" x=\"%d\" y=\"%d\">default</text>",
             84, y - 4, dot_px, 84, y - 4, dot_px + 4, 98, y);
-    fprintf(to, "<path class=\"fr\" d=\"M156 %dh28\"/><circle class=\"f\" cx=\"170\" cy=\"%d\" r=\"%.1f\"/>"
-            "<text class=\"d\" x=\"190\" y=\"%d\">the front: none is better in all</text>", y - 4, y - 4, dot_px, y);
+    fprintf(to,
+            "<path class=\"fr\" d=\"M156 %dh28\"/><circle class=\"f\" cx=\"170\" cy=\"%d\" r=\"%.1f\"/>"
+            "<text class=\"d\" x=\"190\" y=\"%d\">the front: none is better in all</text>",
+            y - 4, y - 4, dot_px, y);
     fprintf(to,
             "<circle class=\"p\" cx=\"398\" cy=\"%d\" r=\"%.1f\"/><text class=\"d\" x=\"408\" y=\"%d\">another is "
             "better</text>",
@@ -302,7 +318,10 @@ static void draw_legend(FILE *to, const Plot *p, const BenchSetting *point)
 
 void plot_tunable(FILE *to, const BenchTunable *tunable, const BenchSetting *point, int count)
 {
-    static const struct { double s; const char *name; } units[] = {{1, "s"}, {1e-3, "ms"}, {1e-6, "us"}, {1e-9, "ns"}};
+    static const struct {
+        double      s;
+        const char *name;
+    } units[] = {{1, "s"}, {1e-3, "ms"}, {1e-6, "us"}, {1e-9, "ns"}};
     double fast = INFINITY;
     bool   bytes_differ = false;
     int    u = 0;
@@ -354,8 +373,7 @@ void plot_tunable(FILE *to, const BenchTunable *tunable, const BenchSetting *poi
         fprintf(to, "<circle class=\"%s\" cx=\"%.1f\" cy=\"%.1f\" r=\"%.1f\"/>\n", p->front[k] ? "f" : "p", p->x_px[k],
                 p->y_px[k], dot_px);
     }
-    for (int k = 0; k < p->points; k++)
-        draw_label(to, p, k, &point[p->index[k]], p->front[k] ? "" : "d", bytes_differ);
+    for (int k = 0; k < p->points; k++) draw_label(to, p, k, &point[p->index[k]], p->front[k] ? "" : "d", bytes_differ);
     if (p->points < count)
         fprintf(
             to,

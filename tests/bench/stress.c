@@ -10,12 +10,12 @@ void stress_cases(Bench *bench, const StressCase *cases, int count, void *user)
         bench_progress(bench, c->what);
         const double start_s = wall_clock_s();
         BenchRow     row = bench_row(c->what);
-        row.error        = c->figure(user, bench_quick(bench));
+        row.error = c->figure(user, bench_quick(bench));
         row.median = row.best = wall_clock_s() - start_s;
-        row.unit        = "s";
+        row.unit = "s";
         row.error_limit = c->limit;
-        row.error_unit  = c->unit;
-        row.against     = c->against;
+        row.error_unit = c->unit;
+        row.against = c->against;
         bench_add(bench, &row);
     }
 }
@@ -27,7 +27,10 @@ double stress_uniform(Dice *dice, double low, double high)
     return low + (high - low) * random_uniform(1995, dice->stream, 0, dice->index++);
 }
 
-double stress_log_uniform(Dice *dice, double low, double high) { return exp(stress_uniform(dice, log(low), log(high))); }
+double stress_log_uniform(Dice *dice, double low, double high)
+{
+    return exp(stress_uniform(dice, log(low), log(high)));
+}
 
 void stress_direction(double d[3], Dice *dice)
 {
@@ -62,11 +65,11 @@ void stress_off_rotation(double *worst, const double r[9])
 Status stress_model(Model *m, int vertices, int triangles)
 {
     *m = (Model){.name = "stress", .node_count = 1, .part_count = 1};
-    m->node          = calloc(1, sizeof *m->node);
-    m->part          = calloc(1, sizeof *m->part);
-    m->vertex        = calloc((size_t)vertices, sizeof *m->vertex);
-    m->normal        = calloc((size_t)vertices, sizeof *m->normal);
-    m->triangle      = calloc((size_t)triangles, sizeof *m->triangle);
+    m->node = calloc(1, sizeof *m->node);
+    m->part = calloc(1, sizeof *m->part);
+    m->vertex = calloc((size_t)vertices, sizeof *m->vertex);
+    m->normal = calloc((size_t)vertices, sizeof *m->normal);
+    m->triangle = calloc((size_t)triangles, sizeof *m->triangle);
     m->triangle_part = calloc((size_t)triangles, sizeof *m->triangle_part);
     if (!m->node || !m->part || !m->vertex || !m->normal || !m->triangle || !m->triangle_part) {
         stress_model_free(m);
@@ -132,7 +135,7 @@ void stress_sphere(Model *m, double radius_m, int bands)
     for (int b = 1; b < bands; b++)
         for (int a = 0; a < around; a++) {
             const double polar = pi_rad * b / bands, azimuth = 2 * pi_rad * a / around,
-                across_m = radius_m * sin(polar);
+                         across_m = radius_m * sin(polar);
             add_vertex(m, across_m * cos(azimuth), across_m * sin(azimuth), -radius_m * cos(polar));
         }
     for (int a = 0; a < around; a++) {

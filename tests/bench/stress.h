@@ -11,7 +11,7 @@
 
 typedef struct StressCase {
     const char *what;
-    double    (*figure)(void *user, bool quick); /* INFINITY: the case could not be set up */
+    double (*figure)(void *user, bool quick); /* INFINITY: the case could not be set up */
     double      limit;
     const char *unit, *against;
 } StressCase;
@@ -37,7 +37,7 @@ void   stress_model_free(Model *model);
 void   stress_triangle(Model *model, const double a[3], const double b[3], const double c[3]);
 void   stress_box(Model *model, const double low[3], const double high[3]); /* 8 vertices, 12 triangles */
 /* Vertices on a sphere, joined: 2 + (bands - 1) 2 bands of them, 4 bands (bands - 1) triangles. */
-void   stress_sphere(Model *model, double radius_m, int bands);
+void stress_sphere(Model *model, double radius_m, int bands);
 
 /* ---- matrices ----------------------------------------------------------------------------------- */
 

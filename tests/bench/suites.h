@@ -1,6 +1,6 @@
 /* tests/bench/suites.h: what `pitviper bench` runs: all suites, and the functions that add their rows, each in the file
- * that its name tells: bench_precision_air in render/precision_air.c. Those that take a Bench alone return the reason of
- * a failure, which they have logged. */
+ * that its name tells: bench_precision_air in render/precision_air.c. Those that take a Bench alone return the reason
+ * of a failure, which they have logged. */
 #ifndef TESTS_BENCH_SUITES_H
 #define TESTS_BENCH_SUITES_H
 
@@ -11,21 +11,21 @@ const BenchSuite *bench_next_suite(size_t state[2]);
 
 /* ---- dis ----------------------------------------------------------------------------------------- */
 
-Status bench_speed_pdus(Bench *bench);       /* PDUs, bundles, a capture */
-Status bench_network_sockets(Bench *bench);  /* sockets and the recorder */
+Status bench_speed_pdus(Bench *bench);      /* PDUs, bundles, a capture */
+Status bench_network_sockets(Bench *bench); /* sockets and the recorder */
 Status bench_stability_stamps(Bench *bench);
 
 /* ---- terrain ------------------------------------------------------------------------------------- */
 
 Status bench_precision_earth(Bench *bench);
 Status bench_precision_land(Bench *bench);
-Status bench_stability_earth(Bench *bench);  /* runs the other two */
+Status bench_stability_earth(Bench *bench); /* runs the other two */
 Status bench_stability_posts(Bench *bench);
 Status bench_stability_import(Bench *bench); /* stores made of files */
 
 /* ---- entities ------------------------------------------------------------------------------------ */
 
-Status bench_speed_table(Bench *bench);      /* the entity table */
+Status bench_speed_table(Bench *bench); /* the entity table */
 Status bench_precision_motion(Bench *bench);
 Status bench_stability_motion(Bench *bench); /* runs the other three */
 Status bench_stability_pdus(Bench *bench);   /* numbers of PDUs */
@@ -42,7 +42,7 @@ Status bench_precision_network(Bench *bench); /* precision_vehicle.c: steps in t
 Status bench_precision_patches(Bench *bench); /* precision_vehicle.c: patches */
 Status bench_precision_gas(Bench *bench);
 Status bench_precision_radar(Bench *bench);
-Status bench_speed_network(Bench *bench);     /* precision_vehicle.c: what a step costs */
+Status bench_speed_network(Bench *bench); /* precision_vehicle.c: what a step costs */
 Status bench_speed_crowd(Bench *bench);
 Status bench_stability_parts(Bench *bench);    /* rays against triangles */
 Status bench_stability_ground(Bench *bench);   /* rays against the height field */
@@ -57,17 +57,17 @@ Status bench_stability_radar(Bench *bench);    /* the field of a radar target */
 
 /* ---- sensor -------------------------------------------------------------------------------------- */
 
-Status bench_speed(Bench *bench);       /* a frame, its rays alone, what comes before and after it */
+Status bench_speed(Bench *bench);             /* a frame, its rays alone, what comes before and after it */
 Status bench_speed_check(const Bench *bench); /* its options */
-Status bench_speed_radar(Bench *bench); /* the radar with phase: targets by signatures, updates */
-Status bench_woods(Bench *bench);       /* woods_frames.c: frames of three million trees */
+Status bench_speed_radar(Bench *bench);       /* the radar with phase: targets by signatures, updates */
+Status bench_woods(Bench *bench);             /* woods_frames.c: frames of three million trees */
 Status bench_woods_check(const Bench *bench); /* its options */
-Status bench_network_live(Bench *bench);    /* a live node, and a process that sends an exercise to it */
-Status bench_network_publish(Bench *bench); /* shared memory and video of a live node, by its latency ledger */
-Status bench_skip(Bench *bench);        /* skip_frames.c: the time that each exact skip saves */
-Status bench_precision(Bench *bench);   /* frames, models and detectors; precision.h has its parts */
+Status bench_network_live(Bench *bench);      /* a live node, and a process that sends an exercise to it */
+Status bench_network_publish(Bench *bench);   /* shared memory and video of a live node, by its latency ledger */
+Status bench_skip(Bench *bench);              /* skip_frames.c: the time that each exact skip saves */
+Status bench_precision(Bench *bench);         /* frames, models and detectors; precision.h has its parts */
 Status bench_stability_detector(Bench *bench);
-Status bench_quality(Bench *bench);     /* quality_rows.c: the table from which quality.* selects */
+Status bench_quality(Bench *bench);             /* quality_rows.c: the table from which quality.* selects */
 Status bench_quality_check(const Bench *bench); /* its options */
 
 #endif

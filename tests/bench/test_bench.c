@@ -19,11 +19,11 @@ static Status judged_run(Bench *bench)
     bench_time(time, bench, work, 2);
     CHECK(time[0].rounds >= 3 && time[0].rounds == time[1].rounds);
     CHECK(works[0] == time[0].rounds + 1 && works[1] == works[0]); /* in turn, and once to warm up */
-    BenchRow row    = bench_row_of("a \"work\", counted", &time[0], "runs/s", 1);
-    row.error       = error_now;
+    BenchRow row = bench_row_of("a \"work\", counted", &time[0], "runs/s", 1);
+    row.error = error_now;
     row.error_limit = 1;
-    row.error_unit  = "m";
-    row.against     = "nothing";
+    row.error_unit = "m";
+    row.against = "nothing";
     bench_add(bench, &row);
     row = bench_row("a figure without a time");
     bench_add(bench, &row);
@@ -44,8 +44,12 @@ static BenchSetting point_of(const char *setting, double s, double spread, doubl
     return p;
 }
 
-static const BenchTunable tunable = {.name = "a tunable", .turned_by = "sensor.<key>", .of = "a work", .error_unit = "%",
-                               .against = "the whole & more", .stated = 2};
+static const BenchTunable tunable = {.name = "a tunable",
+                                     .turned_by = "sensor.<key>",
+                                     .of = "a work",
+                                     .error_unit = "%",
+                                     .against = "the whole & more",
+                                     .stated = 2};
 
 static void a_setting_that_is_better_and_nowhere_worse_dominates(void **state)
 {
@@ -53,7 +57,7 @@ static void a_setting_that_is_better_and_nowhere_worse_dominates(void **state)
     const BenchSetting held = point_of("held", 1e-3, 0.02, 1, 1e6);
     const struct {
         BenchSetting point;
-        bool       dominates, is_dominated;
+        bool         dominates, is_dominated;
     } cases[] = {
         {point_of("faster", 0.8e-3, 0.02, 1, 1e6), true, false},
         {point_of("closer", 1e-3, 0.02, 0.8, 1e6), true, false},
@@ -117,7 +121,7 @@ static void verdicts_are_said_in_words(void **state)
 {
     (void)state;
     BenchSetting three[3] = {point_of("coarse", 0.5e-3, 0.02, 4, 1e6), point_of("middle", 1e-3, 0.02, 1, 1e6),
-                           point_of("fine", 2e-3, 0.02, 0.2, 3e6)};
+                             point_of("fine", 2e-3, 0.02, 0.2, 3e6)};
     CHECK(says(three, 3, false, "nothing is judged"));
     three[1].is_default = true;
     CHECK(says(three, 3, false, "'middle', keeps its stated error: 1.00 %, stated at most 2.00 %. It is on the front"));
@@ -142,8 +146,8 @@ static void noise_neither_hides_nor_makes_a_verdict(void **state)
     enum { draws = 1000 };
     int found = 0, made = 0;
     for (uint32_t n = 0; n < draws; n++) {
-        BenchSetting two[3] = {point_of("held", 1, 0, 1, 0), point_of("a quarter faster", 1, 0, 1, 0),
-                             point_of("as good", 1, 0, 1, 0)};
+        BenchSetting        two[3] = {point_of("held", 1, 0, 1, 0), point_of("a quarter faster", 1, 0, 1, 0),
+                                      point_of("as good", 1, 0, 1, 0)};
         static const double take_s[3] = {1, 0.75, 1};
         for (int k = 0; k < 3; k++) two[k].time.rounds = 7;
         for (int r = 0; r < 7; r++) {
@@ -286,8 +290,8 @@ static void a_default_off_the_front_fails_and_is_told_why(void **state)
 static void a_plot_shows_each_setting_once(void **state)
 {
     (void)state;
-    char              folder[] = "/tmp/pitviper_plots_XXXXXX", path[64];
-    static char       text[32768];
+    char        folder[] = "/tmp/pitviper_plots_XXXXXX", path[64];
+    static char text[32768];
     CHECK(mkdtemp(folder) != NULL);
     settings[0] = point_of("<a> & b", 0.5e-3, 0.02, 0, 2e6);
     settings[1] = point_of("default", 1e-3, 0.02, 1, 1e6);
@@ -339,7 +343,7 @@ static void what_became_worse_fails_a_comparison(void **state)
     CHECK(compare(base, "s,frame,1.3e-3,0.9e-3,s,0.5,1,m,1.0e-3,1.6e-3\n", "1.2") == 0); /* the quartiles meet */
     CHECK(compare(base, "s,frame,1e-3,0.9e-3,s,0.9,1,m,,\n", NULL) == 0);                /* worse, within its limit */
     CHECK(compare(base, "s,frame,1e-3,0.9e-3,s,1.1,1,m,,\n", NULL) == 1);
-    CHECK(compare(base, "s,frame,1e-3,0.9e-3,s,,1,m,,\n", NULL) == 1);                   /* no longer known */
+    CHECK(compare(base, "s,frame,1e-3,0.9e-3,s,,1,m,,\n", NULL) == 1); /* no longer known */
     CHECK(compare(base, "s,frame,1e-3,0.9e-3,s,inf,1,m,,\n", NULL) == 1);
     CHECK(compare("s,frame,1,,s,3,1,m,,\n", "s,frame,1,,s,2,1,m,,\n", NULL) == 0); /* broken before, and now less so */
     CHECK(compare(base, "s,another,1e-3,,s,9,1,m,,\n", NULL) == 0);                /* only in one: told, not judged */
@@ -352,7 +356,7 @@ static void a_table_that_is_none_is_refused(void **state)
     static const char *const bad[] = {"s,frame,1e-3,,s,0.5,1\n",    "s,frame,many,,s,0.5,1,m,,\n",
                                       "s,frame,-1,,s,0.5,1,m,,\n",  "s,frame,1e999,,s,0.5,1,m,,\n",
                                       "s,\"frame,1,,s,0.5,1,m,,\n", "s,frame,nan,,s,0.5,1,m,,\n"};
-    char path[text_file_size];
+    char                     path[text_file_size];
     (void)state;
     for (size_t k = 0; k < sizeof bad / sizeof *bad; k++) CHECK(compare(bad[k], bad[k], NULL) == 1);
     text_file(path, "");

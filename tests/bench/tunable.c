@@ -117,8 +117,8 @@ static void write_plot(Bench *bench, const BenchTunable *tunable, const char *te
 /* ---- rows ------------------------------------------------------------------------------------- */
 
 /* The settings that dominate the default: the best of them, NULL: none, and how many. */
-static const BenchSetting *who_dominates(int *how_many, const BenchTunable *tunable, const BenchSetting *point, int count,
-                                       int chosen)
+static const BenchSetting *who_dominates(int *how_many, const BenchTunable *tunable, const BenchSetting *point,
+                                         int count, int chosen)
 {
     const BenchSetting *best = NULL;
     *how_many = 0;
@@ -139,17 +139,17 @@ static int default_of(const BenchSetting *point, int count)
 
 static void add_verdict(Bench *bench, const BenchTunable *tunable, const BenchSetting *point, int count, int chosen)
 {
-    char              what[160], against[256];
-    int               better;
+    char                what[160], against[256];
+    int                 better;
     const BenchSetting *best = who_dominates(&better, tunable, point, count, chosen), *held = &point[chosen];
     snprintf(what, sizeof what, "%s: settings better than the default", tunable->name);
     BenchRow row = bench_row(what);
-    row.error    = better;
+    row.error = better;
     if (!bench->quick) row.error_limit = 0;
     row.error_unit = better == 1 ? "setting" : "settings";
     snprintf(against, sizeof against, "none is better in time, error or memory alone");
     if (best) {
-        char   with[96] = "";
+        char with[96] = "";
         if (best->bytes > 0 && held->bytes > 0)
             snprintf(with, sizeof with, ", %.2g x the memory", best->bytes / held->bytes);
         snprintf(against, sizeof against, "'%.60s': %.2g x the time, %.2g x the error%s%s", best->setting,
@@ -199,9 +199,10 @@ void bench_verdict(char out[512], const BenchTunable *tunable, const BenchSettin
     bench_show(stated, tunable->stated, tunable->error_unit);
     if (isnan(held->error)) say(out, size, "The error of the default, '%.40s', is unknown.", held->setting);
     else if (isnan(tunable->stated)) say(out, size, "The default, '%.40s', has an error of %s.", held->setting, error);
-    else say(out, size, "The default, '%.40s', %s: %s, stated at most %s.", held->setting,
-             held->error <= tunable->stated ? "keeps its stated error" : "MISSES its stated error", error, stated);
-    int better;
+    else
+        say(out, size, "The default, '%.40s', %s: %s, stated at most %s.", held->setting,
+            held->error <= tunable->stated ? "keeps its stated error" : "MISSES its stated error", error, stated);
+    int                 better;
     const BenchSetting *best = who_dominates(&better, tunable, point, count, chosen);
     if (best) {
         say(out, size, " %d better setting%s", better, better > 1 ? "s;" : ":");
@@ -225,7 +226,8 @@ void bench_verdict(char out[512], const BenchTunable *tunable, const BenchSettin
     say(out, size, ".");
 }
 
-static void keep_block(Bench *bench, const BenchTunable *tunable, const BenchSetting *point, int count, int chosen, int first)
+static void keep_block(Bench *bench, const BenchTunable *tunable, const BenchSetting *point, int count, int chosen,
+                       int first)
 {
     if (bench->blocks == bench->blocks_capacity) {
         const int   larger = bench->blocks_capacity ? 2 * bench->blocks_capacity : 32;
@@ -234,7 +236,7 @@ static void keep_block(Bench *bench, const BenchTunable *tunable, const BenchSet
             bench->out_of_memory = true;
             return;
         }
-        bench->block           = grown;
+        bench->block = grown;
         bench->blocks_capacity = larger;
     }
     BenchBlock *b = &bench->block[bench->blocks++];
@@ -254,11 +256,11 @@ void bench_tunable_rows(Bench *bench, const BenchTunable *tunable, const BenchSe
     for (int i = 0; i < count; i++) {
         const bool front = bench_on_front(tunable, point, count, i);
         snprintf(what, sizeof what, "%s: %s", tunable->name, point[i].setting);
-        BenchRow row   = bench_row_of(what, &point[i].time, NULL, 1);
-        row.error      = point[i].error;
+        BenchRow row = bench_row_of(what, &point[i].time, NULL, 1);
+        row.error = point[i].error;
         row.error_unit = tunable->error_unit;
-        row.against    = tunable->against;
-        row.mark       = i == chosen ? (front ? "* default" : "default") : front ? "*" : NULL;
+        row.against = tunable->against;
+        row.mark = i == chosen ? (front ? "* default" : "default") : front ? "*" : NULL;
         if (point[i].bytes > 1) row.rate = 1e-6 * point[i].bytes, row.rate_unit = "MB";
         if (i == chosen) row.error_limit = tunable->stated;
         else if (chosen >= 0) row.ratio = bench_ratio(&point[i].time, &point[chosen].time), row.to = "default";
@@ -283,8 +285,7 @@ static bool default_dominated(const BenchTunable *tunable, const BenchSetting *p
     return false;
 }
 
-void bench_tunable(Bench *bench, const BenchTunable *tunable, const BenchWork *work, BenchSetting *point,
-                   int count)
+void bench_tunable(Bench *bench, const BenchTunable *tunable, const BenchWork *work, BenchSetting *point, int count)
 {
     BenchTime time[bench_settings_max];
     bench_progress(bench, tunable->name);

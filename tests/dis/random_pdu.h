@@ -39,8 +39,8 @@ static inline int random_pdu_count_at(int kind) { return kind < 2 ? 19 : kind ==
 /* Random octets under a true header: every pattern of every field, signalling NaNs too. Returns the length. */
 static inline size_t random_pdu(uint8_t out[random_pdu_octets], Dice *d, int kind)
 {
-    const int at = random_pdu_count_at(kind);
-    const int records = at == 0 ? 0 : roll(d) % 8 ? (int)(roll(d) % 6) : (int)(roll(d) % 256);
+    const int    at = random_pdu_count_at(kind);
+    const int    records = at == 0 ? 0 : roll(d) % 8 ? (int)(roll(d) % 6) : (int)(roll(d) % 256);
     const size_t length = (size_t)(random_pdu_fixed[kind] + 16 * records);
     roll_octets(d, out, length);
     out[0] = (uint8_t)(5 + roll(d) % 3);

@@ -38,12 +38,12 @@ static void fields_are_where_the_standard_says(void **state)
 {
     (void)state;
     static const uint8_t pdu[] = {
-        7, 1, 20, 5, 0, 0, 0, 9, 0, 72, 0, 0,             /* header: 72 octets */
-        0, 1, 0, 2, 0, 3, 0, 4, 0, 5, 0, 6,               /* from 1:2:3 to 4:5:6 */
-        1, 2, 3, 4, 5, 6, 7, 8, 0, 0, 0, 1, 0, 0, 0, 1,   /* request, padding, one of each */
-        0, 0, 0, 11, 0, 0, 0, 12,                         /* fixed */
-        0, 0, 0, 13, 0, 0, 0, 76,                         /* variable: 76 bits in 10 octets of 16 */
-        1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 0xF1, 0xF2, 0xF3, 0xF4, 0xF5, 0xF6};
+        7, 1, 20, 5,  0, 0, 0, 9,  0, 72, 0,    0,                         /* header: 72 octets */
+        0, 1, 0,  2,  0, 3, 0, 4,  0, 5,  0,    6,                         /* from 1:2:3 to 4:5:6 */
+        1, 2, 3,  4,  5, 6, 7, 8,  0, 0,  0,    1,    0,    0,    0,    1, /* request, padding, one of each */
+        0, 0, 0,  11, 0, 0, 0, 12,                                         /* fixed */
+        0, 0, 0,  13, 0, 0, 0, 76,                                         /* variable: 76 bits in 10 octets of 16 */
+        1, 2, 3,  4,  5, 6, 7, 8,  9, 10, 0xF1, 0xF2, 0xF3, 0xF4, 0xF5, 0xF6};
     CHECK(sizeof pdu == 72 && dis_decode(&first, pdu, sizeof pdu) == STATUS_OK);
     CHECK(data->originating.entity == 3 && data->receiving.site == 4 && data->request == 0x01020304);
     CHECK(data->padding == 0x05060708 && data->fixed_count == 1 && data->variable_count == 1);
@@ -61,9 +61,13 @@ static void fields_are_where_the_standard_says(void **state)
 static void real_ones_come_back_octet_for_octet(void **state)
 {
     (void)state;
-    static const struct { const char *name; int count; } captures[] = {
-        {"dis/vrf-dis5-tow-vs-armor.pcap", 193}, {"dis/vrf-dis7-gaz69-blocks.pcap", 71},
-        {"dis/vrf-dis7-gaz69-straight.pcap", 16}, {"dis/singles.pcap", 2}};
+    static const struct {
+        const char *name;
+        int         count;
+    } captures[] = {{"dis/vrf-dis5-tow-vs-armor.pcap", 193},
+                    {"dis/vrf-dis7-gaz69-blocks.pcap", 71},
+                    {"dis/vrf-dis7-gaz69-straight.pcap", 16},
+                    {"dis/singles.pcap", 2}};
     for (int i = 0; i < 4; i++) {
         DisLog      log;
         DisCounters counters = {0};

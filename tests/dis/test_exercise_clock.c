@@ -131,15 +131,17 @@ static void a_restart_is_tied_again(void **state)
     for (int i = 0; i < 5 * 60; i++) {
         const double t_s = 100 + i, late_s = 0.1 * random_uniform(1, 1, 0, (uint64_t)i);
         if (i % 60 == 0 && i) ahead_s = 600 * random_uniform(1, 2, 0, (uint64_t)i);
-        const double got_s = exercise_clock_time(clock, 1, 1, stamp_of(t_s + ahead_s, false), 900 + t_s + (i ? late_s : 0));
+        const double got_s =
+            exercise_clock_time(clock, 1, 1, stamp_of(t_s + ahead_s, false), 900 + t_s + (i ? late_s : 0));
         CHECK_NEAR(got_s, t_s, 0.1 + tick_s); /* never worse than arrival */
         if (i < 60) CHECK_NEAR(got_s, t_s, tick_s);
         static double off_s;
         if (i % 60 == 45) off_s = got_s - t_s;
         if (i % 60 > 45) CHECK(got_s - t_s <= off_s + 2 * tick_s && got_s - t_s >= -2 * tick_s); /* the stamps again */
-        if (i % 60 > 45) off_s = got_s - t_s;                                                   /* and better known */
+        if (i % 60 > 45) off_s = got_s - t_s;                                                    /* and better known */
     }
-    CHECK(exercise_clock_anomalies(clock)->count == 1 && exercise_clock_anomalies(clock)->sender[0].reason == EXERCISE_CLOCK_JUMP);
+    CHECK(exercise_clock_anomalies(clock)->count == 1 &&
+          exercise_clock_anomalies(clock)->sender[0].reason == EXERCISE_CLOCK_JUMP);
     exercise_clock_destroy(clock);
 }
 
@@ -150,7 +152,8 @@ static void one_wrong_stamp_counts_from_its_arrival(void **state)
     ExerciseClock *clock = new_clock();
     for (int i = 0; i < 40; i++) {
         const double t_s = 100 + i, late_s = 0.05 * (i % 3);
-        const double got_s = exercise_clock_time(clock, 1, 1, stamp_of(i == 20 ? 2000 : t_s, false), 900 + t_s + late_s);
+        const double got_s =
+            exercise_clock_time(clock, 1, 1, stamp_of(i == 20 ? 2000 : t_s, false), 900 + t_s + late_s);
         CHECK_NEAR(got_s, i == 20 ? t_s + late_s : t_s, tick_s);
     }
     exercise_clock_destroy(clock);
@@ -177,16 +180,17 @@ static void pauses_end_in_proven_stamps(void **state)
 }
 
 typedef uint32_t StampOf(int i);
-static uint32_t constant_stamp(int i) { return 0xCAFE0000 + 0 * (uint32_t)i; }
-static uint32_t counter_stamp(int i) { return (uint32_t)i + 1; }
-static uint32_t ms_stamp(int i) { return 200 * (uint32_t)i + 5; }
-static uint32_t us_stamp(int i) { return 200000 * (uint32_t)i + 5; }
-static uint32_t unix_stamp(int i) { return 1750000000 + (uint32_t)i / 5; }
-static uint32_t half_stamp(int i) { return stamp_of(50 + 0.1 * i, false); }
-static uint32_t double_stamp(int i) { return stamp_of(50 + 0.4 * i, false); }
-static uint32_t wild_stamp(int i) { return (uint32_t)(4294967296.0 * random_uniform(3, 3, 3, (uint64_t)i)); }
+static uint32_t  constant_stamp(int i) { return 0xCAFE0000 + 0 * (uint32_t)i; }
+static uint32_t  counter_stamp(int i) { return (uint32_t)i + 1; }
+static uint32_t  ms_stamp(int i) { return 200 * (uint32_t)i + 5; }
+static uint32_t  us_stamp(int i) { return 200000 * (uint32_t)i + 5; }
+static uint32_t  unix_stamp(int i) { return 1750000000 + (uint32_t)i / 5; }
+static uint32_t  half_stamp(int i) { return stamp_of(50 + 0.1 * i, false); }
+static uint32_t  double_stamp(int i) { return stamp_of(50 + 0.4 * i, false); }
+static uint32_t  wild_stamp(int i) { return (uint32_t)(4294967296.0 * random_uniform(3, 3, 3, (uint64_t)i)); }
 
-/* From the second report on never farther from arrival than the jitter allowed, 5 reports a second; and what is said. */
+/* From the second report on never farther from arrival than the jitter allowed, 5 reports a second; and what is said.
+ */
 static void stamps_that_are_no_clock_are_found_and_named(void **state)
 {
     (void)state;
@@ -194,10 +198,10 @@ static void stamps_that_are_no_clock_are_found_and_named(void **state)
         StampOf    *stamp;
         double      allowed_s;
         const char *said;
-    } sender[] = {{constant_stamp, 0, "stand still"}, {counter_stamp, 0, "count its PDUs"},
+    } sender[] = {{constant_stamp, 0, "stand still"},      {counter_stamp, 0, "count its PDUs"},
                   {ms_stamp, 0, "look like milliseconds"}, {us_stamp, 0.15, "look like microseconds"},
-                  {unix_stamp, 0, "look like seconds"}, {half_stamp, 0.15, "run at 0.5 times"},
-                  {double_stamp, 0.15, "run at 2 times"}, {wild_stamp, 0, "jump about"}};
+                  {unix_stamp, 0, "look like seconds"},    {half_stamp, 0.15, "run at 0.5 times"},
+                  {double_stamp, 0.15, "run at 2 times"},  {wild_stamp, 0, "jump about"}};
     for (size_t k = 0; k < sizeof sender / sizeof sender[0]; k++) {
         ExerciseClock *clock = new_clock();
         char           text[exercise_clock_anomaly_text_size];
@@ -241,7 +245,8 @@ static void a_sender_that_spreads_a_frame_is_proven(void **state)
     for (int frame = 0; frame < 20; frame++)
         for (int e = 0; e < 100; e++) {
             const double t_s = 100 + 5 * frame;
-            const double got_s = exercise_clock_report_time(clock, 1, 1, e, stamp_of(t_s, false), 900 + t_s + 0.001 * e);
+            const double got_s =
+                exercise_clock_report_time(clock, 1, 1, e, stamp_of(t_s, false), 900 + t_s + 0.001 * e);
             CHECK_NEAR(got_s, t_s, tick_s);
         }
     exercise_clock_destroy(clock);
@@ -253,8 +258,9 @@ static void a_stamp_of_zero_is_on_the_hour(void **state)
     (void)state;
     ExerciseClock *clock = new_clock();
     for (int i = -20; i < 20; i++)
-        CHECK_NEAR(exercise_clock_time(clock, 1, 1, stamp_of(3600 + 0.5 * i, false), 1000 + 0.5 * i + 0.1 * (i % 3 == 0)),
-                   3600 + 0.5 * i, tick_s);
+        CHECK_NEAR(
+            exercise_clock_time(clock, 1, 1, stamp_of(3600 + 0.5 * i, false), 1000 + 0.5 * i + 0.1 * (i % 3 == 0)),
+            3600 + 0.5 * i, tick_s);
     CHECK(exercise_clock_anomalies(clock)->unstamped == 0);
     exercise_clock_destroy(clock);
 }
@@ -267,7 +273,8 @@ static void two_senders_of_one_id_are_named(void **state)
     char           text[exercise_clock_anomaly_text_size];
     bool           said = false;
     for (int i = 0; i < 60; i++)
-        exercise_clock_report_time(clock, 7, 8, i % 2, stamp_of(100 + 0.5 * i + (i % 2 ? 600 : 0), false), 1e9 + 0.5 * i);
+        exercise_clock_report_time(clock, 7, 8, i % 2, stamp_of(100 + 0.5 * i + (i % 2 ? 600 : 0), false),
+                                   1e9 + 0.5 * i);
     for (int i = 0; i < exercise_clock_anomalies(clock)->count; i++) {
         exercise_clock_anomaly_text(text, sizeof text, &exercise_clock_anomalies(clock)->sender[i]);
         said |= strstr(text, "7:8 follow two clocks 600.0 s apart: two senders") != NULL;
@@ -296,7 +303,8 @@ static void drift_is_followed(void **state)
     exercise_clock_destroy(clock);
 }
 
-/* Bundles of four entities, the first one late, each again 0.4 s later: neither a rate nor a clock that stands still. */
+/* Bundles of four entities, the first one late, each again 0.4 s later: neither a rate nor a clock that stands still.
+ */
 static void bundles_that_come_twice_are_no_fault(void **state)
 {
     (void)state;
@@ -306,7 +314,9 @@ static void bundles_that_come_twice_are_no_fault(void **state)
             for (int e = 0; e < 4; e++) {
                 const double t_s = 100 + i, late_s = (i ? 0 : 0.3) + 0.4 * copy;
                 CHECK_NEAR(exercise_clock_report_time(clock, 1, 1, e, stamp_of(t_s, false), 1e9 + t_s + late_s), t_s,
-                           i == 0 && copy ? 0.4 + tick_s : i == 1 && !copy && e == 0 ? 0.3 + tick_s : tick_s);
+                           i == 0 && copy              ? 0.4 + tick_s
+                           : i == 1 && !copy && e == 0 ? 0.3 + tick_s
+                                                       : tick_s);
             }
     CHECK(exercise_clock_anomalies(clock)->count == 0);
     exercise_clock_destroy(clock);
@@ -330,7 +340,8 @@ static void foolish_capture_times_do_no_harm(void **state)
     for (int i = 0; i < 5; i++) {
         ExerciseClock *clock = new_clock();
         CHECK_NEAR(exercise_clock_time(clock, 1, 1, stamp_of(7, false), foolish[i]), 7, tick_s);
-        CHECK_NEAR(exercise_clock_time(clock, 1, 1, stamp_of(9, false), foolish[i]), 7, tick_s); /* no time has passed */
+        CHECK_NEAR(exercise_clock_time(clock, 1, 1, stamp_of(9, false), foolish[i]), 7,
+                   tick_s); /* no time has passed */
         exercise_clock_destroy(clock);
         clock = new_clock();
         CHECK_NEAR(exercise_clock_time(clock, 1, 1, stamp_of(7, false), 1000), 7, tick_s);

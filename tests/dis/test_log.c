@@ -7,8 +7,16 @@
 
 #include <sys/mman.h>
 
-enum { link_null = 0, link_ethernet = 1, link_raw = 101, link_loop = 108, link_sll = 113, link_ipv4 = 228,
-       link_ipv6 = 229, link_sll2 = 276 };
+enum {
+    link_null = 0,
+    link_ethernet = 1,
+    link_raw = 101,
+    link_loop = 108,
+    link_sll = 113,
+    link_ipv4 = 228,
+    link_ipv6 = 229,
+    link_sll2 = 276
+};
 
 static Bytes   file, packet;
 static uint8_t payload[65536];
@@ -108,10 +116,8 @@ static void every_link_layer_gives_the_datagram(void **state)
     for (size_t i = 0; i < sizeof layer / sizeof layer[0]; i++) {
         packet.count = 0;
         put(&packet, layer[i].before, layer[i].octets);
-        if (layer[i].v6)
-            put_ipv6(&packet, 17, 208);
-        else
-            put_ipv4(&packet, 17, 208, 1, 0, 0);
+        if (layer[i].v6) put_ipv6(&packet, 17, 208);
+        else put_ipv4(&packet, 17, 208, 1, 0, 0);
         put_udp(&packet, 3000, payload, 200);
         only_packet(layer[i].link);
         expect_one(3000, 200, 1);
@@ -167,16 +173,12 @@ static void a_truncated_file_gives_what_it_has(void **state)
     put_ipv4(&packet, 17, 72, 1, 0, 0);
     put_udp(&packet, 3000, payload, 64);
     for (int format = 0; format < 2; format++) {
-        if (format == 0)
-            pcap_begin(&file, link_raw, true, false);
-        else
-            pcapng_begin(&file, link_raw);
+        if (format == 0) pcap_begin(&file, link_raw, true, false);
+        else pcapng_begin(&file, link_raw);
         const size_t head = file.count;
         for (int i = 0; i < 3; i++) {
-            if (format == 0)
-                pcap_packet(&file, 1000, 0, &packet, packet.count, false);
-            else
-                pcapng_packet(&file, 1000, &packet);
+            if (format == 0) pcap_packet(&file, 1000, 0, &packet, packet.count, false);
+            else pcapng_packet(&file, 1000, &packet);
         }
         const size_t one = (file.count - head) / 3, whole = file.count;
         for (size_t octets = head; octets <= whole; octets += 5) {
@@ -299,10 +301,8 @@ static void cut_packets_give_nothing(void **state)
     for (int v6 = 0; v6 < 2; v6++) {
         packet.count = 0;
         put_ethernet(&packet, v6 ? 0x86DD : 0x0800);
-        if (v6)
-            put_ipv6(&packet, 17, 48);
-        else
-            put_ipv4(&packet, 17, 48, 1, 0, 0);
+        if (v6) put_ipv6(&packet, 17, 48);
+        else put_ipv4(&packet, 17, 48, 1, 0, 0);
         put_udp(&packet, 3000, payload, 40);
         for (size_t captured = 0; captured < packet.count; captured++) {
             pcap_begin(&file, link_ethernet, true, false);
@@ -434,10 +434,10 @@ static void bad_fragments_are_counted(void **state)
         bool     a_more, b_more;
         uint64_t bad;
     } odd[] = {
-        {{0, 500}, {504, 1008}, true, false, 2},    /* not whole units: given up, and its rest never comes whole */
-        {{0, 504}, {512, 1008}, true, false, 2},    /* a hole */
-        {{8, 504}, {504, 1008}, true, false, 2},    /* no beginning */
-        {{504, 1008}, {0, 1008}, false, true, 2},   /* more, and yet all of it: no end agrees with the length */
+        {{0, 500}, {504, 1008}, true, false, 2},     /* not whole units: given up, and its rest never comes whole */
+        {{0, 504}, {512, 1008}, true, false, 2},     /* a hole */
+        {{8, 504}, {504, 1008}, true, false, 2},     /* no beginning */
+        {{504, 1008}, {0, 1008}, false, true, 2},    /* more, and yet all of it: no end agrees with the length */
         {{504, 1008}, {1000, 1016}, false, true, 2}, /* beyond the end */
         {{504, 1008}, {504, 1000}, false, false, 2}, /* two ends */
     };
@@ -515,10 +515,8 @@ static void spoilt_captures_do_no_harm(void **state)
                 put_ipv4(&packet, 17, 304, 5, i < 3 ? 0x2000 : 38, 0);
             }
             put(&packet, udp.at + (i < 3 ? 0 : 304), 304);
-            if (round % 3 == 2)
-                pcapng_packet(&good, 1000, &packet);
-            else
-                pcap_packet(&good, 1000, 0, &packet, packet.count, false);
+            if (round % 3 == 2) pcapng_packet(&good, 1000, &packet);
+            else pcap_packet(&good, 1000, 0, &packet, packet.count, false);
         }
         const int changes = 1 + (int)(roll(&d) % 12);
         for (int i = 0; i < changes; i++) good.at[24 + roll(&d) % (good.count - 24)] = (uint8_t)roll(&d);

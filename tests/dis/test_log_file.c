@@ -1,5 +1,5 @@
-/* tests/dis/test_log_file.c: a log larger than what is kept in memory: every datagram as it was written, in any order, of one
- * packet and of several, packed and not; what becomes of one that is cut meanwhile. */
+/* tests/dis/test_log_file.c: a log larger than what is kept in memory: every datagram as it was written, in any order,
+ * of one packet and of several, packed and not; what becomes of one that is cut meanwhile. */
 #include "tests/check.h"
 
 #include "dis/capture/log.h"
@@ -26,7 +26,8 @@ static size_t put_packet(uint8_t *out, int i, uint32_t from, uint32_t octets, bo
     dis_store_u16(ip + 4, (uint16_t)i);
     dis_store_u16(ip + 6, (uint16_t)((more ? 0x2000 : 0) | (from ? (from + 8) / 8 : 0)));
     if (from == 0) {
-        dis_store_u16(at, 3000), dis_store_u16(at + 2, 3000), dis_store_u16(at + 4, (uint16_t)udp), dis_store_u16(at + 6, 0);
+        dis_store_u16(at, 3000), dis_store_u16(at + 2, 3000), dis_store_u16(at + 4, (uint16_t)udp),
+            dis_store_u16(at + 6, 0);
         at += 8;
     }
     for (uint32_t k = 0; k < octets; k++) at[k] = octet_of(i, from + k);
@@ -38,7 +39,7 @@ static void write_log(const char *path, bool packed)
 {
     static const uint32_t head[6] = {0xA1B2C3D4, 0x00040002, 0, 0, 262144, link_raw};
     static uint8_t        octet[2 * (most + 64)];
-    gzFile file = gzopen(path, packed ? "wb1" : "wbT");
+    gzFile                file = gzopen(path, packed ? "wb1" : "wbT");
     CHECK(file && gzwrite(file, head, sizeof head) == sizeof head);
     for (int i = 0; i < count; i++) {
         const uint32_t length = length_of(i), first = i % 9 == 0 ? 400 : length;

@@ -52,7 +52,8 @@ static void make_file(int count)
 {
     pcap_begin(&file, link_ethernet, true, false);
     for (int i = 0; i < count; i++) {
-        for (int k = 12; k < octets_of_pdu - 2; k++) pdu[k] = (uint8_t)(random_uniform(3, 1, (uint32_t)i, (uint64_t)k) * 256);
+        for (int k = 12; k < octets_of_pdu - 2; k++)
+            pdu[k] = (uint8_t)(random_uniform(3, 1, (uint32_t)i, (uint64_t)k) * 256);
         make_packet(link_ethernet, (unsigned)i);
         pcap_packet(&file, 1000 + (uint32_t)i, 0, &packet, packet.count, false);
     }
@@ -66,11 +67,13 @@ enum { GZIP, ZSTD, BZIP2, XZ, PACKINGS };
 
 static void pack_more(int packing, const uint8_t *from, size_t octets)
 {
-    size_t room = sizeof packed.at - packed.count;
+    size_t   room = sizeof packed.at - packed.count;
     uint8_t *to = packed.at + packed.count;
     if (packing == GZIP) {
-        z_stream z = {.next_in = (uint8_t *)(uintptr_t)from, .avail_in = (uInt)octets, .next_out = to, .avail_out = (uInt)room};
-        CHECK(deflateInit2(&z, 9, Z_DEFLATED, 15 + 16, 9, Z_DEFAULT_STRATEGY) == Z_OK && deflate(&z, Z_FINISH) == Z_STREAM_END);
+        z_stream z = {
+            .next_in = (uint8_t *)(uintptr_t)from, .avail_in = (uInt)octets, .next_out = to, .avail_out = (uInt)room};
+        CHECK(deflateInit2(&z, 9, Z_DEFLATED, 15 + 16, 9, Z_DEFAULT_STRATEGY) == Z_OK &&
+              deflate(&z, Z_FINISH) == Z_STREAM_END);
         room -= z.avail_out;
         deflateEnd(&z);
     } else if (packing == ZSTD) {
@@ -327,11 +330,11 @@ static void broken_blocks_end_the_file(void **state)
         make_packet(link_raw, 0);
         put_enhanced(0, 5, false);
         const size_t second = file.count;
-        put_enhanced(fault == 0 ? 1 : 0, 6, false); /* 0: an interface that was not described */
-        if (fault == 1) file.at[file.count - 4] ^= 4;   /* its second length */
-        if (fault == 2) file.at[second + 4] ^= 2;       /* a length that is no multiple of four */
+        put_enhanced(fault == 0 ? 1 : 0, 6, false);                       /* 0: an interface that was not described */
+        if (fault == 1) file.at[file.count - 4] ^= 4;                     /* its second length */
+        if (fault == 2) file.at[second + 4] ^= 2;                         /* a length that is no multiple of four */
         if (fault == 3) file.at[second + 4] = 8, file.at[second + 5] = 0; /* shorter than a block can be */
-        if (fault == 4) file.at[second + 21] = 0xFF;    /* more captured than its block holds */
+        if (fault == 4) file.at[second + 21] = 0xFF;                      /* more captured than its block holds */
         put_enhanced(0, 7, false);
         DisLog log;
         CHECK(open_bytes(&log, &file) == STATUS_OK);

@@ -16,12 +16,15 @@ static DisLog make(double stamp_s[pdus], double capture_s[pdus])
 {
     for (int k = 0; k < pdus; k++) {
         const double   past_s = fmod(stamp_s[k] + 7200, 3600);
-        DisEntityState pdu = {.header = {.version = 7, .exercise = 1, .type = dis_pdu_entity_state, .family = 1,
+        DisEntityState pdu = {.header = {.version = 7,
+                                         .exercise = 1,
+                                         .type = dis_pdu_entity_state,
+                                         .family = 1,
                                          .timestamp = k % 5 == 4 ? 0 : (uint32_t)(past_s / 3600 * 2147483648.0) << 1},
                               .id = {1, (uint16_t)(k % 5 == 4 ? 2 : 1), 7},
                               .p_ecef = {6.4e6, 0, speed_mps * motion_rate * stamp_s[k]},
                               .velocity_mps = {0, (float)(0.6 * speed_mps), (float)(0.8 * speed_mps)}};
-        const size_t octets = dis_encode_entity_state(bytes[k], sizeof bytes[k], &pdu);
+        const size_t   octets = dis_encode_entity_state(bytes[k], sizeof bytes[k], &pdu);
         CHECK(octets > 0);
         datagram[k] = (DisDatagram){.capture_s = capture_s[k], .octets = (uint32_t)octets, .bytes = bytes[k]};
     }
@@ -33,7 +36,7 @@ static bool retimed(double rate, double jitter_s)
 {
     double stamp_s[pdus], capture_s[pdus];
     for (int k = 0; k < pdus; k++) {
-        stamp_s[k]   = 3580 + 0.3 * k;
+        stamp_s[k] = 3580 + 0.3 * k;
         capture_s[k] = 1e9 + rate * 0.3 * k + jitter_s * random_uniform(1, 2, 3, (uint64_t)k);
     }
     DisLog     log = make(stamp_s, capture_s);
@@ -49,10 +52,10 @@ static bool retimed(double rate, double jitter_s)
 static void packets_at_another_pace_take_the_stamps(void **state)
 {
     (void)state;
-    CHECK(retimed(0, 0));     /* all at one instant */
-    CHECK(retimed(1e-5, 0));  /* a microsecond or so apart */
-    CHECK(retimed(0.05, 0));  /* played back 20 times as fast */
-    CHECK(retimed(2, 0));     /* at half speed */
+    CHECK(retimed(0, 0));    /* all at one instant */
+    CHECK(retimed(1e-5, 0)); /* a microsecond or so apart */
+    CHECK(retimed(0.05, 0)); /* played back 20 times as fast */
+    CHECK(retimed(2, 0));    /* at half speed */
 }
 
 static void an_honest_capture_is_left_alone(void **state)
@@ -86,7 +89,7 @@ static void stamps_that_are_no_clock_are_not_believed(void **state)
     (void)state;
     double stamp_s[pdus], capture_s[pdus];
     for (int k = 0; k < pdus; k++) {
-        stamp_s[k]   = 100 + 1e-4 * k; /* a counter */
+        stamp_s[k] = 100 + 1e-4 * k; /* a counter */
         capture_s[k] = 1e9 + 0.3 * k;
     }
     DisLog log = make(stamp_s, capture_s);

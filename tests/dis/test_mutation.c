@@ -23,12 +23,24 @@ static size_t spoil(Dice *d, size_t octets)
     for (int i = 0; i < changes && octets; i++) {
         const size_t at = roll(d) % octets;
         switch (roll(d) % 6) {
-        case 0: datagram[at] ^= (uint8_t)(1 << roll(d) % 8); break;
-        case 1: datagram[at] = edge[roll(d) % sizeof edge]; break;
-        case 2: octets = at; break;
-        case 3: datagram[8 % octets] = (uint8_t)(roll(d) % 20); break;
-        case 4: datagram[9 % octets] = (uint8_t)roll(d); break;
-        default: datagram[(roll(d) % 2 ? 19 : 101) % octets] = (uint8_t)roll(d); break;
+        case 0:
+            datagram[at] ^= (uint8_t)(1 << roll(d) % 8);
+            break;
+        case 1:
+            datagram[at] = edge[roll(d) % sizeof edge];
+            break;
+        case 2:
+            octets = at;
+            break;
+        case 3:
+            datagram[8 % octets] = (uint8_t)(roll(d) % 20);
+            break;
+        case 4:
+            datagram[9 % octets] = (uint8_t)roll(d);
+            break;
+        default:
+            datagram[(roll(d) % 2 ? 19 : 101) % octets] = (uint8_t)roll(d);
+            break;
         }
     }
     return octets;
@@ -55,7 +67,8 @@ static void spoilt_datagrams_do_no_harm(void **state)
             if (status == STATUS_BAD_VALUE) bad_count++;
             if (status != STATUS_OK) {
                 const bool judged = header.type != dis_pdu_data && header.type != dis_pdu_set_data;
-                CHECK(status == STATUS_BAD_VALUE || status == STATUS_UNSUPPORTED || !judged); /* too short: not this far */
+                CHECK(status == STATUS_BAD_VALUE || status == STATUS_UNSUPPORTED ||
+                      !judged); /* too short: not this far */
                 const uint64_t before = counters.dropped[DIS_DROP_BAD_COUNT];
                 dis_count_refused(&counters, header.type, status);
                 CHECK(counters.dropped[DIS_DROP_BAD_COUNT] == before + (judged && status == STATUS_BAD_VALUE));

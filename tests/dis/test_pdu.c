@@ -314,14 +314,14 @@ static void every_misfit_has_its_reason(void **state)
         uint16_t length, present;
         DisDrop  why;
     } misfit[] = {
-        {7, 1, 144, 11, DIS_DROP_SHORT_HEADER},      {7, 1, 144, 1, DIS_DROP_SHORT_HEADER},
-        {4, 1, 144, 144, DIS_DROP_BAD_VERSION},      {8, 1, 144, 144, DIS_DROP_BAD_VERSION},
+        {7, 1, 144, 11, DIS_DROP_SHORT_HEADER},        {7, 1, 144, 1, DIS_DROP_SHORT_HEADER},
+        {4, 1, 144, 144, DIS_DROP_BAD_VERSION},        {8, 1, 144, 144, DIS_DROP_BAD_VERSION},
         {0, 0, 0, 20, DIS_DROP_BAD_VERSION}, /* zeros at the end of a datagram */
-        {7, 20, 0, 144, DIS_DROP_LENGTH_ZERO},       {7, 20, 11, 144, DIS_DROP_LENGTH_TOO_SHORT},
-        {7, 1, 143, 144, DIS_DROP_LENGTH_TOO_SHORT}, {7, 3, 103, 144, DIS_DROP_LENGTH_TOO_SHORT},
-        {7, 67, 71, 144, DIS_DROP_LENGTH_TOO_SHORT}, {7, 2, 95, 144, DIS_DROP_LENGTH_TOO_SHORT},
-        {7, 12, 27, 144, DIS_DROP_LENGTH_TOO_SHORT}, {7, 13, 43, 144, DIS_DROP_LENGTH_TOO_SHORT},
-        {7, 14, 39, 144, DIS_DROP_LENGTH_TOO_SHORT}, {7, 1, 145, 144, DIS_DROP_LENGTH_TOO_LONG},
+        {7, 20, 0, 144, DIS_DROP_LENGTH_ZERO},         {7, 20, 11, 144, DIS_DROP_LENGTH_TOO_SHORT},
+        {7, 1, 143, 144, DIS_DROP_LENGTH_TOO_SHORT},   {7, 3, 103, 144, DIS_DROP_LENGTH_TOO_SHORT},
+        {7, 67, 71, 144, DIS_DROP_LENGTH_TOO_SHORT},   {7, 2, 95, 144, DIS_DROP_LENGTH_TOO_SHORT},
+        {7, 12, 27, 144, DIS_DROP_LENGTH_TOO_SHORT},   {7, 13, 43, 144, DIS_DROP_LENGTH_TOO_SHORT},
+        {7, 14, 39, 144, DIS_DROP_LENGTH_TOO_SHORT},   {7, 1, 145, 144, DIS_DROP_LENGTH_TOO_LONG},
         {7, 20, 14064, 508, DIS_DROP_LENGTH_TOO_LONG},
     };
     static uint8_t bytes[20000];
@@ -361,8 +361,8 @@ static void lengths_of_zero_are_found(void **state)
     const struct {
         uint8_t type, count_at, count;
         size_t  octets;
-    } sent[] = {{1, 19, 0, 144}, {1, 19, 3, 192}, {67, 19, 2, 104}, {2, 0, 0, 96}, {3, 101, 1, 120}, {12, 0, 0, 28},
-                {13, 0, 0, 44}, {14, 0, 0, 40}, {52, 0, 0, 32}, {53, 0, 0, 48}, {54, 0, 0, 40}};
+    } sent[] = {{1, 19, 0, 144}, {1, 19, 3, 192}, {67, 19, 2, 104}, {2, 0, 0, 96},  {3, 101, 1, 120}, {12, 0, 0, 28},
+                {13, 0, 0, 44},  {14, 0, 0, 40},  {52, 0, 0, 32},   {53, 0, 0, 48}, {54, 0, 0, 40}};
     const size_t kinds = sizeof sent / sizeof sent[0];
     for (size_t i = 0; i < kinds; i++)
         for (int extra = -1; extra <= 8; extra++) {
@@ -394,16 +394,21 @@ static void lengths_of_zero_are_found(void **state)
 static void reliable_ones_survive(void **state)
 {
     (void)state;
-    static const struct { uint8_t type; size_t octets, request_at; } kind[] = {{52, 32, 28}, {53, 48, 44}, {54, 40, 36}};
+    static const struct {
+        uint8_t type;
+        size_t  octets, request_at;
+    } kind[] = {{52, 32, 28}, {53, 48, 44}, {54, 40, 36}};
     Dice d = dice(9);
     for (int round = 0; round < 300; round++) {
-        uint8_t wire[48], back[48];
+        uint8_t   wire[48], back[48];
         const int k = round % 3;
         roll_octets(&d, wire, sizeof wire);
         wire[0] = 7, wire[2] = kind[k].type, wire[8] = 0, wire[9] = (uint8_t)kind[k].octets;
         CHECK(dis_decode(&decoded, wire, kind[k].octets) == STATUS_OK);
         CHECK(dis_encode(back, sizeof back, &decoded) == kind[k].octets && memcmp(back, wire, kind[k].octets) == 0);
-        const uint32_t request = k == 0 ? decoded.remove.request : k == 1 ? decoded.start.request : decoded.stop.request;
+        const uint32_t request = k == 0   ? decoded.remove.request
+                                 : k == 1 ? decoded.start.request
+                                          : decoded.stop.request;
         const uint8_t *at = wire + kind[k].request_at;
         CHECK(request == ((uint32_t)at[0] << 24 | (uint32_t)at[1] << 16 | (uint32_t)at[2] << 8 | at[3]));
         CHECK(dis_decode(&decoded, wire, kind[k].octets - 1) != STATUS_OK);
@@ -435,9 +440,9 @@ static void ids_as_text(void **state)
     dis_entity_id_text(text, (DisEntityId){65535, 65535, 65535});
     CHECK(strcmp(text, "65535:65535:65535") == 0);
 
-    static const char *const bad[] = {"",      ":",       "1:2",     "1:2:",     "1:2:3:",  "1:2:3 ",
-                                      "1:2:x", "-1:2:3",  "+1:2:3",  "1:2:65536", " 1:2:3", "1::3",
-                                      "1.2.3", "1:2:3:4", "99999999999999999999:1:1"};
+    static const char *const bad[] = {"",       ":",     "1:2",    "1:2:",    "1:2:3:",
+                                      "1:2:3 ", "1:2:x", "-1:2:3", "+1:2:3",  "1:2:65536",
+                                      " 1:2:3", "1::3",  "1.2.3",  "1:2:3:4", "99999999999999999999:1:1"};
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
         back = (DisEntityId){9, 9, 9};
         CHECK(!dis_entity_id_parse(&back, bad[i]));
@@ -474,7 +479,7 @@ static void usable_entities(void **state)
     CHECK(dis_entity_is_usable(&why, id, p, v, euler) && why == DIS_DROP_COUNT);
     CHECK(dis_entity_is_usable(&why, (DisEntityId){0, 0, 1}, p, v, euler)); /* a sender nobody configured */
 
-    const DisEntityId nobody[] = {{0, 0, 0},       {1, 3001, 0},   {1, 3001, 0xFFFF},
+    const DisEntityId nobody[] = {{0, 0, 0},         {1, 3001, 0},   {1, 3001, 0xFFFF},
                                   {1, 3001, 0xFFFE}, {0xFFFF, 1, 1}, {1, 0xFFFF, 1}};
     for (int i = 0; i < 6; i++) {
         CHECK(!dis_entity_is_usable(&why, nobody[i], p, v, euler));

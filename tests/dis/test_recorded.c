@@ -40,10 +40,8 @@ static void captures_hold_what_others_count(void **state)
     static const struct {
         int      datagrams;
         uint64_t pdus, entity_state, fire, detonation, attribute;
-    } want[4] = {{759, 759, 462, 15, 13, 0},
-                 {1222, 2083, 775, 0, 0, 861},
-                 {174, 300, 116, 0, 0, 126},
-                 {10, 10, 3, 1, 0, 0}};
+    } want[4] = {
+        {759, 759, 462, 15, 13, 0}, {1222, 2083, 775, 0, 0, 861}, {174, 300, 116, 0, 0, 126}, {10, 10, 3, 1, 0, 0}};
     for (int i = 0; i < 4; i++) {
         DisLog log;
         if (!open_capture(&log, captures[i])) skip();

@@ -69,8 +69,11 @@ static void there_and_back(const char *ending)
     CHECK(dis_recorder_open(&recorder, path, "a test") == STATUS_OK);
     for (int i = 0; i < datagrams; i++) {
         const Sent sent = nth(i);
-        CHECK(dis_recorder_add(recorder, sent.capture_ns, i % 3 == 0 ? NULL : i % 3 == 1 ? v4 : v6, 50000, payload,
-                               sent.octets) == STATUS_OK);
+        CHECK(dis_recorder_add(recorder, sent.capture_ns,
+                               i % 3 == 0   ? NULL
+                               : i % 3 == 1 ? v4
+                                            : v6,
+                               50000, payload, sent.octets) == STATUS_OK);
     }
     CHECK(dis_recorder_close(recorder) == STATUS_OK);
     CHECK(dis_log_open(&log, path, dis_port) == STATUS_OK);
@@ -136,10 +139,10 @@ static void check_packet(const uint8_t *p, size_t octets, bool is_v6, uint16_t t
 static void headers_are_true(void **state)
 {
     (void)state;
-    static const size_t sizes[] = {0, 1, 2, 3, 145, dis_recorder_ipv4_octets - 1, dis_recorder_ipv4_octets,
-                                   dis_recorder_ipv6_octets};
-    char                path[name_size], reason[PCAP_ERRBUF_SIZE];
-    DisRecorder        *recorder;
+    static const size_t sizes[] = {
+        0, 1, 2, 3, 145, dis_recorder_ipv4_octets - 1, dis_recorder_ipv4_octets, dis_recorder_ipv6_octets};
+    char         path[name_size], reason[PCAP_ERRBUF_SIZE];
+    DisRecorder *recorder;
     make_name(path, ".pcapng");
     CHECK(dis_recorder_open(&recorder, path, NULL) == STATUS_OK);
     dis_recorder_to(recorder, group4, 3001);
@@ -294,7 +297,7 @@ static void seconds_are_right_and_turn_back(void **state)
         const int64_t until = dis_unix_ns_until(s);
         CHECK(until >= ns && dis_unix_s(until) == s && dis_unix_s(until + 1) > s);
         /* a time between those that arrivals can have */
-        const double between = s + 1e-7 * random_uniform(7, 2, 0, i);
+        const double  between = s + 1e-7 * random_uniform(7, 2, 0, i);
         const int64_t last = dis_unix_ns_until(between);
         CHECK(dis_unix_s(last) <= between && dis_unix_s(last + 1) > between);
     }

@@ -21,7 +21,8 @@ static void a_clock_that_is_not_set_is_left_alone(void **state)
         const ClockReading now = at(t_s, 1e-6 * (k % 7)); /* readings apart by microseconds */
         CHECK(steady_clock_look(&clock, now) == 0);
         CHECK(steady_clock_ns(&clock, now) == at(t_s, 0).system_ns);
-        CHECK(steady_clock_of_stamp(&clock, now.system_ns - 12345, now) == now.system_ns - 12345); /* to the nanosecond */
+        CHECK(steady_clock_of_stamp(&clock, now.system_ns - 12345, now) ==
+              now.system_ns - 12345); /* to the nanosecond */
     }
 }
 
@@ -29,12 +30,13 @@ static void a_clock_that_is_set_does_not_move_the_steady_one(void **state)
 {
     (void)state;
     static const double set_s[] = {-3600, 3600, -1.5, 0.25, -1e9, 0};
-    SteadyClock clock = steady_clock_begin(at(0, 0));
-    double      before_s = 0;
+    SteadyClock         clock = steady_clock_begin(at(0, 0));
+    double              before_s = 0;
     for (int k = 0; k < 6; k++) {
         const double       t_s = 10.0 * (k + 1);
         const ClockReading now = at(t_s, set_s[k]);
-        const int64_t      by_ns = steady_clock_look(&clock, now), want_ns = (int64_t)(set_s[k] * 1e9) - (int64_t)(before_s * 1e9);
+        const int64_t      by_ns = steady_clock_look(&clock, now),
+                      want_ns = (int64_t)(set_s[k] * 1e9) - (int64_t)(before_s * 1e9);
         CHECK(by_ns == want_ns && steady_clock_look(&clock, now) == 0); /* told once */
         CHECK(steady_clock_ns(&clock, now) == at(t_s, 0).system_ns);
         CHECK(steady_clock_of_stamp(&clock, now.system_ns - 5000, now) == at(t_s, 0).system_ns - 5000);
@@ -47,7 +49,7 @@ static void a_stamp_from_before_is_not_after_now(void **state)
 {
     (void)state;
     SteadyClock        clock = steady_clock_begin(at(0, 0));
-    const ClockReading now   = at(2, -3600);
+    const ClockReading now = at(2, -3600);
     const int64_t      stamp_ns = at(1.9, 0).system_ns;
     CHECK(steady_clock_look(&clock, now) == -3600 * s_ns);
     CHECK(steady_clock_of_stamp(&clock, stamp_ns, now) == at(2, 0).system_ns);

@@ -219,10 +219,10 @@ static void broadcast_to_nowhere_in_particular_is_heard_by_all(void **state)
 /* ---- arrival times ---------------------------------------------------------------------------------------- */
 
 typedef struct Flood {
-    int              peer;
-    uint32_t         sent;
-    atomic_bool      stop;
-    pthread_t        thread;
+    int         peer;
+    uint32_t    sent;
+    atomic_bool stop;
+    pthread_t   thread;
 } Flood;
 
 /* Some ten thousand a second: several in each tick, and no more than a sanitizer's build can take. */
@@ -255,8 +255,8 @@ static DisUdpCounters settled(DisUdp *udp, uint64_t sent)
     const int64_t  until_ns = dis_udp_now_ns() + peer_patience_ns;
     DisUdpCounters counters;
     while (counters = dis_udp_counters(udp), counters.datagrams + counters.lost_kernel < sent) {
-        if (dis_udp_now_ns() > until_ns) fail_msg("%llu of %llu came", (unsigned long long)counters.datagrams,
-                                                  (unsigned long long)sent);
+        if (dis_udp_now_ns() > until_ns)
+            fail_msg("%llu of %llu came", (unsigned long long)counters.datagrams, (unsigned long long)sent);
         usleep(1000);
     }
     return counters;
@@ -581,7 +581,11 @@ static void many_may_send_while_one_takes(void **state)
 static void what_cannot_be_is_said(void **state)
 {
     (void)state;
-    static const struct { const char *address, *interface; int port, ttl, queue; const char *says; } wrong[] = {
+    static const struct {
+        const char *address, *interface;
+        int         port, ttl, queue;
+        const char *says;
+    } wrong[] = {
         {"", "", 0, 1, 1 << 20, "0 is not in 1 .. 65535"},
         {"", "", 65536, 1, 1 << 20, "65536 is not in"},
         {"", "", 3000, 256, 1 << 20, "256 is not in 0 .. 255"},

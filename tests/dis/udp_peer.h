@@ -25,10 +25,10 @@ static inline int free_port(void)
 /* A socket that sends to 127.0.0.1 or ::1, at this port. -1: no such family here. */
 static inline int peer_socket(bool v6, int port)
 {
-    const struct sockaddr_in  to4 = {.sin_family = AF_INET, .sin_port = htons((uint16_t)port),
-                                     .sin_addr.s_addr = htonl(INADDR_LOOPBACK)};
-    const struct sockaddr_in6 to6 = {.sin6_family = AF_INET6, .sin6_port = htons((uint16_t)port),
-                                     .sin6_addr = IN6ADDR_LOOPBACK_INIT};
+    const struct sockaddr_in to4 = {
+        .sin_family = AF_INET, .sin_port = htons((uint16_t)port), .sin_addr.s_addr = htonl(INADDR_LOOPBACK)};
+    const struct sockaddr_in6 to6 = {
+        .sin6_family = AF_INET6, .sin6_port = htons((uint16_t)port), .sin6_addr = IN6ADDR_LOOPBACK_INIT};
     const struct sockaddr *to = v6 ? (const struct sockaddr *)&to6 : (const struct sockaddr *)&to4;
     const int              s = socket(v6 ? AF_INET6 : AF_INET, SOCK_DGRAM, 0);
     if (s < 0) return -1;

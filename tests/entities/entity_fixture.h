@@ -16,17 +16,17 @@ typedef struct Fixture {
 
 static const DisEntityType tank_type = {1, 1, 222, 1, 1, 1, 0}, truck_type = {1, 1, 222, 7, 1, 0, 0};
 static const DisEntityType helicopter_type = {1, 2, 225, 20, 1, 0, 0}, missile_type = {2, 2, 225, 1, 1, 3, 0};
-static const uint32_t frozen_bit = UINT32_C(1) << 21, power_plant_bit = UINT32_C(1) << 22;
-static const uint32_t deactivated_bit = UINT32_C(1) << 23;
+static const uint32_t      frozen_bit = UINT32_C(1) << 21, power_plant_bit = UINT32_C(1) << 22;
+static const uint32_t      deactivated_bit = UINT32_C(1) << 23;
 
 /* On the equator at Greenwich, level, heading north: x forward = +Z, y right = +Y (east), z down = -X. */
 static const double earth_radius_m = 6378137;
 
 static inline Fixture fixture_open(const EntityTableConfig *config)
 {
-    Fixture f = {0};
+    Fixture                 f = {0};
     const EntityTableConfig defaults = entity_table_default_config();
-    char path[512];
+    char                    path[512];
 
     CHECK(etc_path(path, sizeof path, "catalog.csv"));
     CHECK(catalog_open(&f.catalog, path, 0.01) == STATUS_OK);
@@ -48,8 +48,11 @@ static inline DisEntityId entity_id(int entity) { return (DisEntityId){1, 3001, 
 static inline DisEntityState report(int entity, DisEntityType type)
 {
     return (DisEntityState){.header = {.version = 5, .exercise = 1, .type = dis_pdu_entity_state, .family = 1},
-                            .id = entity_id(entity), .type = type, .dead_reckoning = 4,
-                            .p_ecef = {earth_radius_m, 0, 0}, .psi_rad = 0,
+                            .id = entity_id(entity),
+                            .type = type,
+                            .dead_reckoning = 4,
+                            .p_ecef = {earth_radius_m, 0, 0},
+                            .psi_rad = 0,
                             .theta_rad = -(float)(3.14159265358979323846 / 2)};
 }
 

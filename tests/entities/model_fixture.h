@@ -8,8 +8,9 @@
 #include "entities/shapes/parametric.h"
 
 /* Every model that somebody may meet (`marker` is for tests of the picture alone). */
-static const char *const model_names[] = {"tank",   "truck", "helicopter", "missile",  "unknown", "carrier", "launcher",
-                                          "aircraft", "ship", "person",    "building", "decoy",   "flare"};
+static const char *const model_names[] = {"tank",     "truck",    "helicopter", "missile", "unknown",
+                                          "carrier",  "launcher", "aircraft",   "ship",    "person",
+                                          "building", "decoy",    "flare"};
 enum { model_name_count = sizeof model_names / sizeof model_names[0] };
 
 static inline Model build(const char *name, double sag_m)
@@ -38,12 +39,12 @@ static inline const ModelPart *find_part(const Model *m, const char *name)
 /* Box of one part in body axes for joint values (NULL: rest). */
 static inline void part_box(double low[3], double high[3], const Model *m, const char *name, const double *value)
 {
-    NodePose pose[64];
+    NodePose         pose[64];
     const ModelPart *part = find_part(m, name);
     CHECK(m->node_count <= 64);
     model_pose(pose, m, value);
     for (int i = 0; i < 3; i++) {
-        low[i]  = INFINITY;
+        low[i] = INFINITY;
         high[i] = -INFINITY;
     }
     for (int t = part->first_triangle; t < part->first_triangle + part->triangle_count; t++)
@@ -52,7 +53,7 @@ static inline void part_box(double low[3], double high[3], const Model *m, const
             m3_mul_v3(p, pose[part->node].r_body_from_node, m->vertex[m->triangle[t][k]]);
             v3_add(p, p, pose[part->node].p_body);
             for (int i = 0; i < 3; i++) {
-                low[i]  = fmin(low[i], p[i]);
+                low[i] = fmin(low[i], p[i]);
                 high[i] = fmax(high[i], p[i]);
             }
         }
@@ -63,7 +64,7 @@ static inline double part_volume_m3(const Model *m, const ModelPart *part)
     double sum = 0;
     for (int t = part->first_triangle; t < part->first_triangle + part->triangle_count; t++) {
         const uint32_t *v = m->triangle[t];
-        double cross[3];
+        double          cross[3];
         v3_cross(cross, m->vertex[v[1]], m->vertex[v[2]]);
         sum += v3_dot(m->vertex[v[0]], cross) / 6;
     }

@@ -24,7 +24,7 @@ static void order_does_not_matter(void **state)
         const int at[4] = {code & 3, code >> 2 & 3, code >> 4 & 3, code >> 6};
         if ((1 << at[0] | 1 << at[1] | 1 << at[2] | 1 << at[3]) != 15) continue;
         const DisVariableParameter shuffled[4] = {record[at[0]], record[at[1]], record[at[2]], record[at[3]]};
-        Articulation a = {0};
+        Articulation               a = {0};
         CHECK(articulation_report(&a, shuffled, 4, 100, hold_s) == 0);
         CHECK_NEAR(value_of(&a, turret, azimuth, 100), 0.5, 0);
         CHECK_NEAR(value_of(&a, turret, azimuth, 102), 1, 0);
@@ -37,9 +37,9 @@ static void order_does_not_matter(void **state)
 static void foreign_records_are_ignored_and_counted(void **state)
 {
     (void)state;
-    DisVariableParameter attached = {.record_type = dis_variable_attached, .parameter = turret + azimuth};
-    DisVariableParameter detached = {.record_type = dis_variable_attached, .change = 1};
-    DisVariableParameter separation = {.record_type = 2, .parameter = turret + azimuth, .value = 3};
+    DisVariableParameter       attached = {.record_type = dis_variable_attached, .parameter = turret + azimuth};
+    DisVariableParameter       detached = {.record_type = dis_variable_attached, .change = 1};
+    DisVariableParameter       separation = {.record_type = 2, .parameter = turret + azimuth, .value = 3};
     const DisVariableParameter record[] = {
         articulated(turret + azimuth, 1),
         articulated(turret + azimuth, NAN),
@@ -68,7 +68,7 @@ static void rates_are_bounded(void **state)
                                               articulated(turret + azimuth_rate, 0.125f)};
     const DisVariableParameter other[] = {articulated(gun + elevation, 0.1f)};
     const DisVariableParameter mad[] = {articulated(turret + azimuth, 0.5f), articulated(turret + azimuth_rate, 1e30f)};
-    Articulation a = {0};
+    Articulation               a = {0};
 
     articulation_report(&a, with_rate, 2, 10, hold_s);
     CHECK_NEAR(value_of(&a, turret, azimuth, 22), 1.5, 0);
@@ -85,7 +85,7 @@ static void angles_wrap_and_lengths_do_not(void **state)
 {
     (void)state;
     const DisVariableParameter record[] = {articulated(turret + azimuth, 6), articulated(2048 + 1, 6)};
-    Articulation a = {0};
+    Articulation               a = {0};
     articulation_report(&a, record, 2, 0, hold_s);
     CHECK_NEAR(value_of(&a, turret, azimuth, 0), 6 - 2 * pi_rad, 1e-15);
     CHECK_NEAR(value_of(&a, 2048, 1, 0), 6, 0);
@@ -98,8 +98,8 @@ static void no_float_leaves_the_circle(void **state)
     (void)state;
     static const float value[] = {1e9f, -1e15f, 1e30f, 3.4028235e38f, -3.4028235e38f};
     for (size_t v = 0; v < sizeof value / sizeof *value; v++) {
-        Articulation a = {0};
-        double       got;
+        Articulation               a = {0};
+        double                     got;
         const DisVariableParameter record = articulated(4096 + 11, value[v]);
         articulation_report(&a, &record, 1, 10, 12);
         CHECK(articulation_value(&got, &a, 4096, 11, 12, 12) && fabs(got) <= pi_rad);
@@ -111,7 +111,7 @@ static void too_many_joints(void **state)
 {
     (void)state;
     static DisVariableParameter record[255];
-    Articulation a = {0};
+    Articulation                a = {0};
     for (int i = 0; i < 255; i++)
         record[i] = articulated((uint32_t)(1024 + 32 * ((i * 97) % 200) + 15), (float)i / 256);
     const int ignored = articulation_report(&a, record, 255, 0, hold_s);
@@ -124,14 +124,14 @@ static void too_many_joints(void **state)
 static void signs_on_the_tank(void **state)
 {
     (void)state;
-    Fixture f = fixture_open(NULL);
-    const Model *tank = catalog_model(f.catalog, catalog_find(f.catalog, tank_type, NULL, NULL));
+    Fixture                    f = fixture_open(NULL);
+    const Model               *tank = catalog_model(f.catalog, catalog_find(f.catalog, tank_type, NULL, NULL));
     const DisVariableParameter record[] = {articulated(turret + azimuth, (float)(pi_rad / 2)),
                                            articulated(gun + elevation, (float)(0.1 + 2 * pi_rad))};
-    Articulation a = {0};
-    double value[256];
-    NodePose pose[256];
-    int gun_node = -1;
+    Articulation               a = {0};
+    double                     value[256];
+    NodePose                   pose[256];
+    int                        gun_node = -1;
 
     CHECK(tank->node_count <= 256);
     for (int n = 0; n < tank->node_count; n++)
@@ -141,7 +141,7 @@ static void signs_on_the_tank(void **state)
     articulation_joint_values(value, tank, &a, &(JointDrive){0}, 0, hold_s);
     model_pose(pose, tank, value);
     const double forward[3] = {1, 0, 0};
-    double bore_body[3];
+    double       bore_body[3];
     m3_mul_v3(bore_body, pose[gun_node].r_body_from_node, forward);
     CHECK_NEAR(bore_body[0], 0, 1e-6);
     CHECK_NEAR(bore_body[1], cos(0.1), 1e-6);  /* to the right */
@@ -153,12 +153,12 @@ static void signs_on_the_tank(void **state)
 static void wheels_do_not_slip(void **state)
 {
     (void)state;
-    Fixture f = fixture_open(NULL);
-    const Model *truck = catalog_model(f.catalog, catalog_find(f.catalog, truck_type, NULL, NULL));
+    Fixture            f = fixture_open(NULL);
+    const Model       *truck = catalog_model(f.catalog, catalog_find(f.catalog, truck_type, NULL, NULL));
     const Articulation a = {0};
-    double value[256];
-    NodePose before[256], after[256];
-    int wheels = 0;
+    double             value[256];
+    NodePose           before[256], after[256];
+    int                wheels = 0;
 
     CHECK(truck->node_count <= 256);
     articulation_joint_values(value, truck, &a, &(JointDrive){0}, 0, hold_s);
@@ -168,7 +168,7 @@ static void wheels_do_not_slip(void **state)
     for (int n = 0; n < truck->node_count; n++) {
         if (!(truck->node[n].roll_radius_m > 0)) continue;
         const double lowest_body[3] = {0, 0, truck->node[n].roll_radius_m};
-        double in_node[3], moved[3];
+        double       in_node[3], moved[3];
         m3_tmul_v3(in_node, before[n].r_body_from_node, lowest_body);
         m3_mul_v3(moved, after[n].r_body_from_node, in_node);
         CHECK_NEAR(moved[0] - lowest_body[0], -0.001, 1e-6);
@@ -181,10 +181,10 @@ static void wheels_do_not_slip(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(order_does_not_matter), cmocka_unit_test(foreign_records_are_ignored_and_counted),
-        cmocka_unit_test(rates_are_bounded),     cmocka_unit_test(angles_wrap_and_lengths_do_not),
-        cmocka_unit_test(no_float_leaves_the_circle), cmocka_unit_test(too_many_joints), cmocka_unit_test(signs_on_the_tank),
-        cmocka_unit_test(wheels_do_not_slip),
+        cmocka_unit_test(order_does_not_matter),      cmocka_unit_test(foreign_records_are_ignored_and_counted),
+        cmocka_unit_test(rates_are_bounded),          cmocka_unit_test(angles_wrap_and_lengths_do_not),
+        cmocka_unit_test(no_float_leaves_the_circle), cmocka_unit_test(too_many_joints),
+        cmocka_unit_test(signs_on_the_tank),          cmocka_unit_test(wheels_do_not_slip),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

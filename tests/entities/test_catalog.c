@@ -32,14 +32,14 @@ static void deepest_named_row_wins(void **state)
 {
     (void)state;
     Catalog *c;
-    Origin origin;
-    int matched;
+    Origin   origin;
+    int      matched;
     CHECK(open_text(&c, "type,model,origin\n"
                         "1.1.222.*.*.*.*,helicopter,base\n"
-                        "1.1.*.1.*.*.*,tank,base\n"       /* deeper than the country alone */
-                        "1.1.222.1.*.*.*,truck,base\n"    /* as deep, one star fewer */
-                        "1.1.222.1.*.*.*,missile,base\n"  /* equal: the earlier wins */
-                        "1.1.*.*.*.*.9,missile,centre\n"  /* deepest of all */
+                        "1.1.*.1.*.*.*,tank,base\n"      /* deeper than the country alone */
+                        "1.1.222.1.*.*.*,truck,base\n"   /* as deep, one star fewer */
+                        "1.1.222.1.*.*.*,missile,base\n" /* equal: the earlier wins */
+                        "1.1.*.*.*.*.9,missile,centre\n" /* deepest of all */
                         "2,missile,centre\n") == STATUS_OK);
     CHECK(strcmp(found(c, (DisEntityType){1, 1, 222, 1, 0, 0, 0}), "truck") == 0);
     CHECK(strcmp(found(c, (DisEntityType){1, 1, 225, 1, 0, 0, 0}), "tank") == 0);
@@ -60,7 +60,7 @@ static void a_row_of_stars_matches_all(void **state)
 {
     (void)state;
     Catalog *c;
-    int matched;
+    int      matched;
     CHECK(open_text(&c, "type,model,origin\n*.*.*.*.*.*.*,truck,centre\n1,tank,base\n") == STATUS_OK);
     CHECK(strcmp(found(c, (DisEntityType){1, 0, 0, 0, 0, 0, 0}), "tank") == 0);
     const int other = catalog_find(c, (DisEntityType){0}, NULL, &matched);
@@ -81,7 +81,7 @@ static void malformed_rows_are_named(void **state)
         "**,tank,base",
     };
     for (size_t i = 0; i < sizeof bad_row / sizeof *bad_row; i++) {
-        char text[256];
+        char     text[256];
         Catalog *c = NULL;
         snprintf(text, sizeof text, "type,model,origin\n# comment\n1.1,tank,base\n%s\n", bad_row[i]);
         if (open_text(&c, text) != STATUS_BAD_VALUE) fail_msg("accepted: %s", bad_row[i]);
@@ -121,35 +121,49 @@ static void shipped_table(void **state)
     (void)state;
     static const struct {
         DisEntityType type;
-        const char *model;
-        Origin origin;
+        const char   *model;
+        Origin        origin;
     } want[] = {
-        {{1, 1, 222, 1, 1, 1, 0}, "tank", ORIGIN_BASE},        {{1, 1, 225, 2, 1, 0, 0}, "carrier", ORIGIN_BASE},
-        {{1, 1, 222, 7, 1, 0, 0}, "truck", ORIGIN_BASE},       {{1, 1, 222, 6, 1, 0, 0}, "jeep", ORIGIN_BASE},
-        {{1, 1, 13, 82, 0, 0, 0}, "bus", ORIGIN_BASE},         {{1, 2, 225, 20, 1, 0, 0}, "helicopter", ORIGIN_BASE},
+        {{1, 1, 222, 1, 1, 1, 0}, "tank", ORIGIN_BASE},
+        {{1, 1, 225, 2, 1, 0, 0}, "carrier", ORIGIN_BASE},
+        {{1, 1, 222, 7, 1, 0, 0}, "truck", ORIGIN_BASE},
+        {{1, 1, 222, 6, 1, 0, 0}, "jeep", ORIGIN_BASE},
+        {{1, 1, 13, 82, 0, 0, 0}, "bus", ORIGIN_BASE},
+        {{1, 2, 225, 20, 1, 0, 0}, "helicopter", ORIGIN_BASE},
         {{1, 2, 225, 23, 7, 0, 0}, "helicopter_tandem", ORIGIN_BASE},
         {{2, 2, 225, 1, 1, 3, 0}, "missile", ORIGIN_CENTRE},
-        {{2, 9, 222, 2, 5, 0, 0}, "shell", ORIGIN_CENTRE},     {{1, 2, 225, 1, 1, 0, 0}, "aircraft", ORIGIN_BASE},
-        {{3, 1, 225, 1, 0, 0, 0}, "person", ORIGIN_BASE},      {{0, 0, 0, 0, 0, 0, 0}, "unknown", ORIGIN_BASE},
-        {{1, 1, 222, 28, 7, 1, 0}, "launcher", ORIGIN_BASE},   {{1, 1, 222, 4, 1, 0, 0}, "howitzer", ORIGIN_BASE},
-        {{1, 1, 222, 5, 1, 0, 0}, "gun", ORIGIN_BASE},         {{1, 1, 222, 8, 1, 0, 0}, "carrier_cargo", ORIGIN_BASE},
+        {{2, 9, 222, 2, 5, 0, 0}, "shell", ORIGIN_CENTRE},
+        {{1, 2, 225, 1, 1, 0, 0}, "aircraft", ORIGIN_BASE},
+        {{3, 1, 225, 1, 0, 0, 0}, "person", ORIGIN_BASE},
+        {{0, 0, 0, 0, 0, 0, 0}, "unknown", ORIGIN_BASE},
+        {{1, 1, 222, 28, 7, 1, 0}, "launcher", ORIGIN_BASE},
+        {{1, 1, 222, 4, 1, 0, 0}, "howitzer", ORIGIN_BASE},
+        {{1, 1, 222, 5, 1, 0, 0}, "gun", ORIGIN_BASE},
+        {{1, 1, 222, 8, 1, 0, 0}, "carrier_cargo", ORIGIN_BASE},
         {{1, 2, 225, 4, 1, 0, 0}, "cargo_plane", ORIGIN_BASE},
         {{1, 2, 225, 26, 1, 0, 0}, "helicopter_light", ORIGIN_BASE},
-        {{1, 2, 225, 91, 1, 0, 0}, "helicopter_light", ORIGIN_BASE}, {{1, 3, 71, 50, 1, 0, 0}, "ship", ORIGIN_BASE},
-        {{1, 4, 222, 3, 1, 0, 0}, "submarine", ORIGIN_BASE},   {{1, 5, 225, 11, 0, 0, 0}, "satellite", ORIGIN_CENTRE},
-        {{5, 1, 225, 11, 0, 0, 0}, "building", ORIGIN_BASE},   {{8, 2, 225, 2, 0, 0, 0}, "flare", ORIGIN_CENTRE},
-        {{8, 2, 225, 1, 0, 0, 0}, "chaff", ORIGIN_CENTRE},     {{8, 1, 225, 5, 0, 0, 0}, "decoy", ORIGIN_BASE},
+        {{1, 2, 225, 91, 1, 0, 0}, "helicopter_light", ORIGIN_BASE},
+        {{1, 3, 71, 50, 1, 0, 0}, "ship", ORIGIN_BASE},
+        {{1, 4, 222, 3, 1, 0, 0}, "submarine", ORIGIN_BASE},
+        {{1, 5, 225, 11, 0, 0, 0}, "satellite", ORIGIN_CENTRE},
+        {{5, 1, 225, 11, 0, 0, 0}, "building", ORIGIN_BASE},
+        {{8, 2, 225, 2, 0, 0, 0}, "flare", ORIGIN_CENTRE},
+        {{8, 2, 225, 1, 0, 0, 0}, "chaff", ORIGIN_CENTRE},
+        {{8, 1, 225, 5, 0, 0, 0}, "decoy", ORIGIN_BASE},
         {{8, 3, 225, 5, 0, 0, 0}, "corner_reflector", ORIGIN_BASE},
-        {{8, 2, 225, 5, 0, 0, 0}, "none", ORIGIN_CENTRE},      {{4, 1, 225, 0, 0, 0, 0}, "none", ORIGIN_BASE},
-        {{6, 1, 225, 1, 0, 0, 0}, "crates", ORIGIN_BASE},      {{7, 1, 225, 1, 0, 0, 0}, "none", ORIGIN_BASE},
-        {{9, 1, 225, 1, 0, 0, 0}, "radar", ORIGIN_BASE},       {{8, 4, 225, 6, 0, 0, 0}, "buoy", ORIGIN_BASE},
+        {{8, 2, 225, 5, 0, 0, 0}, "none", ORIGIN_CENTRE},
+        {{4, 1, 225, 0, 0, 0, 0}, "none", ORIGIN_BASE},
+        {{6, 1, 225, 1, 0, 0, 0}, "crates", ORIGIN_BASE},
+        {{7, 1, 225, 1, 0, 0, 0}, "none", ORIGIN_BASE},
+        {{9, 1, 225, 1, 0, 0, 0}, "radar", ORIGIN_BASE},
+        {{8, 4, 225, 6, 0, 0, 0}, "buoy", ORIGIN_BASE},
     };
-    char path[512];
+    char     path[512];
     Catalog *c;
     CHECK(etc_path(path, sizeof path, "catalog.csv"));
     CHECK(catalog_open(&c, path, 0.02) == STATUS_OK);
     for (size_t i = 0; i < sizeof want / sizeof *want; i++) {
-        Origin origin;
+        Origin    origin;
         const int model = catalog_find(c, want[i].type, &origin, NULL);
         if (strcmp(catalog_model(c, model)->name, want[i].model) != 0 || origin != want[i].origin)
             fail_msg("row %zu: got %s, want %s", i, catalog_model(c, model)->name, want[i].model);
@@ -162,10 +176,10 @@ static void shipped_table(void **state)
 static void own_rows_go_before_the_tables(void **state)
 {
     (void)state;
-    Catalog *c;
-    Origin origin;
-    int matched;
-    char own[text_file_size];
+    Catalog       *c;
+    Origin         origin;
+    int            matched;
+    char           own[text_file_size];
     CatalogRowInfo row;
     text_file(own, "type,model,origin,length_m,note\n1.1.222,truck,centre,9,ours\n");
     CHECK(etc_own_set("catalog.csv", own) && !etc_own_set("heat.csv", own));
@@ -194,10 +208,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(own_rows_go_before_the_tables), cmocka_unit_test(deepest_named_row_wins),
-        cmocka_unit_test(a_row_of_stars_matches_all),
-        cmocka_unit_test(malformed_rows_are_named),
-        cmocka_unit_test(many_rows_in_the_worst_order),
-        cmocka_unit_test(shipped_table),
+        cmocka_unit_test(a_row_of_stars_matches_all),    cmocka_unit_test(malformed_rows_are_named),
+        cmocka_unit_test(many_rows_in_the_worst_order),  cmocka_unit_test(shipped_table),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

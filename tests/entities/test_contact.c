@@ -28,7 +28,8 @@ static LocalFrame frame_at(double lat_deg, double lon_deg)
 }
 
 /* At an ENU place, level there or not, heading clockwise from north. */
-static SnapshotEntity entity_at(const LocalFrame *frame, DisEntityType type, double x_m, double y_m, double z_m, double heading_rad)
+static SnapshotEntity entity_at(const LocalFrame *frame, DisEntityType type, double x_m, double y_m, double z_m,
+                                double heading_rad)
 {
     SnapshotEntity e = {.type = type};
     const double   p_enu[3] = {x_m, y_m, z_m}, s = sin(heading_rad), c = cos(heading_rad);
@@ -45,13 +46,13 @@ static const Model box = {.box_low = {-3, -1.5, -2}, .box_high = {5, 1.5, 0}}; /
 static void it_lies_on_a_slope_as_paper_says(void **state)
 {
     (void)state;
-    const LocalFrame frame = frame_at(44, -123);
-    Elevation        ground = plane(200, 2, 30, 0.125, -0.25);
+    const LocalFrame    frame = frame_at(44, -123);
+    Elevation           ground = plane(200, 2, 30, 0.125, -0.25);
     const ContactGround contact = {.frame = &frame, .elevation = &ground};
     for (int n = 0; n < 24; n++) {
-        const double heading_rad = 0.26 * n, x_m = 3 * n - 40, y_m = 25 - 2 * n;
+        const double   heading_rad = 0.26 * n, x_m = 3 * n - 40, y_m = 25 - 2 * n;
         SnapshotEntity e = entity_at(&frame, tank_type, x_m, y_m, 37, heading_rad);
-        double p_enu[3], r_enu_from_body[9], v_enu[3];
+        double         p_enu[3], r_enu_from_body[9], v_enu[3];
         contact_set(&e, &contact, &box);
         enu_from_ecef(p_enu, &frame, e.p_ecef);
         m3_tmul(r_enu_from_body, frame.r_ecef_from_enu, e.r_ecef_from_body);
@@ -80,13 +81,13 @@ static void it_lies_on_a_slope_as_paper_says(void **state)
 static void it_moves_along_the_local_vertical(void **state)
 {
     (void)state;
-    const LocalFrame frame = frame_at(44, -123);
-    Elevation        ground = plane(8200, 16, -20, 0, 0);
-    const ContactGround contact = {.frame = &frame, .elevation = &ground};
-    SnapshotEntity      e = entity_at(&frame, truck_type, 8000, 0, 380, 0);
+    const LocalFrame     frame = frame_at(44, -123);
+    Elevation            ground = plane(8200, 16, -20, 0, 0);
+    const ContactGround  contact = {.frame = &frame, .elevation = &ground};
+    SnapshotEntity       e = entity_at(&frame, truck_type, 8000, 0, 380, 0);
     const SnapshotEntity before = e;
-    double   moved[3], r_ecef_from_enu[9], p_ecef[3], p_enu[3];
-    Geodetic place;
+    double               moved[3], r_ecef_from_enu[9], p_ecef[3], p_enu[3];
+    Geodetic             place;
     contact_set(&e, &contact, &box);
     v3_sub(moved, before.p_ecef, e.p_ecef);
     enu_from_ecef(p_enu, &frame, e.p_ecef);
@@ -103,8 +104,8 @@ static void it_moves_along_the_local_vertical(void **state)
 static void who_does_not_stand_stays(void **state)
 {
     (void)state;
-    const LocalFrame frame = frame_at(44, -123);
-    Elevation        ground = plane(100, 2, 30, 0.125, 0);
+    const LocalFrame    frame = frame_at(44, -123);
+    Elevation           ground = plane(100, 2, 30, 0.125, 0);
     const ContactGround contact = {.frame = &frame, .elevation = &ground}, none = {.frame = &frame};
     SnapshotEntity      e = entity_at(&frame, helicopter_type, 0, 0, 90, 1), before = e;
     contact_set(&e, &contact, &box);
@@ -135,29 +136,45 @@ static void who_does_not_stand_stays(void **state)
 static void misfits_alone_are_set_onto_an_invented_ground(void **state)
 {
     (void)state;
-    static const DisEntityType man = {.kind = 3}, house = {.kind = 5, .domain = 1}, crate = {.kind = 6}, ship = {1, 3, 225, 6, 1, 0, 0},
-                               bunker = {.kind = 5, .domain = 4}, submarine = {1, 4, 225, 1, 0, 0, 0};
+    static const DisEntityType man = {.kind = 3}, house = {.kind = 5, .domain = 1}, crate = {.kind = 6},
+                               ship = {1, 3, 225, 6, 1, 0, 0}, bunker = {.kind = 5, .domain = 4},
+                               submarine = {1, 4, 225, 1, 0, 0, 0};
     const LocalFrame frame = frame_at(44, -123);
     LandscapeConfig  config = landscape_default_config();
     config.half_width_m = 1500, config.horizon_m = 1500, config.relief_m = 0;
-    const GroundFix        fix = {.p_enu = {-300, 0, 50}};
-    const CoastPlace       place[2] = {{-300, 0, false}, {300, 0, true}};
+    const GroundFix         fix = {.p_enu = {-300, 0, 50}};
+    const CoastPlace        place[2] = {{-300, 0, false}, {300, 0, true}};
     const LandscapeEvidence said = {.fix = &fix, .fix_count = 1, .place = place, .place_count = 2, .sea_h_m = 50};
-    Landscape              land;
+    Landscape               land;
     assert_int_equal(landscape_create_from(&land, &config, &frame, &said), STATUS_OK);
     const ContactGround contact = {.frame = &frame, .elevation = &land.elevation, .landscape = &land};
     const ContactGround all = {.frame = &frame, .elevation = &land.elevation};
-    static const struct { DisEntityType type; double x_m, above_m, v_up_mps, v_mps, left_m; } row[] = {
-        {tank_type, -300, 0.09, 0, 10, 0.09},   {tank_type, -300, -0.09, 0, 10, -0.09}, /* within what a fit leaves */
-        {tank_type, -300, 20, 0, 10, 0},        {tank_type, -300, -30, 0, 10, 0},
-        {man, -300, 0.6, 0, 1, 0},              {man, -300, -0.6, 0, 1, 0},
-        {man, -300, 300, -5, 1, 300},           {man, -300, 300, 0, 50, 300}, /* under a parachute, in an aircraft */
-        {tank_type, -300, 900, 0, 80, 900},     {tank_type, -300, -3, -4, 12, 0}, /* carried; down a hill */
-        {house, -300, -4, 0, 0, 0},             {crate, -300, 2, 0, 0, 0},      {bunker, -300, -8, 0, 0, -8},
-        {ship, 300, 1.4, 0, 8, 1.4},            {ship, 300, -1.4, 0, 8, -1.4}, /* heave */
-        {ship, 300, 12, 0, 8, 0},               {ship, 300, -30, 0, 8, 0},      {ship, -300, 40, 0, 8, 0},
-        {tank_type, 300, 8, 0, 0, 8},           {tank_type, 300, -2, 0, 0, 0}, /* on a deck; under water */
-        {submarine, 300, -40, 0, 4, -40},       {helicopter_type, -300, 40, 0, 0, 40},
+    static const struct {
+        DisEntityType type;
+        double        x_m, above_m, v_up_mps, v_mps, left_m;
+    } row[] = {
+        {tank_type, -300, 0.09, 0, 10, 0.09},
+        {tank_type, -300, -0.09, 0, 10, -0.09}, /* within what a fit leaves */
+        {tank_type, -300, 20, 0, 10, 0},
+        {tank_type, -300, -30, 0, 10, 0},
+        {man, -300, 0.6, 0, 1, 0},
+        {man, -300, -0.6, 0, 1, 0},
+        {man, -300, 300, -5, 1, 300},
+        {man, -300, 300, 0, 50, 300}, /* under a parachute, in an aircraft */
+        {tank_type, -300, 900, 0, 80, 900},
+        {tank_type, -300, -3, -4, 12, 0}, /* carried; down a hill */
+        {house, -300, -4, 0, 0, 0},
+        {crate, -300, 2, 0, 0, 0},
+        {bunker, -300, -8, 0, 0, -8},
+        {ship, 300, 1.4, 0, 8, 1.4},
+        {ship, 300, -1.4, 0, 8, -1.4}, /* heave */
+        {ship, 300, 12, 0, 8, 0},
+        {ship, 300, -30, 0, 8, 0},
+        {ship, -300, 40, 0, 8, 0},
+        {tank_type, 300, 8, 0, 0, 8},
+        {tank_type, 300, -2, 0, 0, 0}, /* on a deck; under water */
+        {submarine, 300, -40, 0, 4, -40},
+        {helicopter_type, -300, 40, 0, 0, 40},
     };
     for (size_t n = 0; n < sizeof row / sizeof row[0]; n++) {
         const double   z_m = elevation_height(&land.elevation, row[n].x_m, 0, NULL) + row[n].above_m;
@@ -167,10 +184,12 @@ static void misfits_alone_are_set_onto_an_invented_ground(void **state)
         const SnapshotEntity before = e;
         contact_set(&e, &contact, &box);
         const double left_m = contact_above_m(&contact, e.p_ecef);
-        if (!(fabs(left_m - row[n].left_m) <= 2e-3)) fail_msg("row %d: %.4f above, want %g", (int)n, left_m, row[n].left_m);
+        if (!(fabs(left_m - row[n].left_m) <= 2e-3))
+            fail_msg("row %d: %.4f above, want %g", (int)n, left_m, row[n].left_m);
         if (row[n].left_m == row[n].above_m) assert_memory_equal(&e, &before, sizeof e); /* to the bit */
         if (row[n].type.kind != 1 || row[n].type.domain != 1)
-            if (row[n].type.kind != 3) assert_memory_equal(e.r_ecef_from_body, before.r_ecef_from_body, sizeof e.r_ecef_from_body);
+            if (row[n].type.kind != 3)
+                assert_memory_equal(e.r_ecef_from_body, before.r_ecef_from_body, sizeof e.r_ecef_from_body);
         e = before; /* all: no standing entity is excepted; ships are not meant */
         contact_set(&e, &all, &box);
         if (contact_applies(row[n].type)) CHECK_NEAR(contact_above_m(&all, e.p_ecef), 0, 2e-3);
@@ -179,7 +198,8 @@ static void misfits_alone_are_set_onto_an_invented_ground(void **state)
     /* no jump on the way from as sent to set onto */
     double last_m = 0.09;
     for (double above_m = 0.09; above_m < 0.6; above_m += 0.001) {
-        SnapshotEntity e = entity_at(&frame, tank_type, -300, 0, elevation_height(&land.elevation, -300, 0, NULL) + above_m, 1);
+        SnapshotEntity e =
+            entity_at(&frame, tank_type, -300, 0, elevation_height(&land.elevation, -300, 0, NULL) + above_m, 1);
         contact_set(&e, &contact, &box);
         const double left_m = contact_above_m(&contact, e.p_ecef);
         CHECK_NEAR(left_m, last_m, 0.003);
@@ -196,8 +216,9 @@ static void aircraft_are_lifted_out_of_the_ground(void **state)
     const LocalFrame    frame = frame_at(40, 0);
     Elevation           ground = plane(200, 2, 7, 0.125, 0);
     const ContactGround all = {.frame = &frame, .elevation = &ground};
-    static const struct { double above_m, speed_mps, want_m; } cases[] = {
-        {50, 60, 50}, {0.5, 60, 0.5}, {-3, 60, 3}, {-19, 60, 19}, {-300, 60, 20}, {-4, 0, 0}, {2, 0, 2}};
+    static const struct {
+        double above_m, speed_mps, want_m;
+    } cases[] = {{50, 60, 50}, {0.5, 60, 0.5}, {-3, 60, 3}, {-19, 60, 19}, {-300, 60, 20}, {-4, 0, 0}, {2, 0, 2}};
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         SnapshotEntity e = entity_at(&frame, helicopter_type, 40, 10, 7 + 0.125 * 40 + cases[k].above_m, 1);
         for (int i = 0; i < 3; i++) e.v_ecef_mps[i] *= cases[k].speed_mps / 10;
@@ -224,7 +245,7 @@ static void every_pose_handed_out_stands(void **state)
     hear(&f, &tank, 0);
     hear(&f, &flyer, 0);
     for (double t_s = 0; t_s < 3; t_s += 0.7) {
-        SnapshotEntity pose;
+        SnapshotEntity        pose;
         const SnapshotEntity *e = seen_at(&f, 1, t_s);
         CHECK(e && entity_table_pose(&pose, f.table, entity_table_find(f.table, entity_id(1)), t_s));
         CHECK_NEAR(contact_above_m(&config.ground, e->p_ecef), 0, 1e-6);
@@ -251,8 +272,11 @@ static void what_he_gives_off_goes_with_him(void **state)
     tank.velocity_mps[2] = 8;
     tank.appearance = UINT32_C(1) << 15 | UINT32_C(2) << 7; /* burns, and raises dust */
     hear(&f, &tank, 0);
-    DisDetonation burst = {.munition = entity_id(9), .event = {1, 3001, 9}, .p_ecef = {earth_radius_m, 20, 30},
-                           .result = 3, .descriptor = {{2, 2, 225, 1, 1, 3, 0}, 1000, 1000, 1, 0}};
+    DisDetonation burst = {.munition = entity_id(9),
+                           .event = {1, 3001, 9},
+                           .p_ecef = {earth_radius_m, 20, 30},
+                           .result = 3,
+                           .descriptor = {{2, 2, 225, 1, 1, 3, 0}, 1000, 1000, 1, 0}};
     entity_table_detonation(f.table, &burst, 2.5);
     burst.event.number = 10;
     burst.result = 5;

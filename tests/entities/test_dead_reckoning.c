@@ -23,19 +23,19 @@ static void reference_mul(long double out[9], const long double a[9], const long
  * 0.25^21 / 21! = 4e-33 a step. `path_turns` without `attitude_turns` is algorithms 6 and 9. */
 static Reference integrate(const Kinematics *k, double dt_s)
 {
-    const int algorithm = k->algorithm;
-    const bool body = algorithm >= 6, accelerates = algorithm == 4 || algorithm == 5 || algorithm >= 8;
-    const bool attitude_turns = algorithm == 3 || algorithm == 4 || algorithm == 7 || algorithm == 8;
-    const int steps = 1 + (int)(4 * v3_length(k->w_body_rps) * fabs(dt_s));
+    const int         algorithm = k->algorithm;
+    const bool        body = algorithm >= 6, accelerates = algorithm == 4 || algorithm == 5 || algorithm >= 8;
+    const bool        attitude_turns = algorithm == 3 || algorithm == 4 || algorithm == 7 || algorithm == 8;
+    const int         steps = 1 + (int)(4 * v3_length(k->w_body_rps) * fabs(dt_s));
     const long double h = (long double)dt_s / steps;
     const long double wx = k->w_body_rps[0], wy = k->w_body_rps[1], wz = k->w_body_rps[2];
     const long double cross[9] = {0, -wz, wy, wz, 0, -wx, -wy, wx, 0};
-    Reference s;
+    Reference         s;
 
     for (int i = 0; i < 3; i++) s.p[i] = k->p_ecef[i];
     for (int i = 0; i < 9; i++) s.r[i] = k->r_ecef_from_body[i];
     for (int step = 0; step < steps; step++) {
-        long double term[9], next[9], sum[9], va[3], aa[3]; /* term: R W^n h^n / n! */
+        long double       term[9], next[9], sum[9], va[3], aa[3]; /* term: R W^n h^n / n! */
         const long double t0 = step * h;
         for (int i = 0; i < 3; i++) {
             va[i] = algorithm == 1 ? 0 : k->v_mps[i] + (accelerates ? t0 * k->a_mps2[i] : 0);
@@ -76,9 +76,9 @@ static double uniform(uint64_t *index, double low, double high)
 
 static Kinematics random_kinematics(uint64_t *index, int algorithm)
 {
-    Kinematics k = {.algorithm = algorithm};
+    Kinematics   k = {.algorithm = algorithm};
     const double rate_rps = pow(10, uniform(index, -10, log10(5)));
-    double axis[3];
+    double       axis[3];
     for (int i = 0; i < 3; i++) {
         k.p_ecef[i] = uniform(index, -100, 100);
         k.v_mps[i] = uniform(index, -300, 300);
@@ -103,7 +103,7 @@ static double rotation_error(const double r[9])
 static void check_against_reference(const Kinematics *k, double dt_s)
 {
     const Reference want = integrate(k, dt_s);
-    Motion got;
+    Motion          got;
     dead_reckon(&got, k, dt_s);
 
     /* 20 roundings of the longest distance in the sum; the turn adds the rounding of x itself */
@@ -126,7 +126,7 @@ static void all_nine_agree_with_integration(void **state)
     uint64_t index = 0;
     for (int n = 0; n < 9000; n++) {
         Kinematics k = random_kinematics(&index, 1 + n % 9);
-        double dt_s = uniform(&index, -10, 10);
+        double     dt_s = uniform(&index, -10, 10);
         if (n % 50 == 7) memset(k.w_body_rps, 0, sizeof k.w_body_rps);
         if (n % 50 == 8) dt_s = 0;
         check_against_reference(&k, dt_s);
@@ -139,7 +139,7 @@ static void straight_up_and_down_are_ordinary(void **state)
     (void)state;
     uint64_t index = 0;
     for (int n = 0; n < 200; n++) {
-        Kinematics k = random_kinematics(&index, 8);
+        Kinematics   k = random_kinematics(&index, 8);
         const double psi_rad = uniform(&index, -3, 3), theta_rad = n % 2 ? pi_rad / 2 : -pi_rad / 2;
         r_ecef_from_body_euler(k.r_ecef_from_body, psi_rad, theta_rad, uniform(&index, -3, 3));
         check_against_reference(&k, uniform(&index, -5, 5));
@@ -153,7 +153,7 @@ static void a_steady_circle_is_a_circle(void **state)
 {
     (void)state;
     Kinematics k = {.algorithm = 8, .v_mps = {20, 0, 0}, .w_body_rps = {0, 0, 0.2}};
-    Motion m;
+    Motion     m;
     m3_identity(k.r_ecef_from_body);
     for (double t_s = -40; t_s <= 40; t_s += 2.5) {
         dead_reckon(&m, &k, t_s);
@@ -175,7 +175,7 @@ static void small_rates_lose_nothing(void **state)
     for (int algorithm = 8; algorithm <= 9; algorithm++) {
         for (double rate_rps = 1e-3; rate_rps > 1e-200; rate_rps /= 10) {
             Kinematics k = {.algorithm = algorithm, .a_mps2 = {100, 0, 0}, .w_body_rps = {0, 0, rate_rps}};
-            Motion m;
+            Motion     m;
             m3_identity(k.r_ecef_from_body);
             dead_reckon(&m, &k, 5);
             const double x = 5 * rate_rps; /* leading terms: A t^2 (1/2 - x^2/8) and A t^2 x/3 */
@@ -190,7 +190,7 @@ static void attitude_at_77_degrees(void **state)
 {
     (void)state;
     Kinematics k = {.algorithm = 4, .w_body_rps = {0.3, -0.4, 0.5}};
-    Motion m;
+    Motion     m;
     r_ecef_from_body_euler(k.r_ecef_from_body, 0.4, 77 * rad_per_deg, -1.1);
     dead_reckon(&m, &k, 1);
 
@@ -211,7 +211,7 @@ static void no_step_where_the_series_ends(void **state)
     uint64_t index = 0;
     for (int algorithm = 6; algorithm <= 9; algorithm++) {
         Kinematics k = random_kinematics(&index, algorithm);
-        Motion below, above;
+        Motion     below, above;
         memset(k.p_ecef, 0, sizeof k.p_ecef);
         double unit[3] = {0.36, 0.48, 0.8};
         v3_scale(k.w_body_rps, 0.1, unit);
@@ -233,11 +233,11 @@ enum { many = 1000 };
 static void arrays_give_the_same_bits(void **state)
 {
     (void)state;
-    static double in[22][many], out[15][many];
+    static double     in[22][many], out[15][many];
     static Kinematics one[many];
-    KinematicsArrays k = {.count = many, .dt_s = in[21]};
-    MotionArrays m;
-    uint64_t index = 0;
+    KinematicsArrays  k = {.count = many, .dt_s = in[21]};
+    MotionArrays      m;
+    uint64_t          index = 0;
 
     for (int i = 0; i < 3; i++) {
         k.p_ecef[i] = in[i], k.v_mps[i] = in[3 + i], k.a_mps2[i] = in[6 + i], k.w_body_rps[i] = in[9 + i];
@@ -284,7 +284,7 @@ static void euler_is_the_product_of_three_turns(void **state)
         const double z[9] = {cos(psi), sin(psi), 0, -sin(psi), cos(psi), 0, 0, 0, 1};
         const double y[9] = {cos(theta), 0, -sin(theta), 0, 1, 0, sin(theta), 0, cos(theta)};
         const double x[9] = {1, 0, 0, 0, cos(phi), sin(phi), 0, -sin(phi), cos(phi)};
-        double xy[9], body_from_ecef[9], r[9], again[9], p, t, f;
+        double       xy[9], body_from_ecef[9], r[9], again[9], p, t, f;
         m3_mul(xy, x, y);
         m3_mul(body_from_ecef, xy, z);
         r_ecef_from_body_euler(r, psi, theta, phi);
@@ -320,16 +320,16 @@ static void real_senders_keep_their_thresholds(void **state)
 {
     (void)state;
     static const uint16_t entity[7] = {66, 68, 69, 70, 72, 73, 74};
-    Follow follow[7] = {{0}};
-    DisLog log;
-    DisCounters counters = {0};
-    char path[512];
+    Follow                follow[7] = {{0}};
+    DisLog                log;
+    DisCounters           counters = {0};
+    char                  path[512];
 
     if (!reference_path(path, "dis/vrf-dis5-tow-vs-armor.pcap")) skip();
     CHECK(dis_log_open(&log, path, dis_port) == STATUS_OK);
     for (int d = 0; d < log.count; d++) {
         const uint8_t *at = log.datagram[d].bytes, *octets;
-        DisHeader header;
+        DisHeader      header;
         while (dis_next_pdu(&header, &octets, &at, log.datagram[d].bytes + log.datagram[d].octets, &counters)) {
             static DisPdu decoded;
             if (header.type != dis_pdu_entity_state) continue;
@@ -352,8 +352,8 @@ static void real_senders_keep_their_thresholds(void **state)
                 CHECK(down < -0.7 * v3_length(now.p_ecef));
                 if (f->heard) {
                     const double dt_s = dis_timestamp_seconds(header.timestamp) - dis_timestamp_seconds(f->timestamp);
-                    double miss[3];
-                    Motion m;
+                    double       miss[3];
+                    Motion       m;
                     dead_reckon(&m, &f->last, dt_s);
                     v3_sub(miss, m.p_ecef, now.p_ecef);
                     f->worst_m = fmax(f->worst_m, v3_length(miss));

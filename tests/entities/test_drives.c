@@ -55,12 +55,17 @@ static void speed_is_power(void **state)
 static void slopes_and_turns_are_power(void **state)
 {
     (void)state;
-    static const struct { double speed_mps, climb_mps, turn_rps, want; } c[] = {
-        {5, 0, 0, 0.8}, {5, 0.3, 0, 0.9}, {5, -0.3, 0, 0.7}, {5, -9, 0, 0.6}, {5, 9, 0, 1}, {5, 0, 0.25, 0.9}, {5, 0, -0.25, 0.9},
-        {5, NAN, 0, 0.8}, {5, 0, INFINITY, 0.8}, {5, -INFINITY, NAN, 0.8}};
+    static const struct {
+        double speed_mps, climb_mps, turn_rps, want;
+    } c[] = {{5, 0, 0, 0.8},    {5, 0.3, 0, 0.9},   {5, -0.3, 0, 0.7}, {5, -9, 0, 0.6},       {5, 9, 0, 1},
+             {5, 0, 0.25, 0.9}, {5, 0, -0.25, 0.9}, {5, NAN, 0, 0.8},  {5, 0, INFINITY, 0.8}, {5, -INFINITY, NAN, 0.8}};
     for (size_t i = 0; i < sizeof c / sizeof *c; i++) {
         DriveState s;
-        drives_begin(&s, &(DriveEvidence){.type = tank_type, .speed_mps = c[i].speed_mps, .climb_mps = c[i].climb_mps, .turn_rps = c[i].turn_rps}, 0);
+        drives_begin(
+            &s,
+            &(DriveEvidence){
+                .type = tank_type, .speed_mps = c[i].speed_mps, .climb_mps = c[i].climb_mps, .turn_rps = c[i].turn_rps},
+            0);
         CHECK_NEAR(at(&s, 1).engine, c[i].want, 1e-6);
     }
 }
@@ -70,7 +75,7 @@ static void flight_is_evidence(void **state)
 {
     (void)state;
     const DriveEvidence hovers = {.type = helicopter_type}, wreck = {.type = helicopter_type, .appearance = 3 << 3};
-    DriveState s;
+    DriveState          s;
     drives_begin(&s, &hovers, 0);
     CHECK(at(&s, 0).engine == 1 && at(&s, 0).flying == 1 && drives_run_until(&s) == INFINITY);
     drives_begin(&s, &wreck, 0);
@@ -101,10 +106,13 @@ static void wrecks_burn_out(void **state)
 static void smoke_is_evidence(void **state)
 {
     (void)state;
-    static const struct { uint32_t smoke, damage; float engine, burning; } c[] = {
-        {0, 0, 0, 0}, {1, 0, 0, 0}, {2, 0, 0.6f, 0}, {3, 0, 0.6f, 0}, {1, 1, 0, 0.1f}, {3, 2, 0.6f, 0.1f}, {1, 3, 0, 0.1f}, {2, 3, 0, 0}};
+    static const struct {
+        uint32_t smoke, damage;
+        float    engine, burning;
+    } c[] = {{0, 0, 0, 0},    {1, 0, 0, 0},       {2, 0, 0.6f, 0}, {3, 0, 0.6f, 0},
+             {1, 1, 0, 0.1f}, {3, 2, 0.6f, 0.1f}, {1, 3, 0, 0.1f}, {2, 3, 0, 0}};
     for (size_t i = 0; i < sizeof c / sizeof *c; i++) {
-        DriveState s;
+        DriveState    s;
         DriveEvidence e = {.type = tank_type, .appearance = c[i].smoke << 5 | c[i].damage << 3};
         drives_begin(&s, &e, 0);
         CHECK(at(&s, 1e4).engine == c[i].engine && at(&s, 1e4).burning == c[i].burning);
@@ -162,9 +170,14 @@ static void what_lives(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(engine_is_inferred), cmocka_unit_test(speed_is_power),
-        cmocka_unit_test(slopes_and_turns_are_power), cmocka_unit_test(flight_is_evidence),
-        cmocka_unit_test(wrecks_burn_out),    cmocka_unit_test(smoke_is_evidence),  cmocka_unit_test(shots_add_up),   cmocka_unit_test(short_lives),
+        cmocka_unit_test(engine_is_inferred),
+        cmocka_unit_test(speed_is_power),
+        cmocka_unit_test(slopes_and_turns_are_power),
+        cmocka_unit_test(flight_is_evidence),
+        cmocka_unit_test(wrecks_burn_out),
+        cmocka_unit_test(smoke_is_evidence),
+        cmocka_unit_test(shots_add_up),
+        cmocka_unit_test(short_lives),
         cmocka_unit_test(what_lives),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -8,7 +8,7 @@ static const uint32_t destroyed_bits = UINT32_C(3) << 3;
 static EffectHistory *open_history(void)
 {
     EffectHistory *history = NULL;
-    char path[512];
+    char           path[512];
     CHECK(etc_path(path, sizeof path, "effects.csv"));
     CHECK(effect_history_create(&history, path) == STATUS_OK);
     return history;
@@ -17,7 +17,7 @@ static EffectHistory *open_history(void)
 /* The frame of the equator at Greenwich: east is ECEF y, north z, up x. */
 static LocalFrame frame_here(void)
 {
-    LocalFrame frame;
+    LocalFrame     frame;
     const Geodetic origin = {0, 0, 0};
     CHECK(local_frame_at(&frame, &origin) == STATUS_OK);
     return frame;
@@ -25,20 +25,25 @@ static LocalFrame frame_here(void)
 
 static DisDetonation burst_here(int number, uint8_t result)
 {
-    return (DisDetonation){.munition = entity_id(number), .event = {1, 3001, (uint16_t)number},
-                           .p_ecef = {earth_radius_m + 2, 0, 0}, .velocity_mps = {0, 300, 0}, .result = result,
+    return (DisDetonation){.munition = entity_id(number),
+                           .event = {1, 3001, (uint16_t)number},
+                           .p_ecef = {earth_radius_m + 2, 0, 0},
+                           .velocity_mps = {0, 300, 0},
+                           .result = result,
                            .descriptor = {{2, 2, 225, 1, 1, 3, 0}, 1000, 1000, 1, 0}};
 }
 
 static DisFire shot_here(int number)
 {
-    return (DisFire){.firing = entity_id(number), .event = {1, 3001, (uint16_t)number},
-                     .p_ecef = {earth_radius_m + 2, 0, 0}, .velocity_mps = {0, 0, 1500},
+    return (DisFire){.firing = entity_id(number),
+                     .event = {1, 3001, (uint16_t)number},
+                     .p_ecef = {earth_radius_m + 2, 0, 0},
+                     .velocity_mps = {0, 0, 1500},
                      .descriptor = {{2, 2, 225, 2, 1, 1, 0}, 1000, 1000, 1, 0}};
 }
 
 static EffectPuff puffs[effect_puff_capacity];
-static int puffs_at(const EffectHistory *h, double t_s)
+static int        puffs_at(const EffectHistory *h, double t_s)
 {
     return (int)effect_history_puffs(puffs, effect_puff_capacity, h, t_s);
 }
@@ -54,23 +59,29 @@ static int of_kind(int count, EffectKind kind)
 
 static EffectPuff puff_of(EffectKind kind, double age_s, double scale)
 {
-    return (EffectPuff){.kind = kind, .age_s = age_s, .p_ecef = {earth_radius_m, 0, 0}, .up_ecef = {1, 0, 0},
-                        .axis_ecef = {1, 0, 0}, .throw_s = 1, .scale = scale, .mass_kg = 0.5};
+    return (EffectPuff){.kind = kind,
+                        .age_s = age_s,
+                        .p_ecef = {earth_radius_m, 0, 0},
+                        .up_ecef = {1, 0, 0},
+                        .axis_ecef = {1, 0, 0},
+                        .throw_s = 1,
+                        .scale = scale,
+                        .mass_kg = 0.5};
 }
 
 /* From the south-west at 5 m/s: to the north-east, at full speed from the first moment, at any age. */
 static void drift_is_wind_times_age(void **state)
 {
     (void)state;
-    EffectHistory *h = open_history();
+    EffectHistory   *h = open_history();
     const LocalFrame frame = frame_here();
-    Weather weather = weather_default(), calm = weather;
+    Weather          weather = weather_default(), calm = weather;
     weather.wind_mps = 5;
     weather.wind_from_rad = 225 * rad_per_deg;
     calm.wind_mps = 0;
     for (double age_s = 0; age_s < 30; age_s += 3.7) {
         const EffectPuff puff = puff_of(EFFECT_SMOKE, age_s, 1);
-        EffectVolume blown, still;
+        EffectVolume     blown, still;
         CHECK(effect_volume(&blown, effect_history_table(h), &puff, &weather, &frame));
         CHECK(effect_volume(&still, effect_history_table(h), &puff, &calm, &frame));
         /* 1e-8 m: a metre in ECEF has 1 nm */
@@ -87,10 +98,10 @@ static void drift_is_wind_times_age(void **state)
 static void extinction_holds_its_mass(void **state)
 {
     (void)state;
-    EffectHistory *h = open_history();
+    EffectHistory   *h = open_history();
     const LocalFrame frame = frame_here();
-    const Weather weather = weather_default();
-    EffectPuff puff = puff_of(EFFECT_BURST_DUST, 0, 1.5);
+    const Weather    weather = weather_default();
+    EffectPuff       puff = puff_of(EFFECT_BURST_DUST, 0, 1.5);
     puff.along_m = 9;
     EffectVolume v;
     CHECK(effect_volume(&v, effect_history_table(h), &puff, &weather, &frame));
@@ -112,13 +123,13 @@ static void extinction_holds_its_mass(void **state)
 static void flash_has_its_time_course(void **state)
 {
     (void)state;
-    EffectHistory *h = open_history();
-    const LocalFrame frame = frame_here();
-    const Weather weather = weather_default();
+    EffectHistory     *h = open_history();
+    const LocalFrame   frame = frame_here();
+    const Weather      weather = weather_default();
     const EffectModel *law = &effect_history_table(h)->law[EFFECT_MUZZLE_FLASH];
     for (double scale = 0.5; scale <= 2; scale *= 2) {
         EffectVolume v;
-        double before_k = INFINITY;
+        double       before_k = INFINITY;
         for (double age_s = 0; age_s < law->life_s * scale; age_s += 0.01 * scale) {
             const EffectPuff puff = puff_of(EFFECT_MUZZLE_FLASH, age_s, scale);
             CHECK(effect_volume(&v, effect_history_table(h), &puff, &weather, &frame));
@@ -138,13 +149,15 @@ static void flash_has_its_time_course(void **state)
 static void results_burst_in_their_way(void **state)
 {
     (void)state;
-    static const struct { uint8_t result; bool fire, smoke, dust; } want[] = {
-        {1, true, true, true}, {2, true, true, false}, {3, true, true, true},  {5, true, true, false},
-        {6, false, false, false}, {12, true, true, true}, {19, true, true, true},
-        {30, true, true, false}, {31, false, false, false}, {33, false, false, false}};
+    static const struct {
+        uint8_t result;
+        bool    fire, smoke, dust;
+    } want[] = {{1, true, true, true},     {2, true, true, false},   {3, true, true, true},  {5, true, true, false},
+                {6, false, false, false},  {12, true, true, true},   {19, true, true, true}, {30, true, true, false},
+                {31, false, false, false}, {33, false, false, false}};
     double dust_kg[16] = {0};
     for (size_t i = 0; i < sizeof want / sizeof *want; i++) {
-        EffectHistory *h = open_history();
+        EffectHistory      *h = open_history();
         const DisDetonation pdu = burst_here(7, want[i].result);
         effect_history_detonation(h, &pdu, 100);
         CHECK(puffs_at(h, 99.999) == 0); /* not before it */
@@ -162,7 +175,7 @@ static void results_burst_in_their_way(void **state)
     }
     CHECK(dust_kg[2] > 3 * dust_kg[0]); /* the ground is dustier than a vehicle */
     EffectHistory *h = open_history();
-    DisDetonation rod = burst_here(8, 1);
+    DisDetonation  rod = burst_here(8, 1);
     rod.descriptor.warhead = 5000;
     effect_history_detonation(h, &rod, 0);
     const int n = puffs_at(h, 0.05);
@@ -174,7 +187,7 @@ static void shots_flash_by_kind_and_size(void **state)
 {
     (void)state;
     EffectHistory *h = open_history();
-    DisFire gun = shot_here(1), rifle = shot_here(2), missile = shot_here(3);
+    DisFire        gun = shot_here(1), rifle = shot_here(2), missile = shot_here(3);
     rifle.descriptor.type.domain = 8;
     missile.descriptor.type.category = 1;
     CHECK(effect_charge_kg(&gun.descriptor, true) > 100 * effect_charge_kg(&rifle.descriptor, true));
@@ -202,8 +215,8 @@ static void shots_flash_by_kind_and_size(void **state)
 static void absurd_events_are_refused_and_counted(void **state)
 {
     (void)state;
-    EffectHistory *h = open_history();
-    DisDetonation pdu = burst_here(1, 1);
+    EffectHistory      *h = open_history();
+    DisDetonation       pdu = burst_here(1, 1);
     static const double bad[] = {NAN, INFINITY, 0, 1e12};
     for (int i = 0; i < 4; i++) {
         pdu.p_ecef[0] = bad[i];
@@ -250,7 +263,7 @@ static void any_instant_in_any_order(void **state)
 {
     (void)state;
     static EffectPuff first[effect_puff_capacity];
-    EffectHistory *h = open_history();
+    EffectHistory    *h = open_history();
     for (int i = 0; i < 20; i++) {
         const DisDetonation pdu = burst_here(i, (uint8_t)(1 + i % 3));
         effect_history_detonation(h, &pdu, i);
@@ -276,7 +289,7 @@ static double trail_mass(const Snapshot *s, EffectKind kind)
 static void appearance_lets_go(void **state)
 {
     (void)state;
-    Fixture f = fixture_open(NULL);
+    Fixture        f = fixture_open(NULL);
     DisEntityState tank = report(1, tank_type);
     hear(&f, &tank, 0);
     seen_at(&f, 1, 5);
@@ -296,7 +309,7 @@ static void appearance_lets_go(void **state)
     }
     CHECK(flames > 10 && smoke > 10 && flames + smoke == f.snapshot.puff_count);
     /* a trail thins its old puffs, and keeps its mass: 7 s of it */
-    char path[512];
+    char        path[512];
     EffectTable table;
     CHECK(etc_path(path, sizeof path, "effects.csv") && effect_table_open(&table, path) == STATUS_OK);
     for (double t_s = 8; t_s < 40; t_s += 4.9) {
@@ -324,14 +337,19 @@ static void appearance_lets_go(void **state)
 static void trails_change_evenly(void **state)
 {
     (void)state;
-    static EffectPuff before[512];
-    EffectHistory *h = open_history();
-    const EffectSource source = {.kind = EFFECT_SMOKE, .key = 5, .to_s = INFINITY, .scale = 1, .rate = 1, .hold_s = 1,
-                                 .motion = {.algorithm = 1, .p_ecef = {earth_radius_m, 0, 0},
-                                            .r_ecef_from_body = {1, 0, 0, 0, 1, 0, 0, 0, 1}}};
+    static EffectPuff  before[512];
+    EffectHistory     *h = open_history();
+    const EffectSource source = {
+        .kind = EFFECT_SMOKE,
+        .key = 5,
+        .to_s = INFINITY,
+        .scale = 1,
+        .rate = 1,
+        .hold_s = 1,
+        .motion = {.algorithm = 1, .p_ecef = {earth_radius_m, 0, 0}, .r_ecef_from_body = {1, 0, 0, 0, 1, 0, 0, 0, 1}}};
     effect_history_open(h, &source);
     const double whole_kg = effect_history_table(h)->law[EFFECT_SMOKE].mass_kg * 0.25; /* of one just let go */
-    int n = 0, met = 0;
+    int          n = 0, met = 0;
     for (double t_s = 60.0001; t_s < 60.6; t_s += 0.001) {
         const int now = puffs_at(h, t_s);
         CHECK(now < 512);
@@ -352,13 +370,13 @@ static void trails_change_evenly(void **state)
 static void dust_lies_along_the_way(void **state)
 {
     (void)state;
-    Fixture f = fixture_open(NULL);
+    Fixture        f = fixture_open(NULL);
     DisEntityState tank = report(1, tank_type);
     tank.appearance = dust_bits;
     hear(&f, &tank, 0);
     seen_at(&f, 1, 3);
     CHECK(f.snapshot.puff_count == 0); /* it stands */
-    tank.velocity_mps[2] = 8; /* north, as it heads */
+    tank.velocity_mps[2] = 8;          /* north, as it heads */
     hear(&f, &tank, 3);
     seen_at(&f, 1, 3.001);
     tank.p_ecef[2] = 16;
@@ -386,7 +404,7 @@ static void dust_lies_along_the_way(void **state)
 static void nobody_flies_in_his_own_trail(void **state)
 {
     (void)state;
-    Fixture f = fixture_open(NULL);
+    Fixture        f = fixture_open(NULL);
     DisEntityState missile = report(4, missile_type);
     missile.p_ecef[0] += 100;
     missile.velocity_mps[2] = 300;
@@ -416,7 +434,7 @@ static void nobody_flies_in_his_own_trail(void **state)
 static void trails_outlive_their_missile(void **state)
 {
     (void)state;
-    Fixture f = fixture_open(NULL);
+    Fixture        f = fixture_open(NULL);
     DisEntityState missile = report(4, missile_type);
     missile.p_ecef[0] += 100;
     missile.velocity_mps[2] = 200;
@@ -431,7 +449,7 @@ static void trails_outlive_their_missile(void **state)
     end.p_ecef[2] = 240;
     entity_table_detonation(f.table, &end, 1.2);
     CHECK(!seen_at(&f, 4, 1.5));
-    int trail = 0;
+    int    trail = 0;
     double last_m = 0;
     for (int i = 0; i < f.snapshot.puff_count; i++) {
         CHECK(f.snapshot.puff[i].kind != EFFECT_MOTOR_PLUME);
@@ -447,18 +465,20 @@ static void trails_outlive_their_missile(void **state)
 static void stop_holds_the_place(void **state)
 {
     (void)state;
-    Fixture f = fixture_open(NULL);
+    Fixture        f = fixture_open(NULL);
     DisEntityState tank = report(1, tank_type);
     tank.appearance = plume_bit;
     tank.velocity_mps[2] = 10;
     hear(&f, &tank, 0);
-    const DisStopFreeze stop = {.receiving = {0xFFFF, 0xFFFF, 0xFFFF}};
+    const DisStopFreeze  stop = {.receiving = {0xFFFF, 0xFFFF, 0xFFFF}};
     const DisStartResume start = {.receiving = {0xFFFF, 0xFFFF, 0xFFFF}};
     entity_table_stop(f.table, &stop, 2);
     entity_table_start(f.table, &start, 6);
     seen_at(&f, 1, 8);
     for (int i = 0; i < f.snapshot.puff_count; i++) {
-        const double t_s = 8 - f.snapshot.puff[i].age_s, way_m = t_s < 2 ? 10 * t_s : t_s < 6 ? 20 : 20 + 10 * (t_s - 6);
+        const double t_s = 8 - f.snapshot.puff[i].age_s, way_m = t_s < 2   ? 10 * t_s
+                                                                 : t_s < 6 ? 20
+                                                                           : 20 + 10 * (t_s - 6);
         CHECK_NEAR(f.snapshot.puff[i].p_ecef[2], way_m, 2.5); /* spread over the hull's top */
     }
     CHECK(f.snapshot.puff_count > 8);
@@ -470,8 +490,9 @@ static void stop_holds_the_place(void **state)
 static void wrecks_burn_and_go_out(void **state)
 {
     (void)state;
-    Fixture f = fixture_open(NULL);
-    DisEntityState seen_hit = report(1, tank_type), found_cold = report(2, tank_type), found_burning = report(3, tank_type);
+    Fixture        f = fixture_open(NULL);
+    DisEntityState seen_hit = report(1, tank_type), found_cold = report(2, tank_type),
+                   found_burning = report(3, tank_type);
     hear(&f, &seen_hit, 0);
     seen_hit.appearance = destroyed_bits;
     found_cold.appearance = destroyed_bits;
@@ -492,12 +513,12 @@ static void wrecks_burn_and_go_out(void **state)
 static void wrecked_guns_droop(void **state)
 {
     (void)state;
-    Fixture f = fixture_open(NULL);
+    Fixture        f = fixture_open(NULL);
     DisEntityState tank = report(1, tank_type);
     hear(&f, &tank, 0);
     const SnapshotEntity *e = seen_at(&f, 1, 1);
-    const Model *model = catalog_model(f.catalog, e->model);
-    int gun = -1;
+    const Model          *model = catalog_model(f.catalog, e->model);
+    int                   gun = -1;
     for (int n = 0; n < model->node_count; n++)
         if (model->node[n].dis_class == 4416 && model->node[n].dis_metric == 13) gun = n;
     CHECK(gun >= 0);
@@ -519,7 +540,7 @@ static void wrecked_guns_droop(void **state)
 static void bad_tables_are_named(void **state)
 {
     (void)state;
-    char path[text_file_size];
+    char        path[text_file_size];
     EffectTable table;
     log_set_sink(check_listen, NULL);
     text_file(path, "name,ext_b\nsmoke,1\n");
@@ -555,8 +576,8 @@ static void engines_give_off_gas(void **state)
 {
     (void)state;
     static EffectPuff first[8];
-    Fixture f = fixture_open(NULL);
-    DisEntityState tank = report(1, tank_type), craft = report(2, helicopter_type);
+    Fixture           f = fixture_open(NULL);
+    DisEntityState    tank = report(1, tank_type), craft = report(2, helicopter_type);
     craft.p_ecef[0] += 100;
     craft.p_ecef[1] += 500;
     hear(&f, &tank, 0);

@@ -1,5 +1,5 @@
-/* tests/entities/test_entity_eviction.c: which entities are kept when the table is full: against a list that is searched from end to end,
- * and in floods of invented entities. */
+/* tests/entities/test_entity_eviction.c: which entities are kept when the table is full: against a list that is
+ * searched from end to end, and in floods of invented entities. */
 #include "tests/entities/entity_fixture.h"
 #include "entities/table/entity_limits.h"
 
@@ -10,8 +10,8 @@ enum { slots = 61, capacity = 60 };
 typedef struct Plain {
     bool        there, known;
     DisEntityId id;
-    int         class;
-    int         heard;
+    int class;
+    int heard;
 } Plain;
 
 static Plain plain[slots];
@@ -39,7 +39,8 @@ static int plain_worst(void)
     }
     for (int i = 0; i < slots; i++) {
         const Plain *p = &plain[i], *w = &plain[worst < 0 ? 0 : worst];
-        if (!p->there || tier_of(p) != tier || p->id.site != sender.site || p->id.application != sender.application) continue;
+        if (!p->there || tier_of(p) != tier || p->id.site != sender.site || p->id.application != sender.application)
+            continue;
         if (worst < 0 || p->class > w->class || (p->class == w->class && p->heard < w->heard)) worst = i;
     }
     return worst;
@@ -93,8 +94,11 @@ static void distances_are_in_classes_of_twice(void **state)
 {
     (void)state;
     static const double here[3] = {earth_radius_m, 0, 0};
-    static const struct { double m; int class; } want[] = {
-        {0, 0}, {625, 0}, {626, 1}, {1250, 1}, {9999, 4}, {10000, 4}, {10001, 5}, {1e7, 14}, {3e7, 15}, {NAN, 15}};
+    static const struct {
+        double m;
+        int class;
+    } want[] = {{0, 0},     {625, 0},   {626, 1},  {1250, 1}, {9999, 4},
+                {10000, 4}, {10001, 5}, {1e7, 14}, {3e7, 15}, {NAN, 15}};
     for (size_t i = 0; i < sizeof want / sizeof *want; i++) {
         const double there[3] = {earth_radius_m, 0, want[i].m};
         assert_int_equal(entity_rank_class(there, here), want[i].class);
@@ -184,11 +188,12 @@ static void a_missile_after_a_flood_is_taken_in(void **state)
     }
 }
 
-/* A flood in the name of the missile's own sender: the others that are stale go first, as long as it goes on reporting. */
+/* A flood in the name of the missile's own sender: the others that are stale go first, as long as it goes on reporting.
+ */
 static void a_flood_of_its_own_sender(void **state)
 {
     (void)state;
-    Fixture f = open_full();
+    Fixture              f = open_full();
     const DisEntityState missile = state_of(host_id, 0, missile_type);
     for (int n = 0; n < 3 * flood_count; n++) {
         const DisEntityState pdu = state_of((DisEntityId){1, 3001, (uint16_t)(100 + n % 60000)}, 500, tank_type);

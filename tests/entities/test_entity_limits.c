@@ -15,13 +15,17 @@ static void ends_agree_with_a_list_of_all(void **state)
 {
     (void)state;
     enum { ends = 300, ids = 40 }; /* less than the room: none goes */
-    struct { int id; double end_s; bool detonated; } list[ends];
+    struct {
+        int    id;
+        double end_s;
+        bool   detonated;
+    } list[ends];
     Tombstones *t = NULL;
     int         yes = 0;
     CHECK(tombstones_create(&t, 1, 100) == STATUS_OK);
     for (int n = 0; n < ends; n++) {
-        list[n].id        = 1 + dice((uint64_t)n, 0, ids);
-        list[n].end_s     = 0.5 * dice((uint64_t)n, 1, 40); /* in no order */
+        list[n].id = 1 + dice((uint64_t)n, 0, ids);
+        list[n].end_s = 0.5 * dice((uint64_t)n, 1, 40); /* in no order */
         list[n].detonated = dice((uint64_t)n, 2, 3) == 0;
         tombstones_put(t, entity_id(list[n].id), list[n].end_s, list[n].detonated);
         for (int k = 0; k < 20; k++) {
@@ -63,7 +67,7 @@ static void ten_thousand_removed_stay_removed(void **state)
     enum { count = 10000 };
     EntityTableConfig config = entity_table_default_config();
     config.capacity = count;
-    Fixture f = fixture_open(&config);
+    Fixture        f = fixture_open(&config);
     DisEntityState pdu = report(1, tank_type);
     for (int e = 1; e <= count; e++) {
         pdu.id = entity_id(e);
@@ -96,8 +100,9 @@ static void a_sender_adds_so_many_a_second(void **state)
     int               in = 0, in_after = 0, in_back = 0;
     CHECK(entity_rate_create(&rate, 100) == STATUS_OK);
     for (int n = 0; n < 1000; n++) in += entity_rate_take(rate, one, 5);
-    CHECK(in == 100 && entity_rate_take(rate, other, 5));           /* at once; each has its own */
-    for (int n = 0; n < 1000; n++) in_after += entity_rate_take(rate, one, 5 + 0.002 * (n + 1)); /* 500 a second for 2 s */
+    CHECK(in == 100 && entity_rate_take(rate, other, 5)); /* at once; each has its own */
+    for (int n = 0; n < 1000; n++)
+        in_after += entity_rate_take(rate, one, 5 + 0.002 * (n + 1)); /* 500 a second for 2 s */
     CHECK(in_after >= 199 && in_after <= 201);
     for (int n = 0; n < 10; n++) in_back += entity_rate_take(rate, one, n % 2 ? 0 : 7); /* time that goes to and fro */
     CHECK(in_back <= 1);
@@ -127,7 +132,7 @@ static void the_table_counts_what_is_over_the_rate(void **state)
     (void)state;
     EntityTableConfig config = entity_table_default_config();
     config.new_per_s = 50;
-    Fixture f = fixture_open(&config);
+    Fixture        f = fixture_open(&config);
     DisEntityState pdu = report(1, tank_type);
     entity_table_focus(f.table, entity_id(999), entity_id(998));
     for (int e = 1; e <= 500; e++) {
@@ -151,7 +156,8 @@ static void the_table_counts_what_is_over_the_rate(void **state)
 
 /* ---- shots by munition ---------------------------------------------------------------------- */
 
-/* The first shot of a munition, as a search from end to end finds it; in far fewer looks, which is what the order is for. */
+/* The first shot of a munition, as a search from end to end finds it; in far fewer looks, which is what the order is
+ * for. */
 static void shots_are_found_by_munition(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
-/* tests/entities/test_entity_pause.c: Stop/Freeze and Start/Resume: which entities stop, what does not count as silence, to whom a
- * PDU applies. */
+/* tests/entities/test_entity_pause.c: Stop/Freeze and Start/Resume: which entities stop, what does not count as
+ * silence, to whom a PDU applies. */
 #include "tests/entities/entity_fixture.h"
 #include "dis/pdu/decode.h"
 
@@ -7,7 +7,7 @@
 static void stop_and_start(void **state)
 {
     (void)state;
-    Fixture f = fixture_open(NULL);
+    Fixture        f = fixture_open(NULL);
     DisEntityState pdu = report(1, tank_type), other = report(2, tank_type);
     pdu.velocity_mps[1] = 10;
     other.velocity_mps[1] = 10;
@@ -34,7 +34,8 @@ static void stop_and_start(void **state)
     fixture_close(&f);
 }
 
-/* Time stopped is no silence: 20 s of it, then a report due 5 s after the Resume. The silence before and after counts. */
+/* Time stopped is no silence: 20 s of it, then a report due 5 s after the Resume. The silence before and after counts.
+ */
 static void a_pause_is_no_silence(void **state)
 {
     (void)state;
@@ -59,8 +60,8 @@ static void a_pause_is_no_silence(void **state)
     fixture_close(&f);
 }
 
-/* A Freeze that lets entities go on reporting (frozen behaviour, bit 1) is not ended by a report; nor is any by a report
- * from before it that came late. */
+/* A Freeze that lets entities go on reporting (frozen behaviour, bit 1) is not ended by a report; nor is any by a
+ * report from before it that came late. */
 static void reports_within_a_pause(void **state)
 {
     (void)state;
@@ -69,7 +70,8 @@ static void reports_within_a_pause(void **state)
         DisEntityState pdu = report(1, tank_type);
         pdu.velocity_mps[1] = 10;
         hear(&f, &pdu, 0);
-        entity_table_stop(f.table, &(DisStopFreeze){.receiving = {0xFFFF, 0xFFFF, 0xFFFF}, .frozen_behaviour = late ? 0 : 2}, 5);
+        entity_table_stop(f.table,
+                          &(DisStopFreeze){.receiving = {0xFFFF, 0xFFFF, 0xFFFF}, .frozen_behaviour = late ? 0 : 2}, 5);
         pdu.p_ecef[1] = 40;
         hear(&f, &pdu, late ? 4 : 8);
         CHECK_NEAR(seen_at(&f, 1, 10)->p_ecef[1], late ? 50 : 40, 1e-9);

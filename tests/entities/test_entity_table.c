@@ -13,12 +13,12 @@ static void index_agrees_with_a_list(void **state)
     (void)state;
     enum { keys = 300 };
     EntityIndex index;
-    int there[keys];
+    int         there[keys];
     CHECK(entity_index_create(&index, 100) == STATUS_OK);
     for (int k = 0; k < keys; k++) there[k] = -1;
     int held = 0;
     for (int n = 0; n < 60000; n++) {
-        const int k = (int)(random_uniform(3, 1, 0, (uint64_t)n) * keys);
+        const int      k = (int)(random_uniform(3, 1, 0, (uint64_t)n) * keys);
         const uint64_t key = k % 3 ? (uint64_t)k : (uint64_t)k << 32 | 0xFFFF;
         CHECK(entity_index_find(&index, key) == there[k]);
         if (there[k] >= 0) {
@@ -40,7 +40,7 @@ static void index_agrees_with_a_list(void **state)
 static void handles_are_caught_when_stale(void **state)
 {
     (void)state;
-    Fixture f = fixture_open(NULL);
+    Fixture        f = fixture_open(NULL);
     DisEntityState pdu = report(7, tank_type);
     CHECK(!entity_table_alive(f.table, (EntityHandle){0}));
     CHECK(!entity_table_alive(f.table, entity_table_find(f.table, entity_id(7))));
@@ -62,7 +62,7 @@ static void handles_are_caught_when_stale(void **state)
 static void silence_ends_it(void **state)
 {
     (void)state;
-    Fixture f = fixture_open(NULL);
+    Fixture        f = fixture_open(NULL);
     DisEntityState tank5 = report(5, tank_type), tank7 = report(7, tank_type), flyer7 = report(8, helicopter_type);
     tank7.header.version = flyer7.header.version = 7;
     tank7.velocity_mps[0] = flyer7.velocity_mps[0] = 3;
@@ -94,7 +94,7 @@ static void silence_ends_it(void **state)
 static void removal_with_wildcards(void **state)
 {
     (void)state;
-    Fixture f = fixture_open(NULL);
+    Fixture        f = fixture_open(NULL);
     DisEntityState pdu = report(0, tank_type);
     for (int site = 1; site <= 2; site++)
         for (int application = 1; application <= 2; application++)
@@ -158,7 +158,7 @@ static void a_full_table_refuses_and_recovers(void **state)
 static void late_reports_do_not_count(void **state)
 {
     (void)state;
-    Fixture f = fixture_open(NULL);
+    Fixture        f = fixture_open(NULL);
     DisEntityState pdu = report(1, missile_type);
     pdu.marking[0] = 'a';
     hear(&f, &pdu, 5);
@@ -197,7 +197,7 @@ static void late_reports_do_not_count(void **state)
 static void reports_and_updates_move_it(void **state)
 {
     (void)state;
-    Fixture f = fixture_open(NULL);
+    Fixture        f = fixture_open(NULL);
     DisEntityState pdu = report(1, tank_type);
     pdu.velocity_mps[1] = 10;
     pdu.acceleration_mps2[1] = 2;
@@ -212,8 +212,11 @@ static void reports_and_updates_move_it(void **state)
     /* a yaw of 0.4 to the right of north is towards east */
     CHECK_NEAR(e->r_ecef_from_body[3], sin(4 * (double)0.1f), 1e-7);
 
-    DisEntityStateUpdate update = {.header = {.version = 5}, .id = entity_id(1), .p_ecef = {earth_radius_m, 1000, 0},
-                                   .velocity_mps = {0, -1, 0}, .theta_rad = pdu.theta_rad};
+    DisEntityStateUpdate update = {.header = {.version = 5},
+                                   .id = entity_id(1),
+                                   .p_ecef = {earth_radius_m, 1000, 0},
+                                   .velocity_mps = {0, -1, 0},
+                                   .theta_rad = pdu.theta_rad};
     CHECK(entity_table_entity_state_update(f.table, &update, 105) == STATUS_OK);
     e = seen_at(&f, 1, 106);
     CHECK_NEAR(e->p_ecef[1], 1000 - 1 + 0.5 * 2, 1e-12); /* the acceleration of the last Entity State */
@@ -230,7 +233,7 @@ static void extrapolation_is_bounded(void **state)
     EntityTableConfig config = entity_table_default_config();
     config.timeout_s = 1000;
     config.timeout_land_v7_s = 11000;
-    Fixture f = fixture_open(&config);
+    Fixture        f = fixture_open(&config);
     DisEntityState pdu = report(1, tank_type);
     pdu.velocity_mps[1] = 10;
     hear(&f, &pdu, 0);
@@ -253,13 +256,13 @@ static void extrapolation_is_bounded(void **state)
 static void absurd_motion_is_not_believed(void **state)
 {
     (void)state;
-    Fixture f = fixture_open(NULL);
+    Fixture            f = fixture_open(NULL);
     static const float absurd[] = {NAN, INFINITY, 3e38f};
-    uint64_t refused = 0;
+    uint64_t           refused = 0;
     for (int field = 0; field < 3; field++)
         for (int n = 0; n < 3; n++) {
             DisEntityState pdu = report(1, tank_type);
-            float *const at[3] = {pdu.velocity_mps, pdu.acceleration_mps2, pdu.angular_rate_rps};
+            float *const   at[3] = {pdu.velocity_mps, pdu.acceleration_mps2, pdu.angular_rate_rps};
             at[field][1] = absurd[n];
             hear(&f, &pdu, 0);
             const SnapshotEntity *e = seen_at(&f, 1, 3);
@@ -272,7 +275,7 @@ static void absurd_motion_is_not_believed(void **state)
 static void frozen_stands_still(void **state)
 {
     (void)state;
-    Fixture f = fixture_open(NULL);
+    Fixture        f = fixture_open(NULL);
     DisEntityState pdu = report(1, tank_type);
     pdu.velocity_mps[1] = 10;
     pdu.angular_rate_rps[2] = 1;
@@ -298,12 +301,12 @@ static void frozen_stands_still(void **state)
 static void origin_is_the_base(void **state)
 {
     (void)state;
-    Fixture f = fixture_open(NULL);
+    Fixture        f = fixture_open(NULL);
     DisEntityState missile = report(1, missile_type), tank = report(2, tank_type);
     hear(&f, &missile, 0);
     hear(&f, &tank, 0);
     const SnapshotEntity *e = seen_at(&f, 1, 0);
-    const double height_m = catalog_model(f.catalog, e->model)->height_m;
+    const double          height_m = catalog_model(f.catalog, e->model)->height_m;
     CHECK(height_m > 0.05);
     CHECK_NEAR(e->p_ecef[0], earth_radius_m - height_m / 2, 1e-8);
     CHECK(seen_at(&f, 2, 0)->p_ecef[0] == earth_radius_m);
@@ -322,7 +325,7 @@ static size_t check_sorted_and_exact(NodePose **poses, Pool *pool)
     config.pool = pool;
     Fixture f = fixture_open(&config);
     for (int n = 0; n < many; n++) {
-        const int i = (n * 271) % many; /* 271 and 700 share no factor */
+        const int      i = (n * 271) % many; /* 271 and 700 share no factor */
         DisEntityState pdu = report(0, (DisEntityType){9, 0, 0, 0, 0, 0, 0});
         pdu.id = (DisEntityId){(uint16_t)(1 + i % 3), (uint16_t)(1 + i / 3 % 5 * 300), (uint16_t)(1 + i)};
         pdu.dead_reckoning = (uint8_t)(i % 11);
@@ -346,8 +349,8 @@ static size_t check_sorted_and_exact(NodePose **poses, Pool *pool)
     int nodes = 0;
     for (int e = 0; e < many; e++) {
         const SnapshotEntity *entity = f.snapshot.entity + e;
-        const int i = entity->id.entity - 1;
-        Motion m;
+        const int             i = entity->id.entity - 1;
+        Motion                m;
         if (e > 0) CHECK(dis_entity_id_compare(entity[-1].id, entity->id) < 0);
         CHECK(snapshot_find(&f.snapshot, entity->id) == e);
         dead_reckon(&m, want + i, 3 - 0.001 * i);
@@ -358,7 +361,7 @@ static size_t check_sorted_and_exact(NodePose **poses, Pool *pool)
         nodes += catalog_model(f.catalog, entity->model)->node_count;
     }
     CHECK(nodes == f.snapshot.node_count);
-    Arena *other_arena = arena_create();
+    Arena   *other_arena = arena_create();
     Snapshot again;
     CHECK(entity_table_snapshot(&again, f.table, 3, other_arena) == STATUS_OK);
     CHECK(memcmp(again.entity, f.snapshot.entity, sizeof *again.entity * many) == 0);
@@ -431,14 +434,14 @@ static NodePose node_at(Fixture *f, int entity, bool rolls, double t_s)
 static void wheels_roll_with_the_way(void **state)
 {
     (void)state;
-    Fixture f = fixture_open(NULL);
+    Fixture        f = fixture_open(NULL);
     DisEntityState pdu = report(1, truck_type);
     pdu.velocity_mps[2] = 4; /* forward: north */
     hear(&f, &pdu, 0);
     const SnapshotEntity *e = seen_at(&f, 1, 0);
-    const Model *truck = catalog_model(f.catalog, e->model);
-    const double radius_m = truck->node[node_with(truck, true)].roll_radius_m;
-    const NodePose start = node_at(&f, 1, true, 0), soon = node_at(&f, 1, true, 0.1);
+    const Model          *truck = catalog_model(f.catalog, e->model);
+    const double          radius_m = truck->node[node_with(truck, true)].roll_radius_m;
+    const NodePose        start = node_at(&f, 1, true, 0), soon = node_at(&f, 1, true, 0.1);
     CHECK_NEAR(turned_rad(&start, &soon), 0.4 / radius_m, 1e-6);
 
     const NodePose before = node_at(&f, 1, true, 5);
@@ -455,13 +458,13 @@ static void wheels_roll_with_the_way(void **state)
 static void rotors_spin_and_freeze(void **state)
 {
     (void)state;
-    Fixture f = fixture_open(NULL);
+    Fixture        f = fixture_open(NULL);
     DisEntityState pdu = report(1, helicopter_type);
     hear(&f, &pdu, 0);
     const SnapshotEntity *e = seen_at(&f, 1, 0);
-    const Model *model = catalog_model(f.catalog, e->model);
-    const double rate_rps = model->node[node_with(model, false)].spin_rps_moving;
-    const NodePose start = node_at(&f, 1, false, 0), soon = node_at(&f, 1, false, 0.01);
+    const Model          *model = catalog_model(f.catalog, e->model);
+    const double          rate_rps = model->node[node_with(model, false)].spin_rps_moving;
+    const NodePose        start = node_at(&f, 1, false, 0), soon = node_at(&f, 1, false, 0.01);
     CHECK_NEAR(turned_rad(&start, &soon), fabs(rate_rps) * 0.01, 1e-9);
 
     const NodePose before = node_at(&f, 1, false, 3);
@@ -486,7 +489,7 @@ static void landing_gear_needs_no_report(void **state)
         pdu.velocity_mps[2] = fast ? 200 : 0;
         hear(&f, &pdu, fast);
         const SnapshotEntity *e = seen_at(&f, 1, fast);
-        const Model *model = catalog_model(f.catalog, e->model);
+        const Model          *model = catalog_model(f.catalog, e->model);
         assert_string_equal(model->name, "aircraft");
         int wheels = 0;
         for (int n = 0; n < model->node_count; n++) {
@@ -503,7 +506,7 @@ static void landing_gear_needs_no_report(void **state)
 static void articulation_and_drives_reach_the_snapshot(void **state)
 {
     (void)state;
-    Fixture f = fixture_open(NULL);
+    Fixture        f = fixture_open(NULL);
     DisEntityState pdu = report(1, tank_type);
     pdu.velocity_mps[2] = 12;
     pdu.variable_count = 3;
@@ -516,11 +519,10 @@ static void articulation_and_drives_reach_the_snapshot(void **state)
     CHECK(e->drives.engine == 1 && e->drives.speed_mps == 12 && e->drives.fired_kg[1] == 0 && e->drives.since_s == 0);
     CHECK(e->first_patch == -1 && f.snapshot.patch_k == NULL); /* render/heat/vehicle_heat.h gives them */
     const uint64_t changes = entity_table_changes(f.table);
-    const Model *tank = catalog_model(f.catalog, e->model);
+    const Model   *tank = catalog_model(f.catalog, e->model);
     for (int n = 0; n < tank->node_count; n++)
         if (tank->node[n].dis_class == 4096)
-            CHECK_NEAR(atan2(node_of(&f, e, n).r_body_from_node[3],
-                             node_of(&f, e, n).r_body_from_node[0]), 0.4, 1e-7);
+            CHECK_NEAR(atan2(node_of(&f, e, n).r_body_from_node[3], node_of(&f, e, n).r_body_from_node[0]), 0.4, 1e-7);
     entity_table_fire(f.table, &(DisFire){.firing = entity_id(1), .munition = entity_id(50)}, 3);
     CHECK(seen_at(&f, 1, 5)->drives.fired_kg[1] == 1 && entity_table_changes(f.table) == changes + 1);
     /* another type under the same id: another model, its joints at rest */
@@ -537,7 +539,7 @@ static void what_has_no_shape_is_not_in_the_scene(void **state)
 {
     (void)state;
     static const DisEntityType unseen[3] = {{7, 1, 225, 1, 1, 0, 0}, {4, 1, 0, 1, 0, 0, 0}, {8, 2, 225, 1, 1, 0, 0}};
-    Fixture f = fixture_open(NULL);
+    Fixture                    f = fixture_open(NULL);
     for (int i = 0; i < 3; i++) {
         const DisEntityState pdu = report(10 + i, unseen[i]);
         hear(&f, &pdu, 1);
@@ -557,8 +559,9 @@ static void what_has_no_shape_is_not_in_the_scene(void **state)
 static void chaff_is_beside_the_scene(void **state)
 {
     (void)state;
-    static const DisEntityType chaff = {8, 2, 225, 1, 1, 0, 0}, both = {8, 2, 225, 3, 1, 0, 0}, flare = {8, 2, 225, 2, 1, 0, 0};
-    Fixture f = fixture_open(NULL);
+    static const DisEntityType chaff = {8, 2, 225, 1, 1, 0, 0}, both = {8, 2, 225, 3, 1, 0, 0},
+                               flare = {8, 2, 225, 2, 1, 0, 0};
+    Fixture        f = fixture_open(NULL);
     DisEntityState cloud = report(12, chaff);
     hear(&f, &cloud, 1);
     cloud = report(11, both);
@@ -579,8 +582,8 @@ static void chaff_is_beside_the_scene(void **state)
 static void pdus_are_checked_and_counted(void **state)
 {
     (void)state;
-    Fixture f = fixture_open(NULL);
-    static DisPdu pdu;
+    Fixture         f = fixture_open(NULL);
+    static DisPdu   pdu;
     DisEntityState *report_1 = &pdu.entity_state;
     pdu.type = dis_pdu_entity_state;
     *report_1 = report(1, tank_type);
@@ -621,13 +624,13 @@ static void mutated_octets_do_no_harm(void **state)
     (void)state;
     EntityTableConfig config = entity_table_default_config();
     config.capacity = 200;
-    Fixture f = fixture_open(&config);
+    Fixture  f = fixture_open(&config);
     uint64_t index = 0;
-    int seen = 0;
+    int      seen = 0;
     for (int n = 0; n < 20000; n++) {
         static const uint8_t nasty[] = {0, 1, 0x7f, 0x80, 0xff};
-        uint8_t octets[512] = {0};
-        DisEntityState pdu = report(1 + n % 20, n % 3 ? tank_type : helicopter_type);
+        uint8_t              octets[512] = {0};
+        DisEntityState       pdu = report(1 + n % 20, n % 3 ? tank_type : helicopter_type);
         pdu.velocity_mps[1] = 10;
         pdu.angular_rate_rps[2] = 0.1f;
         pdu.dead_reckoning = (uint8_t)(n % 10);
@@ -640,7 +643,7 @@ static void mutated_octets_do_no_harm(void **state)
         }
         octets[0] = (uint8_t)(5 + n % 3);
         octets[2] = n % 7 ? 1 : (uint8_t)(dice(&index, 68));
-        const double t_s = 0.01 * n;
+        const double  t_s = 0.01 * n;
         static DisPdu decoded;
         if (dis_decode(&decoded, octets, length) == STATUS_OK) entity_table_pdu(f.table, &decoded, t_s, &f.counters);
         if (n % 50) continue;
@@ -648,12 +651,13 @@ static void mutated_octets_do_no_harm(void **state)
         seen_at(&f, 1, t_s + dice(&index, 20));
         for (int e = 0; e < f.snapshot.count; e++) {
             const SnapshotEntity *s = f.snapshot.entity + e;
-            double product[9];
+            double                product[9];
             CHECK(v3_length(s->p_ecef) >= 0.9e5 && v3_length(s->p_ecef) <= 1.1e8);
             CHECK(v3_is_finite(s->v_ecef_mps) && v3_is_finite(s->w_body_rps) && isfinite(s->position_error_m));
             m3_tmul(product, s->r_ecef_from_body, s->r_ecef_from_body);
             for (int i = 0; i < 9; i++) CHECK_NEAR(product[i], i % 4 == 0, 1e-14);
-            CHECK(s->drives.engine >= 0 && s->drives.engine <= 1 && s->drives.speed_mps >= 0 && isfinite(s->drives.fired_kg[1]));
+            CHECK(s->drives.engine >= 0 && s->drives.engine <= 1 && s->drives.speed_mps >= 0 &&
+                  isfinite(s->drives.fired_kg[1]));
             for (int p = 0; p < catalog_model(f.catalog, s->model)->node_count; p++) {
                 const NodePose pose = node_of(&f, s, p);
                 CHECK(v3_is_finite(pose.p_body) && isfinite(pose.r_body_from_node[0]));
@@ -669,17 +673,17 @@ static void mutated_octets_do_no_harm(void **state)
 static void a_recorded_exercise(void **state)
 {
     (void)state;
-    char path[512];
+    char   path[512];
     DisLog log;
     if (!reference_path(path, "dis/vrf-dis5-tow-vs-armor.pcap")) skip();
     CHECK(dis_log_open(&log, path, dis_port) == STATUS_OK);
-    Fixture f = fixture_open(NULL);
-    int most = 0;
-    double t_s = 0;
+    Fixture       f = fixture_open(NULL);
+    int           most = 0;
+    double        t_s = 0;
     static DisPdu decoded;
     for (int d = 0; d < log.count; d++) {
         const uint8_t *at = log.datagram[d].bytes, *octets;
-        DisHeader header;
+        DisHeader      header;
         t_s = log.datagram[d].capture_s;
         while (dis_next_pdu(&header, &octets, &at, log.datagram[d].bytes + log.datagram[d].octets, &f.counters))
             if (dis_decode(&decoded, octets, header.length) == STATUS_OK)
@@ -694,7 +698,7 @@ static void a_recorded_exercise(void **state)
            (unsigned long long)c->created, (unsigned long long)c->deactivated, (unsigned long long)c->detonated,
            (unsigned long long)c->timed_out, (unsigned long long)c->late, (unsigned long long)c->motion_refused,
            (unsigned long long)c->unknown_articulation, most);
-    CHECK(c->created == 22 && c->late == 13); /* each burst missile is reported destroyed once */
+    CHECK(c->created == 22 && c->late == 13);         /* each burst missile is reported destroyed once */
     CHECK(c->detonated == 13 && c->deactivated == 0); /* 15 missiles, two still in flight at the end */
     CHECK(entity_table_count(f.table) + (int)c->timed_out == 9);
     /* flown and driven without a power-plant bit: warm all the same */

@@ -9,22 +9,22 @@
 #include "dis/pdu/decode.h"
 
 typedef struct Heard {
-    Fixture   *fixture;      /* NULL: only counted */
-    double     last_s[64];   /* of each entity's latest report */
-    double     longest_s[64];
-    int        reports[64], updates, bundles;
-    uint64_t   datagrams, octets, hash;
-    size_t     largest;
-    double     latest_s;
+    Fixture *fixture;    /* NULL: only counted */
+    double   last_s[64]; /* of each entity's latest report */
+    double   longest_s[64];
+    int      reports[64], updates, bundles;
+    uint64_t datagrams, octets, hash;
+    size_t   largest;
+    double   latest_s;
 } Heard;
 
 static bool receive_datagram(void *user, double t_s, const uint8_t *bytes, size_t octets)
 {
-    Heard          *h = user;
-    DisHeader       header;
-    const uint8_t  *pdu, *at = bytes;
-    DisCounters     counters = {0};
-    int             pdus = 0;
+    Heard         *h = user;
+    DisHeader      header;
+    const uint8_t *pdu, *at = bytes;
+    DisCounters    counters = {0};
+    int            pdus = 0;
     CHECK(t_s >= h->latest_s); /* a recording is in order */
     h->latest_s = t_s;
     h->datagrams++;
@@ -76,7 +76,8 @@ static ExerciseCounts run_all(Heard *heard, const char *text, const char *set)
     Exercise *exercise;
     Cast     *cast = cast_of(&scenario, text, set);
     CHECK(exercise_create(&exercise, cast, 1e9, receive_datagram, heard) == STATUS_OK);
-    while (exercise_step(exercise)) {}
+    while (exercise_step(exercise)) {
+    }
     const ExerciseCounts counts = *exercise_counts(exercise);
     exercise_destroy(exercise);
     cast_destroy(cast);
@@ -124,16 +125,17 @@ static void keeps_its_promise(const char *set)
         /* somewhere between this tick and the next: nobody may speak in between */
         const double now_s = t_s + tick_s * random_uniform(77, 1, 0, draw++);
         for (int i = 0; i < cast->entity_count; i++) {
-            SnapshotEntity seen;
-            Kinematics     truth;
-            double         off[3], turn[9];
+            SnapshotEntity    seen;
+            Kinematics        truth;
+            double            off[3], turn[9];
             const CastEntity *e = &cast->entity[i];
             if (!cast_present(cast, i, t_s) || !cast_present(cast, i, now_s)) continue;
             const EntityHandle handle = entity_table_find(f.table, entity_id(e->number));
             CHECK(entity_table_alive(f.table, handle) && entity_table_pose(&seen, f.table, handle, now_s));
             cast_kinematics(&truth, cast, i, now_s);
             v3_sub(off, seen.p_ecef, truth.p_ecef);
-            if (e->group < 0) { /* a missile's report means its centre; the table shows its base, half its height below */
+            if (e->group <
+                0) { /* a missile's report means its centre; the table shows its base, half its height below */
                 const double below_m = 0.5 * catalog_model(f.catalog, seen.model)->height_m;
                 for (int k = 0; k < 3; k++) off[k] -= below_m * seen.r_ecef_from_body[3 * k + 2];
             }
@@ -278,7 +280,8 @@ static void losses_are_as_asked(void **state)
     (void)state;
     Heard heard = {0}, whole = {0};
     run_all(&whole, everybody, "dis.heartbeat_s=0.2");
-    const ExerciseCounts counts = run_all(&heard, everybody, "dis.heartbeat_s=0.2 faults.loss=0.1 faults.duplicate=0.05 faults.reorder=0.02");
+    const ExerciseCounts counts =
+        run_all(&heard, everybody, "dis.heartbeat_s=0.2 faults.loss=0.1 faults.duplicate=0.05 faults.reorder=0.02");
     const double n = (double)whole.datagrams;
     CHECK(n > 2000);
     /* four standard deviations of a binomial; a datagram lost is neither repeated nor late, a late one not repeated */
@@ -292,22 +295,21 @@ static void losses_are_as_asked(void **state)
 static void leaving(void **state)
 {
     (void)state;
-    static const char three[] =
-        "duration_s: 9\n"
-        "vehicles:\n"
-        "  - {name: A, type: truck, id: 1, route_m: [0, 0], leaves_s: 4}\n"
-        "  - {name: B, type: truck, id: 2, route_m: [50, 0], leaves_s: 4, leaves: silent}\n"
-        "  - {name: C, type: truck, id: 3, route_m: [90, 0], leaves_s: 4, leaves: removed}\n"
-        "  - {name: D, type: truck, id: 4, route_m: [140, 0], appears_s: 6}\n";
-    Fixture f = fixture_open(NULL);
-    Heard   heard = {.fixture = &f};
+    static const char three[] = "duration_s: 9\n"
+                                "vehicles:\n"
+                                "  - {name: A, type: truck, id: 1, route_m: [0, 0], leaves_s: 4}\n"
+                                "  - {name: B, type: truck, id: 2, route_m: [50, 0], leaves_s: 4, leaves: silent}\n"
+                                "  - {name: C, type: truck, id: 3, route_m: [90, 0], leaves_s: 4, leaves: removed}\n"
+                                "  - {name: D, type: truck, id: 4, route_m: [140, 0], appears_s: 6}\n";
+    Fixture           f = fixture_open(NULL);
+    Heard             heard = {.fixture = &f};
     run_all(&heard, three, "dis.heartbeat_s=1 dis.version=6");
     const EntityCounters *counters = entity_table_counters(f.table);
     CHECK(counters->created == 4 && counters->deactivated == 1 && counters->removed == 1 && counters->timed_out == 0);
     CHECK_NEAR(heard.last_s[1], 4, 0.02);
     CHECK_NEAR(heard.last_s[2], 3, 0.02); /* its last heartbeat */
     CHECK_NEAR(heard.last_s[3], 3, 0.02);
-    CHECK(heard.reports[4] == 4);         /* 6, 7, 8, 9 */
+    CHECK(heard.reports[4] == 4); /* 6, 7, 8, 9 */
     fixture_close(&f);
 }
 
@@ -329,7 +331,7 @@ static void a_crowd_is_no_burst(void **state)
         "duration_s: 4\n"
         "vehicles:\n"
         "  - {name: T, type: truck, count: 10000, columns: 100, speed_mps: 8, route_m: [[0, 0], [900, 0], [900, 900]]}\n";
-    Heard heard = {0};
+    Heard                heard = {0};
     const ExerciseCounts counts = run_all(&heard, crowd, "");
     CHECK(counts.pdus >= 10000 && counts.pdus < 25000);
     CHECK(heard.latest_s > 2.4);
@@ -338,11 +340,15 @@ static void a_crowd_is_no_burst(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(promise_by_algorithm), cmocka_unit_test(promise_by_settings),
+        cmocka_unit_test(promise_by_algorithm),
+        cmocka_unit_test(promise_by_settings),
         cmocka_unit_test(body_axes_are_as_good),
         cmocka_unit_test(the_same_octets),
-        cmocka_unit_test(bundles_fit), cmocka_unit_test(losses_are_as_asked), cmocka_unit_test(leaving),
-        cmocka_unit_test(updates_between_heartbeats), cmocka_unit_test(a_crowd_is_no_burst),
+        cmocka_unit_test(bundles_fit),
+        cmocka_unit_test(losses_are_as_asked),
+        cmocka_unit_test(leaving),
+        cmocka_unit_test(updates_between_heartbeats),
+        cmocka_unit_test(a_crowd_is_no_burst),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

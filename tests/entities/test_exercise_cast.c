@@ -35,8 +35,8 @@ static void level_ground(void **state)
         for (int i = 0; i < 200; i++) {
             const double x = 60000 * (random_uniform(3, 0, 0, 2 * (uint64_t)i) - 0.5);
             const double y = 60000 * (random_uniform(3, 0, 0, 2 * (uint64_t)i + 1) - 0.5);
-            double   slope[2], p[3] = {x, y, exercise_ground_at(slope, &cast->ground, x, y)}, q[3], p_ecef[3];
-            Geodetic place;
+            double       slope[2], p[3] = {x, y, exercise_ground_at(slope, &cast->ground, x, y)}, q[3], p_ecef[3];
+            Geodetic     place;
             ecef_from_enu(p_ecef, &cast->ground.frame, p);
             CHECK(geodetic_from_ecef(&place, p_ecef) == STATUS_OK);
             CHECK_NEAR(place.h_m, 300, 0.01 * pow(hypot(x, y) / 30000, 3) + 1e-3);
@@ -57,9 +57,10 @@ static void level_ground(void **state)
 static void straight_at_its_speed(void **state)
 {
     (void)state;
-    Cast *cast = cast_of("ground: {swell_m: 0}\nvehicles:\n  - {name: A, type: truck, speed_mps: 8, route_m: [[-10, 5], [2000, 5]]}\n"
-                         "  - {name: S, type: truck, speed_mps: 8, start_s: 10, stop_s: 20, route_m: [[-10, 5], [2000, 5]]}\n"
-                         "  - {name: E, type: truck, speed_mps: 8, route_m: [[0, 5], [100, 5]]}\n");
+    Cast *cast = cast_of(
+        "ground: {swell_m: 0}\nvehicles:\n  - {name: A, type: truck, speed_mps: 8, route_m: [[-10, 5], [2000, 5]]}\n"
+        "  - {name: S, type: truck, speed_mps: 8, start_s: 10, stop_s: 20, route_m: [[-10, 5], [2000, 5]]}\n"
+        "  - {name: E, type: truck, speed_mps: 8, route_m: [[0, 5], [100, 5]]}\n");
     CastPose pose;
     for (double t = 0; t < 60; t += 0.7) {
         cast_pose(&pose, cast, 0, t);
@@ -82,7 +83,8 @@ static void straight_at_its_speed(void **state)
 static void circle(void **state)
 {
     (void)state;
-    char text[2048] = "ground: {swell_m: 0}\nvehicles:\n  - {name: A, type: truck, speed_mps: 20, loop: true, route_m: [";
+    char text[2048] =
+        "ground: {swell_m: 0}\nvehicles:\n  - {name: A, type: truck, speed_mps: 20, loop: true, route_m: [";
     for (int i = 0; i < 24; i++)
         snprintf(text + strlen(text), 64, "%s[%.6f, %.6f]", i ? ", " : "", 300 * cos(2 * pi_rad * i / 24),
                  300 * sin(2 * pi_rad * i / 24));
@@ -124,16 +126,17 @@ static void circle(void **state)
 static void derivatives_and_attitudes(void **state)
 {
     (void)state;
-    Cast *cast = cast_of("ground: {swell_m: 4}\nvehicles:\n"
-                         "  - {name: A, type: tank, count: 6, columns: 2, speed_mps: 11, unsteady_m: 3, behind_m: -150,\n"
-                         "     route_m: [[0, 0], [100, 40], [160, 150], [260, 190], [300, 320], [420, 380]]}\n"
-                         "  - {name: M, type: person, speed_mps: 2, route_m: [[0, 0], [30, 40], [80, 60]]}\n");
+    Cast *cast =
+        cast_of("ground: {swell_m: 4}\nvehicles:\n"
+                "  - {name: A, type: tank, count: 6, columns: 2, speed_mps: 11, unsteady_m: 3, behind_m: -150,\n"
+                "     route_m: [[0, 0], [100, 40], [160, 150], [260, 190], [300, 320], [420, 380]]}\n"
+                "  - {name: M, type: person, speed_mps: 2, route_m: [[0, 0], [30, 40], [80, 60]]}\n");
     for (int i = 0; i < cast->entity_count; i++)
         for (double t = 0.5; t < 20; t += 0.9) {
             static const double h = 0.04;
-            CastPose   at, p[4];
-            Kinematics k;
-            double     v_enu[3], v_ecef[3], slope[2], unit[9], v_body[3];
+            CastPose            at, p[4];
+            Kinematics          k;
+            double              v_enu[3], v_ecef[3], slope[2], unit[9], v_body[3];
             cast_pose(&at, cast, i, t);
             for (int j = 0; j < 4; j++) cast_pose(&p[j], cast, i, t + (j < 2 ? j - 2 : j - 1) * h);
             for (int c = 0; c < 3; c++)
@@ -161,9 +164,10 @@ static void derivatives_and_attitudes(void **state)
 static void formations(void **state)
 {
     (void)state;
-    Cast *cast = cast_of("scale: 2\nvehicles:\n"
-                         "  - {name: A, type: tank, id: 10, count: 3, columns: 3, column_m: 20, spacing_m: 50, speed_mps: 8, route_m: [[0, 0], [0, 900]]}\n"
-                         "  - {name: B, type: truck, route_m: [5, 5]}\n");
+    Cast *cast = cast_of(
+        "scale: 2\nvehicles:\n"
+        "  - {name: A, type: tank, id: 10, count: 3, columns: 3, column_m: 20, spacing_m: 50, speed_mps: 8, route_m: [[0, 0], [0, 900]]}\n"
+        "  - {name: B, type: truck, route_m: [5, 5]}\n");
     CastPose pose;
     CHECK(cast->entity_count == 7); /* one alone stays alone */
     for (int i = 0; i < 6; i++) {   /* northward: the left is west */
@@ -181,14 +185,15 @@ static void formations(void **state)
 static void shots(void **state)
 {
     (void)state;
-    Cast *cast = cast_of("duration_s: 60\nvehicles:\n"
-                         "  - {name: T, type: tank, id: 1, speed_mps: 15, route_m: [[0, 0], [900, 0]], turret: swing}\n"
-                         "  - {name: H, type: helicopter, id: 2, speed_mps: 40, height_m: 120, route_m: [[2500, -500], [2500, 2500]]}\n"
-                         "shots:\n"
-                         "  - {from: H 2, at: T 1, time_s: 5, id: 7}\n"
-                         "  - {from: T 1, at: H 2, time_s: 6, id: 8, launch_mps: 400, boost_mps: 0, drag_mps2: 0}\n"
-                         "  - {from: T 1, at_m: [300, 900], time_s: 8, entity: false, rounds: 3, every_s: 2, type: 2.2.225.2.1.1.0, hit: ground,\n"
-                         "     launch_mps: 900, boost_mps: 0, drag_mps2: 0}\n");
+    Cast *cast = cast_of(
+        "duration_s: 60\nvehicles:\n"
+        "  - {name: T, type: tank, id: 1, speed_mps: 15, route_m: [[0, 0], [900, 0]], turret: swing}\n"
+        "  - {name: H, type: helicopter, id: 2, speed_mps: 40, height_m: 120, route_m: [[2500, -500], [2500, 2500]]}\n"
+        "shots:\n"
+        "  - {from: H 2, at: T 1, time_s: 5, id: 7}\n"
+        "  - {from: T 1, at: H 2, time_s: 6, id: 8, launch_mps: 400, boost_mps: 0, drag_mps2: 0}\n"
+        "  - {from: T 1, at_m: [300, 900], time_s: 8, entity: false, rounds: 3, every_s: 2, type: 2.2.225.2.1.1.0, hit: ground,\n"
+        "     launch_mps: 900, boost_mps: 0, drag_mps2: 0}\n");
     CHECK(cast->round_count == 5 && cast->entity_count == 4);
     CastPose pose, after;
     double   off[3];
@@ -223,7 +228,8 @@ static void shots(void **state)
     const CastEntity *heli = &cast->entity[1];
     CHECK_NEAR(heli->rest_s - heli->hit_s, sqrt(2 * 120 / 9.80665), 0.3); /* swells of 1.5 m at its end and beginning */
     cast_pose(&pose, cast, 1, 59);
-    CHECK_NEAR(pose.p_enu[2], exercise_ground_at(NULL, &cast->ground, pose.p_enu[0], pose.p_enu[1]), 2.5); /* 50 ms of 49 m/s */
+    CHECK_NEAR(pose.p_enu[2], exercise_ground_at(NULL, &cast->ground, pose.p_enu[0], pose.p_enu[1]),
+               2.5); /* 50 ms of 49 m/s */
     for (int i = 2; i < 5; i++) {
         CHECK_NEAR(cast->round[i].fire_s, 8 + 2 * (i - 2), 1e-12);
         CHECK_NEAR(cast->round[i].impact_enu[0], 300, 1e-9);
@@ -273,24 +279,26 @@ static void a_ridge_is_flown_over(void **state)
         CHECK(file != NULL);
         if (!part)
             fputs("GEOGCS[\"WGS 84\",DATUM[\"WGS_1984\",SPHEROID[\"WGS 84\",6378137,298.257223563]],"
-                  "PRIMEM[\"Greenwich\",0],UNIT[\"degree\",0.0174532925199433]]\n", file);
-        else
-            fprintf(file, "ncols 300\nnrows 100\nxllcorner 9.985\nyllcorner 45.995\ncellsize 1e-4\n");
+                  "PRIMEM[\"Greenwich\",0],UNIT[\"degree\",0.0174532925199433]]\n",
+                  file);
+        else fprintf(file, "ncols 300\nnrows 100\nxllcorner 9.985\nyllcorner 45.995\ncellsize 1e-4\n");
         for (int n = 0; part && n < 300 * 100; n++)
             fprintf(file, "%.2f%c", 200 + 80 * exp(-0.5 * pow((n % 300 - 150) / 15.0, 2)), n % 300 == 299 ? '\n' : ' ');
         CHECK(fclose(file) == 0);
     }
     for (int low = 0; low < 2; low++) {
-        snprintf(text, sizeof text,
-                 "duration_s: 60\nplace: {lat_deg: 46, lon_deg: 10, height_m: 250}\nground: {elevation: %s}\nvehicles:\n"
-                 "  - {name: H, type: helicopter, speed_mps: 30, height_m: %d, route_m: [[-800, 10], [800, -10]]}\n",
-                 path, low ? 30 : 300);
+        snprintf(
+            text, sizeof text,
+            "duration_s: 60\nplace: {lat_deg: 46, lon_deg: 10, height_m: 250}\nground: {elevation: %s}\nvehicles:\n"
+            "  - {name: H, type: helicopter, speed_mps: 30, height_m: %d, route_m: [[-800, 10], [800, -10]]}\n",
+            path, low ? 30 : 300);
         Cast  *cast = cast_of(text);
         double least_m = INFINITY, most_m = -INFINITY;
         for (double t = 0; t < 53; t += 0.1) {
             CastPose pose;
             cast_pose(&pose, cast, 0, t);
-            const double above_m = pose.p_enu[2] - elevation_height(&cast->ground.elevation, pose.p_enu[0], pose.p_enu[1], NULL);
+            const double above_m =
+                pose.p_enu[2] - elevation_height(&cast->ground.elevation, pose.p_enu[0], pose.p_enu[1], NULL);
             least_m = fmin(least_m, above_m);
             most_m = fmax(most_m, above_m);
         }
@@ -307,9 +315,10 @@ static void a_ridge_is_flown_over(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(level_ground), cmocka_unit_test(straight_at_its_speed), cmocka_unit_test(circle),
-        cmocka_unit_test(derivatives_and_attitudes), cmocka_unit_test(formations), cmocka_unit_test(shots),
-        cmocka_unit_test(real_ground), cmocka_unit_test(a_ridge_is_flown_over),
+        cmocka_unit_test(level_ground), cmocka_unit_test(straight_at_its_speed),
+        cmocka_unit_test(circle),       cmocka_unit_test(derivatives_and_attitudes),
+        cmocka_unit_test(formations),   cmocka_unit_test(shots),
+        cmocka_unit_test(real_ground),  cmocka_unit_test(a_ridge_is_flown_over),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

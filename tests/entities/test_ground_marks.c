@@ -12,7 +12,7 @@ static const DisEntityType person_type = {3, 1, 225, 1, 1, 0, 0}, house_type = {
 static DisEntityState driving(int entity, DisEntityType type, double north_m, double speed_mps)
 {
     DisEntityState pdu = report(entity, type);
-    pdu.p_ecef[2]       = north_m;
+    pdu.p_ecef[2] = north_m;
     pdu.velocity_mps[2] = (float)speed_mps;
     return pdu;
 }
@@ -74,9 +74,9 @@ static void a_tank_leaves_tracks_and_a_stand(void **state)
     drive(&f, 0);
     const GroundMarks *m = marks_at(&f, ends_s);
     CHECK(m->stands == 1 && m->burns == 0 && m->forgotten == 0);
-    const GroundStand *s = &m->stand[0];
+    const GroundStand    *s = &m->stand[0];
     const SnapshotEntity *e = &f.snapshot.entity[0];
-    const Model *model = catalog_model(f.catalog, e->model);
+    const Model          *model = catalog_model(f.catalog, e->model);
     CHECK(s->from_s == arrives_s && s->to_s == leaves_s && s->owner == entity_key(entity_id(1)) + 1);
     CHECK_NEAR(s->p_ecef[2], 200, 1e-9);
     /* its body shades the ground, not the air beside its gun, which is metres of the box of all of it */
@@ -95,7 +95,8 @@ static void a_tank_leaves_tracks_and_a_stand(void **state)
     /* forward is north */
     CHECK_NEAR(s->r_ecef_from_body[6], 1, 1e-6);
     /* its engine idles for two minutes */
-    CHECK(s->blow.from_s == arrives_s && s->blow.to_s == arrives_s + 120 && s->blow.excess_k > 100 && s->blow.radius_m > 0.05f);
+    CHECK(s->blow.from_s == arrives_s && s->blow.to_s == arrives_s + 120 && s->blow.excess_k > 100 &&
+          s->blow.radius_m > 0.05f);
 
     /* 200 m in four pieces of 50 m at most (the reports are 50 m apart), 100 m in two */
     CHECK(m->tracks == 6);
@@ -189,7 +190,7 @@ static void timeouts_found_late_change_nothing(void **state)
 static void the_trail_reaches_its_vehicle(void **state)
 {
     (void)state;
-    Fixture f = fixture_open(NULL);
+    Fixture        f = fixture_open(NULL);
     DisEntityState pdu = driving(1, tank_type, 0, 10);
     hear(&f, &pdu, 0);
     for (double t_s = 0.2; t_s < 12; t_s += 0.7) {
@@ -208,7 +209,7 @@ static void bends_are_followed(void **state)
 {
     (void)state;
     static const double radius_m = 40, w_rps = 0.25;
-    Fixture f = fixture_open(NULL);
+    Fixture             f = fixture_open(NULL);
     for (int t_s = 0; t_s <= 20; t_s += heartbeat_s) {
         const double   turned = w_rps * t_s;
         DisEntityState pdu = report(1, tank_type);
@@ -237,7 +238,7 @@ static void bends_are_followed(void **state)
 static void who_stands_has_stood(void **state)
 {
     (void)state;
-    Fixture f = fixture_open(NULL);
+    Fixture        f = fixture_open(NULL);
     DisEntityState tank = report(1, tank_type), man = report(2, person_type), house = report(3, house_type);
     DisEntityState ship = report(4, (DisEntityType){1, 3, 225, 1, 1, 0, 0}), heli = report(5, helicopter_type);
     hear(&f, &tank, 100), hear(&f, &man, 100), hear(&f, &house, 100), hear(&f, &ship, 100), hear(&f, &heli, 100);
@@ -263,7 +264,7 @@ static void who_stands_has_stood(void **state)
 static void jitter_is_no_motion(void **state)
 {
     (void)state;
-    Fixture f = fixture_open(NULL);
+    Fixture        f = fixture_open(NULL);
     DisEntityState pdu = driving(1, truck_type, 0, 5);
     hear(&f, &pdu, 0);
     for (int t_s = 5; t_s <= 60; t_s += heartbeat_s) {
@@ -299,19 +300,26 @@ static void the_ground_decides(void **state)
         for (int i = 0; i < 101; i++) elevation_set_post(&ground.level[0], i, j, 60);
     elevation_build_pyramids(&ground);
     config.ground = (ContactGround){.frame = &frame, .elevation = &ground};
-    Fixture f = fixture_open(&config);
+    Fixture        f = fixture_open(&config);
     DisEntityState parked = report(1, helicopter_type), hovers = report(2, helicopter_type);
     parked.p_ecef[0] += 32, hovers.p_ecef[0] += 45;
     hear(&f, &parked, 0), hear(&f, &hovers, 0);
     const GroundMarks *m = marks_at(&f, 1);
     CHECK(m->stands == 1 && m->stand[0].owner == entity_key(entity_id(1)) + 1);
 
-    static const struct { uint8_t result; double height_m; uint16_t warhead; bool burns; } want[] = {
-        {1, 31, 1000, true}, {1, 40, 1000, false}, {3, 40, 1000, true}, {12, 30, 1000, true},
-        {5, 32.9, 1000, true}, {5, 33.1, 1000, false}, {6, 30, 1000, false}, {14, 30, 1000, false}, {3, 30, 5000, false}};
+    static const struct {
+        uint8_t  result;
+        double   height_m;
+        uint16_t warhead;
+        bool     burns;
+    } want[] = {{1, 31, 1000, true},  {1, 40, 1000, false},  {3, 40, 1000, true},
+                {12, 30, 1000, true}, {5, 32.9, 1000, true}, {5, 33.1, 1000, false},
+                {6, 30, 1000, false}, {14, 30, 1000, false}, {3, 30, 5000, false}};
     int burns = 0;
     for (size_t i = 0; i < sizeof want / sizeof *want; i++) {
-        DisDetonation pdu = {.munition = entity_id(50), .event = {1, 3001, (uint16_t)i}, .result = want[i].result,
+        DisDetonation pdu = {.munition = entity_id(50),
+                             .event = {1, 3001, (uint16_t)i},
+                             .result = want[i].result,
                              .p_ecef = {earth_radius_m + want[i].height_m, (double)i, 0},
                              .descriptor = {{2, 2, 225, 1, 1, 3, 0}, want[i].warhead, 1000, 1, 0}};
         entity_table_detonation(f.table, &pdu, 10 + (double)i);
@@ -348,8 +356,11 @@ static void marks_lie_where_their_entity_is_shown(void **state)
         const DisEntityState drives = driving(2, tank_type, 2.0 * t_s, 2);
         hear(&f, &stands, t_s), hear(&f, &drives, t_s);
     }
-    const DisDetonation pdu = {.munition = entity_id(50), .event = {1, 3001, 1}, .result = 3,
-                               .p_ecef = {earth_radius_m + 0.3, 5, 100}, .descriptor = {{2, 2, 225, 1, 1, 3, 0}, 1000, 1000, 1, 0}};
+    const DisDetonation pdu = {.munition = entity_id(50),
+                               .event = {1, 3001, 1},
+                               .result = 3,
+                               .p_ecef = {earth_radius_m + 0.3, 5, 100},
+                               .descriptor = {{2, 2, 225, 1, 1, 3, 0}, 1000, 1000, 1, 0}};
     entity_table_detonation(f.table, &pdu, 121);
     const GroundMarks    *m = marks_at(&f, 122);
     const SnapshotEntity *shown = NULL;
@@ -359,7 +370,7 @@ static void marks_lie_where_their_entity_is_shown(void **state)
     CHECK(memcmp(m->stand[0].p_ecef, shown->p_ecef, sizeof shown->p_ecef) == 0);
     CHECK(memcmp(m->stand[0].r_ecef_from_body, shown->r_ecef_from_body, sizeof shown->r_ecef_from_body) == 0);
     CHECK_NEAR(m->stand[0].p_ecef[0] - earth_radius_m, -15 + 0.2 * 100, 0.01); /* paper; north is z here, up is x */
-    CHECK_NEAR(m->stand[0].r_ecef_from_body[0], sin(atan(0.2)), 1e-4);       /* its nose is north, and up */
+    CHECK_NEAR(m->stand[0].r_ecef_from_body[0], sin(atan(0.2)), 1e-4);         /* its nose is north, and up */
     for (int i = 0; i < m->tracks; i++) {
         CHECK_NEAR(m->track[i].a_ecef[0] - earth_radius_m, -15 + 0.2 * m->track[i].a_ecef[2], 0.02);
         CHECK_NEAR(m->track[i].b_ecef[0] - earth_radius_m, -15 + 0.2 * m->track[i].b_ecef[2], 0.02);
@@ -373,7 +384,7 @@ static void marks_lie_where_their_entity_is_shown(void **state)
 static void jumps_leave_no_tracks(void **state)
 {
     (void)state;
-    Fixture f = fixture_open(NULL);
+    Fixture        f = fixture_open(NULL);
     DisEntityState pdu = driving(1, tank_type, 0, 10);
     hear(&f, &pdu, 0);
     pdu.p_ecef[2] = 500;
@@ -395,9 +406,9 @@ static void jumps_leave_no_tracks(void **state)
 static void a_pause_holds_trails_and_stands(void **state)
 {
     (void)state;
-    Fixture f = fixture_open(NULL);
-    DisEntityState tank = driving(1, tank_type, 0, 10), truck = report(2, truck_type);
-    const DisStopFreeze  stop  = {.receiving = {0xFFFF, 0xFFFF, 0xFFFF}};
+    Fixture              f = fixture_open(NULL);
+    DisEntityState       tank = driving(1, tank_type, 0, 10), truck = report(2, truck_type);
+    const DisStopFreeze  stop = {.receiving = {0xFFFF, 0xFFFF, 0xFFFF}};
     const DisStartResume start = {.receiving = {0xFFFF, 0xFFFF, 0xFFFF}};
     truck.p_ecef[1] = 100;
     hear(&f, &tank, 0), hear(&f, &truck, 0);
@@ -413,7 +424,7 @@ static void a_pause_holds_trails_and_stands(void **state)
     CHECK(m->tracks == 3); /* the last one since the report */
     CHECK_NEAR(m->track[1].b_ecef[2], 50, 1e-9);
     CHECK(m->track[1].a_s == 9 && m->track[1].b_s == 11);
-    CHECK(m->stand[0].to_s == INFINITY); /* it stands yet */
+    CHECK(m->stand[0].to_s == INFINITY);          /* it stands yet */
     CHECK(marks_at(&f, 19)->stand[0].to_s == 18); /* its timeout, and the pause */
     fixture_close(&f);
 }
@@ -476,13 +487,16 @@ static void a_flood_stays_bounded(void **state)
     uint32_t draw = 1;
     for (int i = 0; i < 60000; i++) {
         draw = draw * 1664525u + 1013904223u;
-        DisEntityState pdu = driving(draw >> 8 & 0x1FFF, i % 3 ? tank_type : truck_type, draw % 1000, draw % 5 ? (double)(draw % 70) : 0);
+        DisEntityState pdu = driving(draw >> 8 & 0x1FFF, i % 3 ? tank_type : truck_type, draw % 1000,
+                                     draw % 5 ? (double)(draw % 70) : 0);
         pdu.dead_reckoning = (uint8_t)(draw >> 5 & 15);
         pdu.acceleration_mps2[1] = (float)(draw % 9000);
         pdu.angular_rate_rps[2] = (float)(draw % 40);
         pdu.p_ecef[1] = draw % 7919;
         (void)entity_table_entity_state(f.table, &pdu, 0.001 * i);
-        DisDetonation burst = {.munition = entity_id(i % 60000), .result = 3, .descriptor = {{2, 9, 225, 2, 1, 0, 0}, 1000, 1000, 1, 0},
+        DisDetonation burst = {.munition = entity_id(i % 60000),
+                               .result = 3,
+                               .descriptor = {{2, 9, 225, 2, 1, 0, 0}, 1000, 1000, 1, 0},
                                .p_ecef = {draw % 11 ? earth_radius_m : NAN, draw % 1000, i}};
         entity_table_detonation(f.table, &burst, 0.001 * i);
     }
@@ -490,7 +504,8 @@ static void a_flood_stays_bounded(void **state)
     CHECK(m->stands <= ground_stand_capacity && m->burns == ground_burn_capacity && m->tracks <= ground_tracks_most);
     CHECK(m->forgotten > 0 && entity_table_counters(f.table)->marks_forgotten == (uint64_t)m->forgotten);
     for (int i = 0; i < m->tracks; i++)
-        CHECK(v3_is_finite(m->track[i].a_ecef) && v3_is_finite(m->track[i].b_ecef) && m->track[i].b_s > m->track[i].a_s);
+        CHECK(v3_is_finite(m->track[i].a_ecef) && v3_is_finite(m->track[i].b_ecef) &&
+              m->track[i].b_s > m->track[i].a_s);
     fixture_close(&f);
 }
 
@@ -510,7 +525,7 @@ static void snapshots_stay_cheap(void **state)
             }
         double best_s = INFINITY;
         for (int i = 0; i < rounds; i++) {
-            const double begun_s = cpu_s();
+            const double       begun_s = cpu_s();
             const GroundMarks *m = marks_at(&f, (full ? 99 : 1) + 0.1 * i);
             best_s = fmin(best_s, cpu_s() - begun_s);
             CHECK(m->tracks == (full ? ground_track_capacity + (i > 0 ? vehicles : 0) : 0));
@@ -537,8 +552,8 @@ static void saved_marks_come_back(void **state)
 {
     (void)state;
     static const double unix_s = 1782036000; /* 2026-06-21T10:00:00Z: whole, so that times here are exact */
-    Fixture f = fixture_open(NULL), g = fixture_open(NULL);
-    char    folder[temp_path_size], path[temp_name_size], again[temp_name_size];
+    Fixture             f = fixture_open(NULL), g = fixture_open(NULL);
+    char                folder[temp_path_size], path[temp_name_size], again[temp_name_size];
     CHECK(temp_folder(folder));
     snprintf(path, sizeof path, "%s/marks.csv", folder);
     snprintf(again, sizeof again, "%s/again.csv", folder);
@@ -557,7 +572,7 @@ static void saved_marks_come_back(void **state)
     same_marks(marks_at(&f, ends_s), marks_at(&g, ends_s));
 
     /* a restart an hour later: exercise time 0 is another; who stands there again stood all the time */
-    Fixture h = fixture_open(NULL);
+    Fixture      h = fixture_open(NULL);
     const double later_s = ends_s + 1800;
     CHECK(entity_table_marks_load(h.table, unix_s + later_s, path) == STATUS_OK);
     const GroundMarks *m = marks_at(&h, 0);
@@ -568,7 +583,8 @@ static void saved_marks_come_back(void **state)
     CHECK(m->stands == 2 && m->stand[1].to_s == INFINITY && m->stand[1].from_s == -1800 - 3600);
 
     log_set_sink(check_listen, NULL);
-    CHECK(entity_table_marks_load(h.table, unix_s, path) == STATUS_UNSUPPORTED && strstr(check_said, "before the exercise"));
+    CHECK(entity_table_marks_load(h.table, unix_s, path) == STATUS_UNSUPPORTED &&
+          strstr(check_said, "before the exercise"));
     CHECK(entity_table_marks_load(h.table, unix_s, "/none") != STATUS_OK);
     CHECK(entity_table_marks_save(h.table, unix_s, "/none/at/all.csv") == STATUS_IO);
     log_set_sink(NULL, NULL);
@@ -583,7 +599,9 @@ static const char header[] =
 static void bad_files_are_refused(void **state)
 {
     (void)state;
-    static const struct { const char *row, *said; } bad[] = {
+    static const struct {
+        const char *row, *said;
+    } bad[] = {
         {"hole,,0,,6378137,0,0,,,,,,,,,,,,,,,,,,,,,,1,1,1\n", "kind is not"},
         {"burn,,0,,6378137,0,0,,,,,,,,,,,,,,,,,,,,,,-1,1,1\n", "radius_m"},
         {"burn,,0,,6378137,0,0,,,,,,,,,,,,,,,,,,,,,,nan,1,1\n", "radius_m"},

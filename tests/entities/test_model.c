@@ -14,8 +14,8 @@ static void put_cube(Model *m, int vertex, int triangle, int part)
         for (int k = 0; k < 4; k++) {
             double *p = m->vertex[first + k];
             p[axis] = side;
-            p[u]    = corner[k][0];
-            p[v]    = corner[k][1];
+            p[u] = corner[k][0];
+            p[v] = corner[k][1];
             memset(m->normal[first + k], 0, sizeof m->normal[0]);
             m->normal[first + k][axis] = side > 0 ? 1 : -1;
         }
@@ -38,37 +38,37 @@ static Model make_model(void)
 {
     Model m = {.node_count = nodes, .part_count = 3, .vertex_count = 72, .triangle_count = 36, .sag_m = 0.01};
     strcpy(m.name, "test");
-    m.node          = calloc(nodes, sizeof *m.node);
-    m.part          = calloc(3, sizeof *m.part);
-    m.vertex        = calloc(72, sizeof *m.vertex);
-    m.normal        = calloc(72, sizeof *m.normal);
-    m.triangle      = calloc(36, sizeof *m.triangle);
+    m.node = calloc(nodes, sizeof *m.node);
+    m.part = calloc(3, sizeof *m.part);
+    m.vertex = calloc(72, sizeof *m.vertex);
+    m.normal = calloc(72, sizeof *m.normal);
+    m.triangle = calloc(36, sizeof *m.triangle);
     m.triangle_part = calloc(36, sizeof *m.triangle_part);
     const int part_node[3] = {base, arm, slide};
     for (int i = 0; i < nodes; i++) {
         snprintf(m.node[i].name, sizeof m.node[i].name, "node%d", i);
         m.node[i].parent = i - 1;
-        m.node[i].low    = 1;
-        m.node[i].high   = -1;
+        m.node[i].low = 1;
+        m.node[i].high = -1;
         m3_identity(m.node[i].r_parent_from_node);
     }
     m.node[table].p_parent[2] = -2;
-    m.node[table].joint       = JOINT_ROTATION;
-    m.node[table].axis[2]     = 1;
-    m.node[arm].p_parent[0]   = 3;
-    m.node[arm].joint         = JOINT_ROTATION;
-    m.node[arm].axis[1]       = 1;
-    m.node[arm].low           = -10 * rad_per_deg;
-    m.node[arm].high          = 30 * rad_per_deg;
+    m.node[table].joint = JOINT_ROTATION;
+    m.node[table].axis[2] = 1;
+    m.node[arm].p_parent[0] = 3;
+    m.node[arm].joint = JOINT_ROTATION;
+    m.node[arm].axis[1] = 1;
+    m.node[arm].low = -10 * rad_per_deg;
+    m.node[arm].high = 30 * rad_per_deg;
     m.node[slide].p_parent[0] = 4;
-    m.node[slide].joint       = JOINT_TRANSLATION;
-    m.node[slide].axis[0]     = 1;
-    m.node[slide].low         = 0;
-    m.node[slide].high        = 0.5;
+    m.node[slide].joint = JOINT_TRANSLATION;
+    m.node[slide].axis[0] = 1;
+    m.node[slide].low = 0;
+    m.node[slide].high = 0.5;
     for (int i = 0; i < 3; i++) {
         snprintf(m.part[i].name, sizeof m.part[i].name, "part%d", i);
         strcpy(m.part[i].material, "steel_worn");
-        m.part[i].node           = part_node[i];
+        m.part[i].node = part_node[i];
         m.part[i].first_triangle = 12 * i;
         m.part[i].triangle_count = 12;
         put_cube(&m, 24 * i, 12 * i, i);
@@ -87,9 +87,9 @@ static void check_point(const NodePose *pose, double x, double y, double z)
 static void poses_follow_the_chain(void **state)
 {
     (void)state;
-    Model m = make_model();
+    Model    m = make_model();
     NodePose pose[nodes];
-    double value[nodes] = {0};
+    double   value[nodes] = {0};
     model_pose(pose, &m, value);
     check_point(&pose[slide], 7, 0, -2);
     NodePose rest[nodes];
@@ -104,18 +104,18 @@ static void poses_follow_the_chain(void **state)
 
     /* elevation lifts (z down): 4 m of arm at 30 degrees; the slide runs along the arm */
     value[table] = 0;
-    value[arm]   = 30 * rad_per_deg;
+    value[arm] = 30 * rad_per_deg;
     value[slide] = 0.25;
     model_pose(pose, &m, value);
     check_point(&pose[slide], 3 + 4.25 * sqrt(0.75), 0, -2 - 4.25 * 0.5);
 
     /* limits, and what is not a number counts as nothing */
-    value[arm]   = 2;
+    value[arm] = 2;
     value[slide] = 7;
     model_pose(pose, &m, value);
     check_point(&pose[slide], 3 + 4.5 * sqrt(0.75), 0, -2 - 4.5 * 0.5);
     value[table] = NAN;
-    value[arm]   = -INFINITY;
+    value[arm] = -INFINITY;
     value[slide] = NAN;
     model_pose(pose, &m, value);
     check_point(&pose[slide], 7, 0, -2);
@@ -126,10 +126,10 @@ static void poses_follow_the_chain(void **state)
 static void rest_attitude_comes_before_the_joint(void **state)
 {
     (void)state;
-    Model m = make_model();
+    Model        m = make_model();
     const double rolled[9] = {1, 0, 0, 0, 0, -1, 0, 1, 0}; /* node y is parent z */
     memcpy(m.node[table].r_parent_from_node, rolled, sizeof rolled);
-    double value[nodes] = {0, 0.5 * pi_rad, 0, 0};
+    double   value[nodes] = {0, 0.5 * pi_rad, 0, 0};
     NodePose pose[nodes];
     model_pose(pose, &m, value);
     /* about node z, which is parent -y: x goes to node y, which is parent z */
@@ -142,7 +142,7 @@ static void poses_stay_orthonormal(void **state)
     (void)state;
     Model m = make_model();
     for (int k = 0; k < 200; k++) {
-        double value[nodes], product[9];
+        double   value[nodes], product[9];
         NodePose pose[nodes];
         for (int i = 0; i < nodes; i++) value[i] = 2000 * (random_uniform(7, 1, (uint32_t)k, (uint64_t)i) - 0.5);
         model_pose(pose, &m, value);
@@ -166,15 +166,15 @@ static void measures_hold_every_pose(void **state)
     CHECK_NEAR(m.height_m, 3, 1e-12);
     double most = 0;
     for (int k = 0; k < 4000; k++) {
-        double value[nodes] = {0};
+        double   value[nodes] = {0};
         NodePose pose[nodes];
         value[table] = 7 * random_uniform(1, 2, (uint32_t)k, 0);
-        value[arm]   = k % 2 ? 1 : (random_uniform(1, 2, (uint32_t)k, 1) - 0.5);
+        value[arm] = k % 2 ? 1 : (random_uniform(1, 2, (uint32_t)k, 1) - 0.5);
         value[slide] = k % 3 ? 1 : random_uniform(1, 2, (uint32_t)k, 2);
         model_pose(pose, &m, value);
         for (int v = 0; v < m.vertex_count; v++) {
             const NodePose *at = &pose[m.part[v / 24].node];
-            double p[3];
+            double          p[3];
             m3_mul_v3(p, at->r_body_from_node, m.vertex[v]);
             v3_add(p, p, at->p_body);
             most = fmax(most, v3_length(p));
@@ -190,15 +190,15 @@ static void radius_holds_free_joints(void **state)
 {
     (void)state;
     Model m = make_model();
-    m.node[arm].low  = 1;
+    m.node[arm].low = 1;
     m.node[arm].high = -1;
     const double skew[3] = {0.6, 0, 0.8};
     memcpy(m.node[table].axis, skew, sizeof skew);
     model_measure(&m);
     double most = 0;
     for (int k = 0; k < 4000; k++) {
-        double value[nodes] = {0, 7 * random_uniform(3, 2, (uint32_t)k, 0), 7 * random_uniform(3, 2, (uint32_t)k, 1),
-                               0.5};
+        double   value[nodes] = {0, 7 * random_uniform(3, 2, (uint32_t)k, 0), 7 * random_uniform(3, 2, (uint32_t)k, 1),
+                                 0.5};
         NodePose pose[nodes];
         model_pose(pose, &m, value);
         for (int v = 48; v < 72; v++) {
@@ -224,8 +224,8 @@ static void count_complaint(void *user, LogLevel level, const char *line)
 }
 
 typedef void Damage(Model *m);
-static void open_shell(Model *m)        { memcpy(m->triangle[3], m->triangle[2], sizeof m->triangle[0]); }
-static void turn_triangle(Model *m)
+static void  open_shell(Model *m) { memcpy(m->triangle[3], m->triangle[2], sizeof m->triangle[0]); }
+static void  turn_triangle(Model *m)
 {
     const uint32_t first = m->triangle[5][0];
     m->triangle[5][0] = m->triangle[5][1];
@@ -239,47 +239,78 @@ static void turn_inside_out(Model *m)
         m->triangle[t][1] = first;
     }
 }
-static void crack(Model *m)             { m->vertex[30][1] += 1e-15; }
-static void pinch(Model *m)             { memcpy(m->vertex[1], m->vertex[0], sizeof m->vertex[0]); }
-static void nan_vertex(Model *m)        { m->vertex[70][2] = NAN; }
-static void long_normal(Model *m)       { m->normal[10][0] *= 1.0001f; m->normal[10][1] += 0.02f; }
-static void nan_normal(Model *m)        { m->normal[10][0] = NAN; }
-static void bad_index(Model *m)         { m->triangle[35][2] = 72; }
-static void child_first(Model *m)       { m->node[arm].parent = slide; }
-static void own_parent(Model *m)        { m->node[arm].parent = arm; }
-static void two_roots(Model *m)         { m->node[arm].parent = -1; }
-static void no_name(Model *m)           { m->part[1].name[0] = 0; }
-static void endless_name(Model *m)      { memset(m->node[1].name, 'x', sizeof m->node[1].name); }
-static void no_material(Model *m)       { m->part[2].material[0] = 0; }
-static void endless_model_name(Model *m){ memset(m->name, 'x', sizeof m->name); }
-static void gap_in_triangles(Model *m)  { m->part[1].first_triangle++; m->part[1].triangle_count--; }
-static void too_few_in_parts(Model *m)  { m->part_count = 2; }
-static void too_many_in_part(Model *m)  { m->part[2].triangle_count = 1 << 30; }
-static void wrong_owner(Model *m)       { m->triangle_part[20] = 2; }
-static void part_of_nobody(Model *m)    { m->part[0].node = nodes; }
-static void scattered_parts(Model *m)   { m->part[2].node = base; }
-static void unknown_role(Model *m)      { m->part[0].role = HEAT_ROLE_COUNT; }
-static void long_axis(Model *m)         { m->node[table].axis[2] = 1.001; }
-static void mirrored_rest(Model *m)     { m->node[table].r_parent_from_node[0] = -1; }
-static void endless_slide(Model *m)     { m->node[slide].high = -1; }
-static void not_measured(Model *m)      { m->radius_m = 0; }
+static void crack(Model *m) { m->vertex[30][1] += 1e-15; }
+static void pinch(Model *m) { memcpy(m->vertex[1], m->vertex[0], sizeof m->vertex[0]); }
+static void nan_vertex(Model *m) { m->vertex[70][2] = NAN; }
+static void long_normal(Model *m)
+{
+    m->normal[10][0] *= 1.0001f;
+    m->normal[10][1] += 0.02f;
+}
+static void nan_normal(Model *m) { m->normal[10][0] = NAN; }
+static void bad_index(Model *m) { m->triangle[35][2] = 72; }
+static void child_first(Model *m) { m->node[arm].parent = slide; }
+static void own_parent(Model *m) { m->node[arm].parent = arm; }
+static void two_roots(Model *m) { m->node[arm].parent = -1; }
+static void no_name(Model *m) { m->part[1].name[0] = 0; }
+static void endless_name(Model *m) { memset(m->node[1].name, 'x', sizeof m->node[1].name); }
+static void no_material(Model *m) { m->part[2].material[0] = 0; }
+static void endless_model_name(Model *m) { memset(m->name, 'x', sizeof m->name); }
+static void gap_in_triangles(Model *m)
+{
+    m->part[1].first_triangle++;
+    m->part[1].triangle_count--;
+}
+static void too_few_in_parts(Model *m) { m->part_count = 2; }
+static void too_many_in_part(Model *m) { m->part[2].triangle_count = 1 << 30; }
+static void wrong_owner(Model *m) { m->triangle_part[20] = 2; }
+static void part_of_nobody(Model *m) { m->part[0].node = nodes; }
+static void scattered_parts(Model *m) { m->part[2].node = base; }
+static void unknown_role(Model *m) { m->part[0].role = HEAT_ROLE_COUNT; }
+static void long_axis(Model *m) { m->node[table].axis[2] = 1.001; }
+static void mirrored_rest(Model *m) { m->node[table].r_parent_from_node[0] = -1; }
+static void endless_slide(Model *m) { m->node[slide].high = -1; }
+static void not_measured(Model *m) { m->radius_m = 0; }
 
 static void validator_refuses_each_damage(void **state)
 {
     (void)state;
     static Damage *const damage[] = {
-        open_shell, turn_triangle, turn_inside_out, crack, pinch, nan_vertex, long_normal, nan_normal, bad_index,
-        child_first, own_parent, two_roots, no_name, endless_name, no_material, endless_model_name, gap_in_triangles,
-        too_few_in_parts, too_many_in_part, wrong_owner, part_of_nobody, scattered_parts, unknown_role, long_axis,
-        mirrored_rest, endless_slide, not_measured,
+        open_shell,
+        turn_triangle,
+        turn_inside_out,
+        crack,
+        pinch,
+        nan_vertex,
+        long_normal,
+        nan_normal,
+        bad_index,
+        child_first,
+        own_parent,
+        two_roots,
+        no_name,
+        endless_name,
+        no_material,
+        endless_model_name,
+        gap_in_triangles,
+        too_few_in_parts,
+        too_many_in_part,
+        wrong_owner,
+        part_of_nobody,
+        scattered_parts,
+        unknown_role,
+        long_axis,
+        mirrored_rest,
+        endless_slide,
+        not_measured,
     };
     log_set_sink(count_complaint, NULL);
     complaints = 0;
-    Model sound = make_model();
+    Model        sound = make_model();
     const Status fine = model_validate(&sound);
     const int    after_sound = complaints;
     model_destroy(&sound);
-    int refused = 0, said = 0;
+    int       refused = 0, said = 0;
     const int count = (int)(sizeof damage / sizeof damage[0]);
     for (int i = 0; i < count; i++) {
         Model m = make_model();
@@ -300,7 +331,7 @@ static void destroy_zeroes(void **state)
 {
     (void)state;
     const Model nothing = {0};
-    Model m = make_model();
+    Model       m = make_model();
     model_destroy(&m);
     assert_memory_equal(&m, &nothing, sizeof m);
     model_destroy(&m);
@@ -318,10 +349,10 @@ static void roles_have_distinct_names(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(poses_follow_the_chain),    cmocka_unit_test(rest_attitude_comes_before_the_joint),
-        cmocka_unit_test(poses_stay_orthonormal),    cmocka_unit_test(measures_hold_every_pose),
-        cmocka_unit_test(radius_holds_free_joints),  cmocka_unit_test(validator_refuses_each_damage),
-        cmocka_unit_test(destroy_zeroes),            cmocka_unit_test(roles_have_distinct_names),
+        cmocka_unit_test(poses_follow_the_chain),   cmocka_unit_test(rest_attitude_comes_before_the_joint),
+        cmocka_unit_test(poses_stay_orthonormal),   cmocka_unit_test(measures_hold_every_pose),
+        cmocka_unit_test(radius_holds_free_joints), cmocka_unit_test(validator_refuses_each_damage),
+        cmocka_unit_test(destroy_zeroes),           cmocka_unit_test(roles_have_distinct_names),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -18,15 +18,15 @@ static void fit_of(ModelFit *fit, const double size[3], double scale_m, const Mo
 static void every_turn_and_unit(void **state)
 {
     (void)state;
-    static const double unit[] = {1, 0.001, 0.01, 0.0254, 0.3048};
+    static const double      unit[] = {1, 0.001, 0.01, 0.0254, 0.3048};
     static const char *const name[] = {NULL, "millimetres", "centimetres", "inches", "feet"};
-    const ModelSize want = {sides_m[0], sides_m[1], sides_m[2]};
-    ModelFit fit;
+    const ModelSize          want = {sides_m[0], sides_m[1], sides_m[2]};
+    ModelFit                 fit;
     for (int a = 0; a < 3; a++)
         for (int b = 0; b < 3; b++)
             for (int u = 0; u < 5 && a != b; u++) {
                 const int axis[3] = {a, b, 3 - a - b};
-                double size[3];
+                double    size[3];
                 for (int k = 0; k < 3; k++) size[axis[k]] = sides_m[k] / unit[u];
                 fit_of(&fit, size, 1, &want, 1.1);
                 CHECK(fit.fits == (u == 0 && a == 0 && b == 1));
@@ -42,7 +42,7 @@ static void every_turn_and_unit(void **state)
 static void what_is_near_enough_or_unknown(void **state)
 {
     (void)state;
-    ModelFit fit;
+    ModelFit        fit;
     const ModelSize long_alone = {.length_m = 6.7}, none = {0};
     fit_of(&fit, (double[3]){7.3, 9, 9}, 1, &long_alone, 1.1);
     CHECK(fit.fits); /* 9 % more */
@@ -57,7 +57,7 @@ static void what_is_near_enough_or_unknown(void **state)
 static void odd_scales_and_other_vehicles(void **state)
 {
     (void)state;
-    ModelFit fit;
+    ModelFit        fit;
     const ModelSize want = {sides_m[0], sides_m[1], sides_m[2]};
     fit_of(&fit, (double[3]){2 * 6.7, 2 * 3.1, 2 * 2.6}, 0.5, &want, 1.1);
     CHECK_NEAR(fit.factor, 0.5, 1e-9); /* on top of the sidecar's own half */

@@ -34,7 +34,7 @@ static Status import_quietly(Model *model, ModelImport *report, const char *path
 
 static void refused(const char *path, Status want, const char *said)
 {
-    Model model = {.part_count = 77};
+    Model        model = {.part_count = 77};
     const Status status = import_quietly(&model, NULL, path);
     if (status != want || !strstr(check_said, said))
         fail_msg("%s: %s, said '%s'; wanted %s, '%s'", path, status_name(status), check_said, status_name(want), said);
@@ -86,8 +86,8 @@ static void part_box(double low[3], double high[3], const Model *model, const Mo
 static void a_block_lies_as_its_axes_say(void **state)
 {
     (void)state;
-    char path[128], yaml[128];
-    Model m;
+    char        path[128], yaml[128];
+    Model       m;
     ModelImport r;
     write_text(path, "block.obj", BLOCK);
     /* nobody said: +z forward, +y up: 6 long, 2 wide, 4 high, on its base's centre; left is +x, so right is -x */
@@ -135,8 +135,8 @@ static void a_block_lies_as_its_axes_say(void **state)
 static void what_is_odd_is_counted_and_what_is_broken_refused(void **state)
 {
     (void)state;
-    char path[128];
-    Model m;
+    char        path[128];
+    Model       m;
     ModelImport r;
     /* no lid, a triangle of two points, one of three on a line, and more in another material */
     write_text(path, "odd.mtl", "newmtl skin\nKd 0.1 0.1 0.1\nnewmtl window_front\nKd 1 1 1\n");
@@ -204,12 +204,12 @@ static size_t make_gltf(char *out, size_t size, int depth)
 {
     static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     struct {
-        float corner[4][3];
+        float    corner[4][3];
         uint16_t index[12];
     } data = {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3}};
     const uint8_t *bytes = (const uint8_t *)&data;
-    char base64[128];
-    size_t n = 0;
+    char           base64[128];
+    size_t         n = 0;
     assert_int_equal(sizeof data, 72);
     for (size_t i = 0; i < sizeof data; i += 3) {
         const uint32_t w = (uint32_t)bytes[i] << 16 | (uint32_t)bytes[i + 1] << 8 | bytes[i + 2];
@@ -240,8 +240,8 @@ static void nodes_compose_and_mirrors_turn_nothing_inside_out(void **state)
 {
     (void)state;
     static char text[1 << 16];
-    char path[128], yaml[128];
-    Model m;
+    char        path[128], yaml[128];
+    Model       m;
     ModelImport r;
     write_file(path, "chain.gltf", text, make_gltf(text, sizeof text, 3));
     write_text(yaml, "chain.yaml", "origin: 0 0 0\njoints:\n- {nodes: n1, axis: +y}\n");
@@ -268,18 +268,18 @@ static void nodes_compose_and_mirrors_turn_nothing_inside_out(void **state)
 static void turned_octets_never_crash(void **state)
 {
     (void)state;
-    static char text[1 << 14], spoilt[1 << 15];
+    static char    text[1 << 14], spoilt[1 << 15];
     const uint32_t key[2] = {77, 0};
-    int failed = 0, read = 0;
+    int            failed = 0, read = 0;
     for (int round = 0; round < 300; round++) {
         const bool gltf = round % 2;
-        size_t size = gltf ? make_gltf(text, sizeof text, 4) : strlen(BLOCK);
-        char path[128];
+        size_t     size = gltf ? make_gltf(text, sizeof text, 4) : strlen(BLOCK);
+        char       path[128];
         memcpy(spoilt, gltf ? text : BLOCK, size);
         for (uint32_t change = 0; change < 1 + (uint32_t)round % 3; change++) {
             uint32_t word[4];
             random_u32x4(word, (const uint32_t[4]){(uint32_t)round, change, 0, 0}, key);
-            size_t at = word[0] % size;
+            size_t       at = word[0] % size;
             const size_t octets = 1 + word[1] % 9;
             switch (word[2] % 8) {
             case 0:
@@ -343,10 +343,10 @@ static bool ktank(char yaml[128], const char *name)
 static void ktanks_joints_are_where_its_solids_say(void **state)
 {
     (void)state;
-    char yaml[128];
-    Model m;
+    char        yaml[128];
+    Model       m;
     ModelImport r;
-    double low[3], high[3], value[64] = {0};
+    double      low[3], high[3], value[64] = {0};
     if (!ktank(yaml, "k.yaml")) {
         skip();
         return;
@@ -400,8 +400,8 @@ static void ktanks_joints_are_where_its_solids_say(void **state)
 static void a_gltf_hierarchy_gives_its_own_pivots(void **state)
 {
     (void)state;
-    char mesh[512], whole[4096], text[4600], yaml[128];
-    Model m;
+    char        mesh[512], whole[4096], text[4600], yaml[128];
+    Model       m;
     ModelImport r;
     if (!reference_path(mesh, "models/free/t-54-main-battle.glb")) {
         skip();
@@ -432,7 +432,7 @@ static void a_gltf_hierarchy_gives_its_own_pivots(void **state)
 static void a_catalog_names_files(void **state)
 {
     (void)state;
-    char path[128], yaml[128];
+    char     path[128], yaml[128];
     Catalog *c = NULL;
     write_text(path, "mine.obj", BLOCK);
     write_text(path, "catalog.csv",
@@ -464,9 +464,9 @@ static void a_catalog_names_files(void **state)
 /* Big-endian records of the OpenFlight 15.8 specification, one after the other. */
 typedef struct Flt {
     uint8_t at[1 << 16];
-    size_t count, record;
-    double vertex[64][3];
-    int vertices;
+    size_t  count, record;
+    double  vertex[64][3];
+    int     vertices;
 } Flt;
 
 static void put_bytes(Flt *f, size_t offset, uint64_t value, int octets)
@@ -499,8 +499,8 @@ static void pop(Flt *f) { record(f, 11, 4, NULL); }
 static void tetrahedron(Flt *f, const char *name, double x, double y, double z, double s)
 {
     static const int face[4][3] = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
-    const double corner[4][3] = {{x, y, z}, {x + s, y, z}, {x, y + s, z}, {x, y, z + s}};
-    const int first = f->vertices;
+    const double     corner[4][3] = {{x, y, z}, {x + s, y, z}, {x, y + s, z}, {x, y, z + s}};
+    const int        first = f->vertices;
     memcpy(f->vertex[first], corner, sizeof corner);
     f->vertices += 4;
     record(f, 4, 28, name);
@@ -598,9 +598,9 @@ static void make_flt(Flt *out)
 static void openflights_freedoms_are_joints(void **state)
 {
     (void)state;
-    static Flt flt;
-    char path[128];
-    Model m;
+    static Flt  flt;
+    char        path[128];
+    Model       m;
     ModelImport r;
     if (system("command -v osgconv >/dev/null") != 0) {
         printf("skipped: no osgconv (apt-get install openscenegraph)\n");
@@ -686,8 +686,8 @@ static void openflights_freedoms_are_joints(void **state)
 static void without_osgconv_the_next_step_is_said(void **state)
 {
     (void)state;
-    char path[128];
-    char *was = strdup(getenv("PATH"));
+    char       path[128];
+    char      *was = strdup(getenv("PATH"));
     static Flt flt;
     make_flt(&flt);
     write_file(path, "lonely.flt", flt.at, flt.count);

@@ -70,7 +70,7 @@ static void dimensions_are_the_published_ones(void **state)
         double      length_m, width_m, height_m, tolerance_m;
     } published[] = {
         {"truck", 7.366, 2.500, 2.870, 0.002},
-        {"helicopter", 6.795 + 1.70 + 13.41 / 2, 3.15, 4.11, 0.002}, /* fin to the tip of the blade ahead */
+        {"helicopter", 6.795 + 1.70 + 13.41 / 2, 3.15, 4.11, 0.002},  /* fin to the tip of the blade ahead */
         {"missile", 1.17, 0.46 * sqrt(0.5), 0.46 * sqrt(0.5), 0.005}, /* wings as an X: span / sqrt 2 */
         {"unknown", 4, 2, 1.6, 1e-12},
     };
@@ -82,14 +82,14 @@ static void dimensions_are_the_published_ones(void **state)
         model_destroy(&m);
     }
     double low[3], high[3];
-    Model tank = build("tank", 0.001);
+    Model  tank = build("tank", 0.001);
     CHECK_NEAR(tank.length_m, 9.53, 0.002); /* gun forward */
     CHECK_NEAR(tank.width_m, 3.59, 0.002);
     part_box(low, high, &tank, "hull", NULL);
     CHECK_NEAR(high[0] - low[0], 6.95, 0.002);
     CHECK_NEAR(high[2], -0.47, 0.002); /* ground clearance */
     part_box(low, high, &tank, "turret", NULL);
-    CHECK_NEAR(-low[2], 2.19, 0.10);   /* roof; the gunner's sight stands a little over it */
+    CHECK_NEAR(-low[2], 2.19, 0.10); /* roof; the gunner's sight stands a little over it */
     part_box(low, high, &tank, "track_left", NULL);
     CHECK_NEAR(high[1] - low[1], 0.58, 1e-9);
     CHECK_NEAR(0.5 * (high[1] + low[1]), -2.79 / 2, 1e-9);
@@ -133,17 +133,17 @@ static void radius_holds_the_box_and_the_gun(void **state)
 {
     (void)state;
     for (int i = 0; i < model_name_count; i++) {
-        Model m = build(model_names[i], 0.01);
+        Model  m = build(model_names[i], 0.01);
         double most = 0;
         for (int k = 0; k < 40; k++) {
             NodePose pose[64];
-            double value[64];
+            double   value[64];
             for (int n = 0; n < m.node_count; n++)
                 value[n] = 8 * (random_uniform(5, 1, (uint32_t)k, (uint64_t)n) - 0.5);
             model_pose(pose, &m, value);
             for (int t = 0; t < m.triangle_count; t++) {
                 const int node = m.part[m.triangle_part[t]].node;
-                double p[3];
+                double    p[3];
                 m3_mul_v3(p, pose[node].r_body_from_node, m.vertex[m.triangle[t][0]]);
                 v3_add(p, p, pose[node].p_body);
                 most = fmax(most, v3_length(p));
@@ -174,14 +174,14 @@ static void every_shell_is_outward(void **state)
 {
     (void)state;
     for (int i = 0; i < model_name_count; i++) {
-        Model m = build(model_names[i], 0.005);
-        int    *order  = malloc((size_t)m.vertex_count * sizeof *order);
+        Model   m = build(model_names[i], 0.005);
+        int    *order = malloc((size_t)m.vertex_count * sizeof *order);
         int    *follow = malloc((size_t)m.vertex_count * sizeof *follow);
         double *volume = calloc((size_t)m.vertex_count, sizeof *volume);
         for (int v = 0; v < m.vertex_count; v++) follow[v] = -1;
         for (int part = 0; part < m.part_count; part++) {
             const ModelPart *p = &m.part[part];
-            int count = 0;
+            int              count = 0;
             for (int t = p->first_triangle; t < p->first_triangle + p->triangle_count; t++)
                 for (int k = 0; k < 3; k++) {
                     const int v = (int)m.triangle[t][k];
@@ -197,7 +197,7 @@ static void every_shell_is_outward(void **state)
                     follow[leader(follow, (int)m.triangle[t][k])] = leader(follow, (int)m.triangle[t][0]);
             for (int t = p->first_triangle; t < p->first_triangle + p->triangle_count; t++) {
                 const uint32_t *v = m.triangle[t];
-                double cross[3];
+                double          cross[3];
                 v3_cross(cross, m.vertex[v[1]], m.vertex[v[2]]);
                 volume[leader(follow, (int)v[0])] += v3_dot(m.vertex[v[0]], cross) / 6;
             }
@@ -218,10 +218,10 @@ static void shading_agrees_with_facets(void **state)
     (void)state;
     for (int i = 0; i < model_name_count; i++) {
         Model m = build(model_names[i], 0.002);
-        int against = 0;
+        int   against = 0;
         for (int t = 0; t < m.triangle_count; t++) {
             const uint32_t *v = m.triangle[t];
-            double a[3], b[3], n[3];
+            double          a[3], b[3], n[3];
             v3_sub(a, m.vertex[v[1]], m.vertex[v[0]]);
             v3_sub(b, m.vertex[v[2]], m.vertex[v[0]]);
             v3_cross(n, a, b);
@@ -243,7 +243,7 @@ static void the_turret_turns_right_and_the_gun_lifts(void **state)
     (void)state;
     static const char *const armed[2] = {"tank", "helicopter"}, *const barrel[2] = {"barrel", "chin_gun"};
     for (int i = 0; i < 2; i++) {
-        Model m = build(armed[i], 0.005);
+        Model     m = build(armed[i], 0.005);
         const int turret = find_node(&m, "turret"), gun = find_node(&m, "gun");
         assert_int_equal(m.node[turret].dis_class, 4096);
         assert_int_equal(m.node[turret].dis_metric, 11);
@@ -253,7 +253,7 @@ static void the_turret_turns_right_and_the_gun_lifts(void **state)
         double low[3], high[3], raised_low[3], raised_high[3], value[64] = {0};
         value[turret] = 0.5 * pi_rad;
         part_box(low, high, &m, barrel[i], value);
-        CHECK(high[1] > 1.3 && low[1] > 0);       /* the muzzle is out to the right */
+        CHECK(high[1] > 1.3 && low[1] > 0); /* the muzzle is out to the right */
         value[turret] = 0;
         part_box(low, high, &m, barrel[i], value);
         value[gun] = 10 * rad_per_deg;
@@ -265,7 +265,7 @@ static void the_turret_turns_right_and_the_gun_lifts(void **state)
         CHECK_NEAR(raised_low[2] - low[2], -reach * sin(m.node[gun].high), 0.02 * reach);
         model_destroy(&m);
     }
-    Model tank = build("tank", 0.005);
+    Model     tank = build("tank", 0.005);
     const int cupola = find_node(&tank, "cupola"), mount = find_node(&tank, "machine_gun");
     assert_int_equal(tank.node[cupola].dis_class, 5696);
     assert_int_equal(tank.node[mount].dis_class, 6016);
@@ -284,17 +284,17 @@ static void wheels_roll_forward(void **state)
     } rolling[] = {{"tank", 16}, {"truck", 6}, {"helicopter", 0}, {"missile", 0}};
     for (size_t i = 0; i < 4; i++) {
         Model m = build(rolling[i].name, 0.005);
-        int wheels = 0;
+        int   wheels = 0;
         for (int n = 0; n < m.node_count; n++) {
             if (!(m.node[n].roll_radius_m > 0)) continue;
             wheels++;
-            double value[64] = {0};
+            double   value[64] = {0};
             NodePose pose[64];
             /* one centimetre of travel takes the top of the wheel forward by as much again, over the axle */
             value[n] = 0.01 / m.node[n].roll_radius_m;
             model_pose(pose, &m, value);
             const double top_node[3] = {0, 0, -m.node[n].roll_radius_m};
-            double top[3];
+            double       top[3];
             m3_mul_v3(top, pose[n].r_body_from_node, top_node);
             CHECK_NEAR(top[0], 0.01, 1e-5);
             CHECK_NEAR(top[1], 0, 1e-12);
@@ -307,11 +307,11 @@ static void wheels_roll_forward(void **state)
 static void rotors_turn_as_the_real_ones(void **state)
 {
     (void)state;
-    Model m = build("helicopter", 0.005);
+    Model            m = build("helicopter", 0.005);
     const ModelNode *rotor = &m.node[find_node(&m, "main_rotor")], *tail = &m.node[find_node(&m, "tail_rotor")];
     CHECK_NEAR(rotor->spin_rps_moving, 33.93, 0.01);
     CHECK_NEAR(tail->spin_rps_moving, 173.2, 0.1);
-    double value[64] = {0};
+    double   value[64] = {0};
     NodePose pose[64];
     /* counter-clockwise seen from above: the blade ahead goes to the left */
     value[rotor - m.node] = 0.1;
@@ -321,13 +321,13 @@ static void rotors_turn_as_the_real_ones(void **state)
     CHECK(tip[1] < 0);
     CHECK(tail->p_parent[1] > 0.2); /* on the right of the fin */
     /* the thick leading edge of the blade ahead is on the side that it goes to: nearer the pitch axis */
-    double low[3], high[3], ahead_low = 0, ahead_high = 0;
+    double           low[3], high[3], ahead_low = 0, ahead_high = 0;
     const ModelPart *blades = find_part(&m, "blades");
     for (int t = blades->first_triangle; t < blades->first_triangle + blades->triangle_count; t++)
         for (int k = 0; k < 3; k++) {
             const double *v = m.vertex[m.triangle[t][k]];
             if (v[0] < 0) continue;
-            ahead_low  = fmin(ahead_low, v[1]);
+            ahead_low = fmin(ahead_low, v[1]);
             ahead_high = fmax(ahead_high, v[1]);
         }
     CHECK_NEAR(ahead_low, -0.3 * 0.686, 1e-9);
@@ -342,12 +342,12 @@ static void port_is_not_starboard(void **state)
 {
     (void)state;
     double low[3], high[3];
-    Model tank = build("tank", 0.005), truck = build("truck", 0.005), unknown = build("unknown", 0.005);
+    Model  tank = build("tank", 0.005), truck = build("truck", 0.005), unknown = build("unknown", 0.005);
     part_box(low, high, &tank, "exhaust", NULL);
-    CHECK(high[1] < -1 && high[0] < 0);          /* left, behind the middle */
+    CHECK(high[1] < -1 && high[0] < 0); /* left, behind the middle */
     assert_int_equal(find_part(&tank, "exhaust")->role, HEAT_EXHAUST);
     part_box(low, high, &tank, "searchlight", NULL);
-    CHECK(low[1] > 0.25 && low[0] > 0.5);        /* right of the gun, ahead */
+    CHECK(low[1] > 0.25 && low[0] > 0.5); /* right of the gun, ahead */
     part_box(low, high, &tank, "engine_deck", NULL);
     CHECK(high[0] < -1);
     part_box(low, high, &truck, "exhaust_stack", NULL);
@@ -430,9 +430,9 @@ typedef double Gap(const double p[3], const void *shape);
 
 static double worst_gap(const Model *m, Gap *gap, const void *shape)
 {
-    static const double at[7][3] = {{1 / 3.0, 1 / 3.0, 1 / 3.0}, {0.5, 0.5, 0}, {0, 0.5, 0.5}, {0.5, 0, 0.5},
-                                    {0.7, 0.15, 0.15}, {0.15, 0.7, 0.15}, {0.15, 0.15, 0.7}};
-    double worst = 0;
+    static const double at[7][3] = {{1 / 3.0, 1 / 3.0, 1 / 3.0}, {0.5, 0.5, 0},     {0, 0.5, 0.5},    {0.5, 0, 0.5},
+                                    {0.7, 0.15, 0.15},           {0.15, 0.7, 0.15}, {0.15, 0.15, 0.7}};
+    double              worst = 0;
     for (int t = 0; t < m->triangle_count; t++)
         for (int k = 0; k < 7; k++) {
             double p[3] = {0, 0, 0};
@@ -463,8 +463,8 @@ static double loft_gap(const double p[3], const void *shape)
     const LoftShape *l = shape;
     if (p[0] < l->station[0].x + 1e-9 || p[0] > l->station[l->count - 1].x - 1e-9) return 0; /* flat ends */
     const Station s = mesh_station_at(l->station, l->count, p[0]);
-    const double h = 0.5 * (s.bottom - s.top), a = s.half_width;
-    const double u = fabs(p[1]) - a * (1 - s.round), v = fabs(p[2] - 0.5 * (s.bottom + s.top)) - h * (1 - s.round);
+    const double  h = 0.5 * (s.bottom - s.top), a = s.half_width;
+    const double  u = fabs(p[1]) - a * (1 - s.round), v = fabs(p[2] - 0.5 * (s.bottom + s.top)) - h * (1 - s.round);
     if (u <= 0 || v <= 0) return u > v ? fabs(u - a * s.round) : fabs(v - h * s.round);
     const double e = u / (a * s.round), g = v / (h * s.round), f = e * e + g * g - 1;
     return fabs(f) / (2 * hypot(e / (a * s.round), g / (h * s.round)));
@@ -482,7 +482,7 @@ static void facets_keep_to_the_sag(void **state)
         const double radius = 1.3;
         MeshBuilder *b = begin(sag_m);
         mesh_sphere(b, place_at(0, 0, 0), radius);
-        Model m = finish(b);
+        Model        m = finish(b);
         const double sphere = worst_gap(&m, sphere_gap, &radius);
         CHECK(sphere <= sag_m);
         CHECK(sphere >= 0.2 * sag_m || sag_m > 0.02); /* nor is it much finer than asked */
@@ -497,10 +497,10 @@ static void facets_keep_to_the_sag(void **state)
         model_destroy(&m);
 
         /* the tank's barrel between trunnion and fume extractor, in the gun's own axes */
-        Model tank = build("tank", sag_m);
+        Model            tank = build("tank", sag_m);
         const ModelPart *part = find_part(&tank, "barrel");
-        const double taper[2] = {0.115, 0.110};
-        Model barrel = tank;
+        const double     taper[2] = {0.115, 0.110};
+        Model            barrel = tank;
         barrel.triangle += part->first_triangle;
         barrel.triangle_count = part->triangle_count;
         CHECK(worst_gap(&barrel, barrel_gap, taper) <= sag_m);
@@ -517,7 +517,7 @@ static void belts_have_their_volume(void **state)
     for (double sag_m = 0.01; sag_m > 1e-5; sag_m *= 0.1) {
         MeshBuilder *b = begin(sag_m);
         mesh_belt(b, place_at(0, 1, 0), wheel, 2, &(Belt){0.05, -0.3, 0.3, 0, 0, 0});
-        Model m = finish(b);
+        Model        m = finish(b);
         const double truth = 0.6 * (pi_rad * (0.45 * 0.45 - 0.4 * 0.4) + 2 * 4 * 0.05);
         const double turned = 0.6 * pi_rad * (0.45 * 0.45 - 0.4 * 0.4);
         const double v = part_volume_m3(&m, &m.part[0]);
@@ -559,7 +559,7 @@ static void materials_are_in_the_table(void **state)
     }
     /* a panchromatic reflectance lies between those of the bands that make it up; every row says its source */
     for (int row = 0; row < table.rows; row++) {
-        double rho[4];
+        double                   rho[4];
         static const char *const column[4] = {"rho_b", "rho_g", "rho_r", "rho_pan"};
         for (int k = 0; k < 4; k++)
             CHECK(table_number(&rho[k], &table, row, table_column(&table, column[k]), 0, 1) == STATUS_OK);

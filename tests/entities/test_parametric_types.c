@@ -17,7 +17,7 @@ static void boxes_are_the_published_ones(void **state)
         /* 1 mm: a track's cleat may stand that much off the ground; curved outlines lose up to the sag of 1 mm */
         {"carrier", 5.258, 2.819, 2.794, 0.002},
         {"launcher", 7.389, 3.18, 3.45, 0.003},
-        {"ship", 93.5, 14.0, 4.3 + 26.9, 0.003},   /* draught and the mast head's ball, which is an estimate */
+        {"ship", 93.5, 14.0, 4.3 + 26.9, 0.003}, /* draught and the mast head's ball, which is an estimate */
         {"building", 8 + 0.4 * 0.7660 + 0.125 + 1.1, 10 + 2 * 0.4, 9.95, 0.01},
         {"decoy", 9.53, 3.59, 2.19 + 0.14, 0.003}, /* the tank's, and the cushion of its hatch */
     };
@@ -42,7 +42,7 @@ static void boxes_are_the_published_ones(void **state)
     model_destroy(&aircraft);
 
     double low[3], high[3];
-    Model carrier = build("carrier", 0.001), ship = build("ship", 0.01), launcher = build("launcher", 0.001);
+    Model  carrier = build("carrier", 0.001), ship = build("ship", 0.01), launcher = build("launcher", 0.001);
     part_box(low, high, &carrier, "hull", NULL);
     CHECK_NEAR(high[2], -0.432, 1e-12); /* ground clearance */
     part_box(low, high, &carrier, "turret", NULL);
@@ -56,8 +56,8 @@ static void boxes_are_the_published_ones(void **state)
     CHECK_NEAR(high[0] - tail_m, 5.80, 1e-9);
     part_box(low, high, &ship, "bottom", NULL);
     CHECK_NEAR(high[2], 4.3, 1e-9);
-    CHECK_NEAR(low[2], 0, 1e-12);              /* painted to the waterline */
-    CHECK_NEAR(high[0] - low[0], 85.2, 0.30);  /* the last 25 cm taper to nothing and are left off */
+    CHECK_NEAR(low[2], 0, 1e-12);             /* painted to the waterline */
+    CHECK_NEAR(high[0] - low[0], 85.2, 0.30); /* the last 25 cm taper to nothing and are left off */
     model_destroy(&carrier);
     model_destroy(&ship);
     model_destroy(&launcher);
@@ -82,16 +82,16 @@ static void they_stand_on_the_ground(void **state)
 static void the_ship_floats_at_its_waterline(void **state)
 {
     (void)state;
-    Model m = build("ship", 0.005);
+    Model        m = build("ship", 0.005);
     const double volume_m3 = part_volume_m3(&m, find_part(&m, "bottom"));
     CHECK_NEAR(volume_m3 / (2950 / 1.025), 1, 0.05); /* tonnes at full load vary by 5 % between books and years */
     CHECK_NEAR(volume_m3 / (85.2 * 14.0 * 4.3), 0.55, 0.05); /* block coefficient: frigates have 0.5 .. 0.6 */
     /* its middle is near the middle of the ship, or it would trim */
     const ModelPart *p = find_part(&m, "bottom");
-    double moment = 0;
+    double           moment = 0;
     for (int t = p->first_triangle; t < p->first_triangle + p->triangle_count; t++) {
         const double *a = m.vertex[m.triangle[t][0]], *b = m.vertex[m.triangle[t][1]], *c = m.vertex[m.triangle[t][2]];
-        double cross[3];
+        double        cross[3];
         v3_cross(cross, b, c);
         moment += v3_dot(a, cross) / 24 * (a[0] + b[0] + c[0]);
     }
@@ -123,7 +123,7 @@ static void the_wing_has_its_area(void **state)
     /* from area, aspect ratio and taper alone */
     const double area = 27.87, aspect = 3.0, taper = 0.21, span = sqrt(aspect * area);
     const double root = 2 * area / (span * (1 + taper)), tip = taper * root;
-    Model m = build("aircraft", 0.005);
+    Model        m = build("aircraft", 0.005);
     /* what shows outside the fuselage at 0.62 m: a trapezium a side; the rails and pylons have no part in it */
     const double from = 0.62, chord = root + (tip - root) * from / (0.5 * span);
     const double want = (0.5 * span - from) * (chord + tip);
@@ -152,15 +152,15 @@ static void houses_and_grains_have_their_volume(void **state)
         CHECK(roof > slopes && roof < slopes + 10.8 * pi_rad * 0.11 * 0.11);
         model_destroy(&house);
     }
-    Model flare = build("flare", 1e-5);
+    Model        flare = build("flare", 1e-5);
     const double core = pi_rad * 0.0162 * 0.0162 * 0.138, land = 0.5 * (0.011 + 0.009) * 0.003 * 0.136;
     CHECK_NEAR(part_volume_m3(&flare, find_part(&flare, "grain")) / (core + 6 * land), 1, 2e-3); /* polygon's share */
     model_destroy(&flare);
 
     /* a man of 75 kg has 0.075 m3; cloth, and limbs that run into the trunk, add to it: neither half nor double */
-    Model person = build("person", 1e-3);
-    const double body = part_volume_m3(&person, find_part(&person, "uniform")) +
-                        part_volume_m3(&person, find_part(&person, "skin"));
+    Model        person = build("person", 1e-3);
+    const double body =
+        part_volume_m3(&person, find_part(&person, "uniform")) + part_volume_m3(&person, find_part(&person, "skin"));
     CHECK(body > 0.06 && body < 0.11);
     model_destroy(&person);
 }
@@ -201,7 +201,7 @@ static double triangle_distance(const double p[3], const double *a, const double
     const double d1 = v3_dot(ab, ap), d2 = v3_dot(ac, ap), d3 = v3_dot(ab, bp), d4 = v3_dot(ac, bp);
     const double d5 = v3_dot(ab, cp), d6 = v3_dot(ac, cp);
     const double va = d3 * d6 - d5 * d4, vb = d5 * d2 - d1 * d6, vc = d1 * d4 - d3 * d2;
-    double v, w;
+    double       v, w;
     if (d1 <= 0 && d2 <= 0) v = w = 0;
     else if (d3 >= 0 && d4 <= d3) v = 1, w = 0;
     else if (vc <= 0 && d1 >= 0 && d3 <= 0) v = d1 / (d1 - d3), w = 0;
@@ -222,24 +222,24 @@ static void coarse_models_keep_to_fine_ones(void **state)
         const char *name, *part;
         double      coarse_m, fine_m;
     } pair[] = {
-        {"ship", "hull", 0.05, 0.005},           {"ship", "bottom", 0.05, 0.005},
-        {"aircraft", "fuselage", 0.02, 0.001},   {"aircraft", "canopy", 0.02, 0.001},
-        {"person", "uniform", 0.01, 0.0005},     {"person", "helmet", 0.01, 0.0005},
-        {"decoy", "hull", 0.02, 0.002},          {"decoy", "turret", 0.02, 0.002},
-        {"launcher", "radomes", 0.01, 0.0005},   {"launcher", "missiles", 0.01, 0.001},
+        {"ship", "hull", 0.05, 0.005},          {"ship", "bottom", 0.05, 0.005},
+        {"aircraft", "fuselage", 0.02, 0.001},  {"aircraft", "canopy", 0.02, 0.001},
+        {"person", "uniform", 0.01, 0.0005},    {"person", "helmet", 0.01, 0.0005},
+        {"decoy", "hull", 0.02, 0.002},         {"decoy", "turret", 0.02, 0.002},
+        {"launcher", "radomes", 0.01, 0.0005},  {"launcher", "missiles", 0.01, 0.001},
         {"carrier", "track_left", 0.01, 0.001},
     };
     for (size_t i = 0; i < sizeof pair / sizeof pair[0]; i++) {
-        Model coarse = build(pair[i].name, pair[i].coarse_m), fine = build(pair[i].name, pair[i].fine_m);
+        Model            coarse = build(pair[i].name, pair[i].coarse_m), fine = build(pair[i].name, pair[i].fine_m);
         const ModelPart *c = find_part(&coarse, pair[i].part), *f = find_part(&fine, pair[i].part);
-        double worst = 0;
+        double           worst = 0;
         for (int k = 0; k < 250; k++) {
             double random[3];
             for (int r = 0; r < 3; r++) random[r] = random_uniform(11, (uint32_t)r, (uint32_t)i, (uint64_t)k);
             const double u = random[0], v = random[1];
             const int    t = c->first_triangle + (int)(random[2] * c->triangle_count);
             const double s = sqrt(u), at[3] = {1 - s, s * (1 - v), s * v};
-            double p[3] = {0, 0, 0}, n[3], e[2][3], least = INFINITY;
+            double       p[3] = {0, 0, 0}, n[3], e[2][3], least = INFINITY;
             for (int k3 = 0; k3 < 3; k3++) v3_add_scaled(p, p, at[k3], coarse.vertex[coarse.triangle[t][k3]]);
             v3_sub(e[0], coarse.vertex[coarse.triangle[t][1]], coarse.vertex[coarse.triangle[t][0]]);
             v3_sub(e[1], coarse.vertex[coarse.triangle[t][2]], coarse.vertex[coarse.triangle[t][0]]);
@@ -267,13 +267,13 @@ static void limbs_keep_to_the_sag(void **state)
 {
     (void)state;
     static const double from[3] = {0.3, -0.2, -1.0}, to[3] = {0.5, 0.3, -1.6};
-    const double r0 = 0.25, r1 = 0.12;
-    double axis[3];
+    const double        r0 = 0.25, r1 = 0.12;
+    double              axis[3];
     v3_sub(axis, to, from);
     const double length = v3_length(axis), cosine = (r0 - r1) / length, sine = sqrt(1 - cosine * cosine);
     v3_scale(axis, 1 / length, axis);
     for (double sag_m = 0.03; sag_m > 1e-5; sag_m *= 0.3) {
-        Model m = {0};
+        Model        m = {0};
         MeshBuilder *b = mesh_builder_create("limb", sag_m);
         CHECK(b != NULL);
         mesh_node(b, "hull", -1, 0, 0, 0);
@@ -291,7 +291,7 @@ static void limbs_keep_to_the_sag(void **state)
             const double r = v3_length(off);
             /* nearest to the first ball, the second, or the cone between, by where the normals point */
             const double along = h * sine - r * cosine;
-            const double gap = along < 0 ? hypot(h, r) - r0
+            const double gap = along < 0               ? hypot(h, r) - r0
                                : along > length * sine ? hypot(h - length, r) - r1
                                                        : h * cosine + r * sine - r0;
             worst = fmax(worst, fabs(gap));
@@ -318,18 +318,27 @@ static void joints_answer_to_their_class(void **state)
         uint32_t    dis_class, metric;
         double      low_deg, high_deg;
     } joint[] = {
-        {"carrier", "turret", 4096, 11, 1, -1},        {"carrier", "gun", 4416, 13, -10, 50},
-        {"carrier", "cupola", 5696, 11, 1, -1},        {"carrier", "machine_gun", 6016, 13, -10, 60},
-        {"launcher", "turntable", 4096, 11, 1, -1},    {"launcher", "rails", 4736, 13, 0, 80},
-        {"aircraft", "flaperon_left", 1120, 13, -23, 20}, {"aircraft", "flaperon_right", 1152, 13, -23, 20},
-        {"aircraft", "stabilator_left", 1408, 13, -25, 25}, {"aircraft", "stabilator_right", 1440, 13, -25, 25},
-        {"aircraft", "rudder", 1024, 11, -30, 30},     {"ship", "turret", 4096, 11, 1, -1},
-        {"ship", "gun", 4416, 13, -15, 80},            {"ship", "mount_left", 5696, 11, 1, -1},
-        {"ship", "mount_right", 5728, 11, 1, -1},      {"ship", "small_gun_left", 6016, 13, -10, 60},
-        {"ship", "small_gun_right", 6048, 13, -10, 60}, {"ship", "radar", 5376, 11, 1, -1},
+        {"carrier", "turret", 4096, 11, 1, -1},
+        {"carrier", "gun", 4416, 13, -10, 50},
+        {"carrier", "cupola", 5696, 11, 1, -1},
+        {"carrier", "machine_gun", 6016, 13, -10, 60},
+        {"launcher", "turntable", 4096, 11, 1, -1},
+        {"launcher", "rails", 4736, 13, 0, 80},
+        {"aircraft", "flaperon_left", 1120, 13, -23, 20},
+        {"aircraft", "flaperon_right", 1152, 13, -23, 20},
+        {"aircraft", "stabilator_left", 1408, 13, -25, 25},
+        {"aircraft", "stabilator_right", 1440, 13, -25, 25},
+        {"aircraft", "rudder", 1024, 11, -30, 30},
+        {"ship", "turret", 4096, 11, 1, -1},
+        {"ship", "gun", 4416, 13, -15, 80},
+        {"ship", "mount_left", 5696, 11, 1, -1},
+        {"ship", "mount_right", 5728, 11, 1, -1},
+        {"ship", "small_gun_left", 6016, 13, -10, 60},
+        {"ship", "small_gun_right", 6048, 13, -10, 60},
+        {"ship", "radar", 5376, 11, 1, -1},
     };
     for (size_t i = 0; i < sizeof joint / sizeof joint[0]; i++) {
-        Model m = build(joint[i].model, 0.02);
+        Model            m = build(joint[i].model, 0.02);
         const ModelNode *node = &m.node[find_node(&m, joint[i].node)];
         assert_int_equal(node->dis_class, joint[i].dis_class);
         assert_int_equal(node->dis_metric, joint[i].metric);
@@ -339,7 +348,7 @@ static void joints_answer_to_their_class(void **state)
             CHECK_NEAR(node->high, joint[i].high_deg * rad_per_deg, 1e-15);
         }
         /* azimuth about down: ahead goes to the right; elevation: ahead goes up */
-        double value[64] = {0}, ahead[3];
+        double   value[64] = {0}, ahead[3];
         NodePose pose[64];
         value[node - m.node] = 0.1;
         model_pose(pose, &m, value);
@@ -362,7 +371,7 @@ static void guns_lift_and_missiles_rise(void **state)
         {"launcher", "rails", "radomes", 80, 7.389 - 3.45 + 1.5, 0.586, 0, 0.586 + 0.1675},
     };
     for (size_t i = 0; i < 3; i++) {
-        Model m = build(lift[i].model, 0.005);
+        Model  m = build(lift[i].model, 0.005);
         double value[64] = {0}, low[3], high[3], up_low[3], up_high[3];
         value[find_node(&m, lift[i].node)] = 2; /* past its limit: the highest it goes */
         part_box(low, high, &m, lift[i].part, NULL);
@@ -384,18 +393,18 @@ static void guns_lift_and_missiles_rise(void **state)
 static void the_ramp_opens(void **state)
 {
     (void)state;
-    Model m = build("carrier", 0.005);
+    Model                      m = build("carrier", 0.005);
     const DisVariableParameter open = articulated(3232 + 1, 1);
-    Articulation a = {0};
-    double value[64], low[3], high[3];
+    Articulation               a = {0};
+    double                     value[64], low[3], high[3];
     assert_int_equal(articulation_report(&a, &open, 1, 0, 5), 0);
     articulation_joint_values(value, &m, &a, &(JointDrive){0}, 0, 5);
     CHECK_NEAR(value[find_node(&m, "ramp")], 2.02, 1e-6);
     part_box(low, high, &m, "ramp", value);
-    CHECK_NEAR(high[2], 0, 0.05);                        /* its outer face touches the ground, within 5 cm */
+    CHECK_NEAR(high[2], 0, 0.05); /* its outer face touches the ground, within 5 cm */
     CHECK(high[2] <= 0 && low[0] < -3.5);
     part_box(low, high, &m, "ramp", NULL);
-    CHECK(low[0] > -2.63 && low[2] < -1.85);             /* shut, it closes the rear */
+    CHECK(low[0] > -2.63 && low[2] < -1.85); /* shut, it closes the rear */
     model_destroy(&m);
 }
 
@@ -409,9 +418,9 @@ static void landing_gear_follows_speed_and_report(void **state)
         for (int way = 0; way < 4; way++) {
             const bool fast = way & 1, told = way & 2, down = told ? fast : !fast; /* told the opposite of the usual */
             const DisVariableParameter said = articulated(3072 + 1, down);
-            Articulation a = {0};
-            double value[64];
-            NodePose pose[64];
+            Articulation               a = {0};
+            double                     value[64];
+            NodePose                   pose[64];
             if (told) assert_int_equal(articulation_report(&a, &said, 1, 0, 5), 0);
             articulation_joint_values(value, &m, &a, &(JointDrive){.speed_mps = fast ? 200 : 0}, 0, 5);
             model_pose(pose, &m, value);
@@ -443,11 +452,11 @@ static void landing_gear_follows_speed_and_report(void **state)
 static void control_surfaces_turn_the_right_way(void **state)
 {
     (void)state;
-    Model m = build("aircraft", 0.01);
+    Model                    m = build("aircraft", 0.01);
     static const char *const surface[4] = {"flaperon_left", "flaperon_right", "stabilator_left", "stabilator_right"};
     for (int i = 0; i < 4; i++) {
-        double value[64] = {0}, before[3], after[3];
-        NodePose rest[64], moved[64];
+        double    value[64] = {0}, before[3], after[3];
+        NodePose  rest[64], moved[64];
         const int n = find_node(&m, surface[i]);
         value[n] = 0.2;
         model_pose(rest, &m, NULL);
@@ -458,8 +467,8 @@ static void control_surfaces_turn_the_right_way(void **state)
         CHECK(after[2] > before[2] + 0.04); /* the trailing edge goes down */
         CHECK(fabs(after[1] - before[1]) < 0.02);
     }
-    double value[64] = {0}, trailing[3];
-    NodePose pose[64];
+    double    value[64] = {0}, trailing[3];
+    NodePose  pose[64];
     const int rudder = find_node(&m, "rudder");
     value[rudder] = 0.2;
     model_pose(pose, &m, value);
@@ -471,11 +480,11 @@ static void control_surfaces_turn_the_right_way(void **state)
 static void the_radar_turns_by_itself(void **state)
 {
     (void)state;
-    Model m = build("ship", 0.05);
+    Model     m = build("ship", 0.05);
     const int radar = find_node(&m, "radar");
     CHECK_NEAR(m.node[radar].spin_rps_moving, 2.513, 0.001); /* 24 rpm */
     Articulation a = {0};
-    double value[64];
+    double       value[64];
     articulation_joint_values(value, &m, &a, &(JointDrive){.spin_s = 0.5}, 0, 5);
     CHECK_NEAR(value[radar], 1.2566, 1e-3);
     const DisVariableParameter said = articulated(5376 + 11, -0.4);
@@ -507,7 +516,7 @@ static void roles_and_sides(void **state)
         {"flare", "grain", HEAT_FLARE, 0, 0},
     };
     for (size_t i = 0; i < sizeof want / sizeof want[0]; i++) {
-        Model m = build(want[i].model, 0.01);
+        Model  m = build(want[i].model, 0.01);
         double low[3], high[3];
         assert_int_equal(find_part(&m, want[i].part)->role, want[i].role);
         part_box(low, high, &m, want[i].part, NULL);
@@ -526,7 +535,7 @@ static void the_decoy_is_a_cold_tank_of_cloth(void **state)
     CHECK(etc_path(path, sizeof path, "materials.csv"));
     CHECK(table_open(&table, path) == STATUS_OK);
     const int name = table_column(&table, "name"), metal = table_column(&table, "metal");
-    Model decoy = build("decoy", 0.005), tank = build("tank", 0.005);
+    Model     decoy = build("decoy", 0.005), tank = build("tank", 0.005);
     CHECK_NEAR(decoy.length_m / tank.length_m, 1, 0.01);
     CHECK_NEAR(decoy.width_m / tank.width_m, 1, 0.01);
     int tank_metal = 0;

@@ -40,7 +40,7 @@ static bool is_on(const Model *m, const Patches *s, int body, const double at[3]
         double p[3][3], n[3], d[3];
         if (s->body_of_part[m->triangle_part[t]] != body) continue;
         corners_of(p, m, t);
-        triangle_m2(n, (const double (*)[3])p);
+        triangle_m2(n, (const double(*)[3])p);
         v3_sub(d, at, p[0]);
         if (!(v3_dot(n, n_at) > 1 - 1e-9) || fabs(v3_dot(d, n)) > 1e-7) continue;
         bool inside = true;
@@ -64,7 +64,7 @@ static void check_patches(const Model *m, const Patches *s)
     for (int t = 0; t < m->triangle_count; t++) {
         double p[3][3], n[3];
         corners_of(p, m, t);
-        truth += triangle_m2(n, (const double (*)[3])p);
+        truth += triangle_m2(n, (const double(*)[3])p);
     }
     for (int i = 0; i < s->count; i++) {
         const Patch *p = &s->patch[i];
@@ -96,8 +96,8 @@ static void check_patches(const Model *m, const Patches *s)
     for (int b = 0; b < s->bodies; b++) {
         bool own = true;
         for (int k = 0; k < s->count; k++)
-            own &= (group[k] == group[s->first_of_body[b]]) ==
-                   (k >= s->first_of_body[b] && k < s->first_of_body[b + 1]);
+            own &=
+                (group[k] == group[s->first_of_body[b]]) == (k >= s->first_of_body[b] && k < s->first_of_body[b + 1]);
         alone += own;
     }
     CHECK(groups == 1 || groups <= alone + 1);
@@ -301,7 +301,8 @@ static void glued_boxes_are_one(void **state)
         mean += patch_open_m2(p) * (double)value[i] / open_m2(&s);
         CHECK(p->open_share == 1 || (fabs(p->p_node[0]) < 1e-9 && fabs(fabs(p->n_node[0]) - 1) < 1e-9));
         for (int k = 0; k < patch_points; k++) CHECK(p->open_share == 0 || fabs(p->point_node[k][0]) > 1e-6);
-        CHECK_NEAR(p->ground_m2, p->n_node[2] > 0.5 ? p->area_m2 : 0, 1e-9); /* the underside alone stands on the ground */
+        CHECK_NEAR(p->ground_m2, p->n_node[2] > 0.5 ? p->area_m2 : 0,
+                   1e-9); /* the underside alone stands on the ground */
     }
     assert_int_equal(inner, 2);
     CHECK_NEAR(mean, 300, 1e-9);
@@ -333,7 +334,8 @@ static void a_block_covers_what_it_stands_on(void **state)
         for (int i = 0; i < s.count; i++)
             for (int k = 0; k < patch_points; k++) {
                 const double *p = s.patch[i].point_node[k];
-                CHECK(moves == 2 || s.patch[i].open_share == 0 || fabs(p[2] + 1) > 1e-9 || fabs(p[0]) > 1 || fabs(p[1]) > 1.5);
+                CHECK(moves == 2 || s.patch[i].open_share == 0 || fabs(p[2] + 1) > 1e-9 || fabs(p[0]) > 1 ||
+                      fabs(p[1]) > 1.5);
             }
         patches_destroy(&s);
         model_destroy(&m);
@@ -346,8 +348,8 @@ static void open_shells_hide_nothing(void **state)
     (void)state;
     double(*vertex)[3] = calloc(12, sizeof *vertex);
     float(*normal)[3] = calloc(12, sizeof *normal);
-    static const uint32_t sides[][3] = {{0, 1, 5}, {0, 5, 4}, {1, 2, 6}, {1, 6, 5}, {2, 3, 7}, {2, 7, 6}, {3, 0, 4}, {3, 4, 7},
-                                        {4, 5, 6}, {4, 6, 7}, {8, 9, 10}, {8, 10, 11}};
+    static const uint32_t sides[][3] = {{0, 1, 5}, {0, 5, 4}, {1, 2, 6}, {1, 6, 5}, {2, 3, 7},  {2, 7, 6},
+                                        {3, 0, 4}, {3, 4, 7}, {4, 5, 6}, {4, 6, 7}, {8, 9, 10}, {8, 10, 11}};
     static const int      triangles = sizeof sides / sizeof *sides;
     for (int v = 0; v < 12; v++) { /* the first four above, the next four the floor, then a sheet at half height */
         const double size = v < 8 ? 1 : 0.5;
@@ -355,9 +357,16 @@ static void open_shells_hide_nothing(void **state)
         vertex[v][2] = v < 4 ? -1 : v < 8 ? 0 : -0.5;
         normal[v][2] = -1;
     }
-    Model m = {.name = "shell", .node_count = 1, .part_count = 1, .vertex_count = 12, .triangle_count = triangles, .vertex = vertex, .normal = normal};
+    Model m = {.name = "shell",
+               .node_count = 1,
+               .part_count = 1,
+               .vertex_count = 12,
+               .triangle_count = triangles,
+               .vertex = vertex,
+               .normal = normal};
     m.node = calloc(1, sizeof *m.node), m.part = calloc(1, sizeof *m.part);
-    m.triangle = calloc((size_t)triangles, sizeof *m.triangle), m.triangle_part = calloc((size_t)triangles, sizeof *m.triangle_part);
+    m.triangle = calloc((size_t)triangles, sizeof *m.triangle),
+    m.triangle_part = calloc((size_t)triangles, sizeof *m.triangle_part);
     strcpy(m.node[0].name, "hull"), m.node[0].parent = -1, m3_identity(m.node[0].r_parent_from_node);
     strcpy(m.part[0].name, "shell"), strcpy(m.part[0].material, "steel_worn"), m.part[0].triangle_count = triangles;
     for (int way = 0; way < 2; way++) { /* as it is, and inside out */
@@ -383,7 +392,8 @@ static double union_m2(const Model *m, int lines)
 {
     double    sum = 0, centre[3], radius = 0;
     NodePose *pose = calloc((size_t)m->node_count, sizeof *pose);
-    double(*corner)[3][3] = calloc((size_t)m->triangle_count, sizeof *corner), *reach = calloc((size_t)m->triangle_count, sizeof *reach);
+    double(*corner)[3][3] = calloc((size_t)m->triangle_count, sizeof *corner),
+    *reach = calloc((size_t)m->triangle_count, sizeof *reach);
     int count = 0;
     model_pose(pose, m, NULL);
     for (int t = 0; t < m->triangle_count; t++) {
@@ -399,15 +409,17 @@ static double union_m2(const Model *m, int lines)
         }
         count++;
     }
-    for (int i = 0; i < 3; i++) centre[i] = 0.5 * (m->box_low[i] + m->box_high[i]), radius += pow(0.5 * (m->box_high[i] - m->box_low[i]), 2);
+    for (int i = 0; i < 3; i++)
+        centre[i] = 0.5 * (m->box_low[i] + m->box_high[i]), radius += pow(0.5 * (m->box_high[i] - m->box_low[i]), 2);
     radius = sqrt(radius);
     for (int line = 0; line < lines; line++) {
         /* directions by a spiral of equal areas, places on the disc by another */
         const double z = 1 - (line + 0.5) / lines, turn = 2.399963229728653 * line, flat = sqrt(1 - z * z);
         const double d[3] = {flat * cos(turn), flat * sin(turn), z}, pole[3] = {fabs(d[0]) < 0.5, fabs(d[0]) >= 0.5, 0};
-        const double r = radius * sqrt(fmod(0.5 + line * 0.7548776662466927, 1)), at = 2 * pi_rad * fmod(0.5 + line * 0.5698402909980532, 1);
-        double       u[3], v[3], o[3], far[256];
-        int          way[256], hits = 0;
+        const double r = radius * sqrt(fmod(0.5 + line * 0.7548776662466927, 1)),
+                     at = 2 * pi_rad * fmod(0.5 + line * 0.5698402909980532, 1);
+        double u[3], v[3], o[3], far[256];
+        int    way[256], hits = 0;
         v3_cross(u, d, pole), v3_normalize(u, u), v3_cross(v, d, u);
         v3_add_scaled(o, centre, r * cos(at), u), v3_add_scaled(o, o, r * sin(at), v);
         for (int t = 0; t < count && hits < 256; t++) { /* Moeller and Trumbore */
@@ -423,7 +435,7 @@ static double union_m2(const Model *m, int lines)
             v3_cross(q, s, e1);
             const double b = v3_dot(d, q) / det;
             if (a < 0 || b < 0 || a + b > 1) continue;
-            int k = hits++;
+            int          k = hits++;
             const double here = v3_dot(e2, q) / det;
             for (; k > 0 && far[k - 1] > here; k--) far[k] = far[k - 1], way[k] = way[k - 1];
             far[k] = here, way[k] = det > 0 ? 1 : -1; /* into it */
@@ -448,7 +460,8 @@ static void the_outside_of_models(void **state)
         Patches s = cut(&m);
         double  all = 0;
         for (int k = 0; k < s.count; k++) all += s.patch[k].area_m2;
-        print_message("%-22s outside %8.2f of %8.2f m2: %.3f\n", parametric_name(i), open_m2(&s), all, open_m2(&s) / all);
+        print_message("%-22s outside %8.2f of %8.2f m2: %.3f\n", parametric_name(i), open_m2(&s), all,
+                      open_m2(&s) / all);
         CHECK(open_m2(&s) > 0.15 * all && open_m2(&s) <= all * (1 + 1e-9));
         patches_destroy(&s);
         model_destroy(&m);

@@ -30,14 +30,14 @@ static void circle(void **state)
     (void)state;
     enum { count = 24 };
     static const double radius_m = 300;
-    double       point[count][3];
-    Route        route;
-    RoutePoint   at;
+    double              point[count][3];
+    Route               route;
+    RoutePoint          at;
     for (int i = 0; i < count; i++) {
         point[i][0] = radius_m * cos(2 * pi_rad * i / count), point[i][1] = radius_m * sin(2 * pi_rad * i / count);
         point[i][2] = 40;
     }
-    CHECK(route_create(&route, (const double (*)[3])point, count, true) == STATUS_OK);
+    CHECK(route_create(&route, (const double(*)[3])point, count, true) == STATUS_OK);
     CHECK_NEAR(route.length_m, 2 * pi_rad * radius_m, 2 * pi_rad * radius_m * 3e-5);
     for (double s = -700; s < 5000; s += 13.3) {
         const double angle = s / route.length_m * 2 * pi_rad;
@@ -58,7 +58,7 @@ static void through_its_points_by_arc_length(void **state)
     const double point[6][3] = {{0, 0, 0}, {100, 30, 10}, {180, 160, 0}, {90, 260, -20}, {-80, 200, 5}, {-200, 340, 0}};
     Route        route;
     CHECK(route_create(&route, point, 6, false) == STATUS_OK);
-    double nearest[6], way = 0;
+    double     nearest[6], way = 0;
     RoutePoint at, before, after;
     for (int i = 0; i < 6; i++) nearest[i] = 1e9;
     route_at(&before, &route, 0);
@@ -103,7 +103,9 @@ static void too_few_or_too_near(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(straight_line), cmocka_unit_test(circle), cmocka_unit_test(through_its_points_by_arc_length),
+        cmocka_unit_test(straight_line),
+        cmocka_unit_test(circle),
+        cmocka_unit_test(through_its_points_by_arc_length),
         cmocka_unit_test(too_few_or_too_near),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

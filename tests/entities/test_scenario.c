@@ -72,7 +72,9 @@ static void what_is_wrong_is_said(void **state)
 static void what_cannot_be_cast(void **state)
 {
     (void)state;
-    static const struct { const char *text, *word; } bad[] = {
+    static const struct {
+        const char *text, *word;
+    } bad[] = {
         {"vehicles:\n  - {name: A, type: tnak, route_m: [0, 0]}\n", ":2: vehicles: type: 'tnak'"},
         {"vehicles:\n  - {name: A, type: missile, route_m: [0, 0]}\n", ":2: vehicles: type: 'missile' is a munition"},
         {"vehicles:\n" TANK "shots:\n  - {from: Tank 1, at_m: [40000, 0], hit: ground}\n",
@@ -119,8 +121,8 @@ static void types(void **state)
 static void bundled_scenarios(void **state)
 {
     (void)state;
-    static const char *const names[] = {"demo", "no-vehicles", "no-missile", "guns", "bad-pdus", "empty", "aircraft",
-                                        "crowd"};
+    static const char *const names[] = {"demo",     "no-vehicles", "no-missile", "guns",
+                                        "bad-pdus", "empty",       "aircraft",   "crowd"};
     log_set_sink(NULL, NULL);
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         char     name[64], path[512];
@@ -148,14 +150,17 @@ static void the_most_there_may_be(void **state)
     CHECK(text != NULL);
     n += (size_t)snprintf(text, size, "vehicles:\n" TANK);
     for (int i = 0; i < scenario_max_groups - 1; i++) {
-        n += (size_t)snprintf(text + n, size - n, "  - {name: A, loop: true, speed_mps: 9, type: truck, count: 20, route_m: [");
+        n += (size_t)snprintf(text + n, size - n,
+                              "  - {name: A, loop: true, speed_mps: 9, type: truck, count: 20, route_m: [");
         for (int k = 0; k < 40; k++)
             n += (size_t)snprintf(text + n, size - n, "%s%d,%d", k ? "," : "", (int)(900 * cos(k * 0.157)),
                                   (int)(900 * sin(k * 0.157)));
         n += (size_t)snprintf(text + n, size - n, "]}\n");
     }
-    n += (size_t)snprintf(text + n, size - n, "shots:\n  - {from: Tank 1, at: A 7, rounds: %d, every_s: 0.01, entity: false, type: 2.2.0.2.0.0.0}\n",
-                          scenario_max_rounds);
+    n += (size_t)snprintf(
+        text + n, size - n,
+        "shots:\n  - {from: Tank 1, at: A 7, rounds: %d, every_s: 0.01, entity: false, type: 2.2.0.2.0.0.0}\n",
+        scenario_max_rounds);
     CHECK(n < size - 1 && read_text(&s, text) == STATUS_OK);
     const double begun_s = cpu_s();
     CHECK(cast_create(&cast, &s) == STATUS_OK);
@@ -170,8 +175,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_is_wrong_is_said), cmocka_unit_test(what_cannot_be_cast),
-        cmocka_unit_test(set_from_outside),
-        cmocka_unit_test(types), cmocka_unit_test(bundled_scenarios), cmocka_unit_test(the_most_there_may_be),
+        cmocka_unit_test(set_from_outside),      cmocka_unit_test(types),
+        cmocka_unit_test(bundled_scenarios),     cmocka_unit_test(the_most_there_may_be),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

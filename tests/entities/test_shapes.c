@@ -12,10 +12,10 @@ enum { tight = 5, loose = 10 }; /* per cent; loose where books differ by variant
 
 typedef struct Published {
     DisEntityType type;
-    const char *shape;                  /* the silhouette a viewer expects; NULL: nothing to be seen */
-    double length_m, width_m, height_m; /* 0: nothing published, or nothing that all books agree on */
-    int percent;
-    const char *what; /* and where the figures are from */
+    const char   *shape;                       /* the silhouette a viewer expects; NULL: nothing to be seen */
+    double        length_m, width_m, height_m; /* 0: nothing published, or nothing that all books agree on */
+    int           percent;
+    const char   *what; /* and where the figures are from */
 } Published;
 
 /* The 79 lines of a list of types as exercises send them, with a viewer's expectation. Where the 2006 edition of
@@ -172,7 +172,7 @@ static const Published published[] = {
 
 static Catalog *open_catalog(double sag_m)
 {
-    char path[512];
+    char     path[512];
     Catalog *c = NULL;
     CHECK(etc_path(path, sizeof path, "catalog.csv"));
     CHECK(catalog_open(&c, path, sag_m) == STATUS_OK);
@@ -187,12 +187,12 @@ static void common_types_have_their_shape_and_size(void **state)
 {
     (void)state;
     Catalog *c = open_catalog(0.01);
-    int wrong = 0;
+    int      wrong = 0;
     for (size_t i = 0; i < sizeof published / sizeof published[0]; i++) {
         const Published *p = published + i;
-        const int k = catalog_find(c, p->type, NULL, NULL);
-        const Model *m = catalog_model(c, k);
-        bool right = catalog_has_shape(c, k) == (p->shape != NULL);
+        const int        k = catalog_find(c, p->type, NULL, NULL);
+        const Model     *m = catalog_model(c, k);
+        bool             right = catalog_has_shape(c, k) == (p->shape != NULL);
         if (right && p->shape)
             right = !strcmp(m->name, p->shape) && near(m->length_m, p->length_m, p->percent) &&
                     near(m->width_m, p->width_m, p->percent) && near(up_m(m), p->height_m, p->percent);
@@ -235,17 +235,17 @@ static void every_row_gives_a_sound_model(void **state)
 {
     (void)state;
     static const char *const column[3] = {"length_m", "width_m", "height_m"};
-    char path[512];
-    Table table = {0};
-    int compared = 0;
-    Catalog *c = open_catalog(0.05);
+    char                     path[512];
+    Table                    table = {0};
+    int                      compared = 0;
+    Catalog                 *c = open_catalog(0.05);
     CHECK(etc_path(path, sizeof path, "catalog.csv"));
     CHECK(table_open(&table, path) == STATUS_OK);
     for (int r = 0; r < table.rows; r++) {
         DisEntityType type;
-        const char *text = table_text(&table, r, 0);
+        const char   *text = table_text(&table, r, 0);
         CHECK(row_type(&type, text));
-        const int k = catalog_find(c, type, NULL, NULL);
+        const int    k = catalog_find(c, type, NULL, NULL);
         const Model *m = catalog_model(c, k);
         if (strcmp(m->name, table_text(&table, r, 1)) != 0) continue; /* stars that a deeper row takes */
         compared++;
@@ -291,9 +291,9 @@ static double outline_share(const Model *m, int axis)
 {
     enum { cells = 96 };
     static uint8_t cell[cells][cells];
-    NodePose pose[64];
-    const int a = (axis + 1) % 3, b = (axis + 2) % 3;
-    int covered = 0;
+    NodePose       pose[64];
+    const int      a = (axis + 1) % 3, b = (axis + 2) % 3;
+    int            covered = 0;
     memset(cell, 0, sizeof cell);
     CHECK(m->node_count <= 64);
     model_pose(pose, m, NULL);
@@ -333,7 +333,7 @@ static void outlines_fill_their_boxes_as_they_should(void **state)
     (void)state;
     static const struct {
         const char *name;
-        double front[2], side[2], above[2]; /* least and most */
+        double      front[2], side[2], above[2]; /* least and most */
     } want[] = {
         {"bus", {0.85, 1}, {0.80, 1}, {0.90, 1}},
         {"car", {0.70, 0.97}, {0.55, 0.85}, {0.85, 1}},
@@ -363,8 +363,8 @@ static void outlines_fill_their_boxes_as_they_should(void **state)
         {"satellite", {0.1, 0.35}, {0.7, 1}, {0.7, 1}},
     };
     for (size_t i = 0; i < sizeof want / sizeof want[0]; i++) {
-        Model m = build(want[i].name, 0.01);
-        const double share[3] = {outline_share(&m, 0), outline_share(&m, 1), outline_share(&m, 2)};
+        Model               m = build(want[i].name, 0.01);
+        const double        share[3] = {outline_share(&m, 0), outline_share(&m, 1), outline_share(&m, 2)};
         const double *const limit[3] = {want[i].front, want[i].side, want[i].above};
         for (int a = 0; a < 3; a++)
             if (!(share[a] >= limit[a][0] && share[a] <= limit[a][1]))
@@ -381,8 +381,8 @@ static void shapes_are_sound(void **state)
     (void)state;
     for (int i = 0; i < parametric_count(); i++) {
         const char *name = parametric_name(i);
-        Model m = build(name, 0.005);
-        ModelEdges edges;
+        Model       m = build(name, 0.005);
+        ModelEdges  edges;
         CHECK(model_validate(&m) == STATUS_OK);
         CHECK(model_edges(&edges, &m) == STATUS_OK);
         assert_int_equal(edges.open, 0);
@@ -413,9 +413,9 @@ static void engines_are_warm_and_joints_are_there(void **state)
     (void)state;
     static const struct {
         const char *name;
-        HeatRole warm;
-        uint32_t dis_class[2]; /* 0: none */
-        int wheels, spinning;
+        HeatRole    warm;
+        uint32_t    dis_class[2]; /* 0: none */
+        int         wheels, spinning;
     } want[] = {
         {"car", HEAT_EXHAUST, {0}, 4, 0},
         {"jeep", HEAT_ENGINE_DECK, {0}, 4, 0},
@@ -448,7 +448,7 @@ static void engines_are_warm_and_joints_are_there(void **state)
     };
     for (size_t i = 0; i < sizeof want / sizeof want[0]; i++) {
         Model m = build(want[i].name, 0.02);
-        int wheels = 0, spinning = 0;
+        int   wheels = 0, spinning = 0;
         for (int n = 0; n < m.node_count; n++) {
             wheels += m.node[n].roll_radius_m > 0;
             spinning += m.node[n].spin_rps_moving != 0;
@@ -468,18 +468,18 @@ static void guns_point_where_they_are_reported(void **state)
     (void)state;
     static const struct {
         const char *name, *node, *part;
-        ModelSize size;
+        ModelSize   size;
     } want[] = {
         {"howitzer", "gun", "gun", {0, 0, 0}},   {"howitzer", "gun", "gun", {7.26, 2.85, 2.73}},
         {"gun", "gun", "gun", {11.0, 2.8, 2.9}}, {"tank", "gun", "gun_barrel", {9.83, 3.66, 2.89}},
         {"mortar", "tube", "tube", {0, 0, 0}},   {"rocket_launcher", "launcher", "pods", {0, 0, 0}},
     };
     for (size_t i = 0; i < sizeof want / sizeof want[0]; i++) {
-        Model m;
-        double value[64] = {0};
+        Model    m;
+        double   value[64] = {0};
         NodePose rest[64], lifted[64], turned[64];
         CHECK(parametric_build_size(&m, want[i].name, &want[i].size, 0.02) == STATUS_OK && m.node_count <= 64);
-        const int gun = find_node(&m, want[i].node), turret = m.node[gun].parent;
+        const int    gun = find_node(&m, want[i].node), turret = m.node[gun].parent;
         const double low = fmax(m.node[gun].low, 0), by = fmin(0.2, m.node[gun].high - low);
         value[gun] = low;
         model_pose(rest, &m, value);
@@ -554,7 +554,7 @@ static void bad_sizes_are_refused(void **state)
         {"1.1,flare,base,2000,,\n", "too far"},
     };
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
-        char path[text_file_size], text[256];
+        char     path[text_file_size], text[256];
         Catalog *c = NULL;
         snprintf(text, sizeof text, "type,model,origin,length_m,width_m,height_m\n%s", bad[i].row);
         text_file(path, text);
@@ -572,7 +572,7 @@ static void bad_sizes_are_refused(void **state)
 static void sizes_make_models_and_shapes_make_classes(void **state)
 {
     (void)state;
-    char path[text_file_size];
+    char     path[text_file_size];
     Catalog *c = NULL;
     text_file(path, "type,model,origin,length_m,width_m,height_m\n1.1.1,tank,base,,,\n1.1.2,tank,base,9.83,,\n1.1.3,"
                     "tank,base,9.83,,\n"

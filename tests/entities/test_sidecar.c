@@ -16,18 +16,20 @@ static void every_key_arrives_in_si_units(void **state)
 {
     (void)state;
     Sidecar s;
-    char word[32];
+    char    word[32];
     assert_int_equal(
-        parse(&s, "file: a.glb\nname: T-54\nscale: 0.0254\naxes: -z +Y\norigin: 1 2 -3.5\ncrease_deg: 45\n"
-                  "drop: [crew*, air]\n"
-                  "joints:\n"
-                  "  - {nodes: [t, u], name: turret, class: secondary_turret_3, metric: azimuth, pivot: [0, 0, 1]}\n"
-                  "  - {nodes: g, parent: turret, class: 4416, metric: elevation, limits_deg: -5 18, rest_deg: 15}\n"
-                  "  - {nodes: w*, each: true, pivot: centre, roll_radius: auto}\n"
-                  "  - {nodes: r, axis: 0 3 4, spin_rpm: 60}\n"
-                  "  - {nodes: m, axis: up, class: 2048, metric: extension, limits_m: 0 2}\n"
-                  "materials: {a: paint_olive}\nnode_materials: {w*: rubber_black}\nroles: {w*: wheel}\nthickness_mm: {w*: 12.5, hull: 1000}\n"
-                  "damage: {slight: {hide: x}, destroyed: {hide: [a, b], materials: {\"*\": metal_dark}}}\n"),
+        parse(
+            &s,
+            "file: a.glb\nname: T-54\nscale: 0.0254\naxes: -z +Y\norigin: 1 2 -3.5\ncrease_deg: 45\n"
+            "drop: [crew*, air]\n"
+            "joints:\n"
+            "  - {nodes: [t, u], name: turret, class: secondary_turret_3, metric: azimuth, pivot: [0, 0, 1]}\n"
+            "  - {nodes: g, parent: turret, class: 4416, metric: elevation, limits_deg: -5 18, rest_deg: 15}\n"
+            "  - {nodes: w*, each: true, pivot: centre, roll_radius: auto}\n"
+            "  - {nodes: r, axis: 0 3 4, spin_rpm: 60}\n"
+            "  - {nodes: m, axis: up, class: 2048, metric: extension, limits_m: 0 2}\n"
+            "materials: {a: paint_olive}\nnode_materials: {w*: rubber_black}\nroles: {w*: wheel}\nthickness_mm: {w*: 12.5, hull: 1000}\n"
+            "damage: {slight: {hide: x}, destroyed: {hide: [a, b], materials: {\"*\": metal_dark}}}\n"),
         STATUS_OK);
     assert_string_equal(s.file, "a.glb");
     assert_string_equal(s.name, "T-54");
@@ -50,7 +52,8 @@ static void every_key_arrives_in_si_units(void **state)
     CHECK_NEAR(s.joint[3].spin_rps, 6.283185307179586, 1e-14);
     CHECK(s.joint[4].slides && s.joint[4].high == 2 && s.joint[4].axis == AXIS_BODY && s.joint[4].axis_xyz[2] == -1);
     CHECK(s.roles.count == 1 && s.materials.count == 1 && s.node_materials.count == 1);
-    CHECK(s.thickness.count == 2 && strcmp(s.thickness.rule[0].value, "12.5") == 0 && strcmp(s.thickness.rule[1].pattern, "hull") == 0);
+    CHECK(s.thickness.count == 2 && strcmp(s.thickness.rule[0].value, "12.5") == 0 &&
+          strcmp(s.thickness.rule[1].pattern, "hull") == 0);
     CHECK(s.damage_hide.count == 3 && s.damage_hide.rule[0].damage == 1 && s.damage_hide.rule[2].damage == 3);
     CHECK(s.damage_materials.count == 1 && s.damage_materials.rule[0].damage == 3);
     sidecar_close(&s);
@@ -86,7 +89,8 @@ static void what_is_wrong_is_said(void **state)
         {"materials: {a: b, a: c}\n", "tank.yaml:1: materials: 'a' is given twice"},
         {"materials: {a: 01234567890123456789012345678901}\n", "is not a name of 1 .. 31 characters"},
         {"roles:\n  a: hot\n", "tank.yaml:2: roles: 'hot' is not one of passive, hull, turret"},
-        {"scale: 1\nthickness_mm: {\"hull*\": 0}\n", "tank.yaml:2: thickness_mm: '0' is not a thickness in 0.1 .. 1000 mm"},
+        {"scale: 1\nthickness_mm: {\"hull*\": 0}\n",
+         "tank.yaml:2: thickness_mm: '0' is not a thickness in 0.1 .. 1000 mm"},
         {"thickness_mm: {a: 1000.1}\n", "thickness_mm: '1000.1' is not a thickness in 0.1 .. 1000 mm"},
         {"thickness_mm: {a: -5}\n", "'-5' is not a thickness"},
         {"thickness_mm: {a: nan}\n", "'nan' is not a thickness"},
@@ -101,7 +105,8 @@ static void what_is_wrong_is_said(void **state)
         {"joints: {a: b}\n", "tank.yaml:1: joints: expected a list"},
         {"joints:\n  - 3\n", "tank.yaml:2: joints: expected `- key: value`"},
         {"joints:\n  - {class: 4096, metric: azimuth}\n", "tank.yaml:2: joints: nodes: is missing"},
-        {"joints:\n  - {nodes: a, hinge: 3}\n", "tank.yaml:2: no such key: joints.hinge; all keys: `pitviper model --keys`"},
+        {"joints:\n  - {nodes: a, hinge: 3}\n",
+         "tank.yaml:2: no such key: joints.hinge; all keys: `pitviper model --keys`"},
         {"joints:\n  - {nodes: a, class: 4097, metric: azimuth}\n",
          "joints.class: '4097' is not primary_ or secondary_"},
         {"joints:\n  - {nodes: a, class: primary_turret_11, metric: azimuth}\n", "'primary_turret_11' is not"},
@@ -121,7 +126,7 @@ static void what_is_wrong_is_said(void **state)
         {"scale:\t\n\t1\n", "tank.yaml:"},
     };
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
-        Sidecar s = {.joint_count = 77};
+        Sidecar      s = {.joint_count = 77};
         const Status status = parse(&s, bad[i].text);
         if (!bad[i].said) {
             assert_int_equal(status, STATUS_OK);

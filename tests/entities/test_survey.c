@@ -40,8 +40,8 @@ static DisHeader header(const MadeLog *m, uint8_t type, double t_s)
 static uint8_t *room(MadeLog *m, double t_s)
 {
     CHECK(m->log.count < log_capacity && m->used + 150 <= sizeof m->octets);
-    m->datagram[m->log.count] = (DisDatagram){.capture_s = m->epoch_s + t_s, .packet = (uint32_t)m->log.count + 1,
-                                              .bytes = m->octets + m->used};
+    m->datagram[m->log.count] = (DisDatagram){
+        .capture_s = m->epoch_s + t_s, .packet = (uint32_t)m->log.count + 1, .bytes = m->octets + m->used};
     return m->octets + m->used;
 }
 
@@ -63,7 +63,7 @@ static DisEntityState state_of(int entity, double x_m)
 static void say_state(MadeLog *m, double t_s, DisEntityState pdu)
 {
     const DisHeader h = header(m, dis_pdu_entity_state, t_s);
-    const uint8_t exercise = pdu.header.exercise;
+    const uint8_t   exercise = pdu.header.exercise;
     pdu.header = h;
     if (exercise) pdu.header.exercise = exercise;
     filled(m, dis_encode_entity_state(room(m, t_s), 150, &pdu));
@@ -101,7 +101,7 @@ static Survey survey_of(const MadeLog *m)
 static void tracks_are_sorted_and_in_world_axes(void **state)
 {
     (void)state;
-    MadeLog *m = new_log(1.3e9);
+    MadeLog       *m = new_log(1.3e9);
     DisEntityState body = state_of(9, 0), world = state_of(3, 0);
     body.dead_reckoning = 8;
     body.psi_rad = 0.5f;
@@ -145,7 +145,7 @@ static void tracks_are_sorted_and_in_world_axes(void **state)
 static void rubbish_is_counted_and_the_rest_kept(void **state)
 {
     (void)state;
-    MadeLog *m = new_log(1.3e9);
+    MadeLog       *m = new_log(1.3e9);
     DisEntityState pdu = state_of(1, 0), bad = state_of(2, 0);
     say_state(m, 1, pdu);
     bad.p_ecef[0] = NAN;
@@ -184,14 +184,14 @@ static void shots_join_by_munition_then_event(void **state)
     MadeLog *m = new_log(1.3e9);
     say_fire(m, 10, 1, 50, 7, 1);
     say_fire(m, 11, 2, 0, 8, 2);
-    say_fire(m, 12, 3, 0, 0, 3);         /* no munition entity: by event */
+    say_fire(m, 12, 3, 0, 0, 3); /* no munition entity: by event */
     say_detonation(m, 15, 2, 0, 8, 2, 80);
     say_detonation(m, 16, 1, 50, 7, 1, 70);
     say_detonation(m, 16.2, 1, 50, 7, 1, 70); /* heard twice */
     say_detonation(m, 17, 3, 51, 0, 3, 30);
-    say_fire(m, 20, 1, 50, 7, 4);        /* the id again */
+    say_fire(m, 20, 1, 50, 7, 4); /* the id again */
     say_detonation(m, 25, 1, 0, 7, 4, 71);
-    say_fire(m, 30, 1, 50, 7, 5);        /* and again, never ended */
+    say_fire(m, 30, 1, 50, 7, 5);           /* and again, never ended */
     say_detonation(m, 40, 9, 0, 99, 9, 99); /* whose Fire was before the log */
 
     Survey s = survey_of(m);
@@ -236,7 +236,7 @@ static void clocks_tell_the_date(void **state)
 {
     (void)state;
     const double date_s = 1371300000; /* 2013-06-15 12:40:00 UTC */
-    MadeLog *m = new_log(date_s - 2400);
+    MadeLog     *m = new_log(date_s - 2400);
     say_state(m, 2400, state_of(1, 0)); /* relative: says nothing of the date */
     Survey s = survey_of(m);
     CHECK(isnan(s.absolute_unix_s) && isnan(s.clock_start_unix_s));
@@ -282,7 +282,8 @@ static void one_absurd_stamp_does_not_tell_the_date(void **state)
             say_state(m, 2400 + i, said);
             if (i == absurd) { /* the header's stamp: octets 4 .. 7 */
                 const uint32_t wrong = stamp(m, 3900);
-                for (int k = 0; k < 4; k++) ((uint8_t *)(uintptr_t)m->datagram[i].bytes)[4 + k] = (uint8_t)(wrong >> (24 - 8 * k));
+                for (int k = 0; k < 4; k++)
+                    ((uint8_t *)(uintptr_t)m->datagram[i].bytes)[4 + k] = (uint8_t)(wrong >> (24 - 8 * k));
             }
         }
         Survey s = survey_of(m);
@@ -331,8 +332,8 @@ static TrackPoint point_at(double t_s, double x_m, double vx_mps)
 static void constant_acceleration_is_exact(void **state)
 {
     (void)state;
-    TrackPoint point[4];
-    const Track track = {.count = 4, .point = point};
+    TrackPoint          point[4];
+    const Track         track = {.count = 4, .point = point};
     static const double t[4] = {0, 0.7, 2, 5};
     for (int i = 0; i < 4; i++) point[i] = point_at(t[i], 100 * t[i] + 15 * t[i] * t[i], 100 + 30 * t[i]);
     for (double t_s = 0; t_s <= 5; t_s += 0.03) {
@@ -350,9 +351,9 @@ static void no_overshoot(void **state)
     (void)state;
     static const double v[][2] = {{0, 300}, {28, 200}, {2000, 2000}, {-50, 100}, {0, 0}, {1e4, -1e4}};
     for (size_t n = 0; n < sizeof v / sizeof *v; n++) {
-        TrackPoint point[2] = {point_at(0, 0, v[n][0]), point_at(0.5, 60, v[n][1])};
+        TrackPoint  point[2] = {point_at(0, 0, v[n][0]), point_at(0.5, 60, v[n][1])};
         const Track track = {.count = 2, .point = point};
-        double last_m = 0;
+        double      last_m = 0;
         for (int k = 0; k <= 100; k++) {
             TrackPose pose;
             survey_track_at(&pose, &track, 0.005 * k);
@@ -371,7 +372,7 @@ static void ends_and_gaps_are_held(void **state)
                            point_at(9, 500, 5)};
     point[3].deactivated = true;
     const Track track = {.count = 5, .point = point};
-    TrackPose pose;
+    TrackPose   pose;
     survey_track_at(&pose, &track, -100);
     CHECK(pose.p_ecef[0] == 6.4e6 && pose.v_ecef_mps[0] == 0);
     survey_track_at(&pose, &track, 1);
@@ -393,9 +394,9 @@ static void attitude_turns_evenly(void **state)
     (void)state;
     for (int n = 0; n < 500; n++) {
         const double angle = n < 10 ? pow(10, -n) : pi_rad * 0.9999 * random_uniform(5, 1, 0, (uint64_t)n);
-        Kinematics k = {.algorithm = 4};
-        double axis[3] = {random_normal(5, 2, 0, (uint64_t)n), random_normal(5, 3, 0, (uint64_t)n),
-                          random_normal(5, 4, 0, (uint64_t)n)};
+        Kinematics   k = {.algorithm = 4};
+        double       axis[3] = {random_normal(5, 2, 0, (uint64_t)n), random_normal(5, 3, 0, (uint64_t)n),
+                                random_normal(5, 4, 0, (uint64_t)n)};
         CHECK(v3_normalize(axis, axis));
         v3_scale(k.w_body_rps, angle, axis);
         r_ecef_from_body_euler(k.r_ecef_from_body, 6 * axis[1], 3 * axis[2], 6 * axis[0]);
@@ -418,7 +419,7 @@ static void attitude_turns_evenly(void **state)
 static void the_recorded_attack(void **state)
 {
     (void)state;
-    char path[512];
+    char   path[512];
     DisLog log;
     Survey s;
     if (!reference_path(path, "dis/vrf-dis5-tow-vs-armor.pcap")) skip();
@@ -453,7 +454,7 @@ static void the_recorded_attack(void **state)
     /* In flight the path is as fast as the missile. Before that, and at impact where the sender moves it 9 m in half
      * a millisecond, at least the velocity stays one. */
     const double flight_s = missile->point[1].t_s, impact_s = missile->point[missile->count - 3].t_s;
-    TrackPose before, here;
+    TrackPose    before, here;
     survey_track_at(&before, missile, flight_s);
     double fastest_mps = 0, slowest_mps = INFINITY, fastest_said_mps = 0;
     for (double t_s = missile->point[0].t_s; t_s < missile->point[missile->count - 1].t_s; t_s += 0.0001) {
@@ -485,7 +486,7 @@ static void the_recorded_drives(void **state)
     } want[2] = {{"dis/vrf-dis7-gaz69-blocks.pcap", 2449, 355.874, 775},
                  {"dis/vrf-dis7-gaz69-straight.pcap", 570, 65.278, 116}};
     for (int n = 0; n < 2; n++) {
-        char path[512];
+        char   path[512];
         DisLog log;
         Survey s;
         if (!reference_path(path, want[n].file)) skip();
@@ -493,7 +494,7 @@ static void the_recorded_drives(void **state)
         CHECK(survey_log(&s, &log, -1) == STATUS_OK);
         CHECK(s.track_count == 1 && s.shot_count == 0);
         const Track *truck = s.track;
-        double way_m = 0;
+        double       way_m = 0;
         for (int p = 1; p < truck->count; p++) {
             double d[3];
             v3_sub(d, truck->point[p].p_ecef, truck->point[p - 1].p_ecef);

@@ -25,7 +25,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     char      path[fuzz_path_size], file_path[case_path_size], reason[256];
     const int file = fuzz_file(path, data, size);
     if (file < 0) return 0;
-    Case         c      = case_default();
+    Case         c = case_default();
     const Status status = case_read_file(&c, path);
     close(file);
     if (status != STATUS_OK) return 0;
@@ -34,7 +34,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     if (c.frames.count < 1 || c.frames.count > case_frames_max || !(c.timeout_s > 0)) abort();
     for (int i = 0; i < c.frames.count; i++)
         if (!(c.frames.number[i] >= 0 && c.frames.number[i] <= 999999) ||
-            (i > 0 && !(c.frames.number[i] > c.frames.number[i - 1]))) abort();
+            (i > 0 && !(c.frames.number[i] > c.frames.number[i - 1])))
+            abort();
     (void)case_path(file_path, reason, &c, c.log);
     return 0;
 }

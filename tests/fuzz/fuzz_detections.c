@@ -12,13 +12,21 @@ enum { width = 64, height = 48, bands = 1 << BAND_LWIR | 1 << BAND_OPTICAL };
 size_t fuzz_seed(uint8_t *out, uint32_t index)
 {
     static const uint32_t counts[4] = {1, 0, 3, pitviper_detections_most};
-    PitviperDetections    d = {.byte_order = PITVIPER_MEMORY_BYTE_ORDER, .version = PITVIPER_DETECTIONS_VERSION, .detection_size = sizeof(PitviperDetection),
-                               .frame = (int32_t)index, .band = index % 8 < 4 ? BAND_LWIR : BAND_OPTICAL,
+    PitviperDetections    d = {.byte_order = PITVIPER_MEMORY_BYTE_ORDER,
+                               .version = PITVIPER_DETECTIONS_VERSION,
+                               .detection_size = sizeof(PitviperDetection),
+                               .frame = (int32_t)index,
+                               .band = index % 8 < 4 ? BAND_LWIR : BAND_OPTICAL,
                                .count = counts[index % 4]};
     memcpy(d.magic, PITVIPER_DETECTIONS_MAGIC, sizeof d.magic);
     for (uint32_t i = 0; i < d.count; i++)
-        d.detection[i] = (PitviperDetection){.left = (float)i / 2, .top = 1, .right = width, .bottom = 2.5f, .score = 1,
-                                             .track = i, .class_name = "tank"};
+        d.detection[i] = (PitviperDetection){.left = (float)i / 2,
+                                             .top = 1,
+                                             .right = width,
+                                             .bottom = 2.5f,
+                                             .score = 1,
+                                             .track = i,
+                                             .class_name = "tank"};
     if (index % 3 == 0) { /* of version 1: detections of 48 octets */
         d.version = 1, d.detection_size = 48;
         memcpy(out, &d, PITVIPER_DETECTIONS_SIZE(0));
@@ -43,7 +51,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         const PitviperDetection *one = &d.detection[i];
         if (!(one->left >= 0 && one->left < one->right && one->right <= width)) abort();
         if (!(one->top >= 0 && one->top < one->bottom && one->bottom <= height)) abort();
-        if (!(one->score >= 0 && one->score <= 1) || strnlen(one->class_name, sizeof one->class_name) == sizeof one->class_name) abort();
+        if (!(one->score >= 0 && one->score <= 1) ||
+            strnlen(one->class_name, sizeof one->class_name) == sizeof one->class_name)
+            abort();
         for (const char *c = one->class_name; *c; c++)
             if (*c < 0x20 || *c > 0x7e) abort();
     }

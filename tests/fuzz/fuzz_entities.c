@@ -31,9 +31,9 @@ static void put_place(uint8_t *at, double x_m, double y_m, double z_m)
 size_t fuzz_seed(uint8_t *out, uint32_t index)
 {
     static const uint8_t exercise = 1;
-    Dice      d = dice(index);
-    size_t    octets = 0;
-    const int pdus = 2 + (int)(roll(&d) % 8);
+    Dice                 d = dice(index);
+    size_t               octets = 0;
+    const int            pdus = 2 + (int)(roll(&d) % 8);
     for (int i = 0; i < pdus; i++) {
         const int    kind = (int)(roll(&d) % random_pdu_kinds);
         uint8_t     *pdu = out + octets;
@@ -72,8 +72,10 @@ static int cut(DisDatagram out[most_datagrams], const uint8_t *data, size_t size
             const size_t said = (size_t)(data[at + 8] << 8 | data[at + 9]);
             if (said >= dis_header_octets && said < length) length = said;
         }
-        out[count] = (DisDatagram){.capture_s = 1.6e9 + 0.125 * count, .packet = (uint32_t)count + 1,
-                                   .octets = (uint32_t)length, .bytes = data + at};
+        out[count] = (DisDatagram){.capture_s = 1.6e9 + 0.125 * count,
+                                   .packet = (uint32_t)count + 1,
+                                   .octets = (uint32_t)length,
+                                   .bytes = data + at};
         at += length;
     }
     return count;
@@ -107,8 +109,8 @@ static void check_snapshot(const EntityTable *table, double t_s, Arena *arena)
         if (!v3_is_finite(e->p_ecef) || !v3_is_finite(e->v_ecef_mps) || !v3_is_finite(e->w_body_rps)) abort();
         for (int k = 0; k < 9; k++)
             if (!(fabs(e->r_ecef_from_body[k]) <= 1.001)) abort();
-        if (!(e->drives.engine >= 0 && e->drives.engine <= 1 && e->drives.speed_mps >= 0 && isfinite(e->drives.speed_mps) &&
-              isfinite(e->drives.fired_kg[0]) && isfinite(e->drives.fired_kg[1])))
+        if (!(e->drives.engine >= 0 && e->drives.engine <= 1 && e->drives.speed_mps >= 0 &&
+              isfinite(e->drives.speed_mps) && isfinite(e->drives.fired_kg[0]) && isfinite(e->drives.fired_kg[1])))
             abort();
         if (i > 0 && dis_entity_id_compare(snapshot.entity[i - 1].id, e->id) >= 0) abort();
     }
@@ -144,8 +146,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     check_survey(&log, exercise);
 
     EntityTableConfig config = entity_table_default_config();
-    EntityTable *table = NULL;
-    Player      *player = NULL;
+    EntityTable      *table = NULL;
+    Player           *player = NULL;
     config.capacity = 8;
     if (entity_table_create(&table, &config, catalog) == STATUS_OK &&
         player_create(&player, exercise, size % 3 == 0) == STATUS_OK && player_add_log(player, &log) == STATUS_OK) {

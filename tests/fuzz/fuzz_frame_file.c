@@ -14,45 +14,69 @@ const int fuzz_rounds = 3000;
 
 static void identity(double r[9]) { m3_identity(r); }
 
-/* Two entities, a puff, a mark of each sort; ground of two nested levels with cover and a photograph, or invented; with plants or without. */
+/* Two entities, a puff, a mark of each sort; ground of two nested levels with cover and a photograph, or invented; with
+ * plants or without. */
 static void small_file(ByteSink *out, bool invented, bool planted)
 {
-    static uint16_t stored[elevation_tile_posts];
-    static ElevationTile tile[1] = {{-elevation_base_unit, 2}};
-    static uint8_t  cover[16 * 16];
-    static PhotoBlock block[2];
-    static NodePose node[2];
+    static uint16_t       stored[elevation_tile_posts];
+    static ElevationTile  tile[1] = {{-elevation_base_unit, 2}};
+    static uint8_t        cover[16 * 16];
+    static PhotoBlock     block[2];
+    static NodePose       node[2];
     static SnapshotEntity entity[2];
-    static EffectPuff puff;
-    static SavedModel model = {.model = 3, .node_count = 1, .name = "box"};
-    static SavedPlane plane = {.name = "lwir/Y", .mean = 1};
-    static GroundFix  fix = {{1, 2, 3}, 1};
-    static ClearLine  line = {{0, 0, 9}, {100, 0, 9}};
-    static CoastPlace place = {50, 60, true};
+    static EffectPuff     puff;
+    static SavedModel     model = {.model = 3, .node_count = 1, .name = "box"};
+    static SavedPlane     plane = {.name = "lwir/Y", .mean = 1};
+    static GroundFix      fix = {{1, 2, 3}, 1};
+    static ClearLine      line = {{0, 0, 9}, {100, 0, 9}};
+    static CoastPlace     place = {50, 60, true};
     SavedFrame file = {.version = "1", .host = "1:2:3", .config_sha256 = "", .settings = "seed: 1\n", .frame = 7};
     file.tables.count = 1;
     strcpy(file.tables.table[0].name, "heat.csv");
     file.model = &model, file.model_count = 1;
     file.plane = &plane, file.plane_count = 1;
     for (int e = 0; e < 2; e++) {
-        entity[e] = (SnapshotEntity){.id = {1, 2, (uint16_t)(3 + e)}, .type = {.kind = 1, .domain = 1}, .model = 3,
-                                     .p_ecef = {6378137, e, 0}, .first_node = e};
+        entity[e] = (SnapshotEntity){.id = {1, 2, (uint16_t)(3 + e)},
+                                     .type = {.kind = 1, .domain = 1},
+                                     .model = 3,
+                                     .p_ecef = {6378137, e, 0},
+                                     .first_node = e};
         identity(entity[e].r_ecef_from_body);
         identity(node[e].r_body_from_node);
     }
-    puff = (EffectPuff){.kind = EFFECT_SMOKE, .p_ecef = {6378137, 0, 0}, .up_ecef = {1, 0, 0}, .axis_ecef = {1, 0, 0},
-                        .throw_s = 1, .scale = 1, .mass_kg = 1};
-    file.snapshot = (Snapshot){.count = 2, .node_count = 2, .entity = entity, .node = node, .puff_count = 1,
-                               .puff = &puff};
-    static GroundStand stand = {.p_ecef = {6378137, 0, 0}, .low_m = {-4, -2, -3}, .high_m = {4, 2, 0}, .from_s = -3600,
-                                .to_s = INFINITY, .owner = 7};
-    static GroundTrack track = {.a_ecef = {6378137, 0, 0}, .b_ecef = {6378137, 4, 0}, .a_s = 1, .b_s = 2, .width_m = 0.5f,
-                                .apart_m = 2.5f, .heat_j_m2 = 9000, .tracked = true};
-    static GroundBurn  burn  = {.p_ecef = {6378137, 0, 9}, .t_s = 3, .radius_m = 2, .crater_m = 1, .heat_j_m2 = 1e5f};
+    puff = (EffectPuff){.kind = EFFECT_SMOKE,
+                        .p_ecef = {6378137, 0, 0},
+                        .up_ecef = {1, 0, 0},
+                        .axis_ecef = {1, 0, 0},
+                        .throw_s = 1,
+                        .scale = 1,
+                        .mass_kg = 1};
+    file.snapshot =
+        (Snapshot){.count = 2, .node_count = 2, .entity = entity, .node = node, .puff_count = 1, .puff = &puff};
+    static GroundStand stand = {.p_ecef = {6378137, 0, 0},
+                                .low_m = {-4, -2, -3},
+                                .high_m = {4, 2, 0},
+                                .from_s = -3600,
+                                .to_s = INFINITY,
+                                .owner = 7};
+    static GroundTrack track = {.a_ecef = {6378137, 0, 0},
+                                .b_ecef = {6378137, 4, 0},
+                                .a_s = 1,
+                                .b_s = 2,
+                                .width_m = 0.5f,
+                                .apart_m = 2.5f,
+                                .heat_j_m2 = 9000,
+                                .tracked = true};
+    static GroundBurn  burn = {.p_ecef = {6378137, 0, 9}, .t_s = 3, .radius_m = 2, .crater_m = 1, .heat_j_m2 = 1e5f};
     identity(stand.r_ecef_from_body);
     if (planted) file.snapshot.marks = (GroundMarks){1, 1, 1, &stand, &track, &burn, 5};
-    file.request  = (RenderRequest){.view = {.width = 16, .height = 12, .focal_px = 30}, .bands = 15, .truth = true,
-                                    .samples = 1, .hidden_entity = 0, .profile_bins = 16, .profile_bin_m = 0.3};
+    file.request = (RenderRequest){.view = {.width = 16, .height = 12, .focal_px = 30},
+                                   .bands = 15,
+                                   .truth = true,
+                                   .samples = 1,
+                                   .hidden_entity = 0,
+                                   .profile_bins = 16,
+                                   .profile_bin_m = 0.3};
     identity(file.request.view.r_enu_from_cam);
     identity(file.eye.r_ecef_from_cam);
     identity(file.r_ecef_from_body);
@@ -67,15 +91,17 @@ static void small_file(ByteSink *out, bool invented, bool planted)
         level[0].tile = level[1].tile = tile, level[0].stored = level[1].stored = stored;
         level[1].plain = false;
         file.ground.cover[0] = (CoverGrid){.nx = 16, .ny = 16, .x0_m = -8, .y0_m = -8, .cell_m = 1, .surface = cover};
-        file.ground.photo    = (Photo){.mips = 2, .nx = {2, 1}, .ny = {2, 1}, .cell_m = 8,
-                                       .block = {&block[0], &block[1]}};
+        file.ground.photo =
+            (Photo){.mips = 2, .nx = {2, 1}, .ny = {2, 1}, .cell_m = 8, .block = {&block[0], &block[1]}};
     }
     static const WoodsPath path[2] = {{{1, 2}, {3, 4}, 5, 0}, {{6, 7}, {6, 7}, 8, 3}};
     file.planted = planted;
     if (planted) file.woods = (WoodsConfig){.half_width_m = 500, .most_trees = 70, .path_count = 2, .path = path};
     static double joint[64];
     file.measured = planted;
-    if (planted) file.radar = (SavedRadar){.has_aim = true, .aim_m = 900, .number = 7, .joint_count = file.snapshot.node_count, .joint = joint};
+    if (planted)
+        file.radar = (SavedRadar){
+            .has_aim = true, .aim_m = 900, .number = 7, .joint_count = file.snapshot.node_count, .joint = joint};
     if (file.snapshot.node_count > 64) abort();
     if (saved_frame_pack(out, &file, NULL) != STATUS_OK) abort();
 }
@@ -96,9 +122,9 @@ size_t fuzz_seed(uint8_t *out, uint32_t index)
 /* Whether it was accepted, and its ground made where that is quick. */
 static bool parse(const uint8_t *data, size_t size)
 {
-    bool       made = false;
+    bool        made = false;
     SavedFrame *file = malloc(sizeof *file);
-    Arena     *arena = arena_create();
+    Arena      *arena = arena_create();
     if (!file || !arena) abort();
     if (saved_frame_parse(file, data, size, "input", arena) == STATUS_OK) {
         const Snapshot *s = &file->snapshot;

@@ -24,9 +24,9 @@ static size_t put_u32(uint8_t *out, uint32_t bits)
 /* The whole Earth in steps of 30 degrees, or a piece of it. */
 size_t fuzz_seed(uint8_t *out, uint32_t index)
 {
-    const bool whole = index % 2 == 0;
+    const bool     whole = index % 2 == 0;
     const uint32_t rows = whole ? 7 : 5, columns = whole ? 12 : 6;
-    size_t n = 0;
+    size_t         n = 0;
     n += put_f64(out + n, whole ? -90 : 10);
     n += put_f64(out + n, whole ? -180 : 20);
     n += put_f64(out + n, whole ? 30 : 0.25);

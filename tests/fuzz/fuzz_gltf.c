@@ -68,9 +68,9 @@ size_t fuzz_seed(uint8_t *out, uint32_t index)
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     static ReaderSaid said;
-    ReaderFiles files;
-    ImportScene scene = {0};
-    char *text = malloc(size + 1);
+    ReaderFiles       files;
+    ImportScene       scene = {0};
+    char             *text = malloc(size + 1);
     if (!text) return 0;
     memcpy(text, data, size);
     said = (ReaderSaid){0};

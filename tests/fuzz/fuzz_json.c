@@ -1,5 +1,5 @@
-/* tests/fuzz/fuzz_json.c: any octets as run.json or a line of truth.jsonl: two of them, held against each other. Without a
- * fuzzer run_corpus.c drives it. */
+/* tests/fuzz/fuzz_json.c: any octets as run.json or a line of truth.jsonl: two of them, held against each other.
+ * Without a fuzzer run_corpus.c drives it. */
 #include "tests/fuzz/fuzz_seed.h"
 
 #include "sensor/verify/regress/verdict.h"

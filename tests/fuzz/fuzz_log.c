@@ -1,5 +1,5 @@
-/* tests/fuzz/fuzz_log.c: any octets as a capture file. Without a fuzzer run_corpus.c drives it; its seeds are plain, and
- * corpus/fuzz_log has compressed ones: a spoilt sum would end most runs before the first packet. */
+/* tests/fuzz/fuzz_log.c: any octets as a capture file. Without a fuzzer run_corpus.c drives it; its seeds are plain,
+ * and corpus/fuzz_log has compressed ones: a spoilt sum would end most runs before the first packet. */
 #include "tests/fuzz/fuzz_seed.h"
 #include "tests/dis/make_capture.h"
 
@@ -16,10 +16,8 @@ size_t fuzz_seed(uint8_t *out, uint32_t index)
     static const uint8_t pdu[192] = {7, 1, 20, 5, 0, 0, 0, 0, 0, 192};
     const bool           ng = index & 1, v6 = index & 2, ethernet = index & 4;
     const uint32_t       link = ethernet ? 1 : 101;
-    if (ng)
-        pcapng_begin(&file, (uint16_t)link);
-    else
-        pcap_begin(&file, link, index & 8, index & 16);
+    if (ng) pcapng_begin(&file, (uint16_t)link);
+    else pcap_begin(&file, link, index & 8, index & 16);
     for (int i = 0; i < 3; i++) {
         const int    first = i == 2 ? 104 : 0, last = i == 1 ? 104 : 200; /* octets of the IP payload */
         static Bytes udp;
@@ -36,10 +34,8 @@ size_t fuzz_seed(uint8_t *out, uint32_t index)
                      (unsigned)first / 8 | (i == 1 ? 0x2000u : 0), 0);
         }
         put(&packet, udp.at + first, (size_t)(last - first));
-        if (ng)
-            pcapng_packet(&file, 1000, &packet);
-        else
-            pcap_packet(&file, 1000, 0, &packet, packet.count, index & 16);
+        if (ng) pcapng_packet(&file, 1000, &packet);
+        else pcap_packet(&file, 1000, 0, &packet, packet.count, index & 16);
     }
     memcpy(out, file.at, file.count);
     return file.count;
@@ -61,7 +57,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         }
         const uint8_t first = size ? data[0] : 0; /* of gzip, zstd and its frames to be skipped, bzip2, xz */
         const bool    plain = first != 0x1F && first != 0x28 && first >> 4 != 5 && first != 'B' && first != 0xFD;
-        const size_t most = plain ? size : dis_stream_free_octets + dis_stream_ratio_most * size;
+        const size_t  most = plain ? size : dis_stream_free_octets + dis_stream_ratio_most * size;
         if (kept > most || sum > 255 * kept) abort();
         dis_log_close(&log);
     }

@@ -62,7 +62,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     }
     for (int i = 0; i < m.tracks; i++) {
         const GroundTrack *t = &m.track[i];
-        if (!v3_is_finite(t->a_ecef) || !v3_is_finite(t->b_ecef) || !(t->a_s <= t->b_s) || !(t->heat_j_m2 >= 0)) abort();
+        if (!v3_is_finite(t->a_ecef) || !v3_is_finite(t->b_ecef) || !(t->a_s <= t->b_s) || !(t->heat_j_m2 >= 0))
+            abort();
     }
     for (int i = 0; i < m.burns; i++)
         if (!v3_is_finite(m.burn[i].p_ecef) || !isfinite(m.burn[i].t_s) || !(m.burn[i].radius_m >= 0)) abort();

@@ -10,13 +10,27 @@ const int fuzz_rounds = 20000;
 size_t fuzz_seed(uint8_t *out, uint32_t index)
 {
     enum { slots = 2, slot_octets = 512 + 576 + 64 + 64, slot_at = 512 };
-    const uint64_t newest = index % 2 ? 1ull << 40 : 3;
-    PitviperMemoryHeader header = {
-        .magic = "PVMEMOR", .byte_order = PITVIPER_MEMORY_BYTE_ORDER, .version = 1, .header_size = 320,
-        .plane_entry_size = 96, .record_size = 512, .target_size = 576, .segment_size = slot_at + slots * slot_octets,
-        .plane_offset = 320, .slot_offset = slot_at, .slot_size = slot_octets, .target_offset = 512,
-        .slot_count = slots, .plane_count = 2, .target_room = index % 2 ? 0 : 1, .kind = 2, .host = "1:2:3",
-        .newest = newest, .wake = 3, .state = PITVIPER_MEMORY_CLOSED};
+    const uint64_t       newest = index % 2 ? 1ull << 40 : 3;
+    PitviperMemoryHeader header = {.magic = "PVMEMOR",
+                                   .byte_order = PITVIPER_MEMORY_BYTE_ORDER,
+                                   .version = 1,
+                                   .header_size = 320,
+                                   .plane_entry_size = 96,
+                                   .record_size = 512,
+                                   .target_size = 576,
+                                   .segment_size = slot_at + slots * slot_octets,
+                                   .plane_offset = 320,
+                                   .slot_offset = slot_at,
+                                   .slot_size = slot_octets,
+                                   .target_offset = 512,
+                                   .slot_count = slots,
+                                   .plane_count = 2,
+                                   .target_room = index % 2 ? 0 : 1,
+                                   .kind = 2,
+                                   .host = "1:2:3",
+                                   .newest = newest,
+                                   .wake = 3,
+                                   .state = PITVIPER_MEMORY_CLOSED};
     header.magic[7] = 'Y';
     const PitviperMemoryPlane plane[2] = {
         {.band = 2, .type = PITVIPER_PLANE_FLOAT32, .width = 4, .height = 4, .offset = 512 + 576, .band_name = "lwir"},
@@ -37,10 +51,9 @@ static unsigned sum(const PitviperMemory *m)
     unsigned             total = (unsigned)strlen(m->record.host) + (unsigned)strlen(m->record.config_sha256);
     PitviperMemoryTarget target;
     for (uint32_t k = 0; k < m->header.plane_count; k++) {
-        const PitviperMemoryPlane *p      = &m->plane[k];
+        const PitviperMemoryPlane *p = &m->plane[k];
         const unsigned char       *octets = pitviper_memory_plane(m, k);
-        const uint64_t             size   = (uint64_t)p->width * p->height *
-                              (p->type == PITVIPER_PLANE_FLOAT32 ? 4 : 2);
+        const uint64_t             size = (uint64_t)p->width * p->height * (p->type == PITVIPER_PLANE_FLOAT32 ? 4 : 2);
         for (uint64_t i = 0; i < size; i++) total += octets[i];
     }
     for (uint32_t i = 0; i < m->record.target_count; i++) {

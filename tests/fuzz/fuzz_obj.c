@@ -30,9 +30,9 @@ size_t fuzz_seed(uint8_t *out, uint32_t index)
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     static ReaderSaid said;
-    int lost[IMPORT_LOST_COUNT] = {0};
-    char word[24], *text = malloc(size + 1), *again;
-    size_t octets = size, more;
+    int               lost[IMPORT_LOST_COUNT] = {0};
+    char              word[24], *text = malloc(size + 1), *again;
+    size_t            octets = size, more;
     if (!text) return 0;
     memcpy(text, data, size);
     static const char *const extension[] = {"dxf", "amf", "3mf"};

@@ -23,12 +23,12 @@ enum { most_probes = 64, most_octets = 4096 };
 
 /* What a probe opens is opened once and shared. */
 typedef struct Kept {
-    Probe  probe;
+    Probe probe;
     Status (*open)(void **state, int argc, char **argv);
-    void  *state;
+    void *state;
 } Kept;
-static Kept  kept[most_probes];
-static int   kept_count, opening;
+static Kept kept[most_probes];
+static int  kept_count, opening;
 
 static Status open_kept(void **state, int argc, char **argv)
 {
@@ -91,8 +91,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         FILE  *out = open_memstream(&text, &written);
         if (!in || !out) abort();
         argv[0] = (char *)(uintptr_t)probe->name;
-        const Status status = probe_run(probe, probe->arguments && strcmp(probe->name, "rays") == 0 ? 2 : 1, argv, in,
-                                        out);
+        const Status status =
+            probe_run(probe, probe->arguments && strcmp(probe->name, "rays") == 0 ? 2 : 1, argv, in, out);
         fclose(in);
         fclose(out);
         /* a line for each line, none of them longer than its own and its results */

@@ -11,7 +11,7 @@ const int fuzz_rounds = 4000;
 size_t fuzz_seed(uint8_t *out, uint32_t index)
 {
     static const char *const name[] = {"demo", "guns", "aircraft", "crowd", "empty", "bad-pdus"};
-    char path[1024], file_name[64];
+    char                     path[1024], file_name[64];
     snprintf(file_name, sizeof file_name, "scenarios/%s.yaml", name[index % (sizeof name / sizeof *name)]);
     FILE *file = etc_path(path, sizeof path, file_name) ? fopen(path, "rb") : NULL;
     if (!file) return 0;

@@ -1,5 +1,5 @@
-/* tests/fuzz/fuzz_signature.c: any octets as a file of a library of signatures, and again with a checksum that fits. What
- * is accepted gives finite centres. Without a fuzzer run_corpus.c drives it. */
+/* tests/fuzz/fuzz_signature.c: any octets as a file of a library of signatures, and again with a checksum that fits.
+ * What is accepted gives finite centres. Without a fuzzer run_corpus.c drives it. */
 #include "tests/fuzz/fuzz_seed.h"
 
 #include "render/scattering/signatures/centres.h"

@@ -11,17 +11,20 @@ const int fuzz_rounds = 6000;
 /* Two levels of a tile each, with classes, a photograph, canopy and a crown. */
 static size_t small_store(uint8_t *out)
 {
-    const StorePlan plan = {
-        .origin = {0.5, 1, 0}, .level_count = 2,
-        .level = {{.nx = 17, .ny = 17, .x0_m = -8, .y0_m = -8, .spacing_m = 1, .seam_shift = -1},
-                  {.nx = 9, .ny = 9, .x0_m = -32, .y0_m = -32, .spacing_m = 8, .seam_shift = -1}},
-        .surface = {{16, 16, -8, -8, 1}}, .albedo = {16, 16, -8, -8, 1}, .canopy_height = {4, 4, -8, -8, 4},
-        .options = "--out x", .crs = "EPSG:4326"};
-    const Crown  crown = {1, 2, 3, 4};
-    uint8_t      octets[4 * 16 * 16];
-    float        z_m[17 * 17];
-    char         path[temp_path_size];
-    StoreWriter *w;
+    const StorePlan plan = {.origin = {0.5, 1, 0},
+                            .level_count = 2,
+                            .level = {{.nx = 17, .ny = 17, .x0_m = -8, .y0_m = -8, .spacing_m = 1, .seam_shift = -1},
+                                      {.nx = 9, .ny = 9, .x0_m = -32, .y0_m = -32, .spacing_m = 8, .seam_shift = -1}},
+                            .surface = {{16, 16, -8, -8, 1}},
+                            .albedo = {16, 16, -8, -8, 1},
+                            .canopy_height = {4, 4, -8, -8, 4},
+                            .options = "--out x",
+                            .crs = "EPSG:4326"};
+    const Crown     crown = {1, 2, 3, 4};
+    uint8_t         octets[4 * 16 * 16];
+    float           z_m[17 * 17];
+    char            path[temp_path_size];
+    StoreWriter    *w;
     if (!temp_file(path, ".store") || store_writer_create(&w, path, &plan, NULL) != STATUS_OK) abort();
     for (size_t n = 0; n < sizeof octets; n++) octets[n] = (uint8_t)(1 + n % 9);
     for (int n = 0; n < 17 * 17; n++) z_m[n] = (float)(n % 29) * 0.37f;

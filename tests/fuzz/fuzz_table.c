@@ -24,9 +24,17 @@ const int fuzz_rounds = 1500;
 /* A table of etc/, or a few rows in the way of the others. */
 size_t fuzz_seed(uint8_t *out, uint32_t index)
 {
-    static const char *const name[] = {"catalog.csv",  "heat.csv",     "effects.csv",
-                                       "materials.csv", "surfaces.csv", "sensors.csv", "sensors/example_flir2.sheet",
-                                       "radars.csv", "radar/oxygen_lines.csv", "radar/water_lines.csv", "radar/clutter.csv",
+    static const char *const name[] = {"catalog.csv",
+                                       "heat.csv",
+                                       "effects.csv",
+                                       "materials.csv",
+                                       "surfaces.csv",
+                                       "sensors.csv",
+                                       "sensors/example_flir2.sheet",
+                                       "radars.csv",
+                                       "radar/oxygen_lines.csv",
+                                       "radar/water_lines.csv",
+                                       "radar/clutter.csv",
                                        "radar/ground.csv"};
     enum { names = sizeof name / sizeof *name };
     char path[1024];
@@ -34,13 +42,16 @@ size_t fuzz_seed(uint8_t *out, uint32_t index)
     case names + 5:
         return fuzz_seed_text(out, "az_deg,el_deg,f_ghz,hh_dbsm,vv_dbsm\n0,0,35,1,2\n180,0,35,3,4\n300,0,35,-7,1e1\n");
     case names + 4:
-        return fuzz_seed_text(out, "az_deg,el_deg,f_ghz,hh_re_m,hh_im_m,vv_re_m,vv_im_m\n0,0,35,1,2,0,1\n0,5,35,1,0,0,-1\n");
+        return fuzz_seed_text(out,
+                              "az_deg,el_deg,f_ghz,hh_re_m,hh_im_m,vv_re_m,vv_im_m\n0,0,35,1,2,0,1\n0,5,35,1,0,0,-1\n");
     case names + 3:
-        return fuzz_seed_text(out, "x_m,y_m,z_m,hh_dbsm,vv_dbsm,az_deg,az_width_deg\n1,0,-1,10,5,0,90\n-1,0,-1,3,5,,\n");
+        return fuzz_seed_text(out,
+                              "x_m,y_m,z_m,hh_dbsm,vv_dbsm,az_deg,az_width_deg\n1,0,-1,10,5,0,90\n-1,0,-1,3,5,,\n");
     case names + 2:
         return fuzz_seed_text(out, "entity,model,unix_s,node_k\n1:1:7,tank,1782043200.5,290 300.5\n1:1:8,truck,5,1\n");
     case names + 1:
-        return fuzz_seed_text(out, "entity,part,t_s,temp_k\n*,hull,0,290\ntank,hull,0,300\ntank,hull,60,310\n1:1:1,*,5,400\n");
+        return fuzz_seed_text(
+            out, "entity,part,t_s,temp_k\n*,hull,0,290\ntank,hull,0,300\ntank,hull,60,310\n1:1:1,*,5,400\n");
     case names:
         return fuzz_seed_text(out, "type,model,origin\n1.1.*.2,unknown,base\n1,\"tank_t72\",centre\n*,unknown,base\n");
     default:
@@ -59,8 +70,8 @@ static void walk(const Table *table)
     if (table->columns < 1 || table->rows < 0) abort();
     for (int row = 0; row < table->rows; row++)
         for (int column = 0; column < table->columns; column++) {
-            double    number, unix_s;
-            long long whole;
+            double      number, unix_s;
+            long long   whole;
             const char *text = table_text(table, row, column);
             if (table_number(&number, table, row, column, -10, 10) == STATUS_OK && !(fabs(number) <= 10)) abort();
             if (text_to_double(&number, text) && !isfinite(number)) abort();
@@ -148,8 +159,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
                 ScatterMatrix  s;
                 radar_look(&antenna, look * 0.7, 0.1 * (look % 31 - 15), look % 2 ? INFINITY : 2000);
                 given_signature_field(&s, signature, &antenna, 3.5e10);
-                if (!isfinite(creal(s.hh) + cimag(s.hh) + creal(s.hv) + creal(s.vh) + creal(s.vv) + cimag(s.vv))) abort();
-                if (given_signature_centres(&centres, signature, &antenna, 3.5e10) != STATUS_OK || centres.count < 0) abort();
+                if (!isfinite(creal(s.hh) + cimag(s.hh) + creal(s.hv) + creal(s.vh) + creal(s.vv) + cimag(s.vv)))
+                    abort();
+                if (given_signature_centres(&centres, signature, &antenna, 3.5e10) != STATUS_OK || centres.count < 0)
+                    abort();
             }
             centres_free(&centres);
             given_signature_close(signature);

@@ -1,5 +1,5 @@
-/* tests/fuzz/fuzz_terrain_options.c: any octets as the options in a terrain store's header. Without a fuzzer run_corpus.c
- * drives it. */
+/* tests/fuzz/fuzz_terrain_options.c: any octets as the options in a terrain store's header. Without a fuzzer
+ * run_corpus.c drives it. */
 #include "tests/fuzz/fuzz_seed.h"
 
 #include "terrain/import/terrain_import.h"

@@ -40,15 +40,17 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     if (status != STATUS_OK) return 0;
     if (!*weather_course_about(course)) abort();
     /* about the seeds' rows, leap days, far from them, and no time at all */
-    static const double times[] = {0, 1, 1800, 3599, 3600, 5400, 86400, -1, -86400, -1e5, 1451606400, 1451649600,
-                                   1451606399, 1456750800, 1456704000, 1483225200, 1e9, -3e9, 1e18, -1e18, NAN, INFINITY};
+    static const double times[] = {0,      1,    1800,       3599,       3600,       5400,       86400,      -1,
+                                   -86400, -1e5, 1451606400, 1451649600, 1451606399, 1456750800, 1456704000, 1483225200,
+                                   1e9,    -3e9, 1e18,       -1e18,      NAN,        INFINITY};
     for (size_t i = 0; i < sizeof times / sizeof *times; i++) {
         Weather w, again;
         weather_at(&w, course, times[i]);
         weather_at(&again, course, times[i]);
         if (memcmp(&w, &again, sizeof w) != 0) abort();
         if (!(w.air_temp_k >= 219.99 && w.air_temp_k <= 330.01) || !(w.humidity >= 0 && w.humidity <= 1)) abort();
-        if (!(w.pressure_mbar >= 299.99 && w.pressure_mbar <= 1100.01) || !(w.wind_mps >= 0 && w.wind_mps <= 60)) abort();
+        if (!(w.pressure_mbar >= 299.99 && w.pressure_mbar <= 1100.01) || !(w.wind_mps >= 0 && w.wind_mps <= 60))
+            abort();
         if (!(w.cloud >= 0 && w.cloud <= 1.0001) || !(w.rain_mm_h >= 0 && w.rain_mm_h <= 300)) abort();
         if (!(w.visibility_m >= 99.99 && w.visibility_m <= 300000.01) || !(fabs(w.wind_from_rad) <= 6.2832)) abort();
         const double radiation[] = {w.direct_w_m2, w.diffuse_w_m2, w.longwave_w_m2};

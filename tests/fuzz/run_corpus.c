@@ -9,16 +9,17 @@
 #include <dirent.h>
 #include <stdlib.h>
 
-/* Every fuzz_TARGET.c, its names of fuzz_seed.h with TARGET in them; the list and its length are tests/CMakeLists.txt's. */
+/* Every fuzz_TARGET.c, its names of fuzz_seed.h with TARGET in them; the list and its length are
+ * tests/CMakeLists.txt's. */
 typedef struct Target {
     const char *name;
-    int       (*one)(const uint8_t *data, size_t size);
-    size_t    (*seed)(uint8_t *out, uint32_t index);
-    const int  *rounds;
+    int (*one)(const uint8_t *data, size_t size);
+    size_t (*seed)(uint8_t *out, uint32_t index);
+    const int *rounds;
 } Target;
-#define X(name)                                                    \
-    int              name##_one(const uint8_t *data, size_t size); \
-    size_t           name##_seed(uint8_t *out, uint32_t index);    \
+#define X(name)                                                                                                        \
+    int              name##_one(const uint8_t *data, size_t size);                                                     \
+    size_t           name##_seed(uint8_t *out, uint32_t index);                                                        \
     extern const int name##_rounds;
 FUZZ_TARGETS
 #undef X
@@ -60,10 +61,8 @@ static int run_file(const char *path)
     } while (got > 0);
     const int failed = ferror(file) != 0;
     fclose(file);
-    if (failed)
-        fprintf(stderr, "%s: cannot be read\n", path);
-    else
-        run_exactly(data, size);
+    if (failed) fprintf(stderr, "%s: cannot be read\n", path);
+    else run_exactly(data, size);
     free(data);
     return failed;
 }
@@ -101,11 +100,21 @@ static size_t spoil(uint8_t *data, size_t size, uint32_t round)
         random_u32x4(word, (const uint32_t[4]){round, i, 0, 0}, key);
         const size_t at = word[0] % size, octets = word[1] % (size - at) + 1;
         switch (word[2] % 8) {
-        case 0: data[at] ^= (uint8_t)(1 << word[3] % 8); break;
-        case 1: data[at] = edge[word[3] % sizeof edge]; break;
-        case 2: data[at] = (uint8_t)word[3]; break;
-        case 3: data[word[0] % (size < 128 ? size : 128)] = (uint8_t)word[3]; break; /* where the headers are */
-        case 4: size = at; break;
+        case 0:
+            data[at] ^= (uint8_t)(1 << word[3] % 8);
+            break;
+        case 1:
+            data[at] = edge[word[3] % sizeof edge];
+            break;
+        case 2:
+            data[at] = (uint8_t)word[3];
+            break;
+        case 3:
+            data[word[0] % (size < 128 ? size : 128)] = (uint8_t)word[3];
+            break; /* where the headers are */
+        case 4:
+            size = at;
+            break;
         case 5:
             memmove(data + at, data + at + octets, size - at - octets);
             size -= octets;
@@ -115,7 +124,9 @@ static size_t spoil(uint8_t *data, size_t size, uint32_t round)
             memmove(data + at + octets, data + at, size - at);
             size += octets;
             break;
-        default: memset(data + at, (int)word[3] & 255, octets < 8 ? octets : 8); break;
+        default:
+            memset(data + at, (int)word[3] & 255, octets < 8 ? octets : 8);
+            break;
         }
     }
     return size;

@@ -40,7 +40,7 @@ static double percentile(Errors *errors, double share)
 static double cell(const Table *table, int row, const char *column)
 {
     const int c = table_column(table, column);
-    double value = NAN;
+    double    value = NAN;
     if (c < 0) fail_msg("%s: no column %s", table->path, column);
     return text_to_double(&value, table_text(table, row, c)) ? value : NAN;
 }

@@ -35,7 +35,7 @@ static inline void build_almond(Model *m)
     for (int i = 0; i <= 2 * along; i++) {
         const double s = (double)i / along - 1, t = s < 0 ? 0.416667 * -cos(0.5 * pi_rad * (s + 1)) : 0.58333 * s;
         for (int j = 0; j < around; j++) {
-            double    q[3], n[3];
+            double q[3], n[3];
             almond_at(q, n, t, 2 * pi_rad * j / around);
             const int v = hand_vertex(m, q[0], q[1], q[2]);
             for (int c = 0; c < 3; c++) m->normal[v][c] = (float)n[c];
@@ -58,11 +58,12 @@ static inline char *unzip(const char *path)
     char  *zip, *text;
     size_t octets;
     CHECK(text_read_file(&zip, &octets, "test", path, 1 << 26) == STATUS_OK);
-    size_t at = 0;
-    uint32_t packed = 0, whole = 0;
+    size_t         at = 0;
+    uint32_t       packed = 0, whole = 0;
     const uint8_t *b = (const uint8_t *)zip;
     /* sizes are in the central directory: the first record of it */
-    for (at = octets - 4; at > 0 && !(b[at] == 'P' && b[at + 1] == 'K' && b[at + 2] == 1 && b[at + 3] == 2); at--) {}
+    for (at = octets - 4; at > 0 && !(b[at] == 'P' && b[at + 1] == 'K' && b[at + 2] == 1 && b[at + 3] == 2); at--) {
+    }
     while (at > 0) { /* the largest file */
         const uint32_t p = b[at + 20] | b[at + 21] << 8 | b[at + 22] << 16 | (uint32_t)b[at + 23] << 24;
         const uint32_t w = b[at + 24] | b[at + 25] << 8 | b[at + 26] << 16 | (uint32_t)b[at + 27] << 24;
@@ -86,7 +87,7 @@ static inline char *unzip(const char *path)
 /* Normals of corners: the mean, by area, of the facets there that lean less than 30 degrees from the corner's own. */
 static inline void smooth_normals(Model *m, const int (*node)[3], int nodes)
 {
-    int    *first = calloc((size_t)nodes + 2, sizeof *first), *of = calloc(3 * (size_t)m->triangle_count, sizeof *of);
+    int *first = calloc((size_t)nodes + 2, sizeof *first), *of = calloc(3 * (size_t)m->triangle_count, sizeof *of);
     double(*area)[3] = calloc((size_t)m->triangle_count, sizeof *area);
     for (int t = 0; t < m->triangle_count; t++) {
         double ab[3], ac[3];
@@ -115,8 +116,8 @@ static inline void smooth_normals(Model *m, const int (*node)[3], int nodes)
 
 static inline void build_prime(Model *m, const char *path, double length_m)
 {
-    char  *text = unzip(path), *at = text;
-    long   nodes = strtol(at, &at, 10), triangles = strtol(at, &at, 10);
+    char *text = unzip(path), *at = text;
+    long  nodes = strtol(at, &at, 10), triangles = strtol(at, &at, 10);
     CHECK(nodes > 1000 && nodes < 1000000 && triangles > 1000 && triangles < 1000000);
     double(*p)[3] = calloc((size_t)nodes, sizeof *p), low = INFINITY, high = -INFINITY;
     int(*node)[3] = calloc((size_t)triangles, sizeof *node);
@@ -160,13 +161,14 @@ static inline int by_size(const void *a, const void *b)
 }
 
 /* Every so many rows of the reference that are at this angle and in a window. */
-static inline void run(RadarStage *s, const char *file, double theta_deg, Window *window, int windows, int every, bool edges)
+static inline void run(RadarStage *s, const char *file, double theta_deg, Window *window, int windows, int every,
+                       bool edges)
 {
-    TotalField field = {0};
+    TotalField               field = {0};
     static const char *const names[] = {"f_hz", "theta_deg", "phi_deg", "HH_dBsm", "VV_dBsm"};
-    char  path[512], name[96];
-    int   column[5];
-    Table table;
+    char                     path[512], name[96];
+    int                      column[5];
+    Table                    table;
     snprintf(name, sizeof name, "radar/austin/%s", file);
     if (!reference_path(path, name)) skip();
     CHECK(table_open(&table, path) == STATUS_OK && table_columns(column, &table, names, 5, "test"));
@@ -178,13 +180,13 @@ static inline void run(RadarStage *s, const char *file, double theta_deg, Window
         bool wanted = false;
         for (int w = 0; w < windows; w++) wanted |= x[2] >= window[w].low_deg && x[2] <= window[w].high_deg;
         if (!wanted) continue;
-        const double theta = x[1] * rad_per_deg, phi = x[2] * rad_per_deg;
+        const double   theta = x[1] * rad_per_deg, phi = x[2] * rad_per_deg;
         ScatterAntenna a = {{sin(theta) * cos(phi), sin(theta) * sin(phi), cos(theta)}, INFINITY};
         v3_normalize(a.u, a.u);
         ScatterMatrix m;
         CHECK(total_field_trace(&field, s->target, &a, &a, &s->config, edges, s->pool) == STATUS_OK);
         CHECK(total_field_sweep(&m, 1, x[0], 0, &field, NULL, NULL, s->pool) == STATUS_OK);
-        const double        got[2] = {sigma(m.hh), sigma(m.vv)};
+        const double got[2] = {sigma(m.hh), sigma(m.vv)};
         for (int w = 0; w < windows; w++) {
             if (!(x[2] >= window[w].low_deg && x[2] <= window[w].high_deg)) continue;
             for (int p = 0; p < 2; p++) {
@@ -205,18 +207,22 @@ static inline void run(RadarStage *s, const char *file, double theta_deg, Window
             qsort(window[w].each_db[p], (size_t)window[w].count, sizeof(double), by_size);
             window[w].median_db[p] = window[w].each_db[p][window[w].count / 2];
         }
-        printf("%s, %s, phi %g .. %g: HH %.2f, VV %.2f dB on average, %.2f, %.2f in the median; mean cross section off by "
-               "%.2f, %.2f dB\n", file, edges ? "with edges" : "rays alone", window[w].low_deg, window[w].high_deg, window[w].off_db[0], window[w].off_db[1],
-               window[w].median_db[0], window[w].median_db[1], decibels(window[w].mean[0] / window[w].want[0]),
-               decibels(window[w].mean[1] / window[w].want[1]));
+        printf(
+            "%s, %s, phi %g .. %g: HH %.2f, VV %.2f dB on average, %.2f, %.2f in the median; mean cross section off by "
+            "%.2f, %.2f dB\n",
+            file, edges ? "with edges" : "rays alone", window[w].low_deg, window[w].high_deg, window[w].off_db[0],
+            window[w].off_db[1], window[w].median_db[0], window[w].median_db[1],
+            decibels(window[w].mean[0] / window[w].want[0]), decibels(window[w].mean[1] / window[w].want[1]));
     }
 }
 
 static inline void judge_plate(int every)
 {
     RadarStage s;
-    Window     window[4] = {{.low_deg = 0, .high_deg = 2}, {.low_deg = 0, .high_deg = 40},
-                            {.low_deg = 40, .high_deg = 89}, {.low_deg = 0, .high_deg = 90}};
+    Window     window[4] = {{.low_deg = 0, .high_deg = 2},
+                            {.low_deg = 0, .high_deg = 40},
+                            {.low_deg = 40, .high_deg = 89},
+                            {.low_deg = 0, .high_deg = 90}};
     Window     rays[4];
     memcpy(rays, window, sizeof rays);
     stage_open(&s, "plate:0.2667x0.1524", 10e9); /* 7 W / 4 along y, W = 6 in along z */

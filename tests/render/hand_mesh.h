@@ -19,8 +19,14 @@ static inline void begin(void)
 {
     memset(mesh_parts, 0, sizeof mesh_parts);
     m3_identity(mesh_node.r_parent_from_node);
-    mesh = (Model){.node_count = 1, .part_count = 2, .node = &mesh_node, .part = mesh_parts, .vertex = mesh_vertex,
-                   .normal = mesh_normal, .triangle = mesh_triangle, .triangle_part = mesh_part};
+    mesh = (Model){.node_count = 1,
+                   .part_count = 2,
+                   .node = &mesh_node,
+                   .part = mesh_parts,
+                   .vertex = mesh_vertex,
+                   .normal = mesh_normal,
+                   .triangle = mesh_triangle,
+                   .triangle_part = mesh_part};
 }
 
 static inline uint32_t add_vertex(const double p[3], const double n[3])
@@ -64,7 +70,7 @@ static inline void add_box(const double low[3], const double size[3], int cells,
 {
     for (int axis = 0; axis < 3; axis++) {
         const int u = (axis + 1) % 3, v = (axis + 2) % 3;
-        double a[3] = {0}, b[3] = {0}, at[3];
+        double    a[3] = {0}, b[3] = {0}, at[3];
         a[u] = size[u], b[v] = size[v];
         memcpy(at, low, sizeof at);
         add_panel(at, b, a, cells, part); /* looks down the axis */
@@ -75,12 +81,12 @@ static inline void add_box(const double low[3], const double size[3], int cells,
 
 static inline WedgeList find(void)
 {
-    WedgeList list = {0};
+    WedgeList         list = {0};
     const WedgeConfig config = wedges_default_config();
     CHECK(wedges_find(&list, &mesh, &config) == STATUS_OK);
     for (int i = 0; i < list.count; i++) {
         const WedgeFrame *f = &list.wedge[i].frame;
-        double z[3], along[3];
+        double            z[3], along[3];
         v3_cross(z, f->x, f->y);
         v3_sub(along, list.wedge[i].p[1], list.wedge[i].p[0]);
         for (int k = 0; k < 3; k++) {

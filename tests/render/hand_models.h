@@ -36,11 +36,11 @@ static inline void hand_rotation(double r[9])
 static inline void hand_model(Model *m, int nodes, int vertices, int triangles)
 {
     *m = (Model){.name = "hand", .node_count = nodes, .part_count = nodes, .vertex_count = 0, .triangle_count = 0};
-    m->node          = calloc((size_t)nodes, sizeof *m->node);
-    m->part          = calloc((size_t)nodes, sizeof *m->part);
-    m->vertex        = calloc((size_t)vertices, sizeof *m->vertex);
-    m->normal        = calloc((size_t)vertices, sizeof *m->normal);
-    m->triangle      = calloc((size_t)triangles, sizeof *m->triangle);
+    m->node = calloc((size_t)nodes, sizeof *m->node);
+    m->part = calloc((size_t)nodes, sizeof *m->part);
+    m->vertex = calloc((size_t)vertices, sizeof *m->vertex);
+    m->normal = calloc((size_t)vertices, sizeof *m->normal);
+    m->triangle = calloc((size_t)triangles, sizeof *m->triangle);
     m->triangle_part = calloc((size_t)triangles, sizeof *m->triangle_part);
     for (int n = 0; n < nodes; n++) {
         m->node[n].parent = n - 1;
@@ -98,7 +98,7 @@ static inline void hand_plate(Model *m, double half_y, double half_z)
     hand_triangle(m, 0, a, b, c);
     for (int t = 0; t < 2; t++) { /* counter-clockwise seen from ahead */
         const uint32_t swap = m->triangle[t][1];
-        double ab[3], ac[3], n[3];
+        double         ab[3], ac[3], n[3];
         v3_sub(ab, m->vertex[m->triangle[t][1]], m->vertex[m->triangle[t][0]]);
         v3_sub(ac, m->vertex[m->triangle[t][2]], m->vertex[m->triangle[t][0]]);
         v3_cross(n, ab, ac);

@@ -15,11 +15,16 @@ static Plants    hand_plants;
 static double hand_dice(uint32_t stream, uint64_t index) { return random_uniform(77, stream, 0, index); }
 
 /* A prism of six sides from a to b, both level hexagons, so that each side is flat. */
-static void hand_prism(PlantQuad *out, const double a[3], const double b[3], double radius_a, double radius_b, int piece)
+static void hand_prism(PlantQuad *out, const double a[3], const double b[3], double radius_a, double radius_b,
+                       int piece)
 {
     for (int k = 0; k < 6; k++) {
         const double *end[2] = {a, b}, radius[2] = {radius_a, radius_b};
-        PlantQuad     q = {.organ = PLANT_BARK, .piece = (uint16_t)piece, .radius = (float)radius_a, .open_up = 0.5f, .open_down = 0.5f};
+        PlantQuad     q = {.organ = PLANT_BARK,
+                           .piece = (uint16_t)piece,
+                           .radius = (float)radius_a,
+                           .open_up = 0.5f,
+                           .open_down = 0.5f};
         for (int c = 0; c < 4; c++) {
             const double turn = (k + (c == 1 || c == 2)) * pi_rad / 3;
             const int    top = c >= 2;
@@ -38,8 +43,11 @@ static void hand_leaf(PlantQuad *out, const double at[3], const double n[3], dou
     v3_cross(u, n, fabs(n[2]) < 0.9 ? (const double[3]){0, 0, 1} : (const double[3]){1, 0, 0});
     v3_normalize(u, u);
     v3_cross(v, n, u);
-    *out = (PlantQuad){.organ = PLANT_LEAF, .outline = (uint8_t)(piece % plant_outlines), .piece = (uint16_t)piece,
-                       .open_up = 0.5f, .open_down = 0.5f};
+    *out = (PlantQuad){.organ = PLANT_LEAF,
+                       .outline = (uint8_t)(piece % plant_outlines),
+                       .piece = (uint16_t)piece,
+                       .open_up = 0.5f,
+                       .open_down = 0.5f};
     for (int c = 0; c < 4; c++)
         for (int x = 0; x < 3; x++) {
             const double s = c == 1 || c == 2 ? 0.5 : -0.5, t = c >= 2 ? 0.5 : -0.5;
@@ -70,11 +78,13 @@ static inline void hand_grow(bool whole, double size)
         for (int level = 0; level < plant_levels; level++) {
             PlantShape *s = &hand_plants.shape[kind][level];
             PlantQuad  *q = hand_quad[kind][level];
-            const int   branches = level ? hand_branches / 3 : hand_branches, leaves = level ? hand_leaves / 5 : hand_leaves;
+            const int   branches = level ? hand_branches / 3 : hand_branches,
+                      leaves = level ? hand_leaves / 5 : hand_leaves;
             const uint64_t of = (uint64_t)kind * 1000;
             hand_prism(q, (const double[3]){0, 0, 0}, (const double[3]){0.01, 0, 0.7}, 0.03, 0.01, 0);
             for (int b = 1; b < branches; b++) {
-                const double z = 0.3 + 0.6 * hand_dice(1, of + (uint64_t)b), turn = 2 * pi_rad * hand_dice(2, of + (uint64_t)b);
+                const double z = 0.3 + 0.6 * hand_dice(1, of + (uint64_t)b),
+                             turn = 2 * pi_rad * hand_dice(2, of + (uint64_t)b);
                 const double a[3] = {0, 0, z}, e[3] = {0.25 * cos(turn), 0.25 * sin(turn), z + 0.1};
                 hand_prism(q + 6 * b, a, e, 0.012, 0.004, b);
             }
@@ -85,8 +95,13 @@ static inline void hand_grow(bool whole, double size)
                 for (int c = 0; c < 3; c++) at[c] = 0.28 * at[c] + (c == 2 ? 0.7 : 0);
                 hand_leaf(q + 6 * branches + l, at, n, level ? size * 2 : size, l);
             }
-            *s = (PlantShape){.quads = 6 * branches + leaves, .pieces = branches, .leaves = leaves, .quad = q,
-                              .bark_quads = 6 * branches, .crown_low = 0.4f, .crown_radius = 0.28f,
+            *s = (PlantShape){.quads = 6 * branches + leaves,
+                              .pieces = branches,
+                              .leaves = leaves,
+                              .quad = q,
+                              .bark_quads = 6 * branches,
+                              .crown_low = 0.4f,
+                              .crown_radius = 0.28f,
                               .leaf_area = (float)(leaves * size * size * (level ? 4 : 1) * (whole ? 1 : 0.5))};
             for (int c = 0; c < 3; c++) s->low[c] = INFINITY, s->high[c] = -INFINITY;
             for (int k = 0; k < s->quads; k++)
@@ -105,11 +120,13 @@ static Woods hand_stand(Plant *plant, int count, const double origin_enu[3], dou
     first[1] = (uint32_t)count;
     for (int i = 0; i < count; i++) {
         const uint64_t n = (uint64_t)i;
-        plant[i] = (Plant){.p_m = {(float)(half_m * (2 * hand_dice(10, n) - 1)), (float)(half_m * (2 * hand_dice(11, n) - 1)),
-                                   (float)(2 * hand_dice(12, n))},
-                           .height = (uint16_t)(600 + 1200 * hand_dice(13, n)), .twist = (uint16_t)(65535 * hand_dice(14, n)),
+        plant[i] = (Plant){.p_m = {(float)(half_m * (2 * hand_dice(10, n) - 1)),
+                                   (float)(half_m * (2 * hand_dice(11, n) - 1)), (float)(2 * hand_dice(12, n))},
+                           .height = (uint16_t)(600 + 1200 * hand_dice(13, n)),
+                           .twist = (uint16_t)(65535 * hand_dice(14, n)),
                            .lean = {(int8_t)(250 * (hand_dice(15, n) - 0.5)), (int8_t)(250 * (hand_dice(16, n) - 0.5))},
-                           .kind = (uint8_t)(hand_dice(17, n) * PLANT_STANDING), .width = (uint8_t)(90 + 80 * hand_dice(18, n))};
+                           .kind = (uint8_t)(hand_dice(17, n) * PLANT_STANDING),
+                           .width = (uint8_t)(90 + 80 * hand_dice(18, n))};
     }
     Woods woods = {.nx = 1, .ny = 1, .first = first, .count = count, .plant = plant};
     memcpy(woods.origin_enu, origin_enu, sizeof woods.origin_enu);

@@ -57,10 +57,11 @@ static inline int hand_open(bool with_ground)
     hand.model[hand_mast_model] = hand_replace(3, &model);
 
     config.half_width_m = 500;
-    config.horizon_m    = 20000;
+    config.horizon_m = 20000;
     if (local_frame_at(&frame, &origin) != STATUS_OK) return -1;
     if (with_ground && landscape_create(&hand.landscape, &config, &frame, NULL, 0, NULL, 0) != STATUS_OK) return -1;
-    if (world_open(&hand.world, hand.catalog, with_ground ? &hand.landscape : NULL, &frame, "avx2") != STATUS_OK) return -1;
+    if (world_open(&hand.world, hand.catalog, with_ground ? &hand.landscape : NULL, &frame, "avx2") != STATUS_OK)
+        return -1;
     const int brick = materials_find(&hand.world.materials, "brick_red");
     Material *m = &hand.world.materials.material[brick];
     for (int c = 0; c < optical_channel_count; c++) m->rho[c] = hand_rho, hand.world.materials.ground_rho[c] = 0;
@@ -69,7 +70,10 @@ static inline int hand_open(bool with_ground)
     m->metal = 1;
     hand.arena = arena_create();
     hand.air_arena = arena_create();
-    return hand.arena && hand.air_arena && atmosphere_open(&hand.world.atmosphere, "us1976") == STATUS_OK && pool_create(&hand.pool, 2) == STATUS_OK ? 0 : -1;
+    return hand.arena && hand.air_arena && atmosphere_open(&hand.world.atmosphere, "us1976") == STATUS_OK &&
+                   pool_create(&hand.pool, 2) == STATUS_OK
+               ? 0
+               : -1;
 }
 
 static inline int hand_close(void **state)
@@ -84,10 +88,7 @@ static inline int hand_close(void **state)
     return 0;
 }
 
-static inline void hand_clear(void)
-{
-    hand.snapshot = (Snapshot){.entity = hand.entity, .node = hand.pose};
-}
+static inline void hand_clear(void) { hand.snapshot = (Snapshot){.entity = hand.entity, .node = hand.pose}; }
 
 static inline int hand_add(int model, const double p_enu[3], const double r_enu_from_body[9])
 {
@@ -122,7 +123,7 @@ static inline View hand_view(const double p_enu[3], const double d_enu[3], int w
     v3_cross(y, z, x);
     for (int k = 0; k < 3; k++) {
         view.p_enu[k] = p_enu[k];
-        view.r_enu_from_cam[3 * k]     = x[k];
+        view.r_enu_from_cam[3 * k] = x[k];
         view.r_enu_from_cam[3 * k + 1] = y[k];
         view.r_enu_from_cam[3 * k + 2] = z[k];
     }
@@ -133,7 +134,7 @@ static inline View hand_view(const double p_enu[3], const double d_enu[3], int w
 static inline void hand_air_off(const double sun_enu[3])
 {
     static const double dark[AIR_BAND_COUNT] = {0};
-    Air *a = &hand.air;
+    Air                *a = &hand.air;
     air_even(a, sun_enu, 300, dark, 0, hand.world.planck_mwir, hand.world.planck_lwir);
     for (int b = AIR_MWIR; b <= AIR_LWIR; b++) a->light.sun_w_m2[b] = a->sun_eye_w_m2[b] = 0;
     a->light.solar_direct_w_m2 = a->light.solar_diffuse_w_m2 = 0;
@@ -154,13 +155,19 @@ static inline void hand_air_on(const double sun_enu[3], double height_m)
 static inline double hand_emitted(Band band)
 {
     const bool mwir = band == BAND_MWIR;
-    return (1 - hand_rho_ir) * planck_band(mwir ? 3.4e-6 : 8e-6, mwir ? 4.8e-6 : 12e-6, hand.air.light.weather.air_temp_k, NULL);
+    return (1 - hand_rho_ir) *
+           planck_band(mwir ? 3.4e-6 : 8e-6, mwir ? 4.8e-6 : 12e-6, hand.air.light.weather.air_temp_k, NULL);
 }
 
 static inline RenderRequest hand_request(const View *view)
 {
-    return (RenderRequest){.view = *view, .bands = 1 << BAND_OPTICAL | 1 << BAND_MWIR | 1 << BAND_LWIR, .truth = true,
-                           .samples = 1, .edge_samples = 4, .target_samples = 48, .hidden_entity = -1};
+    return (RenderRequest){.view = *view,
+                           .bands = 1 << BAND_OPTICAL | 1 << BAND_MWIR | 1 << BAND_LWIR,
+                           .truth = true,
+                           .samples = 1,
+                           .edge_samples = 4,
+                           .target_samples = 48,
+                           .hidden_entity = -1};
 }
 
 static inline Picture hand_render(const RenderRequest *request, Pool *pool)
@@ -176,7 +183,8 @@ static inline double hand_irradiance(const Picture *p, const View *view, int pla
     double sum = 0;
     for (int y = 0; y < p->height; y++)
         for (int x = 0; x < p->width; x++) {
-            const double u = (x + 0.5 - 0.5 * view->width) / view->focal_px, v = (y + 0.5 - 0.5 * view->height) / view->focal_px;
+            const double u = (x + 0.5 - 0.5 * view->width) / view->focal_px,
+                         v = (y + 0.5 - 0.5 * view->height) / view->focal_px;
             sum += (picture_plane(p, plane)[y * p->width + x] - background_w_m2_sr) /
                    (pow(1 + u * u + v * v, 1.5) * view->focal_px * view->focal_px);
         }

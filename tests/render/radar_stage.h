@@ -26,7 +26,8 @@ static inline void stage_target(RadarStage *s, double frequency_hz)
 static inline void stage_open(RadarStage *s, const char *shape, double frequency_hz)
 {
     *s = (RadarStage){0};
-    if (radar_shape_build(&s->model, shape, radar_sag_m(frequency_hz)) != STATUS_OK) fail_msg("%s does not build", shape);
+    if (radar_shape_build(&s->model, shape, radar_sag_m(frequency_hz)) != STATUS_OK)
+        fail_msg("%s does not build", shape);
     stage_target(s, frequency_hz);
 }
 

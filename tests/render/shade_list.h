@@ -41,7 +41,8 @@ static Status shaded_rays_create(ShadedRays *out, int capacity, Arena *arena)
     ok = ok && (out->entity = arena_alloc(arena, n, sizeof *out->entity));
     ok = ok && (out->facet = arena_alloc(arena, n, sizeof *out->facet));
     for (int k = 0; k < 3; k++) ok = ok && (out->n_enu[k] = arena_alloc(arena, n, sizeof(float)));
-    ok = ok && (out->sun = arena_alloc(arena, n, sizeof(float))) && (out->temp_k = arena_alloc(arena, n, sizeof(float)));
+    ok =
+        ok && (out->sun = arena_alloc(arena, n, sizeof(float))) && (out->temp_k = arena_alloc(arena, n, sizeof(float)));
     ok = ok && (out->radar_power = arena_alloc(arena, n, sizeof(float)));
     for (int b = 0; b < AIR_BAND_COUNT; b++) ok = ok && (out->radiance[b] = arena_alloc(arena, n, sizeof(float)));
     return ok ? STATUS_OK : STATUS_NO_MEMORY;
@@ -70,12 +71,12 @@ static void take_block(ShadedRays *out, int first, const Samples *s)
 static void shade_list(ShadedRays *out, const RayList *list, Shader *shader, const ShadeScene *scene, Samples *block)
 {
     assert(list->count <= out->capacity);
-    block->channels    = list->channels;
-    block->radar       = list->radar;
+    block->channels = list->channels;
+    block->radar = list->radar;
     block->temperature = list->temperature;
-    block->per_rad     = list->per_rad;
-    block->volume      = scene->all_volumes;
-    block->volumes     = scene->effects.count;
+    block->per_rad = list->per_rad;
+    block->volume = scene->all_volumes;
+    block->volumes = scene->effects.count;
     for (int first = 0; first < list->count; first += block->capacity) {
         const int    count = list->count - first < block->capacity ? list->count - first : block->capacity;
         const size_t octets = (size_t)count * sizeof(double);
@@ -84,7 +85,7 @@ static void shade_list(ShadedRays *out, const RayList *list, Shader *shader, con
             memcpy(block->rays.d_enu[k], list->d_enu[k] + first, octets);
         }
         for (int i = 0; i < count; i++) block->rays.far_m[i] = INFINITY;
-        block->rays.count   = count;
+        block->rays.count = count;
         block->rays.columns = 0;
         block->key = list->key ? list->key + first : NULL;
         shade_samples_shade(shader, scene, block, NULL, -1);

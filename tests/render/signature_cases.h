@@ -1,5 +1,5 @@
-/* tests/render/signature_cases.h: the estimate of a cross section's error against what a finer grid, at the very look, makes
- * of it. */
+/* tests/render/signature_cases.h: the estimate of a cross section's error against what a finer grid, at the very look,
+ * makes of it. */
 #ifndef TESTS_RENDER_SIGNATURE_CASES_H
 #define TESTS_RENDER_SIGNATURE_CASES_H
 
@@ -21,7 +21,8 @@ typedef struct Case {
 static RadarMaterials materials;
 static Pool          *pool;
 
-/* rms of the errors over their estimates, co-polarised; of all errors, of all estimates, dB; cross: as the result, HV. */
+/* rms of the errors over their estimates, co-polarised; of all errors, of all estimates, dB; cross: as the result, HV.
+ */
 static inline double normalised_error(const Case *c, double *rms_db, double *said_db, double *cross)
 {
     const double hz = 1e9 * c->ghz;

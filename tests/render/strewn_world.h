@@ -34,8 +34,8 @@ static inline View strew(int things, int width, int height)
 static inline RenderRequest request_of(const View *view)
 {
     RenderRequest request = hand_request(view);
-    request.bands         = 15;
-    request.profile_bins  = 600;
+    request.bands = 15;
+    request.profile_bins = 600;
     request.profile_bin_m = 1;
     return request;
 }

@@ -5,12 +5,12 @@
 #include <stdlib.h>
 
 static PlanckTable *mwir, *lwir;
-static Atmosphere *atmosphere;
-static Arena *arena;
-static Hits hits;
-static Rays rays;
-static AirPaths veils;
-static float temp_k[hits_capacity];
+static Atmosphere  *atmosphere;
+static Arena       *arena;
+static Hits         hits;
+static Rays         rays;
+static AirPaths     veils;
+static float        temp_k[hits_capacity];
 
 enum { all_bands = (1 << AIR_BAND_COUNT) - 1 };
 
@@ -46,10 +46,10 @@ static Sun sun_at_elevation(double elevation_deg)
 
 static Air air_of(const Weather *weather, double elevation_deg, double eye_m, unsigned bands, const View *view)
 {
-    const Sun sun = sun_at_elevation(elevation_deg);
+    const Sun       sun = sun_at_elevation(elevation_deg);
     const AirSource source = {atmosphere, mwir, lwir, 0};
-    const AirEye eye = {eye_m, bands, view};
-    Air air;
+    const AirEye    eye = {eye_m, bands, view};
+    Air             air;
     arena_reset(arena);
     CHECK(air_at(&air, &source, weather, &sun, &eye, NULL, arena) == STATUS_OK);
     return air;
@@ -83,7 +83,7 @@ static View view_from(double eye_m, double down_rad, double from_sun_rad)
     const double a = sun_azimuth + from_sun_rad, c = cos(down_rad), s = sin(down_rad);
     View view = {.p_enu = {0, 0, eye_m}, .width = 720, .height = 486, .focal_px = view_focal_px(720, 20 * rad_per_deg)};
     const double ahead[3] = {sin(a) * c, cos(a) * c, -s}, right[3] = {cos(a), -sin(a), 0};
-    double down[3];
+    double       down[3];
     v3_cross(down, ahead, right);
     for (int k = 0; k < 3; k++) {
         view.r_enu_from_cam[3 * k] = right[k];
@@ -101,13 +101,13 @@ static void frames_follow_the_tables(void **state)
     for (int b = 0; b < AIR_BAND_COUNT; b++) {
         enum { most = 4 * 400 };
         double tau_error[most], seen_error[most];
-        int n = 0;
+        int    n = 0;
         for (int e = 0; e < 4; e++) {
-            const double eye_m = eyes_m[e];
+            const double  eye_m = eyes_m[e];
             const Weather weather = weather_default();
-            const View view = view_from(eye_m, eye_m < 10 ? 0 : 10 * rad_per_deg, 40 * rad_per_deg);
-            const Air air = air_of(&weather, 45, eye_m, 1u << b, &view);
-            const bool thermal = b >= AIR_MWIR;
+            const View    view = view_from(eye_m, eye_m < 10 ? 0 : 10 * rad_per_deg, 40 * rad_per_deg);
+            const Air     air = air_of(&weather, 45, eye_m, 1u << b, &view);
+            const bool    thermal = b >= AIR_MWIR;
             clear();
             for (int k = 0; k < 400; k++) {
                 double d[3];
@@ -115,16 +115,16 @@ static void frames_follow_the_tables(void **state)
                 /* to the ground, or some of the way; level and rising rays: 100 m to 20 km */
                 const double to_ground_m = d[2] < -1e-4 ? eye_m / -d[2] : 2e4;
                 const double range_m = fmin(to_ground_m, 2e4) * (k % 3 ? 0.9999 : 0.05 + 0.9 * (k % 17) / 17.0);
-                const int i = add(atan2(d[0], d[1]), asin(d[2]), range_m);
+                const int    i = add(atan2(d[0], d[1]), asin(d[2]), range_m);
                 rays.d_enu[0][i] = d[0], rays.d_enu[1][i] = d[1], rays.d_enu[2][i] = d[2];
             }
             air_path(&veils, &air, (AirBand)b, &hits, &rays, thermal ? temp_k : NULL);
             for (int i = 0; i < hits.count; i++) {
-                const double r = hits.range_m[i], up = rays.d_enu[2][i], level = sqrt(1 - up * up);
-                AirPath path = {.observer_m = eye_m,
-                                .range_m = r,
-                                .sun_zenith_rad = 45 * rad_per_deg,
-                                .target_m = fmax(eye_m + r * up + r * r * level * level / (2 * 6371e3), 0)};
+                const double  r = hits.range_m[i], up = rays.d_enu[2][i], level = sqrt(1 - up * up);
+                AirPath       path = {.observer_m = eye_m,
+                                      .range_m = r,
+                                      .sun_zenith_rad = 45 * rad_per_deg,
+                                      .target_m = fmax(eye_m + r * up + r * r * level * level / (2 * 6371e3), 0)};
                 const double *s = air.light.sun_d_enu;
                 path.rel_azimuth_rad = acos(
                     clamp((rays.d_enu[0][i] * s[0] + rays.d_enu[1][i] * s[1]) / (level * hypot(s[0], s[1])), -1, 1));
@@ -157,8 +157,8 @@ static void pins(void **state)
     (void)state;
     /* LOWTRAN 7, US standard, 23 km, sun at zenith 40 degrees, PAN; 5 km along the ground, target at 300 K */
     const Weather weather = weather_default();
-    const Air air = air_of(&weather, 50, 0, all_bands, NULL);
-    const double total = air.light.sun_w_m2[AIR_PAN] * sin(50 * rad_per_deg) + air.light.sky_w_m2[AIR_PAN];
+    const Air     air = air_of(&weather, 50, 0, all_bands, NULL);
+    const double  total = air.light.sun_w_m2[AIR_PAN] * sin(50 * rad_per_deg) + air.light.sky_w_m2[AIR_PAN];
     CHECK_NEAR(air.light.sun_w_m2[AIR_PAN] / 282.10, 1, 0.01);
     CHECK_NEAR(total / 344.865, 1, 0.01);
     clear();
@@ -184,16 +184,22 @@ static void sky_adds_up(void **state)
 {
     (void)state;
     static const double elevations_deg[] = {4, 25, 50, 88};
-    static const double normals[][3] = {{0, 0, 1}, {0.8, 0, 0.6}, {0, 1, 0}, {-0.6, -0.6, 0.52915}, {0.6, 0, -0.8},
+    static const double normals[][3] = {{0, 0, 1},
+                                        {0.8, 0, 0.6},
+                                        {0, 1, 0},
+                                        {-0.6, -0.6, 0.52915},
+                                        {0.6, 0, -0.8},
                                         /* slopes of ground: 6, 14, 20 degrees */
-                                        {0.1, 0, 0.99499}, {0.2, 0.14, 0.96974}, {-0.34, 0, 0.94043}};
+                                        {0.1, 0, 0.99499},
+                                        {0.2, 0.14, 0.96974},
+                                        {-0.34, 0, 0.94043}};
     enum { planes = sizeof normals / sizeof *normals };
     for (int e = 0; e < 4; e++) {
-        const Weather weather = weather_default();
-        const Air air = air_of(&weather, elevations_deg[e], 2, all_bands, NULL);
+        const Weather        weather = weather_default();
+        const Air            air = air_of(&weather, elevations_deg[e], 2, all_bands, NULL);
         static const AirBand bands[] = {AIR_G, AIR_NIR, AIR_MWIR, AIR_LWIR};
         for (int b = 0; b < 4; b++) {
-            double sum[planes] = {0};
+            double    sum[planes] = {0};
             const int heights = 128, azimuths = 512;
             for (int h = 0; h < heights; h++)
                 for (int a = 0; a < azimuths; a++) {
@@ -215,7 +221,8 @@ static void sky_adds_up(void **state)
                               n < planes - 1 ? "" : "\n");
             /* 1 %: the grid cuts the ring about a low sun at the horizon */
             for (int n = 0; n < planes; n++)
-                CHECK_NEAR(daylight_on_plane(&air.light, bands[b], normals[n]), sum[n], 0.01 * air.light.sky_w_m2[bands[b]]);
+                CHECK_NEAR(daylight_on_plane(&air.light, bands[b], normals[n]), sum[n],
+                           0.01 * air.light.sky_w_m2[bands[b]]);
             if (bands[b] < AIR_MWIR && elevations_deg[e] > 5)
                 CHECK_NEAR(air.light.sky_w_m2[bands[b]] / sun.diffuse_horizontal_w_m2, 1, 1e-4);
         }
@@ -227,8 +234,8 @@ static void a_band_does_not_see_its_company(void **state)
 {
     (void)state;
     const Weather weather = weather_default();
-    const Air alone = air_of(&weather, 35, 100, 1 << AIR_LWIR, NULL);
-    const Air company = air_of(&weather, 35, 100, 1 << AIR_LWIR | 1 << AIR_PAN | 1 << AIR_G | 1 << AIR_MWIR, NULL);
+    const Air     alone = air_of(&weather, 35, 100, 1 << AIR_LWIR, NULL);
+    const Air     company = air_of(&weather, 35, 100, 1 << AIR_LWIR | 1 << AIR_PAN | 1 << AIR_G | 1 << AIR_MWIR, NULL);
     CHECK(alone.light.solar_direct_w_m2 == company.light.solar_direct_w_m2 &&
           alone.light.solar_diffuse_w_m2 == company.light.solar_diffuse_w_m2);
     CHECK(alone.light.longwave_loss_w_m2 == company.light.longwave_loss_w_m2);
@@ -249,9 +256,12 @@ static void daylight_needs_no_eye(void **state)
         const Air air = air_of(&weather, elevation_deg, 900, bands, NULL);
         daylight_at(&sums, &source, &weather, &sun);
         CHECK(daylight_by_direction(&light, &source, &weather, &sun, bands, NULL, arena) == STATUS_OK);
-        CHECK(sums.weather.air_temp_k == air.light.weather.air_temp_k && sums.sun_w_m2[AIR_PAN] == air.light.sun_w_m2[AIR_PAN]);
-        CHECK(sums.solar_direct_w_m2 == air.light.solar_direct_w_m2 && sums.solar_diffuse_w_m2 == air.light.solar_diffuse_w_m2);
-        CHECK(sums.longwave_loss_w_m2 == air.light.longwave_loss_w_m2 && memcmp(sums.warmer_k, air.light.warmer_k, sizeof sums.warmer_k) == 0);
+        CHECK(sums.weather.air_temp_k == air.light.weather.air_temp_k &&
+              sums.sun_w_m2[AIR_PAN] == air.light.sun_w_m2[AIR_PAN]);
+        CHECK(sums.solar_direct_w_m2 == air.light.solar_direct_w_m2 &&
+              sums.solar_diffuse_w_m2 == air.light.solar_diffuse_w_m2);
+        CHECK(sums.longwave_loss_w_m2 == air.light.longwave_loss_w_m2 &&
+              memcmp(sums.warmer_k, air.light.warmer_k, sizeof sums.warmer_k) == 0);
         CHECK(memcmp(sums.ground_w_m2_sr, air.light.ground_w_m2_sr, sizeof sums.ground_w_m2_sr) == 0);
         CHECK(memcmp(light.sky_light, air.light.sky_light, sizeof light.sky_light) == 0);
         CHECK(memcmp(light.plane_w_m2, air.light.plane_w_m2, sizeof light.plane_w_m2) == 0);
@@ -263,18 +273,18 @@ static void sun_disc_adds_up(void **state)
 {
     (void)state;
     static const double sky[AIR_BAND_COUNT] = {0};
-    Air air;
+    Air                 air;
     air_even(&air, sun_at_elevation(30).d_enu, 1, sky, 0, mwir, lwir);
     /* rings about the sun */
     double u[3] = {0, 0, 1}, w[3], sum = 0;
     v3_cross(w, u, air.light.sun_d_enu);
     CHECK(v3_normalize(w, w));
     v3_cross(u, air.light.sun_d_enu, w);
-    const int n = 2000;
+    const int    n = 2000;
     const double reach_rad = 0.01;
     for (int i = 0; i < n; i++) {
         const double angle = (i + 0.5) / n * reach_rad;
-        double d_enu[3];
+        double       d_enu[3];
         v3_scale(d_enu, cos(angle), air.light.sun_d_enu);
         v3_add_scaled(d_enu, d_enu, sin(angle), u);
         sum += daylight_sun_disc(&air.light, d_enu) * 2 * pi_rad * sin(angle) * reach_rad / n;
@@ -286,9 +296,9 @@ static void light_fades_smoothly(void **state)
 {
     (void)state;
     const Weather weather = weather_default();
-    double last[AIR_BAND_COUNT] = {0};
+    double        last[AIR_BAND_COUNT] = {0};
     for (double e = -30; e <= 90; e += 0.5) {
-        const Air air = air_of(&weather, e, 2, 1 << AIR_PAN, NULL);
+        const Air    air = air_of(&weather, e, 2, 1 << AIR_PAN, NULL);
         const double sun = air.light.sun_w_m2[AIR_PAN], sky = air.light.sky_w_m2[AIR_PAN];
         const double level = fmax(sun * sin(e * rad_per_deg), 0) + sky;
         CHECK(isfinite(sun) && sun >= 0 && sky > 0 && sky < 250);
@@ -298,7 +308,8 @@ static void light_fades_smoothly(void **state)
         last[0] = level;
     }
     const Air night = air_of(&weather, -40, 500, all_bands, NULL);
-    CHECK(night.light.sky_w_m2[AIR_PAN] > 1e-7 && night.light.sky_w_m2[AIR_PAN] < 1e-4 && night.light.sun_w_m2[AIR_MWIR] == 0);
+    CHECK(night.light.sky_w_m2[AIR_PAN] > 1e-7 && night.light.sky_w_m2[AIR_PAN] < 1e-4 &&
+          night.light.sun_w_m2[AIR_MWIR] == 0);
     CHECK(daylight_sky(&night.light, AIR_MWIR, (double[3]){0, 0, 1}) > 0.01);
 }
 
@@ -311,7 +322,7 @@ static void veils_are_sound_everywhere(void **state)
     for (int v = 0; v < 3; v++)
         for (int e = 0; e < 4; e++) {
             const double sun_deg[] = {-50, -2, 0, 60};
-            Weather weather = weather_default();
+            Weather      weather = weather_default();
             weather.visibility_m = visibility[v];
             weather.air_temp_k = temp[v];
             const Air air =
@@ -346,7 +357,7 @@ static void sky_is_cold_above_and_warm_at_the_horizon(void **state)
 {
     (void)state;
     const Weather weather = weather_default();
-    const Air air = air_of(&weather, 40, 2, 1 << AIR_LWIR, NULL),
+    const Air     air = air_of(&weather, 40, 2, 1 << AIR_LWIR, NULL),
               high = air_of(&weather, 40, 3000, 1 << AIR_LWIR, NULL);
     double last = INFINITY;
     for (double up = 0; up <= 1; up += 0.001) {
@@ -359,7 +370,8 @@ static void sky_is_cold_above_and_warm_at_the_horizon(void **state)
     print_message("LWIR sky: zenith %.1f K, horizon %.1f K\n", zenith_k, horizon_k);
     CHECK(zenith_k > 205 && zenith_k < 240);
     CHECK(horizon_k > 280 && horizon_k < 288.15);
-    CHECK(daylight_sky(&air.light, AIR_LWIR, (double[3]){0.6, 0, -0.8}) == daylight_sky(&air.light, AIR_LWIR, (double[3]){0.6, 0.8, 0}));
+    CHECK(daylight_sky(&air.light, AIR_LWIR, (double[3]){0.6, 0, -0.8}) ==
+          daylight_sky(&air.light, AIR_LWIR, (double[3]){0.6, 0.8, 0}));
     /* an eye above half of the water sees less of it over itself */
     clear();
     add(0, 0.5 * pi_rad, INFINITY);
@@ -379,7 +391,8 @@ static void warm_air_glows_by_planck(void **state)
     CHECK_NEAR(plain.light.weather.air_temp_k, 288.15, 0.1); /* US standard */
     air_path(&veils, &plain, AIR_LWIR, &hits, &rays, temp_k);
     const double tau = veils.transmittance[0], added = veils.added_w_m2_sr[0];
-    const double zenith = daylight_sky(&plain.light, AIR_LWIR, (double[3]){0, 0, 1}), own_k = plain.light.weather.air_temp_k;
+    const double zenith = daylight_sky(&plain.light, AIR_LWIR, (double[3]){0, 0, 1}),
+                 own_k = plain.light.weather.air_temp_k;
     weather.air_temp_k = own_k + 15;
     const Air warm = air_of(&weather, -20, 20, 1 << AIR_LWIR, NULL);
     air_path(&veils, &warm, AIR_LWIR, &hits, &rays, temp_k);
@@ -394,7 +407,7 @@ static void a_view_sees_what_all_round_sees(void **state)
 {
     (void)state;
     const Weather weather = weather_default();
-    const View view = view_from(500, 0.2, -1.2);
+    const View    view = view_from(500, 0.2, -1.2);
     clear();
     for (int k = 0; k < 40; k++) {
         double d[3];
@@ -404,7 +417,7 @@ static void a_view_sees_what_all_round_sees(void **state)
     const Air some = air_of(&weather, 40, 500, 1 << AIR_G, &view);
     air_path(&veils, &some, AIR_G, &hits, &rays, NULL);
     static AirPaths all;
-    const Air every = air_of(&weather, 40, 500, 1 << AIR_G, NULL);
+    const Air       every = air_of(&weather, 40, 500, 1 << AIR_G, NULL);
     air_path(&all, &every, AIR_G, &hits, &rays, NULL);
     for (int i = 0; i < hits.count; i++) {
         /* heights in coarser steps, up to the tables' top: what a frame may lose against the tables, twice */
@@ -414,16 +427,16 @@ static void a_view_sees_what_all_round_sees(void **state)
     }
 }
 
-/* Half and all of the sky in clouds, by the papers' formulas; measured radiation as it is; the thermal sky of an overcast is
- * as warm as the air. */
+/* Half and all of the sky in clouds, by the papers' formulas; measured radiation as it is; the thermal sky of an
+ * overcast is as warm as the air. */
 static void clouds_dim_the_sun_and_warm_the_sky(void **state)
 {
     (void)state;
-    Weather   weather = weather_default();
-    const unsigned bands = 1 << AIR_PAN | 1 << AIR_LWIR;
-    const Air clear_air = air_of(&weather, 45, 2, bands, NULL);
-    const Daylight clear = clear_air.light;
-    const double high = clear.sun_d_enu[2], global = clear.solar_direct_w_m2 * high + clear.solar_diffuse_w_m2;
+    Weather             weather = weather_default();
+    const unsigned      bands = 1 << AIR_PAN | 1 << AIR_LWIR;
+    const Air           clear_air = air_of(&weather, 45, 2, bands, NULL);
+    const Daylight      clear = clear_air.light;
+    const double        high = clear.sun_d_enu[2], global = clear.solar_direct_w_m2 * high + clear.solar_diffuse_w_m2;
     static const double cloud[] = {0.5, 1};
     for (int k = 0; k < 2; k++) {
         weather.cloud = cloud[k];
@@ -433,7 +446,8 @@ static void clouds_dim_the_sun_and_warm_the_sky(void **state)
         CHECK_NEAR(l->solar_direct_w_m2 * high + l->solar_diffuse_w_m2, global * (1 - 0.75 * pow(cloud[k], 3.4)), 1e-6);
         CHECK_NEAR(l->longwave_loss_w_m2, clear.longwave_loss_w_m2 * (1 - 0.84 * cloud[k]), 1e-9);
         CHECK_NEAR(l->sun_w_m2[AIR_PAN], clear.sun_w_m2[AIR_PAN] * (1 - cloud[k]), 1e-9);
-        CHECK_NEAR(daylight_on_plane(l, AIR_PAN, (const double[3]){0, 0, 1}) / daylight_on_plane(&clear, AIR_PAN, (const double[3]){0, 0, 1}),
+        CHECK_NEAR(daylight_on_plane(l, AIR_PAN, (const double[3]){0, 0, 1}) /
+                       daylight_on_plane(&clear, AIR_PAN, (const double[3]){0, 0, 1}),
                    l->solar_diffuse_w_m2 / clear.solar_diffuse_w_m2, 1e-4);
         const double zenith[3] = {0, 0, 1}, black = planck_table_radiance(lwir, weather.air_temp_k);
         const double was = daylight_sky(&clear, AIR_LWIR, zenith), is_now = daylight_sky(l, AIR_LWIR, zenith);

@@ -9,7 +9,7 @@
 static void a_band_alone_is_the_band_in_company(void **state)
 {
     (void)state;
-    const View    view    = strew(30, 160, 120);
+    const View    view = strew(30, 160, 120);
     RenderRequest request = request_of(&view);
     arena_reset(hand.arena);
     const Picture all = hand_render(&request, hand.pool);
@@ -34,7 +34,7 @@ static void a_band_alone_is_the_band_in_company(void **state)
 static void refined_pixels_are_those_of_the_full_picture(void **state)
 {
     (void)state;
-    const View    view    = strew(60, 240, 160);
+    const View    view = strew(60, 240, 160);
     RenderRequest request = request_of(&view);
     request.target_samples = 0;
     arena_reset(hand.arena);
@@ -45,7 +45,7 @@ static void refined_pixels_are_those_of_the_full_picture(void **state)
     const Picture full = hand_render(&request, hand.pool);
     request.samples = 2;
     const Picture half = hand_render(&request, hand.pool);
-    int of_full = 0, of_half = 0, of_ground = 0, kept = 0, at_edge = 0, edges = 0;
+    int           of_full = 0, of_half = 0, of_ground = 0, kept = 0, at_edge = 0, edges = 0;
     for (int y = 0; y < view.height; y++)
         for (int x = 0; x < view.width; x++) {
             const int i = y * view.width + x;
@@ -101,7 +101,7 @@ static double rms(const Picture *a, const Picture *b, int plane, double *most)
 static void the_error_and_its_price(void **state)
 {
     (void)state;
-    const View    view    = strew(40, 160, 120);
+    const View    view = strew(40, 160, 120);
     RenderRequest request = request_of(&view);
     arena_reset(hand.arena);
     const Picture adaptive = hand_render(&request, hand.pool);
@@ -110,7 +110,7 @@ static void the_error_and_its_price(void **state)
     request.samples = 4;
     const Picture full = hand_render(&request, hand.pool);
     request.samples = 8;
-    const Picture best = hand_render(&request, hand.pool);
+    const Picture    best = hand_render(&request, hand.pool);
     static const int planes[] = {picture_optical, picture_mwir, picture_lwir};
     const double     pixels = view.width * view.height;
     print_message("rays a pixel: 1, %.2f adaptive, 16\n", (double)adaptive.counters.rays_primary / pixels);
@@ -128,8 +128,9 @@ static void the_error_and_its_price(void **state)
 
 /* Borders between kinds of ground (grass is 10 K colder than a track) under an eye that moves by a third of a pixel a
  * frame: apparent temperature against 8 x 8 rays, and how much that error changes from frame to frame, which is what
- * flickers. With four samples on such a pixel the first was 0.59 K and the second 0.48 K. Without the ground's noise: of
- * what is finer than a pixel one ray shows the statistics, not the mean of this place (tests/sensor/test_ground_detail.c). */
+ * flickers. With four samples on such a pixel the first was 0.59 K and the second 0.48 K. Without the ground's noise:
+ * of what is finer than a pixel one ray shows the statistics, not the mean of this place
+ * (tests/sensor/test_ground_detail.c). */
 static void borders_of_kinds_of_ground_do_not_flicker(void **state)
 {
     (void)state;
@@ -137,7 +138,7 @@ static void borders_of_kinds_of_ground_do_not_flicker(void **state)
     static const double per_k = 0.6; /* W/(m2 sr) a kelvin, 8-12 um at 295 K: 0.60 (Planck) */
     static float        error[frames][width * height];
     static bool         border[width * height];
-    DetailTable *detail = hand.world.detail;
+    DetailTable        *detail = hand.world.detail;
     hand.world.detail = NULL;
     hand_air_on(sun_enu, 40);
     hand_clear();
@@ -193,8 +194,8 @@ static bool way_within(const Picture *p, const View *view, int x, int y)
     return false;
 }
 
-/* Roads and tracks of 3 to 6 m about a village, of half a pixel to several: those pixels against 8 x 8 rays, straight down
- * and aslant. One ray a pixel shows them as dashes: errors of 15 to 35 % of the light. */
+/* Roads and tracks of 3 to 6 m about a village, of half a pixel to several: those pixels against 8 x 8 rays, straight
+ * down and aslant. One ray a pixel shows them as dashes: errors of 15 to 35 % of the light. */
 static void ways_narrower_than_a_pixel_keep_their_light(void **state)
 {
     (void)state;
@@ -219,8 +220,8 @@ static void ways_narrower_than_a_pixel_keep_their_light(void **state)
         const Picture one = hand_render(&request, hand.pool);
         request.samples = 8;
         const Picture best = hand_render(&request, hand.pool);
-        double sum = 0, off = 0, square = 0, square_one = 0;
-        int    count = 0;
+        double        sum = 0, off = 0, square = 0, square_one = 0;
+        int           count = 0;
         for (int i = 0; i < width * height; i++) {
             if (!(adaptive.range_m[i] < INFINITY) || !way_within(&adaptive, &view, i % width, i / width)) continue;
             const double want = (double)best.optical[0][i], is = (double)adaptive.optical[0][i] - want,
@@ -228,8 +229,9 @@ static void ways_narrower_than_a_pixel_keep_their_light(void **state)
             sum += want, off += is, square += is * is, square_one += was * was, count++;
         }
         const double mean = sum / count, rms = sqrt(square / count) / mean, rms_one = sqrt(square_one / count) / mean;
-        print_message("ways, pixels of %g m, %s: %d pixels, mean off by %+.2f %%, rms %.1f %% (one ray: %.1f %%)\n", pixel_m[k % 2],
-                      k < 2 ? "straight down" : "aslant", count, 100 * off / sum, 100 * rms, 100 * rms_one);
+        print_message("ways, pixels of %g m, %s: %d pixels, mean off by %+.2f %%, rms %.1f %% (one ray: %.1f %%)\n",
+                      pixel_m[k % 2], k < 2 ? "straight down" : "aslant", count, 100 * off / sum, 100 * rms,
+                      100 * rms_one);
         CHECK(count > 100 && rms_one > 0.08);
         CHECK(fabs(off / sum) < 0.01 && rms < 0.25 * rms_one);
     }
@@ -240,11 +242,11 @@ static void ways_narrower_than_a_pixel_keep_their_light(void **state)
 static void bare_ground_stays_cheap(void **state)
 {
     (void)state;
-    const View          view    = strew(0, 240, 160);
+    const View          view = strew(0, 240, 160);
     const RenderRequest request = request_of(&view);
     arena_reset(hand.arena);
-    const Picture       picture = hand_render(&request, hand.pool);
-    const double        ratio   = (double)picture.counters.rays_primary / (double)picture.counters.pixels;
+    const Picture picture = hand_render(&request, hand.pool);
+    const double  ratio = (double)picture.counters.rays_primary / (double)picture.counters.pixels;
     print_message("bare ground: %.3f rays a pixel, %.1f %% of pixels refined\n", ratio,
                   100 * (double)picture.counters.pixels_refined / (double)picture.counters.pixels);
     CHECK(ratio < 1.1 && picture.counters.pixels_refined > picture.counters.pixels / 50);
@@ -254,8 +256,8 @@ static void bare_ground_stays_cheap(void **state)
 static void a_mast_between_the_pixels_is_seen(void **state)
 {
     (void)state;
-    const double eye_enu[3] = {0, 0, 3000}, ahead[3] = {1, 0, 0};
-    const View   view = hand_view(eye_enu, ahead, 64, 64, 500);
+    const double  eye_enu[3] = {0, 0, 3000}, ahead[3] = {1, 0, 0};
+    const View    view = hand_view(eye_enu, ahead, 64, 64, 500);
     RenderRequest request = hand_request(&view);
     double        r[9], worst = 0;
     hand_air_off(sun_enu);
@@ -268,7 +270,7 @@ static void a_mast_between_the_pixels_is_seen(void **state)
         hand_add(hand_mast_model, p_enu, r);
         arena_reset(hand.arena);
         RenderRequest one = request;
-        one.edge_samples  = 0;
+        one.edge_samples = 0;
         const Picture picture = hand_render(&request, hand.pool), plain = hand_render(&one, hand.pool);
         double        area = 0, by_one = 0;
         for (int i = 0; i < 64 * 64; i++) area += picture.lwir[i] > 0, by_one += plain.lwir[i] > 0;
@@ -285,8 +287,8 @@ static void a_mast_between_the_pixels_is_seen(void **state)
     CHECK(worst < 0.5); /* one of sixteen columns of samples more or less, of 2.7: 37 %; and its nearer face is wider */
 }
 
-/* The same mast, half a pixel wide, of a target too large to be refined as a whole: upright, and leaning so that it crosses
- * columns. Its light is that of its area on paper, row by row; one ray a pixel loses it or doubles it. */
+/* The same mast, half a pixel wide, of a target too large to be refined as a whole: upright, and leaning so that it
+ * crosses columns. Its light is that of its area on paper, row by row; one ray a pixel loses it or doubles it. */
 static void a_thin_piece_of_a_large_target_is_no_dashes(void **state)
 {
     (void)state;
@@ -299,7 +301,8 @@ static void a_thin_piece_of_a_large_target_is_no_dashes(void **state)
     request.target_samples = 0;
     for (int l = 0; l < 3; l++) {
         const double c = cos(lean_rad[l]), s = sin(lean_rad[l]);
-        const double r[9] = {1, 0, 0, 0, -c, -s, 0, s, -c}; /* forward east, right southward, down; leaning about the sight */
+        const double r[9] = {1,  0, 0, 0, -c,
+                             -s, 0, s, -c}; /* forward east, right southward, down; leaning about the sight */
         double       worst = 0, worst_row = 0, by_one = 0;
         for (int k = 0; k < 20; k++) {
             /* its middle before the eye */
@@ -321,12 +324,13 @@ static void a_thin_piece_of_a_large_target_is_no_dashes(void **state)
                 }
                 sum += row / row_px / 40;
                 worst_row = fmax(worst_row, fabs(row - row_px));
-                by_one    = fmax(by_one, fabs(row_one - row_px));
+                by_one = fmax(by_one, fabs(row_one - row_px));
             }
             worst = fmax(worst, fabs(sum - 1));
         }
-        print_message("mast of half a pixel, leaning %.1f: rows off by up to %.2f px (one ray: %.2f), all of it by %.1f %%\n",
-                      lean_rad[l], worst_row, by_one, 100 * worst);
+        print_message(
+            "mast of half a pixel, leaning %.1f: rows off by up to %.2f px (one ray: %.2f), all of it by %.1f %%\n",
+            lean_rad[l], worst_row, by_one, 100 * worst);
         /* four columns of samples a pixel: a row is right to one of them, a leaning mast's mean better */
         CHECK(worst_row <= 0.25 && by_one > 0.4);
         CHECK(worst < (l ? 0.05 : 0.5));
@@ -348,8 +352,8 @@ static void an_edge_has_its_places(void **state)
         RenderRequest request = hand_request(&view);
         double        last = NAN;
         int           jumps = 0;
-        request.samples        = samples_of[k];
-        request.edge_samples   = edge_of[k];
+        request.samples = samples_of[k];
+        request.edge_samples = edge_of[k];
         request.target_samples = 0;
         for (int n = 0; n <= steps; n++) {
             /* columns lie along the south; the plate's left edge runs through pixel 8, its right one off the sum */
@@ -359,7 +363,7 @@ static void an_edge_has_its_places(void **state)
                 p_enu[i] = eye_enu[i] + range_m * view.r_enu_from_cam[3 * i + 2] +
                            aside_m * view.r_enu_from_cam[3 * i] + 1.0 * view.r_enu_from_cam[3 * i + 1];
             for (int i = 0; i < 3; i++) { /* faces the eye: forward against the boresight, right to its left, down */
-                r[3 * i]     = -view.r_enu_from_cam[3 * i + 2];
+                r[3 * i] = -view.r_enu_from_cam[3 * i + 2];
                 r[3 * i + 1] = -view.r_enu_from_cam[3 * i];
                 r[3 * i + 2] = view.r_enu_from_cam[3 * i + 1];
             }

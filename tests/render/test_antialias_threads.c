@@ -4,7 +4,7 @@
 
 static void same_planes(const Picture *a, const Picture *b, unsigned bands)
 {
-    const size_t n = (size_t)a->width * (size_t)a->height;
+    const size_t      n = (size_t)a->width * (size_t)a->height;
     static const Band band_of[picture_plane_count] = {BAND_OPTICAL, BAND_OPTICAL, BAND_OPTICAL,
                                                       BAND_MWIR,    BAND_LWIR,    BAND_RADAR};
     for (int plane = 0; plane < picture_plane_count; plane++)
@@ -25,7 +25,7 @@ static void same_planes(const Picture *a, const Picture *b, unsigned bands)
 static void threads_and_skips_change_no_bit(void **state)
 {
     (void)state;
-    const View    view    = strew(40, 200, 140);
+    const View    view = strew(40, 200, 140);
     RenderRequest request = request_of(&view);
     arena_reset(hand.arena);
     const Picture one = hand_render(&request, hand.pool);

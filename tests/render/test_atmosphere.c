@@ -57,7 +57,7 @@ static void figures_of_the_reference(void **state)
 {
     (void)state;
     const AirPath level = {0, 0, 5000, pi_rad, 0};
-    PathAir air;
+    PathAir       air;
     atmosphere_path(&air, us1976, 23000, AIR_LWIR, &level, 300);
     CHECK_NEAR(air.transmittance, 0.625655, 5e-5);
     CHECK_NEAR(air.thermal_w_m2_sr, 11.7559, 2e-3);
@@ -116,19 +116,19 @@ static void paths_of(const char *name, bool slant)
     clear_errors();
     for (int row = 0; row < table.rows; row++) {
         const Atmosphere *model = model_named(word(&table, row, "atmosphere"));
-        const int band = band_of(word(&table, row, "band"));
+        const int         band = band_of(word(&table, row, "band"));
         if (!model || band < 0) continue;
         /* the model traces a ray that begins level through 8 % more air than its own level path of that height
          * and length has: no table holds both */
         if (slant && cell(&table, row, "zenith_deg") == 90) continue;
         /* nor both a path that ends between 2 and 3 km and its parts, whose sum is up to 7 % more */
         if (slant && cell(&table, row, "end_alt_km") > 2 && cell(&table, row, "end_alt_km") < 3) continue;
-        const int line = table.line[row + 1];
-        const double height_m = 1000 * cell(&table, row, "alt_km");
+        const int     line = table.line[row + 1];
+        const double  height_m = 1000 * cell(&table, row, "alt_km");
         const AirPath path = {height_m, slant ? 1000 * cell(&table, row, "end_alt_km") : height_m,
                               1000 * cell(&table, row, "range_km"), pi_rad, 0};
-        const double visibility_m = 1000 * cell(&table, row, "vis_km");
-        PathAir air;
+        const double  visibility_m = 1000 * cell(&table, row, "vis_km");
+        PathAir       air;
         for (int w = 0; w < 4; w++) {
             const double want = cell(&table, row, weight[w].column);
             if (isnan(want)) continue; /* none in the visible */
@@ -172,12 +172,11 @@ static void sky_and_sun_of_the_model(void **state)
     clear_errors();
     for (int row = 0; row < table.rows; row++) {
         const Atmosphere *model = model_named(word(&table, row, "atmosphere"));
-        const int band = band_of(word(&table, row, "band"));
+        const int         band = band_of(word(&table, row, "band"));
         if (!model || band < AIR_MWIR) continue;
         SkyAir sky;
         atmosphere_sky(&sky, model, 1000 * cell(&table, row, "vis_km"), (AirBand)band,
-                       1000 * cell(&table, row, "alt_km"),
-                       rad_per_deg * cell(&table, row, "zenith_deg"), pi_rad, 0);
+                       1000 * cell(&table, row, "alt_km"), rad_per_deg * cell(&table, row, "zenith_deg"), pi_rad, 0);
         keep(&radiance_errors[band], relative(sky.thermal_w_m2_sr, cell(&table, row, "Lpath_thermal_W_m2_sr"), 0),
              table.line[row + 1]);
     }
@@ -189,13 +188,12 @@ static void sky_and_sun_of_the_model(void **state)
     Errors *direct = &radiance_errors[AIR_B], *total = &radiance_errors[AIR_G];
     for (int row = 0; row < table.rows; row++) {
         const Atmosphere *model = model_named(word(&table, row, "atmosphere"));
-        const int band = band_of(word(&table, row, "band"));
+        const int         band = band_of(word(&table, row, "band"));
         if (!model || band < 0) continue;
         const double zenith_rad = rad_per_deg * cell(&table, row, "sun_zenith_deg");
-        SunAir sun;
+        SunAir       sun;
         atmosphere_sun(&sun, model, 1000 * cell(&table, row, "vis_km"), (AirBand)band,
-                       1000 * cell(&table, row, "alt_km"),
-                       zenith_rad);
+                       1000 * cell(&table, row, "alt_km"), zenith_rad);
         const double top = cell(&table, row, "E_toa_normal_W_m2");
         keep(direct, relative(sun.direct_normal_w_m2, cell(&table, row, "E_direct_normal_W_m2"), tau_floor * top),
              table.line[row + 1]);
@@ -218,12 +216,11 @@ static void scattered_of_the_model(void **state)
     clear_errors();
     for (int row = 0; row < table.rows; row++) {
         const Atmosphere *model = model_named(word(&table, row, "atmosphere"));
-        const int band = band_of(word(&table, row, "band"));
+        const int         band = band_of(word(&table, row, "band"));
         if (!model || band < 0) continue;
         SkyAir sky;
         atmosphere_sky(&sky, model, 1000 * cell(&table, row, "vis_km"), (AirBand)band,
-                       1000 * cell(&table, row, "alt_km"),
-                       rad_per_deg * cell(&table, row, "view_zenith_deg"),
+                       1000 * cell(&table, row, "alt_km"), rad_per_deg * cell(&table, row, "view_zenith_deg"),
                        rad_per_deg * cell(&table, row, "sun_zenith_deg"),
                        rad_per_deg * cell(&table, row, "rel_azimuth_deg"));
         keep(&radiance_errors[band], relative(sky.scattered_w_m2_sr, cell(&table, row, "Lscat_total_W_m2_sr"), 0),
@@ -240,16 +237,17 @@ static void scattered_of_the_model(void **state)
     clear_errors();
     for (int row = 0; row < table.rows; row++) {
         const Atmosphere *model = model_named(word(&table, row, "atmosphere"));
-        const int band = band_of(word(&table, row, "band"));
+        const int         band = band_of(word(&table, row, "band"));
         if (!model || band < 0) continue;
         const double zenith_rad = rad_per_deg * cell(&table, row, "view_zenith_deg");
         const double height_m = 1000 * cell(&table, row, "alt_km"), range_m = 1000 * cell(&table, row, "range_km");
         /* the far end, by the round Earth; or the ground */
-        const double end_m = cell(&table, row, "hits_ground") > 0
-                                 ? 0 : height_m + range_m * cos(zenith_rad) + range_m * range_m / (2 * 7433000);
+        const double  end_m = cell(&table, row, "hits_ground") > 0
+                                  ? 0
+                                  : height_m + range_m * cos(zenith_rad) + range_m * range_m / (2 * 7433000);
         const AirPath path = {height_m, end_m, range_m, rad_per_deg * cell(&table, row, "sun_zenith_deg"),
                               rad_per_deg * cell(&table, row, "rel_azimuth_deg")};
-        PathAir air;
+        PathAir       air;
         atmosphere_path(&air, model, 1000 * cell(&table, row, "vis_km"), (AirBand)band, &path, 300);
         keep(&radiance_errors[band], relative(air.scattered_w_m2_sr, cell(&table, row, "Lscat_total_W_m2_sr"), 0),
              table.line[row + 1]);
@@ -272,7 +270,7 @@ static void open_held_out(Table *table, const char *name)
 }
 
 static const char *const tabled[6] = {"b", "g", "r", "nir", "mwir", "lwir"};
-static const AirBand tabled_band[6] = {AIR_B, AIR_G, AIR_R, AIR_NIR, AIR_MWIR, AIR_LWIR};
+static const AirBand     tabled_band[6] = {AIR_B, AIR_G, AIR_R, AIR_NIR, AIR_MWIR, AIR_LWIR};
 
 /* shared/reference/infrared.md reports of a table of 17 x 17 x 10, trilinear: p99 of LWIR 0.6-1.2 %, MWIR 0.8-1.85 %,
  * visible 3.5-5 %; apparent temperature of a target at 300 K 0.02-0.08 K rms, 0.09-0.30 K p99. Points: heights to
@@ -291,16 +289,16 @@ static void paths_between_the_points(void **state)
         const double visibility_m = 1000 * cell(&table, row, "visibility_km");
         if (visibility_m != 5000 && visibility_m != 23000) continue;
         const Atmosphere *model = model_named(word(&table, row, "model"));
-        const int line = table.line[row + 1];
-        const AirPath path = {cell(&table, row, "observer_m"), cell(&table, row, "target_m"),
-                              cell(&table, row, "range_m"), pi_rad, 0};
-        const bool far = path.range_m > 20000; /* round Earth */
-        const int high = path.observer_m > 3000 || path.target_m > 3000;
+        const int         line = table.line[row + 1];
+        const AirPath     path = {cell(&table, row, "observer_m"), cell(&table, row, "target_m"),
+                                  cell(&table, row, "range_m"), pi_rad, 0};
+        const bool        far = path.range_m > 20000; /* round Earth */
+        const int         high = path.observer_m > 3000 || path.target_m > 3000;
         for (int i = 0; i < 6; i++) {
             const AirBand band = tabled_band[i];
-            Errors *errors = far ? &far_errors : &tau_errors[band];
-            char column[32];
-            PathAir air;
+            Errors       *errors = far ? &far_errors : &tau_errors[band];
+            char          column[32];
+            PathAir       air;
             atmosphere_path(&air, model, visibility_m, band, &path, 300);
             snprintf(column, sizeof column, "sun_%s", tabled[i]);
             keep(errors, relative(air.sun_transmittance, cell(&table, row, column), far ? 0.02 : tau_floor), line);
@@ -353,14 +351,14 @@ static void sky_and_sun_between_the_points(void **state)
         if (visibility_m != 5000 && visibility_m != 23000) continue;
         for (int i = 0; i < 6; i++) {
             SkyAir sky;
-            char column[32];
+            char   column[32];
             atmosphere_sky(&sky, model_named(word(&table, row, "model")), visibility_m, tabled_band[i],
                            cell(&table, row, "observer_m"), rad_per_deg * cell(&table, row, "zenith_deg"),
                            rad_per_deg * cell(&table, row, "sun_zenith_deg"),
                            rad_per_deg * cell(&table, row, "rel_azimuth_deg"));
             snprintf(column, sizeof column, "scattered_%s", tabled[i]);
             const double light = cell(&table, row, column);
-            double all = light;
+            double       all = light;
             if (i >= 4) {
                 snprintf(column, sizeof column, "thermal_%s", tabled[i]);
                 const double thermal = cell(&table, row, column);
@@ -388,8 +386,8 @@ static void sky_and_sun_between_the_points(void **state)
         const double visibility_m = 1000 * cell(&table, row, "visibility_km");
         if (visibility_m != 5000 && visibility_m != 23000) continue;
         for (int i = 0; i < 6; i++) {
-            SunAir sun;
-            char column[32];
+            SunAir       sun;
+            char         column[32];
             const double zenith_rad = rad_per_deg * cell(&table, row, "sun_zenith_deg");
             atmosphere_sun(&sun, model_named(word(&table, row, "model")), visibility_m, tabled_band[i],
                            cell(&table, row, "observer_m"), zenith_rad);
@@ -398,8 +396,9 @@ static void sky_and_sun_between_the_points(void **state)
             keep(&tau_errors[0], relative(sun.direct_normal_w_m2, direct, 0.01), table.line[row + 1]);
             snprintf(column, sizeof column, "diffuse_%s", tabled[i]);
             const double diffuse = cell(&table, row, column), level = cos(zenith_rad);
-            keep(&tau_errors[1], relative(sun.direct_normal_w_m2 * level + sun.diffuse_horizontal_w_m2,
-                                          direct * level + diffuse, 0.01), table.line[row + 1]);
+            keep(&tau_errors[1],
+                 relative(sun.direct_normal_w_m2 * level + sun.diffuse_horizontal_w_m2, direct * level + diffuse, 0.01),
+                 table.line[row + 1]);
         }
     }
     /* the worst: 88 degrees at 5 km visibility, a millionth of the light */
@@ -421,12 +420,12 @@ static void scattered_between_the_points(void **state)
                               cell(&table, row, "range_m"), rad_per_deg * cell(&table, row, "sun_zenith_deg"),
                               rad_per_deg * cell(&table, row, "rel_azimuth_deg")};
         for (int i = 0; i < 6; i++) {
-            char column[32];
+            char    column[32];
             PathAir air;
             atmosphere_path(&air, model_named(word(&table, row, "model")), visibility_m, tabled_band[i], &path, 300);
             snprintf(column, sizeof column, "scattered_%s", tabled[i]);
             const double light = cell(&table, row, column);
-            double error = relative(air.scattered_w_m2_sr, light, 0);
+            double       error = relative(air.scattered_w_m2_sr, light, 0);
             /* in thermal bands: kelvin of a target at 300 K, d_radiance / d_temp from infrared.md */
             if (i >= 4) error = (air.scattered_w_m2_sr - light) / (i == 4 ? 0.04997054399343 : 0.62970434672219);
             keep(&radiance_errors[i], error, table.line[row + 1]);
@@ -455,7 +454,7 @@ static void goes_to_its_limits(void **state)
                 double last = 1, last_radiance = 0;
                 for (double range_m = 0.1; range_m < 2e6; range_m *= 1.37) {
                     const AirPath path = {heights_m[i], heights_m[j], range_m, 0.8, 2};
-                    PathAir air;
+                    PathAir       air;
                     atmosphere_path(&air, us1976, 14000, (AirBand)b, &path, 300);
                     CHECK(air.transmittance >= 0 && air.transmittance <= last + 1e-9); /* never clearer farther off */
                     CHECK(air.sun_transmittance >= 0 && air.sun_transmittance <= 1);
@@ -469,7 +468,7 @@ static void goes_to_its_limits(void **state)
             }
     /* near: depth in proportion to range */
     const AirPath one = {10, 10, 1, pi_rad, 0}, ten = {10, 10, 10, pi_rad, 0};
-    PathAir a, c;
+    PathAir       a, c;
     for (int b = 0; b < AIR_BAND_COUNT; b++) {
         atmosphere_path(&a, us1976, 23000, (AirBand)b, &one, 300);
         atmosphere_path(&c, us1976, 23000, (AirBand)b, &ten, 300);
@@ -479,8 +478,8 @@ static void goes_to_its_limits(void **state)
     /* far: a straight line of 100 km is on the average 112 m below its ends (100 km squared over 12 times 7/6 of the
      * Earth's radius), and has more air than the table's level path as that height has on a kilometre */
     double level_depth = NAN;
-    char path[1024];
-    Table table;
+    char   path[1024];
+    Table  table;
     CHECK(etc_path(path, sizeof path, "atmosphere/us1976/23000/paths_b.csv") && table_open(&table, path) == STATUS_OK);
     for (int row = 0; row < table.rows; row++)
         if (cell(&table, row, "observer_m") == 5500 && cell(&table, row, "target_m") == 5500 &&
@@ -489,12 +488,12 @@ static void goes_to_its_limits(void **state)
     table_close(&table);
     const AirPath straight = {5500, 5500, 100000, pi_rad, 0}, above = {5500, 5500, 1000, pi_rad, 0};
     const AirPath below = {5500 - 112, 5500 - 112, 1000, pi_rad, 0};
-    PathAir d;
+    PathAir       d;
     atmosphere_path(&a, us1976, 23000, AIR_B, &straight, 300);
     atmosphere_path(&c, us1976, 23000, AIR_B, &above, 300);
     atmosphere_path(&d, us1976, 23000, AIR_B, &below, 300);
     const double more = log(d.transmittance) / log(c.transmittance);
-    CHECK(more > 1.012); /* than can be missed */
+    CHECK(more > 1.012);                                          /* than can be missed */
     CHECK_NEAR(-log(a.transmittance) / level_depth, more, 0.003); /* haze counts a little less on the long path */
     /* no way at all, and a far, thick one: its own air as a black body between its coldest and its warmest */
     const AirPath none = {0, 0, 0, 0.5, 0}, far = {0, 500, 400000, pi_rad, 0};
@@ -533,8 +532,8 @@ static void probe_answers(void **state)
                          "us1976,23,lwir,0,9000,5,300,,\n"
                          "us1976,-1,lwir,0,0,5,300,,\n"
                          "mars,23,lwir,0,0,5,300,,\n";
-    char text[4096] = "", path[text_file_size];
-    FILE *in = fmemopen(rows, strlen(rows), "r"), *out = fmemopen(text, sizeof text, "w");
+    char        text[4096] = "", path[text_file_size];
+    FILE       *in = fmemopen(rows, strlen(rows), "r"), *out = fmemopen(text, sizeof text, "w");
     log_set_sink(check_listen, NULL);
     CHECK(in && out && probe_run(probe, 0, NULL, in, out) == STATUS_OK);
     log_set_sink(NULL, NULL);

@@ -10,7 +10,7 @@
 static const double near = 1e-12;
 
 static const char *const models[] = {"us1976", "midlat_summer"};
-static const double temps_k[] = {220, 260, 288.15, 300, 417, 1000, 2500};
+static const double      temps_k[] = {220, 260, 288.15, 300, 417, 1000, 2500};
 enum { temps = sizeof temps_k / sizeof *temps_k, all_bands = (1 << AIR_BAND_COUNT) - 1, days = 12, paths = 120 };
 
 static uint64_t drawn;
@@ -25,7 +25,7 @@ static AirPath random_path(void)
 {
     AirPath p = {.observer_m = dice(0, 1) < 0.2 ? 0 : dice(0, 1) < 0.5 ? dice(0, 500) : dice(0, 22000)};
     p.target_m = dice(0, 1) < 0.2 ? p.observer_m : dice(0, 1) < 0.5 ? p.observer_m + dice(-0.9, 0.9) : dice(0, 22000);
-    p.range_m  = fabs(p.target_m - p.observer_m) + (dice(0, 1) < 0.1 ? 0 : pow(10, dice(-1, 5.3)));
+    p.range_m = fabs(p.target_m - p.observer_m) + (dice(0, 1) < 0.1 ? 0 : pow(10, dice(-1, 5.3)));
     return p;
 }
 
@@ -33,8 +33,8 @@ static void check_path(const AirDay *day, const Atmosphere *atmosphere, double v
 {
     const AirPath path = random_path();
     double        azimuth[5] = {0, pi_rad, dice(0, pi_rad), dice(0, pi_rad), dice(0, 0.2)}, seen[5][AIR_BAND_COUNT],
-                  sun[AIR_BAND_COUNT];
-    DayPath       got;
+           sun[AIR_BAND_COUNT];
+    DayPath got;
     air_day_path(&got, day, &path);
     air_day_scattered(seen, sun, day, &path, azimuth, 5);
     for (AirBand b = 0; b < AIR_BAND_COUNT; b++) {
@@ -58,8 +58,9 @@ static void check_path(const AirDay *day, const Atmosphere *atmosphere, double v
 
 static void check_sky(const AirDay *day, const Atmosphere *atmosphere, double visibility_m, double sun_rad)
 {
-    const double observer_m = dice(0, 1) < 0.3 ? 0 : dice(0, 25000), zenith_rad = dice(0, 1) < 0.2 ? 0.5 * pi_rad : dice(0, 1.6);
-    double       azimuth[3] = {0, pi_rad, dice(0, pi_rad)}, seen[3][AIR_BAND_COUNT], thermal[2];
+    const double observer_m = dice(0, 1) < 0.3 ? 0 : dice(0, 25000),
+                 zenith_rad = dice(0, 1) < 0.2 ? 0.5 * pi_rad : dice(0, 1.6);
+    double azimuth[3] = {0, pi_rad, dice(0, pi_rad)}, seen[3][AIR_BAND_COUNT], thermal[2];
     air_day_sky(seen, thermal, day, observer_m, zenith_rad, azimuth, 3);
     for (AirBand b = 0; b < AIR_BAND_COUNT; b++)
         for (int a = 0; a < 3; a++) {
@@ -80,9 +81,9 @@ static void a_day_answers_as_the_atmosphere_does(void **state)
         CHECK(arena && atmosphere_open(&atmosphere, models[m]) == STATUS_OK);
         atmosphere_visibilities(atmosphere, &low_m, &high_m);
         for (int d = 0; d < days; d++) {
-            const double ends_m[] = {low_m / 2, low_m, 5000, 23000, high_m, 2 * high_m};
-            const double visibility_m = d < 6 ? ends_m[d] : exp(dice(log(low_m), log(high_m)));
-            const double sun_rad = d == 0 ? 0 : d == 1 ? 0.5 * pi_rad : d == 2 ? 2 : dice(0, 1.5);
+            const double  ends_m[] = {low_m / 2, low_m, 5000, 23000, high_m, 2 * high_m};
+            const double  visibility_m = d < 6 ? ends_m[d] : exp(dice(log(low_m), log(high_m)));
+            const double  sun_rad = d == 0 ? 0 : d == 1 ? 0.5 * pi_rad : d == 2 ? 2 : dice(0, 1.5);
             const AirDay *day;
             arena_reset(arena);
             CHECK(air_day_at(&day, atmosphere, visibility_m, sun_rad, all_bands, temps_k, temps, arena) == STATUS_OK);
@@ -110,7 +111,7 @@ static void bands_do_not_depend_on_each_other(void **state)
         for (int k = 0; k < 20; k++) {
             const AirPath path = random_path();
             const double  azimuth = dice(0, pi_rad);
-            double        all[1][AIR_BAND_COUNT], alone[1][AIR_BAND_COUNT], sun_all[AIR_BAND_COUNT], sun_alone[AIR_BAND_COUNT];
+            double all[1][AIR_BAND_COUNT], alone[1][AIR_BAND_COUNT], sun_all[AIR_BAND_COUNT], sun_alone[AIR_BAND_COUNT];
             air_day_scattered(all, sun_all, every, &path, &azimuth, 1);
             air_day_scattered(alone, sun_alone, one, &path, &azimuth, 1);
             CHECK(all[0][b] == alone[0][b] && sun_all[b] == sun_alone[b]);

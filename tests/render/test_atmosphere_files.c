@@ -1,4 +1,5 @@
-/* The tables of the air spoilt: a small set of them, written here, is refused with file and line, and nothing crashes. */
+/* The tables of the air spoilt: a small set of them, written here, is refused with file and line, and nothing crashes.
+ */
 #include "tests/check.h"
 #include "render/air/atmosphere.h"
 
@@ -8,14 +9,17 @@ typedef struct SmallFile {
     const char *name, *text;
 } SmallFile;
 
-#define COLUMN_HEAD "height_m,extinction_b,scatter_b,extinction_g,scatter_g,extinction_r,scatter_r,extinction_nir," \
-                    "scatter_nir,extinction_mwir,scatter_mwir,extinction_lwir,scatter_lwir\n"
+#define COLUMN_HEAD                                                                                                    \
+    "height_m,extinction_b,scatter_b,extinction_g,scatter_g,extinction_r,scatter_r,extinction_nir,"                    \
+    "scatter_nir,extinction_mwir,scatter_mwir,extinction_lwir,scatter_lwir\n"
 #define COLUMN_ROWS "0,0.2,0.1,0.2,0.1,0.2,0.1,0.2,0.1,0.2,0.1,0.2,0.1\n20000,0.1,0,0.1,0,0.1,0,0.1,0,0.1,0,0.1,0\n"
-#define PATHS "observer_m,target_m,range_m,depth_sun\n0,0,100,0.02\n0,0,1000,0.2\n0,9000,9000,1\n9000,0,9000,1\n" \
-              "9000,9000,100,0.01\n9000,9000,1000,0.1\n"
-#define THERMAL "observer_m,target_m,range_m,depth_sun,depth_250k,depth_300k,thermal_w_m2_sr\n" \
-                "0,0,100,0.02,0.02,0.02,1\n0,0,1000,0.2,0.2,0.2,9\n0,9000,9000,1,1,1,20\n9000,0,9000,1,1,1,20\n" \
-                "9000,9000,100,0.01,0.01,0.01,1\n"
+#define PATHS                                                                                                          \
+    "observer_m,target_m,range_m,depth_sun\n0,0,100,0.02\n0,0,1000,0.2\n0,9000,9000,1\n9000,0,9000,1\n"                \
+    "9000,9000,100,0.01\n9000,9000,1000,0.1\n"
+#define THERMAL                                                                                                        \
+    "observer_m,target_m,range_m,depth_sun,depth_250k,depth_300k,thermal_w_m2_sr\n"                                    \
+    "0,0,100,0.02,0.02,0.02,1\n0,0,1000,0.2,0.2,0.2,9\n0,9000,9000,1,1,1,20\n9000,0,9000,1,1,1,20\n"                   \
+    "9000,9000,100,0.01,0.01,0.01,1\n"
 #define SIX "b,g,r,nir,mwir,lwir\n"
 
 static const SmallFile small_files[] = {
@@ -24,11 +28,19 @@ static const SmallFile small_files[] = {
     {"m/temperature.csv", "height_m,temp_k\n0,288\n11000,217\n"},
     {"m/phase.csv", "height_m,angle_deg," SIX "0,0,9,9,9,9,9,9\n0,180,0.5,0.5,0.5,0.5,0.5,0.5\n"},
     {"m/clear/air.csv", COLUMN_HEAD COLUMN_ROWS},
-    {"m/clear/paths_b.csv", PATHS}, {"m/clear/paths_g.csv", PATHS}, {"m/clear/paths_r.csv", PATHS},
-    {"m/clear/paths_nir.csv", PATHS}, {"m/clear/paths_mwir.csv", THERMAL}, {"m/clear/paths_lwir.csv", THERMAL},
+    {"m/clear/paths_b.csv", PATHS},
+    {"m/clear/paths_g.csv", PATHS},
+    {"m/clear/paths_r.csv", PATHS},
+    {"m/clear/paths_nir.csv", PATHS},
+    {"m/clear/paths_mwir.csv", THERMAL},
+    {"m/clear/paths_lwir.csv", THERMAL},
     {"m/10000/haze.csv", COLUMN_HEAD COLUMN_ROWS},
-    {"m/10000/paths_b.csv", PATHS}, {"m/10000/paths_g.csv", PATHS}, {"m/10000/paths_r.csv", PATHS},
-    {"m/10000/paths_nir.csv", PATHS}, {"m/10000/paths_mwir.csv", THERMAL}, {"m/10000/paths_lwir.csv", THERMAL},
+    {"m/10000/paths_b.csv", PATHS},
+    {"m/10000/paths_g.csv", PATHS},
+    {"m/10000/paths_r.csv", PATHS},
+    {"m/10000/paths_nir.csv", PATHS},
+    {"m/10000/paths_mwir.csv", THERMAL},
+    {"m/10000/paths_lwir.csv", THERMAL},
     {"m/10000/sky_thermal.csv", "observer_m,zenith_deg,mwir,lwir\n0,0,0.4,6\n0,90,1,30\n"},
     {"m/10000/sun.csv", "observer_m,sun_zenith_deg,direct_b,direct_g,direct_r,direct_nir,direct_mwir,direct_lwir,"
                         "diffuse_b,diffuse_g,diffuse_r,diffuse_nir,diffuse_mwir,diffuse_lwir\n"
@@ -57,7 +69,8 @@ static int make_small(void **state)
 {
     (void)state;
     strcpy(small_root, "/tmp/pitviper-test-XXXXXX");
-    if (channels_load() != STATUS_OK || !mkdtemp(small_root)) return -1; /* the table of channels is the program's own */
+    if (channels_load() != STATUS_OK || !mkdtemp(small_root))
+        return -1; /* the table of channels is the program's own */
     static const char *const folder[] = {"atmosphere", "atmosphere/m", "atmosphere/m/clear", "atmosphere/m/10000"};
     for (int i = 0; i < 4; i++) {
         char path[256];
@@ -121,13 +134,11 @@ static void refuses_and_says_where(void **state)
         {"m/temperature.csv", "height_m,temp_k\n0,-288\n", "temp_k"},
         {"m/phase.csv", "height_m,angle_deg," SIX "0,0,9,9,9,9,9,9\n90,180,1,1,1,1,1,1\n",
          "phase.csv:3: a point is missing"},
-        {"m/clear/air.csv", COLUMN_HEAD "100,1,1,1,1,1,1,1,1,1,1,1,1\n200,1,1,1,1,1,1,1,1,1,1,1,1\n",
-         "from 0 upwards"},
+        {"m/clear/air.csv", COLUMN_HEAD "100,1,1,1,1,1,1,1,1,1,1,1,1\n200,1,1,1,1,1,1,1,1,1,1,1,1\n", "from 0 upwards"},
         {"m/clear/air.csv", COLUMN_HEAD "0,0,1,1,1,1,1,1,1,1,1,1,1\n", "air.csv:2"},
         {"m/clear/paths_b.csv", "observer_m,target_m,range_m,depth_sun\n0,0,100,0.02\n0,9000,9000,1\n9000,0,900,1\n",
          "paths_b.csv:4: range_m 900 is less"},
-        {"m/clear/paths_b.csv",
-         "observer_m,target_m,range_m,depth_sun\n0,0,100,0.02\n0,9000,9000,1\n9000,9000,100,1\n",
+        {"m/clear/paths_b.csv", "observer_m,target_m,range_m,depth_sun\n0,0,100,0.02\n0,9000,9000,1\n9000,9000,100,1\n",
          "no path: observer_m=9000 target_m=0"},
         {"m/clear/paths_b.csv", "observer_m,target_m,range_m,depth_sun\n0,0,100,0.02\n0,0,100,0.02\n",
          "paths_b.csv:3: this path is there twice"},
@@ -135,14 +146,15 @@ static void refuses_and_says_where(void **state)
          "paths_b.csv:2: column depth_sun"},
         {"m/clear/paths_b.csv", "observer_m,target_m,range_m\n0,0,100\n", "depth_sun"},
         {"m/clear/paths_mwir.csv", PATHS, "depth_<kelvin>k"},
-        {"m/10000/paths_lwir.csv",
-         "observer_m,target_m,range_m,depth_sun,depth_hotk,thermal_w_m2_sr\n0,0,100,1,1,1\n",
+        {"m/10000/paths_lwir.csv", "observer_m,target_m,range_m,depth_sun,depth_hotk,thermal_w_m2_sr\n0,0,100,1,1,1\n",
          "depth_hotk"},
         {"m/10000/paths_lwir.csv", "observer_m,target_m,range_m,depth_sun,depth_300k\n0,0,100,1,1\n",
          "thermal_w_m2_sr"},
         {"m/10000/sun.csv", "observer_m,sun_zenith_deg\n0,0\n", "direct_b"},
-        {"m/10000/scattered.csv", "observer_m,zenith_deg,range_m,sun_zenith_deg,rel_azimuth_deg," SIX
-         "0,0,100,0,0,1,1,1,1,0.1,0\n0,0,100,0,180,1,1,1,1,0.1,0\n0,0,900,0,0,2,2,2,2,0.2,0\n", "scattered.csv:4"},
+        {"m/10000/scattered.csv",
+         "observer_m,zenith_deg,range_m,sun_zenith_deg,rel_azimuth_deg," SIX
+         "0,0,100,0,0,1,1,1,1,0.1,0\n0,0,100,0,180,1,1,1,1,0.1,0\n0,0,900,0,0,2,2,2,2,0.2,0\n",
+         "scattered.csv:4"},
         {"m/10000/sky_thermal.csv", "observer_m,zenith_deg,mwir,lwir\n0,0,0.4\n", "sky_thermal.csv:2"},
     };
     log_set_sink(listen_first, NULL);
@@ -171,22 +183,28 @@ static void refuses_and_says_where(void **state)
 typedef struct Beside {
     const char *name, *text;
 } Beside;
-#define THICK_ROWS "0,1,0.9,1,0.9,1,0.9,1,0.9,1,0.9,1,0.9\n1000,1,0.9,1,0.9,1,0.9,1,0.9,1,0.9,1,0.9\n" \
-                   "20000,0.1,0,0.1,0,0.1,0,0.1,0,0.1,0,0.1,0\n"
-#define THICK_PATHS "observer_m,target_m,range_m,depth_sun\n0,0,200,0.3\n0,0,5000,5\n0,8000,8000,4\n" \
-                    "8000,0,8000,4\n8000,8000,300,0.05\n"
-#define THICK_THERMAL "observer_m,target_m,range_m,depth_sun,depth_280k,thermal_w_m2_sr\n0,0,200,0.3,0.3,1\n" \
-                      "0,0,5000,5,5,9\n" \
-                      "0,8000,8000,4,4,9\n8000,0,8000,4,4,9\n8000,8000,300,0.05,0.05,1\n"
+#define THICK_ROWS                                                                                                     \
+    "0,1,0.9,1,0.9,1,0.9,1,0.9,1,0.9,1,0.9\n1000,1,0.9,1,0.9,1,0.9,1,0.9,1,0.9,1,0.9\n"                                \
+    "20000,0.1,0,0.1,0,0.1,0,0.1,0,0.1,0,0.1,0\n"
+#define THICK_PATHS                                                                                                    \
+    "observer_m,target_m,range_m,depth_sun\n0,0,200,0.3\n0,0,5000,5\n0,8000,8000,4\n"                                  \
+    "8000,0,8000,4\n8000,8000,300,0.05\n"
+#define THICK_THERMAL                                                                                                  \
+    "observer_m,target_m,range_m,depth_sun,depth_280k,thermal_w_m2_sr\n0,0,200,0.3,0.3,1\n"                            \
+    "0,0,5000,5,5,9\n"                                                                                                 \
+    "0,8000,8000,4,4,9\n8000,0,8000,4,4,9\n8000,8000,300,0.05,0.05,1\n"
 static const Beside thick[] = {
     {"haze.csv", COLUMN_HEAD THICK_ROWS},
     {"sky_thermal.csv", "observer_m,zenith_deg,mwir,lwir\n0,0,0.5,7\n0,60,0.6,9\n0,90,1,30\n"},
     {"sun.csv", "observer_m,sun_zenith_deg,direct_b,direct_g,direct_r,direct_nir,direct_mwir,direct_lwir,"
                 "diffuse_b,diffuse_g,diffuse_r,diffuse_nir,diffuse_mwir,diffuse_lwir\n"
                 "0,0,20,20,20,90,7,0.6,90,70,60,90,0.2,0.02\n0,85,1,1,1,5,0.5,0.05,6,4,3,5,0.01,0\n"},
-    {"paths_b.csv", THICK_PATHS}, {"paths_g.csv", THICK_PATHS}, {"paths_r.csv", THICK_PATHS},
+    {"paths_b.csv", THICK_PATHS},
+    {"paths_g.csv", THICK_PATHS},
+    {"paths_r.csv", THICK_PATHS},
     {"paths_nir.csv", THICK_PATHS},
-    {"paths_mwir.csv", THICK_THERMAL}, {"paths_lwir.csv", THICK_THERMAL},
+    {"paths_mwir.csv", THICK_THERMAL},
+    {"paths_lwir.csv", THICK_THERMAL},
     {"sky_scattered.csv", "observer_m,zenith_deg,sun_zenith_deg,rel_azimuth_deg," SIX "0,10,0,0,5,4,3,2,0.1,0.01\n"
                           "0,10,60,0,5,4,3,2,0.1,0.01\n"},
     {"scattered.csv", "observer_m,zenith_deg,range_m,sun_zenith_deg,rel_azimuth_deg," SIX
@@ -217,21 +235,21 @@ static void visibilities_of_any_shape(void **state)
 {
     (void)state;
     static const char both[] = "visibility_m,longwave_down_w_m2\n10000,300\n4000,320\n";
-    const int list = small_index("m/visibilities.csv");
-    const AirPath path = {0, 0, 200, 0.5, 1};
+    const int         list = small_index("m/visibilities.csv");
+    const AirPath     path = {0, 0, 200, 0.5, 1};
     write_small(list, both, sizeof both - 1);
     for (int whole = 0; whole < 2; whole++) {
         write_thick(whole ? thick_all : thick_light);
         static const double visibility_m[] = {1000, 4000, 6000, 10000, 30000};
-        double last = 0;
+        double              last = 0;
         for (int v = 0; v < 5; v++) {
             Atmosphere *all = NULL, *one = NULL;
             CHECK(atmosphere_open(&all, "m") == STATUS_OK);
             CHECK(atmosphere_open_at(&one, "m", visibility_m[v]) == STATUS_OK);
             for (int b = 0; b < AIR_BAND_COUNT; b++) {
                 PathAir a, c;
-                SkyAir sky;
-                SunAir sun;
+                SkyAir  sky;
+                SunAir  sun;
                 atmosphere_path(&a, all, visibility_m[v], (AirBand)b, &path, 300);
                 atmosphere_path(&c, one, visibility_m[v], (AirBand)b, &path, 300);
                 atmosphere_sky(&sky, one, visibility_m[v], (AirBand)b, 0, 1, 0.5, 1);
@@ -259,17 +277,17 @@ static void survives_any_spoiling(void **state)
 {
     (void)state;
     static const char *const word_in[] = {"nan", "1e999", "-1", "", ",", "\n", "1e308", "#", "\"", "0", "1e-300"};
-    int opened = 0, refused = 0;
+    int                      opened = 0, refused = 0;
     for (int which = 0; which < small_count; which++) {
-        const char *text = small_files[which].text;
+        const char  *text = small_files[which].text;
         const size_t octets = strlen(text);
         for (uint32_t k = 0; k < 60; k++) {
             uint32_t r[4];
             random_u32x4(r, (uint32_t[4]){k, (uint32_t)which, 0, 0}, (uint32_t[2]){7, 7});
-            char spoilt[4096];
+            char         spoilt[4096];
             const size_t at = r[0] % octets, length = 1 + r[1] % (k % 2 ? 3 : 60);
             const size_t end = at + length < octets ? at + length : octets;
-            size_t n = 0;
+            size_t       n = 0;
             memcpy(spoilt, text, at);
             n = at;
             if (k % 3 == 0) { /* some of it gone */
@@ -298,9 +316,9 @@ static void survives_any_spoiling(void **state)
             opened++;
             for (int b = 0; b < AIR_BAND_COUNT; b++) {
                 const AirPath path = {100, 3000, 7000, 0.5, 1};
-                PathAir air;
-                SkyAir sky;
-                SunAir sun;
+                PathAir       air;
+                SkyAir        sky;
+                SunAir        sun;
                 atmosphere_path(&air, model, 10000, (AirBand)b, &path, 300);
                 atmosphere_sky(&sky, model, 10000, (AirBand)b, 0, 1, 0.5, 1);
                 atmosphere_sun(&sun, model, 10000, (AirBand)b, 0, 0.5);

@@ -3,10 +3,10 @@
 #include "tests/render/atmosphere_errors.h"
 #include "render/air/atmosphere.h"
 
-static Atmosphere *model[2];
+static Atmosphere       *model[2];
 static const char *const model_name[2] = {"us1976", "midlat_summer"};
 static const char *const tabled[6] = {"b", "g", "r", "nir", "mwir", "lwir"};
-static const AirBand tabled_band[6] = {AIR_B, AIR_G, AIR_R, AIR_NIR, AIR_MWIR, AIR_LWIR};
+static const AirBand     tabled_band[6] = {AIR_B, AIR_G, AIR_R, AIR_NIR, AIR_MWIR, AIR_LWIR};
 
 static int open_models(void **state)
 {
@@ -44,16 +44,16 @@ static void find(Found *out, const Table *table, int row, int i)
 {
     static const double temp_k[4] = {300, 350, 800, 1700};
     static const double per_k[2] = {0.04997, 0.6297}; /* d radiance / d temp at 300 K */
-    const AirBand band = tabled_band[i];
-    const int line = table->line[row + 1];
-    const double a_m = cell(table, row, "observer_m"), b_m = cell(table, row, "target_m");
-    const double range_m = cell(table, row, "range_m");
+    const AirBand       band = tabled_band[i];
+    const int           line = table->line[row + 1];
+    const double        a_m = cell(table, row, "observer_m"), b_m = cell(table, row, "target_m");
+    const double        range_m = cell(table, row, "range_m");
     /* the reader's level path is a straight line, which lies lower by this in the mean than one of constant height */
-    const double lift_m = a_m == b_m ? range_m * range_m / (12 * 7433000.0) : 0;
+    const double  lift_m = a_m == b_m ? range_m * range_m / (12 * 7433000.0) : 0;
     const AirPath path = {a_m + lift_m, b_m + lift_m, range_m, pi_rad, 0};
-    const double visibility_m = 1000 * cell(table, row, "visibility_km");
-    Errors *errors = range_m > 20000 ? &out->far : &out->near;
-    PathAir air;
+    const double  visibility_m = 1000 * cell(table, row, "visibility_km");
+    Errors       *errors = range_m > 20000 ? &out->far : &out->near;
+    PathAir       air;
     for (int t = -1; t < (i < 4 ? 0 : 4); t++) {
         char column[32];
         snprintf(column, sizeof column, t < 0 ? "sun_%s" : "%s_%.0fk", tabled[i], t < 0 ? 0 : temp_k[t]);
@@ -112,9 +112,10 @@ static void sun_of_other_visibilities(void **state)
             const double visibility_m = 1000 * cell(&table, row, "visibility_km");
             const double zenith_rad = rad_per_deg * cell(&table, row, "sun_zenith_deg"), level = cos(zenith_rad);
             const double want = cell_of(&table, row, "direct_", tabled[i]);
-            const double diffuse = cell_of(&table, row, "diffuse_", tabled[i]), height_m = cell(&table, row, "observer_m");
+            const double diffuse = cell_of(&table, row, "diffuse_", tabled[i]),
+                         height_m = cell(&table, row, "observer_m");
             const int fog = visibility_m < 2000;
-            SunAir sun, top;
+            SunAir    sun, top;
             atmosphere_sun(&sun, model_of(&table, row), visibility_m, tabled_band[i], height_m, zenith_rad);
             atmosphere_sun(&top, model_of(&table, row), 50000, tabled_band[i], 16000, 0);
             if (want > 0.01 * top.direct_normal_w_m2)
@@ -147,10 +148,11 @@ static void scattered_between_its_tables(void **state)
                 if (cell(&table, row, "visibility_km") != 10) continue;
                 const double sun_rad = rad_per_deg * cell(&table, row, "sun_zenith_deg");
                 const double azimuth_rad = rad_per_deg * cell(&table, row, "rel_azimuth_deg");
-                const double eye_m = cell(&table, row, "observer_m"), want = cell_of(&table, row, "scattered_", tabled[i]);
+                const double eye_m = cell(&table, row, "observer_m"),
+                             want = cell_of(&table, row, "scattered_", tabled[i]);
                 const Atmosphere *a = model_of(&table, row);
-                SkyAir sky;
-                PathAir air;
+                SkyAir            sky;
+                PathAir           air;
                 if (path) {
                     const AirPath at = {eye_m, cell(&table, row, "target_m"), cell(&table, row, "range_m"), sun_rad,
                                         azimuth_rad};
@@ -199,21 +201,21 @@ static void goes_smoothly(void **state)
 static void alone_and_among_others(void **state)
 {
     (void)state;
-    static const double visibility_m[] = {100,   200,   700,   2000,  3000,  5000, 10000,
-                                          15000, 23000, 40000, 50000, 90000, 3e5};
+    static const double  visibility_m[] = {100,   200,   700,   2000,  3000,  5000, 10000,
+                                           15000, 23000, 40000, 50000, 90000, 3e5};
     static const AirPath path[3] = {{500, 500, 7000, 0.9, 1}, {0, 1500, 3000, 0.5, 2}, {6000, 100, 9000, 1.2, 0}};
     for (size_t v = 0; v < sizeof visibility_m / sizeof *visibility_m; v++) {
         Atmosphere *one = NULL;
         CHECK(atmosphere_open_at(&one, "us1976", visibility_m[v]) == STATUS_OK);
         const double soft = visibility_m[v] < 200 ? 0.01 : 0.004; /* beyond the tables */
-        double low_m, high_m, all_low_m, all_high_m;
+        double       low_m, high_m, all_low_m, all_high_m;
         atmosphere_visibilities(one, &low_m, &high_m);
         atmosphere_visibilities(model[0], &all_low_m, &all_high_m);
         CHECK(low_m == all_low_m && high_m == all_high_m);
         for (int b = 0; b < AIR_BAND_COUNT; b++)
             for (int p = 0; p < 3; p++) {
                 PathAir a, all;
-                SunAir sun, all_sun;
+                SunAir  sun, all_sun;
                 atmosphere_path(&a, one, visibility_m[v], (AirBand)b, &path[p], 300);
                 atmosphere_path(&all, model[0], visibility_m[v], (AirBand)b, &path[p], 300);
                 atmosphere_sun(&sun, one, visibility_m[v], (AirBand)b, 300 * p, 0.8);

@@ -1,5 +1,5 @@
-/* Trunks over a day: the three parts by sides against finite volumes over rings and sides, with every side's own balance; and
- * the film of a cylinder against its table. labels: physics */
+/* Trunks over a day: the three parts by sides against finite volumes over rings and sides, with every side's own
+ * balance; and the film of a cylinder against its table. labels: physics */
 #include "tests/scenes/paper_day.h"
 
 enum { rings = 12, sides = 24 };
@@ -18,14 +18,17 @@ static void disc_step(Disc *d, double radius_m, const GroundWeather *w, double s
     const double film = heat_branch_film_w_m2k(radius_m, w->air.wind_mps);
     old = *d;
     for (int s = 0; s < sides; s++) {
-        const double n[3] = {cos(s * turn), sin(s * turn), 0}, along = w->sun_d_enu[2] > 0 ? fmax(v3_dot(n, w->sun_d_enu), 0) : 0;
-        const double direct = sun * w->direct_w_m2, below = 0.15 * ((w->sun_d_enu[2] > 0 ? direct * w->sun_d_enu[2] : 0) + w->diffuse_w_m2);
+        const double n[3] = {cos(s * turn), sin(s * turn), 0},
+                     along = w->sun_d_enu[2] > 0 ? fmax(v3_dot(n, w->sun_d_enu), 0) : 0;
+        const double direct = sun * w->direct_w_m2,
+                     below = 0.15 * ((w->sun_d_enu[2] > 0 ? direct * w->sun_d_enu[2] : 0) + w->diffuse_w_m2);
         const double gain = pine.absorptance * (direct * along + 0.5 * w->diffuse_w_m2 + 0.5 * below) +
                             pine.emissivity * 0.5 * (w->longwave_w_m2 + stefan_w_m2k4 * pow(ground_k, 4));
         const double face = 2 * k / dr;
         for (int i = 0; i < 6; i++) {
             const double t = d->face_k[s], t3 = t * t * t;
-            const double miss = gain - film * (t - w->air.temp_k) - pine.emissivity * stefan_w_m2k4 * t * t3 - face * (t - old.t_k[rings - 1][s]);
+            const double miss = gain - film * (t - w->air.temp_k) - pine.emissivity * stefan_w_m2k4 * t * t3 -
+                                face * (t - old.t_k[rings - 1][s]);
             d->face_k[s] += miss / (film + face + 4 * pine.emissivity * stefan_w_m2k4 * t3);
         }
         for (int r = 0; r < rings; r++) {
@@ -33,7 +36,8 @@ static void disc_step(Disc *d, double radius_m, const GroundWeather *w, double s
             double       heat = r + 1 < rings ? k * (r + 1) * dr * turn / dr * (old.t_k[r + 1][s] - old.t_k[r][s])
                                               : face * radius_m * turn * (d->face_k[s] - old.t_k[r][s]);
             if (r > 0) heat += k * r * dr * turn / dr * (old.t_k[r - 1][s] - old.t_k[r][s]);
-            heat += k * dr / (middle * turn) * (old.t_k[r][(s + 1) % sides] + old.t_k[r][(s + sides - 1) % sides] - 2 * old.t_k[r][s]);
+            heat += k * dr / (middle * turn) *
+                    (old.t_k[r][(s + 1) % sides] + old.t_k[r][(s + sides - 1) % sides] - 2 * old.t_k[r][s]);
             d->t_k[r][s] += dt_s * heat / (c * volume);
         }
     }
@@ -44,10 +48,10 @@ static void sides_of_a_trunk(void **state)
     (void)state;
     static const double radius_m[] = {0.04, 0.12};
     for (int k = 0; k < 2; k++) {
-        static Disc disc;
-        Branch      branch;
-        double      worst = 0, sum = 0, range[2] = {400, 0};
-        int         count = 0;
+        static Disc  disc;
+        Branch       branch;
+        double       worst = 0, sum = 0, range[2] = {400, 0};
+        int          count = 0;
         const double dt_s = radius_m[k] < 0.1 ? 0.25 : 3;
         for (int s = 0; s < sides; s++) {
             disc.face_k[s] = 288;
@@ -74,8 +78,8 @@ static void sides_of_a_trunk(void **state)
                 range[0] = fmin(range[0], disc.face_k[s]), range[1] = fmax(range[1], disc.face_k[s]);
             }
         }
-        print_message("radius %.0f mm: %.1f to %.1f K over the day and its sides; %.2f K rms, %.2f K worst\n", 1e3 * radius_m[k], range[0],
-                      range[1], sqrt(sum / count), worst);
+        print_message("radius %.0f mm: %.1f to %.1f K over the day and its sides; %.2f K rms, %.2f K worst\n",
+                      1e3 * radius_m[k], range[0], range[1], sqrt(sum / count), worst);
         CHECK(range[1] - range[0] > 15);
         CHECK(sqrt(sum / count) < 0.8 && worst < 3);
     }
@@ -119,7 +123,9 @@ static void film_of_a_cylinder(void **state)
     for (int r = 0; r < 5; r++)
         for (int w = 0; w < 3; w++) {
             const double re = wind_mps[w] * 2 * radius_m[r] / 1.5e-5;
-            const double nu = re < 1000 ? 0.51 * sqrt(re) * pow(0.71, 0.37) : re < 2e5 ? 0.26 * pow(re, 0.6) * pow(0.71, 0.37) : 0.076 * pow(re, 0.7) * pow(0.71, 0.37);
+            const double nu = re < 1000  ? 0.51 * sqrt(re) * pow(0.71, 0.37)
+                              : re < 2e5 ? 0.26 * pow(re, 0.6) * pow(0.71, 0.37)
+                                         : 0.076 * pow(re, 0.7) * pow(0.71, 0.37);
             CHECK_NEAR(heat_branch_film_w_m2k(radius_m[r], wind_mps[w]) / (nu * 0.025 / (2 * radius_m[r])), 1, 0.25);
         }
 }

@@ -11,12 +11,23 @@ static Arena *arena;
 static int    item[most], found[most], sorted_by_hand[most];
 static double sphere[most][4];
 
-static int open_arena(void **state) { (void)state; arena = arena_create(); return arena ? 0 : -1; }
-static int close_arena(void **state) { (void)state; arena_destroy(arena); return 0; }
+static int open_arena(void **state)
+{
+    (void)state;
+    arena = arena_create();
+    return arena ? 0 : -1;
+}
+static int close_arena(void **state)
+{
+    (void)state;
+    arena_destroy(arena);
+    return 0;
+}
 
 static double between(double low, double high) { return hand_uniform(low, high); }
 
-/* Strewn, stacked in one place, all the same, on a line with one very far, of all sizes, and some that are no spheres. */
+/* Strewn, stacked in one place, all the same, on a line with one very far, of all sizes, and some that are no spheres.
+ */
 static int strew(int scene)
 {
     const int count = scene == 4 ? 3 : most;
@@ -31,23 +42,21 @@ static int strew(int scene)
         if (i % 7 == 0) sphere[i][i % 4] = NAN;
         if (i % 7 == 1) sphere[i][i % 3] = INFINITY;
         if (i % 7 == 2) sphere[i][3] = -1;
-        if (i % 7 == 3) for (int c = 0; c < 4; c++) sphere[i][c] = 4;
+        if (i % 7 == 3)
+            for (int c = 0; c < 4; c++) sphere[i][c] = 4;
         if (i % 7 == 4) sphere[i][3] = 1e300;
     }
     return count;
 }
 
-static bool is_sphere(int i)
-{
-    return v3_is_finite(sphere[i]) && isfinite(sphere[i][3]) && sphere[i][3] >= 0;
-}
+static bool is_sphere(int i) { return v3_is_finite(sphere[i]) && isfinite(sphere[i][3]) && sphere[i][3] >= 0; }
 
 static BroadPhase *plant(int count)
 {
     BroadPhase *tree = NULL;
     int         good = 0;
     arena_reset(arena);
-    CHECK(broad_phase_create(&tree, item, (const double (*)[4])sphere, count, arena) == STATUS_OK);
+    CHECK(broad_phase_create(&tree, item, (const double(*)[4])sphere, count, arena) == STATUS_OK);
     for (int i = 0; i < count; i++) good += is_sphere(i);
     CHECK(broad_phase_count(tree) == good);
     return tree;
@@ -82,7 +91,7 @@ static void volumes_lose_nothing(void **state)
                 hand_direction(plane[p]);
                 plane[p][3] = between(-1500, 300);
             }
-            int listed = broad_phase_in_planes(found, tree, (const double (*)[4])plane, n % 6);
+            int listed = broad_phase_in_planes(found, tree, (const double(*)[4])plane, n % 6);
             check_list(listed, count);
             left_out += count - listed;
             for (int i = 0; i < count; i++) {
@@ -91,7 +100,7 @@ static void volumes_lose_nothing(void **state)
                 if (within) CHECK(has(listed, item[i]));
             }
             for (int c = 0; c < 3; c++) {
-                low[c]  = between(-1000, 1000);
+                low[c] = between(-1000, 1000);
                 high[c] = low[c] + between(0, 300);
                 centre[c] = between(-1000, 1000);
             }
@@ -108,7 +117,8 @@ static void volumes_lose_nothing(void **state)
             }
             hand_direction(d);
             listed = broad_phase_swept(found, most, tree, centre, radius_m, d);
-            CHECK(listed >= 0 && (listed == 0 || broad_phase_swept(sorted_by_hand, listed - 1, tree, centre, radius_m, d) == -1));
+            CHECK(listed >= 0 &&
+                  (listed == 0 || broad_phase_swept(sorted_by_hand, listed - 1, tree, centre, radius_m, d) == -1));
             for (int i = 0; i < count; i++) {
                 double m[3], across[3];
                 if (!is_sphere(i)) continue;
@@ -161,8 +171,9 @@ static void rays_lose_nothing(void **state)
             broad_phase_rays(tree, &rays, note_visit, &visits);
             for (int i = 0; i < count; i++)
                 for (int k = 0; k < used && is_sphere(i); k++) {
-                    const double o[3] = {rays.o[0][k], rays.o[1][k], rays.o[2][k]}, d[3] = {rays.d[0][k], rays.d[1][k], rays.d[2][k]};
-                    double       m[3], across[3];
+                    const double o[3] = {rays.o[0][k], rays.o[1][k], rays.o[2][k]},
+                                 d[3] = {rays.d[0][k], rays.d[1][k], rays.d[2][k]};
+                    double m[3], across[3];
                     v3_sub(m, sphere[i], o);
                     const double along = v3_dot(m, d), r = sphere[i][3];
                     v3_add_scaled(across, m, -along, d);
@@ -225,7 +236,8 @@ static void closer_boxes_lose_nothing_in_them(void **state)
                     rays.limit_m[k] = INFINITY;
                 }
                 broad_phase_rays(tree, &rays, note_visit, &visits);
-                if (scene != 3 && scene != 5) visited[tight] += (uint64_t)visits.count; /* those have giants, which all meet */
+                if (scene != 3 && scene != 5)
+                    visited[tight] += (uint64_t)visits.count; /* those have giants, which all meet */
                 for (int i = 0; i < count; i++)
                     for (int k = 0; k < broad_packet && is_sphere(i); k++) {
                         const double from[3] = {rays.o[0][k], rays.o[1][k], rays.o[2][k]};
@@ -241,7 +253,8 @@ static void closer_boxes_lose_nothing_in_them(void **state)
             }
         }
     }
-    print_message("closer boxes: %llu visits instead of %llu\n", (unsigned long long)visited[1], (unsigned long long)visited[0]);
+    print_message("closer boxes: %llu visits instead of %llu\n", (unsigned long long)visited[1],
+                  (unsigned long long)visited[0]);
     CHECK(met > 100);
     CHECK(visited[1] < visited[0] - visited[0] / 8); /* half of the items have boxes of a ninth of the area */
 }

@@ -8,10 +8,10 @@
 
 enum { side = 40, plants_most = side * side };
 
-static Plants *prototypes;
-static Plant   plant[plants_most];
-static uint32_t first[9 * 9 + 1];
-static Woods   woods;
+static Plants      *prototypes;
+static Plant        plant[plants_most];
+static uint32_t     first[9 * 9 + 1];
+static Woods        woods;
 static const double height_m = 12, leaf_area = 0.3, crown_low = 0.4;
 
 /* An orchard: a birch of 12 m every 8 m over 320 m square, 0.3 h^2 = 43.2 m2 of leaves each, from 4.8 m up. */
@@ -21,13 +21,20 @@ static int open_orchard(void **state)
     prototypes = calloc(1, sizeof *prototypes);
     if (!prototypes) return -1;
     for (int kind = 0; kind < PLANT_KINDS; kind++)
-        prototypes->shape[kind][0] = (PlantShape){.leaf_area = (float)leaf_area, .crown_low = (float)crown_low,
-                                                  .crown_radius = 0.25f};
-    woods = (Woods){.by_kind = {[PLANT_BIRCH] = side * side}, .origin_enu = {-160, -160, 100}, .nx = 5, .ny = 5, .first = first, .plant = plant};
+        prototypes->shape[kind][0] =
+            (PlantShape){.leaf_area = (float)leaf_area, .crown_low = (float)crown_low, .crown_radius = 0.25f};
+    woods = (Woods){.by_kind = {[PLANT_BIRCH] = side * side},
+                    .origin_enu = {-160, -160, 100},
+                    .nx = 5,
+                    .ny = 5,
+                    .first = first,
+                    .plant = plant};
     for (int j = 0; j < side; j++)
         for (int i = 0; i < side; i++)
-            plant[woods.count++] = (Plant){.p_m = {(float)(8 * i + 4), (float)(8 * j + 4), 0}, .kind = PLANT_BIRCH,
-                                           .height = (uint16_t)(height_m / plant_height_step_m), .width = 128};
+            plant[woods.count++] = (Plant){.p_m = {(float)(8 * i + 4), (float)(8 * j + 4), 0},
+                                           .kind = PLANT_BIRCH,
+                                           .height = (uint16_t)(height_m / plant_height_step_m),
+                                           .width = 128};
     return 0;
 }
 
@@ -94,8 +101,8 @@ static CanopyLight among;
 static Hits        hits;
 static const float dark_ground[optical_channel_count] = {0};
 
-/* The orchard's canopy, of leaves and bark that are the same in all bands; a crown is one leaf of 0.4 m2 and a branch of
- * 0.4 m2, as open as this. */
+/* The orchard's canopy, of leaves and bark that are the same in all bands; a crown is one leaf of 0.4 m2 and a branch
+ * of 0.4 m2, as open as this. */
 static Canopy *canopy_of(double rho, double tau, double bark, double up, double down)
 {
     static Material  rows[3];
@@ -106,8 +113,10 @@ static Canopy *canopy_of(double rho, double tau, double bark, double up, double 
     for (int k = 0; k < optical_channel_count; k++)
         rows[1].rho[k] = (float)rho, rows[1].tau[k] = (float)tau, rows[2].rho[k] = (float)bark;
     for (int k = 0; k < 2; k++)
-        quad[k] = (PlantQuad){.corner = {{0, 0, 0}, {0.4f, 0, 0}, {0.4f, 1, 0}, {0, 1, 0}}, .organ = k ? PLANT_BARK : PLANT_LEAF,
-                              .open_up = (float)up, .open_down = (float)down};
+        quad[k] = (PlantQuad){.corner = {{0, 0, 0}, {0.4f, 0, 0}, {0.4f, 1, 0}, {0, 1, 0}},
+                              .organ = k ? PLANT_BARK : PLANT_LEAF,
+                              .open_up = (float)up,
+                              .open_down = (float)down};
     for (int kind = 0; kind < PLANT_KINDS; kind++) {
         materials.plant[kind][PLANT_LEAF] = 1, materials.plant[kind][PLANT_BARK] = 2;
         prototypes->shape[kind][0].quad = quad, prototypes->shape[kind][0].quads = 2;
@@ -155,7 +164,9 @@ static void black_leaves_hide(void **state)
     CHECK_NEAR(among.up[0], gap_by_simpson(0.5 * index), 0.03); /* by the step of the leaf area */
     CHECK(among.down[0] == 1 && among.up[1] == 1 && among.down[1] == 1 && among.leaves_w_m2[AIR_NIR][0] == 0);
     CHECK_NEAR(among.ground[AIR_NIR][0],
-               (400 * sin_sun * exp(-0.5 * index / sin_sun) + 100 * gap_by_simpson(0.5 * index)) / (400 * sin_sun + 100), 0.03);
+               (400 * sin_sun * exp(-0.5 * index / sin_sun) + 100 * gap_by_simpson(0.5 * index)) /
+                   (400 * sin_sun + 100),
+               0.03);
     /* a place within a crown has the less of the stand's light and its own plant's */
     CHECK_NEAR(among.up[2], 0.04, 1e-6);
     CHECK_NEAR(among.down[2], 0.03, 1e-6);
@@ -171,8 +182,8 @@ static void white_leaves_vanish(void **state)
 {
     (void)state;
     static const float white[optical_channel_count] = {1, 1, 1, 1, 1};
-    const Daylight light = light_of(0, 100, 0.5);
-    Canopy        *c = canopy_of(0.55, 0.45, 1, 0.5, 0.4);
+    const Daylight     light = light_of(0, 100, 0.5);
+    Canopy            *c = canopy_of(0.55, 0.45, 1, 0.5, 0.4);
     set_hits(0.3f, 0.2f);
     assert_true(canopy_light(&among, c, NULL, &light, white, &hits, 1u << AIR_NIR));
     for (int i = 0; i < 3; i++)
@@ -184,21 +195,22 @@ static void white_leaves_vanish(void **state)
 static void orders_add_up(void **state)
 {
     (void)state;
-    const double rho = 0.46, tau = 0.4, bark = 0.3, up = 0.5, down = 0.4, sin_sun = 0.7, ground = 0.2;
-    const double index = 11.0 / 16; /* 0.675, stored as 11/16 */
-    const float  ground_rho[optical_channel_count] = {0.2f, 0.2f, 0.2f, 0.2f, 0.2f};
+    const double   rho = 0.46, tau = 0.4, bark = 0.3, up = 0.5, down = 0.4, sin_sun = 0.7, ground = 0.2;
+    const double   index = 11.0 / 16; /* 0.675, stored as 11/16 */
+    const float    ground_rho[optical_channel_count] = {0.2f, 0.2f, 0.2f, 0.2f, 0.2f};
     const Daylight light = light_of(400, 100, sin_sun);
     Canopy        *c = canopy_of(rho, tau, bark, up, down);
     set_hits(0.3f, 0.2f);
     for (int i = 0; i < 4; i++) hits.kind[i] = i == 3 ? hit_sky : hit_plant;
     assert_true(canopy_light(&among, c, NULL, &light, ground_rho, &hits, 1u << AIR_NIR));
     /* at the ground: hits without a landscape are at height 0 */
-    const double sees_sky = fmin(up, gap_by_simpson(0.5 * index)), sees_ground = down, hidden = 1 - gap_by_simpson(0.5 * index);
-    const double w = (0.5 * (rho + tau) + 0.25 * bark) / 0.75; /* by the areas that light meets: half of a leaf's, a quarter
-                                                                * of a branch's */
+    const double sees_sky = fmin(up, gap_by_simpson(0.5 * index)), sees_ground = down,
+                 hidden = 1 - gap_by_simpson(0.5 * index);
+    const double w = (0.5 * (rho + tau) + 0.25 * bark) / 0.75; /* by the areas that light meets: half of a leaf's, a
+                                                                * quarter of a branch's */
     const double below = 400 * sin_sun * exp(-0.5 * index / sin_sun) + 100 * (1 - hidden);
-    double       on_leaf = 0.5 * 400 * fmin(up, exp(-0.5 * index / sin_sun)) + sees_sky * 100 + sees_ground * ground * below;
-    double       leaves = 0;
+    double on_leaf = 0.5 * 400 * fmin(up, exp(-0.5 * index / sin_sun)) + sees_sky * 100 + sees_ground * ground * below;
+    double leaves = 0;
     for (int order = 0; order < 200; order++) {
         const double out = 0.5 * w * on_leaf;
         leaves += out;
@@ -212,10 +224,8 @@ static void orders_add_up(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(gap_is_the_integral),
-        cmocka_unit_test(leaves_are_where_they_were_put),
-        cmocka_unit_test(black_leaves_hide),
-        cmocka_unit_test(white_leaves_vanish),
+        cmocka_unit_test(gap_is_the_integral), cmocka_unit_test(leaves_are_where_they_were_put),
+        cmocka_unit_test(black_leaves_hide),   cmocka_unit_test(white_leaves_vanish),
         cmocka_unit_test(orders_add_up),
     };
     return cmocka_run_group_tests(tests, open_orchard, close_orchard);

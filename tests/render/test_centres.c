@@ -17,8 +17,14 @@ static ScatterAntenna antenna = {.u = {0.8, 0.36, 0.48}, .range_m = 3000};
 /* Paths of one or two mirrors between points of a box of 1.2 x 0.6 x 0.3 m. */
 static TubeHits some_hits(void)
 {
-    TubeHits h = {.tx = antenna, .rx = antenna, .frequency_hz = centre_hz, .count = hits, .path_m = path_m,
-                  .slope_m = {path_slope[0], path_slope[1]}, .bounce = bounce, .part = part};
+    TubeHits h = {.tx = antenna,
+                  .rx = antenna,
+                  .frequency_hz = centre_hz,
+                  .count = hits,
+                  .path_m = path_m,
+                  .slope_m = {path_slope[0], path_slope[1]},
+                  .bounce = bounce,
+                  .part = part};
     for (int c = 0; c < 8; c++) h.amplitude[c] = amplitude[c];
     for (int x = 0; x < 3; x++) h.first[x] = first[x], h.last[x] = last[x];
     for (int i = 0; i < hits; i++) {
@@ -48,7 +54,8 @@ static SignatureCells cells_of(double phase_rad)
     return cells;
 }
 
-/* An antenna at the edge of the bin, by two angles of half a bin, and nearer or farther by the most that a bin spans. */
+/* An antenna at the edge of the bin, by two angles of half a bin, and nearer or farther by the most that a bin spans.
+ */
 static ScatterAntenna moved(int az, int el, double range)
 {
     ScatterAntenna now = antenna;
@@ -105,8 +112,8 @@ static void error_at(double phase_rad, double *of_band, double *of_bin, int *cou
 /* Of paths that fill their cells evenly, with random phases. Over the band the mean path and no more is kept: the error
  * is of first order, phase / 3, rms over cell and band. Across, first moments are kept and half the square of the
  * phase is the error: rms 0.516 phase^2 at the corners of the bin, 0.224 in the middle of its sides, 0.375 phase^2 over
- * both and the middle. A band of 4 or 5 resolution cells of this box, in 4 polarisations, is some 16 draws, whose rms is
- * within 1.4 in 95 of 100 cases; the bin's are more. */
+ * both and the middle. A band of 4 or 5 resolution cells of this box, in 4 polarisations, is some 16 draws, whose rms
+ * is within 1.4 in 95 of 100 cases; the bin's are more. */
 static void centres_have_the_field_of_their_hits(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
-/* Dipoles one by one, in all directions, against the figures of volume_scatter.h; bunches of them, and the cloud's column.
- * labels: physics */
+/* Dipoles one by one, in all directions, against the figures of volume_scatter.h; bunches of them, and the cloud's
+ * column. labels: physics */
 #include "tests/check.h"
 
 #include "render/scattering/clutter/volume_scatter.h"
@@ -18,12 +18,13 @@ static void one_dipole_over_all_directions(void **state)
     const double gain = 1 / radiated, peak = gain * gain / pi_rad;
     for (int i = 0; i < steps; i++)
         for (int k = 0; k < steps; k++) {
-            const double c = (i + 0.5) / steps, f = cos(0.5 * pi_rad * c) / sqrt(1 - c * c), b = 2 * pi_rad * (k + 0.5) / steps;
+            const double c = (i + 0.5) / steps, f = cos(0.5 * pi_rad * c) / sqrt(1 - c * c),
+                         b = 2 * pi_rad * (k + 0.5) / steps;
             const double hh = f * f * cos(b) * cos(b), hv = f * f * cos(b) * sin(b), vv = f * f * sin(b) * sin(b);
             same += hh * hh, other += hv * hv, unlike += hh * vv, taken += hh;
         }
     const double each = 1.0 / steps / steps;
-    CHECK_NEAR(gain, 1.6409, 2e-4);                 /* 2.15 dBi */
+    CHECK_NEAR(gain, 1.6409, 2e-4); /* 2.15 dBi */
     CHECK_NEAR(peak * same * each, chaff_same, 1e-3);
     CHECK_NEAR(other / same, 1.0 / 3, 1e-6);
     CHECK_NEAR(unlike / same, 1.0 / 3, 1e-6);
@@ -67,7 +68,8 @@ static void columns_are_sums(void **state)
             double p[3];
             v3_scale(p, (i + 0.5) * range / steps, d);
             v3_sub(p, p, centre);
-            sum += n / pow(2 * pi_rad * radius * radius, 1.5) * exp(-0.5 * v3_dot(p, p) / (radius * radius)) * range / steps;
+            sum += n / pow(2 * pi_rad * radius * radius, 1.5) * exp(-0.5 * v3_dot(p, p) / (radius * radius)) * range /
+                   steps;
         }
         CHECK_NEAR(chaff_column_1_m2(n, radius, centre, d, range), sum, 1e-6 * n / (2 * pi_rad * radius * radius));
     }

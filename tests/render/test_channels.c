@@ -39,16 +39,18 @@ static void swir_is_what_others_say(void **state)
     CHECK(atmosphere_open_at(&us1976, "us1976", 23000) == STATUS_OK);
     CHECK(atmosphere_open_at(&summer, "midlat_summer", 23000) == STATUS_OK);
     SunAir sun;
-    /* ASTM G173-03: 285.2 W/m2 above the air; 196.7 facing the sun through an air mass of 1.5 and a turbidity of 0.084 at
-     * 0.5 um, of which haze of 23 km has three times as much: half as clear in this band is less than 8 % */
+    /* ASTM G173-03: 285.2 W/m2 above the air; 196.7 facing the sun through an air mass of 1.5 and a turbidity of 0.084
+     * at 0.5 um, of which haze of 23 km has three times as much: half as clear in this band is less than 8 % */
     atmosphere_sun(&sun, us1976, 23000, AIR_NIR, 50000, 0);
     CHECK_NEAR(sun.direct_normal_w_m2, 285.2, 0.04 * 285.2);
     atmosphere_sun(&sun, us1976, 23000, AIR_NIR, 0, 48.236 * rad_per_deg);
     CHECK_NEAR(sun.direct_normal_w_m2, 196.7, 0.12 * 196.7);
-    CHECK(sun.diffuse_horizontal_w_m2 > 0.02 * sun.direct_normal_w_m2 && sun.diffuse_horizontal_w_m2 < 0.2 * sun.direct_normal_w_m2);
+    CHECK(sun.diffuse_horizontal_w_m2 > 0.02 * sun.direct_normal_w_m2 &&
+          sun.diffuse_horizontal_w_m2 < 0.2 * sun.direct_normal_w_m2);
     /* MODTRAN 5.2.1, straight down from 1 km, weighted by that sunlight: 0.7301; LOWTRAN7's water is 2.5 % low there */
     PathAir path;
-    atmosphere_path(&path, summer, 23000, AIR_NIR, &(AirPath){.observer_m = 1000, .target_m = 0, .range_m = 1000, .sun_zenith_rad = 0.87}, 300);
+    atmosphere_path(&path, summer, 23000, AIR_NIR,
+                    &(AirPath){.observer_m = 1000, .target_m = 0, .range_m = 1000, .sun_zenith_rad = 0.87}, 300);
     CHECK_NEAR(path.sun_transmittance, 0.7301, 0.04 * 0.7301);
     CHECK(path.scattered_w_m2_sr > 0 && path.scattered_w_m2_sr < 5);
     SkyAir sky;
@@ -64,7 +66,7 @@ static void swir_of_materials(void **state)
 {
     (void)state;
     Materials nir, swir;
-    char path[1024], surfaces[1024];
+    char      path[1024], surfaces[1024];
     CHECK(etc_path(path, sizeof path, "materials.csv") && etc_path(surfaces, sizeof surfaces, "surfaces.csv"));
     channels_standard();
     CHECK(materials_open(&nir, path, surfaces, NULL) == STATUS_OK);
@@ -75,7 +77,8 @@ static void swir_of_materials(void **state)
               snow = materials_find(&nir, "snow_coarse");
     CHECK(swir.material[grass].rho[AIR_NIR] < 0.8f * nir.material[grass].rho[AIR_NIR]);
     CHECK(swir.material[snow].rho[AIR_NIR] < 0.7f * nir.material[snow].rho[AIR_NIR]);
-    CHECK(swir.material[water].rho[AIR_NIR] < 0.03f && swir.material[grass].rho[AIR_R] == nir.material[grass].rho[AIR_R]);
+    CHECK(swir.material[water].rho[AIR_NIR] < 0.03f &&
+          swir.material[grass].rho[AIR_R] == nir.material[grass].rho[AIR_R]);
     materials_close(&nir);
     materials_close(&swir);
 }

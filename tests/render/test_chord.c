@@ -44,6 +44,7 @@ static void flat_faces_have_none(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(a_sphere_says_its_chord), cmocka_unit_test(flat_faces_have_none)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(a_sphere_says_its_chord),
+                                       cmocka_unit_test(flat_faces_have_none)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -146,16 +146,17 @@ static void intensities_are_distributed_as_stated(void **state)
     CHECK_NEAR(bessel_k(0.5, 2), sqrt(pi_rad / 4) * exp(-2), 1e-14);
     CHECK_NEAR(bessel_k(1.5, 2), sqrt(pi_rad / 4) * exp(-2) * 1.5, 1e-14);
     static const double shapes[] = {INFINITY, 8, 3, 1, 0.5};
-    static double intensity[count];
-    ClutterRow    kept = table.row[SURFACE_GRASS][CLUTTER_KU];
+    static double       intensity[count];
+    ClutterRow          kept = table.row[SURFACE_GRASS][CLUTTER_KU];
     for (int k = 0; k < 5; k++) {
         /* the row of a class with this shape, from a file: its texture comes with it */
-        char path[text_file_size], *text = NULL;
+        char   path[text_file_size], *text = NULL;
         size_t size;
-        FILE *to = open_memstream(&text, &size);
+        FILE  *to = open_memstream(&text, &size);
         CHECK(to);
         fputs("surface,band,model,gamma_db,a,b,c,d,roughness_mm,nu,texture_m,hh_vv_db,hv_vv_db,rho,motion,still,"
-              "extent_mm,foliage_db_m,source\n", to);
+              "extent_mm,foliage_db_m,source\n",
+              to);
         for (int s = 1; s < SURFACE_COUNT; s++)
             for (int b = 0; b < CLUTTER_BAND_COUNT; b++)
                 fprintf(to, "%s,%s,gamma,-14,,,,,20,%g,10,0,-8,0.6,0.7,3,5,0,test\n", surface_name((SurfaceClass)s),
@@ -215,7 +216,7 @@ static void motion_has_its_spectrum(void **state)
     (void)state;
     enum { count = 40000 };
     static ScatterMatrix before[count];
-    Stage *s = stage(count, SURFACE_FOREST_BROADLEAF, 1, 12);
+    Stage               *s = stage(count, SURFACE_FOREST_BROADLEAF, 1, 12);
     for (int i = 0; i < count; i++) s->cell[i] = (ClutterCell){25 * (i % 200), 25 * (i / 200), 0};
     stage_place(s);
     stage_draw(s, CLUTTER_KA);
@@ -239,8 +240,8 @@ static void motion_has_its_spectrum(void **state)
             memcpy(before, s->seen, sizeof before);
             look.t_s = 1e6 + lags[k];
             see(s, &look);
-            const double lag_s = look.t_s - 1e6;
-            const double want  = from_spectrum(ratio / (1 + ratio), spread_mps, lag_s, c_mps / ka_hz);
+            const double         lag_s = look.t_s - 1e6;
+            const double         want = from_spectrum(ratio / (1 + ratio), spread_mps, lag_s, c_mps / ka_hz);
             const double complex got = correlation(before, s->seen, count);
             printf("wind %g m/s, lag %g s: %.4f, want %.4f\n", winds[w], lags[k], creal(got), want);
             /* of 40000 with the texture's weights, <tau^2> = 1 + 1/3 */
@@ -258,7 +259,7 @@ static void aspect_decorrelates_a_resolution_cell(void **state)
     enum { across = 8, each = across * across, cells = 4000, count = each * cells };
     static ScatterMatrix before[cells], after[cells];
     const double         side_m = 0.25, extent_m = across * side_m, wavelength_m = c_mps / ka_hz;
-    Stage *s = stage(count, SURFACE_BARE_SOIL, side_m, 13);
+    Stage               *s = stage(count, SURFACE_BARE_SOIL, side_m, 13);
     for (int i = 0; i < count; i++) {
         const int block = i / each, within = i % each;
         s->cell[i] = (ClutterCell){block % 50 * 40 + within % across, block / 50 * 40 + within / across, 0};
@@ -284,9 +285,9 @@ static void aspect_decorrelates_a_resolution_cell(void **state)
                 sum[b].vv *= cexp(I * 4 * pi_rad / wavelength_m * cos(psi) * sin(azimuth) * x);
             }
         }
-        const double x = 2 * pi_rad / wavelength_m * extent_m * turn;
-        const double own = exp(-8 * pow(pi_rad * 0.010 * turn / wavelength_m, 2)); /* 10 mm: bare_soil */
-        const double want = own * (x > 0 ? sin(x) / x : 1);
+        const double         x = 2 * pi_rad / wavelength_m * extent_m * turn;
+        const double         own = exp(-8 * pow(pi_rad * 0.010 * turn / wavelength_m, 2)); /* 10 mm: bare_soil */
+        const double         want = own * (x > 0 ? sin(x) / x : 1);
         const double complex got = correlation(before, after, cells);
         printf("turn %.2f lambda/(2 extent): %.3f, want %.3f\n", turn * 2 * extent_m / wavelength_m, creal(got), want);
         CHECK_NEAR(creal(got), want, k ? 4 / sqrt(cells) : 1e-12);
@@ -301,7 +302,7 @@ static void aspect_decorrelates_a_scatterer(void **state)
     (void)state;
     enum { count = 40000 };
     static ScatterMatrix before[count];
-    Stage *s = stage(count, SURFACE_ROCK, 1, 14);
+    Stage               *s = stage(count, SURFACE_ROCK, 1, 14);
     for (int i = 0; i < count; i++) s->cell[i] = (ClutterCell){10 * (i % 200), 10 * (i / 200), 0};
     stage_draw(s, CLUTTER_KA);
     ClutterLook look = look_from(0, 0.3, ka_hz);
@@ -325,7 +326,7 @@ static void polarisations_correlate_as_stated(void **state)
     const SurfaceClass classes[] = {SURFACE_ROAD, SURFACE_FOREST_CONIFER, SURFACE_BARE_SOIL};
     for (int k = 0; k < 3; k++) {
         const ClutterRow *row = &table.row[classes[k]][CLUTTER_KU];
-        Stage *s = stage(count, classes[k], 1, 15);
+        Stage            *s = stage(count, classes[k], 1, 15);
         for (int i = 0; i < count; i++) s->cell[i] = (ClutterCell){20 * (i % 300), 20 * (i / 300), 0};
         stage_place(s);
         stage_draw(s, CLUTTER_KU);
@@ -340,7 +341,7 @@ static void polarisations_correlate_as_stated(void **state)
             co += s->seen[i].hh * conj(s->seen[i].vv);
             cross += s->seen[i].hh * conj(s->seen[i].hv), cross_v += s->seen[i].vv * conj(s->seen[i].hv);
         }
-        const double more = 1 + 1 / row->nu, se = sqrt(more / count);
+        const double         more = 1 + 1 / row->nu, se = sqrt(more / count);
         const double complex rho = co / sqrt(hh * vv);
         printf("%s: rho %.3f of %.3f, hh/vv %.3f of %.3f, hv/vv %.3f of %.3f\n", surface_name(classes[k]), creal(rho),
                row->rho, hh / vv, row->hh, hv / vv, row->hv);
@@ -360,9 +361,9 @@ static void neighbours_and_levels_are_independent(void **state)
 {
     (void)state;
     enum { across = 200, count = across * across };
-    static ScatterMatrix before[count];
+    static ScatterMatrix     before[count];
     static const ClutterCell beside[] = {{1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {0, 0, 1}, {-1, 0, 0}, {0, 0, 2}};
-    Stage *s = stage(count, SURFACE_SAND, 1, 16);
+    Stage                   *s = stage(count, SURFACE_SAND, 1, 16);
     for (int k = -1; k < 6; k++) {
         for (int i = 0; i < count; i++) {
             s->cell[i] = (ClutterCell){i % across - 100, i / across - 100, 0};
@@ -373,10 +374,8 @@ static void neighbours_and_levels_are_independent(void **state)
         for (int i = 0; i < count; i++) s->p[0][i] = s->p[1][i] = 0;
         const ClutterLook look = look_from(2, 0.3, 94e9);
         see(s, &look);
-        if (k < 0)
-            memcpy(before, s->seen, sizeof before);
-        else
-            CHECK(cabs(correlation(before, s->seen, count)) < 4 * sqrt(1.1 / count));
+        if (k < 0) memcpy(before, s->seen, sizeof before);
+        else CHECK(cabs(correlation(before, s->seen, count)) < 4 * sqrt(1.1 / count));
     }
     stage_free(s);
 }
@@ -385,7 +384,7 @@ static void order_changes_no_bit(void **state)
 {
     (void)state;
     enum { across = 60, count = across * across };
-    Stage *s = stage(count, SURFACE_CROP, 0.3, 17), *back = stage(count, SURFACE_CROP, 0.3, 17);
+    Stage       *s = stage(count, SURFACE_CROP, 0.3, 17), *back = stage(count, SURFACE_CROP, 0.3, 17);
     const double low[2] = {-9, -9}, high[2] = {9, 9};
     CHECK(clutter_cells(s->cell, count, &s->grid, 0, low, high) == count);
     for (int i = 0; i < count; i++) back->cell[i] = s->cell[count - 1 - i];

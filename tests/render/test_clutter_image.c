@@ -8,7 +8,7 @@ static const double c_mps = 299792458.0, carrier_hz = 16e9, psi = 0.5, range_m =
 enum { pulses = 96, tones = 96, side_cells = 160, scatterers = side_cells * side_cells, image = 64 };
 
 static double complex history[pulses][tones];
-static double antenna[pulses][3], wave[tones] /* 2 k */, weight[tones];
+static double         antenna[pulses][3], wave[tones] /* 2 k */, weight[tones];
 
 /* An arc about the origin, wide enough for cells of half a metre both ways, and Hann's window both ways. */
 static double lay_out(double *step_rad, double *step_hz)
@@ -133,10 +133,8 @@ static void an_image_reads_sigma0_and_focuses(void **state)
         for (int y = 0; y < image; y++)
             for (int x = 0; x < image; x++) {
                 const double p[2] = {(x - 31.5) * cell_m, (y - 31.5) * cell_m}, m2 = focus(p[0], p[1]);
-                if (is_dark(p))
-                    dark += m2, shadowed++;
-                else if (!(p[0] > 2 && p[0] < 14 && p[1] > -14 && p[1] < -2))
-                    sum += m2, lit++;
+                if (is_dark(p)) dark += m2, shadowed++;
+                else if (!(p[0] > 2 && p[0] < 14 && p[1] > -14 && p[1] < -2)) sum += m2, lit++;
             }
     }
     printf("sigma0 in the image %.2f dB, put in %.2f dB; shadow %.1f dB below\n", db(sum / lit / area_m2), db(sigma0),

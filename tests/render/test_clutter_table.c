@@ -28,8 +28,7 @@ static Status open_with(ClutterTable *out, const char *crop_ka, const char *head
         for (int b = 0; b < CLUTTER_BAND_COUNT; b++) {
             if (s != SURFACE_CROP || b != CLUTTER_KA)
                 fprintf(to, "%s,%s,%s\n", surface_name((SurfaceClass)s), clutter_band_name((ClutterBand)b), good);
-            else if (crop_ka)
-                fprintf(to, "%s\n", crop_ka);
+            else if (crop_ka) fprintf(to, "%s\n", crop_ka);
         }
     fclose(to);
     text_file(path, text);
@@ -96,8 +95,8 @@ static void what_is_wrong_is_refused(void **state)
 static void backscatter_has_its_form(void **state)
 {
     (void)state;
-    const ClutterRow gamma = {.gamma = 0.1}, git = {.model = CLUTTER_GIT, .a = 0.05, .b = 0.83, .c = 0.0013, .d = 2.3,
-                                                    .roughness_m = 0.01};
+    const ClutterRow gamma = {.gamma = 0.1},
+                     git = {.model = CLUTTER_GIT, .a = 0.05, .b = 0.83, .c = 0.0013, .d = 2.3, .roughness_m = 0.01};
     CHECK_NEAR(clutter_sigma0(&gamma, pi_rad / 6, 0.03), 0.05, 1e-16);
     CHECK_NEAR(clutter_sigma0(&gamma, pi_rad / 2, 0.03), 0.1, 1e-16);
     CHECK(clutter_sigma0(&gamma, 0, 0.03) == 0 && clutter_sigma0(&git, -0.1, 0.03) == 0);
@@ -120,14 +119,14 @@ static void texture_is_gamma_distributed(void **state)
 {
     (void)state;
     static const char *const shapes[] = {"0.5", "1", "3", "20"};
-    ClutterTable made;
-    double       worst = 0;
+    ClutterTable             made;
+    double                   worst = 0;
     for (int k = 0; k < 4; k++) {
         char row[128];
         snprintf(row, sizeof row, "crop,Ka,gamma,-14,,,,,20,%s,1,0,-8,0.6,0.7,3,5,1.2,test", shapes[k]);
         CHECK(open_with(&made, row, header) == STATUS_OK);
         const ClutterRow *crop = &made.row[SURFACE_CROP][CLUTTER_KA];
-        double mean = 0, square = 0, before = 0;
+        double            mean = 0, square = 0, before = 0;
         for (double g = -4; g <= 4; g += 0.0117) {
             const double t = clutter_texture(crop, g), want = normal_share(-fabs(g));
             /* share of the smaller tail, and its slope by ln t, for an error in t */
@@ -207,9 +206,9 @@ static void foliage_takes_and_returns(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_class_has_its_rows),     cmocka_unit_test(what_is_wrong_is_refused),
-        cmocka_unit_test(backscatter_has_its_form),     cmocka_unit_test(texture_is_gamma_distributed),
-        cmocka_unit_test(motion_is_billingsleys),       cmocka_unit_test(foliage_takes_and_returns),
+        cmocka_unit_test(every_class_has_its_rows), cmocka_unit_test(what_is_wrong_is_refused),
+        cmocka_unit_test(backscatter_has_its_form), cmocka_unit_test(texture_is_gamma_distributed),
+        cmocka_unit_test(motion_is_billingsleys),   cmocka_unit_test(foliage_takes_and_returns),
     };
     return cmocka_run_group_tests(tests, open_table, NULL);
 }

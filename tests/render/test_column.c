@@ -20,7 +20,7 @@ typedef struct Law {
 
 static double flux(double *falls, double temp_k, const void *user)
 {
-    const Law *l = user;
+    const Law   *l = user;
     const double sigma = 5.670374419184429e-8;
     *falls = l->film_w_m2k + 4 * l->emissivity * sigma * pow(fabs(temp_k), 3);
     return l->gain_w_m2 - l->film_w_m2k * temp_k + l->emissivity * sigma * (pow(l->sky_k, 4) - pow(temp_k, 4));
@@ -51,7 +51,7 @@ static void begin(Run *r, const ColumnLayer *layer, int layers, double first_m, 
 static void go(Run *r, const Load *load, double until_s, double dt_s)
 {
     while (r->t_s < until_s - 1e-6) {
-        const Now now = {*load, r->t_s, dt_s};
+        const Now            now = {*load, r->t_s, dt_s};
         const ColumnBoundary b = {flux, law_at, &now, 0, 0.001};
         column_step(&r->state, &r->column, NULL, &b, dt_s);
         r->t_s += dt_s;
@@ -61,7 +61,7 @@ static void go(Run *r, const Load *load, double until_s, double dt_s)
 /* Amplitude and lag of the surface over the last day, from its first harmonic. */
 static void harmonic(Run *r, const Load *load, double dt_s, double *amplitude_k, double *lag_h)
 {
-    double in = 0, out = 0;
+    double    in = 0, out = 0;
     const int steps = (int)lround(day_s / dt_s);
     for (int i = 0; i < steps; i++) {
         go(r, load, r->t_s + dt_s, dt_s);
@@ -91,7 +91,7 @@ static void wave_of_the_surface(void **state)
 static void wave_of_the_flux(void **state)
 {
     (void)state;
-    Run r;
+    Run    r;
     double amplitude_k, lag_h;
     begin(&r, soil, 1, 0.002, 1.03, base_k);
     const Load load = {.wave_w_m2 = 300};
@@ -104,10 +104,11 @@ static void wave_of_the_flux(void **state)
 static void asphalt_over_soil(void **state)
 {
     (void)state;
-    const ColumnLayer road[] = {{0.05, 0.75, 2110 * 920.0}, {0.6, 0.30, 1.28e6}};
-    static const double film[] = {0, 15}, amplitude[] = {33.4207934559, 14.0783148086}, lag[] = {3.76871464835, 1.37150745207};
+    const ColumnLayer   road[] = {{0.05, 0.75, 2110 * 920.0}, {0.6, 0.30, 1.28e6}};
+    static const double film[] = {0, 15}, amplitude[] = {33.4207934559, 14.0783148086},
+                        lag[] = {3.76871464835, 1.37150745207};
     for (int k = 0; k < 2; k++) {
-        Run r;
+        Run    r;
         double amplitude_k, lag_h;
         begin(&r, road, 2, 0.002, 1.035, base_k);
         const Load load = {.wave_w_m2 = 300, .film_w_m2k = film[k], .out_k = base_k};
@@ -134,10 +135,11 @@ static void steps_on_soil(void **state)
 static void slab(void **state)
 {
     (void)state;
-    static const double bi[] = {1, 10}, centre[] = {0.77252638342, 0.45464055561}, surface[] = {0.50452192790, 0.06432895527};
+    static const double bi[] = {1, 10}, centre[] = {0.77252638342, 0.45464055561},
+                        surface[] = {0.50452192790, 0.06432895527};
     for (int k = 0; k < 2; k++) {
         const ColumnLayer layer = {0.1, 1, 1e6};
-        Run r;
+        Run               r;
         begin(&r, &layer, 1, 0.0005, 1.06, base_k + 1);
         const double until_s = 0.5 * 0.1 * 0.1 * 1e6;
         go(&r, &(Load){.film_w_m2k = bi[k] * 1 / 0.1, .out_k = base_k}, until_s, until_s / 50);
@@ -150,7 +152,7 @@ static void radiating_steel(void **state)
 {
     (void)state;
     const ColumnLayer plate = {0.01, 1e6, 3.925e6}; /* conducts so well that it has one temperature */
-    Run r;
+    Run               r;
     begin(&r, &plate, 1, 0.005, 1, 400);
     go(&r, &(Load){.emissivity = 0.9}, 3600, step_s);
     CHECK_NEAR(r.state.temp_k[0], 323.02835379, 0.01);
@@ -165,7 +167,7 @@ static void steady_layers(void **state)
 {
     (void)state;
     const ColumnLayer wall[] = {{0.003, 45.28, 3.9e6}, {0.05, 0.03, 5e4}, {0.002, 200, 2.4e6}};
-    Run r;
+    Run               r;
     begin(&r, wall, 3, 0.001, 1.3, 300);
     const Now now = {{.film_w_m2k = 25, .out_k = 310}, 0, 1e4};
     r.column.conductance_w_m2k[r.column.nodes - 1] = 8;
@@ -181,8 +183,14 @@ static void energy_is_kept(void **state)
     Run r;
     begin(&r, soil, 1, 0.002, 1.2, 290);
     const double before = column_heat_j_m2(&r.state, &r.column);
-    const Load load = {.steady_w_m2 = 200, .wave_w_m2 = 400, .film_w_m2k = 12, .out_k = 288, .out_wave_k = 5, .emissivity = 0.95, .sky_k = 260};
-    double turned = 0, last = before;
+    const Load   load = {.steady_w_m2 = 200,
+                         .wave_w_m2 = 400,
+                         .film_w_m2k = 12,
+                         .out_k = 288,
+                         .out_wave_k = 5,
+                         .emissivity = 0.95,
+                         .sky_k = 260};
+    double       turned = 0, last = before;
     for (int k = 0; k < 144; k++) {
         go(&r, &load, (k + 1) * 600.0, 600);
         const double now = column_heat_j_m2(&r.state, &r.column);
@@ -214,9 +222,10 @@ static void extremes(void **state)
                 for (int d = 0; d < 4; d++)
                     for (int k = 0; k < 3; k++) {
                         const ColumnLayer layer = {thick_m[t], conducts[k], 2e6};
-                        Run r;
+                        Run               r;
                         begin(&r, &layer, 1, thick_m[t] / 4, 1.2, temps_k[a]);
-                        const Load load = {.film_w_m2k = 5, .out_k = temps_k[b], .emissivity = 0.9, .sky_k = temps_k[b]};
+                        const Load load = {
+                            .film_w_m2k = 5, .out_k = temps_k[b], .emissivity = 0.9, .sky_k = temps_k[b]};
                         const double low_k = fmin(temps_k[a], temps_k[b]), high_k = fmax(temps_k[a], temps_k[b]);
                         for (int s = 0; s < 20; s++) {
                             go(&r, &load, r.t_s + dt_s[d], dt_s[d]);
@@ -231,7 +240,7 @@ static void extremes(void **state)
 static void wrong_layers_are_refused(void **state)
 {
     (void)state;
-    Column c;
+    Column            c;
     const ColumnLayer good = {1, 1, 1e6}, bad[] = {{0, 1, 1e6}, {1, -1, 1e6}, {1, 1, NAN}, {INFINITY, 1, 1}};
     CHECK(column_create(&c, &good, 0, 0.1, 1) == STATUS_BAD_VALUE);
     CHECK(column_create(&c, &good, 1, 0, 1) == STATUS_BAD_VALUE);
@@ -242,10 +251,17 @@ static void wrong_layers_are_refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(wave_of_the_surface), cmocka_unit_test(wave_of_the_flux), cmocka_unit_test(asphalt_over_soil),
-        cmocka_unit_test(steps_on_soil), cmocka_unit_test(slab), cmocka_unit_test(radiating_steel),
-        cmocka_unit_test(steady_layers), cmocka_unit_test(energy_is_kept), cmocka_unit_test(an_isothermal_enclosure_stays),
-        cmocka_unit_test(extremes), cmocka_unit_test(wrong_layers_are_refused),
+        cmocka_unit_test(wave_of_the_surface),
+        cmocka_unit_test(wave_of_the_flux),
+        cmocka_unit_test(asphalt_over_soil),
+        cmocka_unit_test(steps_on_soil),
+        cmocka_unit_test(slab),
+        cmocka_unit_test(radiating_steel),
+        cmocka_unit_test(steady_layers),
+        cmocka_unit_test(energy_is_kept),
+        cmocka_unit_test(an_isothermal_enclosure_stays),
+        cmocka_unit_test(extremes),
+        cmocka_unit_test(wrong_layers_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,8 +1,8 @@
-/* Whole outlines of targets that others hide, against rectangles on paper. One sample a pixel finds each of the four sides
- * of a rectangle along the pixels within half a pixel, evenly: 1 / 12 px^2 a side, so an area of w x h px within
- * sqrt((w^2 + h^2) / 6) px, rms. Where more than 40 boxes share a tile that is the error of what is hidden; where fewer do,
- * that of edges, an eighth or less. What is shown has that of edges in both, and no bit depends on skips or threads.
- * labels: slow */
+/* Whole outlines of targets that others hide, against rectangles on paper. One sample a pixel finds each of the four
+ * sides of a rectangle along the pixels within half a pixel, evenly: 1 / 12 px^2 a side, so an area of w x h px within
+ * sqrt((w^2 + h^2) / 6) px, rms. Where more than 40 boxes share a tile that is the error of what is hidden; where fewer
+ * do, that of edges, an eighth or less. What is shown has that of edges in both, and no bit depends on skips or
+ * threads. labels: slow */
 #include "tests/render/hand_world.h"
 
 static const double eye_enu[3] = {0, 0, 3000}, sun_enu[3] = {-0.6, 0, 0.8};
@@ -73,12 +73,15 @@ static void outlines_are_as_good_as_said(void **state)
     const View view = hand_view(eye_enu, (const double[3]){1, 0, 0}, side_px, side_px, focal_px);
     Stand      s;
     for (int crowd = 0; crowd < 2; crowd++) {
-        const int     plates = crowd ? most : 40;
+        const int plates = crowd ? most : 40;
         stand(&s, plates);
         const Picture p = render_stand(&view, 0, hand.pool);
         const double  error = hidden_error(&p, &s, plates);
-        print_message("%d plates: hidden outlines off by %.2f of one sample a pixel's %.1f px, rms\n", plates, error, s.expected_px);
-        if (crowd) CHECK(error > 0.7 && error < 1.3); /* of 89: a standard error of 0.08, and the widths' fractions are not all of 0 .. 1 */
+        print_message("%d plates: hidden outlines off by %.2f of one sample a pixel's %.1f px, rms\n", plates, error,
+                      s.expected_px);
+        if (crowd)
+            CHECK(error > 0.7 &&
+                  error < 1.3); /* of 89: a standard error of 0.08, and the widths' fractions are not all of 0 .. 1 */
         else CHECK(error < 0.125);
         CHECK_NEAR(p.target[0].visible, p.target[0].amodal, 1e-9);
         CHECK_NEAR(p.target[0].amodal / s.area_px[0], 1, 0.005); /* 1 / 16 px of 44, both ways */
@@ -88,10 +91,10 @@ static void outlines_are_as_good_as_said(void **state)
 static void no_skip_and_no_thread_changes_them(void **state)
 {
     (void)state;
-    const View view = hand_view(eye_enu, (const double[3]){1, 0, 0}, side_px, side_px, focal_px);
+    const View          view = hand_view(eye_enu, (const double[3]){1, 0, 0}, side_px, side_px, focal_px);
     static TargetPixels before[most];
-    Stand      s;
-    Pool      *one;
+    Stand               s;
+    Pool               *one;
     assert_int_equal(pool_create(&one, 1), STATUS_OK);
     stand(&s, most);
     for (int k = 0; k < 3; k++) {
@@ -99,7 +102,8 @@ static void no_skip_and_no_thread_changes_them(void **state)
         for (int i = 0; i < most; i++) {
             if (k == 0) before[i] = p.target[i];
             CHECK(p.target[i].amodal == before[i].amodal && p.target[i].visible == before[i].visible);
-            CHECK(p.target[i].occluded_entity == before[i].occluded_entity && p.target[i].occluder == before[i].occluder);
+            CHECK(p.target[i].occluded_entity == before[i].occluded_entity &&
+                  p.target[i].occluder == before[i].occluder);
             assert_memory_equal(p.target[i].amodal_box, before[i].amodal_box, sizeof before[i].amodal_box);
             assert_memory_equal(p.target[i].radiance, before[i].radiance, sizeof before[i].radiance);
         }

@@ -71,14 +71,20 @@ static const char *seen(double *range_m, uint8_t kind, int damage)
     model_pose(node, model, NULL);
     memcpy(entity.p_ecef, world.frame.origin_ecef, sizeof entity.p_ecef);
     for (int i = 0; i < 3; i++) { /* forward east, right south, down */
-        entity.r_ecef_from_body[3 * i]     = world.frame.r_ecef_from_enu[3 * i];
+        entity.r_ecef_from_body[3 * i] = world.frame.r_ecef_from_enu[3 * i];
         entity.r_ecef_from_body[3 * i + 1] = -world.frame.r_ecef_from_enu[3 * i + 1];
         entity.r_ecef_from_body[3 * i + 2] = -world.frame.r_ecef_from_enu[3 * i + 2];
     }
     const Snapshot      snapshot = {.count = 1, .node_count = model->node_count, .entity = &entity, .node = node};
-    const RenderRequest request  = {.view = {.p_enu = {12, 0, 1}, .width = 9, .height = 9, .focal_px = 90,
-                                             .r_enu_from_cam = {0, 0, -1, 1, 0, 0, 0, -1, 0}}, /* looking west */
-                                    .bands = 1 << BAND_LWIR, .truth = true, .samples = 1, .hidden_entity = -1};
+    const RenderRequest request = {.view = {.p_enu = {12, 0, 1},
+                                            .width = 9,
+                                            .height = 9,
+                                            .focal_px = 90,
+                                            .r_enu_from_cam = {0, 0, -1, 1, 0, 0, 0, -1, 0}}, /* looking west */
+                                   .bands = 1 << BAND_LWIR,
+                                   .truth = true,
+                                   .samples = 1,
+                                   .hidden_entity = -1};
     air_even(&air, (const double[3]){0, 0, 1}, 0, dark, 0, world.planck_mwir, world.planck_lwir);
     arena_reset(arena);
     CHECK(render(&picture, &world, &snapshot, &request, &air, pool, arena) == STATUS_OK);
@@ -112,7 +118,8 @@ static void others_are_burnt(void **state)
     assert_string_equal(seen(&same_m, 2, 3), whole);
     CHECK(range_m == same_m && strcmp(whole, "burnt") != 0);
     for (int m = 0; m < catalog_model_count(catalog); m++)
-        for (int p = 0; strcmp(catalog_model(catalog, m)->name, "tank") == 0 && p < catalog_model(catalog, m)->part_count; p++) {
+        for (int p = 0;
+             strcmp(catalog_model(catalog, m)->name, "tank") == 0 && p < catalog_model(catalog, m)->part_count; p++) {
             CHECK(material_of_part(&world.materials, m, p, 3) == materials_find(&world.materials, "burnt"));
             CHECK(material_of_part(&world.materials, m, p, 2) == world.materials.part[m][p]);
         }

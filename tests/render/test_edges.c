@@ -26,15 +26,18 @@ static void test_integral(void **state)
     (void)state;
     const double k = 2 * pi * 94e9 / c_mps;
     const double range_m[] = {30, 300, 10000, INFINITY};
-    double worst = 0, far = 0;
+    double       worst = 0, far = 0;
     for (uint32_t i = 0; i < 24; i++) {
-        const double turn = 2 * pi * uniform(i, 0);
-        Wedge w = {.frame = {.x = {cos(turn), sin(turn), 0}, .y = {-sin(turn), cos(turn), 0}, .z = {0, 0, 1},
-                             .exterior_pi = i % 2 ? 2 : 1.5}, .p = {{0.3, 0.2, -1}, {0.3, 0.2, 1}}};
-        const double r_m = range_m[i % 4];
+        const double         turn = 2 * pi * uniform(i, 0);
+        Wedge                w = {.frame = {.x = {cos(turn), sin(turn), 0},
+                                            .y = {-sin(turn), cos(turn), 0},
+                                            .z = {0, 0, 1},
+                                            .exterior_pi = i % 2 ? 2 : 1.5},
+                                  .p = {{0.3, 0.2, -1}, {0.3, 0.2, 1}}};
+        const double         r_m = range_m[i % 4];
         const ScatterAntenna t = antenna(88 + 4 * uniform(i, 1), 360 * uniform(i, 2), r_m);
         const ScatterAntenna r = i % 3 ? t : antenna(91, 360 * uniform(i, 3), r_m * 1.5);
-        const EdgeConfig config = {.k_per_m = k, .sample_m = 0.05, .clear_m = 1e-4};
+        const EdgeConfig     config = {.k_per_m = k, .sample_m = 0.05, .clear_m = 1e-4};
         if (edge_angle(&w.frame, t.u) > w.frame.exterior_pi * pi - 0.1 ||
             edge_angle(&w.frame, r.u) > w.frame.exterior_pi * pi - 0.1 || edge_angle(&w.frame, r.u) < 0.1)
             continue;
@@ -42,16 +45,16 @@ static void test_integral(void **state)
         edge_field(&got, &w, 1, &t, &r, &config);
 
         double complex want[4] = {0};
-        double basis[2][2][3], most = 0;
+        double         basis[2][2][3], most = 0;
         scatter_basis(basis[0][0], basis[0][1], t.u);
         scatter_basis(basis[1][0], basis[1][1], r.u);
         enum { points = 50000 };
         for (int n = 0; n < points; n++) {
             const double p[3] = {0.3, 0.2, -1 + 2 * (n + 0.5) / points};
-            double u[2][3], across[2][2][3], d[2][2], path_m = 0, spread = 1;
+            double       u[2][3], across[2][2][3], d[2][2], path_m = 0, spread = 1;
             for (int a = 0; a < 2; a++) {
                 const ScatterAntenna *at = a ? &r : &t;
-                const double more_m = scatter_path(u[a], at, p);
+                const double          more_m = scatter_path(u[a], at, p);
                 path_m += more_m;
                 if (!isinf(at->range_m)) spread *= at->range_m / (at->range_m + more_m);
                 for (int q = 0; q < 2; q++) {
@@ -81,11 +84,11 @@ static void test_segments(void **state)
     (void)state;
     begin();
     add_box((const double[3]){-0.5, -1, 0}, (const double[3]){1, 2, 0.7}, 2, 0);
-    WedgeList list = find();
-    const double k = 2 * pi * 35e9 / c_mps;
+    WedgeList            list = find();
+    const double         k = 2 * pi * 35e9 / c_mps;
     const ScatterAntenna t = antenna(70, 33, 50), r = antenna(75, 30, 80);
-    EdgeConfig config = {.k_per_m = k, .sample_m = 0.05, .clear_m = 1e-4};
-    EdgeSegments segments = {0}, again = {0};
+    EdgeConfig           config = {.k_per_m = k, .sample_m = 0.05, .clear_m = 1e-4};
+    EdgeSegments         segments = {0}, again = {0};
     CHECK(edge_segments(&segments, list.wedge, list.count, &t, &r, &config) == STATUS_OK);
     CHECK(edge_segments(&again, list.wedge, list.count, &t, &r, &config) == STATUS_OK);
     CHECK(segments.count == again.count && segments.count > 50);
@@ -120,14 +123,14 @@ static void test_hidden(void **state)
 {
     (void)state;
     const double k = 2 * pi * 10e9 / c_mps;
-    const Wedge whole = {.frame = {.x = {1, 0, 0}, .y = {0, 1, 0}, .z = {0, 0, 1}, .exterior_pi = 1.5},
-                         .p = {{0, 0, -1}, {0, 0, 1}}};
-    Wedge half = whole;
+    const Wedge  whole = {.frame = {.x = {1, 0, 0}, .y = {0, 1, 0}, .z = {0, 0, 1}, .exterior_pi = 1.5},
+                          .p = {{0, 0, -1}, {0, 0, 1}}};
+    Wedge        half = whole;
     half.p[0][2] = 0;
     const ScatterAntenna t = antenna(80, 130, INFINITY), inside = antenna(80, -45, INFINITY);
-    Screen screen = {0};
-    const EdgeConfig open = {.k_per_m = k, .sample_m = 0.01, .clear_m = 1e-4};
-    EdgeConfig hides = open;
+    Screen               screen = {0};
+    const EdgeConfig     open = {.k_per_m = k, .sample_m = 0.01, .clear_m = 1e-4};
+    EdgeConfig           hides = open;
     hides.visible = above;
     hides.user = &screen;
     ScatterMatrix got = {0}, want = {0};
@@ -150,13 +153,13 @@ static void test_place(void **state)
     (void)state;
     begin();
     add_panel((const double[3]){0}, (const double[3]){0, 1, 0}, (const double[3]){0, 0, 2}, 1, 0);
-    WedgeList list = find();
-    Wedge placed[4];
+    WedgeList      list = find();
+    Wedge          placed[4];
     const NodePose pose = {.p_body = {1, 2, 3}, .r_body_from_node = {0, -1, 0, 1, 0, 0, 0, 0, 1}}; /* x to y */
     wedges_place(placed, &list, &pose, (const double[3]){1, 2, 3});
-    const EdgeConfig config = {.k_per_m = 100, .sample_m = 0.05, .clear_m = 1e-4};
+    const EdgeConfig     config = {.k_per_m = 100, .sample_m = 0.05, .clear_m = 1e-4};
     const ScatterAntenna before = antenna(60, 20, 100), after = antenna(60, 110, 100);
-    ScatterMatrix a = {0}, b = {0};
+    ScatterMatrix        a = {0}, b = {0};
     edge_field(&a, list.wedge, list.count, &before, &before, &config);
     edge_field(&b, placed, list.count, &after, &after, &config);
     for (int e = 0; e < 4; e++) CHECK_NEAR(cabs(entries(&a)[e] - entries(&b)[e]), 0, 1e-12);
@@ -172,10 +175,10 @@ static void add_rectangle(ScatterMatrix *s, const double centre[3], const double
                           const double n[3], const double u[3], double k)
 {
     if (v3_dot(n, u) <= 0) return;
-    const double area = 4 * v3_length(a) * v3_length(b);
-    const double pattern = area * sinc(2 * k * v3_dot(u, a)) * sinc(2 * k * v3_dot(u, b));
+    const double         area = 4 * v3_length(a) * v3_length(b);
+    const double         pattern = area * sinc(2 * k * v3_dot(u, a)) * sinc(2 * k * v3_dot(u, b));
     const double complex wave = -I * k / (2 * pi) * pattern * cexp(2 * I * k * v3_dot(u, centre));
-    double e[2][3], d[3];
+    double               e[2][3], d[3];
     scatter_basis(e[0], e[1], u);
     v3_scale(d, -1, u);
     double complex *out = &s->hh;
@@ -208,7 +211,7 @@ typedef struct Medians {
 static double complex strip_orders(double k, double phi_rad, double width, double height, bool all)
 {
     /* cosines of half the angles from the faces; the far edge's is 0 along the plate, where this does not hold */
-    const double near = sqrt((1 + sin(phi_rad)) / 2), far = sqrt(fmax(1 - sin(phi_rad), 1e-12) / 2);
+    const double         near = sqrt((1 + sin(phi_rad)) / 2), far = sqrt(fmax(1 - sin(phi_rad), 1e-12) / 2);
     const double complex cross = csqrt(2 * pi / k) * cexp(-I * (pi / 4 + k * width)) / sqrt(width);
     const double complex again = -cross / (2 * pi), turn = cexp(I * k * width * sin(phi_rad));
     const double complex even = 2 / (near * far), odd = again * (turn / (far * far) + 1 / (turn * near * near));
@@ -239,7 +242,7 @@ static void test_transition(void **state)
         const double x = pow(10, -4 + i * 0.1), root = sqrt(x);
         enum { steps = 200000 };
         const double complex turn = cexp(-0.25 * I * pi);
-        double complex sum = 0;
+        double complex       sum = 0;
         const double h = 12.0 / steps; /* t = root + turn y: exp(-j t^2) = exp(-j x) exp(-2 j root turn y - y^2) */
         for (int n = 0; n < steps; n++) {
             const double y = (n + 0.5) * h;
@@ -309,18 +312,18 @@ static bool compare(Medians out[windows], const char *name, const double size[3]
     CHECK(list.count == (thin < 0 ? 12 : 4));
 
     static double phi_deg[angles_most], error[2][2][angles_most];
-    int  count = 0;
-    char line[256];
-    FILE *file = fopen(path, "r");
+    int           count = 0;
+    char          line[256];
+    FILE         *file = fopen(path, "r");
     CHECK(file && fgets(line, sizeof line, file));
     double f_hz, theta, phi, hh, vv;
     while (count < angles_most && fscanf(file, "%lf,%lf,%lf,%lf,%lf", &f_hz, &theta, &phi, &hh, &vv) == 5) {
-        const double k = 2 * pi * f_hz / c_mps;
+        const double         k = 2 * pi * f_hz / c_mps;
         const ScatterAntenna at = antenna(theta, phi, INFINITY);
-        ScatterMatrix s[2] = {0};
+        ScatterMatrix        s[2] = {0};
         for (int axis = 0; axis < 3; axis++)
             for (int side = -1; side <= 1; side += 2) {
-                double centre[3] = {0}, n[3] = {0}, a[3] = {0}, b[3] = {0};
+                double    centre[3] = {0}, n[3] = {0}, a[3] = {0}, b[3] = {0};
                 const int u = (axis + 1) % 3, v = (axis + 2) % 3;
                 centre[axis] = side * size[axis] / 2, n[axis] = side, a[u] = size[u] / 2, b[v] = size[v] / 2;
                 add_rectangle(&s[0], centre, a, b, n, at.u, k);
@@ -345,7 +348,7 @@ static bool compare(Medians out[windows], const char *name, const double size[3]
         for (int edges = 0; edges < 2; edges++)
             for (int which = 0; which < 3; which++) {
                 static double of[2 * angles_most];
-                int n = 0;
+                int           n = 0;
                 for (int i = 0; i < count; i++) {
                     if (phi_deg[i] < window_deg[w][0] || phi_deg[i] > window_deg[w][1]) continue;
                     for (int q = 0; q < 2; q++)
@@ -369,7 +372,7 @@ static void test_austin_thin(void **state)
 {
     (void)state;
     const double size[3] = {0, 10.5 * inch_m, 6 * inch_m};
-    Medians m[windows];
+    Medians      m[windows];
     if (!compare(m, "radar/austin/IIA_plate_W6in_zy_f11_ref.csv", size, 0)) skip();
     CHECK(m[0].without[2] > 5 && m[0].with[2] < 1.0 && m[0].with[0] < 2.0 && m[0].with[1] < 0.6);
     CHECK(m[3].with[1] < 0.6 && m[4].with[1] < 1.3 && m[5].with[1] < 1.8);
@@ -383,7 +386,7 @@ static void test_austin_second_order(void **state)
 {
     (void)state;
     const double size[3] = {0, 10.5 * inch_m, 6 * inch_m};
-    Medians m[windows];
+    Medians      m[windows];
     if (!compare(m, "radar/austin/IIA_plate_W6in_zy_f11_ref.csv", size, 1)) skip();
     for (int w = 1; w < 5; w++) CHECK(m[w].with[0] < 0.8);
     if (!compare(m, "radar/austin/IIA_plate_W6in_zy_f10_ref.csv", size, 1)) skip();
@@ -396,7 +399,7 @@ static void test_austin_pairs(void **state)
 {
     (void)state;
     const double thin[3] = {0, 10.5 * inch_m, 6 * inch_m}, thick[3] = {0.064 * inch_m, 10.5 * inch_m, 6 * inch_m};
-    Medians m[windows];
+    Medians      m[windows];
     if (!compare(m, "radar/austin/IIA_plate_W6in_zy_f11_ref.csv", thin, 2)) skip();
     CHECK(m[0].with[0] < 0.7 && m[0].with[1] < 0.55);
     for (int w = 1; w < 4; w++) CHECK(m[w].with[0] < 0.65 && m[w].with[1] < 0.55);
@@ -417,7 +420,7 @@ static void test_austin_thick(void **state)
 {
     (void)state;
     const double size[3] = {0.064 * inch_m, 10.5 * inch_m, 6 * inch_m};
-    Medians m[windows];
+    Medians      m[windows];
     if (!compare(m, "radar/austin/IIB_thinPECplate_W6in_f11_ref.csv", size, 0)) skip();
     CHECK(m[0].without[2] > 4 && m[0].with[2] < 0.9 && m[0].with[1] < 0.5);
     if (!compare(m, "radar/austin/IIB_thinPECplate_W6in_f10_ref.csv", size, 0)) skip();
@@ -429,7 +432,7 @@ static void test_austin_thick(void **state)
 static void test_austin_grazing(void **state)
 {
     (void)state;
-    Medians m[windows];
+    Medians      m[windows];
     const double size[3] = {128 * inch_m, 224 * inch_m, 0};
     if (!compare(m, "radar/austin/IIA_plate_W128in_xy_theta80_f6_ref.csv", size, 0)) skip();
     CHECK(m[5].with[2] < 4.5 && m[5].without[2] > 20 && m[0].with[2] < 0.6 * m[0].without[2]);
@@ -438,12 +441,12 @@ static void test_austin_grazing(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_integral),     cmocka_unit_test(test_segments),
-        cmocka_unit_test(test_hidden),       cmocka_unit_test(test_place),
-        cmocka_unit_test(test_austin_thin),  cmocka_unit_test(test_austin_second_order),
-        cmocka_unit_test(test_austin_pairs),
-        cmocka_unit_test(test_austin_thick), cmocka_unit_test(test_austin_grazing),
-        cmocka_unit_test(test_transition), cmocka_unit_test(test_pairs),
+        cmocka_unit_test(test_integral),       cmocka_unit_test(test_segments),
+        cmocka_unit_test(test_hidden),         cmocka_unit_test(test_place),
+        cmocka_unit_test(test_austin_thin),    cmocka_unit_test(test_austin_second_order),
+        cmocka_unit_test(test_austin_pairs),   cmocka_unit_test(test_austin_thick),
+        cmocka_unit_test(test_austin_grazing), cmocka_unit_test(test_transition),
+        cmocka_unit_test(test_pairs),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

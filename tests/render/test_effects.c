@@ -77,8 +77,8 @@ static EffectPuff puff_at(EffectKind kind, double north_m, double age_s, double 
 /* Towards north from the origin. */
 static View view_north(int side_px)
 {
-    return (View){.width = side_px, .height = side_px, .focal_px = 20 * side_px,
-                  .r_enu_from_cam = {1, 0, 0, 0, 0, 1, 0, -1, 0}};
+    return (View){
+        .width = side_px, .height = side_px, .focal_px = 20 * side_px, .r_enu_from_cam = {1, 0, 0, 0, 0, 1, 0, -1, 0}};
 }
 
 /* Air temperature where wind and rise have put it: 6.5 K/km from 288.15 K on the round Earth. */
@@ -96,17 +96,18 @@ static const unsigned all_bands = (1u << effect_band_count) - 1;
 static void boresight(double transmittance[effect_band_count], double added[effect_band_count], EffectPuff *puff,
                       const Air *air)
 {
-    static Rays     rays;
+    static Rays      rays;
     static SmokeRays out;
-    Snapshot        snapshot = {.puff_count = 1, .puff = puff, .effect_table = &effects};
-    const View      view = view_north(64);
-    EffectScene     scene;
-    const int       first = 0;
-    const double    far_m = INFINITY;
+    Snapshot         snapshot = {.puff_count = 1, .puff = puff, .effect_table = &effects};
+    const View       view = view_north(64);
+    EffectScene      scene;
+    const int        first = 0;
+    const double     far_m = INFINITY;
 
     arena_reset(arena);
     const float ground_rho[optical_channel_count] = {0};
-    CHECK(smoke_effects_scene(&scene, &snapshot, -1, &world.frame, &view, air, ground_rho, all_bands, arena) == STATUS_OK);
+    CHECK(smoke_effects_scene(&scene, &snapshot, -1, &world.frame, &view, air, ground_rho, all_bands, arena) ==
+          STATUS_OK);
     CHECK(scene.count == 1);
     scene.volume[0].billow = 0;
     rays.count = 1;
@@ -127,14 +128,14 @@ static void boresight(double transmittance[effect_band_count], double added[effe
 static void gas_shines_by_its_bands(void **state)
 {
     (void)state;
-    static AirPaths  veils;
-    const Air        air = air_when(-30);
-    EffectPuff       puff = puff_at(EFFECT_JET_EXHAUST, 500, 0, 0.3);
-    double           tau[effect_band_count], added[effect_band_count];
-    EffectVolume     v;
+    static AirPaths veils;
+    const Air       air = air_when(-30);
+    EffectPuff      puff = puff_at(EFFECT_JET_EXHAUST, 500, 0, 0.3);
+    double          tau[effect_band_count], added[effect_band_count];
+    EffectVolume    v;
     boresight(tau, added, &puff, &air);
     CHECK(effect_volume(&v, &effects, &puff, &air.light.weather, &world.frame));
-    const double k = air_k_at(&puff, &air) + v.temp_k - 288.15, column_m = 16.0 / 15 * v.across_m;
+    const double       k = air_k_at(&puff, &air) + v.temp_k - 288.15, column_m = 16.0 / 15 * v.across_m;
     const HotGasColumn column = {smoke_gas_atm_m(v.co2_kg_m3 * column_m, hot_gas_co2_molar_kg, k),
                                  smoke_gas_atm_m(v.h2o_kg_m3 * column_m, hot_gas_h2o_molar_kg, k)};
     const double want[2] = {smoke_gas_emissivity(HOT_GAS_MWIR, column, k) * smoke_gas_passed(column.co2_atm_m, k, 500),
@@ -158,10 +159,10 @@ static void flash_follows_its_closed_form(void **state)
 {
     (void)state;
     static const double low_m[] = {0.4e-6, 0.5e-6, 0.6e-6, 0.4e-6}, high_m[] = {0.5e-6, 0.6e-6, 0.7e-6, 0.7e-6};
-    const Air        air = air_when(-30);
-    const EffectModel *law = &effects.law[EFFECT_MUZZLE_FLASH];
-    const double     kg = law->mass_kg * 8, scale = 2, range_m = 700;
-    double           first_colour = 0;
+    const Air           air = air_when(-30);
+    const EffectModel  *law = &effects.law[EFFECT_MUZZLE_FLASH];
+    const double        kg = law->mass_kg * 8, scale = 2, range_m = 700;
+    double              first_colour = 0;
     for (double age_s = 0; age_s < 0.119; age_s += 0.017) {
         EffectPuff puff = puff_at(EFFECT_MUZZLE_FLASH, range_m, age_s, kg);
         double     tau[effect_band_count], added[effect_band_count];
@@ -178,8 +179,9 @@ static void flash_follows_its_closed_form(void **state)
             static AirPaths path;
             path_north(&path, &air, b, range_m, (float)temp_k);
             const double night = air.light.sky_w_m2[b] / pi_rad; /* starlight from above: of no account */
-            const double want = (1 - exp(-depth)) * (path.added_w_m2_sr[0] + path.transmittance[0] * 0.95 *
-                                                     planck_band(low_m[b], high_m[b], temp_k, NULL));
+            const double want =
+                (1 - exp(-depth)) *
+                (path.added_w_m2_sr[0] + path.transmittance[0] * 0.95 * planck_band(low_m[b], high_m[b], temp_k, NULL));
             CHECK_NEAR(added[b], want, 1e-5 * want + night);
         }
         const double colour = added[effect_band_b] / added[effect_band_r];
@@ -196,7 +198,8 @@ static void thick_smoke_reads_its_temperature(void **state)
     for (double range_m = 200; range_m <= 5000; range_m *= 5) {
         EffectPuff   puff = puff_at(EFFECT_BURST_SMOKE, range_m, 0, 50);
         double       tau[effect_band_count], added[effect_band_count];
-        const double temp_k = air_k_at(&puff, &air) + effects.law[EFFECT_BURST_SMOKE].temp_rise_k, albedo = effects.law[EFFECT_BURST_SMOKE].albedo[effect_band_lwir];
+        const double temp_k = air_k_at(&puff, &air) + effects.law[EFFECT_BURST_SMOKE].temp_rise_k,
+                     albedo = effects.law[EFFECT_BURST_SMOKE].albedo[effect_band_lwir];
         /* surroundings as warm as it is: then what it scatters is the same */
         air.light.ground_w_m2_sr[AIR_LWIR] = planck_table_radiance(air.light.planck_lwir, temp_k);
         air.light.sky_w_m2[AIR_LWIR] = pi_rad * air.light.ground_w_m2_sr[AIR_LWIR];
@@ -216,13 +219,13 @@ static void thick_smoke_reads_its_temperature(void **state)
 static void near_infrared_sees_it_longer(void **state)
 {
     (void)state;
-    static AirPaths     path;
-    const Air        air = air_when(-30);
+    static AirPaths    path;
+    const Air          air = air_when(-30);
     const EffectModel *law = &effects.law[EFFECT_FLAME];
-    const double     age_s = 1, range_m = 100;
-    double           tau[effect_band_count], added[effect_band_count];
-    EffectPuff       puff = puff_at(EFFECT_FLAME, range_m, age_s, 20);
-    const double     temp_k = air_k_at(&puff, &air) + law->temp_rise_k * exp(-age_s / law->cool_s);
+    const double       age_s = 1, range_m = 100;
+    double             tau[effect_band_count], added[effect_band_count];
+    EffectPuff         puff = puff_at(EFFECT_FLAME, range_m, age_s, 20);
+    const double       temp_k = air_k_at(&puff, &air) + law->temp_rise_k * exp(-age_s / law->cool_s);
     boresight(tau, added, &puff, &air);
     path_north(&path, &air, AIR_NIR, range_m, (float)temp_k);
     const double glow = planck_band(0.7e-6, 1.1e-6, temp_k, NULL), night = air.light.sky_w_m2[AIR_NIR] / pi_rad;
@@ -230,7 +233,8 @@ static void near_infrared_sees_it_longer(void **state)
     /* the wind has moved its centre by some metres of 100 */
     CHECK_NEAR(added[effect_band_nir],
                (1 - tau[effect_band_nir]) * ((double)path.transmittance[0] * (1 - law->albedo[effect_band_nir]) * glow +
-                                             (double)path.added_w_m2_sr[0]), 1e-4 * glow + night);
+                                             (double)path.added_w_m2_sr[0]),
+               1e-4 * glow + night);
     CHECK(added[effect_band_pan] < 0.01);
 }
 
@@ -277,19 +281,28 @@ static Picture picture_of(EffectPuff *puff, int count)
     const Air             air = air_when(35);
     Picture               picture;
 
-    entity       = (SnapshotEntity){.id = {1, 1, 1}};
+    entity = (SnapshotEntity){.id = {1, 1, 1}};
     entity.model = catalog_find(catalog, entity.type, &(Origin){ORIGIN_BASE}, NULL);
     model_pose(&node, catalog_model(catalog, entity.model), NULL);
     ecef_from_enu(entity.p_ecef, &world.frame, p_enu);
     for (int i = 0; i < 3; i++) {
-        entity.r_ecef_from_body[3 * i]     = world.frame.r_ecef_from_enu[3 * i + 1];
+        entity.r_ecef_from_body[3 * i] = world.frame.r_ecef_from_enu[3 * i + 1];
         entity.r_ecef_from_body[3 * i + 1] = world.frame.r_ecef_from_enu[3 * i];
         entity.r_ecef_from_body[3 * i + 2] = -world.frame.r_ecef_from_enu[3 * i + 2];
     }
-    const Snapshot snapshot = {.count = 1, .node_count = 1, .entity = &entity, .node = &node, .puff_count = count,
-                               .puff = puff, .effect_table = count ? &effects : NULL};
-    const RenderRequest request = {.view = view_north(side), .samples = 1, .hidden_entity = -1, .truth = true,
-                                   .optical = OPTICAL_RGB, .bands = 1 << BAND_OPTICAL | 1 << BAND_MWIR | 1 << BAND_LWIR};
+    const Snapshot      snapshot = {.count = 1,
+                                    .node_count = 1,
+                                    .entity = &entity,
+                                    .node = &node,
+                                    .puff_count = count,
+                                    .puff = puff,
+                                    .effect_table = count ? &effects : NULL};
+    const RenderRequest request = {.view = view_north(side),
+                                   .samples = 1,
+                                   .hidden_entity = -1,
+                                   .truth = true,
+                                   .optical = OPTICAL_RGB,
+                                   .bands = 1 << BAND_OPTICAL | 1 << BAND_MWIR | 1 << BAND_LWIR};
     arena_reset(arena);
     assert_int_equal(render(&picture, &world, &snapshot, &request, &air, pool, arena), STATUS_OK);
     return picture;
@@ -300,7 +313,7 @@ static void without_smoke_no_bit_changes(void **state)
     (void)state;
     static float    lwir[side * side], red[side * side];
     static uint32_t id[side * side];
-    Picture picture = picture_of(NULL, 0);
+    Picture         picture = picture_of(NULL, 0);
     memcpy(lwir, picture.lwir, sizeof lwir);
     memcpy(red, picture.optical[0], sizeof red);
     memcpy(id, picture.entity, sizeof id);
@@ -343,14 +356,14 @@ static void a_host_does_not_see_its_own(void **state)
     const View     view = view_north(64);
     const Air      air = air_when(40);
     static const float ground_rho[optical_channel_count] = {0.1f, 0.1f, 0.1f, 0.1f, 0.1f};
-    const int      seen_by[3] = {-1, 0, 1};
+    const int          seen_by[3] = {-1, 0, 1};
     /* the key is the entity's own: 16 bits each of site, application and number, and one */
-    for (puff.owner = 0; ; puff.owner = (UINT64_C(1) << 32 | UINT64_C(3001) << 16 | 41) + 1) {
+    for (puff.owner = 0;; puff.owner = (UINT64_C(1) << 32 | UINT64_C(3001) << 16 | 41) + 1) {
         for (int k = 0; k < 3; k++) {
             EffectScene scene;
             arena_reset(arena);
-            CHECK(smoke_effects_scene(&scene, &snapshot, seen_by[k], &world.frame, &view, &air, ground_rho, all_bands, arena) ==
-                  STATUS_OK);
+            CHECK(smoke_effects_scene(&scene, &snapshot, seen_by[k], &world.frame, &view, &air, ground_rho, all_bands,
+                                      arena) == STATUS_OK);
             CHECK(scene.count == (puff.owner && seen_by[k] == 0 ? 0 : 1));
         }
         if (puff.owner) break;

@@ -18,10 +18,12 @@ static void the_law_is_that_of_half_planes(void **state)
     for (int n = 2; n <= 16; n += n) {
         double truth = 0, law = 0;
         for (int k = 0; k < 4000; k++) {
-            const double turn = 2 * pi_rad * random_uniform(1, 1, (uint32_t)n, (uint64_t)(2 * k)), nx = cos(turn), ny = sin(turn);
-            const double half = 0.5 * (fabs(nx) + fabs(ny)), d = half * (2 * random_uniform(1, 1, (uint32_t)n, (uint64_t)(2 * k + 1)) - 1);
-            float        in[256];
-            int          count = 0;
+            const double turn = 2 * pi_rad * random_uniform(1, 1, (uint32_t)n, (uint64_t)(2 * k)), nx = cos(turn),
+                         ny = sin(turn);
+            const double half = 0.5 * (fabs(nx) + fabs(ny)),
+                         d = half * (2 * random_uniform(1, 1, (uint32_t)n, (uint64_t)(2 * k + 1)) - 1);
+            float in[256];
+            int   count = 0;
             for (int s = 0; s < n * n; s++) {
                 /* the grid turned by atan(1 / n) */
                 const double x = (s % n + (s / n + 0.5) / n) / n, y = (s / n + (n - s % n - 0.5) / n) / n;

@@ -1,5 +1,5 @@
-/* Woods whose plants were left out, beside the same woods planted and traced: means over a wide box, at every height of eye
- * and sun. labels: physics slow */
+/* Woods whose plants were left out, beside the same woods planted and traced: means over a wide box, at every height of
+ * eye and sun. labels: physics slow */
 #include "tests/check.h"
 
 #include "render/frame/world.h"
@@ -10,36 +10,43 @@
 
 enum { posts = 129, cells = 64, rays = 3000, shown_bands = AIR_BAND_COUNT };
 
-static const double half_ground_m = 1024, half_woods_m = 900, half_box_m = 600;
+static const double   half_ground_m = 1024, half_woods_m = 900, half_box_m = 600;
 static const Geodetic origin = {50 * rad_per_deg, 8 * rad_per_deg, 0};
 
 typedef struct Place {
-    Landscape landscape;
-    Catalog  *catalog;
-    Woods     woods, bare;
-    World     planted, left_out;
+    Landscape    landscape;
+    Catalog     *catalog;
+    Woods        woods, bare;
+    World        planted, left_out;
     SurfaceClass surface;
-    FarWoods  far;               /* of the bare woods */
-    Pool     *pool;
-    Arena    *arena, *frame_arena;
+    FarWoods     far; /* of the bare woods */
+    Pool        *pool;
+    Arena       *arena, *frame_arena;
 } Place;
 static Place place;
 
 /* Level ground of one class of forest. */
 static bool write_ground(const char *path, SurfaceClass surface)
 {
-    static float    z[posts * posts];
-    static uint8_t  classes[cells * cells];
-    const double    posting_m = 2 * half_ground_m / (posts - 1), cell_m = 2 * half_ground_m / cells;
-    StorePlan       plan = {.origin = origin, .level_count = 1, .posting_m = posting_m, .seed = 3, .options = "", .crs = "",
-                            .vertical_datum = "", .provenance = "made by a test"};
-    StoreWriter    *writer;
-    StoreReport     report;
-    plan.level[0]   = (StoreLevel){posts, posts, -half_ground_m, -half_ground_m, posting_m, 0, 0, -1};
+    static float   z[posts * posts];
+    static uint8_t classes[cells * cells];
+    const double   posting_m = 2 * half_ground_m / (posts - 1), cell_m = 2 * half_ground_m / cells;
+    StorePlan      plan = {.origin = origin,
+                           .level_count = 1,
+                           .posting_m = posting_m,
+                           .seed = 3,
+                           .options = "",
+                           .crs = "",
+                           .vertical_datum = "",
+                           .provenance = "made by a test"};
+    StoreWriter   *writer;
+    StoreReport    report;
+    plan.level[0] = (StoreLevel){posts, posts, -half_ground_m, -half_ground_m, posting_m, 0, 0, -1};
     plan.surface[0] = (StoreGrid){cells, cells, -half_ground_m, -half_ground_m, cell_m};
     memset(classes, (int)surface, sizeof classes);
     return store_writer_create(&writer, path, &plan, NULL) == STATUS_OK &&
-           store_write_posts(writer, 0, posts, z) == STATUS_OK && store_write_surface(writer, 0, cells, classes) == STATUS_OK &&
+           store_write_posts(writer, 0, posts, z) == STATUS_OK &&
+           store_write_surface(writer, 0, cells, classes) == STATUS_OK &&
            store_writer_finish(writer, 0, &report) == STATUS_OK;
 }
 
@@ -60,7 +67,8 @@ static Status warm(double unix_s)
     return world_warm_clear(&place.planted, &heat, 16, place.pool);
 }
 
-/* The one in which nothing stands shares all else: its ground's heat still knows the trees, which nothing of it shows. */
+/* The one in which nothing stands shares all else: its ground's heat still knows the trees, which nothing of it shows.
+ */
 static void open_place(SurfaceClass surface, bool leaves)
 {
     char   path[64], catalog[512];
@@ -74,7 +82,8 @@ static void open_place(SurfaceClass surface, bool leaves)
     assert_int_equal(catalog_open(&place.catalog, catalog, 0.05), STATUS_OK);
     assert_true((place.arena = arena_create()) && (place.frame_arena = arena_create()));
     assert_int_equal(pool_create(&place.pool, 2), STATUS_OK);
-    assert_int_equal(world_open(&place.planted, place.catalog, &place.landscape, &place.landscape.frame, "avx2"), STATUS_OK);
+    assert_int_equal(world_open(&place.planted, place.catalog, &place.landscape, &place.landscape.frame, "avx2"),
+                     STATUS_OK);
     assert_int_equal(atmosphere_open(&place.planted.atmosphere, "us1976"), STATUS_OK);
     assert_int_equal(plant(leaves), STATUS_OK);
     assert_int_equal(warm(unix_s), STATUS_OK);
@@ -111,7 +120,8 @@ static void air_then(Air *air, Sun *sun, double unix_s)
 }
 
 /* Mean radiance of the box, of rays that come down at this angle from this azimuth, from east to north. */
-static void mean_of(double out[shown_bands], const World *world, const Air *air, double down_rad, double azimuth_rad, double above_m)
+static void mean_of(double out[shown_bands], const World *world, const Air *air, double down_rad, double azimuth_rad,
+                    double above_m)
 {
     static Shader  shader;
     static double  o[3][rays], d[3][rays];
@@ -119,12 +129,16 @@ static void mean_of(double out[shown_bands], const World *world, const Air *air,
     const double   to_eye[3] = {cos(down_rad) * cos(azimuth_rad), cos(down_rad) * sin(azimuth_rad), sin(down_rad)};
     const double   from_m = above_m / sin(down_rad);
     Snapshot       nobody = {0};
-    RenderRequest  request = {.view = {.width = 8, .height = 8, .focal_px = 200, .r_enu_from_cam = {1, 0, 0, 0, -1, 0, 0, 0, -1}},
-                              .samples = 1, .hidden_entity = -1};
-    ShadedRays     shaded;
-    ShadeScene     scene;
+    RenderRequest  request = {
+         .view = {.width = 8, .height = 8, .focal_px = 200, .r_enu_from_cam = {1, 0, 0, 0, -1, 0, 0, 0, -1}},
+         .samples = 1,
+         .hidden_entity = -1};
+    ShadedRays shaded;
+    ShadeScene scene;
     for (int c = 0; c < 3; c++) request.view.p_enu[c] = 1000 * to_eye[c];
-    assert_int_equal(shade_scene_create(&scene, world, &nobody, air, &request, (1u << AIR_BAND_COUNT) - 1, NULL, place.arena), STATUS_OK);
+    assert_int_equal(
+        shade_scene_create(&scene, world, &nobody, air, &request, (1u << AIR_BAND_COUNT) - 1, NULL, place.arena),
+        STATUS_OK);
     assert_int_equal(shade_samples_create(&block, hits_capacity, place.arena), STATUS_OK);
     assert_int_equal(shaded_rays_create(&shaded, rays, place.arena), STATUS_OK);
     for (int i = 0; i < rays; i++)
@@ -132,8 +146,12 @@ static void mean_of(double out[shown_bands], const World *world, const Air *air,
             const double at_m = c < 2 ? half_box_m * (2 * random_uniform(8, (uint32_t)c, 0, (uint64_t)i) - 1) : 0;
             d[c][i] = -to_eye[c], o[c][i] = at_m + from_m * to_eye[c];
         }
-    const RayList list = {.count = rays, .o_enu = {o[0], o[1], o[2]}, .d_enu = {d[0], d[1], d[2]}, .per_rad = 200,
-                          .channels = (1u << AIR_BAND_COUNT) - 1, .temperature = true};
+    const RayList list = {.count = rays,
+                          .o_enu = {o[0], o[1], o[2]},
+                          .d_enu = {d[0], d[1], d[2]},
+                          .per_rad = 200,
+                          .channels = (1u << AIR_BAND_COUNT) - 1,
+                          .temperature = true};
     shade_list(&shaded, &list, &shader, &scene, &block);
     for (int b = 0; b < shown_bands; b++) {
         double sum = 0;
@@ -158,9 +176,9 @@ typedef struct Errors {
 static void compare(Errors *e, const World *other, const Air *air, const Sun *sun, double down_deg, double from_sun_deg)
 {
     static const double above_m = 40, hot_spot_deg = 12;
-    double       stands[shown_bands], shows[shown_bands];
-    const double azimuth_rad = atan2(sun->d_enu[1], sun->d_enu[0]) + from_sun_deg * rad_per_deg;
-    const double sun_deg = sun->elevation_rad / rad_per_deg;
+    double              stands[shown_bands], shows[shown_bands];
+    const double        azimuth_rad = atan2(sun->d_enu[1], sun->d_enu[0]) + from_sun_deg * rad_per_deg;
+    const double        sun_deg = sun->elevation_rad / rad_per_deg;
     /* of both through as much air */
     mean_of(stands, &place.planted, air, down_deg * rad_per_deg, azimuth_rad, above_m);
     mean_of(shows, other, air, down_deg * rad_per_deg, azimuth_rad,
@@ -169,7 +187,7 @@ static void compare(Errors *e, const World *other, const Air *air, const Sun *su
     int  n = snprintf(text, sizeof text, "sun %5.1f eye %2.0f from %3.0f:", sun_deg, down_deg, from_sun_deg);
     for (int c = 0; c < optical_channel_count && sun_deg > 0; c++) {
         const double off = shows[c] / stands[c] - 1;
-        double      *worst = from_sun_deg == 0 && fabs(sun_deg - down_deg) < hot_spot_deg ? &e->at_hot_spot : &e->worst[c];
+        double *worst = from_sun_deg == 0 && fabs(sun_deg - down_deg) < hot_spot_deg ? &e->at_hot_spot : &e->worst[c];
         *worst = fmax(*worst, fabs(off));
         e->square[c] += off * off;
         n += snprintf(text + n, sizeof text - (size_t)n, " %+5.1f %%", 100 * off);
@@ -187,8 +205,8 @@ static void compare(Errors *e, const World *other, const Air *air, const Sun *su
 static Errors compare_all(const World *other)
 {
     static const double hours[] = {4.5, 8, 11.5, 23}, down_deg[] = {15, 30, 60}, from_sun_deg[] = {0, 70, 120, 180};
-    Errors e = {0};
-    double midnight_s;
+    Errors              e = {0};
+    double              midnight_s;
     assert_true(text_to_unix_s(&midnight_s, "2026-06-21T00:00:00Z"));
     for (size_t h = 0; h < sizeof hours / sizeof *hours; h++) {
         static Air air;
@@ -196,7 +214,8 @@ static Errors compare_all(const World *other)
         arena_reset(place.frame_arena);
         air_then(&air, &sun, midnight_s + 3600 * hours[h]);
         for (int v = 0; v < 3; v++)
-            for (int a = 0; a < (sun.elevation_rad > 0 ? 4 : 1); a++) compare(&e, other, &air, &sun, down_deg[v], from_sun_deg[a]);
+            for (int a = 0; a < (sun.elevation_rad > 0 ? 4 : 1); a++)
+                compare(&e, other, &air, &sun, down_deg[v], from_sun_deg[a]);
     }
     for (int c = 0; c < optical_channel_count; c++)
         print_message("channel %d: rms %.3f worst %.3f\n", c, sqrt(e.square[c] / e.cases), e.worst[c]);
@@ -208,7 +227,9 @@ static Errors compare_all(const World *other)
 static bool looks_the_same(const Errors *e, double rms, double worst, double worst_nir, double mwir_k, double lwir_k)
 {
     bool same = e->at_hot_spot <= 0.18 && e->kelvin[0] <= mwir_k && e->kelvin[1] <= lwir_k;
-    for (int c = 0; c < optical_channel_count; c++) same = same && sqrt(e->square[c] / e->cases) <= rms && e->worst[c] <= (c == optical_channel_nir ? worst_nir : worst);
+    for (int c = 0; c < optical_channel_count; c++)
+        same = same && sqrt(e->square[c] / e->cases) <= rms &&
+               e->worst[c] <= (c == optical_channel_nir ? worst_nir : worst);
     return same;
 }
 
@@ -246,7 +267,8 @@ static void bare_woods_look_the_same(void **state)
     close_place();
 }
 
-/* Where plants stand nothing is taken for far woods; where they were left out, or cleared, as woods_not_standing says. */
+/* Where plants stand nothing is taken for far woods; where they were left out, or cleared, as woods_not_standing says.
+ */
 static void places(void **state)
 {
     static Hits      hits;

@@ -40,7 +40,8 @@ static bool within(const Plant *p, const double at_m[3])
 {
     double axis[3][3], scale[2], away[3];
     plant_axes(axis, scale, p, NULL);
-    for (int k = 0; k < 3; k++) away[k] = at_m[k] - (double)p->p_m[k] - 0.7 * scale[1] * axis[2][k]; /* crowns from 0.4 to 1 */
+    for (int k = 0; k < 3; k++)
+        away[k] = at_m[k] - (double)p->p_m[k] - 0.7 * scale[1] * axis[2][k]; /* crowns from 0.4 to 1 */
     const double across = hypot(away[0], away[1]) / (0.28 * scale[0]), up = away[2] / (0.3 * scale[1]);
     return across * across + up * up < 1;
 }
@@ -64,7 +65,7 @@ static double march(double *db, const double o[3], const double d[3], double ran
         for (int n = 0; n < count; n++) {
             const Plant *of = &plant[near[n]];
             if (hypot(p[0] - (double)of->p_m[0], p[1] - (double)of->p_m[1]) > 12 || !within(of, p)) continue;
-            const SurfaceClass class = of->kind == PLANT_PINE      ? SURFACE_FOREST_CONIFER
+            const SurfaceClass class = of->kind == PLANT_PINE   ? SURFACE_FOREST_CONIFER
                                        : of->kind < PLANT_TREES ? SURFACE_FOREST_BROADLEAF
                                                                 : SURFACE_SCRUB;
             depth += step_m;
@@ -84,7 +85,8 @@ static void lengths_are_those_of_a_march(void **state)
     for (uint64_t i = 0; i < rays; i++) {
         double o[3], d[3], to[3], got_m, want_db;
         for (uint32_t k = 0; k < 2; k++) {
-            o[k] = origin[k] + 320 * random_uniform(9, k, 0, i) + (i % 3 ? 0 : 400 * (k ? 1 : -1)); /* some from without */
+            o[k] =
+                origin[k] + 320 * random_uniform(9, k, 0, i) + (i % 3 ? 0 : 400 * (k ? 1 : -1)); /* some from without */
             to[k] = origin[k] + 320 * random_uniform(9, 4 + k, 0, i);
         }
         if (i % 7 == 0) o[0] = to[0]; /* along a row of squares */
@@ -107,7 +109,8 @@ static void rays_above_lose_nothing(void **state)
 {
     (void)state;
     double depth_m;
-    CHECK(foliage_loss_db(&depth_m, foliage, (const double[3]){0, 0, 100}, (const double[3]){0.8, 0.6, 0}, 500) == 0 && depth_m == 0);
+    CHECK(foliage_loss_db(&depth_m, foliage, (const double[3]){0, 0, 100}, (const double[3]){0.8, 0.6, 0}, 500) == 0 &&
+          depth_m == 0);
     CHECK(foliage_loss_db(NULL, foliage, (const double[3]){-900, 0, 10}, (const double[3]){-1, 0, 0}, 500) == 0);
     CHECK(foliage_loss_db(NULL, foliage, (const double[3]){200, 0, 100}, (const double[3]){0, 0, -1}, 30) == 0);
 }
@@ -128,7 +131,8 @@ static void every_crown_is_found_once(void **state)
     }
     CHECK(all == plants && foliage_count(foliage) == plants);
     for (int i = 0; i < plants; i++) CHECK(seen[i] == 1);
-    CHECK(foliage_reaches(foliage, origin[0] + 160, origin[1] + 160) && !foliage_reaches(foliage, origin[0] - 1, origin[1] + 160) &&
+    CHECK(foliage_reaches(foliage, origin[0] + 160, origin[1] + 160) &&
+          !foliage_reaches(foliage, origin[0] - 1, origin[1] + 160) &&
           !foliage_reaches(foliage, origin[0] + 1, origin[1] + 1));
 }
 

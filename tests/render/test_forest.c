@@ -30,7 +30,7 @@ static bool within(const LeafOutline *o, double u, double v)
 {
     bool in = false;
     for (int k = 0, l = o->corners - 1; k < o->corners; l = k++) {
-        const double  ku = o->uv[k][0], kv = o->uv[k][1], lu = o->uv[l][0], lv = o->uv[l][1];
+        const double ku = o->uv[k][0], kv = o->uv[k][1], lu = o->uv[l][0], lv = o->uv[l][1];
         if ((kv > v) != (lv > v) && u < (lu - ku) * (v - kv) / (lv - kv) + ku) in = !in;
     }
     return in;
@@ -54,8 +54,8 @@ static double triangle(double uv[2], const double o[3], const double d[3], const
 }
 
 /* Nearest quad of all plants, all in ENU and double. bare, level: as the forest's. */
-static double by_force(uint32_t *plant, uint32_t *quad, const Woods *woods, const double o[3], const double d[3], int level,
-                       bool leaves, double most_m)
+static double by_force(uint32_t *plant, uint32_t *quad, const Woods *woods, const double o[3], const double d[3],
+                       int level, bool leaves, double most_m)
 {
     double best = most_m;
     for (int i = 0; i < woods->count; i++) {
@@ -98,11 +98,12 @@ static void aim(double o[3][rays], double d[3][rays], const double centre[3], do
     }
 }
 
-static void compare(const Woods *woods, const double centre[3], double radius_m, int level, bool leaves, const uint8_t *real)
+static void compare(const Woods *woods, const double centre[3], double radius_m, int level, bool leaves,
+                    const uint8_t *real)
 {
-    static double o[3][rays], d[3][rays], range_m[rays], far_m[rays];
-    static ForestHit hit[rays];
-    static uint8_t   dark[rays];
+    static double       o[3][rays], d[3][rays], range_m[rays], far_m[rays];
+    static ForestHit    hit[rays];
+    static uint8_t      dark[rays];
     const double *const from[3] = {o[0], o[1], o[2]}, *const way[3] = {d[0], d[1], d[2]};
     int met = 0, apart = 0, leaf = 0;
     aim(o, d, centre, radius_m);
@@ -170,9 +171,9 @@ static void along_the_box(void **state)
 {
     enum { side = 24, ways = 5 };
     static const double way[ways][3] = {{0, 0, -1}, {1, 0, 0}, {0, -1, 0}, {0.6, 0.8, 0}, {0, 0.6, -0.8}};
-    static Plant plant[1];
-    const double origin[3] = {0, 0, 0}, middle[3] = {0, 0, 5};
-    int          met = 0, missed = 0;
+    static Plant        plant[1];
+    const double        origin[3] = {0, 0, 0}, middle[3] = {0, 0, 5};
+    int                 met = 0, missed = 0;
     (void)state;
     hand_grow(false, 0.06);
     const Woods woods = hand_stand(plant, 1, origin, 0.5);
@@ -180,15 +181,16 @@ static void along_the_box(void **state)
     open_forest(&woods, &(ForestConfig){.leaves = true}, origin, 1000);
     for (int w = 0; w < ways; w++)
         for (int k = 0; k < side * side; k++) {
-            double   u[3], v[3], o[3], range_m = INFINITY;
-            uint32_t at, quad;
-            ForestHit hit = {0};
-            uint8_t   dark = 0;
+            double       u[3], v[3], o[3], range_m = INFINITY;
+            uint32_t     at, quad;
+            ForestHit    hit = {0};
+            uint8_t      dark = 0;
             const double far_m = INFINITY;
             v3_cross(u, way[w], fabs(way[w][2]) > 0.9 ? (const double[3]){1, 0, 0} : (const double[3]){0, 0, 1});
             v3_normalize(u, u), v3_cross(v, u, way[w]);
             v3_add_scaled(o, middle, -20, way[w]);
-            v3_add_scaled(o, o, 9.0 * (k % side + 0.37) / side - 4.5, u), v3_add_scaled(o, o, 9.0 * (k / side + 0.41) / side - 4.5, v);
+            v3_add_scaled(o, o, 9.0 * (k % side + 0.37) / side - 4.5, u),
+                v3_add_scaled(o, o, 9.0 * (k / side + 0.41) / side - 4.5, v);
             const double *const from[3] = {&o[0], &o[1], &o[2]}, *const d[3] = {&way[w][0], &way[w][1], &way[w][2]};
             forest_first_hits(&range_m, &hit, &frame, 1, from, d, NULL);
             forest_any_hits(&dark, &frame, 1, from, d, &far_m, NULL);
@@ -221,12 +223,12 @@ static void levels(void **state)
 /* The same trees at the origin and 200 km away: what is left is the rounding of the double origin of the rays. */
 static void far_away(void **state)
 {
-    static Plant     plant[60];
-    static double    o[3][rays], d[3][rays], here_m[rays], there_m[rays];
-    static ForestHit here[rays], there[rays];
-    const double    *const from[3] = {o[0], o[1], o[2]}, *const way[3] = {d[0], d[1], d[2]};
-    const double     origin[3] = {0, 0, 0}, far[3] = {200000, -150000, 1234.5};
-    int              met = 0, other = 0;
+    static Plant        plant[60];
+    static double       o[3][rays], d[3][rays], here_m[rays], there_m[rays];
+    static ForestHit    here[rays], there[rays];
+    const double *const from[3] = {o[0], o[1], o[2]}, *const way[3] = {d[0], d[1], d[2]};
+    const double origin[3] = {0, 0, 0}, far[3] = {200000, -150000, 1234.5};
+    int          met = 0, other = 0;
     (void)state;
     hand_grow(false, 0.06);
     Woods woods = hand_stand(plant, 60, origin, 30);
@@ -242,8 +244,9 @@ static void far_away(void **state)
     forest_first_hits(there_m, there, &frame, rays, from, way, NULL);
     close_forest();
     for (int i = 0; i < rays; i++) {
-        const bool same = here_m[i] == INFINITY ? there_m[i] == INFINITY
-                                                : fabs(here_m[i] - there_m[i]) < 1e-6 && here[i].plant == there[i].plant;
+        const bool same = here_m[i] == INFINITY
+                              ? there_m[i] == INFINITY
+                              : fabs(here_m[i] - there_m[i]) < 1e-6 && here[i].plant == there[i].plant;
         met += here_m[i] < INFINITY;
         other += !same;
     }
@@ -254,11 +257,11 @@ static void far_away(void **state)
 /* A ray's answer does not depend on the rays about it. */
 static void order(void **state)
 {
-    static Plant     plant[60];
-    static double    o[3][rays], d[3][rays], range_m[rays];
-    static ForestHit hit[rays];
-    const double    *const from[3] = {o[0], o[1], o[2]}, *const way[3] = {d[0], d[1], d[2]};
-    const double     origin[3] = {0, 0, 0};
+    static Plant        plant[60];
+    static double       o[3][rays], d[3][rays], range_m[rays];
+    static ForestHit    hit[rays];
+    const double *const from[3] = {o[0], o[1], o[2]}, *const way[3] = {d[0], d[1], d[2]};
+    const double origin[3] = {0, 0, 0};
     (void)state;
     hand_grow(false, 0.06);
     const Woods woods = hand_stand(plant, 60, origin, 30);
@@ -277,17 +280,17 @@ static void order(void **state)
     close_forest();
 }
 
-/* Gaps of a layer of leaves of every direction, in no order: exp(-G L) with G = 1/2 for a spherical distribution of leaf
- * normals (Ross, The radiation regime and architecture of plant stands, 1981). L: leaf area seen along the ray. */
+/* Gaps of a layer of leaves of every direction, in no order: exp(-G L) with G = 1/2 for a spherical distribution of
+ * leaf normals (Ross, The radiation regime and architecture of plant stands, 1981). L: leaf area seen along the ray. */
 static void transmittance(void **state)
 {
     enum { trees = 900 };
-    static Plant   plant[trees];
-    static uint8_t dark[4096];
-    static double  o[3][4096], d[3][4096], far_m[4096];
-    const double  *const from[3] = {o[0], o[1], o[2]}, *const way[3] = {d[0], d[1], d[2]};
-    const double   origin[3] = {0, 0, 0}, half_m = 60;
-    int            open = 0, count = 0;
+    static Plant        plant[trees];
+    static uint8_t      dark[4096];
+    static double       o[3][4096], d[3][4096], far_m[4096];
+    const double *const from[3] = {o[0], o[1], o[2]}, *const way[3] = {d[0], d[1], d[2]};
+    const double origin[3] = {0, 0, 0}, half_m = 60;
+    int          open = 0, count = 0;
     (void)state;
     hand_grow(true, 0.03);
     for (int kind = 0; kind < PLANT_KINDS; kind++) { /* leaves alone, throughout the box of a plant */
@@ -306,7 +309,8 @@ static void transmittance(void **state)
     for (int i = 0; i < trees; i++) plant[i].lean[0] = plant[i].lean[1] = 0, plant[i].width = 128;
     open_forest(&woods, &(ForestConfig){.leaves = true}, origin, 1000);
     for (int i = 0; i < 4096; i++) {
-        o[0][i] = 0.7 * half_m * (2 * hand_dice(24, (uint64_t)i) - 1), o[1][i] = 0.7 * half_m * (2 * hand_dice(25, (uint64_t)i) - 1);
+        o[0][i] = 0.7 * half_m * (2 * hand_dice(24, (uint64_t)i) - 1),
+        o[1][i] = 0.7 * half_m * (2 * hand_dice(25, (uint64_t)i) - 1);
         o[2][i] = 60, d[0][i] = d[1][i] = 0, d[2][i] = -1, far_m[i] = INFINITY, dark[i] = 0;
     }
     forest_any_hits(dark, &frame, 4096, from, way, far_m, NULL);
@@ -342,7 +346,8 @@ static void openness(void **state)
         double           all[2] = {0}, open[2] = {0}, n[3], middle[3];
         for (int c = 0; c < 3; c++) {
             n[c] = (double)q->n[0][c];
-            middle[c] = 0.25 * ((double)q->corner[0][c] + (double)q->corner[1][c] + (double)q->corner[2][c] + (double)q->corner[3][c]);
+            middle[c] = 0.25 * ((double)q->corner[0][c] + (double)q->corner[1][c] + (double)q->corner[2][c] +
+                                (double)q->corner[3][c]);
         }
         for (int k = 0; k < directions; k++) {
             uint32_t unused;
@@ -363,9 +368,9 @@ static void openness(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_tree), cmocka_unit_test(a_stand),  cmocka_unit_test(bare_trees),    cmocka_unit_test(levels),
-        cmocka_unit_test(along_the_box),
-        cmocka_unit_test(far_away), cmocka_unit_test(order), cmocka_unit_test(transmittance), cmocka_unit_test(openness),
+        cmocka_unit_test(a_tree), cmocka_unit_test(a_stand),       cmocka_unit_test(bare_trees),
+        cmocka_unit_test(levels), cmocka_unit_test(along_the_box), cmocka_unit_test(far_away),
+        cmocka_unit_test(order),  cmocka_unit_test(transmittance), cmocka_unit_test(openness),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -3,10 +3,12 @@
 
 #include "render/heat/given_heat.h"
 
-static ModelPart part[] = {{.name = "hull", .role = HEAT_HULL}, {.name = "deck", .role = HEAT_ENGINE_DECK},
+static ModelPart part[] = {{.name = "hull", .role = HEAT_HULL},
+                           {.name = "deck", .role = HEAT_ENGINE_DECK},
                            {.name = "grille", .role = HEAT_ENGINE_DECK},
                            {.name = "exhaust", .role = HEAT_PASSIVE}};
-static Model     tank = {.name = "tank", .part = part, .part_count = 4}, truck = {.name = "truck", .part = part, .part_count = 4};
+static Model     tank = {.name = "tank", .part = part, .part_count = 4},
+             truck = {.name = "truck", .part = part, .part_count = 4};
 static const DisEntityId first = {1, 1, 1}, second = {1, 1, 2};
 
 static Status open_text(GivenHeat **out, const char *text)
@@ -31,8 +33,13 @@ static void lines_between_rows(void **state)
 {
     (void)state;
     GivenHeat *g;
-    CHECK(open_text(&g, "# of a test\nentity,part,t_s,temp_k\ntank,hull,10,300\ntank,deck,0,1\ntank,hull,20,320\ntank,hull,40,310\n") == STATUS_OK);
-    static const double t_s[] = {-INFINITY, -5, 10, 12.5, 20, 30, 40, 1e12, INFINITY}, k[] = {300, 300, 300, 305, 320, 315, 310, 310, 310};
+    CHECK(
+        open_text(
+            &g,
+            "# of a test\nentity,part,t_s,temp_k\ntank,hull,10,300\ntank,deck,0,1\ntank,hull,20,320\ntank,hull,40,310\n") ==
+        STATUS_OK);
+    static const double t_s[] = {-INFINITY, -5, 10, 12.5, 20, 30, 40, 1e12, INFINITY},
+                        k[] = {300, 300, 300, 305, 320, 315, 310, 310, 310};
     for (int i = 0; i < 9; i++) CHECK_NEAR(k_of(g, first, &tank, 0, t_s[i]), k[i], 1e-12);
     CHECK(k_of(g, first, &tank, 0, NAN) == 300);
     CHECK(k_of(g, first, &tank, 1, 7) == 1);
@@ -44,11 +51,17 @@ static void the_closest_name_wins(void **state)
 {
     (void)state;
     GivenHeat *g;
-    CHECK(open_text(&g, "temp_k,entity,part,t_s\n201,*,*,0\n202,*,engine_deck,0\n203,*,deck,0\n204,tank,*,0\n205,tank,engine_deck,0\n"
-                        "206,1:1:2,*,0\n207,1:1:2,grille,0\n") == STATUS_OK);
-    CHECK(k_of(g, first, &truck, 0, 0) == 201 && k_of(g, first, &truck, 2, 0) == 202 && k_of(g, first, &truck, 1, 0) == 203);
-    CHECK(k_of(g, first, &tank, 0, 0) == 204 && k_of(g, first, &tank, 1, 0) == 205 && k_of(g, first, &tank, 2, 0) == 205);
-    CHECK(k_of(g, second, &tank, 1, 0) == 206 && k_of(g, second, &tank, 2, 0) == 207 && k_of(g, second, &truck, 0, 0) == 206);
+    CHECK(
+        open_text(
+            &g,
+            "temp_k,entity,part,t_s\n201,*,*,0\n202,*,engine_deck,0\n203,*,deck,0\n204,tank,*,0\n205,tank,engine_deck,0\n"
+            "206,1:1:2,*,0\n207,1:1:2,grille,0\n") == STATUS_OK);
+    CHECK(k_of(g, first, &truck, 0, 0) == 201 && k_of(g, first, &truck, 2, 0) == 202 &&
+          k_of(g, first, &truck, 1, 0) == 203);
+    CHECK(k_of(g, first, &tank, 0, 0) == 204 && k_of(g, first, &tank, 1, 0) == 205 &&
+          k_of(g, first, &tank, 2, 0) == 205);
+    CHECK(k_of(g, second, &tank, 1, 0) == 206 && k_of(g, second, &tank, 2, 0) == 207 &&
+          k_of(g, second, &truck, 0, 0) == 206);
     given_heat_close(g);
 }
 
@@ -57,7 +70,8 @@ static void names_that_are_roles(void **state)
 {
     (void)state;
     GivenHeat *g;
-    CHECK(open_text(&g, "entity,part,t_s,temp_k\n*,exhaust,0,500\n01:1:1,hull,0,300\n1:1:1,hull,10,310\n") == STATUS_OK);
+    CHECK(open_text(&g, "entity,part,t_s,temp_k\n*,exhaust,0,500\n01:1:1,hull,0,300\n1:1:1,hull,10,310\n") ==
+          STATUS_OK);
     CHECK(k_of(g, first, &tank, 3, 0) == 500);
     CHECK_NEAR(k_of(g, first, &tank, 0, 5), 305, 1e-9);
     given_heat_close(g);
@@ -67,7 +81,9 @@ static void names_that_are_roles(void **state)
 static void what_is_refused(void **state)
 {
     (void)state;
-    static const struct { const char *text, *says; } bad[] = {
+    static const struct {
+        const char *text, *says;
+    } bad[] = {
         {"entity,part,t_s\ntank,hull,0\n", "no column temp_k"},
         {"entity,part,t_s,temp_k\ntank,hull,0,0.5\n", "temp_k"},
         {"entity,part,t_s,temp_k\ntank,hull,0,4001\n", "temp_k"},

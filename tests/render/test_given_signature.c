@@ -1,5 +1,5 @@
-/* Signatures that are given: grids and scatterers against closed forms (a sphere off the phase centre, a plate's sinc), what
- * lies between rows, how far a table is known, lists of entities, and what is refused. labels: physics */
+/* Signatures that are given: grids and scatterers against closed forms (a sphere off the phase centre, a plate's sinc),
+ * what lies between rows, how far a table is known, lists of entities, and what is refused. labels: physics */
 #include "tests/check.h"
 
 #include "render/scattering/signatures/given_signature.h"
@@ -88,8 +88,8 @@ static void fields_between_rows_follow_the_phase(void **state)
             fprintf(file, "%d,%d,10,%.12g,%.12g,%.12g,%.12g\n", az, el, creal(s), cimag(s), creal(s), cimag(s));
         }
     GivenSignature *given = opened(file);
-    const double    most_step_rad = k * 2 * x_m * (step_deg * rad_per_deg) * (1 + 0.18); /* in azimuth, and in elevation */
-    double          worst_db = 0, worst = 0;
+    const double most_step_rad = k * 2 * x_m * (step_deg * rad_per_deg) * (1 + 0.18); /* in azimuth, and in elevation */
+    double       worst_db = 0, worst = 0;
     for (double az = -200; az < 400; az += 0.37) {
         const double         el = 9.9 * sin(az);
         const double complex want = amplitude * cexp(I * k * 2 * x_m * cos(az * rad_per_deg) * cos(el * rad_per_deg));
@@ -98,16 +98,17 @@ static void fields_between_rows_follow_the_phase(void **state)
         worst_db = fmax(worst_db, fabs(20 * log10(cabs(s.hh) / amplitude)));
         CHECK(s.hv == 0 && s.vh == 0);
     }
-    print_message("a point 5 cm from the origin, rows 2 degrees apart: %.4f of the field (bound %.4f), %.3f dB\n", worst,
-                  most_step_rad * most_step_rad / 8, worst_db);
+    print_message("a point 5 cm from the origin, rows 2 degrees apart: %.4f of the field (bound %.4f), %.3f dB\n",
+                  worst, most_step_rad * most_step_rad / 8, worst_db);
     CHECK(worst <= most_step_rad * most_step_rad / 8);
     const ScatterMatrix row = field_at_look(given, 30, 4, hz);
     CHECK(cabs(row.vv - amplitude * cexp(I * k * 2 * x_m * cos(30 * rad_per_deg) * cos(4 * rad_per_deg))) < 1e-11);
     given_signature_close(given);
 }
 
-/* A plate of 0.3 m at 10 GHz, 10 wavelengths: 4 pi A^2 / lambda^2 cos^2 sinc^2, rows of dBsm every 0.1 degrees; between them
- * linear in decibels. In the main lobe the error is the chord's, by the second derivative of sinc^2 in decibels. */
+/* A plate of 0.3 m at 10 GHz, 10 wavelengths: 4 pi A^2 / lambda^2 cos^2 sinc^2, rows of dBsm every 0.1 degrees; between
+ * them linear in decibels. In the main lobe the error is the chord's, by the second derivative of sinc^2 in decibels.
+ */
 static void decibels_between_rows_are_linear(void **state)
 {
     (void)state;
@@ -147,22 +148,24 @@ static void scatterers_add_up(void **state)
     (void)state;
     FILE *file = begin("two.csv");
     fputs("x_m,y_m,z_m,hh_dbsm,vv_dbsm,hv_dbsm,vv_deg,az_deg,az_width_deg,el_deg,el_width_deg\n"
-          "2,0.5,-1,10,10,,0,,,,\n-2,-0.5,-0.2,3,7,-5,90,10,40,0,60\n", file);
+          "2,0.5,-1,10,10,,0,,,,\n-2,-0.5,-0.2,3,7,-5,90,10,40,0,60\n",
+          file);
     GivenSignature *given = opened(file);
     Centres         centres = {0};
     for (double ghz = 9; ghz <= 95; ghz += 4.3)
         for (double az = -60; az <= 60; az += 7) {
             const double k = 2 * pi_rad * ghz * 1e9 / 299792458.0, el = 11, range_m = 700;
             for (int near = 0; near < 2; near++) {
-                const double u[3] = {cos(az * rad_per_deg) * cos(el * rad_per_deg), sin(az * rad_per_deg) * cos(el * rad_per_deg),
-                                     -sin(el * rad_per_deg)};
-                const double p[2][3] = {{2, 0.5, -1}, {-2, -0.5, -0.2}};
+                const double   u[3] = {cos(az * rad_per_deg) * cos(el * rad_per_deg),
+                                       sin(az * rad_per_deg) * cos(el * rad_per_deg), -sin(el * rad_per_deg)};
+                const double   p[2][3] = {{2, 0.5, -1}, {-2, -0.5, -0.2}};
                 double complex want[2];
                 for (int i = 0; i < 2; i++) {
                     long double square = 0;
                     for (int c = 0; c < 3; c++) square += powl((long double)u[c] * range_m - p[i][c], 2);
                     const double path_m = near ? 2 * (double)(sqrtl(square) - range_m) : -2 * v3_dot(u, p[i]);
-                    want[i] = sqrt((i ? pow(10, 0.7) : 10) / (4 * pi_rad)) * cexp(I * (i ? 0.5 * pi_rad : 0) - I * k * path_m);
+                    want[i] = sqrt((i ? pow(10, 0.7) : 10) / (4 * pi_rad)) *
+                              cexp(I * (i ? 0.5 * pi_rad : 0) - I * k * path_m);
                 }
                 const bool           both = az >= -10 && az <= 30;
                 const ScatterAntenna antenna = antenna_at(az, el, near ? range_m : INFINITY);
@@ -187,12 +190,14 @@ static void a_computed_sphere_comes_back(void **state)
     RadarStage stage;
     FILE      *file = begin("rcs.csv");
     stage_open(&stage, "sphere:0.5", 10e9);
-    fputs("az_deg,el_deg,f_ghz,hh_dbsm,hv_dbsm,vh_dbsm,vv_dbsm,hh_re_m,hh_im_m,hv_re_m,hv_im_m,vh_re_m,vh_im_m,vv_re_m,vv_im_m\n", file);
+    fputs(
+        "az_deg,el_deg,f_ghz,hh_dbsm,hv_dbsm,vh_dbsm,vv_dbsm,hh_re_m,hh_im_m,hv_re_m,hv_im_m,vh_re_m,vh_im_m,vv_re_m,vv_im_m\n",
+        file);
     for (int az = 0; az <= 12; az += 4)
         for (int el = 0; el <= 10; el += 10) {
             const ScatterMatrix s = stage_look(&stage, az, el, INFINITY);
-            fprintf(file, "%d,%d,10,%.4f,,,%.4f,%.9g,%.9g,0,0,0,0,%.9g,%.9g\n", az, el, rcs_dbsm(s.hh), rcs_dbsm(s.vv), creal(s.hh),
-                    cimag(s.hh), creal(s.vv), cimag(s.vv));
+            fprintf(file, "%d,%d,10,%.4f,,,%.4f,%.9g,%.9g,0,0,0,0,%.9g,%.9g\n", az, el, rcs_dbsm(s.hh), rcs_dbsm(s.vv),
+                    creal(s.hh), cimag(s.hh), creal(s.vv), cimag(s.vv));
         }
     GivenSignature *given = opened(file);
     for (double az = 0; az <= 12; az += 1.7) {
@@ -213,9 +218,10 @@ static void a_table_ends_somewhere(void **state)
     static const struct {
         double az_deg, el_deg, ghz;
         bool   known;
-    } look[] = {{-10, 10, 35, true},    {-10.9, 10, 35, true}, {-11.1, 10, 35, false}, {354.9, 10, 35, true}, {355.1, 10, 35, false},
-                {0, 10, 35, false},     {352, 12.4, 35, true}, {352, 12.6, 35, false}, {352, 7.6, 35, true},  {352, 10, 36.7, true},
-                {352, 10, 36.8, false}, {352, 10, 33.3, true}, {352, 10, 33.2, false}, {172, 10, 35, false}};
+    } look[] = {{-10, 10, 35, true},    {-10.9, 10, 35, true}, {-11.1, 10, 35, false}, {354.9, 10, 35, true},
+                {355.1, 10, 35, false}, {0, 10, 35, false},    {352, 12.4, 35, true},  {352, 12.6, 35, false},
+                {352, 7.6, 35, true},   {352, 10, 36.7, true}, {352, 10, 36.8, false}, {352, 10, 33.3, true},
+                {352, 10, 33.2, false}, {172, 10, 35, false}};
     for (size_t i = 0; i < sizeof look / sizeof *look; i++) {
         const ScatterAntenna antenna = antenna_at(look[i].az_deg, look[i].el_deg, 1000);
         CHECK(given_signature_knows(given, &antenna, look[i].ghz * 1e9) == look[i].known);
@@ -229,17 +235,27 @@ static void a_table_ends_somewhere(void **state)
 static void what_is_wrong_is_refused(void **state)
 {
     (void)state;
-    const char head[] = "az_deg,el_deg,f_ghz,hh_dbsm,vv_dbsm\n";
-    char       text[512];
-    static const char *const row[] = {"", "0,0,35,1\n", "0,0,35,x,1\n", "0,0,35,nan,1\n", "0,0,35,inf,1\n", "0,0,35,101,1\n",
-                                      "0,0,0.01,1,1\n", "0,91,35,1,1\n", "721,0,35,1,1\n", "0,0,35,1,1\n0,0,35,1,1\n",
-                                      "0,0,35,1,1\n1,1,35,1,1\n", "0,0,35,1,1\n200,0,35,1,1\n361,0,35,1,1\n",
+    const char               head[] = "az_deg,el_deg,f_ghz,hh_dbsm,vv_dbsm\n";
+    char                     text[512];
+    static const char *const row[] = {"",
+                                      "0,0,35,1\n",
+                                      "0,0,35,x,1\n",
+                                      "0,0,35,nan,1\n",
+                                      "0,0,35,inf,1\n",
+                                      "0,0,35,101,1\n",
+                                      "0,0,0.01,1,1\n",
+                                      "0,91,35,1,1\n",
+                                      "721,0,35,1,1\n",
+                                      "0,0,35,1,1\n0,0,35,1,1\n",
+                                      "0,0,35,1,1\n1,1,35,1,1\n",
+                                      "0,0,35,1,1\n200,0,35,1,1\n361,0,35,1,1\n",
                                       "0,0,35,1,1\n0,1,35,1,1\n1,0,35,1,1\n1,0,35,1,1\n"};
     for (size_t i = 0; i < sizeof row / sizeof *row; i++) {
         snprintf(text, sizeof text, "%s%s", head, row[i]);
         CHECK(refused(text) == STATUS_BAD_VALUE);
     }
-    CHECK(refused("az_deg,el_deg,f_ghz,hh_dbsm,vv_dbsm\n0,0,35,1,1\n") == STATUS_OK); /* and nothing else is wrong with them */
+    CHECK(refused("az_deg,el_deg,f_ghz,hh_dbsm,vv_dbsm\n0,0,35,1,1\n") ==
+          STATUS_OK); /* and nothing else is wrong with them */
     CHECK(refused("az_deg,el_deg,f_ghz,hh_dbsm\n0,0,35,1\n") == STATUS_BAD_VALUE);
     CHECK(refused("az_deg,el_deg,hh_dbsm,vv_dbsm\n0,0,1,1\n") == STATUS_BAD_VALUE);
     CHECK(refused("az_deg,el_deg,f_ghz,hh_re_m,hh_im_m,vv_re_m\n0,0,35,1,1,1\n") == STATUS_BAD_VALUE);
@@ -260,8 +276,8 @@ static void put(const char *name, const char *text)
 static void the_closest_name_wins(void **state)
 {
     (void)state;
-    GivenList *list = NULL;
-    char       path[128], kept[3][128];
+    GivenList               *list = NULL;
+    char                     path[128], kept[3][128];
     static const char *const name[3] = {"a.csv", "b.csv", "c.csv"};
     for (int i = 0; i < 3; i++) {
         char text[128];
@@ -294,9 +310,13 @@ static void the_closest_name_wins(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(fields_between_rows_follow_the_phase), cmocka_unit_test(decibels_between_rows_are_linear),
-        cmocka_unit_test(scatterers_add_up), cmocka_unit_test(a_computed_sphere_comes_back), cmocka_unit_test(a_table_ends_somewhere),
-        cmocka_unit_test(what_is_wrong_is_refused), cmocka_unit_test(the_closest_name_wins),
+        cmocka_unit_test(fields_between_rows_follow_the_phase),
+        cmocka_unit_test(decibels_between_rows_are_linear),
+        cmocka_unit_test(scatterers_add_up),
+        cmocka_unit_test(a_computed_sphere_comes_back),
+        cmocka_unit_test(a_table_ends_somewhere),
+        cmocka_unit_test(what_is_wrong_is_refused),
+        cmocka_unit_test(the_closest_name_wins),
     };
     return cmocka_run_group_tests(tests, open_folder, close_folder);
 }

@@ -19,7 +19,8 @@ static void aim(double d[3], const double from[3], const double to[3])
     if (!v3_normalize(d, d)) d[0] = 0, d[1] = 0, d[2] = -1;
 }
 
-static void normals_at(double n_geo[3], double n_enu[3], const Ground *ground, const GroundHit *hit, double x_m, double y_m)
+static void normals_at(double n_geo[3], double n_enu[3], const Ground *ground, const GroundHit *hit, double x_m,
+                       double y_m)
 {
     static const int first = 0;
     double           geo[3][ground_normals_lanes], enu[3][ground_normals_lanes];
@@ -52,7 +53,7 @@ static void make_field(Elevation *e)
 /* ---- every triangle, one by one ------------------------------------------------------------ */
 
 typedef struct Soup {
-    int    count;
+    int count;
     double (*corner)[3][3];
 } Soup;
 
@@ -222,7 +223,7 @@ static void planes_are_met_where_paper_says(void **state)
             GroundHit    hit = {0};
             aim(d, o, goal);
             const double want = (a + b * o[0] + c * o[1] - o[2]) / (d[2] - b * d[0] - c * d[1]);
-            const double got  = ground_first_hit(&hit, &ground, o, d, INFINITY);
+            const double got = ground_first_hit(&hit, &ground, o, d, INFINITY);
             /* 1e-12 m of rounding in z at these sizes, over the sine of the grazing angle */
             CHECK_NEAR(got, want, 2e-12 * (1 + 1 / fabs(d[2] - b * d[0] - c * d[1])) + 1e-12 * want);
             normals_at(n_geo, n_enu, &ground, &hit, o[0] + got * d[0], o[1] + got * d[1]);
@@ -258,7 +259,7 @@ static void hits_lie_on_the_surface(void **state)
         CHECK(v3_dot(n_geo, d) < 0);
         /* on the line between two triangles either normal is right */
         const ElevationLevel *l = &e.level[0];
-        const double a = (x - l->x0_m) / 3 - hit.i, b = (y - l->y0_m) / 3 - hit.j;
+        const double          a = (x - l->x0_m) / 3 - hit.i, b = (y - l->y0_m) / 3 - hit.j;
         if (fabs(a - b) < 1e-9 || a < 1e-9 || b < 1e-9 || a > 1 - 1e-9 || b > 1 - 1e-9) continue;
         for (int c = 0; c < 3; c++) CHECK_NEAR(n_geo[c], normal[c], 1e-9);
     }
@@ -279,7 +280,7 @@ static void make_levels(Elevation *e, bool meet)
         /* an edge post is so many quarters of the way between two posts outside: a whole number, if those are
          * multiples of 16, and of 4 one level further in */
         ElevationLevel *in = &e->level[k];
-        const int unit = k == 2 ? 16 : k == 1 ? 4 : 1;
+        const int       unit = k == 2 ? 16 : k == 1 ? 4 : 1;
         for (int j = 0; j < in->ny; j++)
             for (int i = 0; i < in->nx; i++) elevation_set_post(in, i, j, elevation_post(in, i, j) / unit * unit);
         if (k == 2) continue;
@@ -312,7 +313,7 @@ static void nothing_leaks(bool meet)
             to[0] = n % 2 ? -8 : 16, to[1] = n % 4 < 2 ? -16 : 16;
             if (n % 7 == 0) o[0] = to[0];
         }
-        o[2]  = elevation_height(&e, o[0], o[1], NULL) + exp(uniform(-5, 4));
+        o[2] = elevation_height(&e, o[0], o[1], NULL) + exp(uniform(-5, 4));
         to[2] = elevation_height(&e, to[0], to[1], NULL) - exp(uniform(-10, 2));
         if (!meet) to[2] = fmin(to[2], n % 5 == 0 ? -9 : INFINITY); /* on an outline: below both surfaces */
         aim(d, o, to);
@@ -366,15 +367,17 @@ static void solid_ground_stops_a_ray_at_once(void **state)
 /* ---- the same bits -------------------------------------------------------------------------- */
 
 typedef struct List {
-    int       count;
-    double   *o[3], *d[3], *far_m, *range_m;
+    int        count;
+    double    *o[3], *d[3], *far_m, *range_m;
     GroundHit *hit;
 } List;
 
 static List list_create(int count)
 {
-    List list = {.count = count, .far_m = calloc((size_t)count, sizeof(double)),
-                 .range_m = calloc((size_t)count, sizeof(double)), .hit = calloc((size_t)count, sizeof *list.hit)};
+    List list = {.count = count,
+                 .far_m = calloc((size_t)count, sizeof(double)),
+                 .range_m = calloc((size_t)count, sizeof(double)),
+                 .hit = calloc((size_t)count, sizeof *list.hit)};
     for (int c = 0; c < 3; c++) {
         list.o[c] = calloc((size_t)count, sizeof(double));
         list.d[c] = calloc((size_t)count, sizeof(double));
@@ -407,10 +410,10 @@ static double one_of(const double *choice, int count) { return choice[(int)unifo
 /* Ordinary rays, and numbers no ray should have. */
 static void fill_with_everything(List *list)
 {
-    static const double place[] = {0, -0.0, 1, -8, 16, -16, 64, -64, 4, 1e-300, -1e-300,
-                                   1e9, -1e9, 1e12, 0.5, -256, 5e-324};
-    static const double along[] = {0, -0.0, 1, -1, 1e-300, -1e-300, 1e-31, -1e-31, 1e-17, -1e-9,
-                                   0.6, -0.8, 0.70710678118654757};
+    static const double place[] = {0,      -0.0,    1,   -8,   16,   -16, 64,   -64,   4,
+                                   1e-300, -1e-300, 1e9, -1e9, 1e12, 0.5, -256, 5e-324};
+    static const double along[] = {
+        0, -0.0, 1, -1, 1e-300, -1e-300, 1e-31, -1e-31, 1e-17, -1e-9, 0.6, -0.8, 0.70710678118654757};
     static const double wrong[] = {NAN, INFINITY, -INFINITY, 1e308, -1e308};
     for (int n = 0; n < list->count; n++) {
         double o[3], d[3], far_m = INFINITY;
@@ -442,7 +445,7 @@ static void trace_one_by_one(List *list, const Ground *ground)
     for (int n = 0; n < list->count; n++) {
         const double o[3] = {list->o[0][n], list->o[1][n], list->o[2][n]};
         const double d[3] = {list->d[0][n], list->d[1][n], list->d[2][n]};
-        list->range_m[n]  = ground_first_hit(&list->hit[n], ground, o, d, list->far_m[n]);
+        list->range_m[n] = ground_first_hit(&list->hit[n], ground, o, d, list->far_m[n]);
     }
 }
 
@@ -560,16 +563,11 @@ static void far_origins_stay_close(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(planes_are_met_where_paper_says),
-        cmocka_unit_test(same_as_every_triangle),
-        cmocka_unit_test(hits_lie_on_the_surface),
-        cmocka_unit_test(matched_levels_do_not_leak),
-        cmocka_unit_test(unmatched_levels_do_not_leak),
-        cmocka_unit_test(solid_ground_stops_a_ray_at_once),
-        cmocka_unit_test(eight_give_the_bits_of_one),
-        cmocka_unit_test(skipping_changes_no_bit),
-        cmocka_unit_test(far_cuts_and_changes_nothing_else),
-        cmocka_unit_test(far_origins_stay_close),
+        cmocka_unit_test(planes_are_met_where_paper_says),   cmocka_unit_test(same_as_every_triangle),
+        cmocka_unit_test(hits_lie_on_the_surface),           cmocka_unit_test(matched_levels_do_not_leak),
+        cmocka_unit_test(unmatched_levels_do_not_leak),      cmocka_unit_test(solid_ground_stops_a_ray_at_once),
+        cmocka_unit_test(eight_give_the_bits_of_one),        cmocka_unit_test(skipping_changes_no_bit),
+        cmocka_unit_test(far_cuts_and_changes_nothing_else), cmocka_unit_test(far_origins_stay_close),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

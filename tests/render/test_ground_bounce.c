@@ -7,7 +7,7 @@
 
 #include <unistd.h>
 
-static const double x_hz = 10e9, truck_hz = 3e9;
+static const double        x_hz = 10e9, truck_hz = 3e9;
 static const GroundSurface mirror = {.eps = 1 - 1e16 * I};
 
 static double wave_number(double f_hz) { return 2 * pi_rad * f_hz / light_mps; }
@@ -33,7 +33,7 @@ static void an_image_is_as_far_from_the_plane(void **state)
     for (uint32_t i = 0; i < 200; i++) {
         const GroundPlane    plane = tilted(i);
         const ScatterAntenna a = antenna_at(360 * random_uniform(2, i, 0, 0), 60 * random_uniform(2, i, 0, 1) + 12,
-                                                pow(10, 2 + 3 * random_uniform(2, i, 0, 2)));
+                                            pow(10, 2 + 3 * random_uniform(2, i, 0, 2)));
         ScatterAntenna       image;
         double               at[3], u[3], p[3], to[3], from_image[3];
         const double         extra_m = ground_image(&image, &a, &plane);
@@ -70,9 +70,10 @@ static void a_mirror_has_no_field_along_it(void **state)
                                       random_uniform(5, i, 0, 2) - 0.5};
         ScatterAntenna a = antenna_at(360 * random_uniform(4, i, 0, 0), 75 * random_uniform(4, i, 0, 1) + 14, INFINITY),
                        image;
-        GroundLeg         leg, direct;
-        double            h[3], v[3], axis[2][3];
-        if (i % 10 == 0) for (int c = 0; c < 3; c++) a.u[c] = plane.n[c]; /* straight above */
+        GroundLeg leg, direct;
+        double    h[3], v[3], axis[2][3];
+        if (i % 10 == 0)
+            for (int c = 0; c < 3; c++) a.u[c] = plane.n[c]; /* straight above */
         const double extra_m = ground_image(&image, &a, &plane);
         CHECK(ground_leg_image(&leg, &a, &image, extra_m, &plane, &mirror, 200, right));
         ground_leg_direct(&direct, &a, right);
@@ -93,11 +94,11 @@ static void a_mirror_has_no_field_along_it(void **state)
     }
     printf("field along a perfect mirror: %.1e\n", worst);
     CHECK(worst < 1e-6);
-    ScatterAntenna    a = antenna_at(0, 10, 100), image;
-    const GroundPlane above = level(-50); /* antenna beneath it */
-    GroundLeg         leg;
+    ScatterAntenna      a = antenna_at(0, 10, 100), image;
+    const GroundPlane   above = level(-50); /* antenna beneath it */
+    GroundLeg           leg;
     static const double right[3] = {0, 1, 0};
-    const double extra_m = ground_image(&image, &a, &above);
+    const double        extra_m = ground_image(&image, &a, &above);
     CHECK(!ground_leg_image(&leg, &a, &image, extra_m, &above, &mirror, 200, right));
 }
 
@@ -130,8 +131,8 @@ static Status open_text(GroundTable *out, const char *text)
     return status;
 }
 
-/* Every class is there; permittivities lie where P.527's own figures do (sea of fresh water at 10 GHz and 20 C: 60.8 - 32.7 j;
- * ours is at 15 C); what is wrong with a table is refused. */
+/* Every class is there; permittivities lie where P.527's own figures do (sea of fresh water at 10 GHz and 20 C: 60.8
+ * - 32.7 j; ours is at 15 C); what is wrong with a table is refused. */
 static void every_surface_has_a_ground(void **state)
 {
     (void)state;
@@ -159,7 +160,8 @@ static void every_surface_has_a_ground(void **state)
     static GroundTable kept;
     kept.row[1].points = 77;
     static const char *const bad[] = {
-        "surface,f_ghz,eps_re,eps_im,rms_mm,heights\n", "surface,f_ghz,eps_re\ngrass,10,5\n",
+        "surface,f_ghz,eps_re,eps_im,rms_mm,heights\n",
+        "surface,f_ghz,eps_re\ngrass,10,5\n",
         "surface,f_ghz,eps_re,eps_im,rms_mm,heights\nlawn,10,5,1,5,gaussian\n",
         "surface,f_ghz,eps_re,eps_im,rms_mm,heights\ngrass,10,0.5,1,5,gaussian\n",
         "surface,f_ghz,eps_re,eps_im,rms_mm,heights\ngrass,10,5,1,5,fractal\n",
@@ -171,13 +173,15 @@ static void every_surface_has_a_ground(void **state)
 
 /* ---- a point above the ground: the two-ray pattern --------------------------------------------------------- */
 
-/* An isotropic point, whose field is 1 for every pair of directions, horizontally polarised, over the range at which the
- * direct path alone gives 1: the fourth power of |F|, with F = 1 + G exp(-j k (r_i - r_a)), from heights alone. */
+/* An isotropic point, whose field is 1 for every pair of directions, horizontally polarised, over the range at which
+ * the direct path alone gives 1: the fourth power of |F|, with F = 1 + G exp(-j k (r_i - r_a)), from heights alone. */
 static void a_point_has_the_two_ray_pattern(void **state)
 {
     (void)state;
-    static const struct { double complex eps; double rms_m; } ground[] = {
-        {1 - 1e16 * I, 0}, {15 - 3 * I, 0}, {15 - 3 * I, 0.02}, {5 - 0.5 * I, 0.1}};
+    static const struct {
+        double complex eps;
+        double         rms_m;
+    } ground[] = {{1 - 1e16 * I, 0}, {15 - 3 * I, 0}, {15 - 3 * I, 0.02}, {5 - 0.5 * I, 0.1}};
     static const double right[3] = {0, 1, 0};
     const double        k = wave_number(x_hz), antenna_m = 12, away_m = 6000;
     double              peak = 0, null = 1, worst_db = 0, worst_flat_db = 0;
@@ -198,8 +202,8 @@ static void a_point_has_the_two_ray_pattern(void **state)
             ground_sum(&s, &one, &legs[0], &legs[1], k);
             const double complex q = csqrt(ground[g].eps - (1 - sine * sine));
             const double complex fresnel = (sine - q) / (sine + q);
-            const double rough = exp(-0.5 * pow(2 * k * ground[g].rms_m * sine, 2));
-            const double far_m = hypot(away_m, antenna_m + h);
+            const double         rough = exp(-0.5 * pow(2 * k * ground[g].rms_m * sine, 2));
+            const double         far_m = hypot(away_m, antenna_m + h);
             const double f4 = pow(cabs(1 + rough * fresnel * range_m / far_m * cexp(-I * k * (far_m - range_m))), 4);
             const double got = cabs(s.hh) * cabs(s.hh);
             if (f4 > 1e-3) worst_db = fmax(worst_db, fabs(decibels(got / f4)));
@@ -276,8 +280,8 @@ static double complex plate_optics(const ScatterAntenna *tx, const ScatterAntenn
     return -I * k / (2 * pi_rad) * a_m * b_m * v3_dot(q[received], j) * share;
 }
 
-/* A plate that stands on a mirror: the sum over antenna and image, each way, of the plate's own closed form; its peak that
- * of the dihedral that plate and ground make, 16 pi (A B cos e)^2 / lambda^2, at any elevation. */
+/* A plate that stands on a mirror: the sum over antenna and image, each way, of the plate's own closed form; its peak
+ * that of the dihedral that plate and ground make, 16 pi (A B cos e)^2 / lambda^2, at any elevation. */
 static void a_standing_plate_is_a_dihedral(void **state)
 {
     (void)state;
@@ -293,7 +297,8 @@ static void a_standing_plate_is_a_dihedral(void **state)
         ScatterMatrix        sum;
         trace_paths(&p, &s, &a, &plane, &mirror, false);
         ground_sum(&sum, &p.s, &p.direct, &p.image, k);
-        /* the image's horizontal field is reversed, its vertical one (v points up at both) is not: the mirror's own bases */
+        /* the image's horizontal field is reversed, its vertical one (v points up at both) is not: the mirror's own
+         * bases */
         const double complex e = cexp(-I * k * 2 * plane.height_m * sin(el * rad_per_deg));
         double complex       want[2];
         for (int c = 0; c < 2; c++) {
@@ -340,16 +345,16 @@ static void a_standing_cylinder_is_a_top_hat(void **state)
     stage_close(&s);
 }
 
-/* The exact series for a perfectly conducting sphere about the origin, for a transmitter and a receiver at an angle about
- * it: S for fields across (0) and in (1) the plane of both. Source: Bohren & Huffman, 4.3, for exp(+j w t). */
+/* The exact series for a perfectly conducting sphere about the origin, for a transmitter and a receiver at an angle
+ * about it: S for fields across (0) and in (1) the plane of both. Source: Bohren & Huffman, 4.3, for exp(+j w t). */
 static void mie(double complex s[2], double a_m, double k, double between_rad)
 {
     enum { most = 200 };
-    const double    x = k * a_m, mu = -cos(between_rad); /* of the scattering angle */
-    const int       terms = (int)(x + 4 * cbrt(x) + 3);
-    long double     j[most], y[most];
-    double          angle[most + 1] = {0, 1};
-    double complex  sum[2] = {0, 0};
+    const double   x = k * a_m, mu = -cos(between_rad); /* of the scattering angle */
+    const int      terms = (int)(x + 4 * cbrt(x) + 3);
+    long double    j[most], y[most];
+    double         angle[most + 1] = {0, 1};
+    double complex sum[2] = {0, 0};
     CHECK(terms < most);
     j[0] = sinl(x) / (long double)x, y[0] = -cosl(x) / (long double)x;
     j[1] = j[0] / (long double)x - cosl(x) / (long double)x, y[1] = y[0] / (long double)x - sinl(x) / (long double)x;
@@ -416,8 +421,8 @@ static void a_sphere_above_a_mirror(void **state)
 
 /* ---- what sees the image ------------------------------------------------------------------------------------- */
 
-/* A level plate so high above the ground: by way of the ground the antenna lights a strip of its underside that is as wide as
- * the ray that just misses its edge reaches in: 2 h cot e behind the edge (down to the ground and up again). */
+/* A level plate so high above the ground: by way of the ground the antenna lights a strip of its underside that is as
+ * wide as the ray that just misses its edge reaches in: 2 h cot e behind the edge (down to the ground and up again). */
 static void a_roof_hides_its_own_ground(void **state)
 {
     (void)state;
@@ -543,16 +548,11 @@ static void a_truck_on_the_ground(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(an_image_is_as_far_from_the_plane),
-        cmocka_unit_test(a_mirror_has_no_field_along_it),
-        cmocka_unit_test(roughness_is_as_published),
-        cmocka_unit_test(every_surface_has_a_ground),
-        cmocka_unit_test(a_point_has_the_two_ray_pattern),
-        cmocka_unit_test(a_standing_plate_is_a_dihedral),
-        cmocka_unit_test(a_standing_cylinder_is_a_top_hat),
-        cmocka_unit_test(a_sphere_above_a_mirror),
-        cmocka_unit_test(a_roof_hides_its_own_ground),
-        cmocka_unit_test(a_truck_on_the_ground),
+        cmocka_unit_test(an_image_is_as_far_from_the_plane), cmocka_unit_test(a_mirror_has_no_field_along_it),
+        cmocka_unit_test(roughness_is_as_published),         cmocka_unit_test(every_surface_has_a_ground),
+        cmocka_unit_test(a_point_has_the_two_ray_pattern),   cmocka_unit_test(a_standing_plate_is_a_dihedral),
+        cmocka_unit_test(a_standing_cylinder_is_a_top_hat),  cmocka_unit_test(a_sphere_above_a_mirror),
+        cmocka_unit_test(a_roof_hides_its_own_ground),       cmocka_unit_test(a_truck_on_the_ground),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

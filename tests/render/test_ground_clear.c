@@ -20,12 +20,10 @@ static double walls(double x_m, double y_m)
     return 20 + 30 * floor(fabs(fmod(x_m, 64)) / 32) + 10 * floor(fabs(fmod(x_m - y_m, 48)) / 24) + 0.01 * y_m;
 }
 
-static double spikes(double x_m, double y_m)
-{
-    return lround(x_m) % 23 == 0 && lround(y_m) % 19 == 0 ? 90 : 40;
-}
+static double spikes(double x_m, double y_m) { return lround(x_m) % 23 == 0 && lround(y_m) % 19 == 0 ? 90 : 40; }
 
-static void add_level(Elevation *e, int index, int nx, int ny, double x0_m, double y0_m, double spacing_m, Country *country)
+static void add_level(Elevation *e, int index, int nx, int ny, double x0_m, double y0_m, double spacing_m,
+                      Country *country)
 {
     CHECK(elevation_level_create(e, index, nx, ny, x0_m, y0_m, spacing_m, -20, 1.0 / 128) == STATUS_OK);
     for (int j = 0; j < ny; j++)
@@ -44,11 +42,13 @@ static void make_country(Elevation *e, Country *country, bool nested)
 
 static void place_in(double p[3], const double box[2][3])
 {
-    for (int c = 0; c < 3; c++) p[c] = box[0][c] + (box[1][c] - box[0][c]) * floor(uniform(0, 5)) / 4; /* corners, too */
+    for (int c = 0; c < 3; c++)
+        p[c] = box[0][c] + (box[1][c] - box[0][c]) * floor(uniform(0, 5)) / 4; /* corners, too */
 }
 
 /* Of so many bundles those said to be clear; not one of their rays meets anything. A third goes on for good. */
-static int clear_bundles(const Ground *ground, const Elevation *e, int bundles, double least_m, double most_m, double climb)
+static int clear_bundles(const Ground *ground, const Elevation *e, int bundles, double least_m, double most_m,
+                         double climb)
 {
     int clear = 0;
     for (int n = 0; n < bundles; n++) {

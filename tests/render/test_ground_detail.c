@@ -26,8 +26,8 @@ static int open_world(void **state)
     }
     detail_table_close(hand.world.detail);
     hand.world.detail = NULL;
-    if (detail_table_create(&table, (const DetailStatistics(*)[detail_fields])statistics,
-                            detail_cut_off) != STATUS_OK) return -1;
+    if (detail_table_create(&table, (const DetailStatistics(*)[detail_fields])statistics, detail_cut_off) != STATUS_OK)
+        return -1;
     hand_air_off(sun_enu);
     hand_clear();
     return 0;
@@ -61,9 +61,9 @@ static void fields_of(float *albedo, float *warmth_k, const View *view, int samp
     static float lwir[pixels], pan[pixels];
     const size_t n = (size_t)view->width * (size_t)view->height;
     const double air_k = hand.air.light.weather.air_temp_k, d_k = 0.5;
-    const double per_k = (planck_band(8e-6, 12e-6, air_k + d_k, NULL) - planck_band(8e-6, 12e-6, air_k - d_k,
-                                                                                    NULL)) / (2 * d_k) *
-                         (1 - (double)hand.world.materials.material[hand.world.materials.surface[SURFACE_GRASS]].rho_lwir);
+    const double per_k =
+        (planck_band(8e-6, 12e-6, air_k + d_k, NULL) - planck_band(8e-6, 12e-6, air_k - d_k, NULL)) / (2 * d_k) *
+        (1 - (double)hand.world.materials.material[hand.world.materials.surface[SURFACE_GRASS]].rho_lwir);
     const RenderRequest request = request_from(view, samples);
     RenderRequest       even = request;
     even.samples = 1;
@@ -85,8 +85,8 @@ static void fields_of(float *albedo, float *warmth_k, const View *view, int samp
 static void averages_of(float *albedo, float *warmth_k, const View *view)
 {
     enum { places = side * side };
-    static double  x_m[places], y_m[places];
-    static float   a[places], w[places], none[places];
+    static double x_m[places], y_m[places];
+    static float  a[places], w[places], none[places];
     static uint8_t class[places];
     arena_reset(hand.arena);
     const RenderRequest request = request_from(view, 1);
@@ -103,7 +103,7 @@ static void averages_of(float *albedo, float *warmth_k, const View *view)
             x_m[k] = view->p_enu[0] + range_m * d[0], y_m[k] = view->p_enu[1] + range_m * d[1];
         }
         detail_at(&(GroundDetail){.albedo = a, .warmth_k = w}, table, &hand.landscape, places, class, x_m, y_m,
-                          &(GroundFootprint){none, none});
+                  &(GroundFootprint){none, none});
         for (int k = 0; k < places; k++) sum[0] += (double)a[k], sum[1] += (double)w[k];
         albedo[i] = (float)(sum[0] / places), warmth_k[i] = (float)(sum[1] / places);
     }
@@ -126,7 +126,10 @@ static void add(Sums *s, const float *v, double mean)
 
 static void statistics_are_those_of_the_filtered_class(void **state)
 {
-    static const struct { double range_m, focal_px; int eyes; } from[] = {{150, 450, 4}, {400, 450, 2}, {1200, 450, 1}};
+    static const struct {
+        double range_m, focal_px;
+        int    eyes;
+    } from[] = {{150, 450, 4}, {400, 450, 2}, {1200, 450, 1}};
     static float a[2][pixels], w[2][pixels];
     (void)state;
     for (size_t r = 0; r < sizeof from / sizeof *from; r++) {
@@ -148,8 +151,8 @@ static void statistics_are_those_of_the_filtered_class(void **state)
                 for (int d = 0; d < 2; d++) beside[k][d] = (s->beside[d] / s->count - mean * mean) / variance[k];
             }
             print_message("%s at %.0f m: deviation %.4f for %.4f, skew %.2f for %.2f, beside %.2f for %.2f, "
-                          "behind %.2f for %.2f\n", f ? "LWIR" : "optical", from[r].range_m, sqrt(variance[0]), sqrt(variance[1]),
-                              skew[0],
+                          "behind %.2f for %.2f\n",
+                          f ? "LWIR" : "optical", from[r].range_m, sqrt(variance[0]), sqrt(variance[1]), skew[0],
                           skew[1], beside[0][0], beside[1][0], beside[0][1], beside[1][1]);
             CHECK_NEAR(variance[0] / variance[1], 1, 0.10);
             CHECK_NEAR(skew[0], skew[1], fmax(0.25 * fabs(skew[1]), 0.1));
@@ -168,7 +171,7 @@ static void a_moving_eye_sees_no_shimmer(void **state)
     for (int ahead_too = 0; ahead_too < 2; ahead_too++) {
         double variance[2][2] = {{0}}; /* one ray, 256 rays; albedo, temperature */
         for (int k = 0; k < frames; k++) {
-            View view = view_from(range_m, focal_px, 50, 80, wide, high);
+            View         view = view_from(range_m, focal_px, 50, 80, wide, high);
             const double pixel_m = range_m / focal_px * k / 8;
             view.p_enu[0] += ahead_too ? pixel_m / 0.6 : 0;
             view.p_enu[1] += ahead_too ? 0 : pixel_m;
@@ -203,10 +206,12 @@ static void slopes_keep_the_mean_light(void **state)
     DetailTable     *bumps = NULL;
     double           mean[3] = {0};
     (void)state;
-    for (int s = 1; s < SURFACE_COUNT; s++) statistics[s][DETAIL_HEIGHT] = (DetailStatistics){0.06, 0.8, 0.2, 1.5, 0.8, 0};
-    CHECK(detail_table_create(&bumps, (const DetailStatistics(*)[detail_fields])statistics, detail_cut_off) == STATUS_OK);
-    Material        *grass = &hand.world.materials.material[hand.world.materials.surface[SURFACE_GRASS]];
-    const float      gloss = grass->gloss;
+    for (int s = 1; s < SURFACE_COUNT; s++)
+        statistics[s][DETAIL_HEIGHT] = (DetailStatistics){0.06, 0.8, 0.2, 1.5, 0.8, 0};
+    CHECK(detail_table_create(&bumps, (const DetailStatistics(*)[detail_fields])statistics, detail_cut_off) ==
+          STATUS_OK);
+    Material   *grass = &hand.world.materials.material[hand.world.materials.surface[SURFACE_GRASS]];
+    const float gloss = grass->gloss;
     grass->gloss = 0; /* what mirrors is not linear */
     for (int k = 0; k < 3; k++) {
         const RenderRequest request = request_from(&view, k == 2 ? 8 : 1);
@@ -218,7 +223,8 @@ static void slopes_keep_the_mean_light(void **state)
     hand.world.detail = NULL;
     grass->gloss = gloss;
     detail_table_close(bumps);
-    print_message("mean light with slopes over that without: %.4f with one ray, %.4f with 64\n", mean[1] / mean[0], mean[2] / mean[0]);
+    print_message("mean light with slopes over that without: %.4f with one ray, %.4f with 64\n", mean[1] / mean[0],
+                  mean[2] / mean[0]);
     CHECK_NEAR(mean[1] / mean[0], 1, 0.004);
     CHECK_NEAR(mean[2] / mean[0], 1, 0.004);
 }

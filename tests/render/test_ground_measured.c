@@ -46,11 +46,19 @@ static void miss_alamosa(double *rms_k, double *mean_k, double dry_m)
      * 1998), at its field capacity of 0.207 (Rawls et al. 1982) under a dry layer; roughness of flat ground with sparse
      * low plants 0.01 m (Wieringa 1993). The albedo is measured every minute. */
     static const double emissivity = 0.97;
-    const GroundKind kind = {.layers = 1, .layer = {{dry_m, ground_soil_conductivity_w_mk(0.435, 0.6, 0), ground_soil_capacity_j_m3k(0.435, 0)}},
-                             .porosity = 0.435, .quartz = 0.6, .saturation = 0.207 / 0.435, .roughness_m = 0.01,
-                             .vapour = GROUND_DRY, .absorptance = 1, .emissivity = emissivity, .melts_k = INFINITY};
+    const GroundKind    kind = {
+           .layers = 1,
+           .layer = {{dry_m, ground_soil_conductivity_w_mk(0.435, 0.6, 0), ground_soil_capacity_j_m3k(0.435, 0)}},
+           .porosity = 0.435,
+           .quartz = 0.6,
+           .saturation = 0.207 / 0.435,
+           .roughness_m = 0.01,
+           .vapour = GROUND_DRY,
+           .absorptance = 1,
+           .emissivity = emissivity,
+           .melts_k = INFINITY};
     const GroundExposure open = {{0, 0, 1}, 1, 1, 0};
-    double mean = 0;
+    double               mean = 0;
     for (int i = 0; i < rows.count; i++) mean += surface_k(rows.v[i][7], rows.v[i][6], emissivity) / rows.count;
     Column       layers;
     GroundColumn column;
@@ -65,7 +73,9 @@ static void miss_alamosa(double *rms_k, double *mean_k, double dry_m)
                 /* the sum of direct and diffuse is more accurate than the global pyranometer (McArthur, BSRN, 2005) */
                 const double sun = high > 0 ? fmax(v[4], 0) * high + fmax(v[5], 0) - v[3] : 0;
                 w[k] = (GroundWeather){.air = {air_k, v[9] / 100 * saturation_pa(air_k), 100 * v[11], v[10], 10, 10},
-                                       .diffuse_w_m2 = sun, .longwave_w_m2 = v[6], .sun_d_enu = {0, 0, 1}};
+                                       .diffuse_w_m2 = sun,
+                                       .longwave_w_m2 = v[6],
+                                       .sun_d_enu = {0, 0, 1}};
             }
             ground_column_step(&column, ground_grid_default.tolerance_k, &w[0], &w[1], &open, 300);
             const double *v = rows.v[(i + 1) % rows.count];
@@ -100,14 +110,21 @@ static void bondville(void **state)
      * roughness of a stubble field 0.03 m (Wieringa 1993); dry it absorbs 0.7185 (ECOSTRESS, brown silty loam). */
     static const double porosity = 0.476;
     enum { probes = 7 };
-    static const double depth_m[] = {0, 0.02, 0.04, 0.08, 0.16, 0.32, 0.64, 3};
-    const double *first = rows.v[0];
-    const double start_c[] = {first[9], first[10], first[11], first[12], first[13], first[14], first[15], first[15] - 2};
-    const GroundKind kind = {.porosity = porosity, .quartz = 0.25, .saturation = 0.40 / porosity, .roughness_m = 0.03,
-                             .vapour = GROUND_SOIL, .absorptance = 0.7185, .emissivity = 0.9515, .melts_k = INFINITY};
+    static const double  depth_m[] = {0, 0.02, 0.04, 0.08, 0.16, 0.32, 0.64, 3};
+    const double        *first = rows.v[0];
+    const double         start_c[] = {first[9],  first[10], first[11], first[12],
+                                      first[13], first[14], first[15], first[15] - 2};
+    const GroundKind     kind = {.porosity = porosity,
+                                 .quartz = 0.25,
+                                 .saturation = 0.40 / porosity,
+                                 .roughness_m = 0.03,
+                                 .vapour = GROUND_SOIL,
+                                 .absorptance = 0.7185,
+                                 .emissivity = 0.9515,
+                                 .melts_k = INFINITY};
     const GroundExposure open = {{0, 0, 1}, 1, 1, 0};
-    Column       layers;
-    GroundColumn column;
+    Column               layers;
+    GroundColumn         column;
     CHECK(ground_layers(&layers, &kind, &ground_grid_default) == STATUS_OK);
     ground_column_start(&column, &kind, &layers, 0);
     for (int i = 0, k = 0; i < layers.nodes; i++) {
@@ -126,7 +143,8 @@ static void bondville(void **state)
             /* radiation is the mean of the half hour before the stamp */
             w[k] = (GroundWeather){.air = {air_k, v[3] / 100 * saturation_pa(air_k), 100 * v[4], v[16], 3, 6},
                                    .diffuse_w_m2 = fmax(0.5 * (v[5] + next[5]), 0),
-                                   .longwave_w_m2 = 0.5 * (v[19] + next[19]), .sun_d_enu = {0, 0, 1},
+                                   .longwave_w_m2 = 0.5 * (v[19] + next[19]),
+                                   .sun_d_enu = {0, 0, 1},
                                    .rain_kg_m2s = v[8] * 25.4 / 1800};
         }
         ground_column_step(&column, ground_grid_default.tolerance_k, &w[0], &w[1], &open, 1800);
@@ -141,8 +159,9 @@ static void bondville(void **state)
     }
     double rms_k[probes];
     for (int k = 0; k < probes; k++) rms_k[k] = sqrt(miss2[k] / count[k]);
-    print_message("Bondville: skin %.2f K rms (air: %.2f), noon %+.2f K; 2, 4, 8, 16, 32, 64 cm: %.2f %.2f %.2f %.2f %.2f %.2f\n",
-                  rms_k[0], sqrt(air2 / count[0]), noon_k / noons, rms_k[1], rms_k[2], rms_k[3], rms_k[4], rms_k[5], rms_k[6]);
+    print_message(
+        "Bondville: skin %.2f K rms (air: %.2f), noon %+.2f K; 2, 4, 8, 16, 32, 64 cm: %.2f %.2f %.2f %.2f %.2f %.2f\n",
+        rms_k[0], sqrt(air2 / count[0]), noon_k / noons, rms_k[1], rms_k[2], rms_k[3], rms_k[4], rms_k[5], rms_k[6]);
     CHECK(count[0] > 600 && noons > 60);
     CHECK(rms_k[0] <= 2.0);
     CHECK(fabs(noon_k / noons) <= 2);

@@ -10,10 +10,7 @@ enum { nx = 150, ny = 139, rays = 2048 };
 
 static uint64_t draws;
 
-static double uniform(double low, double high)
-{
-    return low + (high - low) * random_uniform(20261122, 5, 0, draws++);
-}
+static double uniform(double low, double high) { return low + (high - low) * random_uniform(20261122, 5, 0, draws++); }
 
 static int pick(int count) { return (int)uniform(0, count); }
 
@@ -43,15 +40,15 @@ static void make_ground(Elevation *e, Shape *shape, double spacing_m)
     int32_t *post = malloc((size_t)nx * ny * sizeof *post);
     CHECK(post);
     *e = (Elevation){0};
-    CHECK(elevation_level_create(e, 0, nx, ny, -0.5 * nx * spacing_m, -0.5 * ny * spacing_m, spacing_m, 0,
-                                 1.0 / 512) == STATUS_OK);
+    CHECK(elevation_level_create(e, 0, nx, ny, -0.5 * nx * spacing_m, -0.5 * ny * spacing_m, spacing_m, 0, 1.0 / 512) ==
+          STATUS_OK);
     for (int j = 0; j < ny; j++)
         for (int i = 0; i < nx; i++) post[j * nx + i] = shape(i, j);
     CHECK(elevation_fill(&e->level[0], post) == STATUS_OK);
     elevation_build_pyramids(e);
     free(post);
     const ElevationLevel *l = &e->level[0];
-    int shifts = 0;
+    int                   shifts = 0;
     for (int t = 0; t < l->tiles_x * l->tiles_y; t++) shifts |= 1 << l->tile[t].shift;
     CHECK(!l->plain && (shifts & (shifts - 1)) != 0); /* more than one */
 }

@@ -1,7 +1,6 @@
 /* Rays that keep together against the same rays eight by eight: not a bit may differ, whatever the country and wherever
- * the eye. Of this the second knows neither strips nor groups (tests/render/test_ground.c judges it). Normals of four hits
- * at a time likewise against those of one, post by post.
- * labels: physics slow */
+ * the eye. Of this the second knows neither strips nor groups (tests/render/test_ground.c judges it). Normals of four
+ * hits at a time likewise against those of one, post by post. labels: physics slow */
 #include "tests/check.h"
 
 #include "render/trace/ground/ground.h"
@@ -42,7 +41,8 @@ static void upward(double n[3], double slope_x, double slope_y)
     n[0] = -slope_x * s, n[1] = -slope_y * s, n[2] = s;
 }
 
-static void normals_at(double n_geo[3], double n_enu[3], const Ground *ground, const GroundHit *hit, double x_m, double y_m)
+static void normals_at(double n_geo[3], double n_enu[3], const Ground *ground, const GroundHit *hit, double x_m,
+                       double y_m)
 {
     const GroundLevel    *g = &ground->level[hit->level];
     const ElevationLevel *e = &ground->elevation->level[hit->level];
@@ -51,7 +51,8 @@ static void normals_at(double n_geo[3], double n_enu[3], const Ground *ground, c
               nw = elevation_post(e, i, j + 1), ne = elevation_post(e, i + 1, j + 1);
     if (hit->north_west) upward(n_geo, (ne - nw) * scale, (nw - sw) * scale);
     else upward(n_geo, (se - sw) * scale, (ne - se) * scale);
-    const double a = clamp((x_m - g->x0_m) * g->cells_per_m - i, 0, 1), b = clamp((y_m - g->y0_m) * g->cells_per_m - j, 0, 1);
+    const double a = clamp((x_m - g->x0_m) * g->cells_per_m - i, 0, 1),
+                 b = clamp((y_m - g->y0_m) * g->cells_per_m - j, 0, 1);
     const double low = a < b ? a : b, high = a < b ? b : a;
     double       at[3][2], slope[2];
     slope_at(at[0], e, scale, i, j);
@@ -68,7 +69,8 @@ static void compare_normals(const Ground *ground, const char *what)
     static int    list[tile];
     int           count = 0;
     for (int n = 0; n < batch.count; n++) {
-        x_m[n] = batch.o[0][n] + batch.plain_m[n] * batch.d[0][n], y_m[n] = batch.o[1][n] + batch.plain_m[n] * batch.d[1][n];
+        x_m[n] = batch.o[0][n] + batch.plain_m[n] * batch.d[0][n],
+        y_m[n] = batch.o[1][n] + batch.plain_m[n] * batch.d[1][n];
         if (batch.plain_m[n] < INFINITY) list[count++] = n;
     }
     for (int first = 0, some; first < count; first += some) {
@@ -92,7 +94,7 @@ static void compare_normals(const Ground *ground, const char *what)
 static int compare(const Ground *ground, const char *what)
 {
     const double *const o[3] = {batch.o[0], batch.o[1], batch.o[2]}, *const d[3] = {batch.d[0], batch.d[1], batch.d[2]};
-    int                 hits = 0;
+    int hits = 0;
     memset(batch.range_m, 0xee, sizeof batch.range_m);
     ground_first_hits(batch.plain_m, batch.plain_hit, ground, batch.count, o, d, batch.far_m);
     ground_first_hits_together(batch.range_m, batch.hit, ground, batch.count, o, d, batch.far_m);
@@ -141,10 +143,7 @@ static double downs(double x_m, double y_m) /* so gentle that a sun of 30 degree
            (fabs(y_m + 0.5 * x_m) < 3 ? 5 : 0);
 }
 
-static double plain(double x_m, double y_m)
-{
-    return -10 + 0.002 * x_m + 0.003 * y_m;
-}
+static double plain(double x_m, double y_m) { return -10 + 0.002 * x_m + 0.003 * y_m; }
 
 static double noise(double x_m, double y_m)
 {
@@ -196,7 +195,7 @@ static void turn(double r_enu_from_cam[9], double yaw_rad, double pitch_rad, dou
     double       down[3];
     v3_cross(down, ahead, right);
     for (int c = 0; c < 3; c++) {
-        r_enu_from_cam[3 * c]     = right[c] * cos(roll_rad) + down[c] * sin(roll_rad);
+        r_enu_from_cam[3 * c] = right[c] * cos(roll_rad) + down[c] * sin(roll_rad);
         r_enu_from_cam[3 * c + 1] = down[c] * cos(roll_rad) - right[c] * sin(roll_rad);
         r_enu_from_cam[3 * c + 2] = ahead[c];
     }
@@ -214,12 +213,23 @@ static void random_view(View *view, const Elevation *e)
     view->p_enu[2] = (isnan(ground) ? 100 : ground) + (pick_of(12) == 0 ? -uniform(0, 50) : exp(uniform(-6, 8)));
     double yaw_rad = uniform(0, 2 * pi_rad), pitch_rad = uniform(-0.6, 0.1), roll_rad = uniform(-0.5, 0.5);
     switch (pick_of(8)) {
-    case 0: pitch_rad = -pi_rad / 2; break;
-    case 1: pitch_rad = pi_rad / 2; break;
-    case 2: pitch_rad = uniform(-pi_rad / 2, pi_rad / 2); break;
-    case 3: yaw_rad = quarter[pick_of(4)] * pi_rad; break;
-    case 4: roll_rad = uniform(-pi_rad, pi_rad); break;
-    default: break;
+    case 0:
+        pitch_rad = -pi_rad / 2;
+        break;
+    case 1:
+        pitch_rad = pi_rad / 2;
+        break;
+    case 2:
+        pitch_rad = uniform(-pi_rad / 2, pi_rad / 2);
+        break;
+    case 3:
+        yaw_rad = quarter[pick_of(4)] * pi_rad;
+        break;
+    case 4:
+        roll_rad = uniform(-pi_rad, pi_rad);
+        break;
+    default:
+        break;
     }
     view->focal_px = view_focal_px(view->width, exp(uniform(log(0.01), log(120))) * rad_per_deg);
     turn(view->r_enu_from_cam, yaw_rad, pitch_rad, pick_of(3) ? roll_rad : 0);
@@ -295,19 +305,43 @@ static void every_view(Country *country, const char *name, int views)
     CHECK(dark > sun_rays / 50 && dark < sun_rays * 19 / 20);
 }
 
-static void hills_are_the_same(void **state) { (void)state; every_view(hills, "hills", 120); }
-static void canyons_are_the_same(void **state) { (void)state; every_view(canyon, "canyon", 120); }
-static void spikes_are_the_same(void **state) { (void)state; every_view(spikes, "spikes", 120); }
-static void cliffs_are_the_same(void **state) { (void)state; every_view(steps, "cliffs", 120); }
-static void downs_are_the_same(void **state) { (void)state; every_view(downs, "downs", 120); }
-static void noise_is_the_same(void **state) { (void)state; every_view(noise, "noise", 120); }
+static void hills_are_the_same(void **state)
+{
+    (void)state;
+    every_view(hills, "hills", 120);
+}
+static void canyons_are_the_same(void **state)
+{
+    (void)state;
+    every_view(canyon, "canyon", 120);
+}
+static void spikes_are_the_same(void **state)
+{
+    (void)state;
+    every_view(spikes, "spikes", 120);
+}
+static void cliffs_are_the_same(void **state)
+{
+    (void)state;
+    every_view(steps, "cliffs", 120);
+}
+static void downs_are_the_same(void **state)
+{
+    (void)state;
+    every_view(downs, "downs", 120);
+}
+static void noise_is_the_same(void **state)
+{
+    (void)state;
+    every_view(noise, "noise", 120);
+}
 
 /* Rays no camera makes: of one eye or one direction, with numbers among them that no ray should have. */
 static void odd_rays_are_the_same(void **state)
 {
     (void)state;
-    static const double odd[] = {0, -0.0, 1, -1, 1e-300, 1e-31, -1e-31, 1e-9, -1e-12, NAN, INFINITY, -INFINITY,
-                                 1e308, 3, 5e-324};
+    static const double odd[] = {0,      -0.0, 1,        -1,        1e-300, 1e-31, -1e-31, 1e-9,
+                                 -1e-12, NAN,  INFINITY, -INFINITY, 1e308,  3,     5e-324};
     static const double place[] = {0, -0.0, -80, 80, 161, 1e9, -1e9, 1e12, 1e-300, 1e6, NAN, INFINITY, 0.5, 16};
     for (int n = 0; n < 2000; n++) {
         static Elevation e;
@@ -380,14 +414,10 @@ static void any_count_is_the_same(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(hills_are_the_same),
-        cmocka_unit_test(canyons_are_the_same),
-        cmocka_unit_test(spikes_are_the_same),
-        cmocka_unit_test(cliffs_are_the_same),
-        cmocka_unit_test(downs_are_the_same),
-        cmocka_unit_test(noise_is_the_same),
-        cmocka_unit_test(odd_rays_are_the_same),
-        cmocka_unit_test(any_count_is_the_same),
+        cmocka_unit_test(hills_are_the_same),    cmocka_unit_test(canyons_are_the_same),
+        cmocka_unit_test(spikes_are_the_same),   cmocka_unit_test(cliffs_are_the_same),
+        cmocka_unit_test(downs_are_the_same),    cmocka_unit_test(noise_is_the_same),
+        cmocka_unit_test(odd_rays_are_the_same), cmocka_unit_test(any_count_is_the_same),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -36,14 +36,14 @@ static double ground_k(const HeatNow *now, int kind, double x, double y, double 
     return heat_ground_k(now, kind, n, 0, 1, 1);
 }
 
-/* A column by itself from the same beginning: eight days before, so that its start is forgotten. shaded: from and to, hours
- * of the last day, without direct sun. */
+/* A column by itself from the same beginning: eight days before, so that its start is forgotten. shaded: from and to,
+ * hours of the last day, without direct sun. */
 static double column_k(int kind, const PaperDay *day, const double n_enu[3], double until_h, double from_h, double to_h)
 {
     static const double step_s = 300, before_s = 3 * 86400;
-    Column        layers;
-    GroundColumn  c;
-    GroundWeather w[2];
+    Column              layers;
+    GroundColumn        c;
+    GroundWeather       w[2];
     CHECK(ground_layers(&layers, &kinds.kind[kind], &(GroundGrid){0.0015, 1.2, 3, 0.01}) == STATUS_OK);
     ground_column_start(&c, &kinds.kind[kind], &layers, day->air_k + 3);
     paper_weather(&w[0], paper_unix_s - before_s, day);
@@ -61,14 +61,15 @@ static double column_k(int kind, const PaperDay *day, const double n_enu[3], dou
 static void tables_are_columns(void **state)
 {
     (void)state;
-    static const int which[] = {SURFACE_GRASS, SURFACE_BARE_SOIL, SURFACE_ROAD, SURFACE_SAND, SURFACE_ROCK};
+    static const int    which[] = {SURFACE_GRASS, SURFACE_BARE_SOIL, SURFACE_ROAD, SURFACE_SAND, SURFACE_ROCK};
     static const double hours[] = {5, 13, 20};
-    Heat  *h = paper_heat(&kinds, &paper_summer, 4, NULL);
-    double worst_k = 0;
+    Heat               *h = paper_heat(&kinds, &paper_summer, 4, NULL);
+    double              worst_k = 0;
     for (int t = 0; t < 3; t++) {
         const HeatNow *now = at(h, hours[t]);
         for (int k = 0; k < 5; k++)
-            worst_k = fmax(worst_k, fabs(ground_k(now, which[k], 0, 0, 1) - column_k(which[k], &paper_summer, level, hours[t], 0, 0)));
+            worst_k = fmax(worst_k, fabs(ground_k(now, which[k], 0, 0, 1) -
+                                         column_k(which[k], &paper_summer, level, hours[t], 0, 0)));
         arena_reset(arena);
     }
     print_message("level ground against columns run by themselves: %.2f K\n", worst_k);
@@ -84,11 +85,15 @@ static void slopes_face_the_sun(void **state)
     const double   tilt = 30 * rad_per_deg;
     const HeatNow *morning = at(h, 7.7), *evening = at(h, 16.3), *night = at(h, 27);
     const double   low = sin(tilt), high = cos(tilt);
-    const double   east_am = ground_k(morning, SURFACE_GRASS, low, 0, high), west_am = ground_k(morning, SURFACE_GRASS, -low, 0, high);
-    const double   east_pm = ground_k(evening, SURFACE_GRASS, low, 0, high), west_pm = ground_k(evening, SURFACE_GRASS, -low, 0, high);
-    const double   wall_e = ground_k(morning, SURFACE_BUILT, 1, 0, 0), wall_w = ground_k(morning, SURFACE_BUILT, -1, 0, 0);
-    print_message("slopes of 30 degrees, east less west: %+.1f K in the morning, %+.1f K in the afternoon; walls %+.1f K\n",
-                  east_am - west_am, east_pm - west_pm, wall_e - wall_w);
+    const double   east_am = ground_k(morning, SURFACE_GRASS, low, 0, high),
+                 west_am = ground_k(morning, SURFACE_GRASS, -low, 0, high);
+    const double east_pm = ground_k(evening, SURFACE_GRASS, low, 0, high),
+                 west_pm = ground_k(evening, SURFACE_GRASS, -low, 0, high);
+    const double wall_e = ground_k(morning, SURFACE_BUILT, 1, 0, 0),
+                 wall_w = ground_k(morning, SURFACE_BUILT, -1, 0, 0);
+    print_message(
+        "slopes of 30 degrees, east less west: %+.1f K in the morning, %+.1f K in the afternoon; walls %+.1f K\n",
+        east_am - west_am, east_pm - west_pm, wall_e - wall_w);
     CHECK(east_am - west_am > 6 && east_am - west_am < 25);
     CHECK(west_pm - east_pm > 6 && west_pm - east_pm < 25);
     CHECK(wall_e - wall_w > 6);
@@ -101,13 +106,15 @@ static void slopes_face_the_sun(void **state)
 static void facets_are_close(void **state)
 {
     (void)state;
-    static const double n[][3] = {{0.3, 0.1, 0.95}, {-0.5, 0.4, 0.77}, {0.2, -0.7, 0.68}, {-0.1, -0.2, 0.97}, {0.75, 0.6, 0.28}};
+    static const double n[][3] = {
+        {0.3, 0.1, 0.95}, {-0.5, 0.4, 0.77}, {0.2, -0.7, 0.68}, {-0.1, -0.2, 0.97}, {0.75, 0.6, 0.28}};
     Heat  *h = paper_heat(&kinds, &paper_summer, 4, NULL);
     double sum = 0;
     for (int k = 0; k < 5; k++) {
         double unit[3];
         CHECK(v3_normalize(unit, n[k]));
-        const double found = heat_ground_k(at(h, 9), SURFACE_DRY_GRASS, unit, 0, 1, 1), want = column_k(SURFACE_DRY_GRASS, &paper_summer, unit, 9, 0, 0);
+        const double found = heat_ground_k(at(h, 9), SURFACE_DRY_GRASS, unit, 0, 1, 1),
+                     want = column_k(SURFACE_DRY_GRASS, &paper_summer, unit, 9, 0, 0);
         print_message("normal %+.1f %+.1f: %+.2f K\n", unit[0], unit[1], found - want);
         CHECK_NEAR(found, want, 2.5);
         sum += (found - want) * (found - want) / 5;
@@ -121,9 +128,10 @@ static void facets_are_close(void **state)
 static double by_hand_k(const GroundHeatTable *t, int kind, const double n[3], double taken, double open, double dark)
 {
     const double sum = fabs(n[0]) + fabs(n[1]) + (n[2] > 0 ? n[2] : 0), over = 1 / sum;
-    const double x = 0.5 * ((n[0] + n[1]) * over + 1) * (t->facets - 1), y = 0.5 * ((n[0] - n[1]) * over + 1) * (t->facets - 1);
-    const int    i = x < t->facets - 2 ? (int)x : t->facets - 2, j = y < t->facets - 2 ? (int)y : t->facets - 2;
-    double       row[2], up_k[2];
+    const double x = 0.5 * ((n[0] + n[1]) * over + 1) * (t->facets - 1),
+                 y = 0.5 * ((n[0] - n[1]) * over + 1) * (t->facets - 1);
+    const int i = x < t->facets - 2 ? (int)x : t->facets - 2, j = y < t->facets - 2 ? (int)y : t->facets - 2;
+    double    row[2], up_k[2];
     for (int r = 0; r < 2; r++) {
         const float *k = &t->sun_k[kind][(j + r) * t->facets + i];
         row[r] = (double)k[0] + (x - i) * ((double)k[1] - (double)k[0]);
@@ -135,7 +143,8 @@ static double by_hand_k(const GroundHeatTable *t, int kind, const double n[3], d
         up_k[side] = (double)k[u] + (up - u) * ((double)k[u + 1] - (double)k[u]);
     }
     const double shade_k = up_k[0], dark_k = up_k[1], lit_k = sun_k + taken * (shade_k - sun_k);
-    return dark_k + dark * (lit_k - dark_k) + (1 - open) * ((double)t->hidden_k[kind] - (dark_k + dark * (shade_k - dark_k)));
+    return dark_k + dark * (lit_k - dark_k) +
+           (1 - open) * ((double)t->hidden_k[kind] - (dark_k + dark * (shade_k - dark_k)));
 }
 
 /* Places side by side, of any kinds, against each by itself, to the bit. */
@@ -150,7 +159,8 @@ static void places_side_by_side(void **state)
         for (int k = 0; k < heat_lanes; k++) {
             double       v[3], unit[3];
             const double special[3] = {n % 7 - 3, (n / 7) % 3 - 1, n % 2};
-            for (int c = 0; c < 3; c++) v[c] = random_uniform(8, (uint32_t)c, (uint64_t)k, (uint64_t)n) - (c == 2 ? 0.1 : 0.5);
+            for (int c = 0; c < 3; c++)
+                v[c] = random_uniform(8, (uint32_t)c, (uint64_t)k, (uint64_t)n) - (c == 2 ? 0.1 : 0.5);
             if (k == 2 || !v3_normalize(unit, v)) /* along axes and edges of the square of facets */
                 if (!v3_normalize(unit, special)) unit[0] = unit[1] = 0, unit[2] = 1;
             for (int c = 0; c < 3; c++) place.n_enu[c][k] = unit[c];
@@ -162,8 +172,10 @@ static void places_side_by_side(void **state)
         heat_grounds_k(temp_k, now, &place);
         for (int k = 0; k < heat_lanes; k++) {
             const double unit[3] = {place.n_enu[0][k], place.n_enu[1][k], place.n_enu[2][k]};
-            const double want_k = by_hand_k(&now->table, place.kind[k], unit, place.taken[k], place.open[k], place.dark[k]);
-            const double alone_k = heat_ground_k(now, place.kind[k], unit, place.taken[k], place.open[k], place.dark[k]);
+            const double want_k =
+                by_hand_k(&now->table, place.kind[k], unit, place.taken[k], place.open[k], place.dark[k]);
+            const double alone_k =
+                heat_ground_k(now, place.kind[k], unit, place.taken[k], place.open[k], place.dark[k]);
             assert_memory_equal(&temp_k[k], &want_k, sizeof want_k);
             assert_memory_equal(&temp_k[k], &alone_k, sizeof alone_k);
         }
@@ -176,12 +188,12 @@ static void places_side_by_side(void **state)
 static void shade_of_the_hours_before(void **state)
 {
     (void)state;
-    static const int which[] = {SURFACE_GRASS, SURFACE_BARE_SOIL, SURFACE_ROAD};
+    static const int    which[] = {SURFACE_GRASS, SURFACE_BARE_SOIL, SURFACE_ROAD};
     static const double from_h[] = {6, 9, 9, 12, 4}, to_h[] = {9, 12, 12, 15, 20}, until_h[] = {9.5, 12, 14, 18, 13};
-    Heat *h = paper_heat(&kinds, &paper_summer, 4, NULL);
+    Heat               *h = paper_heat(&kinds, &paper_summer, 4, NULL);
     for (int c = 0; c < 5; c++) {
         const HeatNow *now = at(h, until_h[c]);
-        uint8_t shadow[heat_day_slots] = {0};
+        uint8_t        shadow[heat_day_slots] = {0};
         for (int s = 0; s < now->slots; s++) {
             double hour = 0.25; /* the half hour with the sun in that place */
             for (double least = INFINITY, mid = 0.25; mid < 24; mid += 0.5) {
@@ -195,11 +207,12 @@ static void shade_of_the_hours_before(void **state)
         }
         for (int k = 0; k < 3; k++) {
             const double taken = heat_taken(now, which[k], level, shadow);
-            const double sunlit_k = heat_ground_k(now, which[k], level, 0, 1, 1), found_k = heat_ground_k(now, which[k], level, taken, 1, 1);
+            const double sunlit_k = heat_ground_k(now, which[k], level, 0, 1, 1),
+                         found_k = heat_ground_k(now, which[k], level, taken, 1, 1);
             const double want_k = column_k(which[k], &paper_summer, level, until_h[c], from_h[c], to_h[c]) -
                                   column_k(which[k], &paper_summer, level, until_h[c], 0, 0);
-            print_message("%s at %.1f h, shaded %g to %g h: %.2f K, column %.2f K (%.2f of the sun)\n", kinds.kind[which[k]].name,
-                          until_h[c], from_h[c], to_h[c], found_k - sunlit_k, want_k, taken);
+            print_message("%s at %.1f h, shaded %g to %g h: %.2f K, column %.2f K (%.2f of the sun)\n",
+                          kinds.kind[which[k]].name, until_h[c], from_h[c], to_h[c], found_k - sunlit_k, want_k, taken);
             CHECK_NEAR(found_k - sunlit_k, want_k, 0.5 + 0.12 * fabs(want_k));
         }
         arena_reset(arena);
@@ -237,10 +250,13 @@ static void what_everyone_knows(void **state)
     CHECK(ground_k(dawn, SURFACE_ROAD, 0, 0, 1) > ground_k(dawn, SURFACE_GRASS, 0, 0, 1));
     CHECK(ground_k(noon, SURFACE_ROCK, 0, 0, 1) < ground_k(noon, SURFACE_SAND, 0, 0, 1)); /* it conducts */
     /* dark ground by day warmer, by night as all */
-    CHECK(heat_ground_k(noon, SURFACE_BARE_SOIL, level, 0, 1, 1.2) > heat_ground_k(noon, SURFACE_BARE_SOIL, level, 0, 1, 0.8) + 2);
+    CHECK(heat_ground_k(noon, SURFACE_BARE_SOIL, level, 0, 1, 1.2) >
+          heat_ground_k(noon, SURFACE_BARE_SOIL, level, 0, 1, 0.8) + 2);
     /* under crowns: colder by day, warmer by night */
-    CHECK(heat_ground_k(noon, SURFACE_GRASS, level, 0.9, 0.2, 1) < heat_ground_k(noon, SURFACE_GRASS, level, 0, 1, 1) - 3);
-    CHECK(heat_ground_k(dawn, SURFACE_GRASS, level, 0.9, 0.2, 1) > heat_ground_k(dawn, SURFACE_GRASS, level, 0, 1, 1) + 0.5);
+    CHECK(heat_ground_k(noon, SURFACE_GRASS, level, 0.9, 0.2, 1) <
+          heat_ground_k(noon, SURFACE_GRASS, level, 0, 1, 1) - 3);
+    CHECK(heat_ground_k(dawn, SURFACE_GRASS, level, 0.9, 0.2, 1) >
+          heat_ground_k(dawn, SURFACE_GRASS, level, 0, 1, 1) + 0.5);
     heat_destroy(h);
     arena_reset(arena);
 }
@@ -253,16 +269,18 @@ static void a_function_of_time_alone(void **state)
     CHECK(pool_create(&pool, 3) == STATUS_OK);
     Heat *one = paper_heat(&kinds, &paper_summer, 10, NULL), *three = paper_heat(&kinds, &paper_summer, 10, pool);
     static const double hours[] = {10.02, 12.5, 11.03, 10.0, 13.9, 12.5};
-    HeatNow *first = NULL;
+    HeatNow            *first = NULL;
     for (int k = 0; k < 6; k++) {
         HeatNow *a = at(one, hours[k]), *b = at(three, hours[5 - k]);
         if (k == 1) first = a;
         if (k == 5) CHECK(memcmp(first, a, sizeof *a) == 0);
         if (k == 0) CHECK(memcmp(at(one, 12.5), b, sizeof *b) == 0);
     }
-    const double before = ground_k(at(one, 12 - 1e-6), SURFACE_SAND, 0, 0, 1), after = ground_k(at(one, 12 + 1e-6), SURFACE_SAND, 0, 0, 1);
+    const double before = ground_k(at(one, 12 - 1e-6), SURFACE_SAND, 0, 0, 1),
+                 after = ground_k(at(one, 12 + 1e-6), SURFACE_SAND, 0, 0, 1);
     CHECK_NEAR(before, after, 1e-3);
-    CHECK(memcmp(at(one, 5), at(one, 10), offsetof(HeatNow, slots)) != 0 || ground_k(at(one, 5), SURFACE_SAND, 0, 0, 1) == ground_k(at(one, 10), SURFACE_SAND, 0, 0, 1));
+    CHECK(memcmp(at(one, 5), at(one, 10), offsetof(HeatNow, slots)) != 0 ||
+          ground_k(at(one, 5), SURFACE_SAND, 0, 0, 1) == ground_k(at(one, 10), SURFACE_SAND, 0, 0, 1));
     heat_destroy(one);
     heat_destroy(three);
     pool_destroy(pool);
@@ -277,7 +295,8 @@ static void a_day_is_remembered(void **state)
     for (int k = 0; k < 3; k++) {
         HeatConfig c = heat_default_config();
         Heat      *h;
-        c.weather = paper_weather, c.user = &paper_summer, c.unix_s = paper_unix_s + 43200, c.step_s = steps_s[k], c.facets = 3;
+        c.weather = paper_weather, c.user = &paper_summer, c.unix_s = paper_unix_s + 43200, c.step_s = steps_s[k],
+        c.facets = 3;
         CHECK(heat_create(&h, &kinds, &c, NULL, 0) == STATUS_OK);
         const HeatPast *p = &at(h, 12)->past[1];
         double          all_s = 0;
@@ -309,10 +328,10 @@ static void settings_out_of_range(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(tables_are_columns), cmocka_unit_test(slopes_face_the_sun), cmocka_unit_test(facets_are_close),
-        cmocka_unit_test(places_side_by_side),
+        cmocka_unit_test(tables_are_columns),        cmocka_unit_test(slopes_face_the_sun),
+        cmocka_unit_test(facets_are_close),          cmocka_unit_test(places_side_by_side),
         cmocka_unit_test(shade_of_the_hours_before), cmocka_unit_test(what_everyone_knows),
-        cmocka_unit_test(a_function_of_time_alone), cmocka_unit_test(a_day_is_remembered),
+        cmocka_unit_test(a_function_of_time_alone),  cmocka_unit_test(a_day_is_remembered),
         cmocka_unit_test(settings_out_of_range),
     };
     return cmocka_run_group_tests(tests, open_kinds, close_kinds);

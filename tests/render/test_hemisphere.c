@@ -10,19 +10,19 @@
 enum { model_plane, model_sphere, model_count };
 
 static struct {
-    PlanckTable *mwir, *lwir;
-    Model model[model_count];
-    Tracer *tracer;
-    Arena *arena;
-    LocalFrame frame;
+    PlanckTable   *mwir, *lwir;
+    Model          model[model_count];
+    Tracer        *tracer;
+    Arena         *arena;
+    LocalFrame     frame;
     SnapshotEntity entity[model_count];
-    NodePose pose[model_count];
-    Snapshot snapshot;
-    Visibility *visibility;
-    Material rows[3];
-    Materials materials;
-    int *part[model_count], row_of[model_count];
-    Air air;
+    NodePose       pose[model_count];
+    Snapshot       snapshot;
+    Visibility    *visibility;
+    Material       rows[3];
+    Materials      materials;
+    int           *part[model_count], row_of[model_count];
+    Air            air;
 } stage;
 
 /* Plane rho 0.2 at z = 0, sphere rho 0.8 of radius 1 at (0, 0, 2): reference/infrared.md. */
@@ -97,7 +97,7 @@ static void look_at(Rays *rays, Hits *hits, VisibilityCounters *counters, const 
     for (int i = 0; i < count; i++) {
         /* the centre of the pixel */
         const double x = (px[i][0] + 0.5 - 360) / focal_px, y = -(px[i][1] + 0.5 - 243) / focal_px;
-        double d[3] = {x, cos(pitch) - y * sin(pitch), sin(pitch) + y * cos(pitch)};
+        double       d[3] = {x, cos(pitch) - y * sin(pitch), sin(pitch) + y * cos(pitch)};
         CHECK(v3_normalize(d, d));
         const double o[3] = {0, -12, 4};
         for (int k = 0; k < 3; k++) rays->o_enu[k][i] = o[k], rays->d_enu[k][i] = d[k];
@@ -111,7 +111,7 @@ static void sphere_over_a_plane(void **state)
     (void)state;
     static const struct {
         const char *name;
-        double px[2], cycles, radiance, tolerance;
+        double      px[2], cycles, radiance, tolerance;
     } point[] = {
         /* lit points: 1 %, shaded ones: 2 % of the span of the two (infrared.md), which differ by that themselves */
         {"ground", {60, 470}, 55.142, 55.120, 0.01},         {"sphere top", {360, 150}, 182.206, 181.780, 0.01},
@@ -119,24 +119,24 @@ static void sphere_over_a_plane(void **state)
         {"sphere bottom", {360, 290}, 37.771, 38.056, 0.02},
     };
     enum { points = sizeof point / sizeof *point };
-    static Rays rays;
-    static Hits hits;
+    static Rays            rays;
+    static Hits            hits;
     static HemisphereLight gathered;
-    double px[points][2];
+    double                 px[points][2];
     for (int i = 0; i < points; i++) memcpy(px[i], point[i].px, sizeof px[i]);
     VisibilityCounters counters = {0};
-    const double z = 40 * rad_per_deg, sun[3] = {sin(z), 0, cos(z)};
-    double sky[AIR_BAND_COUNT];
+    const double       z = 40 * rad_per_deg, sun[3] = {sin(z), 0, cos(z)};
+    double             sky[AIR_BAND_COUNT];
     for (int b = 0; b < AIR_BAND_COUNT; b++) sky[b] = 100 / pi_rad;
     air_even(&stage.air, sun, 1000, sky, 0, stage.mwir, stage.lwir);
     set_rho(0.2, 0.8);
     look_at(&rays, &hits, &counters, px, points);
 
     const HemisphereScene scene = {stage.visibility, &stage.air, &stage.materials, NULL, &stage.snapshot};
-    uint8_t shadow[hits_capacity] = {0};
-    float arrives[hits_capacity];
-    float texture[hits_capacity], out[2][hits_capacity];
-    uint16_t material[hits_capacity];
+    uint8_t               shadow[hits_capacity] = {0};
+    float                 arrives[hits_capacity];
+    float                 texture[hits_capacity], out[2][hits_capacity];
+    uint16_t              material[hits_capacity];
     visibility_shadow(shadow, stage.visibility, &hits, sun, &counters);
     for (int i = 0; i < hits.count; i++) arrives[i] = !shadow[i];
     for (int i = 0; i < points; i++) {
@@ -164,12 +164,12 @@ static void sphere_over_a_plane(void **state)
 static void even_worlds_stay_even(void **state)
 {
     (void)state;
-    static Rays rays;
-    static Hits hits;
+    static Rays            rays;
+    static Hits            hits;
     static HemisphereLight gathered;
-    VisibilityCounters counters = {0};
-    static const double px[][2] = {{60, 470}, {360, 150}, {290, 200}, {360, 290}, {360, 330}};
-    double sky[AIR_BAND_COUNT] = {1, 1, 1, 1, 1};
+    VisibilityCounters     counters = {0};
+    static const double    px[][2] = {{60, 470}, {360, 150}, {290, 200}, {360, 290}, {360, 330}};
+    double                 sky[AIR_BAND_COUNT] = {1, 1, 1, 1, 1};
     sky[AIR_MWIR] = planck_table_radiance(stage.mwir, 300), sky[AIR_LWIR] = planck_table_radiance(stage.lwir, 300);
     air_even(&stage.air, (const double[3]){0, 0.6, -0.8}, 0, sky, 0, stage.mwir, stage.lwir);
     set_rho(1, 1);
@@ -187,11 +187,11 @@ static void even_worlds_stay_even(void **state)
 static void same_question_same_bits(void **state)
 {
     (void)state;
-    static Rays rays;
-    static Hits hits;
+    static Rays            rays;
+    static Hits            hits;
     static HemisphereLight a, b;
-    VisibilityCounters counters = {0};
-    static const double px[][2] = {{290, 200}, {900, -500}, {360, 290}};
+    VisibilityCounters     counters = {0};
+    static const double    px[][2] = {{290, 200}, {900, -500}, {360, 290}};
     look_at(&rays, &hits, &counters, px, 3);
     CHECK(!(hits.range_m[1] < INFINITY));
     const double sky[AIR_BAND_COUNT] = {1, 2, 3, 4, 5, 6, 7};
@@ -207,8 +207,9 @@ static void same_question_same_bits(void **state)
 
     /* the last hit alone, by its own key: whoever else is asked for does not show, nor where blocks of paths end */
     static HemisphereLight together[4];
-    static const int samples[4] = {500, 600, 800, 1500};
-    for (int n = 0; n < 4; n++) hemisphere_light(&together[n], &scene, &hits, 1 << AIR_R, samples[n], keys(3), &counters);
+    static const int       samples[4] = {500, 600, 800, 1500};
+    for (int n = 0; n < 4; n++)
+        hemisphere_light(&together[n], &scene, &hits, 1 << AIR_R, samples[n], keys(3), &counters);
     for (int k = 0; k < 3; k++) {
         hits.p_enu[k][0] = hits.p_enu[k][2], hits.n_enu[k][0] = hits.n_enu[k][2], hits.n_geo[k][0] = hits.n_geo[k][2];
     }

@@ -22,8 +22,8 @@ enum { most_rays = 8192 };
 
 typedef struct TruthRay {
     double o[3], d[3], dist_m, n[3];
-    bool hit;
-    char region[128];
+    bool   hit;
+    char   region[128];
 } TruthRay;
 
 static TruthRay ray[most_rays];
@@ -31,7 +31,7 @@ static TruthRay ray[most_rays];
 static int read_rays(const char *name)
 {
     char path[512], line[2048], *cell[16];
-    int count = 0;
+    int  count = 0;
     if (!reference_path(path, name)) return -1;
     gzFile file = gzopen(path, "rb");
     CHECK(file != NULL);
@@ -65,8 +65,8 @@ typedef struct Obj {
 
 static Obj read_obj(const char *path)
 {
-    Obj obj = {0};
-    char line[512];
+    Obj    obj = {0};
+    char   line[512];
     gzFile file = gzopen(path, "rb");
     CHECK(file != NULL);
     obj.vertex = malloc((size_t)400000 * sizeof *obj.vertex);
@@ -74,11 +74,9 @@ static Obj read_obj(const char *path)
     while (gzgets(file, line, sizeof line)) {
         CHECK(obj.vertices < 400000 && obj.triangles < 400000);
         double *v = obj.vertex[obj.vertices];
-        int *t = obj.triangle[obj.triangles];
-        if (sscanf(line, "v %lf %lf %lf", v, v + 1, v + 2) == 3)
-            obj.vertices++;
-        else if (sscanf(line, "f %d %d %d", t, t + 1, t + 2) == 3)
-            obj.triangles++;
+        int    *t = obj.triangle[obj.triangles];
+        if (sscanf(line, "v %lf %lf %lf", v, v + 1, v + 2) == 3) obj.vertices++;
+        else if (sscanf(line, "f %d %d %d", t, t + 1, t + 2) == 3) obj.triangles++;
     }
     gzclose(file);
     return obj;
@@ -90,7 +88,7 @@ static double nearest(double *sine, const Obj *obj, const double o[3], const dou
     double best = INFINITY;
     for (int i = 0; i < obj->triangles; i++) {
         const double *a = obj->vertex[obj->triangle[i][0] - 1];
-        double e1[3], e2[3], p[3], s[3], q[3];
+        double        e1[3], e2[3], p[3], s[3], q[3];
         v3_sub(e1, obj->vertex[obj->triangle[i][1] - 1], a);
         v3_sub(e2, obj->vertex[obj->triangle[i][2] - 1], a);
         v3_cross(p, d, e2);
@@ -112,16 +110,16 @@ static double nearest(double *sine, const Obj *obj, const double o[3], const dou
 /* ---- ours ------------------------------------------------------------------------------------------------ */
 
 typedef struct Scene {
-    Model model;
+    Model       model;
     ModelImport report;
-    Tracer *tracer;
+    Tracer     *tracer;
     PosedEntity entity;
 } Scene;
 
 static void scene_open(Scene *s, const char *path)
 {
     static const double origin[3] = {0, 0, 0};
-    double attitude[9];
+    double              attitude[9];
     assert_int_equal(model_import(&s->model, &s->report, path), STATUS_OK);
     const Model *model = &s->model;
     assert_int_equal(tracer_create_models(&s->tracer, &model, 1, "avx2"), STATUS_OK);
@@ -143,7 +141,7 @@ static void scene_close(Scene *s)
 /* Distance in m, INFINITY for none; the part's name and the outward normal in the file's axes. */
 static double trace(const char **part, double n_file[3], const Scene *s, const TruthRay *r)
 {
-    double off[3], o[3], d[3], n_geo[3], n[3];
+    double  off[3], o[3], d[3], n_geo[3], n[3];
     PartHit hit;
     v3_sub(off, r->o, s->report.p_origin_file);
     m3_mul_v3(o, s->report.r_body_from_file, off);
@@ -165,27 +163,27 @@ static int number_order(const void *a, const void *b)
 /* What the data's README says of 2000 rays. */
 typedef struct Expected {
     const char *mesh, *hits;
-    double p50_mm, p90_mm, p99_mm;
-    int far_off, missed, other_region;
-    double normal_p90_deg, normal_p99_deg;
+    double      p50_mm, p90_mm, p99_mm;
+    int         far_off, missed, other_region;
+    double      normal_p90_deg, normal_p99_deg;
 } Expected;
 
 /* Returns the distance within which 99 % of the hits are, mm. */
 static double against_the_solids(const Expected *want)
 {
     static double error_mm[most_rays];
-    char path[512];
-    Scene s = {0};
-    int errors = 0, missed = 0, false_hits = 0, far_off = 0, other = 0, beyond[2] = {0}, tilted[2] = {0};
-    const int count = read_rays(want->hits);
+    char          path[512];
+    Scene         s = {0};
+    int           errors = 0, missed = 0, false_hits = 0, far_off = 0, other = 0, beyond[2] = {0}, tilted[2] = {0};
+    const int     count = read_rays(want->hits);
     if (count < 0 || !reference_path(path, want->mesh)) {
         skip();
         return NAN;
     }
     scene_open(&s, path);
     for (int i = 0; i < count; i++) {
-        const char *part = "";
-        double n[3];
+        const char  *part = "";
+        double       n[3];
         const double range_m = trace(&part, n, &s, &ray[i]);
         if (!ray[i].hit) {
             false_hits += !isinf(range_m);
@@ -269,31 +267,29 @@ static void every_triangle_of_the_text_says_the_same(void **state)
     (void)state;
     static const Expected *const model[4] = {&ktank, &m35, &havoc, &truck};
     for (int m = 0; m < 4; m++) {
-        char path[512];
-        Scene s = {0};
+        char      path[512];
+        Scene     s = {0};
         const int count = read_rays(model[m]->hits);
         if (count < 0 || !reference_path(path, model[m]->mesh)) {
             skip();
             return;
         }
         scene_open(&s, path);
-        Obj obj = read_obj(path);
+        Obj       obj = read_obj(path);
         const int step = 1 + (int)((double)count * obj.triangles / 4e7); /* a fraction of a second */
-        double worst_m = 0;
-        int compared = 0, apart = 0;
+        double    worst_m = 0;
+        int       compared = 0, apart = 0;
         assert_int_equal(obj.triangles, s.model.triangle_count + s.report.degenerate_triangles);
         for (int i = 0; i < count; i += step, compared++) {
-            const char *part;
-            double n[3], sine = 1;
+            const char  *part;
+            double       n[3], sine = 1;
             const double ours = trace(&part, n, &s, &ray[i]), want = nearest(&sine, &obj, ray[i].o, ray[i].d);
             if (isinf(ours) && isinf(want)) continue;
             /* a ray may pass an edge on the other side of rounded vertices: so it is no worse than one ray in a
              * thousand */
             const double allowed_m = 6e-8 * 20 * 2 / fmax(sine, 1e-6);
-            if (!(fabs(ours - want) <= allowed_m))
-                apart++;
-            else
-                worst_m = fmax(worst_m, fabs(ours - want));
+            if (!(fabs(ours - want) <= allowed_m)) apart++;
+            else worst_m = fmax(worst_m, fabs(ours - want));
         }
         printf("%s: %d rays, %d triangles each: %d apart, the others within %.2g m\n", s.model.name, compared,
                obj.triangles, apart, worst_m);
@@ -308,12 +304,9 @@ static void every_triangle_of_the_text_says_the_same(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(ktank_is_where_its_solids_are),
-        cmocka_unit_test(ktank_in_finer_facets_is_closer),
-        cmocka_unit_test(m35_is_where_its_solids_are),
-        cmocka_unit_test(havoc_is_where_its_solids_are),
-        cmocka_unit_test(truck_is_where_its_solids_are),
-        cmocka_unit_test(every_triangle_of_the_text_says_the_same),
+        cmocka_unit_test(ktank_is_where_its_solids_are), cmocka_unit_test(ktank_in_finer_facets_is_closer),
+        cmocka_unit_test(m35_is_where_its_solids_are),   cmocka_unit_test(havoc_is_where_its_solids_are),
+        cmocka_unit_test(truck_is_where_its_solids_are), cmocka_unit_test(every_triangle_of_the_text_says_the_same),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -12,40 +12,23 @@ static void slabs_match_line_by_line_bands(void **state)
 {
     (void)state;
     static const double want[][5] = {
-        {500, 0.001, 0.001, 0.08172, 0.0002243},
-        {500, 0.02, 0.02, 0.1916, 0.004381},
-        {500, 0.1, 0.1, 0.2391, 0.02031},
-        {500, 0.02, 0, 0.1901, 0.001595},
-        {500, 0, 0.1, 0.007385, 0.01254},
-        {700, 0.001, 0.001, 0.07359, 0.0005524},
-        {700, 0.02, 0.02, 0.1992, 0.01042},
-        {700, 0.1, 0.1, 0.2481, 0.04485},
-        {700, 0.02, 0, 0.1972, 0.003085},
-        {700, 0, 0.1, 0.01079, 0.03007},
-        {900, 0.001, 0.001, 0.06735, 0.0009263},
-        {900, 0.02, 0.02, 0.2122, 0.01708},
-        {900, 0.1, 0.1, 0.27, 0.06988},
-        {900, 0.02, 0, 0.2101, 0.003437},
-        {900, 0, 0.1, 0.01279, 0.05359},
-        {1100, 0.001, 0.001, 0.05728, 0.001304},
-        {1100, 0.02, 0.02, 0.2156, 0.02358},
-        {1100, 0.1, 0.1, 0.2727, 0.09286},
-        {1100, 0.02, 0, 0.2133, 0.003787},
-        {1100, 0, 0.1, 0.0151, 0.07515},
-        {1500, 0.001, 0.001, 0.04464, 0.002048},
-        {1500, 0.02, 0.02, 0.2296, 0.03661},
-        {1500, 0.1, 0.1, 0.2974, 0.1389},
-        {1500, 0.02, 0, 0.227, 0.003049},
-        {1500, 0, 0.1, 0.01851, 0.1254},
-        {1900, 0.001, 0.001, 0.03791, 0.002896},
-        {1900, 0.02, 0.02, 0.2389, 0.05174},
-        {1900, 0.1, 0.1, 0.3156, 0.1939},
-        {1900, 0.02, 0, 0.2358, 0.002393},
-        {1900, 0, 0.1, 0.02159, 0.1843},
-        {2300, 0.001, 0.001, 0.0308, 0.003722},
-        {2300, 0.02, 0.02, 0.2381, 0.0656},
-        {2300, 0.1, 0.1, 0.3181, 0.2391},
-        {2300, 0.02, 0, 0.2346, 0.001751},
+        {500, 0.001, 0.001, 0.08172, 0.0002243}, {500, 0.02, 0.02, 0.1916, 0.004381},
+        {500, 0.1, 0.1, 0.2391, 0.02031},        {500, 0.02, 0, 0.1901, 0.001595},
+        {500, 0, 0.1, 0.007385, 0.01254},        {700, 0.001, 0.001, 0.07359, 0.0005524},
+        {700, 0.02, 0.02, 0.1992, 0.01042},      {700, 0.1, 0.1, 0.2481, 0.04485},
+        {700, 0.02, 0, 0.1972, 0.003085},        {700, 0, 0.1, 0.01079, 0.03007},
+        {900, 0.001, 0.001, 0.06735, 0.0009263}, {900, 0.02, 0.02, 0.2122, 0.01708},
+        {900, 0.1, 0.1, 0.27, 0.06988},          {900, 0.02, 0, 0.2101, 0.003437},
+        {900, 0, 0.1, 0.01279, 0.05359},         {1100, 0.001, 0.001, 0.05728, 0.001304},
+        {1100, 0.02, 0.02, 0.2156, 0.02358},     {1100, 0.1, 0.1, 0.2727, 0.09286},
+        {1100, 0.02, 0, 0.2133, 0.003787},       {1100, 0, 0.1, 0.0151, 0.07515},
+        {1500, 0.001, 0.001, 0.04464, 0.002048}, {1500, 0.02, 0.02, 0.2296, 0.03661},
+        {1500, 0.1, 0.1, 0.2974, 0.1389},        {1500, 0.02, 0, 0.227, 0.003049},
+        {1500, 0, 0.1, 0.01851, 0.1254},         {1900, 0.001, 0.001, 0.03791, 0.002896},
+        {1900, 0.02, 0.02, 0.2389, 0.05174},     {1900, 0.1, 0.1, 0.3156, 0.1939},
+        {1900, 0.02, 0, 0.2358, 0.002393},       {1900, 0, 0.1, 0.02159, 0.1843},
+        {2300, 0.001, 0.001, 0.0308, 0.003722},  {2300, 0.02, 0.02, 0.2381, 0.0656},
+        {2300, 0.1, 0.1, 0.3181, 0.2391},        {2300, 0.02, 0, 0.2346, 0.001751},
         {2300, 0, 0.1, 0.02462, 0.2328},
     };
     double worst[2] = {0, 0};
@@ -74,14 +57,15 @@ static double edwards_width_per_cm(double temp_k, double co2_atm_m)
 {
     static const double per_cm[3] = {1351, 667, 2396}, t0_k = 100;
     static const int    degenerate[3] = {1, 2, 1}, steps[3] = {0, 0, 1};
-    double phi[2];
+    double              phi[2];
     for (int which = 0; which < 2; which++) {
         double above = 1, below = 1;
         for (int mode = 0; mode < 3; mode++) {
             const double u = 1.4388 * per_cm[mode] / (which ? t0_k : temp_k);
             double       roots = 0, all = 0;
             for (int v = 0; v < 60; v++) {
-                const double levels = tgamma(v + degenerate[mode] + steps[mode]) / (tgamma(degenerate[mode]) * tgamma(v + 1));
+                const double levels =
+                    tgamma(v + degenerate[mode] + steps[mode]) / (tgamma(degenerate[mode]) * tgamma(v + 1));
                 roots += sqrt(levels * exp(-u * v)), all += levels * exp(-u * v);
             }
             above *= roots, below *= all;
@@ -92,7 +76,9 @@ static double edwards_width_per_cm(double temp_k, double co2_atm_m)
     const double width = 11.2 * sqrt(temp_k / t0_k);
     const double g_m2 = co2_atm_m * 101325 * 44.01 / (8.314462618 * temp_k), thick = 110 * g_m2 / width;
     if (beta > 1) return width * (thick <= 1 ? thick : log(thick) + 1);
-    return width * (thick <= beta ? thick : thick <= 1 / beta ? 2 * sqrt(thick * beta) - beta : log(thick * beta) + 2 - beta);
+    return width * (thick <= beta       ? thick
+                    : thick <= 1 / beta ? 2 * sqrt(thick * beta) - beta
+                                        : log(thick * beta) + 2 - beta);
 }
 
 static void wide_bands_agree(void **state)
@@ -100,12 +86,14 @@ static void wide_bands_agree(void **state)
     (void)state;
     static const double temps_k[] = {500, 700, 900, 1100, 1500, 1900, 2300};
     for (int i = 0; i < 7; i++) {
-        const double t = temps_k[i], width = edwards_width_per_cm(t, 0.02), head = 2410 - 0.5 * width; /* the band ends at 2410 */
+        const double t = temps_k[i], width = edwards_width_per_cm(t, 0.02),
+                     head = 2410 - 0.5 * width; /* the band ends at 2410 */
         const double low_m = 1e-2 / (head + 5), high_m = 1e-2 / (head - 5);
         const double want = width * planck_band(low_m, high_m, t, NULL) / 10 / planck_band(3.4e-6, 4.8e-6, t, NULL);
         const double got = smoke_gas_emissivity(HOT_GAS_MWIR, (HotGasColumn){0.02, 0}, t);
         print_message("CO2 of %.0f K: %.4f, by Edwards %.4f: %.3f\n", t, got, want, got / want);
-        CHECK_NEAR(got / want, 1, t <= 1100 ? 0.1 : 0.27); /* hotter: his strength is 2160 of HITRAN's 2600 cm-2 atm-1 */
+        CHECK_NEAR(got / want, 1,
+                   t <= 1100 ? 0.1 : 0.27); /* hotter: his strength is 2160 of HITRAN's 2600 cm-2 atm-1 */
     }
 }
 
@@ -149,7 +137,7 @@ static void air_takes_the_cold_band(void **state)
 {
     (void)state;
     CHECK_NEAR(smoke_gas_passed(0.02, 700, 0), 1, 0);
-    CHECK_NEAR(smoke_gas_passed(0.02, 700, 1000), 0.080, 1e-9);  /* the two-layer narrow-band model */
+    CHECK_NEAR(smoke_gas_passed(0.02, 700, 1000), 0.080, 1e-9); /* the two-layer narrow-band model */
     CHECK_NEAR(smoke_gas_passed(0.02, 1500, 1000), 0.342, 1e-9);
     for (double temp_k = 300; temp_k <= 2300; temp_k += 100) {
         double before = 1;
@@ -165,8 +153,9 @@ static void air_takes_the_cold_band(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(slabs_match_line_by_line_bands), cmocka_unit_test(wide_bands_agree), cmocka_unit_test(thin_gas_has_the_bands_intensity),
-        cmocka_unit_test(limits_hold), cmocka_unit_test(air_takes_the_cold_band),
+        cmocka_unit_test(slabs_match_line_by_line_bands),   cmocka_unit_test(wide_bands_agree),
+        cmocka_unit_test(thin_gas_has_the_bands_intensity), cmocka_unit_test(limits_hold),
+        cmocka_unit_test(air_takes_the_cold_band),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

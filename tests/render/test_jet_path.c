@@ -1,5 +1,5 @@
-/* Exhaust jets, against published laws of jets and plumes: speed on the axis, fluxes, rise in a wind; places off the axis.
- * labels: physics */
+/* Exhaust jets, against published laws of jets and plumes: speed on the axis, fluxes, rise in a wind; places off the
+ * axis. labels: physics */
 #include "tests/check.h"
 
 #include "render/heat/vehicle_load.h"
@@ -14,7 +14,8 @@ static const JetPoint *at_x(const JetPath *path, double x_m)
     return &path->point[path->count - 1];
 }
 
-/* Pope, Turbulent Flows (2000), 5.1: U0/U = (x/D - 4)/5.8 .. 6.1. A scalar falls a tenth to a sixth lower: one profile serves both here. */
+/* Pope, Turbulent Flows (2000), 5.1: U0/U = (x/D - 4)/5.8 .. 6.1. A scalar falls a tenth to a sixth lower: one profile
+ * serves both here. */
 static void free_jets_decay_as_measured(void **state)
 {
     (void)state;
@@ -24,7 +25,8 @@ static void free_jets_decay_as_measured(void **state)
     for (double x_m = 3; x_m <= 8; x_m += 1) {
         const JetPoint *p = at_x(&path, x_m);
         const double    away = p->p_enu[0] / 0.2 - 4;
-        if (getenv("SHOW")) print_message("%.2f m: %.3f, %.3f\n", p->p_enu[0], p->speed_mps / 200 * away, p->excess_k / 30 * away);
+        if (getenv("SHOW"))
+            print_message("%.2f m: %.3f, %.3f\n", p->p_enu[0], p->speed_mps / 200 * away, p->excess_k / 30 * away);
         CHECK_NEAR(p->speed_mps / 200 * away, 5.95, 0.6);
         CHECK_NEAR(p->excess_k / 30 * away, 5.95 * 0.88, 1.2);
         CHECK(fabs(p->p_enu[1]) < 1e-12 && p->p_enu[2] > 0 && p->p_enu[2] < 0.05);
@@ -32,7 +34,8 @@ static void free_jets_decay_as_measured(void **state)
     CHECK(path.point[path.count - 1].excess_k >= 1);
 }
 
-/* Briggs (1984), bent-over plume with momentum: rise^3 = 3 Fm x/(0.6 U)^2 + 1.5 F x^2/(0.36 U^3), widening by 0.6 of its rise. */
+/* Briggs (1984), bent-over plume with momentum: rise^3 = 3 Fm x/(0.6 U)^2 + 1.5 F x^2/(0.36 U^3), widening by 0.6 of
+ * its rise. */
 static void hot_gas_rises_in_a_wind_as_briggs_says(void **state)
 {
     (void)state;
@@ -47,8 +50,8 @@ static void hot_gas_rises_in_a_wind_as_briggs_says(void **state)
         const double    x_m = p->p_enu[0], mass = 0.01 * jet.speed_mps * air_k / (air_k + jet.excess_k), wide_m = 0.6;
         const double    from_m = sqrt(mass / wind[0]) / wide_m; /* its own width at the source */
         const double    cube = pow(from_m, 3) + 3 * mass * jet.speed_mps * x_m / pow(wide_m * wind[0], 2) +
-                               1.5 * flux * x_m * x_m / (wide_m * wide_m * pow(wind[0], 3));
-        const double    rise_m = cbrt(cube) - from_m;
+                            1.5 * flux * x_m * x_m / (wide_m * wide_m * pow(wind[0], 3));
+        const double rise_m = cbrt(cube) - from_m;
         if (getenv("SHOW")) print_message("%.2f m: %.3f over %.3f\n", p->p_enu[0], p->p_enu[2], rise_m);
         if (x_m < 1) continue;
         CHECK_NEAR(p->p_enu[2] / rise_m, 1, 0.15);
@@ -104,7 +107,8 @@ static void hostile_jets(void **state)
     static const double value[] = {0, 1e-9, 0.1, 1000, 1e9, INFINITY, NAN, -1};
     enum { values = sizeof value / sizeof *value };
     for (int i = 0; i < values * values * values; i++) {
-        const ExhaustJet jet = {.radius_m = value[i % values], .speed_mps = value[i / values % values],
+        const ExhaustJet jet = {.radius_m = value[i % values],
+                                .speed_mps = value[i / values % values],
                                 .excess_k = value[i / values / values]};
         const double     wind[3] = {value[i % values], 0, 0};
         JetPath          path;

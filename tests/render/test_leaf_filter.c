@@ -1,5 +1,5 @@
-/* A wood at one ray a pixel, smoothed among its leaves, beside the same at 64 rays: error, deviation from pixel to pixel,
- * mean; the same bits on any number of threads; rays only about a target. labels: slow */
+/* A wood at one ray a pixel, smoothed among its leaves, beside the same at 64 rays: error, deviation from pixel to
+ * pixel, mean; the same bits on any number of threads; rays only about a target. labels: slow */
 #include "tests/render/hand_plants.h"
 #include "tests/render/hand_world.h"
 
@@ -39,7 +39,7 @@ typedef struct Statistics {
 
 static Statistics measure(const float *plane, const float *want)
 {
-    double     mean = 0, square = 0, off = 0, of_want = 0;
+    double mean = 0, square = 0, off = 0, of_want = 0;
     for (int i = 0; i < pixels; i++) {
         mean += plane[i] / pixels, square += (double)plane[i] * plane[i] / pixels;
         off += ((double)plane[i] - want[i]) * ((double)plane[i] - want[i]) / pixels, of_want += want[i] / pixels;
@@ -72,10 +72,11 @@ static void smoothed_it_is_nearer_the_truth(void **state)
     for (int i = 0; i < pixels; i++) shown += picture.instance[i] != 0;
     CHECK(shown > 0.7 * pixels && picture.counters.rays_edges == 0);
     for (int k = 0; k < 2; k++) {
-        const Statistics truth = measure(want[k], want[k]), one = measure(raw[k], want[k]), smooth = measure(got[k], want[k]);
-        print_message("%s: error %.3f, %.3f with one ray; deviation %.3f of the true one, %.3f; mean %.4f\n", k ? "8-12 um" : "red",
-                      smooth.error, one.error, smooth.deviation / truth.deviation, one.deviation / truth.deviation,
-                      smooth.mean / truth.mean);
+        const Statistics truth = measure(want[k], want[k]), one = measure(raw[k], want[k]),
+                         smooth = measure(got[k], want[k]);
+        print_message("%s: error %.3f, %.3f with one ray; deviation %.3f of the true one, %.3f; mean %.4f\n",
+                      k ? "8-12 um" : "red", smooth.error, one.error, smooth.deviation / truth.deviation,
+                      one.deviation / truth.deviation, smooth.mean / truth.mean);
         CHECK(smooth.error < 0.6 * one.error);
         /* a pixel is far larger than a leaf here: one ray has all of the leaves' contrast, which means have not */
         CHECK(smooth.deviation - truth.deviation < 0.35 * (one.deviation - truth.deviation));
@@ -111,7 +112,8 @@ static void about_a_target_leaves_are_refined(void **state)
     const double *box = picture.target[0].projected_box;
     const double  most = (box[2] - box[0] + 8) * (box[3] - box[1] + 8);
     hand_clear();
-    print_message("%d pixels refined about a box of %.1f x %.1f px\n", (int)picture.counters.pixels_refined, box[2] - box[0], box[3] - box[1]);
+    print_message("%d pixels refined about a box of %.1f x %.1f px\n", (int)picture.counters.pixels_refined,
+                  box[2] - box[0], box[3] - box[1]);
     CHECK(picture.counters.pixels_refined > 10 && (double)picture.counters.pixels_refined <= most);
 }
 

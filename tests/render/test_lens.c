@@ -16,17 +16,16 @@ static double draw(int index, int axis, double low, double high)
 static void numbers_of_opencv(void **state)
 {
     (void)state;
-    static const double at[][4] = {
-        {0, 0, 0, 0},
-        {0.1, 0, 0.09965189880000001, 1.1000000000000003e-05},
-        {0, -0.2, -9.200000000000001e-05, -0.19765664640000002},
-        {0.3, 0.2, 0.2889473908, 0.19297392720000003},
-        {-0.45, 0.35, -0.41516794062500006, 0.322684509375},
-        {0.6, 0.5, 0.5135801367999999, 0.42982361399999996},
-        {-0.6, -0.5, -0.5183781368, -0.430141614},
-        {0.02, -0.47, 0.01831476155137672, -0.44211473145735286}};
-    const double k[3] = {-0.28, 0.09, -0.012}, p[2] = {0.0011, -0.0023}, half[2] = {0.6, 0.5};
-    Lens         lens;
+    static const double at[][4] = {{0, 0, 0, 0},
+                                   {0.1, 0, 0.09965189880000001, 1.1000000000000003e-05},
+                                   {0, -0.2, -9.200000000000001e-05, -0.19765664640000002},
+                                   {0.3, 0.2, 0.2889473908, 0.19297392720000003},
+                                   {-0.45, 0.35, -0.41516794062500006, 0.322684509375},
+                                   {0.6, 0.5, 0.5135801367999999, 0.42982361399999996},
+                                   {-0.6, -0.5, -0.5183781368, -0.430141614},
+                                   {0.02, -0.47, 0.01831476155137672, -0.44211473145735286}};
+    const double        k[3] = {-0.28, 0.09, -0.012}, p[2] = {0.0011, -0.0023}, half[2] = {0.6, 0.5};
+    Lens                lens;
     assert_int_equal(view_lens_make(&lens, k, p, half), STATUS_OK);
     for (size_t i = 0; i < sizeof at / sizeof *at; i++) {
         double image[2], back[2];
@@ -61,8 +60,7 @@ static void there_and_back(void **state)
         for (int i = 0; i < 80; i++) {
             /* within the picture, and up to four times beyond, where the image runs straight on */
             const double far = i % 4 == 0 ? 4 : 1;
-            const double x = far * half[0] * draw(n * 80 + i, 7, -1, 1),
-                         y = far * half[1] * draw(n * 80 + i, 8, -1, 1);
+            const double x = far * half[0] * draw(n * 80 + i, 7, -1, 1), y = far * half[1] * draw(n * 80 + i, 8, -1, 1);
             double       at[2], image[2];
             view_lens_back(at, &lens, x, y);
             view_lens_image(image, &lens, at[0], at[1]);
@@ -108,7 +106,8 @@ static void lenses_that_fold_are_refused(void **state)
     }
     assert_int_equal(view_lens_make(&lens, (const double[3]){NAN, 0, 0}, p, half), STATUS_BAD_VALUE);
     assert_int_equal(view_lens_make(&lens, (const double[3]){0, INFINITY, 0}, p, half), STATUS_BAD_VALUE);
-    assert_int_equal(view_lens_make(&lens, (const double[3]){0, 0, 0}, (const double[2]){3, 0}, half), STATUS_BAD_VALUE);
+    assert_int_equal(view_lens_make(&lens, (const double[3]){0, 0, 0}, (const double[2]){3, 0}, half),
+                     STATUS_BAD_VALUE);
     /* none: a pinhole, to the bit */
     assert_int_equal(view_lens_make(&lens, (const double[3]){0, 0, 0}, p, half), STATUS_OK);
     CHECK(lens.reach == 0);
@@ -132,7 +131,7 @@ static void boxes_hold_what_is_in_them(void **state)
             for (int k = 0; k < 64; k++) {
                 double at[2];
                 view_lens_back(at, &lens, image[0] + (image[2] - image[0]) * (k % 8) / 7,
-                          image[1] + (image[3] - image[1]) * (k / 8) / 7);
+                               image[1] + (image[3] - image[1]) * (k / 8) / 7);
                 CHECK(at[0] >= box[0] && at[0] <= box[2] && at[1] >= box[1] && at[1] <= box[3]);
                 if (far == 1) CHECK(fabs(at[0]) <= lens.tangent[0] && fabs(at[1]) <= lens.tangent[1]);
             }
@@ -163,8 +162,8 @@ static void pixels_fill_the_picture_s_solid_angle(void **state)
     (void)state;
     for (int n = 0; n < 4; n++) {
         static const double share[4] = {-0.12, 0.08, -0.01, 0.2};
-        const View view = distorted_view(320, 240, n % 2 ? 0.9 : 0.1, share[n]);
-        double     sum = 0;
+        const View          view = distorted_view(320, 240, n % 2 ? 0.9 : 0.1, share[n]);
+        double              sum = 0;
         for (int y = 0; y < view.height; y++)
             for (int x = 0; x < view.width; x++) sum += view_pixel_share(&view, x, y);
         sum /= view.focal_px * view.focal_px;
@@ -177,7 +176,7 @@ static void pixels_fill_the_picture_s_solid_angle(void **state)
             const double row = view.height * (s == 0 ? 0 : s == 1 ? along : s == 2 ? 1 : 1 - along);
             double       at[2];
             view_lens_back(at, &view.lens, (column - 0.5 * view.width) / view.focal_px,
-                      (row - 0.5 * view.height) / view.focal_px);
+                           (row - 0.5 * view.height) / view.focal_px);
             const Real length = sqrtl((Real)at[0] * at[0] + (Real)at[1] * at[1] + 1),
                        d[3] = {at[0] / length, at[1] / length, 1 / length};
             if (i > 0) {
@@ -207,11 +206,11 @@ static void a_ball_s_intensity_is_the_same_all_over(void **state)
             v3_add_scaled(p_enu, view.p_enu, range_m, d_enu);
             hand_clear();
             hand_add(hand_sphere_model, p_enu, r_enu_from_body);
-            RenderRequest request = hand_request(&view);
-            const Picture p = hand_render(&request, hand.pool);
+            RenderRequest       request = hand_request(&view);
+            const Picture       p = hand_render(&request, hand.pool);
             const TargetPixels *t = &p.target[0];
-            const double want = hand_emitted(BAND_LWIR) * pi_rad * hand_sphere_m * hand_sphere_m;
-            const double got = t->radiance[picture_lwir] / (view.focal_px * view.focal_px) * range_m * range_m;
+            const double        want = hand_emitted(BAND_LWIR) * pi_rad * hand_sphere_m * hand_sphere_m;
+            const double        got = t->radiance[picture_lwir] / (view.focal_px * view.focal_px) * range_m * range_m;
             /* sampling, as of a pinhole: cells of a small one, edge pixels of a large one; the lens itself makes 30 %
              * of it */
             CHECK_NEAR(got / want, 1, size ? 0.01 : 0.003);
@@ -237,7 +236,8 @@ static void rays_of_a_row_are_those_of_its_points(void **state)
         View   view = distorted_view(128, 96, 0.6, -0.15);
         double column_px[points], row_px[points], d[3][points];
         if (n == 0) view.lens = (Lens){0};
-        for (int i = 0; i < points; i++) column_px[i] = draw(i, 4 + n, 0, view.width), row_px[i] = draw(i, 6 + n, 0, view.height);
+        for (int i = 0; i < points; i++)
+            column_px[i] = draw(i, 4 + n, 0, view.width), row_px[i] = draw(i, 6 + n, 0, view.height);
         view_rays((double *const[3]){d[0], d[1], d[2]}, &view, points, column_px, row_px);
         for (int i = 0; i < points; i++) {
             const double d_enu[3] = {d[0][i], d[1][i], d[2][i]};
@@ -256,8 +256,8 @@ static void rays_of_a_row_are_those_of_its_points(void **state)
 static void skips_change_nothing(void **state)
 {
     (void)state;
-    const double  sun[3] = {0.3, -0.5, 0.81};
-    const double  r_enu_from_body[9] = {0, 1, 0, 1, 0, 0, 0, 0, -1};
+    const double sun[3] = {0.3, -0.5, 0.81};
+    const double r_enu_from_body[9] = {0, 1, 0, 1, 0, 0, 0, 0, -1};
     hand_air_on(sun, 1000);
     for (int n = 0; n < 2; n++) {
         View view = distorted_view(128, 96, 0.6, n == 0 ? -0.15 : 0.15);
@@ -291,8 +291,8 @@ static void skips_change_nothing(void **state)
 static void no_distortion_is_a_pinhole(void **state)
 {
     (void)state;
-    const double  sun[3] = {0.3, -0.5, 0.81}, r_enu_from_body[9] = {0, 1, 0, 1, 0, 0, 0, 0, -1};
-    const double  at[3] = {3, 60, 1001};
+    const double sun[3] = {0.3, -0.5, 0.81}, r_enu_from_body[9] = {0, 1, 0, 1, 0, 0, 0, 0, -1};
+    const double at[3] = {3, 60, 1001};
     hand_air_on(sun, 1000);
     hand_clear();
     hand_add(hand_sphere_model, at, r_enu_from_body);

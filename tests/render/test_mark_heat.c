@@ -35,7 +35,7 @@ static HeatNow *at(Heat *h, double hour)
 /* Facing north: x forward is north, y right is east, z down. */
 static GroundStand box_at(double from_h, double to_h, double length_m, double width_m, double height_m)
 {
-    GroundStand s = {.from_s = 3600 * from_h, .to_s = 3600 * to_h, .owner = 1};
+    GroundStand         s = {.from_s = 3600 * from_h, .to_s = 3600 * to_h, .owner = 1};
     static const double enu_from_body[9] = {0, 1, 0, 1, 0, 0, 0, 0, -1};
     ecef_from_enu(s.p_ecef, &frame, (const double[3]){0, 0, 0});
     m3_mul(s.r_ecef_from_body, frame.r_ecef_from_enu, enu_from_body);
@@ -78,14 +78,16 @@ static double       blow_w_m2k, blow_excess_k;
 static const Field *calm;
 
 /* One explicit step of places from first to last; box: it stands there. */
-static void fv_step(Field *f, const GroundKind *kind, const Column *layers, double t_s, int count, bool box, const double hidden[places])
+static void fv_step(Field *f, const GroundKind *kind, const Column *layers, double t_s, int count, bool box,
+                    const double hidden[places])
 {
-    static Field   old;
-    const double   k_w_mk = kind->porosity > 0 ? layers->conductance_w_m2k[5] * (layers->depth_m[6] - layers->depth_m[5]) : kind->rock_w_mk;
-    const double   c_j_m3k = layers->capacity_j_m2k[5] / (0.5 * (layers->depth_m[6] - layers->depth_m[4]));
-    GroundWeather  w;
-    GroundColumn   c;
-    SurfaceFlux    law;
+    static Field old;
+    const double k_w_mk =
+        kind->porosity > 0 ? layers->conductance_w_m2k[5] * (layers->depth_m[6] - layers->depth_m[5]) : kind->rock_w_mk;
+    const double  c_j_m3k = layers->capacity_j_m2k[5] / (0.5 * (layers->depth_m[6] - layers->depth_m[4]));
+    GroundWeather w;
+    GroundColumn  c;
+    SurfaceFlux   law;
     ground_column_start(&c, kind, layers, 290);
     paper_weather(&w, t_s, &paper_summer);
     old = *f;
@@ -95,16 +97,19 @@ static void fv_step(Field *f, const GroundKind *kind, const Column *layers, doub
         if (box) e.sky = 1 - hidden[p], e.sun = meets(y, w.sun_d_enu, 1.7, 1.7, 2.4) ? 0 : 1;
         ground_flux(&law, &c, &w, &e);
         for (int n = 0; n < 8; n++) { /* the surface's own balance */
-            double falls;
+            double       falls;
             const double blown = calm ? blow_w_m2k * (blow_excess_k - (f->surface_k[p] - calm->surface_k[p])) : 0;
-            const double miss = surface_flux_w_m2(&falls, f->surface_k[p], &law) + blown - 2 * k_w_mk / cell_z_m * (f->surface_k[p] - old.t_k[p][0]);
+            const double miss = surface_flux_w_m2(&falls, f->surface_k[p], &law) + blown -
+                                2 * k_w_mk / cell_z_m * (f->surface_k[p] - old.t_k[p][0]);
             f->surface_k[p] += miss / (falls + (calm ? blow_w_m2k : 0) + 2 * k_w_mk / cell_z_m);
         }
         for (int z = 0; z < cells; z++) {
             const double above = z == 0 ? 2 * (f->surface_k[p] - old.t_k[p][0]) : old.t_k[p][z - 1] - old.t_k[p][z];
             const double below = z == cells - 1 ? 0 : old.t_k[p][z + 1] - old.t_k[p][z];
-            const double left = p > 0 ? old.t_k[p - 1][z] - old.t_k[p][z] : 0, right = p < count - 1 ? old.t_k[p + 1][z] - old.t_k[p][z] : 0;
-            f->t_k[p][z] += fv_step_s * k_w_mk / c_j_m3k * ((above + below) / (cell_z_m * cell_z_m) + (left + right) / (place_m * place_m));
+            const double left = p > 0 ? old.t_k[p - 1][z] - old.t_k[p][z] : 0,
+                         right = p < count - 1 ? old.t_k[p + 1][z] - old.t_k[p][z] : 0;
+            f->t_k[p][z] += fv_step_s * k_w_mk / c_j_m3k *
+                            ((above + below) / (cell_z_m * cell_z_m) + (left + right) / (place_m * place_m));
         }
     }
 }
@@ -114,11 +119,11 @@ static void a_box_that_left(void **state)
     (void)state;
     enum { kind = SURFACE_SAND, times = 5 };
     static const double from_h = 9, to_h = 13, until_h[times] = {12.99, 13.5, 14, 15, 17};
-    static Field  f;
-    Column        layers;
-    double        hidden[places];
-    Heat         *h = paper_heat(&kinds, &paper_summer, 6, NULL);
-    GroundStand   box = box_at(from_h, to_h, 3.4, 3.4, 2.4);
+    static Field        f;
+    Column              layers;
+    double              hidden[places];
+    Heat               *h = paper_heat(&kinds, &paper_summer, 6, NULL);
+    GroundStand         box = box_at(from_h, to_h, 3.4, 3.4, 2.4);
     CHECK(ground_layers(&layers, &kinds.kind[kind], &ground_grid_default) == STATUS_OK);
     for (int p = 0; p < places; p++) {
         hidden[p] = behind((p - places / 2) * place_m, 1.7, 1.7, 2.4);
@@ -126,7 +131,8 @@ static void a_box_that_left(void **state)
         for (int z = 0; z < cells; z++) f.t_k[p][z] = 293;
     }
     double t_h = -72;
-    for (; t_h < from_h; t_h += fv_step_s / 3600) fv_step(&f, &kinds.kind[kind], &layers, paper_unix_s + 3600 * t_h, 1, false, hidden);
+    for (; t_h < from_h; t_h += fv_step_s / 3600)
+        fv_step(&f, &kinds.kind[kind], &layers, paper_unix_s + 3600 * t_h, 1, false, hidden);
     for (int p = 1; p < places; p++) memcpy(f.t_k[p], f.t_k[0], sizeof f.t_k[0]), f.surface_k[p] = f.surface_k[0];
     for (int t = 0; t < times; t++) {
         for (; t_h < until_h[t]; t_h += fv_step_s / 3600)
@@ -136,18 +142,22 @@ static void a_box_that_left(void **state)
         MarkHeat         *heat;
         double            miss2 = 0, most = 0, worst = 0;
         int               count = 0;
-        CHECK(heat_marks_create(&heat, &marks, &frame, paper_unix_s, paper_unix_s + 3600 * until_h[t], now, arena) == STATUS_OK);
+        CHECK(heat_marks_create(&heat, &marks, &frame, paper_unix_s, paper_unix_s + 3600 * until_h[t], now, arena) ==
+              STATUS_OK);
         for (int p = 0; p < places; p++) {
             const double y = (p - places / 2) * place_m, p_enu[3] = {0, y, 0};
             MarkedGround mark;
             CHECK(heat_marks_at(&mark, heat, kind, p_enu, (const double[3]){0, 0, 1}, 1));
             const double want_k = f.surface_k[p] - f.surface_k[0]; /* against ground 3.6 m away, to the sun's side */
-            if (fabs(fabs(y) - 1.7) < 0.4) continue; /* the very edge, where heat flows sideways */
+            if (fabs(fabs(y) - 1.7) < 0.4) continue;               /* the very edge, where heat flows sideways */
             miss2 += (mark.add_k - want_k) * (mark.add_k - want_k), count++;
             most = fmax(most, fabs(want_k)), worst = fmax(worst, fabs(mark.add_k - want_k));
-            if (getenv("SHOW")) print_message("%.1f h, %+.2f m: %+.2f K, volumes %+.2f K (%.2f hidden)\n", until_h[t], y, mark.add_k, want_k, hidden[p]);
+            if (getenv("SHOW"))
+                print_message("%.1f h, %+.2f m: %+.2f K, volumes %+.2f K (%.2f hidden)\n", until_h[t], y, mark.add_k,
+                              want_k, hidden[p]);
         }
-        print_message("%.2f h: contrast %.2f K, root mean square of the misses %.2f K, worst %.2f K\n", until_h[t], most, sqrt(miss2 / count), worst);
+        print_message("%.2f h: contrast %.2f K, root mean square of the misses %.2f K, worst %.2f K\n", until_h[t],
+                      most, sqrt(miss2 / count), worst);
         CHECK(sqrt(miss2 / count) < 0.1 * most + 0.02);
         arena_reset(arena);
     }
@@ -158,21 +168,25 @@ static void a_box_that_left(void **state)
 static void a_box_at_night(void **state)
 {
     (void)state;
-    Heat             *h = paper_heat(&kinds, &paper_summer, 20, NULL);
-    GroundStand       box = box_at(20, 26, 7, 3.4, 2.4);
-    const GroundMarks marks = {.stands = 1, .stand = &box};
-    double            k[3];
+    Heat               *h = paper_heat(&kinds, &paper_summer, 20, NULL);
+    GroundStand         box = box_at(20, 26, 7, 3.4, 2.4);
+    const GroundMarks   marks = {.stands = 1, .stand = &box};
+    double              k[3];
     static const double hours[3] = {25.9, 27, 29};
     for (int t = 0; t < 3; t++) {
         MarkHeat    *heat;
         MarkedGround below, aside;
-        CHECK(heat_marks_create(&heat, &marks, &frame, paper_unix_s, paper_unix_s + 3600 * hours[t], at(h, hours[t]), arena) == STATUS_OK);
-        CHECK(heat_marks_at(&below, heat, SURFACE_BARE_SOIL, (const double[3]){0, 0, 0}, (const double[3]){0, 0, 1}, 1));
-        CHECK(heat_marks_at(&aside, heat, SURFACE_BARE_SOIL, (const double[3]){10, 0, 0}, (const double[3]){0, 0, 1}, 1));
+        CHECK(heat_marks_create(&heat, &marks, &frame, paper_unix_s, paper_unix_s + 3600 * hours[t], at(h, hours[t]),
+                                arena) == STATUS_OK);
+        CHECK(
+            heat_marks_at(&below, heat, SURFACE_BARE_SOIL, (const double[3]){0, 0, 0}, (const double[3]){0, 0, 1}, 1));
+        CHECK(
+            heat_marks_at(&aside, heat, SURFACE_BARE_SOIL, (const double[3]){10, 0, 0}, (const double[3]){0, 0, 1}, 1));
         k[t] = below.add_k;
         CHECK(fabs(aside.add_k) < 0.1 * fabs(below.add_k));
     }
-    print_message("below a box at night: %+.2f K; an hour after it left %+.2f K, three hours %+.2f K\n", k[0], k[1], k[2]);
+    print_message("below a box at night: %+.2f K; an hour after it left %+.2f K, three hours %+.2f K\n", k[0], k[1],
+                  k[2]);
     CHECK(k[0] > 1 && k[1] < 0.8 * k[0] && k[2] < k[1] && k[2] > 0);
     heat_destroy(h);
     arena_reset(arena);
@@ -184,13 +198,18 @@ static void exhaust_warms_the_ground(void **state)
     (void)state;
     enum { kind = SURFACE_SAND, times = 4 };
     static const double from_h = 21, to_h = 22, until_h[times] = {21.3, 21.95, 22.5, 24}, up[3] = {0, 0, 1};
-    static Field  still, blown;
-    const double  no_hidden[places] = {0};
-    Column        layers;
-    Heat         *h = paper_heat(&kinds, &paper_summer, 20, NULL);
-    GroundStand   stand = box_at(from_h, INFINITY, 0.02, 0.02, 0.02);
-    stand.blow = (GroundBlow){.at_m = {0, 0, -0.4f}, .d = {1, 0, 0}, .radius_m = 0.15f, .speed_mps = 20, .excess_k = 200,
-                              .from_s = 3600 * from_h, .to_s = 3600 * to_h};
+    static Field        still, blown;
+    const double        no_hidden[places] = {0};
+    Column              layers;
+    Heat               *h = paper_heat(&kinds, &paper_summer, 20, NULL);
+    GroundStand         stand = box_at(from_h, INFINITY, 0.02, 0.02, 0.02);
+    stand.blow = (GroundBlow){.at_m = {0, 0, -0.4f},
+                              .d = {1, 0, 0},
+                              .radius_m = 0.15f,
+                              .speed_mps = 20,
+                              .excess_k = 200,
+                              .from_s = 3600 * from_h,
+                              .to_s = 3600 * to_h};
     CHECK(ground_layers(&layers, &kinds.kind[kind], &ground_grid_default) == STATUS_OK);
     const ExhaustJet jet = {.radius_m = 0.15, .speed_mps = 20, .excess_k = 200};
     const double     outlet[3] = {0, 0, 0.4}, north[3] = {0, 1, 0}, wind[3] = {0, 0, 0}, p_enu[3] = {0, 4.5, 0};
@@ -204,7 +223,8 @@ static void exhaust_warms_the_ground(void **state)
     still.surface_k[0] = 290;
     for (int z = 0; z < cells; z++) still.t_k[0][z] = 293;
     double t_h = -72;
-    for (; t_h < from_h; t_h += fv_step_s / 3600) fv_step(&still, &kinds.kind[kind], &layers, paper_unix_s + 3600 * t_h, 1, false, no_hidden);
+    for (; t_h < from_h; t_h += fv_step_s / 3600)
+        fv_step(&still, &kinds.kind[kind], &layers, paper_unix_s + 3600 * t_h, 1, false, no_hidden);
     blown = still;
     for (int t = 0; t < times; t++) {
         for (; t_h < until_h[t]; t_h += fv_step_s / 3600) {
@@ -217,12 +237,13 @@ static void exhaust_warms_the_ground(void **state)
         const GroundMarks marks = {.stands = 1, .stand = &stand};
         MarkHeat         *heat;
         MarkedGround      mark, beside;
-        CHECK(heat_marks_create(&heat, &marks, &frame, paper_unix_s, paper_unix_s + 3600 * until_h[t], at(h, until_h[t]), arena) == STATUS_OK);
+        CHECK(heat_marks_create(&heat, &marks, &frame, paper_unix_s, paper_unix_s + 3600 * until_h[t],
+                                at(h, until_h[t]), arena) == STATUS_OK);
         CHECK(heat_marks_at(&mark, heat, kind, p_enu, up, 1));
         heat_marks_at(&beside, heat, kind, (const double[3]){0, -2, 0}, up, 1); /* behind the outlet */
         const double want_k = blown.surface_k[0] - still.surface_k[0];
-        print_message("%.2f h: exhaust %.1f K over the air at %.1f m/s: ground %+.2f K, volumes %+.2f K\n", until_h[t], blow_excess_k,
-                      speed_mps, mark.add_k, want_k);
+        print_message("%.2f h: exhaust %.1f K over the air at %.1f m/s: ground %+.2f K, volumes %+.2f K\n", until_h[t],
+                      blow_excess_k, speed_mps, mark.add_k, want_k);
         CHECK_NEAR(mark.add_k, want_k, 0.1 * want_k + 0.1);
         CHECK(fabs(beside.add_k) < 0.05);
         arena_reset(arena);
@@ -230,23 +251,26 @@ static void exhaust_warms_the_ground(void **state)
     heat_destroy(h);
 }
 
-/* Rubbed warm by 20 kJ/m2: a body without end within minutes (Carslaw & Jaeger 1959), less what the surface gives away later. */
+/* Rubbed warm by 20 kJ/m2: a body without end within minutes (Carslaw & Jaeger 1959), less what the surface gives away
+ * later. */
 static void a_trail_cools(void **state)
 {
     (void)state;
-    Heat *h = paper_heat(&kinds, &paper_summer, 9, NULL);
-    GroundTrack track = {.a_s = 36000, .b_s = 36010, .width_m = 0.6f, .apart_m = 2.6f, .heat_j_m2 = 20e3f, .tracked = true};
+    Heat       *h = paper_heat(&kinds, &paper_summer, 9, NULL);
+    GroundTrack track = {
+        .a_s = 36000, .b_s = 36010, .width_m = 0.6f, .apart_m = 2.6f, .heat_j_m2 = 20e3f, .tracked = true};
     ecef_from_enu(track.a_ecef, &frame, (const double[3]){-50, 0, 0});
     ecef_from_enu(track.b_ecef, &frame, (const double[3]){50, 0, 0});
-    const GroundMarks marks = {.tracks = 1, .track = &track};
+    const GroundMarks   marks = {.tracks = 1, .track = &track};
     static const double ages_s[] = {30, 120, 600, 1800, 7200, 6 * 3600};
-    double last_k = INFINITY;
+    double              last_k = INFINITY;
     for (int t = 0; t < 6; t++) {
-        const double hour = (36005 + ages_s[t]) / 3600;
-        MarkHeat    *heat;
-        MarkedGround in, between, beside;
+        const double   hour = (36005 + ages_s[t]) / 3600;
+        MarkHeat      *heat;
+        MarkedGround   in, between, beside;
         const HeatNow *now = at(h, hour);
-        CHECK(heat_marks_create(&heat, &marks, &frame, paper_unix_s, paper_unix_s + 3600 * hour, now, arena) == STATUS_OK);
+        CHECK(heat_marks_create(&heat, &marks, &frame, paper_unix_s, paper_unix_s + 3600 * hour, now, arena) ==
+              STATUS_OK);
         CHECK(heat_marks_at(&in, heat, SURFACE_SAND, (const double[3]){0, 1.3, 0}, (const double[3]){0, 0, 1}, 1));
         CHECK(heat_marks_at(&between, heat, SURFACE_SAND, (const double[3]){0, 0, 0}, (const double[3]){0, 0, 1}, 1));
         CHECK(heat_marks_at(&beside, heat, SURFACE_SAND, (const double[3]){0, 3, 0}, (const double[3]){0, 0, 1}, 1));
@@ -258,7 +282,8 @@ static void a_trail_cools(void **state)
         if (ages_s[t] <= 120) CHECK_NEAR(in.add_k, free_k, 0.02 * free_k);
         /* with a film: Carslaw & Jaeger, 14.2; the film of this day lies between 10 and 45 W/(m2 K) */
         const double e = (double)now->past[1].effusivity[SURFACE_SAND], x = 45 / e * sqrt(ages_s[t]);
-        if (ages_s[t] <= 1800) CHECK(in.add_k > 20e3 / e * (1 / sqrt(pi_rad * ages_s[t]) - 45 / e * exp(x * x) * erfc(x)));
+        if (ages_s[t] <= 1800)
+            CHECK(in.add_k > 20e3 / e * (1 / sqrt(pi_rad * ages_s[t]) - 45 / e * exp(x * x) * erfc(x)));
         last_k = in.add_k;
     }
     heat_destroy(h);
@@ -278,7 +303,8 @@ static void a_burst(void **state)
         const double hour = 10 + 1.0 / 60 + t;
         MarkHeat    *heat;
         MarkedGround in, ring, out;
-        CHECK(heat_marks_create(&heat, &marks, &frame, paper_unix_s, paper_unix_s + 3600 * hour, at(h, hour), arena) == STATUS_OK);
+        CHECK(heat_marks_create(&heat, &marks, &frame, paper_unix_s, paper_unix_s + 3600 * hour, at(h, hour), arena) ==
+              STATUS_OK);
         heat_marks_at(&in, heat, SURFACE_GRASS, (const double[3]){0.5, 0, 0}, (const double[3]){0, 0, 1}, 1);
         heat_marks_at(&ring, heat, SURFACE_GRASS, (const double[3]){2, 1, 0}, (const double[3]){0, 0, 1}, 1);
         heat_marks_at(&out, heat, SURFACE_GRASS, (const double[3]){6, 0, 0}, (const double[3]){0, 0, 1}, 1);
@@ -307,8 +333,8 @@ static void bounds(void **state)
         if (i % 3 == 0) ecef_from_enu(stand[i].p_ecef, &frame, (const double[3]){1e7, i, 0});
     }
     const GroundMarks marks = {.stands = many, .stand = stand, .burns = many, .burn = burn};
-    MarkHeat    *heat;
-    MarkedGround mark;
+    MarkHeat         *heat;
+    MarkedGround      mark;
     CHECK(heat_marks_create(&heat, &marks, &frame, paper_unix_s, paper_unix_s + 36000, now, arena) == STATUS_OK);
     CHECK(arena_bytes(arena) < 64 << 20);
     heat_marks_at(&mark, heat, SURFACE_GRASS, (const double[3]){3, 4, 0}, (const double[3]){0, 0, 1}, 1);
@@ -322,7 +348,8 @@ static void bounds(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(a_box_that_left), cmocka_unit_test(a_box_at_night), cmocka_unit_test(exhaust_warms_the_ground),
-                                       cmocka_unit_test(a_trail_cools), cmocka_unit_test(a_burst), cmocka_unit_test(bounds)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_box_that_left), cmocka_unit_test(a_box_at_night), cmocka_unit_test(exhaust_warms_the_ground),
+        cmocka_unit_test(a_trail_cools),   cmocka_unit_test(a_burst),        cmocka_unit_test(bounds)};
     return cmocka_run_group_tests(tests, open_kinds, close_kinds);
 }

@@ -83,21 +83,22 @@ static void refuses_and_says_why(void **state)
     static const struct {
         const char *rows, *surfaces, *said;
     } bad[] = {
-        {"turf,0.04,0.09,0.06,1.06,0.4,0.015,0.019,0.73,0,1,0,0.1,1,1700,1200,t\n", surfaces, "rho_pan"},       /* more than all */
+        {"turf,0.04,0.09,0.06,1.06,0.4,0.015,0.019,0.73,0,1,0,0.1,1,1700,1200,t\n", surfaces,
+         "rho_pan"}, /* more than all */
         {"turf,0.04,0.09,0.06,nan,0.4,0.015,0.019,0.73,0,1,0,0.1,1,1700,1200,t\n", surfaces, "rho_pan"},
         {"turf,0.04,0.09,0.06,,0.4,0.015,0.019,0.73,0,1,0,0.1,1,1700,1200,t\n", surfaces, "rho_pan"},
         {"turf,0,0,0,0,1.2,0,0,0,0,0,0,0,1,1700,1200,t\n", surfaces, "rho_nir"},
         {"turf,0,0,0,0,0,0,0,0,0,0,0,0,0,1700,1200,t\n", surfaces, "conductivity_w_mk"},
         {"turf,0,0,0,0,0,0,0,0,0,0,0,0,1,0.5,1200,t\n", surfaces, "density_kg_m3"},
         {"turf,0,0,0,0,0,0,0,0,0,0,0,0,1,1700,1e5,t\n", surfaces, "heat_capacity_j_kgk"},
-        {"turf,0.04,0.09\n", surfaces, ""},                                                    /* narrow row */
-        {"none,0,0,0,0,0,0,0,0,0,0,0,0,1,1700,1200,t\n", surfaces, "none"},                                  /* row 0 is taken */
+        {"turf,0.04,0.09\n", surfaces, ""},                                 /* narrow row */
+        {"none,0,0,0,0,0,0,0,0,0,0,0,0,1,1700,1200,t\n", surfaces, "none"}, /* row 0 is taken */
         {"turf,0,0,0,0,0,0,0,0,0,0,0,0,1,1700,1200,t\nturf,0,0,0,0,0,0,0,0,0,0,0,0,1,1700,1200,t\n", surfaces, "turf"},
         {"a_name_of_more_than_thirty_one_bytes,0,0,0,0,0,0,0,0,0,0,0,0,1,1700,1200,t\n", surfaces, "thirty"},
         {rows, "surface,material\ngrass,moss\n", "moss"},
         {rows, "surface,material\nlawn,turf\n", "lawn"},
         {rows, "surface,material\ngrass,turf\ngrass,turf\n", "grass"},
-        {rows, "surface,material\ngrass,turf\n", "dry_grass"},                                 /* a class left out */
+        {rows, "surface,material\ngrass,turf\n", "dry_grass"}, /* a class left out */
         {rows, "surface,cover\ngrass,turf\n", "material"},
     };
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
@@ -143,8 +144,8 @@ static void the_house_is_in_order(void **state)
 static double lobe_albedo(double roughness_rad, double sun_zenith_rad)
 {
     const double n[3] = {0, 0, 1}, sun[3] = {sin(sun_zenith_rad), 0, cos(sun_zenith_rad)};
-    const int heights = 700, azimuths = 700;
-    double sum = 0;
+    const int    heights = 700, azimuths = 700;
+    double       sum = 0;
     for (int h = 0; h < heights; h++) {
         const double zenith = (h + 0.5) / heights * pi_rad / 2;
         for (int a = 0; a < azimuths; a++) {
@@ -210,8 +211,7 @@ static void glass_is_a_dielectric(void **state)
 {
     (void)state;
     static const double angle_deg[] = {0, 30, 60, 75, 85}, want[] = {0.04, 0.0415, 0.0892, 0.2531, 0.6128};
-    for (int i = 0; i < 5; i++)
-        CHECK_NEAR(material_fresnel(0.04, 0, cos(angle_deg[i] * rad_per_deg)), want[i], 5e-5);
+    for (int i = 0; i < 5; i++) CHECK_NEAR(material_fresnel(0.04, 0, cos(angle_deg[i] * rad_per_deg)), want[i], 5e-5);
     const double brewster_rad = atan(1.5), across = (1 - 1.5 * 1.5) / (1 + 1.5 * 1.5);
     CHECK_NEAR(material_fresnel(0.04, 0, cos(brewster_rad)), 0.5 * across * across, 1e-12);
     CHECK_NEAR(material_fresnel(0.04, 0, 0), 1, 1e-12);
@@ -223,7 +223,8 @@ static void metal_and_glass_have_no_diffuse_share(void **state)
 {
     (void)state;
     char table[512], surface_table[512];
-    CHECK(etc_path(table, sizeof table, "materials.csv") && etc_path(surface_table, sizeof surface_table, "surfaces.csv"));
+    CHECK(etc_path(table, sizeof table, "materials.csv") &&
+          etc_path(surface_table, sizeof surface_table, "surfaces.csv"));
     Materials m;
     CHECK(materials_open(&m, table, surface_table, NULL) == STATUS_OK);
     static const char *const names[] = {"metal_aluminium_bare", "metal_steel_galvanized", "steel_worn", "glass_window"};
@@ -232,7 +233,8 @@ static void metal_and_glass_have_no_diffuse_share(void **state)
         CHECK(row > 0);
         for (int c = 0; c < optical_channel_count; c++) {
             double diffuse, lobe;
-            material_split(&diffuse, &lobe, m.material[row].rho[c], m.material[row].gloss, m.material[row].roughness, 1);
+            material_split(&diffuse, &lobe, m.material[row].rho[c], m.material[row].gloss, m.material[row].roughness,
+                           1);
             CHECK(diffuse == 0);
             CHECK_NEAR(lobe, m.material[row].rho[c], 1e-12); /* coloured by the reflectance itself */
         }
@@ -252,7 +254,8 @@ static Status add_plants(Materials *m, const char *from, const char *to)
 {
     static char text[table_most], changed[table_most];
     char        table[512], surface_table[512], optics[512], ground[512], path[text_file_size];
-    CHECK(etc_path(table, sizeof table, "materials.csv") && etc_path(surface_table, sizeof surface_table, "surfaces.csv"));
+    CHECK(etc_path(table, sizeof table, "materials.csv") &&
+          etc_path(surface_table, sizeof surface_table, "surfaces.csv"));
     CHECK(etc_path(optics, sizeof optics, "plant_optics.csv") && etc_path(ground, sizeof ground, "woods.csv"));
     CHECK(materials_open(m, table, surface_table, NULL) == STATUS_OK);
     FILE *file = fopen(optics, "r");
@@ -284,7 +287,8 @@ static void leaves_are_as_leaves_are(void **state)
         CHECK_NEAR(material_through(leaf, optical_channel_nir), through, 1e-12);
         for (int c = 0; c < optical_channel_count; c++) CHECK((double)leaf->rho[c] + (double)leaf->tau[c] < 0.95);
         CHECK((double)leaf->rho_lwir + (double)leaf->tau_lwir < 0.07);
-        if (kind < PLANT_STANDING) CHECK(m.plant[kind][PLANT_BARK] > 0 && !material_is_leaf(&m.material[m.plant[kind][PLANT_BARK]]));
+        if (kind < PLANT_STANDING)
+            CHECK(m.plant[kind][PLANT_BARK] > 0 && !material_is_leaf(&m.material[m.plant[kind][PLANT_BARK]]));
     }
     CHECK(m.plant[PLANT_ROCK][PLANT_STONE] > 0 && materials_let_through(&m));
     /* the ground beneath a wood is its litter, that of a meadow still grass */
@@ -299,8 +303,8 @@ static void own_rows_move_no_other(void **state)
 {
     (void)state;
     static const char *const figures = "0.04,0.09,0.06,0.0625,0.45,0.015,0.019,0.73,0,1,0,0.1,1,1700,1200,test\n";
-    char      text[2048], path[text_file_size], a[512], b[512], optics[512], ground[512];
-    Materials plain, own;
+    char                     text[2048], path[text_file_size], a[512], b[512], optics[512], ground[512];
+    Materials                plain, own;
     CHECK(add_plants(&plain, "name,", "name,") == STATUS_OK);
     snprintf(text, sizeof text, "%snew_paint,%sgrass_green,%sleaf_spare,%s", header, figures, figures, figures);
     text_file(path, text);
@@ -310,7 +314,8 @@ static void own_rows_move_no_other(void **state)
     for (int i = 0; i < plain.count; i++) CHECK(strcmp(own.material[i].name, plain.material[i].name) == 0);
     CHECK(materials_find(&own, "new_paint") == plain.count && materials_find(&own, "leaf_spare") == plain.count + 1);
     CHECK_NEAR(own.material[materials_find(&own, "grass_green")].rho_lwir, 0.019, 1e-6);
-    CHECK(memcmp(own.surface, plain.surface, sizeof own.surface) == 0 && memcmp(own.plant, plain.plant, sizeof own.plant) == 0);
+    CHECK(memcmp(own.surface, plain.surface, sizeof own.surface) == 0 &&
+          memcmp(own.plant, plain.plant, sizeof own.plant) == 0);
     materials_close(&own);
 
     /* a surface of a new material, and a row twice */
@@ -346,17 +351,17 @@ static void bad_plants_are_refused(void **state)
     static const struct {
         const char *from, *to, *said;
     } bad[] = {
-        {"tau_nir", "tau_near", "tau_nir"},          /* a column */
+        {"tau_nir", "tau_near", "tau_nir"}, /* a column */
         {"rho_mwir,rho_lwir", "rho_mw,rho_lw", "rho_mwir"},
-        {",0.3172,", ",0.6,", "tau_nir"},            /* of pine: with 0.4661, more than all */
+        {",0.3172,", ",0.6,", "tau_nir"}, /* of pine: with 0.4661, more than all */
         {",0.3172,", ",-0.1,", "tau_nir"},
         {",0.3172,", ",nan,", "tau_nir"},
         {"0.5839,0,0.6", "0.5839,0.2,0.6", "gloss"}, /* glossy, and lets light through */
         {"leaf_pine,0.0441", "leaf_pine,0", "reflects"},
-        {"leaf_pine", "leaf_fir", "leaf_pine"},      /* kinds without their rows */
+        {"leaf_pine", "leaf_fir", "leaf_pine"}, /* kinds without their rows */
         {"bark_hedge", "bark_wall", "bark_hedge"},
         {"stone_boulder", "stone_age", "stone_boulder"},
-        {"leaf_alder", "leaf_pine", "leaf_pine"},    /* twice */
+        {"leaf_alder", "leaf_pine", "leaf_pine"}, /* twice */
     };
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         Materials m;

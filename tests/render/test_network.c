@@ -156,7 +156,7 @@ static void an_enclosure_of_one_temperature_stays(void **state)
 {
     (void)state;
     static Vehicle v;
-    Network *n = random_vehicle(&v, 1e3, 1e6, 290, 290, 1);
+    Network       *n = random_vehicle(&v, 1e3, 1e6, 290, 290, 1);
     for (int i = 0; i < most; i++) v.load[i] = (NetworkLoad){.film_w_k = 20 * dice(3, i), .fluid_k = 290};
     for (int k = 0; k < 4; k++) CHECK(heat_network_step(v.temp_k, NULL, n, v.load, NULL, pow(10, 2 + k)) == STATUS_OK);
     for (int i = 0; i < most; i++) CHECK_NEAR(v.temp_k[i], 290, 1e-9);
@@ -172,7 +172,7 @@ static void energy_is_kept(void **state)
         const double before_j = heat_network_heat_j(n, v.temp_k);
         double       heat_j = 0, turned_j = 0;
         for (int s = 0; s < 100; s++) {
-            NetworkLoad to[most];
+            NetworkLoad  to[most];
             const double last_j = heat_j;
             for (int i = 0; i < most; i++)
                 to[i] = (NetworkLoad){500 * dice(2, i + s), 20 * dice(3, i + s), 290, dice(5, i + s)};
@@ -190,8 +190,8 @@ static void held_nodes_stay(void **state)
 {
     (void)state;
     static Vehicle v;
-    Network *n = random_vehicle(&v, 1e3, 1e6, 250, 500, 5);
-    double   temp_k[most], heat_j = 3;
+    Network       *n = random_vehicle(&v, 1e3, 1e6, 250, 500, 5);
+    double         temp_k[most], heat_j = 3;
     memcpy(temp_k, v.temp_k, sizeof temp_k);
     v.load[0].heat_w = 1e9; /* a held node takes no notice */
     CHECK(heat_network_step(temp_k, &heat_j, n, v.load, NULL, 1000) == STATUS_OK);
@@ -208,9 +208,9 @@ static void held_nodes_stay(void **state)
 static void earlier_steps_are_forgotten(void **state)
 {
     (void)state;
-    static Vehicle v;
+    static Vehicle      v;
     static const double dt_s[] = {1e5, 30, 1e-3, 1e3, 30, 7};
-    double area_m2[3 * most];
+    double              area_m2[3 * most];
     for (int k = 0; k < 3 * most; k++) area_m2[k] = dice_between(1e-3, 10, 10, k);
     Network *used = random_vehicle(&v, 10, 1e8, 1, 2000, 2);
     for (int s = 0; s < 6; s++) {
@@ -235,14 +235,14 @@ static void extremes(void **state)
 {
     (void)state;
     static const double temps_k[] = {1, 300, 2000}, dt_s[] = {1e-3, 1, 600, 1e5}, capacity_j_k[] = {10, 1e5, 1e8};
-    static Vehicle v;
+    static Vehicle      v;
     for (int n = 0; n < 3 * 3 * 4 * 4; n++) {
         const int    c = n / 36;
         const double begin_k = temps_k[n % 3], around_k = temps_k[n / 3 % 3];
         const double low_k = fmin(begin_k, around_k), high_k = fmax(begin_k, around_k);
         const double least_j_k = c < 3 ? capacity_j_k[c] : 10, greatest_j_k = c < 3 ? capacity_j_k[c] : 1e8;
-        Network *net = random_vehicle(&v, least_j_k, greatest_j_k, begin_k, begin_k, 0);
-        double   heat_j = 0;
+        Network     *net = random_vehicle(&v, least_j_k, greatest_j_k, begin_k, begin_k, 0);
+        double       heat_j = 0;
         const double before_j = heat_network_heat_j(net, v.temp_k);
         for (int i = 0; i < most; i++)
             v.load[i] = (NetworkLoad){.film_w_k = dice_between(1e-3, 1e4, 3, i), .fluid_k = around_k};
@@ -286,10 +286,10 @@ static void wrong_shapes_and_steps_are_refused(void **state)
     CHECK(n == NULL);
     heat_network_destroy(NULL);
     n = made(2, good, 1, &(NetworkLink){0, 1, 3}, 0, NULL);
-    static const double wrong_dt_s[] = {0, -1, NAN, INFINITY}, wrong_k[] = {0, -5, NAN, INFINITY};
+    static const double      wrong_dt_s[] = {0, -1, NAN, INFINITY}, wrong_k[] = {0, -5, NAN, INFINITY};
     static const NetworkLoad load[2] = {{.heat_w = 0}};
-    static const NetworkLoad wrong[][2] = {{{.heat_w = NAN}}, {{.film_w_k = -1}}, {{.film_w_k = 1}, {.fluid_k = NAN}},
-                                           {{.emits_m2 = -1}}};
+    static const NetworkLoad wrong[][2] = {
+        {{.heat_w = NAN}}, {{.film_w_k = -1}}, {{.film_w_k = 1}, {.fluid_k = NAN}}, {{.emits_m2 = -1}}};
     double temp_k[2] = {300, 310};
     for (int k = 0; k < 4; k++) {
         CHECK(heat_network_step(temp_k, NULL, n, load, NULL, wrong_dt_s[k]) == STATUS_BAD_VALUE);
@@ -304,10 +304,16 @@ static void wrong_shapes_and_steps_are_refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(two_nodes), cmocka_unit_test(engine_and_hull), cmocka_unit_test(radiating_steel),
-        cmocka_unit_test(slab), cmocka_unit_test(loads_that_change),
-        cmocka_unit_test(an_enclosure_of_one_temperature_stays), cmocka_unit_test(energy_is_kept),
-        cmocka_unit_test(held_nodes_stay), cmocka_unit_test(earlier_steps_are_forgotten), cmocka_unit_test(extremes),
+        cmocka_unit_test(two_nodes),
+        cmocka_unit_test(engine_and_hull),
+        cmocka_unit_test(radiating_steel),
+        cmocka_unit_test(slab),
+        cmocka_unit_test(loads_that_change),
+        cmocka_unit_test(an_enclosure_of_one_temperature_stays),
+        cmocka_unit_test(energy_is_kept),
+        cmocka_unit_test(held_nodes_stay),
+        cmocka_unit_test(earlier_steps_are_forgotten),
+        cmocka_unit_test(extremes),
         cmocka_unit_test(a_plate_under_open_sky_never_reaches_nothing),
         cmocka_unit_test(wrong_shapes_and_steps_are_refused),
     };

@@ -3,8 +3,8 @@
 #include "render/light/optical.h"
 
 static PlanckTable *mwir, *lwir;
-static Atmosphere *atmosphere;
-static Arena *arena;
+static Atmosphere  *atmosphere;
+static Arena       *arena;
 
 /* One block of hits, by hand. */
 typedef struct Scene {
@@ -55,9 +55,9 @@ static int add(const double d_enu[3], const double n_enu[3], double range_m, int
         scene.hits.n_enu[k][i] = scene.hits.n_geo[k][i] = (float)n[k];
     }
     scene.hits.range_m[i] = range_m;
-    scene.material[i]     = (uint16_t)material;
-    scene.texture[i]      = 1;
-    scene.sun[i]          = !shadow;
+    scene.material[i] = (uint16_t)material;
+    scene.texture[i] = 1;
+    scene.sun[i] = !shadow;
     return i;
 }
 
@@ -83,12 +83,12 @@ static void set_material(int row, double rho, double gloss, double roughness)
 /* The eye eye_m above the ground, the sun in the east. */
 static Air clear_day_at(double elevation_deg, double eye_m)
 {
-    const double e = elevation_deg * rad_per_deg;
+    const double  e = elevation_deg * rad_per_deg;
     const Weather weather = weather_default();
     const Sun sun = {.elevation_rad = e, .azimuth_rad = 0.5 * pi_rad, .distance_au = 1, .d_enu = {cos(e), 0, sin(e)}};
     const AirSource source = {atmosphere, mwir, lwir, 0};
-    Air air;
-    const AirEye eye = {eye_m, 0x1f, NULL};
+    Air             air;
+    const AirEye    eye = {eye_m, 0x1f, NULL};
     CHECK(air_at(&air, &source, &weather, &sun, &eye, NULL, arena) == STATUS_OK);
     return air;
 }
@@ -100,7 +100,7 @@ static Air clear_day(double elevation_deg) { return clear_day_at(elevation_deg, 
 static Air oracle_air(void)
 {
     const double z = 40 * rad_per_deg, sun[3] = {sin(z), 0, cos(z)};
-    double sky[AIR_BAND_COUNT];
+    double       sky[AIR_BAND_COUNT];
     for (int b = 0; b < AIR_BAND_COUNT; b++) sky[b] = 100 / pi_rad;
     Air air;
     air_even(&air, sun, 1000, sky, 0, mwir, lwir);
@@ -113,15 +113,15 @@ static void open_ground_is_as_on_paper(void **state)
     clear();
     set_material(1, 0.2, 0, 1);
     set_material(2, 0.8, 0, 1);
-    const Air air = oracle_air();
+    const Air    air = oracle_air();
     const double down[3] = {0, 0.7, -0.7}, up[3] = {0, 0, 1};
-    const int lit = add(down, up, 50, 1, false), dark = add(down, up, 50, 1, true);
+    const int    lit = add(down, up, 50, 1, false), dark = add(down, up, 50, 1, true);
     /* the sphere's top, rho 0.8, under the open sky: no ground below to add to it */
     const int top = add(down, up, 50, 2, false);
     const int textured = add(down, up, 50, 1, false);
     scene.texture[textured] = 0.8f;
     shade(&air, optical_channel_pan);
-    CHECK_NEAR(scene.out[lit], 55.1341, 1e-3);  /* 0.2 / pi (1000 cos 40 + 100) */
+    CHECK_NEAR(scene.out[lit], 55.1341, 1e-3); /* 0.2 / pi (1000 cos 40 + 100) */
     CHECK_NEAR(scene.out[dark], 0.2 * 100 / pi_rad, 1e-4);
     CHECK_NEAR(scene.out[top], 4 * 55.1341, 5e-3);
     CHECK_NEAR(scene.out[textured], 0.8 * 55.1341, 1e-3);
@@ -139,7 +139,7 @@ static void sphere_is_as_others_render_it(void **state)
     /* the camera of that scene: (0,-12,4), pitched 10 degrees down, 30 degrees wide, 720 x 486 */
     static const struct {
         double px[2], want, tolerance;
-        bool shadow;
+        bool   shadow;
     } pixel[] = {
         {{420, 190}, 204.6, 0.006, false},
         {{360, 150}, 182.0, 0.006, false},
@@ -148,7 +148,7 @@ static void sphere_is_as_others_render_it(void **state)
     const double focal_px = 360 / tan(15 * rad_per_deg), pitch = -10 * rad_per_deg;
     for (int i = 0; i < 3; i++) {
         const double x = (pixel[i].px[0] - 360) / focal_px, y = -(pixel[i].px[1] - 243) / focal_px;
-        double d[3] = {x, cos(pitch) - y * sin(pitch), sin(pitch) + y * cos(pitch)}, o[3] = {0, -12, 4 - 2};
+        double       d[3] = {x, cos(pitch) - y * sin(pitch), sin(pitch) + y * cos(pitch)}, o[3] = {0, -12, 4 - 2};
         CHECK(v3_normalize(d, d));
         const double b = v3_dot(o, d), c = v3_dot(o, o) - 1, root = b * b - c;
         CHECK(root > 0);
@@ -174,7 +174,7 @@ static void white_furnace(void **state)
     for (int g = 0; g < 7; g++) set_material(g + 1, g > 3 ? 0.9 : 1, gloss[g], 0.1);
     for (int c = 0; c < optical_channel_count; c++) scene.materials.ground_rho[c] = 1;
     static const double even[AIR_BAND_COUNT] = {1, 1, 1, 1, 1, 1, 1};
-    Air air;
+    Air                 air;
     air_even(&air, (const double[3]){0, 0, -1}, 0, even, 1e-4, mwir, lwir);
     for (int m = 1; m <= 7; m++)
         for (int tilt = 0; tilt < 8; tilt++)
@@ -186,10 +186,10 @@ static void white_furnace(void **state)
     for (int c = 0; c < optical_channel_count; c++) {
         shade(&air, c);
         for (int i = 0; i < scene.hits.count; i++) {
-            const int m = scene.material[i];
+            const int    m = scene.material[i];
             const double bare = (scene.out[i] - (1 - exp(-0.3))) / exp(-0.3);
             CHECK(bare <= 1 + 1e-5);
-            CHECK(bare >= scene.rows[m].rho[c] - 1e-5); /* gloss at grazing only adds */
+            CHECK(bare >= scene.rows[m].rho[c] - 1e-5);    /* gloss at grazing only adds */
             if (m <= 4) CHECK_NEAR(scene.out[i], 1, 2e-6); /* single precision, of the normal too */
         }
     }
@@ -200,10 +200,10 @@ static void mirrors_show_the_sky_they_face(void **state)
     (void)state;
     clear();
     set_material(1, 0.6, 1, 0.02);
-    const Air air = clear_day(35);
+    const Air    air = clear_day(35);
     const double d[3] = {0.3, 0.8, -0.6}, n[3] = {0, 0, 1};
-    const int i = add(d, n, 1e-9, 1, true);
-    const int sky = add_sky(0.3, 0.8, 0.6);
+    const int    i = add(d, n, 1e-9, 1, true);
+    const int    sky = add_sky(0.3, 0.8, 0.6);
     shade(&air, optical_channel_b);
     double unit[3] = {0};
     CHECK(v3_normalize(unit, d));
@@ -212,7 +212,8 @@ static void mirrors_show_the_sky_they_face(void **state)
     CHECK_NEAR(scene.out[i] / (fresnel * scene.out[sky]), 1, 1e-3);
 }
 
-/* The sky is bright about the sun. A mirror shows that ring; rough grass of the same reflectance shows an even sheen. */
+/* The sky is bright about the sun. A mirror shows that ring; rough grass of the same reflectance shows an even sheen.
+ */
 static void rough_mirrors_show_no_ring(void **state)
 {
     (void)state;
@@ -225,7 +226,7 @@ static void rough_mirrors_show_no_ring(void **state)
     for (int k = 0; k < 2; k++) { /* down the sun's mirror image, and 8 degrees beside it; in shadow: no sun itself */
         const double off = 8 * k * rad_per_deg, d_enu[3] = {cos(e) * cos(off), cos(e) * sin(off), -sin(e)};
         smooth[k] = add(d_enu, (double[3]){0, 0, 1}, 0, 1, true);
-        rough[k]  = add(d_enu, (double[3]){0, 0, 1}, 0, 2, true);
+        rough[k] = add(d_enu, (double[3]){0, 0, 1}, 0, 2, true);
     }
     shade(&air, optical_channel_r);
     CHECK(scene.out[smooth[0]] > 1.5 * scene.out[smooth[1]]);
@@ -238,9 +239,9 @@ static void glint_is_where_the_mirror_says(void **state)
     (void)state;
     clear();
     set_material(1, 0.05, 1, 0.05);
-    const Air air = clear_day(35);
+    const Air    air = clear_day(35);
     const double e = 35 * rad_per_deg;
-    int best = -1, first = scene.hits.count;
+    int          best = -1, first = scene.hits.count;
     for (int k = -20; k <= 20; k++) {
         const double a = e + k * 0.02;
         add((double[3]){-cos(a), 0, -sin(a)}, (double[3]){0, 0, 1}, 10, 1, false); /* looking from the sun's side */
@@ -263,12 +264,13 @@ static void sky_pixels_are_the_sky(void **state)
 {
     (void)state;
     clear();
-    const Air air = clear_day(35);
+    const Air    air = clear_day(35);
     const double e = 35 * rad_per_deg;
-    const int zenith = add_sky(0, 0, 1), sun = add_sky(cos(e), 0, sin(e));
-    const int level = add_sky(0, 1, 0);
+    const int    zenith = add_sky(0, 0, 1), sun = add_sky(cos(e), 0, sin(e));
+    const int    level = add_sky(0, 1, 0);
     shade(&air, optical_channel_r);
-    CHECK_NEAR(scene.out[zenith] / daylight_sky(&air.light, AIR_R, (double[3]){0, 0, 1}), 1, 1e-3); /* two metres of air less */
+    CHECK_NEAR(scene.out[zenith] / daylight_sky(&air.light, AIR_R, (double[3]){0, 0, 1}), 1,
+               1e-3); /* two metres of air less */
     /* the disc: its irradiance over pi (0.2665 degree)^2 */
     const double disc = air.light.sun_w_m2[optical_channel_r] / (pi_rad * pow(0.2665 * rad_per_deg, 2));
     CHECK_NEAR((scene.out[sun] - daylight_sky(&air.light, AIR_R, air.light.sun_d_enu)) / disc, 1, 1e-3);
@@ -303,7 +305,7 @@ static void distance_hides_contrast(void **state)
     clear();
     set_material(1, 0.02, 0, 1);
     set_material(2, 0.9, 0, 1);
-    const Air air = clear_day(40);
+    const Air    air = clear_day(40);
     const double d[3] = {0.5, 0.8, 0}, n[3] = {0, 0, 1};
     for (int k = 0; k < 4; k++) {
         const double range_m[] = {10, 5000, 23000, 1e5};
@@ -326,7 +328,7 @@ static void the_sky_is_brighter_about_the_sun(void **state)
     (void)state;
     clear();
     set_material(1, 0.5, 0, 1);
-    const Air air = clear_day(20);
+    const Air    air = clear_day(20);
     const double d[3] = {0, 1, -0.01};
     add(d, (double[3]){1, 0, 0}, 1, 1, true), add(d, (double[3]){-1, 0, 0}, 1, 1, true);
     shade(&air, optical_channel_pan);

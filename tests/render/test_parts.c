@@ -47,8 +47,8 @@ static void a_plate_is_as_far_as_paper_says(void **state)
 {
     (void)state;
     static const double away_m[4] = {0, 20000, 50000, 200000};
-    Model model;
-    Scene s;
+    Model               model;
+    Scene               s;
     hand_plate(&model, 1.5, 1);
     scene_open(&s, &model, "avx2");
     const NodePose pose = at_rest();
@@ -68,7 +68,7 @@ static void a_plate_is_as_far_as_paper_says(void **state)
         double  between[3], n_geo[3], n_enu[3];
         v3_sub(between, p, o);
         const double want = v3_dot(between, normal) / v3_dot(d, normal);
-        const double got  = parts_first_hit(&hit, &s.entity, o, d, INFINITY, false);
+        const double got = parts_first_hit(&hit, &s.entity, o, d, INFINITY, false);
         CHECK_NEAR(got / want, 1, 1e-9);
         /* a few roundings at the size of the coordinates, over the sine of the angle of incidence */
         CHECK_NEAR(got, want, 16 * 2.2e-16 * (away_m[n % 4] + far_m) / sine + 1e-14);
@@ -91,7 +91,7 @@ static double box_entry(const double low[3], const double high[3], const double 
     double in = -INFINITY, out = INFINITY;
     for (int c = 0; c < 3; c++) {
         const double a = (low[c] - o[c]) / d[c], b = (high[c] - o[c]) / d[c];
-        in  = fmax(in, fmin(a, b));
+        in = fmax(in, fmin(a, b));
         out = fmin(out, fmax(a, b));
     }
     return out - in > least_m && in > 0 ? in : NAN;
@@ -102,12 +102,12 @@ static void a_closed_box_does_not_leak(void **state)
 {
     (void)state;
     static const double low[3] = {-3.2, -1.7, -2.4}, high[3] = {3.7, 1.6, 0};
-    Model model;
-    Scene s;
+    Model               model;
+    Scene               s;
     hand_box(&model, low, high);
     scene_open(&s, &model, "avx2");
     const NodePose pose = at_rest();
-    int tried = 0;
+    int            tried = 0;
     for (int n = 0; n < 200000; n++) {
         double p[3], r[9], o_body[3], d_body[3], o[3], d[3], at[3];
         if (n % 100 == 0) {
@@ -165,7 +165,7 @@ static void a_sphere_has_its_radius_and_its_normals(void **state)
         parts_normals(n_geo, n_enu, &model, &s.entity, &hit, o, d, t);
         CHECK_NEAR(v3_dot(n_geo, n_geo), 1, 1e-12);
         v3_normalize(at, at);
-        CHECK_NEAR(v3_dot(n_enu, at), 1, 1e-5);                    /* interpolated: the sphere's own */
+        CHECK_NEAR(v3_dot(n_enu, at), 1, 1e-5);                     /* interpolated: the sphere's own */
         CHECK_NEAR(v3_dot(n_geo, at), 1, 1 - cos(2 * pi_rad / 64)); /* the facet's: within a facet's turn */
         /* from inside the far wall shows its back */
         if (n % 4) continue;
@@ -185,8 +185,8 @@ static void nodes_are_where_their_poses_put_them(void **state)
     (void)state;
     static const double low[3] = {-3, -1, -1}, high[3] = {3, 1, 0};
     static const double gun_low[3] = {0, -0.1, -0.1}, gun_high[3] = {4, 0.1, 0.1};
-    Model model;
-    Scene s;
+    Model               model;
+    Scene               s;
     hand_model(&model, 2, 16, 24);
     hand_box_into(&model, 0, low, high);
     hand_box_into(&model, 1, gun_low, gun_high);
@@ -258,13 +258,13 @@ static void every_set_of_instructions_agrees(void **state)
 {
     (void)state;
     static const char *const isa[3] = {"avx2", "sse4.2", ""};
-    Model  model;
-    Scene  s[3];
-    double p[3], r[9];
+    Model                    model;
+    Scene                    s[3];
+    double                   p[3], r[9];
     hand_sphere(&model, 2, 24);
     for (int k = 0; k < 3; k++) scene_open(&s[k], &model, isa[k]);
     const NodePose pose = at_rest();
-    int hits = 0;
+    int            hits = 0;
     for (int n = 0; n < 100000; n++) {
         double o[3], d[3], to[3];
         if (n % 1000 == 0) {
@@ -296,10 +296,10 @@ static void faces_in_one_place_are_the_lowest(void **state)
 {
     (void)state;
     static const char *const isa[3] = {"avx2", "sse4.2", ""};
-    Model        model;
-    Scene        s[3];
-    const double p[3] = {3000, -2000, 100};
-    double       r[9];
+    Model                    model;
+    Scene                    s[3];
+    const double             p[3] = {3000, -2000, 100};
+    double                   r[9];
     hand_model(&model, 1, 16, 24);
     hand_box_into(&model, 0, (const double[3]){-1, -0.7, -0.9}, (const double[3]){1, 0.8, 1.1});
     hand_box_into(&model, 0, (const double[3]){-0.6, -0.71, -0.9}, (const double[3]){1, 0.8, 0.3});
@@ -342,12 +342,14 @@ static void aim(double o[3][hits_capacity], double d[3][hits_capacity], int coun
 {
     for (int i = 0; i < count; i++) {
         const uint32_t *corner = model->triangle[(int)hand_uniform(0, model->triangle_count)];
-        double          w[3] = {hand_uniform(0, 1), i % 3 ? hand_uniform(0, 1) : 0, i % 5 ? hand_uniform(0, 1) : 0}, way[3];
-        const double    sum = w[0] + w[1] + w[2], away_m = exp(hand_uniform(-3, 8)), aside_m = i % 2 ? 0 : 2e-5;
+        double w[3] = {hand_uniform(0, 1), i % 3 ? hand_uniform(0, 1) : 0, i % 5 ? hand_uniform(0, 1) : 0}, way[3];
+        const double sum = w[0] + w[1] + w[2], away_m = exp(hand_uniform(-3, 8)), aside_m = i % 2 ? 0 : 2e-5;
         hand_direction(way);
         for (int c = 0; c < 3; c++) {
             const double at = (w[0] * model->vertex[corner[0]][c] + w[1] * model->vertex[corner[1]][c] +
-                               w[2] * model->vertex[corner[2]][c]) / sum + hand_uniform(-aside_m, aside_m);
+                               w[2] * model->vertex[corner[2]][c]) /
+                                  sum +
+                              hand_uniform(-aside_m, aside_m);
             d[c][i] = i % 4 == 3 ? d[c][i - 1] : way[c];
             o[c][i] = i % 4 == 1 ? o[c][i - 1] : at - away_m * way[c];
         }
@@ -363,12 +365,12 @@ static void aim(double o[3][hits_capacity], double d[3][hits_capacity], int coun
 static void check_company(const Model *model, int blocks)
 {
     static const char *const isa[3] = {"avx2", "sse4.2", ""};
-    static double o[3][hits_capacity], d[3][hits_capacity], far_m[hits_capacity];
-    PosedEntity   entity[3] = {0};
-    Tracer       *tracer[3];
-    double        attitude[9];
-    int           met_count = 0, missed_count = 0;
-    NodePose     *pose = calloc((size_t)model->node_count, sizeof *pose);
+    static double            o[3][hits_capacity], d[3][hits_capacity], far_m[hits_capacity];
+    PosedEntity              entity[3] = {0};
+    Tracer                  *tracer[3];
+    double                   attitude[9];
+    int                      met_count = 0, missed_count = 0;
+    NodePose                *pose = calloc((size_t)model->node_count, sizeof *pose);
     model_pose(pose, model, NULL);
     m3_identity(attitude);
     for (int k = 0; k < 3; k++) {
@@ -377,9 +379,9 @@ static void check_company(const Model *model, int blocks)
         parts_pose(&entity[k], tracer[k], 0, pose, (const double[3]){0, 0, 0}, attitude, 0);
     }
     for (int b = 0; b < blocks; b++) {
-        const int     count = b % 3 ? hits_capacity : (int)hand_uniform(1, 40);
+        const int           count = b % 3 ? hits_capacity : (int)hand_uniform(1, 40);
         const double *const o_enu[3] = {o[0], o[1], o[2]}, *const d_enu[3] = {d[0], d[1], d[2]};
-        int           list[hits_capacity];
+        int list[hits_capacity];
         aim(o, d, count, model);
         for (int i = 0; i < count; i++) {
             far_m[i] = b % 4 ? INFINITY : exp(hand_uniform(-3, 8));
@@ -454,8 +456,8 @@ static void company_does_not_show_on_a_truck(void **state)
     company_does_not_show_on("models/brlcad/truck.obj.gz", 20);
 }
 
-/* Sheets of this size one behind the other, the highest number nearest, the last dozen within 0.1 mm of it. Distance and
- * triangle that a ray through all of them meets first. */
+/* Sheets of this size one behind the other, the highest number nearest, the last dozen within 0.1 mm of it. Distance
+ * and triangle that a ray through all of them meets first. */
 static double first_of_sheets(uint32_t *triangle, double size_m)
 {
     enum { sheets = 40 };
@@ -517,8 +519,8 @@ static void rays_from_beyond_any_float_meet_nothing(void **state)
     (void)state;
     static const double from[4][3] = {{1e30, 0, 0}, {0, 1e300, 1e300}, {INFINITY, 0, 0}, {NAN, 0, 0}};
     const double        aside[3] = {0, 0, 1};
-    Model model;
-    Scene s;
+    Model               model;
+    Scene               s;
     hand_plate(&model, 1.5, 1);
     scene_open(&s, &model, "avx2");
     const NodePose pose = at_rest();

@@ -22,7 +22,7 @@ static int open_plate(void **state)
 static View show(void)
 {
     static const double at[3] = {0, 0, 0}, eye[3] = {20, 0, 1}, west[3] = {-1, 0, 0}, noon[3] = {0, -0.6, 0.8};
-    double r[9];
+    double              r[9];
     arena_reset(hand.arena);
     hand_air_off(noon);
     hand_clear();
@@ -55,14 +55,14 @@ static double blend_k(double y_m, double z_m)
 static void pixels_blend_patches(void **state)
 {
     (void)state;
-    const View    view = show();
-    RenderRequest request = hand_request(&view);
+    const View     view = show();
+    RenderRequest  request = hand_request(&view);
     const Patches *p = &hand.world.patches->of[hand.model[hand_plate_model]];
     for (int i = 0; i < lengths; i++) warm_k[i] = p->patch[i].p_node[1] > 0 && p->patch[i].p_node[1] < 1.5 ? 380 : 290;
     request.bands = 1 << BAND_LWIR, request.edge_samples = 1;
     const Picture picture = hand_render(&request, hand.pool);
-    double worst_k = 0, worst_lwir = 0, step_k = 0, hottest_k = 0, coldest_k = 1e9;
-    int    on = 0;
+    double        worst_k = 0, worst_lwir = 0, step_k = 0, hottest_k = 0, coldest_k = 1e9;
+    int           on = 0;
     for (int row = 0; row < height; row++)
         for (int column = 0; column < width; column++) {
             const size_t at = picture_index(&picture, column, row);

@@ -27,9 +27,9 @@ static void spectral_integrates_to_stefan_boltzmann(void **state)
     const double sigma = 5.670374419184429e-8; /* W m^-2 K^-4, exact since 2019, rounded */
     for (double temp_k = 200; temp_k <= 1500; temp_k += 433) {
         /* trapezoid in ln(wavelength): exponentially convergent, the integrand dies at both ends */
-        const int n = 20000;
+        const int    n = 20000;
         const double a = log(1e-7), b = log(1e2), step = (b - a) / n;
-        double sum = 0;
+        double       sum = 0;
         for (int i = 0; i <= n; i++) {
             const double w = exp(a + i * step);
             sum += planck_radiance(w, temp_k) * w * step;
@@ -53,15 +53,15 @@ static void band_agrees_with_25_digits(void **state)
     char line[512];
     CHECK(fgets(line, sizeof line, file) != NULL);
     double worst = 0, worst_slope = 0;
-    int rows = 0, normal = 0;
+    int    rows = 0, normal = 0;
     while (fgets(line, sizeof line, file)) {
-        char *at = line;
+        char  *at = line;
         double v[5];
         for (int i = 0; i < 5; i++) {
             v[i] = strtod(at, &at); /* 1e-8923 reads as 0 */
             if (*at == ',') at++;
         }
-        double slope;
+        double       slope;
         const double got = planck_band(v[0] * 1e-6, v[1] * 1e-6, v[2], &slope);
         rows++;
         if (v[3] < 2.3e-308) {
@@ -100,7 +100,7 @@ static void band_is_the_sum_of_its_pieces(void **state)
     (void)state;
     for (double temp_k = 2; temp_k < 2e5; temp_k *= 2.7) {
         const double low = 3e-7, high = 3e-5;
-        double slope, slopes = 0, sum = 0;
+        double       slope, slopes = 0, sum = 0;
         const double whole = planck_band(low, high, temp_k, &slope);
         if (!(whole > 1e-290)) continue;
         for (int i = 0; i < 137; i++) {
@@ -134,12 +134,12 @@ static void derivative_is_the_derivative(void **state)
 {
     (void)state;
     for (double temp_k = 150; temp_k < 3000; temp_k *= 1.3) {
-        double slope;
+        double       slope;
         const double h = temp_k * 1e-3;
         planck_band(3.4e-6, 4.8e-6, temp_k, &slope);
         const double d1 = planck_band(3.4e-6, 4.8e-6, temp_k + h, NULL) - planck_band(3.4e-6, 4.8e-6, temp_k - h, NULL);
-        const double d2 = planck_band(3.4e-6, 4.8e-6, temp_k + 2 * h, NULL) -
-                          planck_band(3.4e-6, 4.8e-6, temp_k - 2 * h, NULL);
+        const double d2 =
+            planck_band(3.4e-6, 4.8e-6, temp_k + 2 * h, NULL) - planck_band(3.4e-6, 4.8e-6, temp_k - 2 * h, NULL);
         CHECK_NEAR((8 * d1 - d2) / (12 * h) / slope, 1, 1e-7); /* (x h / T)^4 / 30, x <= 28 */
     }
 }
@@ -147,7 +147,7 @@ static void derivative_is_the_derivative(void **state)
 static void inverse_inverts(void **state)
 {
     (void)state;
-    static const double band[][2] = {{4e-7, 7e-7}, {7e-7, 1.1e-6}, {1.4e-6, 2.5e-6}, {3e-6, 5e-6},
+    static const double band[][2] = {{4e-7, 7e-7},     {7e-7, 1.1e-6},    {1.4e-6, 2.5e-6}, {3e-6, 5e-6},
                                      {3.4e-6, 4.8e-6}, {7.5e-6, 13.5e-6}, {8e-6, 12e-6}};
     for (int b = 0; b < 7; b++) {
         for (double temp_k = 40; temp_k < 2e4; temp_k *= 1.37) {
@@ -194,14 +194,14 @@ static void many_temperatures_are_each_ones(void **state)
 static void table_follows_the_function(void **state)
 {
     (void)state;
-    static const double band[][2] = {{4e-7, 7e-7}, {7e-7, 1.1e-6}, {1.4e-6, 2.5e-6}, {3e-6, 5e-6},
+    static const double band[][2] = {{4e-7, 7e-7},     {7e-7, 1.1e-6},    {1.4e-6, 2.5e-6}, {3e-6, 5e-6},
                                      {3.4e-6, 4.8e-6}, {7.5e-6, 13.5e-6}, {8e-6, 12e-6}};
-    double worst = 0, worst_infrared = 0, worst_temp = 0;
+    double              worst = 0, worst_infrared = 0, worst_temp = 0;
     for (int b = 0; b < 7; b++) {
         PlanckTable *table = NULL;
         CHECK(planck_table_create(&table, band[b][0], band[b][1]) == STATUS_OK);
         for (double temp_k = 180; temp_k <= 1500; temp_k += 0.0317) { /* falls anywhere within a cell */
-            const double want  = planck_band(band[b][0], band[b][1], temp_k, NULL);
+            const double want = planck_band(band[b][0], band[b][1], temp_k, NULL);
             const double error = relative(planck_table_radiance(table, temp_k), want);
             worst = fmax(worst, error);
             if (b > 1) worst_infrared = fmax(worst_infrared, error);
@@ -229,14 +229,10 @@ static void table_follows_the_function(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(spectral_has_its_limits),
-        cmocka_unit_test(spectral_integrates_to_stefan_boltzmann),
-        cmocka_unit_test(band_agrees_with_25_digits),
-        cmocka_unit_test(band_pins),
-        cmocka_unit_test(band_is_the_sum_of_its_pieces),
-        cmocka_unit_test(narrow_band_is_spectral),
-        cmocka_unit_test(derivative_is_the_derivative),
-        cmocka_unit_test(inverse_inverts),
+        cmocka_unit_test(spectral_has_its_limits),         cmocka_unit_test(spectral_integrates_to_stefan_boltzmann),
+        cmocka_unit_test(band_agrees_with_25_digits),      cmocka_unit_test(band_pins),
+        cmocka_unit_test(band_is_the_sum_of_its_pieces),   cmocka_unit_test(narrow_band_is_spectral),
+        cmocka_unit_test(derivative_is_the_derivative),    cmocka_unit_test(inverse_inverts),
         cmocka_unit_test(many_temperatures_are_each_ones), cmocka_unit_test(table_follows_the_function),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -5,13 +5,18 @@
 
 static Material leaf_row(void)
 {
-    return (Material){.name = "leaf", .rho_lwir = 0.03f, .solar_absorptance = 0.51f, .conductivity_w_mk = 0.3f,
-                      .density_kg_m3 = 700, .heat_capacity_j_kgk = 3500};
+    return (Material){.name = "leaf",
+                      .rho_lwir = 0.03f,
+                      .solar_absorptance = 0.51f,
+                      .conductivity_w_mk = 0.3f,
+                      .density_kg_m3 = 700,
+                      .heat_capacity_j_kgk = 3500};
 }
 
 static Daylight day(double direct_w_m2, double diffuse_w_m2, double loss_w_m2, double wind_mps)
 {
-    Daylight light = {.solar_direct_w_m2 = direct_w_m2, .solar_diffuse_w_m2 = diffuse_w_m2, .longwave_loss_w_m2 = loss_w_m2};
+    Daylight light = {
+        .solar_direct_w_m2 = direct_w_m2, .solar_diffuse_w_m2 = diffuse_w_m2, .longwave_loss_w_m2 = loss_w_m2};
     light.weather = weather_default();
     light.weather.wind_mps = wind_mps;
     light.sun_d_enu[2] = direct_w_m2 > 0 ? 1 : -1;
@@ -25,10 +30,12 @@ static double magnus_pa(double temp_k)
     return 610.94 * exp(17.625 * c / (243.04 + c));
 }
 
-/* What a leaf at temp_k gains, W per m2 of leaf, one side counted: Campbell & Norman (1998), eq. 14.1, each term in full. */
+/* What a leaf at temp_k gains, W per m2 of leaf, one side counted: Campbell & Norman (1998), eq. 14.1, each term in
+ * full. */
 static double leaf_gain(const Daylight *light, const Material *m, double air_k, double open, double temp_k)
 {
-    const double wind = fmax(light->weather.wind_mps, 0.3), sigma = 5.670374419e-8, emissivity = 1 - (double)m->rho_lwir;
+    const double wind = fmax(light->weather.wind_mps, 0.3), sigma = 5.670374419e-8,
+                 emissivity = 1 - (double)m->rho_lwir;
     const double layer = 1.4 * 0.135 * sqrt(wind / (0.72 * 0.05)), wet_layer = 1.4 * 0.147 * sqrt(wind / (0.72 * 0.05));
     const double sun = open * (0.5 * light->solar_direct_w_m2 + light->solar_diffuse_w_m2);
     const double stomata = 0.2 * (0.05 + 0.95 * fmin(sun / 250, 1)), wet = stomata * wet_layer / (stomata + wet_layer);
@@ -57,7 +64,8 @@ static void leaf_is_in_balance(void **state)
     for (int k = 0; k < 4 * 3 * 3 * 3; k++) {
         const double   sun = direct[k % 3], air = air_k[k / 3 % 3], share = open[k / 9 % 3];
         const Daylight light = day(sun, sun / 6, 90, wind[k / 27]);
-        const double   found = thermal_leaf_k(&light, &m, air, share, share), expected = leaf_by_bisection(&light, &m, air, share);
+        const double   found = thermal_leaf_k(&light, &m, air, share, share),
+                     expected = leaf_by_bisection(&light, &m, air, share);
         most = fmax(most, fabs(found - expected));
         warmest = fmax(warmest, found - air), coldest = fmin(coldest, found - air);
         CHECK_NEAR(found, expected, 0.05 + 0.05 * fabs(expected - air));

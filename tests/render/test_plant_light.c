@@ -10,12 +10,12 @@
 
 enum { leaf_count = 64 };
 
-static Hits     hits;
-static Rays     rays;
-static AirPaths veils[AIR_BAND_COUNT];
-static float    texture[hits_capacity], sun[hits_capacity], temp_k[hits_capacity];
-static uint64_t key[hits_capacity];
-static Material rows[3];
+static Hits      hits;
+static Rays      rays;
+static AirPaths  veils[AIR_BAND_COUNT];
+static float     texture[hits_capacity], sun[hits_capacity], temp_k[hits_capacity];
+static uint64_t  key[hits_capacity];
+static Material  rows[3];
 static Materials materials;
 
 static int open_world(void **state)
@@ -29,15 +29,23 @@ static int open_world(void **state)
 static void set_leaf(float rho, float tau)
 {
     Material *m = &rows[1];
-    *m = (Material){.name = "leaf", .rho_mwir = rho, .rho_lwir = rho, .tau_mwir = tau, .tau_lwir = tau,
-                    .solar_absorptance = 1 - rho - tau, .roughness = 1, .conductivity_w_mk = 0.3f, .density_kg_m3 = 700,
+    *m = (Material){.name = "leaf",
+                    .rho_mwir = rho,
+                    .rho_lwir = rho,
+                    .tau_mwir = tau,
+                    .tau_lwir = tau,
+                    .solar_absorptance = 1 - rho - tau,
+                    .roughness = 1,
+                    .conductivity_w_mk = 0.3f,
+                    .density_kg_m3 = 700,
                     .heat_capacity_j_kgk = 3500};
     for (int c = 0; c < optical_channel_count; c++) m->rho[c] = rho, m->tau[c] = tau;
     rows[2] = *m; /* bark of the same reflectance in all */
     for (int c = 0; c < optical_channel_count; c++) rows[2].rho[c] = rho + tau, rows[2].tau[c] = 0;
     rows[2].rho_mwir = rows[2].rho_lwir = rho + tau, rows[2].tau_mwir = rows[2].tau_lwir = 0;
     materials = (Materials){.count = 3, .material = rows};
-    for (int kind = 0; kind < PLANT_KINDS; kind++) materials.plant[kind][PLANT_LEAF] = 1, materials.plant[kind][PLANT_BARK] = 2;
+    for (int kind = 0; kind < PLANT_KINDS; kind++)
+        materials.plant[kind][PLANT_LEAF] = 1, materials.plant[kind][PLANT_BARK] = 2;
 }
 
 /* Leaves of every tilt a little above z = 0, seen from their lit or unlit side. */
@@ -45,7 +53,7 @@ static void random_leaves(void)
 {
     hits.count = rays.count = leaf_count;
     for (int i = 0; i < leaf_count; i++) {
-        double n[3];
+        double       n[3];
         const double up = hand_uniform(-1, 1), turn = hand_uniform(0, 2 * pi_rad), flat = sqrt(1 - up * up);
         n[0] = flat * cos(turn), n[1] = flat * sin(turn), n[2] = up;
         for (int k = 0; k < 3; k++) {
@@ -70,7 +78,8 @@ static double shade(float quick[AIR_BAND_COUNT][hits_capacity], const float *con
     float              *out[AIR_BAND_COUNT];
     assert_int_equal(surface_light_prepare(&light, &hand.air, &materials, hand.air_arena), STATUS_OK);
     air_paths_of(veils, &hand.air, (1 << AIR_BAND_COUNT) - 1, &hits, &rays, temp_k);
-    SurfaceBlock block = {.hits = &hits, .rays = &rays, .material = hits.material, .temp_k = temp_k, .sun = sun, .veils = veils};
+    SurfaceBlock block = {
+        .hits = &hits, .rays = &rays, .material = hits.material, .temp_k = temp_k, .sun = sun, .veils = veils};
     for (int b = 0; b < AIR_BAND_COUNT; b++) {
         out[b] = quick[b], block.texture[b] = texture;
         if (around) block.around_w_m2[b] = around[b];
@@ -79,10 +88,11 @@ static double shade(float quick[AIR_BAND_COUNT][hits_capacity], const float *con
     for (int b = 0; b < AIR_BAND_COUNT; b++) {
         const float *gathered = around ? around[b] : NULL;
         if (b < optical_channel_count)
-            optical_shade(plain, b, &hand.air, &materials, &hits, &rays, hits.material, texture, sun, gathered, &veils[b], NULL);
+            optical_shade(plain, b, &hand.air, &materials, &hits, &rays, hits.material, texture, sun, gathered,
+                          &veils[b], NULL);
         else
-            thermal_shade(plain, b == AIR_MWIR ? BAND_MWIR : BAND_LWIR, &hand.air, &materials, &hits, &rays, hits.material,
-                          temp_k, sun, gathered, &veils[b], NULL);
+            thermal_shade(plain, b == AIR_MWIR ? BAND_MWIR : BAND_LWIR, &hand.air, &materials, &hits, &rays,
+                          hits.material, temp_k, sun, gathered, &veils[b], NULL);
         for (int i = 0; i < leaf_count; i++)
             most = fmax(most, fabs((double)quick[b][i] - (double)plain[i]) / fmax((double)plain[i], 1e-9));
     }
@@ -117,8 +127,9 @@ static void white_leaf_vanishes(void **state)
     for (int b = 0; b < AIR_BAND_COUNT; b++)
         for (int i = 0; i < leaf_count; i++) CHECK_NEAR(quick[b][i], 3, 3e-4);
 
-    assert_int_equal(visibility_create(&visibility, hand.world.tracer, NULL, &hand.world.frame, &hand.snapshot, false,
-                                       hand.arena), STATUS_OK);
+    assert_int_equal(
+        visibility_create(&visibility, hand.world.tracer, NULL, &hand.world.frame, &hand.snapshot, false, hand.arena),
+        STATUS_OK);
     visibility_materials(visibility, &materials);
     const HemisphereScene scene = {visibility, &hand.air, &materials, NULL, &hand.snapshot};
     const float          *around[AIR_BAND_COUNT];
@@ -152,8 +163,9 @@ static void white_stand_vanishes(void **state)
     const Woods woods = hand_stand(plant, trees, origin, 15);
     assert_int_equal(forest_create(&forest, &woods, &hand_plants, &(ForestConfig){.leaves = true}, "avx2"), STATUS_OK);
     assert_int_equal(forest_frame_open(&frame, forest, eye, 1000, 0, 0, calm, NULL, hand.arena), STATUS_OK);
-    assert_int_equal(visibility_create(&visibility, hand.world.tracer, NULL, &hand.world.frame, &hand.snapshot, 0, hand.arena),
-                     STATUS_OK);
+    assert_int_equal(
+        visibility_create(&visibility, hand.world.tracer, NULL, &hand.world.frame, &hand.snapshot, 0, hand.arena),
+        STATUS_OK);
     visibility_materials(visibility, &materials);
     visibility_plants(visibility, &frame);
     rays.count = 0, rays.columns = 0;
@@ -246,7 +258,8 @@ static void quick_and_plain_forms_agree(void **state)
         set_leaf(0.4f, 0.3f);
         for (int c = 0; c < optical_channel_count; c++) materials.ground_rho[c] = 0.2f;
         random_leaves();
-        for (int i = 0; i < leaf_count; i++) texture[i] = (float)hand_uniform(0.6, 1.6), sun[i] = (float)hand_uniform(0, 1);
+        for (int i = 0; i < leaf_count; i++)
+            texture[i] = (float)hand_uniform(0.6, 1.6), sun[i] = (float)hand_uniform(0, 1);
         const double most = shade(quick, NULL);
         print_message("sun %d: %.1e\n", run, most);
         CHECK(most < 3e-5);

@@ -1,5 +1,5 @@
-/* The prototypes: numbers of the founding paper, flat quads, simple outlines, areas by other formulae, the silhouettes of
- * the second level of detail. */
+/* The prototypes: numbers of the founding paper, flat quads, simple outlines, areas by other formulae, the silhouettes
+ * of the second level of detail. */
 #include "tests/check.h"
 
 #include "render/trace/plants/plants.h"
@@ -158,20 +158,24 @@ static int silhouette(const PlantShape *s, const LeafOutline *outline, const dou
             point(p, q, c);
             p[2] -= 0.5;
             x[c] = (v3_dot(p, u) / 1.2 + 0.5) * side, y[c] = (v3_dot(p, v) / 1.2 + 0.5) * side;
-            low[0] = fmin(low[0], x[c]), low[1] = fmin(low[1], y[c]), high[0] = fmax(high[0], x[c]), high[1] = fmax(high[1], y[c]);
+            low[0] = fmin(low[0], x[c]), low[1] = fmin(low[1], y[c]), high[0] = fmax(high[0], x[c]),
+            high[1] = fmax(high[1], y[c]);
         }
         for (int j = (int)fmax(low[1] - 0.5, 0); j < fmin(high[1] + 0.5, side); j++)
             for (int i = (int)fmax(low[0] - 0.5, 0); i < fmin(high[0] + 0.5, side); i++) {
                 const double px = i + 0.5, py = j + 0.5;
                 bool         in = false;
                 if (q->organ == PLANT_LEAF) { /* a parallelogram */
-                    const double ax = x[1] - x[0], ay = y[1] - y[0], bx = x[3] - x[0], by = y[3] - y[0], det = ax * by - ay * bx;
+                    const double ax = x[1] - x[0], ay = y[1] - y[0], bx = x[3] - x[0], by = y[3] - y[0],
+                                 det = ax * by - ay * bx;
                     if (fabs(det) < 1e-12) continue;
-                    const double s1 = ((px - x[0]) * by - (py - y[0]) * bx) / det, t1 = (ax * (py - y[0]) - ay * (px - x[0])) / det;
+                    const double s1 = ((px - x[0]) * by - (py - y[0]) * bx) / det,
+                                 t1 = (ax * (py - y[0]) - ay * (px - x[0])) / det;
                     in = plants_within_outline(&outline[q->outline], (float)s1, (float)t1);
                 } else {
                     for (int c = 0, e = 3; c < 4; e = c++)
-                        if ((y[c] > py) != (y[e] > py) && px < (x[e] - x[c]) * (py - y[c]) / (y[e] - y[c]) + x[c]) in = !in;
+                        if ((y[c] > py) != (y[e] > py) && px < (x[e] - x[c]) * (py - y[c]) / (y[e] - y[c]) + x[c])
+                            in = !in;
                 }
                 covered[j][i] |= in;
             }
@@ -194,7 +198,8 @@ static void second_level(void **state)
                 full += silhouette(&plants->shape[kind][0], plants->outline[kind], d, leaves);
                 less += silhouette(&plants->shape[kind][1], plants->outline[kind], d, leaves);
             }
-            if (fabs((double)(less - full)) > 0.15 * full) fail_msg("%s: %d for %d", plant_name((PlantKind)kind), less, full);
+            if (fabs((double)(less - full)) > 0.15 * full)
+                fail_msg("%s: %d for %d", plant_name((PlantKind)kind), less, full);
         }
 }
 
@@ -207,9 +212,10 @@ static void patterns(void **state)
         double sum = 0, leaf = 0, square = 0, far = 0;
         enum { places = 20000 };
         for (int n = 0; n < places; n++) {
-            const float p_m[3] = {(float)random_uniform(1, 1, 0, (uint64_t)n), (float)random_uniform(1, 2, 0, (uint64_t)n),
+            const float p_m[3] = {(float)random_uniform(1, 1, 0, (uint64_t)n),
+                                  (float)random_uniform(1, 2, 0, (uint64_t)n),
                                   (float)(20 * random_uniform(1, 3, 0, (uint64_t)n))};
-            float albedo, slope[2];
+            float       albedo, slope[2];
             plants_bark(&albedo, slope, (PlantKind)kind, (uint32_t)n % 97, p_m, 0);
             sum += (double)albedo;
             plants_bark(&albedo, slope, (PlantKind)kind, 5, p_m, 10);
@@ -247,8 +253,13 @@ static void threads(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(numbers_of_the_paper), cmocka_unit_test(one_metre_high), cmocka_unit_test(flat_quads),
-        cmocka_unit_test(outlines), cmocka_unit_test(leaf_area), cmocka_unit_test(second_level), cmocka_unit_test(patterns),
+        cmocka_unit_test(numbers_of_the_paper),
+        cmocka_unit_test(one_metre_high),
+        cmocka_unit_test(flat_quads),
+        cmocka_unit_test(outlines),
+        cmocka_unit_test(leaf_area),
+        cmocka_unit_test(second_level),
+        cmocka_unit_test(patterns),
         cmocka_unit_test(threads),
     };
     return cmocka_run_group_tests(tests, grow, fell);

@@ -93,7 +93,7 @@ static void close_stage(RadarStage *s)
 static double complex mean_directly(const double x[3])
 {
     enum { cuts = 120 };
-    double complex      sum = 0;
+    double complex sum = 0;
     for (int i = 0; i < cuts; i++)
         for (int p = 0; p < 3; p++) {
             const double   u = (i + at[p]) / cuts;
@@ -112,7 +112,7 @@ static void closed_form_is_the_mean(void **state)
 {
     (void)state;
     static const double spread[] = {0, 1e-9, 1e-5, 1e-3, 0.1, 0.12, 0.2, 0.26, 1, 5, 20};
-    double worst = 0, seam = 0;
+    double              worst = 0, seam = 0;
     for (size_t i = 0; i < sizeof spread / sizeof *spread; i++)
         for (int kind = 0; kind < 5; kind++) { /* two corners alike; one almost between; any */
             const double middle = hand_uniform(-3, 3), half = 0.5 * spread[i];
@@ -171,8 +171,8 @@ static void a_plate_is_its_closed_form(void **state)
 /* Of one antenna at a point: (range / distance)^2 cosine exp(-j k path) over the plate, Gauss's 3 points a cell. */
 static double complex plate_directly(const double antenna[3], double range_m, double k)
 {
-    const double cell_m = 2 * pi_rad / k / 3;
-    const int    cells[2] = {(int)ceil(plate_m[0] / cell_m), (int)ceil(plate_m[1] / cell_m)};
+    const double   cell_m = 2 * pi_rad / k / 3;
+    const int      cells[2] = {(int)ceil(plate_m[0] / cell_m), (int)ceil(plate_m[1] / cell_m)};
     double complex sum = 0;
     for (int i = 0; i < 3 * cells[0]; i++)
         for (int j = 0; j < 3 * cells[1]; j++) {
@@ -188,8 +188,9 @@ static double complex plate_directly(const double antenna[3], double range_m, do
 static void near_a_plate_it_is_the_integral(void **state)
 {
     (void)state;
-    static const struct { double hz, range_m; } cases[] = {
-        {10e9, 1.5}, {10e9, 20}, {94e9, 3}, {94e9, 50}, {94e9, 2000}};
+    static const struct {
+        double hz, range_m;
+    } cases[] = {{10e9, 1.5}, {10e9, 20}, {94e9, 3}, {94e9, 50}, {94e9, 2000}};
     for (size_t n = 0; n < sizeof cases / sizeof *cases; n++) {
         const double k = 2 * pi_rad * cases[n].hz / light_mps, ahead[3] = {cases[n].range_m, 0, 0};
         double       worst = 0, most = cabs(plate_directly(ahead, cases[n].range_m, k));
@@ -221,9 +222,9 @@ static void a_triangle_is_its_transform(void **state)
 {
     (void)state;
     static const double hz = 24e9;
-    const double k = 2 * pi_rad * hz / light_mps;
-    double       worst[2] = {0}, ab[3], ac[3], n[3], peak = 0;
-    RadarStage   s = {0};
+    const double        k = 2 * pi_rad * hz / light_mps;
+    double              worst[2] = {0}, ab[3], ac[3], n[3], peak = 0;
+    RadarStage          s = {0};
     hand_model(&s.model, 1, 3, 1);
     s.model.node[0].parent = -1;
     for (int v = 0; v < 3; v++) {
@@ -259,8 +260,13 @@ static void a_triangle_is_its_transform(void **state)
 static void other_surfaces_reflect_by_fresnel(void **state)
 {
     (void)state;
-    RadarMaterial row = {.name = "metal", .thick_m = 0.004, .rough_m = 0.0005, .points = 1, .frequency_hz = {1e10},
-                         .e1 = {6}, .e2 = {0.5}};
+    RadarMaterial        row = {.name = "metal",
+                                .thick_m = 0.004,
+                                .rough_m = 0.0005,
+                                .points = 1,
+                                .frequency_hz = {1e10},
+                                .e1 = {6},
+                                .e2 = {0.5}};
     const RadarMaterials materials = {1, &row};
     const double         k = 2 * pi_rad * x_hz / light_mps;
     double               worst = 0;
@@ -292,8 +298,8 @@ static void a_box_needs_no_tubes(void **state)
 {
     (void)state;
     static const double half[3] = {0.25, 0.15, 0.2};
-    RadarStage s = {0};
-    double     off[2] = {0}, whole = 0;
+    RadarStage          s = {0};
+    double              off[2] = {0}, whole = 0;
     build_box(&s.model, half, 6);
     open_model(&s, x_hz);
     CHECK(s.target->faces.count == 6 && s.target->faces.convex);
@@ -301,8 +307,8 @@ static void a_box_needs_no_tubes(void **state)
         const ScatterAntenna a = antenna_at(60 * i + 3, 6 * (i % 5) - 12, i % 2 ? 40 : INFINITY);
         const ScatterMatrix  on = look(&s, &a, &a, polygon_faces_few);
         CHECK(field.polygons.all && field.hits.rays == 0);
-        const TubeConfig used = s.config;
-        const ScatterMatrix  tubes = look(&s, &a, &a, 0);
+        const TubeConfig    used = s.config;
+        const ScatterMatrix tubes = look(&s, &a, &a, 0);
         s.config.splits = 5;
         s.config.cuts_per_radius = 1e5;
         s.config.rays_per_radius *= 2;
@@ -438,7 +444,7 @@ static void a_tank_keeps_its_field_and_bits(void **state)
     config.splits = 0;
     CHECK(tank.target->faces.count > polygon_faces_few);
     for (int i = 0; i < 4; i++) {
-        ScatterMatrix m[3], again;
+        ScatterMatrix        m[3], again;
         const ScatterAntenna tx = antenna_at(20 + 83 * i, 5 + 4 * i, 2000), apart_rx = antenna_at(40 + 83 * i, 9, 2000);
         const ScatterAntenna *rx = i == 3 ? &apart_rx : &tx;
         for (int kind = 0; kind < 3; kind++) { /* tubes, faces too, tubes of another grid */
@@ -508,11 +514,11 @@ static void sweeps_and_moved_antennas(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(closed_form_is_the_mean), cmocka_unit_test(a_plate_is_its_closed_form),
-        cmocka_unit_test(near_a_plate_it_is_the_integral), cmocka_unit_test(a_triangle_is_its_transform),
+        cmocka_unit_test(closed_form_is_the_mean),           cmocka_unit_test(a_plate_is_its_closed_form),
+        cmocka_unit_test(near_a_plate_it_is_the_integral),   cmocka_unit_test(a_triangle_is_its_transform),
         cmocka_unit_test(other_surfaces_reflect_by_fresnel), cmocka_unit_test(a_box_needs_no_tubes),
-        cmocka_unit_test(a_hidden_face_is_left_to_tubes), cmocka_unit_test(sheets_that_coincide_count_once),
-        cmocka_unit_test(later_mirrors_stay_with_tubes), cmocka_unit_test(a_tank_keeps_its_field_and_bits),
+        cmocka_unit_test(a_hidden_face_is_left_to_tubes),    cmocka_unit_test(sheets_that_coincide_count_once),
+        cmocka_unit_test(later_mirrors_stay_with_tubes),     cmocka_unit_test(a_tank_keeps_its_field_and_bits),
         cmocka_unit_test(sweeps_and_moved_antennas),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

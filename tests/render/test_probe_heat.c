@@ -1,5 +1,5 @@
-/* tests/render/test_probe_heat.c: `probe heat-ground`, through the CSV that a user gives, against one column of ground alone
- * under the same weather, in steps of half the length. labels: physics slow */
+/* tests/render/test_probe_heat.c: `probe heat-ground`, through the CSV that a user gives, against one column of ground
+ * alone under the same weather, in steps of half the length. labels: physics slow */
 #include "tests/check.h"
 
 #include "render/frame/world.h"
@@ -9,12 +9,13 @@
 enum { most_rows = 64, most_octets = 1 << 16 };
 static const double day_s = 86400, midnight_s = 1782000000; /* 2026-06-21 at 0 E */
 
-/* Through the probe, a clear day at 45 N 0 E: temp_k, air_temp_k, absorbed_w_m2, ... of each row; reason: its last cell. */
+/* Through the probe, a clear day at 45 N 0 E: temp_k, air_temp_k, absorbed_w_m2, ... of each row; reason: its last
+ * cell. */
 static int asked(double value[most_rows][8], char reason[most_rows][96], const char *csv)
 {
     static char text[most_octets];
-    char        name[] = "heat-ground", day[] = "clear", lat[] = "45", lon[] = "0", *argv[] = {name, day, lat, lon, NULL};
-    char       *cell[32], *line, *rest = text;
+    char  name[] = "heat-ground", day[] = "clear", lat[] = "45", lon[] = "0", *argv[] = {name, day, lat, lon, NULL};
+    char *cell[32], *line, *rest = text;
     const Probe *probe = NULL;
     for (int i = 0; i < render_probe_count; i++)
         if (strcmp(render_probes[i].name, argv[0]) == 0) probe = &render_probes[i];
@@ -48,10 +49,11 @@ static Ground ground;
 static int set_up(void **state)
 {
     (void)state;
-    char  materials[512], surfaces[512], path[512];
-    char  name[] = "test", day[] = "clear", lat[] = "45", lon[] = "0", *argv[] = {name, day, lat, lon, NULL};
-    if (!etc_path(materials, sizeof materials, "materials.csv") || !etc_path(surfaces, sizeof surfaces, "surfaces.csv") ||
-        !etc_path(path, sizeof path, "ground_heat.csv") || materials_open(&ground.materials, materials, surfaces, NULL) != STATUS_OK ||
+    char materials[512], surfaces[512], path[512];
+    char name[] = "test", day[] = "clear", lat[] = "45", lon[] = "0", *argv[] = {name, day, lat, lon, NULL};
+    if (!etc_path(materials, sizeof materials, "materials.csv") ||
+        !etc_path(surfaces, sizeof surfaces, "surfaces.csv") || !etc_path(path, sizeof path, "ground_heat.csv") ||
+        materials_open(&ground.materials, materials, surfaces, NULL) != STATUS_OK ||
         ground_kinds_open(&ground.kinds, path, &ground.materials) != STATUS_OK ||
         atmosphere_open_at(&ground.atmosphere, "us1976", 23000) != STATUS_OK ||
         probe_weather(&ground.course, &ground.drive.place, 4, argv) != STATUS_OK)
@@ -96,7 +98,7 @@ static double march(GroundColumn *c, const GroundExposure *e, double begin_s, do
 static void alone(GroundColumn *out, Column *layers, int kind, const GroundExposure *e, double hours)
 {
     static const GroundExposure level = {{0, 0, 1}, 1, 1, 0};
-    const double begin_s = midnight_s - 2 * day_s;
+    const double                begin_s = midnight_s - 2 * day_s;
     CHECK(ground_layers(layers, &ground.kinds.kind[kind], &ground_grid_default) == STATUS_OK);
     ground_column_start(out, &ground.kinds.kind[kind], layers, 288.15);
     const double mean_k = march(out, &level, begin_s, 24);
@@ -112,14 +114,14 @@ static void level_ground_is_its_column(void **state)
 {
     (void)state;
     static const double hour[] = {5, 9.25, 12, 17, 21};
-    static char   csv[most_octets], reason[most_rows][96];
-    static double got[most_rows][8];
-    char         *at = csv + sprintf(csv, "unix_s,surface,slope_deg,aspect_deg,shade,depth_m\n");
+    static char         csv[most_octets], reason[most_rows][96];
+    static double       got[most_rows][8];
+    char               *at = csv + sprintf(csv, "unix_s,surface,slope_deg,aspect_deg,shade,depth_m\n");
     for (int h = 0; h < 5; h++)
         for (int k = 0; k < kind_count; k++) at += sprintf(at, "%.0f,%s,0,,,\n", midnight_s + 3600 * hour[h], kinds[k]);
     CHECK(asked(got, reason, csv) == 5 * kind_count);
     static const GroundExposure level = {{0, 0, 1}, 1, 1, 0};
-    double worst = 0;
+    double                      worst = 0;
     for (int k = 0; k < kind_count; k++) {
         Column       layers;
         GroundColumn column;
@@ -153,8 +155,10 @@ static void slopes_shade_and_depth(void **state)
     static char   csv[most_octets], reason[most_rows][96];
     static double got[most_rows][8];
     const double  slope_rad = atan(sqrt(2) / 4), noon_s = midnight_s + day_s / 2;
-    sprintf(csv, "unix_s,surface,slope_deg,aspect_deg,shade,depth_m\n%.0f,sand,%.12g,45,0,\n%.0f,sand,0,,1,\n%.0f,sand,,,,0.1\n%.0f,sand,,,,0\n",
-            noon_s, slope_rad / rad_per_deg, noon_s, noon_s, noon_s);
+    sprintf(
+        csv,
+        "unix_s,surface,slope_deg,aspect_deg,shade,depth_m\n%.0f,sand,%.12g,45,0,\n%.0f,sand,0,,1,\n%.0f,sand,,,,0.1\n%.0f,sand,,,,0\n",
+        noon_s, slope_rad / rad_per_deg, noon_s, noon_s, noon_s);
     CHECK(asked(got, reason, csv) == 4);
     const int            sand = ground_kind_find("sand");
     const GroundExposure slope = {{sin(slope_rad) * sqrt(0.5), sin(slope_rad) * sqrt(0.5), cos(slope_rad)}, 1, 1, 300},
@@ -176,8 +180,11 @@ static void a_row_answers_alone(void **state)
     (void)state;
     static char   reason[most_rows][96];
     static double got[most_rows][8];
-    CHECK(asked(got, reason, "unix_s,surface,slope_deg,aspect_deg,shade,depth_m\n1782043200,grass,10,90,0.5,\n1782129600,grass,10,90,0.5,\n"
-                             "1782021600,grass,10,90,0.5,\n1782043200,grass,10,90,0.5,\n") == 4);
+    CHECK(
+        asked(
+            got, reason,
+            "unix_s,surface,slope_deg,aspect_deg,shade,depth_m\n1782043200,grass,10,90,0.5,\n1782129600,grass,10,90,0.5,\n"
+            "1782021600,grass,10,90,0.5,\n1782043200,grass,10,90,0.5,\n") == 4);
     CHECK(memcmp(got[0], got[3], sizeof got[0]) == 0);
     CHECK(fabs(got[0][0] - got[1][0]) < 0.2 && got[0][0] != got[2][0]);
 }
@@ -185,13 +192,21 @@ static void a_row_answers_alone(void **state)
 static void bad_rows_are_told(void **state)
 {
     (void)state;
-    static const struct { const char *row, *why; } bad[] = {
-        {"1782043200,lava,0,0,0,", "surface is no row"}, {"1782043200,,0,0,0,", "surface is empty"},
-        {"1782043200,sand,95,0,0,", "slope_deg"},        {"1782043200,sand,-1,0,0,", "slope_deg"},
-        {"1782043200,sand,nan,0,0,", "not a number"},    {"nan,sand,0,0,0,", "not a number"},
-        {"1e12,sand,0,0,0,", "unix_s"},                  {"1782043200,sand,0,1e9,0,", "aspect_deg"},
-        {"1782043200,sand,0,0,1.5,", "shade"},           {"1782043200,sand,0,0,0,-1", "depth_m"},
-        {"1782043200,sand,0,0,0,99", "depth_m must be in 0 .. 3"}, {"1782043200,sand,10,0,0,0.1", "level ground"},
+    static const struct {
+        const char *row, *why;
+    } bad[] = {
+        {"1782043200,lava,0,0,0,", "surface is no row"},
+        {"1782043200,,0,0,0,", "surface is empty"},
+        {"1782043200,sand,95,0,0,", "slope_deg"},
+        {"1782043200,sand,-1,0,0,", "slope_deg"},
+        {"1782043200,sand,nan,0,0,", "not a number"},
+        {"nan,sand,0,0,0,", "not a number"},
+        {"1e12,sand,0,0,0,", "unix_s"},
+        {"1782043200,sand,0,1e9,0,", "aspect_deg"},
+        {"1782043200,sand,0,0,1.5,", "shade"},
+        {"1782043200,sand,0,0,0,-1", "depth_m"},
+        {"1782043200,sand,0,0,0,99", "depth_m must be in 0 .. 3"},
+        {"1782043200,sand,10,0,0,0.1", "level ground"},
     };
     enum { count = sizeof bad / sizeof *bad };
     static char   csv[most_octets], reason[most_rows][96];

@@ -9,9 +9,9 @@ enum { most_rows = 16, most_octets = 1 << 14 };
 /* A clear day at 48 N 11 E: the last `results` numbers of each row before its reason, its last cell. */
 static int asked(double value[most_rows][8], char reason[most_rows][96], char *name, int results, const char *csv)
 {
-    static char text[most_octets];
-    char        day[] = "clear", lat[] = "48", lon[] = "11", *argv[] = {name, day, lat, lon, NULL};
-    char       *cell[32], *line, *rest = text;
+    static char  text[most_octets];
+    char         day[] = "clear", lat[] = "48", lon[] = "11", *argv[] = {name, day, lat, lon, NULL};
+    char        *cell[32], *line, *rest = text;
     const Probe *probe = NULL;
     for (int i = 0; i < render_probe_count; i++)
         if (strcmp(render_probes[i].name, name) == 0) probe = &render_probes[i];
@@ -79,10 +79,12 @@ static void sun_and_engine_warm(void **state)
 static void bad_rows_are_told(void **state)
 {
     (void)state;
-    static const struct { const char *row, *why; } bad[] = {
-        {"1782043200,nix,,,,", "no such model"}, {"1782043200,truck,wing,,,", "no part of this name"},
+    static const struct {
+        const char *row, *why;
+    } bad[] = {
+        {"1782043200,nix,,,,", "no such model"},    {"1782043200,truck,wing,,,", "no part of this name"},
         {"1782043200,truck,,900,,", "heading_deg"}, {"1782043200,truck,,,1.5,", "engine"},
-        {"1782043200,truck,,,,-1", "speed_mps"}, {"1e12,truck,,,,", "unix_s"},
+        {"1782043200,truck,,,,-1", "speed_mps"},    {"1e12,truck,,,,", "unix_s"},
     };
     enum { count = sizeof bad / sizeof *bad };
     static char   csv[most_octets], reason[most_rows][96];

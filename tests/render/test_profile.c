@@ -12,9 +12,9 @@ static Arena   *arena;
 static int open_world(void **state)
 {
     (void)state;
-    char             path[text_file_size];
-    LocalFrame       frame;
-    const Geodetic   origin = {0.6, -2.1, 0};
+    char           path[text_file_size];
+    LocalFrame     frame;
+    const Geodetic origin = {0.6, -2.1, 0};
     text_file(path, "type,model,origin\n*.*.*.*.*.*.*,marker,base\n");
     const Status status = catalog_open(&catalog, path, 0.01);
     remove(path);
@@ -45,22 +45,29 @@ static Picture shoot(double range_m, double lobe_rad, int side_px, int samples)
     const Sun             sun = {.elevation_rad = 1, .distance_au = 1, .d_enu = {0, 0, 1}};
     Picture               picture;
 
-    entity       = (SnapshotEntity){.id = {1, 1, 1}};
+    entity = (SnapshotEntity){.id = {1, 1, 1}};
     entity.model = catalog_find(catalog, entity.type, &(Origin){ORIGIN_BASE}, NULL);
     model_pose(&node, catalog_model(catalog, entity.model), NULL);
     ecef_from_enu(entity.p_ecef, &world.frame, p_enu);
     /* forward north, right east, down */
     for (int i = 0; i < 3; i++) {
-        entity.r_ecef_from_body[3 * i]     = world.frame.r_ecef_from_enu[3 * i + 1];
+        entity.r_ecef_from_body[3 * i] = world.frame.r_ecef_from_enu[3 * i + 1];
         entity.r_ecef_from_body[3 * i + 1] = world.frame.r_ecef_from_enu[3 * i];
         entity.r_ecef_from_body[3 * i + 2] = -world.frame.r_ecef_from_enu[3 * i + 2];
     }
     const Snapshot snapshot = {.count = 1, .node_count = 1, .entity = &entity, .node = &node};
-    RenderRequest  request  = {
-          .view = {.p_enu = {1.0001 + range_m, 1, 0.85}, .width = side_px, .height = side_px, .focal_px = side_px * range_m / 1.0,
-                   .r_enu_from_cam = {0, 0, -1, 1, 0, 0, 0, -1, 0}}, /* looking west, right is north */
-          .bands = 1 << BAND_RADAR, .samples = samples, .hidden_entity = -1, .profile_near_m = range_m - 20,
-          .profile_bin_m = 0.5, .profile_bins = 80};
+    RenderRequest  request = {
+         .view = {.p_enu = {1.0001 + range_m, 1, 0.85},
+                  .width = side_px,
+                  .height = side_px,
+                  .focal_px = side_px * range_m / 1.0,
+                  .r_enu_from_cam = {0, 0, -1, 1, 0, 0, 0, -1, 0}}, /* looking west, right is north */
+         .bands = 1 << BAND_RADAR,
+         .samples = samples,
+         .hidden_entity = -1,
+         .profile_near_m = range_m - 20,
+         .profile_bin_m = 0.5,
+         .profile_bins = 80};
     world.radar.lobe_rad = lobe_rad;
     air_even(&air, sun.d_enu, 0, (const double[AIR_BAND_COUNT]){0}, 0, world.planck_mwir, world.planck_lwir);
     arena_reset(arena);

@@ -1,7 +1,6 @@
-/* Ray tubes without and with edge diffraction against the Austin RCS suite: thin plate, NASA almond, PRIME aircraft. The
- * bounds are what physical optics, edges, pairs of them and mirrors are known to reach on such small targets. More looks:
- * test_radar_austin_deep.c.
- * labels: slow */
+/* Ray tubes without and with edge diffraction against the Austin RCS suite: thin plate, NASA almond, PRIME aircraft.
+ * The bounds are what physical optics, edges, pairs of them and mirrors are known to reach on such small targets. More
+ * looks: test_radar_austin_deep.c. labels: slow */
 #include "tests/render/austin.h"
 
 static void thin_plate(void **state)

@@ -12,9 +12,9 @@ static void almond(void **state)
 {
     (void)state;
     RadarStage s = {0};
-    Window     window[3] = {{.low_deg = 60, .high_deg = 120}, {.low_deg = 0, .high_deg = 60},
-                            {.low_deg = 120, .high_deg = 180}};
-    Window     rays[3];
+    Window     window[3] = {
+            {.low_deg = 60, .high_deg = 120}, {.low_deg = 0, .high_deg = 60}, {.low_deg = 120, .high_deg = 180}};
+    Window rays[3];
     memcpy(rays, window, sizeof rays);
     build_almond(&s.model);
     stage_target(&s, 7e9);

@@ -32,7 +32,7 @@ static void sphere_error(double *db, double *deg, double ka, double complex want
     stage_open(&s, name, w_hz);
     *db = *deg = 0;
     for (int look = 0; look < 2; look++) {
-        const ScatterMatrix m = stage_look(&s, 20 + 50 * look, 10 * look, look == 1 ? 5000 : INFINITY);
+        const ScatterMatrix  m = stage_look(&s, 20 + 50 * look, 10 * look, look == 1 ? 5000 : INFINITY);
         const double complex got[2] = {m.hh / radius_m, m.vv / radius_m};
         for (int p = 0; p < 2; p++) {
             *db = fmax(*db, fabs(20 * log10(cabs(got[p]) / cabs(want))));
@@ -47,8 +47,8 @@ static void spheres_equal_mie(void **state)
 {
     (void)state;
     static const char *const names[] = {"ka", "Es_over_Ei_times_R_over_a_re", "Es_over_Ei_times_R_over_a_im"};
-    Table  table;
-    int    column[3], seen = 0;
+    Table                    table;
+    int                      column[3], seen = 0;
     if (!open_reference(&table, column, "radar/mie/mie_pec_backscatter.csv", names, 3)) skip();
     for (int r = 0; r < table.rows; r++) {
         double x[3], db, deg;
@@ -94,8 +94,11 @@ static void patterns_equal_the_closed_forms(void **state)
     (void)state;
     static const char *const names[] = {"f_hz", "theta_from_normal_deg", "plate_PO_m2", "disc_PO_m2", "cylinder_PO_m2"};
     /* the closed form of the cylinder is itself an approximation, of order 1/(8 k r), kr = 15.7 */
-    static const struct { const char *shape; int column; double off_db, level_db; } cases[] = {
-        {"plate:0.3x0.3", 2, 0.05, -75}, {"disc:0.15", 3, 0.2, -58}, {"cylinder:0.075x0.3", 4, 0.3, -50}};
+    static const struct {
+        const char *shape;
+        int         column;
+        double      off_db, level_db;
+    } cases[] = {{"plate:0.3x0.3", 2, 0.05, -75}, {"disc:0.15", 3, 0.2, -58}, {"cylinder:0.075x0.3", 4, 0.3, -50}};
     Table table;
     int   column[5];
     if (!open_reference(&table, column, "radar/closed_form/po_patterns.csv", names, 5)) skip();
@@ -117,8 +120,7 @@ static void patterns_equal_the_closed_forms(void **state)
             if (r == 0) printf("%s: peak off by %.4f dB\n", cases[k].shape, decibels(sigma(m.hh) / p.peak));
         }
         printf("%s: within %.2f dB down to -40 dB of the peak, amplitude %.1f dB below the peak's everywhere\n",
-               cases[k].shape,
-               p.off_db, p.level_db);
+               cases[k].shape, p.off_db, p.level_db);
         CHECK(p.off_db <= cases[k].off_db && p.level_db <= cases[k].level_db);
         stage_close(&s);
     }
@@ -158,8 +160,8 @@ static void dihedral_turns_one_polarisation(void **state)
     stage_target(&s, x_hz);
     s.config.last_only = true;
     const ScatterMatrix m = stage_look(&s, 0, 0, INFINITY);
-    const double cross = decibels(sigma(m.hv) / want);
-    const double co = fmax(decibels(sigma(m.hh) / want), decibels(sigma(m.vv) / want));
+    const double        cross = decibels(sigma(m.hv) / want);
+    const double        co = fmax(decibels(sigma(m.hh) / want), decibels(sigma(m.vv) / want));
     printf("dihedral rolled by 45 deg: cross %.3f dB, co %.1f dB, of the peak\n", cross, co);
     CHECK(fabs(cross) <= 0.05 && co < -43);
     CHECK_NEAR(decibels(sigma(m.vh) / want), cross, 0.01);
@@ -170,8 +172,10 @@ static void dihedral_turns_one_polarisation(void **state)
 static void trihedrals_equal_the_handbook(void **state)
 {
     (void)state;
-    static const struct { const char *shape; double factor; } cases[] = {{"trihedral:0.45", 4 / 3.0},
-                                                                         {"corner:0.45", 12}};
+    static const struct {
+        const char *shape;
+        double      factor;
+    } cases[] = {{"trihedral:0.45", 4 / 3.0}, {"corner:0.45", 12}};
     const double el_deg = atan(sqrt(0.5)) / rad_per_deg;
     for (int k = 0; k < 2; k++) {
         RadarStage   s;
@@ -184,9 +188,9 @@ static void trihedrals_equal_the_handbook(void **state)
         s.config.rays_per_radius *= 4;
         const ScatterMatrix fine = stage_look(&s, 45, el_deg, INFINITY);
         printf("%s: last mirror hh %.3f, vv %.3f dB; all %.3f, %.3f dB; with 16 times the tubes %.3f, %.3f dB\n",
-               cases[k].shape,
-               decibels(sigma(last.hh) / want), decibels(sigma(last.vv) / want), decibels(sigma(all.hh) / want),
-               decibels(sigma(all.vv) / want), decibels(sigma(fine.hh) / want), decibels(sigma(fine.vv) / want));
+               cases[k].shape, decibels(sigma(last.hh) / want), decibels(sigma(last.vv) / want),
+               decibels(sigma(all.hh) / want), decibels(sigma(all.vv) / want), decibels(sigma(fine.hh) / want),
+               decibels(sigma(fine.vv) / want));
         CHECK_NEAR(decibels(sigma(last.hh) / want), 0, 0.1);
         CHECK_NEAR(decibels(sigma(last.vv) / want), 0, 0.1);
         CHECK_NEAR(decibels(sigma(all.hh) / sigma(fine.hh)), 0, 0.1);
@@ -201,9 +205,15 @@ static void trihedrals_equal_the_handbook(void **state)
 static void a_plate_returns_what_its_surface_reflects(void **state)
 {
     (void)state;
-    RadarStage     s;
-    RadarMaterial  row = {.name = "metal", .kind = RADAR_SLAB, .thick_m = 0.004, .rough_m = 0.0002, .points = 1,
-                          .frequency_hz = {1e10}, .e1 = {6}, .e2 = {0.05}};
+    RadarStage           s;
+    RadarMaterial        row = {.name = "metal",
+                                .kind = RADAR_SLAB,
+                                .thick_m = 0.004,
+                                .rough_m = 0.0002,
+                                .points = 1,
+                                .frequency_hz = {1e10},
+                                .e1 = {6},
+                                .e2 = {0.05}};
     const RadarMaterials materials = {1, &row};
     stage_open(&s, "plate:0.3x0.2", x_hz);
     const ScatterMatrix metal = stage_look(&s, 0, 0, INFINITY);
@@ -228,8 +238,10 @@ static void a_plate_returns_what_its_surface_reflects(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(spheres_equal_mie), cmocka_unit_test(patterns_equal_the_closed_forms),
-        cmocka_unit_test(dihedral_turns_one_polarisation), cmocka_unit_test(trihedrals_equal_the_handbook),
+        cmocka_unit_test(spheres_equal_mie),
+        cmocka_unit_test(patterns_equal_the_closed_forms),
+        cmocka_unit_test(dihedral_turns_one_polarisation),
+        cmocka_unit_test(trihedrals_equal_the_handbook),
         cmocka_unit_test(a_plate_returns_what_its_surface_reflects),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

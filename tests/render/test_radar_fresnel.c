@@ -9,10 +9,10 @@ static double worst(double complex got, double complex want, double so_far) { re
 static void half_spaces_and_slabs_equal_the_table(void **state)
 {
     (void)state;
-    static const char *const names[] = {"f_hz", "eps_re", "eps_im(e=re-j*im)", "incidence_deg", "gamma_TE_re",
-                                        "gamma_TE_im",
-                                        "gamma_TM_re", "gamma_TM_im", "slab_d_m", "slabR_TE_re", "slabR_TE_im",
-                                        "slabR_TM_re", "slabR_TM_im", "slabT2_TE", "slabT2_TM"};
+    static const char *const names[] = {"f_hz",        "eps_re",      "eps_im(e=re-j*im)", "incidence_deg",
+                                        "gamma_TE_re", "gamma_TE_im", "gamma_TM_re",       "gamma_TM_im",
+                                        "slab_d_m",    "slabR_TE_re", "slabR_TE_im",       "slabR_TM_re",
+                                        "slabR_TM_im", "slabT2_TE",   "slabT2_TM"};
     enum { columns = sizeof names / sizeof *names };
     char   path[512];
     int    column[columns];
@@ -41,8 +41,8 @@ static void limits_hold(void **state)
     (void)state;
     double complex te, tm, te2, tm2, tte, ttm;
     for (int i = 0; i < 200; i++) {
-        const double cosine = random_uniform(1, 2, 3, (uint64_t)i) * 0.98 + 0.02, k = 200 + 10 * i;
-        const double thick_m = 1e-5 * (1 + i);
+        const double         cosine = random_uniform(1, 2, 3, (uint64_t)i) * 0.98 + 0.02, k = 200 + 10 * i;
+        const double         thick_m = 1e-5 * (1 + i);
         const double complex eps = CMPLX(1 + 8 * random_uniform(1, 2, 4, (uint64_t)i), 0);
         /* no loss: what is not reflected passes, and a coating returns all */
         fresnel_slab(&te, &tm, &tte, &ttm, eps, thick_m, k, cosine);
@@ -95,7 +95,7 @@ static void roughness_costs_what_it_must(void **state)
     const double k = 2 * pi_rad * 94e9 / 299792458.0;
     CHECK_NEAR(-20 * log10(fresnel_rough(1e-4, k, 1)), 0.674, 1e-3);
     CHECK_NEAR(-20 * log10(fresnel_rough(1e-4, k, 0.5)), 0.674 / 4, 1e-3);
-    double complex te, tm;
+    double complex     te, tm;
     const RadarSurface metal = {.kind = RADAR_METAL, .rough_m = 1e-4};
     fresnel_surface(&te, &tm, &metal, k, 1);
     CHECK(te == -tm && creal(te) < 0);
@@ -105,8 +105,10 @@ static void roughness_costs_what_it_must(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(half_spaces_and_slabs_equal_the_table), cmocka_unit_test(limits_hold),
-        cmocka_unit_test(a_coating_keeps_the_boundary_conditions), cmocka_unit_test(roughness_costs_what_it_must),
+        cmocka_unit_test(half_spaces_and_slabs_equal_the_table),
+        cmocka_unit_test(limits_hold),
+        cmocka_unit_test(a_coating_keeps_the_boundary_conditions),
+        cmocka_unit_test(roughness_costs_what_it_must),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -94,7 +94,7 @@ static int open_bench(void **state)
         wedge->vertex[k][2] = wedge->vertex[k][0] *= sqrt(0.5);
     }
     static const char *const names[] = {"plate", "dihedral", "trihedral", "wall", "wedge"};
-    const Model *models[model_total];
+    const Model             *models[model_total];
     for (int m = 0; m < model_total; m++) {
         finish(&shapes[m], names[m]);
         models[m] = &shapes[m].model;
@@ -102,7 +102,7 @@ static int open_bench(void **state)
         bench.part[m] = &bench.part_rows[m];
     }
     bench.rows[material_mirror] = (Material){.metal = 1};
-    bench.rows[material_earth]  = (Material){.radar_gamma = 0.2f};
+    bench.rows[material_earth] = (Material){.radar_gamma = 0.2f};
     bench.materials = (Materials){.count = 3, .material = bench.rows, .part = bench.part, .model_count = model_total};
     const Geodetic origin = {.lat_rad = 0.6, .lon_rad = -1.2, .h_m = 100};
     bench.arena = arena_create();
@@ -125,8 +125,8 @@ static void place(int index, int model, const double p_enu[3])
     ecef_from_enu(e->p_ecef, &bench.frame, p_enu);
     memcpy(e->r_ecef_from_body, bench.frame.r_ecef_from_enu, sizeof e->r_ecef_from_body);
     bench.pose[index] = (NodePose){.r_body_from_node = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
-    bench.snapshot = (Snapshot){.count = index + 1, .node_count = index + 1, .entity = bench.entity,
-                                .node = bench.pose};
+    bench.snapshot =
+        (Snapshot){.count = index + 1, .node_count = index + 1, .entity = bench.entity, .node = bench.pose};
 }
 
 static void pose_world(void)
@@ -150,21 +150,21 @@ static RadarReturns returns;
 /* Looks from towards_eye at `aim`, over a square wide enough for any shape here, n rays a side. */
 static Sum look(const double towards_eye[3], const double aim_enu[3], int n, int hidden)
 {
-    const RadarConfig config = {.lobe_rad = lobe_rad};
+    const RadarConfig  config = {.lobe_rad = lobe_rad};
     VisibilityCounters counters = {0};
-    double back[3] = {0}, side[3] = {0}, up[3] = {0}, eye[3];
+    double             back[3] = {0}, side[3] = {0}, up[3] = {0}, eye[3];
     CHECK(v3_normalize(back, towards_eye));
     v3_cross(side, fabs(back[2]) < 0.9 ? (double[3]){0, 0, 1} : (double[3]){0, 1, 0}, back);
     CHECK(v3_normalize(side, side));
     v3_cross(up, back, side);
     v3_add_scaled(eye, aim_enu, range_m, back);
     const double half_width = 2 * edge_m / range_m, step = 2 * half_width / n;
-    Sum sum = {.slant_low_m = INFINITY, .slant_high_m = -INFINITY};
-    int highest = 0;
+    Sum          sum = {.slant_low_m = INFINITY, .slant_high_m = -INFINITY};
+    int          highest = 0;
     rays.count = 0;
     for (int i = 0; i < n * n; i++) {
         const double x = -half_width + (i % n + 0.5) * step, y = -half_width + (i / n + 0.5) * step;
-        double d[3];
+        double       d[3];
         v3_scale(d, -1, back);
         v3_add_scaled(d, d, x, side);
         v3_add_scaled(d, d, y, up);
@@ -195,16 +195,13 @@ static Sum look(const double towards_eye[3], const double aim_enu[3], int n, int
 static const double origin_enu[3] = {0, 0, 0};
 
 /* Power of a perfect retroreflector of this effective area. */
-static double retro(double area_m2)
-{
-    return area_m2 / (range_m * range_m) * radar_lobe(lobe_rad, 1);
-}
+static double retro(double area_m2) { return area_m2 / (range_m * range_m) * radar_lobe(lobe_rad, 1); }
 
 static void the_lobe_keeps_energy(void **state)
 {
     (void)state;
     for (double lobe = 0.01; lobe < 1.5; lobe *= 1.7) {
-        double whole = 0, square = 0;
+        double    whole = 0, square = 0;
         const int n = 200000;
         for (int i = 0; i < n; i++) {
             const double angle = (i + 0.5) / n * pi_rad / 2;
@@ -226,7 +223,7 @@ static void a_plate_peaks_at_its_normal(void **state)
     double last = INFINITY;
     for (int k = 0; k <= 8; k++) {
         const double tilt = k * 0.01, towards[3] = {cos(tilt), sin(tilt), 0};
-        const Sum sum = look(towards, origin_enu, 96, -1);
+        const Sum    sum = look(towards, origin_enu, 96, -1);
         /* the ray leaves at twice the tilt from its way back */
         const double want = edge_m * edge_m * cos(tilt) / (range_m * range_m) * radar_lobe(lobe_rad, cos(2 * tilt));
         CHECK_NEAR(sum.power[0] / want, 1, 0.01);
@@ -247,7 +244,7 @@ static void a_dihedral_is_seen_all_over_its_plane(void **state)
     const double aim[3] = {0, edge_m / 2, 0};
     for (int deg = 5; deg <= 85; deg += 8) {
         const double a = deg * rad_per_deg, towards[3] = {cos(a), 0, sin(a)};
-        const Sum sum = look(towards, aim, 160, -1);
+        const Sum    sum = look(towards, aim, 160, -1);
         /* rays 5 cm apart over a band this wide: one column more or less, and a hundredth for the height */
         const double width_m = 2 * edge_m * fmin(sin(a), cos(a));
         CHECK_NEAR(sum.power[1] / retro(width_m * edge_m), 1, 0.05 / width_m + 0.01);
@@ -284,7 +281,7 @@ static void a_trihedral_is_seen_over_its_cone(void **state)
     place(0, model_trihedral, origin_enu);
     pose_world();
     const double axis[3] = {1, 1, 1};
-    const Sum on_axis = look(axis, origin_enu, 192, -1);
+    const Sum    on_axis = look(axis, origin_enu, 192, -1);
     CHECK_NEAR(on_axis.power[2] / retro(sqrt(3) * edge_m * edge_m), 1, 0.02);
     /* bounces apart: one or two mirrors send it elsewhere, 70 degrees and more, where the lobe is dark */
     CHECK(on_axis.power[0] < 1e-9 * on_axis.power[2] && on_axis.power[1] < 1e-9 * on_axis.power[2]);
@@ -294,7 +291,7 @@ static void a_trihedral_is_seen_over_its_cone(void **state)
         /* 20 degrees from the axis, all round it */
         const double turn = k * pi_rad / 6, s = sin(20 * rad_per_deg), c = cos(20 * rad_per_deg);
         const double e1[3] = {1 / sqrt(2), -1 / sqrt(2), 0}, e2[3] = {1 / sqrt(6), 1 / sqrt(6), -2 / sqrt(6)};
-        double towards[3] = {c / sqrt(3), c / sqrt(3), c / sqrt(3)};
+        double       towards[3] = {c / sqrt(3), c / sqrt(3), c / sqrt(3)};
         v3_add_scaled(towards, towards, s * cos(turn), e1);
         v3_add_scaled(towards, towards, s * sin(turn), e2);
         const Sum sum = look(towards, origin_enu, 64, -1);
@@ -310,7 +307,7 @@ static void it_converges(void **state)
     place(0, model_dihedral, origin_enu);
     pose_world();
     const double a = 33 * rad_per_deg, towards[3] = {cos(a), 0.003, sin(a)};
-    double error[3] = {0};
+    double       error[3] = {0};
     const double want = look(towards, (double[3]){0, edge_m / 2, 0}, 480, -1).power[1];
     for (int k = 0; k < 3; k++) {
         for (int shift = 0; shift < 9; shift++) {
@@ -350,7 +347,7 @@ static void earth_scatters_by_its_gamma(void **state)
     pose_world();
     for (int k = 0; k < 5; k++) {
         const double tilt = k * 0.3, towards[3] = {cos(tilt), sin(tilt), 0};
-        const Sum sum = look(towards, origin_enu, 96, -1);
+        const Sum    sum = look(towards, origin_enu, 96, -1);
         /* sigma0 A / (4 pi R^2) with sigma0 = gamma cos(tilt from the normal) */
         const double want = 0.2 * cos(tilt) * edge_m * edge_m / (4 * pi_rad * range_m * range_m);
         /* rays 83 mm apart over this width */

@@ -10,8 +10,8 @@ static const char head[] = "name,kind,f_ghz,eps_re,eps_im,thick_mm,rough_mm,sour
 
 static Status open_text(RadarMaterials *out, const char *rows)
 {
-    char           path[text_file_size], text[4096];
-    Material       some[3] = {{.name = "none"}, {.name = "iron", .metal = 1}, {.name = "felt"}};
+    char            path[text_file_size], text[4096];
+    Material        some[3] = {{.name = "none"}, {.name = "iron", .metal = 1}, {.name = "felt"}};
     const Materials optical = {.count = 3, .material = some};
     snprintf(text, sizeof text, "%s%s", head, rows);
     text_file(path, text);
@@ -74,7 +74,9 @@ static void permittivity_is_joined_between_rows(void **state)
 static void broken_tables_are_refused(void **state)
 {
     (void)state;
-    static const struct { const char *rows, *said; } cases[] = {
+    static const struct {
+        const char *rows, *said;
+    } cases[] = {
         {"a,gel,10,2,0,0,0,x\n", "kind is none of"},
         {"a,half_space,10,0.5,0,0,0,x\n", "eps_re"},
         {"a,half_space,10,2,-1,0,0,x\n", "eps_im"},
@@ -112,7 +114,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_material_has_a_row_or_its_default),
-            cmocka_unit_test(permittivity_is_joined_between_rows),
+        cmocka_unit_test(permittivity_is_joined_between_rows),
         cmocka_unit_test(broken_tables_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

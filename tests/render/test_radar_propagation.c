@@ -6,7 +6,7 @@
 #include "render/scattering/paths/attenuation.h"
 #include "render/scattering/paths/radar_path.h"
 
-static GasLines lines;
+static GasLines    lines;
 static Atmosphere *us1976;
 
 static int set_up(void **state)
@@ -26,7 +26,7 @@ static int tear_down(void **state)
 
 static double number(const Table *table, int row, const char *name)
 {
-    double value = NAN;
+    double    value = NAN;
     const int column = table_column(table, name);
     CHECK(column >= 0 && table_number(&value, table, row, column, -1e9, 1e9) == STATUS_OK);
     return value;
@@ -70,16 +70,16 @@ static void gas_equals_official_values(void **state)
 static void gas_equals_official_table(void **state)
 {
     (void)state;
-    Table table;
+    Table  table;
     double worst = 0;
     if (!reference(&table, "radar/itu/p676-13_specific_attenuation.csv")) skip();
     CHECK(table.rows == 175);
     for (int row = 0; row < table.rows; row++) {
-        const double temp_k = number(&table, row, "T_K");
+        const double         temp_k = number(&table, row, "T_K");
         const GasAttenuation got = gas(number(&table, row, "f_GHz"), number(&table, row, "P_hPa"),
                                        gas_vapour_hpa(number(&table, row, "rho_g_m3"), temp_k), temp_k);
-        const double dry = got.dry_db_km / number(&table, row, "gamma_o_dB_km") - 1;
-        const double wet = got.wet_db_km / number(&table, row, "gamma_w_dB_km") - 1;
+        const double         dry = got.dry_db_km / number(&table, row, "gamma_o_dB_km") - 1;
+        const double         wet = got.wet_db_km / number(&table, row, "gamma_w_dB_km") - 1;
         CHECK_NEAR(dry, 0, 1e-12);
         CHECK_NEAR(wet, 0, 1e-12);
         worst = fmax(worst, fmax(fabs(dry), fabs(wet)));
@@ -95,7 +95,7 @@ static void lines_equal_reference(void **state)
     static const char *const coefficient[2][7] = {{"f0", "a1", "a2", "a3", "a4", "a5", "a6"},
                                                   {"f0", "b1", "b2", "b3", "b4", "b5", "b6"}};
     for (int k = 0; k < 2; k++) {
-        Table table;
+        Table              table;
         const GasLineList *list = k == 0 ? &lines.oxygen : &lines.water;
         if (!reference(&table,
                        k == 0 ? "radar/itu/p676-13_lines_oxygen.csv" : "radar/itu/p676-13_lines_water_vapour.csv"))
@@ -112,14 +112,14 @@ static void lines_equal_reference(void **state)
  * The lines of oxygen are some 1 GHz wide at 1013 hPa: midpoints of 10 MHz. */
 static double causal_ppm(double f_ghz, double low_ghz, double high_ghz, bool wet)
 {
-    static const double step_ghz = 0.01;
-    const double e_hpa = wet ? 10 : 0;
+    static const double  step_ghz = 0.01;
+    const double         e_hpa = wet ? 10 : 0;
     const GasAttenuation here = gas(f_ghz, 1013.25, e_hpa, 288.15);
-    const double n_here = (wet ? here.wet_db_km : here.dry_db_km) / (0.1820 * f_ghz);
-    double sum = 0;
+    const double         n_here = (wet ? here.wet_db_km : here.dry_db_km) / (0.1820 * f_ghz);
+    double               sum = 0;
     for (double u = low_ghz + 0.5 * step_ghz; u < high_ghz; u += step_ghz) {
         const GasAttenuation there = gas(u, 1013.25, e_hpa, 288.15);
-        const double n = (wet ? there.wet_db_km : there.dry_db_km) / (0.1820 * u);
+        const double         n = (wet ? there.wet_db_km : there.dry_db_km) / (0.1820 * u);
         if (fabs(u - f_ghz) > 0.1 * step_ghz) sum += step_ghz * (u * n - f_ghz * n_here) / (u * u - f_ghz * f_ghz);
     }
     const double rest = 0.5 * log((high_ghz - f_ghz) * (f_ghz + low_ghz) / ((high_ghz + f_ghz) * (f_ghz - low_ghz)));
@@ -145,7 +145,7 @@ static void dispersion_is_causal(void **state)
            worst);
 
     static const double f[4] = {165.003, 181.003, 185.503, 200.003};
-    double got[4], want[4];
+    double              got[4], want[4];
     for (int i = 0; i < 4; i++)
         got[i] = gas(f[i], 1013.25, 10, 288.15).wet_ppm, want[i] = causal_ppm(f[i], 1, 1000, true);
     const double square = (got[3] - got[0] - (want[3] - want[0])) / (f[3] * f[3] - f[0] * f[0]);
@@ -189,8 +189,8 @@ static void tables_of_lines_are_checked(void **state)
                                        "60,nan,1,1,0,0,0\n",
                                        "0,1,1,1,0,0,0\n",
                                        ""};
-    char text[512], path[text_file_size];
-    GasLines kept = lines;
+    char                     text[512], path[text_file_size];
+    GasLines                 kept = lines;
     log_set_sink(check_listen, NULL);
     for (size_t i = 0; i <= sizeof rows / sizeof *rows; i++) {
         const bool last = i == sizeof rows / sizeof *rows;
@@ -222,7 +222,7 @@ static void rain_equals_official_examples(void **state)
                                          {85.80459566, 99.13558978, 90, 0.04133039, 1.09499629, 6.34064598},
                                          {20.14335809, 42.91007183, 90, 0.04319835, 1.0631531, 2.35032323}};
     for (size_t i = 0; i < sizeof official / sizeof *official; i++) {
-        double k, alpha;
+        double        k, alpha;
         const double *o = official[i], elevation_rad = o[0] * rad_per_deg, tilt_rad = o[2] * rad_per_deg;
         CHECK(rain_coefficients(&k, &alpha, 14.25, elevation_rad, tilt_rad));
         CHECK_NEAR(k, o[3], 0.5e-8 + 1e-15); /* half of the last digit */
@@ -241,12 +241,12 @@ static void rain_equals_official_examples(void **state)
 static void rain_equals_table(void **state)
 {
     (void)state;
-    Table table;
+    Table  table;
     double worst = 0;
     if (!reference(&table, "radar/itu/p838-3_itu-rpy.csv")) skip();
     CHECK(table.rows == 280);
     for (int row = 0; row < table.rows; row++) {
-        double k, alpha;
+        double       k, alpha;
         const double f = number(&table, row, "f_GHz"), elevation_rad = number(&table, row, "el_deg") * rad_per_deg;
         const double tilt_rad = number(&table, row, "tau_deg") * rad_per_deg, rain = number(&table, row, "R_mm_h");
         CHECK(rain_coefficients(&k, &alpha, f, elevation_rad, tilt_rad));
@@ -278,7 +278,7 @@ static void cloud_by_hand(void **state)
 static void cloud_equals_table(void **state)
 {
     (void)state;
-    Table table;
+    Table  table;
     double worst = 0;
     if (!reference(&table, "radar/itu/p840-9_Kl_itu-rpy.csv")) skip();
     CHECK(table.rows == 54);
@@ -308,7 +308,7 @@ static void fog_holds_what_p840_says(void **state)
 static RadarAir air_of(double humidity, double temp_k)
 {
     RadarAir air;
-    Weather weather = weather_default();
+    Weather  weather = weather_default();
     weather.humidity = humidity, weather.air_temp_k = temp_k;
     CHECK(radar_air_of(&air, us1976, &weather) == STATUS_OK);
     return air;
@@ -321,8 +321,8 @@ static void pressure_is_the_standard_atmospheres(void **state)
     (void)state;
     static const double standard[][2] = {{1000, 898.76},  {2000, 795.01},  {5000, 540.48},
                                          {10000, 264.99}, {15000, 121.11}, {20000, 55.293}};
-    const RadarAir air = air_of(0, NAN);
-    GasState at;
+    const RadarAir      air = air_of(0, NAN);
+    GasState            at;
     for (size_t i = 0; i < sizeof standard / sizeof *standard; i++) {
         radar_air_at(&at, &air, standard[i][0]);
         CHECK_NEAR(at.dry_hpa / standard[i][1], 1, 1e-3);
@@ -336,7 +336,7 @@ static void pressure_is_the_standard_atmospheres(void **state)
     CHECK_NEAR(at.vapour_hpa / at.temp_k * 216.7, moist.vapour_g_m3 / exp(1), 1e-12);
     CHECK_NEAR(moist.rain_top_m, (288.15 - 273.15) / 6.5e-3 + 360, 30); /* 6.5 K/km */
     CHECK(air_of(0.5, 250).rain_top_m == 0);                            /* snow */
-    Weather bad = weather_default();
+    Weather  bad = weather_default();
     RadarAir out;
     bad.rain_mm_h = 301;
     CHECK(radar_air_of(&out, us1976, &bad) == STATUS_BAD_VALUE);
@@ -362,14 +362,14 @@ static void quadrature_is_close_to_a_fine_one(void **state)
                                      {5000, 5000, 300000}, {500, 12000, 150000}, {12000, 12000, 10}};
     static const double f[] = {5, 10, 22.2, 35, 60, 94, 140, 183}, bound[2] = {1e-5, 2e-4}, bound_rad[2] = {1e-4, 1e-3};
     for (int saturated = 0; saturated < 2; saturated++) {
-        double worst = 0, worst_rad = 0;
+        double   worst = 0, worst_rad = 0;
         RadarAir air = saturated ? air_of(0.95, 305) : air_of(0.6, 288.15);
         air.liquid[1] = (RadarLiquid){700, 2300, 0.4};
         for (size_t p = 0; p < sizeof path / sizeof *path; p++)
             for (size_t i = 0; i < sizeof f / sizeof *f; i++) {
                 const RadarLoss got = loss_of(&air, f[i], path[p][0], path[p][1], path[p][2], 1);
                 const RadarLoss want = loss_of(&air, f[i], path[p][0], path[p][1], path[p][2], 10);
-                const double error[3] = {got.dry_db / want.dry_db - 1, got.wet_db / want.wet_db - 1,
+                const double    error[3] = {got.dry_db / want.dry_db - 1, got.wet_db / want.wet_db - 1,
                                          want.liquid_db > 0 ? got.liquid_db / want.liquid_db - 1 : 0};
                 for (int e = 0; e < 3; e++) {
                     CHECK_NEAR(error[e], 0, bound[saturated]);
@@ -396,7 +396,7 @@ static void paths_in_closed_form(void **state)
     GasState at;
     radar_air_at(&at, &air, 0);
     const GasAttenuation near = gas(94, at.dry_hpa, at.vapour_hpa, at.temp_k);
-    RadarLoss loss = loss_of(&air, 94, 0, 0, 1000, 1);
+    RadarLoss            loss = loss_of(&air, 94, 0, 0, 1000, 1);
     CHECK_NEAR(loss.dry_db + loss.wet_db, near.dry_db_km + near.wet_db_km, 1e-5);
     CHECK_NEAR(loss.dispersion_rad, 2 * pi_rad * 94e9 / 299792458.0 * 1e-6 * (near.dry_ppm + near.wet_ppm) * 1000,
                1e-4);
@@ -445,7 +445,7 @@ static void two_ways_at_sea_level(void **state)
     for (int i = 0; i < radar_air_levels; i++) air.ln_hpa[i] = log(1013.25 + 9.97279); /* even air: dry and vapour */
     for (int i = 0; i < radar_air_levels; i++) air.temp_k[i] = 288.15;
     air.vapour_g_m3 = 7.5;
-    const RadarLoss loss = loss_of(&air, 94, 0, 0, 10000, 1);
+    const RadarLoss      loss = loss_of(&air, 94, 0, 0, 10000, 1);
     const double complex factor = radar_path_factor(&loss);
     CHECK_NEAR(2 * radar_loss_db(&loss), 20 * 0.40813, 1e-3);
     CHECK_NEAR(20 * log10(cabs(factor)), -2 * radar_loss_db(&loss), 1e-12);
@@ -461,7 +461,7 @@ static void radar_equation_by_hand(void **state)
 {
     (void)state;
     const RadarLink link = {10, 1e4, 1e4, 299792458.0 / 94e9, 3000, 1};
-    const double received_w = radar_received_w(&link, 10), noise_w = radar_noise_w(1e8, pow(10, 0.6));
+    const double    received_w = radar_received_w(&link, 10), noise_w = radar_noise_w(1e8, pow(10, 0.6));
     CHECK_NEAR(received_w / 6.32808e-13, 1, 1e-5);
     CHECK_NEAR(noise_w / 1.593970e-12, 1, 1e-5);
     RadarLink lossy = link, far = link;

@@ -69,8 +69,8 @@ static void paths_are_exact_at_every_range(void **state)
 static void the_field_is_the_same_everywhere(void **state)
 {
     (void)state;
-    RadarStage   s;
-    double       worst_deg = 0, worst_db = 0;
+    RadarStage           s;
+    double               worst_deg = 0, worst_db = 0;
     const ScatterAntenna antenna = antenna_at(40, 30, 8000);
     stage_open(&s, "trihedral:0.25", w_hz);
     const ScatterMatrix want = stage_bistatic(&s, &antenna, &antenna);
@@ -98,9 +98,9 @@ static void the_field_is_the_same_everywhere(void **state)
 static void threads_change_no_bit(void **state)
 {
     (void)state;
-    TubeHits      first = {0};
-    ScatterMatrix want[33], got[33];
-    RadarStage    s = {0};
+    TubeHits             first = {0};
+    ScatterMatrix        want[33], got[33];
+    RadarStage           s = {0};
     const ScatterAntenna tx = antenna_at(25, 8, 500), rx = antenna_at(40, 8, 500);
     stage_open(&s, "dihedral:0.5x0.4", x_hz);
     for (int threads = 0; threads < 5; threads++) {
@@ -113,8 +113,8 @@ static void threads_change_no_bit(void **state)
         if (threads == 0) continue;
         CHECK(hits->count == first.count && hits->count > 1000);
         CHECK(memcmp(hits->path_m, first.path_m, hits->count * sizeof(double)) == 0);
-        for (int c = 0; c < 8; c++) CHECK(memcmp(hits->amplitude[c], first.amplitude[c],
-                                                 hits->count * sizeof(float)) == 0);
+        for (int c = 0; c < 8; c++)
+            CHECK(memcmp(hits->amplitude[c], first.amplitude[c], hits->count * sizeof(float)) == 0);
         CHECK(memcmp(want, got, sizeof want) == 0);
     }
     tubes_free(&first);
@@ -185,9 +185,9 @@ static void lists_serve_other_aspects(void **state)
     (void)state;
     enum { count = 33 };
     static const double step_deg[] = {0.03, 0.1, 0.3, 1}, limit_db[] = {-50, -50, -48, -32};
-    RadarStage    s;
-    ScatterMatrix got[count], want[count];
-    TubeHits      list = {0};
+    RadarStage          s;
+    ScatterMatrix       got[count], want[count];
+    TubeHits            list = {0};
     stage_open(&s, "corner:0.5", x_hz);
     const ScatterAntenna at = antenna_at(30, 20, 2000);
     CHECK(tubes_trace(&list, s.target, &at, &at, &s.config, s.pool) == STATUS_OK);
@@ -227,7 +227,7 @@ static void a_curved_mirror_spreads_the_field(void **state)
     join(&s.model, &plate, &cylinder, up);
     stage_target(&s, 3e10);
     stage_look(&s, 33, e_deg, INFINITY);
-    const double want = 8 * pi_rad * r_m * h_m * h_m * cos(e_deg * rad_per_deg) * s.config.frequency_hz / light_mps;
+    const double   want = 8 * pi_rad * r_m * h_m * h_m * cos(e_deg * rad_per_deg) * s.config.frequency_hz / light_mps;
     double complex whole = 0;
     for (int last = 0; last < 2; last++) {
         double complex sum = 0;
@@ -239,8 +239,8 @@ static void a_curved_mirror_spreads_the_field(void **state)
                 x[c] = k * (double)s.hits.slope_m[c][i];
                 x[c] = fabs(x[c]) < 1e-6 ? 1 : sin(x[c]) / x[c];
             }
-            sum += CMPLX((double)s.hits.amplitude[0][i],
-                         (double)s.hits.amplitude[1][i]) * x[0] * x[1] * cexp(-I * k * s.hits.path_m[i]);
+            sum += CMPLX((double)s.hits.amplitude[0][i], (double)s.hits.amplitude[1][i]) * x[0] * x[1] *
+                   cexp(-I * k * s.hits.path_m[i]);
         }
         sum *= -I * k / (2 * pi_rad);
         half[last] = decibels(4 * sigma(sum) / want);
@@ -284,11 +284,11 @@ static void bistatic_spheres_equal_mie(void **state)
     (void)state;
     static const char *const names[] = {"ka", "scattering_angle_deg(0=forward;180=back)",
                                         "sigma_over_pi_a2_E_perp_plane(S1)", "sigma_over_pi_a2_E_in_plane(S2)"};
-    char       path[512];
-    int        column[4], seen = 0;
-    Table      table;
-    RadarStage s;
-    double     ka = 0, radius_m = 0, worst = 0;
+    char                     path[512];
+    int                      column[4], seen = 0;
+    Table                    table;
+    RadarStage               s;
+    double                   ka = 0, radius_m = 0, worst = 0;
     if (!reference_path(path, "radar/mie/mie_pec_bistatic.csv")) skip();
     CHECK(table_open(&table, path) == STATUS_OK && table_columns(column, &table, names, 4, "test"));
     for (int r = 0; r < table.rows; r++) {
@@ -457,12 +457,18 @@ static void bad_looks_are_refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(paths_are_exact_at_every_range), cmocka_unit_test(the_field_is_the_same_everywhere),
-        cmocka_unit_test(threads_change_no_bit), cmocka_unit_test(a_sweep_equals_its_frequencies),
-        cmocka_unit_test(lists_serve_other_aspects), cmocka_unit_test(a_curved_mirror_spreads_the_field),
-        cmocka_unit_test(bistatic_fields_are_reciprocal), cmocka_unit_test(bistatic_spheres_equal_mie),
-        cmocka_unit_test(edges_are_added_to_the_rays), cmocka_unit_test(warp_is_smooth_and_of_its_height),
-        cmocka_unit_test(an_uneven_plate_loses_what_it_must), cmocka_unit_test(an_uneven_corner_converges),
+        cmocka_unit_test(paths_are_exact_at_every_range),
+        cmocka_unit_test(the_field_is_the_same_everywhere),
+        cmocka_unit_test(threads_change_no_bit),
+        cmocka_unit_test(a_sweep_equals_its_frequencies),
+        cmocka_unit_test(lists_serve_other_aspects),
+        cmocka_unit_test(a_curved_mirror_spreads_the_field),
+        cmocka_unit_test(bistatic_fields_are_reciprocal),
+        cmocka_unit_test(bistatic_spheres_equal_mie),
+        cmocka_unit_test(edges_are_added_to_the_rays),
+        cmocka_unit_test(warp_is_smooth_and_of_its_height),
+        cmocka_unit_test(an_uneven_plate_loses_what_it_must),
+        cmocka_unit_test(an_uneven_corner_converges),
         cmocka_unit_test(bad_looks_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

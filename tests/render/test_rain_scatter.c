@@ -21,7 +21,8 @@ static void metal_spheres_equal_the_exact_series(void **state)
     const int ka = table_column(&table, "ka"), sigma = table_column(&table, "sigma_over_pi_a2");
     for (int row = 0; row < table.rows; row++) {
         double k, want;
-        CHECK(table_number(&k, &table, row, ka, 0, 1e5) == STATUS_OK && table_number(&want, &table, row, sigma, 0, 1e9) == STATUS_OK);
+        CHECK(table_number(&k, &table, row, ka, 0, 1e5) == STATUS_OK &&
+              table_number(&want, &table, row, sigma, 0, 1e9) == STATUS_OK);
         if (k > 20) continue;
         /* |m| x has to stay below 2000: the larger, the better a conductor */
         const double    m = fmin(1900 / k, 1e3), radius_m = 1, wavelength_m = 2 * pi_rad / k;
@@ -44,14 +45,15 @@ static void small_spheres_are_rayleigh_s(void **state)
     CHECK_NEAR(s.back_m2 / (pow(pi_rad, 5) / pow(l, 4) * creal(k * conj(k)) * pow(d, 6)), 1, 1e-3);
     CHECK_NEAR(s.scattering_m2 / (2.0 / 3 * pow(pi_rad, 5) / pow(l, 4) * creal(k * conj(k)) * pow(d, 6)), 1, 1e-3);
     CHECK_NEAR(s.extinction_m2 / (pi_rad * pi_rad / l * -cimag(k) * pow(d, 3)), 1, 1e-3);
-    CHECK(isnan(mie_sphere(0, e, l).back_m2) && isnan(mie_sphere(10, e, l).back_m2) && isnan(mie_sphere(1e-3, CMPLX(NAN, NAN), l).back_m2));
+    CHECK(isnan(mie_sphere(0, e, l).back_m2) && isnan(mie_sphere(10, e, l).back_m2) &&
+          isnan(mie_sphere(1e-3, CMPLX(NAN, NAN), l).back_m2));
     /* nothing is taken that is not scattered, without loss */
     const MieSphere clear = mie_sphere(2e-3, CMPLX(6, 0), 3e-3);
     CHECK_NEAR(clear.extinction_m2 / clear.scattering_m2, 1, 1e-12);
 }
 
-/* Bohren & Huffman's sample output of BHMIE (Appendix A): index 1.55, radius 0.525, wavelength 0.6328; and Wiscombe's test
- * (NCAR TN-140, 1979) of index 1.33 - 1e-5 j, size 100. */
+/* Bohren & Huffman's sample output of BHMIE (Appendix A): index 1.55, radius 0.525, wavelength 0.6328; and Wiscombe's
+ * test (NCAR TN-140, 1979) of index 1.33 - 1e-5 j, size 100. */
 static void spheres_are_as_published(void **state)
 {
     (void)state;
@@ -83,16 +85,18 @@ static void rain_is_marshall_and_palmer_s(void **state)
         const double slope = 4.1 * pow(r, -0.21), f = 3, l = 1e-9 * light_mps / f;
         CHECK(rain_scatter(&rain, f, 283.15, r));
         CHECK_NEAR(rain.z_mm6_m3 / (8000 * 720 / pow(slope, 7)), 1, 0.015); /* drops end at 8 mm: 1.4 % at 25 mm/h */
-        CHECK_NEAR(db(rain.z_mm6_m3 / (200 * pow(r, 1.6))), 0, 1.8);       /* two fits of rain: 1.7 dB at 1 mm/h */
+        CHECK_NEAR(db(rain.z_mm6_m3 / (200 * pow(r, 1.6))), 0, 1.8);        /* two fits of rain: 1.7 dB at 1 mm/h */
         const double complex e = water_permittivity(f, 283.15), k = (e - 1) / (e + 2);
-        CHECK_NEAR(db(rain.back_1_m / (pow(pi_rad, 5) / pow(l, 4) * creal(k * conj(k)) * 1e-18 * rain.z_mm6_m3)), 0, 0.4);
+        CHECK_NEAR(db(rain.back_1_m / (pow(pi_rad, 5) / pow(l, 4) * creal(k * conj(k)) * 1e-18 * rain.z_mm6_m3)), 0,
+                   0.4);
         /* half of D^6 exp(-slope D) comes from above 6.670 / slope: the median of the gamma distribution of shape 7 */
         CHECK_NEAR(rain_fall_mps(&rain, 0.5), 9.65 - 10.3 * exp(-0.6 * 6.670 / slope), 0.06);
         CHECK(rain_fall_mps(&rain, 0) < 1 && rain_fall_mps(&rain, 1) < 9.65 && rain_fall_mps(&rain, 1) > 9.5);
     }
 }
 
-/* One sum over drops takes what P.838's fit of another (T-matrix, Laws and Parsons) takes: within 35 % at 2 .. 50 mm/h. */
+/* One sum over drops takes what P.838's fit of another (T-matrix, Laws and Parsons) takes: within 35 % at 2 .. 50 mm/h.
+ */
 static void rain_takes_what_p838_says(void **state)
 {
     (void)state;
@@ -102,7 +106,8 @@ static void rain_takes_what_p838_says(void **state)
             RainScatter  rain;
             const double f = (const double[]){16.5, 35, 94}[i];
             CHECK(rain_scatter(&rain, f, 283.15, r));
-            worst = fmax(worst, fabs(rain.extinction_1_m * 1e4 / log(10) / rain_attenuation(f, r, 0, 0.25 * pi_rad) - 1));
+            worst =
+                fmax(worst, fabs(rain.extinction_1_m * 1e4 / log(10) / rain_attenuation(f, r, 0, 0.25 * pi_rad) - 1));
         }
     printf("loss by rain within %.0f %% of P.838's\n", 100 * worst);
     CHECK(worst < 0.35);
@@ -126,8 +131,8 @@ static void sums_are_fine_enough(void **state)
     }
     RainScatter none;
     CHECK(rain_scatter(&none, 35, 283, 0) && none.back_1_m == 0);
-    CHECK(!rain_scatter(&none, 35, 283, 301) && !rain_scatter(&none, 35, 283, NAN) && !rain_scatter(&none, 201, 283, 1) &&
-          !rain_scatter(&none, 35, 260, 1));
+    CHECK(!rain_scatter(&none, 35, 283, 301) && !rain_scatter(&none, 35, 283, NAN) &&
+          !rain_scatter(&none, 201, 283, 1) && !rain_scatter(&none, 35, 260, 1));
 }
 
 int main(void)

@@ -45,12 +45,13 @@ static void pose(int sky_samples)
     }
     request.sky_samples = sky_samples;
     assert_int_equal(shade_scene_create(&scene, &hand.world, &hand.snapshot, &hand.air, &request,
-                                        (1u << AIR_BAND_COUNT) - 1, NULL, arena), STATUS_OK);
+                                        (1u << AIR_BAND_COUNT) - 1, NULL, arena),
+                     STATUS_OK);
     for (int i = 0; i < all_rays; i++) {
         double d[3];
         for (int k = 0; k < 3; k++) d[k] = random_uniform(3, (uint32_t)k, 0, (uint64_t)i) - 0.5;
         if (i % 2) { /* towards the models */
-            const int e = i / 2 % 6;
+            const int    e = i / 2 % 6;
             const double to[3] = {30 + 3 * e, -9 + 4 * e, 50 + e + 0.9};
             for (int k = 0; k < 3; k++) d[k] = 2 * d[k] + to[k] - eye_enu[k];
         }
@@ -62,9 +63,14 @@ static void pose(int sky_samples)
 
 static RayList list_from(int first, int count)
 {
-    return (RayList){.count = count, .o_enu = {o_enu[0] + first, o_enu[1] + first, o_enu[2] + first},
-                     .d_enu = {d_enu[0] + first, d_enu[1] + first, d_enu[2] + first}, .key = key + first, .per_rad = 60,
-                     .channels = (1u << AIR_BAND_COUNT) - 1, .radar = true, .temperature = true};
+    return (RayList){.count = count,
+                     .o_enu = {o_enu[0] + first, o_enu[1] + first, o_enu[2] + first},
+                     .d_enu = {d_enu[0] + first, d_enu[1] + first, d_enu[2] + first},
+                     .key = key + first,
+                     .per_rad = 60,
+                     .channels = (1u << AIR_BAND_COUNT) - 1,
+                     .radar = true,
+                     .temperature = true};
 }
 
 static void compare(const ShadedRays *all, const ShadedRays *some, int first, int count)
@@ -85,8 +91,8 @@ static void a_ray_is_shaded_the_same_in_any_list(void **state)
     static const int length[] = {1, 7, 1024}, until[] = {40, 700, all_rays};
     (void)state;
     for (int gathered = 0; gathered < 2; gathered++) {
-        const int   rays = gathered ? 1400 : all_rays;
-        ShadedRays  all, some;
+        const int  rays = gathered ? 1400 : all_rays;
+        ShadedRays all, some;
         arena_reset(hand.arena);
         pose(gathered ? 2 : 0);
         assert_int_equal(shaded_rays_create(&all, rays, hand.arena), STATUS_OK);
@@ -135,7 +141,7 @@ static void a_hit_says_what_it_is(void **state)
         double p_node[3];
         if (block.hits.kind[i] != hit_part || (block.hits.entity[i] - 1) % 2 == 0) continue;
         double n_node[3];
-            visibility_on_part(p_node, n_node, scene.visibility, &block.hits, i, (const double[3]){0, 0, 1});
+        visibility_on_part(p_node, n_node, scene.visibility, &block.hits, i, (const double[3]){0, 0, 1});
         CHECK_NEAR(v3_length(p_node), hand_sphere_m, 0.01 * hand_sphere_m);
         /* and on the plane of its own facet, which no other shares */
         const Model    *model = catalog_model(hand.catalog, hand.entity[block.hits.entity[i] - 1].model);

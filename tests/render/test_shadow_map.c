@@ -1,5 +1,5 @@
-/* Shadows over the day on a grid: the length of a ridge's shadow by its height and the sun's, at any azimuth; what an even
- * stand lets through by Beer's law; the ground's own slopes; bounds. */
+/* Shadows over the day on a grid: the length of a ridge's shadow by its height and the sun's, at any azimuth; what an
+ * even stand lets through by Beer's law; the ground's own slopes; bounds. */
 #include "tests/check.h"
 #include "render/heat/heat.h"
 
@@ -13,7 +13,8 @@ static void ridge(double high_m)
     elevation_destroy(&ground);
     ground = (Elevation){0};
     CHECK(elevation_level_create(&ground, 0, posts, posts, -800, -800, spacing_m, -100, 1.0 / 64) == STATUS_OK);
-    for (int t = 0; t < ground.level[0].tiles_x * ground.level[0].tiles_y; t++) ground.level[0].tile[t] = (ElevationTile){0, 0};
+    for (int t = 0; t < ground.level[0].tiles_x * ground.level[0].tiles_y; t++)
+        ground.level[0].tile[t] = (ElevationTile){0, 0};
     ground.level[0].plain = true;
     for (int j = 0; j < posts; j++)
         for (int i = 0; i < posts; i++)
@@ -31,9 +32,9 @@ static void length_of_a_shadow(void **state)
 {
     (void)state;
     static const double azimuth[] = {90, 90, 60, 120, 270, 135}, high[] = {20, 45, 20, 30, 15, 25};
-    float      d[3][shadow_most_slots] = {{0}};
-    ShadowMap *map;
-    Pool      *pool;
+    float               d[3][shadow_most_slots] = {{0}};
+    ShadowMap          *map;
+    Pool               *pool;
     ridge(40);
     for (int s = 0; s < 6; s++) slot(d, s, azimuth[s], high[s]);
     CHECK(pool_create(&pool, 2) == STATUS_OK);
@@ -51,7 +52,8 @@ static void length_of_a_shadow(void **state)
         }
         heat_shadow_at(shadow, &open, map, -away * 40, 0);
         CHECK(shadow[s] == 0);
-        print_message("sun %g, %g degrees up: shaded to %.0f m, %.0f m by its height\n", azimuth[s], high[s], 12 + shaded_m, reach_m);
+        print_message("sun %g, %g degrees up: shaded to %.0f m, %.0f m by its height\n", azimuth[s], high[s],
+                      12 + shaded_m, reach_m);
         CHECK_NEAR(12 + shaded_m, reach_m, 8);
     }
     uint8_t shadow[shadow_most_slots];

@@ -1,5 +1,6 @@
-/* The estimate of a cross section's error against what a finer grid, at the very look, makes of it: models and a frequency
- * that the estimate's constant was not fitted to. Higher frequencies: test_signature_error_deep.c. labels: slow */
+/* The estimate of a cross section's error against what a finer grid, at the very look, makes of it: models and a
+ * frequency that the estimate's constant was not fitted to. Higher frequencies: test_signature_error_deep.c. labels:
+ * slow */
 #include "tests/render/signature_cases.h"
 
 static void estimates_are_within_a_factor_of_two(void **state)

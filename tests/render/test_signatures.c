@@ -43,15 +43,15 @@ static void bins_are_about_their_middles(void **state)
 static Signatures *open(Catalog **catalog, int *model, RadarMaterials *materials, size_t most_octets)
 {
     static const DisEntityType truck = {1, 1, 225, 7, 1, 0, 0};
-    const SignaturesConfig config = {.frequency_hz = frequency_hz,
-                                     .bandwidth_hz = 5e8,
-                                     .aspect_rad = aspect_rad,
-                                     .rays_per_wavelength = 1,
-                                     .most_octets = most_octets,
-                                     .isa = "avx2"};
-    Signatures *s;
-    Origin      origin;
-    char        path[4096];
+    const SignaturesConfig     config = {.frequency_hz = frequency_hz,
+                                         .bandwidth_hz = 5e8,
+                                         .aspect_rad = aspect_rad,
+                                         .rays_per_wavelength = 1,
+                                         .most_octets = most_octets,
+                                         .isa = "avx2"};
+    Signatures                *s;
+    Origin                     origin;
+    char                       path[4096];
     CHECK(etc_path(path, sizeof path, "catalog.csv") &&
           catalog_open(catalog, path, radar_sag_m(frequency_hz)) == STATUS_OK);
     *model = catalog_find(*catalog, truck, &origin, NULL);
@@ -76,10 +76,10 @@ static ScatterMatrix look(Signatures *s, int model, const double *joint, const S
 static void lists_are_reused_and_change_no_bit(void **state)
 {
     (void)state;
-    Catalog       *catalog;
-    RadarMaterials materials;
-    int            model;
-    Signatures    *s = open(&catalog, &model, &materials, 1), *roomy; /* one list alone, or all */
+    Catalog         *catalog;
+    RadarMaterials   materials;
+    int              model;
+    Signatures      *s = open(&catalog, &model, &materials, 1), *roomy; /* one list alone, or all */
     SignaturesConfig config = {.frequency_hz = frequency_hz,
                                .bandwidth_hz = 5e8,
                                .aspect_rad = aspect_rad,
@@ -106,8 +106,8 @@ static void lists_are_reused_and_change_no_bit(void **state)
     CHECK(signatures_counters(roomy).dropped == 0 && signatures_counters(s).dropped > 3);
 
     /* wheels do not make another list, other joints do */
-    const Model *of = catalog_model(catalog, model);
-    double       joint[256] = {0};
+    const Model   *of = catalog_model(catalog, model);
+    double         joint[256] = {0};
     const uint64_t made = signatures_counters(roomy).made;
     int            wheels = 0, others = -1;
     CHECK(of->node_count <= 256);
@@ -134,11 +134,11 @@ static void lists_are_reused_and_change_no_bit(void **state)
 static void looks_are_told_apart(void **state)
 {
     (void)state;
-    Catalog       *catalog;
-    RadarMaterials materials;
-    int            model;
-    Signatures    *s = open(&catalog, &model, &materials, 1 << 30);
-    SignatureLook  look_of[7];
+    Catalog             *catalog;
+    RadarMaterials       materials;
+    int                  model;
+    Signatures          *s = open(&catalog, &model, &materials, 1 << 30);
+    SignatureLook        look_of[7];
     const ScatterAntenna a = at(20, 15, 2000), below = at(20, -15, 2000);
     for (int i = 0; i < 7; i++)
         look_of[i] =
@@ -217,8 +217,8 @@ static void a_list_serves_its_bin(void **state)
     for (int i = 0; i < 6; i++) {
         const ScatterAntenna a = at(60 * i + 0.28 * random_uniform(2, 0, 0, (uint64_t)i),
                                     12.05 + 0.2 * random_uniform(2, 1, 0, (uint64_t)i), 2000);
-        const ScatterMatrix got = look(s, model, NULL, &a);
-        ScatterMatrix       want[2];
+        const ScatterMatrix  got = look(s, model, NULL, &a);
+        ScatterMatrix        want[2];
         for (int turned = 0; turned < 2; turned++) {
             TubeConfig tubes = tubes_default_config(frequency_hz);
             tubes.splits = 0;
@@ -243,10 +243,8 @@ static void a_list_serves_its_bin(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(bins_are_about_their_middles),
-        cmocka_unit_test(lists_are_reused_and_change_no_bit),
-        cmocka_unit_test(looks_are_told_apart),
-        cmocka_unit_test(background_makes_the_same),
+        cmocka_unit_test(bins_are_about_their_middles), cmocka_unit_test(lists_are_reused_and_change_no_bit),
+        cmocka_unit_test(looks_are_told_apart),         cmocka_unit_test(background_makes_the_same),
         cmocka_unit_test(a_list_serves_its_bin),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

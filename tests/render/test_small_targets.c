@@ -14,10 +14,7 @@ static int open_world(void **state)
 }
 
 /* Looking east, with 90 px across 2 m at 50 m. */
-static View east(void)
-{
-    return hand_view(eye_enu, (const double[3]){1, 0, 0}, side_px, side_px, 2250);
-}
+static View east(void) { return hand_view(eye_enu, (const double[3]){1, 0, 0}, side_px, side_px, 2250); }
 
 /* The place whose image is this far, in pixels, from the middle of the picture. */
 static void place_at(double p_enu[3], const View *view, double range_m, double right_px, double down_px)
@@ -37,16 +34,17 @@ static double relative(double got, double want) { return fabs(got / want - 1); }
 static void shoot(Worst worst[picture_plane_count], int model, const double r[9], double middle_m, double range_m,
                   const double want[picture_plane_count], int target_samples)
 {
-    const View    view    = east();
+    const View    view = east();
     RenderRequest request = hand_request(&view);
     double        seen[picture_plane_count][shifts];
     request.target_samples = target_samples;
     if (target_samples == 0) request.edge_samples = 0;
     for (int k = 0; k < shifts; k++) {
-        double p_enu[3], offset[3];
+        double       p_enu[3], offset[3];
         const double centre_body[3] = {0, 0, -middle_m};
         /* near, a shift is small against the picture: held so that the target stays inside */
-        place_at(p_enu, &view, range_m, random_uniform(7, 0, 0, (uint64_t)k) - 0.5, random_uniform(7, 1, 0, (uint64_t)k) - 0.5);
+        place_at(p_enu, &view, range_m, random_uniform(7, 0, 0, (uint64_t)k) - 0.5,
+                 random_uniform(7, 1, 0, (uint64_t)k) - 0.5);
         m3_mul_v3(offset, r, centre_body);
         v3_sub(p_enu, p_enu, offset);
         hand_clear();
@@ -56,10 +54,11 @@ static void shoot(Worst worst[picture_plane_count], int model, const double r[9]
         for (int plane = 0; plane < picture_plane_count; plane++) {
             if (!(want[plane] > 0)) continue;
             const double in_picture = hand_irradiance(&picture, &view, plane, 0) * range_m * range_m;
-            const double in_truth = picture.target[0].radiance[plane] / (view.focal_px * view.focal_px) * range_m * range_m;
+            const double in_truth =
+                picture.target[0].radiance[plane] / (view.focal_px * view.focal_px) * range_m * range_m;
             worst[plane].picture = fmax(worst[plane].picture, relative(in_picture, want[plane]));
-            worst[plane].truth   = fmax(worst[plane].truth, relative(in_truth, want[plane]));
-            seen[plane][k]       = in_picture;
+            worst[plane].truth = fmax(worst[plane].truth, relative(in_truth, want[plane]));
+            seen[plane][k] = in_picture;
         }
         CHECK_NEAR(picture.target[0].visible, picture.target[0].amodal, 1e-9);
     }
@@ -67,20 +66,22 @@ static void shoot(Worst worst[picture_plane_count], int model, const double r[9]
         double mean = 0;
         if (!(want[plane] > 0)) continue;
         for (int k = 0; k < shifts; k++) mean += seen[plane][k] / shifts;
-        for (int k = 0; k < shifts; k++) worst[plane].flicker = fmax(worst[plane].flicker, relative(seen[plane][k], mean));
+        for (int k = 0; k < shifts; k++)
+            worst[plane].flicker = fmax(worst[plane].flicker, relative(seen[plane][k], mean));
     }
 }
 
 static const double ranges_m[] = {50, 90, 160, 280, 300, 420, 700, 1300, 2500, 5000, 10000, 20000, 45000};
 enum { range_count = sizeof ranges_m / sizeof *ranges_m };
 
-static void check(const char *what, double range_m, const Worst worst[picture_plane_count], const double want[picture_plane_count])
+static void check(const char *what, double range_m, const Worst worst[picture_plane_count],
+                  const double want[picture_plane_count])
 {
     Worst most = {0};
     for (int plane = 0; plane < picture_plane_count; plane++) {
         if (!(want[plane] > 0)) continue;
         most.picture = fmax(most.picture, worst[plane].picture);
-        most.truth   = fmax(most.truth, worst[plane].truth);
+        most.truth = fmax(most.truth, worst[plane].truth);
         most.flicker = fmax(most.flicker, worst[plane].flicker);
     }
     print_message("%s at %6.0f m, %8.3f px across: off by %.2f %% (truth %.2f %%), flicker %.2f %%\n", what, range_m,
@@ -101,9 +102,10 @@ static void a_plate_keeps_its_intensity(void **state)
     hand_attitude(r, pi_rad + turn, 0);
     for (int k = 0; k < 3; k++) n_enu[k] = r[3 * k];
     double want[picture_plane_count] = {0};
-    want[picture_optical] = hand_rho * hand.air.light.sun_w_m2[optical_channel_pan] * v3_dot(n_enu, sun_enu) / pi_rad * area_m2;
-    want[picture_mwir]    = hand_emitted(BAND_MWIR) * area_m2;
-    want[picture_lwir]    = hand_emitted(BAND_LWIR) * area_m2;
+    want[picture_optical] =
+        hand_rho * hand.air.light.sun_w_m2[optical_channel_pan] * v3_dot(n_enu, sun_enu) / pi_rad * area_m2;
+    want[picture_mwir] = hand_emitted(BAND_MWIR) * area_m2;
+    want[picture_lwir] = hand_emitted(BAND_LWIR) * area_m2;
     for (int k = 0; k < range_count; k++) {
         Worst worst[picture_plane_count] = {0};
         shoot(worst, hand_plate_model, r, hand_plate_z_m, ranges_m[k], want, 48);
@@ -124,8 +126,8 @@ static double sunlit_sphere(double range_m, const double towards_sun[3])
             const double lit = v3_dot(n, towards_sun), seen = v3_dot(n, eye);
             if (lit > 0 && seen > 0) sum += lit * seen / pow(v3_length(eye), 3);
         }
-    return hand_rho / pi_rad * hand.air.light.sun_w_m2[optical_channel_pan] * sum * hand_sphere_m * hand_sphere_m * 2 * pi_rad /
-           ((double)steps * steps) * range_m * range_m;
+    return hand_rho / pi_rad * hand.air.light.sun_w_m2[optical_channel_pan] * sum * hand_sphere_m * hand_sphere_m * 2 *
+           pi_rad / ((double)steps * steps) * range_m * range_m;
 }
 
 static void a_sphere_keeps_its_intensity(void **state)
@@ -137,14 +139,15 @@ static void a_sphere_keeps_its_intensity(void **state)
         double       r[9], want[picture_plane_count] = {0};
         hand_air_off(sun);
         hand_attitude(r, 0.3, 0.2);
-        const double from_afar = hand_rho * hand.air.light.sun_w_m2[optical_channel_pan] * hand_sphere_m * hand_sphere_m * 2 /
-                                 (3 * pi_rad) * (sin(p) + (pi_rad - p) * cos(p));
+        const double from_afar = hand_rho * hand.air.light.sun_w_m2[optical_channel_pan] * hand_sphere_m *
+                                 hand_sphere_m * 2 / (3 * pi_rad) * (sin(p) + (pi_rad - p) * cos(p));
         CHECK_NEAR(sunlit_sphere(1e5, sun) / from_afar, 1, 1e-3); /* 600 steps of the sum, and 1e-5 of nearness */
         want[picture_mwir] = hand_emitted(BAND_MWIR) * pi_rad * hand_sphere_m * hand_sphere_m;
         want[picture_lwir] = hand_emitted(BAND_LWIR) * pi_rad * hand_sphere_m * hand_sphere_m;
         for (int k = 0; k < range_count; k += 2) {
             Worst worst[picture_plane_count] = {0};
-            want[picture_optical] = sunlit_sphere(ranges_m[k], sun); /* 3 % less than from afar at 50 m and 110 degrees */
+            want[picture_optical] =
+                sunlit_sphere(ranges_m[k], sun); /* 3 % less than from afar at 50 m and 110 degrees */
             shoot(worst, hand_sphere_model, r, 0, ranges_m[k], want, 48);
             check("sphere", ranges_m[k], worst, want);
         }
@@ -179,7 +182,7 @@ static void the_background_gives_way_by_as_much(void **state)
     arena_reset(hand.arena);
     const RenderRequest request = hand_request(&view);
     const Picture       picture = hand_render(&request, hand.pool);
-    const double want = (hand_emitted(BAND_LWIR) - 12) * 4 * hand_plate_y_m * hand_plate_z_m / (8000.0 * 8000.0);
+    const double        want = (hand_emitted(BAND_LWIR) - 12) * 4 * hand_plate_y_m * hand_plate_z_m / (8000.0 * 8000.0);
     /* float pixels about 12: 1e-6 of it in each of 9216, of a sum of some 0.4 px of 20 */
     CHECK_NEAR(hand_irradiance(&picture, &view, picture_lwir, 12) / want, 1, 0.005);
 }
@@ -188,7 +191,7 @@ static void the_background_gives_way_by_as_much(void **state)
 static void overlap_occlusion_and_the_picture_s_edge(void **state)
 {
     (void)state;
-    const View          view    = east();
+    const View          view = east();
     const RenderRequest request = hand_request(&view);
     double              r[9], p_enu[3];
     hand_air_off(sun_enu);
@@ -202,14 +205,15 @@ static void overlap_occlusion_and_the_picture_s_edge(void **state)
     place_at(p_enu, &view, 3999, 3.3 + 0.5 * size_px, -5.4);
     hand_add(hand_plate_model, p_enu, r);
     arena_reset(hand.arena);
-    Picture picture = hand_render(&request, hand.pool);
+    Picture             picture = hand_render(&request, hand.pool);
     const TargetPixels *t = picture.target;
     CHECK(t[0].small && t[1].small);
     CHECK_NEAR(t[0].visible / t[0].amodal, 0.5, 0.01); /* the half falls on a column of cells or beside it: 1 / 64 */
     CHECK_NEAR(t[1].visible / t[1].amodal, 1, 1e-9);
     CHECK_NEAR(t[0].occluded_entity, 0.5 * size_px * size_px, 0.01 * size_px * size_px);
     CHECK(t[0].occluder == 1 && t[1].occluder == -1 && t[0].occluded_ground == 0);
-    CHECK_NEAR(hand_irradiance(&picture, &view, picture_lwir, 0) * 4000 * 4000 / (hand_emitted(BAND_LWIR) * 6), 1, 0.01);
+    CHECK_NEAR(hand_irradiance(&picture, &view, picture_lwir, 0) * 4000 * 4000 / (hand_emitted(BAND_LWIR) * 6), 1,
+               0.01);
 
     /* a wall: the plate again, so near that it is no small target, over the right half of a small one */
     hand_clear();
@@ -222,7 +226,7 @@ static void overlap_occlusion_and_the_picture_s_edge(void **state)
     hand_add(hand_plate_model, p_enu, r);
     arena_reset(hand.arena);
     picture = hand_render(&request, hand.pool);
-    t       = picture.target;
+    t = picture.target;
     CHECK(t[0].small && !t[1].small);
     CHECK_NEAR(t[0].visible / t[0].amodal, 0.5, 0.01);
     CHECK(t[0].occluder == 1);
@@ -233,22 +237,23 @@ static void overlap_occlusion_and_the_picture_s_edge(void **state)
     hand_add(hand_plate_model, p_enu, r);
     arena_reset(hand.arena);
     picture = hand_render(&request, hand.pool);
-    t       = picture.target;
+    t = picture.target;
     CHECK_NEAR(t[0].amodal, 0.5 * size_px * size_px, 0.005 * size_px * size_px); /* place on the image: 1e-3 px */
     CHECK(t[0].box[2] == side_px && t[0].amodal_box[2] == side_px);
-    CHECK_NEAR(hand_irradiance(&picture, &view, picture_lwir, 0) * 4000 * 4000 / (hand_emitted(BAND_LWIR) * 2), 1, 0.01);
+    CHECK_NEAR(hand_irradiance(&picture, &view, picture_lwir, 0) * 4000 * 4000 / (hand_emitted(BAND_LWIR) * 2), 1,
+               0.01);
 }
 
-/* A plate behind a row of masts half a pixel wide, all of one radiance, before a brighter sky: the sky goes where the plate
- * stands between the masts, all of it. The pixels' own samples see half sky there. */
+/* A plate behind a row of masts half a pixel wide, all of one radiance, before a brighter sky: the sky goes where the
+ * plate stands between the masts, all of it. The pixels' own samples see half sky there. */
 static void nothing_shines_through_gaps_that_it_fills(void **state)
 {
     enum { masts = 14 };
     static const double range_m = 250, sky_w_m2_sr = 200, turn = 75 * rad_per_deg, pitch_m = 0.12;
     (void)state;
-    const View          view    = east();
-    RenderRequest       request = hand_request(&view);
-    double              r[9], upright[9], p_enu[3], irradiance[2];
+    const View    view = east();
+    RenderRequest request = hand_request(&view);
+    double        r[9], upright[9], p_enu[3], irradiance[2];
     request.samples = 8, request.edge_samples = 0; /* one ray a pixel misses most of the masts */
     hand_air_off(sun_enu);
     for (int i = 0; i <= air_sky_ups; i++) hand.air.sky_eye[AIR_LWIR].thermal_w_m2_sr[i] = sky_w_m2_sr;
@@ -273,7 +278,8 @@ static void nothing_shines_through_gaps_that_it_fills(void **state)
         CHECK_NEAR(t->visible / t->amodal, 0.47, 0.02); /* of masts 6 cm thick, 12 cm apart, 2 m nearer */
         const double area_m2 = 4 * hand_plate_y_m * hand_plate_z_m * cos(turn) * t->visible / t->amodal;
         const double want = (hand_emitted(BAND_LWIR) - sky_w_m2_sr) * area_m2 / (range_m * range_m);
-        CHECK_NEAR((irradiance[1] - irradiance[0]) / want, 1, 0.03); /* 0.5 with the pixels' means in place of the masts */
+        CHECK_NEAR((irradiance[1] - irradiance[0]) / want, 1,
+                   0.03); /* 0.5 with the pixels' means in place of the masts */
     }
 }
 
@@ -282,7 +288,7 @@ static void all_that_is_hidden_names_what_hides_it(void **state)
 {
     enum { walls = 24 };
     (void)state;
-    const View          view    = east();
+    const View          view = east();
     const RenderRequest request = hand_request(&view);
     double              r[9], p_enu[3];
     hand_air_off(sun_enu);
@@ -335,8 +341,9 @@ static void a_crowd_keeps_the_footprints_near_the_boresight(void **state)
         if (picture.target[k].small != (nearer < kept)) fail_msg("plate %d: %d are nearer the centre", k, nearer);
         if (picture.target[k].small) area_px = picture.target[k].visible;
     }
-    for (int k = 0; k < plates; k++) CHECK_NEAR(picture.target[k].visible / area_px, 1, 0.1); /* edges: 1 / 16 px of 2 */
-    request.target_samples = 200; /* no fewer than with the usual grids */
+    for (int k = 0; k < plates; k++)
+        CHECK_NEAR(picture.target[k].visible / area_px, 1, 0.1); /* edges: 1 / 16 px of 2 */
+    request.target_samples = 200;                                /* no fewer than with the usual grids */
     arena_reset(hand.arena);
     const Picture fine = hand_render(&request, hand.pool);
     assert_int_equal(fine.counters.small_targets, kept);
@@ -346,16 +353,16 @@ static void a_crowd_keeps_the_footprints_near_the_boresight(void **state)
     assert_int_equal(all.counters.small_targets_by_pixels, 0);
 }
 
-/* Twenty equal plates at 96 x 96 cells do not fit into 2^17: they keep their grids, of 80 x 80, and their areas scatter no more
- * about the mean of those by the usual grids than these. By pixels 6 of them would scatter by 3 %. */
+/* Twenty equal plates at 96 x 96 cells do not fit into 2^17: they keep their grids, of 80 x 80, and their areas scatter
+ * no more about the mean of those by the usual grids than these. By pixels 6 of them would scatter by 3 %. */
 static void finer_grids_than_fit_become_coarser(void **state)
 {
     (void)state;
     enum { plates = 20 };
     static const int cells[] = {48, 64, 80, 96, 256};
-    const View    view = east();
-    RenderRequest request = hand_request(&view);
-    double        r[9];
+    const View       view = east();
+    RenderRequest    request = hand_request(&view);
+    double           r[9];
     hand_air_off(sun_enu);
     hand_attitude(r, pi_rad, 0.2);
     hand_clear();
@@ -373,7 +380,8 @@ static void finer_grids_than_fit_become_coarser(void **state)
         assert_int_equal(p.counters.small_targets, plates);
         assert_int_equal(p.counters.small_targets_by_pixels, 0);
         for (int k = 0; k < plates && c == 0; k++) mean_px += p.target[k].visible / plates;
-        for (int k = 0; k < plates; k++) square += (p.target[k].visible / mean_px - 1) * (p.target[k].visible / mean_px - 1);
+        for (int k = 0; k < plates; k++)
+            square += (p.target[k].visible / mean_px - 1) * (p.target[k].visible / mean_px - 1);
         rms[c] = sqrt(square / plates);
         print_message("%d cells a side: areas scatter by %.4f\n", cells[c], rms[c]);
     }
@@ -383,7 +391,7 @@ static void finer_grids_than_fit_become_coarser(void **state)
 static void a_pixel_is_whose_most_of_it_is(void **state)
 {
     (void)state;
-    const View          view    = east();
+    const View          view = east();
     const RenderRequest request = hand_request(&view);
     double              r[9], p_enu[3];
     hand_air_off(sun_enu);
@@ -395,7 +403,7 @@ static void a_pixel_is_whose_most_of_it_is(void **state)
     hand_clear();
     hand_add(hand_plate_model, p_enu, r);
     arena_reset(hand.arena);
-    const Picture picture = hand_render(&request, hand.pool);
+    const Picture       picture = hand_render(&request, hand.pool);
     static const double column[3] = {0.6, 0.9, 0}, row[3] = {0.1, 1, 0.4};
     for (int y = 0; y < 3; y++)
         for (int x = 0; x < 3; x++) {
@@ -415,7 +423,7 @@ static void a_pixel_is_whose_most_of_it_is(void **state)
 static void the_profile_holds_the_picture(void **state)
 {
     (void)state;
-    const View    view    = east();
+    const View    view = east();
     RenderRequest request = hand_request(&view);
     double        r[9], p_enu[3];
     hand_air_off(sun_enu);
@@ -430,9 +438,9 @@ static void the_profile_holds_the_picture(void **state)
     hand_add(hand_plate_model, p_enu, r);
     place_at(p_enu, &view, 145, -30.2, -10.7);
     hand_add(hand_sphere_model, p_enu, r);
-    request.bands         = 1 << BAND_RADAR;
+    request.bands = 1 << BAND_RADAR;
     request.profile_bin_m = 1;
-    request.profile_bins  = 1500;
+    request.profile_bins = 1500;
     arena_reset(hand.arena);
     const Picture picture = hand_render(&request, hand.pool);
     double        in_picture = 0, in_profile = 0;

@@ -19,8 +19,14 @@ static void put(int i, double z_m, double radius_m, double co2_atm, double h2o_a
 {
     gas[i] = (SmokeGas){.co2_atm = co2_atm, .h2o_atm = h2o_atm, .passed = {1, 1, 1}, .source = {source, source}};
     for (int band = 0; band < 2; band++) smoke_gas_weights(gas[i].weight[band], (HotGasBand)band, temp_k);
-    volume[i] = (SmokeVolume){.p_enu = {0, 0, z_m}, .axis_enu = {1, 0, 0}, .along_m = radius_m, .across_m = radius_m,
-                              .range_m = z_m, .even = true, .d_sun_enu = {0, 0.6, 0.8}, .gas = &gas[i]};
+    volume[i] = (SmokeVolume){.p_enu = {0, 0, z_m},
+                              .axis_enu = {1, 0, 0},
+                              .along_m = radius_m,
+                              .across_m = radius_m,
+                              .range_m = z_m,
+                              .even = true,
+                              .d_sun_enu = {0, 0.6, 0.8},
+                              .gas = &gas[i]};
 }
 
 /* Upwards, x beside the axis. */
@@ -47,7 +53,7 @@ static void every_chord_has_its_emissivity(void **state)
     static const double want[3][5] = {{0.1464, 0.1738, 0.1984, 0.2221, 0.2453},
                                       {0.1505, 0.1890, 0.2208, 0.2483, 0.2732},
                                       {0.1440, 0.1951, 0.2365, 0.2687, 0.2962}};
-    double worst = 0, worst_grey = 0;
+    double              worst = 0, worst_grey = 0;
     for (int t = 0; t < 3; t++) {
         put(0, 100, 1, 0.04, 0, temp_k[t], 1); /* 0.08 atm m through its middle */
         const double grey = -log1p(-want[t][2]);
@@ -63,9 +69,10 @@ static void every_chord_has_its_emissivity(void **state)
     CHECK(worst_grey > 0.6);
     /* both gases in 8 .. 12 um: the same model, from tests/render/test_hot_gas.c; 0.001, 0.02 and 0.1 atm m of each */
     static const double long_k[4] = {500, 700, 1100, 1500}, chord_m[3] = {0.02, 0.4, 2};
-    static const double long_want[4][3] = {
-        {0.0002243, 0.004381, 0.02031}, {0.0005524, 0.01042, 0.04485},
-        {0.001304, 0.02358, 0.09286}, {0.002048, 0.03661, 0.1389}};
+    static const double long_want[4][3] = {{0.0002243, 0.004381, 0.02031},
+                                           {0.0005524, 0.01042, 0.04485},
+                                           {0.001304, 0.02358, 0.09286},
+                                           {0.002048, 0.03661, 0.1389}};
     static const double short_want[4][3] = {
         {0.08172, 0.1916, 0.2391}, {0.07359, 0.1992, 0.2481}, {0.05728, 0.2156, 0.2727}, {0.04464, 0.2296, 0.2974}};
     double worst_long = 0;
@@ -136,7 +143,7 @@ static double transported(HotGasBand band, const double temp_k[], const double c
     for (int l = 0; l < layers; l++) smoke_gas_weights(weight[l], band, temp_k[l]);
     for (int g = 0; g < 2; g++) /* rates, from the function itself: a thin column of one term */
         for (int j = 0; j < hot_gas_terms; j++) {
-            double one[2][hot_gas_terms] = {{0}};
+            double       one[2][hot_gas_terms] = {{0}};
             const double u = 1e-9;
             HotGasRay    ray;
             smoke_gas_start(&ray);
@@ -166,12 +173,12 @@ static void temperatures_mix(void **state)
 {
     (void)state;
     static const double source[2] = {1, 8};
-    double worst[2] = {0, 0};
+    double              worst[2] = {0, 0};
     for (int order = 0; order < 3; order++)
         for (double u = 1e-5; u < 0.2; u *= 4) {
             static const double k_of[3][3] = {{700, 1100, 700}, {1100, 700, 1100}, {700, 900, 1100}};
-            const double co2[3] = {u, u, u}, h2o[3] = {0.8 * u, 0.8 * u, 0.8 * u};
-            double       from[3];
+            const double        co2[3] = {u, u, u}, h2o[3] = {0.8 * u, 0.8 * u, 0.8 * u};
+            double              from[3];
             for (int l = 0; l < 3; l++) {
                 from[l] = source[0] + (k_of[order][l] - 700) / 400 * (source[1] - source[0]);
                 put(l, 100 + 3 * l, 1, 0.5 * co2[l], 0.5 * h2o[l], k_of[order][l], from[l]);
@@ -193,8 +200,10 @@ static void temperatures_mix(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_chord_has_its_emissivity), cmocka_unit_test(columns_add),
-        cmocka_unit_test(isothermal_gas_is_invisible),    cmocka_unit_test(temperatures_mix),
+        cmocka_unit_test(every_chord_has_its_emissivity),
+        cmocka_unit_test(columns_add),
+        cmocka_unit_test(isothermal_gas_is_invisible),
+        cmocka_unit_test(temperatures_mix),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

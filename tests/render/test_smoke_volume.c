@@ -3,9 +3,9 @@
 #include "tests/check.h"
 #include "render/smoke/smoke.h"
 
-static Rays     rays;
-static double   far_m[hits_capacity];
-static SmokeRays out;
+static Rays           rays;
+static double         far_m[hits_capacity];
+static SmokeRays      out;
 static const unsigned all_bands = (1u << smoke_bands) - 1;
 
 static void one_ray(double x, double y, double far)
@@ -19,8 +19,13 @@ static void one_ray(double x, double y, double far)
 /* A ball above the origin; k is the same in all bands unless a test sets it. */
 static SmokeVolume ball(double z_m, double radius_m, bool even, double k_per_m, double source)
 {
-    SmokeVolume v = {.p_enu = {0, 0, z_m}, .axis_enu = {1, 0, 0}, .along_m = radius_m, .across_m = radius_m,
-                    .range_m = z_m, .even = even, .d_sun_enu = {0, 0.6, 0.8}};
+    SmokeVolume v = {.p_enu = {0, 0, z_m},
+                     .axis_enu = {1, 0, 0},
+                     .along_m = radius_m,
+                     .across_m = radius_m,
+                     .range_m = z_m,
+                     .even = even,
+                     .d_sun_enu = {0, 0.6, 0.8}};
     for (int b = 0; b < smoke_bands; b++) v.extinction_per_m[b] = k_per_m, v.source[b] = source;
     return v;
 }
@@ -82,7 +87,7 @@ static void no_volume_is_lost(void **state)
 static void soft_column_is_exact(void **state)
 {
     (void)state;
-    const double o[3] = {0, 0, 0}, z[3] = {0, 0, 1};
+    const double      o[3] = {0, 0, 0}, z[3] = {0, 0, 1};
     const SmokeVolume v = ball(50, 3, false, 1, 0);
     CHECK_NEAR(smoke_column_m(&v, o, z, 0, INFINITY), 16.0 / 15 * 3, 1e-12);
     SmokeVolume s = ball(50, 2, false, 1, 0);
@@ -90,13 +95,14 @@ static void soft_column_is_exact(void **state)
     s.axis_enu[0] = 0.48, s.axis_enu[1] = 0.6, s.axis_enu[2] = 0.64;
     double worst = 0;
     for (int i = 0; i < 200; i++) {
-        double d[3] = {0.1 * (random_uniform(1, 1, 0, 3 * (uint64_t)i) - 0.5), 0.1 * (random_uniform(1, 1, 0, 3 * (uint64_t)i + 1) - 0.5), 1};
+        double d[3] = {0.1 * (random_uniform(1, 1, 0, 3 * (uint64_t)i) - 0.5),
+                       0.1 * (random_uniform(1, 1, 0, 3 * (uint64_t)i + 1) - 0.5), 1};
         v3_normalize(d, d);
         const double from = 40 + 10 * random_uniform(1, 1, 0, 3 * (uint64_t)i + 2), to = from + 8;
-        double sum = 0;
+        double       sum = 0;
         enum { steps = 2000 };
         for (int n = 0; n <= steps; n++) {
-            double off[3], q2 = 0;
+            double       off[3], q2 = 0;
             const double at = from + (to - from) * n / steps;
             for (int k = 0; k < 3; k++) off[k] = at * d[k] - s.p_enu[k];
             const double along = v3_dot(off, s.axis_enu);
@@ -132,8 +138,9 @@ static void order_is_by_depth(void **state)
     look(v, 2);
     const double outer = exp(-0.3), inner = exp(-2.0);
     CHECK_NEAR(out.transmittance[0][0], outer * inner * outer, 1e-6);
-    CHECK_NEAR(out.added[0][0], 10 * (1 - outer) + outer * (0.1 * 10 + 0.4 * 70) / 0.5 * (1 - inner) +
-                                    outer * inner * 10 * (1 - outer), 1e-5);
+    CHECK_NEAR(out.added[0][0],
+               10 * (1 - outer) + outer * (0.1 * 10 + 0.4 * 70) / 0.5 * (1 - inner) + outer * inner * 10 * (1 - outer),
+               1e-5);
 }
 
 /* Only what is before the hit counts; from inside, only what is before the eye. */
@@ -161,7 +168,7 @@ static void one_temperature_shows_nothing(void **state)
 {
     (void)state;
     SmokeVolume v[200];
-    double     thinnest = 1;
+    double      thinnest = 1;
     for (int i = 0; i < 200; i++) {
         v[i] = ball(80 + 40 * random_uniform(2, 1, 0, (uint64_t)i), 1 + 6 * random_uniform(2, 2, 0, (uint64_t)i), false,
                     0.01 + 0.1 * random_uniform(2, 3, 0, (uint64_t)i), 38.5);
@@ -185,7 +192,7 @@ static void joined_cuts_keep_the_column(void **state)
 {
     (void)state;
     SmokeVolume v[60];
-    double depth = 0;
+    double      depth = 0;
     for (int i = 0; i < 60; i++) {
         v[i] = ball(100 + 0.37 * i, 3, false, 0.005 + 0.0001 * i, i);
         depth += (0.005 + 0.0001 * i) * 16.0 / 15 * 3;
@@ -262,8 +269,8 @@ static void lists_miss_nothing(void **state)
     (void)state;
     enum { count = 300, side = 32 };
     static SmokeVolume v[count];
-    View view = {.width = 320, .height = 224, .focal_px = 300};
-    const double r[9] = {1, 0, 0, 0, 0, 1, 0, -1, 0}; /* columns x right, y down, z north */
+    View               view = {.width = 320, .height = 224, .focal_px = 300};
+    const double       r[9] = {1, 0, 0, 0, 0, 1, 0, -1, 0}; /* columns x right, y down, z north */
     memcpy(view.r_enu_from_cam, r, sizeof r);
     for (int i = 0; i < count; i++) {
         v[i] = ball(0, 0.5 + 5 * random_uniform(3, 1, 0, (uint64_t)i), false, 0.01, 1);
@@ -274,13 +281,13 @@ static void lists_miss_nothing(void **state)
     int listed = 0, blocks = 0;
     for (int y = 0; y < view.height; y += side)
         for (int x = 0; x < view.width; x += side, blocks++) {
-            int list[count], n = smoke_cull_block(list, v, count, &view, x, y, x + side, y + side);
+            int         list[count], n = smoke_cull_block(list, v, count, &view, x, y, x + side, y + side);
             static bool in[count];
             memset(in, 0, sizeof in);
             for (int i = 0; i < n; i++) in[list[i]] = true;
             listed += n;
             for (int p = 0; p < 64; p++) {
-                double d[3];
+                double       d[3];
                 const double o[3] = {0, 0, 0};
                 view_ray(d, &view, x + (p % 8 + 0.5) * side / 8, y + (p / 8 + 0.5) * side / 8);
                 for (int i = 0; i < count; i++)

@@ -1,5 +1,5 @@
-/* The quick form of surfaces' light against the plain one of render/light/optical.c and thermal.c, on random hits of every
- * class, slope, sun and view; and that a hit's bits do not hang on its company. labels: physics */
+/* The quick form of surfaces' light against the plain one of render/light/optical.c and thermal.c, on random hits of
+ * every class, slope, sun and view; and that a hit's bits do not hang on its company. labels: physics */
 #include "tests/render/hand_world.h"
 
 #include "render/light/surface_light.h"
@@ -9,7 +9,7 @@ enum { hits_count = 1016, suns = 4 };
 
 static Hits     hits;
 static Rays     rays;
-static AirPaths    veils[AIR_BAND_COUNT];
+static AirPaths veils[AIR_BAND_COUNT];
 static uint16_t material[hits_capacity];
 static float    arrives[hits_capacity];
 static float    texture[hits_capacity], warmth_k[hits_capacity], temp_k[hits_capacity], around[hits_capacity];
@@ -42,8 +42,8 @@ static void random_hits(const double sun_enu[3], bool ground)
             for (int k = 0; k < 3; k++) d[k] = sun_enu[k] - 2 * c * n[k] + 0.1 * lean[k];
             v3_normalize(d, d);
         }
-        if (i % 3 != 0 || v3_dot(n, d) > -0.01 || d[2] > -0.01)
-            do direction(d, -1, -0.02);
+        if (i % 3 != 0 || v3_dot(n, d) > -0.01 || d[2] > -0.01) do
+                direction(d, -1, -0.02);
             while (v3_dot(n, d) > -0.01);
         hits.range_m[i] = fmin(300 / -d[2], 20000);
         for (int k = 0; k < 3; k++) {
@@ -58,7 +58,7 @@ static void random_hits(const double sun_enu[3], bool ground)
                                         : (i < 500 ? i / 8 : (int)hand_uniform(0, 1e4)) % hand.world.materials.count);
         arrives[i] = (float)fmax(0, fmin(1, hand_uniform(-0.5, 2))); /* none, some or all of the sun */
         texture[i] = (float)hand_uniform(0.6, 1.4);
-        around[i]  = (float)hand_uniform(1, 100);
+        around[i] = (float)hand_uniform(1, 100);
     }
 }
 
@@ -78,8 +78,8 @@ static double worst(AirBand band, const float *quick, const float *plain, double
 }
 
 /* Float holds 6e-8. What is left are the sky's tables, whose places are found within some 1e-5 of a step; and where a
- * smooth surface flashes, the half angle: its tangent is good to 1e-7, of slopes of 0.06 (water) or 0.01 (window glass),
- * and counts squared, times up to 40 at the foot of the lobe. */
+ * smooth surface flashes, the half angle: its tangent is good to 1e-7, of slopes of 0.06 (water) or 0.01 (window
+ * glass), and counts squared, times up to 40 at the foot of the lobe. */
 static void compare(bool ground, double least_rad, double limit)
 {
     static float        quick[AIR_BAND_COUNT][hits_capacity], plain[hits_capacity];
@@ -94,11 +94,11 @@ static void compare(bool ground, double least_rad, double limit)
         hand_air_on(sun_enu, 300);
         random_hits(sun_enu, ground);
         assert_int_equal(surface_light_prepare(&light, &hand.air, m, hand.air_arena), STATUS_OK);
-        thermal_temperature(temp_k, &hand.air, m, NULL, &hits, material, arrives, texture,
-                            warmth_k);
+        thermal_temperature(temp_k, &hand.air, m, NULL, &hits, material, arrives, texture, warmth_k);
         air_paths_of(veils, &hand.air, (1 << AIR_BAND_COUNT) - 1, &hits, &rays, temp_k);
         float       *out[AIR_BAND_COUNT];
-        SurfaceBlock block = {.hits = &hits, .rays = &rays, .material = material, .temp_k = temp_k, .sun = arrives, .veils = veils};
+        SurfaceBlock block = {
+            .hits = &hits, .rays = &rays, .material = material, .temp_k = temp_k, .sun = arrives, .veils = veils};
         for (int b = 0; b < AIR_BAND_COUNT; b++) {
             out[b] = quick[b];
             block.texture[b] = texture;
@@ -111,8 +111,8 @@ static void compare(bool ground, double least_rad, double limit)
                 optical_shade(plain, b, &hand.air, m, &hits, &rays, material, texture, arrives, block.around_w_m2[b],
                               &veils[b], NULL);
             else
-                thermal_shade(plain, b == AIR_MWIR ? BAND_MWIR : BAND_LWIR, &hand.air, m, &hits, &rays, material, temp_k,
-                              arrives, block.around_w_m2[b], &veils[b], NULL);
+                thermal_shade(plain, b == AIR_MWIR ? BAND_MWIR : BAND_LWIR, &hand.air, m, &hits, &rays, material,
+                              temp_k, arrives, block.around_w_m2[b], &veils[b], NULL);
             const double here = worst((AirBand)b, quick[b], plain, least_rad, limit);
             if (!(here <= most)) most = here;
         }
@@ -138,25 +138,25 @@ static void materials_agree_with_the_plain_form(void **state)
 static void company_changes_no_bit(void **state)
 {
     (void)state;
-    static float       all[AIR_BAND_COUNT][hits_capacity], one[hits_capacity];
+    static float        all[AIR_BAND_COUNT][hits_capacity], one[hits_capacity];
     static SurfaceLight light;
-    static Hits        few;
-    static Rays        few_rays;
-    static AirPaths       few_veils[AIR_BAND_COUNT];
-    float              few_texture[hits_capacity], few_temp_k[hits_capacity];
-    float              few_arrives[hits_capacity];
-    uint16_t           few_material[hits_capacity];
-    const double       sun_enu[3] = {-0.48, 0.36, 0.8};
-    float             *out[AIR_BAND_COUNT];
+    static Hits         few;
+    static Rays         few_rays;
+    static AirPaths     few_veils[AIR_BAND_COUNT];
+    float               few_texture[hits_capacity], few_temp_k[hits_capacity];
+    float               few_arrives[hits_capacity];
+    uint16_t            few_material[hits_capacity];
+    const double        sun_enu[3] = {-0.48, 0.36, 0.8};
+    float              *out[AIR_BAND_COUNT];
     arena_reset(hand.air_arena);
     hand_air_on(sun_enu, 300);
     hand_draw = 9;
     random_hits(sun_enu, true);
     assert_int_equal(surface_light_prepare(&light, &hand.air, &hand.world.materials, hand.air_arena), STATUS_OK);
-    thermal_temperature(temp_k, &hand.air, &hand.world.materials, NULL, &hits, material, arrives, texture,
-                        warmth_k);
+    thermal_temperature(temp_k, &hand.air, &hand.world.materials, NULL, &hits, material, arrives, texture, warmth_k);
     air_paths_of(veils, &hand.air, (1 << AIR_BAND_COUNT) - 1, &hits, &rays, temp_k);
-    SurfaceBlock block = {.hits = &hits, .rays = &rays, .material = material, .temp_k = temp_k, .sun = arrives, .veils = veils};
+    SurfaceBlock block = {
+        .hits = &hits, .rays = &rays, .material = material, .temp_k = temp_k, .sun = arrives, .veils = veils};
     for (int b = 0; b < AIR_BAND_COUNT; b++) out[b] = all[b], block.texture[b] = texture;
     surface_light_shade(out, &light, &block);
 
@@ -174,12 +174,17 @@ static void company_changes_no_bit(void **state)
         }
         few_texture[k] = texture[i], few_arrives[k] = arrives[i], few_material[k] = material[i];
     }
-    thermal_temperature(few_temp_k, &hand.air, &hand.world.materials, NULL, &few, few_material, few_arrives, few_texture,
-                        warmth_k);
+    thermal_temperature(few_temp_k, &hand.air, &hand.world.materials, NULL, &few, few_material, few_arrives,
+                        few_texture, warmth_k);
     air_paths_of(few_veils, &hand.air, (1 << AIR_BAND_COUNT) - 1, &few, &few_rays, few_temp_k);
     for (int b = 0; b < AIR_BAND_COUNT; b++) {
-        float      *alone[AIR_BAND_COUNT] = {NULL};
-        SurfaceBlock some = {.hits = &few, .rays = &few_rays, .material = few_material, .temp_k = few_temp_k, .sun = few_arrives, .veils = few_veils};
+        float       *alone[AIR_BAND_COUNT] = {NULL};
+        SurfaceBlock some = {.hits = &few,
+                             .rays = &few_rays,
+                             .material = few_material,
+                             .temp_k = few_temp_k,
+                             .sun = few_arrives,
+                             .veils = few_veils};
         alone[b] = one;
         some.texture[b] = few_texture;
         surface_light_shade(alone, &light, &some);
@@ -198,19 +203,24 @@ static void planck_of_eight(void **state)
         assert_int_equal(planck_table_create(&table, edge_m[band][0], edge_m[band][1]), STATUS_OK);
         for (int n = 0; n < 4000; n++) {
             float at_k[8], radiance[8];
-            for (int k = 0; k < 8; k++) at_k[k] = (float)(180 + (1500 - 180) * random_uniform(7, (uint32_t)k, 0, (uint64_t)n));
+            for (int k = 0; k < 8; k++)
+                at_k[k] = (float)(180 + (1500 - 180) * random_uniform(7, (uint32_t)k, 0, (uint64_t)n));
             planck_table_radiance8(radiance, table, at_k);
             for (int k = 0; k < 8; k++)
-                most = fmax(most, fabs((double)radiance[k] / planck_band(edge_m[band][0], edge_m[band][1], (double)at_k[k], NULL) - 1));
+                most = fmax(most, fabs((double)radiance[k] /
+                                           planck_band(edge_m[band][0], edge_m[band][1], (double)at_k[k], NULL) -
+                                       1));
         }
         print_message("band %d: %.1e\n", band, most);
-        CHECK(most < 4e-6); /* 1/T by float steps of 6e-8 times c2 / (wavelength T), 22 at the coldest, and the cubic's own */
+        CHECK(most <
+              4e-6); /* 1/T by float steps of 6e-8 times c2 / (wavelength T), 22 at the coldest, and the cubic's own */
         const float beyond_k[8] = {20, 179.9f, 1500.1f, 4000, 300, NAN, 180, 1500};
         float       radiance[8];
         planck_table_radiance8(radiance, table, beyond_k);
         for (int k = 0; k < 8; k++) {
             const double exact = planck_band(edge_m[band][0], edge_m[band][1], (double)beyond_k[k], NULL);
-            CHECK(k == 5 ? isnan(radiance[k]) : fabs((double)radiance[k] - exact) <= 4e-6 * exact + 1e-37); /* float ends there */
+            CHECK(k == 5 ? isnan(radiance[k])
+                         : fabs((double)radiance[k] - exact) <= 4e-6 * exact + 1e-37); /* float ends there */
         }
         planck_table_destroy(table);
     }

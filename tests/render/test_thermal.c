@@ -3,8 +3,8 @@
 #include "render/light/thermal.h"
 
 static PlanckTable *mwir, *lwir;
-static Atmosphere *atmosphere;
-static Arena *arena;
+static Atmosphere  *atmosphere;
+static Arena       *arena;
 
 typedef struct Scene {
     Hits      hits;
@@ -55,9 +55,9 @@ static int add(const double d_enu[3], const double n_enu[3], double range_m, int
     }
     scene.hits.range_m[i] = range_m;
     scene.hits.surface[i] = SURFACE_GRASS;
-    scene.material[i]     = (uint16_t)material;
-    scene.texture[i]      = scene.sun[i] = 1;
-    scene.temp_k[i]       = (float)temp_k;
+    scene.material[i] = (uint16_t)material;
+    scene.texture[i] = scene.sun[i] = 1;
+    scene.temp_k[i] = (float)temp_k;
     return i;
 }
 
@@ -69,10 +69,10 @@ static void shade(const Air *air, Band band)
 
 static Air air_when(const Weather *weather, double elevation_deg)
 {
-    const double e = elevation_deg * rad_per_deg;
-    const Sun sun = {.elevation_rad = e, .azimuth_rad = pi_rad, .distance_au = 1, .d_enu = {0, -cos(e), sin(e)}};
+    const double    e = elevation_deg * rad_per_deg;
+    const Sun       sun = {.elevation_rad = e, .azimuth_rad = pi_rad, .distance_au = 1, .d_enu = {0, -cos(e), sin(e)}};
     const AirSource source = {atmosphere, mwir, lwir, 0};
-    Air air;
+    Air             air;
     arena_reset(arena);
     const AirEye eye = {2, 1 << AIR_MWIR | 1 << AIR_LWIR, NULL};
     CHECK(air_at(&air, &source, weather, &sun, &eye, NULL, arena) == STATUS_OK);
@@ -89,12 +89,14 @@ static void isothermal_cavity(void **state)
         const double temp_k = (float)temps_k[t];
         const double want_mwir = planck_table_radiance(mwir, temp_k), want_lwir = planck_table_radiance(lwir, temp_k);
         const double even[AIR_BAND_COUNT] = {[AIR_MWIR] = want_mwir, [AIR_LWIR] = want_lwir};
-        Air air; /* of its temperature too, or none at all */
+        Air          air; /* of its temperature too, or none at all */
         air_even(&air, (const double[3]){0, 0.6, -0.8}, 0, even, t % 2 ? 1e-4 : 0, mwir, lwir);
         clear();
         for (int m = 0; m < 64; m++) {
-            scene.rows[m] = (Material){.rho_mwir = (float)(m % 4) / 3, .rho_lwir = (float)(m / 4 % 4) / 3,
-                                       .gloss = (float)(m / 16) / 3, .roughness = 0.05f * (float)(m % 7)};
+            scene.rows[m] = (Material){.rho_mwir = (float)(m % 4) / 3,
+                                       .rho_lwir = (float)(m / 4 % 4) / 3,
+                                       .gloss = (float)(m / 16) / 3,
+                                       .roughness = 0.05f * (float)(m % 7)};
             for (int a = 0; a < 12; a++) {
                 const double n_tilt = a * 0.26, view = 1.5 * sin(a * 2.1 + m);
                 const double n[3] = {sin(n_tilt), 0, cos(n_tilt)};
@@ -115,12 +117,11 @@ static void a_warm_wall_shows_by_its_emissivity(void **state)
 {
     (void)state;
     const Weather weather = weather_default();
-    const Air air = air_when(&weather, -20);
+    const Air     air = air_when(&weather, -20);
     clear();
     for (int m = 0; m < 3; m++) scene.rows[m] = (Material){.rho_mwir = 0.5f * (float)m, .rho_lwir = 0.5f * (float)m};
     for (int m = 0; m < 3; m++)
-        for (int warm = 0; warm < 2; warm++)
-            add((double[3]){0, 1, -1}, (double[3]){0, 0, 1}, 0, m, 300 + warm);
+        for (int warm = 0; warm < 2; warm++) add((double[3]){0, 1, -1}, (double[3]){0, 0, 1}, 0, m, 300 + warm);
     shade(&air, BAND_LWIR);
     const double step = planck_table_radiance(lwir, 301) - planck_table_radiance(lwir, 300);
     for (int m = 0; m < 3; m++)
@@ -134,7 +135,7 @@ static void mirrors_show_cold_zenith_and_warm_ground(void **state)
 {
     (void)state;
     const Weather weather = weather_default();
-    const Air air = air_when(&weather, -20);
+    const Air     air = air_when(&weather, -20);
     clear();
     scene.rows[1] = (Material){.rho_mwir = 1, .rho_lwir = 1, .gloss = 1, .roughness = 0.02f};
     const int up = add((double[3]){0, 0, -1}, (double[3]){0, 0, 1}, 0, 1, 300);
@@ -150,15 +151,15 @@ static void sun_shows_in_mwir_only_and_not_in_shadow(void **state)
 {
     (void)state;
     const Weather weather = weather_default();
-    const Air air = air_when(&weather, 50);
+    const Air     air = air_when(&weather, 50);
     clear();
     scene.rows[1] = (Material){.rho_mwir = 0.15f, .rho_lwir = 0.05f};
     scene.rows[2] = (Material){.rho_mwir = 0.15f, .rho_lwir = 0.05f, .gloss = 1, .roughness = 0.1f};
     const double e = 50 * rad_per_deg, glint[3] = {0, -cos(e), -sin(e)}, n[3] = {0, 0, 1};
-    const int lit = add((double[3]){1, 0, -1}, n, 0, 1, 300), dark = add((double[3]){1, 0, -1}, n, 0, 1, 300);
-    const int away = add(glint, n, 0, 2, 300), toward = add((double[3]){0, -cos(e), -sin(e)}, n, 0, 2, 300);
-    const int facing = add((double[3]){0, cos(e), -sin(e)}, n, 0, 2, 300);
-    const int facing_dark = add((double[3]){0, cos(e), -sin(e)}, n, 0, 2, 300);
+    const int    lit = add((double[3]){1, 0, -1}, n, 0, 1, 300), dark = add((double[3]){1, 0, -1}, n, 0, 1, 300);
+    const int    away = add(glint, n, 0, 2, 300), toward = add((double[3]){0, -cos(e), -sin(e)}, n, 0, 2, 300);
+    const int    facing = add((double[3]){0, cos(e), -sin(e)}, n, 0, 2, 300);
+    const int    facing_dark = add((double[3]){0, cos(e), -sin(e)}, n, 0, 2, 300);
     scene.sun[dark] = scene.sun[away] = scene.sun[facing_dark] = 0;
     shade(&air, BAND_MWIR);
     CHECK_NEAR(scene.out[lit] - scene.out[dark], 0.15 / pi_rad * air.light.sun_w_m2[AIR_MWIR] * sin(e), 1e-6);
@@ -173,7 +174,7 @@ static void the_veil_is_the_airs(void **state)
 {
     (void)state;
     const Weather weather = weather_default();
-    const Air air = air_when(&weather, 30);
+    const Air     air = air_when(&weather, 30);
     clear();
     add((double[3]){0, 1, -0.1}, (double[3]){0, 0, 1}, 4000, 0, 330);
     for (Band band = BAND_MWIR; band <= BAND_LWIR; band++) {
@@ -192,7 +193,7 @@ static void the_veil_is_the_airs(void **state)
 /* A catalog of the product's own, for its roles. */
 static Catalog *open_catalog(void)
 {
-    char path[512];
+    char     path[512];
     Catalog *catalog = NULL;
     CHECK(etc_path(path, sizeof path, "catalog.csv"));
     CHECK(catalog_open(&catalog, path, 0.05) == STATUS_OK);
@@ -201,7 +202,7 @@ static Catalog *open_catalog(void)
 
 static Materials open_materials(const Catalog *catalog)
 {
-    char path[512], surfaces[512];
+    char      path[512], surfaces[512];
     Materials m;
     CHECK(etc_path(path, sizeof path, "materials.csv") && etc_path(surfaces, sizeof surfaces, "surfaces.csv"));
     CHECK(materials_open(&m, path, surfaces, catalog) == STATUS_OK);
@@ -231,10 +232,10 @@ static void air_is_colder_above(void **state)
 {
     (void)state;
     static const double heights_m[] = {0, 137, 500, 2000, 4807, 10000, 13000, -430};
-    Catalog       *catalog = open_catalog();
-    Materials      m = open_materials(catalog);
-    const double   up[3] = {0, 0, 1};
-    Weather        weather = weather_default();
+    Catalog            *catalog = open_catalog();
+    Materials           m = open_materials(catalog);
+    const double        up[3] = {0, 0, 1};
+    Weather             weather = weather_default();
     for (int warm = 0; warm < 2; warm++) {
         weather.air_temp_k = 288.15 + 20 * warm;
         Air air = air_when(&weather, -30);
@@ -245,7 +246,8 @@ static void air_is_colder_above(void **state)
             add_ground(&m, SURFACE_GRASS, up, 1);
             add_part(&m, 0, 0, up);
             add_part(&m, 0, 0, up);
-            for (int i = 0; i < 4; i++) scene.hits.p_enu[2][i] = i % 2 ? heights_m[k] + air.light.zero_z_m : air.light.zero_z_m;
+            for (int i = 0; i < 4; i++)
+                scene.hits.p_enu[2][i] = i % 2 ? heights_m[k] + air.light.zero_z_m : air.light.zero_z_m;
             scene.hits.p_enu[0][1] = 100e3; /* and there the tangent plane is 785 m up */
             scene.hits.p_enu[2][1] -= 100e3 * 100e3 / (2 * 6371e3);
             thermal_temperature(scene.temp_k, &air, &m, NULL, &scene.hits, scene.material, NULL, scene.texture,

@@ -17,8 +17,9 @@ static const double corner[3][3] = {{0, -0.11, -0.05}, {0, 0.13, -0.02}, {0, -0.
 static double complex triangle_field(const double u[3], double k)
 {
     enum { cuts = 600 };
-    static const double at[3] = {0.1127016653792583, 0.5, 0.8872983346207417}, weight[3] = {5 / 18.0, 8 / 18.0, 5 / 18.0};
-    double ab[3], ac[3], n[3];
+    static const double at[3] = {0.1127016653792583, 0.5, 0.8872983346207417},
+                        weight[3] = {5 / 18.0, 8 / 18.0, 5 / 18.0};
+    double         ab[3], ac[3], n[3];
     double complex sum = 0;
     v3_sub(ab, corner[1], corner[0]);
     v3_sub(ac, corner[2], corner[0]);
@@ -48,8 +49,8 @@ static void a_triangle_is_its_transform(void **state)
     hand_triangle(&s.model, 0, 0, 1, 2);
     CHECK(model_measure(&s.model) == STATUS_OK);
     stage_target(&s, 24e9);
-    const double         k = 2 * pi_rad * 24e9 / light_mps, normal[3] = {1, 0, 0};
-    const double         peak = cabs(triangle_field(normal, k));
+    const double k = 2 * pi_rad * 24e9 / light_mps, normal[3] = {1, 0, 0};
+    const double peak = cabs(triangle_field(normal, k));
     for (int i = 0; i < 40; i++) {
         const ScatterAntenna a = antenna_at(1.9 * i, 0.31 * i - 3, INFINITY);
         const double complex want = triangle_field(a.u, k);
@@ -60,8 +61,10 @@ static void a_triangle_is_its_transform(void **state)
             if (cabs(want) > 0.01 * peak) db[split] = fmax(db[split], fabs(decibels(power(got.hh) / power(want))));
         }
     }
-    printf("triangle of 19 wavelengths: amplitude %.1f dB below the peak's whole, %.1f dB divided; down to -40 dB %.2f, "
-           "%.2f dB\n", -2 * decibels(worst[0]), -2 * decibels(worst[1]), db[0], db[1]);
+    printf(
+        "triangle of 19 wavelengths: amplitude %.1f dB below the peak's whole, %.1f dB divided; down to -40 dB %.2f, "
+        "%.2f dB\n",
+        -2 * decibels(worst[0]), -2 * decibels(worst[1]), db[0], db[1]);
     CHECK(worst[1] <= 3e-3 && worst[1] < 0.5 * worst[0] && db[1] <= 0.1);
     stage_close(&s);
 }
@@ -72,11 +75,11 @@ static void two_grids_of_a_tank_agree(void **state)
 {
     (void)state;
     static const double x_hz = 10e9;
-    RadarMaterials materials = {0};
-    RadarModel     tank = {0};
-    RadarStage     s = {0};
-    double         off_db[2];
-    long long      rays[2] = {0};
+    RadarMaterials      materials = {0};
+    RadarModel          tank = {0};
+    RadarStage          s = {0};
+    double              off_db[2];
+    long long           rays[2] = {0};
     CHECK(radar_materials_load(&materials) == STATUS_OK);
     CHECK(radar_model_open(&tank, "tank", &materials, radar_sag_m(x_hz)) == STATUS_OK);
     CHECK(pool_create(&s.pool, 2) == STATUS_OK);
@@ -116,7 +119,7 @@ static void cells_add_up(void **state)
     RadarStage s;
     stage_open(&s, "plate:0.37x0.29", 10e9);
     const ScatterAntenna a = antenna_at(0, 0, INFINITY);
-    double off[3];
+    double               off[3];
     for (int split = 0; split < 3; split++) {
         s.config.splits = 2 * split;
         s.config.cuts_per_radius = 1e4;

@@ -5,7 +5,7 @@
 
 #include "render/heat/surface_flux.h"
 
-static PlaceHeat weather; /* at all times and places */
+static PlaceHeat weather;  /* at all times and places */
 static double    sun_up_s; /* exercise time from which its sun shines; Unix time of exercise time 0 is 0 */
 static double    ground_k_m, ground_k_s; /* by which its ground is warmer to the north, and with time */
 
@@ -22,8 +22,14 @@ static Status everywhere(PlaceHeat *out, const void *user, double unix_s, const 
 static void enclose(double temp_k)
 {
     sun_up_s = 0, ground_k_m = ground_k_s = 0;
-    weather = (PlaceHeat){.air_k = temp_k, .air_density = 1, .longwave_w_m2 = stefan_w_m2k4 * pow(temp_k, 4), .ground_k = temp_k,
-                          .under_k = temp_k, .water_k = temp_k, .ground_rho = 0.2, .sun_d_enu = {0, 0, 1}};
+    weather = (PlaceHeat){.air_k = temp_k,
+                          .air_density = 1,
+                          .longwave_w_m2 = stefan_w_m2k4 * pow(temp_k, 4),
+                          .ground_k = temp_k,
+                          .under_k = temp_k,
+                          .water_k = temp_k,
+                          .ground_rho = 0.2,
+                          .sun_d_enu = {0, 0, 1}};
 }
 
 static const KeptHeat *last_run; /* NULL: none */
@@ -62,15 +68,17 @@ static double mean_k(const VehicleHeat *heat, Scene *s, HeatRole role, const dou
     const Patches *p = &stage.patches.of[s->entity.model];
     for (int i = 0; i < p->count; i++) {
         if (p->patch[i].role != role) continue;
-        if (n && !(p->patch[i].facing * v3_dot(p->patch[i].n_node, n) > 0.5 && v3_dot(p->patch[i].p_node, n) > 0)) continue;
+        if (n && !(p->patch[i].facing * v3_dot(p->patch[i].n_node, n) > 0.5 && v3_dot(p->patch[i].p_node, n) > 0))
+            continue;
         sum += patch_open_m2(&p->patch[i]) * (double)s->snapshot.patch_k[i];
         m2 += patch_open_m2(&p->patch[i]);
     }
     return m2 > 0 ? sum / m2 : NAN;
 }
 
-static const DisEntityType tank = {1, 1, 222, 1, 1, 1, 0}, person = {3, 1, 225, 1, 0, 0, 0}, missile = {2, 2, 225, 1, 0, 0, 0},
-                           flare = {8, 2, 225, 2, 0, 0, 0}, jet = {1, 2, 225, 1, 0, 0, 0};
+static const DisEntityType tank = {1, 1, 222, 1, 1, 1, 0}, person = {3, 1, 225, 1, 0, 0, 0},
+                           missile = {2, 2, 225, 1, 0, 0, 0}, flare = {8, 2, 225, 2, 0, 0, 0},
+                           jet = {1, 2, 225, 1, 0, 0, 0};
 
 /* What is as warm as its surroundings stays so, however it is shaped, to the solver's tolerance. */
 static void an_enclosure_stays_as_it_is(void **state)
@@ -84,7 +92,8 @@ static void an_enclosure_stays_as_it_is(void **state)
         run(heat, &s, 0, 300);
         CHECK(vehicle_heat_show(heat, &s.snapshot, stage.arena) == STATUS_OK);
         double worst_k = 0;
-        for (int i = 0; i < s.snapshot.patch_count; i++) worst_k = fmax(worst_k, fabs((double)s.snapshot.patch_k[i] - temp_k));
+        for (int i = 0; i < s.snapshot.patch_count; i++)
+            worst_k = fmax(worst_k, fabs((double)s.snapshot.patch_k[i] - temp_k));
         print_message("enclosure of %g K: %.1e K\n", temp_k, worst_k);
         CHECK(worst_k < 1e-3);
         vehicle_heat_destroy(heat);
@@ -96,7 +105,7 @@ static void the_side_of_the_sun_is_warm(void **state)
 {
     (void)state;
     static const double right[3] = {0, 1, 0}, left[3] = {0, -1, 0};
-    Scene s;
+    Scene               s;
     enclose(285);
     weather.sun_d_enu[0] = cos(pi_rad / 6), weather.sun_d_enu[2] = 0.5;
     weather.direct_w_m2 = 700, weather.diffuse_w_m2 = 80;
@@ -120,7 +129,7 @@ static void engines_warm_and_stay_warm(void **state)
 {
     (void)state;
     static const double up[3] = {0, 0, -1};
-    Scene s;
+    Scene               s;
     enclose(288);
     weather.wind_enu_mps[1] = 2;
     VehicleHeat *heat = start(30);
@@ -128,8 +137,8 @@ static void engines_warm_and_stay_warm(void **state)
     run(heat, &s, 0, 60);
     const double deck_k = mean_k(heat, &s, HEAT_ENGINE_DECK, up), gas_k = mean_k(heat, &s, HEAT_EXHAUST, NULL),
                  track_k = mean_k(heat, &s, HEAT_TRACK, NULL), hull_k = mean_k(heat, &s, HEAT_HULL, NULL);
-    print_message("driving: deck %.1f, exhaust %.1f, tracks %.1f, hull %.1f K over the air\n", deck_k - 288, gas_k - 288,
-                  track_k - 288, hull_k - 288);
+    print_message("driving: deck %.1f, exhaust %.1f, tracks %.1f, hull %.1f K over the air\n", deck_k - 288,
+                  gas_k - 288, track_k - 288, hull_k - 288);
     CHECK(deck_k > 288 + 15 && deck_k < 363); /* the engine has 363 K */
     CHECK(gas_k > 400 && gas_k < 750);        /* between the air and the gas */
     CHECK(track_k > 295 && track_k < 340 && hull_k > 288.2 && hull_k < 300);
@@ -157,16 +166,17 @@ static void engines_warm_and_stay_warm(void **state)
     vehicle_heat_destroy(heat);
 }
 
-
 /* A jet as wide as the points of a patch lie apart, on the hull's rear, warms it, and the turret's front hardly;
  * away from the entity it warms nothing, nor does an engine that is off. */
 static void exhaust_warms_what_it_blows_on(void **state)
 {
     (void)state;
     static const double back[3] = {-1, 0, 0}, front[3] = {1, 0, 0};
-    const ExhaustJet    across = {.at_body = {-5.5, 0, -0.95}, .d_body = {1, 0, 0}, .radius_m = 0.5, .speed_mps = 30, .excess_k = 300};
-    const ExhaustJet    away = {.at_body = {-5.5, 0, -0.95}, .d_body = {-1, 0, 0}, .radius_m = 0.5, .speed_mps = 30, .excess_k = 300};
-    double              back_k[4], front_k[4];
+    const ExhaustJet    across = {
+           .at_body = {-5.5, 0, -0.95}, .d_body = {1, 0, 0}, .radius_m = 0.5, .speed_mps = 30, .excess_k = 300};
+    const ExhaustJet away = {
+        .at_body = {-5.5, 0, -0.95}, .d_body = {-1, 0, 0}, .radius_m = 0.5, .speed_mps = 30, .excess_k = 300};
+    double back_k[4], front_k[4];
     enclose(288);
     for (int c = 0; c < 4; c++) { /* none, across, away, across without its engine */
         Scene        s;
@@ -177,8 +187,9 @@ static void exhaust_warms_what_it_blows_on(void **state)
         back_k[c] = mean_k(heat, &s, HEAT_HULL, back), front_k[c] = mean_k(heat, &s, HEAT_TURRET, front);
         vehicle_heat_destroy(heat);
     }
-    print_message("rear of the hull and front of the turret: no outlet %.2f %.2f K, one that blows on it %.2f %.2f K, one that blows away %.2f %.2f K\n", back_k[0],
-                  front_k[0], back_k[1], front_k[1], back_k[2], front_k[2]);
+    print_message(
+        "rear of the hull and front of the turret: no outlet %.2f %.2f K, one that blows on it %.2f %.2f K, one that blows away %.2f %.2f K\n",
+        back_k[0], front_k[0], back_k[1], front_k[1], back_k[2], front_k[2]);
     CHECK(back_k[1] > back_k[0] + 10 && back_k[1] < 288 + 300);
     CHECK(fabs(front_k[1] - front_k[0]) < 0.1 * (back_k[1] - back_k[0]));
     CHECK(back_k[2] == back_k[0] && front_k[2] == front_k[0]);
@@ -216,12 +227,16 @@ static void a_restart_goes_on(void **state)
         heat_kept_close(file);
     }
     last_run = NULL;
-    print_message("tracks after a restart %.2f K, unbroken %.2f K, with an assumed past %.2f K\n", again_k[0], tracks_k, again_k[1]);
+    print_message("tracks after a restart %.2f K, unbroken %.2f K, with an assumed past %.2f K\n", again_k[0], tracks_k,
+                  again_k[1]);
     CHECK(tracks_k > again_k[1] + 5);
     CHECK_NEAR(again_k[0], tracks_k, 0.1 * (tracks_k - again_k[1]));
     CHECK(again_k[2] == again_k[1]);
-    static const char *const bad[] = {"entity,model,unix_s\n", "entity,model,unix_s,node_k\nx,tank,5,290\n", "entity,model,unix_s,node_k\n1:1:1,tank,nan,290\n",
-                                      "entity,model,unix_s,node_k\n1:1:1,tank,5,\n", "entity,model,unix_s,node_k\n1:1:1,tank,5,290 x\n",
+    static const char *const bad[] = {"entity,model,unix_s\n",
+                                      "entity,model,unix_s,node_k\nx,tank,5,290\n",
+                                      "entity,model,unix_s,node_k\n1:1:1,tank,nan,290\n",
+                                      "entity,model,unix_s,node_k\n1:1:1,tank,5,\n",
+                                      "entity,model,unix_s,node_k\n1:1:1,tank,5,290 x\n",
                                       "entity,model,unix_s,node_k\n1:1:1,tank,5,290 20000\n"};
     remove(path);
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
@@ -274,7 +289,8 @@ static void speed_warms(void **state)
     s.entity.drives.motor = 0;
     run(heat, &s, 3, 40);
     const double nose_k = mean_k(heat, &s, HEAT_NOSE, NULL) - 250;
-    print_message("airframe %.1f K at 250 m/s, nose %.1f K at 300 m/s, motor %.0f K after two seconds\n", skin_k, nose_k, motor_k);
+    print_message("airframe %.1f K at 250 m/s, nose %.1f K at 300 m/s, motor %.0f K after two seconds\n", skin_k,
+                  nose_k, motor_k);
     CHECK(skin_k > 22 && skin_k < 30); /* parts of it are behind the engines */
     CHECK_NEAR(nose_k, 38.06, 2);
     CHECK(motor_k > 300 && motor_k < 900);
@@ -333,7 +349,8 @@ static void the_past_alone_decides(void **state)
         if (k == 2) print_message("steps of 30 s against 10 s: %.3f K\n", worst_k);
         CHECK(worst_k < 0.1);
         print_message("%llu steps, %.1f us each, %zu octets\n", (unsigned long long)vehicle_heat_counters(heat)->steps,
-                      1e6 * vehicle_heat_counters(heat)->spent_s / (double)vehicle_heat_counters(heat)->steps, vehicle_heat_bytes(heat));
+                      1e6 * vehicle_heat_counters(heat)->spent_s / (double)vehicle_heat_counters(heat)->steps,
+                      vehicle_heat_bytes(heat));
         vehicle_heat_destroy(heat);
     }
 }
@@ -398,13 +415,13 @@ static void crowds_wait(void **state)
 {
     (void)state;
     enum { many = 8 };
-    Scene           s;
-    SnapshotEntity  entity[many];
-    SnapshotJoints  joints[many] = {{0}};
-    Snapshot        none = {0};
-    VehicleHeat    *heat[2];
-    static float    kept[many * patches_most];
-    int             shown_before = 0, slowest = 0;
+    Scene          s;
+    SnapshotEntity entity[many];
+    SnapshotJoints joints[many] = {{0}};
+    Snapshot       none = {0};
+    VehicleHeat   *heat[2];
+    static float   kept[many * patches_most];
+    int            shown_before = 0, slowest = 0;
     enclose(288);
     weather.sun_d_enu[1] = 0.6, weather.sun_d_enu[2] = 0.8, weather.direct_w_m2 = 800;
     place(&s, tank, (EntityDrives){.engine = 0.6f});
@@ -446,11 +463,11 @@ static void crowds_wait(void **state)
 static void a_new_model_is_cut_meanwhile(void **state)
 {
     (void)state;
-    static PatchSet  own; /* of this world: nothing is cut yet */
-    Scene            s;
-    Snapshot         none = {0};
-    VehicleHeat     *heat[2];
-    const PatchSet   before = stage.patches;
+    static PatchSet own; /* of this world: nothing is cut yet */
+    Scene           s;
+    Snapshot        none = {0};
+    VehicleHeat    *heat[2];
+    const PatchSet  before = stage.patches;
     enclose(288);
     place(&s, tank, (EntityDrives){.engine = 1});
     CHECK(heat_patches_create(&own, catalog_model_count(stage.catalog)) == STATUS_OK);
@@ -460,7 +477,8 @@ static void a_new_model_is_cut_meanwhile(void **state)
     const double wait_s = 0.1 + 15e-6 * catalog_model(stage.catalog, s.entity.model)->triangle_count;
     for (int tick = 1; tick <= 20; tick++) {
         s.snapshot.t_s = tick / 10.0;
-        CHECK(vehicle_heat_tick(heat[0], &s.snapshot) == STATUS_OK && vehicle_heat_show(heat[0], &s.snapshot, stage.arena) == STATUS_OK);
+        CHECK(vehicle_heat_tick(heat[0], &s.snapshot) == STATUS_OK &&
+              vehicle_heat_show(heat[0], &s.snapshot, stage.arena) == STATUS_OK);
         if (s.snapshot.t_s < 0.1 + wait_s - 1e-9) CHECK(s.entity.first_patch == -1 && vehicle_heat_waits(heat[0]));
     }
     CHECK(s.entity.first_patch >= 0 && !vehicle_heat_waits(heat[0]));
@@ -477,12 +495,16 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_new_model_is_cut_meanwhile),
-        cmocka_unit_test(an_enclosure_stays_as_it_is), cmocka_unit_test(the_side_of_the_sun_is_warm),
-        cmocka_unit_test(engines_warm_and_stay_warm),  cmocka_unit_test(exhaust_warms_what_it_blows_on),
+        cmocka_unit_test(an_enclosure_stays_as_it_is),
+        cmocka_unit_test(the_side_of_the_sun_is_warm),
+        cmocka_unit_test(engines_warm_and_stay_warm),
+        cmocka_unit_test(exhaust_warms_what_it_blows_on),
         cmocka_unit_test(a_restart_goes_on),
         cmocka_unit_test(heat_is_kept),
-        cmocka_unit_test(speed_warms),                 cmocka_unit_test(bodies_and_flares),
-        cmocka_unit_test(the_past_alone_decides),      cmocka_unit_test(contrast_is_to_the_ground_below),
+        cmocka_unit_test(speed_warms),
+        cmocka_unit_test(bodies_and_flares),
+        cmocka_unit_test(the_past_alone_decides),
+        cmocka_unit_test(contrast_is_to_the_ground_below),
         cmocka_unit_test(room_is_bounded),
         cmocka_unit_test(crowds_wait),
     };

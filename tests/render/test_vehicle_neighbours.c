@@ -19,12 +19,16 @@ static Status everywhere(PlaceHeat *out, const void *user, double unix_s, const 
 /* All around, air too, at one temperature; no sun. */
 static void enclose(double temp_k)
 {
-    weather = (PlaceHeat){.air_k = temp_k, .air_density = 1, .longwave_w_m2 = stefan_w_m2k4 * pow(temp_k, 4),
-                          .ground_k = temp_k, .under_k = temp_k, .sun_d_enu = {0, 0, 1}};
+    weather = (PlaceHeat){.air_k = temp_k,
+                          .air_density = 1,
+                          .longwave_w_m2 = stefan_w_m2k4 * pow(temp_k, 4),
+                          .ground_k = temp_k,
+                          .under_k = temp_k,
+                          .sun_d_enu = {0, 0, 1}};
 }
 
-static const DisEntityType tank = {1, 1, 222, 1, 1, 1, 0}, truck = {1, 1, 222, 2, 6, 0, 0}, building = {5, 0, 0, 0, 0, 0, 0},
-                           missile = {2, 2, 225, 1, 0, 0, 0};
+static const DisEntityType tank = {1, 1, 222, 1, 1, 1, 0}, truck = {1, 1, 222, 2, 6, 0, 0},
+                           building = {5, 0, 0, 0, 0, 0, 0}, missile = {2, 2, 225, 1, 0, 0, 0};
 
 /* ---- several ------------------------------------------------------------------------------ */
 
@@ -75,9 +79,9 @@ static void run(VehicleHeat *heat, Crowd *c, double from_s, double to_s)
 /* What comes next begins at one temperature all through: as kept from a run that ended just before. */
 static void begin_at(KeptHeat **kept, DisEntityId id, DisEntityType type, double temp_k)
 {
-    Crowd        c = {0};
-    char         path[text_file_size];
-    VehicleNodes n;
+    Crowd         c = {0};
+    char          path[text_file_size];
+    VehicleNodes  n;
     static double node_k[1024];
     last_run = NULL;
     VehicleHeat *heat = start();
@@ -130,8 +134,9 @@ static double worst_of(const Crowd *a, int i, const Crowd *b, int j)
 static double facing_rectangles(double x, double y)
 {
     const double x1 = sqrt(1 + x * x), y1 = sqrt(1 + y * y);
-    return 2 / (pi_rad * x * y) * (log(x1 * y1 / sqrt(1 + x * x + y * y)) + x * y1 * atan(x / y1) + y * x1 * atan(y / x1) -
-                                   x * atan(x) - y * atan(y));
+    return 2 / (pi_rad * x * y) *
+           (log(x1 * y1 / sqrt(1 + x * x + y * y)) + x * y1 * atan(x / y1) + y * x1 * atan(y / x1) - x * atan(x) -
+            y * atan(y));
 }
 
 static void plates_see_each_other_as_published(void **state)
@@ -153,10 +158,12 @@ static void plates_see_each_other_as_published(void **state)
         double       share = 0, miss2 = 0, m2 = 0;
         hand_plate(&model, 0.5 * side_m[c], 0.5 * side_m[c]);
         const Model *models[1] = {&model};
-        CHECK(tracer_create_models(&tracer, models, 1, "avx2") == STATUS_OK && patches_create(&patches, &model) == STATUS_OK);
+        CHECK(tracer_create_models(&tracer, models, 1, "avx2") == STATUS_OK &&
+              patches_create(&patches, &model) == STATUS_OK);
         for (int k = 0; k < 2; k++) {
             parts_pose(&posed[k], tracer, 0, &pose, p[k], r[k], 0);
-            at[k] = (PatchPose){.patches = &patches, .model = &model, .posed = &posed[k], .node = &pose, .above_m = 100};
+            at[k] =
+                (PatchPose){.patches = &patches, .model = &model, .posed = &posed[k], .node = &pose, .above_m = 100};
             memcpy(at[k].r_enu_from_body, r[k], sizeof r[k]);
         }
         const PatchPose *other[2] = {NULL, &at[1]}; /* one is gone */
@@ -169,8 +176,8 @@ static void plates_see_each_other_as_published(void **state)
             share += patches.patch[i].area_m2 * all / (patch_points * patch_near_rays), m2 += patches.patch[i].area_m2;
             miss2 += 0.05 * 0.05 * patches.patch[i].area_m2 * patches.patch[i].area_m2;
         }
-        print_message("plates of %g m, %g m apart, %d patches: %.4f, published %.4f\n", side_m[c], away_m[c], patches.count,
-                      share / m2, want);
+        print_message("plates of %g m, %g m apart, %d patches: %.4f, published %.4f\n", side_m[c], away_m[c],
+                      patches.count, share / m2, want);
         CHECK_NEAR(share / m2, want, 2 * sqrt(miss2) / m2); /* 0.05 of a share a patch, twice */
         patches_destroy(&patches);
         tracer_destroy(tracer);
@@ -186,7 +193,8 @@ static void cosine_way(double d[3], const double n[3], int k, int many)
     v3_cross(u, n, axis);
     v3_normalize(u, u);
     v3_cross(v, n, u);
-    const double sine = sqrt((k + 0.5) / many), turn = 2 * pi_rad * (k * 0.7548776662466927 - floor(k * 0.7548776662466927));
+    const double sine = sqrt((k + 0.5) / many),
+                 turn = 2 * pi_rad * (k * 0.7548776662466927 - floor(k * 0.7548776662466927));
     for (int i = 0; i < 3; i++) d[i] = sqrt(1 - sine * sine) * n[i] + sine * (cos(turn) * u[i] + sin(turn) * v[i]);
 }
 
@@ -207,7 +215,8 @@ static void pose(Posed *out, const Crowd *c, int at)
     CHECK(model->node_count <= 64 && parts_node_count(stage.tracer, e->model) <= 64);
     enu_from_ecef(p_enu, &stage.frame, e->p_ecef);
     out->posed = (PosedEntity){.node = out->posed_node};
-    out->pose  = (PatchPose){.patches = &stage.patches.of[e->model], .model = model, .posed = &out->posed, .node = out->node};
+    out->pose =
+        (PatchPose){.patches = &stage.patches.of[e->model], .model = model, .posed = &out->posed, .node = out->node};
     m3_tmul(out->pose.r_enu_from_body, stage.frame.r_ecef_from_enu, e->r_ecef_from_body);
     snapshot_pose(out->node, out->joint, &c->snapshot, at, model);
     parts_pose(&out->posed, stage.tracer, e->model, out->node, p_enu, out->pose.r_enu_from_body, 0);
@@ -288,7 +297,8 @@ static void a_hot_wreck_warms_as_its_view_factor_says(void **state)
             want_w += after.shape->skin[i].emissivity * patch_open_m2(&posed[0].pose.patches->patch[i]) *
                       taken(&posed[0], &posed[1], i) * stefan_w_m2k4 * (wreck_k4 - pow(air_k, 4));
         const double got_w = (after.heat_in_j - from_j) / (after.t_s - from_s);
-        print_message("wreck of 500 K %g m away: %.1f kW, by many rays %.1f kW\n", away_m[k], 1e-3 * got_w, 1e-3 * want_w);
+        print_message("wreck of 500 K %g m away: %.1f kW, by many rays %.1f kW\n", away_m[k], 1e-3 * got_w,
+                      1e-3 * want_w);
         /* 96 rays a patch: some 400, 100, 40 of all meet it, evenly spread at 4 m; else two of their standard errors */
         CHECK_NEAR(got_w / want_w, 1, ((double[]){0.06, 0.2, 0.32})[k]);
         vehicle_heat_destroy(heat);
@@ -354,7 +364,8 @@ static void a_wall_sends_light(void **state)
         want_w += m2_taking * taken(&own, &house, i) * sent_w_m2;
     }
     vehicle_heat_destroy(heat);
-    print_message("light from a wall: %.0f W (in the dark %.2f W), by its mean and many rays %.0f W\n", light_w, dark_w, want_w);
+    print_message("light from a wall: %.0f W (in the dark %.2f W), by its mean and many rays %.0f W\n", light_w, dark_w,
+                  want_w);
     CHECK_NEAR(dark_w, 0, 1);
     CHECK_NEAR(light_w / want_w, 1, 0.25); /* windows and bricks are not seen alike, nor its foot and its eaves */
 }
@@ -378,8 +389,8 @@ static void what_one_loses_the_other_gains(void **state)
         pose(&posed[0], &c, 0), pose(&posed[1], &c, 1);
         for (int side = 0; side < 2; side++) {
             /* seen from its own origin */
-            Crowd from = c;
-            double p_enu[3];
+            Crowd        from = c;
+            double       p_enu[3];
             static Posed own, its;
             for (int e = 0; e < 2; e++) {
                 v3_sub(p_enu, posed[e].posed.p_enu, posed[side].posed.p_enu);
@@ -415,7 +426,8 @@ static void an_enclosure_of_several_stays_as_it_is(void **state)
         stand(&c, truck, 4, 0, 0.5, (EntityDrives){0});
         stand(&c, building, 14, 0, 0, (EntityDrives){0});
         run(heat, &c, 0, 300);
-        for (int i = 0; i < c.snapshot.patch_count; i++) worst_k = fmax(worst_k, fabs((double)c.snapshot.patch_k[i] - temp_k));
+        for (int i = 0; i < c.snapshot.patch_count; i++)
+            worst_k = fmax(worst_k, fabs((double)c.snapshot.patch_k[i] - temp_k));
         print_message("three in an enclosure of %g K: %.1e K\n", temp_k, worst_k);
         CHECK(c.snapshot.patch_count > 100 && worst_k < 1e-3);
         vehicle_heat_destroy(heat);
@@ -427,9 +439,10 @@ static void an_enclosure_of_several_stays_as_it_is(void **state)
 static void shade_is_as_no_sun(void **state)
 {
     (void)state;
-    static const double right[3] = {0, 1, 0}, ways[6][3] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
-    Crowd               crowd[3]; /* shaded, without sun, in the sun */
-    VehicleHeat        *heat[3];
+    static const double right[3] = {0, 1, 0},
+                        ways[6][3] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
+    Crowd        crowd[3]; /* shaded, without sun, in the sun */
+    VehicleHeat *heat[3];
     for (int k = 0; k < 3; k++) {
         crowd[k] = (Crowd){0};
         enclose(285);
@@ -437,15 +450,18 @@ static void shade_is_as_no_sun(void **state)
         weather.direct_w_m2 = k == 1 ? 0 : 700, weather.diffuse_w_m2 = 80;
         heat[k] = start();
         stand(&crowd[k], tank, 0, 0, 0, (EntityDrives){0});
-        if (k < 2) stand(&crowd[k], building, 12, 1.3, 0.5 * pi_rad, (EntityDrives){0}); /* wider than the tank is long */
+        if (k < 2)
+            stand(&crowd[k], building, 12, 1.3, 0.5 * pi_rad, (EntityDrives){0}); /* wider than the tank is long */
         run(heat[k], &crowd[k], 0, 120);
     }
     double worst_k = 0;
-    for (int w = 0; w < 6; w++) worst_k = fmax(worst_k, fabs(side_k(&crowd[0], 0, ways[w]) - side_k(&crowd[1], 0, ways[w])));
+    for (int w = 0; w < 6; w++)
+        worst_k = fmax(worst_k, fabs(side_k(&crowd[0], 0, ways[w]) - side_k(&crowd[1], 0, ways[w])));
     print_message("in a house's shadow: east side %.2f, without sun %.2f, in the sun %.2f K; sides differ by %.1e K\n",
                   side_k(&crowd[0], 0, right), side_k(&crowd[1], 0, right), side_k(&crowd[2], 0, right), worst_k);
     CHECK(side_k(&crowd[2], 0, right) > side_k(&crowd[1], 0, right) + 8);
-    CHECK(worst_k < 0.05); /* the house's wall, 0.6 K warmer by the sun behind it, gives its east side 0.02 K; other sides 0.003 K */
+    CHECK(worst_k < 0.05); /* the house's wall, 0.6 K warmer by the sun behind it, gives its east side 0.02 K; other
+                              sides 0.003 K */
     const double shaded_k = side_k(&crowd[0], 0, right);
     const size_t near_bytes = vehicle_heat_bytes(heat[0]);
     crowd[0].snapshot.count = 1;
@@ -508,10 +524,10 @@ static void what_must_change_no_bit(void **state)
 static void a_jet_warms_what_is_behind_it(void **state)
 {
     (void)state;
-    static const double      front[3] = {1, 0, 0};
-    static const ExhaustJet  outlet = {.at_body = {-5, 0, -1.2}, .d_body = {-1, 0, 0}, .radius_m = 0.4, .speed_mps = 300,
-                                       .excess_k = 500};
-    double                   front_k[4];
+    static const double     front[3] = {1, 0, 0};
+    static const ExhaustJet outlet = {
+        .at_body = {-5, 0, -1.2}, .d_body = {-1, 0, 0}, .radius_m = 0.4, .speed_mps = 300, .excess_k = 500};
+    double front_k[4];
     for (int k = 0; k < 4; k++) { /* behind; no outlet; engine off; beside */
         Crowd        c = {0};
         VehicleHeat *heat = start();
@@ -523,8 +539,8 @@ static void a_jet_warms_what_is_behind_it(void **state)
         front_k[k] = side_k(&c, 0, front);
         vehicle_heat_destroy(heat);
     }
-    print_message("front of a truck 20 m behind a jet %.1f K; without one %.2f, stopped %.2f, beside it %.2f K\n", front_k[0],
-                  front_k[1], front_k[2], front_k[3]);
+    print_message("front of a truck 20 m behind a jet %.1f K; without one %.2f, stopped %.2f, beside it %.2f K\n",
+                  front_k[0], front_k[1], front_k[2], front_k[3]);
     CHECK(front_k[0] > 288 + 20 && front_k[0] < 288 + 500);
     CHECK_NEAR(front_k[1], 288, 1);
     CHECK_NEAR(front_k[2], 288, 0.1);
@@ -545,8 +561,8 @@ static void a_burning_wreck_warms_the_side_that_faces_it(void **state)
     CHECK_NEAR(side_k(&c, 0, right), 288, 0.01);
     c.entity[wreck].drives.burning = 1;
     run(heat, &c, 61, 660);
-    print_message("beside a wreck that burned ten minutes at %.0f K: near side %.1f, far side %.1f K\n", side_k(&c, wreck, left),
-                  side_k(&c, 0, right), side_k(&c, 0, left));
+    print_message("beside a wreck that burned ten minutes at %.0f K: near side %.1f, far side %.1f K\n",
+                  side_k(&c, wreck, left), side_k(&c, 0, right), side_k(&c, 0, left));
     CHECK(side_k(&c, 0, right) > 288 + 15 && side_k(&c, 0, right) < side_k(&c, wreck, left));
     CHECK(side_k(&c, 0, left) < 288 + 0.2 * (side_k(&c, 0, right) - 288));
     vehicle_heat_destroy(heat);
@@ -577,8 +593,9 @@ static void who_comes_is_felt_and_who_leaves_is_not(void **state)
     c.snapshot.count = 1;
     run(heat, &c, 501, 3000);
     side[3] = side_k(&c, 0, right);
-    print_message("side of a truck: %.2f K, after 4 s by a wreck %.2f, after 200 s %.2f, 40 minutes after it left %.2f K\n",
-                  side[0], side[1], side[2], side[3]);
+    print_message(
+        "side of a truck: %.2f K, after 4 s by a wreck %.2f, after 200 s %.2f, 40 minutes after it left %.2f K\n",
+        side[0], side[1], side[2], side[3]);
     CHECK_NEAR(side[0], 288, 1e-3);
     CHECK(side[1] > 288.1 && side[2] > side[1] + 10);
     CHECK(side[3] < 288 + 0.2 * (side[2] - 288));
@@ -593,7 +610,8 @@ static void neighbours_are_bounded(void **state)
     NearBody     body[16];
     const double sun[3] = {0, 0, -1};
     for (int i = 0; i < 16; i++)
-        body[i] = (NearBody){.id = {1, 1, (uint16_t)(i + 1)}, .p_enu = {i == 0 ? 0 : 2.5 * (17 - i) + 1.5, 0, 0}, .radius_m = 3};
+        body[i] = (NearBody){
+            .id = {1, 1, (uint16_t)(i + 1)}, .p_enu = {i == 0 ? 0 : 2.5 * (17 - i) + 1.5, 0, 0}, .radius_m = 3};
     vehicle_neighbours_find(&found, body, 16, 0, sun, false);
     CHECK(found.count == near_seen_most && found.left_out == 7);
     for (int k = 0; k < found.count; k++) CHECK(found.of[k].body == 15 - k && found.of[k].why == NEAR_SEEN);
@@ -605,8 +623,10 @@ static void neighbours_are_bounded(void **state)
     body[15].jet_m = 100;
     vehicle_neighbours_find(&found, body, 16, 0, (const double[3]){1, 0, 1e-3}, false);
     int jets = 0, suns = 0;
-    for (int k = 0; k < found.count; k++) jets += (found.of[k].why & NEAR_JET) != 0, suns += (found.of[k].why & NEAR_SUN) != 0;
-    CHECK(jets == 1 && suns == 8 && found.count == 12); /* eight are seen, four more stand in the sun, the last blows too */
+    for (int k = 0; k < found.count; k++)
+        jets += (found.of[k].why & NEAR_JET) != 0, suns += (found.of[k].why & NEAR_SUN) != 0;
+    CHECK(jets == 1 && suns == 8 &&
+          found.count == 12); /* eight are seen, four more stand in the sun, the last blows too */
     VehicleHeat *heat = start();
     Crowd        c = {0};
     enclose(288);

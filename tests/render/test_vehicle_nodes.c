@@ -20,25 +20,36 @@ static Status everywhere(PlaceHeat *out, const void *user, double unix_s, const 
 /* All around at one temperature; no sun. */
 static void enclose(double temp_k)
 {
-    weather = (PlaceHeat){.air_k = temp_k, .air_density = 1, .longwave_w_m2 = stefan_w_m2k4 * pow(temp_k, 4), .ground_k = temp_k,
-                          .under_k = temp_k, .water_k = temp_k, .ground_rho = 0.2, .sun_d_enu = {0, 0, 1}};
+    weather = (PlaceHeat){.air_k = temp_k,
+                          .air_density = 1,
+                          .longwave_w_m2 = stefan_w_m2k4 * pow(temp_k, 4),
+                          .ground_k = temp_k,
+                          .under_k = temp_k,
+                          .water_k = temp_k,
+                          .ground_rho = 0.2,
+                          .sun_d_enu = {0, 0, 1}};
 }
 
-static VehicleHeat *start(void) { return stage_start(&(VehicleHeatConfig){.step_s = 30, .window_us = INFINITY, .place = everywhere}, NULL); }
+static VehicleHeat *start(void)
+{
+    return stage_start(&(VehicleHeatConfig){.step_s = 30, .window_us = INFINITY, .place = everywhere}, NULL);
+}
 
 static void run(VehicleHeat *heat, Scene *s, double from_s, double to_s)
 {
-    for (s->snapshot.t_s = from_s; s->snapshot.t_s < to_s; s->snapshot.t_s += 10) CHECK(vehicle_heat_tick(heat, &s->snapshot) == STATUS_OK);
+    for (s->snapshot.t_s = from_s; s->snapshot.t_s < to_s; s->snapshot.t_s += 10)
+        CHECK(vehicle_heat_tick(heat, &s->snapshot) == STATUS_OK);
     s->snapshot.t_s = to_s;
     CHECK(vehicle_heat_tick(heat, &s->snapshot) == STATUS_OK);
     CHECK(vehicle_heat_counters(heat)->failed == 0);
 }
 
-static const DisEntityType tank = {1, 1, 222, 1, 1, 1, 0}, truck = {1, 1, 222, 7, 1, 0, 0}, ship = {1, 3, 225, 6, 1, 0, 0},
-                           jet = {1, 2, 225, 1, 0, 0, 0};
+static const DisEntityType tank = {1, 1, 222, 1, 1, 1, 0}, truck = {1, 1, 222, 7, 1, 0, 0},
+                           ship = {1, 3, 225, 6, 1, 0, 0}, jet = {1, 2, 225, 1, 0, 0, 0};
 
 /* Range over the outer patches of a role (HEAT_ROLE_COUNT: all) whose centres lie between two heights over the base. */
-static void range_k(double *low_k, double *high_k, const VehicleHeat *heat, Scene *s, HeatRole role, double above_m, double below_m)
+static void range_k(double *low_k, double *high_k, const VehicleHeat *heat, Scene *s, HeatRole role, double above_m,
+                    double below_m)
 {
     CHECK(vehicle_heat_show(heat, &s->snapshot, stage.arena) == STATUS_OK && s->entity.first_patch == 0);
     const Patches *p = &stage.patches.of[s->entity.model];
@@ -65,17 +76,29 @@ static void range_k(double *low_k, double *high_k, const VehicleHeat *heat, Scen
 static void a_skin_is_as_its_sidecar_says(void **state)
 {
     (void)state;
-    static const struct { const char *yaml, *material; double thickness_m; } c[] = {
+    static const struct {
+        const char *yaml, *material;
+        double      thickness_m;
+    } c[] = {
         {"materials: {\"*\": paint_olive}\nroles: {\"*\": hull}\nthickness_mm: {\"*\": 8}\n", "paint_olive", 0.008},
-        {"materials: {\"*\": paint_olive}\nroles: {\"*\": hull}\nthickness_mm: {other: 8}\n", "paint_olive", 0.025}, /* by role */
-        {"node_materials: {block: rubber_black}\nroles: {\"*\": hull}\nthickness_mm: {\"*\": 3, block: 50}\n", "rubber_black", 0.05},
-        {"materials: {\"*\": metal_aluminium_bare}\nroles: {\"*\": passive}\nthickness_mm: {\"*\": 1.5}\n", "metal_aluminium_bare", 0.0015}};
-    char obj[text_file_size + 8], yaml[text_file_size + 8], catalog_path[text_file_size], text[512], materials[512], surfaces[512], stem[text_file_size];
+        {"materials: {\"*\": paint_olive}\nroles: {\"*\": hull}\nthickness_mm: {other: 8}\n", "paint_olive",
+         0.025}, /* by role */
+        {"node_materials: {block: rubber_black}\nroles: {\"*\": hull}\nthickness_mm: {\"*\": 3, block: 50}\n",
+         "rubber_black", 0.05},
+        {"materials: {\"*\": metal_aluminium_bare}\nroles: {\"*\": passive}\nthickness_mm: {\"*\": 1.5}\n",
+         "metal_aluminium_bare", 0.0015}};
+    char obj[text_file_size + 8], yaml[text_file_size + 8], catalog_path[text_file_size], text[512], materials[512],
+        surfaces[512], stem[text_file_size];
     text_file(stem, "");
     snprintf(obj, sizeof obj, "%s.obj", stem), snprintf(yaml, sizeof yaml, "%s.yaml", stem);
     FILE *f = fopen(obj, "w");
-    CHECK(f && fputs("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\no block\nf 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\n"
-                     "f 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n", f) >= 0 && fclose(f) == 0);
+    CHECK(
+        f &&
+        fputs(
+            "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\no block\nf 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\n"
+            "f 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n",
+            f) >= 0 &&
+        fclose(f) == 0);
     snprintf(text, sizeof text, "type,model,origin\n1.1.*,%s,base\n", obj);
     text_file(catalog_path, text);
     for (size_t k = 0; k < sizeof c / sizeof *c; k++) {
@@ -86,7 +109,8 @@ static void a_skin_is_as_its_sidecar_says(void **state)
         f = fopen(yaml, "w");
         CHECK(f && fputs(c[k].yaml, f) >= 0 && fclose(f) == 0);
         CHECK(catalog_open(&catalog, catalog_path, 0.01) == STATUS_OK);
-        CHECK(etc_path(materials, sizeof materials, "materials.csv") && etc_path(surfaces, sizeof surfaces, "surfaces.csv"));
+        CHECK(etc_path(materials, sizeof materials, "materials.csv") &&
+              etc_path(surfaces, sizeof surfaces, "surfaces.csv"));
         CHECK(materials_open(&of, materials, surfaces, catalog) == STATUS_OK);
         const int index = catalog_find(catalog, tank, NULL, NULL);
         Tracer   *tracer;
@@ -115,7 +139,8 @@ static void a_skin_is_as_its_sidecar_says(void **state)
         int along = 0;
         for (int l = 0; l < shape.links; l++) /* edges of 1 m between faces whose middles are sqrt(0.5) m apart */
             for (int i = 0; i < patches.links; i++)
-                if (shape.link[l].a == shape.skin[patches.link[i].a].surface && shape.link[l].b == shape.skin[patches.link[i].b].surface) {
+                if (shape.link[l].a == shape.skin[patches.link[i].a].surface &&
+                    shape.link[l].b == shape.skin[patches.link[i].b].surface) {
                     CHECK_NEAR(shape.link[l].conductance_w_k / (w_mk * c[k].thickness_m * sqrt(2)), 1, 1e-6);
                     along++;
                 }
@@ -160,7 +185,8 @@ static void fuel_follows_its_engine(void **state)
         before_w = w;
     }
     const double fuel_k = n.temp_k[n.shape->fuel], engine_k = n.temp_k[n.shape->engine];
-    print_message("fuel half an hour after the start %.1f K, an hour %.1f K, engine %.1f K over the air\n", half_hour_k - 288, fuel_k - 288, engine_k - 288);
+    print_message("fuel half an hour after the start %.1f K, an hour %.1f K, engine %.1f K over the air\n",
+                  half_hour_k - 288, fuel_k - 288, engine_k - 288);
     CHECK_NEAR(1.1e6 * (fuel_k - before_k) / gone_j, 1, 0.02); /* own times are up to 30 s apart */
     CHECK(half_hour_k > 289 && fuel_k > half_hour_k && fuel_k < engine_k);
     vehicle_heat_destroy(heat);
@@ -202,8 +228,9 @@ static void ground_touches_tracks_and_wheels(void **state)
             for (int i = 0; i < n.shape->patches->count && c == 0; i++) print_m2 += n.shape->skin[i].ground_m2;
             vehicle_heat_destroy(heat);
         }
-        print_message("%s: print %.2f m2; an hour on ground 30 K warmer %.2f K, 0.8 m over it %.2f K; driving on it %.1f K, over it %.1f K\n",
-                      t ? "truck" : "tank", print_m2, high_k[1] - 288, high_k[2] - 288, rolls_k[0] - 288, rolls_k[1] - 288);
+        print_message(
+            "%s: print %.2f m2; an hour on ground 30 K warmer %.2f K, 0.8 m over it %.2f K; driving on it %.1f K, over it %.1f K\n",
+            t ? "truck" : "tank", print_m2, high_k[1] - 288, high_k[2] - 288, rolls_k[0] - 288, rolls_k[1] - 288);
         CHECK_NEAR(high_k[0], 288, 1e-3);
         CHECK(high_k[1] > high_k[2] + 0.3 && high_k[1] < 318);
         CHECK(rolls_k[0] < rolls_k[1] - 1 && rolls_k[0] > 289);
@@ -236,7 +263,8 @@ static void water_cools_hulls(void **state)
     double sum = 0, m2 = 0, all_m2 = 0;
     for (int i = 0; i < n.shape->patches->count; i++) {
         const double open_m2 = patch_open_m2(&n.shape->patches->patch[i]);
-        sum += open_m2 * (double)s.snapshot.patch_k[s.entity.first_patch + i], m2 += open_m2, all_m2 += n.shape->patches->patch[i].area_m2;
+        sum += open_m2 * (double)s.snapshot.patch_k[s.entity.first_patch + i], m2 += open_m2,
+            all_m2 += n.shape->patches->patch[i].area_m2;
     }
     CHECK_NEAR((double)s.entity.dt_k, sum / m2 - 300, 1e-3);
     CHECK(m2 < 0.5 * all_m2);
@@ -272,7 +300,8 @@ static void energy_closes(void **state)
         Scene        s;
         VehicleNodes n;
         enclose(285);
-        weather.sun_d_enu[2] = 1, weather.direct_w_m2 = 800, weather.water = t == 1, weather.water_k = 279, weather.ground_k = 300, weather.under_k = 292;
+        weather.sun_d_enu[2] = 1, weather.direct_w_m2 = 800, weather.water = t == 1, weather.water_k = 279,
+        weather.ground_k = 300, weather.under_k = 292;
         VehicleHeat *heat = start();
         place(&s, types[t], (EntityDrives){.engine = 0.7f, .speed_mps = 6});
         run(heat, &s, 0, 0);
@@ -291,8 +320,11 @@ static void energy_closes(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_skin_is_as_its_sidecar_says), cmocka_unit_test(fuel_follows_its_engine),
-        cmocka_unit_test(ground_touches_tracks_and_wheels), cmocka_unit_test(water_cools_hulls), cmocka_unit_test(energy_closes),
+        cmocka_unit_test(a_skin_is_as_its_sidecar_says),
+        cmocka_unit_test(fuel_follows_its_engine),
+        cmocka_unit_test(ground_touches_tracks_and_wheels),
+        cmocka_unit_test(water_cools_hulls),
+        cmocka_unit_test(energy_closes),
     };
     return cmocka_run_group_tests(tests, open_stage, close_stage);
 }

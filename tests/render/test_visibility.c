@@ -13,14 +13,14 @@ static const double sphere_radius_m = 2, plate_half_y_m = 1.5, plate_half_z_m = 
 
 /* A landscape that every test shares, the three models, and a snapshot to fill. */
 typedef struct Stage {
-    Landscape      landscape;
-    Model          model[model_count];
-    double         sphere_inside_m;
-    Tracer        *tracer;
-    Arena         *arena;
-    SnapshotEntity entity[most_entities];
-    NodePose       pose[most_entities];
-    Snapshot       snapshot;
+    Landscape          landscape;
+    Model              model[model_count];
+    double             sphere_inside_m;
+    Tracer            *tracer;
+    Arena             *arena;
+    SnapshotEntity     entity[most_entities];
+    NodePose           pose[most_entities];
+    Snapshot           snapshot;
     VisibilityCounters counters;
 } Stage;
 
@@ -78,7 +78,8 @@ static Visibility *see(bool with_ground, bool no_skip)
 {
     Visibility *v = NULL;
     assert_int_equal(visibility_create(&v, stage.tracer, with_ground ? &stage.landscape : NULL, &stage.landscape.frame,
-                                       &stage.snapshot, no_skip ? skips_all_off : 0, stage.arena), STATUS_OK);
+                                       &stage.snapshot, no_skip ? skips_all_off : 0, stage.arena),
+                     STATUS_OK);
     return v;
 }
 
@@ -153,7 +154,7 @@ static void a_sphere_covers_its_ellipse(void **state)
         const double far_m = n < 4 ? 12 : 3000;
         v3_add_scaled(eye, p, -far_m, d);
         for (int c = 0; c < 3; c++) to[c] = p[c] + (n % 2 ? 0.4 : 0) * far_m * (c == n % 3) * (n < 4 ? 1 : 0.002);
-        const View view = view_towards(eye, to, 256, 256, n < 4 ? 150 : 60000);
+        const View  view = view_towards(eye, to, 256, 256, n < 4 ? 150 : 60000);
         Visibility *v = see(false, false);
 
         double from_eye[3], c_cam[3];
@@ -164,8 +165,9 @@ static void a_sphere_covers_its_ellipse(void **state)
         int          covered = 0;
         for (int row = 0; row < 256; row += 32)
             for (int column = 0; column < 256; column += 32) {
-                int list[most_entities], amodal;
-                const int count = visibility_block_entities(list, v, &view, column, row, column + 32, row + 32, -1, &(VisibilityCounters){0});
+                int       list[most_entities], amodal;
+                const int count = visibility_block_entities(list, v, &view, column, row, column + 32, row + 32, -1,
+                                                            &(VisibilityCounters){0});
                 block_rays(&rays, &view, column, row);
                 visibility_first_hit(&hits, v, &rays, list, count, -1, &stage.counters);
                 uint8_t meets[hits_capacity];
@@ -199,7 +201,7 @@ static void a_plate_covers_the_pixels_between_its_edges(void **state)
 {
     (void)state;
     static const double away_m[4] = {100, 8000, 50000, 200000};
-    int checked = 0, inside = 0;
+    int                 checked = 0, inside = 0;
     for (int n = 0; n < 24; n++) {
         clear_stage();
         double p[3], r[9], eye[3], d[3], corner_px[4][2];
@@ -222,7 +224,7 @@ static void a_plate_covers_the_pixels_between_its_edges(void **state)
             corner_px[k][0] = 48 + view.focal_px * c_cam[0] / c_cam[2];
             corner_px[k][1] = 48 + view.focal_px * c_cam[1] / c_cam[2];
             for (int c = 0; c < 2; c++) {
-                box[c]     = fmin(box[c], corner_px[k][c]);
+                box[c] = fmin(box[c], corner_px[k][c]);
                 box[c + 2] = fmax(box[c + 2], corner_px[k][c]);
             }
         }
@@ -234,7 +236,8 @@ static void a_plate_covers_the_pixels_between_its_edges(void **state)
         for (int block = 0; block < 9; block++) {
             const int column = block % 3 * 32, row = block / 3 * 32;
             int       list[most_entities];
-            const int count = visibility_block_entities(list, v, &view, column, row, column + 32, row + 32, -1, &(VisibilityCounters){0});
+            const int count = visibility_block_entities(list, v, &view, column, row, column + 32, row + 32, -1,
+                                                        &(VisibilityCounters){0});
             block_rays(&rays, &view, column, row);
             visibility_first_hit(&hits, v, &rays, list, count, -1, &stage.counters);
             for (int i = 0; i < rays.count; i++) {
@@ -341,7 +344,7 @@ static void the_ground_hides_and_is_hidden(void **state)
     visibility_entity_only(meets, v, &rays, 0, &(VisibilityCounters){0});
     assert_int_equal(meets[0], 1);
     for (int k = 2; k < 4; k++) {
-        double    box[4];
+        double     box[4];
         const View view = view_towards((const double[3]){10, 10, z + 100}, (const double[3]){60, 10, z}, 64, 64, 100);
         visibility_entity_only(meets, v, &rays, k, &(VisibilityCounters){0});
         assert_int_equal(meets[0], 0);
@@ -390,12 +393,12 @@ static void a_plate_shades_what_lies_behind_it(void **state)
     const double sun[3] = {sin(heading_rad) * level, cos(heading_rad) * level, sin(sun_high_rad)};
     double       r[9];
     level_rotation(r, heading_rad + 0.2);
-    const int  host = add_entity(model_plate, plate, r);
-    const double shade_to[3] = {plate[0] - sun[0] / sun[2] * 7, plate[1] - sun[1] / sun[2] * 7, plate[2] - 7};
-    const View view = view_towards((const double[3]){30, -40, plate[2] + 25}, shade_to, 128, 128, 600);
-    Visibility *v = see(true, false);
+    const int      host = add_entity(model_plate, plate, r);
+    const double   shade_to[3] = {plate[0] - sun[0] / sun[2] * 7, plate[1] - sun[1] / sun[2] * 7, plate[2] - 7};
+    const View     view = view_towards((const double[3]){30, -40, plate[2] + 25}, shade_to, 128, 128, 600);
+    Visibility    *v = see(true, false);
     static uint8_t shadow[hits_capacity];
-    int in_shade = 0, in_sun = 0, hidden_seen = 0;
+    int            in_shade = 0, in_sun = 0, hidden_seen = 0;
     for (int block = 0; block < 16; block++) {
         block_rays(&rays, &view, block % 4 * 32, block / 4 * 32);
         /* the plate is the host: unseen, and still it shades */
@@ -430,10 +433,10 @@ static void a_sphere_is_lit_on_one_side(void **state)
     const double p[3] = {0, 0, 500}, eye[3] = {3000, 100, 700}, sun[3] = {0, 0.6, 0.8};
     hand_rotation(r);
     add_entity(model_sphere, p, r);
-    const View  view = view_towards(eye, p, 96, 96, 60000);
-    Visibility *v = see(true, false);
+    const View     view = view_towards(eye, p, 96, 96, 60000);
+    Visibility    *v = see(true, false);
     static uint8_t shadow[hits_capacity];
-    int lit = 0, dark = 0;
+    int            lit = 0, dark = 0;
     for (int block = 0; block < 9; block++) {
         block_rays(&rays, &view, block % 3 * 32, block / 3 * 32);
         visibility_first_hit(&hits, v, &rays, NULL, -1, -1, &stage.counters);
@@ -473,7 +476,7 @@ static void skipping_changes_no_bit(void **state)
     (void)state;
     static uint8_t shadow[hits_capacity], other_shadow[hits_capacity], meets[hits_capacity], other_meets[hits_capacity];
     static const double sun[3] = {0.36, 0.48, 0.8};
-    int seen = 0, shaded = 0;
+    int                 seen = 0, shaded = 0;
     for (int scene = 0; scene < 4; scene++) {
         clear_stage();
         for (int k = 0; k < 24; k++) {
@@ -490,8 +493,10 @@ static void skipping_changes_no_bit(void **state)
         for (int block = 0; block < 9; block++) {
             const int column = block % 3 * 32, row = block / 3 * 32, hidden = scene % 2 ? 5 : -1;
             int       list[most_entities], every[most_entities];
-            const int count = visibility_block_entities(list, skip, &view, column, row, column + 32, row + 32, hidden, &(VisibilityCounters){0});
-            assert_int_equal(visibility_block_entities(every, all, &view, column, row, column + 32, row + 32, hidden, &(VisibilityCounters){0}),
+            const int count = visibility_block_entities(list, skip, &view, column, row, column + 32, row + 32, hidden,
+                                                        &(VisibilityCounters){0});
+            assert_int_equal(visibility_block_entities(every, all, &view, column, row, column + 32, row + 32, hidden,
+                                                       &(VisibilityCounters){0}),
                              hidden < 0 ? 24 : 23);
             block_rays(&rays, &view, column, row);
             visibility_first_hit(&hits, skip, &rays, list, count, hidden, &stage.counters);
@@ -553,7 +558,8 @@ static void a_crowd_is_met_as_without_the_tree(void **state)
         for (int block = 0; block < 2; block++) {
             static int list[most_entities], some[most_entities];
             const int  hidden = scene == 2 ? 4 : -1;
-            const int  count = visibility_block_entities(list, tree, &view, 32 * block, 0, 32 * block + 32, 32, hidden, &stage.counters);
+            const int  count = visibility_block_entities(list, tree, &view, 32 * block, 0, 32 * block + 32, 32, hidden,
+                                                         &stage.counters);
             int        odd = 0;
             for (int k = 0; k < count; k++) {
                 CHECK(k == 0 || list[k - 1] < list[k]);

@@ -18,7 +18,7 @@ static struct {
     Arena         *arena;
     Plant          plant[trees];
     Woods          woods;
-    Forest        *forest[2];   /* in full detail; simplified beyond any range */
+    Forest        *forest[2]; /* in full detail; simplified beyond any range */
     ForestFrame    plants[2];
     SnapshotEntity entity;
     NodePose       pose;
@@ -51,14 +51,15 @@ static int open_stage(void **state)
     stage.centre_enu[2] = ground_at(0, 0) + 0.5;
     memcpy(stage.eye_enu, (const double[3]){10, -120, stage.centre_enu[2] + 60}, sizeof stage.eye_enu);
     stage.snapshot = (Snapshot){.entity = &stage.entity, .node = &stage.pose, .count = 1};
-    stage.entity   = (SnapshotEntity){.model = 0};
+    stage.entity = (SnapshotEntity){.model = 0};
     ecef_from_enu(stage.entity.p_ecef, &frame, stage.centre_enu);
     m3_mul(stage.entity.r_ecef_from_body, frame.r_ecef_from_enu, r);
     stage.pose = (NodePose){{0, 0, 0}, {1, 0, 0, 0, 1, 0, 0, 0, 1}};
     for (int k = 0; k < 2; k++) {
         const ForestConfig of = {.leaves = true, .level1_px = k ? 1000 : 0};
         if (forest_create(&stage.forest[k], &stage.woods, &hand_plants, &of, "avx2") != STATUS_OK) return -1;
-        if (forest_frame_open(&stage.plants[k], stage.forest[k], stage.eye_enu, 300, 0, 0, calm, NULL, stage.arena) != STATUS_OK)
+        if (forest_frame_open(&stage.plants[k], stage.forest[k], stage.eye_enu, 300, 0, 0, calm, NULL, stage.arena) !=
+            STATUS_OK)
             return -1;
         if (visibility_create(&stage.v[k], stage.tracer, &stage.landscape, &stage.landscape.frame, &stage.snapshot, 0,
                               stage.arena) != STATUS_OK)
@@ -130,7 +131,8 @@ static void the_nearer_of_both(void **state)
         CHECK(hits.range_m[i] == fmin(range_m[i], bare.range_m[i]));
         assert_int_equal(hits.kind[i] == hit_plant, range_m[i] < bare.range_m[i]);
         assert_int_equal(hits.plant[i], range_m[i] < bare.range_m[i] ? hit[i].plant + 1 : 0);
-        if (hits.kind[i] != hit_plant) assert_true(hits.entity[i] == bare.entity[i] && hits.surface[i] == bare.surface[i]);
+        if (hits.kind[i] != hit_plant)
+            assert_true(hits.entity[i] == bare.entity[i] && hits.surface[i] == bare.surface[i]);
         else assert_true(hits.entity[i] == 0 && hits.part[i] == 0);
     }
     CHECK(of[hit_plant] > 100 && of[hit_ground] > 100 && of[hit_part] > 5);
@@ -150,10 +152,10 @@ static void nothing_behind_the_search_limit(void **state)
  * simplified ones. Both occur, and differ. */
 static void near_an_entity_trees_are_real(void **state)
 {
-    static double    full_m[hits_capacity], simple_m[hits_capacity];
-    static ForestHit hit[hits_capacity];
+    static double      full_m[hits_capacity], simple_m[hits_capacity];
+    static ForestHit   hit[hits_capacity];
     const PosedEntity *box = visibility_posed(stage.v[1], 0);
-    int              near = 0, differ[2] = {0};
+    int                near = 0, differ[2] = {0};
     (void)state;
     assert_true(box->radius_m >= hypot(3, hypot(1.5, 1)) && box->radius_m < 6);
     look(20);
@@ -180,7 +182,8 @@ static void full_plants_on_demand(void **state)
     look(30);
     see(&hits, visibility_with_full_plants(stage.v[1], stage.arena));
     see(&other, stage.v[0]);
-    for (int i = 0; i < rays.count; i++) assert_true(hits.range_m[i] == other.range_m[i] && hits.plant[i] == other.plant[i]);
+    for (int i = 0; i < rays.count; i++)
+        assert_true(hits.range_m[i] == other.range_m[i] && hits.plant[i] == other.plant[i]);
     assert_ptr_equal(visibility_with_full_plants(stage.v[0], stage.arena), stage.v[0]);
 }
 
@@ -194,9 +197,9 @@ static void shadows(void **state)
     static double       o[3][hits_capacity], d[3][hits_capacity], far_m[hits_capacity];
     static uint8_t      with[hits_capacity], without[hits_capacity], by_plant[hits_capacity], real[hits_capacity];
     const double *const from[3] = {o[0], o[1], o[2]}, *const way[3] = {d[0], d[1], d[2]};
-    double              sun_enu[3] = {0.5, 0.2, 0.6};
-    VisibilityCounters  counters = {0};
-    int                 dark[2] = {0}, lit = 0;
+    double             sun_enu[3] = {0.5, 0.2, 0.6};
+    VisibilityCounters counters = {0};
+    int                dark[2] = {0}, lit = 0;
     (void)state;
     v3_normalize(sun_enu, sun_enu);
     look(12);

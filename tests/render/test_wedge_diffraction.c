@@ -91,10 +91,10 @@ static void test_cone(void **state)
 {
     (void)state;
     const double exterior_pi[] = {2, 1.5, 1.75, 1.1, 1.99, 4.0 / 3};
-    double worst = 0;
-    int    checked = 0;
+    double       worst = 0;
+    int          checked = 0;
     for (int w = 0; w < 6; w++) {
-        const double n = exterior_pi[w];
+        const double     n = exterior_pi[w];
         const WedgeFrame wedge = plain(n);
         for (uint32_t i = 0; i < 4000; i++) {
             const double from = n * pi * uniform(i, 0), f = n * pi * uniform(i, 1), c = 1.9 * uniform(i, 2) - 0.95;
@@ -109,8 +109,7 @@ static void test_cone(void **state)
             optics(lit, &wedge, u_t, u_r);
             fringe(got, &wedge, u_t, u_r);
             for (int q = 0; q < 2; q++)
-                for (int p = 0; p < 2; p++)
-                    worst = fmax(worst, fabs(got[q][p] + lit[q][p] - (q == p ? exact[q] : 0)));
+                for (int p = 0; p < 2; p++) worst = fmax(worst, fabs(got[q][p] + lit[q][p] - (q == p ? exact[q] : 0)));
             checked++;
         }
     }
@@ -137,21 +136,21 @@ static void test_off_cone(void **state)
 {
     (void)state;
     const double exterior_pi[] = {2, 1.5, 1.2};
-    double worst[2] = {0};
-    int    checked[2] = {0};
+    double       worst[2] = {0};
+    int          checked[2] = {0};
     for (int w = 0; w < 3; w++) {
-        const double n = exterior_pi[w];
+        const double     n = exterior_pi[w];
         const WedgeFrame wedge = plain(n);
         for (uint32_t i = 0; i < 4000; i++) {
-            double u_t[3], u_r[3], t[2][3], r[2][3], got[2][2];
+            double       u_t[3], u_r[3], t[2][3], r[2][3], got[2][2];
             const double from = n * pi * uniform(i, 0);
             direction(u_t, from, 1.9 * uniform(i, 2) - 0.95);
             direction(u_r, 2 * pi * uniform(i, 1), 1.9 * uniform(i, 3) - 0.95);
             soft_hard(t, u_t);
             soft_hard_out(r, u_r);
-            const double s = sqrt(1 - u_t[2] * u_t[2]);
+            const double   s = sqrt(1 - u_t[2] * u_t[2]);
             double complex sum[2][2] = {{0}};
-            bool   clear = true, steep = true;
+            bool           clear = true, steep = true;
             for (int face = 0; face < 2 && clear; face++) {
                 const double f = face ? n * pi - from : from, side = face ? -1 : 1, c = -side * u_t[2];
                 const double x[3] = {face ? cos(n * pi) : 1, face ? sin(n * pi) : 0, 0}, z[3] = {0, 0, side};
@@ -194,9 +193,9 @@ static void test_reciprocity(void **state)
 {
     (void)state;
     for (uint32_t i = 0; i < 500; i++) {
-        const double n = 1.05 + 0.95 * uniform(i, 3), from = n * pi * uniform(i, 0), f = n * pi * uniform(i, 1);
+        const double     n = 1.05 + 0.95 * uniform(i, 3), from = n * pi * uniform(i, 0), f = n * pi * uniform(i, 1);
         const WedgeFrame wedge = plain(n);
-        double u[2][3], got[2][2][2], lit[2][2][2];
+        double           u[2][3], got[2][2][2], lit[2][2][2];
         if (fabs(cos(f) + cos(from)) < 0.02 || fabs(cos(n * pi - f) + cos(n * pi - from)) < 0.02) continue;
         direction(u[0], from, 0.3);
         direction(u[1], f, -0.3);
@@ -214,7 +213,7 @@ static void test_knife_edge(void **state)
 {
     (void)state;
     const WedgeFrame wedge = plain(2);
-    double u[3], got[2][2];
+    double           u[3], got[2][2];
     direction(u, pi, 0);
     fringe(got, &wedge, u, u);
     CHECK_NEAR(4 * pi * got[0][0] * got[0][0], 1 / pi, 1e-12);
@@ -228,7 +227,7 @@ static void test_boundaries(void **state)
     const double step[] = {1e-4, 1e-6, 1e-8, 1e-10, 1e-13, 0, -1e-13, -1e-10, -1e-8, -1e-6, -1e-4};
     const double exterior_pi[] = {2, 1.5, 1.3};
     for (int w = 0; w < 3; w++) {
-        const double n = exterior_pi[w];
+        const double     n = exterior_pi[w];
         const WedgeFrame wedge = plain(n);
         for (uint32_t i = 0; i < 60; i++) {
             const double from = pi * (0.05 + 0.9 * uniform(i, 0));
@@ -256,8 +255,7 @@ static void test_boundaries(void **state)
                     continue;
                 }
                 for (int k = 0; k < 11; k++)
-                    for (int q = 0; q < 2; q++)
-                        CHECK_NEAR(at[k][q][q], at[5][q][q], 60 * fabs(step[k]) + 1e-9);
+                    for (int q = 0; q < 2; q++) CHECK_NEAR(at[k][q][q], at[5][q][q], 60 * fabs(step[k]) + 1e-9);
             }
         }
     }
@@ -268,9 +266,9 @@ static void test_faces(void **state)
 {
     (void)state;
     for (uint32_t i = 0; i < 500; i++) {
-        const double n = 1.01 + 0.99 * uniform(i, 3);
+        const double     n = 1.01 + 0.99 * uniform(i, 3);
         const WedgeFrame wedge = plain(n);
-        WedgeFrame turned = {.x = {cos(n * pi), sin(n * pi), 0}, .z = {0, 0, -1}, .exterior_pi = n};
+        WedgeFrame       turned = {.x = {cos(n * pi), sin(n * pi), 0}, .z = {0, 0, -1}, .exterior_pi = n};
         v3_cross(turned.y, turned.z, turned.x);
         double u_t[3], u_r[3], a[2][2], b[2][2];
         direction(u_t, n * pi * uniform(i, 0), 1.8 * uniform(i, 1) - 0.9);
@@ -302,14 +300,14 @@ static void test_finite(void **state)
     (void)state;
     const double exterior_pi[] = {1 + 1e-9, 1.25, 1.5, 2 - 1e-9, 2};
     const double off[] = {0, 1e-15, -1e-15, 1e-9, -1e-9, 1e-4, -1e-4};
-    double worst = 0;
+    double       worst = 0;
     for (int w = 0; w < 5; w++) {
-        const double n = exterior_pi[w];
-        const double angle[] = {0, pi / 4, pi / 2, 3 * pi / 4, pi, n * pi - pi, n * pi / 2, n * pi, 2 * pi};
-        const double cosine[] = {0, 0.3, -0.3, 1, -1, 1 - 1e-15, 1 - 1e-12, 1e-9 - 1, 0.9999, -0.9999};
+        const double     n = exterior_pi[w];
+        const double     angle[] = {0, pi / 4, pi / 2, 3 * pi / 4, pi, n * pi - pi, n * pi / 2, n * pi, 2 * pi};
+        const double     cosine[] = {0, 0.3, -0.3, 1, -1, 1 - 1e-15, 1 - 1e-12, 1e-9 - 1, 0.9999, -0.9999};
         const WedgeFrame wedge = plain(n);
-        double u[9 * 7 * 10][3], t[9 * 7 * 10][2][3], got[2][2];
-        int count = 0;
+        double           u[9 * 7 * 10][3], t[9 * 7 * 10][2][3], got[2][2];
+        int              count = 0;
         for (int a = 0; a < 9 * 7; a++)
             for (int c = 0; c < 10; c++) {
                 direction(u[count], angle[a / 7] + off[a % 7], cosine[c]);
@@ -335,7 +333,7 @@ static void test_along_faces(void **state)
     (void)state;
     const WedgeFrame wedge = plain(1.5);
     for (int face = 0; face < 2; face++) {
-        double at[5][2][2], u[3];
+        double       at[5][2][2], u[3];
         const double off[] = {-1e-12, 0, 1e-12, face ? -1e-6 : 1e-6, face ? 1e-3 : -1e-3};
         for (int k = 0; k < 5; k++) {
             direction(u, face * 1.5 * pi + off[k], 0.1);

@@ -20,7 +20,7 @@ static void check_outward(const WedgeList *list, const double centre[3])
     for (int i = 0; i < list->count; i++) {
         const Wedge *w = &list->wedge[i];
         const double half = w->frame.exterior_pi * pi / 2;
-        double out[3], from[3];
+        double       out[3], from[3];
         v3_scale(out, cos(half), w->frame.x);
         v3_add_scaled(out, out, sin(half), w->frame.y);
         v3_add(from, w->p[0], w->p[1]);
@@ -66,10 +66,8 @@ static void test_sheets(void **state)
         /* folded along x, two sheets of one side each: seen from outside whichever side was modelled */
         for (int side = 0; side < 2; side++) {
             begin();
-            if (side == 0)
-                add_panel(o, x, y, cells, 0), add_panel(o, z, x, cells, 0);
-            else
-                add_panel(o, y, x, cells, 0), add_panel(o, x, z, cells, 0);
+            if (side == 0) add_panel(o, x, y, cells, 0), add_panel(o, z, x, cells, 0);
+            else add_panel(o, y, x, cells, 0), add_panel(o, x, z, cells, 0);
             list = find();
             CHECK(list.count == 7);
             CHECK_NEAR(total_length(&list, 1.5), 2, 1e-9);
@@ -136,7 +134,7 @@ static void test_concave(void **state)
 {
     (void)state;
     static const double ring[8][2] = {{0, 0}, {1, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}, {0, 1}};
-    const double x[3] = {1, 0, 0}, y[3] = {0, 1, 0}, z[3] = {0, 0, 1};
+    const double        x[3] = {1, 0, 0}, y[3] = {0, 1, 0}, z[3] = {0, 0, 1};
     begin();
     for (int i = 0; i < 8; i++) {
         const double *a = ring[i], *b = ring[(i + 1) % 8];
@@ -157,14 +155,14 @@ static void test_concave(void **state)
 static void test_cylinder(void **state)
 {
     (void)state;
-    const double radius_m = 0.5, up[3] = {0, 0, 1}, down[3] = {0, 0, -1};
+    const double     radius_m = 0.5, up[3] = {0, 0, 1}, down[3] = {0, 0, -1};
     static const int facets_of[] = {12, 12, 48};
     for (int which = 0; which < 3; which++) {
         const int  facets = facets_of[which];
         const bool smooth = which == 1;
         begin();
         for (int i = 0; i < facets; i++) {
-            double p[2][3], n[2][3], top[2][3];
+            double   p[2][3], n[2][3], top[2][3];
             uint32_t v[2][2], cap[2][3];
             for (int k = 0; k < 2; k++) {
                 const double angle = 2 * pi * (i + k) / facets, facing = smooth ? angle : 2 * pi * (i + 0.5) / facets;

@@ -17,21 +17,21 @@ static const double heat_day_unix_s = 1782000000 / 86400 * 86400; /* a midnight 
 HeatDay heat_day_default(void);
 /* HeatWeather; user: a HeatDay. Beam: 0.7^(air mass^0.678) of 1361 W/m2 (Meinel); scattered: a tenth of what is level;
  * longwave: Brunt (1932). */
-void    heat_day(GroundWeather *out, double unix_s, const void *user);
+void heat_day(GroundWeather *out, double unix_s, const void *user);
 
 /* etc/ground_heat.csv with the bundled materials. */
 Status heat_day_kinds(GroundKinds *out);
 
-/* One piece of ground of a kind beside level ground of the same kind, as Heat runs both: from the mean of a first day, by
- * half hours until eight hours before begun_s, then by step_s. */
+/* One piece of ground of a kind beside level ground of the same kind, as Heat runs both: from the mean of a first day,
+ * by half hours until eight hours before begun_s, then by step_s. */
 typedef struct HeatPiece {
-    Column        layers;
-    ColumnFactors step, half;
-    GroundColumn  level, piece;
+    Column            layers;
+    ColumnFactors     step, half;
+    GroundColumn      level, piece;
     const GroundKind *kind;
-    const HeatDay *day;
-    double        n_enu[3], shaded_h[2]; /* hours of each day without its direct sun, from and to */
-    double        tolerance_k, step_s, unix_s;
+    const HeatDay    *day;
+    double            n_enu[3], shaded_h[2]; /* hours of each day without its direct sun, from and to */
+    double            tolerance_k, step_s, unix_s;
 } HeatPiece;
 Status heat_piece_begin(HeatPiece *out, const GroundKind *kind, const HeatConfig *config, const double n_enu[3],
                         const double shaded_h[2]);

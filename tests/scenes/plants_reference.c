@@ -43,8 +43,8 @@ void plant_spheres_destroy(PlantSpheres *spheres)
 /* ---- one quad ----------------------------------------------------------------------------------- */
 
 typedef struct Placed {
-    double      m[9];        /* ENU from the prototype's axes */
-    long double foot[3];     /* from the ray's origin */
+    double      m[9];    /* ENU from the prototype's axes */
+    long double foot[3]; /* from the ray's origin */
     long double across[2][3], d[3];
 } Placed;
 
@@ -109,15 +109,14 @@ static bool passes(long double *inside_m, long double *range_m, long double *fac
         one[c] = corner[leaf ? 1 : 2][c] - corner[0][c];
         two[c] = corner[3][c] - corner[leaf ? 0 : 1][c];
     }
-    for (int c = 0; c < 3; c++)
-        n[c] = one[(c + 1) % 3] * two[(c + 2) % 3] - one[(c + 2) % 3] * two[(c + 1) % 3];
+    for (int c = 0; c < 3; c++) n[c] = one[(c + 1) % 3] * two[(c + 2) % 3] - one[(c + 2) % 3] * two[(c + 1) % 3];
     const long double length = sqrtl(dot(n, n)), rate = dot(n, placed->d);
     *inside_m = within ? sqrtl(nearest2) : -sqrtl(nearest2);
     if (!(length > 0) || rate == 0) return false;
     for (int c = 0; c < 3; c++)
         one[c] = leaf ? corner[0][c] : 0.25L * (corner[0][c] + corner[1][c] + corner[2][c] + corner[3][c]);
     *range_m = dot(n, one) / rate;
-    *facing  = fabsl(rate) / length;
+    *facing = fabsl(rate) / length;
     return *range_m > 0;
 }
 
@@ -135,7 +134,7 @@ static bool meets_box(const PlantShape *shape, const double o[3], const double d
             continue;
         }
         from = fmax(from, fmin(a / d[c], b / d[c]));
-        to   = fmin(to, fmax(a / d[c], b / d[c]));
+        to = fmin(to, fmax(a / d[c], b / d[c]));
     }
     return from <= to;
 }
@@ -147,7 +146,7 @@ static bool meets_plant(const Plant *plant, const PlantShape *shape, const long 
     double corner[3], from[3], across[3];
     for (int c = 0; c < 3; c++) {
         corner[c] = fmax(fabs((double)shape->low[c]), fabs((double)shape->high[c]));
-        from[c]   = (double)foot[c];
+        from[c] = (double)foot[c];
     }
     const double radius_m = plant_height_m(plant) * fmax(1, plant->width / 128.0) * v3_length(corner) + spare_m;
     const double along_m = v3_dot(from, d);

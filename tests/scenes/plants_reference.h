@@ -7,9 +7,9 @@
 
 /* The worst so far, m. INFINITY: an answer that no tolerance explains. */
 typedef struct PlantErrors {
-    double  past_m;  /* how far from an outline, across the ray, a ray passes within a nearer quad that it did not meet,
-                      * or outside of the quad that it met */
-    double  off_m;   /* distance of a hit from the plane of its quad */
+    double past_m; /* how far from an outline, across the ray, a ray passes within a nearer quad that it did not meet,
+                    * or outside of the quad that it met */
+    double  off_m; /* distance of a hit from the plane of its quad */
     int64_t rays, hits;
 } PlantErrors;
 

@@ -20,8 +20,8 @@ void plate_vehicle(PlateVehicle *out, int nodes)
 Status plate_vehicle_create(Network **out, const PlateVehicle *vehicle)
 {
     const int flows = vehicle_flows * vehicle->nodes;
-    return heat_network_create(out, &(NetworkShape){vehicle->nodes, flows, flows, vehicle->capacity_j_k, vehicle->link,
-                                               vehicle->exchange});
+    return heat_network_create(
+        out, &(NetworkShape){vehicle->nodes, flows, flows, vehicle->capacity_j_k, vehicle->link, vehicle->exchange});
 }
 
 void plate_vehicle_loads(NetworkLoad *out, const PlateVehicle *vehicle, double t_s)

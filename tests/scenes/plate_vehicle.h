@@ -19,6 +19,6 @@ typedef struct PlateVehicle {
 void   plate_vehicle(PlateVehicle *out, int nodes);
 Status plate_vehicle_create(Network **out, const PlateVehicle *vehicle);
 /* At t_s: clouds of ten minutes, wind of five, an engine at 300 s on for half an hour of each hour. */
-void   plate_vehicle_loads(NetworkLoad *out, const PlateVehicle *vehicle, double t_s);
+void plate_vehicle_loads(NetworkLoad *out, const PlateVehicle *vehicle, double t_s);
 
 #endif

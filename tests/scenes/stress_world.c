@@ -9,8 +9,8 @@
 static Status open_catalog(Catalog **out)
 {
     static const char text[] = "type,model,origin\n1,marker,base\n";
-    char  path[temp_path_size];
-    FILE *file = temp_file(path, "") ? output_file(path, 0) : NULL;
+    char              path[temp_path_size];
+    FILE             *file = temp_file(path, "") ? output_file(path, 0) : NULL;
     if (!file) return STATUS_IO;
     const bool   written = fputs(text, file) >= 0;
     const Status status = fclose(file) == 0 && written ? catalog_open(out, path, 0.01) : STATUS_IO;
@@ -24,11 +24,11 @@ Status stress_world_open(StressWorld *out, int threads)
     LandscapeConfig config = landscape_default_config();
     LocalFrame      frame;
     StressWorld     w = {.arena = arena_create(), .air_arena = arena_create()};
-    config.relief_m     = 0;
+    config.relief_m = 0;
     config.half_width_m = 500;
-    config.horizon_m    = 20000;
+    config.horizon_m = 20000;
     w.entity = calloc(stress_entities, sizeof *w.entity);
-    w.pose   = calloc(stress_entities, sizeof *w.pose);
+    w.pose = calloc(stress_entities, sizeof *w.pose);
     Status status = w.entity && w.pose && w.arena && w.air_arena ? open_catalog(&w.catalog) : STATUS_NO_MEMORY;
     if (status == STATUS_OK) status = local_frame_at(&frame, &origin_at);
     if (status == STATUS_OK) status = landscape_create(&w.landscape, &config, &frame, NULL, 0, NULL, 0);
@@ -69,9 +69,9 @@ void stress_clear(StressWorld *w) { w->snapshot = (Snapshot){.entity = w->entity
 void stress_add(StressWorld *w, const double p_enu[3], const double r_enu_from_body[9])
 {
     static const double side_body[3] = {0, -1, -0.75};
-    const int       k = w->snapshot.count++;
-    SnapshotEntity *e = &w->entity[k];
-    double          off_enu[3], base_enu[3];
+    const int           k = w->snapshot.count++;
+    SnapshotEntity     *e = &w->entity[k];
+    double              off_enu[3], base_enu[3];
     *e = (SnapshotEntity){.id = {(uint16_t)(1 + k / 60000), 1, (uint16_t)(1 + k % 60000)}, .model = 1, .first_node = k};
     m3_mul_v3(off_enu, r_enu_from_body, side_body);
     v3_sub(base_enu, p_enu, off_enu);
@@ -84,7 +84,7 @@ void stress_add(StressWorld *w, const double p_enu[3], const double r_enu_from_b
 void stress_no_air(StressWorld *w, const double sun_enu[3])
 {
     static const double dark[AIR_BAND_COUNT] = {0};
-    Air *a = &w->air;
+    Air                *a = &w->air;
     air_even(a, sun_enu, stress_sun_w_m2, dark, 0, w->world.planck_mwir, w->world.planck_lwir);
     for (int b = AIR_MWIR; b <= AIR_LWIR; b++) a->light.sun_w_m2[b] = a->sun_eye_w_m2[b] = 0;
     a->light.solar_direct_w_m2 = a->light.solar_diffuse_w_m2 = 0;
@@ -112,7 +112,7 @@ View stress_view(const double p_enu[3], const double d_enu[3], double turn_rad, 
     v3_cross(y, z, x);
     for (int k = 0; k < 3; k++) {
         view.p_enu[k] = p_enu[k];
-        view.r_enu_from_cam[3 * k]     = cos(turn_rad) * x[k] + sin(turn_rad) * y[k];
+        view.r_enu_from_cam[3 * k] = cos(turn_rad) * x[k] + sin(turn_rad) * y[k];
         view.r_enu_from_cam[3 * k + 1] = cos(turn_rad) * y[k] - sin(turn_rad) * x[k];
         view.r_enu_from_cam[3 * k + 2] = z[k];
     }
@@ -121,8 +121,13 @@ View stress_view(const double p_enu[3], const double d_enu[3], double turn_rad, 
 
 RenderRequest stress_request(const View *view)
 {
-    return (RenderRequest){.view = *view, .bands = 1 << BAND_OPTICAL | 1 << BAND_MWIR | 1 << BAND_LWIR, .truth = true,
-                           .samples = 1, .edge_samples = 4, .target_samples = 48, .hidden_entity = -1};
+    return (RenderRequest){.view = *view,
+                           .bands = 1 << BAND_OPTICAL | 1 << BAND_MWIR | 1 << BAND_LWIR,
+                           .truth = true,
+                           .samples = 1,
+                           .edge_samples = 4,
+                           .target_samples = 48,
+                           .hidden_entity = -1};
 }
 
 bool stress_render(StressWorld *w, const RenderRequest *request)
@@ -153,9 +158,9 @@ static double plane_differences(const void *a, int a_width, const void *b, int b
     if (!a || !b) return a != b;
     for (int y = 0; y < at[5]; y++)
         for (int x = 0; x < at[4]; x++)
-            different += memcmp((const char *)a + 4 * ((size_t)(at[1] + y) * (size_t)a_width + (size_t)(at[0] + x)),
-                                (const char *)b + 4 * ((size_t)(at[3] + y) * (size_t)b_width + (size_t)(at[2] + x)),
-                                    4) != 0;
+            different +=
+                memcmp((const char *)a + 4 * ((size_t)(at[1] + y) * (size_t)a_width + (size_t)(at[0] + x)),
+                       (const char *)b + 4 * ((size_t)(at[3] + y) * (size_t)b_width + (size_t)(at[2] + x)), 4) != 0;
     return different;
 }
 

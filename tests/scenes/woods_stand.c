@@ -21,9 +21,9 @@ static bool bears_trees(const WoodsStand *s, double x_m, double y_m)
 typedef struct Adding {
     const WoodsStand *stand;
     Woods            *woods;
-    Plant            *plant;   /* [most] */
+    Plant            *plant; /* [most] */
     size_t            count, most;
-    double            due;     /* trees by the area so far, less those that were added */
+    double            due; /* trees by the area so far, less those that were added */
 } Adding;
 
 /* Of a square that is on the ground. */
@@ -41,7 +41,7 @@ static double share_m2(const Adding *a, const double corner_enu[2])
 static void add_to_square(Adding *a, int square, const double corner_m[2])
 {
     static const int tries = 4096;
-    Woods *w = a->woods;
+    Woods           *w = a->woods;
     for (int k = 0; a->due >= 1 && k < tries && a->count < a->most; k++) {
         double u[8];
         for (int d = 0; d < 8; d++) u[d] = random_uniform(1, 9, (uint32_t)square, (uint64_t)(8 * k + d));
@@ -52,9 +52,11 @@ static void add_to_square(Adding *a, int square, const double corner_m[2])
         if (!isfinite(z_m)) continue;
         Plant *plant = &a->plant[a->count++];
         *plant = (Plant){{(float)at[0], (float)at[1], (float)(z_m - w->origin_enu[2])},
-                         (uint16_t)((10 + 15 * u[2]) / plant_height_step_m), (uint16_t)(65535 * u[3]),
+                         (uint16_t)((10 + 15 * u[2]) / plant_height_step_m),
+                         (uint16_t)(65535 * u[3]),
                          {(int8_t)(254 * u[4] - 127), (int8_t)(254 * u[5] - 127)},
-                         (uint8_t)(PLANT_TREES * u[6]), (uint8_t)(96 + 64 * u[7])};
+                         (uint8_t)(PLANT_TREES * u[6]),
+                         (uint8_t)(96 + 64 * u[7])};
         w->by_kind[plant->kind]++;
         a->due -= 1;
     }
@@ -76,20 +78,23 @@ static Status add_trees(Woods *woods, const WoodsStand *stand)
         add_to_square(&a, q, corner_m);
     }
     free(woods->plant);
-    woods->plant          = a.plant;
+    woods->plant = a.plant;
     woods->first[squares] = (uint32_t)a.count;
-    woods->count          = (int)a.count;
+    woods->count = (int)a.count;
     return STATUS_OK;
 }
 
 Status woods_stand_create(Woods *out, WoodsStand *stand, Pool *pool)
 {
-    const WoodsConfig config = {.seed = 1, .half_width_m = fmax(50, 0.5 * fmax(stand->east_m, stand->north_m)),
-                                .most_trees = stand->trees / 2, .path_count = stand->clears, .path = stand->clear};
+    const WoodsConfig config = {.seed = 1,
+                                .half_width_m = fmax(50, 0.5 * fmax(stand->east_m, stand->north_m)),
+                                .most_trees = stand->trees / 2,
+                                .path_count = stand->clears,
+                                .path = stand->clear};
     const double      start_s = wall_clock_s();
     Status            status = woods_create(out, stand->landscape, &config, pool);
     if (status != STATUS_OK) return status;
-    stand->placing_s  = wall_clock_s() - start_s;
+    stand->placing_s = wall_clock_s() - start_s;
     stand->by_classes = woods_stand_trees(out);
     status = add_trees(out, stand);
     if (status != STATUS_OK) woods_destroy(out);

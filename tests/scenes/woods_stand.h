@@ -8,12 +8,12 @@ enum { woods_stand_clear = 20 };
 
 typedef struct WoodsStand {
     const Landscape *landscape;
-    double    east_m, north_m;   /* of the ground, about the origin */
-    int       trees;
-    int       clears;
-    WoodsPath clear[woods_stand_clear]; /* points, each with a radius */
-    int       by_classes;        /* out: trees that woods_create places */
-    double    placing_s;         /* out: its time */
+    double           east_m, north_m; /* of the ground, about the origin */
+    int              trees;
+    int              clears;
+    WoodsPath        clear[woods_stand_clear]; /* points, each with a radius */
+    int              by_classes;               /* out: trees that woods_create places */
+    double           placing_s;                /* out: its time */
 } WoodsStand;
 
 /* The plants of the surface classes, and trees of 10 to 25 m evenly over the ground, up to the number of trees; none of

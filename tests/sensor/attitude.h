@@ -12,7 +12,7 @@ static inline void test_attitude(double r_enu_from_body[9], double heading_rad, 
     double       z[3];
     v3_cross(z, x, y);
     for (int i = 0; i < 3; i++) {
-        r_enu_from_body[3 * i]     = x[i];
+        r_enu_from_body[3 * i] = x[i];
         r_enu_from_body[3 * i + 1] = cos(roll_rad) * y[i] + sin(roll_rad) * z[i];
         r_enu_from_body[3 * i + 2] = cos(roll_rad) * z[i] - sin(roll_rad) * y[i];
     }

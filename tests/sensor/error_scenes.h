@@ -13,8 +13,8 @@ typedef struct ErrorScene {
     double      back_m, above_m, hfov_deg;
     int         vehicles;
     bool        smoke;
-    double      pitch_deg;     /* the camera is turned up by so much */
-    bool        heat;          /* its heat is judged */
+    double      pitch_deg; /* the camera is turned up by so much */
+    bool        heat;      /* its heat is judged */
 } ErrorScene;
 
 enum { width_px = 96, height_px = 64, radiance_bands = 3 };
@@ -30,7 +30,7 @@ static inline Landscape ground_of(double spacing_m)
 {
     LandscapeConfig config = landscape_default_config();
     Landscape       made;
-    config.spacing_m    = spacing_m;
+    config.spacing_m = spacing_m;
     config.half_width_m = 1000;
     assert_int_equal(landscape_create(&made, &config, &lab.frame, NULL, 0, NULL, 0), STATUS_OK);
     return made;
@@ -64,7 +64,7 @@ static inline int lab_open(void **state)
     if (local_frame_at(&lab.frame, &origin) != STATUS_OK || pool_create(&lab.pool, 2) != STATUS_OK) return -1;
     for (int k = 0; k < 3; k++)
         if (!(lab.arena[k] = arena_create())) return -1;
-    lab.fine   = ground_of(1);
+    lab.fine = ground_of(1);
     lab.ground = every_fourth(&lab.fine);
     return 0;
 }
@@ -82,7 +82,7 @@ static inline int lab_close(void **state)
 static void open_scene(TrialScene *scene, const Landscape *ground, const ErrorScene *of)
 {
     static const DisEntityType types[] = {{1, 1, 222, 1, 1, 1, 0}, {1, 1, 222, 2, 1, 0, 0}, {1, 1, 222, 28, 1, 0, 0}};
-    char catalog[512];
+    char                       catalog[512];
     CHECK(etc_path(catalog, sizeof catalog, "catalog.csv"));
     assert_int_equal(trial_scene_open(scene, ground, catalog, types, 3, of->vehicles), STATUS_OK);
     for (int k = 0; of->smoke && k < 20; k++) { /* one that smokes, for twenty seconds */
@@ -92,7 +92,7 @@ static void open_scene(TrialScene *scene, const Landscape *ground, const ErrorSc
                               .id = {1, 1, 99},
                               .appearance = 1u << 5,
                               .dead_reckoning = 2};
-        double euler[3];
+        double         euler[3];
         ecef_from_enu(pdu.p_ecef, &lab.frame, p_enu);
         const double r_enu_from_body[9] = {0, 1, 0, 1, 0, 0, 0, 0, -1};
         double       r[9];
@@ -106,14 +106,20 @@ static void open_scene(TrialScene *scene, const Landscape *ground, const ErrorSc
 
 static RenderRequest request_of(const TrialScene *scene, const ErrorScene *of)
 {
-    RenderRequest request = {.bands = 7, .truth = true, .optical = OPTICAL_RGB, .samples = 1, .edge_samples = 4,
-                             .target_samples = 48, .hidden_entity = -1, .budget = true};
+    RenderRequest request = {.bands = 7,
+                             .truth = true,
+                             .optical = OPTICAL_RGB,
+                             .samples = 1,
+                             .edge_samples = 4,
+                             .target_samples = 48,
+                             .hidden_entity = -1,
+                             .budget = true};
     request.view = trial_view(scene, of->back_m, of->above_m, of->hfov_deg * rad_per_deg, width_px, height_px);
     const double c = cos(of->pitch_deg * rad_per_deg), s = sin(of->pitch_deg * rad_per_deg),
                  *m = request.view.r_enu_from_cam;
-    double       turned[9];
+    double turned[9];
     for (int k = 0; k < 3; k++) {
-        turned[3 * k]     = m[3 * k];
+        turned[3 * k] = m[3 * k];
         turned[3 * k + 1] = c * m[3 * k + 1] + s * m[3 * k + 2];
         turned[3 * k + 2] = c * m[3 * k + 2] - s * m[3 * k + 1];
     }
@@ -148,16 +154,18 @@ static double apart(const Picture *a, const Picture *b, Band band)
 /* targets: how many there are, in the frame's arena. */
 static inline FrameError error_of_targets(Target **out, int *targets_out, TrialFrame *f)
 {
-    FrameError error;
-    Target    *target = arena_alloc(f->arena, (size_t)f->snapshot.count + 1, sizeof *target);
-    EyeState   eye = {.host_index = -1};
+    FrameError       error;
+    Target          *target = arena_alloc(f->arena, (size_t)f->snapshot.count + 1, sizeof *target);
+    EyeState         eye = {.host_index = -1};
     const TruthNoise noise = {0.1, 0.03, 0.03};
     ecef_from_enu(eye.p_ecef, &lab.frame, f->request.view.p_enu);
     m3_mul(eye.r_ecef_from_cam, lab.frame.r_ecef_from_enu, f->request.view.r_enu_from_cam);
     const int targets = truth_targets(target, &f->picture, &f->scene->world, &f->snapshot, &f->request, &eye, &noise);
-    CHECK(frame_error(&error, &(FrameErrorOf){&f->picture, &f->scene->world, &f->snapshot, &f->request, 0.002, true,
-                                              world_air_k(&f->scene->world, f->scene->unix_s)}, target, targets));
-    *out         = target;
+    CHECK(frame_error(&error,
+                      &(FrameErrorOf){&f->picture, &f->scene->world, &f->snapshot, &f->request, 0.002, true,
+                                      world_air_k(&f->scene->world, f->scene->unix_s)},
+                      target, targets));
+    *out = target;
     *targets_out = targets;
     return error;
 }
@@ -278,11 +286,11 @@ static inline void judge_sum(Tally *tally, const ErrorCase *c)
  * What leaves the surface is what the picture shows less its veil. */
 static inline void judge_tables(Tally *tally, const ErrorCase *c)
 {
-    static AirPaths veils;
-    static Hits  hits;
-    static Rays  rays;
+    static AirPaths      veils;
+    static Hits          hits;
+    static Rays          rays;
     static const AirBand air_of[radiance_bands + 2] = {AIR_R, AIR_G, AIR_B, AIR_MWIR, AIR_LWIR};
-    RenderRequest request = c->request;
+    RenderRequest        request = c->request;
     request.edge_samples = request.target_samples = 0,
     request.budget = true; /* one ray: what a pixel shows is its truth's */
     TrialFrame       frame = frame_of(&c->coarse, &request, 1);
@@ -294,12 +302,12 @@ static inline void judge_tables(Tally *tally, const ErrorCase *c)
     for (int plane = 0; plane < 5; plane++) {
         const AirBand b = air_of[plane];
         const bool    thermal = b >= AIR_MWIR;
-        const float *value = picture_plane(p, plane < 3    ? picture_optical + plane
-                                              : plane == 3 ? picture_mwir
-                                                           : picture_lwir);
-        const double warmer =
+        const float  *value = picture_plane(p, plane < 3    ? picture_optical + plane
+                                               : plane == 3 ? picture_mwir
+                                                            : picture_lwir);
+        const double  warmer =
             thermal ? air->light.thermal_scale[b - AIR_MWIR] : 1; /* air of another temperature than the model's */
-        double        square = 0, sum = 0;
+        double square = 0, sum = 0;
         hits.count = rays.count = 1;
         for (int i = 0; i < width_px * height_px; i++) {
             double d[3];
@@ -310,12 +318,12 @@ static inline void judge_tables(Tally *tally, const ErrorCase *c)
             air_path(&veils, air, b, &hits, &rays, thermal ? temp_k : NULL);
             const double *s = air->light.sun_d_enu, level = hypot(d[0], d[1]), range_m = (double)veils.range_m[0];
             const double  azimuth = acos(clamp((d[0] * s[0] + d[1] * s[1]) / (level * hypot(s[0], s[1])), -1, 1));
-            const double sun_zenith = 0.5 * pi_rad - frame.sun.elevation_rad,
+            const double  sun_zenith = 0.5 * pi_rad - frame.sun.elevation_rad,
                          au2 = 1 / (frame.sun.distance_au * frame.sun.distance_au);
-            double        seen = (double)value[i];
+            double seen = (double)value[i];
             sum += seen;
             if (range_m < INFINITY) {
-                const double climb = d[2] + (view->p_enu[0] * d[0] + view->p_enu[1] * d[1]) / 6371e3;
+                const double  climb = d[2] + (view->p_enu[0] * d[0] + view->p_enu[1] * d[1]) / 6371e3;
                 const AirPath path = {.observer_m = air->eye_height_m,
                                       .range_m = range_m,
                                       .sun_zenith_rad = sun_zenith,
@@ -323,7 +331,7 @@ static inline void judge_tables(Tally *tally, const ErrorCase *c)
                                       .target_m = fmax(air->eye_height_m + range_m * climb +
                                                            range_m * range_m * level * level / (2 * 6371e3),
                                                        0)};
-                PathAir want;
+                PathAir       want;
                 atmosphere_path(&want, c->coarse.world.atmosphere, air->light.weather.visibility_m, b, &path,
                                 thermal && p->temp_k[i] > 0 ? (double)p->temp_k[i] : 288);
                 const double tau = thermal ? want.transmittance : want.sun_transmittance;

@@ -19,19 +19,19 @@ typedef struct LabFrame {
 } LabFrame;
 
 static struct {
-    LocalFrame  frame;
-    Landscape   ground;
-    Catalog    *catalog;
-    World       world;
-    Pool       *pool;
-    uint8_t     octets[lab_most_reports][lab_octets];
-    DisDatagram datagram[lab_most_reports];
-    int         reports;
-    LabFrame    shot[lab_most_frames];
-    int         shots;
-    char        folder[temp_path_size];
+    LocalFrame    frame;
+    Landscape     ground;
+    Catalog      *catalog;
+    World         world;
+    Pool         *pool;
+    uint8_t       octets[lab_most_reports][lab_octets];
+    DisDatagram   datagram[lab_most_reports];
+    int           reports;
+    LabFrame      shot[lab_most_frames];
+    int           shots;
+    char          folder[temp_path_size];
     SessionResult result;
-    double      first_s;
+    double        first_s;
 } lab;
 
 static inline int lab_open(void **state)
@@ -40,7 +40,7 @@ static inline int lab_open(void **state)
     char            path[512];
     const Geodetic  origin = {48 * rad_per_deg, 11 * rad_per_deg, 0};
     LandscapeConfig config = landscape_default_config();
-    config.relief_m     = 0;
+    config.relief_m = 0;
     config.half_width_m = 600;
     if (local_frame_at(&lab.frame, &origin) != STATUS_OK || pool_create(&lab.pool, 2) != STATUS_OK) return -1;
     if (landscape_create(&lab.ground, &config, &lab.frame, NULL, 0, NULL, 0) != STATUS_OK) return -1;
@@ -77,9 +77,14 @@ typedef struct LabReport {
 static inline void lab_say(const LabReport *r)
 {
     double         v_ecef[3], r_ecef[9], psi, theta, phi;
-    DisEntityState pdu = {.header = {.version = 7, .exercise = 1, .type = dis_pdu_entity_state, .family = 1,
+    DisEntityState pdu = {.header = {.version = 7,
+                                     .exercise = 1,
+                                     .type = dis_pdu_entity_state,
+                                     .family = 1,
                                      .timestamp = (uint32_t)(r->t_s / 3600 * 2147483648.0) << 1},
-                          .id = {1, 1, r->entity}, .type = r->type, .appearance = r->appearance,
+                          .id = {1, 1, r->entity},
+                          .type = r->type,
+                          .appearance = r->appearance,
                           .dead_reckoning = 3}; /* RPW */
     CHECK(lab.reports < lab_most_reports);
     ecef_from_enu(pdu.p_ecef, &lab.frame, r->p_enu);
@@ -88,20 +93,23 @@ static inline void lab_say(const LabReport *r)
     euler_from_r_ecef_from_body(&psi, &theta, &phi, r_ecef);
     pdu.psi_rad = (float)psi, pdu.theta_rad = (float)theta, pdu.phi_rad = (float)phi;
     for (int k = 0; k < 3; k++) {
-        pdu.velocity_mps[k]     = (float)v_ecef[k];
+        pdu.velocity_mps[k] = (float)v_ecef[k];
         pdu.angular_rate_rps[k] = (float)r->w_body_rps[k];
     }
     if (r->turret_rad != 0)
-        pdu.variable[pdu.variable_count++] = (DisVariableParameter){.record_type = dis_variable_articulated,
-                                                                    .parameter = 4096 + 11, .value = (float)r->turret_rad};
+        pdu.variable[pdu.variable_count++] = (DisVariableParameter){
+            .record_type = dis_variable_articulated, .parameter = 4096 + 11, .value = (float)r->turret_rad};
     if (r->gun_rad != 0)
-        pdu.variable[pdu.variable_count++] = (DisVariableParameter){.record_type = dis_variable_articulated,
-                                                                    .parameter = 4416 + 13, .value = (float)r->gun_rad};
-    const int    n      = lab.reports++;
+        pdu.variable[pdu.variable_count++] = (DisVariableParameter){
+            .record_type = dis_variable_articulated, .parameter = 4416 + 13, .value = (float)r->gun_rad};
+    const int    n = lab.reports++;
     const size_t octets = dis_encode_entity_state(lab.octets[n], lab_octets, &pdu);
     CHECK(octets > 0);
-    lab.datagram[n] = (DisDatagram){.capture_s = 1e9 + r->t_s, .packet_s = 1e9 + r->t_s, .packet = (uint32_t)n + 1,
-                                    .octets = (uint32_t)octets, .bytes = lab.octets[n]};
+    lab.datagram[n] = (DisDatagram){.capture_s = 1e9 + r->t_s,
+                                    .packet_s = 1e9 + r->t_s,
+                                    .packet = (uint32_t)n + 1,
+                                    .octets = (uint32_t)octets,
+                                    .bytes = lab.octets[n]};
 }
 
 static inline void lab_forget(void) { lab.reports = 0; }
@@ -111,7 +119,8 @@ static inline void lab_shoot(void *user, const FrameRecord *record)
     (void)user;
     CHECK(lab.shots < lab_most_frames);
     LabFrame *shot = &lab.shot[lab.shots++];
-    *shot = (LabFrame){.t_s = record->time_s, .focal_px = record->request->view.focal_px,
+    *shot = (LabFrame){.t_s = record->time_s,
+                       .focal_px = record->request->view.focal_px,
                        .at_limit = record->gimbal_at_limit,
                        .rate_px_s = {record->scene_rate_px_s[0], record->scene_rate_px_s[1]}};
     if (record->host) shot->host = record->host->id;
@@ -133,7 +142,7 @@ static inline void lab_run(const Config *given, double from_s, double rate_hz, i
     Survey   survey;
     HostPlan plan;
     Choices  choices = {0};
-    Player  *player  = NULL;
+    Player  *player = NULL;
     Session *session = NULL;
     Sensors  sensors = {0};
     config.sensor.width_px = 24, config.sensor.height_px = 16;
@@ -147,11 +156,18 @@ static inline void lab_run(const Config *given, double from_s, double rate_hz, i
     if (config.causal) plan.start_s = survey.first_s, plan.end_s = INFINITY;
     assert_int_equal(player_create(&player, -1, config.causal), STATUS_OK);
     assert_int_equal(player_add_log(player, &log), STATUS_OK);
-    const SessionShared shared = {.config = &config, .survey = &survey, .catalog = lab.catalog, .world = &lab.world,
-                                  .pool = lab.pool, .unix_s = 1782036000, .bands = 1u << BAND_LWIR,
-                                  .config_sha256 = "", .sensors = &sensors, .publish = lab_shoot};
+    const SessionShared shared = {.config = &config,
+                                  .survey = &survey,
+                                  .catalog = lab.catalog,
+                                  .world = &lab.world,
+                                  .pool = lab.pool,
+                                  .unix_s = 1782036000,
+                                  .bands = 1u << BAND_LWIR,
+                                  .config_sha256 = "",
+                                  .sensors = &sensors,
+                                  .publish = lab_shoot};
     assert_int_equal(session_open(&session, &shared, &plan, player, lab.folder), STATUS_OK);
-    lab.shots   = 0;
+    lab.shots = 0;
     lab.first_s = survey.first_s;
     for (int k = 0; k < frames; k++) {
         bool shown;

@@ -1,5 +1,5 @@
-/* tests/sensor/radar_scene.h: models of a test's own in an empty world without air or ground, and a radar that looks at them
- * along the level, from the east. */
+/* tests/sensor/radar_scene.h: models of a test's own in an empty world without air or ground, and a radar that looks at
+ * them along the level, from the east. */
 #ifndef TESTS_SENSOR_RADAR_SCENE_H
 #define TESTS_SENSOR_RADAR_SCENE_H
 
@@ -59,7 +59,8 @@ static inline FILE *scene_obj(const char *name, const char *sidecar)
     return scene_file(file_name);
 }
 
-/* A sphere of radius a about (x, y, z), body axes but z up; facets of 1.4 degrees. first: number of the first vertex. */
+/* A sphere of radius a about (x, y, z), body axes but z up; facets of 1.4 degrees. first: number of the first vertex.
+ */
 static inline int scene_sphere(FILE *file, int first, double a, double x, double y, double up)
 {
     enum { n = 128, m = 256 };
@@ -67,7 +68,8 @@ static inline int scene_sphere(FILE *file, int first, double a, double x, double
     for (int i = 0; i <= n; i++)
         for (int j = 0; j < m; j++) {
             const double t = pi_rad * i / n, p = 2 * pi_rad * j / m, d[3] = {sin(t) * cos(p), sin(t) * sin(p), cos(t)};
-            fprintf(file, "v %.9f %.9f %.9f\nvn %.9f %.9f %.9f\n", x + a * d[0], up + a * d[2], y + a * d[1], d[0], d[2], d[1]);
+            fprintf(file, "v %.9f %.9f %.9f\nvn %.9f %.9f %.9f\n", x + a * d[0], up + a * d[2], y + a * d[1], d[0],
+                    d[2], d[1]);
         }
     for (int i = 0; i < n; i++)
         for (int j = 0; j < m; j++) {
@@ -84,9 +86,11 @@ static inline int scene_box(FILE *file, const char *name, int first, const doubl
     static const int face[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
     fprintf(file, "o %s\n", name);
     for (int i = 0; i < 8; i++)
-        fprintf(file, "v %.9f %.9f %.9f\n", i & 1 ? high[0] : low[0], i & 4 ? high[2] : low[2], i & 2 ? high[1] : low[1]);
+        fprintf(file, "v %.9f %.9f %.9f\n", i & 1 ? high[0] : low[0], i & 4 ? high[2] : low[2],
+                i & 2 ? high[1] : low[1]);
     for (int f = 0; f < 6; f++)
-        fprintf(file, "f %d %d %d %d\n", first + face[f][0], first + face[f][3], first + face[f][2], first + face[f][1]);
+        fprintf(file, "f %d %d %d %d\n", first + face[f][0], first + face[f][3], first + face[f][2],
+                first + face[f][1]);
     return first + 8;
 }
 
@@ -108,11 +112,19 @@ static inline void scene_open(const char *const *model, int models)
     stage.arena = arena_create();
     stage.weather = weather_default();
     /* at (range, 0, 0), to the west */
-    stage.view = (View){.p_enu = {scene_range_m, 0, 0}, .width = 64, .height = 64, .focal_px = 1000,
+    stage.view = (View){.p_enu = {scene_range_m, 0, 0},
+                        .width = 64,
+                        .height = 64,
+                        .focal_px = 1000,
                         .r_enu_from_cam = {0, 0, -1, 1, 0, 0, 0, -1, 0}};
     stage.snapshot = (Snapshot){.entity = stage.entity, .joints = stage.joints};
-    stage.scene = (RadarScene){.world = &stage.world, .snapshot = &stage.snapshot, .view = &stage.view, .hidden = -1,
-                               .reference_m = scene_range_m, .weather = &stage.weather, .number = 1};
+    stage.scene = (RadarScene){.world = &stage.world,
+                               .snapshot = &stage.snapshot,
+                               .view = &stage.view,
+                               .hidden = -1,
+                               .reference_m = scene_range_m,
+                               .weather = &stage.weather,
+                               .number = 1};
 }
 
 static inline void scene_close(void)
@@ -134,8 +146,9 @@ static inline SnapshotEntity *scene_add(int model, double east_m, double north_m
     SnapshotEntity     *e = &stage.entity[k];
     const double        p_enu[3] = {east_m, north_m, up_m};
     Origin              origin;
-    *e = (SnapshotEntity){.id = {1, 1, (uint16_t)(k + 1)},
-                          .type = {.kind = 1, .domain = 1, .country = 225, .category = 83, .subcategory = 7, .specific = (uint8_t)model}};
+    *e = (SnapshotEntity){
+        .id = {1, 1, (uint16_t)(k + 1)},
+        .type = {.kind = 1, .domain = 1, .country = 225, .category = 83, .subcategory = 7, .specific = (uint8_t)model}};
     e->model = catalog_find(stage.catalog, e->type, &origin, NULL);
     ecef_from_enu(e->p_ecef, &stage.world.frame, p_enu);
     m3_mul(e->r_ecef_from_body, stage.world.frame.r_ecef_from_enu, r_enu_from_body);
@@ -145,8 +158,11 @@ static inline SnapshotEntity *scene_add(int model, double east_m, double north_m
 static inline SeekerRadar *scene_radar(const char *preset, const char *given)
 {
     SeekerRadar *radar;
-    CHECK(seeker_radar_create(&radar, &(SeekerRadarConfig){.preset = preset, .catalog = stage.catalog_path, .isa = "avx2",
-                                                           .given = given, .seed = 1}) == STATUS_OK);
+    CHECK(seeker_radar_create(&radar, &(SeekerRadarConfig){.preset = preset,
+                                                           .catalog = stage.catalog_path,
+                                                           .isa = "avx2",
+                                                           .given = given,
+                                                           .seed = 1}) == STATUS_OK);
     return radar;
 }
 

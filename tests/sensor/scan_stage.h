@@ -10,22 +10,22 @@ static const double radius_m = 0.5, range_m = 3000, eye_m = 200;
 enum { spheres_most = 2, columns_px = 401, rows_px = 9 };
 
 typedef struct Stage {
-    Landscape  landscape;
-    Catalog   *catalog;
-    World      world;
-    Pool      *pool;
-    Arena     *arena;
-    View       view;
-    Snapshot   snapshot;
+    Landscape      landscape;
+    Catalog       *catalog;
+    World          world;
+    Pool          *pool;
+    Arena         *arena;
+    View           view;
+    Snapshot       snapshot;
     SnapshotEntity entity[spheres_most];
-    NodePose   node[8];
-    int        model;
-    char       folder[temp_path_size], catalog_path[temp_name_size];
-    float      range_m[rows_px * columns_px];
-    uint32_t   shown[rows_px * columns_px];
+    NodePose       node[8];
+    int            model;
+    char           folder[temp_path_size], catalog_path[temp_name_size];
+    float          range_m[rows_px * columns_px];
+    uint32_t       shown[rows_px * columns_px];
 } Stage;
 
-static Stage stage;
+static Stage               stage;
 static const DisEntityType sphere_type = {1, 1, 225, 83, 7, 0, 0};
 
 static inline void put_sphere(FILE *to, const void *user)
@@ -114,8 +114,7 @@ static inline void place_sphere(int i, double azimuth, const double v_enu_mps[3]
     /* body: x north, y east, z down; of no matter to a sphere but that its top be above */
     const double r_enu_from_body[9] = {0, 1, 0, 1, 0, 0, 0, 0, -1};
     m3_mul(e->r_ecef_from_body, frame->r_ecef_from_enu, r_enu_from_body);
-    for (int n = 0; n < 8; n++)
-        stage.node[n] = (NodePose){.r_body_from_node = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
+    for (int n = 0; n < 8; n++) stage.node[n] = (NodePose){.r_body_from_node = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
     stage.snapshot = (Snapshot){.count = i + 1, .entity = stage.entity, .node = stage.node};
     CHECK(catalog_model(stage.catalog, stage.model)->node_count <= 8);
 }
@@ -123,17 +122,31 @@ static inline void place_sphere(int i, double azimuth, const double v_enu_mps[3]
 static inline RadarScene scene_of(double speed, const Weather *weather)
 {
     const double ground_m = elevation_height(&stage.landscape.elevation, 0, 0, NULL);
-    stage.view = (View){.p_enu = {0, 0, ground_m + eye_m}, .width = columns_px, .height = rows_px, .focal_px = 500,
+    stage.view = (View){.p_enu = {0, 0, ground_m + eye_m},
+                        .width = columns_px,
+                        .height = rows_px,
+                        .focal_px = 500,
                         .r_enu_from_cam = {0, 0, 1, -1, 0, 0, 0, -1, 0}};
-    return (RadarScene){.world = &stage.world, .snapshot = &stage.snapshot, .view = &stage.view, .hidden = -1,
-                        .v_enu_mps = {speed, 0, 0}, .reference_m = range_m, .weather = weather, .number = 5};
+    return (RadarScene){.world = &stage.world,
+                        .snapshot = &stage.snapshot,
+                        .view = &stage.view,
+                        .hidden = -1,
+                        .v_enu_mps = {speed, 0, 0},
+                        .reference_m = range_m,
+                        .weather = weather,
+                        .number = 5};
 }
 
 static inline SeekerRadar *open_radar(const char *preset, double scan_deg, double scan_step, bool ground)
 {
-    SeekerRadar *radar;
-    const SeekerRadarConfig config = {.preset = preset, .catalog = stage.catalog_path, .isa = "avx2", .ground = ground,
-                                      .scan_rad = scan_deg * rad_per_deg, .scan_step = scan_step, .seed = 3};
+    SeekerRadar            *radar;
+    const SeekerRadarConfig config = {.preset = preset,
+                                      .catalog = stage.catalog_path,
+                                      .isa = "avx2",
+                                      .ground = ground,
+                                      .scan_rad = scan_deg * rad_per_deg,
+                                      .scan_step = scan_step,
+                                      .seed = 3};
     CHECK(seeker_radar_create(&radar, &config) == STATUS_OK);
     return radar;
 }
@@ -189,7 +202,7 @@ static inline double vertex_of(const double *power, int peak)
 /* Between the half-power points, straight in decibels between samples. */
 static inline double width_of(const double *power, int count, int peak)
 {
-    double vertex = vertex_of(power, peak) - peak, side[2];
+    double       vertex = vertex_of(power, peak) - peak, side[2];
     const double a = log(power[peak - 1]), b = log(power[peak]), c = log(power[peak + 1]);
     const double half = b - 0.25 * (a - c) * vertex + log(0.5);
     for (int s = 0; s < 2; s++) {

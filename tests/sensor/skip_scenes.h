@@ -19,7 +19,7 @@ static struct {
     uint64_t   skipped[SKIP_COUNT];
 } stage;
 
-static const DisEntityType types[] = {{1, 1, 222, 1, 1, 1, 0}, {1, 1, 222, 7, 1, 0, 0}, {1, 2, 225, 20, 1, 0, 0},
+static const DisEntityType types[] = {{1, 1, 222, 1, 1, 1, 0},  {1, 1, 222, 7, 1, 0, 0}, {1, 2, 225, 20, 1, 0, 0},
                                       {1, 1, 222, 28, 1, 0, 0}, {1, 3, 225, 1, 1, 0, 0}, {2, 2, 225, 1, 1, 0, 0}};
 
 static double dice(int scene, int what, double low, double high)
@@ -33,9 +33,11 @@ static inline int open_stage(void **state)
     const Geodetic origin = {0.8, 0.2, 500};
     double         times_s[2];
     stage.arena = arena_create();
-    return stage.arena && pool_create(&stage.pool, 2) == STATUS_OK && local_frame_at(&stage.frame, &origin) == STATUS_OK &&
+    return stage.arena && pool_create(&stage.pool, 2) == STATUS_OK &&
+                   local_frame_at(&stage.frame, &origin) == STATUS_OK &&
                    landscape_quick(&stage.landscape, times_s, &stage.frame, 2000, 2000, stage.pool) == STATUS_OK
-               ? 0 : -1;
+               ? 0
+               : -1;
 }
 
 static inline int close_stage(void **state)
@@ -59,10 +61,13 @@ static void place_all(int n)
         for (int k = 0; k < entities; k++) {
             const int        d = 100 + 10 * k;
             const double     spread_m = dice(n, 3, 5, 150);
-            const TrialPlace place = {.type = types[(int)dice(n, d, 0, sizeof types / sizeof *types)], .number = k + 1,
-                                      .east_m = dice(n, d + 1, -spread_m, spread_m), .north_m = dice(n, d + 2, -spread_m, spread_m),
+            const TrialPlace place = {.type = types[(int)dice(n, d, 0, sizeof types / sizeof *types)],
+                                      .number = k + 1,
+                                      .east_m = dice(n, d + 1, -spread_m, spread_m),
+                                      .north_m = dice(n, d + 2, -spread_m, spread_m),
                                       .above_m = dice(n, d + 3, 0, 1) < 0.3 ? dice(n, d + 4, 0, 40) : 0,
-                                      .turn_rad = dice(n, d + 5, 0, 6), .appearance = (uint32_t)dice(n, d + 6, 0, 4) << 5};
+                                      .turn_rad = dice(n, d + 5, 0, 6),
+                                      .appearance = (uint32_t)dice(n, d + 6, 0, 4) << 5};
             assert_int_equal(trial_scene_place(&stage.scene, &place), STATUS_OK);
         }
         if (!later) stage.scene.sun_now_s += 8; /* for the smoke to rise */
@@ -71,14 +76,20 @@ static void place_all(int n)
 
 static RenderRequest request_of(int n)
 {
-    const double back_m = exp(dice(n, 4, log(15), log(900)));
-    View view = trial_view(&stage.scene, back_m, dice(n, 5, 1, 0.5 * back_m), dice(n, 6, 3, 60) * rad_per_deg,
-                           33 + (int)dice(n, 7, 0, 40), 33 + (int)dice(n, 8, 0, 30));
-    RenderRequest request = {.view = view, .bands = 1 + (unsigned)dice(n, 9, 0, 15), .truth = true, .optical = OPTICAL_RGB,
-                             .samples = dice(n, 10, 0, 1) < 0.25 ? 2 : 1, .edge_samples = dice(n, 11, 0, 1) < 0.7 ? 4 : 0,
-                             .target_samples = dice(n, 12, 0, 1) < 0.7 ? 32 : 0, .hidden_entity = dice(n, 13, 0, 1) < 0.3 ? 0 : -1,
+    const double  back_m = exp(dice(n, 4, log(15), log(900)));
+    View          view = trial_view(&stage.scene, back_m, dice(n, 5, 1, 0.5 * back_m), dice(n, 6, 3, 60) * rad_per_deg,
+                                    33 + (int)dice(n, 7, 0, 40), 33 + (int)dice(n, 8, 0, 30));
+    RenderRequest request = {.view = view,
+                             .bands = 1 + (unsigned)dice(n, 9, 0, 15),
+                             .truth = true,
+                             .optical = OPTICAL_RGB,
+                             .samples = dice(n, 10, 0, 1) < 0.25 ? 2 : 1,
+                             .edge_samples = dice(n, 11, 0, 1) < 0.7 ? 4 : 0,
+                             .target_samples = dice(n, 12, 0, 1) < 0.7 ? 32 : 0,
+                             .hidden_entity = dice(n, 13, 0, 1) < 0.3 ? 0 : -1,
                              .sky_visibility = n % 3 != 2};
-    if (request.bands >> BAND_RADAR & 1) request.profile_bins = 16, request.profile_bin_m = 4, request.profile_near_m = back_m - 30;
+    if (request.bands >> BAND_RADAR & 1)
+        request.profile_bins = 16, request.profile_bin_m = 4, request.profile_near_m = back_m - 30;
     return request;
 }
 
@@ -109,7 +120,8 @@ static inline void keeps_the_bits(int n)
     for (int k = 0; k < SKIP_COUNT; k++) stage.skipped[k] += frame.picture.counters.visibility.skipped[k];
     for (int k = 0; k <= SKIP_COUNT; k++) {
         frame.request.skips_off = k < SKIP_COUNT ? 1u << k : skips_all_off;
-        snprintf(what, sizeof what, "scene %d without skip %s", n, k < SKIP_COUNT ? visibility_skip_name((Skip)k) : "all");
+        snprintf(what, sizeof what, "scene %d without skip %s", n,
+                 k < SKIP_COUNT ? visibility_skip_name((Skip)k) : "all");
         trial_frame(&frame);
         assert_int_equal(frame.status, STATUS_OK);
         assert_int_equal(trial_frame_hash(other, &frame), STATUS_OK);

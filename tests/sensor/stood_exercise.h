@@ -19,28 +19,28 @@ typedef struct Exercise {
     Shot       shot[4];
 } Exercise;
 
-static const DisEntityType tank = {1, 1, 225, 1, 1, 0, 0}, man = {.kind = 3},
-    house = {.kind = 5, .domain = 1}, crate = {.kind = 6},
-    radar_site = {.kind = 9, .domain = 1}, mine = {2, 2, 225, 3, 0, 0, 0}, sea_mine = {2, 6, 225, 3, 0, 0, 0},
-    helicopter = {1, 2, 225, 20, 1, 0, 0}, jet = {1, 2, 225, 1, 1, 0, 0}, ship = {1, 3, 225, 6, 1, 0, 0},
-    submarine = {1, 4, 225, 1, 0, 0, 0}, missile = {2, 2, 225, 1, 1, 0, 0};
+static const DisEntityType tank = {1, 1, 225, 1, 1, 0, 0}, man = {.kind = 3}, house = {.kind = 5, .domain = 1},
+                           crate = {.kind = 6}, radar_site = {.kind = 9, .domain = 1}, mine = {2, 2, 225, 3, 0, 0, 0},
+                           sea_mine = {2, 6, 225, 3, 0, 0, 0}, helicopter = {1, 2, 225, 20, 1, 0, 0},
+                           jet = {1, 2, 225, 1, 1, 0, 0}, ship = {1, 3, 225, 6, 1, 0, 0},
+                           submarine = {1, 4, 225, 1, 0, 0, 0}, missile = {2, 2, 225, 1, 1, 0, 0};
 
 /* Reports every 2 s along a straight line, base h_m above the ellipsoid, level; speed in x. */
 static inline Track *stand(Exercise *e, DisEntityType type, double x_m, double y_m, double h_m, double speed_mps,
                            int reports)
 {
-    const int t = e->survey.track_count++;
-    Track    *track = &e->track[t];
-    Origin    origin;
+    const int    t = e->survey.track_count++;
+    Track       *track = &e->track[t];
+    Origin       origin;
     const Model *model = catalog_model(catalog, catalog_find(catalog, type, &origin, NULL));
     assert_true(t < most_tracks && reports <= most_points);
     *track = (Track){.id = {1, 1, (uint16_t)(t + 1)}, .type = type, .count = reports, .point = e->point[t]};
     snprintf(track->marking, sizeof track->marking, "E%d", (t + 1) % 100);
     for (int n = 0; n < reports; n++) {
-        TrackPoint *p = &track->point[n];
-        double p_enu[3] = {x_m + 2 * n * speed_mps, y_m, h_m}, v_enu[3] = {speed_mps, 0, 0};
+        TrackPoint         *p = &track->point[n];
+        double              p_enu[3] = {x_m + 2 * n * speed_mps, y_m, h_m}, v_enu[3] = {speed_mps, 0, 0};
         static const double r_enu_from_body[9] = {1, 0, 0, 0, -1, 0, 0, 0, -1}; /* eastwards */
-        Geodetic place;
+        Geodetic            place;
         *p = (TrackPoint){.t_s = 100 + 2 * n};
         for (int k = 0; k < 4; k++) { /* to that height above the ellipsoid */
             ecef_from_enu(p->p_ecef, &frame, p_enu);

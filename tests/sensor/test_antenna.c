@@ -13,7 +13,8 @@ static void widths_and_lobes_are_published_ones(void **state)
     for (int n = 0; n < 3; n++) {
         const Antenna a = {.diameter_m = 5, .taper = n, .wavelength_m = 0.01};
         const double  per_rad = a.diameter_m / a.wavelength_m;
-        CHECK_NEAR(antenna_width_rad(&a) / rad_per_deg * per_rad, table[n][0], 0.3); /* n = 1: 72.7 to one more figure */
+        CHECK_NEAR(antenna_width_rad(&a) / rad_per_deg * per_rad, table[n][0],
+                   0.3); /* n = 1: 72.7 to one more figure */
         CHECK_NEAR(antenna_peak_gain(&a) / pow(pi_rad * per_rad, 2), table[n][2], 0.005);
         double lobe = 0;
         for (double u = 3.9 + 1.3 * n; u < 12; u += 1e-3)
@@ -30,8 +31,9 @@ static void patterns_are_sums_over_the_aperture(void **state)
     const int steps = 200;
     for (int n = 0; n < 3; n++) {
         const Antenna a = {.diameter_m = 0.2, .taper = n, .wavelength_m = 0.003189};
-        double power = 0, power_x = 0;
-        double sum[5] = {0}, difference[5] = {0}, at[5][2] = {{0, 0}, {0.004, 0}, {0.009, 0.006}, {-0.013, 0.002}, {0.031, -0.02}};
+        double        power = 0, power_x = 0;
+        double        sum[5] = {0}, difference[5] = {0},
+               at[5][2] = {{0, 0}, {0.004, 0}, {0.009, 0.006}, {-0.013, 0.002}, {0.031, -0.02}};
         for (int i = -steps; i < steps; i++)
             for (int j = -steps; j < steps; j++) {
                 const double x = (i + 0.5) / steps, y = (j + 0.5) / steps, r2 = x * x + y * y;

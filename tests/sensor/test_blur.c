@@ -5,7 +5,7 @@
 #include "sensor/detector/blur.h"
 
 enum { width = 200, height = 160 };
-static float  edge[width * height], out[width * height];
+static float        edge[width * height], out[width * height];
 static const double still[2] = {0, 0};
 
 /* Area of the unit square (centred at 0) where u cos a + v sin a < d, cos a > sin a > 0: exact, by its trapezium. */
@@ -94,9 +94,9 @@ static void slanted_edge_shows_the_product(void **state)
             blur_apply(blur, out, edge, chain.smear_px);
             for (double f = 0.05; f < 0.401; f += 0.05) {
                 const double fx = f * cos(a), fy = f * sin(a);
-                const double want = fabs(mtf_optics(&chain, fx, fy) * mtf_jitter(&chain, fx, fy) *
-                                         mtf_smear(&chain, fx, fy) * mtf_sinc(chain.footprint_px * fx) *
-                                         mtf_sinc(chain.footprint_px * fy));
+                const double want =
+                    fabs(mtf_optics(&chain, fx, fy) * mtf_jitter(&chain, fx, fy) * mtf_smear(&chain, fx, fy) *
+                         mtf_sinc(chain.footprint_px * fx) * mtf_sinc(chain.footprint_px * fy));
                 const double got = measured_mtf(out, a, f, rays == 1 ? 4 : 32);
                 if (!(fabs(got - want) <= 0.01))
                     fail_msg("chain %zu, rays %d, f %.2f: measured %.4f, product %.4f", k, rays, f, got, want);
@@ -117,14 +117,14 @@ static void waves_come_back_with_their_amplitude(void **state)
             const double fx = 0.5 * kx / width, fy = 0.5 * ky / height;
             if (fx > 0.4 || fy > 0.4) continue; /* from there on the chain bends */
             for (int i = 0; i < width * height; i++)
-                edge[i] = (float)(100 + cos(2 * pi_rad * fx * (i % width + 0.5)) *
-                                            cos(2 * pi_rad * fy * (i / width + 0.5)));
+                edge[i] =
+                    (float)(100 + cos(2 * pi_rad * fx * (i % width + 0.5)) * cos(2 * pi_rad * fy * (i / width + 0.5)));
             blur_apply(blur, out, edge, chain.smear_px);
             /* cos cos is half cos(x + y) and half cos(x - y), each with its own amplitude */
             for (int i = 0; i < width * height; i += 97) {
                 const double x = 2 * pi_rad * fx * (i % width + 0.5), y = 2 * pi_rad * fy * (i / width + 0.5);
-                const double want = 100 + 0.5 * cos(x + y) * mtf_chain(&chain, fx, fy) +
-                                    0.5 * cos(x - y) * mtf_chain(&chain, fx, -fy);
+                const double want =
+                    100 + 0.5 * cos(x + y) * mtf_chain(&chain, fx, fy) + 0.5 * cos(x - y) * mtf_chain(&chain, fx, -fy);
                 CHECK_NEAR(out[i], kx || ky ? want : 101, 2e-5); /* floats at 100 step by 8e-6 */
             }
         }
@@ -213,10 +213,8 @@ int main(void)
 {
     thread_flush_denormals();
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(slanted_edge_shows_the_product),
-        cmocka_unit_test(waves_come_back_with_their_amplitude),
-        cmocka_unit_test(mean_kept_and_nothing_rings_beyond),
-        cmocka_unit_test(hot_things_do_not_ring),
+        cmocka_unit_test(slanted_edge_shows_the_product),     cmocka_unit_test(waves_come_back_with_their_amplitude),
+        cmocka_unit_test(mean_kept_and_nothing_rings_beyond), cmocka_unit_test(hot_things_do_not_ring),
         cmocka_unit_test(odd_values_stay_where_they_are),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

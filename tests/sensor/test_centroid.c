@@ -1,6 +1,6 @@
-/* Where a small target seems to be: the centroid of a sensor's raw counts, noise off, against an ideal sampled sensor of
- * the same optics and footprint, whose samples are summed here from frequencies; and of the radiance planes against an
- * ideal box. A plate and a sphere, 0.1 to 20 px, at many places within a pixel. labels: physics slow */
+/* Where a small target seems to be: the centroid of a sensor's raw counts, noise off, against an ideal sampled sensor
+ * of the same optics and footprint, whose samples are summed here from frequencies; and of the radiance planes against
+ * an ideal box. A plate and a sphere, 0.1 to 20 px, at many places within a pixel. labels: physics slow */
 #include "tests/render/hand_world.h"
 
 #include "sensor/detector/chain.h"
@@ -20,8 +20,8 @@ static int open_world(void **state)
 typedef enum Shape { SQUARE, DISC } Shape;
 
 typedef struct Ideal {
-    bool   box;                    /* the pixel alone */
-    double low_m, high_m, temp_k;  /* photons: of a black body, by wavelength; temp_k 0: low_m is the only one */
+    bool   box;                   /* the pixel alone */
+    double low_m, high_m, temp_k; /* photons: of a black body, by wavelength; temp_k 0: low_m is the only one */
     double f_number, pitch_m, obscuration, footprint_px, jitter_px;
 } Ideal;
 
@@ -60,22 +60,25 @@ enum { ideal_period = 128, ideal_most = 16 * ideal_period, ideal_rows = 2 };
 
 typedef struct IdealWave {
     int    count;
-    double value[2 * ideal_rows + 1][ideal_most + 1]; /* of the image, frequencies (column / ideal_period, row - ideal_rows) */
+    double value[2 * ideal_rows + 1]
+                [ideal_most + 1]; /* of the image, frequencies (column / ideal_period, row - ideal_rows) */
 } IdealWave;
 
 /* down: columns are rows, and rows columns. */
 static void ideal_wave(IdealWave *w, const Ideal *d, Shape shape, double size_px, const double smear_px[2], bool down)
 {
     const double cutoff = d->box ? 16 : fmin(16, d->pitch_m / (d->low_m * d->f_number));
-    w->count            = (int)(cutoff * ideal_period);
+    w->count = (int)(cutoff * ideal_period);
     for (int row = -ideal_rows; row <= ideal_rows; row++)
         for (int k = 0; k <= w->count; k++) {
             const double f = (double)k / ideal_period, smear = smear_px[down] * f + smear_px[!down] * row;
-            w->value[row + ideal_rows][k] = ideal_pass(d, f, row) * shape_pass(shape, size_px, f, row) * mtf_sinc(smear);
+            w->value[row + ideal_rows][k] =
+                ideal_pass(d, f, row) * shape_pass(shape, size_px, f, row) * mtf_sinc(smear);
         }
 }
 
-/* Sum of a column's samples, x from the target; its rows' places are this far from the target's, or whole pixels more. */
+/* Sum of a column's samples, x from the target; its rows' places are this far from the target's, or whole pixels more.
+ */
 static double ideal_column(const IdealWave *w, double x, double row_px)
 {
     double sum = 0;
@@ -89,7 +92,7 @@ static double ideal_column(const IdealWave *w, double x, double row_px)
             sum += 2 * value[k] * now;
             const double next = twice * now - before;
             before = now;
-            now    = next;
+            now = next;
         }
     }
     return sum / ideal_period;
@@ -121,7 +124,7 @@ static Picture shoot(const View *view, Shape shape, double size_px, double right
     hand_clear();
     hand_add(shape == SQUARE ? hand_plate_model : hand_sphere_model, p_enu, r);
     RenderRequest request = hand_request(view);
-    request.optical         = OPTICAL_RGB;
+    request.optical = OPTICAL_RGB;
     request.hand_over_cells = true;
     arena_reset(hand.arena);
     return hand_render(&request, hand.pool);
@@ -149,8 +152,8 @@ static SensorPreset preset_of(const char *name)
     assert_int_equal(preset_read(&p, path, name), STATUS_OK);
     p.noise_scale = p.prnu = p.bad_share = p.ac_per_line = 0;
     p.auto_exposure = false;
-    p.bits          = 16;
-    p.dark_e_s      = 0;
+    p.bits = 16;
+    p.dark_e_s = 0;
     preset_refresh(&p);
     return p;
 }
@@ -162,28 +165,31 @@ typedef struct Eyes {
 } Eyes;
 
 static const Eyes eyes[] = {
-    {"staring_lwir", OPTICAL_PAN, 0, picture_lwir},   {"staring_mwir", OPTICAL_PAN, 0, picture_mwir},
-    {"scanning_flir", OPTICAL_PAN, 0, picture_lwir},  {"tv", OPTICAL_RGB, 0, picture_optical},
+    {"staring_lwir", OPTICAL_PAN, 0, picture_lwir},  {"staring_mwir", OPTICAL_PAN, 0, picture_mwir},
+    {"scanning_flir", OPTICAL_PAN, 0, picture_lwir}, {"tv", OPTICAL_RGB, 0, picture_optical},
     {"tv", OPTICAL_RGB, 2, picture_optical + 2},
 };
 enum { eyes_count = sizeof eyes / sizeof *eyes };
 
 static Ideal ideal_of(const SensorPreset *p, int channel)
 {
-    Ideal d = {.temp_k = p->band == BAND_OPTICAL ? 5772 : 300, .f_number = p->photons.f_number,
-               .pitch_m = p->photons.pitch_m, .obscuration = p->obscuration, .footprint_px = p->footprint,
+    Ideal d = {.temp_k = p->band == BAND_OPTICAL ? 5772 : 300,
+               .f_number = p->photons.f_number,
+               .pitch_m = p->photons.pitch_m,
+               .obscuration = p->obscuration,
+               .footprint_px = p->footprint,
                .jitter_px = p->jitter_px};
     preset_band(&d.low_m, &d.high_m, p->band, p->optical, channel);
     return d;
 }
 
-/* An ideal without optics errs by the root of 2 (e^3 / 3 + (1/2 - e) e^2 / 3), e = (1 - size) / 2: 0.26 px for a target of
- * 0.1 px, 0.16 for 0.44. With the wavelength x f-number at 0.4 of the pitch it is 0.11 .. 0.13 and 0.08 .. 0.09, at 0.8
- * 0.024 .. 0.03 and 0.017 .. 0.025, as the window is wide or narrow. */
+/* An ideal without optics errs by the root of 2 (e^3 / 3 + (1/2 - e) e^2 / 3), e = (1 - size) / 2: 0.26 px for a target
+ * of 0.1 px, 0.16 for 0.44. With the wavelength x f-number at 0.4 of the pitch it is 0.11 .. 0.13 and 0.08 .. 0.09, at
+ * 0.8 0.024 .. 0.03 and 0.017 .. 0.025, as the window is wide or narrow. */
 static void the_ideal_has_its_figures(void **state)
 {
     (void)state;
-    static IdealWave w;
+    static IdealWave    w;
     static const double share[3] = {0, 0.4, 0.8}, least[3][2] = {{0.255, 0.157}, {0.11, 0.08}, {0.022, 0.016}};
     static const double most[3][2] = {{0.265, 0.167}, {0.131, 0.092}, {0.032, 0.026}};
     for (int k = 0; k < 3; k++)
@@ -193,7 +199,8 @@ static void the_ideal_has_its_figures(void **state)
             double       square = 0;
             ideal_wave(&w, &d, SQUARE, size, still, false);
             for (int i = 0; i < 32; i++) square += pow(ideal_error(&w, (i + 0.5) / 32, 0.5, k ? 8 : 2), 2) / 32;
-            print_message("ideal, wavelength x f-number %.1f px, target %.2f px: %.4f px rms\n", share[k], size, sqrt(square));
+            print_message("ideal, wavelength x f-number %.1f px, target %.2f px: %.4f px rms\n", share[k], size,
+                          sqrt(square));
             CHECK(sqrt(square) >= least[k][n] && sqrt(square) <= most[k][n]);
             const double e = (1 - size) / 2, closed = sqrt(2 * (e * e * e / 3 + (0.5 - e) * e * e / 3));
             if (k == 0) CHECK_NEAR(sqrt(square), closed, 0.003);
@@ -213,8 +220,8 @@ static void add_error(Rms *r, double ours, double ideal)
 
 static int reach(double size_px) { return 7 + (int)(size_px / 2); }
 
-/* An eye's chain whose exposure fills 40000 of 65535 counts with the brightest pixel, so that the converter's steps do not
- * count. */
+/* An eye's chain whose exposure fills 40000 of 65535 counts with the brightest pixel, so that the converter's steps do
+ * not count. */
 static Chain *chain_of(double *integration_s, const Eyes *eye, SensorPreset p, const Picture *picture)
 {
     const float *plane = picture_plane(picture, eye->plane);
@@ -253,7 +260,7 @@ static void measure(Rms rms[eyes_count + 1][2], Shape shape, double size_px, boo
     SensorPreset     preset[eyes_count];
     double           integration_s[eyes_count + 1] = {[eyes_count] = 1};
     for (int e = 0; e < eyes_count; e++) {
-        preset[e]         = preset_of(eyes[e].name);
+        preset[e] = preset_of(eyes[e].name);
         preset[e].optical = eyes[e].optical;
         preset[e].scan.line_s = 0; /* each line at its own time is another matter: test_scan.c */
         preset_refresh(&preset[e]);
@@ -286,7 +293,8 @@ static void measure(Rms rms[eyes_count + 1][2], Shape shape, double size_px, boo
 static const char *eye_name(int e) { return e < eyes_count ? eyes[e].name : "radiance"; }
 
 /* The bar: 1.2 times the error of an ideal sensor and 0.005 px, to 4 px. The tighter one is ours: each single centroid,
- * rms apart from the ideal's: 0.002 px; 0.007 px for the plane of radiance, whose ideal here ends at 16 cycles a pixel. */
+ * rms apart from the ideal's: 0.002 px; 0.007 px for the plane of radiance, whose ideal here ends at 16 cycles a pixel.
+ */
 static void raw_is_as_good_as_an_ideal_sensor(void **state)
 {
     (void)state;
@@ -303,8 +311,9 @@ static void raw_is_as_good_as_an_ideal_sensor(void **state)
                     const double ours = sqrt(rms[e][down].ours / places), ideal = sqrt(rms[e][down].ideal / places);
                     const double apart = sqrt(rms[e][down].apart / places);
                     if (optical && shape == DISC) continue; /* the sun lights one side of it */
-                    print_message("%s of %5.2f px, %s, %s: %.4f px, ideal %.4f, apart %.4f\n", shape ? "sphere" : "plate",
-                                  sizes_px[n], eye_name(e), down ? "down" : "across", ours, ideal, apart);
+                    print_message("%s of %5.2f px, %s, %s: %.4f px, ideal %.4f, apart %.4f\n",
+                                  shape ? "sphere" : "plate", sizes_px[n], eye_name(e), down ? "down" : "across", ours,
+                                  ideal, apart);
                     CHECK(ours <= 1.2 * ideal + 0.005);
                     CHECK(apart <= (box ? 0.007 : 0.002));
                 }
@@ -323,15 +332,15 @@ static void smear_goes_with_it(void **state)
         for (int down = 0; down < 2; down++) {
             const double ours = sqrt(rms[e][down].ours / places), ideal = sqrt(rms[e][down].ideal / places);
             const double apart = sqrt(rms[e][down].apart / places);
-            print_message("smeared, %s, %s: %.4f px, ideal %.4f, apart %.4f\n", eyes[e].name, down ? "down" : "across", ours,
-                          ideal, apart);
+            print_message("smeared, %s, %s: %.4f px, ideal %.4f, apart %.4f\n", eyes[e].name, down ? "down" : "across",
+                          ours, ideal, apart);
             CHECK(ours <= 1.2 * ideal + 0.005);
             CHECK(apart <= 0.003); /* 0.0021 measured, television: the odd part that fades */
         }
 }
 
-/* From 16 px on a target's edges go the pixels' way, in 16 steps a pixel: an upright plate, whose two edges step at once,
- * errs by 1 / (16 sqrt(12)) = 0.018 px and no more, where the optics would let it be 0.004. */
+/* From 16 px on a target's edges go the pixels' way, in 16 steps a pixel: an upright plate, whose two edges step at
+ * once, errs by 1 / (16 sqrt(12)) = 0.018 px and no more, where the optics would let it be 0.004. */
 static void large_targets_err_by_the_steps_of_their_edges(void **state)
 {
     (void)state;
@@ -368,8 +377,8 @@ static void counts_of(uint16_t *counts, const RenderRequest *request, Pool *pool
     SensorPreset p = preset_of("staring_lwir");
     Chain       *chain;
     arena_reset(hand.arena);
-    const Picture picture = hand_render(request, pool);
-    const float  *in[1] = {picture.lwir};
+    const Picture       picture = hand_render(request, pool);
+    const float        *in[1] = {picture.lwir};
     static const double moving[2] = {3000, -2000};
     p.photons.integration_s = 5e-5; /* half a well; moving by 0.15 and 0.1 px meanwhile */
     preset_refresh(&p);
@@ -423,7 +432,7 @@ static void threads_and_skips_make_no_difference(void **state)
     counts_of(again, &request, hand.pool);
     CHECK(memcmp(first, again, sizeof first) == 0);
     request.skips_off = 0;
-    request.budget    = true;
+    request.budget = true;
     counts_of(again, &request, hand.pool);
     CHECK(memcmp(first, again, sizeof first) == 0);
 }
@@ -449,14 +458,14 @@ static void planes_do_not_know_of_cells(void **state)
     }
 }
 
-/* Counts above those of the sky, summed: the photons of all that is seen of the plates, whichever covers which and however
- * they lie; footprint of the whole pixel, so that none fall between. Plates at the picture's edge are left out: their
- * light is mirrored there. */
+/* Counts above those of the sky, summed: the photons of all that is seen of the plates, whichever covers which and
+ * however they lie; footprint of the whole pixel, so that none fall between. Plates at the picture's edge are left out:
+ * their light is mirrored there. */
 static void light_is_kept(void **state)
 {
     (void)state;
-    const View    view = hand_view(eye_enu, (const double[3]){1, 0, 0}, side_px, side_px, focal_px);
-    RenderRequest request = hand_request(&view);
+    const View          view = hand_view(eye_enu, (const double[3]){1, 0, 0}, side_px, side_px, focal_px);
+    RenderRequest       request = hand_request(&view);
     static const double still_px[2] = {0, 0};
     request.hand_over_cells = true;
     for (int k = 0; k < 4; k++) {
@@ -470,7 +479,7 @@ static void light_is_kept(void **state)
         arena_reset(hand.arena);
         const Picture picture = hand_render(&request, hand.pool);
         const float  *in[1] = {picture.lwir};
-        p.footprint             = 1;
+        p.footprint = 1;
         p.photons.integration_s = 5e-5;
         preset_refresh(&p);
         assert_int_equal(chain_create(&chain, &p, side_px, side_px, render_places(1, 4), 1), STATUS_OK);
@@ -479,7 +488,8 @@ static void light_is_kept(void **state)
         double       sum = 0, area = 0;
         for (int i = 0; i < side_px * side_px; i++) sum += chain_counts(chain, 0)[i] - sky;
         for (int i = 0; i < 3; i++) area += picture.target[i].visible;
-        /* 2304 roundings to whole counts, 0.29 each, of some 2e5 by chance; the sky's own rounding, at most 0.5 in each */
+        /* 2304 roundings to whole counts, 0.29 each, of some 2e5 by chance; the sky's own rounding, at most 0.5 in each
+         */
         const double plate = chain_counts_at(chain, 0, hand_emitted(BAND_LWIR)) - sky;
         print_message("light of %.3f px: %.5f of it\n", area, sum / (area * plate));
         CHECK_NEAR(sum / (area * plate), 1, 0.005);
@@ -487,8 +497,8 @@ static void light_is_kept(void **state)
     }
 }
 
-/* A furnace of 0.1 px before cold ground is not ground that is a little warmer: photons of short wave carry more energy.
- * 3.4 .. 4.8 um, a plate that glows as 1200 K: its electrons by Planck's photons, not by the pixel's mean. */
+/* A furnace of 0.1 px before cold ground is not ground that is a little warmer: photons of short wave carry more
+ * energy. 3.4 .. 4.8 um, a plate that glows as 1200 K: its electrons by Planck's photons, not by the pixel's mean. */
 static void hot_points_count_their_own_photons(void **state)
 {
     (void)state;
@@ -497,19 +507,29 @@ static void hot_points_count_their_own_photons(void **state)
     Chain       *chain;
     double       low_m, high_m;
     preset_band(&low_m, &high_m, BAND_MWIR, OPTICAL_PAN, -1);
-    const float  ground = (float)planck_band(low_m, high_m, 280, NULL), hot = (float)planck_band(low_m, high_m, 1200, NULL);
-    const double share = 0.01;
-    static float plane[n * n];
-    const bool   met[1] = {true};
-    const float  behind[1] = {ground};
-    const double area[1] = {share};
-    SmallTarget  target = {.box_px = {12.4, 12.3, 12.5, 12.4}, .columns = 1, .rows = 1, .x0 = 12, .y0 = 12, .x1 = 13, .y1 = 13,
-                           .met = met, .cell[picture_mwir] = &hot, .behind[picture_mwir] = behind, .area = area};
+    const float ground = (float)planck_band(low_m, high_m, 280, NULL),
+                hot = (float)planck_band(low_m, high_m, 1200, NULL);
+    const double       share = 0.01;
+    static float       plane[n * n];
+    const bool         met[1] = {true};
+    const float        behind[1] = {ground};
+    const double       area[1] = {share};
+    SmallTarget        target = {.box_px = {12.4, 12.3, 12.5, 12.4},
+                                 .columns = 1,
+                                 .rows = 1,
+                                 .x0 = 12,
+                                 .y0 = 12,
+                                 .x1 = 13,
+                                 .y1 = 13,
+                                 .met = met,
+                                 .cell[picture_mwir] = &hot,
+                                 .behind[picture_mwir] = behind,
+                                 .area = area};
     const SmallTargets small = {1, &target};
     for (int i = 0; i < n * n; i++) plane[i] = ground;
     plane[12 * n + 12] = (float)((1 - share) * (double)ground + share * (double)hot);
     const float *in[1] = {plane};
-    p.footprint             = 1;
+    p.footprint = 1;
     p.photons.integration_s = 2e-4;
     preset_refresh(&p);
     assert_int_equal(chain_create(&chain, &p, n, n, 16, 1), STATUS_OK);
@@ -519,7 +539,8 @@ static void hot_points_count_their_own_photons(void **state)
         for (int i = 0; i < n * n; i++) sum[k] += chain_counts(chain, 0)[i] - chain_counts_at(chain, 0, (double)ground);
     }
     const double etendue = photon_etendue(&p.photons) / chain_step_e(chain);
-    const double want = share * etendue * (photon_band(low_m, high_m, 1200, NULL) - photon_band(low_m, high_m, 280, NULL));
+    const double want =
+        share * etendue * (photon_band(low_m, high_m, 1200, NULL) - photon_band(low_m, high_m, 280, NULL));
     print_message("hot point: %.4f of its electrons; as a warmer pixel %.4f\n", sum[1] / want, sum[0] / want);
     CHECK_NEAR(sum[1] / want, 1, 0.003);
     CHECK(fabs(sum[0] / want - 1) > 0.01);
@@ -532,21 +553,29 @@ static void the_largest_small_target_fits(void **state)
 {
     (void)state;
     enum { w = 160, h = 160 };
-    static float  plane[w * h], behind[w * h];
-    static double area[w * h];
-    static const double box[3][4] = {{40.6, 50.7, 104.55, 66.65}, {40.6, 50.7, 56.55, 114.65}, {99.7, 147.7, 163.6, 163.6}};
-    const bool    met[1] = {true};
-    const float   hot = 60, ground = 30;
-    SensorPreset  p = preset_of("staring_lwir");
-    Chain        *chain;
+    static float        plane[w * h], behind[w * h];
+    static double       area[w * h];
+    static const double box[3][4] = {
+        {40.6, 50.7, 104.55, 66.65}, {40.6, 50.7, 56.55, 114.65}, {99.7, 147.7, 163.6, 163.6}};
+    const bool   met[1] = {true};
+    const float  hot = 60, ground = 30;
+    SensorPreset p = preset_of("staring_lwir");
+    Chain       *chain;
     p.photons.integration_s = 5e-5;
-    p.footprint             = 1;
+    p.footprint = 1;
     preset_refresh(&p);
     assert_int_equal(chain_create(&chain, &p, w, h, 16, 1), STATUS_OK);
     for (int n = 0; n < 3; n++) {
-        SmallTarget t = {.columns = 1, .rows = 1, .x0 = (int)box[n][0], .y0 = (int)box[n][1],
-                         .x1 = (int)fmin(w, ceil(box[n][2])), .y1 = (int)fmin(h, ceil(box[n][3])), .met = met,
-                         .cell[picture_lwir] = &hot, .behind[picture_lwir] = behind, .area = area};
+        SmallTarget t = {.columns = 1,
+                         .rows = 1,
+                         .x0 = (int)box[n][0],
+                         .y0 = (int)box[n][1],
+                         .x1 = (int)fmin(w, ceil(box[n][2])),
+                         .y1 = (int)fmin(h, ceil(box[n][3])),
+                         .met = met,
+                         .cell[picture_lwir] = &hot,
+                         .behind[picture_lwir] = behind,
+                         .area = area};
         double      all = 0, sum = 0;
         memcpy(t.box_px, box[n], sizeof t.box_px);
         for (int i = 0; i < w * h; i++) plane[i] = behind[i] = ground;

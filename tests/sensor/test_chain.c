@@ -36,7 +36,7 @@ static Chain *chain_of(const SensorPreset *p)
 static double mean_counts(Chain *chain, int frame)
 {
     const float *in[1] = {plane};
-    double       sum   = 0;
+    double       sum = 0;
     chain_expose(chain, in);
     chain_run(chain, in, NULL, frame, still);
     for (int i = 0; i < pixels; i++) sum += chain_counts(chain, 0)[i];
@@ -51,7 +51,7 @@ static void netd_is_what_electrons_make_it(void **state)
 {
     (void)state;
     static const char *const name[2] = {"staring_lwir", "staring_mwir"};
-    static double sum[pixels], sum2[pixels];
+    static double            sum[pixels], sum2[pixels];
     for (int k = 0; k < 2; k++) {
         SensorPreset p = preset_of(name[k]);
         for (int a = NOISE_TV; a < noise_axes; a++) p.ratio.sigma[a] = 0;
@@ -126,8 +126,8 @@ static void frames_need_no_other(void **state)
     static uint16_t          ninth[pixels];
     const double             moving[2] = {300, -120};
     for (int k = 0; k < 3; k++) {
-        SensorPreset p  = preset_of(name[k]);
-        Chain       *a  = chain_of(&p), *b = chain_of(&p);
+        SensorPreset p = preset_of(name[k]);
+        Chain       *a = chain_of(&p), *b = chain_of(&p);
         const float *in[1] = {plane};
         fill(p.band, 295);
         for (int i = 0; i < pixels; i++) plane[i] *= 1 + 0.1f * (float)((i / 7) % 3);
@@ -191,10 +191,10 @@ static void the_pool_of_ten_rolls(void **state)
 static void the_shutter_follows_the_light(void **state)
 {
     (void)state;
-    SensorPreset p     = preset_of("tv");
-    Chain       *chain = chain_of(&p);
+    SensorPreset        p = preset_of("tv");
+    Chain              *chain = chain_of(&p);
     static const double bright[] = {1, 10, 100, 1000};
-    const double full = exp2(p.bits) - 1;
+    const double        full = exp2(p.bits) - 1;
     for (int k = 0; k < 4; k++) {
         for (int i = 0; i < pixels; i++) plane[i] = (float)bright[k];
         CHECK_NEAR(mean_counts(chain, 0) / full, 0.35, 0.35 * 0.02); /* t noise of that frame, prnu, hot pixels */
@@ -216,10 +216,10 @@ static void light_counts_by_its_own_wavelength(void **state)
     for (int k = 0; k < 3; k++) {
         SensorPreset p = preset_of("tv");
         p.dark_e_s = 0;
-        p.optical  = seen[k];
+        p.optical = seen[k];
         preset_refresh(&p);
         Chain *chain = chain_of(&p);
-        counts[k]    = chain_counts_at(chain, 0, 10);
+        counts[k] = chain_counts_at(chain, 0, 10);
         if (seen[k] == OPTICAL_RGB) CHECK_NEAR(chain_counts_at(chain, 2, 10) / counts[k], 0.45 / 0.65, 1e-12);
         chain_destroy(chain);
     }
@@ -230,9 +230,9 @@ static void light_counts_by_its_own_wavelength(void **state)
 static void levels_follow_with_their_time_constant(void **state)
 {
     (void)state;
-    DetectorLevel level = {0, 10};
+    DetectorLevel       level = {0, 10};
     const DetectorLevel now = {5, 15};
-    bool quick = false;
+    bool                quick = false;
     for (int k = 0; k < 10; k++) detector_level_follow(&level, &quick, now, 0.1, 1.0);
     CHECK_NEAR(level.low, 5 * (1 - exp(-1)), 1e-12);
     CHECK_NEAR(level.high, 10 + 5 * (1 - exp(-1)), 1e-12);

@@ -14,26 +14,28 @@ static bool says(const Choices *choices, const char *text)
 static void the_exercise_heard_most_is_taken(void **state)
 {
     (void)state;
-    static uint8_t     bytes[5][160];
-    static DisDatagram datagram[5];
+    static uint8_t       bytes[5][160];
+    static DisDatagram   datagram[5];
     static const uint8_t exercise[5] = {7, 3, 7, 3, 7};
-    Config             config = config_default();
-    Choices            choices = {0};
+    Config               config = config_default();
+    Choices              choices = {0};
     for (int k = 0; k < 5; k++) {
         DisEntityState pdu = {.header = {.version = 6, .exercise = exercise[k], .type = dis_pdu_entity_state},
-                              .id = {1, 1, 1}, .p_ecef = {6378137, 0, 0}};
-        datagram[k] = (DisDatagram){.octets = (uint32_t)dis_encode_entity_state(bytes[k], sizeof bytes[k], &pdu), .bytes = bytes[k]};
+                              .id = {1, 1, 1},
+                              .p_ecef = {6378137, 0, 0}};
+        datagram[k] = (DisDatagram){.octets = (uint32_t)dis_encode_entity_state(bytes[k], sizeof bytes[k], &pdu),
+                                    .bytes = bytes[k]};
     }
     DisLog log = {.count = 5, .datagram = datagram};
     assert_int_equal(choice_exercise(&choices, &log, &config), 7);
     CHECK(says(&choices, "exercise: 7, heard most of 2 (exercise.exercise)"));
-    choices.count            = 0;
+    choices.count = 0;
     config.exercise.exercise = 3;
     assert_int_equal(choice_exercise(&choices, &log, &config), 3);
     config.exercise.exercise = -2;
     assert_int_equal(choice_exercise(&choices, &log, &config), -1);
     config.exercise.exercise = -1;
-    log.count                = 1;
+    log.count = 1;
     assert_int_equal(choice_exercise(&choices, &log, &config), -1); /* there is but one: nothing to choose */
     config.causal = true;
     assert_int_equal(choice_exercise(&choices, &log, &config), 7); /* and others may come */
@@ -44,14 +46,16 @@ static void the_exercise_heard_most_is_taken(void **state)
 static void optical_pictures_of_the_night_are_said_to_be_black(void **state)
 {
     (void)state;
-    static const struct { const char *utc; bool black; } at[] = {
-        {"2026-03-20T12:00:00Z", false}, {"2026-03-20T18:20:00Z", false}, {"2026-03-20T18:27:00Z", false},
-        {"2026-03-20T18:40:00Z", true}, {"2026-03-21T00:00:00Z", true}, {"2026-03-21T06:10:00Z", false}};
+    static const struct {
+        const char *utc;
+        bool        black;
+    } at[] = {{"2026-03-20T12:00:00Z", false}, {"2026-03-20T18:20:00Z", false}, {"2026-03-20T18:27:00Z", false},
+              {"2026-03-20T18:40:00Z", true},  {"2026-03-21T00:00:00Z", true},  {"2026-03-21T06:10:00Z", false}};
     const LocalFrame frame = {0};
     for (size_t k = 0; k < sizeof at / sizeof at[0]; k++)
         for (unsigned bands = 1; bands < 1u << BAND_COUNT; bands++) {
             double   unix_s;
-            HostPlan plan    = {.start_s = 100, .end_s = k % 2 ? INFINITY : 130};
+            HostPlan plan = {.start_s = 100, .end_s = k % 2 ? INFINITY : 130};
             Choices  choices = {0};
             CHECK(text_to_unix_s(&unix_s, at[k].utc));
             choice_report_night(&choices, bands, unix_s - 100, &plan, &frame);
@@ -64,14 +68,19 @@ static void optical_pictures_of_the_night_are_said_to_be_black(void **state)
 static void stamps_that_are_no_clock_are_said(void **state)
 {
     (void)state;
-    Survey     survey = {.first_s = 0, .clock_start_unix_s = NAN, .absolute_unix_s = 5e8, .absolute_stamps = 20,
-                         .absolute_left_out = 1, .doubts = {.count = 6}};
+    Survey     survey = {.first_s = 0,
+                         .clock_start_unix_s = NAN,
+                         .absolute_unix_s = 5e8,
+                         .absolute_stamps = 20,
+                         .absolute_left_out = 1,
+                         .doubts = {.count = 6}};
     Config     config = config_default();
     Choices    choices = {0};
     LocalFrame frame = {0};
     double     unix_s;
     for (int i = 0; i < 6; i++)
-        survey.doubts.sender[i] = (ExerciseClockAnomaly){.site = 3, .application = (uint16_t)(40 + i), .pdus = 90, .by_arrival = 89};
+        survey.doubts.sender[i] =
+            (ExerciseClockAnomaly){.site = 3, .application = (uint16_t)(40 + i), .pdus = 90, .by_arrival = 89};
     CHECK(choice_time(&unix_s, &choices, &survey, &config, &frame) == STATUS_OK);
     CHECK(says(&choices, "time stamps of 3:40 stand still: 89 of its 90 PDUs count from their arrival"));
     CHECK(says(&choices, "3:43") && !says(&choices, "3:44") && says(&choices, "2 more senders"));
@@ -128,27 +137,34 @@ static void the_time_of_day_comes_from_the_best_that_is_known(void **state)
     assert_int_equal(choice_time(&unix_s, &choices, &survey, &config, &frame), STATUS_OK);
     CHECK_NEAR(unix_s, 6e8, 0);
 
-    static const struct { const char *text; double unix_s; } good[] = {
+    static const struct {
+        const char *text;
+        double      unix_s;
+    } good[] = {
         {"1970-01-01T00:00:00Z", 0}, {"2000-02-29T12:30:15.5Z", 951827415.5}, {"2026-06-21T10:00:00Z", 1782036000}};
     for (size_t i = 0; i < sizeof good / sizeof good[0]; i++) { /* wanted values: date -u -d TEXT +%s */
         strcpy(config.exercise.utc, good[i].text);
         assert_int_equal(choice_time(&unix_s, &choices, &survey, &config, &frame), STATUS_OK);
         CHECK_NEAR(unix_s + 1000, good[i].unix_s, 1e-6);
     }
-    static const char *const bad[] = {"2026-02-31T00:00:00Z", "1900-02-29T00:00:00Z", "2026-06-21", "2026-13-01T00:00:00Z",
-                                      "2026-06-21T24:00:00Z", "2026-06-21T10:00:00", "2026-06-21T10:00:00Zx", "noon"};
+    static const char *const bad[] = {
+        "2026-02-31T00:00:00Z", "1900-02-29T00:00:00Z",  "2026-06-21", "2026-13-01T00:00:00Z", "2026-06-21T24:00:00Z",
+        "2026-06-21T10:00:00",  "2026-06-21T10:00:00Zx", "noon"};
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
         strcpy(config.exercise.utc, bad[i]);
-        if (choice_time(&unix_s, &choices, &survey, &config, &frame) != STATUS_BAD_VALUE) fail_msg("accepted: %s", bad[i]);
+        if (choice_time(&unix_s, &choices, &survey, &config, &frame) != STATUS_BAD_VALUE)
+            fail_msg("accepted: %s", bad[i]);
         CHECK(strstr(check_said, "exercise.utc"));
     }
 }
 
 /* Tracks at the Earth's surface; a missile k flies from start to end. */
-static Track track(uint16_t entity, uint8_t kind, uint8_t domain, TrackPoint *point, int count, double start_s, double end_s)
+static Track track(uint16_t entity, uint8_t kind, uint8_t domain, TrackPoint *point, int count, double start_s,
+                   double end_s)
 {
     for (int i = 0; i < count; i++) {
-        point[i] = (TrackPoint){.t_s = count > 1 ? start_s + (end_s - start_s) * i / (count - 1) : start_s, .p_ecef = {6378137 + 10.0 * kind, 100.0 * i, entity}};
+        point[i] = (TrackPoint){.t_s = count > 1 ? start_s + (end_s - start_s) * i / (count - 1) : start_s,
+                                .p_ecef = {6378137 + 10.0 * kind, 100.0 * i, entity}};
     }
     return (Track){.id = {1, 1, entity}, .type = {kind, domain, 225, 1, 1, 1, 0}, .count = count, .point = point};
 }
@@ -157,12 +173,22 @@ static void the_longest_flight_that_hit_is_the_host(void **state)
 {
     (void)state;
     static TrackPoint points[5][4];
-    Track  tracks[5] = {track(10, 1, 1, points[0], 4, 0, 100), track(20, 2, 2, points[1], 4, 5, 30), track(21, 2, 2, points[2], 4, 5, 15),
-                        track(22, 2, 2, points[3], 4, 5, 12), track(23, 2, 2, points[4], 1, 40, 40)};
-    Shot   shots[4] = {{.munition = {1, 1, 20}, .result = dis_result_ground_impact, .fire_s = 5, .detonation_s = 30},
-                       {.munition = {1, 1, 21}, .target = {1, 1, 10}, .hit = {1, 1, 10}, .result = dis_result_entity_impact, .fire_s = 5, .detonation_s = 15},
-                       {.munition = {1, 1, 22}, .hit = {1, 1, 10}, .result = dis_result_entity_impact, .fire_s = 5, .detonation_s = 12},
-                       {.munition = {1, 1, 23}, .result = dis_result_none, .fire_s = 40, .detonation_s = NAN}};
+    Track             tracks[5] = {track(10, 1, 1, points[0], 4, 0, 100), track(20, 2, 2, points[1], 4, 5, 30),
+                                   track(21, 2, 2, points[2], 4, 5, 15), track(22, 2, 2, points[3], 4, 5, 12),
+                                   track(23, 2, 2, points[4], 1, 40, 40)};
+    Shot     shots[4] = {{.munition = {1, 1, 20}, .result = dis_result_ground_impact, .fire_s = 5, .detonation_s = 30},
+                         {.munition = {1, 1, 21},
+                          .target = {1, 1, 10},
+                          .hit = {1, 1, 10},
+                          .result = dis_result_entity_impact,
+                          .fire_s = 5,
+                          .detonation_s = 15},
+                         {.munition = {1, 1, 22},
+                          .hit = {1, 1, 10},
+                          .result = dis_result_entity_impact,
+                          .fire_s = 5,
+                          .detonation_s = 12},
+                         {.munition = {1, 1, 23}, .result = dis_result_none, .fire_s = 40, .detonation_s = NAN}};
     Survey   survey = {.track_count = 5, .track = tracks, .shot_count = 4, .shot = shots, .first_s = 0, .last_s = 100};
     Config   config = config_default();
     Choices  choices = {0};
@@ -188,7 +214,7 @@ static void the_longest_flight_that_hit_is_the_host(void **state)
     config.exercise.host[0] = 0;
     strcpy(config.exercise.aim, "9:9:9");
     assert_int_equal(choice_host(&plan, &choices, &survey, &config), STATUS_BAD_VALUE);
-    survey.track_count     = 0;
+    survey.track_count = 0;
     config.exercise.aim[0] = 0;
     assert_int_equal(choice_host(&plan, &choices, &survey, &config), STATUS_BAD_VALUE);
 }
@@ -199,12 +225,14 @@ static void a_causal_host_is_one_that_is_still_there(void **state)
 {
     (void)state;
     static TrackPoint points[6][4];
-    Track  tracks[6] = {track(10, 1, 1, points[0], 4, 0, 30), track(20, 2, 2, points[1], 4, 1, 20),
-                        track(21, 2, 2, points[2], 4, 5, 29),
-                        track(22, 2, 2, points[3], 4, 2, 29), track(23, 2, 2, points[4], 4, 0, 17),
-                            track(24, 2, 2, points[5], 1, 30, 30)};
+    Track             tracks[6] = {track(10, 1, 1, points[0], 4, 0, 30), track(20, 2, 2, points[1], 4, 1, 20),
+                                   track(21, 2, 2, points[2], 4, 5, 29), track(22, 2, 2, points[3], 4, 2, 29),
+                                   track(23, 2, 2, points[4], 4, 0, 17), track(24, 2, 2, points[5], 1, 30, 30)};
     points[3][3].deactivated = true;
-    Shot     shots[2] = {{.munition = {1, 1, 20}, .hit = {1, 1, 10}, .result = dis_result_entity_impact, .fire_s = 1,
+    Shot     shots[2] = {{.munition = {1, 1, 20},
+                          .hit = {1, 1, 10},
+                          .result = dis_result_entity_impact,
+                          .fire_s = 1,
                           .detonation_s = 20},
                          {.munition = {1, 1, 21}, .target = {1, 1, 10}, .fire_s = 5, .detonation_s = NAN}};
     Survey   survey = {.track_count = 6, .track = tracks, .shot_count = 2, .shot = shots, .first_s = 0, .last_s = 30};
@@ -246,11 +274,14 @@ static void a_guided_munition_goes_before_any_other_and_a_mine_never(void **stat
 {
     (void)state;
     static TrackPoint points[5][4];
-    Track  tracks[5] = {track(10, 1, 1, points[0], 4, 0, 100), track(20, 2, 4, points[1], 4, 0, 100),
-                        track(21, 2, 2, points[2], 4, 5, 40), track(22, 2, 2, points[3], 4, 5, 12),
-                        track(23, 2, 2, points[4], 4, 5, 15)};
-    Shot   shots[1] = {{.munition = {1, 1, 21}, .hit = {1, 1, 10}, .result = dis_result_entity_impact, .fire_s = 5,
-                        .detonation_s = 40}};
+    Track             tracks[5] = {track(10, 1, 1, points[0], 4, 0, 100), track(20, 2, 4, points[1], 4, 0, 100),
+                                   track(21, 2, 2, points[2], 4, 5, 40), track(22, 2, 2, points[3], 4, 5, 12),
+                                   track(23, 2, 2, points[4], 4, 5, 15)};
+    Shot              shots[1] = {{.munition = {1, 1, 21},
+                                   .hit = {1, 1, 10},
+                                   .result = dis_result_entity_impact,
+                                   .fire_s = 5,
+                                   .detonation_s = 40}};
     Survey   survey = {.track_count = 5, .track = tracks, .shot_count = 1, .shot = shots, .first_s = 0, .last_s = 100};
     Config   config = config_default();
     Choices  choices = {0};
@@ -263,7 +294,8 @@ static void a_guided_munition_goes_before_any_other_and_a_mine_never(void **stat
     tracks[3].type.category = tracks[4].type.category = 3; /* mines, too */
     assert_int_equal(choice_host(&plan, &choices, &survey, &config), STATUS_OK);
     CHECK(plan.host.entity == 21 && says(&choices, "of unguided munitions"));
-    for (int i = 1; i < 4; i++) points[2][i].p_ecef[1] = points[2][0].p_ecef[1]; /* of any category, but it lies there */
+    for (int i = 1; i < 4; i++)
+        points[2][i].p_ecef[1] = points[2][0].p_ecef[1]; /* of any category, but it lies there */
     assert_int_equal(choice_host(&plan, &choices, &survey, &config), STATUS_OK);
     CHECK(dis_entity_id_is_none(plan.host) && plan.aim.entity == 10 && says(&choices, "no munition flies here"));
     points[2][0].v_ecef_mps[2] = 90; /* not so one that says that it flies */
@@ -279,11 +311,11 @@ static void an_observer_may_be_asked_for(void **state)
 {
     (void)state;
     static TrackPoint points[3][4];
-    Track    tracks[3] = {track(10, 1, 1, points[0], 4, 0, 100), track(11, 1, 1, points[1], 3, 20, 100),
-                          track(20, 2, 2, points[2], 4, 5, 30)};
-    Survey   survey = {.track_count = 3, .track = tracks, .first_s = 0, .last_s = 100};
-    Config   config = config_default();
-    HostPlan plan;
+    Track             tracks[3] = {track(10, 1, 1, points[0], 4, 0, 100), track(11, 1, 1, points[1], 3, 20, 100),
+                                   track(20, 2, 2, points[2], 4, 5, 30)};
+    Survey            survey = {.track_count = 3, .track = tracks, .first_s = 0, .last_s = 100};
+    Config            config = config_default();
+    HostPlan          plan;
     log_set_sink(check_listen, NULL);
     strcpy(config.exercise.host, "observer");
     assert_int_equal(config_check(&config), STATUS_OK);
@@ -297,7 +329,8 @@ static void an_observer_may_be_asked_for(void **state)
         strcpy(config.exercise.aim, "1:1:11");
         assert_int_equal(choice_host(&plan, &choices, &survey, &config), STATUS_OK);
         CHECK(plan.aim.entity == 11 && plan.start_s == 20);
-        assert_int_equal(choice_named_host(&plan, &choices, &survey, &config, (DisEntityId){0}), STATUS_OK); /* --host, several */
+        assert_int_equal(choice_named_host(&plan, &choices, &survey, &config, (DisEntityId){0}),
+                         STATUS_OK); /* --host, several */
         CHECK(dis_entity_id_is_none(plan.host) && plan.aim.entity == 11);
     }
     static const char *const bad[] = {"Observer", "observers", "0:0:0", "munitions"};

@@ -5,12 +5,13 @@
 
 enum { value = 3 };
 
-static void check_text(const uint32_t *plane, int width, int height, const char *want, const int bbox[4], long long area)
+static void check_text(const uint32_t *plane, int width, int height, const char *want, const int bbox[4],
+                       long long area)
 {
     CocoMaskExtent extent[value];
     coco_mask_extents(extent, value, plane, width, height);
-    const CocoMaskExtent *e    = &extent[value - 1];
-    char             *text = malloc(coco_mask_text_size(e));
+    const CocoMaskExtent *e = &extent[value - 1];
+    char                 *text = malloc(coco_mask_text_size(e));
     CHECK(text);
     coco_mask_text(text, plane, value, width, height, e);
     assert_string_equal(text, want);
@@ -25,7 +26,7 @@ static void check_picture(const char *rows, const char *want, int x, int y, int 
 {
     uint32_t  plane[256];
     const int width = (int)strcspn(rows, " ");
-    int       n     = 0;
+    int       n = 0;
     for (const char *at = rows; *at; at++)
         if (*at != ' ') plane[n++] = *at == '#' ? value : *at == 'o' ? value - 1 : 0;
     check_text(plane, width, n / width, want, (const int[]){x, y, w, h}, area);
@@ -52,24 +53,25 @@ static void masks_are_written_as_pycocotools_writes_them(void **state)
     for (int y = 0; y < 60; y++)
         for (int x = 0; x < 37; x++)
             pattern[y * 37 + x] = (x * x * 7 + y * 13 + x * y) % 5 == 0 && y > 3 && x > 2 && x < 30 ? value : 0;
-    check_text(pattern, 37, 60,
-               "k514000000000000000000020N00000000000000000000010O000000000000000000070I0000000000000000000Q20oM0000000000000"
-               "00000020N00000000000000000000010O000000000000000000070I0000000000000000000Q20oM000000000000000000020N0000000"
-               "0000000000000010O000000000000000000070I0000000000000000000Q20oM000000000000000000020N00000000000000000000010"
-               "O000000000000000000070I0000000000000000000Q20oM000000000000000000020N00000000000000000000010O000000000000000"
-               "000070I0000000000000000000Q20oM000000000000000000020N000000000000000000000P=",
-               (const int[]){3, 4, 27, 56}, 248);
+    check_text(
+        pattern, 37, 60,
+        "k514000000000000000000020N00000000000000000000010O000000000000000000070I0000000000000000000Q20oM0000000000000"
+        "00000020N00000000000000000000010O000000000000000000070I0000000000000000000Q20oM000000000000000000020N0000000"
+        "0000000000000010O000000000000000000070I0000000000000000000Q20oM000000000000000000020N00000000000000000000010"
+        "O000000000000000000070I0000000000000000000Q20oM000000000000000000020N00000000000000000000010O000000000000000"
+        "000070I0000000000000000000Q20oM000000000000000000020N000000000000000000000P=",
+        (const int[]){3, 4, 27, 56}, 248);
 }
 
 /* The format read back, by its description: groups of five bits, the second run before added from the fourth on. */
 static void read_back(uint8_t *mask, const char *text, size_t pixels)
 {
     long long run[3] = {0};
-    size_t    at     = 0;
-    int       count  = 0;
+    size_t    at = 0;
+    int       count = 0;
     for (const char *c = text; *c; count++) {
         long long number = 0;
-        int       shift  = 0, group;
+        int       shift = 0, group;
         do {
             CHECK(*c >= 48 && *c < 112);
             group = *c++ - 48;
@@ -93,9 +95,9 @@ static void every_mask_reads_back(void **state)
     uint32_t plane[most * most];
     uint8_t  mask[most * most];
     for (uint32_t n = 0; n < 600; n++) {
-        const int width  = 1 + (int)(random_uniform(1, 0, n, 0) * most);
+        const int width = 1 + (int)(random_uniform(1, 0, n, 0) * most);
         const int height = 1 + (int)(random_uniform(1, 0, n, 1) * most);
-        const int count  = 1 + (int)(random_uniform(1, 0, n, 2) * 4), block = 1 + (int)(random_uniform(1, 0, n, 3) * 9);
+        const int count = 1 + (int)(random_uniform(1, 0, n, 2) * 4), block = 1 + (int)(random_uniform(1, 0, n, 3) * 9);
         const double fill = random_uniform(1, 0, n, 4);
         for (int y = 0; y < height; y++)
             for (int x = 0; x < width; x++) {
@@ -133,12 +135,12 @@ static void a_box_is_the_mask_of_its_pixels(void **state)
     (void)state;
     enum { width = 7, height = 5, area = width * height };
     for (int code = 0; code < width * height * width * height; code++) {
-        const int a = code % area, b = code / area;
+        const int            a = code % area, b = code / area;
         const CocoMaskExtent box = {.box = {a % width, a / width, b % width + 1, b / width + 1}};
         if (box.box[2] <= box.box[0] || box.box[3] <= box.box[1]) continue;
-        uint32_t   plane[area] = {0};
+        uint32_t       plane[area] = {0};
         CocoMaskExtent extent[1];
-        char       text[7 * (width * (height + 1) + 2) + 1], want[sizeof text];
+        char           text[7 * (width * (height + 1) + 2) + 1], want[sizeof text];
         for (int y = box.box[1]; y < box.box[3]; y++)
             for (int x = box.box[0]; x < box.box[2]; x++) plane[y * width + x] = 1;
         coco_mask_extents(extent, 1, plane, width, height);

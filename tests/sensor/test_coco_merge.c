@@ -64,7 +64,8 @@ static void ids_are_new(void **state)
     CHECK(strstr(text, "{\"id\":1,\"image_id\":2,\"category_id\":2}"));
     CHECK(strstr(text, "{\"id\":2,\"image_id\":1,\"category_id\":1}"));
     /* nothing is added: what stood there goes */
-    CHECK(coco_merge_open(&merge, folder) == STATUS_OK && coco_merge_close(merge, true) == STATUS_OK && !there("coco.json"));
+    CHECK(coco_merge_open(&merge, folder) == STATUS_OK && coco_merge_close(merge, true) == STATUS_OK &&
+          !there("coco.json"));
     take("a");
     take("b");
 }
@@ -73,8 +74,17 @@ static void others_files_are_refused(void **state)
 {
     (void)state;
     static const char *const bad[] = {
-        "", "[", "{}", "[]", "7", "{\"images\":7}", "{\"images\":[7]}", "{\"images\":[{}]}", "{\"images\":[{\"id\":\"x\"}]}",
-        "{\"images\":[{\"id\":1}]}", "{\"images\":[{\"id\":1.5,\"file_name\":\"f\"}]}",
+        "",
+        "[",
+        "{}",
+        "[]",
+        "7",
+        "{\"images\":7}",
+        "{\"images\":[7]}",
+        "{\"images\":[{}]}",
+        "{\"images\":[{\"id\":\"x\"}]}",
+        "{\"images\":[{\"id\":1}]}",
+        "{\"images\":[{\"id\":1.5,\"file_name\":\"f\"}]}",
         "{\"images\":[{\"id\":1,\"file_name\":\"f\"}],\"annotations\":[{\"image_id\":2}]}",
         "{\"images\":[{\"id\":1,\"file_name\":\"f\"}],\"annotations\":[7]}",
         "{\"images\":[],\"annotations\":[{\"id\":1,\"image_id\":0}]}",

@@ -93,8 +93,10 @@ static void the_judge_is_right(void **state)
                                       {50, 2.5, 0, 73, 25, -18, 27.1492},
                                       {60.2574, -34.0099, 36.2677, 60.4626, -34.1751, 39.4387, 1.2644}};
     for (int k = 0; k < 4; k++) CHECK_NEAR(ciede2000(pair[k], pair[k] + 3), pair[k][6], 1e-4);
-    static const struct { int patch; double code[3]; } known[] = {{0, {115, 82, 68}}, {3, {87, 108, 67}},
-                                                                  {13, {70, 148, 73}}, {21, {122, 122, 121}}};
+    static const struct {
+        int    patch;
+        double code[3];
+    } known[] = {{0, {115, 82, 68}}, {3, {87, 108, 67}}, {13, {70, 148, 73}}, {21, {122, 122, 121}}};
     for (int k = 0; k < 4; k++) {
         double seen[3], lab[3], rgb[3], want[3];
         eye_sees(seen, patch[known[k].patch].reflectance);
@@ -116,9 +118,9 @@ static void bands_see(double w[3], const double *reflectance)
 /* One pixel from radiance to the screen's light: colour, level from black to white, 16 bits; back by sRGB's curve. */
 static void shown_as(double rgb[3], const double w[3], const DisplayColour *colour, double white)
 {
-    float    in[3] = {(float)w[0], (float)w[1], (float)w[2]};
-    float   *plane[3] = {in, in + 1, in + 2};
-    uint16_t code[3];
+    float          in[3] = {(float)w[0], (float)w[1], (float)w[2]};
+    float         *plane[3] = {in, in + 1, in + 2};
+    uint16_t       code[3];
     DetectorConfig config = detector_default_config();
     config.bits = 16;
     config.display_gamma = true;
@@ -181,13 +183,13 @@ static int elevation_of(double sun_enu[3], double deg)
 /* Radiance of level, diffuse ground of these reflectances as the renderer shades it, near by. */
 static void ground_sends(double w[3], const float rho[3])
 {
-    static const int       channel[3] = {AIR_R, AIR_G, AIR_B};
-    static Hits            hits;
-    static Rays            rays;
-    static const uint16_t  material[hits_capacity];
-    static float           texture[hits_capacity], out[hits_capacity];
-    Material               row = {.gloss = 0};
-    const Materials        materials = {.count = 1, .material = &row};
+    static const int      channel[3] = {AIR_R, AIR_G, AIR_B};
+    static Hits           hits;
+    static Rays           rays;
+    static const uint16_t material[hits_capacity];
+    static float          texture[hits_capacity], out[hits_capacity];
+    Material              row = {.gloss = 0};
+    const Materials       materials = {.count = 1, .material = &row};
     hits.count = rays.count = 1;
     hits.n_enu[2][0] = hits.n_geo[2][0] = 1;
     hits.range_m[0] = 1e-3;
@@ -195,8 +197,7 @@ static void ground_sends(double w[3], const float rho[3])
     texture[0] = 1;
     for (int c = 0; c < 3; c++) {
         row.rho[channel[c]] = rho[c];
-        optical_shade(out, channel[c], &hand.air, &materials, &hits, &rays, material, texture, NULL, NULL, NULL,
-                      NULL);
+        optical_shade(out, channel[c], &hand.air, &materials, &hits, &rays, material, texture, NULL, NULL, NULL, NULL);
         w[c] = out[0];
     }
 }
@@ -281,7 +282,7 @@ static void hue_stays_at_the_ends(void **state)
     CHECK(g[0] > 0.8 && r[0] > 0 && fabs(b[0]) < 1e-6); /* a green that blue would be taken from */
     CHECK(r[1] > 0.5 && fabs(g[1]) < 1e-6 && b[1] > 0);
     CHECK(isnan(r[3]) && g[3] == 1 && isinf(b[3]) && r[4] == 0);
-    double before[3], after[3];
+    double              before[3], after[3];
     static const double full_green[3] = {0.1380, 1.1569, -0.1236};
     lab_of_rgb(before, full_green);
     lab_of_rgb(after, (double[3]){r[0], g[0], b[0]});
@@ -334,9 +335,9 @@ static void a_frame_is_balanced_by_its_own_day(void **state)
     for (int i = 0; i < 256; i++)
         for (int c = 0; c < 3; c++) picture.optical[c][i] = (float)(white[c] * (i % 16) / 16);
     for (int c = 0; c < 3; c++) kept[c] = picture.optical[c][15];
-    Config        config = config_default();
-    Chain *const  chain[BAND_COUNT] = {NULL};
-    FrameLevel    level[BAND_COUNT] = {0};
+    Config       config = config_default();
+    Chain *const chain[BAND_COUNT] = {NULL};
+    FrameLevel   level[BAND_COUNT] = {0};
     config.detector.noise = 0;
     config.detector.raw = false;
     char           folder[temp_path_size], path[temp_path_size + 64];
@@ -345,16 +346,24 @@ static void a_frame_is_balanced_by_its_own_day(void **state)
     assert_int_equal(frame_files_prepare_displays(folder, request.bands, 0), STATUS_OK);
     FrameDisplay     display[BAND_COUNT];
     DisplaysOf       shown = {.config = &config, .picture = &picture, .chain = chain, .level = level};
-    const FrameFiles files = {.out = folder, .config = &config, .world = &hand.world, .picture = &picture,
-                              .snapshot = &hand.snapshot, .request = &request, .host = "h", .config_sha256 = "0",
-                              .frame = 0, .png = true, .display = display};
+    const FrameFiles files = {.out = folder,
+                              .config = &config,
+                              .world = &hand.world,
+                              .picture = &picture,
+                              .snapshot = &hand.snapshot,
+                              .request = &request,
+                              .host = "h",
+                              .config_sha256 = "0",
+                              .frame = 0,
+                              .png = true,
+                              .display = display};
     snprintf(path, sizeof path, "%s/frames/optical/000000.png", folder);
 
     /* by radiance; then by counts of a camera without noise, at a level by itself and at one by hand */
     SensorPreset preset;
     Chain       *camera, *chains[BAND_COUNT] = {NULL};
     assert_int_equal(preset_read(&preset, "etc/sensors.csv", "tv"), STATUS_OK);
-    preset.optical     = OPTICAL_RGB;
+    preset.optical = OPTICAL_RGB;
     preset.noise_scale = preset.bad_share = 0;
     preset_refresh(&preset);
     assert_int_equal(chain_create(&camera, &preset, 16, 16, 1, 1), STATUS_OK);
@@ -370,8 +379,7 @@ static void a_frame_is_balanced_by_its_own_day(void **state)
         assert_int_equal(frame_files_write_displays(&files, hand.pool), STATUS_OK);
         assert_int_equal(image_read_png(rgb, path), STATUS_OK);
         for (int i = 0; i < 256; i++) /* a count of the camera is up to a code at the dark end */
-            for (int c = 0; c < 2; c++)
-                CHECK(abs(rgb[3 * i + c] - rgb[3 * i + c + 1]) <= (pass == 0 ? 1 : 4));
+            for (int c = 0; c < 2; c++) CHECK(abs(rgb[3 * i + c] - rgb[3 * i + c + 1]) <= (pass == 0 ? 1 : 4));
         CHECK(rgb[3 * 14] > 220 && rgb[3 * 1] < 110);
         if (pass == 2) CHECK(rgb[3 * 8] >= 186 && rgb[3 * 8] <= 190); /* sRGB of 8 / 16 */
     }

@@ -19,7 +19,8 @@ static void a_file_fills_over_the_defaults(void **state)
     (void)state;
     Config config = config_default();
     assert_int_equal(read_text(&config, "# a comment\nsensor:\n  width_px: 320\n  hfov_deg: 2.5\nseed: 77\n"
-                                        "exercise:\n  causal: true\n  host: 1:2:3\n"), STATUS_OK);
+                                        "exercise:\n  causal: true\n  host: 1:2:3\n"),
+                     STATUS_OK);
     assert_int_equal(config.sensor.width_px, 320);
     assert_int_equal(config.sensor.height_px, config_default().sensor.height_px);
     CHECK_NEAR(config.sensor.hfov_deg, 2.5, 0);
@@ -68,8 +69,8 @@ static void what_is_wrong_is_said_and_nothing_applied(void **state)
 static void the_canonical_text_names_every_change(void **state)
 {
     (void)state;
-    static char  plain[16384], changed[16384];
-    Config       config = config_default();
+    static char plain[16384], changed[16384];
+    Config      config = config_default();
     config_text(plain, sizeof plain, &config);
     assert_int_equal(config_set(&config, "sensor.hfov_deg", "6.000000000000001", "test"), STATUS_OK);
     config_text(changed, sizeof changed, &config);
@@ -106,7 +107,7 @@ static void ranges_of_several_keys_are_checked(void **state)
     assert_int_equal(config_check(&config), STATUS_OK);
     strcpy(config.exercise.from, "5"), strcpy(config.exercise.to, "4");
     assert_int_equal(config_check(&config), STATUS_BAD_VALUE);
-    config               = config_default();
+    config = config_default();
     config.detector.bits = 12;
     assert_int_equal(config_check(&config), STATUS_BAD_VALUE);
 }
@@ -157,14 +158,16 @@ static void planes_of_plants_need_plants(void **state)
 static void where_it_comes_from_and_goes_to_is_not_hashed(void **state)
 {
     (void)state;
-    static const char *const same[][2] = {{"network.address", "239.1.2.3"}, {"network.ttl", "3"},
-                                          {"publish.dis", "truth"},
-                                          {"publish.files", "false"}, {"record.path", "a.pcapng"},
-                                          {"exercise.port", "4000"},
-                                          {"exercise.to_s", "12"}},
-                             *const other[][2] = {{"seed", "2"}, {"terrain.woods", "off"}, {"exercise.listen_s", "3"}, {"node.site", "7"}};
-    static char plain[16384], text[16384];
-    Config      config = config_default();
+    static const char *const        same[][2] = {{"network.address", "239.1.2.3"}, {"network.ttl", "3"},
+                                                 {"publish.dis", "truth"},         {"publish.files", "false"},
+                                                 {"record.path", "a.pcapng"},      {"exercise.port", "4000"},
+                                                 {"exercise.to_s", "12"}},
+                             *const other[][2] = {{"seed", "2"},
+                                                  {"terrain.woods", "off"},
+                                                  {"exercise.listen_s", "3"},
+                                                  {"node.site", "7"}};
+    static char                     plain[16384], text[16384];
+    Config                          config = config_default();
     config_text(plain, sizeof plain, &config);
     for (size_t i = 0; i < sizeof same / sizeof same[0]; i++) {
         assert_int_equal(config_set(&config, same[i][0], same[i][1], "test"), STATUS_OK);

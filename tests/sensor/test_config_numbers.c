@@ -18,11 +18,11 @@ static void every_number_is_finite_or_refused(void **state)
                                        "1e-400",
                                        "-0",
                                        "1e-20"};
-    char  *keys = NULL, section[64] = "", *rest = NULL;
-    size_t octets = 0;
-    int    numbers = 0, taken = 0;
-    FILE  *to = open_memstream(&keys, &octets);
-    const Config defaults = config_default();
+    char                    *keys = NULL, section[64] = "", *rest = NULL;
+    size_t                   octets = 0;
+    int                      numbers = 0, taken = 0;
+    FILE                    *to = open_memstream(&keys, &octets);
+    const Config             defaults = config_default();
     CHECK(to != NULL);
     config_write(to, &defaults);
     CHECK(fclose(to) == 0);

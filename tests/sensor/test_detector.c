@@ -22,7 +22,7 @@ static void noise_has_the_sigma_asked_for(void **state)
     (void)state;
     const double sigmas[] = {1e-3, 0.25, 40};
     for (int k = 0; k < 3; k++) {
-        double sum = 0, sum2 = 0, lag = 0, between = 0, last = 0;
+        double       sum = 0, sum2 = 0, lag = 0, between = 0, last = 0;
         static float before[pixels];
         for (uint32_t frame = 0; frame < frames; frame++) {
             memset(plane, 0, sizeof plane);
@@ -40,8 +40,8 @@ static void noise_has_the_sigma_asked_for(void **state)
         const double n = (double)pixels * frames, deviation = sqrt(2 / n);
         CHECK_NEAR(sum / n, 0, 5 / sqrt(n));
         CHECK_NEAR((sum2 - sum * sum / n) / (n - 1), 1, 5 * deviation);
-        CHECK_NEAR(lag / n, 0, 5 / sqrt(n));      /* neighbours know nothing of each other */
-        CHECK_NEAR(between / n, 0, 5 / sqrt(n));  /* nor do frames */
+        CHECK_NEAR(lag / n, 0, 5 / sqrt(n));     /* neighbours know nothing of each other */
+        CHECK_NEAR(between / n, 0, 5 / sqrt(n)); /* nor do frames */
     }
 }
 
@@ -79,7 +79,7 @@ static void noise_is_a_function_of_its_counters(void **state)
 static void percentiles_are_exact_order_statistics(void **state)
 {
     (void)state;
-    static float finite[pixels];
+    static float   finite[pixels];
     DetectorConfig config = detector_default_config();
     config.margin = 0;
     for (uint32_t trial = 0; trial < 12; trial++) {
@@ -103,14 +103,15 @@ static void percentiles_are_exact_order_statistics(void **state)
         CHECK_NEAR(level.high, high, 4e-16 * (fabs(low) + fabs(high)));
 
         /* cut in three planes, the same */
-        const float *thirds[3] = {plane, plane + pixels / 3, plane + 2 * (pixels / 3)};
+        const float        *thirds[3] = {plane, plane + pixels / 3, plane + 2 * (pixels / 3)};
         const DetectorLevel together = detector_level(&config, thirds, 3, pixels / 3);
         CHECK(together.low == level.low && together.high == level.high);
     }
 }
 
-/* Kelvin as the plane's unit: ground of 290 K with a spread of 0.1, 1 or 4 K, a target 2 K above it on 0.5 % of the pixels,
- * fire of 900 K on 0 .. 5 %: the target keeps 10 grey levels and the ground half of the contrast that it has without. */
+/* Kelvin as the plane's unit: ground of 290 K with a spread of 0.1, 1 or 4 K, a target 2 K above it on 0.5 % of the
+ * pixels, fire of 900 K on 0 .. 5 %: the target keeps 10 grey levels and the ground half of the contrast that it has
+ * without. */
 static void a_fire_takes_no_grey_levels_from_the_rest(void **state)
 {
     (void)state;
@@ -118,7 +119,7 @@ static void a_fire_takes_no_grey_levels_from_the_rest(void **state)
     const float        *planes[1] = {plane};
     DetectorConfig      config = detector_default_config();
     config.highlight = 1.5;
-    config.min_span  = 2;
+    config.min_span = 2;
     for (int k = 0; k < 3; k++) {
         double without = 0;
         for (int f = 0; f < 4; f++) {
@@ -136,9 +137,9 @@ static void a_fire_takes_no_grey_levels_from_the_rest(void **state)
     }
 }
 
-/* A step of 20 K: settles to 5 % within 1 s in scenes of 5 and 9 K, that it leaves black or white, and within 6 s in one
- * of 40 K. A burst of 10000 K for 0.2 s: within 1 s the level is within 10 of 255 grey levels of where it belongs. Alike
- * at 5, 25 and 100 Hz. */
+/* A step of 20 K: settles to 5 % within 1 s in scenes of 5 and 9 K, that it leaves black or white, and within 6 s in
+ * one of 40 K. A burst of 10000 K for 0.2 s: within 1 s the level is within 10 of 255 grey levels of where it belongs.
+ * Alike at 5, 25 and 100 Hz. */
 static void a_level_settles_in_a_second_at_any_rate(void **state)
 {
     (void)state;
@@ -149,7 +150,8 @@ static void a_level_settles_in_a_second_at_any_rate(void **state)
             bool                quick = false;
             DetectorLevel       level = {280, 280 + span_k[k]};
             const DetectorLevel after = {300, 300 + span_k[k]};
-            for (int i = 0; i < settled_s[k] * rate_hz[r]; i++) detector_level_follow(&level, &quick, after, 1 / rate_hz[r], 2);
+            for (int i = 0; i < settled_s[k] * rate_hz[r]; i++)
+                detector_level_follow(&level, &quick, after, 1 / rate_hz[r], 2);
             CHECK(fabs(level.low - after.low) <= 0.05 * 20 && fabs(level.high - after.high) <= 0.05 * 20);
             low[r] = level.low;
 
@@ -235,12 +237,12 @@ static void a_night_is_dark(void **state)
 static void quantisation_by_hand(void **state)
 {
     (void)state;
-    DetectorConfig config = detector_default_config();
+    DetectorConfig      config = detector_default_config();
     const DetectorLevel level = {10, 20};
-    const float in[] = {10, 20, 15, 9, -1e30f, 21, 1e30f, NAN, INFINITY, -INFINITY, 12.5f};
-    const uint8_t want[] = {0, 255, 128, 0, 0, 255, 255, 0, 255, 0, 64};
-    uint8_t  got[11];
-    uint16_t got16[11];
+    const float         in[] = {10, 20, 15, 9, -1e30f, 21, 1e30f, NAN, INFINITY, -INFINITY, 12.5f};
+    const uint8_t       want[] = {0, 255, 128, 0, 0, 255, 255, 0, 255, 0, 64};
+    uint8_t             got[11];
+    uint16_t            got16[11];
     detector_display(got, in, 11, &config, level);
     assert_memory_equal(got, want, sizeof want);
     config.bits = 16;
@@ -293,8 +295,8 @@ static void rgb_has_one_gain(void **state)
         r[i] = g[i] = b[i] = (float)i;
         if (i % 10 == 0) b[i] = 0.5f * (float)i;
     }
-    const float   *in[3] = {r, g, b};
-    DetectorConfig config = detector_default_config();
+    const float        *in[3] = {r, g, b};
+    DetectorConfig      config = detector_default_config();
     const DetectorLevel level = detector_level(&config, in, 3, pixels);
     detector_display_rgb(rgb, in, pixels, &config, level);
     detector_display(grey, g, pixels, &config, level);

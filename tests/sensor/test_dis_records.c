@@ -45,7 +45,7 @@ static const uint8_t *variable(uint32_t *bits, const uint8_t *pdu, size_t octets
     const uint8_t *at = pdu + 40 + 8 * big(pdu + 32, 4);
     for (uint32_t i = 0; i < big(pdu + 36, 4); i++) {
         const uint32_t here = (uint32_t)big(at, 4);
-        *bits               = (uint32_t)big(at + 4, 4);
+        *bits = (uint32_t)big(at + 4, 4);
         if (here == id && n-- == 0) return at + 8;
         at += 8 + (*bits + 63) / 64 * 8;
         CHECK(at <= pdu + octets);
@@ -65,26 +65,40 @@ static FrameRecord frame_of(int targets, int hidden)
 {
     for (int i = 0; i < targets; i++) {
         entity[i].id = (DisEntityId){1, 2, (uint16_t)(100 + i)};
-        target[i]    = (TargetRecord){.index = i, .id = entity[i].id, .range_m = 1000 + i, .closing_mps = 200,
-                                .aspect_rad = 0.5, .los_az_rad = 1.25, .los_el_rad = -0.125, .boresight_error_rad = {0.015625, -0.03125},
-                                .pixels = i < hidden ? 0 : 10 * (i + 1), .visible_fraction = 0.75,
-                                .box = {i, 2, i + 3, 4}};
+        target[i] = (TargetRecord){.index = i,
+                                   .id = entity[i].id,
+                                   .range_m = 1000 + i,
+                                   .closing_mps = 200,
+                                   .aspect_rad = 0.5,
+                                   .los_az_rad = 1.25,
+                                   .los_el_rad = -0.125,
+                                   .boresight_error_rad = {0.015625, -0.03125},
+                                   .pixels = i < hidden ? 0 : 10 * (i + 1),
+                                   .visible_fraction = 0.75,
+                                   .box = {i, 2, i + 3, 4}};
         for (int b = 0; b < BAND_COUNT; b++)
-            target[i].band[b] = (TargetBand){.contrast_k = b == BAND_LWIR ? 3.5 : NAN,
-                                             .contrast = b == BAND_OPTICAL ? 0.25 : NAN, .snr = 25};
+            target[i].band[b] = (TargetBand){
+                .contrast_k = b == BAND_LWIR ? 3.5 : NAN, .contrast = b == BAND_OPTICAL ? 0.25 : NAN, .snr = 25};
     }
     entity[targets].id = (DisEntityId){7, 8, 9};
-    snapshot.count     = targets + 1;
+    snapshot.count = targets + 1;
     /* the camera looks north along the equator's meridian 0: forward +z, right +y (east), down -x */
-    FrameRecord r = {.frame = 123456, .time_s = 1392.4, .snapshot = &snapshot, .host = &entity[targets],
-                     .p_eye_ecef = {6378137.25, -2, 3}, .request = &request, .hfov_rad = 0.104719755,
-                     .r_ecef_from_cam = {0, -1, 0, 1, 0, 0, 0, 0, 1}, .sun = &sun, .target = target,
+    FrameRecord r = {.frame = 123456,
+                     .time_s = 1392.4,
+                     .snapshot = &snapshot,
+                     .host = &entity[targets],
+                     .p_eye_ecef = {6378137.25, -2, 3},
+                     .request = &request,
+                     .hfov_rad = 0.104719755,
+                     .r_ecef_from_cam = {0, -1, 0, 1, 0, 0, 0, 0, 1},
+                     .sun = &sun,
+                     .target = target,
                      .target_count = targets};
     return r;
 }
 
-static const DisRecordSender sender = {.version = 7, .exercise = 33, .site = 4711, .application = 1,
-                                       .timestamp = 0x12345678};
+static const DisRecordSender sender = {
+    .version = 7, .exercise = 33, .site = 4711, .application = 1, .timestamp = 0x12345678};
 
 static void the_frame_is_where_the_description_says(void **state)
 {
@@ -103,7 +117,7 @@ static void the_frame_is_where_the_description_says(void **state)
     const uint32_t hfov = fixed(pdu, 600005), vfov = fixed(pdu, 600006);
     const uint8_t  hfov_at[4] = {(uint8_t)(hfov >> 24), (uint8_t)(hfov >> 16), (uint8_t)(hfov >> 8), (uint8_t)hfov};
     const uint8_t  vfov_at[4] = {(uint8_t)(vfov >> 24), (uint8_t)(vfov >> 16), (uint8_t)(vfov >> 8), (uint8_t)vfov};
-    CHECK_NEAR(f32(hfov_at), 0.104719755, 1e-8);             /* a float's rounding */
+    CHECK_NEAR(f32(hfov_at), 0.104719755, 1e-8); /* a float's rounding */
     CHECK_NEAR(f32(vfov_at), 2 * atan(243 / 6868.6), 1e-8);
     CHECK_NEAR(f64(variable(&bits, pdu, n, 600101, 0)), 1392.4, 0);
     CHECK(bits == 64);
@@ -188,16 +202,25 @@ static void what_has_no_room_is_counted_the_smallest_first(void **state)
 
 enum { most_detections = 300 };
 static Detection         detection[most_detections];
-static const RadarPreset preset = {.name = "paper", .wave = {.centre_hz = 35e9, .bandwidth_hz = 150e6, .samples = 256, .pulses = 64}};
+static const RadarPreset preset = {.name = "paper",
+                                   .wave = {.centre_hz = 35e9, .bandwidth_hz = 150e6, .samples = 256, .pulses = 64}};
 
 static RadarFrame radar_of(int detections, int in_all)
 {
     for (int i = 0; i < detections; i++)
-        detection[i] = (Detection){.range_m = 3000.25 + i, .range_rate_mps = -7.5, .cos_right = 0.5, .cos_down = -0.0625,
-                                   .snr = 1000, .rcs_m2 = 0.01};
-    return (RadarFrame){.preset = &preset, .reference_m = 3001.125, .reference_rate_mps = -200,
+        detection[i] = (Detection){.range_m = 3000.25 + i,
+                                   .range_rate_mps = -7.5,
+                                   .cos_right = 0.5,
+                                   .cos_down = -0.0625,
+                                   .snr = 1000,
+                                   .rcs_m2 = 0.01};
+    return (RadarFrame){.preset = &preset,
+                        .reference_m = 3001.125,
+                        .reference_rate_mps = -200,
                         .map = {.rows = 64, .columns = 256, .metre_per_column = 1, .mps_per_row = 0.5},
-                        .detections = detections, .detections_in_all = in_all, .detection = detection};
+                        .detections = detections,
+                        .detections_in_all = in_all,
+                        .detection = detection};
 }
 
 static void detections_are_where_the_description_says(void **state)
@@ -222,8 +245,8 @@ static void detections_are_where_the_description_says(void **state)
     CHECK(f32(of + 24) == 256 && f32(of + 28) == 32);
     const uint8_t *d = variable(&bits, pdu, n, 600402, 2);
     CHECK(bits == 192 && f32(d) == 3002.25 && f32(d + 4) == -7.5);
-    CHECK_NEAR(f32(d + 8), 0.52359877559829887, 3e-8);  /* 30 degrees to the right */
-    CHECK_NEAR(f32(d + 12), 0.06254076, 1e-8);          /* asin(1/16), up */
+    CHECK_NEAR(f32(d + 8), 0.52359877559829887, 3e-8); /* 30 degrees to the right */
+    CHECK_NEAR(f32(d + 12), 0.06254076, 1e-8);         /* asin(1/16), up */
     CHECK_NEAR(f32(d + 16), 30, 0);
     CHECK_NEAR(f32(d + 20), -20, 0);
 }
@@ -246,7 +269,8 @@ static void many_detections_take_several(void **state)
             const size_t n = dis_record_radar(pdu, &sender, &r, k);
             DisPdu       back;
             CHECK(n > 0 && n <= 1400 && dis_decode(&back, pdu, n) == STATUS_OK && back.type == dis_pdu_data);
-            CHECK(fixed(pdu, 600014) == ((uint32_t)k << 16 | (uint32_t)count) && fixed(pdu, 600013) == (uint32_t)(all - sent));
+            CHECK(fixed(pdu, 600014) == ((uint32_t)k << 16 | (uint32_t)count) &&
+                  fixed(pdu, 600013) == (uint32_t)(all - sent));
             for (uint32_t i = 0; i < fixed(pdu, 600012); i++)
                 CHECK(f32(variable(&bits, pdu, n, 600402, (int)i)) == (double)(float)(3000.25 + next++));
             CHECK(!variable(&bits, pdu, n, 600402, (int)fixed(pdu, 600012)));
@@ -286,13 +310,19 @@ static Sent *send_frames(Config *config, const double *time_s, int count, Status
     Sent     *sent = calloc(1, sizeof *sent);
     Consumer *consumer;
     CHECK(sent);
-    sent->result   = result;
-    const DisOf of = {.config = config, .bands = 1u << BAND_OPTICAL | 1u << BAND_LWIR, .version = 6, .exercise = 9,
-                      .send = take, .user = sent, .arrival_s = half_a_minute_later, .clock = &sun};
+    sent->result = result;
+    const DisOf of = {.config = config,
+                      .bands = 1u << BAND_OPTICAL | 1u << BAND_LWIR,
+                      .version = 6,
+                      .exercise = 9,
+                      .send = take,
+                      .user = sent,
+                      .arrival_s = half_a_minute_later,
+                      .clock = &sun};
     CHECK(consume_dis(&consumer, &of) == STATUS_OK && consumer->wants == WANT_TARGETS);
     for (int i = 0; i < count; i++) {
         Frame frame = {.record = frame_of(3, 0)};
-        frame.record.frame  = i;
+        frame.record.frame = i;
         frame.record.time_s = time_s[i];
         CHECK(consumer->put(consumer, &frame) == STATUS_OK); /* also when nothing can be sent */
     }
@@ -307,12 +337,18 @@ static void a_consumer_sends_detections(void **state)
     const RadarFrame radar = radar_of(40, 41);
     Config           config = config_default();
     for (int truth = 0; truth <= 1; truth++) {
-        Sent        *sent = calloc(1, sizeof *sent);
-        Consumer    *consumer;
-        Frame        frame = {.record = frame_of(3, 0)};
+        Sent     *sent = calloc(1, sizeof *sent);
+        Consumer *consumer;
+        Frame     frame = {.record = frame_of(3, 0)};
         strcpy(config.publish.dis, truth ? "truth" : "sensor");
-        const DisOf of = {.config = &config, .bands = 1u << BAND_LWIR, .version = 7, .exercise = 33, .send = take, .user = sent,
-                          .arrival_s = half_a_minute_later, .clock = &sun};
+        const DisOf of = {.config = &config,
+                          .bands = 1u << BAND_LWIR,
+                          .version = 7,
+                          .exercise = 33,
+                          .send = take,
+                          .user = sent,
+                          .arrival_s = half_a_minute_later,
+                          .clock = &sun};
         CHECK(sent && consume_dis(&consumer, &of) == STATUS_OK);
         frame.record.radar = &radar;
         CHECK(consumer->put(consumer, &frame) == STATUS_OK && consumer->close(consumer) == STATUS_OK);
@@ -343,7 +379,7 @@ static void a_consumer_sends_each_frame_and_band(void **state)
             CHECK((pdu[7] & 1) == 0);
             const DisRecordSender node = {6, 9, 4711, 1, (uint32_t)big(pdu + 4, 4)};
             FrameRecord           r = frame_of(3, 0);
-            r.frame  = i / 2;
+            r.frame = i / 2;
             r.time_s = time_s[i / 2];
             CHECK(dis_record_frame(want, &node, &r, i % 2 ? BAND_LWIR : BAND_OPTICAL, truth) == sent->octets[i]);
             CHECK(memcmp(want, pdu, sent->octets[i]) == 0);
@@ -367,11 +403,11 @@ static void streams_are_announced(void **state)
     strcpy(config.publish.klv, "sync");
     strcpy(config.publish.vmti, "atr");
     Sent *sent = send_frames(&config, time_s, frames, STATUS_OK);
-    int   at   = 0;
+    int   at = 0;
     for (int i = 0; i < frames; i++) {
         for (int k = 0; due[i] && k < 2; k++, at++) {
             static const char *const url[2] = {"udp://239.1.2.3:5004", "udp://239.1.2.3:5006"};
-            const uint8_t *pdu = sent->pdu[at], *text;
+            const uint8_t           *pdu = sent->pdu[at], *text;
             CHECK(big(pdu + 8, 2) == sent->octets[at]);
             CHECK(big(pdu + 32, 4) == 8 && fixed(pdu, 600002) == (k ? 2u : 0u) && fixed(pdu, 600003) == 3);
             CHECK(fixed(pdu, 600004) == (720u << 16 | 486));

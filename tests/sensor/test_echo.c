@@ -8,15 +8,21 @@ static double       uniform(int i) { return random_uniform(3, 0, 0, (uint64_t)i)
 
 enum { samples = 128, pulses = 20, echoes = 300, all = interval_channels * pulses * samples, most_pulses = 97 };
 
-static const Waveform wave = {
-    .centre_hz = 94e9, .bandwidth_hz = 128 * 4e6, .pulse_s = 1e-5, .repeat_hz = 2e4, .samples = samples, .pulses = pulses};
+static const Waveform wave = {.centre_hz = 94e9,
+                              .bandwidth_hz = 128 * 4e6,
+                              .pulse_s = 1e-5,
+                              .repeat_hz = 2e4,
+                              .samples = samples,
+                              .pulses = pulses};
 static double complex got[interval_channels * most_pulses * samples], want[interval_channels * most_pulses * samples];
 
 /* What they stand for, from the times and frequencies of waveform.h's first lines. */
 static void add_by_hand(const Waveform *w, const Echo *e, double unfollowed_m)
 {
     const double step_hz = w->bandwidth_hz / samples, row_s = 1 / w->repeat_hz;
-    const double step_s = w->kind == WAVEFORM_PULSE_DOPPLER ? 0 : w->kind == WAVEFORM_STEPPED ? row_s / samples : w->pulse_s / samples;
+    const double step_s = w->kind == WAVEFORM_PULSE_DOPPLER ? 0
+                          : w->kind == WAVEFORM_STEPPED     ? row_s / samples
+                                                            : w->pulse_s / samples;
     const double turn = pi_rad * w->centre_hz / light_mps * (e->path_per_pulse_m + unfollowed_m) / row_s * w->pulse_s;
     const bool   plain = w->kind == WAVEFORM_PULSE_DOPPLER || w->kind == WAVEFORM_STEPPED;
     const double left = plain && turn != 0 ? sin(turn) / turn : 1;
@@ -26,7 +32,8 @@ static void add_by_hand(const Waveform *w, const Echo *e, double unfollowed_m)
                 const double t_s = (p - 0.5 * (w->pulses - 1)) * row_s + (m - samples / 2) * step_s;
                 const double path_m = e->path_m + (e->path_per_pulse_m + unfollowed_m) * t_s / row_s;
                 want[(c * w->pulses + p) * samples + m] +=
-                    left * e->amplitude[c] * cexp(-I * 2 * pi_rad / light_mps * (w->centre_hz + (m - samples / 2) * step_hz) * path_m);
+                    left * e->amplitude[c] *
+                    cexp(-I * 2 * pi_rad / light_mps * (w->centre_hz + (m - samples / 2) * step_hz) * path_m);
             }
 }
 
@@ -48,9 +55,11 @@ static void samples_are_the_sum(void **state)
     CHECK(echo_grid_create(&grid, &wave) == STATUS_OK && pool_create(&pool, 3) == STATUS_OK);
     for (int i = 0; i < echoes; i++) {
         /* beyond half the window too: they fold over; and at its very ends */
-        echo[i].path_m = i < 4 ? (double[]){0, 0.5 * window_m, -0.5 * window_m, window_m}[i] : 1.4 * window_m * (uniform(16 * i) - 0.5);
+        echo[i].path_m = i < 4 ? (double[]){0, 0.5 * window_m, -0.5 * window_m, window_m}[i]
+                               : 1.4 * window_m * (uniform(16 * i) - 0.5);
         for (int c = 0; c < interval_channels; c++)
-            echo[i].amplitude[c] = i % 5 == c ? 0 : (uniform(16 * i + 2 + c) - 0.5) + I * (uniform(16 * i + 8 + c) - 0.5);
+            echo[i].amplitude[c] =
+                i % 5 == c ? 0 : (uniform(16 * i + 2 + c) - 0.5) + I * (uniform(16 * i + 8 + c) - 0.5);
         add_by_hand(&wave, &echo[i], 0);
         total += cabs(echo[i].amplitude[0]);
     }
@@ -76,10 +85,15 @@ static void moving_echoes_are_at_their_times(void **state)
     static const struct {
         WaveformKind kind;
         double       most_mps, pulse_s, repeat_hz, unfollowed_mps; /* of path */
-    } of[] = {{WAVEFORM_LFM, 600, 2e-5, 2e4, 0},      {WAVEFORM_FMCW, 100, 1e-4, 8e3, 0},   {WAVEFORM_FMCW, 100, 1e-4, 8e3, -600},
-              {WAVEFORM_STEPPED, 40, 2.5e-7, 781.25, 0}, {WAVEFORM_STEPPED, 500, 2.5e-7, 781.25, 0}, {WAVEFORM_STEPPED, 40, 2.5e-7, 781.25, -500},
+    } of[] = {{WAVEFORM_LFM, 600, 2e-5, 2e4, 0},
+              {WAVEFORM_FMCW, 100, 1e-4, 8e3, 0},
+              {WAVEFORM_FMCW, 100, 1e-4, 8e3, -600},
+              {WAVEFORM_STEPPED, 40, 2.5e-7, 781.25, 0},
+              {WAVEFORM_STEPPED, 500, 2.5e-7, 781.25, 0},
+              {WAVEFORM_STEPPED, 40, 2.5e-7, 781.25, -500},
               {WAVEFORM_STEPPED, 15000, 2.5e-7, 781.25, 0},
-              {WAVEFORM_PULSE_DOPPLER, 2000, 1e-6, 4e6, 0}, {WAVEFORM_PULSE_DOPPLER, 2000, 1e-6, 4e6, 900}};
+              {WAVEFORM_PULSE_DOPPLER, 2000, 1e-6, 4e6, 0},
+              {WAVEFORM_PULSE_DOPPLER, 2000, 1e-6, 4e6, 900}};
     for (size_t k = 0; k < sizeof of / sizeof *of; k++) {
         Waveform  w = wave;
         EchoGrid *grid;
@@ -87,8 +101,10 @@ static void moving_echoes_are_at_their_times(void **state)
         w.kind = of[k].kind, w.pulse_s = of[k].pulse_s, w.repeat_hz = of[k].repeat_hz;
         CHECK(echo_grid_create(&grid, &w) == STATUS_OK);
         for (int i = 0; i < 12; i++) {
-            const Echo echo = {.path_m = 60 * (uniform(i) - 0.5), .amplitude = {1, 0, I, 0},
-                               .path_per_pulse_m = (i < 2 ? 2 * i - 1 : uniform(i + 100) - 0.5) * of[k].most_mps / w.repeat_hz};
+            const Echo echo = {.path_m = 60 * (uniform(i) - 0.5),
+                               .amplitude = {1, 0, I, 0},
+                               .path_per_pulse_m =
+                                   (i < 2 ? 2 * i - 1 : uniform(i + 100) - 0.5) * of[k].most_mps / w.repeat_hz};
             memset(want, 0, sizeof want);
             add_by_hand(&w, &echo, of[k].unfollowed_mps / w.repeat_hz);
             echo_unfollowed(grid, of[k].unfollowed_mps / w.repeat_hz);
@@ -99,7 +115,8 @@ static void moving_echoes_are_at_their_times(void **state)
             for (int p = 0; p < pulses; p++)
                 middle = fmax(middle, cabs(got[p * samples + samples / 2] - want[p * samples + samples / 2]));
         }
-        printf("%s, %g m/s: %.1e at the band's ends, %.1e in its middle\n", waveform_name[w.kind], of[k].most_mps, edge, middle);
+        printf("%s, %g m/s: %.1e at the band's ends, %.1e in its middle\n", waveform_name[w.kind], of[k].most_mps, edge,
+               middle);
         CHECK(edge < 3e-3 && middle < 1e-4);
         echo_grid_destroy(grid);
     }
@@ -176,8 +193,8 @@ static void slow_and_fast_echoes_are_alike(void **state)
         }
         CHECK(terms == 1000 && most == of[k].terms_most && echo_terms(grid, 0) == 1);
         CHECK(echo_terms(grid, echo[many - 1].path_per_pulse_m) == 0);
-        printf("%s, %d rows: %.1e, over delay and Doppler %.1e; %.1e in the middle of the band\n", waveform_name[w.kind],
-               w.pulses, edge, even, middle);
+        printf("%s, %d rows: %.1e, over delay and Doppler %.1e; %.1e in the middle of the band\n",
+               waveform_name[w.kind], w.pulses, edge, even, middle);
         CHECK(edge < 3e-3 && middle < 1e-4);
         CHECK(even > 1e-4); /* some needed their terms */
         for (int again = 0; again < 3; again++) {

@@ -27,13 +27,14 @@ static void estimates_are_near_the_truth(void **state)
     for (int b = BAND_MWIR; b <= BAND_LWIR; b++) CHECK(heat.cases[b] == 1 && heat.held[b] == 1);
 }
 
-/* Without antialiasing a band's error is that of a few pixels of vehicles, between which the fields of other pixels fall. */
+/* Without antialiasing a band's error is that of a few pixels of vehicles, between which the fields of other pixels
+ * fall. */
 static void targets_that_are_not_refined_count(void **state)
 {
     (void)state;
     static const ErrorScene far[] = {{"vehicles at 600 m, off", 600, 60, 16, 10, false, 0, false},
                                      {"vehicles at 1500 m, off", 1500, 150, 12, 15, false, 0, false}};
-    Tally rays = {0};
+    Tally                   rays = {0};
     for (int k = 0; k < 2; k++) {
         TrialScene scene;
         open_scene(&scene, &lab.ground, &far[k]);
@@ -42,7 +43,7 @@ static void targets_that_are_not_refined_count(void **state)
         request.edge_samples = request.target_samples = 0;
         TrialFrame       frame = frame_of(&scene, &request, 0);
         const FrameError error = error_of(&frame);
-        request.budget  = false;
+        request.budget = false;
         request.samples = 8;
         const TrialFrame better = frame_of(&scene, &request, 1);
         for (int b = 0; b < radiance_bands; b++)
@@ -69,8 +70,8 @@ static void too_few_are_too_few(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(too_few_are_too_few), cmocka_unit_test(estimates_are_near_the_truth),
-        cmocka_unit_test(targets_that_are_not_refined_count)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(too_few_are_too_few),
+                                       cmocka_unit_test(estimates_are_near_the_truth),
+                                       cmocka_unit_test(targets_that_are_not_refined_count)};
     return cmocka_run_group_tests(tests, lab_open, lab_close);
 }

@@ -2,13 +2,20 @@
 #include "tests/sensor/error_scenes.h"
 
 static const ErrorScene scenes[] = {
-    {"ground, steep", 100, 200, 40, 0, false, 0, false},     {"ground from 100 m", 600, 100, 40, 0, false, 0, true},
-    {"ground from 300 m", 1500, 300, 20, 0, false, 0, false}, {"ground, narrow", 900, 30, 3, 0, false, 0, false},
-    {"vehicle at 30 m", 30, 6, 30, 1, false, 0, false},       {"vehicles at 60 m", 60, 12, 40, 6, false, 0, true},
-    {"vehicles at 150 m", 150, 25, 30, 10, false, 0, false},  {"vehicles at 300 m", 300, 40, 20, 10, false, 0, false},
-    {"vehicles at 600 m", 600, 60, 12, 10, false, 0, true},  {"small vehicles", 900, 100, 25, 20, false, 0, false},
-    {"horizon", 300, 8, 30, 3, false, 3, true},              {"horizon, wide", 200, 30, 70, 5, false, 8, false},
-    {"sky", 300, 20, 30, 0, false, 25, false},                {"smoke at 60 m", 60, 12, 40, 3, true, 0, false},
+    {"ground, steep", 100, 200, 40, 0, false, 0, false},
+    {"ground from 100 m", 600, 100, 40, 0, false, 0, true},
+    {"ground from 300 m", 1500, 300, 20, 0, false, 0, false},
+    {"ground, narrow", 900, 30, 3, 0, false, 0, false},
+    {"vehicle at 30 m", 30, 6, 30, 1, false, 0, false},
+    {"vehicles at 60 m", 60, 12, 40, 6, false, 0, true},
+    {"vehicles at 150 m", 150, 25, 30, 10, false, 0, false},
+    {"vehicles at 300 m", 300, 40, 20, 10, false, 0, false},
+    {"vehicles at 600 m", 600, 60, 12, 10, false, 0, true},
+    {"small vehicles", 900, 100, 25, 20, false, 0, false},
+    {"horizon", 300, 8, 30, 3, false, 3, true},
+    {"horizon, wide", 200, 30, 70, 5, false, 8, false},
+    {"sky", 300, 20, 30, 0, false, 25, false},
+    {"smoke at 60 m", 60, 12, 40, 3, true, 0, false},
     {"smoke at 200 m", 200, 20, 20, 3, true, 0, false},
 };
 enum { scene_count = sizeof scenes / sizeof *scenes };

@@ -72,7 +72,7 @@ static void small_pictures_have_a_budget(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(nothing_else_changes), cmocka_unit_test(small_pictures_have_a_budget)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(nothing_else_changes),
+                                       cmocka_unit_test(small_pictures_have_a_budget)};
     return cmocka_run_group_tests(tests, lab_open, lab_close);
 }

@@ -2,7 +2,8 @@
  * and against what the cameras of neighbouring frames show of a point at rest. labels: physics slow */
 #include "tests/sensor/eye_lab.h"
 
-static const DisEntityType tank = {1, 1, 225, 1, 1, 1, 0}, plane = {1, 2, 225, 1, 1, 1, 0}, missile = {2, 2, 225, 1, 1, 1, 0};
+static const DisEntityType tank = {1, 1, 225, 1, 1, 1, 0}, plane = {1, 2, 225, 1, 1, 1, 0},
+                           missile = {2, 2, 225, 1, 1, 1, 0};
 
 /* name, columns, degrees, integration time: the columns of etc/sensors.csv, read by hand of this test. */
 typedef struct SensorRow {
@@ -75,7 +76,8 @@ static void rate_seen(double rate_px_s[2], int k, double range_m)
     for (int side = 0; side < 2; side++) {
         const LabFrame *other = &lab.shot[side ? k + 1 : k - 1];
         double          away[3], cam[3];
-        for (int i = 0; i < 3; i++) away[i] = now->p_enu[i] + range_m * now->r_enu_from_cam[3 * i + 2] - other->p_enu[i];
+        for (int i = 0; i < 3; i++)
+            away[i] = now->p_enu[i] + range_m * now->r_enu_from_cam[3 * i + 2] - other->p_enu[i];
         m3_tmul_v3(cam, other->r_enu_from_cam, away);
         for (int i = 0; i < 2; i++) at[side][i] = now->focal_px * cam[i] / cam[2];
     }
@@ -86,8 +88,8 @@ static void rate_seen(double rate_px_s[2], int k, double range_m)
 static void an_observer_does_not_smear_what_it_circles(void **state)
 {
     (void)state;
-    SensorRow rows[32];
-    const int count = read_sensors(rows);
+    SensorRow    rows[32];
+    const int    count = read_sensors(rows);
     const double here[3] = {0, 0, 0};
     for (int n = 0; n < count; n++)
         for (double rate_dps = 2; rate_dps <= 20; rate_dps += 18) {
@@ -100,10 +102,10 @@ static void an_observer_does_not_smear_what_it_circles(void **state)
             const double range_m = hypot(config.observer.range_m, config.observer.height_m);
             const double turning_px_s = focal_px(rows[n].width_px, rows[n].hfov_deg) * rate_dps * rad_per_deg *
                                         config.observer.range_m / range_m;
-            double       got[2];
+            double got[2];
             rate_of(got, &lab.shot[1], &rows[n]);
-            /* a surface 4 m nearer than the middle of the hull moves by 4 m over the range of the turning; the middle pixel
-             * of this coarse picture is half of one off, 1 m, and that may be another 3 m of ground behind */
+            /* a surface 4 m nearer than the middle of the hull moves by 4 m over the range of the turning; the middle
+             * pixel of this coarse picture is half of one off, 1 m, and that may be another 3 m of ground behind */
             CHECK(hypot(got[0], got[1]) < turning_px_s * 7 / range_m);
             CHECK(hypot(got[0], got[1]) * rows[n].integration_s < 0.05 * rate_dps / 2); /* px of smear */
             double seen[2];
@@ -151,8 +153,8 @@ static void a_turning_vehicle_smears_by_its_rate(void **state)
 static void an_aircraft_sees_the_ground_go_by(void **state)
 {
     (void)state;
-    SensorRow rows[32];
-    const int count = read_sensors(rows);
+    SensorRow    rows[32];
+    const int    count = read_sensors(rows);
     const double speed_mps = 150, height_m = 800;
     for (int n = 0; n < count; n++)
         for (double heading = 0.5; heading < 6; heading += 2.5) {
@@ -160,34 +162,41 @@ static void an_aircraft_sees_the_ground_go_by(void **state)
             const double v[3] = {speed_mps * sin(heading), speed_mps * cos(heading), 0};
             lab_forget();
             for (int k = 0; k <= 4; k++) {
-                LabReport r = {.t_s = 100 + k, .entity = 1, .type = plane,
-                               .p_enu = {v[0] * (k - 2), v[1] * (k - 2), height_m}, .v_enu_mps = {v[0], v[1], 0}};
+                LabReport r = {.t_s = 100 + k,
+                               .entity = 1,
+                               .type = plane,
+                               .p_enu = {v[0] * (k - 2), v[1] * (k - 2), height_m},
+                               .v_enu_mps = {v[0], v[1], 0}};
                 test_attitude(r.r_enu_from_body, heading, 0, 0);
                 lab_say(&r);
             }
             strcpy(config.exercise.host, "1:1:1");
             config.sensor.gimbal_limit_deg = 0;
-            config.sensor.mount_pitch_deg  = -90;
+            config.sensor.mount_pitch_deg = -90;
             config.sensor.mount_x_m = config.sensor.mount_y_m = config.sensor.mount_z_m = 0;
             lab_run(&config, 1.96, 100, 8);
             for (int k = 1; k < lab.shots - 1; k += 2) {
                 double       got[2];
-                const double want_px_s = focal_px(rows[n].width_px, rows[n].hfov_deg) * speed_mps / lab.shot[k].p_enu[2];
+                const double want_px_s =
+                    focal_px(rows[n].width_px, rows[n].hfov_deg) * speed_mps / lab.shot[k].p_enu[2];
                 rate_of(got, &lab.shot[k], &rows[n]);
-                CHECK_NEAR(lab.shot[k].r_enu_from_cam[1] * -sin(heading) + lab.shot[k].r_enu_from_cam[4] * -cos(heading), 1, 1e-6);
+                CHECK_NEAR(lab.shot[k].r_enu_from_cam[1] * -sin(heading) +
+                               lab.shot[k].r_enu_from_cam[4] * -cos(heading),
+                           1, 1e-6);
                 CHECK_NEAR(got[0], 0, 1e-3 * want_px_s);
-                CHECK_NEAR(got[1], want_px_s, 2e-3 * want_px_s); /* the middle pixel's ray leans; centimetres of ground */
+                CHECK_NEAR(got[1], want_px_s,
+                           2e-3 * want_px_s); /* the middle pixel's ray leans; centimetres of ground */
             }
         }
 }
 
-/* A missile that flies straight past a vehicle with its seeker on it: the seeker turns as the line of sight does, v sin /
- * range, and the vehicle stands still but for what the gimbal lags; half way there, as reports come, and rolling. */
+/* A missile that flies straight past a vehicle with its seeker on it: the seeker turns as the line of sight does, v sin
+ * / range, and the vehicle stands still but for what the gimbal lags; half way there, as reports come, and rolling. */
 static void a_missile_holds_its_aim(void **state)
 {
     (void)state;
-    SensorRow rows[32];
-    const int count = read_sensors(rows);
+    SensorRow    rows[32];
+    const int    count = read_sensors(rows);
     const double speed_mps = 250, pitch = -0.2, here[3] = {0, 0, 0};
     for (int n = 0; n < count; n++)
         for (int causal = 0; causal < 2; causal++) {
@@ -197,19 +206,22 @@ static void a_missile_holds_its_aim(void **state)
             still(1, tank, here, 0.3);
             for (int k = 0; k <= 40; k++) { /* 300 m beside it at the end; up to 1e-3 rad of noise on the attitude */
                 const double t_s = 0.1 * k, noise = causal ? 1e-3 * sin(7.0 * k) : 0;
-                LabReport r = {.t_s = 100 + t_s, .entity = 2, .type = missile,
-                               .p_enu = {300, v[1] * (t_s - 5), 60 + v[2] * (t_s - 5)}, .v_enu_mps = {0, v[1], v[2]}};
+                LabReport    r = {.t_s = 100 + t_s,
+                                  .entity = 2,
+                                  .type = missile,
+                                  .p_enu = {300, v[1] * (t_s - 5), 60 + v[2] * (t_s - 5)},
+                                  .v_enu_mps = {0, v[1], v[2]}};
                 test_attitude(r.r_enu_from_body, noise, pitch, 0);
                 lab_say(&r);
             }
             strcpy(config.exercise.host, causal ? "munition" : "1:1:2");
             strcpy(config.exercise.aim, "1:1:1");
-            config.causal                  = causal;
+            config.causal = causal;
             config.sensor.gimbal_limit_deg = 80;
             lab_run(&config, 1.5, 100, 14);
             CHECK(lab.shots == 14);
             for (int k = 1; k < lab.shots - 1; k++) {
-                double       got[2], away[3];
+                double got[2], away[3];
                 for (int i = 0; i < 3; i++) away[i] = here[i] - lab.shot[k].p_enu[i];
                 const double range_m = v3_length(away), along = v3_dot(away, v) / speed_mps;
                 const double los_rps = speed_mps * sqrt(1 - along * along / range_m / range_m) / range_m;
@@ -239,7 +251,8 @@ static void a_turning_missile_smears_along_the_right_axes(void **state)
         lab_forget();
         for (int k = 0; k <= 40; k++) { /* pitches up about a fixed point; no velocity */
             const double t_s = 0.1 * k;
-            LabReport    r = {.t_s = 100 + t_s, .entity = 2, .type = missile, .p_enu = {0, 0, 300}, .w_body_rps = {0, q_rps, 0}};
+            LabReport    r = {
+                   .t_s = 100 + t_s, .entity = 2, .type = missile, .p_enu = {0, 0, 300}, .w_body_rps = {0, q_rps, 0}};
             test_attitude(r.r_enu_from_body, heading, -0.5 + q_rps * t_s, 0);
             lab_say(&r);
         }
@@ -257,7 +270,8 @@ static void a_turning_missile_smears_along_the_right_axes(void **state)
     }
 }
 
-/* A camera far from the middle of a turning hull, looking down beside it: the ground goes by as the eye does, and turns. */
+/* A camera far from the middle of a turning hull, looking down beside it: the ground goes by as the eye does, and
+ * turns. */
 static void a_sensor_far_out_moves_with_the_turn(void **state)
 {
     (void)state;
@@ -274,19 +288,21 @@ static void a_sensor_far_out_moves_with_the_turn(void **state)
         }
         strcpy(config.exercise.host, "1:1:1");
         config.sensor.gimbal_limit_deg = 0;
-        config.sensor.mount_pitch_deg  = -60;
+        config.sensor.mount_pitch_deg = -60;
         config.sensor.mount_x_m = out_m, config.sensor.mount_y_m = 0, config.sensor.mount_z_m = -up_m;
         lab_run(&config, 0.96, 100, 8);
         for (int k = 1; k < lab.shots - 1; k++) {
             double       got[2], seen[2];
-            const double range_m = lab.shot[k].p_enu[2] / sin(60 * rad_per_deg), focal = focal_px(rows[n].width_px, rows[n].hfov_deg);
+            const double range_m = lab.shot[k].p_enu[2] / sin(60 * rad_per_deg),
+                         focal = focal_px(rows[n].width_px, rows[n].hfov_deg);
             /* to the left by the turn about the vertical, w cos 60, and by the eye's way to the right */
             const double want_px_s = -focal * (w_rps * cos(60 * rad_per_deg) + w_rps * out_m / range_m);
             rate_of(got, &lab.shot[k], &rows[n]);
             CHECK_NEAR(got[0], want_px_s, 3e-3 * fabs(want_px_s)); /* half a pixel of the coarse picture in range */
             CHECK_NEAR(got[1], 0, 3e-3 * fabs(want_px_s));
             rate_seen(seen, k, range_m);
-            for (int i = 0; i < 2; i++) CHECK_NEAR(got[i], focal / lab.shot[k].focal_px * seen[i], 3e-3 * fabs(want_px_s));
+            for (int i = 0; i < 2; i++)
+                CHECK_NEAR(got[i], focal / lab.shot[k].focal_px * seen[i], 3e-3 * fabs(want_px_s));
         }
     }
 }

@@ -18,9 +18,10 @@ static int lab_open(void **state)
     (void)state;
     const Geodetic origin = {-33 * rad_per_deg, -70.5 * rad_per_deg, 500};
     if (local_frame_at(&lab.world.frame, &origin) != STATUS_OK) return -1;
-    Elevation *elevation = &lab.landscape.elevation;
+    Elevation   *elevation = &lab.landscape.elevation;
     const double half_m = 0.5 * (posts - 1) * spacing_m;
-    if (elevation_level_create(elevation, 0, posts, posts, -half_m, -half_m, spacing_m, ground_m, 1) != STATUS_OK) return -1;
+    if (elevation_level_create(elevation, 0, posts, posts, -half_m, -half_m, spacing_m, ground_m, 1) != STATUS_OK)
+        return -1;
     for (int j = 0; j < posts; j++) elevation_set_post(&elevation->level[0], 40, j, 900);
     elevation->level_count = 1;
     elevation_build_pyramids(elevation);
@@ -39,8 +40,11 @@ static int lab_close(void **state)
 static View view_at(double height_m, bool west, double down_deg)
 {
     const double c = cos(down_deg * rad_per_deg), s = sin(down_deg * rad_per_deg), e = west ? -1 : 1;
-    View view = {.p_enu = {0, 0, height_m}, .r_enu_from_cam = {0, -s * e, c * e, -e, 0, 0, 0, -c, -s},
-                 .width = 640, .height = 480, .focal_px = view_focal_px(640, 20 * rad_per_deg)};
+    View         view = {.p_enu = {0, 0, height_m},
+                         .r_enu_from_cam = {0, -s * e, c * e, -e, 0, 0, 0, -c, -s},
+                         .width = 640,
+                         .height = 480,
+                         .focal_px = view_focal_px(640, 20 * rad_per_deg)};
     return view;
 }
 
@@ -57,9 +61,9 @@ static void enu_of(double p_enu[3], const GroundPoint *point)
 static void on_a_plain(void **state)
 {
     (void)state;
-    GroundPoint  out[FOOTPRINT_COUNT];
-    const View   view = view_at(2100, true, 30);
-    const double across = tan(10 * rad_per_deg), below = 0.75 * across, c = cos(30 * rad_per_deg);
+    GroundPoint      out[FOOTPRINT_COUNT];
+    const View       view = view_at(2100, true, 30);
+    const double     across = tan(10 * rad_per_deg), below = 0.75 * across, c = cos(30 * rad_per_deg);
     static const int side[FOOTPRINT_COUNT][2] = {{0, 0}, {-1, -1}, {1, -1}, {1, 1}, {-1, 1}}; /* right, down */
     truth_footprint(out, &lab.world, &view);
     for (int k = 0; k < FOOTPRINT_COUNT; k++) {
@@ -115,7 +119,8 @@ static void through_a_lens(void **state)
     View                view = view_at(2100, true, 30);
     const double        k[3] = {-0.8, 0.1, 0}, p[2] = {0.002, -0.001};
     truth_footprint(plain, &lab.world, &view);
-    assert_int_equal(view_lens_make(&view.lens, k, p, (double[2]){320 / view.focal_px, 240 / view.focal_px}), STATUS_OK);
+    assert_int_equal(view_lens_make(&view.lens, k, p, (double[2]){320 / view.focal_px, 240 / view.focal_px}),
+                     STATUS_OK);
     truth_footprint(out, &lab.world, &view);
     for (int n = 0; n < FOOTPRINT_COUNT; n++) {
         double p_enu[3], d_enu[3], p_cam[3], image_px[2];

@@ -20,8 +20,8 @@ typedef struct Noting {
     int             number[notes_max], left_out[notes_max];
     pthread_mutex_t lock; /* of open, and of put_count */
     pthread_cond_t  opened;
-    bool            open;      /* else put waits */
-    bool            entered;   /* put is there */
+    bool            open;    /* else put waits */
+    bool            entered; /* put is there */
 } Noting;
 
 static Status noting_put(Consumer *consumer, Frame *frame)
@@ -50,7 +50,8 @@ static Status noting_close(Consumer *consumer)
 
 static void noting(Noting *n, unsigned wants, int fail_at, bool open)
 {
-    *n = (Noting){.consumer = {wants, noting_put, noting_left_out, noting_close, NULL}, .fail_at = fail_at, .open = open};
+    *n = (Noting){
+        .consumer = {wants, noting_put, noting_left_out, noting_close, NULL}, .fail_at = fail_at, .open = open};
     pthread_mutex_init(&n->lock, NULL);
     pthread_cond_init(&n->opened, NULL);
 }
@@ -72,7 +73,7 @@ static void let_go(Noting *n)
 
 static Status put_number(Consumer *queue, FramePool *pool, int number)
 {
-    Frame *frame  = frame_pool_take(pool);
+    Frame *frame = frame_pool_take(pool);
     frame->number = number;
     const Status status = queue->put(queue, frame);
     frame_release(frame);
@@ -89,7 +90,7 @@ static void what_is_not_wanted_is_not_made(void **state)
     hand_clear();
     const double at[3] = {0, 60, 0}, level[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
     hand_add(0, at, level);
-    const View    view    = hand_view((const double[3]){0, 0, 30}, (const double[3]){0, 1, -0.45}, 32, 24, 60);
+    const View    view = hand_view((const double[3]){0, 0, 30}, (const double[3]){0, 1, -0.45}, 32, 24, 60);
     RenderRequest request = hand_request(&view);
     Noting        one, two;
     Consumers     list = {0};
@@ -110,7 +111,8 @@ static void what_is_not_wanted_is_not_made(void **state)
         FrameArray    plane[frame_max_planes];
         int           truth = 0, planes = frame_planes(plane, &picture, &request);
         for (int i = 0; i < planes; i++) truth += plane[i].kind == PLANE_TRUTH;
-        CHECK(truth == (k == 2 ? 8 : 0) && (picture.target != NULL) == (k == 2) && (picture.budget != NULL) == (k == 2));
+        CHECK(truth == (k == 2 ? 8 : 0) && (picture.target != NULL) == (k == 2) &&
+              (picture.budget != NULL) == (k == 2));
         CHECK(planes - truth >= 3); /* its bands, always: the same */
         memcpy(radiance[k], picture.lwir, sizeof radiance[k]);
         assert_memory_equal(radiance[k], radiance[0], sizeof radiance[0]);
@@ -127,9 +129,9 @@ static void a_queue_hands_on_in_order(void **state)
 {
     (void)state;
     Noting     first, last;
-    Consumers  list  = {0};
+    Consumers  list = {0};
     Consumer  *queue = NULL;
-    FramePool *pool  = NULL;
+    FramePool *pool = NULL;
     noting(&first, WANT_PLANES, -1, true);
     noting(&last, WANT_SHA256, -1, true);
     consumers_add(&list, &first.consumer);
@@ -150,12 +152,12 @@ static void a_queue_stops_at_the_first_failure(void **state)
 {
     (void)state;
     Noting        failing, behind;
-    Consumers     list   = {0};
-    Consumer     *queue  = NULL;
-    FramePool    *pool   = NULL;
+    Consumers     list = {0};
+    Consumer     *queue = NULL;
+    FramePool    *pool = NULL;
     QueueCounters counts = {0};
     Status        status = STATUS_OK;
-    int           puts   = 0;
+    int           puts = 0;
     noting(&failing, 0, 3, true);
     noting(&behind, 0, -1, true);
     consumers_add(&list, &failing.consumer);
@@ -175,9 +177,9 @@ static void a_late_queue_leaves_out(void **state)
 {
     (void)state;
     Noting        slow;
-    Consumers     list   = {0};
-    Consumer     *queue  = NULL;
-    FramePool    *pool   = NULL;
+    Consumers     list = {0};
+    Consumer     *queue = NULL;
+    FramePool    *pool = NULL;
     QueueCounters counts = {0};
     noting(&slow, 0, 0, false);
     consumers_add(&list, &slow.consumer);
@@ -201,15 +203,15 @@ static void a_late_queue_leaves_out(void **state)
 static DetectorLevel shown_after(unsigned made, unsigned written)
 {
     enum { side = 16, frames = 5 };
-    Config      config = config_default();
-    Consumer   *displays = NULL, *pictures = NULL;
-    FramePool  *pool = NULL;
-    Chains      chains = {{NULL}};
-    char        folder[temp_path_size], path[temp_path_size + 64];
-    static float plane[side * side];
+    Config        config = config_default();
+    Consumer     *displays = NULL, *pictures = NULL;
+    FramePool    *pool = NULL;
+    Chains        chains = {{NULL}};
+    char          folder[temp_path_size], path[temp_path_size + 64];
+    static float  plane[side * side];
     DetectorLevel last = {NAN, NAN};
     config.detector.agc_s = 2;
-    config.detector.raw   = false;
+    config.detector.raw = false;
     config.publish.png = config.publish.files = true;
     strcpy(config.publish.planes, "none");
     CHECK(temp_folder(folder));
@@ -222,11 +224,11 @@ static DetectorLevel shown_after(unsigned made, unsigned written)
     for (int k = 0; k < frames; k++) {
         Frame *f = frame_pool_take(pool);
         for (int i = 0; i < side * side; i++) plane[i] = 30.0f + (float)(k * k) + 0.05f * (float)i;
-        f->number  = k;
-        f->time_s  = 100 + 0.4 * k;
-        f->world   = &hand.world;
+        f->number = k;
+        f->time_s = 100 + 0.4 * k;
+        f->world = &hand.world;
         f->request = (RenderRequest){.bands = 1u << BAND_LWIR};
-        f->seen.picture     = (Picture){.width = side, .height = side, .lwir = plane};
+        f->seen.picture = (Picture){.width = side, .height = side, .lwir = plane};
         f->seen.plane_count = frame_planes(f->seen.plane, &f->seen.picture, &f->request);
         f->provenance.config_sha256 = "";
         if (made >> k & 1) assert_int_equal(displays->put(displays, f), STATUS_OK);
@@ -275,14 +277,15 @@ static void a_display_of_any_depth(void **state)
     config.detector.noise = 0;
     const Picture    picture = {.width = side, .height = side, .lwir = plane};
     const DisplaysOf of = {.config = &config, .picture = &picture, .chain = chain, .level = level};
-    Arena *arena = arena_create();
+    Arena           *arena = arena_create();
     assert_non_null(arena);
     assert_int_equal(frame_displays_make(display, &of, 1u << BAND_LWIR | 1u << BAND_MWIR, hand.pool, arena), STATUS_OK);
     CHECK(display[BAND_LWIR].planes == 1 && display[BAND_MWIR].planes == 0 && !display[BAND_LWIR].counts[0]);
     frame_display_quantise(eight, &display[BAND_LWIR], count, 8);
     for (int k = 0; k < 3; k++) frame_display_quantise(deep[k], &display[BAND_LWIR], count, k == 2 ? 16 : 10 + 2 * k);
     for (int i = 0; i < count; i++) {
-        CHECK(deep[0][i] <= 1023 && deep[1][i] <= 4095 && deep[2][i] >> 4 == deep[1][i] && deep[2][i] >> 6 == deep[0][i]);
+        CHECK(deep[0][i] <= 1023 && deep[1][i] <= 4095 && deep[2][i] >> 4 == deep[1][i] &&
+              deep[2][i] >> 6 == deep[0][i]);
         CHECK(fabs(deep[2][i] / 65535.0 - eight[i] / 255.0) <= 0.5 / 255 + 1e-5);
     }
     CHECK(eight[0] < 20 && eight[count - 1] > 235 && deep[2][1] > deep[2][0]);
@@ -296,9 +299,15 @@ static void arrays_of_any_axes(void **state)
     (void)state;
     static float values[2 * 2 * 3 * 4]; /* pulses, channels, bins; complex */
     for (int i = 0; i < 48; i++) values[i] = (float)i;
-    FrameView view = {.plane_count = 1,
-                      .plane = {{.group = "radar", .name = "echo", .unit = "V", .type = PLANE_C64, .axes = 3,
-                                 .axis = {"pulse", "channel", "bin"}, .size = {2, 3, 4}, .values = values}}};
+    FrameView   view = {.plane_count = 1,
+                        .plane = {{.group = "radar",
+                                   .name = "echo",
+                                   .unit = "V",
+                                   .type = PLANE_C64,
+                                   .axes = 3,
+                                   .axis = {"pulse", "channel", "bin"},
+                                   .size = {2, 3, 4},
+                                   .values = values}}};
     char        name[frame_plane_name_size];
     const Plane plane = frame_plane(name, &view.plane[0]);
     CHECK(plane.width == 4 && plane.height == 6 && strcmp(name, "radar/echo") == 0);
@@ -336,7 +345,7 @@ static void a_long_path_is_refused(void **state)
     log_set_sink(count_errors, NULL);
     for (size_t n = longest; n < sizeof out; n++) {
         char kept = out[n];
-        out[n]    = 0;
+        out[n] = 0;
         const Status status = frame_files_prepare(out, 1u << BAND_LWIR, 0);
         CHECK(status == (n > longest ? STATUS_BAD_VALUE : STATUS_IO)); /* no such folder, and a name too long */
         CHECK(!frame_files_earlier(found, out));

@@ -13,7 +13,7 @@ typedef struct Driver {
 static DisEntityState report_of(int index, double x, double y, double heading, double speed)
 {
     static const DisEntityType tank = {1, 1, 222, 1, 1, 1, 0};
-    const double c = cos(heading), s = sin(heading),
+    const double               c = cos(heading), s = sin(heading),
                  p_enu[3] = {x, y, elevation_height(&lab.ground.elevation, x, y, NULL)};
     const double   r_enu_from_body[9] = {c, s, 0, s, -c, 0, 0, 0, -1}, v_enu[3] = {speed * c, speed * s, 0};
     double         r[9], euler[3], v_ecef[3];
@@ -34,9 +34,9 @@ static void drive(Driver *d, int index, double t_s, double dt_s)
 {
     if (t_s >= d->from_s) { /* something else now */
         const uint32_t when = (uint32_t)(t_s * 1000);
-        d->turn_rps    = 0.25 * random_normal(5, 1, when, (uint64_t)index);
+        d->turn_rps = 0.25 * random_normal(5, 1, when, (uint64_t)index);
         d->thrust_mps2 = 0.8 * random_normal(5, 2, when, (uint64_t)index);
-        d->from_s      = t_s + 2 + 4 * random_uniform(5, 3, when, (uint64_t)index);
+        d->from_s = t_s + 2 + 4 * random_uniform(5, 3, when, (uint64_t)index);
     }
     /* back to the others */
     const double off = remainder(atan2(-d->p_enu[1], -d->p_enu[0]) - d->heading_rad, 2 * pi_rad);
@@ -82,9 +82,10 @@ static int place_drivers(Driver driver[drivers], EntityTable *heard, EntityTable
     return to;
 }
 
-/* Sums over the targets' own pixels in LWIR: their number, squared apparent differences between two frames, and what was
- * estimated. */
-static void add_targets(double *all, double *truth_k2, double *estimate_k2, const TrialFrame *a, const TrialFrame *b, const Target *target, int targets)
+/* Sums over the targets' own pixels in LWIR: their number, squared apparent differences between two frames, and what
+ * was estimated. */
+static void add_targets(double *all, double *truth_k2, double *estimate_k2, const TrialFrame *a, const TrialFrame *b,
+                        const Target *target, int targets)
 {
     const PlanckTable *planck = a->scene->world.planck_lwir;
     const int          pixels = a->picture.width * a->picture.height;
@@ -92,7 +93,8 @@ static void add_targets(double *all, double *truth_k2, double *estimate_k2, cons
         if (isnan(target[i].band[BAND_LWIR].error_rms_k)) continue;
         for (int px = 0; px < pixels; px++) {
             if (a->picture.entity[px] != (uint32_t)target[i].index + 1) continue;
-            const double k = planck_table_temp(planck, (double)a->picture.lwir[px]) - planck_table_temp(planck, (double)b->picture.lwir[px]);
+            const double k = planck_table_temp(planck, (double)a->picture.lwir[px]) -
+                             planck_table_temp(planck, (double)b->picture.lwir[px]);
             *truth_k2 += k * k;
             ++*all;
             *estimate_k2 += target[i].band[BAND_LWIR].error_rms_k * target[i].band[BAND_LWIR].error_rms_k;
@@ -108,9 +110,9 @@ static void dead_reckoning_is_near_the_truth(void **state)
                                         {"drivers at 700 m", 700, 120, 12, 0, false, 0, false}};
     enum { times = 8 };
     static const double times_s[times] = {5.1, 7.3, 9.6, 11.9, 13.4, 16.4, 18.7, 20.9};
-    Tally tally = {0}, pooled = {0};
+    Tally               tally = {0}, pooled = {0};
     for (int k = 0; k < 3; k++) {
-        double     estimates[radiance_bands] = {0}, truths[radiance_bands] = {0}, truth_k2 = 0, estimate_k2 = 0, own_px = 0;
+        double estimates[radiance_bands] = {0}, truths[radiance_bands] = {0}, truth_k2 = 0, estimate_k2 = 0, own_px = 0;
         TrialScene heard, truth;
         Driver     driver[drivers];
         int        ticks = 0;
@@ -119,14 +121,14 @@ static void dead_reckoning_is_near_the_truth(void **state)
         for (int n = 0; n < times; n++) {
             ticks = place_drivers(driver, heard.table, truth.table, ticks, times_s[n]);
             heard.sun_now_s = truth.sun_now_s = 60 + times_s[n] - 0.5; /* trial_frame looks half a second later */
-            RenderRequest request = request_of(&heard, &scenes[k]);
-            TrialFrame    a = frame_of(&heard, &request, 0);
-            Target       *target;
-            int           targets;
+            RenderRequest    request = request_of(&heard, &scenes[k]);
+            TrialFrame       a = frame_of(&heard, &request, 0);
+            Target          *target;
+            int              targets;
             const FrameError error = error_of_targets(&target, &targets, &a);
-            TrialFrame    b = frame_of(&truth, &request, 1);
+            TrialFrame       b = frame_of(&truth, &request, 1);
             add_targets(&own_px, &truth_k2, &estimate_k2, &a, &b, target, targets);
-            char          name[64];
+            char name[64];
             snprintf(name, sizeof name, "%s %.1f s", scenes[k].name, times_s[n]);
             for (int band = 0; band < radiance_bands; band++) {
                 const double estimate = error.share[band][ERROR_DEAD_RECKONING],
@@ -137,7 +139,8 @@ static void dead_reckoning_is_near_the_truth(void **state)
         }
         trial_scene_close(&heard);
         trial_scene_close(&truth);
-        print_message("%s: of the targets' own pixels in lwir %.2f K estimated, %.2f K true\n", scenes[k].name, sqrt(estimate_k2 / own_px), sqrt(truth_k2 / own_px));
+        print_message("%s: of the targets' own pixels in lwir %.2f K estimated, %.2f K true\n", scenes[k].name,
+                      sqrt(estimate_k2 / own_px), sqrt(truth_k2 / own_px));
         CHECK(estimate_k2 > truth_k2 / 4 && estimate_k2 < 4 * truth_k2);
         for (int band = 0; band < radiance_bands; band++)
             judge(&pooled, scenes[k].name, "all eight", (Band)band, sqrt(estimates[band]), sqrt(truths[band]));

@@ -1,5 +1,5 @@
-/* What a frame says of its pixels, median_k and beyond_1k, against the same frame sampled finely: 12 x 12 rays in every pixel,
- * adaptive sampling off, on a ground of four times as many posts and with heat in finer steps, pixel by pixel.
+/* What a frame says of its pixels, median_k and beyond_1k, against the same frame sampled finely: 12 x 12 rays in every
+ * pixel, adaptive sampling off, on a ground of four times as many posts and with heat in finer steps, pixel by pixel.
  * labels: physics deep */
 #include "tests/sensor/error_scenes.h"
 
@@ -15,7 +15,7 @@ static int by_value(const void *a, const void *b)
 static void spread_of(double *median_k, double *beyond, const TrialFrame *a, const TrialFrame *b, Band band)
 {
     static double      apart_k[width_px * height_px];
-    const World       *world  = &a->scene->world;
+    const World       *world = &a->scene->world;
     const PlanckTable *planck = band == BAND_MWIR ? world->planck_mwir : world->planck_lwir;
     const float       *p = band == BAND_MWIR ? a->picture.mwir : a->picture.lwir;
     const float       *q = band == BAND_MWIR ? b->picture.mwir : b->picture.lwir;
@@ -26,7 +26,7 @@ static void spread_of(double *median_k, double *beyond, const TrialFrame *a, con
     }
     qsort(apart_k, width_px * height_px, sizeof *apart_k, by_value);
     *median_k = apart_k[width_px * height_px / 2];
-    *beyond   = over / (double)(width_px * height_px);
+    *beyond = over / (double)(width_px * height_px);
 }
 
 static const ErrorScene scenes[] = {
@@ -40,11 +40,12 @@ static bool within(double estimate, double truth, double factor)
     return estimate < factor * truth && truth < factor * estimate;
 }
 
-/* The median within a quarter, the share beyond 1 K within a factor of 2 in LWIR, of 4 in MWIR, whose slope, W/(m2 sr K), is
- * twice as steep at a hot hull as at the mean by which sampling is turned into kelvin. */
+/* The median within a quarter, the share beyond 1 K within a factor of 2 in LWIR, of 4 in MWIR, whose slope, W/(m2 sr
+ * K), is twice as steep at a hot hull as at the mean by which sampling is turned into kelvin. */
 static bool holds(const FrameError *error, Band band, double median_k, double beyond)
 {
-    return within(error->median_k[band], median_k, 1.25) && within(error->beyond_1k[band], beyond, band == BAND_MWIR ? 4 : 2);
+    return within(error->median_k[band], median_k, 1.25) &&
+           within(error->beyond_1k[band], beyond, band == BAND_MWIR ? 4 : 2);
 }
 
 static void pixels_are_as_good_as_they_say(void **state)
@@ -66,7 +67,8 @@ static void pixels_are_as_good_as_they_say(void **state)
             double median_k, beyond;
             spread_of(&median_k, &beyond, &c.frame, &better, (Band)b);
             print_message("%-20s %-5s median: estimate %.3f K, truth %.3f K; beyond 1 K: estimate %.4f, truth %.4f\n",
-                          scenes[k].name, band_name((Band)b), c.error.median_k[b], median_k, c.error.beyond_1k[b], beyond);
+                          scenes[k].name, band_name((Band)b), c.error.median_k[b], median_k, c.error.beyond_1k[b],
+                          beyond);
             CHECK(holds(&c.error, (Band)b, median_k, beyond));
             /* twins: a frame that is a pixel row off, and one that is the reference itself, are not what it says */
             CHECK(!holds(&c.error, (Band)b, 0, 0));

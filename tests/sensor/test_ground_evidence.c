@@ -9,7 +9,8 @@
 
 static void gather(GroundEvidence *out, const Exercise *e)
 {
-    assert_int_equal(ground_evidence_collect(out, &e->survey, &frame, catalog, (DisEntityId){0}, (DisEntityId){0}), STATUS_OK);
+    assert_int_equal(ground_evidence_collect(out, &e->survey, &frame, catalog, (DisEntityId){0}, (DisEntityId){0}),
+                     STATUS_OK);
 }
 
 /* The ground as replay chooses it, with what it says. */
@@ -20,7 +21,8 @@ static void choose(Landscape *out, GroundContact *contact, Choices *choices, con
     choices->count = 0;
     strcpy(config.terrain.ground, ground);
     config.terrain.spacing_m = 8; /* a quarter of the time */
-    assert_int_equal(choice_ground(out, contact, choices, &(ChoiceBasis){&e->survey, &config, catalog, &plan}, &frame), STATUS_OK);
+    assert_int_equal(choice_ground(out, contact, choices, &(ChoiceBasis){&e->survey, &config, catalog, &plan}, &frame),
+                     STATUS_OK);
 }
 
 /* Base of every report of a track above the ground, the farthest. */
@@ -80,12 +82,12 @@ static void a_helicopter_that_hangs_is_not_parked(void **state)
         Exercise *e = fresh();
         for (int n = 0; n < 5; n++) stand(e, man, 20 + 6 * n, 5 * (n % 2), 300 + 0.02 * n, 1, 8);
         const int parked = e->survey.track_count;
-        stand(e, helicopter, 30, 40, 300.5, 0, 8);          /* among soldiers, as high as they */
-        stand(e, helicopter, 60, 60, 320, 0, 8);            /* hangs 20 m above them, to the millimetre */
-        stand(e, helicopter, 5000, 0, 340, 0, 8);           /* unknown */
-        stand(e, jet, -5000, 0, 310, 0, 8);                 /* wings do not hang */
-        stand(e, jet, -6000, 0, 310, 60, 8);                /* flies */
-        stand(e, helicopter, 25, 30, 300, 0, 2);            /* too short to tell */
+        stand(e, helicopter, 30, 40, 300.5, 0, 8); /* among soldiers, as high as they */
+        stand(e, helicopter, 60, 60, 320, 0, 8);   /* hangs 20 m above them, to the millimetre */
+        stand(e, helicopter, 5000, 0, 340, 0, 8);  /* unknown */
+        stand(e, jet, -5000, 0, 310, 0, 8);        /* wings do not hang */
+        stand(e, jet, -6000, 0, 310, 60, 8);       /* flies */
+        stand(e, helicopter, 25, 30, 300, 0, 2);   /* too short to tell */
         Track *frozen = stand(e, helicopter, 35, 30, 300, 0, 8);
         for (int n = 0; n < 8; n++) frozen->point[n].frozen = true;
         Track *sways = stand(e, helicopter, 35, 50, 300, 0, 8);
@@ -166,11 +168,11 @@ static void ships_float_and_tanks_stay_dry(void **state)
     GroundContact contact;
     for (int n = 0; n < 4; n++) stand(e, tank, -40 * n, 0, 52, 5, 8);
     for (int n = 0; n < 3; n++) stand(e, ship, 1500, 400 * n, 40, 8, 8);
-    stand(e, ship, 1900, 900, 70, 8, 8);         /* 30 m too high: outvoted and set on the water */
-    stand(e, submarine, 1300, -300, 0, 4, 8);    /* 40 m down */
+    stand(e, ship, 1900, 900, 70, 8, 8);      /* 30 m too high: outvoted and set on the water */
+    stand(e, submarine, 1300, -300, 0, 4, 8); /* 40 m down */
     stand(e, submarine, 1300, -600, 40, 4, 8);
-    stand(e, tank, 1500, 0, 46, 8, 8);           /* on the first ship's deck */
-    stand(e, missile, 600, 0, 44, 40, 16);       /* a sea skimmer */
+    stand(e, tank, 1500, 0, 46, 8, 8);     /* on the first ship's deck */
+    stand(e, missile, 600, 0, 44, 40, 16); /* a sea skimmer */
     e->shot[0] = (Shot){.firing = e->track[0].id, .result = dis_result_ground_impact, .fire_s = 1, .detonation_s = 2};
     memcpy(e->shot[0].p_burst_ecef, e->track[5].point[0].p_ecef, sizeof e->shot[0].p_burst_ecef); /* in the water */
     e->survey.shot_count = 1;

@@ -6,8 +6,12 @@
 
 #include <errno.h>
 
-static const HealthNames names = {.where = "239.1.2.3 port 3000", .to = "255.255.255.255 port 3000", .exercise = 7,
-                                  .site = 4711, .application = 1, .host = "1:2:3"};
+static const HealthNames names = {.where = "239.1.2.3 port 3000",
+                                  .to = "255.255.255.255 port 3000",
+                                  .exercise = 7,
+                                  .site = 4711,
+                                  .application = 1,
+                                  .host = "1:2:3"};
 
 /* A node that began at 100 s and has heard nothing. */
 static HealthSample silent_at(double now_s)
@@ -36,8 +40,8 @@ static void what_is_heard(void **state)
     s.now_s = 104.9; /* a heartbeat may be to come */
     CHECK(judge(HEALTH_RECEIVE, s) == HEALTH_FINE);
     s.now_s = 105;
-    s.junk  = 0;
-    s.own   = 3;
+    s.junk = 0;
+    s.own = 3;
     CHECK(judge(HEALTH_RECEIVE, s) == HEALTH_OWN);
     s.junk = 1; /* others, too */
     CHECK(judge(HEALTH_RECEIVE, s) == HEALTH_JUNK);
@@ -45,15 +49,15 @@ static void what_is_heard(void **state)
     CHECK(judge(HEALTH_RECEIVE, s) == HEALTH_OTHER_EXERCISE);
     s.pdus = 1;
     CHECK(judge(HEALTH_RECEIVE, s) == HEALTH_NO_ENTITY);
-    s.usable   = 1;
+    s.usable = 1;
     s.usable_s = 101;
     CHECK(judge(HEALTH_RECEIVE, s) == HEALTH_FINE);
     s.away = true;
     CHECK(judge(HEALTH_RECEIVE, s) == HEALTH_AWAY);
     /* an entity at rest may report once a minute: as long as the table holds it, it is heard */
-    s.away     = false;
-    s.now_s    = 150;
-    s.rendering   = true;
+    s.away = false;
+    s.now_s = 150;
+    s.rendering = true;
     s.entities = 1;
     CHECK(judge(HEALTH_RECEIVE, s) == HEALTH_FINE);
     s.entities = 0;
@@ -66,7 +70,7 @@ static void what_is_shown(void **state)
 {
     (void)state;
     HealthSample s = silent_at(200);
-    s.host    = HEALTH_MUNITION;
+    s.host = HEALTH_MUNITION;
     s.missing = 10;
     CHECK(judge(HEALTH_RENDER, s) == HEALTH_FINE); /* nothing is chosen yet */
     s.rendering = true;
@@ -80,10 +84,10 @@ static void what_is_shown(void **state)
     s.host = HEALTH_OBSERVER; /* is always there */
     CHECK(judge(HEALTH_RENDER, s) == HEALTH_FINE);
     /* frames are made */
-    s.frames    = 50;
-    s.missing   = 0;
-    s.frame_s   = 200;
-    s.others    = 4;
+    s.frames = 50;
+    s.missing = 0;
+    s.frame_s = 200;
+    s.others = 4;
     s.in_view_s = s.visible_s = 191;
     CHECK(judge(HEALTH_RENDER, s) == HEALTH_FINE);
     s.visible_s = 190;
@@ -98,7 +102,7 @@ static void what_is_sent_lost_and_late(void **state)
 {
     (void)state;
     HealthSample s = silent_at(200);
-    s.unsent    = 5;
+    s.unsent = 5;
     s.failing_s = 199;
     CHECK(judge(HEALTH_SEND, s) == HEALTH_FINE); /* nothing is to be sent */
     s.publishes = true;
@@ -124,7 +128,7 @@ static void why_there_was_no_frame_at_all(void **state)
     s.usable = 1;
     CHECK(health_final(&s) == HEALTH_EARLY);
     s.rendering = true;
-    s.host   = HEALTH_MUNITION;
+    s.host = HEALTH_MUNITION;
     CHECK(health_final(&s) == HEALTH_EARLY);
     s.missing = 1;
     CHECK(health_final(&s) == HEALTH_NO_MUNITION);
@@ -176,10 +180,11 @@ static void listen(void *user, LogLevel level, const char *line)
 static void hear(Health *h, int exercise, double now_s)
 {
     uint8_t        octets[256];
-    DisEntityState pdu = {.header = {.version = 7, .exercise = (uint8_t)exercise, .type = dis_pdu_entity_state,
-                                     .family = 1},
-                          .id = {10, 20, 30}, .p_ecef = {6378137, 0, 0}};
-    DisDatagram    datagram = {.bytes = octets};
+    DisEntityState pdu = {
+        .header = {.version = 7, .exercise = (uint8_t)exercise, .type = dis_pdu_entity_state, .family = 1},
+        .id = {10, 20, 30},
+        .p_ecef = {6378137, 0, 0}};
+    DisDatagram datagram = {.bytes = octets};
     datagram.octets = (uint32_t)dis_encode_entity_state(octets, sizeof octets, &pdu);
     health_received(h, &datagram, 7, true, now_s);
 }
@@ -214,7 +219,7 @@ static void each_change_is_said_once(void **state)
     log_set_sink(listen, NULL);
     health_begin(&h, 0);
     h.sample.publishes = true;
-    h.sample.error     = ENETUNREACH;
+    h.sample.error = ENETUNREACH;
     for (int tenth = 0; tenth < 3000; tenth++) { /* five minutes */
         const double now_s = 0.1 * tenth;
         if (now_s >= 20 && now_s < 40 && tenth % 10 == 0) hear(&h, 3, now_s);
@@ -228,11 +233,10 @@ static void each_change_is_said_once(void **state)
         health_check(&h, &c, &names, now_s);
     }
     log_set_sink(NULL, NULL);
-    static const char *const want[] = {"nothing heard on 239.1.2.3 port 3000 for 10 s",
-                                       "only other exercises are heard",
-                                       "nothing can be sent to 255.255.255.255 port 3000",
-                                       "sending to 255",
-                                       "datagrams lost: in the kernel 0, in the queue 1", "nothing heard"};
+    static const char *const want[] = {
+        "nothing heard on 239.1.2.3 port 3000 for 10 s",    "only other exercises are heard",
+        "nothing can be sent to 255.255.255.255 port 3000", "sending to 255",
+        "datagrams lost: in the kernel 0, in the queue 1",  "nothing heard"};
     CHECK(said == sizeof want / sizeof *want);
     for (int i = 0; i < said; i++) CHECK(strstr(lines[i], want[i]) && (levels[i] == LOG_WARN) == (i != 3));
 }

@@ -1,13 +1,16 @@
 /* exercise.host: munition, causally: who carries the sensor from frame to frame, whatever the frames are. */
 #include "tests/sensor/eye_lab.h"
 
-static const DisEntityType tank = {1, 1, 225, 1, 1, 1, 0}, mine = {2, 4, 225, 3, 1, 1, 0}, shell = {2, 9, 225, 2, 1, 1, 0},
-                           missile = {2, 2, 225, 1, 1, 1, 0};
+static const DisEntityType tank = {1, 1, 225, 1, 1, 1, 0}, mine = {2, 4, 225, 3, 1, 1, 0},
+                           shell = {2, 9, 225, 2, 1, 1, 0}, missile = {2, 2, 225, 1, 1, 1, 0};
 
 static void flies(uint16_t entity, DisEntityType type, double from_s, double to_s, bool taken_away)
 {
     for (double t_s = from_s; t_s <= to_s + 1e-9; t_s += 0.25) {
-        LabReport r = {.t_s = 100 + t_s, .entity = entity, .type = type, .v_enu_mps = {0, 100, -5},
+        LabReport r = {.t_s = 100 + t_s,
+                       .entity = entity,
+                       .type = type,
+                       .v_enu_mps = {0, 100, -5},
                        .p_enu = {20.0 * entity, 100 * t_s - 800, 150 - 5 * t_s}};
         if (taken_away && t_s > to_s - 0.1) r.appearance = 1u << 23;
         test_attitude(r.r_enu_from_body, 0, -0.05, 0);
@@ -52,7 +55,7 @@ static void the_sensor_goes_from_one_to_the_next(void **state)
         if (fabs(remainder(t_s, 0.5)) < 0.02) continue; /* reports at the very moment have a test of their own */
         CHECK(expected(t_s) != 0 && lab.shot[k].host.entity == expected(t_s));
     }
-    CHECK(abs(lab.shots - 20 * (25 + 13) / 10) <= 3); /* 0.5 .. 3 s and 4.5 .. 5.8 s */
+    CHECK(abs(lab.shots - 20 * (25 + 13) / 10) <= 3);                        /* 0.5 .. 3 s and 4.5 .. 5.8 s */
     static const char *const hosts[] = {"1:1:2", "1:1:3", "1:1:4", "1:1:5"}; /* in order, each once */
     CHECK(lab.result.host_count == 4);
     for (int i = 0; i < 4; i++) assert_string_equal(lab.result.host[i], hosts[i]);

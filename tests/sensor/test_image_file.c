@@ -94,7 +94,7 @@ static void exr_round_trip_is_exact(void **state)
                            plane_u32("part", width, height, part), plane_f32("temp_k", width, height, temp_k)};
     const char *compressions[] = {NULL, "none", "rle", "zips", "zip:1", "piz"};
     for (int k = 0; k < 6; k++) {
-        const char *path = in_folder("truth.exr");
+        const char  *path = in_folder("truth.exr");
         const Status status = compressions[k] ? image_write_exr_as(path, compressions[k], plane, 4, NULL, NULL, 0)
                                               : image_write_exr(path, plane, 4, NULL, NULL, 0);
         assert_int_equal(status, STATUS_OK);
@@ -151,14 +151,14 @@ static void lines_shrink_or_stay(void **state)
     uint32_t     seed = 1;
     for (int i = 0; i < rows * columns; i++) {
         const int y = i / columns;
-        seed        = seed * 1664525u + 1013904223u;
+        seed = seed * 1664525u + 1013904223u;
         memcpy(&plane_in[i], &seed, sizeof seed);
         if (y < noisy_from || y >= noisy_to || !isfinite(plane_in[i])) plane_in[i] = 0;
     }
     const Plane plane[] = {plane_f32("Y", columns, rows, plane_in), plane_f32("Z", columns, rows, plane_in)};
     const char *path = in_folder("lines.exr");
     struct stat about;
-    const int noise = (noisy_to - noisy_from) * columns * 4, of_line = 16 + columns * 4 / 16;
+    const int   noise = (noisy_to - noisy_from) * columns * 4, of_line = 16 + columns * 4 / 16;
     for (int planes = 1; planes <= 2; planes++) { /* written as it is, and interleaved */
         assert_int_equal(image_write_exr_as(path, "rle", plane, planes, NULL, NULL, 0), STATUS_OK);
         assert_int_equal(image_read_f32(plane_out, path, plane[planes - 1].name), STATUS_OK);
@@ -195,7 +195,7 @@ static void attributes_come_back(void **state)
     const ImageAttribute attribute[] = {image_string("unit", "W/(m2 sr)"), image_int("frame", 2147483647),
                                         image_float("gain", 0.5), image_double("time_s", 1392.4000000001),
                                         image_string("entity_ids", "1:3001:82 1:3001:72")};
-    const char *path = in_folder("attributes.exr");
+    const char          *path = in_folder("attributes.exr");
     assert_int_equal(image_write_exr(path, &plane, 1, "2024:06:21 10:00:00", attribute, 5), STATUS_OK);
 
     char   text[64];
@@ -247,7 +247,7 @@ static void png_round_trip(void **state)
         in16[i] = (uint16_t)(i * 257 + 1);
     }
     for (int channels = 1; channels <= 3; channels += 2) {
-        const char *path = in_folder("picture.png");
+        const char  *path = in_folder("picture.png");
         const size_t n = (size_t)channels * pixels;
         ImageInfo    info;
         assert_int_equal(image_write_png(path, in8, width, height, channels, 8), STATUS_OK);
@@ -322,7 +322,7 @@ static void a_full_disk_leaves_the_old_file(void **state)
     const Status exr = image_write_exr(path, &plane, 1, NULL, NULL, 0);
     char         exr_line[sizeof last_line];
     strcpy(exr_line, last_line);
-    const int    exr_lines = lines;
+    const int exr_lines = lines;
     lines = 0;
     const Status png = image_write_png(path, entity, width, height, 1, 16);
     log_set_sink(NULL, NULL);

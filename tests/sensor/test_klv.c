@@ -11,13 +11,13 @@ static KlvWriter writer_on(uint8_t *octets, size_t room)
     return (KlvWriter){.octet = octets, .room = room};
 }
 
-#define CHECK_OCTETS(w, ...)                                                                        \
-    do {                                                                                            \
-        const uint8_t want_[] = {__VA_ARGS__};                                                      \
-        CHECK(!(w).full);                                                                           \
-        assert_int_equal((w).used, sizeof want_);                                                   \
-        assert_memory_equal((w).octet, want_, sizeof want_);                                        \
-        (w).used = 0;                                                                               \
+#define CHECK_OCTETS(w, ...)                                                                                           \
+    do {                                                                                                               \
+        const uint8_t want_[] = {__VA_ARGS__};                                                                         \
+        CHECK(!(w).full);                                                                                              \
+        assert_int_equal((w).used, sizeof want_);                                                                      \
+        assert_memory_equal((w).octet, want_, sizeof want_);                                                           \
+        (w).used = 0;                                                                                                  \
     } while (0)
 
 static void lengths_and_tags(void **state)
@@ -111,7 +111,7 @@ static void never_beyond_the_buffer(void **state)
     uint8_t octets[16];
     for (size_t room = 0; room < 8; room++) {
         KlvWriter w = writer_on(octets, sizeof octets);
-        w.room      = room;
+        w.room = room;
         klv_item_number(&w, 2, 0x0102030405060708, 8);
         klv_put_number(&w, 1, 1);
         CHECK(w.full && w.used <= room);
@@ -142,7 +142,7 @@ static Value find(Value set, unsigned tag)
 {
     const uint8_t *at = set.at, *end = set.at + set.count;
     while (at < end) {
-        const unsigned found  = *at++;
+        const unsigned found = *at++;
         size_t         length = *at++;
         if (length & 0x80) {
             int octets = (int)(length & 0x7F);
@@ -208,13 +208,16 @@ static void scene(const Geodetic *place, const double platform_deg[3], const dou
     memset(&lab, 0, sizeof lab);
     lab.request.view = (View){.width = 640, .height = 480, .focal_px = view_focal_px(640, 6 * rad_per_deg)};
     memcpy(lab.host.marking, "MSL 1", 6);
-    lab.record = (FrameRecord){.frame = 300, .host = &lab.host, .request = &lab.request, .hfov_rad = 6 * rad_per_deg,
+    lab.record = (FrameRecord){.frame = 300,
+                               .host = &lab.host,
+                               .request = &lab.request,
+                               .hfov_rad = 6 * rad_per_deg,
                                .footprint = lab.footprint};
     assert_int_equal(ecef_from_geodetic(lab.record.p_eye_ecef, r_ecef_from_enu, place), STATUS_OK);
     const double v_enu_mps[3] = {200, -30, 5};
     m3_mul_v3(lab.record.v_eye_mps, r_ecef_from_enu, v_enu_mps);
     for (int k = 0; k < 3; k++) {
-        r_ecef_from_ned[3 * k]     = r_ecef_from_enu[3 * k + 1];
+        r_ecef_from_ned[3 * k] = r_ecef_from_enu[3 * k + 1];
         r_ecef_from_ned[3 * k + 1] = r_ecef_from_enu[3 * k];
         r_ecef_from_ned[3 * k + 2] = -r_ecef_from_enu[3 * k + 2];
     }
@@ -223,7 +226,7 @@ static void scene(const Geodetic *place, const double platform_deg[3], const dou
     m3_mul(lab.record.r_ecef_from_body, r_ecef_from_ned, r_ned_from_body);
     m3_mul(r_ecef_from_sensor, lab.record.r_ecef_from_body, r_body_from_sensor);
     for (int k = 0; k < 3; k++) { /* right, down, forward */
-        lab.record.r_ecef_from_cam[3 * k]     = r_ecef_from_sensor[3 * k + 1];
+        lab.record.r_ecef_from_cam[3 * k] = r_ecef_from_sensor[3 * k + 1];
         lab.record.r_ecef_from_cam[3 * k + 1] = r_ecef_from_sensor[3 * k + 2];
         lab.record.r_ecef_from_cam[3 * k + 2] = r_ecef_from_sensor[3 * k];
     }
@@ -271,7 +274,7 @@ static void pose_of_platform_and_sensor(void **state)
     CHECK_NEAR(signed_of(86, 90), 48.1, 3e-8);
     CHECK_NEAR(signed_of(87, 180), 179.9999, 5e-8);
     CHECK(!has(82) && !has(83) && !has(84) && !has(88) && !has(89)); /* corners that are not on the ground */
-    CHECK(!has(15) && !has(25) && !has(74) && !has(104)); /* no geoid, no targets, not that high */
+    CHECK(!has(15) && !has(25) && !has(74) && !has(104));            /* no geoid, no targets, not that high */
     CHECK(is_text(tag_of(3), "Exercise 1") && is_text(tag_of(10), "platform") && is_text(tag_of(11), "IR LWIR"));
     CHECK(is_text(tag_of(12), "Geodetic WGS84") && is_text(tag_of(59), "MSL 1"));
     CHECK(number(tag_of(65), false) == 19 && number(tag_of(77), false) == 3);
@@ -295,7 +298,7 @@ static void what_is_beyond_a_range_is_absent(void **state)
 
     /* an observer that is no entity is its own platform */
     scene(&somewhere, (double[3]){350, -20, 0}, (double[3]){0, 0, 0});
-    lab.record.host      = NULL;
+    lab.record.host = NULL;
     lab.record.footprint = NULL;
     memset(lab.record.r_ecef_from_body, 0, sizeof lab.record.r_ecef_from_body);
     encode(NULL);
@@ -312,15 +315,21 @@ static void what_is_beyond_a_range_is_absent(void **state)
 
 static KlvTarget some_target(uint64_t id)
 {
-    return (KlvTarget){.id = id, .box = {10, 20, 30, 24}, .confidence = 0.874, .pixels = 40, .located = true,
-                       .place = {48 * rad_per_deg, 11 * rad_per_deg, 100}, .class_name = "tank", .algorithm = "yolo",
+    return (KlvTarget){.id = id,
+                       .box = {10, 20, 30, 24},
+                       .confidence = 0.874,
+                       .pixels = 40,
+                       .located = true,
+                       .place = {48 * rad_per_deg, 11 * rad_per_deg, 100},
+                       .class_name = "tank",
+                       .algorithm = "yolo",
                        .algorithm_version = "8"};
 }
 
 static void a_target(void **state)
 {
     (void)state;
-    const KlvTarget  target  = some_target(200);
+    const KlvTarget  target = some_target(200);
     const KlvTargets targets = {.count = 1, .total = 7, .target = &target};
     scene(&somewhere, (double[3]){0, 0, 0}, (double[3]){0, 0, 0});
     encode(&targets);
@@ -333,13 +342,13 @@ static void a_target(void **state)
     CHECK(number(find(set, 8), false) == 640 && number(find(set, 9), false) == 480);
     CHECK(number(find(set, 11), false) == 6 * 128); /* IMAPB(0, 180, 2): 2^(15 - 8) a degree */
     static const uint8_t want[] = {
-        0x81, 0x48,                    /* id 200 */
-        1, 2, 0x37, 0x15,              /* column 20, row 22, from 0: 22 * 640 + 20 + 1 */
-        2, 2, 0x32, 0x0B,              /* column 10, row 20 */
-        3, 2, 0x39, 0x9E,              /* column 29, row 23: within the box */
-        5, 1, 87, 7, 1, 50,            /* confidence; 40 of 80 pixels */
-        17, 10, 0x45, 0, 0, 0, 0x2F, 0xC0, 0, 0, 0x03, 0xE8, /* 138 * 2^23; 191 * 2^22; 1000 */
-        22, 1, 1, 107, 4, 3, 3, 1, 1,
+        0x81, 0x48,                                                  /* id 200 */
+        1,    2,    0x37, 0x15,                                      /* column 20, row 22, from 0: 22 * 640 + 20 + 1 */
+        2,    2,    0x32, 0x0B,                                      /* column 10, row 20 */
+        3,    2,    0x39, 0x9E,                                      /* column 29, row 23: within the box */
+        5,    1,    87,   7,    1, 50,                               /* confidence; 40 of 80 pixels */
+        17,   10,   0x45, 0,    0, 0,  0x2F, 0xC0, 0, 0, 0x03, 0xE8, /* 138 * 2^23; 191 * 2^22; 1000 */
+        22,   1,    1,    107,  4, 3,  3,    1,    1,
     };
     assert_int_equal(series.count, 1 + sizeof want);
     assert_int_equal(series.at[0], sizeof want);
@@ -358,7 +367,7 @@ static void many_targets_and_truth(void **state)
     for (int k = 0; k < 18; k++)
         snprintf(name[k], sizeof name[k], "%c and so on, with a long name beyond all limits", 'a' + k);
     for (int k = 0; k < 300; k++) {
-        target[k]            = some_target(UINT64_MAX - (unsigned)k / 2); /* each id twice */
+        target[k] = some_target(UINT64_MAX - (unsigned)k / 2); /* each id twice */
         target[k].class_name = name[k % 18];
         target[k].algorithm = target[k].algorithm_version = name[k % 7];
     }
@@ -396,17 +405,20 @@ static void many_targets_and_truth(void **state)
 static void targets_of_truth(void **state)
 {
     (void)state;
-    static TargetRecord   target[100];
-    static KlvTarget      kept[klv_most_targets];
-    KlvTargets            out;
+    static TargetRecord target[100];
+    static KlvTarget    kept[klv_most_targets];
+    KlvTargets          out;
     scene(&somewhere, (double[3]){0, 0, 0}, (double[3]){0, 0, 0});
     for (int k = 0; k < 100; k++) {
-        target[k] = (TargetRecord){.index = k, .id = {1, 3001, (uint16_t)k}, .pixels = (k * 37) % 100,
-                                   .box = {1, 2, 3 + k, 9}, .class_number = 1};
+        target[k] = (TargetRecord){.index = k,
+                                   .id = {1, 3001, (uint16_t)k},
+                                   .pixels = (k * 37) % 100,
+                                   .box = {1, 2, 3 + k, 9},
+                                   .class_number = 1};
         memcpy(target[k].p_ecef, lab.record.p_eye_ecef, sizeof target[k].p_ecef);
     }
     target[99].box[2] = 0; /* hidden */
-    lab.record.target       = target;
+    lab.record.target = target;
     lab.record.target_count = 100;
     klv_truth_targets(&out, kept, &lab.record);
     CHECK(out.truth && out.total == 98 && out.count == klv_most_targets && out.target == kept);

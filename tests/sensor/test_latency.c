@@ -16,19 +16,20 @@ static int by_value(const void *pa, const void *pb)
     return (a > b) - (a < b);
 }
 
-/* Values over six decades and beyond the edges: each percentile is not below the nearest rank, and at most 2.4 % above. */
+/* Values over six decades and beyond the edges: each percentile is not below the nearest rank, and at most 2.4 % above.
+ */
 static void percentiles_and_histogram(void **state)
 {
     (void)state;
     enum { count = 997 };
-    static double ms[count];
-    uint64_t      random = 1, below[latency_edges + 1] = {0};
-    Latency      *latency = NULL;
+    static double  ms[count];
+    uint64_t       random = 1, below[latency_edges + 1] = {0};
+    Latency       *latency = NULL;
     LatencySummary s;
     assert_int_equal(latency_create(&latency), STATUS_OK);
     for (int i = 0; i < count; i++) {
         random = random * 6364136223846793005u + 1442695040888963407u;
-        ms[i]  = pow(10, -3 + 8 * (double)(random >> 11) / 9007199254740992.0);
+        ms[i] = pow(10, -3 + 8 * (double)(random >> 11) / 9007199254740992.0);
         latency_begin(latency, &(LatencyTimes){.render_s = 1000, .rendered_s = 1000 + 1e-3 * ms[i]});
     }
     latency_summary(&s, latency);
@@ -40,7 +41,7 @@ static void percentiles_and_histogram(void **state)
     }
     qsort(ms, count, sizeof *ms, by_value);
     const double exact[3] = {ms[count / 2], ms[(int)ceil(0.95 * count) - 1], ms[(int)ceil(0.99 * count) - 1]};
-    const double got[3]   = {f->median_ms, f->p95_ms, f->p99_ms};
+    const double got[3] = {f->median_ms, f->p95_ms, f->p99_ms};
     for (int k = 0; k < 3; k++) CHECK(got[k] > exact[k] * (1 - 1e-6) && got[k] < exact[k] * 1.024);
     CHECK(f->count == count && fabs(f->max_ms / ms[count - 1] - 1) < 1e-6 && f->left_out == 0);
     for (int k = 0; k <= latency_edges; k++) CHECK(f->histogram[k] == below[k]);
@@ -55,15 +56,17 @@ static void stages_of_a_frame(void **state)
     Latency       *latency = NULL;
     LatencyLine    line;
     LatencySummary s;
-    LatencyTimes   times = {.arrived_s = 10, .posed_s = 10.004, .render_s = 10.005, .rendered_s = 10.025, .fresh = true};
+    LatencyTimes times = {.arrived_s = 10, .posed_s = 10.004, .render_s = 10.005, .rendered_s = 10.025, .fresh = true};
     assert_int_equal(latency_create(&latency), STATUS_OK);
     const uint64_t first = latency_begin(latency, &times);
-    times.fresh          = false; /* the same datagram again: in the frame's line, in no statistics */
+    times.fresh = false; /* the same datagram again: in the frame's line, in no statistics */
     const uint64_t second = latency_begin(latency, &times);
     latency_displayed(latency, second, wall_clock_s());
     latency_line(&line, latency, first);
-    CHECK(fabs(line.stage_ms[LATENCY_ARRIVAL_TO_POSE] - 4) < 1e-6 && fabs(line.stage_ms[LATENCY_POSE_TO_RENDER] - 1) < 1e-6);
-    CHECK(fabs(line.stage_ms[LATENCY_RENDER] - 20) < 1e-6 && isnan(line.stage_ms[LATENCY_DISPLAY]) && line.consumers == 0);
+    CHECK(fabs(line.stage_ms[LATENCY_ARRIVAL_TO_POSE] - 4) < 1e-6 &&
+          fabs(line.stage_ms[LATENCY_POSE_TO_RENDER] - 1) < 1e-6);
+    CHECK(fabs(line.stage_ms[LATENCY_RENDER] - 20) < 1e-6 && isnan(line.stage_ms[LATENCY_DISPLAY]) &&
+          line.consumers == 0);
     latency_line(&line, latency, second);
     CHECK(fabs(line.stage_ms[LATENCY_ARRIVAL_TO_POSE] - 4) < 1e-6 && line.stage_ms[LATENCY_DISPLAY] >= 0);
     latency_summary(&s, latency);
@@ -140,14 +143,18 @@ static const RenderRequest no_bands = {.view = {.width = 1, .height = 1, .focal_
 
 static void put_frame(Lines *l, int number, bool ledger)
 {
-    Frame *f        = frame_pool_take(l->pool);
-    f->number       = number;
-    f->record       = (FrameRecord){.frame = number, .snapshot = &nobody_there, .sun = &no_sun, .request = &no_bands,
-                                    .p_eye_ecef = {6.4e6, 0, 0}, .r_ecef_from_body = {1, 0, 0, 0, 1, 0, 0, 0, 1},
-                                    .hfov_rad = 0.1};
-    f->times        = (LatencyTimes){.posed_s = 1, .render_s = 1.5, .rendered_s = wall_clock_s()};
-    f->latency      = ledger ? l->latency : NULL;
-    f->latency_key  = l->last_key = ledger ? latency_begin(l->latency, &f->times) : 0;
+    Frame *f = frame_pool_take(l->pool);
+    f->number = number;
+    f->record = (FrameRecord){.frame = number,
+                              .snapshot = &nobody_there,
+                              .sun = &no_sun,
+                              .request = &no_bands,
+                              .p_eye_ecef = {6.4e6, 0, 0},
+                              .r_ecef_from_body = {1, 0, 0, 0, 1, 0, 0, 0, 1},
+                              .hfov_rad = 0.1};
+    f->times = (LatencyTimes){.posed_s = 1, .render_s = 1.5, .rendered_s = wall_clock_s()};
+    f->latency = ledger ? l->latency : NULL;
+    f->latency_key = l->last_key = ledger ? latency_begin(l->latency, &f->times) : 0;
     assert_int_equal(consumers_put(&l->list, f), STATUS_OK);
     frame_release(f);
 }
@@ -156,9 +163,10 @@ static int lines_in(const Lines *l, int with_latency, const char *word)
 {
     static char line[8192];
     FILE       *file = fopen(l->path, "r");
-    int         n    = 0;
+    int         n = 0;
     while (file && fgets(line, sizeof line, file))
-        n += with_latency < 0 || (strstr(line, "\"latency_ms\":{") != NULL && strstr(line, word) != NULL) == with_latency;
+        n += with_latency < 0 ||
+             (strstr(line, "\"latency_ms\":{") != NULL && strstr(line, word) != NULL) == with_latency;
     if (file) fclose(file);
     return n;
 }
@@ -258,7 +266,7 @@ static void consumers_of_one_name(void **state)
     latency_expect(latency, NULL);
     latency_expect(latency, "video");
     const double   now_s = wall_clock_s();
-    const uint64_t key   = latency_begin(latency, &(LatencyTimes){.render_s = now_s, .rendered_s = now_s});
+    const uint64_t key = latency_begin(latency, &(LatencyTimes){.render_s = now_s, .rendered_s = now_s});
     latency_done(latency, key, now_s, "video");
     latency_done(latency, key, now_s, "never heard of");
     latency_line(&line, latency, key);
@@ -274,8 +282,8 @@ static void consumers_of_one_name(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(percentiles_and_histogram),          cmocka_unit_test(stages_of_a_frame),
-        cmocka_unit_test(a_line_waits_two_frames),            cmocka_unit_test(a_line_waits_no_longer_than_needed),
+        cmocka_unit_test(percentiles_and_histogram), cmocka_unit_test(stages_of_a_frame),
+        cmocka_unit_test(a_line_waits_two_frames),   cmocka_unit_test(a_line_waits_no_longer_than_needed),
         cmocka_unit_test(consumers_of_one_name),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -22,19 +22,34 @@ static char ring_name[64];
 
 static MemoryRingOf ring_of(int slots)
 {
-    return (MemoryRingOf){
-        .name = ring_name, .slots = slots, .target_room = room, .truth = true, .config_sha256 = "abc",
-        .detections_port = 3456, .plane_count = 2,
-        .plane = {{.band = 2, .type = PITVIPER_PLANE_FLOAT32, .width = wide, .height = high, .band_name = "lwir",
-                   .name = "Y", .unit = "W/(m2 sr)"},
-                  {.band = 1, .type = PITVIPER_PLANE_UINT16, .width = counts_wide, .height = high, .bits = 14,
-                   .band_name = "mwir", .name = "Y", .unit = "counts"}}};
+    return (MemoryRingOf){.name = ring_name,
+                          .slots = slots,
+                          .target_room = room,
+                          .truth = true,
+                          .config_sha256 = "abc",
+                          .detections_port = 3456,
+                          .plane_count = 2,
+                          .plane = {{.band = 2,
+                                     .type = PITVIPER_PLANE_FLOAT32,
+                                     .width = wide,
+                                     .height = high,
+                                     .band_name = "lwir",
+                                     .name = "Y",
+                                     .unit = "W/(m2 sr)"},
+                                    {.band = 1,
+                                     .type = PITVIPER_PLANE_UINT16,
+                                     .width = counts_wide,
+                                     .height = high,
+                                     .bits = 14,
+                                     .band_name = "mwir",
+                                     .name = "Y",
+                                     .unit = "counts"}}};
 }
 
 static MemoryRing *make_ring(int slots)
 {
     MemoryRing        *ring = NULL;
-    const MemoryRingOf of   = ring_of(slots);
+    const MemoryRingOf of = ring_of(slots);
     CHECK(memory_ring_create(&ring, &of) == STATUS_OK);
     return ring;
 }
@@ -48,7 +63,10 @@ static void put(MemoryRing *ring, int number)
     for (int i = 0; i < high * counts_wide; i++) counts[i] = (uint16_t)(number + i);
     PitviperMemoryRecord *r = memory_ring_record(ring);
     PitviperMemoryTarget *t = memory_ring_targets(ring);
-    *r = (PitviperMemoryRecord){.frame = number, .time_s = 0.1 * number, .seed = -number, .host = "1:2:3",
+    *r = (PitviperMemoryRecord){.frame = number,
+                                .time_s = 0.1 * number,
+                                .seed = -number,
+                                .host = "1:2:3",
                                 .target_count = (uint32_t)(number % (room + 1))};
     for (int i = 0; i < room; i++) t[i] = (PitviperMemoryTarget){.entity = (uint16_t)(i + 1), .range_m = number};
     memory_ring_put(ring, (const void *const[]){radiance, counts});
@@ -57,11 +75,11 @@ static void put(MemoryRing *ring, int number)
 /* Whether what was taken is one frame and no mixture. */
 static bool whole(const PitviperMemory *m)
 {
-    const int       number   = m->record.frame;
+    const int       number = m->record.frame;
     const float    *radiance = pitviper_memory_plane(m, 0);
-    const uint16_t *counts   = pitviper_memory_plane(m, 1);
-    bool            good     = m->record.seed == -number && m->record.time_s == 0.1 * number &&
-                    m->record.target_count == (uint32_t)(number % (room + 1));
+    const uint16_t *counts = pitviper_memory_plane(m, 1);
+    bool            good = m->record.seed == -number && m->record.time_s == 0.1 * number &&
+                m->record.target_count == (uint32_t)(number % (room + 1));
     for (int i = 0; i < high * wide; i++) good &= radiance[i] == (float)(number + i);
     for (int i = 0; i < high * counts_wide; i++) good &= counts[i] == (uint16_t)(number + i);
     for (uint32_t i = 0; i < m->record.target_count; i++) {
@@ -123,7 +141,7 @@ static void what_is_being_written_is_not_taken(void **state)
     put(ring, 2);
     CHECK(!pitviper_memory_is_intact(slot, sequence));
     /* the slot of the newest, as in the middle of a copy: the writer alone can do that, through a mapping of its own */
-    char      path[96];
+    char path[96];
     snprintf(path, sizeof path, "/dev/shm/%s", ring_name);
     const int file = open(path, O_RDWR);
     uint64_t *lock = mmap(NULL, m.size, PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
@@ -172,7 +190,7 @@ static void *read_all(void *user)
     Reading       *r = user;
     PitviperMemory m;
     int            last = -1;
-    r->good             = pitviper_memory_open(&m, ring_name) == 0;
+    r->good = pitviper_memory_open(&m, ring_name) == 0;
     while (r->good && (r->ended = pitviper_memory_wait(&m, 10000)) == 1) {
         if ((r->number == 0 ? pitviper_memory_take_next(&m) : pitviper_memory_take_newest(&m)) != 1) continue;
         r->good &= whole(&m) && m.record.frame > last;
@@ -189,7 +207,7 @@ static void *read_all(void *user)
         }
     }
     r->missed = m.missed;
-    r->torn   = m.torn;
+    r->torn = m.torn;
     pitviper_memory_close(&m);
     return NULL;
 }
@@ -198,7 +216,7 @@ static void many_readers_see_whole_frames(void **state)
 {
     (void)state;
     Reading     reading[readers] = {{0}};
-    MemoryRing *ring             = make_ring(2);
+    MemoryRing *ring = make_ring(2);
     atomic_store(&begun, 0);
     for (int i = 0; i < readers; i++) {
         reading[i].number = i;
@@ -221,13 +239,13 @@ static void many_readers_see_whole_frames(void **state)
 /* A process that writes frames 0 and 1 and is killed. */
 static pid_t killed_writer(void)
 {
-    int         ready[2];
-    char        octet;
+    int  ready[2];
+    char octet;
     CHECK(pipe(ready) == 0);
     const pid_t child = fork();
     if (child == 0) {
         MemoryRing        *ring = NULL;
-        const MemoryRingOf of   = ring_of(2);
+        const MemoryRingOf of = ring_of(2);
         if (memory_ring_create(&ring, &of) != STATUS_OK) _exit(1);
         put(ring, 0);
         put(ring, 1);
@@ -269,7 +287,7 @@ static void a_name_in_use_is_refused(void **state)
 {
     (void)state;
     PitviperMemory     m;
-    const MemoryRingOf of   = ring_of(3);
+    const MemoryRingOf of = ring_of(3);
     MemoryRing        *ring = make_ring(2), *other = NULL;
     log_set_sink(check_listen, NULL);
     CHECK(memory_ring_create(&other, &of) == STATUS_BAD_VALUE);
@@ -296,7 +314,7 @@ static void no_room_is_said_at_the_start(void **state)
 {
     (void)state;
     MemoryRing  *ring = NULL;
-    MemoryRingOf of   = ring_of(64);
+    MemoryRingOf of = ring_of(64);
     char         path[128];
     of.plane[0].width = of.plane[0].height = 65536; /* 1.1 TB */
     log_set_sink(check_listen, NULL);
@@ -310,14 +328,45 @@ static void no_room_is_said_at_the_start(void **state)
 static void headers_that_lie_are_refused(void **state)
 {
     (void)state;
-    static const struct { size_t at, size; uint64_t value; } lie[] = {
-        {0, 1, 'X'}, {8, 4, 0x04030201}, {12, 2, 2}, {12, 2, 0}, {16, 4, 312}, {16, 4, 321}, {20, 4, 8}, {24, 4, 0},
-        {24, 4, 1 << 20}, {28, 4, 575}, {32, 8, 1ull << 40}, {32, 8, 64}, {40, 8, UINT64_MAX - 7}, {40, 8, 4},
-        {48, 8, UINT64_MAX - 63}, {48, 8, 1}, {56, 8, 0}, {56, 8, UINT64_MAX / 2}, {56, 8, 1ull << 63}, {64, 8, ~0ull},
-        {64, 8, 1 << 20}, {72, 4, 0}, {72, 4, UINT32_MAX}, {76, 4, 0}, {76, 4, 17}, {80, 4, UINT32_MAX},
-        /* the first plane: band, type, width, height, offset */
-        {320, 4, 4}, {324, 4, 3}, {324, 4, 0}, {328, 4, 0}, {328, 4, UINT32_MAX}, {332, 4, 65537}, {332, 4, 60000},
-        {336, 8, UINT64_MAX - 7}, {336, 8, 1}};
+    static const struct {
+        size_t   at, size;
+        uint64_t value;
+    } lie[] = {{0, 1, 'X'},
+               {8, 4, 0x04030201},
+               {12, 2, 2},
+               {12, 2, 0},
+               {16, 4, 312},
+               {16, 4, 321},
+               {20, 4, 8},
+               {24, 4, 0},
+               {24, 4, 1 << 20},
+               {28, 4, 575},
+               {32, 8, 1ull << 40},
+               {32, 8, 64},
+               {40, 8, UINT64_MAX - 7},
+               {40, 8, 4},
+               {48, 8, UINT64_MAX - 63},
+               {48, 8, 1},
+               {56, 8, 0},
+               {56, 8, UINT64_MAX / 2},
+               {56, 8, 1ull << 63},
+               {64, 8, ~0ull},
+               {64, 8, 1 << 20},
+               {72, 4, 0},
+               {72, 4, UINT32_MAX},
+               {76, 4, 0},
+               {76, 4, 17},
+               {80, 4, UINT32_MAX},
+               /* the first plane: band, type, width, height, offset */
+               {320, 4, 4},
+               {324, 4, 3},
+               {324, 4, 0},
+               {328, 4, 0},
+               {328, 4, UINT32_MAX},
+               {332, 4, 65537},
+               {332, 4, 60000},
+               {336, 8, UINT64_MAX - 7},
+               {336, 8, 1}};
     static uint8_t good[1 << 16];
     PitviperMemory m;
     MemoryRing    *ring = make_ring(2);
@@ -348,9 +397,12 @@ static void headers_that_lie_are_refused(void **state)
 static void settings_are_checked(void **state)
 {
     (void)state;
-    static const struct { const char *key, *value, *said; } bad[] = {
-        {"publish.memory", "a/b", "letters, digits"}, {"publish.memory", ".hidden", "begins with"},
-        {"publish.memory", "-x", "begins with"}, {"publish.memory", "a b", "letters, digits"}};
+    static const struct {
+        const char *key, *value, *said;
+    } bad[] = {{"publish.memory", "a/b", "letters, digits"},
+               {"publish.memory", ".hidden", "begins with"},
+               {"publish.memory", "-x", "begins with"},
+               {"publish.memory", "a b", "letters, digits"}};
     log_set_sink(check_listen, NULL);
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         Config config = config_default();
@@ -371,12 +423,21 @@ static void settings_are_checked(void **state)
 
 static PitviperDetections detections_of(int frame, uint32_t band, uint32_t count)
 {
-    PitviperDetections d = {.byte_order = PITVIPER_MEMORY_BYTE_ORDER, .version = PITVIPER_DETECTIONS_VERSION,
-                            .detection_size = sizeof(PitviperDetection), .frame = frame, .band = band, .count = count};
+    PitviperDetections d = {.byte_order = PITVIPER_MEMORY_BYTE_ORDER,
+                            .version = PITVIPER_DETECTIONS_VERSION,
+                            .detection_size = sizeof(PitviperDetection),
+                            .frame = frame,
+                            .band = band,
+                            .count = count};
     memcpy(d.magic, PITVIPER_DETECTIONS_MAGIC, sizeof d.magic);
     for (uint32_t i = 0; i < pitviper_detections_most; i++)
-        d.detection[i] = (PitviperDetection){.left = (float)i, .top = 0, .right = (float)i + 1, .bottom = 48,
-                                             .score = 0.5f, .track = i, .class_name = "tank"};
+        d.detection[i] = (PitviperDetection){.left = (float)i,
+                                             .top = 0,
+                                             .right = (float)i + 1,
+                                             .bottom = 48,
+                                             .score = 0.5f,
+                                             .track = i,
+                                             .class_name = "tank"};
     return d;
 }
 
@@ -397,7 +458,10 @@ static void each_octet_of_a_detection_is_checked(void **state)
     CHECK(parse(&good, 31) == DETECTIONS_SIZE && parse(&good, sizeof good) == DETECTIONS_SIZE);
     const PitviperDetections none = detections_of(3, BAND_LWIR, 0), all = detections_of(3, BAND_LWIR, 64);
     CHECK(parse(&none, PITVIPER_DETECTIONS_SIZE(0)) == DETECTIONS_GOOD && parse(&all, sizeof all) == DETECTIONS_GOOD);
-#define SPOILT(change, reason) d = good; change; CHECK(parse(&d, size) == (reason))
+#define SPOILT(change, reason)                                                                                         \
+    d = good;                                                                                                          \
+    change;                                                                                                            \
+    CHECK(parse(&d, size) == (reason))
     SPOILT(d.magic[7] = 0, DETECTIONS_MAGIC);
     SPOILT(d.byte_order = 0x04030201, DETECTIONS_ORDER);
     SPOILT(d.version = 0, DETECTIONS_VERSION);
@@ -433,7 +497,8 @@ static void classes_are_as_long_as_our_own(void **state)
         CHECK(strlen(target_class_name(k)) < sizeof d.detection[0].class_name);
         memset(d.detection[2].class_name, 0, sizeof d.detection[2].class_name);
         strcpy(d.detection[2].class_name, target_class_name(k));
-        CHECK(detections_parse(&out, (const uint8_t *)&d, PITVIPER_DETECTIONS_SIZE(count), 1 << BAND_LWIR, 64, 48) == DETECTIONS_GOOD);
+        CHECK(detections_parse(&out, (const uint8_t *)&d, PITVIPER_DETECTIONS_SIZE(count), 1 << BAND_LWIR, 64, 48) ==
+              DETECTIONS_GOOD);
         assert_string_equal(out.detection[2].class_name, target_class_name(k));
     }
     uint8_t      bytes[sizeof d];
@@ -450,19 +515,20 @@ static void classes_are_as_long_as_our_own(void **state)
           out.detection[2].track == 2 && strcmp(out.detection[2].class_name, "tank") == 0);
     CHECK(detections_parse(&out, bytes, size - 1, 1 << BAND_LWIR, 64, 48) == DETECTIONS_SIZE);
     memset(bytes + head + 2 * octets_of_1 + 24, 'a', 15);
-    CHECK(detections_parse(&out, bytes, size, 1 << BAND_LWIR, 64, 48) == DETECTIONS_GOOD && strlen(out.detection[2].class_name) == 15);
+    CHECK(detections_parse(&out, bytes, size, 1 << BAND_LWIR, 64, 48) == DETECTIONS_GOOD &&
+          strlen(out.detection[2].class_name) == 15);
     bytes[head + 2 * octets_of_1 + 39] = 'a'; /* without an end */
     CHECK(detections_parse(&out, bytes, size, 1 << BAND_LWIR, 64, 48) == DETECTIONS_TEXT);
     bytes[head + 2 * octets_of_1 + 39] = 0;
-    bytes[head + octets_of_1 + 44]     = 1;
+    bytes[head + octets_of_1 + 44] = 1;
     CHECK(detections_parse(&out, bytes, size, 1 << BAND_LWIR, 64, 48) == DETECTIONS_RESERVED);
 }
 
 /* Sends one, and waits until it has been counted. */
 static void deliver(Detections *to, int socket_of, int port, const PitviperDetections *d, size_t size)
 {
-    const struct sockaddr_in node = {.sin_family = AF_INET, .sin_port = htons((uint16_t)port),
-                                     .sin_addr.s_addr = htonl(INADDR_LOOPBACK)};
+    const struct sockaddr_in node = {
+        .sin_family = AF_INET, .sin_port = htons((uint16_t)port), .sin_addr.s_addr = htonl(INADDR_LOOPBACK)};
     AnswerCounters count;
     uint64_t       before = 0, after = 0;
     detections_counters(to, &count);
@@ -492,14 +558,15 @@ static void the_newest_detections_are_kept(void **state)
 {
     (void)state;
     static const size_t size = PITVIPER_DETECTIONS_SIZE(1);
-    Detections    *second = NULL;
-    DetectionSet   set;
-    AnswerCounters count;
-    int            port;
-    const int      from = socket(AF_INET, SOCK_DGRAM, 0);
+    Detections         *second = NULL;
+    DetectionSet        set;
+    AnswerCounters      count;
+    int                 port;
+    const int           from = socket(AF_INET, SOCK_DGRAM, 0);
     log_set_sink(check_listen, NULL);
     Detections *to = open_detections(&port, NULL);
-    CHECK(detections_open(&second, &(DetectionsOf){.port = port, .bands = 1 << BAND_LWIR, .width = 64, .height = 48}) == STATUS_IO);
+    CHECK(detections_open(&second, &(DetectionsOf){.port = port, .bands = 1 << BAND_LWIR, .width = 64, .height = 48}) ==
+          STATUS_IO);
     CHECK(strstr(check_said, "publish.detections_port"));
     CHECK(!detections_latest(to, BAND_LWIR, &set));
 
@@ -539,9 +606,9 @@ static void a_flood_is_counted_and_bounded(void **state)
     log_set_sink(check_listen, NULL);
     Detections              *to = open_detections(&port, folder);
     const int                from = socket(AF_INET, SOCK_DGRAM, 0);
-    const struct sockaddr_in node = {.sin_family = AF_INET, .sin_port = htons((uint16_t)port),
-                                     .sin_addr.s_addr = htonl(INADDR_LOOPBACK)};
-    PitviperDetections       answer[frames];
+    const struct sockaddr_in node = {
+        .sin_family = AF_INET, .sin_port = htons((uint16_t)port), .sin_addr.s_addr = htonl(INADDR_LOOPBACK)};
+    PitviperDetections answer[frames];
     for (int n = 0; n < frames; n++) {
         answer[n] = detections_of(n, BAND_LWIR, 2);
         strcpy(answer[n].detection[1].class_name, "surveillance_aircraft");
@@ -550,19 +617,24 @@ static void a_flood_is_counted_and_bounded(void **state)
         deliver(to, from, port, &answer[n], PITVIPER_DETECTIONS_SIZE(2));
     }
     for (int i = frames; i < sent; i++)
-        CHECK(sendto(from, &answer[i % frames], PITVIPER_DETECTIONS_SIZE(2), 0, (const struct sockaddr *)&node, sizeof node) > 0);
+        CHECK(sendto(from, &answer[i % frames], PITVIPER_DETECTIONS_SIZE(2), 0, (const struct sockaddr *)&node,
+                     sizeof node) > 0);
     detections_close(to, &count);
     uint64_t all = count.lost_kernel;
     for (int i = 0; i < DETECTIONS_REASONS; i++) all += count.datagrams[i];
-    CHECK(all == sent && count.datagrams[DETECTIONS_GOOD] == frames && count.lines == 2 * frames && count.lines_failed == 0);
+    CHECK(all == sent && count.datagrams[DETECTIONS_GOOD] == frames && count.lines == 2 * frames &&
+          count.lines_failed == 0);
     CHECK(count.datagrams[DETECTIONS_REPEATED] + count.lost_kernel == sent - frames);
     FILE *file = fopen(path, "r");
     CHECK(file);
     for (; fgets(line, sizeof line, file); lines++) {
         char want[256];
         if (lines % 2 == 0) continue;
-        snprintf(want, sizeof want, "{\"frame\":%d,\"band\":\"lwir\",\"time_s\":%.15g%s,\"answer\":2,\"of\":2,\"class\":\"surveillance_aircraft\","
-                 "\"box_px\":[1.0,0.0,2.0,48.0],\"score\":0.9,\"track\":1,\"latency_ms\":", lines / 2, 0.25 * (lines / 2), lines / 2 ? "" : ".0");
+        snprintf(
+            want, sizeof want,
+            "{\"frame\":%d,\"band\":\"lwir\",\"time_s\":%.15g%s,\"answer\":2,\"of\":2,\"class\":\"surveillance_aircraft\","
+            "\"box_px\":[1.0,0.0,2.0,48.0],\"score\":0.9,\"track\":1,\"latency_ms\":",
+            lines / 2, 0.25 * (lines / 2), lines / 2 ? "" : ".0");
         if (strncmp(line, want, strlen(want)) != 0) printf("%s\n%s", want, line);
         CHECK(strncmp(line, want, strlen(want)) == 0 && strstr(line, ",\"late\":false}"));
     }

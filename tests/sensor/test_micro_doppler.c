@@ -1,6 +1,6 @@
-/* Micro-Doppler of what spins and rolls, and the cross-polarised channel, through the whole chain: a blade's flash fills the
- * range rates up to that of its tip, a wheel's those from its road contact to its top; a dihedral rolled by 45 degrees returns
- * the other polarisation. labels: physics slow */
+/* Micro-Doppler of what spins and rolls, and the cross-polarised channel, through the whole chain: a blade's flash
+ * fills the range rates up to that of its tip, a wheel's those from its road contact to its top; a dihedral rolled by
+ * 45 degrees returns the other polarisation. labels: physics slow */
 #include "tests/sensor/radar_scene.h"
 
 enum { BLADE, WHEEL, DIHEDRAL };
@@ -16,12 +16,14 @@ static int open_stage(void **state)
 {
     (void)state;
     static const char *const model[] = {"blade", "wheel", "dihedral"};
-    char sidecar[256];
+    char                     sidecar[256];
     scene_folder();
-    /* across the line of sight when at rest, 2 m to either side of its axis, which is upright; a body too small to matter */
-    snprintf(sidecar, sizeof sidecar, "joints:\n  - {nodes: \"blade*\", pivot: 0 0 0, axis: down, spin_rpm: %.9f}\n", spin_rps * 30 / pi_rad);
+    /* across the line of sight when at rest, 2 m to either side of its axis, which is upright; a body too small to
+     * matter */
+    snprintf(sidecar, sizeof sidecar, "joints:\n  - {nodes: \"blade*\", pivot: 0 0 0, axis: down, spin_rpm: %.9f}\n",
+             spin_rps * 30 / pi_rad);
     FILE *file = scene_obj("blade", sidecar);
-    int   next = scene_box(file, "body", 1, (const double[3]){-1, -0.002, -1}, (const double[3]){-0.996, 0.002, -0.996});
+    int next = scene_box(file, "body", 1, (const double[3]){-1, -0.002, -1}, (const double[3]){-0.996, 0.002, -0.996});
     scene_box(file, "blade", next, (const double[3]){-0.01, -blade_m, -0.05}, (const double[3]){0.01, blade_m, 0.05});
     CHECK(fclose(file) == 0);
     snprintf(sidecar, sizeof sidecar, "joints:\n  - {nodes: \"wheel*\", pivot: centre, roll_radius: %.9f}\n", wheel_m);
@@ -38,7 +40,8 @@ static int open_stage(void **state)
         for (int i = 0; i < 4; i++)
             for (int k = 0; k < 3; k++) {
                 const double arm = (k == 0 ? h : 0) + (side ? 1 : -1) * h * across[k];
-                p[side ? 3 - i : i][k] = (i == 0 || i == 3 ? -0.5 : 0.5) * plate_b_m * along[k] + (i >= 2 ? plate_a_m : 0) * arm;
+                p[side ? 3 - i : i][k] =
+                    (i == 0 || i == 3 ? -0.5 : 0.5) * plate_b_m * along[k] + (i >= 2 ? plate_a_m : 0) * arm;
             }
         quad(file, 1 + 4 * side, p);
     }
@@ -66,14 +69,15 @@ static void spectrum_of(double *power, const RadarFrame *f)
     }
 }
 
-/* Range rates at which the spectrum of a line that is even from low to high falls to half of its mean within, a quarter of its
- * width from either end away. */
-static void edges_of(double edge_mps[2], double *ripple_db, double *outside_db, const RadarFrame *f, double low_mps, double high_mps)
+/* Range rates at which the spectrum of a line that is even from low to high falls to half of its mean within, a quarter
+ * of its width from either end away. */
+static void edges_of(double edge_mps[2], double *ripple_db, double *outside_db, const RadarFrame *f, double low_mps,
+                     double high_mps)
 {
     double       power[256], mean = 0, most = 0, outside = 0;
     const double step = f->map.mps_per_row;
     const int    middle = f->map.rows / 2, low = middle + (int)lround((low_mps - f->reference_rate_mps) / step),
-                 high = middle + (int)lround((high_mps - f->reference_rate_mps) / step), quarter = (high - low) / 4;
+              high = middle + (int)lround((high_mps - f->reference_rate_mps) / step), quarter = (high - low) / 4;
     CHECK(f->map.rows <= 256 && low > 8 && high < f->map.rows - 8);
     spectrum_of(power, f);
     for (int y = low + quarter; y <= high - quarter; y++) mean += power[y] / (high - low - 2 * quarter + 1);
@@ -106,9 +110,10 @@ static void a_blade_flashes_up_to_its_tip(void **state)
     const double      tip = blade_m * spin_rps;
     edges_of(edge, &ripple_db, &outside_db, f, -tip, tip);
     const double hz = 2 / f->preset->antenna.wavelength_m;
-    print_message("a blade whose tip moves at %.2f m/s: edges at %.2f and %.2f m/s (%.0f and %.0f Hz, 2 v / lambda %.0f), cells of %.2f; "
-                  "uneven by %.1f dB; beyond %.1f dB\n", tip, edge[0], edge[1], edge[0] * hz, edge[1] * hz, tip * hz, f->map.mps_per_row, ripple_db,
-                  outside_db);
+    print_message(
+        "a blade whose tip moves at %.2f m/s: edges at %.2f and %.2f m/s (%.0f and %.0f Hz, 2 v / lambda %.0f), cells of %.2f; "
+        "uneven by %.1f dB; beyond %.1f dB\n",
+        tip, edge[0], edge[1], edge[0] * hz, edge[1] * hz, tip * hz, f->map.mps_per_row, ripple_db, outside_db);
     CHECK_NEAR(edge[0], -tip, 2 * f->map.mps_per_row);
     CHECK_NEAR(edge[1], tip, 2 * f->map.mps_per_row);
     CHECK(outside_db < -15);
@@ -123,8 +128,8 @@ static void a_blade_flashes_up_to_its_tip(void **state)
     seeker_radar_destroy(radar);
 }
 
-/* Of a plate about the axle of a wheel that rolls towards the radar: the road contact stands still, the top moves at twice the
- * speed. */
+/* Of a plate about the axle of a wheel that rolls towards the radar: the road contact stands still, the top moves at
+ * twice the speed. */
 static void a_wheel_is_still_where_it_stands(void **state)
 {
     (void)state;
@@ -140,8 +145,8 @@ static void a_wheel_is_still_where_it_stands(void **state)
     stage.scene.reference_v_enu_mps[0] = 0;
     CHECK_NEAR(f->reference_rate_mps, -speed_mps, 1e-9);
     edges_of(edge, &ripple_db, &outside_db, f, low, high);
-    print_message("a wheel at %.1f m/s: edges at %.2f and %.2f m/s; uneven by %.1f dB; beyond %.1f dB\n", speed_mps, edge[0], edge[1], ripple_db,
-                  outside_db);
+    print_message("a wheel at %.1f m/s: edges at %.2f and %.2f m/s; uneven by %.1f dB; beyond %.1f dB\n", speed_mps,
+                  edge[0], edge[1], ripple_db, outside_db);
     CHECK_NEAR(edge[0], low, 2 * f->map.mps_per_row);
     CHECK_NEAR(edge[1], high, 2 * f->map.mps_per_row);
     CHECK(outside_db < -15);
@@ -157,9 +162,10 @@ static void a_rolled_dihedral_turns_the_polarisation(void **state)
     scene_add(DIHEDRAL, 0, 0, 0);
     arena_reset(stage.arena);
     const RadarFrame *f = scene_measure(radar);
-    const double      wave = f->preset->antenna.wavelength_m, want = 10 * log10(8 * pi_rad * pow(plate_a_m * plate_b_m / wave, 2));
-    const size_t      plane = (size_t)f->map.rows * (size_t)f->map.columns;
-    double            most[2] = {0, 0}, pulse[2] = {0, 0};
+    const double      wave = f->preset->antenna.wavelength_m,
+                 want = 10 * log10(8 * pi_rad * pow(plate_a_m * plate_b_m / wave, 2));
+    const size_t plane = (size_t)f->map.rows * (size_t)f->map.columns;
+    double       most[2] = {0, 0}, pulse[2] = {0, 0};
     for (size_t i = 0; i < plane; i++) {
         most[0] = fmax(most[0], cabs(f->map.cell[i]));
         most[1] = fmax(most[1], cabs(f->map.cell[CHANNEL_CROSS * plane + i]));
@@ -167,8 +173,10 @@ static void a_rolled_dihedral_turns_the_polarisation(void **state)
     for (int x = 0; x < f->map.columns; x++)
         for (int p = 0; p < 2; p++) pulse[p] = fmax(pulse[p], cabs(f->profile[p * f->map.columns + x]));
     const double map_db = 20 * log10(most[1] / most[0]), profile_db = 20 * log10(pulse[1] / pulse[0]);
-    print_message("a dihedral rolled by 45 degrees: HV %.2f dBsm, on paper %.2f; HH %.2f; cross over co-polarised %.1f dB in the map, %.1f in "
-                  "the profile\n", 10 * log10(f->target[0].rcs_m2[2]), want, 10 * log10(f->target[0].rcs_m2[0]), map_db, profile_db);
+    print_message(
+        "a dihedral rolled by 45 degrees: HV %.2f dBsm, on paper %.2f; HH %.2f; cross over co-polarised %.1f dB in the map, %.1f in "
+        "the profile\n",
+        10 * log10(f->target[0].rcs_m2[2]), want, 10 * log10(f->target[0].rcs_m2[0]), map_db, profile_db);
     CHECK_NEAR(10 * log10(f->target[0].rcs_m2[2]), want, 0.3);
     CHECK(f->target[0].rcs_m2[0] < 0.01 * f->target[0].rcs_m2[2]);
     CHECK_NEAR(map_db, 10 * log10(f->target[0].rcs_m2[2] / f->target[0].rcs_m2[0]), 1);

@@ -8,27 +8,51 @@ static const DisEntityType tank = {1, 1, 225, 1, 1, 1, 0}, plane = {1, 2, 225, 1
 static void words_and_numbers_name_classes(void **state)
 {
     (void)state;
-    static const struct { const char *word; uint32_t want; } say[] = { /* SISO-REF-010 */
-        {"primary turret", 4096}, {"primary turret 2", 4128}, {"primary turret 10", 4384}, {"primary gun", 4416},
-        {"primary gun 1", 4416}, {"primary launcher 3", 4800}, {"primary radar", 5376}, {"secondary turret", 5696},
-        {"secondary gun 2", 6048}, {"secondary radar 10", 7264}, {"4096", 4096}, {"4416", 4416}, {"primary turret 0", 0},
-        {"primary turret 11", 0}, {"primary turrets", 0}, {"primary", 0}, {"turret", 0}, {"4097", 0}, {"32", 0},
-        {"99999999999", 0}, {"-4096", 0}, {"primary turret ", 0}, {"", 0}};
+    static const struct {
+        const char *word;
+        uint32_t    want;
+    } say[] = {/* SISO-REF-010 */
+               {"primary turret", 4096},
+               {"primary turret 2", 4128},
+               {"primary turret 10", 4384},
+               {"primary gun", 4416},
+               {"primary gun 1", 4416},
+               {"primary launcher 3", 4800},
+               {"primary radar", 5376},
+               {"secondary turret", 5696},
+               {"secondary gun 2", 6048},
+               {"secondary radar 10", 7264},
+               {"4096", 4096},
+               {"4416", 4416},
+               {"primary turret 0", 0},
+               {"primary turret 11", 0},
+               {"primary turrets", 0},
+               {"primary", 0},
+               {"turret", 0},
+               {"4097", 0},
+               {"32", 0},
+               {"99999999999", 0},
+               {"-4096", 0},
+               {"primary turret ", 0},
+               {"", 0}};
     for (size_t i = 0; i < sizeof say / sizeof *say; i++)
-        if (seeker_mount_class(say[i].word) != say[i].want) fail_msg("%s: %u", say[i].word, seeker_mount_class(say[i].word));
+        if (seeker_mount_class(say[i].word) != say[i].want)
+            fail_msg("%s: %u", say[i].word, seeker_mount_class(say[i].word));
 }
 
 static void names_find_nodes(void **state)
 {
     (void)state;
     Config       config = config_default();
-    const Model *model  = catalog_model(lab.catalog, catalog_find(lab.catalog, tank, &(Origin){0}, NULL));
-    static const struct { const char *name; uint32_t dis_class; } say[] = {
-        {"turret", 4096}, {"primary turret", 4096}, {"4096", 4096}, {"gun", 4416}, {"primary gun", 4416}};
+    const Model *model = catalog_model(lab.catalog, catalog_find(lab.catalog, tank, &(Origin){0}, NULL));
+    static const struct {
+        const char *name;
+        uint32_t    dis_class;
+    } say[] = {{"turret", 4096}, {"primary turret", 4096}, {"4096", 4096}, {"gun", 4416}, {"primary gun", 4416}};
     for (size_t i = 0; i < sizeof say / sizeof *say; i++) {
         strcpy(config.sensor.mount, say[i].name);
         const Mount mount = seeker_mount(&config);
-        const int   node  = seeker_mount_node(&mount, model);
+        const int   node = seeker_mount_node(&mount, model);
         CHECK(node >= 0 && model->node[node].dis_class == say[i].dis_class);
     }
     strcpy(config.sensor.mount, "auto");
@@ -44,7 +68,7 @@ static void report(const LabReport *like)
     lab_forget();
     for (int k = 0; k <= 3; k++) {
         LabReport r = *like;
-        r.t_s       = 100 + k;
+        r.t_s = 100 + k;
         lab_say(&r);
     }
 }
@@ -64,7 +88,7 @@ static void seen(double eye_body[3], double d_body[3], const LabReport *r)
     const LabFrame *shot = &lab.shot[0];
     double          away[3], d_enu[3];
     for (int i = 0; i < 3; i++) {
-        away[i]  = shot->p_enu[i] - r->p_enu[i];
+        away[i] = shot->p_enu[i] - r->p_enu[i];
         d_enu[i] = shot->r_enu_from_cam[3 * i + 2];
     }
     m3_tmul_v3(eye_body, r->r_enu_from_body, away);
@@ -103,8 +127,7 @@ static void the_sensor_goes_with_the_turret(void **state)
         for (int i = 0; i < 3; i++) CHECK_NEAR(d[i], want[i], 1e-6); /* float32 angles */
         turned(arm, offset, turret, on_gun ? gun : 0);
         turned(pivot, on_gun ? model->node[gun_node].p_parent : nothing, turret, 0);
-        for (int i = 0; i < 3; i++)
-            CHECK_NEAR(eye[i], model->node[turret_node].p_parent[i] + pivot[i] + arm[i], 1e-5);
+        for (int i = 0; i < 3; i++) CHECK_NEAR(eye[i], model->node[turret_node].p_parent[i] + pivot[i] + arm[i], 1e-5);
     }
     /* a turret that is not reported stands straight */
     Config config = config_default();
@@ -127,20 +150,20 @@ static void the_sensor_sits_where_it_is_put(void **state)
     LabReport    r = {.entity = 1, .type = plane, .p_enu = {3, 4, 500}};
     test_attitude(r.r_enu_from_body, 4, 0.3, 0.5);
     for (int given = 0; given < 2; given++) {
-        Config config = config_default();
-        double eye[3], d[3], want[3];
+        Config       config = config_default();
+        double       eye[3], d[3], want[3];
         const double ahead[3] = {1, 0, 0};
         strcpy(config.exercise.host, "1:1:1");
         config.sensor.gimbal_limit_deg = 0;
-        config.sensor.mount_yaw_deg    = 120;
-        config.sensor.mount_pitch_deg  = -35;
+        config.sensor.mount_yaw_deg = 120;
+        config.sensor.mount_pitch_deg = -35;
         if (given) config.sensor.mount_x_m = 4, config.sensor.mount_y_m = -1.5;
         report(&r);
         lab_run(&config, 1, 10, 1);
         seen(eye, d, &r);
         turned(want, ahead, 120 * rad_per_deg, -35 * rad_per_deg);
         for (int i = 0; i < 3; i++) CHECK_NEAR(d[i], want[i], 1e-6);
-        Origin       origin;
+        Origin origin;
         catalog_find(lab.catalog, plane, &origin, NULL);
         const double base_m = origin == ORIGIN_CENTRE ? 0.5 * model->height_m : 0; /* the body's origin: its base */
         CHECK_NEAR(eye[0], given ? 4 : 0, 1e-4);
@@ -217,12 +240,9 @@ static void a_part_that_is_not_there_is_said(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(words_and_numbers_name_classes),
-        cmocka_unit_test(names_find_nodes),
-        cmocka_unit_test(the_sensor_goes_with_the_turret),
-        cmocka_unit_test(the_sensor_sits_where_it_is_put),
-        cmocka_unit_test(an_aim_beyond_the_gimbal_is_said),
-        cmocka_unit_test(a_part_that_is_not_there_is_said),
+        cmocka_unit_test(words_and_numbers_name_classes),   cmocka_unit_test(names_find_nodes),
+        cmocka_unit_test(the_sensor_goes_with_the_turret),  cmocka_unit_test(the_sensor_sits_where_it_is_put),
+        cmocka_unit_test(an_aim_beyond_the_gimbal_is_said), cmocka_unit_test(a_part_that_is_not_there_is_said),
     };
     return cmocka_run_group_tests(tests, lab_open, lab_close);
 }

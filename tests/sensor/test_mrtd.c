@@ -16,7 +16,7 @@
 enum { side = 256, pixels = side * side, added = 2, most_targets = 64, lots = 16, signal_lots = 2 };
 static const double background_k = 300, threshold = 2.5;
 
-static float  plane[pixels], sum[pixels];
+static float plane[pixels], sum[pixels];
 
 typedef struct Bars {
     double width_px;
@@ -66,7 +66,7 @@ static void place(Bars *b, double width_px, bool lying, int lot)
 
 static void expose(double dt_k, const Bars *b, Band band)
 {
-    double       low_m, high_m;
+    double low_m, high_m;
     preset_band(&low_m, &high_m, band, OPTICAL_PAN, -1);
     const double ground = planck_band(low_m, high_m, background_k, NULL);
     rise = planck_band(low_m, high_m, background_k + dt_k, NULL) - ground;
@@ -139,7 +139,7 @@ static void bars_are_resolved_where_the_formula_says(void **state)
         Chain       *chain[signal_lots];
         CHECK(etc_path(path, sizeof path, "sensors.csv"));
         assert_int_equal(preset_read(&p, path, name[s]), STATUS_OK);
-        p.bad_share   = 0;
+        p.bad_share = 0;
         p.ac_per_line = 0;
         for (int lot = lots - 1; lot >= 0; lot--) {
             const Bars none = {.count = 0};

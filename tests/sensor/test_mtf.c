@@ -36,7 +36,7 @@ static void aperture_is_the_overlap_of_two_annuli(void **state)
                 for (int j = 0; j < n; j++) {
                     const double u = (2 * i + 1.0) / n - 1, v = (2 * j + 1.0) / n - 1, w = u - 2 * x;
                     const double a = u * u + v * v, b = w * w + v * v;
-                    const bool first = a < 1 && a >= e * e;
+                    const bool   first = a < 1 && a >= e * e;
                     inside += first;
                     both += first && b < 1 && b >= e * e;
                 }

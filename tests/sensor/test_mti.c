@@ -1,5 +1,5 @@
-/* Cancellers of moving-target indication: gain of a target, blind speeds, noise, and the improvement factor over clutter of
- * a Gaussian spectrum, against closed forms. labels: physics */
+/* Cancellers of moving-target indication: gain of a target, blind speeds, noise, and the improvement factor over
+ * clutter of a Gaussian spectrum, against closed forms. labels: physics */
 #include "tests/check.h"
 
 #include "sensor/radar/echo.h"
@@ -19,9 +19,9 @@ static double complex sample[interval_channels * all];
 /* Mean power over the columns, before and behind each canceller. */
 static void powers(double out[4], double clutter_path_m)
 {
-    Window        rect;
-    IntervalPlan *plan;
-    double        profile[samples];
+    Window         rect;
+    IntervalPlan  *plan;
+    double         profile[samples];
     const Interval interval = {.wave = wave, .sample = sample};
     CHECK(!window_parse(&rect, "rect") && interval_plan_create(&plan, &wave, &rect, &rect) == STATUS_OK);
     interval_compress(plan, &interval, 1, NULL);
@@ -38,7 +38,7 @@ static void powers(double out[4], double clutter_path_m)
 static void clutter_is_cancelled_as_on_paper(void **state)
 {
     (void)state;
-    static Echo echo[echoes];
+    static Echo  echo[echoes];
     const double wave_m = light / wave.centre_hz, mean_mps = 37;
     for (int wide = 0; wide < 3; wide++) {
         const double sigma_mps = (double[]){4, 12, 40}[wide];
@@ -47,7 +47,8 @@ static void clutter_is_cancelled_as_on_paper(void **state)
         CHECK(echo_grid_create(&grid, &wave) == STATUS_OK);
         for (int i = 0; i < echoes; i++) {
             const double rate = mean_mps + sigma_mps * random_normal(1, 2, (uint32_t)wide, 2 * (uint64_t)i);
-            echo[i] = (Echo){1499 * random_uniform(1, 3, (uint32_t)wide, (uint64_t)i), 2 * rate / wave.repeat_hz,
+            echo[i] = (Echo){1499 * random_uniform(1, 3, (uint32_t)wide, (uint64_t)i),
+                             2 * rate / wave.repeat_hz,
                              {cexp(2 * I * pi_rad * random_uniform(1, 4, (uint32_t)wide, (uint64_t)i)), 0, 0, 0}};
         }
         echo_add(grid, echo, echoes, NULL);

@@ -1,4 +1,5 @@
-/* tests/sensor/test_munitions.c: which munition a Detonation ends: by its id, by the Fire of its event, by place and time. */
+/* tests/sensor/test_munitions.c: which munition a Detonation ends: by its id, by the Fire of its event, by place and
+ * time. */
 #include "tests/check.h"
 
 #include "sensor/node/player/munitions.h"
@@ -12,17 +13,20 @@ static const double earth_m = 6378137;
 static void report(Munitions *m, EntityTable *table, uint16_t entity, double east_m, double north_m, double t_s)
 {
     const DisEntityState pdu = {.header = {.version = 7, .exercise = 1, .type = dis_pdu_entity_state, .family = 1},
-                                .id = {1, 1, entity}, .type = {2, 2, 225, 1, 1, 3, 0}, .velocity_mps = {0, 0, 300},
-                                .p_ecef = {earth_m + 2000, east_m, north_m}, .dead_reckoning = 2};
+                                .id = {1, 1, entity},
+                                .type = {2, 2, 225, 1, 1, 3, 0},
+                                .velocity_mps = {0, 0, 300},
+                                .p_ecef = {earth_m + 2000, east_m, north_m},
+                                .dead_reckoning = 2};
     assert_int_equal(entity_table_entity_state(table, &pdu, t_s), STATUS_OK);
     munitions_report(m, &pdu, t_s);
 }
 
 typedef struct Case {
     const char *what;
-    uint16_t    munition, number, firing;  /* of the burst; 0: none */
-    double      east_m, north_m;           /* of the burst at 100.05 s: the missile is at 0, 15 */
-    uint16_t    want;                      /* which is spent; 0: none */
+    uint16_t    munition, number, firing; /* of the burst; 0: none */
+    double      east_m, north_m;          /* of the burst at 100.05 s: the missile is at 0, 15 */
+    uint16_t    want;                     /* which is spent; 0: none */
 } Case;
 
 /* Missile 41 of firing entity 31, event 5; 42, whose Fire was not heard, 30 m beside it. Event 7 is a round without an
@@ -50,9 +54,9 @@ static void a_burst_ends_the_munition_that_it_is_of(void **state)
     (void)state;
     for (size_t c = 0; c < sizeof cases / sizeof *cases; c++) {
         EntityTableConfig config = entity_table_default_config();
-        EntityTable      *table  = NULL;
-        Munitions        *m      = calloc(1, sizeof *m);
-        const Case       *k      = &cases[c];
+        EntityTable      *table = NULL;
+        Munitions        *m = calloc(1, sizeof *m);
+        const Case       *k = &cases[c];
         assert_int_equal(entity_table_create(&table, &config, catalog), STATUS_OK);
         const DisFire fire = {.firing = {1, 1, 31}, .target = {1, 1, 9}, .munition = {1, 1, 41}, .event = {1, 1, 5}};
         const DisFire round = {.firing = {1, 1, 31}, .target = {1, 1, 9}, .event = {1, 1, 7}};
@@ -62,7 +66,8 @@ static void a_burst_ends_the_munition_that_it_is_of(void **state)
         report(m, table, 42, 30, 0, 100);
         const DisDetonation burst = {.firing = {k->firing != 0, k->firing != 0, k->firing},
                                      .munition = {k->munition != 0, k->munition != 0, k->munition},
-                                     .event = {1, 1, k->number}, .p_ecef = {earth_m + 2000, k->east_m, k->north_m}};
+                                     .event = {1, 1, k->number},
+                                     .p_ecef = {earth_m + 2000, k->east_m, k->north_m}};
         munitions_burst(m, &burst, table, 100.05, 100.05);
         for (uint16_t id = 41; id <= 42; id++)
             if (munitions_spent(m, (DisEntityId){1, 1, id}) != (id == k->want)) fail_msg("%s: %d", k->what, id);

@@ -26,9 +26,9 @@ static void make_cube(const Noise3d *noise, uint64_t seed)
 static void estimates_recover_what_went_in(void **state)
 {
     (void)state;
-    static const Noise3d cases[3] = {{{1, 0.3, 0.2, 0.4, 0.15, 0.25, 0.35}}, {{1, 1, 1, 1, 1, 1, 1}},
-                                     {{0.5, 2, 1.5, 1, 3, 2, 4}}};
-    static const int     n[noise_axes] = {0, 0, 0, 0, frames, rows, columns};
+    static const Noise3d cases[3] = {
+        {{1, 0.3, 0.2, 0.4, 0.15, 0.25, 0.35}}, {{1, 1, 1, 1, 1, 1, 1}}, {{0.5, 2, 1.5, 1, 3, 2, 4}}};
+    static const int n[noise_axes] = {0, 0, 0, 0, frames, rows, columns};
     for (int k = 0; k < 3; k++) {
         Noise3d got;
         make_cube(&cases[k], 11 + (uint64_t)k);

@@ -14,9 +14,10 @@ static DisLog      log_ = {.datagram = datagram};
 static void make_pdus(void)
 {
     for (int k = 0; k < 2; k++) {
-        DisEntityState pdu = {.header = {.version = 7, .exercise = (uint8_t)(k + 1), .type = dis_pdu_entity_state,
-                                         .family = 1},
-                              .id = {10, 20, 30}, .p_ecef = {6378137, 0, 0}};
+        DisEntityState pdu = {
+            .header = {.version = 7, .exercise = (uint8_t)(k + 1), .type = dis_pdu_entity_state, .family = 1},
+            .id = {10, 20, 30},
+            .p_ecef = {6378137, 0, 0}};
         report_octets = dis_encode_entity_state(report[k], sizeof report[k], &pdu);
         CHECK(report_octets > 0);
     }
@@ -44,7 +45,7 @@ static void it_begins_with_the_first_usable_report(void **state)
     add(comment, 32, 101);
     CHECK(!player_opening(&view, &heard, &until_s, &log_, &config)); /* nobody is anywhere */
     add(report[0], report_octets, 150);
-    add(report[0], report_octets, 152);                          /* to the moment */
+    add(report[0], report_octets, 152); /* to the moment */
     add(report[0], report_octets, nextafter(152, 200));
     add(report[0], report_octets, 160);
     CHECK(player_opening(&view, &heard, &until_s, &log_, &config));
@@ -79,9 +80,9 @@ static void own_datagrams_are_known_by_their_sender(void **state)
     (void)state;
     Config config = config_default();
     make_pdus();
-    config.node.site        = 4711;
+    config.node.site = 4711;
     config.node.application = 1;
-    log_.count              = 0;
+    log_.count = 0;
     add(comment, 32, 1);
     add(report[0], report_octets, 2);
     add(comment, 32, 3);
@@ -91,7 +92,7 @@ static void own_datagrams_are_known_by_their_sender(void **state)
     CHECK(player_drop_own(&log_, &config) == 2 && log_.count == 2 && datagram[0].capture_s == 2 &&
           datagram[1].capture_s == 4);
     config.node.application = 20;
-    config.node.site        = 10;
+    config.node.site = 10;
     CHECK(player_drop_own(&log_, &config) == 1); /* its own entities too */
 }
 
@@ -100,12 +101,13 @@ static void a_report_must_be_somewhere(void **state)
     (void)state;
     const Config   config = config_default();
     DisEntityState pdu = {.header = {.version = 7, .exercise = 1, .type = dis_pdu_entity_state, .family = 1},
-                          .id = {10, 20, 30}, .p_ecef = {6378137, 0, 0}};
+                          .id = {10, 20, 30},
+                          .p_ecef = {6378137, 0, 0}};
     uint8_t        bytes[256];
     DisHeader      header;
     for (int k = 0; k < 4; k++) {
         DisEntityState bad = pdu;
-        if (k == 1) bad.p_ecef[0] = 0;           /* the centre of the Earth */
+        if (k == 1) bad.p_ecef[0] = 0; /* the centre of the Earth */
         if (k == 2) bad.p_ecef[1] = NAN;
         if (k == 3) bad.id = (DisEntityId){0, 0, 0};
         const size_t      n = dis_encode_entity_state(bytes, sizeof bytes, &bad);

@@ -1,6 +1,6 @@
 /* The options of `replay`, every one by the table itself: each changes what a run is told, and a variant of a sweep is
- * told the same as a run without one. What an option changes is found by comparing all of Options: an option that changes
- * nothing there fails, until this test can see what it changes, and with that whether a variant has it. */
+ * told the same as a run without one. What an option changes is found by comparing all of Options: an option that
+ * changes nothing there fails, until this test can see what it changes, and with that whether a variant has it. */
 #include "tests/check.h"
 
 #include "sensor/settings/options.h"
@@ -9,14 +9,35 @@ enum { line_max = 40 };
 
 /* What to give each option that takes an argument, in every form that it has, other than its default. */
 static const char *const samples[][2] = {
-    {"port", "3001"}, {"out", "elsewhere"}, {"bands", "lwir"}, {"size", "64x48"}, {"rate", "2"}, {"from", "3"},
-    {"from", "+12"}, {"to", "4"}, {"planes", "range,entity"},
-    {"only", "3,7,12"}, {"only", "9"}, {"save-frame", "9,2"}, {"host", "1:2:3"}, {"host", "observer"},
-    {"address", "127.0.0.1"}, {"interface", "lo"},
-    {"samples", "2"}, {"config", "FILE"}, {"set", "detector.smear=false"}, {"set", "publish.coco_min_pixels=9"},
-    {"threads", "3"}, {"seed", "7"}, {"speed", "2.5"},
-    {"isa", "sse4.2"}, {"pairs", "target"}, {"sweep", "some.yaml"},
-    {"video", "/tmp/clip.mp4"}, {"stream", "udp://127.0.0.1:5004"}, {"memory", "frames"},
+    {"port", "3001"},
+    {"out", "elsewhere"},
+    {"bands", "lwir"},
+    {"size", "64x48"},
+    {"rate", "2"},
+    {"from", "3"},
+    {"from", "+12"},
+    {"to", "4"},
+    {"planes", "range,entity"},
+    {"only", "3,7,12"},
+    {"only", "9"},
+    {"save-frame", "9,2"},
+    {"host", "1:2:3"},
+    {"host", "observer"},
+    {"address", "127.0.0.1"},
+    {"interface", "lo"},
+    {"samples", "2"},
+    {"config", "FILE"},
+    {"set", "detector.smear=false"},
+    {"set", "publish.coco_min_pixels=9"},
+    {"threads", "3"},
+    {"seed", "7"},
+    {"speed", "2.5"},
+    {"isa", "sse4.2"},
+    {"pairs", "target"},
+    {"sweep", "some.yaml"},
+    {"video", "/tmp/clip.mp4"},
+    {"stream", "udp://127.0.0.1:5004"},
+    {"memory", "frames"},
 };
 enum { sample_count = sizeof samples / sizeof *samples };
 
@@ -76,10 +97,10 @@ static void parse_variant(Options *variant, const Options *o)
 /* o: room for three. argument NULL: there is none. */
 static void check_option(Options *o, const char *name, const char *argument)
 {
-    Options    *plain = o, *given = o + 1, *variant = o + 2;
-    const bool  of_sweep = strcmp(name, "out") == 0 || strcmp(name, "sweep") == 0 || strcmp(name, "overwrite") == 0;
-    char        flag[48];
-    int         argc = 3;
+    Options   *plain = o, *given = o + 1, *variant = o + 2;
+    const bool of_sweep = strcmp(name, "out") == 0 || strcmp(name, "sweep") == 0 || strcmp(name, "overwrite") == 0;
+    char       flag[48];
+    int        argc = 3;
     /* a sensor, so that what changes one can be given */
     const char *line[line_max] = {"replay", "--set", "sensor.preset=staring_lwir", "log.pcap"};
     parse(plain, argc + 1, line);
@@ -89,8 +110,9 @@ static void check_option(Options *o, const char *name, const char *argument)
     line[argc++] = "log.pcap";
     parse(given, argc, line);
     const char *changed = difference(plain, given);
-    if (of_sweep) CHECK(!changed && (!same_text(plain->out, given->out) || !same_text(plain->sweep, given->sweep) ||
-                                     plain->overwrite != given->overwrite));
+    if (of_sweep)
+        CHECK(!changed && (!same_text(plain->out, given->out) || !same_text(plain->sweep, given->sweep) ||
+                           plain->overwrite != given->overwrite));
     else if (!changed) fail_msg("replay --%s: changes nothing that this test sees; let difference() see it", name);
     parse_variant(variant, given);
     const char *lost = difference(given, variant);
@@ -105,7 +127,7 @@ static void every_option_reaches_a_variant(void **state)
     const char *name;
     bool        argument;
     int         met = 0;
-    Options    *o   = malloc(3 * sizeof *o);
+    Options    *o = malloc(3 * sizeof *o);
     CHECK(o);
     text_file(file, "sensor:\n  hfov_deg: 2.5\n");
     for (int i = 0; i < options_count(); i++) {
@@ -129,11 +151,23 @@ static void every_option_reaches_a_variant(void **state)
 static void all_options_together_reach_a_variant(void **state)
 {
     (void)state;
-    static const char *const line[] = {
-        "replay", "--threads", "2", "log.pcap", "--only", "9", "--coco", "--causal", "--no-png", "--no-skip", "--isa",
-        "sse4.2", "--threads", "1", "--only", "3,7", "--speed", "max", "--speed", "4", "--sweep", "s.yaml", "--host",
-        "1:2:3", "--set", "weather.visibility_m=9000", "--seed", "3", "--from", "1", "--pairs", "all"};
-    Options *o = malloc(2 * sizeof *o);
+    static const char *const line[] = {"replay",    "--threads",
+                                       "2",         "log.pcap",
+                                       "--only",    "9",
+                                       "--coco",    "--causal",
+                                       "--no-png",  "--no-skip",
+                                       "--isa",     "sse4.2",
+                                       "--threads", "1",
+                                       "--only",    "3,7",
+                                       "--speed",   "max",
+                                       "--speed",   "4",
+                                       "--sweep",   "s.yaml",
+                                       "--host",    "1:2:3",
+                                       "--set",     "weather.visibility_m=9000",
+                                       "--seed",    "3",
+                                       "--from",    "1",
+                                       "--pairs",   "all"};
+    Options                 *o = malloc(2 * sizeof *o);
     CHECK(o);
     parse(&o[0], sizeof line / sizeof *line, line);
     parse_variant(&o[1], &o[0]);
@@ -149,7 +183,9 @@ static void what_a_setting_names_is_marked_as_given(void **state)
     (void)state;
     static const struct {
         const char *option, *key;
-    } flags[] = {{"--coco", "publish.coco"}, {"--no-png", "publish.png"}, {"--no-files", "publish.files"},
+    } flags[] = {{"--coco", "publish.coco"},
+                 {"--no-png", "publish.png"},
+                 {"--no-files", "publish.files"},
                  {"--causal", "exercise.causal"}};
     Options *o = malloc(sizeof *o);
     CHECK(o);

@@ -19,7 +19,7 @@ static void photons_agree_with_25_digits(void **state)
         if (!(v[2] >= 180 && v[2] <= 1500 && v[0] >= 3)) continue; /* thermal bands */
         /* the integrand is smooth over each of 16 panels: 8 points leave less than the tables of light hold */
         CHECK_NEAR(photon_band(v[0] * 1e-6, v[1] * 1e-6, v[2], NULL) / v[5], 1, 1e-10);
-        double slope;
+        double       slope;
         const double step = 1e-3 * v[2];
         photon_band(v[0] * 1e-6, v[1] * 1e-6, v[2], &slope);
         /* Richardson's difference: fourth order, (1e-3)^4 times a fifth derivative of about (30)^5 */
@@ -36,8 +36,13 @@ static void photons_agree_with_25_digits(void **state)
 
 static PhotonDetector reference_detector(double low_um, double high_um, double time_s)
 {
-    return (PhotonDetector){.low_m = low_um * 1e-6, .high_m = high_um * 1e-6, .f_number = 2, .transmission = 0.8,
-                            .qe = 0.7, .pitch_m = 30e-6, .integration_s = time_s};
+    return (PhotonDetector){.low_m = low_um * 1e-6,
+                            .high_m = high_um * 1e-6,
+                            .f_number = 2,
+                            .transmission = 0.8,
+                            .qe = 0.7,
+                            .pitch_m = 30e-6,
+                            .integration_s = time_s};
 }
 
 /* F/2, transmission 0.8, QE 0.7, 30 um, pi / (4 N^2 + 1): computed by another program to seven digits: half
@@ -64,7 +69,7 @@ static void table_agrees_with_the_integral(void **state)
 {
     (void)state;
     const PhotonDetector mwir = reference_detector(3.4, 4.8, 5e-3);
-    PhotonTable *table;
+    PhotonTable         *table;
     assert_int_equal(photon_table_create(&table, &mwir, true), STATUS_OK);
     double last = -1;
     for (double temp_k = 180; temp_k < 1500; temp_k *= 1.0137) {
@@ -89,10 +94,12 @@ static void table_agrees_with_the_integral(void **state)
 static void mean_wavelengths_are_those_of_the_photons(void **state)
 {
     (void)state;
-    static const double low_um[4] = {3.4, 8, 0.4, 3.4}, high_um[4] = {4.8, 12, 0.7, 4.8}, temp_k[4] = {300, 300, 5772, 1000};
+    static const double low_um[4] = {3.4, 8, 0.4, 3.4}, high_um[4] = {4.8, 12, 0.7, 4.8},
+                        temp_k[4] = {300, 300, 5772, 1000};
     static const double want_um[4] = {4.364478931296, 10.118813834165, 0.559410531402, 4.086442309890};
     for (int k = 0; k < 4; k++)
-        CHECK_NEAR(1e6 * photon_mean_wavelength_m(1e-6 * low_um[k], 1e-6 * high_um[k], temp_k[k]) / want_um[k], 1, 1e-10);
+        CHECK_NEAR(1e6 * photon_mean_wavelength_m(1e-6 * low_um[k], 1e-6 * high_um[k], temp_k[k]) / want_um[k], 1,
+                   1e-10);
     CHECK(isnan(photon_mean_wavelength_m(5e-6, 4e-6, 300)) && isnan(photon_mean_wavelength_m(3e-6, 4e-6, 0)));
 }
 

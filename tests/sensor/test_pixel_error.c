@@ -7,7 +7,8 @@ static void a_spread_has_its_median_and_its_share(void **state)
 {
     (void)state;
     ErrorSpread spread = {0}, more = {0};
-    CHECK(isnan(error_spread_median_k(&spread)) && isnan(error_spread_rms_k(&spread)) && isnan(error_spread_beyond(&spread)));
+    CHECK(isnan(error_spread_median_k(&spread)) && isnan(error_spread_rms_k(&spread)) &&
+          isnan(error_spread_beyond(&spread)));
     /* a thousand pixels of 0.1 K .. 0.3 K, evenly spread, and ten of 200 K */
     for (int i = 0; i < 1000; i++) error_spread_add(&spread, pow(0.1 + 0.2e-3 * i, 2), 1);
     CHECK_NEAR(error_spread_median_k(&spread) / 0.2, 1, 0.04);
@@ -23,7 +24,8 @@ static void a_spread_has_its_median_and_its_share(void **state)
         error_spread_add(&alike, sigma_k[k] * sigma_k[k], 7);
         CHECK_NEAR(error_spread_beyond(&alike), beyond[k], 1e-6);
     }
-    CHECK_NEAR(error_spread_rms_k(&spread), sqrt((10 * 4e4 + 1000 * 0.04333) / 1010), 0.01); /* the ten, and nothing else */
+    CHECK_NEAR(error_spread_rms_k(&spread), sqrt((10 * 4e4 + 1000 * 0.04333) / 1010),
+               0.01); /* the ten, and nothing else */
     ErrorSpread none = {0};
     error_spread_add(&none, 0, 5);
     CHECK(error_spread_median_k(&none) == 0 && error_spread_beyond(&none) == 0);
@@ -45,20 +47,25 @@ static Bar *bar(void)
     static Bar b;
     if (!b.planck) CHECK(planck_table_create(&b.planck, 8e-6, 12e-6) == STATUS_OK);
     for (int i = 0; i < width * height; i++) {
-        const int x = i % width, y = i / width;
+        const int  x = i % width, y = i / width;
         const bool on = x >= 15 && x < 25 && y >= 10 && y < 20;
-        b.id[i]   = on ? 1 : 0;
+        b.id[i] = on ? 1 : 0;
         b.lwir[i] = (float)planck_table_radiance(b.planck, on ? 310 : 300);
     }
     b.picture = (Picture){.width = width, .height = height, .entity = b.id, .lwir = b.lwir};
-    b.px      = (TargetPixels){.visible = 100, .box = {15, 10, 25, 20}};
+    b.px = (TargetPixels){.visible = 100, .box = {15, 10, 25, 20}};
     return &b;
 }
 
 static DisplacedTarget displaced(Bar *b, double way_px, double further_k2)
 {
-    return (DisplacedTarget){.picture = &b->picture, .px = &b->px, .value = b->lwir, .planck = b->planck, .way_px = way_px,
-                             .further_k2 = further_k2, .air_k = NAN};
+    return (DisplacedTarget){.picture = &b->picture,
+                             .px = &b->px,
+                             .value = b->lwir,
+                             .planck = b->planck,
+                             .way_px = way_px,
+                             .further_k2 = further_k2,
+                             .air_k = NAN};
 }
 
 static void a_displaced_bar_is_wrong_at_its_edges(void **state)
@@ -74,7 +81,7 @@ static void a_displaced_bar_is_wrong_at_its_edges(void **state)
     CHECK_NEAR(error_spread_rms_k(&own), sqrt(100 * 80 / 400.0), 1e-3);
     /* all but the inner 6 x 6: 48 of 5 K, 16 in the corners of sqrt(50) K; tables of the normal distribution */
     CHECK_NEAR(error_spread_beyond(&own), (48 * 0.841481 + 16 * 0.887537) / 100, 1e-6);
-    CHECK_NEAR(error_spread_median_k(&own), 5, 0.2);   /* 36 of 0, 48 of 5, 16 of 7.1 K */
+    CHECK_NEAR(error_spread_median_k(&own), 5, 0.2); /* 36 of 0, 48 of 5, 16 of 7.1 K */
     CHECK_NEAR(touched.all_px, 180, 1e-9);
     CHECK_NEAR(touched.squares_px_k2, 2 * 80 * 25, 1);
     /* by a quarter of a pixel: a sixteenth of the squares at one pixel; nothing but other sources where it stays */

@@ -22,7 +22,7 @@ static void sha256_gives_the_published_vectors(void **state)
     assert_int_equal(sha256_bytes(text, a, sizeof a), STATUS_OK);
     assert_string_equal(text, "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
 
-    char path[] = "/tmp/XXXXXX";
+    char      path[] = "/tmp/XXXXXX";
     const int file = mkstemp(path);
     CHECK(file >= 0 && write(file, a, sizeof a) == sizeof a);
     close(file);
@@ -46,12 +46,10 @@ static void the_format_is_what_the_header_says(void **state)
     const double   profile[1] = {-2.0};
     const Plane    plane[] = {plane_f32("b/Y", 2, 1, y), plane_u32("a/id", 1, 3, id), plane_f64("c", 1, 1, profile)};
     static const uint8_t bytes[] = {
-        'a', '/', 'i', 'd', 0, 1, 0, 0, 0, 3, 0, 0, 0, 'u', '3', '2', 0, /* name, 1 x 3, type */
-        0xff, 0xff, 0xff, 0xff, 0, 0, 0, 0, 2, 1, 0, 0,
-        'b', '/', 'Y', 0, 2, 0, 0, 0, 1, 0, 0, 0, 'f', '3', '2', 0,
-        0, 0, 0x80, 0x3f, 0, 0, 0, 0x80,
-        'c', 0, 1, 0, 0, 0, 1, 0, 0, 0, 'f', '6', '4', 0,
-        0, 0, 0, 0, 0, 0, 0, 0xc0};
+        'a',  '/',  'i',  'd',  0,   1,   0,   0,   0,   3, 0,    0,    0,   'u', '3', '2',  0, /* name, 1 x 3, type */
+        0xff, 0xff, 0xff, 0xff, 0,   0,   0,   0,   2,   1, 0,    0,    'b', '/', 'Y', 0,    2,   0,   0, 0,
+        1,    0,    0,    0,    'f', '3', '2', 0,   0,   0, 0x80, 0x3f, 0,   0,   0,   0x80, 'c', 0,   1, 0,
+        0,    0,    1,    0,    0,   0,   'f', '6', '4', 0, 0,    0,    0,   0,   0,   0,    0,   0xc0};
     char got[sha256_text_size], want[sha256_text_size];
     assert_int_equal(plane_hash(got, plane, 3), STATUS_OK);
     assert_int_equal(sha256_bytes(want, bytes, sizeof bytes), STATUS_OK);
@@ -135,10 +133,10 @@ static void shape_name_and_type_count(void **state)
 {
     (void)state;
     static const float zero[8];
-    const Plane one[] = {plane_f32("a", 2, 3, zero), plane_f32("a", 3, 2, zero), plane_f32("b", 2, 3, zero),
-                         plane_u32("a", 2, 3, (const uint32_t *)zero), plane_f32("a", 1, 6, zero),
-                         {"a", PLANE_U8, 2, 3, zero}};
-    char text[6][sha256_text_size];
+    const Plane        one[] = {plane_f32("a", 2, 3, zero), plane_f32("a", 3, 2, zero),
+                                plane_f32("b", 2, 3, zero), plane_u32("a", 2, 3, (const uint32_t *)zero),
+                                plane_f32("a", 1, 6, zero), {"a", PLANE_U8, 2, 3, zero}};
+    char               text[6][sha256_text_size];
     for (int i = 0; i < 6; i++) {
         assert_int_equal(plane_hash(text[i], &one[i], 1), STATUS_OK);
         for (int j = 0; j < i; j++) assert_string_not_equal(text[i], text[j]);
@@ -149,9 +147,9 @@ static void misuse_is_refused(void **state)
 {
     (void)state;
     static const float zero[4];
-    const Plane twice[] = {plane_f32("a", 2, 2, zero), plane_f32("b", 2, 2, zero), plane_f32("a", 2, 2, zero)};
-    const Plane nameless = plane_f32("", 2, 2, zero), flat = plane_f32("a", 2, 0, zero);
-    char        text[sha256_text_size] = "untouched";
+    const Plane        twice[] = {plane_f32("a", 2, 2, zero), plane_f32("b", 2, 2, zero), plane_f32("a", 2, 2, zero)};
+    const Plane        nameless = plane_f32("", 2, 2, zero), flat = plane_f32("a", 2, 0, zero);
+    char               text[sha256_text_size] = "untouched";
     assert_int_equal(plane_hash(text, twice, 3), STATUS_BAD_VALUE);
     assert_int_equal(plane_hash(text, &nameless, 1), STATUS_BAD_VALUE);
     assert_int_equal(plane_hash(text, &flat, 1), STATUS_BAD_VALUE);
@@ -162,12 +160,9 @@ static void misuse_is_refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(sha256_gives_the_published_vectors),
-        cmocka_unit_test(the_format_is_what_the_header_says),
-        cmocka_unit_test(order_of_planes_does_not_matter),
-        cmocka_unit_test(nan_is_canonical_and_nothing_else),
-        cmocka_unit_test(shape_name_and_type_count),
-        cmocka_unit_test(misuse_is_refused),
+        cmocka_unit_test(sha256_gives_the_published_vectors), cmocka_unit_test(the_format_is_what_the_header_says),
+        cmocka_unit_test(order_of_planes_does_not_matter),    cmocka_unit_test(nan_is_canonical_and_nothing_else),
+        cmocka_unit_test(shape_name_and_type_count),          cmocka_unit_test(misuse_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

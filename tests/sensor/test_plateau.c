@@ -11,8 +11,8 @@ static float plane[pixels];
 static DetectorConfig kelvin(double plateau)
 {
     DetectorConfig c = detector_default_config();
-    c.min_span  = 2;
-    c.plateau   = plateau;
+    c.min_span = 2;
+    c.plateau = plateau;
     c.highlight = 1.5;
     c.fire_from = 350;
     return c;
@@ -43,8 +43,8 @@ static void a_uniform_plane_has_a_straight_curve(void **state)
 
 /* Ground on 90 % of the pixels uniform over 16 K, 512 bins; a plume on 10 % uniform over 160 K, 5120 bins. Equalised
  * (plateau 1) each has its share of pixels of the grey levels. With a plateau of 0.0005 a bin of ground, 0.00176 of the
- * pixels, counts for that, 512 * 0.0005 = 0.256 in all, and one of the plume, 0.0000195, for itself: 0.1. With a plateau
- * of one pixel each bin counts the same: 512 of 5632. */
+ * pixels, counts for that, 512 * 0.0005 = 0.256 in all, and one of the plume, 0.0000195, for itself: 0.1. With a
+ * plateau of one pixel each bin counts the same: 512 of 5632. */
 static void the_plateau_bounds_what_a_bin_counts(void **state)
 {
     (void)state;
@@ -79,8 +79,7 @@ static void the_slope_is_bounded(void **state)
     config.step = 1, config.min_span = 8; /* counts: eight of them, an eighth of the scale each at most */
     for (int i = 0; i < pixels; i++) plane[i] = (float)(5000 + i % 4);
     detector_plateau(&curve, &config, plane, pixels);
-    for (int n = 0; n < 3; n++)
-        CHECK_NEAR(level_of(&curve, 5001 + n) - level_of(&curve, 5000 + n), 1.0 / 8, 1e-6);
+    for (int n = 0; n < 3; n++) CHECK_NEAR(level_of(&curve, 5001 + n) - level_of(&curve, 5000 + n), 1.0 / 8, 1e-6);
     for (int i = 0; i < pixels; i++) plane[i] = NAN;
     detector_plateau(&curve, &config, plane, pixels);
     CHECK(curve.value[0] == 0 && curve.value[curve_steps] == 1);
@@ -100,8 +99,9 @@ static double contrast(const DetectorConfig *config, double sigma_k)
     return 255 / (level.high - level.low);
 }
 
-/* Ground of 290 K with normal noise, fire of 700 to 900 K: the ground keeps half of its contrast with fire on up to 48 % of
- * the pixels (linear), on up to a fifth (plateau). What the linear level was before, without a limit of fires, does not. */
+/* Ground of 290 K with normal noise, fire of 700 to 900 K: the ground keeps half of its contrast with fire on up to 48
+ * % of the pixels (linear), on up to a fifth (plateau). What the linear level was before, without a limit of fires,
+ * does not. */
 static void fire_on_much_of_the_picture(void **state)
 {
     (void)state;
@@ -119,7 +119,8 @@ static void fire_on_much_of_the_picture(void **state)
                 const double   kept = contrast(&config, sigma_k[s]);
                 if (f == 0) without[plateau] = kept;
                 if (plateau && fire[f] > 0.2) continue;
-                if (!(kept >= 0.5 * without[plateau])) fail_msg("%g K, fire on %g: %g of %g", sigma_k[s], fire[f], kept, without[plateau]);
+                if (!(kept >= 0.5 * without[plateau]))
+                    fail_msg("%g K, fire on %g: %g of %g", sigma_k[s], fire[f], kept, without[plateau]);
                 config.fire_from = INFINITY;
                 if (!plateau && fire[f] > 0.1) CHECK(contrast(&config, sigma_k[s]) < 0.1 * without[0]);
             }
@@ -133,7 +134,8 @@ static void fire_on_much_of_the_picture(void **state)
     }
 }
 
-/* A step of 20 K in a scene of 5 K settles to 5 % within 1 s, of 40 K to exp(-3) of it in 3 time constants; at any rate. */
+/* A step of 20 K in a scene of 5 K settles to 5 % within 1 s, of 40 K to exp(-3) of it in 3 time constants; at any
+ * rate. */
 static void a_curve_settles_in_a_second(void **state)
 {
     (void)state;
@@ -147,7 +149,8 @@ static void a_curve_settles_in_a_second(void **state)
                 curve.value[k] = 280 + span_k[s] * k / curve_steps;
                 after.value[k] = curve.value[k] + 20;
             }
-            for (int i = 0; i < time_s[s] * rate_hz[r]; i++) detector_plateau_follow(&curve, &quick, &after, 1 / rate_hz[r], 2);
+            for (int i = 0; i < time_s[s] * rate_hz[r]; i++)
+                detector_plateau_follow(&curve, &quick, &after, 1 / rate_hz[r], 2);
             for (int k = 0; k <= curve_steps; k++) CHECK(fabs(curve.value[k] - after.value[k]) <= 0.05 * 20);
             middle[r] = curve.value[curve_steps / 2];
         }
@@ -189,9 +192,12 @@ int main(void)
 {
     thread_flush_denormals();
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_uniform_plane_has_a_straight_curve), cmocka_unit_test(the_plateau_bounds_what_a_bin_counts),
-        cmocka_unit_test(the_slope_is_bounded),                 cmocka_unit_test(fire_on_much_of_the_picture),
-        cmocka_unit_test(a_curve_settles_in_a_second),          cmocka_unit_test(grey_levels_are_those_of_the_curve),
+        cmocka_unit_test(a_uniform_plane_has_a_straight_curve),
+        cmocka_unit_test(the_plateau_bounds_what_a_bin_counts),
+        cmocka_unit_test(the_slope_is_bounded),
+        cmocka_unit_test(fire_on_much_of_the_picture),
+        cmocka_unit_test(a_curve_settles_in_a_second),
+        cmocka_unit_test(grey_levels_are_those_of_the_curve),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

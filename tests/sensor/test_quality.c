@@ -4,7 +4,8 @@
 #include "sensor/quality/quality.h"
 #include "tests/sensor/error_scenes.h"
 
-static const char good[] = "# by hand\n"
+static const char good[] =
+    "# by hand\n"
     "samples,edge_samples,target_samples,optical_percent,mwir_percent,lwir_percent,mwir_k,lwir_k,ms_megapixel\n"
     "1,0,0,10,20,5,2,2,10\n"
     "1,4,48,6,4,1,0.5,0.6,40\n"
@@ -38,8 +39,8 @@ static int picked(bool *reached, const QualityTable *table, double percent, doub
     return quality_pick(reached, table, &target);
 }
 
-/* A deadline that bare ground keeps with many rays is kept among trees with fewer: of each scene its own rows alone. Half a
- * megapixel at twice the table's time. */
+/* A deadline that bare ground keeps with many rays is kept among trees with fewer: of each scene its own rows alone.
+ * Half a megapixel at twice the table's time. */
 static void woods_have_rows_of_their_own(void **state)
 {
     (void)state;
@@ -57,10 +58,11 @@ static void woods_have_rows_of_their_own(void **state)
             CHECK(row == (scene == QUALITY_WOODS ? asked[k].woods : asked[k].bare));
             CHECK(reached == (t.row[row].ms_megapixel <= asked[k].frame_ms)); /* the promise */
         }
-    /* rows of one scene serve no other: the same settings are wanted in both, and a cheap one on bare ground spares none */
+    /* rows of one scene serve no other: the same settings are wanted in both, and a cheap one on bare ground spares
+     * none */
     for (int k = 0; k < t.count; k++) CHECK(quality_wanted(&t, k));
     /* a table without scenes holds in all */
-    const QualityTable one = table_of(good);
+    const QualityTable  one = table_of(good);
     const QualityTarget in_woods = {4, NAN, NAN, 0.5, 2, 7, QUALITY_WOODS};
     bool                reached;
     CHECK(quality_pick(&reached, &one, &in_woods) == 2 && reached);
@@ -82,7 +84,8 @@ static void the_scene_is_that_of_the_settings(void **state)
         const char *woods, *trees, *says;
         int         samples;
         bool        adaptive;
-    } of[] = {{"on", "300000", "in woods", 1, false}, {"off", "300000", "on bare ground", 1, true},
+    } of[] = {{"on", "300000", "in woods", 1, false},
+              {"off", "300000", "on bare ground", 1, true},
               {"on", "0", "on bare ground", 1, true}};
     char path[text_file_size];
     text_file(path, both);
@@ -131,17 +134,17 @@ static void the_quickest_that_keeps_it(void **state)
     bool               reached;
     CHECK(t.count == 4 && t.row[1].kelvin[BAND_LWIR] == 0.6 && t.row[3].target_samples == 96);
     CHECK(picked(&reached, &t, 7, NAN, NAN, all) == 1 && reached);
-    CHECK(picked(&reached, &t, 4, NAN, NAN, all) == 2 && reached);      /* not above is kept */
+    CHECK(picked(&reached, &t, 4, NAN, NAN, all) == 2 && reached); /* not above is kept */
     CHECK(picked(&reached, &t, 3.99, NAN, NAN, all) == 3 && reached);
-    CHECK(picked(&reached, &t, 1, NAN, NAN, lwir) == 1 && reached);     /* only bands that are wanted */
+    CHECK(picked(&reached, &t, 1, NAN, NAN, lwir) == 1 && reached); /* only bands that are wanted */
     CHECK(picked(&reached, &t, NAN, 0.45, NAN, all) == 2 && reached);
-    CHECK(picked(&reached, &t, 7, 0.2, NAN, all) == 3 && reached);      /* both */
-    CHECK(picked(&reached, &t, 1, NAN, NAN, all) == 3 && !reached);     /* none: the nearest */
-    CHECK(picked(&reached, &t, NAN, NAN, 95, all) == 2 && reached);     /* half a megapixel, twice the time: 90 ms */
-    CHECK(picked(&reached, &t, 7, NAN, 95, all) == 1 && reached);       /* in time, and no better than asked for */
-    CHECK(picked(&reached, &t, 3, NAN, 95, all) == 2 && !reached);      /* in time, nearest */
-    CHECK(picked(&reached, &t, 3, NAN, 1, all) == 0 && !reached);       /* none in time: the quickest */
-    CHECK(picked(&reached, &t, 0, NAN, NAN, 1u << BAND_RADAR) == 0);    /* radar alone: nothing to keep */
+    CHECK(picked(&reached, &t, 7, 0.2, NAN, all) == 3 && reached);   /* both */
+    CHECK(picked(&reached, &t, 1, NAN, NAN, all) == 3 && !reached);  /* none: the nearest */
+    CHECK(picked(&reached, &t, NAN, NAN, 95, all) == 2 && reached);  /* half a megapixel, twice the time: 90 ms */
+    CHECK(picked(&reached, &t, 7, NAN, 95, all) == 1 && reached);    /* in time, and no better than asked for */
+    CHECK(picked(&reached, &t, 3, NAN, 95, all) == 2 && !reached);   /* in time, nearest */
+    CHECK(picked(&reached, &t, 3, NAN, 1, all) == 0 && !reached);    /* none in time: the quickest */
+    CHECK(picked(&reached, &t, 0, NAN, NAN, 1u << BAND_RADAR) == 0); /* radar alone: nothing to keep */
 }
 
 /* A row as good as a quicker one in everything is for nobody; one that is better in one band alone is for somebody. */
@@ -151,8 +154,8 @@ static void rows_for_nobody_are_told(void **state)
     static const char *const rows[] = {"2,4,64,6,4,1,0.5,0.6,50\n", "2,4,64,9,4.5,2,0.6,0.7,90\n",
                                        "2,4,64,5.9,4,1,0.5,0.6,50\n", "2,4,64,9,4.5,2,0.6,0.35,91\n",
                                        "2,4,64,6,3.9,1,0.5,0.6,41\n"};
-    static const bool wanted[] = {false, false, true, true, true};
-    char              text[1024], path[512];
+    static const bool        wanted[] = {false, false, true, true, true};
+    char                     text[1024], path[512];
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         snprintf(text, sizeof text, "%s%s", good, rows[k]);
         const QualityTable t = table_of(text);
@@ -188,8 +191,8 @@ static void broken_tables_are_refused(void **state)
     static const char *const scenes[] = {"bare,1,0,0,1,1,1,1,1,1\n", "woods,1,0,0,1,1,1,1,1,1\n",
                                          "bare,1,0,0,1,1,1,1,1,1\nsea,1,0,0,1,1,1,1,1,1\n",
                                          "bare,1,0,0,1,1,1,1,1,1\n,1,0,0,1,1,1,1,1,1\n"};
-    char         path[text_file_size], text[16384];
-    QualityTable table;
+    char                     path[text_file_size], text[16384];
+    QualityTable             table;
     log_suppress(true);
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         snprintf(text, sizeof text, "%s%s", head, rows[k]);
@@ -280,10 +283,10 @@ static void promises_hold_elsewhere(void **state)
                                         {"vehicles at 80 m", 80, 15, 40, 6, false, 0, false},
                                         {"vehicles at 400 m", 400, 50, 15, 10, false, 0, false},
                                         {"horizon", 250, 9, 35, 3, false, 3, false}};
-    static const double asked_percent[] = {10, 5, 2.5};
-    char         path[512];
-    QualityTable table;
-    int          held = 0, cases = 0;
+    static const double     asked_percent[] = {10, 5, 2.5};
+    char                    path[512];
+    QualityTable            table;
+    int                     held = 0, cases = 0;
     CHECK(etc_path(path, sizeof path, "quality.csv"));
     assert_int_equal(quality_open(&table, path), STATUS_OK);
     for (int s = 0; s < 4; s++) {
@@ -318,10 +321,13 @@ static void promises_hold_elsewhere(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_quickest_that_keeps_it), cmocka_unit_test(woods_have_rows_of_their_own),
-        cmocka_unit_test(the_scene_is_that_of_the_settings), cmocka_unit_test(woods_are_promised_no_bare_times), cmocka_unit_test(rows_for_nobody_are_told),
-        cmocka_unit_test(broken_tables_are_refused), cmocka_unit_test(given_keys_stay_and_the_choice_is_said),
-        cmocka_unit_test(promises_hold_elsewhere)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(the_quickest_that_keeps_it),
+                                       cmocka_unit_test(woods_have_rows_of_their_own),
+                                       cmocka_unit_test(the_scene_is_that_of_the_settings),
+                                       cmocka_unit_test(woods_are_promised_no_bare_times),
+                                       cmocka_unit_test(rows_for_nobody_are_told),
+                                       cmocka_unit_test(broken_tables_are_refused),
+                                       cmocka_unit_test(given_keys_stay_and_the_choice_is_said),
+                                       cmocka_unit_test(promises_hold_elsewhere)};
     return cmocka_run_group_tests(tests, lab_open, lab_close);
 }

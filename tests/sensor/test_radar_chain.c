@@ -27,9 +27,9 @@ static void add_points(Interval *interval, const Point *point, int count)
     EchoGrid *grid;
     CHECK(echo_grid_create(&grid, &wave) == STATUS_OK);
     for (int i = 0; i < count; i++) {
-        const Point      *p = &point[i];
-        const AntennaGain g = antenna_gain(&dish, p->cos_right, p->cos_down);
-        const RadarLink   link = {power_w, 1, 1, dish.wavelength_m, reference_m + p->range_m, loss};
+        const Point         *p = &point[i];
+        const AntennaGain    g = antenna_gain(&dish, p->cos_right, p->cos_down);
+        const RadarLink      link = {power_w, 1, 1, dish.wavelength_m, reference_m + p->range_m, loss};
         const double complex a = sqrt(radar_received_w(&link, p->rcs_m2)) * g.sum * cexp(I * p->phase_rad);
         echo_add(
             grid,
@@ -90,8 +90,10 @@ static void points_are_measured(void **state)
 {
     (void)state;
     static const Point point[] = {
-        {3.14, 4.1, 0.002, -0.001, 10, 0.3}, {-20.3, -7.77, -0.006, 0.004, 3, 2},
-        {30.05, 0, 0, 0.007, 30, 4}, {0.1, 11.2, 0.0035, 0.003, 1, 5},
+        {3.14, 4.1, 0.002, -0.001, 10, 0.3},
+        {-20.3, -7.77, -0.006, 0.004, 3, 2},
+        {30.05, 0, 0, 0.007, 30, 4},
+        {0.1, 11.2, 0.0035, 0.003, 1, 5},
     };
     const CfarConfig  cfar = {.pfa = 1e-8, .guard = {3, 3}, .training = {3, 8}, .wrap_rows = true};
     const double      unit_w = power_w / loss * dish.wavelength_m * dish.wavelength_m / pow(4 * pi_rad, 3);
@@ -137,7 +139,7 @@ static void iq_errors_make_an_image(void **state)
     ReceiverReport report;
     add_points(&interval, &point, 1);
     interval_receive(&report, &interval, &receiver, 5, 0, 0);
-    const RangeDoppler map = process(&interval, "rect", "rect");
+    const RangeDoppler    map = process(&interval, "rect", "rect");
     const double complex *row = map.cell + pulses / 2 * samples + samples / 2;
     CHECK_NEAR(10 * log10(power_of(row[-16]) / power_of(row[16])), 20 * log10(hypot(0.02, 0.015) / 2), 0.2);
 }
@@ -147,10 +149,10 @@ static void iq_errors_make_an_image(void **state)
 static void converter_and_oscillator_add_their_noise(void **state)
 {
     (void)state;
-    const Point    point = {.range_m = 12.3, .range_rate_mps = 2.2, .rcs_m2 = 1e4, .phase_rad = 1};
-    Receiver       receiver = {.noise_figure = 1, .bits = 8, .noise_counts = 0.3};
-    Interval       interval = {.wave = wave, .sample = sample};
-    ReceiverReport report;
+    const Point           point = {.range_m = 12.3, .range_rate_mps = 2.2, .rcs_m2 = 1e4, .phase_rad = 1};
+    Receiver              receiver = {.noise_figure = 1, .bits = 8, .noise_counts = 0.3};
+    Interval              interval = {.wave = wave, .sample = sample};
+    ReceiverReport        report;
     static double complex before[cells];
     add_points(&interval, &point, 1);
     memcpy(before, sample, sizeof before);

@@ -12,15 +12,20 @@ static void gridding_leaves_as_much(void **state)
 {
     (void)state;
     static double complex got[all];
-    const Waveform wave = {.centre_hz = 94e9, .bandwidth_hz = 500e6, .pulse_s = 2e-5, .repeat_hz = 2e4,
-                           .samples = samples, .pulses = pulses};
-    const double   step_hz = wave.bandwidth_hz / samples, row_s = 1 / wave.repeat_hz, step_s = wave.pulse_s / samples;
-    double         error = 0, power = 0;
-    EchoGrid      *grid;
+    const Waveform        wave = {.centre_hz = 94e9,
+                                  .bandwidth_hz = 500e6,
+                                  .pulse_s = 2e-5,
+                                  .repeat_hz = 2e4,
+                                  .samples = samples,
+                                  .pulses = pulses};
+    const double step_hz = wave.bandwidth_hz / samples, row_s = 1 / wave.repeat_hz, step_s = wave.pulse_s / samples;
+    double       error = 0, power = 0;
+    EchoGrid    *grid;
     CHECK(echo_grid_create(&grid, &wave) == STATUS_OK);
     for (int i = 0; i < echoes; i++) {
         const double rate_mps = 80 * (random_uniform(3, 0, 0, (uint64_t)i) - 0.5); /* of the path: 20 m/s of range */
-        const Echo   echo = {.path_m = 60 * (random_uniform(3, 0, 1, (uint64_t)i) - 0.5), .amplitude = {1, 0, 0, 0},
+        const Echo   echo = {.path_m = 60 * (random_uniform(3, 0, 1, (uint64_t)i) - 0.5),
+                             .amplitude = {1, 0, 0, 0},
                              .path_per_pulse_m = rate_mps * row_s};
         echo_add(grid, &echo, 1, NULL);
         echo_sum(got, grid);
@@ -49,9 +54,9 @@ static double energy_of(const RangeDoppler *map)
 
 static const RadarFrame *measure_at(SeekerRadar *radar, const RadarScene *scene, double further_m)
 {
-    double           p_enu[3];
-    SnapshotEntity  *e = &stage.entity[0];
-    const LocalFrame *frame = &stage.world.frame;
+    double              p_enu[3];
+    SnapshotEntity     *e = &stage.entity[0];
+    const LocalFrame   *frame = &stage.world.frame;
     static const double still[3] = {0, 0, 0};
     place_sphere(0, 0, still);
     enu_from_ecef(p_enu, frame, e->p_ecef);
@@ -65,10 +70,10 @@ static const RadarFrame *measure_at(SeekerRadar *radar, const RadarScene *scene,
 static void a_sphere_has_its_own_share_and_moves(void **state)
 {
     (void)state;
-    const Weather     weather = weather_default();
-    SeekerRadar      *radar = open_radar("search_ku", 0, 0.5, false);
-    const RadarScene  scene = scene_of(0, &weather);
-    RadarError        error, moved;
+    const Weather    weather = weather_default();
+    SeekerRadar     *radar = open_radar("search_ku", 0, 0.5, false);
+    const RadarScene scene = scene_of(0, &weather);
+    RadarError       error, moved;
     place_sphere(0, 0, (const double[3]){0, 0, 0});
     arena_reset(stage.arena);
     const RadarFrame *frame = measure_at(radar, &scene, 0);

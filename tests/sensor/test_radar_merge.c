@@ -1,5 +1,5 @@
-/* Fewer echoes than scattering centres: the map of all four channels hardly changes, a target that nothing resolves is one
- * echo, and where a target is resolved nothing is merged. labels: physics small */
+/* Fewer echoes than scattering centres: the map of all four channels hardly changes, a target that nothing resolves is
+ * one echo, and where a target is resolved nothing is merged. labels: physics small */
 #include "tests/sensor/radar_scene.h"
 
 static int open_models(void **state)

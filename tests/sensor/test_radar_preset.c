@@ -50,7 +50,8 @@ static void bad_rows_are_refused(void **state)
         {"x,lfm,94,500,512,64,20,nan,10,5,0.2,1,v,8,2,0,0,12,hann,hann,1e-6,1,0,2,s\n", "pulse_us"},
         {"x,chirp,94,500,512,64,20,20,10,5,0.2,1,v,8,2,0,0,12,hann,hann,1e-6,1,0,2,s\n", "waveform"},
         {"x,stepped,94,500,512,64,20,51,10,5,0.2,1,v,8,2,0,0,12,hann,hann,1e-6,1,0,2,s\n", "pulse_us"},
-        {"x,stepped,94,500,512,64,20,1,10,5,0.2,1,v,8,2,0,0,12,hann,hann,1e-6,1,0,2,s\n", "bandwidth_mhz"}, /* 25.6 ms */
+        {"x,stepped,94,500,512,64,20,1,10,5,0.2,1,v,8,2,0,0,12,hann,hann,1e-6,1,0,2,s\n",
+         "bandwidth_mhz"}, /* 25.6 ms */
         {"x,stepped,94,200,512,64,20,1,10,5,0.2,1,v,8,2,0,0,12,hann,hann,1e-6,1,9,2,s\n", "far_km"},
         {"x,fmcw,94,200,512,64,20,1,10,5,0.2,1,v,8,2,0,0,12,hann,hann,1e-6,1,9,2,s\n", "far_km"},
         {"x,pulse_doppler,94,20,512,64,20,1,10,5,0.2,1,v,8,2,0,0,12,hann,hann,1e-6,1,9,2,s\n", "bandwidth_mhz"},

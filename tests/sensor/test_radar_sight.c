@@ -1,17 +1,17 @@
-/* What hides part of a target: of two spheres behind a wall that covers one, the other keeps its own field, as a model and as
- * given scatterers. And a target by a given signature, through the whole chain. labels: physics slow */
+/* What hides part of a target: of two spheres behind a wall that covers one, the other keeps its own field, as a model
+ * and as given scatterers. And a target by a given signature, through the whole chain. labels: physics slow */
 #include "tests/sensor/radar_scene.h"
 
 enum { TWO, ONE, WALL };
 static const double sphere_m = 0.5, apart_m = 4;
-static char wall_path[128];
+static char         wall_path[128];
 
 static int open_stage(void **state)
 {
     (void)state;
     static const char *const model[] = {"two", "one", "wall"};
     scene_folder();
-    FILE *file = scene_obj("two", NULL);
+    FILE     *file = scene_obj("two", NULL);
     const int next = scene_sphere(file, 1, sphere_m, 0, apart_m, 0);
     scene_sphere(file, next, sphere_m, 0, -apart_m, 0);
     CHECK(fclose(file) == 0);
@@ -32,8 +32,8 @@ static int open_stage(void **state)
     /* a sphere's cross section, pi a^2, at its front */
     const double dbsm = 10 * log10(pi_rad * sphere_m * sphere_m);
     file = scene_file("both.csv");
-    fprintf(file, "x_m,y_m,z_m,hh_dbsm,vv_dbsm\n%g,%g,0,%.9g,%.9g\n%g,%g,0,%.9g,%.9g\n", sphere_m, apart_m, dbsm, dbsm, sphere_m, -apart_m,
-            dbsm, dbsm);
+    fprintf(file, "x_m,y_m,z_m,hh_dbsm,vv_dbsm\n%g,%g,0,%.9g,%.9g\n%g,%g,0,%.9g,%.9g\n", sphere_m, apart_m, dbsm, dbsm,
+            sphere_m, -apart_m, dbsm, dbsm);
     CHECK(fclose(file) == 0);
     file = scene_file("one_point.csv");
     fprintf(file, "x_m,y_m,z_m,hh_dbsm,vv_dbsm\n%g,%g,0,%.9g,%.9g\n", sphere_m, -apart_m, dbsm, dbsm);
@@ -55,7 +55,7 @@ static int close_stage(void **state)
 enum { BOTH, RIGHT_HIDDEN, ALONE, LEFT_HIDDEN, cases };
 
 typedef struct Seen {
-    double complex cell;    /* of the map, where both peak */
+    double complex cell; /* of the map, where both peak */
     RadarTruth     truth;
     Detection      found;
 } Seen;
@@ -81,7 +81,8 @@ static void see_cases(Seen seen[cases], SeekerRadar *radar, bool given)
         seen[part].cell = f->map.cell[at];
         seen[part].truth = f->target[0];
         for (int i = 0; walled && i < f->target[0].strongest_count; i++)
-            CHECK(f->target[0].strongest[i].seen == ((f->target[0].strongest[i].p_body[1] < 0) == (part == RIGHT_HIDDEN)));
+            CHECK(f->target[0].strongest[i].seen ==
+                  ((f->target[0].strongest[i].p_body[1] < 0) == (part == RIGHT_HIDDEN)));
     }
     CHECK(seen[BOTH].truth.visible == 1 && seen[ALONE].truth.visible == 1);
     /* as if wholly visible: that of both, whatever hides it */
@@ -96,11 +97,14 @@ static void the_point_in_sight_keeps_its_field(void **state)
     Seen         seen[cases];
     see_cases(seen, radar, true);
     const double complex left = seen[RIGHT_HIDDEN].cell, right = seen[LEFT_HIDDEN].cell, both = seen[BOTH].cell;
-    const double ratio_db = 20 * log10(cabs(left) / cabs(seen[ALONE].cell)), phase_deg = carg(left * conj(seen[ALONE].cell)) / rad_per_deg;
+    const double         ratio_db = 20 * log10(cabs(left) / cabs(seen[ALONE].cell)),
+                 phase_deg = carg(left * conj(seen[ALONE].cell)) / rad_per_deg;
     const double sum_db = 20 * log10(cabs(left + right - both) / cabs(left));
-    print_message("one of two points hidden: the other's cell %.4f dB, %.3f deg from that of it alone, %.2f dBsm (pi a^2: %.2f); either and "
-                  "the other make both to %.0f dB\n", ratio_db, phase_deg, 10 * log10(seen[RIGHT_HIDDEN].found.rcs_m2),
-                  10 * log10(pi_rad * sphere_m * sphere_m), sum_db);
+    print_message(
+        "one of two points hidden: the other's cell %.4f dB, %.3f deg from that of it alone, %.2f dBsm (pi a^2: %.2f); either and "
+        "the other make both to %.0f dB\n",
+        ratio_db, phase_deg, 10 * log10(seen[RIGHT_HIDDEN].found.rcs_m2), 10 * log10(pi_rad * sphere_m * sphere_m),
+        sum_db);
     CHECK(fabs(ratio_db) < 0.01 && fabs(phase_deg) < 0.1);
     CHECK(sum_db < -40); /* noise is 50 dB below a point */
     CHECK_NEAR(10 * log10(seen[RIGHT_HIDDEN].found.rcs_m2), 10 * log10(pi_rad * sphere_m * sphere_m), 0.1);
@@ -117,9 +121,10 @@ static void the_sphere_in_sight_is_where_it_is(void **state)
     Seen         seen[cases];
     see_cases(seen, radar, false);
     const double want = apart_m / scene_range_m;
-    print_message("one of two spheres hidden: visible %.3f, %.3f; found %.5f and %.5f to the right, the spheres at %.5f\n",
-                  seen[RIGHT_HIDDEN].truth.visible, seen[LEFT_HIDDEN].truth.visible, seen[RIGHT_HIDDEN].found.cos_right,
-                  seen[LEFT_HIDDEN].found.cos_right, want);
+    print_message(
+        "one of two spheres hidden: visible %.3f, %.3f; found %.5f and %.5f to the right, the spheres at %.5f\n",
+        seen[RIGHT_HIDDEN].truth.visible, seen[LEFT_HIDDEN].truth.visible, seen[RIGHT_HIDDEN].found.cos_right,
+        seen[LEFT_HIDDEN].found.cos_right, want);
     /* the camera looks to the west: its right is north, the body's left */
     CHECK_NEAR(seen[RIGHT_HIDDEN].found.cos_right, want, 0.05 * want);
     CHECK_NEAR(seen[LEFT_HIDDEN].found.cos_right, -want, 0.05 * want);

@@ -13,15 +13,15 @@
 static const double reference_m = 900;
 
 typedef struct Stage {
-    Landscape  landscape;
-    Catalog   *catalog;
-    World      world, woods_world; /* the second with plants */
-    Woods      woods;
-    Pool      *pool;
-    Arena     *arena;
-    View       view;
-    Snapshot   snapshot;
-    char       catalog_path[4096];
+    Landscape landscape;
+    Catalog  *catalog;
+    World     world, woods_world; /* the second with plants */
+    Woods     woods;
+    Pool     *pool;
+    Arena    *arena;
+    View      view;
+    Snapshot  snapshot;
+    char      catalog_path[4096];
 } Stage;
 
 enum { plants = 2500, squares = 5 };
@@ -91,7 +91,7 @@ static RadarScene look(double elevation_rad, double height_m, uint32_t number, c
     const double ground_m = elevation_height(&stage.landscape.elevation, 0, 0, NULL), level = cos(elevation_rad);
     const double ahead[3] = {level * sqrt(0.5), level * sqrt(0.5), sin(elevation_rad)},
                  right[3] = {sqrt(0.5), -sqrt(0.5), 0};
-    double       below[3];
+    double below[3];
     v3_cross(below, ahead, right);
     stage.view = (View){.p_enu = {0, 0, ground_m + height_m}, .width = 64, .height = 64, .focal_px = 1000};
     for (int k = 0; k < 3; k++) {
@@ -99,8 +99,13 @@ static RadarScene look(double elevation_rad, double height_m, uint32_t number, c
         stage.view.r_enu_from_cam[3 * k + 1] = below[k];
         stage.view.r_enu_from_cam[3 * k + 2] = ahead[k];
     }
-    return (RadarScene){.world = &stage.world, .snapshot = &stage.snapshot, .view = &stage.view, .hidden = -1,
-                        .reference_m = reference_m, .weather = weather, .number = number};
+    return (RadarScene){.world = &stage.world,
+                        .snapshot = &stage.snapshot,
+                        .view = &stage.view,
+                        .hidden = -1,
+                        .reference_m = reference_m,
+                        .weather = weather,
+                        .number = number};
 }
 
 static const char *preset = "seeker_35";
@@ -196,7 +201,7 @@ static void rain_has_the_power_of_its_integral(void **state)
     weather.rain_mm_h = 10;
     weather.wind_mps = 8;
     weather.wind_from_rad = 225 * rad_per_deg; /* from behind */
-    const double elevation = 30 * rad_per_deg;
+    const double      elevation = 30 * rad_per_deg;
     const RadarFrame *frame = NULL;
     for (uint64_t seed = 1; seed <= seeds; seed++) {
         SeekerRadar *radar = open_radar(seed, false);
@@ -208,9 +213,9 @@ static void rain_has_the_power_of_its_integral(void **state)
         if (seed == 1) eta = rain_by_hand(&mean, &variance, 35, atmosphere_temp_k(stage.world.atmosphere, 0), 10);
         CHECK_NEAR(frame->rain_1_m / eta, 1, 2e-3);
         const WindowFigures figures = range_figures(frame);
-        const double window_m = 0.5 * 512 * frame->map.metre_per_column,
+        const double        window_m = 0.5 * 512 * frame->map.metre_per_column,
                      wavelength_m = frame->preset->antenna.wavelength_m;
-        double       pattern = 0, along = 0;
+        double pattern = 0, along = 0;
         for (double a = 1e-4; a < 0.5; a += 2e-4)
             pattern += 2 * pi_rad * sin(a) * 2e-4 * pow(antenna_gain(&frame->preset->antenna, sin(a), 0).sum, 4);
         for (double r = reference_m - window_m + 0.5; r < reference_m + window_m; r++)
@@ -224,7 +229,7 @@ static void rain_has_the_power_of_its_integral(void **state)
                                   frame->preset->loss * eta * pattern *
                                   pow(10, -0.2 * frame->air_db * r / reference_m) / (r * r) *
                                   frame->map.metre_per_column * figures.noise_bins;
-            const double noise_w = frame->receiver.noise_w * figures.noise_bins / 512;
+            const double         noise_w = frame->receiver.noise_w * figures.noise_bins / 512;
             const double complex z = frame->profile[i];
             sample[samples++] = creal(z * conj(z)) / (mean_w + noise_w);
         }
@@ -232,7 +237,7 @@ static void rain_has_the_power_of_its_integral(void **state)
         double       floor_w = frame->receiver.noise_w * frame->map.noise_share;
         for (size_t c = 0; c < cells; c++) {
             const double complex z = frame->map.cell[c], x = frame->map.cell[CHANNEL_CROSS * cells + c];
-            const double w = creal(z * conj(z)) - floor_w,
+            const double         w = creal(z * conj(z)) - floor_w,
                          at = (double)(c / (size_t)frame->map.columns) - frame->map.rows / 2;
             power += w, row += w * at, row2 += w * at * at;
             cross += creal(x * conj(x)) - floor_w;
@@ -261,7 +266,8 @@ static void rain_has_the_power_of_its_integral(void **state)
     CHECK(worst * sqrt(samples) < 1.63); /* Kolmogorov and Smirnov: 1 % */
 }
 
-/* pulse_doppler_ku, a window of 1499 m about 5 km: what is received is the rain before the antenna, ten times nearer. */
+/* pulse_doppler_ku, a window of 1499 m about 5 km: what is received is the rain before the antenna, ten times nearer.
+ */
 static void rain_folds_over(void **state)
 {
     (void)state;
@@ -339,8 +345,8 @@ static void rain_behind_the_ground_is_hidden(void **state)
     RadarScene scene = look(-60 * rad_per_deg, reference_m * sin(60 * rad_per_deg), 1, &weather);
     arena_reset(stage.arena);
     const RadarFrame *frame = measure(radar, &scene);
-    const double noise_w = frame->receiver.noise_w * range_figures(frame).noise_bins / 512;
-    double near = 0, far = 0;
+    const double      noise_w = frame->receiver.noise_w * range_figures(frame).noise_bins / 512;
+    double            near = 0, far = 0;
     for (int i = 0; i < 80; i++) near += frame->profile_w[60 + i] - noise_w, far += frame->profile_w[400 + i] - noise_w;
     printf("rain behind the ground: %.1f dB of that before it\n", db(fabs(far) / near));
     CHECK(db(fabs(far) / near) < -20); /* the far edge of the main lobe, 43 m behind, sees some */
@@ -370,8 +376,8 @@ static double march_db(const double p_enu[3])
         plant_axes(axis, scale, of, NULL);
         for (int k = 0; k < 3; k++)
             from[k] = p_enu[k] - stage.woods.origin_enu[k] - (double)of->p_m[k] - 0.7 * scale[1] * axis[2][k];
-        const double       wide_m = 0.28 * scale[0], half_m = 0.3 * scale[1];
-        const SurfaceClass class = of->kind == PLANT_PINE    ? SURFACE_FOREST_CONIFER
+        const double wide_m = 0.28 * scale[0], half_m = 0.3 * scale[1];
+        const SurfaceClass class = of->kind == PLANT_PINE   ? SURFACE_FOREST_CONIFER
                                    : of->kind < PLANT_TREES ? SURFACE_FOREST_BROADLEAF
                                                             : SURFACE_SCRUB;
         for (double s = 0.5 * step_m; p_enu[2] + s * d[2] < stage.view.p_enu[2] - 200 && s < 120; s += step_m) {
@@ -396,12 +402,12 @@ static double canopy_by_integral(const RadarFrame *frame)
         for (int k = 0; k < 3; k++)
             middle[k] = stage.woods.origin_enu[k] + (double)plant[i].p_m[k] + 0.7 * scale[1] * axis[2][k];
         if (unit_w(frame, middle) == 0) continue;
-        const SurfaceClass class = plant[i].kind == PLANT_PINE      ? SURFACE_FOREST_CONIFER
+        const SurfaceClass class = plant[i].kind == PLANT_PINE   ? SURFACE_FOREST_CONIFER
                                    : plant[i].kind < PLANT_TREES ? SURFACE_FOREST_BROADLEAF
                                                                  : SURFACE_SCRUB;
         const ClutterRow *row = &table.row[class][CLUTTER_KA];
-        const double volume_m3 = 4 / 3.0 * pi_rad * pow(0.28 * scale[0], 2) * 0.3 * scale[1];
-        const double back = 2 * row->foliage_db_m * log(10) / 10 * row->gamma;
+        const double      volume_m3 = 4 / 3.0 * pi_rad * pow(0.28 * scale[0], 2) * 0.3 * scale[1];
+        const double      back = 2 * row->foliage_db_m * log(10) / 10 * row->gamma;
         for (int n = 0; n < points; n++) {
             double u[3], p[3];
             do /* in the unit sphere, by rejection */
@@ -424,7 +430,7 @@ static double ground_by_integral(const RadarFrame *frame)
             at[2] = elevation_height(&stage.landscape.elevation, at[0], at[1], n);
             const double unit = unit_w(frame, at);
             if (unit == 0) continue;
-            int surface = landscape_surface(&stage.landscape, at[0], at[1]);
+            int        surface = landscape_surface(&stage.landscape, at[0], at[1]);
             const bool inside = at[0] >= o[0] && at[1] >= o[1] && at[0] < o[0] + 320 && at[1] < o[1] + 320;
             if (inside &&
                 (surface == SURFACE_FOREST_BROADLEAF || surface == SURFACE_FOREST_CONIFER || surface == SURFACE_SCRUB))
@@ -562,14 +568,14 @@ typedef struct Corner {
     Snapshot       snapshot;
 } Corner;
 
-/* Its middle on the boresight at the reference, heading north: the antenna, in the south-west and 35.3 degrees up, is on
- * the axis of an octant. */
+/* Its middle on the boresight at the reference, heading north: the antenna, in the south-west and 35.3 degrees up, is
+ * on the axis of an octant. */
 static void put_corner(Corner *c)
 {
-    static const double  r_enu_from_body[9] = {0, 1, 0, 1, 0, 0, 0, 0, -1};
-    const DisEntityType  type = {8, 3, 225, 5, 0, 0, 0};
-    const double        *r = stage.view.r_enu_from_cam;
-    double               p[3];
+    static const double r_enu_from_body[9] = {0, 1, 0, 1, 0, 0, 0, 0, -1};
+    const DisEntityType type = {8, 3, 225, 5, 0, 0, 0};
+    const double       *r = stage.view.r_enu_from_cam;
+    double              p[3];
     *c = (Corner){.entity = {.id = {1, 1, 9}, .type = type, .model = catalog_find(stage.catalog, type, NULL, NULL)}};
     CHECK(strcmp(catalog_model(stage.catalog, c->entity.model)->name, "corner_reflector") == 0);
     for (int k = 0; k < 3; k++) p[k] = stage.view.p_enu[k] + reference_m * r[3 * k + 2] - (k == 2 ? 0.5 : 0);
@@ -604,7 +610,7 @@ static void corners_return_what_the_handbook_says(void **state)
     scene.snapshot = &corner.snapshot;
     arena_reset(stage.arena);
     const RadarFrame *frame = measure(radar, &scene);
-    const double l = frame->preset->antenna.wavelength_m, want = 4 * pi_rad * pow(0.5, 4) / (3 * l * l),
+    const double      l = frame->preset->antenna.wavelength_m, want = 4 * pi_rad * pow(0.5, 4) / (3 * l * l),
                  got = strongest_m2(frame);
     printf("trihedral of 0.5 m: %.2f dB of 4 pi a^4 / 3 lambda^2 = %.1f dBsm\n", db(got / want), db(want));
     CHECK_NEAR(db(got / want), 0, 0.5);

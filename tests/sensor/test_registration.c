@@ -15,19 +15,26 @@
 #include "entities/table/entity_table.h"
 #include "render/frame/render.h"
 
-
 typedef long double Real;
-static const Real pi_l = 3.14159265358979323846264338327950288L;
+static const Real   pi_l = 3.14159265358979323846264338327950288L;
 
 static const Real clear_px = 0.05L; /* the promise */
 enum { picture_side = 384, places = 5, attitudes = 8 };
 
 /* South, antimeridian from both sides, 85 north, and an ordinary one. */
-static const struct { double lat_deg, lon_deg, h_m; } place[places] = {
-    {36, -123, 50}, {-33.9, 151.2, 20}, {-17, 179.99999, 5}, {10, -180, 2000}, {85, 20, 100}};
-static const struct { double psi, theta, phi; } attitude[attitudes] = {
-    {0, 0, 0}, {1.2, 0.3, -0.4}, {-2.14675, 0.942279, 3.14159}, {0.386457, -1.19905, 3.14159},
-    {2.5, 1.3962634, -3.0}, {-0.9, 0.41, -2.27}, {-3.1, -0.7, 1.5}, {0.7, 1.55, 0.2}};
+static const struct {
+    double lat_deg, lon_deg, h_m;
+} place[places] = {{36, -123, 50}, {-33.9, 151.2, 20}, {-17, 179.99999, 5}, {10, -180, 2000}, {85, 20, 100}};
+static const struct {
+    double psi, theta, phi;
+} attitude[attitudes] = {{0, 0, 0},
+                         {1.2, 0.3, -0.4},
+                         {-2.14675, 0.942279, 3.14159},
+                         {0.386457, -1.19905, 3.14159},
+                         {2.5, 1.3962634, -3.0},
+                         {-0.9, 0.41, -2.27},
+                         {-3.1, -0.7, 1.5},
+                         {0.7, 1.55, 0.2}};
 
 /* ---- the independent program ------------------------------------------------------------------ */
 
@@ -151,14 +158,14 @@ static int open_fixture(void **state)
     (void)state;
     char path[text_file_size];
     text_file(path, "type,model,origin\n*.*.*.*.*.*.*,marker,base\n");
-    LocalFrame   frame;
+    LocalFrame     frame;
     const Geodetic origin = {0, 0, 0};
-    const Status status = catalog_open(&fixture.catalog, path, 0.01);
+    const Status   status = catalog_open(&fixture.catalog, path, 0.01);
     remove(path);
     if (status != STATUS_OK || local_frame_at(&frame, &origin) != STATUS_OK) return -1;
     if (world_open(&fixture.world, fixture.catalog, NULL, &frame, "avx2") != STATUS_OK) return -1;
     fixture.world.radar.lobe_rad = 0.5; /* wide, so that the plate answers at every angle used here */
-    fixture.arena                = arena_create();
+    fixture.arena = arena_create();
     return pool_create(&fixture.pool, 2) == STATUS_OK && fixture.arena ? 0 : -1;
 }
 
@@ -215,14 +222,14 @@ static void measure(const Real quad[4][2])
  * block alone, so the sky, which may look like either, is left out. shrinks: a distance on the image is at most so many
  * times that of the pinhole's, so that nothing beyond 0.05 px is excused. */
 static Real shrinks = 1;
-static int misplaced(const float *plane, const uint32_t *entity, const Real quad[4][2], const char *band)
+static int  misplaced(const float *plane, const uint32_t *entity, const Real quad[4][2], const char *band)
 {
     measure(quad);
     float plate_low = INFINITY, plate_high = -INFINITY, low_gap = INFINITY;
     for (int y = 0; y < picture_side; y++)
         for (int x = 0; x < picture_side; x++)
             if (inside_of[y][x] > 2) {
-                plate_low  = fminf(plate_low, plane[y * picture_side + x]);
+                plate_low = fminf(plate_low, plane[y * picture_side + x]);
                 plate_high = fmaxf(plate_high, plane[y * picture_side + x]);
             }
     if (!(plate_low <= plate_high)) fail_msg("%s: the plate is not in the picture", band);
@@ -230,7 +237,7 @@ static int misplaced(const float *plane, const uint32_t *entity, const Real quad
         for (int x = 0; x < picture_side; x++)
             if (entity[y * picture_side + x] && inside_of[y][x] < -2) {
                 const float v = plane[y * picture_side + x];
-                low_gap       = fminf(low_gap, v < plate_low ? plate_low - v : v > plate_high ? v - plate_high : -1);
+                low_gap = fminf(low_gap, v < plate_low ? plate_low - v : v > plate_high ? v - plate_high : -1);
             }
     if (!(low_gap > 0)) fail_msg("%s: something else looks like the plate (%g .. %g)", band, plate_low, plate_high);
 
@@ -239,7 +246,7 @@ static int misplaced(const float *plane, const uint32_t *entity, const Real quad
     for (int y = 0; y < picture_side; y++)
         for (int x = 0; x < picture_side; x++) {
             const Real  in_px = inside_of[y][x];
-            const float v     = plane[y * picture_side + x];
+            const float v = plane[y * picture_side + x];
             const bool  shows = v > plate_low - 0.5f * low_gap && v < plate_high + 0.5f * low_gap;
             if (!entity[y * picture_side + x]) continue;
             wrong += (in_px > clear && !shows) || (in_px < -clear && shows);
@@ -248,9 +255,9 @@ static int misplaced(const float *plane, const uint32_t *entity, const Real quad
 }
 
 typedef struct Shot {
-    Picture picture;
-    Real    quad[4][2], nose_px[2], centre_px[2];
-    Real    box[4]; /* of all edges, through the lens */
+    Picture      picture;
+    Real         quad[4][2], nose_px[2], centre_px[2];
+    Real         box[4]; /* of all edges, through the lens */
     TargetPixels target;
 } Shot;
 
@@ -263,11 +270,14 @@ static void shoot_through(Shot *shot, const Glass *glass, const double *lateral,
     Real p[3], east[3], north[3], up[3], x[3], y[3], z[3];
     ecef_of(p, east, north, up, place[where].lat_deg, place[where].lon_deg, place[where].h_m);
 
-    DisEntityState pdu = {.header = {.version = 7, .type = dis_pdu_entity_state}, .id = {1, 2, 3},
-                          .type = {1, 1, 222, 1, 1, 1, 0}, .dead_reckoning = 1,
+    DisEntityState pdu = {.header = {.version = 7, .type = dis_pdu_entity_state},
+                          .id = {1, 2, 3},
+                          .type = {1, 1, 222, 1, 1, 1, 0},
+                          .dead_reckoning = 1,
                           .appearance = 1u << 22 /* power plant on: a warm block */};
     for (int k = 0; k < 3; k++) pdu.p_ecef[k] = (double)p[k];
-    pdu.psi_rad = (float)attitude[how].psi, pdu.theta_rad = (float)attitude[how].theta, pdu.phi_rad = (float)attitude[how].phi;
+    pdu.psi_rad = (float)attitude[how].psi, pdu.theta_rad = (float)attitude[how].theta,
+    pdu.phi_rad = (float)attitude[how].phi;
     body_axes(x, y, z, pdu.psi_rad, pdu.theta_rad, pdu.phi_rad);
 
     /* The eye: to the side, somewhat forward and above, in body axes; the camera with a roll of its own. */
@@ -275,8 +285,8 @@ static void shoot_through(Shot *shot, const Glass *glass, const double *lateral,
     const Real off[3] = {0.3L, 0.85L * side, -0.35L};
     Real       centre[3], roll_up[3];
     for (int k = 0; k < 3; k++) {
-        centre[k]  = (Real)pdu.p_ecef[k] - 0.75L * z[k];
-        c.p[k]     = centre[k] + (Real)range_m * (off[0] * x[k] + off[1] * y[k] + off[2] * z[k]);
+        centre[k] = (Real)pdu.p_ecef[k] - 0.75L * z[k];
+        c.p[k] = centre[k] + (Real)range_m * (off[0] * x[k] + off[1] * y[k] + off[2] * z[k]);
         roll_up[k] = up[k] + 0.3L * east[k] + 0.1L * north[k];
     }
     for (int k = 0; k < 3; k++) c.ahead[k] = centre[k] + 0.11L * x[k] - c.p[k];
@@ -285,10 +295,12 @@ static void shoot_through(Shot *shot, const Glass *glass, const double *lateral,
     unit(c.right);
     cross(c.down, c.ahead, c.right);
 
-    const Real corner[4][3] = {{0.1L, 1.0001L, -1.4L}, {1.9L, 1.0001L, -1.4L}, {1.9L, 1.0001L, -0.3L}, {0.1L, 1.0001L, -0.3L}};
-    Real       at[3];
+    const Real corner[4][3] = {
+        {0.1L, 1.0001L, -1.4L}, {1.9L, 1.0001L, -1.4L}, {1.9L, 1.0001L, -0.3L}, {0.1L, 1.0001L, -0.3L}};
+    Real at[3];
     for (int i = 0; i < 4; i++) {
-        for (int k = 0; k < 3; k++) at[k] = (Real)pdu.p_ecef[k] + corner[i][0] * x[k] + corner[i][1] * y[k] + corner[i][2] * z[k];
+        for (int k = 0; k < 3; k++)
+            at[k] = (Real)pdu.p_ecef[k] + corner[i][0] * x[k] + corner[i][1] * y[k] + corner[i][2] * z[k];
         project(shot->quad[i], &c, at);
     }
     shot->box[0] = shot->box[1] = 1e30L, shot->box[2] = shot->box[3] = -1e30L;
@@ -303,7 +315,7 @@ static void shoot_through(Shot *shot, const Glass *glass, const double *lateral,
         project(px, &c, at);
         bend(bent, glass, (px[0] - half) / half, (px[1] - half) / half);
         for (int k = 0; k < 2; k++) {
-            shot->box[k]     = fminl(shot->box[k], half + half * bent[k]);
+            shot->box[k] = fminl(shot->box[k], half + half * bent[k]);
             shot->box[k + 2] = fmaxl(shot->box[k + 2], half + half * bent[k]);
         }
     }
@@ -321,17 +333,20 @@ static void shoot_through(Shot *shot, const Glass *glass, const double *lateral,
     hear(&snapshot, &table, &pdu);
 
     RenderRequest request = {.view = {.width = picture_side, .height = picture_side, .focal_px = (double)c.focal_px},
-                             .bands = 15, .truth = true, .samples = 1, .hidden_entity = -1};
-    const double half = 0.5 * picture_side / (double)c.focal_px, h2 = half * half;
-    const double k123[3] = {glass->k1 / h2, glass->k2 / (h2 * h2), glass->k3 / (h2 * h2 * h2)};
-    const double p12[2] = {glass->p1 / half, glass->p2 / half}, halves[2] = {half, half};
+                             .bands = 15,
+                             .truth = true,
+                             .samples = 1,
+                             .hidden_entity = -1};
+    const double  half = 0.5 * picture_side / (double)c.focal_px, h2 = half * half;
+    const double  k123[3] = {glass->k1 / h2, glass->k2 / (h2 * h2), glass->k3 / (h2 * h2 * h2)};
+    const double  p12[2] = {glass->p1 / half, glass->p2 / half}, halves[2] = {half, half};
     assert_int_equal(view_lens_make(&request.view.lens, k123, p12, halves), STATUS_OK);
     undo(glass);
     if (lateral) request.optical = OPTICAL_RGB, memcpy(request.lateral, lateral, sizeof request.lateral);
     double eye_ecef[3], r_ecef_from_cam[9];
     for (int k = 0; k < 3; k++) {
-        eye_ecef[k]                = (double)c.p[k];
-        r_ecef_from_cam[3 * k]     = (double)c.right[k];
+        eye_ecef[k] = (double)c.p[k];
+        r_ecef_from_cam[3 * k] = (double)c.right[k];
         r_ecef_from_cam[3 * k + 1] = (double)c.down[k];
         r_ecef_from_cam[3 * k + 2] = (double)c.ahead[k];
     }
@@ -339,15 +354,16 @@ static void shoot_through(Shot *shot, const Glass *glass, const double *lateral,
     m3_tmul(request.view.r_enu_from_cam, fixture.world.frame.r_ecef_from_enu, r_ecef_from_cam);
 
     /* Sun behind the eye and a little up, so that plate and block are lit in every attitude. */
-    Sun           sun = {.elevation_rad = 0.8, .distance_au = 1};
-    Air           air;
+    Sun sun = {.elevation_rad = 0.8, .distance_au = 1};
+    Air air;
     for (int k = 0; k < 3; k++) sun.d_enu[k] = -request.view.r_enu_from_cam[3 * k + 2];
     sun.d_enu[2] = fabs(sun.d_enu[2]) + 0.2;
     v3_normalize(sun.d_enu, sun.d_enu);
     static const double sky[AIR_BAND_COUNT] = {20, 20, 20, 60, 60, 0.3, 15};
     air_even(&air, sun.d_enu, 150, sky, 0, fixture.world.planck_mwir, fixture.world.planck_lwir);
     air.light.sun_w_m2[AIR_MWIR] = 8;
-    assert_int_equal(render(&shot->picture, &fixture.world, &snapshot, &request, &air, fixture.pool, fixture.arena), STATUS_OK);
+    assert_int_equal(render(&shot->picture, &fixture.world, &snapshot, &request, &air, fixture.pool, fixture.arena),
+                     STATUS_OK);
     shot->target = shot->picture.target[0];
     entity_table_destroy(table);
 }
@@ -424,7 +440,8 @@ static void the_plate_is_where_it_should_be_in_every_band(void **state)
         for (int a = 0; a < attitudes; a++) {
             Shot shot;
             shoot(&shot, w, a, 1, range_m[w]);
-            const float *plane[BAND_COUNT] = {shot.picture.optical[0], shot.picture.mwir, shot.picture.lwir, shot.picture.radar};
+            const float *plane[BAND_COUNT] = {shot.picture.optical[0], shot.picture.mwir, shot.picture.lwir,
+                                              shot.picture.radar};
             for (int b = 0; b < BAND_COUNT; b++) {
                 char name[64];
                 snprintf(name, sizeof name, "%s, place %d, attitude %d", band_name((Band)b), w, a);
@@ -475,10 +492,10 @@ static void a_shift_a_mirror_and_a_roll_are_caught(void **state)
     }
     CHECK(misplaced(shot.picture.lwir, shot.picture.entity, moved, "lwir") > 0);
 
-    int    wrong    = 0;
+    int wrong = 0;
     for (int y = 0; y < picture_side; y++)
         for (int x = 0; x < picture_side; x++) {
-            const int  i     = y * picture_side + (picture_side - 1 - x);
+            const int  i = y * picture_side + (picture_side - 1 - x);
             const bool shows = shot.picture.part[i] == 2;
             wrong += (inside_px(shot.quad, x + 0.5L, y + 0.5L) > clear_px) != shows;
         }

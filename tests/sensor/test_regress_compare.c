@@ -1,4 +1,5 @@
-/* Comparison of planes and records in the regression, on planes of a few pixels whose answers are worked out by hand. */
+/* Comparison of planes and records in the regression, on planes of a few pixels whose answers are worked out by hand.
+ */
 #include "tests/check.h"
 
 #include "render/materials/planck.h"
@@ -24,7 +25,8 @@ static void shares_and_places_are_counted(void **state)
     const uint8_t ignored[6] = {0, 0, 0, 1, 0, 0};
     verdict_compare_numbers(&v, difference, expected, got, 3, 2, &(PlaneLimits){0.05, 0, ignored});
     CHECK(v.compared == 5 && v.beyond == 1 && v.column == 2 && v.row == 0);
-    verdict_compare_numbers(&v, NULL, expected, got, 3, 2, &(PlaneLimits){0, 0.09, NULL}); /* 0.27, 0.36 allowed: both beyond still */
+    verdict_compare_numbers(&v, NULL, expected, got, 3, 2,
+                            &(PlaneLimits){0, 0.09, NULL}); /* 0.27, 0.36 allowed: both beyond still */
     CHECK(v.beyond == 2);
     verdict_compare_numbers(&v, NULL, expected, got, 3, 2, &(PlaneLimits){0, 0.11, NULL}); /* 0.33, 0.44: none */
     CHECK(v.beyond == 0 && v.max > 0.3);
@@ -70,13 +72,14 @@ static void units_are_those_of_physics(void **state)
 {
     (void)state;
     const double low_m = 8e-6, high_m = 12e-6;
-    const float  radiance[7] = {(float)planck_band(low_m, high_m, 300, NULL), 0, NAN,
-                                (float)planck_band(low_m, high_m, 250, NULL),
-                                (float)planck_band(low_m, high_m, 60, NULL), -1, INFINITY};
+    const float  radiance[7] = {
+         (float)planck_band(low_m, high_m, 300, NULL), 0,  NAN,     (float)planck_band(low_m, high_m, 250, NULL),
+         (float)planck_band(low_m, high_m, 60, NULL),  -1, INFINITY};
     float kelvin[7], db[4];
     verdict_plane_to_kelvin(kelvin, radiance, 7, low_m, high_m);
     CHECK_NEAR(kelvin[0], 300, 1e-4); /* radiance to 24 bits: 4e-6 K */
-    CHECK(kelvin[1] == (float)apparent_floor_k && kelvin[4] == kelvin[1]); /* no radiance, and next to none, are alike */
+    CHECK(kelvin[1] == (float)apparent_floor_k &&
+          kelvin[4] == kelvin[1]); /* no radiance, and next to none, are alike */
     CHECK(isnan(kelvin[2]) && isnan(kelvin[5]) && isnan(kelvin[6]));
     CHECK_NEAR(kelvin[3], 250, 1e-4);
     const float power[4] = {2, 0.2f, 0, 2e-9f};
@@ -110,7 +113,7 @@ static void numbers_are_rounded_to_steps(void **state)
     uint64_t worst = 0;
     for (uint32_t i = 0; i < 10000; i++) { /* error of 16 bits: half a step, 2^-17 of itself */
         const float value = (float)(1e-3 * exp(20 * random_uniform(1, 2, 3, i)));
-        const float back  = record_value(&fine, record_steps(&fine, value));
+        const float back = record_value(&fine, record_steps(&fine, value));
         if (!(fabs((double)back - (double)value) <= ldexp((double)value, -17))) worst++;
         CHECK(record_steps(&fine, back) == record_steps(&fine, value)); /* what is rounded stays */
     }
@@ -216,7 +219,7 @@ static const char *line_of(char out[512], RecordPlane plane, Channel channel, fl
     make_frame(&got);
     for (int i = 3; i < 5; i++) {
         expected.number_plane[plane][i] = was;
-        got.number_plane[plane][i]      = is;
+        got.number_plane[plane][i] = is;
     }
     verdict_frame(result, &expected, &got, &tolerance, false);
     snprintf(out, 512, "%s", result[channel].failed ? result[channel].line : "");

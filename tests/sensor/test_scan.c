@@ -14,10 +14,10 @@ static void a_point_has_its_azimuth_and_the_beam_its_width(void **state)
     const double        azimuth = 1.23 * rad_per_deg;
     SeekerRadar        *radar = open_radar("search_ku", 8, 0.1, false);
     place_sphere(0, azimuth, still);
-    const RadarScene  scene = scene_of(0, &weather);
+    const RadarScene scene = scene_of(0, &weather);
     arena_reset(stage.arena);
-    const RadarFrame *frame = measure(radar, &scene, stage.pool);
-    const RadarSector  *s = frame->scan;
+    const RadarFrame  *frame = measure(radar, &scene, stage.pool);
+    const RadarSector *s = frame->scan;
     CHECK(s && s->plan.positions % 2 == 1);
     over_range(line, s->power_w, s->plan.positions, s->columns);
     const int    peak = peak_of(line, s->plan.positions);
@@ -43,10 +43,10 @@ static void what_moves_is_met_where_it_is_then(void **state)
     const Weather weather = weather_default();
     SeekerRadar  *radar = open_radar("search_ku", 24, 0.25, false);
     place_sphere(0, azimuth, v);
-    const RadarScene  scene = scene_of(speed, &weather);
+    const RadarScene scene = scene_of(speed, &weather);
     arena_reset(stage.arena);
-    const RadarFrame *frame = measure(radar, &scene, stage.pool);
-    const RadarSector  *s = frame->scan;
+    const RadarFrame  *frame = measure(radar, &scene, stage.pool);
+    const RadarSector *s = frame->scan;
     over_range(line, s->power_w, s->plan.positions, s->columns);
     const int    peak = peak_of(line, s->plan.positions);
     const double found = (vertex_of(line, peak) - s->plan.positions / 2) * s->plan.step_rad;
@@ -88,11 +88,18 @@ static void pixels_are_looked_up_where_echoes_appear(void **state)
     for (int followed = 0; followed < 2; followed++) {
         char         path[text_file_size], text[1024];
         SeekerRadar *radar;
-        snprintf(text, sizeof text, "%smine,lfm,16.5,20,512,128,4,200,2000,6,0.6,1,h,3.5,0,0,0,0,hamming,chebyshev:60,"
-                                    "1e-6,%d,0,2,test\n", head, followed);
+        snprintf(text, sizeof text,
+                 "%smine,lfm,16.5,20,512,128,4,200,2000,6,0.6,1,h,3.5,0,0,0,0,hamming,chebyshev:60,"
+                 "1e-6,%d,0,2,test\n",
+                 head, followed);
         text_file(path, text);
-        const SeekerRadarConfig config = {.preset = "mine", .table = path, .catalog = stage.catalog_path, .isa = "avx2",
-                                          .scan_rad = 24 * rad_per_deg, .scan_step = 0.25, .seed = 3};
+        const SeekerRadarConfig config = {.preset = "mine",
+                                          .table = path,
+                                          .catalog = stage.catalog_path,
+                                          .isa = "avx2",
+                                          .scan_rad = 24 * rad_per_deg,
+                                          .scan_step = 0.25,
+                                          .seed = 3};
         CHECK(seeker_radar_create(&radar, &config) == STATUS_OK);
         remove(path);
         RadarScene scene = scene_of(250, &weather);
@@ -105,12 +112,12 @@ static void pixels_are_looked_up_where_echoes_appear(void **state)
         /* the antenna has come nearer by the time that the beam is there */
         const double    after_s = azimuth / frame->scan->plan.step_rad * frame->scan->plan.interval_s;
         const double    then_m = range_m - 250 * cos(azimuth) * after_s;
-        const RadarLink link = {preset->power_w, gain * gain, gain * gain, preset->antenna.wavelength_m, then_m,
-                                preset->loss};
-        const double       want_w = radar_received_w(&link, frame->target[0].rcs_m2[0]) * pow(10, -0.2 * frame->air_db);
-        const size_t       at = rows_px / 2 * columns_px + 288;
-        const double       beam_db = 10 * log10((double)frame->scan->view_w[at] / want_w);
-        const double       sharp_db = 10 * log10((double)frame->scan->view_sharp_w[at] / want_w);
+        const RadarLink link = {preset->power_w, gain * gain, gain * gain, preset->antenna.wavelength_m,
+                                then_m,          preset->loss};
+        const double    want_w = radar_received_w(&link, frame->target[0].rcs_m2[0]) * pow(10, -0.2 * frame->air_db);
+        const size_t    at = rows_px / 2 * columns_px + 288;
+        const double    beam_db = 10 * log10((double)frame->scan->view_w[at] / want_w);
+        const double    sharp_db = 10 * log10((double)frame->scan->view_sharp_w[at] / want_w);
         printf("rate %s: real beam %.2f dB, sharpened %.2f dB over the radar equation; appears %.1f m off\n",
                followed ? "followed" : "not followed", beam_db, sharp_db, frame->target[0].appears_m - range_m);
         CHECK(followed || frame->target[0].appears_m - range_m < -30);
@@ -157,7 +164,7 @@ static void too_fine_a_scan_is_refused(void **state)
 {
     (void)state;
     RadarPreset preset;
-    SectorPlan    plan;
+    SectorPlan  plan;
     char        path[4096];
     CHECK(etc_path(path, sizeof path, "radars.csv") && radar_preset_read(&preset, path, "search_ku") == STATUS_OK);
     CHECK(radar_sector_plan(&plan, &preset, 160 * rad_per_deg, 0.05) == STATUS_BAD_VALUE);
@@ -175,9 +182,9 @@ static void little_is_left_out(void **state)
     for (int taper = 0; taper <= 2; taper++) {
         static const double null_u[] = {3.8317, 5.1356, 6.3802};
         static const double most_beyond[] = {5e-4, 2e-5, 2e-6}, most_far[] = {2e-6, 2e-8, 1e-9};
-        const Antenna a = {.diameter_m = 0.18, .taper = taper, .wavelength_m = 0.0085};
-        const double  per_u = a.wavelength_m / (pi_rad * a.diameter_m);
-        double        beyond = 0, all = 0, far = 0;
+        const Antenna       a = {.diameter_m = 0.18, .taper = taper, .wavelength_m = 0.0085};
+        const double        per_u = a.wavelength_m / (pi_rad * a.diameter_m);
+        double              beyond = 0, all = 0, far = 0;
         for (double u = 0.01; u < 40; u += 0.02) {
             const double power = pow(aperture_field(&a, asin(u * per_u)), 4);
             all += power; /* a strip of ground at one range: over azimuth alone */

@@ -30,9 +30,9 @@ static void the_same_bits(void **state)
         for (int i = 0; i < rows_px * columns_px; i++) stage.range_m[i] = (float)scene.reference_m;
         scene.range_m = stage.range_m;
         arena_reset(stage.arena);
-        const RadarFrame *three = measure(radar, &scene, stage.pool), *one = measure(radar, &scene, NULL);
-        const RadarFrame *still_one = measure(stares, &scene, stage.pool);
-        const RadarSector  *a = three->scan, *b = one->scan;
+        const RadarFrame  *three = measure(radar, &scene, stage.pool), *one = measure(radar, &scene, NULL);
+        const RadarFrame  *still_one = measure(stares, &scene, stage.pool);
+        const RadarSector *a = three->scan, *b = one->scan;
         const size_t map = interval_channels * (size_t)one->map.rows * (size_t)one->map.columns * sizeof *one->map.cell;
         const size_t pixels = (size_t)a->width * (size_t)a->height;
         CHECK(memcmp(three->map.cell, one->map.cell, map) == 0);

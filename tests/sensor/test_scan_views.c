@@ -30,12 +30,12 @@ static void doppler_sharpens_as_on_paper(void **state)
     const Weather       weather = weather_default();
     SeekerRadar        *radar = open_radar("search_ku", 32, 0.5, false);
     place_sphere(0, off_rad, still);
-    RadarScene        scene = scene_of(speed_mps, &weather);
+    RadarScene scene = scene_of(speed_mps, &weather);
     arena_reset(stage.arena);
-    const RadarFrame *frame = measure(radar, &scene, stage.pool);
-    const RadarSector  *s = frame->scan;
-    const double      first = -(s->plan.positions / 2) * s->plan.step_rad, paper = on_paper_rad(frame);
-    const double      bins = window_width(frame);
+    const RadarFrame  *frame = measure(radar, &scene, stage.pool);
+    const RadarSector *s = frame->scan;
+    const double       first = -(s->plan.positions / 2) * s->plan.step_rad, paper = on_paper_rad(frame);
+    const double       bins = window_width(frame);
     over_range(line, s->sharp_w, s->azimuths, s->columns);
     const int    peak = peak_of(line, s->azimuths);
     const double found = first + vertex_of(line, peak) * s->azimuth_step_rad;
@@ -88,10 +88,10 @@ static void doppler_sharpens_as_on_paper(void **state)
 static void pixels_have_the_value_of_their_range_and_azimuth(void **state)
 {
     (void)state;
-    const double  v[3] = {25, 0, 0}; /* recedes; 5 m by the time the beam is there */
+    const double        v[3] = {25, 0, 0}; /* recedes; 5 m by the time the beam is there */
     static const double still[3] = {0, 0, 0};
-    const Weather weather = weather_default();
-    SeekerRadar  *radar = open_radar("search_ku", 32, 0.5, false);
+    const Weather       weather = weather_default();
+    SeekerRadar        *radar = open_radar("search_ku", 32, 0.5, false);
     for (int moves = 0; moves < 2; moves++) {
         place_sphere(0, off_rad, moves ? v : still);
         RadarScene scene = scene_of(speed_mps, &weather);
@@ -139,7 +139,7 @@ static void between_positions_the_beam_is_nearly_a_gaussian(void **state)
     static const double still[3] = {0, 0, 0};
     const Weather       weather = weather_default();
     SeekerRadar        *radar = open_radar("search_ku", 32, 0.5, false);
-    SectorPlan            plan;
+    SectorPlan          plan;
     RadarPreset         preset;
     char                path[4096];
     CHECK(etc_path(path, sizeof path, "radars.csv") && radar_preset_read(&preset, path, "search_ku") == STATUS_OK);
@@ -151,7 +151,7 @@ static void between_positions_the_beam_is_nearly_a_gaussian(void **state)
     scene.range_m = stage.range_m;
     arena_reset(stage.arena);
     const RadarSector *s = measure(radar, &scene, stage.pool)->scan;
-    double           real[columns_px];
+    double             real[columns_px];
     for (int x = 0; x < columns_px; x++) real[x] = isnan(s->view_w[x]) ? 0 : s->view_w[x];
     const double error_rad = (vertex_of(real, peak_of(real, columns_px)) - want) / 500 * pow(cos(azimuth), 2);
     printf("between positions: %.2f %% of the beamwidth off\n", 100 * error_rad / (2 * plan.step_rad));

@@ -28,8 +28,8 @@ static void find_sphere(const char *preset, double sector_deg, double azimuth, d
     for (int i = 0; i < rows_px * columns_px; i++) stage.range_m[i] = (float)(near_m - radius_m);
     scene.range_m = stage.range_m;
     arena_reset(stage.arena);
-    const RadarFrame *frame = measure(radar, &scene, stage.pool);
-    const RadarSector  *s = frame->scan;
+    const RadarFrame  *frame = measure(radar, &scene, stage.pool);
+    const RadarSector *s = frame->scan;
     CHECK(s && s->plan.positions > 8);
     over_range(line, s->power_w, s->plan.positions, s->columns);
     const int    peak = peak_of(line, s->plan.positions);

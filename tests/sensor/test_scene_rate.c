@@ -19,9 +19,14 @@ static void a_point_at_rest_moves_as_projected(void **state)
 {
     (void)state;
     static const double cases[][7] = {/* turn, velocity in world axes, range */
-        {0.2, 0, 0, 0, 0, 0, 1000}, {0, 0.3, 0, 0, 0, 0, 1000}, {0, 0, 1, 0, 0, 0, 1000}, {0, 0, 0, 40, 0, 0, 500},
-        {0, 0, 0, 0, -30, 0, 500}, {0, 0, 0, 0, 0, 300, 2000}, {0.1, -0.2, 0.4, 250, -60, 90, 800},
-        {0.1, -0.2, 0.4, 250, -60, 90, INFINITY}};
+                                      {0.2, 0, 0, 0, 0, 0, 1000},
+                                      {0, 0.3, 0, 0, 0, 0, 1000},
+                                      {0, 0, 1, 0, 0, 0, 1000},
+                                      {0, 0, 0, 40, 0, 0, 500},
+                                      {0, 0, 0, 0, -30, 0, 500},
+                                      {0, 0, 0, 0, 0, 300, 2000},
+                                      {0.1, -0.2, 0.4, 250, -60, 90, 800},
+                                      {0.1, -0.2, 0.4, 250, -60, 90, INFINITY}};
     static const double lean[3] = {0.6, -0.64, 0.48};
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         const double *w = cases[k], *v = cases[k] + 3, focal_px = 3000;

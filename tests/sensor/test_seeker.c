@@ -40,7 +40,7 @@ static void it_turns_no_faster_than_its_rate(void **state)
     seeker_step(&s, d);
     look(d, 40, 10);
     for (int i = 0; i < 50; i++) seeker_step(&s, d);
-    CHECK_NEAR(s.azimuth_rad / rad_per_deg, 15, 1e-9);  /* 0.5 s at 30 deg/s */
+    CHECK_NEAR(s.azimuth_rad / rad_per_deg, 15, 1e-9);   /* 0.5 s at 30 deg/s */
     CHECK_NEAR(s.elevation_rad / rad_per_deg, 10, 1e-9); /* there already */
 }
 
@@ -74,7 +74,7 @@ static void body_axes(double r_enu_from_body[9], double heading_deg, double roll
     const double h = heading_deg * rad_per_deg, c = cos(roll_deg * rad_per_deg), s = sin(roll_deg * rad_per_deg);
     const double x[3] = {sin(h), cos(h), 0}, y[3] = {cos(h), -sin(h), 0}, z[3] = {0, 0, -1};
     for (int i = 0; i < 3; i++) {
-        r_enu_from_body[3 * i]     = x[i];
+        r_enu_from_body[3 * i] = x[i];
         r_enu_from_body[3 * i + 1] = c * y[i] + s * z[i];
         r_enu_from_body[3 * i + 2] = -s * y[i] + c * z[i];
     }
@@ -85,8 +85,8 @@ static void the_picture_is_upright_whatever_the_body_does(void **state)
     (void)state;
     for (double heading = 0; heading < 360; heading += 45)
         for (double roll = -180; roll <= 180; roll += 60) {
-            Seeker s = head(60, 1e4, 0);
-            double r_enu_from_body[9], r[9], d[3];
+            Seeker       s = head(60, 1e4, 0);
+            double       r_enu_from_body[9], r[9], d[3];
             const double ahead[3] = {1, 0, 0};
             body_axes(r_enu_from_body, heading, roll);
             seeker_step(&s, ahead);
@@ -182,9 +182,10 @@ static void a_vertical_dive_does_not_roll(void **state)
                 tick(cam, &s, r);
                 if (k == 0) {
                     memcpy(first, cam, sizeof first);
-                    for (int i = 0; i < 3; i++) CHECK_NEAR(cam[3 * i + 1], meant[3 * i + 2], 1e-5); /* down is its belly's */
+                    for (int i = 0; i < 3; i++)
+                        CHECK_NEAR(cam[3 * i + 1], meant[3 * i + 2], 1e-5); /* down is its belly's */
                 }
-                most       = fmax(most, fabs(roll_between(first, cam)));
+                most = fmax(most, fabs(roll_between(first, cam)));
                 directions = fmax(directions, fabs(remainder(atan2(r[0], r[3]) - heading, 2 * pi_rad)));
             }
             CHECK(directions > 1); /* rad: what the heading of the nose did meanwhile */
@@ -204,7 +205,8 @@ static void a_dive_through_the_vertical_rolls_steadily(void **state)
             const double pitch = (-80 - fmin(20, 0.1 * k)) * rad_per_deg;
             const double x[3] = {sin(beside), cos(pitch) * cos(beside), sin(pitch) * cos(beside)};
             view_upright(cam, x); /* any body with that nose */
-            for (int i = 0; i < 3; i++) r[3 * i] = cam[3 * i + 2], r[3 * i + 1] = cam[3 * i], r[3 * i + 2] = cam[3 * i + 1];
+            for (int i = 0; i < 3; i++)
+                r[3 * i] = cam[3 * i + 2], r[3 * i + 1] = cam[3 * i], r[3 * i + 2] = cam[3 * i + 1];
             tick(cam, &s, r);
             if (k > 0) most = fmax(most, fabs(roll_between(before, cam)));
             memcpy(before, cam, sizeof before);

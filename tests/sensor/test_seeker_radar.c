@@ -11,14 +11,14 @@ static double      height_m = 250, aim_m = 900, reference_m = 900; /* of the axi
 static const char *preset = "seeker_35", *own_table = NULL;
 
 typedef struct Stage {
-    Landscape  landscape;
-    Catalog   *catalog;
-    World      world;
-    Pool      *pool;
-    Arena     *arena;
-    View       view;
-    Snapshot   snapshot;
-    char       catalog_path[4096];
+    Landscape landscape;
+    Catalog  *catalog;
+    World     world;
+    Pool     *pool;
+    Arena    *arena;
+    View      view;
+    Snapshot  snapshot;
+    char      catalog_path[4096];
 } Stage;
 
 static Stage stage;
@@ -33,7 +33,9 @@ static int open_stage(void **state)
     config.horizon_m = 20000;
     config.relief_m = 0;
     if (!etc_path(stage.catalog_path, sizeof stage.catalog_path, "catalog.csv")) return -1;
-    if (catalog_open(&stage.catalog, stage.catalog_path, 0.01) != STATUS_OK || local_frame_at(&frame, &origin) != STATUS_OK) return -1;
+    if (catalog_open(&stage.catalog, stage.catalog_path, 0.01) != STATUS_OK ||
+        local_frame_at(&frame, &origin) != STATUS_OK)
+        return -1;
     if (landscape_create(&stage.landscape, &config, &frame, NULL, 0, NULL, 0) != STATUS_OK) return -1;
     if (world_open(&stage.world, stage.catalog, &stage.landscape, &frame, "avx2") != STATUS_OK) return -1;
     if (atmosphere_open(&stage.world.atmosphere, "us1976") != STATUS_OK) return -1;
@@ -66,8 +68,13 @@ static RadarScene scene_of(const double v_enu_mps[3], uint32_t number, const Wea
         stage.view.r_enu_from_cam[3 * k + 1] = below[k];
         stage.view.r_enu_from_cam[3 * k + 2] = ahead[k];
     }
-    RadarScene scene = {.world = &stage.world, .snapshot = &stage.snapshot, .view = &stage.view, .hidden = -1,
-                        .reference_m = reference_m, .weather = weather, .number = number};
+    RadarScene scene = {.world = &stage.world,
+                        .snapshot = &stage.snapshot,
+                        .view = &stage.view,
+                        .hidden = -1,
+                        .reference_m = reference_m,
+                        .weather = weather,
+                        .number = number};
     memcpy(scene.v_enu_mps, v_enu_mps, sizeof scene.v_enu_mps);
     return scene;
 }
@@ -75,8 +82,13 @@ static RadarScene scene_of(const double v_enu_mps[3], uint32_t number, const Wea
 static SeekerRadar *open_windy_radar(uint64_t seed, double wind_mps)
 {
     SeekerRadar *radar;
-    CHECK(seeker_radar_create(&radar, &(SeekerRadarConfig){.preset = preset, .table = own_table, .catalog = stage.catalog_path, .isa = "avx2",
-                                                           .ground = true, .wind_mps = wind_mps, .seed = seed}) == STATUS_OK);
+    CHECK(seeker_radar_create(&radar, &(SeekerRadarConfig){.preset = preset,
+                                                           .table = own_table,
+                                                           .catalog = stage.catalog_path,
+                                                           .isa = "avx2",
+                                                           .ground = true,
+                                                           .wind_mps = wind_mps,
+                                                           .seed = seed}) == STATUS_OK);
     return radar;
 }
 
@@ -93,7 +105,8 @@ static double heard(double range_m)
 static double kept(const ClutterRow *row, const RadarPreset *p, double lag_s, double wind_mps)
 {
     const ClutterMotion motion = clutter_motion(row, p->wave.centre_hz, wind_mps);
-    return motion.still + (1 - motion.still) / (1 + pow(4 * pi_rad * lag_s * motion.spread_mps / p->antenna.wavelength_m, 2));
+    return motion.still +
+           (1 - motion.still) / (1 + pow(4 * pi_rad * lag_s * motion.spread_mps / p->antenna.wavelength_m, 2));
 }
 
 /* Sum over ground of the power that each square metre returns: classes, heights and the dish's pattern asked for
@@ -119,15 +132,18 @@ static double power_by_integral(double *far_w, const RadarFrame *frame, double l
             if (fabs(range_m - reference_m) > window_m && !folds) continue;
             v3_scale(d, 1 / range_m, d);
             const double *r = stage.view.r_enu_from_cam;
-            const double  right = d[0] * r[0] + d[1] * r[3] + d[2] * r[6], down = d[0] * r[1] + d[1] * r[4] + d[2] * r[7];
+            const double  right = d[0] * r[0] + d[1] * r[3] + d[2] * r[6],
+                         down = d[0] * r[1] + d[1] * r[4] + d[2] * r[7];
             /* beyond the first null of J_2 nothing counts: below -49 dB both ways */
             if (hypot(right, down) > 5.1356 * p->antenna.wavelength_m / (pi_rad * p->antenna.diameter_m)) continue;
             const double gain = antenna_gain(&p->antenna, right, down).sum, grazing = asin(-v3_dot(d, n));
             const int    surface = landscape_surface(&stage.landscape, x, y);
-            const double sigma0 = clutter_sigma0(&table.row[surface][wide ? CLUTTER_KU : CLUTTER_KA], grazing, p->antenna.wavelength_m);
+            const double sigma0 =
+                clutter_sigma0(&table.row[surface][wide ? CLUTTER_KU : CLUTTER_KA], grazing, p->antenna.wavelength_m);
             const RadarLink link = {p->power_w, gain * gain, gain * gain, p->antenna.wavelength_m, range_m, p->loss};
             const double    share = folds ? heard(range_m) : 1, air_db = frame->air_db * range_m / frame->reference_m;
-            const double    w = share * share * radar_received_w(&link, sigma0 * step_m * step_m / n[2]) * pow(10, -0.2 * air_db) *
+            const double    w = share * share * radar_received_w(&link, sigma0 * step_m * step_m / n[2]) *
+                             pow(10, -0.2 * air_db) *
                              kept(&table.row[surface][wide ? CLUTTER_KU : CLUTTER_KA], p, lag_s, wind_mps);
             sum_w += w;
             if (fabs(range_m - reference_m) > window_m) *far_w += w;
@@ -174,7 +190,8 @@ static void ground_has_the_power_of_its_integral(void **state)
     CHECK(far_share == 0);
 }
 
-/* A window of 1499 m about 500 m, ground from 1270 m on: all that is received folds over; about 1499 m it is not heard. */
+/* A window of 1499 m about 500 m, ground from 1270 m on: all that is received folds over; about 1499 m it is not heard.
+ */
 static void ground_folds_over(void **state)
 {
     (void)state;
@@ -191,10 +208,10 @@ static void ground_folds_over(void **state)
 static void ground_is_where_it_must_be_in_doppler(void **state)
 {
     (void)state;
-    const double  v[3] = {150, 150, -60};
-    const Weather weather = weather_default();
-    SeekerRadar  *radar = open_radar(3);
-    RadarScene    scene = scene_of(v, 1, &weather);
+    const double      v[3] = {150, 150, -60};
+    const Weather     weather = weather_default();
+    SeekerRadar      *radar = open_radar(3);
+    RadarScene        scene = scene_of(v, 1, &weather);
     const RadarFrame *frame;
     arena_reset(stage.arena);
     CHECK(seeker_radar_measure(&frame, radar, &scene, stage.pool, stage.arena) == STATUS_OK);
@@ -219,7 +236,8 @@ static void ground_is_where_it_must_be_in_doppler(void **state)
     seeker_radar_destroy(radar);
 }
 
-/* A receiver that follows the range alone: the ground approaches at some 220 m/s, and the map of 64 rows spans 85.655. */
+/* A receiver that follows the range alone: the ground approaches at some 220 m/s, and the map of 64 rows spans 85.655.
+ */
 static void a_rate_not_followed_is_on_the_map(void **state)
 {
     (void)state;
@@ -263,12 +281,12 @@ static void wind_decorrelates_the_ground(void **state)
     (void)state;
     enum { lags = 3, seeds = 4 };
     static const double lag_s[lags] = {0.001, 0.004, 1};
-    const double  v[3] = {0, 0, 0}, wind_mps = 5;
-    const Weather weather = weather_default();
-    double        along[lags] = {0}, power = 0, want[lags], far_w;
+    const double        v[3] = {0, 0, 0}, wind_mps = 5;
+    const Weather       weather = weather_default();
+    double              along[lags] = {0}, power = 0, want[lags], far_w;
     for (uint64_t seed = 1; seed <= seeds; seed++) {
-        SeekerRadar *radar = open_windy_radar(seed, wind_mps), *calm = open_radar(seed);
-        RadarScene   scene = scene_of(v, (uint32_t)seed, &weather);
+        SeekerRadar      *radar = open_windy_radar(seed, wind_mps), *calm = open_radar(seed);
+        RadarScene        scene = scene_of(v, (uint32_t)seed, &weather);
         const RadarFrame *first, *later;
         arena_reset(stage.arena);
         CHECK(seeker_radar_measure(&first, radar, &scene, stage.pool, stage.arena) == STATUS_OK);
@@ -290,7 +308,8 @@ static void wind_decorrelates_the_ground(void **state)
         seeker_radar_destroy(calm);
     }
     for (int l = 0; l < lags; l++) {
-        print_message("ground in wind of %.0f m/s, %g s later: correlation %.3f, by the law %.3f\n", wind_mps, lag_s[l], along[l] / power, want[l]);
+        print_message("ground in wind of %.0f m/s, %g s later: correlation %.3f, by the law %.3f\n", wind_mps, lag_s[l],
+                      along[l] / power, want[l]);
         /* 4 standard errors of some 1000 independent cells */
         CHECK_NEAR(along[l] / power, want[l], 0.13);
     }
@@ -300,21 +319,23 @@ static void wind_decorrelates_the_ground(void **state)
 static void the_same_bits(void **state)
 {
     (void)state;
-    const double  v[3] = {200, 100, -60};
-    const Weather weather = weather_default();
-    SeekerRadar  *radar = open_radar(3), *other = open_radar(3);
-    RadarScene    scene = scene_of(v, 7, &weather);
+    const double      v[3] = {200, 100, -60};
+    const Weather     weather = weather_default();
+    SeekerRadar      *radar = open_radar(3), *other = open_radar(3);
+    RadarScene        scene = scene_of(v, 7, &weather);
     const RadarFrame *first, *again, *alone;
     arena_reset(stage.arena);
     CHECK(seeker_radar_measure(&first, radar, &scene, stage.pool, stage.arena) == STATUS_OK);
     scene.number = 8;
     CHECK(seeker_radar_measure(&again, radar, &scene, NULL, stage.arena) == STATUS_OK);
-    const size_t octets = interval_channels * (size_t)first->map.rows * (size_t)first->map.columns * sizeof *first->map.cell;
+    const size_t octets =
+        interval_channels * (size_t)first->map.rows * (size_t)first->map.columns * sizeof *first->map.cell;
     CHECK(memcmp(first->map.cell, again->map.cell, octets) != 0); /* other noise */
     scene.number = 7;
     CHECK(seeker_radar_measure(&again, radar, &scene, NULL, stage.arena) == STATUS_OK);
     CHECK(seeker_radar_measure(&alone, other, &scene, stage.pool, stage.arena) == STATUS_OK);
-    CHECK(memcmp(first->map.cell, again->map.cell, octets) == 0 && memcmp(first->map.cell, alone->map.cell, octets) == 0);
+    CHECK(memcmp(first->map.cell, again->map.cell, octets) == 0 &&
+          memcmp(first->map.cell, alone->map.cell, octets) == 0);
     CHECK(first->targets == 0);
     seeker_radar_destroy(radar);
     seeker_radar_destroy(other);
@@ -323,12 +344,9 @@ static void the_same_bits(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(ground_has_the_power_of_its_integral),
-        cmocka_unit_test(ground_folds_over),
-        cmocka_unit_test(ground_is_where_it_must_be_in_doppler),
-        cmocka_unit_test(a_rate_not_followed_is_on_the_map),
-        cmocka_unit_test(wind_decorrelates_the_ground),
-        cmocka_unit_test(the_same_bits),
+        cmocka_unit_test(ground_has_the_power_of_its_integral),  cmocka_unit_test(ground_folds_over),
+        cmocka_unit_test(ground_is_where_it_must_be_in_doppler), cmocka_unit_test(a_rate_not_followed_is_on_the_map),
+        cmocka_unit_test(wind_decorrelates_the_ground),          cmocka_unit_test(the_same_bits),
     };
     return cmocka_run_group_tests(tests, open_stage, close_stage);
 }

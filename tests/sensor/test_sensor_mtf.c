@@ -1,5 +1,5 @@
-/* Modulation transfer of every preset by slanted edge on its raw counts, noise off, along rows and along columns: a plate
- * of a rendered picture against optics of all the band's wavelengths, footprint and jitter. labels: physics */
+/* Modulation transfer of every preset by slanted edge on its raw counts, noise off, along rows and along columns: a
+ * plate of a rendered picture against optics of all the band's wavelengths, footprint and jitter. labels: physics */
 #include "tests/render/hand_world.h"
 
 #include "sensor/detector/chain.h"
@@ -18,8 +18,8 @@ static int open_world(void **state)
  * upper one. */
 static Picture shoot_edge(bool upper, double behind_lwir, double behind_mwir)
 {
-    const View   view = hand_view(eye_enu, (const double[3]){1, 0, 0}, upper ? high_px : wide_px, upper ? wide_px : high_px,
-                                  focal_px);
+    const View view =
+        hand_view(eye_enu, (const double[3]){1, 0, 0}, upper ? high_px : wide_px, upper ? wide_px : high_px, focal_px);
     const double range_m = 2 * focal_px / 1200, a = slant_rad;
     /* forward to the eye, right to the image's left, down; turned about forward */
     const double r[9] = {-1, 0, 0, 0, cos(a), -sin(a), 0, -sin(a), -cos(a)};
@@ -35,7 +35,7 @@ static Picture shoot_edge(bool upper, double behind_lwir, double behind_mwir)
     hand_clear();
     hand_add(hand_plate_model, p_enu, r);
     RenderRequest request = hand_request(&view);
-    request.optical         = OPTICAL_RGB;
+    request.optical = OPTICAL_RGB;
     request.hand_over_cells = true;
     arena_reset(hand.arena);
     return hand_render(&request, hand.pool);
@@ -102,8 +102,8 @@ static const struct {
 static void check_edge(const Picture *picture, bool upper, const char *what)
 {
     static const double still[2] = {0, 0};
-    static double value[wide_px * high_px];
-    const int     w = picture->width, h = picture->height;
+    static double       value[wide_px * high_px];
+    const int           w = picture->width, h = picture->height;
     for (size_t s = 0; s < sizeof sensors / sizeof *sensors; s++) {
         char         path[512];
         SensorPreset p;
@@ -112,9 +112,9 @@ static void check_edge(const Picture *picture, bool upper, const char *what)
         assert_int_equal(preset_read(&p, path, sensors[s].name), STATUS_OK);
         p.noise_scale = p.prnu = p.bad_share = p.ac_per_line = 0;
         p.auto_exposure = false;
-        p.bits          = 16;
-        p.dark_e_s      = 0;
-        p.optical       = sensors[s].optical;
+        p.bits = 16;
+        p.dark_e_s = 0;
+        p.optical = sensors[s].optical;
         preset_refresh(&p);
         const float *in[3] = {picture->optical[0], picture->optical[1], picture->optical[2]};
         if (p.band == BAND_MWIR) in[0] = picture->mwir;
@@ -132,7 +132,8 @@ static void check_edge(const Picture *picture, bool upper, const char *what)
             preset_band(&low_m, &high_m, p.band, p.optical, p.optical == OPTICAL_RGB ? c : -1);
             for (int i = 0; i < w * h; i++) value[i] = chain_counts(chain, c)[i];
             for (double f = 0.05; f < 0.401; f += 0.05) {
-                const double fx = f * cos(slant_rad), fy = f * sin(slant_rad), temp_k = p.band == BAND_OPTICAL ? 5772 : 300;
+                const double fx = f * cos(slant_rad), fy = f * sin(slant_rad),
+                             temp_k = p.band == BAND_OPTICAL ? 5772 : 300;
                 const double rest = mtf_sinc(p.footprint * fx) * mtf_sinc(p.footprint * fy) *
                                     exp(-2 * pow(pi_rad * p.jitter_px * f, 2));
                 const double want = optics(&p, low_m, high_m, temp_k, f) * rest, got = measured(value, w, h, upper, f);
@@ -143,8 +144,8 @@ static void check_edge(const Picture *picture, bool upper, const char *what)
             CHECK_NEAR(worst, 0, 0.005);
             /* the twin: what one wavelength in the middle would give is seen */
             if (p.band == BAND_MWIR) CHECK(fabs(middle) > 0.02);
-            print_message("%s, %s edge, %s channel %d: %+.4f; the middle of the band: %+.4f\n", what, upper ? "upper" : "left",
-                          p.name, c, worst, middle);
+            print_message("%s, %s edge, %s channel %d: %+.4f; the middle of the band: %+.4f\n", what,
+                          upper ? "upper" : "left", p.name, c, worst, middle);
         }
         chain_destroy(chain);
     }

@@ -82,7 +82,8 @@ static void a_swept_sensor_has_its_sheet_s_figures(void **state)
 static void what_is_wrong_is_named(void **state)
 {
     (void)state;
-    static const struct { const char *text, *from, *to, *says;
+    static const struct {
+        const char *text, *from, *to, *says;
     } slip[] = {
         {staring, "f_number 4", "f_number 0.1", ":5: f_number: '0.1' is not a number in 0.5 .. 100"},
         {staring, "f_number 4", "f_number four", ":5: f_number: 'four' is not a number"},
@@ -113,7 +114,7 @@ static void what_is_wrong_is_named(void **state)
     for (size_t i = 0; i < sizeof slip / sizeof *slip; i++) {
         SensorPreset p, before;
         memset(&p, 0x5a, sizeof p);
-        before  = p;
+        before = p;
         check_said[0] = 0;
         assert_int_equal(read_changed(&p, slip[i].text, slip[i].from, slip[i].to), STATUS_BAD_VALUE);
         if (!strstr(check_said, slip[i].says)) fail_msg("case %zu: said '%s', not '%s'", i, check_said, slip[i].says);

@@ -27,8 +27,8 @@ static SignaturesConfig config_of(double warp_m)
 static int open_all(void **state)
 {
     static const DisEntityType truck = {1, 1, 225, 7, 1, 0, 0};
-    Origin origin;
-    char   path[4096];
+    Origin                     origin;
+    char                       path[4096];
     (void)state;
     snprintf(folder, sizeof folder, "/tmp/pitviper-library-%d", (int)getpid());
     if (!etc_path(path, sizeof path, "catalog.csv") || catalog_open(&catalog, path, radar_sag_m(5e9)) != STATUS_OK)
@@ -64,9 +64,9 @@ static int close_all(void **state)
 }
 
 typedef struct Got {
-    int             count;
-    SignatureCentre centre[200000];
-    SignatureCounters counters;
+    int                      count;
+    SignatureCentre          centre[200000];
+    SignatureCounters        counters;
     SignatureLibraryCounters files;
 } Got;
 
@@ -183,8 +183,8 @@ static void damaged_files_are_made_anew(void **state)
 static void numbers_are_checked(void **state)
 {
     (void)state;
-    char             key[sha256_text_size];
-    static uint8_t   octets[4096];
+    char            key[sha256_text_size];
+    static uint8_t  octets[4096];
     SignatureCentre centre[2] = {
         {.path = 3,
          .path_share = 0.5f,
@@ -202,17 +202,38 @@ static void numbers_are_checked(void **state)
         memcpy(centre, good, sizeof good);
         Signature to = {.count = 2, .centre = centre}, from = {0};
         switch (i) {
-        case 1: centre[0].p[1] = NAN; break;
-        case 2: centre[1].half[2] = INFINITY; break;
-        case 3: centre[0].weight = -1; break;
-        case 4: centre[0].part = 2; break;
-        case 5: centre[1].path_share = 1.5f; break;
-        case 6: centre[0].scale = NAN; break;
-        case 7: centre[0].strongest = 3; break;
-        case 8: centre[0].zero = 1; break;
-        case 9: centre[0].path = INT32_MIN; break;
-        case 10: centre[0].moment_scale = INFINITY; break;
-        default: break;
+        case 1:
+            centre[0].p[1] = NAN;
+            break;
+        case 2:
+            centre[1].half[2] = INFINITY;
+            break;
+        case 3:
+            centre[0].weight = -1;
+            break;
+        case 4:
+            centre[0].part = 2;
+            break;
+        case 5:
+            centre[1].path_share = 1.5f;
+            break;
+        case 6:
+            centre[0].scale = NAN;
+            break;
+        case 7:
+            centre[0].strongest = 3;
+            break;
+        case 8:
+            centre[0].zero = 1;
+            break;
+        case 9:
+            centre[0].path = INT32_MIN;
+            break;
+        case 10:
+            centre[0].moment_scale = INFINITY;
+            break;
+        default:
+            break;
         }
         const size_t count = signature_to_octets(octets, &to, key);
         CHECK(count == 96 + 2 * 84 + 64);

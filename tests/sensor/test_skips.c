@@ -1,5 +1,5 @@
-/* Every skip by itself, and all of them, over four random scenes in which each is taken; test_skips_deep.c has more. Scene 6
- * has all bands. labels: slow */
+/* Every skip by itself, and all of them, over four random scenes in which each is taken; test_skips_deep.c has more.
+ * Scene 6 has all bands. labels: slow */
 #include "tests/sensor/skip_scenes.h"
 
 static void each_skip_keeps_the_bits(void **state)
@@ -11,6 +11,7 @@ static void each_skip_keeps_the_bits(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(each_skip_keeps_the_bits), cmocka_unit_test(each_skip_was_taken)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(each_skip_keeps_the_bits),
+                                       cmocka_unit_test(each_skip_was_taken)};
     return cmocka_run_group_tests(tests, open_stage, close_stage);
 }

@@ -9,6 +9,7 @@ static void each_skip_keeps_the_bits(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(each_skip_keeps_the_bits), cmocka_unit_test(each_skip_was_taken)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(each_skip_keeps_the_bits),
+                                       cmocka_unit_test(each_skip_was_taken)};
     return cmocka_run_group_tests(tests, open_stage, close_stage);
 }

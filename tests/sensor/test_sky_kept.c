@@ -1,7 +1,7 @@
-/* What paths from sample points met, kept from frame to frame (render/light/sky_visibility.h): frames of a scene that lives on, after
- * each thing that may change in it, against the same frames with every path traced, nothing skipped, on one thread: to
- * the bit. That something is kept, and that what moves is asked for again, by the counts; that stale meetings would have
- * shown, by pictures that differ although what moved is not on them. labels: slow */
+/* What paths from sample points met, kept from frame to frame (render/light/sky_visibility.h): frames of a scene that
+ * lives on, after each thing that may change in it, against the same frames with every path traced, nothing skipped, on
+ * one thread: to the bit. That something is kept, and that what moves is asked for again, by the counts; that stale
+ * meetings would have shown, by pictures that differ although what moved is not on them. labels: slow */
 #include "tests/check.h"
 
 #include "render/light/sky_visibility.h"
@@ -23,8 +23,12 @@ enum { seen = 1, beside, removed, turning, unseen, apart, out_of_reach };
 
 static void place(int number, double east_m, double north_m, double turn_rad, uint32_t appearance)
 {
-    const TrialPlace of = {.type = number == beside ? truck : tank, .number = number, .east_m = east_m, .north_m = north_m,
-                           .turn_rad = turn_rad, .appearance = appearance};
+    const TrialPlace of = {.type = number == beside ? truck : tank,
+                           .number = number,
+                           .east_m = east_m,
+                           .north_m = north_m,
+                           .turn_rad = turn_rad,
+                           .appearance = appearance};
     assert_int_equal(trial_scene_place(&stage.scene, &of), STATUS_OK);
 }
 
@@ -107,7 +111,8 @@ static const Eye usual = {60, 7, 1u << BAND_OPTICAL | 1u << BAND_LWIR};
 
 static void remove_entity(int number)
 {
-    entity_table_remove(stage.scene.table, &(DisRemoveEntity){.receiving = {1, 1, (uint16_t)number}}, stage.scene.sun_now_s);
+    entity_table_remove(stage.scene.table, &(DisRemoveEntity){.receiving = {1, 1, (uint16_t)number}},
+                        stage.scene.sun_now_s);
 }
 
 static void each_change(void **state)
@@ -139,10 +144,16 @@ static void each_change(void **state)
     assert_true(look(before, &usual, "what moves far off") > 0.9 * (double)now);
 
     /* moves, turns, burns, is destroyed, goes: the first frame asks again, and it shows; then all is kept as it is */
-    static const struct { const char *what; int number; double east_m, north_m, turn_rad; uint32_t appearance; } change[] = {
-        {"a neighbour moved", beside, 7.5, 3, 2.1, 0}, {"a turned one", turning, -3, -7, 1.05, 0},
-        {"one that is not seen moved", unseen, 15.5, 1, 1.6, 0}, {"one that smokes and burns", beside, 7.5, 3, 2.1, 1u << 15 | 3u << 5},
-        {"a wreck", beside, 7.5, 3, 2.1, 3u << 3}};
+    static const struct {
+        const char *what;
+        int         number;
+        double      east_m, north_m, turn_rad;
+        uint32_t    appearance;
+    } change[] = {{"a neighbour moved", beside, 7.5, 3, 2.1, 0},
+                  {"a turned one", turning, -3, -7, 1.05, 0},
+                  {"one that is not seen moved", unseen, 15.5, 1, 1.6, 0},
+                  {"one that smokes and burns", beside, 7.5, 3, 2.1, 1u << 15 | 3u << 5},
+                  {"a wreck", beside, 7.5, 3, 2.1, 3u << 3}};
     for (size_t k = 0; k < sizeof change / sizeof *change; k++) {
         const uint64_t kept_before = settle(before, &usual, change[k].what);
         place(change[k].number, change[k].east_m, change[k].north_m, change[k].turn_rad, change[k].appearance);
@@ -182,8 +193,8 @@ static void memory_is_bounded(void **state)
 {
     (void)state;
     static const size_t most[] = {0, 30000, 150000};
-    char            hash[sha256_text_size];
-    SkyKept *const  own = stage.scene.world.sky;
+    char                hash[sha256_text_size];
+    SkyKept *const      own = stage.scene.world.sky;
     for (size_t k = 0; k < sizeof most / sizeof *most; k++) {
         size_t size[2];
         assert_int_equal(sky_kept_create(&stage.scene.world.sky, most[k]), STATUS_OK);

@@ -1,6 +1,7 @@
 /* Contact shadows: the light on shadowed ground, under hulls and on unlit sides, by sensor.sky_visibility, against
- * directions asked at every pixel (render/light/hemisphere.h, which two other renderers confirm), means of 5 x 5 px; over models,
- * suns and all bands. And the same bits whichever bands are asked for, on however many threads. labels: physics slow */
+ * directions asked at every pixel (render/light/hemisphere.h, which two other renderers confirm), means of 5 x 5 px;
+ * over models, suns and all bands. And the same bits whichever bands are asked for, on however many threads. labels:
+ * physics slow */
 #include "tests/check.h"
 
 #include "sensor/quality/trial.h"
@@ -26,7 +27,8 @@ static int open_stage(void **state)
         if (!(stage.arena[k] = arena_create())) return -1;
     return pool_create(&stage.pool, 2) == STATUS_OK && local_frame_at(&stage.frame, &origin) == STATUS_OK &&
                    landscape_quick(&stage.landscape, times_s, &stage.frame, 2000, 2000, stage.pool) == STATUS_OK
-               ? 0 : -1;
+               ? 0
+               : -1;
 }
 
 static int close_stage(void **state)
@@ -76,7 +78,7 @@ static void compare(Found found[REGION_COUNT], const Picture *exact, const float
                     const size_t i = (size_t)(y * width + x);
                     if (!(exact->range_m[i] < INFINITY)) continue;
                     const double n[3] = {exact->normal[0][i], exact->normal[1][i], exact->normal[2][i]};
-                    int region;
+                    int          region;
                     if (exact->entity[i]) {
                         if (v3_dot(n, sun) > -0.05) continue;
                         region = REGION_SIDE;
@@ -124,11 +126,13 @@ static void test_near_the_exact(void **state)
             const double k[3] = {of->k1}, p[2] = {0};
             assert_int_equal(view_lens_make(&view.lens, k, p, half), STATUS_OK);
         }
-        const RenderRequest request = {
-            .view = view,
-            .bands = 1 << BAND_OPTICAL | 1 << BAND_MWIR | 1 << BAND_LWIR, .truth = true, .optical = OPTICAL_RGB,
-            .samples = 1, .hidden_entity = -1};
-        double s[3];
+        const RenderRequest request = {.view = view,
+                                       .bands = 1 << BAND_OPTICAL | 1 << BAND_MWIR | 1 << BAND_LWIR,
+                                       .truth = true,
+                                       .optical = OPTICAL_RGB,
+                                       .samples = 1,
+                                       .hidden_entity = -1};
+        double              s[3];
         for (int k = 0; k < 3; k++) {
             frame[k] = (TrialFrame){.scene = &scene, .request = request, .pool = stage.pool, .arena = stage.arena[k]};
             frame[k].request.sky_samples = k == 0 ? reference_samples : 0;
@@ -138,7 +142,7 @@ static void test_near_the_exact(void **state)
             s[k] = frame[k].stage_s[STAGE_FRAME];
         }
         const Picture *exact = &frame[0].picture, *quick[2] = {&frame[1].picture, &frame[2].picture};
-        double brightest = 0, sorted = 0;
+        double         brightest = 0, sorted = 0;
         for (int i = 0; i < width * height; i++)
             if (!exact->entity[i] && exact->range_m[i] < INFINITY)
                 brightest += (double)quick[0]->optical[0][i], sorted++;
@@ -148,7 +152,7 @@ static void test_near_the_exact(void **state)
                       asin(frame[0].air.light.sun_d_enu[2]) / rad_per_deg, s[0], 1e3 * s[1], 1e3 * s[2]);
         static const char *const plane_name[] = {"r", "g", "b", "mwir", "lwir"};
         for (int plane = 0; plane <= picture_lwir; plane++) {
-            Found found[REGION_COUNT] = {0};
+            Found              found[REGION_COUNT] = {0};
             const float *const values[2] = {picture_plane(quick[0], plane), picture_plane(quick[1], plane)};
             compare(found, exact, picture_plane(exact, plane), values, lit, frame[0].air.light.sun_d_enu);
             for (int r = 0; r < REGION_COUNT; r++)
@@ -181,17 +185,21 @@ static void test_any_company(void **state)
     TrialFrame frame[3];
     for (int k = 0; k < 3; k++) {
         frame[k] = (TrialFrame){.scene = &scene, .pool = k == 1 ? one : stage.pool, .arena = stage.arena[k]};
-        frame[k].request = (RenderRequest){
-            .view = trial_view(&scene, 150, 15, 12 * rad_per_deg, width, height),
-            .bands = k == 2 ? 1 << BAND_LWIR : 1 << BAND_OPTICAL | 1 << BAND_LWIR, .truth = true,
-            .optical = OPTICAL_RGB, .samples = 1, .edge_samples = 4, .target_samples = 32, .hidden_entity = -1,
-            .sky_visibility = true, .skips_off = k == 1 ? skips_all_off : 0};
+        frame[k].request = (RenderRequest){.view = trial_view(&scene, 150, 15, 12 * rad_per_deg, width, height),
+                                           .bands = k == 2 ? 1 << BAND_LWIR : 1 << BAND_OPTICAL | 1 << BAND_LWIR,
+                                           .truth = true,
+                                           .optical = OPTICAL_RGB,
+                                           .samples = 1,
+                                           .edge_samples = 4,
+                                           .target_samples = 32,
+                                           .hidden_entity = -1,
+                                           .sky_visibility = true,
+                                           .skips_off = k == 1 ? skips_all_off : 0};
         trial_frame(&frame[k]);
         assert_int_equal(frame[k].status, STATUS_OK);
     }
     const size_t bytes = sizeof(float) * width * height;
-    for (int c = 0; c < 3; c++)
-        assert_memory_equal(frame[0].picture.optical[c], frame[1].picture.optical[c], bytes);
+    for (int c = 0; c < 3; c++) assert_memory_equal(frame[0].picture.optical[c], frame[1].picture.optical[c], bytes);
     assert_memory_equal(frame[0].picture.lwir, frame[1].picture.lwir, bytes);
     assert_memory_equal(frame[0].picture.lwir, frame[2].picture.lwir, bytes);
     pool_destroy(one);

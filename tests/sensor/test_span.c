@@ -10,16 +10,19 @@ static void moments_are_of_three_kinds(void **state)
     static const struct {
         const char *text;
         double      t_s; /* in a recording from 1350 to 1380 s */
-    } moment[] = {{"1360.5", 1360.5}, {"+12", 1362}, {"+0", 1350}, {"-5", 1375}, {"-0", 1380}, {"-0.25", 1379.75}, {"0", 0}};
+    } moment[] = {{"1360.5", 1360.5}, {"+12", 1362},      {"+0", 1350}, {"-5", 1375},
+                  {"-0", 1380},       {"-0.25", 1379.75}, {"0", 0}};
     for (size_t i = 0; i < sizeof moment / sizeof *moment; i++) {
         CHECK(config_span_good(moment[i].text));
         CHECK_NEAR(config_span_time_s(moment[i].text, 1350, 1380), moment[i].t_s, 0);
     }
     CHECK(config_span_good("") && isnan(config_span_time_s("", 1350, 1380)));
     static const char *const bad[] = {"noon", "+", "-", "++1", "1 s", "nan", "inf", "0x10"};
-    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) CHECK(!config_span_good(bad[i]) && isnan(config_span_time_s(bad[i], 1350, 1380)));
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
+        CHECK(!config_span_good(bad[i]) && isnan(config_span_time_s(bad[i], 1350, 1380)));
     CHECK(config_span_backward("5", "4") && config_span_backward("+5", "+4") && config_span_backward("-4", "-5"));
-    CHECK(!config_span_backward("4", "5") && !config_span_backward("5", "+4") && !config_span_backward("-4", "5") && !config_span_backward("", "5"));
+    CHECK(!config_span_backward("4", "5") && !config_span_backward("5", "+4") && !config_span_backward("-4", "5") &&
+          !config_span_backward("", "5"));
 }
 
 /* What lies outside names the span in absolute seconds and from both ends. */
@@ -28,12 +31,12 @@ static void what_lies_outside_states_the_span(void **state)
     (void)state;
     static const struct {
         const char *from, *to, *why;
-    } outside[] = {{"+31", "", "--from +31 is after its end"},      {"99999", "", "--from 99999 is after its end"},
-                   {"", "5", "--to 5 is before its start"},     {"", "-40", "--to -40 is before its start"},
-                   {"-1", "+1", "--from -1 is after --to +1"},      {"12", "20", "--to 20 is before its start"},
+    } outside[] = {{"+31", "", "--from +31 is after its end"},    {"99999", "", "--from 99999 is after its end"},
+                   {"", "5", "--to 5 is before its start"},       {"", "-40", "--to -40 is before its start"},
+                   {"-1", "+1", "--from -1 is after --to +1"},    {"12", "20", "--to 20 is before its start"},
                    {"+99", "+100", "--from +99 is after its end"}},
-      inside[] = {{"", "", ""}, {"+30", "", ""}, {"", "+0", ""}, {"+12", "-5", ""}, {"0", "99999", ""}, {"-99", "+99", ""},
-                  {"+31", "+32", ""}};
+      inside[] = {{"", "", ""},       {"+30", "", ""},    {"", "+0", ""},    {"+12", "-5", ""},
+                  {"0", "99999", ""}, {"-99", "+99", ""}, {"+31", "+32", ""}};
     log_set_sink(check_listen, NULL);
     for (size_t i = 0; i < sizeof outside / sizeof *outside; i++) {
         check_said[0] = 0;
@@ -42,7 +45,8 @@ static void what_lies_outside_states_the_span(void **state)
               strstr(check_said, "+0 to +30.000") && strstr(check_said, "-30.000 to -0"));
     }
     check_said[0] = 0;
-    for (size_t i = 0; i < sizeof inside / sizeof *inside; i++) CHECK(!config_span_outside(inside[i].from, inside[i].to, 1350, 1380));
+    for (size_t i = 0; i < sizeof inside / sizeof *inside; i++)
+        CHECK(!config_span_outside(inside[i].from, inside[i].to, 1350, 1380));
     CHECK(!*check_said);
     log_set_sink(NULL, NULL);
 }
@@ -57,7 +61,8 @@ static void planes_are_listed_by_name(void **state)
     CHECK(publish_planes_parse(&planes, "instance,cover") && planes == (1u << PLANE_INSTANCE | 1u << PLANE_COVER));
     CHECK(publish_planes_parse(&planes, "emissivity") && planes == 1u << PLANE_EMISSIVITY);
     CHECK(publish_planes_parse(&planes, "normal") && planes == 1u << PLANE_NORMAL);
-    static const char *const bad[] = {"", ",", "range,", ",range", "rang", "ranges", "range entity", "all,range", "none,range", "part,entity,part"};
+    static const char *const bad[] = {
+        "", ",", "range,", ",range", "rang", "ranges", "range entity", "all,range", "none,range", "part,entity,part"};
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) CHECK(!publish_planes_parse(&planes, bad[i]));
 }
 

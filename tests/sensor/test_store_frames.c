@@ -34,8 +34,11 @@ static void write_sheet(char path[temp_name_size], const char *name, bool classe
     char prj[temp_name_size];
     snprintf(prj, sizeof prj, "%.*sprj", (int)strlen(path) - 3, path);
     file = fopen(prj, "w");
-    CHECK(file && fputs("Projection    UTM\nZone          10\nDatum         WGS84\nSpheroid      WGS84\n"
-                        "Units         METERS\nParameters\n", file) >= 0 && fclose(file) == 0);
+    CHECK(file &&
+          fputs("Projection    UTM\nZone          10\nDatum         WGS84\nSpheroid      WGS84\n"
+                "Units         METERS\nParameters\n",
+                file) >= 0 &&
+          fclose(file) == 0);
 }
 
 /* The same posts, steps and classes as a store. */
@@ -80,10 +83,10 @@ static void check_same_posts(const Elevation *a, const Elevation *b)
 /* Over noise in place of tiles, posts, pyramids and classes nothing crashes or hangs. */
 static void render_noise(const char *path)
 {
-    struct stat  about;
-    FrameHashes  any;
-    Landscape    landscape;
-    const int    file = open(path, O_RDWR);
+    struct stat about;
+    FrameHashes any;
+    Landscape   landscape;
+    const int   file = open(path, O_RDWR);
     CHECK(file >= 0 && fstat(file, &about) == 0);
     StoreHeader header;
     CHECK(pread(file, &header, sizeof header, 0) == sizeof header);
@@ -102,17 +105,20 @@ static void render_noise(const char *path)
 static void a_store_has_the_planes_of_its_landscape(void **state)
 {
     (void)state;
-    char             elevation[temp_name_size], cover[temp_name_size], path[temp_name_size];
-    const Geodetic   place = {44.0551450382678 * rad_per_deg, -123.06866432757 * rad_per_deg, 0};
-    LocalFrame       frame;
-    Landscape        direct, stored;
-    LandscapeReport  report;
-    FrameHashes      a, b;
+    char            elevation[temp_name_size], cover[temp_name_size], path[temp_name_size];
+    const Geodetic  place = {44.0551450382678 * rad_per_deg, -123.06866432757 * rad_per_deg, 0};
+    LocalFrame      frame;
+    Landscape       direct, stored;
+    LandscapeReport report;
+    FrameHashes     a, b;
     assert_int_equal(local_frame_at(&frame, &place), STATUS_OK);
     write_sheet(elevation, "ground.asc", false);
     write_sheet(cover, "cover.asc", true);
     const LandscapeFiles files = {.elevation = {.paths = elevation, .geoid_path = "", .horizon_m = 2000},
-                                  .cover = cover, .cover_table = "worldcover", .photo = "", .seed = 1};
+                                  .cover = cover,
+                                  .cover_table = "worldcover",
+                                  .photo = "",
+                                  .seed = 1};
     assert_int_equal(landscape_import(&direct, &report, &files, &frame, NULL, 0), STATUS_OK);
     name_file(path, "same.store");
     store_of(path, &direct);
@@ -135,7 +141,7 @@ static int make_folder(void **state)
 static int remove_folder(void **state)
 {
     static const char *const name[] = {"ground.asc", "ground.prj", "cover.asc", "cover.prj", "same.store"};
-    char path[temp_name_size];
+    char                     path[temp_name_size];
     (void)state;
     for (size_t k = 0; k < sizeof name / sizeof *name; k++) {
         name_file(path, name[k]);

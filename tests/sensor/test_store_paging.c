@@ -32,7 +32,8 @@ static void hills(StoreWriter *w, int index, const StoreLevel *l)
 static void large_store(const char *path)
 {
     const StorePlan plan = {
-        .origin = {0.8, 0.2, 0}, .level_count = 2,
+        .origin = {0.8, 0.2, 0},
+        .level_count = 2,
         .level = {{wide_nx, wide_ny, -4000, -5000, 1, 0, 0, -1}, {coarse_nx, coarse_ny, -4160, -5120, 8, 0, 0, -1}}};
     StoreWriter *w;
     assert_int_equal(store_writer_create(&w, path, &plan, NULL), STATUS_OK);
@@ -53,7 +54,7 @@ static bool make_group(char group[4096], bool *v2)
         if (!path) continue;
         const bool unified = strncmp(line, "0::", 3) == 0, memory = strstr(line, ":memory:") != NULL;
         if (!unified && !memory) continue;
-        char       at[4096];
+        char at[4096];
         snprintf(at, sizeof at, "/sys/fs/cgroup%s%s/pitviper-%d", memory ? "/memory" : "", path + 1, (int)getpid());
         if (mkdir(at, 0755) != 0) continue;
         snprintf(line, sizeof line, "%.2000s/%s", at, memory ? "memory.limit_in_bytes" : "memory.max");

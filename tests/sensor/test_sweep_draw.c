@@ -1,5 +1,5 @@
-/* Draws of a sweep: different ones, as many as asked for or a line that says why not; those of a smaller count first; no
- * value and no combination favoured. labels: physics */
+/* Draws of a sweep: different ones, as many as asked for or a line that says why not; those of a smaller count first;
+ * no value and no combination favoured. labels: physics */
 #include "tests/check.h"
 
 #include "sensor/commands/sweep/sweep.h"
@@ -37,7 +37,7 @@ static int by_text(const void *a, const void *b) { return strcmp(a, b); }
 static int distinct(const Sweep *sweep)
 {
     char(*said)[text_size] = malloc((size_t)sweep->count * sizeof *said);
-    int different          = 0;
+    int different = 0;
     CHECK(said);
     for (int i = 0; i < sweep->count; i++) say(said[i], sweep, i);
     qsort(said, (size_t)sweep->count, sizeof *said, by_text);
@@ -76,8 +76,9 @@ static void draws_differ(void **state)
         assert_int_equal(read_text(sweep, text), STATUS_BAD_VALUE);
         CHECK(strstr(check_said, ":2: count: 7 different draws are requested, but the axes have 6 combinations"));
     }
-    CHECK(read_text(six, "mode: random\ncount: 4\naxes: {weather.visibility_m: [5000, 5e3, 23000.0, 23000], seed: [1, 2]}"
-                         "\n") == STATUS_OK);
+    CHECK(read_text(six,
+                    "mode: random\ncount: 4\naxes: {weather.visibility_m: [5000, 5e3, 23000.0, 23000], seed: [1, 2]}"
+                    "\n") == STATUS_OK);
     CHECK(distinct(six) == 4);
     sweep_close(six);
     free(sweep);
@@ -88,11 +89,12 @@ static void the_rare_are_found(void **state)
 {
     (void)state;
     Sweep *sweep = calloc(1, sizeof *sweep);
-    char  *text  = malloc(200000);
+    char  *text = malloc(200000);
     CHECK(sweep && text);
     CHECK(read_text(sweep, "mode: random\ncount: 10000\naxes: {seed: {from: 1, to: 100}, weather.pressure_mbar: [") !=
           STATUS_OK); /* a list without an end */
-    int n = snprintf(text, 200000, "mode: random\ncount: 5000\naxes: {seed: {from: 1, to: 50}, weather.pressure_mbar: [900");
+    int n = snprintf(text, 200000,
+                     "mode: random\ncount: 5000\naxes: {seed: {from: 1, to: 50}, weather.pressure_mbar: [900");
     for (int i = 1; i < 100; i++) n += snprintf(text + n, 200, ", %d", 900 + i);
     snprintf(text + n, 200, "]}\n");
     CHECK(read_text(sweep, text) == STATUS_OK && distinct(sweep) == 5000);
@@ -111,7 +113,8 @@ static void the_rare_are_found(void **state)
     assert_int_equal(read_text(sweep, "mode: random\ncount: 3\naxes: {sensor.hfov_deg: {from: 3, to: 3.000000001}}\n"),
                      STATUS_BAD_VALUE);
     CHECK(strstr(check_said, "count: only "));
-    assert_int_equal(read_text(sweep, "mode: random\ncount: 2\naxes: {sensor.hfov_deg: {from: 3, to: 3}}\n"), STATUS_BAD_VALUE);
+    assert_int_equal(read_text(sweep, "mode: random\ncount: 2\naxes: {sensor.hfov_deg: {from: 3, to: 3}}\n"),
+                     STATUS_BAD_VALUE);
     CHECK(strstr(check_said, "1 combination;"));
     free(text);
     free(sweep);
@@ -123,7 +126,7 @@ static void none_is_favoured(void **state)
 {
     (void)state;
     int    count[3][4] = {{0}};
-    Sweep *sweep       = calloc(1, sizeof *sweep);
+    Sweep *sweep = calloc(1, sizeof *sweep);
     char   text[256], a[sweep_value_size], b[sweep_value_size];
     CHECK(sweep);
     for (int seed = 0; seed < 1200; seed++) {

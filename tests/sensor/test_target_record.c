@@ -66,23 +66,41 @@ static void the_record_is_of_its_entity(void **state)
 {
     (void)state;
     SnapshotEntity entity[3] = {
-        {.id = {1, 2, 3}, .type = {1, 1, 222, 1, 1, 1, 0}, .marking = "T-72", .model = 0, .age_s = 1.5,
+        {.id = {1, 2, 3},
+         .type = {1, 1, 222, 1, 1, 1, 0},
+         .marking = "T-72",
+         .model = 0,
+         .age_s = 1.5,
          .position_error_m = 0.25},
         {.id = {1, 2, 4}, .marking = "\xff\x01", .model = 1, .p_ecef = {11, 12, 13}, .v_ecef_mps = {14, 15, 16}},
         {.id = {7, 8, 9}},
     };
-    const Snapshot snapshot  = {.count = 3, .entity = entity};
+    const Snapshot snapshot = {.count = 3, .entity = entity};
     const Target   target[4] = {
-        {.index = 1, .range_m = 1234.5, .closing_mps = NAN, .box = {3, 4, 6, 9}, .amodal_box = {-2.5, 4, 6.25, 8},
-           .pixels = 12.5, .visible_fraction = 0.75, .occluder = "entity", .occluder_index = 2, .los_rate_rps = {1, 2},
-           .boresight_error_rad = {3, 4}, .band = {{.snr = 5}, {.snr = 6}, {.contrast_k = 7}, {.contrast = 8}}},
-        {.index = 0, .aspect_rad = 1, .depression_rad = 2, .los_az_rad = 3, .los_el_rad = 4, .occluder = "ground",
+          {.index = 1,
+           .range_m = 1234.5,
+           .closing_mps = NAN,
+           .box = {3, 4, 6, 9},
+           .amodal_box = {-2.5, 4, 6.25, 8},
+           .pixels = 12.5,
+           .visible_fraction = 0.75,
+           .occluder = "entity",
+           .occluder_index = 2,
+           .los_rate_rps = {1, 2},
+           .boresight_error_rad = {3, 4},
+           .band = {{.snr = 5}, {.snr = 6}, {.contrast_k = 7}, {.contrast = 8}}},
+          {.index = 0,
+           .aspect_rad = 1,
+           .depression_rad = 2,
+           .los_az_rad = 3,
+           .los_el_rad = 4,
+           .occluder = "ground",
            .occluder_index = -1},
-        {.index = 2, .occluder = "entity", .occluder_index = -1},
-        {.index = 2, .occluder = "trees", .occluder_index = -1, .foliage_fraction = 0.5},
+          {.index = 2, .occluder = "entity", .occluder_index = -1},
+          {.index = 2, .occluder = "trees", .occluder_index = -1, .foliage_fraction = 0.5},
     };
     Arena              *arena = arena_create();
-    const TargetRecord *r     = target_records(target, 4, &snapshot, catalog, arena);
+    const TargetRecord *r = target_records(target, 4, &snapshot, catalog, arena);
     CHECK(r);
     CHECK(r[0].index == 1 && r[0].plane_value == 2 && r[0].id.entity == 4 && r[0].marking[0] == '\xff');
     CHECK(r[0].range_m == 1234.5 && isnan(r[0].closing_mps) && r[0].pixels == 12.5 && r[0].visible_fraction == 0.75);

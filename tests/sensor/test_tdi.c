@@ -41,9 +41,9 @@ static void columns_are_lines_turned_over(void **state)
     for (int r = 0; r < height; r++)
         for (int c = 0; c < width; c++) turned[c * height + r] = plane[r * width + c];
     for (int n = 0; n < 6; n++) {
-        const double *rate = rates[n % 3], exchanged[2] = {rate[1], rate[0]};
+        const double  *rate = rates[n % 3], exchanged[2] = {rate[1], rate[0]};
         const LineScan lines = {.line_s = 1e-4, .active = active[n / 3]},
-                   columns = {.line_s = 1e-4, .active = active[n / 3], .by_columns = true};
+                       columns = {.line_s = 1e-4, .active = active[n / 3], .by_columns = true};
         line_scan_resample(by_lines, turned, height, width, &lines, exchanged, line);
         line_scan_resample(by_columns, plane, width, height, &columns, rate, line);
         for (int r = 0; r < height; r++)
@@ -104,9 +104,9 @@ static void stages_gain_the_root_of_their_number(void **state)
     SensorPreset p = preset_of("scanning_flir2");
     for (int a = NOISE_TV; a < noise_axes; a++) p.ratio.sigma[a] = 0;
     p.prnu = p.line_noise = p.ac_per_line = 0;
-    p.bits           = 16;
+    p.bits = 16;
     p.photons.well_e = 4e7;
-    double one_k     = 0;
+    double one_k = 0;
     for (int root = 1; root <= 3; root++) {
         const int stages = root * root;
         p.tdi = stages;
@@ -127,7 +127,7 @@ static void a_row_has_one_detector(void **state)
     SensorPreset p = preset_of("scanning_flir2");
     Chain       *chain;
     p.ratio = (Noise3d){.sigma = {[NOISE_V] = 1}};
-    p.prnu  = 0.01;
+    p.prnu = 0.01;
     p.photons.read_e = p.ac_per_line = p.line_noise = 0;
     p.photons.well_e = 1.2e7;
     assert_int_equal(chain_create(&chain, &p, width, height, 1, 5), STATUS_OK);
@@ -150,7 +150,7 @@ static void a_row_has_one_detector(void **state)
         along += half * half / height;
     }
     const PhotonDetector d = preset_photons(&p);
-    const double signal_e = photon_electrons(&d, 300, NULL), step_e = chain_step_e(chain);
+    const double         signal_e = photon_electrons(&d, 300, NULL), step_e = chain_step_e(chain);
     const double sigma2 = signal_e + d.dark_e, want2 = (sigma2 + 1e-4 * signal_e * signal_e) / (step_e * step_e);
     CHECK_NEAR(spread / want2, 1, 4 * sqrt(2.0 / height));
     CHECK_NEAR(along / (sigma2 / (step_e * step_e) / width), 1, 4 * sqrt(2.0 / height));
@@ -165,11 +165,11 @@ static void the_sweep_blurs_along_the_rows(void **state)
     SensorPreset p = preset_of("scanning_flir2");
     Chain       *chain;
     p.noise_scale = p.ac_per_line = 0;
-    p.bits        = 16;
+    p.bits = 16;
     p.photons.integration_s = 0.9 * p.scan.line_s;
     preset_refresh(&p);
     assert_int_equal(chain_create(&chain, &p, width, height, 1, 5), STATUS_OK);
-    double amplitude[3] = {0};
+    double       amplitude[3] = {0};
     const double moving[2] = {0, 0.25 / (4 * p.photons.integration_s)};
     for (int k = 0; k < 3; k++) {
         for (int r = 0; r < height; r++)
@@ -199,10 +199,8 @@ int main(void)
 {
     thread_flush_denormals();
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(columns_are_lines_turned_over),
-        cmocka_unit_test(each_column_has_its_own_time),
-        cmocka_unit_test(stages_gain_the_root_of_their_number),
-        cmocka_unit_test(a_row_has_one_detector),
+        cmocka_unit_test(columns_are_lines_turned_over),        cmocka_unit_test(each_column_has_its_own_time),
+        cmocka_unit_test(stages_gain_the_root_of_their_number), cmocka_unit_test(a_row_has_one_detector),
         cmocka_unit_test(the_sweep_blurs_along_the_rows),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -3,7 +3,6 @@
 
 #include "sensor/truth/truth.h"
 
-
 enum { width = 60, height = 40 };
 
 typedef struct Fixture {
@@ -47,7 +46,7 @@ static void pose(SnapshotEntity *e, double lat_deg, double lon_deg, double h_m)
     double         r[9];
     CHECK(ecef_from_geodetic(e->p_ecef, r, &place) == STATUS_OK);
     for (int i = 0; i < 3; i++) {
-        e->r_ecef_from_body[3 * i]     = r[3 * i + 1];
+        e->r_ecef_from_body[3 * i] = r[3 * i + 1];
         e->r_ecef_from_body[3 * i + 1] = r[3 * i];
         e->r_ecef_from_body[3 * i + 2] = -r[3 * i + 2];
     }
@@ -71,7 +70,7 @@ static void scene(void)
     /* camera: ahead towards a point somewhat beside the target, upright by the local down */
     double ahead[3], right[3], down[3], down_0[3];
     for (int k = 0; k < 3; k++) {
-        ahead[k]  = f.entity[1].p_ecef[k] + (k == 0 ? 30 : k == 1 ? -10 : 5) - f.eye.p_ecef[k];
+        ahead[k] = f.entity[1].p_ecef[k] + (k == 0 ? 30 : k == 1 ? -10 : 5) - f.eye.p_ecef[k];
         down_0[k] = f.entity[0].r_ecef_from_body[3 * k + 2];
     }
     v3_normalize(ahead, ahead);
@@ -79,7 +78,7 @@ static void scene(void)
     v3_normalize(right, right);
     v3_cross(down, ahead, right);
     for (int k = 0; k < 3; k++) {
-        f.eye.r_ecef_from_cam[3 * k]     = right[k];
+        f.eye.r_ecef_from_cam[3 * k] = right[k];
         f.eye.r_ecef_from_cam[3 * k + 1] = down[k];
         f.eye.r_ecef_from_cam[3 * k + 2] = ahead[k];
     }
@@ -132,7 +131,8 @@ static void line_of_sight_and_its_rate_agree_with_differences(void **state)
     CHECK_NEAR(t[0].closing_mps, (range_before - range_after) / (2 * dt_s), 1e-5);
     /* the same two, over the range: below 1e-9 rad/s */
     for (int k = 0; k < 2; k++) CHECK_NEAR(t[0].los_rate_rps[k], (after[k] - before[k]) / (2 * dt_s), 1e-8);
-    for (int k = 0; k < 2; k++) CHECK_NEAR(tan(t[0].boresight_error_rad[k]), now[k] / sqrt(1 - now[0] * now[0] - now[1] * now[1]), 1e-12);
+    for (int k = 0; k < 2; k++)
+        CHECK_NEAR(tan(t[0].boresight_error_rad[k]), now[k] / sqrt(1 - now[0] * now[0] - now[1] * now[1]), 1e-12);
     CHECK(fabs(t[0].los_rate_rps[0]) > 1e-2); /* the case is not a trivial one */
     CHECK(isnan(t[0].visible_fraction));
 }
@@ -140,8 +140,9 @@ static void line_of_sight_and_its_rate_agree_with_differences(void **state)
 static void azimuth_elevation_and_aspect_have_the_stated_senses(void **state)
 {
     (void)state;
-    static const struct { double dlat, dlon, az_deg, aspect_deg; } where[] = {
-        {0.01, 0, 0, 180}, {0, 0.01, 90, 270}, {-0.01, 0, 180, 0}, {0, -0.01, 270, 90}};
+    static const struct {
+        double dlat, dlon, az_deg, aspect_deg;
+    } where[] = {{0.01, 0, 0, 180}, {0, 0.01, 90, 270}, {-0.01, 0, 180, 0}, {0, -0.01, 270, 90}};
     for (size_t i = 0; i < sizeof where / sizeof where[0]; i++) {
         Target t[2];
         scene();
@@ -163,11 +164,16 @@ static void contrast_is_the_temperature_difference_that_was_painted(void **state
     for (int y = 0; y < height; y++)
         for (int x = 0; x < width; x++) {
             const bool on = x >= 20 && x < 30 && y >= 10 && y < 16;
-            f.id[y * width + x]   = on ? 2 : 0;
-            f.lwir[y * width + x] = (float)planck_band(8e-6, 12e-6, on ? (x < 25 ? 303 : 309) : 300 + (x + y) % 2, NULL);
+            f.id[y * width + x] = on ? 2 : 0;
+            f.lwir[y * width + x] =
+                (float)planck_band(8e-6, 12e-6, on ? (x < 25 ? 303 : 309) : 300 + (x + y) % 2, NULL);
         }
-    f.pixels[1] = (TargetPixels){.visible = 60, .amodal = 80, .box = {20, 10, 30, 16}, .amodal_box = {20, 10, 30, 18},
-                                 .occluded_ground = 20, .occluder = -1};
+    f.pixels[1] = (TargetPixels){.visible = 60,
+                                 .amodal = 80,
+                                 .box = {20, 10, 30, 16},
+                                 .amodal_box = {20, 10, 30, 18},
+                                 .occluded_ground = 20,
+                                 .occluder = -1};
     const double mean = 0.5 * (planck_band(8e-6, 12e-6, 303, NULL) + planck_band(8e-6, 12e-6, 309, NULL));
     f.pixels[1].radiance[picture_lwir] = 60 * mean;
     assert_int_equal(truth_targets(t, &f.picture, &f.world, &f.snapshot, &f.request, &f.eye, &noise), 1);
@@ -183,7 +189,8 @@ static void contrast_is_the_temperature_difference_that_was_painted(void **state
     CHECK(isnan(t[0].band[BAND_MWIR].contrast_k) && isnan(t[0].band[BAND_OPTICAL].snr)); /* not computed: absent */
 }
 
-/* A tenth of a pixel at 320 K, beside another's pixel: mean and variance are its own, the ratio is that of its pixel. */
+/* A tenth of a pixel at 320 K, beside another's pixel: mean and variance are its own, the ratio is that of its pixel.
+ */
 static void a_small_target_is_judged_by_its_samples(void **state)
 {
     (void)state;
@@ -199,10 +206,15 @@ static void a_small_target_is_judged_by_its_samples(void **state)
     covered[10 * width + 20] = 0.1f;
     covered[10 * width + 21] = 0.7f; /* somebody else's: no ring */
     f.picture.covered = covered;
-    f.pixels[1] = (TargetPixels){.visible = 0.1, .amodal = 0.2, .box = {20, 10, 21, 11}, .amodal_box = {20, 10, 21, 11},
-                                 .occluder = -1, .small = true, .peak_area = 0.1};
+    f.pixels[1] = (TargetPixels){.visible = 0.1,
+                                 .amodal = 0.2,
+                                 .box = {20, 10, 21, 11},
+                                 .amodal_box = {20, 10, 21, 11},
+                                 .occluder = -1,
+                                 .small = true,
+                                 .peak_area = 0.1};
     f.pixels[1].radiance[picture_lwir] = 0.1 * own;
-    f.pixels[1].mean[picture_lwir]     = own;
+    f.pixels[1].mean[picture_lwir] = own;
     f.pixels[1].variance[picture_lwir] = 9 * slope * slope; /* 3 K about the mean */
     assert_int_equal(truth_targets(t, &f.picture, &f.world, &f.snapshot, &f.request, &f.eye, &noise), 1);
     const TargetBand *b = &t[0].band[BAND_LWIR];
@@ -218,13 +230,14 @@ static void a_small_target_is_judged_by_its_samples(void **state)
             }
     ring /= n;
     assert_int_equal(n, 7);
-    CHECK_NEAR(b->contrast_k, 320 - ring, 1e-3); /* float radiance, as above */
+    CHECK_NEAR(b->contrast_k, 320 - ring, 1e-3);                          /* float radiance, as above */
     CHECK_NEAR(b->dt_rss_k, sqrt((320 - ring) * (320 - ring) + 9), 0.01); /* the slope changes by 0.1 % over its step */
     CHECK_NEAR(b->snr, 0.1 * (320 - ring) / sqrt(square / n - ring * ring + 0.05 * 0.05), 1e-3);
     CHECK_NEAR(b->intensity_w_sr / (0.1 * own * t[0].range_m * t[0].range_m / 250000), 1, 1e-12);
 }
 
-/* Optical: what nothing surrounds is told from darkness by its mean; no contrast is 0, one without noise is not known. */
+/* Optical: what nothing surrounds is told from darkness by its mean; no contrast is 0, one without noise is not known.
+ */
 static void a_signal_is_known_without_surroundings_and_without_noise(void **state)
 {
     (void)state;
@@ -233,7 +246,8 @@ static void a_signal_is_known_without_surroundings_and_without_noise(void **stat
     scene();
     f.picture.optical[0] = optical;
     for (int i = 0; i < width * height; i++) f.id[i] = 2, optical[i] = 0.5f;
-    f.pixels[1] = (TargetPixels){.visible = width * height, .amodal = width * height, .box = {0, 0, width, height}, .occluder = -1};
+    f.pixels[1] = (TargetPixels){
+        .visible = width * height, .amodal = width * height, .box = {0, 0, width, height}, .occluder = -1};
     assert_int_equal(truth_targets(t, &f.picture, &f.world, &f.snapshot, &f.request, &f.eye, &noise), 1);
     CHECK_NEAR(t[0].band[BAND_OPTICAL].snr, 0.5 / 0.01, 1e-9);
     CHECK(isnan(t[0].band[BAND_OPTICAL].contrast) && isnan(t[0].band[BAND_LWIR].snr));
@@ -252,8 +266,12 @@ static void hidden_targets_are_listed_and_the_host_never(void **state)
     Target t[2];
     scene();
     f.pixels[0] = (TargetPixels){.visible = 10, .amodal = 10, .projected = true};
-    f.pixels[1] = (TargetPixels){.amodal = 12, .projected = true, .projected_box = {1, 2, 3, 4}, .occluded_entity = 12,
-                                 .occluder = 0, .amodal_box = {1, 2, 3, 4}};
+    f.pixels[1] = (TargetPixels){.amodal = 12,
+                                 .projected = true,
+                                 .projected_box = {1, 2, 3, 4},
+                                 .occluded_entity = 12,
+                                 .occluder = 0,
+                                 .amodal_box = {1, 2, 3, 4}};
     assert_int_equal(truth_targets(t, &f.picture, &f.world, &f.snapshot, &f.request, &f.eye, &noise), 1);
     CHECK(t[0].index == 1 && t[0].pixels == 0 && t[0].visible_fraction == 0);
     CHECK(t[0].occluder_index == 0);
@@ -273,8 +291,11 @@ static void an_occluder_is_named_where_the_fraction_shows_it(void **state)
                 const double hidden = amodal * k / 1000, by_ground = way == 0 ? hidden : way == 1 ? 0 : 0.3 * hidden;
                 Target       t[2];
                 scene();
-                f.pixels[1] = (TargetPixels){.projected = true, .visible = amodal - hidden, .amodal = amodal,
-                                             .occluded_ground = by_ground, .occluded_entity = hidden - by_ground,
+                f.pixels[1] = (TargetPixels){.projected = true,
+                                             .visible = amodal - hidden,
+                                             .amodal = amodal,
+                                             .occluded_ground = by_ground,
+                                             .occluded_entity = hidden - by_ground,
                                              .occluder = way == 0 ? -1 : 0};
                 assert_int_equal(truth_targets(t, &f.picture, &f.world, &f.snapshot, &f.request, &f.eye, &noise), 1);
                 CHECK(t[0].visible_fraction >= 0 && t[0].visible_fraction <= 1);
@@ -282,7 +303,9 @@ static void an_occluder_is_named_where_the_fraction_shows_it(void **state)
                 CHECK((rint(100 * t[0].visible_fraction) == 100) == (t[0].occluder == NULL));
                 CHECK((t[0].occluder != NULL) == (k >= 10));
                 if (k > 10) CHECK_NEAR(t[0].visible_fraction, 1 - k / 1000.0, 1e-9);
-                if (k > 10) CHECK(strcmp(t[0].occluder, way == 0 ? "ground" : "entity") == 0 && t[0].occluder_index == (way == 0 ? -1 : 0));
+                if (k > 10)
+                    CHECK(strcmp(t[0].occluder, way == 0 ? "ground" : "entity") == 0 &&
+                          t[0].occluder_index == (way == 0 ? -1 : 0));
             }
 }
 
@@ -293,16 +316,20 @@ static void plants_hide_a_share_of_a_target(void **state)
     static const struct {
         double      ground, entity, trees;
         const char *by;
-    } in_the_way[] = {{0, 0, 6, "trees"}, {3, 2, 4, "trees"}, {4, 2, 3, "ground"}, {2, 4, 3, "entity"},
-                      {0, 0, 0.1, NULL},  {5, 0, 0, "ground"}};
+    } in_the_way[] = {{0, 0, 6, "trees"},  {3, 2, 4, "trees"}, {4, 2, 3, "ground"},
+                      {2, 4, 3, "entity"}, {0, 0, 0.1, NULL},  {5, 0, 0, "ground"}};
     static uint32_t instance[width * height];
     for (size_t i = 0; i < sizeof in_the_way / sizeof *in_the_way; i++) {
         const double ground = in_the_way[i].ground, entity = in_the_way[i].entity, trees = in_the_way[i].trees;
         Target       t[2];
         scene();
         f.picture.instance = instance;
-        f.pixels[1] = (TargetPixels){.projected = true, .visible = 12 - ground - entity - trees, .amodal = 12,
-                                     .occluded_ground = ground, .occluded_entity = entity, .occluded_plants = trees,
+        f.pixels[1] = (TargetPixels){.projected = true,
+                                     .visible = 12 - ground - entity - trees,
+                                     .amodal = 12,
+                                     .occluded_ground = ground,
+                                     .occluded_entity = entity,
+                                     .occluded_plants = trees,
                                      .occluder = entity > 0 ? 0 : -1};
         assert_int_equal(truth_targets(t, &f.picture, &f.world, &f.snapshot, &f.request, &f.eye, &noise), 1);
         CHECK_NEAR(t[0].foliage_fraction, trees / 12, 1e-12);

@@ -13,13 +13,13 @@ static void pixels_say_what_they_are(void **state)
     uint8_t        rgb[9][3];
     frame_files_preview(&rgb[0][0], range_m, index, NULL, 9, &snapshot);
 
-    CHECK(rgb[0][2] > rgb[0][0] + 20);                             /* sky is blue */
-    assert_memory_equal(rgb[7], rgb[0], 3);                        /* and so is no range at all */
+    CHECK(rgb[0][2] > rgb[0][0] + 20);      /* sky is blue */
+    assert_memory_equal(rgb[7], rgb[0], 3); /* and so is no range at all */
     for (int i = 1; i <= 3; i++) CHECK(rgb[i][0] == rgb[i][1] && rgb[i][1] == rgb[i][2]); /* ground is grey */
-    CHECK(rgb[1][0] > rgb[2][0] && rgb[2][0] > rgb[3][0]);         /* darker farther */
-    CHECK(abs(rgb[1][0] - 2 * rgb[2][0] + rgb[3][0]) <= 2);        /* by the logarithm */
-    assert_memory_equal(rgb[4], rgb[5], 3);                        /* an entity at any range */
-    CHECK(memcmp(rgb[4], rgb[6], 3) != 0);                         /* two entities */
+    CHECK(rgb[1][0] > rgb[2][0] && rgb[2][0] > rgb[3][0]);                                /* darker farther */
+    CHECK(abs(rgb[1][0] - 2 * rgb[2][0] + rgb[3][0]) <= 2);                               /* by the logarithm */
+    assert_memory_equal(rgb[4], rgb[5], 3);                                               /* an entity at any range */
+    CHECK(memcmp(rgb[4], rgb[6], 3) != 0);                                                /* two entities */
     CHECK(rgb[4][0] != rgb[4][1] || rgb[4][1] != rgb[4][2]);
     CHECK(rgb[8][0] == 255 && rgb[8][1] == 255 && rgb[8][2] == 255); /* not in the snapshot */
 

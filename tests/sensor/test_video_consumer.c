@@ -53,7 +53,7 @@ static Frame *make_frame(int number, double unix_s)
 {
     static Frame frame;
     static float plane[2][pixels];
-    frame                    = (Frame){.number = number, .unix_s = unix_s};
+    frame = (Frame){.number = number, .unix_s = unix_s};
     frame.seen.picture.width = width, frame.seen.picture.height = height;
     for (int b = 0; b < 2; b++) {
         for (int i = 0; i < pixels; i++)
@@ -71,8 +71,11 @@ static Consumer *open_video(Config *config, const char *path, const char *codec,
     snprintf(config->publish.video, sizeof config->publish.video, "%s", path);
     strcpy(config->publish.video_codec, codec);
     strcpy(config->publish.klv, "off");
-    const VideoOf of = {.config = config, .to = VIDEO_TO_FILE, .bands = 1u << BAND_MWIR | 1u << BAND_LWIR,
-                        .rate_hz = 10, .patient = patient};
+    const VideoOf of = {.config = config,
+                        .to = VIDEO_TO_FILE,
+                        .bands = 1u << BAND_MWIR | 1u << BAND_LWIR,
+                        .rate_hz = 10,
+                        .patient = patient};
     assert_int_equal(consume_video(&consumer, &of), STATUS_OK);
     assert_int_equal(consumer->begin(consumer), STATUS_OK);
     CHECK(consumer->wants & WANT_DISPLAY);
@@ -85,8 +88,8 @@ static int decode(const char *path, double *time_s, int most, uint16_t *last)
 {
     AVFormatContext *in = NULL;
     AVPacket        *packet = av_packet_alloc();
-    AVFrame         *frame  = av_frame_alloc();
-    int              count  = 0;
+    AVFrame         *frame = av_frame_alloc();
+    int              count = 0;
     assert_int_equal(avformat_open_input(&in, path, NULL, NULL), 0);
     CHECK(avformat_find_stream_info(in, NULL) >= 0);
     assert_int_equal(in->nb_streams, 1);
@@ -138,9 +141,9 @@ static void bands_are_side_by_side_to_the_bit(void **state)
 static void time_stamps_wrap(void **state)
 {
     static const double begin_s[] = {95443.3, -0.45, -1e9};
-    Config config;
-    char   path[temp_name_size];
-    double time_s[16];
+    Config              config;
+    char                path[temp_name_size];
+    double              time_s[16];
     for (int i = 0; i < 3; i++) {
         snprintf(path, sizeof path, "%s/wraps%d.ts", (const char *)*state, i);
         Consumer *video = open_video(&config, path, "h264", false);
@@ -184,8 +187,10 @@ static void disk_full_for_a_while(const char *path, int frames_least)
 static void a_full_disk_is_survived(void **state)
 {
     char path[temp_name_size];
-    static const struct { const char *name; int least; } cases[] = {
-        {"full.ts", 35}, {"full.mkv", 30}, {"full.mp4", 30}};
+    static const struct {
+        const char *name;
+        int         least;
+    } cases[] = {{"full.ts", 35}, {"full.mkv", 30}, {"full.mp4", 30}};
     signal(SIGXFSZ, SIG_IGN);
     log_set_sink(count_messages, NULL);
     for (int i = 0; i < 3; i++) {
@@ -231,7 +236,7 @@ static void a_failing_encoder_is_survived(void **state)
     assert_int_equal(decode(path, time_s, 80, NULL), 40 - (25 - 13));
     CHECK_NEAR(time_s[13] - time_s[12], 1.3, 1e-3); /* a gap, no slip */
     snprintf(path, sizeof path, "%s/ends.mp4", (const char *)*state);
-    video         = open_video(&config, path, "h264", false);
+    video = open_video(&config, path, "h264", false);
     encoder_fails = true;
     assert_int_equal(video->put(video, make_frame(0, 100)), STATUS_IO);
     encoder_fails = false;
@@ -243,9 +248,9 @@ static void a_failing_encoder_is_survived(void **state)
 static void a_killed_run_leaves_a_film(void **state)
 {
     static const char *const names[] = {"killed.mp4", "killed.mkv", "killed.ts"};
-    Config config;
-    char   path[temp_name_size];
-    double time_s[80];
+    Config                   config;
+    char                     path[temp_name_size];
+    double                   time_s[80];
     for (int i = 0; i < 3; i++) {
         snprintf(path, sizeof path, "%s/%s", (const char *)*state, names[i]);
         Consumer *video = open_video(&config, path, "h264", false);
@@ -260,8 +265,8 @@ static void a_killed_run_leaves_a_film(void **state)
 
 static void names_and_addresses(void **state)
 {
-    Config    config = config_default();
-    char      text[1024], found[video_path_size];
+    Config config = config_default();
+    char   text[1024], found[video_path_size];
     strcpy(config.publish.stream, "udp://239.1.2.3:5004");
     video_watch_lines(text, sizeof text, &config, 1u << BAND_MWIR | 1u << BAND_LWIR);
     CHECK(strstr(text, "mwir") && strstr(text, "ffplay") && strstr(text, "udp://239.1.2.3:5004 ") &&
@@ -292,10 +297,13 @@ static int remove_folder(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(bands_are_side_by_side_to_the_bit), cmocka_unit_test(a_full_disk_is_survived),
+        cmocka_unit_test(bands_are_side_by_side_to_the_bit),
+        cmocka_unit_test(a_full_disk_is_survived),
         cmocka_unit_test(time_stamps_wrap),
-        cmocka_unit_test(a_full_disk_ends_a_replay),         cmocka_unit_test(a_failing_encoder_is_survived),
-        cmocka_unit_test(a_killed_run_leaves_a_film),        cmocka_unit_test(names_and_addresses),
+        cmocka_unit_test(a_full_disk_ends_a_replay),
+        cmocka_unit_test(a_failing_encoder_is_survived),
+        cmocka_unit_test(a_killed_run_leaves_a_film),
+        cmocka_unit_test(names_and_addresses),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

@@ -21,9 +21,9 @@ static void draw(uint16_t *out, int w, int h, int planes, int frame, int bits)
         for (int x = 0; x < w; x++)
             for (int p = 0; p < planes; p++) {
                 const bool   square = (x + 3 * frame) / 16 % 4 == p && y / 16 % 2 == 0;
-                const double at     = random_normal(1, 7, (uint32_t)frame, (uint64_t)((y * w + x) * planes + p));
-                const double noise  = at * 2 / 255;
-                const double level  = square ? 0.9 : 0.1 + 0.6 * ((x + p * 5 + frame) % w) / w;
+                const double at = random_normal(1, 7, (uint32_t)frame, (uint64_t)((y * w + x) * planes + p));
+                const double noise = at * 2 / 255;
+                const double level = square ? 0.9 : 0.1 + 0.6 * ((x + p * 5 + frame) % w) / w;
                 out[(y * w + x) * planes + p] = (uint16_t)lround(clamp(level + noise, 0, 1) * ((1 << bits) - 1));
             }
 }
@@ -48,7 +48,8 @@ static size_t encode_all(uint8_t *out, const EncoderConfig *config, bool check_k
         VideoPacket packet;
         draw(wide, config->width, config->height, planes, f, bits);
         assert_int_equal(video_encoder_encode(&packet, encoder,
-                                        image_of(narrow, wide, config->width * config->height * planes, bits), f == 3, 1780000000000000 + f),
+                                              image_of(narrow, wide, config->width * config->height * planes, bits),
+                                              f == 3, 1780000000000000 + f),
                          STATUS_OK);
         CHECK(packet.count > 0 && used + packet.count <= octets_most);
         if (check_keys && config->codec != VIDEO_FFV1) assert_int_equal(packet.key, f == 0 || f == 3);
@@ -65,7 +66,7 @@ static void one_packet_for_each_image_and_the_same_bytes(void **state)
     static uint8_t first[octets_most], again[octets_most];
     for (int codec = VIDEO_H264; codec <= VIDEO_FFV1; codec++) {
         const EncoderConfig config = {(VideoCodec)codec, width, height, codec == VIDEO_FFV1, 30};
-        const size_t        count  = encode_all(first, &config, true);
+        const size_t        count = encode_all(first, &config, true);
         assert_int_equal(encode_all(again, &config, false), count);
         assert_memory_equal(first, again, count);
     }
@@ -86,18 +87,18 @@ static void decoded_error(double *rms, double *worst, const EncoderConfig *confi
     /* of the others all is in the packets */
     if (config->codec == VIDEO_FFV1) avcodec_parameters_to_context(decoder, parameters);
     decoder->thread_count = 1;
-    decoder->flags        = AV_CODEC_FLAG_LOW_DELAY;
+    decoder->flags = AV_CODEC_FLAG_LOW_DELAY;
     assert_int_equal(avcodec_open2(decoder, NULL, NULL), 0);
     AVPacket *packet = av_packet_alloc();
-    AVFrame  *frame  = av_frame_alloc();
-    int       got    = 0;
-    double    sum    = 0;
+    AVFrame  *frame = av_frame_alloc();
+    int       got = 0;
+    double    sum = 0;
     *worst = 0;
     for (int f = 0; f < frames; f++) {
         VideoPacket coded;
         draw(wide, config->width, config->height, planes, f, bits);
-        assert_int_equal(video_encoder_encode(&coded, encoder, image_of(narrow, wide, (int)count, bits), f == start, -1),
-                         STATUS_OK);
+        assert_int_equal(
+            video_encoder_encode(&coded, encoder, image_of(narrow, wide, (int)count, bits), f == start, -1), STATUS_OK);
         if (f < start) continue; /* joins in the middle */
         assert_int_equal(av_new_packet(packet, (int)coded.count), 0);
         memcpy(packet->data, coded.bytes, coded.count);
@@ -116,19 +117,19 @@ static void decoded_error(double *rms, double *worst, const EncoderConfig *confi
         for (int x = 0; x < config->width; x++) {
             double value[3] = {0};
             for (int p = 0; p < 3 && frame->data[p] && config->codec != VIDEO_FFV1; p++) {
-                const int half = p > 0 && !full;
-                const int i = half ? x / 2 : x;
+                const int      half = p > 0 && !full;
+                const int      i = half ? x / 2 : x;
                 const uint8_t *row = frame->data[p] + (half ? y / 2 : y) * frame->linesize[p];
-                value[p]           = octet ? row[i] : ((const uint16_t *)(const void *)row)[i];
+                value[p] = octet ? row[i] : ((const uint16_t *)(const void *)row)[i];
             }
             const double neutral = 1 << (bits - 1), Y = value[0], cb = value[1] - neutral, cr = value[2] - neutral;
-            double       rgb[3]  = {Y + 1.5748 * cr, Y - 0.187324 * cb - 0.468124 * cr, Y + 1.8556 * cb};
+            double       rgb[3] = {Y + 1.5748 * cr, Y - 0.187324 * cb - 0.468124 * cr, Y + 1.8556 * cb};
             for (int p = 0; p < planes; p++) {
                 const double want = wide[(y * config->width + x) * planes + p];
-                double       is   = planes == 1 ? Y : rgb[p];
+                double       is = planes == 1 ? Y : rgb[p];
                 if (config->codec == VIDEO_FFV1) {
                     static const int of_gbr[3] = {2, 0, 1};
-                    const int        plane     = planes == 3 ? of_gbr[p] : 0;
+                    const int        plane = planes == 3 ? of_gbr[p] : 0;
                     is = ((const uint16_t *)(const void *)(frame->data[plane] + y * frame->linesize[plane]))[x];
                 }
                 sum += (is - want) * (is - want);
@@ -181,16 +182,19 @@ static void colour_conversion_is_bt709(void **state)
     (void)state;
     for (int bits = 8; bits <= 12; bits += 2)
         for (int i = 0; i < 500; i++) {
-            const int      top = (1 << bits) - 1;
-            uint16_t       image[12] = {0}, plane[3][4];
-            uint8_t        octets[12];
-            int            rgb[3];
+            const int top = (1 << bits) - 1;
+            uint16_t  image[12] = {0}, plane[3][4];
+            uint8_t   octets[12];
+            int       rgb[3];
             for (int p = 0; p < 3; p++)
                 rgb[p] = i < 8 ? (i >> p & 1) * top
                                : (int)(random_uniform(1, 3, (uint32_t)bits, (uint64_t)(3 * i + p)) * top);
             for (int k = 0; k < 12; k++) image[k] = (uint16_t)rgb[k % 3];
             const VideoPlanes planes = {.at = {(uint8_t *)plane[0], (uint8_t *)plane[1], (uint8_t *)plane[2]},
-                                        .stride = {4, 4, 4}, .layout = PIXELS_420, .width = 2, .height = 2,
+                                        .stride = {4, 4, 4},
+                                        .layout = PIXELS_420,
+                                        .width = 2,
+                                        .height = 2,
                                         .bits = bits};
             video_pixels(&planes, image_of(octets, image, 12, bits), true);
             const double Y = 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2], half = 1 << (bits - 1);
@@ -205,14 +209,32 @@ static void colour_conversion_is_bt709(void **state)
 static void addresses_are_parsed_strictly(void **state)
 {
     (void)state;
-    static const char *const wrong[] = {
-        "", "udp://", "239.1.2.3:5004", "udp://@239.1.2.3:5004", "udp://239.1.2.3", "udp://239.1.2.3:",
-        "udp://239.1.2.3:0", "udp://239.1.2.3:65536", "udp://239.1.2.3:5004/", "udp://239.1.2.3:5004 ",
-        "udp://239.1.2:5004", "udp://239.1.2.256:5004", "udp://01.2.3.4:5004", "udp://1.2.3.4:05004", "udp://a:5004",
-        "udp://localhost:5004", "udp://1.2.3.4.5:5004", "udp:/1.2.3.4:5004", "UDP://1.2.3.4:5004", "udp://-1.2.3.4:5",
-        "udp://0.0.0.0:5004", "udp://250.1.2.3:5004", "udp://1.2.3.4:99999999999999999999", "udp://[::1]:5004"};
-    StreamUrl   url = {{9}, 9};
-    const char *why = NULL;
+    static const char *const wrong[] = {"",
+                                        "udp://",
+                                        "239.1.2.3:5004",
+                                        "udp://@239.1.2.3:5004",
+                                        "udp://239.1.2.3",
+                                        "udp://239.1.2.3:",
+                                        "udp://239.1.2.3:0",
+                                        "udp://239.1.2.3:65536",
+                                        "udp://239.1.2.3:5004/",
+                                        "udp://239.1.2.3:5004 ",
+                                        "udp://239.1.2:5004",
+                                        "udp://239.1.2.256:5004",
+                                        "udp://01.2.3.4:5004",
+                                        "udp://1.2.3.4:05004",
+                                        "udp://a:5004",
+                                        "udp://localhost:5004",
+                                        "udp://1.2.3.4.5:5004",
+                                        "udp:/1.2.3.4:5004",
+                                        "UDP://1.2.3.4:5004",
+                                        "udp://-1.2.3.4:5",
+                                        "udp://0.0.0.0:5004",
+                                        "udp://250.1.2.3:5004",
+                                        "udp://1.2.3.4:99999999999999999999",
+                                        "udp://[::1]:5004"};
+    StreamUrl                url = {{9}, 9};
+    const char              *why = NULL;
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
         if (publish_stream_parse(&url, &why, wrong[i])) fail_msg("`%s` was taken", wrong[i]);
         CHECK(why && *why && url.port == 9);
@@ -228,7 +250,10 @@ static void addresses_are_parsed_strictly(void **state)
 static void contradictions_are_refused(void **state)
 {
     (void)state;
-    static const struct { const char *bands, *video, *stream, *codec; bool good; } cases[] = {
+    static const struct {
+        const char *bands, *video, *stream, *codec;
+        bool        good;
+    } cases[] = {
         {"lwir", "", "", "ffv1", true},
 #ifdef PITVIPER_VIDEO
         {"lwir", "a.mp4", "udp://127.0.0.1:5004", "h264", true},

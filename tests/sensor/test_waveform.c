@@ -6,7 +6,7 @@
 #include "sensor/radar/echo.h"
 #include "sensor/radar/radar_preset.h"
 
-static const double c_mps = 299792458.0;
+static const double      c_mps = 299792458.0;
 static const char *const of_kind[waveform_kinds] = {"seeker_94", "stepped_35", "pulse_doppler_ku", "fmcw_94"};
 
 typedef struct Chain {
@@ -79,8 +79,8 @@ static double peak_near(const Chain *chain, int row, double range_m, double reac
     return best_m + 0.5 * step_m * (before - after) / (before - 2 * best + after);
 }
 
-/* An echo that keeps its path, moved under the cells by 64ths of one: sin(pi x) / (M sin(pi x / M)) without a window; widths and
- * highest side lobes as in shared/data/radar/signal/windows_psf.csv (SciPy, 256 points). */
+/* An echo that keeps its path, moved under the cells by 64ths of one: sin(pi x) / (M sin(pi x / M)) without a window;
+ * widths and highest side lobes as in shared/data/radar/signal/windows_psf.csv (SciPy, 256 points). */
 static void points_respond_as_their_window(void **state)
 {
     (void)state;
@@ -92,9 +92,9 @@ static void points_respond_as_their_window(void **state)
         const double cell_m = c_mps / (2 * rect.preset.wave.bandwidth_hz);
         double       error = 0, half[2] = {0, 0}, side[2] = {0, 0};
         for (int i = 0; i < 64; i++) {
-            const double           shift = i / 64.0;
-            const double complex  *sharp = map_of(&rect, -shift * cell_m, 0) + row + samples / 2;
-            const double complex  *soft = map_of(&taylor, -shift * cell_m, 0) + row + samples / 2;
+            const double          shift = i / 64.0;
+            const double complex *sharp = map_of(&rect, -shift * cell_m, 0) + row + samples / 2;
+            const double complex *soft = map_of(&taylor, -shift * cell_m, 0) + row + samples / 2;
             for (int k = -samples / 2; k < samples / 2; k++) {
                 const double x = pi_rad * (k + shift), want = x != 0 ? sin(x) / (samples * sin(x / samples)) : 1;
                 error = fmax(error, fabs(cabs(sharp[k]) - fabs(want)));
@@ -147,8 +147,8 @@ static void rates_move_echoes_in_range(void **state)
         }
 }
 
-/* What a burst leaves of a point at an offset from it, whose phase bends by q at the band's ends: the integral of exp(-j q
- * u^2 + j 2 pi B d u / c) / 2 over u = -1 .. 1, a Fresnel integral, by Simpson's rule. */
+/* What a burst leaves of a point at an offset from it, whose phase bends by q at the band's ends: the integral of
+ * exp(-j q u^2 + j 2 pi B d u / c) / 2 over u = -1 .. 1, a Fresnel integral, by Simpson's rule. */
 static double bent(double q, double offset_m, double bandwidth_hz)
 {
     enum { panels = 400 };
@@ -163,8 +163,9 @@ static double bent(double q, double offset_m, double bandwidth_hz)
     return power_of(sum);
 }
 
-/* A rate of 300 m/s that the receiver does not follow, over a burst of 2.56 ms of 512 MHz: 52.5 m too near, which is folded
- * over by the window of 74.9 m; and q = pi B v T / c = 4.12 rad: lower, and wide. Followed: where and as it is. */
+/* A rate of 300 m/s that the receiver does not follow, over a burst of 2.56 ms of 512 MHz: 52.5 m too near, which is
+ * folded over by the window of 74.9 m; and q = pi B v T / c = 4.12 rad: lower, and wide. Followed: where and as it is.
+ */
 static void a_burst_smears_unless_followed(void **state)
 {
     (void)state;
@@ -173,13 +174,13 @@ static void a_burst_smears_unless_followed(void **state)
         Chain chain;
         open_chain(&chain, "stepped_35", "rect", 16, uncompensated);
         const Waveform *w = &chain.preset.wave;
-        const double turn = pi_rad * w->centre_hz * 2 * rate_mps / c_mps * w->pulse_s,
+        const double    turn = pi_rad * w->centre_hz * 2 * rate_mps / c_mps * w->pulse_s,
                      within = pow(sin(turn) / turn, 2);
         const double window_m = c_mps * 256 / (2 * 512e6), row_s = 0.5 * 2.56e-3; /* row 8 of 16 is half a row late */
-        const double    middle_m = 2 + uncompensated * (rate_mps * (row_s + 35e9 * 2.56e-3 / 512e6) + window_m);
+        const double middle_m = 2 + uncompensated * (rate_mps * (row_s + 35e9 * 2.56e-3 / 512e6) + window_m);
         CHECK_NEAR(waveform_appears_m(w, 2, uncompensated * rate_mps), middle_m - uncompensated * rate_mps * row_s,
                    1e-3);
-        const double    peak = uncompensated ? bent(q, 0, 512e6) : 1, left = uncompensated ? within : 1;
+        const double peak = uncompensated ? bent(q, 0, 512e6) : 1, left = uncompensated ? within : 1;
         echo_unfollowed(chain.grid, uncompensated ? 2 * rate_mps / w->repeat_hz : 0);
         (void)map_of(&chain, 2, 0);
         CHECK_NEAR(10 * log10(response(&chain, 8, middle_m) / (left * peak)), 0, 0.02);
@@ -214,12 +215,13 @@ static void pulse_doppler_folds_over_and_is_deaf(void **state)
         for (int blind = -1; blind <= 2; blind++) {
             const double complex *cell =
                 map_of(&chain, 20 * cell_m + folds * fold_m, -30 * row_mps + blind * blind_mps);
-            size_t               peak = 0;
+            size_t peak = 0;
             for (size_t i = 0; i < (size_t)samples * (size_t)rows; i++)
                 if (power_of(cell[i]) > power_of(cell[peak])) peak = i;
             CHECK_NEAR(waveform_appears_m(w, 20 * cell_m + folds * fold_m, 0), 20 * cell_m, 1e-3);
             CHECK(peak == (size_t)(rows / 2 - 30) * (size_t)samples + (size_t)(samples / 2 + 20));
-            /* within a pulse of 1 us its own Doppler takes sinc^2; 256 rows of 10 us of up to 1800 m/s walk by 4.6 m of 11.7 */
+            /* within a pulse of 1 us its own Doppler takes sinc^2; 256 rows of 10 us of up to 1800 m/s walk by 4.6 m
+             * of 11.7 */
             const double turn = pi_rad * 2 * (blind * blind_mps - 30 * row_mps) / c_mps * 16.5e9 * 1e-6;
             const double walk = 0.5 * pi_rad * (blind * blind_mps - 30 * row_mps) * rows * 1e-5 / cell_m;
             CHECK_NEAR(10 * log10(power_of(cell[peak]) / pow(sin(turn) / turn, 2)), 0, 0.05 + walk * walk);
@@ -231,8 +233,8 @@ static void pulse_doppler_folds_over_and_is_deaf(void **state)
     close_chain(&chain);
 }
 
-/* A sweep of 150 MHz in 100 us beats at 10.00692 kHz a metre; the greatest beat, 2048 in 100 us, is at 2046.58 m. An echo
- * from 1500 m misses the first 10.007 us. */
+/* A sweep of 150 MHz in 100 us beats at 10.00692 kHz a metre; the greatest beat, 2048 in 100 us, is at 2046.58 m. An
+ * echo from 1500 m misses the first 10.007 us. */
 static void fmcw_beats(void **state)
 {
     (void)state;
@@ -252,8 +254,8 @@ static void fmcw_beats(void **state)
     close_chain(&chain);
 }
 
-/* P G^2 lambda^2 sigma / ((4 pi)^3 R^4 L) times the energy's time over k T F, by hand for each row: of pulses 20 us x 64;
- * 0.5 us x 256 x 16; 1 us x 256; 100 us x 64, of which an echo from 1200 m misses 8.0055 %, 0.7248 dB. */
+/* P G^2 lambda^2 sigma / ((4 pi)^3 R^4 L) times the energy's time over k T F, by hand for each row: of pulses 20 us x
+ * 64; 0.5 us x 256 x 16; 1 us x 256; 100 us x 64, of which an echo from 1200 m misses 8.0055 %, 0.7248 dB. */
 static void signal_to_noise_is_the_radar_equations(void **state)
 {
     (void)state;
@@ -265,8 +267,8 @@ static void signal_to_noise_is_the_radar_equations(void **state)
         const Receiver     receiver = {.noise_figure = p->receiver.noise_figure};
         const size_t       plane = (size_t)p->wave.samples * (size_t)p->wave.pulses;
         const double       range_m = 1200, rcs_m2 = 10, wave_m = c_mps / p->wave.centre_hz;
-        const double gain = 0.75 * pow(pi_rad * p->antenna.diameter_m / wave_m, 2); /* of a dish tapered to 0.75 */
-        ReceiverReport     report;
+        const double   gain = 0.75 * pow(pi_rad * p->antenna.diameter_m / wave_m, 2); /* of a dish tapered to 0.75 */
+        ReceiverReport report;
         interval_receive(&report, &chain.interval, &receiver, 5, 0, 0);
         interval_process(&chain.map, chain.plan, &chain.interval, NULL);
         double floor_w = 0;
@@ -274,11 +276,11 @@ static void signal_to_noise_is_the_radar_equations(void **state)
             floor_w += power_of(chain.map.cell[i]) / (double)(interval_channels * plane);
         const AntennaGain at = antenna_gain(&p->antenna, 0, 0);
         const RadarLink   link = {p->power_w, 1, 1, wave_m, range_m, p->loss};
-        const double amplitude =
+        const double      amplitude =
             sqrt(radar_received_w(&link, rcs_m2)) * at.sum * at.sum * waveform_share(&p->wave, range_m);
         const double peak_w = power_of(
             map_of(&chain, 0, 0)[(size_t)p->wave.pulses / 2 * (size_t)p->wave.samples + (size_t)p->wave.samples / 2]);
-        const double      got_db = 10 * log10(peak_w * amplitude * amplitude / floor_w);
+        const double got_db = 10 * log10(peak_w * amplitude * amplitude / floor_w);
         const double received_w =
             p->power_w * gain * gain * wave_m * wave_m * rcs_m2 / (pow(4 * pi_rad, 3) * pow(range_m, 4) * p->loss);
         const double want_db =
@@ -290,8 +292,8 @@ static void signal_to_noise_is_the_radar_equations(void **state)
     }
 }
 
-/* Phase noise of a pulse is that of a row, of a stepped burst of each sample: exp(-s^2) of the peak is left, and the rest
- * is spread over Doppler alone, or over the whole map. */
+/* Phase noise of a pulse is that of a row, of a stepped burst of each sample: exp(-s^2) of the peak is left, and the
+ * rest is spread over Doppler alone, or over the whole map. */
 static void phase_noise_is_of_each_pulse(void **state)
 {
     (void)state;

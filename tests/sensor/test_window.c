@@ -29,9 +29,9 @@ static void figures_are_those_of_scipy(void **state)
         CHECK(window_parse(&window, judged[i].window) == NULL);
         CHECK(window_weights(w, 256, &window) == STATUS_OK && window_figures(&f, w, 256) == STATUS_OK);
         CHECK_NEAR(f.noise_bins, judged[i].noise_bins, 1e-9);
-        CHECK_NEAR(f.width_3db, judged[i].width, 1e-4);    /* of interpolation between its samples */
-        CHECK_NEAR(f.pslr_db, judged[i].pslr_db, 1e-3);    /* of a side lobe's top between them */
-        CHECK_NEAR(f.islr_db, judged[i].islr_db, 0.02);    /* of where the main lobe ends, by a sample */
+        CHECK_NEAR(f.width_3db, judged[i].width, 1e-4); /* of interpolation between its samples */
+        CHECK_NEAR(f.pslr_db, judged[i].pslr_db, 1e-3); /* of a side lobe's top between them */
+        CHECK_NEAR(f.islr_db, judged[i].islr_db, 0.02); /* of where the main lobe ends, by a sample */
         CHECK_NEAR(f.loss_db, 10 * log10(judged[i].noise_bins), 1e-8);
     }
 }
@@ -53,8 +53,9 @@ static void chebyshev_has_one_level(void **state)
 static void bad_words_are_refused(void **state)
 {
     (void)state;
-    static const char *const bad[] = {"",         "box",         "taylor",       "taylor:0:40", "taylor:5:9", "taylor:17:40",
-                                      "taylor:5", "chebyshev:9", "chebyshev:60x", "kaiser:-1",   "kaiser:nan", "kaiser:41"};
+    static const char *const bad[] = {
+        "",         "box",         "taylor",        "taylor:0:40", "taylor:5:9", "taylor:17:40",
+        "taylor:5", "chebyshev:9", "chebyshev:60x", "kaiser:-1",   "kaiser:nan", "kaiser:41"};
     Window w = {.kind = WINDOW_KAISER, .beta = 6};
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) CHECK(window_parse(&w, bad[i]) != NULL);
     CHECK(w.kind == WINDOW_KAISER && w.beta == 6);

@@ -1,5 +1,5 @@
-/* Where plants stand in an exercise: invented woods are clear of every path, by distances worked out here; real ones stay
- * and what begins in a trunk is counted; what is said of them. */
+/* Where plants stand in an exercise: invented woods are clear of every path, by distances worked out here; real ones
+ * stay and what begins in a trunk is counted; what is said of them. */
 #include "tests/check.h"
 
 #include "dis/pdu/decode.h"
@@ -11,7 +11,7 @@ static Config woods_on(void)
     Config config = config_default();
     strcpy(config.terrain.woods, "on");
     config.terrain.woods_half_m = 400;
-    config.terrain.spacing_m    = 8;
+    config.terrain.spacing_m = 8;
     return config;
 }
 
@@ -21,8 +21,10 @@ static void plant(WoodsChoice *out, Landscape *land, Choices *choices, const Exe
     HostPlan      plan = {0};
     GroundContact contact;
     choices->count = 0;
-    assert_int_equal(choice_ground(land, &contact, choices, &(ChoiceBasis){&e->survey, config, catalog, &plan}, &frame), STATUS_OK);
-    assert_int_equal(choice_woods(out, choices, &(ChoiceBasis){&e->survey, config, catalog, &plan}, land, NULL), STATUS_OK);
+    assert_int_equal(choice_ground(land, &contact, choices, &(ChoiceBasis){&e->survey, config, catalog, &plan}, &frame),
+                     STATUS_OK);
+    assert_int_equal(choice_woods(out, choices, &(ChoiceBasis){&e->survey, config, catalog, &plan}, land, NULL),
+                     STATUS_OK);
 }
 
 static double to_segment_m(const double p[2], const double a[2], const double b[2])
@@ -38,13 +40,17 @@ static double nearest_m(const Woods *woods, const double a[2], const double b[2]
     double nearest = INFINITY;
     for (int i = 0; i < woods->count; i++) {
         const Plant *plant = &woods->plant[i];
-        const double p[2] = {woods->origin_enu[0] + (double)plant->p_m[0], woods->origin_enu[1] + (double)plant->p_m[1]};
+        const double p[2] = {woods->origin_enu[0] + (double)plant->p_m[0],
+                             woods->origin_enu[1] + (double)plant->p_m[1]};
         nearest = fmin(nearest, to_segment_m(p, a, b));
     }
     return nearest;
 }
 
-static void enu(double out[3], const Landscape *land, const double p_ecef[3]) { enu_from_ecef(out, &land->frame, p_ecef); }
+static void enu(double out[3], const Landscape *land, const double p_ecef[3])
+{
+    enu_from_ecef(out, &land->frame, p_ecef);
+}
 
 /* Fewer trees than there would be without it are no proof: every foot is measured. */
 static void invented_woods_are_clear_of_every_path(void **state)
@@ -55,7 +61,7 @@ static void invented_woods_are_clear_of_every_path(void **state)
     Choices      choices;
     const Config config = woods_on();
     Exercise    *e = fresh();
-    stand(e, tank, 0, 0, 500, 8, 12);       /* 176 m eastwards */
+    stand(e, tank, 0, 0, 500, 8, 12); /* 176 m eastwards */
     stand(e, tank, -100, 150, 500, 0, 3);
     stand(e, man, 50, -80, 500, 1.4, 8);
     stand(e, missile, -200, -200, 510, 15, 16); /* 10 m up */
@@ -113,17 +119,18 @@ static bool said(const Choices *choices, const char *text)
 static void entities_in_trunks_are_counted_where_trees_stay(void **state)
 {
     (void)state;
-    WoodsChoice  woods;
-    Landscape    land;
-    Choices      choices;
-    Config       config = woods_on(), real = config;
-    HostPlan     plan = {0};
-    Exercise    *e = fresh();
+    WoodsChoice woods;
+    Landscape   land;
+    Choices     choices;
+    Config      config = woods_on(), real = config;
+    HostPlan    plan = {0};
+    Exercise   *e = fresh();
     strcpy(real.terrain.elevation, "given.tif");
     stand(e, tank, 0, 0, 500, 0, 3);
     plant(&woods, &land, &choices, e, &config);
     choice_woods_free(&woods);
-    assert_int_equal(choice_woods(&woods, &choices, &(ChoiceBasis){&e->survey, &real, catalog, &plan}, &land, NULL), STATUS_OK);
+    assert_int_equal(choice_woods(&woods, &choices, &(ChoiceBasis){&e->survey, &real, catalog, &plan}, &land, NULL),
+                     STATUS_OK);
     CHECK(woods.entities == 1 && woods.config.path_count == 0);
     double tree_m[3] = {NAN, NAN, 500};
     int    trunk;
@@ -138,14 +145,16 @@ static void entities_in_trunks_are_counted_where_trees_stay(void **state)
 
     stand(e, man, tree_m[0], tree_m[1], 500, 0, 3);
     choices.count = 0;
-    assert_int_equal(choice_woods(&woods, &choices, &(ChoiceBasis){&e->survey, &real, catalog, &plan}, &land, NULL), STATUS_OK);
+    assert_int_equal(choice_woods(&woods, &choices, &(ChoiceBasis){&e->survey, &real, catalog, &plan}, &land, NULL),
+                     STATUS_OK);
     CHECK(woods.entities == 2 && woods.in_trunks == 1 && woods.config.path_count == 0);
     CHECK(woods_near(&trunk, 1, &woods.woods, tree_m[0], tree_m[1], 1) > 0);
     CHECK(says(&choices, "1 of 2 entities on the ground begin within a trunk; real trees stay"));
     choice_woods_free(&woods);
 
     choices.count = 0;
-    assert_int_equal(choice_woods(&woods, &choices, &(ChoiceBasis){&e->survey, &config, catalog, &plan}, &land, NULL), STATUS_OK);
+    assert_int_equal(choice_woods(&woods, &choices, &(ChoiceBasis){&e->survey, &config, catalog, &plan}, &land, NULL),
+                     STATUS_OK);
     CHECK(woods.entities == 2 && woods.in_trunks == 0);
     CHECK(woods_near(&trunk, 1, &woods.woods, tree_m[0], tree_m[1], 1) == 0);
     CHECK(!said(&choices, "begin within a trunk"));
@@ -194,7 +203,7 @@ static void the_square_holds_the_exercise(void **state)
     HostPlan    plan = {0};
     double      p[3];
     config.terrain.woods_half_m = 0;
-    config.terrain.woods_trees  = 0; /* none: only where they would stand */
+    config.terrain.woods_trees = 0; /* none: only where they would stand */
     stand(e, tank, 0, 0, 500, 0, 3);
     stand(e, tank, 2500, 300, 500, 0, 3);
     stand(e, tank, 40000, 0, 500, 0, 3); /* of another fight */
@@ -202,8 +211,11 @@ static void the_square_holds_the_exercise(void **state)
     plan.end_s = 104;
     GroundContact contact;
     choices.count = 0;
-    assert_int_equal(choice_ground(&land, &contact, &choices, &(ChoiceBasis){&e->survey, &config, catalog, &plan}, &frame), STATUS_OK);
-    assert_int_equal(choice_woods(&woods, &choices, &(ChoiceBasis){&e->survey, &config, catalog, &plan}, &land, NULL), STATUS_OK);
+    assert_int_equal(
+        choice_ground(&land, &contact, &choices, &(ChoiceBasis){&e->survey, &config, catalog, &plan}, &frame),
+        STATUS_OK);
+    assert_int_equal(choice_woods(&woods, &choices, &(ChoiceBasis){&e->survey, &config, catalog, &plan}, &land, NULL),
+                     STATUS_OK);
     enu(p, &land, e->track[0].point[0].p_ecef);
     CHECK_NEAR(woods.config.centre_m[0], p[0], 0.1);
     CHECK_NEAR(woods.config.centre_m[1], p[1], 0.1);

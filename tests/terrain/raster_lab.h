@@ -50,24 +50,36 @@ static inline void lab_save(const LabFile *f, const char *path)
     CHECK(file && fwrite(f->octets, 1, f->count, file) == f->count && fclose(file) == 0);
 }
 
-/* A GeoTIFF in UTM 33 N, pixels of 10 m, side x side tiles of 64 x 64 floats; bit n of has: tile n is in the file. nodata: NAN:
- * none is declared. */
+/* A GeoTIFF in UTM 33 N, pixels of 10 m, side x side tiles of 64 x 64 floats; bit n of has: tile n is in the file.
+ * nodata: NAN: none is declared. */
 static inline float lab_height(int x, int y) { return (float)(300 + x + 0.25 * y); }
 static inline void  lab_tiff(LabFile *f, int side, uint32_t has, double nodata)
 {
     enum { tile = 64 };
     const uint32_t tiles = (uint32_t)(side * side), ascii = !isnan(nodata), tags = 14 + ascii;
-    const uint32_t lists = 8 + 2 + 12 * tags + 4, scale = lists + 8 * tiles, tie = scale + 24, keys = tie + 48, text = keys + 32;
-    const uint32_t data = text + 16;
+    const uint32_t lists = 8 + 2 + 12 * tags + 4, scale = lists + 8 * tiles, tie = scale + 24, keys = tie + 48,
+                   text = keys + 32;
+    const uint32_t        data = text + 16;
     static const uint16_t geo[16] = {1, 1, 0, 3, 1024, 0, 1, 1, 1025, 0, 1, 1, 3072, 0, 1, 32633};
     f->count = 0;
     lab_put(f, "II*\0", 4);
     lab_number(f, 8, 4, false);
     lab_number(f, tags, 2, false);
-    const uint32_t entry[15][4] = {{256, 4, 1, (uint32_t)(side * tile)}, {257, 4, 1, (uint32_t)(side * tile)}, {258, 3, 1, 32}, {259, 3, 1, 1},
-                                   {262, 3, 1, 1}, {277, 3, 1, 1}, {322, 3, 1, tile}, {323, 3, 1, tile}, {324, 4, tiles, lists},
-                                   {325, 4, tiles, lists + 4 * tiles}, {339, 3, 1, 3}, {33550, 12, 3, scale}, {33922, 12, 6, tie},
-                                   {34735, 3, 16, keys}, {42113, 2, 16, text}};
+    const uint32_t entry[15][4] = {{256, 4, 1, (uint32_t)(side * tile)},
+                                   {257, 4, 1, (uint32_t)(side * tile)},
+                                   {258, 3, 1, 32},
+                                   {259, 3, 1, 1},
+                                   {262, 3, 1, 1},
+                                   {277, 3, 1, 1},
+                                   {322, 3, 1, tile},
+                                   {323, 3, 1, tile},
+                                   {324, 4, tiles, lists},
+                                   {325, 4, tiles, lists + 4 * tiles},
+                                   {339, 3, 1, 3},
+                                   {33550, 12, 3, scale},
+                                   {33922, 12, 6, tie},
+                                   {34735, 3, 16, keys},
+                                   {42113, 2, 16, text}};
     for (uint32_t t = 0; t < tags; t++) {
         lab_number(f, entry[t][0], 2, false);
         lab_number(f, entry[t][1], 2, false);
@@ -95,12 +107,14 @@ static inline void  lab_tiff(LabFile *f, int side, uint32_t has, double nodata)
 static inline void lab_vrt(LabFile *f, const char *source)
 {
     f->count = 0;
-    f->count = (size_t)snprintf((char *)f->octets, sizeof f->octets,
+    f->count = (size_t)snprintf(
+        (char *)f->octets, sizeof f->octets,
         "<VRTDataset rasterXSize=\"64\" rasterYSize=\"64\"><SRS>EPSG:32633</SRS>"
         "<GeoTransform>500000,10,0,5200000,0,-10</GeoTransform><VRTRasterBand dataType=\"Float32\" band=\"1\">"
         "<NoDataValue>-9999</NoDataValue><SimpleSource><SourceFilename relativeToVRT=\"0\">%s</SourceFilename>"
         "<SourceBand>1</SourceBand><SrcRect xOff=\"0\" yOff=\"0\" xSize=\"64\" ySize=\"64\"/>"
-        "<DstRect xOff=\"0\" yOff=\"0\" xSize=\"64\" ySize=\"64\"/></SimpleSource></VRTRasterBand></VRTDataset>", source);
+        "<DstRect xOff=\"0\" yOff=\"0\" xSize=\"64\" ySize=\"64\"/></SimpleSource></VRTRasterBand></VRTDataset>",
+        source);
 }
 
 /* ---- processes: the one that starts readers, and the readers ---- */
@@ -115,7 +129,8 @@ static inline pid_t lab_child_of(pid_t parent)
         if (sscanf(entry->d_name, "%d", &number) != 1) continue;
         snprintf(path, sizeof path, "/proc/%d/stat", number);
         FILE *stat = fopen(path, "r");
-        if (stat && fscanf(stat, "%*d (pitviper-raster) %c %d", &state, &of) == 2 && of == parent && state != 'Z') found = number;
+        if (stat && fscanf(stat, "%*d (pitviper-raster) %c %d", &state, &of) == 2 && of == parent && state != 'Z')
+            found = number;
         if (stat) fclose(stat);
     }
     if (all) closedir(all);

@@ -1,5 +1,6 @@
-/* tests/terrain/rasters_hostile.c: in the place of a reader of rasters: a file has taken it over, and its answers are spoilt: of
- * sound ones to begin with a field, some octets or all of it, one more often than another, while the program reads them. */
+/* tests/terrain/rasters_hostile.c: in the place of a reader of rasters: a file has taken it over, and its answers are
+ * spoilt: of sound ones to begin with a field, some octets or all of it, one more often than another, while the program
+ * reads them. */
 #include "terrain/elevation/raster_child.h"
 
 #include <limits.h>
@@ -21,13 +22,14 @@ static uint32_t chance(uint32_t below)
 
 static int32_t odd_number(void)
 {
-    static const int32_t some[] = {0, 1, -1, 2, 3, 64, 4096, 65535, 65536, 65537, 100000000, INT_MAX / 4, INT_MAX - 1, INT_MAX, INT_MIN};
+    static const int32_t some[] = {0,     1,     -1,        2,           3,           64,      4096,   65535,
+                                   65536, 65537, 100000000, INT_MAX / 4, INT_MAX - 1, INT_MAX, INT_MIN};
     return chance(4) ? some[chance(sizeof some / sizeof *some)] : (int32_t)(chance(1u << 31) - (1u << 30));
 }
 
 static void spoil(void *what, size_t octets)
 {
-    uint8_t *at = what;
+    uint8_t       *at = what;
     const uint32_t times = 1 + chance(3);
     for (uint32_t n = 0; n < times; n++) {
         const int32_t odd = odd_number();
@@ -42,8 +44,16 @@ static void answer(WireChannel *c)
     static const double bad[] = {0, -1, 1e308, (double)INFINITY, (double)NAN};
     const WireRequest  *q = &c->request;
     c->reply = (WireReply){.status = STATUS_OK, .count = 1 + (int32_t)chance(2)};
-    WireRaster raster = {.posting_m = {1, 1}, .metres_per_unit = 1, .data_share = 1, .width = 40, .height = 30, .bands = 1,
-                         .order = 1, .row_block = 64, .sheet_count = 1 + (int32_t)chance(3), .sparse = (uint8_t)chance(2)};
+    WireRaster raster = {.posting_m = {1, 1},
+                         .metres_per_unit = 1,
+                         .data_share = 1,
+                         .width = 40,
+                         .height = 30,
+                         .bands = 1,
+                         .order = 1,
+                         .row_block = 64,
+                         .sheet_count = 1 + (int32_t)chance(3),
+                         .sparse = (uint8_t)chance(2)};
     if (q->ask == WIRE_RASTER) {
         memcpy(c->data, &raster, sizeof raster);
         if (chance(3) == 0) spoil(c->data, sizeof raster);
@@ -60,7 +70,7 @@ static void answer(WireChannel *c)
     } else if (q->ask >= WIRE_PX_FROM_EARTH) {
         for (size_t n = 0; n < 4096; n++) c->data[n] = (uint8_t)chance(256);
         c->reply.uniform = (int32_t)chance(2);
-        c->reply.value   = (float)bad[chance(5)];
+        c->reply.value = (float)bad[chance(5)];
     }
     if (chance(8) == 0) spoil(&c->reply, sizeof c->reply);
     if (chance(6) == 0) memset(c->at, 'x', sizeof c->at); /* no end */
@@ -75,7 +85,8 @@ static void answer(WireChannel *c)
 static void serve(const int descriptor[wire_descriptors])
 {
     char         octet;
-    WireChannel *channels = mmap(NULL, wire_channels * sizeof *channels, PROT_READ | PROT_WRITE, MAP_SHARED, descriptor[wire_channels], 0);
+    WireChannel *channels =
+        mmap(NULL, wire_channels * sizeof *channels, PROT_READ | PROT_WRITE, MAP_SHARED, descriptor[wire_channels], 0);
     if (channels == MAP_FAILED) _exit(3);
     (void)!ftruncate(descriptor[wire_channels], 4096); /* the program would fault: the size is sealed */
     const pid_t spoiler = fork();
@@ -105,8 +116,9 @@ int main(void)
             struct cmsghdr header;
             char           octets[CMSG_SPACE(wire_descriptors * sizeof(int))];
         } control;
-        struct msghdr message = {.msg_iov = &text, .msg_iovlen = 1, .msg_control = &control, .msg_controllen = sizeof control};
-        int           descriptor[wire_descriptors], how = 0;
+        struct msghdr message = {
+            .msg_iov = &text, .msg_iovlen = 1, .msg_control = &control, .msg_controllen = sizeof control};
+        int descriptor[wire_descriptors], how = 0;
         if (recvmsg(wire_orders, &message, 0) != (ssize_t)sizeof order) return 0;
         int32_t answered = 0;
         if (order.kind == WIRE_START) {

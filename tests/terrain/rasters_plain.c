@@ -1,6 +1,6 @@
 /* tests/terrain/rasters_plain.c: a reader of rasters whose GDAL has none of the options that keep it from servers; as
- * rasters_open it has no confinement either, and as rasters_by_name it looks at names as where Landlock is missing: what
- * test_raster_reader.c compares the product with. */
+ * rasters_open it has no confinement either, and as rasters_by_name it looks at names as where Landlock is missing:
+ * what test_raster_reader.c compares the product with. */
 #include "pitviper_confine.h"
 
 #include <cpl_conv.h>

@@ -24,14 +24,21 @@ static inline uint8_t lab_surface(double x_m, double y_m)
 static inline StorePlan lab_plan(void)
 {
     return (StorePlan){
-        .origin = {0.77, -2.148, 120}, .level_count = 2,
+        .origin = {0.77, -2.148, 120},
+        .level_count = 2,
         .level = {{.nx = lab_nx, .ny = lab_ny, .x0_m = -384, .y0_m = -320, .spacing_m = 1, .seam_shift = -1},
                   {.nx = lab_wide_nx, .ny = lab_wide_ny, .x0_m = -640, .y0_m = -512, .spacing_m = 8, .seam_shift = -1}},
         .surface = {{768, 640, -384, -320, 1}, {160, 128, -640, -512, 8}},
         .albedo = {lab_photo_nx, lab_photo_ny, -250, -160, 1},
-        .canopy_height = {192, 160, -384, -320, 4}, .canopy_cover = {192, 160, -384, -320, 4},
-        .posting_m = 1, .geoid_m = -22.5, .seed = 1, .options = "--elevation\na.tif", .crs = "EPSG:26910",
-        .vertical_datum = "NAVD88", .provenance = "made up"};
+        .canopy_height = {192, 160, -384, -320, 4},
+        .canopy_cover = {192, 160, -384, -320, 4},
+        .posting_m = 1,
+        .geoid_m = -22.5,
+        .seed = 1,
+        .options = "--elevation\na.tif",
+        .crs = "EPSG:26910",
+        .vertical_datum = "NAVD88",
+        .provenance = "made up"};
 }
 
 static inline void lab_posts(StoreWriter *w, const StorePlan *plan, int index, int at_a_time)
@@ -44,8 +51,9 @@ static inline void lab_posts(StoreWriter *w, const StorePlan *plan, int index, i
             z_m[(size_t)j * (size_t)l->nx + (size_t)i] =
                 lab_height_m(l->x0_m + i * l->spacing_m, l->y0_m + j * l->spacing_m);
     for (int j = 0; j < l->ny; j += at_a_time)
-        assert_int_equal(store_write_posts(w, index, l->ny - j < at_a_time ? l->ny - j : at_a_time,
-                                           z_m + (size_t)j * (size_t)l->nx), STATUS_OK);
+        assert_int_equal(
+            store_write_posts(w, index, l->ny - j < at_a_time ? l->ny - j : at_a_time, z_m + (size_t)j * (size_t)l->nx),
+            STATUS_OK);
     free(z_m);
 }
 
@@ -63,7 +71,7 @@ static inline void lab_surfaces(StoreWriter *w, const StorePlan *plan, int windo
 static inline void lab_albedo_row(uint8_t *rgba, int j)
 {
     for (int i = 0; i < lab_photo_nx; i++) {
-        rgba[4 * i]     = (uint8_t)(90 + 60 * sin(i / 31.0));
+        rgba[4 * i] = (uint8_t)(90 + 60 * sin(i / 31.0));
         rgba[4 * i + 1] = (uint8_t)(100 + 50 * cos(j / 17.0));
         rgba[4 * i + 2] = (uint8_t)(70 + (i * 7 + j * 3) % 20);
         rgba[4 * i + 3] = i + j > 60 ? 255 : 0;

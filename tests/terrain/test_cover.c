@@ -48,13 +48,13 @@ static uint64_t field_of(uint64_t seed, int64_t i, int64_t j)
 
 static SurfaceClass crop(uint64_t seed, uint64_t id, int64_t i, int64_t j)
 {
-    static const double arable[] = {0.38, 0.58, 0.70, 0.88, 1, 1}, pasture[] = {0.10, 0.15, 0.20, 0.62, 0.90, 1};
+    static const double       arable[] = {0.38, 0.58, 0.70, 0.88, 1, 1}, pasture[] = {0.10, 0.15, 0.20, 0.62, 0.90, 1};
     static const SurfaceClass surface[] = {SURFACE_CROP,  SURFACE_PLOUGHED,  SURFACE_BARE_SOIL,
                                            SURFACE_GRASS, SURFACE_DRY_GRASS, SURFACE_SCRUB};
-    const double *share = noise(seed + 13, 1900, (double)(i >> 1) * 320, (double)(j >> 1) * 320) > -0.15 ? arable
-        : pasture;
-    const double  u = unit(mixed(id, 7, 0));
-    int           n = 0;
+    const double             *share =
+        noise(seed + 13, 1900, (double)(i >> 1) * 320, (double)(j >> 1) * 320) > -0.15 ? arable : pasture;
+    const double u = unit(mixed(id, 7, 0));
+    int          n = 0;
     while (u >= share[n]) n++;
     return surface[n];
 }
@@ -75,8 +75,8 @@ static double second_noise(uint64_t seed, double wavelength_m, double x_m, doubl
     double         sum = 0;
     for (int n = 0; n < 4; n++) {
         const double u = n & 1 ? fx - i : 1 - (fx - i), v = n & 2 ? fy - j : 1 - (fy - j);
-        sum += second_corner(key, (int64_t)i + (n & 1), (int64_t)j + (n >> 1)) * u * u * (3 - 2 * u) * v * v *
-               (3 - 2 * v);
+        sum +=
+            second_corner(key, (int64_t)i + (n & 1), (int64_t)j + (n >> 1)) * u * u * (3 - 2 * u) * v * v * (3 - 2 * v);
     }
     return sum;
 }
@@ -101,8 +101,7 @@ static SurfaceClass plain_surface(const Landscape *land, uint64_t seed, double x
     const double slope = fmax((isfinite(steep) ? steep : 0) - sqrt(x_m * x_m + y_m * y_m) / 6371e3, 0);
     const double middle = noise(seed + 11, 83, x_m, y_m), wander = wander_at(seed, x_m, y_m);
     const double patch = noise(seed + 12, 17, x_m, y_m);
-    const double wild = noise(seed + 10, 310, x_m, y_m) + 0.5 * middle + 0.14 * patch +
-                        4 * slope;
+    const double wild = noise(seed + 10, 310, x_m, y_m) + 0.5 * middle + 0.14 * patch + 4 * slope;
     const double wet = landscape_wetness(land, x_m, y_m);
     const double grown = wild + 0.2 * fmax(wet, 0) - 0.88 + 0.02 * wander;
     const double stony = wild - 0.3 * wet - 1.24 + 0.12 * fmin(slope / 0.2, 1) + 0.02 * wander;
@@ -117,10 +116,10 @@ static SurfaceClass plain_surface(const Landscape *land, uint64_t seed, double x
         bent_x += bend_m[n] * noise(seed + 26 + n, bend_wave_m[n], x_m, y_m);
         bent_y += bend_m[n] * second_noise(seed + 26 + n, bend_wave_m[n], x_m, y_m);
     }
-    double    site[9][3]; /* place, square of the distance */
-    uint64_t  id[9], block[9];
+    double        site[9][3]; /* place, square of the distance */
+    uint64_t      id[9], block[9];
     const int64_t ci = (int64_t)floor(bent_x / cell_m), cj = (int64_t)floor(bent_y / cell_m);
-    int       best = 0;
+    int           best = 0;
     for (int n = 0; n < 9; n++) {
         const int64_t  i = ci + n % 3 - 1, j = cj + n / 3 - 1;
         const uint64_t h = mixed(seed, i, j);
@@ -158,8 +157,8 @@ static SurfaceClass plain_surface(const Landscape *land, uint64_t seed, double x
 /* ---- the ground that is asked ------------------------------------------------------------------ */
 
 enum { places = 120000 };
-static double   x_m[places], y_m[places];
-static uint8_t  surface[places];
+static double    x_m[places], y_m[places];
+static uint8_t   surface[places];
 static Landscape land;
 static uint64_t  cover_seed;
 
@@ -228,17 +227,17 @@ static void company_changes_nothing(void **state)
     landscape_surfaces(surface, &land, places, x_m, y_m);
     for (int n = 0; n < some; n++) CHECK(landscape_surface(&land, x_m[n], y_m[n]) == surface[n]);
     /* in another order, from another place in the eight */
-    static double   back_x_m[some], back_y_m[some];
+    static double back_x_m[some], back_y_m[some];
     for (int n = 0; n < some - 3; n++) {
         const int from = some - 1 - n;
         back_x_m[n] = x_m[from], back_y_m[n] = y_m[from];
     }
     landscape_surfaces(again, &land, some - 3, back_x_m, back_y_m);
-    for (int n = 0; n < some - 3; n++)
-        CHECK(again[n] == surface[some - 1 - n]);
+    for (int n = 0; n < some - 3; n++) CHECK(again[n] == surface[some - 1 - n]);
 }
 
-/* Squares of a pixel's size: where all of one class, it is that; on borders as much of each class, within a few places. */
+/* Squares of a pixel's size: where all of one class, it is that; on borders as much of each class, within a few places.
+ */
 static void squares_are_their_places(void **state)
 {
     enum { squares = 4000, a_side = 8, all = a_side * a_side };
@@ -248,9 +247,9 @@ static void squares_are_their_places(void **state)
         int    bordered = 0, same = 0;
         double off = 0;
         for (int n = 0; n < squares; n++) {
-            double  x[all], y[all];
-            uint8_t got[all], want[all];
-            int     count[2][SURFACE_COUNT] = {{0}}, differ = 0;
+            double       x[all], y[all];
+            uint8_t      got[all], want[all];
+            int          count[2][SURFACE_COUNT] = {{0}}, differ = 0;
             const double east_m = 2600 * (2 * random_uniform(12, 0, 0, (uint64_t)n) - 1);
             const double north_m = 2600 * (2 * random_uniform(12, 1, 0, (uint64_t)n) - 1);
             for (int k = 0; k < all; k++) {
@@ -265,8 +264,8 @@ static void squares_are_their_places(void **state)
             same += memcmp(got, want, sizeof got) == 0;
             off += 0.5 * differ / all;
         }
-        print_message("squares of %.1f x %.1f m: %d of %d on borders, %d the same, %.2f %% of their area off\n", sides_m[size][0],
-                      sides_m[size][1], bordered, (int)squares, same, 100 * off / bordered);
+        print_message("squares of %.1f x %.1f m: %d of %d on borders, %d the same, %.2f %% of their area off\n",
+                      sides_m[size][0], sides_m[size][1], bordered, (int)squares, same, 100 * off / bordered);
         CHECK(bordered > 20 && same > 0.85 * squares);
         CHECK(off / bordered < 0.03);
     }
@@ -294,11 +293,14 @@ static void borders_of_files_have_no_steps(void **state)
     for (int k = 0; k < 3; k++) {
         const double c = cell[k];
         /* its ground, with cover of its own */
-        LandscapeParts parts = {.frame = land.frame, .config = land.config, .elevation = land.elevation, .cover_seed = 5,
-                                .cover = {{.nx = side, .ny = side, .x0_m = -32 * c, .y0_m = -32 * c, .cell_m = c,
-                                           .surface = classes}}};
-        Landscape      of;
-        const char    *why;
+        LandscapeParts parts = {
+            .frame = land.frame,
+            .config = land.config,
+            .elevation = land.elevation,
+            .cover_seed = 5,
+            .cover = {{.nx = side, .ny = side, .x0_m = -32 * c, .y0_m = -32 * c, .cell_m = c, .surface = classes}}};
+        Landscape   of;
+        const char *why;
         for (int n = 0; n < side * side; n++)
             classes[n] = n / side - 31.5 < 0.4 * (n % side - 31.5) ? SURFACE_CROP : SURFACE_SCRUB;
         CHECK(landscape_from_parts(&of, &why, &parts) == STATUS_OK);

@@ -12,7 +12,9 @@ static int open_table(void **state)
     char path[1024];
     (void)state;
     return etc_path(path, sizeof path, "ground_detail.csv") &&
-           detail_table_open(&table, path, detail_cut_off) == STATUS_OK ? 0 : -1;
+                   detail_table_open(&table, path, detail_cut_off) == STATUS_OK
+               ? 0
+               : -1;
 }
 
 static int close_table(void **state)
@@ -23,14 +25,17 @@ static int close_table(void **state)
 }
 
 enum { most = 65536 };
-static double  x_m[most], y_m[most];
+static double x_m[most], y_m[most];
 static uint8_t class[most];
-static float   across_m[most], along_m[most], found[detail_fields][most], slope_y[most];
+static float across_m[most], along_m[most], found[detail_fields][most], slope_y[most];
 
 static void ask(int count, double across, double elongation)
 {
-    const GroundDetail out = {.albedo = found[DETAIL_ALBEDO], .warmth_k = found[DETAIL_WARMTH],
-                              .radar = found[DETAIL_RADAR], .slope_x = found[DETAIL_HEIGHT], .slope_y = slope_y};
+    const GroundDetail out = {.albedo = found[DETAIL_ALBEDO],
+                              .warmth_k = found[DETAIL_WARMTH],
+                              .radar = found[DETAIL_RADAR],
+                              .slope_x = found[DETAIL_HEIGHT],
+                              .slope_y = slope_y};
     for (int n = 0; n < count; n++) across_m[n] = (float)across, along_m[n] = (float)(across * elongation);
     detail_at(&out, table, &bare, count, class, x_m, y_m, &(GroundFootprint){across_m, along_m});
 }
@@ -56,10 +61,7 @@ static void corner(double value[2], uint32_t key, int64_t i, int64_t j)
     value[0] = (high + low) * unit, value[1] = (high - low) * unit;
 }
 
-static double bump(double t)
-{
-    return cos(pi_rad / 2 * t * t * (3 - 2 * t));
-}
+static double bump(double t) { return cos(pi_rad / 2 * t * t * (3 - 2 * t)); }
 
 static void plain_octave(double value[2], int n, double x, double y)
 {
@@ -90,9 +92,9 @@ static void eight_at_once_are_the_plain_form(void **state)
         double octave[detail_octaves][2];
         for (int k = 0; k < detail_octaves; k++) plain_octave(octave[k], k, x_m[n], y_m[n]);
         for (int f = 0; f < DETAIL_HEIGHT; f++) {
-            const int             c = class[n];
+            const int            c = class[n];
             const DetailWeights *w = &table->weights[c][0][0];
-            double                g = 0, variance = 0;
+            double               g = 0, variance = 0;
             for (int k = 0; k < detail_octaves; k++) {
                 const double follows = table->statistics[c][f].follows;
                 g += (double)w->of[f][k] * (follows * octave[k][0] + sqrt(1 - follows * follows) * octave[k][1]);
@@ -118,20 +120,21 @@ static void company_changes_nothing(void **state)
         across_m[n] = (float)(0.01 * pow(1e5, random_uniform(9, 4, 0, (uint64_t)n)));
         along_m[n] = across_m[n] * (float)(1 + 50 * random_uniform(9, 5, 0, (uint64_t)n));
     }
-    GroundDetail out = {.albedo = mixed_list[0], .warmth_k = mixed_list[1], .radar = mixed_list[2],
-                        .slope_x = mixed_list[3], .slope_y = slope_y};
+    GroundDetail out = {.albedo = mixed_list[0],
+                        .warmth_k = mixed_list[1],
+                        .radar = mixed_list[2],
+                        .slope_x = mixed_list[3],
+                        .slope_y = slope_y};
     detail_at(&out, table, &bare, some, class, x_m, y_m, &(GroundFootprint){across_m, along_m});
     for (int n = 0; n < some; n++) {
         float              alone[5];
-        const GroundDetail one = {.albedo = alone, .warmth_k = alone + 1, .radar = alone + 2, .slope_x = alone + 3,
-                                  .slope_y = alone + 4};
-        detail_at(&one, table, &bare, 1, class + n, x_m + n, y_m + n, &(GroundFootprint){across_m + n,
-                                                                                                 along_m + n});
+        const GroundDetail one = {
+            .albedo = alone, .warmth_k = alone + 1, .radar = alone + 2, .slope_x = alone + 3, .slope_y = alone + 4};
+        detail_at(&one, table, &bare, 1, class + n, x_m + n, y_m + n, &(GroundFootprint){across_m + n, along_m + n});
         for (int f = 0; f < detail_fields; f++) CHECK(alone[f] == mixed_list[f][n]);
         CHECK(alone[4] == slope_y[n] && alone[0] > 0 && alone[2] > 0);
         const GroundDetail only = {.radar = alone};
-        detail_at(&only, table, &bare, 1, class + n, x_m + n, y_m + n, &(GroundFootprint){across_m + n,
-                                                                                                  along_m + n});
+        detail_at(&only, table, &bare, 1, class + n, x_m + n, y_m + n, &(GroundFootprint){across_m + n, along_m + n});
         CHECK(alone[0] == mixed_list[2][n]);
     }
 }
@@ -168,9 +171,8 @@ static void statistics_are_the_tables(void **state)
             memset(class, c, sizeof class);
             for (int n = 0; n < places; n++)
                 for (int k = 0; k <= lags; k++) {
-                    const double d_m = k ? s->length_m * ldexp(1, k - 2) : 0, angle = 2 * pi_rad * random_uniform(9,
-                                                                                                                  8,
-                                                                                                                      0, (uint64_t)n);
+                    const double d_m = k ? s->length_m * ldexp(1, k - 2) : 0,
+                                 angle = 2 * pi_rad * random_uniform(9, 8, 0, (uint64_t)n);
                     x_m[n + k * places] = far_place(6, n + places * c) + d_m * cos(angle);
                     y_m[n + k * places] = far_place(7, n + places * c) + d_m * sin(angle);
                 }
@@ -180,9 +182,9 @@ static void statistics_are_the_tables(void **state)
             worst_skew = fmax(worst_skew, fabs(m.skew - s->skew));
             for (int k = 1; k <= lags; k++) {
                 const double d_m = s->length_m * ldexp(1, k - 2);
-                const double want = (1 - s->far_share) * exp(-d_m / s->length_m) + s->far_share *
-                    exp(-d_m / s->far_length_m);
-                double       sum = 0;
+                const double want =
+                    (1 - s->far_share) * exp(-d_m / s->length_m) + s->far_share * exp(-d_m / s->far_length_m);
+                double sum = 0;
                 for (int n = 0; n < places; n++)
                     sum += ((double)found[f][n] - m.mean) * ((double)found[f][n + k * places] - m.mean) / places;
                 worst_correlation = fmax(worst_correlation, fabs(sum / m.variance - want));
@@ -199,9 +201,12 @@ static void statistics_are_the_tables(void **state)
 static void filtered_is_the_mean_over_the_footprint(void **state)
 {
     enum { places = 2500, side = 16, pixels = 3 };
-    static const struct { SurfaceClass class; double across_m, elongation; } tried[] = {
-        {SURFACE_GRASS, 0.15, 1}, {SURFACE_GRASS, 0.6, 1}, {SURFACE_GRASS, 2.5, 1}, {SURFACE_GRASS, 0.3, 5},
-        {SURFACE_GRASS, 1, 3}, {SURFACE_BARE_SOIL, 0.5, 2.5}, {SURFACE_SCRUB, 0.9, 1.6}, {SURFACE_ROCK, 1.7, 5}};
+    static const struct {
+        SurfaceClass class;
+        double across_m, elongation;
+    } tried[] = {{SURFACE_GRASS, 0.15, 1},  {SURFACE_GRASS, 0.6, 1}, {SURFACE_GRASS, 2.5, 1},
+                 {SURFACE_GRASS, 0.3, 5},   {SURFACE_GRASS, 1, 3},   {SURFACE_BARE_SOIL, 0.5, 2.5},
+                 {SURFACE_SCRUB, 0.9, 1.6}, {SURFACE_ROCK, 1.7, 5}};
     static float mean[DETAIL_HEIGHT][pixels][places], quick[DETAIL_HEIGHT][pixels][places];
     (void)state;
     for (size_t t = 0; t < sizeof tried / sizeof *tried; t++) {
@@ -228,15 +233,16 @@ static void filtered_is_the_mean_over_the_footprint(void **state)
             double        of[2][2] = {{0}};
             for (int p = 1; p < pixels; p++)
                 for (int n = 0; n < places; n++) {
-                    of[0][p - 1] += ((double)mean[f][0][n] - a.mean) * ((double)mean[f][p][n] - a.mean) / (places *
-                                                                                                           a.variance);
-                    of[1][p - 1] += ((double)quick[f][0][n] - b.mean) * ((double)quick[f][p][n] - b.mean) / (places *
-                                                                                                             b.variance);
+                    of[0][p - 1] +=
+                        ((double)mean[f][0][n] - a.mean) * ((double)mean[f][p][n] - a.mean) / (places * a.variance);
+                    of[1][p - 1] +=
+                        ((double)quick[f][0][n] - b.mean) * ((double)quick[f][p][n] - b.mean) / (places * b.variance);
                 }
             print_message("class %d %.2f m x %g field %d: variance %.3f, skew %.2f for %.2f, across %.2f for %.2f, "
                           "along "
-                          "%.2f for %.2f\n", tried[t].class, tried[t].across_m, tried[t].elongation, f,
-                          b.variance / a.variance, b.skew, a.skew, of[1][0], of[0][0], of[1][1], of[0][1]);
+                          "%.2f for %.2f\n",
+                          tried[t].class, tried[t].across_m, tried[t].elongation, f, b.variance / a.variance, b.skew,
+                          a.skew, of[1][0], of[0][0], of[1][1], of[0][1]);
             CHECK_NEAR(b.variance / a.variance, 1, 0.10);
             CHECK_NEAR(b.skew, a.skew, fmax(0.25 * fabs(a.skew), 0.15));
             for (int p = 0; p < 2; p++) CHECK_NEAR(of[1][p], of[0][p], 0.10);
@@ -290,9 +296,9 @@ static void no_seams(void **state)
 
 static void without_a_table_or_a_place(void **state)
 {
-    static const double places[][2] = {{1, 1}, {NAN, 1}, {1, INFINITY}, {1e300, 0}};
+    static const double  places[][2] = {{1, 1}, {NAN, 1}, {1, INFINITY}, {1e300, 0}};
     static const uint8_t classes[] = {SURFACE_GRASS, SURFACE_NONE, SURFACE_COUNT, 255};
-    static const float footprints[] = {1, NAN, -1, 0, INFINITY, 1e30f};
+    static const float   footprints[] = {1, NAN, -1, 0, INFINITY, 1e30f};
     (void)state;
     for (int t = 0; t < 2; t++)
         for (int p = 0; p < 4; p++)
@@ -301,7 +307,7 @@ static void without_a_table_or_a_place(void **state)
                     float              of[5] = {9, 9, 9, 9, 9};
                     const GroundDetail out = {of, of + 1, of + 2, of + 3, of + 4};
                     detail_at(&out, t ? table : NULL, &bare, 1, classes + c, &places[p][0], &places[p][1],
-                                      &(GroundFootprint){footprints + w, footprints + (w + c) % 6});
+                              &(GroundFootprint){footprints + w, footprints + (w + c) % 6});
                     const bool even = of[0] == 1 && of[1] == 0 && of[2] == 1 && of[3] == 0 && of[4] == 0;
                     if (!t || c > 0 || p == 1 || p == 2) CHECK(even);
                     for (int k = 0; k < 5; k++) CHECK(isfinite(of[k]));
@@ -313,9 +319,13 @@ static void without_a_table_or_a_place(void **state)
 static void bad_tables_are_refused(void **state)
 {
     static const char head[] = "surface,field,sigma,length_m,far_share,far_length_m,skew,follows_albedo,source\n";
-    static const char *const rows[] = {"", "grass,albedo,2,1,0,1,0,1,x\n", "grass,albedo,0.1,0,0,1,0,1,x\n",
-                                       "grass,height,0.06,1,0,1,0,1,x\n", "grass,albedo,0.1,1,0,1,0,0.5,x\n",
-                                       "moss,albedo,0.1,1,0,1,0,1,x\n", "grass,smell,0.1,1,0,1,0,1,x\n",
+    static const char *const rows[] = {"",
+                                       "grass,albedo,2,1,0,1,0,1,x\n",
+                                       "grass,albedo,0.1,0,0,1,0,1,x\n",
+                                       "grass,height,0.06,1,0,1,0,1,x\n",
+                                       "grass,albedo,0.1,1,0,1,0,0.5,x\n",
+                                       "moss,albedo,0.1,1,0,1,0,1,x\n",
+                                       "grass,smell,0.1,1,0,1,0,1,x\n",
                                        "grass,albedo,0.1,1,0,1,0,1,x\ngrass,albedo,0.1,1,0,1,0,1,x\n",
                                        "grass,albedo,nan,1,0,1,0,1,x\n"};
     (void)state;

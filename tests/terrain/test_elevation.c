@@ -76,7 +76,7 @@ static void check_rise(const ElevationLevel *level, int k, int i, int j)
             }
         }
     const ElevationRise *got = &level->rise[k][j * level->pyramid_nx[k] + i];
-    const int unit = 1 << level->rise_shift, up = unit - 1;
+    const int            unit = 1 << level->rise_shift, up = unit - 1;
     CHECK(got->east == (east + up) / unit && got->west == (west + up) / unit);
     CHECK(got->north == (north + up) / unit && got->south == (south + up) / unit);
 }
@@ -174,7 +174,7 @@ static void tiles_share_their_edges(void **state)
                         const int a = (i + k % 3 - 1) / elevation_tile_cells;
                         const int b = (j + k / 3 - 1) / elevation_tile_cells;
                         if (i + k % 3 < 1 || j + k / 3 < 1 || a >= level->tiles_x || b >= level->tiles_y) continue;
-                        const int near = 1 << level->tile[b * level->tiles_x + a].shift;
+                        const int  near = 1 << level->tile[b * level->tiles_x + a].shift;
                         const bool shares = (i % elevation_tile_cells == 0 || a == i / elevation_tile_cells) &&
                                             (j % elevation_tile_cells == 0 || b == j / elevation_tile_cells);
                         if (shares && near > unit) unit = near;
@@ -283,9 +283,12 @@ static void every_surface_is_made_of_something(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(one_cell_is_two_triangles), cmocka_unit_test(the_inner_level_wins),
-        cmocka_unit_test(pyramids_are_maxima),       cmocka_unit_test(tiles_share_their_edges),
-        cmocka_unit_test(borrowed_arrays_are_left_alone), cmocka_unit_test(large_levels_have_small_pyramids),
+        cmocka_unit_test(one_cell_is_two_triangles),
+        cmocka_unit_test(the_inner_level_wins),
+        cmocka_unit_test(pyramids_are_maxima),
+        cmocka_unit_test(tiles_share_their_edges),
+        cmocka_unit_test(borrowed_arrays_are_left_alone),
+        cmocka_unit_test(large_levels_have_small_pyramids),
         cmocka_unit_test(bad_sizes_are_refused),
         cmocka_unit_test(every_surface_is_made_of_something),
     };

@@ -34,10 +34,10 @@ typedef struct Judged {
 /* Heights at random places of one file, those at voids left out. */
 static int ask_judge(Judged *out, const char *path, int width, int height)
 {
-    
-    char  command[1200], px_path[64], post_path[64];
+
+    char   command[1200], px_path[64], post_path[64];
     double x[places], y[places];
-    int   kept = 0;
+    int    kept = 0;
     snprintf(px_path, sizeof px_path, "/tmp/pitviper-judge-px-%d", (int)getpid());
     snprintf(post_path, sizeof post_path, "/tmp/pitviper-judge-posts-%d", (int)getpid());
     FILE *px = fopen(px_path, "w"), *post = fopen(post_path, "w");
@@ -79,7 +79,10 @@ static LocalFrame frame_at(double lat_deg, double lon_deg)
     return frame;
 }
 
-static ElevationFiles files_of(const char *paths) { return (ElevationFiles){.paths = paths, .geoid_path = "", .horizon_m = 100000}; }
+static ElevationFiles files_of(const char *paths)
+{
+    return (ElevationFiles){.paths = paths, .geoid_path = "", .horizon_m = 100000};
+}
 
 static const Geoid *egm96(void)
 {
@@ -90,7 +93,8 @@ static const Geoid *egm96(void)
 
 static double off_at(const Elevation *ground, const LocalFrame *frame, const Judged *place)
 {
-    Geodetic at = {place->lat_rad, place->lon_rad, place->h_m + geoid_height_m(egm96(), place->lat_rad, place->lon_rad)};
+    Geodetic at = {place->lat_rad, place->lon_rad,
+                   place->h_m + geoid_height_m(egm96(), place->lat_rad, place->lon_rad)};
     double   p_ecef[3], p_enu[3];
     assert_int_equal(ecef_from_geodetic(p_ecef, NULL, &at), STATUS_OK);
     enu_from_ecef(p_enu, frame, p_ecef);
@@ -134,23 +138,24 @@ static void check_sample(const Sample *s)
         beyond += off_m > report.error_p99_m + 0.002; /* GDAL prints float32 posts to 9 digits */
     }
     const double rms_m = sqrt(sum / count);
-    print_message("%-26s posting %.2f m, level 0 %.0f x %.0f m at %.3f m, %ld voids, %.1f s\n"
-                  "%-26s import says rms %.3f p99 %.3f max %.3f m; GDAL says rms %.3f max %.3f m of %d, %d beyond p99\n",
-                  s->name, report.posting_m, report.width_m[0], report.width_m[1], report.spacing_m, report.voids, took_s, "",
-                  report.error_rms_m, report.error_p99_m, report.error_max_m, rms_m, worst_m, count, beyond);
-    CHECK(beyond <= count / 100 + 16);                    /* one in a hundred, and five sigma of 1000 draws */
-    CHECK(worst_m <= 1.25 * report.error_max_m + 0.002);  /* both are draws from one heavy tail, ours of 200 000 */
-    CHECK(rms_m <= 1.3 * report.error_rms_m + 0.002);     /* for which one place of 1000 may make a third of the sum */
+    print_message(
+        "%-26s posting %.2f m, level 0 %.0f x %.0f m at %.3f m, %ld voids, %.1f s\n"
+        "%-26s import says rms %.3f p99 %.3f max %.3f m; GDAL says rms %.3f max %.3f m of %d, %d beyond p99\n",
+        s->name, report.posting_m, report.width_m[0], report.width_m[1], report.spacing_m, report.voids, took_s, "",
+        report.error_rms_m, report.error_p99_m, report.error_max_m, rms_m, worst_m, count, beyond);
+    CHECK(beyond <= count / 100 + 16);                   /* one in a hundred, and five sigma of 1000 draws */
+    CHECK(worst_m <= 1.25 * report.error_max_m + 0.002); /* both are draws from one heavy tail, ours of 200 000 */
+    CHECK(rms_m <= 1.3 * report.error_rms_m + 0.002);    /* for which one place of 1000 may make a third of the sum */
     CHECK(report.error_rms_m <= s->rms_m && report.error_p99_m <= s->p99_m);
     elevation_destroy(&ground);
     free(judged);
 }
 
-#define SAMPLE(function, ...)             \
-    static void function(void **state)    \
-    {                                     \
-        (void)state;                      \
-        check_sample(&(Sample){__VA_ARGS__}); \
+#define SAMPLE(function, ...)                                                                                          \
+    static void function(void **state)                                                                                 \
+    {                                                                                                                  \
+        (void)state;                                                                                                   \
+        check_sample(&(Sample){__VA_ARGS__});                                                                          \
     }
 /* bounds: a tenth above what was measured; half a posting off in one direction at least doubles them all */
 SAMPLE(lidar_surface, "autzen/autzen_dsm_1m.tif", 1004, 1390, 44.0565, -123.0690, 0.64, 3.0)
@@ -170,10 +175,11 @@ SAMPLE(southern, "srtm3/S33W071.tif", 1201, 1201, -32.5, -70.5, 3.0, 11)
 static void neighbour_sheets_are_seamless(void **state)
 {
     (void)state;
-    char      east[512], west[512], both[1100];
-    Elevation ground = {0};
+    char            east[512], west[512], both[1100];
+    Elevation       ground = {0};
     ElevationReport report;
-    if (!reference_path(east, "terrain/srtm3/N49W123.hgt") || !reference_path(west, "terrain/srtm3/N49W124.hgt")) skip();
+    if (!reference_path(east, "terrain/srtm3/N49W123.hgt") || !reference_path(west, "terrain/srtm3/N49W124.hgt"))
+        skip();
     snprintf(both, sizeof both, "%s, %s", west, east);
     const LocalFrame frame = frame_at(49.35, -123);
     ElevationFiles   files = files_of(both);
@@ -183,7 +189,8 @@ static void neighbour_sheets_are_seamless(void **state)
     assert_int_equal(report.voids, 34926 + 25620 - 4 /* counted in the files */);
     for (double y_m = -20000; y_m < 20000; y_m += 137)
         for (double x_m = -400; x_m < 400; x_m += 20) { /* 100 % is the steepest of these fjords' walls at 90 m posts */
-            const double here_m = elevation_height(&ground, x_m, y_m, NULL), next_m = elevation_height(&ground, x_m + 20, y_m, NULL);
+            const double here_m = elevation_height(&ground, x_m, y_m, NULL),
+                         next_m = elevation_height(&ground, x_m + 20, y_m, NULL);
             CHECK(fabs(next_m - here_m) < 60);
         }
     elevation_destroy(&ground);
@@ -192,8 +199,8 @@ static void neighbour_sheets_are_seamless(void **state)
 static void voids_are_filled_without_a_spike(void **state)
 {
     (void)state;
-    char      path[512];
-    Elevation ground = {0};
+    char            path[512];
+    Elevation       ground = {0};
     ElevationReport report;
     if (!reference_path(path, "terrain/srtm3/N49W123.hgt")) skip();
     const LocalFrame frame = frame_at(49.5, -122.5);
@@ -201,17 +208,17 @@ static void voids_are_filled_without_a_spike(void **state)
     assert_int_equal(elevation_import(&ground, &report, &files, &frame, NULL, 0), STATUS_OK);
     assert_int_equal(report.voids, 34926); /* counted in the file by the data's README */
     const ElevationLevel *level = &ground.level[0];
-    double low_m = INFINITY, high_m = -INFINITY;
+    double                low_m = INFINITY, high_m = -INFINITY;
     for (int j = 0; j < level->ny; j++)
         for (int i = 0; i < level->nx; i++) {
             const double p_enu[3] = {level->x0_m + i * level->spacing_m, level->y0_m + j * level->spacing_m,
                                      elevation_post_m(level, i, j)};
-            double   p_ecef[3];
-            Geodetic place;
+            double       p_ecef[3];
+            Geodetic     place;
             ecef_from_enu(p_ecef, &frame, p_enu);
             assert_int_equal(geodetic_from_ecef(&place, p_ecef), STATUS_OK);
             const double h_m = place.h_m - geoid_height_m(egm96(), place.lat_rad, place.lon_rad);
-            low_m  = fmin(low_m, h_m);
+            low_m = fmin(low_m, h_m);
             high_m = fmax(high_m, h_m);
         }
     print_message("N49W123: %.1f .. %.1f m above the sea\n", low_m, high_m);
@@ -220,12 +227,13 @@ static void voids_are_filled_without_a_spike(void **state)
     elevation_destroy(&ground);
 }
 
-/* Both promises of terrain/elevation/elevation.h, on posts as stored: the outline of a level lies on the level around to the bit. */
+/* Both promises of terrain/elevation/elevation.h, on posts as stored: the outline of a level lies on the level around
+ * to the bit. */
 static void levels_meet_to_the_bit_and_reach_the_horizon(void **state)
 {
     (void)state;
-    char      path[512];
-    Elevation ground = {0};
+    char            path[512];
+    Elevation       ground = {0};
     ElevationReport report;
     if (!reference_path(path, "terrain/autzen/autzen_dsm_1m.tif")) skip();
     const LocalFrame frame = frame_at(44.0565, -123.0690);
@@ -241,25 +249,29 @@ static void levels_meet_to_the_bit_and_reach_the_horizon(void **state)
             for (int i = 0; i < fine->nx; i++) {
                 if (j > 0 && j < fine->ny - 1 && i > 0) i = fine->nx - 1;
                 const double z_m = elevation_post_m(fine, i, j);
-                CHECK(z_m == elevation_height(&around, fine->x0_m + i * fine->spacing_m, fine->y0_m + j * fine->spacing_m, NULL));
+                CHECK(z_m == elevation_height(&around, fine->x0_m + i * fine->spacing_m,
+                                              fine->y0_m + j * fine->spacing_m, NULL));
             }
     }
     /* no hole out to the horizon, and beyond the blend a plain at the height that was stated */
     for (double r_m = 10; r_m < 99000; r_m *= 1.3)
         for (int bearing = 0; bearing < 16; bearing++) {
-            const double p_enu[3] = {r_m * cos(bearing * 0.39), r_m * sin(bearing * 0.39),
-                                     elevation_height(&ground, r_m * cos(bearing * 0.39), r_m * sin(bearing * 0.39), NULL)};
+            const double p_enu[3] = {
+                r_m * cos(bearing * 0.39), r_m * sin(bearing * 0.39),
+                elevation_height(&ground, r_m * cos(bearing * 0.39), r_m * sin(bearing * 0.39), NULL)};
             double   p_ecef[3];
             Geodetic place;
             CHECK(isfinite(p_enu[2]));
             ecef_from_enu(p_ecef, &frame, p_enu);
             assert_int_equal(geodetic_from_ecef(&place, p_ecef), STATUS_OK);
-            if (r_m > report.reach_m[1] + report.blend_m + 4000) CHECK_NEAR(place.h_m, report.beyond_h_m, 0.6); /* 512 m posts: 5 mm; step 1/4 m .. */
+            if (r_m > report.reach_m[1] + report.blend_m + 4000)
+                CHECK_NEAR(place.h_m, report.beyond_h_m, 0.6); /* 512 m posts: 5 mm; step 1/4 m .. */
         }
     elevation_destroy(&ground);
 }
 
-/* A strip of posts that reaches beyond the horizon to east and west and is 60 m wide: ground to the north all the same. */
+/* A strip of posts that reaches beyond the horizon to east and west and is 60 m wide: ground to the north all the same.
+ */
 static void a_long_strip_has_a_horizon_all_around(void **state)
 {
     (void)state;
@@ -268,20 +280,26 @@ static void a_long_strip_has_a_horizon_all_around(void **state)
     Elevation       ground = {0};
     ElevationReport report;
     CHECK(text != NULL);
-    size_t at = (size_t)sprintf(text, "ncols %d\nnrows %d\nxllcorner 7\nyllcorner 45\ncellsize 0.0003\n", columns, rows);
-    for (int n = 0; n < columns * rows; n++) at += (size_t)sprintf(text + at, "%d%c", 250, n % columns < columns - 1 ? ' ' : '\n');
+    size_t at =
+        (size_t)sprintf(text, "ncols %d\nnrows %d\nxllcorner 7\nyllcorner 45\ncellsize 0.0003\n", columns, rows);
+    for (int n = 0; n < columns * rows; n++)
+        at += (size_t)sprintf(text + at, "%d%c", 250, n % columns < columns - 1 ? ' ' : '\n');
     text_file(path, text);
     snprintf(prj, sizeof prj, "%s.prj", path);
     FILE *file = fopen(prj, "w");
-    CHECK(file && fputs("GEOGCS[\"WGS 84\",DATUM[\"WGS_1984\",SPHEROID[\"WGS 84\",6378137,298.257223563]],"
-                        "PRIMEM[\"Greenwich\",0],UNIT[\"degree\",0.0174532925199433]]", file) > 0 && fclose(file) == 0);
+    CHECK(file &&
+          fputs("GEOGCS[\"WGS 84\",DATUM[\"WGS_1984\",SPHEROID[\"WGS 84\",6378137,298.257223563]],"
+                "PRIMEM[\"Greenwich\",0],UNIT[\"degree\",0.0174532925199433]]",
+                file) > 0 &&
+          fclose(file) == 0);
     const LocalFrame frame = frame_at(45.0003, 7.6);
     ElevationFiles   files = {.paths = path, .geoid_path = "", .vertical = ELEVATION_ELLIPSOID, .horizon_m = 20000};
     assert_int_equal(elevation_import(&ground, &report, &files, &frame, NULL, 0), STATUS_OK);
     for (double r_m = 10; r_m < 20000; r_m *= 1.2)
         for (int bearing = 0; bearing < 16; bearing++)
             CHECK_NEAR(elevation_height(&ground, r_m * cos(bearing * 0.39), r_m * sin(bearing * 0.39), NULL) +
-                           r_m * r_m / 2 / 6.378e6, 250, 0.3); /* the Earth's bend, of two radii 0.7 % apart; quanta */
+                           r_m * r_m / 2 / 6.378e6,
+                       250, 0.3); /* the Earth's bend, of two radii 0.7 % apart; quanta */
     elevation_destroy(&ground);
     remove(path);
     remove(prj);
@@ -292,10 +310,12 @@ static void a_long_strip_has_a_horizon_all_around(void **state)
 static void grids_of_two_surveys_are_one_ground(void **state)
 {
     (void)state;
-    char      fine[512], coarse[512], both[1100];
-    Elevation ground = {0}, alone = {0};
+    char            fine[512], coarse[512], both[1100];
+    Elevation       ground = {0}, alone = {0};
     ElevationReport report, of_alone;
-    if (!reference_path(fine, "terrain/autzen/autzen_dtm_1m.tif") || !reference_path(coarse, "terrain/autzen/autzen_dsm_1m.tif")) skip();
+    if (!reference_path(fine, "terrain/autzen/autzen_dtm_1m.tif") ||
+        !reference_path(coarse, "terrain/autzen/autzen_dsm_1m.tif"))
+        skip();
     /* the same CRS and pixels: the first that has a value wins */
     snprintf(both, sizeof both, "%s,%s", fine, coarse);
     const LocalFrame frame = frame_at(44.0565, -123.0690);
@@ -313,10 +333,10 @@ static void grids_of_two_surveys_are_one_ground(void **state)
 static void fixes_are_met_by_a_smooth_correction(void **state)
 {
     (void)state;
-    char      path[512];
-    Elevation plain = {0}, led = {0};
+    char            path[512];
+    Elevation       plain = {0}, led = {0};
     ElevationReport report;
-    GroundFix fix[60] = {0};
+    GroundFix       fix[60] = {0};
     if (!reference_path(path, "terrain/bitterroot/example_lcp.tif")) skip();
     const LocalFrame frame = frame_at(46.69, -114.17);
     ElevationFiles   files = files_of(path);
@@ -353,8 +373,8 @@ static void what_is_wrong_is_said_with_the_next_step(void **state)
 {
     (void)state;
     const LocalFrame frame = frame_at(44.0565, -123.0690);
-    char           path[text_file_size], dsm[512], cut[64];
-    ElevationFiles files = files_of("/nowhere/ground.tif");
+    char             path[text_file_size], dsm[512], cut[64];
+    ElevationFiles   files = files_of("/nowhere/ground.tif");
     log_set_sink(check_listen, NULL);
     expect_refused(&files, &frame, "terrain.elevation: cannot read /nowhere/ground.tif");
     files.paths = " , ";
@@ -363,14 +383,17 @@ static void what_is_wrong_is_said_with_the_next_step(void **state)
     files.paths = path;
     expect_refused(&files, &frame, "gdalinfo");
     remove(path);
-    text_file(path, "<VRTDataset rasterXSize=\"2147483647\" rasterYSize=\"4\"><VRTRasterBand dataType=\"Byte\" band=\"1\"/>"
-                    "</VRTDataset>");
+    text_file(path,
+              "<VRTDataset rasterXSize=\"2147483647\" rasterYSize=\"4\"><VRTRasterBand dataType=\"Byte\" band=\"1\"/>"
+              "</VRTDataset>");
     files.paths = path;
     expect_refused(&files, &frame, "2147483647 x 4 pixels, more than 100000000 a side");
     remove(path);
     /* 300 octets that ask for 10^16 pixels about the origin */
-    text_file(path, "<VRTDataset rasterXSize=\"99999999\" rasterYSize=\"99999999\"><SRS>EPSG:4326</SRS><GeoTransform>-123.5,1e-8,0,44.5,0,"
-                    "-1e-8</GeoTransform><VRTRasterBand dataType=\"Float32\" band=\"1\"/></VRTDataset>");
+    text_file(
+        path,
+        "<VRTDataset rasterXSize=\"99999999\" rasterYSize=\"99999999\"><SRS>EPSG:4326</SRS><GeoTransform>-123.5,1e-8,0,44.5,0,"
+        "-1e-8</GeoTransform><VRTRasterBand dataType=\"Float32\" band=\"1\"/></VRTDataset>");
     files.paths = path;
     expect_refused(&files, &frame, "GB to decode, more than 1024; gdal_translate -srcwin");
     remove(path);
@@ -410,9 +433,15 @@ static void what_is_wrong_is_said_with_the_next_step(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(lidar_surface),   cmocka_unit_test(lidar_ground), cmocka_unit_test(landscape_file),
-        cmocka_unit_test(resampled_radar), cmocka_unit_test(utm_radar),    cmocka_unit_test(hgt_east),
-        cmocka_unit_test(hgt_west),        cmocka_unit_test(dted_1),       cmocka_unit_test(dted_0),
+        cmocka_unit_test(lidar_surface),
+        cmocka_unit_test(lidar_ground),
+        cmocka_unit_test(landscape_file),
+        cmocka_unit_test(resampled_radar),
+        cmocka_unit_test(utm_radar),
+        cmocka_unit_test(hgt_east),
+        cmocka_unit_test(hgt_west),
+        cmocka_unit_test(dted_1),
+        cmocka_unit_test(dted_0),
         cmocka_unit_test(southern),
         cmocka_unit_test(neighbour_sheets_are_seamless),
         cmocka_unit_test(voids_are_filled_without_a_spike),

@@ -1,5 +1,5 @@
-/* tests/terrain/test_elevation_survey.c: files of heights that do not say what they hold, or say it oddly: taken rightly,
- * or refused by name. The answers are the heights that the files were written from. */
+/* tests/terrain/test_elevation_survey.c: files of heights that do not say what they hold, or say it oddly: taken
+ * rightly, or refused by name. The answers are the heights that the files were written from. */
 #include "tests/check.h"
 
 #include "terrain/import/terrain_import.h"
@@ -42,13 +42,13 @@ static double cliffs(int i, int j) { return hills(i, j) + (i / 20 % 2 ? 250 : 0)
 static double octets(int i, int j) { return (i * 7 + j * 3) % 255; }
 
 typedef struct File {
-    const char *type;                   /* GDAL's */
-    double    (*z)(int i, int j);
-    const char *band;                   /* XML of the band */
-    const char *srs;                    /* NULL: WGS 84; empty: none */
-    const char *choice;                 /* after the name */
-    const char *place;                  /* geotransform; NULL: about 46 N 11 E */
-    int         bands;                  /* 0: one */
+    const char *type; /* GDAL's */
+    double (*z)(int i, int j);
+    const char *band;   /* XML of the band */
+    const char *srs;    /* NULL: WGS 84; empty: none */
+    const char *choice; /* after the name */
+    const char *place;  /* geotransform; NULL: about 46 N 11 E */
+    int         bands;  /* 0: one */
     const char *colour[4];
 } File;
 
@@ -97,13 +97,14 @@ static void write_file(char path[temp_name_size + 64], const char *name, const F
     fprintf(file, "<VRTDataset rasterXSize=\"%d\" rasterYSize=\"%d\">\n", nx, ny);
     if (!f->srs || *f->srs) fprintf(file, "<SRS>%s</SRS>\n", f->srs ? f->srs : "EPSG:4326");
     if (!f->place)
-        fprintf(file, "<GeoTransform>%.10f,%.10f,0,%.10f,0,%.10f</GeoTransform>\n", west_deg + west * step_deg, step_deg,
-                north_deg, -step_deg);
+        fprintf(file, "<GeoTransform>%.10f,%.10f,0,%.10f,0,%.10f</GeoTransform>\n", west_deg + west * step_deg,
+                step_deg, north_deg, -step_deg);
     else if (*f->place) fprintf(file, "<GeoTransform>%s</GeoTransform>\n", f->place);
     for (int b = 0; b < bands; b++)
-        fprintf(file, "<VRTRasterBand dataType=\"%s\" band=\"%d\" subClass=\"VRTRawRasterBand\">%s%s%s%s\n"
-                      "<SourceFilename relativeToVRT=\"1\">%s.raw</SourceFilename><ByteOrder>LSB</ByteOrder>"
-                      "<PixelOffset>%zu</PixelOffset><LineOffset>%zu</LineOffset></VRTRasterBand>\n",
+        fprintf(file,
+                "<VRTRasterBand dataType=\"%s\" band=\"%d\" subClass=\"VRTRawRasterBand\">%s%s%s%s\n"
+                "<SourceFilename relativeToVRT=\"1\">%s.raw</SourceFilename><ByteOrder>LSB</ByteOrder>"
+                "<PixelOffset>%zu</PixelOffset><LineOffset>%zu</LineOffset></VRTRasterBand>\n",
                 f->type, b + 1, f->colour[b] ? "<ColorInterp>" : "", f->colour[b] ? f->colour[b] : "",
                 f->colour[b] ? "</ColorInterp>" : "", f->band ? f->band : "", name, octets_each, nx * octets_each);
     fprintf(file, "</VRTDataset>\n");
@@ -114,9 +115,10 @@ static void write_file(char path[temp_name_size + 64], const char *name, const F
 /* Where post i, j of the file lies, and the ground there; NaN: the import refused. */
 static double ground_at(const char *paths, int i, int j, ElevationReport *report)
 {
-    Elevation      elevation = {0};
-    LocalFrame     frame;
-    const Geodetic middle = {(north_deg - (j + 0.5) * step_deg) * rad_per_deg, (west_deg + (i + 0.5) * step_deg) * rad_per_deg, 0};
+    Elevation            elevation = {0};
+    LocalFrame           frame;
+    const Geodetic       middle = {(north_deg - (j + 0.5) * step_deg) * rad_per_deg,
+                                   (west_deg + (i + 0.5) * step_deg) * rad_per_deg, 0};
     const ElevationFiles files = {.paths = paths, .geoid_path = "", .vertical = ELEVATION_ELLIPSOID, .horizon_m = 2000};
     assert_int_equal(local_frame_at(&frame, &middle), STATUS_OK);
     *heard_all = 0;
@@ -134,13 +136,17 @@ static void numbers_are_read_as_what_they_are(void **state)
     static const struct {
         const char *what;
         File        file;
-        const char *said;      /* NULL: nothing may be said */
-        double      hole_m;    /* in the middle of the hole; NaN: among the hills' own heights */
-        double      off_m;     /* of the ground beside the formula */
+        const char *said;   /* NULL: nothing may be said */
+        double      hole_m; /* in the middle of the hole; NaN: among the hills' own heights */
+        double      off_m;  /* of the ground beside the formula */
     } cases[] = {
         {"plain", {.type = "Float32", .z = plain}, NULL, NAN, 0},
         {"int16 -9999 without a tag", {.type = "Int16", .z = hole_9999}, "-9999", NAN, 0},
-        {"a tag NaN and -9999", {.type = "Float32", .z = hole_9999, .band = "<NoDataValue>nan</NoDataValue>"}, "-9999", NAN, 0},
+        {"a tag NaN and -9999",
+         {.type = "Float32", .z = hole_9999, .band = "<NoDataValue>nan</NoDataValue>"},
+         "-9999",
+         NAN,
+         0},
         {"-9999 declared", {.type = "Int16", .z = hole_9999, .band = "<NoDataValue>-9999</NoDataValue>"}, NULL, NAN, 0},
         {"-999", {.type = "Float32", .z = hole_999}, "-999", NAN, 0},
         {"0 below a plateau", {.type = "Int16", .z = hole_0}, "posts of 0", NAN, 200},
@@ -154,14 +160,30 @@ static void numbers_are_read_as_what_they_are(void **state)
         {"feet, stated", {.type = "Float32", .z = in_feet, .band = "<UnitType>ft</UnitType>"}, NULL, NAN, 0},
         {"feet of the vertical system", {.type = "Float32", .z = in_us_feet, .srs = "EPSG:4326+6360"}, NULL, NAN, 0},
         {"feet, named", {.type = "Float32", .z = in_feet, .choice = "@ft"}, NULL, NAN, 0},
-        {"feet, an unknown unit but named", {.type = "Float32", .z = in_us_feet, .band = "<UnitType>foots</UnitType>", .choice = "@us-ft"}, NULL, NAN, 0},
+        {"feet, an unknown unit but named",
+         {.type = "Float32", .z = in_us_feet, .band = "<UnitType>foots</UnitType>", .choice = "@us-ft"},
+         NULL,
+         NAN,
+         0},
         {"centimetres, named", {.type = "Int32", .z = in_cm, .choice = "@cm"}, NULL, NAN, 0},
         {"depths by the vertical system", {.type = "Float32", .z = depths, .srs = "EPSG:4326+5715"}, NULL, NAN, 0},
         {"depths with a void", {.type = "Float32", .z = hole_depth, .srs = "EPSG:4326+5715"}, "9999", NAN, 0},
-        {"depths by `positive`", {.type = "Float32", .z = depths, .band = "<Metadata><MDI key=\"positive\">down</MDI></Metadata>"}, NULL, NAN, 0},
+        {"depths by `positive`",
+         {.type = "Float32", .z = depths, .band = "<Metadata><MDI key=\"positive\">down</MDI></Metadata>"},
+         NULL,
+         NAN,
+         0},
         {"depths, named", {.type = "Float32", .z = depths, .choice = "@down"}, NULL, NAN, 0},
-        {"heights in spite of it", {.type = "Float32", .z = plain, .srs = "EPSG:4326+5715", .choice = "@up"}, NULL, NAN, 0},
-        {"without a coordinate system, named", {.type = "Float32", .z = plain, .srs = "", .choice = "@srs=EPSG:4326"}, NULL, NAN, 0},
+        {"heights in spite of it",
+         {.type = "Float32", .z = plain, .srs = "EPSG:4326+5715", .choice = "@up"},
+         NULL,
+         NAN,
+         0},
+        {"without a coordinate system, named",
+         {.type = "Float32", .z = plain, .srs = "", .choice = "@srs=EPSG:4326"},
+         NULL,
+         NAN,
+         0},
         {"scaled", {.type = "Int32", .z = in_cm, .band = "<Scale>0.01</Scale>"}, NULL, NAN, 0},
     };
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
@@ -236,21 +258,36 @@ static void what_cannot_be_heights_is_refused_by_name(void **state)
         File        file;
         const char *said[3];
     } cases[] = {
-        {"an unknown unit", {.type = "Float32", .z = plain, .band = "<UnitType>furlong</UnitType>"}, {"'furlong'", "@us-ft", "--unit"}},
+        {"an unknown unit",
+         {.type = "Float32", .z = plain, .band = "<UnitType>furlong</UnitType>"},
+         {"'furlong'", "@us-ft", "--unit"}},
         {"a coordinate system in feet, heights in what?",
-         {.type = "Float32", .z = plain, .srs = "EPSG:2278", .place = "3000000,30,0,13800000,0,-30"}, {"US survey foot", "@us-ft", "--unit"}},
+         {.type = "Float32", .z = plain, .srs = "EPSG:2278", .place = "3000000,30,0,13800000,0,-30"},
+         {"US survey foot", "@us-ft", "--unit"}},
         {"centimetres", {.type = "Int32", .z = in_cm}, {"no heights on Earth", "@cm", "--unit"}},
-        {"a photograph", {.type = "Byte", .z = octets, .bands = 3, .colour = {"Red", "Green", "Blue"}}, {"photograph", "--photo", ":1"}},
-        {"of sixteen bits", {.type = "Int16", .z = plain, .bands = 3, .colour = {"Red", "Green", "Blue"}}, {"photograph", "--photo", ":1"}},
+        {"a photograph",
+         {.type = "Byte", .z = octets, .bands = 3, .colour = {"Red", "Green", "Blue"}},
+         {"photograph", "--photo", ":1"}},
+        {"of sixteen bits",
+         {.type = "Int16", .z = plain, .bands = 3, .colour = {"Red", "Green", "Blue"}},
+         {"photograph", "--photo", ":1"}},
         {"with a palette", {.type = "Byte", .z = octets, .colour = {"Palette"}}, {"photograph", "--photo", ":1"}},
         {"grey", {.type = "Byte", .z = octets, .colour = {"Gray"}}, {"photograph", "--photo", ":1"}},
         {"no coordinate system", {.type = "Float32", .z = plain, .srs = ""}, {"coordinate system", "@srs=EPSG", NULL}},
         {"no place", {.type = "Float32", .z = plain, .place = ""}, {"corners", "a_ullr", NULL}},
-        {"the place of a file that has none", {.type = "Float32", .z = plain, .place = "0,1,0,0,0,1"}, {"corners", "a_ullr", NULL}},
-        {"the same, upwards", {.type = "Float32", .z = plain, .srs = "EPSG:32633", .place = "0,1,0,0,0,-1"}, {"corners", "a_ullr", NULL}},
+        {"the place of a file that has none",
+         {.type = "Float32", .z = plain, .place = "0,1,0,0,0,1"},
+         {"corners", "a_ullr", NULL}},
+        {"the same, upwards",
+         {.type = "Float32", .z = plain, .srs = "EPSG:32633", .place = "0,1,0,0,0,-1"},
+         {"corners", "a_ullr", NULL}},
         {"a choice that is none", {.type = "Float32", .z = plain, .choice = "@frob"}, {"@frob", "geoid", NULL}},
-        {"a CRS that is a file", {.type = "Float32", .z = plain, .choice = "@srs=/etc/passwd"}, {"EPSG:32633", NULL, NULL}},
-        {"a CRS that is none", {.type = "Float32", .z = plain, .choice = "@srs=EPSG:999999"}, {"EPSG:999999", NULL, NULL}},
+        {"a CRS that is a file",
+         {.type = "Float32", .z = plain, .choice = "@srs=/etc/passwd"},
+         {"EPSG:32633", NULL, NULL}},
+        {"a CRS that is none",
+         {.type = "Float32", .z = plain, .choice = "@srs=EPSG:999999"},
+         {"EPSG:999999", NULL, NULL}},
         {"a band that it lacks", {.type = "Float32", .z = plain, .choice = ":7"}, {"not 7", NULL, NULL}},
     };
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
@@ -260,7 +297,8 @@ static void what_cannot_be_heights_is_refused_by_name(void **state)
         const double got = ground_at(path, 150, 100, &report);
         if (!isnan(got)) fail_msg("%s: taken, %g m", cases[k].what, got);
         for (int n = 0; n < 3 && cases[k].said[n]; n++)
-            if (!strstr(heard_all, cases[k].said[n])) fail_msg("%s: said `%s`, without %s", cases[k].what, heard_all, cases[k].said[n]);
+            if (!strstr(heard_all, cases[k].said[n]))
+                fail_msg("%s: said `%s`, without %s", cases[k].what, heard_all, cases[k].said[n]);
     }
     /* its octets are heights when the user says so */
     char            path[temp_name_size + 64];
@@ -281,11 +319,12 @@ static void write_large(char path[temp_name_size + 64], const char *name, double
     snprintf(path, temp_name_size + 64, "%s/%s-large.vrt", folder, name);
     FILE *file = fopen(path, "w");
     CHECK(file != NULL);
-    fprintf(file, "<VRTDataset rasterXSize=\"%d\" rasterYSize=\"%d\"><SRS>EPSG:4326</SRS>"
-                  "<GeoTransform>%.10f,%.12f,0,%.10f,0,%.12f</GeoTransform>"
-                  "<VRTRasterBand dataType=\"Float32\" band=\"1\"><SimpleSource><SourceFilename relativeToVRT=\"1\">%s.vrt"
-                  "</SourceFilename><SourceBand>1</SourceBand><SrcRect xOff=\"0\" yOff=\"0\" xSize=\"%d\" ySize=\"%d\"/>"
-                  "<DstRect xOff=\"0\" yOff=\"0\" xSize=\"%d\" ySize=\"%d\"/></SimpleSource></VRTRasterBand></VRTDataset>",
+    fprintf(file,
+            "<VRTDataset rasterXSize=\"%d\" rasterYSize=\"%d\"><SRS>EPSG:4326</SRS>"
+            "<GeoTransform>%.10f,%.12f,0,%.10f,0,%.12f</GeoTransform>"
+            "<VRTRasterBand dataType=\"Float32\" band=\"1\"><SimpleSource><SourceFilename relativeToVRT=\"1\">%s.vrt"
+            "</SourceFilename><SourceBand>1</SourceBand><SrcRect xOff=\"0\" yOff=\"0\" xSize=\"%d\" ySize=\"%d\"/>"
+            "<DstRect xOff=\"0\" yOff=\"0\" xSize=\"%d\" ySize=\"%d\"/></SimpleSource></VRTRasterBand></VRTDataset>",
             40 * nx, 40 * ny, west_deg, step_deg / 40, north_deg, -step_deg / 40, name, nx, ny, 40 * nx, 40 * ny);
     CHECK(fclose(file) == 0);
 }
@@ -363,7 +402,8 @@ static void options_are_said_after_names_that_lack_them(void **state)
     CHECK(!terrain_options_set(&o, &why, "nodata", "some"));
     snprintf(list, sizeof list, "%s, %s@m@nodata=none", path, path);
     CHECK(terrain_options_set(&o, &why, "elevation", list));
-    snprintf(want, sizeof want, "%s@us-ft@srs=EPSG:32633+5773@nodata=-1,%s@m@nodata=none@srs=EPSG:32633+5773", path, path);
+    snprintf(want, sizeof want, "%s@us-ft@srs=EPSG:32633+5773@nodata=-1,%s@m@nodata=none@srs=EPSG:32633+5773", path,
+             path);
     CHECK(terrain_options_sources(list, sizeof list, &o, o.elevation));
     assert_string_equal(list, want);
     CHECK(!terrain_options_sources(list, strlen(want), &o, o.elevation));
@@ -386,9 +426,11 @@ static void choices_stand_after_names_of_any_kind(void **state)
         bool        good;
         int         band, sense;
         const char *unit;
-    } cases[] = {{"", true, 0, 0, ""},         {"@ft", true, 0, 0, "ft"},     {":3@down", true, 3, -1, ""},
-                 {"@up@us-ft", true, 0, 1, "us-ft"}, {"@", false, 0, 0, ""},  {"@ft@", false, 0, 0, "ft"},
-                 {"@nodata=", false, 0, 0, ""}, {":0", true, 0, 0, ""},       {"@srs=", false, 0, 0, ""}};
+    } cases[] = {{"", true, 0, 0, ""},          {"@ft", true, 0, 0, "ft"},
+                 {":3@down", true, 3, -1, ""},  {"@up@us-ft", true, 0, 1, "us-ft"},
+                 {"@", false, 0, 0, ""},        {"@ft@", false, 0, 0, "ft"},
+                 {"@nodata=", false, 0, 0, ""}, {":0", true, 0, 0, ""},
+                 {"@srs=", false, 0, 0, ""}};
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         RasterChoice c;
         snprintf(path, sizeof path, "%s%s", odd, cases[k].after);

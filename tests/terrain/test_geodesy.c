@@ -42,8 +42,8 @@ static void forward_agrees_with_long_double(void **state)
         const Geodetic g = {(random_uniform(1, 0, 0, n) - 0.5) * pi_rad,
                             (random_uniform(1, 1, 0, n) - 0.5) * 2 * pi_rad,
                             -10000 + 60000 * random_uniform(1, 2, 0, n)};
-        double      p[3];
-        long double want[3];
+        double         p[3];
+        long double    want[3];
         CHECK(ecef_from_geodetic(p, NULL, &g) == STATUS_OK);
         ecef_l(want, &(PlaceL){g.lat_rad, g.lon_rad, g.h_m});
         CHECK_NEAR(distance_l(p, want), 0, 5e-9);
@@ -74,8 +74,8 @@ static void there_and_back(void **state)
         const Geodetic g = {(random_uniform(3, 0, 0, n) - 0.5) * pi_rad,
                             (random_uniform(3, 1, 0, n) - 0.5) * 2 * pi_rad,
                             -5000 + 40000 * random_uniform(3, 2, 0, n)};
-        double   p[3], q[3];
-        Geodetic back;
+        double         p[3], q[3];
+        Geodetic       back;
         CHECK(ecef_from_geodetic(p, NULL, &g) == STATUS_OK);
         CHECK(geodetic_from_ecef(&back, p) == STATUS_OK);
         CHECK(ecef_from_geodetic(q, NULL, &back) == STATUS_OK);
@@ -150,8 +150,10 @@ static void bad_input_leaves_the_output_alone(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(forward_agrees_with_long_double), cmocka_unit_test(reverse_agrees_with_long_double),
-        cmocka_unit_test(there_and_back),                  cmocka_unit_test(corners_of_the_earth),
+        cmocka_unit_test(forward_agrees_with_long_double),
+        cmocka_unit_test(reverse_agrees_with_long_double),
+        cmocka_unit_test(there_and_back),
+        cmocka_unit_test(corners_of_the_earth),
         cmocka_unit_test(bad_input_leaves_the_output_alone),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

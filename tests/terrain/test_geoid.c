@@ -1,4 +1,5 @@
-/* tests/terrain/test_geoid.c: EGM96 against NGA's own six values, at the seam, at the poles, and a grid that is spoilt. */
+/* tests/terrain/test_geoid.c: EGM96 against NGA's own six values, at the seam, at the poles, and a grid that is spoilt.
+ */
 #include "tests/check.h"
 
 #include "terrain/earth/geoid.h"
@@ -7,10 +8,11 @@ static void nga_values_are_met(void **state)
 {
     (void)state;
     /* NGA's test values of EGM96: the harmonic program F477, and its interpolation from the 15-minute grid */
-    static const struct { double lat_deg, lon_deg, harmonic_m, interpolated_m; } nga[] = {
-        {38.6281550, 269.7791550, -31.629, -31.628}, {-14.6212170, 305.0211140, -2.966, -2.969},
-        {46.8743190, 102.4487290, -43.572, -43.575}, {-23.6174460, 133.8747120, 15.868, 15.871},
-        {38.6254730, 359.9995000, 50.065, 50.066},   {-0.4667440, 0.0023000, 17.330, 17.329}};
+    static const struct {
+        double lat_deg, lon_deg, harmonic_m, interpolated_m;
+    } nga[] = {{38.6281550, 269.7791550, -31.629, -31.628}, {-14.6212170, 305.0211140, -2.966, -2.969},
+               {46.8743190, 102.4487290, -43.572, -43.575}, {-23.6174460, 133.8747120, 15.868, 15.871},
+               {38.6254730, 359.9995000, 50.065, 50.066},   {-0.4667440, 0.0023000, 17.330, 17.329}};
     Geoid geoid;
     assert_int_equal(geoid_open(&geoid, NULL), STATUS_OK);
     for (size_t i = 0; i < sizeof nga / sizeof *nga; i++) {
@@ -19,8 +21,10 @@ static void nga_values_are_met(void **state)
                       nga[i].lon_deg, n_m, 1e3 * (n_m - nga[i].harmonic_m), 1e3 * (n_m - nga[i].interpolated_m));
         CHECK_NEAR(n_m, nga[i].harmonic_m, 0.015); /* what 15 minutes between posts leave out of degree 360 */
         CHECK_NEAR(n_m, nga[i].interpolated_m, 0.010);
-        CHECK_NEAR(geoid_height_m(&geoid, nga[i].lat_deg * rad_per_deg, (nga[i].lon_deg - 360) * rad_per_deg), n_m, 1e-9);
-        CHECK_NEAR(geoid_height_m(&geoid, nga[i].lat_deg * rad_per_deg, (nga[i].lon_deg + 720) * rad_per_deg), n_m, 1e-9);
+        CHECK_NEAR(geoid_height_m(&geoid, nga[i].lat_deg * rad_per_deg, (nga[i].lon_deg - 360) * rad_per_deg), n_m,
+                   1e-9);
+        CHECK_NEAR(geoid_height_m(&geoid, nga[i].lat_deg * rad_per_deg, (nga[i].lon_deg + 720) * rad_per_deg), n_m,
+                   1e-9);
     }
     geoid_close(&geoid);
 }
@@ -65,8 +69,9 @@ static void a_missing_or_spoilt_grid_says_what_to_do(void **state)
     remove(path);
 
     /* the true header, and then nothing */
-    static const unsigned char header[48] = {0xc0, 0x56, 0x80, 0, 0, 0, 0, 0, 0xc0, 0x66, 0x80, 0, 0, 0, 0, 0, 0x3f, 0xd0, 0, 0,
-                                             0, 0, 0, 0, 0x3f, 0xd0, 0, 0, 0, 0, 0, 0, 0, 0, 2, 0xd1, 0, 0, 5, 0xa0};
+    static const unsigned char header[48] = {0xc0, 0x56, 0x80, 0,    0, 0, 0, 0,    0xc0, 0x66, 0x80, 0,    0, 0,
+                                             0,    0,    0x3f, 0xd0, 0, 0, 0, 0,    0,    0,    0x3f, 0xd0, 0, 0,
+                                             0,    0,    0,    0,    0, 0, 2, 0xd1, 0,    0,    5,    0xa0};
     text_file(path, "");
     FILE *file = fopen(path, "wb");
     CHECK(file && fwrite(header, sizeof header, 1, file) == 1 && fclose(file) == 0);

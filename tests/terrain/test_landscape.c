@@ -78,7 +78,7 @@ static void same_input_same_bits(void **state)
         CHECK(memcmp(p->stored, q->stored, elevation_level_stored(p) * sizeof *p->stored) == 0);
     }
     for (int n = 0; n < 2000; n++) {
-        const double x = 3000 * random_uniform(1, 5, 0, n), y = 3000 * random_uniform(1, 6, 0, n);
+        const double       x = 3000 * random_uniform(1, 5, 0, n), y = 3000 * random_uniform(1, 6, 0, n);
         const SurfaceClass s = landscape_surface(&a, x, y);
         CHECK(s == landscape_surface(&b, x, y));
     }
@@ -111,13 +111,13 @@ static void posts_follow_the_curved_earth(void **state)
         CHECK(landscape_create(&land, &config, &frame, NULL, 0, NULL, 0) == STATUS_OK);
         for (int k = 0; k < land.elevation.level_count; k++) {
             const ElevationLevel *level = &land.elevation.level[k];
-            const double finer_m = k ? 8 * land.elevation.level[k - 1].step_m : 0;
-            const double coarser_m = k < 3 ? fmax(8 * level->step_m, level[1].step_m) : 0;
-            const double allowed_m = fmax(level->step_m, fmax(finer_m, coarser_m)) + 2e-3;
-            double       inside_m = 0;
+            const double          finer_m = k ? 8 * land.elevation.level[k - 1].step_m : 0;
+            const double          coarser_m = k < 3 ? fmax(8 * level->step_m, level[1].step_m) : 0;
+            const double          allowed_m = fmax(level->step_m, fmax(finer_m, coarser_m)) + 2e-3;
+            double                inside_m = 0;
             for (int m = 0; m < 3000; m++) {
-                const int i = (int)(random_uniform(n, 1, (uint32_t)k, m) * level->nx);
-                const int j = (int)(random_uniform(n, 2, (uint32_t)k, m) * level->ny);
+                const int    i = (int)(random_uniform(n, 1, (uint32_t)k, m) * level->nx);
+                const int    j = (int)(random_uniform(n, 2, (uint32_t)k, m) * level->ny);
                 const double p_enu[3] = {level->x0_m + i * level->spacing_m, level->y0_m + j * level->spacing_m,
                                          elevation_post_m(level, i, j)};
                 double       p_ecef[3];
@@ -186,8 +186,8 @@ static double worst_fix(const Landscape *land, const GroundFix *fix, int count, 
     double worst_m = 0;
     for (int n = 0; n < count; n++) {
         if (skip && skip[n]) continue;
-        const double off_m = fabs(elevation_height(&land->elevation, fix[n].p_enu[0], fix[n].p_enu[1], NULL) -
-                                  fix[n].p_enu[2]);
+        const double off_m =
+            fabs(elevation_height(&land->elevation, fix[n].p_enu[0], fix[n].p_enu[1], NULL) - fix[n].p_enu[2]);
         if (!(off_m <= worst_m)) worst_m = off_m;
     }
     return worst_m;
@@ -361,7 +361,7 @@ static void lines_stay_clear(void **state)
         }
         for (int n = 0; n < 40; n++) { /* a dive, in pieces, to a fix */
             const double *to = fix[(int)(count * random_uniform(run, 12, 0, n))].p_enu;
-            const double bearing = 2 * pi_rad * random_uniform(run, 13, 0, n),
+            const double  bearing = 2 * pi_rad * random_uniform(run, 13, 0, n),
                          steep = 1.5 * random_uniform(run, 14, 0, n);
             for (int piece = 0; piece < 3; piece++) {
                 const double s0 = 300 * piece, s1 = 300 * (piece + 1);
@@ -460,8 +460,7 @@ static void an_exercise_in_the_air(void **state)
     place_above(low.a_enu, &frame, -900, 0, -45);
     place_above(low.b_enu, &frame, 900, 0, -45);
     CHECK(landscape_create(&land, &config, &frame, NULL, 0, &low, 1) == STATUS_OK);
-    for (int n = -900; n <= 900; n++)
-        CHECK(elevation_height(&land.elevation, n, 0, NULL) < low.a_enu[2] - 0.1);
+    for (int n = -900; n <= 900; n++) CHECK(elevation_height(&land.elevation, n, 0, NULL) < low.a_enu[2] - 0.1);
     CHECK(elevation_height(&land.elevation, 0, 1300, NULL) < -20); /* the whole country, not a trench */
     landscape_destroy(&land);
 }
@@ -545,8 +544,9 @@ static void bad_input_is_survived(void **state)
     CHECK(land.fixes_dropped == 42);
 
     const LandscapeConfig config = small_config(1);
-    const GroundFix       fix[] = {{.p_enu = {NAN, 0, 0}}, {.p_enu = {0, INFINITY, 0}}, {.p_enu = {0, 0, -INFINITY}}, {.p_enu = {1e300, 0, 0}},
-                                   {.p_enu = {0, 0, 50000}}, {.p_enu = {0, 0, -6371000}}, {.p_enu = {3e6, 0, 0}}, {.p_enu = {10, 10, 1}}};
+    const GroundFix       fix[] = {{.p_enu = {NAN, 0, 0}},   {.p_enu = {0, INFINITY, 0}}, {.p_enu = {0, 0, -INFINITY}},
+                                   {.p_enu = {1e300, 0, 0}}, {.p_enu = {0, 0, 50000}},    {.p_enu = {0, 0, -6371000}},
+                                   {.p_enu = {3e6, 0, 0}},   {.p_enu = {10, 10, 1}}};
     const ClearLine line[] = {{{NAN, 0, 0}, {0, 0, 0}},   {{0, 0, 0}, {INFINITY, 0, 0}}, {{0, 0, 1e300}, {0, 0, 0}},
                               {{50, 50, 5}, {50, 50, 5}}, {{1e7, 0, 9}, {-1e7, 0, 9}},   {{0, 0, -1e6}, {9, 9, 1e6}}};
     CHECK(landscape_create(&land, &config, &frame, fix, 8, line, 5) == STATUS_OK);

@@ -1,5 +1,5 @@
-/* Which entities the ground is fitted to, one vote each, and where the sea is. Every ground here is a plane, a sphere or
- * a list of heights that no line of the landscape's computes. labels: physics */
+/* Which entities the ground is fitted to, one vote each, and where the sea is. Every ground here is a plane, a sphere
+ * or a list of heights that no line of the landscape's computes. labels: physics */
 #include "tests/check.h"
 
 #include "terrain/ground/landscape.h"
@@ -46,9 +46,9 @@ static unsigned outvoted(const GroundFix *fix, int count)
 static void one_does_not_outvote_four(void **state)
 {
     (void)state;
-    static const double four[4][2] = {{0, 0}, {45, 5}, {90, -5}, {50, 55}};
-    static const double odd[][2] = {{65, 30}, {-40, 0}, {130, -5}, {20, -30}, {45, 12}, {50, 90}};
-    static const double slope[][2] = {{0, 0}, {0.1, -0.05}, {0.3, 0.1}}, off_m[] = {-30, -20, 20, 30};
+    static const double   four[4][2] = {{0, 0}, {45, 5}, {90, -5}, {50, 55}};
+    static const double   odd[][2] = {{65, 30}, {-40, 0}, {130, -5}, {20, -30}, {45, 12}, {50, 90}};
+    static const double   slope[][2] = {{0, 0}, {0.1, -0.05}, {0.3, 0.1}}, off_m[] = {-30, -20, 20, 30};
     const LandscapeConfig config = small_config();
     const LocalFrame      frame = frame_at(48, 11);
     for (int s = 0; s < 3; s++)
@@ -73,14 +73,16 @@ static void one_does_not_outvote_four(void **state)
                     Landscape land; /* and the ground stays with the four */
                     CHECK(landscape_create(&land, &config, &frame, fix, count, NULL, 0) == STATUS_OK);
                     for (int n = 0; n < 4; n++)
-                        CHECK_NEAR(elevation_height(&land.elevation, four[n][0], four[n][1], NULL), fix[n].p_enu[2], 0.05);
+                        CHECK_NEAR(elevation_height(&land.elevation, four[n][0], four[n][1], NULL), fix[n].p_enu[2],
+                                   0.05);
                     CHECK_NEAR(elevation_height(&land.elevation, odd[o][0], odd[o][1], NULL), plane_m, 6);
                     CHECK(land.fixes_dropped == 1);
                     landscape_destroy(&land);
                 }
 }
 
-/* What is no lie: entities that rise together, one that drives up, two groups at two heights, a hill's foot, a valley. */
+/* What is no lie: entities that rise together, one that drives up, two groups at two heights, a hill's foot, a valley.
+ */
 static void true_hills_are_believed(void **state)
 {
     (void)state;
@@ -149,7 +151,8 @@ static void places_are_held_against_their_neighbours_plane(void **state)
     GroundFix fix[6];
     int       count = 0;
     double    above_m[3], nearest_m[3];
-    for (int n = 0; n < 5; n++) count = add(fix, count, n + 1, 30 * n, 20 * (n % 3), 7 + 0.2 * 30 * n - 0.1 * 20 * (n % 3));
+    for (int n = 0; n < 5; n++)
+        count = add(fix, count, n + 1, 30 * n, 20 * (n % 3), 7 + 0.2 * 30 * n - 0.1 * 20 * (n % 3));
     const double place[3][3] = {{60, 10, 7 + 12 - 1 + 9}, {60, 40, 7 + 12 - 4}, {900, 0, 0}};
     CHECK(invented_consensus_height(above_m, nearest_m, place, 3, fix, count) == STATUS_OK);
     CHECK_NEAR(above_m[0], 9, 1e-9);
@@ -162,9 +165,9 @@ static void places_are_held_against_their_neighbours_plane(void **state)
 
 static double h_of(const Landscape *land, double x_m, double y_m)
 {
-    double         p_ecef[3];
-    const double   p_enu[3] = {x_m, y_m, elevation_height(&land->elevation, x_m, y_m, NULL)};
-    Geodetic       place;
+    double       p_ecef[3];
+    const double p_enu[3] = {x_m, y_m, elevation_height(&land->elevation, x_m, y_m, NULL)};
+    Geodetic     place;
     ecef_from_enu(p_ecef, &land->frame, p_enu);
     CHECK(geodetic_from_ecef(&place, p_ecef) == STATUS_OK);
     return place.h_m;
@@ -175,14 +178,15 @@ static void ships_alone_have_sea_to_the_horizon(void **state)
     (void)state;
     static const double level_m[] = {0, 45.3, -28};
     for (int k = 0; k < 3; k++) {
-        const LocalFrame       frame = frame_at(36, -5);
-        const LandscapeConfig  config = small_config();
-        const CoastPlace       ship = {100, 200, true};
+        const LocalFrame      frame = frame_at(36, -5);
+        const LandscapeConfig config = small_config();
+        const CoastPlace      ship = {100, 200, true};
         /* a sea skimmer's way: 1 m above the water, then under it; neither digs a hole */
-        const ClearLine        line[2] = {{{-800, 0, level_m[k] + 1}, {800, 0, level_m[k] + 1}},
-                                          {{0, -800, level_m[k] - 5}, {0, 800, level_m[k] - 5}}};
-        const LandscapeEvidence said = {.place = &ship, .place_count = 1, .line = line, .line_count = 2, .sea_h_m = level_m[k]};
-        Landscape              land;
+        const ClearLine         line[2] = {{{-800, 0, level_m[k] + 1}, {800, 0, level_m[k] + 1}},
+                                           {{0, -800, level_m[k] - 5}, {0, 800, level_m[k] - 5}}};
+        const LandscapeEvidence said = {
+            .place = &ship, .place_count = 1, .line = line, .line_count = 2, .sea_h_m = level_m[k]};
+        Landscape land;
         CHECK(landscape_create_from(&land, &config, &frame, &said) == STATUS_OK);
         const double step_m = land.elevation.level[0].step_m;
         for (int n = 0; n < 3000; n++) {
@@ -191,7 +195,8 @@ static void ships_alone_have_sea_to_the_horizon(void **state)
             CHECK_NEAR(h_of(&land, x, y), level_m[k], step_m + 2e-3);
         }
         for (int n = 0; n < 300; n++) { /* posts far out are farther apart: the chord of the curved Earth, and steps */
-            const double x = 190000 * (random_uniform(2, 0, 0, n) - 0.5), y = 190000 * (random_uniform(2, 1, 0, n) - 0.5);
+            const double x = 190000 * (random_uniform(2, 0, 0, n) - 0.5),
+                         y = 190000 * (random_uniform(2, 1, 0, n) - 0.5);
             const double s = land.elevation.level[3].spacing_m;
             CHECK(landscape_surface(&land, x, y) == SURFACE_WATER);
             CHECK_NEAR(h_of(&land, x, y), level_m[k], land.elevation.level[3].step_m + 2 * s * s / 8 / 6.35e6 + 0.01);
@@ -212,7 +217,8 @@ static int make_coast(GroundFix *fix, CoastPlace *place, int *places, uint64_t s
         count = add(fix, count, n + 1, x, y, z);
     }
     for (int n = 0; n < 12; n++)
-        place[(*places)++] = (CoastPlace){600 + 700 * random_uniform(seed, 2, 0, n), 1600 * (random_uniform(seed, 3, 0, n) - 0.5), true};
+        place[(*places)++] =
+            (CoastPlace){600 + 700 * random_uniform(seed, 2, 0, n), 1600 * (random_uniform(seed, 3, 0, n) - 0.5), true};
     place[(*places)++] = (CoastPlace){-60, 700, false}; /* a lorry on the quay, 2 m above the water */
     count = add(fix, count, 41, -60, 700, 2);
     place[(*places)++] = (CoastPlace){-20, 700, true};
@@ -225,12 +231,12 @@ static void a_coast_keeps_everybody_on_his_side(void **state)
     static GroundFix  fix[100];
     static CoastPlace place[100];
     for (uint64_t seed = 1; seed <= 2; seed++) {
-        int                    places;
-        const int              fixes = make_coast(fix, place, &places, seed);
-        const LocalFrame       frame = frame_at(36, -5);
-        LandscapeConfig        config = small_config();
+        int                     places;
+        const int               fixes = make_coast(fix, place, &places, seed);
+        const LocalFrame        frame = frame_at(36, -5);
+        LandscapeConfig         config = small_config();
         const LandscapeEvidence said = {.fix = fix, .fix_count = fixes, .place = place, .place_count = places};
-        Landscape              land, again;
+        Landscape               land, again;
         config.seed = seed;
         CHECK(landscape_create_from(&land, &config, &frame, &said) == STATUS_OK);
         CHECK(land.fixes_dropped <= 20); /* 48 m steps between neighbours are cliffs that some do not survive */
@@ -250,9 +256,9 @@ static void a_coast_keeps_everybody_on_his_side(void **state)
             for (double x = -1400; x <= 1400; x += 0.5) {
                 const double h = h_of(&land, x, y);
                 /* fresh water is none of the sea's: ponds lie higher, streams come down to it */
-                WayPlace     way;
-                const bool   wet = landscape_surface(&land, x, y) == SURFACE_WATER && h < 2;
-                const bool   water = wet && !(landscape_way(&way, &land, x, y) && way.kind == WAY_STREAM);
+                WayPlace   way;
+                const bool wet = landscape_surface(&land, x, y) == SURFACE_WATER && h < 2;
+                const bool water = wet && !(landscape_way(&way, &land, x, y) && way.kind == WAY_STREAM);
                 if (x > -1400) CHECK_NEAR(h, last_m, 0.5 * 1.2 + 0.01); /* 50 degrees in the cliffs, no more */
                 if (x > -1400 && water != was_water) {
                     CHECK_NEAR(h, 0, 0.35);
@@ -276,19 +282,19 @@ static void a_coast_keeps_everybody_on_his_side(void **state)
 static void the_shore_is_one_line(void **state)
 {
     (void)state;
-    static GroundFix  fix[100];
-    static CoastPlace place[100];
-    int               places;
-    const int         fixes = make_coast(fix, place, &places, 9);
-    const LocalFrame       frame = frame_at(36, -5);
-    LandscapeConfig        config = small_config();
+    static GroundFix        fix[100];
+    static CoastPlace       place[100];
+    int                     places;
+    const int               fixes = make_coast(fix, place, &places, 9);
+    const LocalFrame        frame = frame_at(36, -5);
+    LandscapeConfig         config = small_config();
     const LandscapeEvidence said = {.fix = fix, .fix_count = fixes, .place = place, .place_count = places};
     enum { many = 8000 };
     static double  x[many], y[many];
     static uint8_t surface[many];
     for (config.seed = 1; config.seed <= 6; config.seed++) {
-        Landscape      land;
-        int            water = 0, dry = 0, fresh = 0; /* places beyond doubt on land; of them with a stream or a pond */
+        Landscape land;
+        int       water = 0, dry = 0, fresh = 0; /* places beyond doubt on land; of them with a stream or a pond */
         CHECK(landscape_create_from(&land, &config, &frame, &said) == STATUS_OK);
         for (int n = 0; n < many; n++) {
             const double reach_m = n & 1 ? 2000 : 60000;
@@ -317,15 +323,16 @@ static void odd_evidence_is_survived(void **state)
     (void)state;
     const LocalFrame      frame = frame_at(36, -5);
     const LandscapeConfig config = small_config();
-    const CoastPlace      place[] = {{NAN, 0, true}, {0, INFINITY, false}, {1e300, 0, true}, {5, 5, true}, {5, 5, false}};
-    Landscape             land;
+    const CoastPlace place[] = {{NAN, 0, true}, {0, INFINITY, false}, {1e300, 0, true}, {5, 5, true}, {5, 5, false}};
+    Landscape        land;
     for (int n = 1; n <= 5; n++) {
         const LandscapeEvidence said = {.place = place, .place_count = n};
         CHECK(landscape_create_from(&land, &config, &frame, &said) == STATUS_OK);
         CHECK((landscape_surface(&land, 300, 20) == SURFACE_WATER) == (n == 4));
         landscape_destroy(&land);
     }
-    CHECK(landscape_create_from(&land, &config, &frame, &(LandscapeEvidence){.place = place, .place_count = 4, .sea_h_m = NAN}) ==
+    CHECK(landscape_create_from(&land, &config, &frame,
+                                &(LandscapeEvidence){.place = place, .place_count = 4, .sea_h_m = NAN}) ==
           STATUS_BAD_VALUE);
     CHECK(landscape_create_from(&land, &config, &frame, &(LandscapeEvidence){.place_count = -1}) == STATUS_BAD_VALUE);
 }

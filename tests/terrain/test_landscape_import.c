@@ -28,8 +28,11 @@ static void write_sheet(char path[64], const char *name, Painter *paint)
     char prj[80];
     snprintf(prj, sizeof prj, "%.*sprj", (int)strlen(path) - 3, path);
     file = fopen(prj, "w");
-    CHECK(file && fputs("Projection    UTM\nZone          10\nDatum         WGS84\nSpheroid      WGS84\nUnits         METERS\n"
-                        "Parameters\n", file) >= 0 && fclose(file) == 0);
+    CHECK(file &&
+          fputs("Projection    UTM\nZone          10\nDatum         WGS84\nSpheroid      WGS84\nUnits         METERS\n"
+                "Parameters\n",
+                file) >= 0 &&
+          fclose(file) == 0);
 }
 
 /* Octets, as photographs are: red, green and blue sheets as one. */
@@ -38,26 +41,70 @@ static void write_photo(char path[64], const char *name, char sheet[3][64])
     snprintf(path, 64, "/tmp/pitviper-%d-%s.vrt", (int)getpid(), name);
     FILE *file = fopen(path, "w");
     CHECK(file);
-    fprintf(file, "<VRTDataset rasterXSize='%d' rasterYSize='%d'><SRS>EPSG:32610</SRS><GeoTransform>%d,10,0,%d,0,-10"
-                  "</GeoTransform>", cells, cells, 494500 - 5 * cells, 4878000 + 5 * cells);
+    fprintf(file,
+            "<VRTDataset rasterXSize='%d' rasterYSize='%d'><SRS>EPSG:32610</SRS><GeoTransform>%d,10,0,%d,0,-10"
+            "</GeoTransform>",
+            cells, cells, 494500 - 5 * cells, 4878000 + 5 * cells);
     for (int b = 0; b < 3; b++)
-        fprintf(file, "<VRTRasterBand dataType='Byte' band='%d'><SimpleSource><SourceFilename>%s</SourceFilename>"
-                      "<SourceBand>1</SourceBand></SimpleSource></VRTRasterBand>", b + 1, sheet[b]);
+        fprintf(file,
+                "<VRTRasterBand dataType='Byte' band='%d'><SimpleSource><SourceFilename>%s</SourceFilename>"
+                "<SourceBand>1</SourceBand></SimpleSource></VRTRasterBand>",
+                b + 1, sheet[b]);
     fputs("</VRTDataset>", file);
     CHECK(fclose(file) == 0);
 }
 
-static int level_ground(int column, int row) { (void)column; (void)row; return 100; }
-static int quadrants(int column, int row) { return row < cells / 2 ? column < cells / 2 ? 10 : 30 : column < cells / 2 ? 50 : 80; }
-static int nlcd_codes(int column, int row) { return row < cells / 2 ? column < cells / 2 ? 42 : 71 : column < cells / 2 ? 23 : 11; }
-static int fuel_codes(int column, int row) { return row < cells / 2 ? column < cells / 2 ? 183 : 102 : column < cells / 2 ? 91 : 98; }
-static int dynamic_codes(int column, int row) { return row < cells / 2 ? column < cells / 2 ? 1 : 4 : column < cells / 2 ? 6 : 0; }
-static int corine_numbers(int column, int row) { return row < cells / 2 ? column < cells / 2 ? 24 : 18 : column < cells / 2 ? 2 : 41; }
-static int corine_classes(int column, int row) { return row < cells / 2 ? column < cells / 2 ? 312 : 231 : column < cells / 2 ? 112 : 512; }
-static int foreign_codes(int column, int row) { (void)row; return column < cells / 2 ? 200 + column % 3 * 5 + 10 : 240; }
-static int grassland(int column, int row) { (void)column; (void)row; return 30; }
-static int west_bright(int column, int row) { (void)row; return column < cells / 2 ? 206 : 41; }
-static int north_bright(int column, int row) { (void)column; return row < cells / 2 ? 206 : 41; }
+static int level_ground(int column, int row)
+{
+    (void)column;
+    (void)row;
+    return 100;
+}
+static int quadrants(int column, int row)
+{
+    return row < cells / 2 ? column < cells / 2 ? 10 : 30 : column < cells / 2 ? 50 : 80;
+}
+static int nlcd_codes(int column, int row)
+{
+    return row < cells / 2 ? column < cells / 2 ? 42 : 71 : column < cells / 2 ? 23 : 11;
+}
+static int fuel_codes(int column, int row)
+{
+    return row < cells / 2 ? column < cells / 2 ? 183 : 102 : column < cells / 2 ? 91 : 98;
+}
+static int dynamic_codes(int column, int row)
+{
+    return row < cells / 2 ? column < cells / 2 ? 1 : 4 : column < cells / 2 ? 6 : 0;
+}
+static int corine_numbers(int column, int row)
+{
+    return row < cells / 2 ? column < cells / 2 ? 24 : 18 : column < cells / 2 ? 2 : 41;
+}
+static int corine_classes(int column, int row)
+{
+    return row < cells / 2 ? column < cells / 2 ? 312 : 231 : column < cells / 2 ? 112 : 512;
+}
+static int foreign_codes(int column, int row)
+{
+    (void)row;
+    return column < cells / 2 ? 200 + column % 3 * 5 + 10 : 240;
+}
+static int grassland(int column, int row)
+{
+    (void)column;
+    (void)row;
+    return 30;
+}
+static int west_bright(int column, int row)
+{
+    (void)row;
+    return column < cells / 2 ? 206 : 41;
+}
+static int north_bright(int column, int row)
+{
+    (void)column;
+    return row < cells / 2 ? 206 : 41;
+}
 /* Fields of one colour but the south-west's chess board, 40 m from the others: a block of pixels holds colours on one
  * line. 154: the mean of the light of the chess board. */
 static int chess(int column, int row)
@@ -76,7 +123,10 @@ static LocalFrame centre_frame(void)
 static LandscapeFiles files_of(const char *elevation, const char *cover, const char *photo)
 {
     return (LandscapeFiles){.elevation = {.paths = elevation, .geoid_path = "", .horizon_m = 20000},
-                            .cover = cover, .cover_table = "", .photo = photo, .seed = 1};
+                            .cover = cover,
+                            .cover_table = "",
+                            .photo = photo,
+                            .seed = 1};
 }
 
 static void check_quadrants(const Landscape *land, const SurfaceClass want[4])
@@ -91,7 +141,11 @@ static void check_quadrants(const Landscape *land, const SurfaceClass want[4])
 static void classes_come_from_the_codes(void **state)
 {
     (void)state;
-    static const struct { Painter *paint; const char *table; SurfaceClass want[4]; } kinds[] = {
+    static const struct {
+        Painter     *paint;
+        const char  *table;
+        SurfaceClass want[4];
+    } kinds[] = {
         {quadrants, "worldcover", {SURFACE_FOREST_BROADLEAF, SURFACE_GRASS, SURFACE_BUILT, SURFACE_WATER}},
         {nlcd_codes, "nlcd", {SURFACE_FOREST_CONIFER, SURFACE_GRASS, SURFACE_BUILT, SURFACE_WATER}},
         {fuel_codes, "fbfm40", {SURFACE_FOREST_CONIFER, SURFACE_DRY_GRASS, SURFACE_BUILT, SURFACE_WATER}},
@@ -100,7 +154,7 @@ static void classes_come_from_the_codes(void **state)
         {corine_classes, "corine", {SURFACE_FOREST_CONIFER, SURFACE_GRASS, SURFACE_BUILT, SURFACE_WATER}},
     };
     const LocalFrame frame = centre_frame();
-    char elevation[64], cover[64];
+    char             elevation[64], cover[64];
     write_sheet(elevation, "level", level_ground);
     for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) {
         Landscape       land = {0};
@@ -111,7 +165,8 @@ static void classes_come_from_the_codes(void **state)
         assert_string_equal(report.cover.table, kinds[k].table);
         CHECK(report.cover.unknown == 0 && report.cover.band == 1);
         check_quadrants(&land, kinds[k].want);
-        CHECK_NEAR(report.cover.share[kinds[k].want[0]], 0.25, 0.03); /* cells of 10 m along a rim turned by 3 minutes */
+        CHECK_NEAR(report.cover.share[kinds[k].want[0]], 0.25,
+                   0.03); /* cells of 10 m along a rim turned by 3 minutes */
         /* beyond the sheet something grows all the same */
         CHECK(landscape_surface(&land, 2000, 2000) != SURFACE_NONE);
         landscape_destroy(&land);
@@ -122,9 +177,9 @@ static void tables_can_be_named_and_their_faults_are_told(void **state)
 {
     (void)state;
     const LocalFrame frame = centre_frame();
-    char elevation[64], cover[64], table[text_file_size];
-    Landscape       land = {0};
-    LandscapeReport report;
+    char             elevation[64], cover[64], table[text_file_size];
+    Landscape        land = {0};
+    LandscapeReport  report;
     log_set_sink(check_listen, NULL);
     write_sheet(elevation, "level", level_ground);
     write_sheet(cover, "cover", foreign_codes);
@@ -148,7 +203,7 @@ static void tables_can_be_named_and_their_faults_are_told(void **state)
         remove(table);
     }
     files.cover_table = "worldcover";
-    files.cover_band  = 2;
+    files.cover_band = 2;
     assert_int_equal(landscape_import(&land, &report, &files, &frame, NULL, 0), STATUS_BAD_VALUE);
     CHECK(strstr(check_said, "terrain.cover_band"));
     log_set_sink(NULL, NULL);
@@ -161,9 +216,9 @@ static void a_photograph_is_relative_to_its_class(void **state)
 {
     (void)state;
     const LocalFrame frame = centre_frame();
-    char elevation[64], cover[64], sheet[3][64], photo[64];
-    Landscape       land = {0};
-    LandscapeReport report;
+    char             elevation[64], cover[64], sheet[3][64], photo[64];
+    Landscape        land = {0};
+    LandscapeReport  report;
     write_sheet(elevation, "level", level_ground);
     write_sheet(cover, "cover", grassland);
     write_sheet(sheet[0], "red", west_bright);
@@ -203,12 +258,14 @@ static void a_photograph_is_relative_to_its_class(void **state)
     landscape_destroy(&land);
 }
 
-/* Real lidar: height, class and colour at places against the files, read by GDAL's own tool in the files' own pixels. */
+/* Real lidar: height, class and colour at places against the files, read by GDAL's own tool in the files' own pixels.
+ */
 static void autzen_agrees_with_gdallocationinfo(void **state)
 {
     (void)state;
     char dtm[512], cover[512], photo[512], command[1200];
-    if (!reference_path(dtm, "terrain/autzen/autzen_dtm_1m.tif") || !reference_path(cover, "terrain/autzen/autzen_cover_1m.tif") ||
+    if (!reference_path(dtm, "terrain/autzen/autzen_dtm_1m.tif") ||
+        !reference_path(cover, "terrain/autzen/autzen_cover_1m.tif") ||
         !reference_path(photo, "terrain/autzen/autzen_rgb_1m.tif"))
         skip();
     if (system("command -v gdallocationinfo >/dev/null") != 0) {
@@ -238,9 +295,12 @@ static void autzen_agrees_with_gdallocationinfo(void **state)
         fprintf(list, "%.12f %.12f\n", place.lon_rad / rad_per_deg, place.lat_rad / rad_per_deg);
     }
     fclose(list);
-    static const int code_of[] = {[SURFACE_FOREST_BROADLEAF] = 10, [SURFACE_SCRUB] = 20, [SURFACE_GRASS] = 30,
-                                  [SURFACE_BUILT] = 50, [SURFACE_BARE_SOIL] = 60};
-    int agree = 0, asked = 0;
+    static const int code_of[] = {[SURFACE_FOREST_BROADLEAF] = 10,
+                                  [SURFACE_SCRUB] = 20,
+                                  [SURFACE_GRASS] = 30,
+                                  [SURFACE_BUILT] = 50,
+                                  [SURFACE_BARE_SOIL] = 60};
+    int              agree = 0, asked = 0;
     snprintf(command, sizeof command, "gdallocationinfo -valonly -wgs84 '%s' < %s", cover, input);
     FILE *answer = popen(command, "r");
     for (int n = 0; n < places; n++) {
@@ -252,7 +312,8 @@ static void autzen_agrees_with_gdallocationinfo(void **state)
         agree += (size_t)surface < sizeof code_of / sizeof *code_of && code_of[surface] == code;
     }
     pclose(answer);
-    /* nearest of nearest: where the 1 m cells of ENU and of UTM do not overlap, and the class changes from cell to cell */
+    /* nearest of nearest: where the 1 m cells of ENU and of UTM do not overlap, and the class changes from cell to cell
+     */
     print_message("cover agrees at %d of %d places\n", agree, asked);
     CHECK(agree > 0.85 * asked);
 
@@ -262,7 +323,7 @@ static void autzen_agrees_with_gdallocationinfo(void **state)
     snprintf(command, sizeof command, "gdallocationinfo -valonly -b 1 -wgs84 '%s' < %s", photo, input);
     answer = popen(command, "r");
     for (int n = 0; n < places; n++) {
-        int octet;
+        int   octet;
         float f[albedo_channels];
         CHECK(fscanf(answer, "%d", &octet) == 1);
         landscape_albedo(f, &land, SURFACE_GRASS, x_m[n], y_m[n], 1);

@@ -19,7 +19,8 @@ static void make_levels(WorkLevel *level, double steep_m)
     for (int k = 0; k < levels; k++) {
         level[k] = (WorkLevel){.hole_i1 = -1, .outermost = k == levels - 1};
         assert_int_equal(
-            levels_field_create(&level[k].z, 1 << (3 * k), -80, -80 - 8 * k, cells + 1, cells + 1 - 16 * (k == 1)), STATUS_OK);
+            levels_field_create(&level[k].z, 1 << (3 * k), -80, -80 - 8 * k, cells + 1, cells + 1 - 16 * (k == 1)),
+            STATUS_OK);
         const Field *z = &level[k].z, *in = &level[k - (k > 0)].z;
         for (int j = 0; j < z->ny; j++)
             for (int i = 0; i < z->nx; i++) z->v[j * z->nx + i] = height(k, z->i0 + i, z->j0 + j, steep_m);
@@ -80,8 +81,8 @@ static void posts_are_near_and_seams_exact(void **state)
     }
 }
 
-/* A peak of 4 km in the first tile of the finest level: posts of the seam beside other tiles stay as near to their heights as
- * without it, those beside it come within the peak's unit. */
+/* A peak of 4 km in the first tile of the finest level: posts of the seam beside other tiles stay as near to their
+ * heights as without it, those beside it come within the peak's unit. */
 static void a_peak_moves_only_the_seam_beside_it(void **state)
 {
     (void)state;
@@ -98,19 +99,22 @@ static void a_peak_moves_only_the_seam_beside_it(void **state)
     CHECK(ground.level[0].tile[0].shift == 7 && ground.level[0].tile[1].shift == 0); /* 32 m << 7 hold 4 km */
     for (int j = level[1].hole_j0; j <= level[1].hole_j1; j++)
         for (int i = level[1].hole_i0; i <= level[1].hole_i1; i++) {
-            const bool   rim = i == level[1].hole_i0 || i == level[1].hole_i1 || j == level[1].hole_j0 || j == level[1].hole_j1;
+            const bool rim =
+                i == level[1].hole_i0 || i == level[1].hole_i1 || j == level[1].hole_j0 || j == level[1].hole_j1;
             const int    at_i = i - z->i0, at_j = j - z->j0;
-            const double off_m = fabs(elevation_post_m(&ground.level[1], at_i, at_j) - (double)z->v[at_j * z->nx + at_i]);
-            const int    in_i = level_ratio * (i - level[1].hole_i0), in_j = level_ratio * (j - level[1].hole_j0);
-            const bool   beside = in_i <= elevation_tile_cells + level_ratio && in_j <= elevation_tile_cells + level_ratio;
+            const double off_m =
+                fabs(elevation_post_m(&ground.level[1], at_i, at_j) - (double)z->v[at_j * z->nx + at_i]);
+            const int  in_i = level_ratio * (i - level[1].hole_i0), in_j = level_ratio * (j - level[1].hole_j0);
+            const bool beside =
+                in_i <= elevation_tile_cells + level_ratio && in_j <= elevation_tile_cells + level_ratio;
             if (!rim) continue;
             posts += !beside;
             if (beside) beside_m = fmax(beside_m, off_m);
             else elsewhere_m = fmax(elsewhere_m, off_m);
         }
     print_message("seam: %.4f m beside the peak, %.4f m elsewhere (%d posts)\n", beside_m, elsewhere_m, posts);
-    CHECK(posts > 40 && elsewhere_m <= 8.5 / 2048);                              /* eight steps, rounded down */
-    CHECK(beside_m > 0.05 && beside_m <= (8 << 7) / 2048.0 + 1.0 / 2048);        /* eight units of the peak's tile */
+    CHECK(posts > 40 && elsewhere_m <= 8.5 / 2048);                       /* eight steps, rounded down */
+    CHECK(beside_m > 0.05 && beside_m <= (8 << 7) / 2048.0 + 1.0 / 2048); /* eight units of the peak's tile */
     elevation_destroy(&ground);
     for (int k = 0; k < levels; k++) levels_field_destroy(&level[k].z);
 }

@@ -29,9 +29,8 @@ typedef struct Loss {
 static Loss loss_of(const uint8_t *rgba)
 {
     static PhotoBlock block[side / 4 * side / 4];
-    const Photo       p = {.mips = 1, .nx = {side}, .ny = {side}, .x0_m = -7, .y0_m = 11, .cell_m = 1,
-                           .block = {block}};
-    Loss              loss = {0};
+    const Photo p = {.mips = 1, .nx = {side}, .ny = {side}, .x0_m = -7, .y0_m = 11, .cell_m = 1, .block = {block}};
+    Loss        loss = {0};
     for (int j = 0; j < side; j += 4)
         for (int i = 0; i < side; i += 4) block[j / 4 * (side / 4) + i / 4] = block_of(rgba, i, j);
     for (int j = 0; j < side; j++)
@@ -75,8 +74,10 @@ static void paint(uint8_t *rgba, int kind, double noise)
 static void what_blocks_lose_is_as_stated(void **state)
 {
     (void)state;
-    static const struct { int kind; double noise, rms, worst; } of[] = {
-        {0, 0, 1, 1}, {1, 8, 2.9, 12}, {2, 5, 2.5, 45}, {3, 8, 6, 30}};
+    static const struct {
+        int    kind;
+        double noise, rms, worst;
+    } of[] = {{0, 0, 1, 1}, {1, 8, 2.9, 12}, {2, 5, 2.5, 45}, {3, 8, 6, 30}};
     static uint8_t rgba[4 * side * side];
     for (size_t k = 0; k < sizeof of / sizeof *of; k++) {
         paint(rgba, of[k].kind, of[k].noise);
@@ -125,7 +126,7 @@ static void mips_keep_the_light(void **state)
     uint8_t half[4 * 5];
     photo_halve_row(half, row[0], row[1], 9);
     for (int i = 0; i < 4; i++) CHECK_NEAR(half[4 * i], 188, 1); /* IEC 61966-2-1 of 0.5: 187.5 */
-    CHECK(half[3] == 255 && half[4 * 4 + 3] == 128); /* the last has two of four */
+    CHECK(half[3] == 255 && half[4 * 4 + 3] == 128);             /* the last has two of four */
     int nx[ground_image_mips] = {9}, ny[ground_image_mips] = {3};
     CHECK(photo_mips(nx, ny) == 5 && nx[4] == 1 && ny[4] == 1 && nx[1] == 5 && ny[1] == 2);
 }

@@ -37,7 +37,8 @@ static void the_sun_of_nrels_example(void **state)
     CHECK_NEAR(asked("sun", row, "zenith_deg"), 50.11162, 0.0005); /* as tests/terrain/test_sun.c */
     CHECK_NEAR(asked("sun", row, "azimuth_deg"), 194.34024, 0.0005);
     CHECK_NEAR(asked("sun", row, "distance_au"), 0.9965422974, 1e-6);
-    CHECK(isnan(asked("sun", "utc,lat_deg,lon_deg,h_m,pressure_mbar,temp_c\n2003-10-17,39,-105,0,820,11\n", "zenith_deg")));
+    CHECK(isnan(
+        asked("sun", "utc,lat_deg,lon_deg,h_m,pressure_mbar,temp_c\n2003-10-17,39,-105,0,820,11\n", "zenith_deg")));
 }
 
 static void the_geoid_of_ngas_example(void **state)

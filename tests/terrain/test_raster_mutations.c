@@ -1,5 +1,6 @@
-/* tests/terrain/test_raster_mutations.c: small GeoTIFF, VRT, NetCDF and DTED files with spoilt headers, imported: the program stays,
- * no connection is made, memory, time and disk stay bounded. PITVIPER_MUTATIONS: how many of each kind (60). */
+/* tests/terrain/test_raster_mutations.c: small GeoTIFF, VRT, NetCDF and DTED files with spoilt headers, imported: the
+ * program stays, no connection is made, memory, time and disk stay bounded. PITVIPER_MUTATIONS: how many of each kind
+ * (60). */
 #include "tests/terrain/raster_lab.h"
 
 #include "terrain/import/terrain_import.h"
@@ -30,8 +31,9 @@ static void attribute(LabFile *f, const char *name, const char *value)
 static void make_netcdf(LabFile *f)
 {
     enum { n = 40 };
-    static const char wkt[] = "GEOGCS[\"WGS 84\",DATUM[\"WGS_1984\",SPHEROID[\"WGS 84\",6378137,298.257223563]],PRIMEM[\"Greenwich\",0],"
-                              "UNIT[\"degree\",0.0174532925199433]]";
+    static const char wkt[] =
+        "GEOGCS[\"WGS 84\",DATUM[\"WGS_1984\",SPHEROID[\"WGS 84\",6378137,298.257223563]],PRIMEM[\"Greenwich\",0],"
+        "UNIT[\"degree\",0.0174532925199433]]";
     for (uint32_t begin = 0, pass = 0; pass < 2; pass++) { /* offsets are known after the first */
         f->count = 0;
         lab_put(f, "CDF\1", 4);
@@ -47,14 +49,16 @@ static void make_netcdf(LabFile *f)
         lab_number(f, 4, 4, true);
         for (int v = 0; v < 4; v++) {
             static const char *const names[] = {"lat", "lon", "z", "crs"};
-            const uint32_t size = v < 2 ? 8 * n : v == 2 ? 4 * n * n : 4;
+            const uint32_t           size = v < 2 ? 8 * n : v == 2 ? 4 * n * n : 4;
             text_of(f, names[v]);
             lab_number(f, v < 2 ? 1 : v == 2 ? 2 : 0, 4, true);
             if (v < 2) lab_number(f, (uint64_t)v, 4, true);
             if (v == 2) lab_number(f, 0, 4, true), lab_number(f, 1, 4, true);
             lab_number(f, 12, 4, true);
             lab_number(f, v == 3 ? 1 : 2, 4, true);
-            if (v < 2) attribute(f, "units", v ? "degrees_east" : "degrees_north"), attribute(f, "standard_name", v ? "longitude" : "latitude");
+            if (v < 2)
+                attribute(f, "units", v ? "degrees_east" : "degrees_north"),
+                    attribute(f, "standard_name", v ? "longitude" : "latitude");
             if (v == 2) attribute(f, "units", "m"), attribute(f, "grid_mapping", "crs");
             if (v == 3) attribute(f, "spatial_ref", wkt);
             lab_number(f, v < 2 ? 6 : v == 2 ? 5 : 2, 4, true);
@@ -101,8 +105,8 @@ static void make_vrt(LabFile *f) { lab_vrt(f, source); }
 
 static const struct Kind {
     const char *name;
-    void      (*make)(LabFile *f);
-    uint32_t    header; /* octets that most changes are in */
+    void (*make)(LabFile *f);
+    uint32_t header; /* octets that most changes are in */
 } kinds[] = {{"tif", make_tiff, 400}, {"vrt", make_vrt, 800}, {"nc", make_netcdf, 900}, {"dt0", make_dted, 3440}};
 enum { kind_count = sizeof kinds / sizeof *kinds };
 
@@ -117,19 +121,26 @@ static uint32_t chance(uint32_t below)
 
 static void change_octets(LabFile *f, uint32_t header)
 {
-    static const uint32_t odd[] = {0, 1, 0xff, 0xffff, 0x7fffffff, 0x80000000, 0xffffffff, 0x10000, 100000000, 0xfffffff0};
-    const uint32_t most = chance(8) && header < f->count ? header : (uint32_t)f->count;
+    static const uint32_t odd[] = {0,          1,          0xff,    0xffff,    0x7fffffff,
+                                   0x80000000, 0xffffffff, 0x10000, 100000000, 0xfffffff0};
+    const uint32_t        most = chance(8) && header < f->count ? header : (uint32_t)f->count;
     for (uint32_t n = 1 + chance(4); n > 0; n--) {
         const uint32_t at = chance(most), value = chance(3) ? odd[chance(10)] : chance(0xffffffffu);
         const bool     big = chance(2);
         switch (chance(5)) {
-        case 0: f->octets[at] ^= (uint8_t)(1u << chance(8)); break;
-        case 1: f->octets[at] = (uint8_t)value; break;
+        case 0:
+            f->octets[at] ^= (uint8_t)(1u << chance(8));
+            break;
+        case 1:
+            f->octets[at] = (uint8_t)value;
+            break;
         case 2:
-            for (uint32_t k = 0; k < 2 && at + k < f->count; k++) f->octets[at + k] = (uint8_t)(value >> 8 * (big ? 1 - k : k));
+            for (uint32_t k = 0; k < 2 && at + k < f->count; k++)
+                f->octets[at + k] = (uint8_t)(value >> 8 * (big ? 1 - k : k));
             break;
         case 3:
-            for (uint32_t k = 0; k < 4 && at + k < f->count; k++) f->octets[at + k] = (uint8_t)(value >> 8 * (big ? 3 - k : k));
+            for (uint32_t k = 0; k < 4 && at + k < f->count; k++)
+                f->octets[at + k] = (uint8_t)(value >> 8 * (big ? 3 - k : k));
             break;
         default:
             if (chance(8) == 0) f->count = at + 1;
@@ -149,12 +160,15 @@ static void change_words(LabFile *f)
     snprintf(words[3], sizeof *words, "/vsis3/127.0.0.1:%d/a.tif", server_port);
     snprintf(words[4], sizeof *words, "/vsizip//vsicurl/http://127.0.0.1:%d/a.zip/a.tif", server_port);
     snprintf(words[5], sizeof *words, "PG:host=127.0.0.1 port=%d dbname=a mode=2", server_port);
-    snprintf(words[6], sizeof *words, "<GDAL_WMS><Service name=\"TMS\"><ServerUrl>http://127.0.0.1:%d/</ServerUrl></Service></GDAL_WMS>", server_port);
+    snprintf(words[6], sizeof *words,
+             "<GDAL_WMS><Service name=\"TMS\"><ServerUrl>http://127.0.0.1:%d/</ServerUrl></Service></GDAL_WMS>",
+             server_port);
     snprintf(words[7], sizeof *words, "%s", path);
-    static const char *const more[] = {"/etc/passwd", "../../../etc/passwd", "99999999", "2147483647", "-1", "1e308", "nan", "",
-                                       "VRTDerivedRasterBand", "VRTWarpedDataset", "/dev/zero", "/proc/self/mem"};
+    static const char *const more[] = {
+        "/etc/passwd",          "../../../etc/passwd", "99999999",  "2147483647",    "-1", "1e308", "nan", "",
+        "VRTDerivedRasterBand", "VRTWarpedDataset",    "/dev/zero", "/proc/self/mem"};
     for (int k = 0; k < 12; k++) snprintf(words[8 + k], sizeof *words, "%s", more[k]);
-    char          *at = (char *)f->octets;
+    char *at = (char *)f->octets;
     f->octets[f->count] = 0;
     (void)server_name;
     for (uint32_t n = 1 + chance(3); n > 0; n--) {
@@ -208,7 +222,8 @@ static int others_here(void)
     int  count = 0;
     CHECK(here);
     for (struct dirent *entry; (entry = readdir(here));)
-        count += entry->d_name[0] != '.' && strncmp(entry->d_name, "in.", 3) != 0 && strcmp(entry->d_name, "source.tif") != 0;
+        count += entry->d_name[0] != '.' && strncmp(entry->d_name, "in.", 3) != 0 &&
+                 strcmp(entry->d_name, "source.tif") != 0;
     closedir(here);
     return count;
 }
@@ -278,7 +293,7 @@ int main(void)
     make_tiff(&file);
     lab_save(&file, source);
     const struct CMUnitTest tests[] = {cmocka_unit_test(spoilt_files_do_no_harm)};
-    const int failed = cmocka_run_group_tests(tests, NULL, NULL);
+    const int               failed = cmocka_run_group_tests(tests, NULL, NULL);
     unlink(source);
     rmdir(folder);
     return failed;

@@ -1,5 +1,5 @@
-/* tests/terrain/test_raster_reader.c: the process that reads rasters: what it may not do, what becomes of the program when it ends,
- * hangs or is taken over by a file, and that gaps cost nothing. labels: threads */
+/* tests/terrain/test_raster_reader.c: the process that reads rasters: what it may not do, what becomes of the program
+ * when it ends, hangs or is taken over by a file, and that gaps cost nothing. labels: threads */
 #include "tests/terrain/raster_lab.h"
 
 #include "terrain/elevation/patches.h"
@@ -37,8 +37,8 @@ static void save_vrt(const char *source)
 /* A program of the tests' own folder in the reader's place; NULL: the product. */
 static void read_by(const char *name)
 {
-    static char path[4200];
-    char        self[4096];
+    static char   path[4200];
+    char          self[4096];
     const ssize_t length = readlink("/proc/self/exe", self, sizeof self - 1);
     CHECK(length > 0);
     self[length] = 0;
@@ -106,7 +106,8 @@ static void every_thread_of_it_is_confined(void **state)
         target[length] = 0;
         const bool is_socket = strncmp(target, "socket:", 7) == 0;
         sockets += is_socket;
-        if (!is_socket && strcmp(target, "/dev/null") != 0 && strncmp(target, folder, strlen(folder)) != 0 && !strstr(target, "proj"))
+        if (!is_socket && strcmp(target, "/dev/null") != 0 && strncmp(target, folder, strlen(folder)) != 0 &&
+            !strstr(target, "proj"))
             fail_msg("it has %s open", target);
     }
     if (files) closedir(files);
@@ -120,9 +121,9 @@ static void no_file_makes_it_ask_a_server(void **state)
     static const struct {
         const char *program;
         bool        asks;
-    } readers[] = {{NULL, false},             /* GDAL's options and the filter of system calls */
-                   {"rasters_plain", false},  /* the filter alone */
-                   {"rasters_open", true}};   /* neither: the twin */
+    } readers[] = {{NULL, false},            /* GDAL's options and the filter of system calls */
+                   {"rasters_plain", false}, /* the filter alone */
+                   {"rasters_open", true}};  /* neither: the twin */
     struct sockaddr_in address = {.sin_family = AF_INET, .sin_addr.s_addr = htonl(INADDR_LOOPBACK)};
     socklen_t          size = sizeof address;
     const int          server = socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK, 0);
@@ -153,13 +154,15 @@ static void no_file_makes_it_ask_a_server(void **state)
         }
         log_set_sink(NULL, NULL);
         raster_child_patience(0);
-        if ((asked > 0) != readers[k].asks) fail_msg("%s: %d connections", readers[k].program ? readers[k].program : "the product", asked);
+        if ((asked > 0) != readers[k].asks)
+            fail_msg("%s: %d connections", readers[k].program ? readers[k].program : "the product", asked);
     }
     close(server);
     read_by(NULL);
 }
 
-/* A file of files that calls itself something else is not looked into by name: what it names there is Landlock's alone. */
+/* A file of files that calls itself something else is not looked into by name: what it names there is Landlock's alone.
+ */
 static void others_are_read_in_the_own_folder_alone(void **state)
 {
     (void)state;
@@ -176,7 +179,8 @@ static void others_are_read_in_the_own_folder_alone(void **state)
         save_vrt(outside[k]);
         *check_said = 0;
         CHECK(read_some(some, vrt) != STATUS_OK && strstr(check_said, vrt));
-        if (!strstr(check_said, "terrain.sources_from") || !strstr(check_said, k == 2 ? "is no file" : "outside its folder"))
+        if (!strstr(check_said, "terrain.sources_from") ||
+            !strstr(check_said, k == 2 ? "is no file" : "outside its folder"))
             fail_msg("no cause or remedy: %s", check_said);
     }
     save_vrt(far_tiff);
@@ -236,7 +240,8 @@ static void ends_by(int number, const char *wanted)
     said_errors = 0;
     log_set_sink(count_errors, NULL);
     CHECK(raster_read(some, &set.raster[0], 1, (RasterWindow){0, 0, 2, 2}, "test.key") == STATUS_IO);
-    if (!strstr(check_said, wanted) || !strstr(check_said, tiff) || !strstr(check_said, "test.key") || !strstr(check_said, "gdal_translate"))
+    if (!strstr(check_said, wanted) || !strstr(check_said, tiff) || !strstr(check_said, "test.key") ||
+        !strstr(check_said, "gdal_translate"))
         fail_msg("said: %s", check_said);
     CHECK(raster_read(some, &set.raster[0], 1, (RasterWindow){0, 0, 2, 2}, "test.key") == STATUS_IO);
     raster_px_from_earth(&set.raster[0], 1, &x, &y);
@@ -285,8 +290,8 @@ static void a_fork_has_its_own(void **state)
         _exit(good ? 0 : 1);
     }
     CHECK(waitpid(process, &how, 0) == process && WIFEXITED(how) && WEXITSTATUS(how) == 0);
-    CHECK(raster_read(some, &set.raster[0], 1, (RasterWindow){0, 0, 2, 2},
-                      "test") == STATUS_OK && lab_starter() == starter);
+    CHECK(raster_read(some, &set.raster[0], 1, (RasterWindow){0, 0, 2, 2}, "test") == STATUS_OK &&
+          lab_starter() == starter);
     raster_set_close(&set);
 }
 
@@ -375,7 +380,8 @@ static void gaps_are_known_without_reading(void **state)
             for (int x = 0; x < px; x++) {
                 const bool  there = has >> (y / 64 * side + x / 64) & 1;
                 const float got = all[y * px + x];
-                if (there ? got != lab_height(x, y) : n == 0 ? got != 0 : !isnan(got)) fail_msg("%d, %d: %g", x, y, (double)got);
+                if (there ? got != lab_height(x, y) : n == 0 ? got != 0 : !isnan(got))
+                    fail_msg("%d, %d: %g", x, y, (double)got);
             }
         for (int t = 0; t < side * side; t++) {
             const bool known = raster_uniform(&v, r, 1, (RasterWindow){t % side * 64, t / side * 64, 64, 64}, "test");
@@ -418,15 +424,16 @@ static void kept_rows_are_bounded(void **state)
             char target[256];
             snprintf(path, sizeof path, "/proc/self/fd/%d", n);
             const ssize_t length = readlink(path, target, sizeof target - 1);
-            if (length > 0 && strncmp(target, folder, strlen(folder)) == 0 && fstat(n, &about) == 0) octets = (double)about.st_size;
+            if (length > 0 && strncmp(target, folder, strlen(folder)) == 0 && fstat(n, &about) == 0)
+                octets = (double)about.st_size;
         }
         CHECK(octets == (whole ? px : 10) * px * sizeof(float));
         CHECK(kill(lab_reader(), SIGKILL) == 0);
         log_set_sink(check_listen, NULL);
-        CHECK(raster_read(again, &set.raster[0], 1, (RasterWindow){3, 2, 50, 8},
-                          "test") == STATUS_OK); /* without the reader */
-        CHECK((raster_read(again, &set.raster[0], 1, (RasterWindow){0, 0, px, px},
-                           "test") == STATUS_OK) == (whole != 0));
+        CHECK(raster_read(again, &set.raster[0], 1, (RasterWindow){3, 2, 50, 8}, "test") ==
+              STATUS_OK); /* without the reader */
+        CHECK((raster_read(again, &set.raster[0], 1, (RasterWindow){0, 0, px, px}, "test") == STATUS_OK) ==
+              (whole != 0));
         log_set_sink(NULL, NULL);
         if (whole) CHECK(memcmp(again, all, sizeof all) == 0);
         raster_set_close(&set);

@@ -63,10 +63,10 @@ static void the_seam_has_no_crack(void **state)
     assert_int_equal(store_open(&store, lab), STATUS_OK);
     const ElevationLevel *in = &store.elevation.level[0], *out = &store.elevation.level[1];
     for (int k = 0; k < 2 * (lab_nx + lab_ny); k++) {
-        const int  side = k % 4, m = k / 4 * 2 % (side < 2 ? lab_nx : lab_ny);
-        const int  i = side < 2 ? m : side == 2 ? 0 : lab_nx - 1, j = side < 2 ? (side == 0 ? 0 : lab_ny - 1) : m;
-        const int  a = (int)((in->x0_m + i - out->x0_m) / 8), b = (int)((in->y0_m + j - out->y0_m) / 8);
-        const int  part = side < 2 ? i % 8 : j % 8;
+        const int    side = k % 4, m = k / 4 * 2 % (side < 2 ? lab_nx : lab_ny);
+        const int    i = side < 2 ? m : side == 2 ? 0 : lab_nx - 1, j = side < 2 ? (side == 0 ? 0 : lab_ny - 1) : m;
+        const int    a = (int)((in->x0_m + i - out->x0_m) / 8), b = (int)((in->y0_m + j - out->y0_m) / 8);
+        const int    part = side < 2 ? i % 8 : j % 8;
         const double za = elevation_post_m(out, a, b);
         const double zb = part ? elevation_post_m(out, a + (side < 2), b + (side >= 2)) : za;
         CHECK(elevation_post_m(in, i, j) == za + (zb - za) * part / 8);
@@ -222,11 +222,11 @@ static void options_are_recalled_from_what_is_left(void **state)
     char     bad[temp_name_size];
     uint8_t *octets;
     name_file(bad, "bad.store");
-    const size_t  count = read_whole(&octets, lab);
-    StoreHeader  *h = (StoreHeader *)(void *)octets;
-    const size_t  at = (size_t)(store_text(h, STORE_OPTIONS) - (const char *)octets);
-    const size_t  end = at + strlen((const char *)octets + at);
-    TerrainStore  store;
+    const size_t count = read_whole(&octets, lab);
+    StoreHeader *h = (StoreHeader *)(void *)octets;
+    const size_t at = (size_t)(store_text(h, STORE_OPTIONS) - (const char *)octets);
+    const size_t end = at + strlen((const char *)octets + at);
+    TerrainStore store;
     assert_int_equal(store_open(&store, lab), STATUS_OK);
     CHECK(strlen(store.options) > 0);
     memset(octets + sizeof store_magic, 0x5a, sizeof *h - sizeof store_magic);
@@ -257,18 +257,18 @@ static void options_are_recalled_from_what_is_left(void **state)
 static void hostile_headers_are_refused(void **state)
 {
     (void)state;
-    uint8_t *octets;
+    uint8_t     *octets;
     const size_t count = read_whole(&octets, lab);
     StoreHeader *h = (StoreHeader *)(void *)octets;
     const char  *why;
     assert_int_equal(store_header_check(&why, h, h->header_octets, count), STATUS_OK);
-#define HOSTILE(change)                                                                                       \
-    do {                                                                                                      \
-        const StoreHeader was = *h;                                                                           \
-        change;                                                                                               \
-        h->checksum = store_checksum(h);                                                                      \
-        if (store_header_check(&why, h, was.header_octets, count) == STATUS_OK) fail_msg("accepted: %s", #change); \
-        *h = was;                                                                                             \
+#define HOSTILE(change)                                                                                                \
+    do {                                                                                                               \
+        const StoreHeader was = *h;                                                                                    \
+        change;                                                                                                        \
+        h->checksum = store_checksum(h);                                                                               \
+        if (store_header_check(&why, h, was.header_octets, count) == STATUS_OK) fail_msg("accepted: %s", #change);     \
+        *h = was;                                                                                                      \
     } while (0)
     HOSTILE(h->level_count = 5);
     HOSTILE(h->level_count = 0);
@@ -306,7 +306,7 @@ static void changed_and_missing_sources_are_noticed(void **state)
     StorePlan   plan = lab_plan();
     StoreSource look[2] = {{.path = source[0]}, {.path = source[1]}};
     CHECK(store_source_look(&look[0]) && store_source_look(&look[1]) && look[0].octets == 5);
-    plan.source       = look;
+    plan.source = look;
     plan.source_count = 2;
     lab_write(path, &plan, NULL, 64);
     assert_int_equal(store_open(&store, path), STATUS_OK);
@@ -359,8 +359,8 @@ static void the_whole_of_192_million_posts_is_below_900_mb(void **state)
 {
     (void)state;
     StoreHeader h = {.header_octets = store_page, .level_count = 2, .albedo = {12000, 16000, -6000, -8000, 1}};
-    h.level[0]   = (StoreHeaderLevel){.nx = 12001, .ny = 16001, .spacing_m = 1, .step_m = 0x1p-9};
-    h.level[1]   = (StoreHeaderLevel){.nx = 6251, .ny = 6251, .spacing_m = 8, .step_m = 0x1p-9};
+    h.level[0] = (StoreHeaderLevel){.nx = 12001, .ny = 16001, .spacing_m = 1, .step_m = 0x1p-9};
+    h.level[1] = (StoreHeaderLevel){.nx = 6251, .ny = 6251, .spacing_m = 8, .step_m = 0x1p-9};
     h.surface[0] = (StoreGrid){12000, 16000, -6000, -8000, 1};
     h.surface[1] = (StoreGrid){2000, 2000, -8000, -8000, 8};
     CHECK(store_layout(&h));

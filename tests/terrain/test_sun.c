@@ -133,8 +133,10 @@ static void bad_input(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(nrel_vector),           cmocka_unit_test(agrees_with_the_almanac),
-        cmocka_unit_test(known_places_and_days), cmocka_unit_test(no_jump_at_the_ends_of_the_table),
+        cmocka_unit_test(nrel_vector),
+        cmocka_unit_test(agrees_with_the_almanac),
+        cmocka_unit_test(known_places_and_days),
+        cmocka_unit_test(no_jump_at_the_ends_of_the_table),
         cmocka_unit_test(bad_input),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -18,8 +18,13 @@ typedef float GroundShape(double x_m, double y_m);
 static Site site_make(int nx, int ny, double cell_m, GroundShape *ground)
 {
     const size_t n = (size_t)nx * (size_t)ny;
-    Site s = {.nx = nx, .ny = ny, .cell_m = cell_m, .surface_m = malloc(n * 4), .truth_m = malloc(n * 4),
-              .kind = calloc(n, 1), .parts = {.bare_m = malloc(n * 4), .roof_m = malloc(n * 4), .kind = malloc(n)}};
+    Site         s = {.nx = nx,
+                      .ny = ny,
+                      .cell_m = cell_m,
+                      .surface_m = malloc(n * 4),
+                      .truth_m = malloc(n * 4),
+                      .kind = calloc(n, 1),
+                      .parts = {.bare_m = malloc(n * 4), .roof_m = malloc(n * 4), .kind = malloc(n)}};
     for (size_t c = 0; c < n; c++) {
         const double x = ((double)(c % (size_t)nx) + 0.5) * cell_m, y = ((double)(c / (size_t)nx) + 0.5) * cell_m;
         s.truth_m[c] = ground(x, y);
@@ -59,8 +64,8 @@ static void add_tree(Site *s, double x_m, double y_m, double height_m, double ra
 /* A roof above the ground at its middle; pitch 0: flat. The ridge runs east. */
 static void add_house(Site *s, double x_m, double y_m, double long_m, double wide_m, double eaves_m, double pitch)
 {
-    const int    cx = (int)(x_m / s->cell_m), cy = (int)(y_m / s->cell_m);
-    const float  base = s->truth_m[(size_t)cy * (size_t)s->nx + (size_t)cx];
+    const int   cx = (int)(x_m / s->cell_m), cy = (int)(y_m / s->cell_m);
+    const float base = s->truth_m[(size_t)cy * (size_t)s->nx + (size_t)cx];
     for (int j = 0; j < s->ny; j++)
         for (int i = 0; i < s->nx; i++) {
             const double u = fabs((i + 0.5) * s->cell_m - x_m), v = fabs((j + 0.5) * s->cell_m - y_m);
@@ -99,10 +104,7 @@ static float level(double x_m, double y_m) { return 50 + 0 * (float)(x_m + y_m);
 static float gentle(double x_m, double y_m) { return (float)(100 + 0.05 * x_m + 4 * sin(y_m / 60)); }
 static float hills(double x_m, double y_m) { return (float)(200 + 30 * sin(x_m / 45) * cos(y_m / 60)); } /* 34 deg */
 static float slope(double x_m, double y_m) { return (float)(300 + 0.6 * x_m + 0 * y_m); }
-static float terraces(double x_m, double y_m)
-{
-    return (float)(20 + 6 * floor(x_m / 60) + 0.02 * y_m);
-}
+static float terraces(double x_m, double y_m) { return (float)(20 + 6 * floor(x_m / 60) + 0.02 * y_m); }
 
 static void bare_hills_and_terraces_stay(void **state)
 {
@@ -112,7 +114,7 @@ static void bare_hills_and_terraces_stay(void **state)
         Site s = site_make(300, 300, k == 2 ? 2 : 1, shape[k]);
         site_run(&s);
         const double rms = ground_rms(&s, 10);
-        size_t objects = 0;
+        size_t       objects = 0;
         for (size_t c = 0; c < 90000; c++) objects += s.parts.kind[c] != CELL_BARE;
         if (rms > 0.3 || objects > 900) print_message("shape %d: rms %.3f m, %zu cells\n", k, rms, objects);
         CHECK(rms < 0.3);
@@ -127,7 +129,7 @@ static void houses_and_trees_are_told_apart(void **state)
     for (int k = 0; k < 2; k++) {
         const double cell_m = k ? 0.5 : 1;
         const int    n = (int)(240 / cell_m);
-        Site s = site_make(n, n, cell_m, gentle);
+        Site         s = site_make(n, n, cell_m, gentle);
         for (int i = 0; i < 5; i++) {
             add_house(&s, 30 + 45 * i, 60, 14, 9, 4, 0.7);
             add_house(&s, 30 + 45 * i, 180, 20, 12, 6, 0);
@@ -137,8 +139,7 @@ static void houses_and_trees_are_told_apart(void **state)
         double recall[3], precision[3];
         for (int kind = CELL_BUILDING; kind <= CELL_TREE; kind++) rates(&recall[kind], &precision[kind], &s, kind);
         print_message("%.1f m: ground %.3f m rms, roofs %.3f found %.3f right, trees %.3f %.3f, crowns %d of 30\n",
-                      cell_m, ground_rms(&s, 0), recall[1], precision[1], recall[2], precision[2],
-                      s.parts.crown_count);
+                      cell_m, ground_rms(&s, 0), recall[1], precision[1], recall[2], precision[2], s.parts.crown_count);
         CHECK(ground_rms(&s, 0) < 0.3);
         CHECK(recall[1] > 0.9 && precision[1] > 0.9);
         CHECK(recall[2] > 0.85 && precision[2] > 0.9);
@@ -180,8 +181,8 @@ static void a_forested_slope_keeps_its_slope(void **state)
     site_run(&s);
     size_t closed = 0;
     for (size_t c = 0; c < 57600; c++) closed += s.kind[c] == CELL_TREE;
-    print_message("forest %.1f %% closed: ground %.3f m rms, %.3f inside\n",
-                  (double)closed / 576, ground_rms(&s, 12), ground_rms(&s, 80));
+    print_message("forest %.1f %% closed: ground %.3f m rms, %.3f inside\n", (double)closed / 576, ground_rms(&s, 12),
+                  ground_rms(&s, 80));
     CHECK(ground_rms(&s, 12) < 1.5);
     site_free(&s);
 }
@@ -192,23 +193,23 @@ static void overlapping_windows_agree(void **state)
     enum { side = 420, shift_x = 37, shift_y = 11 };
     const double cell_m = 4;
     const int    reach = (int)ceil(take_apart_reach_m / cell_m);
-    Site a = site_make(side, side, cell_m, gentle);
+    Site         a = site_make(side, side, cell_m, gentle);
     for (int i = 0; i < 300; i++)
         add_tree(&a, 1680 * random_uniform(11, 1, 0, (uint64_t)i), 1680 * random_uniform(11, 2, 0, (uint64_t)i), 20,
                  12);
     for (int i = 0; i < 8; i++) add_house(&a, 100 + 190 * i, 800 + 40 * (i % 3), 60, 40, 10, 0.2);
     Site b = site_make(side - shift_x, side - shift_y, cell_m, gentle);
     for (int j = 0; j < b.ny; j++)
-        memcpy(b.surface_m + (size_t)j * (size_t)b.nx,
-               a.surface_m + (size_t)(j + shift_y) * side + shift_x, (size_t)b.nx * sizeof(float));
+        memcpy(b.surface_m + (size_t)j * (size_t)b.nx, a.surface_m + (size_t)(j + shift_y) * side + shift_x,
+               (size_t)b.nx * sizeof(float));
     site_run(&a);
-    const SurfaceModel model = {.nx = b.nx, .ny = b.ny, .cell_m = cell_m, .surface_m = b.surface_m,
-                                .column = shift_x, .row = shift_y};
+    const SurfaceModel model = {
+        .nx = b.nx, .ny = b.ny, .cell_m = cell_m, .surface_m = b.surface_m, .column = shift_x, .row = shift_y};
     CHECK(take_apart_surface(&b.parts, &model) == STATUS_OK);
     const size_t some = (size_t)(b.nx - 2 * reach);
     for (int j = reach; j < b.ny - reach; j++) {
         const size_t p = (size_t)(j + shift_y) * side + (size_t)(reach + shift_x),
-            q = (size_t)j * (size_t)b.nx + (size_t)reach;
+                     q = (size_t)j * (size_t)b.nx + (size_t)reach;
         CHECK(memcmp(a.parts.bare_m + p, b.parts.bare_m + q, some * sizeof(float)) == 0);
         CHECK(memcmp(a.parts.roof_m + p, b.parts.roof_m + q, some * sizeof(float)) == 0);
         CHECK(memcmp(a.parts.kind + p, b.parts.kind + q, some) == 0);
@@ -219,17 +220,22 @@ static void overlapping_windows_agree(void **state)
 static void odd_windows_are_survived(void **state)
 {
     (void)state;
-    static const int shape[][2] = {{1, 1}, {2, 3}, {1, 40}, {40, 1}, {33, 65}};
+    static const int    shape[][2] = {{1, 1}, {2, 3}, {1, 40}, {40, 1}, {33, 65}};
     static const double cell_m[] = {0.1, 1, 4};
     for (int w = 0; w < 5; w++)
         for (int m = 0; m < 3; m++)
             for (int fill = 0; fill < 5; fill++) {
-                Site s = site_make(shape[w][0], shape[w][1], cell_m[m], level);
+                Site         s = site_make(shape[w][0], shape[w][1], cell_m[m], level);
                 const size_t n = (size_t)s.nx * (size_t)s.ny;
                 for (size_t c = 0; c < n; c++) {
                     const double u = random_uniform(13, (uint64_t)fill, 0, c);
-                    s.surface_m[c] = fill == 0 ? 5 : fill == 1 ? NAN : fill == 2 ? -INFINITY
-                        : fill == 3 ? (float)(1e4 * (2 * u - 1)) : u < 0.3 ? NAN : u > 0.9 ? INFINITY : (float)u;
+                    s.surface_m[c] = fill == 0   ? 5
+                                     : fill == 1 ? NAN
+                                     : fill == 2 ? -INFINITY
+                                     : fill == 3 ? (float)(1e4 * (2 * u - 1))
+                                     : u < 0.3   ? NAN
+                                     : u > 0.9   ? INFINITY
+                                                 : (float)u;
                 }
                 bool any = false;
                 for (size_t c = 0; c < n; c++) any |= fabsf(s.surface_m[c]) < 12000;
@@ -242,7 +248,7 @@ static void odd_windows_are_survived(void **state)
                 site_free(&s);
             }
     const SurfaceModel coarse = {.nx = 1, .ny = 1, .cell_m = 4.5};
-    SurfaceParts none = {0};
+    SurfaceParts       none = {0};
     CHECK(take_apart_surface(&none, &coarse) == STATUS_UNSUPPORTED);
 }
 
@@ -262,12 +268,9 @@ static void spikes_leave_no_mark(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(bare_hills_and_terraces_stay),
-        cmocka_unit_test(houses_and_trees_are_told_apart),
-        cmocka_unit_test(a_wide_roof_is_no_ground),
-        cmocka_unit_test(a_forested_slope_keeps_its_slope),
-        cmocka_unit_test(overlapping_windows_agree),
-        cmocka_unit_test(odd_windows_are_survived),
+        cmocka_unit_test(bare_hills_and_terraces_stay), cmocka_unit_test(houses_and_trees_are_told_apart),
+        cmocka_unit_test(a_wide_roof_is_no_ground),     cmocka_unit_test(a_forested_slope_keeps_its_slope),
+        cmocka_unit_test(overlapping_windows_agree),    cmocka_unit_test(odd_windows_are_survived),
         cmocka_unit_test(spikes_leave_no_mark),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,5 +1,6 @@
-/* tests/terrain/test_terrain_import.c: files to a terrain store: the posts of the path in memory, in strips of any height
- * and on any number of threads; holes, overlapping sheets and datums; options as a text; stopped and made again. */
+/* tests/terrain/test_terrain_import.c: files to a terrain store: the posts of the path in memory, in strips of any
+ * height and on any number of threads; holes, overlapping sheets and datums; options as a text; stopped and made again.
+ */
 #include "tests/check.h"
 
 #include "terrain/earth/geoid.h"
@@ -17,10 +18,13 @@ typedef struct Grid {
     const char *name;
     int         nx, ny;
     double      west_deg, south_deg, step_deg;
-    float     (*z)(int i, int j);
+    float (*z)(int i, int j);
 } Grid;
 
-static void path_of(char out[temp_name_size], const char *name) { snprintf(out, temp_name_size, "%s/%s", folder, name); }
+static void path_of(char out[temp_name_size], const char *name)
+{
+    snprintf(out, temp_name_size, "%s/%s", folder, name);
+}
 
 static void write_grid(char out[temp_name_size], const Grid *g)
 {
@@ -31,11 +35,14 @@ static void write_grid(char out[temp_name_size], const Grid *g)
         FILE *file = fopen(path, "wb");
         CHECK(file != NULL);
         if (part == 0)
-            fprintf(file, "ncols %d\nnrows %d\nxllcorner %.10f\nyllcorner %.10f\ncellsize %.10f\nNODATA_value -9999\n"
-                    "byteorder lsbfirst\n", g->nx, g->ny, g->west_deg, g->south_deg, g->step_deg);
+            fprintf(file,
+                    "ncols %d\nnrows %d\nxllcorner %.10f\nyllcorner %.10f\ncellsize %.10f\nNODATA_value -9999\n"
+                    "byteorder lsbfirst\n",
+                    g->nx, g->ny, g->west_deg, g->south_deg, g->step_deg);
         else if (part == 1)
             fputs("GEOGCS[\"WGS 84\",DATUM[\"WGS_1984\",SPHEROID[\"WGS 84\",6378137,298.257223563]],"
-                  "PRIMEM[\"Greenwich\",0],UNIT[\"degree\",0.0174532925199433]]\n", file);
+                  "PRIMEM[\"Greenwich\",0],UNIT[\"degree\",0.0174532925199433]]\n",
+                  file);
         else
             for (int n = 0; n < g->nx * g->ny; n++) {
                 const float z = g->z(n % g->nx, n / g->nx);
@@ -47,7 +54,10 @@ static void write_grid(char out[temp_name_size], const Grid *g)
     path_of(out, name);
 }
 
-static float hills(int i, int j) { return (float)(300 + 20 * sin(0.03 * i) * cos(0.02 * j) + 2 * sin(0.7 * i + 0.4 * j)); }
+static float hills(int i, int j)
+{
+    return (float)(300 + 20 * sin(0.03 * i) * cos(0.02 * j) + 2 * sin(0.7 * i + 0.4 * j));
+}
 static float with_holes(int i, int j) { return (i / 40 + j / 30) % 4 == 0 ? -9999 : hills(i, j); }
 static float higher(int i, int j) { return hills(i, j) + 25; }
 static float higher_coarse(int i, int j)
@@ -126,7 +136,7 @@ static void strips_and_threads_give_the_same_posts(void **state)
     const ElevationFiles files = {.paths = path, .geoid_path = "", .vertical = ELEVATION_GEOID, .horizon_m = 1000};
     heights_of(whole, &files, &frame, 10000, NULL, &level);
     CHECK(level.nx * level.ny <= most && level.ny > 200);
-    const size_t size = (size_t)level.nx * (size_t)level.ny * sizeof *whole;
+    const size_t     size = (size_t)level.nx * (size_t)level.ny * sizeof *whole;
     static const int rows[] = {37, 128};
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         heights_of(part, &files, &frame, rows[k], k & 1 ? pool : NULL, &again);
@@ -141,11 +151,11 @@ static void strips_and_threads_give_the_same_posts(void **state)
 static void the_store_has_the_posts_of_the_path_in_memory(void **state)
 {
     (void)state;
-    char             path[temp_name_size], out[temp_name_size];
-    Elevation        memory = {0};
-    ElevationReport  report;
-    TerrainReport    r;
-    TerrainStore     store;
+    char            path[temp_name_size], out[temp_name_size];
+    Elevation       memory = {0};
+    ElevationReport report;
+    TerrainReport   r;
+    TerrainStore    store;
     write_grid(path, &ground);
     path_of(out, "ground.store");
     const TerrainOptions o = options_of(path);
@@ -189,7 +199,7 @@ static double stored_h_m(const TerrainStore *store, double lat_deg, double lon_d
 static void first_given_wins_and_each_has_its_datum(void **state)
 {
     (void)state;
-    char          one[temp_name_size], two[temp_name_size], list[3 * temp_name_size], out[temp_name_size];
+    char one[temp_name_size], two[temp_name_size], list[3 * temp_name_size], out[temp_name_size];
     /* half a pixel off: another grid of the same posting */
     const Grid    other = {"higher", 260, 250, 11 + 0.5e-5, 46 + 0.5e-5, 1e-5, higher};
     TerrainReport r;
@@ -228,7 +238,8 @@ static void holes_are_filled_and_counted(void **state)
     const TerrainOptions o = options_of(path);
     assert_int_equal(terrain_import(&r, &o, out, NULL, NULL), STATUS_OK);
     /* a quarter of 260 x 250 pixels of a hundred-thousandth of a degree */
-    const double pixel_m2 = 1.1117 * 1.1134 * cos(46 * rad_per_deg), post_m2 = r.elevation.spacing_m * r.elevation.spacing_m;
+    const double pixel_m2 = 1.1117 * 1.1134 * cos(46 * rad_per_deg),
+                 post_m2 = r.elevation.spacing_m * r.elevation.spacing_m;
     CHECK_NEAR((double)r.elevation.voids * post_m2 / pixel_m2, 0.25 * 260 * 250, 0.02 * 260 * 250);
     assert_int_equal(store_open(&store, out), STATUS_OK);
     for (int k = 0; k < 200; k++) {
@@ -238,13 +249,13 @@ static void holes_are_filled_and_counted(void **state)
     store_close(&store);
 }
 
-/* Deep in a hole of 40 x 30 pixels the coarser file's ground, 25 m higher; led over to from the rim, without a step; what the fine
- * file has stays. */
+/* Deep in a hole of 40 x 30 pixels the coarser file's ground, 25 m higher; led over to from the rim, without a step;
+ * what the fine file has stays. */
 static void holes_are_filled_from_coarser_files_first(void **state)
 {
     (void)state;
-    char          fine[temp_name_size], coarse[temp_name_size], list[2 * temp_name_size], out[temp_name_size];
-    const Grid    g = {"holes", 260, 250, 11, 46, 1e-5, with_holes}, c = {"coarse", 65, 63, 11, 46, 4e-5, higher_coarse};
+    char       fine[temp_name_size], coarse[temp_name_size], list[2 * temp_name_size], out[temp_name_size];
+    const Grid g = {"holes", 260, 250, 11, 46, 1e-5, with_holes}, c = {"coarse", 65, 63, 11, 46, 4e-5, higher_coarse};
     TerrainReport r;
     TerrainStore  store;
     write_grid(fine, &g);
@@ -264,8 +275,8 @@ static void holes_are_filled_from_coarser_files_first(void **state)
         last_m = h_m;
     }
     store_close(&store);
-    print_message("off %.2f m outside, %.2f deep inside, %.2f from pixel to pixel; %ld + %ld posts\n", worst_m, deep_m, steep_m,
-                  r.elevation.voids, r.elevation.voids_coarser);
+    print_message("off %.2f m outside, %.2f deep inside, %.2f from pixel to pixel; %ld + %ld posts\n", worst_m, deep_m,
+                  steep_m, r.elevation.voids, r.elevation.voids_coarser);
     CHECK(worst_m < 1 && deep_m < 3 && steep_m < 8);
     CHECK(r.elevation.voids > 0 && r.elevation.voids_coarser > r.elevation.voids / 4);
 }
@@ -275,8 +286,8 @@ static void classes_are_where_the_file_has_them(void **state)
     (void)state;
     /* of whole numbers: the same as a VRT of octets; of more than 255; and a table where 0 is a class */
     static const struct {
-        const char  *type, *table;
-        float      (*code)(int i, int j);
+        const char *type, *table;
+        float (*code)(int i, int j);
         SurfaceClass north, south;
     } kinds[] = {{"Byte", "worldcover", codes, SURFACE_FOREST_BROADLEAF, SURFACE_BARE_SOIL},
                  {"Int16", "corine", corine_classes, SURFACE_FOREST_CONIFER, SURFACE_WATER},
@@ -292,10 +303,12 @@ static void classes_are_where_the_file_has_them(void **state)
         path_of(code, "cover.vrt");
         FILE *vrt = fopen(code, "w");
         CHECK(vrt != NULL);
-        fprintf(vrt, "<VRTDataset rasterXSize=\"260\" rasterYSize=\"250\"><SRS>EPSG:4326</SRS><GeoTransform>11, 1e-5, 0, %.10f, "
-                "0, -1e-5</GeoTransform><VRTRasterBand dataType=\"%s\" band=\"1\"><SimpleSource><SourceFilename>%s"
-                "</SourceFilename><SourceBand>1</SourceBand></SimpleSource></VRTRasterBand></VRTDataset>", 46 + 250e-5,
-                kinds[k].type, cover);
+        fprintf(
+            vrt,
+            "<VRTDataset rasterXSize=\"260\" rasterYSize=\"250\"><SRS>EPSG:4326</SRS><GeoTransform>11, 1e-5, 0, %.10f, "
+            "0, -1e-5</GeoTransform><VRTRasterBand dataType=\"%s\" band=\"1\"><SimpleSource><SourceFilename>%s"
+            "</SourceFilename><SourceBand>1</SourceBand></SimpleSource></VRTRasterBand></VRTDataset>",
+            46 + 250e-5, kinds[k].type, cover);
         CHECK(fclose(vrt) == 0);
         path_of(out, "cover.store");
         TerrainOptions o = options_of(path);
@@ -316,9 +329,9 @@ static void classes_are_where_the_file_has_them(void **state)
 
 static const int tree[3][2] = {{150, 50}, {50, 150}, {160, 165}};
 
-static bool in_house(int i, int j) { return i >= 40 && i < 65 && j >= 40 && j < 60; }
-static bool in_court(int i, int j) { return i >= 113 && i < 128 && j >= 113 && j < 128; }
-static bool in_yard_house(int i, int j) { return i >= 100 && i < 141 && j >= 100 && j < 141 && !in_court(i, j); }
+static bool  in_house(int i, int j) { return i >= 40 && i < 65 && j >= 40 && j < 60; }
+static bool  in_court(int i, int j) { return i >= 113 && i < 128 && j >= 113 && j < 128; }
+static bool  in_yard_house(int i, int j) { return i >= 100 && i < 141 && j >= 100 && j < 141 && !in_court(i, j); }
 static float slope(int i, int j) { return (float)(200 + 0.02 * i + 0.01 * j); }
 
 /* Two houses, one about a courtyard, and three trees; row 0 northernmost. */
@@ -356,7 +369,7 @@ static void houses_and_trees_are_taken_off_a_surface_model(void **state)
     int crowns = 0; /* a house's corner may leave a crown of one cell */
     for (int n = 0; n < (int)store.crown_count; n++) crowns += store.crown[n].radius_m > 1;
     CHECK(crowns == 3);
-    static const int place[][2] = {{52, 50}, {105, 120}, {120, 120}, {80, 80}, {150, 50}, {160, 165}};
+    static const int    place[][2] = {{52, 50}, {105, 120}, {120, 120}, {80, 80}, {150, 50}, {160, 165}};
     static const double above_m[] = {8, 11, 0, 0, 0, 0};
     for (int k = 0; k < 6; k++) {
         const int    i = place[k][0], j = place[k][1];
@@ -370,7 +383,8 @@ static void houses_and_trees_are_taken_off_a_surface_model(void **state)
         double nearest_m = INFINITY;
         for (int n = 0; n < (int)store.crown_count; n++) {
             const Crown *c = &store.crown[n];
-            nearest_m = fmin(nearest_m, hypot((double)c->x_m - (tree[k][0] - 99.5), (double)c->y_m - (99.5 - tree[k][1])));
+            nearest_m =
+                fmin(nearest_m, hypot((double)c->x_m - (tree[k][0] - 99.5), (double)c->y_m - (99.5 - tree[k][1])));
             CHECK(c->radius_m < 1 || (c->height_m > 10 && c->height_m < 13 && c->radius_m > 3 && c->radius_m < 6));
         }
         CHECK(nearest_m < 2);
@@ -383,7 +397,7 @@ static void buildings_are_counted_over_rows(void **state)
     (void)state;
     /* a ring about a cell, two arms that meet in the last row but one, cells that touch at a corner */
     static const char *const rows[] = {"###..#.#.#", "#.#..#.#..", "###..#.#..", ".....###..", "#.......##"};
-    TerrainBuildings b = {0};
+    TerrainBuildings         b = {0};
     for (int j = 0; j < 5; j++) {
         uint8_t kind[10];
         for (int i = 0; i < 10; i++) kind[i] = rows[j][i] == '#' ? CELL_BUILDING : i & 1 ? CELL_TREE : CELL_BARE;
@@ -398,13 +412,19 @@ static void buildings_are_counted_over_rows(void **state)
 static void options_are_a_text_and_back(void **state)
 {
     (void)state;
-    static char    text[8 * terrain_paths_size], second[8 * terrain_paths_size];
-    TerrainOptions o, back;
-    const char    *why;
-    int            line;
-    static const char *const given[][2] = {{"surface", "/a/b c.tif@ellipsoid"}, {"elevation", "/x.tif"}, {"elevation", "/y.tif:3"},
-                                           {"cover-table", "nlcd"}, {"vertical", "geoid"}, {"origin", "0,0"},
-                                           {"size", "12x16"}, {"spacing", "0.1"}, {"horizon", "30"}};
+    static char              text[8 * terrain_paths_size], second[8 * terrain_paths_size];
+    TerrainOptions           o, back;
+    const char              *why;
+    int                      line;
+    static const char *const given[][2] = {{"surface", "/a/b c.tif@ellipsoid"},
+                                           {"elevation", "/x.tif"},
+                                           {"elevation", "/y.tif:3"},
+                                           {"cover-table", "nlcd"},
+                                           {"vertical", "geoid"},
+                                           {"origin", "0,0"},
+                                           {"size", "12x16"},
+                                           {"spacing", "0.1"},
+                                           {"horizon", "30"}};
     terrain_options_default(&o);
     for (size_t k = 0; k < sizeof given / sizeof *given; k++)
         CHECK(terrain_options_set(&o, &why, given[k][0], given[k][1]));
@@ -413,10 +433,12 @@ static void options_are_a_text_and_back(void **state)
     CHECK(terrain_options_text(second, sizeof second, &back));
     assert_string_equal(text, second);
     CHECK(back.origin_deg[0] == 0 && back.size_km[1] == 16 && back.spacing_m == 0.1);
-    static const char *const wrong[][2] = {{"size", "12"}, {"size", "0x4"}, {"size", "nanx4"}, {"origin", "91,0"}, {"origin", "1"},
-                                           {"spacing", "0"}, {"spacing", "1e9"}, {"vertical", "sea"}, {"horizon", "inf"},
-                                           {"colour", "red"}, {"cover", ""}, {"cover", "a\nb"}};
-    for (size_t k = 0; k < sizeof wrong / sizeof *wrong; k++) CHECK(!terrain_options_set(&o, &why, wrong[k][0], wrong[k][1]));
+    static const char *const wrong[][2] = {{"size", "12"},     {"size", "0x4"},     {"size", "nanx4"},
+                                           {"origin", "91,0"}, {"origin", "1"},     {"spacing", "0"},
+                                           {"spacing", "1e9"}, {"vertical", "sea"}, {"horizon", "inf"},
+                                           {"colour", "red"},  {"cover", ""},       {"cover", "a\nb"}};
+    for (size_t k = 0; k < sizeof wrong / sizeof *wrong; k++)
+        CHECK(!terrain_options_set(&o, &why, wrong[k][0], wrong[k][1]));
     CHECK(!terrain_options_parse(&back, &why, &line, "elevation /x.tif\nsize 1\n") && line == 2);
     CHECK(!terrain_options_parse(&back, &why, &line, "size 1x1\n"));
 }
@@ -439,7 +461,8 @@ static void stopped_or_refused_it_leaves_nothing(void **state)
     path_of(out, "stopped.store");
     snprintf(part, sizeof part, "%s.tmp", out);
     TerrainOptions o = options_of(path);
-    CHECK(terrain_import(&r, &o, out, NULL, &(TerrainWatch){.progress = stop_soon, .user = &calls}) != STATUS_OK && r.stopped);
+    CHECK(terrain_import(&r, &o, out, NULL, &(TerrainWatch){.progress = stop_soon, .user = &calls}) != STATUS_OK &&
+          r.stopped);
     CHECK(stat(out, &about) != 0 && stat(part, &about) != 0);
     log_set_sink(check_listen, NULL);
     o = options_of("/nowhere.tif");
@@ -505,10 +528,12 @@ static void write_vrt(const char *path, const char *source)
 {
     FILE *file = fopen(path, "w");
     CHECK(file != NULL);
-    fprintf(file, "<VRTDataset rasterXSize=\"260\" rasterYSize=\"250\"><SRS>EPSG:4326</SRS>"
-                  "<GeoTransform>11,1e-5,0,46.0025,0,-1e-5</GeoTransform><VRTRasterBand dataType=\"Float32\" band=\"1\">"
-                  "<SimpleSource><SourceFilename relativeToVRT=\"0\">%s</SourceFilename><SourceBand>1</SourceBand>"
-                  "</SimpleSource></VRTRasterBand></VRTDataset>", source);
+    fprintf(file,
+            "<VRTDataset rasterXSize=\"260\" rasterYSize=\"250\"><SRS>EPSG:4326</SRS>"
+            "<GeoTransform>11,1e-5,0,46.0025,0,-1e-5</GeoTransform><VRTRasterBand dataType=\"Float32\" band=\"1\">"
+            "<SimpleSource><SourceFilename relativeToVRT=\"0\">%s</SourceFilename><SourceBand>1</SourceBand>"
+            "</SimpleSource></VRTRasterBand></VRTDataset>",
+            source);
     CHECK(fclose(file) == 0);
 }
 
@@ -516,7 +541,7 @@ static void write_vrt(const char *path, const char *source)
 static void a_store_is_made_again_of_its_own_folder_alone(void **state)
 {
     (void)state;
-    char          path[temp_name_size], out[temp_name_size], outside[512], text[4 * temp_name_size], whole[PATH_MAX],
+    char path[temp_name_size], out[temp_name_size], outside[512], text[4 * temp_name_size], whole[PATH_MAX],
         own[temp_path_size], other[temp_path_size], secret[temp_name_size], vrt[temp_name_size], nested[temp_name_size],
         linked[temp_name_size], links[temp_name_size];
     TerrainReport r;
@@ -573,7 +598,8 @@ static void a_store_is_made_again_of_its_own_folder_alone(void **state)
     log_set_sink(check_listen, NULL);
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         const char *const *part = bad[i].options;
-        snprintf(text, sizeof text, "%s%s%s%s\nhorizon 1\n", part[0], part[1], part[2] ? part[2] : "", part[3] ? part[3] : "");
+        snprintf(text, sizeof text, "%s%s%s%s\nhorizon 1\n", part[0], part[1], part[2] ? part[2] : "",
+                 part[3] ? part[3] : "");
         if (terrain_store_rebuild(out, text, false) == STATUS_OK) fail_msg("made again: %s", text);
         if (!strstr(check_said, bad[i].said)) fail_msg("%s: said '%s'", text, check_said);
         CHECK(terrain_store_foreign(outside, sizeof outside, out, text) == (strstr(bad[i].said, "its own") != NULL));

@@ -85,8 +85,7 @@ static void roads_join_the_villages(void **state)
         }
         const HousePlot *plot = landscape_plots(&land, &plots);
         int              on_road = 0;
-        for (int n = 0; n < plots; n++)
-            on_road += landscape_surface(&land, plot[n].x_m, plot[n].y_m) == SURFACE_ROAD;
+        for (int n = 0; n < plots; n++) on_road += landscape_surface(&land, plot[n].x_m, plot[n].y_m) == SURFACE_ROAD;
         print_message("seed %d: %d of %d villages, %d plots\n", (int)seed, reached, villages, plots);
         CHECK(villages >= 2 && reached == villages && plots > 20 && on_road == 0);
         landscape_destroy(&land);
@@ -111,8 +110,7 @@ static void hedges_stand_on_borders(const Landscape *land, const GroundFix *fix,
             open += landscape_surface(land, h->x_m + 7 * cos(k * pi_rad / 8), h->y_m + 7 * sin(k * pi_rad / 8)) !=
                     SURFACE_SCRUB;
         narrow += open >= 8;
-        CHECK(!landscape_way(&way, land, h->x_m, h->y_m) || fabs(way.across_m) > way.half_m ||
-              way.kind > WAY_TRACK);
+        CHECK(!landscape_way(&way, land, h->x_m, h->y_m) || fabs(way.across_m) > way.half_m || way.kind > WAY_TRACK);
         for (int k = 0; k < fixes; k++)
             CHECK(hypot(fix[k].p_enu[0] - h->x_m, fix[k].p_enu[1] - h->y_m) > 6.9); /* 8 less the border's wander */
     }
@@ -188,7 +186,8 @@ static void tracks_have_ruts(void **state)
         fix[n].p_enu[2] = -(pow(fix[n].p_enu[0], 2) + pow(fix[n].p_enu[1], 2)) / (2 * 6371e3);
     }
     make(&land, 5, fix, fixes);
-    for (; kind != WAY_TRACK && (count = landscape_way_vertices(vertex, &kind, &land, way, most)) > 0; way++) {}
+    for (; kind != WAY_TRACK && (count = landscape_way_vertices(vertex, &kind, &land, way, most)) > 0; way++) {
+    }
     CHECK(kind == WAY_TRACK && count > 4);
     const double *a = vertex[count / 2], *b = vertex[count / 2 + 1], length = hypot(b[0] - a[0], b[1] - a[1]);
     const double  middle[2] = {0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])};
@@ -200,8 +199,7 @@ static void tracks_have_ruts(void **state)
         if (fabs(d) > 1.7) continue; /* half its width */
         const double here = -0.045 * (exp(-low * low / 2) + exp(-high * high / 2)) + 0.020 * exp(-crest * crest / 2);
         if (height_m == 0) height_m = here;
-        else
-            height_m += (double)slope_x[n] * left[0] * 4 / across + (double)slope_y[n] * left[1] * 4 / across;
+        else height_m += (double)slope_x[n] * left[0] * 4 / across + (double)slope_y[n] * left[1] * 4 / across;
         worst_m = fmax(worst_m, fabs(height_m - here));
         sharp[0][n] = (double)albedo[n], sharp[1][n] = (double)warmth_k[n];
     }

@@ -10,7 +10,9 @@ static const double new_year_2016_s = 1451606400; /* 2016-01-01T00:00:00Z, a lea
 
 static WeatherCourseConfig config_of(double lat_deg, double lon_deg)
 {
-    WeatherCourseConfig c = {.base = weather_default(), .air_range_k = 12, .longitude_rad = lon_deg * rad_per_deg,
+    WeatherCourseConfig c = {.base = weather_default(),
+                             .air_range_k = 12,
+                             .longitude_rad = lon_deg * rad_per_deg,
                              .latitude_rad = lat_deg * rad_per_deg};
     c.base.rain_mm_h = 0.5;
     return c;
@@ -49,7 +51,8 @@ static void refused_as(Status want, const char *text, const char *word, const ch
     const Status status = weather_course_open(&course, path, &config);
     log_set_sink(NULL, NULL);
     remove(path);
-    if (status != want || course || !strstr(check_said, word) || !strstr(check_said, other) || !strstr(check_said, path))
+    if (status != want || course || !strstr(check_said, word) || !strstr(check_said, other) ||
+        !strstr(check_said, path))
         fail_msg("%.300s: status %d, said: %s; want %s, %s", text, status, check_said, word, other);
 }
 static void refused(const char *text, const char *word, const char *other)
@@ -87,7 +90,8 @@ static void config_is_checked(void **state)
         const double        bad[] = {NAN, 400, -1, 2, NAN, 1.01, NAN, -1};
         *field[i] = bad[i];
         *check_said = 0;
-        CHECK(weather_course_open(&course, "clear", &c) == STATUS_BAD_VALUE && !course && strstr(check_said, "is not in"));
+        CHECK(weather_course_open(&course, "clear", &c) == STATUS_BAD_VALUE && !course &&
+              strstr(check_said, "is not in"));
     }
     const WeatherCourseConfig good = config_of(50, 10);
     CHECK(weather_course_open(&course, "/nonexistent/weather.epw", &good) == STATUS_IO && !course);
@@ -235,21 +239,24 @@ static void plain_values(void **state)
 {
     (void)state;
     const WeatherCourseConfig config = config_of(50, 10);
-    WeatherCourse *course = course_of("\xEF\xBB\xBF# made by hand\n"
-                                      "time_utc,air_temp_c,humidity_pct,wind_from_deg,direct_w_m2,pressure_hpa,cloud\r\n"
-                                      "2016-01-01T00:00:00Z,10,50,350,100,1000,0\r\n"
-                                      "\n"
-                                      "2016-01-01T01:00:00Z,20,,30,200,,0.5\r\n"
-                                      "2016-01-01T02:00:00Z,30,70,,-2,,1\r\n"
-                                      "2016-01-01T06:00:00Z,10,110,150,400,900,1\r\n", &config);
+    WeatherCourse            *course =
+        course_of("\xEF\xBB\xBF# made by hand\n"
+                  "time_utc,air_temp_c,humidity_pct,wind_from_deg,direct_w_m2,pressure_hpa,cloud\r\n"
+                  "2016-01-01T00:00:00Z,10,50,350,100,1000,0\r\n"
+                  "\n"
+                  "2016-01-01T01:00:00Z,20,,30,200,,0.5\r\n"
+                  "2016-01-01T02:00:00Z,30,70,,-2,,1\r\n"
+                  "2016-01-01T06:00:00Z,10,110,150,400,900,1\r\n",
+                  &config);
     const double t0 = new_year_2016_s;
     Weather      w = at(course, t0);
     CHECK_NEAR(w.air_temp_k, 283.15, 1e-12);
     CHECK_NEAR(w.direct_w_m2, 100, 0);
     w = at(course, t0 + 900);
     CHECK_NEAR(w.air_temp_k, 285.65, 1e-12);
-    CHECK_NEAR(w.humidity, 0.525, 1e-12);      /* 50 to 70 over two hours */
-    CHECK_NEAR(fmod(w.wind_from_rad + pi_rad, 2 * pi_rad), pi_rad, 1e-9); /* 350 to 30 through north, a quarter of the way */
+    CHECK_NEAR(w.humidity, 0.525, 1e-12); /* 50 to 70 over two hours */
+    CHECK_NEAR(fmod(w.wind_from_rad + pi_rad, 2 * pi_rad), pi_rad,
+               1e-9); /* 350 to 30 through north, a quarter of the way */
     CHECK_NEAR(w.direct_w_m2, 125, 1e-12);
     CHECK_NEAR(w.pressure_mbar, 1000 - 100.0 / 24, 1e-9);
     CHECK_NEAR(w.cloud, 0.125, 1e-12);
@@ -277,8 +284,8 @@ static void plain_repeats_its_first_and_last_day(void **state)
     (void)state;
     const WeatherCourseConfig config = config_of(50, 10);
     char                      text[4096] = "unix_s,air_temp_k\n";
-    for (int i = 0; i < 48; i++) snprintf(text + strlen(text), sizeof text - strlen(text), "%.0f,%d\n",
-                                          new_year_2016_s + 3600.0 * i, 240 + i);
+    for (int i = 0; i < 48; i++)
+        snprintf(text + strlen(text), sizeof text - strlen(text), "%.0f,%d\n", new_year_2016_s + 3600.0 * i, 240 + i);
     WeatherCourse *course = course_of(text, &config);
     const double   t0 = new_year_2016_s, last = t0 + 47 * 3600;
     CHECK_NEAR(at(course, t0 + 5400).air_temp_k, 241.5, 1e-9);
@@ -385,10 +392,11 @@ static char *epw_year(void)
     for (int m = 0, number = 0; m < 12; m++)
         for (int d = 1; d <= days[m]; d++, number++)
             for (int h = 1; h <= 24; h++)
-                n += (size_t)snprintf(text + n, size - n,
-                                      "%d,%d,%d,%d,0,?9,%d,5.0,80,100000,0,0,300,0,%d,%d,0,0,0,0,180,4.0,5,3,20.0,77777,"
-                                      "9,999999999,999,0.999,999,99,999,2.0,4\n",
-                                      1980 + m, m + 1, d, h, h, number, h);
+                n +=
+                    (size_t)snprintf(text + n, size - n,
+                                     "%d,%d,%d,%d,0,?9,%d,5.0,80,100000,0,0,300,0,%d,%d,0,0,0,0,180,4.0,5,3,20.0,77777,"
+                                     "9,999999999,999,0.999,999,99,999,2.0,4\n",
+                                     1980 + m, m + 1, d, h, h, number, h);
     return text;
 }
 
@@ -399,24 +407,24 @@ static void epw_repeats_each_year(void **state)
     char                     *text = epw_year();
     WeatherCourse            *course = course_of(text, &config);
     free(text);
-    const double tz_s = 3600; /* the file's time is UTC+1 */
+    const double tz_s = 3600;                        /* the file's time is UTC+1 */
     for (int years = -60; years <= 84; years += 4) { /* years since 2016, all leap but 2100: stay within 1956 .. 2099 */
         if (years > 80) continue;
         const double year_s = new_year_2016_s + (years * 365 + years / 4) * day_s - tz_s;
-        CHECK_NEAR(at(course, year_s + 3600).air_temp_k, 274.15, 1e-9);             /* hour 1 of 1 January ends */
+        CHECK_NEAR(at(course, year_s + 3600).air_temp_k, 274.15, 1e-9); /* hour 1 of 1 January ends */
         CHECK_NEAR(at(course, year_s + 3600 * 12.25).air_temp_k, 285.4, 1e-9);
-        CHECK_NEAR(at(course, year_s).air_temp_k, 297.15, 1e-9);                    /* hour 24 of 31 December */
+        CHECK_NEAR(at(course, year_s).air_temp_k, 297.15, 1e-9); /* hour 24 of 31 December */
         CHECK_NEAR(at(course, year_s + 1800).air_temp_k, (297.15 + 274.15) / 2, 1e-9);
         /* means over the hour that ends at the row: in its middle */
         CHECK_NEAR(at(course, year_s + 1800).diffuse_w_m2, 1, 1e-9);
         CHECK_NEAR(at(course, year_s + 3600 * 12).diffuse_w_m2, 12.5, 1e-9);
         CHECK_NEAR(at(course, year_s + 3600 * 12).direct_w_m2, 0, 1e-9);
-        CHECK_NEAR(at(course, year_s + 58.5 * day_s).direct_w_m2, 58, 1e-9);        /* 28 February */
-        CHECK_NEAR(at(course, year_s + 59.5 * day_s).direct_w_m2, 58, 1e-9);        /* 29 February */
-        CHECK_NEAR(at(course, year_s + 60.5 * day_s).direct_w_m2, 59, 1e-9);        /* 1 March */
-        CHECK_NEAR(at(course, year_s + 365.5 * day_s).direct_w_m2, 364, 1e-9);      /* 31 December */
-        CHECK_NEAR(at(course, year_s + 366.5 * day_s).direct_w_m2, 0, 1e-9);        /* 1 January of the next */
-        CHECK_NEAR(at(course, year_s + (366 + 59.5) * day_s).direct_w_m2, 59, 1e-9);/* its 1 March */
+        CHECK_NEAR(at(course, year_s + 58.5 * day_s).direct_w_m2, 58, 1e-9);         /* 28 February */
+        CHECK_NEAR(at(course, year_s + 59.5 * day_s).direct_w_m2, 58, 1e-9);         /* 29 February */
+        CHECK_NEAR(at(course, year_s + 60.5 * day_s).direct_w_m2, 59, 1e-9);         /* 1 March */
+        CHECK_NEAR(at(course, year_s + 365.5 * day_s).direct_w_m2, 364, 1e-9);       /* 31 December */
+        CHECK_NEAR(at(course, year_s + 366.5 * day_s).direct_w_m2, 0, 1e-9);         /* 1 January of the next */
+        CHECK_NEAR(at(course, year_s + (366 + 59.5) * day_s).direct_w_m2, 59, 1e-9); /* its 1 March */
     }
     CHECK_NEAR(at(course, 4107542400 - tz_s + 43200).direct_w_m2, 59, 1e-9); /* 2100-03-01: 2100 is no leap year */
     const Weather w = at(course, new_year_2016_s);
@@ -427,7 +435,8 @@ static void epw_repeats_each_year(void **state)
     CHECK_NEAR(w.visibility_m, 20000, 1e-9);
     CHECK_NEAR(w.rain_mm_h, 0.5, 1e-12); /* 2 mm in 4 h */
     CHECK_NEAR(w.longwave_w_m2, 300, 1e-9);
-    CHECK(strstr(weather_course_about(course), "EPW of Made, by hand, UTC+1 h: 8760 rows from 01-01 01:00 to 01-01 00:00"));
+    CHECK(strstr(weather_course_about(course),
+                 "EPW of Made, by hand, UTC+1 h: 8760 rows from 01-01 01:00 to 01-01 00:00"));
     CHECK(strstr(weather_course_about(course), "; 0 km away"));
     weather_course_close(course);
 }
@@ -445,14 +454,14 @@ static void epw_missing_values(void **state)
     WeatherCourse *course = course_of(text, &config);
     const double   t2 = new_year_2016_s - 3600 + 7200; /* hour 2 ends */
     const Weather  w = at(course, t2);
-    CHECK_NEAR(w.air_temp_k, 293.15, 1e-9);           /* between its neighbours */
+    CHECK_NEAR(w.air_temp_k, 293.15, 1e-9); /* between its neighbours */
     /* hour 1: by the dew point, e_s(5 C) / e_s(10 C) = 872.3 / 1227.6 = 0.7106; hour 3: 0.5 */
     CHECK_NEAR(w.humidity, (0.7106 + 0.5) / 2, 1e-4);
     CHECK_NEAR(w.pressure_mbar, 999.99, 1e-9);
     CHECK_NEAR(w.wind_from_rad, pi_rad / 2, 1e-9);
-    CHECK_NEAR(w.cloud, 0.6, 1e-12);                  /* opaque cover where the total is missing */
-    CHECK_NEAR(w.visibility_m, 300000, 0);            /* 777.7: unlimited */
-    CHECK(w.rain_mm_h == 0.5 && isnan(w.direct_w_m2)); /* in no row: the base's */
+    CHECK_NEAR(w.cloud, 0.6, 1e-12);                           /* opaque cover where the total is missing */
+    CHECK_NEAR(w.visibility_m, 300000, 0);                     /* 777.7: unlimited */
+    CHECK(w.rain_mm_h == 0.5 && isnan(w.direct_w_m2));         /* in no row: the base's */
     CHECK_NEAR(at(course, t2 - 1800).diffuse_w_m2, 100, 1e-9); /* 2 h without: bridged */
     CHECK_NEAR(at(course, t2 + 1800).longwave_w_m2, 310, 0);
     CHECK(isnan(at(course, t2 + 1801).longwave_w_m2)); /* none for the rest of the year */
@@ -498,16 +507,18 @@ static void epw_refusals(void **state)
     refused("LOCATION,x,,,,,91,0,0\n", ":1: column latitude: '91'", "-90 .. 90");
     refused("LOCATION,x,,,,,50,0,0,0\n2\n3\n4\n5\n6\n7\n8\n", ":8:", "DATA PERIODS");
     refused("LOCATION,x,,,,,50,0,0,0\n2\n", "DATA PERIODS", "line 8");
-    refused_as(STATUS_UNSUPPORTED, "LOCATION,x,,,,,50,0,0,0\n2\n3\n4\n5\n6\n7\nDATA PERIODS,1,4,Data,Sunday,1/1,12/31\n",
+    refused_as(STATUS_UNSUPPORTED,
+               "LOCATION,x,,,,,50,0,0,0\n2\n3\n4\n5\n6\n7\nDATA PERIODS,1,4,Data,Sunday,1/1,12/31\n",
                ":8: 4 records per hour", "hourly");
 }
 
 /* ---- TMY3 --------------------------------------------------------------------------------- */
 
-static const char tmy3_head[] = "000001,\"MADE BY HAND\",NC,-5.0,36.100,-79.950,273\n"
-                                "Date (MM/DD/YYYY),Time (HH:MM),DNI (W/m^2),DHI (W/m^2),TotCld (tenths),Dry-bulb (C),"
-                                "Dew-point (C),RHum (%),Pressure (mbar),Wdir (degrees),Wspd (m/s),Hvis (m),Alb (unitless),"
-                                "Lprecip depth (mm),Lprecip quantity (hr)\n";
+static const char tmy3_head[] =
+    "000001,\"MADE BY HAND\",NC,-5.0,36.100,-79.950,273\n"
+    "Date (MM/DD/YYYY),Time (HH:MM),DNI (W/m^2),DHI (W/m^2),TotCld (tenths),Dry-bulb (C),"
+    "Dew-point (C),RHum (%),Pressure (mbar),Wdir (degrees),Wspd (m/s),Hvis (m),Alb (unitless),"
+    "Lprecip depth (mm),Lprecip quantity (hr)\n";
 
 static void tmy3_values(void **state)
 {
@@ -534,7 +545,8 @@ static void tmy3_values(void **state)
     CHECK_NEAR(w.visibility_m, (16000 + 77777) / 2.0, 1e-9);
     CHECK_NEAR(fmod(w.wind_from_rad + pi_rad, 2 * pi_rad), pi_rad, 1e-9); /* through north */
     CHECK(isnan(w.longwave_w_m2) && isnan(at(course, midnight_s + 5400).direct_w_m2));
-    CHECK(strstr(weather_course_about(course), "TMY3 of MADE BY HAND, UTC-5 h: 3 rows from 07-01 00:00 to 07-01 02:00"));
+    CHECK(
+        strstr(weather_course_about(course), "TMY3 of MADE BY HAND, UTC-5 h: 3 rows from 07-01 00:00 to 07-01 02:00"));
     weather_course_close(course);
 }
 
@@ -549,14 +561,16 @@ static void tmy3_refusals(void **state)
         {"01/01/1988,01:00,0,0,10,20,10,55,85,0,3,16000,0.2,0,1\n", "column Pressure (mbar): '85'", "300 .. 1100"},
         {"01/01/1988,01:00,0,0,10,20,10,55,985,0,3,16000,0.2,0\n", ":3: 14 columns where the header has 15", ""},
         {"01/01/1988,02:00,0,0,10,20,10,55,985,0,3,16000,0.2,0,1\n"
-         "01/01/1988,01:00,0,0,10,20,10,55,985,0,3,16000,0.2,0,1\n", ":4:", "not after"},
+         "01/01/1988,01:00,0,0,10,20,10,55,985,0,3,16000,0.2,0,1\n",
+         ":4:", "not after"},
     };
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         char text[4096];
         snprintf(text, sizeof text, "%s%s", tmy3_head, bad[i][0]);
         refused(text, bad[i][1], bad[i][2]);
     }
-    refused("1,a,b,0,36,400\nDate (MM/DD/YYYY),Time (HH:MM),Dry-bulb (C)\n", ":1: column longitude: '400'", "-180 .. 180");
+    refused("1,a,b,0,36,400\nDate (MM/DD/YYYY),Time (HH:MM),Dry-bulb (C)\n", ":1: column longitude: '400'",
+            "-180 .. 180");
     refused("1,a,b,0,36,80\nDate (MM/DD/YYYY),Time,Dry-bulb (C)\n", ":2:", "Time (HH:MM)");
 }
 

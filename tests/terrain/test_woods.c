@@ -1,12 +1,12 @@
-/* Where plants stand: a pure function of ground and seed, none where none may be, as many as the table and the layers of
- * a store say. labels: physics */
+/* Where plants stand: a pure function of ground and seed, none where none may be, as many as the table and the layers
+ * of a store say. labels: physics */
 #include "tests/check.h"
 
 #include "terrain/ground/landscape.h"
 #include "terrain/store/store.h"
 #include "terrain/woods/woods.h"
 
-static Landscape landscape;
+static Landscape  landscape;
 static LocalFrame frame;
 
 enum { fixes = 5 };
@@ -18,8 +18,7 @@ static int open_ground(void **state)
     (void)state;
     config.seed = 7;
     if (local_frame_at(&frame, &(Geodetic){50.1 * rad_per_deg, 8.6 * rad_per_deg, 100}) != STATUS_OK) return 1;
-    for (int k = 0; k < fixes; k++)
-        fix[k] = (GroundFix){.p_enu = {40.0 * k - 80, 15.0 * k, 2}, .voter = k + 1};
+    for (int k = 0; k < fixes; k++) fix[k] = (GroundFix){.p_enu = {40.0 * k - 80, 15.0 * k, 2}, .voter = k + 1};
     return landscape_create(&landscape, &config, &frame, fix, fixes, NULL, 0) != STATUS_OK;
 }
 
@@ -34,8 +33,12 @@ static const WoodsPath track = {{-300, -500}, {500, 300}, 6, 6};
 
 static WoodsConfig about(double x_m, double y_m, double half_m)
 {
-    return (WoodsConfig){.seed = 11, .centre_m = {x_m, y_m}, .half_width_m = half_m, .most_trees = woods_most_trees,
-                         .path_count = 1, .path = &track};
+    return (WoodsConfig){.seed = 11,
+                         .centre_m = {x_m, y_m},
+                         .half_width_m = half_m,
+                         .most_trees = woods_most_trees,
+                         .path_count = 1,
+                         .path = &track};
 }
 
 static void place_of(double p[3], const Woods *w, int k)
@@ -149,8 +152,8 @@ static void at_most_so_many(void **state)
 
 /* ---- numbers ---------------------------------------------------------------------------------- */
 
-/* Plants of forest classes a hectare, against the table: patches make it vary, so within a fifth. The area of a class is
- * counted on a lattice of its own. */
+/* Plants of forest classes a hectare, against the table: patches make it vary, so within a fifth. The area of a class
+ * is counted on a lattice of its own. */
 static void as_many_as_the_table_says(void **state)
 {
     Woods       w;
@@ -203,9 +206,11 @@ static void transform(void **state)
 {
     (void)state;
     for (int n = 0; n < 200; n++) {
-        double      m[9];
-        const Plant p = {.height = (uint16_t)(100 + 9 * n), .twist = (uint16_t)(n * 317), .width = (uint8_t)(64 + n / 2),
-                         .lean = {(int8_t)(n - 100), (int8_t)(60 - n / 2)}};
+        double       m[9];
+        const Plant  p = {.height = (uint16_t)(100 + 9 * n),
+                          .twist = (uint16_t)(n * 317),
+                          .width = (uint8_t)(64 + n / 2),
+                          .lean = {(int8_t)(n - 100), (int8_t)(60 - n / 2)}};
         const double step = plant_most_tilt_rad / 127, e = p.lean[0] * step, u = p.lean[1] * step;
         const double tilt = atan(hypot(e, u)), turn = p.twist * (2 * pi_rad / 65536), at = atan2(u, e);
         plant_transform(m, &p, NULL);
@@ -232,7 +237,8 @@ static void near_a_place(void **state)
     (void)state;
     assert_int_equal(woods_create(&w, &landscape, &config, NULL), STATUS_OK);
     for (int n = 0; n < 300; n++) {
-        const double x = 1500 * random_uniform(1, 1, 0, (uint64_t)n) - 750, y = 1500 * random_uniform(1, 2, 0, (uint64_t)n) - 750;
+        const double x = 1500 * random_uniform(1, 1, 0, (uint64_t)n) - 750,
+                     y = 1500 * random_uniform(1, 2, 0, (uint64_t)n) - 750;
         const double radius_m = 12 * random_uniform(1, 3, 0, (uint64_t)n);
         int          index[8], want = 0;
         const int    found = woods_near(index, 8, &w, x, y, radius_m);
@@ -317,15 +323,21 @@ enum { posts = 129, layer = 64 };
  * north-east. */
 static bool write_store(const char *path)
 {
-    static float   z[posts * posts];
-    static uint8_t classes[layer * layer], height[layer * layer], cover[layer * layer];
-    const Crown    crown[3] = {{100, 120, 18, 4}, {130, 180, 12, 3}, {180, 130, 9, 2.5f}};
-    StorePlan      plan = {.origin = {50 * rad_per_deg, 8 * rad_per_deg, 0}, .level_count = 1, .posting_m = 4, .seed = 3,
-                           .options = "", .crs = "", .vertical_datum = "", .provenance = "made by a test"};
-    StoreWriter   *writer;
-    StoreReport    report;
+    static float    z[posts * posts];
+    static uint8_t  classes[layer * layer], height[layer * layer], cover[layer * layer];
+    const Crown     crown[3] = {{100, 120, 18, 4}, {130, 180, 12, 3}, {180, 130, 9, 2.5f}};
+    StorePlan       plan = {.origin = {50 * rad_per_deg, 8 * rad_per_deg, 0},
+                            .level_count = 1,
+                            .posting_m = 4,
+                            .seed = 3,
+                            .options = "",
+                            .crs = "",
+                            .vertical_datum = "",
+                            .provenance = "made by a test"};
+    StoreWriter    *writer;
+    StoreReport     report;
     const StoreGrid grid = {layer, layer, -256, -256, 8};
-    plan.level[0]   = (StoreLevel){posts, posts, -256, -256, 4, 0, 0, -1};
+    plan.level[0] = (StoreLevel){posts, posts, -256, -256, 4, 0, 0, -1};
     plan.surface[0] = plan.canopy_height = plan.canopy_cover = grid;
     for (int n = 0; n < layer * layer; n++) {
         classes[n] = SURFACE_FOREST_BROADLEAF;
@@ -333,10 +345,11 @@ static bool write_store(const char *path)
         cover[n] = n % layer < layer / 2 ? (uint8_t)(0.6 / store_canopy_cover) : 0;
     }
     return store_writer_create(&writer, path, &plan, NULL) == STATUS_OK &&
-           store_write_posts(writer, 0, posts, z) == STATUS_OK && store_write_surface(writer, 0, layer, classes) == STATUS_OK &&
+           store_write_posts(writer, 0, posts, z) == STATUS_OK &&
+           store_write_surface(writer, 0, layer, classes) == STATUS_OK &&
            store_write_canopy_height(writer, layer, height) == STATUS_OK &&
-           store_write_canopy_cover(writer, layer, cover) == STATUS_OK && store_write_crowns(writer, 3, crown) == STATUS_OK &&
-           store_writer_finish(writer, 0, &report) == STATUS_OK;
+           store_write_canopy_cover(writer, layer, cover) == STATUS_OK &&
+           store_write_crowns(writer, 3, crown) == STATUS_OK && store_writer_finish(writer, 0, &report) == STATUS_OK;
 }
 
 /* Share of places in the west that some crown covers: that of the layer within 5 %; the marked crowns stand where they
@@ -358,11 +371,13 @@ static void layers_of_a_store(void **state)
     CHECK(w.from_canopy > 100);
     assert_int_equal(w.from_crowns, 3);
     for (int n = 0; n < places; n++) {
-        const double x = -230 + 210 * random_uniform(2, 1, 0, (uint64_t)n), y = 460 * random_uniform(2, 2, 0, (uint64_t)n) - 230;
-        bool         under = false;
+        const double x = -230 + 210 * random_uniform(2, 1, 0, (uint64_t)n),
+                     y = 460 * random_uniform(2, 2, 0, (uint64_t)n) - 230;
+        bool under = false;
         for (int k = 0; k < w.count && !under; k++) {
             double       p[3];
-            const double radius_m = plant_height_m(&w.plant[k]) * w.plant[k].width / 128 * plant_crown_share((PlantKind)w.plant[k].kind);
+            const double radius_m =
+                plant_height_m(&w.plant[k]) * w.plant[k].width / 128 * plant_crown_share((PlantKind)w.plant[k].kind);
             place_of(p, &w, k);
             under = hypot(p[0] - x, p[1] - y) < radius_m;
         }
@@ -427,11 +442,18 @@ static void tables(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(on_ground_that_bears_them), cmocka_unit_test(threads), cmocka_unit_test(another_square),
-        cmocka_unit_test(at_most_so_many), cmocka_unit_test(as_many_as_the_table_says), cmocka_unit_test(leans_and_heights),
-        cmocka_unit_test(transform), cmocka_unit_test(near_a_place), cmocka_unit_test(low_plants),
+        cmocka_unit_test(on_ground_that_bears_them),
+        cmocka_unit_test(threads),
+        cmocka_unit_test(another_square),
+        cmocka_unit_test(at_most_so_many),
+        cmocka_unit_test(as_many_as_the_table_says),
+        cmocka_unit_test(leans_and_heights),
+        cmocka_unit_test(transform),
+        cmocka_unit_test(near_a_place),
+        cmocka_unit_test(low_plants),
         cmocka_unit_test(low_plants_below_flights),
-        cmocka_unit_test(layers_of_a_store), cmocka_unit_test(tables),
+        cmocka_unit_test(layers_of_a_store),
+        cmocka_unit_test(tables),
     };
     return cmocka_run_group_tests(tests, open_ground, close_ground);
 }

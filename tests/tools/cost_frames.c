@@ -1,10 +1,11 @@
-/* cost_frames [FRAME ...|--about]: renders small frames at the default quality, for etc/cost to count their instructions.
+/* cost_frames [FRAME ...|--about]: renders small frames at the default quality, for etc/cost to count their
+ * instructions.
  *
  * One thread, one processor, one small ground with its heat, woods and vehicles, set up once. Every frame is rendered
  * twice: first whole, which also fills whatever is made on first use, then `render` alone, the call that is counted.
- * Under `valgrind --tool=callgrind --instr-atstart=no` the count of each frame is dumped under its name; set-up and first
- * frames are not counted. Standard output is CSV, a frame a line, with the frame's own counters; lines with # say what the
- * count depends on, --about prints these alone. */
+ * Under `valgrind --tool=callgrind --instr-atstart=no` the count of each frame is dumped under its name; set-up and
+ * first frames are not counted. Standard output is CSV, a frame a line, with the frame's own counters; lines with # say
+ * what the count depends on, --about prints these alone. */
 #include "tests/scenes/woods_stand.h"
 #include "sensor/quality/trial.h"
 #include "sensor/settings/config.h"
@@ -19,14 +20,14 @@
 #include <valgrind/callgrind.h>
 #else
 #define CALLGRIND_START_INSTRUMENTATION ((void)0)
-#define CALLGRIND_STOP_INSTRUMENTATION ((void)0)
-#define CALLGRIND_ZERO_STATS ((void)0)
-#define CALLGRIND_DUMP_STATS_AT(name) ((void)(name))
+#define CALLGRIND_STOP_INSTRUMENTATION  ((void)0)
+#define CALLGRIND_ZERO_STATS            ((void)0)
+#define CALLGRIND_DUMP_STATS_AT(name)   ((void)(name))
 #endif
 
 enum { width = 64, height = 48, trees = 3000 };
 
-static const double east_m = 600, north_m = 2100;
+static const double   east_m = 600, north_m = 2100;
 static const unsigned all_bands = 1u << BAND_OPTICAL | 1u << BAND_MWIR | 1u << BAND_LWIR | 1u << BAND_RADAR;
 
 typedef enum Place { BARE, WOODS, FEW, VEHICLES, CROWD, SMOKE, places } Place;
@@ -38,7 +39,7 @@ typedef struct CostFrame {
     double      back_m, above_m, hfov_deg;
     unsigned    bands;
     bool        truth;
-    bool        whole;   /* counted with snapshot, air and truth of targets, not `render` alone */
+    bool        whole; /* counted with snapshot, air and truth of targets, not `render` alone */
 } CostFrame;
 
 static const CostFrame frames[] = {
@@ -55,8 +56,11 @@ static const CostFrame frames[] = {
 };
 enum { frame_count = sizeof frames / sizeof *frames };
 
-static const DisEntityType types[] = {{1, 1, 222, 1, 1, 1, 0}, {1, 1, 222, 2, 1, 0, 0}, {1, 1, 222, 1, 1, 1, 0},
-                                      {1, 1, 222, 28, 1, 0, 0}, {1, 1, 222, 7, 1, 0, 0}};
+static const DisEntityType types[] = {{1, 1, 222, 1, 1, 1, 0},
+                                      {1, 1, 222, 2, 1, 0, 0},
+                                      {1, 1, 222, 1, 1, 1, 0},
+                                      {1, 1, 222, 28, 1, 0, 0},
+                                      {1, 1, 222, 7, 1, 0, 0}};
 enum { type_count = sizeof types / sizeof *types };
 
 static struct {
@@ -64,7 +68,7 @@ static struct {
     Landscape  landscape;
     Woods      woods;
     Catalog   *catalog;
-    World      world;            /* the one that is closed: scenes have copies, most of them without its plants */
+    World      world; /* the one that is closed: scenes have copies, most of them without its plants */
     TrialScene scene[places];
     Pool      *pool;
     Arena     *arena;
@@ -95,8 +99,7 @@ static Status open_world(double *unix_s)
     if (status == STATUS_OK)
         status = landscape_quick(&stage.landscape, times_s, &stage.frame, east_m, north_m, stage.pool);
     if (status == STATUS_OK) status = catalog_open(&stage.catalog, catalog, 0.01);
-    if (status == STATUS_OK)
-        status = world_open(&stage.world, stage.catalog, &stage.landscape, &stage.frame, "avx2");
+    if (status == STATUS_OK) status = world_open(&stage.world, stage.catalog, &stage.landscape, &stage.frame, "avx2");
     return status == STATUS_OK ? atmosphere_open(&stage.world.atmosphere, "us1976") : status;
 }
 
@@ -105,12 +108,13 @@ static Status open_world(double *unix_s)
 static Status plant_world(void)
 {
     const Config       config = config_default();
-    const ForestConfig forest = {.leaves = true, .level1_px = config.terrain.woods_level1_px, .sway = config.terrain.woods_sway};
-    WoodsStand         stand = {.landscape = &stage.landscape, .east_m = east_m, .north_m = north_m, .trees = trees};
+    const ForestConfig forest = {
+        .leaves = true, .level1_px = config.terrain.woods_level1_px, .sway = config.terrain.woods_sway};
+    WoodsStand stand = {.landscape = &stage.landscape, .east_m = east_m, .north_m = north_m, .trees = trees};
     for (int k = 0; k < type_count; k++)
         stand.clear[stand.clears++] = (WoodsPath){{40.0 * k - 80, 0}, {40.0 * k - 80, 0}, 6, 6};
-    World  *world = &stage.world;
-    char    optics[512], ground[512];
+    World *world = &stage.world;
+    char   optics[512], ground[512];
     if (!etc_path(optics, sizeof optics, "plant_optics.csv") || !etc_path(ground, sizeof ground, "woods.csv"))
         return STATUS_BAD_VALUE;
     Status status = woods_stand_create(&stage.woods, &stand, stage.pool);
@@ -125,8 +129,12 @@ static double dice(uint32_t stream, int k) { return random_uniform(1995, stream,
 
 static Status place_vehicle(const TrialScene *scene, int k, double at_east_m, double at_north_m, uint32_t appearance)
 {
-    const TrialPlace place = {.type = types[k % type_count], .number = k + 1, .east_m = at_east_m, .north_m = at_north_m,
-                              .turn_rad = 2 * pi_rad * dice(1, k), .appearance = appearance};
+    const TrialPlace place = {.type = types[k % type_count],
+                              .number = k + 1,
+                              .east_m = at_east_m,
+                              .north_m = at_north_m,
+                              .turn_rad = 2 * pi_rad * dice(1, k),
+                              .appearance = appearance};
     return trial_scene_place(scene, &place);
 }
 
@@ -152,10 +160,14 @@ static Status open_scene(Place place, double unix_s)
 {
     TrialScene       *scene = &stage.scene[place];
     EntityTableConfig config = entity_table_default_config();
-    *scene = (TrialScene){.landscape = &stage.landscape, .catalog = stage.catalog, .world = stage.world, .unix_s = unix_s,
+    *scene = (TrialScene){.landscape = &stage.landscape,
+                          .catalog = stage.catalog,
+                          .world = stage.world,
+                          .unix_s = unix_s,
                           .sun_now_s = 60};
     if (place != WOODS) scene->world.plants = NULL, scene->world.forest = NULL, scene->world.canopy = NULL;
-    if (place == CROWD) scene->world.heat = NULL; /* hundreds of vehicles would warm up for longer than all frames take */
+    if (place == CROWD)
+        scene->world.heat = NULL; /* hundreds of vehicles would warm up for longer than all frames take */
     config.ground = (ContactGround){.frame = &stage.frame, .elevation = &stage.landscape.elevation};
     const Status status = entity_table_create(&scene->table, &config, stage.catalog);
     return status == STATUS_OK ? populate(scene, place) : status;
@@ -176,8 +188,9 @@ static RenderRequest request_of(const CostFrame *f)
 
 static Status count_frame(Picture *out, const CostFrame *f)
 {
-    TrialFrame frame = {.scene = &stage.scene[f->place], .request = request_of(f), .pool = stage.pool, .arena = stage.arena};
-    Picture    again;
+    TrialFrame frame = {
+        .scene = &stage.scene[f->place], .request = request_of(f), .pool = stage.pool, .arena = stage.arena};
+    Picture again;
     trial_frame(&frame);
     if (frame.status != STATUS_OK) return frame.status;
     CALLGRIND_START_INSTRUMENTATION;
@@ -186,7 +199,8 @@ static Status count_frame(Picture *out, const CostFrame *f)
         trial_frame(&frame);
         again = frame.picture;
     } else {
-        frame.status = render(&again, &frame.scene->world, &frame.snapshot, &frame.request, &frame.air, stage.pool, stage.arena);
+        frame.status =
+            render(&again, &frame.scene->world, &frame.snapshot, &frame.request, &frame.air, stage.pool, stage.arena);
     }
     CALLGRIND_DUMP_STATS_AT(f->name);
     CALLGRIND_STOP_INSTRUMENTATION;
@@ -197,8 +211,9 @@ static Status count_frame(Picture *out, const CostFrame *f)
 static void print_frame(const CostFrame *f, const Picture *picture)
 {
     const RenderCounters *c = &picture->counters;
-    const uint64_t value[] = {c->rays_primary, c->rays_edges, c->rays_small_targets, c->visibility.rays_sun_ground,
-                              c->visibility.rays_plants, c->pixels_refined, c->small_targets};
+    const uint64_t        value[] = {
+               c->rays_primary,           c->rays_edges,     c->rays_small_targets, c->visibility.rays_sun_ground,
+               c->visibility.rays_plants, c->pixels_refined, c->small_targets};
     fputs(f->name, stdout);
     for (size_t k = 0; k < sizeof value / sizeof *value; k++) printf(",%llu", (unsigned long long)value[k]);
     putchar('\n');

@@ -1,9 +1,9 @@
 /* tests/tools/flood.c: invented entities among those of a recording: flood IN OUT [key=value ...]
  *
  * OUT is a recording too, or 127.0.0.1:PORT: what is invented is then sent in real time, and nothing else is. Keys:
- * ids=N how many entities; from_s, for_s when, from the first datagram on; senders=K their sites; reports=R of each, one
- * round after the other; reach_m how far about the recording's first entity; parts=P articulation parameters of each;
- * category=C guided munitions of category C instead of tanks. */
+ * ids=N how many entities; from_s, for_s when, from the first datagram on; senders=K their sites; reports=R of each,
+ * one round after the other; reach_m how far about the recording's first entity; parts=P articulation parameters of
+ * each; category=C guided munitions of category C instead of tanks. */
 #include "dis/pdu/decode.h"
 #include "dis/clock/exercise_clock.h"
 #include "dis/capture/log.h"
@@ -49,7 +49,7 @@ static size_t report(uint8_t *out, size_t size, const Flood *f, uint64_t n, doub
     memset(pdu.velocity_mps, 0, sizeof pdu.velocity_mps);
     memset(pdu.acceleration_mps2, 0, sizeof pdu.acceleration_mps2);
     memset(pdu.angular_rate_rps, 0, sizeof pdu.angular_rate_rps);
-    pdu.appearance       = 0;
+    pdu.appearance = 0;
     pdu.header.timestamp = dis_timestamp(fmod(dis_timestamp_seconds(f->like.header.timestamp) + t_s, 3600), false);
     for (int k = 0; k < 3; k++) d[k] = f->reach_m * (2 * random_uniform(id, 5, (uint32_t)k, 0) - 1);
     for (int k = 0; k < 3; k++) pdu.p_ecef[k] += d[k] - v3_dot(d, f->like.p_ecef) / (up_m * up_m) * f->like.p_ecef[k];
@@ -98,8 +98,7 @@ static int to_network(const Flood *f, const char *to)
     const double begun_s = wall_clock_s() + f->from_s;
     while (n < all) {
         const double now_s = wall_clock_s() - begun_s, due = now_s >= 0 ? fmin(now_s / f->for_s, 1) * (double)all : -1;
-        for (; (double)n <= due && n < all; n++)
-            dis_udp_send(udp, octets, report(octets, sizeof octets, f, n, now_s));
+        for (; (double)n <= due && n < all; n++) dis_udp_send(udp, octets, report(octets, sizeof octets, f, n, now_s));
         nanosleep(&(struct timespec){0, 1000000}, NULL);
     }
     const double took_s = wall_clock_s() - begun_s;
@@ -113,12 +112,14 @@ int main(int argc, char **argv)
 {
     Flood  f = {.ids = 100000, .from_s = 1, .for_s = 2.5, .senders = 1, .reports = 1, .reach_m = 20000};
     DisLog log;
-    const struct { const char *key; double *value; } keys[] = {
-        {"ids", &f.ids}, {"from_s", &f.from_s}, {"for_s", &f.for_s}, {"senders", &f.senders}, {"reports", &f.reports},
-        {"reach_m", &f.reach_m}, {"parts", &f.parts}, {"category", &f.category}};
+    const struct {
+        const char *key;
+        double     *value;
+    } keys[] = {{"ids", &f.ids},         {"from_s", &f.from_s},   {"for_s", &f.for_s}, {"senders", &f.senders},
+                {"reports", &f.reports}, {"reach_m", &f.reach_m}, {"parts", &f.parts}, {"category", &f.category}};
     for (int i = 3; i < argc; i++) {
         const char *equals = strchr(argv[i], '=');
-        bool        known  = false;
+        bool        known = false;
         for (size_t k = 0; equals && k < sizeof keys / sizeof *keys; k++)
             if (strncmp(argv[i], keys[k].key, (size_t)(equals - argv[i])) == 0 && keys[k].key[equals - argv[i]] == 0)
                 known = text_to_double(keys[k].value, equals + 1);

@@ -1,6 +1,7 @@
 /* tests/tools/klv_packets.c: ST 0601 packets of frame records, for decoders that are not ours: klv_packets COUNT SEED
- * writes COUNT packets of random, often absurd records to standard output, and counts on standard error what is refused.
- * A packet must not be written beyond its length, nor contain anything that differs with what was in the buffer. */
+ * writes COUNT packets of random, often absurd records to standard output, and counts on standard error what is
+ * refused. A packet must not be written beyond its length, nor contain anything that differs with what was in the
+ * buffer. */
 #include "sensor/publish/klv/klv.h"
 
 #include <stdlib.h>
@@ -16,10 +17,14 @@ static double any(double size)
 {
     static const double odd[] = {0, -0.0, 1e-300, 1e300, -1e300, 6378137, 90, 180, 360, 20, 50, 19000, -900, 40000};
     switch (below(12)) {
-    case 0: return NAN;
-    case 1: return below(2) ? INFINITY : -INFINITY;
-    case 2: return odd[below((int)(sizeof odd / sizeof *odd))];
-    default: return size * (2 * uniform() - 1);
+    case 0:
+        return NAN;
+    case 1:
+        return below(2) ? INFINITY : -INFINITY;
+    case 2:
+        return odd[below((int)(sizeof odd / sizeof *odd))];
+    default:
+        return size * (2 * uniform() - 1);
     }
 }
 
@@ -40,7 +45,7 @@ static void rotation(double r[9])
     v3_normalize(b, b);
     v3_normalize(c, c);
     for (int k = 0; k < 3; k++) {
-        r[3 * k]     = a[k];
+        r[3 * k] = a[k];
         r[3 * k + 1] = b[k];
         r[3 * k + 2] = c[k];
     }
@@ -68,10 +73,13 @@ static void position(double p_ecef[3])
 static KlvTarget any_target(const View *view, const char *name)
 {
     static const char *const algorithm[] = {"truth", "", NULL, "yolo", "a", "b", "c", "d", "e"};
-    KlvTarget t = {.id = (uint64_t)(uniform() * ldexp(1, 1 + below(48))), .confidence = any(1), .pixels = any(100),
-                   .located = below(2), .class_name = below(2) ? name : NULL,
-                   .algorithm = algorithm[below((int)(sizeof algorithm / sizeof *algorithm))],
-                   .algorithm_version = below(2) ? "1.0" : NULL};
+    KlvTarget                t = {.id = (uint64_t)(uniform() * ldexp(1, 1 + below(48))),
+                                  .confidence = any(1),
+                                  .pixels = any(100),
+                                  .located = below(2),
+                                  .class_name = below(2) ? name : NULL,
+                                  .algorithm = algorithm[below((int)(sizeof algorithm / sizeof *algorithm))],
+                                  .algorithm_version = below(2) ? "1.0" : NULL};
     t.place = (Geodetic){any(2), any(4), any(20000)};
     for (int k = 0; k < 4; k++)
         t.box[k] = below(8) ? below((k % 2 ? view->height : view->width) + 1) : below(1 << 30) - (1 << 29);
@@ -85,7 +93,7 @@ int main(int argc, char **argv)
     seed_of = argc > 2 ? strtoull(argv[2], NULL, 10) : 1;
     for (int n = 0; n < count; n++) {
         static uint8_t out[2][klv_most_octets + 64];
-        SnapshotEntity host    = {0};
+        SnapshotEntity host = {0};
         RenderRequest  request = {.view = {.width = 1 + below(4096), .height = 1 + below(4096), .focal_px = any(1000)}};
         GroundPoint    footprint[FOOTPRINT_COUNT];
         KlvTarget      target[100];
@@ -96,16 +104,19 @@ int main(int argc, char **argv)
         for (int k = 0; k < 100; k++) target[k] = any_target(&request.view, text[below(40)]);
         for (int k = 0; k < FOOTPRINT_COUNT; k++)
             footprint[k] = (GroundPoint){below(3) > 0, any(2), any(4), any(20000), any(1e6)};
-        FrameRecord record = {.frame = below(3) ? n : below(1 << 30), .host = below(2) ? &host : NULL,
-                              .request = &request, .hfov_rad = any(3), .footprint = below(4) ? footprint : NULL};
+        FrameRecord record = {.frame = below(3) ? n : below(1 << 30),
+                              .host = below(2) ? &host : NULL,
+                              .request = &request,
+                              .hfov_rad = any(3),
+                              .footprint = below(4) ? footprint : NULL};
         position(record.p_eye_ecef);
         for (int k = 0; k < 3; k++) record.v_eye_mps[k] = any(400);
         rotation(record.r_ecef_from_body);
         rotation(record.r_ecef_from_cam);
-        const KlvSource  source  = {.band = (Band)below(BAND_COUNT), .mission = below(2) ? mission : NULL,
-                                    .sensor = below(2) ? text[0] : NULL};
+        const KlvSource source = {
+            .band = (Band)below(BAND_COUNT), .mission = below(2) ? mission : NULL, .sensor = below(2) ? text[0] : NULL};
         const KlvTargets targets = {below(2), below(101), below(100000), target, below(2), below(1000), any(2e9)};
-        const double     unix_s  = below(8) ? 1.9e9 * uniform() : any(1e10);
+        const double     unix_s = below(8) ? 1.9e9 * uniform() : any(1e10);
 
         size_t octets[2];
         for (int k = 0; k < 2; k++) {

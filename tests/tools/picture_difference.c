@@ -80,7 +80,7 @@ static int edge_distance(const bool *edge, int w, int h, int x, int y)
 static bool read_edges(bool *edge, const char *out, const char *frame, int w, int h, uint32_t *id)
 {
     static const char *const channel[] = {"entity", "part", "material"};
-    char path[path_size];
+    char                     path[path_size];
     snprintf(path, sizeof path, "%s/frames/truth/%s", out, frame);
     memset(edge, 0, (size_t)w * (size_t)h);
     for (int c = 0; c < 3; c++) {
@@ -122,7 +122,7 @@ static void compare_plane(Tally *t, const void *left, const void *right, const b
             continue;
         }
         const double difference = fabs((double)a[k] - b[k]), larger = fmax(fabs((double)a[k]), fabs((double)b[k]));
-        t->largest  = fmax(t->largest, difference);
+        t->largest = fmax(t->largest, difference);
         t->relative = fmax(t->relative, larger > 0 ? difference / larger : 0);
         const double seen = noticed(a[k], b[k], t->name, brightest);
         t->slight += seen > 0.1;
@@ -217,7 +217,7 @@ int main(int argc, char **argv)
     }
     for (int t = 0; t < tallies; t++)
         printf("plane %s frames %d pixels %ld changed %ld slight %ld clear %ld largest %g relative %g edge_px %d\n",
-               tally[t].name, tally[t].frames, tally[t].pixels, tally[t].changed, tally[t].slight, tally[t].clear, tally[t].largest, tally[t].relative,
-               tally[t].edge_px);
+               tally[t].name, tally[t].frames, tally[t].pixels, tally[t].changed, tally[t].slight, tally[t].clear,
+               tally[t].largest, tally[t].relative, tally[t].edge_px);
     return 0;
 }

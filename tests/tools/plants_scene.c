@@ -1,12 +1,11 @@
-/* plants_scene OUT SCENE SUN_DEG: plants on flat ground under a sun of that elevation and an even sky, seen by Pitviper,
- * with everything that another renderer needs to see the same: tests/system/plants_judge.py.
+/* plants_scene OUT SCENE SUN_DEG: plants on flat ground under a sun of that elevation and an even sky, seen by
+ * Pitviper, with everything that another renderer needs to see the same: tests/system/plants_judge.py.
  *
- * SCENE: oak or pine (one, and its shadow) or stand (ninety trees of seven kinds, from above). Files of OUT, float32 rows:
- *     quads     12 corner coordinates, organ, kind, outline, albedo
- *     outlines  corners, then 24 u v pairs: one row for each kind and outline
- *     rays      origin, direction, range, kind of hit, plant's organ, then radiance of red, green, near infrared under the
- *               sun alone, and again under sun and sky with what plants scatter
- * and scene.txt: names and numbers of the light and the materials. */
+ * SCENE: oak or pine (one, and its shadow) or stand (ninety trees of seven kinds, from above). Files of OUT, float32
+ * rows: quads     12 corner coordinates, organ, kind, outline, albedo outlines  corners, then 24 u v pairs: one row for
+ * each kind and outline rays      origin, direction, range, kind of hit, plant's organ, then radiance of red, green,
+ * near infrared under the sun alone, and again under sun and sky with what plants scatter and scene.txt: names and
+ * numbers of the light and the materials. */
 #include "render/frame/shade.h"
 
 #include <stdio.h>
@@ -29,7 +28,7 @@ static const Shot shots[] = {
     {"stand", most_trees, -1, 384, 256, 30, {-10, -110, 90}, {0, -4, 8}, 0.32},
 };
 
-static Plant    plant[most_trees];
+static Plant plant[most_trees];
 
 static double dice(uint32_t stream, int index) { return random_uniform(1995, stream, 0, (uint64_t)index); }
 
@@ -40,7 +39,9 @@ static Woods plant_trees(const Shot *shot)
     for (int i = 0; i < shot->trees; i++) {
         const double cell_m = 2 * shot->half_m / side;
         const bool   single = shot->trees == 1;
-        plant[i] = (Plant){.height = (uint16_t)(1000 + 800 * dice(1, i)), .twist = (uint16_t)(65535 * dice(2, i)), .width = 128,
+        plant[i] = (Plant){.height = (uint16_t)(1000 + 800 * dice(1, i)),
+                           .twist = (uint16_t)(65535 * dice(2, i)),
+                           .width = 128,
                            .kind = (uint8_t)(single ? shot->kind : i % PLANT_TREES)};
         if (single) continue;
         plant[i].p_m[0] = (float)(-shot->half_m + cell_m * (i % side + 0.2 + 0.6 * dice(3, i)));
@@ -48,7 +49,10 @@ static Woods plant_trees(const Shot *shot)
         plant[i].lean[0] = (int8_t)(40 * (dice(5, i) - 0.5)), plant[i].lean[1] = (int8_t)(40 * (dice(6, i) - 0.5));
     }
     /* squares about the stand, so that the canopy's grid holds it; all plants are in the first */
-    Woods woods = {.origin_enu = {-2 * woods_square_m, -2 * woods_square_m, 0}, .nx = 4, .ny = 4, .count = shot->trees,
+    Woods woods = {.origin_enu = {-2 * woods_square_m, -2 * woods_square_m, 0},
+                   .nx = 4,
+                   .ny = 4,
+                   .count = shot->trees,
                    .plant = plant};
     woods.first = calloc(17, sizeof *woods.first);
     for (int k = 1; woods.first && k <= 16; k++) woods.first[k] = (uint32_t)shot->trees;
@@ -82,8 +86,10 @@ static void write_quads(const char *folder, const Woods *woods, const Plants *pl
             float            row[16];
             for (int c = 0; c < 4; c++) {
                 double corner[3];
-                m3_mul_v3(corner, m, (const double[3]){(double)q->corner[c][0], (double)q->corner[c][1], (double)q->corner[c][2]});
-                for (int x = 0; x < 3; x++) row[3 * c + x] = (float)(corner[x] + (double)p->p_m[x] + woods->origin_enu[x]);
+                m3_mul_v3(corner, m,
+                          (const double[3]){(double)q->corner[c][0], (double)q->corner[c][1], (double)q->corner[c][2]});
+                for (int x = 0; x < 3; x++)
+                    row[3 * c + x] = (float)(corner[x] + (double)p->p_m[x] + woods->origin_enu[x]);
             }
             row[12] = q->organ, row[13] = p->kind, row[14] = (float)(p->kind * plant_outlines + q->outline);
             row[15] = q->organ == PLANT_LEAF ? plants_leaf_albedo((PlantKind)p->kind, (uint32_t)i, q->piece) : 1;
@@ -105,13 +111,14 @@ static void write_quads(const char *folder, const Woods *woods, const Plants *pl
 static void write_scene(const char *folder, const double sun_enu[3], const Materials *materials)
 {
     FILE *file = open_file(folder, "scene.txt");
-    fprintf(file, "sun %.17g %.17g %.17g %g\nsky %g\nground %g\n", sun_enu[0], sun_enu[1], sun_enu[2], sun_w_m2, sky_w_m2_sr,
-            ground_rho);
+    fprintf(file, "sun %.17g %.17g %.17g %g\nsky %g\nground %g\n", sun_enu[0], sun_enu[1], sun_enu[2], sun_w_m2,
+            sky_w_m2_sr, ground_rho);
     for (int kind = 0; kind < PLANT_TREES; kind++)
         for (int organ = PLANT_BARK; organ <= PLANT_LEAF; organ++) {
             const Material *m = &materials->material[materials->plant[kind][organ]];
             fprintf(file, "material %d %d", kind, organ);
-            for (int b = 0; b < bands; b++) fprintf(file, " %.9g %.9g", (double)m->rho[band_of[b]], (double)m->tau[band_of[b]]);
+            for (int b = 0; b < bands; b++)
+                fprintf(file, " %.9g %.9g", (double)m->rho[band_of[b]], (double)m->tau[band_of[b]]);
             fprintf(file, "\n");
         }
     fclose(file);
@@ -127,7 +134,8 @@ static void make_plain(Materials *materials)
         for (int organ = 0; organ < PLANT_ORGANS; organ++) of_plants[materials->plant[kind][organ] % 1024] = true;
     for (int m = 0; m < materials->count; m++) {
         materials->material[m].gloss = 0;
-        for (int c = 0; c < optical_channel_count && !of_plants[m % 1024]; c++) materials->material[m].rho[c] = (float)ground_rho;
+        for (int c = 0; c < optical_channel_count && !of_plants[m % 1024]; c++)
+            materials->material[m].rho[c] = (float)ground_rho;
     }
     for (int c = 0; c < optical_channel_count; c++) materials->ground_rho[c] = (float)ground_rho;
 }
@@ -177,17 +185,17 @@ static View view_of(const Shot *shot)
 }
 
 /* One row of the image under a light; radiance: [bands][width]. full: sky, and what plants scatter. */
-static Status see_row(float (*radiance)[hits_capacity], Samples *s, World *world, const View *view, const double sun_enu[3],
-                      int row, bool full, Arena *arena)
+static Status see_row(float (*radiance)[hits_capacity], Samples *s, World *world, const View *view,
+                      const double sun_enu[3], int row, bool full, Arena *arena)
 {
-    static Shader        shader;
-    const Snapshot       empty = {0};
-    const RenderRequest  request = {.view = *view, .samples = 1, .hidden_entity = -1};
-    Canopy *const        canopy = world->canopy;
-    double               sky[AIR_BAND_COUNT];
-    unsigned             channels = 0;
-    Air                  air;
-    ShadeScene           scene;
+    static Shader       shader;
+    const Snapshot      empty = {0};
+    const RenderRequest request = {.view = *view, .samples = 1, .hidden_entity = -1};
+    Canopy *const       canopy = world->canopy;
+    double              sky[AIR_BAND_COUNT];
+    unsigned            channels = 0;
+    Air                 air;
+    ShadeScene          scene;
     for (int b = 0; b < bands; b++) channels |= 1u << band_of[b];
     for (int b = 0; b < AIR_BAND_COUNT; b++) sky[b] = full ? sky_w_m2_sr : 0;
     for (int c = 0; c < optical_channel_count; c++) world->materials.ground_rho[c] = full ? (float)ground_rho : 0;
@@ -201,7 +209,8 @@ static Status see_row(float (*radiance)[hits_capacity], Samples *s, World *world
         s->channels = channels, s->per_rad = 1; /* footprints so wide that bark has no relief */
         scene.plants.per_rad = 1;
         shade_samples_shade(&shader, &scene, s, NULL, -1);
-        for (int b = 0; b < bands; b++) memcpy(radiance[b], s->radiance[band_of[b]], (size_t)view->width * sizeof(float));
+        for (int b = 0; b < bands; b++)
+            memcpy(radiance[b], s->radiance[band_of[b]], (size_t)view->width * sizeof(float));
     }
     shade_scene_close(&scene);
     world->canopy = canopy;
@@ -210,12 +219,12 @@ static Status see_row(float (*radiance)[hits_capacity], Samples *s, World *world
 
 static Status see(const char *folder, const Shot *shot, World *world, const double sun_enu[3])
 {
-    static float radiance[2][bands][hits_capacity];
+    static float   radiance[2][bands][hits_capacity];
     static Samples samples;
-    const View   view = view_of(shot);
-    Arena       *arena = arena_create();
-    Status       status = arena ? STATUS_OK : STATUS_NO_MEMORY;
-    FILE        *file = open_file(folder, "rays");
+    const View     view = view_of(shot);
+    Arena         *arena = arena_create();
+    Status         status = arena ? STATUS_OK : STATUS_NO_MEMORY;
+    FILE          *file = open_file(folder, "rays");
     for (int row = 0; row < view.height && status == STATUS_OK; row++) {
         for (int full = 0; full < 2 && status == STATUS_OK; full++)
             status = see_row(radiance[full], &samples, world, &view, sun_enu, row, full, arena);
@@ -223,9 +232,10 @@ static Status see(const char *folder, const Shot *shot, World *world, const doub
             const Rays *r = &samples.rays;
             const Hits *h = &samples.hits;
             const bool  leaf = h->kind[i] == hit_plant && h->radius_m[i] == 0;
-            float       line[9 + 2 * bands] = {(float)r->o_enu[0][i], (float)r->o_enu[1][i], (float)r->o_enu[2][i],
-                                               (float)r->d_enu[0][i], (float)r->d_enu[1][i], (float)r->d_enu[2][i],
-                                               (float)h->range_m[i], h->kind[i], leaf ? PLANT_LEAF : PLANT_BARK};
+            float       line[9 + 2 * bands] = {
+                      (float)r->o_enu[0][i],         (float)r->o_enu[1][i], (float)r->o_enu[2][i], (float)r->d_enu[0][i],
+                      (float)r->d_enu[1][i],         (float)r->d_enu[2][i], (float)h->range_m[i],  h->kind[i],
+                leaf ? PLANT_LEAF : PLANT_BARK};
             for (int b = 0; b < 2 * bands; b++) line[9 + b] = radiance[b / bands][b % bands][i];
             fwrite(line, sizeof line, 1, file);
         }
@@ -248,7 +258,8 @@ int main(int argc, char **argv)
     char            path[512];
     for (size_t k = 0; argc == 4 && k < sizeof shots / sizeof *shots; k++)
         if (strcmp(argv[2], shots[k].name) == 0) shot = &shots[k];
-    if (!shot || !text_to_double(&sun_rad, argv[3])) return fprintf(stderr, "usage: plants_scene OUT oak|pine|stand SUN_DEG\n"), 2;
+    if (!shot || !text_to_double(&sun_rad, argv[3]))
+        return fprintf(stderr, "usage: plants_scene OUT oak|pine|stand SUN_DEG\n"), 2;
     sun_rad *= rad_per_deg;
     sun_enu[0] = 0.77 * cos(sun_rad), sun_enu[1] = -0.64 * cos(sun_rad), sun_enu[2] = sin(sun_rad);
     v3_normalize(sun_enu, sun_enu);

@@ -11,9 +11,9 @@ static const double knot_s = 600;
 int main(void)
 {
     static PlateVehicle v;
-    static NetworkLoad    load[knots + 1][nodes];
-    Network *network;
-    double   temp_k[nodes], heat_j = 0;
+    static NetworkLoad  load[knots + 1][nodes];
+    Network            *network;
+    double              temp_k[nodes], heat_j = 0;
     plate_vehicle(&v, nodes);
     if (plate_vehicle_create(&network, &v) != STATUS_OK) return 1;
     /* not a whole number of the loads' own periods: knots unlike one another */

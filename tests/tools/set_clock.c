@@ -1,5 +1,5 @@
-/* tests/tools/set_clock.c: preloaded: while the file SET_CLOCK_WHEN is there the system's clock is SET_CLOCK_S seconds off, as the
- * program sees it: clock_gettime, sleeps by that clock, and the kernel's stamps of datagrams. */
+/* tests/tools/set_clock.c: preloaded: while the file SET_CLOCK_WHEN is there the system's clock is SET_CLOCK_S seconds
+ * off, as the program sees it: clock_gettime, sleeps by that clock, and the kernel's stamps of datagrams. */
 #include <dlfcn.h>
 #include <stdlib.h>
 #include <string.h>
@@ -40,7 +40,8 @@ int clock_nanosleep(clockid_t id, int flags, const struct timespec *request, str
         const struct timespec step = {0, ns_per_s / 100};
         struct timespec       now;
         clock_gettime(CLOCK_REALTIME, &now);
-        if (now.tv_sec > request->tv_sec || (now.tv_sec == request->tv_sec && now.tv_nsec >= request->tv_nsec)) return 0;
+        if (now.tv_sec > request->tv_sec || (now.tv_sec == request->tv_sec && now.tv_nsec >= request->tv_nsec))
+            return 0;
         next(CLOCK_MONOTONIC, 0, &step, NULL);
     }
 }

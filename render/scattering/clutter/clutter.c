@@ -108,7 +108,8 @@ void clutter_place(double p_m[2], const ClutterGrid *grid, const ClutterCell *ce
     const double side_m = clutter_side(grid, cell->level);
     for (uint32_t a = 0; a < 2; a++)
         p_m[a] = ((a == 0 ? cell->x : cell->y) + random_uniform(grid->seed, place_stream + (uint32_t)cell->level,
-                                                                (uint32_t)cell->y, first_index(cell) + a)) * side_m;
+                                                                (uint32_t)cell->y, first_index(cell) + a)) *
+                 side_m;
 }
 
 /* ---- texture -------------------------------------------------------------------------------------------- */
@@ -165,7 +166,10 @@ double clutter_texture_at(const ClutterGrid *grid, const ClutterRow *row, int le
 /* ---- scatterers ------------------------------------------------------------------------------------------- */
 
 enum {
-    still = clutter_still_terms, moving = clutter_terms - still, of_term = 9, of_velocity = 4,
+    still = clutter_still_terms,
+    moving = clutter_terms - still,
+    of_term = 9,
+    of_velocity = 4,
     normals = clutter_terms * of_term + moving * of_velocity
 };
 
@@ -292,9 +296,9 @@ typedef struct Entry {
 } Entry;
 
 struct ClutterCache {
-    Entry          (*set)[ways];
-    uint8_t         *next;           /* [sets]: the way that is given up next */
-    pthread_mutex_t  lock[locks];    /* of set % locks */
+    Entry (*set)[ways];
+    uint8_t        *next;        /* [sets]: the way that is given up next */
+    pthread_mutex_t lock[locks]; /* of set % locks */
 };
 
 Status clutter_cache_create(ClutterCache **out)
@@ -335,7 +339,8 @@ static bool find(ClutterScatterer *out, ClutterCache *c, const ClutterCell *cell
     pthread_mutex_lock(&c->lock[lock]);
     for (int w = 0; w < ways && !found; w++) {
         const Entry *e = &c->set[set][w];
-        found = e->used && e->surface == surface && e->cell.x == cell->x && e->cell.y == cell->y && e->cell.level == cell->level;
+        found = e->used && e->surface == surface && e->cell.x == cell->x && e->cell.y == cell->y &&
+                e->cell.level == cell->level;
         if (found) *out = e->scatterer;
     }
     pthread_mutex_unlock(&c->lock[lock]);

@@ -29,7 +29,7 @@ typedef struct ClutterGrid {
 } ClutterGrid;
 
 typedef struct ClutterCell {
-    int32_t x, y; /* from the origin of enu, in sides, rounded down */
+    int32_t x, y;  /* from the origin of enu, in sides, rounded down */
     int32_t level; /* 0 .. clutter_levels - 1 */
 } ClutterCell;
 
@@ -111,7 +111,7 @@ typedef struct ClutterKind {
 Status clutter_cache_create(ClutterCache **out);
 void   clutter_cache_destroy(ClutterCache *cache); /* accepts NULL */
 /* As clutter_draw; cache NULL: just that. Any number of threads. */
-void   clutter_cache_draw(ClutterScatterer *out, ClutterCache *cache, const ClutterKind *kind, int count,
-                          const ClutterCell *cell, const uint8_t *surface);
+void clutter_cache_draw(ClutterScatterer *out, ClutterCache *cache, const ClutterKind *kind, int count,
+                        const ClutterCell *cell, const uint8_t *surface);
 
 #endif

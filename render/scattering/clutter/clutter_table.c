@@ -77,8 +77,8 @@ double clutter_texture(const ClutterRow *row, double deviate)
 {
     if (isinf(row->nu)) return 1;
     const double at = (clamp(deviate / deviate_end, -1, 1) + 1) * (0.5 * (clutter_texture_nodes - 1));
-    const int    i  = at < clutter_texture_nodes - 2 ? (int)at : clutter_texture_nodes - 2;
-    const double f  = at - i;
+    const int    i = at < clutter_texture_nodes - 2 ? (int)at : clutter_texture_nodes - 2;
+    const double f = at - i;
     return exp((1 - f) * (double)row->texture[i] + f * (double)row->texture[i + 1]);
 }
 
@@ -88,8 +88,8 @@ typedef struct Column {
     const char *name;
     size_t      offset;
     double      low, high;
-    bool        decibel;    /* in the file; a ratio in the row */
-    int         model;      /* may be empty in rows of the other one; -1: of both */
+    bool        decibel; /* in the file; a ratio in the row */
+    int         model;   /* may be empty in rows of the other one; -1: of both */
 } Column;
 static const Column columns[] = {
     {"gamma_db", offsetof(ClutterRow, gamma), -60, 20, true, CLUTTER_GAMMA},
@@ -121,7 +121,7 @@ static Status read_row(ClutterTable *out, bool seen[SURFACE_COUNT][CLUTTER_BAND_
                        const int at[numbers], const int text[3])
 {
     static const double smallest_nu = 0.05;
-    const char *surface_text = table_text(table, row, text[0]), *band_text = table_text(table, row, text[1]),
+    const char         *surface_text = table_text(table, row, text[0]), *band_text = table_text(table, row, text[1]),
                *model_text = table_text(table, row, text[2]);
     const SurfaceClass surface = surface_find(surface_text);
     int                band = 0;
@@ -136,7 +136,7 @@ static Status read_row(ClutterTable *out, bool seen[SURFACE_COUNT][CLUTTER_BAND_
     ClutterRow *to = &out->row[surface][band];
     *to = (ClutterRow){.model = git ? CLUTTER_GIT : CLUTTER_GAMMA};
     for (int c = 0; c < numbers; c++) {
-        double *value = (double *)((char *)to + columns[c].offset);
+        double    *value = (double *)((char *)to + columns[c].offset);
         const bool foreign = columns[c].model >= 0 && columns[c].model != (int)to->model;
         if (foreign && !*table_text(table, row, at[c])) continue;
         const Status status = table_number(value, table, row, at[c], columns[c].low, columns[c].high);

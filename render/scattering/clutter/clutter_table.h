@@ -15,17 +15,17 @@ enum { clutter_texture_nodes = 513 };
 
 typedef struct ClutterRow {
     ClutterModel model;
-    double gamma;          /* of CLUTTER_GAMMA, at VV; a ratio */
-    double a, b, c, d;     /* of CLUTTER_GIT; c in rad */
-    double roughness_m;    /* rms height, sigma_h of CLUTTER_GIT */
-    double nu;             /* shape of the texture; INFINITY: none */
-    double texture_m;      /* distance between its nodes */
-    double hh, hv;         /* mean power over that of VV */
-    double rho;            /* |<hh vv*>| / sqrt(<|hh|^2> <|vv|^2>), its phase 0; hv is independent of both */
-    double motion, still;  /* spectral width, and ratio of still to moving power, over those of windblown trees */
-    double extent_m;       /* rms size of what one scatterer stands for, each way: a leaf, a stone */
-    double foliage_db_m;   /* one way, over the first 14 m */
-    float  texture[clutter_texture_nodes]; /* ln of the texture at normal deviates -8 .. 8, in equal steps */
+    double       gamma;         /* of CLUTTER_GAMMA, at VV; a ratio */
+    double       a, b, c, d;    /* of CLUTTER_GIT; c in rad */
+    double       roughness_m;   /* rms height, sigma_h of CLUTTER_GIT */
+    double       nu;            /* shape of the texture; INFINITY: none */
+    double       texture_m;     /* distance between its nodes */
+    double       hh, hv;        /* mean power over that of VV */
+    double       rho;           /* |<hh vv*>| / sqrt(<|hh|^2> <|vv|^2>), its phase 0; hv is independent of both */
+    double       motion, still; /* spectral width, and ratio of still to moving power, over those of windblown trees */
+    double       extent_m;      /* rms size of what one scatterer stands for, each way: a leaf, a stone */
+    double       foliage_db_m;  /* one way, over the first 14 m */
+    float        texture[clutter_texture_nodes]; /* ln of the texture at normal deviates -8 .. 8, in equal steps */
 } ClutterRow;
 
 typedef struct ClutterTable {
@@ -56,8 +56,8 @@ double clutter_texture(const ClutterRow *row, double deviate);
  * power 489.8 w^-1.55 f^-1.21 (w in miles an hour, f in GHz), 1 / beta = 0.1048 (log10 w + 0.4147) m/s, for
  * windblown trees at VHF to X band; above X band this extrapolates. */
 typedef struct ClutterMotion {
-    double still;       /* share of the power, 0 .. 1 */
-    double spread_mps;  /* 1 / beta; rms velocity is sqrt(2) of it. 0 where still is 1 */
+    double still;      /* share of the power, 0 .. 1 */
+    double spread_mps; /* 1 / beta; rms velocity is sqrt(2) of it. 0 where still is 1 */
 } ClutterMotion;
 ClutterMotion clutter_motion(const ClutterRow *row, double frequency_hz, double wind_mps);
 /* Correlation of the complex amplitude over a lag: still + (1 - still) / (1 + (4 pi lag spread / lambda)^2), the

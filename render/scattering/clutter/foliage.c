@@ -9,12 +9,12 @@ struct Foliage {
     const Woods  *woods;
     double        origin_enu[3], centre_enu[2], reach_m, wide_m[2];
     int           count;
-    FoliageCrown *crown;     /* [count] */
+    FoliageCrown *crown; /* [count] */
     double        side_m;
     int           nx, ny;
-    uint32_t     *first;     /* [nx * ny + 1] */
-    uint32_t     *listed;    /* crowns that reach into a square, ascending */
-    float        *top_m;     /* [nx * ny]: of the highest of them, from the origin; -INFINITY: none */
+    uint32_t     *first;  /* [nx * ny + 1] */
+    uint32_t     *listed; /* crowns that reach into a square, ascending */
+    float        *top_m;  /* [nx * ny]: of the highest of them, from the origin; -INFINITY: none */
     double        db_m[SURFACE_COUNT];
 };
 
@@ -50,8 +50,8 @@ static int square_at(double m, double side_m, int count) { return (int)clamp(flo
 static Reach reach_of(const Foliage *f, const FoliageCrown *c)
 {
     const double x = (double)c->centre_m[0], y = (double)c->centre_m[1], r = (double)c->across_m;
-    return (Reach){square_at(x - r, f->side_m, f->nx), square_at(x + r, f->side_m, f->nx), square_at(y - r, f->side_m, f->ny),
-                   square_at(y + r, f->side_m, f->ny)};
+    return (Reach){square_at(x - r, f->side_m, f->nx), square_at(x + r, f->side_m, f->nx),
+                   square_at(y - r, f->side_m, f->ny), square_at(y + r, f->side_m, f->ny)};
 }
 
 static Status list_crowns(Foliage *f)
@@ -87,7 +87,8 @@ static Status list_crowns(Foliage *f)
     return STATUS_OK;
 }
 
-Status foliage_create(Foliage **out, const Woods *woods, const Plants *plants, const ClutterTable *table, ClutterBand band)
+Status foliage_create(Foliage **out, const Woods *woods, const Plants *plants, const ClutterTable *table,
+                      ClutterBand band)
 {
     Foliage *f = calloc(1, sizeof *f);
     if (!f) return STATUS_NO_MEMORY;
@@ -98,7 +99,8 @@ Status foliage_create(Foliage **out, const Woods *woods, const Plants *plants, c
     f->wide_m[0] = woods->nx * woods_square_m, f->wide_m[1] = woods->ny * woods_square_m;
     for (int k = 0; k < 2; k++) f->centre_enu[k] = f->origin_enu[k] + 0.5 * f->wide_m[k];
     for (int s = 0; s < SURFACE_COUNT; s++) f->db_m[s] = table->row[s][band].foliage_db_m;
-    for (f->side_m = 16; ceil(f->wide_m[0] / f->side_m) * ceil(f->wide_m[1] / f->side_m) > squares_most;) f->side_m *= 2;
+    for (f->side_m = 16; ceil(f->wide_m[0] / f->side_m) * ceil(f->wide_m[1] / f->side_m) > squares_most;)
+        f->side_m *= 2;
     f->nx = (int)fmax(ceil(f->wide_m[0] / f->side_m), 1);
     f->ny = (int)fmax(ceil(f->wide_m[1] / f->side_m), 1);
     f->crown = malloc(((size_t)f->count + 1) * sizeof *f->crown);

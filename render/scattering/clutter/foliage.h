@@ -15,16 +15,16 @@
 typedef struct Foliage Foliage;
 
 typedef struct FoliageCrown {
-    float   centre_m[3];       /* from the origin of the woods */
-    float   across_m, up_m;    /* half axes */
-    uint8_t surface;           /* SurfaceClass of its row */
+    float   centre_m[3];    /* from the origin of the woods */
+    float   across_m, up_m; /* half axes */
+    uint8_t surface;        /* SurfaceClass of its row */
 } FoliageCrown;
 
 /* Of all standing plants of woods, which need not outlive it. Squares of 16 m (larger where the woods are so wide that
  * there would be more than four million) list what reaches into them: 24 octets a plant and some 10 more. */
-Status foliage_create(Foliage **out, const Woods *woods, const Plants *plants, const ClutterTable *table,
-                      ClutterBand band);
-void   foliage_destroy(Foliage *foliage); /* accepts NULL */
+Status       foliage_create(Foliage **out, const Woods *woods, const Plants *plants, const ClutterTable *table,
+                            ClutterBand band);
+void         foliage_destroy(Foliage *foliage);     /* accepts NULL */
 const Woods *foliage_woods(const Foliage *foliage); /* by which it was made: to compare only */
 
 /* Crowns, in the order of Woods.plant; and the origin that they count from, ENU. */

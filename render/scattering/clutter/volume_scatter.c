@@ -23,7 +23,7 @@ MieSphere mie_sphere(double radius_m, double complex permittivity, double wavele
     double complex back = 0;
     double         scattered = 0, taken = 0;
     for (int n = 1; n <= terms; n++) {
-        const double next = (2 * n - 1) / x, psi_n = next * psi - psi_before, chi_n = next * chi - chi_before;
+        const double         next = (2 * n - 1) / x, psi_n = next * psi - psi_before, chi_n = next * chi - chi_before;
         const double complex xi = CMPLX(psi, -chi), xi_n = CMPLX(psi_n, -chi_n);
         const double complex electric = within[n] / m + n / x, magnetic = within[n] * m + n / x;
         const double complex a = (electric * psi_n - psi) / (electric * xi_n - xi);
@@ -50,8 +50,8 @@ bool rain_scatter(RainScatter *out, double f_ghz, double temp_k, double rain_mm_
         return false;
     if (rain_mm_h == 0) return true;
     const double complex water = water_permittivity(f_ghz, temp_k);
-    const double wavelength_m = 1e-9 * light_mps / f_ghz, slope = 4.1 * pow(rain_mm_h, -0.21);
-    const double step_mm = largest_mm / rain_sizes;
+    const double         wavelength_m = 1e-9 * light_mps / f_ghz, slope = 4.1 * pow(rain_mm_h, -0.21);
+    const double         step_mm = largest_mm / rain_sizes;
     for (int i = 0; i < rain_sizes; i++) {
         const double    mm = (i + 0.5) * step_mm, drops = 8000 * exp(-slope * mm) * step_mm;
         const MieSphere one = mie_sphere(0.5e-3 * mm, water, wavelength_m);
@@ -89,7 +89,7 @@ double chaff_radius_m(double age_s)
 /* hh = a + b, vv = a - b, hv = c: <|a|^2> = 2/3, <|b|^2> = <|c|^2> = 1/3 of sigma / 4 pi. */
 void chaff_scatter(ScatterMatrix *out, double sigma_m2, const double n[6])
 {
-    const double         unit = sqrt(sigma_m2 / (8 * pi_rad)), large = unit * sqrt(2.0 / 3), small = unit * sqrt(1.0 / 3);
+    const double unit = sqrt(sigma_m2 / (8 * pi_rad)), large = unit * sqrt(2.0 / 3), small = unit * sqrt(1.0 / 3);
     const double complex a = large * CMPLX(n[0], n[1]), b = small * CMPLX(n[2], n[3]), c = small * CMPLX(n[4], n[5]);
     *out = (ScatterMatrix){.hh = a + b, .vv = a - b, .hv = c, .vh = c};
 }

@@ -42,10 +42,10 @@ enum { rain_sizes = 160 };
 static const double rain_depolarised = 0.0031622776601683795; /* power, HV over VV: -25 dB */
 
 typedef struct RainScatter {
-    double back_1_m;            /* backscatter by volume, m2/m3 */
-    double extinction_1_m;      /* of power, one way; for tests: loss is P.838's (attenuation.h) */
-    double z_mm6_m3;            /* sum of D^6: Rayleigh's reflectivity factor */
-    double share[rain_sizes];   /* of back_1_m from drops up to size i + 1, rising to 1 */
+    double back_1_m;          /* backscatter by volume, m2/m3 */
+    double extinction_1_m;    /* of power, one way; for tests: loss is P.838's (attenuation.h) */
+    double z_mm6_m3;          /* sum of D^6: Rayleigh's reflectivity factor */
+    double share[rain_sizes]; /* of back_1_m from drops up to size i + 1, rising to 1 */
 } RainScatter;
 
 /*   f_ghz      1 .. 200

@@ -27,7 +27,7 @@ static double complex kernel(double complex x, double n, bool lit)
     if (!lit) return 1 / (2 * n * ctan(x / (2 * n)));
     if (cabs(x) < 0.1) { /* the difference of two poles; the next term is 2e-8 x^9 */
         const double complex x2 = x * x;
-        const double m2 = 1 / (n * n), m4 = m2 * m2;
+        const double         m2 = 1 / (n * n), m4 = m2 * m2;
         const double complex high = (1 - m4 * m2) / 30240 + x2 * (1 - m4 * m4) / 1209600;
         return x * ((1 - m2) / 12 + x2 * ((1 - m4) / 720 + x2 * high));
     }
@@ -45,7 +45,7 @@ static Strip strip_integrals(double f, double n, bool lit, double below, double 
 {
     static const double h = 1e-30, pole = 1e-9, small = 1e-3;
     if (below < 0) { /* a = j b: w(a - f) is minus the conjugate of w(a + f) */
-        const double b = 2 * asinh(sqrt(-below / 2));
+        const double         b = 2 * asinh(sqrt(-below / 2));
         const double complex w = kernel(f + I * b, n, lit);
         return (Strip){-2 * creal(w), 2 * cimag(w) / sinh(b)};
     }
@@ -68,11 +68,11 @@ static void add_face(double out_e[3], double out_h[3], const double x[3], const 
 {
     const bool   lit = f < pi_rad;
     const double c = v3_dot(d, z), s2 = fmax(1 - c * c, 1e-14), s = sqrt(s2);
-    double graze[3], to[3];
+    double       graze[3], to[3];
     for (int i = 0; i < 3; i++) graze[i] = s * x[i] + c * z[i];
     v3_sub(to, graze, u_r);
     const double above = v3_dot(to, to) / (2 * s2), m = 1 - above;
-    const Strip strip = strip_integrals(f, n, lit, 2 - above, above);
+    const Strip  strip = strip_integrals(f, n, lit, 2 - above, above);
 
     v3_add_scaled(out_e, out_e, 2 / s2 * strip.difference, z);
     /* K along the grazing ray does not radiate along it: take u_r from it before the product is taken, not after */
@@ -85,15 +85,15 @@ static void add_face(double out_e[3], double out_h[3], const double x[3], const 
 double edge_angle(const WedgeFrame *wedge, const double u[3])
 {
     static const double rounding = 1e-9;
-    const double opening = wedge->exterior_pi * pi_rad, at = atan2(v3_dot(u, wedge->y), v3_dot(u, wedge->x));
-    const double f = at < 0 ? at + 2 * pi_rad : at;
+    const double        opening = wedge->exterior_pi * pi_rad, at = atan2(v3_dot(u, wedge->y), v3_dot(u, wedge->x));
+    const double        f = at < 0 ? at + 2 * pi_rad : at;
     if (f <= opening) return f;
     if (f > 2 * pi_rad - rounding) return 0;
     return f < opening + rounding ? opening : f;
 }
 
 void edge_fringe(double out[2][2], const WedgeFrame *wedge, const double u_t[3], const double t[2][3],
-                  const double u_r[3], const double r[2][3])
+                 const double u_r[3], const double r[2][3])
 {
     memset(out, 0, 4 * sizeof **out);
     const double n = wedge->exterior_pi, opening = n * pi_rad, f = edge_angle(wedge, u_t), c_t = v3_dot(u_t, wedge->z);
@@ -130,8 +130,8 @@ typedef struct View {
     const ScatterAntenna *antenna[2];
     double                basis[2][2][3]; /* h, v of each */
     const EdgeConfig     *config;
-    void                (*emit)(void *user, const EdgeSegment *segment);
-    void                 *user;
+    void (*emit)(void *user, const EdgeSegment *segment);
+    void *user;
 } View;
 
 static void point_along(double out[3], const Wedge *w, double share)
@@ -140,10 +140,7 @@ static void point_along(double out[3], const Wedge *w, double share)
 }
 
 /* Distance of an antenna from a point over that from the phase centre; path as in scatter.h. */
-static double distance_ratio(const ScatterAntenna *a, double path_m)
-{
-    return 1 + path_m / a->range_m;
-}
+static double distance_ratio(const ScatterAntenna *a, double path_m) { return 1 + path_m / a->range_m; }
 
 static bool seen(const View *view, const Wedge *w, double share)
 {
@@ -196,14 +193,14 @@ static void emit_stretch(const View *view, const Wedge *w, int index, double fro
         double bend = 0;
         for (int a = 0; a < 2; a++) {
             const ScatterAntenna *antenna = view->antenna[a];
-            const double path_m = scatter_path(u, antenna, p);
+            const double          path_m = scatter_path(u, antenna, p);
             bend += 1 / (antenna->range_m + path_m);
         }
         bend_per_m = fmax(bend_per_m, bend);
     }
     const double length_m = (to - from) * edge_m;
     const double longest_m = fmin(bend_rad / bend_per_m, sqrt(8 * curve_rad / (view->config->k_per_m * bend_per_m)));
-    const int n = (int)fmin(fmax(ceil(length_m / longest_m), 1), segments_most);
+    const int    n = (int)fmin(fmax(ceil(length_m / longest_m), 1), segments_most);
     for (int i = 0; i < n; i++) emit_segment(view, w, index, from + (to - from) * (i + 0.5) / n, length_m / n);
 }
 
@@ -213,11 +210,11 @@ static void each_segment(View *view, const Wedge *wedge, int count)
     for (int a = 0; a < 2; a++) scatter_basis(view->basis[a][0], view->basis[a][1], view->antenna[a]->u);
     for (int i = 0; i < count; i++) {
         const Wedge *w = &wedge[i];
-        double along[3];
+        double       along[3];
         v3_sub(along, w->p[1], w->p[0]);
         const double edge_m = v3_length(along);
-        const int samples = (int)fmin(fmax(ceil(edge_m / view->config->sample_m), 1), samples_most);
-        int first = -1; /* of the stretch that is seen */
+        const int    samples = (int)fmin(fmax(ceil(edge_m / view->config->sample_m), 1), samples_most);
+        int          first = -1; /* of the stretch that is seen */
         for (int k = 0; k <= samples; k++) {
             const bool now = k < samples && seen(view, w, (k + 0.5) / samples);
             if (now && first < 0) first = k;
@@ -231,7 +228,7 @@ static void each_segment(View *view, const Wedge *wedge, int count)
 
 static void add_segment(ScatterMatrix *out, const EdgeSegment *s, double k_per_m)
 {
-    const double half = k_per_m * s->slope * s->length_m / 2;
+    const double         half = k_per_m * s->slope * s->length_m / 2;
     const double complex wave = edge_fade(s, k_per_m) * scatter_sinc(half) * cexp(-I * k_per_m * s->path_m);
     out->hh += s->amplitude[0][0] * wave;
     out->hv += s->amplitude[0][1] * wave;
@@ -270,12 +267,12 @@ typedef struct Keep {
 
 static void emit_keep(void *user, const EdgeSegment *s)
 {
-    Keep *keep = user;
+    Keep         *keep = user;
     EdgeSegments *out = keep->out;
     if (keep->full) return;
     assert(out->count < 1 << 30);
     if (out->count == out->capacity) {
-        const int capacity = out->capacity ? 2 * out->capacity : 64;
+        const int    capacity = out->capacity ? 2 * out->capacity : 64;
         EdgeSegment *more = realloc(out->segment, (size_t)capacity * sizeof *more);
         if (!more) {
             keep->full = true;
@@ -291,8 +288,8 @@ Status edge_segments(EdgeSegments *out, const Wedge *wedge, int count, const Sca
                      const ScatterAntenna *receiver, const EdgeConfig *config)
 {
     const int before = out->count;
-    Keep keep = {.out = out};
-    View view = {.antenna = {transmitter, receiver}, .config = config, .emit = emit_keep, .user = &keep};
+    Keep      keep = {.out = out};
+    View      view = {.antenna = {transmitter, receiver}, .config = config, .emit = emit_keep, .user = &keep};
     each_segment(&view, wedge, count);
     if (!keep.full) return STATUS_OK;
     out->count = before;

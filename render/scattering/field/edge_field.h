@@ -32,14 +32,14 @@ typedef struct EdgeConfig {
 } EdgeConfig;
 
 typedef struct EdgeSegment {
-    int    wedge, part;     /* whose it is; of the model */
-    int    order;           /* 0: first order; n: of n waves along a face, and its amplitude goes with k^(-n / 2) */
-    int    zero;            /* no gaps: segments are compared as octets */
-    double p[3], length_m;  /* middle */
+    int            wedge, part; /* whose it is; of the model */
+    int            order;       /* 0: first order; n: of n waves along a face, and its amplitude goes with k^(-n / 2) */
+    int            zero;        /* no gaps: segments are compared as octets */
+    double         p[3], length_m;  /* middle */
     double complex amplitude[2][2]; /* m; [received][transmitted], 0: h, 1: v; first order: real */
-    double order_k;         /* the k, 1/m, that this amplitude is of */
-    double path_m, slope;   /* as in scatter.h, the mean along the segment; its change per length of edge */
-    double u[2][3];         /* unit directions to transmitter and receiver: d path = -dp . (u[0] + u[1]) */
+    double         order_k;         /* the k, 1/m, that this amplitude is of */
+    double         path_m, slope;   /* as in scatter.h, the mean along the segment; its change per length of edge */
+    double         u[2][3];         /* unit directions to transmitter and receiver: d path = -dp . (u[0] + u[1]) */
 } EdgeSegment;
 
 typedef struct EdgeSegments {
@@ -98,7 +98,7 @@ static const double edge_fringe_limit = 4;
  * polarisations (unit, across u_t and u_r). All 0 where the transmitter is inside the metal or the edge is seen end-on
  * to 1e-7 rad. */
 void edge_fringe(double out[2][2], const WedgeFrame *wedge, const double u_t[3], const double t[2][3],
-                  const double u_r[3], const double r[2][3]);
+                 const double u_r[3], const double r[2][3]);
 
 /* Angle of a direction about the edge, from face 1 through free space, rad: 0 .. 2 pi; above exterior_pi pi: into the
  * metal. Directions along a face, to 1e-9 rad, are outside. */
@@ -129,13 +129,13 @@ double edge_angle(const WedgeFrame *wedge, const double u[3]);
  * end, m. */
 typedef struct EdgePair {
     int    wedge[2];
-    int    face[2];   /* 0: face 1 of the frame, 1: face 2 */
+    int    face[2]; /* 0: face 1 of the frame, 1: face 2 */
     double along_m[2], width_m;
 } EdgePair;
 
 typedef struct EdgePairs {
     int       count, capacity;
-    EdgePair *pair;   /* ascending in wedge[0], then wedge[1], each pair once */
+    EdgePair *pair; /* ascending in wedge[0], then wedge[1], each pair once */
 } EdgePairs;
 
 /* Of wedges of one part each. STATUS_NO_MEMORY is the only failure. */
@@ -146,10 +146,10 @@ void   edge_pairs_destroy(EdgePairs *pairs); /* frees and zeroes; accepts zeroes
 typedef bool EdgeClear(void *user, const double p[3], const double q[3], const double n[3]);
 
 typedef struct EdgePairConfig {
-    EdgeConfig edge;      /* visible and sample_m as there */
-    double     k_per_m;   /* that amplitudes are made for, > 0 */
-    EdgeClear *clear;     /* NULL: every pair has its face */
-    double     least_m;   /* pairs that add less than this to S are left out before rays are traced; 0: none */
+    EdgeConfig edge;    /* visible and sample_m as there */
+    double     k_per_m; /* that amplitudes are made for, > 0 */
+    EdgeClear *clear;   /* NULL: every pair has its face */
+    double     least_m; /* pairs that add less than this to S are left out before rays are traced; 0: none */
 } EdgePairConfig;
 
 /* Appends segments of pairs of these wedges (target frame): their place is halfway between the edges. */

@@ -13,8 +13,8 @@ enum { pieces_most = 4096 };
 
 typedef struct Face {
     int    wedge, face, part;
-    double offset_m;        /* of its plane from the origin */
-    double n[3], x[3];      /* outward normal; in the face, away from the edge */
+    double offset_m;   /* of its plane from the origin */
+    double n[3], x[3]; /* outward normal; in the face, away from the edge */
 } Face;
 
 static void face_of(Face *out, const Wedge *w, int index, int face)
@@ -72,7 +72,9 @@ static bool opposite(EdgePair *out, const Face *a, const Face *b, const Wedge *w
         along_m[e] = v3_dot(to, first->frame.z);
     }
     const double low_m = fmax(0, fmin(along_m[0], along_m[1])), high_m = fmin(length_m, fmax(along_m[0], along_m[1]));
-    *out = (EdgePair){.wedge = {a->wedge, b->wedge}, .face = {a->face, b->face}, .along_m = {low_m, high_m},
+    *out = (EdgePair){.wedge = {a->wedge, b->wedge},
+                      .face = {a->face, b->face},
+                      .along_m = {low_m, high_m},
                       .width_m = v3_dot(to, a->x)};
     return high_m > low_m && out->width_m > same_m && fabs(v3_dot(to, a->n)) < same_m;
 }
@@ -98,8 +100,9 @@ Status edge_pairs_find(EdgePairs *out, const Wedge *wedge, int count)
     for (int i = 0; i < 2 * count && good; i++) face_of(&face[i], &wedge[i / 2], i / 2, i % 2);
     if (good) qsort(face, 2 * (size_t)count, sizeof *face, by_plane);
     for (int i = 0; i < 2 * count && good; i++)
-        for (int k = i + 1; k < 2 * count && face[k].part == face[i].part &&
-                            face[k].offset_m - face[i].offset_m < same_m && good; k++) {
+        for (int k = i + 1;
+             k < 2 * count && face[k].part == face[i].part && face[k].offset_m - face[i].offset_m < same_m && good;
+             k++) {
             EdgePair pair;
             if (face[k].wedge != face[i].wedge && opposite(&pair, &face[i], &face[k], wedge))
                 good = add_pair(out, &pair);
@@ -139,9 +142,9 @@ double complex edge_transition(double x)
  * pi / 4) / sqrt(2 pi k). */
 static double complex along_face(double angle, double exterior_pi, double k_width)
 {
-    const double n = exterior_pi, c = cos(0.5 * angle), x = 2 * k_width * c * c;
+    const double         n = exterior_pi, c = cos(0.5 * angle), x = 2 * k_width * c * c;
     const double complex far = 1 / tan((pi + angle) / (2 * n));
-    const double off = pi - angle;
+    const double         off = pi - angle;
     /* at the boundary the cotangent grows as the function falls: their product there is a step, its middle 0 */
     const double complex near = fabs(off) < 1e-9 ? 0 : edge_transition(x) / tan(off / (2 * n));
     return (far + near) / n;
@@ -155,11 +158,11 @@ static double face_angle(const Wedge *w, int face, const double u[3])
 
 /* A way of waves along a face: in at a, out at b, after one crossing from a to b, or two, from a and back. */
 typedef struct Crossing {
-    const Wedge   *a, *b;
-    int            face_a, face_b, index;
-    int            order;
-    double         width_m;
-    const Wedge   *beyond;  /* order 2: the edge in between */
+    const Wedge *a, *b;
+    int          face_a, face_b, index;
+    int          order;
+    double       width_m;
+    const Wedge *beyond; /* order 2: the edge in between */
 } Crossing;
 
 /* What an edge sends back along its face of what comes along it, over the incident wave at the face, width away. A half
@@ -188,15 +191,15 @@ static void along_edge(double out[2], const ScatterAntenna *antenna, const doubl
 static bool piece(EdgeSegment *s, const Crossing *c, const double p[3], const double q[3], double length_m,
                   const ScatterAntenna *tx, const ScatterAntenna *rx, double k)
 {
-    double       in[2], out[2];
-    const double path_m[2] = {scatter_path(s->u[0], tx, p), scatter_path(s->u[1], rx, q)};
-    const double angle[2] = {face_angle(c->a, c->face_a, s->u[0]), face_angle(c->b, c->face_b, s->u[1])};
+    double        in[2], out[2];
+    const double  path_m[2] = {scatter_path(s->u[0], tx, p), scatter_path(s->u[1], rx, q)};
+    const double  angle[2] = {face_angle(c->a, c->face_a, s->u[0]), face_angle(c->b, c->face_b, s->u[1])};
     const double *z = c->a->frame.z;
     for (int i = 0; i < 2; i++)
         if (angle[i] < 0 || angle[i] > (i ? c->b : c->a)->frame.exterior_pi * pi) return false;
     /* on the cone both are one; elsewhere the mean */
-    const double along = 0.5 * (v3_dot(s->u[1], z) - v3_dot(s->u[0], z)), sine = sqrt(fmax(1 - along * along, 1e-6));
-    const double k_width = k * sine * c->width_m;
+    const double   along = 0.5 * (v3_dot(s->u[1], z) - v3_dot(s->u[0], z)), sine = sqrt(fmax(1 - along * along, 1e-6));
+    const double   k_width = k * sine * c->width_m;
     double complex share = cexp(-0.25 * I * pi) / (4 * pi * sqrt(2 * pi * k_width)) *
                            along_face(angle[0], c->a->frame.exterior_pi, k_width) *
                            along_face(angle[1], c->b->frame.exterior_pi, k_width);
@@ -255,8 +258,8 @@ static int pieces_of(double length_m, const ScatterAntenna *tx, const ScatterAnt
     double u[3], bend_per_m = 0;
     bend_per_m += 1 / (tx->range_m + scatter_path(u, tx, p));
     bend_per_m += 1 / (rx->range_m + scatter_path(u, rx, p));
-    const double longest_m = fmin(config->edge.sample_m,
-                                  fmin(0.02 / bend_per_m, sqrt(0.16 / (config->edge.k_per_m * bend_per_m))));
+    const double longest_m =
+        fmin(config->edge.sample_m, fmin(0.02 / bend_per_m, sqrt(0.16 / (config->edge.k_per_m * bend_per_m))));
     return (int)fmin(fmax(ceil(length_m / longest_m), 1), pieces_most);
 }
 
@@ -310,7 +313,7 @@ Status edge_pair_segments(EdgeSegments *out, const EdgePair *pair, int count, co
         double       start[3];
         face_of(&face, a, 0, of->face[0]);
         v3_add_scaled(start, a->p[0], of->along_m[0], a->frame.z);
-        Crossing  way[4];
+        Crossing way[4];
         ways_of(way, of, wedge);
         if (most_m(way, start, face.x, length_m, tx, rx, config) < config->least_m) continue;
         const int n = pieces_of(length_m, tx, rx, config, start);

@@ -131,13 +131,13 @@ static bool is_convex(const FlatFaces *faces, const Model *m, Edge *edge, const 
 Status radar_flat_faces_find(FlatFaces *out, const Model *model)
 {
     const size_t count = (size_t)model->triangle_count;
-    int     *place = malloc((size_t)model->vertex_count * sizeof *place + 1), *of = malloc(count * sizeof *of + 1);
-    Corner  *corner = malloc(3 * count * sizeof *corner + 1);
-    Edge    *edge = malloc(3 * count * sizeof *edge + 1);
-    Status   status = STATUS_NO_MEMORY;
-    FlatFaces found = {.first = malloc((count + 1) * sizeof *found.first),
-                       .triangle = malloc(count * sizeof *found.triangle + 1)};
-    int corners = 0, triangles = 0;
+    int         *place = malloc((size_t)model->vertex_count * sizeof *place + 1), *of = malloc(count * sizeof *of + 1);
+    Corner      *corner = malloc(3 * count * sizeof *corner + 1);
+    Edge        *edge = malloc(3 * count * sizeof *edge + 1);
+    Status       status = STATUS_NO_MEMORY;
+    FlatFaces    found = {.first = malloc((count + 1) * sizeof *found.first),
+                          .triangle = malloc(count * sizeof *found.triangle + 1)};
+    int          corners = 0, triangles = 0;
     if (!place || !of || !corner || !edge || !found.first || !found.triangle) goto done;
     status = wedges_weld(place, model, weld_m);
     if (status != STATUS_OK) goto done;
@@ -184,34 +184,34 @@ enum {
     block_rays = 512, /* traced together */
     chunk_faces = 16
 };
-static const double per_radius = 128; /* rays over the target's radius, as of tubes */
+static const double per_radius = 128;      /* rays over the target's radius, as of tubes */
 static const double convex_per_radius = 8; /* where nothing can hide but a sheet at the same place */
-static const double inside_m = 5e-4;  /* rays along a border keep off it */
-static const double thin_m = 1e-3;    /* triangles thinner than this are seen where the rest of their face is */
-static const double grazing = 1e-3;   /* cosine below which an antenna does not see a face */
+static const double inside_m = 5e-4;       /* rays along a border keep off it */
+static const double thin_m = 1e-3;         /* triangles thinner than this are seen where the rest of their face is */
+static const double grazing = 1e-3;        /* cosine below which an antenna does not see a face */
 
 typedef struct Block {
-    double  o[3][block_rays], d[3][block_rays], far_m[block_rays], range_m[block_rays];
-    PartHit hit[block_rays];
+    double   o[3][block_rays], d[3][block_rays], far_m[block_rays], range_m[block_rays];
+    PartHit  hit[block_rays];
     uint32_t triangle[block_rays]; /* each should meet */
-    int     list[block_rays], count;
+    int      list[block_rays], count;
 } Block;
 
 typedef struct Search {
     const RadarTarget *target;
-    ScatterAntenna antenna[2];
-    int        antennas;   /* 1: transmitter and receiver are one */
-    double     spacing_m;
-    Block     *block;      /* one a worker */
-    uint8_t   *seen;       /* [faces] */
-    long long *rays;       /* [chunks] */
+    ScatterAntenna     antenna[2];
+    int                antennas; /* 1: transmitter and receiver are one */
+    double             spacing_m;
+    Block             *block; /* one a worker */
+    uint8_t           *seen;  /* [faces] */
+    long long         *rays;  /* [chunks] */
 } Search;
 
 static bool trace_block(Block *block, const RadarTarget *target)
 {
     const double *const o[3] = {block->o[0], block->o[1], block->o[2]};
     const double *const d[3] = {block->d[0], block->d[1], block->d[2]};
-    bool met = true;
+    bool                met = true;
     for (int i = 0; i < block->count; i++) block->list[i] = i, block->range_m[i] = INFINITY;
     parts_first_hits(block->range_m, block->hit, &target->entity, o, d, block->far_m, block->list, block->count, false);
     for (int i = 0; i < block->count; i++)
@@ -225,8 +225,8 @@ static bool trace_block(Block *block, const RadarTarget *target)
 static bool ask(Block *block, const Search *s, const ScatterAntenna *antenna, uint32_t triangle, const double p[3],
                 long long *rays)
 {
-    const int i = block->count++;
-    double    way[3];
+    const int    i = block->count++;
+    double       way[3];
     const double away_m = antenna->range_m + scatter_path(way, antenna, p);
     const double back_m = fmin(2.5 * s->target->entity.radius_m + 1e-3, away_m);
     for (int c = 0; c < 3; c++) {
@@ -243,7 +243,7 @@ static bool ask(Block *block, const Search *s, const ScatterAntenna *antenna, ui
 static bool ask_triangle(Block *block, const Search *s, const ScatterAntenna *antenna, uint32_t triangle,
                          long long *rays)
 {
-    double       corner[3][3], n[3], p[3], middle[3], side_m[3];
+    double corner[3][3], n[3], p[3], middle[3], side_m[3];
     radar_target_corners(corner, s->target, triangle);
     const double area_m2 = radar_corners_normal(n, corner);
     int          base = 0;
@@ -336,18 +336,22 @@ static void look_at_faces(void *user, int worker, int task)
 }
 
 long long radar_flat_faces_seen(uint8_t *seen, const RadarTarget *target, const ScatterAntenna antenna[2], int antennas,
-                        Pool *pool)
+                                Pool *pool)
 {
     const int threads = pool ? pool_threads(pool) : 1, chunks = (target->faces.count + chunk_faces - 1) / chunk_faces;
     const double along = target->faces.convex ? convex_per_radius : per_radius;
-    Search s = {.target = target, .antenna = {antenna[0], antenna[1]}, .antennas = antennas, .seen = seen,
-                .spacing_m = target->entity.radius_m / along};
-    long long rays = -1;
+    Search       s = {.target = target,
+                      .antenna = {antenna[0], antenna[1]},
+                      .antennas = antennas,
+                      .seen = seen,
+                      .spacing_m = target->entity.radius_m / along};
+    long long    rays = -1;
     s.block = malloc((size_t)threads * sizeof *s.block);
     s.rays = calloc((size_t)chunks + 1, sizeof *s.rays);
     if (s.block && s.rays) {
         if (pool) pool_run(pool, chunks, look_at_faces, &s);
-        else for (int t = 0; t < chunks; t++) look_at_faces(&s, 0, t);
+        else
+            for (int t = 0; t < chunks; t++) look_at_faces(&s, 0, t);
         rays = 0;
         for (int t = 0; t < chunks; t++) rays += s.rays[t];
     }

@@ -50,7 +50,7 @@ typedef struct PolygonBuilder {
     RadarSurface       surface; /* of the face's part */
     double             k, frequency_hz;
     uint32_t           triangle;
-    bool               fits;    /* false: a triangle would be halved too often */
+    bool               fits; /* false: a triangle would be halved too often */
 } PolygonBuilder;
 
 static double path_at(const Polygons *out, const double p[3])
@@ -236,9 +236,11 @@ Status polygons_find(Polygons *out, const RadarTarget *target, const ScatterAnte
 {
     const ScatterAntenna antenna[2] = {*tx, *rx};
     const bool           one = memcmp(tx->u, rx->u, sizeof tx->u) == 0 && tx->range_m == rx->range_m;
-    PolygonBuilder builder = {.target = target, .out = out, .k = 2 * pi_rad * config->frequency_hz / light_mps,
-                     .frequency_hz = config->frequency_hz};
-    Status status = clear(out, target->model->triangle_count);
+    PolygonBuilder       builder = {.target = target,
+                                    .out = out,
+                                    .k = 2 * pi_rad * config->frequency_hz / light_mps,
+                                    .frequency_hz = config->frequency_hz};
+    Status               status = clear(out, target->model->triangle_count);
     out->tx = *tx, out->rx = *rx;
     if (status != STATUS_OK || !is_asked_for(target, config) || !scatter_antenna_is_good(tx) ||
         !scatter_antenna_is_good(rx))
@@ -267,9 +269,9 @@ typedef struct Sweep {
 
 static void sum_chunk(void *user, int worker, int task)
 {
-    const Sweep *sweep = user;
-    const int    first = task * chunk_polygons, left = sweep->polygons->count - first;
-    const int    count = left < chunk_polygons ? left : chunk_polygons;
+    const Sweep    *sweep = user;
+    const int       first = task * chunk_polygons, left = sweep->polygons->count - first;
+    const int       count = left < chunk_polygons ? left : chunk_polygons;
     double complex *sum = sweep->sum + 4 * (size_t)sweep->count * (size_t)task;
     (void)worker;
     for (int i = first; i < first + count; i++) {
@@ -296,14 +298,19 @@ Status polygons_sweep(ScatterMatrix *s, int count, double first_hz, double step_
 {
     const double k_per_hz = 2 * pi_rad / light_mps;
     const int    chunks = (polygons->count + chunk_polygons - 1) / chunk_polygons;
-    Sweep        sweep = {.polygons = polygons, .tx = tx ? *tx : polygons->tx, .rx = rx ? *rx : polygons->rx,
-                          .moved = tx || rx, .count = count, .first_k = first_hz * k_per_hz,
+    Sweep        sweep = {.polygons = polygons,
+                          .tx = tx ? *tx : polygons->tx,
+                          .rx = rx ? *rx : polygons->rx,
+                          .moved = tx || rx,
+                          .count = count,
+                          .first_k = first_hz * k_per_hz,
                           .step_k = step_hz * k_per_hz};
     if (chunks == 0) return STATUS_OK;
     sweep.sum = calloc(4 * (size_t)count * (size_t)chunks, sizeof *sweep.sum);
     if (!sweep.sum) return STATUS_NO_MEMORY;
     if (pool) pool_run(pool, chunks, sum_chunk, &sweep);
-    else for (int t = 0; t < chunks; t++) sum_chunk(&sweep, 0, t);
+    else
+        for (int t = 0; t < chunks; t++) sum_chunk(&sweep, 0, t);
     for (int f = 0; f < count; f++) {
         const double complex scale = CMPLX(0, -(sweep.first_k + f * sweep.step_k) / (2 * pi_rad));
         for (int t = 0; t < chunks; t++) {

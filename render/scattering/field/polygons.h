@@ -38,12 +38,12 @@ typedef struct Polygon {
 
 typedef struct Polygons {
     ScatterAntenna tx, rx;
-    int      count, capacity;
-    Polygon *polygon;
-    uint8_t *whole;        /* [triangle_count]: the triangle's first bounce is here and not in tubes */
-    int      whole_size;
-    long long rays;        /* of the test of visibility */
-    bool     all;          /* nothing is left for tubes: a convex body, all of whose faces on this side are here */
+    int            count, capacity;
+    Polygon       *polygon;
+    uint8_t       *whole; /* [triangle_count]: the triangle's first bounce is here and not in tubes */
+    int            whole_size;
+    long long      rays; /* of the test of visibility */
+    bool           all;  /* nothing is left for tubes: a convex body, all of whose faces on this side are here */
 } Polygons;
 
 /* out: zeroed, or of an earlier call. config: as for tubes_trace; with uneven surfaces, last_only or keep_hidden, and

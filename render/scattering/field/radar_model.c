@@ -42,7 +42,7 @@ static bool make_room(Builder *b, int facets)
 
 static void add_facet(Builder *b, const double p[3][3], const double n[3][3])
 {
-    Model *m = b->model;
+    Model    *m = b->model;
     const int t = m->triangle_count++;
     for (int c = 0; c < 3; c++) {
         const int v = m->vertex_count++;
@@ -77,7 +77,7 @@ static void add_flat(Builder *b, const double a[3], const double c[3], const dou
         p[0][x] = a[x], p[1][x] = c[x], p[2][x] = d[x];
         for (int k = 0; k < 3; k++) normal[k][x] = n[x];
     }
-    add_facet(b, (const double (*)[3])p, (const double (*)[3])normal);
+    add_facet(b, (const double(*)[3])p, (const double(*)[3])normal);
 }
 
 /* The parallelogram o, o + u, o + u + v, o + v. */
@@ -115,7 +115,7 @@ static bool build_sphere(Builder *b, double radius_m, double sag_m)
                                              {{i + 1, j}, {i + 1, j + 1}, {i, j + 1}}};
                     double    p[3][3], normal[3][3];
                     for (int c = 0; c < 3; c++) {
-                        const int *g = at[half][turned ? 2 - c : c];
+                        const int   *g = at[half][turned ? 2 - c : c];
                         const double angle[2] = {0.5 * pi_rad * g[0] / n, 0.5 * pi_rad * g[1] / n};
                         const double q[3] = {sin(angle[0]), sin(angle[1]), sin(0.5 * pi_rad - angle[0] - angle[1])};
                         const double length = v3_length(q);
@@ -124,7 +124,7 @@ static bool build_sphere(Builder *b, double radius_m, double sag_m)
                             p[c][x] = radius_m * normal[c][x];
                         }
                     }
-                    add_facet(b, (const double (*)[3])p, (const double (*)[3])normal);
+                    add_facet(b, (const double(*)[3])p, (const double(*)[3])normal);
                 }
     }
     return true;
@@ -143,7 +143,7 @@ static bool build_cylinder(Builder *b, double radius_m, double length_m, double 
                 n[c][0] = cos(angle), n[c][1] = sin(angle), n[c][2] = 0;
                 p[c][0] = radius_m * n[c][0], p[c][1] = radius_m * n[c][1], p[c][2] = length_m * (at[half][c][1] - 0.5);
             }
-            add_facet(b, (const double (*)[3])p, (const double (*)[3])n);
+            add_facet(b, (const double(*)[3])p, (const double(*)[3])n);
         }
     begin_part(b, "ends");
     for (int i = 0; i < 2 * (int)sides; i++) {
@@ -204,8 +204,8 @@ static bool build_trihedral(Builder *b, double a_m, bool square)
 static const struct {
     const char *name;
     int         dimensions;
-} shapes[] = {{"sphere", 1}, {"plate", 2}, {"disc", 1}, {"cylinder", 2}, {"dihedral", 2}, {"trihedral", 1},
-              {"corner", 1}};
+} shapes[] = {{"sphere", 1},   {"plate", 2},     {"disc", 1},  {"cylinder", 2},
+              {"dihedral", 2}, {"trihedral", 1}, {"corner", 1}};
 enum { shape_count = sizeof shapes / sizeof *shapes };
 
 /* A name means a shape where it has a colon. */
@@ -233,12 +233,18 @@ static int read_name(double size_m[2], const char *name)
 static bool build_shape(Builder *b, int shape, const double size_m[2], double sag_m)
 {
     switch (shape) {
-    case 0: return build_sphere(b, size_m[0], sag_m);
-    case 1: return build_plate(b, size_m[0], size_m[1]);
-    case 2: return build_disc(b, size_m[0], sag_m);
-    case 3: return build_cylinder(b, size_m[0], size_m[1], sag_m);
-    case 4: return build_dihedral(b, size_m[0], size_m[1]);
-    default: return build_trihedral(b, size_m[0], shape == 6);
+    case 0:
+        return build_sphere(b, size_m[0], sag_m);
+    case 1:
+        return build_plate(b, size_m[0], size_m[1]);
+    case 2:
+        return build_disc(b, size_m[0], sag_m);
+    case 3:
+        return build_cylinder(b, size_m[0], size_m[1], sag_m);
+    case 4:
+        return build_dihedral(b, size_m[0], size_m[1]);
+    default:
+        return build_trihedral(b, size_m[0], shape == 6);
     }
 }
 
@@ -250,7 +256,8 @@ Status radar_shape_build(Model *out, const char *name, double sag_m)
     const int shape = read_name(size_m, name);
     if (shape < 0) {
         log_error("radar: no such shape: name=%s accepted=sphere:R, plate:AxB, disc:R, cylinder:RxL, dihedral:AxB, "
-                  "trihedral:A, corner:A with 0.001 .. 100 m", name);
+                  "trihedral:A, corner:A with 0.001 .. 100 m",
+                  name);
         return STATUS_BAD_VALUE;
     }
     Status status = open_model(&builder, &model, name) ? STATUS_OK : STATUS_NO_MEMORY;
@@ -274,7 +281,7 @@ Status radar_model_open(RadarModel *out, const char *name, const RadarMaterials 
     bool        imported = false;
     *out = (RadarModel){0};
     Status status = is_shape(name) ? radar_shape_build(&out->model, name, sag_m)
-                                         : model_open(&out->model, &report, &imported, name, sag_m);
+                                   : model_open(&out->model, &report, &imported, name, sag_m);
     if (status == STATUS_OK && imported) model_import_say(&report, &out->model);
     if (status == STATUS_OK) status = radar_target_create(&out->target, &out->model, materials, "avx2");
     if (status != STATUS_OK) radar_model_close(out);

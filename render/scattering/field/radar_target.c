@@ -101,8 +101,7 @@ Status radar_target_create(RadarTarget **out, const Model *model, const RadarMat
         target->material[p] = radar_materials_find(materials, model->part[p].material);
         if (target->material[p] < 0) {
             log_error("radar: no radar material of this name: model=%s part=%s material=%s", model->name,
-                      model->part[p].name,
-                      model->part[p].material);
+                      model->part[p].name, model->part[p].material);
             status = STATUS_BAD_VALUE;
             goto fail;
         }

@@ -19,10 +19,10 @@
  * triangles has its borders at real edges alone. */
 typedef struct FlatFaces {
     int       count;
-    int      *first;     /* [count + 1]: of each, in triangle */
-    uint32_t *triangle;  /* of the model, by face and then by number */
-    bool      convex;    /* one node of these faces alone, that no damage hides, and either a closed convex body or one
-                          * face: a ray that leaves a face on the side it came from meets nothing */
+    int      *first;    /* [count + 1]: of each, in triangle */
+    uint32_t *triangle; /* of the model, by face and then by number */
+    bool      convex;   /* one node of these faces alone, that no damage hides, and either a closed convex body or one
+                         * face: a ray that leaves a face on the side it came from meets nothing */
 } FlatFaces;
 
 /* model: one that passes model_check. STATUS_NO_MEMORY is the only failure. */
@@ -34,28 +34,28 @@ void   radar_flat_faces_free(FlatFaces *faces); /* frees and zeroes; accepts zer
 typedef struct RadarTarget {
     const Model          *model;
     const RadarMaterials *materials; /* NULL: all metal */
-    Tracer      *tracer;
-    PosedEntity  entity;             /* in body axes */
-    NodePose    *pose;               /* [node_count] */
-    int         *material;           /* [part_count], of materials, as undamaged */
-    double       chord_m, chord_rms_m; /* from curved surfaces (by vertex normals) to their facets, at the middle of sides:
-                                      * the largest, and over their area. Two-way phases are wrong by up to 2 k of it */
-    double       curve_m;            /* radius of curvature: a twentieth of the area is curved more; INFINITY: flat */
-    WedgeList    wedges;             /* of all parts, node axes */
-    Wedge       *wedge;              /* [wedge_count], body axes: of metal parts that are there */
-    int          wedge_count;
-    EdgePairs    pairs;              /* of wedges that face one another, numbers of `wedges` */
-    EdgePair    *pair;               /* [pair_count], numbers of `wedge` */
-    int          pair_count;
-    int         *placed;             /* [wedges.count]: number in `wedge`; -1: not there */
-    FlatFaces    faces;
+    Tracer               *tracer;
+    PosedEntity           entity;   /* in body axes */
+    NodePose             *pose;     /* [node_count] */
+    int                  *material; /* [part_count], of materials, as undamaged */
+    double chord_m, chord_rms_m;    /* from curved surfaces (by vertex normals) to their facets, at the middle of sides:
+                                     * the largest, and over their area. Two-way phases are wrong by up to 2 k of it */
+    double    curve_m;              /* radius of curvature: a twentieth of the area is curved more; INFINITY: flat */
+    WedgeList wedges;               /* of all parts, node axes */
+    Wedge    *wedge;                /* [wedge_count], body axes: of metal parts that are there */
+    int       wedge_count;
+    EdgePairs pairs; /* of wedges that face one another, numbers of `wedges` */
+    EdgePair *pair;  /* [pair_count], numbers of `wedge` */
+    int       pair_count;
+    int      *placed; /* [wedges.count]: number in `wedge`; -1: not there */
+    FlatFaces faces;
 } RadarTarget;
 
 /* model and materials must outlive it; its joints are at rest. isa: as tracer_create. */
 Status radar_target_create(RadarTarget **out, const Model *model, const RadarMaterials *materials, const char *isa);
 void   radar_target_destroy(RadarTarget *target);
 /* pose: one a node, body axes; NULL: at rest. damage: parts that it hides are left out. */
-void   radar_target_pose(RadarTarget *target, const NodePose *pose, int damage);
+void radar_target_pose(RadarTarget *target, const NodePose *pose, int damage);
 
 /* An antenna at p_antenna, seen from a target whose origin is at p_target: any frame in which both are given, double,
  * m. */
@@ -97,6 +97,6 @@ static inline double radar_corners_normal(double n[3], const double corner[3][3]
 /* Which flat faces are wholly seen: seen [faces], zeroes, becomes 1 for each face with all antennas on one side that
  * rays from each of them meet first wherever they go. Returns the number of rays; -1: out of memory. */
 long long radar_flat_faces_seen(uint8_t *seen, const RadarTarget *target, const ScatterAntenna antenna[2], int antennas,
-                        Pool *pool);
+                                Pool *pool);
 
 #endif

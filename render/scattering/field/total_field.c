@@ -15,7 +15,7 @@ typedef struct Sweep {
     const TubeHits *hits;
     bool            moved;
     ScatterAntenna  tx, rx;
-    double         *sum; /* [chunks][8][padded] */
+    double         *sum;    /* [chunks][8][padded] */
     int             padded; /* count, up to a multiple of lanes */
 } Sweep;
 
@@ -131,8 +131,10 @@ static void sum_chunk(void *user, int worker, int task)
     const size_t end = first + chunk_hits < sweep->hits->count ? first + chunk_hits : sweep->hits->count;
     double      *sum = sweep->sum + 8 * (size_t)sweep->padded * (size_t)task;
     (void)worker;
-    if (is_turning(sweep)) for (size_t i = first; i < end; i += together) add_turning(sum, sweep, i);
-    else for (size_t i = first; i < end; i++) add_plain(sum, sweep, i);
+    if (is_turning(sweep))
+        for (size_t i = first; i < end; i += together) add_turning(sum, sweep, i);
+    else
+        for (size_t i = first; i < end; i++) add_plain(sum, sweep, i);
 }
 
 /* The field at a frequency from the chunks' sums, in their order. */
@@ -152,15 +154,21 @@ Status field_sweep(ScatterMatrix *s, int count, double first_hz, double step_hz,
 {
     const double k_per_hz = 2 * pi_rad / light_mps;
     const int    chunks = (int)((hits->count + chunk_hits - 1) / chunk_hits);
-    Sweep        sweep = {.count = count, .first_k = first_hz * k_per_hz, .step_k = step_hz * k_per_hz, .hits = hits,
-                          .moved = tx || rx, .tx = tx ? *tx : hits->tx, .rx = rx ? *rx : hits->rx,
+    Sweep        sweep = {.count = count,
+                          .first_k = first_hz * k_per_hz,
+                          .step_k = step_hz * k_per_hz,
+                          .hits = hits,
+                          .moved = tx || rx,
+                          .tx = tx ? *tx : hits->tx,
+                          .rx = rx ? *rx : hits->rx,
                           .padded = (count + lanes - 1) / lanes * lanes};
     const size_t sums = 8 * (size_t)sweep.padded * (size_t)(chunks + 1);
     sweep.sum = aligned_alloc(64, sums * sizeof *sweep.sum);
     if (!sweep.sum) return STATUS_NO_MEMORY;
     memset(sweep.sum, 0, sums * sizeof *sweep.sum);
     if (pool) pool_run(pool, chunks, sum_chunk, &sweep);
-    else for (int t = 0; t < chunks; t++) sum_chunk(&sweep, 0, t);
+    else
+        for (int t = 0; t < chunks; t++) sum_chunk(&sweep, 0, t);
     for (int f = 0; f < count; f++) finish(&s[f], &sweep, chunks, f);
     free(sweep.sum);
     return STATUS_OK;
@@ -198,9 +206,9 @@ static bool sees(void *user, const double p[3], int antenna)
 static bool is_clear(void *user, const double p[3], const double q[3], const double n[3])
 {
     static const double above_m = 1e-3, inside_m = 2e-3;
-    const Sight *sight = user;
-    double       way[3], from[3], down[3];
-    PartHit      hit;
+    const Sight        *sight = user;
+    double              way[3], from[3], down[3];
+    PartHit             hit;
     v3_sub(way, q, p);
     const double width_m = v3_length(way);
     if (!(width_m > 2 * inside_m)) return false;
@@ -216,12 +224,12 @@ static bool is_clear(void *user, const double p[3], const double q[3], const dou
 }
 
 typedef struct EdgeWork {
-    const RadarTarget *target;
+    const RadarTarget    *target;
     const EdgePairConfig *config;
-    const Sight       *sight;
-    int                wedge_chunks;  /* then those of pairs */
-    EdgeSegments      *chunk;
-    Status            *status;
+    const Sight          *sight;
+    int                   wedge_chunks; /* then those of pairs */
+    EdgeSegments         *chunk;
+    Status               *status;
 } EdgeWork;
 
 static void find_chunk(void *user, int worker, int task)
@@ -231,14 +239,14 @@ static void find_chunk(void *user, int worker, int task)
     (void)worker;
     if (task < work->wedge_chunks) {
         const int first = task * chunk_wedges, left = target->wedge_count - first;
-        work->status[task] = edge_segments(&work->chunk[task], target->wedge + first,
-                                           left < chunk_wedges ? left : chunk_wedges, work->sight->antenna[0],
-                                           work->sight->antenna[1], &work->config->edge);
+        work->status[task] =
+            edge_segments(&work->chunk[task], target->wedge + first, left < chunk_wedges ? left : chunk_wedges,
+                          work->sight->antenna[0], work->sight->antenna[1], &work->config->edge);
     } else {
         const int first = (task - work->wedge_chunks) * chunk_pairs, left = target->pair_count - first;
-        work->status[task] = edge_pair_segments(&work->chunk[task], target->pair + first,
-                                                left < chunk_pairs ? left : chunk_pairs, target->wedge,
-                                                work->sight->antenna[0], work->sight->antenna[1], work->config);
+        work->status[task] =
+            edge_pair_segments(&work->chunk[task], target->pair + first, left < chunk_pairs ? left : chunk_pairs,
+                               target->wedge, work->sight->antenna[0], work->sight->antenna[1], work->config);
     }
 }
 
@@ -264,11 +272,16 @@ static Status find_edges(EdgeSegments *out, const RadarTarget *target, const Edg
 {
     const int wedge_chunks = (target->wedge_count + chunk_wedges - 1) / chunk_wedges;
     const int chunks = wedge_chunks + (target->pair_count + chunk_pairs - 1) / chunk_pairs;
-    EdgeWork  work = {target, config, sight, wedge_chunks, calloc((size_t)chunks + 1, sizeof *work.chunk),
+    EdgeWork  work = {target,
+                      config,
+                      sight,
+                      wedge_chunks,
+                      calloc((size_t)chunks + 1, sizeof *work.chunk),
                       calloc((size_t)chunks + 1, sizeof *work.status)};
     Status    status = work.chunk && work.status ? STATUS_OK : STATUS_NO_MEMORY;
     if (status == STATUS_OK && pool) pool_run(pool, chunks, find_chunk, &work);
-    else for (int t = 0; t < chunks && status == STATUS_OK; t++) find_chunk(&work, 0, t);
+    else
+        for (int t = 0; t < chunks && status == STATUS_OK; t++) find_chunk(&work, 0, t);
     for (int t = 0; t < chunks && status == STATUS_OK; t++) {
         status = work.status[t];
         if (status == STATUS_OK) status = append(out, &work.chunk[t], t < wedge_chunks ? t * chunk_wedges : 0);
@@ -290,12 +303,15 @@ Status total_field_trace(TotalField *out, const RadarTarget *target, const Scatt
     const TubeRest rest = {.whole = flat->count > 0 ? flat->whole : NULL, .none = flat->count > 0 && flat->all};
     if (status == STATUS_OK) status = tubes_trace_rest(&out->hits, target, tx, rx, config, &rest, pool);
     if (status != STATUS_OK || !edges || target->wedge_count == 0) return status;
-    Sight            sight = {&target->entity, {tx, rx}};
+    Sight                sight = {&target->entity, {tx, rx}};
     const double         k_per_m = 2 * pi_rad * config->frequency_hz / light_mps;
     const EdgePairConfig edge = {.edge = {.k_per_m = 1.5 * k_per_m,
-                                          .sample_m = fmin(0.05, target->entity.radius_m / 64), .clear_m = 1e-4,
-                                          .visible = sees, .user = &sight},
-                                 .k_per_m = k_per_m, .clear = is_clear,
+                                          .sample_m = fmin(0.05, target->entity.radius_m / 64),
+                                          .clear_m = 1e-4,
+                                          .visible = sees,
+                                          .user = &sight},
+                                 .k_per_m = k_per_m,
+                                 .clear = is_clear,
                                  .least_m = 5e-5 * target->entity.radius_m};
     return find_edges(&out->edges, target, &edge, &sight, pool);
 }
@@ -352,12 +368,12 @@ Status total_field_sweep(ScatterMatrix *s, int count, double first_hz, double st
                          const ScatterAntenna *tx, const ScatterAntenna *rx, Pool *pool)
 {
     const double k_per_hz = 2 * pi_rad / light_mps;
-    Status status = field_sweep(s, count, first_hz, step_hz, &field->hits, tx, rx, pool);
+    Status       status = field_sweep(s, count, first_hz, step_hz, &field->hits, tx, rx, pool);
     if (status == STATUS_OK) status = polygons_sweep(s, count, first_hz, step_hz, &field->polygons, tx, rx, pool);
     for (int i = 0; i < field->edges.count && status == STATUS_OK; i++) {
         const EdgeSegment *e = &field->edges.segment[i];
-        const double path_m = tx || rx ? moved_path_m(e, field, tx ? tx : &field->hits.tx, rx ? rx : &field->hits.rx)
-                                       : e->path_m;
+        const double       path_m =
+            tx || rx ? moved_path_m(e, field, tx ? tx : &field->hits.tx, rx ? rx : &field->hits.rx) : e->path_m;
         add_segment(s, count, first_hz * k_per_hz, step_hz * k_per_hz, e, path_m);
     }
     return status;

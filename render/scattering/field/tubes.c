@@ -41,13 +41,20 @@ void tubes_warp_at(double *height_m, double gradient[3], double bend[9], const W
 
 enum {
     round_tiles = 512, /* hits are gathered so often: bounds the memory of workers */
-    most_rays = 1 << 28, most_hits = 1 << 26 /* 5 GB */
+    most_rays = 1 << 28,
+    most_hits = 1 << 26 /* 5 GB */
 };
 
 TubeConfig tubes_default_config(double frequency_hz)
 {
-    return (TubeConfig){.frequency_hz = frequency_hz, .rays_per_wavelength = 1.25, .rays_per_radius = 128,
-                        .splits = 2, .cuts_per_radius = 768, .split_rad = 0.5, .bounces = 8, .warp_length_m = 0.5};
+    return (TubeConfig){.frequency_hz = frequency_hz,
+                        .rays_per_wavelength = 1.25,
+                        .rays_per_radius = 128,
+                        .splits = 2,
+                        .cuts_per_radius = 768,
+                        .split_rad = 0.5,
+                        .bounces = 8,
+                        .warp_length_m = 0.5};
 }
 
 void tubes_free(TubeHits *hits)
@@ -95,7 +102,7 @@ static bool on_grid(double at_m[2], const TubeGrid *grid, const double p[3])
 /* Sides turned by an angle about the axis. */
 static void turn_grid(TubeGrid *grid, double angle_rad)
 {
-    double x[3], y[3];
+    double       x[3], y[3];
     const double pole[3] = {0, fabs(grid->axis[2]) > 0.9, fabs(grid->axis[2]) <= 0.9};
     v3_cross(x, pole, grid->axis);
     v3_normalize(x, x);
@@ -113,8 +120,8 @@ static Status lay_grid(TubeGrid *grid, const RadarTarget *target, const ScatterA
     const double       curve_m = config->curve_m > 0 ? config->curve_m : target->curve_m;
     const double       widest_m = fmax(sqrt(wavelength_m * curve_m / 16), wavelength_m / 8);
     const uint64_t     hash = hash_look(config, tx);
-    grid->spacing_m = fmin(fmin(wavelength_m / config->rays_per_wavelength, widest_m),
-                           entity->radius_m / config->rays_per_radius);
+    grid->spacing_m =
+        fmin(fmin(wavelength_m / config->rays_per_wavelength, widest_m), entity->radius_m / config->rays_per_radius);
     memcpy(grid->centre, entity->centre_enu, sizeof grid->centre);
     grid->plane = isinf(tx->range_m);
     if (grid->plane) {
@@ -260,18 +267,21 @@ Status tubes_trace_rest(TubeHits *out, const RadarTarget *target, const ScatterA
                         const TubeConfig *config, const TubeRest *rest, Pool *pool)
 {
     const int threads = pool ? pool_threads(pool) : 1;
-    TubeWork  work = {.target = target, .whole = rest->whole, .tx = *tx, .rx = *rx, .config = *config,
+    TubeWork  work = {.target = target,
+                      .whole = rest->whole,
+                      .tx = *tx,
+                      .rx = *rx,
+                      .config = *config,
                       .k = 2 * pi_rad * config->frequency_hz / light_mps,
                       .monostatic = memcmp(tx->u, rx->u, sizeof tx->u) == 0 && tx->range_m == rx->range_m};
     if (!scatter_antenna_is_good(tx) || !scatter_antenna_is_good(rx) || !(config->frequency_hz > 0) ||
         !(config->rays_per_wavelength > 0) || !(config->rays_per_radius >= 0) ||
-        !(config->warp_m >= 0 && config->warp_length_m > 0) ||
-        isinf(config->frequency_hz) || config->bounces < 1 || config->bounces > 255 ||
-        config->splits < 0 || config->splits > tubes_splits_most ||
+        !(config->warp_m >= 0 && config->warp_length_m > 0) || isinf(config->frequency_hz) || config->bounces < 1 ||
+        config->bounces > 255 || config->splits < 0 || config->splits > tubes_splits_most ||
         !(config->cuts_per_radius > 0 && config->split_rad > 0)) {
         log_error("radar: an antenna or a number of the ray tubes is out of range: frequency_hz=%g "
-                  "rays_per_wavelength=%g bounces=%d", config->frequency_hz, config->rays_per_wavelength,
-                  config->bounces);
+                  "rays_per_wavelength=%g bounces=%d",
+                  config->frequency_hz, config->rays_per_wavelength, config->bounces);
         return STATUS_BAD_VALUE;
     }
     out->count = 0;
@@ -296,7 +306,8 @@ Status tubes_trace_rest(TubeHits *out, const RadarTarget *target, const ScatterA
         const int count = (int)(tiles - t < round_tiles ? tiles - t : round_tiles);
         work.first_tile = t;
         if (pool) pool_run(pool, count, run_tile, &work);
-        else for (int k = 0; k < count; k++) run_tile(&work, 0, k);
+        else
+            for (int k = 0; k < count; k++) run_tile(&work, 0, k);
         status = gather(out, &work, threads, count);
     }
     if (status == STATUS_NO_MEMORY) log_error("radar: out of memory for the hits of ray tubes: rays=%lld", out->rays);

@@ -13,8 +13,8 @@
  * Tubes whose neighbours met something else are divided (tubes_split.c): the list then holds smaller ones from that
  * mirror on. Two grids of a tank at 10 GHz differ by -34 dB of its power, by -25 with splits 0 (test_tubes_split.c).
  *
- * Left out: diffraction at edges (edge_field.h), creeping waves, what passes through thin materials; currents on the side
- * that is turned away from the receiver, so forward scatter (bistatic angles beyond some 120 degrees) is not
+ * Left out: diffraction at edges (edge_field.h), creeping waves, what passes through thin materials; currents on the
+ * side that is turned away from the receiver, so forward scatter (bistatic angles beyond some 120 degrees) is not
  * computed.
  *
  * Source: Ling, Chou & Lee, IEEE Trans. Antennas Propag. 37(2), 194, 1989; ray differentials: Igehy, SIGGRAPH 1999. */
@@ -26,23 +26,23 @@
 enum { tubes_splits_most = 5, polygon_faces_few = 64 };
 
 typedef struct TubeConfig {
-    double   frequency_hz;        /* of materials and spacing: the highest, or the centre, of those to come */
-    double   rays_per_wavelength; /* 1.25: a sphere of ka 800 is within 0.1 dB; with 1 within 0.15 */
-    double   rays_per_radius;     /* at least this many over the radius of the target's sphere: edges are cut in steps
-                                   * of a tube, whose error is that of its share of the target; 128 */
-    double   curve_m;             /* smallest radius of curvature to resolve, spacing <= sqrt(lambda curve / 16), though
-                                   * not below lambda / 8; 0: the target's own */
-    int      splits;              /* how often a tube is divided in four where it and its neighbours part: 0 .. 5; 2 */
-    double   cuts_per_radius;     /* tubes of less than that sphere's radius over this are not divided; 768 */
-    double   split_rad;           /* least phase by which they part, > 0; 0.5 */
-    int      bounces;             /* 8 */
-    bool     last_only;           /* only the last mirror of a path radiates: the handbook's corner reflectors */
-    bool     keep_hidden;         /* bistatic: receivers behind a part see it all the same; for tests */
+    double frequency_hz;        /* of materials and spacing: the highest, or the centre, of those to come */
+    double rays_per_wavelength; /* 1.25: a sphere of ka 800 is within 0.1 dB; with 1 within 0.15 */
+    double rays_per_radius;     /* at least this many over the radius of the target's sphere: edges are cut in steps
+                                 * of a tube, whose error is that of its share of the target; 128 */
+    double curve_m;             /* smallest radius of curvature to resolve, spacing <= sqrt(lambda curve / 16), though
+                                 * not below lambda / 8; 0: the target's own */
+    int      splits;            /* how often a tube is divided in four where it and its neighbours part: 0 .. 5; 2 */
+    double   cuts_per_radius;   /* tubes of less than that sphere's radius over this are not divided; 768 */
+    double   split_rad;         /* least phase by which they part, > 0; 0.5 */
+    int      bounces;           /* 8 */
+    bool     last_only;         /* only the last mirror of a path radiates: the handbook's corner reflectors */
+    bool     keep_hidden;       /* bistatic: receivers behind a part see it all the same; for tests */
     double   warp_m, warp_length_m; /* surfaces uneven by this height, rms, over this length (Warp); 0, 0.5 */
     uint64_t warp_seed;
-    uint64_t seed;                /* of the grid */
-    int      polygon_faces;       /* total_field_trace sums flat faces in closed form (polygons.h) on targets of at
-                                   * most so many of them; 0: on none, as for signatures; polygon_faces_few */
+    uint64_t seed;          /* of the grid */
+    int      polygon_faces; /* total_field_trace sums flat faces in closed form (polygons.h) on targets of at
+                             * most so many of them; 0: on none, as for signatures; polygon_faces_few */
 } TubeConfig;
 
 TubeConfig tubes_default_config(double frequency_hz);
@@ -50,15 +50,15 @@ TubeConfig tubes_default_config(double frequency_hz);
 /* S = -(j k / 2 pi) sum of amplitude sinc(k slope_0) sinc(k slope_1) exp(-j k path). */
 typedef struct TubeHits {
     ScatterAntenna tx, rx;
-    double    frequency_hz, spacing_m;
-    long long rays;         /* shot, those of divided tubes and at the tiles' borders too */
-    size_t    count, capacity; /* behind the last hit there is one more of no amplitude */
-    double   *path_m;       /* two-way, less that over the phase centre; see scatter.h */
-    float    *slope_m[2];   /* half the change of path over the footprint's sides */
-    float    *amplitude[8]; /* real and imaginary of hh, hv, vh, vv, m^2 */
-    float    *first[3], *last[3]; /* points of the path, target frame */
-    uint8_t  *bounce;       /* 1: the first */
-    uint16_t *part;         /* of the model, at the last point */
+    double         frequency_hz, spacing_m;
+    long long      rays;               /* shot, those of divided tubes and at the tiles' borders too */
+    size_t         count, capacity;    /* behind the last hit there is one more of no amplitude */
+    double        *path_m;             /* two-way, less that over the phase centre; see scatter.h */
+    float         *slope_m[2];         /* half the change of path over the footprint's sides */
+    float         *amplitude[8];       /* real and imaginary of hh, hv, vh, vv, m^2 */
+    float         *first[3], *last[3]; /* points of the path, target frame */
+    uint8_t       *bounce;             /* 1: the first */
+    uint16_t      *part;               /* of the model, at the last point */
 } TubeHits;
 
 /* out: zeroed, or of an earlier call, whose memory is used again. rx may be tx. STATUS_BAD_VALUE, logged: an antenna
@@ -84,8 +84,8 @@ void   tubes_free(TubeHits *hits);
 enum { warp_waves = 12 };
 
 typedef struct Warp {
-    double amplitude_m;                /* of each wave; 0: none */
-    double k[warp_waves][3];           /* rad/m */
+    double amplitude_m;      /* of each wave; 0: none */
+    double k[warp_waves][3]; /* rad/m */
     double phase_rad[warp_waves];
 } Warp;
 

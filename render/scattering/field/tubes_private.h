@@ -13,12 +13,12 @@ enum {
 
 /* Points of a plane through the target's middle, across the line from the transmitter. */
 typedef struct TubeGrid {
-    bool      plane;                 /* a plane wave; else from antenna */
-    double    antenna[3], distance_m;
-    double    centre[3], axis[3], side[2][3];
-    double    spacing_m, first_m[2]; /* first_m: of the first ray */
-    double    back_m;                /* rays begin so far before the plane */
-    int       count[2], tiles[2];
+    bool   plane; /* a plane wave; else from antenna */
+    double antenna[3], distance_m;
+    double centre[3], axis[3], side[2][3];
+    double spacing_m, first_m[2]; /* first_m: of the first ray */
+    double back_m;                /* rays begin so far before the plane */
+    int    count[2], tiles[2];
 } TubeGrid;
 
 typedef struct TubeHit {
@@ -31,26 +31,26 @@ typedef struct TubeHit {
 
 /* What a tube met at a mirror, as far as neighbours are compared by it. */
 typedef struct TubeMark {
-    double   path_m;     /* two-way */
+    double   path_m; /* two-way */
     float    slope_m[2];
     uint16_t part;
-    bool     seen;       /* by the receiver; else path and slopes are not set */
-    bool     whole;      /* the first, on a face that is not summed by tubes */
+    bool     seen;  /* by the receiver; else path and slopes are not set */
+    bool     whole; /* the first, on a face that is not summed by tubes */
 } TubeMark;
 
 /* A cell of the grid or, at level n, a 4^n-th of one. */
 typedef struct TubeCell {
-    int      x, y;       /* within its tile, in cells of its level; -1 and tile_side at level 0: about it */
-    int      from, to;   /* mirrors that count here: from <= mirror < to; the rest is its parent's, its children's */
+    int      x, y;     /* within its tile, in cells of its level; -1 and tile_side at level 0: about it */
+    int      from, to; /* mirrors that count here: from <= mirror < to; the rest is its parent's, its children's */
     int      marks;
     TubeMark mark[trail_most];
 } TubeCell;
 
 /* Hits of one tile, in its worker's list. */
 typedef struct TubePiece {
-    int    worker;
-    bool   failed; /* out of memory */
-    size_t first, count;
+    int       worker;
+    bool      failed; /* out of memory */
+    size_t    first, count;
     long long rays;
 } TubePiece;
 
@@ -62,12 +62,12 @@ typedef struct TubeWorker {
     size_t    count, capacity;
     TubeCell *cell[2]; /* of a level and of the next */
     int       cells[2], cell_capacity[2];
-    int32_t  *at;      /* cells of the level by place, -1: none */
+    int32_t  *at; /* cells of the level by place, -1: none */
 } TubeWorker;
 
 typedef struct TubeWork {
     const RadarTarget *target;
-    const uint8_t     *whole;   /* [triangle_count], or NULL: TubeRest */
+    const uint8_t     *whole; /* [triangle_count], or NULL: TubeRest */
     ScatterAntenna     tx, rx;
     TubeConfig         config;
     TubeGrid           grid;
@@ -75,10 +75,10 @@ typedef struct TubeWork {
     bool               monostatic;
     int                levels;   /* at most, of divided cells */
     double             widest_m; /* a footprint's sides: wider ones are no tube any more */
-    RadarSurface      *surface; /* [part_count] */
-    Warp              *warp;    /* [part_count] */
+    RadarSurface      *surface;  /* [part_count] */
+    Warp              *warp;     /* [part_count] */
     TubeWorker        *worker;
-    TubePiece         *piece;   /* of this round's tiles */
+    TubePiece         *piece; /* of this round's tiles */
     long long          first_tile;
 } TubeWork;
 
@@ -87,7 +87,7 @@ size_t tube_tile_octets(void);
  * cell, for the hits. level: 0: cells of the grid. False: out of memory. */
 bool tube_follow(TubeWork *work, int worker, long long tile, int level, TubeCell *cell, int count, int first);
 /* A tile of the grid, its cells divided as config says. */
-void tube_tile(TubeWork *work, int worker, long long tile, TubePiece *piece);
+void   tube_tile(TubeWork *work, int worker, long long tile, TubePiece *piece);
 int    tube_levels(double spacing_m, double radius_m, const TubeConfig *config);
 size_t tube_place_count(int levels); /* of TubeWorker.at */
 

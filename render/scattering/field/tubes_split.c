@@ -132,8 +132,7 @@ static bool divide(TubeWorker *worker, int level)
 {
     const int list = level & 1, next = !list;
     int       count = 0;
-    for (int k = 0; k < worker->cells[list]; k++)
-        count += 4 * (worker->cell[list][k].to < INT_MAX);
+    for (int k = 0; k < worker->cells[list]; k++) count += 4 * (worker->cell[list][k].to < INT_MAX);
     worker->cells[next] = 0;
     if (!room(worker, next, count)) return false;
     for (int k = 0; k < worker->cells[list]; k++) {

@@ -10,13 +10,13 @@ static const double lift_m = 2e-4;
 static const double least_power = 1e-8; /* of the incident field's: weaker tubes end */
 
 typedef struct Tube {
-    double  p[3], d[3];         /* where it was last mirrored, and its direction since */
-    double  turn[2][3];         /* change of direction, and */
-    double  side[2][3];         /* of place, from one ray of the grid to the next */
-    Field   e[2];               /* at p, transmitted h and v */
-    double  path_m;             /* to p */
-    float   first[3];
-    int     bounces;
+    double p[3], d[3]; /* where it was last mirrored, and its direction since */
+    double turn[2][3]; /* change of direction, and */
+    double side[2][3]; /* of place, from one ray of the grid to the next */
+    Field  e[2];       /* at p, transmitted h and v */
+    double path_m;     /* to p */
+    float  first[3];
+    int    bounces;
 } Tube;
 
 struct TubeTile {
@@ -80,7 +80,7 @@ typedef struct Facing {
     double p[3], n[3], smooth[3]; /* the same where its surface is warped; the normal of what facets approximate */
     double sign;                  /* -1: the facet is seen from behind */
     bool   warped;
-    double bend[9];               /* second derivatives of the height, towards the ray, 1/m */
+    double bend[9]; /* second derivatives of the height, towards the ray, 1/m */
 } Facing;
 
 /* Crossings of the tube's sides over a length: roots of its cross-section a + b t + c t^2. */
@@ -104,8 +104,8 @@ static double cross_section(const double u[3], const double v[3], const double d
 static void carry(Tube *tube, double t_m)
 {
     const double a = cross_section(tube->side[0], tube->side[1], tube->d);
-    const double b = cross_section(tube->turn[0], tube->side[1], tube->d) +
-                     cross_section(tube->side[0], tube->turn[1], tube->d);
+    const double b =
+        cross_section(tube->turn[0], tube->side[1], tube->d) + cross_section(tube->side[0], tube->turn[1], tube->d);
     const double c = cross_section(tube->turn[0], tube->turn[1], tube->d);
     const double end = a + t_m * (b + t_m * c);
     const int    crossed = caustics(a, b, c, t_m);
@@ -203,8 +203,7 @@ static void bend(double dn[3], const Model *model, const PosedFacet *facet, cons
 
 /* The tube's direction, spreading and field beyond the mirror. */
 static void leave(Tube *tube, const TubeWork *work, const PosedFacet *facet, const Facing *facing,
-                  const RadarSurface *surface,
-                  double complex te, double complex tm)
+                  const RadarSurface *surface, double complex te, double complex tm)
 {
     double        d_out[3];
     const double *n = facing->smooth;
@@ -239,7 +238,7 @@ static void leave(Tube *tube, const TubeWork *work, const PosedFacet *facet, con
 static bool record_hit(TubeHit *record, const Tube *tube, const TubeWork *work, const Facing *facing,
                        const RadarSurface *surface, double complex te, double complex tm, int part)
 {
-    double s[3], footprint[3], radiated[8];
+    double       s[3], footprint[3], radiated[8];
     const double path_m = scatter_path(s, &work->rx, tube->p);
     if (!(v3_dot(facing->n, s) > 0) && !work->config.keep_hidden) return false;
     v3_cross(footprint, tube->side[0], tube->side[1]);
@@ -312,7 +311,7 @@ static int mirror_all(TubeTile *tile, TubeWork *work, const int *list, int count
             fresnel_surface(&te, &tm, surface, work->k, fmin(1, -v3_dot(facing.n, tube->d)));
         tile->kept[i] = record_hit(&tile->record[i], tube, work, &facing, surface, te, tm, part);
         if (tile->kept[i]) {
-            double s[3];
+            double       s[3];
             const double path_m = scatter_path(s, &work->rx, tube->p);
             for (int c = 0; c < 3; c++) {
                 tile->from[c][i] = facing.base[c] + lift_m * facing.flat[c];

@@ -34,7 +34,7 @@ static uint32_t cell_of(const Cells *c, const double p[3], const int shift[3])
 static int find_place(const Cells *c, const int *node, int vertex)
 {
     const double *p = c->model->vertex[vertex];
-    int best = vertex;
+    int           best = vertex;
     for (int n = 0; n < 27; n++) {
         const int shift[3] = {n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1};
         for (int other = c->head[cell_of(c, p, shift)]; other >= 0; other = c->next[other]) {
@@ -49,11 +49,11 @@ static int find_place(const Cells *c, const int *node, int vertex)
 Status wedges_weld(int *place, const Model *m, double weld_m)
 {
     const int n = m->vertex_count;
-    Cells cells = {.model = m, .weld_m = weld_m, .mask = 15};
+    Cells     cells = {.model = m, .weld_m = weld_m, .mask = 15};
     while (cells.mask < (uint32_t)n) cells.mask = cells.mask * 2 + 1;
     cells.head = malloc((cells.mask + (size_t)1) * sizeof *cells.head);
     cells.next = malloc((size_t)n * sizeof *cells.next + 1);
-    int *node = malloc((size_t)n * sizeof *node + 1);
+    int       *node = malloc((size_t)n * sizeof *node + 1);
     const bool ok = cells.head && cells.next && node;
     if (ok) {
         for (uint32_t i = 0; i <= cells.mask; i++) cells.head[i] = -1;
@@ -80,9 +80,9 @@ Status wedges_weld(int *place, const Model *m, double weld_m)
 typedef struct Side {
     int    low, high; /* places, low < high */
     int    part, triangle;
-    int    from, to;  /* the vertices at low and high */
+    int    from, to;   /* the vertices at low and high */
     double x[3], n[3]; /* in the face away from the edge; its normal */
-    bool   along;     /* the triangle runs from low to high: its free side is at larger angles about that direction */
+    bool   along;      /* the triangle runs from low to high: its free side is at larger angles about that direction */
 } Side;
 
 static int side_order(const void *a, const void *b)
@@ -99,7 +99,7 @@ static int find_sides(Side *out, const Model *m, const int *place)
     int count = 0;
     for (int t = 0; t < m->triangle_count; t++) {
         const uint32_t *v = m->triangle[t];
-        double ab[3], ac[3], n[3];
+        double          ab[3], ac[3], n[3];
         v3_sub(ab, m->vertex[v[1]], m->vertex[v[0]]);
         v3_sub(ac, m->vertex[v[2]], m->vertex[v[0]]);
         v3_cross(n, ab, ac);
@@ -107,7 +107,7 @@ static int find_sides(Side *out, const Model *m, const int *place)
         if (flat || !v3_normalize(n, n)) continue;
         for (int k = 0; k < 3; k++) {
             const int a = (int)v[k], b = (int)v[(k + 1) % 3];
-            Side s = {.part = m->triangle_part[t], .triangle = t, .along = place[a] < place[b]};
+            Side      s = {.part = m->triangle_part[t], .triangle = t, .along = place[a] < place[b]};
             s.from = s.along ? a : b;
             s.to = s.along ? b : a;
             s.low = place[s.from];
@@ -147,13 +147,13 @@ typedef struct Found {
     double       angle_rad;
     const bool  *open; /* parts with an open boundary */
     Wedge       *wedge;
-    int        (*end)[2]; /* places of the ends */
-    int          count, concave, junctions;
+    int (*end)[2]; /* places of the ends */
+    int count, concave, junctions;
 } Found;
 
 static void add_wedge(Found *f, const Side *s, bool front, double exterior_rad)
 {
-    Wedge *w = &f->wedge[f->count];
+    Wedge     *w = &f->wedge[f->count];
     const bool along = s->along == front;
     memset(w, 0, sizeof *w);
     w->part = s->part;
@@ -187,8 +187,8 @@ static const Side *first_of(const Fan *fan) { return fan->side[0] ? fan->side[0]
 static void add_junction(Found *f, const Fan *fan, int fans)
 {
     const Side *base = first_of(&fan[0]);
-    double angle[fans_most], widest = 0;
-    int    from = 0, to = 0;
+    double      angle[fans_most], widest = 0;
+    int         from = 0, to = 0;
     for (int i = 0; i < fans; i++) { /* about the direction from low to high */
         const double *x = first_of(&fan[i])->x, up = v3_dot(x, base->n) * (base->along ? 1 : -1);
         angle[i] = atan2(up, v3_dot(x, base->x));
@@ -203,11 +203,9 @@ static void add_junction(Found *f, const Fan *fan, int fans)
         if (gap > widest) widest = gap, from = i, to = next;
     }
     const Side *a = first_of(&fan[from]), *b = first_of(&fan[to]);
-    const bool free = fan[from].side[true] && fan[to].side[false];
-    if (widest < pi + f->angle_rad || !(free || f->open[a->part] || f->open[b->part]))
-        f->junctions++;
-    else
-        add_wedge(f, a, a->along, widest);
+    const bool  free = fan[from].side[true] && fan[to].side[false];
+    if (widest < pi + f->angle_rad || !(free || f->open[a->part] || f->open[b->part])) f->junctions++;
+    else add_wedge(f, a, a->along, widest);
 }
 
 /* The faces side[0 .. count) of one edge. */
@@ -235,18 +233,15 @@ static void add_edge(Found *f, const Side *const *side, int count)
     }
     /* Angle from the first face to the second, counted to the side that the first looks to. */
     const Side *a = first_of(&fan[0]), *b = fan[1].side[!a->along];
-    const bool two_sided = !b || (fan[0].side[0] && fan[0].side[1]) || (fan[1].side[0] && fan[1].side[1]);
-    const bool flip = !b;
+    const bool  two_sided = !b || (fan[0].side[0] && fan[0].side[1]) || (fan[1].side[0] && fan[1].side[1]);
+    const bool  flip = !b;
     if (flip) b = first_of(&fan[1]);
     double angle = atan2(v3_dot(b->x, a->n), v3_dot(b->x, a->x));
     if (angle < 0) angle += 2 * pi;
     if (fabs(angle - pi) < f->angle_rad || smooth(f->model, a, b, flip, f->angle_rad)) return;
-    if (angle > pi)
-        add_wedge(f, a, true, angle);
-    else if (two_sided || f->open[a->part])
-        add_wedge(f, a, false, 2 * pi - angle);
-    else
-        f->concave++;
+    if (angle > pi) add_wedge(f, a, true, angle);
+    else if (two_sided || f->open[a->part]) add_wedge(f, a, false, 2 * pi - angle);
+    else f->concave++;
 }
 
 static int run_of(const Side *side, int from, int count, bool by_part)
@@ -327,7 +322,7 @@ static int join(Found *f, const End *end, bool *used)
     for (int i = 0; i < f->count; i++) {
         if (used[i]) continue;
         used[i] = true;
-        Wedge whole = f->wedge[i];
+        Wedge       whole = f->wedge[i];
         const Wedge first = whole; /* what others are compared with, so that no bend adds up */
         for (int tip = 0; tip < 2; tip++) {
             int place = f->end[i][tip];
@@ -336,14 +331,12 @@ static int join(Found *f, const End *end, bool *used)
                 int low = 0, high = 2 * f->count;
                 while (low < high) {
                     const int middle = low + (high - low) / 2;
-                    if (end[middle].place < place)
-                        low = middle + 1;
-                    else
-                        high = middle;
+                    if (end[middle].place < place) low = middle + 1;
+                    else high = middle;
                 }
                 for (int k = low; k < 2 * f->count && end[k].place == place && !more; k++) {
                     const int j = end[k].piece;
-                    bool swap;
+                    bool      swap;
                     if (used[j] || !continues(&swap, &first, &f->wedge[j])) continue;
                     if (f->end[j][!tip != swap] != place) continue;
                     used[j] = more = true;
@@ -367,13 +360,13 @@ Status wedges_find(WedgeList *out, const Model *model, const WedgeConfig *config
 {
     assert(config->weld_m > 0);
     const size_t most = 3 * (size_t)model->triangle_count + 1;
-    Status status = STATUS_NO_MEMORY;
-    Found  found = {.model = model, .angle_rad = config->angle_rad};
-    int   *place = malloc((size_t)model->vertex_count * sizeof *place + 1);
-    Side  *side = malloc(most * sizeof *side);
+    Status       status = STATUS_NO_MEMORY;
+    Found        found = {.model = model, .angle_rad = config->angle_rad};
+    int         *place = malloc((size_t)model->vertex_count * sizeof *place + 1);
+    Side        *side = malloc(most * sizeof *side);
     const Side **pool = malloc(most * sizeof *pool);
-    bool  *open = calloc((size_t)model->part_count + 1, sizeof *open), *used = calloc(most, sizeof *used);
-    End   *end = malloc(2 * most * sizeof *end);
+    bool        *open = calloc((size_t)model->part_count + 1, sizeof *open), *used = calloc(most, sizeof *used);
+    End         *end = malloc(2 * most * sizeof *end);
     found.wedge = malloc(most * sizeof *found.wedge);
     found.end = malloc(most * sizeof *found.end);
     found.open = open;

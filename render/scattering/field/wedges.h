@@ -38,7 +38,7 @@ typedef struct Wedge {
 
 typedef struct WedgeList {
     int    count;
-    Wedge *wedge;    /* node axes */
+    Wedge *wedge;              /* node axes */
     int    concave, junctions; /* pieces left out: of two faces, of more */
 } WedgeList;
 

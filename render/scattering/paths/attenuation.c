@@ -9,7 +9,7 @@
 
 typedef struct LineColumn {
     const char *name;
-    double low, high;
+    double      low, high;
 } LineColumn;
 
 enum { line_columns = 7 };
@@ -23,10 +23,10 @@ static const LineColumn water_column[line_columns] = {
 
 static Status read_list(GasLineList *out, const char *path, const char *standard, const LineColumn column[line_columns])
 {
-    Table table;
-    char found[1024];
+    Table       table;
+    char        found[1024];
     const char *name[line_columns];
-    int at[line_columns];
+    int         at[line_columns];
     if (!path && !etc_path(found, sizeof found, standard)) {
         log_error("gas lines: no etc/%s", standard);
         return STATUS_IO;
@@ -57,7 +57,7 @@ static Status read_list(GasLineList *out, const char *path, const char *standard
 Status gas_lines_read(GasLines *out, const char *oxygen_path, const char *water_path)
 {
     GasLines lines = {0};
-    Status status = read_list(&lines.oxygen, oxygen_path, "radar/oxygen_lines.csv", oxygen_column);
+    Status   status = read_list(&lines.oxygen, oxygen_path, "radar/oxygen_lines.csv", oxygen_column);
     if (status == STATUS_OK) status = read_list(&lines.water, water_path, "radar/water_lines.csv", water_column);
     if (status == STATUS_OK) *out = lines;
     return status;
@@ -81,7 +81,7 @@ void gas_attenuation(GasAttenuation *out, const GasLines *lines, double f_ghz, c
         return;
 
     const double theta = 300 / air->temp_k, theta3 = theta * theta * theta, theta08 = pow(theta, 0.8);
-    double dry = 0, wet = 0, dry_ppm = 0, wet_ppm = 0;
+    double       dry = 0, wet = 0, dry_ppm = 0, wet_ppm = 0;
 
     const GasLineList *oxygen = &lines->oxygen;
     for (int i = 0; i < oxygen->count; i++) {
@@ -98,7 +98,7 @@ void gas_attenuation(GasAttenuation *out, const GasLines *lines, double f_ghz, c
     dry_ppm -= f * f * debye;
 
     const GasLineList *water = &lines->water;
-    const double theta35 = theta3 * sqrt(theta);
+    const double       theta35 = theta3 * sqrt(theta);
     for (int i = 0; i < water->count && e > 0; i++) {
         const double f0 = water->f_ghz[i];
         const double strength = water->c[0][i] * 0.1 * e * theta35 * exp(water->c[1][i] * (1 - theta));
@@ -144,7 +144,7 @@ double fog_liquid_g_m3(double visibility_m)
 
 /* Sum of a exp(-((x - b) / c)^2) over its terms, plus m x + n; x is the logarithm to 10 of the frequency in GHz. */
 typedef struct RainFit {
-    int terms;
+    int    terms;
     double a[5], b[5], c[5], m, n;
 } RainFit;
 

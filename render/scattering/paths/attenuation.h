@@ -14,7 +14,7 @@ enum { gas_lines_max = 64 };
 
 /* Coefficient k of line i is c[k][i]: a1 .. a6 of oxygen, b1 .. b6 of water, as P.676-13 numbers them. */
 typedef struct GasLineList {
-    int count;
+    int    count;
     double f_ghz[gas_lines_max], c[6][gas_lines_max];
 } GasLineList;
 

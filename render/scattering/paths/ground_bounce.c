@@ -83,11 +83,11 @@ GroundSurface ground_surface(const GroundRow *row, double frequency_hz)
 static double scaled_i0(double x)
 {
     static const double small[] = {1, 3.5156229, 3.0899424, 1.2067492, 0.2659732, 0.0360768, 0.0045813};
-    static const double large[] = {0.39894228,  0.01328592, 0.00225319, -0.00157565, 0.00916281,
+    static const double large[] = {0.39894228,  0.01328592, 0.00225319,  -0.00157565, 0.00916281,
                                    -0.02057706, 0.02635537, -0.01647633, 0.00392377};
-    const bool   near = x < 3.75;
-    const double t = near ? x * x / (3.75 * 3.75) : 3.75 / x;
-    double       sum = 0;
+    const bool          near = x < 3.75;
+    const double        t = near ? x * x / (3.75 * 3.75) : 3.75 / x;
+    double              sum = 0;
     for (int i = near ? 6 : 8; i >= 0; i--) sum = sum * t + (near ? small[i] : large[i]);
     return near ? sum * exp(-x) : sum / sqrt(x);
 }
@@ -110,8 +110,8 @@ void ground_reflection(double complex *te, double complex *tm, const GroundSurfa
 
 enum { chunk = 256 };
 
-static const double sunk_m = 1e-3;  /* beneath the plane by no more: on it */
-static const double lift_m = 2e-4;  /* as that of tubes: past faces that touch the ground */
+static const double sunk_m = 1e-3; /* beneath the plane by no more: on it */
+static const double lift_m = 2e-4; /* as that of tubes: past faces that touch the ground */
 
 void ground_plane(GroundPlane *out, const double p_ground[3], const double n_ground[3], const double p_target[3],
                   const double r_from_body[9])
@@ -170,12 +170,12 @@ static void point_of(double p[3], const TotalField *field, size_t i, int end)
 /* From where the line to the image crosses the plane, to the antenna. */
 static void hide_chunk(void *user, int worker, int task)
 {
-    const Hide          *hide = user;
-    const size_t         first = (size_t)task * chunk, left = hide->count - first;
-    const int            count = left < chunk ? (int)left : chunk;
+    const Hide           *hide = user;
+    const size_t          first = (size_t)task * chunk, left = hide->count - first;
+    const int             count = left < chunk ? (int)left : chunk;
     const ScatterAntenna *antenna[2] = {&hide->field->hits.tx, &hide->field->hits.rx};
-    double               o[3][chunk], d[3][chunk], far_m[chunk];
-    int                  list[chunk];
+    double                o[3][chunk], d[3][chunk], far_m[chunk];
+    int                   list[chunk];
     (void)worker;
     for (int end = 0; end < 2; end++) {
         int asked = 0;
@@ -225,12 +225,13 @@ static void keep_seen(TotalField *field, const uint8_t *hidden)
 Status ground_hide(TotalField *field, const RadarTarget *target, const GroundPlane *plane, const bool image[2],
                    Pool *pool)
 {
-    Hide hide = {field, target, plane, image, NULL, field->hits.count + (size_t)field->edges.count};
+    Hide      hide = {field, target, plane, image, NULL, field->hits.count + (size_t)field->edges.count};
     const int chunks = (int)((hide.count + chunk - 1) / chunk);
     hide.hidden = calloc(hide.count + 1, 1);
     if (!hide.hidden) return STATUS_NO_MEMORY;
     if (pool) pool_run(pool, chunks, hide_chunk, &hide);
-    else for (int t = 0; t < chunks; t++) hide_chunk(&hide, 0, t);
+    else
+        for (int t = 0; t < chunks; t++) hide_chunk(&hide, 0, t);
     keep_seen(field, hide.hidden);
     free(hide.hidden);
     return STATUS_OK;
@@ -280,7 +281,8 @@ bool ground_leg_image(GroundLeg *out, const ScatterAntenna *antenna, const Scatt
     v3_normalize(across, across);
     v3_cross(before, d, across);
     v3_cross(after, d_out, across);
-    *out = (GroundLeg){.extra_m = extra_m, .spread = isinf(antenna->range_m) ? 1 : antenna->range_m / image->range_m,
+    *out = (GroundLeg){.extra_m = extra_m,
+                       .spread = isinf(antenna->range_m) ? 1 : antenna->range_m / image->range_m,
                        .coherence = fmax(cabs(te), cabs(tm))};
     for (int p = 0; p < 2; p++)
         for (int a = 0; a < 2; a++)

@@ -16,8 +16,8 @@ enum { ground_points = 8 };
 typedef struct GroundRow {
     int    points;
     double frequency_hz[ground_points], e1[ground_points], e2[ground_points];
-    double rms_m;     /* of heights about the mean plane */
-    bool   waves;     /* heights of a sinusoid with random amplitude and phase; else normal */
+    double rms_m; /* of heights about the mean plane */
+    bool   waves; /* heights of a sinusoid with random amplitude and phase; else normal */
 } GroundRow;
 
 typedef struct GroundTable {
@@ -54,8 +54,8 @@ void ground_reflection(double complex *te, double complex *tm, const GroundSurfa
 
 /* In the target's frame: a point p is n . p + height_m above it. */
 typedef struct GroundPlane {
-    double n[3];      /* unit, up */
-    double height_m;  /* of the target's origin above it */
+    double n[3];     /* unit, up */
+    double height_m; /* of the target's origin above it */
 } GroundPlane;
 
 /* p_ground, n_ground: a point of the plane and its upward unit normal, in the frame that the target's origin and axes

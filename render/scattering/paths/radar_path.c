@@ -19,7 +19,7 @@ static double vapour_hpa(double vapour_g_m3, double height_m, double temp_k)
 void radar_air_at(GasState *out, const RadarAir *air, double height_m)
 {
     const double h_m = clamp(height_m, 0, top_m), at = h_m / level_m;
-    const int i = at < radar_air_levels - 2 ? (int)at : radar_air_levels - 2;
+    const int    i = at < radar_air_levels - 2 ? (int)at : radar_air_levels - 2;
     const double w = at - i;
     out->temp_k = air->temp_k[i] + w * (air->temp_k[i + 1] - air->temp_k[i]);
     out->vapour_hpa = vapour_hpa(air->vapour_g_m3, h_m, out->temp_k);
@@ -30,7 +30,7 @@ void radar_air_at(GasState *out, const RadarAir *air, double height_m)
 static double pressure_slope(double hpa, double vapour_g_m3, double height_m, double temp_k)
 {
     static const double g_mps2 = 9.80665, gas_j_kgk = 287.05;
-    const double r = earth_m / (earth_m + height_m);
+    const double        r = earth_m / (earth_m + height_m);
     return -g_mps2 * r * r * (1 - 0.378 * vapour_hpa(vapour_g_m3, height_m, temp_k) / hpa) / (gas_j_kgk * temp_k);
 }
 
@@ -38,7 +38,7 @@ static double pressure_slope(double hpa, double vapour_g_m3, double height_m, do
 static double zero_celsius_m(const RadarAir *air)
 {
     static const double zero_k = 273.15;
-    int i = radar_air_levels - 1;
+    int                 i = radar_air_levels - 1;
     while (i >= 0 && !(air->temp_k[i] >= zero_k)) i--;
     if (i < 0 || i == radar_air_levels - 1) return i < 0 ? -1 : top_m;
     return level_m * (i + (air->temp_k[i] - zero_k) / (air->temp_k[i] - air->temp_k[i + 1]));
@@ -46,7 +46,7 @@ static double zero_celsius_m(const RadarAir *air)
 
 Status radar_air_of(RadarAir *out, const Atmosphere *model, const Weather *weather)
 {
-    RadarAir air = {0};
+    RadarAir     air = {0};
     const double model_k = atmosphere_temp_k(model, 0),
                  ground_k = isnan(weather->air_temp_k) ? model_k : weather->air_temp_k;
     const double p_hpa = weather->pressure_mbar;
@@ -114,10 +114,10 @@ static Span below(const Line *line, double height_m)
 
 typedef struct Walk {
     const RadarPath *path;
-    const GasLines *lines;
-    const RadarAir *air;
-    Line line;
-    int fine;
+    const GasLines  *lines;
+    const RadarAir  *air;
+    Line             line;
+    int              fine;
 } Walk;
 
 /* Gauss-Legendre, three points, over [-1, 1]. */
@@ -128,20 +128,20 @@ static const double gauss_w[3] = {5.0 / 9, 8.0 / 9, 5.0 / 9};
 static int panels(const Walk *walk, Span span)
 {
     static const double panel_height_m = 250, panel_length_m = 10000;
-    const double mid_m = 0.5 * (span.from_m + span.to_m), middle = line_height_m(&walk->line, mid_m);
-    const double change_m =
+    const double        mid_m = 0.5 * (span.from_m + span.to_m), middle = line_height_m(&walk->line, mid_m);
+    const double        change_m =
         fabs(line_height_m(&walk->line, span.from_m) - middle) + fabs(line_height_m(&walk->line, span.to_m) - middle);
     return walk->fine * (int)(1 + fmax(change_m / panel_height_m, (span.to_m - span.from_m) / panel_length_m));
 }
 
 static void add_gas(RadarLoss *out, const Walk *walk, Span span)
 {
-    const int count = panels(walk, span);
+    const int    count = panels(walk, span);
     const double half_m = 0.5 * (span.to_m - span.from_m) / count;
-    double ppm_m = 0;
+    double       ppm_m = 0;
     for (int i = 0; i < count; i++)
         for (int g = 0; g < 3; g++) {
-            GasState state;
+            GasState       state;
             GasAttenuation gas;
             radar_air_at(&state, walk->air,
                          line_height_m(&walk->line, span.from_m + half_m * (2 * i + 1 + gauss_x[g])));
@@ -156,9 +156,9 @@ static void add_gas(RadarLoss *out, const Walk *walk, Span span)
 static double liquid_db(const Walk *walk, Span span, double g_m3)
 {
     if (!(span.to_m > span.from_m)) return 0;
-    const int count = panels(walk, span);
+    const int    count = panels(walk, span);
     const double half_m = 0.5 * (span.to_m - span.from_m) / count;
-    double db = 0;
+    double       db = 0;
     for (int i = 0; i < count; i++)
         for (int g = 0; g < 3; g++) {
             GasState state;
@@ -177,12 +177,12 @@ void radar_path_loss_fine(RadarLoss *out, const RadarPath *path, const GasLines 
           path->range_m <= 1e6 && path->f_ghz >= 1 && path->f_ghz <= 1000 && isfinite(path->tilt_rad)))
         return;
     *out = (RadarLoss){0};
-    const Walk walk = {path, lines, air, line_of(path), fine};
+    const Walk  walk = {path, lines, air, line_of(path), fine};
     const Line *line = &walk.line;
     if (!(line->length_m > 0)) return;
     add_gas(out, &walk, (Span){0, line->length_m});
 
-    const Span wet = below(line, air->rain_top_m);
+    const Span   wet = below(line, air->rain_top_m);
     const double elevation_rad = asin(clamp((path->b_m - path->a_m) / line->length_m, -1, 1));
     if (air->rain_mm_h > 0 && wet.to_m > wet.from_m)
         out->rain_db = 1e-3 * (wet.to_m - wet.from_m) *

@@ -25,9 +25,9 @@ typedef struct RadarLiquid {
 } RadarLiquid;
 
 typedef struct RadarAir {
-    double temp_k[radar_air_levels], ln_hpa[radar_air_levels]; /* each 100 m, from the model's ground to 20 km */
-    double vapour_g_m3;                                        /* at the ground */
-    double rain_mm_h, rain_top_m;                              /* rain falls below rain_top_m; 0: none */
+    double      temp_k[radar_air_levels], ln_hpa[radar_air_levels]; /* each 100 m, from the model's ground to 20 km */
+    double      vapour_g_m3;                                        /* at the ground */
+    double      rain_mm_h, rain_top_m;                              /* rain falls below rain_top_m; 0: none */
     RadarLiquid liquid[radar_air_liquids];
 } RadarAir;
 
@@ -65,7 +65,7 @@ void radar_path_loss(RadarLoss *out, const RadarPath *path, const GasLines *line
 void radar_path_loss_fine(RadarLoss *out, const RadarPath *path, const GasLines *lines, const RadarAir *air, int fine);
 
 /* Two ways: factor of a voltage (exp(+j w t)); its square of the modulus that of a power. */
-double complex radar_path_factor(const RadarLoss *loss);
+double complex       radar_path_factor(const RadarLoss *loss);
 static inline double radar_loss_db(const RadarLoss *loss) /* one way, all together */
 {
     return loss->dry_db + loss->wet_db + loss->rain_db + loss->liquid_db;

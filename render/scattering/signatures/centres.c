@@ -18,8 +18,8 @@ static void see(ScatterCentre *out, const Signature *s, const SignatureCentre *c
                   (scatter_path(way[1][0], rx, last) - scatter_path(way[1][1], &s->rx, last));
     /* how the change of path grows from the mean point */
     for (int x = 0; x < 3; x++) slope[x] = way[0][1][x] - way[0][0][x] + way[1][1][x] - way[1][0][x];
-    const double scale = (double)c->scale / 32767, finer = k * (double)c->moment_scale / 127;
-    const double right = finer * v3_dot(slope, s->right), up = finer * v3_dot(slope, s->up);
+    const double          scale = (double)c->scale / 32767, finer = k * (double)c->moment_scale / 127;
+    const double          right = finer * v3_dot(slope, s->right), up = finer * v3_dot(slope, s->up);
     double complex *const to[4] = {&out->s.hh, &out->s.hv, &out->s.vh, &out->s.vv};
     for (int q = 0; q < 4; q++) { /* less j k slope . moment */
         const double re = right * c->moment[0][2 * q] + up * c->moment[1][2 * q];
@@ -65,7 +65,8 @@ Status centres_make(Centres *out, const Signature *s, const ScatterAntenna *tx, 
     Job       job = {out, s, tx, rx, k};
     const int blocks = (s->count + block - 1) / block;
     if (pool) pool_run(pool, blocks, see_block, &job);
-    else for (int b = 0; b < blocks; b++) see_block(&job, 0, b);
+    else
+        for (int b = 0; b < blocks; b++) see_block(&job, 0, b);
     return STATUS_OK;
 }
 

@@ -9,18 +9,18 @@
 #include "render/scattering/signatures/signature.h"
 
 typedef struct ScatterCentre {
-    double        path_m;     /* two-way: S exp(-j k path) is its share of the field */
-    double        p[3];       /* target frame, m: mean of its paths' first and last points, by amplitude */
-    ScatterMatrix s;          /* m, at the centre frequency */
-    double        weight;     /* sum of its amplitudes, m */
-    int           bounce;     /* mirrors of its strongest hit; 0: an edge */
-    int           part;       /* of the model, of its strongest hit or edge */
-    double        strongest;  /* amplitude of that, m */
+    double        path_m;    /* two-way: S exp(-j k path) is its share of the field */
+    double        p[3];      /* target frame, m: mean of its paths' first and last points, by amplitude */
+    ScatterMatrix s;         /* m, at the centre frequency */
+    double        weight;    /* sum of its amplitudes, m */
+    int           bounce;    /* mirrors of its strongest hit; 0: an edge */
+    int           part;      /* of the model, of its strongest hit or edge */
+    double        strongest; /* amplitude of that, m */
 } ScatterCentre;
 
 typedef struct Centres {
     int            count, capacity;
-    ScatterCentre *centre;    /* in the order of the signature's */
+    ScatterCentre *centre;                        /* in the order of the signature's */
     double         tubes_same_m2, tubes_cross_m2; /* Signature */
 } Centres;
 
@@ -30,7 +30,7 @@ Status centres_make(Centres *out, const Signature *signature, const ScatterAnten
                     Pool *pool);
 void   centres_free(Centres *centres);
 /* Their whole field at a frequency of the band. */
-void   centres_field(ScatterMatrix *out, const Centres *centres, double frequency_hz);
+void centres_field(ScatterMatrix *out, const Centres *centres, double frequency_hz);
 
 /* ---- error -------------------------------------------------------------------------------------- */
 

@@ -20,15 +20,15 @@ typedef struct GivenScatterer {
 typedef struct GivenAxis {
     int     count;
     double *at;
-    bool    round;      /* azimuths: the last is followed by the first */
+    bool    round; /* azimuths: the last is followed by the first */
 } GivenAxis;
 
 struct GivenSignature {
-    int             scatterers;     /* 0: a grid */
+    int             scatterers; /* 0: a grid */
     GivenScatterer *scatterer;
     GivenAxis       axis[axes];
     bool            has_phase;
-    double complex *s;              /* [azimuth][elevation][frequency][polarisations]; m; without phase: dBsm */
+    double complex *s; /* [azimuth][elevation][frequency][polarisations]; m; without phase: dBsm */
 };
 
 const char *given_signature_path(const char *name)
@@ -49,7 +49,8 @@ static Status complain(const Table *table, int row, const char *what)
 static Status optional(double *out, const Table *table, int row, int column, double low, double high, double otherwise)
 {
     *out = otherwise;
-    return column < 0 || !*table_text(table, row, column) ? STATUS_OK : table_number(out, table, row, column, low, high);
+    return column < 0 || !*table_text(table, row, column) ? STATUS_OK
+                                                          : table_number(out, table, row, column, low, high);
 }
 
 static int column_of(const Table *table, int p, const char *what)
@@ -67,25 +68,28 @@ static double complex of_dbsm(double dbsm, double phase_rad)
 static Status need(const Table *table, const int *column, const char *names)
 {
     if (column[HH] >= 0 && column[VV] >= 0) return STATUS_OK;
-    log_error("signature: %s: needs the columns %s; repeat one of them where only one polarisation was measured", table->path, names);
+    log_error("signature: %s: needs the columns %s; repeat one of them where only one polarisation was measured",
+              table->path, names);
     return STATUS_BAD_VALUE;
 }
 
 static Status read_scatterers(GivenSignature *g, const Table *table)
 {
     static const char *const place[3] = {"x_m", "y_m", "z_m"};
-    int at[3], power[polarisations], phase[polarisations];
+    int                      at[3], power[polarisations], phase[polarisations];
     if (!table_columns(at, table, place, 3, "signature")) return STATUS_BAD_VALUE;
-    for (int p = 0; p < polarisations; p++) power[p] = column_of(table, p, "dbsm"), phase[p] = column_of(table, p, "deg");
-    const int   look[4] = {table_column(table, "az_deg"), table_column(table, "az_width_deg"), table_column(table, "el_deg"),
-                           table_column(table, "el_width_deg")};
-    Status      status = need(table, power, "hh_dbsm and vv_dbsm");
+    for (int p = 0; p < polarisations; p++)
+        power[p] = column_of(table, p, "dbsm"), phase[p] = column_of(table, p, "deg");
+    const int look[4] = {table_column(table, "az_deg"), table_column(table, "az_width_deg"),
+                         table_column(table, "el_deg"), table_column(table, "el_width_deg")};
+    Status    status = need(table, power, "hh_dbsm and vv_dbsm");
     g->scatterer = calloc((size_t)table->rows + 1, sizeof *g->scatterer);
     if (!g->scatterer) return STATUS_NO_MEMORY;
     for (int i = 0; i < table->rows && status == STATUS_OK; i++) {
         GivenScatterer *s = &g->scatterer[i];
         double          dbsm[polarisations], deg[polarisations], of[4];
-        for (int k = 0; k < 3 && status == STATUS_OK; k++) status = table_number(&s->p[k], table, i, at[k], -1000, 1000);
+        for (int k = 0; k < 3 && status == STATUS_OK; k++)
+            status = table_number(&s->p[k], table, i, at[k], -1000, 1000);
         for (int p = 0; p < polarisations && status == STATUS_OK; p++) {
             status = optional(&dbsm[p], table, i, power[p], -200, 100, NAN);
             if (status == STATUS_OK) status = optional(&deg[p], table, i, phase[p], -1e6, 1e6, 0);
@@ -139,8 +143,8 @@ static int index_of(const GivenAxis *axis, double at)
 }
 
 /* One row's values: fields, or decibels of each polarisation. */
-static Status read_values(double complex *s, const Table *table, int row, const int re[polarisations], const int im[polarisations],
-                          const int power[polarisations], bool has_phase)
+static Status read_values(double complex *s, const Table *table, int row, const int re[polarisations],
+                          const int im[polarisations], const int power[polarisations], bool has_phase)
 {
     Status status = STATUS_OK;
     bool   is_there[polarisations];
@@ -170,8 +174,10 @@ static void warn_of_coarse_steps(const GivenSignature *g, const Table *table)
         whole += cabs(g->s[i]) * cabs(g->s[i + one]);
     }
     if (whole > 0 && along < 0.5 * whole)
-        log_warn("signature: %s: fields of neighbouring azimuths differ too much to be interpolated (their correlation is %.2f, and "
-                 "should be above 0.5); give a finer grid, or dBsm alone", table->path, along / whole);
+        log_warn(
+            "signature: %s: fields of neighbouring azimuths differ too much to be interpolated (their correlation is %.2f, and "
+            "should be above 0.5); give a finer grid, or dBsm alone",
+            table->path, along / whole);
 }
 
 static Status read_grid(GivenSignature *g, const Table *table)
@@ -181,19 +187,24 @@ static Status read_grid(GivenSignature *g, const Table *table)
     int                      column[axes], re[polarisations], im[polarisations], power[polarisations];
     if (!table_columns(column, table, name, axes, "signature")) return STATUS_BAD_VALUE;
     for (int p = 0; p < polarisations; p++)
-        re[p] = column_of(table, p, "re_m"), im[p] = column_of(table, p, "im_m"), power[p] = column_of(table, p, "dbsm");
+        re[p] = column_of(table, p, "re_m"), im[p] = column_of(table, p, "im_m"),
+        power[p] = column_of(table, p, "dbsm");
     g->has_phase = re[HH] >= 0 && im[HH] >= 0;
     Status status = g->has_phase ? need(table, im, "hh_re_m, hh_im_m, vv_re_m and vv_im_m")
                                  : need(table, power, "hh_dbsm and vv_dbsm, or hh_re_m, hh_im_m, vv_re_m and vv_im_m");
-    for (int a = 0; a < axes && status == STATUS_OK; a++) status = read_axis(&g->axis[a], table, column[a], low[a], high[a]);
+    for (int a = 0; a < axes && status == STATUS_OK; a++)
+        status = read_axis(&g->axis[a], table, column[a], low[a], high[a]);
     if (status != STATUS_OK) return status;
     const GivenAxis *az = &g->axis[AZIMUTH], *el = &g->axis[ELEVATION], *f = &g->axis[FREQUENCY];
     const double     span_deg = az->at[az->count - 1] - az->at[0];
     const long long  cells = (long long)az->count * el->count * f->count;
-    if (!(span_deg <= 360 + 1e-9)) return complain(table, 0, "azimuths span more than 360 degrees; give each look once");
+    if (!(span_deg <= 360 + 1e-9))
+        return complain(table, 0, "azimuths span more than 360 degrees; give each look once");
     if (cells != table->rows) {
-        log_error("signature: %s: %d rows for %d azimuths, %d elevations and %d frequencies, which need %lld; give each combination "
-                  "once", table->path, table->rows, az->count, el->count, f->count, cells);
+        log_error(
+            "signature: %s: %d rows for %d azimuths, %d elevations and %d frequencies, which need %lld; give each combination "
+            "once",
+            table->path, table->rows, az->count, el->count, f->count, cells);
         return STATUS_BAD_VALUE;
     }
     g->axis[AZIMUTH].round = az->count > 2 && 360 - span_deg <= 1.5 * widest_step(az);
@@ -202,13 +213,17 @@ static Status read_grid(GivenSignature *g, const Table *table)
     if (!g->s || !met) status = STATUS_NO_MEMORY;
     for (int i = 0; i < table->rows && status == STATUS_OK; i++) {
         double at[axes];
-        for (int a = 0; a < axes && status == STATUS_OK; a++) status = table_number(&at[a], table, i, column[a], low[a], high[a]);
+        for (int a = 0; a < axes && status == STATUS_OK; a++)
+            status = table_number(&at[a], table, i, column[a], low[a], high[a]);
         if (status != STATUS_OK) break;
-        const size_t cell = ((size_t)index_of(az, at[AZIMUTH]) * (size_t)el->count + (size_t)index_of(el, at[ELEVATION])) *
-                                (size_t)f->count + (size_t)index_of(f, at[FREQUENCY]);
+        const size_t cell =
+            ((size_t)index_of(az, at[AZIMUTH]) * (size_t)el->count + (size_t)index_of(el, at[ELEVATION])) *
+                (size_t)f->count +
+            (size_t)index_of(f, at[FREQUENCY]);
         if (met[cell]) status = complain(table, i, "this look and frequency were given before");
         met[cell] = 1;
-        if (status == STATUS_OK) status = read_values(g->s + polarisations * cell, table, i, re, im, power, g->has_phase);
+        if (status == STATUS_OK)
+            status = read_values(g->s + polarisations * cell, table, i, re, im, power, g->has_phase);
     }
     free(met);
     if (status == STATUS_OK) warn_of_coarse_steps(g, table);
@@ -225,7 +240,8 @@ Status given_signature_open(GivenSignature **out, const char *path)
         log_error("signature: %s: %d rows; it needs 1 to %d", path, table.rows, most_rows);
         status = STATUS_BAD_VALUE;
     }
-    if (status == STATUS_OK) status = table_column(&table, "x_m") >= 0 ? read_scatterers(g, &table) : read_grid(g, &table);
+    if (status == STATUS_OK)
+        status = table_column(&table, "x_m") >= 0 ? read_scatterers(g, &table) : read_grid(g, &table);
     table_close(&table);
     if (status == STATUS_OK) *out = g;
     else given_signature_close(g);
@@ -286,7 +302,8 @@ static bool find(Between at[axes], const GivenSignature *g, const ScatterAntenna
     const double     ghz = 1e-9 * frequency_hz, first = f->at[0], last = f->at[f->count - 1];
     if (!(ghz >= 0.95 * first && ghz <= 1.05 * last)) return false;
     return between_azimuths(&at[AZIMUTH], &g->axis[AZIMUTH], azimuth_of(antenna) / rad_per_deg) &&
-           between(&at[ELEVATION], el, elevation_of(antenna) / rad_per_deg, el->count > 1 ? 0.5 * widest_step(el) : 2.5) &&
+           between(&at[ELEVATION], el, elevation_of(antenna) / rad_per_deg,
+                   el->count > 1 ? 0.5 * widest_step(el) : 2.5) &&
            between(&at[FREQUENCY], f, clamp(ghz, first, last), 0);
 }
 
@@ -303,13 +320,15 @@ static void grid_field(ScatterMatrix *out, const GivenSignature *g, const Betwee
         }
         for (int p = 0; p < polarisations && weight > 0; p++) sum[p] += weight * g->s[polarisations * cell + (size_t)p];
     }
-    for (int p = 0; p < polarisations && !g->has_phase; p++) sum[p] = creal(sum[p]) > -199.9 ? of_dbsm(creal(sum[p]), 0) : 0;
+    for (int p = 0; p < polarisations && !g->has_phase; p++)
+        sum[p] = creal(sum[p]) > -199.9 ? of_dbsm(creal(sum[p]), 0) : 0;
     *out = (ScatterMatrix){sum[HH], sum[HV], sum[VH], sum[VV]};
 }
 
 static bool scatterer_shows(const GivenScatterer *s, const ScatterAntenna *antenna)
 {
-    const double turn = remainder(azimuth_of(antenna) - s->azimuth_rad, 2 * pi_rad), up = elevation_of(antenna) - s->elevation_rad;
+    const double turn = remainder(azimuth_of(antenna) - s->azimuth_rad, 2 * pi_rad),
+                 up = elevation_of(antenna) - s->elevation_rad;
     return fabs(turn) <= s->azimuth_half_rad + 1e-12 && fabs(up) <= s->elevation_half_rad + 1e-12;
 }
 
@@ -319,7 +338,8 @@ bool given_signature_knows(const GivenSignature *g, const ScatterAntenna *antenn
     return g->scatterers > 0 || find(at, g, antenna, frequency_hz);
 }
 
-void given_signature_field(ScatterMatrix *s, const GivenSignature *g, const ScatterAntenna *antenna, double frequency_hz)
+void given_signature_field(ScatterMatrix *s, const GivenSignature *g, const ScatterAntenna *antenna,
+                           double frequency_hz)
 {
     const double k = 2 * pi_rad * frequency_hz / light_mps;
     Between      at[axes];
@@ -356,11 +376,17 @@ static void add(Centres *out, const ScatterMatrix *s, const double p[3], double 
 {
     const double amplitude = amplitude_of(s);
     if (!(amplitude > 0)) return;
-    out->centre[out->count++] = (ScatterCentre){.path_m = path_m, .p = {p[0], p[1], p[2]}, .s = *s, .weight = amplitude,
-                                                .bounce = 1, .part = -1, .strongest = amplitude};
+    out->centre[out->count++] = (ScatterCentre){.path_m = path_m,
+                                                .p = {p[0], p[1], p[2]},
+                                                .s = *s,
+                                                .weight = amplitude,
+                                                .bounce = 1,
+                                                .part = -1,
+                                                .strongest = amplitude};
 }
 
-Status given_signature_centres(Centres *out, const GivenSignature *g, const ScatterAntenna *antenna, double frequency_hz)
+Status given_signature_centres(Centres *out, const GivenSignature *g, const ScatterAntenna *antenna,
+                               double frequency_hz)
 {
     static const double origin[3];
     out->count = 0;
@@ -408,7 +434,8 @@ static Status take_row(GivenRow *out, const Table *table, int row, const int col
     const char *entity = table_text(table, row, column[0]), *file = table_text(table, row, column[1]);
     const char *slash = strrchr(table->path, '/');
     char        path[4096];
-    if (!*entity || !*file) return complain_of_list(table, row, "entity or signature is empty; * stands for all entities");
+    if (!*entity || !*file)
+        return complain_of_list(table, row, "entity or signature is empty; * stands for all entities");
     out->by = strcmp(entity, "*") == 0 ? by_any : dis_entity_id_parse(&out->id, entity) ? by_id : by_model;
     if (snprintf(out->model, sizeof out->model, "%s", entity) >= (int)sizeof out->model)
         return complain_of_list(table, row, "the name of a model is too long; see `pitviper model list`");
@@ -421,15 +448,16 @@ static Status take_row(GivenRow *out, const Table *table, int row, const int col
 Status given_list_open(GivenList **out, const char *path)
 {
     static const char *const name[2] = {"entity", "signature"};
-    int        column[2];
-    Table      table = {0};
-    GivenList *list = calloc(1, sizeof *list);
+    int                      column[2];
+    Table                    table = {0};
+    GivenList               *list = calloc(1, sizeof *list);
     if (!list) return STATUS_NO_MEMORY;
     Status status = table_open(&table, path);
     if (status == STATUS_OK && !table_columns(column, &table, name, 2, "radar.given")) status = STATUS_BAD_VALUE;
     if (status == STATUS_OK) list->row = calloc((size_t)table.rows + 1, sizeof *list->row);
     if (status == STATUS_OK && !list->row) status = STATUS_NO_MEMORY;
-    for (int i = 0; status == STATUS_OK && i < table.rows; i++) status = take_row(&list->row[list->count++], &table, i, column);
+    for (int i = 0; status == STATUS_OK && i < table.rows; i++)
+        status = take_row(&list->row[list->count++], &table, i, column);
     table_close(&table);
     if (status == STATUS_OK) *out = list;
     else given_list_close(list);

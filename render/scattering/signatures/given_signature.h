@@ -35,11 +35,13 @@ const char *given_signature_path(const char *name);
 Status given_signature_open(GivenSignature **out, const char *path);
 void   given_signature_close(GivenSignature *given); /* accepts NULL */
 /* Whether it is known at a look and frequency; scatterers are everywhere. */
-bool   given_signature_knows(const GivenSignature *given, const ScatterAntenna *antenna, double frequency_hz);
+bool given_signature_knows(const GivenSignature *given, const ScatterAntenna *antenna, double frequency_hz);
 /* What it scatters back, where it is known; else 0. */
-void   given_signature_field(ScatterMatrix *s, const GivenSignature *given, const ScatterAntenna *antenna, double frequency_hz);
+void given_signature_field(ScatterMatrix *s, const GivenSignature *given, const ScatterAntenna *antenna,
+                           double frequency_hz);
 /* As scattering centres, whose sum that is; their part is -1. One of no amplitude is left out. */
-Status given_signature_centres(Centres *out, const GivenSignature *given, const ScatterAntenna *antenna, double frequency_hz);
+Status given_signature_centres(Centres *out, const GivenSignature *given, const ScatterAntenna *antenna,
+                               double frequency_hz);
 
 /* ---- the list: which entities scatter by a signature that is given ---------------------------------------- */
 

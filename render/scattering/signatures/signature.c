@@ -10,9 +10,14 @@ enum { weak_times = 4 };
 
 SignatureCells signature_default_cells(double frequency_hz, double bandwidth_hz, double turn_rad, double interval_s)
 {
-    return (SignatureCells){.frequency_hz = frequency_hz, .bandwidth_hz = bandwidth_hz, .turn_rad = turn_rad,
-                            .path_phase_rad = path_phase_rad, .across_phase_rad = across_phase_rad,
-                            .interval_s = interval_s, .spin_phase_rad = spin_phase_rad, .weak_share = weak_share,
+    return (SignatureCells){.frequency_hz = frequency_hz,
+                            .bandwidth_hz = bandwidth_hz,
+                            .turn_rad = turn_rad,
+                            .path_phase_rad = path_phase_rad,
+                            .across_phase_rad = across_phase_rad,
+                            .interval_s = interval_s,
+                            .spin_phase_rad = spin_phase_rad,
+                            .weak_share = weak_share,
                             .weak_times = weak_times};
 }
 
@@ -62,15 +67,15 @@ typedef struct Cell {
     double complex s[4], moment[2][4]; /* hh hv vh vv; moments about the cell's middle, right and up */
     double complex along[4];           /* and along the path */
     double         p[3], half[3], weight, strongest;
-    double         square;             /* sum of squares of amplitudes */
+    double         square; /* sum of squares of amplitudes */
     int            bounce, part;
-    bool           weak;               /* left empty: what it held is in a wider one */
+    bool           weak; /* left empty: what it held is in a wider one */
 } Cell;
 
 typedef struct CellTable {
     int      count, capacity, slots;
     Cell    *cell;
-    int32_t *slot;                     /* of a hash table, a power of two long */
+    int32_t *slot; /* of a hash table, a power of two long */
 } CellTable;
 
 static uint64_t mix(uint64_t x)
@@ -129,7 +134,7 @@ static Cell *find(CellTable *t, const Key *key)
 
 typedef struct Share {
     double         path_m, first[3], last[3];
-    double complex s[4];               /* hh hv vh vv, without the phase of the path */
+    double complex s[4]; /* hh hv vh vv, without the phase of the path */
     double         amplitude;
     int            bounce, part;
 } Share;
@@ -176,11 +181,11 @@ static void share_of_edge(Share *out, const EdgeSegment *e, double k)
 typedef struct SignatureBuilder {
     const Signature *signature;
     const Model     *model;
-    double           k, across_m;      /* side of a cell */
-    double (*rate)[3]; /* [node_count]: how many cells of range rate it is per metre, body axes; 0: none */
-    int              times;            /* SignatureCells.weak_times */
-    bool             monostatic;
-    CellTable        table;
+    double           k, across_m; /* side of a cell */
+    double (*rate)[3];            /* [node_count]: how many cells of range rate it is per metre, body axes; 0: none */
+    int       times;              /* SignatureCells.weak_times */
+    bool      monostatic;
+    CellTable table;
 } SignatureBuilder;
 
 static int32_t cell_number(double x_m, double side_m) { return (int32_t)clamp(floor(x_m / side_m), -1e9, 1e9); }
@@ -262,7 +267,7 @@ static Status add(SignatureBuilder *builder, const Share *share)
         c = find(&builder->table, &key);
     }
     if (!c) return STATUS_NO_MEMORY;
-    const double         across_m = key.times * builder->across_m;
+    const double across_m = key.times * builder->across_m;
     const double along_m = share->path_m - (key.path + 0.5) * key.times * s->path_step_m, phase = -builder->k * along_m;
     const double complex turn = CMPLX(cos(phase), sin(phase));
     const double         arm_m[2] = {at.right_m - (key.right + 0.5) * across_m, at.up_m - (key.up + 0.5) * across_m};
@@ -299,8 +304,10 @@ static bool keep(SignatureCentre *out, const SignatureBuilder *builder, const Ce
 {
     const Signature *s = builder->signature;
     if (!(c->weight > 0)) return false;
-    *out = (SignatureCentre){.weight = (float)c->weight, .strongest = (float)c->strongest,
-                             .part = (uint16_t)c->part, .bounce = (uint8_t)c->bounce};
+    *out = (SignatureCentre){.weight = (float)c->weight,
+                             .strongest = (float)c->strongest,
+                             .part = (uint16_t)c->part,
+                             .bounce = (uint8_t)c->bounce};
     double p[3];
     for (int x = 0; x < 3; x++) {
         out->p[x] = (float)(c->p[x] / c->weight);
@@ -392,11 +399,11 @@ Status signature_make(Signature *out, const TotalField *field, const RadarTarget
     out->rx = h->rx;
     signature_axes(out, cells);
     SignatureBuilder builder = {.signature = out,
-                .model = target ? target->model : NULL,
-                .k = 2 * pi_rad * cells->frequency_hz / light_mps,
-                .times = cells->weak_times,
-                .monostatic = memcmp(&h->tx, &h->rx, sizeof h->tx) == 0};
-    Status status = measure_cells(&builder, target, cells);
+                                .model = target ? target->model : NULL,
+                                .k = 2 * pi_rad * cells->frequency_hz / light_mps,
+                                .times = cells->weak_times,
+                                .monostatic = memcmp(&h->tx, &h->rx, sizeof h->tx) == 0};
+    Status           status = measure_cells(&builder, target, cells);
     if (status == STATUS_OK && cells->weak_share > 0) status = each_share(&builder, field, weigh);
     if (status == STATUS_OK && cells->weak_share > 0) status = mark_weak(&builder, cells->weak_share);
     if (status == STATUS_OK) status = each_share(&builder, field, add);

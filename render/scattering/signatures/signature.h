@@ -20,12 +20,12 @@
 #include "render/scattering/field/total_field.h"
 
 typedef struct SignatureCells {
-    double frequency_hz, bandwidth_hz;   /* centre, and band about it */
-    double turn_rad;                     /* full width of the bin */
+    double frequency_hz, bandwidth_hz; /* centre, and band about it */
+    double turn_rad;                   /* full width of the bin */
     double path_phase_rad, across_phase_rad;
-    double interval_s;                   /* that centres are to stand for; 0: what spins and rolls stands still */
-    double spin_phase_rad;               /* of what spins as its model says, or rolls at 20 m/s, over the interval */
-    double weak_share;                   /* 0: all cells are of one size */
+    double interval_s;     /* that centres are to stand for; 0: what spins and rolls stands still */
+    double spin_phase_rad; /* of what spins as its model says, or rolls at 20 m/s, over the interval */
+    double weak_share;     /* 0: all cells are of one size */
     int    weak_times;
 } SignatureCells;
 /* Phases of 0.2, 0.2 and 1 rad; a hundredth over cells four times as wide. */
@@ -35,38 +35,38 @@ SignatureCells signature_default_cells(double frequency_hz, double bandwidth_hz,
 double signature_cells_error(void);
 
 typedef struct SignatureCentre {
-    int32_t  path;         /* cell along the path */
-    float path_share; /* 0 .. 1: its path is (path + path_share) path_step_m, that at which its phase turns over the
-                         band */
-    float    p[3];         /* target frame, m: mean of its paths' first and last points, by amplitude */
-    float    half[3];      /* from there to the mean of the last points, m */
-    float    scale;        /* m: s[i] scale / 32767: real and imaginary of hh, hv, vh, vv along that path */
-    float    moment_scale; /* m^2: moment[x][i] moment_scale / 127, x: right and up of the bin's middle */
+    int32_t path;       /* cell along the path */
+    float   path_share; /* 0 .. 1: its path is (path + path_share) path_step_m, that at which its phase turns over the
+                           band */
+    float    p[3];      /* target frame, m: mean of its paths' first and last points, by amplitude */
+    float    half[3];   /* from there to the mean of the last points, m */
+    float    scale;     /* m: s[i] scale / 32767: real and imaginary of hh, hv, vh, vv along that path */
+    float    moment_scale;      /* m^2: moment[x][i] moment_scale / 127, x: right and up of the bin's middle */
     float    weight, strongest; /* m: sum of its amplitudes, and the largest */
     int16_t  s[8];
     int8_t   moment[2][8];
-    uint16_t part;         /* of the model, of its strongest hit or edge */
-    uint8_t  bounce;       /* mirrors of that; 0: an edge */
+    uint16_t part;   /* of the model, of its strongest hit or edge */
+    uint8_t  bounce; /* mirrors of that; 0: an edge */
     uint8_t  zero;
-} SignatureCentre;         /* 84 octets, no gaps */
+} SignatureCentre; /* 84 octets, no gaps */
 
 typedef struct Signature {
-    ScatterAntenna   tx, rx;             /* of the bin's middle */
-    double           frequency_hz, bandwidth_hz;
-    double           path_step_m;
-    double           right[3], up[3];    /* across the line of sight */
-    double tubes_same_m2,
+    ScatterAntenna tx, rx; /* of the bin's middle */
+    double         frequency_hz, bandwidth_hz;
+    double         path_step_m;
+    double         right[3], up[3]; /* across the line of sight */
+    double         tubes_same_m2,
         tubes_cross_m2; /* squares of the hits' own fields, added up: mean of HH and VV, of HV and VH */
     int              count;
-    SignatureCentre *centre;             /* in the order in which hits, then edges meet their cells */
+    SignatureCentre *centre; /* in the order in which hits, then edges meet their cells */
 } Signature;
 
 /* out: zeroed. target: whose field it is, as posed; NULL: all parts move as one. */
 Status signature_make(Signature *out, const TotalField *field, const RadarTarget *target, const SignatureCells *cells);
 void   signature_free(Signature *signature); /* frees and zeroes; accepts zeroes */
 /* What follows from its antennas and cells. */
-void   signature_axes(Signature *out, const SignatureCells *cells);
+void signature_axes(Signature *out, const SignatureCells *cells);
 /* Whether all numbers are finite and within what signature_make gives; parts: of the model. */
-bool   signature_is_sound(const Signature *signature, int parts);
+bool signature_is_sound(const Signature *signature, int parts);
 
 #endif

@@ -9,32 +9,32 @@ enum { most_kept = 4096, most_waiting = 256 };
 
 /* One that is kept, or to be made. */
 typedef struct Kept {
-    int            model, damage;
-    SignatureLook  middle;
-    double        *joint;     /* [node_count] */
-    Signature      signature;
-    size_t         octets;
-    uint64_t       used;      /* number of the call */
+    int           model, damage;
+    SignatureLook middle;
+    double       *joint; /* [node_count] */
+    Signature     signature;
+    size_t        octets;
+    uint64_t      used; /* number of the call */
 } Kept;
 
 /* What making one takes; the background has its own. */
 typedef struct Maker {
-    RadarTarget **target;     /* [models]; NULL: not met yet */
-    TotalField    field;      /* memory that is used again */
+    RadarTarget **target; /* [models]; NULL: not met yet */
+    TotalField    field;  /* memory that is used again */
 } Maker;
 
 /* The thread that makes what is missing. */
 typedef struct Background {
-    pthread_t       thread;
-    bool            runs;
-    pthread_mutex_t lock;     /* protects the following */
-    pthread_cond_t  changed;
-    bool            ends;
-    int             waiting, done;
-    Kept            wait[most_waiting], made[most_waiting]; /* wait: newest last */
-    Kept            busy;     /* being made; joint NULL: none */
-    SignatureCounters counters; /* made, rays, spent_s */
-    Status          status;   /* the first failure */
+    pthread_t         thread;
+    bool              runs;
+    pthread_mutex_t   lock; /* protects the following */
+    pthread_cond_t    changed;
+    bool              ends;
+    int               waiting, done;
+    Kept              wait[most_waiting], made[most_waiting]; /* wait: newest last */
+    Kept              busy;                                   /* being made; joint NULL: none */
+    SignatureCounters counters;                               /* made, rays, spent_s */
+    Status            status;                                 /* the first failure */
 } Background;
 
 struct Signatures {
@@ -44,7 +44,7 @@ struct Signatures {
     int                   models;
     Maker                 maker;
     Background            background;
-    NodePose             *pose;    /* [most nodes] */
+    NodePose             *pose; /* [most nodes] */
     double               *joint;
     int                   count;
     Kept                  kept[most_kept];
@@ -167,13 +167,13 @@ static SignatureKey key_of(const Signatures *s, const Kept *k)
 
 static Status make(Kept *out, SignatureCounters *counters, const Signatures *s, Maker *maker, Pool *pool)
 {
-    const double        begun_s = wall_clock_s();
-    const Model        *of = catalog_model(s->catalog, out->model);
+    const double         begun_s = wall_clock_s();
+    const Model         *of = catalog_model(s->catalog, out->model);
     const SignatureLook *look = &out->middle;
     const SignatureCells cells = signature_default_cells(s->config.frequency_hz, s->config.bandwidth_hz,
                                                          s->config.aspect_rad, s->config.interval_s);
-    TubeConfig          config = tubes_default_config(s->config.frequency_hz);
-    Status              status = STATUS_OK;
+    TubeConfig           config = tubes_default_config(s->config.frequency_hz);
+    Status               status = STATUS_OK;
     config.rays_per_wavelength = s->config.rays_per_wavelength;
     config.splits = s->config.splits;
     config.warp_m = s->config.warp_m;

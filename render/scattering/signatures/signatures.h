@@ -19,20 +19,20 @@
 /* What a signature is for: antennas in the target's frame. */
 typedef struct SignatureLook {
     ScatterAntenna tx, rx;
-    bool           image[2];  /* whether transmitter, receiver is an image in the ground (ground_bounce.h) */
-    GroundPlane    plane;     /* where one is. Kept for a degree of its normal and 2 cm of its height */
+    bool           image[2]; /* whether transmitter, receiver is an image in the ground (ground_bounce.h) */
+    GroundPlane    plane;    /* where one is. Kept for a degree of its normal and 2 cm of its height */
 } SignatureLook;
 
 /* What a signature is of. */
 typedef struct SignatureKey {
-    const Model   *model;
-    const double  *joint;        /* [node_count]; wheels at 0 */
-    int            damage;
-    SignatureLook  look;         /* of the bins' middles */
+    const Model  *model;
+    const double *joint; /* [node_count]; wheels at 0 */
+    int           damage;
+    SignatureLook look; /* of the bins' middles */
 } SignatureKey;
 
 typedef struct SignatureStore {
-    void  *user;
+    void *user;
     /* False: it has none. */
     bool (*fetch)(void *user, Signature *out, const SignatureKey *key);
     /* From any thread. */
@@ -40,21 +40,21 @@ typedef struct SignatureStore {
 } SignatureStore;
 
 typedef struct SignaturesConfig {
-    double      frequency_hz, bandwidth_hz; /* centre of the band, and the band */
-    double      aspect_rad;          /* side of a bin */
-    double      interval_s;          /* SignatureCells */
-    double      rays_per_wavelength;
-    int         splits;              /* of tubes at edges (tubes.h); 0: fastest */
-    double      warp_m;              /* unevenness of surfaces (tubes.h), rms; 0: plane as the model has them */
-    size_t      most_octets;         /* of all; the one in use is kept beyond it */
-    bool        background;
-    SignatureStore store;            /* fetch NULL: none */
-    const char *isa;                 /* as tracer_create */
+    double         frequency_hz, bandwidth_hz; /* centre of the band, and the band */
+    double         aspect_rad;                 /* side of a bin */
+    double         interval_s;                 /* SignatureCells */
+    double         rays_per_wavelength;
+    int            splits;      /* of tubes at edges (tubes.h); 0: fastest */
+    double         warp_m;      /* unevenness of surfaces (tubes.h), rms; 0: plane as the model has them */
+    size_t         most_octets; /* of all; the one in use is kept beyond it */
+    bool           background;
+    SignatureStore store; /* fetch NULL: none */
+    const char    *isa;   /* as tracer_create */
 } SignaturesConfig;
 
 typedef struct SignatureCounters {
     uint64_t made, fetched, reused, dropped, missing, rays; /* missing: finds of one that was still to be made */
-    double   spent_s; /* wall clock, making them */
+    double   spent_s;                                       /* wall clock, making them */
 } SignatureCounters;
 
 typedef struct Signatures Signatures;
@@ -71,10 +71,10 @@ Status signatures_find(const Signature **out, Signatures *signatures, int model,
 /* Transmitter and receiver at one place, nothing by way of the ground. */
 SignatureLook signature_look(const ScatterAntenna *antenna);
 /* Pose of the nodes in the signature found last, body axes. */
-const NodePose *signatures_pose(const Signatures *signatures);
+const NodePose   *signatures_pose(const Signatures *signatures);
 SignatureCounters signatures_counters(const Signatures *signatures);
 /* Those that are to be made in the background. */
-int    signatures_waiting(const Signatures *signatures);
+int signatures_waiting(const Signatures *signatures);
 
 /* The middle of the bin that an antenna is in. */
 void signature_bin(ScatterAntenna *middle, const ScatterAntenna *antenna, double aspect_rad);

@@ -18,17 +18,27 @@ void ground_prepare(Ground *out, const Elevation *elevation)
     for (int k = 0; k < out->level_count; k++) {
         const ElevationLevel *e = &elevation->level[k];
         GroundLevel          *g = &out->level[k];
-        *g = (GroundLevel){.stored = e->stored, .tile = e->tile, .plain = e->plain, .tiles_x = e->tiles_x,
-                           .cells_x = e->nx - 1, .cells_y = e->ny - 1, .top = e->pyramid_count - 1,
-                           .pyramid_base = e->pyramid_base, .pyramid_shift = e->pyramid_shift,
-                           .rise_unit = 1 << e->rise_shift, .x0_m = e->x0_m, .y0_m = e->y0_m, .z0_m = e->z0_m,
-                           .cells_per_m = 1 / e->spacing_m, .posts_per_m = 1 / e->step_m};
+        *g = (GroundLevel){.stored = e->stored,
+                           .tile = e->tile,
+                           .plain = e->plain,
+                           .tiles_x = e->tiles_x,
+                           .cells_x = e->nx - 1,
+                           .cells_y = e->ny - 1,
+                           .top = e->pyramid_count - 1,
+                           .pyramid_base = e->pyramid_base,
+                           .pyramid_shift = e->pyramid_shift,
+                           .rise_unit = 1 << e->rise_shift,
+                           .x0_m = e->x0_m,
+                           .y0_m = e->y0_m,
+                           .z0_m = e->z0_m,
+                           .cells_per_m = 1 / e->spacing_m,
+                           .posts_per_m = 1 / e->step_m};
         for (int p = 0; p < e->pyramid_count; p++) {
-            g->pyramid[p]    = e->pyramid[p];
-            g->rise[p]       = e->rise[p];
+            g->pyramid[p] = e->pyramid[p];
+            g->rise[p] = e->rise[p];
             g->pyramid_nx[p] = e->pyramid_nx[p];
         }
-        g->highest  = ground_highest(g, g->top, 0, 0);
+        g->highest = ground_highest(g, g->top, 0, 0);
         g->steepest = steepest(g);
     }
 }
@@ -42,16 +52,16 @@ static bool level_interval(LevelRay *r, const GroundLevel *g)
     const double v_in = r->per_dv > 0 ? v_low : v_high, v_out = r->per_dv > 0 ? v_high : v_low;
     r->first_m = u_in > v_in ? u_in : v_in;
     r->first_m = r->first_m > 0 ? r->first_m : 0;
-    r->last_m  = u_out < v_out ? u_out : v_out;
+    r->last_m = u_out < v_out ? u_out : v_out;
     return r->first_m < r->last_m;
 }
 
 static void add_piece(GroundRay *out, int level, double first_m, double last_m)
 {
     if (!(first_m < last_m && first_m < farthest_m)) return;
-    out->level[out->piece_count]   = level;
+    out->level[out->piece_count] = level;
     out->first_m[out->piece_count] = first_m;
-    out->last_m[out->piece_count]  = last_m;
+    out->last_m[out->piece_count] = last_m;
     out->piece_count++;
 }
 
@@ -94,7 +104,7 @@ static double level_first_hit(GroundHit *hit, const GroundLevel *g, const LevelR
         const double at_u = (line_u - r->u0) * r->per_du, at_v = (line_v - r->v0) * r->per_dv;
         double       next = at_u < at_v ? at_u : at_v;
         next = next < r->last_m ? next : r->last_m;
-        const double lowest  = r->w0 + (r->dw < 0 ? next : t) * r->dw;
+        const double  lowest = r->w0 + (r->dw < 0 ? next : t) * r->dw;
         const int32_t highest = k > 0 ? ground_highest(g, k, node_i, node_j) : ground_cell_highest(g, i, j);
         if (!(lowest > highest + ground_clear_posts)) {
             if (k > 0) {
@@ -130,7 +140,7 @@ double ground_first_hit(GroundHit *hit, const Ground *ground, const double o_enu
         const int level = ray.level[p];
         LevelRay *r = &ray.of_level[level];
         r->first_m = ray.first_m[p];
-        r->last_m  = ray.last_m[p];
+        r->last_m = ray.last_m[p];
         const double range_m = level_first_hit(hit, &ground->level[level], r, far_m);
         if (range_m < INFINITY) {
             if (hit) hit->level = level;
@@ -165,11 +175,11 @@ static void find_rises(TriangleRises *out, const Ground *ground, const GroundHit
 {
     const GroundLevel *g = &ground->level[hit->level];
     const unsigned     i = (unsigned)hit->i, j = (unsigned)hit->j, north_west = hit->north_west; /* not negative */
-    const unsigned     in_i = i % elevation_tile_cells, in_j = j % elevation_tile_cells, last = elevation_tile_cells - 1;
-    const unsigned     tile = j / elevation_tile_cells * (unsigned)g->tiles_x + i / elevation_tile_cells;
-    const ptrdiff_t    row = elevation_tile_side;
-    const uint16_t    *sw = g->stored + (size_t)tile * elevation_tile_posts + in_j * elevation_tile_side + in_i;
-    const uint16_t    *along = sw + (north_west ? row : 0), *up = sw + !north_west;
+    const unsigned  in_i = i % elevation_tile_cells, in_j = j % elevation_tile_cells, last = elevation_tile_cells - 1;
+    const unsigned  tile = j / elevation_tile_cells * (unsigned)g->tiles_x + i / elevation_tile_cells;
+    const ptrdiff_t row = elevation_tile_side;
+    const uint16_t *sw = g->stored + (size_t)tile * elevation_tile_posts + in_j * elevation_tile_side + in_i;
+    const uint16_t *along = sw + (north_west ? row : 0), *up = sw + !north_west;
     *out = (TriangleRises){.of = {[west_east] = along[1] - along[0], [south_north] = up[row] - up[0]}};
     /* all neighbours of its posts are in its tile and level */
     const bool inside = (in_i > 0) & (in_j > 0) & (in_i < last) & (in_j < last) & (i + 2 <= (unsigned)g->cells_x) &
@@ -177,7 +187,7 @@ static void find_rises(TriangleRises *out, const Ground *ground, const GroundHit
     if (inside) {
         const uint16_t *post[3] = {sw, sw + row + 1, sw + (north_west ? row : 1)};
         for (int k = 0; k < 3; k++) {
-            out->of[post_sw + 2 * k]     = post[k][1] - post[k][-1];
+            out->of[post_sw + 2 * k] = post[k][1] - post[k][-1];
             out->of[post_sw + 2 * k + 1] = post[k][row] - post[k][-row];
         }
     }
@@ -209,7 +219,7 @@ static inline void turn_rises(F64x4 out[rises], const TriangleRises rise[ground_
     const I32x8 pair[4] = {_mm256_unpacklo_epi64(low_a, low_b), _mm256_unpackhi_epi64(low_a, low_b),
                            _mm256_unpacklo_epi64(high_a, high_b), _mm256_unpackhi_epi64(high_a, high_b)};
     for (int n = 0; n < 4; n++) {
-        out[n]     = f64x4_of_ints(_mm256_castsi256_si128(pair[n]));
+        out[n] = f64x4_of_ints(_mm256_castsi256_si128(pair[n]));
         out[n + 4] = f64x4_of_ints(_mm256_extracti128_si256(pair[n], 1));
     }
 }
@@ -249,7 +259,8 @@ void ground_normals(double n_geo[3][ground_normals_lanes], double n_enu[3][groun
         const GroundHit   *h = &hit[i];
         const GroundLevel *g = &ground->level[h->level];
         const bool         level = before && h->level == before->level;
-        if (level && h->i == before->i && h->j == before->j && h->north_west == before->north_west) four.rise[k] = four.rise[k - 1];
+        if (level && h->i == before->i && h->j == before->j && h->north_west == before->north_west)
+            four.rise[k] = four.rise[k - 1];
         else find_rises(&four.rise[k], ground, h);
         four.scale[k] = level ? four.scale[k - 1] : g->cells_per_m / g->posts_per_m;
         four.a[k] = (x_m[i] - g->x0_m) * g->cells_per_m - h->i;

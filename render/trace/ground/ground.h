@@ -15,18 +15,18 @@
 
 /* One level in tracer units: lengths in cells, heights in posts. */
 typedef struct GroundLevel {
-    const uint16_t *stored;                    /* posts, in tiles */
+    const uint16_t      *stored; /* posts, in tiles */
     const ElevationTile *tile;
-    bool            plain;                     /* every tile has base 0 and shift 0 */
-    const uint16_t *pyramid[elevation_pyramid_levels]; /* NULL below elevation_pyramid_first */
-    int             pyramid_nx[elevation_pyramid_levels];
-    int32_t         pyramid_base, pyramid_shift; /* posts: base + (entry << shift) */
-    double          rise_unit;                 /* posts */
+    bool                 plain;                             /* every tile has base 0 and shift 0 */
+    const uint16_t      *pyramid[elevation_pyramid_levels]; /* NULL below elevation_pyramid_first */
+    int                  pyramid_nx[elevation_pyramid_levels];
+    int32_t              pyramid_base, pyramid_shift;    /* posts: base + (entry << shift) */
+    double               rise_unit;                      /* posts */
     const ElevationRise *rise[elevation_pyramid_levels]; /* NULL on the finest */
-    int             tiles_x, cells_x, cells_y, top; /* tiles a row; cells; index of the pyramid's single entry */
-    double          x0_m, y0_m, z0_m, cells_per_m, posts_per_m;
-    double          highest;                   /* post */
-    double          steepest;                  /* no edge of a cell rises by more posts */
+    int                  tiles_x, cells_x, cells_y, top; /* tiles a row; cells; index of the pyramid's single entry */
+    double               x0_m, y0_m, z0_m, cells_per_m, posts_per_m;
+    double               highest;  /* post */
+    double               steepest; /* no edge of a cell rises by more posts */
 } GroundLevel;
 
 /* Borrows the elevation's arrays; no allocation. */
@@ -68,9 +68,9 @@ void ground_first_hits_together(double *range_m, GroundHit *hit, const Ground *g
 bool ground_is_clear(const Ground *ground, const double from[2][3], const double to[2][3]);
 bool ground_is_clear_towards(const Ground *ground, const double from[2][3], const double d_enu[3]);
 
-/* Upward unit normals at the hits hit[list[k]], k < count <= ground_normals_lanes: those of the triangles that were met,
- * and those interpolated between central differences at their posts, for shading. Results of lane k depend on its hit
- * alone; lanes from count on repeat the first. x_m, y_m: of the hits, as hit. */
+/* Upward unit normals at the hits hit[list[k]], k < count <= ground_normals_lanes: those of the triangles that were
+ * met, and those interpolated between central differences at their posts, for shading. Results of lane k depend on its
+ * hit alone; lanes from count on repeat the first. x_m, y_m: of the hits, as hit. */
 enum { ground_normals_lanes = 4 };
 void ground_normals(double n_geo[3][ground_normals_lanes], double n_enu[3][ground_normals_lanes], const Ground *ground,
                     const GroundHit *hit, const int *list, int count, const double *x_m, const double *y_m);

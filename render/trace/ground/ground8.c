@@ -7,14 +7,13 @@
 
 enum { lanes = 8 };
 
-
 /* State of the lanes: all that a step reads and writes. */
 typedef struct Walk {
     double u0[lanes], v0[lanes], w0[lanes], du[lanes], dv[lanes], dw[lanes], per_du[lanes], per_dv[lanes];
-    double east[lanes], north[lanes];       /* 1 where the ray goes that way, else 0 */
-    double last_u[lanes], last_v[lanes];    /* last cell */
+    double east[lanes], north[lanes];    /* 1 where the ray goes that way, else 0 */
+    double last_u[lanes], last_v[lanes]; /* last cell */
     double top[lanes], last_m[lanes], stop_m[lanes];
-    double t_m[lanes], i[lanes], j[lanes];  /* now at this distance, in this cell */
+    double t_m[lanes], i[lanes], j[lanes];         /* now at this distance, in this cell */
     double k[lanes], size[lanes], per_size[lanes]; /* of the node: level, cells a side */
 } Walk __attribute__((aligned(64)));
 
@@ -40,12 +39,12 @@ static inline Seen look(const Walk *w, int l, const GroundLevel *const level[4])
 {
     const F64x4 t = f64x4_load(w->t_m + l), size = f64x4_load(w->size + l), per_size = f64x4_load(w->per_size + l);
     const F64x4 dw = f64x4_load(w->dw + l);
-    Seen       s;
+    Seen        s;
     s.node_i = f64x4_floor(f64x4_load(w->i + l) * per_size);
     s.node_j = f64x4_floor(f64x4_load(w->j + l) * per_size);
     const F64x4 highest = look_up(s.node_i, s.node_j, f64x4_load(w->k + l), level);
-    s.at_u   = ((s.node_i + f64x4_load(w->east + l)) * size - f64x4_load(w->u0 + l)) * f64x4_load(w->per_du + l);
-    s.at_v   = ((s.node_j + f64x4_load(w->north + l)) * size - f64x4_load(w->v0 + l)) * f64x4_load(w->per_dv + l);
+    s.at_u = ((s.node_i + f64x4_load(w->east + l)) * size - f64x4_load(w->u0 + l)) * f64x4_load(w->per_du + l);
+    s.at_v = ((s.node_j + f64x4_load(w->north + l)) * size - f64x4_load(w->v0 + l)) * f64x4_load(w->per_dv + l);
     s.next_m = f64x4_min(f64x4_min(s.at_u, s.at_v), f64x4_load(w->last_m + l));
     const F64x4 lowest = f64x4_load(w->w0 + l) + f64x4_select(dw, s.next_m, t) * dw;
     s.clear = f64x4_less(highest + f64x4_set(ground_clear_posts), lowest);
@@ -96,16 +95,15 @@ typedef struct Stream {
     int                  count, next;
     const int           *list; /* indices; NULL: all */
     const double *const *o, *const *d;
-    const double        *far_m, *from_m; /* from_m NULL: from the origins */
-    double              *range_m;
-    GroundHit           *hit;
-    int                  ray_of[lanes];
-    const GroundLevel   *level[lanes];
-    GroundRay            ray[lanes];
+    const double      *far_m, *from_m; /* from_m NULL: from the origins */
+    double            *range_m;
+    GroundHit         *hit;
+    int                ray_of[lanes];
+    const GroundLevel *level[lanes];
+    GroundRay          ray[lanes];
 } Stream;
 
-static void put_piece(Walk *w, int l, const GroundLevel *g, const LevelRay *r, double start_m, double stop_m,
-                      int k)
+static void put_piece(Walk *w, int l, const GroundLevel *g, const LevelRay *r, double start_m, double stop_m, int k)
 {
     w->u0[l] = r->u0, w->v0[l] = r->v0, w->w0[l] = r->w0;
     w->du[l] = r->du, w->dv[l] = r->dv, w->dw[l] = r->dw;
@@ -130,7 +128,7 @@ static bool refill(Stream *stream, Walk *w, int l)
             LevelRay          *r = &ray->of_level[ray->level[p]];
             double             start_m, stop_m;
             r->first_m = ray->first_m[p];
-            r->last_m  = ray->last_m[p];
+            r->last_m = ray->last_m[p];
             ground_walk(&start_m, &stop_m, g, r, stream->far_m[stream->ray_of[l]]);
             int k = ground_start_level(g, r);
             if (stream->from_m && stream->from_m[stream->ray_of[l]] > start_m) {
@@ -154,10 +152,10 @@ static bool refill(Stream *stream, Walk *w, int l)
 /* Tests the triangles of a lane's cell. True: the ray is decided. */
 static bool meets_cell(Stream *stream, const Walk *w, int l)
 {
-    GroundRay *ray   = &stream->ray[l];
-    const int  level = ray->level[ray->piece - 1], n = stream->ray_of[l];
-    const int  i = (int)w->i[l], j = (int)w->j[l];
-    bool       north_west;
+    GroundRay   *ray = &stream->ray[l];
+    const int    level = ray->level[ray->piece - 1], n = stream->ray_of[l];
+    const int    i = (int)w->i[l], j = (int)w->j[l];
+    bool         north_west;
     const double range_m = ground_cell_hit(stream->level[l], &ray->of_level[level], i, j, &north_west);
     if (!(range_m < INFINITY)) return false;
     ray->piece = ray->piece_count;
@@ -176,8 +174,15 @@ void ground_first_hits_from(double *range_m, GroundHit *hit, const Ground *groun
         return;
     }
     Walk     w;
-    Stream   stream = {.ground = ground, .count = count, .o = o_enu, .d = d_enu, .far_m = far_m,
-                       .from_m = from_m, .list = list, .range_m = range_m, .hit = hit};
+    Stream   stream = {.ground = ground,
+                       .count = count,
+                       .o = o_enu,
+                       .d = d_enu,
+                       .far_m = far_m,
+                       .from_m = from_m,
+                       .list = list,
+                       .range_m = range_m,
+                       .hit = hit};
     unsigned busy = 0;
     for (int l = 0; l < lanes; l++) {
         /* an idle lane is in the first cell of level 0 and its results are ignored */
@@ -190,7 +195,7 @@ void ground_first_hits_from(double *range_m, GroundHit *hit, const Ground *groun
         const unsigned clear = f64x4_bits(low.clear) | f64x4_bits(high.clear) << 4;
         const unsigned down = f64x4_bits(f64x4_less(f64x4_set(0), f64x4_load(w.k))) |
                               f64x4_bits(f64x4_less(f64x4_set(0), f64x4_load(w.k + 4))) << 4;
-        unsigned       decided = 0, over;
+        unsigned decided = 0, over;
         for (unsigned at_cell = busy & ~(clear | down); at_cell; at_cell &= at_cell - 1) {
             const int l = __builtin_ctz(at_cell);
             if (meets_cell(&stream, &w, l)) decided |= 1u << l;

@@ -22,12 +22,12 @@ static const double sure_posts = 1e-3, sure_steep_posts = 65536, sure_cells = 1e
 
 /* Four rays over one level: LevelRay, and their positions. */
 typedef struct Rays4 {
-    F64x4 u0, v0, w0, du, dv, dw, per_du, per_dv, per_duv, first_m, last_m, stop_m;
-    F64x4 t_m, i, j, on;             /* on: mask of the active rays; i, j: cell or node */
-    F64x4 gone;                      /* mask: above everything for good, or as far as was requested */
-    __m256i u_way, v_way;           /* shift of their bits in an ElevationRise */
-    F64x4 above, sure;               /* mask: proven to be `sure` posts above the ground at their position */
-    F64x4 met, at[3], clear[3], met_i, met_j; /* of those that met the surface: the cell and its three points */
+    F64x4   u0, v0, w0, du, dv, dw, per_du, per_dv, per_duv, first_m, last_m, stop_m;
+    F64x4   t_m, i, j, on;                      /* on: mask of the active rays; i, j: cell or node */
+    F64x4   gone;                               /* mask: above everything for good, or as far as was requested */
+    __m256i u_way, v_way;                       /* shift of their bits in an ElevationRise */
+    F64x4   above, sure;                        /* mask: proven to be `sure` posts above the ground at their position */
+    F64x4   met, at[3], clear[3], met_i, met_j; /* of those that met the surface: the cell and its three points */
 } Rays4;
 
 /* ground_inverse_across, ground_inverse, four times. */
@@ -52,7 +52,7 @@ static inline void interval(F64x4 *first_m, F64x4 *last_m, F64x4 u0, F64x4 v0, F
     const F64x4 u_in = f64x4_select(per_du, u_high, u_low), u_out = f64x4_select(per_du, u_low, u_high);
     const F64x4 v_in = f64x4_select(per_dv, v_high, v_low), v_out = f64x4_select(per_dv, v_low, v_high);
     *first_m = f64x4_max(f64x4_max(u_in, v_in), zero);
-    *last_m  = f64x4_min(u_out, v_out);
+    *last_m = f64x4_min(u_out, v_out);
 }
 
 static inline void level_rays(Rays4 *r, const GroundLevel *g, const double *const o[3], const double *const d[3], int n)
@@ -87,7 +87,7 @@ static inline F64x4 usable(const double *const o[3], const double *const d[3], c
 static inline __m128i posts_of(const GroundLevel *g, __m128i tile, __m128i stored)
 {
     if (g->plain) return stored;
-    int32_t     index[4];
+    int32_t       index[4];
     ElevationTile of[4];
     _mm_storeu_si128((__m128i *)index, tile);
     for (int l = 0; l < 4; l++) of[l] = g->tile[index[l]];
@@ -107,10 +107,11 @@ static inline __m128i stored_at(__m128i *tile, const GroundLevel *g, F64x4 i, F6
 {
     enum { bits = 6 };
     _Static_assert(elevation_tile_cells == 1 << bits && elevation_tile_side == (1 << bits) + 1 &&
-                  elevation_tile_posts == (1 << 2 * bits) + (2 << bits) + 1, "products below are shifts");
+                       elevation_tile_posts == (1 << 2 * bits) + (2 << bits) + 1,
+                   "products below are shifts");
     const __m128i a = _mm256_cvttpd_epi32(i), b = _mm256_cvttpd_epi32(j), inside = _mm_set1_epi32((1 << bits) - 1);
-    const __m128i t = _mm_add_epi32(_mm_mullo_epi32(_mm_srli_epi32(b, bits), _mm_set1_epi32(g->tiles_x)),
-                                    _mm_srli_epi32(a, bits));
+    const __m128i t =
+        _mm_add_epi32(_mm_mullo_epi32(_mm_srli_epi32(b, bits), _mm_set1_epi32(g->tiles_x)), _mm_srli_epi32(a, bits));
     const __m128i row = _mm_and_si128(b, inside), column = _mm_and_si128(a, inside);
     const __m128i first = _mm_add_epi32(_mm_add_epi32(_mm_slli_epi32(t, 2 * bits), _mm_slli_epi32(t, bits + 1)), t);
     *tile = t;
@@ -121,9 +122,9 @@ static inline __m128i stored_at(__m128i *tile, const GroundLevel *g, F64x4 i, F6
 static inline void leave(Rays4 *r)
 {
     r->gone = f64x4_or(r->gone, f64x4_and(r->on, f64x4_at_most(r->stop_m, r->t_m)));
-    r->on   = f64x4_and_not(f64x4_and(r->on, f64x4_less(r->t_m, r->last_m)), r->gone);
-    r->i    = f64x4_and(r->on, r->i); /* an inactive ray is in the first cell, where posts can be loaded */
-    r->j    = f64x4_and(r->on, r->j);
+    r->on = f64x4_and_not(f64x4_and(r->on, f64x4_less(r->t_m, r->last_m)), r->gone);
+    r->i = f64x4_and(r->on, r->i); /* an inactive ray is in the first cell, where posts can be loaded */
+    r->j = f64x4_and(r->on, r->j);
 }
 
 /* Two posts each, from four positions. Scalar loads are faster than the gather instruction. */
@@ -141,17 +142,17 @@ static inline void cell(Rays4 *r, const GroundLevel *g)
 {
     const F64x4 zero = f64x4_set(0), one = f64x4_set(1), i = r->i, j = r->j;
     /* entry and exit points, and the posts: two of a row at once */
-    const F64x4    u_low = (i - r->u0) * r->per_du, u_high = (i + one - r->u0) * r->per_du;
-    const F64x4    v_low = (j - r->v0) * r->per_dv, v_high = (j + one - r->v0) * r->per_dv;
+    const F64x4   u_low = (i - r->u0) * r->per_du, u_high = (i + one - r->u0) * r->per_du;
+    const F64x4   v_low = (j - r->v0) * r->per_dv, v_high = (j + one - r->v0) * r->per_dv;
     __m128i       tile;
     const __m128i at = stored_at(&tile, g, i, j), low = _mm_set1_epi32(0xffff);
     const __m128i south = pairs(g->stored, at), north = pairs(g->stored + elevation_tile_side, at);
-    const F64x4    sw = f64x4_of_ints(posts_of(g, tile, _mm_and_si128(south, low)));
-    const F64x4    se = f64x4_of_ints(posts_of(g, tile, _mm_srli_epi32(south, 16)));
-    const F64x4    nw = f64x4_of_ints(posts_of(g, tile, _mm_and_si128(north, low)));
-    const F64x4    ne = f64x4_of_ints(posts_of(g, tile, _mm_srli_epi32(north, 16)));
-    const F64x4    u_out = f64x4_select(r->per_du, u_low, u_high), v_out = f64x4_select(r->per_dv, v_low, v_high);
-    F64x4          t[3];
+    const F64x4   sw = f64x4_of_ints(posts_of(g, tile, _mm_and_si128(south, low)));
+    const F64x4   se = f64x4_of_ints(posts_of(g, tile, _mm_srli_epi32(south, 16)));
+    const F64x4   nw = f64x4_of_ints(posts_of(g, tile, _mm_and_si128(north, low)));
+    const F64x4   ne = f64x4_of_ints(posts_of(g, tile, _mm_srli_epi32(north, 16)));
+    const F64x4   u_out = f64x4_select(r->per_du, u_low, u_high), v_out = f64x4_select(r->per_dv, v_low, v_high);
+    F64x4         t[3];
     t[0] = f64x4_max(f64x4_max(f64x4_min(u_low, u_high), f64x4_min(v_low, v_high)), r->first_m);
     t[2] = f64x4_min(f64x4_min(u_out, v_out), r->last_m);
     /* a ray whose lower end is above the highest of the four posts is above the rest */
@@ -175,24 +176,24 @@ static inline void cell(Rays4 *r, const GroundLevel *g)
             clear[p] = r->w0 + t[p] * r->dw - z;
         }
         const F64x4 above = f64x4_and(f64x4_less(zero, f64x4_min(clear[0], clear[1])), f64x4_less(zero, clear[2]));
-        meets  = f64x4_and_not(r->on, above);
+        meets = f64x4_and_not(r->on, above);
         at_end = clear[2];
         for (int p = 0; p < 3; p++) {
-            r->at[p]    = f64x4_select(meets, t[p], r->at[p]);
+            r->at[p] = f64x4_select(meets, t[p], r->at[p]);
             r->clear[p] = f64x4_select(meets, clear[p], r->clear[p]);
         }
-        r->met   = f64x4_or(r->met, meets);
+        r->met = f64x4_or(r->met, meets);
         r->met_i = f64x4_select(meets, i, r->met_i);
         r->met_j = f64x4_select(meets, j, r->met_j);
     }
 
     /* step */
     const F64x4 sign = f64x4_set(-0.0), next = t[2];
-    r->on    = f64x4_and_not(r->on, meets);
+    r->on = f64x4_and_not(r->on, meets);
     r->above = f64x4_select(r->on, f64x4_less(r->sure, at_end), r->above);
     r->t_m = f64x4_select(r->on, next, r->t_m);
-    r->i   = i + f64x4_and(f64x4_and(r->on, f64x4_at_most(u_out, next)), f64x4_or(one, f64x4_and(sign, r->per_du)));
-    r->j   = j + f64x4_and(f64x4_and(r->on, f64x4_at_most(v_out, next)), f64x4_or(one, f64x4_and(sign, r->per_dv)));
+    r->i = i + f64x4_and(f64x4_and(r->on, f64x4_at_most(u_out, next)), f64x4_or(one, f64x4_and(sign, r->per_du)));
+    r->j = j + f64x4_and(f64x4_and(r->on, f64x4_at_most(v_out, next)), f64x4_or(one, f64x4_and(sign, r->per_dv)));
     leave(r);
 }
 
@@ -219,12 +220,12 @@ static inline F64x4 node(Rays4 *r, const GroundLevel *g, int k, bool steep)
 {
     const F64x4 one = f64x4_set(1), sign = f64x4_set(-0.0), size = f64x4_set(1 << k);
     const F64x4 east = f64x4_select(r->per_du, f64x4_set(0), one), north = f64x4_select(r->per_dv, f64x4_set(0), one);
-    int32_t    index[4];
+    int32_t     index[4];
     _mm_storeu_si128((__m128i *)index, element(r->i, r->j, g->pyramid_nx[k]));
     const uint16_t *z = g->pyramid[k];
-    const __m128i entry = _mm_set_epi32(z[index[3]], z[index[2]], z[index[1]], z[index[0]]);
-    const F64x4 highest = f64x4_of_ints(
-        _mm_add_epi32(_mm_set1_epi32(g->pyramid_base), _mm_sll_epi32(entry, _mm_cvtsi32_si128(g->pyramid_shift))));
+    const __m128i   entry = _mm_set_epi32(z[index[3]], z[index[2]], z[index[1]], z[index[0]]);
+    const F64x4     highest = f64x4_of_ints(
+            _mm_add_epi32(_mm_set1_epi32(g->pyramid_base), _mm_sll_epi32(entry, _mm_cvtsi32_si128(g->pyramid_shift))));
     const F64x4 at_u = ((r->i + east) * size - r->u0) * r->per_du, at_v = ((r->j + north) * size - r->v0) * r->per_dv;
     const F64x4 next = f64x4_min(f64x4_min(at_u, at_v), r->last_m);
     const F64x4 lowest = r->w0 + f64x4_select(r->dw, next, r->t_m) * r->dw;
@@ -238,19 +239,19 @@ static inline F64x4 node(Rays4 *r, const GroundLevel *g, int k, bool steep)
         const __m256i by_u = _mm256_and_si256(_mm256_srlv_epi64(all, r->u_way), low);
         const __m256i by_v = _mm256_and_si256(_mm256_srlv_epi64(all, r->v_way), low);
         /* integers below 2^52 become doubles by their exponent */
-        const F64x4    magic = f64x4_set(0x1p52);
-        const F64x4    rise_u = _mm256_castsi256_pd(_mm256_or_si256(by_u, _mm256_castpd_si256(magic))) - magic;
-        const F64x4    rise_v = _mm256_castsi256_pd(_mm256_or_si256(by_v, _mm256_castpd_si256(magic))) - magic;
-        const F64x4    ground = (rise_u * f64x4_abs(r->du) + rise_v * f64x4_abs(r->dv)) * f64x4_set(g->rise_unit);
+        const F64x4 magic = f64x4_set(0x1p52);
+        const F64x4 rise_u = _mm256_castsi256_pd(_mm256_or_si256(by_u, _mm256_castpd_si256(magic))) - magic;
+        const F64x4 rise_v = _mm256_castsi256_pd(_mm256_or_si256(by_v, _mm256_castpd_si256(magic))) - magic;
+        const F64x4 ground = (rise_u * f64x4_abs(r->du) + rise_v * f64x4_abs(r->dv)) * f64x4_set(g->rise_unit);
         outrun = f64x4_and(r->above, f64x4_less(ground + f64x4_set(1e-9), r->dw));
-        clear  = f64x4_or(clear, outrun);
+        clear = f64x4_or(clear, outrun);
     }
     clear = f64x4_and(clear, r->on);
     r->above = f64x4_select(clear, f64x4_or(sure, outrun), r->above);
     const F64x4 blocked = f64x4_and_not(r->on, clear);
     r->t_m = f64x4_select(clear, next, r->t_m);
-    r->i   = r->i + f64x4_and(f64x4_and(clear, f64x4_at_most(at_u, next)), f64x4_or(one, f64x4_and(sign, r->per_du)));
-    r->j   = r->j + f64x4_and(f64x4_and(clear, f64x4_at_most(at_v, next)), f64x4_or(one, f64x4_and(sign, r->per_dv)));
+    r->i = r->i + f64x4_and(f64x4_and(clear, f64x4_at_most(at_u, next)), f64x4_or(one, f64x4_and(sign, r->per_du)));
+    r->j = r->j + f64x4_and(f64x4_and(clear, f64x4_at_most(at_v, next)), f64x4_or(one, f64x4_and(sign, r->per_dv)));
     leave(r);
     return f64x4_and(blocked, r->on);
 }
@@ -319,20 +320,21 @@ static inline void begin(Rays4 *r, const Ground *ground, int level, const double
             f64x4_select(f64x4_less(inner.first_m, inner.last_m), f64x4_min(inner.first_m, r->last_m), r->last_m);
     }
     r->gone = r->above = f64x4_set(0);
-    const F64x4 size = f64x4_max(f64x4_abs(r->u0), f64x4_abs(r->v0));
-    const F64x4 tame = f64x4_and(f64x4_at_most(size, f64x4_set(sure_cells)),
-                                 f64x4_at_most(f64x4_abs(r->w0), f64x4_set(sure_height_posts)));
+    const F64x4  size = f64x4_max(f64x4_abs(r->u0), f64x4_abs(r->v0));
+    const F64x4  tame = f64x4_and(f64x4_at_most(size, f64x4_set(sure_cells)),
+                                  f64x4_at_most(f64x4_abs(r->w0), f64x4_set(sure_height_posts)));
     const double sure = sure_posts * fmax(g->steepest / sure_steep_posts, 1);
     r->sure = f64x4_select(tame, f64x4_set(sure), f64x4_set(INFINITY));
     r->u_way = bits_16(f64x4_less(r->du, f64x4_set(0)));
     r->v_way = _mm256_add_epi64(_mm256_set1_epi64x(32), bits_16(f64x4_less(r->dv, f64x4_set(0))));
     /* rising, it is above everything from `above` on, if that is near enough to be exact; far_m limits the search */
-    const F64x4 rises = f64x4_and(f64x4_less(f64x4_set(1e-12), r->dw), f64x4_at_most(f64x4_abs(r->w0), f64x4_set(sure_height_posts)));
+    const F64x4 rises =
+        f64x4_and(f64x4_less(f64x4_set(1e-12), r->dw), f64x4_at_most(f64x4_abs(r->w0), f64x4_set(sure_height_posts)));
     r->stop_m =
         f64x4_min(f64x4_select(rises, (f64x4_set(above) - r->w0) / r->dw, f64x4_set(INFINITY)), f64x4_loadu(far_m + n));
     const F64x4 from = f64x4_loadu(from_m + n);
     r->t_m = f64x4_select(good, f64x4_max(r->first_m, from), from);
-    r->on  = f64x4_and(good, f64x4_less(r->t_m, r->last_m));
+    r->on = f64x4_and(good, f64x4_less(r->t_m, r->last_m));
     r->met = r->met_i = r->met_j = f64x4_set(0);
     for (int p = 0; p < 3; p++) r->at[p] = r->clear[p] = f64x4_set(0);
 }
@@ -351,8 +353,8 @@ static inline void end(double *range_m, GroundHit *hit, const Rays4 *r, int leve
     const F64x4 north_west = f64x4_less(r->u0 + middle * r->du - r->met_i, r->v0 + middle * r->dv - r->met_j);
     const F64x4 near = f64x4_less(range, f64x4_loadu(far_m + n));
     const F64x4 seen = f64x4_and(r->met, near);
-    double     out[4];
-    int32_t    i[4], j[4];
+    double      out[4];
+    int32_t     i[4], j[4];
     f64x4_storeu(out, f64x4_select(seen, range, f64x4_set(INFINITY)));
     _mm_storeu_si128((__m128i *)i, _mm256_cvttpd_epi32(r->met_i));
     _mm_storeu_si128((__m128i *)j, _mm256_cvttpd_epi32(r->met_j));
@@ -427,7 +429,7 @@ int ground_near_hits(int *left, double *range_m, GroundHit *hit, const Ground *g
         for (int n = 0; n < count; n++) left[n] = n;
         return count;
     }
-    const GroundLevel *g     = &ground->level[level];
+    const GroundLevel *g = &ground->level[level];
     const double       above = above_all(ground, g);
     if (start_level > g->top) start_level = g->top;
     for (int done = 0; done < count; done += group) {
@@ -448,7 +450,7 @@ int ground_near_hits(int *left, double *range_m, GroundHit *hit, const Ground *g
                     range_m[m + l] = INFINITY;
                     continue;
                 }
-                from_m[m + l]      = t_m[l];
+                from_m[m + l] = t_m[l];
                 left[left_count++] = m + l;
             }
         }

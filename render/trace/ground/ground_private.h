@@ -44,8 +44,8 @@ static inline void ground_level_ray(LevelRay *r, const GroundLevel *g, const dou
     r->du = d_enu[0] * g->cells_per_m;
     r->dv = d_enu[1] * g->cells_per_m;
     r->dw = d_enu[2] * g->posts_per_m;
-    r->per_du  = ground_inverse_across(r->du, r->u0, g->cells_x);
-    r->per_dv  = ground_inverse_across(r->dv, r->v0, g->cells_y);
+    r->per_du = ground_inverse_across(r->du, r->u0, g->cells_x);
+    r->per_dv = ground_inverse_across(r->dv, r->v0, g->cells_y);
     r->per_duv = ground_inverse(r->dv - r->du);
 }
 
@@ -66,7 +66,7 @@ void ground_ray(GroundRay *out, const Ground *ground, const double o_enu[3], con
 static inline void ground_walk(double *start_m, double *stop_m, const GroundLevel *g, const LevelRay *r, double far_m)
 {
     *start_m = r->first_m;
-    *stop_m  = r->last_m < far_m ? r->last_m : far_m;
+    *stop_m = r->last_m < far_m ? r->last_m : far_m;
     const double top_m = (g->highest + 1e-3 - r->w0) * ground_inverse(r->dw);
     if (!(r->w0 + top_m * r->dw > g->highest + ground_clear_posts)) return; /* too far away to be exact */
     if (r->dw < 0) *start_m = *start_m > top_m ? *start_m : top_m;
@@ -88,7 +88,7 @@ static inline int ground_start_level(const GroundLevel *g, const LevelRay *r)
 static inline int ground_cell_at(double p0, double dp, double per_dp, double t, int cells)
 {
     const double last = cells - 1;
-    double       e    = floor(p0 + t * dp);
+    double       e = floor(p0 + t * dp);
     e = e > 0 ? e : 0;
     e = e < last ? e : last;
     const double at_low = (e - p0) * per_dp, at_high = (e + 1 - p0) * per_dp;
@@ -111,7 +111,7 @@ static inline void ground_cell_posts(int32_t z[4], const GroundLevel *g, int i, 
     const unsigned  tile = cell_j / elevation_tile_cells * (unsigned)g->tiles_x + cell_i / elevation_tile_cells;
     const uint16_t *post = g->stored + (size_t)tile * elevation_tile_posts +
                            cell_j % elevation_tile_cells * elevation_tile_side + cell_i % elevation_tile_cells;
-    const uint16_t  sw = post[0], se = post[1], nw = post[elevation_tile_side], ne = post[elevation_tile_side + 1];
+    const uint16_t sw = post[0], se = post[1], nw = post[elevation_tile_side], ne = post[elevation_tile_side + 1];
     if (g->plain) {
         z[0] = sw, z[1] = se, z[2] = nw, z[3] = ne;
         return;
@@ -146,17 +146,17 @@ static inline int ground_level_below(int k) { return k > elevation_pyramid_first
  * one vector and without a branch: how a ray passes through a cell cannot be predicted. */
 static inline double ground_cell_hit(const GroundLevel *g, const LevelRay *r, int ci, int cj, bool *north_west)
 {
-    int32_t         z[4];
+    int32_t z[4];
     ground_cell_posts(z, g, ci, cj);
-    const double    sw = z[0], se = z[1], nw = z[2], ne = z[3];
-    const double    i = ci, j = cj;
-    const double    u_low = (i - r->u0) * r->per_du, u_high = (i + 1 - r->u0) * r->per_du;
-    const double    v_low = (j - r->v0) * r->per_dv, v_high = (j + 1 - r->v0) * r->per_dv;
-    const double    u_in = u_low < u_high ? u_low : u_high, u_out = u_low < u_high ? u_high : u_low;
-    const double    v_in = v_low < v_high ? v_low : v_high, v_out = v_low < v_high ? v_high : v_low;
-    double          in  = u_in > v_in ? u_in : v_in;
-    double          out = u_out < v_out ? u_out : v_out;
-    in  = in > r->first_m ? in : r->first_m;
+    const double sw = z[0], se = z[1], nw = z[2], ne = z[3];
+    const double i = ci, j = cj;
+    const double u_low = (i - r->u0) * r->per_du, u_high = (i + 1 - r->u0) * r->per_du;
+    const double v_low = (j - r->v0) * r->per_dv, v_high = (j + 1 - r->v0) * r->per_dv;
+    const double u_in = u_low < u_high ? u_low : u_high, u_out = u_low < u_high ? u_high : u_low;
+    const double v_in = v_low < v_high ? v_low : v_high, v_out = v_low < v_high ? v_high : v_low;
+    double       in = u_in > v_in ? u_in : v_in;
+    double       out = u_out < v_out ? u_out : v_out;
+    in = in > r->first_m ? in : r->first_m;
     out = out < r->last_m ? out : r->last_m;
     double diagonal = ((r->u0 - r->v0) - (i - j)) * r->per_duv;
     diagonal = diagonal > in ? diagonal : in;
@@ -180,8 +180,8 @@ static inline double ground_cell_hit(const GroundLevel *g, const LevelRay *r, in
     if (clear[0] > 0) {
         const int p = clear[1] > 0; /* reaches the surface before the diagonal, or after it */
         from = t[p];
-        to   = t[p + 1];
-        hit  = from + (to - from) * (clear[p] / (clear[p] - clear[p + 1]));
+        to = t[p + 1];
+        hit = from + (to - from) * (clear[p] / (clear[p] - clear[p + 1]));
     }
     const double middle = 0.5 * (from + to); /* well inside the triangle, where the hit itself may be on its edge */
     *north_west = r->u0 + middle * r->du - i < r->v0 + middle * r->dv - j;

@@ -37,8 +37,8 @@ static Axis axis_on(const GroundLevel *g, const double o_enu[3], bool along_v, b
 {
     const double u0 = (o_enu[0] - g->x0_m) * g->cells_per_m, v0 = (o_enu[1] - g->y0_m) * g->cells_per_m;
     Axis         axis = {.along_v = along_v, .forward = forward, .w0 = (o_enu[2] - g->z0_m) * g->posts_per_m};
-    axis.a0      = along_v ? v0 : u0;
-    axis.c0      = along_v ? u0 : v0;
+    axis.a0 = along_v ? v0 : u0;
+    axis.c0 = along_v ? u0 : v0;
     axis.a_cells = along_v ? g->cells_y : g->cells_x;
     axis.c_cells = along_v ? g->cells_x : g->cells_y;
     axis.eye_out = fmax(fmax(-u0, u0 - g->cells_x), fmax(-v0, v0 - g->cells_y));
@@ -107,7 +107,7 @@ static void sweep_level(Strip *s, const GroundLevel *g, const Axis *axis, double
                 q = q_low + b * q_step;
             } while (!(q * (q < 0 ? next : a) > limit));
         }
-        a    = next;
+        a = next;
         cell = axis->forward ? (row + 1) << k : (row << k) - 1;
         if (k < g->top && k < highest_row && ((row + axis->forward) & 1) == 0) k++;
     }
@@ -116,11 +116,11 @@ static void sweep_level(Strip *s, const GroundLevel *g, const Axis *axis, double
 static void sweep_strip(Strip *s, const Ground *ground, const double o_enu[3], bool along_v, bool forward)
 {
     s->buckets_per = s->q_high > s->q_low ? buckets * (1 - room_relative) / (s->q_high - s->q_low) : 0;
-    s->per_bucket  = s->q_high > s->q_low ? 1 / s->buckets_per : 0;
+    s->per_bucket = s->q_high > s->q_low ? 1 / s->buckets_per : 0;
     for (int b = 0; b < buckets; b++) s->start_m[b] = INFINITY;
     double from_m = 0; /* up to here an inner level has been processed */
     for (int n = 0; n < ground->level_count && !(s->start_m[buckets - 1] <= from_m); n++) {
-        const GroundLevel *g    = &ground->level[n];
+        const GroundLevel *g = &ground->level[n];
         const Axis         axis = axis_on(g, o_enu, along_v, forward);
         sweep_level(s, g, &axis, from_m * g->cells_per_m);
         from_m = fmax(from_m, covered(&axis, s) / g->cells_per_m);
@@ -129,7 +129,8 @@ static void sweep_strip(Strip *s, const Ground *ground, const double o_enu[3], b
 
 /* Distances before which rays from one eye meet nothing: from_m[i], INFINITY where that is everywhere. False: not
  * known, from_m is not written. */
-static bool ground_sweep(double *from_m, const Ground *ground, int count, const double o_enu[3], const double *const d_enu[3])
+static bool ground_sweep(double *from_m, const Ground *ground, int count, const double o_enu[3],
+                         const double *const d_enu[3])
 {
     const int strips = count / strip_rays < most_strips ? count / strip_rays : most_strips;
     double    sum[2] = {0}, per_a[ground_together], m[ground_together], q[ground_together];
@@ -150,10 +151,10 @@ static bool ground_sweep(double *from_m, const Ground *ground, int count, const 
         const double a = forward ? d_enu[along_v][i] : -d_enu[along_v][i];
         fit &= (a >= 0.02) & (a <= 2) & (fabs(d_enu[!along_v][i]) <= 2) & (fabs(d_enu[2][i]) <= 2);
         per_a[i] = 1 / a;
-        m[i]     = d_enu[!along_v][i] * per_a[i];
-        q[i]     = d_enu[2][i] * per_a[i];
-        m_low    = m[i] < m_low ? m[i] : m_low;
-        m_high   = m[i] > m_high ? m[i] : m_high;
+        m[i] = d_enu[!along_v][i] * per_a[i];
+        q[i] = d_enu[2][i] * per_a[i];
+        m_low = m[i] < m_low ? m[i] : m_low;
+        m_high = m[i] > m_high ? m[i] : m_high;
     }
     if (!fit || !(m_high - m_low < 0.5)) return false;
 
@@ -163,9 +164,9 @@ static bool ground_sweep(double *from_m, const Ground *ground, int count, const 
     for (int i = 0; i < count; i++) {
         Strip *s = &strip[strip_of[i] = (uint8_t)((m[i] - m_low) * per_m)];
         s->count++;
-        s->m_low  = m[i] < s->m_low ? m[i] : s->m_low;
+        s->m_low = m[i] < s->m_low ? m[i] : s->m_low;
         s->m_high = m[i] > s->m_high ? m[i] : s->m_high;
-        s->q_low  = q[i] < s->q_low ? q[i] : s->q_low;
+        s->q_low = q[i] < s->q_low ? q[i] : s->q_low;
         s->q_high = q[i] > s->q_high ? q[i] : s->q_high;
     }
     for (int k = 0; k < strips; k++)
@@ -196,10 +197,10 @@ static bool level_is_below(const GroundLevel *g, double low_m, const double low[
     double       from[2], to[2];
     for (int c = 0; c < 2; c++) {
         from[c] = floor((low[c] - corner[c]) * g->cells_per_m - beside_cells);
-        to[c]   = floor((high[c] - corner[c]) * g->cells_per_m + beside_cells);
+        to[c] = floor((high[c] - corner[c]) * g->cells_per_m + beside_cells);
         if (to[c] < 0 || from[c] > most[c] + 1) return true; /* beside it */
         from[c] = clamp(from[c], 0, most[c]);
-        to[c]   = clamp(to[c], 0, most[c]);
+        to[c] = clamp(to[c], 0, most[c]);
     }
     const double span = fmax(to[0] - from[0], to[1] - from[1]), post = (low_m - clear_m - g->z0_m) * g->posts_per_m;
     int          k = span > 2 ? elevation_pyramid_first : 0;
@@ -217,10 +218,11 @@ bool ground_is_clear(const Ground *ground, const double from[2][3], const double
     const double       cells[2] = {all->cells_x, all->cells_y}, corner[2] = {all->x0_m, all->y0_m};
     double             length_m = 0, size_m = 0;
     for (int c = 0; c < 2; c++) {
-        if (!((from[0][c] - corner[c]) * all->cells_per_m > 0 && (from[1][c] - corner[c]) * all->cells_per_m < cells[c]))
+        if (!((from[0][c] - corner[c]) * all->cells_per_m > 0 &&
+              (from[1][c] - corner[c]) * all->cells_per_m < cells[c]))
             return false; /* it could enter from the side */
         length_m = fmax(length_m, fmax(fabs(to[0][c] - from[0][c]), fabs(to[1][c] - from[1][c])));
-        size_m   = fmax(size_m, from[1][c] - from[0][c]);
+        size_m = fmax(size_m, from[1][c] - from[0][c]);
     }
     const double first_m = fmax(0.5 * size_m, 1 / ground->level[0].cells_per_m);
     double       share = 0, step = first_m < length_m ? first_m / length_m : 1;
@@ -228,7 +230,7 @@ bool ground_is_clear(const Ground *ground, const double from[2][3], const double
         const double end = share + step < 1 ? share + step : 1;
         double       low[3], high[3];
         for (int c = 0; c < 3; c++) {
-            low[c]  = from[0][c] + fmin(share * (to[0][c] - from[0][c]), end * (to[0][c] - from[0][c]));
+            low[c] = from[0][c] + fmin(share * (to[0][c] - from[0][c]), end * (to[0][c] - from[0][c]));
             high[c] = from[1][c] + fmax(share * (to[1][c] - from[1][c]), end * (to[1][c] - from[1][c]));
         }
         for (int k = 0; k < ground->level_count; k++)
@@ -298,7 +300,7 @@ void ground_first_hits_together(double *range_m, GroundHit *hit, const Ground *g
     for (int n = 0; n < count; n += ground_together) {
         const double *const o[3] = {o_enu[0] + n, o_enu[1] + n, o_enu[2] + n};
         const double *const d[3] = {d_enu[0] + n, d_enu[1] + n, d_enu[2] + n};
-        const int some = count - n < ground_together ? count - n : ground_together;
+        const int           some = count - n < ground_together ? count - n : ground_together;
         tile_hits(range_m + n, hit ? hit + n : NULL, ground, some, o, d, far_m + n);
     }
 }

@@ -5,16 +5,16 @@
 #include <stdlib.h>
 
 typedef struct ModelMeshes {
-    const Model *model;      /* NULL: not built yet */
+    const Model *model; /* NULL: not built yet */
     int          count;
-    NodeMesh    *mesh;       /* nodes that have triangles; one more for each combination of parts hidden by damage */
+    NodeMesh    *mesh; /* nodes that have triangles; one more for each combination of parts hidden by damage */
 } ModelMeshes;
 
 struct Tracer {
-    RTCDevice    device;
-    atomic_int   error; /* the first that Embree reported */
-    int          count;
-    ModelMeshes *model;
+    RTCDevice      device;
+    atomic_int     error; /* the first that Embree reported */
+    int            count;
+    ModelMeshes   *model;
     const Catalog *catalog; /* NULL: the models were given, and are built */
 };
 
@@ -31,10 +31,14 @@ static void latch_error(void *user, enum RTCError code, const char *text)
 static Status status_of_error(int code)
 {
     switch (code) {
-    case RTC_ERROR_NONE:            return STATUS_OK;
-    case RTC_ERROR_OUT_OF_MEMORY:   return STATUS_NO_MEMORY;
-    case RTC_ERROR_UNSUPPORTED_CPU: return STATUS_UNSUPPORTED;
-    default:                        return STATUS_BAD_VALUE;
+    case RTC_ERROR_NONE:
+        return STATUS_OK;
+    case RTC_ERROR_OUT_OF_MEMORY:
+        return STATUS_NO_MEMORY;
+    case RTC_ERROR_UNSUPPORTED_CPU:
+        return STATUS_UNSUPPORTED;
+    default:
+        return STATUS_BAD_VALUE;
     }
 }
 
@@ -47,7 +51,7 @@ static void bound_mesh(NodeMesh *mesh)
         for (int c = 0; c < 3; c++) {
             const double *p = model->vertex[model->triangle[mesh->triangle[t]][c]];
             for (int a = 0; a < 3; a++) {
-                low[a]  = fmin(low[a], p[a]);
+                low[a] = fmin(low[a], p[a]);
                 high[a] = fmax(high[a], p[a]);
             }
         }
@@ -84,11 +88,15 @@ static void nominate_box(const struct RTCBoundsFunctionArguments *a)
     }
     for (int x = 0; x < 3; x++) {
         const double p = f->corner[0][x], q = f->corner[1][x], r = f->corner[2][x];
-        low[x]  = (float)(fmin(p, fmin(q, r)) - mesh->centre[x] - room_m);
+        low[x] = (float)(fmin(p, fmin(q, r)) - mesh->centre[x] - room_m);
         high[x] = (float)(fmax(p, fmax(q, r)) - mesh->centre[x] + room_m);
     }
-    *a->bounds_o = (struct RTCBounds){.lower_x = low[0], .lower_y = low[1], .lower_z = low[2],
-                                      .upper_x = high[0], .upper_y = high[1], .upper_z = high[2]};
+    *a->bounds_o = (struct RTCBounds){.lower_x = low[0],
+                                      .lower_y = low[1],
+                                      .lower_z = low[2],
+                                      .upper_x = high[0],
+                                      .upper_y = high[1],
+                                      .upper_z = high[2]};
 }
 
 static void measure_facet(Facet *f, const Model *model, uint32_t triangle)
@@ -128,7 +136,7 @@ static Status list_corners(NodeMesh *mesh)
     const Model *model = mesh->model;
     uint8_t     *seen = calloc((size_t)model->vertex_count + 1, 1);
     mesh->corner = calloc(3 * (size_t)mesh->triangle_count, sizeof *mesh->corner);
-    mesh->block  = calloc(3 * (size_t)mesh->triangle_count / parts_block_corners + 1, sizeof *mesh->block);
+    mesh->block = calloc(3 * (size_t)mesh->triangle_count / parts_block_corners + 1, sizeof *mesh->block);
     if (!seen || !mesh->corner || !mesh->block) {
         free(seen);
         return STATUS_NO_MEMORY;
@@ -172,15 +180,16 @@ static Status commit_mesh(NodeMesh *mesh, Tracer *tracer)
     return status_of_error(tracer->error);
 }
 
-static Status build_mesh(NodeMesh *mesh, Tracer *tracer, const ModelMeshes *meshes, int node, uint8_t hidden, int triangle_count)
+static Status build_mesh(NodeMesh *mesh, Tracer *tracer, const ModelMeshes *meshes, int node, uint8_t hidden,
+                         int triangle_count)
 {
     const Model *model = meshes->model;
-    mesh->model    = model;
-    mesh->node     = node;
+    mesh->model = model;
+    mesh->node = node;
     mesh->damage_hidden = hidden;
     mesh->triangle_count = triangle_count;
     mesh->triangle = calloc((size_t)triangle_count, sizeof *mesh->triangle);
-    mesh->facet    = calloc((size_t)triangle_count, sizeof *mesh->facet);
+    mesh->facet = calloc((size_t)triangle_count, sizeof *mesh->facet);
     if (!mesh->triangle || !mesh->facet) return STATUS_NO_MEMORY;
     int at = 0;
     for (int t = 0; t < model->triangle_count; t++) {
@@ -196,10 +205,10 @@ static Status build_mesh(NodeMesh *mesh, Tracer *tracer, const ModelMeshes *mesh
 
 static Status build_model(ModelMeshes *meshes, Tracer *tracer, const Model *model)
 {
-    meshes->model  = model;
+    meshes->model = model;
     const int groups = model->node_count * hidden_groups;
-    meshes->mesh     = calloc((size_t)groups + 1, sizeof *meshes->mesh);
-    int *triangle_count = calloc((size_t)groups + 1, sizeof *triangle_count);
+    meshes->mesh = calloc((size_t)groups + 1, sizeof *meshes->mesh);
+    int   *triangle_count = calloc((size_t)groups + 1, sizeof *triangle_count);
     Status status = meshes->mesh && triangle_count ? STATUS_OK : STATUS_NO_MEMORY;
     if (status != STATUS_OK) goto done;
 
@@ -243,9 +252,9 @@ Status tracer_need(Tracer *tracer, int model)
 
 Status tracer_create_models(Tracer **out, const Model *const *models, int count, const char *isa)
 {
-    char        config[128] = "threads=1,start_threads=0,set_affinity=0";
-    Status      status = STATUS_OK;
-    const bool  chosen = isa && isa[0];
+    char       config[128] = "threads=1,start_threads=0,set_affinity=0";
+    Status     status = STATUS_OK;
+    const bool chosen = isa && isa[0];
     if (chosen && strcmp(isa, "avx512") && strcmp(isa, "avx2") && strcmp(isa, "sse4.2")) {
         log_error("tracer: unknown instruction set: isa=%s accepted=avx512,avx2,sse4.2", isa);
         return STATUS_BAD_VALUE;
@@ -264,8 +273,11 @@ Status tracer_create_models(Tracer **out, const Model *const *models, int count,
     }
     rtcSetDeviceErrorFunction(tracer->device, latch_error, tracer);
     tracer->model = calloc((size_t)count + 1, sizeof *tracer->model);
-    if (!tracer->model) { status = STATUS_NO_MEMORY; goto fail; }
-    for (; tracer->count < count; ) {
+    if (!tracer->model) {
+        status = STATUS_NO_MEMORY;
+        goto fail;
+    }
+    for (; tracer->count < count;) {
         if (models[tracer->count]) status = build_model(&tracer->model[tracer->count], tracer, models[tracer->count]);
         tracer->count++;
         if (status != STATUS_OK) goto fail;
@@ -307,14 +319,15 @@ int          parts_node_count(const Tracer *tracer, int model) { return tracer->
 double parts_largest_node_m(const Tracer *tracer, int model)
 {
     double largest_m = 0;
-    for (int k = 0; k < tracer->model[model].count; k++) largest_m = fmax(largest_m, tracer->model[model].mesh[k].radius_m);
+    for (int k = 0; k < tracer->model[model].count; k++)
+        largest_m = fmax(largest_m, tracer->model[model].mesh[k].radius_m);
     return largest_m;
 }
 
 const double (*parts_node_corners(const PosedNode *node, int *count))[3]
 {
     *count = node->mesh->corner_count;
-    return (const double (*)[3])node->mesh->corner;
+    return (const double(*)[3])node->mesh->corner;
 }
 
 void parts_node_box(double corner[8][3], const PosedNode *node)
@@ -340,7 +353,7 @@ int parts_largest_node(const PosedEntity *entity)
 
 const double (*parts_node_triangle(const PosedNode *node, int k))[3]
 {
-    return k < node->mesh->triangle_count ? (const double (*)[3])node->mesh->facet[k].corner : NULL;
+    return k < node->mesh->triangle_count ? (const double(*)[3])node->mesh->facet[k].corner : NULL;
 }
 
 /* ---- posing ------------------------------------------------------------------------------- */
@@ -366,7 +379,7 @@ static void include_box(PosedEntity *entity, const NodeMesh *mesh, const NodePos
         double half = 0;
         for (int c = 0; c < 3; c++) half += fabs(pose->r_body_from_node[3 * a + c]) * mesh->half[c];
         const double low = pose->p_body[a] + centre[a] - half, high = pose->p_body[a] + centre[a] + half;
-        entity->box_low[a]  = low < entity->box_low[a] ? low : entity->box_low[a];
+        entity->box_low[a] = low < entity->box_low[a] ? low : entity->box_low[a];
         entity->box_high[a] = high > entity->box_high[a] ? high : entity->box_high[a];
     }
 }
@@ -376,10 +389,10 @@ void parts_pose(PosedEntity *out, const Tracer *tracer, int model, const NodePos
 {
     const ModelMeshes *meshes = &tracer->model[model];
     double             low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
-    out->model      = model;
-    out->damage     = damage;
+    out->model = model;
+    out->damage = damage;
     out->node_count = 0;
-    out->radius_m   = 0;
+    out->radius_m = 0;
     memset(out->centre_enu, 0, sizeof out->centre_enu);
     if (!pose_is_finite(p_enu, r_enu_from_body)) {
         out->model = -1;
@@ -388,12 +401,12 @@ void parts_pose(PosedEntity *out, const Tracer *tracer, int model, const NodePos
     memcpy(out->p_enu, p_enu, sizeof out->p_enu);
     memcpy(out->r_enu_from_body, r_enu_from_body, sizeof out->r_enu_from_body);
     for (int a = 0; a < 3; a++) {
-        out->box_low[a]  = INFINITY;
+        out->box_low[a] = INFINITY;
         out->box_high[a] = -INFINITY;
     }
     for (int k = 0; k < meshes->count; k++) {
         PosedNode      *node = &out->node[out->node_count];
-        const NodePose *p    = &pose[meshes->mesh[k].node];
+        const NodePose *p = &pose[meshes->mesh[k].node];
         double          offset[3], centre[3];
         if (!pose_is_finite(p->p_body, p->r_body_from_node)) continue;
         if (meshes->mesh[k].damage_hidden >> damage & 1) continue;
@@ -405,7 +418,7 @@ void parts_pose(PosedEntity *out, const Tracer *tracer, int model, const NodePos
         memcpy(node->centre_enu, centre, sizeof centre);
         for (int c = 0; c < 3; c++) {
             const double from = centre[c] - node->mesh->radius_m, to = centre[c] + node->mesh->radius_m;
-            low[c]  = from < low[c] ? from : low[c];
+            low[c] = from < low[c] ? from : low[c];
             high[c] = to > high[c] ? to : high[c];
         }
         include_box(out, node->mesh, p);

@@ -23,7 +23,7 @@ Status tracer_create_models(Tracer **out, const Model *const *models, int count,
 int    tracer_model_count(const Tracer *tracer);
 /* Builds the geometry of a model of the catalog that was not built when the tracer was made. One thread, before
  * parts_pose. */
-Status tracer_need(Tracer *tracer, int model);
+Status       tracer_need(Tracer *tracer, int model);
 const Model *tracer_model(const Tracer *tracer, int model);
 
 typedef struct NodeMesh NodeMesh;
@@ -31,21 +31,21 @@ typedef struct NodeMesh NodeMesh;
 /* A node that has triangles, in its present pose. */
 typedef struct PosedNode {
     const NodeMesh *mesh;
-    double p_enu[3];
-    double r_enu_from_node[9];
-    double centre_enu[3];      /* of its sphere */
+    double          p_enu[3];
+    double          r_enu_from_node[9];
+    double          centre_enu[3]; /* of its sphere */
 } PosedNode;
 
 /* An entity in its present pose. Sphere and box hold all of its nodes as they are posed, independent of the model's
  * own sphere. */
 typedef struct PosedEntity {
-    int          damage;     /* 0 .. model_damage_states - 1 */
-    int          model;      /* -1: not drawable (unknown model, or a pose that is not finite) */
-    int          node_count; /* those with triangles */
-    PosedNode   *node;
-    double       centre_enu[3], radius_m;
-    double       p_enu[3], r_enu_from_body[9];
-    double       box_low[3], box_high[3]; /* body axes */
+    int        damage;     /* 0 .. model_damage_states - 1 */
+    int        model;      /* -1: not drawable (unknown model, or a pose that is not finite) */
+    int        node_count; /* those with triangles */
+    PosedNode *node;
+    double     centre_enu[3], radius_m;
+    double     p_enu[3], r_enu_from_body[9];
+    double     box_low[3], box_high[3]; /* body axes */
 } PosedEntity;
 
 typedef struct PartHit {
@@ -57,8 +57,8 @@ typedef struct PartHit {
 enum { parts_block_corners = 32 };
 const double (*parts_node_corners(const PosedNode *node, int *count))[3];
 
-/* A box in a node's axes about a piece of it (triangles that share corners) that is a rod or a plate: one of the two other
- * sides is at most a twelfth of the first. */
+/* A box in a node's axes about a piece of it (triangles that share corners) that is a rod or a plate: one of the two
+ * other sides is at most a twelfth of the first. */
 typedef struct ThinBox {
     double centre[3], axis[3][3], half[3]; /* unit axes; half a side along each, m */
 } ThinBox;
@@ -91,23 +91,23 @@ bool parts_occluded(const PosedEntity *entity, const double o_enu[3], const doub
  * one is met nearer than far_m, range_m and hit are written, else they stay. range_m may be far_m. Returns the
  * number of ray-node pairs passed to Embree. */
 uint64_t parts_first_hits(double *range_m, PartHit *hit, const PosedEntity *entity, const double *const o_enu[3],
-                      const double *const d_enu[3], const double *far_m, const int *list, int count, bool ask_all);
+                          const double *const d_enu[3], const double *far_m, const int *list, int count, bool ask_all);
 /* met: becomes 1 where a triangle is met nearer than far_m; rays where it is 1 already are skipped. Returns as
  * above. */
-uint64_t parts_any_hits(uint8_t *met, const PosedEntity *entity, const double *const o_enu[3], const double *const d_enu[3],
-                    const double *far_m, const int *list, int count, bool ask_all);
+uint64_t parts_any_hits(uint8_t *met, const PosedEntity *entity, const double *const o_enu[3],
+                        const double *const d_enu[3], const double *far_m, const int *list, int count, bool ask_all);
 /* A point on a triangle of the model, and a direction, in the axes of its node in the entity's present pose. */
 void parts_on_part(double p_node[3], double n_node[3], const Model *model, const PosedEntity *entity, uint32_t triangle,
                    const double p_enu[3], const double n_enu[3]);
 
 /* A triangle that was hit, in its present pose: for all hits on it. */
 typedef struct PosedFacet {
-    const PosedNode *node;     /* NULL: none */
-    uint32_t triangle;
-    bool     even;             /* one shading normal for all of it */
-    double   corner[3], ab[3], ac[3], n[3], area2; /* node axes */
-    double   geo_enu[3];       /* unit; 0: a triangle without area */
-    double   even_enu[3];      /* unit */
+    const PosedNode *node; /* NULL: none */
+    uint32_t         triangle;
+    bool             even;                                 /* one shading normal for all of it */
+    double           corner[3], ab[3], ac[3], n[3], area2; /* node axes */
+    double           geo_enu[3];                           /* unit; 0: a triangle without area */
+    double           even_enu[3];                          /* unit */
 } PosedFacet;
 
 void parts_facet(PosedFacet *facet, const Model *model, const PosedEntity *entity, const PartHit *hit);

@@ -1,4 +1,5 @@
-/* render/trace/parts/parts_private.h: a node's triangles, built by parts.c and parts_thin.c, traced by parts_trace.c. */
+/* render/trace/parts/parts_private.h: a node's triangles, built by parts.c and parts_thin.c, traced by parts_trace.c.
+ */
 #ifndef RENDER_TRACE_PARTS_PARTS_PRIVATE_H
 #define RENDER_TRACE_PARTS_PARTS_PRIVATE_H
 
@@ -8,8 +9,8 @@
 
 /* A triangle in the form of the exact test. */
 typedef struct Facet {
-    double corner[3][3];  /* node axes */
-    float  height_m[3];   /* over the side from corner c to the next */
+    double corner[3][3]; /* node axes */
+    float  height_m[3];  /* over the side from corner c to the next */
 } Facet;
 
 struct NodeMesh {
@@ -18,16 +19,16 @@ struct NodeMesh {
     uint8_t      damage_hidden; /* of all its parts: ModelPart */
     RTCScene     scene;         /* of its triangles' boxes, with margin, about `centre` */
     int          triangle_count;
-    uint32_t    *triangle;      /* of the model, ascending */
-    Facet       *facet;         /* in the same order, which is Embree's too */
+    uint32_t    *triangle; /* of the model, ascending */
+    Facet       *facet;    /* in the same order, which is Embree's too */
     int          corner_count;
-    double     (*corner)[3];    /* every vertex of its triangles, once; the outermost first */
-    double     (*block)[2][3];  /* of every parts_block_corners of them: low and high, with margin */
-    double       centre[3];     /* of a sphere and a box round its vertices, node axes */
-    double       radius_m;      /* both with margin for the conversion to float */
-    double       half[3];
-    int          thin_count;
-    ThinBox     *thin;
+    double (*corner)[3];   /* every vertex of its triangles, once; the outermost first */
+    double (*block)[2][3]; /* of every parts_block_corners of them: low and high, with margin */
+    double   centre[3];    /* of a sphere and a box round its vertices, node axes */
+    double   radius_m;     /* both with margin for the conversion to float */
+    double   half[3];
+    int      thin_count;
+    ThinBox *thin;
 };
 
 /* Sets thin and thin_count (parts_thin.c). */

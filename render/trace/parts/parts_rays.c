@@ -8,7 +8,7 @@ static inline void through_slab(F64x4 *in, F64x4 *out, F64x4 low, F64x4 high, F6
     const F64x4 along = f64x4_less(f64x4_abs(d), f64x4_set(1e-30));
     const F64x4 per = f64x4_select(along, f64x4_set(1e30), f64x4_set(1) / d);
     const F64x4 a = low * per, b = high * per;
-    *in  = f64x4_max(*in, f64x4_min(a, b));
+    *in = f64x4_max(*in, f64x4_min(a, b));
     *out = f64x4_min(*out, f64x4_max(a, b));
 }
 
@@ -18,7 +18,7 @@ static inline void through_slab(F64x4 *in, F64x4 *out, F64x4 low, F64x4 high, F6
 static inline unsigned in_embree(Vector at, Vector d)
 {
     static const double most = 1e18;
-    const F64x4 far = f64x4_abs(at.x) + f64x4_abs(at.y) + f64x4_abs(at.z);
+    const F64x4         far = f64x4_abs(at.x) + f64x4_abs(at.y) + f64x4_abs(at.z);
     return f64x4_bits(f64x4_and(f64x4_less(far, f64x4_set(most)), f64x4_less(dot(d, d), f64x4_set(2))));
 }
 
@@ -27,19 +27,19 @@ static void to_node(NodeRays *r, const Chunk *chunk, const PosedNode *node, bool
 {
     const NodeMesh *mesh = node->mesh;
     const Vector    centre = set3(mesh->centre), half = set3(mesh->half);
-    const F64x4      zero = f64x4_set(0), radius_m = f64x4_set(mesh->radius_m);
+    const F64x4     zero = f64x4_set(0), radius_m = f64x4_set(mesh->radius_m);
     for (int i = 0; i < chunk->count; i += 4) {
         const Vector from = sub(load3(chunk->o[0] + i, chunk->o[1] + i, chunk->o[2] + i), set3(node->p_enu));
         const Vector o = turned_back(node->r_enu_from_node, from);
         const Vector d = turned_back(node->r_enu_from_node, load3(chunk->d[0] + i, chunk->d[1] + i, chunk->d[2] + i));
         const Vector m = sub(centre, o);
-        const F64x4   along = dot(m, d);
+        const F64x4  along = dot(m, d);
         const Vector across = add_scaled(m, -along, d); /* not |m|^2 - along^2, which cancels from afar */
-        const F64x4   left = radius_m * radius_m - dot(across, across);
-        const F64x4   half_m = f64x4_sqrt(f64x4_max(left, zero));
-        const F64x4   start_m = f64x4_max(along - half_m, zero), length_m = along + half_m - start_m;
+        const F64x4  left = radius_m * radius_m - dot(across, across);
+        const F64x4  half_m = f64x4_sqrt(f64x4_max(left, zero));
+        const F64x4  start_m = f64x4_max(along - half_m, zero), length_m = along + half_m - start_m;
         const Vector at = add_scaled(o, start_m, d), middle = sub(centre, at);
-        F64x4         in = zero, out = f64x4_set(INFINITY);
+        F64x4        in = zero, out = f64x4_set(INFINITY);
         through_slab(&in, &out, middle.x - half.x, middle.x + half.x, d.x);
         through_slab(&in, &out, middle.y - half.y, middle.y + half.y, d.y);
         through_slab(&in, &out, middle.z - half.z, middle.z + half.z, d.z);
@@ -47,15 +47,16 @@ static void to_node(NodeRays *r, const Chunk *chunk, const PosedNode *node, bool
         f64x4_store(r->d[0] + i, d.x), f64x4_store(r->d[1] + i, d.y), f64x4_store(r->d[2] + i, d.z);
         f64x4_store(r->start_m + i, start_m);
         f64x4_store(r->length_m + i, ask_all ? f64x4_max(length_m, radius_m) : length_m);
-        const F64x4 meets = f64x4_and(f64x4_and(f64x4_less(zero, left), f64x4_less(zero, length_m)),
-                                f64x4_and(f64x4_less(start_m, f64x4_load(chunk->best_m + i)), f64x4_at_most(in, out)));
+        const F64x4 meets =
+            f64x4_and(f64x4_and(f64x4_less(zero, left), f64x4_less(zero, length_m)),
+                      f64x4_and(f64x4_less(start_m, f64x4_load(chunk->best_m + i)), f64x4_at_most(in, out)));
         r->meets[i / 4] = ask_all ? in_embree(at, d) : f64x4_bits(meets);
     }
 }
 
 /* What a chunk's rays have in common: a common origin, or a common direction. */
 typedef struct Bundle {
-    double origin[3], radius_m; /* all begin in this sphere */
+    double origin[3], radius_m;   /* all begin in this sphere */
     double axis[3], sine, cosine; /* and stay within this angle; cosine 0: nothing in common */
 } Bundle;
 
@@ -127,7 +128,7 @@ static void keep_ray(Chunk *chunk, int to, int from)
         chunk->d[c][to] = chunk->d[c][from];
     }
     chunk->best_m[to] = chunk->best_m[from];
-    chunk->ray[to]    = chunk->ray[from];
+    chunk->ray[to] = chunk->ray[from];
 }
 
 /* The rays of the list that may meet the entity's box ahead: one test that saves most rays a test of every node. */
@@ -141,7 +142,7 @@ static void take_chunk(Chunk *chunk, const PosedEntity *entity, const double *co
             chunk->d[c][i] = d[c][k];
         }
         chunk->best_m[i] = far_m[k];
-        chunk->ray[i]    = k;
+        chunk->ray[i] = k;
     }
     chunk->count = count;
     fill_up(chunk);
@@ -153,7 +154,7 @@ static void take_chunk(Chunk *chunk, const PosedEntity *entity, const double *co
         const Vector from = turned_back(entity->r_enu_from_body, sub(at, set3(entity->p_enu)));
         const Vector way = load3(chunk->d[0] + i, chunk->d[1] + i, chunk->d[2] + i);
         const Vector along = turned_back(entity->r_enu_from_body, way);
-        F64x4         in = f64x4_set(0), out = f64x4_set(INFINITY);
+        F64x4        in = f64x4_set(0), out = f64x4_set(INFINITY);
         through_slab(&in, &out, low.x - from.x, high.x - from.x, along.x);
         through_slab(&in, &out, low.y - from.y, high.y - from.y, along.y);
         through_slab(&in, &out, low.z - from.z, high.z - from.z, along.z);
@@ -169,7 +170,8 @@ static void take_chunk(Chunk *chunk, const PosedEntity *entity, const double *co
 }
 
 static uint64_t first_hits(double *range_m, PartHit *hit, const PosedEntity *entity, const double *const o[3],
-                       const double *const d[3], const double *far_m, const int *list, int count, bool ask_all, bool alone)
+                           const double *const d[3], const double *far_m, const int *list, int count, bool ask_all,
+                           bool alone)
 {
     Chunk    chunk;
     NodeRays rays;
@@ -211,7 +213,7 @@ static void drop_met(Chunk *chunk, const uint8_t *met)
 
 /* The largest node is the first: most rays that meet anything meet that, and are asked no more. */
 static uint64_t any_hits(uint8_t *met, const PosedEntity *entity, const double *const o[3], const double *const d[3],
-                     const double *far_m, const int *list, int count, bool ask_all, bool alone)
+                         const double *far_m, const int *list, int count, bool ask_all, bool alone)
 {
     Chunk     chunk;
     NodeRays  rays;
@@ -244,13 +246,13 @@ static uint64_t any_hits(uint8_t *met, const PosedEntity *entity, const double *
 }
 
 uint64_t parts_first_hits(double *range_m, PartHit *hit, const PosedEntity *entity, const double *const o_enu[3],
-                      const double *const d_enu[3], const double *far_m, const int *list, int count, bool ask_all)
+                          const double *const d_enu[3], const double *far_m, const int *list, int count, bool ask_all)
 {
     return first_hits(range_m, hit, entity, o_enu, d_enu, far_m, list, count, ask_all, false);
 }
 
-uint64_t parts_any_hits(uint8_t *met, const PosedEntity *entity, const double *const o_enu[3], const double *const d_enu[3],
-                    const double *far_m, const int *list, int count, bool ask_all)
+uint64_t parts_any_hits(uint8_t *met, const PosedEntity *entity, const double *const o_enu[3],
+                        const double *const d_enu[3], const double *far_m, const int *list, int count, bool ask_all)
 {
     return any_hits(met, entity, o_enu, d_enu, far_m, list, count, ask_all, false);
 }
@@ -259,8 +261,8 @@ double parts_first_hit(PartHit *hit, const PosedEntity *entity, const double o_e
                        double far_m, bool ask_all)
 {
     const double *const o[3] = {&o_enu[0], &o_enu[1], &o_enu[2]}, *const d[3] = {&d_enu[0], &d_enu[1], &d_enu[2]};
-    const int           list[1] = {0};
-    double              range_m = INFINITY;
+    const int list[1] = {0};
+    double    range_m = INFINITY;
     first_hits(&range_m, hit, entity, o, d, &far_m, list, 1, ask_all, true);
     return range_m;
 }
@@ -268,9 +270,9 @@ double parts_first_hit(PartHit *hit, const PosedEntity *entity, const double o_e
 bool parts_occluded(const PosedEntity *entity, const double o_enu[3], const double d_enu[3], bool ask_all)
 {
     const double *const o[3] = {&o_enu[0], &o_enu[1], &o_enu[2]}, *const d[3] = {&d_enu[0], &d_enu[1], &d_enu[2]};
-    const double        far_m = INFINITY;
-    const int           list[1] = {0};
-    uint8_t             met = 0;
+    const double far_m = INFINITY;
+    const int    list[1] = {0};
+    uint8_t      met = 0;
     any_hits(&met, entity, o, d, &far_m, list, 1, ask_all, true);
     return met != 0;
 }
@@ -279,11 +281,11 @@ bool parts_occluded(const PosedEntity *entity, const double o_enu[3], const doub
 
 void parts_facet(PosedFacet *facet, const Model *model, const PosedEntity *entity, const PartHit *hit)
 {
-    const PosedNode *node  = &entity->node[hit->node];
+    const PosedNode *node = &entity->node[hit->node];
     const uint32_t  *index = model->triangle[hit->triangle];
     const float     *normal[3] = {model->normal[index[0]], model->normal[index[1]], model->normal[index[2]]};
     double           shading[3];
-    facet->node     = node;
+    facet->node = node;
     facet->triangle = hit->triangle;
     v3_scale(facet->corner, 1, model->vertex[index[0]]);
     v3_sub(facet->ab, model->vertex[index[1]], facet->corner);
@@ -302,7 +304,7 @@ void parts_facet(PosedFacet *facet, const Model *model, const PosedEntity *entit
 static bool interpolate(double n_enu[3], const Model *model, const PosedFacet *facet, const double o_enu[3],
                         const double d_enu[3], double range_m)
 {
-    const PosedNode *node  = facet->node;
+    const PosedNode *node = facet->node;
     const uint32_t  *index = model->triangle[facet->triangle];
     double           at_enu[3], at[3], w[3], cross[3], shading[3] = {0, 0, 0};
     /* barycentric weights of the point on the plane; just outside the triangle they are clamped to it */

@@ -79,7 +79,8 @@ static double farthest(double out[3], const double from[3], const NodeMesh *mesh
     return sqrt(most);
 }
 
-/* A box about a piece, its axes along the longest diagonals found: along a rod, and across a plate. False: it is not thin. */
+/* A box about a piece, its axes along the longest diagonals found: along a rod, and across a plate. False: it is not
+ * thin. */
 static bool bound_piece(ThinBox *box, const NodeMesh *mesh, const Member *piece, int count)
 {
     double at[3], d[3], low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
@@ -94,7 +95,7 @@ static bool bound_piece(ThinBox *box, const NodeMesh *mesh, const Member *piece,
     for (int k = 0; k < 3 * count; k++)
         for (int a = 0; a < 3; a++) {
             const double x = v3_dot(mesh->facet[piece[k / 3].triangle].corner[k % 3], box->axis[a]);
-            low[a]  = x < low[a] ? x : low[a];
+            low[a] = x < low[a] ? x : low[a];
             high[a] = x > high[a] ? x : high[a];
         }
     v3_scale(box->centre, 0, box->axis[0]);
@@ -111,7 +112,8 @@ static int take_thin(ThinBox *out, const NodeMesh *mesh, const Member *member)
     int thin = 0;
     for (int first = 0, end; first < mesh->triangle_count; first = end) {
         ThinBox box;
-        for (end = first + 1; end < mesh->triangle_count && member[end].piece == member[first].piece; end++) {}
+        for (end = first + 1; end < mesh->triangle_count && member[end].piece == member[first].piece; end++) {
+        }
         if (!bound_piece(&box, mesh, member + first, end - first)) continue;
         if (out) out[thin] = box;
         thin++;

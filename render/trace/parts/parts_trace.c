@@ -18,9 +18,9 @@ static const double slack_m = 2e-3;    /* search distance beyond the nearest hit
 
 /* For four lanes at a time, as requested. */
 typedef struct Verdict {
-    double   at_m[lanes];   /* where near: distance to the plane, clamped between the corners: edge-on it is
-                             * undefined */
-    unsigned judged;        /* 1 << lane / 4 */
+    double at_m[lanes]; /* where near: distance to the plane, clamped between the corners: edge-on it is
+                         * undefined */
+    unsigned judged;    /* 1 << lane / 4 */
     unsigned near[lanes / 4], through[lanes / 4]; /* 1 << lane % 4: passed by within same_edge_m, ahead; and through */
 } __attribute__((aligned(64))) Verdict;
 
@@ -30,25 +30,26 @@ static void judge(Verdict *v, const Packet *p, const Facet *facet, int four)
 {
     const int    l = 4 * four;
     const Vector o = load3(p->o[0] + l, p->o[1] + l, p->o[2] + l), d = load3(p->d[0] + l, p->d[1] + l, p->d[2] + l);
-    const Vector a = sub(set3(facet->corner[0]), o), b = sub(set3(facet->corner[1]), o), c = sub(set3(facet->corner[2]), o);
-    const F64x4   ab = dot(cross(a, b), d), bc = dot(cross(b, c), d), ca = dot(cross(c, a), d);
-    const F64x4   whole = ab + bc + ca, share = f64x4_set(1) / whole;
-    const F64x4   inside_m = f64x4_min(ab * share * f64x4_set((double)facet->height_m[0]),
+    const Vector a = sub(set3(facet->corner[0]), o), b = sub(set3(facet->corner[1]), o),
+                 c = sub(set3(facet->corner[2]), o);
+    const F64x4 ab = dot(cross(a, b), d), bc = dot(cross(b, c), d), ca = dot(cross(c, a), d);
+    const F64x4 whole = ab + bc + ca, share = f64x4_set(1) / whole;
+    const F64x4 inside_m = f64x4_min(ab * share * f64x4_set((double)facet->height_m[0]),
                                      f64x4_min(bc * share * f64x4_set((double)facet->height_m[1]),
-                                              ca * share * f64x4_set((double)facet->height_m[2])));
-    const F64x4   seen = _mm256_cmp_pd(whole, f64x4_set(0), _CMP_NEQ_OQ); /* not edge-on */
-    const F64x4   near = f64x4_and(seen, f64x4_at_most(f64x4_set(-same_edge_m), inside_m));
+                                               ca * share * f64x4_set((double)facet->height_m[2])));
+    const F64x4 seen = _mm256_cmp_pd(whole, f64x4_set(0), _CMP_NEQ_OQ); /* not edge-on */
+    const F64x4 near = f64x4_and(seen, f64x4_at_most(f64x4_set(-same_edge_m), inside_m));
     v->judged |= 1u << four;
     v->near[four] = f64x4_bits(near);
     if (v->near[four] == 0) return;
     const Vector n = cross(sub(b, a), sub(c, a));
-    const F64x4   at_a = dot(a, d), at_b = dot(b, d), at_c = dot(c, d);
-    const F64x4   low = f64x4_min(at_a, f64x4_min(at_b, at_c)), high = f64x4_max(at_a, f64x4_max(at_b, at_c));
-    const F64x4   t = dot(n, a) / dot(n, d);
-    const F64x4   at_m = f64x4_select(f64x4_at_most(low, t), f64x4_min(t, high), low); /* and when t is not a number */
-    const F64x4   ahead = f64x4_at_most(f64x4_set(0), at_m);
+    const F64x4  at_a = dot(a, d), at_b = dot(b, d), at_c = dot(c, d);
+    const F64x4  low = f64x4_min(at_a, f64x4_min(at_b, at_c)), high = f64x4_max(at_a, f64x4_max(at_b, at_c));
+    const F64x4  t = dot(n, a) / dot(n, d);
+    const F64x4  at_m = f64x4_select(f64x4_at_most(low, t), f64x4_min(t, high), low); /* and when t is not a number */
+    const F64x4  ahead = f64x4_at_most(f64x4_set(0), at_m);
     f64x4_store(v->at_m + l, at_m);
-    v->near[four]    = f64x4_bits(f64x4_and(near, ahead));
+    v->near[four] = f64x4_bits(f64x4_and(near, ahead));
     v->through[four] = v->near[four] & f64x4_bits(f64x4_at_most(f64x4_set(through_m), inside_m));
 }
 
@@ -59,7 +60,7 @@ static void keep_tie(Packet *p, int lane, uint32_t triangle, double at_m)
         return;
     }
     const int k = p->ties[lane]++;
-    p->tie[lane][k]   = triangle;
+    p->tie[lane][k] = triangle;
     p->tie_m[lane][k] = at_m;
 }
 
@@ -67,10 +68,10 @@ static void bring_nearer(Packet *p, int lane, uint32_t triangle, double at_m)
 {
     int kept = 0;
     p->nearest_m[lane] = at_m;
-    p->nearest[lane]   = triangle;
+    p->nearest[lane] = triangle;
     for (int k = 0; k < p->ties[lane]; k++)
         if (p->tie_m[lane][k] <= at_m + same_range_m) {
-            p->tie[lane][kept]     = p->tie[lane][k];
+            p->tie[lane][kept] = p->tie[lane][k];
             p->tie_m[lane][kept++] = p->tie_m[lane][k];
         }
     p->ties[lane] = kept;
@@ -79,7 +80,7 @@ static void bring_nearer(Packet *p, int lane, uint32_t triangle, double at_m)
 static void offer_lowest(Packet *p, int lane, uint32_t triangle, double at_m)
 {
     if (!(triangle < p->lowest[lane] && fabs(at_m - p->nearest_m[lane]) <= same_range_m)) return;
-    p->lowest[lane]   = triangle;
+    p->lowest[lane] = triangle;
     p->lowest_m[lane] = at_m;
 }
 
@@ -125,7 +126,7 @@ void parts_occlude(const struct RTCOccludedFunctionNArguments *a)
         const int lane = (int)id[k], four = lane / 4;
         if (!(v.judged >> four & 1)) judge(&v, p, &p->mesh->facet[a->primID], four);
         if (!(v.near[four] & v.through[four] & 1u << lane % 4 && v.at_m[lane] < p->far_m[lane])) continue;
-        end_m[k]            = -INFINITY;
+        end_m[k] = -INFINITY;
         p->nearest_m[lane] = 0; /* met */
     }
 }
@@ -146,20 +147,26 @@ static void packet_narrow(struct RTCRay16 *ray, int valid[lanes], Packet *p)
         ray->org_z[l] = (float)(p->o[2][l] - centre[2]);
         ray->dir_x[l] = (float)p->d[0][l], ray->dir_y[l] = (float)p->d[1][l], ray->dir_z[l] = (float)p->d[2][l];
         const double pass_m = p->length_m[l] * 1.001 + slack_m, far_m = p->far_m[l] + slack_m;
-        p->end_m[l]   = ray->tfar[l] = (float)smaller(pass_m, far_m);
+        p->end_m[l] = ray->tfar[l] = (float)smaller(pass_m, far_m);
         ray->tnear[l] = ray->time[l] = 0;
-        ray->mask[l]  = 0xFFFFFFFFu;
-        ray->id[l]    = (uint32_t)l;
+        ray->mask[l] = 0xFFFFFFFFu;
+        ray->id[l] = (uint32_t)l;
         ray->flags[l] = 0;
-        valid[l]      = l < p->count ? -1 : 0;
+        valid[l] = l < p->count ? -1 : 0;
     }
 }
 
 static struct RTCRayHit single(const struct RTCRay16 *r, int l)
 {
-    return (struct RTCRayHit){.ray = {.org_x = r->org_x[l], .org_y = r->org_y[l], .org_z = r->org_z[l],
-                                      .dir_x = r->dir_x[l], .dir_y = r->dir_y[l], .dir_z = r->dir_z[l],
-                                      .tfar = r->tfar[l], .mask = r->mask[l], .id = r->id[l]},
+    return (struct RTCRayHit){.ray = {.org_x = r->org_x[l],
+                                      .org_y = r->org_y[l],
+                                      .org_z = r->org_z[l],
+                                      .dir_x = r->dir_x[l],
+                                      .dir_y = r->dir_y[l],
+                                      .dir_z = r->dir_z[l],
+                                      .tfar = r->tfar[l],
+                                      .mask = r->mask[l],
+                                      .id = r->id[l]},
                               .hit = {.geomID = RTC_INVALID_GEOMETRY_ID, .instID = {RTC_INVALID_GEOMETRY_ID}}};
 }
 
@@ -170,7 +177,7 @@ static double settle(uint32_t *triangle, Packet *p, const struct RTCRay16 *rays,
     p->lowest[l] = UINT32_MAX;
     if (p->crowded[l]) {
         struct RTCRayHit ray = single(rays, l);
-        ray.ray.tfar   = (float)(nearest_m + slack_m);
+        ray.ray.tfar = (float)(nearest_m + slack_m);
         p->lowest_only = true;
         rtcIntersect1(p->mesh->scene, &p->base, &ray);
         p->lowest_only = false;
@@ -204,9 +211,9 @@ void packet_first_hits(double *range_m, PartHit *hit, Packet *p, Chunk *chunk, i
         const double at_m = settle(&triangle, p, &rays.ray, l);
         const double at_range_m = larger(0, p->start_m[l] + at_m);
         if (!(at_range_m < chunk->best_m[i])) continue;
-        chunk->best_m[i]       = at_range_m;
+        chunk->best_m[i] = at_range_m;
         range_m[chunk->ray[i]] = at_range_m;
-        hit[chunk->ray[i]]     = (PartHit){.node = node, .triangle = triangle};
+        hit[chunk->ray[i]] = (PartHit){.node = node, .triangle = triangle};
     }
     p->count = 0;
 }

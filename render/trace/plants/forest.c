@@ -55,9 +55,11 @@ static Status build_shape(ShapeScene *out, const Forest *forest, int kind, int l
     find_reach(out, quads);
     RTCGeometry geometry = rtcNewGeometry(forest->device, RTC_GEOMETRY_TYPE_QUAD);
     float      *vertex = geometry ? rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                                            3 * sizeof(float), (size_t)quads * 4) : NULL;
+                                                            3 * sizeof(float), (size_t)quads * 4)
+                                  : NULL;
     unsigned   *index = geometry ? rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT4,
-                                                           4 * sizeof(unsigned), (size_t)quads) : NULL;
+                                                           4 * sizeof(unsigned), (size_t)quads)
+                                 : NULL;
     if (!vertex || !index || !(out->scene = rtcNewScene(forest->device))) {
         if (geometry) rtcReleaseGeometry(geometry);
         return STATUS_NO_MEMORY;
@@ -112,7 +114,8 @@ void plant_list_close(PlantList *list)
 
 /* ---- the forest ------------------------------------------------------------------------------- */
 
-Status forest_create(Forest **out, const Woods *woods, const Plants *plants, const ForestConfig *config, const char *isa)
+Status forest_create(Forest **out, const Woods *woods, const Plants *plants, const ForestConfig *config,
+                     const char *isa)
 {
     char    settings[64] = "";
     Forest *forest = calloc(1, sizeof *forest);
@@ -265,7 +268,7 @@ static void open_quads(void *user, int worker, int task)
         count_rays(all, open, o->scene, q, k, 1);
         if (q->organ == PLANT_LEAF) count_rays(all, open, o->scene, q, k, -1);
         const float both = (float)(open[0] + open[1]) / (float)(all[0] + all[1]); /* where all go one way */
-        q->open_up   = all[0] ? (float)open[0] / (float)all[0] : both;
+        q->open_up = all[0] ? (float)open[0] / (float)all[0] : both;
         q->open_down = all[1] ? (float)open[1] / (float)all[1] : both;
     }
 }
@@ -277,6 +280,7 @@ void forest_openness(Plants *plants, const Forest *forest, Pool *pool)
             Opening   o = {&forest->shape[kind][level], &plants->shape[kind][level]};
             const int tasks = (o.shape->quads + quads_a_task - 1) / quads_a_task;
             if (pool) pool_run(pool, tasks, open_quads, &o);
-            else for (int k = 0; k < tasks; k++) open_quads(&o, 0, k);
+            else
+                for (int k = 0; k < tasks; k++) open_quads(&o, 0, k);
         }
 }

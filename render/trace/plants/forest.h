@@ -13,20 +13,22 @@
 typedef struct Forest Forest;
 
 typedef struct ForestConfig {
-    bool   leaves;          /* false: deciduous plants are bare */
-    double level1_px;       /* a standing plant lower than this in the picture is traced at level 1; 0: never */
-    double sway;            /* 0: plants stand still; 1: they sway by the wind of the frame */
+    bool   leaves;    /* false: deciduous plants are bare */
+    double level1_px; /* a standing plant lower than this in the picture is traced at level 1; 0: never */
+    double sway;      /* 0: plants stand still; 1: they sway by the wind of the frame */
 } ForestConfig;
 
 /* woods and plants must outlive it. isa: as tracer_create. Memory: 140 octets or less a standing plant, Plant's own 20
  * included. */
-Status forest_create(Forest **out, const Woods *woods, const Plants *plants, const ForestConfig *config, const char *isa);
+Status forest_create(Forest **out, const Woods *woods, const Plants *plants, const ForestConfig *config,
+                     const char *isa);
 /* Other woods of the same prototypes, by the scenes of `of`, which must outlive it. */
 Status forest_create_beside(Forest **out, const Forest *of, const Woods *woods);
 void   forest_destroy(Forest *forest);
-/* Fills in PlantQuad.open_up and open_down of the forest's own prototypes, by rays through them: 24 a leaf, 8 a side of a
- * branch, so a leaf's are within 0.15 (rms), and their mean within 0.03 (tests/render/test_forest.c). pool: may be NULL. */
-void   forest_openness(Plants *plants, const Forest *forest, Pool *pool);
+/* Fills in PlantQuad.open_up and open_down of the forest's own prototypes, by rays through them: 24 a leaf, 8 a side of
+ * a branch, so a leaf's are within 0.15 (rms), and their mean within 0.03 (tests/render/test_forest.c). pool: may be
+ * NULL. */
+void          forest_openness(Plants *plants, const Forest *forest, Pool *pool);
 const Woods  *forest_woods(const Forest *forest);
 const Plants *forest_plants(const Forest *forest);
 bool          forest_simplifies(const Forest *forest); /* level1_px > 0 */
@@ -34,12 +36,12 @@ bool          forest_simplifies(const Forest *forest); /* level1_px > 0 */
 /* A forest as one frame sees it; a pure function of these. */
 typedef struct ForestFrame {
     const Forest *forest;
-    double        eye_enu[3];    /* level of detail and low plants are by the distance from here */
-    double        per_rad;       /* pixels a radian */
-    double        low_reach_m;   /* low plants stand within this of the eye; 0: none */
-    double        t_s;           /* exercise time, for sway */
-    double        wind_mps[2];   /* east, north: towards which it blows */
-    void         *low;           /* private: squares of low plants, of the arena */
+    double        eye_enu[3];  /* level of detail and low plants are by the distance from here */
+    double        per_rad;     /* pixels a radian */
+    double        low_reach_m; /* low plants stand within this of the eye; 0: none */
+    double        t_s;         /* exercise time, for sway */
+    double        wind_mps[2]; /* east, north: towards which it blows */
+    void         *low;         /* private: squares of low plants, of the arena */
 } ForestFrame;
 
 /* Low plants of the squares about the eye are made here, by pool (NULL: one thread). forest_frame_close before the
@@ -51,12 +53,12 @@ void   forest_frame_close(ForestFrame *frame);
 enum { forest_low_bit = 1u << 31 };
 
 typedef struct ForestHit {
-    uint32_t plant;    /* index in Woods.plant; with forest_low_bit: a low plant, by a number of its own */
-    uint32_t place;    /* in its list */
-    uint32_t quad;     /* of its shape */
+    uint32_t plant; /* index in Woods.plant; with forest_low_bit: a low plant, by a number of its own */
+    uint32_t place; /* in its list */
+    uint32_t quad;  /* of its shape */
     uint8_t  kind, level, organ;
-    bool     back;     /* met from the inner side of its surface (leaves: the card's back) */
-    float    uv[2];    /* on the quad */
+    bool     back;  /* met from the inner side of its surface (leaves: the card's back) */
+    float    uv[2]; /* on the quad */
 } ForestHit;
 
 /* For rays of a block: where some plant is nearer than range_m, range_m and hit are replaced. real: [count], 1: plants
@@ -70,11 +72,11 @@ uint64_t forest_any_hits(uint8_t *dark, const ForestFrame *frame, int count, con
 /* What shading needs of a hit. Normals are unit, ENU, on the ray's side; n_enu with the relief of bark. */
 typedef struct ForestSurface {
     double n_geo[3], n_enu[3];
-    float  albedo;       /* reflectance over that of its material */
-    float  height_share; /* of the plant's height at which it lies, 0 .. 1 */
-    float  radius_m;     /* of the branch; leaves: 0 */
+    float  albedo;             /* reflectance over that of its material */
+    float  height_share;       /* of the plant's height at which it lies, 0 .. 1 */
+    float  radius_m;           /* of the branch; leaves: 0 */
     float  open_up, open_down; /* as PlantQuad */
-    float  height_m;     /* of the plant */
+    float  height_m;           /* of the plant */
 } ForestSurface;
 void forest_surface(ForestSurface *out, const ForestFrame *frame, const ForestHit *hit, const double o_enu[3],
                     const double d_enu[3], double range_m, float footprint_m);

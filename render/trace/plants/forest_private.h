@@ -10,33 +10,33 @@ enum { shape_azimuths = 64 };
 
 /* A prototype, ready to be traced: its quads about their middle, and Embree's tree over them. */
 typedef struct ShapeScene {
-    RTCScene          scene;
-    const PlantShape *shape;
-    const LeafOutline *outline; /* [plant_outlines] */
-    double            centre[4], half[4]; /* box, of a plant 1 m high; the fourth are 0 */
-    double            reach[shape_azimuths + 1]; /* how far it reaches towards azimuths from x to y, from its axis; the last
-                                                  * is the first */
+    RTCScene           scene;
+    const PlantShape  *shape;
+    const LeafOutline *outline;            /* [plant_outlines] */
+    double             centre[4], half[4]; /* box, of a plant 1 m high; the fourth are 0 */
+    double reach[shape_azimuths + 1];      /* how far it reaches towards azimuths from x to y, from its axis; the last
+                                            * is the first */
 } ShapeScene;
 
 /* Plants that one tree of boxes holds. */
 typedef struct PlantList {
     const struct Forest *forest;
-    const ForestFrame   *frame;      /* of the low plants; NULL: of the ray's own */
+    const ForestFrame   *frame; /* of the low plants; NULL: of the ray's own */
     const Plant         *plant;
-    const uint32_t      *number;     /* ForestHit.plant of each; NULL: its place */
+    const uint32_t      *number; /* ForestHit.plant of each; NULL: its place */
     int                  count;
     double               origin_enu[3];
-    RTCScene             scene;      /* NULL: none */
+    RTCScene             scene; /* NULL: none */
 } PlantList;
 
 struct Forest {
     RTCDevice     device;
-    int           error;             /* the first that Embree reported */
+    int           error; /* the first that Embree reported */
     const Woods  *woods;
     const Plants *plants;
     ForestConfig  config;
     ShapeScene    shape[PLANT_KINDS][plant_levels];
-    bool          borrows;           /* their scenes */
+    bool          borrows; /* their scenes */
     PlantList     standing;
 };
 
@@ -45,23 +45,23 @@ Status plant_list_commit(PlantList *list, const struct Forest *forest, bool quic
 void   plant_list_close(PlantList *list);
 
 /* How far a plant leans beyond its own lean, rad east and north. */
-void   forest_sway(double sway_rad[2], const ForestFrame *frame, const Plant *plant, double x_m, double y_m);
+void forest_sway(double sway_rad[2], const ForestFrame *frame, const Plant *plant, double x_m, double y_m);
 /* Whether a plant is so low in the picture that it is traced at level 1. */
-bool   forest_is_low_in_picture(const ForestFrame *frame, const Plant *plant, const double foot_enu[3]);
+bool forest_is_low_in_picture(const ForestFrame *frame, const Plant *plant, const double foot_enu[3]);
 
 /* Embree's callbacks of a list: user pointer is the PlantList. */
-void   plant_box(const struct RTCBoundsFunctionArguments *a);
-void   plant_intersect(const struct RTCIntersectFunctionNArguments *a);
-void   plant_occlude(const struct RTCOccludedFunctionNArguments *a);
+void plant_box(const struct RTCBoundsFunctionArguments *a);
+void plant_intersect(const struct RTCIntersectFunctionNArguments *a);
+void plant_occlude(const struct RTCOccludedFunctionNArguments *a);
 /* And of the quads of a prototype: user pointer is the ShapeScene. */
-void   quad_intersect(const struct RTCFilterFunctionNArguments *a);
-void   quad_occlude(const struct RTCFilterFunctionNArguments *a);
+void quad_intersect(const struct RTCFilterFunctionNArguments *a);
+void quad_occlude(const struct RTCFilterFunctionNArguments *a);
 /* Whether a ray of a prototype's own axes meets it. */
-bool   shape_occluded(const ShapeScene *shape, const double o[3], const double d[3]);
+bool shape_occluded(const ShapeScene *shape, const double o[3], const double d[3]);
 
 /* low_plants.c */
-Status low_plants_open(ForestFrame *frame, double reach_m, Pool *pool, Arena *arena);
-void   low_plants_close(ForestFrame *frame);
+Status           low_plants_open(ForestFrame *frame, double reach_m, Pool *pool, Arena *arena);
+void             low_plants_close(ForestFrame *frame);
 const PlantList *low_plants_list(const ForestFrame *frame);
 
 static const double most_sway_rad = 0.2; /* of any plant in any wind: room in its box */

@@ -1,8 +1,8 @@
 /* render/trace/plants/forest_trace.c: rays against plants: from a plant's box to its prototype's axes, to the quads
  * there.
  *
- * One ray at a time, the three axes of a prototype as lanes: packets through the same trees gain 1.02 to 1.17 x on first hits
- * (etc/reference/speed.md). */
+ * One ray at a time, the three axes of a prototype as lanes: packets through the same trees gain 1.02 to 1.17 x on
+ * first hits (etc/reference/speed.md). */
 #include "render/trace/plants/forest_private.h"
 
 #include "pitviper_simd.h"
@@ -14,8 +14,8 @@ static inline double larger(double a, double b) { return a > b ? a : b; }
 typedef struct PlantFrame {
     F64x4        column[3], per; /* from ENU to the prototype's axes, and scales there; the fourth lane is 0 */
     double       foot_enu[3];
-    const Plant *plant;          /* NULL: not known */
-    bool         low;            /* in the picture: level 1 is traced unless the ray must meet real plants */
+    const Plant *plant; /* NULL: not known */
+    bool         low;   /* in the picture: level 1 is traced unless the ray must meet real plants */
 } PlantFrame;
 
 enum { frames_kept = 128 };
@@ -23,24 +23,24 @@ enum { frames_kept = 128 };
 /* A ray through a list of plants. */
 typedef struct ListRay {
     struct RTCIntersectContext base; /* first: Embree passes it to the callbacks */
-    const ForestFrame *frame;
-    bool      real;
-    double    o_enu[3], d_enu[3];
-    double    limit_m;       /* of what may still be nearer */
-    bool      met;
-    uint64_t  entered;       /* plants' boxes */
-    ForestHit hit;
-    PlantFrame kept[frames_kept]; /* of plants that earlier rays met */
+    const ForestFrame         *frame;
+    bool                       real;
+    double                     o_enu[3], d_enu[3];
+    double                     limit_m; /* of what may still be nearer */
+    bool                       met;
+    uint64_t                   entered; /* plants' boxes */
+    ForestHit                  hit;
+    PlantFrame                 kept[frames_kept]; /* of plants that earlier rays met */
 } ListRay;
 
 /* The same in the axes of a prototype, about the middle of its box, from where it enters that. */
 typedef struct QuadRay {
     struct RTCIntersectContext base;
-    const ShapeScene *shape;
-    double   o[4], d[4];     /* the fourth is 0 */
-    double   limit_m;        /* from there */
-    double   nearest_m;      /* INFINITY: nothing was met */
-    uint32_t quad;
+    const ShapeScene          *shape;
+    double                     o[4], d[4]; /* the fourth is 0 */
+    double                     limit_m;    /* from there */
+    double                     nearest_m;  /* INFINITY: nothing was met */
+    uint32_t                   quad;
 } QuadRay;
 
 /* ---- a plant's frame -------------------------------------------------------------------------- */
@@ -84,16 +84,18 @@ static void to_prototype(double out[3], const double axis[3][3], const double pe
     out[2] = v3_dot(axis[2], v_enu) * per[1];
 }
 
-/* How far a shape reaches along a vector of its axes, at most. The reach between two azimuths is no more than the mix of
- * theirs that makes up the azimuth, since the reach along a sum of vectors is at most the sum of those along them. */
+/* How far a shape reaches along a vector of its axes, at most. The reach between two azimuths is no more than the mix
+ * of theirs that makes up the azimuth, since the reach along a sum of vectors is at most the sum of those along them.
+ */
 static double reach_along(const ShapeScene *shape, const double along[3])
 {
     static const double step_rad = 2 * pi_rad / shape_azimuths;
     const double        across = sqrt(along[0] * along[0] + along[1] * along[1]);
     const double        turn = atan2(along[1], along[0]), at = (turn < 0 ? turn + 2 * pi_rad : turn) / step_rad;
     const int           k = (int)fmin(at, shape_azimuths - 1);
-    const double        mix = (shape->reach[k] * sin((k + 1 - at) * step_rad) + shape->reach[k + 1] * sin((at - k) * step_rad)) /
-                       sin(step_rad);
+    const double        mix =
+        (shape->reach[k] * sin((k + 1 - at) * step_rad) + shape->reach[k + 1] * sin((at - k) * step_rad)) /
+        sin(step_rad);
     const double up = shape->centre[2] + shape->half[2], down = shape->centre[2] - shape->half[2];
     return across * (mix + 1e-4) + fmax(along[2] * up, along[2] * down);
 }
@@ -110,19 +112,20 @@ static double box_along(const ShapeScene *shape, const double along[3])
 void plant_box(const struct RTCBoundsFunctionArguments *a)
 {
     static const double room_m = 0.02; /* of a float 16 km from the origin, twenty times */
-    const PlantList  *list = a->geometryUserPtr;
-    const Plant      *plant = &list->plant[a->primID];
-    const ShapeScene *level[plant_levels] = {&list->forest->shape[plant->kind][0], &list->forest->shape[plant->kind][1]};
-    const double      swing_m = list->forest->config.sway > 0 ? most_sway_rad * 1.1 * plant_height_m(plant) : 0;
-    double            m[9], low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
-    float            *bound[2] = {&a->bounds_o->lower_x, &a->bounds_o->upper_x};
+    const PlantList    *list = a->geometryUserPtr;
+    const Plant        *plant = &list->plant[a->primID];
+    const ShapeScene   *level[plant_levels] = {&list->forest->shape[plant->kind][0],
+                                               &list->forest->shape[plant->kind][1]};
+    const double        swing_m = list->forest->config.sway > 0 ? most_sway_rad * 1.1 * plant_height_m(plant) : 0;
+    double              m[9], low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+    float              *bound[2] = {&a->bounds_o->lower_x, &a->bounds_o->upper_x};
     plant_transform(m, plant, NULL);
     double (*const reach)(const ShapeScene *, const double[3]) = list->frame ? box_along : reach_along;
     for (int l = 0; l < plant_levels; l++) {
         if (!level[l]->scene) continue;
         for (int c = 0; c < 3; c++) {
             const double along[3] = {m[3 * c], m[3 * c + 1], m[3 * c + 2]}, back[3] = {-along[0], -along[1], -along[2]};
-            low[c]  = fmin(low[c], -reach(level[l], back) - room_m - swing_m);
+            low[c] = fmin(low[c], -reach(level[l], back) - room_m - swing_m);
             high[c] = fmax(high[c], reach(level[l], along) + room_m + swing_m);
         }
     }
@@ -144,10 +147,10 @@ static inline F64x4 turned(const PlantFrame *stands, double x, double y, double 
 /* The ray in the prototype's axes; false: it misses the box, or is stopped before. start_m: of the new origin. */
 static bool enter_plant(QuadRay *q, double *start_m, ListRay *ray, const PlantList *list, uint32_t place)
 {
-    const Plant *plant = &list->plant[place];
+    const Plant      *plant = &list->plant[place];
     const PlantFrame *stands = frame_of(ray, list, plant);
     const ShapeScene *shape = &list->forest->shape[plant->kind][stands->low && !ray->real];
-    double low[4] __attribute__((aligned(32))), high[4] __attribute__((aligned(32)));
+    double            low[4] __attribute__((aligned(32))), high[4] __attribute__((aligned(32)));
     q->shape = shape;
     if (!shape->scene) return false;
     const F64x4 o = turned(stands, ray->o_enu[0] - stands->foot_enu[0], ray->o_enu[1] - stands->foot_enu[1],
@@ -183,8 +186,9 @@ static void plane_of(QuadPlane *out, const PlantQuad *quad)
     }
     v3_cross(out->n, out->u, out->v);
     if (v3_dot(out->n, out->n) > 0) return;
-    for (int c = 0; c < 3; c++) out->v[c] = (double)quad->corner[2][c] - out->a[c]; /* a triangle: corners 0 and 3, or 0
-                                                                                       * and 1, are one */
+    for (int c = 0; c < 3; c++)
+        out->v[c] = (double)quad->corner[2][c] - out->a[c]; /* a triangle: corners 0 and 3, or 0
+                                                             * and 1, are one */
     v3_cross(out->n, out->u, out->v);
 }
 
@@ -213,8 +217,8 @@ static void place_of(float uv[2], const QuadPass *pass, const QuadRay *q)
     uv[1] = (float)(v3_dot(side, plane->n) / square);
 }
 
-/* Distance of the ray's hit on the quad's plane, in double; of leaves, false beside the outline. Which quads a ray passes
- * through is Embree's word. */
+/* Distance of the ray's hit on the quad's plane, in double; of leaves, false beside the outline. Which quads a ray
+ * passes through is Embree's word. */
 static bool test_quad(double *at_m, const QuadRay *q, uint32_t index)
 {
     const PlantQuad *quad = &q->shape->shape->quad[index];
@@ -254,8 +258,14 @@ void quad_occlude(const struct RTCFilterFunctionNArguments *a)
 
 static void fill_ray(struct RTCRay *ray, const double o[3], const double d[3], double far)
 {
-    *ray = (struct RTCRay){.org_x = (float)o[0], .org_y = (float)o[1], .org_z = (float)o[2], .dir_x = (float)d[0],
-                           .dir_y = (float)d[1], .dir_z = (float)d[2], .tfar = (float)far, .mask = ~0u};
+    *ray = (struct RTCRay){.org_x = (float)o[0],
+                           .org_y = (float)o[1],
+                           .org_z = (float)o[2],
+                           .dir_x = (float)d[0],
+                           .dir_y = (float)d[1],
+                           .dir_z = (float)d[2],
+                           .tfar = (float)far,
+                           .mask = ~0u};
 }
 
 bool shape_occluded(const ShapeScene *shape, const double o[3], const double d[3])
@@ -276,12 +286,12 @@ static const double past = 1 + 1e-6; /* a float's distance may be that much shor
 
 void plant_intersect(const struct RTCIntersectFunctionNArguments *a)
 {
-    const PlantList    *list = a->geometryUserPtr;
-    ListRay            *ray = (ListRay *)a->context;
-    struct RTCRayHit    inner;
-    QuadRay             q;
-    QuadPass            pass;
-    double              start_m;
+    const PlantList *list = a->geometryUserPtr;
+    ListRay         *ray = (ListRay *)a->context;
+    struct RTCRayHit inner;
+    QuadRay          q;
+    QuadPass         pass;
+    double           start_m;
     if (!a->valid[0]) return;
     ray->entered++;
     if (!enter_plant(&q, &start_m, ray, list, a->primID)) return;
@@ -295,12 +305,15 @@ void plant_intersect(const struct RTCIntersectFunctionNArguments *a)
     const Plant     *plant = &list->plant[a->primID];
     const PlantQuad *quad = &q.shape->shape->quad[q.quad];
     ray->limit_m = at_m;
-    ray->met     = true;
-    ray->hit = (ForestHit){.plant = list->number ? list->number[a->primID] : a->primID, .place = a->primID,
-                           .quad = q.quad, .kind = plant->kind, .organ = quad->organ,
-                           .level = q.shape == &list->forest->shape[plant->kind][1],
-                           .back = (double)quad->n[0][0] * q.d[0] + (double)quad->n[0][1] * q.d[1] +
-                                       (double)quad->n[0][2] * q.d[2] > 0};
+    ray->met = true;
+    ray->hit = (ForestHit){
+        .plant = list->number ? list->number[a->primID] : a->primID,
+        .place = a->primID,
+        .quad = q.quad,
+        .kind = plant->kind,
+        .organ = quad->organ,
+        .level = q.shape == &list->forest->shape[plant->kind][1],
+        .back = (double)quad->n[0][0] * q.d[0] + (double)quad->n[0][1] * q.d[1] + (double)quad->n[0][2] * q.d[2] > 0};
     pass_of(&pass, &q, quad);
     place_of(ray->hit.uv, &pass, &q);
     ((struct RTCRayHit *)a->rayhit)->ray.tfar = (float)(at_m * past);
@@ -368,7 +381,7 @@ uint64_t forest_first_hits(double *range_m, ForestHit *hit, const ForestFrame *f
         }
         if (!ray.met) continue;
         range_m[i] = ray.limit_m;
-        hit[i]     = ray.hit;
+        hit[i] = ray.hit;
     }
     return ray.entered;
 }
@@ -425,22 +438,24 @@ static void bark_normal(double n[3], const PlantQuad *quad, const QuadPlane *pla
 void forest_surface(ForestSurface *out, const ForestFrame *frame, const ForestHit *hit, const double o_enu[3],
                     const double d_enu[3], double range_m, float footprint_m)
 {
-    const PlantList *list = hit->plant & forest_low_bit ? low_plants_list(frame) : &frame->forest->standing;
-    const Plant     *plant = &list->plant[hit->place];
+    const PlantList  *list = hit->plant & forest_low_bit ? low_plants_list(frame) : &frame->forest->standing;
+    const Plant      *plant = &list->plant[hit->place];
     const PlantShape *shape = frame->forest->shape[hit->kind][hit->level].shape;
-    const PlantQuad *quad = &shape->quad[hit->quad];
-    const double     height_m = plant_height_m(plant);
-    double           axis[3][3], scale[2], n[3];
-    QuadPlane        plane;
+    const PlantQuad  *quad = &shape->quad[hit->quad];
+    const double      height_m = plant_height_m(plant);
+    double            axis[3][3], scale[2], n[3];
+    QuadPlane         plane;
     axes_of(axis, scale, frame, plant);
     const double per[2] = {1 / scale[0], 1 / scale[1]};
     plane_of(&plane, quad);
     turn_normal(out->n_geo, axis, per, plane.n);
     const double side = v3_dot(out->n_geo, d_enu) > 0 ? -1 : 1;
     v3_scale(out->n_geo, side, out->n_geo);
-    *out = (ForestSurface){.n_geo = {out->n_geo[0], out->n_geo[1], out->n_geo[2]}, .open_up = quad->open_up,
+    *out = (ForestSurface){.n_geo = {out->n_geo[0], out->n_geo[1], out->n_geo[2]},
+                           .open_up = quad->open_up,
                            .open_down = quad->open_down,
-                           .radius_m = (float)(quad->radius * height_m), .height_m = (float)height_m};
+                           .radius_m = (float)(quad->radius * height_m),
+                           .height_m = (float)height_m};
     double foot_enu[3], from[3], p[3];
     foot_of(foot_enu, list, plant);
     v3_sub(from, o_enu, foot_enu);

@@ -1,19 +1,20 @@
-/* render/trace/plants/low_plants.c: the low plants of a frame: squares about the eye, thinned out towards their reach. */
+/* render/trace/plants/low_plants.c: the low plants of a frame: squares about the eye, thinned out towards their reach.
+ */
 #include "render/trace/plants/forest_private.h"
 
 #include <stdlib.h>
 
 typedef struct LowPlants {
-    PlantList list;
-    int       squares, columns;
-    int64_t   i0, j0;
+    PlantList          list;
+    int                squares, columns;
+    int64_t            i0, j0;
     const ForestFrame *frame;
-    Plant   **kept;       /* [squares] malloc'd */
-    uint32_t **number;    /* [squares] */
-    int      *count;      /* [squares] */
-    bool     *lost;       /* [squares]: no memory */
-    Plant    *plant;      /* all */
-    uint32_t *numbers;
+    Plant            **kept;   /* [squares] malloc'd */
+    uint32_t         **number; /* [squares] */
+    int               *count;  /* [squares] */
+    bool              *lost;   /* [squares]: no memory */
+    Plant             *plant;  /* all */
+    uint32_t          *numbers;
 } LowPlants;
 
 /* A number in 0 .. 1 of a plant that its looks do not depend on. */
@@ -30,8 +31,8 @@ static uint32_t number_of(int64_t i, int64_t j, int k)
     return forest_low_bit | (uint32_t)((i & 0x3ff) << 21 | (j & 0x1ff) << 12 | (k & 0xfff));
 }
 
-/* How far the eye is above everything on a square, at least: above its highest post about the middle and its corners, and
- * room_m more for what rises between them and for the plants themselves. */
+/* How far the eye is above everything on a square, at least: above its highest post about the middle and its corners,
+ * and room_m more for what rises between them and for the plants themselves. */
 static double above_square_m(const ForestFrame *frame, const double corner_m[2])
 {
     static const double room_m = 10;
@@ -51,12 +52,12 @@ static double above_square_m(const ForestFrame *frame, const double corner_m[2])
 /* Those of a square that are kept: all within half the reach, none at it. */
 static void fill_square(void *user, int worker, int square)
 {
-    LowPlants    *low = user;
+    LowPlants         *low = user;
     const ForestFrame *frame = low->frame;
-    const Woods  *woods = frame->forest->woods;
-    const int64_t i = low->i0 + square % low->columns, j = low->j0 + square / low->columns;
-    const double  corner_m[2] = {(double)i * woods_low_m, (double)j * woods_low_m};
-    double        near2 = 0;
+    const Woods       *woods = frame->forest->woods;
+    const int64_t      i = low->i0 + square % low->columns, j = low->j0 + square / low->columns;
+    const double       corner_m[2] = {(double)i * woods_low_m, (double)j * woods_low_m};
+    double             near2 = 0;
     (void)worker;
     for (int k = 0; k < 2; k++) {
         const double eye_m = frame->eye_enu[k] - woods->origin_enu[k];
@@ -94,7 +95,7 @@ static Status gather(LowPlants *low, Arena *arena)
         if (low->lost[s]) return STATUS_NO_MEMORY;
         all += (size_t)low->count[s];
     }
-    low->plant   = arena_alloc(arena, all + 1, sizeof *low->plant);
+    low->plant = arena_alloc(arena, all + 1, sizeof *low->plant);
     low->numbers = arena_alloc(arena, all + 1, sizeof *low->numbers);
     if (!low->plant || !low->numbers) return STATUS_NO_MEMORY;
     for (int s = 0; s < low->squares; s++) {
@@ -123,14 +124,15 @@ Status low_plants_open(ForestFrame *frame, double reach_m, Pool *pool, Arena *ar
     low->columns = (int)(end[0] - from[0]);
     low->squares = low->columns * (int)(end[1] - from[1]);
     const size_t n = (size_t)low->squares;
-    low->kept   = arena_alloc(arena, n, sizeof *low->kept);
+    low->kept = arena_alloc(arena, n, sizeof *low->kept);
     low->number = arena_alloc(arena, n, sizeof *low->number);
-    low->count  = arena_alloc(arena, n, sizeof *low->count);
-    low->lost   = arena_alloc(arena, n, sizeof *low->lost);
+    low->count = arena_alloc(arena, n, sizeof *low->count);
+    low->lost = arena_alloc(arena, n, sizeof *low->lost);
     if (!low->kept || !low->number || !low->count || !low->lost) return STATUS_NO_MEMORY;
     for (size_t s = 0; s < n; s++) low->kept[s] = NULL, low->number[s] = NULL, low->count[s] = 0, low->lost[s] = false;
     if (pool) pool_run(pool, low->squares, fill_square, low);
-    else for (int s = 0; s < low->squares; s++) fill_square(low, 0, s);
+    else
+        for (int s = 0; s < low->squares; s++) fill_square(low, 0, s);
     Status status = gather(low, arena);
     for (size_t s = 0; s < n; s++) free(low->kept[s]), free(low->number[s]);
     if (status == STATUS_OK) status = plant_list_commit(&low->list, frame->forest, true);

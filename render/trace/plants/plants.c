@@ -1,4 +1,5 @@
-/* render/trace/plants/plants.c: grows the prototype of every kind at both levels, and brings them to a height of 1 m. */
+/* render/trace/plants/plants.c: grows the prototype of every kind at both levels, and brings them to a height of 1 m.
+ */
 #include "render/trace/plants/plants_private.h"
 
 #include <stdlib.h>
@@ -53,8 +54,8 @@ void grow_piece(Growth *g, const double a[3], const double b[3], double radius_a
         const int  next = (k + 1) % sides;
         PlantQuad *q = add_quad(g, &g->bark, &g->bark_quads, &g->bark_room);
         if (!q) return;
-        q->organ  = PLANT_BARK;
-        q->piece  = (uint16_t)g->pieces;
+        q->organ = PLANT_BARK;
+        q->piece = (uint16_t)g->pieces;
         q->radius = (float)(0.5 * (radius_a + radius_b));
         for (int x = 0; x < 3; x++) {
             q->corner[0][x] = (float)ring[0][k][x], q->corner[1][x] = (float)ring[0][next][x];
@@ -75,9 +76,9 @@ void grow_leaf(Growth *g, const double at[3], const double along[3], const doubl
     v3_cross(face, u, v);
     PlantQuad *q = add_quad(g, &g->leaf, &g->leaves, &g->leaf_room);
     if (!q) return;
-    q->organ   = PLANT_LEAF;
+    q->organ = PLANT_LEAF;
     q->outline = (uint8_t)(grow_draw(g, 0, 1) * plant_outlines);
-    q->piece   = (uint16_t)(g->leaves - 1);
+    q->piece = (uint16_t)(g->leaves - 1);
     for (int x = 0; x < 3; x++) {
         const double left = at[x] - 0.5 * width * u[x], right = at[x] + 0.5 * width * u[x];
         q->corner[0][x] = (float)left, q->corner[1][x] = (float)right;
@@ -94,8 +95,8 @@ void grow_facet(Growth *g, const double corner[3][3])
     v3_sub(e1, corner[1], corner[0]), v3_sub(e2, corner[2], corner[0]);
     v3_cross(n, e1, e2);
     v3_normalize(n, n);
-    q->organ  = PLANT_STONE;
-    q->piece  = (uint16_t)g->pieces++;
+    q->organ = PLANT_STONE;
+    q->piece = (uint16_t)g->pieces++;
     q->radius = 0.3f;
     for (int k = 0; k < 4; k++)
         for (int x = 0; x < 3; x++) q->corner[k][x] = (float)corner[k < 3 ? k : 2][x], q->n[k][x] = (float)n[x];
@@ -144,8 +145,8 @@ static Status finish_shape(PlantShape *out, const float outline_area[plant_outli
         radius[leaf++] = (float)sqrt(x * x + y * y);
     }
     qsort(radius, (size_t)out->leaves, sizeof *radius, compare_radii);
-    out->leaf_area    = (float)area;
-    out->crown_low    = (float)lowest;
+    out->leaf_area = (float)area;
+    out->crown_low = (float)lowest;
     out->crown_radius = out->leaves > 0 ? radius[out->leaves * 9 / 10] : 0;
     free(radius);
     return STATUS_OK;
@@ -167,7 +168,8 @@ static void grow_kind(void *user, int worker, int task)
     (void)worker;
     if (kind < PLANT_TREES) grow_tree(&g);
     else grow_low_plant(&g);
-    out->quads = g.bark_quads + g.leaves, out->bark_quads = g.bark_quads, out->pieces = g.pieces, out->leaves = g.leaves;
+    out->quads = g.bark_quads + g.leaves, out->bark_quads = g.bark_quads, out->pieces = g.pieces,
+    out->leaves = g.leaves;
     if (!g.lost && out->quads > 0) out->quad = malloc((size_t)out->quads * sizeof *out->quad);
     if (out->quad) {
         if (g.bark_quads) memcpy(out->quad, g.bark, (size_t)g.bark_quads * sizeof *g.bark);
@@ -187,7 +189,8 @@ Status plants_create(Plants **out, uint64_t seed, Pool *pool)
             n.plants->outline_area[kind][k] = (float)plant_outline_area(&n.plants->outline[kind][k]);
         }
     if (pool) pool_run(pool, PLANT_KINDS * plant_levels, grow_kind, &n);
-    else for (int t = 0; t < PLANT_KINDS * plant_levels; t++) grow_kind(&n, 0, t);
+    else
+        for (int t = 0; t < PLANT_KINDS * plant_levels; t++) grow_kind(&n, 0, t);
     for (int kind = 0; kind < PLANT_KINDS; kind++)
         for (int level = 0; level < plant_levels; level++)
             if (n.status[kind][level] != STATUS_OK) {

@@ -2,44 +2,44 @@
  * of the species.
  *
  * Radii follow the pipe model (Shinozaki et al., Jpn. J. Ecol. 14, 1964): cross-sections are in proportion to the twigs
- * that they feed. Branches follow one another about the trunk by the golden angle, as buds do (phyllotaxis); in pines in
- * whorls, one a year. Numbers of pieces and leaves are those of Muuss & Lorenzo (1995), figure 3: 1695 .. 3634 and
- * 852 .. 1749; a card is therefore a spray of leaves: its size gives the tree a leaf area of some three times the ground
- * under its crown (temperate forests: 3 .. 6, Asner et al., Global Ecol. Biogeogr. 12, 191, 2003). Habits are
+ * that they feed. Branches follow one another about the trunk by the golden angle, as buds do (phyllotaxis); in pines
+ * in whorls, one a year. Numbers of pieces and leaves are those of Muuss & Lorenzo (1995), figure 3: 1695 .. 3634 and
+ * 852 .. 1749; a card is therefore a spray of leaves: its size gives the tree a leaf area of some three times the
+ * ground under its crown (temperate forests: 3 .. 6, Asner et al., Global Ecol. Biogeogr. 12, 191, 2003). Habits are
  * descriptions of field guides put into numbers: estimates. */
 
 #include "render/trace/plants/plants_private.h"
 
 typedef struct Habit {
-    double bole;            /* share of the height without branches */
-    double spread;          /* crown's radius over the height */
-    double widest;          /* height in the crown of its widest place, 0 .. 1 */
-    double top;             /* radius at the crown's top over that at its widest place */
-    double round;           /* of the crown above that: 0.5 an ellipsoid, 1 a paraboloid, 1.5 nearly a cone */
+    double bole;              /* share of the height without branches */
+    double spread;            /* crown's radius over the height */
+    double widest;            /* height in the crown of its widest place, 0 .. 1 */
+    double top;               /* radius at the crown's top over that at its widest place */
+    double round;             /* of the crown above that: 0.5 an ellipsoid, 1 a paraboloid, 1.5 nearly a cone */
     double low_rad, high_rad; /* of branches from the vertical, at the foot of the crown and at its top */
-    double rise;            /* of branches along their way: > 0 they turn up, < 0 they droop */
-    double crooked;         /* of branches and trunk */
-    double radius;          /* of the trunk's foot over the height */
-    double leader;          /* height at which the trunk ends */
-    int    whorl;           /* branches at one height; 1: each at its own */
+    double rise;              /* of branches along their way: > 0 they turn up, < 0 they droop */
+    double crooked;           /* of branches and trunk */
+    double radius;            /* of the trunk's foot over the height */
+    double leader;            /* height at which the trunk ends */
+    int    whorl;             /* branches at one height; 1: each at its own */
     int    branches, subs, twigs, more; /* a tree; a branch; a sub-branch; leaves a sub-branch beside one a twig */
-    double leaf_aspect;     /* width over length of a card */
+    double leaf_aspect;                 /* width over length of a card */
 } Habit;
 
 static const Habit habits[PLANT_TREES] = {
-    [PLANT_PINE]        = {0.42, 0.18, 0.20, 0.04, 1.0, 1.60, 0.80, 0.25, 0.03, 0.016, 0.99, 5, 60, 5, 3, 2, 1.0},
-    [PLANT_ALDER]       = {0.22, 0.20, 0.22, 0.04, 1.2, 1.25, 0.70, 0.10, 0.05, 0.014, 0.98, 1, 64, 6, 3, 1, 0.9},
-    [PLANT_BIRCH]       = {0.25, 0.21, 0.35, 0.08, 0.8, 0.90, 0.45, -0.75, 0.06, 0.011, 0.97, 1, 80, 7, 3, 0, 0.9},
+    [PLANT_PINE] = {0.42, 0.18, 0.20, 0.04, 1.0, 1.60, 0.80, 0.25, 0.03, 0.016, 0.99, 5, 60, 5, 3, 2, 1.0},
+    [PLANT_ALDER] = {0.22, 0.20, 0.22, 0.04, 1.2, 1.25, 0.70, 0.10, 0.05, 0.014, 0.98, 1, 64, 6, 3, 1, 0.9},
+    [PLANT_BIRCH] = {0.25, 0.21, 0.35, 0.08, 0.8, 0.90, 0.45, -0.75, 0.06, 0.011, 0.97, 1, 80, 7, 3, 0, 0.9},
     [PLANT_ENGLISH_OAK] = {0.20, 0.42, 0.40, 0.22, 0.6, 1.45, 0.45, 0.20, 0.16, 0.028, 0.72, 1, 40, 10, 4, 0, 0.8},
     [PLANT_SESSILE_OAK] = {0.30, 0.33, 0.45, 0.20, 0.6, 1.15, 0.40, 0.25, 0.10, 0.024, 0.82, 1, 42, 10, 4, 0, 0.8},
-    [PLANT_RED_OAK]     = {0.27, 0.34, 0.50, 0.22, 0.6, 1.10, 0.40, 0.30, 0.08, 0.024, 0.80, 1, 43, 10, 4, 0, 0.85},
-    [PLANT_WHITE_OAK]   = {0.18, 0.45, 0.42, 0.25, 0.6, 1.50, 0.50, 0.10, 0.13, 0.030, 0.74, 1, 41, 10, 4, 0, 0.8},
+    [PLANT_RED_OAK] = {0.27, 0.34, 0.50, 0.22, 0.6, 1.10, 0.40, 0.30, 0.08, 0.024, 0.80, 1, 43, 10, 4, 0, 0.85},
+    [PLANT_WHITE_OAK] = {0.18, 0.45, 0.42, 0.25, 0.6, 1.50, 0.50, 0.10, 0.13, 0.030, 0.74, 1, 41, 10, 4, 0, 0.8},
 };
 
 enum { trunk_pieces = 12, branch_pieces = 4, sub_pieces = 2 };
 static const double golden_rad = 2.39996322972865332;
-static const double twigs_too = 1.85; /* radius of a sub-branch at level 1, which stands for its twigs as well: bare silhouettes
-                                      * then agree (tests/render/test_plants.c) */
+static const double twigs_too = 1.85; /* radius of a sub-branch at level 1, which stands for its twigs as well: bare
+                                       * silhouettes then agree (tests/render/test_plants.c) */
 static const double leaf_layers = 4, outline_share = 0.5; /* of a card; about */
 
 /* Radius of the crown at a height in it, 0 .. 1, over its largest. */
@@ -100,8 +100,8 @@ static void leaf_at(Growth *g, const Habit *h, const double p[3], const double d
 }
 
 /* A sub-branch with its twigs. */
-static void grow_sub(Growth *g, const Habit *h, const double at[3], const double toward[3], double length, double radius,
-                     double leaf_m)
+static void grow_sub(Growth *g, const Habit *h, const double at[3], const double toward[3], double length,
+                     double radius, double leaf_m)
 {
     double p[sub_pieces + 1][3], d[3];
     memcpy(p[0], at, sizeof p[0]);
@@ -120,7 +120,7 @@ static void grow_sub(Growth *g, const Habit *h, const double at[3], const double
         leaf_at(g, h, tip, way, leaf_m);
     }
     for (int k = 0; k < h->more; k++) {
-        double from[3];
+        double       from[3];
         const double share = grow_draw(g, 0.3, 1);
         for (int x = 0; x < 3; x++) from[x] = p[0][x] + share * (p[sub_pieces][x] - p[0][x]);
         leaf_at(g, h, from, d, leaf_m);
@@ -156,8 +156,9 @@ void grow_tree(Growth *g)
 {
     const Habit *h = &habits[g->kind];
     const int    leaves = h->branches * h->subs * (h->twigs + h->more);
-    const double leaf_m = sqrt(leaf_layers * pi_rad * h->spread * h->spread / (leaves * outline_share * h->leaf_aspect));
-    double       p[trunk_pieces + 1][3] = {{0, 0, 0}}, d[3] = {0, 0, 1};
+    const double leaf_m =
+        sqrt(leaf_layers * pi_rad * h->spread * h->spread / (leaves * outline_share * h->leaf_aspect));
+    double p[trunk_pieces + 1][3] = {{0, 0, 0}}, d[3] = {0, 0, 1};
     for (int k = 0; k < trunk_pieces; k++) { /* wanders, but stands */
         v3_add_scaled(p[k + 1], p[k], h->leader / trunk_pieces, d);
         for (int x = 0; x < 2; x++) d[x] = 0.6 * d[x] + grow_draw(g, -0.5, 0.5) * h->crooked;
@@ -195,7 +196,8 @@ static void grow_stems(Growth *g, int stems, double half_x, double half_y, doubl
         else grow_piece(g, foot, tip, 0.016, 0.006, 3);
     }
     for (int l = 0; l < leaves; l++) { /* in the shell more than within */
-        const double turn = grow_draw(g, 0, 2 * pi_rad), out = sqrt(grow_draw(g, 0.25, 1)), z = grow_draw(g, 0.06, 0.98);
+        const double turn = grow_draw(g, 0, 2 * pi_rad), out = sqrt(grow_draw(g, 0.25, 1)),
+                     z = grow_draw(g, 0.06, 0.98);
         const double round = sqrt(fmax(1 - 0.55 * z * z, 0.2));
         const double at[3] = {out * round * cos(turn) * half_x, out * round * sin(turn) * half_y, z};
         double       along[3], n[3];
@@ -211,7 +213,8 @@ static void grow_stems(Growth *g, int stems, double half_x, double half_y, doubl
 static void grow_blades(Growth *g, int blades, double spread, double lean, double width)
 {
     for (int b = 0; b < blades; b++) {
-        const double turn = grow_draw(g, 0, 2 * pi_rad), out = grow_draw(g, 0.1, 1), face = turn + grow_draw(g, -0.9, 0.9);
+        const double turn = grow_draw(g, 0, 2 * pi_rad), out = grow_draw(g, 0.1, 1),
+                     face = turn + grow_draw(g, -0.9, 0.9);
         const double at[3] = {spread * out * cos(turn), spread * out * sin(turn), 0};
         const double along[3] = {lean * out * cos(turn), lean * out * sin(turn), 1};
         const double n[3] = {cos(face), sin(face), 0.1};
@@ -236,10 +239,11 @@ static void grow_stone(Growth *g)
         }
     for (int j = 0; j < levels; j++)
         for (int k = 0; k < turns; k++) {
-            const int    step = around / turns, j0 = j * rings / levels, j1 = (j + 1) * rings / levels;
-            const int    k0 = k * step, k1 = (k + 1) % turns * step;
-            double       t[3][3];
-            memcpy(t[0], p[j0][k0], sizeof t[0]), memcpy(t[1], p[j0][k1], sizeof t[1]), memcpy(t[2], p[j1][k1], sizeof t[2]);
+            const int step = around / turns, j0 = j * rings / levels, j1 = (j + 1) * rings / levels;
+            const int k0 = k * step, k1 = (k + 1) % turns * step;
+            double    t[3][3];
+            memcpy(t[0], p[j0][k0], sizeof t[0]), memcpy(t[1], p[j0][k1], sizeof t[1]),
+                memcpy(t[2], p[j1][k1], sizeof t[2]);
             grow_facet(g, (const double(*)[3])t);
             if (j1 == rings) continue; /* the top is one place */
             memcpy(t[1], p[j1][k1], sizeof t[1]), memcpy(t[2], p[j1][k0], sizeof t[2]);
@@ -250,12 +254,26 @@ static void grow_stone(Growth *g)
 void grow_low_plant(Growth *g)
 {
     switch (g->kind) {
-    case PLANT_BUSH: grow_stems(g, 14, 0.55, 0.55, 0.7, 260, 0.16); break;
-    case PLANT_HEDGE: grow_stems(g, 12, 0.55, 0.42, 0.4, 320, 0.15); break;
-    case PLANT_REED: grow_blades(g, 18, 0.12, 0.18, 0.03); break;
-    case PLANT_GRASS: grow_blades(g, 26, 0.5, 0.5, 0.09); break;
-    case PLANT_DRY_GRASS: grow_blades(g, 24, 0.45, 0.65, 0.07); break;
-    case PLANT_CROP: grow_blades(g, 16, 0.12, 0.3, 0.07); break;
-    default: grow_stone(g); break;
+    case PLANT_BUSH:
+        grow_stems(g, 14, 0.55, 0.55, 0.7, 260, 0.16);
+        break;
+    case PLANT_HEDGE:
+        grow_stems(g, 12, 0.55, 0.42, 0.4, 320, 0.15);
+        break;
+    case PLANT_REED:
+        grow_blades(g, 18, 0.12, 0.18, 0.03);
+        break;
+    case PLANT_GRASS:
+        grow_blades(g, 26, 0.5, 0.5, 0.09);
+        break;
+    case PLANT_DRY_GRASS:
+        grow_blades(g, 24, 0.45, 0.65, 0.07);
+        break;
+    case PLANT_CROP:
+        grow_blades(g, 16, 0.12, 0.3, 0.07);
+        break;
+    default:
+        grow_stone(g);
+        break;
     }
 }

@@ -23,7 +23,8 @@ static const BarkForm bark_form[PLANT_KINDS] = {
 
 static double lattice(uint32_t plant, int octave, int64_t i, int64_t j, int64_t k)
 {
-    uint64_t h = (uint64_t)i * 0x9e3779b97f4a7c15u ^ (uint64_t)j * 0xc2b2ae3d27d4eb4fu ^ (uint64_t)k * 0x165667b19e3779f9u;
+    uint64_t h =
+        (uint64_t)i * 0x9e3779b97f4a7c15u ^ (uint64_t)j * 0xc2b2ae3d27d4eb4fu ^ (uint64_t)k * 0x165667b19e3779f9u;
     h ^= ((uint64_t)plant << 8 | (uint64_t)octave) * 0xd6e8feb86659fd93u;
     h = (h ^ h >> 32) * 0xd6e8feb86659fd93u;
     h = (h ^ h >> 32) * 0xd6e8feb86659fd93u;
@@ -84,23 +85,27 @@ float plants_leaf_albedo(PlantKind kind, uint32_t plant, uint32_t leaf)
 
 /* Outlines of leaves: of a species' own form, each a little different.
  *
- * A card is a spray of leaves, but its outline is that of one leaf of the species, or of a tuft of needles: from near it
- * looks like the species, from afar its area counts. Forms are described by angle about the card's middle, as botany
+ * A card is a spray of leaves, but its outline is that of one leaf of the species, or of a tuft of needles: from near
+ * it looks like the species, from afar its area counts. Forms are described by angle about the card's middle, as botany
  * keys do (lobes, their depth and tips): estimates. */
 
 typedef struct LeafForm {
-    int    lobes;      /* on the whole outline; 0: none */
-    double depth;      /* of the cuts between them, 0 .. 1 */
-    double sharp;      /* 0: round lobes; 1: pointed ones */
-    double widest;     /* height of the widest place, 0 .. 1 */
-    double slim;       /* half width over half length */
+    int    lobes;  /* on the whole outline; 0: none */
+    double depth;  /* of the cuts between them, 0 .. 1 */
+    double sharp;  /* 0: round lobes; 1: pointed ones */
+    double widest; /* height of the widest place, 0 .. 1 */
+    double slim;   /* half width over half length */
 } LeafForm;
 
 static const LeafForm leaf_form[PLANT_KINDS] = {
-    [PLANT_PINE] = {11, 0.62, 1, 0.5, 1},            [PLANT_ALDER] = {0, 0, 0, 0.6, 0.85},
-    [PLANT_BIRCH] = {11, 0.12, 1, 0.38, 0.8},        [PLANT_ENGLISH_OAK] = {8, 0.42, 0.1, 0.6, 0.75},
-    [PLANT_SESSILE_OAK] = {10, 0.3, 0.1, 0.52, 0.75}, [PLANT_RED_OAK] = {8, 0.5, 0.9, 0.52, 0.85},
-    [PLANT_WHITE_OAK] = {8, 0.55, 0.2, 0.55, 0.8},   [PLANT_BUSH] = {0, 0, 0, 0.5, 0.7},
+    [PLANT_PINE] = {11, 0.62, 1, 0.5, 1},
+    [PLANT_ALDER] = {0, 0, 0, 0.6, 0.85},
+    [PLANT_BIRCH] = {11, 0.12, 1, 0.38, 0.8},
+    [PLANT_ENGLISH_OAK] = {8, 0.42, 0.1, 0.6, 0.75},
+    [PLANT_SESSILE_OAK] = {10, 0.3, 0.1, 0.52, 0.75},
+    [PLANT_RED_OAK] = {8, 0.5, 0.9, 0.52, 0.85},
+    [PLANT_WHITE_OAK] = {8, 0.55, 0.2, 0.55, 0.8},
+    [PLANT_BUSH] = {0, 0, 0, 0.5, 0.7},
     [PLANT_HEDGE] = {6, 0.35, 0.3, 0.55, 0.8},
 };
 
@@ -111,7 +116,8 @@ static void blade(LeafOutline *out, PlantKind kind, int which, uint64_t seed)
     const double at[4] = {0, 0.35, 0.7, 1}, half[4] = {0.25, 0.5, 0.36, 0};
     out->corners = 7;
     for (int k = 0; k < 4; k++) {
-        const double middle = 0.5 + 0.2 * bend * at[k] * at[k], wide = fmin(half[k], 0.5 - 0.2 * fabs(bend) * at[k] * at[k]);
+        const double middle = 0.5 + 0.2 * bend * at[k] * at[k],
+                     wide = fmin(half[k], 0.5 - 0.2 * fabs(bend) * at[k] * at[k]);
         out->uv[k][0] = (float)(middle + wide), out->uv[k][1] = (float)at[k];
         if (k < 3) out->uv[6 - k][0] = (float)(middle - wide), out->uv[6 - k][1] = (float)at[k];
     }

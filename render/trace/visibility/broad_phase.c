@@ -11,12 +11,12 @@ typedef struct Box {
 } Box;
 
 struct BroadPhase {
-    int      count;
-    int      leaves;          /* a power of two */
-    Box     *node;            /* [2 leaves], from 1: the root */
-    int     *item;            /* [count], in the order of the leaves */
-    double (*sphere)[4];      /* [count], likewise: centre and radius */
-    Box     *ray_node, *box;  /* [2 leaves], [count]: those that rays are tested with; within node and sphere */
+    int  count;
+    int  leaves;         /* a power of two */
+    Box *node;           /* [2 leaves], from 1: the root */
+    int *item;           /* [count], in the order of the leaves */
+    double (*sphere)[4]; /* [count], likewise: centre and radius */
+    Box *ray_node, *box; /* [2 leaves], [count]: those that rays are tested with; within node and sphere */
 };
 
 /* ---- building ----------------------------------------------------------------------------------- */
@@ -69,7 +69,7 @@ static void grow(Box *box, const double s[4])
     /* a million times the rounding error, at any distance from the origin */
     const double room_m = s[3] * (1 + 1e-9) + 1e-6 + 1e-10 * (fabs(s[0]) + fabs(s[1]) + fabs(s[2]));
     for (int c = 0; c < 3; c++) {
-        box->low[c]  = fmin(box->low[c], s[c] - room_m);
+        box->low[c] = fmin(box->low[c], s[c] - room_m);
         box->high[c] = fmax(box->high[c], s[c] + room_m);
     }
 }
@@ -86,7 +86,7 @@ static Box box_of_sphere(const double s[4])
 static void join(Box *box, const Box *a, const Box *b)
 {
     for (int c = 0; c < 3; c++) {
-        box->low[c]  = a->low[c] < b->low[c] ? a->low[c] : b->low[c];
+        box->low[c] = a->low[c] < b->low[c] ? a->low[c] : b->low[c];
         box->high[c] = a->high[c] > b->high[c] ? a->high[c] : b->high[c];
     }
 }
@@ -103,7 +103,7 @@ Status broad_phase_create(BroadPhase **out, const int *item, const double (*sphe
         if (!is_sphere(sphere[i])) continue;
         order[kept++].of = i;
         for (int c = 0; c < 3; c++) {
-            low[c]  = sphere[i][c] < low[c] ? sphere[i][c] : low[c];
+            low[c] = sphere[i][c] < low[c] ? sphere[i][c] : low[c];
             high[c] = sphere[i][c] > high[c] ? sphere[i][c] : high[c];
         }
     }
@@ -119,10 +119,10 @@ Status broad_phase_create(BroadPhase **out, const int *item, const double (*sphe
 
     tree->count = kept;
     for (tree->leaves = 1; tree->leaves * leaf_items < kept;) tree->leaves *= 2;
-    tree->node   = arena_alloc(arena, 2 * (size_t)tree->leaves, sizeof *tree->node);
-    tree->item   = arena_alloc(arena, (size_t)kept + 1, sizeof *tree->item);
+    tree->node = arena_alloc(arena, 2 * (size_t)tree->leaves, sizeof *tree->node);
+    tree->item = arena_alloc(arena, (size_t)kept + 1, sizeof *tree->item);
     tree->sphere = arena_alloc(arena, (size_t)kept + 1, sizeof *tree->sphere);
-    tree->box    = arena_alloc(arena, (size_t)kept + 1, sizeof *tree->box);
+    tree->box = arena_alloc(arena, (size_t)kept + 1, sizeof *tree->box);
     tree->ray_node = arena_alloc(arena, 2 * (size_t)tree->leaves, sizeof *tree->ray_node);
     if (!tree->node || !tree->item || !tree->sphere || !tree->box || !tree->ray_node) return STATUS_NO_MEMORY;
     for (int k = 0; k < kept; k++) {
@@ -148,14 +148,15 @@ void broad_phase_tighten(BroadPhase *tree, BroadBox *box_of, void *user)
         if (!box_of(user, tree->item[k], tight.low, tight.high)) continue;
         for (int c = 0; c < 3; c++) {
             const double room_m = 1e-6 + 1e-10 * (fabs(tight.low[c]) + fabs(tight.high[c]));
-            box->low[c]  = tight.low[c] - room_m > box->low[c] ? tight.low[c] - room_m : box->low[c];
+            box->low[c] = tight.low[c] - room_m > box->low[c] ? tight.low[c] - room_m : box->low[c];
             box->high[c] = tight.high[c] + room_m < box->high[c] ? tight.high[c] + room_m : box->high[c];
         }
     }
     for (int leaf = 0; leaf < tree->leaves; leaf++) {
         Box *box = &tree->ray_node[tree->leaves + leaf];
         *box = empty_box;
-        for (int k = leaf * leaf_items; k < (leaf + 1) * leaf_items && k < tree->count; k++) join(box, box, &tree->box[k]);
+        for (int k = leaf * leaf_items; k < (leaf + 1) * leaf_items && k < tree->count; k++)
+            join(box, box, &tree->box[k]);
     }
     for (int n = tree->leaves - 1; n > 0; n--)
         join(&tree->ray_node[n], &tree->ray_node[2 * n], &tree->ray_node[2 * n + 1]);
@@ -187,7 +188,7 @@ static void sort_items(int *list, int count)
     }
     int low = list[0], high = list[0];
     for (int i = 1; i < count; i++) {
-        low  = list[i] < low ? list[i] : low;
+        low = list[i] < low ? list[i] : low;
         high = list[i] > high ? list[i] : high;
     }
     if ((int64_t)high - low >= bitmap_bits) {
@@ -331,7 +332,7 @@ static void slabs_of(Slabs *s, const BroadRays *rays)
         for (int c = 0; c < 3; c++) {
             const Four d = _mm256_load_pd(rays->d[c] + 4 * f);
             const Four along = _mm256_cmp_pd(_mm256_andnot_pd(sign, d), least, _CMP_LT_OQ);
-            s->o[c][f]   = _mm256_load_pd(rays->o[c] + 4 * f);
+            s->o[c][f] = _mm256_load_pd(rays->o[c] + 4 * f);
             s->per[c][f] = _mm256_blendv_pd(one / d, _mm256_set1_pd(1e30), along);
         }
         for (int k = 4 * f; k < 4 * f + 4; k++)
@@ -350,7 +351,7 @@ static double entry_m(const Slabs *s, const BroadRays *rays, const double low[3]
             const Four a = (_mm256_set1_pd(low[c]) - s->o[c][f]) * s->per[c][f];
             const Four b = (_mm256_set1_pd(high[c]) - s->o[c][f]) * s->per[c][f];
             /* the second operand stays where the first is no number */
-            in  = _mm256_max_pd(_mm256_min_pd(a, b), in);
+            in = _mm256_max_pd(_mm256_min_pd(a, b), in);
             out = _mm256_min_pd(_mm256_max_pd(a, b), out);
         }
         /* a rounding of the products: nothing is missed by it */
@@ -375,7 +376,10 @@ static double largest_limit(const BroadRays *rays)
 static void visit_leaf(const BroadPhase *tree, int leaf, const Slabs *slabs, BroadRays *rays, BroadVisit *visit,
                        void *user)
 {
-    struct { double entry_m; int item; } met[leaf_items];
+    struct {
+        double entry_m;
+        int    item;
+    } met[leaf_items];
     int       count = 0;
     const int first = leaf * leaf_items;
     for (int k = first; k < first + leaf_items && k < tree->count; k++) {
@@ -391,13 +395,16 @@ static void visit_leaf(const BroadPhase *tree, int leaf, const Slabs *slabs, Bro
 
 void broad_phase_rays(const BroadPhase *tree, BroadRays *rays, BroadVisit *visit, void *user)
 {
-    struct { double entry_m; int node; } stack[2 * deepest];
+    struct {
+        double entry_m;
+        int    node;
+    } stack[2 * deepest];
     Slabs slabs;
     int   depth = 0;
     if (tree->count == 0) return;
     slabs_of(&slabs, rays);
     stack[depth].entry_m = entry_m(&slabs, rays, tree->ray_node[1].low, tree->ray_node[1].high);
-    stack[depth++].node  = 1;
+    stack[depth++].node = 1;
     while (depth > 0) {
         const double at_m = stack[--depth].entry_m;
         const int    n = stack[depth].node;
@@ -416,7 +423,7 @@ void broad_phase_rays(const BroadPhase *tree, BroadRays *rays, BroadVisit *visit
             const int side = k == 0 ? !first : first;
             if (!(side_m[side] < INFINITY)) continue;
             stack[depth].entry_m = side_m[side];
-            stack[depth++].node  = 2 * n + side;
+            stack[depth++].node = 2 * n + side;
         }
     }
 }

@@ -23,7 +23,7 @@ int    broad_phase_count(const BroadPhase *tree); /* of those that may be listed
 /* Closer boxes for rays, which pass many spheres that they do not meet anything in: box_of, for each item, its own box
  * (what rays may meet of it lies in both), or false: as it was. Before any ray. */
 typedef bool BroadBox(void *user, int item, double low[3], double high[3]);
-void broad_phase_tighten(BroadPhase *tree, BroadBox *box_of, void *user);
+void         broad_phase_tighten(BroadPhase *tree, BroadBox *box_of, void *user);
 
 /* Items of which some point of the sphere may lie within all planes (n, d): dot(n, p) >= d, n unit; ascending. list:
  * room for all. Returns how many. */
@@ -43,6 +43,6 @@ typedef struct BroadRays {
 
 /* Calls visit for items that some of the rays may meet within their limits, approximately nearest first. */
 typedef void BroadVisit(void *user, int item);
-void broad_phase_rays(const BroadPhase *tree, BroadRays *rays, BroadVisit *visit, void *user);
+void         broad_phase_rays(const BroadPhase *tree, BroadRays *rays, BroadVisit *visit, void *user);
 
 #endif

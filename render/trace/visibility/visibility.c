@@ -7,7 +7,7 @@
 /* Whether each ray comes within an entity's sphere, ahead of it and before limit_m. Plain arrays in, one flag out:
  * no branches. */
 void rays_meet_sphere(uint8_t *meets, int count, const double *const o[3], const double *const d[3],
-                             const double *limit_m, const double centre[3], double radius_m)
+                      const double *limit_m, const double centre[3], double radius_m)
 {
     const double *ox = o[0], *oy = o[1], *oz = o[2], *dx = d[0], *dy = d[1], *dz = d[2];
     for (int i = 0; i < count; i++) {
@@ -56,7 +56,8 @@ static void clear_hits(Hits *hits)
 static bool store_four_normals(Hits *hits, int i, double n_geo[3][4], double n_enu[3][4], const double *const d[3])
 {
     F64x4 geo[3], enu[3], way[3];
-    for (int c = 0; c < 3; c++) geo[c] = f64x4_loadu(n_geo[c]), enu[c] = f64x4_loadu(n_enu[c]), way[c] = f64x4_loadu(d[c] + i);
+    for (int c = 0; c < 3; c++)
+        geo[c] = f64x4_loadu(n_geo[c]), enu[c] = f64x4_loadu(n_enu[c]), way[c] = f64x4_loadu(d[c] + i);
     const F64x4 none = f64x4_set(0), along = geo[0] * way[0] + geo[1] * way[1] + geo[2] * way[2];
     const F64x4 away = enu[0] * way[0] + enu[1] * way[1] + enu[2] * way[2];
     if (f64x4_bits(f64x4_or(f64x4_less(none, along), f64x4_less(none, away)))) return false;
@@ -81,7 +82,7 @@ static void complete_ground_hits(Hits *hits, const Visibility *v, const GroundHi
         for (int k = 0; k < some; k++) {
             const int    i = list[first + k];
             const double d_enu[3] = {d[0][i], d[1][i], d[2][i]};
-            double       geo[3] = {n_geo[0][k], n_geo[1][k], n_geo[2][k]}, enu[3] = {n_enu[0][k], n_enu[1][k], n_enu[2][k]};
+            double geo[3] = {n_geo[0][k], n_geo[1][k], n_geo[2][k]}, enu[3] = {n_enu[0][k], n_enu[1][k], n_enu[2][k]};
             if (v3_dot(geo, d_enu) > 0) { /* stopped inside the solid ground */
                 v3_scale(geo, -1, geo);
                 v3_scale(enu, -1, enu);
@@ -91,21 +92,22 @@ static void complete_ground_hits(Hits *hits, const Visibility *v, const GroundHi
     }
 }
 
-static void complete_part_hit(Hits *hits, int i, const Visibility *v, int entity, const PartHit *hit,
-                              PosedFacet *facet, const double o[3], const double d[3])
+static void complete_part_hit(Hits *hits, int i, const Visibility *v, int entity, const PartHit *hit, PosedFacet *facet,
+                              const double o[3], const double d[3])
 {
     const PosedEntity *posed = visibility_posed(v, entity);
     const Model       *model = tracer_model(v->tracer, posed->model);
     double             n_geo[3], n_enu[3];
-    if (facet->node != &posed->node[hit->node] || facet->triangle != hit->triangle) parts_facet(facet, model, posed, hit);
+    if (facet->node != &posed->node[hit->node] || facet->triangle != hit->triangle)
+        parts_facet(facet, model, posed, hit);
     parts_facet_normals(n_geo, n_enu, model, facet, o, d, hits->range_m[i]);
     visibility_store_normals(hits, i, n_geo, n_enu, d);
     hits->entity[i] = (uint32_t)entity + 1;
-    hits->model[i]  = (uint16_t)posed->model;
+    hits->model[i] = (uint16_t)posed->model;
     hits->inside[i] = v3_dot(facet->geo_enu, d) > 0;
-    hits->part[i]   = (uint16_t)(model->triangle_part[hit->triangle] + 1);
-    hits->kind[i]   = hit_part;
-    hits->facet[i]  = hit->triangle;
+    hits->part[i] = (uint16_t)(model->triangle_part[hit->triangle] + 1);
+    hits->kind[i] = hit_part;
+    hits->facet[i] = hit->triangle;
     if (v->materials)
         hits->material[i] = (uint16_t)material_of_part(v->materials, posed->model, hits->part[i] - 1, posed->damage);
 }
@@ -160,7 +162,7 @@ static void first_hit(Hits *hits, const Visibility *v, const Rays *rays, const i
     int                 order[hits_capacity], asked_ray[hits_capacity];
     uint8_t             ask[hits_capacity];
 
-    hits->count   = count;
+    hits->count = count;
     hits->columns = rays->columns;
     memcpy(limit_m, rays->far_m, (size_t)count * sizeof *limit_m);
     memset(hits->entity, 0, (size_t)count * sizeof *hits->entity);
@@ -171,7 +173,8 @@ static void first_hit(Hits *hits, const Visibility *v, const Rays *rays, const i
     if (crowd) {
         CrowdCounts counts = {0};
         order_rays(order, count, rays->columns);
-        crowd_first_hits(limit_m, hits->entity, part_hit, &counts, v, count, o, d, order, list, list_count, hidden, known);
+        crowd_first_hits(limit_m, hits->entity, part_hit, &counts, v, count, o, d, order, list, list_count, hidden,
+                         known);
         asked = counts.asked;
         counters->skipped[SKIP_PART] += counts.nodes - counts.asked_nodes;
         counters->skipped[SKIP_TREE] += (uint64_t)count * (list_count < 0 ? drawable : (uint64_t)list_count) - asked;
@@ -185,13 +188,14 @@ static void first_hit(Hits *hits, const Visibility *v, const Rays *rays, const i
         if (known && known->entity == index) {
             for (int i = 0; i < count; i++) {
                 if (!(known->range_m[i] < limit_m[i])) continue;
-                limit_m[i]      = known->range_m[i];
-                part_hit[i]     = known->hit[i];
+                limit_m[i] = known->range_m[i];
+                part_hit[i] = known->hit[i];
                 hits->entity[i] = (uint32_t)index + 1;
             }
             continue;
         }
-        if (skips(v->skips_off, SKIP_SPHERE)) rays_meet_sphere(ask, count, o, d, limit_m, entity->centre_enu, entity->radius_m);
+        if (skips(v->skips_off, SKIP_SPHERE))
+            rays_meet_sphere(ask, count, o, d, limit_m, entity->centre_enu, entity->radius_m);
         else memset(ask, 1, sizeof ask);
         if (!ordered) order_rays(order, count, rays->columns);
         ordered = true;
@@ -206,7 +210,7 @@ static void first_hit(Hits *hits, const Visibility *v, const Rays *rays, const i
         for (int n = 0; n < listed; n++) {
             const int i = asked_ray[n];
             if (!(nearer_m[i] < INFINITY)) continue;
-            limit_m[i]      = nearer_m[i];
+            limit_m[i] = nearer_m[i];
             hits->entity[i] = (uint32_t)index + 1;
         }
     }
@@ -256,8 +260,8 @@ static void first_hit(Hits *hits, const Visibility *v, const Rays *rays, const i
     if (v->landscape) classify_ground(hits, v->landscape, v->materials);
 }
 
-void visibility_first_hit(Hits *hits, const Visibility *v, const Rays *rays, const int *list, int list_count, int hidden,
-                          VisibilityCounters *counters)
+void visibility_first_hit(Hits *hits, const Visibility *v, const Rays *rays, const int *list, int list_count,
+                          int hidden, VisibilityCounters *counters)
 {
     first_hit(hits, v, rays, list, list_count, hidden, NULL, true, counters);
 }
@@ -276,7 +280,8 @@ void visibility_first_part(Hits *hits, const Visibility *v, const Rays *rays, co
 
 /* ---- one entity alone --------------------------------------------------------------------- */
 
-void visibility_entity_only(uint8_t *meets, const Visibility *v, const Rays *rays, int index, VisibilityCounters *counters)
+void visibility_entity_only(uint8_t *meets, const Visibility *v, const Rays *rays, int index,
+                            VisibilityCounters *counters)
 {
     const double *const o[3] = {rays->o_enu[0], rays->o_enu[1], rays->o_enu[2]};
     const double *const d[3] = {rays->d_enu[0], rays->d_enu[1], rays->d_enu[2]};
@@ -285,19 +290,21 @@ void visibility_entity_only(uint8_t *meets, const Visibility *v, const Rays *ray
         memset(meets, 0, (size_t)rays->count);
         return;
     }
-    if (skips(v->skips_off, SKIP_SPHERE)) rays_meet_sphere(meets, rays->count, o, d, rays->far_m, entity->centre_enu, entity->radius_m);
+    if (skips(v->skips_off, SKIP_SPHERE))
+        rays_meet_sphere(meets, rays->count, o, d, rays->far_m, entity->centre_enu, entity->radius_m);
     else memset(meets, 1, (size_t)rays->count);
-    int       order[hits_capacity], list[hits_capacity];
+    int order[hits_capacity], list[hits_capacity];
     order_rays(order, rays->count, rays->columns);
     const int listed = list_asked(list, order, meets, rays->count);
     memset(meets, 0, (size_t)rays->count);
     counters->skipped[SKIP_SPHERE] += (uint64_t)(rays->count - listed);
-    counters->skipped[SKIP_PART] += (uint64_t)listed * (uint64_t)entity->node_count -
-                                    parts_any_hits(meets, entity, o, d, rays->far_m, list, listed,
-                                                   !skips(v->skips_off, SKIP_PART));
+    counters->skipped[SKIP_PART] +=
+        (uint64_t)listed * (uint64_t)entity->node_count -
+        parts_any_hits(meets, entity, o, d, rays->far_m, list, listed, !skips(v->skips_off, SKIP_PART));
 }
 
-void visibility_entity_hits(EntityHits *out, const Visibility *v, const Rays *rays, int index, VisibilityCounters *counters)
+void visibility_entity_hits(EntityHits *out, const Visibility *v, const Rays *rays, int index,
+                            VisibilityCounters *counters)
 {
     const double *const o[3] = {rays->o_enu[0], rays->o_enu[1], rays->o_enu[2]};
     const double *const d[3] = {rays->d_enu[0], rays->d_enu[1], rays->d_enu[2]};
@@ -307,7 +314,8 @@ void visibility_entity_hits(EntityHits *out, const Visibility *v, const Rays *ra
     out->entity = index;
     for (int i = 0; i < rays->count; i++) out->range_m[i] = INFINITY;
     if (entity->model < 0) return;
-    if (skips(v->skips_off, SKIP_SPHERE)) rays_meet_sphere(meets, rays->count, o, d, rays->far_m, entity->centre_enu, entity->radius_m);
+    if (skips(v->skips_off, SKIP_SPHERE))
+        rays_meet_sphere(meets, rays->count, o, d, rays->far_m, entity->centre_enu, entity->radius_m);
     else memset(meets, 1, sizeof meets);
     order_rays(order, rays->count, rays->columns);
     const int listed = list_asked(list, order, meets, rays->count);
@@ -344,22 +352,22 @@ void visibility_lie_beyond(uint8_t *may, const Visibility *v, int index, const R
 static const struct {
     const char *name, *what;
 } rows[SKIP_COUNT] = {
-    [SKIP_BLOCK]         = {"block", "entities outside a block of pixels: block-entity pairs"},
-    [SKIP_SPHERE]        = {"sphere", "entities missed or hidden, by their sphere: ray-entity pairs"},
-    [SKIP_PART]          = {"part", "parts missed, by box and sphere: ray-part pairs"},
+    [SKIP_BLOCK] = {"block", "entities outside a block of pixels: block-entity pairs"},
+    [SKIP_SPHERE] = {"sphere", "entities missed or hidden, by their sphere: ray-entity pairs"},
+    [SKIP_PART] = {"part", "parts missed, by box and sphere: ray-part pairs"},
     [SKIP_GROUND_BEHIND] = {"ground_behind", "ground behind the part that was met: rays"},
-    [SKIP_GROUND_BELOW]  = {"ground_below", "ground below a block of rays that all met parts: rays"},
-    [SKIP_GROUND_WALK]   = {"ground_walk", "ground walked together with neighbours: rays"},
-    [SKIP_SUN_SPHERE]    = {"sun_sphere", "entities that sun rays miss: ray-entity pairs"},
-    [SKIP_SUN_STOPPED]   = {"sun_stopped", "ground and plants behind what stops the sun: rays"},
-    [SKIP_SUN_CLEAR]     = {"sun_clear", "ground too low to stop the sun: rays"},
-    [SKIP_AMODAL]        = {"amodal", "entities with nothing behind what was met: ray-entity pairs"},
-    [SKIP_CELL]          = {"cell", "samples beside a small target: rays"},
-    [SKIP_RETRACE]       = {"retrace", "first rays of refined pixels, known from their planes: rays"},
-    [SKIP_SMOKE]         = {"smoke", "smoke and dust outside a block of pixels: block-volume pairs"},
-    [SKIP_LIGHT]         = {"light", "light of places near vehicles, asked for once a frame: hits that may share it"},
-    [SKIP_TREE]          = {"tree", "entities left out by the tree of their spheres: block-entity, ray-entity pairs"},
-    [SKIP_KEPT]          = {"kept", "what paths from sample points meet, kept from earlier frames: points"},
+    [SKIP_GROUND_BELOW] = {"ground_below", "ground below a block of rays that all met parts: rays"},
+    [SKIP_GROUND_WALK] = {"ground_walk", "ground walked together with neighbours: rays"},
+    [SKIP_SUN_SPHERE] = {"sun_sphere", "entities that sun rays miss: ray-entity pairs"},
+    [SKIP_SUN_STOPPED] = {"sun_stopped", "ground and plants behind what stops the sun: rays"},
+    [SKIP_SUN_CLEAR] = {"sun_clear", "ground too low to stop the sun: rays"},
+    [SKIP_AMODAL] = {"amodal", "entities with nothing behind what was met: ray-entity pairs"},
+    [SKIP_CELL] = {"cell", "samples beside a small target: rays"},
+    [SKIP_RETRACE] = {"retrace", "first rays of refined pixels, known from their planes: rays"},
+    [SKIP_SMOKE] = {"smoke", "smoke and dust outside a block of pixels: block-volume pairs"},
+    [SKIP_LIGHT] = {"light", "light of places near vehicles, asked for once a frame: hits that may share it"},
+    [SKIP_TREE] = {"tree", "entities left out by the tree of their spheres: block-entity, ray-entity pairs"},
+    [SKIP_KEPT] = {"kept", "what paths from sample points meet, kept from earlier frames: points"},
 };
 
 const char *visibility_skip_name(Skip skip) { return rows[skip].name; }

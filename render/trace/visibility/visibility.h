@@ -41,9 +41,9 @@ typedef enum Skip {
     SKIP_CELL,          /* rays over a small target's box that miss it, and meeting it a second time */
     SKIP_RETRACE,       /* a pixel's first ray, when more are traced: its planes still hold its hit */
     SKIP_SMOKE,         /* smoke and dust that a block of pixels cannot see */
-    SKIP_LIGHT,         /* light of sample points that a neighbouring hit has computed already in this frame, or none needs */
-    SKIP_TREE,          /* entities that the tree of their spheres leaves out: blocks, rays, sun rays, places near */
-    SKIP_KEPT,          /* paths from sample points whose meetings an earlier frame left (render/light/sky_visibility.h) */
+    SKIP_LIGHT, /* light of sample points that a neighbouring hit has computed already in this frame, or none needs */
+    SKIP_TREE,  /* entities that the tree of their spheres leaves out: blocks, rays, sun rays, places near */
+    SKIP_KEPT,  /* paths from sample points whose meetings an earlier frame left (render/light/sky_visibility.h) */
     SKIP_COUNT
 } Skip;
 
@@ -63,10 +63,10 @@ typedef struct Visibility Visibility;
 
 typedef struct VisibilityCounters {
     uint64_t rays_ground, rays_parts, rays_sun_ground, rays_sun_parts; /* tests of each tracer */
-    uint64_t rays_plants, rays_sun_plants; /* that entered some plant's box */
-    uint64_t rays_sun_for_heat;            /* rays to the sun that gave leaves their temperature, and light as well */
-    uint64_t skipped_parts, skipped_sun_parts;                        /* ray x entity pairs proven empty */
-    uint64_t skipped[SKIP_COUNT];                                     /* in the units of visibility_skip_what */
+    uint64_t rays_plants, rays_sun_plants;                             /* that entered some plant's box */
+    uint64_t rays_sun_for_heat; /* rays to the sun that gave leaves their temperature, and light as well */
+    uint64_t skipped_parts, skipped_sun_parts; /* ray x entity pairs proven empty */
+    uint64_t skipped[SKIP_COUNT];              /* in the units of visibility_skip_what */
 } VisibilityCounters;
 
 /* ground may be NULL (none). The arena owns what the frame needs, and is used while the frame is traced: by no other
@@ -77,11 +77,11 @@ Status visibility_create(Visibility **out, Tracer *tracer, const Landscape *grou
 /* Entities of the snapshot, and their poses, each computed on first use (by any thread); its model is -1 where it
  * cannot be drawn (render/trace/parts/parts.h). */
 struct PosedEntity;
-int visibility_count(const Visibility *v);
+int                       visibility_count(const Visibility *v);
 const struct PosedEntity *visibility_posed(const Visibility *v, int index);
 
-/* Where there are many entities: rays are tested with the boxes of those that are posed by now, and no longer with their
- * spheres. No bit depends on it. One thread, before the rays. */
+/* Where there are many entities: rays are tested with the boxes of those that are posed by now, and no longer with
+ * their spheres. No bit depends on it. One thread, before the rays. */
 void visibility_tighten(const Visibility *v);
 
 /* The table that Hits.material indexes: set before anything is traced. Without: all 0. It must outlive the frame. */
@@ -94,8 +94,10 @@ const Visibility *visibility_without_plants(const Visibility *v, Arena *arena);
 /* The same frame with every plant at its full detail; v itself where no plant is simplified. NULL: no memory. */
 const Visibility *visibility_with_full_plants(const Visibility *v, Arena *arena);
 
-/* A hit's place on its part, and a direction, in the axes of the part's node: moves with the part. Of hits of kind hit_part. */
-void visibility_on_part(double p_node[3], double n_node[3], const Visibility *v, const Hits *hits, int i, const double n_enu[3]);
+/* A hit's place on its part, and a direction, in the axes of the part's node: moves with the part. Of hits of kind
+ * hit_part. */
+void visibility_on_part(double p_node[3], double n_node[3], const Visibility *v, const Hits *hits, int i,
+                        const double n_enu[3]);
 
 /* STATUS_NO_MEMORY: some entity could not be posed, and the frame is incomplete. To be called once tracing is done. */
 Status visibility_status(const Visibility *v);
@@ -108,8 +110,7 @@ int visibility_near(int *list, const Visibility *v, const double low[3], const d
  * (all of them without SKIP_BLOCK). list: capacity = snapshot count; returns the count, ascending. hidden: never
  * listed (-1). */
 int visibility_block_entities(int *list, const Visibility *v, const View *view, double column0_px, double row0_px,
-                              double column1_px, double row1_px, int hidden,
-                              VisibilityCounters *counters);
+                              double column1_px, double row1_px, int hidden, VisibilityCounters *counters);
 
 /* First hits of a block against the ground, the plants and the listed entities. A list of count -1 means every entity
  * but `hidden`, culled per ray. Thread-safe; counters are the caller's own. */
@@ -122,7 +123,8 @@ typedef struct EntityHits {
     double  range_m[hits_capacity];
     PartHit hit[hits_capacity];
 } EntityHits;
-void visibility_entity_hits(EntityHits *out, const Visibility *v, const Rays *rays, int index, VisibilityCounters *counters);
+void visibility_entity_hits(EntityHits *out, const Visibility *v, const Rays *rays, int index,
+                            VisibilityCounters *counters);
 /* As visibility_first_hit, for rays of which that is known: the entity is not traced again. */
 void visibility_first_hit_knowing(Hits *hits, const Visibility *v, const Rays *rays, const int *list, int list_count,
                                   int hidden, const EntityHits *known, VisibilityCounters *counters);
@@ -131,14 +133,15 @@ void visibility_first_hit_knowing(Hits *hits, const Visibility *v, const Rays *r
 void visibility_first_part(Hits *hits, const Visibility *v, const Rays *rays, const int *list, int list_count,
                            VisibilityCounters *counters);
 
-/* 1 where any entity (also the hidden host), the ground or a plant is between the hit and the direction d_enu, else 0; 0
- * for sky hits. Origins are offset along the geometric normal by 1 mm; surfaces that face away give 1, but those that
+/* 1 where any entity (also the hidden host), the ground or a plant is between the hit and the direction d_enu, else 0;
+ * 0 for sky hits. Origins are offset along the geometric normal by 1 mm; surfaces that face away give 1, but those that
  * let light through (Material.tau) are lit from either side: their origins are on the side that d_enu leads to. */
 void visibility_shadow(uint8_t *shadow, const Visibility *v, const Hits *hits, const double d_enu[3],
                        VisibilityCounters *counters);
 
 /* Whether each ray would meet entity `index` with nothing else in the world (amodal truth). */
-void visibility_entity_only(uint8_t *meets, const Visibility *v, const Rays *rays, int index, VisibilityCounters *counters);
+void visibility_entity_only(uint8_t *meets, const Visibility *v, const Rays *rays, int index,
+                            VisibilityCounters *counters);
 
 /* Whether any part of entity `index` may lie farther along each ray than its first hit, at range_m, of a search that
  * included it; otherwise the ray misses it. All 1 without SKIP_AMODAL. */

@@ -11,12 +11,12 @@ typedef struct Walk {
     /* first hits */
     const int        *list;
     int               list_count, hidden;
-    const EntityHits *known;       /* of rays of the block: */
-    const int        *index;       /* [count] */
+    const EntityHits *known; /* of rays of the block: */
+    const int        *index; /* [count] */
     uint32_t          entity[broad_packet];
     PartHit           hit[broad_packet];
     /* any hits */
-    uint8_t           dark[broad_packet];
+    uint8_t dark[broad_packet];
 } Walk;
 
 static bool is_listed(const int *list, int count, int item)
@@ -85,8 +85,8 @@ static void visit_first(void *user, int item)
             const double range_m = w->known->range_m[w->index[k]];
             if (!(range_m < until_m[k])) continue;
             w->rays.limit_m[k] = range_m;
-            w->hit[k]          = w->known->hit[w->index[k]];
-            w->entity[k]       = (uint32_t)item + 1;
+            w->hit[k] = w->known->hit[w->index[k]];
+            w->entity[k] = (uint32_t)item + 1;
         }
         return;
     }
@@ -102,12 +102,12 @@ static void visit_first(void *user, int item)
         const int k = list[n];
         if (!(nearer_m[k] < INFINITY)) continue;
         w->rays.limit_m[k] = nearer_m[k];
-        w->entity[k]       = (uint32_t)item + 1;
+        w->entity[k] = (uint32_t)item + 1;
     }
 }
 
-void crowd_first_hits(double *limit_m, uint32_t *entity, PartHit *hit, CrowdCounts *counts, const Visibility *v, int count,
-                      const double *const o[3], const double *const d[3], const int *order, const int *list,
+void crowd_first_hits(double *limit_m, uint32_t *entity, PartHit *hit, CrowdCounts *counts, const Visibility *v,
+                      int count, const double *const o[3], const double *const d[3], const int *order, const int *list,
                       int list_count, int hidden, const EntityHits *known)
 {
     Walk walk = {.v = v, .counts = counts, .list = list, .list_count = list_count, .hidden = hidden, .known = known};
@@ -117,27 +117,28 @@ void crowd_first_hits(double *limit_m, uint32_t *entity, PartHit *hit, CrowdCoun
         for (int k = 0; k < walk.count; k++) {
             const int i = order[first + k];
             walk.rays.limit_m[k] = limit_m[i];
-            walk.entity[k]       = 0;
+            walk.entity[k] = 0;
         }
         broad_phase_rays(v->tree, &walk.rays, visit_first, &walk);
         for (int k = 0; k < walk.count; k++) {
             const int i = order[first + k];
             if (!walk.entity[k]) continue;
             limit_m[i] = walk.rays.limit_m[k];
-            entity[i]  = walk.entity[k];
-            hit[i]     = walk.hit[k];
+            entity[i] = walk.entity[k];
+            hit[i] = walk.hit[k];
         }
     }
 }
 
 static void visit_any(void *user, int item)
 {
-    static const double far_m[broad_packet] = {INFINITY, INFINITY, INFINITY, INFINITY, INFINITY, INFINITY, INFINITY, INFINITY,
-                                               INFINITY, INFINITY, INFINITY, INFINITY, INFINITY, INFINITY, INFINITY, INFINITY};
-    Walk   *w = user;
-    uint8_t ask[broad_packet];
-    int     list[broad_packet];
-    const PosedEntity *entity = visibility_posed(w->v, item);
+    static const double far_m[broad_packet] = {INFINITY, INFINITY, INFINITY, INFINITY, INFINITY, INFINITY,
+                                               INFINITY, INFINITY, INFINITY, INFINITY, INFINITY, INFINITY,
+                                               INFINITY, INFINITY, INFINITY, INFINITY};
+    Walk               *w = user;
+    uint8_t             ask[broad_packet];
+    int                 list[broad_packet];
+    const PosedEntity  *entity = visibility_posed(w->v, item);
     if (entity->model < 0) return;
     rays_meet_sphere(ask, w->count, w->o, w->d, far_m, entity->centre_enu, entity->radius_m);
     for (int k = 0; k < w->count; k++) ask[k] &= !w->dark[k];
@@ -145,8 +146,8 @@ static void visit_any(void *user, int item)
     if (listed == 0) return;
     w->counts->asked += (uint64_t)listed;
     w->counts->nodes += (uint64_t)listed * (uint64_t)entity->node_count;
-    w->counts->asked_nodes += parts_any_hits(w->dark, entity, w->o, w->d, far_m, list, listed,
-                                             !skips(w->v->skips_off, SKIP_PART));
+    w->counts->asked_nodes +=
+        parts_any_hits(w->dark, entity, w->o, w->d, far_m, list, listed, !skips(w->v->skips_off, SKIP_PART));
     for (int n = 0; n < listed; n++)
         if (w->dark[list[n]]) w->rays.limit_m[list[n]] = -1;
 }
@@ -156,11 +157,12 @@ void crowd_any_hits(uint8_t *dark, CrowdCounts *counts, const Visibility *v, int
 {
     Walk walk = {.v = v, .counts = counts};
     for (int first = 0; first < count; first += broad_packet) {
-        const double *const from[3] = {o[0] + first, o[1] + first, o[2] + first},
-                     *const way[3] = {d[0] + first, d[1] + first, d[2] + first};
+        const double *const from[3] = {o[0] + first, o[1] + first, o[2] + first}, *const way[3] = {d[0] + first,
+                                                                                                   d[1] + first,
+                                                                                                   d[2] + first};
         take_rays(&walk, from, way, NULL, count - first < broad_packet ? count - first : broad_packet);
         for (int k = 0; k < walk.count; k++) {
-            walk.dark[k]         = dark[first + k];
+            walk.dark[k] = dark[first + k];
             walk.rays.limit_m[k] = walk.dark[k] ? -1 : INFINITY;
         }
         broad_phase_rays(v->tree, &walk.rays, visit_any, &walk);

@@ -9,7 +9,8 @@ static void pyramid_planes(double plane[5][4], const View *view, const double bo
 {
     double tangent[4];
     view_box_tangents(tangent, view, box_px);
-    const double side[5][3] = {{1, 0, -tangent[0]}, {0, 1, -tangent[1]}, {-1, 0, tangent[2]}, {0, -1, tangent[3]}, {0, 0, 1}};
+    const double side[5][3] = {
+        {1, 0, -tangent[0]}, {0, 1, -tangent[1]}, {-1, 0, tangent[2]}, {0, -1, tangent[3]}, {0, 0, 1}};
     for (int p = 0; p < 5; p++) {
         double n_cam[3], n_enu[3];
         v3_scale(n_cam, 1 / v3_length(side[p]), side[p]);
@@ -55,8 +56,7 @@ static int list_all(int *list, const Visibility *v)
 }
 
 int visibility_block_entities(int *list, const Visibility *v, const View *view, double column0_px, double row0_px,
-                              double column1_px, double row1_px, int hidden,
-                              VisibilityCounters *counters)
+                              double column1_px, double row1_px, int hidden, VisibilityCounters *counters)
 {
     const double box_px[4] = {column0_px, row0_px, column1_px, row1_px};
     const bool   by_tree = skips(v->skips_off, SKIP_TREE) && skips(v->skips_off, SKIP_BLOCK);
@@ -64,7 +64,7 @@ int visibility_block_entities(int *list, const Visibility *v, const View *view, 
     if (by_tree) {
         double plane[5][4];
         pyramid_planes(plane, view, box_px);
-        count = broad_phase_in_planes(list, v->tree, (const double (*)[4])plane, 5);
+        count = broad_phase_in_planes(list, v->tree, (const double(*)[4])plane, 5);
         counters->skipped[SKIP_TREE] += (uint64_t)(v->drawable - count);
     } else {
         count = list_all(list, v);
@@ -82,7 +82,7 @@ int visibility_block_entities(int *list, const Visibility *v, const View *view, 
 static void grow_image_box(double box_px[4], const double at_px[2])
 {
     for (int a = 0; a < 2; a++) {
-        box_px[a]     = at_px[a] < box_px[a] ? at_px[a] : box_px[a];
+        box_px[a] = at_px[a] < box_px[a] ? at_px[a] : box_px[a];
         box_px[a + 2] = at_px[a] > box_px[a + 2] ? at_px[a] : box_px[a + 2];
     }
 }
@@ -129,8 +129,8 @@ static void grow_by_bowed_edges(double box_px[4], const PosedEntity *entity, con
 {
     for (int k = 0; k < entity->node_count; k++) {
         const PosedNode *node = &entity->node[k];
-        const double   (*triangle)[3];
-        double           r_cam_from_node[9], from_eye[3], p_cam[3], corner[3][3];
+        const double(*triangle)[3];
+        double r_cam_from_node[9], from_eye[3], p_cam[3], corner[3][3];
         m3_tmul(r_cam_from_node, view->r_enu_from_cam, node->r_enu_from_node);
         v3_sub(from_eye, node->p_enu, view->p_enu);
         m3_tmul_v3(p_cam, view->r_enu_from_cam, from_eye);
@@ -160,8 +160,8 @@ static bool grow_by_points(double box_px[4], const View *view, const double r_ca
 }
 
 /* Whether all of a box lies within box_px: its corners, in the node's axes. */
-static bool lies_within(const double box_px[4], const View *view, const double r_cam_from_node[9], const double p_cam[3],
-                        const double corner[8][3])
+static bool lies_within(const double box_px[4], const View *view, const double r_cam_from_node[9],
+                        const double p_cam[3], const double corner[8][3])
 {
     double around[4] = {INFINITY, INFINITY, -INFINITY, -INFINITY};
     return grow_by_points(around, view, r_cam_from_node, p_cam, corner, 8) && around[0] > box_px[0] &&
@@ -172,22 +172,22 @@ static bool lies_within(const double box_px[4], const View *view, const double r
  * lines are not, all. */
 static bool grow_by_node(double box_px[4], const View *view, const PosedNode *node, bool first)
 {
-    const bool     lens = view_has_lens(view);
-    int            count;
-    const double (*corner)[3] = parts_node_corners(node, &count);
-    double         r_cam_from_node[9], from_eye[3], p_cam[3], box[8][3];
+    const bool lens = view_has_lens(view);
+    int        count;
+    const double(*corner)[3] = parts_node_corners(node, &count);
+    double r_cam_from_node[9], from_eye[3], p_cam[3], box[8][3];
     m3_tmul(r_cam_from_node, view->r_enu_from_cam, node->r_enu_from_node);
     v3_sub(from_eye, node->p_enu, view->p_enu);
     m3_tmul_v3(p_cam, view->r_enu_from_cam, from_eye);
     if (!first && !lens && count > 8) {
         parts_node_box(box, node);
-        if (lies_within(box_px, view, r_cam_from_node, p_cam, (const double (*)[3])box)) return true;
+        if (lies_within(box_px, view, r_cam_from_node, p_cam, (const double(*)[3])box)) return true;
     }
     for (int from = 0; from < count; from += parts_block_corners) {
         const int many = count - from < parts_block_corners ? count - from : parts_block_corners;
         if (from > 0 && !lens && many > 8) {
             parts_block_box(box, node, from / parts_block_corners);
-            if (lies_within(box_px, view, r_cam_from_node, p_cam, (const double (*)[3])box)) continue;
+            if (lies_within(box_px, view, r_cam_from_node, p_cam, (const double(*)[3])box)) continue;
         }
         if (!grow_by_points(box_px, view, r_cam_from_node, p_cam, corner + from, many)) return false;
     }

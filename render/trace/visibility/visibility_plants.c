@@ -9,7 +9,7 @@ const Visibility *visibility_without_plants(const Visibility *v, Arena *arena)
     if (!v->plants) return v;
     bare = arena_alloc(arena, 1, sizeof *bare);
     if (!bare) return NULL;
-    *bare        = *v;
+    *bare = *v;
     bare->plants = NULL;
     return bare;
 }
@@ -20,7 +20,7 @@ const Visibility *visibility_with_full_plants(const Visibility *v, Arena *arena)
     if (!v->plants || !forest_simplifies(v->plants->forest)) return v;
     full = arena_alloc(arena, 1, sizeof *full);
     if (!full) return NULL;
-    *full             = *v;
+    *full = *v;
     full->full_plants = true;
     return full;
 }
@@ -36,13 +36,13 @@ typedef struct NearEntities {
 
 static void mark_near(void *user, int index)
 {
-    static const double anywhere_m[broad_packet] = {
-        INFINITY, INFINITY, INFINITY, INFINITY, INFINITY, INFINITY, INFINITY, INFINITY,
-        INFINITY, INFINITY, INFINITY, INFINITY, INFINITY, INFINITY, INFINITY, INFINITY};
-    const NearEntities  *n = user;
-    const double *const  o[3] = {n->rays->o[0], n->rays->o[1], n->rays->o[2]};
-    const double *const  d[3] = {n->rays->d[0], n->rays->d[1], n->rays->d[2]};
-    uint8_t              meets[broad_packet];
+    static const double anywhere_m[broad_packet] = {INFINITY, INFINITY, INFINITY, INFINITY, INFINITY, INFINITY,
+                                                    INFINITY, INFINITY, INFINITY, INFINITY, INFINITY, INFINITY,
+                                                    INFINITY, INFINITY, INFINITY, INFINITY};
+    const NearEntities *n = user;
+    const double *const o[3] = {n->rays->o[0], n->rays->o[1], n->rays->o[2]};
+    const double *const d[3] = {n->rays->d[0], n->rays->d[1], n->rays->d[2]};
+    uint8_t             meets[broad_packet];
     if (index == n->hidden) return;
     const PosedEntity *entity = visibility_posed(n->v, index);
     if (entity->model < 0) return;
@@ -78,16 +78,16 @@ static void complete_plant_hit(Hits *hits, int i, const Visibility *v, const For
     forest_surface(&at, v->plants, hit, o, d, range_m, (float)(range_m / v->plants->per_rad));
     for (int c = 0; c < 3; c++) hits->p_enu[c][i] = o[c] + range_m * d[c];
     visibility_store_normals(hits, i, at.n_geo, at.n_enu, d);
-    hits->kind[i]     = hit_plant;
-    hits->plant[i]    = hit->plant + 1;
-    hits->albedo[i]   = at.albedo;
+    hits->kind[i] = hit_plant;
+    hits->plant[i] = hit->plant + 1;
+    hits->albedo[i] = at.albedo;
     hits->radius_m[i] = at.radius_m;
-    hits->open_up[i]  = at.open_up;
+    hits->open_up[i] = at.open_up;
     hits->open_down[i] = at.open_down;
     hits->material[i] = v->materials ? (uint16_t)v->materials->plant[hit->kind][hit->organ] : 0;
-    hits->entity[i]   = hits->facet[i] = 0;
+    hits->entity[i] = hits->facet[i] = 0;
     hits->part[i] = hits->model[i] = 0;
-    hits->inside[i]   = hit->organ != PLANT_LEAF && hit->back;
+    hits->inside[i] = hit->organ != PLANT_LEAF && hit->back;
 }
 
 void plants_first_hits(Hits *hits, const Visibility *v, const Rays *rays, int hidden, VisibilityCounters *counters)
@@ -102,8 +102,7 @@ void plants_first_hits(Hits *hits, const Visibility *v, const Rays *rays, int hi
         nearer_m[i] = limit_m[i] = hits->range_m[i] < rays->far_m[i] ? hits->range_m[i] : rays->far_m[i];
     if (v->full_plants) memset(real, 1, (size_t)hits->count);
     else if (simplified) find_near(real, v, rays, hidden);
-    counters->rays_plants +=
-        forest_first_hits(nearer_m, plant, v->plants, hits->count, o, d, simplified ? real : NULL);
+    counters->rays_plants += forest_first_hits(nearer_m, plant, v->plants, hits->count, o, d, simplified ? real : NULL);
     for (int i = 0; i < hits->count; i++) {
         if (!(nearer_m[i] < limit_m[i])) continue;
         hits->range_m[i] = nearer_m[i];

@@ -54,7 +54,8 @@ int visibility_count(const Visibility *v) { return v->count; }
 
 void visibility_materials(Visibility *v, const Materials *materials) { v->materials = materials; }
 
-void visibility_on_part(double p_node[3], double n_node[3], const Visibility *v, const Hits *hits, int i, const double n_enu[3])
+void visibility_on_part(double p_node[3], double n_node[3], const Visibility *v, const Hits *hits, int i,
+                        const double n_enu[3])
 {
     const PosedEntity *posed = visibility_posed(v, (int)hits->entity[i] - 1);
     const double       p_enu[3] = {hits->p_enu[0][i], hits->p_enu[1][i], hits->p_enu[2][i]};
@@ -78,7 +79,7 @@ static Status bound_entities(Visibility *v, Arena *arena)
 {
     const size_t count = (size_t)v->count + 1;
     int         *item = arena_alloc(arena, count, sizeof *item);
-    double     (*sphere)[4] = arena_alloc(arena, count, sizeof *sphere);
+    double(*sphere)[4] = arena_alloc(arena, count, sizeof *sphere);
     if (!item || !sphere) return STATUS_NO_MEMORY;
     int widest = -1;
     for (int k = 0; k < v->count; k++) {
@@ -97,12 +98,13 @@ static Status bound_entities(Visibility *v, Arena *arena)
             const Model *model = tracer_model(v->tracer, e->model);
             to[3] = model->radius_m * (1 + 1e-9) + 1e-3; /* a near miss within 20 um may count as a hit, too */
             v->loose[k] = v3_is_finite(to) && parts_node_count(v->tracer, e->model) > 0;
-            if (e->model != widest) v->wider_m = fmax(v->wider_m, wider_m(model, parts_largest_node_m(v->tracer, e->model)));
+            if (e->model != widest)
+                v->wider_m = fmax(v->wider_m, wider_m(model, parts_largest_node_m(v->tracer, e->model)));
             widest = e->model;
         }
         if (v->loose[k]) item[v->drawable++] = k;
     }
-    return broad_phase_create(&v->tree, item, (const double (*)[4])sphere, v->drawable, arena);
+    return broad_phase_create(&v->tree, item, (const double(*)[4])sphere, v->drawable, arena);
 }
 
 Status visibility_create(Visibility **out, Tracer *tracer, const Landscape *ground, const LocalFrame *frame,
@@ -111,7 +113,11 @@ Status visibility_create(Visibility **out, Tracer *tracer, const Landscape *grou
     Visibility *v = arena_alloc(arena, 1, sizeof *v);
     int         most_nodes = 1;
     if (!v) return STATUS_NO_MEMORY;
-    *v = (Visibility){.tracer = tracer, .landscape = ground, .frame = frame, .snapshot = snapshot, .skips_off = skips_off,
+    *v = (Visibility){.tracer = tracer,
+                      .landscape = ground,
+                      .frame = frame,
+                      .snapshot = snapshot,
+                      .skips_off = skips_off,
                       .count = snapshot->count};
     ground_prepare(&v->ground, ground ? &ground->elevation : NULL);
     v->posed = arena_alloc(arena, (size_t)v->count + 1, sizeof *v->posed);
@@ -126,7 +132,7 @@ Status visibility_create(Visibility **out, Tracer *tracer, const Landscape *grou
         const int nodes = v->loose[k] ? tracer_model(tracer, snapshot->entity[k].model)->node_count : 0;
         most_nodes = nodes > most_nodes ? nodes : most_nodes;
     }
-    v->poser->node        = arena_alloc(arena, (size_t)most_nodes, sizeof *v->poser->node);
+    v->poser->node = arena_alloc(arena, (size_t)most_nodes, sizeof *v->poser->node);
     v->poser->joint_value = arena_alloc(arena, (size_t)most_nodes, sizeof *v->poser->joint_value);
     if (!v->poser->node || !v->poser->joint_value) return STATUS_NO_MEMORY;
     *out = v;

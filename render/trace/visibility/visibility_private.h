@@ -24,21 +24,21 @@ typedef struct Poser {
 } Poser;
 
 struct Visibility {
-    Tracer          *tracer;
-    const Landscape *landscape;
-    const Materials *materials; /* NULL: hits have no material */
-    const LocalFrame *frame;
-    const Snapshot  *snapshot;
-    Ground           ground;
-    const ForestFrame *plants;   /* NULL: none */
-    bool             full_plants; /* none is simplified */
-    unsigned         skips_off;
-    int              count, drawable;
-    bool            *loose;      /* [count]: may be drawn, as far as is known without its nodes */
+    Tracer                       *tracer;
+    const Landscape              *landscape;
+    const Materials              *materials; /* NULL: hits have no material */
+    const LocalFrame             *frame;
+    const Snapshot               *snapshot;
+    Ground                        ground;
+    const ForestFrame            *plants;      /* NULL: none */
+    bool                          full_plants; /* none is simplified */
+    unsigned                      skips_off;
+    int                           count, drawable;
+    bool                         *loose; /* [count]: may be drawn, as far as is known without its nodes */
     _Atomic(const PosedEntity *) *posed; /* [count], as in the snapshot; NULL: not posed yet */
-    Poser           *poser;
-    BroadPhase      *tree;       /* of those that may be drawn */
-    double           wider_m;    /* distance by which the sphere of a posed entity may exceed that in the tree */
+    Poser                        *poser;
+    BroadPhase                   *tree; /* of those that may be drawn */
+    double wider_m;                     /* distance by which the sphere of a posed entity may exceed that in the tree */
 };
 
 /* Whether each ray comes within an entity's sphere, ahead of it and before limit_m. */
@@ -56,8 +56,8 @@ void visibility_store_normals(Hits *hits, int i, const double n_geo[3], const do
 typedef struct CrowdCounts {
     uint64_t asked, asked_nodes, nodes; /* ray-entity pairs, ray-node pairs; of the pairs' entities all nodes */
 } CrowdCounts;
-void crowd_first_hits(double *limit_m, uint32_t *entity, PartHit *hit, CrowdCounts *counts, const Visibility *v, int count,
-                      const double *const o[3], const double *const d[3], const int *order, const int *list,
+void crowd_first_hits(double *limit_m, uint32_t *entity, PartHit *hit, CrowdCounts *counts, const Visibility *v,
+                      int count, const double *const o[3], const double *const d[3], const int *order, const int *list,
                       int list_count, int hidden, const EntityHits *known);
 /* dark becomes 1 where anything is met. */
 void crowd_any_hits(uint8_t *dark, CrowdCounts *counts, const Visibility *v, int count, const double *const o[3],
@@ -99,8 +99,9 @@ static inline void grow_box(double box[2][3], const double p[3])
 }
 
 /* First hits with the ground, with the walk that is shared or without. */
-static inline void ground_hits(double *range_m, GroundHit *hit, const Visibility *v, int count, const double *const o[3],
-                               const double *const d[3], const double *far_m, VisibilityCounters *counters)
+static inline void ground_hits(double *range_m, GroundHit *hit, const Visibility *v, int count,
+                               const double *const o[3], const double *const d[3], const double *far_m,
+                               VisibilityCounters *counters)
 {
     if (skips(v->skips_off, SKIP_GROUND_WALK)) {
         ground_first_hits_together(range_m, hit, &v->ground, count, o, d, far_m);

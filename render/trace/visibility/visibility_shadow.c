@@ -1,4 +1,5 @@
-/* render/trace/visibility/visibility_shadow.c: which hits lie in the shadow of entities, of the ground and of plants. */
+/* render/trace/visibility/visibility_shadow.c: which hits lie in the shadow of entities, of the ground and of plants.
+ */
 #include "render/trace/visibility/visibility_private.h"
 
 #include "pitviper_simd.h"
@@ -10,7 +11,7 @@ static double bound_points(double centre[3], int count, const double *const p[3]
     for (int c = 0; c < 3; c++) {
         double low = INFINITY, high = -INFINITY;
         for (int i = 0; i < count; i++) {
-            low  = p[c][i] < low ? p[c][i] : low;
+            low = p[c][i] < low ? p[c][i] : low;
             high = p[c][i] > high ? p[c][i] : high;
         }
         centre[c] = 0.5 * (low + high);
@@ -52,9 +53,9 @@ static void leave_out_clear(uint8_t *ask, const Visibility *v, int count, const 
 static bool leave_hit(double start[3], const Visibility *v, const Hits *hits, int i, const double d_enu[3])
 {
     static const double offset_m = 1e-3; /* no self-hits at any range tried, and hidden in any pixel */
-    const double n[3] = {hits->n_geo[0][i], hits->n_geo[1][i], hits->n_geo[2][i]};
-    const double cosine = v3_dot(n, d_enu);
-    const bool   through = v->materials && v->materials->material[hits->material[i]].tau[optical_channel_nir] > 0;
+    const double        n[3] = {hits->n_geo[0][i], hits->n_geo[1][i], hits->n_geo[2][i]};
+    const double        cosine = v3_dot(n, d_enu);
+    const bool through = v->materials && v->materials->material[hits->material[i]].tau[optical_channel_nir] > 0;
     if (!(cosine > 0) && !(through && cosine < 0)) return false;
     for (int c = 0; c < 3; c++) start[c] = hits->p_enu[c][i] + (cosine > 0 ? offset_m : -offset_m) * n[c];
     return true;
@@ -62,15 +63,15 @@ static bool leave_hit(double start[3], const Visibility *v, const Hits *hits, in
 
 /* shadow becomes 1 where a plant is met. hit_of[count]: indices of the rays among the hits. */
 static void plants_shadow(uint8_t *shadow, const Visibility *v, const Hits *hits, const int *hit_of, int count,
-                   const double *const o[3], const double *const d[3], VisibilityCounters *counters)
+                          const double *const o[3], const double *const d[3], VisibilityCounters *counters)
 {
     double  far_m[hits_capacity];
     uint8_t dark[hits_capacity], real[hits_capacity];
     if (count <= 0) return;
     for (int k = 0; k < count; k++) {
         far_m[k] = INFINITY;
-        dark[k]  = 0;
-        real[k]  = v->full_plants || hits->entity[hit_of[k]] != 0; /* what falls on entities is that of real plants */
+        dark[k] = 0;
+        real[k] = v->full_plants || hits->entity[hit_of[k]] != 0; /* what falls on entities is that of real plants */
     }
     counters->rays_sun_plants += forest_any_hits(dark, v->plants, count, o, d, far_m, real);
     for (int k = 0; k < count; k++) shadow[hit_of[k]] |= dark[k];
@@ -113,16 +114,16 @@ void visibility_shadow(uint8_t *shadow, const Visibility *v, const Hits *hits, c
             continue;
         }
         for (int c = 0; c < 3; c++) start[c][count] = p_enu[c], towards[c][count] = d_enu[c];
-        far_m[count]    = INFINITY;
-        dark[count]     = 0;
-        in_turn[count]  = count;
+        far_m[count] = INFINITY;
+        dark[count] = 0;
+        in_turn[count] = count;
         hit_of[count++] = i;
     }
     if (count == 0) return;
 
-    const double *o[3] = {start[0], start[1], start[2]}, *d[3] = {towards[0], towards[1], towards[2]};
-    double        centre[3];
-    const double  radius_m = bound_points(centre, count, o);
+    const double  *o[3] = {start[0], start[1], start[2]}, *d[3] = {towards[0], towards[1], towards[2]};
+    double         centre[3];
+    const double   radius_m = bound_points(centre, count, o);
     const uint64_t drawable = (uint64_t)v->drawable;
     uint64_t       offered = 0, asked = 0;
     int            near[crowd_least], nears = v->count;
@@ -148,9 +149,9 @@ void visibility_shadow(uint8_t *shadow, const Visibility *v, const Hits *hits, c
             memset(ask, 1, sizeof ask);
         }
         const int listed = list_asked(list, in_turn, ask, count);
-        counters->skipped[SKIP_PART] += (uint64_t)listed * (uint64_t)entity->node_count -
-                                        parts_any_hits(dark, entity, o, d, far_m, list, listed,
-                                                       !skips(v->skips_off, SKIP_PART));
+        counters->skipped[SKIP_PART] +=
+            (uint64_t)listed * (uint64_t)entity->node_count -
+            parts_any_hits(dark, entity, o, d, far_m, list, listed, !skips(v->skips_off, SKIP_PART));
         asked += (uint64_t)listed;
     }
     counters->rays_sun_parts += asked;

@@ -80,8 +80,8 @@ static int part_curves(Curve out[most_parts], const HeatDay *day)
 static Scale scale_of(const Curve *curve, int count)
 {
     static const double steps[] = {1, 2, 5, 10, 20, 50, 100, 200, 500};
-    double low_k = INFINITY, high_k = -INFINITY;
-    size_t s = 0;
+    double              low_k = INFINITY, high_k = -INFINITY;
+    size_t              s = 0;
     for (int i = 0; i < count; i++) low_k = fmin(low_k, curve[i].low_k), high_k = fmax(high_k, curve[i].high_k);
     while (s + 1 < sizeof steps / sizeof *steps && (high_k - low_k) / steps[s] > 9) s++;
     return (Scale){floor(low_k / steps[s]) * steps[s], (floor(high_k / steps[s]) + 1) * steps[s], steps[s]};
@@ -92,20 +92,25 @@ static void draw_axes(FILE *to, const Scale *s)
     const int ticks = (int)lround((s->high_k - s->low_k) / s->step_k);
     for (int i = 0; i <= ticks; i++) {
         const double k = s->low_k + i * s->step_k, y = y_of(s, k);
-        fprintf(to, "<line class=\"g\" stroke=\"#ddd\" x1=\"%d\" y1=\"%.1f\" x2=\"%d\" y2=\"%.1f\"/>"
-                    "<text class=\"t\" fill=\"#222\" text-anchor=\"end\" x=\"%d\" y=\"%.1f\">%g</text>\n",
+        fprintf(to,
+                "<line class=\"g\" stroke=\"#ddd\" x1=\"%d\" y1=\"%.1f\" x2=\"%d\" y2=\"%.1f\"/>"
+                "<text class=\"t\" fill=\"#222\" text-anchor=\"end\" x=\"%d\" y=\"%.1f\">%g</text>\n",
                 left_px, y, right_px, y, left_px - 7, y + 4, k);
     }
     for (int hour = 0; hour <= 24; hour += 3)
-        fprintf(to, "<line class=\"g\" stroke=\"#ddd\" x1=\"%.1f\" y1=\"%d\" x2=\"%.1f\" y2=\"%d\"/>"
-                    "<text class=\"t\" fill=\"#222\" text-anchor=\"middle\" x=\"%.1f\" y=\"%d\">%02d:00</text>\n",
+        fprintf(to,
+                "<line class=\"g\" stroke=\"#ddd\" x1=\"%.1f\" y1=\"%d\" x2=\"%.1f\" y2=\"%d\"/>"
+                "<text class=\"t\" fill=\"#222\" text-anchor=\"middle\" x=\"%.1f\" y=\"%d\">%02d:00</text>\n",
                 x_of(hour), top_px, x_of(hour), bottom_px, x_of(hour), bottom_px + 17, hour);
     fprintf(to, "<path fill=\"none\" stroke=\"#777\" d=\"M%d %dV%dH%d\"/>\n", left_px, top_px, bottom_px, right_px);
-    fprintf(to, "<text class=\"t\" fill=\"#222\" text-anchor=\"middle\" x=\"%d\" y=\"%d\">"
-                "local mean solar time, h</text>\n",
+    fprintf(to,
+            "<text class=\"t\" fill=\"#222\" text-anchor=\"middle\" x=\"%d\" y=\"%d\">"
+            "local mean solar time, h</text>\n",
             (left_px + right_px) / 2, bottom_px + 38);
-    fprintf(to, "<text class=\"t\" fill=\"#222\" text-anchor=\"middle\" transform=\"translate(16 %d) rotate(-90)\">"
-                "temperature, K</text>\n", (top_px + bottom_px) / 2);
+    fprintf(to,
+            "<text class=\"t\" fill=\"#222\" text-anchor=\"middle\" transform=\"translate(16 %d) rotate(-90)\">"
+            "temperature, K</text>\n",
+            (top_px + bottom_px) / 2);
 }
 
 /* Draws a curve, and its row of the legend. */
@@ -114,15 +119,16 @@ static void draw_curve(FILE *to, const Curve *c, const Scale *s, int row)
     const char  *dashes = c->dashed ? " stroke-dasharray=\"6 4\"" : "";
     const double y = top_px + 22 * row + 20;
     fprintf(to, "<polyline fill=\"none\" stroke-width=\"2\" stroke-linejoin=\"round\"%s stroke=\"%s\" points=\"",
-        dashes, c->colour);
+            dashes, c->colour);
     for (int r = 0; r < heat_day_rows; r++)
         fprintf(to, "%s%.1f,%.1f", r ? " " : "", x_of(r * heat_day_row_s / 3600.0), y_of(s, c->k[r]));
     fprintf(to, "\"/>\n<path fill=\"none\" stroke-width=\"2\"%s stroke=\"%s\" d=\"M%d %.0fh22\"/>", dashes, c->colour,
-        right_px + 18, y);
+            right_px + 18, y);
     fprintf(to, "<text class=\"t\" fill=\"#222\" x=\"%d\" y=\"%.0f\">", right_px + 46, y + 4);
     html_text(to, "%.20s", c->name);
-    fprintf(to, "</text><text class=\"d\" fill=\"#666\" text-anchor=\"end\" x=\"%d\" y=\"%.0f\">"
-                "%.1f &#8211; %.1f</text>\n",
+    fprintf(to,
+            "</text><text class=\"d\" fill=\"#666\" text-anchor=\"end\" x=\"%d\" y=\"%.0f\">"
+            "%.1f &#8211; %.1f</text>\n",
             width_px - 12, y + 4, c->low_k, c->high_k);
 }
 
@@ -135,14 +141,16 @@ static void draw_crossings(FILE *to, const HeatDay *day, int row)
         const int    minutes = (int)(60 * day->crossing_h[i] + 0.5);
         const bool   close = i > 0 && x - x_of(day->crossing_h[i - 1]) < 36;
         raised = close && !raised; /* so that its label stands clear of the one before */
-        fprintf(to, "<line stroke=\"#c0392b\" stroke-dasharray=\"2 3\" x1=\"%.1f\" y1=\"%d\" x2=\"%.1f\" y2=\"%d\"/>"
-                    "<text fill=\"#c0392b\" text-anchor=\"middle\" x=\"%.1f\" y=\"%d\">%02d:%02d</text>\n",
+        fprintf(to,
+                "<line stroke=\"#c0392b\" stroke-dasharray=\"2 3\" x1=\"%.1f\" y1=\"%d\" x2=\"%.1f\" y2=\"%d\"/>"
+                "<text fill=\"#c0392b\" text-anchor=\"middle\" x=\"%.1f\" y=\"%d\">%02d:%02d</text>\n",
                 x, top_px, x, bottom_px, x, top_px - (raised ? 17 : 5), minutes / 60, minutes % 60);
     }
     if (day->crossings == 0) return;
     const int y = top_px + 22 * row + 20;
-    fprintf(to, "<line stroke=\"#c0392b\" stroke-dasharray=\"2 3\" x1=\"%d\" y1=\"%d\" x2=\"%d\" y2=\"%d\"/>"
-                "<text class=\"t\" fill=\"#222\" x=\"%d\" y=\"%d\">contrast crossover</text>\n",
+    fprintf(to,
+            "<line stroke=\"#c0392b\" stroke-dasharray=\"2 3\" x1=\"%d\" y1=\"%d\" x2=\"%d\" y2=\"%d\"/>"
+            "<text class=\"t\" fill=\"#222\" x=\"%d\" y=\"%d\">contrast crossover</text>\n",
             right_px + 18, y, right_px + 40, y, right_px + 46, y + 4);
 }
 
@@ -151,22 +159,26 @@ static void plot_day(FILE *to, const HeatDay *day, const char *about)
 {
     static const char *const colours[most_parts] = {"#1f77b4", "#e0a100", "#2ca02c", "#d1495b", "#6a4c93",
                                                     "#17a2a2", "#a0522d", "#e377c2", "#7f7f7f", "#8bc34a"};
-    static Curve curve[most_parts + 2];
-    int          count = part_curves(curve, day);
+    static Curve             curve[most_parts + 2];
+    int                      count = part_curves(curve, day);
     for (int i = 0; i < count; i++) curve[i].colour = colours[i];
     Curve *air = &curve[count++], *ground = &curve[count++];
-    *air    = (Curve){.name = "air", .colour = "#5b8db8", .dashed = true};
+    *air = (Curve){.name = "air", .colour = "#5b8db8", .dashed = true};
     *ground = (Curve){.name = "ground", .colour = "#5a7d3a", .dashed = true};
     for (int r = 0; r < heat_day_rows; r++) air->k[r] = day->row[r].air_k, ground->k[r] = day->row[r].ground_k;
     find_range(air);
     find_range(ground);
     const Scale s = scale_of(curve, count);
 
-    fprintf(to, "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"pvh\" width=\"%d\" height=\"%d\" "
-                "viewBox=\"0 0 %d %d\" role=\"img\">%s<title>", width_px, height_px, width_px, height_px, style);
+    fprintf(to,
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"pvh\" width=\"%d\" height=\"%d\" "
+            "viewBox=\"0 0 %d %d\" role=\"img\">%s<title>",
+            width_px, height_px, width_px, height_px, style);
     html_text(to, "temperatures of %s over a day", day->model);
-    fprintf(to, "</title>\n<rect class=\"bg\" fill=\"#fff\" width=\"%d\" height=\"%d\"/>\n"
-                "<text class=\"h\" fill=\"#222\" font-weight=\"600\" x=\"14\" y=\"20\">", width_px, height_px);
+    fprintf(to,
+            "</title>\n<rect class=\"bg\" fill=\"#fff\" width=\"%d\" height=\"%d\"/>\n"
+            "<text class=\"h\" fill=\"#222\" font-weight=\"600\" x=\"14\" y=\"20\">",
+            width_px, height_px);
     html_text(to, "%.60s: temperatures of its parts, means by area", day->model);
     fputs("</text><text class=\"d\" fill=\"#666\" x=\"14\" y=\"38\">", to);
     html_text(to, "%s", about);
@@ -174,8 +186,9 @@ static void plot_day(FILE *to, const HeatDay *day, const char *about)
     draw_axes(to, &s);
     for (int i = 0; i < count; i++) draw_curve(to, &curve[i], &s, i);
     draw_crossings(to, day, count);
-    fprintf(to, "<text class=\"d\" fill=\"#666\" text-anchor=\"end\" x=\"%d\" y=\"%d\">"
-                "coldest &#8211; warmest, K</text>\n</svg>\n",
+    fprintf(to,
+            "<text class=\"d\" fill=\"#666\" text-anchor=\"end\" x=\"%d\" y=\"%d\">"
+            "coldest &#8211; warmest, K</text>\n</svg>\n",
             width_px - 12, top_px + 2);
 }
 
@@ -239,7 +252,7 @@ static bool read_drive(HeatOptions *o, const char *text)
         h0 < 0 || m0 < 0 || m0 > 59 || h1 < 0 || m1 < 0 || m1 > 59)
         return false;
     o->course.drive_from_s = 3600 * h0 + 60 * m0;
-    o->course.drive_to_s   = 3600 * h1 + 60 * m1;
+    o->course.drive_to_s = 3600 * h1 + 60 * m1;
     snprintf(o->drive, sizeof o->drive, "%02d:%02d-%02d:%02d", h0, m0, h1, m1);
     return o->course.drive_from_s < o->course.drive_to_s && o->course.drive_to_s <= 86400;
 }
@@ -248,11 +261,17 @@ static bool read_drive(HeatOptions *o, const char *text)
 static int parse(HeatOptions *o, int argc, char **argv)
 {
     enum { OUT = 'o', CONFIG = 'c', AT = 256, DAY, DRIVE, HEADING, STEP, OVERWRITE, HELP };
-    static const struct option options[] = {
-        {"out", 1, NULL, OUT},         {"at", 1, NULL, AT},     {"day", 1, NULL, DAY},
-        {"drive", 1, NULL, DRIVE},     {"heading", 1, NULL, HEADING}, {"step", 1, NULL, STEP},
-        {"overwrite", 0, NULL, OVERWRITE}, {"config", 1, NULL, CONFIG}, {"help", 0, NULL, HELP}, {NULL, 0, NULL, 0}};
-    double heading_deg = 270;
+    static const struct option options[] = {{"out", 1, NULL, OUT},
+                                            {"at", 1, NULL, AT},
+                                            {"day", 1, NULL, DAY},
+                                            {"drive", 1, NULL, DRIVE},
+                                            {"heading", 1, NULL, HEADING},
+                                            {"step", 1, NULL, STEP},
+                                            {"overwrite", 0, NULL, OVERWRITE},
+                                            {"config", 1, NULL, CONFIG},
+                                            {"help", 0, NULL, HELP},
+                                            {NULL, 0, NULL, 0}};
+    double                     heading_deg = 270;
     *o = (HeatOptions){.day = "2026-06-21", .lat_deg = 48, .lon_deg = 11, .course = {.step_s = 60}};
     optind = 0; /* restart getopt */
     for (int option; (option = command_line_option(argc, argv, "c:o:", options)) != -1;) {
@@ -262,7 +281,9 @@ static int parse(HeatOptions *o, int argc, char **argv)
             if (!*optarg) return refuse("--out", "needs a folder");
             o->out = optarg;
             break;
-        case CONFIG: o->config = optarg; break;
+        case CONFIG:
+            o->config = optarg;
+            break;
         case AT: /* takes two words */
             second = optind < argc ? argv[optind++] : NULL;
             if (!in_range(&o->lat_deg, optarg, -90, 90) || !in_range(&o->lon_deg, second, -180, 180))
@@ -284,9 +305,14 @@ static int parse(HeatOptions *o, int argc, char **argv)
             if (!in_range(&o->course.step_s, optarg, 1, heat_day_row_s) || fmod(heat_day_row_s, o->course.step_s) != 0)
                 return refuse("--step", "needs a divisor of 600 s, from 1 s");
             break;
-        case OVERWRITE: o->overwrite = true; break;
-        case HELP: fputs(help, stdout); return 1 + 0;
-        default: return 1 + 2; /* reported by command_line_option */
+        case OVERWRITE:
+            o->overwrite = true;
+            break;
+        case HELP:
+            fputs(help, stdout);
+            return 1 + 0;
+        default:
+            return 1 + 2; /* reported by command_line_option */
         }
     }
     if (optind == argc) return refuse("no model is named", "a built-in name, or a file");
@@ -305,8 +331,13 @@ enum { file_csv, file_svg, file_mwir, file_lwir, file_count };
 static Status make_paths(OutputPath path[file_count], const HeatOptions *o)
 {
     static const char *const names[file_count] = {"nodes.csv", "nodes.svg", "mwir.png", "lwir.png"};
-    return overwrite_files(path, &(OutputFiles){.command = "heat", .count = file_count, .name = names, .given = o->out,
-                                                .model = o->name, .endings = ".", .overwrite = o->overwrite});
+    return overwrite_files(path, &(OutputFiles){.command = "heat",
+                                                .count = file_count,
+                                                .name = names,
+                                                .given = o->out,
+                                                .model = o->name,
+                                                .endings = ".",
+                                                .overwrite = o->overwrite});
 }
 
 /* What is drawn of a day, and its caption. */
@@ -362,7 +393,10 @@ static void print_summary(const HeatDay *day)
         print_hour(day->crossing_h[i]);
     }
     log_print(day->crossings ? "\n" : " none\n");
-    const struct { const char *what; int row; } extremes[] = {{"warmest over the ground", most}, {"coldest", least}};
+    const struct {
+        const char *what;
+        int         row;
+    } extremes[] = {{"warmest over the ground", most}, {"coldest", least}};
     for (int k = 0; k < 2; k++) {
         log_print("%s: %+.1f K at ", extremes[k].what, day->row[extremes[k].row].dt_k);
         print_hour(extremes[k].row * heat_day_row_s / 3600.0);
@@ -377,7 +411,7 @@ static void print_summary(const HeatDay *day)
 int heat_command(int argc, char **argv)
 {
     static OutputPath path[file_count];
-    HeatOptions o;
+    HeatOptions       o;
     thread_flush_denormals();
     const int stop = parse(&o, argc, argv);
     if (stop) return stop - 1;

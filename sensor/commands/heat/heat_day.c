@@ -14,16 +14,22 @@
 
 /* ---- images ----------------------------------------------------------------------------------------- */
 
-enum { columns = 4, rows = heat_day_images / columns, tile_width = 360, tile_height = 270,
-      tile = tile_width * tile_height, foot = letters_high + 14,
-      width = columns * tile_width, height = rows * tile_height + foot };
+enum {
+    columns = 4,
+    rows = heat_day_images / columns,
+    tile_width = 360,
+    tile_height = 270,
+    tile = tile_width * tile_height,
+    foot = letters_high + 14,
+    width = columns * tile_width,
+    height = rows * tile_height + foot
+};
 static const double view_down_deg = 12, least_away_m = 60;
 
 Status heat_images_open(HeatImages *images)
 {
     for (int b = 0; b < 2; b++)
-        if (!(images->radiance[b] = calloc((size_t)heat_day_images * tile,
-                                          sizeof *images->radiance[b])))
+        if (!(images->radiance[b] = calloc((size_t)heat_day_images * tile, sizeof *images->radiance[b])))
             return STATUS_NO_MEMORY;
     return STATUS_OK;
 }
@@ -46,7 +52,8 @@ static View view_of(const ModelStage *stage)
     const double half_m = 1.05 * fmax(reach_m, 0.75 * tall_m * tile_width / tile_height);
     const double away_m = fmax(least_away_m, 3 * 2 * half_m);
     const double towards[3] = {-cos(down_rad) * sqrt(0.5), cos(down_rad) * sqrt(0.5), -sin(down_rad)};
-    View         view = {.width = tile_width, .height = tile_height,
+    View         view = {.width = tile_width,
+                         .height = tile_height,
                          .focal_px = view_focal_px(tile_width, 2 * atan(half_m / (away_m - reach_m)))};
     model_stage_place(aim, stage);
     aim[2] += 0.45 * tall_m;
@@ -66,7 +73,7 @@ static Status draw_images(HeatImages *images, ModelStage *stage, const Snapshot 
                                    .target_samples = 48,
                                    .hidden_entity = -1,
                                    .t_s = snapshot->t_s};
-    Picture picture;
+    Picture             picture;
     arena_reset(stage->air_arena);
     Status status = model_stage_light(stage, &request, unix_s);
     if (status == STATUS_OK)
@@ -135,8 +142,8 @@ Status heat_images_write(const HeatImages *images, const ModelStage *stage, cons
 static const char *side_of(const Patch *patch, const NodePose *pose)
 {
     static const char *const sides[3][2] = {{"rear", "front"}, {"left", "right"}, {"top", "bottom"}};
-    double n_body[3];
-    int    axis = 0;
+    double                   n_body[3];
+    int                      axis = 0;
     if (patch->facing < 0.35) return "around";
     m3_mul_v3(n_body, pose[patch->node].r_body_from_node, patch->n_node);
     for (int k = 1; k < 3; k++)
@@ -180,8 +187,8 @@ static Status name_patches(HeatDay *day, const Patches *patches, const Model *mo
 {
     NodePose *pose = calloc((size_t)model->node_count + 1, sizeof *pose);
     day->patches = patches->count;
-    day->name    = calloc((size_t)patches->count + 1, sizeof *day->name);
-    day->part    = calloc((size_t)patches->count + 1, sizeof *day->part);
+    day->name = calloc((size_t)patches->count + 1, sizeof *day->name);
+    day->part = calloc((size_t)patches->count + 1, sizeof *day->part);
     day->area_m2 = calloc((size_t)patches->count + 1, sizeof *day->area_m2);
     day->patch_k = calloc((size_t)patches->count * heat_day_rows + 1, sizeof *day->patch_k);
     if (!pose || !day->name || !day->part || !day->area_m2 || !day->patch_k) {
@@ -242,8 +249,8 @@ static Status put(Course *c, double t_s)
 static Status ground_k_then(double *ground_k, const ModelStage *stage, double unix_s)
 {
     static const double up[3] = {0, 0, 1};
-    HeatScene *scene;
-    double     p_enu[3], lifted_k;
+    HeatScene          *scene;
+    double              p_enu[3], lifted_k;
     model_stage_place(p_enu, stage);
     const SurfaceClass surface = landscape_surface(&stage->landscape, p_enu[0], p_enu[1]);
     const Status       status = world_heat_at(&scene, &stage->world, NULL, unix_s, stage->arena);
@@ -301,8 +308,7 @@ static Status march(HeatDay *day, HeatImages *images, Course *c)
         }
         if (status == STATUS_OK) status = note(day, c, row);
         if (status == STATUS_OK && seconds % heat_day_image_s == 0 && seconds < day_s)
-            status = draw_images(images, c->stage, &c->snapshot, seconds / heat_day_image_s,
-                                 c->stage->begin_s + t_s);
+            status = draw_images(images, c->stage, &c->snapshot, seconds / heat_day_image_s, c->stage->begin_s + t_s);
     }
     log_status(NULL);
     return status;
@@ -329,7 +335,7 @@ Status heat_day_run(HeatDay *day, HeatImages *images, ModelStage *stage, const H
         const uint64_t failed = vehicle_heat_counters(world_vehicles_heat(c.vehicles))->failed;
         if (failed > 0)
             log_warn("heat: the solver gave up %llu steps: temperatures stood still in them; try another --step",
-                                 (unsigned long long)failed);
+                     (unsigned long long)failed);
         find_crossings(day);
     }
     world_vehicles_destroy(c.vehicles);

@@ -7,8 +7,14 @@
 
 #include "sensor/commands/model/model_stage.h"
 
-enum { heat_day_rows = 145, heat_day_row_s = 600, heat_day_images = 8, heat_day_image_s = 10800,
-       heat_day_name_size = 2 * model_name_size + 32, heat_day_most_crossings = 16 };
+enum {
+    heat_day_rows = 145,
+    heat_day_row_s = 600,
+    heat_day_images = 8,
+    heat_day_image_s = 10800,
+    heat_day_name_size = 2 * model_name_size + 32,
+    heat_day_most_crossings = 16
+};
 
 typedef struct HeatDayConfig {
     double drive_from_s, drive_to_s; /* of the day; equal: it does not drive */
@@ -17,25 +23,25 @@ typedef struct HeatDayConfig {
 } HeatDayConfig;
 
 typedef struct HeatDayRow {
-    double air_k, ground_k, dt_k;    /* dt_k: mean of the patches by area, less the ground */
-    double engine_k, cabin_k;        /* NaN: it has none */
+    double air_k, ground_k, dt_k; /* dt_k: mean of the patches by area, less the ground */
+    double engine_k, cabin_k;     /* NaN: it has none */
 } HeatDayRow;
 
 typedef struct HeatDay {
-    const char *model;               /* its name, that of the catalog's */
+    const char *model; /* its name, that of the catalog's */
     int         patches;
-    char      (*name)[heat_day_name_size]; /* of patches, unique: part and side */
-    char      (*part)[model_name_size];    /* of patches: of the first part of its body */
-    double     *area_m2;             /* [patches] */
-    HeatDayRow  row[heat_day_rows];
-    float      *patch_k;             /* [heat_day_rows][patches] */
-    int         crossings;
-    double      crossing_h[heat_day_most_crossings]; /* when dt_k changes sign */
+    char (*name)[heat_day_name_size]; /* of patches, unique: part and side */
+    char (*part)[model_name_size];    /* of patches: of the first part of its body */
+    double    *area_m2;               /* [patches] */
+    HeatDayRow row[heat_day_rows];
+    float     *patch_k; /* [heat_day_rows][patches] */
+    int        crossings;
+    double     crossing_h[heat_day_most_crossings]; /* when dt_k changes sign */
 } HeatDay;
 
 /* Sheets of one band's images. */
 typedef struct HeatImages {
-    float *radiance[2];              /* MWIR, LWIR; W/(m2 sr); [heat_day_images][pixels of one] */
+    float *radiance[2]; /* MWIR, LWIR; W/(m2 sr); [heat_day_images][pixels of one] */
 } HeatImages;
 
 Status heat_images_open(HeatImages *images);

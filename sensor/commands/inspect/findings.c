@@ -129,8 +129,10 @@ static Status note_event(Findings *f, EventRow event)
 static Status note_pdu(Findings *f, const DisPdu *pdu, double t_s)
 {
     switch (pdu->type) {
-    case dis_pdu_entity_state: return note_entity_state(f, &pdu->entity_state, t_s);
-    case dis_pdu_entity_state_update: return note_update(f, &pdu->update, t_s);
+    case dis_pdu_entity_state:
+        return note_entity_state(f, &pdu->entity_state, t_s);
+    case dis_pdu_entity_state_update:
+        return note_update(f, &pdu->update, t_s);
     case dis_pdu_fire:
         return note_event(f, (EventRow){t_s, true, pdu->fire.firing, pdu->fire.target, pdu->fire.munition,
                                         pdu->fire.descriptor.type, 0});
@@ -138,27 +140,37 @@ static Status note_pdu(Findings *f, const DisPdu *pdu, double t_s)
         return note_event(f, (EventRow){t_s, false, pdu->detonation.firing, pdu->detonation.target,
                                         pdu->detonation.munition, pdu->detonation.descriptor.type,
                                         pdu->detonation.result});
-    case dis_pdu_remove_entity: case dis_pdu_remove_entity_r: f->removed++; return STATUS_OK;
-    case dis_pdu_start_resume: case dis_pdu_start_resume_r: f->started++; return STATUS_OK;
-    case dis_pdu_stop_freeze: case dis_pdu_stop_freeze_r: f->stopped++; return STATUS_OK;
-    default: return STATUS_OK;
+    case dis_pdu_remove_entity:
+    case dis_pdu_remove_entity_r:
+        f->removed++;
+        return STATUS_OK;
+    case dis_pdu_start_resume:
+    case dis_pdu_start_resume_r:
+        f->started++;
+        return STATUS_OK;
+    case dis_pdu_stop_freeze:
+    case dis_pdu_stop_freeze_r:
+        f->stopped++;
+        return STATUS_OK;
+    default:
+        return STATUS_OK;
     }
 }
 
 Status findings_gather(Findings *f, const DisLog *log, int exercise)
 {
-    static DisPdu  decoded; /* 11 KiB, and the command has one thread */
-    DisLogTimes    times = {0};
-    size_t         next = 0;
-    Status         status = dis_log_times(&times, log, exercise);
+    static DisPdu decoded; /* 11 KiB, and the command has one thread */
+    DisLogTimes   times = {0};
+    size_t        next = 0;
+    Status        status = dis_log_times(&times, log, exercise);
     *f = (Findings){
         .entities.size = sizeof(EntityRow), .senders.size = sizeof(SenderRow), .events.size = sizeof(EventRow)};
     f->first_s = INFINITY;
     f->last_s = -INFINITY;
     for (int i = 0; i < log->count && status == STATUS_OK; i++) {
         const DisDatagram d = dis_log_datagram(log, i);
-        const uint8_t     *at = d.bytes, *end = d.bytes + d.octets, *pdu;
-        DisHeader          header;
+        const uint8_t    *at = d.bytes, *end = d.bytes + d.octets, *pdu;
+        DisHeader         header;
         f->counters.datagrams++;
         while (status == STATUS_OK && dis_next_pdu(&header, &pdu, &at, end, &f->counters)) {
             f->exercise[header.exercise]++;

@@ -12,11 +12,11 @@ typedef struct EntityRow {
     char          marking[11];
     uint8_t       force, most_variable;
     uint64_t      reports;
-    bool          placed;              /* some report had a usable position */
+    bool          placed; /* some report had a usable position */
     double        first_s, last_s;
     double        first_ecef[3], last_ecef[3];
     double        travelled_m, fastest_mps;
-    uint32_t      algorithms[8];       /* bit set over 0 .. 255 */
+    uint32_t      algorithms[8]; /* bit set over 0 .. 255 */
     bool          deactivated;
 } EntityRow;
 
@@ -44,11 +44,11 @@ typedef struct Rows {
 } Rows;
 
 typedef struct Findings {
-    DisCounters counters;
-    uint64_t    version[8], exercise[256];
-    double      first_s, last_s;
-    Rows        entities, senders, events;
-    uint64_t    removed, started, stopped;
+    DisCounters            counters;
+    uint64_t               version[8], exercise[256];
+    double                 first_s, last_s;
+    Rows                   entities, senders, events;
+    uint64_t               removed, started, stopped;
     ExerciseClockAnomalies doubts; /* senders whose stamps are not a clock */
 } Findings;
 

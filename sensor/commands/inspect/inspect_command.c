@@ -91,8 +91,8 @@ static void print_senders(const Findings *f)
         snprintf(name, sizeof name, "%u:%u", row->id.site, row->id.application);
         for (int v = 5, n = 0; v <= 7; v++)
             if (row->version[v]) n += snprintf(versions + n, sizeof versions - (size_t)n, n ? ",%d" : "%d", v);
-        const char *stamps = row->unstamped == row->pdus ? "none"
-                             : row->absolute == 0        ? "relative"
+        const char *stamps = row->unstamped == row->pdus  ? "none"
+                             : row->absolute == 0         ? "relative"
                              : row->absolute == row->pdus ? "absolute"
                                                           : "relative and absolute";
         printf("  %-12s %-8s %8llu  %s\n", name, versions, (unsigned long long)row->pdus, stamps);
@@ -159,8 +159,8 @@ static int by_entity(const void *a, const void *b)
 static TypeRow *list_types(int *count, const Findings *f)
 {
     const size_t entities = (size_t)f->entities.count;
-    TypeRow     *row      = malloc((entities + 1) * sizeof *row);
-    int          kept     = 0;
+    TypeRow     *row = malloc((entities + 1) * sizeof *row);
+    int          kept = 0;
     if (!row) return NULL;
     for (int i = 0; i < f->entities.count; i++) {
         const EntityRow *entity = findings_row(&f->entities, i);
@@ -178,9 +178,9 @@ static TypeRow *list_types(int *count, const Findings *f)
 static Status print_shapes(const Findings *f)
 {
     static const double chord_error_m = 0.1; /* sizes are needed, not facets */
-    char     path[4096];
-    Catalog *catalog;
-    int      count = 0;
+    char                path[4096];
+    Catalog            *catalog;
+    int                 count = 0;
     if (f->entities.count == 0) return STATUS_OK;
     if (!etc_path(path, sizeof path, "catalog.csv")) return STATUS_BAD_VALUE;
     TypeRow *row = list_types(&count, f);
@@ -196,12 +196,11 @@ static Status print_shapes(const Findings *f)
         const int    index = catalog_find(catalog, row[i].type, NULL, NULL);
         const Model *model = catalog_model(catalog, index);
         dis_entity_type_text(text, row[i].type);
-        if (!catalog_has_shape(catalog, index))
-            printf("  %-22s nothing is seen of it\n", text);
+        if (!catalog_has_shape(catalog, index)) printf("  %-22s nothing is seen of it\n", text);
         else
             text_print(stdout, "  %-22s %s, %.3g x %.3g x %.3g%s\n", text, model->name, model->length_m, model->width_m,
-                   fmax(model->box_high[2], 0) - model->box_low[2],
-                   index == 0 ? " (no row of the catalog: a stand-in)" : "");
+                       fmax(model->box_high[2], 0) - model->box_low[2],
+                       index == 0 ? " (no row of the catalog: a stand-in)" : "");
     }
     catalog_close(catalog);
     free(row);
@@ -211,12 +210,18 @@ static Status print_shapes(const Findings *f)
 static const char *result_text(uint8_t result)
 {
     switch (result) {
-    case dis_result_entity_impact: return "entity impact";
-    case dis_result_entity_proximate: return "entity proximate detonation";
-    case dis_result_ground_impact: return "ground impact";
-    case dis_result_detonation: return "detonation";
-    case dis_result_none: return "no detonation";
-    default: return "result";
+    case dis_result_entity_impact:
+        return "entity impact";
+    case dis_result_entity_proximate:
+        return "entity proximate detonation";
+    case dis_result_ground_impact:
+        return "ground impact";
+    case dis_result_detonation:
+        return "detonation";
+    case dis_result_none:
+        return "no detonation";
+    default:
+        return "result";
     }
 }
 
@@ -229,12 +234,9 @@ static void print_events(const Findings *f)
         dis_entity_id_text(firing, e->firing);
         dis_entity_id_text(munition, e->munition);
         dis_entity_type_text(type, e->type);
-        if (dis_entity_id_is_none(e->target))
-            snprintf(target, sizeof target, "nobody");
-        else
-            dis_entity_id_text(target, e->target);
-        if (e->fire)
-            printf("  %11.3f s  %s fires %s (%s) at %s\n", e->t_s, firing, munition, type, target);
+        if (dis_entity_id_is_none(e->target)) snprintf(target, sizeof target, "nobody");
+        else dis_entity_id_text(target, e->target);
+        if (e->fire) printf("  %11.3f s  %s fires %s (%s) at %s\n", e->t_s, firing, munition, type, target);
         else
             printf("  %11.3f s  %s of %s ends: %s (%u), target %s\n", e->t_s, munition, firing, result_text(e->result),
                    e->result, target);
@@ -343,15 +345,14 @@ static void print_tsv(const DisLog *log, const char *path, int exercise, bool fu
     printf("%s%s\n", tsv_header, full ? tsv_full_header : "");
     for (int i = 0; i < log->count; i++) {
         const DisDatagram d = dis_log_datagram(log, i);
-        const uint8_t     *at = d.bytes, *end = d.bytes + d.octets, *pdu;
-        DisHeader          header;
+        const uint8_t    *at = d.bytes, *end = d.bytes + d.octets, *pdu;
+        DisHeader         header;
         while (dis_next_pdu(&header, &pdu, &at, end, &counters)) {
             if (header.type != dis_pdu_entity_state) continue;
             if (exercise >= 0 && header.exercise != exercise) continue;
             if (dis_decode(&decoded, pdu, header.length) == STATUS_OK)
                 print_tsv_row(d.packet, &decoded.entity_state, full);
-            else
-                undecoded++;
+            else undecoded++;
         }
     }
     for (int why = 0; why < DIS_DROP_COUNT; why++) undecoded += counters.dropped[why];
@@ -387,18 +388,21 @@ static int read_options(InspectOptions *o, int argc, char **argv)
 {
     enum { CONFIG = 'c', PDUS = 256, FULL, PORT, EXERCISE, HELP };
     static const struct option options[] = {
-        {"pdus", 1, NULL, PDUS}, {"full", 0, NULL, FULL}, {"port", 1, NULL, PORT}, {"exercise", 1, NULL, EXERCISE},
+        {"pdus", 1, NULL, PDUS},     {"full", 0, NULL, FULL}, {"port", 1, NULL, PORT}, {"exercise", 1, NULL, EXERCISE},
         {"config", 1, NULL, CONFIG}, {"help", 0, NULL, HELP}, {NULL, 0, NULL, 0}};
     *o = (InspectOptions){.port = dis_port_default, .exercise = -1};
     optind = 0; /* restart getopt */
-    for (int option; (option = command_line_option(argc, argv, "c:", options)) != -1;)
-        switch (option) {
+    for (int option; (option = command_line_option(argc, argv, "c:", options)) != -1;) switch (option) {
         case PDUS:
             if (strcmp(optarg, "tsv") != 0) return 1 + command_line_wrong("inspect", "--pdus: '%s' is not tsv", optarg);
             o->tsv = true;
             break;
-        case FULL: o->full = true; break;
-        case CONFIG: o->config = optarg; break;
+        case FULL:
+            o->full = true;
+            break;
+        case CONFIG:
+            o->config = optarg;
+            break;
         case PORT:
             if (!text_to_long(&o->port, optarg) || o->port < 0 || o->port > 65535)
                 return 1 + command_line_wrong("inspect", "--port: '%s' is not a whole number in 0 .. 65535", optarg);
@@ -407,8 +411,11 @@ static int read_options(InspectOptions *o, int argc, char **argv)
             if (!text_to_long(&o->exercise, optarg) || o->exercise < 0 || o->exercise > 255)
                 return 1 + command_line_wrong("inspect", "--exercise: '%s' is not a whole number in 0 .. 255", optarg);
             break;
-        case HELP: fputs(usage_text, stdout); return 1 + 0;
-        default: return 1 + 2; /* reported by command_line_option */
+        case HELP:
+            fputs(usage_text, stdout);
+            return 1 + 0;
+        default:
+            return 1 + 2; /* reported by command_line_option */
         }
     if (optind == argc)
         return 1 + command_line_wrong("inspect", "no LOG is named: usage: pitviper inspect LOG [options]");
@@ -436,10 +443,8 @@ int inspect_command(int argc, char **argv)
     if (log.count == 0 && options.port > 0 && log.counters.other_port)
         log_warn("inspect: no UDP to port %lld in %s; try --port 0", options.port, options.path);
 
-    if (options.tsv)
-        print_tsv(&log, options.path, (int)options.exercise, options.full);
-    else
-        status = print_summary(&log, options.path, (int)options.exercise);
+    if (options.tsv) print_tsv(&log, options.path, (int)options.exercise, options.full);
+    else status = print_summary(&log, options.path, (int)options.exercise);
     if (status == STATUS_OK && dis_log_failed(&log)) status = STATUS_IO;
     dis_log_close(&log);
     if (status != STATUS_OK) {

@@ -19,8 +19,14 @@
 
 /* ---- show: optical, with a scale, in one image ------------------------------------------------------ */
 
-enum { columns = 4, rows = 2, tile_width = 360, tile_height = 270, width = columns * tile_width,
-       height = rows * tile_height };
+enum {
+    columns = 4,
+    rows = 2,
+    tile_width = 360,
+    tile_height = 270,
+    width = columns * tile_width,
+    height = rows * tile_height
+};
 static const double view_hfov_deg = 20, view_down_deg = 14;
 
 static void dot(uint8_t *rgb, int x, int y, uint8_t value)
@@ -29,10 +35,7 @@ static void dot(uint8_t *rgb, int x, int y, uint8_t value)
     memset(rgb + 3 * ((size_t)y * width + (size_t)x), value, 3);
 }
 
-static void write_text(uint8_t *rgb, int x, int y, const char *text)
-{
-    letters_write(rgb, width, height, x, y, text);
-}
+static void write_text(uint8_t *rgb, int x, int y, const char *text) { letters_write(rgb, width, height, x, y, text); }
 
 /* The largest of 1, 2 or 5 times a power of ten that is not above this. */
 static double round_length(double most)
@@ -65,11 +68,11 @@ static View view_of(double *px_per_m, const ModelStage *stage)
     const double half_m = fmax(1.1 * reach_m, 0.75 * (tall_m + low_m) * tile_width / tile_height);
     const double away_m = half_m / tan(0.5 * view_hfov_deg * rad_per_deg) + 0.3 * reach_m;
     const double down_rad = view_down_deg * rad_per_deg;
-    View         view = {.width = tile_width, .height = tile_height,
-                         .focal_px = view_focal_px(tile_width, view_hfov_deg * rad_per_deg)};
+    View         view = {
+                .width = tile_width, .height = tile_height, .focal_px = view_focal_px(tile_width, view_hfov_deg * rad_per_deg)};
     const double *at = stage->place_m, ground_m = elevation_height(&stage->landscape.elevation, at[0], at[1], NULL);
-    const double towards[3] = {0, cos(down_rad), -sin(down_rad)};
-    const double aim[3] = {at[0], at[1], ground_m + 0.5 * (tall_m - low_m)};
+    const double  towards[3] = {0, cos(down_rad), -sin(down_rad)};
+    const double  aim[3] = {at[0], at[1], ground_m + 0.5 * (tall_m - low_m)};
     v3_add_scaled(view.p_enu, aim, -away_m, towards);
     view_upright(view.r_enu_from_cam, towards);
     *px_per_m = view.focal_px / away_m;
@@ -152,7 +155,7 @@ static Status show_model(const char *name, double sag_m, const char *out)
         display_colour(&colour, white, 0, INFINITY);
         /* fixed exposure: a reflectance of 0.5 is white, for every model */
         display.auto_level = false;
-        display.level_low  = 0;
+        display.level_low = 0;
         display.level_high = 0.5 * colour.white;
         display_colour_apply(plane, (const float *const *)plane, count, &colour);
         const float *const shown[3] = {plane[0], plane[1], plane[2]};
@@ -160,9 +163,8 @@ static Status show_model(const char *name, double sag_m, const char *out)
         write_labels(rgb, model, px_per_m);
         status = image_write_png(out, rgb, width, height, 3, 8);
         if (status == STATUS_OK)
-            printf("%s: %s, %.3f x %.3f x %.3f m (length, width, height), from eight sides, nose on first\n",
-                   out, model->name, model->length_m, model->width_m,
-                   fmax(model->box_high[2], 0) - model->box_low[2]);
+            printf("%s: %s, %.3f x %.3f x %.3f m (length, width, height), from eight sides, nose on first\n", out,
+                   model->name, model->length_m, model->width_m, fmax(model->box_high[2], 0) - model->box_low[2]);
     }
     if (status == STATUS_NO_MEMORY) log_error("model: out of memory: %s", name);
     model_stage_close(&stage);
@@ -213,22 +215,28 @@ typedef enum Option { OUT = 256, CONFIG, SAG, LENGTH, WIDTH, HEIGHT, JSON, HELP 
 static int parse(ModelOptions *o, unsigned allowed, int argc, char **argv)
 {
     static const struct option options[] = {
-        {"out", 1, NULL, OUT},       {"config", 1, NULL, CONFIG}, {"sag", 1, NULL, SAG}, {"length", 1, NULL, LENGTH},
-        {"width", 1, NULL, WIDTH},   {"height", 1, NULL, HEIGHT}, {"json", 0, NULL, JSON}, {"help", 0, NULL, HELP},
-        {NULL, 0, NULL, 0}};
+        {"out", 1, NULL, OUT},       {"config", 1, NULL, CONFIG}, {"sag", 1, NULL, SAG},
+        {"length", 1, NULL, LENGTH}, {"width", 1, NULL, WIDTH},   {"height", 1, NULL, HEIGHT},
+        {"json", 0, NULL, JSON},     {"help", 0, NULL, HELP},     {NULL, 0, NULL, 0}};
     double *const figure[] = {&o->size.length_m, &o->size.width_m, &o->size.height_m};
-    *o     = (ModelOptions){.sag_m = 0.005};
+    *o = (ModelOptions){.sag_m = 0.005};
     optind = 0; /* restart getopt */
     for (int option; (option = command_line_option(argc, argv, "c:o:", options)) != -1;) {
         if (option == 'c') option = CONFIG;
         if (option == 'o') option = OUT;
         if (option >= OUT && option < HELP && !(allowed >> (option - OUT) & 1))
-            return 1 + command_line_wrong("model", "--%s does not apply to %s", options[option - OUT].name,
-                                          "this action");
+            return 1 +
+                   command_line_wrong("model", "--%s does not apply to %s", options[option - OUT].name, "this action");
         switch (option) {
-        case OUT: o->out = optarg; break;
-        case JSON: o->json = true; break;
-        case CONFIG: o->config = optarg; break;
+        case OUT:
+            o->out = optarg;
+            break;
+        case JSON:
+            o->json = true;
+            break;
+        case CONFIG:
+            o->config = optarg;
+            break;
         case SAG:
             if (!text_to_double(&o->sag_m, optarg) || o->sag_m < 1e-5 || o->sag_m > 0.1)
                 return 1 + command_line_wrong("model", "--sag: '%s' is not a number in 1e-05 .. 0.1 m", optarg);
@@ -239,10 +247,13 @@ static int parse(ModelOptions *o, unsigned allowed, int argc, char **argv)
             if (!text_to_double(figure[option - LENGTH], optarg) || *figure[option - LENGTH] < 0.001 ||
                 *figure[option - LENGTH] > 2000)
                 return 1 + command_line_wrong("model", "--%s: '%s' is not a number in 0.001 .. 2000 m",
-                                      options[option - OUT].name, optarg);
+                                              options[option - OUT].name, optarg);
             break;
-        case HELP: fputs(help, stdout); return 1 + 0;
-        default: return 1 + 2; /* reported by command_line_option */
+        case HELP:
+            fputs(help, stdout);
+            return 1 + 0;
+        default:
+            return 1 + 2; /* reported by command_line_option */
         }
     }
     if (optind < argc) o->name = argv[optind++];
@@ -281,8 +292,10 @@ static int info_command(int argc, char **argv)
 {
     ModelOptions o;
     ModelInfo    info;
-    const int    stop = parse(&o, 1u << (SAG - OUT) | 1u << (LENGTH - OUT) | 1u << (WIDTH - OUT) | 1u << (HEIGHT - OUT) |
-                              1u << (CONFIG - OUT) | 1u << (JSON - OUT), argc, argv);
+    const int    stop = parse(&o,
+                              1u << (SAG - OUT) | 1u << (LENGTH - OUT) | 1u << (WIDTH - OUT) | 1u << (HEIGHT - OUT) |
+                                  1u << (CONFIG - OUT) | 1u << (JSON - OUT),
+                              argc, argv);
     if (stop) return stop - 1;
     if (!o.name) return command_line_wrong("model", "info needs a model: a built-in name, or a file");
     if (config_tables_of(o.config) != STATUS_OK) return 1;
@@ -306,7 +319,7 @@ int model_command(int argc, char **argv)
 {
     static const struct {
         const char *name;
-        int       (*run)(int argc, char **argv);
+        int (*run)(int argc, char **argv);
     } actions[] = {{"info", info_command}, {"list", list_command}, {"show", show_command}, {"--keys", keys_command}};
     thread_flush_denormals();
     if (argc < 2) return command_line_wrong("model", "no action: list, info NAME|FILE, show NAME|FILE or --keys");
@@ -325,5 +338,6 @@ int model_command(int argc, char **argv)
         return actions[i].run(argc - 1, argv + 1);
     }
     return command_line_wrong("model", "no such action: %s%s", argv[1],
-                      *word_hint(&meant) ? meant.hint : "; there are list, info NAME|FILE, show NAME|FILE and --keys");
+                              *word_hint(&meant) ? meant.hint
+                                                 : "; there are list, info NAME|FILE, show NAME|FILE and --keys");
 }

@@ -6,7 +6,7 @@
 static void find_place(ModelStage *stage, SurfaceClass wanted, double about_m)
 {
     for (int k = 0; k < 4000; k++) {
-        const double turn = 2.4 * k, away = 2 * sqrt(k) * 5, x = away * cos(turn), y = away * sin(turn);
+        const double       turn = 2.4 * k, away = 2 * sqrt(k) * 5, x = away * cos(turn), y = away * sin(turn);
         const SurfaceClass here = landscape_surface(&stage->landscape, x, y);
         bool               same = here != SURFACE_NONE && (wanted == SURFACE_NONE || here == wanted);
         for (int i = 0; i < 48 && same; i++) {

@@ -6,11 +6,11 @@
 #include "render/frame/render.h"
 
 typedef struct ModelStageConfig {
-    const char  *name;      /* of the model: built in, or a file */
-    double       sag_m;     /* as parametric_build */
+    const char  *name;  /* of the model: built in, or a file */
+    double       sag_m; /* as parametric_build */
     Geodetic     origin;
-    double       begin_s;   /* Unix time of exercise time 0: the ground is warmed up until then, as on a clear day */
-    SurfaceClass surface;   /* that it stands on; SURFACE_NONE: any */
+    double       begin_s; /* Unix time of exercise time 0: the ground is warmed up until then, as on a clear day */
+    SurfaceClass surface; /* that it stands on; SURFACE_NONE: any */
 } ModelStageConfig;
 
 typedef struct ModelStage {
@@ -20,7 +20,7 @@ typedef struct ModelStage {
     Pool     *pool;
     Arena    *arena, *air_arena; /* the caller resets them: of one image; of what is the same for several */
     Air       air;
-    int       model;             /* of the catalog */
+    int       model;               /* of the catalog */
     double    begin_s, place_m[2]; /* Unix time; east and north of the origin */
 } ModelStage;
 
@@ -28,7 +28,7 @@ typedef struct ModelStage {
 Status model_stage_open(ModelStage *stage, const ModelStageConfig *config);
 void   model_stage_close(ModelStage *stage); /* accepts zeroes */
 /* Where it stands: on the ground. */
-void   model_stage_place(double p_enu[3], const ModelStage *stage);
+void model_stage_place(double p_enu[3], const ModelStage *stage);
 /* The model on the ground, its nose turned by turn_rad from east towards north, at exercise time 0. */
 Status model_stage_put(Snapshot *out, SnapshotEntity *entity, const ModelStage *stage, double turn_rad);
 /* Sun, atmosphere and the ground's heat at a time, for the view of a request, into stage->air. */

@@ -69,7 +69,7 @@ static int read_list(double *out, int most, const char *text, char separator)
     char copy[1024];
     int  count = 0;
     if (!text || snprintf(copy, sizeof copy, "%s", text) >= (int)sizeof copy) return -1;
-    for (char *at = copy; at; ) {
+    for (char *at = copy; at;) {
         char *end = strchr(at, separator);
         if (end) *end++ = 0;
         if (count == most || !text_to_double(&out[count++], at)) return -1;
@@ -92,8 +92,7 @@ static bool read_azimuth(RcsConfig *config, const char *text)
 {
     double number[3];
     if (read_list(number, 3, text, ':') != 3 || !(fabs(number[0]) <= 720 && fabs(number[1]) <= 720) ||
-        !(number[2] > 0) ||
-        !(number[1] >= number[0]))
+        !(number[2] > 0) || !(number[1] >= number[0]))
         return false;
     const double looks = floor((number[1] - number[0]) / number[2] + 1e-9) + 1;
     if (!(looks <= rcs_most_looks)) return false;
@@ -115,27 +114,62 @@ static bool read_joint(RcsConfig *config, const char *text)
 /* 0: valid; else exit with this code - 1. */
 static int parse(RcsOptions *o, int argc, char **argv)
 {
-    enum { OUT = 'o', CONFIG = 'c', FREQUENCY = 256, AZIMUTH, ELEVATION, RANGE, RAYS, SPLITS, WARP, JOINT, CELL, IMAGE, NO_EDGES,
-           NO_POLYGONS, OVERWRITE, LIBRARY, HELP };
-    static const struct option options[] = {
-        {"out", 1, NULL, OUT},       {"frequency", 1, NULL, FREQUENCY}, {"azimuth", 1, NULL, AZIMUTH},
-        {"elevation", 1, NULL, ELEVATION}, {"range", 1, NULL, RANGE},   {"rays", 1, NULL, RAYS},
-        {"splits", 1, NULL, SPLITS}, {"warp", 1, NULL, WARP},           {"joint", 1, NULL, JOINT},
-        {"cell", 1, NULL, CELL},     {"image", 1, NULL, IMAGE},         {"no-edges", 0, NULL, NO_EDGES},
-        {"no-polygons", 0, NULL, NO_POLYGONS}, {"overwrite", 0, NULL, OVERWRITE}, {"library", 1, NULL, LIBRARY},
-        {"config", 1, NULL, CONFIG}, {"help", 0, NULL, HELP},           {NULL, 0, NULL, 0}};
-    RcsConfig *c = &o->config;
-    double     number;
-    *o = (RcsOptions){.config = {.step_deg = 1, .looks = 361, .elevation_deg = 10, .range_m = INFINITY,
-                                 .frequencies = 1, .frequency_hz = {10e9}, .image_deg = 30, .splits = -1}};
+    enum {
+        OUT = 'o',
+        CONFIG = 'c',
+        FREQUENCY = 256,
+        AZIMUTH,
+        ELEVATION,
+        RANGE,
+        RAYS,
+        SPLITS,
+        WARP,
+        JOINT,
+        CELL,
+        IMAGE,
+        NO_EDGES,
+        NO_POLYGONS,
+        OVERWRITE,
+        LIBRARY,
+        HELP
+    };
+    static const struct option options[] = {{"out", 1, NULL, OUT},
+                                            {"frequency", 1, NULL, FREQUENCY},
+                                            {"azimuth", 1, NULL, AZIMUTH},
+                                            {"elevation", 1, NULL, ELEVATION},
+                                            {"range", 1, NULL, RANGE},
+                                            {"rays", 1, NULL, RAYS},
+                                            {"splits", 1, NULL, SPLITS},
+                                            {"warp", 1, NULL, WARP},
+                                            {"joint", 1, NULL, JOINT},
+                                            {"cell", 1, NULL, CELL},
+                                            {"image", 1, NULL, IMAGE},
+                                            {"no-edges", 0, NULL, NO_EDGES},
+                                            {"no-polygons", 0, NULL, NO_POLYGONS},
+                                            {"overwrite", 0, NULL, OVERWRITE},
+                                            {"library", 1, NULL, LIBRARY},
+                                            {"config", 1, NULL, CONFIG},
+                                            {"help", 0, NULL, HELP},
+                                            {NULL, 0, NULL, 0}};
+    RcsConfig                 *c = &o->config;
+    double                     number;
+    *o = (RcsOptions){.config = {.step_deg = 1,
+                                 .looks = 361,
+                                 .elevation_deg = 10,
+                                 .range_m = INFINITY,
+                                 .frequencies = 1,
+                                 .frequency_hz = {10e9},
+                                 .image_deg = 30,
+                                 .splits = -1}};
     optind = 0; /* restart getopt */
-    for (int option; (option = command_line_option(argc, argv, "c:o:", options)) != -1;)
-        switch (option) {
+    for (int option; (option = command_line_option(argc, argv, "c:o:", options)) != -1;) switch (option) {
         case OUT:
             if (!*optarg) return refuse("--out", "needs a folder");
             o->out = optarg;
             break;
-        case CONFIG: o->settings = optarg; break;
+        case CONFIG:
+            o->settings = optarg;
+            break;
         case FREQUENCY:
             if (!read_frequencies(c, optarg))
                 return refuse("--frequency", "needs 1 to 64 numbers in 0.1 .. 300 GHz, separated by commas");
@@ -149,10 +183,12 @@ static int parse(RcsOptions *o, int argc, char **argv)
                 return refuse("--elevation", "needs an angle in -90 .. 90 deg");
             break;
         case RANGE:
-            if (!in_range(&c->range_m, optarg, 1e-3, 1e9)) return refuse("--range", "needs a distance in 0.001 .. 1e9 m");
+            if (!in_range(&c->range_m, optarg, 1e-3, 1e9))
+                return refuse("--range", "needs a distance in 0.001 .. 1e9 m");
             break;
         case RAYS:
-            if (!in_range(&c->rays_per_wavelength, optarg, 0.25, 16)) return refuse("--rays", "needs a number in 0.25 .. 16");
+            if (!in_range(&c->rays_per_wavelength, optarg, 0.25, 16))
+                return refuse("--rays", "needs a number in 0.25 .. 16");
             break;
         case SPLITS:
             if (!in_range(&number, optarg, 0, tubes_splits_most) || number != floor(number))
@@ -167,21 +203,30 @@ static int parse(RcsOptions *o, int argc, char **argv)
                 return refuse("--joint", "needs NAME=VALUE, in -3600 .. 3600 deg or m, at most 32 times");
             break;
         case CELL:
-            if (!in_range(&c->resolution_m, optarg, 0.01, 10)) return refuse("--cell", "needs a length in 0.01 .. 10 m");
+            if (!in_range(&c->resolution_m, optarg, 0.01, 10))
+                return refuse("--cell", "needs a length in 0.01 .. 10 m");
             break;
         case IMAGE:
             c->image_deg = NAN;
             if (strcmp(optarg, "none") != 0 && !in_range(&c->image_deg, optarg, -720, 720))
                 return refuse("--image", "needs an angle within 720 deg, or none");
             break;
-        case NO_EDGES: c->no_edges = true; break;
-        case NO_POLYGONS: c->no_polygons = true; break;
-        case OVERWRITE: o->overwrite = true; break;
-        case LIBRARY: break; /* taken by rcs_command */
+        case NO_EDGES:
+            c->no_edges = true;
+            break;
+        case NO_POLYGONS:
+            c->no_polygons = true;
+            break;
+        case OVERWRITE:
+            o->overwrite = true;
+            break;
+        case LIBRARY:
+            break; /* taken by rcs_command */
         case HELP:
             printf("%s\n%s", help, rcs_library_help);
             return 1 + 0;
-        default: return 1 + 2; /* reported by command_line_option */
+        default:
+            return 1 + 2; /* reported by command_line_option */
         }
     if (optind == argc) return refuse("no target is named", "a built-in name, a file or a shape");
     c->name = argv[optind];
@@ -200,8 +245,13 @@ enum { file_csv, file_svg, file_png, file_count };
 static Status make_paths(OutputPath path[file_count], const RcsOptions *o)
 {
     static const char *const names[file_count] = {"rcs.csv", "rcs.svg", "isar.png"};
-    return overwrite_files(path, &(OutputFiles){.command = "rcs", .count = file_count, .name = names, .given = o->out,
-                                                .model = o->config.name, .endings = ".:", .overwrite = o->overwrite});
+    return overwrite_files(path, &(OutputFiles){.command = "rcs",
+                                                .count = file_count,
+                                                .name = names,
+                                                .given = o->out,
+                                                .model = o->config.name,
+                                                .endings = ".:",
+                                                .overwrite = o->overwrite});
 }
 
 static void put_csv(FILE *to, const void *user) { rcs_write_csv(to, user); }
@@ -223,16 +273,17 @@ static void print_summary(const RcsSweep *sweep, double seconds)
             }
         }
         log_print("%s at %g GHz: mean HH %.1f, VV %.1f dBsm; most %.1f dBsm at azimuth %g deg\n",
-                  rcs_target_name(sweep),
-                  c->frequency_hz[f] * 1e-9, mean_m2[0] > 0 ? 10 * log10(mean_m2[0]) : -INFINITY,
+                  rcs_target_name(sweep), c->frequency_hz[f] * 1e-9,
+                  mean_m2[0] > 0 ? 10 * log10(mean_m2[0]) : -INFINITY,
                   mean_m2[1] > 0 ? 10 * log10(mean_m2[1]) : -INFINITY, most_dbsm, at_deg);
     }
     const RadarTarget *target = sweep->model.target;
     if (target && target->chord_m > 0) { /* a file's facets are taken as they are */
         const double deg_m = 720 * c->frequency_hz[c->frequencies - 1] / light_mps;
-        log_print("facets of curved surfaces are up to %.2g mm off them, %.2g mm rms: %.2g and %.2g deg of phase at %g GHz\n",
-                  1e3 * target->chord_m, 1e3 * target->chord_rms_m, deg_m * target->chord_m, deg_m * target->chord_rms_m,
-                  1e-9 * c->frequency_hz[c->frequencies - 1]);
+        log_print(
+            "facets of curved surfaces are up to %.2g mm off them, %.2g mm rms: %.2g and %.2g deg of phase at %g GHz\n",
+            1e3 * target->chord_m, 1e3 * target->chord_rms_m, deg_m * target->chord_m, deg_m * target->chord_rms_m,
+            1e-9 * c->frequency_hz[c->frequencies - 1]);
     }
     if (!isnan(sweep->grid_db)) log_print("error of the grid of ray tubes, by another grid: %.0f dB\n", sweep->grid_db);
     log_detail("rcs: %lld ray tubes, %lld hits, %.1f s", sweep->rays, sweep->hit_count, seconds);
@@ -251,10 +302,11 @@ static Status make_picture(RcsSweep *sweep, const char *path)
 int rcs_command(int argc, char **argv)
 {
     static OutputPath path[file_count];
-    RcsOptions  o;
+    RcsOptions        o;
     thread_flush_denormals();
     for (int i = 1; i < argc && strcmp(argv[i], "--") != 0; i++) /* the options beside it are others */
-        if (strncmp(argv[i], "--library", 9) == 0 && (!argv[i][9] || argv[i][9] == '=')) return rcs_library_command(argc, argv);
+        if (strncmp(argv[i], "--library", 9) == 0 && (!argv[i][9] || argv[i][9] == '='))
+            return rcs_library_command(argc, argv);
     const int stop = parse(&o, argc, argv);
     if (stop) return stop - 1;
     if (config_tables_of(o.settings) != STATUS_OK) return 1;

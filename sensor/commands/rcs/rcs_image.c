@@ -65,16 +65,16 @@ static void make_profile(double complex *out, int samples, double bin_m, const d
 
 static Status shoot(Pulses *pulses, const RcsImage *image, RcsSweep *sweep)
 {
-    const int      count = image->frequencies;
-    const double step_hz = image->bandwidth_hz / (count - 1);
-    const double first_hz = image->frequency_hz - image->bandwidth_hz / 2;
-    const double   step_k = 2 * pi_rad * step_hz / light_mps;
-    ScatterMatrix *s = calloc((size_t)count, sizeof *s);
+    const int       count = image->frequencies;
+    const double    step_hz = image->bandwidth_hz / (count - 1);
+    const double    first_hz = image->frequency_hz - image->bandwidth_hz / 2;
+    const double    step_k = 2 * pi_rad * step_hz / light_mps;
+    ScatterMatrix  *s = calloc((size_t)count, sizeof *s);
     double complex *w = calloc((size_t)count, sizeof *w);
-    double         traced_deg = NAN, sum = 0;
-    char           line[96];
-    TubeConfig     tubes = sweep->tubes;
-    Status         status = s && w ? STATUS_OK : STATUS_NO_MEMORY;
+    double          traced_deg = NAN, sum = 0;
+    char            line[96];
+    TubeConfig      tubes = sweep->tubes;
+    Status          status = s && w ? STATUS_OK : STATUS_NO_MEMORY;
     tubes.frequency_hz = image->frequency_hz;
     for (int f = 0; f < count; f++) sum += hamming(f, count);
     for (int p = 0; p < image->pulses && status == STATUS_OK; p++) {
@@ -119,13 +119,13 @@ static void project_row(void *user, int worker, int row)
     RcsImage         *image = p->image;
     (void)worker;
     for (int column = 0; column < image->pixels; column++) {
-        const double at[3] = {image->centre[0] + image->side_m * (0.5 - (row + 0.5) / image->pixels),
-                              image->centre[1] + image->side_m * ((column + 0.5) / image->pixels - 0.5),
-                                  image->centre[2]};
+        const double   at[3] = {image->centre[0] + image->side_m * (0.5 - (row + 0.5) / image->pixels),
+                                image->centre[1] + image->side_m * ((column + 0.5) / image->pixels - 0.5),
+                                image->centre[2]};
         double complex sum[2] = {0, 0};
         for (int i = 0; i < image->pulses; i++) {
-            double         way[3];
-            const double   path_m = 2 * scatter_path(way, &p->pulses->antenna[i], at);
+            double       way[3];
+            const double path_m = 2 * scatter_path(way, &p->pulses->antenna[i], at);
             const double place = path_m / p->pulses->bin_m + p->pulses->samples / 2, low = floor(place);
             const double share = place - low;
             if (!(low >= 0 && low < p->pulses->samples - 1)) continue;
@@ -213,8 +213,7 @@ Status rcs_image_write(const RcsImage *image, const RcsSweep *sweep, const char 
         letters_write(rgb, width, height, q * (n + 8) + 10, 8, text);
     }
     snprintf(text, sizeof text, "%.4g GHz azimuth %.4g elevation %.4g deg", image->frequency_hz * 1e-9,
-             image->middle_deg,
-             sweep->config.elevation_deg);
+             image->middle_deg, sweep->config.elevation_deg);
     letters_write(rgb, width, height, 10, head + n + 6, text);
     snprintf(text, sizeof text, "nose up  %.1f to %.1f dBsm  cell %.2f m", most - shown_db, most, image->resolution_m);
     letters_write(rgb, width, height, 10, head + n + 12 + letters_high, text);

@@ -42,7 +42,7 @@ typedef struct Work {
     Catalog          *catalog;
     const Model      *of;
     int               model;
-    double           *joint;          /* [node_count] */
+    double           *joint; /* [node_count] */
     SignaturesConfig  config;
     SignatureLibrary *library;
     Signatures       *signatures;
@@ -80,18 +80,20 @@ static int parse(LibraryOptions *o, int argc, char **argv)
         {"library", 1, NULL, LIBRARY},     {"preset", 1, NULL, PRESET}, {"azimuth", 1, NULL, AZIMUTH},
         {"elevation", 1, NULL, ELEVATION}, {"range", 1, NULL, RANGE},   {"warp", 1, NULL, WARP},
         {"damage", 1, NULL, DAMAGE},       {"joint", 1, NULL, JOINT},   {"config", 1, NULL, CONFIG},
-        {"help", 0, NULL, HELP},
-        {NULL, 0, NULL, 0}};
+        {"help", 0, NULL, HELP},           {NULL, 0, NULL, 0}};
     *o = (LibraryOptions){.azimuth_deg = {0, 360}, .elevation_deg = {5, 10}, .range_m = {1000, 3000}, .warp_mm = 1};
     optind = 0; /* restart getopt */
-    for (int option; (option = command_line_option(argc, argv, "c:", options)) != -1;)
-        switch (option) {
+    for (int option; (option = command_line_option(argc, argv, "c:", options)) != -1;) switch (option) {
         case LIBRARY:
             if (!*optarg) return refuse("--library", "needs a folder");
             o->folder = optarg;
             break;
-        case PRESET: o->preset = optarg; break;
-        case CONFIG: o->settings = optarg; break;
+        case PRESET:
+            o->preset = optarg;
+            break;
+        case CONFIG:
+            o->settings = optarg;
+            break;
         case AZIMUTH:
             if (!span_in(o->azimuth_deg, optarg, -720, 720))
                 return refuse("--azimuth", "needs FROM:TO in deg, rising, within 720");
@@ -115,8 +117,11 @@ static int parse(LibraryOptions *o, int argc, char **argv)
                 return refuse("--joint", "needs NAME=VALUE, at most 32 of them");
             o->joint[o->joints++] = optarg;
             break;
-        case HELP: fputs(rcs_library_help, stdout); return 1 + 0;
-        default: return 1 + 2; /* reported by command_line_option */
+        case HELP:
+            fputs(rcs_library_help, stdout);
+            return 1 + 0;
+        default:
+            return 1 + 2; /* reported by command_line_option */
         }
     if (optind == argc) return refuse("no target is named", "an entity type or a built-in name");
     o->name = argv[optind];
@@ -134,9 +139,14 @@ static Status set_joints(Work *w)
         const size_t length = (size_t)(equals - text);
         double       value;
         int          node = 0;
-        while (node < w->of->node_count && (strlen(w->of->node[node].name) != length || strncmp(w->of->node[node].name, text, length) != 0)) node++;
-        if (node == w->of->node_count || w->of->node[node].joint == JOINT_FIXED || !text_to_double(&value, equals + 1)) {
-            log_error("rcs: --joint %s: the model has no such joint, or the value is not a number; `pitviper model show` names them", text);
+        while (node < w->of->node_count &&
+               (strlen(w->of->node[node].name) != length || strncmp(w->of->node[node].name, text, length) != 0))
+            node++;
+        if (node == w->of->node_count || w->of->node[node].joint == JOINT_FIXED ||
+            !text_to_double(&value, equals + 1)) {
+            log_error(
+                "rcs: --joint %s: the model has no such joint, or the value is not a number; `pitviper model show` names them",
+                text);
             return STATUS_BAD_VALUE;
         }
         w->joint[node] = w->of->node[node].joint == JOINT_ROTATION ? value * rad_per_deg : value;
@@ -165,7 +175,8 @@ static Status open_model(Work *w)
 static Status open_work(Work *w)
 {
     char   path[4096];
-    Status status = etc_path(path, sizeof path, "radars.csv") ? radar_preset_read(&w->preset, path, w->o.preset) : STATUS_BAD_VALUE;
+    Status status =
+        etc_path(path, sizeof path, "radars.csv") ? radar_preset_read(&w->preset, path, w->o.preset) : STATUS_BAD_VALUE;
     if (status == STATUS_OK) status = radar_materials_load(&w->materials);
     if (status == STATUS_OK) status = open_model(w);
     if (status != STATUS_OK) return status;
@@ -221,8 +232,9 @@ static Status all_bins(Work *w, bool count)
         const double middle = clamp(side * (e + 0.5), -0.5 * pi_rad, 0.5 * pi_rad);
         const long   round = (long)fmax(1, nearbyint(2 * pi_rad * cos(middle) / side));
         const double width = 2 * pi_rad / (double)round;
-        const long   first = (long)floor((az[0] * rad_per_deg + pi_rad) / width), last = (long)floor((az[1] * rad_per_deg + pi_rad) / width);
-        const long   bins = last - first + 1 < round ? last - first + 1 : round;
+        const long   first = (long)floor((az[0] * rad_per_deg + pi_rad) / width),
+                   last = (long)floor((az[1] * rad_per_deg + pi_rad) / width);
+        const long bins = last - first + 1 < round ? last - first + 1 : round;
         if (count) w->bins += bins * (far - near + 1);
         for (int r = near; r <= far && !count && status == STATUS_OK; r++)
             for (long a = first; a < first + bins && status == STATUS_OK; a++) {

@@ -185,7 +185,8 @@ void rcs_write_csv(FILE *to, const RcsSweep *sweep)
 {
     const RcsConfig *config = &sweep->config;
     fputs("az_deg,el_deg,f_ghz,hh_dbsm,hv_dbsm,vh_dbsm,vv_dbsm,hh_re_m,hh_im_m,hv_re_m,hv_im_m,vh_re_m,vh_im_m,"
-          "vv_re_m,vv_im_m\n", to);
+          "vv_re_m,vv_im_m\n",
+          to);
     for (int look = 0; look < config->looks; look++)
         for (int f = 0; f < config->frequencies; f++) {
             const ScatterMatrix *s = &sweep->s[(size_t)look * (size_t)config->frequencies + (size_t)f];
@@ -240,14 +241,16 @@ static void draw_grid(FILE *to, const Rings *rings)
 {
     for (double dbsm = rings->low_dbsm + 10; dbsm <= rings->high_dbsm; dbsm += 10) {
         const double r = radius_of(rings, dbsm);
-        fprintf(to, "<circle class=\"g\" fill=\"none\" stroke=\"#ddd\" cx=\"%d\" cy=\"%d\" r=\"%.1f\"/>"
-                    "<text class=\"d\" fill=\"#666\" x=\"%d\" y=\"%.1f\">%g</text>\n",
+        fprintf(to,
+                "<circle class=\"g\" fill=\"none\" stroke=\"#ddd\" cx=\"%d\" cy=\"%d\" r=\"%.1f\"/>"
+                "<text class=\"d\" fill=\"#666\" x=\"%d\" y=\"%.1f\">%g</text>\n",
                 middle_x, middle_y, r, middle_x + 3, middle_y - r + 12, dbsm);
     }
     for (int deg = 0; deg < 360; deg += 30) {
         const double x = sin(deg * rad_per_deg), y = -cos(deg * rad_per_deg);
-        fprintf(to, "<line class=\"g\" stroke=\"#ddd\" x1=\"%d\" y1=\"%d\" x2=\"%.1f\" y2=\"%.1f\"/>"
-                    "<text class=\"t\" fill=\"#222\" text-anchor=\"middle\" x=\"%.1f\" y=\"%.1f\">%d</text>\n",
+        fprintf(to,
+                "<line class=\"g\" stroke=\"#ddd\" x1=\"%d\" y1=\"%d\" x2=\"%.1f\" y2=\"%.1f\"/>"
+                "<text class=\"t\" fill=\"#222\" text-anchor=\"middle\" x=\"%.1f\" y=\"%.1f\">%d</text>\n",
                 middle_x, middle_y, middle_x + radius_px * x, middle_y + radius_px * y, middle_x + (radius_px + 16) * x,
                 middle_y + (radius_px + 16) * y + 4, deg);
     }
@@ -262,15 +265,15 @@ static void draw_curve(FILE *to, const RcsSweep *sweep, const Rings *rings, int 
             colours[p]);
     for (int look = 0; look < sweep->config.looks; look++) {
         const double complex s = field_of(sweep, look, p);
-        const double az = rcs_look_deg(&sweep->config, look) * rad_per_deg;
-        const double r = s == 0 ? 0 : radius_of(rings, rcs_dbsm(s));
+        const double         az = rcs_look_deg(&sweep->config, look) * rad_per_deg;
+        const double         r = s == 0 ? 0 : radius_of(rings, rcs_dbsm(s));
         fprintf(to, "%s%.1f,%.1f", look ? " " : "", middle_x + r * sin(az), middle_y - r * cos(az));
         mean_m2 += 4 * pi_rad * (creal(s) * creal(s) + cimag(s) * cimag(s)) / sweep->config.looks;
     }
-    fprintf(to, "\"/>\n<path fill=\"none\" stroke-width=\"2\" stroke=\"%s\" d=\"M%d %dh22\"/>"
-                "<text class=\"t\" fill=\"#222\" x=\"%d\" y=\"%d\">%s, mean %.1f dBsm</text>\n",
-            colours[p], legend_x, y, legend_x + 28, y + 4, names[p],
-            mean_m2 > 0 ? 10 * log10(mean_m2) : -INFINITY);
+    fprintf(to,
+            "\"/>\n<path fill=\"none\" stroke-width=\"2\" stroke=\"%s\" d=\"M%d %dh22\"/>"
+            "<text class=\"t\" fill=\"#222\" x=\"%d\" y=\"%d\">%s, mean %.1f dBsm</text>\n",
+            colours[p], legend_x, y, legend_x + 28, y + 4, names[p], mean_m2 > 0 ? 10 * log10(mean_m2) : -INFINITY);
 }
 
 void rcs_plot(FILE *to, const RcsSweep *sweep)
@@ -279,14 +282,16 @@ void rcs_plot(FILE *to, const RcsSweep *sweep)
     const Rings      rings = rings_of(sweep);
     fprintf(to,
             "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"pvr\" width=\"%d\" height=\"%d\" viewBox=\"0 0 %d %d\" "
-                "role=\"img\">%s<title>", width_px, height_px, width_px, height_px, style);
+            "role=\"img\">%s<title>",
+            width_px, height_px, width_px, height_px, style);
     html_text(to, "radar cross section of %s", rcs_target_name(sweep));
-    fprintf(to, "</title>\n<rect class=\"bg\" fill=\"#fff\" width=\"%d\" height=\"%d\"/>\n"
-                "<text class=\"h\" fill=\"#222\" font-weight=\"600\" x=\"14\" y=\"22\">", width_px, height_px);
+    fprintf(to,
+            "</title>\n<rect class=\"bg\" fill=\"#fff\" width=\"%d\" height=\"%d\"/>\n"
+            "<text class=\"h\" fill=\"#222\" font-weight=\"600\" x=\"14\" y=\"22\">",
+            width_px, height_px);
     html_text(to, "%.60s: radar cross section, dBsm", rcs_target_name(sweep));
     fprintf(to, "</text><text class=\"d\" fill=\"#666\" x=\"14\" y=\"40\">%g GHz, elevation %g deg, ",
-            config->frequency_hz[0] * 1e-9,
-            config->elevation_deg);
+            config->frequency_hz[0] * 1e-9, config->elevation_deg);
     if (isinf(config->range_m)) fputs("far field; ", to);
     else fprintf(to, "range %g m; ", config->range_m);
     fputs("azimuth clockwise from the nose, deg; ray tubes and edges</text>\n", to);

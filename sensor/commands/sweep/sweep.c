@@ -26,7 +26,7 @@ static Status name_variant(char name[sweep_name_size], const Sweep *sweep, int n
 {
     char  *line[sweep_axes_max], value[sweep_value_size], sha256[sha256_text_size], *text = NULL;
     size_t octets;
-    int    lines  = 0;
+    int    lines = 0;
     Status status = STATUS_OK;
     for (; lines < sweep->axis_count && status == STATUS_OK; lines++) {
         sweep_value(value, sweep, number, lines);
@@ -66,7 +66,7 @@ static void write_again(FILE *file, const Options *o)
 static Status settings_text_of(char **text, size_t *octets, char sha256[sha256_text_size], const Options *o,
                                const Config *config)
 {
-    *text      = NULL;
+    *text = NULL;
     FILE *file = open_memstream(text, octets);
     if (!file) return STATUS_NO_MEMORY;
     write_again(file, o);
@@ -80,7 +80,7 @@ static Status try_variant(Variant *variant, const SweepRun *s)
     size_t octets;
     Run   *run = calloc(1, sizeof *run); /* too large for a stack */
     if (!run) return STATUS_NO_MEMORY;
-    run->options  = *s->options;
+    run->options = *s->options;
     Status status = sweep_config(&run->options.config, &s->sweep, &s->options->config, variant->number);
     if (status == STATUS_OK) status = config_check(&run->options.config);
     if (status == STATUS_OK)
@@ -120,7 +120,7 @@ static void drop_repeated(SweepRun *s)
         if (i == 0 || strcmp(s->variant[i].settings_sha256, s->variant[kept - 1].settings_sha256) != 0)
             s->variant[kept++] = s->variant[i];
     s->repeated = s->count - kept;
-    s->count    = kept;
+    s->count = kept;
     qsort(s->variant, (size_t)s->count, sizeof *s->variant, by_number);
 }
 
@@ -131,9 +131,8 @@ static Status prepare(SweepRun *s)
         log_error("sweep: only one --host; to vary it, make exercise.host an axis");
         return STATUS_BAD_VALUE;
     }
-    const char *const of_one[][2] = {{"video", o->config.publish.video},
-                                     {"stream", o->config.publish.stream},
-                                     {"memory", o->config.publish.memory}};
+    const char *const of_one[][2] = {
+        {"video", o->config.publish.video}, {"stream", o->config.publish.stream}, {"memory", o->config.publish.memory}};
     for (int i = 0; i < 3; i++)
         if (*of_one[i][1]) {
             log_error("sweep: publish.%s names one place, and variants are many; replay one variant with it",
@@ -161,10 +160,11 @@ static Status look_at_first(const SweepRun *s, SweepLook *look)
             return STATUS_OK;
     Run *run = calloc(1, sizeof *run);
     if (!run) return STATUS_NO_MEMORY;
-    run->options  = *s->options;
+    run->options = *s->options;
     Status status = sweep_config(&run->options.config, &s->sweep, &s->options->config, s->variant[0].number);
     if (status == STATUS_OK) status = look(run);
-    if (status == STATUS_BAD_VALUE || status == STATUS_IO) log_error("sweep: so in every variant; nothing has been run");
+    if (status == STATUS_BAD_VALUE || status == STATUS_IO)
+        log_error("sweep: so in every variant; nothing has been run");
     run_close(run);
     free(run);
     return status;
@@ -197,7 +197,7 @@ static Status check_folders(const SweepRun *s)
     Status status = STATUS_OK;
     for (int i = 0; i < s->count && status == STATUS_OK && !s->options->overwrite; i++) {
         const Variant *v = &s->variant[i];
-        VariantRun        run;
+        VariantRun     run;
         snprintf(folder, sizeof folder, "%s/%s", s->options->out, v->name);
         bool other = read_run(&run, folder, "run.json") && run.complete && !is_run(&run, s, v);
         variant_run_free(&run);
@@ -209,7 +209,8 @@ static Status check_folders(const SweepRun *s)
         if (!other) continue;
         log_error("sweep: %s holds a run of another log, other settings or another version; choose another folder "
                   "with --out, "
-                  "or --overwrite, which deletes it", folder);
+                  "or --overwrite, which deletes it",
+                  folder);
         status = STATUS_BAD_VALUE;
     }
     return status;
@@ -232,10 +233,10 @@ static Status open_products(SweepRun *s)
 /* Whether the folder holds a complete run of these settings; its run.json is then in the outcome. */
 static bool is_kept(Outcome *outcome, const SweepRun *s, const Variant *v, const char *folder, bool coco)
 {
-    VariantRun    variant, run;
+    VariantRun variant, run;
     const bool whole = read_run(&variant, folder, "variant.json") && is_run(&variant, s, v) &&
                        strcmp(variant.settings_sha256, v->settings_sha256) == 0 && (!coco || has_coco(folder));
-    const bool kept  = read_run(&run, folder, "run.json") && whole && is_run(&run, s, v) && run.complete;
+    const bool kept = read_run(&run, folder, "run.json") && whole && is_run(&run, s, v) && run.complete;
     variant_run_free(&variant);
     if (kept) *outcome = (Outcome){.status = "kept", .has_run = true, .run = run};
     else variant_run_free(&run);
@@ -273,7 +274,7 @@ static int run_child(const Options *o, const char *folder)
     posix_spawn_file_actions_t files;
     pid_t                      child;
     int                        state = -1;
-    const int                  log   = output_open(said, 0);
+    const int                  log = output_open(said, 0);
     if (log < 0) log_error("sweep: cannot write %s: %s", said, output_reason(errno));
     if (log < 0 || posix_spawn_file_actions_init(&files) != 0) return -1;
     const bool ready = posix_spawn_file_actions_addopen(&files, 0, "/dev/null", O_RDONLY, 0) == 0 &&
@@ -290,8 +291,8 @@ static int run_child(const Options *o, const char *folder)
 static void find_reason(char *why, size_t size, const char *folder, int code)
 {
     const char *const head = log_head(LOG_ERROR);
-    char   path[path_size + 32], *text = NULL;
-    size_t octets;
+    char              path[path_size + 32], *text = NULL;
+    size_t            octets;
     if (code >= 0) snprintf(why, size, "exit code %d", code);
     else snprintf(why, size, "ended by a signal, or could not be started");
     snprintf(path, sizeof path, "%s/log.txt", folder);
@@ -310,10 +311,10 @@ static Status write_settings(const char *path, const Options *o, const Variant *
 {
     char    sha256[sha256_text_size], *text = NULL, *again = NULL;
     size_t  octets;
-    Config *back   = malloc(sizeof *back);
+    Config *back = malloc(sizeof *back);
     Status  status = back ? settings_text_of(&text, &octets, sha256, o, config) : STATUS_NO_MEMORY;
     if (status == STATUS_OK) {
-        *back  = config_default();
+        *back = config_default();
         status = write_file(path, text, octets);
     }
     if (status == STATUS_OK) status = config_read(back, path);
@@ -321,7 +322,8 @@ static Status write_settings(const char *path, const Options *o, const Variant *
     if (status == STATUS_OK && strcmp(sha256, v->settings_sha256) != 0) {
         const char *key = config_difference(config, back);
         log_error("sweep: %s: %s: a configuration file cannot hold this value (it does not read back equal); choose "
-                  "another", path, key ? key : "a setting");
+                  "another",
+                  path, key ? key : "a setting");
         status = STATUS_BAD_VALUE;
     }
     free(back);
@@ -347,9 +349,9 @@ static void make_variant(Outcome *outcome, const SweepRun *s, const Variant *v, 
         return;
     }
     const double begun_s = wall_clock_s();
-    const int    code    = run_child(s->options, folder);
-    outcome->seconds     = wall_clock_s() - begun_s;
-    outcome->has_run     = code == 0 && read_run(&outcome->run, folder, "run.json");
+    const int    code = run_child(s->options, folder);
+    outcome->seconds = wall_clock_s() - begun_s;
+    outcome->has_run = code == 0 && read_run(&outcome->run, folder, "run.json");
     if (stop_asked() && code != 0) {
         *outcome = (Outcome){.status = "stopped", .seconds = outcome->seconds};
         return;
@@ -416,18 +418,19 @@ static Status run_all(SweepRun *s)
     if (status == STATUS_OK) status = merged;
     if (s->stopped)
         log_warn("sweep: stopped with %d of %d variants made; the same command resumes "
-                 "it", s->made + s->kept, s->count);
+                 "it",
+                 s->made + s->kept, s->count);
     if (status == STATUS_OK)
         log_print("%d variants in %s: %d made, %d kept, %d failed; see "
-                "manifest.html\n", s->count, s->options->out, s->made,
-               s->kept, s->failed);
+                  "manifest.html\n",
+                  s->count, s->options->out, s->made, s->kept, s->failed);
     return status;
 }
 
 int sweep_replay(const Options *options, SweepLook *look)
 {
-    SweepRun     s      = {.options = options};
-    const Status tried  = prepare(&s);
+    SweepRun     s = {.options = options};
+    const Status tried = prepare(&s);
     Status       status = tried == STATUS_OK ? look_at_first(&s, look) : tried;
     if (status == STATUS_OK) status = run_all(&s);
     if (status == STATUS_NO_MEMORY) log_error("sweep: out of memory");

@@ -54,30 +54,30 @@ typedef enum SweepMode { SWEEP_GRID, SWEEP_ZIP, SWEEP_RANDOM } SweepMode;
 
 typedef struct SweepAxis {
     char   key[96];
-    int    line, count;     /* count: of values; 0: between low and high */
+    int    line, count; /* count: of values; 0: between low and high */
     char **value;
     double low, high;
     bool   whole;
-    int    kinds;           /* random: values that differ; 0: a range of real numbers */
-    int   *kind_of;         /* [count] of each value, 0 .. kinds - 1 */
-    int   *first_of;        /* [kinds] the first value of each */
+    int    kinds;    /* random: values that differ; 0: a range of real numbers */
+    int   *kind_of;  /* [count] of each value, 0 .. kinds - 1 */
+    int   *first_of; /* [kinds] the first value of each */
 } SweepAxis;
 
 typedef struct Sweep {
-    const char *path;            /* borrowed: paths of its values are relative to its folder */
-    SweepMode mode;
-    int       count, axis_count; /* count: of variants */
-    int       count_line;
-    long long draw;
-    int      *draw_of;           /* [count] random: which draw a variant is */
-    SweepAxis axis[sweep_axes_max];
+    const char *path; /* borrowed: paths of its values are relative to its folder */
+    SweepMode   mode;
+    int         count, axis_count; /* count: of variants */
+    int         count_line;
+    long long   draw;
+    int        *draw_of; /* [count] random: which draw a variant is */
+    SweepAxis   axis[sweep_axes_max];
 } Sweep;
 
 /* base: settings on which the values are validated. On failure *out is empty. */
 Status sweep_read(Sweep *out, const char *path, const Config *base);
 void   sweep_close(Sweep *sweep);
 /* As on a command line. */
-void   sweep_value(char out[sweep_value_size], const Sweep *sweep, int variant, int axis);
+void sweep_value(char out[sweep_value_size], const Sweep *sweep, int variant, int axis);
 /* base with the values of all axes; checks that involve several keys are not made. */
 Status sweep_config(Config *out, const Sweep *sweep, const Config *base, int variant);
 

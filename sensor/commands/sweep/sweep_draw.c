@@ -38,19 +38,19 @@ static Status count_kinds(SweepAxis *axis)
 {
     if (axis->count == 0) {
         const double span = axis->high - axis->low;
-        axis->kinds       = span == 0 ? 1 : axis->whole && span < 1e9 ? (int)span + 1 : 0;
+        axis->kinds = span == 0 ? 1 : axis->whole && span < 1e9 ? (int)span + 1 : 0;
         return STATUS_OK;
     }
     Listed    *listed = calloc((size_t)axis->count, sizeof *listed);
     const bool number = config_kind(axis->key) != CONFIG_WORD;
-    axis->kind_of     = calloc((size_t)axis->count, sizeof *axis->kind_of);
-    axis->first_of    = calloc((size_t)axis->count, sizeof *axis->first_of);
+    axis->kind_of = calloc((size_t)axis->count, sizeof *axis->kind_of);
+    axis->first_of = calloc((size_t)axis->count, sizeof *axis->first_of);
     if (!listed || !axis->kind_of || !axis->first_of) {
         free(listed);
         return STATUS_NO_MEMORY;
     }
     for (int i = 0; i < axis->count; i++) {
-        listed[i]           = (Listed){.text = axis->value[i], .place = i};
+        listed[i] = (Listed){.text = axis->value[i], .place = i};
         listed[i].is_number = number && text_to_double(&listed[i].number, axis->value[i]);
     }
     qsort(listed, (size_t)axis->count, sizeof *listed, by_value_and_place);
@@ -99,12 +99,10 @@ void sweep_drawn_value(char out[sweep_value_size], const Sweep *sweep, int draw,
         return;
     }
     const double u = a->count > 0 ? 0 : uniform(sweep, draw, a);
-    if (a->count > 0)
-        snprintf(out, sweep_value_size, "%s", a->value[choice_of(sweep, draw, a)]);
+    if (a->count > 0) snprintf(out, sweep_value_size, "%s", a->value[choice_of(sweep, draw, a)]);
     else if (a->whole)
         snprintf(out, sweep_value_size, "%.0f", fmin(a->low + floor(u * (a->high - a->low + 1)), a->high));
-    else
-        snprintf(out, sweep_value_size, "%.9g", clamp(a->low + u * (a->high - a->low), a->low, a->high));
+    else snprintf(out, sweep_value_size, "%.9g", clamp(a->low + u * (a->high - a->low), a->low, a->high));
 }
 
 /* Key of a draw: the kinds of its values. Draws with equal keys are the same. */
@@ -116,10 +114,8 @@ static void key_of(char key[key_size], const Sweep *sweep, int draw)
         const SweepAxis *a = &sweep->axis[i];
         if (a->count > 0 && draw >= draws_max)
             snprintf(value, sizeof value, "%d", kind_in_order(sweep, draw - draws_max, i));
-        else if (a->count > 0)
-            snprintf(value, sizeof value, "%d", a->kind_of[choice_of(sweep, draw, a)]);
-        else
-            sweep_drawn_value(value, sweep, draw, i);
+        else if (a->count > 0) snprintf(value, sizeof value, "%d", a->kind_of[choice_of(sweep, draw, a)]);
+        else sweep_drawn_value(value, sweep, draw, i);
         n += (size_t)snprintf(key + n, key_size - n, "%.22s,", value);
     }
 }
@@ -127,8 +123,8 @@ static void key_of(char key[key_size], const Sweep *sweep, int draw)
 /* ---- without repetition -------------------------------------------------------------------------------- */
 
 typedef struct Seen {
-    int size;                           /* a power of two, twice what it will hold at least */
-    char (*sha256)[sha256_text_size];   /* empty: free */
+    int size;                         /* a power of two, twice what it will hold at least */
+    char (*sha256)[sha256_text_size]; /* empty: free */
 } Seen;
 
 /* Adds a key. False: it is already present. */
@@ -151,7 +147,7 @@ static bool add(Seen *seen, const char *key, Status *status)
 static long long combinations(bool *ordered, const Sweep *sweep)
 {
     long long product = 1;
-    *ordered          = true;
+    *ordered = true;
     for (int i = 0; i < sweep->axis_count; i++) {
         const int kinds = sweep->axis[i].kinds;
         if (kinds == 0) *ordered = false;
@@ -163,7 +159,7 @@ static long long combinations(bool *ordered, const Sweep *sweep)
 Status sweep_draw(Sweep *sweep, const char *path)
 {
     char   key[key_size];
-    Seen   seen   = {.size = 2};
+    Seen   seen = {.size = 2};
     Status status = STATUS_OK;
     bool   ordered;
     int    found = 0, draw = 0;
@@ -172,11 +168,12 @@ Status sweep_draw(Sweep *sweep, const char *path)
     const long long all = combinations(&ordered, sweep);
     if (sweep->count > all) {
         log_error("sweep: %s:%d: count: %d different draws are requested, but the axes have %lld combination%s; lower "
-                  "count, or add values", path, sweep->count_line, sweep->count, all, all == 1 ? "" : "s");
+                  "count, or add values",
+                  path, sweep->count_line, sweep->count, all, all == 1 ? "" : "s");
         return STATUS_BAD_VALUE;
     }
     while (seen.size < 2 * sweep->count) seen.size *= 2;
-    seen.sha256    = calloc((size_t)seen.size, sizeof *seen.sha256);
+    seen.sha256 = calloc((size_t)seen.size, sizeof *seen.sha256);
     sweep->draw_of = calloc((size_t)sweep->count, sizeof *sweep->draw_of);
     if (!seen.sha256 || !sweep->draw_of) status = STATUS_NO_MEMORY;
     /* after the draws the combinations are enumerated in order, until there are as many as requested */
@@ -187,7 +184,8 @@ Status sweep_draw(Sweep *sweep, const char *path)
     free(seen.sha256);
     if (status == STATUS_OK && found < sweep->count) {
         log_error("sweep: %s:%d: count: only %d of %d draws differ among 200000 tries; lower count, or widen a "
-                  "range", path, sweep->count_line, found, sweep->count);
+                  "range",
+                  path, sweep->count_line, found, sweep->count);
         status = STATUS_BAD_VALUE;
     }
     return status;

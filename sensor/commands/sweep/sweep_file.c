@@ -11,15 +11,18 @@ typedef struct Reading {
     Sweep           *sweep;
 } Reading;
 
-static int line_of(const yaml_node_t *node) { return (int)node->start_mark.line + 1; }
+static int         line_of(const yaml_node_t *node) { return (int)node->start_mark.line + 1; }
 static const char *text_of(const yaml_node_t *node) { return (const char *)node->data.scalar.value; }
 
 static Status refuse(const Reading *r, const yaml_node_t *node, const char *key, const char *what)
 {
     char shown[160] = "";
     if (node->type == YAML_SCALAR_NODE) text_escape(shown, sizeof shown, text_of(node), strlen(text_of(node)));
-    log_error("sweep: %s:%d: %s: %s%s%s%s", r->path, line_of(node), key, *shown ? "'" : "", shown, *shown ? "' "
-              "" : "", what);
+    log_error("sweep: %s:%d: %s: %s%s%s%s", r->path, line_of(node), key, *shown ? "'" : "", shown,
+              *shown ? "' "
+                       ""
+                     : "",
+              what);
     return STATUS_BAD_VALUE;
 }
 
@@ -49,11 +52,12 @@ static bool join(char out[sweep_value_size], const Reading *r, const yaml_node_t
 
 static Status add_value(SweepAxis *axis, const Reading *r, const yaml_node_t *node)
 {
-    char         list[sweep_value_size];
-    const char  *value  = list;
+    char        list[sweep_value_size];
+    const char *value = list;
     if (node->type == YAML_SCALAR_NODE) value = text_of(node);
     else if (!join(list, r, node) || !config_takes_list(axis->key))
-        return refuse(r, node, axis->key, "needs single values, or lists of words where the key takes a list: [[optical, lwir], [lwir]]");
+        return refuse(r, node, axis->key,
+                      "needs single values, or lists of words where the key takes a list: [[optical, lwir], [lwir]]");
     const Status status = try_value(r, axis->key, value, line_of(node));
     if (status != STATUS_OK) return status;
     if (strlen(value) >= sweep_value_size) return refuse(r, node, axis->key, "is too long");
@@ -67,8 +71,10 @@ static Status read_range(SweepAxis *axis, const Reading *r, const yaml_node_t *n
 {
     const char *form = "needs a list of values, or {from: LOW, to: HIGH}";
     bool        from = false, to = false;
-    if (config_kind(axis->key) == CONFIG_WORD) return refuse(r, node, axis->key, "is not a number; only lists of "
-                                                            "values");
+    if (config_kind(axis->key) == CONFIG_WORD)
+        return refuse(r, node, axis->key,
+                      "is not a number; only lists of "
+                      "values");
     for (const yaml_node_pair_t *pair = node->data.mapping.pairs.start; pair < node->data.mapping.pairs.top; pair++) {
         const yaml_node_t *name = yaml_document_get_node(r->document, pair->key);
         const yaml_node_t *value = yaml_document_get_node(r->document, pair->value);
@@ -83,8 +89,10 @@ static Status read_range(SweepAxis *axis, const Reading *r, const yaml_node_t *n
         to |= is_to;
     }
     if (!from || !to) return refuse(r, node, axis->key, form);
-    if (r->sweep->mode != SWEEP_RANDOM) return refuse(r, node, axis->key, "only `mode: random` draws between from and "
-                                                            "to");
+    if (r->sweep->mode != SWEEP_RANDOM)
+        return refuse(r, node, axis->key,
+                      "only `mode: random` draws between from and "
+                      "to");
     if (!(axis->low <= axis->high)) return refuse(r, node, axis->key, "from is above to");
     axis->whole = config_kind(axis->key) == CONFIG_WHOLE;
     return STATUS_OK;
@@ -163,9 +171,9 @@ static Status read_mode(const Reading *r, const yaml_node_t *node)
 static Status read_root(Reading *r, const yaml_node_t *root)
 {
     static const char *const keys[] = {"mode", "count", "draw", "axes"};
-    const yaml_node_t *value[4] = {NULL};
-    long long          count = 0;
-    Status             status = STATUS_OK;
+    const yaml_node_t       *value[4] = {NULL};
+    long long                count = 0;
+    Status                   status = STATUS_OK;
     if (!root || root->type != YAML_MAPPING_NODE) {
         log_error("sweep: %s:1: expected `axes:` and keys with lists of values below it", r->path);
         return STATUS_BAD_VALUE;
@@ -174,8 +182,10 @@ static Status read_root(Reading *r, const yaml_node_t *root)
         const yaml_node_t *name = yaml_document_get_node(r->document, pair->key);
         int                k = 0;
         while (k < 4 && !(name->type == YAML_SCALAR_NODE && strcmp(text_of(name), keys[k]) == 0)) k++;
-        if (k == 4) return refuse(r, name, "no such key", "accepted are mode, count, draw and axes; settings go below "
-                                           "axes");
+        if (k == 4)
+            return refuse(r, name, "no such key",
+                          "accepted are mode, count, draw and axes; settings go below "
+                          "axes");
         if (value[k]) return refuse(r, name, keys[k], "is given twice");
         value[k] = yaml_document_get_node(r->document, pair->value);
     }
@@ -186,8 +196,10 @@ static Status read_root(Reading *r, const yaml_node_t *root)
     const bool random = r->sweep->mode == SWEEP_RANDOM;
     if (!random && value[1]) return refuse(r, value[1], "count", "applies to `mode: random` only");
     if (!random && value[2]) return refuse(r, value[2], "draw", "applies to `mode: random` only");
-    if (random && !value[1]) return refuse(r, root, "count", "is missing: number of draws of `mode: random`, 1 .. "
-                                                    "10000");
+    if (random && !value[1])
+        return refuse(r, root, "count",
+                      "is missing: number of draws of `mode: random`, 1 .. "
+                      "10000");
     r->sweep->count = (int)count;
     if (value[1]) r->sweep->count_line = line_of(value[1]);
     if (!value[3]) return refuse(r, root, "axes", "are missing: keys with lists of values");
@@ -196,8 +208,8 @@ static Status read_root(Reading *r, const yaml_node_t *root)
 
 static Status count_variants(const Reading *r)
 {
-    Sweep    *sweep = r->sweep;
-    long long product = 1, longest = 1;
+    Sweep           *sweep = r->sweep;
+    long long        product = 1, longest = 1;
     const SweepAxis *first = NULL;
     if (sweep->axis_count == 0) {
         log_error("sweep: %s: axes: is empty; nothing to vary", r->path);
@@ -209,11 +221,11 @@ static Status count_variants(const Reading *r)
         if (sweep->mode == SWEEP_ZIP && axis->count > 1) {
             if (first && axis->count != first->count) {
                 log_error("sweep: %s:%d: %s: has %d values, but %s has %d; `mode: zip` needs lists of equal "
-                          "length", r->path,
-                          axis->line, axis->key, axis->count, first->key, first->count);
+                          "length",
+                          r->path, axis->line, axis->key, axis->count, first->key, first->count);
                 return STATUS_BAD_VALUE;
             }
-            first   = axis;
+            first = axis;
             longest = axis->count;
         }
     }
@@ -221,7 +233,8 @@ static Status count_variants(const Reading *r)
     if (sweep->mode == SWEEP_GRID && product > sweep_variants_max) {
         log_error("sweep: %s: the grid has more than %d variants; shorten a list, or draw from it with `mode: random` "
                   "and "
-                  "`count`", r->path, sweep_variants_max);
+                  "`count`",
+                  r->path, sweep_variants_max);
         return STATUS_BAD_VALUE;
     }
     sweep->count = (int)(sweep->mode == SWEEP_ZIP ? longest : product);
@@ -238,12 +251,13 @@ static Status parse(Reading *r, const char *text, size_t octets)
     yaml_parser_set_input_string(&parser, (const unsigned char *)text, octets);
     if (!yaml_parser_load(&parser, &document)) {
         log_error("sweep: %s:%d: "
-                  "%s", r->path, (int)parser.problem_mark.line + 1, parser.problem ? parser.problem : "not YAML");
+                  "%s",
+                  r->path, (int)parser.problem_mark.line + 1, parser.problem ? parser.problem : "not YAML");
         yaml_parser_delete(&parser);
         return STATUS_BAD_VALUE;
     }
     r->document = &document;
-    status      = read_root(r, yaml_document_get_root_node(&document));
+    status = read_root(r, yaml_document_get_root_node(&document));
     if (status == STATUS_OK) status = count_variants(r);
     yaml_document_delete(&document);
     yaml_parser_delete(&parser);
@@ -255,8 +269,8 @@ Status sweep_read(Sweep *out, const char *path, const Config *base)
     char   *text;
     size_t  octets;
     Reading reading = {.path = path, .base = base, .sweep = out};
-    *out            = (Sweep){.path = path, .draw = 1};
-    Status status   = text_read_file(&text, &octets, "sweep", path, settings_file_octets);
+    *out = (Sweep){.path = path, .draw = 1};
+    Status status = text_read_file(&text, &octets, "sweep", path, settings_file_octets);
     if (status != STATUS_OK) return status;
     status = parse(&reading, text, octets);
     free(text);
@@ -280,7 +294,7 @@ void sweep_close(Sweep *sweep)
 
 void sweep_value(char out[sweep_value_size], const Sweep *sweep, int variant, int axis)
 {
-    const SweepAxis *a      = &sweep->axis[axis];
+    const SweepAxis *a = &sweep->axis[axis];
     int              choice = a->count > 1 ? variant : 0, below = 1; /* zip */
     if (sweep->mode == SWEEP_RANDOM) {
         sweep_drawn_value(out, sweep, sweep->draw_of[variant], axis);

@@ -31,8 +31,9 @@ static void shrink(uint8_t *out, int stride, int left, const void *pixels, const
                 double sum = 0;
                 for (int k = 0; k < square * square; k++) {
                     const int column = x * square + k % square, row = y * square + k / square;
-                    sum += sample_of(pixels, info, ((size_t)row * (size_t)info->width + (size_t)column) *
-                                                       (size_t)info->channels + (size_t)(info->channels > 2 ? c : 0));
+                    sum += sample_of(pixels, info,
+                                     ((size_t)row * (size_t)info->width + (size_t)column) * (size_t)info->channels +
+                                         (size_t)(info->channels > 2 ? c : 0));
                 }
                 out[3 * ((size_t)y * (size_t)stride + (size_t)(left + x)) + (size_t)c] =
                     (uint8_t)(sum / (square * square) + 0.5);
@@ -62,8 +63,8 @@ static bool make_thumbnail(const char *made, const char *folder, int frame)
     if (bands == 0 || image_info(&info, path[0]) != STATUS_OK) return false;
     const int square = (info.width + thumbnail_px - 1) / thumbnail_px, width = info.width / square,
               height = info.height / square, stride = bands * width;
-    uint8_t  *rgb = calloc((size_t)stride * (size_t)height, 3);
-    Status    status = rgb && height > 0 ? STATUS_OK : STATUS_NO_MEMORY;
+    uint8_t *rgb = calloc((size_t)stride * (size_t)height, 3);
+    Status   status = rgb && height > 0 ? STATUS_OK : STATUS_NO_MEMORY;
     for (int i = 0; i < bands && status == STATUS_OK; i++) {
         ImageInfo one;
         status = image_info(&one, path[i]);
@@ -156,13 +157,21 @@ char *sweep_manifest_line(const SweepRun *s, const Variant *v, const Outcome *ou
     const char *key[sweep_axes_max], *value[sweep_axes_max];
     for (int i = 0; i < s->sweep.axis_count; i++) {
         sweep_value(text[i], &s->sweep, v->number, i);
-        key[i]   = s->sweep.axis[i].key;
+        key[i] = s->sweep.axis[i].key;
         value[i] = text[i];
     }
     return variant_line(&(VariantRecord){
-        .name = v->name, .status = outcome->status, .error = outcome->why, .number = v->number + 1,
-        .setting_count = s->sweep.axis_count, .key = key, .value = value, .config_sha256 = v->config_sha256,
-        .settings_sha256 = v->settings_sha256, .log_sha256 = s->log_sha256, .seconds = outcome->seconds,
+        .name = v->name,
+        .status = outcome->status,
+        .error = outcome->why,
+        .number = v->number + 1,
+        .setting_count = s->sweep.axis_count,
+        .key = key,
+        .value = value,
+        .config_sha256 = v->config_sha256,
+        .settings_sha256 = v->settings_sha256,
+        .log_sha256 = s->log_sha256,
+        .seconds = outcome->seconds,
         .run = outcome->has_run ? &outcome->run : NULL,
     });
 }
@@ -174,13 +183,13 @@ void sweep_report_variant(SweepRun *s, const Variant *v, const Outcome *outcome,
     snprintf(text, sizeof text, "%s%s%s\n%s", v->name, *outcome->why ? ": " : "", outcome->why, words);
     /* the middle frame of the run: the target is usually in view */
     add_figure(&s->sheet, s->options->out, v->name, outcome->has_run ? outcome->run.middle_frame : -1, text,
-              *outcome->why);
+               *outcome->why);
     sweep_settings_words(words, &s->sweep, v->number, ", ");
     if (*outcome->why)
         log_error("sweep: variant %d, %s, %s: %s (%s/%s/log.txt)", v->number + 1, v->name, words, outcome->why,
                   s->options->out, v->name);
     else
         log_print("%d of %d: %s %s, %s: %d frames, %.1f s\n", place + 1, s->count, v->name, outcome->status, words,
-               outcome->run.frames, outcome->seconds);
+                  outcome->run.frames, outcome->seconds);
     fflush(stdout);
 }

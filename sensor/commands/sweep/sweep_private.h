@@ -26,7 +26,7 @@ typedef struct SweepPage {
 } SweepPage;
 
 typedef struct Variant {
-    int  number;               /* in the file, 0 is the first */
+    int  number; /* in the file, 0 is the first */
     char name[sweep_name_size];
     char config_sha256[sha256_text_size];
     char settings_sha256[sha256_text_size]; /* of its settings.yaml: equal ones are the same run */
@@ -42,29 +42,29 @@ typedef struct SweepRun {
     SweepPage      sheet;
     CocoMerge     *coco;
     int            made, kept, failed;
-    bool           stopped;            /* by a signal, before the last */
+    bool           stopped; /* by a signal, before the last */
 } SweepRun;
 
 /* Result of one variant. */
 typedef struct Outcome {
     const char *status;
     bool        has_run;
-    VariantRun     run;           /* run.json */
-    char        why[400];      /* of a failure */
+    VariantRun  run;      /* run.json */
+    char        why[400]; /* of a failure */
     double      seconds;
 } Outcome;
 
 /* ---- what is written about its variants ------------------------------------------------------------- */
 
 /* key=value of each axis, separated; truncated to the size of out. */
-void   sweep_settings_words(char out[sweep_words_size], const Sweep *sweep, int number, const char *between);
+void sweep_settings_words(char out[sweep_words_size], const Sweep *sweep, int number, const char *between);
 /* Opens manifest.html and manifest.jsonl in the folder of the sweep. */
 Status sweep_manifest_begin(SweepRun *s);
 /* Adds the variant to the page, with a thumbnail of the middle frame of its run, and tells of it. place: of it among
  * all. */
-void   sweep_report_variant(SweepRun *s, const Variant *v, const Outcome *outcome, int place);
+void sweep_report_variant(SweepRun *s, const Variant *v, const Outcome *outcome, int place);
 /* The variant's line of manifest.jsonl, malloc'd. NULL: out of memory. */
-char  *sweep_manifest_line(const SweepRun *s, const Variant *v, const Outcome *outcome);
+char *sweep_manifest_line(const SweepRun *s, const Variant *v, const Outcome *outcome);
 /* Ends what was opened. STATUS_IO, logged, also for the page. */
 Status sweep_manifest_end(SweepRun *s);
 

@@ -17,8 +17,8 @@
 
 /* What was read of each source, in words or as JSON. */
 typedef struct SourceLines {
-    bool           json; /* kept until the end; else printed when they are added, before the files are used */
-    json_t *list;        /* NULL: none */
+    bool    json; /* kept until the end; else printed when they are added, before the files are used */
+    json_t *list; /* NULL: none */
 } SourceLines;
 
 static double octets_of(const Raster *raster)
@@ -43,9 +43,8 @@ static void print_source(const ElevationSurvey *s)
     log_print("%s (--srs)\n", r->stated.crs);
     if (isfinite(s->low_m)) log_print("  heights %.1f .. %.1f m", s->low_m, s->high_m);
     else log_print("  no heights");
-    log_print("%s; unit %s, %s (--unit); above %s, %s (--vertical)%s\n", s->whole ? "" : " where it was looked at", unit,
-              unit_from, datum, datum_from,
-              r->metres_per_unit < 0 ? "; depths, turned round (FILE@up)" : "");
+    log_print("%s; unit %s, %s (--unit); above %s, %s (--vertical)%s\n", s->whole ? "" : " where it was looked at",
+              unit, unit_from, datum, datum_from, r->metres_per_unit < 0 ? "; depths, turned round (FILE@up)" : "");
     if (s->voids + s->outside + s->suspect_posts > 0)
         log_print("  voids %.2g %%%s\n", 100 * (s->voids + s->outside + s->suspect_posts) / s->posts,
                   s->outside + s->suspect_posts > 0 ? ", some of them not declared (--nodata)" : "");
@@ -126,8 +125,9 @@ static void print_words(const char *store, const TerrainReport *r, double second
               1e-6 * r->nx * r->ny, e->spacing_m, 1e-3 * e->width_m[0], 1e-3 * e->width_m[1], e->sheets,
               e->sheets == 1 ? "" : "s", e->posting_m);
     if (e->ellipsoidal) log_print("heights: above the ellipsoid\n");
-    else log_print("heights: above the geoid, which lies %+.2f m from the ellipsoid here; converted at each post\n",
-                   e->geoid_m);
+    else
+        log_print("heights: above the geoid, which lies %+.2f m from the ellipsoid here; converted at each post\n",
+                  e->geoid_m);
     if (r->apart)
         log_print("surface model taken apart%s: bare ground %.1f %%, buildings %.1f %% (%llu), trees %.1f %% (%llu "
                   "crowns)\n",
@@ -151,7 +151,7 @@ static void print_words(const char *store, const TerrainReport *r, double second
 static Status print_json(const char *store, const TerrainReport *r, double seconds, const SourceLines *lines)
 {
     const ElevationReport *e = &r->elevation;
-    json_t *all = json_object(), *classes = json_object();
+    json_t                *all = json_object(), *classes = json_object();
     json_object_set_new(all, "store", json_string(store));
     if (lines->list) json_object_set(all, "sources", lines->list);
     json_object_set_new(all, "posts", json_pack("[i, i]", r->nx, r->ny));
@@ -211,7 +211,8 @@ static char *options_of(const char *path)
     } else {
         options = store_recall(path);
         if (!options)
-            log_error("terrain again: %s: %s; nothing says what it was made of: run `pitviper terrain import`", path, why);
+            log_error("terrain again: %s: %s; nothing says what it was made of: run `pitviper terrain import`", path,
+                      why);
     }
     return options;
 }
@@ -299,43 +300,48 @@ typedef struct Wanted {
 static int parse(Wanted *w, int argc, char **argv)
 {
     enum { OUT = 'o', HELP = 'h', OVERWRITE = 256, THREADS, JSON, VALUE };
-    static const struct option options[] = {
-        {"out", 1, NULL, OUT},
-        {"overwrite", 0, NULL, OVERWRITE},
-        {"threads", 1, NULL, THREADS},
-        {"json", 0, NULL, JSON},
-        {"help", 0, NULL, HELP},
-        /* those of terrain/import/terrain_import.h */
-        {"surface", 1, NULL, VALUE},
-        {"cover", 1, NULL, VALUE + 1},
-        {"cover-table", 1, NULL, VALUE + 2},
-        {"photo", 1, NULL, VALUE + 3},
-        {"canopy-height", 1, NULL, VALUE + 4},
-        {"canopy-cover", 1, NULL, VALUE + 5},
-        {"vertical", 1, NULL, VALUE + 6},
-        {"unit", 1, NULL, VALUE + 7},
-        {"srs", 1, NULL, VALUE + 8},
-        {"nodata", 1, NULL, VALUE + 9},
-        {"geoid", 1, NULL, VALUE + 10},
-        {"origin", 1, NULL, VALUE + 11},
-        {"size", 1, NULL, VALUE + 12},
-        {"spacing", 1, NULL, VALUE + 13},
-        {"horizon", 1, NULL, VALUE + 14},
-        {"sources-from", 1, NULL, VALUE + 15},
-        {"most-gb", 1, NULL, VALUE + 16},
-        {NULL, 0, NULL, 0}};
+    static const struct option options[] = {{"out", 1, NULL, OUT},
+                                            {"overwrite", 0, NULL, OVERWRITE},
+                                            {"threads", 1, NULL, THREADS},
+                                            {"json", 0, NULL, JSON},
+                                            {"help", 0, NULL, HELP},
+                                            /* those of terrain/import/terrain_import.h */
+                                            {"surface", 1, NULL, VALUE},
+                                            {"cover", 1, NULL, VALUE + 1},
+                                            {"cover-table", 1, NULL, VALUE + 2},
+                                            {"photo", 1, NULL, VALUE + 3},
+                                            {"canopy-height", 1, NULL, VALUE + 4},
+                                            {"canopy-cover", 1, NULL, VALUE + 5},
+                                            {"vertical", 1, NULL, VALUE + 6},
+                                            {"unit", 1, NULL, VALUE + 7},
+                                            {"srs", 1, NULL, VALUE + 8},
+                                            {"nodata", 1, NULL, VALUE + 9},
+                                            {"geoid", 1, NULL, VALUE + 10},
+                                            {"origin", 1, NULL, VALUE + 11},
+                                            {"size", 1, NULL, VALUE + 12},
+                                            {"spacing", 1, NULL, VALUE + 13},
+                                            {"horizon", 1, NULL, VALUE + 14},
+                                            {"sources-from", 1, NULL, VALUE + 15},
+                                            {"most-gb", 1, NULL, VALUE + 16},
+                                            {NULL, 0, NULL, 0}};
     enum { own_options = 5 };
     const char *why = NULL;
     char        text[256], name[64];
     terrain_options_default(&w->terrain);
     w->threads = thread_processors();
-    optind     = 0; /* restart getopt */
+    optind = 0; /* restart getopt */
     for (int option; (option = command_line_option(argc, argv, "o:h", options)) != -1;) {
         const char *named = option >= VALUE ? options[own_options + option - VALUE].name : NULL;
         switch (option) {
-        case OUT: w->out = optarg; break;
-        case OVERWRITE: w->overwrite = true; break;
-        case JSON: w->json = true; break;
+        case OUT:
+            w->out = optarg;
+            break;
+        case OVERWRITE:
+            w->overwrite = true;
+            break;
+        case JSON:
+            w->json = true;
+            break;
         case THREADS:
             if (!text_to_long(&w->threads, optarg) || w->threads < 1 || w->threads > 256)
                 return refuse("--threads", "needs a whole number in 1 .. 256");
@@ -419,8 +425,8 @@ int terrain_command(int argc, char **argv)
 {
     static char called[] = "pitviper terrain", called_info[] = "pitviper terrain info",
                 called_again[] = "pitviper terrain again";
-    const bool  again = argc > 1 && strcmp(argv[1], "again") == 0;
-    const bool  info = argc > 1 && strcmp(argv[1], "info") == 0; /* these have a help of their own */
+    const bool again = argc > 1 && strcmp(argv[1], "again") == 0;
+    const bool info = argc > 1 && strcmp(argv[1], "info") == 0; /* these have a help of their own */
     for (int i = 1; !info && !again && i < argc && strcmp(argv[i], "--") != 0; i++)
         if (strcmp(argv[i], "--help") == 0 || strcmp(argv[i], "-h") == 0) {
             fputs(help, stdout);
@@ -442,5 +448,5 @@ int terrain_command(int argc, char **argv)
     WordMeant meant = word_meant(argv[1]);
     word_consider_list(&meant, "import|info|again", '|');
     return command_line_wrong("terrain", "no such action: %s%s", argv[1],
-                      *word_hint(&meant) ? meant.hint : "; there are import, info and again");
+                              *word_hint(&meant) ? meant.hint : "; there are import, info and again");
 }

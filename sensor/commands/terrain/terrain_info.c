@@ -35,10 +35,10 @@ static void mean_heights(float *out, int nx, int ny, const ElevationLevel *level
 static uint8_t shade(const float *z_m, int nx, int ny, int x, int y, double apart_m)
 {
     static const double light[3] = {-0.5, 0.5, 0.7071067811865476}; /* from the north-west, 45 degrees high */
-    const int    west = x > 0 ? x - 1 : x, east = x < nx - 1 ? x + 1 : x;
-    const int    south = y > 0 ? y - 1 : y, north = y < ny - 1 ? y + 1 : y;
-    const float *row = z_m + (size_t)y * (size_t)nx;
-    const float  rise_x = row[east] - row[west];
+    const int           west = x > 0 ? x - 1 : x, east = x < nx - 1 ? x + 1 : x;
+    const int           south = y > 0 ? y - 1 : y, north = y < ny - 1 ? y + 1 : y;
+    const float        *row = z_m + (size_t)y * (size_t)nx;
+    const float         rise_x = row[east] - row[west];
     const float  rise_y = z_m[(size_t)north * (size_t)nx + (size_t)x] - z_m[(size_t)south * (size_t)nx + (size_t)x];
     const double zx = (double)rise_x / ((east - west) * apart_m), zy = (double)rise_y / ((north - south) * apart_m);
     const double cosine = (-zx * light[0] - zy * light[1] + light[2]) / sqrt(1 + zx * zx + zy * zy);
@@ -49,13 +49,13 @@ static uint8_t shade(const float *z_m, int nx, int ny, int x, int y, double apar
 static Status draw_hillshade(const char *path, const TerrainStore *store)
 {
     const ElevationLevel *level = &store->elevation.level[0];
-    const int longest = level->nx > level->ny ? level->nx : level->ny;
-    const int square = (longest + most_px - 1) / most_px;
-    const int  nx = level->nx / square, ny = level->ny / square;
-    const bool fits = nx > 1 && ny > 1;
-    float   *z_m = fits ? malloc((size_t)nx * (size_t)ny * sizeof *z_m) : NULL;
-    uint8_t *grey = fits ? malloc((size_t)nx * (size_t)ny) : NULL;
-    Status   status = z_m && grey ? STATUS_OK : fits ? STATUS_NO_MEMORY : STATUS_UNSUPPORTED;
+    const int             longest = level->nx > level->ny ? level->nx : level->ny;
+    const int             square = (longest + most_px - 1) / most_px;
+    const int             nx = level->nx / square, ny = level->ny / square;
+    const bool            fits = nx > 1 && ny > 1;
+    float                *z_m = fits ? malloc((size_t)nx * (size_t)ny * sizeof *z_m) : NULL;
+    uint8_t              *grey = fits ? malloc((size_t)nx * (size_t)ny) : NULL;
+    Status                status = z_m && grey ? STATUS_OK : fits ? STATUS_NO_MEMORY : STATUS_UNSUPPORTED;
     if (status == STATUS_OK) {
         mean_heights(z_m, nx, ny, level, square);
         for (int y = 0; y < ny; y++)
@@ -72,13 +72,23 @@ static Status draw_hillshade(const char *path, const TerrainStore *store)
 
 /* ---- classes ------------------------------------------------------------------------------------------ */
 
-static const uint8_t colour_of[SURFACE_COUNT][3] = {
-    [SURFACE_NONE] = {30, 30, 30}, [SURFACE_GRASS] = {124, 186, 92}, [SURFACE_DRY_GRASS] = {204, 190, 120},
-    [SURFACE_CROP] = {230, 220, 80}, [SURFACE_BARE_SOIL] = {160, 120, 80}, [SURFACE_PLOUGHED] = {110, 78, 50},
-    [SURFACE_TRACK] = {200, 150, 110}, [SURFACE_ROCK] = {140, 140, 140}, [SURFACE_SCRUB] = {150, 160, 60},
-    [SURFACE_WATER] = {50, 110, 210}, [SURFACE_FOREST_BROADLEAF] = {40, 130, 50},
-    [SURFACE_FOREST_CONIFER] = {15, 80, 55}, [SURFACE_BUILT] = {200, 50, 40}, [SURFACE_ROAD] = {70, 70, 90},
-    [SURFACE_SAND] = {245, 230, 175}, [SURFACE_SNOW] = {245, 250, 255}, [SURFACE_WETLAND] = {90, 170, 165}};
+static const uint8_t colour_of[SURFACE_COUNT][3] = {[SURFACE_NONE] = {30, 30, 30},
+                                                    [SURFACE_GRASS] = {124, 186, 92},
+                                                    [SURFACE_DRY_GRASS] = {204, 190, 120},
+                                                    [SURFACE_CROP] = {230, 220, 80},
+                                                    [SURFACE_BARE_SOIL] = {160, 120, 80},
+                                                    [SURFACE_PLOUGHED] = {110, 78, 50},
+                                                    [SURFACE_TRACK] = {200, 150, 110},
+                                                    [SURFACE_ROCK] = {140, 140, 140},
+                                                    [SURFACE_SCRUB] = {150, 160, 60},
+                                                    [SURFACE_WATER] = {50, 110, 210},
+                                                    [SURFACE_FOREST_BROADLEAF] = {40, 130, 50},
+                                                    [SURFACE_FOREST_CONIFER] = {15, 80, 55},
+                                                    [SURFACE_BUILT] = {200, 50, 40},
+                                                    [SURFACE_ROAD] = {70, 70, 90},
+                                                    [SURFACE_SAND] = {245, 230, 175},
+                                                    [SURFACE_SNOW] = {245, 250, 255},
+                                                    [SURFACE_WETLAND] = {90, 170, 165}};
 
 /* Counts the cells of each class in window 0; octets that are no class count as SURFACE_NONE. */
 static void class_cells(uint64_t cells[SURFACE_COUNT], const CoverGrid *grid)
@@ -100,7 +110,7 @@ static void draw_cells(uint8_t *rgb, int width, int height, const CoverGrid *gri
             unsigned sum[3] = {0};
             for (int v = 0; v < square; v++)
                 for (int u = 0; u < square; u++) {
-                    const size_t  at = (size_t)(y * square + v) * (size_t)grid->nx + (size_t)(x * square + u);
+                    const size_t at = (size_t)(y * square + v) * (size_t)grid->nx + (size_t)(x * square + u);
                     const uint8_t class = grid->surface[at] < SURFACE_COUNT ? grid->surface[at] : SURFACE_NONE;
                     for (int c = 0; c < 3; c++) sum[c] += colour_of[class][c];
                 }
@@ -138,12 +148,12 @@ static void draw_legend(uint8_t *rgb, int width, int height, int left, const Cov
 static Status draw_class_map(const char *path, const TerrainStore *store)
 {
     const CoverGrid *grid = &store->surface[0];
-    const int longest = grid->nx > grid->ny ? grid->nx : grid->ny;
-    const int square = (longest + most_px - 1) / most_px;
-    const int nx = square ? grid->nx / square : 0, ny = square ? grid->ny / square : 0;
-    const int least = SURFACE_COUNT * legend_row + 8, width = nx + legend_wide, height = ny > least ? ny : least;
-    uint8_t  *rgb = nx && ny ? calloc(3 * (size_t)width, (size_t)height) : NULL;
-    Status    status = rgb ? STATUS_OK : nx && ny ? STATUS_NO_MEMORY : STATUS_UNSUPPORTED;
+    const int        longest = grid->nx > grid->ny ? grid->nx : grid->ny;
+    const int        square = (longest + most_px - 1) / most_px;
+    const int        nx = square ? grid->nx / square : 0, ny = square ? grid->ny / square : 0;
+    const int        least = SURFACE_COUNT * legend_row + 8, width = nx + legend_wide, height = ny > least ? ny : least;
+    uint8_t         *rgb = nx && ny ? calloc(3 * (size_t)width, (size_t)height) : NULL;
+    Status           status = rgb ? STATUS_OK : nx && ny ? STATUS_NO_MEMORY : STATUS_UNSUPPORTED;
     if (rgb) {
         draw_cells(rgb, width, height, grid, square);
         draw_legend(rgb, width, height, nx, grid);
@@ -175,16 +185,27 @@ typedef struct Wanted {
 static int parse(Wanted *w, int argc, char **argv)
 {
     enum { OUT = 'o', HELP = 'h', OVERWRITE = 256, VERIFY };
-    static const struct option options[] = {{"out", 1, NULL, OUT}, {"overwrite", 0, NULL, OVERWRITE},
-                                            {"verify", 0, NULL, VERIFY}, {"help", 0, NULL, HELP}, {NULL, 0, NULL, 0}};
+    static const struct option options[] = {{"out", 1, NULL, OUT},
+                                            {"overwrite", 0, NULL, OVERWRITE},
+                                            {"verify", 0, NULL, VERIFY},
+                                            {"help", 0, NULL, HELP},
+                                            {NULL, 0, NULL, 0}};
     optind = 0; /* restart getopt */
-    for (int option; (option = command_line_option(argc, argv, "o:h", options)) != -1;)
-        switch (option) {
-        case OUT: w->out = optarg; break;
-        case OVERWRITE: w->overwrite = true; break;
-        case VERIFY: w->verify = true; break;
-        case HELP: fputs(help, stdout); return -1;
-        default: return 2;
+    for (int option; (option = command_line_option(argc, argv, "o:h", options)) != -1;) switch (option) {
+        case OUT:
+            w->out = optarg;
+            break;
+        case OVERWRITE:
+            w->overwrite = true;
+            break;
+        case VERIFY:
+            w->verify = true;
+            break;
+        case HELP:
+            fputs(help, stdout);
+            return -1;
+        default:
+            return 2;
         }
     if (optind + 1 == argc) {
         w->store = argv[optind];
@@ -247,7 +268,7 @@ static void print_text(const char *name, const char *text)
 
 static void print_sources(const TerrainStore *store, const char *path)
 {
-    char which[1024], outside[1024];
+    char  which[1024], outside[1024];
     char *texts = strdup(store->sources), *rest = texts, *line;
     while (texts && (line = strsep(&rest, "\n"))) {
         long long octets;
@@ -258,11 +279,15 @@ static void print_sources(const TerrainStore *store, const char *path)
     free(texts);
     const bool foreign = terrain_store_foreign(outside, sizeof outside, path, store->options);
     switch (store_sources(store, which, sizeof which)) {
-    case STORE_FRESH: printf("sources: as they were\n"); break;
+    case STORE_FRESH:
+        printf("sources: as they were\n");
+        break;
     case STORE_CHANGED:
         if (foreign)
-            text_print(stdout, "sources: %s has CHANGED; the store is used as it is: %s lies outside its own folder "
-                       "(`pitviper terrain again`)\n", which, outside);
+            text_print(stdout,
+                       "sources: %s has CHANGED; the store is used as it is: %s lies outside its own folder "
+                       "(`pitviper terrain again`)\n",
+                       which, outside);
         else text_print(stdout, "sources: %s has CHANGED; a node makes the store again\n", which);
         break;
     case STORE_SOURCES_MISSING:
@@ -331,7 +356,8 @@ int terrain_info_command(int argc, char **argv)
         if (status == STATUS_OK && store_verify(&store, pool)) printf("verified: the data are as they were written\n");
         else if (status == STATUS_OK) {
             log_error("terrain info: %s is damaged: its data have another hash than when it was written; make it again "
-                      "with `pitviper terrain import`", w.store);
+                      "with `pitviper terrain import`",
+                      w.store);
             status = STATUS_BAD_VALUE;
         }
         pool_destroy(pool);

@@ -14,7 +14,7 @@
 int choice_exercise(Choices *choices, const DisLog *log, const Config *config)
 {
     int64_t     heard[256] = {0};
-    DisCounters ignored    = {0};
+    DisCounters ignored = {0};
     int         most = 0, exercises = 0;
     if (config->exercise.exercise != -1) return config->exercise.exercise < 0 ? -1 : config->exercise.exercise;
     for (int i = 0; i < log->count; i++) {
@@ -51,8 +51,10 @@ static void report_anomalies(Choices *choices, const Survey *survey)
     if (survey->doubts.unstamped > 0 && survey->doubts.stamped == 0)
         choice_add(choices, "clock: no PDU has a time stamp, all are 0: every PDU counts from its arrival");
     else if (survey->doubts.unstamped > 0)
-        choice_add(choices, "clock: %llu of %llu PDUs have no time stamp (0): they count from their arrival; `pitviper "
-                   "inspect` says whose", (unsigned long long)survey->doubts.unstamped,
+        choice_add(choices,
+                   "clock: %llu of %llu PDUs have no time stamp (0): they count from their arrival; `pitviper "
+                   "inspect` says whose",
+                   (unsigned long long)survey->doubts.unstamped,
                    (unsigned long long)(survey->doubts.unstamped + survey->doubts.stamped));
 }
 
@@ -68,7 +70,8 @@ static void utc_text(char out[utc_text_size], double unix_s)
 {
     const time_t seconds = (time_t)llround(unix_s);
     struct tm    at;
-    if (!gmtime_r(&seconds, &at) || strftime(out, utc_text_size, "%Y-%m-%dT%H:%M:%SZ", &at) == 0) snprintf(out, utc_text_size, "no date");
+    if (!gmtime_r(&seconds, &at) || strftime(out, utc_text_size, "%Y-%m-%dT%H:%M:%SZ", &at) == 0)
+        snprintf(out, utc_text_size, "no date");
 }
 
 Status choice_time(double *unix_s, Choices *choices, const Survey *survey, const Config *config,
@@ -90,20 +93,21 @@ Status choice_time(double *unix_s, Choices *choices, const Survey *survey, const
     } else if (*config->exercise.local_solar) {
         double clock_s;
         if (!config_local_solar(&clock_s, config)) {
-            log_error("replay: exercise.local_solar: '%s' is not a time such as 2026-06-21T10:00:00, 1900 .. 2100, without a zone",
-                      config->exercise.local_solar);
+            log_error(
+                "replay: exercise.local_solar: '%s' is not a time such as 2026-06-21T10:00:00, 1900 .. 2100, without a zone",
+                config->exercise.local_solar);
             return STATUS_BAD_VALUE;
         }
         *unix_s = utc_of_solar_s(clock_s, frame) - survey->first_s;
         utc_text(utc, *unix_s + survey->first_s);
-        choice_add(choices, "time of day: local solar %s is %s (exercise.local_solar)", config->exercise.local_solar, utc);
+        choice_add(choices, "time of day: local solar %s is %s (exercise.local_solar)", config->exercise.local_solar,
+                   utc);
     } else if (isfinite(survey->clock_start_unix_s)) {
         *unix_s = survey->clock_start_unix_s;
         choice_add(choices, "time of day: the clock of a Start/Resume PDU (exercise.utc)");
     } else if (isfinite(survey->absolute_unix_s)) {
         *unix_s = survey->absolute_unix_s;
-        choice_add(choices, "time of day: absolute time stamps and the date of the capture%s (exercise.utc)",
-                   left_out);
+        choice_add(choices, "time of day: absolute time stamps and the date of the capture%s (exercise.utc)", left_out);
     } else {
         double ten_local_s = 0;
         text_to_unix_s(&ten_local_s, "2026-06-21T10:00:00Z");
@@ -165,7 +169,7 @@ static bool same_type(DisEntityType a, DisEntityType b)
 }
 
 typedef struct Unshaped {
-    int entities, types, named;
+    int           entities, types, named;
     DisEntityType type[most_named];
 } Unshaped;
 
@@ -180,7 +184,7 @@ static void count_unshaped(Unshaped *u, DisEntityType type)
 
 static void report_unshaped(Choices *choices, const Unshaped *u, const char *what, const char *how)
 {
-    char text[160] = "";
+    char   text[160] = "";
     size_t n = 0;
     if (u->entities == 0) return;
     for (int i = 0; i < u->named && n < sizeof text; i++) {
@@ -197,14 +201,11 @@ void choice_shapes(Choices *choices, const Survey *survey, const Catalog *catalo
     Unshaped unseen = {0}, unknown = {0}, chaff = {0};
     for (int i = 0; i < survey->track_count; i++) {
         const DisEntityType type = survey->track[i].type;
-        int matched;
-        const int model = catalog_find(catalog, type, NULL, &matched);
-        if (catalog_is_chaff(catalog, model))
-            count_unshaped(&chaff, type);
-        else if (!catalog_has_shape(catalog, model))
-            count_unshaped(&unseen, type);
-        else if (model == 0)
-            count_unshaped(&unknown, type);
+        int                 matched;
+        const int           model = catalog_find(catalog, type, NULL, &matched);
+        if (catalog_is_chaff(catalog, model)) count_unshaped(&chaff, type);
+        else if (!catalog_has_shape(catalog, model)) count_unshaped(&unseen, type);
+        else if (model == 0) count_unshaped(&unknown, type);
     }
     report_unshaped(choices, &unseen, "nothing is seen", "`none` in etc/catalog.csv");
     report_unshaped(choices, &chaff, "nothing is seen, but by radar.preset,", "`chaff` in etc/catalog.csv");

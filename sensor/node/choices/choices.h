@@ -14,13 +14,13 @@
 
 /* The host of the sensor, its span of exercise time, and its aim. */
 typedef struct HostPlan {
-    DisEntityId host;      /* 0:0:0: the stand-off observer, or the next munition */
+    DisEntityId host;         /* 0:0:0: the stand-off observer, or the next munition */
     bool        any_munition; /* munitions become the host one after the other as they appear: player_munition */
-    DisEntityId aim;       /* 0:0:0: none known: along the body axis, or the position below */
+    DisEntityId aim;          /* 0:0:0: none known: along the body axis, or the position below */
     double      start_s, end_s;
     double      p_aim_ecef[3]; /* position to aim at when there is no aim entity; valid for an observer */
     bool        munition;
-    double      rate_hz;   /* choice_rate */
+    double      rate_hz; /* choice_rate */
 } HostPlan;
 
 extern const char host_munition[], host_observer[]; /* values of exercise.host that are not ids */
@@ -33,27 +33,27 @@ Status choice_host(HostPlan *out, Choices *choices, const Survey *survey, const 
 /* For a host given by name; 0:0:0: the observer. STATUS_BAD_VALUE and a message when the log does not contain it. */
 Status choice_named_host(HostPlan *out, Choices *choices, const Survey *survey, const Config *config, DisEntityId host);
 /* Frames per second of exercise time, into the plan. */
-void   choice_rate(HostPlan *plan, Choices *choices, const Config *config);
+void choice_rate(HostPlan *plan, Choices *choices, const Config *config);
 /* Whether it is a platform of domain land. */
-bool   choice_is_land(const Track *track);
+bool choice_is_land(const Track *track);
 
 /* ---- exercise, time, frame, shapes -------------------------------------------------------------------- */
 
 /* The exercise identifier to receive: as configured, or the one with the most usable Entity States; -1: all. Causal:
  * also with a single exercise, since others may follow. */
-int    choice_exercise(Choices *choices, const DisLog *log, const Config *config);
+int choice_exercise(Choices *choices, const DisLog *log, const Config *config);
 /* Unix time of exercise time 0. Also reports senders whose time stamps are not a clock. */
 Status choice_time(double *unix_s, Choices *choices, const Survey *survey, const Config *config,
                    const LocalFrame *frame);
 /* Reports when optical images of this place will be black: the sun more than 6 degrees below the horizon, the end of
  * civil twilight, at the beginning or the end of the plan. */
-void   choice_report_night(Choices *choices, unsigned bands, double unix_s, const HostPlan *plan,
-                           const LocalFrame *frame);
+void choice_report_night(Choices *choices, unsigned bands, double unix_s, const HostPlan *plan,
+                         const LocalFrame *frame);
 /* The local frame, with its origin amid the entities. */
 Status choice_frame(LocalFrame *out, const Survey *survey, const HostPlan *plan);
 /* Builds the models of all types in the survey, so that no frame waits for one, and reports each type once when it
  * is not rendered (`none` in the catalog), or when no row matches (rendered as a wedge). At most four types by name. */
-void   choice_shapes(Choices *choices, const Survey *survey, const Catalog *catalog);
+void choice_shapes(Choices *choices, const Survey *survey, const Catalog *catalog);
 
 /* ---- ground and plants -------------------------------------------------------------------------------- */
 
@@ -83,9 +83,9 @@ Status choice_store_frame(LocalFrame *out, Choices *choices, const Config *confi
  * the line of sight of a shot that hit passes low, as far as these are known when the world is made. Real trees stay;
  * entities that begin within a trunk are counted. */
 typedef struct WoodsChoice {
-    bool        on;                  /* terrain.woods */
+    bool        on; /* terrain.woods */
     WoodsConfig config;
-    WoodsPath  *path;                /* config.path */
+    WoodsPath  *path; /* config.path */
     Woods       woods;
     int         entities, in_trunks; /* on the ground at their first report; of these within a trunk */
 } WoodsChoice;

@@ -24,8 +24,10 @@ static Status made_again(TerrainStore *store, const char *path, const char *why)
     }
     char outside[1024];
     if (terrain_store_foreign(outside, sizeof outside, path, options)) {
-        log_error("terrain.store: %s cannot be used: %s; it was made of %s, outside its own folder: where you trust that, "
-                  "`pitviper terrain again %s` makes it again", path, why, outside, path);
+        log_error(
+            "terrain.store: %s cannot be used: %s; it was made of %s, outside its own folder: where you trust that, "
+            "`pitviper terrain again %s` makes it again",
+            path, why, outside, path);
         free(options);
         return STATUS_BAD_VALUE;
     }
@@ -34,7 +36,8 @@ static Status made_again(TerrainStore *store, const char *path, const char *why)
     free(options);
     if (status == STATUS_OK) return store_open(store, path);
     log_error("terrain.store: %s cannot be used: %s, nor made again; run `pitviper terrain import` with sources that "
-              "are here", path, why);
+              "are here",
+              path, why);
     return status;
 }
 
@@ -56,15 +59,19 @@ static Status open_fresh(TerrainStore *store, Choices *choices, const char *path
         return status;
     }
     switch (store_sources(store, which, sizeof which)) {
-    case STORE_FRESH: return STATUS_OK;
+    case STORE_FRESH:
+        return STATUS_OK;
     case STORE_SOURCES_MISSING:
         choice_add(choices, "ground: the terrain store is used as it is: %s, of which it was made, is not here", which);
         return STATUS_OK;
-    case STORE_CHANGED: break;
+    case STORE_CHANGED:
+        break;
     }
     if (terrain_store_foreign(outside, sizeof outside, path, store->options)) {
-        choice_add(choices, "ground: the terrain store is used as it is: %.50s has changed, but %.50s lies outside the store's "
-                   "own folder (`pitviper terrain again`)", name_of(which), name_of(outside));
+        choice_add(choices,
+                   "ground: the terrain store is used as it is: %.50s has changed, but %.50s lies outside the store's "
+                   "own folder (`pitviper terrain again`)",
+                   name_of(which), name_of(outside));
         return STATUS_OK;
     }
     log_print("ground: %s has changed since %s was made of it (%s); it is made again\n", which, path, store->made);
@@ -84,8 +91,8 @@ static Status on_its_ground(const TerrainStore *store, const LocalFrame *aim, co
     /* a place on the Earth's other side has small x and y, and a z far below */
     if (x >= 0 && y >= 0 && x <= wide->nx - 1 && y <= wide->ny - 1 && fabs(p_enu[2]) < 1e6) return STATUS_OK;
     log_error("terrain.store: %s has the ground about %.4f N, %.4f E; the exercise is at %.4f N, %.4f E, %.0f km away: "
-              "name the store of that place, or leave it out for synthetic terrain", path,
-              store->frame.origin.lat_rad / rad_per_deg, store->frame.origin.lon_rad / rad_per_deg,
+              "name the store of that place, or leave it out for synthetic terrain",
+              path, store->frame.origin.lat_rad / rad_per_deg, store->frame.origin.lon_rad / rad_per_deg,
               aim->origin.lat_rad / rad_per_deg, aim->origin.lon_rad / rad_per_deg, 1e-3 * v3_length(p_enu));
     return STATUS_BAD_VALUE;
 }
@@ -97,7 +104,7 @@ Status choice_store_frame(LocalFrame *out, Choices *choices, const Config *confi
     Status       status = open_fresh(&store, choices, path);
     if (status != STATUS_OK) return status;
     status = on_its_ground(&store, aim, path);
-    *out   = store.frame;
+    *out = store.frame;
     store_close(&store);
     return status;
 }
@@ -144,8 +151,8 @@ static void report_sea(Choices *choices, const GroundEvidence *e)
     const int afloat = e->count[STANCE_AFLOAT], submerged = e->count[STANCE_SUBMERGED];
     if (afloat + submerged == 0) return;
     choice_add(choices, "sea: flat at %.1f m above the ellipsoid, where %d ship%s or submarine%s; %s",
-               round(10 * e->said.sea_h_m) / 10 + 0.0 /* no -0.0 */,
-               afloat + submerged, afloat + submerged == 1 ? "" : "s", afloat + submerged == 1 ? " was" : "s were",
+               round(10 * e->said.sea_h_m) / 10 + 0.0 /* no -0.0 */, afloat + submerged,
+               afloat + submerged == 1 ? "" : "s", afloat + submerged == 1 ? " was" : "s were",
                on_land(e) ? "a shore half-way to what is on land" : "to the horizon, nothing is on land");
     if (submerged)
         choice_add(choices, "sea: %d submarine%s under water and cannot be seen: the water is opaque", submerged,
@@ -171,7 +178,7 @@ static void report_synthetic(Choices *choices, const Landscape *landscape, const
 static Status invent(Landscape *out, const Config *config, const LocalFrame *frame, const GroundEvidence *e)
 {
     LandscapeConfig land = landscape_default_config();
-    land.seed     = (uint64_t)config->seed;
+    land.seed = (uint64_t)config->seed;
     land.relief_m = config->terrain.relief_m;
     if (config->terrain.spacing_m > 0) land.spacing_m = config->terrain.spacing_m;
     const Status status = landscape_create_from(out, &land, frame, &e->said);
@@ -203,8 +210,8 @@ static void report_cover(Choices *choices, const CoverReport *cover)
 static Status import(Landscape *out, Choices *choices, const Config *config, const LocalFrame *frame,
                      const GroundEvidence *e, bool fit)
 {
-    LandscapeReport r;
-    const char *vertical = config->terrain.vertical;
+    LandscapeReport      r;
+    const char          *vertical = config->terrain.vertical;
     const LandscapeFiles files = {.elevation = {.paths = config->terrain.elevation,
                                                 .geoid_path = config->terrain.geoid,
                                                 .vertical = strcmp(vertical, "geoid") == 0       ? ELEVATION_GEOID
@@ -231,8 +238,10 @@ static Status import(Landscape *out, Choices *choices, const Config *config, con
         choice_add(choices, "ground: heights taken as above the ellipsoid%s (terrain.vertical)",
                    strcmp(vertical, "auto") == 0 ? ", as the files' CRS says" : "");
     else
-        choice_add(choices, "ground: heights taken as above the geoid, which lies %+.2f m from the ellipsoid here "
-                   "(terrain.vertical, terrain.geoid)", r.elevation.geoid_m);
+        choice_add(choices,
+                   "ground: heights taken as above the geoid, which lies %+.2f m from the ellipsoid here "
+                   "(terrain.vertical, terrain.geoid)",
+                   r.elevation.geoid_m);
     if (r.elevation.places > 0)
         choice_add(choices, "ground: resampling left %.2f m rms, p99 %.2f, at most %.2f; %ld void posts filled",
                    r.elevation.error_rms_m, r.elevation.error_p99_m, r.elevation.error_max_m, r.elevation.voids);
@@ -265,10 +274,10 @@ static int by_value(const void *a, const void *b)
 
 /* Reports how far the reported positions are from this ground. */
 static Status report_contact(Choices *choices, bool clamp, const Landscape *landscape, const Survey *survey,
-                          const GroundEvidence *e)
+                             const GroundEvidence *e)
 {
     const ContactGround ground = {.frame = &landscape->frame, .elevation = &landscape->elevation};
-    size_t points = 0, count = 0;
+    size_t              points = 0, count = 0;
     for (int i = 0; i < survey->track_count; i++)
         if (contact_applies(survey->track[i].type)) points += (size_t)survey->track[i].count;
     double *off_m = calloc(points + 1, sizeof *off_m), sum = 0;
@@ -309,7 +318,7 @@ typedef struct InconsistentPosition {
 static int worst_first(const void *pa, const void *pb)
 {
     const InconsistentPosition *a = pa, *b = pb;
-    const double  x = fabs(a->above_m), y = fabs(b->above_m);
+    const double                x = fabs(a->above_m), y = fabs(b->above_m);
     if (x != y) return x > y ? -1 : 1;
     return (a->track > b->track) - (a->track < b->track);
 }
@@ -330,13 +339,13 @@ static double farthest_m(const ContactGround *ground, const Track *track, const 
 
 /* Reports the synthetic terrain and the entities that are on it only because they are clamped, the worst by name. */
 static Status report_fit(Choices *choices, GroundContact contact, const Landscape *landscape, const Survey *survey,
-                      const GroundEvidence *e)
+                         const GroundEvidence *e)
 {
     enum { most_named = 3 };
-    const ContactGround ground = {.frame = &landscape->frame, .elevation = &landscape->elevation};
+    const ContactGround   ground = {.frame = &landscape->frame, .elevation = &landscape->elevation};
     InconsistentPosition *misfit = calloc((size_t)survey->track_count + 1, sizeof *misfit);
-    int     count = 0, n = 0, on_ground = 0;
-    char    text[choice_text_size / 2] = "";
+    int                   count = 0, n = 0, on_ground = 0;
+    char                  text[choice_text_size / 2] = "";
     if (!misfit) return STATUS_NO_MEMORY;
     for (int t = 0; t < survey->track_count; t++) {
         const Track *track = &survey->track[t];
@@ -364,14 +373,14 @@ static Status report_fit(Choices *choices, GroundContact contact, const Landscap
                                                       : "are set onto it";
     if (count && contact != GROUND_CONTACT_ALL)
         choice_add(choices, "ground: %d %s not fit it and %s: %s%s (terrain.ground)", count,
-                   count == 1 ? "entity does" : "entities do", what, text,
-                   count > most_named ? " ..." : "");
+                   count == 1 ? "entity does" : "entities do", what, text, count > most_named ? " ..." : "");
     free(misfit);
     return STATUS_OK;
 }
 
 /* Reports an aim under water, which is not visible from above it. */
-static void report_aim_below_ground(Choices *choices, const Survey *survey, const GroundEvidence *e, const HostPlan *plan)
+static void report_aim_below_ground(Choices *choices, const Survey *survey, const GroundEvidence *e,
+                                    const HostPlan *plan)
 {
     char         id[dis_id_text_size];
     const Track *aim = survey_track(survey, plan->aim);
@@ -395,9 +404,9 @@ Status choice_ground(Landscape *out, GroundContact *contact, Choices *choices, c
     const bool          by_itself = strcmp(said, "auto") == 0;
     const GroundContact fitted = strcmp(said, "trust") == 0 ? GROUND_CONTACT_NONE : GROUND_CONTACT_INCONSISTENT;
     const GroundContact set = strcmp(said, "clamp") == 0 || (by_itself && real) ? GROUND_CONTACT_ALL
-                              : real                                           ? GROUND_CONTACT_NONE
-                                                                               : fitted;
-    Status status = ground_evidence_collect(&e, survey, frame, basis->catalog, plan->host, plan->aim);
+                              : real                                            ? GROUND_CONTACT_NONE
+                                                                                : fitted;
+    Status              status = ground_evidence_collect(&e, survey, frame, basis->catalog, plan->host, plan->aim);
     if (status == STATUS_OK)
         status = stored ? open_store(out, choices, config)
                  : real ? import(out, choices, config, frame, &e, strcmp(said, "fit") == 0)

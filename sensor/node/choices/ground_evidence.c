@@ -51,10 +51,7 @@ static bool is_mine(DisEntityType type)
            type.domain != antisubmarine;
 }
 
-static bool is_aircraft(DisEntityType type)
-{
-    return type.kind == dis_kind_platform && type.domain == dis_domain_air;
-}
+static bool is_aircraft(DisEntityType type) { return type.kind == dis_kind_platform && type.domain == dis_domain_air; }
 
 /* Whether it is carried or falling, as in entities/table/contact.h. */
 static bool goes_through_the_air(const Track *track, const TrackPoint *point)
@@ -91,7 +88,7 @@ static double apart_m(const TrackPoint *a, const TrackPoint *b)
 static int still_until(const Track *track, int from)
 {
     static const double same_m = 0.005, same_mps = 0.05;
-    int n = from;
+    int                 n = from;
     for (; n < track->count; n++) {
         const TrackPoint *p = &track->point[n];
         if (p->frozen || v3_length(p->v_ecef_mps) > same_mps || apart_m(p, &track->point[from]) > same_m) break;
@@ -130,10 +127,10 @@ typedef struct Still {
 static int find_still(Still *out, int most, const Gathering *g)
 {
     static const double least_s = 5;
-    int count = 0;
+    int                 count = 0;
     for (int t = 0; t < g->survey->track_count; t++) {
         const Track *track = &g->survey->track[t];
-        for (int n = 0, end; is_aircraft(track->type) && n < track->count && count < most; n = end > n ? end : n + 1) {
+        for (int n = 0, end; is_aircraft(track->type) && n < track->count && count<most; n = end> n ? end : n + 1) {
             end = still_until(track, n);
             if (end < n + 2 || track->point[end - 1].t_s - track->point[n].t_s < least_s) continue;
             Still s = {.track = t, .first = n, .end = end, .engine_off = true};
@@ -155,19 +152,19 @@ static Status judge_landed(Gathering *g)
     enum { most = 4096 };
     static const double step_m = 1, slope = 0.05; /* largest distance of a landed aircraft from the plane of its
                                                    * neighbours */
-    Still  *still = calloc(most, sizeof *still);
+    Still *still = calloc(most, sizeof *still);
     double(*place)[3] = calloc(most, sizeof *place), *above_m = calloc(2 * most, sizeof *above_m);
-    bool   *runs = calloc((size_t)g->survey->track_count + 1, sizeof *runs);
-    Status  status = still && place && above_m && runs ? STATUS_OK : STATUS_NO_MEMORY;
-    int     count = 0;
+    bool  *runs = calloc((size_t)g->survey->track_count + 1, sizeof *runs);
+    Status status = still && place && above_m && runs ? STATUS_OK : STATUS_NO_MEMORY;
+    int    count = 0;
     if (status == STATUS_OK) {
         find_running(runs, g->survey);
         count = find_still(still, most, g);
     }
     for (int n = 0; n < count; n++) memcpy(place[n], still[n].p_enu, sizeof place[n]);
     if (count)
-        status = invented_consensus_height(above_m, above_m + most, (const double (*)[3])place, count, g->e->fix,
-                                 g->e->said.fix_count);
+        status = invented_consensus_height(above_m, above_m + most, (const double(*)[3])place, count, g->e->fix,
+                                           g->e->said.fix_count);
     for (int n = 0; status == STATUS_OK && n < count; n++) {
         const Track *track = &g->survey->track[still[n].track];
         const bool   beside = fabs(above_m[n]) <= step_m + slope * above_m[most + n]; /* NaN: no */
@@ -219,9 +216,9 @@ static void add_place(Gathering *g, const double p_ecef[3], bool sea)
 static void add_voter(Gathering *g, int t, bool landed)
 {
     static const double step_m = 10;
-    const Track      *track = &g->survey->track[t];
-    const TrackPoint *last = NULL;
-    bool              any = false;
+    const Track        *track = &g->survey->track[t];
+    const TrackPoint   *last = NULL;
+    bool                any = false;
     for (int n = 0; n < track->count; n++) {
         const TrackPoint *point = &track->point[n];
         bool             *fixed = &g->e->fixed[g->e->first[t] + (size_t)n];
@@ -241,9 +238,9 @@ static void add_flight(Gathering *g, int t)
 {
     const Survey *survey = g->survey;
     const Track  *track = &survey->track[t];
-    const Shot   *shot   = track->type.kind == dis_kind_munition ? survey_shot(survey, track->id) : NULL;
+    const Shot   *shot = track->type.kind == dis_kind_munition ? survey_shot(survey, track->id) : NULL;
     const Track  *target = shot ? survey_track(survey, shot->hit) : NULL;
-    const bool   *fixed  = g->e->fixed + g->e->first[t];
+    const bool   *fixed = g->e->fixed + g->e->first[t];
     /* a hit without an entity id: the hit found for the host's own munition */
     if (shot && !target && shot->result == dis_result_entity_impact && dis_entity_id_compare(track->id, g->host) == 0)
         target = survey_track(survey, g->aim);
@@ -266,8 +263,8 @@ static void add_flight(Gathering *g, int t)
 static Status add_impacts(Gathering *g)
 {
     static const double wave_m = 3;
-    const Survey *survey = g->survey;
-    int          *voter = calloc((size_t)survey->track_count + 1, sizeof *voter);
+    const Survey       *survey = g->survey;
+    int                *voter = calloc((size_t)survey->track_count + 1, sizeof *voter);
     if (!voter) return STATUS_NO_MEMORY;
     const bool sea = g->e->count[STANCE_AFLOAT] + g->e->count[STANCE_SUBMERGED] > 0;
     for (int i = 0; i < survey->shot_count; i++) {
@@ -294,7 +291,7 @@ static double waterline_h_m(const Gathering *g, int t, double *highest_m)
     double       h_m[most];
     int          count = 0;
     for (int n = 0; n < most && n < track->count; n++) {
-        double base_ecef[3];
+        double    base_ecef[3];
         const int at = track->count > most ? (int)((int64_t)n * track->count / most) : n;
         ground_evidence_base(base_ecef, &track->point[at], g->e->below_m[t]);
         const double h = height_m(base_ecef);
@@ -317,12 +314,12 @@ static bool near_here(const Gathering *g, const Track *track)
 static Status find_sea(Gathering *g)
 {
     static const double surface_m = 3;
-    const Survey *survey = g->survey;
-    double       *level = calloc((size_t)survey->track_count + 1, sizeof *level), highest_m = -INFINITY;
-    int           ships = 0;
+    const Survey       *survey = g->survey;
+    double             *level = calloc((size_t)survey->track_count + 1, sizeof *level), highest_m = -INFINITY;
+    int                 ships = 0;
     if (!level) return STATUS_NO_MEMORY;
     for (int t = 0; t < survey->track_count; t++) {
-        double       own_m = NAN;
+        double own_m = NAN;
         if (g->e->stance[t] != STANCE_AFLOAT || !near_here(g, &survey->track[t])) continue;
         const double h_m = waterline_h_m(g, t, &own_m);
         if (!isfinite(h_m)) continue;
@@ -353,8 +350,7 @@ static Status find_sea(Gathering *g)
             survey_point_rotation(r, point);
             for (int end = -1; end <= 1; end++) {
                 double p_ecef[3];
-                for (int k = 0; k < 3; k++)
-                    p_ecef[k] = point->p_ecef[k] + 0.5 * end * model->length_m * r[3 * k];
+                for (int k = 0; k < 3; k++) p_ecef[k] = point->p_ecef[k] + 0.5 * end * model->length_m * r[3 * k];
                 add_place(g, p_ecef, true);
             }
         }
@@ -366,9 +362,9 @@ static Status find_sea(Gathering *g)
 static bool is_within(const Gathering *g, const Track *ship, const TrackPoint *point)
 {
     static const double side_m = 1, keel_m = 6, mast_m = 40;
-    const Model *model = model_of(g, ship, NULL);
-    TrackPose    pose;
-    double       d_ecef[3], d_body[3];
+    const Model        *model = model_of(g, ship, NULL);
+    TrackPose           pose;
+    double              d_ecef[3], d_body[3];
     survey_track_at(&pose, ship, point->t_s);
     v3_sub(d_ecef, point->p_ecef, pose.p_ecef);
     if (v3_length(d_ecef) > model->length_m + mast_m) return false;
@@ -412,7 +408,7 @@ static Status make_room(Gathering *g)
     e->first = calloc(tracks + 1, sizeof *e->first);
     if (!e->stance || !e->below_m || !e->first) return STATUS_NO_MEMORY;
     for (size_t t = 0; t < tracks; t++) {
-        Origin origin;
+        Origin       origin;
         const Model *model = model_of(g, &g->survey->track[t], &origin);
         e->below_m[t] = origin == ORIGIN_CENTRE ? 0.5 * model->height_m : 0;
         e->stance[t] = stance_of(g->survey->track[t].type);
@@ -451,7 +447,7 @@ static Status gather(Gathering *g)
 }
 
 Status ground_evidence_collect(GroundEvidence *out, const Survey *survey, const LocalFrame *frame,
-                              const Catalog *catalog, DisEntityId host, DisEntityId aim)
+                               const Catalog *catalog, DisEntityId host, DisEntityId aim)
 {
     GroundEvidence e = {0};
     Gathering      g = {.e = &e, .survey = survey, .frame = frame, .catalog = catalog, .host = host, .aim = aim};

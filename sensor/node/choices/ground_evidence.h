@@ -15,33 +15,33 @@
 #include "terrain/ground/landscape.h"
 
 typedef enum Stance {
-    STANCE_OTHER,      /* in the air, or nothing known */
-    STANCE_FLIES,      /* its path is clear of the ground */
+    STANCE_OTHER, /* in the air, or nothing known */
+    STANCE_FLIES, /* its path is clear of the ground */
     STANCE_GROUND,
-    STANCE_LANDED,     /* an aircraft, for at least some of its reports */
+    STANCE_LANDED, /* an aircraft, for at least some of its reports */
     STANCE_AFLOAT,
-    STANCE_SUBMERGED,  /* a submarine that never surfaces */
-    STANCE_ABOARD,     /* a ship */
+    STANCE_SUBMERGED, /* a submarine that never surfaces */
+    STANCE_ABOARD,    /* a ship */
 } Stance;
 
 typedef struct GroundEvidence {
-    LandscapeEvidence said;      /* its arrays are those below */
+    LandscapeEvidence said; /* its arrays are those below */
     GroundFix        *fix;
     ClearLine        *line;
     CoastPlace       *place;
-    Stance           *stance;    /* [track_count] */
-    double           *below_m;   /* [track_count] depth of the base below the reported position */
-    bool             *fixed;     /* [points of all tracks] this report is on the ground; see first */
-    size_t           *first;     /* [track_count] of its reports in fixed */
+    Stance           *stance;                   /* [track_count] */
+    double           *below_m;                  /* [track_count] depth of the base below the reported position */
+    bool             *fixed;                    /* [points of all tracks] this report is on the ground; see first */
+    size_t           *first;                    /* [track_count] of its reports in fixed */
     int               count[STANCE_ABOARD + 1]; /* tracks of each stance */
     int               impacts;
 } GroundEvidence;
 
 /* p_aim: the hit found for the host's own munition, for a Detonation that names no entity; 0:0:0: none. */
 Status ground_evidence_collect(GroundEvidence *out, const Survey *survey, const LocalFrame *frame,
-                              const Catalog *catalog, DisEntityId host, DisEntityId aim);
+                               const Catalog *catalog, DisEntityId host, DisEntityId aim);
 void   ground_evidence_free(GroundEvidence *evidence);
 /* A report's base. */
-void   ground_evidence_base(double base_ecef[3], const TrackPoint *point, double below_m);
+void ground_evidence_base(double base_ecef[3], const TrackPoint *point, double below_m);
 
 #endif

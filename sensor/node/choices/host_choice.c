@@ -45,7 +45,7 @@ static const char *who(char out[who_size], const Survey *survey, DisEntityId id)
 /* ---- host and aim --------------------------------------------------------------------------- */
 
 /* The entity nearest to a position at an instant, other than `not`; munitions do not count. */
-static DisEntityId nearest_entity(const Survey *survey, const double p_ecef[3], double t_s, DisEntityId not)
+static DisEntityId nearest_entity(const Survey *survey, const double p_ecef[3], double t_s, DisEntityId not )
 {
     DisEntityId nearest = {0};
     double      least_m = 200; /* farther than that, it was not the target */
@@ -53,7 +53,7 @@ static DisEntityId nearest_entity(const Survey *survey, const double p_ecef[3], 
         const Track *track = &survey->track[i];
         TrackPose    pose;
         double       d[3];
-        if (track->type.kind == dis_kind_munition || dis_entity_id_compare(track->id, not) == 0) continue;
+        if (track->type.kind == dis_kind_munition || dis_entity_id_compare(track->id, not ) == 0) continue;
         if (track->point[0].t_s > t_s) continue;
         survey_track_at(&pose, track, t_s);
         v3_sub(d, pose.p_ecef, p_ecef);
@@ -92,9 +92,8 @@ static void choose_aim(HostPlan *plan, Choices *choices, const Survey *survey, c
     }
     if (plan->munition && config->causal)
         choice_add(choices, "aim: the target of its Fire PDU once that is heard, till then along the body axis "
-                   "(exercise.aim)");
-    else
-        choice_add(choices, "aim: along the body axis, no target is known (exercise.aim)");
+                            "(exercise.aim)");
+    else choice_add(choices, "aim: along the body axis, no target is known (exercise.aim)");
 }
 
 static Status aim_is_known(const Survey *survey, const Config *config)
@@ -117,7 +116,7 @@ static Status aim_is_known(const Survey *survey, const Config *config)
 static Status plan_observer(HostPlan *out, Choices *choices, const Survey *survey, const Config *config, bool asked)
 {
     char         name[who_size];
-    HostPlan     plan   = {.start_s = survey->first_s, .end_s = survey->last_s};
+    HostPlan     plan = {.start_s = survey->first_s, .end_s = survey->last_s};
     const Track *target = NULL;
     double       most_m = -1;
 
@@ -133,7 +132,7 @@ static Status plan_observer(HostPlan *out, Choices *choices, const Survey *surve
         log_error("replay: the log holds no entity with a usable position; `pitviper inspect LOG` says what it holds");
         return STATUS_BAD_VALUE;
     }
-    plan.aim     = target->id;
+    plan.aim = target->id;
     plan.start_s = target->point[0].t_s;
     memcpy(plan.p_aim_ecef, target->point[0].p_ecef, sizeof plan.p_aim_ecef);
     if (*config->exercise.aim) {
@@ -144,8 +143,7 @@ static Status plan_observer(HostPlan *out, Choices *choices, const Survey *surve
             memcpy(plan.p_aim_ecef, aim->point[0].p_ecef, sizeof plan.p_aim_ecef);
         }
     }
-    if (asked)
-        choice_add(choices, "host: a stand-off observer (exercise.host)");
+    if (asked) choice_add(choices, "host: a stand-off observer (exercise.host)");
     else
         choice_add(choices, "host: a stand-off observer, no munition flies here%s (exercise.host)",
                    config->causal ? " now" : "");
@@ -177,8 +175,8 @@ Status choice_named_host(HostPlan *out, Choices *choices, const Survey *survey, 
     }
     HostPlan    plan = {.host = host, .munition = track->type.kind == dis_kind_munition};
     const Shot *shot = plan.munition ? survey_shot(survey, host) : NULL;
-    plan.start_s     = track->point[0].t_s;
-    plan.end_s       = track->point[track->count - 1].t_s;
+    plan.start_s = track->point[0].t_s;
+    plan.end_s = track->point[track->count - 1].t_s;
     if (shot && isfinite(shot->detonation_s) && shot->detonation_s > plan.start_s) plan.end_s = shot->detonation_s;
     choose_aim(&plan, choices, survey, config);
     *out = plan;
@@ -212,20 +210,20 @@ static bool lies(const Track *track)
 static const Track *longest_flight(const Survey *survey, const Config *config, bool guided, bool impact)
 {
     const Track *longest = NULL;
-    double       most_s  = config->causal ? -1 : 0; /* a single report: the flight may continue */
+    double       most_s = config->causal ? -1 : 0; /* a single report: the flight may continue */
     for (int i = 0; i < survey->track_count; i++) {
         const Track *track = &survey->track[i];
-        const Shot  *shot  = survey_shot(survey, track->id);
+        const Shot  *shot = survey_shot(survey, track->id);
         if (track->type.kind != dis_kind_munition || track->type.category == dis_munition_fixed) continue;
         if ((track->type.category == dis_munition_guided) != guided) continue;
         if (!guided && lies(track)) continue;
         if (config->causal && has_ended(survey, track, config)) continue;
         if (impact && !(shot && shot->result == dis_result_entity_impact)) continue;
-        const double end_s    = shot && isfinite(shot->detonation_s) ? shot->detonation_s
-                                                                     : track->point[track->count - 1].t_s;
+        const double end_s =
+            shot && isfinite(shot->detonation_s) ? shot->detonation_s : track->point[track->count - 1].t_s;
         const double flight_s = end_s - track->point[0].t_s;
         if (flight_s > most_s) {
-            most_s  = flight_s;
+            most_s = flight_s;
             longest = track;
         }
     }
@@ -246,17 +244,18 @@ static Status span_of_munitions(HostPlan *plan, const Survey *survey, const Conf
     plan->start_s = INFINITY, plan->end_s = -INFINITY;
     for (int i = 0; i < survey->track_count; i++) {
         const Track *track = &survey->track[i];
-        const Shot  *shot  = survey_shot(survey, track->id);
+        const Shot  *shot = survey_shot(survey, track->id);
         munitions += track->type.kind == dis_kind_munition;
         if (!may_fly(track)) continue;
         const double end_s = track->point[track->count - 1].t_s;
         plan->start_s = fmin(plan->start_s, track->point[0].t_s);
-        plan->end_s   = fmax(plan->end_s, shot && shot->detonation_s > end_s ? shot->detonation_s : end_s);
+        plan->end_s = fmax(plan->end_s, shot && shot->detonation_s > end_s ? shot->detonation_s : end_s);
     }
     if (!isfinite(plan->start_s)) {
         log_error("replay: exercise.host: munition: none flies in the log, which has %d munition%s, mines and what "
                   "lies still included, among %d entities; `pitviper inspect LOG` lists them, --host ID or --host "
-                  "observer shows what there is", munitions, munitions == 1 ? "" : "s", survey->track_count);
+                  "observer shows what there is",
+                  munitions, munitions == 1 ? "" : "s", survey->track_count);
         return STATUS_BAD_VALUE;
     }
     const Track *flight = longest_flight(survey, config, true, false);
@@ -271,10 +270,11 @@ static Status plan_munitions(HostPlan *out, Choices *choices, const Survey *surv
 {
     HostPlan plan = {.any_munition = true, .munition = true, .start_s = survey->last_s, .end_s = survey->last_s};
     choice_add(choices, "host: the munitions that appear, guided ones first, one after the other; their seeker is "
-               "a notional one (exercise.host)");
+                        "a notional one (exercise.host)");
     if (*config->exercise.aim) dis_entity_id_parse(&plan.aim, config->exercise.aim);
-    else choice_add(choices, "aim: the target of its Fire PDU once that is heard, till then along the body axis "
-                    "(exercise.aim)");
+    else
+        choice_add(choices, "aim: the target of its Fire PDU once that is heard, till then along the body axis "
+                            "(exercise.aim)");
     const Status status = config->causal ? STATUS_OK : span_of_munitions(&plan, survey, config);
     if (status == STATUS_OK) *out = plan;
     return status;

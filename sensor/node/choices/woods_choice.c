@@ -53,11 +53,11 @@ static Status choose_square(WoodsConfig *out, const Survey *survey, const Config
 /* ---- paths ----------------------------------------------------------------------------------------- */
 
 typedef struct Paths {
-    WoodsPath       *path;
-    int              count, capacity;
+    WoodsPath         *path;
+    int                count, capacity;
     const WoodsConfig *square;
-    const Landscape *landscape;
-    bool             no_memory;
+    const Landscape   *landscape;
+    bool               no_memory;
 } Paths;
 
 static void add_path(Paths *p, const double a_m[2], const double b_m[2], double half_m, double low_half_m)
@@ -70,12 +70,12 @@ static void add_path(Paths *p, const double a_m[2], const double b_m[2], double 
             return;
     if (p->count == p->capacity) {
         const int  capacity = p->capacity ? 2 * p->capacity : 256;
-        WoodsPath *larger   = realloc(p->path, (size_t)capacity * sizeof *larger);
+        WoodsPath *larger = realloc(p->path, (size_t)capacity * sizeof *larger);
         if (!larger) {
             p->no_memory = true;
             return;
         }
-        p->path     = larger;
+        p->path = larger;
         p->capacity = capacity;
     }
     p->path[p->count++] = (WoodsPath){{a_m[0], a_m[1]}, {b_m[0], b_m[1]}, half_m, low_half_m};
@@ -117,9 +117,9 @@ static void add_line(Paths *p, const ClearLine *line)
 {
     static const double tree_m = 35, half_m = 8 /* of a wide crown, about it */, step_m = 25;
     const double *const a = line->a_enu, *const b = line->b_enu;
-    const int           pieces = 1 + (int)(hypot(b[0] - a[0], b[1] - a[1]) / step_m);
-    double              from[3] = {0}, to[3] = {0};
-    bool                low = false;
+    const int pieces = 1 + (int)(hypot(b[0] - a[0], b[1] - a[1]) / step_m);
+    double    from[3] = {0}, to[3] = {0};
+    bool      low = false;
     for (int k = 0; k <= pieces; k++) { /* neighbouring low pieces become one */
         double at[3];
         for (int c = 0; c < 3; c++) at[c] = a[c] + (b[c] - a[c]) * k / pieces;
@@ -211,12 +211,15 @@ static void report(Choices *choices, const WoodsChoice *w, const Config *config,
     choice_add(choices, "woods: %d trees%s%s%s, %d bushes and hedges, %.1f km about the aim (terrain.woods)", trees,
                *kinds ? " (" : "", kinds, *kinds ? ")" : "", woods->count - trees, 1e-3 * w->config.half_width_m);
     if (woods->left_out > 0)
-        choice_add(choices, "woods: %d more are left out, those beyond %.0f m of the aim: the ground there shows their canopy (terrain.woods_trees)",
-                   woods->left_out, woods->reach_m);
+        choice_add(
+            choices,
+            "woods: %d more are left out, those beyond %.0f m of the aim: the ground there shows their canopy (terrain.woods_trees)",
+            woods->left_out, woods->reach_m);
     if (!real)
-        choice_add(choices, "woods: cleared along the paths of %d entit%s on the ground, where %d shot%s hit it, and "
-                   "under low flights and sights (terrain.woods)", w->entities, w->entities == 1 ? "y" : "ies", impacts,
-                   impacts == 1 ? "" : "s");
+        choice_add(choices,
+                   "woods: cleared along the paths of %d entit%s on the ground, where %d shot%s hit it, and "
+                   "under low flights and sights (terrain.woods)",
+                   w->entities, w->entities == 1 ? "y" : "ies", impacts, impacts == 1 ? "" : "s");
     else if (w->config.store && *w->config.store)
         choice_add(choices, "woods: %d from marked trunks, %d by the canopy's height, %d by surface classes",
                    woods->from_crowns, woods->from_canopy, woods->from_classes);
@@ -240,7 +243,8 @@ Status choice_woods(WoodsChoice *out, Choices *choices, const ChoiceBasis *basis
     int            impacts = 0;
     *out = (WoodsChoice){.on = strcmp(config->terrain.woods, "on") == 0};
     if (!out->on) return STATUS_OK;
-    out->config = (WoodsConfig){.seed = (uint64_t)config->seed, .most_trees = config->terrain.woods_trees,
+    out->config = (WoodsConfig){.seed = (uint64_t)config->seed,
+                                .most_trees = config->terrain.woods_trees,
                                 .store = stored ? config->terrain.store : NULL};
     Status status = choose_square(&out->config, survey, config, landscape, basis->plan);
     if (status == STATUS_OK)
@@ -248,8 +252,8 @@ Status choice_woods(WoodsChoice *out, Choices *choices, const ChoiceBasis *basis
     if (status != STATUS_OK) return status;
     Paths paths = {.square = &out->config, .landscape = landscape};
     if (!real) add_known(&paths, &impacts, survey, catalog, &e);
-    out->path              = paths.path;
-    out->config.path       = paths.path;
+    out->path = paths.path;
+    out->config.path = paths.path;
     out->config.path_count = paths.count;
     const double begun_s = wall_clock_s();
     status = paths.no_memory ? STATUS_NO_MEMORY : woods_create(&out->woods, landscape, &out->config, pool);
@@ -259,7 +263,8 @@ Status choice_woods(WoodsChoice *out, Choices *choices, const ChoiceBasis *basis
         report(choices, out, config, real, impacts);
     } else {
         log_error("woods: no plants could be placed: %s; terrain.woods=off shows bare ground, terrain.woods_trees "
-                  "fewer trees", status_name(status));
+                  "fewer trees",
+                  status_name(status));
     }
     ground_evidence_free(&e);
     return status;

@@ -49,13 +49,18 @@ static HealthReason show(const HealthSample *s, double patience)
 HealthReason health_evaluate(HealthTopic topic, const HealthSample *s)
 {
     switch (topic) {
-    case HEALTH_RECEIVE: return hear(s, 1);
-    case HEALTH_RENDER: return show(s, 1);
+    case HEALTH_RECEIVE:
+        return hear(s, 1);
+    case HEALTH_RENDER:
+        return show(s, 1);
     case HEALTH_SEND:
         return s->publishes && s->unsent > 0 && s->now_s - s->failing_s >= failing_s ? HEALTH_NOT_SENT : HEALTH_FINE;
-    case HEALTH_LOSS: return s->now_s - s->lost_s < trouble_s ? HEALTH_LOST : HEALTH_FINE;
-    case HEALTH_PACE: return s->now_s - s->late_s < trouble_s ? HEALTH_LATE : HEALTH_FINE;
-    default: return HEALTH_FINE;
+    case HEALTH_LOSS:
+        return s->now_s - s->lost_s < trouble_s ? HEALTH_LOST : HEALTH_FINE;
+    case HEALTH_PACE:
+        return s->now_s - s->late_s < trouble_s ? HEALTH_LATE : HEALTH_FINE;
+    default:
+        return HEALTH_FINE;
     }
 }
 
@@ -71,24 +76,42 @@ HealthReason health_final(const HealthSample *s)
 const char *health_name(HealthReason reason)
 {
     switch (reason) {
-    case HEALTH_FINE: return "";
-    case HEALTH_AWAY: return "the network is gone";
-    case HEALTH_OTHER_EXERCISE: return "other exercises only";
-    case HEALTH_NO_ENTITY: return "no entity heard";
-    case HEALTH_OWN: return "hears itself only";
-    case HEALTH_JUNK: return "malformed datagrams only";
-    case HEALTH_NOTHING: return "nothing heard";
-    case HEALTH_NO_HOST: return "host not heard";
-    case HEALTH_HOST_GONE: return "host gone";
-    case HEALTH_NO_MUNITION: return "no munition flies";
-    case HEALTH_MUNITION_GONE: return "munition gone";
-    case HEALTH_NO_TRAFFIC: return "no entity there";
-    case HEALTH_NO_VIEW: return "none in view";
-    case HEALTH_HIDDEN: return "none visible";
-    case HEALTH_NOT_SENT: return "not sent";
-    case HEALTH_LOST: return "datagrams lost";
-    case HEALTH_LATE: return "frames late";
-    case HEALTH_EARLY: return "ended early";
+    case HEALTH_FINE:
+        return "";
+    case HEALTH_AWAY:
+        return "the network is gone";
+    case HEALTH_OTHER_EXERCISE:
+        return "other exercises only";
+    case HEALTH_NO_ENTITY:
+        return "no entity heard";
+    case HEALTH_OWN:
+        return "hears itself only";
+    case HEALTH_JUNK:
+        return "malformed datagrams only";
+    case HEALTH_NOTHING:
+        return "nothing heard";
+    case HEALTH_NO_HOST:
+        return "host not heard";
+    case HEALTH_HOST_GONE:
+        return "host gone";
+    case HEALTH_NO_MUNITION:
+        return "no munition flies";
+    case HEALTH_MUNITION_GONE:
+        return "munition gone";
+    case HEALTH_NO_TRAFFIC:
+        return "no entity there";
+    case HEALTH_NO_VIEW:
+        return "none in view";
+    case HEALTH_HIDDEN:
+        return "none visible";
+    case HEALTH_NOT_SENT:
+        return "not sent";
+    case HEALTH_LOST:
+        return "datagrams lost";
+    case HEALTH_LATE:
+        return "frames late";
+    case HEALTH_EARLY:
+        return "ended early";
     }
     return "";
 }
@@ -117,8 +140,9 @@ static int list_exercises(char *out, size_t size, const HealthSample *s)
         listed[best] = true;
         if (k == 0) first = best;
         if (k == most) n += (size_t)snprintf(out + n, size - n, " ...");
-        else n += (size_t)snprintf(out + n, size - n, "%s%d (%llu%s)", k ? ", " : "", best,
-                                   (unsigned long long)s->other[best], k ? "" : " PDUs");
+        else
+            n += (size_t)snprintf(out + n, size - n, "%s%d (%llu%s)", k ? ", " : "", best,
+                                  (unsigned long long)s->other[best], k ? "" : " PDUs");
     }
     return first;
 }
@@ -132,14 +156,19 @@ static const char *send_advice(int error)
     case EADDRNOTAVAIL:
         return "; no route leads there: --interface NAME or another --address (127.255.255.255: within this machine)";
     case EPERM:
-    case EACCES: return "; a firewall or the user's rights forbid it (`nft list ruleset`)";
+    case EACCES:
+        return "; a firewall or the user's rights forbid it (`nft list ruleset`)";
     case ENETDOWN:
     case ENODEV:
-    case ENXIO: return "; the interface is down or gone (`ip link`)";
+    case ENXIO:
+        return "; the interface is down or gone (`ip link`)";
     case ENOBUFS:
-    case EAGAIN: return "; the interface cannot send that fast: a lower --rate or fewer --bands";
-    case EMSGSIZE: return "; the interface takes only shorter ones (`ip link`: mtu)";
-    default: return "; --interface and --address say where to, --set publish.dis=off sends nothing";
+    case EAGAIN:
+        return "; the interface cannot send that fast: a lower --rate or fewer --bands";
+    case EMSGSIZE:
+        return "; the interface takes only shorter ones (`ip link`: mtu)";
+    default:
+        return "; --interface and --address say where to, --set publish.dis=off sends nothing";
     }
 }
 
@@ -148,23 +177,30 @@ void health_text(char out[health_text_size], HealthReason reason, const HealthSa
     char         exercises[120];
     const size_t size = health_text_size;
     switch (reason) {
-    case HEALTH_FINE: *out = 0; break;
+    case HEALTH_FINE:
+        *out = 0;
+        break;
     case HEALTH_AWAY:
         snprintf(out, size, "the network of %s is not there (`ip address` shows what is)", n->where);
         break;
     case HEALTH_OTHER_EXERCISE: {
         const int first = list_exercises(exercises, sizeof exercises, s);
-        snprintf(out, size, "only other exercises are heard on %s: %s; this node hears exercise %d: "
-                 "--set exercise.exercise=%d hears that one, -2 all", n->where, exercises, n->exercise, first);
+        snprintf(out, size,
+                 "only other exercises are heard on %s: %s; this node hears exercise %d: "
+                 "--set exercise.exercise=%d hears that one, -2 all",
+                 n->where, exercises, n->exercise, first);
         break;
     }
     case HEALTH_NO_ENTITY:
-        snprintf(out, size, "DIS is heard on %s, but no Entity State with a usable place: %llu PDUs, the latest "
+        snprintf(out, size,
+                 "DIS is heard on %s, but no Entity State with a usable place: %llu PDUs, the latest "
                  "of type %d (%s); `pitviper record --for 10 -o heard.pcapng`, then `pitviper inspect heard.pcapng` "
-                 "shows them", n->where, (unsigned long long)s->pdus, s->type, dis_pdu_type_name(s->type));
+                 "shows them",
+                 n->where, (unsigned long long)s->pdus, s->type, dis_pdu_type_name(s->type));
         break;
     case HEALTH_OWN:
-        snprintf(out, size, "all %llu datagrams heard on %s come from %d:%d, this node's own site and "
+        snprintf(out, size,
+                 "all %llu datagrams heard on %s come from %d:%d, this node's own site and "
                  "application, and are ignored: another node or simulator uses them too; --set node.application=%d",
                  (unsigned long long)s->own, n->where, n->site, n->application,
                  n->application < 65533 ? n->application + 1 : 1);
@@ -172,42 +208,56 @@ void health_text(char out[health_text_size], HealthReason reason, const HealthSa
     case HEALTH_JUNK: {
         const DisDrop why = most_dropped(s);
         const bool    header = why != DIS_DROP_SHORT_HEADER && why != DIS_DROP_BAD_VERSION;
-        snprintf(out, size, "only what is %s is heard on %s: %llu malformed datagrams, most with %s; %s; `pitviper record "
-                 "--for 10 -o heard.pcapng` keeps them to look at", header ? "malformed DIS" : "no DIS", n->where,
-                 (unsigned long long)s->junk, dis_drop_cause(why),
-                 header ? "their sender is to set it right" : "another port may carry the exercise (--port, --address)");
+        snprintf(out, size,
+                 "only what is %s is heard on %s: %llu malformed datagrams, most with %s; %s; `pitviper record "
+                 "--for 10 -o heard.pcapng` keeps them to look at",
+                 header ? "malformed DIS" : "no DIS", n->where, (unsigned long long)s->junk, dis_drop_cause(why),
+                 header ? "their sender is to set it right"
+                        : "another port may carry the exercise (--port, --address)");
         break;
     }
     case HEALTH_NOTHING:
-        snprintf(out, size, "nothing heard on %s for %.0f s; `pitviper record --for 5 -o heard.pcapng` shows "
-                 "what comes at all; --port, --address and --interface say where", n->where, s->now_s - s->any_s);
+        snprintf(out, size,
+                 "nothing heard on %s for %.0f s; `pitviper record --for 5 -o heard.pcapng` shows "
+                 "what comes at all; --port, --address and --interface say where",
+                 n->where, s->now_s - s->any_s);
         break;
     case HEALTH_NO_HOST:
-        snprintf(out, size, "host %s is not heard so far, and no frame is made until it is; %d other entities "
-                 "are heard (--host ID of one of them, munition or observer)", n->host, s->entities);
+        snprintf(out, size,
+                 "host %s is not heard so far, and no frame is made until it is; %d other entities "
+                 "are heard (--host ID of one of them, munition or observer)",
+                 n->host, s->entities);
         break;
     case HEALTH_HOST_GONE:
-        snprintf(out, size, "host %s is gone, and no frame is made until it is back; %d other entities are there "
-                 "(--host ID of one of them, munition or observer)", n->host, s->entities);
+        snprintf(out, size,
+                 "host %s is gone, and no frame is made until it is back; %d other entities are there "
+                 "(--host ID of one of them, munition or observer)",
+                 n->host, s->entities);
         break;
     case HEALTH_NO_MUNITION:
-        snprintf(out, size, "no munition flies so far, and no frame is made until one does; %d entities are heard "
-                 "(--host observer looks at them meanwhile, --host ID rides on one)", s->entities);
+        snprintf(out, size,
+                 "no munition flies so far, and no frame is made until one does; %d entities are heard "
+                 "(--host observer looks at them meanwhile, --host ID rides on one)",
+                 s->entities);
         break;
     case HEALTH_MUNITION_GONE:
-        snprintf(out, size, "%s is gone and no other munition flies: no frame is made until one does (--host "
-                 "observer looks at the %d entities meanwhile)", n->host, s->entities);
+        snprintf(out, size,
+                 "%s is gone and no other munition flies: no frame is made until one does (--host "
+                 "observer looks at the %d entities meanwhile)",
+                 n->host, s->entities);
         break;
     case HEALTH_NO_TRAFFIC:
         snprintf(out, size, "frames show no entity: none but the host is there (`pitviper record` keeps what comes)");
         break;
     case HEALTH_NO_VIEW:
-        snprintf(out, size, "frames show no entity: none of %d is in the field of view, the nearest is %.1f km away "
-                 "(--set exercise.aim=ID looks at one, sensor.hfov_deg widens, --host observer circles one)", s->others,
-                 1e-3 * s->nearest_m);
+        snprintf(out, size,
+                 "frames show no entity: none of %d is in the field of view, the nearest is %.1f km away "
+                 "(--set exercise.aim=ID looks at one, sensor.hfov_deg widens, --host observer circles one)",
+                 s->others, 1e-3 * s->nearest_m);
         break;
     case HEALTH_HIDDEN:
-        snprintf(out, size, "frames show no entity: what is in the field of view is hidden by the ground, the water "
+        snprintf(out, size,
+                 "frames show no entity: what is in the field of view is hidden by the ground, the water "
                  "or others (--host ID of another, --set observer.height_m or exercise.aim)");
         break;
     case HEALTH_NOT_SENT:
@@ -215,16 +265,20 @@ void health_text(char out[health_text_size], HealthReason reason, const HealthSa
                  send_advice(s->error));
         break;
     case HEALTH_LOST:
-        snprintf(out, size, "datagrams lost: in the kernel %llu, in the queue %llu; a larger network.queue_mb or "
-                 "net.core.rmem_max, or a higher sensor.rate_hz, helps", (unsigned long long)s->lost_kernel,
-                 (unsigned long long)s->lost_queue);
+        snprintf(out, size,
+                 "datagrams lost: in the kernel %llu, in the queue %llu; a larger network.queue_mb or "
+                 "net.core.rmem_max, or a higher sensor.rate_hz, helps",
+                 (unsigned long long)s->lost_kernel, (unsigned long long)s->lost_queue);
         break;
     case HEALTH_LATE:
-        snprintf(out, size, "frames left out: %llu, their time had passed; a smaller --size, fewer --bands or a "
-                 "lower --rate helps", (unsigned long long)s->late);
+        snprintf(out, size,
+                 "frames left out: %llu, their time had passed; a smaller --size, fewer --bands or a "
+                 "lower --rate helps",
+                 (unsigned long long)s->late);
         break;
     case HEALTH_EARLY:
-        snprintf(out, size, "entities were heard, and it ended before the first frame was due; a longer --for, or "
+        snprintf(out, size,
+                 "entities were heard, and it ended before the first frame was due; a longer --for, or "
                  "a shorter exercise.listen_s");
         break;
     }
@@ -234,8 +288,15 @@ void health_text(char out[health_text_size], HealthReason reason, const HealthSa
 
 void health_begin(Health *h, double now_s)
 {
-    *h = (Health){.sample = {.now_s = now_s, .usable_s = now_s, .any_s = now_s, .frame_s = now_s, .in_view_s = now_s,
-                             .visible_s = now_s, .lost_s = -INFINITY, .late_s = -INFINITY, .nearest_m = NAN}};
+    *h = (Health){.sample = {.now_s = now_s,
+                             .usable_s = now_s,
+                             .any_s = now_s,
+                             .frame_s = now_s,
+                             .in_view_s = now_s,
+                             .visible_s = now_s,
+                             .lost_s = -INFINITY,
+                             .late_s = -INFINITY,
+                             .nearest_m = NAN}};
     for (int t = 0; t < HEALTH_TOPICS; t++) h->said_s[t] = -INFINITY;
 }
 
@@ -276,7 +337,7 @@ void health_received(Health *h, const DisDatagram *datagram, int exercise, bool 
 void health_rendering(Health *h, double now_s)
 {
     HealthSample *s = &h->sample;
-    s->rendering  = true;
+    s->rendering = true;
     s->frame_s = s->in_view_s = s->visible_s = now_s;
 }
 
@@ -287,7 +348,7 @@ void health_frame(Health *h, const FrameRecord *frame, double now_s)
     s->frames++;
     s->missing = 0;
     s->frame_s = now_s;
-    s->others  = frame->snapshot->count - (frame->host != NULL);
+    s->others = frame->snapshot->count - (frame->host != NULL);
     if (!frame->target) s->in_view_s = s->visible_s = now_s; /* not computed: nothing to report of it */
     for (int i = 0; i < frame->target_count; i++) visible |= frame->target[i].pixels > 0;
     if (frame->target_count > 0) s->in_view_s = now_s;
@@ -307,18 +368,18 @@ static void read_counters(HealthSample *s, const LiveCounters *c)
     if (c->lost_kernel + c->lost_queue > s->lost_kernel + s->lost_queue) s->lost_s = s->now_s;
     if (c->frames_late > s->late) s->late_s = s->now_s;
     s->lost_kernel = c->lost_kernel;
-    s->lost_queue  = c->lost_queue;
-    s->late        = c->frames_late;
+    s->lost_queue = c->lost_queue;
+    s->late = c->frames_late;
     if (s->unsent == 0) s->failing_s = s->now_s;
     s->unsent = c->sent > s->sent ? 0 : s->unsent + c->send_failed - s->failed;
-    s->sent   = c->sent;
+    s->sent = c->sent;
     s->failed = c->send_failed;
 }
 
 /* No message twice within a minute. The end of a condition is reported where no other message is due. */
 static void say(Health *h, HealthTopic topic, const HealthNames *names)
 {
-    const HealthReason reason = h->now[topic];
+    const HealthReason  reason = h->now[topic];
     const HealthSample *s = &h->sample;
     char                text[health_text_size];
     if (reason == HEALTH_AWAY) return;
@@ -332,9 +393,9 @@ static void say(Health *h, HealthTopic topic, const HealthNames *names)
     if (reason == h->said[topic] && s->now_s - h->said_s[topic] < remind_s) return;
     health_text(text, reason, s, names);
     log_warn("run: %s", text);
-    h->said[topic]   = reason;
+    h->said[topic] = reason;
     h->said_s[topic] = s->now_s;
-    h->open[topic]   = true;
+    h->open[topic] = true;
 }
 
 void health_check(Health *h, const LiveCounters *counters, const HealthNames *names, double now_s)
@@ -375,16 +436,18 @@ void health_summary(const LiveCounters *c, const HealthSample *s, uint64_t own)
                  (unsigned long long)c->send_failed);
     const uint64_t frames = s->frames;
     log_info("run: %llu datagrams heard, %llu of them our own; lost %llu; frames made %llu, left out %llu%s",
-             (unsigned long long)c->datagrams, (unsigned long long)own, (unsigned long long)(c->lost_kernel + c->lost_queue),
-             (unsigned long long)frames, (unsigned long long)c->frames_late, sent);
-    const double   share = record_live_kept_share(c, frames);
+             (unsigned long long)c->datagrams, (unsigned long long)own,
+             (unsigned long long)(c->lost_kernel + c->lost_queue), (unsigned long long)frames,
+             (unsigned long long)c->frames_late, sent);
+    const double share = record_live_kept_share(c, frames);
     if (frames > 0 && share < enough_share)
-        log_warn("run: kept %.3g of %g frames a second, fewer than half: lower sensor.rate_hz (--rate), the size, or the "
-                 "quality (quality.budget, sensor.samples), or render fewer bands", share * c->rate_hz, c->rate_hz);
-    else if (frames > 0)
-        log_info("run: kept %.3g of %g frames a second", share * c->rate_hz, c->rate_hz);
+        log_warn(
+            "run: kept %.3g of %g frames a second, fewer than half: lower sensor.rate_hz (--rate), the size, or the "
+            "quality (quality.budget, sensor.samples), or render fewer bands",
+            share * c->rate_hz, c->rate_hz);
+    else if (frames > 0) log_info("run: kept %.3g of %g frames a second", share * c->rate_hz, c->rate_hz);
     if (c->files_failed || c->files_left_out)
         log_warn("run: frames without their files: %llu for want of time, %llu could not be written; --no-png or "
-                 "--no-files leaves more time", (unsigned long long)c->files_left_out,
-                 (unsigned long long)c->files_failed);
+                 "--no-files leaves more time",
+                 (unsigned long long)c->files_left_out, (unsigned long long)c->files_failed);
 }

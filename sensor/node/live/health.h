@@ -9,7 +9,14 @@
 #include "dis/capture/log.h"
 #include "sensor/frame/records.h"
 
-typedef enum HealthTopic { HEALTH_RECEIVE, HEALTH_RENDER, HEALTH_SEND, HEALTH_LOSS, HEALTH_PACE, HEALTH_TOPICS } HealthTopic;
+typedef enum HealthTopic {
+    HEALTH_RECEIVE,
+    HEALTH_RENDER,
+    HEALTH_SEND,
+    HEALTH_LOSS,
+    HEALTH_PACE,
+    HEALTH_TOPICS
+} HealthTopic;
 
 typedef enum HealthReason {
     HEALTH_FINE,
@@ -19,52 +26,52 @@ typedef enum HealthReason {
     HEALTH_OWN,            /* datagrams from this node's own site and application alone */
     HEALTH_JUNK,           /* datagrams without one well-formed PDU */
     HEALTH_NOTHING,
-    HEALTH_NO_HOST,        /* the host was given by its id, and has not been received */
+    HEALTH_NO_HOST, /* the host was given by its id, and has not been received */
     HEALTH_HOST_GONE,
-    HEALTH_NO_MUNITION,    /* none in flight so far */
+    HEALTH_NO_MUNITION, /* none in flight so far */
     HEALTH_MUNITION_GONE,
-    HEALTH_NO_TRAFFIC,          /* frames are rendered, but there are no entities */
-    HEALTH_NO_VIEW,        /* entities, none in the field of view */
-    HEALTH_HIDDEN,         /* some in it, none of them visible */
-    HEALTH_NOT_SENT,       /* the system accepts no datagram */
-    HEALTH_LOST,           /* datagrams arrived faster than they were read */
-    HEALTH_LATE,           /* frames dropped */
-    HEALTH_EARLY,          /* no fault: the run ended before the first frame */
+    HEALTH_NO_TRAFFIC, /* frames are rendered, but there are no entities */
+    HEALTH_NO_VIEW,    /* entities, none in the field of view */
+    HEALTH_HIDDEN,     /* some in it, none of them visible */
+    HEALTH_NOT_SENT,   /* the system accepts no datagram */
+    HEALTH_LOST,       /* datagrams arrived faster than they were read */
+    HEALTH_LATE,       /* frames dropped */
+    HEALTH_EARLY,      /* no fault: the run ended before the first frame */
 } HealthReason;
 
 typedef enum HealthHost { HEALTH_OBSERVER, HEALTH_BY_ID, HEALTH_MUNITION } HealthHost;
 
 /* Times are of a wall clock, s. */
 typedef struct HealthSample {
-    double     now_s;
+    double now_s;
     /* received since the last usable Entity State, or since the beginning */
-    double     usable_s, any_s; /* when that was; of the latest datagram of any kind */
-    uint64_t   usable;          /* total */
-    uint64_t   junk, own;       /* datagrams */
-    uint64_t   pdus;            /* of the configured exercise */
-    uint64_t   other[256];      /* PDUs of other exercises, by exercise */
-    uint64_t   dropped[DIS_DROP_COUNT]; /* of all datagrams, by reason */
-    uint8_t    type;            /* of the latest PDU in pdus */
-    bool       away;
+    double   usable_s, any_s;         /* when that was; of the latest datagram of any kind */
+    uint64_t usable;                  /* total */
+    uint64_t junk, own;               /* datagrams */
+    uint64_t pdus;                    /* of the configured exercise */
+    uint64_t other[256];              /* PDUs of other exercises, by exercise */
+    uint64_t dropped[DIS_DROP_COUNT]; /* of all datagrams, by reason */
+    uint8_t  type;                    /* of the latest PDU in pdus */
+    bool     away;
     /* rendered */
-    bool       rendering;          /* the choices are made, frames follow */
+    bool       rendering; /* the choices are made, frames follow */
     HealthHost host;
-    uint64_t   frames, missing; /* rendered; due since the last of them while the host was absent */
-    double     frame_s;         /* of the last frame, or when rendering began */
-    int        entities;        /* in the table */
-    uint64_t   over_rate;       /* reports of new ones above the rate limit */
-    int        others;          /* of the last frame: except the host */
-    double     nearest_m;       /* of them, from the sensor position; NaN: not computed */
+    uint64_t   frames, missing;      /* rendered; due since the last of them while the host was absent */
+    double     frame_s;              /* of the last frame, or when rendering began */
+    int        entities;             /* in the table */
+    uint64_t   over_rate;            /* reports of new ones above the rate limit */
+    int        others;               /* of the last frame: except the host */
+    double     nearest_m;            /* of them, from the sensor position; NaN: not computed */
     double     in_view_s, visible_s; /* last frame with an entity in view, with a visible part; or when rendering
                                       * began */
     /* sent */
-    bool       publishes;
-    uint64_t   sent, failed, unsent; /* unsent: failures since the last successful one */
-    double     failing_s;       /* when the first of those occurred */
-    int        error;           /* errno of the latest */
+    bool     publishes;
+    uint64_t sent, failed, unsent; /* unsent: failures since the last successful one */
+    double   failing_s;            /* when the first of those occurred */
+    int      error;                /* errno of the latest */
     /* lost, dropped */
-    uint64_t   lost_kernel, lost_queue, late;
-    double     lost_s, late_s;  /* when their number last grew; -INFINITY: never */
+    uint64_t lost_kernel, lost_queue, late;
+    double   lost_s, late_s; /* when their number last grew; -INFINITY: never */
 } HealthSample;
 
 HealthReason health_evaluate(HealthTopic topic, const HealthSample *sample);
@@ -73,17 +80,16 @@ HealthReason health_final(const HealthSample *sample);
 
 /* What the messages name. */
 typedef struct HealthNames {
-    const char *where;          /* `239.1.2.3 port 3000 on eth0` */
-    const char *to;             /* destination */
-    int         exercise;       /* exercise to receive; -1: any */
+    const char *where;    /* `239.1.2.3 port 3000 on eth0` */
+    const char *to;       /* destination */
+    int         exercise; /* exercise to receive; -1: any */
     int         site, application;
-    const char *host;           /* as requested, or the present one */
+    const char *host; /* as requested, or the present one */
 } HealthNames;
 
 /* The fault and its remedy, one line; empty for HEALTH_FINE. */
 enum { health_text_size = 640 };
-void        health_text(char out[health_text_size], HealthReason reason, const HealthSample *sample,
-                        const HealthNames *names);
+void health_text(char out[health_text_size], HealthReason reason, const HealthSample *sample, const HealthNames *names);
 const char *health_name(HealthReason reason); /* a few words */
 
 /* ---- a node's own ----------------------------------------------------------------------------------- */

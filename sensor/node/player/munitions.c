@@ -13,10 +13,8 @@ static bool same(DisEntityId a, DisEntityId b) { return dis_entity_id_compare(a,
 void munitions_fire(Munitions *m, const DisFire *fire)
 {
     const Aimed shot = {fire->munition, fire->target, fire->firing, fire->event};
-    if (dis_entity_id_is_none(fire->munition))
-        m->unnamed[m->unnamed_shots++ % shots_kept] = shot;
-    else
-        m->aimed[m->shots++ % shots_kept] = shot;
+    if (dis_entity_id_is_none(fire->munition)) m->unnamed[m->unnamed_shots++ % shots_kept] = shot;
+    else m->aimed[m->shots++ % shots_kept] = shot;
 }
 
 /* The munition's place in the ring; -1: it is not there. */
@@ -49,10 +47,11 @@ void munitions_report(Munitions *m, const DisEntityState *state, double counts_s
     if (state->type.kind != dis_kind_munition || state->type.category == dis_munition_fixed) return;
     if (!guided && !moves(state->velocity_mps)) return;
     MunitionRing *ring = guided ? &m->guided : &m->unguided;
-    const int known = ring_index(ring, state->id), i = known >= 0 ? known : (int)(ring->count++ % munitions_kept);
+    const int     known = ring_index(ring, state->id), i = known >= 0 ? known : (int)(ring->count++ % munitions_kept);
     /* heard again after a silence, the id is another munition's */
-    if (known < 0 || counts_s - ring->heard_s[i] > munition_silent_s || flies_on(ring, i, state)) ring->spent[i] = false;
-    ring->id[i]      = state->id;
+    if (known < 0 || counts_s - ring->heard_s[i] > munition_silent_s || flies_on(ring, i, state))
+        ring->spent[i] = false;
+    ring->id[i] = state->id;
     ring->heard_s[i] = counts_s;
 }
 
@@ -90,7 +89,7 @@ static void burst_by_id(Munitions *m, DisEntityId munition)
     for (int k = 0; k < 2; k++) {
         const int i = ring_index(kind[k], munition);
         if (i < 0) continue;
-        kind[k]->spent[i]    = true;
+        kind[k]->spent[i] = true;
         kind[k]->by_place[i] = false;
     }
 }
@@ -109,7 +108,8 @@ static double miss_m(const EntityTable *table, DisEntityId id, const double p_ec
     return sqrt(length2(to));
 }
 
-static void burst_by_place(Munitions *m, const DisDetonation *burst, const EntityTable *table, double t_s, double counts_s)
+static void burst_by_place(Munitions *m, const DisDetonation *burst, const EntityTable *table, double t_s,
+                           double counts_s)
 {
     MunitionRing *const kind[] = {&m->guided, &m->unguided}, *ring = NULL;
     int                 nearest = -1;
@@ -122,7 +122,7 @@ static void burst_by_place(Munitions *m, const DisDetonation *burst, const Entit
             const Aimed *shot = shot_with(m, kind[k]->id[i]);
             if (shot && contradicts(shot->firing, burst->firing)) continue;
             least_m = off_m;
-            ring    = kind[k];
+            ring = kind[k];
             nearest = i;
         }
     if (nearest < 0) return;
@@ -133,12 +133,9 @@ static void burst_by_place(Munitions *m, const DisDetonation *burst, const Entit
 void munitions_burst(Munitions *m, const DisDetonation *burst, const EntityTable *table, double t_s, double counts_s)
 {
     const Aimed *shot;
-    if (!dis_entity_id_is_none(burst->munition))
-        burst_by_id(m, burst->munition);
-    else if ((shot = shot_of(m->aimed, m->shots, burst)))
-        burst_by_id(m, shot->munition);
-    else if (!shot_of(m->unnamed, m->unnamed_shots, burst))
-        burst_by_place(m, burst, table, t_s, counts_s);
+    if (!dis_entity_id_is_none(burst->munition)) burst_by_id(m, burst->munition);
+    else if ((shot = shot_of(m->aimed, m->shots, burst))) burst_by_id(m, shot->munition);
+    else if (!shot_of(m->unnamed, m->unnamed_shots, burst)) burst_by_place(m, burst, table, t_s, counts_s);
 }
 
 /* ---- queries ------------------------------------------------------------------------------------ */
@@ -181,8 +178,8 @@ static bool first_there(DisEntityId *id, const MunitionRing *ring, const EntityT
 bool munitions_host(DisEntityId *munition, bool *guided, const Munitions *m, const EntityTable *table, double now_s)
 {
     DisEntityType type;
-    const bool    there = !dis_entity_id_is_none(*munition) &&
-                       entity_table_type(&type, table, entity_table_find(table, *munition));
+    const bool    there =
+        !dis_entity_id_is_none(*munition) && entity_table_type(&type, table, entity_table_find(table, *munition));
     /* by its type, not by whether it is among the latest: a salvo must not move the sensor to another host */
     *guided = there && type.kind == dis_kind_munition && type.category == dis_munition_guided;
     const bool spent = there && munitions_spent(m, *munition);
@@ -197,6 +194,6 @@ static uint64_t beyond(uint64_t count, uint64_t kept) { return count > kept ? co
 
 void munitions_forgotten(uint64_t *shots, uint64_t *munitions, const Munitions *m)
 {
-    *shots     = beyond(m->shots, shots_kept);
+    *shots = beyond(m->shots, shots_kept);
     *munitions = beyond(m->guided.count, munitions_kept) + beyond(m->unguided.count, munitions_kept);
 }

@@ -15,10 +15,10 @@ enum {
 /* Of one kind, a ring. */
 typedef struct MunitionRing {
     DisEntityId id[munitions_kept];
-    double      heard_s[munitions_kept]; /* of the latest report in flight */
-    bool        spent[munitions_kept];   /* it detonated */
-    bool        by_place[munitions_kept];          /* as its place and time say, not an id */
-    double      p_burst_ecef[munitions_kept][3];   /* of those */
+    double      heard_s[munitions_kept];         /* of the latest report in flight */
+    bool        spent[munitions_kept];           /* it detonated */
+    bool        by_place[munitions_kept];        /* as its place and time say, not an id */
+    double      p_burst_ecef[munitions_kept][3]; /* of those */
     uint64_t    count;
 } MunitionRing;
 

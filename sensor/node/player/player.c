@@ -15,9 +15,9 @@ typedef enum Where { IN_LOG, ON_DISK, KEPT } Where;
 typedef struct Event {
     double          counts_s; /* time from which it counts */
     ExerciseInstant instant;  /* its own exercise time */
-    uint32_t       order;
-    uint16_t       length;
-    uint8_t        type, where;
+    uint32_t        order;
+    uint16_t        length;
+    uint8_t         type, where;
     union {
         const uint8_t *octets; /* in the log */
         uint64_t       at;     /* on disk, or in the stored octets */
@@ -31,13 +31,13 @@ struct Player {
     Event         *event;
     uint8_t       *octets; /* of the octets stored until they are fed */
     size_t         octets_used, octets_capacity;
-    const DisLog  *log;    /* whose datagrams were added; NULL: none */
+    const DisLog  *log; /* whose datagrams were added; NULL: none */
     ExerciseClock *clock;
     double         tie_s, latest_s; /* exercise time - arrival time; of the latest arrival */
     double         fed_s;           /* counts_s of the newest event fed */
     double         now_s;           /* until which it was fed */
     DisCounters    counters;
-    DisPdu         pdu;                          /* the PDU being fed */
+    DisPdu         pdu; /* the PDU being fed */
     Munitions      munitions;
     int            anomalies_reported;
 };
@@ -47,11 +47,11 @@ Status player_create(Player **out, int exercise, bool causal)
     Player *player = calloc(1, sizeof *player);
     if (!player) return STATUS_NO_MEMORY;
     player->exercise = exercise;
-    player->causal   = causal;
-    player->tie_s    = NAN;
+    player->causal = causal;
+    player->tie_s = NAN;
     player->latest_s = -INFINITY;
-    player->fed_s    = -INFINITY;
-    player->now_s    = -INFINITY;
+    player->fed_s = -INFINITY;
+    player->now_s = -INFINITY;
     const Status status = exercise_clock_create(&player->clock);
     if (status == STATUS_OK) *out = player;
     else player_destroy(player);
@@ -73,13 +73,13 @@ static Status add_event(Player *player, const Event *event)
 {
     if (player->count == player->capacity) {
         const int larger = player->capacity ? 2 * player->capacity : 4096;
-        Event    *grown  = realloc(player->event, (size_t)larger * sizeof *grown);
+        Event    *grown = realloc(player->event, (size_t)larger * sizeof *grown);
         if (!grown) return STATUS_NO_MEMORY;
-        player->event    = grown;
+        player->event = grown;
         player->capacity = larger;
     }
     player->event[player->count++] = *event;
-    player->sorted                 = false;
+    player->sorted = false;
     return STATUS_OK;
 }
 
@@ -87,9 +87,9 @@ static Status keep_octets(size_t *at, Player *player, const uint8_t *pdu, size_t
 {
     if (player->octets_used + count > player->octets_capacity) {
         const size_t larger = 2 * (player->octets_capacity + count) + 65536;
-        uint8_t     *grown  = realloc(player->octets, larger);
+        uint8_t     *grown = realloc(player->octets, larger);
         if (!grown) return STATUS_NO_MEMORY;
-        player->octets          = grown;
+        player->octets = grown;
         player->octets_capacity = larger;
     }
     *at = player->octets_used;
@@ -102,7 +102,7 @@ static Status keep_octets(size_t *at, Player *player, const uint8_t *pdu, size_t
 static void note_anomalies(Player *player, bool say)
 {
     const ExerciseClockAnomalies *doubts = exercise_clock_anomalies(player->clock);
-    char                       text[exercise_clock_anomaly_text_size];
+    char                          text[exercise_clock_anomaly_text_size];
     player->counters.stamps_doubted = doubts->by_arrival;
     for (; player->anomalies_reported < doubts->count; player->anomalies_reported++) {
         if (!say) continue;
@@ -114,10 +114,10 @@ static void note_anomalies(Player *player, bool say)
 static Status store(Player *player, Event *event, const DisDatagram *datagram, const uint8_t *pdu)
 {
     Status status = STATUS_OK;
-    event->order  = player->order++;
+    event->order = player->order++;
     if (event->where == KEPT) {
         size_t at = 0;
-        status    = keep_octets(&at, player, pdu, event->length);
+        status = keep_octets(&at, player, pdu, event->length);
         event->at = at;
     } else if (event->where == ON_DISK) {
         event->at += (uint64_t)(pdu - datagram->bytes);
@@ -144,9 +144,9 @@ static Status hear(Player *player, const DisDatagram *datagram, const Event *pla
         note_anomalies(player, place->where == KEPT);
         if (isnan(player->tie_s)) player->tie_s = event.instant.t_s - datagram->capture_s;
         player->latest_s = fmax(player->latest_s, datagram->capture_s + player->tie_s);
-        event.counts_s   = player->causal ? player->latest_s : event.instant.t_s;
-        event.length     = header.length;
-        event.type       = header.type;
+        event.counts_s = player->causal ? player->latest_s : event.instant.t_s;
+        event.length = header.length;
+        event.type = header.type;
         const Status status = store(player, &event, datagram, pdu);
         if (status != STATUS_OK) return status;
     }
@@ -187,9 +187,9 @@ static void feed_event(Player *player, EntityTable *table, const Event *event)
     const uint8_t *octets = event->where == KEPT      ? player->octets + event->at
                             : event->where == ON_DISK ? dis_log_file_octets(player->log->file, event->at, event->length)
                                                       : event->octets;
-    DisPdu        *pdu    = &player->pdu;
+    DisPdu        *pdu = &player->pdu;
     if (!octets) return; /* the log says so */
-    const Status   status = dis_decode(pdu, octets, event->length);
+    const Status status = dis_decode(pdu, octets, event->length);
     if (status != STATUS_OK) {
         if (isfinite(event->instant.t_s)) dis_count_refused(&player->counters, event->type, status);
         return;
@@ -225,14 +225,14 @@ Status player_feed(Player *player, EntityTable *table, double t_s)
     if (!player->sorted && !player->causal && player->count > 1)
         qsort(player->event, (size_t)player->count, sizeof *player->event, compare_events);
     player->sorted = true; /* arrivals are ordered already */
-    player->now_s  = fmax(player->now_s, t_s);
+    player->now_s = fmax(player->now_s, t_s);
     for (; player->next < player->count && player->event[player->next].counts_s <= t_s; player->next++) {
         feed_event(player, table, &player->event[player->next]);
         player->fed_s = player->event[player->next].counts_s;
     }
     if (player->causal && player->next == player->count) { /* of a live node only datagrams not yet fed take memory */
         player->next = player->count = 0;
-        player->octets_used          = 0;
+        player->octets_used = 0;
     }
     return STATUS_OK;
 }
@@ -292,7 +292,7 @@ int player_drop_own(DisLog *log, const Config *config)
         if (!player_own(&datagram, config)) log->datagram[kept++] = log->datagram[i];
     }
     const int own = log->count - kept;
-    log->count    = kept;
+    log->count = kept;
     return own;
 }
 
@@ -334,10 +334,10 @@ bool player_opening(DisLog *view, DisLog *heard, double *until_s, const DisLog *
     *until_s = player_listens_until_s(&log->datagram[starts], config);
     for (end = starts; end < log->count && log->datagram[end].capture_s <= *until_s;) end++;
     const int begin = starts > player_opening_before ? starts - player_opening_before : 0;
-    *view           = *log;
+    *view = *log;
     view->datagram += begin;
     view->count -= begin;
-    *heard       = *view;
+    *heard = *view;
     heard->count = end - begin;
     return true;
 }

@@ -37,19 +37,19 @@ double player_fed_s(const Player *player);
 double player_last_s(const Player *player); /* exercise time of the latest arrival; -inf before the first */
 
 /* Target of the latest Fire fed that names this munition. */
-bool   player_target(DisEntityId *target, const Player *player, DisEntityId munition);
+bool player_target(DisEntityId *target, const Player *player, DisEntityId munition);
 /* Whether it detonated (munitions_burst), and no report came after a silence since. */
-bool   player_spent(const Player *player, DisEntityId munition);
+bool player_spent(const Player *player, DisEntityId munition);
 /* The munition that is the host now, of those fed. munition: in and out (0:0:0: none so far). A guided one
  * (SISO-REF-010, category 1) that is in the table and has not detonated stays; else the guided one received first of
  * those in the table; else the present one, while it is in the table; else, unless a guided one has flown, the one
  * received first that is neither guided nor fixed and moves. None becomes the host that was not heard within 4 s or has
  * detonated. Fixed ones (category 3: mines) are never the host. False, and nothing changed: there is none. Of each kind
  * the latest 256 are stored. */
-bool   player_munition(DisEntityId *munition, bool *guided, const Player *player, const EntityTable *table);
+bool player_munition(DisEntityId *munition, bool *guided, const Player *player, const EntityTable *table);
 
 /* Fire PDUs and munitions dropped for newer ones, since only the latest are stored. */
-void   player_forgotten(uint64_t *shots, uint64_t *munitions, const Player *player);
+void player_forgotten(uint64_t *shots, uint64_t *munitions, const Player *player);
 
 const DisCounters *player_counters(const Player *player); /* all PDUs added, and those of them that the table
                                                            * rejected */
@@ -65,7 +65,7 @@ enum { player_opening_before = 1024 };
 /* Whether this node sent it, by the sender of its first PDU (node.site, node.application). */
 bool player_own(const DisDatagram *datagram, const Config *config);
 /* Removes this node's own datagrams from a log; returns how many. */
-int  player_drop_own(DisLog *log, const Config *config);
+int player_drop_own(DisLog *log, const Config *config);
 
 /* Whether a PDU is an Entity State with a usable entity id and position. */
 bool player_usable(const DisHeader *header, const uint8_t *pdu);

@@ -34,8 +34,9 @@ static Status hash_config(char out[sha256_text_size], const Options *o)
 Status run_prepare(Run *run)
 {
     if (!run->options.config.publish.truth && !run->wall_s) {
-        log_error("%s: publish.truth: false is for `run` and `replay --speed X`; a replay at full speed always has truth",
-                  options_command(&run->options));
+        log_error(
+            "%s: publish.truth: false is for `run` and `replay --speed X`; a replay at full speed always has truth",
+            options_command(&run->options));
         return STATUS_BAD_VALUE;
     }
     if (!run->options.config.publish.truth)
@@ -44,8 +45,9 @@ Status run_prepare(Run *run)
     unsigned planes = planes_none;
     publish_planes_parse(&planes, run->options.config.publish.planes);
     if (planes != planes_all && planes >> PLANE_EMISSIVITY & 1 && !(run->bands & (1u << BAND_MWIR | 1u << BAND_LWIR))) {
-        log_error("%s: publish.planes: emissivity is of thermal bands, and none is rendered; add mwir or lwir to sensor.bands",
-                  options_command(&run->options));
+        log_error(
+            "%s: publish.planes: emissivity is of thermal bands, and none is rendered; add mwir or lwir to sensor.bands",
+            options_command(&run->options));
         return STATUS_BAD_VALUE;
     }
     Status status = config_own_tables(&run->options.config);
@@ -79,7 +81,8 @@ Status run_survey(Run *run, const DisLog *heard)
                      (unsigned long long)counters->dropped[i], dis_drop_cause((DisDrop)i));
     if (counters->lengths_made)
         log_warn("%s: %llu PDUs have a length field of 0, which their sender should set: taken by their type and the "
-                 "datagram's length", options_command(o), (unsigned long long)counters->lengths_made);
+                 "datagram's length",
+                 options_command(o), (unsigned long long)counters->lengths_made);
     if (!etc_path(path, sizeof path, "catalog.csv")) return STATUS_BAD_VALUE;
     status = catalog_open(&run->catalog, path, o->config.models.sag_m);
     if (status == STATUS_OK) status = tables_used(&run->tables, &o->config, path);
@@ -112,7 +115,8 @@ static Status summarise_stages(double out[session_stages][3], const SessionResul
         for (int i = 0; i < r->listed; i++) sorted[i] = r->stage_ms[i][stage];
         qsort(sorted, (size_t)r->listed, sizeof *sorted, compare_doubles);
         out[stage][0] = sorted[r->listed / 2];
-        out[stage][1] = r->listed ? sorted[(int)ceil(0.95 * r->listed) - 1] : 0; /* nearest rank: never below the median */
+        out[stage][1] =
+            r->listed ? sorted[(int)ceil(0.95 * r->listed) - 1] : 0; /* nearest rank: never below the median */
         out[stage][2] = r->listed ? sorted[r->listed - 1] : 0;
     }
     free(sorted);
@@ -133,12 +137,12 @@ static Status write_run(const Run *run, const RunEnd *end)
     const Choices       *choices = end->choices;
     const SessionResult *result = end->result;
     const WoodsChoice   *woods = end->woods;
-    char        path[path_size + 16], settings[config_text_size], ring[memory_name_size];
-    const Config *config = &run->options.config;
-    const char *choice[choices_capacity], *hosts[session_hosts_kept];
-    const char *table[tables_used_max], *table_sha256[tables_used_max];
-    double      stage_ms[session_stages][3];
-    const char **hash = calloc((size_t)result->listed + 1, sizeof *hash);
+    char                 path[path_size + 16], settings[config_text_size], ring[memory_name_size];
+    const Config        *config = &run->options.config;
+    const char          *choice[choices_capacity], *hosts[session_hosts_kept];
+    const char          *table[tables_used_max], *table_sha256[tables_used_max];
+    double               stage_ms[session_stages][3];
+    const char         **hash = calloc((size_t)result->listed + 1, sizeof *hash);
     if (!hash || summarise_stages(stage_ms, result) != STATUS_OK) {
         log_error("%s: out of memory for run.json", options_command(&run->options));
         free(hash);
@@ -148,7 +152,7 @@ static Status write_run(const Run *run, const RunEnd *end)
     for (int i = 0; i < result->listed; i++) hash[i] = result->hash[i];
     config_text(settings, sizeof settings, &run->options.config);
     for (int i = 0; i < run->tables.count; i++) {
-        table[i]        = run->tables.table[i].name;
+        table[i] = run->tables.table[i].name;
         table_sha256[i] = run->tables.table[i].sha256;
     }
     for (int i = 0; i < choices->count; i++) choice[i] = choices->line[i];
@@ -160,37 +164,63 @@ static Status write_run(const Run *run, const RunEnd *end)
     snprintf(path, sizeof path, "%s/run.json", end->folder);
     memory_name(ring, config, run->options.host_count > 1 ? end->host : NULL);
     const DisLogCounters *link = run->link;
-    const WoodsRecord     plants = {.woods = &woods->woods, .paths = woods->config.path_count,
-                                    .entities = woods->entities, .in_trunks = woods->in_trunks};
-    const RunRecord       record = {
-              .status = end->state,
-              .planes = run->options.config.publish.files ? run->options.config.publish.planes : NULL,
-              .config_sha256 = run->config_sha256, .log_name = run->log_name, .log_sha256 = run->log_sha256,
-              .settings = settings, .table_count = run->tables.count, .table = table, .table_sha256 = table_sha256,
-              .isa = run->options.isa, .seed = run->options.config.seed, .threads = run->options.threads,
-              .host_count = result->host_count > 0 ? result->host_count : 1,
-              .choice_count = choices->count, .frames = result->frames, .listed = result->listed,
-              .frame_number = result->number, .host = hosts, .choice = choice, .frame_sha256 = run->options.config.publish.truth ? hash : NULL,
-              .dis = end->heard,
-              .link_dropped = link ? dis_log_dropped(link) : 0,
-              .own = run->own, .live = run->live,
-              .entities_created = result->entities.created, .entities_timed_out = result->entities.timed_out,
-              .entities_deactivated = result->entities.deactivated, .entities_removed = result->entities.removed,
-              .entities_evicted = result->entities.evicted, .entities_refused = result->entities.refused,
-              .entities_over_rate = result->entities.over_rate, .tombstones_dropped = result->entities.tombstones_dropped,
-              .marks_forgotten = result->entities.marks_forgotten,
-              .shots_forgotten = result->shots_forgotten, .munitions_forgotten = result->munitions_forgotten,
-              .frames_crowded = result->frames_crowded, .most_left_out = result->most_left_out,
-              .at_limit = result->at_limit, .radar_left_out = result->radar_left_out,
-              .effects = result->effects, .render = result->counters, .stage_count = session_stages,
-              .stage = session_stage_name,
-              .stage_ms = stage_ms, .latency = run->wall_s ? &result->latency : NULL,
-              .woods = woods->on ? &plants : NULL,
-              .memory = *config->publish.memory ? ring : NULL, .detections_port = config->publish.detections_port,
-              .sent = &result->sent, .streams = *config->publish.stream != 0,
-              .answers = config->publish.detections_port ? &result->answers : NULL,
-              .materials = &run->world.materials};
-    const Status status = record_write_run(path, &record);
+    const WoodsRecord     plants = {.woods = &woods->woods,
+                                    .paths = woods->config.path_count,
+                                    .entities = woods->entities,
+                                    .in_trunks = woods->in_trunks};
+    const RunRecord       record = {.status = end->state,
+                                    .planes = run->options.config.publish.files ? run->options.config.publish.planes : NULL,
+                                    .config_sha256 = run->config_sha256,
+                                    .log_name = run->log_name,
+                                    .log_sha256 = run->log_sha256,
+                                    .settings = settings,
+                                    .table_count = run->tables.count,
+                                    .table = table,
+                                    .table_sha256 = table_sha256,
+                                    .isa = run->options.isa,
+                                    .seed = run->options.config.seed,
+                                    .threads = run->options.threads,
+                                    .host_count = result->host_count > 0 ? result->host_count : 1,
+                                    .choice_count = choices->count,
+                                    .frames = result->frames,
+                                    .listed = result->listed,
+                                    .frame_number = result->number,
+                                    .host = hosts,
+                                    .choice = choice,
+                                    .frame_sha256 = run->options.config.publish.truth ? hash : NULL,
+                                    .dis = end->heard,
+                                    .link_dropped = link ? dis_log_dropped(link) : 0,
+                                    .own = run->own,
+                                    .live = run->live,
+                                    .entities_created = result->entities.created,
+                                    .entities_timed_out = result->entities.timed_out,
+                                    .entities_deactivated = result->entities.deactivated,
+                                    .entities_removed = result->entities.removed,
+                                    .entities_evicted = result->entities.evicted,
+                                    .entities_refused = result->entities.refused,
+                                    .entities_over_rate = result->entities.over_rate,
+                                    .tombstones_dropped = result->entities.tombstones_dropped,
+                                    .marks_forgotten = result->entities.marks_forgotten,
+                                    .shots_forgotten = result->shots_forgotten,
+                                    .munitions_forgotten = result->munitions_forgotten,
+                                    .frames_crowded = result->frames_crowded,
+                                    .most_left_out = result->most_left_out,
+                                    .at_limit = result->at_limit,
+                                    .radar_left_out = result->radar_left_out,
+                                    .effects = result->effects,
+                                    .render = result->counters,
+                                    .stage_count = session_stages,
+                                    .stage = session_stage_name,
+                                    .stage_ms = stage_ms,
+                                    .latency = run->wall_s ? &result->latency : NULL,
+                                    .woods = woods->on ? &plants : NULL,
+                                    .memory = *config->publish.memory ? ring : NULL,
+                                    .detections_port = config->publish.detections_port,
+                                    .sent = &result->sent,
+                                    .streams = *config->publish.stream != 0,
+                                    .answers = config->publish.detections_port ? &result->answers : NULL,
+                                    .materials = &run->world.materials};
+    const Status          status = record_write_run(path, &record);
     free(hash);
     return status;
 }
@@ -203,8 +233,7 @@ void run_folder(char out[run_folder_size], const Options *o, DisEntityId host)
         snprintf(out, run_folder_size, "%s/%s", o->out, host_observer);
     else if (o->host_count > 1)
         snprintf(out, run_folder_size, "%s/%u-%u-%u", o->out, host.site, host.application, host.entity);
-    else
-        snprintf(out, run_folder_size, "%s", o->out);
+    else snprintf(out, run_folder_size, "%s", o->out);
 }
 
 /* ---- one host -------------------------------------------------------------------------------- */
@@ -214,11 +243,15 @@ static void report_visibility(Choices *choices, const Config *config, const Atmo
     double low_m, high_m;
     atmosphere_visibilities(atmosphere, &low_m, &high_m);
     if (config->weather.visibility_m < low_m || config->weather.visibility_m > high_m)
-        choice_add(choices, "air: the tables reach visibilities of %.0f to %.0f m; the nearest of them is taken "
-                   "(weather.visibility_m)", low_m, high_m);
+        choice_add(choices,
+                   "air: the tables reach visibilities of %.0f to %.0f m; the nearest of them is taken "
+                   "(weather.visibility_m)",
+                   low_m, high_m);
     else if (config->weather.visibility_m < 1000)
-        choice_add(choices, "air: %.0f m of visibility is haze as thick as that; a fog of droplets is denser in "
-                   "infrared (weather.visibility_m)", config->weather.visibility_m);
+        choice_add(choices,
+                   "air: %.0f m of visibility is haze as thick as that; a fog of droplets is denser in "
+                   "infrared (weather.visibility_m)",
+                   config->weather.visibility_m);
 }
 
 /* The model of the atmosphere begins at the ground, whatever its height: high ground has the temperature of low
@@ -227,8 +260,10 @@ static void report_air_temp(Choices *choices, const Config *config, const Atmosp
 {
     const double here_k = atmosphere_temp_k(atmosphere, 0), high_k = atmosphere_temp_k(atmosphere, ground_m);
     if (isnan(config->weather.air_temp_k) && ground_m > 500)
-        choice_add(choices, "air: %.0f C at the ground, as the model has it at its own; it has %.0f C at the %.0f m "
-                   "where this ground lies (weather.air_temp_k)", here_k - 273.15, high_k - 273.15, ground_m);
+        choice_add(choices,
+                   "air: %.0f C at the ground, as the model has it at its own; it has %.0f C at the %.0f m "
+                   "where this ground lies (weather.air_temp_k)",
+                   here_k - 273.15, high_k - 273.15, ground_m);
 }
 
 static Status choose_who(HostPlan *plan, Choices *choices, Run *run, const DisEntityId *host)
@@ -243,7 +278,7 @@ static void open_span(HostPlan *plan, const Run *run, const Player *player)
 {
     if (!run->options.config.causal) return;
     plan->start_s = player_time_s(player, run->until_s);
-    plan->end_s   = INFINITY;
+    plan->end_s = INFINITY;
 }
 
 static FrameGrid grid_of(const HostPlan *plan)
@@ -253,11 +288,11 @@ static FrameGrid grid_of(const HostPlan *plan)
 
 Status run_check(Run *run, const DisEntityId *host)
 {
-    HostPlan plan    = {0};
-    Player  *player  = NULL;
+    HostPlan plan = {0};
+    Player  *player = NULL;
     Choices *choices = malloc(sizeof *choices); /* made again by run_host, in its order */
     if (!choices) return STATUS_NO_MEMORY;
-    *choices      = run->choices;
+    *choices = run->choices;
     Status status = choose_who(&plan, choices, run, host);
     if (status == STATUS_OK) status = player_create(&player, run->exercise, run->options.config.causal);
     if (status == STATUS_OK && run->options.config.causal) status = player_add_log(player, &run->view);
@@ -265,7 +300,7 @@ Status run_check(Run *run, const DisEntityId *host)
         open_span(&plan, run, player);
         choice_rate(&plan, choices, &run->options.config);
         const FrameGrid grid = grid_of(&plan);
-        status               = run->check ? run->check(run, player, &plan, &grid) : STATUS_OK;
+        status = run->check ? run->check(run, player, &plan, &grid) : STATUS_OK;
     }
     player_destroy(player);
     free(choices);
@@ -275,25 +310,25 @@ Status run_check(Run *run, const DisEntityId *host)
 /* What is chosen for one host. */
 typedef struct HostChoice {
     HostPlan      plan;
-    double        unix_s;    /* of exercise time 0 */
+    double        unix_s; /* of exercise time 0 */
     Landscape     landscape;
     GroundContact contact;
     WoodsChoice   woods;
-    Choices       choices;   /* the lines of all hosts, and of this one */
+    Choices       choices; /* the lines of all hosts, and of this one */
 } HostChoice;
 
 /* The choices and the world, with their messages. */
 static Status choose(HostChoice *out, Run *run, const DisEntityId *host)
 {
-    const Options *o     = &run->options;
-    World         *world = &run->world;
-    HostPlan      *plan  = &out->plan;
-    Landscape     *landscape = &out->landscape;
-    WoodsChoice   *woods   = &out->woods;
-    Choices       *choices = &out->choices;
+    const Options    *o = &run->options;
+    World            *world = &run->world;
+    HostPlan         *plan = &out->plan;
+    Landscape        *landscape = &out->landscape;
+    WoodsChoice      *woods = &out->woods;
+    Choices          *choices = &out->choices;
     const ChoiceBasis basis = {&run->survey, &o->config, run->catalog, plan};
-    LocalFrame     frame;
-    Status         status = choose_who(plan, choices, run, host);
+    LocalFrame        frame;
+    Status            status = choose_who(plan, choices, run, host);
     if (status == STATUS_OK) status = choice_frame(&frame, &run->survey, plan);
     if (status == STATUS_OK && *o->config.terrain.store) {
         const LocalFrame aim = frame;
@@ -322,7 +357,7 @@ static Status conclude(const Run *run, const RunEnd *end)
 {
     const Config        *config = &run->options.config;
     const SessionResult *result = end->result;
-    const char          *name   = options_command(&run->options);
+    const char          *name = options_command(&run->options);
     const Status         status = write_run(run, end);
     if (run->stopped && !run->live) log_warn("%s: stopped before its last frame; run.json says so", name);
     if (config->publish.files) log_print("%d frames in %s/frames\n", result->frames, end->folder);
@@ -332,22 +367,26 @@ static Status conclude(const Run *run, const RunEnd *end)
     if (result->radar_left_out > 0)
         log_warn("%s: %d of %d frames are without radar: signatures of targets were still to be made%s", name,
                  result->radar_left_out, result->frames,
-                 run->live ? "; radar.library keeps them for the next run (`pitviper rcs MODEL --library` makes them)" : " when it was recorded");
+                 run->live ? "; radar.library keeps them for the next run (`pitviper rcs MODEL --library` makes them)"
+                           : " when it was recorded");
     if (result->at_limit > 0) /* its warning came when it was */
-        log_print("the aim was beyond the gimbal in %d of %d frames (sensor.gimbal_limit_deg)\n", result->at_limit, result->frames);
+        log_print("the aim was beyond the gimbal in %d of %d frames (sensor.gimbal_limit_deg)\n", result->at_limit,
+                  result->frames);
     if (result->buried > 0)
         log_warn("%s: the eye was below the ground in %d of %d frames and saw nothing of use%s", name, result->buried,
-                 result->frames, *config->terrain.elevation && strcmp(config->terrain.ground, "fit") != 0
-                     ? "; over other ground than the exercise's, terrain.ground=fit leads it through" : "");
+                 result->frames,
+                 *config->terrain.elevation && strcmp(config->terrain.ground, "fit") != 0
+                     ? "; over other ground than the exercise's, terrain.ground=fit leads it through"
+                     : "");
     return status;
 }
 
 Status run_host(Run *run, const DisEntityId *host)
 {
-    const Options *o       = &run->options;
-    HostChoice     chosen  = {.choices = run->choices};
-    SessionResult  result  = {0};
-    Player        *player  = NULL;
+    const Options *o = &run->options;
+    HostChoice     chosen = {.choices = run->choices};
+    SessionResult  result = {0};
+    Player        *player = NULL;
     Session       *session = NULL;
     char           out[run_folder_size], host_text[dis_id_text_size];
 
@@ -362,18 +401,36 @@ Status run_host(Run *run, const DisEntityId *host)
     if (status != STATUS_OK) goto done;
     open_span(&chosen.plan, run, player);
     run_folder(out, o, chosen.plan.host);
-    const DisOf dis = {.config = &o->config, .bands = run->bands, .version = run->first.version,
-                       .exercise = (uint8_t)(run->exercise >= 0 ? run->exercise : run->first.exercise),
-                       .send = run->send, .user = run->user};
-    const SessionShared shared = {.config = &o->config, .survey = &run->survey, .catalog = run->catalog,
-                                  .world = &run->world, .pool = run->pool, .unix_s = chosen.unix_s, .bands = run->bands,
-                                  .no_skip = o->no_skip, .live = o->command == COMMAND_RUN,
-                                  .paced = o->command == COMMAND_REPLAY && isfinite(o->speed), .sensors = &run->sensors,
-                                  .contact = chosen.contact, .config_sha256 = run->config_sha256,
-                                  .publish = run->publish, .user = run->user, .dis = run->send ? &dis : NULL, .wall_s = run->wall_s,
-                                  .note = run->note, .notes = run->view.notes,
-                                  .clock = run->clock, .save_count = o->save_count, .save = o->save,
-                                  .several = o->host_count > 1, .isa = o->isa,
+    const DisOf         dis = {.config = &o->config,
+                               .bands = run->bands,
+                               .version = run->first.version,
+                               .exercise = (uint8_t)(run->exercise >= 0 ? run->exercise : run->first.exercise),
+                               .send = run->send,
+                               .user = run->user};
+    const SessionShared shared = {.config = &o->config,
+                                  .survey = &run->survey,
+                                  .catalog = run->catalog,
+                                  .world = &run->world,
+                                  .pool = run->pool,
+                                  .unix_s = chosen.unix_s,
+                                  .bands = run->bands,
+                                  .no_skip = o->no_skip,
+                                  .live = o->command == COMMAND_RUN,
+                                  .paced = o->command == COMMAND_REPLAY && isfinite(o->speed),
+                                  .sensors = &run->sensors,
+                                  .contact = chosen.contact,
+                                  .config_sha256 = run->config_sha256,
+                                  .publish = run->publish,
+                                  .user = run->user,
+                                  .dis = run->send ? &dis : NULL,
+                                  .wall_s = run->wall_s,
+                                  .note = run->note,
+                                  .notes = run->view.notes,
+                                  .clock = run->clock,
+                                  .save_count = o->save_count,
+                                  .save = o->save,
+                                  .several = o->host_count > 1,
+                                  .isa = o->isa,
                                   .woods = chosen.woods.on ? &chosen.woods.config : NULL};
     const FrameGrid     grid = grid_of(&chosen.plan);
     status = session_open(&session, &shared, &chosen.plan, player, out);
@@ -384,13 +441,18 @@ Status run_host(Run *run, const DisEntityId *host)
     const Status closed = session_close(session, &result);
     if (status == STATUS_OK) status = closed;
     if (run->live) {
-        run->live->files_failed   = (uint64_t)result.files_failed;
+        run->live->files_failed = (uint64_t)result.files_failed;
         run->live->files_left_out = (uint64_t)result.files_left_out;
     }
     if (result.frames > 0 || (result.begun && (run->live || run->stopped))) {
-        const RunEnd end = {.folder = out, .host = host_text,
-                            .state = status != STATUS_OK ? "failed" : run->stopped ? "stopped" : "complete",
-                            .choices = &chosen.choices, .result = &result, .woods = &chosen.woods,
+        const RunEnd end = {.folder = out,
+                            .host = host_text,
+                            .state = status != STATUS_OK ? "failed"
+                                     : run->stopped      ? "stopped"
+                                                         : "complete",
+                            .choices = &chosen.choices,
+                            .result = &result,
+                            .woods = &chosen.woods,
                             .heard = o->config.causal ? player_counters(player) : &run->survey.counters};
         const Status written = conclude(run, &end);
         if (status == STATUS_OK) status = written;
@@ -407,15 +469,20 @@ done:
 
 Status run_unheard(Run *run)
 {
-    static const WoodsChoice   woods  = {0};
-    static const DisCounters   heard  = {0};
+    static const WoodsChoice   woods = {0};
+    static const DisCounters   heard = {0};
     static const SessionResult result = {0};
-    const Options             *o      = &run->options;
+    const Options             *o = &run->options;
     char                       earlier[frame_path_size];
     if (frame_files_earlier(earlier, o->out)) return STATUS_OK;
     const Status status = frame_files_folder(o->out);
-    const RunEnd end = {.folder = o->out, .host = o->config.exercise.host, .state = run->stopped ? "stopped" : "failed",
-                        .choices = &run->choices, .result = &result, .heard = &heard, .woods = &woods};
+    const RunEnd end = {.folder = o->out,
+                        .host = o->config.exercise.host,
+                        .state = run->stopped ? "stopped" : "failed",
+                        .choices = &run->choices,
+                        .result = &result,
+                        .heard = &heard,
+                        .woods = &woods};
     return status == STATUS_OK ? write_run(run, &end) : status;
 }
 
@@ -429,7 +496,7 @@ DisUdpConfig run_network(const Config *config)
     _Static_assert(sizeof udp.address == sizeof config->network.address, "one address");
     memcpy(udp.address, config->network.address, sizeof udp.address);
     memcpy(udp.interface, config->network.interface, sizeof udp.interface);
-    udp.ttl          = config->network.ttl;
+    udp.ttl = config->network.ttl;
     udp.queue_octets = config->network.queue_mb << 20;
     return udp;
 }

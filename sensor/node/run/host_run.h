@@ -17,35 +17,35 @@ double run_frame_s(const FrameGrid *grid, double n);
 
 typedef struct Run Run;
 struct Run {
-    Options   options;
-    DisLog    view;              /* the log to play; borrowed */
-    double    until_s;           /* causal: arrival time of the last datagram used by the choices */
-    bool      stopped;           /* by a signal, before the last frame */
-    uint64_t  own;               /* datagrams of this node, ignored */
-    const DisLogCounters *link;  /* NULL: live */
-    LiveCounters         *live;  /* NULL: a replay */
-    const char *log_name;        /* in run.json */
-    char      config_sha256[sha256_text_size], log_sha256[sha256_text_size];
-    unsigned  bands;
-    int       exercise;          /* -1: all */
-    DisHeader first;             /* of the first usable Entity State: version and exercise of what is sent */
-    Survey    survey;
-    Catalog  *catalog;
-    World     world;
-    Pool     *pool;
-    Choices   choices;           /* shared by all hosts */
-    Sensors   sensors;
-    TablesUsed tables;           /* in run.json */
+    Options               options;
+    DisLog                view;     /* the log to play; borrowed */
+    double                until_s;  /* causal: arrival time of the last datagram used by the choices */
+    bool                  stopped;  /* by a signal, before the last frame */
+    uint64_t              own;      /* datagrams of this node, ignored */
+    const DisLogCounters *link;     /* NULL: live */
+    LiveCounters         *live;     /* NULL: a replay */
+    const char           *log_name; /* in run.json */
+    char                  config_sha256[sha256_text_size], log_sha256[sha256_text_size];
+    unsigned              bands;
+    int                   exercise; /* -1: all */
+    DisHeader             first;    /* of the first usable Entity State: version and exercise of what is sent */
+    Survey                survey;
+    Catalog              *catalog;
+    World                 world;
+    Pool                 *pool;
+    Choices               choices; /* shared by all hosts */
+    Sensors               sensors;
+    TablesUsed            tables; /* in run.json */
     /* Whether there are frames to be rendered, before the world is set up; may be NULL. */
-    Status  (*check)(Run *run, const Player *player, const HostPlan *plan, const FrameGrid *grid);
+    Status (*check)(Run *run, const Player *player, const HostPlan *plan, const FrameGrid *grid);
     /* Renders the frames. */
-    Status  (*frames)(Run *run, Session *session, Player *player, const HostPlan *plan, const FrameGrid *grid);
-    void    (*publish)(void *user, const FrameRecord *frame); /* may be NULL */
-    void    (*note)(void *user, const char *text);           /* into the recording; may be NULL */
-    DisSend  *send;              /* sends the Data PDUs of publish.dis; NULL: they are not sent */
-    void     *user;              /* of these four */
-    double  (*wall_s)(void *clock, double t_s); /* SessionShared.wall_s: frames are rendered by the clock; NULL: not */
-    void     *clock;
+    Status (*frames)(Run *run, Session *session, Player *player, const HostPlan *plan, const FrameGrid *grid);
+    void (*publish)(void *user, const FrameRecord *frame); /* may be NULL */
+    void (*note)(void *user, const char *text);            /* into the recording; may be NULL */
+    DisSend *send;                             /* sends the Data PDUs of publish.dis; NULL: they are not sent */
+    void    *user;                             /* of these four */
+    double (*wall_s)(void *clock, double t_s); /* SessionShared.wall_s: frames are rendered by the clock; NULL: not */
+    void *clock;
 };
 
 /* Bands, sensors, hash of the configuration: before anything is received. */
@@ -62,7 +62,7 @@ Status run_unheard(Run *run);
 void   run_close(Run *run);
 /* The folder for the products of one host. */
 enum { run_folder_size = 4096 };
-void   run_folder(char out[run_folder_size], const Options *options, DisEntityId host);
+void run_folder(char out[run_folder_size], const Options *options, DisEntityId host);
 
 /* The addresses of the configuration: where a node listens, where it and a replay send. The port is exercise.port, or
  * 3000 where that is chosen or any. */

@@ -17,6 +17,6 @@ void stop_outlive_readers(void);
 bool stop_asked(void);
 /* 128 plus the number of the stop signal, as in a shell's exit status: 130 for Ctrl-C, 143 for SIGTERM, 129 for
  * SIGHUP, 138 for SIGUSR1; 0: none. */
-int  stop_exit_code(void);
+int stop_exit_code(void);
 
 #endif

@@ -10,9 +10,9 @@ static const struct {
     const char *name;
     uint32_t    first;
 } classes[] = {
-    {"primary turret", 4096},   {"primary gun", 4416},   {"primary launcher", 4736},
-    {"primary defense system", 5056},   {"primary radar", 5376},   {"secondary turret", 5696},
-    {"secondary gun", 6016}, {"secondary launcher", 6336}, {"secondary defense system", 6656},
+    {"primary turret", 4096},         {"primary gun", 4416},        {"primary launcher", 4736},
+    {"primary defense system", 5056}, {"primary radar", 5376},      {"secondary turret", 5696},
+    {"secondary gun", 6016},          {"secondary launcher", 6336}, {"secondary defense system", 6656},
     {"secondary radar", 6976},
 };
 enum { class_count = sizeof classes / sizeof *classes, of_a_class = 10, class_step = 32 };
@@ -101,8 +101,8 @@ void seeker_step(Seeker *seeker, const double d_body[3])
 
     /* An aim beyond the limit: the nearest direction on the cone, in the plane of axis and aim. */
     const double off_rad = atan2(hypot(d[1], d[2]), d[0]);
-    seeker->off_rad      = off_rad;
-    seeker->at_limit     = off_rad > seeker->config.limit_rad;
+    seeker->off_rad = off_rad;
+    seeker->at_limit = off_rad > seeker->config.limit_rad;
     if (seeker->at_limit) {
         const double side = hypot(d[1], d[2]);
         const double y = side > 0 ? d[1] / side : 1, z = side > 0 ? d[2] / side : 0;
@@ -112,14 +112,14 @@ void seeker_step(Seeker *seeker, const double d_body[3])
     }
     const double azimuth_rad = atan2(d[1], d[0]), elevation_rad = asin(clamp(-d[2], -1, 1));
     if (!seeker->started) {
-        seeker->started       = true;
-        seeker->azimuth_rad   = azimuth_rad;
+        seeker->started = true;
+        seeker->azimuth_rad = azimuth_rad;
         seeker->elevation_rad = elevation_rad;
         return;
     }
     static const double tick_s = 1.0 / seeker_ticks_per_s;
-    const double share = seeker->config.lag_s > 0 ? -expm1(-tick_s / seeker->config.lag_s) : 1;
-    const double most  = seeker->config.rate_rps * tick_s;
+    const double        share = seeker->config.lag_s > 0 ? -expm1(-tick_s / seeker->config.lag_s) : 1;
+    const double        most = seeker->config.rate_rps * tick_s;
     seeker->azimuth_rad += clamp(share * remainder(azimuth_rad - seeker->azimuth_rad, 2 * pi_rad), -most, most);
     seeker->azimuth_rad = remainder(seeker->azimuth_rad, 2 * pi_rad);
     seeker->elevation_rad += clamp(share * (elevation_rad - seeker->elevation_rad), -most, most);
@@ -155,8 +155,8 @@ void seeker_roll(Seeker *seeker, const double r_enu_from_body[9])
     double              d[3], upright[3], carried[3], side[3];
     boresight(d, seeker, r_enu_from_body);
     const bool vertical = view_near_vertical(d);
-    const bool kept     = seeker->top_known && across(carried, seeker->top_enu, d);
-    seeker->upright     = !vertical;
+    const bool kept = seeker->top_known && across(carried, seeker->top_enu, d);
+    seeker->upright = !vertical;
     if (!vertical) {
         v3_add_scaled(upright, up, -v3_dot(up, d), d); /* of length above 1e-3 */
         v3_normalize(upright, upright);
@@ -193,7 +193,7 @@ void seeker_camera(double r_enu_from_cam[9], const Seeker *seeker, const double 
     const double c = cos(seeker->config.roll_rad), s = sin(seeker->config.roll_rad);
     for (int i = 0; i < 3; i++) {
         const double right = r_enu_from_cam[3 * i], down = r_enu_from_cam[3 * i + 1];
-        r_enu_from_cam[3 * i]     = c * right + s * down;
+        r_enu_from_cam[3 * i] = c * right + s * down;
         r_enu_from_cam[3 * i + 1] = c * down - s * right;
     }
 }

@@ -23,22 +23,22 @@
  *     mount_roll_deg                      turns the image about the boresight, its right side down: the image is
  *                                         roll-stabilised to this angle */
 typedef struct Mount {
-    bool   on_part;             /* not auto */
+    bool   on_part; /* not auto */
     char   part[48];
-    double offset_m[3];         /* NaN: not given */
+    double offset_m[3]; /* NaN: not given */
     double r_base_from_mount[9];
 } Mount;
 
 enum { mount_body = -1, mount_missing = -2 };
 
-Mount    seeker_mount(const Config *config);
+Mount seeker_mount(const Config *config);
 /* Node of a model that the sensor goes with; mount_body: the body itself; mount_missing: no such part. */
-int      seeker_mount_node(const Mount *mount, const Model *model);
+int seeker_mount_node(const Mount *mount, const Model *model);
 /* Class number of an articulated part's words or number; 0: neither. */
 uint32_t seeker_mount_class(const char *part);
 /* Sensor position and mount axes. node: poses of the host's nodes; at: of seeker_mount_node, negative: on the body. */
-void     seeker_mount_place(double p_ecef[3], double r_ecef_from_mount[9], const Mount *mount,
-                            const SnapshotEntity *host, const Model *model, const NodePose *node, int at);
+void seeker_mount_place(double p_ecef[3], double r_ecef_from_mount[9], const Mount *mount, const SnapshotEntity *host,
+                        const Model *model, const NodePose *node, int at);
 
 /* ---- the gimbal ------------------------------------------------------------------------------------- */
 
@@ -64,17 +64,17 @@ static const double seeker_roll_rps = 1.5707963267948966; /* 90 deg/s; estimate:
 
 typedef struct SeekerConfig {
     double limit_rad, rate_rps, lag_s;
-    double roll_rad;      /* of the image about the boresight, against upright: its right side down */
+    double roll_rad; /* of the image about the boresight, against upright: its right side down */
 } SeekerConfig;
 
 typedef struct Seeker {
     SeekerConfig config;
     bool         started;
     double       azimuth_rad, elevation_rad;
-    double       off_rad;     /* of the aim, off the axis */
-    bool         at_limit;    /* the aim is outside the cone the gimbal reaches */
+    double       off_rad;  /* of the aim, off the axis */
+    bool         at_limit; /* the aim is outside the cone the gimbal reaches */
     bool         top_known, upright;
-    double       top_enu[3];  /* of the image without config.roll_rad, at the last tick; unit */
+    double       top_enu[3]; /* of the image without config.roll_rad, at the last tick; unit */
 } Seeker;
 
 /* One tick towards a direction in body axes. The first call points there at once, as a head that is

@@ -41,9 +41,9 @@ static Status open_vehicles(Session *s)
     if (!shared->world->heat) return STATUS_OK;
     s->vehicle_arena = arena_create();
     if (!s->vehicle_arena) return STATUS_NO_MEMORY;
-    const char  *given = shared->config->heat.given;
-    const char  *kept = shared->config->heat.vehicles;
-    Status       status = *given ? given_heat_open(&s->given, given) : STATUS_OK;
+    const char *given = shared->config->heat.given;
+    const char *kept = shared->config->heat.vehicles;
+    Status      status = *given ? given_heat_open(&s->given, given) : STATUS_OK;
     if (status == STATUS_OK && *kept && access(kept, F_OK) == 0) status = heat_kept_open(&s->kept, kept);
     if (status != STATUS_OK) return status;
     return world_vehicles_create(&s->vehicles, shared->world,
@@ -64,43 +64,40 @@ static Status open_radar(Session *s)
 static Status open_session(Session *s)
 {
     const SessionShared *shared = s->shared;
-    EntityTableConfig    table  = entity_table_default_config();
+    EntityTableConfig    table = entity_table_default_config();
 
-    table.pool                  = shared->pool;
-    table.capacity              = shared->config->entities.capacity;
-    table.shown                 = shared->config->entities.shown;
-    table.new_per_s             = shared->config->entities.new_per_s;
-    table.timeout_s             = shared->config->entities.timeout_s;
-    table.timeout_land_v7_s     = shared->config->entities.timeout_land_v7_s;
+    table.pool = shared->pool;
+    table.capacity = shared->config->entities.capacity;
+    table.shown = shared->config->entities.shown;
+    table.new_per_s = shared->config->entities.new_per_s;
+    table.timeout_s = shared->config->entities.timeout_s;
+    table.timeout_land_v7_s = shared->config->entities.timeout_land_v7_s;
     table.extrapolation_limit_s = shared->config->entities.extrapolation_limit_s;
     if (shared->contact != GROUND_CONTACT_NONE)
         table.ground = (ContactGround){
-            .frame = &shared->world->frame, .elevation = &shared->world->landscape->elevation,
+            .frame = &shared->world->frame,
+            .elevation = &shared->world->landscape->elevation,
             .landscape = shared->contact == GROUND_CONTACT_INCONSISTENT ? shared->world->landscape : NULL};
-    s->seeker.config = (SeekerConfig){shared->config->sensor.gimbal_limit_deg * rad_per_deg,
-                                      shared->config->sensor.gimbal_rate_dps * rad_per_deg,
-                                      shared->config->sensor.gimbal_lag_s,
-                                      shared->config->sensor.mount_roll_deg * rad_per_deg};
-    s->mount       = seeker_mount(shared->config);
+    s->seeker.config = (SeekerConfig){
+        shared->config->sensor.gimbal_limit_deg * rad_per_deg, shared->config->sensor.gimbal_rate_dps * rad_per_deg,
+        shared->config->sensor.gimbal_lag_s, shared->config->sensor.mount_roll_deg * rad_per_deg};
+    s->mount = seeker_mount(shared->config);
     s->mount_model = -1;
-    s->limit_tick  = -1;
+    s->limit_tick = -1;
     s->given_up_reported_s = s->left_out_reported_s = -INFINITY;
-    s->tick    = (int64_t)ceil(s->plan.start_s * seeker_ticks_per_s);
+    s->tick = (int64_t)ceil(s->plan.start_s * seeker_ticks_per_s);
     memcpy(s->p_aim_ecef, s->plan.p_aim_ecef, sizeof s->p_aim_ecef);
-    if (observes(&s->plan))
-        strcpy(s->host_text, "observer");
-    else if (s->plan.any_munition)
-        strcpy(s->host_text, "munition");
-    else
-        dis_entity_id_text(s->host_text, s->plan.host);
+    if (observes(&s->plan)) strcpy(s->host_text, "observer");
+    else if (s->plan.any_munition) strcpy(s->host_text, "munition");
+    else dis_entity_id_text(s->host_text, s->plan.host);
     if (!s->plan.any_munition) session_note_host(s);
 
     int most_nodes = 1;
     for (int m = 0; m < catalog_model_count(shared->catalog); m++) {
         const int nodes = catalog_model(shared->catalog, m)->node_count;
-        most_nodes      = nodes > most_nodes ? nodes : most_nodes;
+        most_nodes = nodes > most_nodes ? nodes : most_nodes;
     }
-    s->node  = calloc((size_t)most_nodes, sizeof *s->node);
+    s->node = calloc((size_t)most_nodes, sizeof *s->node);
     s->joint = calloc((size_t)most_nodes, sizeof *s->joint);
     if (!s->node || !s->joint) return STATUS_NO_MEMORY;
 
@@ -120,8 +117,8 @@ Status session_open(Session **out, const SessionShared *shared, const HostPlan *
     Session *s = calloc(1, sizeof *s);
     if (!s) return STATUS_NO_MEMORY;
     s->shared = shared;
-    s->fed_s  = -INFINITY;
-    s->plan   = *plan;
+    s->fed_s = -INFINITY;
+    s->plan = *plan;
     s->player = player;
     Status status = STATUS_OK;
     if (snprintf(s->out, sizeof s->out, "%s", folder) >= (int)sizeof s->out) status = STATUS_BAD_VALUE;
@@ -139,7 +136,7 @@ static Status room_in_lists(SessionResult *r, int *capacity)
 {
     if (r->listed < *capacity) return STATUS_OK;
     const int larger = *capacity ? 2 * *capacity : 1024;
-    int (*numbers)   = realloc(r->number, (size_t)larger * sizeof *numbers);
+    int(*numbers) = realloc(r->number, (size_t)larger * sizeof *numbers);
     if (numbers) r->number = numbers;
     char(*hash)[sha256_text_size] = realloc(r->hash, (size_t)larger * sizeof *hash);
     if (hash) r->hash = hash;
@@ -153,16 +150,18 @@ static Status room_in_lists(SessionResult *r, int *capacity)
 /* Lists a frame that all consumers have received; called in the publishing thread. */
 static void list_frame(void *user, const Frame *f)
 {
-    Session            *s     = user;
-    SessionResult      *r     = &s->result;
-    const Provenance   *p     = &f->provenance;
-    const RenderTimes  *times = &f->seen.picture.times;
-    const double        share = 1.0 / pool_threads(s->shared->pool); /* of a sum over threads: as if evenly spread */
-    const double        publish_s = wall_clock_s() - f->publish_begun_s;
-    const double ms[session_stages] = {
-        1e3 * (p->rendered_s - p->begun_s + publish_s), 1e3 * (p->posed_s - p->begun_s),
-        times->prepare_ms + share * (times->visibility_ms + times->shadow_ms), share * times->shade_ms,
-        share * times->radar_ms, 1e3 * publish_s};
+    Session           *s = user;
+    SessionResult     *r = &s->result;
+    const Provenance  *p = &f->provenance;
+    const RenderTimes *times = &f->seen.picture.times;
+    const double       share = 1.0 / pool_threads(s->shared->pool); /* of a sum over threads: as if evenly spread */
+    const double       publish_s = wall_clock_s() - f->publish_begun_s;
+    const double       ms[session_stages] = {1e3 * (p->rendered_s - p->begun_s + publish_s),
+                                             1e3 * (p->posed_s - p->begun_s),
+                                             times->prepare_ms + share * (times->visibility_ms + times->shadow_ms),
+                                             share * times->shade_ms,
+                                             share * times->radar_ms,
+                                             1e3 * publish_s};
     s->published++;
     r->at_limit += f->record.gimbal_at_limit;
     r->buried += f->buried;
@@ -180,10 +179,10 @@ static void list_frame(void *user, const Frame *f)
 static void report_crowd(Session *s, int left_out)
 {
     static const double   remind_s = 60;
-    const EntityCounters *c        = entity_table_counters(s->table);
-    const Config         *config   = s->shared->config;
+    const EntityCounters *c = entity_table_counters(s->table);
+    const Config         *config = s->shared->config;
     const uint64_t        given_up = c->evicted + c->refused;
-    const double          now_s    = wall_clock_s();
+    const double          now_s = wall_clock_s();
     DisEntityId           sender;
     if (given_up > s->given_up_reported && !(now_s - s->given_up_reported_s < remind_s)) {
         const int most = entity_table_largest_sender(&sender, s->table);
@@ -192,7 +191,7 @@ static void report_crowd(Session *s, int left_out)
             "the most, %d; near the host, and what goes on reporting, stays (entities.capacity)",
             s->host_text, config->entities.capacity, (unsigned long long)c->evicted, (unsigned long long)c->refused,
             sender.site, sender.application, most);
-        s->given_up_reported   = given_up;
+        s->given_up_reported = given_up;
         s->given_up_reported_s = now_s;
     }
     if (left_out == 0) return;
@@ -210,24 +209,24 @@ static void report_crowd(Session *s, int left_out)
 static void begin_latency(Session *s, Frame *f)
 {
     const SessionShared *shared = s->shared;
-    const double         fed_s  = player_fed_s(s->player);
+    const double         fed_s = player_fed_s(s->player);
     if (!s->latency) return;
     f->times.arrived_s = isfinite(fed_s) ? shared->wall_s(shared->clock, fed_s) : 0;
-    f->times.fresh     = fed_s > s->fed_s;
-    s->fed_s           = fed_s;
-    f->latency         = s->latency;
-    f->latency_key     = latency_begin(s->latency, &f->times);
+    f->times.fresh = fed_s > s->fed_s;
+    s->fed_s = fed_s;
+    f->latency = s->latency;
+    f->latency_key = latency_begin(s->latency, &f->times);
 }
 
 Status session_frame(bool *shown, Session *s, int number, double t_s)
 {
-    int    left_out = 0;
+    int left_out = 0;
     session_advance(s, t_s);
     Status status = s->advance_status;
     *shown = false;
     if (status == STATUS_OK && session_host_is_there(s)) { /* otherwise nothing is extrapolated for it */
         Frame *frame = frame_pool_take(s->frames);
-        status       = session_make_frame(shown, &left_out, frame, s, number, t_s);
+        status = session_make_frame(shown, &left_out, frame, s, number, t_s);
         if (status == STATUS_OK && *shown) {
             begin_latency(s, frame);
             status = consumers_put(&s->consumers, frame);
@@ -264,7 +263,8 @@ static void report_vehicles(const Session *s)
             "heat of vehicles: too many entities: those with the highest ids were as warm as the air (entities.shown)");
     if (c->failed > 0)
         log_warn("heat of vehicles: %llu steps were given up, and temperatures kept; look at etc/heat.csv and "
-                 "etc/heat_machines.csv for extreme values", (unsigned long long)c->failed);
+                 "etc/heat_machines.csv for extreme values",
+                 (unsigned long long)c->failed);
 }
 
 Status session_close(Session *s, SessionResult *result)
@@ -279,8 +279,8 @@ Status session_close(Session *s, SessionResult *result)
         status = entity_table_marks_save(s->table, s->shared->unix_s, s->shared->config->heat.marks);
     if (s->opened && s->vehicles && *s->shared->config->heat.vehicles && status == STATUS_OK)
         status = vehicle_heat_keep(world_vehicles_heat(s->vehicles), s->shared->config->heat.vehicles);
-    s->result.frames         = s->published;
-    s->result.files_failed   = s->written.failed + s->lines_failed;
+    s->result.frames = s->published;
+    s->result.files_failed = s->written.failed + s->lines_failed;
     s->result.files_left_out = s->written.left_out;
     player_forgotten(&s->result.shots_forgotten, &s->result.munitions_forgotten, s->player);
     if (s->table) s->result.entities = *entity_table_counters(s->table);

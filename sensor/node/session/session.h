@@ -20,27 +20,27 @@ typedef struct SessionShared {
     const Catalog *catalog;
     World         *world;
     Pool          *pool;
-    double         unix_s;    /* Unix time of exercise time 0 */
+    double         unix_s; /* Unix time of exercise time 0 */
     unsigned       bands;
     bool           no_skip;
-    GroundContact  contact;   /* which entities are clamped to the world's ground */
-    bool           live;      /* a file that cannot be written does not end the session */
-    bool           paced;     /* a replay by the clock: streams are left out when late, as live */
+    GroundContact  contact; /* which entities are clamped to the world's ground */
+    bool           live;    /* a file that cannot be written does not end the session */
+    bool           paced;   /* a replay by the clock: streams are left out when late, as live */
     const char    *config_sha256;
     const Sensors *sensors;
-    void         (*publish)(void *user, const FrameRecord *frame); /* called for each frame; NULL: not */
-    void          *user;
-    const DisOf   *dis;       /* Data PDUs of each frame, its clock being the player; NULL: none */
-    double       (*wall_s)(void *clock, double t_s); /* wall_clock_s at which exercise time t_s arrives here; NULL: no
-                                                    * latency ledger is kept */
-    void          *clock;     /* of wall_s */
-    int            save_count; /* frames that are also written as frame files, ascending */
-    const int     *save;       /* [save_count] */
-    const WoodsConfig *woods;  /* of the world's plants; NULL: none */
-    const char    *isa;        /* as tracer_create */
-    void         (*note)(void *user, const char *text); /* into the live recording; NULL: there is none; user: as above */
-    const char    *notes;      /* of the recording that is played, DisLog.notes; NULL: none */
-    bool           several;    /* hosts, one after the other: what has a name of its own gets the host's too */
+    void (*publish)(void *user, const FrameRecord *frame); /* called for each frame; NULL: not */
+    void        *user;
+    const DisOf *dis;                           /* Data PDUs of each frame, its clock being the player; NULL: none */
+    double (*wall_s)(void *clock, double t_s);  /* wall_clock_s at which exercise time t_s arrives here; NULL: no
+                                                 * latency ledger is kept */
+    void              *clock;                   /* of wall_s */
+    int                save_count;              /* frames that are also written as frame files, ascending */
+    const int         *save;                    /* [save_count] */
+    const WoodsConfig *woods;                   /* of the world's plants; NULL: none */
+    const char        *isa;                     /* as tracer_create */
+    void (*note)(void *user, const char *text); /* into the live recording; NULL: there is none; user: as above */
+    const char *notes;                          /* of the recording that is played, DisLog.notes; NULL: none */
+    bool        several; /* hosts, one after the other: what has a name of its own gets the host's too */
 } SessionShared;
 
 enum { session_stages = 6, session_frames_kept = 1000000, session_hosts_kept = 64 };
@@ -48,26 +48,26 @@ extern const char *const session_stage_name[session_stages];
 
 /* Lists hold the first session_frames_kept frames; a live node may render more. */
 typedef struct SessionResult {
-    bool    begun;                    /* it has files: what an earlier run left is gone */
-    int     frames;
-    int     listed;
-    int     buried;                   /* frames with the sensor below the ground */
-    int     at_limit;                 /* frames whose aim was beyond the gimbal limit */
-    int     frames_crowded, most_left_out; /* frames without all entities; the most that one frame lacks */
-    int     host_count;               /* the first session_hosts_kept hosts, in order */
-    char    host[session_hosts_kept][dis_id_text_size];
-    int     radar_left_out;           /* frames without radar, for want of signatures */
-    AnswerCounters answers;           /* of a recogniser; when closed */
-    SentCounters sent;                /* likewise: streams, ring of frames */
-    int     files_failed, files_left_out; /* live: frames without files, for disk errors, for time; when closed */
-    int   (*number);                  /* [listed] */
-    char  (*hash)[sha256_text_size];  /* [listed] */
+    bool           begun; /* it has files: what an earlier run left is gone */
+    int            frames;
+    int            listed;
+    int            buried;                        /* frames with the sensor below the ground */
+    int            at_limit;                      /* frames whose aim was beyond the gimbal limit */
+    int            frames_crowded, most_left_out; /* frames without all entities; the most that one frame lacks */
+    int            host_count;                    /* the first session_hosts_kept hosts, in order */
+    char           host[session_hosts_kept][dis_id_text_size];
+    int            radar_left_out;      /* frames without radar, for want of signatures */
+    AnswerCounters answers;             /* of a recogniser; when closed */
+    SentCounters   sent;                /* likewise: streams, ring of frames */
+    int files_failed, files_left_out;   /* live: frames without files, for disk errors, for time; when closed */
+    int(*number);                       /* [listed] */
+    char (*hash)[sha256_text_size];     /* [listed] */
     double (*stage_ms)[session_stages]; /* [listed] */
-    LatencySummary latency;           /* when closed; of a session with a ledger */
+    LatencySummary latency;             /* when closed; of a session with a ledger */
     RenderCounters counters;
     EntityCounters entities;
     EffectCounters effects;
-    uint64_t    shots_forgotten, munitions_forgotten; /* player_forgotten */
+    uint64_t       shots_forgotten, munitions_forgotten; /* player_forgotten */
 } SessionResult;
 
 typedef struct Session Session;
@@ -81,9 +81,9 @@ Status session_open(Session **out, const SessionShared *shared, const HostPlan *
 Status session_frame(bool *shown, Session *session, int number, double t_s);
 /* So far. */
 const SessionResult *session_result(const Session *session);
-int         session_entities(const Session *session); /* entities present */
+int                  session_entities(const Session *session); /* entities present */
 uint64_t    session_over_rate(const Session *session); /* reports of new entities above the rate: entities.new_per_s */
-const char *session_host(const Session *session); /* id as text, `observer`, or `munition` while there is none */
+const char *session_host(const Session *session);      /* id as text, `observer`, or `munition` while there is none */
 /* The caller frees the session's result with session_result_free; NULL: it is freed too. */
 Status session_close(Session *session, SessionResult *result);
 void   session_result_free(SessionResult *result);
@@ -99,7 +99,7 @@ void session_radar_absent_text(char out[session_radar_absent_size], int number, 
 typedef struct RadarAbsent RadarAbsent;
 /* From DisLog.notes; other notes are passed over. *out NULL: none. */
 Status session_radar_absent_read(RadarAbsent **out, const char *notes);
-void   session_radar_absent_free(RadarAbsent *absent); /* accepts NULL */
+void   session_radar_absent_free(RadarAbsent *absent);                             /* accepts NULL */
 bool   session_radar_absent_in(const RadarAbsent *absent, int number, double t_s); /* of NULL: false */
 
 #endif

@@ -19,7 +19,7 @@ static Status chains_of(Chains *out, const Sensors *sensors, const Config *confi
 /* Adds displays, if a consumer of the other list wants them. */
 static Status add_displays(Consumers *list, Session *s, Pool *pool, unsigned wants)
 {
-    const SessionShared *shared   = s->shared;
+    const SessionShared *shared = s->shared;
     Consumer            *consumer = NULL;
     Chains               chains;
     if (!(wants & (WANT_DISPLAY | WANT_COUNTS))) return STATUS_OK;
@@ -32,24 +32,26 @@ static Status add_displays(Consumers *list, Session *s, Pool *pool, unsigned wan
 static Status add_pictures(Consumers *list, Session *s, Pool *pool)
 {
     Consumer    *consumer = NULL;
-    const Status status   = consume_pictures(&consumer, &(PictureFiles){.out = s->out, .config = s->shared->config,
-                                                                        .pool = pool, .patient = s->shared->live});
+    const Status status = consume_pictures(
+        &consumer,
+        &(PictureFiles){.out = s->out, .config = s->shared->config, .pool = pool, .patient = s->shared->live});
     return status == STATUS_OK ? consumers_add(list, consumer) : status;
 }
 
 static Status add_radar(Consumers *list, Session *s, Pool *pool)
 {
-    Consumer    *consumer = NULL;
+    Consumer *consumer = NULL;
     if (!s->radar) return STATUS_OK;
-    const Status status = consume_radar(&consumer, &(PictureFiles){.out = s->out, .config = s->shared->config, .pool = pool,
-                                                                   .patient = s->shared->live});
+    const Status status = consume_radar(
+        &consumer,
+        &(PictureFiles){.out = s->out, .config = s->shared->config, .pool = pool, .patient = s->shared->live});
     return status == STATUS_OK ? consumers_add(list, consumer) : status;
 }
 
 static Status add_latest(Consumers *list, Session *s)
 {
     Consumer    *consumer = NULL;
-    const Status status   = consume_latest(&consumer, s->out, s->shared->live);
+    const Status status = consume_latest(&consumer, s->out, s->shared->live);
     return status == STATUS_OK ? consumers_add(list, consumer) : status;
 }
 
@@ -64,23 +66,35 @@ static const Geoid *geoid_of(Session *s)
 static Status add_video(Consumers *list, Session *s, unsigned to, bool patient)
 {
     const SessionShared *shared = s->shared;
-    const char          *slash  = strrchr(s->out, '/');
+    const char          *slash = strrchr(s->out, '/');
     if (!(to & video_wanted(shared->config))) return STATUS_OK;
-    const VideoOf of = {.config = shared->config, .to = to, .bands = shared->bands, .rate_hz = s->plan.rate_hz,
-                        .patient = patient, .geoid = geoid_of(s), .detections = s->detections,
-                        .sent = &s->result.sent.stream, .host_folder = !shared->several ? NULL : slash ? slash + 1 : s->out};
+    const VideoOf of = {.config = shared->config,
+                        .to = to,
+                        .bands = shared->bands,
+                        .rate_hz = s->plan.rate_hz,
+                        .patient = patient,
+                        .geoid = geoid_of(s),
+                        .detections = s->detections,
+                        .sent = &s->result.sent.stream,
+                        .host_folder = !shared->several ? NULL
+                                       : slash          ? slash + 1
+                                                        : s->out};
     Consumer     *consumer = NULL;
-    const Status  status   = consume_video(&consumer, &of);
+    const Status  status = consume_video(&consumer, &of);
     return status == STATUS_OK ? consumers_add(list, consumer) : status;
 }
 
 static Status add_pairs(Consumers *list, Session *s, Pool *pool, unsigned raw)
 {
     const SessionShared *shared = s->shared;
-    PairsOf              of = {.out = s->out, .config = shared->config, .config_sha256 = shared->config_sha256,
-                               .pool = pool, .bands = shared->bands, .raw = raw};
+    PairsOf              of = {.out = s->out,
+                               .config = shared->config,
+                               .config_sha256 = shared->config_sha256,
+                               .pool = pool,
+                               .bands = shared->bands,
+                               .raw = raw};
     Consumer            *consumer = NULL;
-    Sensors             *quiet    = malloc(sizeof *quiet);
+    Sensors             *quiet = malloc(sizeof *quiet);
     if (!quiet) return STATUS_NO_MEMORY;
     *quiet = *shared->sensors;
     for (int b = 0; b < BAND_COUNT; b++) quiet->preset[b].noise_scale = 0;
@@ -109,37 +123,41 @@ static Status add_truth_lines(Consumers *list, Session *s)
 static Status add_hashes(Consumers *list, Session *s, FrameDone *done)
 {
     Consumer    *consumer = NULL;
-    const Status status   = consume_hashes(&consumer, done, s, s->shared->config->publish.truth);
+    const Status status = consume_hashes(&consumer, done, s, s->shared->config->publish.truth);
     return status == STATUS_OK ? consumers_add(list, consumer) : status;
 }
 
 static Status add_coco(Consumers *list, Session *s)
 {
     Consumer    *consumer = NULL;
-    const Status status   = consume_coco(&consumer, s->out, s->shared->config, s->shared->config_sha256);
+    const Status status = consume_coco(&consumer, s->out, s->shared->config, s->shared->config_sha256);
     return status == STATUS_OK ? consumers_add(list, consumer) : status;
 }
 
 static Status add_klv(Consumers *list, Session *s)
 {
-    const KlvFiles of = {.out = s->out, .config = s->shared->config, .bands = s->shared->bands,
-                         .patient = s->shared->live, .geoid = geoid_of(s), .detections = s->detections};
+    const KlvFiles of = {.out = s->out,
+                         .config = s->shared->config,
+                         .bands = s->shared->bands,
+                         .patient = s->shared->live,
+                         .geoid = geoid_of(s),
+                         .detections = s->detections};
     Consumer      *consumer = NULL;
-    const Status   status   = consume_klv(&consumer, &of);
+    const Status   status = consume_klv(&consumer, &of);
     return status == STATUS_OK ? consumers_add(list, consumer) : status;
 }
 
 static Status add_call(Consumers *list, const SessionShared *shared)
 {
     Consumer    *consumer = NULL;
-    const Status status   = consume_by_call(&consumer, shared->publish, shared->user, shared->config->publish.truth);
+    const Status status = consume_by_call(&consumer, shared->publish, shared->user, shared->config->publish.truth);
     return status == STATUS_OK ? consumers_add(list, consumer) : status;
 }
 
 /* A recogniser's detections: answers.jsonl, and metadata. */
 static Status add_detections(Consumers *list, Session *s)
 {
-    const Config *config   = s->shared->config;
+    const Config *config = s->shared->config;
     Consumer     *consumer = NULL;
     if (!config->publish.detections_port) return STATUS_OK;
     Status status = detections_open(&s->detections, &(DetectionsOf){.port = config->publish.detections_port,
@@ -153,12 +171,14 @@ static Status add_detections(Consumers *list, Session *s)
 /* Shared memory never waits: before all other consumers, but for raw counts behind the displays that they belong to. */
 static Status add_memory(Consumers *list, Session *s, bool behind_displays)
 {
-    const SessionShared *shared   = s->shared;
-    const Config        *config   = shared->config;
+    const SessionShared *shared = s->shared;
+    const Config        *config = shared->config;
     Consumer            *consumer = NULL;
-    const bool           counts   = strcmp(config->publish.memory_planes, "counts") == 0;
+    const bool           counts = strcmp(config->publish.memory_planes, "counts") == 0;
     if (!*config->publish.memory || counts != behind_displays) return STATUS_OK;
-    MemoryOf of = {.config = config, .config_sha256 = shared->config_sha256, .bands = shared->bands,
+    MemoryOf of = {.config = config,
+                   .config_sha256 = shared->config_sha256,
+                   .bands = shared->bands,
                    .unnamed = &s->result.sent.frames_unnamed,
                    .host = shared->several ? s->host_text : NULL};
     for (int b = 0; b < BAND_COUNT; b++)
@@ -171,11 +191,11 @@ static double arrival_s(const void *player, double t_s) { return player_arrival_
 
 static Status add_dis(Consumers *list, const Session *s)
 {
-    Consumer    *consumer = NULL;
-    DisOf        of       = *s->shared->dis;
-    of.arrival_s          = arrival_s;
-    of.clock              = s->player;
-    const Status status   = consume_dis(&consumer, &of);
+    Consumer *consumer = NULL;
+    DisOf     of = *s->shared->dis;
+    of.arrival_s = arrival_s;
+    of.clock = s->player;
+    const Status status = consume_dis(&consumer, &of);
     return status == STATUS_OK ? consumers_add(list, consumer) : status;
 }
 
@@ -235,10 +255,10 @@ static Status replay_files(Consumers *list, Session *s, FrameDone *done, Pool *p
 static Status for_replay(Session *s, FrameDone *done, unsigned raw)
 {
     const int  threads = pool_threads(s->shared->pool);
-    const bool behind  = threads > 1;
+    const bool behind = threads > 1;
     Consumers  first = {0}, files = {0}, all = {0};
     Status     status = behind ? pool_create(&s->publish_pool, threads) : STATUS_OK;
-    Pool      *pool   = behind ? s->publish_pool : s->shared->pool;
+    Pool      *pool = behind ? s->publish_pool : s->shared->pool;
     if (status == STATUS_OK) status = add_memory(&first, s, true);
     if (status == STATUS_OK) status = replay_files(&files, s, done, pool, raw);
     if (status == STATUS_OK) status = add_displays(&all, s, pool, consumers_wants(&first) | consumers_wants(&files));
@@ -256,7 +276,7 @@ static Status for_replay(Session *s, FrameDone *done, unsigned raw)
 static Status by_the_clock(Session *s, FrameDone *done, unsigned raw)
 {
     const Config *config = s->shared->config;
-    const bool    live   = s->shared->live;
+    const bool    live = s->shared->live;
     Consumers     first = {0}, files = {0}, sent = {0};
     Status        status = pool_create(&s->publish_pool, live ? 1 : pool_threads(s->shared->pool));
     if (status == STATUS_OK) status = add_memory(&first, s, true);
@@ -294,7 +314,7 @@ static void clear_videos(const Session *s)
 Status session_begin_files(Session *s)
 {
     const Config  *config = s->shared->config;
-    const unsigned kept   = s->shared->bands | (frame_files_truth(config) ? frame_truth : 0);
+    const unsigned kept = s->shared->bands | (frame_files_truth(config) ? frame_truth : 0);
     if (s->result.begun) return STATUS_OK;
     s->result.begun = true;
     clear_videos(s);
@@ -306,10 +326,10 @@ Status session_consumers(Session *s, FrameDone *done)
 {
     const SessionShared *shared = s->shared;
     const Config        *config = shared->config;
-    unsigned             raw    = 0;
+    unsigned             raw = 0;
     for (int b = 0; b < BAND_COUNT; b++)
         if (s->chain[b] && config->detector.raw && config->publish.files) raw |= 1u << b;
-    s->raw        = raw;
+    s->raw = raw;
     Status status = shared->wall_s ? latency_create(&s->latency) : STATUS_OK;
     if (status == STATUS_OK) status = add_detections(&s->consumers, s); /* before a frame can be answered */
     if (status == STATUS_OK) status = add_memory(&s->consumers, s, false);

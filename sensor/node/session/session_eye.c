@@ -39,7 +39,7 @@ static bool host_pose(SnapshotEntity *host, const Session *s, double t_s)
         TrackPose pose;
         Origin    origin;
         survey_track_at(&pose, survey_track(shared->survey, s->plan.host), t_s);
-        const int    model  = catalog_find(shared->catalog, host->type, &origin, NULL);
+        const int    model = catalog_find(shared->catalog, host->type, &origin, NULL);
         const double down_m = origin == ORIGIN_CENTRE ? 0.5 * catalog_model(shared->catalog, model)->height_m : 0;
         for (int k = 0; k < 3; k++) host->p_ecef[k] = pose.p_ecef[k] + down_m * pose.r_ecef_from_body[3 * k + 2];
         memcpy(host->v_ecef_mps, pose.v_ecef_mps, sizeof host->v_ecef_mps);
@@ -60,11 +60,11 @@ static void find_node(Session *s, const Model *model, int index)
 {
     if (s->mount_model == index) return;
     s->mount_model = index;
-    s->mount_at  = seeker_mount_node(&s->mount, model);
+    s->mount_at = seeker_mount_node(&s->mount, model);
     if (s->mount_at != mount_missing) return;
     char   names[400];
     size_t n = 0;
-    *names   = 0;
+    *names = 0;
     for (int i = 0; i < model->node_count && n + 1 < sizeof names; i++)
         if (strncmp(model->node[i].name, "wheel", 5) != 0) /* a tank has a dozen and more */
             n += (size_t)snprintf(names + n, sizeof names - n, "%s%s", n ? ", " : "", model->node[i].name);
@@ -108,15 +108,15 @@ static bool mounted_ahead(Mounted *out, Session *s, const Mounted *now, double t
 /* Begins anew with gimbal, aim and model, for a new host. */
 static void take_host(Session *s, DisEntityId host, bool guided)
 {
-    const bool first = dis_entity_id_is_none(s->plan.host);
+    const bool         first = dis_entity_id_is_none(s->plan.host);
     const SeekerConfig config = s->seeker.config;
-    s->plan.host   = host;
-    s->seeker      = (Seeker){.config = config};
+    s->plan.host = host;
+    s->seeker = (Seeker){.config = config};
     s->mount_model = -1;
-    s->limit_reported  = false;
-    s->limit_tick  = -1;
+    s->limit_reported = false;
+    s->limit_tick = -1;
     if (!*s->shared->config->exercise.aim) {
-        s->plan.aim  = (DisEntityId){0};
+        s->plan.aim = (DisEntityId){0};
         s->aim_known = false;
     }
     dis_entity_id_text(s->host_text, host);
@@ -140,8 +140,8 @@ static void find_host(Session *s)
         dis_entity_id_text(aim, plan->aim);
         log_info("aim: %s, the target of its Fire PDU", aim);
     }
-    const Shot *shot = s->shared->config->causal || !plan->any_munition ? NULL
-                                                                        : survey_shot(s->shared->survey, plan->host);
+    const Shot *shot =
+        s->shared->config->causal || !plan->any_munition ? NULL : survey_shot(s->shared->survey, plan->host);
     if (shot && dis_entity_id_is_none(plan->aim) && !dis_entity_id_is_none(shot->hit)) plan->aim = shot->hit;
 }
 
@@ -183,8 +183,7 @@ static void report_limit(Session *s, double t_s)
         log_warn("host %s: %s is beyond its gimbal at %.2f s: %.1f deg off the axis, the limit is %g "
                  "(sensor.gimbal_limit_deg, sensor.mount_yaw_deg); it looks as far as it can",
                  s->host_text, aim, t_s, s->seeker.off_rad / rad_per_deg, s->seeker.config.limit_rad / rad_per_deg);
-    else
-        log_info("host %s: %s is within reach of its gimbal from %.2f s on", s->host_text, aim, t_s);
+    else log_info("host %s: %s is within reach of its gimbal from %.2f s on", s->host_text, aim, t_s);
 }
 
 /* A seeker that has burst follows nothing: its direction stays as it was. */
@@ -265,11 +264,11 @@ void session_advance(Session *s, double t_s)
 static void finish_eye(Eye *eye, const Session *s)
 {
     const Config     *config = s->shared->config;
-    const LocalFrame *frame  = &s->shared->world->frame;
-    eye->view.width          = config->sensor.width_px;
-    eye->view.height         = config->sensor.height_px;
-    eye->view.focal_px       = view_focal_px(config->sensor.width_px, config->sensor.hfov_deg * rad_per_deg);
-    eye->view.lens           = s->shared->sensors->lens;
+    const LocalFrame *frame = &s->shared->world->frame;
+    eye->view.width = config->sensor.width_px;
+    eye->view.height = config->sensor.height_px;
+    eye->view.focal_px = view_focal_px(config->sensor.width_px, config->sensor.hfov_deg * rad_per_deg);
+    eye->view.lens = s->shared->sensors->lens;
     enu_from_ecef(eye->view.p_enu, frame, eye->state.p_ecef);
     m3_mul(eye->state.r_ecef_from_cam, frame->r_ecef_from_enu, eye->view.r_enu_from_cam);
 }
@@ -281,7 +280,7 @@ static bool host_eye(Eye *eye, Session *s, Snapshot *snapshot, double t_s)
     if (index < 0 || !mounted(&at, s, t_s)) return false;
 
     /* the interpolated pose is the host's in every product: its shadow starts from there */
-    const SnapshotEntity *host  = &at.host;
+    const SnapshotEntity *host = &at.host;
     SnapshotEntity       *shown = &snapshot->entity[index];
     memcpy(shown->p_ecef, host->p_ecef, sizeof shown->p_ecef);
     memcpy(shown->v_ecef_mps, host->v_ecef_mps, sizeof shown->v_ecef_mps);
@@ -295,8 +294,8 @@ static bool host_eye(Eye *eye, Session *s, Snapshot *snapshot, double t_s)
     seeker_camera(eye->view.r_enu_from_cam, &s->seeker, r_enu_from_mount);
     camera_motion(eye, s, &at, t_s);
     eye->hidden = eye->state.host_index = index;
-    eye->at_limit                       = s->seeker.at_limit;
-    eye->aim_known                      = s->aim_known;
+    eye->at_limit = s->seeker.at_limit;
+    eye->aim_known = s->aim_known;
     memcpy(eye->p_aim_ecef, s->p_aim_ecef, sizeof eye->p_aim_ecef);
     finish_eye(eye, s);
     return true;
@@ -306,7 +305,7 @@ static bool host_eye(Eye *eye, Session *s, Snapshot *snapshot, double t_s)
 static void observer_position(double p_ecef[3], double aim_enu[3], const Session *s, double t_s)
 {
     const Config     *config = s->shared->config;
-    const LocalFrame *frame  = &s->shared->world->frame;
+    const LocalFrame *frame = &s->shared->world->frame;
     const double      azimuth_rad = pi_rad + config->observer.rate_dps * rad_per_deg * (t_s - s->plan.start_s);
     double            p_enu[3], p_aim_ecef[3];
     memcpy(p_aim_ecef, s->p_aim_ecef, sizeof p_aim_ecef);
@@ -332,7 +331,7 @@ static void observer_camera(double r_enu_from_cam[9], const double p_ecef[3], co
 static bool observer_eye(Eye *eye, const Session *s, double t_s)
 {
     static const double half_s = 0.005; /* velocity by difference: it follows the aim, and the terrain */
-    const LocalFrame   *frame  = &s->shared->world->frame;
+    const LocalFrame   *frame = &s->shared->world->frame;
     double              before_ecef[3], after_ecef[3], p_enu[3], aim_enu[3], d_enu[3], r_before[9], r_after[9];
     observer_position(before_ecef, aim_enu, s, t_s - half_s);
     observer_camera(r_before, before_ecef, aim_enu, frame);
@@ -346,7 +345,7 @@ static bool observer_eye(Eye *eye, const Session *s, double t_s)
     if (!(v3_length(d_enu) > 0)) return false;
     view_upright(eye->view.r_enu_from_cam, d_enu);
     eye->hidden = eye->state.host_index = -1;
-    eye->aim_known                      = true;
+    eye->aim_known = true;
     memcpy(eye->p_aim_ecef, s->p_aim_ecef, sizeof eye->p_aim_ecef);
     aim_pose(eye->p_aim_ecef, s, t_s);
     finish_eye(eye, s);

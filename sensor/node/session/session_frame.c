@@ -18,18 +18,21 @@ static void rate_of_scene(double rate_px_s[2], const Eye *eye, const Picture *pi
 static void make_request(RenderRequest *request, const Session *s, const Eye *eye, double t_s)
 {
     const Config *config = s->shared->config;
-    *request = (RenderRequest){.view = eye->view, .bands = s->shared->bands,
+    *request = (RenderRequest){.view = eye->view,
+                               .bands = s->shared->bands,
                                .optical = config_optical(config),
                                .lateral = {s->shared->sensors->lateral[0], s->shared->sensors->lateral[1]},
                                .sky_samples = config->sensor.sky_samples,
                                .sky_visibility = strcmp(config->sensor.sky_visibility, "on") == 0,
-                               .samples = config->sensor.samples, .hidden_entity = eye->hidden,
-                               .t_s = t_s, .low_plants_m = s->shared->world->forest ? config->terrain.woods_low_m : 0,
+                               .samples = config->sensor.samples,
+                               .hidden_entity = eye->hidden,
+                               .t_s = t_s,
+                               .low_plants_m = s->shared->world->forest ? config->terrain.woods_low_m : 0,
                                .budget = strcmp(config->quality.budget, "on") == 0,
                                .skips_off = s->shared->no_skip ? skips_all_off : 0};
     for (int b = 0; b < BAND_COUNT; b++) request->hand_over_cells |= s->shared->sensors->has[b];
     if (config_adaptive(config)) {
-        request->edge_samples   = config->sensor.edge_samples;
+        request->edge_samples = config->sensor.edge_samples;
         request->target_samples = config->sensor.target_samples;
     }
     consumers_request(request, s->wants);
@@ -39,8 +42,8 @@ static void make_request(RenderRequest *request, const Session *s, const Eye *ey
             v3_sub(to_aim, eye->p_aim_ecef, eye->state.p_ecef);
             range_m = v3_length(to_aim);
         }
-        request->profile_bins   = config->radar.bins;
-        request->profile_bin_m  = config->radar.bin_m;
+        request->profile_bins = config->radar.bins;
+        request->profile_bin_m = config->radar.bin_m;
         request->profile_near_m = fmax(0, range_m - 0.5 * config->radar.bins * config->radar.bin_m);
     }
 }
@@ -61,11 +64,11 @@ static Status look(FrameView *view, const Session *s, const RenderRequest *reque
 static Status look_without(Frame *f, const Session *s, const Air *air, const double r_host_from_enu[9], int host)
 {
     const bool all = strcmp(s->shared->config->publish.pairs, "all") == 0;
-    f->without     = arena_alloc(f->arena, 1, sizeof *f->without);
+    f->without = arena_alloc(f->arena, 1, sizeof *f->without);
     if (!f->without) return STATUS_NO_MEMORY;
     *f->without->sha256 = 0;
-    Status status = pairs_take_away(&f->without->snapshot, &f->taken, &f->taken_count, &f->seen.snapshot, all,
-                                          s->plan.aim, host, f->arena);
+    Status     status = pairs_take_away(&f->without->snapshot, &f->taken, &f->taken_count, &f->seen.snapshot, all,
+                                        s->plan.aim, host, f->arena);
     HeatScene *heat = NULL;
     if (status == STATUS_OK) /* the ground as it is where it did not stand */
         status = world_heat_at(&heat, s->shared->world, &f->without->snapshot.marks, f->unix_s, f->arena);
@@ -84,16 +87,16 @@ static Status measure(Frame *f, Session *s, const Eye *eye)
     }
     const LocalFrame *frame = &s->shared->world->frame;
     const Weather     weather = frame_weather_at(s->shared->config, s->shared->world, f->unix_s);
-    RadarScene scene = {.world = s->shared->world,
-                        .snapshot = &f->seen.snapshot,
-                        .view = &eye->view,
-                        .hidden = eye->hidden,
-                        .reference_m = NAN,
-                        .t_s = f->time_s,
-                        .weather = &weather,
-                        .number = (uint32_t)f->number,
-                        .range_m = f->seen.picture.range_m,
-                        .entity = f->seen.picture.entity};
+    RadarScene        scene = {.world = s->shared->world,
+                               .snapshot = &f->seen.snapshot,
+                               .view = &eye->view,
+                               .hidden = eye->hidden,
+                               .reference_m = NAN,
+                               .t_s = f->time_s,
+                               .weather = &weather,
+                               .number = (uint32_t)f->number,
+                               .range_m = f->seen.picture.range_m,
+                               .entity = f->seen.picture.entity};
     m3_tmul_v3(scene.v_enu_mps, frame->r_ecef_from_enu, eye->state.v_ecef_mps);
     const int aim = dis_entity_id_is_none(s->plan.aim) ? -1 : snapshot_find(&f->seen.snapshot, s->plan.aim);
     if (eye->aim_known) {
@@ -117,21 +120,23 @@ static Status measure(Frame *f, Session *s, const Eye *eye)
 /* Adds the targets and the error budget to the frame's record. */
 static Status know_targets(Frame *f, const Session *s, const Eye *eye)
 {
-    const SessionShared *shared  = s->shared;
-    const FrameView     *seen    = &f->seen;
-    FrameRecord         *r       = &f->record;
-    Target              *target  = arena_alloc(f->arena, (size_t)seen->snapshot.count, sizeof *target);
+    const SessionShared *shared = s->shared;
+    const FrameView     *seen = &f->seen;
+    FrameRecord         *r = &f->record;
+    Target              *target = arena_alloc(f->arena, (size_t)seen->snapshot.count, sizeof *target);
     TruthNoise           noise;
     if (!target) return STATUS_NO_MEMORY;
     frame_expose(&noise, s->chain, &seen->picture, shared->config);
-    r->target_count = truth_targets(target, &seen->picture, shared->world, &seen->snapshot, &f->request, &eye->state,
-                                    &noise);
+    r->target_count =
+        truth_targets(target, &seen->picture, shared->world, &seen->snapshot, &f->request, &eye->state, &noise);
     if (s->wants & WANT_ERROR &&
-        frame_error(&f->error, &(FrameErrorOf){&seen->picture, shared->world, &seen->snapshot, &f->request,
-                                               shared->config->models.sag_m, shared->contact == GROUND_CONTACT_ALL,
-                                               world_air_k(shared->world, f->unix_s)}, target, r->target_count))
+        frame_error(&f->error,
+                    &(FrameErrorOf){&seen->picture, shared->world, &seen->snapshot, &f->request,
+                                    shared->config->models.sag_m, shared->contact == GROUND_CONTACT_ALL,
+                                    world_air_k(shared->world, f->unix_s)},
+                    target, r->target_count))
         r->error = &f->error;
-    r->target       = target_records(target, r->target_count, &seen->snapshot, shared->catalog, f->arena);
+    r->target = target_records(target, r->target_count, &seen->snapshot, shared->catalog, f->arena);
     if (!r->target) return STATUS_NO_MEMORY;
     if (s->wants & WANT_ERROR && f->request.budget && f->radar) {
         radar_error(&f->radar_error, f->radar, &seen->snapshot);
@@ -143,11 +148,16 @@ static Status know_targets(Frame *f, const Session *s, const Eye *eye)
 static void fill_record(Frame *f, const Session *s, const Eye *eye)
 {
     FrameRecord *r = &f->record;
-    *r = (FrameRecord){.frame = f->number, .time_s = f->time_s, .snapshot = &f->seen.snapshot,
+    *r = (FrameRecord){.frame = f->number,
+                       .time_s = f->time_s,
+                       .snapshot = &f->seen.snapshot,
                        .catalog = s->shared->catalog,
-                       .host = eye->hidden >= 0 ? &f->seen.snapshot.entity[eye->hidden] : NULL, .request = &f->request,
-                       .hfov_rad = s->shared->config->sensor.hfov_deg * rad_per_deg, .gimbal_at_limit = eye->at_limit,
-                       .scene_rate_px_s = {f->rate_px_s[0], f->rate_px_s[1]}, .sun = &f->sun};
+                       .host = eye->hidden >= 0 ? &f->seen.snapshot.entity[eye->hidden] : NULL,
+                       .request = &f->request,
+                       .hfov_rad = s->shared->config->sensor.hfov_deg * rad_per_deg,
+                       .gimbal_at_limit = eye->at_limit,
+                       .scene_rate_px_s = {f->rate_px_s[0], f->rate_px_s[1]},
+                       .sun = &f->sun};
     memcpy(r->p_eye_ecef, eye->state.p_ecef, sizeof r->p_eye_ecef);
     memcpy(r->v_eye_mps, eye->state.v_ecef_mps, sizeof r->v_eye_mps);
     memcpy(r->r_ecef_from_body, eye->r_ecef_from_body, sizeof r->r_ecef_from_body);
@@ -169,17 +179,17 @@ Status session_make_frame(bool *shown, int *left_out, Frame *f, Session *s, int 
 {
     const SessionShared *shared = s->shared;
     Eye                  eye;
-    *shown                = false;
+    *shown = false;
     f->provenance.begun_s = wall_clock_s();
     Status status = entity_table_snapshot(&f->seen.snapshot, s->table, t_s, f->arena);
     if (status == STATUS_OK && s->vehicles) status = world_vehicles_show(s->vehicles, &f->seen.snapshot, f->arena);
     if (status != STATUS_OK || !session_eye(&eye, s, &f->seen.snapshot, t_s)) return status;
     f->times.posed_s = wall_clock_s();
-    *left_out  = f->seen.snapshot.left_out;
-    f->number  = number;
-    f->time_s  = t_s;
-    f->unix_s  = shared->unix_s + t_s;
-    f->world   = shared->world;
+    *left_out = f->seen.snapshot.left_out;
+    f->number = number;
+    f->time_s = t_s;
+    f->unix_s = shared->unix_s + t_s;
+    f->world = shared->world;
     memcpy(f->host, s->host_text, sizeof f->host);
 
     Air            air;
@@ -208,10 +218,14 @@ Status session_make_frame(bool *shown, int *left_out, Frame *f, Session *s, int 
         const double *p_enu = eye.view.p_enu;
         f->buried = p_enu[2] < elevation_height(&shared->world->landscape->elevation, p_enu[0], p_enu[1], NULL);
     }
-    f->provenance = (Provenance){.version = PITVIPER_VERSION, .config_sha256 = shared->config_sha256,
-                                 .seed = shared->config->seed, .datagrams = player_counters(s->player)->datagrams,
-                                 .begun_s = f->provenance.begun_s, .posed_s = posed_s, .rendered_s = wall_clock_s()};
-    f->times.render_s   = posed_s;
+    f->provenance = (Provenance){.version = PITVIPER_VERSION,
+                                 .config_sha256 = shared->config_sha256,
+                                 .seed = shared->config->seed,
+                                 .datagrams = player_counters(s->player)->datagrams,
+                                 .begun_s = f->provenance.begun_s,
+                                 .posed_s = posed_s,
+                                 .rendered_s = wall_clock_s()};
+    f->times.render_s = posed_s;
     f->times.rendered_s = f->provenance.rendered_s;
     *shown = true;
     status = session_begin_files(s);

@@ -48,7 +48,8 @@ Status session_radar_absent_read(RadarAbsent **out, const char *notes)
     Absent one;
     *out = NULL;
     if (!notes) return STATUS_OK;
-    for (const char *at = notes; at && *at; at = strchr(at, '\n') ? strchr(at, '\n') + 1 : NULL) lines += read_line(&one, at);
+    for (const char *at = notes; at && *at; at = strchr(at, '\n') ? strchr(at, '\n') + 1 : NULL)
+        lines += read_line(&one, at);
     if (lines == 0) return STATUS_OK;
     RadarAbsent *a = malloc(sizeof *a + (size_t)lines * sizeof *a->frame);
     if (!a) return STATUS_NO_MEMORY;

@@ -15,17 +15,17 @@
 
 struct Session {
     const SessionShared *shared;
-    HostPlan             plan;          /* host and aim are filled in when they are received */
+    HostPlan             plan; /* host and aim are filled in when they are received */
     char                 out[4096];
     char                 host_text[dis_id_text_size];
-    bool                 opened;        /* all of it */
+    bool                 opened; /* all of it */
     EntityTable         *table;
-    Player              *player;        /* the caller's */
-    GivenHeat           *given;         /* of vehicles; NULL: none */
-    KeptHeat            *kept;          /* of a run before; NULL: none */
-    WorldVehicles       *vehicles;      /* NULL: parts are as warm as the air */
-    Arena               *vehicle_arena; /* of the snapshot of a tick */
-    Status               advance_status; /* the first failure of what outlasts a frame: frames fail with it */
+    Player              *player;          /* the caller's */
+    GivenHeat           *given;           /* of vehicles; NULL: none */
+    KeptHeat            *kept;            /* of a run before; NULL: none */
+    WorldVehicles       *vehicles;        /* NULL: parts are as warm as the air */
+    Arena               *vehicle_arena;   /* of the snapshot of a tick */
+    Status               advance_status;  /* the first failure of what outlasts a frame: frames fail with it */
     uint64_t             vehicle_changes; /* entity_table_changes at the last */
     Seeker               seeker;
     int64_t              tick;          /* next gimbal tick */
@@ -33,32 +33,32 @@ struct Session {
     bool                 aim_known;
     Mount                mount;
     int                  mount_model, mount_at; /* mount_at: as seeker_mount_node, of that model; -1: none yet */
-    NodePose            *node;          /* of the host, [most nodes of a model]; joint: the same */
+    NodePose            *node;                  /* of the host, [most nodes of a model]; joint: the same */
     double              *joint;
-    bool                 limit_reported;    /* last report of the gimbal limit, and its tick */
+    bool                 limit_reported; /* last report of the gimbal limit, and its tick */
     int64_t              limit_tick;
     uint64_t             given_up_reported; /* last report of a full table, and its time; wall clock */
     double               given_up_reported_s, left_out_reported_s;
-    SeekerRadar         *radar;         /* NULL: none */
-    RadarAbsent         *radar_absent;  /* frames that had no radar when they were recorded; NULL: none */
+    SeekerRadar         *radar;             /* NULL: none */
+    RadarAbsent         *radar_absent;      /* frames that had no radar when they were recorded; NULL: none */
     Chain               *chain[BAND_COUNT]; /* of the bands with a sensor of etc/sensors.csv: noise figures for
                                              * targets */
-    Consumers            consumers;
-    unsigned             raw;           /* bands of whose raw counts there are files */
-    Detections          *detections;    /* received; NULL: none */
-    Geoid                geoid;         /* for metadata; n_m NULL: none */
-    unsigned             wants;         /* of all consumers */
-    FramePool           *frames;
-    Latency             *latency;       /* NULL: none is kept */
-    double               fed_s;         /* of the last frame in it: player_fed_s */
-    Pool                *publish_pool;  /* of the publishing thread; NULL: publishing is done in this one */
-    int                  queues;        /* consumers in threads of their own */
-    QueueCounters        written, streamed; /* by the clock: files, streams; when closed */
-    int                  lines_failed;  /* live: lines of truth.jsonl; when closed */
-    int                  published;     /* frames that all consumers have received: used by the publishing thread */
-    Status               listed;        /* of the result's lists: used by the publishing thread */
-    SessionResult        result;
-    int                  capacity;      /* of the result's lists */
+    Consumers     consumers;
+    unsigned      raw;        /* bands of whose raw counts there are files */
+    Detections   *detections; /* received; NULL: none */
+    Geoid         geoid;      /* for metadata; n_m NULL: none */
+    unsigned      wants;      /* of all consumers */
+    FramePool    *frames;
+    Latency      *latency;           /* NULL: none is kept */
+    double        fed_s;             /* of the last frame in it: player_fed_s */
+    Pool         *publish_pool;      /* of the publishing thread; NULL: publishing is done in this one */
+    int           queues;            /* consumers in threads of their own */
+    QueueCounters written, streamed; /* by the clock: files, streams; when closed */
+    int           lines_failed;      /* live: lines of truth.jsonl; when closed */
+    int           published;         /* frames that all consumers have received: used by the publishing thread */
+    Status        listed;            /* of the result's lists: used by the publishing thread */
+    SessionResult result;
+    int           capacity; /* of the result's lists */
 };
 
 typedef struct Eye {

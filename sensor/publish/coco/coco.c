@@ -16,8 +16,8 @@ void coco_mask_extents(CocoMaskExtent *extent, int count, const uint32_t *plane,
         for (int x = 0; x < width; x++) {
             const uint32_t value = plane[(size_t)y * (size_t)width + (size_t)x];
             if (value == 0 || value > (uint32_t)count) continue;
-            CocoMaskExtent *e   = &extent[value - 1];
-            int        *box = e->box;
+            CocoMaskExtent *e = &extent[value - 1];
+            int            *box = e->box;
             if (e->pixels++ == 0) box[0] = x, box[1] = y; /* rows come in order */
             if (x < box[0]) box[0] = x;
             if (x + 1 > box[2]) box[2] = x + 1;
@@ -45,7 +45,7 @@ static void put_run(RunText *t, long long run)
     while (more) {
         const int group = (int)(rest & 31);
         rest >>= 5; /* of negative numbers too: gcc and clang shift arithmetically */
-        more    = group & 16 ? rest != -1 : rest != 0;
+        more = group & 16 ? rest != -1 : rest != 0;
         *t->at++ = (char)(48 + (group | (more ? 32 : 0)));
     }
     t->before[1] = t->before[0];
@@ -53,11 +53,12 @@ static void put_run(RunText *t, long long run)
     t->count++;
 }
 
-void coco_mask_text(char *text, const uint32_t *plane, uint32_t value, int width, int height, const CocoMaskExtent *extent)
+void coco_mask_text(char *text, const uint32_t *plane, uint32_t value, int width, int height,
+                    const CocoMaskExtent *extent)
 {
-    RunText   t   = {.at = text};
+    RunText   t = {.at = text};
     long long end = 0; /* of the last run */
-    bool      on  = false;
+    bool      on = false;
     for (int x = extent->box[0]; x < extent->box[2]; x++) {
         /* from row 0 on where the previous column ended within the mask, to the row after the box or the last row of
          * the image */
@@ -67,7 +68,7 @@ void coco_mask_text(char *text, const uint32_t *plane, uint32_t value, int width
             const long long at = (long long)x * height + y;
             put_run(&t, at - end);
             end = at;
-            on  = !on;
+            on = !on;
         }
     }
     const long long rest = (long long)width * height - end;
@@ -101,17 +102,17 @@ void coco_mask_box_text(char *text, int width, int height, const CocoMaskExtent 
 /* ---- the file ------------------------------------------------------------------------------------ */
 
 struct Coco {
-    CocoFile    file;
-    bool        begun;      /* the file is open */
-    char        folder[coco_path_size];
-    const char *ending;
-    CocoLimits  limits;
-    char        config_sha256[80];
-    long long   seed;
-    int         extents;    /* capacity in masks and in text; both grow to what a frame needs */
+    CocoFile        file;
+    bool            begun; /* the file is open */
+    char            folder[coco_path_size];
+    const char     *ending;
+    CocoLimits      limits;
+    char            config_sha256[80];
+    long long       seed;
+    int             extents; /* capacity in masks and in text; both grow to what a frame needs */
     CocoMaskExtent *extent;
-    size_t      text_size;
-    char       *text;
+    size_t          text_size;
+    char           *text;
 };
 
 Status coco_open(Coco **out, const char *folder, const char *ending, CocoLimits limits, const char *config_sha256,
@@ -121,7 +122,7 @@ Status coco_open(Coco **out, const char *folder, const char *ending, CocoLimits 
     if (!c) return STATUS_NO_MEMORY;
     c->ending = ending;
     c->limits = limits;
-    c->seed   = seed;
+    c->seed = seed;
     snprintf(c->config_sha256, sizeof c->config_sha256, "%s", config_sha256);
     snprintf(c->folder, sizeof c->folder, "%s", folder);
     *out = c;
@@ -131,7 +132,7 @@ Status coco_open(Coco **out, const char *folder, const char *ending, CocoLimits 
 Status coco_begin(Coco *c)
 {
     const Status status = coco_file_open(&c->file, c->folder);
-    c->begun            = status == STATUS_OK;
+    c->begun = status == STATUS_OK;
     return status;
 }
 
@@ -164,7 +165,7 @@ static bool is_visible(const TargetRecord *t, const CocoMaskExtent *mask)
 static CocoMaskExtent region_of(const TargetRecord *t, const CocoMaskExtent *mask)
 {
     CocoMaskExtent region = *mask;
-    const bool masked = mask->pixels > 0, boxed = !target_box_is_empty(t->box);
+    const bool     masked = mask->pixels > 0, boxed = !target_box_is_empty(t->box);
     for (int k = 0; k < 4 && boxed; k++) {
         const bool outer = k < 2 ? t->box[k] < region.box[k] : t->box[k] > region.box[k];
         if (!masked || outer) region.box[k] = t->box[k];
@@ -198,10 +199,10 @@ static json_t *annotation_json(const Coco *c, const FrameRecord *r, const Target
     dis_entity_type_text(type, t->type);
     json_t *out = json_pack("{s:I,s:I,s:i,s:[i,i,i,i],s:I,s:i,s:i,s:s,s:i,s:s,s:s,s:f,s:{s:[i,i],s:s}}", "id",
                             (json_int_t)c->file.annotations + 1, "image_id", (json_int_t)image, "category_id",
-                            t->class_number, "bbox", box[0], box[1], box[2], box[3], "area",
-                            (json_int_t)extent->pixels, "iscrowd", why != NULL, "ignore", why != NULL, "entity", name,
-                            "plane_value", t->plane_value, "type", type, "model", t->model, "pixels", t->pixels,
-                            "segmentation", "size", r->request->view.height, r->request->view.width, "counts", c->text);
+                            t->class_number, "bbox", box[0], box[1], box[2], box[3], "area", (json_int_t)extent->pixels,
+                            "iscrowd", why != NULL, "ignore", why != NULL, "entity", name, "plane_value",
+                            t->plane_value, "type", type, "model", t->model, "pixels", t->pixels, "segmentation",
+                            "size", r->request->view.height, r->request->view.width, "counts", c->text);
     if (!out) return NULL;
     set_text(out, "ignored_as", why);
     json_object_set_new(out, "bbox_amodal", json_pack("[f,f,f,f]", all[0], all[1], all[2] - all[0], all[3] - all[1]));
@@ -221,20 +222,20 @@ static Status measure(Coco *c, const FrameRecord *r, const uint32_t *entity)
     if (count > c->extents) {
         CocoMaskExtent *extent = realloc(c->extent, (size_t)count * sizeof *extent);
         if (!extent) return STATUS_NO_MEMORY;
-        c->extent  = extent;
+        c->extent = extent;
         c->extents = count;
     }
     coco_mask_extents(c->extent, count, entity, width, height);
     size_t most = 0;
     for (int i = 0; i < r->target_count; i++) {
         const CocoMaskExtent region = region_of(&r->target[i], &c->extent[r->target[i].index]);
-        const size_t     size   = coco_mask_text_size(&region);
+        const size_t         size = coco_mask_text_size(&region);
         if (size > most) most = size;
     }
     if (most <= c->text_size) return STATUS_OK;
     char *text = realloc(c->text, most);
     if (!text) return STATUS_NO_MEMORY;
-    c->text      = text;
+    c->text = text;
     c->text_size = most;
     return STATUS_OK;
 }
@@ -248,10 +249,10 @@ Status coco_frame(Coco *c, const FrameRecord *r, const uint32_t *entity)
         const long long image = (long long)r->frame * BAND_COUNT + b + 1;
         status = coco_file_image(&c->file, image_json(c, r, (Band)b, image));
         for (int i = 0; i < r->target_count && status == STATUS_OK; i++) {
-            const TargetRecord *t    = &r->target[i];
-            const CocoMaskExtent   *mask = &c->extent[t->index];
+            const TargetRecord   *t = &r->target[i];
+            const CocoMaskExtent *mask = &c->extent[t->index];
             if (!is_visible(t, mask)) continue;
-            const char      *why    = ignored_as(&c->limits, mask, t, (Band)b);
+            const char          *why = ignored_as(&c->limits, mask, t, (Band)b);
             const CocoMaskExtent extent = why ? region_of(t, mask) : *mask;
             if (why) coco_mask_box_text(c->text, width, height, &extent);
             else coco_mask_text(c->text, entity, (uint32_t)t->plane_value, width, height, &extent);
@@ -264,9 +265,10 @@ Status coco_frame(Coco *c, const FrameRecord *r, const uint32_t *entity)
 Status coco_close(Coco *c)
 {
     if (!c) return STATUS_OK;
-    json_t *info = json_pack("{s:s,s:s,s:s,s:I,s:i,s:f,s:f}", "description", "pitviper replay", "version", PITVIPER_VERSION,
-                             "config_sha256", c->config_sha256, "seed", (json_int_t)c->seed, "min_pixels",
-                             c->limits.min_pixels, "min_visible", c->limits.min_visible, "min_snr", c->limits.min_snr);
+    json_t *info =
+        json_pack("{s:s,s:s,s:s,s:I,s:i,s:f,s:f}", "description", "pitviper replay", "version", PITVIPER_VERSION,
+                  "config_sha256", c->config_sha256, "seed", (json_int_t)c->seed, "min_pixels", c->limits.min_pixels,
+                  "min_visible", c->limits.min_visible, "min_snr", c->limits.min_snr);
     const Status status = c->begun ? coco_file_close(&c->file, info, true) : STATUS_OK;
     if (!c->begun) json_decref(info);
     free(c->extent);

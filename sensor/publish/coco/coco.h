@@ -15,7 +15,8 @@
  *                  what lies outside the image too; the others as in truth.jsonl
  *     categories   all of sensor/frame/target_record.h, whatever is visible: sets can be joined
  *
- * A target that is hidden is in truth.jsonl only. Written frame by frame to coco.json.part, and renamed when complete; memory does not grow with the number of frames. */
+ * A target that is hidden is in truth.jsonl only. Written frame by frame to coco.json.part, and renamed when complete;
+ * memory does not grow with the number of frames. */
 #ifndef SENSOR_PUBLISH_COCO_COCO_H
 #define SENSOR_PUBLISH_COCO_COCO_H
 
@@ -64,8 +65,9 @@ enum { coco_mask_run_characters = 7 };
 /* Characters that hold the text of any mask of this extent, including its terminator. */
 size_t coco_mask_text_size(const CocoMaskExtent *extent);
 /* The pixels of this value. text: coco_mask_text_size characters. */
-void   coco_mask_text(char *text, const uint32_t *plane, uint32_t value, int width, int height, const CocoMaskExtent *extent);
+void coco_mask_text(char *text, const uint32_t *plane, uint32_t value, int width, int height,
+                    const CocoMaskExtent *extent);
 /* All pixels of the extent's box, which is not empty and lies within the image. */
-void   coco_mask_box_text(char *text, int width, int height, const CocoMaskExtent *extent);
+void coco_mask_box_text(char *text, int width, int height, const CocoMaskExtent *extent);
 
 #endif

@@ -28,7 +28,7 @@ Status coco_file_open(CocoFile *c, const char *folder)
     *c = (CocoFile){0};
     snprintf(c->path, sizeof c->path, "%s/coco.json", folder);
     snprintf(c->waiting_path, sizeof c->waiting_path, "%s/coco.json.annotations.part", folder);
-    c->file    = output_begin(c->path, 0);
+    c->file = output_begin(c->path, 0);
     c->waiting = c->file ? output_file(c->waiting_path, OUTPUT_READ) : NULL;
     if (c->file && c->waiting) {
         fputs("{\"images\":[", c->file);
@@ -42,7 +42,7 @@ Status coco_file_open(CocoFile *c, const char *folder)
 static Status put(CocoFile *c, FILE *file, json_t *object, long long place)
 {
     char      *text = object && !c->failed ? json_dumps(object, JSON_COMPACT | JSON_REAL_PRECISION(15)) : NULL;
-    const bool ok   = text && fprintf(file, "%s%s", place == 0 ? "\n" : ",\n", text) > 0;
+    const bool ok = text && fprintf(file, "%s%s", place == 0 ? "\n" : ",\n", text) > 0;
     free(text);
     json_decref(object);
     return ok ? STATUS_OK : fail(c);
@@ -63,8 +63,9 @@ static void join(CocoFile *c, const json_t *info)
     while ((n = fread(block, 1, sizeof block, c->waiting)) > 0) fwrite(block, 1, n, c->file);
     fputs("],\n\"categories\":[", c->file);
     for (int k = 1; k <= target_class_count(); k++)
-        put(c, c->file, json_pack("{s:i,s:s,s:s}", "id", k, "name", target_class_name(k), "supercategory",
-                                  target_class_group(k)), k - 1);
+        put(c, c->file,
+            json_pack("{s:i,s:s,s:s}", "id", k, "name", target_class_name(k), "supercategory", target_class_group(k)),
+            k - 1);
     fputs("],\n\"licenses\":[],\n\"info\":", c->file);
     json_dumpf(info, c->file, JSON_COMPACT);
     fputs("}\n", c->file);
@@ -126,7 +127,7 @@ static Status add_images(CocoMerge *m, NewId *id, json_t *images, const char *na
     char file_name[coco_path_size];
     for (size_t i = 0; i < json_array_size(images); i++) {
         json_t     *image = json_array_get(images, i);
-        const char *file  = json_string_value(json_object_get(image, "file_name"));
+        const char *file = json_string_value(json_object_get(image, "file_name"));
         if (!file || !json_is_integer(json_object_get(image, "id"))) return refuse(path);
         id[i] = (NewId){json_integer_value(json_object_get(image, "id")), m->file.images + 1};
         snprintf(file_name, sizeof file_name, "%s/%s", name, file);
@@ -144,7 +145,7 @@ static Status add_annotations(CocoMerge *m, const NewId *id, size_t ids, json_t 
     for (size_t i = 0; i < json_array_size(annotations); i++) {
         json_t      *annotation = json_array_get(annotations, i);
         const NewId  wanted = {.was = json_integer_value(json_object_get(annotation, "image_id"))};
-        const NewId *image  = bsearch(&wanted, id, ids, sizeof *id, by_was);
+        const NewId *image = bsearch(&wanted, id, ids, sizeof *id, by_was);
         if (!image) return refuse(path);
         json_object_set_new(annotation, "id", json_integer(m->file.annotations + 1));
         json_object_set_new(annotation, "image_id", json_integer(image->is));
@@ -156,15 +157,15 @@ static Status add_annotations(CocoMerge *m, const NewId *id, size_t ids, json_t 
 
 Status coco_merge_add(CocoMerge *m, const char *name)
 {
-    char         path[2 * coco_path_size];
-    Status       status = STATUS_OK;
+    char   path[2 * coco_path_size];
+    Status status = STATUS_OK;
     snprintf(path, sizeof path, "%s/%s/coco.json", m->folder, name);
     if (!m->open) status = coco_file_open(&m->file, m->folder);
     if (status != STATUS_OK) return status;
     m->open = true;
     json_t      *whole = json_read_file(path), *images = json_object_get(whole, "images");
     const size_t count = json_array_size(images);
-    NewId       *id    = calloc(count + 1, sizeof *id);
+    NewId       *id = calloc(count + 1, sizeof *id);
     if (!json_is_array(images)) status = refuse(path);
     else if (!id) status = STATUS_NO_MEMORY;
     if (status == STATUS_OK) status = add_images(m, id, images, name, path);

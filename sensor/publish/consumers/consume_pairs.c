@@ -16,20 +16,20 @@ enum { pair_members = 1 + pair_folders };
 
 typedef struct PairMember {
     bool        target, noise;
-    const char *radiance, *shown;       /* folders below the run's: of radiance and truth, of displays and raw counts */
-    const FrameDisplay *display;        /* [BAND_COUNT] values of black and white */
+    const char *radiance, *shown; /* folders below the run's: of radiance and truth, of displays and raw counts */
+    const FrameDisplay *display;  /* [BAND_COUNT] values of black and white */
 } PairMember;
 
 typedef struct PairRecord {
-    int       frame;
-    double    time_s;
-    long long seed;
-    int       removed_count;
-    const DisEntityId *removed;         /* removed entities */
-    const char *frame_sha256, *background_sha256;
-    unsigned  bands, raw;               /* 1 << Band: rendered; with raw counts */
-    bool      png, truth;
-    PairMember member[pair_members];
+    int                frame;
+    double             time_s;
+    long long          seed;
+    int                removed_count;
+    const DisEntityId *removed; /* removed entities */
+    const char        *frame_sha256, *background_sha256;
+    unsigned           bands, raw; /* 1 << Band: rendered; with raw counts */
+    bool               png, truth;
+    PairMember         member[pair_members];
 } PairRecord;
 
 static void set_file(json_t *object, const char *key, const char *below, const char *place, const char *band, int frame,
@@ -74,7 +74,7 @@ static Status write_pair_record(FILE *file, const PairRecord *r)
     json_t *line = json_pack("{s:i,s:f,s:I,s:o,s:s,s:s,s:o}", "frame", r->frame, "time_s", r->time_s, "seed",
                              (json_int_t)r->seed, "removed", removed, "frame_sha256", r->frame_sha256,
                              "background_sha256", r->background_sha256, "members", members);
-    char *text = line ? json_dumps(line, JSON_COMPACT | JSON_REAL_PRECISION(15)) : NULL;
+    char   *text = line ? json_dumps(line, JSON_COMPACT | JSON_REAL_PRECISION(15)) : NULL;
     json_decref(line);
     if (!text) return STATUS_NO_MEMORY;
     const bool ok = fprintf(file, "%s\n", text) > 0 && fflush(file) == 0;
@@ -89,9 +89,9 @@ enum { WITH, CLEAN, BACKGROUND, BACKGROUND_CLEAN, path_size = frame_path_size };
 
 /* The detector products of one member. The first is the run's own. */
 typedef struct Member {
-    char       folder[path_size];
-    Chains     chains;
-    FrameLevel level[BAND_COUNT];
+    char         folder[path_size];
+    Chains       chains;
+    FrameLevel   level[BAND_COUNT];
     FrameDisplay display[BAND_COUNT]; /* of the present frame */
 } Member;
 
@@ -107,7 +107,7 @@ typedef struct Pairs {
 
 static Status close_pairs(Consumer *consumer)
 {
-    Pairs *p      = (Pairs *)consumer;
+    Pairs *p = (Pairs *)consumer;
     Status status = STATUS_OK;
     if (p->frames > 0 && p->taken == 0)
         log_warn("pairs: nothing was taken away in any frame: %s; --pairs all takes every entity",
@@ -138,11 +138,11 @@ static Status write_line(const Pairs *p, const Frame *frame)
                     .truth = frame_files_truth(p->of.config)};
     for (int m = WITH; m < pair_members; m++)
         r.member[m] = (PairMember){
-            .target   = m < BACKGROUND,
-            .noise    = m == WITH || m == BACKGROUND,
+            .target = m < BACKGROUND,
+            .noise = m == WITH || m == BACKGROUND,
             .radiance = m < BACKGROUND ? "" : pair_folder[BACKGROUND - 1],
-            .shown    = m == WITH ? "" : pair_folder[m - 1],
-            .display  = m == WITH ? frame->display : p->member[m].display,
+            .shown = m == WITH ? "" : pair_folder[m - 1],
+            .display = m == WITH ? frame->display : p->member[m].display,
         };
     const Status status = write_pair_record(p->index, &r);
     if (status == STATUS_IO) log_error("pairs: cannot write pairs.jsonl: %s", strerror(errno));
@@ -168,7 +168,7 @@ static bool is_of(uint64_t owner, const DisEntityId *id, int count)
 /* Their smoke, dust and flames; where they stood, and their tracks. */
 static Status take_traces(Snapshot *s, const DisEntityId *id, int count, Arena *arena)
 {
-    EffectPuff  *puff  = arena_alloc(arena, (size_t)s->puff_count + 1, sizeof *puff);
+    EffectPuff  *puff = arena_alloc(arena, (size_t)s->puff_count + 1, sizeof *puff);
     GroundStand *stand = arena_alloc(arena, (size_t)s->marks.stands + 1, sizeof *stand);
     GroundTrack *track = arena_alloc(arena, (size_t)s->marks.tracks + 1, sizeof *track);
     if (!puff || !stand || !track) return STATUS_NO_MEMORY;
@@ -188,11 +188,11 @@ static Status take_traces(Snapshot *s, const DisEntityId *id, int count, Arena *
 Status pairs_take_away(Snapshot *without, const DisEntityId **taken, int *taken_count, const Snapshot *with, bool all,
                        DisEntityId aim, int host, Arena *arena)
 {
-    const int       only   = all || dis_entity_id_is_none(aim) ? -1 : snapshot_find(with, aim);
+    const int       only = all || dis_entity_id_is_none(aim) ? -1 : snapshot_find(with, aim);
     SnapshotEntity *entity = arena_alloc(arena, (size_t)with->count + 1, sizeof *entity);
-    DisEntityId    *ids    = arena_alloc(arena, (size_t)with->count + 1, sizeof *ids);
+    DisEntityId    *ids = arena_alloc(arena, (size_t)with->count + 1, sizeof *ids);
     if (!entity || !ids) return STATUS_NO_MEMORY;
-    *taken       = ids;
+    *taken = ids;
     *taken_count = 0;
     if (with->count > 0) memcpy(entity, with->entity, (size_t)with->count * sizeof *entity);
     for (int i = 0; i < with->count; i++) {
@@ -200,7 +200,7 @@ Status pairs_take_away(Snapshot *without, const DisEntityId **taken, int *taken_
         entity[i].model = -1;
         ids[(*taken_count)++] = entity[i].id;
     }
-    *without        = *with;
+    *without = *with;
     without->entity = entity;
     return take_traces(without, ids, *taken_count, arena);
 }
@@ -208,18 +208,32 @@ Status pairs_take_away(Snapshot *without, const DisEntityId **taken, int *taken_
 static Status write_member(Pairs *p, int m, Frame *frame)
 {
     Member          *member = &p->member[m];
-    FrameView       *view   = m < BACKGROUND ? &frame->seen : frame->without;
+    FrameView       *view = m < BACKGROUND ? &frame->seen : frame->without;
     const Config    *config = m == BACKGROUND ? p->of.config : &p->noiseless;
-    const DisplaysOf of     = {.config = config, .picture = &view->picture,
-                               .noise_of = m < BACKGROUND ? NULL : &frame->seen.picture, .chain = member->chains.band,
-                               .level = member->level, .frame = frame->number, .time_s = frame->time_s,
-                               .rate_px_s = {frame->rate_px_s[0], frame->rate_px_s[1]}, .counts = p->of.raw != 0};
-    const FrameFiles files  = {.out = member->folder, .config = config, .world = frame->world,
-                               .picture = &view->picture, .snapshot = &view->snapshot, .request = &frame->request,
-                               .host = frame->host, .config_sha256 = p->of.config_sha256, .frame = frame->number,
-                               .time_s = frame->time_s, .unix_s = frame->unix_s, .png = p->of.config->publish.png,
-                               .raw = p->of.raw != 0, .display = member->display};
-    const Status     made   = frame_displays_make(member->display, &of, frame->request.bands, p->of.pool, frame->arena);
+    const DisplaysOf of = {.config = config,
+                           .picture = &view->picture,
+                           .noise_of = m < BACKGROUND ? NULL : &frame->seen.picture,
+                           .chain = member->chains.band,
+                           .level = member->level,
+                           .frame = frame->number,
+                           .time_s = frame->time_s,
+                           .rate_px_s = {frame->rate_px_s[0], frame->rate_px_s[1]},
+                           .counts = p->of.raw != 0};
+    const FrameFiles files = {.out = member->folder,
+                              .config = config,
+                              .world = frame->world,
+                              .picture = &view->picture,
+                              .snapshot = &view->snapshot,
+                              .request = &frame->request,
+                              .host = frame->host,
+                              .config_sha256 = p->of.config_sha256,
+                              .frame = frame->number,
+                              .time_s = frame->time_s,
+                              .unix_s = frame->unix_s,
+                              .png = p->of.config->publish.png,
+                              .raw = p->of.raw != 0,
+                              .display = member->display};
+    const Status     made = frame_displays_make(member->display, &of, frame->request.bands, p->of.pool, frame->arena);
     if (made != STATUS_OK) return made;
     return m == BACKGROUND ? frame_files_write(view->sha256, &files, p->of.pool)
                            : frame_files_write_displays(&files, p->of.pool);
@@ -227,7 +241,7 @@ static Status write_member(Pairs *p, int m, Frame *frame)
 
 static Status put(Consumer *consumer, Frame *frame)
 {
-    Pairs *p      = (Pairs *)consumer;
+    Pairs *p = (Pairs *)consumer;
     Status status = frame_sha256(&frame->seen);
     for (int m = CLEAN; m < pair_members && status == STATUS_OK; m++) status = write_member(p, m, frame);
     if (status != STATUS_OK) return status;
@@ -240,9 +254,9 @@ static Status put(Consumer *consumer, Frame *frame)
 
 static Status begin(Consumer *consumer)
 {
-    Pairs         *p  = (Pairs *)consumer;
+    Pairs         *p = (Pairs *)consumer;
     const PairsOf *of = &p->of;
-    const unsigned kept   = of->bands | (frame_files_truth(of->config) ? frame_truth : 0);
+    const unsigned kept = of->bands | (frame_files_truth(of->config) ? frame_truth : 0);
     Status         status = STATUS_OK;
     char           path[path_size];
     for (int m = CLEAN; m < pair_members && status == STATUS_OK; m++) {
@@ -271,14 +285,14 @@ Status consume_pairs(Consumer **out, const PairsOf *of)
         for (int m = 0; m < 3; m++) chains_destroy(&chains[m]);
         return STATUS_NO_MEMORY;
     }
-    p->consumer = (Consumer){WANT_WITHOUT | WANT_CELLS | WANT_PLANES | WANT_SHA256 | WANT_DISPLAY, put, NULL,
-                             close_pairs, "pairs", begin};
-    p->of       = *of;
-    p->all      = strcmp(of->config->publish.pairs, "all") == 0;
+    p->consumer = (Consumer){
+        WANT_WITHOUT | WANT_CELLS | WANT_PLANES | WANT_SHA256 | WANT_DISPLAY, put, NULL, close_pairs, "pairs", begin};
+    p->of = *of;
+    p->all = strcmp(of->config->publish.pairs, "all") == 0;
     p->noiseless = *of->config;
     p->noiseless.detector.noise = 0;
-    p->member[CLEAN].chains            = of->clean;
-    p->member[BACKGROUND].chains       = of->background;
+    p->member[CLEAN].chains = of->clean;
+    p->member[BACKGROUND].chains = of->background;
     p->member[BACKGROUND_CLEAN].chains = of->background_clean;
     *out = &p->consumer;
     return STATUS_OK;

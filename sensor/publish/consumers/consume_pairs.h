@@ -8,12 +8,11 @@
  *     OUT/pairs.jsonl                 a line per frame: removed entities, every file, values of black and white
  *
  * Radiance and radar contain no detector noise: a noiseless member names those of its noisy one. Without: the entity
- * is not drawn, and neither are its shadow, its echoes, the light it reflects onto others, its smoke, dust and flames, and
- * what it left on the ground: where it stood or stands, its tracks. All else stays: the ground, burnt ground, the other
- * entities and what is theirs, motion for the smear. Each member has detectors of its own: exposure, gain, level and
- * coupling follow its own image.
- * Noise is a function of (seed, frame, pixel), the same for all; without a sensor its sigma, too, is that of the
- * frame with the target.
+ * is not drawn, and neither are its shadow, its echoes, the light it reflects onto others, its smoke, dust and flames,
+ * and what it left on the ground: where it stood or stands, its tracks. All else stays: the ground, burnt ground, the
+ * other entities and what is theirs, motion for the smear. Each member has detectors of its own: exposure, gain, level
+ * and coupling follow its own image. Noise is a function of (seed, frame, pixel), the same for all; without a sensor
+ * its sigma, too, is that of the frame with the target.
  *
  * A frame costs a second rendering, the files of a second frame, and three more runs of each band's detector
  * (tests/system/test_pairs.sh). */
@@ -24,12 +23,12 @@
 
 /* The inputs of the members. */
 typedef struct PairsOf {
-    const char       *out;    /* the run's folder; those below it are created */
-    const Config     *config; /* publish.pairs: target or all */
-    const char       *config_sha256;
-    Pool             *pool;
-    unsigned          bands, raw;
-    Chains            clean, background, background_clean; /* taken over, also on failure; clean: without noise */
+    const char   *out;    /* the run's folder; those below it are created */
+    const Config *config; /* publish.pairs: target or all */
+    const char   *config_sha256;
+    Pool         *pool;
+    unsigned      bands, raw;
+    Chains        clean, background, background_clean; /* taken over, also on failure; clean: without noise */
 } PairsOf;
 
 /* Requires each frame without its target too (Frame.without). */

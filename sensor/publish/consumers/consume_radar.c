@@ -29,13 +29,16 @@ static void put_profile(FILE *file, const void *user)
 {
     const RadarFrame *r = user;
     const int         samples = r->preset->wave.samples;
-    fprintf(file, "# %s, %s; power: mean of all pulses, W; re, im: the middle pulse, sqrt(W), of the transmitted polarisation (%s) and "
-                  "of the other; mti: power behind the canceller of %d\nrange_m,power_w,re,im,cross_re,cross_im,mti_w\n",
-            r->preset->name, waveform_name[r->preset->wave.kind], r->preset->transmits_h ? "h" : "v", r->preset->mti_rows);
+    fprintf(
+        file,
+        "# %s, %s; power: mean of all pulses, W; re, im: the middle pulse, sqrt(W), of the transmitted polarisation (%s) and "
+        "of the other; mti: power behind the canceller of %d\nrange_m,power_w,re,im,cross_re,cross_im,mti_w\n",
+        r->preset->name, waveform_name[r->preset->wave.kind], r->preset->transmits_h ? "h" : "v", r->preset->mti_rows);
     for (int i = 0; i < samples; i++) {
         const double complex same = r->profile[i], cross = r->profile[samples + i];
-        fprintf(file, "%.4f,%.6g,%.6g,%.6g,%.6g,%.6g,%.6g\n", r->reference_m + (i - samples / 2) * r->map.metre_per_column,
-                r->profile_w[i], creal(same), cimag(same), creal(cross), cimag(cross), r->mti_w[i]);
+        fprintf(file, "%.4f,%.6g,%.6g,%.6g,%.6g,%.6g,%.6g\n",
+                r->reference_m + (i - samples / 2) * r->map.metre_per_column, r->profile_w[i], creal(same), cimag(same),
+                creal(cross), cimag(cross), r->mti_w[i]);
     }
 }
 
@@ -60,14 +63,19 @@ static Status write_map(const char *path, const Frame *f)
             snprintf(name[2 * c + part], sizeof name[0], "%s_%s", channel_name[c], part ? "im" : "re");
             plane[2 * c + part] = (Plane){name[2 * c + part], PLANE_F32, columns, rows, to};
         }
-    const ImageAttribute attribute[] = {
-        image_string("unit", "sqrt(W)"), image_string("radar", r->preset->name), image_int("frame", f->number),
-        image_double("time_s", f->time_s), image_string("host", f->host), image_double("reference_m", r->reference_m),
-        image_double("reference_rate_mps", r->reference_rate_mps), image_double("metre_per_column", r->map.metre_per_column),
-        image_double("mps_per_row", r->map.mps_per_row), image_double("noise_w", r->receiver.noise_w * r->map.noise_share)};
+    const ImageAttribute attribute[] = {image_string("unit", "sqrt(W)"),
+                                        image_string("radar", r->preset->name),
+                                        image_int("frame", f->number),
+                                        image_double("time_s", f->time_s),
+                                        image_string("host", f->host),
+                                        image_double("reference_m", r->reference_m),
+                                        image_double("reference_rate_mps", r->reference_rate_mps),
+                                        image_double("metre_per_column", r->map.metre_per_column),
+                                        image_double("mps_per_row", r->map.mps_per_row),
+                                        image_double("noise_w", r->receiver.noise_w * r->map.noise_share)};
     frame_date(date, f->unix_s);
-    const Status status =
-        image_write_exr_as(path, "zip:1", plane, 2 * interval_channels, date, attribute, sizeof attribute / sizeof *attribute);
+    const Status status = image_write_exr_as(path, "zip:1", plane, 2 * interval_channels, date, attribute,
+                                             sizeof attribute / sizeof *attribute);
     free(value);
     return status;
 }
@@ -100,7 +108,8 @@ static Status write_picture(const char *path, const RadarFrame *r)
     for (int y = plot_rows; y < height; y++)
         for (int x = 0; x < columns; x++) {
             const double db = power_db(r->map.cell[(size_t)((y - plot_rows) / again) * (size_t)columns + (size_t)x]);
-            grey[(size_t)y * (size_t)columns + (size_t)x] = (uint8_t)lround(255 * clamp((db - noise_db) / (most_db - noise_db), 0, 1));
+            grey[(size_t)y * (size_t)columns + (size_t)x] =
+                (uint8_t)lround(255 * clamp((db - noise_db) / (most_db - noise_db), 0, 1));
         }
     const Status status = image_write_png(path, grey, columns, height, 1, 8);
     free(grey);
@@ -153,20 +162,24 @@ static Status write_grey(const char *stem, const char *ending, const float *valu
 static Status write_exr(const char *stem, const char *ending, const Frame *f, const Plane *plane, int planes,
                         double first_rad, double step_rad)
 {
-    const RadarFrame *r = f->radar;
-    const RadarSector  *s = r->scan;
-    char              path[frame_path_size], date[32];
-    const bool        polar = step_rad > 0;
+    const RadarFrame  *r = f->radar;
+    const RadarSector *s = r->scan;
+    char               path[frame_path_size], date[32];
+    const bool         polar = step_rad > 0;
     /* those of range and azimuth last: pixels have neither */
-    const ImageAttribute attribute[] = {
-        image_string("radar", r->preset->name), image_int("frame", f->number), image_double("time_s", f->time_s),
-        image_string("host", f->host), image_double("interval_s", s->plan.interval_s),
-        image_int("positions", s->plan.positions),
-        image_double("beam_deg", s->beam_rad / rad_per_deg), image_double("noise_w", s->noise_w),
-        image_double("sharp_noise_w", s->sharp_noise_w), image_double("reference_m", r->reference_m),
-        image_double("metre_per_row", r->map.metre_per_column),
-        image_double("first_azimuth_deg", first_rad / rad_per_deg),
-        image_double("azimuth_step_deg", step_rad / rad_per_deg)};
+    const ImageAttribute attribute[] = {image_string("radar", r->preset->name),
+                                        image_int("frame", f->number),
+                                        image_double("time_s", f->time_s),
+                                        image_string("host", f->host),
+                                        image_double("interval_s", s->plan.interval_s),
+                                        image_int("positions", s->plan.positions),
+                                        image_double("beam_deg", s->beam_rad / rad_per_deg),
+                                        image_double("noise_w", s->noise_w),
+                                        image_double("sharp_noise_w", s->sharp_noise_w),
+                                        image_double("reference_m", r->reference_m),
+                                        image_double("metre_per_row", r->map.metre_per_column),
+                                        image_double("first_azimuth_deg", first_rad / rad_per_deg),
+                                        image_double("azimuth_step_deg", step_rad / rad_per_deg)};
     frame_date(date, f->unix_s);
     if (snprintf(path, sizeof path, "%s%s.exr", stem, ending) >= (int)sizeof path) return STATUS_BAD_VALUE;
     return image_write_exr_as(path, "zip:1", plane, planes, date, attribute,
@@ -176,10 +189,10 @@ static Status write_exr(const char *stem, const char *ending, const Frame *f, co
 static Status write_real_beam(const char *stem, const Frame *f, bool png)
 {
     const RadarSector *s = f->radar->scan;
-    const int        width = s->plan.positions, height = s->columns;
-    float           *power = as_image(s->power_w, width, height);
+    const int          width = s->plan.positions, height = s->columns;
+    float             *power = as_image(s->power_w, width, height);
     if (!power) return STATUS_NO_MEMORY;
-    const Plane plane = {"Y", PLANE_F32, width, height, power};
+    const Plane  plane = {"Y", PLANE_F32, width, height, power};
     const double step_rad = fmax(s->plan.step_rad, 1e-9);
     Status       status = write_exr(stem, "_scan", f, &plane, 1, -(width / 2) * step_rad, step_rad);
     if (status == STATUS_OK && png)
@@ -191,10 +204,10 @@ static Status write_real_beam(const char *stem, const Frame *f, bool png)
 static Status write_sharpened(const char *stem, const Frame *f, bool png)
 {
     const RadarSector *s = f->radar->scan;
-    const int        width = s->azimuths, height = s->columns;
-    const size_t     cells = (size_t)width * (size_t)height;
-    float           *power = as_image(s->sharp_w, width, height), *resolution = malloc(2 * cells * sizeof *resolution);
-    Status           status = power && resolution ? STATUS_OK : STATUS_NO_MEMORY;
+    const int          width = s->azimuths, height = s->columns;
+    const size_t       cells = (size_t)width * (size_t)height;
+    float *power = as_image(s->sharp_w, width, height), *resolution = malloc(2 * cells * sizeof *resolution);
+    Status status = power && resolution ? STATUS_OK : STATUS_NO_MEMORY;
     if (status == STATUS_OK) {
         for (int y = 0; y < height; y++)
             for (int x = 0; x < width; x++) {
@@ -222,7 +235,7 @@ static Status write_pixels(const char *stem, const Frame *f, bool png)
     if (s->width == 0) return STATUS_OK;
     const Plane plane[] = {{"scan", PLANE_F32, s->width, s->height, s->view_w},
                            {"dbs", PLANE_F32, s->width, s->height, s->view_sharp_w}};
-    Status status = write_exr(stem, "_view", f, plane, 2, 0, 0);
+    Status      status = write_exr(stem, "_view", f, plane, 2, 0, 0);
     if (status == STATUS_OK && png)
         status = write_grey(stem, "_view_scan", s->view_w, s->width, s->height, 1, s->noise_w);
     if (status == STATUS_OK && png)
@@ -233,10 +246,12 @@ static Status write_pixels(const char *stem, const Frame *f, bool png)
 /* Resolution over azimuth, at the reference range. */
 static void put_azimuths(FILE *file, const void *user)
 {
-    const RadarFrame *r = user;
-    const RadarSector  *s = r->scan;
-    fprintf(file, "# %s; time_s from the frame's; resolution_m across, at half power, at %.1f m; sharpened 0: the real "
-                  "beam's\naz_deg,time_s,resolution_m,sharpened\n", r->preset->name, r->reference_m);
+    const RadarFrame  *r = user;
+    const RadarSector *s = r->scan;
+    fprintf(file,
+            "# %s; time_s from the frame's; resolution_m across, at half power, at %.1f m; sharpened 0: the real "
+            "beam's\naz_deg,time_s,resolution_m,sharpened\n",
+            r->preset->name, r->reference_m);
     for (int a = 0; a < s->azimuths; a++) {
         const double azimuth = a * s->azimuth_step_rad - (s->plan.positions / 2) * s->plan.step_rad;
         const double position = s->plan.step_rad > 0 ? floor(azimuth / s->plan.step_rad + 0.5) : 0;
@@ -263,7 +278,8 @@ static Status write_scan(const char *stem, const Frame *f, bool png)
 static Status write_files(RadarFiles *to, const Frame *f)
 {
     char   path[frame_path_size];
-    Status status = path_of(path, to, f, "csv") ? text_write_file("radar", path, put_profile, f->radar) : STATUS_BAD_VALUE;
+    Status status =
+        path_of(path, to, f, "csv") ? text_write_file("radar", path, put_profile, f->radar) : STATUS_BAD_VALUE;
     if (status == STATUS_OK) status = path_of(path, to, f, "exr") ? write_map(path, f) : STATUS_BAD_VALUE;
     if (status == STATUS_OK && to->of.config->publish.png)
         status = path_of(path, to, f, "png") ? write_picture(path, f->radar) : STATUS_BAD_VALUE;
@@ -296,14 +312,17 @@ static Status begin(Consumer *consumer)
 {
     const RadarFiles *to = (const RadarFiles *)consumer;
     char              path[frame_path_size];
-    return snprintf(path, sizeof path, "%s/radar", to->of.out) < (int)sizeof path ? frame_files_folder(path) : STATUS_BAD_VALUE;
+    return snprintf(path, sizeof path, "%s/radar", to->of.out) < (int)sizeof path ? frame_files_folder(path)
+                                                                                  : STATUS_BAD_VALUE;
 }
 
 Status consume_radar(Consumer **out, const PictureFiles *made_of)
 {
     RadarFiles *to = calloc(1, sizeof *to);
     if (!to) return STATUS_NO_MEMORY;
-    *to = (RadarFiles){.consumer = {0, put, NULL, close_files, "radar_files", begin}, .of = *made_of, .retry = {.what = "files of the radar"}};
+    *to = (RadarFiles){.consumer = {0, put, NULL, close_files, "radar_files", begin},
+                       .of = *made_of,
+                       .retry = {.what = "files of the radar"}};
     if (made_of->config->radar.scan_deg > 0) to->consumer.wants |= WANT_PLANES; /* what each pixel shows */
     *out = &to->consumer;
     return STATUS_OK;

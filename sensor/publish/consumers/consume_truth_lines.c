@@ -16,22 +16,22 @@ typedef struct HeldLine {
 } HeldLine;
 
 typedef struct TruthLines {
-    Consumer consumer;
-    char     path[frame_path_size];
-    FILE    *file;
-    bool     patient;
+    Consumer     consumer;
+    char         path[frame_path_size];
+    FILE        *file;
+    bool         patient;
     RetryBackoff patience;
-    int     *failed;
-    Latency *latency;        /* of the frames; NULL: none is kept */
-    int      held;
-    HeldLine line[held_max]; /* [held], the oldest first */
+    int         *failed;
+    Latency     *latency; /* of the frames; NULL: none is kept */
+    int          held;
+    HeldLine     line[held_max]; /* [held], the oldest first */
 } TruthLines;
 
 static Status write_line(TruthLines *t, const char *text, const LatencyLine *latency)
 {
     if (!t->patient) return record_write_text(t->file, text, latency);
     Status     status = STATUS_OK;
-    const bool due    = retry_due(&t->patience);
+    const bool due = retry_due(&t->patience);
     if (due) status = record_write_text(t->file, text, latency);
     retry_done(&t->patience, due, due ? status : STATUS_IO);
     clearerr(t->file);
@@ -50,7 +50,7 @@ static Status write_oldest(TruthLines *t)
 
 static Status put(Consumer *consumer, Frame *frame)
 {
-    TruthLines *t      = (TruthLines *)consumer;
+    TruthLines *t = (TruthLines *)consumer;
     FrameRecord record = frame->record;
     Status      status = frame_sha256(&frame->seen);
     if (status != STATUS_OK) return status;
@@ -64,15 +64,14 @@ static Status put(Consumer *consumer, Frame *frame)
         return status;
     }
     t->line[t->held++] = (HeldLine){text, frame->latency_key};
-    while (status == STATUS_OK && t->held > 0 &&
-           (t->held == held_max || latency_complete(t->latency, t->line[0].key)))
+    while (status == STATUS_OK && t->held > 0 && (t->held == held_max || latency_complete(t->latency, t->line[0].key)))
         status = write_oldest(t);
     return status;
 }
 
 static Status close_lines(Consumer *consumer)
 {
-    TruthLines *t      = (TruthLines *)consumer;
+    TruthLines *t = (TruthLines *)consumer;
     Status      status = STATUS_OK;
     while (t->held > 0) {
         const Status one = write_oldest(t);
@@ -90,7 +89,7 @@ static Status close_lines(Consumer *consumer)
 static Status begin(Consumer *consumer)
 {
     TruthLines *t = (TruthLines *)consumer;
-    t->file       = output_file(t->path, 0);
+    t->file = output_file(t->path, 0);
     if (t->file) return STATUS_OK;
     log_error("session: cannot write %s: %s; choose another place with --out", t->path, output_reason(errno));
     return STATUS_IO;
@@ -101,8 +100,10 @@ Status consume_truth_lines(Consumer **out, const char *folder, bool patient, int
     TruthLines *t = calloc(1, sizeof *t);
     if (!t) return STATUS_NO_MEMORY;
     *t = (TruthLines){.consumer = {WANT_TARGETS | WANT_ERROR | WANT_SHA256 | WANT_LATENCY, put, NULL, close_lines,
-                                  "truth_lines", begin},
-                      .patient = patient, .patience = {.what = "lines in truth.jsonl"}, .failed = failed};
+                                   "truth_lines", begin},
+                      .patient = patient,
+                      .patience = {.what = "lines in truth.jsonl"},
+                      .failed = failed};
     snprintf(t->path, sizeof t->path, "%.*s/truth.jsonl", frame_path_size - frame_path_room, folder);
     *out = &t->consumer;
     return STATUS_OK;

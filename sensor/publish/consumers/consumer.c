@@ -40,7 +40,7 @@ Status consumers_put(const Consumers *list, Frame *frame)
     if (frame->publish_begun_s == 0) frame->publish_begun_s = wall_clock_s();
     for (int i = 0; i < list->count && status == STATUS_OK; i++) {
         Consumer *c = list->consumer[i];
-        status      = c->put(c, frame);
+        status = c->put(c, frame);
         if (frame->latency && status == STATUS_OK)
             latency_done(frame->latency, frame->latency_key, frame->times.rendered_s, c->name);
     }
@@ -78,9 +78,9 @@ Status consumers_close(Consumers *list)
 
 void consumers_request(RenderRequest *request, unsigned wants)
 {
-    request->truth            = wants & (WANT_PLANES | WANT_TARGETS | WANT_ERROR | WANT_SHA256);
+    request->truth = wants & (WANT_PLANES | WANT_TARGETS | WANT_ERROR | WANT_SHA256);
     request->hand_over_cells &= (wants & WANT_CELLS) != 0;
-    request->budget          &= (wants & WANT_ERROR) != 0;
+    request->budget &= (wants & WANT_ERROR) != 0;
 }
 
 /* ---- the queue: a thread, and the one frame that waits for it ------------------------------------ */
@@ -91,9 +91,9 @@ typedef struct FrameQueue {
     QueueRule       rule;
     QueueCounters   counters, *result;
     Frame          *waits;
-    Status          status;          /* QUEUE_WAIT: the first failure */
+    Status          status; /* QUEUE_WAIT: the first failure */
     bool            stop, running;
-    pthread_mutex_t lock;            /* of waits, status, stop */
+    pthread_mutex_t lock; /* of waits, status, stop */
     pthread_cond_t  work, room;
     pthread_t       thread;
 } FrameQueue;
@@ -125,14 +125,14 @@ static void *work(void *user)
 
 static Status put(Consumer *consumer, Frame *frame)
 {
-    FrameQueue *q     = (FrameQueue *)consumer;
+    FrameQueue *q = (FrameQueue *)consumer;
     Frame      *older = NULL;
     Status      status;
     pthread_mutex_lock(&q->lock);
     while (q->rule == QUEUE_WAIT && q->waits && q->status == STATUS_OK) pthread_cond_wait(&q->room, &q->lock);
     status = q->rule == QUEUE_WAIT ? q->status : STATUS_OK;
     if (status == STATUS_OK) { /* another may wait only under QUEUE_LEAVE_OUT */
-        older    = q->waits;
+        older = q->waits;
         q->waits = NULL;
     }
     pthread_mutex_unlock(&q->lock);
@@ -180,9 +180,9 @@ Status consumer_queue_open(Consumer **out, Consumers *list, QueueRule rule, Queu
         consumers_close(list);
         return STATUS_NO_MEMORY;
     }
-    q->list     = *list;
-    q->rule     = rule;
-    q->result   = counters;
+    q->list = *list;
+    q->rule = rule;
+    q->result = counters;
     q->consumer = (Consumer){consumers_wants(list), put, NULL, close_queue, NULL, begin};
     list->count = 0;
     pthread_mutex_init(&q->lock, NULL);

@@ -10,16 +10,16 @@
 #include "sensor/frame/frame.h"
 
 typedef enum FrameWant {
-    WANT_PLANES  = 1 << 0, /* of truth; those of the bands are always present */
-    WANT_TARGETS = 1 << 1, /* record.target */
-    WANT_ERROR   = 1 << 2, /* record.error, where the error budget is on */
-    WANT_CELLS   = 1 << 3, /* picture.small: small targets as a detector needs them */
-    WANT_WITHOUT = 1 << 4, /* a second rendering without the target, or without all entities */
-    WANT_SHA256  = 1 << 5, /* of all planes, truth too */
-    WANT_DISPLAY = 1 << 6, /* frame.display: behind the detector, with gain and level */
-    WANT_COUNTS  = 1 << 7, /* frame.display.counts: raw counts of the bands with a sensor */
+    WANT_PLANES = 1 << 0,    /* of truth; those of the bands are always present */
+    WANT_TARGETS = 1 << 1,   /* record.target */
+    WANT_ERROR = 1 << 2,     /* record.error, where the error budget is on */
+    WANT_CELLS = 1 << 3,     /* picture.small: small targets as a detector needs them */
+    WANT_WITHOUT = 1 << 4,   /* a second rendering without the target, or without all entities */
+    WANT_SHA256 = 1 << 5,    /* of all planes, truth too */
+    WANT_DISPLAY = 1 << 6,   /* frame.display: behind the detector, with gain and level */
+    WANT_COUNTS = 1 << 7,    /* frame.display.counts: raw counts of the bands with a sensor */
     WANT_FOOTPRINT = 1 << 8, /* record.footprint: where the boresight and the corners meet the ground */
-    WANT_LATENCY = 1 << 9, /* when other consumers are done with the frame: closed after those that do not want it */
+    WANT_LATENCY = 1 << 9,   /* when other consumers are done with the frame: closed after those that do not want it */
 } FrameWant;
 
 typedef struct Consumer Consumer;
@@ -28,12 +28,12 @@ struct Consumer {
     /* One frame, in order of time. Any result but STATUS_OK, logged, ends the run. */
     Status (*put)(Consumer *consumer, Frame *frame);
     /* The frame was rendered and is not put, for lack of time; called in the rendering thread. NULL: not needed. */
-    void   (*left_out)(Consumer *consumer, const Frame *frame);
+    void (*left_out)(Consumer *consumer, const Frame *frame);
     /* Finishes its products and frees the consumer. */
     Status (*close)(Consumer *consumer);
     const char *name; /* in the latency ledger; NULL: not in it */
-    /* Makes its folders and files, once and before the first frame: only then may the products of an earlier run go. NULL:
-     * there are none. Any result but STATUS_OK, logged, ends the run. */
+    /* Makes its folders and files, once and before the first frame: only then may the products of an earlier run go.
+     * NULL: there are none. Any result but STATUS_OK, logged, ends the run. */
     Status (*begin)(Consumer *consumer);
 };
 
@@ -48,15 +48,15 @@ typedef struct Consumers {
 Status   consumers_add(Consumers *list, Consumer *consumer);
 unsigned consumers_wants(const Consumers *list);
 /* Of each that has a begin; the first failure ends it. */
-Status   consumers_begin(const Consumers *list);
+Status consumers_begin(const Consumers *list);
 /* The frame to each in turn; the first failure ends it. */
-Status   consumers_put(const Consumers *list, Frame *frame);
+Status consumers_put(const Consumers *list, Frame *frame);
 /* Their names into the ledger. NULL: none is kept. */
-void     consumers_expect(const Consumers *list, Latency *latency);
+void consumers_expect(const Consumers *list, Latency *latency);
 /* Closes all of them; returns the first failure. */
-Status   consumers_close(Consumers *list);
+Status consumers_close(Consumers *list);
 /* The planes that a request must contain. Whether the error budget is on is up to the caller. */
-void     consumers_request(RenderRequest *request, unsigned wants);
+void consumers_request(RenderRequest *request, unsigned wants);
 
 /* ---- a queue ------------------------------------------------------------------------------------- */
 
@@ -86,9 +86,9 @@ Status consumer_queue_open(Consumer **out, Consumers *list, QueueRule rule, Queu
  * intervals. */
 
 typedef struct RetryBackoff {
-    const char *what;   /* the products, as messages name them */
-    double      off_s;  /* wall clock: no retry before */
-    bool        failed; /* the last try */
+    const char *what;    /* the products, as messages name them */
+    double      off_s;   /* wall clock: no retry before */
+    bool        failed;  /* the last try */
     int         lacking; /* number of failures */
 } RetryBackoff;
 
@@ -115,7 +115,7 @@ static inline void retry_done(RetryBackoff *p, bool tried, Status status)
     if (!tried) return;
     if (!p->failed) log_warn("session: going on without %s; trying again every %.0f s", p->what, retry_interval_s);
     p->failed = true;
-    p->off_s  = wall_clock_s() + retry_interval_s;
+    p->off_s = wall_clock_s() + retry_interval_s;
 }
 
 /* At the end of the run: what it lacks, if that has not been said yet. */

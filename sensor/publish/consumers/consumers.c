@@ -25,11 +25,16 @@ void chains_destroy(Chains *chains)
 
 static Status put_displays(Consumer *consumer, Frame *frame)
 {
-    DisplayMaker    *m  = (DisplayMaker *)consumer;
-    const DisplaysOf of = {.config = m->config, .picture = &frame->seen.picture, .chain = m->chains.band,
-                           .level = m->level, .frame = frame->number, .time_s = frame->time_s,
-                           .rate_px_s = {frame->rate_px_s[0], frame->rate_px_s[1]}, .counts = m->counts};
-    const Status status = frame_displays_make(frame->display, &of, frame->request.bands, m->pool, frame->arena);
+    DisplayMaker    *m = (DisplayMaker *)consumer;
+    const DisplaysOf of = {.config = m->config,
+                           .picture = &frame->seen.picture,
+                           .chain = m->chains.band,
+                           .level = m->level,
+                           .frame = frame->number,
+                           .time_s = frame->time_s,
+                           .rate_px_s = {frame->rate_px_s[0], frame->rate_px_s[1]},
+                           .counts = m->counts};
+    const Status     status = frame_displays_make(frame->display, &of, frame->request.bands, m->pool, frame->arena);
     if (frame->latency) latency_displayed(frame->latency, frame->latency_key, frame->times.rendered_s);
     return status;
 }
@@ -49,10 +54,13 @@ Status consume_displays(Consumer **out, const Config *config, Pool *pool, Chains
         chains_destroy(chains);
         return STATUS_NO_MEMORY;
     }
-    *m = (DisplayMaker){.consumer = {WANT_CELLS, put_displays, NULL, close_displays, NULL}, .config = config,
-                        .pool = pool, .counts = counts, .chains = *chains};
+    *m = (DisplayMaker){.consumer = {WANT_CELLS, put_displays, NULL, close_displays, NULL},
+                        .config = config,
+                        .pool = pool,
+                        .counts = counts,
+                        .chains = *chains};
     *chains = (Chains){{NULL}};
-    *out    = &m->consumer;
+    *out = &m->consumer;
     return STATUS_OK;
 }
 
@@ -75,7 +83,7 @@ static Status put_record(Consumer *consumer, Frame *frame)
 
 static Status put_hash(Consumer *consumer, Frame *frame)
 {
-    const Call  *c      = (const Call *)consumer;
+    const Call  *c = (const Call *)consumer;
     const Status status = c->hashes ? frame_sha256(&frame->seen) : STATUS_OK;
     if (status == STATUS_OK) c->done(c->user, frame);
     return status;
@@ -91,22 +99,24 @@ static Status open_call(Consumer **out, const Call *made_of)
 {
     Call *c = malloc(sizeof *c);
     if (!c) return STATUS_NO_MEMORY;
-    *c   = *made_of;
+    *c = *made_of;
     *out = &c->consumer;
     return STATUS_OK;
 }
 
 Status consume_by_call(Consumer **out, FrameCall *call, void *user, bool targets)
 {
-    const Call made = {.consumer = {targets ? WANT_TARGETS : 0, put_record, NULL, close_call, NULL},
-                       .call = call, .user = user};
+    const Call made = {
+        .consumer = {targets ? WANT_TARGETS : 0, put_record, NULL, close_call, NULL}, .call = call, .user = user};
     return open_call(out, &made);
 }
 
 Status consume_hashes(Consumer **out, FrameDone *done, void *user, bool hashes)
 {
     return open_call(out, &(Call){.consumer = {hashes ? WANT_SHA256 : 0, put_hash, NULL, close_call, NULL},
-                                  .done = done, .user = user, .hashes = hashes});
+                                  .done = done,
+                                  .user = user,
+                                  .hashes = hashes});
 }
 
 /* ---- image files of each frame ------------------------------------------------------------------- */
@@ -119,15 +129,23 @@ typedef struct Pictures {
 
 static Status put_pictures(Consumer *consumer, Frame *frame)
 {
-    Pictures        *p     = (Pictures *)consumer;
+    Pictures        *p = (Pictures *)consumer;
     const Config    *config = p->of.config;
-    const FrameFiles files = {.out = p->of.out, .config = config, .world = frame->world,
-                              .picture = &frame->seen.picture, .snapshot = &frame->seen.snapshot,
-                              .request = &frame->request, .host = frame->host,
-                              .config_sha256 = frame->provenance.config_sha256, .frame = frame->number,
-                              .time_s = frame->time_s, .unix_s = frame->unix_s, .png = config->publish.png,
-                              .raw = config->detector.raw, .display = frame->display};
-    const bool       due    = !p->of.patient || retry_due(&p->retry);
+    const FrameFiles files = {.out = p->of.out,
+                              .config = config,
+                              .world = frame->world,
+                              .picture = &frame->seen.picture,
+                              .snapshot = &frame->seen.snapshot,
+                              .request = &frame->request,
+                              .host = frame->host,
+                              .config_sha256 = frame->provenance.config_sha256,
+                              .frame = frame->number,
+                              .time_s = frame->time_s,
+                              .unix_s = frame->unix_s,
+                              .png = config->publish.png,
+                              .raw = config->detector.raw,
+                              .display = frame->display};
+    const bool       due = !p->of.patient || retry_due(&p->retry);
     Status           status = STATUS_IO;
     if (due) status = frame_files_write(*frame->seen.sha256 ? NULL : frame->seen.sha256, &files, p->of.pool);
     if (p->of.patient) retry_done(&p->retry, due, status);
@@ -145,7 +163,8 @@ Status consume_pictures(Consumer **out, const PictureFiles *made_of)
     Pictures *p = calloc(1, sizeof *p);
     if (!p) return STATUS_NO_MEMORY;
     const Config *config = made_of->config;
-    *p = (Pictures){.consumer = {0, put_pictures, NULL, close_pictures, "image_files"}, .of = *made_of,
+    *p = (Pictures){.consumer = {0, put_pictures, NULL, close_pictures, "image_files"},
+                    .of = *made_of,
                     .retry = {.what = "picture files"}};
     if (frame_files_truth(config)) p->consumer.wants |= WANT_PLANES;
     if (config->publish.png) p->consumer.wants |= WANT_DISPLAY;
@@ -168,15 +187,15 @@ typedef struct Latest {
 /* A reader finds the earlier image or this one, never a part. */
 static Status write_band(Latest *l, const Frame *frame, int band)
 {
-    const FrameDisplay *d     = &frame->display[band];
-    const Picture      *p     = &frame->seen.picture;
+    const FrameDisplay *d = &frame->display[band];
+    const Picture      *p = &frame->seen.picture;
     const size_t        count = (size_t)p->width * (size_t)p->height, octets = count * (size_t)d->planes;
     char                path[frame_path_size + 32];
     if (d->planes == 0) return STATUS_OK;
     if (octets > l->capacity) {
         uint8_t *larger = realloc(l->shown, octets);
         if (!larger) return STATUS_NO_MEMORY;
-        l->shown    = larger;
+        l->shown = larger;
         l->capacity = octets;
     }
     snprintf(path, sizeof path, "%s/%s.png", l->folder, band_name((Band)band));
@@ -186,8 +205,8 @@ static Status write_band(Latest *l, const Frame *frame, int band)
 
 static Status put_latest(Consumer *consumer, Frame *frame)
 {
-    Latest    *l      = (Latest *)consumer;
-    const bool due    = !l->patient || retry_due(&l->retry);
+    Latest    *l = (Latest *)consumer;
+    const bool due = !l->patient || retry_due(&l->retry);
     Status     status = due ? STATUS_OK : STATUS_IO;
     for (int b = 0; b < BAND_COUNT && status == STATUS_OK; b++) status = write_band(l, frame, b);
     if (l->patient) retry_done(&l->retry, due, status);
@@ -208,7 +227,8 @@ Status consume_latest(Consumer **out, const char *folder, bool patient)
 {
     Latest *l = calloc(1, sizeof *l);
     if (!l) return STATUS_NO_MEMORY;
-    *l = (Latest){.consumer = {WANT_DISPLAY, put_latest, NULL, close_latest, "latest", begin_latest}, .patient = patient,
+    *l = (Latest){.consumer = {WANT_DISPLAY, put_latest, NULL, close_latest, "latest", begin_latest},
+                  .patient = patient,
                   .retry = {.what = "latest pictures"}};
     snprintf(l->folder, sizeof l->folder, "%.*s/latest", frame_path_size - frame_path_room, folder);
     *out = &l->consumer;
@@ -229,7 +249,7 @@ static Status put_coco(Consumer *consumer, Frame *frame)
 
 static Status close_coco(Consumer *consumer)
 {
-    CocoConsumer *c      = (CocoConsumer *)consumer;
+    CocoConsumer *c = (CocoConsumer *)consumer;
     const Status  status = coco_close(c->coco);
     free(c);
     return status;
@@ -241,11 +261,11 @@ Status consume_coco(Consumer **out, const char *folder, const Config *config, co
 {
     CocoConsumer *c = calloc(1, sizeof *c);
     if (!c) return STATUS_NO_MEMORY;
-    c->consumer         = (Consumer){WANT_TARGETS | WANT_PLANES, put_coco, NULL, close_coco, "coco", begin_coco};
-    const Status status = coco_open(&c->coco, folder, config->publish.png ? "png" : "exr",
-                                    (CocoLimits){config->publish.coco_min_pixels, config->publish.coco_min_visible,
-                                                 config->publish.coco_min_snr},
-                                    config_sha256, config->seed);
+    c->consumer = (Consumer){WANT_TARGETS | WANT_PLANES, put_coco, NULL, close_coco, "coco", begin_coco};
+    const Status status = coco_open(
+        &c->coco, folder, config->publish.png ? "png" : "exr",
+        (CocoLimits){config->publish.coco_min_pixels, config->publish.coco_min_visible, config->publish.coco_min_snr},
+        config_sha256, config->seed);
     if (status == STATUS_OK) *out = &c->consumer;
     else free(c);
     return status;

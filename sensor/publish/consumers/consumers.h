@@ -23,7 +23,7 @@ Status consume_displays(Consumer **out, const Config *config, Pool *pool, Chains
 typedef struct PictureFiles {
     const char   *out;
     const Config *config;
-    Pool         *pool;      /* of the thread that puts */
+    Pool         *pool; /* of the thread that puts */
     bool          patient;
 } PictureFiles;
 Status consume_pictures(Consumer **out, const PictureFiles *made_of);
@@ -44,11 +44,11 @@ Status consume_coco(Consumer **out, const char *folder, const Config *config, co
 
 /* Each frame's record, passed to a function: health of a live node, tests. targets: with its targets. */
 typedef void FrameCall(void *user, const FrameRecord *record);
-Status consume_by_call(Consumer **out, FrameCall *call, void *user, bool targets);
+Status       consume_by_call(Consumer **out, FrameCall *call, void *user, bool targets);
 
 /* The hash of each frame (hashes: false: none), and that it has been published: the last of a list. done is called for
  * each. */
 typedef void FrameDone(void *user, const Frame *frame);
-Status consume_hashes(Consumer **out, FrameDone *done, void *user, bool hashes);
+Status       consume_hashes(Consumer **out, FrameDone *done, void *user, bool hashes);
 
 #endif

@@ -60,8 +60,8 @@ static void add_fixed(DisData *pdu, uint32_t id, uint32_t value)
 /* The octets written since `from`. */
 static void add_variable(DisData *pdu, uint32_t id, const Octets *o, size_t from)
 {
-    pdu->variable[pdu->variable_count++] = (DisVariableDatum){.id = id, .bits = (uint32_t)(8 * (o->used - from)),
-                                                              .value = o->at + from};
+    pdu->variable[pdu->variable_count++] =
+        (DisVariableDatum){.id = id, .bits = (uint32_t)(8 * (o->used - from)), .value = o->at + from};
 }
 
 static void put_seen(Octets *o, const TargetRecord *t, Band band)
@@ -108,13 +108,13 @@ static int next_largest(const FrameRecord *r, const int *chosen, int count, bool
 static void add_targets(DisData *pdu, Octets *o, const FrameRecord *r, Band band, bool truth)
 {
     enum { most = 32 };
-    const size_t one  = (size_t)(datum_head_octets + ((truth ? truth_octets : seen_octets) + 7) / 8 * 8);
+    const size_t one = (size_t)(datum_head_octets + ((truth ? truth_octets : seen_octets) + 7) / 8 * 8);
     size_t       room = dis_smallest_mtu - 40 - 8 * 8 - (8 + 8) - 2 * (8 + 24) - (8 + 8);
     int          chosen[most], count = 0, all = 0;
     for (int i = 0; i < r->target_count; i++) all += truth || r->target[i].pixels > 0;
     for (int i; count < most && room >= one && (i = next_largest(r, chosen, count, truth)) >= 0; room -= one) {
         const size_t from = o->used;
-        chosen[count++]   = i;
+        chosen[count++] = i;
         if (truth) put_truth(o, &r->target[i], band);
         else put_seen(o, &r->target[i], band);
         add_variable(pdu, truth ? datum_truth : datum_target_measured, o, from);
@@ -128,7 +128,7 @@ static void put_camera(Octets *o, const double r_ecef_from_cam[9])
 {
     double r_ecef_from_body[9], psi_rad, theta_rad, phi_rad;
     for (int k = 0; k < 3; k++) {
-        r_ecef_from_body[3 * k]     = r_ecef_from_cam[3 * k + 2];
+        r_ecef_from_body[3 * k] = r_ecef_from_cam[3 * k + 2];
         r_ecef_from_body[3 * k + 1] = r_ecef_from_cam[3 * k];
         r_ecef_from_body[3 * k + 2] = r_ecef_from_cam[3 * k + 1];
     }
@@ -142,9 +142,13 @@ static void put_camera(Octets *o, const double r_ecef_from_cam[9])
 static DisData data_pdu(const DisRecordSender *sender)
 {
     enum { simulation_management = 5 };
-    return (DisData){.header = {.version = sender->version, .exercise = sender->exercise, .type = dis_pdu_data,
-                                .family = simulation_management, .timestamp = sender->timestamp},
-                     .originating = {sender->site, sender->application, 0}, .receiving = {0xFFFF, 0xFFFF, 0xFFFF}};
+    return (DisData){.header = {.version = sender->version,
+                                .exercise = sender->exercise,
+                                .type = dis_pdu_data,
+                                .family = simulation_management,
+                                .timestamp = sender->timestamp},
+                     .originating = {sender->site, sender->application, 0},
+                     .receiving = {0xFFFF, 0xFFFF, 0xFFFF}};
 }
 
 static void add_image(DisData *pdu, const FrameRecord *r)
@@ -199,7 +203,8 @@ enum { detections_a_pdu = 32, radar_pdus_most = 4 };
 
 static int detections_sent(const RadarFrame *radar)
 {
-    return radar->detections < radar_pdus_most * detections_a_pdu ? radar->detections : radar_pdus_most * detections_a_pdu;
+    return radar->detections < radar_pdus_most * detections_a_pdu ? radar->detections
+                                                                  : radar_pdus_most * detections_a_pdu;
 }
 
 int dis_record_radar_count(const FrameRecord *r)
@@ -264,8 +269,8 @@ static uint32_t number_of(const char *word, const char *const *list)
 
 /* The announcement of the band's video stream, which is number `stream` of the run's, from 0, by publish.stream,
  * video_codec, klv and vmti. 0: there is no such stream. */
-static size_t dis_record_stream(uint8_t out[dis_smallest_mtu], const DisRecordSender *sender, const FrameRecord *r, Band band,
-                         const Config *config, int stream)
+static size_t dis_record_stream(uint8_t out[dis_smallest_mtu], const DisRecordSender *sender, const FrameRecord *r,
+                                Band band, const Config *config, int stream)
 {
     static const char *const codec[] = {"", "h264", "h264-10", "hevc-12", "ffv1", NULL};
     static const char *const klv[] = {"off", "async", "sync", NULL}, *const targets[] = {"off", "atr", "truth", NULL};
@@ -273,7 +278,7 @@ static size_t dis_record_stream(uint8_t out[dis_smallest_mtu], const DisRecordSe
     const char *why;
     char        text[40];
     StreamUrl   url;
-    Octets      o   = {.used = 0};
+    Octets      o = {.used = 0};
     DisData     pdu = data_pdu(sender);
     if (!publish_stream_parse(&url, &why, config->publish.stream)) return 0;
     const int port = url.port + stream * publish_stream_port_step;
@@ -287,8 +292,8 @@ static size_t dis_record_stream(uint8_t out[dis_smallest_mtu], const DisRecordSe
     add_time(&pdu, &o, r);
     add_host(&pdu, &o, r);
     const size_t from = o.used;
-    snprintf(text, sizeof text, "udp://%u.%u.%u.%u:%d", url.address[0], url.address[1], url.address[2],
-             url.address[3], port);
+    snprintf(text, sizeof text, "udp://%u.%u.%u.%u:%d", url.address[0], url.address[1], url.address[2], url.address[3],
+             port);
     for (const char *at = text; *at; at++) put(&o, (uint8_t)*at, 1);
     add_variable(&pdu, datum_stream_url, &o, from);
     return dis_encode_data(out, dis_smallest_mtu, &pdu);
@@ -324,19 +329,19 @@ static void announce(const Sending *s, const DisRecordSender *sender, const Fram
 
 static Status put_frame(Consumer *consumer, Frame *frame)
 {
-    Sending              *s      = (Sending *)consumer;
+    Sending              *s = (Sending *)consumer;
     const Config         *config = s->of.config;
     const FrameRecord    *record = &frame->record;
-    const bool            truth  = strcmp(config->publish.dis, "truth") == 0;
-    const DisRecordSender sender = {.version = s->of.version, .exercise = s->of.exercise,
+    const bool            truth = strcmp(config->publish.dis, "truth") == 0;
+    const DisRecordSender sender = {.version = s->of.version,
+                                    .exercise = s->of.exercise,
                                     .site = (uint16_t)config->node.site,
                                     .application = (uint16_t)config->node.application,
                                     .timestamp = dis_timestamp(s->of.arrival_s(s->of.clock, record->time_s), false)};
     uint8_t               pdu[dis_smallest_mtu];
     if (*config->publish.stream && announcement_is_due(s, record->time_s)) announce(s, &sender, record);
     for (int b = 0; b < BAND_COUNT; b++)
-        if (s->of.bands >> b & 1)
-            s->of.send(s->of.user, pdu, dis_record_frame(pdu, &sender, record, (Band)b, truth));
+        if (s->of.bands >> b & 1) s->of.send(s->of.user, pdu, dis_record_frame(pdu, &sender, record, (Band)b, truth));
     for (int n = 0; record->radar && n < dis_record_radar_count(record); n++)
         s->of.send(s->of.user, pdu, dis_record_radar(pdu, &sender, record, n));
     return STATUS_OK;
@@ -352,7 +357,7 @@ Status consume_dis(Consumer **out, const DisOf *of)
 {
     Sending *s = malloc(sizeof *s);
     if (!s) return STATUS_NO_MEMORY;
-    *s   = (Sending){.consumer = {WANT_TARGETS, put_frame, NULL, close_sending, "dis"}, .of = *of, .announced = NAN};
+    *s = (Sending){.consumer = {WANT_TARGETS, put_frame, NULL, close_sending, "dis"}, .of = *of, .announced = NAN};
     *out = &s->consumer;
     return STATUS_OK;
 }

@@ -72,20 +72,39 @@
 #include "sensor/publish/consumers/consumer.h"
 
 enum {
-    datum_frame = 600001, datum_band, datum_kind, datum_raster, datum_hfov, datum_vfov, datum_targets, datum_left_out,
-    datum_stream_codec, datum_stream_klv, datum_stream_targets,
-    datum_detections, datum_detections_omitted, datum_radar_pdu,
-    datum_time = 600101, datum_sensor_position, datum_camera, datum_host,
-    datum_target_measured = 600201, datum_truth,
+    datum_frame = 600001,
+    datum_band,
+    datum_kind,
+    datum_raster,
+    datum_hfov,
+    datum_vfov,
+    datum_targets,
+    datum_left_out,
+    datum_stream_codec,
+    datum_stream_klv,
+    datum_stream_targets,
+    datum_detections,
+    datum_detections_omitted,
+    datum_radar_pdu,
+    datum_time = 600101,
+    datum_sensor_position,
+    datum_camera,
+    datum_host,
+    datum_target_measured = 600201,
+    datum_truth,
     datum_stream_url = 600301,
-    datum_radar = 600401, datum_detection,
-    datum_kind_sensor = 1, datum_kind_truth = 2, datum_kind_stream = 3, datum_kind_radar = 4,
+    datum_radar = 600401,
+    datum_detection,
+    datum_kind_sensor = 1,
+    datum_kind_truth = 2,
+    datum_kind_stream = 3,
+    datum_kind_radar = 4,
 };
 
 typedef struct DisRecordSender {
     uint8_t  version, exercise; /* as in the exercise */
     uint16_t site, application;
-    uint32_t timestamp;         /* raw, at the time of the frame */
+    uint32_t timestamp; /* raw, at the time of the frame */
 } DisRecordSender;
 
 /* One frame's PDU of one band. Returns its size in octets, at most dis_smallest_mtu. */
@@ -97,8 +116,9 @@ int    dis_record_radar_count(const FrameRecord *frame);
 
 /* ---- the consumer -------------------------------------------------------------------------------- */
 
-/* Data PDUs as a consumer of frames: one per frame and band, as publish.dis says, and the announcements of the video streams, as publish.stream says. What they contain depends on
- * the frame alone, so a live node and a replay of its recording send the same octets for the same frame. */
+/* Data PDUs as a consumer of frames: one per frame and band, as publish.dis says, and the announcements of the video
+ * streams, as publish.stream says. What they contain depends on the frame alone, so a live node and a replay of its
+ * recording send the same octets for the same frame. */
 
 /* Sends one datagram; must not wait. What it returns is for its own counters: a PDU that is not sent ends nothing. */
 typedef Status DisSend(void *user, const uint8_t *pdu, size_t octets);
@@ -106,12 +126,12 @@ typedef Status DisSend(void *user, const uint8_t *pdu, size_t octets);
 typedef double DisArrivalTime(const void *clock, double t_s);
 
 typedef struct DisOf {
-    const Config   *config;            /* publish.dis: not off */
+    const Config   *config; /* publish.dis: not off */
     unsigned        bands;
     uint8_t         version, exercise; /* as in the exercise */
     DisSend        *send;
     void           *user;
-    DisArrivalTime *arrival_s;         /* of the time stamps: those of a replay are those of the recorded hour */
+    DisArrivalTime *arrival_s; /* of the time stamps: those of a replay are those of the recorded hour */
     const void     *clock;
 } DisOf;
 

@@ -7,8 +7,8 @@
 
 static Status write_raw(const FrameFiles *frame, int band)
 {
-    const FrameDisplay *d     = &frame->display[band];
-    const int           w     = frame->picture->width, h = frame->picture->height;
+    const FrameDisplay *d = &frame->display[band];
+    const int           w = frame->picture->width, h = frame->picture->height;
     const size_t        count = (size_t)w * (size_t)h;
     char                path[frame_path_size];
     if (!frame_path(path, frame, "raw", band_name((Band)band), "png")) return STATUS_BAD_VALUE;
@@ -25,10 +25,10 @@ static Status write_raw(const FrameFiles *frame, int band)
 Status frame_files_write_display(const FrameFiles *frame, int band)
 {
     char           path[frame_path_size];
-    const Picture *p      = frame->picture;
-    const size_t   count  = (size_t)p->width * (size_t)p->height;
-    const bool     truth  = band == BAND_COUNT;
-    const int      bits   = truth ? 8 : frame->config->detector.bits;
+    const Picture *p = frame->picture;
+    const size_t   count = (size_t)p->width * (size_t)p->height;
+    const bool     truth = band == BAND_COUNT;
+    const int      bits = truth ? 8 : frame->config->detector.bits;
     const int      planes = truth ? 3 : frame->display[band].planes;
     if (!truth && frame->raw && frame->display[band].counts[0]) {
         const Status status = write_raw(frame, band);
@@ -59,12 +59,18 @@ static Rgb id_colour(DisEntityId id)
     const double   hue = mixed / 4294967296.0 * 6;
     const double   x = 1 - fabs(fmod(hue, 2) - 1);
     switch ((int)hue) {
-    case 0: return (Rgb){1, x, 0};
-    case 1: return (Rgb){x, 1, 0};
-    case 2: return (Rgb){0, 1, x};
-    case 3: return (Rgb){0, x, 1};
-    case 4: return (Rgb){x, 0, 1};
-    default: return (Rgb){1, 0, x};
+    case 0:
+        return (Rgb){1, x, 0};
+    case 1:
+        return (Rgb){x, 1, 0};
+    case 2:
+        return (Rgb){0, 1, x};
+    case 3:
+        return (Rgb){0, x, 1};
+    case 4:
+        return (Rgb){x, 0, 1};
+    default:
+        return (Rgb){1, 0, x};
     }
 }
 
@@ -77,8 +83,8 @@ static void put(uint8_t *rgb, Rgb c)
     rgb[2] = code(c.b);
 }
 
-void frame_files_preview(uint8_t *rgb, const float *range_m, const uint32_t *entity, const float *normal_up, size_t count,
-                   const Snapshot *snapshot)
+void frame_files_preview(uint8_t *rgb, const float *range_m, const uint32_t *entity, const float *normal_up,
+                         size_t count, const Snapshot *snapshot)
 {
     float nearest_m = INFINITY, farthest_m = 0;
     for (size_t i = 0; i < count; i++) {

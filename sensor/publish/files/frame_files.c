@@ -51,13 +51,16 @@ bool frame_files_truth(const Config *config) { return planes_of(config) != plane
 /* The planes of one group that go into its file; truth: those in `kept`. */
 static int group_planes(FrameArray out[frame_max_planes], const FrameFiles *frame, const char *group, unsigned kept)
 {
-    static const struct { const char *name; PlaneChoice choice; } truth[] = {
-        {"range_m", PLANE_RANGE}, {"entity", PLANE_ENTITY}, {"part", PLANE_PART}, {"material", PLANE_MATERIAL},
-        {"temp_k", PLANE_TEMPERATURE}, {"nx", PLANE_NORMAL}, {"ny", PLANE_NORMAL}, {"nz", PLANE_NORMAL},
-        {"instance", PLANE_INSTANCE}, {"cover", PLANE_COVER}};
+    static const struct {
+        const char *name;
+        PlaneChoice choice;
+    } truth[] = {{"range_m", PLANE_RANGE},     {"entity", PLANE_ENTITY},      {"part", PLANE_PART},
+                 {"material", PLANE_MATERIAL}, {"temp_k", PLANE_TEMPERATURE}, {"nx", PLANE_NORMAL},
+                 {"ny", PLANE_NORMAL},         {"nz", PLANE_NORMAL},          {"instance", PLANE_INSTANCE},
+                 {"cover", PLANE_COVER}};
     FrameArray all[frame_max_planes];
     const int  count = frame_planes(all, frame->picture, frame->request);
-    int        n     = 0;
+    int        n = 0;
     for (int i = 0; i < count; i++) {
         bool wanted = strcmp(all[i].group, group) == 0 && all[i].kind != PLANE_PROFILE;
         for (size_t k = 0; k < sizeof truth / sizeof *truth && all[i].kind == PLANE_TRUTH; k++)
@@ -74,9 +77,9 @@ typedef struct MadePlanes {
     float *values[BAND_COUNT];
 } MadePlanes;
 
-/* Emissivity of the surface at each pixel's centre in a thermal band, 0 .. 1: 1 - reflectance - transmittance of its row
- * of etc/materials.csv or etc/plant_optics.csv, hemispherical; NaN: sky. out: [height][width]. It follows from the plane
- * of materials, is made when it is written, and is in no hash of a frame. */
+/* Emissivity of the surface at each pixel's centre in a thermal band, 0 .. 1: 1 - reflectance - transmittance of its
+ * row of etc/materials.csv or etc/plant_optics.csv, hemispherical; NaN: sky. out: [height][width]. It follows from the
+ * plane of materials, is made when it is written, and is in no hash of a frame. */
 static void emissivity_plane(float *out, Band band, const Picture *picture, const Materials *materials)
 {
     const size_t    count = (size_t)picture->width * (size_t)picture->height;
@@ -90,7 +93,7 @@ static void emissivity_plane(float *out, Band band, const Picture *picture, cons
             value = !m || material == 0 ? NAN
                     : band == BAND_MWIR ? 1 - m->rho_mwir - m->tau_mwir
                                         : 1 - m->rho_lwir - m->tau_lwir;
-            last  = material;
+            last = material;
         }
         out[i] = value;
     }
@@ -116,7 +119,8 @@ void frame_date(char out[32], double unix_s)
 {
     const time_t whole = (time_t)floor(unix_s);
     struct tm    date;
-    if (!gmtime_r(&whole, &date) || strftime(out, 32, "%Y:%m:%d %H:%M:%S", &date) == 0) strcpy(out, "1970:01:01 00:00:00");
+    if (!gmtime_r(&whole, &date) || strftime(out, 32, "%Y:%m:%d %H:%M:%S", &date) == 0)
+        strcpy(out, "1970:01:01 00:00:00");
 }
 
 /* Ids of the frame's table in order: value k of the entity plane is the k-th. */
@@ -162,14 +166,13 @@ static char *part_names(const FrameFiles *frame)
     char *text = calloc(size, 1);
     for (int m = 0; text && m < catalog_model_count(catalog); m++) {
         const Model *model = catalog_model(catalog, m);
-        bool         here  = false; /* in any size: the parts are the same */
+        bool         here = false; /* in any size: the parts are the same */
         for (int i = 0; i < frame->snapshot->count && catalog_class(catalog, m) == m; i++)
             here |= catalog_class(catalog, frame->snapshot->entity[i].model) == m;
         for (int i = 0; here && i < model->part_count; i++)
             if (i == 0)
                 n += (size_t)snprintf(text + n, size - n, "%s%s:%s", n ? ";" : "", model->name, model->part[i].name);
-            else
-                n += (size_t)snprintf(text + n, size - n, ",%s", model->part[i].name);
+            else n += (size_t)snprintf(text + n, size - n, ",%s", model->part[i].name);
     }
     return text;
 }
@@ -198,7 +201,7 @@ static Status write_exr(const FrameFiles *frame, int band)
     MadePlanes     made = {0};
     ImageAttribute attribute[16];
     char          *ids = NULL, *names = NULL, *parts = NULL, *surfaces = NULL;
-    int            n      = 0;
+    int            n = 0;
     const bool     truth = band == BAND_COUNT;
     int            planes = group_planes(from, frame, group, planes_of(frame->config));
     Status         status = truth ? make_planes(&made, frame, planes_of(frame->config)) : STATUS_OK;
@@ -220,13 +223,13 @@ static Status write_exr(const FrameFiles *frame, int band)
     attribute[n++] = image_int("seed", (int)frame->config->seed);
     attribute[n++] = image_string("config_sha256", frame->config_sha256);
     if (truth) {
-        ids            = entity_ids(frame->snapshot);
-        names          = material_names(&frame->world->materials);
+        ids = entity_ids(frame->snapshot);
+        names = material_names(&frame->world->materials);
         attribute[n++] = image_string("entity_ids", ids ? ids : "");
-        parts          = part_names(frame);
+        parts = part_names(frame);
         attribute[n++] = image_string("material_names", names ? names : "");
         attribute[n++] = image_string("part_names", parts ? parts : "");
-        surfaces       = frame->picture->instance ? surface_names() : NULL;
+        surfaces = frame->picture->instance ? surface_names() : NULL;
         if (surfaces) attribute[n++] = image_string("surface_names", surfaces);
     }
     frame_date(date, frame->unix_s);
@@ -249,12 +252,14 @@ static Status write_profile(const FrameFiles *frame, int band)
         log_error("replay: cannot write %s: %s", path, output_reason(errno));
         return STATUS_IO;
     }
-    fprintf(file, "# range profile, unit relative, model pseudo-radar; a bin is %.9g m, its middle is given\n"
-                  "range_m,bounce_1,bounce_2,bounce_3\n", frame->request->profile_bin_m);
+    fprintf(file,
+            "# range profile, unit relative, model pseudo-radar; a bin is %.9g m, its middle is given\n"
+            "range_m,bounce_1,bounce_2,bounce_3\n",
+            frame->request->profile_bin_m);
     for (int i = 0; i < frame->request->profile_bins; i++) {
         const double *bin = frame->picture->profile + (size_t)i * radar_bounces;
-        fprintf(file, "%.3f,%.6g,%.6g,%.6g\n", frame->request->profile_near_m + (i + 0.5) * frame->request->profile_bin_m,
-                bin[0], bin[1], bin[2]);
+        fprintf(file, "%.3f,%.6g,%.6g,%.6g\n",
+                frame->request->profile_near_m + (i + 0.5) * frame->request->profile_bin_m, bin[0], bin[1], bin[2]);
     }
     const bool ok = !ferror(file);
     if (fclose(file) == 0 && ok) return STATUS_OK;
@@ -267,7 +272,7 @@ static Status hash_planes(char hash[sha256_text_size], const FrameFiles *frame)
 {
     FrameView view;
     view.plane_count = frame_planes(view.plane, frame->picture, frame->request);
-    *view.sha256     = 0;
+    *view.sha256 = 0;
     const Status status = frame_sha256(&view);
     memcpy(hash, view.sha256, sha256_text_size);
     return status;
@@ -283,7 +288,7 @@ static void run_job(void *user, int worker, int task)
         return;
     }
     FileJob *job = &jobs->job[task - 1];
-    job->status  = job->write(jobs->frame, job->band);
+    job->status = job->write(jobs->frame, job->band);
 }
 
 static void add_job(FileJobs *jobs, Status (*write)(const FrameFiles *, int), int band)

@@ -8,17 +8,17 @@
 #include "entities/table/snapshot.h"
 
 typedef struct FrameFiles {
-    const char     *out;            /* folder of this host; exists, with its subfolders */
-    const Config   *config;
-    const World    *world;
-    const Picture  *picture;
-    const Snapshot *snapshot;
+    const char          *out; /* folder of this host; exists, with its subfolders */
+    const Config        *config;
+    const World         *world;
+    const Picture       *picture;
+    const Snapshot      *snapshot;
     const RenderRequest *request;
-    const char     *host, *config_sha256;
-    int             frame;
-    double          time_s, unix_s;
-    bool            png, raw;       /* displays; raw counts, where there are any */
-    const FrameDisplay *display;    /* [BAND_COUNT]; of those and truth, if it is png */
+    const char          *host, *config_sha256;
+    int                  frame;
+    double               time_s, unix_s;
+    bool                 png, raw; /* displays; raw counts, where there are any */
+    const FrameDisplay  *display;  /* [BAND_COUNT]; of those and truth, if it is png */
 } FrameFiles;
 
 /* Bands with a detector: all but radar. */
@@ -47,28 +47,28 @@ Status frame_files_prepare_displays(const char *out, unsigned bands, unsigned ra
 enum { pair_folders = 3 };
 extern const char *const pair_folder[pair_folders];
 /* Whether any plane of truth is written to files. */
-bool   frame_files_truth(const Config *config);
+bool frame_files_truth(const Config *config);
 /* Writes all files of the frame, one task per file. hash: over all planes, before encoding; NULL: none. */
 Status frame_files_write(char hash[sha256_text_size], const FrameFiles *frame, Pool *pool);
 /* Only the products of detectors: display images and raw counts of its bands. */
 Status frame_files_write_displays(const FrameFiles *frame, Pool *pool);
 /* OUT/FOLDER/NAME/NNNNNN.ENDING. False, logged: it is too long. */
-bool   frame_path(char path[frame_path_size], const FrameFiles *frame, const char *folder, const char *name,
-                  const char *ending);
+bool frame_path(char path[frame_path_size], const FrameFiles *frame, const char *folder, const char *name,
+                const char *ending);
 
 /* UTC as image files have it, YYYY:MM:DD HH:MM:SS. */
-void   frame_date(char out[32], double unix_s);
+void frame_date(char out[32], double unix_s);
 
 /* ---- displays (display_files.c) ---------------------------------------------------------------- */
 
 /* Writes the band's display image and its raw counts, as requested. BAND_COUNT: the preview of truth. */
 Status frame_files_write_display(const FrameFiles *frame, int band);
 
-/* Truth as a preview image: one colour per entity, over range shading. rgb: [count][3]. Ground: grey by range, light near and dark far, logarithmic between the nearest and the
- * farthest finite range. Sky (range not finite): dark blue. Entities (plane: snapshot index + 1): a colour
- * that depends on the id alone, so that it stays from frame to frame; an index beyond the snapshot: white.
- * normal_up (the plane nz; may be NULL) shades both. */
-void frame_files_preview(uint8_t *rgb, const float *range_m, const uint32_t *entity, const float *normal_up, size_t count,
-                   const Snapshot *snapshot);
+/* Truth as a preview image: one colour per entity, over range shading. rgb: [count][3]. Ground: grey by range, light
+ * near and dark far, logarithmic between the nearest and the farthest finite range. Sky (range not finite): dark blue.
+ * Entities (plane: snapshot index + 1): a colour that depends on the id alone, so that it stays from frame to frame; an
+ * index beyond the snapshot: white. normal_up (the plane nz; may be NULL) shades both. */
+void frame_files_preview(uint8_t *rgb, const float *range_m, const uint32_t *entity, const float *normal_up,
+                         size_t count, const Snapshot *snapshot);
 
 #endif

@@ -76,7 +76,7 @@ static bool is_below(const char *name) { return strcmp(name, "truth") == 0 || is
 
 /* Calls found for each name in a folder for which ours(name) holds, until it returns false. */
 static void each_in(const char *folder, bool (*ours)(const char *name), bool (*found)(void *user, const char *path),
-                    void *user)
+                    void       *user)
 {
     DIR *directory = output_list(folder);
     char path[path_size + 300];
@@ -112,7 +112,9 @@ static void product_folder(char path[path_size], const char *out, int b)
         return;
     }
     snprintf(path, path_size, "%s/%s%s", out, b <= BAND_COUNT ? "frames/" : "profiles/",
-             b < BAND_COUNT ? band_name((Band)b) : b == BAND_COUNT ? "truth" : "radar");
+             b < BAND_COUNT    ? band_name((Band)b)
+             : b == BAND_COUNT ? "truth"
+                               : "radar");
 }
 
 /* Those with a folder for each band; and the one of consume_radar, with files. */
@@ -135,10 +137,7 @@ static void clear_products(const char *out)
     remove_frames(NULL, path);
 }
 
-static bool first_file(void *found, const char *path)
-{
-    return snprintf(found, path_size, "%s", path) >= path_size;
-}
+static bool first_file(void *found, const char *path) { return snprintf(found, path_size, "%s", path) >= path_size; }
 
 /* The first image or table of a frame in a folder: found is empty before. */
 static bool first_frame(void *found, const char *folder)
@@ -174,8 +173,8 @@ static const char *const marks[] = {"run.json", "truth.jsonl"};
 void frame_files_clear(const char *out)
 {
     static const char *const beside[] = {"pairs", "pairs.jsonl", "coco.json", "answers.jsonl"};
-    char path[path_size];
-    bool earlier = !too_long(out) && frame_files_earlier(path, out);
+    char                     path[path_size];
+    bool                     earlier = !too_long(out) && frame_files_earlier(path, out);
     if (too_long(out)) return;
     for (int i = 0; i < 2; i++) {
         snprintf(path, sizeof path, "%s/%s", out, marks[i]);
@@ -210,10 +209,10 @@ static bool blocked(const char *out, const char *name, unsigned how)
 
 Status frame_files_check(const char *out)
 {
-    static const char *const files[] = {"run.json", "truth.jsonl", "coco.json", "pairs.jsonl", "answers.jsonl"},
-                      *const folders[] = {"frames", "profiles", "raw", "radar", "latest", "pairs"};
-    bool bad = too_long(out);
-    char path[path_size], name[64];
+    static const char *const        files[] = {"run.json", "truth.jsonl", "coco.json", "pairs.jsonl", "answers.jsonl"},
+                             *const folders[] = {"frames", "profiles", "raw", "radar", "latest", "pairs"};
+    bool                            bad = too_long(out);
+    char                            path[path_size], name[64];
     for (size_t i = 0; i < sizeof files / sizeof *files && !bad; i++) bad = blocked(out, files[i], 0);
     for (size_t i = 0; i < sizeof folders / sizeof *folders && !bad; i++) bad = blocked(out, folders[i], OUTPUT_FOLDER);
     for (int b = 0; b < folder_count && !bad; b++) {
@@ -241,8 +240,8 @@ Status frame_files_prepare(const char *out, unsigned bands, unsigned raw)
     if (status == STATUS_OK) frame_files_clear(out);
     for (int b = 0; b < folder_count && status == STATUS_OK; b++) {
         if (bands == 0) break;
-        if (b >= raw_folder ? !(raw >> (b - raw_folder) & 1) :
-            !(bands >> (b <= BAND_COUNT ? b : BAND_RADAR) & 1)) continue;
+        if (b >= raw_folder ? !(raw >> (b - raw_folder) & 1) : !(bands >> (b <= BAND_COUNT ? b : BAND_RADAR) & 1))
+            continue;
         product_folder(path, out, b);
         status = frame_files_folder(path);
     }
@@ -254,7 +253,8 @@ Status frame_files_prepare_displays(const char *out, unsigned bands, unsigned ra
     char   path[path_size];
     Status status = frame_files_folder(out);
     for (int b = 0; b < folder_count && status == STATUS_OK; b++) {
-        if (b >= raw_folder ? !(raw >> (b - raw_folder) & 1) : b >= BAND_COUNT || !(bands & detector_bands & 1u << b)) continue;
+        if (b >= raw_folder ? !(raw >> (b - raw_folder) & 1) : b >= BAND_COUNT || !(bands & detector_bands & 1u << b))
+            continue;
         product_folder(path, out, b);
         status = frame_files_folder(path);
     }

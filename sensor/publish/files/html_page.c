@@ -25,7 +25,8 @@ FILE *html_begin(const char *path, const char *title)
         return NULL;
     }
     fputs("<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
-          "<meta name=\"viewport\" content=\"width=device-width\">\n<title>", page);
+          "<meta name=\"viewport\" content=\"width=device-width\">\n<title>",
+          page);
     html_text(page, "%s", title);
     fprintf(page, "</title>\n<style>\n%s</style></head><body>\n<h1>", style);
     html_text(page, "%s", title);
@@ -37,11 +38,20 @@ static void escape(FILE *page, const char *text)
 {
     for (; *text; text++) {
         switch (*text) {
-        case '&': fputs("&amp;", page); break;
-        case '<': fputs("&lt;", page); break;
-        case '>': fputs("&gt;", page); break;
-        case '"': fputs("&quot;", page); break;
-        default: fputc(*text, page);
+        case '&':
+            fputs("&amp;", page);
+            break;
+        case '<':
+            fputs("&lt;", page);
+            break;
+        case '>':
+            fputs("&gt;", page);
+            break;
+        case '"':
+            fputs("&quot;", page);
+            break;
+        default:
+            fputc(*text, page);
         }
     }
 }

@@ -29,8 +29,8 @@ static json_t *numbers(const double *value, int count)
 static json_t *import_json(const ModelImport *r)
 {
     static const char *const source[MATERIAL_SOURCE_COUNT] = {"sidecar", "name", "colour", "default"};
-    json_t *import = json_object(), *lost = json_object(), *left = json_object(), *by = json_object();
-    char axis[4];
+    json_t                  *import = json_object(), *lost = json_object(), *left = json_object(), *by = json_object();
+    char                     axis[4];
     set_text(import, "file", r->file);
     set_count(import, "octets", r->octets);
     if (r->sidecar[0]) set_text(import, "sidecar", r->sidecar);
@@ -63,7 +63,7 @@ static json_t *import_json(const ModelImport *r)
 static json_t *node_json(const Model *m, const ModelNode *node)
 {
     const bool turns = node->joint == JOINT_ROTATION;
-    json_t *out = json_object();
+    json_t    *out = json_object();
     set_text(out, "name", node->name);
     if (node->parent >= 0) {
         set_text(out, "parent", m->node[node->parent].name);
@@ -102,12 +102,10 @@ bool model_record_print(FILE *to, const ModelInfo *info)
 {
     const Model *m = &info->model;
     const double size[3] = {m->length_m, m->width_m, m->height_m};
-    json_t *out = json_object(), *edges = json_object(), *nodes = json_array(), *parts = json_array();
+    json_t      *out = json_object(), *edges = json_object(), *nodes = json_array(), *parts = json_array();
     set_text(out, "model", m->name);
-    if (info->imported)
-        json_object_set_new(out, "import", import_json(&info->import));
-    else
-        json_set_number(out, "sag_m", m->sag_m);
+    if (info->imported) json_object_set_new(out, "import", import_json(&info->import));
+    else json_set_number(out, "sag_m", m->sag_m);
     json_object_set_new(out, "size_m", numbers(size, 3));
     if (info->sized) {
         json_object_set_new(out, "size_fits", json_boolean(info->fit.fits));

@@ -7,9 +7,12 @@
 
 #include <pthread.h>
 
-#define IMAGE_MODULE(X)                                                                                               \
-    X(image_module_write_exr) X(image_module_write_png) X(image_module_info) X(image_module_read_f32)                 \
-    X(image_module_read_u32) X(image_module_read_png) X(image_module_read_string) X(image_module_read_number)
+#define IMAGE_MODULE(X)                                                                                                \
+    X(image_module_write_exr)                                                                                          \
+    X(image_module_write_png)                                                                                          \
+    X(image_module_info)                                                                                               \
+    X(image_module_read_f32) X(image_module_read_u32) X(image_module_read_png) X(image_module_read_string)             \
+        X(image_module_read_number)
 static char path_of_module[4200];
 LIBRARY(image_library, IMAGE_MODULE, "OpenImageIO", path_of_module, "libopenimageio2.4");
 
@@ -31,9 +34,9 @@ Status image_write_exr_as(const char *path, const char *compression, const Plane
                           const char *date_time, const ImageAttribute *attribute, int attribute_count)
 {
     const Status status = image_file_prepare();
-    return status != STATUS_OK ? status
-                               : image_module_write_exr(path, compression, plane, plane_count, date_time, attribute,
-                                                        attribute_count);
+    return status != STATUS_OK
+               ? status
+               : image_module_write_exr(path, compression, plane, plane_count, date_time, attribute, attribute_count);
 }
 
 Status image_write_exr(const char *path, const Plane *plane, int plane_count, const char *date_time,

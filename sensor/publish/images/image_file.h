@@ -14,9 +14,9 @@ typedef enum ImageAttributeType { IMAGE_STRING, IMAGE_INT, IMAGE_FLOAT, IMAGE_DO
 typedef struct ImageAttribute {
     const char        *name;
     ImageAttributeType type;
-    const char        *text;   /* IMAGE_STRING */
-    int                integer;/* IMAGE_INT */
-    double             number; /* IMAGE_FLOAT, IMAGE_DOUBLE */
+    const char        *text;    /* IMAGE_STRING */
+    int                integer; /* IMAGE_INT */
+    double             number;  /* IMAGE_FLOAT, IMAGE_DOUBLE */
 } ImageAttribute;
 
 static inline ImageAttribute image_string(const char *name, const char *text)
@@ -41,8 +41,8 @@ static inline ImageAttribute image_double(const char *name, double number)
 
 enum { image_max_planes = 64, image_max_size_px = 32768 };
 
-/* Loads OpenImageIO, which takes some 0.1 s. Every function below does it by itself; a command that will write files calls it
- * on the main thread, before its pool starts. STATUS_IO, logged with what to install. */
+/* Loads OpenImageIO, which takes some 0.1 s. Every function below does it by itself; a command that will write files
+ * calls it on the main thread, before its pool starts. STATUS_IO, logged with what to install. */
 Status image_file_prepare(void);
 
 /* EXR, one channel per plane, float32 or uint32 each, bit for bit (a uint32 never passes through a float), in a

@@ -26,8 +26,8 @@ using OIIO::TypeDesc;
  *     up                    26  485    12  193    6   20    2   30
  *     sub, rle              28  316     9  129    5   11    3   15 (as here)
  *     sub, huffman          20  303     7  127   19  135    7   50 */
-static const int  png_level      = 1;
-static const int  png_filter     = 0x10; /* libpng's PNG_FILTER_SUB */
+static const int  png_level = 1;
+static const int  png_filter = 0x10; /* libpng's PNG_FILTER_SUB */
 static const char png_strategy[] = "rle";
 
 /* One thread each: the caller's pool has one frame per worker, and the bytes must not depend on threads. */
@@ -49,8 +49,9 @@ static Status refuse(Status status, const char *what, const char *path, const ch
 
 /* A file of output_begin. The library writes into it chunk by chunk; errno at the first failure is kept, as the library
  * reports only that it failed. */
-class PartFile final : public OIIO::Filesystem::IOFile {
-public:
+class PartFile final : public OIIO::Filesystem::IOFile
+{
+  public:
     PartFile(const char *path, FILE *file) : IOFile(file, Write), path_(path), file_(file) {}
     PartFile(const PartFile &) = delete;
     PartFile &operator=(const PartFile &) = delete;
@@ -80,7 +81,7 @@ public:
     {
         errno = 0;
         FILE *file = file_;
-        file_      = nullptr;
+        file_ = nullptr;
         if (output_end(file, path_)) return true;
         keep_reason();
         return false;
@@ -88,7 +89,7 @@ public:
 
     int reason() const { return reason_; }
 
-private:
+  private:
     void keep_reason()
     {
         if (reason_ == 0) reason_ = errno;
@@ -108,9 +109,9 @@ static Status write_file(const char *path, const char *format, const ImageSpec &
 
     PartFile          file(path, open);
     const std::string name = std::string("out.") + format;
-    auto              out  = ImageOutput::create(format);
+    auto              out = ImageOutput::create(format);
     if (!out) return refuse(STATUS_UNSUPPORTED, "write", path, "OpenImageIO without this format");
-    bool ok = out->set_ioproxy(&file) && out->open(name, spec) && write_rows(out.get()) && out->close();
+    bool              ok = out->set_ioproxy(&file) && out->open(name, spec) && write_rows(out.get()) && out->close();
     const std::string said = ok ? "short write" : out->geterror();
     out.reset(); /* it may write until then */
     if (ok && file.finish()) return STATUS_OK;
@@ -137,10 +138,18 @@ static const char *planes_size_error(const Plane *plane, int plane_count)
 static void set_attribute(ImageSpec *spec, const ImageAttribute &a)
 {
     switch (a.type) {
-    case IMAGE_STRING: spec->attribute(a.name, a.text); break;
-    case IMAGE_INT: spec->attribute(a.name, a.integer); break;
-    case IMAGE_FLOAT: spec->attribute(a.name, (float)a.number); break;
-    case IMAGE_DOUBLE: spec->attribute(a.name, TypeDesc(TypeDesc::DOUBLE), &a.number); break;
+    case IMAGE_STRING:
+        spec->attribute(a.name, a.text);
+        break;
+    case IMAGE_INT:
+        spec->attribute(a.name, a.integer);
+        break;
+    case IMAGE_FLOAT:
+        spec->attribute(a.name, (float)a.number);
+        break;
+    case IMAGE_DOUBLE:
+        spec->attribute(a.name, TypeDesc(TypeDesc::DOUBLE), &a.number);
+        break;
     }
 }
 
@@ -150,7 +159,8 @@ static bool write_planes(ImageOutput *out, const Plane *plane, int plane_count)
 {
     const int    width = plane[0].width, height = plane[0].height, band = 16; /* a block of zip */
     const size_t step = (size_t)plane_count;
-    if (plane_count == 1 && plane->type != PLANE_U8) return out->write_scanlines(0, height, 0, TypeDesc::UNKNOWN, plane[0].values);
+    if (plane_count == 1 && plane->type != PLANE_U8)
+        return out->write_scanlines(0, height, 0, TypeDesc::UNKNOWN, plane[0].values);
     std::vector<uint32_t> pixels(step * (size_t)width * band);
 
     for (int y0 = 0; y0 < height; y0 += band) {
@@ -286,7 +296,7 @@ try {
 
 bool image_module_read_string(char *out, size_t out_size, const char *path, const char *attribute)
 try {
-    auto in = open_input(path);
+    auto                    in = open_input(path);
     const OIIO::ParamValue *value = in ? in->spec().find_attribute(attribute, TypeDesc::STRING) : nullptr;
     if (!value) return false;
     snprintf(out, out_size, "%s", value->get_ustring().c_str());
@@ -297,17 +307,13 @@ try {
 
 bool image_module_read_number(double *out, const char *path, const char *attribute)
 try {
-    auto in = open_input(path);
+    auto                    in = open_input(path);
     const OIIO::ParamValue *value = in ? in->spec().find_attribute(attribute) : nullptr;
     if (!value) return false;
-    if (value->type() == TypeDesc::INT)
-        *out = value->get_int();
-    else if (value->type() == TypeDesc::FLOAT)
-        *out = value->get_float();
-    else if (value->type() == TypeDesc::DOUBLE)
-        memcpy(out, value->data(), sizeof *out);
-    else
-        return false;
+    if (value->type() == TypeDesc::INT) *out = value->get_int();
+    else if (value->type() == TypeDesc::FLOAT) *out = value->get_float();
+    else if (value->type() == TypeDesc::DOUBLE) memcpy(out, value->data(), sizeof *out);
+    else return false;
     return true;
 } catch (const std::exception &) {
     return false;

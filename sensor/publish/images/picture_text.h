@@ -14,8 +14,8 @@ void letters_write(uint8_t *rgb, int width, int height, int x, int y, const char
 typedef struct Drawing {
     void *pixels;
     int   width, height, planes;
-    bool  wide;   /* 16 bits */
-    int   full;   /* white */
+    bool  wide;        /* 16 bits */
+    int   full;        /* white */
     int   left, right; /* columns that may be drawn in, half open */
 } Drawing;
 

@@ -12,14 +12,16 @@
 void klv_of_detections(KlvTargets *out, KlvTarget kept[klv_most_targets], const DetectionSet *set)
 {
     _Static_assert((int)pitviper_detections_most <= (int)klv_most_targets, "all of a datagram are in one packet");
-    *out = (KlvTargets){.count = set->count, .target = kept, .elsewhen = true, .frame = set->frame,
-                        .unix_s = set->unix_s};
+    *out =
+        (KlvTargets){.count = set->count, .target = kept, .elsewhen = true, .frame = set->frame, .unix_s = set->unix_s};
     for (int k = 0; k < set->count; k++) {
         const PitviperDetection *d = &set->detection[k];
-        kept[k] = (KlvTarget){.id = d->track ? d->track : ((uint64_t)1 << 32) + (uint64_t)k,
-                              .box = {(int)floorf(d->left), (int)floorf(d->top), (int)ceilf(d->right),
-                                      (int)ceilf(d->bottom)},
-                              .confidence = d->score, .pixels = NAN, .class_name = d->class_name};
+        kept[k] =
+            (KlvTarget){.id = d->track ? d->track : ((uint64_t)1 << 32) + (uint64_t)k,
+                        .box = {(int)floorf(d->left), (int)floorf(d->top), (int)ceilf(d->right), (int)ceilf(d->bottom)},
+                        .confidence = d->score,
+                        .pixels = NAN,
+                        .class_name = d->class_name};
     }
 }
 
@@ -35,7 +37,7 @@ static const KlvTargets *klv_detections(KlvDetections *k, const Frame *frame, Ba
 size_t klv_of_band(uint8_t out[klv_most_octets], KlvDetections *k, const char *vmti, const Frame *frame, Band band,
                    const Geoid *geoid)
 {
-    const KlvSource   source  = {.band = band, .geoid = geoid};
+    const KlvSource   source = {.band = band, .geoid = geoid};
     const KlvTargets *targets = NULL;
     if (strcmp(vmti, "truth") == 0) {
         klv_truth_targets(&k->targets, k->kept, &frame->record);
@@ -49,11 +51,11 @@ size_t klv_of_band(uint8_t out[klv_most_octets], KlvDetections *k, const char *v
 /* ---- the consumer -------------------------------------------------------------------------------- */
 
 typedef struct KlvConsumer {
-    Consumer     consumer;
-    FILE        *file[BAND_COUNT];
-    KlvFiles     of;
+    Consumer      consumer;
+    FILE         *file[BAND_COUNT];
+    KlvFiles      of;
     KlvDetections found;
-    RetryBackoff patience;
+    RetryBackoff  patience;
 } KlvConsumer;
 
 static Status write_packet(FILE *file, const uint8_t *octets, size_t count)
@@ -72,9 +74,9 @@ static Status put_band(KlvConsumer *k, Band band, const Frame *frame)
 
 static Status put(Consumer *consumer, Frame *frame)
 {
-    KlvConsumer *k      = (KlvConsumer *)consumer;
+    KlvConsumer *k = (KlvConsumer *)consumer;
     Status       status = STATUS_OK;
-    const bool due = !k->of.patient || retry_due(&k->patience);
+    const bool   due = !k->of.patient || retry_due(&k->patience);
     for (int b = 0; b < BAND_COUNT && due && status == STATUS_OK; b++)
         if (k->file[b]) status = put_band(k, (Band)b, frame);
     if (!k->of.patient) return status;
@@ -86,7 +88,7 @@ static Status put(Consumer *consumer, Frame *frame)
 
 static Status close_klv(Consumer *consumer)
 {
-    KlvConsumer *k      = (KlvConsumer *)consumer;
+    KlvConsumer *k = (KlvConsumer *)consumer;
     Status       status = STATUS_OK;
     for (int b = 0; b < BAND_COUNT; b++)
         if (k->file[b] && fclose(k->file[b]) != 0 && !k->of.patient) {
@@ -129,8 +131,8 @@ Status consume_klv(Consumer **out, const KlvFiles *of)
     KlvConsumer *k = calloc(1, sizeof *k);
     if (!k) return STATUS_NO_MEMORY;
     const bool truth = strcmp(of->config->publish.vmti, "truth") == 0;
-    k->of       = *of;
-    k->found    = (KlvDetections){.from = of->detections};
+    k->of = *of;
+    k->found = (KlvDetections){.from = of->detections};
     k->patience = (RetryBackoff){.what = "packets in .klv files"};
     k->consumer = (Consumer){WANT_FOOTPRINT | (truth ? WANT_TARGETS : 0), put, NULL, close_klv, "klv", begin};
     *out = &k->consumer;

@@ -11,18 +11,18 @@
 #include "sensor/publish/memory/detections.h"
 
 typedef struct KlvFiles {
-    const char   *out;     /* an existing folder */
+    const char   *out; /* an existing folder */
     const Config *config;
-    unsigned      bands;   /* 1 << Band */
-    bool          patient; /* a packet that cannot be written is dropped, and counted in the log */
-    const Geoid  *geoid;   /* NULL: no heights above mean sea level */
+    unsigned      bands;      /* 1 << Band */
+    bool          patient;    /* a packet that cannot be written is dropped, and counted in the log */
+    const Geoid  *geoid;      /* NULL: no heights above mean sea level */
     Detections   *detections; /* of a recogniser, for publish.vmti=atr; outlive the consumer; NULL: none */
 } KlvFiles;
 Status consume_klv(Consumer **out, const KlvFiles *made_of);
 
 /* The grid of terrain.geoid, or the installed one. False, and one line logged: there is none, and heights above mean
  * sea level will be absent. */
-bool   klv_geoid_open(Geoid *out, const Config *config);
+bool klv_geoid_open(Geoid *out, const Config *config);
 
 /* ---- the packet of a frame, and its targets ------------------------------------------------------ */
 

@@ -10,40 +10,41 @@
 #include "terrain/earth/geoid.h"
 
 enum {
-    klv_most_octets  = 8192, /* of a packet; it is below 600 without targets */
-    klv_most_targets = 64,   /* reported in one packet */
-    klv_version = 19, klv_vmti_version = 6,
+    klv_most_octets = 8192, /* of a packet; it is below 600 without targets */
+    klv_most_targets = 64,  /* reported in one packet */
+    klv_version = 19,
+    klv_vmti_version = 6,
 };
 
 /* A target, of truth or of a recogniser. */
 typedef struct KlvTarget {
-    uint64_t    id;             /* the same target has the same id in all frames */
-    int         box[4];         /* left, top, right, bottom, px from 0, the last two beyond it; empty: not known */
-    double      confidence;     /* 0 .. 1; NaN: none given */
-    double      pixels;         /* of the target itself, within its box; NaN: not known */
+    uint64_t    id;         /* the same target has the same id in all frames */
+    int         box[4];     /* left, top, right, bottom, px from 0, the last two beyond it; empty: not known */
+    double      confidence; /* 0 .. 1; NaN: none given */
+    double      pixels;     /* of the target itself, within its box; NaN: not known */
     bool        located;
-    Geodetic    place;          /* if located */
-    const char *class_name;     /* NULL: not classified */
-    const char *algorithm;      /* NULL: not given */
+    Geodetic    place;      /* if located */
+    const char *class_name; /* NULL: not classified */
+    const char *algorithm;  /* NULL: not given */
     const char *algorithm_version;
 } KlvTarget;
 
 typedef struct KlvTargets {
-    bool             truth;     /* marked so in system name, algorithm and ontology: no output of a recogniser */
-    int              count;     /* those beyond klv_most_targets are left out, and all but the first with an id */
-    int              total;     /* detected in the frame, those that are not in the list too; below count: count */
+    bool             truth; /* marked so in system name, algorithm and ontology: no output of a recogniser */
+    int              count; /* those beyond klv_most_targets are left out, and all but the first with an id */
+    int              total; /* detected in the frame, those that are not in the list too; below count: count */
     const KlvTarget *target;
-    bool             elsewhen;  /* found in another frame than the packet's: */
+    bool             elsewhen; /* found in another frame than the packet's: */
     int              frame;
-    double           unix_s;    /* of that frame */
+    double           unix_s; /* of that frame */
 } KlvTargets;
 
 /* What the record does not know. */
 typedef struct KlvSource {
     Band         band;
-    const char  *mission;       /* NULL: "Exercise" */
-    const char  *sensor;        /* NULL: after the band */
-    const Geoid *geoid;         /* for heights above mean sea level; NULL: they are absent */
+    const char  *mission; /* NULL: "Exercise" */
+    const char  *sensor;  /* NULL: after the band */
+    const Geoid *geoid;   /* for heights above mean sea level; NULL: they are absent */
 } KlvSource;
 
 /* The packet of one frame; unix_s: its exercise time. targets NULL: no tag 74. Returns its octets; 0: refused, unix_s

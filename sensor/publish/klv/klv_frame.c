@@ -35,8 +35,7 @@ static double turn_deg(double angle_deg) { return angle_deg < 0 ? angle_deg + 36
 static void body_of_camera(double r_ecef_from_body[9], const double r_ecef_from_cam[9])
 {
     for (int k = 0; k < 3; k++)
-        for (int axis = 0; axis < 3; axis++)
-            r_ecef_from_body[3 * k + axis] = r_ecef_from_cam[3 * k + (axis + 2) % 3];
+        for (int axis = 0; axis < 3; axis++) r_ecef_from_body[3 * k + axis] = r_ecef_from_cam[3 * k + (axis + 2) % 3];
 }
 
 static Place place_of(const FrameRecord *r)
@@ -46,7 +45,7 @@ static Place place_of(const FrameRecord *r)
     place.known = geodetic_from_ecef(&place.at, r->p_eye_ecef) == STATUS_OK &&
                   ecef_from_geodetic(p_ecef, r_ecef_from_enu, &place.at) == STATUS_OK;
     for (int k = 0; place.known && k < 3; k++) {
-        place.r_ned_from_ecef[k]     = r_ecef_from_enu[3 * k + 1];
+        place.r_ned_from_ecef[k] = r_ecef_from_enu[3 * k + 1];
         place.r_ned_from_ecef[3 + k] = r_ecef_from_enu[3 * k];
         place.r_ned_from_ecef[6 + k] = -r_ecef_from_enu[3 * k + 2];
     }
@@ -208,7 +207,7 @@ size_t klv_frame(uint8_t out[klv_most_octets], const FrameRecord *record, double
 {
     uint8_t   octet[klv_most_octets - key_octets - 5 - 4];
     KlvWriter items = {.octet = octet, .room = sizeof octet};
-    KlvWriter w     = {.octet = out, .room = klv_most_octets};
+    KlvWriter w = {.octet = out, .room = klv_most_octets};
     uint64_t  time_us;
     if (!klv_time_us(&time_us, unix_s)) return 0;
 

@@ -9,7 +9,7 @@
 const char *klv_sensor_name(const KlvSource *source);
 double      klv_vfov_deg(const FrameRecord *record);
 /* Microseconds since 1970. False, and out untouched: not a time from 1970 to 2200. */
-bool        klv_time_us(uint64_t *out, double unix_s);
+bool klv_time_us(uint64_t *out, double unix_s);
 
 /* The VMTI local set as the value of tag 74: without key, length and checksum, which are those of the packet around
  * it. time_us: of the packet. */

@@ -5,8 +5,13 @@
 #include "sensor/frame/target_record.h"
 
 enum {
-    most_classes = 16, most_algorithms = 4, /* named in one packet */
-    name_most = 31, text_most = 63, series_room = 4096, target_room = 128, set_room = 256,
+    most_classes = 16,
+    most_algorithms = 4, /* named in one packet */
+    name_most = 31,
+    text_most = 63,
+    series_room = 4096,
+    target_room = 128,
+    set_room = 256,
 };
 
 typedef struct Names {
@@ -30,7 +35,7 @@ static void name_target(int *class_id, int *algorithm_id, Names *names, const Kl
     for (*algorithm_id = 0; t->algorithm && *t->algorithm && k < most_algorithms && *algorithm_id == 0; k++) {
         if (k == names->algorithms) {
             names->algorithm[k] = t->algorithm;
-            names->version[k]   = version;
+            names->version[k] = version;
             names->algorithms++;
         }
         if (same_text(names->algorithm[k], t->algorithm) && same_text(names->version[k], version))
@@ -61,7 +66,7 @@ static void put_target(KlvWriter *w, const View *view, const KlvTarget *t, int c
     double percent = 0;
     if (has_box(view, t->box)) {
         const double area_px = (double)(t->box[2] - t->box[0]) * (t->box[3] - t->box[1]);
-        uint64_t number[2];
+        uint64_t     number[2];
         target_box_pixel_numbers(number, t->box, view->width);
         klv_item_short(w, 1, target_box_centre_number(t->box, view->width));
         klv_item_short(w, 2, number[0]);
@@ -108,11 +113,11 @@ static void put_class(KlvWriter *series, int id, const char *name, const char *k
 {
     uint8_t   of[set_room];
     char      plain[name_most + 1], urn[96];
-    KlvWriter set  = {.octet = of, .room = sizeof of};
+    KlvWriter set = {.octet = of, .room = sizeof of};
     size_t    used = 0;
     for (; *name && used < name_most; name++) {
         const bool letter = (*name >= 'a' && *name <= 'z') || (*name >= 'A' && *name <= 'Z');
-        plain[used++]     = letter || (*name >= '0' && *name <= '9') || *name == '.' || *name == '_' ? *name : '-';
+        plain[used++] = letter || (*name >= '0' && *name <= '9') || *name == '.' || *name == '_' ? *name : '-';
     }
     plain[used] = 0;
     klv_item_short(&set, 1, (uint64_t)id);
@@ -141,7 +146,7 @@ static int put_targets(KlvWriter *series, Names *names, const View *view, const 
     int      count = 0;
     for (int k = 0; k < targets->count && count < klv_most_targets; k++) {
         uint8_t   of[target_room];
-        KlvWriter pack  = {.octet = of, .room = sizeof of};
+        KlvWriter pack = {.octet = of, .room = sizeof of};
         int       class_id, algorithm_id;
         bool      again = false;
         for (int i = 0; i < count; i++) again |= id[i] == targets->target[k].id;
@@ -161,13 +166,13 @@ void klv_vmti(KlvWriter *w, const FrameRecord *record, uint64_t time_us, const K
               const KlvTargets *targets)
 {
     static const uint64_t most = 0xFFFFFF; /* of counts and sizes: three octets */
-    const View *view   = &record->request->view;
-    const int   number = targets->elsewhen ? targets->frame : record->frame;
-    const int   total  = targets->total > targets->count ? targets->total : targets->count;
-    uint8_t     octet[klv_most_targets * target_room];
-    KlvWriter   series = {.octet = octet, .room = sizeof octet};
-    Names       names  = {0};
-    const int   count  = put_targets(&series, &names, view, targets);
+    const View           *view = &record->request->view;
+    const int             number = targets->elsewhen ? targets->frame : record->frame;
+    const int             total = targets->total > targets->count ? targets->total : targets->count;
+    uint8_t               octet[klv_most_targets * target_room];
+    KlvWriter             series = {.octet = octet, .room = sizeof octet};
+    Names                 names = {0};
+    const int             count = put_targets(&series, &names, view, targets);
 
     if (targets->elsewhen) klv_time_us(&time_us, targets->unix_s);
     klv_item_number(w, 2, time_us, 8);
@@ -191,10 +196,13 @@ void klv_vmti(KlvWriter *w, const FrameRecord *record, uint64_t time_us, const K
 
 static KlvTarget truth_target(const TargetRecord *t)
 {
-    const DisEntityId id  = t->id;
+    const DisEntityId id = t->id;
     KlvTarget         out = {.id = (uint64_t)id.site << 32 | (uint64_t)id.application << 16 | id.entity,
-                             .confidence = NAN, .pixels = t->pixels, .algorithm = "truth",
-                             .algorithm_version = PITVIPER_VERSION, .class_name = target_class_name(t->class_number)};
+                             .confidence = NAN,
+                             .pixels = t->pixels,
+                             .algorithm = "truth",
+                             .algorithm_version = PITVIPER_VERSION,
+                             .class_name = target_class_name(t->class_number)};
     memcpy(out.box, t->box, sizeof out.box);
     out.located = geodetic_from_ecef(&out.place, t->p_ecef) == STATUS_OK;
     return out;

@@ -83,7 +83,7 @@ void klv_item_signed(KlvWriter *w, unsigned tag, int octets, double high, double
 void klv_put_imapb(KlvWriter *w, int octets, double low, double high, double value)
 {
     const double scale = ldexp(1, 8 * octets - 1 - (int)ceil(log2(high - low)));
-    const double zero  = low < 0 && high > 0 ? scale * low - floor(scale * low) : 0;
+    const double zero = low < 0 && high > 0 ? scale * low - floor(scale * low) : 0;
     klv_put_number(w, (uint64_t)floor(scale * (value - low) + zero), octets);
 }
 

@@ -16,13 +16,22 @@ static void fill_target(PitviperMemoryTarget *out, const TargetRecord *t)
 {
     char type[dis_type_text_size];
     dis_entity_type_text(type, t->type);
-    *out = (PitviperMemoryTarget){
-        .site = t->id.site, .application = t->id.application, .entity = t->id.entity,
-        .class_number = (uint16_t)t->class_number, .plane_value = (uint32_t)t->plane_value,
-        .flags = (uint32_t)t->occluder, .range_m = t->range_m,
-        .closing_mps = t->closing_mps, .aspect_rad = t->aspect_rad, .depression_rad = t->depression_rad,
-        .los_az_rad = t->los_az_rad, .los_el_rad = t->los_el_rad, .pixels = t->pixels,
-        .visible_fraction = t->visible_fraction, .age_s = t->age_s, .position_error_m = t->position_error_m};
+    *out = (PitviperMemoryTarget){.site = t->id.site,
+                                  .application = t->id.application,
+                                  .entity = t->id.entity,
+                                  .class_number = (uint16_t)t->class_number,
+                                  .plane_value = (uint32_t)t->plane_value,
+                                  .flags = (uint32_t)t->occluder,
+                                  .range_m = t->range_m,
+                                  .closing_mps = t->closing_mps,
+                                  .aspect_rad = t->aspect_rad,
+                                  .depression_rad = t->depression_rad,
+                                  .los_az_rad = t->los_az_rad,
+                                  .los_el_rad = t->los_el_rad,
+                                  .pixels = t->pixels,
+                                  .visible_fraction = t->visible_fraction,
+                                  .age_s = t->age_s,
+                                  .position_error_m = t->position_error_m};
     snprintf(out->class_name, sizeof out->class_name, "%s", target_class_name(t->class_number));
     memcpy(out->marking, t->marking, strlen(t->marking));
     snprintf(out->type, sizeof out->type, "%s", type);
@@ -34,7 +43,7 @@ static void fill_target(PitviperMemoryTarget *out, const TargetRecord *t)
     memcpy(out->v_ecef, t->v_ecef_mps, sizeof out->v_ecef);
     for (int b = 0; b < BAND_COUNT; b++) {
         const TargetBand *in = &t->band[b];
-        out->band[b] = (PitviperMemoryTargetBand){in->contrast_k, in->dt_rss_k, in->contrast, in->snr,
+        out->band[b] = (PitviperMemoryTargetBand){in->contrast_k,     in->dt_rss_k,           in->contrast, in->snr,
                                                   in->intensity_w_sr, in->veil_transmittance, {0, 0}};
     }
 }
@@ -47,8 +56,7 @@ static int fill_targets(PitviperMemoryTarget *out, int room, const FrameRecord *
     for (int i = 0; i < all; i++) visible += r->target[i].pixels > 0;
     int hidden = room - visible; /* those for which there is room beside the visible ones */
     for (int i = 0; i < all && count < room; i++)
-        if (r->target[i].pixels > 0 || hidden-- > 0)
-            fill_target(&out[count++], &r->target[i]);
+        if (r->target[i].pixels > 0 || hidden-- > 0) fill_target(&out[count++], &r->target[i]);
     return count;
 }
 
@@ -56,16 +64,22 @@ static int fill_targets(PitviperMemoryTarget *out, int room, const FrameRecord *
  * all targets, visible ones come first; otherwise they are in the order of truth.jsonl. */
 static void fill_record(PitviperMemoryRecord *out, PitviperMemoryTarget *targets, int room, const Frame *frame)
 {
-    const FrameRecord *r    = &frame->record;
-    const Provenance  *p    = &frame->provenance;
+    const FrameRecord *r = &frame->record;
+    const Provenance  *p = &frame->provenance;
     const View        *view = &frame->request.view;
-    *out = (PitviperMemoryRecord){
-        .frame = frame->number, .flags = (r->gimbal_at_limit ? 1u : 0) | (frame->buried ? 2u : 0),
-        .time_s = frame->time_s, .unix_us = llround(1e6 * frame->unix_s), .hfov_rad = r->hfov_rad,
-        .vfov_rad = 2 * atan(0.5 * view->height / view->focal_px), .focal_px = view->focal_px,
-        .arrived_ns = ns(frame->times.arrived_s), .begun_ns = ns(p->begun_s),
-        .posed_ns = ns(frame->times.posed_s), .rendered_ns = ns(p->rendered_s), .seed = p->seed,
-        .datagrams = p->datagrams};
+    *out = (PitviperMemoryRecord){.frame = frame->number,
+                                  .flags = (r->gimbal_at_limit ? 1u : 0) | (frame->buried ? 2u : 0),
+                                  .time_s = frame->time_s,
+                                  .unix_us = llround(1e6 * frame->unix_s),
+                                  .hfov_rad = r->hfov_rad,
+                                  .vfov_rad = 2 * atan(0.5 * view->height / view->focal_px),
+                                  .focal_px = view->focal_px,
+                                  .arrived_ns = ns(frame->times.arrived_s),
+                                  .begun_ns = ns(p->begun_s),
+                                  .posed_ns = ns(frame->times.posed_s),
+                                  .rendered_ns = ns(p->rendered_s),
+                                  .seed = p->seed,
+                                  .datagrams = p->datagrams};
     memcpy(out->p_ecef, r->p_eye_ecef, sizeof out->p_ecef);
     memcpy(out->v_ecef, r->v_eye_mps, sizeof out->v_ecef);
     memcpy(out->r_ecef_from_cam, r->r_ecef_from_cam, sizeof out->r_ecef_from_cam);
@@ -80,7 +94,7 @@ static void fill_record(PitviperMemoryRecord *out, PitviperMemoryTarget *targets
     snprintf(out->host, sizeof out->host, "%s", frame->host);
     snprintf(out->config_sha256, sizeof out->config_sha256, "%s", p->config_sha256 ? p->config_sha256 : "");
     if (room == 0) return;
-    out->target_count     = (uint32_t)fill_targets(targets, room, r);
+    out->target_count = (uint32_t)fill_targets(targets, room, r);
     out->targets_left_out = (uint32_t)r->target_count - out->target_count;
 }
 
@@ -95,7 +109,7 @@ typedef struct Memory {
     char        name[memory_name_size];
     uint64_t   *unnamed, own_unnamed; /* frames; own: counts where the caller gave no place for it */
     bool        counts;
-    int         room;   /* for targets; 0: kind sensor */
+    int         room; /* for targets; 0: kind sensor */
     int         plane_count;
     Band        band[pitviper_memory_planes_most]; /* of each plane */
     int         width, height;
@@ -108,10 +122,13 @@ static int radiance_planes(FrameArray plane[frame_max_planes], const MemoryOf *o
 {
     static float        none;
     const RenderRequest request = {.bands = of->bands, .optical = config_optical(of->config)};
-    const Picture       picture = {.width = of->config->sensor.width_px, .height = of->config->sensor.height_px,
+    const Picture       picture = {.width = of->config->sensor.width_px,
+                                   .height = of->config->sensor.height_px,
                                    .optical = {&none, request.optical == OPTICAL_RGB ? &none : NULL,
-                                               request.optical == OPTICAL_RGB ? &none : NULL},
-                                   .mwir = &none, .lwir = &none, .radar = &none};
+                                         request.optical == OPTICAL_RGB ? &none : NULL},
+                                   .mwir = &none,
+                                   .lwir = &none,
+                                   .radar = &none};
     return frame_planes(plane, &picture, &request);
 }
 
@@ -130,7 +147,9 @@ static void describe(MemoryRingOf *ring, Memory *m, const MemoryOf *of)
         const Band band = band_of(plane[i].group);
         if (m->counts && !of->count_bits[band]) continue;
         PitviperMemoryPlane *p = &ring->plane[ring->plane_count];
-        *p = (PitviperMemoryPlane){.band = (uint32_t)band, .width = (uint32_t)m->width, .height = (uint32_t)m->height,
+        *p = (PitviperMemoryPlane){.band = (uint32_t)band,
+                                   .width = (uint32_t)m->width,
+                                   .height = (uint32_t)m->height,
                                    .type = m->counts ? PITVIPER_PLANE_UINT16 : PITVIPER_PLANE_FLOAT32,
                                    .bits = m->counts ? (uint32_t)of->count_bits[band] : 0};
         snprintf(p->band_name, sizeof p->band_name, "%s", plane[i].group);
@@ -159,7 +178,7 @@ static int counts_of(const void *values[pitviper_memory_planes_most], const Memo
 {
     int count = 0;
     for (; count < m->plane_count; count++) {
-        const Band          band    = m->band[count];
+        const Band          band = m->band[count];
         const FrameDisplay *display = &frame->display[band];
         int                 channel = 0;
         for (int k = 0; k < count; k++) channel += m->band[k] == band;
@@ -181,8 +200,10 @@ static Status put(Consumer *consumer, Frame *frame)
     fill_record(memory_ring_record(m->ring), memory_ring_targets(m->ring), m->room, frame);
     memory_ring_put(m->ring, values);
     if (!memory_ring_is_named(m->ring) && (*m->unnamed)++ == 0)
-        log_warn("memory: /dev/shm/%s was removed or replaced by another program: who opens it now does not see these frames, "
-                 "who had opened it before does; end this node and start it anew, perhaps with another --memory", m->name);
+        log_warn(
+            "memory: /dev/shm/%s was removed or replaced by another program: who opens it now does not see these frames, "
+            "who had opened it before does; end this node and start it anew, perhaps with another --memory",
+            m->name);
     return STATUS_OK;
 }
 
@@ -208,15 +229,21 @@ Status consume_memory(Consumer **out, const MemoryOf *of)
     if (!m) return STATUS_NO_MEMORY;
     const bool truth = strcmp(config->publish.memory_record, "truth") == 0;
     m->counts = strcmp(config->publish.memory_planes, "counts") == 0;
-    m->room   = truth ? target_room : 0;
-    m->width  = config->sensor.width_px;
+    m->room = truth ? target_room : 0;
+    m->width = config->sensor.width_px;
     m->height = config->sensor.height_px;
-    m->consumer = (Consumer){.wants = (truth ? WANT_TARGETS : 0) | (m->counts ? WANT_COUNTS : 0), .put = put,
-                             .close = close_memory, .name = "memory"};
+    m->consumer = (Consumer){.wants = (truth ? WANT_TARGETS : 0) | (m->counts ? WANT_COUNTS : 0),
+                             .put = put,
+                             .close = close_memory,
+                             .name = "memory"};
     memory_name(m->name, config, of->host);
     m->unnamed = of->unnamed ? of->unnamed : &m->own_unnamed;
-    MemoryRingOf ring = {.name = m->name, .slots = config->publish.memory_slots, .target_room = m->room, .truth = truth,
-                         .host = of->host, .config_sha256 = of->config_sha256,
+    MemoryRingOf ring = {.name = m->name,
+                         .slots = config->publish.memory_slots,
+                         .target_room = m->room,
+                         .truth = truth,
+                         .host = of->host,
+                         .config_sha256 = of->config_sha256,
                          .detections_port = config->publish.detections_port};
     describe(&ring, m, of);
     Status status = STATUS_BAD_VALUE;
@@ -226,7 +253,8 @@ Status consume_memory(Consumer **out, const MemoryOf *of)
     else free(m);
     if (status == STATUS_OK)
         log_print("memory: /dev/shm/%s: %d planes of %d x %d, %d slots, %.1f MB; to see them: "
-                  "etc/examples/read_memory.py %s\n", m->name, m->plane_count, m->width, m->height, ring.slots,
-                  1e-6 * (double)memory_ring_size(m->ring), m->name);
+                  "etc/examples/read_memory.py %s\n",
+                  m->name, m->plane_count, m->width, m->height, ring.slots, 1e-6 * (double)memory_ring_size(m->ring),
+                  m->name);
     return status;
 }

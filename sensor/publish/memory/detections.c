@@ -21,8 +21,8 @@
 /* ---- a datagram of detections, checked ----------------------------------------------------------- */
 
 const char *const detections_reason_name[DETECTIONS_REASONS] = {
-    "good", "size", "magic", "byte_order", "version", "count", "band", "box", "score", "text", "reserved_octets",
-    "unknown_frame", "late", "repeated"};
+    "good", "size",  "magic", "byte_order",      "version",       "count", "band",
+    "box",  "score", "text",  "reserved_octets", "unknown_frame", "late",  "repeated"};
 
 /* Printable ASCII up to the first 0, then zeros to the end. */
 static bool text_is_good(const char *text, size_t size)
@@ -38,7 +38,8 @@ static bool text_is_good(const char *text, size_t size)
 static DetectionsReason check_one(const PitviperDetection *d, float width, float height)
 {
     if (!(d->left >= 0 && d->right > d->left && d->right <= width && d->top >= 0 && d->bottom > d->top &&
-          d->bottom <= height)) return DETECTIONS_BOX; /* NaN too */
+          d->bottom <= height))
+        return DETECTIONS_BOX; /* NaN too */
     if (!(d->score >= 0 && d->score <= 1)) return DETECTIONS_SCORE;
     if (!text_is_good(d->class_name, sizeof d->class_name)) return DETECTIONS_TEXT;
     return d->reserved[0] || d->reserved[1] ? DETECTIONS_RESERVED : DETECTIONS_GOOD;
@@ -58,8 +59,13 @@ static bool from_1(PitviperDetection *out, const uint8_t *bytes)
 {
     DetectionOf1 d;
     memcpy(&d, bytes, sizeof d);
-    *out = (PitviperDetection){.left = d.left, .top = d.top, .right = d.right, .bottom = d.bottom, .score = d.score,
-                               .track = d.track, .reserved = {d.reserved[0], d.reserved[1]}};
+    *out = (PitviperDetection){.left = d.left,
+                               .top = d.top,
+                               .right = d.right,
+                               .bottom = d.bottom,
+                               .score = d.score,
+                               .track = d.track,
+                               .reserved = {d.reserved[0], d.reserved[1]}};
     memcpy(out->class_name, d.class_name, sizeof d.class_name);
     return d.class_name[sizeof d.class_name - 1] == 0;
 }
@@ -89,7 +95,7 @@ DetectionsReason detections_parse(PitviperDetections *out, const uint8_t *bytes,
         if (reason != DETECTIONS_GOOD) return reason;
         if (!terminated) return DETECTIONS_TEXT;
     }
-    out->version        = PITVIPER_DETECTIONS_VERSION;
+    out->version = PITVIPER_DETECTIONS_VERSION;
     out->detection_size = sizeof *out->detection;
     return DETECTIONS_GOOD;
 }
@@ -103,9 +109,9 @@ typedef struct Answers {
 
 /* The frame that was answered. */
 typedef struct AnsweredFrame {
-    double time_s;      /* exercise time */
-    double latency_ms;  /* from the end of its rendering to the answer's arrival; NaN: not known */
-    bool   late;        /* a newer frame of the band was answered before */
+    double time_s;     /* exercise time */
+    double latency_ms; /* from the end of its rendering to the answer's arrival; NaN: not known */
+    bool   late;       /* a newer frame of the band was answered before */
 } AnsweredFrame;
 
 /* Creates the file in this folder. STATUS_IO, logged. */
@@ -133,13 +139,14 @@ static double digits(float value, double unit) { return round((double)value / un
 /* Detection `number` of the answer, from 1 on; 0: there is none. */
 static json_t *line_of(const PitviperDetections *answer, const AnsweredFrame *frame, uint32_t number)
 {
-    json_t *line = json_pack("{s:i,s:s,s:f,s:I,s:I}", "frame", answer->frame, "band", band_name((Band)answer->band), "time_s",
-                             frame->time_s, "answer", (json_int_t)number, "of", (json_int_t)answer->count);
+    json_t *line = json_pack("{s:i,s:s,s:f,s:I,s:I}", "frame", answer->frame, "band", band_name((Band)answer->band),
+                             "time_s", frame->time_s, "answer", (json_int_t)number, "of", (json_int_t)answer->count);
     if (line && number > 0) {
         const PitviperDetection *d = &answer->detection[number - 1];
         json_object_set_new(line, "class", json_string(d->class_name));
-        json_object_set_new(line, "box_px", json_pack("[f,f,f,f]", digits(d->left, 1e-4), digits(d->top, 1e-4),
-                                                      digits(d->right, 1e-4), digits(d->bottom, 1e-4)));
+        json_object_set_new(line, "box_px",
+                            json_pack("[f,f,f,f]", digits(d->left, 1e-4), digits(d->top, 1e-4), digits(d->right, 1e-4),
+                                      digits(d->bottom, 1e-4)));
         json_set_number(line, "score", digits(d->score, 1e-6));
         if (d->track) json_object_set_new(line, "track", json_integer((json_int_t)d->track));
     }
@@ -151,22 +158,25 @@ static json_t *line_of(const PitviperDetections *answer, const AnsweredFrame *fr
 static bool write_line(FILE *file, json_t *line)
 {
     char      *text = line ? json_dumps(line, JSON_COMPACT | JSON_REAL_PRECISION(12)) : NULL;
-    const bool ok   = text && fprintf(file, "%s\n", text) > 0;
+    const bool ok = text && fprintf(file, "%s\n", text) > 0;
     free(text);
     json_decref(line);
     return ok;
 }
 
 /* The lines of an answer, flushed. What cannot be written is counted, and reported once. */
-static void answers_write(Answers *a, const PitviperDetections *answer, const AnsweredFrame *frame, AnswerCounters *counters)
+static void answers_write(Answers *a, const PitviperDetections *answer, const AnsweredFrame *frame,
+                          AnswerCounters *counters)
 {
     const uint32_t lines = answer->count > 0 ? answer->count : 1;
     bool           ok = true;
-    for (uint32_t i = 0; i < lines; i++) ok = write_line(a->file, line_of(answer, frame, answer->count > 0 ? i + 1 : 0)) && ok;
+    for (uint32_t i = 0; i < lines; i++)
+        ok = write_line(a->file, line_of(answer, frame, answer->count > 0 ? i + 1 : 0)) && ok;
     ok = fflush(a->file) == 0 && ok;
     counters->lines += ok ? lines : 0;
     counters->lines_failed += ok ? 0 : lines;
-    if (!ok && !a->failed) log_warn("detections: cannot write answers.jsonl: %s; such lines are counted", strerror(errno));
+    if (!ok && !a->failed)
+        log_warn("detections: cannot write answers.jsonl: %s; such lines are counted", strerror(errno));
     a->failed |= !ok;
     clearerr(a->file);
 }
@@ -191,10 +201,10 @@ struct Detections {
     int             socket, stop; /* stop: an eventfd */
     int             port, width, height;
     unsigned        bands;
-    Answers        *answers;      /* NULL: no file; of the thread */
+    Answers        *answers; /* NULL: no file; of the thread */
     bool            running;
     pthread_t       thread;
-    pthread_mutex_t lock;         /* of what follows */
+    pthread_mutex_t lock; /* of what follows */
     KnownFrame      known[detections_frames_kept];
     int             known_count, known_next;
     bool            has[BAND_COUNT];
@@ -214,19 +224,19 @@ static KnownFrame *known(Detections *d, int frame)
 /* A well-formed one. With the lock held. */
 static DetectionsReason keep(KnownFrame *of, Detections *d, const PitviperDetections *one)
 {
-    DetectionSet *set   = &d->newest[one->band];
+    DetectionSet *set = &d->newest[one->band];
     KnownFrame   *frame = known(d, one->frame);
     if (!frame) return DETECTIONS_FRAME;
     if (frame->answered >> one->band & 1) return DETECTIONS_REPEATED;
     frame->answered |= 1u << one->band;
     *of = *frame;
     if (d->has[one->band] && frame->time_s < set->time_s) return DETECTIONS_LATE;
-    set->frame      = one->frame;
-    set->band       = (Band)one->band;
-    set->time_s     = frame->time_s;
-    set->unix_s     = frame->unix_s;
+    set->frame = one->frame;
+    set->band = (Band)one->band;
+    set->time_s = frame->time_s;
+    set->unix_s = frame->unix_s;
     set->received_s = wall_clock_s();
-    set->count      = (int)one->count;
+    set->count = (int)one->count;
     memcpy(set->detection, one->detection, sizeof set->detection);
     d->has[one->band] = true;
     return DETECTIONS_GOOD;
@@ -249,8 +259,10 @@ static bool receive(Detections *d)
     Answers *answers = d->answers;
     pthread_mutex_unlock(&d->lock);
     if (!answers || (reason != DETECTIONS_GOOD && reason != DETECTIONS_LATE)) return true;
-    answers_write(answers, &one, &(AnsweredFrame){.time_s = frame.time_s, .late = reason == DETECTIONS_LATE,
-                                                     .latency_ms = frame.rendered_s > 0 ? 1e3 * (now_s - frame.rendered_s) : NAN},
+    answers_write(answers, &one,
+                  &(AnsweredFrame){.time_s = frame.time_s,
+                                   .late = reason == DETECTIONS_LATE,
+                                   .latency_ms = frame.rendered_s > 0 ? 1e3 * (now_s - frame.rendered_s) : NAN},
                   &written);
     pthread_mutex_lock(&d->lock);
     d->counters.lines += written.lines;
@@ -262,14 +274,16 @@ static bool receive(Detections *d)
 static void *work(void *user)
 {
     enum { at_once = 256, at_the_end = 65536 }; /* then it is asked whether to stop; more than the socket holds */
-    Detections   *d       = user;
+    Detections   *d = user;
     struct pollfd ready[2] = {{.fd = d->socket, .events = POLLIN}, {.fd = d->stop, .events = POLLIN}};
     for (;;) {
         const int count = poll(ready, 2, -1);
         if (count < 0 && errno != EINTR) return NULL;
-        for (int i = 0; count > 0 && ready[0].revents && i < at_once && receive(d); i++) {}
+        for (int i = 0; count > 0 && ready[0].revents && i < at_once && receive(d); i++) {
+        }
         if (count <= 0 || !ready[1].revents) continue;
-        for (int i = 0; i < at_the_end && receive(d); i++) {}
+        for (int i = 0; i < at_the_end && receive(d); i++) {
+        }
         return NULL;
     }
 }
@@ -288,10 +302,10 @@ static uint64_t lost_kernel(const Detections *d)
 
 static Status open_socket(Detections *d)
 {
-    const struct sockaddr_in own = {.sin_family = AF_INET, .sin_port = htons((uint16_t)d->port),
-                                    .sin_addr.s_addr = htonl(INADDR_LOOPBACK)};
+    const struct sockaddr_in own = {
+        .sin_family = AF_INET, .sin_port = htons((uint16_t)d->port), .sin_addr.s_addr = htonl(INADDR_LOOPBACK)};
     const int room = 1 << 20; /* as far as the system allows */
-    d->stop   = eventfd(0, EFD_CLOEXEC);
+    d->stop = eventfd(0, EFD_CLOEXEC);
     d->socket = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
     setsockopt(d->socket, SOL_SOCKET, SO_RCVBUF, &room, sizeof room);
     if (d->stop >= 0 && d->socket >= 0 && bind(d->socket, (const struct sockaddr *)&own, sizeof own) == 0)
@@ -305,8 +319,8 @@ Status detections_open(Detections **out, const DetectionsOf *of)
 {
     Detections *d = calloc(1, sizeof *d);
     if (!d) return STATUS_NO_MEMORY;
-    *d = (Detections){.socket = -1, .stop = -1, .port = of->port, .width = of->width, .height = of->height,
-                      .bands = of->bands};
+    *d = (Detections){
+        .socket = -1, .stop = -1, .port = of->port, .width = of->width, .height = of->height, .bands = of->bands};
     pthread_mutex_init(&d->lock, NULL);
     Status status = open_socket(d);
     if (status == STATUS_OK) {
@@ -325,7 +339,7 @@ Status detections_open(Detections **out, const DetectionsOf *of)
 Status detections_record(Detections *d, const char *folder)
 {
     Answers     *answers = NULL;
-    const Status status  = answers_open(&answers, folder);
+    const Status status = answers_open(&answers, folder);
     if (status != STATUS_OK) return status;
     pthread_mutex_lock(&d->lock);
     d->answers = answers;
@@ -344,7 +358,8 @@ static void report(const AnswerCounters *c)
             used += (size_t)snprintf(text + used, sizeof text - used, ", %s %llu", detections_reason_name[i],
                                      (unsigned long long)c->datagrams[i]);
     if (c->lost_kernel && used < sizeof text)
-        snprintf(text + used, sizeof text - used, ", lost, since they came too fast, %llu", (unsigned long long)c->lost_kernel);
+        snprintf(text + used, sizeof text - used, ", lost, since they came too fast, %llu",
+                 (unsigned long long)c->lost_kernel);
     if (*text) log_warn("detections: %llu datagrams taken; refused%s", (unsigned long long)taken, text + 1);
     else log_info("detections: %llu datagrams taken", (unsigned long long)taken);
 }
@@ -373,7 +388,7 @@ void detections_frame(Detections *d, int frame, double time_s, double unix_s, do
 {
     pthread_mutex_lock(&d->lock);
     d->known[d->known_next] = (KnownFrame){frame, time_s, unix_s, rendered_s, 0};
-    d->known_next           = (d->known_next + 1) % detections_frames_kept;
+    d->known_next = (d->known_next + 1) % detections_frames_kept;
     if (d->known_count < detections_frames_kept) d->known_count++;
     pthread_mutex_unlock(&d->lock);
 }
@@ -424,7 +439,7 @@ Status consume_detections(Consumer **out, Detections *detections, const char *fo
 {
     DetectionsConsumer *c = malloc(sizeof *c);
     if (!c) return STATUS_NO_MEMORY;
-    *c   = (DetectionsConsumer){{.begin = begin, .put = put, .close = close_consumer}, detections, folder};
+    *c = (DetectionsConsumer){{.begin = begin, .put = put, .close = close_consumer}, detections, folder};
     *out = &c->consumer;
     return STATUS_OK;
 }

@@ -2,8 +2,8 @@
  * laid out in etc/include/pitviper_memory.h, received by a thread of their own.
  *
  * Every octet is checked. The first datagram for a band of a recent frame is that frame's answer and goes into
- * answers.jsonl; of each band the newest frame's is kept for metadata. The rest is counted by reason, so memory and file
- * are bounded - an answer for each frame and band - and a flood costs the renderer nothing. */
+ * answers.jsonl; of each band the newest frame's is kept for metadata. The rest is counted by reason, so memory and
+ * file are bounded - an answer for each frame and band - and a flood costs the renderer nothing. */
 #ifndef SENSOR_PUBLISH_MEMORY_DETECTIONS_H
 #define SENSOR_PUBLISH_MEMORY_DETECTIONS_H
 
@@ -15,20 +15,20 @@
 enum { detections_frames_kept = 256 };
 
 typedef struct DetectionSet {
-    int    frame;
-    Band   band;
-    double time_s, unix_s; /* of that frame, exercise time */
-    double received_s;     /* wall_clock_s */
-    int    count;
+    int               frame;
+    Band              band;
+    double            time_s, unix_s; /* of that frame, exercise time */
+    double            received_s;     /* wall_clock_s */
+    int               count;
     PitviperDetection detection[pitviper_detections_most];
 } DetectionSet;
 
 typedef struct Detections Detections;
 
 typedef struct DetectionsOf {
-    int         port;
-    unsigned    bands;         /* bit set of those of the run */
-    int         width, height; /* of the images */
+    int      port;
+    unsigned bands;         /* bit set of those of the run */
+    int      width, height; /* of the images */
 } DetectionsOf;
 
 /* STATUS_IO, logged: the port is in use. */
@@ -36,13 +36,13 @@ Status detections_open(Detections **out, const DetectionsOf *of);
 /* From now on answers are written to answers.jsonl of a folder. Once. STATUS_IO, logged: the file cannot be written. */
 Status detections_record(Detections *detections, const char *folder);
 /* NULL is valid. Logs the counts. counters: receives them; may be NULL, and is set to 0 without detections. */
-void   detections_close(Detections *detections, AnswerCounters *counters);
+void detections_close(Detections *detections, AnswerCounters *counters);
 /* A frame that detections may refer to from now on. rendered_s: wall_clock_s; 0: not known. */
-void   detections_frame(Detections *detections, int frame, double time_s, double unix_s, double rendered_s);
+void detections_frame(Detections *detections, int frame, double time_s, double unix_s, double rendered_s);
 /* The newest of a band; false: none yet. From any thread. */
-bool   detections_latest(Detections *detections, Band band, DetectionSet *out);
+bool detections_latest(Detections *detections, Band band, DetectionSet *out);
 /* So far. */
-void   detections_counters(Detections *detections, AnswerCounters *out);
+void detections_counters(Detections *detections, AnswerCounters *out);
 
 /* Tells them of every frame, and has them recorded; detections and folder stay the caller's and outlive it. */
 Status consume_detections(Consumer **out, Detections *detections, const char *folder);

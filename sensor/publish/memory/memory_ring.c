@@ -19,10 +19,10 @@ enum { segment_name_size = 128 };
 typedef struct MemorySegment {
     char           name[segment_name_size]; /* under /dev/shm */
     char           temporary[segment_name_size + 40];
-    int            file;                   /* -1: none */
-    unsigned char *at;                     /* zeroed; page aligned */
+    int            file; /* -1: none */
+    unsigned char *at;   /* zeroed; page aligned */
     size_t         size;
-    bool           named;                  /* published under its name */
+    bool           named; /* published under its name */
 } MemorySegment;
 
 enum { path_size = 256 };
@@ -40,7 +40,8 @@ static Status not_created(const MemorySegment *s, const char *what, int reason)
 {
     if (reason == ENOSPC || reason == EFBIG || reason == ENOMEM)
         log_error("memory: no room for %.1f MB in /dev/shm: %s; make room there, or set fewer publish.memory_slots, "
-                  "fewer bands or a smaller image", 1e-6 * (double)s->size, strerror(reason));
+                  "fewer bands or a smaller image",
+                  1e-6 * (double)s->size, strerror(reason));
     else
         log_error("memory: cannot %s /dev/shm/%s: %s; publish.memory needs a writable /dev/shm", what, s->name,
                   strerror(reason));
@@ -79,14 +80,15 @@ static Status segment_create(MemorySegment *out, const char *name, size_t size)
     shm_unlink(s->temporary); /* of a killed process with the same number */
     s->file = shm_open(s->temporary, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
     if (s->file < 0 && errno == EEXIST) {
-        log_error("memory: /dev/shm/%s is there and belongs to another user; have it removed, or choose another name with --memory",
-                  s->temporary);
+        log_error(
+            "memory: /dev/shm/%s is there and belongs to another user; have it removed, or choose another name with --memory",
+            s->temporary);
         return STATUS_IO;
     }
     if (s->file < 0) return not_created(s, "create", errno);
     /* all of it now: a page that cannot be had later would end the process (SIGBUS); and mapped now, not in a frame */
     const int reserved = posix_fallocate(s->file, 0, (off_t)size);
-    Status    status   = reserved == 0 ? STATUS_OK : not_created(s, "reserve", reserved);
+    Status    status = reserved == 0 ? STATUS_OK : not_created(s, "reserve", reserved);
     if (status == STATUS_OK && !lock_file(s->file)) status = not_created(s, "lock", errno);
     if (status == STATUS_OK) {
         void *at = mmap(NULL, size, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_POPULATE, s->file, 0);
@@ -113,9 +115,9 @@ typedef enum Replaced { REPLACED, REPLACED_NOT_THERE, REPLACED_REFUSED } Replace
 static Replaced replace(const MemorySegment *s, const char *temporary, const char *path)
 {
     struct stat opened, there;
-    int         pid    = 0;
+    int         pid = 0;
     Replaced    result = REPLACED_REFUSED;
-    const int   old    = open(path, O_RDWR | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
+    const int   old = open(path, O_RDWR | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
     if (old < 0 && errno == ENOENT) return REPLACED_NOT_THERE;
     if (old < 0) {
         log_error("memory: %s is there and cannot be opened: %s; choose another name with --memory, or remove it", path,
@@ -126,13 +128,12 @@ static Replaced replace(const MemorySegment *s, const char *temporary, const cha
         log_error("memory: %s is not a ring of frames; choose another name with --memory, or remove it", path);
     else if (!lock_file(old))
         log_error("memory: '%s' is in use by a living node, process %d; choose another name with --memory, or end that "
-                  "node", s->name, pid);
+                  "node",
+                  s->name, pid);
     else if (stat(path, &there) != 0 || there.st_ino != opened.st_ino || there.st_dev != opened.st_dev)
         result = REPLACED_NOT_THERE;
-    else if (rename(temporary, path) == 0)
-        result = REPLACED;
-    else
-        log_error("memory: cannot replace %s: %s; choose another name with --memory", path, strerror(errno));
+    else if (rename(temporary, path) == 0) result = REPLACED;
+    else log_error("memory: cannot replace %s: %s; choose another name with --memory", path, strerror(errno));
     close(old);
     if (result == REPLACED) log_info("memory: replaced '%s', left behind by process %d, which has ended", s->name, pid);
     return result;
@@ -165,13 +166,13 @@ static Status segment_publish(MemorySegment *s)
 
 struct MemoryRing {
     MemorySegment         segment;
-    PitviperMemoryHeader  layout;   /* as at the start: what is in the segment is read by others */
-    PitviperMemoryHeader *header;   /* in the segment */
+    PitviperMemoryHeader  layout; /* as at the start: what is in the segment is read by others */
+    PitviperMemoryHeader *header; /* in the segment */
     PitviperMemoryPlane   plane[pitviper_memory_planes_most];
     size_t                plane_octets[pitviper_memory_planes_most];
     uint64_t              sequence; /* of the newest frame */
     PitviperMemoryRecord  record;
-    PitviperMemoryTarget *target;   /* [target_room] */
+    PitviperMemoryTarget *target; /* [target_room] */
 };
 
 /* Each word with release semantics: a reader that meets it meets the lock that was stored before it too
@@ -179,7 +180,7 @@ struct MemoryRing {
 static void store_words(unsigned char *to, const void *from, size_t octets)
 {
     uint64_t            *word = (uint64_t *)(void *)to;
-    const unsigned char *in   = from;
+    const unsigned char *in = from;
     const size_t         whole = octets / 8;
     for (size_t i = 0; i < whole; i++) {
         uint64_t value;
@@ -199,31 +200,37 @@ static size_t round_up(size_t octets, size_t to) { return (octets + to - 1) / to
 static void lay_out(PitviperMemoryHeader *h, MemoryRing *r, const MemoryRingOf *of)
 {
     enum { line = 64 };
-    *h = (PitviperMemoryHeader){.byte_order = PITVIPER_MEMORY_BYTE_ORDER, .version = PITVIPER_MEMORY_VERSION,
-                                .revision = PITVIPER_MEMORY_REVISION, .header_size = sizeof *h,
-                                .plane_entry_size = sizeof *r->plane, .record_size = sizeof r->record,
-                                .target_size = sizeof *r->target, .slot_count = (uint32_t)of->slots,
-                                .plane_count = (uint32_t)of->plane_count, .target_room = (uint32_t)of->target_room,
+    *h = (PitviperMemoryHeader){.byte_order = PITVIPER_MEMORY_BYTE_ORDER,
+                                .version = PITVIPER_MEMORY_VERSION,
+                                .revision = PITVIPER_MEMORY_REVISION,
+                                .header_size = sizeof *h,
+                                .plane_entry_size = sizeof *r->plane,
+                                .record_size = sizeof r->record,
+                                .target_size = sizeof *r->target,
+                                .slot_count = (uint32_t)of->slots,
+                                .plane_count = (uint32_t)of->plane_count,
+                                .target_room = (uint32_t)of->target_room,
                                 .kind = of->truth ? PITVIPER_MEMORY_TRUTH : PITVIPER_MEMORY_SENSOR,
-                                .writer_pid = (int32_t)getpid(), .detections_port = (uint32_t)of->detections_port,
+                                .writer_pid = (int32_t)getpid(),
+                                .detections_port = (uint32_t)of->detections_port,
                                 .detections_version = PITVIPER_DETECTIONS_VERSION,
                                 .state = PITVIPER_MEMORY_RUNNING};
     memcpy(h->magic, PITVIPER_MEMORY_MAGIC, sizeof h->magic);
     snprintf(h->host, sizeof h->host, "%s", of->host ? of->host : "");
     snprintf(h->program, sizeof h->program, "%s", PITVIPER_VERSION);
     snprintf(h->config_sha256, sizeof h->config_sha256, "%s", of->config_sha256);
-    h->plane_offset  = sizeof *h;
-    h->slot_offset   = round_up(sizeof *h + (size_t)of->plane_count * sizeof *r->plane, line);
+    h->plane_offset = sizeof *h;
+    h->slot_offset = round_up(sizeof *h + (size_t)of->plane_count * sizeof *r->plane, line);
     h->target_offset = sizeof r->record;
-    size_t at        = round_up(sizeof r->record + (size_t)of->target_room * sizeof *r->target, line);
+    size_t at = round_up(sizeof r->record + (size_t)of->target_room * sizeof *r->target, line);
     for (int i = 0; i < of->plane_count; i++) {
-        r->plane[i]        = of->plane[i];
+        r->plane[i] = of->plane[i];
         r->plane[i].offset = at;
         r->plane_octets[i] = (size_t)r->plane[i].width * r->plane[i].height *
                              (r->plane[i].type == PITVIPER_PLANE_FLOAT32 ? sizeof(float) : sizeof(uint16_t));
         at += round_up(r->plane_octets[i], line);
     }
-    h->slot_size    = at;
+    h->slot_size = at;
     h->segment_size = h->slot_offset + at * (size_t)of->slots;
 }
 
@@ -235,15 +242,14 @@ Status memory_ring_create(MemoryRing **out, const MemoryRingOf *of)
     if (!r) return STATUS_NO_MEMORY;
     lay_out(&header, r, of);
     clock_gettime(CLOCK_REALTIME, &now);
-    header.epoch      = (uint64_t)now.tv_sec * 1000000000 + (uint64_t)now.tv_nsec;
+    header.epoch = (uint64_t)now.tv_sec * 1000000000 + (uint64_t)now.tv_nsec;
     header.changed_ns = pitviper_memory_now_ns();
-    r->target         = calloc((size_t)of->target_room + 1, sizeof *r->target);
-    r->segment.file   = -1;
-    Status status     = r->target ? segment_create(&r->segment, of->name, header.segment_size)
-                                  : STATUS_NO_MEMORY;
+    r->target = calloc((size_t)of->target_room + 1, sizeof *r->target);
+    r->segment.file = -1;
+    Status status = r->target ? segment_create(&r->segment, of->name, header.segment_size) : STATUS_NO_MEMORY;
     if (status == STATUS_OK) {
-        r->layout  = header;
-        r->header  = (PitviperMemoryHeader *)(void *)r->segment.at;
+        r->layout = header;
+        r->header = (PitviperMemoryHeader *)(void *)r->segment.at;
         *r->header = header;
         memcpy(r->segment.at + header.plane_offset, r->plane, (size_t)of->plane_count * sizeof *r->plane);
         status = segment_publish(&r->segment);
@@ -268,14 +274,14 @@ static void wake_readers(PitviperMemoryHeader *h)
 
 void memory_ring_put(MemoryRing *r, const void *const *plane)
 {
-    const PitviperMemoryHeader *h    = &r->layout;
-    const uint64_t              n    = ++r->sequence;
+    const PitviperMemoryHeader *h = &r->layout;
+    const uint64_t              n = ++r->sequence;
     unsigned char              *slot = r->segment.at + h->slot_offset + (n - 1) % h->slot_count * h->slot_size;
     uint64_t                   *lock = (uint64_t *)(void *)slot;
     __atomic_store_n(lock, 2 * n - 1, __ATOMIC_RELAXED); /* before all that follows, each of which is a release */
     for (uint32_t i = 0; i < h->plane_count; i++) store_words(slot + r->plane[i].offset, plane[i], r->plane_octets[i]);
     store_words(slot + h->target_offset, r->target, r->record.target_count * sizeof *r->target);
-    r->record.sequence   = n;
+    r->record.sequence = n;
     r->record.written_ns = pitviper_memory_now_ns();
     store_words(slot + sizeof *lock, (const unsigned char *)&r->record + sizeof *lock, sizeof r->record - sizeof *lock);
     __atomic_store_n(lock, 2 * n, __ATOMIC_RELEASE);

@@ -12,14 +12,14 @@
 typedef struct MemoryRing MemoryRing;
 
 typedef struct MemoryRingOf {
-    const char *name;            /* under /dev/shm */
-    int         slots, target_room;
-    bool        truth;
-    int         plane_count;
+    const char         *name; /* under /dev/shm */
+    int                 slots, target_room;
+    bool                truth;
+    int                 plane_count;
     PitviperMemoryPlane plane[pitviper_memory_planes_most]; /* offsets are filled in */
-    const char *host;            /* of several; NULL: one alone */
-    const char *config_sha256;
-    int         detections_port; /* 0: none */
+    const char         *host;                               /* of several; NULL: one alone */
+    const char         *config_sha256;
+    int                 detections_port; /* 0: none */
 } MemoryRingOf;
 
 /* STATUS_BAD_VALUE, STATUS_IO, logged with what to do: the name is in use; no room. */
@@ -31,8 +31,8 @@ size_t memory_ring_size(const MemoryRing *ring); /* octets */
 PitviperMemoryRecord *memory_ring_record(MemoryRing *ring);
 PitviperMemoryTarget *memory_ring_targets(MemoryRing *ring);
 /* The record, its targets and the planes as the newest frame. plane: [plane_count], of the ring's sizes and types. */
-void   memory_ring_put(MemoryRing *ring, const void *const *plane);
+void memory_ring_put(MemoryRing *ring, const void *const *plane);
 /* Tells readers that it has ended, and removes it. NULL is valid. */
-void   memory_ring_close(MemoryRing *ring);
+void memory_ring_close(MemoryRing *ring);
 
 #endif

@@ -16,26 +16,26 @@ typedef struct Channel {
     unsigned     bands;
     VideoOutput *output[3];
     int          outputs;
-    bool         klv;      /* of its one band, for some output */
-    Encoder     *encoder;  /* NULL: not yet, or not at present */
-    RetryBackoff retry;    /* of the encoder */
-    char         what[48]; /* in its messages */
+    bool         klv;               /* of its one band, for some output */
+    Encoder     *encoder;           /* NULL: not yet, or not at present */
+    RetryBackoff retry;             /* of the encoder */
+    char         what[48];          /* in its messages */
     int64_t      last_90k, key_90k; /* of the last frame and key frame; INT64_MIN: none yet */
 } Channel;
 
 typedef enum Labels { LABEL_OFF, LABEL_BANDS, LABEL_TARGETS } Labels;
 
 typedef struct Video {
-    Consumer     consumer;
-    Labels       labels;
-    VideoOf      of;
-    unsigned     to;           /* VideoTo: those of `of` that are configured */
-    KlvMode      klv;
-    int          channels;
-    Channel      channel[BAND_COUNT + 1];
-    uint8_t     *image, *tile; /* for the largest frame so far */
-    size_t       image_octets;
-    KlvDetections found;       /* by a recogniser */
+    Consumer      consumer;
+    Labels        labels;
+    VideoOf       of;
+    unsigned      to; /* VideoTo: those of `of` that are configured */
+    KlvMode       klv;
+    int           channels;
+    Channel       channel[BAND_COUNT + 1];
+    uint8_t      *image, *tile; /* for the largest frame so far */
+    size_t        image_octets;
+    KlvDetections found; /* by a recogniser */
 } Video;
 
 /* ---- one frame ---------------------------------------------------------------------------------- */
@@ -45,8 +45,8 @@ static Status make_room(Video *v, size_t octets)
     if (octets <= v->image_octets) return STATUS_OK;
     free(v->image);
     free(v->tile);
-    v->image        = malloc(octets);
-    v->tile         = malloc(octets);
+    v->image = malloc(octets);
+    v->tile = malloc(octets);
     v->image_octets = v->image && v->tile ? octets : 0;
     return v->image_octets ? STATUS_OK : STATUS_NO_MEMORY;
 }
@@ -56,7 +56,7 @@ static void put_tile(uint8_t *image, const uint8_t *tile, const EncoderConfig *c
 {
     const size_t octets = video_encoder_bits(c->codec) == 8 ? 1 : 2, values = c->colour ? 3 : 1;
     for (int y = 0; y < c->height; y++) {
-        uint8_t       *to   = image + ((size_t)y * (size_t)c->width + (size_t)column) * values * octets;
+        uint8_t       *to = image + ((size_t)y * (size_t)c->width + (size_t)column) * values * octets;
         const uint8_t *from = tile + (size_t)y * (size_t)width * (size_t)planes * octets;
         if ((int)values == planes) {
             memcpy(to, from, (size_t)width * values * octets);
@@ -67,11 +67,13 @@ static void put_tile(uint8_t *image, const uint8_t *tile, const EncoderConfig *c
     }
 }
 
-/* Names of bands, and boxes and names of targets, as publish.video_labels has it, on the tile that begins at a column. */
+/* Names of bands, and boxes and names of targets, as publish.video_labels has it, on the tile that begins at a column.
+ */
 static void label(Video *v, const EncoderConfig *form, Band band, int column, int width, const Frame *frame)
 {
     const int     bits = video_encoder_bits(form->codec), times = width < 320 ? 1 : 2;
-    const Drawing d = {v->image, form->width, form->height, form->colour ? 3 : 1, bits > 8, (1 << bits) - 1, column, column + width};
+    const Drawing d = {v->image, form->width,     form->height, form->colour ? 3 : 1,
+                       bits > 8, (1 << bits) - 1, column,       column + width};
     for (int i = 0; v->labels == LABEL_TARGETS && i < frame->record.target_count; i++) {
         const TargetRecord *t = &frame->record.target[i];
         char                id[dis_id_text_size];
@@ -79,7 +81,8 @@ static void label(Video *v, const EncoderConfig *form, Band band, int column, in
         if (target_box_is_empty(t->box)) continue;
         const int box[4] = {t->box[0] + column, t->box[1], t->box[2] + column, t->box[3]};
         drawing_box(&d, box);
-        drawing_text(&d, box[0], box[1] >= 10 * times + 2 ? box[1] - 9 * times - 2 : box[3] + 3 * times, times, *t->marking ? t->marking : id);
+        drawing_text(&d, box[0], box[1] >= 10 * times + 2 ? box[1] - 9 * times - 2 : box[3] + 3 * times, times,
+                     *t->marking ? t->marking : id);
     }
     drawing_text(&d, column + 2 * times, 2 * times, times, band_name(band));
 }
@@ -89,17 +92,19 @@ static Status compose(EncoderConfig *form, Video *v, const Channel *c, const Fra
 {
     const int width = frame->seen.picture.width, height = frame->seen.picture.height;
     const int tiles = __builtin_popcount(c->bands);
-    *form = (EncoderConfig){.codec = video_codec(v->of.config->publish.video_codec), .width = tiles * width,
-                            .height = height, .rate_hz = v->of.rate_hz};
+    *form = (EncoderConfig){.codec = video_codec(v->of.config->publish.video_codec),
+                            .width = tiles * width,
+                            .height = height,
+                            .rate_hz = v->of.rate_hz};
     for (int b = 0; b < BAND_COUNT; b++)
         if (c->bands >> b & 1 && frame->display[b].planes == 3) form->colour = true;
-    const int    bits   = video_encoder_bits(form->codec);
+    const int    bits = video_encoder_bits(form->codec);
     const size_t octets = (size_t)form->width * (size_t)height * (form->colour ? 3 : 1) * (bits == 8 ? 1 : 2);
     const Status status = make_room(v, octets);
     if (status != STATUS_OK) return status;
     for (int b = 0, column = 0; b < BAND_COUNT; b++) {
         const FrameDisplay *display = &frame->display[b];
-        const int           planes  = display->planes ? display->planes : 1;
+        const int           planes = display->planes ? display->planes : 1;
         if (!(c->bands >> b & 1)) continue;
         if (display->planes) frame_display_quantise(v->tile, display, (size_t)width * (size_t)height, bits);
         else memset(v->tile, 0, (size_t)width * (size_t)height * (bits == 8 ? 1 : 2));
@@ -124,7 +129,8 @@ static bool key_is_due(const Channel *c, int64_t pts_90k)
     return due;
 }
 
-static Status encode(VideoPacket *packet, Video *v, Channel *c, const EncoderConfig *form, int64_t pts_90k, int64_t unix_us)
+static Status encode(VideoPacket *packet, Video *v, Channel *c, const EncoderConfig *form, int64_t pts_90k,
+                     int64_t unix_us)
 {
     const EncoderConfig *had = c->encoder ? video_encoder_config(c->encoder) : NULL;
     if (had && (had->width != form->width || had->height != form->height || had->colour != form->colour)) {
@@ -132,7 +138,8 @@ static Status encode(VideoPacket *packet, Video *v, Channel *c, const EncoderCon
         return STATUS_UNSUPPORTED;
     }
     Status status = had ? STATUS_OK : video_encoder_open(&c->encoder, form);
-    if (status == STATUS_OK) status = video_encoder_encode(packet, c->encoder, v->image, key_is_due(c, pts_90k), unix_us);
+    if (status == STATUS_OK)
+        status = video_encoder_encode(packet, c->encoder, v->image, key_is_due(c, pts_90k), unix_us);
     if (status == STATUS_OK) return STATUS_OK;
     video_encoder_close(c->encoder);
     c->encoder = NULL;
@@ -145,8 +152,8 @@ static Status put_channel(Video *v, Channel *c, const Frame *frame)
     VideoPacket   packet;
     uint8_t       klv[klv_most_octets];
     const int64_t pts_90k = time_of(c, frame->unix_s);
-    const bool    due     = !v->of.patient || retry_due(&c->retry);
-    Status        status  = due ? compose(&form, v, c, frame) : STATUS_IO;
+    const bool    due = !v->of.patient || retry_due(&c->retry);
+    Status        status = due ? compose(&form, v, c, frame) : STATUS_IO;
     if (status == STATUS_OK) status = encode(&packet, v, c, &form, pts_90k, (int64_t)floor(frame->unix_s * 1e6 + 0.5));
     if (v->of.patient) retry_done(&c->retry, due, status);
     if (status != STATUS_OK) return v->of.patient ? STATUS_OK : status;
@@ -164,7 +171,7 @@ static Status put_channel(Video *v, Channel *c, const Frame *frame)
 
 static Status put(Consumer *consumer, Frame *frame)
 {
-    Video *v      = (Video *)consumer;
+    Video *v = (Video *)consumer;
     Status status = STATUS_OK;
     for (int i = 0; i < v->channels && status == STATUS_OK; i++) status = put_channel(v, &v->channel[i], frame);
     return status;
@@ -174,7 +181,7 @@ static Status put(Consumer *consumer, Frame *frame)
 
 static Status close_video(Consumer *consumer)
 {
-    Video *v      = (Video *)consumer;
+    Video *v = (Video *)consumer;
     Status status = STATUS_OK;
     for (int i = 0; i < v->channels; i++) {
         Channel *c = &v->channel[i];
@@ -195,7 +202,7 @@ static Status close_video(Consumer *consumer)
 static Channel *add_channel(Video *v, unsigned bands)
 {
     Channel *c = &v->channel[v->channels++];
-    *c         = (Channel){.bands = bands, .last_90k = INT64_MIN, .key_90k = INT64_MIN};
+    *c = (Channel){.bands = bands, .last_90k = INT64_MIN, .key_90k = INT64_MIN};
     if (bands & (bands - 1)) snprintf(c->what, sizeof c->what, "the video of all bands");
     else snprintf(c->what, sizeof c->what, "the video of %.16s", band_name((Band)__builtin_ctz(bands)));
     c->retry.what = c->what;
@@ -204,17 +211,17 @@ static Channel *add_channel(Video *v, unsigned bands)
 
 static Status add_output(VideoOutput **out, Video *v, Channel *c, VideoKind kind)
 {
-    VideoOutput *o    = calloc(1, sizeof *o);
-    const bool   one  = (c->bands & (c->bands - 1)) == 0;
+    VideoOutput *o = calloc(1, sizeof *o);
+    const bool   one = (c->bands & (c->bands - 1)) == 0;
     const Band   band = (Band)__builtin_ctz(c->bands);
     if (!o) return STATUS_NO_MEMORY;
     c->output[c->outputs++] = o;
-    o->kind                 = kind;
-    o->klv                  = kind == VIDEO_TS && one ? v->klv : KLV_NONE;
-    o->patient              = v->of.patient;
-    o->needs_key            = true;
-    o->retry.what           = o->path;
-    c->klv                  = c->klv || o->klv != KLV_NONE;
+    o->kind = kind;
+    o->klv = kind == VIDEO_TS && one ? v->klv : KLV_NONE;
+    o->patient = v->of.patient;
+    o->needs_key = true;
+    o->retry.what = o->path;
+    c->klv = c->klv || o->klv != KLV_NONE;
     snprintf(o->title, sizeof o->title, "%s", one ? band_name(band) : "all bands");
     *out = o;
     return STATUS_OK;
@@ -229,8 +236,7 @@ static Status add_stream(Video *v, Channel *c)
     if (!(v->to & VIDEO_TO_STREAM) || !video_stream_url(&url, config, v->of.bands, band)) return STATUS_OK;
     const Status status = add_output(&o, v, c, VIDEO_TS);
     if (status == STATUS_OK) o->sent = v->of.sent;
-    return status == STATUS_OK ? video_udp_open(&o->udp, &url, config->network.interface, config->network.ttl)
-                               : status;
+    return status == STATUS_OK ? video_udp_open(&o->udp, &url, config->network.interface, config->network.ttl) : status;
 }
 
 static Status add_file(Video *v, Channel *c, VideoKind kind)
@@ -245,16 +251,16 @@ static Status add_file(Video *v, Channel *c, VideoKind kind)
 static Status add_channels(Video *v)
 {
     const Config   *config = v->of.config;
-    const VideoKind asked  = v->to & VIDEO_TO_FILE ? video_kind(config->publish.video) : VIDEO_NONE;
-    const unsigned  bands  = v->of.bands;
+    const VideoKind asked = v->to & VIDEO_TO_FILE ? video_kind(config->publish.video) : VIDEO_NONE;
+    const unsigned  bands = v->of.bands;
     const bool      single = asked > VIDEO_FOLDER, alone = (bands & (bands - 1)) == 0;
     VideoKind       kind[2];
-    const int       kinds  = asked == VIDEO_FOLDER ? video_folder_kinds(kind, config) : 0;
+    const int       kinds = asked == VIDEO_FOLDER ? video_folder_kinds(kind, config) : 0;
     Status          status = STATUS_OK;
     for (int b = 0; b < BAND_COUNT && status == STATUS_OK; b++) {
         if (!(bands >> b & 1) || (!kinds && !(v->to & VIDEO_TO_STREAM))) continue;
         Channel *c = add_channel(v, 1u << b);
-        status     = add_stream(v, c);
+        status = add_stream(v, c);
         for (int k = 0; k < kinds && status == STATUS_OK; k++) status = add_file(v, c, kind[k]);
         if (single && alone && status == STATUS_OK) status = add_file(v, c, asked);
     }
@@ -275,28 +281,25 @@ static Status begin(Consumer *consumer)
     return frame_files_folder(path);
 }
 
-Status video_prepare(const Config *config)
-{
-    return video_wanted(config) ? library_load(&video_library) : STATUS_OK;
-}
+Status video_prepare(const Config *config) { return video_wanted(config) ? library_load(&video_library) : STATUS_OK; }
 
 Status consume_video(Consumer **out, const VideoOf *of)
 {
-    const unsigned to     = of->to & video_wanted(of->config);
+    const unsigned to = of->to & video_wanted(of->config);
     if (of->host_folder && video_hosts_check(of->config, 2) != STATUS_OK) return STATUS_UNSUPPORTED;
     Video *v = calloc(1, sizeof *v);
     if (!v) return STATUS_NO_MEMORY;
     v->consumer = (Consumer){WANT_DISPLAY, put, NULL, close_video, "video", begin};
-    v->of       = *of;
-    v->of.to    = to;
-    v->found    = (KlvDetections){.from = of->detections};
-    v->to       = to;
-    v->labels   = strcmp(of->config->publish.video_labels, "off") == 0     ? LABEL_OFF
-                  : strcmp(of->config->publish.video_labels, "bands") == 0 ? LABEL_BANDS
-                                                                           : LABEL_TARGETS;
-    v->klv      = strcmp(of->config->publish.klv, "async") == 0  ? KLV_ASYNCHRONOUS
-                  : strcmp(of->config->publish.klv, "sync") == 0 ? KLV_SYNCHRONOUS
-                                                                 : KLV_NONE;
+    v->of = *of;
+    v->of.to = to;
+    v->found = (KlvDetections){.from = of->detections};
+    v->to = to;
+    v->labels = strcmp(of->config->publish.video_labels, "off") == 0     ? LABEL_OFF
+                : strcmp(of->config->publish.video_labels, "bands") == 0 ? LABEL_BANDS
+                                                                         : LABEL_TARGETS;
+    v->klv = strcmp(of->config->publish.klv, "async") == 0  ? KLV_ASYNCHRONOUS
+             : strcmp(of->config->publish.klv, "sync") == 0 ? KLV_SYNCHRONOUS
+                                                            : KLV_NONE;
     const Status status = add_channels(v);
     for (int i = 0; i < v->channels; i++)
         if (v->channel[i].klv) v->consumer.wants |= WANT_FOOTPRINT;

@@ -30,10 +30,7 @@ bool video_earlier(char found[video_path_size], const Config *config, unsigned b
     return false;
 }
 
-void video_watch_print(const Config *config, unsigned bands)
-{
-    (void)config, (void)bands;
-}
+void video_watch_print(const Config *config, unsigned bands) { (void)config, (void)bands; }
 
 void video_watch_lines(char *out, size_t out_size, const Config *config, unsigned bands)
 {

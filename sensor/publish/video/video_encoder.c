@@ -8,14 +8,18 @@
 
 /* ---- the functions of FFmpeg's libraries that video_encoder.c and video_transport.c call --------- */
 
-#define FFMPEG(X)                                                                                                     \
-    X(av_d2q) X(av_dict_free) X(av_dict_set) X(av_frame_alloc) X(av_frame_free) X(av_frame_get_buffer)                \
-    X(av_frame_make_writable) X(av_frame_new_side_data) X(av_frame_remove_side_data) X(av_free) X(av_freep) X(av_log_set_callback) X(av_malloc) X(av_packet_alloc)           \
-    X(av_packet_free) X(av_packet_new_side_data) X(av_packet_rescale_ts) X(av_packet_unref) X(av_rescale)             \
-    X(av_strerror) X(av_write_frame) X(av_write_trailer) X(avcodec_alloc_context3) X(avcodec_find_encoder_by_name)    \
-    X(avcodec_free_context) X(avcodec_open2) X(avcodec_parameters_from_context) X(avcodec_receive_packet)             \
-    X(avcodec_send_frame) X(avformat_alloc_output_context2) X(avformat_free_context) X(avformat_new_stream)           \
-    X(avformat_write_header) X(avio_alloc_context) X(avio_context_free) X(avio_flush)
+#define FFMPEG(X)                                                                                                      \
+    X(av_d2q)                                                                                                          \
+    X(av_dict_free)                                                                                                    \
+    X(av_dict_set)                                                                                                     \
+    X(av_frame_alloc) X(av_frame_free) X(av_frame_get_buffer) X(av_frame_make_writable) X(av_frame_new_side_data)      \
+        X(av_frame_remove_side_data) X(av_free) X(av_freep) X(av_log_set_callback) X(av_malloc) X(av_packet_alloc)     \
+            X(av_packet_free) X(av_packet_new_side_data) X(av_packet_rescale_ts) X(av_packet_unref) X(av_rescale)      \
+                X(av_strerror) X(av_write_frame) X(av_write_trailer) X(avcodec_alloc_context3)                         \
+                    X(avcodec_find_encoder_by_name) X(avcodec_free_context) X(avcodec_open2)                           \
+                        X(avcodec_parameters_from_context) X(avcodec_receive_packet) X(avcodec_send_frame)             \
+                            X(avformat_alloc_output_context2) X(avformat_free_context) X(avformat_new_stream)          \
+                                X(avformat_write_header) X(avio_alloc_context) X(avio_context_free) X(avio_flush)
 LIBRARY(video_library, FFMPEG, "FFmpeg", PITVIPER_FFMPEG_FILE, "libavformat59");
 
 /* ---- images to the planes of a video frame ------------------------------------------------------- */
@@ -29,7 +33,7 @@ static void copy_rows(const VideoPlanes *out, const void *image, int values)
 
 static void neutral_chroma(const VideoPlanes *out)
 {
-    const bool     half   = out->layout == PIXELS_420;
+    const bool     half = out->layout == PIXELS_420;
     const uint16_t middle = (uint16_t)(1 << (out->bits - 1));
     const int      w = half ? out->width / 2 : out->width, h = half ? out->height / 2 : out->height;
     for (int p = 1; p < 3; p++)
@@ -63,16 +67,20 @@ FOR_BOTH void store(uint8_t *row, int i, int64_t value, bool octet)
 FOR_BOTH int64_t chroma(const int w[3], int64_t r, int64_t g, int64_t b, int weight_bits, int bits)
 {
     const int     shift = fixed_bits + weight_bits;
-    const int64_t value = (w[0] * r + w[1] * g + w[2] * b + ((int64_t)1 << (bits - 1 + shift)) +
-                           ((int64_t)1 << (shift - 1))) >> shift; /* of a positive number */
+    const int64_t value =
+        (w[0] * r + w[1] * g + w[2] * b + ((int64_t)1 << (bits - 1 + shift)) + ((int64_t)1 << (shift - 1))) >>
+        shift; /* of a positive number */
     return value >> bits ? ((int64_t)1 << bits) - 1 : value;
 }
 
 FOR_BOTH void luma_row(uint8_t *to, const void *image, size_t at, int width, bool octet)
 {
     for (int x = 0; x < width; x++, at += 3)
-        store(to, x, (y_r * pixel_at(image, at, octet) + y_g * pixel_at(image, at + 1, octet) +
-                      y_b * pixel_at(image, at + 2, octet) + (1 << (fixed_bits - 1))) >> fixed_bits, octet);
+        store(to, x,
+              (y_r * pixel_at(image, at, octet) + y_g * pixel_at(image, at + 1, octet) +
+               y_b * pixel_at(image, at + 2, octet) + (1 << (fixed_bits - 1))) >>
+                  fixed_bits,
+              octet);
 }
 
 /* Of one value of a pixel, or of the columns left, here and right of two rows with weights 1 2 1. */
@@ -87,7 +95,7 @@ FOR_BOTH int64_t sum_of(const void *image, size_t here, size_t left, size_t righ
 
 FOR_BOTH void colour_planes(const VideoPlanes *out, const void *image, bool octet)
 {
-    const size_t row  = 3 * (size_t)out->width;
+    const size_t row = 3 * (size_t)out->width;
     const int    bits = out->bits;
     for (int y = 0; y < out->height; y++)
         luma_row(out->at[0] + y * out->stride[0], image, (size_t)y * row, out->width, octet);
@@ -98,7 +106,8 @@ FOR_BOTH void colour_planes(const VideoPlanes *out, const void *image, bool octe
                 const size_t at = (size_t)y * row + 3 * (size_t)x;
                 store(out->at[p] + y * out->stride[p], x,
                       chroma(w, pixel_at(image, at, octet), pixel_at(image, at + 1, octet),
-                             pixel_at(image, at + 2, octet), 0, bits), octet);
+                             pixel_at(image, at + 2, octet), 0, bits),
+                      octet);
             }
         for (int y = 0; out->layout == PIXELS_420 && y < out->height; y += 2)
             for (int x = 0; x < out->width; x += 2) {
@@ -106,7 +115,8 @@ FOR_BOTH void colour_planes(const VideoPlanes *out, const void *image, bool octe
                 store(out->at[p] + y / 2 * out->stride[p], x / 2,
                       chroma(w, sum_of(image, at, left, right, row, octet),
                              sum_of(image, at + 1, left + 1, right + 1, row, octet),
-                             sum_of(image, at + 2, left + 2, right + 2, row, octet), 3, bits), octet);
+                             sum_of(image, at + 2, left + 2, right + 2, row, octet), 3, bits),
+                      octet);
             }
     }
 }
@@ -188,14 +198,15 @@ static bool set_options(AVDictionary **out, const EncoderConfig *c)
     for (int i = 0; i < 3 && options[c->codec][i][0]; i++)
         good = good && av_dict_set(out, options[c->codec][i][0], options[c->codec][i][1], 0) >= 0;
     if (c->codec == VIDEO_FFV1) return good;
-    return good && av_dict_set(out, "udu_sei", "1", 0) >= 0 && av_dict_set(out, "preset", "ultrafast", 0) >= 0 && av_dict_set(out, "tune", "zerolatency", 0) >= 0 &&
-           av_dict_set(out, "forced-idr", "1", 0) >= 0 && av_dict_set(out, "crf", forms[c->codec].quality, 0) >= 0;
+    return good && av_dict_set(out, "udu_sei", "1", 0) >= 0 && av_dict_set(out, "preset", "ultrafast", 0) >= 0 &&
+           av_dict_set(out, "tune", "zerolatency", 0) >= 0 && av_dict_set(out, "forced-idr", "1", 0) >= 0 &&
+           av_dict_set(out, "crf", forms[c->codec].quality, 0) >= 0;
 }
 
 static Status open_context(Encoder *e)
 {
-    const EncoderConfig *c       = &e->config;
-    const AVCodec       *codec   = avcodec_find_encoder_by_name(forms[c->codec].library);
+    const EncoderConfig *c = &e->config;
+    const AVCodec       *codec = avcodec_find_encoder_by_name(forms[c->codec].library);
     AVDictionary        *options = NULL;
     if (!codec) {
         log_error("video: FFmpeg's libraries here have no encoder %s; choose another publish.video_codec",
@@ -204,23 +215,23 @@ static Status open_context(Encoder *e)
     }
     AVCodecContext *x = e->context = avcodec_alloc_context3(codec);
     if (!x) return STATUS_NO_MEMORY;
-    x->width        = c->width;
-    x->height       = c->height;
-    x->pix_fmt      = forms[c->codec].format[e->layout];
-    x->framerate    = av_d2q(c->rate_hz, 1000000);
-    x->time_base    = av_inv_q(x->framerate);
-    x->gop_size     = c->codec == VIDEO_FFV1 ? 1 : 1 << 20;
+    x->width = c->width;
+    x->height = c->height;
+    x->pix_fmt = forms[c->codec].format[e->layout];
+    x->framerate = av_d2q(c->rate_hz, 1000000);
+    x->time_base = av_inv_q(x->framerate);
+    x->gop_size = c->codec == VIDEO_FFV1 ? 1 : 1 << 20;
     x->max_b_frames = 0;
     x->thread_count = c->codec == VIDEO_FFV1 ? ffv1_slices : 1; /* a thread each; the bytes depend on slices alone */
-    x->thread_type  = FF_THREAD_SLICE;
-    x->level        = c->codec == VIDEO_FFV1 ? 3 : FF_LEVEL_UNKNOWN;
-    x->flags        = AV_CODEC_FLAG_GLOBAL_HEADER; /* for .mp4 and .mkv; MPEG-TS uses those in the key frames */
-    x->color_range            = AVCOL_RANGE_JPEG;
-    x->colorspace             = e->layout == PIXELS_RGB ? AVCOL_SPC_RGB : AVCOL_SPC_BT709;
-    x->color_primaries        = AVCOL_PRI_BT709;
-    x->color_trc              = AVCOL_TRC_IEC61966_2_1;
+    x->thread_type = FF_THREAD_SLICE;
+    x->level = c->codec == VIDEO_FFV1 ? 3 : FF_LEVEL_UNKNOWN;
+    x->flags = AV_CODEC_FLAG_GLOBAL_HEADER; /* for .mp4 and .mkv; MPEG-TS uses those in the key frames */
+    x->color_range = AVCOL_RANGE_JPEG;
+    x->colorspace = e->layout == PIXELS_RGB ? AVCOL_SPC_RGB : AVCOL_SPC_BT709;
+    x->color_primaries = AVCOL_PRI_BT709;
+    x->color_trc = AVCOL_TRC_IEC61966_2_1;
     x->chroma_sample_location = e->layout == PIXELS_420 ? AVCHROMA_LOC_LEFT : AVCHROMA_LOC_UNSPECIFIED;
-    const bool good   = set_options(&options, c);
+    const bool good = set_options(&options, c);
     const int  opened = good ? avcodec_open2(x, codec, &options) : AVERROR(ENOMEM);
     av_dict_free(&options);
     if (opened < 0) {
@@ -233,12 +244,12 @@ static Status open_context(Encoder *e)
 
 static Status open_frame(Encoder *e)
 {
-    e->frame  = av_frame_alloc();
+    e->frame = av_frame_alloc();
     e->packet = av_packet_alloc();
     if (!e->frame || !e->packet) return STATUS_NO_MEMORY;
-    e->frame->width       = e->config.width;
-    e->frame->height      = e->config.height;
-    e->frame->format      = e->context->pix_fmt;
+    e->frame->width = e->config.width;
+    e->frame->height = e->config.height;
+    e->frame->format = e->context->pix_fmt;
     e->frame->color_range = e->context->color_range;
     return av_frame_get_buffer(e->frame, 0) == 0 ? STATUS_OK : STATUS_NO_MEMORY;
 }
@@ -252,7 +263,7 @@ Status video_encoder_open(Encoder **out, const EncoderConfig *config)
     video_quiet_libraries();
     e->config = *config;
     e->layout = layout_of(config);
-    status    = open_context(e);
+    status = open_context(e);
     if (status == STATUS_OK) status = open_frame(e);
     if (status == STATUS_OK) *out = e;
     else video_encoder_close(e);
@@ -272,9 +283,9 @@ static const uint8_t identifier[2][16] = {
     {'M', 'I', 'S', 'P', 'm', 'i', 'c', 'r', 'o', 's', 'e', 'c', 't', 'i', 'm', 'e'},
     {0xA8, 0x68, 0x7D, 0xD4, 0xD7, 0x59, 0x37, 0x58, 0xA5, 0xCE, 0xF0, 0x33, 0x8B, 0x65, 0x45, 0xF1}}; /* H.265 */
 
-/* MISB ST 0604: the MISP precision time stamp, user data of an SEI message: an identifier of 16 octets, the status of the
- * clock (0x9F: whether it is locked to a reference is not known; ST 0603), and microseconds, with 0xFF after each two octets,
- * so that no start code appears. */
+/* MISB ST 0604: the MISP precision time stamp, user data of an SEI message: an identifier of 16 octets, the status of
+ * the clock (0x9F: whether it is locked to a reference is not known; ST 0603), and microseconds, with 0xFF after each
+ * two octets, so that no start code appears. */
 static int put_time_stamp(Encoder *e, int64_t unix_us)
 {
     enum { octets = 16 + 1 + 11 };
@@ -314,15 +325,17 @@ Status video_encoder_encode(VideoPacket *out, Encoder *e, const void *image, boo
     int failed = av_frame_make_writable(e->frame);
     if (failed == 0) failed = put_time_stamp(e, unix_us);
     if (failed == 0) {
-        VideoPlanes planes = {.layout = e->layout, .width = e->config.width, .height = e->config.height,
+        VideoPlanes planes = {.layout = e->layout,
+                              .width = e->config.width,
+                              .height = e->config.height,
                               .bits = forms[e->config.codec].bits};
         for (int p = 0; p < 3; p++) {
-            planes.at[p]     = e->frame->data[p];
+            planes.at[p] = e->frame->data[p];
             planes.stride[p] = e->frame->linesize[p];
         }
         video_pixels(&planes, image, e->config.colour);
         e->frame->pict_type = key || e->count == 0 ? AV_PICTURE_TYPE_I : AV_PICTURE_TYPE_NONE;
-        e->frame->pts       = e->count++;
+        e->frame->pts = e->count++;
         av_packet_unref(e->packet);
         failed = avcodec_send_frame(e->context, e->frame);
     }

@@ -29,13 +29,14 @@ typedef struct VideoPacket {
 
 typedef struct Encoder Encoder;
 
-/* STATUS_UNSUPPORTED: the libraries lack the encoder, or it refuses the size; STATUS_IO: they cannot be loaded. Logged. */
+/* STATUS_UNSUPPORTED: the libraries lack the encoder, or it refuses the size; STATUS_IO: they cannot be loaded. Logged.
+ */
 Status video_encoder_open(Encoder **out, const EncoderConfig *config);
 void   video_encoder_close(Encoder *encoder); /* NULL is valid */
 int    video_encoder_bits(VideoCodec codec);  /* of an image's values: 8, 10, 12, 16 */
 /* image: grey, or R G B interleaved; uint8_t for 8 bits, else uint16_t. key: decodable by itself; the first is anyway.
- * unix_us: microseconds of its time since 1970, which H.264 and H.265 carry before the image as MISB ST 0604 says, the same
- * as ST 0601's tag 2; negative: none. STATUS_IO: the encoder failed, logged; open another one. */
+ * unix_us: microseconds of its time since 1970, which H.264 and H.265 carry before the image as MISB ST 0604 says, the
+ * same as ST 0601's tag 2; negative: none. STATUS_IO: the encoder failed, logged; open another one. */
 Status video_encoder_encode(VideoPacket *out, Encoder *encoder, const void *image, bool key, int64_t unix_us);
 
 const EncoderConfig *video_encoder_config(const Encoder *encoder);
@@ -43,9 +44,9 @@ const EncoderConfig *video_encoder_config(const Encoder *encoder);
 struct AVCodecParameters;
 Status video_encoder_parameters(struct AVCodecParameters *out, const Encoder *encoder);
 
-/* One line of the libraries' own messages for each of ours, at most: `pitviper -v` shows them. Called by video_encoder_open
- * and video_transport_open. */
-void   video_quiet_libraries(void);
+/* One line of the libraries' own messages for each of ours, at most: `pitviper -v` shows them. Called by
+ * video_encoder_open and video_transport_open. */
+void video_quiet_libraries(void);
 
 /* ---- FFmpeg's libraries, loaded when a video or stream is first asked for ------------------------ */
 
@@ -54,10 +55,10 @@ extern Library video_library;
 /* ---- images to the planes of a video frame ------------------------------------------------------- */
 
 typedef enum PixelLayout {
-    PIXELS_GREY,   /* luma alone */
-    PIXELS_420,    /* luma, and two planes of half the size; width and height are even */
-    PIXELS_444,    /* three planes of full size */
-    PIXELS_RGB,    /* as the image: interleaved */
+    PIXELS_GREY, /* luma alone */
+    PIXELS_420,  /* luma, and two planes of half the size; width and height are even */
+    PIXELS_444,  /* three planes of full size */
+    PIXELS_RGB,  /* as the image: interleaved */
 } PixelLayout;
 
 typedef struct VideoPlanes {

@@ -6,18 +6,18 @@
 int video_folder_kinds(VideoKind kind[2], const Config *config)
 {
     const bool lossless = video_codec(config->publish.video_codec) == VIDEO_FFV1;
-    kind[0]             = lossless ? VIDEO_MKV : VIDEO_TS;
-    kind[1]             = VIDEO_MP4;
+    kind[0] = lossless ? VIDEO_MKV : VIDEO_TS;
+    kind[1] = VIDEO_MP4;
     return lossless ? 1 : 2;
 }
 
 bool video_path(char out[video_path_size], const Config *config, const char *host_folder, Band band, VideoKind kind)
 {
     static const char *const endings[] = {NULL, NULL, "mp4", "mkv", "ts"};
-    const char              *path      = config->publish.video;
-    const int length = video_kind(path) != VIDEO_FOLDER
-                           ? snprintf(out, video_path_size, "%s", path)
-                           : snprintf(out, video_path_size, "%s/%s%s%s.%s", path, host_folder ? host_folder : "",
+    const char              *path = config->publish.video;
+    const int                length = video_kind(path) != VIDEO_FOLDER
+                                          ? snprintf(out, video_path_size, "%s", path)
+                                          : snprintf(out, video_path_size, "%s/%s%s%s.%s", path, host_folder ? host_folder : "",
                                       host_folder ? "/" : "", band_name(band), endings[kind]);
     if (length < video_path_size) return true;
     log_error("video: the name %.100s... is too long; choose another with --video", path);
@@ -29,7 +29,7 @@ bool video_stream_url(StreamUrl *out, const Config *config, unsigned bands, Band
     const char *why;
     if (!*config->publish.stream || !publish_stream_parse(out, &why, config->publish.stream)) return false;
     const int before = __builtin_popcount(bands & ((1u << band) - 1));
-    out->port        = (uint16_t)(out->port + before * publish_stream_port_step); /* publish_video_check: it fits */
+    out->port = (uint16_t)(out->port + before * publish_stream_port_step); /* publish_video_check: it fits */
     return true;
 }
 
@@ -73,7 +73,7 @@ bool video_earlier(char found[video_path_size], const Config *config, unsigned b
 void video_watch_lines(char *out, size_t out_size, const Config *config, unsigned bands)
 {
     size_t used = 0;
-    out[0]      = 0;
+    out[0] = 0;
     for (int b = 0; b < BAND_COUNT; b++) {
         StreamUrl url;
         char      address[40];
@@ -81,10 +81,10 @@ void video_watch_lines(char *out, size_t out_size, const Config *config, unsigne
         snprintf(address, sizeof address, "%u.%u.%u.%u:%u", url.address[0], url.address[1], url.address[2],
                  url.address[3], url.port);
         const char *colon = strchr(address, ':');
-        const int   n     = snprintf(out + used, out_size - used,
-                                     "  %-8s ffplay -analyzeduration 1500000 -fflags nobuffer -flags low_delay udp://%s"
-                                     "   or   vlc udp://@%s\n", band_name((Band)b), address,
-                                     publish_stream_multicast(&url) ? address : colon);
+        const int   n = snprintf(out + used, out_size - used,
+                                 "  %-8s ffplay -analyzeduration 1500000 -fflags nobuffer -flags low_delay udp://%s"
+                                   "   or   vlc udp://@%s\n",
+                                 band_name((Band)b), address, publish_stream_multicast(&url) ? address : colon);
         if (n < 0 || (size_t)n >= out_size - used) break;
         used += (size_t)n;
     }

@@ -16,7 +16,7 @@ unsigned video_wanted(const Config *config);
 /* FOLDER/[HOST/]BAND.ENDING, or publish.video itself when it names a file. False, logged: too long. */
 bool video_path(char out[video_path_size], const Config *config, const char *host_folder, Band band, VideoKind kind);
 /* The containers of a folder for this codec; returns how many. */
-int  video_folder_kinds(VideoKind kind[2], const Config *config);
+int video_folder_kinds(VideoKind kind[2], const Config *config);
 /* Of one band among those of the run. False: there is no stream. */
 bool video_stream_url(StreamUrl *out, const Config *config, unsigned bands, Band band);
 

@@ -21,8 +21,8 @@ enum { path_size = 4096 };
  * mark. */
 typedef struct VideoFile {
     int     fd;
-    int     error;     /* errno of the last failure */
-    bool    dropping;  /* until the next mark */
+    int     error;                 /* errno of the last failure */
+    bool    dropping;              /* until the next mark */
     int64_t position, end, marked; /* of writes; of the file; at the last mark */
     char    path[path_size];
 } VideoFile;
@@ -32,8 +32,8 @@ static Status video_file_open(VideoFile **out, const char *path)
 {
     VideoFile *f = calloc(1, sizeof *f);
     if (!f) return STATUS_NO_MEMORY;
-    f->fd = snprintf(f->path, sizeof f->path, "%s", path) < (int)sizeof f->path
-                ? output_open(path, 0) : (errno = ENAMETOOLONG, -1);
+    f->fd = snprintf(f->path, sizeof f->path, "%s", path) < (int)sizeof f->path ? output_open(path, 0)
+                                                                                : (errno = ENAMETOOLONG, -1);
     if (f->fd < 0) {
         log_error("video: cannot write %s: %s; choose another name with --video", path, output_reason(errno));
         free(f);
@@ -82,8 +82,8 @@ static bool video_file_seek(VideoFile *f, int64_t position)
 static bool video_file_mark(VideoFile *f)
 {
     const bool whole = !f->dropping;
-    f->dropping      = false;
-    f->marked        = f->end;
+    f->dropping = false;
+    f->marked = f->end;
     return whole;
 }
 
@@ -152,11 +152,14 @@ static void video_udp_close(VideoUdp *u, StreamCounters *sum)
     if (!u) return;
     const StreamCounters *c = &u->counters;
     if (unsent(c) || c->lost)
-        log_info("video: %s: datagrams: sent=%llu refused=%llu no_route=%llu lost=%llu", u->url, (unsigned long long)c->sent,
-                 (unsigned long long)c->refused, (unsigned long long)c->no_route, (unsigned long long)c->lost);
+        log_info("video: %s: datagrams: sent=%llu refused=%llu no_route=%llu lost=%llu", u->url,
+                 (unsigned long long)c->sent, (unsigned long long)c->refused, (unsigned long long)c->no_route,
+                 (unsigned long long)c->lost);
     if (c->sent == 0 && c->no_route)
-        log_warn("video: %s: there was never a route to it, so nothing was sent; check publish.stream and this machine's "
-                 "network (ip route get ADDRESS)", u->url);
+        log_warn(
+            "video: %s: there was never a route to it, so nothing was sent; check publish.stream and this machine's "
+            "network (ip route get ADDRESS)",
+            u->url);
     if (sum) {
         sum->sent += c->sent;
         sum->refused += c->refused;
@@ -169,9 +172,9 @@ static void video_udp_close(VideoUdp *u, StreamCounters *sum)
 
 Status video_udp_open(VideoUdp **out, const StreamUrl *to, const char *interface, int ttl)
 {
-    const bool  group  = publish_stream_multicast(to);
+    const bool  group = publish_stream_multicast(to);
     const char *failed = NULL;
-    VideoUdp   *u      = calloc(1, sizeof *u);
+    VideoUdp   *u = calloc(1, sizeof *u);
     if (!u) return STATUS_NO_MEMORY;
     u->to = (struct sockaddr_in){.sin_family = AF_INET, .sin_port = htons(to->port)};
     memcpy(&u->to.sin_addr, to->address, sizeof to->address);
@@ -187,7 +190,7 @@ Status video_udp_open(VideoUdp **out, const StreamUrl *to, const char *interface
     const int reached = failed ? 0 : connect_to(u);
     if (reached && !is_no_route(reached)) {
         failed = "connect to";
-        errno  = reached;
+        errno = reached;
     }
     if (failed) {
         log_error("video: cannot %s %s: %s", failed, u->url, strerror(errno));
@@ -210,7 +213,7 @@ static void note_refused(VideoUdp *u, int error)
 {
     u->refused_s = wall_clock_s();
     if (!u->away) {
-        u->away           = true;
+        u->away = true;
         u->refused_before = unsent(&u->counters);
         if (error == ECONNREFUSED) log_info("video: %s: no program receives it at present; sending goes on", u->url);
         else log_warn("video: %s: no route to it: %s; sending goes on, for when there is one", u->url, strerror(error));
@@ -266,11 +269,11 @@ static void drop(VideoOutput *o)
 
 static Status open_output(VideoOutput *o, const Encoder *encoder)
 {
-    TransportConfig config = {.container = o->kind, .klv = o->klv, .title = o->title,
-                              .sink = {to_network, NULL, o->udp}};
-    Status          status = STATUS_OK;
+    TransportConfig config = {
+        .container = o->kind, .klv = o->klv, .title = o->title, .sink = {to_network, NULL, o->udp}};
+    Status status = STATUS_OK;
     if (!o->udp) {
-        status      = video_file_open(&o->file, o->path);
+        status = video_file_open(&o->file, o->path);
         config.sink = (TransportSink){to_file, o->kind == VIDEO_TS ? NULL : seek_file, o->file};
     }
     if (status == STATUS_OK) status = video_transport_open(&o->transport, &config, encoder);
@@ -306,7 +309,7 @@ Status video_output_put(VideoOutput *o, const Encoder *encoder, const VideoPacke
         return STATUS_OK;
     }
     if (!o->patient) return put(o, encoder, packet, pts_90k, klv, klv_count);
-    const bool   due    = retry_due(&o->retry);
+    const bool   due = retry_due(&o->retry);
     const Status status = due ? put(o, encoder, packet, pts_90k, klv, klv_count) : STATUS_IO;
     if (!due) o->needs_key = true; /* it lacks a frame */
     retry_done(&o->retry, due, status);
@@ -317,7 +320,7 @@ Status video_output_close(VideoOutput *o)
 {
     Status status = STATUS_OK;
     if (o->transport) {
-        status       = video_transport_close(o->transport, true);
+        status = video_transport_close(o->transport, true);
         o->transport = NULL;
     }
     if (o->file) {

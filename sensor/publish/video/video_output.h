@@ -28,17 +28,17 @@ Status video_udp_open(VideoUdp **out, const StreamUrl *to, const char *interface
  * intervals (consumer.h), beginning with a key frame; otherwise it is an error. A stream never fails. */
 
 typedef struct VideoOutput {
-    VideoKind    kind;
-    KlvMode      klv;
-    bool         patient;
-    VideoUdp    *udp;       /* of a stream, open; NULL: a file */
-    StreamCounters *sent;   /* its counters are added to these at the end; NULL: nowhere */
-    char         path[video_path_size]; /* of a file */
-    char         title[32];
+    VideoKind         kind;
+    KlvMode           klv;
+    bool              patient;
+    VideoUdp         *udp;                   /* of a stream, open; NULL: a file */
+    StreamCounters   *sent;                  /* its counters are added to these at the end; NULL: nowhere */
+    char              path[video_path_size]; /* of a file */
+    char              title[32];
     struct VideoFile *file;
-    Transport   *transport; /* NULL: not yet, or not at present */
-    bool         needs_key; /* nothing can be decoded before one */
-    RetryBackoff retry;
+    Transport        *transport; /* NULL: not yet, or not at present */
+    bool              needs_key; /* nothing can be decoded before one */
+    RetryBackoff      retry;
 } VideoOutput;
 
 /* Whether the next frame must be a key frame for this output. */

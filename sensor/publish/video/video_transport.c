@@ -20,8 +20,8 @@ struct Transport {
     int64_t          turns_90k; /* added to times before 1970: whole turns of 33 bits */
     int64_t          last_90k;
     uint8_t          klv_sequence;
-    bool             failed;    /* of the sink, since it was asked */
-    bool             begun;     /* the header is written */
+    bool             failed; /* of the sink, since it was asked */
+    bool             begun;  /* the header is written */
     uint8_t          cell[sync_header_octets + klv_octets_most + AV_INPUT_BUFFER_PADDING_SIZE];
 };
 
@@ -42,16 +42,16 @@ static int64_t seek_sink(void *user, int64_t offset, int whence)
 static Status sink_status(Transport *t, int result)
 {
     const bool failed = t->failed || result < 0;
-    t->failed         = false;
+    t->failed = false;
     return failed ? STATUS_IO : STATUS_OK;
 }
 
 static Status add_streams(Transport *t, const Encoder *encoder)
 {
     const EncoderConfig *c = video_encoder_config(encoder);
-    t->video               = avformat_new_stream(t->format, NULL);
+    t->video = avformat_new_stream(t->format, NULL);
     if (!t->video || video_encoder_parameters(t->video->codecpar, encoder) != STATUS_OK) return STATUS_NO_MEMORY;
-    t->video->time_base      = (AVRational){1, 90000};
+    t->video->time_base = (AVRational){1, 90000};
     t->video->avg_frame_rate = av_d2q(c->rate_hz, 1000000);
     t->video->codecpar->codec_tag = 0;
     if (t->config.container == VIDEO_MP4 && c->codec == VIDEO_HEVC_12) /* parameter sets out of band: Apple's players */
@@ -59,9 +59,9 @@ static Status add_streams(Transport *t, const Encoder *encoder)
     if (t->config.container != VIDEO_TS || t->config.klv == KLV_NONE) return STATUS_OK;
     t->klv = avformat_new_stream(t->format, NULL);
     if (!t->klv) return STATUS_NO_MEMORY;
-    t->klv->time_base            = (AVRational){1, 90000};
+    t->klv->time_base = (AVRational){1, 90000};
     t->klv->codecpar->codec_type = AVMEDIA_TYPE_DATA;
-    t->klv->codecpar->codec_id   = AV_CODEC_ID_SMPTE_KLV;
+    t->klv->codecpar->codec_id = AV_CODEC_ID_SMPTE_KLV;
     if (t->config.klv == KLV_SYNCHRONOUS) t->klv->codecpar->profile = FF_PROFILE_KLVA_SYNC;
     return STATUS_OK;
 }
@@ -88,16 +88,16 @@ static int write_header(Transport *t)
 Status video_transport_open(Transport **out, const TransportConfig *config, const Encoder *encoder)
 {
     static const char *const names[] = {NULL, NULL, "mp4", "matroska", "mpegts"};
-    const bool               ts      = config->container == VIDEO_TS;
-    const int                octets  = ts ? transport_octets : buffer_octets_file;
-    Transport               *t       = calloc(1, sizeof *t);
-    uint8_t                 *buffer  = av_malloc((size_t)octets);
-    Status                   status  = STATUS_NO_MEMORY;
+    const bool               ts = config->container == VIDEO_TS;
+    const int                octets = ts ? transport_octets : buffer_octets_file;
+    Transport               *t = calloc(1, sizeof *t);
+    uint8_t                 *buffer = av_malloc((size_t)octets);
+    Status                   status = STATUS_NO_MEMORY;
     if (!t || !buffer) goto fail;
     video_quiet_libraries();
-    t->config    = *config;
+    t->config = *config;
     t->first_90k = -1;
-    t->io        = avio_alloc_context(buffer, octets, 1, t, NULL, write_sink, config->sink.seek ? seek_sink : NULL);
+    t->io = avio_alloc_context(buffer, octets, 1, t, NULL, write_sink, config->sink.seek ? seek_sink : NULL);
     if (!t->io) goto fail;
     buffer = NULL;
     if (!config->sink.seek) t->io->seekable = 0;
@@ -107,7 +107,7 @@ Status video_transport_open(Transport **out, const TransportConfig *config, cons
     t->format->pb = t->io;
     t->format->flags |= AVFMT_FLAG_CUSTOM_IO | AVFMT_FLAG_BITEXACT | AVFMT_FLAG_FLUSH_PACKETS;
     t->format->max_delay = 0;
-    status               = add_streams(t, encoder);
+    status = add_streams(t, encoder);
     if (status != STATUS_OK) goto fail;
     const int result = write_header(t);
     if (result < 0) {
@@ -117,7 +117,7 @@ Status video_transport_open(Transport **out, const TransportConfig *config, cons
     }
     avio_flush(t->io);
     t->begun = true;
-    status   = sink_status(t, 0);
+    status = sink_status(t, 0);
     if (status != STATUS_OK) goto fail;
     *out = t;
     return STATUS_OK;
@@ -142,7 +142,7 @@ static int64_t time_of(Transport *t, int64_t pts_90k)
 
 static int write_klv(Transport *t, int64_t at_90k, const uint8_t *klv, size_t count)
 {
-    AVPacket    *p    = t->packet;
+    AVPacket    *p = t->packet;
     const bool   sync = t->config.klv == KLV_SYNCHRONOUS;
     const size_t head = sync ? sync_header_octets : 0;
     if (count > klv_octets_most) return AVERROR(EINVAL);
@@ -152,11 +152,12 @@ static int write_klv(Transport *t, int64_t at_90k, const uint8_t *klv, size_t co
     memcpy(t->cell + head, klv, count);
     t->klv_sequence++;
     av_packet_unref(p);
-    p->data         = t->cell;
-    p->size         = (int)(head + count);
+    p->data = t->cell;
+    p->size = (int)(head + count);
     p->stream_index = t->klv->index;
-    p->flags        = AV_PKT_FLAG_KEY;
-    p->pts = p->dts = sync ? at_90k : AV_NOPTS_VALUE; /* FFmpeg's muxer writes none on stream id 0xBD, as ST 1402 has it */
+    p->flags = AV_PKT_FLAG_KEY;
+    p->pts = p->dts =
+        sync ? at_90k : AV_NOPTS_VALUE; /* FFmpeg's muxer writes none on stream id 0xBD, as ST 1402 has it */
     if (!sync) {
         uint8_t *id = av_packet_new_side_data(p, AV_PKT_DATA_MPEGTS_STREAM_ID, 1);
         if (!id) return AVERROR(ENOMEM);
@@ -165,19 +166,21 @@ static int write_klv(Transport *t, int64_t at_90k, const uint8_t *klv, size_t co
     return av_write_frame(t->format, p);
 }
 
-Status video_transport_put(Transport *t, const VideoPacket *packet, int64_t pts_90k, const uint8_t *klv, size_t klv_count)
+Status video_transport_put(Transport *t, const VideoPacket *packet, int64_t pts_90k, const uint8_t *klv,
+                           size_t klv_count)
 {
     const int64_t at_90k = time_of(t, pts_90k);
-    AVPacket     *p      = t->packet;
+    AVPacket     *p = t->packet;
     int           result = t->klv && klv && klv_count ? write_klv(t, at_90k, klv, klv_count) : 0;
     av_packet_unref(p);
-    p->data         = (uint8_t *)(uintptr_t)packet->bytes; /* read only */
-    p->size         = (int)packet->count;
+    p->data = (uint8_t *)(uintptr_t)packet->bytes; /* read only */
+    p->size = (int)packet->count;
     p->stream_index = t->video->index;
-    p->flags        = packet->key ? AV_PKT_FLAG_KEY : 0;
+    p->flags = packet->key ? AV_PKT_FLAG_KEY : 0;
     p->pts = p->dts = at_90k;
-    p->duration     = t->video->avg_frame_rate.num > 0
-                          ? av_rescale(90000, t->video->avg_frame_rate.den, t->video->avg_frame_rate.num) : 0;
+    p->duration = t->video->avg_frame_rate.num > 0
+                      ? av_rescale(90000, t->video->avg_frame_rate.den, t->video->avg_frame_rate.num)
+                      : 0;
     av_packet_rescale_ts(p, (AVRational){1, 90000}, t->video->time_base);
     if (result >= 0 && packet->key && t->config.container == VIDEO_MKV) result = av_write_frame(t->format, NULL);
     if (result >= 0) result = av_write_frame(t->format, p);

@@ -39,12 +39,12 @@ Status video_transport_open(Transport **out, const TransportConfig *config, cons
 /* One frame at once: when this returns the sink has all of it (MP4 and Matroska: with the next key frame). klv may be
  * NULL, count klv_octets_most at most. pts_90k increases. STATUS_IO: the sink failed; nothing is logged. */
 Status video_transport_put(Transport *transport, const VideoPacket *packet, int64_t pts_90k, const uint8_t *klv,
-                     size_t klv_count);
+                           size_t klv_count);
 /* What the container still keeps goes to the sink. STATUS_IO as above. */
 Status video_transport_flush(Transport *transport);
 /* Ends the file and frees it; finish false: frees it without a further byte. STATUS_IO as above. NULL is valid. */
 Status video_transport_close(Transport *transport, bool finish);
 /* The sink lost bytes that it had reported as written: do not record positions at the end. */
-void   video_transport_forget_positions(Transport *transport);
+void video_transport_forget_positions(Transport *transport);
 
 #endif

@@ -13,24 +13,23 @@ static const Setting keys[] = {
      "scenario of `pitviper exercise`: a name, or a YAML file in the case's folder"},
     {"scenario_set", SETTING_TEXT, AT(scenario_set), 0, 0, NULL, "",
      "settings of the scenario: KEY=VALUE, separated by blanks or lines"},
-    {"log", SETTING_TEXT, AT(log), 0, 0, NULL, "", "recording, in place of a scenario: in the case's folder, or "
+    {"log", SETTING_TEXT, AT(log), 0, 0, NULL, "",
+     "recording, in place of a scenario: in the case's folder, or "
      "${PITVIPER_DATA}/..."},
     {"config", SETTING_TEXT, AT(config), 0, 0, NULL, "",
      "settings of `pitviper replay`, indented below `config: |`; paths in them are relative to the case's folder"},
-    {"config_file", SETTING_TEXT, AT(config_file), 0, 0, NULL, "", "file of settings in the case's folder, in place "
+    {"config_file", SETTING_TEXT, AT(config_file), 0, 0, NULL, "",
+     "file of settings in the case's folder, in place "
      "of config"},
-    {"frames", SETTING_NUMBERS, AT(frames), 0, 999999, NULL, "",
-     "numbers of the frames to compare, as in replay"},
+    {"frames", SETTING_NUMBERS, AT(frames), 0, 999999, NULL, "", "numbers of the frames to compare, as in replay"},
     {"causal", SETTING_BOOL, AT(causal), 0, 1, NULL, "", "replay --causal"},
     {"log_may_be_absent", SETTING_BOOL, AT(log_may_be_absent), 0, 1, NULL, "",
      "a missing log skips the case instead of failing it"},
-    {"timeout_s", SETTING_DOUBLE, AT(timeout_s), 0.1, 86400, NULL, "s",
-     "time limit of each process of the case"},
+    {"timeout_s", SETTING_DOUBLE, AT(timeout_s), 0.1, 86400, NULL, "s", "time limit of each process of the case"},
     {"tolerance.range_rel", SETTING_DOUBLE, AT(tolerance.range_rel), 0, 1, NULL, "", "range, relative"},
     {"tolerance.normal", SETTING_DOUBLE, AT(tolerance.normal), 0, 2, NULL, "", "each component of a normal"},
     {"tolerance.temp_k", SETTING_DOUBLE, AT(tolerance.temp_k), 0, 1000, NULL, "K", "surface temperature"},
-    {"tolerance.optical_rel", SETTING_DOUBLE, AT(tolerance.optical_rel), 0, 10, NULL, "",
-     "optical radiance, relative"},
+    {"tolerance.optical_rel", SETTING_DOUBLE, AT(tolerance.optical_rel), 0, 10, NULL, "", "optical radiance, relative"},
     {"tolerance.optical_w_m2_sr", SETTING_DOUBLE, AT(tolerance.optical_w_m2_sr), 0, 1e4, NULL, "W/(m2 sr)",
      "optical radiance, absolute, in addition"},
     {"tolerance.mwir_k", SETTING_DOUBLE, AT(tolerance.mwir_k), 0, 1000, NULL, "K", "apparent temperature"},
@@ -46,19 +45,19 @@ static const Setting keys[] = {
     {"tolerance.truth", SETTING_DOUBLE, AT(tolerance.truth), 0, 1e6, NULL, "",
      "factor on the tolerances of truth.jsonl"},
 };
-static const SettingTable table = {.module = "regress", .row = keys, .count = sizeof keys / sizeof *keys,
-                                   .all_keys = "`pitviper regress --keys`"};
+static const SettingTable table = {
+    .module = "regress", .row = keys, .count = sizeof keys / sizeof *keys, .all_keys = "`pitviper regress --keys`"};
 
-/* Below any significance for a user of the products, above the rounding of sensor/verify/regress/record_frame.h: a value that
- * crosses from one step to the next is still within. No allowance for threads, ISAs and builds, which give the same
- * bits (tests/system/test_determinism*.sh). */
+/* Below any significance for a user of the products, above the rounding of sensor/verify/regress/record_frame.h: a
+ * value that crosses from one step to the next is still within. No allowance for threads, ISAs and builds, which give
+ * the same bits (tests/system/test_determinism*.sh). */
 Case case_default(void)
 {
     return (Case){
         .timeout_s = 300,
-        .tolerance = {.range_rel = 3e-5, /* 6 cm in 2 km: two steps of the baseline */
-                      .normal = 0.004,   /* 0.2 degree: two steps of the baseline */
-                      .temp_k = 0.05,    /* surface temperature: as in the thermal bands */
+        .tolerance = {.range_rel = 3e-5,   /* 6 cm in 2 km: two steps of the baseline */
+                      .normal = 0.004,     /* 0.2 degree: two steps of the baseline */
+                      .temp_k = 0.05,      /* surface temperature: as in the thermal bands */
                       .optical_rel = 0.01, /* a step of the baseline is 0.8 %; the sun 0.1 degree off is 7 x .share */
                       .optical_w_m2_sr = 1e-3, /* half a step of 8 bits on a screen; a dark night */
                       .mwir_k = 0.05,
@@ -81,16 +80,18 @@ static Status check(const Case *c, const char *path)
     else if (*c->log && *c->scenario) wrong = "log: and scenario: are both given; leave one out";
     else if (!*c->log && c->log_may_be_absent)
         wrong = "log_may_be_absent: applies to a log, and a scenario is given; leave it out";
-    else if (*c->log && *c->scenario_set) wrong = "scenario_set: applies to a scenario, and a log is given; leave it "
-                                                  "out";
+    else if (*c->log && *c->scenario_set)
+        wrong = "scenario_set: applies to a scenario, and a log is given; leave it "
+                "out";
     else if (*c->config && *c->config_file) wrong = "config: and config_file: are both given; leave one out";
     else if (c->frames.count == 0) wrong = "frames: is missing; list the frames to compare, such as [3, 7, 12]";
     else if (c->frames.count > case_frames_max) wrong = "frames: more than 64; a baseline is kept small";
     for (int i = 0; !wrong && i < c->frames.count; i++) {
         if (c->frames.number[i] != floor(c->frames.number[i]))
             wrong = "frames: must be whole numbers, such as [3, 7, 12]";
-        if (i > 0 && !(c->frames.number[i - 1] < c->frames.number[i])) wrong = "frames: must be in ascending order, "
-                                                            "without duplicates";
+        if (i > 0 && !(c->frames.number[i - 1] < c->frames.number[i]))
+            wrong = "frames: must be in ascending order, "
+                    "without duplicates";
     }
     if (!wrong) return STATUS_OK;
     log_error("regress: %s: %s", path, wrong);
@@ -100,7 +101,7 @@ static Status check(const Case *c, const char *path)
 /* The last component of the folder's absolute path. */
 static void name_of(char out[128], const char *folder)
 {
-    char *whole = realpath(folder, NULL);
+    char       *whole = realpath(folder, NULL);
     const char *last = whole ? strrchr(whole, '/') : NULL;
     text_escape(out, 128, last && last[1] ? last + 1 : folder, strnlen(last && last[1] ? last + 1 : folder, 100));
     free(whole);
@@ -108,7 +109,7 @@ static void name_of(char out[128], const char *folder)
 
 Status case_read_file(Case *out, const char *path)
 {
-    Case   read   = *out;
+    Case   read = *out;
     Status status = settings_read(&read, NULL, &table, path);
     if (status == STATUS_OK) status = check(&read, path);
     if (status == STATUS_OK) *out = read;
@@ -146,8 +147,8 @@ bool case_path(char out[case_path_size], char reason[256], const Case *c, const 
         }
         snprintf(variable, sizeof variable, "%.*s", (int)(end - name - 2), name + 2);
         before = getenv(variable);
-        rest   = end + 1;
-        slash  = "";
+        rest = end + 1;
+        slash = "";
         if (!before || !*before) {
             snprintf(reason, 256, "%s is not set; it should name the folder of the recordings", variable);
             return false;
@@ -200,9 +201,10 @@ Status case_relative(char **text, const Case *c)
 
 void case_write_keys(FILE *to)
 {
-    const Case plain = case_default();
+    const Case        plain = case_default();
     static const bool none[sizeof keys / sizeof *keys] = {false};
     fputs("# case.yaml of `pitviper regress`: every key with its default, commented out. purpose, frames, and one of\n"
-          "# scenario and log are required.\n", to);
+          "# scenario and log are required.\n",
+          to);
     settings_write(to, &table, &plain, none);
 }

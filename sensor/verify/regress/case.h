@@ -25,8 +25,8 @@
  *       lwir_k: 0.05
  *
  * record/ holds NNNNNN.exr for each frame, all planes in one (range_m, entity, part, material, temp_k, nx, ny, nz,
- * optical.R ..., mwir.Y, lwir.Y, radar.Y), rounded and coded as sensor/verify/regress/record_frame.h says; NNNNNN.profile.exr, a row
- * of range bins; truth.jsonl as the run wrote it, and run.json without times. */
+ * optical.R ..., mwir.Y, lwir.Y, radar.Y), rounded and coded as sensor/verify/regress/record_frame.h says;
+ * NNNNNN.profile.exr, a row of range bins; truth.jsonl as the run wrote it, and run.json without times. */
 #ifndef SENSOR_VERIFY_REGRESS_CASE_H
 #define SENSOR_VERIFY_REGRESS_CASE_H
 
@@ -36,15 +36,15 @@ enum { case_path_size = 4096, case_frames_max = 64 };
 
 /* The largest accepted differences, and the share of pixels that may be beyond them. */
 typedef struct Tolerance {
-    double range_rel;              /* range: relative */
-    double normal;                 /* each component */
+    double range_rel; /* range: relative */
+    double normal;    /* each component */
     double temp_k;
     double optical_rel, optical_w_m2_sr; /* both added */
-    double mwir_k, lwir_k;         /* apparent temperature */
+    double mwir_k, lwir_k;               /* apparent temperature */
     double radar_db, profile_db;
-    double radar_span_db;          /* power this far below the brightest counts as zero */
-    double share;                  /* of pixels, temperature and radiance */
-    double edge_share;             /* of edge pixels whose ids may differ; only under other libraries or another ISA */
+    double radar_span_db; /* power this far below the brightest counts as zero */
+    double share;         /* of pixels, temperature and radiance */
+    double edge_share;    /* of edge pixels whose ids may differ; only under other libraries or another ISA */
     double truth; /* factor on the tolerances of the fields of truth.jsonl (sensor/verify/regress/verdict_truth.c) */
 } Tolerance;
 
@@ -59,18 +59,18 @@ typedef struct Case {
     Tolerance  tolerance;
 } Case;
 
-Case   case_default(void);
+Case case_default(void);
 /* case.yaml of this folder. Any bytes; on failure logs file, line, key, value, range and what to do. */
 Status case_read(Case *out, const char *folder);
 /* The same for a file outside of a case folder. On failure *out is untouched. */
 Status case_read_file(Case *out, const char *path);
 /* Path of a file that the case names: ${NAME} from the environment, else relative to the folder. False, with the
  * reason, when that variable is not set or the path too long. */
-bool   case_path(char out[case_path_size], char reason[256], const Case *c, const char *name);
+bool case_path(char out[case_path_size], char reason[256], const Case *c, const char *name);
 /* Replaces, in text on the heap, absolute paths in the case's folder by relative ones and those in $PITVIPER_DATA by
  * ${PITVIPER_DATA}/..., so that a baseline is the same wherever it was made. */
 Status case_relative(char **text, const Case *c);
 /* The keys of case.yaml with ranges and meaning: for --help. */
-void   case_write_keys(FILE *to);
+void case_write_keys(FILE *to);
 
 #endif

@@ -21,7 +21,7 @@ bool case_child_add(ChildLine *line, const char *argument)
 {
     if (line->count == child_arguments_max) return false;
     line->argument[line->count++] = argument;
-    line->argument[line->count]   = NULL;
+    line->argument[line->count] = NULL;
     return true;
 }
 
@@ -38,7 +38,7 @@ static char **environment(void)
             out[n++] = environ[i];
     if (out) {
         out[n++] = locale;
-        out[n]   = zone;
+        out[n] = zone;
     }
     return out;
 }
@@ -48,7 +48,7 @@ static int spawn(pid_t *child, const ChildLine *line, const char *out_path, cons
     posix_spawn_file_actions_t files;
     posix_spawnattr_t          how;
     sigset_t                   none, usual;
-    const int                  out   = output_open(out_path, 0);
+    const int                  out = output_open(out_path, 0);
     const int                  error = out >= 0 ? output_open(error_path, 0) : -1;
     int                        failure = error < 0 ? errno : 0;
     char                     **with = failure ? NULL : environment();
@@ -78,7 +78,8 @@ static int spawn(pid_t *child, const ChildLine *line, const char *out_path, cons
     return failure;
 }
 
-Status case_child_run(ChildEnd *end, const ChildLine *line, const char *out_path, const char *error_path, double timeout_s)
+Status case_child_run(ChildEnd *end, const ChildLine *line, const char *out_path, const char *error_path,
+                      double timeout_s)
 {
     const double begun_s = wall_clock_s();
     pid_t        child;
@@ -95,17 +96,18 @@ Status case_child_run(ChildEnd *end, const ChildLine *line, const char *out_path
             return STATUS_IO;
         }
         end->timed_out = wall_clock_s() - begun_s > timeout_s;
-        end->stopped   = stop_asked();
+        end->stopped = stop_asked();
         if (end->timed_out || end->stopped) {
             kill(-child, SIGKILL);
             kill(child, SIGKILL); /* in case it has no process group yet */
-            while (waitpid(child, &state, 0) < 0 && errno == EINTR) {}
+            while (waitpid(child, &state, 0) < 0 && errno == EINTR) {
+            }
             break;
         }
         nanosleep(&(struct timespec){0, 5000000}, NULL);
     }
-    end->signal  = WIFSIGNALED(state) ? WTERMSIG(state) : 0;
-    end->code    = WIFEXITED(state) ? WEXITSTATUS(state) : 0;
+    end->signal = WIFSIGNALED(state) ? WTERMSIG(state) : 0;
+    end->code = WIFEXITED(state) ? WEXITSTATUS(state) : 0;
     end->seconds = wall_clock_s() - begun_s;
     return STATUS_OK;
 }
@@ -118,8 +120,8 @@ static bool plain(const char *text)
 
 void case_child_text(char *out, size_t out_size, const ChildLine *line)
 {
-    char   self[PATH_MAX];
-    size_t n    = 0;
+    char    self[PATH_MAX];
+    size_t  n = 0;
     ssize_t got = readlink("/proc/self/exe", self, sizeof self - 1);
     self[got > 0 ? got : 0] = 0;
     *out = 0;
@@ -140,13 +142,13 @@ void case_child_tail(char *out, size_t out_size, const char *path)
 {
     char  why[file_why_size];
     FILE *file = file_open_stream(why, path);
-    *out       = 0;
+    *out = 0;
     if (!file) return;
     if (fseek(file, 0, SEEK_END) == 0) {
         const long octets = ftell(file), from = octets > (long)out_size - 1 ? octets - (long)out_size + 1 : 0;
         if (octets > 0 && fseek(file, from, SEEK_SET) == 0) {
             const size_t got = fread(out, 1, out_size - 1, file);
-            out[got]         = 0;
+            out[got] = 0;
             for (size_t i = 0; i < got; i++) /* output of libraries may hold any octet */
                 if ((out[i] < ' ' && out[i] != '\n') || out[i] == 0x7f || (unsigned char)out[i] >= 0x80) out[i] = '?';
             const char *line = from > 0 ? strchr(out, '\n') : NULL;

@@ -38,8 +38,8 @@ static Status copy_file(const char *from_folder, const char *to_folder, const ch
 static Status copy_run(const char *from_folder, const char *to_folder, const Case *c)
 {
     static const char *const other[] = {"timings_ms", "threads"};
-    char   path[path_size], *text, *same = NULL;
-    size_t octets;
+    char                     path[path_size], *text, *same = NULL;
+    size_t                   octets;
     snprintf(path, sizeof path, "%.4090s/run.json", from_folder);
     Status status = text_read_file(&text, &octets, "regress", path, file_most);
     if (status != STATUS_OK) return status;
@@ -65,7 +65,7 @@ static bool is_of_record(const char *name)
 static bool move_files(const char *folder, const char *to)
 {
     char from_path[path_size + 300], to_path[path_size + 300];
-    bool ok        = true;
+    bool ok = true;
     DIR *directory = output_list(folder);
     if (!directory) return errno == ENOENT;
     for (struct dirent *entry; (entry = readdir(directory));) {
@@ -151,7 +151,7 @@ static Status write_card(const CaseResult *r, const char *why, const JsonValues 
     for (int i = 0; i < r->c.frames.count; i++) fprintf(card, " %.0f", r->c.frames.number[i]);
     fprintf(card, "\n%s%s", old && *old ? "\n" : "", old ? old : "");
     free(old);
-    const bool   ok     = fclose(card) == 0;
+    const bool   ok = fclose(card) == 0;
     const Status status = ok ? write_file(path, text, octets) : STATUS_NO_MEMORY;
     free(text);
     return status;
@@ -173,7 +173,7 @@ static Status read_run(JsonValues *out, const char *folder)
 static double record_octets(const char *folder)
 {
     char        path[path_size + 300];
-    double      sum       = 0;
+    double      sum = 0;
     struct stat about;
     DIR        *directory = opendir(folder);
     for (struct dirent *entry; directory && (entry = readdir(directory));) {
@@ -225,8 +225,8 @@ void case_update(CaseResult *r, const char *why)
     Status status = read_run(&run, out);
     if (status == STATUS_OK) take_choices(r, &run);
     if (status == STATUS_OK) status = write_products(r, out, fresh, date);
-    if (status == STATUS_OK && (frame_files_folder(record) != STATUS_OK || !move_files(record, NULL) ||
-                                !move_files(fresh, record))) {
+    if (status == STATUS_OK &&
+        (frame_files_folder(record) != STATUS_OK || !move_files(record, NULL) || !move_files(fresh, record))) {
         log_error("regress: cannot write in %s: %s", record, output_reason(errno));
         status = STATUS_IO;
     }
@@ -235,7 +235,7 @@ void case_update(CaseResult *r, const char *why)
     rmdir(fresh);
     json_values_free(&run);
     r->updated = status == STATUS_OK;
-    r->state   = r->updated ? CASE_OK : CASE_BROKEN;
+    r->state = r->updated ? CASE_OK : CASE_BROKEN;
     if (!r->updated) {
         snprintf(r->line, sizeof r->line, "the baseline was not written: %s", status_name(status));
         return;

@@ -18,15 +18,15 @@ static int compare_floats(const void *a, const void *b)
 Scale false_colour_scale(const float *a, const float *b, size_t count)
 {
     float *sorted = malloc(2 * count * sizeof *sorted);
-    size_t n      = 0;
-    Scale  scale  = {0, 1};
+    size_t n = 0;
+    Scale  scale = {0, 1};
     for (size_t i = 0; sorted && i < 2 * count; i++) {
         const float v = i < count ? a[i] : b ? b[i - count] : NAN;
         if (isfinite(v)) sorted[n++] = v;
     }
     if (n > 0) {
         qsort(sorted, n, sizeof *sorted, compare_floats);
-        scale.low  = (double)sorted[(size_t)(0.005 * (double)(n - 1))];
+        scale.low = (double)sorted[(size_t)(0.005 * (double)(n - 1))];
         scale.high = (double)sorted[(size_t)(0.995 * (double)(n - 1))];
         const double least = 1e-6 * fabs(scale.high) + 1e-12;
         if (!(scale.high - scale.low > least)) {
@@ -41,8 +41,8 @@ Scale false_colour_scale(const float *a, const float *b, size_t count)
 Scale false_colour_scale_of_difference(const float *difference, size_t count, double least)
 {
     float *sorted = malloc(count * sizeof *sorted);
-    size_t n      = 0;
-    double most   = least > 0 ? least : 1e-12;
+    size_t n = 0;
+    double most = least > 0 ? least : 1e-12;
     for (size_t i = 0; sorted && i < count; i++)
         if (isfinite(difference[i]) && difference[i] != 0) sorted[n++] = fabsf(difference[i]);
     if (n > 0) {
@@ -57,7 +57,7 @@ Scale false_colour_scale_of_difference(const float *difference, size_t count, do
 static void between(uint8_t out[3], const uint8_t colour[][3], int count, double t)
 {
     const double at = clamp(t, 0, 1) * (count - 1);
-    const int    i  = at >= count - 1 ? count - 2 : (int)at;
+    const int    i = at >= count - 1 ? count - 2 : (int)at;
     for (int k = 0; k < 3; k++) out[k] = (uint8_t)lround(colour[i][k] + (at - i) * (colour[i + 1][k] - colour[i][k]));
 }
 
@@ -112,9 +112,10 @@ bool false_colour_picture(FILE *page, const FalseColour *p, int wanted_width, co
     for (size_t y = 0; y < h; y++)
         for (size_t x = 0; x < w; x++) {
             const size_t from = y / (size_t)times * (size_t)width + x / (size_t)times;
-            uint8_t     *to   = rgb + 3 * (y * w + x);
+            uint8_t     *to = rgb + 3 * (y * w + x);
             if (x % (size_t)times) memcpy(to, to - 3, 3);
-            else if (p->planes == 3) for (int k = 0; k < 3; k++) to[k] = shown(p->plane[k][from], p->scale);
+            else if (p->planes == 3)
+                for (int k = 0; k < 3; k++) to[k] = shown(p->plane[k][from], p->scale);
             else colour_of(to, p->plane[0][from], p->colours, p->scale);
         }
     const bool ok = put_png(page, rgb, (int)w, (int)h, scratch, alt);

@@ -16,14 +16,14 @@ void verdict_compare_numbers(PlaneVerdict *out, float *difference, const float *
 {
     const double   absolute = limits->absolute, relative = limits->relative;
     const uint8_t *ignored = limits->ignored;
-    PlaneVerdict v   = {.column = -1, .row = -1};
-    double       sum = 0;
+    PlaneVerdict   v = {.column = -1, .row = -1};
+    double         sum = 0;
     for (int y = 0; y < height; y++)
         for (int x = 0; x < width; x++) {
             const size_t i = (size_t)y * (size_t)width + (size_t)x;
             if (difference) difference[i] = 0;
             if (ignored && ignored[i]) continue;
-            const double d     = difference_of(expected[i], got[i]);
+            const double d = difference_of(expected[i], got[i]);
             const double limit = isfinite(expected[i]) ? absolute + relative * fabs((double)expected[i]) : absolute;
             if (difference) difference[i] = (float)d;
             v.compared++;
@@ -31,22 +31,22 @@ void verdict_compare_numbers(PlaneVerdict *out, float *difference, const float *
             if (isfinite(d)) sum += d * d;
             else v.unmatched++;
             if (fabs(d) > v.max) {
-                v.max      = fabs(d);
-                v.column   = x;
-                v.row      = y;
+                v.max = fabs(d);
+                v.column = x;
+                v.row = y;
                 v.expected = (double)expected[i];
-                v.got      = (double)got[i];
+                v.got = (double)got[i];
             }
         }
-    v.rms   = v.compared > v.unmatched ? sqrt(sum / (double)(v.compared - v.unmatched)) : 0;
+    v.rms = v.compared > v.unmatched ? sqrt(sum / (double)(v.compared - v.unmatched)) : 0;
     v.share = v.compared ? (double)v.beyond / (double)v.compared : 0;
-    *out    = v;
+    *out = v;
 }
 
-void verdict_compare_ids(PlaneVerdict *out, size_t *edges, const uint32_t *expected, const uint32_t *got, int width, int height,
-                 const uint8_t *allowed)
+void verdict_compare_ids(PlaneVerdict *out, size_t *edges, const uint32_t *expected, const uint32_t *got, int width,
+                         int height, const uint8_t *allowed)
 {
-    PlaneVerdict v       = {.column = -1, .row = -1};
+    PlaneVerdict v = {.column = -1, .row = -1};
     size_t       at_edge = 0, differ = 0;
     for (int y = 0; y < height; y++)
         for (int x = 0; x < width; x++) {
@@ -60,15 +60,15 @@ void verdict_compare_ids(PlaneVerdict *out, size_t *edges, const uint32_t *expec
             }
             v.beyond++;
             if (v.column >= 0) continue;
-            v.max      = 1;
-            v.column   = x;
-            v.row      = y;
+            v.max = 1;
+            v.column = x;
+            v.row = y;
             v.expected = expected[i];
-            v.got      = got[i];
+            v.got = got[i];
         }
-    v.rms   = v.compared ? sqrt((double)differ / (double)v.compared) : 0;
+    v.rms = v.compared ? sqrt((double)differ / (double)v.compared) : 0;
     v.share = v.compared ? (double)v.beyond / (double)v.compared : 0;
-    *out    = v;
+    *out = v;
     if (edges) *edges = at_edge;
 }
 
@@ -98,7 +98,7 @@ void verdict_plane_to_kelvin(float *out, const float *radiance_w_m2_sr, size_t c
     for (size_t i = 0; i < count; i++) {
         const float v = radiance_w_m2_sr[i];
         if (v != last) {
-            last   = v;
+            last = v;
             last_k = !(isfinite(v) && v >= 0) ? NAN
                      : v > 0 ? (float)fmax(apparent_floor_k, planck_band_inverse(low_m, high_m, (double)v))
                              : (float)apparent_floor_k;

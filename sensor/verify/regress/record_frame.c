@@ -31,9 +31,9 @@ static const struct Row {
     [FRAME_LWIR] = {"lwir.Y", "lwir", "Y", false, {11, 0}},
     [FRAME_RADAR] = {"radar.Y", "radar", "Y", false, {7, 0}},
 };
-static const Rounding    profile_rounding          = {7, 0};
+static const Rounding    profile_rounding = {7, 0};
 static const char *const bounce_name[frame_bounces] = {"bounce_1", "bounce_2", "bounce_3"};
-static const char        compression[]              = "zip:9";
+static const char        compression[] = "zip:9";
 
 const char *record_plane_name(RecordPlane plane) { return rows[plane].name; }
 bool        record_plane_is_id(RecordPlane plane) { return rows[plane].is_id; }
@@ -56,7 +56,7 @@ int32_t record_steps(const Rounding *rounding, float value)
         steps = (int32_t)((word + (1u << (dropped - 1))) >> dropped);
     } else {
         const double whole = nearbyint(size / rounding->step);
-        steps              = whole < steps_most ? (int32_t)whole : steps_infinity;
+        steps = whole < steps_most ? (int32_t)whole : steps_infinity;
     }
     return value < 0 ? -steps : steps;
 }
@@ -84,11 +84,11 @@ void record_code_plane(uint32_t *coded, const float *value, int width, int heigh
     for (int y = 0; y < height; y++) {
         uint32_t left = 0;
         for (int x = 0; x < width; x++) {
-            const size_t   i     = (size_t)y * (size_t)width + (size_t)x;
+            const size_t   i = (size_t)y * (size_t)width + (size_t)x;
             const uint32_t steps = (uint32_t)record_steps(rounding, value[i]), change = steps - left;
             const uint32_t zigzag = change << 1 ^ (change >> 31 ? UINT32_MAX : 0);
             coded[i] = zigzag ^ zigzag << 16;
-            left     = steps;
+            left = steps;
         }
     }
 }
@@ -98,7 +98,7 @@ void record_decode_plane(float *value, const uint32_t *coded, int width, int hei
     for (int y = 0; y < height; y++) {
         uint32_t steps = 0;
         for (int x = 0; x < width; x++) {
-            const size_t   i      = (size_t)y * (size_t)width + (size_t)x;
+            const size_t   i = (size_t)y * (size_t)width + (size_t)x;
             const uint32_t zigzag = coded[i] ^ coded[i] << 16;
             steps += zigzag >> 1 ^ (zigzag & 1 ? UINT32_MAX : 0);
             value[i] = record_value(rounding, (int32_t)steps);
@@ -124,7 +124,7 @@ static bool has_channel(const ImageInfo *info, const char *name)
 static Status take_size(RecordFrame *f, const ImageInfo *info, const char *path)
 {
     if (f->width == 0) {
-        f->width  = info->width;
+        f->width = info->width;
         f->height = info->height;
     }
     if (info->width == f->width && info->height == f->height && f->width > 0 && f->width <= frame_size_max &&
@@ -138,7 +138,7 @@ static Status take_size(RecordFrame *f, const ImageInfo *info, const char *path)
 static Status read_material_names(RecordFrame *f, const char *path)
 {
     enum { most = 65536 };
-    char  *text   = malloc(most);
+    char  *text = malloc(most);
     Status status = text ? STATUS_OK : STATUS_NO_MEMORY;
     if (text && image_read_string(text, most, path, "material_names") && *text && strlen(text) < most - 1 &&
         !(f->material_names = strdup(text)))
@@ -177,18 +177,18 @@ static Status read_profile_csv(RecordFrame *f, const char *path)
     Table  table;
     Status status = table_open(&table, path);
     if (status != STATUS_OK) return status;
-    double first = 0, second = 0;
-    int    column[frame_bounces];
+    double    first = 0, second = 0;
+    int       column[frame_bounces];
     const int middle = table_column(&table, "range_m");
-    bool   whole = middle >= 0 && table.rows >= 2 && table.rows <= frame_bins_max;
+    bool      whole = middle >= 0 && table.rows >= 2 && table.rows <= frame_bins_max;
     for (int b = 0; b < frame_bounces; b++) whole &= (column[b] = table_column(&table, bounce_name[b])) >= 0;
     if (!whole) status = STATUS_BAD_VALUE;
     if (whole) {
         f->bins = table.rows;
-        status  = table_number(&first, &table, 0, middle, -1e9, 1e9);
+        status = table_number(&first, &table, 0, middle, -1e9, 1e9);
         if (status == STATUS_OK) status = table_number(&second, &table, 1, middle, -1e9, 1e9);
         f->near_m = first;
-        f->bin_m  = second - first;
+        f->bin_m = second - first;
     }
     for (int b = 0; b < frame_bounces && status == STATUS_OK; b++) {
         f->profile[b] = malloc((size_t)f->bins * sizeof(float));
@@ -276,9 +276,9 @@ Status record_frame_from_record(RecordFrame *out, const char *folder, const Reco
     if (status == STATUS_OK) status = take_size(&f, &info, path);
     for (int p = 0; p < FRAME_PLANES && status == STATUS_OK; p++)
         if (has_channel(&info, rows[p].name))
-            status = rows[p].is_id ? read_plane(&f, p, path, rows[p].name)
-                                   : read_coded(&f.number_plane[p], path, rows[p].name, f.width, f.height,
-                                                &rows[p].rounding);
+            status = rows[p].is_id
+                         ? read_plane(&f, p, path, rows[p].name)
+                         : read_coded(&f.number_plane[p], path, rows[p].name, f.width, f.height, &rows[p].rounding);
     if (status == STATUS_OK && !image_read_string(f.date, sizeof f.date, path, "DateTime")) *f.date = 0;
     if (status == STATUS_OK) status = read_material_names(&f, path);
     snprintf(path, sizeof path, "%s/%06d.profile.exr", folder, like->number);
@@ -297,7 +297,7 @@ Status record_frame_write(const char *folder, const RecordFrame *f)
     char         path[path_size];
     int          planes = 0;
     const size_t count = (size_t)f->width * (size_t)f->height, bins = (size_t)f->bins;
-    const char  *date  = *f->date ? f->date : NULL;
+    const char  *date = *f->date ? f->date : NULL;
     uint32_t    *coded = malloc((FRAME_PLANES * count + frame_bounces * bins) * sizeof *coded);
     if (!coded) return STATUS_NO_MEMORY;
     for (int p = 0; p < FRAME_PLANES; p++) {
@@ -306,7 +306,7 @@ Status record_frame_write(const char *folder, const RecordFrame *f)
         if (f->number_plane[p]) plane[planes++] = plane_u32(rows[p].name, f->width, f->height, to);
         if (f->id_plane[p]) plane[planes++] = plane_u32(rows[p].name, f->width, f->height, f->id_plane[p]);
     }
-    const ImageAttribute number  = image_int("frame", f->number);
+    const ImageAttribute number = image_int("frame", f->number);
     const ImageAttribute named[] = {number, image_string("material_names", f->material_names ? f->material_names : "")};
     snprintf(path, sizeof path, "%s/%06d.exr", folder, f->number);
     Status status = image_write_exr_as(path, compression, plane, planes, date, named, f->material_names ? 2 : 1);
@@ -344,7 +344,8 @@ Status record_frame_rename_materials(RecordFrame *frame, const RecordFrame *like
 {
     uint32_t *id = frame->id_plane[FRAME_MATERIAL], count, beyond, most;
     if (!id || !frame->material_names || !like->material_names ||
-        strcmp(frame->material_names, like->material_names) == 0) return STATUS_OK;
+        strcmp(frame->material_names, like->material_names) == 0)
+        return STATUS_OK;
     number_of(&count, frame->material_names, "", 0);
     uint32_t *map = calloc((size_t)count + 1, sizeof *map), k = 1;
     if (!map) return STATUS_NO_MEMORY;

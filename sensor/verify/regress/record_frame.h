@@ -20,8 +20,21 @@
 #include "pitviper.h"
 
 typedef enum RecordPlane {
-    FRAME_RANGE, FRAME_ENTITY, FRAME_PART, FRAME_MATERIAL, FRAME_TEMP, FRAME_NX, FRAME_NY, FRAME_NZ,
-    FRAME_OPTICAL_R, FRAME_OPTICAL_G, FRAME_OPTICAL_B, FRAME_OPTICAL_Y, FRAME_MWIR, FRAME_LWIR, FRAME_RADAR,
+    FRAME_RANGE,
+    FRAME_ENTITY,
+    FRAME_PART,
+    FRAME_MATERIAL,
+    FRAME_TEMP,
+    FRAME_NX,
+    FRAME_NY,
+    FRAME_NZ,
+    FRAME_OPTICAL_R,
+    FRAME_OPTICAL_G,
+    FRAME_OPTICAL_B,
+    FRAME_OPTICAL_Y,
+    FRAME_MWIR,
+    FRAME_LWIR,
+    FRAME_RADAR,
     FRAME_PLANES
 } RecordPlane;
 
@@ -65,7 +78,7 @@ typedef struct Rounding {
 int32_t record_steps(const Rounding *rounding, float value);
 float   record_value(const Rounding *rounding, int32_t steps);
 /* Differences to the left neighbour, as stored in the file; and the inverse. Must not alias. */
-void    record_code_plane(uint32_t *coded, const float *value, int width, int height, const Rounding *rounding);
-void    record_decode_plane(float *value, const uint32_t *coded, int width, int height, const Rounding *rounding);
+void record_code_plane(uint32_t *coded, const float *value, int width, int height, const Rounding *rounding);
+void record_decode_plane(float *value, const uint32_t *coded, int width, int height, const Rounding *rounding);
 
 #endif

@@ -66,13 +66,13 @@ typedef struct Options {
 } Options;
 
 typedef struct Suite {
-    Options          o;
-    CaseResult     **result;
-    int              count, done, printed;
-    CaseHow          how;
-    bool            *ended;
-    double           begun_s;
-    pthread_mutex_t  lock;
+    Options         o;
+    CaseResult    **result;
+    int             count, done, printed;
+    CaseHow         how;
+    bool           *ended;
+    double          begun_s;
+    pthread_mutex_t lock;
 } Suite;
 
 /* ---- command line ----------------------------------------------------------------------------- */
@@ -97,20 +97,30 @@ static int parse(Options *o, int argc, char **argv)
 {
     enum { UPDATE = 256, WHY, JUNIT, REPORT, WORK, JOBS, THREADS, ISA, KEYS, ALLOW, HELP };
     static const struct option options[] = {
-        {"update", 0, NULL, UPDATE}, {"why", 1, NULL, WHY}, {"junit", 1, NULL, JUNIT}, {"report", 1, NULL, REPORT},
-        {"work", 1, NULL, WORK}, {"jobs", 1, NULL, JOBS}, {"threads", 1, NULL, THREADS}, {"isa", 1, NULL, ISA},
-        {"keys", 0, NULL, KEYS}, {"allow-missing", 0, NULL, ALLOW}, {"help", 0, NULL, HELP}, {NULL, 0, NULL, 0}};
+        {"update", 0, NULL, UPDATE},       {"why", 1, NULL, WHY},   {"junit", 1, NULL, JUNIT},
+        {"report", 1, NULL, REPORT},       {"work", 1, NULL, WORK}, {"jobs", 1, NULL, JOBS},
+        {"threads", 1, NULL, THREADS},     {"isa", 1, NULL, ISA},   {"keys", 0, NULL, KEYS},
+        {"allow-missing", 0, NULL, ALLOW}, {"help", 0, NULL, HELP}, {NULL, 0, NULL, 0}};
     optind = 0;
     for (int option; (option = command_line_option(argc, argv, "", options)) != -1;) {
         switch (option) {
-        case UPDATE: o->update = true; break;
-        case WHY: o->why = optarg; break;
-        case JUNIT: o->junit = optarg; break;
-        case REPORT: o->report = optarg; break;
-        case WORK: o->work = optarg; break;
+        case UPDATE:
+            o->update = true;
+            break;
+        case WHY:
+            o->why = optarg;
+            break;
+        case JUNIT:
+            o->junit = optarg;
+            break;
+        case REPORT:
+            o->report = optarg;
+            break;
+        case WORK:
+            o->work = optarg;
+            break;
         case JOBS:
-            if (!parse_count(&o->jobs, optarg))
-                return refuse("--jobs: '%s' is not a whole number in 1 .. 256", optarg);
+            if (!parse_count(&o->jobs, optarg)) return refuse("--jobs: '%s' is not a whole number in 1 .. 256", optarg);
             break;
         case THREADS:
             if (!parse_count(&o->threads, optarg))
@@ -121,16 +131,22 @@ static int parse(Options *o, int argc, char **argv)
                 return refuse("--isa: '%s' is not avx2, sse4.2 or avx512", optarg);
             o->isa = optarg;
             break;
-        case ALLOW: o->allow_missing = true; break;
-        case KEYS: case_write_keys(stdout); return 1;
-        case HELP: fputs(help, stdout); return 1;
-        default: return 1 + 2; /* reported by command_line_option */
+        case ALLOW:
+            o->allow_missing = true;
+            break;
+        case KEYS:
+            case_write_keys(stdout);
+            return 1;
+        case HELP:
+            fputs(help, stdout);
+            return 1;
+        default:
+            return 1 + 2; /* reported by command_line_option */
         }
     }
     if (optind == argc) return refuse("no CASE is named: usage: pitviper regress CASE ... [options]%s", "");
     if (o->update && (!o->why || strspn(o->why, " \t\r\n") == strlen(o->why)))
-        return refuse("--update needs --why TEXT: %s",
-                      "one sentence why the baseline changes; card.md keeps it");
+        return refuse("--update needs --why TEXT: %s", "one sentence why the baseline changes; card.md keeps it");
     if (o->why && !o->update) return refuse("--why needs --update; %s", "give both, or neither");
     if (o->update && (o->junit || o->report))
         return refuse("--update makes no comparison, so --junit and --report do not apply; %s",
@@ -168,7 +184,7 @@ static bool add_case(Suite *s, const char *folder)
     char *real = realpath(folder, NULL);
     for (int i = 0; i < s->count; i++) {
         char      *other = realpath(s->result[i]->c.folder, NULL);
-        const bool same  = real && other && strcmp(real, other) == 0;
+        const bool same = real && other && strcmp(real, other) == 0;
         free(other);
         if (!same) continue;
         log_error("regress: %s is given twice", folder);
@@ -193,8 +209,8 @@ static bool add_argument(Suite *s, const char *argument)
     struct dirent **entry;
     char            path[case_path_size];
     char           *folder = strdup(argument);
-    bool            ok     = folder != NULL;
-    int             found  = 0;
+    bool            ok = folder != NULL;
+    int             found = 0;
     for (size_t n = ok ? strlen(folder) : 0; n > 1 && folder[n - 1] == '/'; n--) folder[n - 1] = 0;
     const int entries = ok && !is_case(folder) ? scandir(folder, &entry, NULL, alphasort) : -1;
     for (int i = 0; i < entries; i++) {
@@ -233,9 +249,11 @@ static void print_line(const CaseResult *r)
 {
     if (r->state == CASE_FAILED) print_lines(r, "changed: ", r->verdict.remarks);
     if (r->updated) print_lines(r, "chosen: ", r->chosen);
-    text_print(stdout, "%-24s %s%s%s", r->c.name, r->updated ? "updated" : case_state_name(r->state), *r->line ? ": "
-                       "" : "",
-           r->line);
+    text_print(stdout, "%-24s %s%s%s", r->c.name, r->updated ? "updated" : case_state_name(r->state),
+               *r->line ? ": "
+                          ""
+                        : "",
+               r->line);
     if (r->state != CASE_SKIPPED && r->state != CASE_NO_RECORD) printf("  (%.1f s)", r->seconds);
     putchar('\n');
 }
@@ -304,10 +322,12 @@ static bool run_all(Suite *s)
 {
     Pool     *pool;
     const int processors = thread_processors();
-    int       jobs       = s->o.jobs ? s->o.jobs : processors;
+    int       jobs = s->o.jobs ? s->o.jobs : processors;
     if (jobs > s->count) jobs = s->count;
     const int left = processors / jobs > 1 ? processors / jobs : 1;
-    s->how = (CaseHow){.threads = s->o.threads ? s->o.threads : left, .isa = s->o.isa, .update = s->o.update,
+    s->how = (CaseHow){.threads = s->o.threads ? s->o.threads : left,
+                       .isa = s->o.isa,
+                       .update = s->o.update,
                        .allow_missing = s->o.allow_missing,
                        .why = s->o.why};
     s->begun_s = wall_clock_s();
@@ -344,7 +364,7 @@ int regress_command(int argc, char **argv)
     thread_flush_denormals();
     stop_by_signals();
     s.result = calloc(cases_max, sizeof *s.result);
-    s.ended  = calloc(cases_max, sizeof *s.ended);
+    s.ended = calloc(cases_max, sizeof *s.ended);
     if (!s.result || !s.ended || !open_work(&s, own)) goto done;
     for (int i = optind; i < argc; i++)
         if (!add_argument(&s, argv[i])) {
@@ -353,13 +373,18 @@ int regress_command(int argc, char **argv)
         }
     if (!can_report(&s.o) || !run_all(&s)) goto done;
     failed = summary(&s);
-    code   = !failed ? 0 : stop_asked() ? stop_exit_code() : 1;
-    if (s.o.junit && regress_junit_write(s.o.junit, (const CaseResult *const *)s.result, s.count) != STATUS_OK) code = 1;
-    if (s.o.report && regress_report_write(s.o.report, (const CaseResult *const *)s.result, s.count) != STATUS_OK) code = 1;
+    code = !failed ? 0 : stop_asked() ? stop_exit_code() : 1;
+    if (s.o.junit && regress_junit_write(s.o.junit, (const CaseResult *const *)s.result, s.count) != STATUS_OK)
+        code = 1;
+    if (s.o.report && regress_report_write(s.o.report, (const CaseResult *const *)s.result, s.count) != STATUS_OK)
+        code = 1;
     for (int i = 0; i < s.count && *own; i++)
         if (s.result[i]->state == CASE_OK || s.result[i]->state == CASE_SKIPPED) remove_made(s.result[i]->work);
-    if (failed && *own && access(own, F_OK) == 0 && rmdir(own) != 0) text_print(stdout, "the output of the failed "
-                                                            "cases is kept in %s\n", own);
+    if (failed && *own && access(own, F_OK) == 0 && rmdir(own) != 0)
+        text_print(stdout,
+                   "the output of the failed "
+                   "cases is kept in %s\n",
+                   own);
 
 done:
     if (!failed && s.o.work && *own) remove_made(own);

@@ -9,10 +9,10 @@
 
 typedef enum CaseState {
     CASE_OK,
-    CASE_FAILED,   /* beyond tolerance of its baseline */
-    CASE_BROKEN,   /* could not be run, or read */
+    CASE_FAILED, /* beyond tolerance of its baseline */
+    CASE_BROKEN, /* could not be run, or read */
     CASE_NO_RECORD,
-    CASE_SKIPPED,  /* its log is missing, which is allowed */
+    CASE_SKIPPED, /* its log is missing, which is allowed */
     CASE_STATES
 } CaseState;
 
@@ -20,20 +20,20 @@ typedef struct CaseResult {
     Case      c;
     CaseState state;
     bool      compared, updated;
-    char      line[700];         /* printed after the name */
-    char      chosen[8192];      /* of an update: lines with host, aim and other automatic choices */
+    char      line[700];    /* printed after the name */
+    char      chosen[8192]; /* of an update: lines with host, aim and other automatic choices */
     double    seconds;
     Verdict   verdict;
     char      work[case_path_size]; /* work folder; out/ holds the products of replay */
-    char      command[16384];    /* lines: the commands that reproduce it */
-    char      said[8192];        /* last lines of its processes, and log messages about it */
+    char      command[16384];       /* lines: the commands that reproduce it */
+    char      said[8192];           /* last lines of its processes, and log messages about it */
 } CaseResult;
 
 /* ---- one case, from its folder to a verdict (run_case.c) ----------------------------------------- */
 
 typedef struct CaseHow {
-    int         threads;         /* of a child */
-    const char *isa;             /* of the ray tracer; NULL: the default of replay */
+    int         threads;               /* of a child */
+    const char *isa;                   /* of the ray tracer; NULL: the default of replay */
     bool        update, allow_missing; /* allow_missing: of logs */
     const char *why;
 } CaseHow;
@@ -88,7 +88,8 @@ typedef struct FalseColour {
 } FalseColour;
 
 /* Into the page, as <img>. scratch: a file that may be written. False, and nothing written, when it cannot be made. */
-bool false_colour_picture(FILE *page, const FalseColour *picture, int wanted_width, const char *scratch, const char *alt);
+bool false_colour_picture(FILE *page, const FalseColour *picture, int wanted_width, const char *scratch,
+                          const char *alt);
 /* A bar of the colours with the numbers at its ends. */
 bool false_colour_legend(FILE *page, Colours colours, Scale scale, const char *unit, const char *scratch);
 
@@ -102,20 +103,21 @@ typedef struct ChildLine {
 } ChildLine;
 
 typedef struct ChildEnd {
-    bool   timed_out, stopped;  /* ended by this process: after timeout_s; on a signal to stop */
-    int    signal, code;        /* signal 0: it exited with this code */
+    bool   timed_out, stopped; /* ended by this process: after timeout_s; on a signal to stop */
+    int    signal, code;       /* signal 0: it exited with this code */
     double seconds;
 } ChildEnd;
 
 /* False when there are too many. */
-bool   case_child_add(ChildLine *line, const char *argument);
+bool case_child_add(ChildLine *line, const char *argument);
 /* Runs it to its end, in the environment of this process but with LC_ALL=C and TZ=UTC, standard input empty, its
  * output in two files. In a process group of its own, which is ended as a whole. STATUS_IO, logged, when it cannot be
  * started. */
-Status case_child_run(ChildEnd *end, const ChildLine *line, const char *out_path, const char *error_path, double timeout_s);
+Status case_child_run(ChildEnd *end, const ChildLine *line, const char *out_path, const char *error_path,
+                      double timeout_s);
 /* The command line, quoted for a shell. */
-void   case_child_text(char *out, size_t out_size, const ChildLine *line);
+void case_child_text(char *out, size_t out_size, const ChildLine *line);
 /* The last lines of a file, that many octets at most; "" when it cannot be read. */
-void   case_child_tail(char *out, size_t out_size, const char *path);
+void case_child_tail(char *out, size_t out_size, const char *path);
 
 #endif

@@ -74,20 +74,24 @@ static void put_facts(FILE *page, const ChannelResult *found, int channel)
         html_text(page, " Rms %.3g%s, largest difference %s%.3g%s", v->rms, unit,
                   at_floor(channel, found) ? "more than " : "", v->max, unit);
     else
-        html_text(page, " Rms %.3g%s; in %zu pixels only one of the two is finite, the "
-                        "first", v->rms, unit, v->unmatched);
+        html_text(page,
+                  " Rms %.3g%s; in %zu pixels only one of the two is finite, the "
+                  "first",
+                  v->rms, unit, v->unmatched);
     if (found->picture) html_text(page, " at column %d, row %d", v->column, v->row);
     else html_text(page, " in bin %d of bounce %d", v->column, found->bounce + 1);
     if (ids) snprintf(was, sizeof was, "%.0f", v->expected), snprintf(is, sizeof is, "%.0f", v->got);
-    else verdict_channel_value(was, (Channel)channel, v->expected, 6), verdict_channel_value(is, (Channel)channel, v->got, 6);
+    else
+        verdict_channel_value(was, (Channel)channel, v->expected, 6),
+            verdict_channel_value(is, (Channel)channel, v->got, 6);
     html_text(page, ": expected %s, actual %s.", was, is);
 }
 
-static void put_figure(FILE *page, const FalseColour *picture, const char *scratch, const char *unit, const char *caption)
+static void put_figure(FILE *page, const FalseColour *picture, const char *scratch, const char *unit,
+                       const char *caption)
 {
     fputs("<figure>", page);
-    if (!false_colour_picture(page, picture, shown_width, scratch, caption))
-        fputs("(image could not be made)", page);
+    if (!false_colour_picture(page, picture, shown_width, scratch, caption)) fputs("(image could not be made)", page);
     fputs("<figcaption><b>", page);
     html_text(page, "%s", caption);
     fputs("</b><br>", page);
@@ -115,19 +119,20 @@ static void put_pictures(FILE *page, const CaseResult *r, const ChannelResult *f
     snprintf(is, sizeof is, "actual: %s, frame %d", record_plane_name(found->plane), found->frame);
     scratch_file(scratch, r);
     if (!verdict_channel_planes(&p, found, expected, got, &r->c.tolerance)) return;
-    const size_t  count   = (size_t)p.width * (size_t)p.height;
-    const bool    ids     = record_plane_is_id(found->plane);
+    const size_t  count = (size_t)p.width * (size_t)p.height;
+    const bool    ids = record_plane_is_id(found->plane);
     const Colours colours = ids ? COLOURS_IDS : COLOURS_HEAT;
-    const Scale   scale   = false_colour_scale(p.expected, p.got, count);
-    const Scale   change  = false_colour_scale_of_difference(p.difference, count, found->limit);
-    const char   *unit    = ids ? NULL : found->unit;
+    const Scale   scale = false_colour_scale(p.expected, p.got, count);
+    const Scale   change = false_colour_scale_of_difference(p.difference, count, found->limit);
+    const char   *unit = ids ? NULL : found->unit;
     put_figure(page, &(FalseColour){{p.expected}, 1, p.width, p.height, colours, scale}, scratch, unit, was);
     put_figure(page, &(FalseColour){{p.got}, 1, p.width, p.height, colours, scale}, scratch, unit, is);
     if (!ids)
         put_figure(page, &(FalseColour){{p.difference}, 1, p.width, p.height, COLOURS_SIGNED, change}, scratch, unit,
                    "actual - expected");
     mark_beyond(p.got, &p, found);
-    put_figure(page, &(FalseColour){{p.got}, 1, p.width, p.height, COLOURS_HEAT, {0, 1}}, scratch, NULL, "beyond tolerance");
+    put_figure(page, &(FalseColour){{p.got}, 1, p.width, p.height, COLOURS_HEAT, {0, 1}}, scratch, NULL,
+               "beyond tolerance");
     if (!ids) fputs("<p class=\"dim\">Values beyond the ends of a scale are clipped. Violet: not finite.</p>\n", page);
     free(p.expected);
     free(p.got);
@@ -147,7 +152,7 @@ static void put_profile(FILE *page, const CaseResult *r, const ChannelResult *fo
 {
     const int    bins = got->bins, b = found->bounce;
     const double span_db = r->c.tolerance.radar_span_db;
-    float       *db   = bins > 0 && expected->bins == bins ? malloc(2 * (size_t)bins * sizeof *db) : NULL;
+    float       *db = bins > 0 && expected->bins == bins ? malloc(2 * (size_t)bins * sizeof *db) : NULL;
     double       full = 0;
     if (!db) return;
     for (int k = 0; k < frame_bounces; k++)
@@ -179,7 +184,8 @@ static void put_channel(FILE *page, const CaseResult *r, int channel, bool open)
     const bool           plane = found->picture || channel == CHANNEL_PROFILE;
     RecordFrame          expected = {0}, got = {0};
     fprintf(page, "<details%s><summary><b>", open ? " open" : "");
-    html_text(page, "%s%s", verdict_channel_name((Channel)channel), channel == r->verdict.first ? ": the probable cause" : "");
+    html_text(page, "%s%s", verdict_channel_name((Channel)channel),
+              channel == r->verdict.first ? ": the probable cause" : "");
     fputs("</b> <span class=\"dim\">", page);
     html_text(page, "%s", verdict_channel_about((Channel)channel));
     fputs("</span></summary>\n<p>", page);
@@ -200,7 +206,8 @@ static void put_channel(FILE *page, const CaseResult *r, int channel, bool open)
 static void put_numbers(FILE *page, const CaseResult *r)
 {
     fputs("<table><tr><th>channel</th><th>verdict</th><th class=\"n\">beyond tolerance</th><th class=\"n\">allowed</th>"
-          "<th>tolerance</th><th class=\"n\">largest difference</th><th>where: frame (column, row)</th></tr>\n", page);
+          "<th>tolerance</th><th class=\"n\">largest difference</th><th>where: frame (column, row)</th></tr>\n",
+          page);
     for (int k = 0; k < CHANNEL_COUNT; k++) {
         const ChannelResult *c = &r->verdict.channel[k];
         const PlaneVerdict  *v = &c->verdict;
@@ -208,8 +215,8 @@ static void put_numbers(FILE *page, const CaseResult *r)
         if (!c->there) continue;
         fputs("<tr><td title=\"", page);
         html_text(page, "%s", verdict_channel_about((Channel)k));
-        fprintf(page, "\">%s</td><td class=\"%s\">%s</td>", verdict_channel_name((Channel)k), c->failed ? "bad" : "good",
-                c->failed ? "failed" : "ok");
+        fprintf(page, "\">%s</td><td class=\"%s\">%s</td>", verdict_channel_name((Channel)k),
+                c->failed ? "bad" : "good", c->failed ? "failed" : "ok");
         if ((c->picture || k == CHANNEL_PROFILE) && v->compared > 0) {
             tolerance_text(tolerance, k, c);
             fprintf(page, "<td class=\"n\">%zu of %zu</td><td class=\"n\">%.0f</td><td>", v->beyond, v->compared,
@@ -271,17 +278,17 @@ static void put_thumbnails(FILE *page, const CaseResult *r)
 {
     static const RecordPlane band[] = {FRAME_OPTICAL_R, FRAME_OPTICAL_Y, FRAME_MWIR, FRAME_LWIR, FRAME_RADAR};
     static const char *const name[] = {"optical", "optical", "mwir, W/(m2 sr)", "lwir, W/(m2 sr)", "radar, dB"};
-    char        out[path_size], scratch[path_size];
-    RecordFrame f = {0};
+    char                     out[path_size], scratch[path_size];
+    RecordFrame              f = {0};
     out_folder(out, r);
     scratch_file(scratch, r);
     if (record_frame_from_run(&f, out, (int)r->c.frames.number[0]) != STATUS_OK) return;
     const size_t count = (size_t)f.width * (size_t)f.height;
-    float       *db    = malloc(count * sizeof *db);
+    float       *db = malloc(count * sizeof *db);
     for (size_t i = 0; i < sizeof band / sizeof *band && db; i++) {
         const float *plane[3] = {f.number_plane[band[i]], f.number_plane[FRAME_OPTICAL_G],
                                  f.number_plane[FRAME_OPTICAL_B]};
-        const bool   rgb      = band[i] == FRAME_OPTICAL_R && plane[1] && plane[2];
+        const bool   rgb = band[i] == FRAME_OPTICAL_R && plane[1] && plane[2];
         if (!plane[0]) continue;
         if (band[i] == FRAME_RADAR) {
             double full = 0;
@@ -292,8 +299,9 @@ static void put_thumbnails(FILE *page, const CaseResult *r)
         Scale scale = false_colour_scale(plane[0], NULL, count);
         if (rgb) scale.low = 0;
         fputs("<figure>", page);
-        false_colour_picture(page, &(FalseColour){{plane[0], plane[1], plane[2]}, rgb ? 3 : 1, f.width, f.height, COLOURS_HEAT,
-                                                  scale}, thumbnail_width, scratch, name[i]);
+        false_colour_picture(
+            page, &(FalseColour){{plane[0], plane[1], plane[2]}, rgb ? 3 : 1, f.width, f.height, COLOURS_HEAT, scale},
+            thumbnail_width, scratch, name[i]);
         fputs("<figcaption>", page);
         if (rgb || band[i] == FRAME_OPTICAL_Y) html_text(page, "%s", name[i]);
         else html_text(page, "%s: %.4g .. %.4g", name[i], scale.low, scale.high);
@@ -335,8 +343,7 @@ static void put_summary(FILE *page, const CaseResult *const *result, int count)
         skipped += result[i]->state == CASE_SKIPPED;
     }
     fprintf(page,
-            "<p>pitviper " PITVIPER_VERSION
-            ": %d case%s, <span class=\"%s\">%d failed</span>, %d skipped. Each case "
+            "<p>pitviper " PITVIPER_VERSION ": %d case%s, <span class=\"%s\">%d failed</span>, %d skipped. Each case "
             "re-renders a recorded exercise and compares it with its approved baseline. The first failed channel along "
             "the data path is named: it is the probable cause of those after it.</p>\n",
             count, count == 1 ? "" : "s", failed ? "bad" : "good", failed, skipped);

@@ -39,7 +39,7 @@ void run_case_log(void *user, LogLevel level, const char *line)
 /* The last error in the output of the processes. */
 static void last_error(char *out, size_t out_size, const char *said)
 {
-    const char *found = NULL;
+    const char       *found = NULL;
     const char *const head = log_head(LOG_ERROR);
     for (const char *at = said; (at = strstr(at, head)); at++)
         if (at == said || at[-1] == '\n') found = at + strlen(head);
@@ -80,8 +80,7 @@ static bool run_child(CaseResult *r, const ChildLine *line, const char *name)
         return end_case(r, CASE_BROKEN,
                         "`pitviper %s` was ended after %g s (timeout_s); it hangs, or the case needs more time", name,
                         r->c.timeout_s);
-    if (end.signal)
-        return end_case(r, CASE_BROKEN, "`pitviper %s` crashed: %s", name, strsignal(end.signal));
+    if (end.signal) return end_case(r, CASE_BROKEN, "`pitviper %s` crashed: %s", name, strsignal(end.signal));
     if (end.code) {
         last_error(reason, sizeof reason, tail);
         return end_case(r, CASE_BROKEN, "`pitviper %s` failed: %s", name, reason);
@@ -117,7 +116,7 @@ static bool find_log(char log[path_size], CaseResult *r, const CaseHow *how)
                                "--allow-missing)";
     char              path[case_path_size], reason[256];
     const bool        allowed = r->c.log_may_be_absent || how->allow_missing;
-    const CaseState   state   = allowed ? CASE_SKIPPED : CASE_BROKEN;
+    const CaseState   state = allowed ? CASE_SKIPPED : CASE_BROKEN;
     if (!case_path(path, reason, &r->c, r->c.log))
         return end_case(r, state, "log missing: %s%s", reason, allowed ? "" : next);
     if (access(path, R_OK) != 0)
@@ -158,7 +157,7 @@ static bool find_config(char config[path_size], CaseResult *r)
     } else if (*r->c.config) {
         snprintf(config, path_size, "%.4080s/config.yaml", r->work);
         FILE *file = output_file(config, 0);
-        bool  ok   = file && fputs(r->c.config, file) >= 0;
+        bool  ok = file && fputs(r->c.config, file) >= 0;
         if (file && fclose(file) != 0) ok = false;
         ok = ok && make_paths_absolute(config, r);
         if (!ok)
@@ -171,14 +170,26 @@ static bool find_config(char config[path_size], CaseResult *r)
 static bool replay_case(CaseResult *r, const CaseHow *how, const char *log, const char *config)
 {
     char      out[path_size], only[8 * case_frames_max], threads[16];
-    size_t    n    = 0;
+    size_t    n = 0;
     ChildLine line = {0};
     for (int i = 0; i < r->c.frames.count; i++)
         n += (size_t)snprintf(only + n, sizeof only - n, "%s%.0f", i ? "," : "", r->c.frames.number[i]);
     snprintf(out, sizeof out, "%.4080s/out", r->work);
     snprintf(threads, sizeof threads, "%d", how->threads);
-    const char *const fixed[] = {"pitviper", "replay", log, "--out", out, "--only", only, "--threads", threads,
-                                 "--no-png", "--overwrite", "--set", "publish.files=true", "--set",
+    const char *const fixed[] = {"pitviper",
+                                 "replay",
+                                 log,
+                                 "--out",
+                                 out,
+                                 "--only",
+                                 only,
+                                 "--threads",
+                                 threads,
+                                 "--no-png",
+                                 "--overwrite",
+                                 "--set",
+                                 "publish.files=true",
+                                 "--set",
                                  "publish.planes=all"};
     for (size_t i = 0; i < sizeof fixed / sizeof *fixed; i++) case_child_add(&line, fixed[i]);
     if (*config) {
@@ -229,7 +240,7 @@ static void compare_case(CaseResult *r)
         return;
     }
     const int first = r->verdict.first;
-    r->state        = first < 0 ? CASE_OK : CASE_FAILED;
+    r->state = first < 0 ? CASE_OK : CASE_FAILED;
     if (first < 0) {
         if (strstr(r->verdict.remarks, "bits differ"))
             snprintf(r->line, sizeof r->line, "%s", strstr(r->verdict.remarks, "bits differ"));
@@ -270,6 +281,6 @@ void run_case(CaseResult *r, const CaseHow *how)
     }
     case_here = r;
     run_steps(r, how);
-    case_here  = NULL;
+    case_here = NULL;
     r->seconds = wall_clock_s() - begun_s;
 }

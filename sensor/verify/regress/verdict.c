@@ -54,8 +54,10 @@ static int remark_group(Verdict *v, const JsonValues *was, const JsonValues *is,
             remark(v, "%s %s: SHA-256 %.8s..., was %.8s...", what, now->path + skip, now->text,
                    then->text ? then->text : "?");
         else
-            remark(v, "%s %s is '%.200s', was "
-                      "'%.200s'", what, now->path + skip, now->text, then->text ? then->text : "?");
+            remark(v,
+                   "%s %s is '%.200s', was "
+                   "'%.200s'",
+                   what, now->path + skip, now->text, then->text ? then->text : "?");
     }
     for (int i = 0; i < was->count; i++)
         if (begins(was->value[i].path, head) && !json_values_find(is, was->value[i].path)) {
@@ -131,7 +133,7 @@ static Status truth_of(JsonValues *out, const char *folder, int frame)
     snprintf(path, sizeof path, "%s/truth.jsonl", folder);
     Status status = text_read_file(&text, &octets, "regress", path, file_most);
     if (status != STATUS_OK) return status;
-    status   = STATUS_IO;
+    status = STATUS_IO;
     int line = 1;
     for (char *at = text; *at && status == STATUS_IO; line++) {
         const size_t length = strcspn(at, "\n");
@@ -143,7 +145,7 @@ static Status truth_of(JsonValues *out, const char *folder, int frame)
             else {
                 const JsonValue *number = json_values_find(&values, "frame");
                 if (number && number->number == frame) {
-                    *out   = values;
+                    *out = values;
                     status = STATUS_OK;
                 } else {
                     json_values_free(&values);
@@ -161,9 +163,9 @@ static Status truth_of(JsonValues *out, const char *folder, int frame)
  * (*status). */
 static bool same_size(Status *status, Verdict *v, const char *record, const RecordFrame *got)
 {
-    ChannelResult *r = &v->channel[CHANNEL_SIZE];
-    RecordFrameSize      size;
-    *status  = record_frame_size(&size, record, got->number);
+    ChannelResult  *r = &v->channel[CHANNEL_SIZE];
+    RecordFrameSize size;
+    *status = record_frame_size(&size, record, got->number);
     r->there = true;
     if (*status != STATUS_OK) return false;
     const bool picture = size.width == got->width && size.height == got->height;
@@ -174,7 +176,8 @@ static bool same_size(Status *status, Verdict *v, const char *record, const Reco
         snprintf(r->line, sizeof r->line,
                  "expected %d x %d pixels, actual %d x %d, from frame %d on (sensor.width_px, sensor.height_px); "
                  "nothing "
-                 "else is compared in such a frame", size.width, size.height, got->width, got->height, got->number);
+                 "else is compared in such a frame",
+                 size.width, size.height, got->width, got->height, got->number);
     else if (!r->failed)
         snprintf(r->line, sizeof r->line,
                  "expected %d range bins, actual %d, from frame %d on (radar.bins); nothing else is compared in such "

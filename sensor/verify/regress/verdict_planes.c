@@ -10,7 +10,7 @@
 
 static const struct ChannelRow {
     const char *name, *about, *unit;
-    RecordPlane  plane[4];
+    RecordPlane plane[4];
     int         planes;
 } rows[CHANNEL_COUNT] = {
     [CHANNEL_SIZE] = {"size", "size of the images and of the range profile", "", {0}, 0},
@@ -33,10 +33,18 @@ static const struct ChannelRow {
                          4},
     [CHANNEL_MWIR] = {"mwir", "radiance at the sensor as apparent temperature, 3.4-4.8 um", "K", {FRAME_MWIR}, 1},
     [CHANNEL_LWIR] = {"lwir", "radiance at the sensor as apparent temperature, 8-12 um", "K", {FRAME_LWIR}, 1},
-    [CHANNEL_RADAR] = {"radar", "of the band, power of each pixel, relative to the brightest of the baseline; of "
-                       "radar.preset, detections and truth", "dB", {FRAME_RADAR}, 1},
-    [CHANNEL_PROFILE] = {"radar profile", "radar power over range, relative to the largest of the "
-                         "baseline", "dB", {0}, 0},
+    [CHANNEL_RADAR] = {"radar",
+                       "of the band, power of each pixel, relative to the brightest of the baseline; of "
+                       "radar.preset, detections and truth",
+                       "dB",
+                       {FRAME_RADAR},
+                       1},
+    [CHANNEL_PROFILE] = {"radar profile",
+                         "radar power over range, relative to the largest of the "
+                         "baseline",
+                         "dB",
+                         {0},
+                         0},
     [CHANNEL_SIGNALS] = {"target signals", "contrast, signal-to-noise ratio and intensity of each target", "", {0}, 0},
     [CHANNEL_ERROR] = {"error budget", "the run's estimate of its own error", "", {0}, 0},
 };
@@ -46,7 +54,7 @@ const char *verdict_channel_about(Channel channel) { return rows[channel].about;
 
 void verdict_channel_value(char out[64], Channel channel, double value, int digits)
 {
-    const char *unit    = rows[channel].unit, *space = *unit ? " " : "";
+    const char *unit = rows[channel].unit, *space = *unit ? " " : "";
     const bool  thermal = channel == CHANNEL_MWIR || channel == CHANNEL_LWIR;
     if (isnan(value)) snprintf(out, 64, "not a number");
     else if (isinf(value)) snprintf(out, 64, channel == CHANNEL_RANGE && value > 0 ? "no surface" : "out of range");
@@ -83,14 +91,26 @@ static void limits_of(double *absolute, double *relative, RecordPlane plane, con
 {
     *absolute = *relative = 0;
     switch (plane) {
-    case FRAME_RANGE: *relative = t->range_rel; break;
+    case FRAME_RANGE:
+        *relative = t->range_rel;
+        break;
     case FRAME_NX:
     case FRAME_NY:
-    case FRAME_NZ: *absolute = t->normal; break;
-    case FRAME_TEMP: *absolute = t->temp_k; break;
-    case FRAME_MWIR: *absolute = t->mwir_k; break;
-    case FRAME_LWIR: *absolute = t->lwir_k; break;
-    case FRAME_RADAR: *absolute = t->radar_db; break;
+    case FRAME_NZ:
+        *absolute = t->normal;
+        break;
+    case FRAME_TEMP:
+        *absolute = t->temp_k;
+        break;
+    case FRAME_MWIR:
+        *absolute = t->mwir_k;
+        break;
+    case FRAME_LWIR:
+        *absolute = t->lwir_k;
+        break;
+    case FRAME_RADAR:
+        *absolute = t->radar_db;
+        break;
     case FRAME_OPTICAL_R:
     case FRAME_OPTICAL_G:
     case FRAME_OPTICAL_B:
@@ -98,7 +118,8 @@ static void limits_of(double *absolute, double *relative, RecordPlane plane, con
         *absolute = t->optical_w_m2_sr;
         *relative = t->optical_rel;
         break;
-    default: break;
+    default:
+        break;
     }
     /* both were rounded to floats: a difference of exactly the limit is accepted */
     *absolute *= 1 + 1e-6;
@@ -120,10 +141,11 @@ static void keep_worse(ChannelResult *result, const ChannelResult *found)
 /* A plane that only the baseline (recorded) or only the run has. */
 static void one_sided(ChannelResult *result, Channel channel, RecordPlane plane, int frame, bool recorded)
 {
-    ChannelResult found = {.there = true, .failed = true, .frame = frame, .plane = plane,
-                           .verdict = {.share = 1, .max = INFINITY}};
-    snprintf(found.line, sizeof found.line, "%s of frame %d is %s", plane < FRAME_PLANES ? record_plane_name(plane)
-             : rows[channel].name, frame, recorded ? "in the baseline and not in the run" : "not in the baseline");
+    ChannelResult found = {
+        .there = true, .failed = true, .frame = frame, .plane = plane, .verdict = {.share = 1, .max = INFINITY}};
+    snprintf(found.line, sizeof found.line, "%s of frame %d is %s",
+             plane < FRAME_PLANES ? record_plane_name(plane) : rows[channel].name, frame,
+             recorded ? "in the baseline and not in the run" : "not in the baseline");
     keep_worse(result, &found);
 }
 
@@ -153,8 +175,8 @@ static void write_line(ChannelResult *r, Channel channel)
 typedef struct FramePair {
     const RecordFrame *expected, *got;
     const Tolerance   *tolerance;
-    uint8_t           *edge, *other;  /* NULL: ids must be equal */
-    float             *scratch;       /* [3][count] */
+    uint8_t           *edge, *other; /* NULL: ids must be equal */
+    float             *scratch;      /* [3][count] */
     size_t             count, edges;
 } FramePair;
 
@@ -166,15 +188,16 @@ static void compare_plane(ChannelResult *result, const FramePair *h, Channel cha
         one_sided(result, channel, plane, h->got->number, was != NULL);
         return;
     }
-    const double  full  = plane == FRAME_RADAR ? largest(was, h->count) : 0;
-    ChannelResult found = {.there = true, .picture = true, .frame = h->got->number, .plane = plane,
-                           .unit = rows[channel].unit};
+    const double  full = plane == FRAME_RADAR ? largest(was, h->count) : 0;
+    ChannelResult found = {
+        .there = true, .picture = true, .frame = h->got->number, .plane = plane, .unit = rows[channel].unit};
     limits_of(&found.limit, &found.relative, plane, h->tolerance);
     to_unit(h->scratch, was, h->count, plane, full, h->tolerance);
     to_unit(h->scratch + h->count, is, h->count, plane, full, h->tolerance);
-    verdict_compare_numbers(&found.verdict, NULL, h->scratch, h->scratch + h->count, h->got->width, h->got->height, &(PlaneLimits){found.limit, found.relative, h->other});
+    verdict_compare_numbers(&found.verdict, NULL, h->scratch, h->scratch + h->count, h->got->width, h->got->height,
+                            &(PlaneLimits){found.limit, found.relative, h->other});
     found.allowed = is_geometry(channel) ? 0 : h->tolerance->share;
-    found.failed  = found.verdict.share > found.allowed;
+    found.failed = found.verdict.share > found.allowed;
     if (found.verdict.column >= 0) write_line(&found, channel);
     keep_worse(result, &found);
 }
@@ -198,8 +221,9 @@ static void compare_id_plane(ChannelResult *result, const FramePair *h, Channel 
                  "%.0f",
                  100 * v->share, rows[channel].name, found.frame, v->column, v->row, v->got, v->expected);
     else if (at_edges > 0)
-        snprintf(found.line, sizeof found.line, "%zu of %zu edge pixels have a different %s in frame %d, allowed %.3g "
-                                                "%%",
+        snprintf(found.line, sizeof found.line,
+                 "%zu of %zu edge pixels have a different %s in frame %d, allowed %.3g "
+                 "%%",
                  at_edges, h->edges, rows[channel].name, found.frame, 100 * h->tolerance->edge_share);
     for (size_t i = 0; h->other && i < h->count; i++) h->other[i] |= was[i] != is[i];
     keep_worse(result, &found);
@@ -219,8 +243,13 @@ static void compare_profile(ChannelResult *result, const FramePair *h)
     for (int b = 0; b < frame_bounces; b++) full = fmax(full, largest(was->profile[b], (size_t)was->bins));
     float *db = malloc(2 * (size_t)was->bins * sizeof *db);
     for (int b = 0; db && b < frame_bounces; b++) {
-        ChannelResult found = {.there = true, .frame = is->number, .plane = FRAME_PLANES, .bounce = b, .unit = "dB",
-                               .limit = h->tolerance->profile_db * (1 + 1e-6), .allowed = h->tolerance->share};
+        ChannelResult found = {.there = true,
+                               .frame = is->number,
+                               .plane = FRAME_PLANES,
+                               .bounce = b,
+                               .unit = "dB",
+                               .limit = h->tolerance->profile_db * (1 + 1e-6),
+                               .allowed = h->tolerance->share};
         PlaneVerdict *v = &found.verdict;
         verdict_plane_to_db(db, was->profile[b], (size_t)was->bins, full, h->tolerance->radar_span_db);
         verdict_plane_to_db(db + was->bins, is->profile[b], (size_t)was->bins, full, h->tolerance->radar_span_db);
@@ -248,7 +277,7 @@ void verdict_frame(ChannelResult result[CHANNEL_COUNT], const RecordFrame *expec
     FramePair    h = {.expected = expected, .got = got, .tolerance = tolerance, .count = count};
     h.scratch = malloc(2 * count * sizeof *h.scratch);
     if (edges_allowed) {
-        h.edge  = calloc(count, 1);
+        h.edge = calloc(count, 1);
         h.other = calloc(count, 1);
     }
     if (h.scratch && (!edges_allowed || (h.edge && h.other))) {
@@ -274,13 +303,16 @@ void verdict_frame(ChannelResult result[CHANNEL_COUNT], const RecordFrame *expec
     free(h.other);
 }
 
-bool verdict_channel_planes(ChannelPlanes *out, const ChannelResult *r, const RecordFrame *expected, const RecordFrame *got,
-                    const Tolerance *tolerance)
+bool verdict_channel_planes(ChannelPlanes *out, const ChannelResult *r, const RecordFrame *expected,
+                            const RecordFrame *got, const Tolerance *tolerance)
 {
     const size_t  count = (size_t)got->width * (size_t)got->height;
     PlaneVerdict  verdict;
-    ChannelPlanes p = {.width = got->width, .height = got->height, .expected = malloc(count * sizeof(float)),
-                       .got = malloc(count * sizeof(float)), .difference = malloc(count * sizeof(float))};
+    ChannelPlanes p = {.width = got->width,
+                       .height = got->height,
+                       .expected = malloc(count * sizeof(float)),
+                       .got = malloc(count * sizeof(float)),
+                       .difference = malloc(count * sizeof(float))};
     const bool    ids = record_plane_is_id(r->plane);
     const bool    there = ids ? expected->id_plane[r->plane] && got->id_plane[r->plane]
                               : expected->number_plane[r->plane] && got->number_plane[r->plane];
@@ -293,7 +325,7 @@ bool verdict_channel_planes(ChannelPlanes *out, const ChannelResult *r, const Re
     if (ids) {
         for (size_t i = 0; i < count; i++) {
             p.expected[i] = (float)expected->id_plane[r->plane][i];
-            p.got[i]      = (float)got->id_plane[r->plane][i];
+            p.got[i] = (float)got->id_plane[r->plane][i];
         }
     } else {
         const double full = r->plane == FRAME_RADAR ? largest(expected->number_plane[r->plane], count) : 0;

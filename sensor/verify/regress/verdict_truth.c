@@ -8,41 +8,96 @@ static const struct Field {
     const char *name;
     double      absolute, relative;
 } fields[] = {
-    {"time_s", 1e-6, 0},           /* stamps of DIS step by 1.7 us */
-    {"ecef_m", 1e-3, 0},           {"lat_deg", 1e-8, 0},          {"lon_deg", 1e-8, 0},   /* 1 mm */
-    {"height_m", 1e-3, 0},         {"psi_deg", 1e-4, 0},          {"theta_deg", 1e-4, 0},
-    {"phi_deg", 1e-4, 0},          {"speed_mps", 1e-3, 0},        {"azimuth_deg", 0.005, 0},
+    {"time_s", 1e-6, 0}, /* stamps of DIS step by 1.7 us */
+    {"ecef_m", 1e-3, 0},
+    {"lat_deg", 1e-8, 0},
+    {"lon_deg", 1e-8, 0}, /* 1 mm */
+    {"height_m", 1e-3, 0},
+    {"psi_deg", 1e-4, 0},
+    {"theta_deg", 1e-4, 0},
+    {"phi_deg", 1e-4, 0},
+    {"speed_mps", 1e-3, 0},
+    {"azimuth_deg", 0.005, 0},
     {"elevation_deg", 0.005, 0}, /* a hundredth of the sun's disc: below the variation of refraction */
-      {"hfov_deg", 1e-6, 0},         {"vfov_deg", 1e-6, 0},
-    {"ecef_from_cam", 2e-6, 0},    /* 1e-4 degree */
-    {"range_m", 1e-3, 1e-6},       {"closing_mps", 1e-3, 1e-6},   {"aspect_deg", 1e-3, 0},
-    {"depression_deg", 1e-4, 0},   {"los_az_deg", 1e-4, 0},       {"los_el_deg", 1e-4, 0},
-    {"los_rate_dps", 1e-3, 1e-5},  {"boresight_error_deg", 1e-4, 0},
-    {"pixels", 0.02, 0.005},       {"visible_fraction", 0.005, 0},{"amodal_box_px", 0.02, 0},
+    {"hfov_deg", 1e-6, 0},
+    {"vfov_deg", 1e-6, 0},
+    {"ecef_from_cam", 2e-6, 0}, /* 1e-4 degree */
+    {"range_m", 1e-3, 1e-6},
+    {"closing_mps", 1e-3, 1e-6},
+    {"aspect_deg", 1e-3, 0},
+    {"depression_deg", 1e-4, 0},
+    {"los_az_deg", 1e-4, 0},
+    {"los_el_deg", 1e-4, 0},
+    {"los_rate_dps", 1e-3, 1e-5},
+    {"boresight_error_deg", 1e-4, 0},
+    {"pixels", 0.02, 0.005},
+    {"visible_fraction", 0.005, 0},
+    {"amodal_box_px", 0.02, 0},
     {"foliage_fraction", 0.005, 0},
-    {"dt_k", 0.05, 0},            {"patch_temp_k", 0.05, 0}, /* as temperatures of pixels */
-    {"box_px", 0, 0},              {"age_s", 1e-5, 0},            {"position_error_m", 1e-3, 1e-3},
-    {"contrast_k", 0.05, 0.01},    {"dt_rss_k", 0.05, 0.01},      {"contrast", 0.01, 0.01},
-    {"snr", 0.05, 0.02},           {"veil_transmittance", 0.002, 0}, {"intensity_w_sr", 1e-4, 0.01},
+    {"dt_k", 0.05, 0},
+    {"patch_temp_k", 0.05, 0}, /* as temperatures of pixels */
+    {"box_px", 0, 0},
+    {"age_s", 1e-5, 0},
+    {"position_error_m", 1e-3, 1e-3},
+    {"contrast_k", 0.05, 0.01},
+    {"dt_rss_k", 0.05, 0.01},
+    {"contrast", 0.01, 0.01},
+    {"snr", 0.05, 0.02},
+    {"veil_transmittance", 0.002, 0},
+    {"intensity_w_sr", 1e-4, 0.01},
     {"intensity_error_w_sr", 1e-4, 0.05}, /* an estimate: only its size */
-    {"error_px", 0.01, 0.05},      {"error_rms_k", 0.05, 0.05},  {"error_median_k", 0.05, 0.05},
-    {"median_k", 0.05, 0.05},      {"beyond_1k", 0.01, 0.05},
-    {"sampling", 1e-3, 0.05},      {"level_of_detail", 1e-3, 0.05}, {"table", 1e-3, 0.05},
-    {"heat", 1e-3, 0.05},          {"heat_k", 0.05, 0.05},
-    {"dead_reckoning", 1e-3, 0.05},{"total", 1e-3, 0.05},
-    {"sampling_k", 0.05, 0.05},    {"level_of_detail_k", 0.05, 0.05}, {"table_k", 0.05, 0.05},
-    {"dead_reckoning_k", 0.05, 0.05}, {"total_k", 0.05, 0.05},
-    {"width_px", 0, 0},            {"height_px", 0, 0},           {"entity", 0, 0},      {"marking", 0, 0},
-    {"type", 0, 0},                {"model", 0, 0},               {"occluded_by", 0, 0}, {"gimbal_at_limit", 0, 0},
-    {"name", 0, 0},                {"bands", 0, 0},               {"frame", 0, 0},
+    {"error_px", 0.01, 0.05},
+    {"error_rms_k", 0.05, 0.05},
+    {"error_median_k", 0.05, 0.05},
+    {"median_k", 0.05, 0.05},
+    {"beyond_1k", 0.01, 0.05},
+    {"sampling", 1e-3, 0.05},
+    {"level_of_detail", 1e-3, 0.05},
+    {"table", 1e-3, 0.05},
+    {"heat", 1e-3, 0.05},
+    {"heat_k", 0.05, 0.05},
+    {"dead_reckoning", 1e-3, 0.05},
+    {"total", 1e-3, 0.05},
+    {"sampling_k", 0.05, 0.05},
+    {"level_of_detail_k", 0.05, 0.05},
+    {"table_k", 0.05, 0.05},
+    {"dead_reckoning_k", 0.05, 0.05},
+    {"total_k", 0.05, 0.05},
+    {"width_px", 0, 0},
+    {"height_px", 0, 0},
+    {"entity", 0, 0},
+    {"marking", 0, 0},
+    {"type", 0, 0},
+    {"model", 0, 0},
+    {"occluded_by", 0, 0},
+    {"gimbal_at_limit", 0, 0},
+    {"name", 0, 0},
+    {"bands", 0, 0},
+    {"frame", 0, 0},
     {"scene_rate_px_s", 0.01, 1e-5},
     /* of a radar with phase: a hundredth of a cell, and of what a look's grid of tubes scatters by */
-    {"preset", 0, 0},              {"reference_m", 1e-3, 1e-6},   {"reference_rate_mps", 1e-3, 1e-6}, {"air_db", 1e-3, 1e-3},
-    {"noise_dbw", 0.01, 0},        {"saturated", 0, 0},           {"ground_cells", 0, 0.001}, {"ground_hidden", 0, 0.01},
-    {"detections_in_all", 0, 0},   {"range_rate_mps", 0.01, 1e-5},{"az_deg", 0.005, 0},  {"el_deg", 0.005, 0},
-    {"snr_db", 0.1, 0},            {"rcs_dbsm", 0.1, 0},          {"hh", 0.1, 0},        {"vv", 0.1, 0},
-    {"hv", 0.5, 0},                {"centres", 0, 0.01},          {"rcs_vv_dbsm", 0.1, 0}, {"body_m", 0.01, 0},
-    {"bounces", 0, 0},             {"part", 0, 0},
+    {"preset", 0, 0},
+    {"reference_m", 1e-3, 1e-6},
+    {"reference_rate_mps", 1e-3, 1e-6},
+    {"air_db", 1e-3, 1e-3},
+    {"noise_dbw", 0.01, 0},
+    {"saturated", 0, 0},
+    {"ground_cells", 0, 0.001},
+    {"ground_hidden", 0, 0.01},
+    {"detections_in_all", 0, 0},
+    {"range_rate_mps", 0.01, 1e-5},
+    {"az_deg", 0.005, 0},
+    {"el_deg", 0.005, 0},
+    {"snr_db", 0.1, 0},
+    {"rcs_dbsm", 0.1, 0},
+    {"hh", 0.1, 0},
+    {"vv", 0.1, 0},
+    {"hv", 0.5, 0},
+    {"centres", 0, 0.01},
+    {"rcs_vv_dbsm", 0.1, 0},
+    {"body_m", 0.01, 0},
+    {"bounces", 0, 0},
+    {"part", 0, 0},
 };
 
 /* Fields with a tolerance that older baselines lack. */
@@ -63,7 +118,7 @@ static const struct Field *field_of(const char *path)
         if (!*at) break;
         if (*at == '.') dot = at;
     }
-    const char  *word   = dot ? dot + 1 : path;
+    const char  *word = dot ? dot + 1 : path;
     const size_t length = strcspn(word, "[");
     for (size_t i = 0; i < sizeof fields / sizeof *fields; i++)
         if (strlen(fields[i].name) == length && strncmp(fields[i].name, word, length) == 0) return &fields[i];
@@ -80,9 +135,10 @@ static bool ends_with(const char *path, const char *word)
  * traced. */
 static Channel channel_of_target(const char *path)
 {
-    static const char *const seen[] = {"].pixels", "].visible_fraction", "].box_px", "].amodal_box_px",
-                                       "].occluded_by", "].foliage_fraction"};
-    if (strstr(path, "].error_") || strstr(path, ".error_median_k") || strstr(path, ".error_rms_k")) return CHANNEL_ERROR;
+    static const char *const seen[] = {"].pixels",        "].visible_fraction", "].box_px",
+                                       "].amodal_box_px", "].occluded_by",      "].foliage_fraction"};
+    if (strstr(path, "].error_") || strstr(path, ".error_median_k") || strstr(path, ".error_rms_k"))
+        return CHANNEL_ERROR;
     if (strstr(path, "].bands.")) return CHANNEL_SIGNALS;
     if (ends_with(path, "].dt_k") || ends_with(path, "].patch_temp_k")) return CHANNEL_TEMP;
     for (size_t i = 0; i < sizeof seen / sizeof *seen; i++)
@@ -125,8 +181,8 @@ static bool equal(const JsonValue *expected, const JsonValue *got, const struct 
 {
     if (expected->text || got->text) return expected->text && got->text && strcmp(expected->text, got->text) == 0;
     if (isnan(expected->number) && isnan(got->number)) return true;
-    const double limit = field ? factor * (field->absolute + field->relative * fabs(expected->number))
-                               : 1e-6 * fabs(expected->number);
+    const double limit =
+        field ? factor * (field->absolute + field->relative * fabs(expected->number)) : 1e-6 * fabs(expected->number);
     return fabs(got->number - expected->number) <= limit;
 }
 
@@ -134,7 +190,7 @@ static bool equal(const JsonValue *expected, const JsonValue *got, const struct 
 typedef struct WalkRule {
     Channel (*of)(const char *path);
     bool (*concerns)(const char *path);
-    bool   exact;  /* numbers are equal; else within a tolerance, times this factor: */
+    bool   exact; /* numbers are equal; else within a tolerance, times this factor: */
     double factor;
 } WalkRule;
 
@@ -143,12 +199,12 @@ static void walk(ChannelResult result[CHANNEL_COUNT], int frame, const JsonValue
                  const WalkRule *rule)
 {
     const bool exact = rule->exact;
-    int i = 0, k = 0;
+    int        i = 0, k = 0;
     while (i < expected->count || k < got->count) {
         const JsonValue *was = i < expected->count ? &expected->value[i] : NULL;
-        const JsonValue *is  = k < got->count ? &got->value[k] : NULL;
-        const int order = !was ? 1 : !is ? -1 : strcmp(was->path, is->path);
-        const char *path = order <= 0 ? was->path : is->path;
+        const JsonValue *is = k < got->count ? &got->value[k] : NULL;
+        const int        order = !was ? 1 : !is ? -1 : strcmp(was->path, is->path);
+        const char      *path = order <= 0 ? was->path : is->path;
         if (order > 0) was = NULL;
         if (order < 0) is = NULL;
         i += order <= 0;
@@ -166,7 +222,8 @@ static void walk(ChannelResult result[CHANNEL_COUNT], int frame, const JsonValue
  * given. */
 static bool is_truth(const char *path)
 {
-    return strncmp(path, "error.radar.", 12) != 0 && strcmp(path, "frame_sha256") != 0 && strcmp(path, "radar.map_sha256") != 0;
+    return strncmp(path, "error.radar.", 12) != 0 && strcmp(path, "frame_sha256") != 0 &&
+           strcmp(path, "radar.map_sha256") != 0;
 }
 
 void verdict_truth(ChannelResult result[CHANNEL_COUNT], int frame, const JsonValues *expected, const JsonValues *got,
@@ -183,9 +240,9 @@ static Channel to_counters(const char *path)
 
 static bool is_counter(const char *path)
 {
-    static const char *const heads[] = {"counters.datagrams", "counters.pdus.", "counters.dropped.",
-                                        "counters.packets_without_datagram", "counters.own", "counters.entities.",
-                                        "counters.effects."};
+    static const char *const heads[] = {
+        "counters.datagrams", "counters.pdus.",     "counters.dropped.", "counters.packets_without_datagram",
+        "counters.own",       "counters.entities.", "counters.effects."};
     for (size_t i = 0; i < sizeof heads / sizeof *heads; i++)
         if (strncmp(path, heads[i], strlen(heads[i])) == 0) return true;
     return false;

@@ -22,9 +22,9 @@ static uint8_t *make_room(ByteSink *sink, size_t count)
         size_t capacity = sink->capacity ? 2 * sink->capacity : 4096;
         while (capacity - sink->count < count) capacity *= 2;
         uint8_t *bytes = realloc(sink->bytes, capacity);
-        sink->failed   = !bytes;
+        sink->failed = !bytes;
         if (!bytes) return NULL;
-        sink->bytes    = bytes;
+        sink->bytes = bytes;
         sink->capacity = capacity;
     }
     uint8_t *at = sink->bytes + sink->count;
@@ -99,7 +99,7 @@ void chunks_end(ByteSink *file) { put_header(file, "end", method_plain, 0, 0, 0)
 const uint8_t *source_bytes(ByteSource *source, size_t count)
 {
     if ((size_t)(source->end - source->at) < count) {
-        source->at        = source->end;
+        source->at = source->end;
         source->truncated = true;
         return NULL;
     }
@@ -135,8 +135,8 @@ void source_f64s(ByteSource *source, double *value, int count)
 char *source_text(ByteSource *source, size_t most, Arena *arena)
 {
     const uint32_t length = source_u32(source);
-    const uint8_t *bytes  = length <= most ? source_bytes(source, length) : NULL;
-    char          *text   = bytes && !memchr(bytes, 0, length) ? arena_alloc(arena, (size_t)length + 1, 1) : NULL;
+    const uint8_t *bytes = length <= most ? source_bytes(source, length) : NULL;
+    char          *text = bytes && !memchr(bytes, 0, length) ? arena_alloc(arena, (size_t)length + 1, 1) : NULL;
     source->truncated |= !text;
     return text ? memcpy(text, bytes, length) : NULL;
 }
@@ -152,7 +152,7 @@ int source_count(ByteSource *source, size_t octets, int most)
 Status chunks_open(ChunkSource *out, const uint8_t *bytes, size_t count, Arena *arena)
 {
     *out = (ChunkSource){.rest = {bytes, bytes + count, false}, .arena = arena};
-    const uint8_t *mark    = source_bytes(&out->rest, sizeof magic);
+    const uint8_t *mark = source_bytes(&out->rest, sizeof magic);
     const uint32_t version = source_u32(&out->rest);
     if (!mark || memcmp(mark, magic, sizeof magic) != 0) {
         out->fault = "it does not begin as a frame file does";
@@ -172,15 +172,15 @@ static Status damaged(ChunkSource *chunks, Status status, const char *fault)
 
 Status chunks_next(ChunkSource *chunks, char name[chunk_name_size + 1], ByteSource *content)
 {
-    ByteSource    *rest   = &chunks->rest;
-    const uint8_t *named  = source_bytes(rest, chunk_name_size);
+    ByteSource    *rest = &chunks->rest;
+    const uint8_t *named = source_bytes(rest, chunk_name_size);
     const uint32_t method = source_u32(rest), crc = source_u32(rest);
     const uint64_t plain = source_u64(rest), stored = source_u64(rest);
     if (rest->truncated || stored > (uint64_t)(rest->end - rest->at))
         return damaged(chunks, STATUS_TRUNCATED, "it ends too early");
     memcpy(name, named, chunk_name_size);
     name[chunk_name_size] = 0;
-    *content              = (ByteSource){0};
+    *content = (ByteSource){0};
     if (strcmp(name, "end") == 0) {
         name[0] = 0;
         return plain == 0 && stored == 0 ? STATUS_OK : damaged(chunks, STATUS_BAD_VALUE, "its end is damaged");
@@ -193,7 +193,7 @@ Status chunks_next(ChunkSource *chunks, char name[chunk_name_size + 1], ByteSour
     chunks->octets += plain;
     if (method == method_zlib) {
         uint8_t *unpacked = arena_alloc(chunks->arena, plain + 1, 1);
-        uLongf   octets   = (uLongf)plain;
+        uLongf   octets = (uLongf)plain;
         if (!unpacked) return damaged(chunks, STATUS_NO_MEMORY, "there is no memory for it");
         if (uncompress(unpacked, &octets, bytes, (uLong)stored) != Z_OK || octets != plain)
             return damaged(chunks, STATUS_BAD_VALUE, "a chunk is damaged");
@@ -273,8 +273,7 @@ void field_rotation(Fields *f, const char *name, double r[9])
     field_reals(f, name, r, 9, 2);
     if (!f->from) return;
     for (int i = 0; i < 3; i++)
-        for (int j = 0; j <= i; j++)
-            expect(f, name, fabs(v3_dot(r + 3 * i, r + 3 * j) - (i == j)) <= 1e-6);
+        for (int j = 0; j <= i; j++) expect(f, name, fabs(v3_dot(r + 3 * i, r + 3 * j) - (i == j)) <= 1e-6);
     v3_cross(across, r, r + 3);
     expect(f, name, v3_dot(across, r + 6) > 0);
 }

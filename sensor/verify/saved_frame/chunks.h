@@ -22,12 +22,12 @@ typedef struct ByteSink {
     bool     failed; /* no memory; later writes are lost */
 } ByteSink;
 
-void sink_bytes(ByteSink *sink, const void *bytes, size_t count);
-void sink_u32(ByteSink *sink, uint32_t value);
-void sink_u64(ByteSink *sink, uint64_t value);
-void sink_f64s(ByteSink *sink, const double *value, int count);
-void sink_text(ByteSink *sink, const char *text); /* u32 length, octets */
-void sink_free(ByteSink *sink);
+void               sink_bytes(ByteSink *sink, const void *bytes, size_t count);
+void               sink_u32(ByteSink *sink, uint32_t value);
+void               sink_u64(ByteSink *sink, uint64_t value);
+void               sink_f64s(ByteSink *sink, const double *value, int count);
+void               sink_text(ByteSink *sink, const char *text); /* u32 length, octets */
+void               sink_free(ByteSink *sink);
 static inline void sink_i32(ByteSink *sink, int value) { sink_u32(sink, (uint32_t)value); }
 static inline void sink_f64(ByteSink *sink, double value) { sink_f64s(sink, &value, 1); }
 
@@ -46,12 +46,12 @@ typedef struct ByteSource {
 
 /* NULL: fewer octets are left. */
 const uint8_t *source_bytes(ByteSource *source, size_t count);
-uint32_t source_u32(ByteSource *source);
-uint64_t source_u64(ByteSource *source);
-void     source_f64s(ByteSource *source, double *value, int count);
+uint32_t       source_u32(ByteSource *source);
+uint64_t       source_u64(ByteSource *source);
+void           source_f64s(ByteSource *source, double *value, int count);
 /* Within the arena, terminated; at most `most` octets, none of them 0. NULL: otherwise. */
-char    *source_text(ByteSource *source, size_t most, Arena *arena);
-static inline int source_i32(ByteSource *source) { return (int)source_u32(source); }
+char                *source_text(ByteSource *source, size_t most, Arena *arena);
+static inline int    source_i32(ByteSource *source) { return (int)source_u32(source); }
 static inline double source_f64(ByteSource *source)
 {
     double value;
@@ -59,14 +59,14 @@ static inline double source_f64(ByteSource *source)
     return value;
 }
 /* A count of records of at least `octets` octets each, which the remaining octets can hold; else 0, and truncated. */
-int      source_count(ByteSource *source, size_t octets, int most);
+int source_count(ByteSource *source, size_t octets, int most);
 
 typedef struct ChunkSource {
-    ByteSource rest;
-    Arena     *arena;     /* of what is decompressed */
-    uint64_t   octets;    /* decompressed so far */
-    int        version;   /* 1 .. chunks_version */
-    const char *fault;    /* text of the failure; static storage */
+    ByteSource  rest;
+    Arena      *arena;   /* of what is decompressed */
+    uint64_t    octets;  /* decompressed so far */
+    int         version; /* 1 .. chunks_version */
+    const char *fault;   /* text of the failure; static storage */
 } ChunkSource;
 
 /* STATUS_UNSUPPORTED: a later version, STATUS_BAD_VALUE: not a frame file. */
@@ -80,11 +80,11 @@ Status chunks_next(ChunkSource *chunks, char name[chunk_name_size + 1], ByteSour
  * source it is read from it and must be in its range. The first error is kept, and ends the reading. */
 
 typedef struct Fields {
-    ByteSink   *to;    /* one of the two */
+    ByteSink   *to; /* one of the two */
     ByteSource *from;
-    Arena      *arena; /* reading: of arrays and texts */
+    Arena      *arena;   /* reading: of arrays and texts */
     int         version; /* of the format (sensor/verify/saved_frame/chunks.h) */
-    const char *fault; /* the name of the field; static storage */
+    const char *fault;   /* the name of the field; static storage */
     bool        no_memory;
 } Fields;
 
@@ -100,8 +100,8 @@ void field_bool(Fields *f, const char *name, bool *value);
 void field_real(Fields *f, const char *name, double *value, double low, double high); /* NaN is always out of range */
 void field_reals(Fields *f, const char *name, double *value, int count, double most); /* |value| <= most */
 void field_floats(Fields *f, const char *name, float *value, int count, float low, float high);
-void field_unit(Fields *f, const char *name, double v[3]);        /* length 1 within 1e-6 */
-void field_rotation(Fields *f, const char *name, double r[9]);    /* orthonormal within 1e-6, right-handed */
+void field_unit(Fields *f, const char *name, double v[3]);     /* length 1 within 1e-6 */
+void field_rotation(Fields *f, const char *name, double r[9]); /* orthonormal within 1e-6, right-handed */
 void field_bytes(Fields *f, void *bytes, size_t count);
 void field_text(Fields *f, const char *name, const char **text, size_t most);
 /* In place, terminated. */

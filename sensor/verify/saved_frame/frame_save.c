@@ -45,8 +45,8 @@ static Status list_models(SavedFrame *file, const Catalog *catalog, Arena *arena
         if (m < 0 || m >= models || listed[m]) continue;
         const Model *model = catalog_model(catalog, m);
         SavedModel  *to = &file->model[file->model_count++];
-        listed[m]      = true;
-        to->model      = m;
+        listed[m] = true;
+        to->model = m;
         to->node_count = model->node_count;
         snprintf(to->name, sizeof to->name, "%s", model->name);
         status = saved_model_sha256(to->sha256, model);
@@ -54,12 +54,13 @@ static Status list_models(SavedFrame *file, const Catalog *catalog, Arena *arena
     return status;
 }
 
-/* The nodes of all entities: the snapshot of a frame poses only those that are rendered. joint: their joints' values. */
+/* The nodes of all entities: the snapshot of a frame poses only those that are rendered. joint: their joints' values.
+ */
 static Status pose_nodes(SavedFrame *file, double **joint, const Catalog *catalog, Arena *arena)
 {
     Snapshot    *s = &file->snapshot;
     const size_t nodes = (size_t)s->node_count + 1;
-    NodePose    *pose  = arena_alloc(arena, nodes, sizeof *pose);
+    NodePose    *pose = arena_alloc(arena, nodes, sizeof *pose);
     *joint = arena_alloc(arena, nodes, sizeof **joint);
     if (!pose || !*joint) return STATUS_NO_MEMORY;
     if (s->node) return STATUS_OK;
@@ -76,11 +77,18 @@ static Status gather(SavedFrame *file, SavedMade *made, char **settings, const F
     const Frame *f = save->frame;
     char         catalog[path_size];
     double      *joint;
-    *file = (SavedFrame){.version = f->provenance.version, .host = f->host,
-                        .config_sha256 = f->provenance.config_sha256, .frame = f->number, .time_s = f->time_s,
-                        .unix_s = save->unix_s, .snapshot = f->seen.snapshot, .request = f->request,
-                        .eye = *save->eye, .rate_px_s = {f->rate_px_s[0], f->rate_px_s[1]},
-                        .at_limit = f->record.gimbal_at_limit, .all_on_ground = save->all_on_ground};
+    *file = (SavedFrame){.version = f->provenance.version,
+                         .host = f->host,
+                         .config_sha256 = f->provenance.config_sha256,
+                         .frame = f->number,
+                         .time_s = f->time_s,
+                         .unix_s = save->unix_s,
+                         .snapshot = f->seen.snapshot,
+                         .request = f->request,
+                         .eye = *save->eye,
+                         .rate_px_s = {f->rate_px_s[0], f->rate_px_s[1]},
+                         .at_limit = f->record.gimbal_at_limit,
+                         .all_on_ground = save->all_on_ground};
     memcpy(file->r_ecef_from_body, f->record.r_ecef_from_body, sizeof file->r_ecef_from_body);
     landscape_parts(&file->ground, f->world->landscape);
     file->planted = save->woods != NULL;
@@ -93,8 +101,8 @@ static Status gather(SavedFrame *file, SavedMade *made, char **settings, const F
     if (status == STATUS_OK) status = saved_made(made, f->seen.plane, f->seen.plane_count);
     if (status == STATUS_OK && f->radar) status = saved_radar_gather(file, f->radar, joint);
     if (status != STATUS_OK) return status;
-    file->settings    = *settings;
-    file->plane       = made->plane;
+    file->settings = *settings;
+    file->plane = made->plane;
     file->plane_count = made->plane_count;
     memcpy(file->frame_sha256, made->sha256, sizeof file->frame_sha256);
     return STATUS_OK;
@@ -108,7 +116,7 @@ static Status gather_places(GroundCutout *out, const Frame *f, Arena *arena)
     const Snapshot   *snapshot = &f->seen.snapshot;
     const LocalFrame *frame = &f->world->frame;
     const size_t      most = (size_t)picture->width * (size_t)picture->height + (size_t)snapshot->puff_count + 2;
-    double (*place)[2] = arena_alloc(arena, most, sizeof *place);
+    double(*place)[2] = arena_alloc(arena, most, sizeof *place);
     int n = 1; /* the first is the origin */
     if (!place) return STATUS_NO_MEMORY;
     memcpy(place[n++], view->p_enu, sizeof *place);
@@ -137,13 +145,13 @@ static Status gather_places(GroundCutout *out, const Frame *f, Arena *arena)
 static Status prove(bool *same, const ByteSink *bytes, const FrameSave *save, SeekerRadar *radar, Arena *arena)
 {
     const RadarFrame *measured;
-    const Frame *f = save->frame;
-    SavedFrame    file;
-    SavedAgain  *again = arena_alloc(arena, 1, sizeof *again);
-    Landscape    landscape = {0};
-    World        world = {0};
-    Woods        woods = {0};
-    const SavedStage stage = {&file, &file.snapshot, &world, save->config, save->pool, arena};
+    const Frame      *f = save->frame;
+    SavedFrame        file;
+    SavedAgain       *again = arena_alloc(arena, 1, sizeof *again);
+    Landscape         landscape = {0};
+    World             world = {0};
+    Woods             woods = {0};
+    const SavedStage  stage = {&file, &file.snapshot, &world, save->config, save->pool, arena};
     *same = false;
     if (!again) return STATUS_NO_MEMORY;
     Status status = saved_frame_parse(&file, bytes->bytes, bytes->count, "the file just made", arena);
@@ -173,8 +181,7 @@ static Status prove(bool *same, const ByteSink *bytes, const FrameSave *save, Se
 static Status pack_proved(ByteSink *bytes, double *reach_m, const SavedFrame *file, const FrameSave *save,
                           Arena *gathered)
 {
-    static const double reaches_m[][2] = {
-        {100, 100}, {3000, 100}, {20000, 100}, {20000, 3000}, {INFINITY, INFINITY}};
+    static const double reaches_m[][2] = {{100, 100}, {3000, 100}, {20000, 100}, {20000, 3000}, {INFINITY, INFINITY}};
     GroundCutout        kept = {0};
     Arena              *arena = arena_create();
     SeekerRadar        *radar = NULL;
@@ -195,7 +202,8 @@ static Status pack_proved(ByteSink *bytes, double *reach_m, const SavedFrame *fi
     }
     if (status == STATUS_OK && !same) {
         log_error("frame: frame %d, rendered again from its file, is another picture; nothing is written. Please "
-                  "report this", file->frame);
+                  "report this",
+                  file->frame);
         status = STATUS_BAD_VALUE;
     }
     seeker_radar_destroy(radar);
@@ -215,13 +223,13 @@ static Status write_file(const char *path, const ByteSink *bytes)
 
 Status frame_save(const FrameSave *save)
 {
-    char      path[path_size], *settings = NULL;
-    ByteSink  bytes = {0};
-    double    reach_m = INFINITY;
-    Arena    *arena = arena_create();
+    char        path[path_size], *settings = NULL;
+    ByteSink    bytes = {0};
+    double      reach_m = INFINITY;
+    Arena      *arena = arena_create();
     SavedFrame *file = arena ? arena_alloc(arena, 1, sizeof *file) : NULL;
-    SavedMade *made = arena ? arena_alloc(arena, 1, sizeof *made) : NULL;
-    Status     status = file && made ? STATUS_OK : STATUS_NO_MEMORY;
+    SavedMade  *made = arena ? arena_alloc(arena, 1, sizeof *made) : NULL;
+    Status      status = file && made ? STATUS_OK : STATUS_NO_MEMORY;
     if (snprintf(path, sizeof path, "%s/frame_%06d.pvf", save->out, save->frame->number) >= (int)sizeof path)
         status = STATUS_BAD_VALUE;
     if (status == STATUS_OK) status = gather(file, made, &settings, save, arena);
@@ -229,9 +237,8 @@ Status frame_save(const FrameSave *save)
     if (status == STATUS_OK) status = write_file(path, &bytes);
     if (status == STATUS_OK && !file->ground.invented && isfinite(reach_m))
         log_print("frame %d: %s, %.0f KB; ground within %.0f m of what is seen\n", file->frame, path,
-                1e-3 * (double)bytes.count, reach_m);
-    else if (status == STATUS_OK)
-        log_print("frame %d: %s, %.0f KB\n", file->frame, path, 1e-3 * (double)bytes.count);
+                  1e-3 * (double)bytes.count, reach_m);
+    else if (status == STATUS_OK) log_print("frame %d: %s, %.0f KB\n", file->frame, path, 1e-3 * (double)bytes.count);
     free(settings);
     sink_free(&bytes);
     arena_destroy(arena);

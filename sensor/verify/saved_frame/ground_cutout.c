@@ -94,9 +94,9 @@ static void pack_u16(uint8_t *out, const uint16_t *value, size_t count)
     uint16_t before = 0;
     for (size_t n = 0; n < count; n++) {
         const uint16_t step = (uint16_t)(value[n] - before);
-        out[n]         = (uint8_t)step;
+        out[n] = (uint8_t)step;
         out[count + n] = (uint8_t)(step >> 8);
-        before         = value[n];
+        before = value[n];
     }
 }
 
@@ -104,7 +104,7 @@ static void unpack_u16(uint16_t *value, const uint8_t *in, size_t count)
 {
     uint16_t before = 0;
     for (size_t n = 0; n < count; n++) {
-        before   = (uint16_t)(before + (in[n] | in[count + n] << 8));
+        before = (uint16_t)(before + (in[n] | in[count + n] << 8));
         value[n] = before;
     }
 }
@@ -116,7 +116,7 @@ void ground_cutout_put(ByteSink *sink, const CutoutGrid *grid, const void *value
     uint8_t  tile_bytes[tile_values * most_octets], packed[tile_values * most_octets];
     uint16_t words[tile_values];
     Tiles    t = tiles_of(grid);
-    t.kept     = calloc(t.octets, 1);
+    t.kept = calloc(t.octets, 1);
     sink->failed |= !t.kept;
     if (sink->failed) goto done;
     sink->failed |= !keep_tiles(&t, grid, kept);
@@ -124,12 +124,13 @@ void ground_cutout_put(ByteSink *sink, const CutoutGrid *grid, const void *value
     sink_bytes(sink, t.kept, t.octets);
     for (size_t tile = 0; tile < (size_t)t.nx * (size_t)t.ny; tile++) {
         if (!is_kept(t.kept, tile)) continue;
-        const TileBox b   = box_of(&t, grid, tile);
+        const TileBox b = box_of(&t, grid, tile);
         const size_t  row = (size_t)b.nx * (size_t)grid->octets;
         for (int j = 0; j < b.ny; j++)
             memcpy(tile_bytes + (size_t)j * row,
                    (const uint8_t *)values +
-                       ((size_t)(b.j0 + j) * (size_t)grid->nx + (size_t)b.i0) * (size_t)grid->octets, row);
+                       ((size_t)(b.j0 + j) * (size_t)grid->nx + (size_t)b.i0) * (size_t)grid->octets,
+                   row);
         if (grid->octets == 2) {
             memcpy(words, tile_bytes, 2 * b.values);
             pack_u16(packed, words, b.values);
@@ -143,12 +144,12 @@ done:
 void ground_cutout_get(ByteSource *source, const CutoutGrid *grid, void *values)
 {
     uint16_t       words[tile_values];
-    const Tiles    t    = tiles_of(grid);
+    const Tiles    t = tiles_of(grid);
     const uint8_t *kept = source_bytes(source, t.octets);
     for (size_t tile = 0; kept && tile < (size_t)t.nx * (size_t)t.ny; tile++) {
         if (!is_kept(kept, tile)) continue;
-        const TileBox  b     = box_of(&t, grid, tile);
-        const size_t   row   = (size_t)b.nx * (size_t)grid->octets;
+        const TileBox  b = box_of(&t, grid, tile);
+        const size_t   row = (size_t)b.nx * (size_t)grid->octets;
         const uint8_t *bytes = source_bytes(source, b.values * (size_t)grid->octets);
         if (!bytes) return;
         if (grid->octets == 2) {
@@ -156,8 +157,7 @@ void ground_cutout_get(ByteSource *source, const CutoutGrid *grid, void *values)
             bytes = (const uint8_t *)words;
         }
         for (int j = 0; j < b.ny; j++)
-            memcpy((uint8_t *)values +
-                       ((size_t)(b.j0 + j) * (size_t)grid->nx + (size_t)b.i0) * (size_t)grid->octets,
+            memcpy((uint8_t *)values + ((size_t)(b.j0 + j) * (size_t)grid->nx + (size_t)b.i0) * (size_t)grid->octets,
                    bytes + (size_t)j * row, row);
     }
 }

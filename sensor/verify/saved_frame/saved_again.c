@@ -12,11 +12,16 @@ static double value_at(const Plane *plane, size_t i)
 {
     const float *part = plane->values;
     switch (plane->type) {
-    case PLANE_C64: return hypot((double)part[2 * i], (double)part[2 * i + 1]);
-    case PLANE_F32: return (double)((const float *)plane->values)[i];
-    case PLANE_U32: return ((const uint32_t *)plane->values)[i];
-    case PLANE_U8: return ((const uint8_t *)plane->values)[i];
-    case PLANE_F64: break;
+    case PLANE_C64:
+        return hypot((double)part[2 * i], (double)part[2 * i + 1]);
+    case PLANE_F32:
+        return (double)((const float *)plane->values)[i];
+    case PLANE_U32:
+        return ((const uint32_t *)plane->values)[i];
+    case PLANE_U8:
+        return ((const uint8_t *)plane->values)[i];
+    case PLANE_F64:
+        break;
     }
     return ((const double *)plane->values)[i];
 }
@@ -26,14 +31,14 @@ static void measure(SavedPlane *out, const Plane *plane)
     const size_t count = (size_t)plane->width * (size_t)plane->height;
     double       sum = 0;
     out->finite = 0;
-    out->low    = INFINITY;
-    out->high   = -INFINITY;
+    out->low = INFINITY;
+    out->high = -INFINITY;
     for (size_t i = 0; i < count; i++) {
         const double value = value_at(plane, i);
         if (!isfinite(value)) continue;
         out->finite++;
         sum += value;
-        out->low  = fmin(out->low, value);
+        out->low = fmin(out->low, value);
         out->high = fmax(out->high, value);
     }
     out->mean = out->finite > 0 ? sum / out->finite : 0;
@@ -59,14 +64,19 @@ Status saved_again(SavedAgain *out, const SavedStage *stage, bool no_skip)
 {
     const SavedFrame *file = stage->file;
     const World      *world = stage->world;
-    RenderRequest  request = file->request;
-    const double  *p_ecef = file->eye.p_ecef;
-    const FrameEye at = {file->unix_s + file->time_s, {p_ecef[0], p_ecef[1], p_ecef[2]}, &request.view, request.bands, &stage->snapshot->marks};
-    Air            air;
-    double         r_host_from_enu[9];
+    RenderRequest     request = file->request;
+    const double     *p_ecef = file->eye.p_ecef;
+    const FrameEye    at = {file->unix_s + file->time_s,
+                            {p_ecef[0], p_ecef[1], p_ecef[2]},
+                            &request.view,
+                            request.bands,
+                            &stage->snapshot->marks};
+    Air               air;
+    double            r_host_from_enu[9];
     request.skips_off = no_skip ? skips_all_off : 0;
-    Status status     = frame_light(&air, &out->sun, r_host_from_enu, world, stage->config, &at, stage->pool, stage->arena);
-    if (status == STATUS_OK) status = render(&out->picture, world, stage->snapshot, &request, &air, stage->pool, stage->arena);
+    Status status = frame_light(&air, &out->sun, r_host_from_enu, world, stage->config, &at, stage->pool, stage->arena);
+    if (status == STATUS_OK)
+        status = render(&out->picture, world, stage->snapshot, &request, &air, stage->pool, stage->arena);
     if (status != STATUS_OK) return status;
     if (out->picture.normal[0]) frame_turn_normals(&out->picture, r_host_from_enu);
     FrameArray plane[frame_max_planes];
@@ -95,8 +105,8 @@ int saved_differences(const SavedFrame *file, const SavedMade *made, bool said)
             continue;
         }
         log_error("frame: %s differs: mean %.9g, was %.9g; from %.9g to %.9g, was %.9g to %.9g; %.0f finite values, "
-                  "were %.0f", was->name, is->mean, was->mean, is->low, is->high, was->low, was->high, is->finite,
-                  was->finite);
+                  "were %.0f",
+                  was->name, is->mean, was->mean, is->low, is->high, was->low, was->high, is->finite, was->finite);
     }
     for (int i = 0; i < made->plane_count; i++) {
         if (plane_named(file->plane, file->plane_count, made->plane[i].name)) continue;
@@ -124,8 +134,12 @@ Status saved_radar_gather(SavedFrame *file, const RadarFrame *radar, double *joi
 {
     SavedRadar *r = &file->radar;
     file->measured = true;
-    *r = (SavedRadar){.has_aim = !isnan(radar->aim_m), .aim_m = isnan(radar->aim_m) ? 0 : radar->aim_m, .number = radar->number,
-                      .joint_count = file->snapshot.node_count, .joint = joint, .detections = radar->detections_in_all};
+    *r = (SavedRadar){.has_aim = !isnan(radar->aim_m),
+                      .aim_m = isnan(radar->aim_m) ? 0 : radar->aim_m,
+                      .number = radar->number,
+                      .joint_count = file->snapshot.node_count,
+                      .joint = joint,
+                      .detections = radar->detections_in_all};
     memcpy(r->v_enu_mps, radar->v_enu_mps, sizeof r->v_enu_mps);
     memcpy(r->aim_v_enu_mps, radar->aim_v_enu_mps, sizeof r->aim_v_enu_mps);
     return hash_of(r->map_sha256, radar);
@@ -136,10 +150,17 @@ Status saved_radar_again(const RadarFrame **out, SeekerRadar *radar, const Saved
     const SavedFrame *file = stage->file;
     const SavedRadar *r = &file->radar;
     const Weather     weather = frame_weather_at(stage->config, stage->world, file->unix_s + file->time_s);
-    RadarScene        scene = {.world = stage->world, .snapshot = stage->snapshot, .joint = r->joint, .view = &file->request.view,
-                               .hidden = file->request.hidden_entity, .reference_m = r->has_aim ? r->aim_m : NAN,
-                               .t_s = file->time_s, .weather = &weather, .number = r->number,
-                               .range_m = picture->range_m, .entity = picture->entity};
+    RadarScene        scene = {.world = stage->world,
+                               .snapshot = stage->snapshot,
+                               .joint = r->joint,
+                               .view = &file->request.view,
+                               .hidden = file->request.hidden_entity,
+                               .reference_m = r->has_aim ? r->aim_m : NAN,
+                               .t_s = file->time_s,
+                               .weather = &weather,
+                               .number = r->number,
+                               .range_m = picture->range_m,
+                               .entity = picture->entity};
     memcpy(scene.v_enu_mps, r->v_enu_mps, sizeof scene.v_enu_mps);
     memcpy(scene.reference_v_enu_mps, r->aim_v_enu_mps, sizeof scene.reference_v_enu_mps);
     return seeker_radar_measure(out, radar, &scene, stage->pool, stage->arena);
@@ -149,6 +170,7 @@ Status saved_radar_same(bool *same, const SavedFrame *file, const RadarFrame *ra
 {
     char         hash[sha256_text_size];
     const Status status = hash_of(hash, radar);
-    *same = status == STATUS_OK && strcmp(hash, file->radar.map_sha256) == 0 && radar->detections_in_all == file->radar.detections;
+    *same = status == STATUS_OK && strcmp(hash, file->radar.map_sha256) == 0 &&
+            radar->detections_in_all == file->radar.detections;
     return status;
 }

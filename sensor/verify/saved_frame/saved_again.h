@@ -30,12 +30,12 @@ typedef struct SavedStage {
     const World      *world;
     const Config     *config;
     Pool             *pool;
-    Arena            *arena;    /* of the results */
+    Arena            *arena; /* of the results */
 } SavedStage;
 
 Status saved_again(SavedAgain *out, const SavedStage *stage, bool no_skip);
 /* How many planes differ from those of the file, including planes that only one of them has. said: each is logged. */
-int    saved_differences(const SavedFrame *file, const SavedMade *made, bool said);
+int saved_differences(const SavedFrame *file, const SavedMade *made, bool said);
 
 /* ---- the radar: what it was given, and its map measured again ------------------------------------ */
 

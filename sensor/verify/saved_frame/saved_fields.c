@@ -54,13 +54,19 @@ void saved_fields_models(Fields *f, SavedFrame *file)
 static void entity_fields(Fields *f, SnapshotEntity *e)
 {
     uint32_t id[3] = {e->id.site, e->id.application, e->id.entity}, appearance = e->appearance;
-    uint8_t  type[9] = {e->type.kind, e->type.domain, (uint8_t)(e->type.country >> 8), (uint8_t)e->type.country,
-                        e->type.category, e->type.subcategory, e->type.specific, e->type.extra, e->force};
+    uint8_t  type[9] = {e->type.kind,
+                        e->type.domain,
+                        (uint8_t)(e->type.country >> 8),
+                        (uint8_t)e->type.country,
+                        e->type.category,
+                        e->type.subcategory,
+                        e->type.specific,
+                        e->type.extra,
+                        e->force};
     for (int k = 0; k < 3; k++) field_u32(f, &id[k]);
     field_bytes(f, type, sizeof type);
-    e->id    = (DisEntityId){(uint16_t)id[0], (uint16_t)id[1], (uint16_t)id[2]};
-    e->type  = (DisEntityType){type[0], type[1], (uint16_t)(type[2] << 8 | type[3]), type[4], type[5], type[6],
-                               type[7]};
+    e->id = (DisEntityId){(uint16_t)id[0], (uint16_t)id[1], (uint16_t)id[2]};
+    e->type = (DisEntityType){type[0], type[1], (uint16_t)(type[2] << 8 | type[3]), type[4], type[5], type[6], type[7]};
     e->force = type[8];
     field_chars(f, "marking", e->marking, sizeof e->marking);
     field_u32(f, &appearance);
@@ -123,19 +129,18 @@ void saved_fields_snapshot(Fields *f, SavedFrame *file)
     field_int(f, "entities left out", &s->left_out, 0, INT32_MAX - 1);
     field_bytes(f, &left, sizeof left);
     s->puffs_left_out = left;
-    if (!field_array(f, "entities", &s->count, (void **)&s->entity, sizeof *s->entity, 220, saved_entities_max))
-        return;
+    if (!field_array(f, "entities", &s->count, (void **)&s->entity, sizeof *s->entity, 220, saved_entities_max)) return;
     for (int e = 0; e < s->count && fields_good(f); e++) entity_fields(f, &s->entity[e]);
     if (!field_array(f, "nodes", &s->node_count, (void **)&s->node, sizeof *s->node, 96, INT32_MAX - 1)) return;
     for (int n = 0; n < s->node_count && fields_good(f); n++) {
         field_reals(f, "place of a node", s->node[n].p_body, 3, local_m);
         field_rotation(f, "attitude of a node", s->node[n].r_body_from_node);
     }
-    if (!field_array(f, "puffs", &s->puff_count, (void **)&s->puff, sizeof *s->puff, 150, effect_puff_capacity))
-        return;
+    if (!field_array(f, "puffs", &s->puff_count, (void **)&s->puff, sizeof *s->puff, 150, effect_puff_capacity)) return;
     for (int p = 0; p < s->puff_count && fields_good(f); p++) puff_fields(f, &s->puff[p]);
     if (f->version >= 3) {
-        if (!field_array(f, "patches", &s->patch_count, (void **)&s->patch_k, sizeof *s->patch_k, 4, INT32_MAX - 1)) return;
+        if (!field_array(f, "patches", &s->patch_count, (void **)&s->patch_k, sizeof *s->patch_k, 4, INT32_MAX - 1))
+            return;
         field_floats(f, "temperature of a patch", s->patch_k, s->patch_count, 0.1f, 1e5f);
     }
     for (int e = 0; f->from && e < s->count && fields_good(f); e++)
@@ -164,7 +169,8 @@ static void stand_fields(Fields *f, GroundStand *s)
     field_reals(f, "place of a stand", s->p_ecef, 3, earth_m);
     field_rotation(f, "attitude of a stand", s->r_ecef_from_body);
     field_floats(f, "box of a stand", s->low_m, 3, -largest_m, largest_m);
-    for (int k = 0; k < 3; k++) field_floats(f, "box of a stand", &s->high_m[k], 1, f->from ? s->low_m[k] : 0, largest_m);
+    for (int k = 0; k < 3; k++)
+        field_floats(f, "box of a stand", &s->high_m[k], 1, f->from ? s->low_m[k] : 0, largest_m);
     field_real(f, "begin of a stand", &s->from_s, -long_s, long_s);
     field_real(f, "end of a stand", &s->to_s, s->from_s, INFINITY);
     field_u64(f, &s->owner);
@@ -203,7 +209,8 @@ void saved_fields_marks(Fields *f, SavedFrame *file)
     field_u64(f, &forgotten);
     m->forgotten = (int64_t)forgotten;
     if (f->from && m->forgotten < 0 && fields_good(f)) f->fault = "marks forgotten";
-    if (!field_array(f, "stands", &m->stands, (void **)&stand, sizeof *stand, stand_octets, ground_stand_capacity)) return;
+    if (!field_array(f, "stands", &m->stands, (void **)&stand, sizeof *stand, stand_octets, ground_stand_capacity))
+        return;
     m->stand = stand;
     for (int i = 0; i < m->stands && fields_good(f); i++) stand_fields(f, &stand[i]);
     if (!field_array(f, "tracks", &m->tracks, (void **)&track, sizeof *track, track_octets, ground_tracks_most)) return;
@@ -255,7 +262,7 @@ void saved_fields_request(Fields *f, SavedFrame *file)
     field_real(f, "range profile", &r->profile_near_m, 0, earth_m);
     field_real(f, "range profile", &r->profile_bin_m, 0, 100);
     field_int(f, "range profile", &r->profile_bins, 0, 65536);
-    r->bands   = (unsigned)bands;
+    r->bands = (unsigned)bands;
     r->optical = (OpticalChannels)optical;
 
     field_reals(f, "place of the eye", file->eye.p_ecef, 3, earth_m);

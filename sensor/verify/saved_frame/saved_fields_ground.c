@@ -8,8 +8,8 @@
 
 static void evidence_fields(Fields *f, LandscapeEvidence *said)
 {
-    GroundFix  *fix   = (GroundFix *)said->fix;
-    ClearLine  *line  = (ClearLine *)said->line;
+    GroundFix  *fix = (GroundFix *)said->fix;
+    ClearLine  *line = (ClearLine *)said->line;
     CoastPlace *place = (CoastPlace *)said->place;
     field_real(f, "height of the sea", &said->sea_h_m, -local_m, local_m);
     if (!field_array(f, "places of the ground", &said->fix_count, (void **)&fix, sizeof *fix, 28, landscape_parts_rows))
@@ -32,8 +32,8 @@ static void evidence_fields(Fields *f, LandscapeEvidence *said)
         field_real(f, "place of sea or land", &place[i].y_m, -local_m, local_m);
         field_bool(f, "place of sea or land", &place[i].sea);
     }
-    said->fix   = fix;
-    said->line  = line;
+    said->fix = fix;
+    said->line = line;
     said->place = place;
 }
 

@@ -19,8 +19,8 @@ static bool has_radar(const SavedFrame *file) { return file->measured; }
 
 static const struct Chunk {
     const char  *name;
-    ChunkFields *fields; /* NULL: the ground, which may be a cut-out */
-    bool       (*is_there)(const SavedFrame *file); /* NULL: in every file */
+    ChunkFields *fields;                      /* NULL: the ground, which may be a cut-out */
+    bool (*is_there)(const SavedFrame *file); /* NULL: in every file */
 } chunks[] = {
     {"about", saved_fields_about, NULL},       {"settings", saved_fields_settings, NULL},
     {"tables", saved_fields_tables, NULL},     {"models", saved_fields_models, NULL},
@@ -37,7 +37,7 @@ Status saved_frame_pack(ByteSink *out, const SavedFrame *file, const GroundCutou
     chunks_begin(out);
     for (int c = 0; c < chunk_kinds; c++) {
         ByteSink content = {0};
-        Fields   f       = {.to = &content, .version = chunks_version};
+        Fields   f = {.to = &content, .version = chunks_version};
         if (chunks[c].is_there && !chunks[c].is_there(file)) continue;
         if (chunks[c].fields) chunks[c].fields(&f, &fields);
         else saved_fields_ground(&f, &fields, kept);
@@ -68,7 +68,8 @@ static const char *disagreement(const SavedFrame *file)
         if (s->entity[e].model >= 0 && !model) return "an entity's model is not listed";
         if (model && model->node_count > s->node_count - s->entity[e].first_node) return "an entity has too few nodes";
     }
-    if (file->measured && file->radar.joint_count != s->node_count) return "the radar has other joints than the snapshot";
+    if (file->measured && file->radar.joint_count != s->node_count)
+        return "the radar has other joints than the snapshot";
     if ((file->request.bands >> BAND_RADAR & 1) && file->request.profile_bins > 0 && !(file->request.profile_bin_m > 0))
         return "the range profile has no bins";
     return NULL;
@@ -103,7 +104,7 @@ Status saved_frame_parse(SavedFrame *out, const uint8_t *bytes, size_t count, co
     ChunkSource source;
     unsigned    met = 0;
     const char *field = NULL;
-    *out          = (SavedFrame){0};
+    *out = (SavedFrame){0};
     Status status = chunks_open(&source, bytes, count, arena);
     if (status == STATUS_OK) status = parse(out, &source, &met, &field);
     for (int c = 0; c < chunk_kinds; c++) met |= (chunks[c].is_there ? 1u : 0u) << c;
@@ -117,7 +118,10 @@ Status saved_frame_parse(SavedFrame *out, const uint8_t *bytes, size_t count, co
     if (status == STATUS_NO_MEMORY) log_error("frame: %s: out of memory", path);
     else if (status != STATUS_OK)
         log_error("frame: %s cannot be read: %s%s; save it again with `pitviper replay LOG --save-frame N`", path,
-                  field ? "out of range: " : "", field ? field : source.fault ? source.fault : status_name(status));
+                  field ? "out of range: " : "",
+                  field          ? field
+                  : source.fault ? source.fault
+                                 : status_name(status));
     return status;
 }
 

@@ -19,49 +19,49 @@ enum { saved_models_max = 4096, saved_entities_max = 1 << 20 };
 
 /* A model in the snapshot. */
 typedef struct SavedModel {
-    int  model, node_count;          /* of the catalog that the frame was rendered with */
+    int  model, node_count; /* of the catalog that the frame was rendered with */
     char name[model_name_size];
-    char sha256[sha256_text_size];   /* of its nodes, parts and facets */
+    char sha256[sha256_text_size]; /* of its nodes, parts and facets */
 } SavedModel;
 
 /* The results. The statistics are of the finite values alone: they show by how much a plane differs when its hash
  * does. */
 typedef struct SavedPlane {
     char   name[frame_plane_name_size]; /* lwir/Y, truth/range_m ... as named in hashes of frames */
-    char   sha256[sha256_text_size]; /* of this plane by itself (plane_hash) */
+    char   sha256[sha256_text_size];    /* of this plane by itself (plane_hash) */
     double finite, mean, low, high;
 } SavedPlane;
 
 /* What a radar was given besides, and what it made. */
 typedef struct SavedRadar {
-    double   v_enu_mps[3];            /* of the antenna */
+    double   v_enu_mps[3]; /* of the antenna */
     bool     has_aim;
     double   aim_m, aim_v_enu_mps[3];
-    uint32_t number;                  /* for its noise */
+    uint32_t number; /* for its noise */
     int      joint_count;
-    double  *joint;                   /* [snapshot.node_count] */
+    double  *joint; /* [snapshot.node_count] */
     char     map_sha256[sha256_text_size];
-    int      detections;              /* in all */
+    int      detections; /* in all */
 } SavedRadar;
 
 typedef struct SavedFrame {
     const char    *version, *host, *config_sha256; /* of the program; of the frame */
-    const char    *settings;         /* YAML as config_read accepts it; without terrain files */
+    const char    *settings;                       /* YAML as config_read accepts it; without terrain files */
     int            frame;
-    double         time_s, unix_s;   /* exercise time; Unix time of exercise time 0 */
+    double         time_s, unix_s; /* exercise time; Unix time of exercise time 0 */
     TablesUsed     tables;
     int            model_count;
     SavedModel    *model;
-    Snapshot       snapshot;         /* effect_table: the reader's to fill in */
+    Snapshot       snapshot; /* effect_table: the reader's to fill in */
     RenderRequest  request;
     EyeState       eye;
     double         r_ecef_from_body[9];
-    double         rate_px_s[2];     /* image motion of the scene, for detectors */
+    double         rate_px_s[2]; /* image motion of the scene, for detectors */
     bool           at_limit, all_on_ground;
     LandscapeParts ground;
-    bool           planted;          /* the ground has plants, grown again from: */
-    WoodsConfig    woods;            /* its store is the ground's */
-    bool           measured;         /* a radar did: */
+    bool           planted;  /* the ground has plants, grown again from: */
+    WoodsConfig    woods;    /* its store is the ground's */
+    bool           measured; /* a radar did: */
     SavedRadar     radar;
     char           frame_sha256[sha256_text_size];
     int            plane_count;

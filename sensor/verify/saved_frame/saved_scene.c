@@ -37,12 +37,14 @@ static Status open_store(Landscape *out, const LandscapeParts *parts)
     const Status status = store_open_landscape(out, parts->store, parts->config.seed);
     if (status != STATUS_OK) {
         log_error("frame: the frame was made over the terrain store %s; put it back there, or make it again with "
-                  "`pitviper terrain import` from the same files", parts->store);
+                  "`pitviper terrain import` from the same files",
+                  parts->store);
         return status;
     }
     if (landscape_map(out).content == parts->store_content) return STATUS_OK;
     log_error("frame: the terrain store %s is not the one that the frame was made over: its content has another hash; "
-              "put the old one back, or make it again with `pitviper terrain import` from the same files", parts->store);
+              "put the old one back, or make it again with `pitviper terrain import` from the same files",
+              parts->store);
     landscape_destroy(out);
     return STATUS_BAD_VALUE;
 }
@@ -103,9 +105,9 @@ static Status choose_sensors(SavedScene *s, const SavedFrame *file)
     if (!choices) return STATUS_NO_MEMORY;
     const Status status = sensors_choose(&s->sensors, choices, &s->config, r->bands);
     free(choices);
-    s->config.sensor.width_px  = r->view.width;
+    s->config.sensor.width_px = r->view.width;
     s->config.sensor.height_px = r->view.height;
-    s->config.sensor.samples   = r->samples;
+    s->config.sensor.samples = r->samples;
     if (r->edge_samples > 0) s->config.sensor.edge_samples = r->edge_samples;
     return status;
 }

@@ -13,10 +13,10 @@ typedef struct SavedScene {
     Sensors     sensors;
     Catalog    *catalog;
     Landscape   landscape;
-    Woods       woods;         /* of the world's plants, if any */
+    Woods       woods; /* of the world's plants, if any */
     World       world;
     EffectTable effects;
-    Snapshot    snapshot;      /* the file's, with the models of this catalog */
+    Snapshot    snapshot; /* the file's, with the models of this catalog */
     int         tables_differ;
 } SavedScene;
 
@@ -36,7 +36,8 @@ Status saved_ground_plant(World *world, Woods *woods, const SavedFrame *file, co
 
 /* ---- tables -------------------------------------------------------------------------------------- */
 
-/* The tables that a frame depends on: those of tables_used, and the user's own; models.catalog and models.materials are listed by these names. catalog: that of etc/. */
+/* The tables that a frame depends on: those of tables_used, and the user's own; models.catalog and models.materials are
+ * listed by these names. catalog: that of etc/. */
 Status saved_tables(TablesUsed *out, const Config *config, const char *catalog);
 
 #endif

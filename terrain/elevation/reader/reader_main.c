@@ -18,9 +18,9 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-static RasterSet    set;
-static WireChannel *channels;
-static int          sockets[wire_channels];
+static RasterSet                  set;
+static WireChannel               *channels;
+static int                        sockets[wire_channels];
 static _Thread_local WireChannel *here; /* whose request this thread works at */
 static _Thread_local size_t       said; /* octets of its log */
 
@@ -51,7 +51,7 @@ static char **own_folders(void)
     static const char *const fixed[] = {"/usr/share/gdal", "/usr/share/proj", "/usr/lib/x86_64-linux-gnu/gconv",
                                         "/usr/lib/aarch64-linux-gnu/gconv", "/usr/lib64/gconv"};
     static const char *const named[] = {"GDAL_DATA", "PROJ_DATA", "PROJ_LIB"};
-    char **list = NULL;
+    char                   **list = NULL;
     for (size_t k = 0; k < sizeof fixed / sizeof *fixed; k++) list = CSLAddString(list, fixed[k]);
     for (size_t k = 0; k < sizeof named / sizeof *named; k++) {
         char *folder = getenv(named[k]), *rest = NULL;
@@ -77,11 +77,12 @@ static Status confine(const char *paths, bool within, const char *key)
     int count = 0;
     while (own[count]) count++;
     const bool held = confine_files(why, (const char *const *)own, count);
-    reader_by_name  = !held || within;
+    reader_by_name = !held || within;
     if (!held) log_detail("%s: files are kept within their folders by name alone: %s", key, why);
     if (confine_calls(why)) return STATUS_OK;
-    log_error("%s: files from outside are not read without confinement, which this system refuses: %s; allow seccomp filters", key,
-              why);
+    log_error(
+        "%s: files from outside are not read without confinement, which this system refuses: %s; allow seccomp filters",
+        key, why);
     return STATUS_IO;
 }
 
@@ -95,7 +96,8 @@ static Status open_set(WireChannel *c, const char *key)
     const char *within = paths + strlen(paths) + 1, *from = within + strlen(within) + 1;
     char       *copy = strdup(paths);
     if (!copy) return STATUS_NO_MEMORY;
-    if (*here_now && chdir(here_now) != 0) log_detail("%s: %s: %s", key, here_now, strerror(errno)); /* names may be absolute */
+    if (*here_now && chdir(here_now) != 0)
+        log_detail("%s: %s: %s", key, here_now, strerror(errno)); /* names may be absolute */
     Status status = reader_prepare();
     reader_source_begin(within, from);
     if (status == STATUS_OK) status = confine(copy, *within, key);
@@ -113,14 +115,32 @@ static Status tell_raster(WireChannel *c, const Raster *r)
 {
     const RasterStated *t = &r->stated;
     const RasterChoice *u = &r->choice;
-    WireRaster w = {.posting_m = {r->posting_m[0], r->posting_m[1]}, .metres_per_unit = r->metres_per_unit,
-                    .data_share = r->data_share, .width = r->width, .height = r->height, .bands = r->bands,
-                    .vertical = (int32_t)u->vertical, .order = r->order, .row_block = r->row_block,
-                    .sheet_count = r->sheet_count, .ellipsoidal = r->ellipsoidal, .bytes = r->bytes,
-                    .whole = r->whole, .sparse = r->sparse, .crs_unit_m = t->crs_unit_m, .unit_of_crs = t->unit_of_crs,
-                    .down = t->down, .coloured = t->coloured, .grey = t->grey, .has_nodata = t->has_nodata,
-                    .nodata = t->nodata, .band = u->band, .sense = u->sense, .has_void = u->has_void,
-                    .no_void = u->no_void, .void_value = u->void_value};
+    WireRaster          w = {.posting_m = {r->posting_m[0], r->posting_m[1]},
+                             .metres_per_unit = r->metres_per_unit,
+                             .data_share = r->data_share,
+                             .width = r->width,
+                             .height = r->height,
+                             .bands = r->bands,
+                             .vertical = (int32_t)u->vertical,
+                             .order = r->order,
+                             .row_block = r->row_block,
+                             .sheet_count = r->sheet_count,
+                             .ellipsoidal = r->ellipsoidal,
+                             .bytes = r->bytes,
+                             .whole = r->whole,
+                             .sparse = r->sparse,
+                             .crs_unit_m = t->crs_unit_m,
+                             .unit_of_crs = t->unit_of_crs,
+                             .down = t->down,
+                             .coloured = t->coloured,
+                             .grey = t->grey,
+                             .has_nodata = t->has_nodata,
+                             .nodata = t->nodata,
+                             .band = u->band,
+                             .sense = u->sense,
+                             .has_void = u->has_void,
+                             .no_void = u->no_void,
+                             .void_value = u->void_value};
     memcpy(w.type, t->type, sizeof w.type);
     memcpy(w.unit, t->unit, sizeof w.unit);
     memcpy(w.crs, t->crs, sizeof w.crs);
@@ -157,8 +177,10 @@ static Status answer(WireChannel *c)
     limited.low = q->low, limited.high = q->high;
     const Raster *raster = &limited;
     switch ((WireAsk)q->ask) {
-    case WIRE_RASTER: return tell_raster(c, raster);
-    case WIRE_SHEETS: return tell_sheets(c, raster);
+    case WIRE_RASTER:
+        return tell_raster(c, raster);
+    case WIRE_SHEETS:
+        return tell_sheets(c, raster);
     case WIRE_PX_FROM_EARTH:
     case WIRE_EARTH_FROM_PX: {
         double *x = (double *)(void *)c->data;
@@ -181,7 +203,8 @@ static Status answer(WireChannel *c)
         return reader_read_bytes(c->data, valid, raster, q->first, q->count,
                                  (RasterWindow){q->x0, q->y0, q->width, q->height}, q->key);
     }
-    default: return STATUS_BAD_VALUE;
+    default:
+        return STATUS_BAD_VALUE;
     }
 }
 
@@ -195,9 +218,9 @@ static void *serve_channel(void *number)
         const ssize_t got = read(socket, &octet, 1);
         if (got < 0 && errno == EINTR) continue;
         if (got != 1) _exit(0); /* the program has no more use for it, or is no more */
-        said             = 0;
-        here->log[0]     = 0;
-        here->reply      = (WireReply){.status = STATUS_IO};
+        said = 0;
+        here->log[0] = 0;
+        here->reply = (WireReply){.status = STATUS_IO};
         here->reply.status = (int32_t)answer(here);
         if (write(socket, &octet, 1) != 1) _exit(0);
     }
@@ -212,7 +235,8 @@ static void read_set(const int descriptor[wire_descriptors], pid_t parent)
     if (getppid() != parent) _exit(0);
     close(wire_orders);
     memcpy(sockets, descriptor, sizeof sockets);
-    channels = mmap(NULL, wire_channels * sizeof *channels, PROT_READ | PROT_WRITE, MAP_SHARED, descriptor[wire_channels], 0);
+    channels =
+        mmap(NULL, wire_channels * sizeof *channels, PROT_READ | PROT_WRITE, MAP_SHARED, descriptor[wire_channels], 0);
     close(descriptor[wire_channels]);
     if (channels == MAP_FAILED) _exit(3);
     log_set_sink(say, NULL);
@@ -228,8 +252,9 @@ static bool next_order(WireOrder *order, int descriptor[wire_descriptors])
         struct cmsghdr header;
         char           octets[CMSG_SPACE(wire_descriptors * sizeof(int))];
     } control;
-    struct msghdr message = {.msg_iov = &text, .msg_iovlen = 1, .msg_control = &control, .msg_controllen = sizeof control};
-    ssize_t       got;
+    struct msghdr message = {
+        .msg_iov = &text, .msg_iovlen = 1, .msg_control = &control, .msg_controllen = sizeof control};
+    ssize_t got;
     do got = recvmsg(wire_orders, &message, MSG_CMSG_CLOEXEC);
     while (got < 0 && errno == EINTR);
     const struct cmsghdr *c = got > 0 ? CMSG_FIRSTHDR(&message) : NULL;
@@ -241,7 +266,8 @@ static bool next_order(WireOrder *order, int descriptor[wire_descriptors])
 
 int main(void)
 {
-    static const int left_to_the_program[] = {SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGUSR1, SIGUSR2, SIGALRM, SIGPIPE, SIGTSTP};
+    static const int left_to_the_program[] = {SIGHUP,  SIGINT,  SIGQUIT, SIGTERM, SIGUSR1,
+                                              SIGUSR2, SIGALRM, SIGPIPE, SIGTSTP};
     const pid_t      self = getpid();
     WireOrder        order;
     int              descriptor[wire_descriptors];
@@ -262,7 +288,8 @@ int main(void)
             for (int n = 0; n < wire_descriptors; n++) close(descriptor[n]);
         } else if (order.kind == WIRE_END && order.process > 0) {
             kill(order.process, SIGKILL); /* one that has ended already keeps its own status */
-            while (waitpid(order.process, &how, 0) < 0 && errno == EINTR) {}
+            while (waitpid(order.process, &how, 0) < 0 && errno == EINTR) {
+            }
             answer = how;
         }
         if (write(wire_orders, &answer, sizeof answer) != (ssize_t)sizeof answer) break;

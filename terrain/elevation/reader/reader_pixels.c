@@ -96,7 +96,8 @@ static bool common_part(int part[4], const RasterSheet *s, RasterWindow window)
 
 static Status damaged(const RasterSheet *s, const char *key)
 {
-    log_error("%s: %s is damaged: %s; fetch it again, or leave it out", key, s->path, reader_reason("rows are missing"));
+    log_error("%s: %s is damaged: %s; fetch it again, or leave it out", key, s->path,
+              reader_reason("rows are missing"));
     return STATUS_IO;
 }
 
@@ -105,7 +106,7 @@ static Status read_sheet(float *out, const Raster *raster, const RasterSheet *s,
                          RasterWindow window, const char *key)
 {
     const int x0 = window.x0, y0 = window.y0, width = window.width;
-    int part[4];
+    int       part[4];
     if (!common_part(part, s, window)) return STATUS_OK;
     const int w = part[2] - part[0], h = part[3] - part[1];
     const int strip = h < 256 ? h : 256;
@@ -130,12 +131,14 @@ static Status read_sheet(float *out, const Raster *raster, const RasterSheet *s,
     if (first && !more && scale == 1 && offset == 0) { /* nothing else is there: without a copy */
         float *to = out + (size_t)(part[1] - y0) * (size_t)width + (size_t)(part[0] - x0);
         status = GDALRasterIO(band, GF_Read, part[0] - s->x0, part[1] - s->y0, w, h, to, w, h, GDT_Float32, 0,
-                              width * (int)sizeof *to) == CE_None ? STATUS_OK : damaged(s, key);
+                              width * (int)sizeof *to) == CE_None
+                     ? STATUS_OK
+                     : damaged(s, key);
         goto done;
     }
     status = STATUS_NO_MEMORY;
-    value  = malloc((size_t)w * (size_t)strip * sizeof *value);
-    mask   = malloc((size_t)w * (size_t)strip);
+    value = malloc((size_t)w * (size_t)strip * sizeof *value);
+    mask = malloc((size_t)w * (size_t)strip);
     if (!value || !mask) goto done;
     for (int y = part[1]; y < part[3]; y += strip) {
         const int rows = part[3] - y < strip ? part[3] - y : strip;
@@ -147,7 +150,7 @@ static Status read_sheet(float *out, const Raster *raster, const RasterSheet *s,
             goto done;
         }
         for (int r = 0; r < rows; r++) {
-            float *to = out + (size_t)(y + r - y0) * (size_t)width + (size_t)(part[0] - x0);
+            float               *to = out + (size_t)(y + r - y0) * (size_t)width + (size_t)(part[0] - x0);
             const float         *from = value + (size_t)r * (size_t)w;
             const unsigned char *valid = mask + (size_t)r * (size_t)w;
             if (!more)
@@ -171,13 +174,13 @@ static Status read_sheet_bytes(uint8_t *out, uint8_t *valid, const Raster *raste
                                int bands, RasterWindow window, const char *key)
 {
     const int x0 = window.x0, y0 = window.y0, width = window.width;
-    int part[4];
+    int       part[4];
     if (!common_part(part, s, window)) return STATUS_OK;
-    const int      w = part[2] - part[0], h = part[3] - part[1];
-    const size_t   count = (size_t)w * (size_t)h;
-    uint8_t       *value = NULL, *mask = NULL;
-    Status         status = STATUS_IO;
-    GDALDatasetH   file = sheet_open(s, raster->row_block, part[1], key);
+    const int    w = part[2] - part[0], h = part[3] - part[1];
+    const size_t count = (size_t)w * (size_t)h;
+    uint8_t     *value = NULL, *mask = NULL;
+    Status       status = STATUS_IO;
+    GDALDatasetH file = sheet_open(s, raster->row_block, part[1], key);
     if (!file) return status;
     int band[4] = {0};
     for (int b = 0; b < bands; b++) band[b] = s->band && bands == 1 ? s->band : first + b;
@@ -189,16 +192,16 @@ static Status read_sheet_bytes(uint8_t *out, uint8_t *valid, const Raster *raste
     const bool masked = !(GDALGetMaskFlags(of) & GMF_ALL_VALID);
     if (raster->sheet_count == 1 && !masked) { /* nothing else is there: without a copy */
         const size_t at = (size_t)(part[1] - y0) * (size_t)width + (size_t)(part[0] - x0);
-        const CPLErr error = GDALDatasetRasterIO(file, GF_Read, part[0] - s->x0, part[1] - s->y0, w, h,
-                                                 out + at * (size_t)bands, w, h, GDT_Byte, bands, band, bands,
-                                                 bands * width, 1);
+        const CPLErr error =
+            GDALDatasetRasterIO(file, GF_Read, part[0] - s->x0, part[1] - s->y0, w, h, out + at * (size_t)bands, w, h,
+                                GDT_Byte, bands, band, bands, bands * width, 1);
         status = error == CE_None ? STATUS_OK : damaged(s, key);
         for (int r = 0; r < h; r++) memset(valid + at + (size_t)r * (size_t)width, 255, (size_t)w);
         goto done;
     }
     status = STATUS_NO_MEMORY;
-    value  = malloc(count * (size_t)bands);
-    mask   = malloc(count);
+    value = malloc(count * (size_t)bands);
+    mask = malloc(count);
     if (!value || !mask) goto done;
     status = STATUS_IO;
     if (GDALDatasetRasterIO(file, GF_Read, part[0] - s->x0, part[1] - s->y0, w, h, value, w, h, GDT_Byte, bands, band,
@@ -228,8 +231,8 @@ done:
 
 Status reader_read(float *out, const Raster *raster, int band, RasterWindow window, const char *key)
 {
-    Status       status = STATUS_OK;
-    const size_t count = (size_t)window.width * (size_t)window.height;
+    Status             status = STATUS_OK;
+    const size_t       count = (size_t)window.width * (size_t)window.height;
     const RasterSheet *only = raster->sheet_count == 1 ? &raster->sheet[0] : NULL;
     for (size_t k = 0; k < count; k++) out[k] = NAN;
     reader_quiet();

@@ -31,32 +31,32 @@ static bool same_grid(const Raster *raster, const SheetOpened *o, double at_px[2
     static const int terms[4] = {1, 2, 4, 5};
     for (int k = 0; k < 4; k++)
         if (!(fabs(a[terms[k]] - b[terms[k]]) <= 1e-6 * (fabs(a[1]) + fabs(a[2])))) return false;
-    const double dx = b[0] - a[0], dy = b[3] - a[3];
+    const double  dx = b[0] - a[0], dy = b[3] - a[3];
     const double *to = raster->px_from_crs;
     at_px[0] = to[1] * dx + to[2] * dy;
     at_px[1] = to[4] * dx + to[5] * dy;
     if (raster->whole_turn_px > 0) at_px[0] -= raster->whole_turn_px * rint(at_px[0] / raster->whole_turn_px);
-    return fabs(at_px[0] - rint(at_px[0])) < 0.01 && fabs(at_px[1] - rint(at_px[1])) < 0.01 &&
-           fabs(at_px[0]) < 1e8 && fabs(at_px[1]) < 1e8;
+    return fabs(at_px[0] - rint(at_px[0])) < 0.01 && fabs(at_px[1] - rint(at_px[1])) < 0.01 && fabs(at_px[0]) < 1e8 &&
+           fabs(at_px[1]) < 1e8;
 }
 
 static Status start_raster(Raster *raster, SheetOpened *o)
 {
     OGRSpatialReferenceH earth = OSRNewSpatialReference(NULL);
-    Status status = STATUS_BAD_VALUE;
+    Status               status = STATUS_BAD_VALUE;
     memcpy(raster->crs_from_px, o->transform, sizeof o->transform);
-    raster->bands           = o->bands;
-    raster->ellipsoidal     = o->ellipsoidal;
+    raster->bands = o->bands;
+    raster->ellipsoidal = o->ellipsoidal;
     raster->metres_per_unit = o->metres_per_unit;
-    raster->bytes           = o->bytes;
-    raster->whole           = o->whole;
-    raster->stated          = o->stated;
-    raster->choice          = o->choice;
-    raster->low             = -INFINITY;
-    raster->high            = INFINITY;
-    raster->row_block       = o->row_block;
-    raster->crs             = o->crs;
-    o->crs                  = NULL;
+    raster->bytes = o->bytes;
+    raster->whole = o->whole;
+    raster->stated = o->stated;
+    raster->choice = o->choice;
+    raster->low = -INFINITY;
+    raster->high = INFINITY;
+    raster->row_block = o->row_block;
+    raster->crs = o->crs;
+    o->crs = NULL;
     if (OSRIsGeographic(raster->crs)) {
         double turn = 2 * pi_rad / OSRGetAngularUnits(raster->crs, NULL);
         raster->whole_turn_px = fabs(turn / raster->crs_from_px[1]);
@@ -105,20 +105,21 @@ static const char *remedy(char out[path_size + 80], const char *path)
 static Status add_sheet(RasterSet *set, const char *name, const RasterChoice *choice, const char *key)
 {
     SheetOpened o = {0};
-    Status status = STATUS_IO;
-    double at_px[2] = {0, 0};
-    char   path[path_size], next[path_size + 80];
+    Status      status = STATUS_IO;
+    double      at_px[2] = {0, 0};
+    char        path[path_size], next[path_size + 80];
     snprintf(path, sizeof path, "%s", name);
     if (!reader_file_allowed(path, key)) return STATUS_IO;
     reader_works_at(path);
     GDALDatasetH file = GDALOpen(path, GA_ReadOnly);
     if (!file) {
-        log_error("%s: cannot read %s: %s; %s", key, path, reader_reason("not a raster GDAL knows"), remedy(next, path));
+        log_error("%s: cannot read %s: %s; %s", key, path, reader_reason("not a raster GDAL knows"),
+                  remedy(next, path));
         return STATUS_IO;
     }
     if (*choice->part || (GDALGetRasterCount(file) < 1 && GDALGetMetadata(file, "SUBDATASETS"))) {
-        const bool chosen = parts_may_be_opened(file, path, path, key, 0) &&
-                            reader_choose_part(path, file, choice->part, key);
+        const bool chosen =
+            parts_may_be_opened(file, path, path, key, 0) && reader_choose_part(path, file, choice->part, key);
         GDALClose(file);
         if (!chosen) return STATUS_BAD_VALUE;
         file = GDALOpen(path, GA_ReadOnly);
@@ -142,8 +143,8 @@ static Status add_sheet(RasterSet *set, const char *name, const RasterChoice *ch
             goto done;
         }
         set->raster = more;
-        raster      = &set->raster[set->count++];
-        *raster     = (Raster){.order = set->count};
+        raster = &set->raster[set->count++];
+        *raster = (Raster){.order = set->count};
         at_px[0] = at_px[1] = 0;
         status = start_raster(raster, &o);
         if (status != STATUS_OK) {
@@ -184,17 +185,17 @@ static Status finish_raster(Raster *raster)
         raster->sheet[k].x0 -= x0;
         raster->sheet[k].y0 -= y0;
     }
-    raster->width  = x1 - x0;
+    raster->width = x1 - x0;
     raster->height = y1 - y0;
     raster->data_share = fmin(raster->data_share / ((double)raster->width * raster->height), 1);
-    raster->sparse     = raster->data_share < 1 - 1e-12;
+    raster->sparse = raster->data_share < 1 - 1e-12;
     double *t = raster->crs_from_px;
     t[0] += x0 * t[1] + y0 * t[2];
     t[3] += x0 * t[4] + y0 * t[5];
     if (!GDALInvGeoTransform(t, raster->px_from_crs)) return STATUS_BAD_VALUE;
 
     const double cx = 0.5 * raster->width, cy = 0.5 * raster->height;
-    double x[3] = {cx, cx + 1, cx}, y[3] = {cy, cy, cy + 1}, p_ecef[3][3];
+    double       x[3] = {cx, cx + 1, cx}, y[3] = {cy, cy, cy + 1}, p_ecef[3][3];
     reader_earth_from_px(raster, 3, x, y);
     for (int k = 0; k < 3; k++) {
         const Geodetic place = {.lat_rad = y[k], .lon_rad = x[k]};
@@ -215,10 +216,10 @@ static int by_name(const void *a, const void *b) { return strcmp(*(char *const *
 
 static Status add_folder(RasterSet *set, const char *path, const RasterChoice *choice, const char *key)
 {
-    char  **name = NULL, full[path_size];
-    int     names = 0, used = 0;
-    Status  status = STATUS_OK;
-    DIR    *folder = opendir(path);
+    char **name = NULL, full[path_size];
+    int    names = 0, used = 0;
+    Status status = STATUS_OK;
+    DIR   *folder = opendir(path);
     if (!folder) {
         log_error("%s: cannot read the folder %s: %s", key, path, strerror(errno));
         return STATUS_IO;

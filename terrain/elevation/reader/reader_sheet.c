@@ -20,9 +20,9 @@ static bool axis_is_down(OGRSpatialReferenceH crs, const char *part, int axis)
 
 static void state_crs(RasterStated *s, OGRSpatialReferenceH crs)
 {
-    char        *unit = NULL;
-    const char  *part = OSRIsCompound(crs) ? "COMPD_CS|VERT_CS" : "VERT_CS";
-    const char  *vertical = OSRGetAttrValue(crs, part, 0);
+    char       *unit = NULL;
+    const char *part = OSRIsCompound(crs) ? "COMPD_CS|VERT_CS" : "VERT_CS";
+    const char *vertical = OSRGetAttrValue(crs, part, 0);
     say(s->crs, sizeof s->crs, OSRGetName(crs));
     if (OSRIsProjected(crs)) {
         s->crs_unit_m = OSRGetLinearUnits(crs, &unit);
@@ -54,11 +54,12 @@ static void state(RasterStated *out, void *file, int number, void *crs)
     int                   has_nodata = 0, has_scale = 0;
     say(s.type, sizeof s.type, GDALGetDataTypeName(type));
     say(s.unit, sizeof s.unit, GDALGetRasterUnitType(band));
-    s.nodata     = GDALGetRasterNoDataValue(band, &has_nodata);
+    s.nodata = GDALGetRasterNoDataValue(band, &has_nodata);
     s.has_nodata = has_nodata != 0;
     if (!s.has_nodata) s.nodata = 0;
-    s.down     = grows_down(band);
-    s.coloured = colour == GCI_PaletteIndex || (colour >= GCI_RedBand && colour <= GCI_LightnessBand && colour != GCI_AlphaBand);
+    s.down = grows_down(band);
+    s.coloured =
+        colour == GCI_PaletteIndex || (colour >= GCI_RedBand && colour <= GCI_LightnessBand && colour != GCI_AlphaBand);
     const double scale = GDALGetRasterScale(band, &has_scale);
     state_crs(&s, crs);
     s.grey = type == GDT_Byte && !s.coloured && !*s.unit && !*s.vertical && !(has_scale && scale != 1);
@@ -73,8 +74,9 @@ static OGRSpatialReferenceH crs_of(const RasterChoice *choice, GDALDatasetH file
     const OGRSpatialReferenceH stated = GDALGetSpatialRef(file);
     if (!*choice->srs) {
         if (!stated)
-            log_error("%s: %s does not say its coordinate system; %s@srs=EPSG:nnnn does (or gdal_edit.py -a_srs EPSG:nnnn)", key,
-                      path, path);
+            log_error(
+                "%s: %s does not say its coordinate system; %s@srs=EPSG:nnnn does (or gdal_edit.py -a_srs EPSG:nnnn)",
+                key, path, path);
         return stated ? OSRClone(stated) : NULL;
     }
     OGRSpatialReferenceH named = OSRNewSpatialReference(NULL);
@@ -89,7 +91,7 @@ static OGRSpatialReferenceH crs_of(const RasterChoice *choice, GDALDatasetH file
 static bool is_placed(double transform[6], GDALDatasetH file)
 {
     static const double nothing[6] = {0, 1, 0, 0, 0, 1};
-    double inverse[6], mirrored[6];
+    double              inverse[6], mirrored[6];
     if (GDALGetGeoTransform(file, transform) != CE_None || !GDALInvGeoTransform(transform, inverse)) return false;
     memcpy(mirrored, transform, sizeof mirrored);
     mirrored[5] = fabs(mirrored[5]);
@@ -123,15 +125,18 @@ bool reader_choose_part(char path[path_size], GDALDatasetH file, const char *ask
         snprintf(names + used, sizeof names - used, "%s%s", used ? ", " : "", own);
     }
     log_error("%s: %s holds several grids, %s: %s; choose one: %s@part=NAME", key, path,
-              *asked ? "but none that is called so" : "and none is chosen", *names ? names : "none that can be named", path);
+              *asked ? "but none that is called so" : "and none is chosen", *names ? names : "none that can be named",
+              path);
     return false;
 }
 
 Status reader_describe(SheetOpened *out, GDALDatasetH file, const RasterChoice *choice, const char *path,
                        const char *key)
 {
-    SheetOpened o = {.width = GDALGetRasterXSize(file), .height = GDALGetRasterYSize(file),
-                .bands = GDALGetRasterCount(file), .choice = *choice};
+    SheetOpened o = {.width = GDALGetRasterXSize(file),
+                     .height = GDALGetRasterYSize(file),
+                     .bands = GDALGetRasterCount(file),
+                     .choice = *choice};
     if (o.bands < 1 || o.width < 2 || o.height < 2) {
         log_error("%s: %s holds %d bands of %d x %d pixels; a sheet needs a band and 2 x 2", key, path, o.bands,
                   o.width, o.height);
@@ -156,9 +161,9 @@ Status reader_describe(SheetOpened *out, GDALDatasetH file, const RasterChoice *
     const int             number = choice->band ? choice->band : 1;
     const GDALRasterBandH band = GDALGetRasterBand(file, number);
     state(&o.stated, file, number, o.crs);
-    o.ellipsoidal     = !OSRIsCompound(o.crs) && OSRGetAxesCount(o.crs) == 3;
-    o.bytes           = GDALGetRasterDataType(band) == GDT_Byte;
-    o.whole           = GDALDataTypeIsInteger(GDALGetRasterDataType(band));
+    o.ellipsoidal = !OSRIsCompound(o.crs) && OSRGetAxesCount(o.crs) == 3;
+    o.bytes = GDALGetRasterDataType(band) == GDT_Byte;
+    o.whole = GDALDataTypeIsInteger(GDALGetRasterDataType(band));
     int block_x = 0, block_y = 0;
     GDALGetBlockSize(band, &block_x, &block_y);
     for (o.row_block = 64; o.row_block < block_y && o.row_block < 1024;) o.row_block *= 2;

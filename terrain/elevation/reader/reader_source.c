@@ -11,9 +11,9 @@
 #include <strings.h>
 #include <sys/stat.h>
 
-static char  only_within[PATH_MAX]; /* empty: anywhere */
-static char  from_folders[4 * PATH_MAX];
-bool         reader_by_name = true;
+static char only_within[PATH_MAX]; /* empty: anywhere */
+static char from_folders[4 * PATH_MAX];
+bool        reader_by_name = true;
 
 void reader_source_begin(const char *within, const char *from)
 {
@@ -129,7 +129,7 @@ static void add(Names *names, const char *name)
         return;
     }
     names->name[names->count++] = copy;
-    names->name[names->count]   = NULL;
+    names->name[names->count] = NULL;
 }
 
 /* What links in a folder lead to: those of all files, or of what lies beside one. */
@@ -172,7 +172,8 @@ char **reader_source_folders(const char *paths)
             folder_of(folder, file);
             add(&names, folder);
             add_links(&names, folder, file);
-            if (realpath(file, folder) && lstat(file, &about) == 0 && S_ISLNK(about.st_mode)) { /* what a VRT names lies there */
+            if (realpath(file, folder) && lstat(file, &about) == 0 &&
+                S_ISLNK(about.st_mode)) { /* what a VRT names lies there */
                 char real[PATH_MAX];
                 folder_of(real, folder);
                 add(&names, real);
@@ -187,14 +188,15 @@ char **reader_source_folders(const char *paths)
 
 /* ---- one by one ------------------------------------------------------------------------------------ */
 
-/* GDAL looks for a coordinate system, world file, overviews and notes beside a file, under its name or another ending. */
+/* GDAL looks for a coordinate system, world file, overviews and notes beside a file, under its name or another ending.
+ */
 static bool beside_may_be_opened(const char *path, const char *key)
 {
     static _Thread_local char plain[wire_path_size]; /* the last folder that holds files and folders alone */
-    char           full[wire_path_size], why[file_why_size];
-    const char    *name;
-    const size_t   stem = stem_of(&name, path);
-    const int      folder = (int)(name - path);
+    char                      full[wire_path_size], why[file_why_size];
+    const char               *name;
+    const size_t              stem = stem_of(&name, path);
+    const int                 folder = (int)(name - path);
     snprintf(full, sizeof full, "%.*s", folder ? folder : 1, folder ? path : ".");
     if (strcmp(full, plain) == 0) return true;
     DIR *directory = opendir(full);
@@ -206,7 +208,8 @@ static bool beside_may_be_opened(const char *path, const char *key)
         snprintf(full, sizeof full, "%.*s%s", folder, path, entry->d_name);
         if (stat(full, &about) != 0 || S_ISDIR(about.st_mode) || S_ISREG(about.st_mode)) continue;
         odd = true;
-        if (strncasecmp(entry->d_name, name, stem) != 0 || (entry->d_name[stem] != '.' && entry->d_name[stem] != 0)) continue;
+        if (strncasecmp(entry->d_name, name, stem) != 0 || (entry->d_name[stem] != '.' && entry->d_name[stem] != 0))
+            continue;
         good = file_is_regular(why, full);
         if (!good) log_error("%s: %s is read with what lies beside it: cannot read %s: %s", key, path, full, why);
     }
@@ -243,9 +246,10 @@ bool reader_part_allowed(const char *path, const char *owner, const char *key)
         }
     }
     if (!within) {
-        log_error("%s: %s names %s, which %s; where you trust that, terrain.sources_from (terrain import: --sources-from) names "
-                  "folders that it may read",
-                  key, owner, path, named ? "lies outside its folder" : "is no file");
+        log_error(
+            "%s: %s names %s, which %s; where you trust that, terrain.sources_from (terrain import: --sources-from) names "
+            "folders that it may read",
+            key, owner, path, named ? "lies outside its folder" : "is no file");
         return false;
     }
     if (is_there(path) && !file_is_regular(why, path)) {

@@ -1,5 +1,5 @@
-/* tests/bench/dis/network_sockets.c: datagrams over loopback at stated rates, how late they can be taken, and how fast they
- * are recorded.
+/* tests/bench/dis/network_sockets.c: datagrams over loopback at stated rates, how late they can be taken, and how fast
+ * they are recorded.
  *
  * A thread sends a fixed number in each millisecond; received datagrams are compared octet by octet with the expected
  * ones by sequence number. It stops after the set time, whatever the network does. Sender and receiver share the
@@ -19,22 +19,28 @@
 #include <time.h>
 #include <unistd.h>
 
-enum { pdu_octets = 208, bundled = 6, most_octets = pdu_octets * bundled, promised_rate = 60000, /* DESIGN: none lost */
-       what_size = 96, late_rate = 1000 };
+enum {
+    pdu_octets = 208,
+    bundled = 6,
+    most_octets = pdu_octets * bundled,
+    promised_rate = 60000, /* DESIGN: none lost */
+    what_size = 96,
+    late_rate = 1000
+};
 static const int64_t still_ns = 200000000; /* nothing for so long after the last was sent: it is over */
 
 typedef struct Flow {
-    DisUdp    *sender;
-    int        octets, rate;   /* per second; 0: as fast as possible */
-    uint64_t   count;          /* at most; the time ends it, too */
-    double     for_s;
-    double     took_s;
-    atomic_ullong sent;        /* that the system took */
+    DisUdp       *sender;
+    int           octets, rate; /* per second; 0: as fast as possible */
+    uint64_t      count;        /* at most; the time ends it, too */
+    double        for_s;
+    double        took_s;
+    atomic_ullong sent; /* that the system took */
     atomic_bool   done;
     /* receiver */
-    uint8_t   *seen;           /* [count] */
-    uint64_t   received, wrong, twice, disordered;
-    double    *late_s;         /* [count], in order of arrival; NULL: not needed */
+    uint8_t *seen; /* [count] */
+    uint64_t received, wrong, twice, disordered;
+    double  *late_s; /* [count], in order of arrival; NULL: not needed */
 } Flow;
 
 /* Its number, and words that follow from it. */
@@ -68,7 +74,7 @@ static void *send_flow(void *user)
         if (f->rate) sleep_until_s(fmax(now_s + 1e-3, begun_s + (double)n / f->rate));
     }
     f->took_s = wall_clock_s() - begun_s;
-    f->done   = true;
+    f->done = true;
     return NULL;
 }
 
@@ -86,7 +92,7 @@ static void take_one(Flow *f, const DisArrival *a, uint64_t *last)
     f->twice += f->seen[number];
     f->disordered += f->received > 0 && number < *last;
     f->seen[number] = 1;
-    *last           = number;
+    *last = number;
     if (f->late_s && f->received < f->count) f->late_s[f->received] = 1e-9 * (double)(dis_udp_now_ns() - a->capture_ns);
     f->received++;
 }
@@ -113,11 +119,11 @@ static Status run_flow(Flow *f, DisUdp *receiver)
 /* ---- rates ------------------------------------------------------------------------------------ */
 
 typedef struct Link {
-    Bench  *bench;
-    DisUdp *receiver, *sender;
-    const char *name;          /* IPv4 */
-    uint64_t spoilt;           /* wrong, twice or out of order, of all flows */
-    double   most_rate;        /* received a second without a loss */
+    Bench      *bench;
+    DisUdp     *receiver, *sender;
+    const char *name;      /* IPv4 */
+    uint64_t    spoilt;    /* wrong, twice or out of order, of all flows */
+    double      most_rate; /* received a second without a loss */
 } Link;
 
 static int free_port(int family)
@@ -138,7 +144,7 @@ static Status link_open(Link *l, Bench *bench, bool v6, int port)
     DisUdpConfig config = dis_udp_default_config();
     *l = (Link){.bench = bench, .name = v6 ? "IPv6" : "IPv4"};
     strcpy(config.address, v6 ? "::1" : "127.0.0.1");
-    config.port         = port;
+    config.port = port;
     const Status status = dis_udp_open(&l->receiver, &config);
     return status == STATUS_OK ? dis_udp_open_sender(&l->sender, &config) : status;
 }
@@ -152,7 +158,10 @@ static void link_close(Link *l)
 static Status time_rate(Link *l, int rate, int pdus)
 {
     const double for_s = bench_quick(l->bench) ? 0.15 : 2;
-    Flow         f = {.sender = l->sender, .octets = pdus * pdu_octets, .rate = rate, .for_s = for_s,
+    Flow         f = {.sender = l->sender,
+                      .octets = pdus * pdu_octets,
+                      .rate = rate,
+                      .for_s = for_s,
                       .count = rate ? (uint64_t)(rate * for_s) : (uint64_t)(2e6 * for_s)};
     char         what[what_size], against[what_size], asked[24];
     const Status status = run_flow(&f, l->receiver);
@@ -164,10 +173,10 @@ static Status time_rate(Link *l, int rate, int pdus)
     snprintf(asked, sizeof asked, "%d a second", rate);
     snprintf(what, sizeof what, "%s: %s, %s", l->name, pdus > 1 ? "bundles of six" : "datagrams of an Entity State",
              rate ? asked : "as fast as sent");
-    BenchRow row  = bench_row(what);
-    row.rate      = 1e-3 * received_rate * pdus;
+    BenchRow row = bench_row(what);
+    row.rate = 1e-3 * received_rate * pdus;
     row.rate_unit = "k PDUs/s";
-    row.error     = f.sent > 0 ? 100 * (1 - (double)f.received / (double)f.sent) : NAN;
+    row.error = f.sent > 0 ? 100 * (1 - (double)f.received / (double)f.sent) : NAN;
     row.error_unit = "%";
     if (rate && rate * pdus <= promised_rate && !bench_quick(l->bench)) row.error_limit = 0;
     snprintf(against, sizeof against, "lost of %llu sent, %.0f a second", f.sent, (double)f.sent / f.took_s);
@@ -187,7 +196,10 @@ static int by_value(const void *pa, const void *pb)
 /* From the kernel's time stamp until the waiting receiver has the datagram. */
 static Status time_late(Link *l)
 {
-    Flow f = {.sender = l->sender, .octets = pdu_octets, .rate = late_rate, .for_s = 60,
+    Flow f = {.sender = l->sender,
+              .octets = pdu_octets,
+              .rate = late_rate,
+              .for_s = 60,
               .count = bench_quick(l->bench) ? 300 : 4000};
     char what[what_size];
     f.late_s = calloc(f.count, sizeof *f.late_s);
@@ -199,9 +211,9 @@ static Status time_late(Link *l)
         for (int k = 0; k < 2; k++) {
             snprintf(what, sizeof what, "%s: arrival to taken, %s", l->name, k ? "99 % of all" : "median");
             BenchRow row = bench_row(what);
-            row.median   = f.late_s[k ? n - 1 - n / 100 : n / 2];
-            row.best     = f.late_s[0];
-            row.unit     = "s";
+            row.median = f.late_s[k ? n - 1 - n / 100 : n / 2];
+            row.best = f.late_s[0];
+            row.unit = "s";
             bench_add(l->bench, &row);
         }
     }
@@ -212,9 +224,9 @@ static Status time_late(Link *l)
 static Status time_link(Bench *bench, bool v6)
 {
     static const int rates[] = {10000, 50000, 60000, 100000, 200000, 0};
-    const int port = free_port(v6 ? AF_INET6 : AF_INET), most = v6 ? 3 : 6;
-    Link      l;
-    char      what[what_size];
+    const int        port = free_port(v6 ? AF_INET6 : AF_INET), most = v6 ? 3 : 6;
+    Link             l;
+    char             what[what_size];
     if (port < 0 && v6) return STATUS_OK; /* no IPv6 here */
     bench_progress(bench, v6 ? "IPv6" : "IPv4");
     Status status = link_open(&l, bench, v6, port);
@@ -224,13 +236,13 @@ static Status time_link(Bench *bench, bool v6)
     if (status == STATUS_OK) status = time_late(&l);
     if (status == STATUS_OK) {
         snprintf(what, sizeof what, "%s: most that was received without a loss", l.name);
-        BenchRow row  = bench_row(what);
-        row.rate      = 1e-3 * l.most_rate;
+        BenchRow row = bench_row(what);
+        row.rate = 1e-3 * l.most_rate;
         row.rate_unit = "k PDUs/s";
-        row.error     = (double)l.spoilt;
+        row.error = (double)l.spoilt;
         row.error_limit = 0;
-        row.error_unit  = "datagrams";
-        row.against     = "of all flows: other octets, twice, or out of order";
+        row.error_unit = "datagrams";
+        row.against = "of all flows: other octets, twice, or out of order";
         bench_add(bench, &row);
     }
     link_close(&l);
@@ -283,11 +295,11 @@ static Status time_recorder(Bench *bench)
     if (!temp_file(r.path, ".pcapng")) return STATUS_IO;
     const BenchWork work = {record, &r, r.count};
     bench_time(&time, bench, &work, 1);
-    BenchRow row    = bench_row_of("recorder: a datagram of an Entity State", &time, "k datagrams/s", 1e3);
-    row.error       = differing(&r);
+    BenchRow row = bench_row_of("recorder: a datagram of an Entity State", &time, "k datagrams/s", 1e3);
+    row.error = differing(&r);
     row.error_limit = 0;
-    row.error_unit  = "datagrams";
-    row.against     = "that differ when read again";
+    row.error_unit = "datagrams";
+    row.against = "that differ when read again";
     bench_add(bench, &row);
     remove(r.path);
     return r.status;

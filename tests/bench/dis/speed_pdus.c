@@ -1,5 +1,5 @@
-/* tests/bench/dis/speed_pdus.c: decoding and encoding of PDUs, bundles, and a capture from the disk. The PDUs are random
- * octets with valid headers, from a counter; each row's error is the number of octets that differ after a round
+/* tests/bench/dis/speed_pdus.c: decoding and encoding of PDUs, bundles, and a capture from the disk. The PDUs are
+ * random octets with valid headers, from a counter; each row's error is the number of octets that differ after a round
  * trip. */
 #include "tests/bench/suites.h"
 #include "pitviper_output.h"
@@ -17,15 +17,16 @@ static const struct {
     const char *name;
     uint8_t     type;
     int         fixed, count_at; /* octets without records; where their number stands, 0: none */
-} kind_table[kinds] = {{"Entity State", dis_pdu_entity_state, 144, 19}, {"Fire", dis_pdu_fire, 96, 0},
+} kind_table[kinds] = {{"Entity State", dis_pdu_entity_state, 144, 19},
+                       {"Fire", dis_pdu_fire, 96, 0},
                        {"Detonation", dis_pdu_detonation, 104, 101}};
 
 typedef struct Octets {
     int      pdus, kind;
     size_t   size;
-    size_t  *first;  /* [pdus + 1] */
+    size_t  *first; /* [pdus + 1] */
     uint8_t *octet;
-    DisPdu  *decoded;/* [few]: large, and only so many that they stay in a cache as in a node's loop */
+    DisPdu  *decoded; /* [few]: large, and only so many that they stay in a cache as in a node's loop */
     uint8_t  again[pdu_room];
 } Octets;
 enum { few = 8 };
@@ -60,12 +61,18 @@ static size_t make_pdu(uint8_t *out, int kind, uint32_t index)
 /* kind < 0: of all kinds, Entity States eight in ten. */
 static Status make_octets(Octets *out, int kind, int pdus)
 {
-    *out = (Octets){.pdus = pdus, .kind = kind, .first = calloc((size_t)pdus + 1, sizeof *out->first),
-                    .octet = malloc((size_t)pdus * pdu_room), .decoded = calloc(few, sizeof *out->decoded)};
+    *out = (Octets){.pdus = pdus,
+                    .kind = kind,
+                    .first = calloc((size_t)pdus + 1, sizeof *out->first),
+                    .octet = malloc((size_t)pdus * pdu_room),
+                    .decoded = calloc(few, sizeof *out->decoded)};
     if (!out->first || !out->octet || !out->decoded) return STATUS_NO_MEMORY;
     for (int i = 0; i < pdus; i++) {
         const int one_of_ten = (int)(roll(200, (uint32_t)i) % 10);
-        out->size += make_pdu(out->octet + out->size, kind >= 0 ? kind : one_of_ten < 8 ? 0 : one_of_ten - 7,
+        out->size += make_pdu(out->octet + out->size,
+                              kind >= 0        ? kind
+                              : one_of_ten < 8 ? 0
+                                               : one_of_ten - 7,
                               (uint32_t)i);
         out->first[i + 1] = out->size;
     }
@@ -83,8 +90,7 @@ static void decode_all(void *user)
 {
     Octets *o = user;
     for (int i = 0; i < o->pdus; i++) {
-        const Status status = dis_decode(&o->decoded[i % few], o->octet + o->first[i],
-                                         o->first[i + 1] - o->first[i]);
+        const Status status = dis_decode(&o->decoded[i % few], o->octet + o->first[i], o->first[i + 1] - o->first[i]);
         bench_keep(&status);
         bench_keep(&o->decoded[i % few]);
     }
@@ -102,9 +108,9 @@ static void encode_all(void *user)
 
 static void walk_all(void *user)
 {
-    Octets     *o = user;
-    DisCounters counters = {0};
-    DisHeader   header;
+    Octets        *o = user;
+    DisCounters    counters = {0};
+    DisHeader      header;
     const uint8_t *pdu;
     for (int i = 0, n = 0; i < o->pdus;) { /* datagrams as long as a network takes them */
         int last = i + 1;
@@ -128,7 +134,8 @@ static double lost_octets(const Octets *o)
     for (int i = 0; i < o->pdus; i++) {
         const uint8_t *pdu = o->octet + o->first[i];
         const size_t   octets = o->first[i + 1] - o->first[i];
-        if (dis_decode(&o->decoded[0], pdu, octets) != STATUS_OK || dis_encode(again, pdu_room, &o->decoded[0]) != octets)
+        if (dis_decode(&o->decoded[0], pdu, octets) != STATUS_OK ||
+            dis_encode(again, pdu_room, &o->decoded[0]) != octets)
             return INFINITY;
         for (size_t k = 0; k < octets; k++) lost += again[k] != pdu[k];
     }
@@ -137,11 +144,11 @@ static double lost_octets(const Octets *o)
 
 static BenchRow octets_row(const char *what, const BenchTime *time, const Octets *o)
 {
-    BenchRow row    = bench_row_of(what, time, "M PDUs/s", 1e6);
-    row.error       = lost_octets(o);
+    BenchRow row = bench_row_of(what, time, "M PDUs/s", 1e6);
+    row.error = lost_octets(o);
     row.error_limit = 0;
-    row.error_unit  = "octets";
-    row.against     = "of those, encoded again";
+    row.error_unit = "octets";
+    row.against = "of those, encoded again";
     return row;
 }
 
@@ -160,9 +167,9 @@ static Status time_kind(Bench *bench, int kind)
         row = octets_row(what, &time[0], &o);
         bench_add(bench, &row);
         snprintf(what, sizeof what, "%s: encode", kind_table[kind].name);
-        row       = octets_row(what, &time[1], &o);
+        row = octets_row(what, &time[1], &o);
         row.ratio = bench_ratio(&time[1], &time[0]);
-        row.to    = "decode";
+        row.to = "decode";
         bench_add(bench, &row);
     }
     free_octets(&o);
@@ -191,9 +198,9 @@ static bool write_packet(FILE *file, uint32_t index, const uint8_t *octet, size_
 }
 
 typedef struct Capture {
-    char    path[temp_path_size];
+    char          path[temp_path_size];
     const Octets *octets;
-    Status  status;
+    Status        status;
 } Capture;
 
 static void read_capture(void *user)
@@ -214,10 +221,9 @@ static double lost_of_capture(const Capture *c)
     if (dis_log_open(&log, c->path, dis_port) != STATUS_OK) return INFINITY;
     if (log.count != o->pdus) lost = INFINITY;
     for (int i = 0; i < log.count && i < o->pdus; i++) {
-        const size_t octets = o->first[i + 1] - o->first[i];
+        const size_t      octets = o->first[i + 1] - o->first[i];
         const DisDatagram d = dis_log_datagram(&log, i);
-        lost += d.octets != octets || memcmp(d.bytes, o->octet + o->first[i], octets) != 0
-                    ? (double)octets : 0;
+        lost += d.octets != octets || memcmp(d.bytes, o->octet + o->first[i], octets) != 0 ? (double)octets : 0;
     }
     dis_log_close(&log);
     return lost;
@@ -226,21 +232,21 @@ static double lost_of_capture(const Capture *c)
 static Status time_capture(Bench *bench, const Octets *o)
 {
     static const uint32_t head[6] = {0xA1B2C3D4, 0x00040002, 0, 0, 262144, 1};
-    Capture    c = {.octets = o};
-    BenchTime  time;
-    FILE      *file = temp_file(c.path, "") ? output_file(c.path, 0) : NULL;
-    bool       ok = file && fwrite(head, sizeof head, 1, file) == 1;
+    Capture               c = {.octets = o};
+    BenchTime             time;
+    FILE                 *file = temp_file(c.path, "") ? output_file(c.path, 0) : NULL;
+    bool                  ok = file && fwrite(head, sizeof head, 1, file) == 1;
     for (int i = 0; i < o->pdus && ok; i++)
         ok = write_packet(file, (uint32_t)i, o->octet + o->first[i], o->first[i + 1] - o->first[i]);
     ok = file && fclose(file) == 0 && ok;
     if (ok) {
         const BenchWork work = {read_capture, &c, o->pdus};
         bench_time(&time, bench, &work, 1);
-        BenchRow row    = bench_row_of("capture: read from a file, a datagram", &time, "M datagrams/s", 1e6);
-        row.error       = lost_of_capture(&c);
+        BenchRow row = bench_row_of("capture: read from a file, a datagram", &time, "M datagrams/s", 1e6);
+        row.error = lost_of_capture(&c);
         row.error_limit = 0;
-        row.error_unit  = "octets";
-        row.against     = "of those that were written";
+        row.error_unit = "octets";
+        row.against = "of those that were written";
         bench_add(bench, &row);
     } else {
         log_error("bench: cannot write %s", c.path);

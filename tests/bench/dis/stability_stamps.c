@@ -31,8 +31,8 @@ static uint32_t special_tick(int i)
 static void stamps_and_back(Bench *bench)
 {
     static const double hours[] = {0, 1, 2, 23, 24, 1000, 100000, 400000};
-    const int randoms = bench_quick(bench) ? 20000 : 2000000;
-    double    ticks = 0, late = 0, step_s = 0;
+    const int           randoms = bench_quick(bench) ? 20000 : 2000000;
+    double              ticks = 0, late = 0, step_s = 0;
     for (int i = 0; i < special_ticks + randoms; i++) {
         const uint32_t k = i < special_ticks ? special_tick(i) : (uint32_t)uniform(1, (uint64_t)i, 0, 2147483648.0);
         for (uint32_t absolute = 0; absolute < 2; absolute++) {
@@ -50,7 +50,7 @@ static void stamps_and_back(Bench *bench)
             const double at_s = 3600 * hours[h];
             const double t_s[5] = {at_s, nextafter(at_s, INFINITY), nextafter(fmax(at_s, 1e-300), 0), at_s + tick_s,
                                    fabs(at_s - tick_s)};
-            long double off =
+            long double  off =
                 (long double)dis_timestamp_seconds(dis_timestamp(t_s[side], true)) - fmodl(t_s[side], 3600);
             off -= 3600 * rintl(off / 3600);
             bench_worse(&late, (double)(off / tick_s));
@@ -74,7 +74,7 @@ static void stamps_and_back(Bench *bench)
 /* One sender's truth: instants in ticks since some full hour. */
 typedef struct Trip {
     int64_t first_tick, step_ticks;
-    double  jitter_s;  /* of capture, both ways */
+    double  jitter_s;            /* of capture, both ways */
     bool    absolute, backwards; /* every packet after the next one */
 } Trip;
 
@@ -102,9 +102,9 @@ static double clock_error_s(const Trip *trip, int packets)
 
 static void clocks(Bench *bench)
 {
-    const int    days = bench_quick(bench) ? 2 : 40;
+    const int     days = bench_quick(bench) ? 2 : 40;
     const int64_t second = (int64_t)(1 / tick_s);
-    double       steady = 0, jitter = 0, silence = 0;
+    double        steady = 0, jitter = 0, silence = 0;
     for (int c = 0; c < 2 * 5; c++) {
         const int64_t about[5] = {1, hour_ticks - 1, hour_ticks - 2, hour_ticks / 2, 12345};
         const Trip    even = {about[c / 2], 7 * second + 3, 0, c & 1, false};
@@ -134,10 +134,11 @@ static void second_sender(Bench *bench)
     if (exercise_clock_create(&clock) != STATUS_OK) return;
     for (int n = 0; n < packets; n++) {
         const double t_s = 3500 + 5.0 * n, own_s = 0.25 * tick_s + 1700 + 5.0 * n;
-        exercise_clock_time(clock, 1, 1, dis_timestamp(t_s, false), 1e9 + t_s + uniform(3, (uint64_t)n, -0.5 * spread_s, 0.5 * spread_s));
+        exercise_clock_time(clock, 1, 1, dis_timestamp(t_s, false),
+                            1e9 + t_s + uniform(3, (uint64_t)n, -0.5 * spread_s, 0.5 * spread_s));
         const uint32_t stamp = dis_timestamp(own_s, false);
-        const double heard_s = 1e9 + t_s + uniform(4, (uint64_t)n, -0.5 * spread_s, 0.5 * spread_s);
-        const double off_s = exercise_clock_time(clock, 2, 1, stamp, heard_s) - t_s;
+        const double   heard_s = 1e9 + t_s + uniform(4, (uint64_t)n, -0.5 * spread_s, 0.5 * spread_s);
+        const double   off_s = exercise_clock_time(clock, 2, 1, stamp, heard_s) - t_s;
         if (stamp == 0 || n < packets / 2) continue;
         if (!(off_s >= low)) low = off_s;
         if (!(off_s <= high)) high = off_s;
@@ -149,8 +150,8 @@ static void second_sender(Bench *bench)
 
 static void hostile_clock(Bench *bench)
 {
-    const double captures[] = {0,     -0.0,  1e-310, 5e-324,   -1,        1e11, 1.0000001e11, 1e18,
-                               -1e18, 1e300, -1e308, INFINITY, -INFINITY, NAN,  1.7e9};
+    const double   captures[] = {0,     -0.0,  1e-310, 5e-324,   -1,        1e11, 1.0000001e11, 1e18,
+                                 -1e18, 1e300, -1e308, INFINITY, -INFINITY, NAN,  1.7e9};
     ExerciseClock *clock = NULL;
     double         bad = 0;
     const int      packets = bench_quick(bench) ? 20000 : 1000000;
@@ -217,16 +218,27 @@ static void unix_times(Bench *bench)
 static const uint32_t special_f32[] = {0x00000000, 0x80000000, 0x00000001, 0x80000001, 0x007FFFFF,
                                        0x00800000, 0x7F7FFFFF, 0xFF7FFFFF, 0x7F800000, 0xFF800000,
                                        0x7FC00000, 0xFFC00000, 0x7F800001, 0x7FBFFFFF};
-static const uint64_t special_f64[] = {0, UINT64_C(1) << 63, 1, (UINT64_C(1) << 63) | 1, 0x000FFFFFFFFFFFFF,
-                                       0x0010000000000000, 0x7FEFFFFFFFFFFFFF, 0xFFEFFFFFFFFFFFFF, 0x7FF0000000000000,
-                                       0xFFF0000000000000, 0x7FF8000000000000, 0x7FF0000000000001, 0x7FF7FFFFFFFFFFFF};
+static const uint64_t special_f64[] = {0,
+                                       UINT64_C(1) << 63,
+                                       1,
+                                       (UINT64_C(1) << 63) | 1,
+                                       0x000FFFFFFFFFFFFF,
+                                       0x0010000000000000,
+                                       0x7FEFFFFFFFFFFFFF,
+                                       0xFFEFFFFFFFFFFFFF,
+                                       0x7FF0000000000000,
+                                       0xFFF0000000000000,
+                                       0x7FF8000000000000,
+                                       0x7FF0000000000001,
+                                       0x7FF7FFFFFFFFFFFF};
 
 static double lost_octets(uint8_t *pdu, size_t octets)
 {
     static DisPdu decoded;
     uint8_t       again[512];
     double        lost = 0;
-    const size_t  written = dis_decode(&decoded, pdu, octets) == STATUS_OK ? dis_encode(again, sizeof again, &decoded) : 0;
+    const size_t  written =
+        dis_decode(&decoded, pdu, octets) == STATUS_OK ? dis_encode(again, sizeof again, &decoded) : 0;
     if (written != octets) return INFINITY;
     for (size_t k = 0; k < octets; k++) lost += again[k] != pdu[k];
     return lost;
@@ -238,7 +250,9 @@ static void fields(Bench *bench)
     static const struct {
         uint8_t type;
         size_t  fixed, count_at;
-    } kinds[4] = {{dis_pdu_entity_state, 144, 19}, {dis_pdu_entity_state_update, 72, 19}, {dis_pdu_fire, 96, 0},
+    } kinds[4] = {{dis_pdu_entity_state, 144, 19},
+                  {dis_pdu_entity_state_update, 72, 19},
+                  {dis_pdu_fire, 96, 0},
                   {dis_pdu_detonation, 104, 101}};
     double lost = 0;
     for (size_t kind = 0; kind < 4; kind++) {
@@ -246,7 +260,7 @@ static void fields(Bench *bench)
         for (size_t at = dis_header_octets; at + 4 <= octets; at += 4)
             for (size_t s = 0; s < sizeof special_f32 / sizeof *special_f32 + sizeof special_f64 / sizeof *special_f64;
                  s++) {
-                uint8_t pdu[512] = {7, 1, kinds[kind].type, 1};
+                uint8_t      pdu[512] = {7, 1, kinds[kind].type, 1};
                 const size_t singles = sizeof special_f32 / sizeof *special_f32;
                 if (s < singles) {
                     dis_store_u32(pdu + at, special_f32[s]);

@@ -24,9 +24,9 @@ static void make_bodies(ReckonSet *s)
         const double rate_rps = pow(10, -9 + 9.2 * random_uniform(51, 0, 0, (uint64_t)i)) / s->dt_s[i];
         double       axis[3];
         for (int c = 0; c < 3; c++) {
-            axis[c]       = random_uniform(51, 1 + (uint32_t)c, 0, (uint64_t)i) - 0.5;
-            k->v_mps[c]   = 200 * (random_uniform(51, 4 + (uint32_t)c, 0, (uint64_t)i) - 0.5);
-            k->a_mps2[c]  = 40 * (random_uniform(51, 7 + (uint32_t)c, 0, (uint64_t)i) - 0.5);
+            axis[c] = random_uniform(51, 1 + (uint32_t)c, 0, (uint64_t)i) - 0.5;
+            k->v_mps[c] = 200 * (random_uniform(51, 4 + (uint32_t)c, 0, (uint64_t)i) - 0.5);
+            k->a_mps2[c] = 40 * (random_uniform(51, 7 + (uint32_t)c, 0, (uint64_t)i) - 0.5);
         }
         v3_normalize(axis, axis);
         v3_scale(k->w_body_rps, rate_rps, axis);
@@ -76,11 +76,11 @@ static void body_exactly(long double p[3], const Kinematics *k, double dt_s)
     for (int c = 0; c < 3; c++) {
         term_v[c] = (long double)k->v_mps[c] * t;
         term_a[c] = (long double)k->a_mps2[c] * t * t;
-        sum[c]    = term_v[c] + term_a[c] / 2;
+        sum[c] = term_v[c] + term_a[c] / 2;
     }
     for (int n = 1; n < 40; n++) { /* [w]^n t^(n + 1) / (n + 1)! v + [w]^n t^(n + 2) / (n! (n + 2)) a */
         for (int part = 0; part < 2; part++) {
-            long double *u = part ? term_a : term_v, next[3];
+            long double  *u = part ? term_a : term_v, next[3];
             const double *w = k->w_body_rps;
             for (int c = 0; c < 3; c++)
                 next[c] = (long double)w[(c + 1) % 3] * u[(c + 2) % 3] - (long double)w[(c + 2) % 3] * u[(c + 1) % 3];
@@ -97,13 +97,13 @@ static void body_exactly(long double p[3], const Kinematics *k, double dt_s)
 static void tunable_reckoning(Bench *bench)
 {
     enum { settings = 7 };
-    static const char *const name[settings] =
-        {"Euler's steps of 10 ms", "closed forms alone", "series below 0.01 rad", "series below 0.1 rad",
-                                               "series below 0.5 rad", "series below 1 rad", "series below 2 rad"};
+    static const char *const name[settings] = {
+        "Euler's steps of 10 ms", "closed forms alone", "series below 0.01 rad", "series below 0.1 rad",
+        "series below 0.5 rad",   "series below 1 rad", "series below 2 rad"};
     static const double below_rad[settings] = {NAN, 0, 0.01, 0.1, 0.5, 1, 2};
-    static ReckonSet set[settings];
-    BenchWork        work[settings];
-    BenchSetting       point[settings] = {0};
+    static ReckonSet    set[settings];
+    BenchWork           work[settings];
+    BenchSetting        point[settings] = {0};
     for (int k = 0; k < settings; k++) {
         set[k].below_rad2 = below_rad[k] * below_rad[k];
         make_bodies(&set[k]);
@@ -115,13 +115,13 @@ static void tunable_reckoning(Bench *bench)
             bench_worst(&point[k].error, (double)sqrtl(square));
         }
         work[k] = (BenchWork){reckon_all, &set[k], bodies};
-        point[k].setting    = name[k];
+        point[k].setting = name[k];
         point[k].is_default = k == 4;
     }
     bench_tunable(bench,
-               &(BenchTunable){"dead reckoning", "entities/motion/dead_reckoning.c", "a turning body, 5 s later", "m",
-                            "largest, about the body; long double", 1e-11},
-               work, point, settings);
+                  &(BenchTunable){"dead reckoning", "entities/motion/dead_reckoning.c", "a turning body, 5 s later",
+                                  "m", "largest, about the body; long double", 1e-11},
+                  work, point, settings);
 }
 
 Status bench_precision_motion(Bench *bench)

@@ -1,5 +1,5 @@
-/* tests/bench/entities/speed_table.c: the entity table under load: reports in, snapshots out. Its error is that of places,
- * against the motion of each algorithm integrated step by step. */
+/* tests/bench/entities/speed_table.c: the entity table under load: reports in, snapshots out. Its error is that of
+ * places, against the motion of each algorithm integrated step by step. */
 #include "tests/bench/suites.h"
 
 #include "entities/motion/dead_reckoning.h"
@@ -17,13 +17,13 @@ typedef struct Crowd {
     EntityTable *table;
     Arena       *arena;
     int          count;
-    uint8_t    (*pdu)[most_octets];  /* [count] */
-    size_t      *octets;             /* [count] */
-    double       t_s;                /* of the reports in the table */
+    uint8_t (*pdu)[most_octets]; /* [count] */
+    size_t         *octets;      /* [count] */
+    double          t_s;         /* of the reports in the table */
     DisEntityState *state;
-    DisCounters  counters;
-    Snapshot     snapshot;
-    Status       status;
+    DisCounters     counters;
+    Snapshot        snapshot;
+    Status          status;
 } Crowd;
 
 static double dice(uint32_t stream, int index, double low, double high)
@@ -35,19 +35,24 @@ static double dice(uint32_t stream, int index, double low, double high)
  * size; everything within the limits of accepted values. */
 static void make_report(DisEntityState *out, int k)
 {
-    static const DisEntityType types[4] = {{1, 1, 222, 1, 1, 1, 0}, {1, 1, 222, 7, 1, 0, 0}, {1, 2, 225, 20, 1, 0, 0},
-                                           {1, 3, 225, 1, 1, 0, 0}};
+    static const DisEntityType types[4] = {
+        {1, 1, 222, 1, 1, 1, 0}, {1, 1, 222, 7, 1, 0, 0}, {1, 2, 225, 20, 1, 0, 0}, {1, 3, 225, 1, 1, 0, 0}};
     const double lat = dice(1, k, -1.4, 1.4), lon = dice(2, k, -3, 3), r_m = 6378000 + dice(3, k, 0, 3000);
     *out = (DisEntityState){.header = {.version = 7, .exercise = 1, .type = dis_pdu_entity_state, .family = 1},
-                            .id = {(uint16_t)(1 + k / 20000), 1, (uint16_t)(1 + k % 20000)}, .force = (uint8_t)(k % 3),
-                            .type = types[k % 4], .dead_reckoning = (uint8_t)(1 + k / 4 % 9),
+                            .id = {(uint16_t)(1 + k / 20000), 1, (uint16_t)(1 + k % 20000)},
+                            .force = (uint8_t)(k % 3),
+                            .type = types[k % 4],
+                            .dead_reckoning = (uint8_t)(1 + k / 4 % 9),
                             .p_ecef = {r_m * cos(lat) * cos(lon), r_m * cos(lat) * sin(lon), r_m * sin(lat)},
-                            .psi_rad = (float)dice(4, k, -3, 3), .theta_rad = (float)dice(5, k, -1.5, 1.5),
-                            .phi_rad = (float)dice(6, k, -3, 3), .variable_count = 2, .marking_set = 1};
+                            .psi_rad = (float)dice(4, k, -3, 3),
+                            .theta_rad = (float)dice(5, k, -1.5, 1.5),
+                            .phi_rad = (float)dice(6, k, -3, 3),
+                            .variable_count = 2,
+                            .marking_set = 1};
     for (int c = 0; c < 3; c++) {
-        out->velocity_mps[c]      = (float)dice(7 + (uint32_t)c, k, -30, 30);
+        out->velocity_mps[c] = (float)dice(7 + (uint32_t)c, k, -30, 30);
         out->acceleration_mps2[c] = (float)dice(10 + (uint32_t)c, k, -3, 3);
-        out->angular_rate_rps[c]  = (float)dice(13 + (uint32_t)c, k, -0.5, 0.5);
+        out->angular_rate_rps[c] = (float)dice(13 + (uint32_t)c, k, -0.5, 0.5);
     }
     snprintf(out->marking, sizeof out->marking, "E%d", k);
     out->variable[0] = (DisVariableParameter){.parameter = 4096 + 11, .value = (float)dice(16, k, -3, 3)};
@@ -58,12 +63,14 @@ static Status crowd_open(Crowd *c, int count)
 {
     EntityTableConfig config = entity_table_default_config();
     char              catalog[512];
-    *c = (Crowd){.count = count, .t_s = report_s, .pdu = calloc((size_t)count, sizeof *c->pdu),
-                 .octets = calloc((size_t)count, sizeof *c->octets), .state = calloc(1, sizeof *c->state),
+    *c = (Crowd){.count = count,
+                 .t_s = report_s,
+                 .pdu = calloc((size_t)count, sizeof *c->pdu),
+                 .octets = calloc((size_t)count, sizeof *c->octets),
+                 .state = calloc(1, sizeof *c->state),
                  .arena = arena_create()};
     if (!c->pdu || !c->octets || !c->state || !c->arena) return STATUS_NO_MEMORY;
-    if (!etc_path(catalog, sizeof catalog, "catalog.csv"))
-        return STATUS_BAD_VALUE;
+    if (!etc_path(catalog, sizeof catalog, "catalog.csv")) return STATUS_BAD_VALUE;
     config.capacity = count;
     Status status = catalog_open(&c->catalog, catalog, 0.01);
     if (status == STATUS_OK) status = entity_table_create(&c->table, &config, c->catalog);
@@ -150,8 +157,8 @@ static void integrate(double p_ecef[3], const DisEntityState *s, double t_s)
 {
     enum { steps = 3000 };
     static const double share[3] = {1, 4, 1};
-    const int    a = s->dead_reckoning;
-    const bool   body = a >= 6, accelerates = a == 4 || a == 5 || a >= 8;
+    const int           a = s->dead_reckoning;
+    const bool          body = a >= 6, accelerates = a == 4 || a == 5 || a >= 8;
     const double h_s = t_s / steps, w[3] = {s->angular_rate_rps[0], s->angular_rate_rps[1], s->angular_rate_rps[2]};
     double       r[9], way[3] = {0};
     r_ecef_from_body_euler(r, s->psi_rad, s->theta_rad, s->phi_rad);
@@ -197,29 +204,29 @@ static Status time_crowd(Bench *bench, int count)
     char      what[what_size];
     Status    status = crowd_open(&c, count);
     if (status == STATUS_OK) {
-        const BenchWork work[3] = {{update_all, &c, count}, {update_decoded, &c, count}, {snap, &c, count}};
+        const BenchWork          work[3] = {{update_all, &c, count}, {update_decoded, &c, count}, {snap, &c, count}};
         static const char *const name[3] = {"report: walk, decode, check, update", "report: update alone",
                                             "snapshot, an entity"};
         bench_time(time, bench, work, 3);
         const double worst_m = worst_place_m(&c);
         for (int k = 0; k < 3; k++) {
             snprintf(what, sizeof what, "table of %d: %s", count, name[k]);
-            BenchRow row    = bench_row_of(what, &time[k], k == 2 ? "M entities/s" : "M PDUs/s", 1e6);
-            row.error       = worst_m;
+            BenchRow row = bench_row_of(what, &time[k], k == 2 ? "M entities/s" : "M PDUs/s", 1e6);
+            row.error = worst_m;
             row.error_limit = 4e-9; /* an ulp of a place on the Earth is 0.9 nm an axis */
-            row.error_unit  = "m";
-            row.against     = "places 3 s later, motion integrated in steps of 1 ms";
+            row.error_unit = "m";
+            row.against = "places 3 s later, motion integrated in steps of 1 ms";
             if (k == 1) {
                 row.ratio = bench_ratio(&time[1], &time[0]);
-                row.to    = "whole";
+                row.to = "whole";
             }
             bench_add(bench, &row);
         }
         snprintf(what, sizeof what, "table of %d: the whole snapshot", count);
         BenchRow row = bench_row(what);
-        row.median   = count * time[2].median_s;
-        row.best     = count * time[2].best_s;
-        row.unit     = "s";
+        row.median = count * time[2].median_s;
+        row.best = count * time[2].best_s;
+        row.unit = "s";
         bench_add(bench, &row);
         status = c.status;
     }

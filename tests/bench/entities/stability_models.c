@@ -53,12 +53,12 @@ static double model_volume(const Model *m)
 static void look_at_model(ModelErrors *errors, const Model *m, int poses)
 {
     static const double wild[] = {0, 1e300, -1e300, INFINITY, -INFINITY, NAN, 1e-310, 3.4e38};
-    NodePose *pose = calloc((size_t)m->node_count, sizeof *pose);
-    double   *value = calloc((size_t)m->node_count, sizeof *value);
+    NodePose           *pose = calloc((size_t)m->node_count, sizeof *pose);
+    double             *value = calloc((size_t)m->node_count, sizeof *value);
     for (int k = 0; k < poses && pose && value; k++) {
         for (int n = 0; n < m->node_count; n++)
-            value[n] = k < 8 ? wild[(k + (k > 0 ? n : 0)) % 8]
-                             : 8 * random_uniform(0x30DE, 1, (uint32_t)k, (uint64_t)n) - 4;
+            value[n] =
+                k < 8 ? wild[(k + (k > 0 ? n : 0)) % 8] : 8 * random_uniform(0x30DE, 1, (uint32_t)k, (uint64_t)n) - 4;
         model_pose(pose, m, k ? value : NULL);
         for (int t = 0; t < m->triangle_count; t++) {
             const NodePose *at = &pose[m->part[m->triangle_part[t]].node];
@@ -90,7 +90,7 @@ static void built_in(Bench *bench)
 {
     static const char *const names[] = {"tank", "truck",  "helicopter", "missile", "carrier", "launcher", "aircraft",
                                         "ship", "person", "building",   "decoy",   "flare",   "unknown"};
-    static const double sags_m[] = {0.1, 0.0317, 0.005},
+    static const double      sags_m[] = {0.1, 0.0317, 0.005},
                         none[] = {0, -0.0, -1, 9.9e-6, 0.1000001, 1e300, 1e-310, INFINITY, -INFINITY, NAN};
     ModelErrors errors = {0};
     double      taken = 0;
@@ -145,14 +145,14 @@ static void shape_off(double *off, ModelErrors *errors, const Shape *shape)
     if (strcmp(shape->name, "box") == 0 || strcmp(shape->name, "scaled") == 0) {
         if (*shape->name == 'b') mesh_box(b, place_at(0, 0, 0), 0, 0, 0, l, w, w);
         else mesh_box(b, place_scaled(place_at(0, 0, 0), l, w, w), 0, 0, 0, 1, 1, 1);
-        area   = 4 * l * w + 2 * w * w;
+        area = 4 * l * w + 2 * w * w;
         volume = l * w * w;
     } else {
         const int    sides = mesh_circle_sides(w, sag_m);
         const double half = pi_rad / sides, from[3] = {0, 0, 0}, to[3] = {0.6 * l, 0, 0.8 * l};
         if (*shape->name == 'c') mesh_cylinder(b, place_at(0, 0, 0), 0, l, w);
         else mesh_bar(b, from, to, w);
-        area   = 2 * sides * w * sin(half) * l + sides * w * w * sin(2 * half);
+        area = 2 * sides * w * sin(half) * l + sides * w * w * sin(2 * half);
         volume = 0.5 * sides * w * w * sin(2 * half) * l;
     }
     if (mesh_builder_finish(&m, b) != STATUS_OK || model_validate(&m) != STATUS_OK) errors->unsound++;

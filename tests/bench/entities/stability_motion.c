@@ -1,6 +1,7 @@
-/* tests/bench/entities/stability_motion.c: motion and attitude at their edge cases: dead reckoning from tiny to large angular
- * rates, from microseconds to hours; Euler angles straight up and down. The reference for motion is the exponential of
- * the rotation's matrix by doubling, in 113 bits where the compiler has them, independent of the closed forms. */
+/* tests/bench/entities/stability_motion.c: motion and attitude at their edge cases: dead reckoning from tiny to large
+ * angular rates, from microseconds to hours; Euler angles straight up and down. The reference for motion is the
+ * exponential of the rotation's matrix by doubling, in 113 bits where the compiler has them, independent of the closed
+ * forms. */
 #include "tests/bench/suites.h"
 #include "tests/bench/stress.h"
 
@@ -84,14 +85,15 @@ static void judge(MotionErrors *errors, const Kinematics *k, const Exponential *
     const double half_ulp = 0x1p-53, angle = v3_length(k->w_body_rps) * fabs(t_s), grain = half_ulp * (1 + angle);
     const double speed = v3_length(k->v_mps) + v3_length(k->a_mps2) * fabs(t_s),
                  reach = v3_length(k->p_ecef) + speed * fabs(t_s);
-    Wide         r[9], turned[9], way[3], end[3];
-    Motion       got;
+    Wide   r[9], turned[9], way[3], end[3];
+    Motion got;
     dead_reckon(&got, k, t_s);
     for (int i = 0; i < 9; i++) r[i] = k->r_ecef_from_body[i];
     wide_mul(turned, r, x->e);
     for (int i = 0; i < 3; i++) {
-        way[i] = body ? row_times(x->i1, i, k->v_mps) + (accelerates ? row_times(x->i2, i, k->a_mps2) : 0)
-                      : moves ? t * k->v_mps[i] + (accelerates ? t * t / 2 * k->a_mps2[i] : 0) : 0;
+        way[i] = body    ? row_times(x->i1, i, k->v_mps) + (accelerates ? row_times(x->i2, i, k->a_mps2) : 0)
+                 : moves ? t * k->v_mps[i] + (accelerates ? t * t / 2 * k->a_mps2[i] : 0)
+                         : 0;
         end[i] = moves ? k->v_mps[i] + (accelerates ? t * k->a_mps2[i] : 0) : 0;
     }
     for (int i = 0; i < 3; i++) {
@@ -124,9 +126,9 @@ static Kinematics random_motion(uint64_t at, const Reach *reach)
         const uint32_t s = (uint32_t)c;
         k.p_ecef[c] = at / 2 % 2 ? uniform(1 + s, at, -6.4e6, 6.4e6) : 0; /* from 0, so small distances are not
                                                                            * masked */
-        k.v_mps[c]  = uniform(4 + s, at, -reach->speed_mps, reach->speed_mps) / 1.74;
+        k.v_mps[c] = uniform(4 + s, at, -reach->speed_mps, reach->speed_mps) / 1.74;
         k.a_mps2[c] = uniform(7 + s, at, -reach->acceleration_mps2, reach->acceleration_mps2) / 1.74;
-        axis[c]     = at % 4 == s ? 1 : at % 4 < 3 ? 0 : uniform(10 + s, at, -1, 1); /* about one axis, or any */
+        axis[c] = at % 4 == s ? 1 : at % 4 < 3 ? 0 : uniform(10 + s, at, -1, 1); /* about one axis, or any */
     }
     if (v3_normalize(axis, axis))
         v3_scale(k.w_body_rps,
@@ -160,10 +162,10 @@ static void dead_reckoning(Bench *bench)
     /* the limits of the table, and the extremes of the formulas */
     static const Reach table = {1e-12, 20, 1e-6, 132, 2e4, 1e4}, real = {1e-12, 20, 1e-3, 12, 1000, 100},
                        all = {1e-12, 60, 1e-6, 1e4, 2e4, 1e4};
-    const int count = bench_quick(bench) ? 400 : 5000;
-    const char *judge = sizeof(Wide) == 16 && (Wide)1 + (Wide)0x1p-100 != (Wide)1
-                            ? "exponential of the turn by doubling, 113 bits"
-                            : "exponential of the turn by doubling, 64 bits";
+    const int          count = bench_quick(bench) ? 400 : 5000;
+    const char        *judge = sizeof(Wide) == 16 && (Wide)1 + (Wide)0x1p-100 != (Wide)1
+                                   ? "exponential of the turn by doubling, 113 bits"
+                                   : "exponential of the turn by doubling, 64 bits";
     const MotionErrors whole = motions(&all, count), believed = motions(&table, count), common = motions(&real, count);
     /* some roundings: products, sums, and the closed form's cancellation at 1/2 rad */
     bench_stress(bench, "dead reckoning, nine algorithms, 1e-12 .. 60 rad/s, 1 us .. 1e4 s: place", whole.place, 8,
@@ -188,8 +190,8 @@ static void extremes(Bench *bench)
         Motion     m;
         m3_identity(k.r_ecef_from_body);
         for (int c = 0; c < 3; c++) {
-            k.v_mps[c]      = extreme[n / 9 % extreme_count];
-            k.a_mps2[c]     = extreme[n / 81 % extreme_count];
+            k.v_mps[c] = extreme[n / 9 % extreme_count];
+            k.a_mps2[c] = extreme[n / 81 % extreme_count];
             k.w_body_rps[c] = fmin(extreme[n / 729 % extreme_count], 60) / 1.74;
         }
         for (int s = 0; s < 4; s++) {
@@ -207,10 +209,10 @@ static void extremes(Bench *bench)
 /* A body rotated in many small steps, each from the result of the last. */
 static void drift(Bench *bench)
 {
-    const int  steps = bench_quick(bench) ? 20000 : 1000000;
-    Kinematics k = {.algorithm = 4, .w_body_rps = {0.3, -0.4, 0.5}};
-    Motion     m;
-    double     crooked = 0, off = 0;
+    const int   steps = bench_quick(bench) ? 20000 : 1000000;
+    Kinematics  k = {.algorithm = 4, .w_body_rps = {0.3, -0.4, 0.5}};
+    Motion      m;
+    double      crooked = 0, off = 0;
     Exponential x;
     r_ecef_from_body_euler(k.r_ecef_from_body, 0.4, 1.3, -1.1);
     Wide start[9], want[9];
@@ -266,10 +268,11 @@ static void euler(Bench *bench)
     for (int n = 0; n < count; n++) {
         double e[3], back[3], r[9], again[9];
         for (int c = 0; c < 3; c++) {
-            const int which = n % specials / (c == 0 ? 1 : c == 1 ? angles : angles * angles) % angles;
+            const int    which = n % specials / (c == 0 ? 1 : c == 1 ? angles : angles * angles) % angles;
             const double special = angle[which];
             e[c] = n >= 3 * specials ? uniform(20 + (uint32_t)c, (uint64_t)n, -7, 7)
-                   : n < specials ? special : nextafter(special, n < 2 * specials ? 10 : -10);
+                   : n < specials    ? special
+                                     : nextafter(special, n < 2 * specials ? 10 : -10);
             /* and close to straight up from either side */
             if (n >= 3 * specials && c == 1 && n % 2)
                 e[c] = copysign(0.5 * pi_rad, e[c]) + pow(10, uniform(23, (uint64_t)n, -17, -1)) * (n % 4 - 2);
@@ -322,9 +325,9 @@ static void tracks(Bench *bench)
     double    crooked = 0, half_rad = 0, place = 0;
     for (int n = 0; n < count; n++) {
         const uint64_t at = (uint64_t)n;
-        const double turn_rad = n % 5 == 0   ? pi_rad - pow(10, uniform(30, at, -16, -2))
-                                : n % 5 == 1 ? pow(10, uniform(30, at, -18, -1))
-                                             : uniform(30, at, 0, pi_rad - 0.01);
+        const double   turn_rad = n % 5 == 0   ? pi_rad - pow(10, uniform(30, at, -16, -2))
+                                  : n % 5 == 1 ? pow(10, uniform(30, at, -18, -1))
+                                               : uniform(30, at, 0, pi_rad - 0.01);
         const double   h_s = pow(10, uniform(31, at, -9, 4));
         Kinematics     k = {.algorithm = 3, .p_ecef = {6378137, 0, 0}};
         Motion         whole, half;
@@ -343,7 +346,7 @@ static void tracks(Bench *bench)
         survey_track_at(&pose, &track, middle_s);
         /* a report has its attitude in floats: the turn is that of doubles */
         survey_turn(pose.r_ecef_from_body, k.r_ecef_from_body, whole.r_ecef_from_body,
-                   (middle_s - point[0].t_s) / (point[1].t_s - point[0].t_s));
+                    (middle_s - point[0].t_s) / (point[1].t_s - point[0].t_s));
         stress_off_rotation(&crooked, pose.r_ecef_from_body);
         bench_worse(&place, pose.p_ecef[0] - 6378137);
         bench_worse(&place, v3_length(pose.v_ecef_mps));
@@ -366,15 +369,15 @@ static void joints(Bench *bench)
     static const float value[] = {0,   -0.0f, 1e-45f, -1e-45f, 1,      3.14159274f, -3.14159274f,  9.42477f,
                                   350, -1e4f, 1e7f,   1e9f,    -1e15f, 1e30f,       3.4028235e38f, -3.4028235e38f};
     static const float rate[] = {0, 1e-45f, -100, 100, 12.5f};
-    double beyond = 0, off_rad = 0;
+    double             beyond = 0, off_rad = 0;
     for (size_t v = 0; v < sizeof value / sizeof *value; v++)
         for (size_t r = 0; r < sizeof rate / sizeof *rate; r++)
             for (int t = 0; t < 4; t++) {
-                const double later_s = (double[4]){0, 1e-9, 12, 132}[t];
+                const double               later_s = (double[4]){0, 1e-9, 12, 132}[t];
                 const DisVariableParameter record[2] = {{.parameter = 4096 + 12, .value = rate[r]},
                                                         {.parameter = 4096 + 11, .value = value[v]}};
-                Articulation joint = {0};
-                double       got = NAN;
+                Articulation               joint = {0};
+                double                     got = NAN;
                 articulation_report(&joint, record, 2, 100, 132);
                 if (!articulation_value(&got, &joint, 4096, 11, 100 + later_s, 132)) got = NAN;
                 bench_worse(&beyond, fmax(fabs(got) - pi_rad, 0));

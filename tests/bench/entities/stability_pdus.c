@@ -18,29 +18,29 @@ static const uint32_t singles[] = {0x00000000, 0x80000000, 0x00000001,          
                                    0x7F7FFFFF, 0xFF7FFFFF, 0x7F800000,           0xFF800000, 0x7FC00000, 0x7F800001,
                                    0xFFC00000, 0x5F800000, 0xDF800000,           0x1F800000, 0x3FC90FDB, 0xBFC90FDB,
                                    0x3FC90FDA, 0x40490FDB, 0x469C4000 /* 2e4 */, 0xC69C4001, 0x41A00001 /* 20 */};
-static const double doubles[] = {0,
-                                 -0.0,
-                                 5e-324,
-                                 -5e-324,
-                                 2.2250738585072009e-308,
-                                 DBL_MIN,
-                                 DBL_MAX,
-                                 -DBL_MAX,
-                                 INFINITY,
-                                 -INFINITY,
-                                 NAN,
-                                 1e154,
-                                 1.4e154,
-                                 -1e155,
-                                 1e-160,
-                                 6378137,
-                                 -6378137,
-                                 1e5,
-                                 99999.999999,
-                                 1e8,
-                                 100000000.00000001,
-                                 -1e8,
-                                 1e38};
+static const double   doubles[] = {0,
+                                   -0.0,
+                                   5e-324,
+                                   -5e-324,
+                                   2.2250738585072009e-308,
+                                   DBL_MIN,
+                                   DBL_MAX,
+                                   -DBL_MAX,
+                                   INFINITY,
+                                   -INFINITY,
+                                   NAN,
+                                   1e154,
+                                   1.4e154,
+                                   -1e155,
+                                   1e-160,
+                                   6378137,
+                                   -6378137,
+                                   1e5,
+                                   99999.999999,
+                                   1e8,
+                                   100000000.00000001,
+                                   -1e8,
+                                   1e38};
 enum { single_count = sizeof singles / sizeof *singles, double_count = sizeof doubles / sizeof *doubles };
 
 typedef struct Field {
@@ -77,8 +77,7 @@ static Status world_open(World *w)
     char                    catalog[512];
     *w = (World){.arena = arena_create(), .t_s = 100};
     if (!w->arena) return STATUS_NO_MEMORY;
-    if (!etc_path(catalog, sizeof catalog, "catalog.csv"))
-        return STATUS_BAD_VALUE;
+    if (!etc_path(catalog, sizeof catalog, "catalog.csv")) return STATUS_BAD_VALUE;
     Status status = catalog_open(&w->catalog, catalog, 0.05);
     if (status == STATUS_OK) status = entity_table_create(&w->table, &config, w->catalog);
     return status == STATUS_OK ? local_frame_at(&w->frame, &origin) : status;
@@ -95,7 +94,7 @@ static void world_close(World *w)
 static size_t good_state(uint8_t *out, size_t room, const World *w, int kind, int algorithm)
 {
     static const DisEntityType types[3] = {{1, 1, 222, 1, 1, 1, 0}, {1, 2, 225, 20, 1, 0, 0}, {2, 2, 225, 1, 1, 3, 0}};
-    DisEntityState *s = calloc(1, sizeof *s);
+    DisEntityState            *s = calloc(1, sizeof *s);
     if (!s) return 0;
     *s = (DisEntityState){.header = {.version = 7, .exercise = 1, .type = dis_pdu_entity_state, .family = 1},
                           .id = {1, 1, w->entity},
@@ -187,16 +186,17 @@ static bool entity_is_sound(const SnapshotEntity *e)
     const EntityDrives *d = &e->drives;
     const float         share[6] = {d->engine, d->flying, d->alive, d->burning, d->motor, d->flare};
     for (int h = 0; h < 6; h++) sound = sound && share[h] >= 0 && share[h] <= 1;
-    sound = sound && isfinite(d->since_s) && d->speed_mps >= 0 && d->fired_kg[0] >= 0 && d->fired_kg[1] >= 0 && isfinite(d->fired_kg[1]);
+    sound = sound && isfinite(d->since_s) && d->speed_mps >= 0 && d->fired_kg[0] >= 0 && d->fired_kg[1] >= 0 &&
+            isfinite(d->fired_kg[1]);
     return sound;
 }
 
 static bool puff_is_sound(const World *w, const EffectTable *table, const EffectPuff *p)
 {
     static const double far_m = 1.1e8;
-    const Weather weather = weather_default();
-    EffectVolume  v;
-    const double  numbers[] = {p->age_s, p->throw_s, p->scale, p->mass_kg, p->along_m, p->above_m};
+    const Weather       weather = weather_default();
+    EffectVolume        v;
+    const double        numbers[] = {p->age_s, p->throw_s, p->scale, p->mass_kg, p->along_m, p->above_m};
     if (!finite_all(numbers, sizeof numbers / sizeof *numbers) || !v3_is_finite(p->throw_mps) ||
         !(v3_length(p->p_ecef) <= far_m))
         return false;
@@ -211,7 +211,7 @@ static bool nodes_are_sound(World *w, const Snapshot *s, int index)
 {
     if (s->entity[index].model < 0) return true;
     const Model *model = catalog_model(w->catalog, s->entity[index].model);
-    NodePose    *pose  = arena_alloc(w->arena, (size_t)model->node_count, sizeof *pose);
+    NodePose    *pose = arena_alloc(w->arena, (size_t)model->node_count, sizeof *pose);
     double      *value = arena_alloc(w->arena, (size_t)model->node_count, sizeof *value);
     bool         sound = pose && value;
     if (!sound) return false;

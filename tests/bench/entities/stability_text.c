@@ -87,8 +87,11 @@ static bool scenario_is_sound(const Scenario *scenario)
 }
 
 /* What a line of vehicles and one of shots need; [0] the key, [1] its value. */
-static const char *const vehicle_keys[][2] = {{"name", "A"}, {"id", "1"}, {"type", "1.1.222.1.1.1.0"},
-                                              {"route_m", "[[0, 0], [200, 50], [300, 300]]"}, {"speed_mps", "10"}};
+static const char *const vehicle_keys[][2] = {{"name", "A"},
+                                              {"id", "1"},
+                                              {"type", "1.1.222.1.1.1.0"},
+                                              {"route_m", "[[0, 0], [200, 50], [300, 300]]"},
+                                              {"speed_mps", "10"}};
 static const char *const shot_keys[][2] = {
     {"from", "A 1"}, {"at", "B 2"}, {"entity", "true"}, {"type", "2.2.225.1.1.3.0"}, {"time_s", "0.1"}};
 
@@ -179,10 +182,10 @@ static Status scenarios(Bench *bench, const char *path)
 static bool effects_are_sound(const char *path)
 {
     static const double age[] = {0, 1e-9, 0.01, 0.5, 5, 60};
-    const Weather  weather = weather_default();
-    const Geodetic origin = {0, 0, 0};
-    LocalFrame     frame;
-    EffectTable    table;
+    const Weather       weather = weather_default();
+    const Geodetic      origin = {0, 0, 0};
+    LocalFrame          frame;
+    EffectTable         table;
     if (effect_table_open(&table, path) != STATUS_OK) return heard[0] != 0;
     if (local_frame_at(&frame, &origin) != STATUS_OK) return false;
     for (int kind = 0; kind < EFFECT_KIND_COUNT; kind++)
@@ -196,7 +199,7 @@ static bool effects_are_sound(const char *path)
                                      .throw_s = 0.3,
                                      .scale = 2,
                                      .mass_kg = 1};
-            EffectVolume v;
+            EffectVolume     v;
             if (!isfinite(effect_life_s(&table, puff.kind, puff.scale))) return false;
             if (!effect_volume(&v, &table, &puff, &weather, &frame)) continue;
             bool sound = v3_is_finite(v.p_enu) && isfinite(v.along_m) && v.across_m > 0 && isfinite(v.across_m) &&
@@ -214,7 +217,8 @@ static bool heat_is_sound(const char *path)
     if (part_table_roles(&table, path) != STATUS_OK) return heard[0] != 0;
     for (int r = 0; r < HEAT_ROLE_COUNT; r++) {
         const PartRow *row = &table.role[r];
-        if (!(row->thickness_m > 0 && row->inside_w_m2k >= 0 && row->running_w_m2k >= 0 && row->drive_value >= 0)) return false;
+        if (!(row->thickness_m > 0 && row->inside_w_m2k >= 0 && row->running_w_m2k >= 0 && row->drive_value >= 0))
+            return false;
     }
     return true;
 }

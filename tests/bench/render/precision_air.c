@@ -12,18 +12,18 @@ enum { paths = 1000, all_bands = (1 << AIR_BAND_COUNT) - 1, skies = 1000 };
 typedef struct AirSet {
     const Atmosphere  *atmosphere;
     const PlanckTable *planck[2];
-    Sun      sun;
-    double   eye_m;
-    int      paths;          /* .. the most */
-    View     view;
-    Arena   *arena;
-    Air      air;
-    Hits     hits;
-    Rays     rays;
-    float    temp_k[hits_capacity];
-    AirPaths    veils[AIR_BAND_COUNT];
-    PathAir  path[AIR_BAND_COUNT][paths];
-    Status   status;
+    Sun                sun;
+    double             eye_m;
+    int                paths; /* .. the most */
+    View               view;
+    Arena             *arena;
+    Air                air;
+    Hits               hits;
+    Rays               rays;
+    float              temp_k[hits_capacity];
+    AirPaths           veils[AIR_BAND_COUNT];
+    PathAir            path[AIR_BAND_COUNT][paths];
+    Status             status;
 } AirSet;
 
 /* 20 degrees wide, 10 degrees down from up there and level from the ground, 40 degrees beside the sun. */
@@ -31,11 +31,11 @@ static void look(AirSet *s)
 {
     const double down_rad = s->eye_m < 10 ? 0 : 10 * rad_per_deg, a = s->sun.azimuth_rad + 40 * rad_per_deg;
     const double ahead[3] = {sin(a) * cos(down_rad), cos(a) * cos(down_rad), -sin(down_rad)},
-        right[3] = {cos(a), -sin(a), 0};
-    double       down[3];
+                 right[3] = {cos(a), -sin(a), 0};
+    double down[3];
     v3_cross(down, ahead, right);
-    s->view = (View){.p_enu = {0, 0, s->eye_m}, .width = 720, .height = 486,
-                     .focal_px = view_focal_px(720, 20 * rad_per_deg)};
+    s->view = (View){
+        .p_enu = {0, 0, s->eye_m}, .width = 720, .height = 486, .focal_px = view_focal_px(720, 20 * rad_per_deg)};
     for (int k = 0; k < 3; k++) {
         s->view.r_enu_from_cam[3 * k] = right[k];
         s->view.r_enu_from_cam[3 * k + 1] = down[k];
@@ -45,9 +45,9 @@ static void look(AirSet *s)
 
 static void make_air(void *user)
 {
-    AirSet        *s = user;
-    const Weather  weather = weather_default();
-    const AirEye   eye = {s->eye_m, all_bands, &s->view};
+    AirSet         *s = user;
+    const Weather   weather = weather_default();
+    const AirEye    eye = {s->eye_m, all_bands, &s->view};
     const AirSource source = {s->atmosphere, s->planck[0], s->planck[1], 0};
     arena_reset(s->arena);
     s->status = air_at(&s->air, &source, &weather, &s->sun, &eye, NULL, s->arena);
@@ -61,8 +61,8 @@ static void make_paths(AirSet *s)
         double d[3];
         view_ray(d, &s->view, 720 * random_uniform(21, 0, 0, (uint64_t)i), 486 * random_uniform(21, 1, 0, (uint64_t)i));
         const double to_ground_m = d[2] < -1e-4 ? s->eye_m / -d[2] : 2e4;
-        s->hits.range_m[i] = fmin(to_ground_m, 2e4)
-            * (i % 3 ? 0.9999 : 0.05 + 0.9 * random_uniform(21, 2, 0, (uint64_t)i));
+        s->hits.range_m[i] =
+            fmin(to_ground_m, 2e4) * (i % 3 ? 0.9999 : 0.05 + 0.9 * random_uniform(21, 2, 0, (uint64_t)i));
         for (int c = 0; c < 3; c++) s->rays.d_enu[c][i] = d[c], s->rays.o_enu[c][i] = 0;
         s->temp_k[i] = (float)(280 + 40 * random_uniform(21, 3, 0, (uint64_t)i));
     }
@@ -81,9 +81,10 @@ static void ask_atmosphere(void *user)
     const double *sun = s->air.light.sun_d_enu;
     for (int i = 0; i < s->paths; i++) {
         const double r = s->hits.range_m[i], up = s->rays.d_enu[2][i], level = sqrt(1 - up * up);
-        const double along = (s->rays.d_enu[0][i] * sun[0] + s->rays.d_enu[1][i] * sun[1]) /
-                             (level * hypot(sun[0], sun[1]));
-        const AirPath path = {.observer_m = s->eye_m, .range_m = r,
+        const double along =
+            (s->rays.d_enu[0][i] * sun[0] + s->rays.d_enu[1][i] * sun[1]) / (level * hypot(sun[0], sun[1]));
+        const AirPath path = {.observer_m = s->eye_m,
+                              .range_m = r,
                               .sun_zenith_rad = 0.5 * pi_rad - s->sun.elevation_rad,
                               .target_m = fmax(s->eye_m + r * up + r * r * level * level / (2 * earth_radius_m), 0),
                               .rel_azimuth_rad = acos(clamp(along, -1, 1))};
@@ -104,10 +105,11 @@ static int seen_errors(double *error, const AirSet *s, int first, int end)
             const PathAir *want = &s->path[b][i];
             const bool     warm = b >= AIR_MWIR;
             const double   tau = warm ? want->transmittance : want->sun_transmittance;
-            const double   bare = warm ? planck_table_radiance(s->planck[b - AIR_MWIR], (double)s->temp_k[i])
-                                       : 0.1 / pi_rad * (s->air.light.sun_w_m2[b] * s->air.light.sun_d_enu[2] + s->air.light.sky_w_m2[b]);
-            const double   added = want->thermal_w_m2_sr + (b == AIR_LWIR ? 0 : want->scattered_w_m2_sr);
-            const double   got = bare * (double)s->veils[b].transmittance[i] + (double)s->veils[b].added_w_m2_sr[i];
+            const double   bare =
+                warm ? planck_table_radiance(s->planck[b - AIR_MWIR], (double)s->temp_k[i])
+                       : 0.1 / pi_rad * (s->air.light.sun_w_m2[b] * s->air.light.sun_d_enu[2] + s->air.light.sky_w_m2[b]);
+            const double added = want->thermal_w_m2_sr + (b == AIR_LWIR ? 0 : want->scattered_w_m2_sr);
+            const double got = bare * (double)s->veils[b].transmittance[i] + (double)s->veils[b].added_w_m2_sr[i];
             error[n++] = 100 * fabs(got / (bare * tau + added) - 1);
         }
     return n;
@@ -147,8 +149,7 @@ static void thin_scattered(AirTable *t)
     for (int g = 0; g < t->lights; g++) {
         float *source = t->light[g]->log2_source[0][0];
         thin(source, t->turns + 1, (size_t)air_slope_nodes * air_lights, air_slopes + 1,
-             (size_t)air_share_row * air_lights,
-             air_share_row * air_lights);
+             (size_t)air_share_row * air_lights, air_share_row * air_lights);
         thin(source, (t->turns + 1) * (air_slopes + 1), (size_t)air_share_row * air_lights, air_share_row, air_lights,
              air_lights);
         thin(source, 1, 0, t->turns + 1, (size_t)air_slope_nodes * air_lights, air_slope_nodes * air_lights);
@@ -185,10 +186,10 @@ static Status tunable_paths(Bench *bench, AirFrames *frame)
 {
     static const char *const name[ways] = {"asked one by one", "tables of the frame", "every second height and range",
                                            "every second slope, share, azimuth"};
-    static double error[eyes * AIR_BAND_COUNT * paths];
-    BenchWork     work[ways];
-    BenchTime     fill;
-    BenchSetting    seen[ways] = {0}, warm[ways] = {0};
+    static double            error[eyes * AIR_BAND_COUNT * paths];
+    BenchWork                work[ways];
+    BenchTime                fill;
+    BenchSetting             seen[ways] = {0}, warm[ways] = {0};
     for (int w = 0; w < ways; w++) {
         frame[w].way = (AirWay)w;
         for (int e = 0; e < eyes; e++) {
@@ -202,8 +203,9 @@ static Status tunable_paths(Bench *bench, AirFrames *frame)
             if (w == AIR_THIN_SCATTERED) thin_scattered(s->air.table);
             if (w > 0) ask_veils(s);
         }
-        seen[w] = (BenchSetting){.setting = name[w], .is_default = w == AIR_TABLED,
-                               .bytes = table_bytes(frame[w].set[0].air.table, (AirWay)w)};
+        seen[w] = (BenchSetting){.setting = name[w],
+                                 .is_default = w == AIR_TABLED,
+                                 .bytes = table_bytes(frame[w].set[0].air.table, (AirWay)w)};
         warm[w] = seen[w];
         for (int thermal = 0; thermal < 2 && w > 0; thermal++) {
             int n = 0;
@@ -220,17 +222,18 @@ static Status tunable_paths(Bench *bench, AirFrames *frame)
     const BenchWork making = {make_air, &frame[0].set[1], 1};
     bench_time(&fill, bench, &making, 1);
     bench_tunable(bench,
-               &(BenchTunable){"air before a pixel, visible", "render/air/air_private.h", "a path, seven bands", "%",
-                            "largest, of radiance seen from 2, 300, 3000 m; the atmosphere asked for it", 2},
-               work, seen, ways);
+                  &(BenchTunable){"air before a pixel, visible", "render/air/air_private.h", "a path, seven bands", "%",
+                                  "largest, of radiance seen from 2, 300, 3000 m; the atmosphere asked for it", 2},
+                  work, seen, ways);
     for (int w = 0; w < ways; w++) warm[w].time = seen[w].time;
-    bench_tunable_rows(bench,
-               &(BenchTunable){"air before a pixel, thermal", "render/air/air_private.h", "a path, seven bands", "%",
-                            "largest, of radiance seen from 2, 300, 3000 m; the atmosphere asked for it", 0.5},
-               warm, ways - 1);
+    bench_tunable_rows(
+        bench,
+        &(BenchTunable){"air before a pixel, thermal", "render/air/air_private.h", "a path, seven bands", "%",
+                        "largest, of radiance seen from 2, 300, 3000 m; the atmosphere asked for it", 0.5},
+        warm, ways - 1);
     BenchRow row = bench_row_of("air before a pixel: to make a frame's tables, one thread", &fill, NULL, 1);
     row.ratio = fill.median_s / (720 * 486 * (seen[0].time.median_s - seen[1].time.median_s));
-    row.to    = "what they save";
+    row.to = "what they save";
     bench_add(bench, &row);
     return STATUS_OK;
 }
@@ -246,16 +249,16 @@ typedef struct SkySet {
 
 static void ask_skies(void *user)
 {
-    SkySet      *s = user;
-    const double zenith_rad = 0.5 * pi_rad - s->from->sun.elevation_rad;
+    SkySet       *s = user;
+    const double  zenith_rad = 0.5 * pi_rad - s->from->sun.elevation_rad;
     const double *sun = s->air.light.sun_d_enu;
     for (int i = 0; i < skies; i++) {
         const double *d = s->d_enu[i];
         if (s->asked) {
-            SkyAir sky;
+            SkyAir       sky;
             const double along = (d[0] * sun[0] + d[1] * sun[1]) / (hypot(d[0], d[1]) * hypot(sun[0], sun[1]));
-            atmosphere_sky(&sky, s->from->atmosphere, s->air.light.weather.visibility_m, AIR_G, 0, acos(d[2]), zenith_rad,
-                           acos(clamp(along, -1, 1)));
+            atmosphere_sky(&sky, s->from->atmosphere, s->air.light.weather.visibility_m, AIR_G, 0, acos(d[2]),
+                           zenith_rad, acos(clamp(along, -1, 1)));
             s->out[i] = sky.scattered_w_m2_sr;
         } else {
             s->out[i] = daylight_sky(&s->air.light, AIR_G, d);
@@ -268,11 +271,11 @@ static void ask_skies(void *user)
 static void tunable_sky(Bench *bench, const AirSet *from)
 {
     enum { settings = 3 };
-    static const char *const name[settings] =
-        {"asked one by one", "25 heights x 13 azimuths", "13 heights x 7 azimuths"};
-    static SkySet set[settings];
-    BenchWork     work[settings];
-    BenchSetting    point[settings] = {0};
+    static const char *const name[settings] = {"asked one by one", "25 heights x 13 azimuths",
+                                               "13 heights x 7 azimuths"};
+    static SkySet            set[settings];
+    BenchWork                work[settings];
+    BenchSetting             point[settings] = {0};
     for (int k = 0; k < settings; k++) {
         set[k] = (SkySet){.from = from, .air = from->air, .asked = k == 0};
         AirSky *sky = &set[k].air.light.sky[AIR_G];
@@ -288,12 +291,18 @@ static void tunable_sky(Bench *bench, const AirSet *from)
         ask_skies(&set[k]);
         double square = 0;
         for (int i = 0; i < skies; i++) square += pow(set[k].out[i] / set[0].out[i] - 1, 2);
-        work[k]  = (BenchWork){ask_skies, &set[k], skies};
-        point[k] = (BenchSetting){.setting = name[k], .error = 100 * sqrt(square / skies), .is_default = k == 1,
-                                .bytes = k == 0 ? 1 : k == 1 ? (double)sizeof *sky : 0.35 * (double)sizeof *sky};
+        work[k] = (BenchWork){ask_skies, &set[k], skies};
+        point[k] = (BenchSetting){.setting = name[k],
+                                  .error = 100 * sqrt(square / skies),
+                                  .is_default = k == 1,
+                                  .bytes = k == 0   ? 1
+                                           : k == 1 ? (double)sizeof *sky
+                                                    : 0.35 * (double)sizeof *sky};
     }
-    bench_tunable(bench, &(BenchTunable){"radiance of the sky", "render/air/air.h", "a direction, 0.5-0.6 um", "%",
-                                   "rms, the atmosphere asked for it", 2}, work, point, settings);
+    bench_tunable(bench,
+                  &(BenchTunable){"radiance of the sky", "render/air/air.h", "a direction, 0.5-0.6 um", "%",
+                                  "rms, the atmosphere asked for it", 2},
+                  work, point, settings);
 }
 
 /* ---- its light on a plane ------------------------------------------------------------------------ */
@@ -302,7 +311,7 @@ enum { planes = 64 };
 
 typedef struct PlaneSet {
     Air    air;
-    int    steps;        /* of height, and four times as many of azimuth; 0: the table */
+    int    steps; /* of height, and four times as many of azimuth; 0: the table */
     double n_enu[planes][3], out[planes];
 } PlaneSet;
 
@@ -332,13 +341,13 @@ static void tunable_planes(Bench *bench, const AirSet *from)
     enum { settings = 4 };
     static const char *const name[settings] = {"summed over 8 x 32 directions", "summed over 24 x 96 directions",
                                                "17 tilts x 13 azimuths", "9 tilts x 7 azimuths"};
-    static const int steps[settings] = {8, 24, 0, 0};
-    static PlaneSet  set[settings], fine;
-    BenchWork        work[settings];
-    BenchSetting       point[settings] = {0};
+    static const int         steps[settings] = {8, 24, 0, 0};
+    static PlaneSet          set[settings], fine;
+    BenchWork                work[settings];
+    BenchSetting             point[settings] = {0};
     for (int k = -1; k < settings; k++) {
         PlaneSet *s = k < 0 ? &fine : &set[k];
-        s->air   = from->air;
+        s->air = from->air;
         s->steps = k >= 0 ? steps[k] : bench_quick(bench) ? 64 : 128;
         if (k == 3) {
             float *plane = s->air.light.plane_w_m2[AIR_G][0];
@@ -355,13 +364,14 @@ static void tunable_planes(Bench *bench, const AirSet *from)
         const double level = s->air.light.sky_w_m2[AIR_G];
         for (int i = 0; i < planes; i++) bench_worst(&point[k].error, 100 * fabs(s->out[i] - fine.out[i]) / level);
         work[k] = (BenchWork){ask_planes, s, planes};
-        point[k].setting    = name[k];
+        point[k].setting = name[k];
         point[k].is_default = k == 2;
-        point[k].bytes      = k < 2 ? 1 : (k == 2 ? 1 : 0.35) * sizeof s->air.light.plane_w_m2[0];
+        point[k].bytes = k < 2 ? 1 : (k == 2 ? 1 : 0.35) * sizeof s->air.light.plane_w_m2[0];
     }
-    bench_tunable(bench, &(BenchTunable){"light of the sky on a plane", "render/air/air.h", "a plane, 0.5-0.6 um", "%",
-                                   "largest over that of a level one; 64 x 256 directions or more", 1},
-               work, point, settings);
+    bench_tunable(bench,
+                  &(BenchTunable){"light of the sky on a plane", "render/air/air.h", "a plane, 0.5-0.6 um", "%",
+                                  "largest over that of a level one; 64 x 256 directions or more", 1},
+                  work, point, settings);
 }
 
 /* ---- the suite ------------------------------------------------------------------------------------ */
@@ -380,11 +390,13 @@ Status bench_precision_air(Bench *bench)
     }
     for (int w = 0; w < ways && status == STATUS_OK; w++)
         for (int e = 0; e < eyes; e++) {
-            AirSet *s = &frame[w].set[e];
+            AirSet      *s = &frame[w].set[e];
             const double elevation_rad = 45 * rad_per_deg, azimuth_rad = 2.1;
             s->atmosphere = atmosphere;
             s->planck[0] = planck[0], s->planck[1] = planck[1];
-            s->sun = (Sun){.azimuth_rad = azimuth_rad, .elevation_rad = elevation_rad, .distance_au = 1,
+            s->sun = (Sun){.azimuth_rad = azimuth_rad,
+                           .elevation_rad = elevation_rad,
+                           .distance_au = 1,
                            .d_enu = {cos(elevation_rad) * sin(azimuth_rad), cos(elevation_rad) * cos(azimuth_rad),
                                      sin(elevation_rad)}};
             s->eye_m = eye_m[e];

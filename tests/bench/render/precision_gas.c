@@ -15,7 +15,7 @@ static const double model[temperatures][columns] = {{0.1464, 0.1738, 0.1984, 0.2
                                                     {0.1440, 0.1951, 0.2365, 0.2687, 0.2962}};
 
 typedef struct GasSet {
-    int    gases;                                                           /* hot_gas_terms: smoke_gas_through itself */
+    int    gases; /* hot_gas_terms: smoke_gas_through itself */
     double weight[temperatures][2][hot_gas_terms], rate[temperatures][hot_gas_terms];
     double seen[rays];
 } GasSet;
@@ -29,8 +29,9 @@ static void rates(double rate[hot_gas_terms])
         HotGasRay ray;
         smoke_gas_start(&ray);
         one[0][j] = 1;
-        rate[j] = smoke_gas_through(&ray, HOT_GAS_MWIR, (HotGasColumn){thin_atm_m, 0},
-                                  (const double(*)[hot_gas_terms])one) / thin_atm_m;
+        rate[j] =
+            smoke_gas_through(&ray, HOT_GAS_MWIR, (HotGasColumn){thin_atm_m, 0}, (const double(*)[hot_gas_terms])one) /
+            thin_atm_m;
     }
 }
 
@@ -66,7 +67,7 @@ static void cross(void *user)
                 HotGasRay ray;
                 smoke_gas_start(&ray);
                 seen = smoke_gas_through(&ray, HOT_GAS_MWIR, (HotGasColumn){atm_m, 0},
-                                       (const double(*)[hot_gas_terms])s->weight[t]);
+                                         (const double(*)[hot_gas_terms])s->weight[t]);
             }
             for (int g = 0; g < s->gases && s->gases < hot_gas_terms; g++)
                 seen += s->weight[t][0][g] * (1 - exp(-s->rate[t][g] * atm_m));
@@ -79,9 +80,9 @@ Status bench_precision_gas(Bench *bench)
 {
     static const int         gases[settings] = {1, 2, 4, hot_gas_terms};
     static const char *const name[settings] = {"1, right in the middle", "2", "4", "8"};
-    static GasSet set[settings];
-    BenchWork     work[settings];
-    BenchSetting  point[settings] = {0};
+    static GasSet            set[settings];
+    BenchWork                work[settings];
+    BenchSetting             point[settings] = {0};
     for (int k = 0; k < settings; k++) {
         set[k].gases = gases[k];
         make_gases(&set[k]);
@@ -89,12 +90,13 @@ Status bench_precision_gas(Bench *bench)
         for (int i = 0; i < rays; i++)
             bench_worst(&point[k].error, 100 * fabs(set[k].seen[i] / model[i / columns][i % columns] - 1));
         work[k] = (BenchWork){cross, &set[k], rays};
-        point[k].setting    = name[k];
+        point[k].setting = name[k];
         point[k].is_default = k == settings - 1;
     }
-    bench_tunable(bench, &(BenchTunable){"grey gases of hot gas", "render/smoke/smoke.h",
-                                         "emissivity of CO2 on a ray, one band", "%",
-                                         "largest, a quarter to four times 0.02 atm m, narrow-band model", 10},
+    bench_tunable(bench,
+                  &(BenchTunable){"grey gases of hot gas", "render/smoke/smoke.h",
+                                  "emissivity of CO2 on a ray, one band", "%",
+                                  "largest, a quarter to four times 0.02 atm m, narrow-band model", 10},
                   work, point, settings);
     return STATUS_OK;
 }

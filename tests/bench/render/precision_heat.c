@@ -33,8 +33,8 @@ typedef struct DaySet {
 
 static void run_day(void *user)
 {
-    DaySet             *s = user;
-    const HeatDay       day = heat_day_default();
+    DaySet              *s = user;
+    const HeatDay        day = heat_day_default();
     const GroundExposure level = {{0, 0, 1}, 1, 1, 0};
     for (int k = 1; k < ground_kinds; k++) {
         Column        layers;
@@ -83,16 +83,16 @@ static void tunable_step(Bench *bench, const GroundKinds *kinds)
     enum { settings = 6 };
     static const double      step_s[settings] = {60, 300, 600, 900, 1800, 3600};
     static const char *const name[settings] = {"60 s", "300 s", "600 s", "900 s", "1800 s", "3600 s"};
-    static DaySet set[settings], fine;
-    BenchWork     work[settings];
-    BenchSetting  point[settings] = {0};
+    static DaySet            set[settings], fine;
+    BenchWork                work[settings];
+    BenchSetting             point[settings] = {0};
     fine = (DaySet){.kinds = kinds, .grid = ground_grid_default, .step_s = 30};
     fine.grid.tolerance_k = 1e-3;
     run_day(&fine);
     for (int k = 0; k < settings; k++) {
         set[k] = (DaySet){.kinds = kinds, .grid = ground_grid_default, .step_s = step_s[k]};
         run_day(&set[k]);
-        work[k]  = (BenchWork){run_day, &set[k], 2 * (ground_kinds - 1)};
+        work[k] = (BenchWork){run_day, &set[k], 2 * (ground_kinds - 1)};
         point[k] = (BenchSetting){
             .setting = name[k], .also_is = "rms, K", .is_default = step_s[k] == heat_default_config().step_s};
         compare_days(&point[k], &set[k], &fine);
@@ -122,7 +122,7 @@ static void tunable_elements(Bench *bench, const GroundKinds *kinds)
         run_day(&set[k]);
         snprintf(name[k], sizeof name[k], "%g mm, growing by %g: %d of soil", 1e3 * grid[k].first_m, grid[k].growth,
                  set[k].nodes - 1);
-        work[k]  = (BenchWork){run_day, &set[k], 2 * (ground_kinds - 1)};
+        work[k] = (BenchWork){run_day, &set[k], 2 * (ground_kinds - 1)};
         point[k] = (BenchSetting){
             .setting = name[k], .also_is = "rms, K", .is_default = grid[k].first_m == ground_grid_default.first_m};
         compare_days(&point[k], &set[k], &fine);
@@ -184,16 +184,16 @@ static Status slopes_by_themselves(double temp_k[slope_kinds][slopes][slope_time
 static Status tunable_facets(Bench *bench, const GroundKinds *kinds, Pool *pool)
 {
     enum { settings = 5 };
-    static const int facets[settings] = {3, 5, 7, 9, 17};
+    static const int         facets[settings] = {3, 5, 7, 9, 17};
     static const char *const name[settings] = {"3 x 3", "5 x 5", "7 x 7", "9 x 9", "17 x 17"};
-    static double own_k[slope_kinds][slopes][slope_times];
-    FacetSet      set[settings] = {{0}};
-    BenchWork     work[settings];
-    BenchSetting  point[settings] = {0};
-    const HeatDay day = heat_day_default();
-    HeatConfig    c = config_of(&day, 1800, 3, 6);
-    const int     count = bench_quick(bench) ? settings - 1 : settings;
-    Status        status = STATUS_OK;
+    static double            own_k[slope_kinds][slopes][slope_times];
+    FacetSet                 set[settings] = {{0}};
+    BenchWork                work[settings];
+    BenchSetting             point[settings] = {0};
+    const HeatDay            day = heat_day_default();
+    HeatConfig               c = config_of(&day, 1800, 3, 6);
+    const int                count = bench_quick(bench) ? settings - 1 : settings;
+    Status                   status = STATUS_OK;
     c.pool = pool, c.spin_up_s = 12 * 3600;
     bench_progress(bench, "slopes of the ground's heat");
     status = slopes_by_themselves(own_k, kinds, &c);
@@ -211,7 +211,8 @@ static Status tunable_facets(Bench *bench, const GroundKinds *kinds, Pool *pool)
                     double n_enu[3];
                     slope_normal(n_enu, i);
                     const double off_k = heat_ground_k(now, shown_kinds[k], n_enu, 0, 1, 1) - own_k[k][i][t];
-                    *(i < slopes / 2 ? &point[f].error : &point[f].also) += off_k * off_k / (0.5 * slopes * slope_times * slope_kinds);
+                    *(i < slopes / 2 ? &point[f].error : &point[f].also) +=
+                        off_k * off_k / (0.5 * slopes * slope_times * slope_kinds);
                 }
         }
         point[f].error = sqrt(point[f].error), point[f].also = sqrt(point[f].also);
@@ -250,7 +251,7 @@ static void groves(ShadowStand *out, const void *user, double x_m, double y_m)
     (void)user;
     const double wave = sin(x_m / 23) + sin(y_m / 31) + sin((x_m + 2 * y_m) / 57),
                  hedge = fabs(fmod(fabs(x_m + 0.3 * y_m), 180) - 90);
-    const bool   grove = wave > 1.3, row = hedge < 4;
+    const bool grove = wave > 1.3, row = hedge < 4;
     *out = grove ? (ShadowStand){4, 2, 14, 0.3f} : row ? (ShadowStand){5, 0, 5, 0.5f} : (ShadowStand){0, 0, 0, 1};
 }
 
@@ -287,19 +288,19 @@ static Status tunable_shade(Bench *bench, const GroundKinds *kinds, Pool *pool)
     enum { settings = 5 };
     static const double      cell_m[settings] = {4, 8, 16, 32, 64};
     static const char *const name[settings] = {"4 m", "8 m", "16 m", "32 m", "64 m"};
-    static ShadeSet  set[settings], fine;
-    BenchWork        work[settings];
-    BenchSetting     point[settings] = {0};
-    const Geodetic   origin = {48 * rad_per_deg, 11 * rad_per_deg, 500};
-    const HeatDay    day = heat_day_default();
-    const double     wide_m = 1000;
-    HeatConfig       c = config_of(&day, 1800, 3, 15);
-    LocalFrame       frame;
-    Landscape        landscape = {0};
-    Heat            *heat = NULL;
-    HeatNow         *now = NULL;
-    Arena           *arena = arena_create();
-    double           times_s[2];
+    static ShadeSet          set[settings], fine;
+    BenchWork                work[settings];
+    BenchSetting             point[settings] = {0};
+    const Geodetic           origin = {48 * rad_per_deg, 11 * rad_per_deg, 500};
+    const HeatDay            day = heat_day_default();
+    const double             wide_m = 1000;
+    HeatConfig               c = config_of(&day, 1800, 3, 15);
+    LocalFrame               frame;
+    Landscape                landscape = {0};
+    Heat                    *heat = NULL;
+    HeatNow                 *now = NULL;
+    Arena                   *arena = arena_create();
+    double                   times_s[2];
     bench_progress(bench, "cells of shade");
     Status status = arena ? local_frame_at(&frame, &origin) : STATUS_NO_MEMORY;
     c.pool = pool;
@@ -325,8 +326,10 @@ static Status tunable_shade(Bench *bench, const GroundKinds *kinds, Pool *pool)
         work[k] = (BenchWork){cast, &set[k], 1};
     }
     if (status == STATUS_OK)
-        bench_tunable(bench, &(BenchTunable){"cells of past shade", "heat.shadow_m", "a map of hills and groves", "K",
-                                             "rms of grass at 15 h, cells of 2 m", 2.4}, work, point, settings);
+        bench_tunable(bench,
+                      &(BenchTunable){"cells of past shade", "heat.shadow_m", "a map of hills and groves", "K",
+                                      "rms of grass at 15 h, cells of 2 m", 2.4},
+                      work, point, settings);
     for (int k = 0; k < settings; k++) {
         heat_shadow_destroy(set[k].map);
         set[k].map = NULL;
@@ -341,8 +344,10 @@ static Status tunable_shade(Bench *bench, const GroundKinds *kinds, Pool *pool)
 /* ---- shade of past hours ------------------------------------------------------------------------- */
 
 enum { shade_windows = 3, shade_looks = 12 };
-static const struct { const char *name; double from_to_h[2]; } windows[shade_windows] = {
-    {"morning", {6, 10}}, {"noon", {10, 14}}, {"afternoon", {14, 18}}};
+static const struct {
+    const char *name;
+    double      from_to_h[2];
+} windows[shade_windows] = {{"morning", {6, 10}}, {"noon", {10, 14}}, {"afternoon", {14, 18}}};
 
 /* Slots of Heat are half hours of the day with the sun up, in order. */
 static void shade_slots(uint8_t shadow[heat_day_slots], const HeatDay *day, const double from_to_h[2])
@@ -362,14 +367,14 @@ static Status shade_rows(Bench *bench, const GroundKinds *kinds, Pool *pool)
 {
     /* in it, afterwards; measured, worst of the three: 0.94, 0.22; 4.6, 1.8; 3.9, 1.7; 5.1, 1.8 */
     static const double limit_k[slope_kinds][2] = {{1.2, 0.4}, {5.5, 2.2}, {4.8, 2.2}, {6.2, 2.2}};
-    static HeatPiece piece[slope_kinds][shade_windows];
-    const HeatDay day = heat_day_default();
-    HeatConfig    c = config_of(&day, 600, 3, 8);
-    const double  level[3] = {0, 0, 1};
+    static HeatPiece    piece[slope_kinds][shade_windows];
+    const HeatDay       day = heat_day_default();
+    HeatConfig          c = config_of(&day, 600, 3, 8);
+    const double        level[3] = {0, 0, 1};
     double worst_k[slope_kinds][shade_windows][2] = {{{0}}}, lowered_k[slope_kinds][shade_windows][2] = {{{0}}},
            worst_bits = 0;
-    Heat         *heat = NULL;
-    Arena        *arena = arena_create();
+    Heat  *heat = NULL;
+    Arena *arena = arena_create();
     bench_progress(bench, "shade of past hours");
     c.pool = pool;
     Status status = arena ? heat_create(&heat, kinds, &c, NULL, 0) : STATUS_NO_MEMORY;
@@ -421,8 +426,8 @@ static Status shade_rows(Bench *bench, const GroundKinds *kinds, Pool *pool)
 Status bench_precision_heat(Bench *bench)
 {
     static GroundKinds kinds;
-    Pool  *pool = NULL;
-    Status status = heat_day_kinds(&kinds);
+    Pool              *pool = NULL;
+    Status             status = heat_day_kinds(&kinds);
     if (status == STATUS_OK) status = pool_create(&pool, bench_threads(bench));
     if (status == STATUS_OK) {
         tunable_step(bench, &kinds);

@@ -31,7 +31,7 @@ static void own_table(PlanckSet *s)
 {
     const double step = (1 / coldest_k - 1 / hottest_k) / s->cells;
     double       value[2] = {0}, slope[2] = {0};
-    s->u0    = 1 / hottest_k;
+    s->u0 = 1 / hottest_k;
     s->per_u = 1 / step;
     for (int i = 0; i <= s->cells; i++) {
         const double u = s->u0 + i * step;
@@ -74,17 +74,23 @@ static void ask_planck(void *user)
 static Status tunable_planck(Bench *bench)
 {
     enum { settings = 8 };
-    static const struct { const char *name; PlanckWay way; int cells; } setting[settings] = {
-        {"straight lines, 1024 cells", PLANCK_LINEAR, 1024}, {"straight lines, 4096 cells", PLANCK_LINEAR, 4096},
-        {"cubics, 64 cells", PLANCK_CUBIC, 64}, {"cubics, 256 cells", PLANCK_CUBIC, 256},
-        {"cubics, 1024 cells", PLANCK_CUBIC, 1024},
-        {"its table, one at a time", PLANCK_TABLE, 0}, {"its table, eight at a time", PLANCK_EIGHT, 0},
-        {"closed form", PLANCK_CLOSED, 0}};
+    static const struct {
+        const char *name;
+        PlanckWay   way;
+        int         cells;
+    } setting[settings] = {{"straight lines, 1024 cells", PLANCK_LINEAR, 1024},
+                           {"straight lines, 4096 cells", PLANCK_LINEAR, 4096},
+                           {"cubics, 64 cells", PLANCK_CUBIC, 64},
+                           {"cubics, 256 cells", PLANCK_CUBIC, 256},
+                           {"cubics, 1024 cells", PLANCK_CUBIC, 1024},
+                           {"its table, one at a time", PLANCK_TABLE, 0},
+                           {"its table, eight at a time", PLANCK_EIGHT, 0},
+                           {"closed form", PLANCK_CLOSED, 0}};
     static PlanckSet set[settings];
     static double    own[settings][most_cells][4];
     static float     temp_k[temps];
     BenchWork        work[settings];
-    BenchSetting       point[settings] = {0};
+    BenchSetting     point[settings] = {0};
     PlanckTable     *table;
     const Status     status = planck_table_create(&table, low_m, high_m);
     if (status != STATUS_OK) return status;
@@ -92,8 +98,8 @@ static Status tunable_planck(Bench *bench)
         temp_k[i] = (float)(coldest_k + 1 + (hottest_k - coldest_k - 2) * random_uniform(1, 0, 0, (uint64_t)i));
     for (int k = 0; k < settings; k++) {
         double worst = 0;
-        set[k] = (PlanckSet){.way = setting[k].way, .cells = setting[k].cells, .table = table, .temp_k = temp_k,
-                             .c = own[k]};
+        set[k] = (PlanckSet){
+            .way = setting[k].way, .cells = setting[k].cells, .table = table, .temp_k = temp_k, .c = own[k]};
         if (set[k].cells) own_table(&set[k]);
         ask_planck(&set[k]);
         for (int i = 0; i < temps; i++) {
@@ -101,16 +107,19 @@ static Status tunable_planck(Bench *bench)
             const double want = planck_band(low_m, high_m, (double)temp_k[i], &per_k);
             bench_worst(&worst, fabs(set[k].out[i] - want) / per_k);
         }
-        work[k]  = (BenchWork){ask_planck, &set[k], temps};
-        point[k] = (BenchSetting){.setting = setting[k].name, .error = worst, .is_default = set[k].way == PLANCK_EIGHT,
-                                .bytes = set[k].cells                   ? set[k].cells * sizeof own[0][0]
-                                         : set[k].way == PLANCK_TABLE   ? planck_table_cells * 4.0 * sizeof(double)
-                                         : set[k].way == PLANCK_EIGHT   ? planck_table_cells * 4.0 * sizeof(float) : 1};
+        work[k] = (BenchWork){ask_planck, &set[k], temps};
+        point[k] = (BenchSetting){.setting = setting[k].name,
+                                  .error = worst,
+                                  .is_default = set[k].way == PLANCK_EIGHT,
+                                  .bytes = set[k].cells                 ? set[k].cells * sizeof own[0][0]
+                                           : set[k].way == PLANCK_TABLE ? planck_table_cells * 4.0 * sizeof(double)
+                                           : set[k].way == PLANCK_EIGHT ? planck_table_cells * 4.0 * sizeof(float)
+                                                                        : 1};
     }
     bench_tunable(bench,
-               &(BenchTunable){"radiance of a black body", "render/materials/planck.c", "a temperature, 3.4-4.8 um", "K",
-                            "largest, closed form, 180 .. 1500 K", 5e-4},
-               work, point, settings);
+                  &(BenchTunable){"radiance of a black body", "render/materials/planck.c", "a temperature, 3.4-4.8 um",
+                                  "K", "largest, closed form, 180 .. 1500 K", 5e-4},
+                  work, point, settings);
     planck_table_destroy(table);
     return STATUS_OK;
 }
@@ -137,16 +146,16 @@ static Status tunable_inverse(Bench *bench)
 {
     enum { settings = 3 };
     static const char *const name[settings] = {"solved", "table", "table, four at a time"};
-    static InverseSet set[settings];
-    static float      radiance[temps];
-    BenchWork         work[settings];
-    BenchSetting        point[settings] = {0};
-    PlanckTable      *table;
-    const Status      status = planck_table_create(&table, low_m, high_m);
+    static InverseSet        set[settings];
+    static float             radiance[temps];
+    BenchWork                work[settings];
+    BenchSetting             point[settings] = {0};
+    PlanckTable             *table;
+    const Status             status = planck_table_create(&table, low_m, high_m);
     if (status != STATUS_OK) return status;
     for (int i = 0; i < temps; i++)
-        radiance[i] = (float)planck_band(low_m, high_m, coldest_k + 1 + (hottest_k - coldest_k - 2) * (i + 0.5) / temps,
-                                         NULL);
+        radiance[i] =
+            (float)planck_band(low_m, high_m, coldest_k + 1 + (hottest_k - coldest_k - 2) * (i + 0.5) / temps, NULL);
     for (int k = 0; k < settings; k++) {
         double worst = 0;
         set[k] = (InverseSet){.way = k, .table = table, .radiance = radiance};
@@ -156,11 +165,13 @@ static Status tunable_inverse(Bench *bench)
             const double back = planck_band(low_m, high_m, set[k].out[i], &per_k);
             bench_worst(&worst, fabs(back - (double)radiance[i]) / per_k);
         }
-        work[k]  = (BenchWork){ask_inverse, &set[k], temps};
+        work[k] = (BenchWork){ask_inverse, &set[k], temps};
         point[k] = (BenchSetting){.setting = name[k], .error = worst, .is_default = k == 2};
     }
-    bench_tunable(bench, &(BenchTunable){"temperature of a radiance", "render/materials/planck.c", "a radiance, 3.4-4.8 um", "K",
-                                   "largest, closed form, 180 .. 1500 K", 1e-6}, work, point, settings);
+    bench_tunable(bench,
+                  &(BenchTunable){"temperature of a radiance", "render/materials/planck.c", "a radiance, 3.4-4.8 um",
+                                  "K", "largest, closed form, 180 .. 1500 K", 1e-6},
+                  work, point, settings);
     planck_table_destroy(table);
     return STATUS_OK;
 }
@@ -168,16 +179,16 @@ static Status tunable_inverse(Bench *bench)
 /* ---- light on surfaces -------------------------------------------------------------------------- */
 
 typedef struct LightSet {
-    bool              eight;
-    const Air        *air;
-    const Materials  *materials;
-    SurfaceLight      light;
-    Hits              hits;
-    Rays              rays;
-    AirPaths             veils[AIR_BAND_COUNT];
-    uint16_t          material[hits_capacity];
-    float             sun[hits_capacity];
-    float             texture[hits_capacity], temp_k[hits_capacity], out[AIR_BAND_COUNT][hits_capacity];
+    bool             eight;
+    const Air       *air;
+    const Materials *materials;
+    SurfaceLight     light;
+    Hits             hits;
+    Rays             rays;
+    AirPaths         veils[AIR_BAND_COUNT];
+    uint16_t         material[hits_capacity];
+    float            sun[hits_capacity];
+    float            texture[hits_capacity], temp_k[hits_capacity], out[AIR_BAND_COUNT][hits_capacity];
 } LightSet;
 
 enum { light_hits = 1016 };
@@ -207,9 +218,9 @@ static void make_hits(LightSet *s)
         }
         s->hits.surface[i] = (uint8_t)(1 + i / 8 % (SURFACE_COUNT - 1));
         s->material[i] = (uint16_t)s->materials->surface[s->hits.surface[i]];
-        s->sun[i]      = dice(4, i, 0, 1) < 0.3 ? 0.0F : 1.0F;
-        s->texture[i]  = (float)dice(5, i, 0.6, 1.4);
-        s->temp_k[i]   = (float)dice(6, i, 270, 330);
+        s->sun[i] = dice(4, i, 0, 1) < 0.3 ? 0.0F : 1.0F;
+        s->texture[i] = (float)dice(5, i, 0.6, 1.4);
+        s->temp_k[i] = (float)dice(6, i, 270, 330);
     }
 }
 
@@ -218,8 +229,12 @@ static void shade(void *user)
     LightSet *s = user;
     if (s->eight) {
         float       *out[AIR_BAND_COUNT];
-        SurfaceBlock block = {.hits = &s->hits, .rays = &s->rays, .material = s->material, .temp_k = s->temp_k,
-                              .sun = s->sun, .veils = s->veils};
+        SurfaceBlock block = {.hits = &s->hits,
+                              .rays = &s->rays,
+                              .material = s->material,
+                              .temp_k = s->temp_k,
+                              .sun = s->sun,
+                              .veils = s->veils};
         for (int b = 0; b < AIR_BAND_COUNT; b++) out[b] = s->out[b], block.texture[b] = s->texture;
         surface_light_shade(out, &s->light, &block);
     } else {
@@ -227,8 +242,8 @@ static void shade(void *user)
         daylight_facing(&facing, &s->air->light, s->materials, &s->hits, &s->rays, s->material);
         for (int b = 0; b < AIR_BAND_COUNT; b++) {
             if (b < AIR_MWIR)
-                optical_shade(s->out[b], b, s->air, s->materials, &s->hits, &s->rays, s->material, s->texture,
-                              s->sun, NULL, &s->veils[b], &facing);
+                optical_shade(s->out[b], b, s->air, s->materials, &s->hits, &s->rays, s->material, s->texture, s->sun,
+                              NULL, &s->veils[b], &facing);
             else
                 thermal_shade(s->out[b], b == AIR_MWIR ? BAND_MWIR : BAND_LWIR, s->air, s->materials, &s->hits,
                               &s->rays, s->material, s->temp_k, s->sun, NULL, &s->veils[b], &facing);
@@ -241,7 +256,7 @@ static Status tunable_shading(Bench *bench, const Air *air, const Materials *mat
 {
     static LightSet set[2];
     BenchWork       work[2];
-    BenchSetting      point[2] = {{.setting = "one at a time, in double"},
+    BenchSetting    point[2] = {{.setting = "one at a time, in double"},
                                 {.setting = "eight at a time, in float", .is_default = true}};
     for (int k = 0; k < 2; k++) {
         set[k].eight = k, set[k].air = air, set[k].materials = materials;
@@ -255,8 +270,10 @@ static Status tunable_shading(Bench *bench, const Air *air, const Materials *mat
     for (int b = 0; b < AIR_BAND_COUNT; b++)
         for (int i = 0; i < light_hits; i++)
             bench_worst(&point[1].error, 100 * fabs((double)set[1].out[b][i] / (double)set[0].out[b][i] - 1));
-    bench_tunable(bench, &(BenchTunable){"light on the ground", "render/light/surface_light.c", "a hit, seven bands", "%",
-                                   "largest, the plain form in double", 0.01}, work, point, 2);
+    bench_tunable(bench,
+                  &(BenchTunable){"light on the ground", "render/light/surface_light.c", "a hit, seven bands", "%",
+                                  "largest, the plain form in double", 0.01},
+                  work, point, 2);
     return STATUS_OK;
 }
 
@@ -265,10 +282,10 @@ static Status tunable_shading(Bench *bench, const Air *air, const Materials *mat
 enum { smoke_rays = 128, smoke_volumes = 10 };
 
 typedef struct SmokeSet {
-    int        steps; /* uniform ones along the ray; 0: smoke_trace_rays */
+    int         steps; /* uniform ones along the ray; 0: smoke_trace_rays */
     SmokeVolume volume[smoke_volumes];
-    Rays       rays;
-    double     far_m[smoke_rays];
+    Rays        rays;
+    double      far_m[smoke_rays];
     SmokeRays   out;
 } SmokeSet;
 
@@ -278,12 +295,14 @@ static void make_smoke(SmokeSet *s)
     for (int v = 0; v < smoke_volumes; v++) {
         SmokeVolume *to = &s->volume[v];
         *to = (SmokeVolume){.p_enu = {dice(20, v, 100, 160), dice(21, v, -8, 8), dice(22, v, -4, 4)},
-                           .axis_enu = {0, 0.6, 0.8},
-                           .along_m = dice(23, v, 4, 12), .across_m = dice(24, v, 3, 9), .d_sun_enu = {0, 0, 1}};
+                            .axis_enu = {0, 0.6, 0.8},
+                            .along_m = dice(23, v, 4, 12),
+                            .across_m = dice(24, v, 3, 9),
+                            .d_sun_enu = {0, 0, 1}};
         to->range_m = v3_length(to->p_enu);
         for (int b = 0; b < smoke_bands; b++) {
             to->extinction_per_m[b] = dice(25, v, 0.02, 0.3);
-            to->source[b]           = dice(26, v, 5, 40);
+            to->source[b] = dice(26, v, 5, 40);
         }
     }
     s->rays.count = smoke_rays;
@@ -310,8 +329,8 @@ static void march(void *user)
             double depth = 0, shown = 0;
             for (int v = 0; v < smoke_volumes; v++) {
                 const SmokeVolume *at = &s->volume[v];
-                const double here = at->extinction_per_m[0]
-                    * smoke_column_m(at, o, d, near_m + k * step_m, near_m + (k + 1) * step_m);
+                const double       here =
+                    at->extinction_per_m[0] * smoke_column_m(at, o, d, near_m + k * step_m, near_m + (k + 1) * step_m);
                 depth += here, shown += here * at->source[0];
             }
             if (!(depth > 0)) continue;
@@ -329,9 +348,9 @@ static void tunable_smoke(Bench *bench)
     static const int         steps[settings] = {10, 30, 100, 300, 0};
     static const char *const name[settings] = {"steps of 10 m", "steps of 3.3 m", "steps of 1 m", "steps of 0.33 m",
                                                "cuts where puffs begin and end"};
-    static SmokeSet set[settings], fine = {.steps = 10000};
-    BenchWork       work[settings];
-    BenchSetting      point[settings] = {0};
+    static SmokeSet          set[settings], fine = {.steps = 10000};
+    BenchWork                work[settings];
+    BenchSetting             point[settings] = {0};
     make_smoke(&fine);
     if (bench_quick(bench)) fine.steps = 2000;
     march(&fine);
@@ -341,34 +360,37 @@ static void tunable_smoke(Bench *bench)
         march(&set[k]);
         for (int r = 0; r < smoke_rays; r++)
             bench_worst(&point[k].error, fabs((double)(set[k].out.added[0][r] + 20 * set[k].out.transmittance[0][r]) /
-                                              (double)(fine.out.added[0][r] + 20 * fine.out.transmittance[0][r])
-                                                  - 1) * 100);
+                                                  (double)(fine.out.added[0][r] + 20 * fine.out.transmittance[0][r]) -
+                                              1) *
+                                             100);
         work[k] = (BenchWork){march, &set[k], smoke_rays};
-        point[k].setting    = name[k];
+        point[k].setting = name[k];
         point[k].is_default = k == settings - 1;
     }
-    bench_tunable(bench, &(BenchTunable){"smoke along a ray", "render/smoke/smoke.h", "a ray through ten puffs, one band", "%",
-                                   "largest, even steps of 1 cm", 4}, work, point, settings);
+    bench_tunable(bench,
+                  &(BenchTunable){"smoke along a ray", "render/smoke/smoke.h", "a ray through ten puffs, one band", "%",
+                                  "largest, even steps of 1 cm", 4},
+                  work, point, settings);
 }
 
 /* ---- the suite ---------------------------------------------------------------------------------- */
 
 static Status light_with_air(Bench *bench)
 {
-    Atmosphere  *atmosphere = NULL;
-    PlanckTable *mwir = NULL, *lwir = NULL;
-    Materials    materials = {0};
-    Arena       *arena = arena_create();
-    static Air   air;
-    char         path[512], surfaces[512];
-    const Sun    sun = {.elevation_rad = 0.9, .distance_au = 1, .azimuth_rad = 0, .d_enu = {0, cos(0.9), sin(0.9)}};
-    const AirEye eye = {.height_m = 300, .bands = (1 << AIR_BAND_COUNT) - 1};
+    Atmosphere   *atmosphere = NULL;
+    PlanckTable  *mwir = NULL, *lwir = NULL;
+    Materials     materials = {0};
+    Arena        *arena = arena_create();
+    static Air    air;
+    char          path[512], surfaces[512];
+    const Sun     sun = {.elevation_rad = 0.9, .distance_au = 1, .azimuth_rad = 0, .d_enu = {0, cos(0.9), sin(0.9)}};
+    const AirEye  eye = {.height_m = 300, .bands = (1 << AIR_BAND_COUNT) - 1};
     const Weather weather = weather_default();
-    Status status = arena ? atmosphere_open(&atmosphere, "us1976") : STATUS_NO_MEMORY;
+    Status        status = arena ? atmosphere_open(&atmosphere, "us1976") : STATUS_NO_MEMORY;
     if (status == STATUS_OK) status = planck_table_create(&mwir, 3.4e-6, 4.8e-6);
     if (status == STATUS_OK) status = planck_table_create(&lwir, 8e-6, 12e-6);
-    if (status == STATUS_OK && (!etc_path(path, sizeof path, "materials.csv") ||
-                                !etc_path(surfaces, sizeof surfaces, "surfaces.csv")))
+    if (status == STATUS_OK &&
+        (!etc_path(path, sizeof path, "materials.csv") || !etc_path(surfaces, sizeof surfaces, "surfaces.csv")))
         status = STATUS_BAD_VALUE;
     if (status == STATUS_OK) status = materials_open(&materials, path, surfaces, NULL);
     const AirSource source = {atmosphere, mwir, lwir, 0};

@@ -1,5 +1,6 @@
-/* tests/bench/render/precision_radar.c: the field that a target scatters: ray tubes a wavelength, their divisions at edges,
- * mirrors of a path; flat faces by ray tubes and in closed form; what a list of hits saves when it is used again. */
+/* tests/bench/render/precision_radar.c: the field that a target scatters: ray tubes a wavelength, their divisions at
+ * edges, mirrors of a path; flat faces by ray tubes and in closed form; what a list of hits saves when it is used
+ * again. */
 #include "render/scattering/field/radar_target.h"
 #include "tests/bench/bench.h"
 #include "render/scattering/field/radar_model.h"
@@ -23,17 +24,17 @@ static double off_percent(const ScatterMatrix *got, const ScatterMatrix *want, i
 
 /* ---- flat faces ------------------------------------------------------------------------------- */
 
-/* The first bounce by ray tubes and in closed form: the time of a look against its error. Plates and boxes against their
- * formulas; others against tubes divided to the finest. */
+/* The first bounce by ray tubes and in closed form: the time of a look against its error. Plates and boxes against
+ * their formulas; others against tubes divided to the finest. */
 
 enum { face_looks = 3 };
 
 typedef struct Case {
-    const char *what[2];  /* tubes; closed form */
-    const char *name;      /* NULL: a box */
+    const char *what[2]; /* tubes; closed form */
+    const char *name;    /* NULL: a box */
     double      hz;
     double      side_m[3]; /* of a plate across x, or a box; 0: no formula */
-    bool        long_run; /* not in quick runs */
+    bool        long_run;  /* not in quick runs */
 } Case;
 
 typedef struct Faces {
@@ -164,20 +165,29 @@ static Status faces_in_closed_form(Bench *bench, const RadarMaterials *materials
 {
     static const Case cases[] = {
         {.what = {"radar: a look at a plate of 10 wavelengths, ray tubes", "radar: the same plate, closed form"},
-         .name = "plate:0.3x0.2", .hz = 10e9, .side_m = {0, 0.3, 0.2}},
+         .name = "plate:0.3x0.2",
+         .hz = 10e9,
+         .side_m = {0, 0.3, 0.2}},
         {.what = {"radar: a look at a plate of 310 wavelengths, 94 GHz, ray tubes",
                   "radar: the same at 94 GHz, closed form"},
-         .name = "plate:1x0.7", .hz = 94e9, .side_m = {0, 1, 0.7}},
+         .name = "plate:1x0.7",
+         .hz = 94e9,
+         .side_m = {0, 1, 0.7}},
         {.what = {"radar: a look at a box of 4 m, 10 GHz, ray tubes", "radar: the same box, closed form"},
-         .hz = 10e9, .side_m = {4, 2, 1.6}},
+         .hz = 10e9,
+         .side_m = {4, 2, 1.6}},
         {.what = {"radar: a look at a box of 4 m, 94 GHz, ray tubes", "radar: the same box at 94 GHz, closed form"},
-         .hz = 94e9, .side_m = {4, 2, 1.6}},
+         .hz = 94e9,
+         .side_m = {4, 2, 1.6}},
         {.what = {"radar: a look at a trihedral of squares, 10 GHz, ray tubes",
                   "radar: the same trihedral, its first bounce in closed form"},
-         .name = "corner:0.45", .hz = 10e9},
+         .name = "corner:0.45",
+         .hz = 10e9},
         {.what = {"radar: a look at a tank, 10 GHz, ray tubes",
                   "radar: the same tank, faces wholly seen in closed form"},
-         .name = "tank", .hz = 10e9, .long_run = true}};
+         .name = "tank",
+         .hz = 10e9,
+         .long_run = true}};
     Status status = STATUS_OK;
     bench_progress(bench, "flat faces in closed form");
     for (size_t i = 0; i < sizeof cases / sizeof *cases && status == STATUS_OK; i++)
@@ -187,8 +197,8 @@ static Status faces_in_closed_form(Bench *bench, const RadarMaterials *materials
 
 /* ---- hits used again -------------------------------------------------------------------------- */
 
-/* A tank's field without its edges, from a list of another aspect, and from scattering centres: what each saves, and how
- * wrong it is. */
+/* A tank's field without its edges, from a list of another aspect, and from scattering centres: what each saves, and
+ * how wrong it is. */
 
 static const double full_hz = 10e9, quick_hz = 4e9, band_hz = 500e6, bin_deg = 0.3;
 enum { frequencies = 32 };
@@ -198,7 +208,7 @@ typedef struct Reuse {
     Pool          *pool;
     double         centre_hz;
     TubeConfig     tubes;
-    ScatterAntenna look, now;   /* of the list, and where the antenna is */
+    ScatterAntenna look, now; /* of the list, and where the antenna is */
     bool           edges;
     TotalField     field;
     Centres        centres;
@@ -257,19 +267,20 @@ static void edges(Bench *bench, Reuse *r)
     r->tank->pair_count = pairs;
     r->edges = false;
     trace(r), sweep(r);
-    add_row(bench, "radar: the same, without edges", trace, r, off_percent(r->s, whole, frequencies),
-            "all edges");
+    add_row(bench, "radar: the same, without edges", trace, r, off_percent(r->s, whole, frequencies), "all edges");
     r->edges = true;
 }
 
 /* A list for an antenna elsewhere, against a list of its own. */
 static void aspects(Bench *bench, Reuse *r)
 {
-    static const struct { const char *what; double deg; } at[] = {
-        {"radar: 32 frequencies of a list 0.05 degrees away", 0.05},
-        {"radar: 32 frequencies of a list 0.15 degrees away", 0.15},
-        {"radar: 32 frequencies of a list 0.3 degrees away", 0.3},
-        {"radar: 32 frequencies of a list 1 degree away", 1}};
+    static const struct {
+        const char *what;
+        double      deg;
+    } at[] = {{"radar: 32 frequencies of a list 0.05 degrees away", 0.05},
+              {"radar: 32 frequencies of a list 0.15 degrees away", 0.15},
+              {"radar: 32 frequencies of a list 0.3 degrees away", 0.3},
+              {"radar: 32 frequencies of a list 1 degree away", 1}};
     const ScatterAntenna look = r->look;
     for (int i = bench_quick(bench) ? 1 : 0; i < (bench_quick(bench) ? 3 : 4); i++) {
         ScatterMatrix own[frequencies];
@@ -279,8 +290,7 @@ static void aspects(Bench *bench, Reuse *r)
         memcpy(own, r->s, sizeof own);
         r->look = look;
         trace(r), sweep(r);
-        add_row(bench, at[i].what, sweep, r, off_percent(r->s, own, frequencies),
-                "a list of its own, its grid too");
+        add_row(bench, at[i].what, sweep, r, off_percent(r->s, own, frequencies), "a list of its own, its grid too");
         r->now = look;
     }
 }
@@ -288,9 +298,13 @@ static void aspects(Bench *bench, Reuse *r)
 /* Centres of cells against the hits themselves, at the edge of their bin, over the band. */
 static void cells(Bench *bench, Reuse *r)
 {
-    static const struct { const char *what; double rad; } at[] = {
-        {"radar: signature of a list, cells of 0.1 rad", 0.1}, {"radar: signature of a list, cells of 0.2 rad", 0.2},
-        {"radar: signature of a list, cells of 0.4 rad", 0.4}, {"radar: signature of a list, cells of 0.8 rad", 0.8}};
+    static const struct {
+        const char *what;
+        double      rad;
+    } at[] = {{"radar: signature of a list, cells of 0.1 rad", 0.1},
+              {"radar: signature of a list, cells of 0.2 rad", 0.2},
+              {"radar: signature of a list, cells of 0.4 rad", 0.4},
+              {"radar: signature of a list, cells of 0.8 rad", 0.8}};
     radar_look(&r->now, (20 + 0.5 * bin_deg) * rad_per_deg, 10 * rad_per_deg, 2000);
     ScatterMatrix want[frequencies], got[frequencies];
     trace(r), sweep(r);
@@ -318,8 +332,8 @@ static void cells(Bench *bench, Reuse *r)
 static Status hits_used_again(Bench *bench, RadarTarget *tank, Pool *pool)
 {
     const double centre_hz = bench_quick(bench) ? quick_hz : full_hz;
-    Reuse        r = {.tank = tank, .pool = pool, .centre_hz = centre_hz, .edges = true,
-                      .tubes = tubes_default_config(centre_hz)};
+    Reuse        r = {
+               .tank = tank, .pool = pool, .centre_hz = centre_hz, .edges = true, .tubes = tubes_default_config(centre_hz)};
     bench_progress(bench, "reuse of a radar's lists");
     if (bench_quick(bench)) r.tubes.splits = 0;
     radar_look(&r.look, 20 * rad_per_deg, 10 * rad_per_deg, 2000);
@@ -336,7 +350,7 @@ static Status hits_used_again(Bench *bench, RadarTarget *tank, Pool *pool)
 /* ---- settings of ray tubes -------------------------------------------------------------------- */
 
 /* Rays grow as the target's outline: quick runs look at a smaller one. */
-static const double tank_hz = 16e9;
+static const double      tank_hz = 16e9;
 static const char *const tank_look = "a look at a tank at 16 GHz", *const quick_look = "a look at a jeep at 16 GHz";
 enum { looks = 6, quick_looks = 2, tank_settings = 5 };
 
@@ -365,7 +379,9 @@ static void look_at_tank(void *user)
 
 static TankSet tank_set(const RadarModel *model, Pool *pool, double more_rays, bool quick)
 {
-    TankSet t = {.target = model->target, .pool = pool, .looks = quick ? quick_looks : looks,
+    TankSet t = {.target = model->target,
+                 .pool = pool,
+                 .looks = quick ? quick_looks : looks,
                  .tubes = tubes_default_config(tank_hz)};
     t.tubes.rays_per_wavelength *= more_rays;
     t.tubes.rays_per_radius *= more_rays;
@@ -384,7 +400,8 @@ static Status time_tank(Bench *bench, TankSet set[], TankSet *fine, const char *
         look_at_tank(&set[k]);
         status = set[k].status;
         work[k] = (BenchWork){look_at_tank, &set[k], set[k].looks};
-        point[k] = (BenchSetting){.setting = name[k], .error = off_percent(set[k].s, fine->s, set[k].looks),
+        point[k] = (BenchSetting){.setting = name[k],
+                                  .error = off_percent(set[k].s, fine->s, set[k].looks),
                                   .is_default = k == by_default,
                                   .bytes = 75.0 * (double)set[k].hits.count};
     }
@@ -398,14 +415,15 @@ static Status tunable_tubes(Bench *bench, const RadarModel *model, Pool *pool)
 {
     static const char *const name[tank_settings] = {"0.6", "1.25", "1.8", "2.5", "3.5"};
     static const double      more[tank_settings] = {0.48, 1, 1.44, 2, 2.8};
-    const bool quick = bench_quick(bench);
-    const int  count = quick ? tank_settings - 1 : tank_settings; /* the last has eight times the default's rays */
-    TankSet    set[tank_settings], fine = tank_set(model, pool, quick ? 5 : 8, quick);
+    const bool               quick = bench_quick(bench);
+    const int count = quick ? tank_settings - 1 : tank_settings; /* the last has eight times the default's rays */
+    TankSet   set[tank_settings], fine = tank_set(model, pool, quick ? 5 : 8, quick);
     bench_progress(bench, "ray tubes");
     for (int k = 0; k < count; k++) set[k] = tank_set(model, pool, more[k], quick);
     return time_tank(bench, set, &fine, name, count, 1,
-                &(BenchTunable){"ray tubes a wavelength", "render/scattering/field/tubes.h", quick ? quick_look : tank_look, "%",
-                                "field, rms of the looks; 6 tubes or more", 18});
+                     &(BenchTunable){"ray tubes a wavelength", "render/scattering/field/tubes.h",
+                                     quick ? quick_look : tank_look, "%", "field, rms of the looks; 6 tubes or more",
+                                     18});
 }
 
 /* At 10 GHz, where edges rule; on quick runs one look, the last setting left out. */
@@ -413,9 +431,9 @@ static Status tunable_splits(Bench *bench, const RadarModel *model, Pool *pool)
 {
     enum { settings = 4 };
     static const char *const name[settings] = {"0", "1", "2", "3"};
-    const bool quick = bench_quick(bench);
-    const int  count = quick ? settings - 1 : settings;
-    TankSet    set[settings], fine = tank_set(model, pool, 1, quick);
+    const bool               quick = bench_quick(bench);
+    const int                count = quick ? settings - 1 : settings;
+    TankSet                  set[settings], fine = tank_set(model, pool, 1, quick);
     bench_progress(bench, "divisions of ray tubes");
     fine.tubes.frequency_hz = tank_hz / 1.6;
     if (quick) fine.looks = 1;
@@ -428,17 +446,17 @@ static Status tunable_splits(Bench *bench, const RadarModel *model, Pool *pool)
         set[k].tubes.seed = 0;
     }
     return time_tank(bench, set, &fine, name, count, 2,
-                &(BenchTunable){"divisions of ray tubes at edges", "render/scattering/field/tubes.h",
-                                quick ? "a look at a jeep at 10 GHz" : "a look at a tank at 10 GHz", "%",
-                                "field, rms of the looks; another grid, one division more", 12});
+                     &(BenchTunable){"divisions of ray tubes at edges", "render/scattering/field/tubes.h",
+                                     quick ? "a look at a jeep at 10 GHz" : "a look at a tank at 10 GHz", "%",
+                                     "field, rms of the looks; another grid, one division more", 12});
 }
 
 static Status tunable_mirrors(Bench *bench, const RadarModel *model, Pool *pool)
 {
     static const char *const name[tank_settings] = {"2", "3", "5", "8", "16"};
     static const int         mirrors[tank_settings] = {2, 3, 5, 8, 16};
-    const bool quick = bench_quick(bench);
-    TankSet    set[tank_settings], fine = tank_set(model, pool, 1, quick);
+    const bool               quick = bench_quick(bench);
+    TankSet                  set[tank_settings], fine = tank_set(model, pool, 1, quick);
     bench_progress(bench, "mirrors of ray tubes");
     fine.tubes.bounces = 40;
     for (int k = 0; k < tank_settings; k++) {
@@ -446,8 +464,8 @@ static Status tunable_mirrors(Bench *bench, const RadarModel *model, Pool *pool)
         set[k].tubes.bounces = mirrors[k];
     }
     return time_tank(bench, set, &fine, name, tank_settings, 3,
-                &(BenchTunable){"mirrors of a ray tube", "render/scattering/field/tubes.h", quick ? quick_look : tank_look, "%",
-                                "field, rms of the looks; 40 mirrors", 13});
+                     &(BenchTunable){"mirrors of a ray tube", "render/scattering/field/tubes.h",
+                                     quick ? quick_look : tank_look, "%", "field, rms of the looks; 40 mirrors", 13});
 }
 
 Status bench_precision_radar(Bench *bench)

@@ -15,13 +15,13 @@ enum { ground_rays = 256, east_posts = 1200, north_posts = 3000 };
 
 typedef struct GroundRays {
     const Elevation *elevation;
-    Ground ground;
-    double o[3][ground_rays], d[3][ground_rays], far_m[ground_rays];
+    Ground           ground;
+    double           o[3][ground_rays], d[3][ground_rays], far_m[ground_rays];
 } GroundRays;
 
 typedef struct GroundSet {
     const GroundRays *rays;
-    double step_posts;   /* steps of a march; 0: the tracer, one at a time; -1: together; -2: line by line in float */
+    double step_posts; /* steps of a march; 0: the tracer, one at a time; -1: together; -2: line by line in float */
     double range_m[ground_rays];
 } GroundSet;
 
@@ -49,13 +49,13 @@ static double march_ground(const Elevation *e, const double o[3], const double d
 static float height_over_float(const ElevationLevel *g, const float u[2], float z)
 {
     if (!(u[0] >= 0 && u[1] >= 0 && u[0] < g->nx - 1 && u[1] < g->ny - 1)) return NAN;
-    const int       i = (int)u[0], j = (int)u[1];
-    const float     a = u[0] - (float)i, b = u[1] - (float)j;
-    int32_t         post[4];
+    const int   i = (int)u[0], j = (int)u[1];
+    const float a = u[0] - (float)i, b = u[1] - (float)j;
+    int32_t     post[4];
     elevation_cell(post, g, i, j);
     const float sw = (float)post[0], se = (float)post[1], nw = (float)post[2], ne = (float)post[3];
-    return z - ((float)g->z0_m + (float)g->step_m * (a >= b ? sw + a * (se - sw) + b * (ne - se)
-                                                            : sw + a * (ne - nw) + b * (nw - sw)));
+    return z - ((float)g->z0_m +
+                (float)g->step_m * (a >= b ? sw + a * (se - sw) + b * (ne - se) : sw + a * (ne - nw) + b * (nw - sw)));
 }
 
 /* As walk_ground below, in float only: the accuracy of a float triangle tracer on this ground. */
@@ -83,8 +83,8 @@ static double walk_ground_float(const ElevationLevel *g, const GroundRays *r, in
 
 static void trace_ground(void *user)
 {
-    GroundSet        *s = user;
-    const GroundRays *r = s->rays;
+    GroundSet          *s = user;
+    const GroundRays   *r = s->rays;
     const double *const o[3] = {r->o[0], r->o[1], r->o[2]}, *const d[3] = {r->d[0], r->d[1], r->d[2]};
     if (s->step_posts == -1) ground_first_hits_together(s->range_m, NULL, &r->ground, ground_rays, o, d, r->far_m);
     for (int i = 0; s->step_posts == -2 && i < ground_rays; i++)
@@ -100,7 +100,7 @@ static void trace_ground(void *user)
 static long double height_over(const ElevationLevel *g, const long double p[3])
 {
     const long double u = (p[0] - (long double)g->x0_m) / (long double)g->spacing_m,
-        v = (p[1] - (long double)g->y0_m) / (long double)g->spacing_m;
+                      v = (p[1] - (long double)g->y0_m) / (long double)g->spacing_m;
     if (!(u >= 0 && v >= 0 && u < g->nx - 1 && v < g->ny - 1)) return NAN;
     const int         i = (int)u, j = (int)v;
     const long double a = u - i, b = v - j;
@@ -146,22 +146,21 @@ static Status tunable_ground(Bench *bench)
     static const char *const name[settings] = {"marched by 4 posts, halved",    "marched by 1 post, halved",
                                                "marched by 1 / 4 post, halved", "every line met in float",
                                                "lines met in double, one ray",  "lines met in double, a tile of rays"};
-    static const double step[settings] = {4, 1, 0.25, -2, 0, -1};
-    static GroundRays rays;
-    static GroundSet  set[settings];
-    static double     error[ground_rays], want[ground_rays];
-    const Geodetic    origin = {48 * rad_per_deg, 11 * rad_per_deg, 500};
-    BenchWork         work[settings];
-    BenchSetting        point[settings] = {0};
-    LocalFrame        frame;
-    Landscape         landscape = {0};
-    Pool             *pool = NULL;
-    double            times_s[2];
-    Status            status = pool_create(&pool, bench_threads(bench));
+    static const double      step[settings] = {4, 1, 0.25, -2, 0, -1};
+    static GroundRays        rays;
+    static GroundSet         set[settings];
+    static double            error[ground_rays], want[ground_rays];
+    const Geodetic           origin = {48 * rad_per_deg, 11 * rad_per_deg, 500};
+    BenchWork                work[settings];
+    BenchSetting             point[settings] = {0};
+    LocalFrame               frame;
+    Landscape                landscape = {0};
+    Pool                    *pool = NULL;
+    double                   times_s[2];
+    Status                   status = pool_create(&pool, bench_threads(bench));
     bench_progress(bench, "ground");
     if (status == STATUS_OK) status = local_frame_at(&frame, &origin);
-    if (status == STATUS_OK)
-        status = landscape_quick(&landscape, times_s, &frame, east_posts, north_posts, pool);
+    if (status == STATUS_OK) status = landscape_quick(&landscape, times_s, &frame, east_posts, north_posts, pool);
     pool_destroy(pool);
     if (status != STATUS_OK) return status;
     rays.elevation = &landscape.elevation;
@@ -181,11 +180,13 @@ static Status tunable_ground(Bench *bench)
         for (int i = 0; i < ground_rays; i++)
             error[i] = set[k].range_m[i] == want[i] ? 0 : fabs(set[k].range_m[i] - want[i]);
         qsort(error, ground_rays, sizeof *error, bench_by_value);
-        work[k]  = (BenchWork){trace_ground, &set[k], ground_rays};
+        work[k] = (BenchWork){trace_ground, &set[k], ground_rays};
         point[k] = (BenchSetting){.setting = name[k], .error = error[ground_rays - 1], .is_default = k == settings - 1};
     }
-    bench_tunable(bench, &(BenchTunable){"range to the ground", "render/trace/ground/ground.h", "an eye ray over posts of 1 m", "m",
-                                   "largest, line by line in long double", 1e-9}, work, point, settings);
+    bench_tunable(bench,
+                  &(BenchTunable){"range to the ground", "render/trace/ground/ground.h", "an eye ray over posts of 1 m",
+                                  "m", "largest, line by line in long double", 1e-9},
+                  work, point, settings);
     landscape_destroy(&landscape);
     return STATUS_OK;
 }
@@ -206,7 +207,7 @@ typedef struct PartSet {
 
 static void trace_parts(void *user)
 {
-    PartSet *s = user;
+    PartSet            *s = user;
     const double *const o[3] = {s->o[0], s->o[1], s->o[2]}, *const d[3] = {s->d[0], s->d[1], s->d[2]};
     for (int i = 0; i < part_rays; i++) s->range_m[i] = INFINITY;
     if (s->way == 2) parts_first_hits(s->range_m, s->hit, s->posed, o, d, s->far_m, s->list, part_rays, false);
@@ -214,8 +215,8 @@ static void trace_parts(void *user)
         struct RTCIntersectContext context;
         struct RTCRayHit16         ray;
         double                     start_m[16];
-        static const int           valid[16] __attribute__((aligned(64))) =
-            {-1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1};
+        static const int           valid[16]
+            __attribute__((aligned(64))) = {-1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1};
         rtcInitIntersectContext(&context);
         for (int l = 0; l < 16; l++) {
             const int    i = first + l;
@@ -243,10 +244,10 @@ static RTCScene float_scene(RTCDevice device, const Model *model, const PosedEnt
 {
     RTCScene    scene = rtcNewScene(device);
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    float      *vertex = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                                 3 * sizeof(float), 3 * (size_t)model->triangle_count);
-    uint32_t   *index = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                                3 * sizeof(uint32_t), (size_t)model->triangle_count);
+    float *vertex = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float),
+                                            3 * (size_t)model->triangle_count);
+    uint32_t *index = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                              3 * sizeof(uint32_t), (size_t)model->triangle_count);
     for (int t = 0; vertex && index && t < model->triangle_count; t++)
         for (int k = 0; k < 3; k++) {
             const NodePose *node = &pose[model->part[model->triangle_part[t]].node];
@@ -272,8 +273,8 @@ static double plane_range(const Model *model, const PosedNode *node, uint32_t tr
     long double     o[3] = {0}, d[3] = {0}, n[3], a[3], b[3];
     for (int c = 0; c < 3; c++)
         for (int k = 0; k < 3; k++) { /* transpose(r) (o - p) */
-            o[c] += (long double)node->r_enu_from_node[3 * k + c]
-                * ((long double)s->o[k][i] - (long double)node->p_enu[k]);
+            o[c] +=
+                (long double)node->r_enu_from_node[3 * k + c] * ((long double)s->o[k][i] - (long double)node->p_enu[k]);
             d[c] += (long double)node->r_enu_from_node[3 * k + c] * (long double)s->d[k][i];
         }
     for (int c = 0; c < 3; c++) {
@@ -292,14 +293,14 @@ static double plane_range(const Model *model, const PosedNode *node, uint32_t tr
 static void time_parts(Bench *bench, const Model *model, PosedEntity *posed, const NodePose *pose, RTCDevice device)
 {
     enum { settings = 3 };
-    static const char *const name[settings] =
-        {"triangles in float, from the eye", "triangles in float, from the model's sphere",
+    static const char *const name[settings] = {"triangles in float, from the eye",
+                                               "triangles in float, from the model's sphere",
                                                "boxes in float, triangles in double"};
-    static PartSet set[settings];
-    static double  error[part_rays];
-    BenchWork      work[settings];
-    BenchSetting     point[settings] = {0};
-    RTCScene       scene = float_scene(device, model, posed, pose);
+    static PartSet           set[settings];
+    static double            error[part_rays];
+    BenchWork                work[settings];
+    BenchSetting             point[settings] = {0};
+    RTCScene                 scene = float_scene(device, model, posed, pose);
     for (int k = settings - 1; k >= 0; k--) { /* the last is the index of the triangle */
         int met = 0;
         set[k].way = k, set[k].posed = posed, set[k].scene = scene;
@@ -311,22 +312,24 @@ static void time_parts(Bench *bench, const Model *model, PosedEntity *posed, con
                 set[k].d[c][i] = d[c];
             }
             set[k].far_m[i] = INFINITY;
-            set[k].list[i]  = i;
+            set[k].list[i] = i;
         }
         trace_parts(&set[k]);
         for (int i = 0; i < part_rays; i++) {
             const PartHit *hit = &set[settings - 1].hit[i];
             if (!(set[settings - 1].range_m[i] < INFINITY) || !(set[k].range_m[i] < INFINITY)) continue;
-            error[met++] = fabs(set[k].range_m[i]
-                                - plane_range(model, &posed->node[hit->node], hit->triangle, &set[k], i));
+            error[met++] =
+                fabs(set[k].range_m[i] - plane_range(model, &posed->node[hit->node], hit->triangle, &set[k], i));
         }
         qsort(error, (size_t)met, sizeof *error, bench_by_value);
-        work[k]  = (BenchWork){trace_parts, &set[k], part_rays};
-        point[k] = (BenchSetting){.setting = name[k], .error = met > 0 ? error[met * 99 / 100] : NAN,
-                                .is_default = k == 2};
+        work[k] = (BenchWork){trace_parts, &set[k], part_rays};
+        point[k] =
+            (BenchSetting){.setting = name[k], .error = met > 0 ? error[met * 99 / 100] : NAN, .is_default = k == 2};
     }
-    bench_tunable(bench, &(BenchTunable){"range to a part", "render/trace/parts/parts_trace.c", "a ray at a tank 3 km away", "m",
-                                   "p99, the triangle's plane in long double", 1e-9}, work, point, settings);
+    bench_tunable(bench,
+                  &(BenchTunable){"range to a part", "render/trace/parts/parts_trace.c", "a ray at a tank 3 km away",
+                                  "m", "p99, the triangle's plane in long double", 1e-9},
+                  work, point, settings);
     rtcReleaseScene(scene);
 }
 
@@ -342,8 +345,8 @@ static Status tunable_parts(Bench *bench)
     Origin              origin;
     bench_progress(bench, "parts");
     RTCDevice device = rtcNewDevice("isa=avx2");
-    Status    status = arena && device && etc_path(path, sizeof path, "catalog.csv")
-        ? catalog_open(&catalog, path, 0.01) : STATUS_NO_MEMORY;
+    Status status = arena && device && etc_path(path, sizeof path, "catalog.csv") ? catalog_open(&catalog, path, 0.01)
+                                                                                  : STATUS_NO_MEMORY;
     if (status == STATUS_OK) {
         const int    which = catalog_find(catalog, (DisEntityType){1, 1, 222, 1, 1, 1, 0}, &origin, NULL);
         const Model *model = catalog_model(catalog, which);

@@ -1,5 +1,5 @@
-/* tests/bench/render/precision_vehicle.c: a vehicle's heat: the steps in time of its network of thermal nodes, with loads
- * that change within them and are straight between their ends; what a step costs; the number of its patches. */
+/* tests/bench/render/precision_vehicle.c: a vehicle's heat: the steps in time of its network of thermal nodes, with
+ * loads that change within them and are straight between their ends; what a step costs; the number of its patches. */
 #include "tests/scenes/plate_vehicle.h"
 #include "tests/bench/suites.h"
 #include "render/heat/surface_flux.h"
@@ -55,9 +55,9 @@ static Status tunable_step(Bench *bench, const PlateVehicle *vehicle, Network *n
     enum { settings = 4 };
     static const double      step_s[settings] = {10, 30, 60, 120};
     static const char *const name[settings] = {"10 s", "30 s", "60 s", "120 s"};
-    static Drive set[settings], fine;
-    BenchWork    work[settings];
-    BenchSetting point[settings] = {0};
+    static Drive             set[settings], fine;
+    BenchWork                work[settings];
+    BenchSetting             point[settings] = {0};
     fine = (Drive){.vehicle = vehicle, .network = network, .step_s = 1};
     drive(&fine);
     Status status = fine.status;
@@ -70,15 +70,17 @@ static Status tunable_step(Bench *bench, const PlateVehicle *vehicle, Network *n
         compare(&point[k], &set[k], &fine);
     }
     if (status != STATUS_OK) return status;
-    bench_tunable(bench, &(BenchTunable){"steps of a vehicle's heat", "render/heat/heat_network.h", "a minute of 100 nodes",
-                                         "K", "largest, over two hours, steps of 1 s", 0.2}, work, point, settings);
+    bench_tunable(bench,
+                  &(BenchTunable){"steps of a vehicle's heat", "render/heat/heat_network.h", "a minute of 100 nodes",
+                                  "K", "largest, over two hours, steps of 1 s", 0.2},
+                  work, point, settings);
     return STATUS_OK;
 }
 
 Status bench_precision_network(Bench *bench)
 {
     static PlateVehicle vehicle;
-    Network *network = NULL;
+    Network            *network = NULL;
     plate_vehicle(&vehicle, vehicle_most_nodes);
     Status status = plate_vehicle_create(&network, &vehicle);
     if (status == STATUS_OK) status = tunable_step(bench, &vehicle, network);
@@ -105,7 +107,8 @@ static void steps(void *user)
     Timed *t = user;
     memcpy(t->temp_k, t->vehicle->start_k, sizeof t->temp_k);
     for (int s = 0; s < timed_steps; s++) {
-        const Status status = heat_network_step(t->temp_k, &t->heat_j, t->network, t->load[s], t->load[s + 1], time_step_s);
+        const Status status =
+            heat_network_step(t->temp_k, &t->heat_j, t->network, t->load[s], t->load[s + 1], time_step_s);
         t->failed += status != STATUS_OK;
     }
     bench_keep(t->temp_k);
@@ -151,20 +154,27 @@ static Status morning(PlaceHeat *out, const void *user, double unix_s, const dou
 {
     (void)user, (void)p_enu, (void)present;
     const double hour = 8 + unix_s / 3600, turn = (hour - 12) * pi_rad / 12, up = 0.7 * cos(turn) + 0.15;
-    *out = (PlaceHeat){.air_k = 288, .air_density = 1, .wind_enu_mps = {2, 0, 0}, .longwave_w_m2 = 300, .ground_k = 292, .under_k = 288, .water_k = 288,
-                       .ground_rho = 0.2, .sun_d_enu = {-sqrt(fmax(1 - up * up, 0)) * sin(turn) / fmax(fabs(sin(turn)), 1e-9), 0, up}};
+    *out = (PlaceHeat){.air_k = 288,
+                       .air_density = 1,
+                       .wind_enu_mps = {2, 0, 0},
+                       .longwave_w_m2 = 300,
+                       .ground_k = 292,
+                       .under_k = 288,
+                       .water_k = 288,
+                       .ground_rho = 0.2,
+                       .sun_d_enu = {-sqrt(fmax(1 - up * up, 0)) * sin(turn) / fmax(fabs(sin(turn)), 1e-9), 0, up}};
     if (up > 0) out->direct_w_m2 = 800, out->diffuse_w_m2 = 80;
     return STATUS_OK;
 }
 
 /* A tank that idles, nose north, its last half hour in view. */
 typedef struct Morning {
-    const Stage *stage;
-    PatchSet     patches;
-    Snapshot     snapshot;
+    const Stage   *stage;
+    PatchSet       patches;
+    Snapshot       snapshot;
     SnapshotEntity entity;
     SnapshotJoints joints;
-    Status       status;
+    Status         status;
 } Morning;
 
 static void live(void *user)
@@ -172,8 +182,10 @@ static void live(void *user)
     Morning                *m = user;
     const Stage            *s = m->stage;
     VehicleHeat            *heat = NULL;
-    const VehicleHeatConfig config = {.first_step_s = 1, .step_s = tick_s, .window_us = INFINITY, .capacity = 1, .place = morning};
-    const VehicleHeatWorld  world = {s->catalog, &s->materials, &s->table, &s->frame, s->tracer, &m->patches, NULL, NULL};
+    const VehicleHeatConfig config = {
+        .first_step_s = 1, .step_s = tick_s, .window_us = INFINITY, .capacity = 1, .place = morning};
+    const VehicleHeatWorld world = {s->catalog, &s->materials, &s->table, &s->frame,
+                                    s->tracer,  &m->patches,   NULL,      NULL};
     arena_reset(s->arena);
     m->status = vehicle_heat_create(&heat, &config, &world);
     for (int t = 0; t < ticks && m->status == STATUS_OK; t++) {
@@ -188,13 +200,18 @@ static void live(void *user)
 static Status begin(Morning *m, const Stage *s, int wanted)
 {
     static const double p_enu[3] = {0, 0, 0}, r_enu_from_body[9] = {0, 1, 0, 1, 0, 0, 0, 0, -1};
-    *m = (Morning){.stage = s, .entity = {.id = {1, 1, 1}, .type = {1, 1, 222, 1, 1, 1, 0}, .model = s->model,
-                                          .drives = {.engine = 0.6f}, .first_patch = -1}};
+    *m = (Morning){.stage = s,
+                   .entity = {.id = {1, 1, 1},
+                              .type = {1, 1, 222, 1, 1, 1, 0},
+                              .model = s->model,
+                              .drives = {.engine = 0.6f},
+                              .first_patch = -1}};
     ecef_from_enu(m->entity.p_ecef, &s->frame, p_enu);
     m3_mul(m->entity.r_ecef_from_body, s->frame.r_ecef_from_enu, r_enu_from_body);
     m->snapshot = (Snapshot){.count = 1, .entity = &m->entity, .joints = &m->joints};
     Status status = heat_patches_create(&m->patches, catalog_model_count(s->catalog));
-    if (status == STATUS_OK) status = patches_create_of(&m->patches.of[s->model], tracer_model(s->tracer, s->model), wanted);
+    if (status == STATUS_OK)
+        status = patches_create_of(&m->patches.of[s->model], tracer_model(s->tracer, s->model), wanted);
     if (status == STATUS_OK) m->patches.cut[s->model] = true;
     return status;
 }
@@ -204,7 +221,7 @@ static double facet(double n[3], double middle[3], const Model *model, int trian
 {
     const double *a = model->vertex[model->triangle[triangle][0]], *b = model->vertex[model->triangle[triangle][1]],
                  *c = model->vertex[model->triangle[triangle][2]];
-    double        ab[3], ac[3];
+    double ab[3], ac[3];
     v3_sub(ab, b, a), v3_sub(ac, c, a);
     v3_cross(n, ab, ac);
     for (int i = 0; i < 3; i++) middle[i] = (a[i] + b[i] + c[i]) / 3;
@@ -220,7 +237,9 @@ static void read_all(float *k, const Morning *m)
         for (int t = 0; t < model->part[p].triangle_count; t++) {
             const int at = model->part[p].first_triangle + t;
             double    n[3], middle[3];
-            k[at] = facet(n, middle, model, at) > 0 ? (float)patch_set_temp_k(&m->patches, &m->snapshot, 0, p, middle, n) : NAN;
+            k[at] = facet(n, middle, model, at) > 0
+                        ? (float)patch_set_temp_k(&m->patches, &m->snapshot, 0, p, middle, n)
+                        : NAN;
         }
 }
 
@@ -245,7 +264,8 @@ static Status open_stage(Stage *s)
         return STATUS_BAD_VALUE;
     Status status = catalog_open(&s->catalog, path, 0.01);
     if (status == STATUS_OK) status = materials_open(&s->materials, materials, surfaces, s->catalog);
-    if (status == STATUS_OK && !(etc_path(path, sizeof path, "heat.csv") && etc_path(machines, sizeof machines, "heat_machines.csv")))
+    if (status == STATUS_OK &&
+        !(etc_path(path, sizeof path, "heat.csv") && etc_path(machines, sizeof machines, "heat_machines.csv")))
         status = STATUS_BAD_VALUE;
     if (status == STATUS_OK) status = part_table_open(&s->table, path, machines);
     if (status == STATUS_OK) status = tracer_create(&s->tracer, s->catalog, "avx2");
@@ -260,12 +280,12 @@ static Status tunable_patches(Bench *bench, const Stage *s)
 {
     static const int         wanted[patch_settings] = {30, 60, patches_wanted};
     static const char *const name[patch_settings] = {"30", "60", "110"};
-    const Model *model = tracer_model(s->tracer, s->model);
-    Morning      set[patch_settings], fine;
-    BenchWork    work[patch_settings];
-    BenchSetting point[patch_settings] = {0};
-    float       *k = calloc(2 * (size_t)model->triangle_count, sizeof *k), *fine_k = k ? k + model->triangle_count : NULL;
-    Status       status = k ? begin(&fine, s, patches_most) : STATUS_NO_MEMORY;
+    const Model             *model = tracer_model(s->tracer, s->model);
+    Morning                  set[patch_settings], fine;
+    BenchWork                work[patch_settings];
+    BenchSetting             point[patch_settings] = {0};
+    float *k = calloc(2 * (size_t)model->triangle_count, sizeof *k), *fine_k = k ? k + model->triangle_count : NULL;
+    Status status = k ? begin(&fine, s, patches_most) : STATUS_NO_MEMORY;
     if (status == STATUS_OK) live(&fine), status = fine.status;
     if (status == STATUS_OK) read_all(fine_k, &fine);
     for (int i = 0; i < patch_settings; i++) {
@@ -278,8 +298,11 @@ static Status tunable_patches(Bench *bench, const Stage *s)
         if (status == STATUS_OK) compare_surfaces(&point[i], model, k, fine_k);
     }
     if (status == STATUS_OK)
-        bench_tunable(bench, &(BenchTunable){"patches of a vehicle", "entities/models/patches.h", "half an hour of a tank, with its past",
-                                             "K", "rms over its surface, the most patches", 4}, work, point, patch_settings);
+        bench_tunable(bench,
+                      &(BenchTunable){"patches of a vehicle", "entities/models/patches.h",
+                                      "half an hour of a tank, with its past", "K",
+                                      "rms over its surface, the most patches", 4},
+                      work, point, patch_settings);
     heat_patches_destroy(&fine.patches);
     for (int i = 0; i < patch_settings; i++) heat_patches_destroy(&set[i].patches);
     free(k);

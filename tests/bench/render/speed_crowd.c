@@ -42,9 +42,13 @@ static Status add_tank(TrialScene *scene, int k, CrowdPlace *place)
     const double      turn = 2 * pi_rad * crowd_dice(1, k);
     const double      r_enu_from_body[9] = {sin(turn), cos(turn), 0, cos(turn), -sin(turn), 0, 0, 0, -1};
     double            p_enu[3], r_ecef_from_body[9], euler[3];
-    DisEntityState    pdu = {.header = {.version = 7, .type = dis_pdu_entity_state}, .force = 1, .type = tank_type,
+    DisEntityState    pdu = {.header = {.version = 7, .type = dis_pdu_entity_state},
+                             .force = 1,
+                             .type = tank_type,
                              .id = {(uint16_t)(2 + k / id_numbers), 1, (uint16_t)(1 + k % id_numbers)},
-                             .appearance = 1u << 22, .dead_reckoning = 4, .variable_count = 2};
+                             .appearance = 1u << 22,
+                             .dead_reckoning = 4,
+                             .variable_count = 2};
     place(p_enu, k);
     p_enu[2] = elevation_height(&scene->landscape->elevation, p_enu[0], p_enu[1], NULL);
     ecef_from_enu(pdu.p_ecef, frame, p_enu);
@@ -61,11 +65,10 @@ static Status crowd_open(CrowdFrame *c, const Landscape *landscape, int vehicles
 {
     EntityTableConfig config = entity_table_default_config();
     char              catalog[512];
-    if (!etc_path(catalog, sizeof catalog, "catalog.csv"))
-        return STATUS_BAD_VALUE;
+    if (!etc_path(catalog, sizeof catalog, "catalog.csv")) return STATUS_BAD_VALUE;
     Status status = trial_scene_open(&c->scene, landscape, catalog, &tank_type, 1, 0);
     if (status != STATUS_OK) return status;
-    config.ground   = (ContactGround){.frame = &landscape->frame, .elevation = &landscape->elevation};
+    config.ground = (ContactGround){.frame = &landscape->frame, .elevation = &landscape->elevation};
     config.capacity = vehicles + more + 1;
     entity_table_destroy(c->scene.table);
     c->scene.table = NULL;
@@ -86,9 +89,15 @@ static Status crowd_open(CrowdFrame *c, const Landscape *landscape, int vehicles
 static RenderRequest crowd_request(const View *view)
 {
     const Config config = config_default();
-    return (RenderRequest){.view = *view, .bands = 1 << BAND_OPTICAL | 1 << BAND_MWIR | 1 << BAND_LWIR, .truth = true,
-                           .optical = OPTICAL_RGB, .samples = 1, .edge_samples = config.sensor.edge_samples,
-                           .target_samples = config.sensor.target_samples, .sky_visibility = true, .hidden_entity = -1};
+    return (RenderRequest){.view = *view,
+                           .bands = 1 << BAND_OPTICAL | 1 << BAND_MWIR | 1 << BAND_LWIR,
+                           .truth = true,
+                           .optical = OPTICAL_RGB,
+                           .samples = 1,
+                           .edge_samples = config.sensor.edge_samples,
+                           .target_samples = config.sensor.target_samples,
+                           .sky_visibility = true,
+                           .hidden_entity = -1};
 }
 
 typedef struct Crowds {
@@ -109,8 +118,8 @@ static double thread_s(void)
 static Status time_tree(Crowds *all, const TrialScene *scene)
 {
     enum { rounds = 15 };
-    BenchTime   snapshot = {.rounds = rounds}, tree = {.rounds = rounds};
-    Status      status = STATUS_OK;
+    BenchTime snapshot = {.rounds = rounds}, tree = {.rounds = rounds};
+    Status    status = STATUS_OK;
     for (int r = 0; r < rounds && status == STATUS_OK; r++) {
         Snapshot    s;
         Visibility *v;
@@ -122,7 +131,7 @@ static Status time_tree(Crowds *all, const TrialScene *scene)
             status =
                 visibility_create(&v, scene->world.tracer, &all->landscape, &all->landscape.frame, &s, 0, all->arena);
         snapshot.item_s[r] = t1 - t0;
-        tree.item_s[r]     = thread_s() - t1;
+        tree.item_s[r] = thread_s() - t1;
     }
     if (status != STATUS_OK) return status;
     bench_time_finish(&snapshot);
@@ -141,13 +150,13 @@ static Status time_world(Crowds *all)
     if (status == STATUS_OK)
         status = crowd_open(&many, &all->landscape, in_view, world_entities - in_view, behind_the_eye);
     CrowdFrame *const both[2] = {&few, &many};
-    const int rounds = bench_quick(all->bench) ? 3 : 9;
-    BenchTime time[2] = {{.rounds = rounds}, {.rounds = rounds}};
-    BenchTime prepare = {.rounds = rounds};
+    const int         rounds = bench_quick(all->bench) ? 3 : 9;
+    BenchTime         time[2] = {{.rounds = rounds}, {.rounds = rounds}};
+    BenchTime         prepare = {.rounds = rounds};
     for (int k = 0; k < 2 && status == STATUS_OK; k++) {
         const View view = trial_view(&both[k]->scene, 300, 40, 0.7, 320, 216);
-        both[k]->frame = (TrialFrame){.scene = &both[k]->scene, .request = crowd_request(&view), .pool = all->pool,
-                                      .arena = all->arena};
+        both[k]->frame = (TrialFrame){
+            .scene = &both[k]->scene, .request = crowd_request(&view), .pool = all->pool, .arena = all->arena};
     }
     for (int r = -1; r < rounds && status == STATUS_OK; r++)
         for (int k = 0; k < 2 && status == STATUS_OK; k++) {
@@ -155,7 +164,7 @@ static Status time_world(Crowds *all)
             trial_frame(f);
             status = f->status;
             if (r < 0) continue;
-            time[k].item_s[r]     = f->stage_s[STAGE_FRAME] - f->stage_s[STAGE_SNAPSHOT];
+            time[k].item_s[r] = f->stage_s[STAGE_FRAME] - f->stage_s[STAGE_SNAPSHOT];
             if (k == 1) prepare.item_s[r] = f->stage_s[STAGE_PREPARE];
         }
     if (status == STATUS_OK) {

@@ -17,7 +17,7 @@ static const unsigned all_bands = 1 << BAND_OPTICAL | 1 << BAND_MWIR | 1 << BAND
 /* So many within one pixel, from 20 km: all values are valid, and their areas add up to the pixel at most. */
 static double crowd(StressWorld *w, int count)
 {
-    const double north[3] = {0, 1, 0}, eye[3] = {0, 0, 50}, sun_enu[3] = {0, -0.6, 0.8};
+    const double  north[3] = {0, 1, 0}, eye[3] = {0, 0, 50}, sun_enu[3] = {0, -0.6, 0.8};
     const View    view = stress_view(eye, north, 0, 33, 33, 1000);
     RenderRequest request = stress_request(&view);
     Dice          dice = {.stream = 60};
@@ -26,7 +26,7 @@ static double crowd(StressWorld *w, int count)
     stress_clear(w);
     for (int k = 0; k < count; k++) { /* a pixel is 20 m there */
         const double p[3] = {stress_uniform(&dice, -6, 6), 20000 + stress_uniform(&dice, -6, 6),
-            50 + stress_uniform(&dice, -6, 6)};
+                             50 + stress_uniform(&dice, -6, 6)};
         level_attitude(r, stress_uniform(&dice, 0, 6));
         stress_add(w, p, r);
     }
@@ -39,7 +39,11 @@ static double crowd(StressWorld *w, int count)
 }
 
 static double crowd_some(void *user, bool quick) { return crowd(user, quick ? 100 : 400); }
-static double crowd_many(void *user, bool quick) { (void)quick; return crowd(user, stress_entities); }
+static double crowd_many(void *user, bool quick)
+{
+    (void)quick;
+    return crowd(user, stress_entities);
+}
 
 /* Interpenetrating in a square of 60 m, from 150 m: the request that is rendered and its picture. */
 static bool draw_stack(StressWorld *w, RenderRequest *request, int count)
@@ -82,7 +86,8 @@ static double stacked_some(void *user, bool quick)
     const Picture by_tree = w->picture;
     request.skips_off = skips_all_off;
     made = made && stress_render(w, &request);
-    double wrong = made ? stress_differences(&by_tree, 0, 0, &w->picture, 0, 0, 40, 27) + stress_bad_values(&by_tree) : INFINITY;
+    double wrong =
+        made ? stress_differences(&by_tree, 0, 0, &w->picture, 0, 0, 40, 27) + stress_bad_values(&by_tree) : INFINITY;
     for (int k = 0; made && k < w->snapshot.count; k++)
         wrong += by_tree.target[k].amodal != w->picture.target[k].amodal ||
                  by_tree.target[k].visible != w->picture.target[k].visible ||
@@ -95,8 +100,8 @@ static double stacked_some(void *user, bool quick)
  * without entities. */
 static double nobody(void *user, bool quick)
 {
-    StressWorld *w = user;
-    const double d[3] = {0, 1, -0.3}, eye[3] = {0, 0, 100};
+    StressWorld  *w = user;
+    const double  d[3] = {0, 1, -0.3}, eye[3] = {0, 0, 100};
     const View    view = stress_view(eye, d, 0.1, 65, 43, 60);
     RenderRequest request = stress_request(&view);
     double        r[9], p[3] = {0, 100, 20}, wrong = 0;
@@ -164,23 +169,22 @@ static double two_in_one_place(void *user, bool quick)
  * down, by day, night and with the sun on the horizon, overhead and at the nadir; wide and narrow. */
 static double eyes(void *user, bool quick)
 {
-    static const double place[][3] = {{0, 101, 20.3}, {0, 100, 20.3}, {0, 99.999999, 20.3}, {0, 0, -40}, {0, 0, 0},
-        {30, 0, 1e6}, {1.9e4, 1.9e4, 30}, {2e5, 0, 2000}};
+    static const double place[][3] = {{0, 101, 20.3}, {0, 100, 20.3}, {0, 99.999999, 20.3}, {0, 0, -40},
+                                      {0, 0, 0},      {30, 0, 1e6},   {1.9e4, 1.9e4, 30},   {2e5, 0, 2000}};
     static const double towards[][3] = {{0, 1, 0}, {0, 0, 1}, {0, 0, -1}, {1, 0, 0}, {0.3, 0.5, -0.7}, {0, -1e-17, -1}};
     static const double sun_rad[] = {0, 0.5, 1.5707963267948966, -0.01, -1.5707963267948966};
-    StressWorld *w = user;
-    double       r[9], p[3] = {0, 100, 20.3}, wrong = 0;
-    int          n = 0;
+    StressWorld        *w = user;
+    double              r[9], p[3] = {0, 100, 20.3}, wrong = 0;
+    int                 n = 0;
     level_attitude(r, 0);
     w->world.landscape = &w->landscape;
     for (int e = 0; e < 8; e++)
         for (int t = 0; t < 6; t++)
             for (int s = 0; s < 5; s++, n++) {
                 if (quick && n % 7) continue;
-                const View    view = stress_view(place[e], towards[t], 0.2 * s, 40, 24,
-                    n % 3 ? 30 : n % 2 ? 0.35 : 3e5);
+                const View view = stress_view(place[e], towards[t], 0.2 * s, 40, 24, n % 3 ? 30 : n % 2 ? 0.35 : 3e5);
                 RenderRequest request = stress_request(&view);
-                request.bands   = all_bands;
+                request.bands = all_bands;
                 request.optical = n % 2 ? OPTICAL_RGB : OPTICAL_NIR;
                 request.sky_samples = n % 5 == 0 ? 4 : 0;
                 stress_clear(w);
@@ -245,7 +249,9 @@ static double lobe_energy(void *user, bool quick)
             const double a = end * i / steps, half = sin(0.5 * a);
             /* the function takes a cosine: 1 - 2 sin^2 (a / 2) */
             sum += 2 * pi_rad * sin(a) * radar_lobe(lobe_rad, 1 - 2 * half * half) *
-                (i == 0 || i == steps ? 1 : i % 2 ? 4 : 2);
+                   (i == 0 || i == steps ? 1
+                    : i % 2              ? 4
+                                         : 2);
         }
         const double error = fabs(sum * end / steps / 3 - 1);
         if (!(error <= worst)) worst = error;
@@ -257,7 +263,7 @@ static double lobe_energy(void *user, bool quick)
 static double lobe_values(void *user, bool quick)
 {
     static const double lobe[] = {0, 1e-300, 1e-12, 1e-9, 1e-3, 1, 100, 1e300},
-        cosine[] = {-1, 0, 5e-324, 1e-9, 0.5, 0.999999, 1, 1.0000000000000002};
+                        cosine[] = {-1, 0, 5e-324, 1e-9, 0.5, 0.999999, 1, 1.0000000000000002};
     double bad = 0;
     (void)user, (void)quick;
     for (int k = 0; k < 8; k++)
@@ -277,7 +283,7 @@ static double radar_bins(void *user, bool quick)
     const double sun_enu[3] = {0, -0.6, 0.8}, north[3] = {0, 1, 0}, eye[3] = {0, 0, 20};
     double       r[9], worst = 0;
     for (int n = 0; n < (quick ? 4 : 24); n++) {
-        const double lobe_rad[4] = {1e-4, 0.0035, 0.05, 0.52}, kept_rad = w->world.radar.lobe_rad;
+        const double  lobe_rad[4] = {1e-4, 0.0035, 0.05, 0.52}, kept_rad = w->world.radar.lobe_rad;
         const View    view = stress_view(eye, north, 0, side, side, 100);
         RenderRequest request = stress_request(&view);
         const double  p[3][3] = {{0, 16, 20}, {0, -2, 20}, {2.5, 15, 20}};
@@ -288,11 +294,11 @@ static double radar_bins(void *user, bool quick)
             level_attitude(r, turn[k]);
             stress_add(w, p[k], r);
         }
-        request.bands        = 1 << BAND_RADAR;
+        request.bands = 1 << BAND_RADAR;
         request.edge_samples = n % 3 ? 4 : 0;
         request.profile_near_m = n % 2 ? 0 : 16 - 0.25 * (n % 5);
-        request.profile_bin_m  = n % 2 ? 1 : 0.25;
-        request.profile_bins   = 4096;
+        request.profile_bin_m = n % 2 ? 1 : 0.25;
+        request.profile_bins = 4096;
         w->world.radar.lobe_rad = lobe_rad[n % 4];
         const bool made = stress_render(w, &request);
         w->world.radar.lobe_rad = kept_rad;
@@ -311,8 +317,9 @@ Status bench_stability_crowd(Bench *bench)
 {
     static const StressCase cases[] = {
         {"crowd: 100 (400) in one pixel at 20 km", crowd_some, 0, "values",
-            "finite, not below 0; areas within a pixel"},
-        {"crowd: 100 (300) stacked in 60 m", stacked_some, 0, "values", "with nothing skipped, areas and occluders, too"},
+         "finite, not below 0; areas within a pixel"},
+        {"crowd: 100 (300) stacked in 60 m", stacked_some, 0, "values",
+         "with nothing skipped, areas and occluders, too"},
         {"crowd: nobody, and six that are nowhere", nobody, 0, "values", "the picture of nobody, to the bit"},
         {"crowd: two in one place", two_in_one_place, 0, "values", "the picture of one, to the bit"},
         {"eye: in a block, edge-on, under ground, 1000 km up; up and down", eyes, 0, "values", "finite, not below 0"},

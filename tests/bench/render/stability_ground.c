@@ -21,8 +21,19 @@ typedef struct Field {
 
 /* The last four: four tiles of different bases and shifts, of posts 0.1 m and 100 m apart; as rough as the tile's range
  * allows, or with walls of 500 m from one post to the next, along the edges of tiles too. */
-enum { shape_rough, shape_flat, shape_spikes, shape_cliffs, shape_plane, shapes, shape_tiles = shapes,
-       shape_wide_tiles, shape_walls, shape_wide_walls, shapes_all };
+enum {
+    shape_rough,
+    shape_flat,
+    shape_spikes,
+    shape_cliffs,
+    shape_plane,
+    shapes,
+    shape_tiles = shapes,
+    shape_wide_tiles,
+    shape_walls,
+    shape_wide_walls,
+    shapes_all
+};
 
 static int32_t tile_post(int shape, int i, int j, Dice *dice)
 {
@@ -47,12 +58,24 @@ static bool field_open(Field *f, int shape, double x0_m, double y0_m)
         for (int i = 0; i < side; i++) {
             int32_t *p = &post[j * side + i];
             switch (shape) {
-            case shape_rough:  *p = (int32_t)stress_uniform(&dice, 2000, 2300); break;
-            case shape_flat:   *p = 2048; break;
-            case shape_spikes: *p = (i % 5 == 2 && j % 5 == 2) ? (i + j) % 2 ? 65535 : 0 : 2048; break;
-            case shape_cliffs: *p = (i / 4 + j / 6) % 2 ? 2048 : 40000; break;
-            case shape_plane:  *p = 2048 + 16 * i + 8 * j; break;
-            default:           *p = tile_post(shape, i, j, &dice); break;
+            case shape_rough:
+                *p = (int32_t)stress_uniform(&dice, 2000, 2300);
+                break;
+            case shape_flat:
+                *p = 2048;
+                break;
+            case shape_spikes:
+                *p = (i % 5 == 2 && j % 5 == 2) ? (i + j) % 2 ? 65535 : 0 : 2048;
+                break;
+            case shape_cliffs:
+                *p = (i / 4 + j / 6) % 2 ? 2048 : 40000;
+                break;
+            case shape_plane:
+                *p = 2048 + 16 * i + 8 * j;
+                break;
+            default:
+                *p = tile_post(shape, i, j, &dice);
+                break;
             }
         }
     if (elevation_fill(&f->elevation.level[0], post) != STATUS_OK) return false;
@@ -61,18 +84,15 @@ static bool field_open(Field *f, int shape, double x0_m, double y0_m)
     return true;
 }
 
-static double post_m(const Field *f, int i, int j)
-{
-    return elevation_post_m(&f->elevation.level[0], i, j);
-}
+static double post_m(const Field *f, int i, int j) { return elevation_post_m(&f->elevation.level[0], i, j); }
 
 /* A ray of one of ten degenerate kinds. */
 static void field_ray(double o[3], double d[3], const Field *f, Dice *dice, int kind)
 {
     const ElevationLevel *e = &f->elevation.level[0];
-    const double s = f->spacing_m;
-    const int    i = (int)stress_uniform(dice, 1, f->side - 1), j = (int)stress_uniform(dice, 1, f->side - 1);
-    const double to[3] = {e->x0_m + s * i, e->y0_m + s * j, post_m(f, i, j)};
+    const double          s = f->spacing_m;
+    const int             i = (int)stress_uniform(dice, 1, f->side - 1), j = (int)stress_uniform(dice, 1, f->side - 1);
+    const double          to[3] = {e->x0_m + s * i, e->y0_m + s * j, post_m(f, i, j)};
     stress_direction(d, dice);
     for (int c = 0; c < 3; c++) o[c] = to[c];
     const double sign = stress_uniform(dice, 0, 1) < 0.5 ? -1 : 1;
@@ -132,11 +152,11 @@ static int by_size(const void *a, const void *b)
 static long double clearance(const Field *f, const double o[3], const double d[3], long double t)
 {
     const ElevationLevel *e = &f->elevation.level[0];
-    const long double s = f->spacing_m;
-    const int         side = f->side;
-    const long double u = (o[0] - (long double)e->x0_m + t * d[0]) / s;
-    const long double v = (o[1] - (long double)e->y0_m + t * d[1]) / s;
-    int i = (int)floorl(u), j = (int)floorl(v);
+    const long double     s = f->spacing_m;
+    const int             side = f->side;
+    const long double     u = (o[0] - (long double)e->x0_m + t * d[0]) / s;
+    const long double     v = (o[1] - (long double)e->y0_m + t * d[1]) / s;
+    int                   i = (int)floorl(u), j = (int)floorl(v);
     i = i < 0 ? 0 : i > side - 2 ? side - 2 : i;
     j = j < 0 ? 0 : j > side - 2 ? side - 2 : j;
     const long double a = u - i, b = v - j, sw = post_m(f, i, j), se = post_m(f, i + 1, j), nw = post_m(f, i, j + 1),
@@ -155,11 +175,11 @@ static const long double hair_plain_m = 1e-8L, hair_walls_m = 2e-8L;
 static Judged judge(const Field *f, const double o[3], const double d[3])
 {
     const ElevationLevel *e = &f->elevation.level[0];
-    const long double s = f->spacing_m, hair_m = f->shape == shape_walls ? hair_walls_m : hair_plain_m;
-    const int         side = f->side;
-    long double t[crossings_most + 2], in = 0, out = 1e7L;
-    int         n = 0;
-    Judged      judged = {INFINITY, INFINITY};
+    const long double     s = f->spacing_m, hair_m = f->shape == shape_walls ? hair_walls_m : hair_plain_m;
+    const int             side = f->side;
+    long double           t[crossings_most + 2], in = 0, out = 1e7L;
+    int                   n = 0;
+    Judged                judged = {INFINITY, INFINITY};
     for (int c = 0; c < 2; c++) { /* over the field */
         const long double p = o[c] - (long double)(c ? e->y0_m : e->x0_m), last = s * (side - 1);
         if (d[c] == 0) {
@@ -167,16 +187,15 @@ static Judged judge(const Field *f, const double o[3], const double d[3])
             continue;
         }
         const long double a = (0 - p) / d[c], b = (last - p) / d[c];
-        in  = fmaxl(in, fminl(a, b));
+        in = fmaxl(in, fminl(a, b));
         out = fminl(out, fmaxl(a, b));
     }
     if (!(in < out)) return judged;
     t[n++] = in, t[n++] = out;
     for (int k = -side; k <= side; k++) {
-        const long double at[3] = {(e->x0_m + s * k - (long double)o[0]) / d[0],
-            (e->y0_m + s * k - (long double)o[1]) / d[1],
-                                   (s * k - ((o[0] - (long double)e->x0_m) - (o[1] - (long double)e->y0_m))) /
-                                       ((long double)d[0] - d[1])};
+        const long double at[3] = {
+            (e->x0_m + s * k - (long double)o[0]) / d[0], (e->y0_m + s * k - (long double)o[1]) / d[1],
+            (s * k - ((o[0] - (long double)e->x0_m) - (o[1] - (long double)e->y0_m))) / ((long double)d[0] - d[1])};
         for (int c = 0; c < 3; c++)
             if (at[c] > in && at[c] < out && n < crossings_most) t[n++] = at[c];
     }
@@ -184,14 +203,14 @@ static Judged judge(const Field *f, const double o[3], const double d[3])
     for (int k = 0; k < n; k++) {
         /* a cliff of a line's width is on both of its sides */
         const long double off = 1e-12L,
-            c = fminl(clearance(f, o, d, fmaxl(in, t[k] - off)), clearance(f, o, d, t[k] + off));
+                          c = fminl(clearance(f, o, d, fmaxl(in, t[k] - off)), clearance(f, o, d, t[k] + off));
         const long double before = k > 0 ? clearance(f, o, d, t[k - 1]) : c;
         if (c <= hair_m && judged.may_m == INFINITY)
-            judged.may_m = k > 0 && before > hair_m ? t[k - 1] + (t[k] - t[k - 1]) * ((before - hair_m) / (before - c))
-                : t[k];
+            judged.may_m =
+                k > 0 && before > hair_m ? t[k - 1] + (t[k] - t[k - 1]) * ((before - hair_m) / (before - c)) : t[k];
         if (c < -hair_m) {
-            judged.must_m = k > 0 && before > -hair_m
-                ? t[k - 1] + (t[k] - t[k - 1]) * ((before + hair_m) / (before - c)) : t[k];
+            judged.must_m =
+                k > 0 && before > -hair_m ? t[k - 1] + (t[k] - t[k - 1]) * ((before + hair_m) / (before - c)) : t[k];
             break;
         }
     }
@@ -221,8 +240,16 @@ static double field(bool quick, int want, int from, int to)
     return want == count_missed ? missed : invented;
 }
 
-static double field_missed(void *user, bool quick) { (void)user; return field(quick, count_missed, 0, shapes); }
-static double field_invented(void *user, bool quick) { (void)user; return field(quick, count_invented, 0, shapes); }
+static double field_missed(void *user, bool quick)
+{
+    (void)user;
+    return field(quick, count_missed, 0, shapes);
+}
+static double field_invented(void *user, bool quick)
+{
+    (void)user;
+    return field(quick, count_invented, 0, shapes);
+}
 static double tiles_missed(void *user, bool quick)
 {
     (void)user;
@@ -279,9 +306,9 @@ static double field_company(void *user, bool quick)
 static double far_fields(void *user, bool quick)
 {
     static const double away_m[2] = {131072, -163840};
-    Dice   dice = {.stream = 22};
-    double worst_m = 0;
-    Field  near, far;
+    Dice                dice = {.stream = 22};
+    double              worst_m = 0;
+    Field               near, far;
     (void)user;
     if (!field_open(&near, shape_rough, -64, -64) || !field_open(&far, shape_rough, -64 + away_m[0], -64 + away_m[1]))
         return INFINITY;
@@ -316,8 +343,7 @@ static double seams(void *user, bool quick)
     for (int k = 0; k < 2; k++) /* one slope through both, so that the outline is on straight edges */
         for (int j = 0; j < side; j++)
             for (int i = 0; i < side; i++)
-                elevation_set_post(&e.level[k], i, j,
-                                   8192 + (k ? 64 : 4) * (2 * i + j) - (k ? 3 * 1024 : 3 * 64));
+                elevation_set_post(&e.level[k], i, j, 8192 + (k ? 64 : 4) * (2 * i + j) - (k ? 3 * 1024 : 3 * 64));
     elevation_build_pyramids(&e);
     ground_prepare(&ground, &e);
     for (int n = quick ? 20000 : 200000; n > 0; n--) {
@@ -336,10 +362,10 @@ Status bench_stability_ground(Bench *bench)
 {
     static const StressCase cases[] = {
         {"ground: rough, flat, spikes, cliffs, on posts and lines: missed", field_missed, 0, "rays",
-            "every post line in long double"},
+         "every post line in long double"},
         {"ground: the same: invented", field_invented, 0, "rays", "every post line in long double"},
         {"ground: tiles of several shifts, walls of 500 m, posts of 0.1 and 100 m: missed", tiles_missed, 0, "rays",
-            "every post line in long double"},
+         "every post line in long double"},
         {"ground: the same tiles: invented", tiles_invented, 0, "rays", "every post line in long double"},
         {"ground: all of these: by eights and by tiles", field_company, 0, "rays", "one by one, to the bit"},
         {"ground: 200 km from the origin", far_fields, 1e-7, "m", "the same about the origin"},

@@ -31,8 +31,8 @@ typedef struct Worst {
 } Worst;
 
 /* Ground of one temperature in surroundings of another, twenty steps. */
-static void conduct(Worst *worst, const ColumnLayer *layer, int layers, double first_m, double begin_k, const Around *around,
-                    double dt_s)
+static void conduct(Worst *worst, const ColumnLayer *layer, int layers, double first_m, double begin_k,
+                    const Around *around, double dt_s)
 {
     Column      column;
     ColumnState state;
@@ -42,25 +42,30 @@ static void conduct(Worst *worst, const ColumnLayer *layer, int layers, double f
     }
     column_start(&state, &column, begin_k);
     const ColumnBoundary b = {around_flux, around_law, around, 0, 0.001};
-    const double low_k = fmin(begin_k, around->temp_k), high_k = fmax(begin_k, around->temp_k), range_k = high_k - low_k;
+    const double         low_k = fmin(begin_k, around->temp_k), high_k = fmax(begin_k, around->temp_k),
+                 range_k = high_k - low_k;
     const double begin_j_m2 = column_heat_j_m2(&state, &column);
     const double gross_w_m2 = around->film_w_m2k * high_k + around->emissivity * stefan_w_m2k4 * pow(high_k, 4);
     double       turned = 0, last = begin_j_m2;
     for (int s = 0; s < 20; s++) {
         column_step(&state, &column, NULL, &b, dt_s);
         for (int i = 0; i < column.nodes; i++) /* 5e-3: rounding, where there is no range */
-            bench_worse(&worst->excess, fmax(fmax(low_k - state.temp_k[i], state.temp_k[i] - high_k), 0) / (range_k + 5e-3) + 0 * state.temp_k[i]);
+            bench_worse(&worst->excess,
+                        fmax(fmax(low_k - state.temp_k[i], state.temp_k[i] - high_k), 0) / (range_k + 5e-3) +
+                            0 * state.temp_k[i]);
         const double now = column_heat_j_m2(&state, &column);
         turned += fabs(now - last);
         last = now;
     }
     /* of what went either way: at equilibrium nothing moves, and 1 um conducts 1e9 W/m2 per kelvin of rounding */
-    bench_worse(&worst->energy, fabs(last - begin_j_m2 - state.heat_j_m2) / (turned + 20 * dt_s * gross_w_m2 + 1e-8 * begin_j_m2));
+    bench_worse(&worst->energy,
+                fabs(last - begin_j_m2 - state.heat_j_m2) / (turned + 20 * dt_s * gross_w_m2 + 1e-8 * begin_j_m2));
 }
 
 static Worst conduct_all(bool quick)
 {
-    static const double temps_k[] = {1, 300, 2000}, thick_m[] = {1e-6, 1e-3, 1}, dt_s[] = {1e-3, 1, 600, 1e5}, conducts[] = {0.02, 1, 400};
+    static const double temps_k[] = {1, 300, 2000}, thick_m[] = {1e-6, 1e-3, 1}, dt_s[] = {1e-3, 1, 600, 1e5},
+                        conducts[] = {0.02, 1, 400};
     Worst worst = {0, 0};
     Dice  dice = {.stream = 70};
     for (int a = 0; a < 9; a++)
@@ -74,11 +79,14 @@ static Worst conduct_all(bool quick)
         const int   layers = 1 + n % 3;
         double      thinnest_m = INFINITY;
         for (int l = 0; l < layers; l++) {
-            layer[l] = (ColumnLayer){stress_log_uniform(&dice, 1e-6, 1), stress_log_uniform(&dice, 0.02, 400), stress_log_uniform(&dice, 1e4, 4.2e6)};
+            layer[l] = (ColumnLayer){stress_log_uniform(&dice, 1e-6, 1), stress_log_uniform(&dice, 0.02, 400),
+                                     stress_log_uniform(&dice, 1e4, 4.2e6)};
             thinnest_m = fmin(thinnest_m, layer[l].thickness_m);
         }
         conduct(&worst, layer, layers, fmax(0.3 * thinnest_m, 1e-6), stress_log_uniform(&dice, 1, 2000),
-                &(Around){stress_log_uniform(&dice, 0.1, 1000), stress_uniform(&dice, 0, 1), stress_log_uniform(&dice, 1, 2000)}, stress_log_uniform(&dice, 1e-3, 1e5));
+                &(Around){stress_log_uniform(&dice, 0.1, 1000), stress_uniform(&dice, 0, 1),
+                          stress_log_uniform(&dice, 1, 2000)},
+                stress_log_uniform(&dice, 1e-3, 1e5));
     }
     return worst;
 }
@@ -112,8 +120,11 @@ enum { extreme_days = 3 * 2 * 2 };
 
 static HeatDay extreme_day(int n)
 {
-    return (HeatDay){.latitude_rad = suns[n % 3].latitude_deg * rad_per_deg, .declination_rad = suns[n % 3].declination_deg * rad_per_deg,
-                     .wind_mps = n / 3 % 2 ? 60 : 0, .air_k = n / 6 ? 330 : 220, .humidity = n / 6 ? 0.1 : 0.8};
+    return (HeatDay){.latitude_rad = suns[n % 3].latitude_deg * rad_per_deg,
+                     .declination_rad = suns[n % 3].declination_deg * rad_per_deg,
+                     .wind_mps = n / 3 % 2 ? 60 : 0,
+                     .air_k = n / 6 ? 330 : 220,
+                     .humidity = n / 6 ? 0.1 : 0.8};
 }
 
 static HeatConfig config_of(const HeatDay *day, double step_s, int facets, double unix_s, Pool *pool)
@@ -127,11 +138,12 @@ static HeatConfig config_of(const HeatDay *day, double step_s, int facets, doubl
 static double wrong_values(const HeatNow *now, Dice *dice)
 {
     const GroundHeatTable *t = &now->table;
-    double wrong = 0;
+    double                 wrong = 0;
     for (int k = 1; k < ground_kinds; k++) {
         for (int i = 0; i < t->facets * t->facets; i++) wrong += !(t->sun_k[k][i] >= 150 && t->sun_k[k][i] <= 400);
         for (int i = 0; i < heat_ups; i++)
-            wrong += !(t->shade_k[k][i] >= 150 && t->shade_k[k][i] <= 400) + !(t->dark_k[k][i] >= 150 && t->dark_k[k][i] <= 400);
+            wrong += !(t->shade_k[k][i] >= 150 && t->shade_k[k][i] <= 400) +
+                     !(t->dark_k[k][i] >= 150 && t->dark_k[k][i] <= 400);
         wrong += !(t->hidden_k[k] >= 150 && t->hidden_k[k] <= 400);
         for (int s = 0; s < now->slots; s++) wrong += !isfinite(t->slot_k[k][s]);
         for (int n = 0; n < 20; n++) {
@@ -139,7 +151,8 @@ static double wrong_values(const HeatNow *now, Dice *dice)
             double  normal[3];
             stress_direction(normal, dice);
             for (int s = 0; s < now->slots; s++) shadow[s] = (uint8_t)stress_uniform(dice, 0, 256);
-            const double taken = heat_taken(now, k, normal, shadow), temp_k = heat_ground_k(now, k, normal, taken, stress_uniform(dice, 0, 1), 1);
+            const double taken = heat_taken(now, k, normal, shadow),
+                         temp_k = heat_ground_k(now, k, normal, taken, stress_uniform(dice, 0, 1), 1);
             wrong += !(taken >= 0 && taken <= 1) + !(temp_k >= 150 && temp_k <= 400);
         }
     }
@@ -179,7 +192,7 @@ static double grids_and_dates(void *user, bool quick)
 {
     static const double steps_s[] = {60, 3600}, dates_s[] = {-631152000 + 0.25, 3786912000 - 1e-3};
     static const int    facets[] = {3, 17};
-    double wrong = 0;
+    double              wrong = 0;
     for (int n = 0; n < 8; n++) {
         const HeatDay day = extreme_day(2 + 3 * (n % 4));
         const double  step_s = steps_s[n & 1];
@@ -238,11 +251,11 @@ static double threads_agree(void *user, bool quick)
 static double back_in_time(void *user, bool quick)
 {
     static const double at_s[] = {20000, 100, 0, 7300, 7300, -1e6, 3599.5, 20000, 1};
-    HeatStress *s = user;
-    Heat       *heat = NULL;
-    HeatDay     day = heat_day_default();
-    HeatConfig  c = config_of(&day, quick ? 3600 : 600, 3, heat_day_unix_s + 9 * 3600 + 17, NULL);
-    double      different = 0;
+    HeatStress         *s = user;
+    Heat               *heat = NULL;
+    HeatDay             day = heat_day_default();
+    HeatConfig          c = config_of(&day, quick ? 3600 : 600, 3, heat_day_unix_s + 9 * 3600 + 17, NULL);
+    double              different = 0;
     c.spin_up_s = 86400;
     if (heat_create(&heat, &s->kinds, &c, NULL, 0) != STATUS_OK) return INFINITY;
     for (size_t i = 0; i < sizeof at_s / sizeof *at_s; i++) {
@@ -301,7 +314,8 @@ static void step_once(NetworkStress *worst, Dice *dice)
         const double area_m2 = stress_log_uniform(dice, 0.03, 25);
         capacity_j_k[i] = fmin(fmax(area_m2 * stress_log_uniform(dice, 1e-4, 1) * 3.9e6, 10), 1e8);
         temp_k[i] = stress_log_uniform(dice, 1, 2000);
-        load[i] = (NetworkLoad){.film_w_k = area_m2 * stress_log_uniform(dice, 0.1, 1000), .fluid_k = stress_log_uniform(dice, 1, 2000)};
+        load[i] = (NetworkLoad){.film_w_k = area_m2 * stress_log_uniform(dice, 0.1, 1000),
+                                .fluid_k = stress_log_uniform(dice, 1, 2000)};
         low_k = fmin(low_k, fmin(temp_k[i], load[i].fluid_k)), high_k = fmax(high_k, fmax(temp_k[i], load[i].fluid_k));
         gross_w += load[i].film_w_k * load[i].fluid_k;
     }
@@ -311,7 +325,8 @@ static void step_once(NetworkStress *worst, Dice *dice)
         exchange[k] = (NetworkExchange){a, another(dice, a), stress_log_uniform(dice, 1e-6, 25)};
     }
     Status       status = heat_network_create(&n, &(NetworkShape){plates, flows, flows, capacity_j_k, link, exchange});
-    const double dt_s = stress_log_uniform(dice, 1e-3, 1e5), before_j = status == STATUS_OK ? heat_network_heat_j(n, temp_k) : 0;
+    const double dt_s = stress_log_uniform(dice, 1e-3, 1e5),
+                 before_j = status == STATUS_OK ? heat_network_heat_j(n, temp_k) : 0;
     if (status == STATUS_OK) status = heat_network_step(temp_k, &heat_j, n, load, NULL, dt_s);
     if (status != STATUS_OK) {
         worst->energy = worst->excess = INFINITY;
@@ -327,7 +342,7 @@ static void step_once(NetworkStress *worst, Dice *dice)
 static double network_energy(void *user, bool quick)
 {
     NetworkStress *worst = user;
-    Dice    dice = {.stream = 75};
+    Dice           dice = {.stream = 75};
     for (int n = quick ? 100 : 2000; n > 0; n--) step_once(worst, &dice);
     return worst->energy;
 }
@@ -341,8 +356,8 @@ static double network_excess(void *user, bool quick)
 Status bench_stability_network(Bench *bench)
 {
     static const StressCase cases[] = {
-        {"network: 1 K to 2000 K, plates of 0.1 mm to 1 m, steps of 1 ms to 1e5 s: energy", network_energy, 1e-6, "exchanged",
-         "stored against let in"},
+        {"network: 1 K to 2000 K, plates of 0.1 mm to 1 m, steps of 1 ms to 1e5 s: energy", network_energy, 1e-6,
+         "exchanged", "stored against let in"},
         {"network: the same: temperatures", network_excess, 0.01, "K", "between the nodes and their surroundings"},
     };
     static NetworkStress worst;

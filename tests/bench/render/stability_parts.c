@@ -95,8 +95,8 @@ static double plate_edges(void *user, bool quick)
         for (int inside = 0; inside < 2; inside++) {
             const double step_m = inside ? -off_m : off_m, along = stress_uniform(&dice, -0.99, 0.99);
             double       to[3] = {0, 2 * along, 1.5 * along}, o[3],
-                d[3] = {1, stress_uniform(&dice, -0.3, 0.3), stress_uniform(&dice, -0.3, 0.3)};
-            PartHit      hit;
+                   d[3] = {1, stress_uniform(&dice, -0.3, 0.3), stress_uniform(&dice, -0.3, 0.3)};
+            PartHit hit;
             to[1 + side % 2] = (side < 2 ? -1 : 1) * ((side % 2 ? 1.5 : 2) + step_m);
             v3_normalize(d, d);
             v3_add_scaled(o, to, -far_m, d);
@@ -154,15 +154,23 @@ static bool heap_open(Body *b, Dice *dice)
         v3_add_scaled(q, q, wide_m, across);
         stress_triangle(&b->model, a, p, q);
         switch ((int)stress_uniform(dice, 0, 8)) {
-        case 0: stress_triangle(&b->model, a, p, q); break;              /* twice */
-        case 1: stress_triangle(&b->model, a, q, p); break;              /* and its back */
-        case 2: stress_triangle(&b->model, a, a, p); break;              /* a line */
-        case 3: stress_triangle(&b->model, a, a, a); break;              /* a point */
-        case 4:                                                          /* a line of three corners */
+        case 0:
+            stress_triangle(&b->model, a, p, q);
+            break; /* twice */
+        case 1:
+            stress_triangle(&b->model, a, q, p);
+            break; /* and its back */
+        case 2:
+            stress_triangle(&b->model, a, a, p);
+            break; /* a line */
+        case 3:
+            stress_triangle(&b->model, a, a, a);
+            break; /* a point */
+        case 4:    /* a line of three corners */
             for (int c = 0; c < 3; c++) q[c] = 0.5 * (a[c] + p[c]);
             stress_triangle(&b->model, a, p, q);
             break;
-        case 5:                                                          /* a fan on one edge */
+        case 5: /* a fan on one edge */
             for (int k = 0; k < 4; k++) {
                 double r[3];
                 stress_direction(r, dice);
@@ -170,7 +178,8 @@ static bool heap_open(Body *b, Dice *dice)
                 stress_triangle(&b->model, a, p, r);
             }
             break;
-        default: break;
+        default:
+            break;
         }
     }
     return body_open(b);
@@ -202,7 +211,7 @@ static long double passes(long double *range_m, long double *seen_m2, const Mode
             dot += out[c] * (*range_m * d[c] - corner[k][c]);
         }
         side[k] = dot / sqrtl(length2);
-        inside  = side[k] < inside ? side[k] : inside;
+        inside = side[k] < inside ? side[k] : inside;
     }
     return *range_m < 0 ? -INFINITY : inside;
 }
@@ -234,7 +243,7 @@ static void judge_ray(HeapCount *count, const Body *b, const double o[3], const 
         if (plain && inside > -2e-9L && range_m < first_m) first_m = range_m;
         if (!met || t != (int)hit.triangle) continue;
         faint = !plain;
-        mine  = inside > -2.1e-5L;
+        mine = inside > -2.1e-5L;
         own_m = range_m;
     }
     if (!(got_m <= sure_m + 2e-4L)) count->missed += sure_m < INFINITY;
@@ -259,11 +268,11 @@ static const HeapCount *heap(void *user, bool quick)
         }
         for (int n = 0; n < rays; n++) {
             const uint32_t *corner = b.model.triangle[(int)stress_uniform(&dice, 0, b.model.triangle_count)];
-            double          o[3], d[3], to[3] = {0}, w[3] = {1, stress_uniform(&dice, 0, 1), stress_uniform(&dice, 0, 1)};
+            double o[3], d[3], to[3] = {0}, w[3] = {1, stress_uniform(&dice, 0, 1), stress_uniform(&dice, 0, 1)};
             if (w[1] + w[2] > 1) w[1] = 1 - w[1], w[2] = 1 - w[2];
             w[0] = 1 - w[1] - w[2];
-            if (n % 5 == 0) w[0] = n % 2, w[1] = !w[0], w[2] = 0;            /* at a corner */
-            if (n % 5 == 1) w[2] = 0, w[0] = 1 - w[1];                       /* at an edge */
+            if (n % 5 == 0) w[0] = n % 2, w[1] = !w[0], w[2] = 0; /* at a corner */
+            if (n % 5 == 1) w[2] = 0, w[0] = 1 - w[1];            /* at an edge */
             for (int k = 0; k < 3; k++) v3_add_scaled(to, to, w[k], b.model.vertex[corner[k]]);
             stress_direction(d, &dice);
             v3_add_scaled(o, to, -stress_log_uniform(&dice, 0.1, 200), d);
@@ -292,15 +301,15 @@ static double company(void *user, bool quick)
     for (int h = 0; h < (quick ? 2 : 40); h++) {
         if (!heap_open(&b, &dice)) return INFINITY;
         for (int n = 0; n < block; n++) {
-            double to[3], way[3];
+            double        to[3], way[3];
             const double *at = b.model.vertex[(int)stress_uniform(&dice, 0, b.model.vertex_count)];
             stress_direction(way, &dice);
             for (int c = 0; c < 3; c++) to[c] = at[c] + (n % 3 ? stress_uniform(&dice, -0.5, 0.5) : 0);
             const double away_m = stress_log_uniform(&dice, 0.1, 1e5);
             for (int c = 0; c < 3; c++) o[c][n] = to[c] - away_m * way[c], d[c][n] = way[c];
-            far_m[n]   = n % 4 ? INFINITY : away_m;
+            far_m[n] = n % 4 ? INFINITY : away_m;
             range_m[n] = INFINITY;
-            list[n]    = n;
+            list[n] = n;
         }
         const double *const from[3] = {o[0], o[1], o[2]}, *const towards[3] = {d[0], d[1], d[2]};
         parts_first_hits(range_m, hit, &b.entity, from, towards, far_m, list, block, h % 2);
@@ -320,9 +329,9 @@ static double company(void *user, bool quick)
 static double coincident(void *user, bool quick)
 {
     static const double corner[3][3] = {{0, -3, -3}, {0, 3, -3}, {0, 0, 3}};
-    Body   b = {0};
-    Dice   dice = {.stream = 6};
-    double wrong = 0;
+    Body                b = {0};
+    Dice                dice = {.stream = 6};
+    double              wrong = 0;
     (void)user;
     if (stress_model(&b.model, 36, 12) != STATUS_OK) return INFINITY;
     for (int k = 0; k < 12; k++)
@@ -360,7 +369,8 @@ static double leaks_of(Body *b, Dice *dice, int rays)
         const double    share = n % 2 ? stress_uniform(dice, 0, 1) : 0;
         v3_add_scaled(to, to, 1 - share, b->model.vertex[corner[k]]);
         v3_add_scaled(to, to, share, b->model.vertex[corner[(k + 1) % 3]]);
-        for (int c = 0; c < 3; c++) o[c] = n % 4 < 2 ? stress_uniform(dice, -0.3, 0.3) : to[c] * stress_log_uniform(dice, 2, 1000);
+        for (int c = 0; c < 3; c++)
+            o[c] = n % 4 < 2 ? stress_uniform(dice, -0.3, 0.3) : to[c] * stress_log_uniform(dice, 2, 1000);
         v3_sub(d, to, o);
         if (!v3_normalize(d, d)) continue;
         PartHit hit;
@@ -377,9 +387,9 @@ static double leaks_of(Body *b, Dice *dice, int rays)
 static double leaks(void *user, bool quick)
 {
     static const double low[3] = {-1, -1, -1}, high[3] = {1, 1, 1};
-    Body   b = {0};
-    Dice   dice = {.stream = 7};
-    double leaked = 0;
+    Body                b = {0};
+    Dice                dice = {.stream = 7};
+    double              leaked = 0;
     (void)user;
     if (stress_model(&b.model, 8, 12) != STATUS_OK) return INFINITY;
     stress_box(&b.model, low, high);
@@ -411,9 +421,9 @@ static double odd_rays(void *user, bool quick)
         double o[3], d[3], n_geo[3], n_enu[3];
         for (int c = 0; c < 3; c++) {
             o[c] = stress_uniform(&dice, 0, 1) < 0.5 ? odd[(int)stress_uniform(&dice, 0, odds)]
-                : stress_uniform(&dice, -3, 3);
+                                                     : stress_uniform(&dice, -3, 3);
             d[c] = stress_uniform(&dice, 0, 1) < 0.5 ? odd[(int)stress_uniform(&dice, 0, odds)]
-                : stress_uniform(&dice, -1, 1);
+                                                     : stress_uniform(&dice, -1, 1);
         }
         /* too long or short to be normalised */
         if (!v3_normalize(d, d) && v3_is_finite(d) && v3_dot(d, d) > 0) continue;
@@ -436,7 +446,7 @@ Status bench_stability_parts(Bench *bench)
         {"parts: its edges, 1 nm a metre within and without", plate_edges, 0, "rays", "which side of the edge"},
         {"parts: scene and eye carried off to 200 km", plate_far_origins, 2e-9, "m", "the plane's equation at 0"},
         {"parts: needles, slivers, no area, twice, fans: missed", heap_missed, 0, "rays",
-            "every triangle in long double"},
+         "every triangle in long double"},
         {"parts: the same: invented", heap_invented, 0, "rays", "every triangle in long double"},
         {"parts: the same: range", heap_range, 1e-4, "m", "the triangle's plane in long double"},
         {"parts: the same: 16 at a time, culled or not", company, 0, "rays", "one by one, to the bit"},

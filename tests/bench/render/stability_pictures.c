@@ -26,7 +26,7 @@ typedef struct Ranges {
     StressWorld *world;
     bool         done;
     /* worst: of rho E cos / pi and Planck, of the area; px; of the range */
-    double       radiance, size, edge_px, range;
+    double radiance, size, edge_px, range;
 } Ranges;
 
 /* The block fills 100 columns at every range. Both ways of sampling: as what
@@ -38,7 +38,7 @@ static void one_range(Ranges *r, double range_m, double columns)
     const int    width = (int)(1.6 * columns) / 2 * 2, height = (int)(0.8 * columns) / 2 * 2;
     const View   view = stress_view(eye, north, 0, width, height, columns * range_m / stress_size_m[0]);
     const RenderRequest request = stress_request(&view);
-    double       attitude[9];
+    double              attitude[9];
     stress_no_air(w, sun_enu);
     stress_clear(w);
     facing(attitude, north);
@@ -50,20 +50,21 @@ static void one_range(Ranges *r, double range_m, double columns)
     const Picture      *p = &w->picture;
     const TargetPixels *t = &p->target[0];
     const size_t        middle = (size_t)(height / 2) * (size_t)width + (size_t)(width / 2);
-    const double half_px[2] = {0.5 * columns, 0.5 * columns * stress_size_m[2] / stress_size_m[0]},
-        area = 4 * half_px[0] * half_px[1];
-    const double temp_k = w->air.light.weather.air_temp_k, optical = (double)stress_rho / pi_rad * stress_sun_w_m2 * 0.6;
+    const double        half_px[2] = {0.5 * columns, 0.5 * columns * stress_size_m[2] / stress_size_m[0]},
+                 area = 4 * half_px[0] * half_px[1];
+    const double temp_k = w->air.light.weather.air_temp_k,
+                 optical = (double)stress_rho / pi_rad * stress_sun_w_m2 * 0.6;
     const double thermal = (1 - (double)stress_rho_ir) * planck_band(8e-6, 12e-6, temp_k, NULL);
     worse(&r->radiance, fabs((t->small ? t->mean[picture_optical] : (double)p->optical[0][middle]) / optical - 1));
     worse(&r->radiance, fabs((t->small ? t->mean[picture_lwir] : (double)p->lwir[middle]) / thermal - 1));
     /* half a pixel off the axis both ways; of a small target it is that of a sample near by */
     if (!t->small)
-        worse(&r->range, fabs((double)p->range_m[middle] / (range_m * sqrt(1 + 0.5 / (view.focal_px * view.focal_px))) -
-            1));
+        worse(&r->range,
+              fabs((double)p->range_m[middle] / (range_m * sqrt(1 + 0.5 / (view.focal_px * view.focal_px))) - 1));
     worse(&r->size, fabs(t->visible / area - 1));
     for (int k = 0; k < 4; k++)
-        worse(&r->edge_px, fabs(t->projected_box[k] -
-            (0.5 * (k % 2 ? height : width) + (k < 2 ? -1 : 1) * half_px[k % 2])));
+        worse(&r->edge_px,
+              fabs(t->projected_box[k] - (0.5 * (k % 2 ? height : width) + (k < 2 ? -1 : 1) * half_px[k % 2])));
 }
 
 static const Ranges *ranges(void *user, bool quick)
@@ -115,11 +116,11 @@ static bool origin_picture(StressWorld *w, const double away_enu[3])
 /* The same scene with the terrain's origin elsewhere on the Earth, and itself up to 200 km from it. */
 static const Origins *origins(void *user, bool quick)
 {
-    Origins *o = user;
-    static float optical[origin_px * origin_px], lwir[origin_px * origin_px];
+    Origins        *o = user;
+    static float    optical[origin_px * origin_px], lwir[origin_px * origin_px];
     static uint32_t entity[origin_px * origin_px];
-    double   box[8][4], none[3] = {0, 0, 0};
-    Dice     dice = {.stream = 50};
+    double          box[8][4], none[3] = {0, 0, 0};
+    Dice            dice = {.stream = 50};
     if (o->done) return o;
     o->done = true;
     StressWorld     *w = o->world;
@@ -131,8 +132,8 @@ static const Origins *origins(void *user, bool quick)
     for (int k = 0; k < 8; k++) memcpy(box[k], w->picture.target[k].projected_box, sizeof box[k]);
     for (int n = quick ? 8 : 200; n > 0; n--) {
         const Geodetic place = {n % 5 == 0 ? 0.5 * pi_rad : stress_uniform(&dice, -1.57, 1.57),
-            stress_uniform(&dice, -pi_rad, pi_rad), stress_uniform(&dice, -400, 9000)};
-        double         away[3];
+                                stress_uniform(&dice, -pi_rad, pi_rad), stress_uniform(&dice, -400, 9000)};
+        double away[3];
         stress_direction(away, &dice);
         v3_scale(away, n % 3 ? stress_log_uniform(&dice, 1, 200e3) : 200e3, away);
         if (local_frame_at(&w->world.frame, &place) != STATUS_OK || !origin_picture(w, away)) o->pixels = INFINITY;
@@ -170,24 +171,33 @@ static Fields fields(bool quick)
     for (int n = quick ? 20000 : 1000000; n > 0; n--) {
         const double hfov_rad = stress_log_uniform(&dice, 0.01, 179) * rad_per_deg;
         const int    width = n % 3 ? (int)stress_log_uniform(&dice, 1, 8192) : 8192;
-        View         view = {.width = width, .height = n % 2 ? width : 1 + 8191 * (n % 4 == 0),
-            .focal_px = view_focal_px(width, hfov_rad)};
+        View         view = {.width = width,
+                             .height = n % 2 ? width : 1 + 8191 * (n % 4 == 0),
+                             .focal_px = view_focal_px(width, hfov_rad)};
         double       d[3], cam[3];
         stress_any_rotation(view.r_enu_from_cam, &dice);
         const double column = stress_uniform(&dice, 0, width), row = stress_uniform(&dice, 0, view.height);
         view_ray(d, &view, column, row);
         m3_tmul_v3(cam, view.r_enu_from_cam, d);
         worse(&worst.length, fabs(v3_length(d) - 1));
-        worse(&worst.back_px, fabs(0.5 * width + view.focal_px * cam[0] / cam[2] - column) / fmax(1,
-            hypot(cam[0], cam[1]) / cam[2]));
-        worse(&worst.back_px, fabs(0.5 * view.height + view.focal_px * cam[1] / cam[2] - row) / fmax(1,
-            hypot(cam[0], cam[1]) / cam[2]));
+        worse(&worst.back_px,
+              fabs(0.5 * width + view.focal_px * cam[0] / cam[2] - column) / fmax(1, hypot(cam[0], cam[1]) / cam[2]));
+        worse(&worst.back_px, fabs(0.5 * view.height + view.focal_px * cam[1] / cam[2] - row) /
+                                  fmax(1, hypot(cam[0], cam[1]) / cam[2]));
     }
     return worst;
 }
 
-static double field_length(void *user, bool quick) { (void)user; return fields(quick).length; }
-static double field_back(void *user, bool quick) { (void)user; return fields(quick).back_px; }
+static double field_length(void *user, bool quick)
+{
+    (void)user;
+    return fields(quick).length;
+}
+static double field_back(void *user, bool quick)
+{
+    (void)user;
+    return fields(quick).back_px;
+}
 
 /* ---- sizes --------------------------------------------------------------------------------------- */
 
@@ -213,12 +223,12 @@ static RenderRequest size_request(StressWorld *w, int width, int height)
 /* Odd, long, thin and single: each equals the middle of the largest, which has the same rays there, to the bit. */
 static double sizes(void *user, bool quick)
 {
-    static const int size[][2] = {{1, 1}, {3, 1}, {1, 3}, {31, 33}, {33, 7}, {1, 8191}, {8191, 1}, {1, 8192}, {8192, 1},
-        {64, 64}};
-    StressWorld *w = user;
-    double       wrong = 0;
-    Arena       *kept = arena_create(), *own = w->arena;
-    Picture      small;
+    static const int size[][2] = {{1, 1},    {3, 1},    {1, 3},    {31, 33},  {33, 7},
+                                  {1, 8191}, {8191, 1}, {1, 8192}, {8192, 1}, {64, 64}};
+    StressWorld     *w = user;
+    double           wrong = 0;
+    Arena           *kept = arena_create(), *own = w->arena;
+    Picture          small;
     if (!kept || stress_real_air(w, 0.5, 300) != STATUS_OK) return INFINITY;
     w->world.landscape = &w->landscape;
     for (int k = 0; k < 10; k++) {
@@ -229,7 +239,7 @@ static double sizes(void *user, bool quick)
         small = w->picture;
         wrong += made ? stress_bad_values(&small) : INFINITY;
         /* of the same parity, so that the middles agree; by one row or column of tiles at least */
-        request.view.width  = size[k][0] % 2 + (size[k][0] > 100 ? 8190 : quick ? 64 : 256);
+        request.view.width = size[k][0] % 2 + (size[k][0] > 100 ? 8190 : quick ? 64 : 256);
         request.view.height = size[k][1] % 2 + (size[k][1] > 100 ? 8190 : quick ? 64 : 256);
         const int w0 = size[k][0] < request.view.width ? size[k][0] : request.view.width;
         const int h0 = size[k][1] < request.view.height ? size[k][1] : request.view.height;
@@ -265,8 +275,8 @@ static double largest(void *user, bool quick)
         w->picture.range_m = NULL;
         wrong = stress_bad_values(&w->picture);
         for (int y = 0; y < 256; y++)
-            wrong += memcmp(w->picture.lwir + (size_t)(3968 + y) * 8192 + 3968, small.lwir + (size_t)y * 256,
-                256 * 4) != 0;
+            wrong +=
+                memcmp(w->picture.lwir + (size_t)(3968 + y) * 8192 + 3968, small.lwir + (size_t)y * 256, 256 * 4) != 0;
     }
     w->world.landscape = NULL;
     arena_destroy(kept);
@@ -298,7 +308,7 @@ static double full_sums(void *user, bool quick)
         for (int y = 0; y < side[k]; y++)
             for (int x = 0; x < side[k]; x++) {
                 const double u = (x + 0.5 - 0.5 * side[k]) / view.focal_px,
-                    v = (y + 0.5 - 0.5 * side[k]) / view.focal_px;
+                             v = (y + 0.5 - 0.5 * side[k]) / view.focal_px;
                 sum += pow(1 + u * u + v * v, -1.5) * ((double)stress_rho / pi_rad * stress_sun_w_m2 * 0.6);
             }
         worse(&worst, fabs(t->visible / ((double)side[k] * side[k]) - 1));
@@ -311,14 +321,14 @@ Status bench_stability_pictures(Bench *bench)
 {
     static const StressCase range_cases[] = {
         {"picture: a block at 0.1 m .. 200 km: radiance", range_radiance, 1e-5, "relative",
-            "rho E cos / pi and Planck, no air"},
+         "rho E cos / pi and Planck, no air"},
         {"picture: its area", range_size, 1e-3, "relative", "4 x 1.5 m by range"},
         {"picture: its edges", range_edge, 1e-6, "px", "4 x 1.5 m by range"},
         {"picture: its range", range_range, 1e-7, "relative", "where it was put; a float holds 6e-8"},
     };
     static const StressCase origin_cases[] = {
         {"picture: any place on Earth, to 200 km from the origin: pixels", origin_pixels, 0, "pixels of another",
-            "the same at home"},
+         "the same at home"},
         {"picture: the same: radiance", origin_radiance, 1e-5, "relative", "the same at home"},
         {"picture: the same: edges", origin_edge, 1e-6, "px", "the same at home"},
     };

@@ -12,8 +12,8 @@ enum { block = 256 };
 typedef struct PlantFigures {
     bool        done;
     PlantErrors errors;
-    double      apart;      /* rays of which forest_any_hits says otherwise */
-    double      octets;     /* a plant */
+    double      apart;  /* rays of which forest_any_hits says otherwise */
+    double      octets; /* a plant */
 } PlantFigures;
 
 typedef enum PlantCase { EDGE_ON, SKIMMING, FAR, CROWDED, PLANT_CASES } PlantCase;
@@ -98,7 +98,7 @@ static void add_ray(PlantRays *r, const double o[3], const double d[3])
 static void trace(PlantRays *r, const Stand *stand)
 {
     const double *const o[3] = {r->o[0], r->o[1], r->o[2]}, *const d[3] = {r->d[0], r->d[1], r->d[2]};
-    double              far_m[block];
+    double far_m[block];
     for (int k = 0; k < r->count; k++) r->range_m[k] = far_m[k] = INFINITY, r->dark[k] = 0;
     forest_first_hits(r->range_m, r->hit, &stand->frame, r->count, o, d, NULL);
     forest_any_hits(r->dark, &stand->frame, r->count, o, d, far_m, NULL);
@@ -131,7 +131,7 @@ static bool leaf_place(double p[3], double n[3], const Stand *stand, const Plant
     for (int c = 0; c < 3; c++) {
         e[0][c] = (double)quad->corner[1][c] - (double)quad->corner[0][c];
         e[1][c] = (double)quad->corner[3][c] - (double)quad->corner[0][c];
-        at[c]   = (double)quad->corner[0][c] + uv[0] * e[0][c] + uv[1] * e[1][c];
+        at[c] = (double)quad->corner[0][c] + uv[0] * e[0][c] + uv[1] * e[1][c];
     }
     m3_mul_v3(p, m, at);
     for (int k = 0; k < 2; k++) m3_mul_v3(side[k], m, e[k]);
@@ -146,9 +146,9 @@ static bool leaf_place(double p[3], double n[3], const Stand *stand, const Plant
 static bool edge_on(PlantFigures *f, PlantStress *s, bool quick)
 {
     static const double origin[3] = {100, -50, 300}, off_rad = 1e-4;
-    Stand     stand;
-    PlantRays rays = {0};
-    Dice      dice = {.stream = 71};
+    Stand               stand;
+    PlantRays           rays = {0};
+    Dice                dice = {.stream = 71};
     if (!stand_open(&stand, s, 1, PLANT_TREES, 8, 25, origin, 70)) return false;
     for (int k = quick ? block : 24 * block; k > 0; k--) {
         double p[3], n[3], d[3], o[3], way[3];
@@ -171,9 +171,9 @@ static bool edge_on(PlantFigures *f, PlantStress *s, bool quick)
 static bool skimming(PlantFigures *f, PlantStress *s, bool quick)
 {
     static const double origin[3] = {-2000, 500, 120}, down = -0.01 * rad_per_deg;
-    Stand     stand;
-    PlantRays rays = {0};
-    Dice      dice = {.stream = 72};
+    Stand               stand;
+    PlantRays           rays = {0};
+    Dice                dice = {.stream = 72};
     if (!stand_open(&stand, s, 8, 40, 18, 22, origin, 73)) return false;
     for (int k = quick ? block / 2 : 8 * block; k > 0; k--) {
         const double turn = stress_uniform(&dice, -0.05, 0.05);
@@ -193,9 +193,9 @@ static bool skimming(PlantFigures *f, PlantStress *s, bool quick)
 static bool far_away(PlantFigures *f, PlantStress *s, bool quick)
 {
     static const double origin[2][3] = {{0, 0, 0}, {2e5 / 1.4142135623730951, 2e5 / 1.4142135623730951, -3140}};
-    Stand     stand[2];
-    PlantRays rays[2] = {{0}, {0}};
-    Dice      dice = {.stream = 74};
+    Stand               stand[2];
+    PlantRays           rays[2] = {{0}, {0}};
+    Dice                dice = {.stream = 74};
     if (!stand_open(&stand[0], s, 1, PLANT_TREES, 8, 25, origin[0], 75)) return false;
     if (!stand_open(&stand[1], s, 1, PLANT_TREES, 8, 25, origin[1], 75)) {
         stand_close(&stand[0]);
@@ -231,9 +231,9 @@ static bool crowded(PlantFigures *f, PlantStress *s, bool quick)
 {
     static const double origin[3] = {0, 0, 40}, one_mb = 1e6;
     enum { count = 1000000 };
-    Stand               stand, single;
-    PlantRays           rays = {0};
-    Dice                dice = {.stream = 76};
+    Stand     stand, single;
+    PlantRays rays = {0};
+    Dice      dice = {.stream = 76};
     if (!stand_open(&single, s, 1, 1, 2, 25, origin, 77)) return false; /* the prototypes' own scenes */
     const double before_mb = bench_memory_mb("VmRSS:");
     const bool   made = stand_open(&stand, s, 1, count, 2, 25, origin, 77);
@@ -259,11 +259,11 @@ static bool crowded(PlantFigures *f, PlantStress *s, bool quick)
 static const PlantFigures *figures(void *user, bool quick, PlantCase of)
 {
     static bool (*const run[PLANT_CASES])(PlantFigures *, PlantStress *, bool) = {edge_on, skimming, far_away, crowded};
-    PlantStress        *s = user;
-    PlantFigures       *f = &s->of[of];
+    PlantStress  *s = user;
+    PlantFigures *f = &s->of[of];
     if (f->done) return f;
     const bool ok = run[of](f, s, quick);
-    f->done       = true;
+    f->done = true;
     if (!ok || f->errors.hits == 0) f->errors.past_m = f->errors.off_m = f->apart = f->octets = INFINITY;
     return f;
 }
@@ -289,11 +289,11 @@ static double any_apart(void *user, bool quick)
 static double company(void *user, bool quick)
 {
     static const double origin[3] = {0, 0, 0};
-    PlantStress *s = user;
-    Stand        stand;
-    PlantRays    rays = {0};
-    Dice         dice = {.stream = 78};
-    double       wrong = 0;
+    PlantStress        *s = user;
+    Stand               stand;
+    PlantRays           rays = {0};
+    Dice                dice = {.stream = 78};
+    double              wrong = 0;
     if (!stand_open(&stand, s, 1, 30, 8, 25, origin, 79)) return INFINITY;
     for (int n = 0; n < (quick ? 4 : 100); n++) {
         rays.count = 0;
@@ -364,20 +364,20 @@ static double odd_rays(void *user, bool quick)
 Status bench_stability_plants(Bench *bench)
 {
     static const char *const by = "every quad in long double";
-    const StressCase cases[] = {
-        {"plants: leaves edge-on, 1e-4 rad: past an outline", edge_past, 2e-5, "m", by},
-        {"plants: leaves edge-on: off the leaf", edge_off, 2e-6, "m", by},
-        {"plants: skimmed tops, 0.01 degrees, 512 m: past an outline", skim_past, 2e-5, "m", by},
-        {"plants: skimmed tops: off the surface", skim_off, 2e-6, "m", by},
-        {"plants: trees 200 km away, eye 0.1 m .. 200 km off: past an outline", far_past, 2e-5, "m", by},
-        {"plants: trees 200 km away: off the surface", far_off, 2e-6, "m", by},
-        {"plants: trees at the origin and 200 km away: other hits", far_apart, 0, "rays", "those at the origin"},
-        {"plants: a million trees in 64 x 64 m: past an outline", crowd_past, 2e-5, "m", by},
-        {"plants: a million trees: off the surface", crowd_off, 2e-6, "m", by},
-        {"plants: a million trees: memory of one", crowd_octets, 140, "octets", "resident, less that of one tree"},
-        {"plants: any hit and first hit", any_apart, 0, "rays", "each other"},
-        {"plants: in blocks of 1 to 256", company, 0, "rays", "one by one, to the bit"},
-        {"plants: rays without length, not finite", odd_rays, 0, "answers", "no number where there is none"},
+    const StressCase         cases[] = {
+                {"plants: leaves edge-on, 1e-4 rad: past an outline", edge_past, 2e-5, "m", by},
+                {"plants: leaves edge-on: off the leaf", edge_off, 2e-6, "m", by},
+                {"plants: skimmed tops, 0.01 degrees, 512 m: past an outline", skim_past, 2e-5, "m", by},
+                {"plants: skimmed tops: off the surface", skim_off, 2e-6, "m", by},
+                {"plants: trees 200 km away, eye 0.1 m .. 200 km off: past an outline", far_past, 2e-5, "m", by},
+                {"plants: trees 200 km away: off the surface", far_off, 2e-6, "m", by},
+                {"plants: trees at the origin and 200 km away: other hits", far_apart, 0, "rays", "those at the origin"},
+                {"plants: a million trees in 64 x 64 m: past an outline", crowd_past, 2e-5, "m", by},
+                {"plants: a million trees: off the surface", crowd_off, 2e-6, "m", by},
+                {"plants: a million trees: memory of one", crowd_octets, 140, "octets", "resident, less that of one tree"},
+                {"plants: any hit and first hit", any_apart, 0, "rays", "each other"},
+                {"plants: in blocks of 1 to 256", company, 0, "rays", "one by one, to the bit"},
+                {"plants: rays without length, not finite", odd_rays, 0, "answers", "no number where there is none"},
     };
     PlantStress s = {.bench = bench, .arena = arena_create()};
     Status      status = s.arena ? pool_create(&s.pool, bench_threads(bench)) : STATUS_NO_MEMORY;

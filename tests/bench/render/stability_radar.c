@@ -100,9 +100,10 @@ static double needles(void *user, bool quick)
         double p[3][3];
         for (int v = 0; v < 3; v++)
             for (int c = 0; c < 3; c++) p[v][c] = stress_uniform(&dice, -0.2, 0.2);
-        if (t % 4 == 1) memcpy(p[2], p[1], sizeof p[2]);                                  /* no area */
-        if (t % 4 == 2) v3_add_scaled(p[2], p[1], 1e-9, p[0]);                            /* a needle */
-        if (t % 4 == 3) for (int v = 0; v < 3; v++) p[v][t % 3] = 0.1 + 1e-12 * v;        /* across an axis */
+        if (t % 4 == 1) memcpy(p[2], p[1], sizeof p[2]);       /* no area */
+        if (t % 4 == 2) v3_add_scaled(p[2], p[1], 1e-9, p[0]); /* a needle */
+        if (t % 4 == 3)
+            for (int v = 0; v < 3; v++) p[v][t % 3] = 0.1 + 1e-12 * v; /* across an axis */
         stress_triangle(&m, p[0], p[1], p[2]);
     }
     bool good = model_measure(&m) == STATUS_OK && radar_target_create(&target, &m, NULL, "avx2") == STATUS_OK;
@@ -114,7 +115,8 @@ static double needles(void *user, bool quick)
         else stress_direction(a.u, &dice);
         good = total_field_trace(&field, target, &a, &a, &config, true, NULL) == STATUS_OK &&
                total_field_sweep(&s, 1, 10e9, 0, &field, NULL, NULL, NULL) == STATUS_OK;
-        wrong += good && !isfinite(scatter_power(s.hh) + scatter_power(s.hv) + scatter_power(s.vh) + scatter_power(s.vv));
+        wrong +=
+            good && !isfinite(scatter_power(s.hh) + scatter_power(s.hv) + scatter_power(s.vh) + scatter_power(s.vv));
     }
     total_field_free(&field);
     radar_target_destroy(target);
@@ -174,7 +176,7 @@ Status bench_stability_radar(Bench *bench)
 {
     static const StressCase cases[] = {
         {"radar field: a corner at 94 GHz, 1 m .. 1000 km", ranges, 1e-3, "relative",
-            "plane waves, less 8 a^2 / lambda R"},
+         "plane waves, less 8 a^2 / lambda R"},
         {"radar field: moved up to 20 km and turned, 94 GHz", offsets, 1e-5, "relative", "the field at the origin"},
         {"radar field: needles, no area, along the axes", needles, 0, "values", "finite"},
         {"radar field: a plate, 30 MHz .. 300 GHz, and grazing", wavelengths, 1e-3, "relative", "4 pi A^2 / lambda^2"},

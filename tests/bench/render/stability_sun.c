@@ -12,14 +12,14 @@ typedef struct Lit {
     Arena       *arena;
     Status       status;
     /* level ground, a wall that faces the sun, one that faces away; sky in three directions */
-    double       value[values];
+    double value[values];
 } Lit;
 
 /* Temperatures are fixed: they follow the sun by the hour, and are not tested here. */
 static void light_at(Lit *lit, double elevation_rad)
 {
     static Air          air;
-    static AirPaths        veils[AIR_BAND_COUNT];
+    static AirPaths     veils[AIR_BAND_COUNT];
     static Hits         hits;
     static Rays         rays;
     static SurfaceLight surface;
@@ -27,10 +27,10 @@ static void light_at(Lit *lit, double elevation_rad)
     static float        arrives[hits_capacity];
     static float        temp_k[hits_capacity], texture[hits_capacity], out[AIR_BAND_COUNT][hits_capacity];
     static const double normal[3][3] = {{0, 0, 1}, {0, 1, 0}, {0, -1, 0}},
-        look[3][3] = {{0, 0.6, 0.8}, {0, 1, 0}, {-1, 0, 0}};
+                        look[3][3] = {{0, 0.6, 0.8}, {0, 1, 0}, {-1, 0, 0}};
     static const double way[3][3] = {{0.8, 0, -0.6}, {0, -1, 0}, {0, 1, 0}};
-    const Sun       sun = {.elevation_rad = elevation_rad, .distance_au = 1,
-        .d_enu = {0, cos(elevation_rad), sin(elevation_rad)}};
+    const Sun           sun = {
+                  .elevation_rad = elevation_rad, .distance_au = 1, .d_enu = {0, cos(elevation_rad), sin(elevation_rad)}};
     const AirSource source = {lit->atmosphere, lit->mwir, lit->lwir, 0};
     const AirEye    eye = {.height_m = 100, .bands = (1 << AIR_BAND_COUNT) - 1};
     const Weather   weather = weather_default();
@@ -51,13 +51,13 @@ static void light_at(Lit *lit, double elevation_rad)
     }
     air_paths_of(veils, &air, (1 << AIR_BAND_COUNT) - 1, &hits, &rays, temp_k);
     float       *to[AIR_BAND_COUNT];
-    SurfaceBlock block = {.hits = &hits, .rays = &rays, .material = material, .temp_k = temp_k, .sun = arrives,
-        .veils = veils};
+    SurfaceBlock block = {
+        .hits = &hits, .rays = &rays, .material = material, .temp_k = temp_k, .sun = arrives, .veils = veils};
     for (int b = 0; b < bands; b++) to[b] = out[b], block.texture[b] = texture;
     surface_light_shade(to, &surface, &block);
     for (int b = 0; b < bands; b++)
         for (int i = 0; i < 3; i++) {
-            lit->value[i * bands + b]       = (double)out[b][i];
+            lit->value[i * bands + b] = (double)out[b][i];
             lit->value[(3 + i) * bands + b] = daylight_sky(&air.light, (AirBand)b, look[i]);
         }
 }
@@ -79,7 +79,7 @@ static double stands_out(double (*at)[values], int i, int steps, const double *s
     double most = 0;
     for (int k = 0; k < values; k++) {
         const double before = i > 0 ? fabs(at[i][k] - at[i - 1][k]) : 0,
-            after = i + 1 < steps ? fabs(at[i + 2][k] - at[i + 1][k]) : 0;
+                     after = i + 1 < steps ? fabs(at[i + 2][k] - at[i + 1][k]) : 0;
         most = fmax(most, (fabs(at[i + 1][k] - at[i][k]) - fmax(before, after)) / scale[k]);
     }
     return most;
@@ -129,11 +129,11 @@ static double horizon_jump(void *user, bool quick)
 /* The sun anywhere, and exactly above, below and on the horizon: nothing that is not a number, nothing below 0. */
 static double anywhere(void *user, bool quick)
 {
-    static const double odd[] = {-1.5707963267948966, -0.8, 0, 5e-324, -5e-324, 1e-9, -1e-9, 1.5707963267948966,
-        1.5707963};
-    Lit   *lit = user;
-    Dice   dice = {.stream = 40};
-    double wrong = 0;
+    static const double odd[] = {-1.5707963267948966, -0.8,     0, 5e-324, -5e-324, 1e-9, -1e-9,
+                                 1.5707963267948966,  1.5707963};
+    Lit                *lit = user;
+    Dice                dice = {.stream = 40};
+    double              wrong = 0;
     for (int n = quick ? 20 : 300; n >= 0; n--) {
         light_at(lit, n < 9 ? odd[n] : stress_uniform(&dice, -1.57, 1.57));
         if (lit->status != STATUS_OK) return INFINITY;
@@ -146,7 +146,7 @@ Status bench_stability_sun(Bench *bench)
 {
     static const StressCase cases[] = {
         {"sun: -0.6 .. 0.6 degrees: largest jump of ground, walls, sky", horizon_jump, 5e-3, "of the most",
-            "none within 1e-8 degree"},
+         "none within 1e-8 degree"},
         {"sun: anywhere, at zenith, nadir and on the horizon", anywhere, 0, "values", "finite, not below 0"},
     };
     Lit    lit = {.arena = arena_create()};

@@ -31,9 +31,9 @@ typedef struct Live {
     char    folder[temp_path_size], recording[path_size], said[path_size], run_json[path_size];
     int     port;
     double  ready_s, sent_for_s, resident_mb;
-    double  sent, heard, own, lost, frames, late;       /* datagrams; frames */
+    double  sent, heard, own, lost, frames, late; /* datagrams; frames */
     double  frame_median_s, frame_p95_s;
-    double *sampled_s, *published_s;                    /* sorted */
+    double *sampled_s, *published_s; /* sorted */
     int     samples, publications;
 } Live;
 
@@ -121,12 +121,12 @@ static Status read_result(Live *l)
     free(text);
     status = text_read_file(&text, &octets, "bench", l->run_json, 1 << 28);
     if (status != STATUS_OK) return status;
-    l->own   = NUMBER_AT(text, "live", "sent");
+    l->own = NUMBER_AT(text, "live", "sent");
     l->heard = NUMBER_AT(text, "live", "datagrams") - l->own;
-    l->lost  = NUMBER_AT(text, "live", "lost_kernel") + NUMBER_AT(text, "live", "lost_queue");
-    l->late  = NUMBER_AT(text, "live", "frames_late");
+    l->lost = NUMBER_AT(text, "live", "lost_kernel") + NUMBER_AT(text, "live", "lost_queue");
+    l->late = NUMBER_AT(text, "live", "frames_late");
     l->frame_median_s = 1e-3 * NUMBER_AT(text, "timings_ms", "frame", "median");
-    l->frame_p95_s    = 1e-3 * NUMBER_AT(text, "timings_ms", "frame", "p95");
+    l->frame_p95_s = 1e-3 * NUMBER_AT(text, "timings_ms", "frame", "p95");
     free(text);
     return STATUS_OK;
 }
@@ -162,14 +162,14 @@ static Status read_latency(Live *l)
     Status       status = dis_log_open(&log, l->recording, l->port);
     if (status != STATUS_OK) return status;
     double *t_s = calloc((size_t)log.count + 1, sizeof *t_s);
-    l->sampled_s   = calloc((size_t)log.count + 1, sizeof *l->sampled_s);
+    l->sampled_s = calloc((size_t)log.count + 1, sizeof *l->sampled_s);
     l->published_s = calloc((size_t)log.count + 1, sizeof *l->published_s);
     if (!t_s || !l->sampled_s || !l->published_s) status = STATUS_NO_MEMORY;
     for (int i = 0; i < log.count && status == STATUS_OK; i++) {
         const DisDatagram d = dis_log_datagram(&log, i);
         const double      frame_s = frame_of(&d, &config);
         if (isnan(frame_s)) continue;
-        t_s[l->publications]           = frame_s;
+        t_s[l->publications] = frame_s;
         l->published_s[l->publications++] = after_s(frame_s, fmod(log.datagram[i].capture_s, 3600));
     }
     for (int i = 0, k = 0; i < log.count && status == STATUS_OK && l->publications > 1; i++) {
@@ -197,12 +197,12 @@ static void add_latency(Live *l, const char *name, const double *sorted_s, int c
     for (int k = 0; k < 2 && count > 0; k++) {
         snprintf(what, sizeof what, "%s, %s", name, k ? "99 % of all" : "median");
         BenchRow row = bench_row(what);
-        row.median   = sorted_s[k ? count - 1 - count / 100 : count / 2];
-        row.unit     = "s";
+        row.median = sorted_s[k ? count - 1 - count / 100 : count / 2];
+        row.unit = "s";
         if (k) {
-            row.error      = row.median;
+            row.error = row.median;
             row.error_unit = "s";
-            row.against    = limit;
+            row.against = limit;
             if (!bench_quick(l->bench)) row.error_limit = limit_s;
         }
         bench_add(l->bench, &row);
@@ -212,8 +212,8 @@ static void add_latency(Live *l, const char *name, const double *sorted_s, int c
 static void add_figure(Live *l, const char *what, double figure, const char *unit)
 {
     BenchRow row = bench_row(what);
-    row.median   = figure;
-    row.unit     = unit;
+    row.median = figure;
+    row.unit = unit;
     bench_add(l->bench, &row);
 }
 
@@ -221,20 +221,20 @@ static void add_rows(Live *l)
 {
     char against[128];
     add_figure(l, "live node: ready to listen after", l->ready_s, "s");
-    BenchRow row   = bench_row("live node: reports heard");
-    row.rate       = l->heard / l->sent_for_s;
-    row.rate_unit  = "datagrams/s";
-    row.error      = fmax(l->sent - l->heard, l->lost);
+    BenchRow row = bench_row("live node: reports heard");
+    row.rate = l->heard / l->sent_for_s;
+    row.rate_unit = "datagrams/s";
+    row.error = fmax(l->sent - l->heard, l->lost);
     row.error_unit = "datagrams";
     if (!bench_quick(l->bench)) row.error_limit = 0;
     snprintf(against, sizeof against, "lost of %.0f sent", l->sent);
     row.against = against;
     bench_add(l->bench, &row);
 
-    row            = bench_row("live node: a frame");
-    row.median     = l->frame_median_s;
-    row.unit       = "s";
-    row.error      = 100 * l->late / (l->frames + l->late);
+    row = bench_row("live node: a frame");
+    row.median = l->frame_median_s;
+    row.unit = "s";
+    row.error = 100 * l->late / (l->frames + l->late);
     row.error_unit = "%";
     snprintf(against, sizeof against, "left out, of %.0f a second asked for; made: %.0f", (double)rate_hz, l->frames);
     row.against = against;
@@ -248,8 +248,8 @@ static void add_rows(Live *l)
 Status bench_network_live(Bench *bench)
 {
     static const char *const files[] = {"node.pcapng", "said.txt", "run.json", "truth.jsonl"};
-    Live l = {.bench = bench, .port = 20000 + (int)(getpid() * 7L % 12000)};
-    char path[path_size];
+    Live                     l = {.bench = bench, .port = 20000 + (int)(getpid() * 7L % 12000)};
+    char                     path[path_size];
     bench_progress(bench, "live node");
     if (!temp_folder(l.folder)) return STATUS_IO;
     snprintf(l.recording, sizeof l.recording, "%s/%s", l.folder, files[0]);

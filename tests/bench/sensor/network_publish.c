@@ -45,10 +45,10 @@ static const char one_target[] = "duration_s: 600\n"
 static const double memory_s = 0.001, video_s = 0.006; /* rendered to in memory, to last octet of video sent, 99 % */
 
 typedef struct Node {
-    Bench *bench;
+    Bench      *bench;
     const Case *of;
-    int    port, receiver[receivers_max];
-    char   folder[temp_path_size], scenario[temp_path_size], run_json[temp_path_size + 16], memory[48], stream[48];
+    int         port, receiver[receivers_max];
+    char        folder[temp_path_size], scenario[temp_path_size], run_json[temp_path_size + 16], memory[48], stream[48];
 } Node;
 
 /* ---- the processes ------------------------------------------------------------------------------- */
@@ -57,7 +57,8 @@ static bool open_receivers(Node *n)
 {
     for (int k = 0; k < receivers_max; k++) n->receiver[k] = -1;
     for (int k = 0; n->of->video && k < n->of->bands_count; k++) {
-        const struct sockaddr_in at = {.sin_family = AF_INET, .sin_port = htons((uint16_t)(n->port + 1001 + 2 * k)),
+        const struct sockaddr_in at = {.sin_family = AF_INET,
+                                       .sin_port = htons((uint16_t)(n->port + 1001 + 2 * k)),
                                        .sin_addr.s_addr = htonl(INADDR_LOOPBACK)};
         n->receiver[k] = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
         if (n->receiver[k] < 0 || bind(n->receiver[k], (const struct sockaddr *)&at, sizeof at) != 0) return false;
@@ -97,11 +98,36 @@ static pid_t start_node(const Node *n, const cpu_set_t *processors, int out)
     snprintf(port, sizeof port, "%d", n->port);
     snprintf(rate, sizeof rate, "%d", n->of->rate_hz);
     snprintf(quality, sizeof quality, "quality.frame_ms=%g", 800.0 / n->of->rate_hz);
-    const char *const all[] = {"pitviper", "run", "--address", "127.0.0.1", "--port", port, "--size",
-                               quick ? "96x64" : n->of->size, "--bands", n->of->bands, "--rate", rate, "--no-files",
-                               "--threads", "2", "--for", "90", "--out", n->folder, "--memory", n->memory, "--set",
-                               "exercise.listen_s=0.5", "--set", "publish.truth=false", "--set", quality, "--set",
-                               "entities.shown=10000", "--overwrite"};
+    const char *const all[] = {"pitviper",
+                               "run",
+                               "--address",
+                               "127.0.0.1",
+                               "--port",
+                               port,
+                               "--size",
+                               quick ? "96x64" : n->of->size,
+                               "--bands",
+                               n->of->bands,
+                               "--rate",
+                               rate,
+                               "--no-files",
+                               "--threads",
+                               "2",
+                               "--for",
+                               "90",
+                               "--out",
+                               n->folder,
+                               "--memory",
+                               n->memory,
+                               "--set",
+                               "exercise.listen_s=0.5",
+                               "--set",
+                               "publish.truth=false",
+                               "--set",
+                               quality,
+                               "--set",
+                               "entities.shown=10000",
+                               "--overwrite"};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) argument[count++] = all[i];
     if (n->of->video) {
         argument[count++] = "--stream";
@@ -121,11 +147,11 @@ static Status run_both(const Node *n)
     choose_processors(&for_node, &for_others);
     snprintf(to, sizeof to, "127.0.0.1:%d", n->port);
     const char *const crowd[] = {"pitviper", "exercise", "crowd", "--set", n->of->scale, "--send", to, NULL};
-    const char *const one[]   = {"pitviper", "exercise", n->scenario, "--send", to, NULL};
+    const char *const one[] = {"pitviper", "exercise", n->scenario, "--send", to, NULL};
     if (pipe2(said, O_CLOEXEC) != 0) return STATUS_IO;
     const int   nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);
-    const pid_t node    = nowhere < 0 ? -1 : start_node(n, &for_node, said[1]);
-    pid_t       sender  = -1;
+    const pid_t node = nowhere < 0 ? -1 : start_node(n, &for_node, said[1]);
+    pid_t       sender = -1;
     close(said[1]);
     bool ok = node > 0 && node_hears(said[0], "listening on", 120);
     if (ok) sender = start_on(&for_others, n->of->scale ? crowd : one, nowhere);
@@ -134,7 +160,8 @@ static Status run_both(const Node *n)
     char rest[4096];
     for (int i = 0; ok && i < (quick ? 20 : 120); i++) { /* its messages are read on, or it would wait */
         usleep(100000);
-        while (read(said[0], rest, sizeof rest) > 0) {}
+        while (read(said[0], rest, sizeof rest) > 0) {
+        }
     }
     if (sender > 0) kill(sender, SIGTERM);
     if (sender > 0) node_finish(sender, 5, &usage);
@@ -160,14 +187,14 @@ static void add_latency(const Node *n, const char *text, const char *name, const
 {
     char        what[160];
     const char *median[4] = {"latency_ms", key[0], key[1] ? key[1] : "median", "median"};
-    const char *p99[4]    = {"latency_ms", key[0], key[1] ? key[1] : "p99", "p99"};
-    const int   keys      = key[1] ? 4 : 3;
-    BenchRow    row       = row_of(what, n, name);
-    row.median            = 1e-3 * node_number(text, median, keys);
-    row.unit              = "s";
-    row.error             = 1e-3 * node_number(text, p99, keys);
-    row.error_unit        = "s";
-    row.against           = against;
+    const char *p99[4] = {"latency_ms", key[0], key[1] ? key[1] : "p99", "p99"};
+    const int   keys = key[1] ? 4 : 3;
+    BenchRow    row = row_of(what, n, name);
+    row.median = 1e-3 * node_number(text, median, keys);
+    row.unit = "s";
+    row.error = 1e-3 * node_number(text, p99, keys);
+    row.error_unit = "s";
+    row.against = against;
     if (!bench_quick(n->bench)) row.error_limit = limit_s;
     bench_add(n->bench, &row);
 }
@@ -190,14 +217,14 @@ static Status add_rows(const Node *n)
     const double late = NUMBER_AT(text, "live", "frames_late");
     const double made = NUMBER_AT(text, "latency_ms", "render", "count");
     const double left = n->of->video ? NUMBER_AT(text, "latency_ms", "consumers", "video", "left_out") : 0;
-    BenchRow     row  = row_of(what, n, "frames left out");
-    row.error         = 100 * late / (made + late);
-    row.error_unit    = "%";
+    BenchRow     row = row_of(what, n, "frames left out");
+    row.error = 100 * late / (made + late);
+    row.error_unit = "%";
     snprintf(against, sizeof against, "of those due; made: %.0f; without video: %.0f", made, left);
     row.against = against;
     bench_add(n->bench, &row);
-    row            = row_of(what, n, "datagrams lost");
-    row.error      = NUMBER_AT(text, "live", "lost_kernel") + NUMBER_AT(text, "live", "lost_queue");
+    row = row_of(what, n, "datagrams lost");
+    row.error = NUMBER_AT(text, "live", "lost_kernel") + NUMBER_AT(text, "live", "lost_queue");
     row.error_unit = "datagrams";
     snprintf(against, sizeof against, "of %.0f", NUMBER_AT(text, "live", "datagrams"));
     row.against = against;
@@ -209,7 +236,7 @@ static Status add_rows(const Node *n)
 
 static Status run_case(Bench *bench, const Case *of, int index)
 {
-    Node   n      = {.bench = bench, .of = of, .port = 20000 + (int)((getpid() * 7L + 40L * index) % 12000)};
+    Node   n = {.bench = bench, .of = of, .port = 20000 + (int)((getpid() * 7L + 40L * index) % 12000)};
     Status status = temp_folder(n.folder) ? STATUS_OK : STATUS_IO;
     bench_progress(bench, of->name);
     if (status != STATUS_OK) return status;
@@ -236,7 +263,7 @@ static Status run_case(Bench *bench, const Case *of, int index)
 
 Status bench_network_publish(Bench *bench)
 {
-    const int count  = bench_quick(bench) ? 1 : (int)(sizeof cases / sizeof *cases);
+    const int count = bench_quick(bench) ? 1 : (int)(sizeof cases / sizeof *cases);
     Status    status = STATUS_OK;
     for (int i = 0; i < count; i++) {
         const Status one = run_case(bench, &cases[i], i);

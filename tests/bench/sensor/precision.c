@@ -5,8 +5,8 @@
 #include "sensor/node/session/seeker.h"
 #include "terrain/ground/landscape.h"
 
-const char *const precision_shot_name[SHOT_COUNT] =
-    {"ground alone", "vehicles of 70 px", "vehicles of 5 px", "horizon"};
+const char *const precision_shot_name[SHOT_COUNT] = {"ground alone", "vehicles of 70 px", "vehicles of 5 px",
+                                                     "horizon"};
 
 enum { vehicles = 5 }; /* a row; views are aimed at the third */
 
@@ -15,8 +15,8 @@ static const double focal_px = 989; /* 720 px across 40 degrees */
 static View view_of(const Precision *p, PrecisionShot shot)
 {
     static const double back_m[SHOT_COUNT] = {600, 110, 1500, 3000}, above_m[SHOT_COUNT] = {60, 30, 300, 40};
-    const int w = p->shot_px[0], h = p->shot_px[1];
-    View      view = trial_view(&p->scene, back_m[shot], above_m[shot], 2 * atan(0.5 * w / focal_px), w, h);
+    const int           w = p->shot_px[0], h = p->shot_px[1];
+    View                view = trial_view(&p->scene, back_m[shot], above_m[shot], 2 * atan(0.5 * w / focal_px), w, h);
     /* away from the vehicles, down a slope; and level, ground below and sky above */
     static const double away_enu[3] = {0.2, -0.97, -0.12}, level_enu[3] = {0, 1, 0};
     double              d_enu[3];
@@ -29,12 +29,17 @@ static View view_of(const Precision *p, PrecisionShot shot)
 RenderRequest precision_request(const Precision *p, PrecisionShot shot, int width, int height)
 {
     const Config  config = config_default();
-    RenderRequest request = {.view = view_of(p, shot), .bands = 1u << BAND_OPTICAL | 1u << BAND_MWIR | 1u << BAND_LWIR,
-                             .truth = true, .optical = OPTICAL_RGB, .samples = config.sensor.samples,
-                             .edge_samples = config.sensor.edge_samples, .target_samples = config.sensor.target_samples,
+    RenderRequest request = {.view = view_of(p, shot),
+                             .bands = 1u << BAND_OPTICAL | 1u << BAND_MWIR | 1u << BAND_LWIR,
+                             .truth = true,
+                             .optical = OPTICAL_RGB,
+                             .samples = config.sensor.samples,
+                             .edge_samples = config.sensor.edge_samples,
+                             .target_samples = config.sensor.target_samples,
                              .sky_samples = config.sensor.sky_samples,
-                             .sky_visibility = strcmp(config.sensor.sky_visibility, "on") == 0, .hidden_entity = -1};
-    request.view.width  = width;
+                             .sky_visibility = strcmp(config.sensor.sky_visibility, "on") == 0,
+                             .hidden_entity = -1};
+    request.view.width = width;
     request.view.height = height;
     return request;
 }
@@ -82,8 +87,8 @@ double precision_rms_k(const Picture *got, const Picture *want, const PlanckTabl
     const size_t count = (size_t)got->width * (size_t)got->height;
     double       square = 0;
     for (size_t i = 0; i < count; i++) {
-        const double off_k = planck_table_temp(lwir, (double)got->lwir[i])
-            - planck_table_temp(lwir, (double)want->lwir[i]);
+        const double off_k =
+            planck_table_temp(lwir, (double)got->lwir[i]) - planck_table_temp(lwir, (double)want->lwir[i]);
         square += off_k * off_k;
     }
     return sqrt(square / (double)count);
@@ -91,14 +96,19 @@ double precision_rms_k(const Picture *got, const Picture *want, const PlanckTabl
 
 Status precision_open(Precision *out, Bench *bench)
 {
-    static const DisEntityType types[] = {{1, 1, 222, 1, 1, 1, 0}, {1, 1, 222, 2, 1, 0, 0}, {1, 1, 222, 7, 1, 0, 0},
-                                          {1, 1, 222, 28, 1, 0, 0}, {1, 1, 222, 1, 1, 1, 0}};
-    const Geodetic origin = {48 * rad_per_deg, 11 * rad_per_deg, 500};
-    const bool     quick = bench_quick(bench);
-    LocalFrame     frame;
-    double         times_s[2];
-    char           catalog[512];
-    *out = (Precision){.bench = bench, .shot_px = {quick ? 48 : 160, quick ? 32 : 108}, .arena = arena_create(),
+    static const DisEntityType types[] = {{1, 1, 222, 1, 1, 1, 0},
+                                          {1, 1, 222, 2, 1, 0, 0},
+                                          {1, 1, 222, 7, 1, 0, 0},
+                                          {1, 1, 222, 28, 1, 0, 0},
+                                          {1, 1, 222, 1, 1, 1, 0}};
+    const Geodetic             origin = {48 * rad_per_deg, 11 * rad_per_deg, 500};
+    const bool                 quick = bench_quick(bench);
+    LocalFrame                 frame;
+    double                     times_s[2];
+    char                       catalog[512];
+    *out = (Precision){.bench = bench,
+                       .shot_px = {quick ? 48 : 160, quick ? 32 : 108},
+                       .arena = arena_create(),
                        .other = arena_create()};
     Status status = out->arena && out->other ? pool_create(&out->pool, bench_threads(bench)) : STATUS_NO_MEMORY;
     bench_progress(bench, "ground and vehicles");
@@ -109,9 +119,11 @@ Status precision_open(Precision *out, Bench *bench)
         status = trial_scene_open(&out->scene, &out->landscape, catalog, types, sizeof types / sizeof *types, vehicles);
     for (int k = 0; k < SHOT_COUNT && status == STATUS_OK; k++) {
         if (!(out->keep[k] = arena_create())) return STATUS_NO_MEMORY;
-        out->shot[k] = (TrialFrame){.scene = &out->scene, .pool = out->pool, .arena = out->keep[k],
-                                    .request = precision_request(out, (PrecisionShot)k, out->shot_px[0],
-                                                                 out->shot_px[1])};
+        out->shot[k] =
+            (TrialFrame){.scene = &out->scene,
+                         .pool = out->pool,
+                         .arena = out->keep[k],
+                         .request = precision_request(out, (PrecisionShot)k, out->shot_px[0], out->shot_px[1])};
         trial_frame(&out->shot[k]);
         status = out->shot[k].status;
     }

@@ -16,9 +16,9 @@ typedef struct Precision {
     TrialScene scene;
     Pool      *pool;
     Arena     *keep[SHOT_COUNT], *arena, *other; /* of shots; of images */
-    TrialFrame shot[SHOT_COUNT];   /* poses and atmosphere, made once; views of shot_px */
+    TrialFrame shot[SHOT_COUNT];                 /* poses and atmosphere, made once; views of shot_px */
     int        shot_px[2];
-    Status     status;             /* of the timed frames */
+    Status     status; /* of the timed frames */
 } Precision;
 
 Status precision_open(Precision *out, Bench *bench);

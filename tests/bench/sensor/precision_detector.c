@@ -19,7 +19,7 @@ static void make_plane(float *plane, double low, double span)
         const int    x = i % wide, y = i / wide;
         const double coarse = random_uniform(3, 0, 0, (uint64_t)(y / 16 * 64 + x / 16));
         const double middle = random_uniform(3, 1, 0, (uint64_t)(y / 5 * 64 + x / 5));
-        const double fine   = random_uniform(3, 2, 0, (uint64_t)i);
+        const double fine = random_uniform(3, 2, 0, (uint64_t)i);
         plane[i] = (float)(low + span * (0.6 * coarse + 0.3 * middle + 0.1 * fine));
     }
 }
@@ -56,11 +56,11 @@ static void blur_by_sums(double *out, const float *in, const MtfChain *chain)
 }
 
 typedef struct Blurring {
-    Blur  *blur;                 /* NULL: by the kernel */
-    int    radius;
-    float  kernel[2 * most_radius + 1][2 * most_radius + 1];
+    Blur        *blur; /* NULL: by the kernel */
+    int          radius;
+    float        kernel[2 * most_radius + 1][2 * most_radius + 1];
     const float *in;
-    float *out;
+    float       *out;
 } Blurring;
 
 /* The point spread within a radius, of sum 1: the inverse transform of the chain's product on 64 x 64 frequencies. */
@@ -76,8 +76,8 @@ static void make_kernel(Blurring *b, const MtfChain *chain)
             double value = 0;
             for (int j = 0; j < n; j++)
                 for (int k = 0; k < n; k++)
-                    value += pass[j][k] * cos(2 * pi_rad * x * (k - n / 2 + 0.5) / n)
-                        * cos(2 * pi_rad * y * (j - n / 2 + 0.5) / n);
+                    value += pass[j][k] * cos(2 * pi_rad * x * (k - n / 2 + 0.5) / n) *
+                             cos(2 * pi_rad * y * (j - n / 2 + 0.5) / n);
             const int r = b->radius;
             b->kernel[r + y][r + x] = b->kernel[r - y][r + x] = b->kernel[r + y][r - x] = b->kernel[r - y][r - x] =
                 (float)(value / (n * n));
@@ -119,18 +119,17 @@ static void run_blur(void *user)
 static Status tunable_blur(Bench *bench)
 {
     enum { settings = 5 };
-    static const char *const name[settings] =
-        {"kernel of 5 x 5", "kernel of 9 x 9", "kernel of 17 x 17", "kernel of 33 x 33",
-                                               "cosine transform"};
+    static const char *const name[settings] = {"kernel of 5 x 5", "kernel of 9 x 9", "kernel of 17 x 17",
+                                               "kernel of 33 x 33", "cosine transform"};
     static const int         radius[settings - 1] = {2, 4, 8, 16};
     /* f/2, 10 um, pitch 15 um; central obscuration, jitter */
-    const MtfChain chain = {.cutoff_cyc_px = 15e-6 / (10e-6 * 2), .obscuration = 0.3, .footprint_px = 0.9, .places = 1,
-                            .jitter_px = 0.2};
-    static float   in[blur_px], out[blur_px];
-    static double  want[blur_px];
+    const MtfChain chain = {
+        .cutoff_cyc_px = 15e-6 / (10e-6 * 2), .obscuration = 0.3, .footprint_px = 0.9, .places = 1, .jitter_px = 0.2};
+    static float    in[blur_px], out[blur_px];
+    static double   want[blur_px];
     static Blurring set[settings];
-    BenchWork      work[settings];
-    BenchSetting     point[settings] = {0};
+    BenchWork       work[settings];
+    BenchSetting    point[settings] = {0};
     memset(set, 0, sizeof set);
     make_plane(in, 30, 20);
     blur_by_sums(want, in, &chain);
@@ -145,12 +144,14 @@ static Status tunable_blur(Bench *bench)
         }
         run_blur(&set[k]);
         for (int i = 0; i < blur_px; i++) square += ((double)out[i] - want[i]) * ((double)out[i] - want[i]);
-        work[k]  = (BenchWork){run_blur, &set[k], blur_px};
-        point[k] = (BenchSetting){.setting = name[k], .error = 100 * sqrt(square / blur_px) / 20,
-                                .is_default = k == settings - 1};
+        work[k] = (BenchWork){run_blur, &set[k], blur_px};
+        point[k] = (BenchSetting){
+            .setting = name[k], .error = 100 * sqrt(square / blur_px) / 20, .is_default = k == settings - 1};
     }
-    bench_tunable(bench, &(BenchTunable){"optics' blur", "sensor/detector/blur.c", "a pixel", "%",
-                                   "rms over contrast, the chain to Nyquist by sums", 0.2}, work, point, settings);
+    bench_tunable(bench,
+                  &(BenchTunable){"optics' blur", "sensor/detector/blur.c", "a pixel", "%",
+                                  "rms over contrast, the chain to Nyquist by sums", 0.2},
+                  work, point, settings);
     blur_destroy(set[settings - 1].blur);
     return STATUS_OK;
 }
@@ -160,18 +161,18 @@ static Status tunable_blur(Bench *bench)
 enum { photon_count = 512 };
 
 typedef struct Photons {
-    const PhotonTable    *table;           /* NULL and ratio NULL: computed for each */
+    const PhotonTable    *table; /* NULL and ratio NULL: computed for each */
     const PhotonDetector *detector;
-    int     knots;
-    double *ratio, low, per_log;           /* a table of the bench's own */
-    float   radiance[photon_count];
-    double  electrons[photon_count];
+    int                   knots;
+    double               *ratio, low, per_log; /* a table of the bench's own */
+    float                 radiance[photon_count];
+    double                electrons[photon_count];
 } Photons;
 
 static double photons_exactly(const PhotonDetector *d, double radiance)
 {
-    return photon_etendue(d) * photon_band(d->low_m, d->high_m, planck_band_inverse(d->low_m, d->high_m, radiance),
-                                           NULL);
+    return photon_etendue(d) *
+           photon_band(d->low_m, d->high_m, planck_band_inverse(d->low_m, d->high_m, radiance), NULL);
 }
 
 static void count_photons(void *user)
@@ -183,7 +184,7 @@ static void count_photons(void *user)
             p->electrons[i] = photon_table_electrons(p->table, radiance);
         } else if (p->ratio) {
             const double at = clamp((log(radiance) - p->low) * p->per_log, 0, p->knots - 1);
-            const int    k  = at < p->knots - 2 ? (int)at : p->knots - 2;
+            const int    k = at < p->knots - 2 ? (int)at : p->knots - 2;
             p->electrons[i] = radiance * (p->ratio[k] + (at - k) * (p->ratio[k + 1] - p->ratio[k]));
         } else {
             p->electrons[i] = photons_exactly(p->detector, radiance);
@@ -195,27 +196,32 @@ static void count_photons(void *user)
 static Status tunable_photons(Bench *bench)
 {
     enum { settings = 5 };
-    static const char *const name[settings] =
-        {"64 knots", "256 knots", "1024 knots", "4096 knots", "integrated each time"};
+    static const char *const name[settings] = {"64 knots", "256 knots", "1024 knots", "4096 knots",
+                                               "integrated each time"};
     static const int         knots[settings - 2] = {64, 256, 1024};
-    const PhotonDetector     d = {.low_m = 3.4e-6, .high_m = 4.8e-6, .f_number = 2.5, .transmission = 0.8, .qe = 0.7,
-                                  .pitch_m = 15e-6, .integration_s = 2e-3};
-    static Photons set[settings];
-    static double  ratio[settings - 2][1024];
-    BenchWork      work[settings];
-    BenchSetting     point[settings] = {0};
-    PhotonTable   *table;
-    const double   low = log(planck_band(d.low_m, d.high_m, 180, NULL));
-    const double   high_log = log(planck_band(d.low_m, d.high_m, 1500, NULL));
-    const Status   status = photon_table_create(&table, &d, true);
+    const PhotonDetector     d = {.low_m = 3.4e-6,
+                                  .high_m = 4.8e-6,
+                                  .f_number = 2.5,
+                                  .transmission = 0.8,
+                                  .qe = 0.7,
+                                  .pitch_m = 15e-6,
+                                  .integration_s = 2e-3};
+    static Photons           set[settings];
+    static double            ratio[settings - 2][1024];
+    BenchWork                work[settings];
+    BenchSetting             point[settings] = {0};
+    PhotonTable             *table;
+    const double             low = log(planck_band(d.low_m, d.high_m, 180, NULL));
+    const double             high_log = log(planck_band(d.low_m, d.high_m, 1500, NULL));
+    const Status             status = photon_table_create(&table, &d, true);
     if (status != STATUS_OK) return status;
     for (int k = 0; k < settings; k++) {
         Photons *p = &set[k];
         *p = (Photons){.detector = &d, .table = k == 3 ? table : NULL, .low = low};
         if (k < 3) {
-            p->knots   = knots[k];
+            p->knots = knots[k];
             p->per_log = (knots[k] - 1) / (high_log - low);
-            p->ratio   = ratio[k];
+            p->ratio = ratio[k];
             for (int i = 0; i < knots[k]; i++) {
                 const double radiance = exp(low + i / p->per_log);
                 ratio[k][i] = photons_exactly(&d, radiance) / radiance;
@@ -227,12 +233,18 @@ static Status tunable_photons(Bench *bench)
         double worst = 0;
         for (int i = 0; i < photon_count; i++)
             bench_worst(&worst, 100 * fabs(p->electrons[i] / photons_exactly(&d, (double)p->radiance[i]) - 1));
-        work[k]  = (BenchWork){count_photons, p, photon_count};
-        point[k] = (BenchSetting){.setting = name[k], .error = worst, .is_default = k == 3,
-                                .bytes = k < 3 ? knots[k] * 8.0 : k == 3 ? 4096 * 8.0 : 0};
+        work[k] = (BenchWork){count_photons, p, photon_count};
+        point[k] = (BenchSetting){.setting = name[k],
+                                  .error = worst,
+                                  .is_default = k == 3,
+                                  .bytes = k < 3    ? knots[k] * 8.0
+                                           : k == 3 ? 4096 * 8.0
+                                                    : 0};
     }
-    bench_tunable(bench, &(BenchTunable){"electrons of a radiance", "sensor/detector/photons.c", "a pixel, 3.4-4.8 um", "%",
-                                   "largest, the integral over the band, 180 .. 1500 K", 1e-4}, work, point, settings);
+    bench_tunable(bench,
+                  &(BenchTunable){"electrons of a radiance", "sensor/detector/photons.c", "a pixel, 3.4-4.8 um", "%",
+                                  "largest, the integral over the band, 180 .. 1500 K", 1e-4},
+                  work, point, settings);
     photon_table_destroy(table);
     return STATUS_OK;
 }
@@ -240,7 +252,7 @@ static Status tunable_photons(Bench *bench)
 /* ---- counts ------------------------------------------------------------------------------------- */
 
 typedef struct Converter {
-    const float *in, *true_in;   /* in has the noise, true_in has none */
+    const float *in, *true_in; /* in has the noise, true_in has none */
     int          bits;
     bool         display;
     double       low, high;
@@ -282,7 +294,7 @@ static void tunable_counts(Bench *bench, bool display)
     static Converter set[settings];
     char             name[settings][16];
     BenchWork        work[settings];
-    BenchSetting       point[settings] = {0};
+    BenchSetting     point[settings] = {0};
     const int        count = display ? 2 : settings;
     make_plane(in, display ? 280 : 5, 30);
     /* A converter follows a detector: steps far finer than its noise bring nothing. 20 mK is that of a good cooled
@@ -291,23 +303,30 @@ static void tunable_counts(Bench *bench, bool display)
         noisy[i] = in[i] + (float)(display ? 0 : 0.02 * random_normal(8, 0, 0, (uint64_t)i));
     for (int k = 0; k < count; k++) {
         const int bits = display ? display_bits[k] : converter_bits[k];
-        set[k] = (Converter){.in = noisy, .true_in = in, .bits = bits, .display = display, .low = display ? 280 : 0,
+        set[k] = (Converter){.in = noisy,
+                             .true_in = in,
+                             .bits = bits,
+                             .display = display,
+                             .low = display ? 280 : 0,
                              .high = display ? 320 : 40};
         snprintf(name[k], sizeof name[k], "%d bits", bits);
         convert(&set[k]);
-        work[k]  = (BenchWork){convert, &set[k], blur_px};
-        point[k] = (BenchSetting){.setting = name[k], .is_default = bits == (display ? 8 : 14),
-                                .error = convert_rms(&set[k]),
-                                .bytes = (display ? bits : 8 * ((bits + 7) / 8)) / 8.0 * blur_px};
+        work[k] = (BenchWork){convert, &set[k], blur_px};
+        point[k] = (BenchSetting){.setting = name[k],
+                                  .is_default = bits == (display ? 8 : 14),
+                                  .error = convert_rms(&set[k]),
+                                  .bytes = (display ? bits : 8 * ((bits + 7) / 8)) / 8.0 * blur_px};
     }
     if (display)
-        bench_tunable(bench, &(BenchTunable){"display", "detector.bits", "a pixel", "K",
-                                       "rms, a plane of 280 .. 320 K before it", 0.05},
-                   work, point, count);
+        bench_tunable(
+            bench,
+            &(BenchTunable){"display", "detector.bits", "a pixel", "K", "rms, a plane of 280 .. 320 K before it", 0.05},
+            work, point, count);
     else
-        bench_tunable(bench, &(BenchTunable){"converter", "etc/sensors.csv", "a pixel", "K",
-                                       "rms, what is seen; 20 mK of noise, a span of 40 K", 0.0205},
-                   work, point, count);
+        bench_tunable(bench,
+                      &(BenchTunable){"converter", "etc/sensors.csv", "a pixel", "K",
+                                      "rms, what is seen; 20 mK of noise, a span of 40 K", 0.0205},
+                      work, point, count);
 }
 
 /* ---- the display's curve ------------------------------------------------------------------------ */
@@ -315,7 +334,7 @@ static void tunable_counts(Bench *bench, bool display)
 enum { curve_px = 720 * 486 }; /* the display computes its table anew for each image */
 
 typedef struct CurveSet {
-    int          intervals;      /* 0: the display's own; -1: the formula */
+    int          intervals; /* 0: the display's own; -1: the formula */
     const float *in;
     float        table[4097];
     uint16_t     out[curve_px];
@@ -353,10 +372,10 @@ static void tunable_curve(Bench *bench)
     enum { settings = 4 };
     static const char *const name[settings] = {"256 intervals", "1024 intervals", "4096 intervals", "the formula"};
     static const int         intervals[settings] = {256, 1024, 0, -1};
-    static CurveSet set[settings];
-    static float    in[curve_px];
-    BenchWork       work[settings];
-    BenchSetting      point[settings] = {0};
+    static CurveSet          set[settings];
+    static float             in[curve_px];
+    BenchWork                work[settings];
+    BenchSetting             point[settings] = {0};
     for (int i = 0; i < curve_px; i++) in[i] = (float)pow(random_uniform(5, 0, 0, (uint64_t)i), 2);
     for (int k = 0; k < settings; k++) {
         double worst = 0;
@@ -365,12 +384,18 @@ static void tunable_curve(Bench *bench)
         run_curve(&set[k]);
         for (int i = 0; i < curve_px; i++)
             bench_worst(&worst, 255 * fabs(set[k].out[i] / 65535.0 - srgb((double)in[i])));
-        work[k]  = (BenchWork){run_curve, &set[k], curve_px};
-        point[k] = (BenchSetting){.setting = name[k], .error = worst, .is_default = k == 2,
-                                .bytes = k == 2 ? 4098 * 4 : intervals[k] > 0 ? intervals[k] * 4.0 : 0};
+        work[k] = (BenchWork){run_curve, &set[k], curve_px};
+        point[k] = (BenchSetting){.setting = name[k],
+                                  .error = worst,
+                                  .is_default = k == 2,
+                                  .bytes = k == 2             ? 4098 * 4
+                                           : intervals[k] > 0 ? intervals[k] * 4.0
+                                                              : 0};
     }
-    bench_tunable(bench, &(BenchTunable){"display's curve", "sensor/detector/display_values.c", "a pixel", "8-bit steps",
-                                   "largest, IEC 61966-2-1", 0.03}, work, point, settings);
+    bench_tunable(bench,
+                  &(BenchTunable){"display's curve", "sensor/detector/display_values.c", "a pixel", "8-bit steps",
+                                  "largest, IEC 61966-2-1", 0.03},
+                  work, point, settings);
 }
 
 Status precision_detectors(Bench *bench)

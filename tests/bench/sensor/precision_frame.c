@@ -11,22 +11,27 @@ typedef struct RaySetting {
     bool        is_default;
 } RaySetting;
 
-static const RaySetting rays[] = {
-    {"1 x 1", 1, 0, false}, {"2 x 2", 2, 0, false}, {"3 x 3", 3, 0, false}, {"4 x 4", 4, 0, false},
-    {"1 x 1, edges 2 x 2", 1, 2, false}, {"1 x 1, edges 3 x 3", 1, 3, false}, {"1 x 1, edges 4 x 4", 1, 4, true},
-    {"1 x 1, edges 6 x 6", 1, 6, false}, {"1 x 1, edges 8 x 8", 1, 8, false}};
+static const RaySetting rays[] = {{"1 x 1", 1, 0, false},
+                                  {"2 x 2", 2, 0, false},
+                                  {"3 x 3", 3, 0, false},
+                                  {"4 x 4", 4, 0, false},
+                                  {"1 x 1, edges 2 x 2", 1, 2, false},
+                                  {"1 x 1, edges 3 x 3", 1, 3, false},
+                                  {"1 x 1, edges 4 x 4", 1, 4, true},
+                                  {"1 x 1, edges 6 x 6", 1, 6, false},
+                                  {"1 x 1, edges 8 x 8", 1, 8, false}};
 enum { ray_settings = sizeof rays / sizeof *rays };
 
 typedef struct Rendering {
-    Precision    *p;
-    int           width, height;
+    Precision        *p;
+    int               width, height;
     const RaySetting *setting;
 } Rendering;
 
 static RenderRequest request_of(const Rendering *r, PrecisionShot shot)
 {
     RenderRequest request = precision_request(r->p, shot, r->width, r->height);
-    request.samples      = r->setting->samples;
+    request.samples = r->setting->samples;
     request.edge_samples = r->setting->edge_samples;
     if (request.edge_samples <= request.samples) request.target_samples = 0; /* sensor.antialias: off */
     return request;
@@ -49,11 +54,11 @@ static void render_all(void *user)
 static Status ray_errors(Precision *p, double (*rms)[ray_settings], double (*rms_k)[ray_settings])
 {
     static const RaySetting finest = {"16 x 16", 16, 0, false};
-    const bool quick = bench_quick(p->bench);
-    Rendering  r = {p, quick ? 32 : 96, quick ? 24 : 64, &finest};
-    Status     status = STATUS_OK;
+    const bool              quick = bench_quick(p->bench);
+    Rendering               r = {p, quick ? 32 : 96, quick ? 24 : 64, &finest};
+    Status                  status = STATUS_OK;
     for (int s = 0; s < SHOT_COUNT && status == STATUS_OK; s++) {
-        Picture             fine;
+        Picture fine;
         r.setting = &finest;
         const RenderRequest request = request_of(&r, (PrecisionShot)s);
         arena_reset(p->other);
@@ -65,7 +70,7 @@ static Status ray_errors(Precision *p, double (*rms)[ray_settings], double (*rms
             arena_reset(p->arena);
             status = precision_render(&picture, p, (PrecisionShot)s, &coarse, p->arena);
             if (status != STATUS_OK) break;
-            rms[s][k]   = 100 * precision_rms(&picture, &fine);
+            rms[s][k] = 100 * precision_rms(&picture, &fine);
             rms_k[s][k] = precision_rms_k(&picture, &fine, p->scene.world.planck_lwir);
         }
     }
@@ -88,17 +93,17 @@ static int worst_shot(BenchSetting *point, double (*error)[ray_settings])
 
 static Status tunable_rays(Precision *p)
 {
-    Rendering  r[ray_settings];
-    BenchWork  work[ray_settings];
+    Rendering    r[ray_settings];
+    BenchWork    work[ray_settings];
     BenchSetting point[ray_settings] = {0};
-    double     rms[SHOT_COUNT][ray_settings], rms_k[SHOT_COUNT][ray_settings];
-    char       of[96], against[96];
+    double       rms[SHOT_COUNT][ray_settings], rms_k[SHOT_COUNT][ray_settings];
+    char         of[96], against[96];
     bench_progress(p->bench, "antialiasing");
     const Status status = ray_errors(p, rms, rms_k);
     if (status != STATUS_OK) return status;
     for (int k = 0; k < ray_settings; k++) {
-        r[k]     = (Rendering){p, p->shot_px[0], p->shot_px[1], &rays[k]};
-        work[k]  = (BenchWork){render_all, &r[k], SHOT_COUNT};
+        r[k] = (Rendering){p, p->shot_px[0], p->shot_px[1], &rays[k]};
+        work[k] = (BenchWork){render_all, &r[k], SHOT_COUNT};
         point[k] = (BenchSetting){.setting = rays[k].name, .is_default = rays[k].is_default};
     }
     snprintf(of, sizeof of, "a picture of %d x %d, three bands and truth", p->shot_px[0], p->shot_px[1]);
@@ -111,17 +116,21 @@ static Status tunable_rays(Precision *p)
     for (int k = 0; k < ray_settings; k++) point[k].also = point[k].error;
     point[0].also_is = "of radiance, %";
     snprintf(against, sizeof against, "rms, 16 x 16 rays; worst: %s", precision_shot_name[worst_shot(point, rms_k)]);
-    bench_tunable_rows(p->bench, &(BenchTunable){"rays a pixel, 8-12 um", "sensor.samples, sensor.edge_samples", of, "K",
-                                      against, 1},
-               point, ray_settings);
+    bench_tunable_rows(
+        p->bench, &(BenchTunable){"rays a pixel, 8-12 um", "sensor.samples, sensor.edge_samples", of, "K", against, 1},
+        point, ray_settings);
     return p->status;
 }
 
 /* ---- over small targets ------------------------------------------------------------------------ */
 
 static const int target_samples[] = {8, 16, 32, 48, 64, 96, 128, 256};
-enum { target_settings = sizeof target_samples / sizeof *target_samples, target_sizes = 3, target_turns = 16,
-      fine_px = 200 };
+enum {
+    target_settings = sizeof target_samples / sizeof *target_samples,
+    target_sizes = 3,
+    target_turns = 16,
+    fine_px = 200
+};
 static const double target_px[target_sizes] = {25, 5, 0.5};
 
 typedef struct TargetShot {
@@ -198,23 +207,24 @@ static void target_errors(Precision *p, double error[target_settings])
 
 static Status tunable_targets(Precision *p)
 {
-    TargetShot shot[target_settings];
-    BenchWork  work[target_settings];
+    TargetShot   shot[target_settings];
+    BenchWork    work[target_settings];
     BenchSetting point[target_settings] = {0};
-    double     error[target_settings];
-    char       name[target_settings][24];
+    double       error[target_settings];
+    char         name[target_settings][24];
     bench_progress(p->bench, "small targets");
     target_errors(p, error);
     for (int k = 0; k < target_settings; k++) {
         shot[k] = (TargetShot){.p = p, .samples = target_samples[k]};
         snprintf(name[k], sizeof name[k], "%d x %d", target_samples[k], target_samples[k]);
-        work[k]  = (BenchWork){render_targets, &shot[k], target_sizes};
+        work[k] = (BenchWork){render_targets, &shot[k], target_sizes};
         point[k] = (BenchSetting){.setting = name[k], .error = 100 * error[k], .is_default = target_samples[k] == 48};
     }
-    bench_tunable(p->bench, &(BenchTunable){"rays over a small target", "sensor.target_samples",
-                                      "a picture of 32 x 32 and a truck of 25, 5, 0.5 px, three bands", "%",
-                                      "W/sr of a truck, worst band, rms over sides and sizes; 400 rays across", 2},
-               work, point, bench_quick(p->bench) ? target_settings - 3 : target_settings);
+    bench_tunable(p->bench,
+                  &(BenchTunable){"rays over a small target", "sensor.target_samples",
+                                  "a picture of 32 x 32 and a truck of 25, 5, 0.5 px, three bands", "%",
+                                  "W/sr of a truck, worst band, rms over sides and sizes; 400 rays across", 2},
+                  work, point, bench_quick(p->bench) ? target_settings - 3 : target_settings);
     return p->status;
 }
 
@@ -235,7 +245,7 @@ typedef struct SkyRendering {
 static RenderRequest sky_request(const SkyRendering *r, PrecisionShot shot)
 {
     RenderRequest request = precision_request(r->p, shot, r->width, r->height);
-    request.sky_samples  = r->samples;
+    request.sky_samples = r->samples;
     request.sky_visibility = r->visibility;
     request.edge_samples = request.target_samples = 0;
     return request;
@@ -258,7 +268,7 @@ static Status tunable_sky(Precision *p)
     const int    finest = quick ? 1024 : 4096, width = quick ? 12 : 24, height = quick ? 8 : 16;
     SkyRendering r[sky_settings];
     BenchWork    work[sky_settings];
-    BenchSetting   point[sky_settings] = {0};
+    BenchSetting point[sky_settings] = {0};
     char         name[sky_settings][24], of[96], against[96];
     int          worst = 0;
     Status       status = STATUS_OK;
@@ -286,7 +296,7 @@ static Status tunable_sky(Precision *p)
             snprintf(name[k], sizeof name[k], k == sky_near ? "slope and what is near" : "by slope");
         else snprintf(name[k], sizeof name[k], "%d directions", sky_samples[k]);
         work[k] = (BenchWork){render_sky, &r[k], 1};
-        point[k].setting    = name[k];
+        point[k].setting = name[k];
         point[k].is_default = k == sky_near;
     }
     snprintf(of, sizeof of, "a picture of %d x %d, three bands", width, height);

@@ -26,9 +26,9 @@ typedef struct Faceted {
 static Status faceted_open(Faceted *f, double sag)
 {
     static const double here[3] = {0}, level[9] = {1, 0, 0, 0, -1, 0, 0, 0, -1};
-    const size_t rays = (size_t)sides * (size_t)f->side_px * (size_t)f->side_px;
-    Status       status = parametric_build(&f->model, "tank", sag);
-    const Model *models[1] = {&f->model};
+    const size_t        rays = (size_t)sides * (size_t)f->side_px * (size_t)f->side_px;
+    Status              status = parametric_build(&f->model, "tank", sag);
+    const Model        *models[1] = {&f->model};
     if (status == STATUS_OK) status = tracer_create_models(&f->tracer, models, 1, "avx2");
     if (status != STATUS_OK) return status;
     NodePose *pose = calloc((size_t)f->model.node_count, sizeof *pose);
@@ -128,7 +128,7 @@ static Status tunable_facets(Bench *bench)
     const double finest_m = bench_quick(bench) ? 0.0002 : 0.0001;
     Faceted      set[sag_settings] = {{.side_px = side_px}}, fine = {.side_px = side_px};
     BenchWork    work[sag_settings];
-    BenchSetting   by_range[sag_settings] = {0}, by_area[sag_settings] = {0};
+    BenchSetting by_range[sag_settings] = {0}, by_area[sag_settings] = {0};
     double      *o[3], *d[3], *far_m = malloc(1024 * sizeof *far_m);
     char         name[sag_settings][48], against[64];
     Status       status = far_m ? STATUS_OK : STATUS_NO_MEMORY;
@@ -152,9 +152,9 @@ static Status tunable_facets(Bench *bench)
     }
     for (int k = 0; k < sag_settings && status == STATUS_OK; k++) {
         snprintf(name[k], sizeof name[k], "%g mm, %d triangles", 1e3 * sag_m[k], set[k].model.triangle_count);
-        by_range[k] = (BenchSetting){.setting = name[k], .bytes = bytes_of(&set[k].model),
-                                   .is_default = sag_m[k] == 0.002};
-        by_area[k]  = by_range[k];
+        by_range[k] =
+            (BenchSetting){.setting = name[k], .bytes = bytes_of(&set[k].model), .is_default = sag_m[k] == 0.002};
+        by_area[k] = by_range[k];
         facet_errors(&by_range[k].error, &by_area[k].error, &set[k], &fine);
         work[k] = (BenchWork){trace_facets, &set[k], (double)rays};
     }
@@ -162,13 +162,13 @@ static Status tunable_facets(Bench *bench)
         snprintf(against, sizeof against, "p99 of range, a tank of %g mm", 1e3 * finest_m);
         for (int k = 0; k < sag_settings; k++) by_range[k].also = by_area[k].error, by_area[k].also = by_range[k].error;
         by_range[0].also_is = "of silhouettes, %", by_area[0].also_is = "of range, m";
-        bench_tunable(bench, &(BenchTunable){"facets", "models.sag_m", "a ray at a tank", "m", against, 0.006},
-                   work, by_range, sag_settings);
+        bench_tunable(bench, &(BenchTunable){"facets", "models.sag_m", "a ray at a tank", "m", against, 0.006}, work,
+                      by_range, sag_settings);
         for (int k = 0; k < sag_settings; k++) by_area[k].time = by_range[k].time;
         snprintf(against, sizeof against, "share of its silhouettes, a tank of %g mm", 1e3 * finest_m);
-        bench_tunable_rows(bench, &(BenchTunable){"facets, silhouette", "models.sag_m", "a ray at a tank", "%", against, 0.5},
-                   by_area,
-                   sag_settings);
+        bench_tunable_rows(bench,
+                           &(BenchTunable){"facets, silhouette", "models.sag_m", "a ray at a tank", "%", against, 0.5},
+                           by_area, sag_settings);
     }
     for (int k = 0; k < sag_settings; k++) faceted_close(&set[k]);
     faceted_close(&fine);
@@ -199,7 +199,7 @@ static void render_mirrors(void *user)
         RenderRequest request = precision_request(m->p, SHOT_NEAR, 96, 64);
         Picture       picture;
         precision_go_round(&request.view, m->p, eye);
-        request.bands   = 1u << BAND_RADAR;
+        request.bands = 1u << BAND_RADAR;
         request.samples = m->samples;
         if (m->samples > 1 || m->plain) request.edge_samples = request.target_samples = 0;
         m->p->scene.world.radar.more_bounces = m->more;
@@ -211,8 +211,8 @@ static void render_mirrors(void *user)
             m->p->status = status;
             return;
         }
-        for (size_t i = 0; i < (size_t)picture.width
-             * (size_t)picture.height; i++) m->total[eye] += (double)picture.radar[i];
+        for (size_t i = 0; i < (size_t)picture.width * (size_t)picture.height; i++)
+            m->total[eye] += (double)picture.radar[i];
     }
     bench_keep(m);
 }
@@ -230,21 +230,24 @@ static Status tunable_bounces(Precision *p)
     enum { settings = 6 };
     static const char *const name[settings] = {"1", "2", "3", "4", "5", "6"};
     static const int         more[settings] = {-5, -4, -3, -2, -1, 0};
-    const int  eyes = bench_quick(p->bench) ? 2 : radar_eyes;
-    Mirrors    set[settings], fine = {.p = p, .more = most_more, .samples = 2, .eyes = eyes};
-    BenchWork  work[settings];
-    BenchSetting point[settings] = {0};
+    const int                eyes = bench_quick(p->bench) ? 2 : radar_eyes;
+    Mirrors                  set[settings], fine = {.p = p, .more = most_more, .samples = 2, .eyes = eyes};
+    BenchWork                work[settings];
+    BenchSetting             point[settings] = {0};
     bench_progress(p->bench, "radar");
     render_mirrors(&fine);
     for (int k = 0; k < settings; k++) {
-        set[k]  = (Mirrors){.p = p, .more = more[k], .samples = 2, .eyes = eyes};
+        set[k] = (Mirrors){.p = p, .more = more[k], .samples = 2, .eyes = eyes};
         work[k] = (BenchWork){render_mirrors, &set[k], eyes};
         render_mirrors(&set[k]);
-        point[k] = (BenchSetting){.setting = name[k], .error = mirrors_error(&set[k], &fine), .is_default = more[k] == 0};
+        point[k] =
+            (BenchSetting){.setting = name[k], .error = mirrors_error(&set[k], &fine), .is_default = more[k] == 0};
     }
-    bench_tunable(p->bench, &(BenchTunable){"mirrors of a radar path", "render/scattering/radar_image.h",
-                                      "a radar picture of 96 x 64, 2 x 2 rays",
-                                      "%", "power of pictures, rms; 12 mirrors", 0.1}, work, point, settings);
+    bench_tunable(p->bench,
+                  &(BenchTunable){"mirrors of a radar path", "render/scattering/radar_image.h",
+                                  "a radar picture of 96 x 64, 2 x 2 rays", "%", "power of pictures, rms; 12 mirrors",
+                                  0.1},
+                  work, point, settings);
     return p->status;
 }
 
@@ -270,21 +273,22 @@ static Status tunable_radar_rays(Precision *p)
     enum { settings = 6 };
     static const char *const name[settings] = {"1 x 1", "1 x 1, edges 4 x 4", "2 x 2", "3 x 3", "4 x 4", "6 x 6"};
     static const int         samples[settings] = {1, 1, 2, 3, 4, 6};
-    const int  eyes = bench_quick(p->bench) ? 2 : radar_eyes;
-    Mirrors    set[settings], fine = {.p = p, .samples = bench_quick(p->bench) ? 12 : 16, .eyes = eyes};
-    BenchWork  work[settings];
-    BenchSetting point[settings] = {0};
+    const int                eyes = bench_quick(p->bench) ? 2 : radar_eyes;
+    Mirrors                  set[settings], fine = {.p = p, .samples = bench_quick(p->bench) ? 12 : 16, .eyes = eyes};
+    BenchWork                work[settings];
+    BenchSetting             point[settings] = {0};
     render_mirrors(&fine);
     for (int k = 0; k < settings; k++) {
-        set[k]  = (Mirrors){.p = p, .samples = samples[k], .plain = k == 0, .eyes = eyes};
+        set[k] = (Mirrors){.p = p, .samples = samples[k], .plain = k == 0, .eyes = eyes};
         work[k] = (BenchWork){render_shots, &set[k], SHOT_COUNT};
         render_mirrors(&set[k]);
         point[k] = (BenchSetting){.setting = name[k], .error = mirrors_error(&set[k], &fine), .is_default = k == 1};
     }
-    bench_tunable(p->bench, &(BenchTunable){"rays a pixel, radar", "sensor.samples, sensor.edge_samples",
-                                      "a picture of four bands and truth", "%",
-                                      "power of radar pictures, rms; 12 x 12 rays or more", 20},
-               work, point, bench_quick(p->bench) ? settings - 1 : settings);
+    bench_tunable(p->bench,
+                  &(BenchTunable){"rays a pixel, radar", "sensor.samples, sensor.edge_samples",
+                                  "a picture of four bands and truth", "%",
+                                  "power of radar pictures, rms; 12 x 12 rays or more", 20},
+                  work, point, bench_quick(p->bench) ? settings - 1 : settings);
     return p->status;
 }
 

@@ -24,7 +24,7 @@ typedef struct PlantPrecision {
     Arena     *keep[PLANT_SHOTS][2], *fine, *arena;
     TrialFrame shot[PLANT_SHOTS][2]; /* poses and air, made once: of all bands, of the near infrared */
     int        size_px[2];
-    Status     status;              /* of the timed frames */
+    Status     status; /* of the timed frames */
 } PlantPrecision;
 
 /* One setting: what differs from the default request of a shot. */
@@ -39,8 +39,7 @@ typedef struct PlantRendering {
 static View view_of(const PlantPrecision *p, PlantShot shot)
 {
     static const double back_m[PLANT_SHOTS] = {450, 120, 60}, above_m[PLANT_SHOTS] = {80, 25, 2};
-    View                view = trial_view(&p->scene, back_m[shot], above_m[shot], 20 * rad_per_deg, p->size_px[0],
-                                          p->size_px[1]);
+    View view = trial_view(&p->scene, back_m[shot], above_m[shot], 20 * rad_per_deg, p->size_px[0], p->size_px[1]);
     static const double low_enu[3] = {0, 0.99, -0.1};
     double              d_enu[3];
     if (shot != SHOT_LOW || !v3_normalize(d_enu, low_enu)) return view;
@@ -52,10 +51,14 @@ static RenderRequest request_of(const PlantRendering *r, PlantShot shot)
 {
     const Config  config = config_default();
     RenderRequest request = {.view = view_of(r->p, shot),
-                             .bands = 1u << BAND_OPTICAL | 1u << BAND_MWIR | 1u << BAND_LWIR, .truth = true,
-                             .optical = r->nir ? OPTICAL_NIR : OPTICAL_RGB, .samples = r->samples, .edge_samples = r->edge_samples,
+                             .bands = 1u << BAND_OPTICAL | 1u << BAND_MWIR | 1u << BAND_LWIR,
+                             .truth = true,
+                             .optical = r->nir ? OPTICAL_NIR : OPTICAL_RGB,
+                             .samples = r->samples,
+                             .edge_samples = r->edge_samples,
                              .sky_samples = r->sky_samples,
-                             .sky_visibility = strcmp(config.sensor.sky_visibility, "on") == 0, .hidden_entity = -1,
+                             .sky_visibility = strcmp(config.sensor.sky_visibility, "on") == 0,
+                             .hidden_entity = -1,
                              .low_plants_m = r->low_m};
     if (r->nir) request.bands = 1u << BAND_OPTICAL;
     if (r->width) request.view.width = r->width, request.view.height = r->height;
@@ -127,7 +130,7 @@ static Status price_bands(PlantPrecision *p, int forest)
         for (int nir = 0; nir < 2; nir++) {
             const PlantRendering full = {.p = p, .samples = 4, .nir = nir};
             PlantRendering       other = full;
-            other.forest  = forest;
+            other.forest = forest;
             Status status = render_one(&want, &full, (PlantShot)s, p->fine);
             if (status == STATUS_OK) status = render_one(&got, &other, (PlantShot)s, p->arena);
             if (status != STATUS_OK) return status;
@@ -143,10 +146,10 @@ static Status price_bands(PlantPrecision *p, int forest)
         if (k == picture_radar) continue;
         snprintf(what, sizeof what, "plants lower than %.0f px simplified: %s", level1_px[forest],
                  k < picture_plane_count ? name[k] : "near infrared");
-        BenchRow row   = bench_row(what);
-        row.error      = worst[k];
+        BenchRow row = bench_row(what);
+        row.error = worst[k];
         row.error_unit = "%";
-        row.against    = "rms, full detail by the same 16 rays a pixel";
+        row.against = "rms, full detail by the same 16 rays a pixel";
         bench_add(p->bench, &row);
     }
     return STATUS_OK;
@@ -162,15 +165,16 @@ static Status tunable_levels(PlantPrecision *p)
     for (int k = 0; k < forests_most; k++) {
         PlantRendering same = fine;
         same.forest = k;
-        point[k]    = (BenchSetting){.setting = name[k], .is_default = k == 0};
+        point[k] = (BenchSetting){.setting = name[k], .is_default = k == 0};
         const Status status = errors_of(&point[k], &same, &fine);
         if (status != STATUS_OK) return status;
-        r[k]    = (PlantRendering){.p = p, .forest = k, .samples = 1, .end = TIMED_SHOTS};
+        r[k] = (PlantRendering){.p = p, .forest = k, .samples = 1, .end = TIMED_SHOTS};
         work[k] = (BenchWork){render_timed, &r[k], TIMED_SHOTS};
     }
-    bench_tunable(p->bench, &(BenchTunable){"plants simplified", "terrain.woods_level1_px",
-                                            "a picture of a wood, one ray a pixel, three bands", "%",
-                                            "rms, full detail by the same 16 rays a pixel; worse of two views", 0},
+    bench_tunable(p->bench,
+                  &(BenchTunable){"plants simplified", "terrain.woods_level1_px",
+                                  "a picture of a wood, one ray a pixel, three bands", "%",
+                                  "rms, full detail by the same 16 rays a pixel; worse of two views", 0},
                   work, point, forests_most);
     for (int k = 1; k < forests_most && p->status == STATUS_OK; k++) {
         const Status status = price_bands(p, k);
@@ -184,8 +188,10 @@ static Status tunable_levels(PlantPrecision *p)
 static Status tunable_rays(PlantPrecision *p)
 {
     enum { settings = 5 };
-    static const struct { const char *name; int samples, edges; } of[settings] = {
-        {"1 x 1", 1, 0}, {"2 x 2", 2, 0}, {"3 x 3", 3, 0}, {"4 x 4", 4, 0}, {"1 x 1, edges 4 x 4", 1, 4}};
+    static const struct {
+        const char *name;
+        int         samples, edges;
+    } of[settings] = {{"1 x 1", 1, 0}, {"2 x 2", 2, 0}, {"3 x 3", 3, 0}, {"4 x 4", 4, 0}, {"1 x 1, edges 4 x 4", 1, 4}};
     const PlantRendering finest = {.p = p, .samples = bench_quick(p->bench) ? 6 : 12, .end = TIMED_SHOTS};
     PlantRendering       r[settings];
     BenchWork            work[settings];
@@ -193,13 +199,14 @@ static Status tunable_rays(PlantPrecision *p)
     for (int k = 0; k < settings; k++) {
         r[k] = (PlantRendering){.p = p, .samples = of[k].samples, .edge_samples = of[k].edges, .end = TIMED_SHOTS};
         point[k] = (BenchSetting){.setting = of[k].name, .is_default = k == settings - 1};
-        work[k]  = (BenchWork){render_timed, &r[k], TIMED_SHOTS};
+        work[k] = (BenchWork){render_timed, &r[k], TIMED_SHOTS};
         const Status status = errors_of(&point[k], &r[k], &finest);
         if (status != STATUS_OK) return status;
     }
-    bench_tunable(p->bench, &(BenchTunable){"rays a pixel among plants", "sensor.samples, sensor.edge_samples",
-                                            "a picture of a wood, three bands", "%",
-                                            "rms of single pixels, 144 rays in each; worse of two views", 50},
+    bench_tunable(p->bench,
+                  &(BenchTunable){"rays a pixel among plants", "sensor.samples, sensor.edge_samples",
+                                  "a picture of a wood, three bands", "%",
+                                  "rms of single pixels, 144 rays in each; worse of two views", 50},
                   work, point, settings);
     return p->status;
 }
@@ -218,15 +225,16 @@ static Status tunable_low(PlantPrecision *p)
     for (int k = 0; k < settings; k++) {
         PlantRendering same = fine;
         same.low_m = reach_m[k];
-        r[k]       = (PlantRendering){.p = p, .samples = 1, .low_m = reach_m[k], .first = SHOT_LOW, .end = PLANT_SHOTS};
-        point[k]   = (BenchSetting){.setting = name[k], .is_default = k == 3};
-        work[k]    = (BenchWork){render_timed, &r[k], 1};
+        r[k] = (PlantRendering){.p = p, .samples = 1, .low_m = reach_m[k], .first = SHOT_LOW, .end = PLANT_SHOTS};
+        point[k] = (BenchSetting){.setting = name[k], .is_default = k == 3};
+        work[k] = (BenchWork){render_timed, &r[k], 1};
         const Status status = errors_of(&point[k], &same, &fine);
         if (status != STATUS_OK) return status;
     }
-    bench_tunable(p->bench, &(BenchTunable){"reach of low plants", "terrain.woods_low_m",
-                                            "a picture from 2 m above the ground, one ray a pixel, three bands", "%",
-                                            "rms, those within 240 m by the same 16 rays a pixel", 30},
+    bench_tunable(p->bench,
+                  &(BenchTunable){"reach of low plants", "terrain.woods_low_m",
+                                  "a picture from 2 m above the ground, one ray a pixel, three bands", "%",
+                                  "rms, those within 240 m by the same 16 rays a pixel", 30},
                   work, point, settings);
     return p->status;
 }
@@ -241,22 +249,23 @@ static Status tunable_light(PlantPrecision *p)
                                                "256 directions"};
     const bool               quick = bench_quick(p->bench);
     const int                width = quick ? 12 : 24, height = quick ? 8 : 16, count = quick ? settings - 1 : settings;
-    const PlantRendering     fine = {.p = p, .samples = 1, .sky_samples = quick ? 256 : 1024, .width = width,
-                                     .height = height, .end = TIMED_SHOTS};
-    PlantRendering           r[settings];
-    BenchWork                work[settings];
-    BenchSetting             point[settings] = {0};
+    const PlantRendering     fine = {
+            .p = p, .samples = 1, .sky_samples = quick ? 256 : 1024, .width = width, .height = height, .end = TIMED_SHOTS};
+    PlantRendering r[settings];
+    BenchWork      work[settings];
+    BenchSetting   point[settings] = {0};
     for (int k = 0; k < count; k++) {
         r[k] = fine;
         r[k].sky_samples = directions[k];
         point[k] = (BenchSetting){.setting = name[k], .is_default = k == 0};
-        work[k]  = (BenchWork){render_timed, &r[k], TIMED_SHOTS};
+        work[k] = (BenchWork){render_timed, &r[k], TIMED_SHOTS};
         const Status status = errors_of(&point[k], &r[k], &fine);
         if (status != STATUS_OK) return status;
     }
-    bench_tunable(p->bench, &(BenchTunable){"light between leaves", "sensor.sky_samples",
-                                            "a picture of a wood, one ray a pixel, three bands", "%",
-                                            "rms, many directions and two bounces; worse of two views", 40},
+    bench_tunable(p->bench,
+                  &(BenchTunable){"light between leaves", "sensor.sky_samples",
+                                  "a picture of a wood, one ray a pixel, three bands", "%",
+                                  "rms, many directions and two bounces; worse of two views", 40},
                   work, point, count);
     return p->status;
 }
@@ -268,8 +277,8 @@ static Status open_forests(PlantPrecision *p)
     World *world = &p->scene.world;
     for (int k = 0; k < forests_most; k++) {
         const ForestConfig config = {.leaves = true, .level1_px = level1_px[k]};
-        const Status status = k == 0 ? world_plant(world, &p->woods, &config, NULL, p->pool)
-                                     : forest_create(&p->forest[k], &p->woods, world->plants, &config, NULL);
+        const Status       status = k == 0 ? world_plant(world, &p->woods, &config, NULL, p->pool)
+                                           : forest_create(&p->forest[k], &p->woods, world->plants, &config, NULL);
         if (status != STATUS_OK) return status;
         if (k == 0) p->forest[0] = world->forest;
     }
@@ -281,13 +290,17 @@ static Status open_wood(PlantPrecision *p)
     static const DisEntityType types[] = {{1, 1, 222, 1, 1, 1, 0}, {1, 1, 222, 2, 1, 0, 0}};
     static const double        side_m = 1200;
     const Geodetic             origin = {48 * rad_per_deg, 11 * rad_per_deg, 500};
-    WoodsStand stand = {.landscape = &p->landscape, .east_m = side_m, .north_m = side_m, .trees = 25000, .clears = 1,
-                        .clear = {{{0, 0}, {0, 0}, 12, 12}}};
-    LocalFrame frame;
-    double     times_s[2];
-    char       catalog[512];
-    Status     status = pool_create(&p->pool, bench_threads(p->bench));
-    p->fine  = arena_create();
+    WoodsStand                 stand = {.landscape = &p->landscape,
+                                        .east_m = side_m,
+                                        .north_m = side_m,
+                                        .trees = 25000,
+                                        .clears = 1,
+                                        .clear = {{{0, 0}, {0, 0}, 12, 12}}};
+    LocalFrame                 frame;
+    double                     times_s[2];
+    char                       catalog[512];
+    Status                     status = pool_create(&p->pool, bench_threads(p->bench));
+    p->fine = arena_create();
     p->arena = arena_create();
     bench_progress(p->bench, "a wood");
     if (!p->fine || !p->arena) status = STATUS_NO_MEMORY;
@@ -303,8 +316,8 @@ static Status open_wood(PlantPrecision *p)
         TrialFrame          *shot = &p->shot[k >> 1][k & 1];
         Arena               *keep = p->keep[k >> 1][k & 1] = arena_create();
         if (!keep) return STATUS_NO_MEMORY;
-        *shot = (TrialFrame){.scene = &p->scene, .pool = p->pool, .arena = keep,
-                             .request = request_of(&plain, (PlantShot)(k >> 1))};
+        *shot = (TrialFrame){
+            .scene = &p->scene, .pool = p->pool, .arena = keep, .request = request_of(&plain, (PlantShot)(k >> 1))};
         trial_frame(shot);
         status = shot->status;
     }

@@ -38,13 +38,22 @@ static Status compare(Bench *bench, TrialScene *scene, SeekerRadar *radar, Arena
                                                         .north_m = 25 * (i / 4),
                                                         .turn_rad = 0.6});
     if (status == STATUS_OK) status = entity_table_snapshot(&snapshot, scene->table, scene->sun_now_s + 0.5, arena[2]);
-    const View    view = trial_view(scene, ground ? 2500 : 4000, 400, 3 * rad_per_deg, 64, 64);
+    const View view = trial_view(scene, ground ? 2500 : 4000, 400, 3 * rad_per_deg, 64, 64);
     if (ground) snapshot.count = 0;
     for (int k = 0; k < settings && status == STATUS_OK; k++) {
-        way[k] = (RadarUpdate){.radar = radar, .arena = arena[k],
-                            .scene = {.world = &scene->world, .snapshot = &snapshot, .view = &view, .hidden = -1,
-                                      .v_enu_mps = {0, 200, -20}, .reference_m = NAN, .t_s = 1, .weather = &weather,
-                                      .number = 1, .apart = k == 0, .reach = ground && k == 0 ? 2.5 : 1}};
+        way[k] = (RadarUpdate){.radar = radar,
+                               .arena = arena[k],
+                               .scene = {.world = &scene->world,
+                                         .snapshot = &snapshot,
+                                         .view = &view,
+                                         .hidden = -1,
+                                         .v_enu_mps = {0, 200, -20},
+                                         .reference_m = NAN,
+                                         .t_s = 1,
+                                         .weather = &weather,
+                                         .number = 1,
+                                         .apart = k == 0,
+                                         .reach = ground && k == 0 ? 2.5 : 1}};
         radar_update(&way[k]);
         status = way[k].status;
         work[k] = (BenchWork){radar_update, &way[k], 1};

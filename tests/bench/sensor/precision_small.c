@@ -17,7 +17,7 @@ typedef struct SmallWay {
     const PhotonTable *photons;
     const MtfChain    *chain;
     float              hot, ground;
-    double             at[2];       /* of the target's centre, px */
+    double             at[2]; /* of the target's centre, px */
     float              out[size_px * size_px];
 } SmallWay;
 
@@ -64,15 +64,20 @@ static void look(void *user)
     for (int i = 0; i < size_px * size_px; i++) plane[i] = (float)photon_table_electrons(w->photons, (double)w->ground);
     for (int y = t.y0, k = 0; y < t.y1; y++)
         for (int x = t.x0; x < t.x1; x++, k++) {
-            area[k] = (fmin(x + 1, t.box_px[2]) - fmax(x, t.box_px[0])) *
-                      (fmin(y + 1, t.box_px[3]) - fmax(y, t.box_px[1]));
+            area[k] =
+                (fmin(x + 1, t.box_px[2]) - fmax(x, t.box_px[0])) * (fmin(y + 1, t.box_px[3]) - fmax(y, t.box_px[1]));
             behind[k] = w->ground;
             const double radiance = (double)w->ground + area[k] * (double)(w->hot - w->ground);
             plane[y * size_px + x] = (float)photon_table_electrons(w->photons, radiance);
         }
-    const SmallTargets targets = {1, &t};
-    const SubPixelPlane fine = {.electrons = plane, .more = more, .width = size_px, .height = size_px,
-                                .plane = picture_lwir, .photons = w->photons, .exposure = 1};
+    const SmallTargets  targets = {1, &t};
+    const SubPixelPlane fine = {.electrons = plane,
+                                .more = more,
+                                .width = size_px,
+                                .height = size_px,
+                                .plane = picture_lwir,
+                                .photons = w->photons,
+                                .exposure = 1};
     if (w->cells) subpixel_targets(w->sub, &fine, &targets, still);
     blur_apply_with(w->blur, w->out, plane, still, w->cells ? more : NULL);
     bench_keep(w->out);
@@ -104,31 +109,42 @@ Status precision_small_target(Bench *bench)
 {
     enum { settings = 3 };
     static const char *const name[settings] = {"whole pixels", "nodes of 1/8 px", "sums over frequencies"};
-    static SmallWay      way[settings];
-    const PhotonDetector d = {.low_m = 8e-6, .high_m = 12e-6, .f_number = 2, .transmission = 0.8, .qe = 0.7,
-                              .pitch_m = 25e-6, .integration_s = 1e-4};
+    static SmallWay          way[settings];
+    const PhotonDetector     d = {.low_m = 8e-6,
+                                  .high_m = 12e-6,
+                                  .f_number = 2,
+                                  .transmission = 0.8,
+                                  .qe = 0.7,
+                                  .pitch_m = 25e-6,
+                                  .integration_s = 1e-4};
     const MtfChain chain = {.cutoff_cyc_px = 25e-6 / (10e-6 * 2), .footprint_px = 0.95, .places = 16, .jitter_px = 0.1};
-    BenchWork    work[settings];
+    BenchWork      work[settings];
     BenchSetting   point[settings] = {0};
-    PhotonTable *photons = NULL;
-    Blur        *blur = NULL;
-    SubPixel    *sub = NULL;
-    Status       status = photon_table_create(&photons, &d, true);
+    PhotonTable   *photons = NULL;
+    Blur          *blur = NULL;
+    SubPixel      *sub = NULL;
+    Status         status = photon_table_create(&photons, &d, true);
     if (status == STATUS_OK) status = blur_create(&blur, size_px, size_px, &chain);
     if (status == STATUS_OK) status = subpixel_create(&sub, &chain);
     for (int k = 0; k < settings && status == STATUS_OK; k++) {
-        way[k] = (SmallWay){.cells = k == 1, .sums = k == 2, .blur = blur, .sub = sub, .photons = photons,
-                            .chain = &chain, .hot = (float)planck_band(d.low_m, d.high_m, 400, NULL),
+        way[k] = (SmallWay){.cells = k == 1,
+                            .sums = k == 2,
+                            .blur = blur,
+                            .sub = sub,
+                            .photons = photons,
+                            .chain = &chain,
+                            .hot = (float)planck_band(d.low_m, d.high_m, 400, NULL),
                             .ground = (float)planck_band(d.low_m, d.high_m, 280, NULL),
                             .at = {size_px / 2 + 0.3, size_px / 2 + 0.8}};
-        work[k]  = (BenchWork){look, &way[k], 1};
+        work[k] = (BenchWork){look, &way[k], 1};
         point[k] = (BenchSetting){.setting = name[k], .error = centroid_error(&way[k]), .is_default = k == 1};
     }
     if (status == STATUS_OK)
-        bench_tunable(bench, &(BenchTunable){"a small target's place", "sensor/detector/subpixel.c",
-                                       "a picture of 32 x 32 with a target of 0.44 px", "px",
-                                       "centroid of counts, rms over places, of an ideal sampled sensor's", 0.0015},
-                   work, point, settings);
+        bench_tunable(bench,
+                      &(BenchTunable){"a small target's place", "sensor/detector/subpixel.c",
+                                      "a picture of 32 x 32 with a target of 0.44 px", "px",
+                                      "centroid of counts, rms over places, of an ideal sampled sensor's", 0.0015},
+                      work, point, settings);
     subpixel_destroy(sub);
     blur_destroy(blur);
     photon_table_destroy(photons);

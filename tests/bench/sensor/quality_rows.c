@@ -1,6 +1,6 @@
-/* tests/bench/sensor/quality_rows.c: `pitviper bench quality`: each row of settings on bare ground and in woods, in each view
- * against 16 x 16 rays in every pixel. A row's error is that of its worst view. Its time is of two of the views in larger
- * images, on one thread, rows interleaved, the best of the rounds. */
+/* tests/bench/sensor/quality_rows.c: `pitviper bench quality`: each row of settings on bare ground and in woods, in
+ * each view against 16 x 16 rays in every pixel. A row's error is that of its worst view. Its time is of two of the
+ * views in larger images, on one thread, rows interleaved, the best of the rounds. */
 #include "tests/bench/suites.h"
 
 #include "pitviper_output.h"
@@ -12,16 +12,17 @@
 
 enum { rounds_most = 2 };
 
-/* A third of the density of `bench woods`: half to two thirds of the pixels are plants, in the demonstration 21 to 46 %. */
+/* A third of the density of `bench woods`: half to two thirds of the pixels are plants, in the demonstration 21 to 46
+ * %. */
 static const double trees_per_m2 = 0.005;
 static const double cleared_m = 6; /* about a vehicle */
 
 static const QualitySettings reference = {16, 0, 0};
 
 /* the first is the fastest, by which machines are compared */
-static const QualitySettings grid[] = {
-    {1, 0, 0}, {1, 2, 8},  {1, 2, 24}, {1, 4, 24}, {1, 4, 48},  {1, 8, 64},   {2, 0, 0}, {2, 4, 48},
-    {2, 8, 64}, {3, 6, 64}, {3, 9, 96}, {4, 8, 96}, {5, 10, 96}, {6, 12, 128}, {8, 0, 0}, {8, 16, 128}};
+static const QualitySettings grid[] = {{1, 0, 0},   {1, 2, 8},    {1, 2, 24}, {1, 4, 24},  {1, 4, 48}, {1, 8, 64},
+                                       {2, 0, 0},   {2, 4, 48},   {2, 8, 64}, {3, 6, 64},  {3, 9, 96}, {4, 8, 96},
+                                       {5, 10, 96}, {6, 12, 128}, {8, 0, 0},  {8, 16, 128}};
 enum { grid_count = sizeof grid / sizeof *grid };
 
 /* Of one image, percent and kelvin per band. */
@@ -53,11 +54,14 @@ static void errors_of(double percent[quality_bands], double kelvin[quality_bands
 static Status plant_lab(Woods *woods, QualityMeasure *lab)
 {
     const Config       config = config_default();
-    const ForestConfig forest = {.leaves = true, .level1_px = config.terrain.woods_level1_px, .sway = config.terrain.woods_sway};
-    const HeatConfig   heat = heat_default_config();
-    WoodsStand stand = {.landscape = &lab->ground, .east_m = quality_measure_east_m, .north_m = quality_measure_north_m,
-                        .trees = (int)(trees_per_m2 * quality_measure_east_m * quality_measure_north_m)};
-    Snapshot   snapshot;
+    const ForestConfig forest = {
+        .leaves = true, .level1_px = config.terrain.woods_level1_px, .sway = config.terrain.woods_sway};
+    const HeatConfig heat = heat_default_config();
+    WoodsStand       stand = {.landscape = &lab->ground,
+                              .east_m = quality_measure_east_m,
+                              .north_m = quality_measure_north_m,
+                              .trees = (int)(trees_per_m2 * quality_measure_east_m * quality_measure_north_m)};
+    Snapshot         snapshot;
     arena_reset(lab->arena);
     Status status = entity_table_snapshot(&snapshot, lab->scene.table, lab->scene.sun_now_s + 0.5, lab->arena);
     for (int k = 0; status == STATUS_OK && k < snapshot.count && k < woods_stand_clear; k++) {
@@ -76,10 +80,11 @@ static Status measure_errors(QualityRow *rows, QualityMeasure *lab, Bench *bench
     const bool woods = rows->scene == QUALITY_WOODS;
     for (int v = 0; v < quality_measure_views; v += lab->quick ? 3 : woods ? 2 : 1) {
         char what[64];
-        snprintf(what, sizeof what, "errors, %s, view %d of %d", quality_scene_name(rows->scene), v + 1, quality_measure_views);
+        snprintf(what, sizeof what, "errors, %s, view %d of %d", quality_scene_name(rows->scene), v + 1,
+                 quality_measure_views);
         bench_progress(bench, what);
         TrialFrame fine = quality_measure_frame(lab, v, reference);
-        fine.pool  = lab->many;
+        fine.pool = lab->many;
         fine.arena = lab->reference_arena;
         trial_frame(&fine);
         for (int k = 0; k < grid_count && fine.status == STATUS_OK; k++) {
@@ -92,7 +97,7 @@ static Status measure_errors(QualityRow *rows, QualityMeasure *lab, Bench *bench
             errors_of(percent, kelvin, &f.picture, &fine.picture, &lab->scene.world);
             for (int b = 0; b < quality_bands; b++) {
                 r->percent[b] = fmax(r->percent[b], percent[b]);
-                r->kelvin[b]  = b == BAND_OPTICAL ? NAN : fmax(r->kelvin[b], kelvin[b]);
+                r->kelvin[b] = b == BAND_OPTICAL ? NAN : fmax(r->kelvin[b], kelvin[b]);
             }
         }
         if (fine.status != STATUS_OK) return fine.status;
@@ -103,7 +108,7 @@ static Status measure_errors(QualityRow *rows, QualityMeasure *lab, Bench *bench
 static Status measure_times(QualityRow *rows, BenchTime time[grid_count], QualityMeasure *lab, Bench *bench)
 {
     QualityMeasure large = *lab;
-    const int  rounds = lab->quick || rows->scene == QUALITY_WOODS ? 1 : rounds_most;
+    const int      rounds = lab->quick || rows->scene == QUALITY_WOODS ? 1 : rounds_most;
     quality_measure_enlarge(&large);
     for (int n = 0; n < rounds; n++)
         for (int k = 0; k < grid_count; k++) {
@@ -111,7 +116,7 @@ static Status measure_times(QualityRow *rows, BenchTime time[grid_count], Qualit
             snprintf(what, sizeof what, "times, %s, round %d of %d", quality_scene_name(rows->scene), n + 1, rounds);
             bench_progress(bench, what);
             time[k].item_s[n] = quality_measure_time(&large, grid[k], false);
-            time[k].rounds    = n + 1;
+            time[k].rounds = n + 1;
             if (isnan(time[k].item_s[n])) return STATUS_NO_MEMORY;
         }
     for (int k = 0; k < grid_count; k++) {
@@ -128,21 +133,21 @@ static void list_row(Bench *bench, const QualityTable *table, int k, const Bench
     const char       *scene = quality_scene_name(r->scene);
     char              what[96];
     if (r->edge_samples > 0)
-        snprintf(what, sizeof what, "%s: samples %d, edge_samples %d, target_samples %d", scene, r->samples, r->edge_samples,
-                 r->target_samples);
+        snprintf(what, sizeof what, "%s: samples %d, edge_samples %d, target_samples %d", scene, r->samples,
+                 r->edge_samples, r->target_samples);
     else snprintf(what, sizeof what, "%s: samples %d, antialias off", scene, r->samples);
-    BenchRow row   = bench_row(what);
-    row.median     = time->median_s;
-    row.best       = time->best_s;
-    row.unit       = "s";
-    row.rate       = 1 / time->median_s;
-    row.rate_unit  = "Mpx/s";
-    row.ratio      = r->ms_megapixel / first->ms_megapixel;
-    row.to         = "the scene's first";
-    row.error      = fmax(r->percent[BAND_OPTICAL], fmax(r->percent[BAND_MWIR], r->percent[BAND_LWIR]));
+    BenchRow row = bench_row(what);
+    row.median = time->median_s;
+    row.best = time->best_s;
+    row.unit = "s";
+    row.rate = 1 / time->median_s;
+    row.rate_unit = "Mpx/s";
+    row.ratio = r->ms_megapixel / first->ms_megapixel;
+    row.to = "the scene's first";
+    row.error = fmax(r->percent[BAND_OPTICAL], fmax(r->percent[BAND_MWIR], r->percent[BAND_LWIR]));
     row.error_unit = "%";
-    row.against    = "16 x 16 rays a pixel: worst band of the worst view";
-    row.mark       = quality_wanted(table, k) ? "*" : NULL;
+    row.against = "16 x 16 rays a pixel: worst band of the worst view";
+    row.mark = quality_wanted(table, k) ? "*" : NULL;
     bench_add(bench, &row);
 }
 
@@ -159,8 +164,10 @@ static Status measure(QualityTable *table, BenchTime *time, Woods *woods, Qualit
     for (int scene = 0; scene < quality_scenes; scene++) {
         QualityRow *rows = table->row + scene * grid_count;
         for (int k = 0; k < grid_count; k++)
-            rows[k] = (QualityRow){.scene = (QualityScene)scene, .samples = grid[k].samples,
-                                   .edge_samples = grid[k].edge_samples, .target_samples = grid[k].target_samples};
+            rows[k] = (QualityRow){.scene = (QualityScene)scene,
+                                   .samples = grid[k].samples,
+                                   .edge_samples = grid[k].edge_samples,
+                                   .target_samples = grid[k].target_samples};
         Status status = STATUS_OK;
         if (scene == QUALITY_WOODS) {
             bench_progress(bench, "woods");
@@ -190,7 +197,7 @@ static void round_rows(QualityTable *table)
 Status bench_quality(Bench *bench)
 {
     enum { rows = quality_scenes * grid_count };
-    QualityMeasure       lab;
+    QualityMeasure   lab;
     QualityTable     table = {.count = rows};
     static BenchTime time[rows];
     Woods            woods = {0};
@@ -201,7 +208,8 @@ Status bench_quality(Bench *bench)
     if (status == STATUS_OK) status = measure(&table, time, &woods, &lab, bench);
     round_rows(&table);
     for (int k = 0; k < rows && status == STATUS_OK; k++) list_row(bench, &table, k, &time[k]);
-    /* what nothing would pick is not written, but for the first of a scene: machines are compared by that of bare ground */
+    /* what nothing would pick is not written, but for the first of a scene: machines are compared by that of bare
+     * ground */
     QualityTable written = {.count = 0};
     for (int k = 0; k < rows; k++)
         if (k % grid_count == 0 || quality_wanted(&table, k)) written.row[written.count++] = table.row[k];

@@ -8,8 +8,8 @@
 typedef struct RadarUpdate {
     SeekerRadar      *radar;
     RadarScene        scene;
-    Pool             *pool;   /* NULL: one thread */
-    Arena            *arena;  /* reset each time */
+    Pool             *pool;  /* NULL: one thread */
+    Arena            *arena; /* reset each time */
     const RadarFrame *frame;
     Status            status;
 } RadarUpdate;

@@ -1,5 +1,5 @@
-/* tests/bench/sensor/skip_frames.c: frames with every skip, with all but one, and with none, interleaved; over scenes with
- * different work to skip. A row is the frame with its skip in the scene in which that saves most, and the ratio is
+/* tests/bench/sensor/skip_frames.c: frames with every skip, with all but one, and with none, interleaved; over scenes
+ * with different work to skip. A row is the frame with its skip in the scene in which that saves most, and the ratio is
  * its time without the skip; the planes must be the same. */
 #include "tests/bench/suites.h"
 
@@ -9,7 +9,14 @@
 
 #include <stdlib.h>
 
-enum { what_size = 160, whole = SKIP_COUNT, none_left, variants /* each off; all on; all off */, scene_count = 7, usual = 1 };
+enum {
+    what_size = 160,
+    whole = SKIP_COUNT,
+    none_left,
+    variants /* each off; all on; all off */,
+    scene_count = 7,
+    usual = 1
+};
 
 static const unsigned three_bands = 1u << BAND_OPTICAL | 1u << BAND_MWIR | 1u << BAND_LWIR;
 
@@ -28,7 +35,7 @@ static const struct SkipScene {
 };
 
 typedef struct Saving {
-    double   ratio;           /* time without the skip over time with it; of the rounds, the lower quartile */
+    double   ratio; /* time without the skip over time with it; of the rounds, the lower quartile */
     double   with_s;
     uint64_t skipped;
     int      scene;
@@ -46,8 +53,8 @@ typedef struct SkipBench {
 
 static Status open_scene(TrialScene *scene, const SkipBench *s, const struct SkipScene *setting)
 {
-    static const DisEntityType types[] = {{1, 1, 222, 1, 1, 1, 0}, {1, 1, 222, 2, 1, 0, 0}, {1, 1, 222, 28, 1, 0, 0},
-                                          {1, 1, 222, 7, 1, 0, 0}};
+    static const DisEntityType types[] = {
+        {1, 1, 222, 1, 1, 1, 0}, {1, 1, 222, 2, 1, 0, 0}, {1, 1, 222, 28, 1, 0, 0}, {1, 1, 222, 7, 1, 0, 0}};
     const uint32_t smokes = 3u << 5, burns = 1u << 15;
     char           catalog[512];
     if (!etc_path(catalog, sizeof catalog, "catalog.csv")) return STATUS_BAD_VALUE;
@@ -81,11 +88,17 @@ static RenderRequest request_of(const SkipBench *s, const TrialScene *scene, con
     const bool   quick = bench_quick(s->bench);
     const Config config = config_default();
     const View   view = trial_view(scene, setting->back_m, setting->above_m, setting->hfov_deg * rad_per_deg,
-                                   quick ? 48 : 320, quick ? 32 : 216);
-    return (RenderRequest){.view = view, .bands = three_bands, .truth = true, .optical = OPTICAL_RGB, .samples = 1,
-                           .edge_samples = config.sensor.edge_samples, .target_samples = config.sensor.target_samples,
+                                 quick ? 48 : 320, quick ? 32 : 216);
+    return (RenderRequest){.view = view,
+                           .bands = three_bands,
+                           .truth = true,
+                           .optical = OPTICAL_RGB,
+                           .samples = 1,
+                           .edge_samples = config.sensor.edge_samples,
+                           .target_samples = config.sensor.target_samples,
                            .sky_visibility = strcmp(config.sensor.sky_visibility, "on") == 0,
-                           .hidden_entity = -1, .skips_off = off};
+                           .hidden_entity = -1,
+                           .skips_off = off};
 }
 
 static int by_value(const void *pa, const void *pb)
@@ -106,14 +119,14 @@ static double sure_ratio(const BenchTime *a, const BenchTime *b)
 static Status time_scene(SkipBench *s, int at)
 {
     const struct SkipScene *setting = &settings[at];
-    const bool  quick = bench_quick(s->bench);
-    TrialScene  scene;
-    TrialFrame  frame[variants];
-    BenchWork   work[variants];
-    BenchTime   time[variants];
-    uint64_t    skipped[SKIP_COUNT] = {0};
-    char        hash[sha256_text_size], other[sha256_text_size];
-    struct SkipScene shown = *setting;
+    const bool              quick = bench_quick(s->bench);
+    TrialScene              scene;
+    TrialFrame              frame[variants];
+    BenchWork               work[variants];
+    BenchTime               time[variants];
+    uint64_t                skipped[SKIP_COUNT] = {0};
+    char                    hash[sha256_text_size], other[sha256_text_size];
+    struct SkipScene        shown = *setting;
     if (quick && shown.vehicles > 10) shown.vehicles = 10;
     if (quick && shown.smoking > 1) shown.smoking = 1;
     Status status = open_scene(&scene, s, &shown);
@@ -121,9 +134,11 @@ static Status time_scene(SkipBench *s, int at)
 
     bench_progress(s->bench, setting->name);
     for (int k = 0; k < variants; k++) {
-        frame[k] = (TrialFrame){.scene = &scene, .pool = s->pool, .arena = s->arena[0],
+        frame[k] = (TrialFrame){.scene = &scene,
+                                .pool = s->pool,
+                                .arena = s->arena[0],
                                 .request = request_of(s, &scene, setting, off_of(k))};
-        work[k]  = (BenchWork){trial_frame, &frame[k], 1};
+        work[k] = (BenchWork){trial_frame, &frame[k], 1};
     }
     for (int n = 0; n < variants && status == STATUS_OK; n++) {
         const int k = (whole + n) % variants; /* all on first */
@@ -148,7 +163,11 @@ static Status time_scene(SkipBench *s, int at)
 /* Planes that are not requested are not computed, and those requested do not change. */
 static Status time_asked(SkipBench *s)
 {
-    static const struct { const char *what; unsigned bands; bool truth; } asked[] = {
+    static const struct {
+        const char *what;
+        unsigned    bands;
+        bool        truth;
+    } asked[] = {
         {"bands nobody asked for: LWIR of three, truth", 1u << BAND_LWIR, true},
         {"planes nobody asked for: no truth, three bands", three_bands, false},
     };
@@ -161,7 +180,9 @@ static Status time_asked(SkipBench *s)
     Status     status = open_scene(&scene, s, &settings[usual]);
     if (status != STATUS_OK) return status;
     for (int k = 0; k < requests && status == STATUS_OK; k++) {
-        frame[k] = (TrialFrame){.scene = &scene, .pool = s->pool, .arena = s->arena[k],
+        frame[k] = (TrialFrame){.scene = &scene,
+                                .pool = s->pool,
+                                .arena = s->arena[k],
                                 .request = request_of(s, &scene, &settings[usual], 0)};
         if (k > 0) frame[k].request.bands = asked[k - 1].bands, frame[k].request.truth = asked[k - 1].truth;
         work[k] = (BenchWork){trial_frame, &frame[k], 1};
@@ -175,15 +196,15 @@ static Status time_asked(SkipBench *s)
     }
     if (status == STATUS_OK) bench_time(time, s->bench, work, requests);
     for (int k = 1; k < requests && status == STATUS_OK; k++) {
-        BenchRow row  = bench_row(asked[k - 1].what);
-        row.median    = time[k].median_s;
-        row.unit      = "s";
-        row.ratio     = bench_ratio(&time[0], &time[k]);
-        row.to        = "with it, twenty vehicles, 300 m";
-        row.error     = differs[k];
+        BenchRow row = bench_row(asked[k - 1].what);
+        row.median = time[k].median_s;
+        row.unit = "s";
+        row.ratio = bench_ratio(&time[0], &time[k]);
+        row.to = "with it, twenty vehicles, 300 m";
+        row.error = differs[k];
         row.error_limit = 0;
-        row.error_unit  = "differ";
-        row.against     = "the same planes of the whole";
+        row.error_unit = "differ";
+        row.against = "the same planes of the whole";
         bench_add(s->bench, &row);
     }
     trial_scene_close(&scene);
@@ -195,18 +216,18 @@ static void say(SkipBench *s, int k)
     const Saving *best = &s->best[k];
     char          what[what_size], to[what_size];
     snprintf(what, sizeof what, "%s", k == none_left ? "all of them" : visibility_skip_what((Skip)k));
-    BenchRow row  = bench_row(what);
+    BenchRow row = bench_row(what);
     snprintf(to, sizeof to, "with it, %s", settings[best->scene].name);
-    row.median    = best->with_s;
-    row.unit      = "s";
-    row.rate      = k == none_left ? NAN : (double)best->skipped;
+    row.median = best->with_s;
+    row.unit = "s";
+    row.rate = k == none_left ? NAN : (double)best->skipped;
     row.rate_unit = "a frame";
-    row.ratio     = best->ratio > 0 ? best->ratio : NAN;
-    row.to        = to;
-    row.error     = s->differs[k];
+    row.ratio = best->ratio > 0 ? best->ratio : NAN;
+    row.to = to;
+    row.error = s->differs[k];
     row.error_limit = 0;
-    row.error_unit  = "differ";
-    row.against     = "planes without it, in every scene";
+    row.error_unit = "differ";
+    row.against = "planes without it, in every scene";
     bench_add(s->bench, &row);
 }
 

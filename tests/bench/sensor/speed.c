@@ -21,8 +21,13 @@ static const double hfov_rad = 40 * (3.14159265358979323846 / 180);
 RenderRequest speed_request(const View *view, unsigned bands, bool truth)
 {
     const Config config = config_default();
-    return (RenderRequest){.view = *view, .bands = bands, .truth = truth, .optical = OPTICAL_RGB, .samples = 1,
-                           .edge_samples = config.sensor.edge_samples, .target_samples = config.sensor.target_samples,
+    return (RenderRequest){.view = *view,
+                           .bands = bands,
+                           .truth = truth,
+                           .optical = OPTICAL_RGB,
+                           .samples = 1,
+                           .edge_samples = config.sensor.edge_samples,
+                           .target_samples = config.sensor.target_samples,
                            .sky_visibility = strcmp(config.sensor.sky_visibility, "on") == 0,
                            .hidden_entity = -1};
 }
@@ -46,8 +51,8 @@ static double differs(const Speed *s, const TrialFrame *frame)
 {
     TrialFrame plain = *frame;
     char       hash[sha256_text_size], plain_hash[sha256_text_size];
-    plain.pool            = s->one;
-    plain.arena           = s->arena[2];
+    plain.pool = s->one;
+    plain.arena = s->arena[2];
     plain.request.skips_off = skips_all_off;
     trial_frame(&plain);
     if (plain.status != STATUS_OK || trial_frame_hash(hash, frame) != STATUS_OK ||
@@ -58,10 +63,10 @@ static double differs(const Speed *s, const TrialFrame *frame)
 
 static void judge_bits(BenchRow *row, const Speed *s, const TrialFrame *frame)
 {
-    row->error       = differs(s, frame);
+    row->error = differs(s, frame);
     row->error_limit = 0;
-    row->error_unit  = "differ";
-    row->against     = "planes of one thread, nothing skipped";
+    row->error_unit = "differ";
+    row->against = "planes of one thread, nothing skipped";
 }
 
 static void judge_frame(BenchRow *row, const TrialFrame *frame)
@@ -95,14 +100,14 @@ static double rms_of(const Picture *a, const Picture *b)
 static double antialias_error(const Speed *s, const RenderRequest *request, double *plain)
 {
     TrialFrame fine = {.scene = &s->scene, .request = *request, .pool = s->many, .arena = s->arena[2]};
-    fine.request.view.width  = bench_quick(s->bench) ? 32 : 96;
+    fine.request.view.width = bench_quick(s->bench) ? 32 : 96;
     fine.request.view.height = bench_quick(s->bench) ? 24 : 64;
     TrialFrame adaptive = fine, single = fine;
     fine.request.samples = 16;
     fine.request.edge_samples = fine.request.target_samples = 0;
     single.request = one_ray(&single.request);
     adaptive.arena = s->arena[0];
-    single.arena   = s->arena[1];
+    single.arena = s->arena[1];
     trial_frame(&fine);
     trial_frame(&adaptive);
     trial_frame(&single);
@@ -114,15 +119,15 @@ static double antialias_error(const Speed *s, const RenderRequest *request, doub
 static Status time_view(Speed *s, int v)
 {
     enum { MANY, ONE, SIMPLE, SIMPLE_ONE, RAW, RAW_ONE, WORKS };
-    const View    view = trial_view(&s->scene, places[v].back_m, places[v].above_m, hfov_rad, s->width, s->height);
+    const View view = trial_view(&s->scene, places[v].back_m, places[v].above_m, hfov_rad, s->width, s->height);
     const RenderRequest request = speed_request(&view, three_bands, true), simple_request = one_ray(&request);
-    char          what[what_size];
-    BenchTime     time[WORKS];
-    RawRays      *raw = NULL, *raw_one = NULL;
-    BenchRow      row;
-    TrialFrame    many = speed_frame(s, &s->scene, &request, true), one = speed_frame(s, &s->scene, &request, false);
-    TrialFrame    simple = speed_frame(s, &s->scene, &simple_request, true);
-    TrialFrame    simple_one = speed_frame(s, &s->scene, &simple_request, false), shown = simple;
+    char                what[what_size];
+    BenchTime           time[WORKS];
+    RawRays            *raw = NULL, *raw_one = NULL;
+    BenchRow            row;
+    TrialFrame many = speed_frame(s, &s->scene, &request, true), one = speed_frame(s, &s->scene, &request, false);
+    TrialFrame simple = speed_frame(s, &s->scene, &simple_request, true);
+    TrialFrame simple_one = speed_frame(s, &s->scene, &simple_request, false), shown = simple;
 
     bench_progress(s->bench, places[v].name);
     shown.arena = s->arena[2];
@@ -133,55 +138,56 @@ static Status time_view(Speed *s, int v)
     if (status != STATUS_OK) goto done;
     const double rays = raw_rays_count(raw);
     raw_use_pool(raw_one, s->one);
-    const BenchWork work[WORKS] = {{trial_frame, &many, 1}, {trial_frame, &one, 1}, {trial_frame, &simple, 1},
-                                   {trial_frame, &simple_one, 1}, {raw_trace, raw, 1}, {raw_trace, raw_one, 1}};
+    const BenchWork work[WORKS] = {{trial_frame, &many, 1},       {trial_frame, &one, 1}, {trial_frame, &simple, 1},
+                                   {trial_frame, &simple_one, 1}, {raw_trace, raw, 1},    {raw_trace, raw_one, 1}};
     bench_time(time, s->bench, work, WORKS);
 
     /* frames share arenas, so each is rendered once more before its planes are compared */
     snprintf(what, sizeof what, "%s: frame, 3 bands and truth, %s", places[v].name, all_threads);
-    row       = bench_row_of(what, &time[MANY], "frames/s", 1);
+    row = bench_row_of(what, &time[MANY], "frames/s", 1);
     row.ratio = bench_ratio(&time[MANY], &time[RAW]);
-    row.to    = "rays alone";
+    row.to = "rays alone";
     trial_frame(&many);
     judge_bits(&row, s, &many);
     judge_frame(&row, &many);
     bench_add(s->bench, &row);
 
     snprintf(what, sizeof what, "%s: the same, 1 thread", places[v].name);
-    row       = bench_row_of(what, &time[ONE], "frames/s", 1);
+    row = bench_row_of(what, &time[ONE], "frames/s", 1);
     row.ratio = bench_ratio(&time[ONE], &time[MANY]);
-    row.to    = all_threads;
+    row.to = all_threads;
     bench_add(s->bench, &row);
 
     double plain_error = NAN;
     snprintf(what, sizeof what, "%s: one ray a pixel, %s", places[v].name, all_threads);
     const double adaptive_error = antialias_error(s, &request, &plain_error);
-    row            = bench_row_of(what, &time[SIMPLE], "frames/s", 1);
-    row.ratio      = bench_ratio(&time[SIMPLE], &time[RAW]);
-    row.to         = "rays alone";
-    row.error      = 100 * plain_error;
+    row = bench_row_of(what, &time[SIMPLE], "frames/s", 1);
+    row.ratio = bench_ratio(&time[SIMPLE], &time[RAW]);
+    row.to = "rays alone";
+    row.error = 100 * plain_error;
     row.error_unit = "%";
-    row.against    = "rms against 256 rays a pixel";
+    row.against = "rms against 256 rays a pixel";
     bench_add(s->bench, &row);
 
     snprintf(what, sizeof what, "%s: adaptive edges and small targets", places[v].name);
-    row             = bench_row(what);
-    row.ratio       = bench_ratio(&time[MANY], &time[SIMPLE]);
-    row.to          = "one ray a pixel";
-    row.error       = 100 * adaptive_error;
+    row = bench_row(what);
+    row.ratio = bench_ratio(&time[MANY], &time[SIMPLE]);
+    row.to = "one ray a pixel";
+    row.error = 100 * adaptive_error;
     row.error_limit = 100 * plain_error;
-    row.error_unit  = "%";
-    row.against     = "rms against 256 rays a pixel; limit: that of one ray";
+    row.error_unit = "%";
+    row.against = "rms against 256 rays a pixel; limit: that of one ray";
     bench_add(s->bench, &row);
 
     snprintf(what, sizeof what, "%s: its rays alone, %s", places[v].name, all_threads);
-    row            = bench_row_of(what, &time[RAW], "M rays/s", 1e6 / rays);
-    row.ratio      = bench_ratio(&time[RAW_ONE], &time[RAW]);
-    row.to         = "1 thread / this";
-    row.error      = raw_worst_m(raw, bench_quick(s->bench) ? 977 : 397);
-    row.error_limit = 1e-6; /* of positions of 1e4 m in double, 1e-12 m, at grazing angles of 1e-3 and heights of 1e-9 m */
-    row.error_unit  = "m";
-    row.against     = "range, against a plain walk in double";
+    row = bench_row_of(what, &time[RAW], "M rays/s", 1e6 / rays);
+    row.ratio = bench_ratio(&time[RAW_ONE], &time[RAW]);
+    row.to = "1 thread / this";
+    row.error = raw_worst_m(raw, bench_quick(s->bench) ? 977 : 397);
+    row.error_limit =
+        1e-6; /* of positions of 1e4 m in double, 1e-12 m, at grazing angles of 1e-3 and heights of 1e-9 m */
+    row.error_unit = "m";
+    row.against = "range, against a plain walk in double";
     bench_add(s->bench, &row);
 
 done:
@@ -237,18 +243,19 @@ static Status time_stages(Speed *s, const char *name, TrialFrame *frame, int cou
     for (size_t k = 0; k < sizeof stage_names / sizeof *stage_names; k++) {
         const TrialStage stage = stage_names[k].stage;
         const double     rays = stage == STAGE_VISIBILITY ? (double)counters.rays_primary / count
-                              : stage == STAGE_SUN ? (double)counters.visibility.rays_sun_ground / count : NAN;
+                                : stage == STAGE_SUN      ? (double)counters.visibility.rays_sun_ground / count
+                                                          : NAN;
         if (!(time[stage].best_s > 0)) continue;
         snprintf(what, sizeof what, "%s: %s", name, stage_names[k].name);
         BenchRow row = bench_row_of(what, &time[stage], isnan(rays) ? NULL : "M rays/s", 1e6 / rays);
-        row.ratio    = bench_ratio(&time[stage], &time[STAGE_FRAME]);
-        row.to       = "frame";
+        row.ratio = bench_ratio(&time[stage], &time[STAGE_FRAME]);
+        row.to = "frame";
         bench_add(s->bench, &row);
     }
     snprintf(what, sizeof what, "%s: hash of the planes, behind the frame", name);
     BenchRow row = bench_row_of(what, &hash_time, NULL, 1);
-    row.ratio    = bench_ratio(&hash_time, &time[STAGE_FRAME]);
-    row.to       = "frame";
+    row.ratio = bench_ratio(&hash_time, &time[STAGE_FRAME]);
+    row.to = "frame";
     bench_add(s->bench, &row);
     return STATUS_OK;
 }
@@ -265,8 +272,8 @@ static Status time_picture(Speed *s, const char *name, const TrialScene *scene, 
     bench_time(time, s->bench, work, 2);
     snprintf(what, sizeof what, "%s, %s", name, all_threads);
     BenchRow row = bench_row_of(what, &time[0], "frames/s", 1);
-    row.ratio    = bench_ratio(&time[1], &time[0]);
-    row.to       = "1 thread / this";
+    row.ratio = bench_ratio(&time[1], &time[0]);
+    row.to = "1 thread / this";
     judge_bits(&row, s, &many);
     judge_frame(&row, &many);
     bench_add(s->bench, &row);
@@ -291,8 +298,8 @@ static Status time_close(Speed *s)
     char          name[what_size];
     TrialFrame    first = {.scene = &s->close, .pool = s->many, .arena = s->arena[2]};
     RenderRequest request;
-    View view = trial_view(&s->close, 30, 6, 20 * rad_per_deg, s->width, s->height);
-    request   = speed_request(&view, three_bands, true);
+    View          view = trial_view(&s->close, 30, 6, 20 * rad_per_deg, s->width, s->height);
+    request = speed_request(&view, three_bands, true);
     first.request = request;
     trial_frame(&first);
     if (first.status != STATUS_OK) return first.status;
@@ -302,13 +309,13 @@ static Status time_close(Speed *s)
     trial_frame(&first);
     if (first.status != STATUS_OK) return first.status;
     const RenderRequest plain = one_ray(&request);
-    RenderRequest optical = plain;
+    RenderRequest       optical = plain;
     optical.bands = 1u << BAND_OPTICAL;
     optical.truth = false;
     BenchRow share = bench_row("close target: pixels that it covers");
-    share.median   = 100 * first.picture.target[0].visible / ((double)s->width * s->height);
-    share.unit     = "%";
-    share.against  = s->target;
+    share.median = 100 * first.picture.target[0].visible / ((double)s->width * s->height);
+    share.unit = "%";
+    share.against = s->target;
     bench_add(s->bench, &share);
     snprintf(name, sizeof name, "close target");
     status = time_pair(s, name, &s->close, &request);
@@ -323,10 +330,13 @@ static Status time_close(Speed *s)
 
 static Status time_all(Speed *s)
 {
-    static const DisEntityType types[] = {{1, 1, 222, 1, 1, 1, 0}, {1, 1, 222, 2, 1, 0, 0}, {1, 1, 222, 1, 1, 1, 0},
-                                          {1, 1, 222, 28, 1, 0, 0}, {1, 1, 222, 7, 1, 0, 0}};
-    char   catalog[512];
-    Status status = speed_open(s);
+    static const DisEntityType types[] = {{1, 1, 222, 1, 1, 1, 0},
+                                          {1, 1, 222, 2, 1, 0, 0},
+                                          {1, 1, 222, 1, 1, 1, 0},
+                                          {1, 1, 222, 28, 1, 0, 0},
+                                          {1, 1, 222, 7, 1, 0, 0}};
+    char                       catalog[512];
+    Status                     status = speed_open(s);
     if (status == STATUS_OK) status = speed_make_ground(s);
     if (status == STATUS_OK && !etc_path(catalog, sizeof catalog, "catalog.csv")) status = STATUS_BAD_VALUE;
     const double start_s = wall_clock_s();
@@ -335,8 +345,8 @@ static Status time_all(Speed *s)
                                   bench_quick(s->bench) ? vehicles_quick : vehicles);
     if (status != STATUS_OK) return status;
     BenchRow row = bench_row("start: catalog, tracer, materials, air");
-    row.median   = wall_clock_s() - start_s;
-    row.unit     = "s";
+    row.median = wall_clock_s() - start_s;
+    row.unit = "s";
     bench_add(s->bench, &row);
 
     TrialFrame frame[views];
@@ -344,7 +354,7 @@ static Status time_all(Speed *s)
         const View view = trial_view(&s->scene, places[v].back_m, places[v].above_m, hfov_rad, s->width, s->height);
         const RenderRequest request = speed_request(&view, three_bands, true);
         frame[v] = speed_frame(s, &s->scene, &request, false);
-        status   = time_view(s, v);
+        status = time_view(s, v);
     }
     if (status == STATUS_OK) status = time_stages(s, "mean of the views, 1 thread", frame, views);
 
@@ -360,7 +370,8 @@ static Status time_all(Speed *s)
     const RenderRequest radar = speed_request(&wide, 1u << BAND_RADAR, true);
     if (status == STATUS_OK) status = time_picture(s, "100 m up: radar alone, truth", &s->scene, &radar);
     const RenderRequest usual = trial_default_request(&s->scene, &wide, places[1].back_m);
-    if (status == STATUS_OK) status = time_picture(s, "100 m up: default quality, all bands, truth and its error", &s->scene, &usual);
+    if (status == STATUS_OK)
+        status = time_picture(s, "100 m up: default quality, all bands, truth and its error", &s->scene, &usual);
     if (status == STATUS_OK) status = speed_files(s);
     if (status == STATUS_OK) status = speed_heat(s);
     if (status == STATUS_OK) status = speed_start(s);

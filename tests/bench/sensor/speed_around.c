@@ -1,6 +1,6 @@
-/* tests/bench/sensor/speed_around.c: what is done around frames. Before the first: the set-up of a world by its parts, as a
- * node with the default settings makes it over synthetic terrain; and a whole variant of a sweep, a process that does all
- * of it. After one: its files, and the memory of the process. */
+/* tests/bench/sensor/speed_around.c: what is done around frames. Before the first: the set-up of a world by its parts,
+ * as a node with the default settings makes it over synthetic terrain; and a whole variant of a sweep, a process that
+ * does all of it. After one: its files, and the memory of the process. */
 #include "pitviper_output.h"
 #include "tests/bench/sensor/node_process.h"
 #include "tests/bench/sensor/speed_private.h"
@@ -46,7 +46,8 @@ static void say(Start *s, const char *part)
 static Status stand(Start *s, const Config *config)
 {
     const double      half_m = config->terrain.woods_half_m >= 50 ? config->terrain.woods_half_m : 4000;
-    const WoodsConfig woods = {.seed = (uint64_t)config->seed, .most_trees = config->terrain.woods_trees, .half_width_m = half_m};
+    const WoodsConfig woods = {
+        .seed = (uint64_t)config->seed, .most_trees = config->terrain.woods_trees, .half_width_m = half_m};
     return woods_create(&s->woods, &s->landscape, &woods, s->speed->many);
 }
 
@@ -59,8 +60,12 @@ static Status warm_vehicles(Start *s)
     config.ground = (ContactGround){.frame = &s->landscape.frame, .elevation = &s->landscape.elevation};
     Status status = entity_table_create(&s->scene.table, &config, s->scene.catalog);
     for (int k = 0; k < vehicles && status == STATUS_OK; k++) {
-        const TrialPlace place = {.type = tank, .number = k + 1, .east_m = 40.0 * (k % 5), .north_m = 40.0 * (k / 5),
-                                  .turn_rad = k, .appearance = 1u << 22};
+        const TrialPlace place = {.type = tank,
+                                  .number = k + 1,
+                                  .east_m = 40.0 * (k % 5),
+                                  .north_m = 40.0 * (k / 5),
+                                  .turn_rad = k,
+                                  .appearance = 1u << 22};
         status = trial_scene_place(&s->scene, &place);
     }
     arena_reset(s->speed->arena[2]);
@@ -80,7 +85,7 @@ static Status time_setup(Start *s)
     land.relief_m = config.terrain.relief_m;
     if (!etc_path(catalog, sizeof catalog, "catalog.csv")) return STATUS_BAD_VALUE;
 
-    s->begun_s    = wall_clock_s();
+    s->begun_s = wall_clock_s();
     Status status = landscape_create(&s->landscape, &land, &s->speed->frame, NULL, 0, NULL, 0);
     if (status != STATUS_OK) return status;
     say(s, "ground");
@@ -144,8 +149,8 @@ static Status time_sweep(Speed *s)
     snprintf(out, sizeof out, "%s/out", folder);
     snprintf(said, sizeof said, "%s/said.txt", folder);
     const char *const exercise[] = {"pitviper", "exercise", "demo", "-o", log, NULL};
-    const char *const replay[] = {"pitviper", "replay", log, "--size", "96x64", "--only", "30", "--no-files",
-                                  "--sweep", sweep, "--out", out, NULL};
+    const char *const replay[] = {"pitviper",   "replay",  log,   "--size", "96x64", "--only", "30",
+                                  "--no-files", "--sweep", sweep, "--out",  out,     NULL};
     const char *const gains = variants == 2 ? "[1, 1.1]" : "[1, 1.1, 1.2, 1.3]";
     FILE             *file = output_file(sweep, 0);
     bool              ok = file && fprintf(file, "axes:\n  detector.gain: %s\n", gains) > 0;
@@ -191,7 +196,8 @@ static void encode(void *user)
     Encode *e = user;
     arena_reset(e->arena);
     e->status = STATUS_OK;
-    if (e->files.png) e->status = frame_displays_make(e->display, &e->shown, e->files.request->bands, e->pool, e->arena);
+    if (e->files.png)
+        e->status = frame_displays_make(e->display, &e->shown, e->files.request->bands, e->pool, e->arena);
     if (e->status == STATUS_OK) e->status = frame_files_write(e->hash, &e->files, e->pool);
 }
 
@@ -214,7 +220,7 @@ static double differing(const char *out, const Picture *p)
 static void remove_folder(const char *out)
 {
     static const char *const parts[] = {"optical", "mwir", "lwir", "truth"};
-    char path[temp_name_size];
+    char                     path[temp_name_size];
     for (int k = 0; k < 4; k++)
         for (int e = 0; e < 3; e++) {
             snprintf(path, sizeof path, "%s/frames/%s%s", out, parts[k],
@@ -230,14 +236,14 @@ static void remove_folder(const char *out)
 
 Status speed_files(Speed *s)
 {
-    const Config config = config_default();
-    const View   view = trial_view(&s->scene, 600, 100, 40 * rad_per_deg, s->width, s->height);
+    const Config        config = config_default();
+    const View          view = trial_view(&s->scene, 600, 100, 40 * rad_per_deg, s->width, s->height);
     const RenderRequest request = speed_request(&view, three_bands, true);
-    TrialFrame   frame = speed_frame(s, &s->scene, &request, true);
-    Chain       *chain[BAND_COUNT] = {NULL};
-    FrameLevel   level[BAND_COUNT] = {{0}};
-    char         out[temp_path_size], what[what_size];
-    BenchTime    time[2];
+    TrialFrame          frame = speed_frame(s, &s->scene, &request, true);
+    Chain              *chain[BAND_COUNT] = {NULL};
+    FrameLevel          level[BAND_COUNT] = {{0}};
+    char                out[temp_path_size], what[what_size];
+    BenchTime           time[2];
     bench_progress(s->bench, "files");
     trial_frame(&frame);
     Status status = frame.status;
@@ -261,17 +267,17 @@ Status speed_files(Speed *s)
                    .arena = arena};
     Encode without = with;
     with.files.display = with.display;
-    without.files.png  = false;
+    without.files.png = false;
     const BenchWork work[2] = {{encode, &with, 1}, {encode, &without, 1}};
     if (status == STATUS_OK) bench_time(time, s->bench, work, 2);
     if (status == STATUS_OK) status = with.status != STATUS_OK ? with.status : without.status;
     for (int k = 0; k < 2 && status == STATUS_OK; k++) {
         snprintf(what, sizeof what, "files of a frame: EXR%s and hash, %s", k ? "" : ", PNG", all_threads);
-        BenchRow row    = bench_row_of(what, &time[k], "frames/s", 1);
-        row.error       = differing(out, &frame.picture);
+        BenchRow row = bench_row_of(what, &time[k], "frames/s", 1);
+        row.error = differing(out, &frame.picture);
         row.error_limit = 0;
-        row.error_unit  = "values";
-        row.against     = "read again";
+        row.error_unit = "values";
+        row.against = "read again";
         bench_add(s->bench, &row);
     }
     remove_folder(out);
@@ -285,14 +291,18 @@ void speed_memory(Speed *s)
 {
     size_t posts, pyramids;
     landscape_quick_bytes(&posts, &pyramids, &s->landscape.elevation);
-    const struct { const char *what; double mb; } rows[] = {
-        {"memory: posts", 1e-6 * (double)posts}, {"memory: their pyramid", 1e-6 * (double)pyramids},
-        {"memory: arena of a frame", 1e-6 * (double)arena_bytes(s->arena[0])},
-        {"memory: resident at the end", bench_memory_mb("VmRSS:")}, {"memory: resident at most", bench_memory_mb("VmHWM:")}};
+    const struct {
+        const char *what;
+        double      mb;
+    } rows[] = {{"memory: posts", 1e-6 * (double)posts},
+                {"memory: their pyramid", 1e-6 * (double)pyramids},
+                {"memory: arena of a frame", 1e-6 * (double)arena_bytes(s->arena[0])},
+                {"memory: resident at the end", bench_memory_mb("VmRSS:")},
+                {"memory: resident at most", bench_memory_mb("VmHWM:")}};
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         BenchRow row = bench_row(rows[k].what);
-        row.median   = rows[k].mb;
-        row.unit     = "MB";
+        row.median = rows[k].mb;
+        row.unit = "MB";
         bench_add(s->bench, &row);
     }
 }

@@ -9,10 +9,11 @@
 
 static Status warm(World *world, double unix_s, Pool *pool)
 {
-    const Config  config = config_default();
-    HeatConfig    heat = heat_default_config();
-    WeatherCourseConfig about = {weather_default(), config.weather.air_range_k, world->frame.origin.lon_rad, world->frame.origin.lat_rad};
-    WeatherCourse *course;
+    const Config        config = config_default();
+    HeatConfig          heat = heat_default_config();
+    WeatherCourseConfig about = {weather_default(), config.weather.air_range_k, world->frame.origin.lon_rad,
+                                 world->frame.origin.lat_rad};
+    WeatherCourse      *course;
     about.base.air_temp_k = atmosphere_temp_k(world->atmosphere, 0);
     heat.step_s = config.heat.step_s, heat.facets = config.heat.facets, heat.unix_s = unix_s;
     const Status status = weather_course_open(&course, "clear", &about);
@@ -59,7 +60,8 @@ static void cast(void *user)
     Cast *c = user;
     heat_shadow_destroy(c->map);
     c->map = NULL;
-    c->status = heat_shadow_create(&c->map, c->elevation, config_default().heat.shadow_m, c->slots, c->d_enu, NULL, NULL, c->pool);
+    c->status = heat_shadow_create(&c->map, c->elevation, config_default().heat.shadow_m, c->slots, c->d_enu, NULL,
+                                   NULL, c->pool);
     bench_keep(c->map);
 }
 
@@ -79,7 +81,8 @@ static Status time_shadows(Speed *s)
         double  different = 0, open[2];
         uint8_t shadow[2][shadow_most_slots] = {{0}};
         for (int i = 0; i < 2000; i++) {
-            const double x_m = s->east_m * (random_uniform(29, 0, 0, (uint64_t)i) - 0.5), y_m = s->north_m * (random_uniform(29, 1, 0, (uint64_t)i) - 0.5);
+            const double x_m = s->east_m * (random_uniform(29, 0, 0, (uint64_t)i) - 0.5),
+                         y_m = s->north_m * (random_uniform(29, 1, 0, (uint64_t)i) - 0.5);
             heat_shadow_at(shadow[0], &open[0], many.map, x_m, y_m);
             heat_shadow_at(shadow[1], &open[1], one.map, x_m, y_m);
             different += memcmp(shadow[0], shadow[1], (size_t)many.slots) != 0 || open[0] != open[1];
@@ -89,8 +92,8 @@ static Status time_shadows(Speed *s)
         row.rate = 1e-6 * (double)heat_shadow_bytes(one.map), row.rate_unit = "MB";
         row.ratio = bench_ratio(&time[1], &time[0]), row.to = all_threads;
         row.error = different, row.error_limit = 0, row.error_unit = "places differ";
-        snprintf(against, sizeof against, "all threads; %.0f x %.0f km, cells of %.0f m", 1e-3 * s->east_m, 1e-3 * s->north_m,
-                 heat_shadow_cell_m(one.map));
+        snprintf(against, sizeof against, "all threads; %.0f x %.0f km, cells of %.0f m", 1e-3 * s->east_m,
+                 1e-3 * s->north_m, heat_shadow_cell_m(one.map));
         row.against = against;
         bench_add(s->bench, &row);
     }
@@ -119,14 +122,17 @@ static void ask_ground(void *user)
     bench_keep(s->temp_k);
 }
 
-static void fill_hits(HitSet *s, const HeatNow *now, const ShadowMap *shadow, const Landscape *landscape, const double half_m[2])
+static void fill_hits(HitSet *s, const HeatNow *now, const ShadowMap *shadow, const Landscape *landscape,
+                      const double half_m[2])
 {
     s->scene = (HeatScene){now, shadow, NULL};
     for (int i = 0; i < heat_hits; i++) { /* neighbours, as pixels of a row are */
-        const double at_x = random_uniform(31, 0, 0, (uint64_t)(i / 64)), at_y = random_uniform(31, 1, 0, (uint64_t)(i / 64));
+        const double at_x = random_uniform(31, 0, 0, (uint64_t)(i / 64)),
+                     at_y = random_uniform(31, 1, 0, (uint64_t)(i / 64));
         s->p_enu[i][0] = half_m[0] * (1.9 * at_x - 0.95) + i % 64, s->p_enu[i][1] = half_m[1] * (1.9 * at_y - 0.95);
         s->p_enu[i][2] = 0;
-        const double n[3] = {0.3 * (random_uniform(31, 2, 0, (uint64_t)i) - 0.5), 0.3 * (random_uniform(31, 3, 0, (uint64_t)i) - 0.5), 1};
+        const double n[3] = {0.3 * (random_uniform(31, 2, 0, (uint64_t)i) - 0.5),
+                             0.3 * (random_uniform(31, 3, 0, (uint64_t)i) - 0.5), 1};
         v3_normalize(s->n_enu[i], n);
         s->surface[i] = landscape_surface(landscape, s->p_enu[i][0], s->p_enu[i][1]);
     }
@@ -157,37 +163,42 @@ static Status time_hits(Speed *s, const HeatNow *now)
 
 typedef struct HeatFrame {
     const TrialFrame *of;
-    Air       air;
-    HeatScene scene;
-    Pool     *pool;
-    Arena    *arena;
-    Picture   picture;
-    Status    status;
+    Air               air;
+    HeatScene         scene;
+    Pool             *pool;
+    Arena            *arena;
+    Picture           picture;
+    Status            status;
 } HeatFrame;
 
 static void render_heat(void *user)
 {
     HeatFrame *f = user;
     arena_reset(f->arena);
-    f->status = render(&f->picture, &f->of->scene->world, &f->of->snapshot, &f->of->request, &f->air, f->pool, f->arena);
+    f->status =
+        render(&f->picture, &f->of->scene->world, &f->of->snapshot, &f->of->request, &f->air, f->pool, f->arena);
 }
 
-/* Rendering alone, from 100 m up: the same snapshot and air, with the ground as warm as the air, with its heat, and with its shadows. */
+/* Rendering alone, from 100 m up: the same snapshot and air, with the ground as warm as the air, with its heat, and
+ * with its shadows. */
 static Status time_frames(Speed *s, const HeatNow *now)
 {
-    static HeatFrame frame[3];
+    static HeatFrame         frame[3];
     static const char *const name[3] = {"as the air", "no shadows", "with shadows"};
-    const View    view = trial_view(&s->scene, 600, 100, 40 * rad_per_deg, s->width, s->height);
-    const RenderRequest request = speed_request(&view, three_bands, true);
-    TrialFrame    base = speed_frame(s, &s->scene, &request, false);
-    BenchWork     work[3];
-    BenchTime     time[3];
-    char          what[what_size];
+    const View               view = trial_view(&s->scene, 600, 100, 40 * rad_per_deg, s->width, s->height);
+    const RenderRequest      request = speed_request(&view, three_bands, true);
+    TrialFrame               base = speed_frame(s, &s->scene, &request, false);
+    BenchWork                work[3];
+    BenchTime                time[3];
+    char                     what[what_size];
     trial_frame(&base);
     if (base.status != STATUS_OK) return base.status;
     for (int k = 0; k < 3; k++) {
-        frame[k] = (HeatFrame){.of = &base, .air = base.air, .scene = {now, k == 2 ? s->scene.world.shadow : NULL, NULL},
-                               .pool = s->one, .arena = s->arena[0]};
+        frame[k] = (HeatFrame){.of = &base,
+                               .air = base.air,
+                               .scene = {now, k == 2 ? s->scene.world.shadow : NULL, NULL},
+                               .pool = s->one,
+                               .arena = s->arena[0]};
         frame[k].air.heat = k > 0 ? &frame[k].scene : NULL;
         work[k] = (BenchWork){render_heat, &frame[k], 1};
     }
@@ -207,15 +218,15 @@ static Status time_frames(Speed *s, const HeatNow *now)
 
 enum { vehicle_rounds = 5 };
 
-/* What the longest 0.1 s and the mean one cost, over a minute in which all of the scene's vehicles appear at once, stand,
- * and after half of it turn round; and the seconds until all are warm. Their models are known. */
+/* What the longest 0.1 s and the mean one cost, over a minute in which all of the scene's vehicles appear at once,
+ * stand, and after half of it turn round; and the seconds until all are warm. Their models are known. */
 static Status time_vehicle_minute(double out_s[3], size_t *bytes, const TrialScene *scene, Snapshot snapshot)
 {
     WorldVehicles *v = NULL;
     const Snapshot none = {0};
-    Status         status = world_vehicles_create(&v, &scene->world,
-                                                  &(WorldVehiclesConfig){.step_s = config_default().heat.vehicle_step_s,
-                                                                         .window_us = vehicle_window_us});
+    Status         status = world_vehicles_create(
+                &v, &scene->world,
+                &(WorldVehiclesConfig){.step_s = config_default().heat.vehicle_step_s, .window_us = vehicle_window_us});
     if (status == STATUS_OK) status = world_vehicles_tick(v, &none);
     double spent_s = 0;
     out_s[0] = out_s[2] = 0;
@@ -266,7 +277,7 @@ Status speed_heat(Speed *s)
     HeatNow *now = NULL;
     Arena   *arena = arena_create();
     bench_progress(s->bench, "heat of the ground");
-    Status   status = arena ? time_state(s) : STATUS_NO_MEMORY;
+    Status status = arena ? time_state(s) : STATUS_NO_MEMORY;
     if (status == STATUS_OK) status = time_shadows(s);
     if (status == STATUS_OK) status = heat_now(&now, s->scene.world.heat, s->scene.unix_s, arena);
     if (status == STATUS_OK) status = time_hits(s, now);

@@ -16,29 +16,30 @@ typedef struct Speed {
     double     east_m, north_m;
     LocalFrame frame;
     Landscape  landscape;
-    TrialScene scene, close;   /* twenty vehicles; one */
+    TrialScene scene, close; /* twenty vehicles; one */
     Pool      *one, *many;
-    Arena     *arena[3];       /* of frames on many threads, on one, and others */
-    char       target[96];     /* what fills the image, and the sensor position */
+    Arena     *arena[3];   /* of frames on many threads, on one, and others */
+    char       target[96]; /* what fills the image, and the sensor position */
 } Speed;
 
 /* Size, pools and arenas by the options; the ground, with its rows; the scene of the close target. */
-Status        speed_open(Speed *s);
-Status        speed_make_ground(Speed *s);
-Status        speed_open_close(Speed *s);
+Status speed_open(Speed *s);
+Status speed_make_ground(Speed *s);
+Status speed_open_close(Speed *s);
 /* Whether the rows of `optical` (pictures of all bands) or `radar` are asked for: --bands names one of them. */
 bool          speed_wants(const Bench *bench, const char *rows);
 RenderRequest speed_request(const View *view, unsigned bands, bool truth);
 TrialFrame    speed_frame(const Speed *s, const TrialScene *scene, const RenderRequest *request, bool many);
 /* The rows of a frame's files; of memory. */
-Status        speed_files(Speed *s);
-void          speed_memory(Speed *s);
+Status speed_files(Speed *s);
+void   speed_memory(Speed *s);
 /* The rows of a world's set-up by parts, and of a sweep's variant. */
-Status        speed_start(Speed *s);
+Status speed_start(Speed *s);
 /* The rows of the ground's heat; warms the scene's world. */
-Status        speed_heat(Speed *s);
+Status speed_heat(Speed *s);
 
-/* ---- speed_rays.c: the rays of an image of one sample per pixel, in a frame's own order, for the tracers alone ---- */
+/* ---- speed_rays.c: the rays of an image of one sample per pixel, in a frame's own order, for the tracers alone ----
+ */
 
 typedef struct RawRays RawRays;
 
@@ -50,8 +51,8 @@ int    raw_rays_count(const RawRays *raw);
 /* A frame's own tracers, of the ground by tiles and of the parts by packets, with its tiles, order and limits: of
  * eye rays the parts and then the ground in front of them, of sun rays the parts and then the ground for the rays
  * not blocked. Nothing else. user: a RawRays with a pool. */
-void   raw_trace(void *user);
-void   raw_use_pool(RawRays *raw, Pool *pool);
+void raw_trace(void *user);
+void raw_use_pool(RawRays *raw, Pool *pool);
 /* Worst difference in range, m, between the ground tracer and a reference walk from one post line to the next in
  * double, over every n-th ray traced to the ground; INFINITY where one hits the ground and the other does not. */
 double raw_worst_m(const RawRays *raw, int every);

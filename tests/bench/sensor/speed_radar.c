@@ -14,23 +14,23 @@ static const double        range_m = 2000;
 static const DisEntityType tank_type = {1, 1, 222, 1, 1, 1, 0};
 
 typedef struct RadarSpeed {
-    Bench         *bench;
-    RadarPreset    preset;
-    RadarMaterials materials;
-    Catalog       *catalog;
-    RadarTarget   *target;
-    const Model   *model;
+    Bench           *bench;
+    RadarPreset      preset;
+    RadarMaterials   materials;
+    Catalog         *catalog;
+    RadarTarget     *target;
+    const Model     *model;
     SignaturesConfig config;
-    SignatureCells cells;
-    ScatterAntenna middle, now;       /* of the bin; of the look at hand */
-    TotalField     field;
-    Signature      signature;
-    Centres        centres;
-    EchoGrid      *grid;
-    Echo          *echo;
-    double complex *sample;
-    Status         status;
-    Pool          *one, *many;
+    SignatureCells   cells;
+    ScatterAntenna   middle, now; /* of the bin; of the look at hand */
+    TotalField       field;
+    Signature        signature;
+    Centres          centres;
+    EchoGrid        *grid;
+    Echo            *echo;
+    double complex  *sample;
+    Status           status;
+    Pool            *one, *many;
 } RadarSpeed;
 
 static TubeConfig tubes_of(const RadarSpeed *r, double rays)
@@ -109,7 +109,7 @@ static Status new_bin(RadarSpeed *r, Pool *pool, double *spent_s)
 {
     const TubeConfig tubes = tubes_of(r, r->config.rays_per_wavelength);
     const double     begun_s = wall_clock_s();
-    Status status = total_field_trace(&r->field, r->target, &r->middle, &r->middle, &tubes, true, pool);
+    Status           status = total_field_trace(&r->field, r->target, &r->middle, &r->middle, &tubes, true, pool);
     if (status == STATUS_OK) status = signature_make(&r->signature, &r->field, r->target, &r->cells);
     *spent_s = wall_clock_s() - begun_s;
     return status;
@@ -251,28 +251,28 @@ static Status place_tanks(TrialScene *scene, int tanks)
 
 static Status time_updates(RadarSpeed *r, TrialScene *scene, Arena *const arena[3])
 {
-    char     catalog[4096], what[what_size];
-    Snapshot snapshot;
-    Weather  weather = weather_default();
+    char        catalog[4096], what[what_size];
+    Snapshot    snapshot;
+    Weather     weather = weather_default();
     RadarUpdate u[2];
-    BenchTime time[2];
-    const int tanks = bench_quick(r->bench) ? tanks_quick : tanks_full;
-    Status   status = place_tanks(scene, tanks);
+    BenchTime   time[2];
+    const int   tanks = bench_quick(r->bench) ? tanks_quick : tanks_full;
+    Status      status = place_tanks(scene, tanks);
     if (status == STATUS_OK) status = entity_table_snapshot(&snapshot, scene->table, scene->sun_now_s + 0.5, arena[2]);
     if (status == STATUS_OK && !etc_path(catalog, sizeof catalog, "catalog.csv")) status = STATUS_BAD_VALUE;
     const View view = trial_view(scene, range_m, 250, 3 * rad_per_deg, 64, 64);
     for (int k = 0; k < 2 && status == STATUS_OK; k++) {
         u[k] = (RadarUpdate){.scene = {.world = &scene->world,
-                                   .snapshot = &snapshot,
-                                   .view = &view,
-                                   .hidden = -1,
-                                   .v_enu_mps = {0, 200, -20},
-                                   .reference_m = NAN,
-                                   .t_s = 1,
-                                   .weather = &weather,
-                                   .number = 1},
-                         .pool = k ? r->many : r->one,
-                         .arena = arena[k]};
+                                       .snapshot = &snapshot,
+                                       .view = &view,
+                                       .hidden = -1,
+                                       .v_enu_mps = {0, 200, -20},
+                                       .reference_m = NAN,
+                                       .t_s = 1,
+                                       .weather = &weather,
+                                       .number = 1},
+                             .pool = k ? r->many : r->one,
+                             .arena = arena[k]};
         if (k == 0)
             status = seeker_radar_create(
                 &u[0].radar, &(SeekerRadarConfig){
@@ -339,8 +339,8 @@ static Status open_bounce(RadarUpdate u[2], RadarSpeed *r, const char *catalog)
 {
     Status status = STATUS_OK;
     for (int k = 0; k < 2 && status == STATUS_OK; k++) {
-        const SeekerRadarConfig config = {.preset = bounce_preset, .catalog = catalog, .warp_m = 1e-3, .seed = 1,
-                                          .ground_bounce = k == 1};
+        const SeekerRadarConfig config = {
+            .preset = bounce_preset, .catalog = catalog, .warp_m = 1e-3, .seed = 1, .ground_bounce = k == 1};
         status = seeker_radar_create(&u[k].radar, &config);
         if (status != STATUS_OK) break;
         bench_progress(r->bench, k ? "signatures by way of the ground" : "signature of a tank");
@@ -361,23 +361,29 @@ static Status time_bounce(RadarSpeed *r, TrialScene *scene, Arena *const arena[3
 {
     static const char *const what[2] = {"radar, 35 GHz: a tank at 1 km, bins at hand, no ground, 1 thread",
                                         "radar, 35 GHz: the same with radar.ground_bounce"};
-    char      catalog[4096];
-    Snapshot  snapshot;
-    Weather   weather = weather_default();
-    RadarUpdate u[2] = {{0}};
-    BenchTime time[2];
-    Status    status = trial_scene_place(scene, &(TrialPlace){.type = tank_type, .number = 100, .turn_rad = 0.61});
+    char                     catalog[4096];
+    Snapshot                 snapshot;
+    Weather                  weather = weather_default();
+    RadarUpdate              u[2] = {{0}};
+    BenchTime                time[2];
+    Status status = trial_scene_place(scene, &(TrialPlace){.type = tank_type, .number = 100, .turn_rad = 0.61});
     if (status == STATUS_OK) status = entity_table_snapshot(&snapshot, scene->table, scene->sun_now_s + 0.5, arena[2]);
     if (status == STATUS_OK && !etc_path(catalog, sizeof catalog, "catalog.csv")) status = STATUS_BAD_VALUE;
     if (status != STATUS_OK) return status;
     const View view = trial_view(scene, 1000, 30, 3 * rad_per_deg, 64, 64);
     for (int k = 0; k < 2; k++)
-        u[k] = (RadarUpdate){.scene = {.world = &scene->world, .snapshot = &snapshot, .view = &view, .hidden = -1,
-                                   .v_enu_mps = {0, 200, 0}, .reference_m = NAN, .t_s = 1, .weather = &weather,
-                                   .number = 1},
-                         .arena = arena[k]};
+        u[k] = (RadarUpdate){.scene = {.world = &scene->world,
+                                       .snapshot = &snapshot,
+                                       .view = &view,
+                                       .hidden = -1,
+                                       .v_enu_mps = {0, 200, 0},
+                                       .reference_m = NAN,
+                                       .t_s = 1,
+                                       .weather = &weather,
+                                       .number = 1},
+                             .arena = arena[k]};
     status = open_bounce(u, r, catalog);
-    const double coherence = status == STATUS_OK ? u[1].frame->target[0].bounce.coherence : 0;
+    const double    coherence = status == STATUS_OK ? u[1].frame->target[0].bounce.coherence : 0;
     const BenchWork work[2] = {{radar_update, &u[0], 1}, {radar_update, &u[1], 1}};
     bench_progress(r->bench, "a tank with and without the ground's mirror");
     if (status == STATUS_OK) bench_time(time, r->bench, work, 2);

@@ -7,7 +7,10 @@
 
 #include <stdlib.h>
 
-enum { side_px = 32, square_px = 4 }; /* of a frame's tiles at one sample a pixel; of rays that its tracers take together */
+enum {
+    side_px = 32,
+    square_px = 4
+}; /* of a frame's tiles at one sample a pixel; of rays that its tracers take together */
 
 /* Rays of a block that pass near one vehicle, in the order in which a frame passes them to its tracer. */
 typedef struct Near {
@@ -21,12 +24,12 @@ struct RawRays {
     Pool            *pool;
     Ground           ground;
     int              blocks, count, block_of_tile;
-    int             *first;      /* [blocks + 1] */
+    int             *first;                         /* [blocks + 1] */
     double          *o[3], *d[3], *far_m, *range_m; /* [count] */
-    uint8_t         *dark;       /* [count] rays that a vehicle blocks: range_m is not the ground's */
-    PosedEntity     *entity;     /* in the frame's arena */
+    uint8_t         *dark;   /* [count] rays that a vehicle blocks: range_m is not the ground's */
+    PosedEntity     *entity; /* in the frame's arena */
     int              entities;
-    Near            *near;       /* by block */
+    Near            *near; /* by block */
     int              nears;
     int             *first_near; /* [blocks + 1] */
     int             *near_ray;   /* of the block */
@@ -35,8 +38,8 @@ struct RawRays {
 static Status pose_all(RawRays *raw, const TrialFrame *f)
 {
     const World *world = &f->scene->world;
-    raw->entities      = f->snapshot.count;
-    raw->entity        = arena_alloc(f->arena, (size_t)raw->entities + 1, sizeof *raw->entity);
+    raw->entities = f->snapshot.count;
+    raw->entity = arena_alloc(f->arena, (size_t)raw->entities + 1, sizeof *raw->entity);
     if (!raw->entity) return STATUS_NO_MEMORY;
     for (int k = 0; k < raw->entities; k++) {
         const SnapshotEntity *e = &f->snapshot.entity[k];
@@ -46,13 +49,12 @@ static Status pose_all(RawRays *raw, const TrialFrame *f)
         double                p_enu[3], r_enu_from_body[9];
         if (!pose || !joint_value) return STATUS_NO_MEMORY;
         snapshot_pose(pose, joint_value, &f->snapshot, k, model);
-        raw->entity[k].node = arena_alloc(f->arena, (size_t)parts_node_count(world->tracer, e->model) + 1,
-                                          sizeof *raw->entity[k].node);
+        raw->entity[k].node =
+            arena_alloc(f->arena, (size_t)parts_node_count(world->tracer, e->model) + 1, sizeof *raw->entity[k].node);
         if (!raw->entity[k].node) return STATUS_NO_MEMORY;
         enu_from_ecef(p_enu, &world->frame, e->p_ecef);
         m3_tmul(r_enu_from_body, world->frame.r_ecef_from_enu, e->r_ecef_from_body);
-        parts_pose(&raw->entity[k], world->tracer, e->model, pose, p_enu, r_enu_from_body,
-                   snapshot_damage(e));
+        parts_pose(&raw->entity[k], world->tracer, e->model, pose, p_enu, r_enu_from_body, snapshot_damage(e));
     }
     return STATUS_OK;
 }
@@ -81,12 +83,12 @@ static void add_tile(RawRays *raw, Rays *rays, Hits *hits, const TrialFrame *f, 
                      int *list)
 {
     static const double offset_m = 1e-3;
-    const View *view = &f->request.view;
-    const int   x1 = x0 + side_px < view->width ? x0 + side_px : view->width;
-    const int   y1 = y0 + side_px < view->height ? y0 + side_px : view->height;
-    int         order[side_px * side_px];
-    VisibilityCounters counters = {0};
-    rays->count   = 0;
+    const View         *view = &f->request.view;
+    const int           x1 = x0 + side_px < view->width ? x0 + side_px : view->width;
+    const int           y1 = y0 + side_px < view->height ? y0 + side_px : view->height;
+    int                 order[side_px * side_px];
+    VisibilityCounters  counters = {0};
+    rays->count = 0;
     rays->columns = x1 - x0;
     for (int y = y0; y < y1; y++)
         for (int x = x0; x < x1; x++) {
@@ -131,7 +133,7 @@ static Status make_room(RawRays *raw, int rays, int blocks)
 
 static bool comes_near(const RawRays *raw, int i, const PosedEntity *e)
 {
-    double from[3], across[3];
+    double       from[3], across[3];
     const double o[3] = {raw->o[0][i], raw->o[1][i], raw->o[2][i]}, d[3] = {raw->d[0][i], raw->d[1][i], raw->d[2][i]};
     v3_sub(from, e->centre_enu, o);
     const double along = v3_dot(from, d);
@@ -166,7 +168,7 @@ static Status pair_up(RawRays *raw, const View *view)
             raw->first_near[b + 1] = raw->nears;
         }
         if (pass) break;
-        raw->near     = malloc(((size_t)raw->nears + 1) * sizeof *raw->near);
+        raw->near = malloc(((size_t)raw->nears + 1) * sizeof *raw->near);
         raw->near_ray = malloc(((size_t)listed + 1) * sizeof *raw->near_ray);
         if (!raw->near || !raw->near_ray) return STATUS_NO_MEMORY;
     }
@@ -193,7 +195,7 @@ Status raw_rays_create(RawRays **out, const TrialFrame *f)
 
     raw->block_of_tile = f->request.bands & (1u << BAND_OPTICAL | 1u << BAND_MWIR) ? 2 : 1;
     raw->elevation = &f->scene->landscape->elevation;
-    raw->pool      = f->pool;
+    raw->pool = f->pool;
     ground_prepare(&raw->ground, raw->elevation);
     for (int y = 0; y < view->height; y += side_px)
         for (int x = 0; x < view->width; x += side_px) add_tile(raw, rays, hits, f, v, x, y, list);
@@ -237,7 +239,9 @@ static Part part_of(const RawRays *raw, int b)
     const int first = raw->first[b];
     return (Part){.o = {raw->o[0] + first, raw->o[1] + first, raw->o[2] + first},
                   .d = {raw->d[0] + first, raw->d[1] + first, raw->d[2] + first},
-                  .far_m = raw->far_m + first, .range_m = raw->range_m + first, .first = first,
+                  .far_m = raw->far_m + first,
+                  .range_m = raw->range_m + first,
+                  .first = first,
                   .count = raw->first[b + 1] - first};
 }
 
@@ -263,10 +267,10 @@ static void trace_eyes(RawRays *raw, int b)
 /* The vehicles, then the ground for the rays that they do not block. */
 static void trace_sun(RawRays *raw, int b)
 {
-    const Part p = part_of(raw, b);
-    uint8_t   *dark = raw->dark + p.first;
-    double     start[3][hits_capacity], range_m[hits_capacity];
-    int        ray[hits_capacity], left = 0;
+    const Part          p = part_of(raw, b);
+    uint8_t            *dark = raw->dark + p.first;
+    double              start[3][hits_capacity], range_m[hits_capacity];
+    int                 ray[hits_capacity], left = 0;
     const double *const o[3] = {start[0], start[1], start[2]};
     memset(dark, 0, (size_t)p.count);
     for (int k = raw->first_near[b]; k < raw->first_near[b + 1]; k++) {
@@ -315,8 +319,8 @@ static double next_line(double a, double b, double t)
 static double walk(const Elevation *e, const double o[3], const double d[3])
 {
     const ElevationLevel *level = &e->level[0];
-    const double u0 = (o[0] - level->x0_m) / level->spacing_m, du = d[0] / level->spacing_m;
-    const double v0 = (o[1] - level->y0_m) / level->spacing_m, dv = d[1] / level->spacing_m;
+    const double          u0 = (o[0] - level->x0_m) / level->spacing_m, du = d[0] / level->spacing_m;
+    const double          v0 = (o[1] - level->y0_m) / level->spacing_m, dv = d[1] / level->spacing_m;
     const double top_m = level->z0_m + level->step_m * elevation_highest(level, level->pyramid_count - 1, 0, 0);
     double       t = o[2] > top_m && d[2] < 0 ? (top_m - o[2]) / d[2] : 0;
     double       above = INFINITY;

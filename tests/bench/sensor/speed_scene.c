@@ -1,5 +1,5 @@
-/* tests/bench/sensor/speed_scene.c: what the rows of `bench speed` stand on: its options, the ground, and the target that
- * fills a picture. */
+/* tests/bench/sensor/speed_scene.c: what the rows of `bench speed` stand on: its options, the ground, and the target
+ * that fills a picture. */
 #include "tests/bench/suites.h"
 #include "pitviper_output.h"
 
@@ -68,9 +68,9 @@ Status speed_open(Speed *s)
 {
     double size[2], ground_km[2];
     if (!sizes_of(size, ground_km, s->bench)) return STATUS_BAD_VALUE;
-    s->width   = (int)size[0];
-    s->height  = (int)size[1];
-    s->east_m  = floor(1000 * ground_km[0]);
+    s->width = (int)size[0];
+    s->height = (int)size[1];
+    s->east_m = floor(1000 * ground_km[0]);
     s->north_m = floor(1000 * ground_km[1]);
     Status status = pool_create(&s->one, 1);
     if (status == STATUS_OK) status = pool_create(&s->many, bench_threads(s->bench));
@@ -97,27 +97,27 @@ Status speed_make_ground(Speed *s)
     const size_t          stored = elevation_level_stored(level);
     uint16_t              low = 65535, high = 0; /* base 0, shift 0 everywhere */
     for (size_t i = 0; i < stored; i++) {
-        low  = level->stored[i] < low ? level->stored[i] : low;
+        low = level->stored[i] < low ? level->stored[i] : low;
         high = level->stored[i] > high ? level->stored[i] : high;
     }
     snprintf(what, sizeof what, "%.0f M posts, heights %.0f m apart", 1e-6 * (double)posts,
              (high - low) * level->step_m);
-    BenchRow row  = bench_row("ground: posts");
-    row.against   = what;
-    row.median    = times_s[0];
-    row.unit      = "s";
-    row.rate      = 1e-6 * (double)posts / times_s[0];
+    BenchRow row = bench_row("ground: posts");
+    row.against = what;
+    row.median = times_s[0];
+    row.unit = "s";
+    row.rate = 1e-6 * (double)posts / times_s[0];
     row.rate_unit = "M posts/s";
     bench_add(s->bench, &row);
-    row             = bench_row("ground: pyramid");
-    row.median      = times_s[1];
-    row.unit        = "s";
-    row.rate        = 1e-6 * (double)posts / times_s[1];
-    row.rate_unit   = "M posts/s";
-    row.error       = fabs((double)elevation_highest(level, level->pyramid_count - 1, 0, 0) - high);
+    row = bench_row("ground: pyramid");
+    row.median = times_s[1];
+    row.unit = "s";
+    row.rate = 1e-6 * (double)posts / times_s[1];
+    row.rate_unit = "M posts/s";
+    row.error = fabs((double)elevation_highest(level, level->pyramid_count - 1, 0, 0) - high);
     row.error_limit = 0;
-    row.error_unit  = "posts";
-    row.against     = "top of the pyramid against the highest post";
+    row.error_unit = "posts";
+    row.against = "top of the pyramid against the highest post";
     bench_add(s->bench, &row);
     return STATUS_OK;
 }
@@ -140,11 +140,11 @@ Status speed_open_close(Speed *s)
 {
     static const DisEntityType tank = {1, 1, 222, 1, 1, 1, 0};
     static const char *const   files[] = {"catalog.csv", "ktank.yaml"};
-    const char *root = getenv("PITVIPER_DATA"), *file = bench_option(s->bench, "model");
-    char        path[1024], folder[temp_path_size], name[temp_name_size];
-    const int   octets = snprintf(path, sizeof path, "%s/models/brlcad/ktank.obj", root ? root : "../shared/data");
-    const bool  ktank = !file && (size_t)octets < sizeof path && access(path, R_OK) == 0;
-    char *absolute = file || ktank ? realpath(ktank ? path : file, NULL) : NULL;
+    const char                *root = getenv("PITVIPER_DATA"), *file = bench_option(s->bench, "model");
+    char                       path[1024], folder[temp_path_size], name[temp_name_size];
+    const int  octets = snprintf(path, sizeof path, "%s/models/brlcad/ktank.obj", root ? root : "../shared/data");
+    const bool ktank = !file && (size_t)octets < sizeof path && access(path, R_OK) == 0;
+    char      *absolute = file || ktank ? realpath(ktank ? path : file, NULL) : NULL;
     if (file && !absolute) {
         log_error("bench: cannot read %s: %s", file, strerror(errno));
         return STATUS_IO;

@@ -1,5 +1,5 @@
-/* tests/bench/sensor/stability_detector.c: detectors of 1 to 16 bits in the dark, in the sun and with values that are not
- * numbers; displays of images without contrast; and whether every thread treats denormal numbers alike. */
+/* tests/bench/sensor/stability_detector.c: detectors of 1 to 16 bits in the dark, in the sun and with values that are
+ * not numbers; displays of images without contrast; and whether every thread treats denormal numbers alike. */
 #include "tests/bench/suites.h"
 
 #include "tests/bench/stress.h"
@@ -37,18 +37,18 @@ static void fill_plane(float *plane, int kind, Dice *dice)
 static double counts_in_scale(void *user, bool quick)
 {
     static float plane[3][pixels];
-    Dice   dice = {.stream = 70};
-    double wrong = 0;
+    Dice         dice = {.stream = 70};
+    double       wrong = 0;
     (void)user;
     for (int k = 0; k < presets; k++)
         for (int bits = 1; bits <= 16; bits += quick ? 7 : 1) {
             static const double noise[] = {0, 1, 1e6};
-            SensorPreset preset;
-            Chain       *chain = NULL;
+            SensorPreset        preset;
+            Chain              *chain = NULL;
             if (!read_preset(&preset, k)) return INFINITY;
-            preset.bits        = bits;
+            preset.bits = bits;
             preset.noise_scale = noise[bits % 3];
-            preset.bad_share   = bits % 2 ? 0.2 : 0;
+            preset.bad_share = bits % 2 ? 0.2 : 0;
             if (bits % 4 == 1) preset.photons.well_e = 1e12;
             if (bits % 4 == 2) preset.photons.well_e = 100;
             preset_refresh(&preset);
@@ -89,10 +89,10 @@ static double even_planes(void *user, bool quick)
             if (chain_create(&chain, &preset, width, height, 16, 1) != STATUS_OK) return INFINITY;
             for (int step = 0; step <= 16; step++) {
                 const PhotonDetector *d = &preset.photons;
-                const double temp_k = 180 + 40 * step, full = (1 << bits) - 1, still[2] = {0, 0};
-                const double radiance = planck_band(d->low_m, d->high_m, temp_k, NULL);
-                const double exact = (photon_electrons(d, temp_k, NULL) + d->dark_e) / (d->well_e / full);
-                const float *const in[1] = {plane};
+                const double          temp_k = 180 + 40 * step, full = (1 << bits) - 1, still[2] = {0, 0};
+                const double          radiance = planck_band(d->low_m, d->high_m, temp_k, NULL);
+                const double          exact = (photon_electrons(d, temp_k, NULL) + d->dark_e) / (d->well_e / full);
+                const float *const    in[1] = {plane};
                 for (int i = 0; i < pixels; i++) plane[i] = (float)radiance;
                 chain_expose(chain, in);
                 chain_run(chain, in, NULL, 0, still);
@@ -107,11 +107,11 @@ static double even_planes(void *user, bool quick)
 /* One NaN pixel: the other pixels that change, against the same image with a 0 there. Static, no noise, no patches. */
 static double one_bad_pixel(void *user, bool quick)
 {
-    static float    plane[pixels];
-    static uint16_t kept[pixels];
+    static float       plane[pixels];
+    static uint16_t    kept[pixels];
     static const float odd[3] = {NAN, INFINITY, -INFINITY};
-    const double still[2] = {0, 0};
-    double       changed = 0;
+    const double       still[2] = {0, 0};
+    double             changed = 0;
     (void)user, (void)quick;
     for (int k = 0; k < 3; k++) {
         SensorPreset preset;
@@ -143,9 +143,9 @@ static double one_bad_pixel(void *user, bool quick)
  * division. */
 static double no_contrast(void *user, bool quick)
 {
-    static float   plane[pixels];
+    static float    plane[pixels];
     static uint16_t shown[pixels];
-    double         worst = 0;
+    double          worst = 0;
     (void)user;
     for (int k = 0; k <= (quick ? 20 : 400); k++) {
         DetectorConfig     config = detector_default_config();
@@ -170,16 +170,16 @@ static double display_ends(void *user, bool quick)
     static float    plane[pixels];
     static uint16_t shown[3 * pixels];
     static uint8_t  shown8[3 * pixels];
-    Dice   dice = {.stream = 71};
-    double wrong = 0;
+    Dice            dice = {.stream = 71};
+    double          wrong = 0;
     (void)user;
     for (int n = quick ? 40 : 1000; n > 0; n--) {
         DetectorConfig     config = detector_default_config();
         const float *const in[3] = {plane, plane, plane};
-        config.bits   = 16;
-        config.gain   = stress_log_uniform(&dice, 1e-6, 1e6);
+        config.bits = 16;
+        config.gain = stress_log_uniform(&dice, 1e-6, 1e6);
         config.offset = stress_uniform(&dice, -10, 10);
-        config.percentile_low  = n % 3 ? 0.01 : 0;
+        config.percentile_low = n % 3 ? 0.01 : 0;
         config.percentile_high = n % 3 ? 0.99 : 1;
         fill_plane(plane, 8, &dice);
         for (int i = 0; i < pixels; i += 2) plane[i] = (float)stress_log_uniform(&dice, 1e-30, n % 2 ? 1e3 : 1e38);
@@ -231,9 +231,9 @@ static void multiply(void *user, int worker, int task)
     (void)worker;
     __atomic_add_fetch(&d->arrived, 1, __ATOMIC_SEQ_CST);
     while (__atomic_load_n(&d->arrived, __ATOMIC_SEQ_CST) < threads) _mm_pause();
-    d->product[task]   = d->tiny * 0.5;
+    d->product[task] = d->tiny * 0.5;
     d->product_f[task] = d->tiny_f * 0.5f;
-    d->modes[task]     = _mm_getcsr() & 0xffc0; /* all flags except those already raised */
+    d->modes[task] = _mm_getcsr() & 0xffc0; /* all flags except those already raised */
 }
 
 /* The smallest normal numbers, halved, by the main thread and the pool's: threads that get another number, or flush
@@ -257,7 +257,7 @@ Status bench_stability_detector(Bench *bench)
     static const StressCase cases[] = {
         {"detector: 1 .. 16 bits, any noise, any plane", counts_in_scale, 0, "counts", "0 .. full scale"},
         {"detector: even planes, 180 .. 820 K, to beyond the well", even_planes, 0.51, "counts",
-            "photons by Planck, dark current, rounding"},
+         "photons by Planck, dark current, rounding"},
         {"detector: one pixel not a number", one_bad_pixel, 0, "counts", "the same with a 0 there"},
         {"display: one value all over, 1e-45 .. 1e38", no_contrast, 1, "of 65535", "the middle"},
         {"display: gains of 1e-6 .. 1e6, values that are none", display_ends, 0, "values", "its formula; NaN is black"},

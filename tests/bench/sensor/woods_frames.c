@@ -1,5 +1,5 @@
-/* tests/bench/sensor/woods_frames.c: frames over 12 x 16 km of ground with three million trees and twenty vehicles, in four
- * views: every plant in full detail, and with the two levels of detail.
+/* tests/bench/sensor/woods_frames.c: frames over 12 x 16 km of ground with three million trees and twenty vehicles, in
+ * four views: every plant in full detail, and with the two levels of detail.
  *
  * Frames are of all bands and planes of truth. One ray a pixel is compared with 16 rays in every pixel in full
  * detail; level 1 is priced by the same 16 rays with and without it, band by band, so that sampling is not part of its
@@ -35,7 +35,7 @@ typedef struct WoodsBench {
     Landscape  landscape;
     Woods      woods;
     TrialScene scene;
-    Forest    *forest[details];  /* the scene's own is one of them */
+    Forest    *forest[details]; /* the scene's own is one of them */
     Pool      *one, *many;
     Arena     *arena[3];
 } WoodsBench;
@@ -45,18 +45,18 @@ typedef struct WoodsBench {
 static void say(WoodsBench *w, const char *what, double value, const char *unit)
 {
     BenchRow row = bench_row(what);
-    row.median   = value;
-    row.unit     = unit;
+    row.median = value;
+    row.unit = unit;
     bench_add(w->bench, &row);
 }
 
 static void say_memory(WoodsBench *w, const char *what, double limit_mb)
 {
-    BenchRow row    = bench_row(what);
-    row.error       = bench_memory_mb("VmRSS:");
+    BenchRow row = bench_row(what);
+    row.error = bench_memory_mb("VmRSS:");
     row.error_limit = limit_mb;
-    row.error_unit  = "MB";
-    row.against     = "resident, mapped pages included";
+    row.error_unit = "MB";
+    row.against = "resident, mapped pages included";
     bench_add(w->bench, &row);
 }
 
@@ -77,9 +77,12 @@ static Status make_ground(WoodsBench *w)
 
 static Status make_vehicles(WoodsBench *w)
 {
-    static const DisEntityType types[] = {{1, 1, 222, 1, 1, 1, 0}, {1, 1, 222, 2, 1, 0, 0}, {1, 1, 222, 1, 1, 1, 0},
-                                          {1, 1, 222, 28, 1, 0, 0}, {1, 1, 222, 7, 1, 0, 0}};
-    char           catalog[512];
+    static const DisEntityType types[] = {{1, 1, 222, 1, 1, 1, 0},
+                                          {1, 1, 222, 2, 1, 0, 0},
+                                          {1, 1, 222, 1, 1, 1, 0},
+                                          {1, 1, 222, 28, 1, 0, 0},
+                                          {1, 1, 222, 7, 1, 0, 0}};
+    char                       catalog[512];
     if (!etc_path(catalog, sizeof catalog, "catalog.csv")) return STATUS_BAD_VALUE;
     return trial_scene_open(&w->scene, &w->landscape, catalog, types, sizeof types / sizeof *types, vehicles);
 }
@@ -143,8 +146,8 @@ static View view_of(const WoodsBench *w, int v)
 {
     const double back_m = places[v].above_m / tan(places[v].down_deg * rad_per_deg);
     const double down = places[v].down_deg * rad_per_deg, d_enu[3] = {0, cos(down), -sin(down)};
-    View view = trial_view(&w->scene, fmin(back_m, 0.45 * w->north_m), places[v].above_m,
-                           places[v].hfov_deg * rad_per_deg, w->width, w->height);
+    View         view = trial_view(&w->scene, fmin(back_m, 0.45 * w->north_m), places[v].above_m,
+                                   places[v].hfov_deg * rad_per_deg, w->width, w->height);
     view_upright(view.r_enu_from_cam, d_enu);
     return view;
 }
@@ -154,7 +157,7 @@ static RenderRequest request_of(const WoodsBench *w, int v, int samples)
     const View    view = view_of(w, v);
     RenderRequest request = speed_request(&view, all_bands, true);
     const Config  config = config_default();
-    request.samples      = samples;
+    request.samples = samples;
     request.edge_samples = request.target_samples = 0;
     request.low_plants_m = config.terrain.woods_low_m;
     return request;
@@ -223,10 +226,10 @@ static void say_planes(WoodsBench *w, int v, const char *of, const Picture *got,
         snprintf(what, sizeof what, "%s: %s, %s", places[v].name, of, plane_name[k]);
         snprintf(text, sizeof text, "rms, %s; blocks of 8 px: %.2g %%; mean: %+.2g %%", against,
                  rms_of(a, b, got->width, got->height, 8), mean_off(a, b, got->width, got->height));
-        BenchRow row   = bench_row(what);
-        row.error      = rms_of(a, b, got->width, got->height, 1);
+        BenchRow row = bench_row(what);
+        row.error = rms_of(a, b, got->width, got->height, 1);
         row.error_unit = "%";
-        row.against    = text;
+        row.against = text;
         bench_add(w->bench, &row);
     }
 }
@@ -236,7 +239,7 @@ static double differs(WoodsBench *w, const WoodsFrame *many)
 {
     WoodsFrame one = *many;
     char       hash[2][sha256_text_size];
-    one.frame.pool  = w->one;
+    one.frame.pool = w->one;
     one.frame.arena = w->arena[1];
     one.frame.request.skips_off = skips_all_off;
     render_frame(&one);
@@ -261,7 +264,7 @@ static Status time_view(WoodsBench *w, int v)
             const double start_s = wall_clock_s(), busy_s = processor_s();
             render_frame(&frame[k]);
             if (r < 0) continue;
-            time[k].item_s[r]  = wall_clock_s() - start_s;
+            time[k].item_s[r] = wall_clock_s() - start_s;
             cores[k].item_s[r] = (processor_s() - busy_s) / pool_threads(w->many);
         }
     for (int k = 0; k < details; k++) bench_time_finish(&time[k]), bench_time_finish(&cores[k]);
@@ -270,13 +273,13 @@ static Status time_view(WoodsBench *w, int v)
         if (frame[k].frame.status != STATUS_OK) return frame[k].frame.status;
         const Picture *p = &frame[k].frame.picture;
         snprintf(what, sizeof what, "%s: one ray a pixel, %s", places[v].name, detail_name[k]);
-        BenchRow row    = bench_row_of(what, &time[k], "M rays/s", 1e6 / rays_of(p));
-        row.ratio       = k ? bench_ratio(&time[1], &time[0]) : NAN;
-        row.to          = k ? detail_name[0] : NULL;
-        row.error       = differs(w, &frame[k]);
+        BenchRow row = bench_row_of(what, &time[k], "M rays/s", 1e6 / rays_of(p));
+        row.ratio = k ? bench_ratio(&time[1], &time[0]) : NAN;
+        row.to = k ? detail_name[0] : NULL;
+        row.error = differs(w, &frame[k]);
         row.error_limit = 0;
-        row.error_unit  = "differ";
-        row.against     = "planes of one thread, nothing skipped";
+        row.error_unit = "differ";
+        row.against = "planes of one thread, nothing skipped";
         bench_add(w->bench, &row);
         snprintf(what, sizeof what, "%s: time of processors over threads, %s", places[v].name, detail_name[k]);
         row = bench_row_of(what, &cores[k], NULL, 1);
@@ -290,17 +293,18 @@ static Status time_view(WoodsBench *w, int v)
     return STATUS_OK;
 }
 
-/* As a node asks for it: edges, small targets and the estimate of its error. Its bits are those of one ray a pixel and of the
- * tests: here time alone. */
+/* As a node asks for it: edges, small targets and the estimate of its error. Its bits are those of one ray a pixel and
+ * of the tests: here time alone. */
 static Status time_default(WoodsBench *w, int v)
 {
     const View    view = view_of(w, v);
-    RenderRequest request[2] = {trial_default_request(&w->scene, &view, places[v].above_m / sin(places[v].down_deg * rad_per_deg)),
-                                request_of(w, v, 1)};
-    const int     rounds = bench_quick(w->bench) ? 1 : 3;
-    BenchTime     time[2] = {{.rounds = rounds}, {.rounds = rounds}};
-    char          what[what_size];
-    double        refined = 0;
+    RenderRequest request[2] = {
+        trial_default_request(&w->scene, &view, places[v].above_m / sin(places[v].down_deg * rad_per_deg)),
+        request_of(w, v, 1)};
+    const int rounds = bench_quick(w->bench) ? 1 : 3;
+    BenchTime time[2] = {{.rounds = rounds}, {.rounds = rounds}};
+    char      what[what_size];
+    double    refined = 0;
     for (int r = 0; r < rounds; r++)
         for (int k = 0; k < 2; k++) {
             WoodsFrame   f = frame_of(w, 0, &request[k], w->many, w->arena[0]);
@@ -313,8 +317,8 @@ static Status time_default(WoodsBench *w, int v)
     for (int k = 0; k < 2; k++) bench_time_finish(&time[k]);
     snprintf(what, sizeof what, "%s: default quality, %s", places[v].name, detail_name[0]);
     BenchRow row = bench_row_of(what, &time[0], "frames/s", 1);
-    row.ratio    = bench_ratio(&time[0], &time[1]);
-    row.to       = "one ray a pixel";
+    row.ratio = bench_ratio(&time[0], &time[1]);
+    row.to = "one ray a pixel";
     bench_add(w->bench, &row);
     snprintf(what, sizeof what, "%s: default quality: pixels sampled again", places[v].name);
     say(w, what, 100 * refined / ((double)w->width * w->height), "%");
@@ -347,9 +351,16 @@ static Status price_view(WoodsBench *w, int v)
 /* Where the time goes: stages of one thread, where they add up. */
 static Status time_stages(WoodsBench *w, int v)
 {
-    static const struct { TrialStage stage; const char *name; } stages[] = {
-        {STAGE_PREPARE, "prepare, low plants"}, {STAGE_VISIBILITY, "first hits"}, {STAGE_SUN, "sun rays"},
-        {STAGE_SHADE, "shading"}, {STAGE_RADAR, "radar"}, {STAGE_REST, "rest"}, {STAGE_TRUTH, "truth of targets"}};
+    static const struct {
+        TrialStage  stage;
+        const char *name;
+    } stages[] = {{STAGE_PREPARE, "prepare, low plants"},
+                  {STAGE_VISIBILITY, "first hits"},
+                  {STAGE_SUN, "sun rays"},
+                  {STAGE_SHADE, "shading"},
+                  {STAGE_RADAR, "radar"},
+                  {STAGE_REST, "rest"},
+                  {STAGE_TRUTH, "truth of targets"}};
     enum { rounds = 3 };
     const RenderRequest request = request_of(w, v, 1);
     WoodsFrame          f = frame_of(w, 0, &request, w->one, w->arena[1]);
@@ -365,8 +376,8 @@ static Status time_stages(WoodsBench *w, int v)
         snprintf(what, sizeof what, "%s: 1 thread: %s", places[v].name, stages[k].name);
         if (!(time[stages[k].stage].best_s > 0)) continue;
         BenchRow row = bench_row_of(what, &time[stages[k].stage], NULL, 1);
-        row.ratio    = bench_ratio(&time[stages[k].stage], &time[STAGE_FRAME]);
-        row.to       = "frame";
+        row.ratio = bench_ratio(&time[stages[k].stage], &time[STAGE_FRAME]);
+        row.to = "frame";
         bench_add(w->bench, &row);
     }
     return STATUS_OK;
@@ -377,7 +388,7 @@ static Status time_stages(WoodsBench *w, int v)
 static Status read_options(double *number, double *level1_px, const Bench *bench)
 {
     const char *trees = bench_option(bench, "trees"), *px = bench_option(bench, "level1-px");
-    *number    = bench_quick(bench) ? 30000 : 3000000;
+    *number = bench_quick(bench) ? 30000 : 3000000;
     *level1_px = 24;
     if (trees && !(text_to_double(number, trees) && *number >= 0 && *number <= woods_most_trees)) {
         log_error("bench: --trees: '%s' is not 0 .. %d", trees, woods_most_trees);
@@ -400,7 +411,7 @@ static Status open_bench(WoodsBench *w)
 {
     const bool quick = bench_quick(w->bench);
     double     number;
-    w->width  = quick ? 160 : 720, w->height = quick ? 108 : 486;
+    w->width = quick ? 160 : 720, w->height = quick ? 108 : 486;
     w->east_m = quick ? 1000 : 12000, w->north_m = quick ? 2000 : 16000;
     Status status = read_options(&number, &w->level1_px, w->bench);
     if (status != STATUS_OK) return status;

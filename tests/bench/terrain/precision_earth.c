@@ -44,21 +44,21 @@ static void to_enu(void *user)
 static Status tunable_frame(Bench *bench)
 {
     enum { settings = 4 };
-    static const char *const name[settings] =
-        {"float", "difference in double, turned in float", "double", "long double"};
-    static FrameSet set[settings];
-    const Geodetic  origin = {48 * rad_per_deg, 11 * rad_per_deg, 500};
-    BenchWork       work[settings];
-    BenchSetting      point[settings] = {0};
-    LocalFrame      frame;
-    const Status    status = local_frame_at(&frame, &origin);
+    static const char *const name[settings] = {"float", "difference in double, turned in float", "double",
+                                               "long double"};
+    static FrameSet          set[settings];
+    const Geodetic           origin = {48 * rad_per_deg, 11 * rad_per_deg, 500};
+    BenchWork                work[settings];
+    BenchSetting             point[settings] = {0};
+    LocalFrame               frame;
+    const Status             status = local_frame_at(&frame, &origin);
     if (status != STATUS_OK) return status;
     for (int k = settings - 1; k >= 0; k--) {
         set[k].frame = &frame, set[k].way = (FrameWay)k;
         for (int i = 0; i < places; i++) {
             double p_enu[3];
-            for (int c = 0; c < 3; c++) p_enu[c] =
-                (c < 2 ? 4e4 : 4e3) * (random_uniform(31, (uint32_t)c, 0, (uint64_t)i) - 0.5);
+            for (int c = 0; c < 3; c++)
+                p_enu[c] = (c < 2 ? 4e4 : 4e3) * (random_uniform(31, (uint32_t)c, 0, (uint64_t)i) - 0.5);
             ecef_from_enu(set[k].p_ecef[i], &frame, p_enu);
         }
         to_enu(&set[k]);
@@ -68,11 +68,13 @@ static Status tunable_frame(Bench *bench)
             bench_worst(&point[k].error, v3_length(off));
         }
         work[k] = (BenchWork){to_enu, &set[k], places};
-        point[k].setting    = name[k];
+        point[k].setting = name[k];
         point[k].is_default = k == FRAME_DOUBLE;
     }
-    bench_tunable(bench, &(BenchTunable){"Earth to local frame", "terrain/earth/geodesy.h", "a place within 20 km", "m",
-                                   "largest, long double", 1e-10}, work, point, settings);
+    bench_tunable(bench,
+                  &(BenchTunable){"Earth to local frame", "terrain/earth/geodesy.h", "a place within 20 km", "m",
+                                  "largest, long double", 1e-10},
+                  work, point, settings);
     return STATUS_OK;
 }
 
@@ -88,11 +90,11 @@ static const double wgs84_a_m = 6378137, wgs84_f = 1 / 298.257223563;
 static void bowring(Geodetic *out, const double p[3], int rounds)
 {
     const double e2 = wgs84_f * (2 - wgs84_f), b_m = wgs84_a_m * (1 - wgs84_f), ep2 = e2 / (1 - e2),
-        r = hypot(p[0], p[1]);
-    double       beta = atan2(p[2] * wgs84_a_m, r * b_m), lat = 0;
+                 r = hypot(p[0], p[1]);
+    double beta = atan2(p[2] * wgs84_a_m, r * b_m), lat = 0;
     for (int k = 0; k < rounds; k++) {
         const double s = sin(beta), c = cos(beta);
-        lat  = atan2(p[2] + ep2 * b_m * s * s * s, r - e2 * wgs84_a_m * c * c * c);
+        lat = atan2(p[2] + ep2 * b_m * s * s * s, r - e2 * wgs84_a_m * c * c * c);
         beta = atan2((1 - wgs84_f) * sin(lat), cos(lat));
     }
     const double s = sin(lat), n = wgs84_a_m / sqrt(1 - e2 * s * s);
@@ -112,8 +114,8 @@ static void to_geodetic(void *user)
 static void ecef_by_hand(long double p[3], const Geodetic *g)
 {
     const long double f = 1 / 298.257223563L, e2 = f * (2 - f), lat = (long double)g->lat_rad,
-        lon = (long double)g->lon_rad,
-                      h = (long double)g->h_m, s = sinl(lat), n = 6378137 / sqrtl(1 - e2 * s * s);
+                      lon = (long double)g->lon_rad, h = (long double)g->h_m, s = sinl(lat),
+                      n = 6378137 / sqrtl(1 - e2 * s * s);
     p[0] = (n + h) * cosl(lat) * cosl(lon), p[1] = (n + h) * cosl(lat) * sinl(lon), p[2] = (n * (1 - e2) + h) * s;
 }
 
@@ -121,10 +123,10 @@ static void tunable_geodetic(Bench *bench)
 {
     enum { settings = 3 };
     static const char *const name[settings] = {"Bowring, once", "Bowring, twice", "GeographicLib"};
-    static const int   rounds[settings] = {1, 2, 0};
-    static GeodeticSet set[settings];
-    BenchWork          work[settings];
-    BenchSetting         point[settings] = {0};
+    static const int         rounds[settings] = {1, 2, 0};
+    static GeodeticSet       set[settings];
+    BenchWork                work[settings];
+    BenchSetting             point[settings] = {0};
     for (int k = 0; k < settings; k++) {
         set[k].rounds = rounds[k];
         for (int i = 0; i < places; i++) {
@@ -139,18 +141,18 @@ static void tunable_geodetic(Bench *bench)
         for (int i = 0; i < places; i++) {
             long double back[3], square = 0;
             ecef_by_hand(back, &set[k].out[i]);
-            for (int c = 0; c < 3; c++) square += (back[c] - (long double)set[k].p_ecef[i][c])
-                * (back[c] - (long double)set[k].p_ecef[i][c]);
+            for (int c = 0; c < 3; c++)
+                square += (back[c] - (long double)set[k].p_ecef[i][c]) * (back[c] - (long double)set[k].p_ecef[i][c]);
             bench_worst(&point[k].error, (double)sqrtl(square));
         }
         work[k] = (BenchWork){to_geodetic, &set[k], places};
-        point[k].setting    = name[k];
+        point[k].setting = name[k];
         point[k].is_default = k == settings - 1;
     }
     bench_tunable(bench,
-               &(BenchTunable){"latitude, longitude, height", "terrain/earth/geodesy.cpp", "a place up to 500 km high",
-                            "m", "largest, back again in long double", 1e-8},
-               work, point, settings);
+                  &(BenchTunable){"latitude, longitude, height", "terrain/earth/geodesy.cpp",
+                                  "a place up to 500 km high", "m", "largest, back again in long double", 1e-8},
+                  work, point, settings);
 }
 
 /* ---- geoid ---------------------------------------------------------------------------------------- */
@@ -160,8 +162,8 @@ enum { geoid_places = 512, widest = 16 };
 typedef struct GeoidSet {
     const Geoid *geoid;
     /* of Lagrange's polynomial each way, of posts so many apart; points 0: geoid_height_m */
-    int          points, stride;
-    double       lat_rad[geoid_places], lon_rad[geoid_places], n_m[geoid_places];
+    int    points, stride;
+    double lat_rad[geoid_places], lon_rad[geoid_places], n_m[geoid_places];
 } GeoidSet;
 
 static double geoid_post(const Geoid *g, int row, int column)
@@ -197,8 +199,8 @@ static void ask_geoid(void *user)
         for (int b = 0; b < s->points; b++) {
             double row = 0;
             for (int a = 0; a < s->points; a++)
-                row += wx[a] * geoid_post(g, (j - s->points / 2 + 1 + b) * s->stride,
-                                          (k - s->points / 2 + 1 + a) * s->stride);
+                row += wx[a] *
+                       geoid_post(g, (j - s->points / 2 + 1 + b) * s->stride, (k - s->points / 2 + 1 + a) * s->stride);
             sum += wy[b] * row;
         }
         s->n_m[i] = sum;
@@ -211,14 +213,14 @@ static void ask_geoid(void *user)
 static void tunable_geoid(Bench *bench)
 {
     enum { settings = 6 };
-    static const char *const name[settings] =
-        {"posts of 30', straight", "posts of 30', cubic", "posts of 15', straight", "posts of 15', cubic",
-                                               "posts of 15', quintic", "posts of 15', of degree 7"};
-    static const int points[settings] = {2, 4, 2, 0, 6, 8}, stride[settings] = {2, 2, 1, 1, 1, 1};
-    static GeoidSet  set[settings], fine;
-    BenchWork        work[settings];
-    BenchSetting       point[settings] = {0};
-    Geoid            geoid;
+    static const char *const name[settings] = {"posts of 30', straight", "posts of 30', cubic",
+                                               "posts of 15', straight", "posts of 15', cubic",
+                                               "posts of 15', quintic",  "posts of 15', of degree 7"};
+    static const int         points[settings] = {2, 4, 2, 0, 6, 8}, stride[settings] = {2, 2, 1, 1, 1, 1};
+    static GeoidSet          set[settings], fine;
+    BenchWork                work[settings];
+    BenchSetting             point[settings] = {0};
+    Geoid                    geoid;
     log_suppress(true);
     const Status status = geoid_open(&geoid, NULL);
     log_suppress(false);
@@ -238,12 +240,16 @@ static void tunable_geoid(Bench *bench)
         if (k < 0) continue;
         double square = 0;
         for (int i = 0; i < geoid_places; i++) square += (s->n_m[i] - fine.n_m[i]) * (s->n_m[i] - fine.n_m[i]);
-        work[k]  = (BenchWork){ask_geoid, s, geoid_places};
-        point[k] = (BenchSetting){.setting = name[k], .error = sqrt(square / geoid_places), .is_default = k == 3,
-                                .bytes = 4.0 * geoid.rows * geoid.columns / (stride[k] * stride[k])};
+        work[k] = (BenchWork){ask_geoid, s, geoid_places};
+        point[k] = (BenchSetting){.setting = name[k],
+                                  .error = sqrt(square / geoid_places),
+                                  .is_default = k == 3,
+                                  .bytes = 4.0 * geoid.rows * geoid.columns / (stride[k] * stride[k])};
     }
-    bench_tunable(bench, &(BenchTunable){"geoid between posts", "terrain/earth/geoid.c", "a place between 74 S and 74 N", "m",
-                                   "rms, 16 x 16 posts", 0.03}, work, point, settings);
+    bench_tunable(bench,
+                  &(BenchTunable){"geoid between posts", "terrain/earth/geoid.c", "a place between 74 S and 74 N", "m",
+                                  "rms, 16 x 16 posts", 0.03},
+                  work, point, settings);
     geoid_close(&geoid);
 }
 
@@ -263,9 +269,9 @@ typedef struct SunSet {
 static void short_formula(double d_enu[3], double unix_s, const Geodetic *place)
 {
     const double n = unix_s / 86400 - 10957.5, l = (280.460 + 0.9856474 * n) * rad_per_deg,
-        g = (357.528 + 0.9856003 * n) * rad_per_deg;
+                 g = (357.528 + 0.9856003 * n) * rad_per_deg;
     const double lambda = l + (1.915 * sin(g) + 0.020 * sin(2 * g)) * rad_per_deg,
-        e = (23.439 - 4e-7 * n) * rad_per_deg;
+                 e = (23.439 - 4e-7 * n) * rad_per_deg;
     const double ra = atan2(cos(e) * sin(lambda), cos(lambda)), dec = asin(sin(e) * sin(lambda));
     const double hour = (280.46061837 + 360.98564736629 * n) * rad_per_deg + place->lon_rad - ra;
     d_enu[0] = -cos(dec) * sin(hour);
@@ -278,32 +284,34 @@ static void ask_sun(void *user)
     SunSet *s = user;
     Sun     sun;
     if (s->hold_s < 0) short_formula(s->d_enu, spa_unix_s, &spa_place);
-    else if (sun_at(&sun, spa_unix_s - s->hold_s, &spa_place, 820, 11, 67) == STATUS_OK) memcpy(s->d_enu, sun.d_enu,
-            sizeof s->d_enu);
+    else if (sun_at(&sun, spa_unix_s - s->hold_s, &spa_place, 820, 11, 67) == STATUS_OK)
+        memcpy(s->d_enu, sun.d_enu, sizeof s->d_enu);
     bench_keep(s->d_enu);
 }
 
 static void tunable_sun(Bench *bench)
 {
     enum { settings = 5 };
-    static const char *const name[settings] =
-        {"short formula, each frame", "once a minute", "once in 10 s", "once a second", "each frame"};
-    static SunSet set[settings] = {{.hold_s = -1, .frames = 1}, {60, 1800, {0}}, {10, 300, {0}}, {1, 30, {0}},
-                                   {0, 1, {0}}};
-    BenchWork     work[settings];
-    BenchSetting    point[settings] = {0};
-    const double  up_rad = (90 - spa_zenith_deg) * rad_per_deg, az_rad = spa_azimuth_deg * rad_per_deg;
-    const double  want[3] = {cos(up_rad) * sin(az_rad), cos(up_rad) * cos(az_rad), sin(up_rad)};
+    static const char *const name[settings] = {"short formula, each frame", "once a minute", "once in 10 s",
+                                               "once a second", "each frame"};
+    static SunSet            set[settings] = {
+                   {.hold_s = -1, .frames = 1}, {60, 1800, {0}}, {10, 300, {0}}, {1, 30, {0}}, {0, 1, {0}}};
+    BenchWork    work[settings];
+    BenchSetting point[settings] = {0};
+    const double up_rad = (90 - spa_zenith_deg) * rad_per_deg, az_rad = spa_azimuth_deg * rad_per_deg;
+    const double want[3] = {cos(up_rad) * sin(az_rad), cos(up_rad) * cos(az_rad), sin(up_rad)};
     for (int k = 0; k < settings; k++) {
         double off[3];
         ask_sun(&set[k]);
         v3_sub(off, set[k].d_enu, want);
-        work[k]  = (BenchWork){ask_sun, &set[k], set[k].frames};
-        point[k] = (BenchSetting){.setting = name[k], .error = v3_length(off) / rad_per_deg,
-                                .is_default = k == settings - 1};
+        work[k] = (BenchWork){ask_sun, &set[k], set[k].frames};
+        point[k] =
+            (BenchSetting){.setting = name[k], .error = v3_length(off) / rad_per_deg, .is_default = k == settings - 1};
     }
-    bench_tunable(bench, &(BenchTunable){"the sun's place", "terrain/earth/sun.c", "a frame of 30 a second", "deg",
-                                   "NREL's published place, at the end of the time", 0.0005}, work, point, settings);
+    bench_tunable(bench,
+                  &(BenchTunable){"the sun's place", "terrain/earth/sun.c", "a frame of 30 a second", "deg",
+                                  "NREL's published place, at the end of the time", 0.0005},
+                  work, point, settings);
 }
 
 /* ---- powers of two -------------------------------------------------------------------------------- */
@@ -327,25 +335,26 @@ static void ask_powers(void *user)
 static void tunable_powers(Bench *bench)
 {
     enum { settings = 3 };
-    static const char *const name[settings] =
-        {"the library's in float", "the library's in double, narrowed", "eight at a time, degree 5"};
-    static PowerSet set[settings];
-    BenchWork       work[settings];
-    BenchSetting      point[settings] = {0};
+    static const char *const name[settings] = {"the library's in float", "the library's in double, narrowed",
+                                               "eight at a time, degree 5"};
+    static PowerSet          set[settings];
+    BenchWork                work[settings];
+    BenchSetting             point[settings] = {0};
     for (int k = 0; k < settings; k++) {
         set[k].way = k;
         for (int i = 0; i < powers; i++) set[k].in[i] = (float)(-100 + 200 * random_uniform(34, 0, 0, (uint64_t)i));
         ask_powers(&set[k]);
         for (int i = 0; i < powers; i++)
-            bench_worst(&point[k].error, (double)fabsl((long double)set[k].out[i] / exp2l((long double)set[k].in[i])
-                                                       - 1) * 100);
+            bench_worst(&point[k].error,
+                        (double)fabsl((long double)set[k].out[i] / exp2l((long double)set[k].in[i]) - 1) * 100);
         work[k] = (BenchWork){ask_powers, &set[k], powers};
-        point[k].setting    = name[k];
+        point[k].setting = name[k];
         point[k].is_default = k == settings - 1;
     }
-    bench_tunable(bench, &(BenchTunable){"powers of two", "pitviper_simd.h", "a number of -100 .. 100", "%",
-                                   "largest, long double", 2e-5},
-               work, point, settings);
+    bench_tunable(bench,
+                  &(BenchTunable){"powers of two", "pitviper_simd.h", "a number of -100 .. 100", "%",
+                                  "largest, long double", 2e-5},
+                  work, point, settings);
 }
 
 Status bench_precision_earth(Bench *bench)

@@ -1,5 +1,5 @@
-/* tests/bench/terrain/stability_earth.c: geodesy at its edge cases: poles, date line, trenches and orbits, each with its
- * neighbours in floating point. References: WGS 84 in long double, ERFA by another method, and symmetry. */
+/* tests/bench/terrain/stability_earth.c: geodesy at its edge cases: poles, date line, trenches and orbits, each with
+ * its neighbours in floating point. References: WGS 84 in long double, ERFA by another method, and symmetry. */
 #include "tests/bench/suites.h"
 
 #include "terrain/earth/geoid.h"
@@ -39,8 +39,12 @@ static const double lat_deg[] = {0,       -0.0,     1e-310,      1e-12,        -
                                  89.9999, -89.9999, 89.99999999, -89.99999999, 90,     -90};
 static const double lon_deg[] = {0, -0.0, 1e-310, -1e-12, 90, -90, 179.9999, -179.9999, 180, -180, 359.9, -270};
 static const double high_m[] = {-11000, -1e-310, 0, 8848, 1e5, 1e6};
-enum { lats = 3 * sizeof lat_deg / sizeof *lat_deg, lons = 3 * sizeof lon_deg / sizeof *lon_deg,
-       heights = sizeof high_m / sizeof *high_m, special_places = lats * lons * heights };
+enum {
+    lats = 3 * sizeof lat_deg / sizeof *lat_deg,
+    lons = 3 * sizeof lon_deg / sizeof *lon_deg,
+    heights = sizeof high_m / sizeof *high_m,
+    special_places = lats * lons * heights
+};
 
 /* A special angle, or its neighbour below or above. */
 static double neighbour_rad(const double *deg, int i)
@@ -213,9 +217,9 @@ static void sun_another_way(double d_enu[3], double unix_s, const Geodetic *plac
     const double ut = (unix_s - 86400 * day) / 86400, tt = ut + delta_t_s / 86400,
                  turn_per_day = 2 * pi_rad * 1.00273781191135448;
     const FrameL site = frame_l(place);
-    double helio[2][3], bary[2][3], later_helio[2][3], later_bary[2][3], r[3][3], eye[3], spin[3], v[3], seen[3],
+    double       helio[2][3], bary[2][3], later_helio[2][3], later_bary[2][3], r[3][3], eye[3], spin[3], v[3], seen[3],
         way[3];
-    double       natural[3], apparent[3], distance = 1;
+    double natural[3], apparent[3], distance = 1;
     eraEpv00(jd, tt, helio, bary);
     eraC2t06a(jd, tt, jd, ut, 0, 0, r);
     const double p_au[3] = {(double)site.origin[0] / au_m, (double)site.origin[1] / au_m,
@@ -280,8 +284,8 @@ static void sun(Bench *bench)
         /* NREL SPA, equation 42, from the other method's elevation */
         const long double e_deg = atan2l(want[2], hypotl(want[0], want[1])) / rad_per_deg;
         if (fabsl(e_deg + 0.83337L) < 2e-3L) continue; /* where the formula itself breaks off */
-        const long double bend = e_deg < -0.83337L ? 0
-                                 : 1.02L / (60 * tanl((e_deg + 10.3L / (e_deg + 5.11L)) * (long double)rad_per_deg));
+        const long double bend =
+            e_deg < -0.83337L ? 0 : 1.02L / (60 * tanl((e_deg + 10.3L / (e_deg + 5.11L)) * (long double)rad_per_deg));
         bench_worse(&bent_rad, (air.elevation_rad - bare.elevation_rad) - (double)bend * rad_per_deg);
     }
     const char *another = "ERFA another way: CIO, own light time, eraAb";
@@ -341,7 +345,8 @@ static Status geoid(Bench *bench)
                              geoid_height_m(&grid, hand * (top_rad - row_off), post_rad + pi_rad)) /
                             (2 * row_off * m_rad);
         const double near = (geoid_height_m(&grid, hand * (top_rad - last), post_rad) -
-                             geoid_height_m(&grid, hand * top_rad, post_rad)) / (last * m_rad);
+                             geoid_height_m(&grid, hand * top_rad, post_rad)) /
+                            (last * m_rad);
         bench_worse(&kink, near - over);
         bench_worse(&seam_m, geoid_height_m(&grid, lat_rad, pi_rad) - geoid_height_m(&grid, lat_rad, -pi_rad));
         bench_worse(&seam_m,

@@ -1,6 +1,7 @@
-/* tests/bench/terrain/stability_import.c: terrain stores of awkward files: across the antimeridian, over the poles, cliffs,
- * mostly voids, overlapping sheets with a step between them, posts 0.1 m and 100 m apart. Reference: the file's own function
- * at each stored post, found by GeographicLib's geodetic places and, at the poles, Snyder's polar stereographic formulas. */
+/* tests/bench/terrain/stability_import.c: terrain stores of awkward files: across the antimeridian, over the poles,
+ * cliffs, mostly voids, overlapping sheets with a step between them, posts 0.1 m and 100 m apart. Reference: the file's
+ * own function at each stored post, found by GeographicLib's geodetic places and, at the poles, Snyder's polar
+ * stereographic formulas. */
 #include "tests/bench/suites.h"
 #include "pitviper_output.h"
 
@@ -13,7 +14,10 @@ enum { side = 160, most_sheets = 2 };
 
 typedef enum Shape { SHAPE_HILLS, SHAPE_CLIFF, SHAPE_VOIDS, SHAPE_RAISED } Shape;
 
-static bool is_void(Shape shape, int i, int j) { return shape == SHAPE_VOIDS && (i % 10 != 0 || j % 40 > 1) && (i / 3) % 7 != 0; }
+static bool is_void(Shape shape, int i, int j)
+{
+    return shape == SHAPE_VOIDS && (i % 10 != 0 || j % 40 > 1) && (i / 3) % 7 != 0;
+}
 
 static double height_m(Shape shape, int i, int j)
 {
@@ -28,7 +32,7 @@ typedef struct Sheet {
 
 typedef struct Case {
     const char *what;
-    int         epsg;         /* 4326, 3413 (north), 3031 (south) */
+    int         epsg; /* 4326, 3413 (north), 3031 (south) */
     double      lat_deg, lon_deg, spacing_m;
     int         sheets;
     Sheet       sheet[most_sheets];
@@ -36,14 +40,40 @@ typedef struct Case {
 } Case;
 
 static const Case cases[] = {
-    {"store of files: two sheets that meet at the antimeridian", 4326, 45, 180, 3, 2,
-     {{SHAPE_HILLS, 180 - side * 3e-5, 45.0024, 3e-5}, {SHAPE_HILLS, -180, 45.0024, 3e-5}}, 0.005},
-    {"store of files: over the North Pole, polar stereographic", 3413, 90, 0, 4, 1, {{SHAPE_HILLS, -320, 320, 4}}, 0.005},
-    {"store of files: over the South Pole, polar stereographic", 3031, -90, 0, 4, 1, {{SHAPE_HILLS, -320, 320, 4}}, 0.005},
+    {"store of files: two sheets that meet at the antimeridian",
+     4326,
+     45,
+     180,
+     3,
+     2,
+     {{SHAPE_HILLS, 180 - side * 3e-5, 45.0024, 3e-5}, {SHAPE_HILLS, -180, 45.0024, 3e-5}},
+     0.005},
+    {"store of files: over the North Pole, polar stereographic",
+     3413,
+     90,
+     0,
+     4,
+     1,
+     {{SHAPE_HILLS, -320, 320, 4}},
+     0.005},
+    {"store of files: over the South Pole, polar stereographic",
+     3031,
+     -90,
+     0,
+     4,
+     1,
+     {{SHAPE_HILLS, -320, 320, 4}},
+     0.005},
     {"store of files: a cliff of 900 m", 4326, 10.0008, 20.0008, 1, 1, {{SHAPE_CLIFF, 20, 10.0016, 1e-5}}, 0.05},
     {"store of files: nine of ten posts void", 4326, 10.0008, 20.0008, 1, 1, {{SHAPE_VOIDS, 20, 10.0016, 1e-5}}, 0.005},
-    {"store of files: overlapping sheets, the second 40 m higher", 4326, 10.0008, 20.0012, 1, 2,
-     {{SHAPE_HILLS, 20, 10.0016, 1e-5}, {SHAPE_RAISED, 20.0008, 10.0016, 1e-5}}, 0.005},
+    {"store of files: overlapping sheets, the second 40 m higher",
+     4326,
+     10.0008,
+     20.0012,
+     1,
+     2,
+     {{SHAPE_HILLS, 20, 10.0016, 1e-5}, {SHAPE_RAISED, 20.0008, 10.0016, 1e-5}},
+     0.005},
     {"store of files: posts 0.1 m apart", 4326, 10.00008, 20.00008, 0.1, 1, {{SHAPE_HILLS, 20, 10.00016, 1e-6}}, 0.005},
     {"store of files: posts 100 m apart", 4326, 10.08, 20.08, 100, 1, {{SHAPE_HILLS, 20, 10.16, 1e-3}}, 0.02},
 };
@@ -66,16 +96,20 @@ static bool write_sheet(const char *folder, const Case *c, int n)
     snprintf(path, sizeof path, "%s/%d.vrt", folder, n);
     file = output_file(path, 0);
     if (!file) return false;
-    fprintf(file, "<VRTDataset rasterXSize=\"%d\" rasterYSize=\"%d\"><SRS>EPSG:%d</SRS><GeoTransform>%.12f, %.12f, 0, %.12f, 0, "
-            "%.12f</GeoTransform><VRTRasterBand dataType=\"Float32\" band=\"1\" subClass=\"VRTRawRasterBand\"><NoDataValue>-9999"
-            "</NoDataValue><SourceFilename relativeToVRT=\"1\">%d.raw</SourceFilename><ByteOrder>LSB</ByteOrder></VRTRasterBand>"
-            "</VRTDataset>\n", side, side, c->epsg, s->west, s->step, s->north, -s->step, n);
+    fprintf(
+        file,
+        "<VRTDataset rasterXSize=\"%d\" rasterYSize=\"%d\"><SRS>EPSG:%d</SRS><GeoTransform>%.12f, %.12f, 0, %.12f, 0, "
+        "%.12f</GeoTransform><VRTRasterBand dataType=\"Float32\" band=\"1\" subClass=\"VRTRawRasterBand\"><NoDataValue>-9999"
+        "</NoDataValue><SourceFilename relativeToVRT=\"1\">%d.raw</SourceFilename><ByteOrder>LSB</ByteOrder></VRTRasterBand>"
+        "</VRTDataset>\n",
+        side, side, c->epsg, s->west, s->step, s->north, -s->step, n);
     return fclose(file) == 0 && ok;
 }
 
 /* ---- the file's own surface ------------------------------------------------------------------ */
 
-/* Snyder, Map Projections (1987), (21-33), (21-34), (14-15), (15-9): true at latitude 70 N along 45 W, or 71 S along 0. */
+/* Snyder, Map Projections (1987), (21-33), (21-34), (14-15), (15-9): true at latitude 70 N along 45 W, or 71 S along 0.
+ */
 static void polar(double out[2], const Geodetic *place, bool north)
 {
     const double a_m = 6378137, f = 1 / 298.257223563, e = sqrt(f * (2 - f)), sign = north ? 1 : -1;
@@ -88,7 +122,8 @@ static void polar(double out[2], const Geodetic *place, bool north)
     out[1] = -sign * rho * cos(lon);
 }
 
-/* Bilinear height of a sheet at a place; NaN beyond it, or next to a void. beside: it is within a post of the outline. */
+/* Bilinear height of a sheet at a place; NaN beyond it, or next to a void. beside: it is within a post of the outline.
+ */
 static double sheet_m(bool *beside, const Case *c, const Sheet *s, const Geodetic *place)
 {
     double at[2] = {place->lon_rad / rad_per_deg, place->lat_rad / rad_per_deg};
@@ -112,7 +147,7 @@ static double worst_of(const Case *c, const TerrainStore *store, long *compared)
 {
     enum { rim = 26 };
     const ElevationLevel *l = &store->elevation.level[0];
-    double worst_m = 0;
+    double                worst_m = 0;
     for (int j = rim; j < l->ny - rim; j++)
         for (int i = rim; i < l->nx - rim; i++) {
             double   p_enu[3] = {l->x0_m + i * l->spacing_m, l->y0_m + j * l->spacing_m, 0}, p_ecef[3], want_m = NAN;
@@ -151,8 +186,8 @@ static double import_case(Status *status, const char *folder, const Case *c)
     if (*status != STATUS_OK) goto done;
     snprintf(out, sizeof out, "%s/case.store", folder);
     terrain_options_default(o);
-    bool ok = terrain_options_set(o, &why, "elevation", list) && terrain_options_set(o, &why, "vertical", "ellipsoid") &&
-              terrain_options_set(o, &why, "horizon", "2");
+    bool ok = terrain_options_set(o, &why, "elevation", list) &&
+              terrain_options_set(o, &why, "vertical", "ellipsoid") && terrain_options_set(o, &why, "horizon", "2");
     snprintf(text, sizeof text, "%g", c->spacing_m);
     ok = ok && terrain_options_set(o, &why, "spacing", text);
     snprintf(text, sizeof text, "%.9g,%.9g", c->lat_deg, c->lon_deg);
@@ -179,7 +214,8 @@ Status bench_stability_import(Bench *bench)
         bench_progress(bench, cases[k].what);
         const double worst_m = import_case(&status, folder, &cases[k]);
         if (status == STATUS_OK)
-            bench_stress(bench, cases[k].what, worst_m, cases[k].limit_m, "m", "the file's function at each stored post");
+            bench_stress(bench, cases[k].what, worst_m, cases[k].limit_m, "m",
+                         "the file's function at each stored post");
     }
     for (int n = 0; n < 2 * most_sheets; n++) {
         snprintf(path, sizeof path, "%s/%d.%s", folder, n / 2, n % 2 ? "vrt" : "raw");

@@ -22,12 +22,18 @@ typedef enum Shape { FLAT_LOW, FLAT_HIGH, CLIFF, SPIKE, CHESS, NOISE, SHAPES } S
 static uint16_t shape_post(Shape shape, int i, int j, int nx, int ny)
 {
     switch (shape) {
-    case FLAT_HIGH: return 65535;
-    case CLIFF: return 2 * i > nx ? 65535 : 0;
-    case SPIKE: return i == nx / 2 && j == ny / 2 ? 65535 : 0;
-    case CHESS: return (i + j) % 2 ? 65535 : 0;
-    case NOISE: return (uint16_t)uniform(1, (uint64_t)j * (uint64_t)nx + (uint64_t)i, 0, 65536);
-    default: return 0;
+    case FLAT_HIGH:
+        return 65535;
+    case CLIFF:
+        return 2 * i > nx ? 65535 : 0;
+    case SPIKE:
+        return i == nx / 2 && j == ny / 2 ? 65535 : 0;
+    case CHESS:
+        return (i + j) % 2 ? 65535 : 0;
+    case NOISE:
+        return (uint16_t)uniform(1, (uint64_t)j * (uint64_t)nx + (uint64_t)i, 0, 65536);
+    default:
+        return 0;
     }
 }
 
@@ -37,9 +43,9 @@ typedef struct Sheet {
 } Sheet;
 
 static const Sheet sheets[] = {
-    {2, 2, -1, -1, 2, 0, 1},           {2, 3, -5e5, 3e5, 1e5, -12500, 0.34}, {3, 2, 0, 0, 0x1p-6, 0, 0x1p-8},
-    {65, 33, -960, 480, 30, 0, 0.34},  {257, 1025, -1e6, 1e6, 1, -1e4, 1},   {2, 65536, 0, -32768, 1, 0, 0.1},
-    {65536, 2, -32768, 0, 1, 0, 0.1},  {33, 65, 1e3, -1e5, 0.5, 1e3, 1e-300}, {1500, 1500, -750, -750, 1, 0, 0x1p-8},
+    {2, 2, -1, -1, 2, 0, 1},          {2, 3, -5e5, 3e5, 1e5, -12500, 0.34},  {3, 2, 0, 0, 0x1p-6, 0, 0x1p-8},
+    {65, 33, -960, 480, 30, 0, 0.34}, {257, 1025, -1e6, 1e6, 1, -1e4, 1},    {2, 65536, 0, -32768, 1, 0, 0.1},
+    {65536, 2, -32768, 0, 1, 0, 0.1}, {33, 65, 1e3, -1e5, 0.5, 1e3, 1e-300}, {1500, 1500, -750, -750, 1, 0, 0x1p-8},
 };
 static const Sheet huge_sheet = {16385, 16385, -8192, -8192, 1, 0, 0x1p-4}; /* half a gigabyte of posts */
 
@@ -49,8 +55,7 @@ static Status fill(Elevation *out, const Sheet *s, Shape shape)
         elevation_level_create(out, 0, s->nx, s->ny, s->x0_m, s->y0_m, s->spacing_m, s->z0_m, s->step_m);
     if (status != STATUS_OK) return status;
     for (int j = 0; j < s->ny; j++)
-        for (int i = 0; i < s->nx; i++)
-            elevation_set_post(&out->level[0], i, j, shape_post(shape, i, j, s->nx, s->ny));
+        for (int i = 0; i < s->nx; i++) elevation_set_post(&out->level[0], i, j, shape_post(shape, i, j, s->nx, s->ny));
     elevation_build_pyramids(out);
     return STATUS_OK;
 }
@@ -85,7 +90,7 @@ static void look(GridErrors *errors, const Elevation *ground, int looks)
         }
         const long double fx = ((long double)x_m - l->x0_m) / l->spacing_m,
                           fy = ((long double)y_m - l->y0_m) / l->spacing_m;
-        const int         i = (int)fminl(floorl(fx), l->nx - 2), j = (int)fminl(floorl(fy), l->ny - 2);
+        const int i = (int)fminl(floorl(fx), l->nx - 2), j = (int)fminl(floorl(fy), l->ny - 2);
         /* a place on an edge belongs to both cells, on a diagonal to both triangles: the nearest of them is meant */
         double least_m = INFINITY, least_normal = INFINITY, low = INFINITY, high = -INFINITY;
         for (int cell = 0; cell < 9; cell++) {
@@ -107,7 +112,7 @@ static void look(GridErrors *errors, const Elevation *ground, int looks)
                                                                 fmaxl(fabsl(normal[1] + dv / length),
                                                                       fabsl(normal[2] - l->spacing_m / length))));
                 for (int k = 0; k < 4; k++) {
-                    low  = fmin(low, l->z0_m + l->step_m * p[k]);
+                    low = fmin(low, l->z0_m + l->step_m * p[k]);
                     high = fmax(high, l->z0_m + l->step_m * p[k]);
                 }
             }
@@ -123,7 +128,7 @@ static void look(GridErrors *errors, const Elevation *ground, int looks)
 static double wrong_entries(const Elevation *ground)
 {
     const ElevationLevel *l = &ground->level[0];
-    double wrong =
+    double                wrong =
         l->pyramid_count < 1 || l->pyramid_nx[l->pyramid_count - 1] != 1 || l->pyramid_ny[l->pyramid_count - 1] != 1;
     for (int k = elevation_pyramid_first; k < l->pyramid_count; k++)
         for (int b = 0; b < l->pyramid_ny[k]; b++)
@@ -201,20 +206,20 @@ static void refusals(Bench *bench)
 typedef struct File {
     const char *what;
     int         width, height;
-    float     (*post)(int i, int j);
-    double      low_m, high_m;       /* of its heights; NaN: there are none, and it must be refused */
-    double      west_deg, south_deg, step_deg;
+    float (*post)(int i, int j);
+    double low_m, high_m; /* of its heights; NaN: there are none, and it must be refused */
+    double west_deg, south_deg, step_deg;
 } File;
 
 static const float gap = -9999;
-static float post_flat(int i, int j) { return (void)i, (void)j, 431.25f; }
-static float post_cliff(int i, int j) { return (void)j, i < 40 ? 9000 : -12000; }
-static float post_spike(int i, int j) { return i == 31 && j == 17 ? 9400 : i == 12 && j == 40 ? -12400 : 0; }
-static float post_chess(int i, int j) { return (i + j) % 2 ? 9400 : -12400; }
-static float post_lonely(int i, int j) { return i == 20 && j == 20 ? 123 : gap; }
-static float post_void(int i, int j) { return (void)i, (void)j, gap; }
-static float post_holes(int i, int j) { return i > 20 || (i + j) % 2 ? gap : j % 3 ? 100 : 2500; }
-static float post_wild(int i, int j)
+static float       post_flat(int i, int j) { return (void)i, (void)j, 431.25f; }
+static float       post_cliff(int i, int j) { return (void)j, i < 40 ? 9000 : -12000; }
+static float       post_spike(int i, int j) { return i == 31 && j == 17 ? 9400 : i == 12 && j == 40 ? -12400 : 0; }
+static float       post_chess(int i, int j) { return (i + j) % 2 ? 9400 : -12400; }
+static float       post_lonely(int i, int j) { return i == 20 && j == 20 ? 123 : gap; }
+static float       post_void(int i, int j) { return (void)i, (void)j, gap; }
+static float       post_holes(int i, int j) { return i > 20 || (i + j) % 2 ? gap : j % 3 ? 100 : 2500; }
+static float       post_wild(int i, int j)
 {
     static const float wild[] = {NAN, INFINITY, -INFINITY, 3.4e38f, -3.4e38f, 1e-42f, -0.0f, 1e5f, -2e4f, 250, -9999};
     return wild[(3 * i + 7 * j) % 11];
@@ -251,11 +256,14 @@ static bool write_file(const char *folder, const File *f)
         FILE *file = output_file(path, 0);
         if (!file) return false;
         if (part == 0)
-            fprintf(file, "ncols %d\nnrows %d\nxllcorner %.10f\nyllcorner %.10f\ncellsize %.10f\nNODATA_value -9999\n"
-                    "byteorder lsbfirst\n", f->width, f->height, f->west_deg, f->south_deg, f->step_deg);
+            fprintf(file,
+                    "ncols %d\nnrows %d\nxllcorner %.10f\nyllcorner %.10f\ncellsize %.10f\nNODATA_value -9999\n"
+                    "byteorder lsbfirst\n",
+                    f->width, f->height, f->west_deg, f->south_deg, f->step_deg);
         else if (part == 1)
             fputs("GEOGCS[\"WGS 84\",DATUM[\"WGS_1984\",SPHEROID[\"WGS 84\",6378137,298.257223563]],"
-                  "PRIMEM[\"Greenwich\",0],UNIT[\"degree\",0.0174532925199433]]\n", file);
+                  "PRIMEM[\"Greenwich\",0],UNIT[\"degree\",0.0174532925199433]]\n",
+                  file);
         else
             for (int n = 0; n < f->width * f->height; n++) {
                 const float v = f->post(n % f->width, n / f->width);
@@ -291,9 +299,9 @@ static void look_at_file(double *absent, double *over_m, const Elevation *ground
 
 static Status imports(Bench *bench)
 {
-    const int  count = bench_quick(bench) ? few_files : all_files;
-    char       folder[temp_path_size], path[temp_name_size];
-    double     absent = 0, over_m = 0, judged = 0;
+    const int count = bench_quick(bench) ? few_files : all_files;
+    char      folder[temp_path_size], path[temp_name_size];
+    double    absent = 0, over_m = 0, judged = 0;
     if (!temp_folder(folder)) return STATUS_IO;
     Status status = STATUS_OK;
     for (int k = 0; k < count && status == STATUS_OK; k++) {
