@@ -9,12 +9,12 @@
 #include <stdlib.h>
 
 /* The functions of assimp that are called here. */
-#define ASSIMP(X)                                                                                                      \
-    X(aiCreatePropertyStore)                                                                                           \
-    X(aiGetErrorString)                                                                                                \
-    X(aiGetMaterialColor)                                                                                              \
-    X(aiGetMaterialString) X(aiGetMaterialTextureCount) X(aiImportFileExWithProperties) X(aiIsExtensionSupported)      \
-        X(aiSetImportPropertyInteger)
+/* clang-format off */
+#define ASSIMP(X)                                                                                                    \
+    X(aiCreatePropertyStore) X(aiGetErrorString) X(aiGetMaterialColor) X(aiGetMaterialString)                        \
+    X(aiGetMaterialTextureCount) X(aiImportFileExWithProperties) X(aiIsExtensionSupported)                           \
+    X(aiSetImportPropertyInteger)
+/* clang-format on */
 LIBRARY(assimp_library, ASSIMP, "assimp", PITVIPER_ASSIMP_FILE, "libassimp5");
 
 /* ---- assimp's files --------------------------------------------------------------------------------- */

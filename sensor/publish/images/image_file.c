@@ -7,12 +7,11 @@
 
 #include <pthread.h>
 
-#define IMAGE_MODULE(X)                                                                                                \
-    X(image_module_write_exr)                                                                                          \
-    X(image_module_write_png)                                                                                          \
-    X(image_module_info)                                                                                               \
-    X(image_module_read_f32) X(image_module_read_u32) X(image_module_read_png) X(image_module_read_string)             \
-        X(image_module_read_number)
+/* clang-format off */
+#define IMAGE_MODULE(X)                                                                                              \
+    X(image_module_write_exr) X(image_module_write_png) X(image_module_info) X(image_module_read_f32)                \
+    X(image_module_read_u32) X(image_module_read_png) X(image_module_read_string) X(image_module_read_number)
+/* clang-format on */
 static char path_of_module[4200];
 LIBRARY(image_library, IMAGE_MODULE, "OpenImageIO", path_of_module, "libopenimageio2.4");
 
