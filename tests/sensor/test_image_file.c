@@ -369,9 +369,48 @@ static void nonsense_is_refused(void **state)
     assert_int_equal(files_in_folder(), 0);
 }
 
+/* First and last row of a letter with ink of a half or more; returns the sum of its ink, in pixels. */
+static double ink_of(int rows[2], const uint8_t *cell, int wide, int high)
+{
+    double sum = 0;
+    rows[0] = high, rows[1] = -1;
+    for (int v = 0; v < high; v++)
+        for (int u = 0; u < wide; u++) {
+            sum += cell[v * wide + u] / 255.0;
+            if (cell[v * wide + u] < 128) continue;
+            rows[0] = v < rows[0] ? v : rows[0];
+            rows[1] = v;
+        }
+    return sum;
+}
+
+/* DejaVu Sans Mono's own figures: capitals 1493 of 2048 units high, x 1120, an em 2048, a letter 1233 wide. */
+static void letters_are_those_of_the_font(void **state)
+{
+    (void)state;
+    enum { size_px = 36, wide = 22, high = 48, base = 36 };
+    static uint8_t cover[image_letter_count][high * wide];
+    int            rows[2];
+    assert_int_equal(image_letters(&cover[0][0], wide, high, base, size_px), STATUS_OK);
+    for (int letter = 1; letter < image_letter_count; letter++) {
+        assert_true(ink_of(rows, cover[letter], wide, high) > 4);
+        for (int other = 0; other < letter; other++)
+            assert_memory_not_equal(cover[letter], cover[other], sizeof cover[letter]);
+    }
+    CHECK_NEAR(ink_of(rows, cover[0], wide, high), 0, 0); /* a blank */
+    ink_of(rows, cover['H' - ' '], wide, high);
+    CHECK_NEAR(rows[1], base - 1, 1);
+    CHECK_NEAR(rows[1] + 1 - rows[0], size_px * 1493.0 / 2048, 1);
+    ink_of(rows, cover['x' - ' '], wide, high);
+    CHECK_NEAR(rows[1] + 1 - rows[0], size_px * 1120.0 / 2048, 1);
+    ink_of(rows, cover['g' - ' '], wide, high);
+    assert_true(rows[1] >= base + size_px / 8); /* it hangs below */
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(letters_are_those_of_the_font),
         cmocka_unit_test(exr_round_trip_is_exact),
         cmocka_unit_test(octets_become_uint32),
         cmocka_unit_test(lines_shrink_or_stay),

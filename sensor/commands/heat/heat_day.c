@@ -20,7 +20,7 @@ enum {
     tile_width = 360,
     tile_height = 270,
     tile = tile_width * tile_height,
-    foot = letters_high + 14,
+    foot = picture_text_high + 14,
     width = columns * tile_width,
     height = rows * tile_height + foot
 };
@@ -89,10 +89,10 @@ static void write_labels(uint8_t *rgb, const char *band, DetectorLevel level)
     char text[96];
     for (int i = 0; i < heat_day_images; i++) {
         snprintf(text, sizeof text, "%02d h", i * heat_day_image_s / 3600);
-        letters_write(rgb, width, height, i % columns * tile_width + 10, i / columns * tile_height + 8, text);
+        picture_text_write(rgb, width, height, i % columns * tile_width + 10, i / columns * tile_height + 8, text);
     }
     snprintf(text, sizeof text, "%s apparent temperature  black %.0f K  white %.0f K", band, level.low, level.high);
-    letters_write(rgb, width, height, 10, rows * tile_height + 7, text);
+    picture_text_write(rgb, width, height, 10, rows * tile_height + 7, text);
 }
 
 static Status write_band(const char *path, const char *band, const float *radiance, const PlanckTable *planck)

@@ -35,7 +35,10 @@ static void dot(uint8_t *rgb, int x, int y, uint8_t value)
     memset(rgb + 3 * ((size_t)y * width + (size_t)x), value, 3);
 }
 
-static void write_text(uint8_t *rgb, int x, int y, const char *text) { letters_write(rgb, width, height, x, y, text); }
+static void write_text(uint8_t *rgb, int x, int y, const char *text)
+{
+    picture_text_write(rgb, width, height, x, y, text);
+}
 
 /* The largest of 1, 2 or 5 times a power of ten that is not above this. */
 static double round_length(double most)

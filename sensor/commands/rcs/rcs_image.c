@@ -194,7 +194,7 @@ static void paint(uint8_t *rgb, double share)
 
 Status rcs_image_write(const RcsImage *image, const RcsSweep *sweep, const char *path)
 {
-    const int n = image->pixels, head = letters_high + 16, foot = 2 * letters_high + 24, width = 2 * n + 8;
+    const int n = image->pixels, head = picture_text_high + 16, foot = 2 * picture_text_high + 24, width = 2 * n + 8;
     const int height = head + n + foot;
     uint8_t  *rgb = calloc(3 * (size_t)width * (size_t)height, 1);
     double    most = -INFINITY;
@@ -210,13 +210,13 @@ Status rcs_image_write(const RcsImage *image, const RcsSweep *sweep, const char 
             }
     for (int q = 0; q < 2; q++) {
         snprintf(text, sizeof text, "%s %.1f m", q ? "HV" : "HH", image->side_m);
-        letters_write(rgb, width, height, q * (n + 8) + 10, 8, text);
+        picture_text_write(rgb, width, height, q * (n + 8) + 10, 8, text);
     }
     snprintf(text, sizeof text, "%.4g GHz azimuth %.4g elevation %.4g deg", image->frequency_hz * 1e-9,
              image->middle_deg, sweep->config.elevation_deg);
-    letters_write(rgb, width, height, 10, head + n + 6, text);
+    picture_text_write(rgb, width, height, 10, head + n + 6, text);
     snprintf(text, sizeof text, "nose up  %.1f to %.1f dBsm  cell %.2f m", most - shown_db, most, image->resolution_m);
-    letters_write(rgb, width, height, 10, head + n + 12 + letters_high, text);
+    picture_text_write(rgb, width, height, 10, head + n + 12 + picture_text_high, text);
     const Status status = image_write_png(path, rgb, width, height, 3, 8);
     free(rgb);
     return status;

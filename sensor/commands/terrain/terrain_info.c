@@ -140,7 +140,7 @@ static void draw_legend(uint8_t *rgb, int width, int height, int left, const Cov
                 memcpy(rgb + 3 * ((size_t)y * (size_t)width + (size_t)x), colour_of[best], 3);
         snprintf(text, sizeof text, "%s %.1f%%", best ? surface_name((SurfaceClass)best) : "no class",
                  100.0 * (double)cells[best] / (double)all);
-        letters_write(rgb, width, height, left + 42, row * legend_row + 8, text);
+        picture_text_write(rgb, width, height, left + 42, row * legend_row + 8, text);
     }
 }
 

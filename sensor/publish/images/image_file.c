@@ -10,7 +10,8 @@
 /* clang-format off */
 #define IMAGE_MODULE(X)                                                                                              \
     X(image_module_write_exr) X(image_module_write_png) X(image_module_info) X(image_module_read_f32)                \
-    X(image_module_read_u32) X(image_module_read_png) X(image_module_read_string) X(image_module_read_number)
+    X(image_module_read_u32) X(image_module_read_png) X(image_module_read_string) X(image_module_read_number)                \
+    X(image_module_letters)
 /* clang-format on */
 static char path_of_module[4200];
 LIBRARY(image_library, IMAGE_MODULE, "OpenImageIO", path_of_module, "libopenimageio2.4");
@@ -91,4 +92,10 @@ bool image_read_string(char *out, size_t out_size, const char *path, const char 
 bool image_read_number(double *out, const char *path, const char *attribute)
 {
     return prepare_to_read(path) == STATUS_OK && image_module_read_number(out, path, attribute);
+}
+
+Status image_letters(uint8_t *cover, int wide, int high, int base, int size_px)
+{
+    const Status status = image_file_prepare();
+    return status != STATUS_OK ? status : image_module_letters(cover, wide, high, base, size_px);
 }

@@ -83,4 +83,10 @@ Status image_read_png(void *out, const char *path);
 bool image_read_string(char *out, size_t out_size, const char *path, const char *attribute);
 bool image_read_number(double *out, const char *path, const char *attribute);
 
+/* Printable ASCII, ' ' to '~', in a font of equal widths: cover[image_letter_count][high][wide], the share of 255 that
+ * each pixel is covered; base: the row below the lowest of a letter without a tail; size_px: of the font, 0.6 of which
+ * is the width of a letter. STATUS_IO: no such font. */
+enum { image_letter_count = '~' - ' ' + 1 };
+Status image_letters(uint8_t *cover, int wide, int high, int base, int size_px);
+
 #endif

@@ -18,6 +18,7 @@ Status image_module_read_u32(uint32_t *out, const char *path, const char *channe
 Status image_module_read_png(void *out, const char *path);
 bool   image_module_read_string(char *out, size_t out_size, const char *path, const char *attribute);
 bool   image_module_read_number(double *out, const char *path, const char *attribute);
+Status image_module_letters(uint8_t *cover, int wide, int high, int base, int size_px);
 
 #ifdef __cplusplus
 }

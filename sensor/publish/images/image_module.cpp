@@ -3,6 +3,8 @@
 #include "pitviper_output.h"
 
 #include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imagebuf.h>
+#include <OpenImageIO/imagebufalgo.h>
 #include <OpenImageIO/imageio.h>
 
 #include <algorithm>
@@ -317,4 +319,21 @@ try {
     return true;
 } catch (const std::exception &) {
     return false;
+}
+
+Status image_module_letters(uint8_t *cover, int wide, int high, int base, int size_px)
+try {
+    library_set_up();
+    const char *const debian = "/usr/share/fonts/truetype/dejavu/DejaVuSansMono.ttf";
+    const char *const font = OIIO::Filesystem::exists(debian) ? debian : "DejaVuSansMono";
+    for (int letter = 0; letter < image_letter_count; letter++, cover += (size_t)wide * (size_t)high) {
+        OIIO::ImageBuf cell(ImageSpec(wide, high, 1, TypeDesc::UINT8));
+        OIIO::ImageBufAlgo::zero(cell);
+        const char text[2] = {(char)(' ' + letter), 0};
+        if (!OIIO::ImageBufAlgo::render_text(cell, 0, base, text, size_px, font)) return STATUS_IO;
+        if (!cell.get_pixels(cell.roi(), TypeDesc::UINT8, cover)) return STATUS_IO;
+    }
+    return STATUS_OK;
+} catch (const std::exception &) {
+    return STATUS_NO_MEMORY;
 }

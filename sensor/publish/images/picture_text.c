@@ -1,80 +1,85 @@
-/* sensor/publish/images/picture_text.c: the dots of each letter, and words made of them. */
+/* sensor/publish/images/picture_text.c: words and boxes in pictures; the shapes of the letters are those of a font, by
+ * OpenImageIO. */
 #include "sensor/publish/images/picture_text.h"
+#include "sensor/publish/images/image_file.h"
 
-/* Five columns of seven dots, the lowest bit at the top. */
-static const struct {
-    char    letter;
-    uint8_t column[5];
-} glyphs[] = {
-    {'0', {0x3e, 0x51, 0x49, 0x45, 0x3e}}, {'1', {0x00, 0x42, 0x7f, 0x40, 0x00}}, {'2', {0x62, 0x51, 0x49, 0x49, 0x46}},
-    {'3', {0x22, 0x41, 0x49, 0x49, 0x36}}, {'4', {0x18, 0x14, 0x12, 0x7f, 0x10}}, {'5', {0x27, 0x45, 0x45, 0x45, 0x39}},
-    {'6', {0x3c, 0x4a, 0x49, 0x49, 0x30}}, {'7', {0x01, 0x71, 0x09, 0x05, 0x03}}, {'8', {0x36, 0x49, 0x49, 0x49, 0x36}},
-    {'9', {0x06, 0x49, 0x49, 0x29, 0x1e}}, {'.', {0x00, 0x60, 0x60, 0x00, 0x00}}, {'-', {0x08, 0x08, 0x08, 0x08, 0x08}},
-    {'%', {0x23, 0x13, 0x08, 0x64, 0x62}}, {'a', {0x20, 0x54, 0x54, 0x54, 0x78}}, {'b', {0x7f, 0x48, 0x44, 0x44, 0x38}},
-    {'c', {0x38, 0x44, 0x44, 0x44, 0x20}}, {'d', {0x38, 0x44, 0x44, 0x48, 0x7f}}, {'e', {0x38, 0x54, 0x54, 0x54, 0x18}},
-    {'f', {0x08, 0x7e, 0x09, 0x01, 0x02}}, {'g', {0x08, 0x54, 0x54, 0x54, 0x3c}}, {'h', {0x7f, 0x08, 0x04, 0x04, 0x78}},
-    {'i', {0x00, 0x44, 0x7d, 0x40, 0x00}}, {'j', {0x20, 0x40, 0x44, 0x3d, 0x00}}, {'k', {0x7f, 0x10, 0x28, 0x44, 0x00}},
-    {'l', {0x00, 0x41, 0x7f, 0x40, 0x00}}, {'m', {0x7c, 0x04, 0x78, 0x04, 0x78}}, {'n', {0x7c, 0x08, 0x04, 0x04, 0x78}},
-    {'o', {0x38, 0x44, 0x44, 0x44, 0x38}}, {'p', {0x7c, 0x14, 0x14, 0x14, 0x08}}, {'q', {0x08, 0x14, 0x14, 0x18, 0x7c}},
-    {'r', {0x7c, 0x08, 0x04, 0x04, 0x08}}, {'s', {0x48, 0x54, 0x54, 0x54, 0x20}}, {'t', {0x04, 0x3f, 0x44, 0x40, 0x20}},
-    {'u', {0x3c, 0x40, 0x40, 0x20, 0x7c}}, {'v', {0x1c, 0x20, 0x40, 0x20, 0x1c}}, {'w', {0x3c, 0x40, 0x30, 0x40, 0x3c}},
-    {'x', {0x44, 0x28, 0x10, 0x28, 0x44}}, {'y', {0x0c, 0x50, 0x50, 0x50, 0x3c}}, {'z', {0x44, 0x64, 0x54, 0x4c, 0x44}},
-    {'A', {0x7e, 0x11, 0x11, 0x11, 0x7e}}, {'B', {0x7f, 0x49, 0x49, 0x49, 0x36}}, {'C', {0x3e, 0x41, 0x41, 0x41, 0x22}},
-    {'D', {0x7f, 0x41, 0x41, 0x22, 0x1c}}, {'E', {0x7f, 0x49, 0x49, 0x49, 0x41}}, {'F', {0x7f, 0x09, 0x09, 0x09, 0x01}},
-    {'G', {0x3e, 0x41, 0x49, 0x49, 0x7a}}, {'H', {0x7f, 0x08, 0x08, 0x08, 0x7f}}, {'I', {0x00, 0x41, 0x7f, 0x41, 0x00}},
-    {'J', {0x20, 0x40, 0x41, 0x3f, 0x01}}, {'K', {0x7f, 0x08, 0x14, 0x22, 0x41}}, {'L', {0x7f, 0x40, 0x40, 0x40, 0x40}},
-    {'M', {0x7f, 0x02, 0x0c, 0x02, 0x7f}}, {'N', {0x7f, 0x04, 0x08, 0x10, 0x7f}}, {'O', {0x3e, 0x41, 0x41, 0x41, 0x3e}},
-    {'P', {0x7f, 0x09, 0x09, 0x09, 0x06}}, {'Q', {0x3e, 0x41, 0x51, 0x21, 0x5e}}, {'R', {0x7f, 0x09, 0x19, 0x29, 0x46}},
-    {'S', {0x46, 0x49, 0x49, 0x49, 0x31}}, {'T', {0x01, 0x01, 0x7f, 0x01, 0x01}}, {'U', {0x3f, 0x40, 0x40, 0x40, 0x3f}},
-    {'V', {0x1f, 0x20, 0x40, 0x20, 0x1f}}, {'W', {0x3f, 0x40, 0x38, 0x40, 0x3f}}, {'X', {0x63, 0x14, 0x08, 0x14, 0x63}},
-    {'Y', {0x07, 0x08, 0x70, 0x08, 0x07}}, {'Z', {0x61, 0x51, 0x49, 0x45, 0x43}}, {':', {0x00, 0x36, 0x36, 0x00, 0x00}},
-    {'/', {0x20, 0x10, 0x08, 0x04, 0x02}}, {'_', {0x40, 0x40, 0x40, 0x40, 0x40}},
-};
+#include <pthread.h>
+#include <stdlib.h>
 
-static void dot(const Drawing *d, int x, int y, bool white)
+/* Of a letter, in dots: its cell, and where it stands in it. */
+enum { cell_wide = 6, cell_high = 10, cell_base = 8, font_size = 9, times_most = 8 };
+
+/* Printable ASCII, as shares of 255 that each pixel is covered: [letter][cell_high x times][cell_wide x times]; NULL:
+ * not made, or there is no font. They are made once for each size, and stay. */
+static struct {
+    uint8_t *cover;
+    bool     tried;
+} letters[times_most + 1];
+
+static const uint8_t *letters_of(int times)
+{
+    static pthread_mutex_t mutex = PTHREAD_MUTEX_INITIALIZER;
+    pthread_mutex_lock(&mutex);
+    if (!letters[times].tried) {
+        const int wide = cell_wide * times, high = cell_high * times;
+        letters[times].tried = true;
+        letters[times].cover = calloc(image_letter_count, (size_t)wide * (size_t)high);
+        if (!letters[times].cover ||
+            image_letters(letters[times].cover, wide, high, cell_base * times, font_size * times) != STATUS_OK) {
+            log_warn(
+                "pictures: they have no words, as there is no font DejaVuSansMono.ttf; next: apt-get install fonts-dejavu-core, "
+                "or name its folder in OPENIMAGEIO_FONTS");
+            free(letters[times].cover);
+            letters[times].cover = NULL;
+        }
+    }
+    pthread_mutex_unlock(&mutex);
+    return letters[times].cover;
+}
+
+/* white: share of 255 */
+static void dot(const Drawing *d, int x, int y, int white)
 {
     if (x < d->left || y < 0 || x >= d->right || y >= d->height) return;
     const size_t at = ((size_t)y * (size_t)d->width + (size_t)x) * (size_t)d->planes;
+    const int    value = (d->full * white + 127) / 255;
     for (int p = 0; p < d->planes; p++)
-        if (d->wide) ((uint16_t *)d->pixels)[at + (size_t)p] = white ? (uint16_t)d->full : 0;
-        else ((uint8_t *)d->pixels)[at + (size_t)p] = white ? (uint8_t)d->full : 0;
+        if (d->wide) ((uint16_t *)d->pixels)[at + (size_t)p] = (uint16_t)value;
+        else ((uint8_t *)d->pixels)[at + (size_t)p] = (uint8_t)value;
 }
 
-static const uint8_t *columns_of(char letter)
+void picture_text_draw(const Drawing *d, int x, int y, int times, const char *text)
 {
-    for (size_t g = 0; g < sizeof glyphs / sizeof *glyphs; g++)
-        if (glyphs[g].letter == letter) return glyphs[g].column;
-    return NULL;
-}
-
-void drawing_text(const Drawing *d, int x, int y, int times, const char *text)
-{
-    const int length = (int)strlen(text);
-    for (int v = -times; v < 8 * times; v++)
-        for (int u = -times; u < 6 * times * length; u++) dot(d, x + u, y + v, false);
-    for (int i = 0; i < length; i++) {
-        const uint8_t *column = columns_of(text[i]);
-        for (int u = 0; column && u < 5 * times; u++)
-            for (int v = 0; v < 7 * times; v++)
-                if (column[u / times] >> (v / times) & 1) dot(d, x + 6 * times * i + u, y + v, true);
+    times = times < 1 ? 1 : times > times_most ? times_most : times;
+    const int      wide = cell_wide * times, high = cell_high * times, top = y + (7 - cell_base) * times;
+    const uint8_t *cover = letters_of(times);
+    if (!cover) return;
+    for (int v = 0; v < high; v++)
+        for (int u = -times; u < 0; u++) dot(d, x + u, top + v, 0);
+    for (int i = 0; text[i]; i++) {
+        const int      letter = text[i] >= ' ' && text[i] <= '~' ? text[i] - ' ' : '?' - ' ';
+        const uint8_t *at = cover + (size_t)letter * (size_t)wide * (size_t)high;
+        for (int v = 0; v < high; v++)
+            for (int u = 0; u < wide; u++) dot(d, x + wide * i + u, top + v, at[v * wide + u]);
     }
 }
 
-void letters_write(uint8_t *rgb, int width, int height, int x, int y, const char *text)
+void picture_text_write(uint8_t *rgb, int width, int height, int x, int y, const char *text)
 {
-    drawing_text(&(Drawing){rgb, width, height, 3, false, 255, 0, width}, x, y, 2, text);
+    picture_text_draw(&(Drawing){rgb, width, height, 3, false, 255, 0, width}, x, y, 2, text);
 }
 
-void drawing_box(const Drawing *d, const int box[4])
+void picture_text_box(const Drawing *d, const int box[4])
 {
     for (int out = 2; out >= 1; out--) { /* black first */
+        const int white = out == 1 ? 255 : 0;
         for (int x = box[0] - out; x < box[2] + out; x++) {
-            dot(d, x, box[1] - out, out == 1);
-            dot(d, x, box[3] + out - 1, out == 1);
+            dot(d, x, box[1] - out, white);
+            dot(d, x, box[3] + out - 1, white);
         }
         for (int y = box[1] - out; y < box[3] + out; y++) {
-            dot(d, box[0] - out, y, out == 1);
-            dot(d, box[2] + out - 1, y, out == 1);
+            dot(d, box[0] - out, y, white);
+            dot(d, box[2] + out - 1, y, white);
         }
     }
 }

@@ -80,11 +80,11 @@ static void label(Video *v, const EncoderConfig *form, Band band, int column, in
         dis_entity_id_text(id, t->id);
         if (target_box_is_empty(t->box)) continue;
         const int box[4] = {t->box[0] + column, t->box[1], t->box[2] + column, t->box[3]};
-        drawing_box(&d, box);
-        drawing_text(&d, box[0], box[1] >= 10 * times + 2 ? box[1] - 9 * times - 2 : box[3] + 3 * times, times,
+        picture_text_box(&d, box);
+        picture_text_draw(&d, box[0], box[1] >= 10 * times + 2 ? box[1] - 9 * times - 2 : box[3] + 3 * times, times,
                      *t->marking ? t->marking : id);
     }
-    drawing_text(&d, column + 2 * times, 2 * times, times, band_name(band));
+    picture_text_draw(&d, column + 2 * times, 2 * times, times, band_name(band));
 }
 
 /* The image of a channel, and its form. A band without a display is black. */
