@@ -2,7 +2,7 @@
  *
  * A puff is emitted at one position and time; its state is a closed form of its age. Nothing is integrated from frame
  * to frame, so times can be evaluated in any order. etc/effects.csv has the parameters and their accuracy. Sources and
- * times of puffs: effect_history.h. Rendering: render/scene/effects.h. */
+ * times of puffs: effect_history.h. Rendering: render/smoke/smoke.h. */
 #ifndef ENTITIES_TRACES_EFFECT_PUFFS_H
 #define ENTITIES_TRACES_EFFECT_PUFFS_H
 

@@ -4,21 +4,23 @@
  * box: the pixels that show any part of the target, half open, [x0, x1) x [y0, y1), the first pixel of the image is
  * 0 0; no pixel: all 0. Each format states the same pixels its own way:
  *
- *     format                        form                                   first pixel  last pixel  rounding
- *     truth.jsonl box_px            x0, y0, x1, y1                         0            exclusive   none: integers
- *     Data PDU 600201, 600202       u16 x0, y0, x1, y1 (target_box_u16)           0            exclusive   none up to
- * 65535 shared memory                 int32 x0, y0, x1, y1                   0            exclusive   none ST 0903 tags
- * 2, 3             pixel numbers of the first and the     1            inclusive   none last pixel: column + row width
- * + 1, row by row (target_box_pixel_numbers) ST 0903 tag 1                 that of the pixel which holds the      1 -
- * down, to a pixel box's centre (target_box_centre_number) coco.json bbox                x, y, width, height
- * (target_box_coco)         0            exclusive   none; another box
+ *     format                   form                                     first pixel  last pixel  rounding
+ *     truth.jsonl box_px       x0, y0, x1, y1                           0            exclusive   none: integers
+ *     Data PDU 600201, 600202  u16 x0, y0, x1, y1 (target_box_u16)      0            exclusive   none up to 65535
+ *     shared memory            int32 x0, y0, x1, y1                     0            exclusive   none
+ *     ST 0903 tags 2, 3        pixel numbers of the first and the       1            inclusive   none
+ *                              last pixel: column + row width + 1,
+ *                              row by row (target_box_pixel_numbers)
+ *     ST 0903 tag 1            that of the pixel which holds the        1            -           down, to a pixel
+ *                              box's centre (target_box_centre_number)
+ *     coco.json bbox           x, y, width, height (target_box_coco)    0            exclusive   none; another box
  *
  * COCO requires the box of the mask: the pixels whose value in the truth plane `entity` is the target's. A pixel has
  * one value, but may show several entities: it counts for `box` when any sample in it shows the target, and for the
  * mask when its own ray does, or, of a small target, when the target fills more than half of it. So COCO's box lies
  * within `box` and is smaller by the rows and columns of pixels that the target only fills in part: none or one on a
- * side of a compact target, more where it ends in a thin part (an antenna, a barrel). Of an ignore region - a target
- * that fills no pixel by more than half, or is below a limit - it is `box` itself.
+ * side of a compact target, more where it ends in a thin part (an antenna, a barrel). Of an ignore region - a target that
+ * fills no pixel by more than half, or is below a limit - it is `box` itself.
  *
  * amodal_box: of the target's vertices, image coordinates, not clipped and not rounded: the first pixel extends from
  * 0 to 1. Only truth.jsonl, coco.json (bbox_amodal: x, y, width, height) and shared memory have it.

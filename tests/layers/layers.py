@@ -1,5 +1,5 @@
 """tests/layers/layers.py ROOT [--changed BRANCH]: what a file may include, where a library is known, that includes go in no circle,
-that files are opened for writing in one place, and that a .c file says in its first line what it is. A link alone proves none of it: an object that is already pulled in
+that files are opened for writing in one place, that paths named in comments and pages exist, and that a .c file says in its first line what it is. A link alone proves none of it: an object that is already pulled in
 satisfies a call backwards.
 
     base < dis, terrain < entities < render < sensor
@@ -185,6 +185,19 @@ def check_writers(tree):
             yield f'{path}: {found.group(0).split("(")[0].strip()}: pitviper_output.h opens files for writing'
 
 
+# A path of ours in a comment or a document. NAME stands for what a reader fills in, kiosk.c is one's own example.
+NAMED = re.compile(r'(?<![\w/.-])((?:dis|terrain|entities|render|sensor|tests)/[\w./-]*\w\.(?:c|h|cpp|sh|py))\b')
+
+
+def check_named(tree, documents, there):
+    """Comments of sources, and documents {path: text}: what they name exists (there: path -> bool)."""
+    for path, text in list(tree.items()) + list(documents.items()):
+        said = text if path in documents else ' '.join(re.findall(r'/\*.*?\*/', text, re.S))
+        for name in sorted(set(NAMED.findall(said))):
+            if 'NAME' not in name and 'kiosk' not in name and not there(name):
+                yield f'{path}: names {name}, which does not exist'
+
+
 CHECKS = (check_rooms, check_circles, check_first_lines, check_writers)
 
 
@@ -255,6 +268,9 @@ def twins():
                         ('tests/dis/test_a.c', '#include "tests/check.h"'), ('main.c', '')):
         if not violations({path: first + '\n'}):
             wrong.append(f'twin: not caught: {path} begins {first}')
+    for bad, line in ((True, '/* see dis/b.h */'), (False, '/* see dis/a.c */'), (False, '/* see dis/NAME.c */'), (False, 'puts("dis/b.h");')):
+        if bool(list(check_named({'dis/a.c': line}, {}, lambda name: name == 'dis/a.c'))) != bad:
+            wrong.append(f'twin: {"not caught" if bad else "wrongly caught"}: {line}')
     for bad, line in ((True, 'f = fopen(path, "wb");'), (True, 'open(p, O_WRONLY | O_CREAT, 0666);'), (True, 'rename(part, path);'),
                       (False, 'f = fopen(path, "rb");'), (False, 'output_rename(part, path);')):
         if bool(violations({'dis/a.c': f'/* dis/a.c: planted. */\n{line}\n'})) != bad:
@@ -340,6 +356,19 @@ def read_tree(root):
     return tree
 
 
+def read_documents(root):
+    """Pages, and comments of tables: what a reader is told."""
+    documents = {}
+    for folder, folders, names in os.walk(root):
+        folders[:] = [f for f in folders if not (folder == root and (f.startswith('build') or f[0] == '.'))]
+        for name in names:
+            path = os.path.relpath(os.path.join(folder, name), root)
+            if name.endswith(('.md', '.csv', '.sheet')) and name != 'CHANGELOG.md':
+                with open(os.path.join(folder, name), encoding='utf-8', errors='replace') as file:
+                    documents[path] = file.read()
+    return documents
+
+
 def main():
     if len(sys.argv) == 4 and sys.argv[2] == '--changed':
         print(changed_tests(changed_files(sys.argv[1], sys.argv[3])))
@@ -347,6 +376,7 @@ def main():
     wrong = twins() + changed_twins()
     tree = read_tree(sys.argv[1])
     wrong += violations(tree)
+    wrong += check_named(tree, read_documents(sys.argv[1]), lambda name: os.path.exists(os.path.join(sys.argv[1], name)))
     wrong += needless_exceptions(tree, WING_EXCEPTIONS, FILE_EXCEPTIONS)
     for line in wrong:
         print(line)

@@ -130,7 +130,7 @@ static void the_error_and_its_price(void **state)
  * frame: apparent temperature against 8 x 8 rays, and how much that error changes from frame to frame, which is what
  * flickers. With four samples on such a pixel the first was 0.59 K and the second 0.48 K. Without the ground's noise:
  * of what is finer than a pixel one ray shows the statistics, not the mean of this place
- * (tests/sensor/test_ground_detail.c). */
+ * (tests/render/test_ground_detail.c). */
 static void borders_of_kinds_of_ground_do_not_flicker(void **state)
 {
     (void)state;

@@ -1,7 +1,7 @@
 /* render/scattering/field/radar_target.h: a target ready for radar rays, in its own frame: body axes, the phase
  * centre at the body's origin.
  *
- * Its model's geometry is traced by render/parts, whose intersections are double throughout (Embree only finds
+ * Its model's geometry is traced by render/trace/parts, whose intersections are double throughout (Embree only finds
  * candidates); moved parts are posed in double. Nothing here depends on where the target stands in the world:
  * radar_antenna brings an antenna into its frame, in double, once. */
 #ifndef RENDER_SCATTERING_FIELD_RADAR_TARGET_H

@@ -4,7 +4,7 @@
 
 #include <stdlib.h>
 
-/* Rays leave a facet from this far above it, past faces of other parts that coincide with it (render/parts counts
+/* Rays leave a facet from this far above it, past faces of other parts that coincide with it (render/trace/parts counts
  * faces within 0.1 mm as one); their length is taken from the facet itself. */
 static const double lift_m = 2e-4;
 static const double least_power = 1e-8; /* of the incident field's: weaker tubes end */
