@@ -1,6 +1,6 @@
 /* tests/bench/suites.h: what `pitviper bench` runs: all suites, and the functions that add their rows, each in the file
- * that its name tells: bench_precision_air in tests/bench/render/precision_air.c. Those that take a Bench alone return the reason
- * of a failure, which they have logged. */
+ * that its name tells: bench_precision_air in tests/bench/render/precision_air.c. Those that take a Bench alone return
+ * the reason of a failure, which they have logged. */
 #ifndef TESTS_BENCH_SUITES_H
 #define TESTS_BENCH_SUITES_H
 

@@ -22,7 +22,7 @@ corner = np.zeros((120, 320), bool)
 for left in 0, 160: corner[:12, left:left + 2 + 6 * 4 + 1] = True       # four letters of 6 x 8
 assert (bands == off)[:, ~corner].all()
 for f in bands:
-    for left in 0, 160: assert 20 < (f[:12, left:left + 27] == 65535).sum() < 160
+    for left in 0, 160: assert 20 < (f[:12, left:left + 27] > 32768).sum() < 160
 seen = 0
 for line, a, b in zip(open(f"{tmp}/targets/truth.jsonl"), off, targets):
     may = corner.copy()

@@ -1,11 +1,12 @@
-/* plants_scene OUT SCENE SUN_DEG: plants on flat ground under a sun of that elevation and an even sky, seen by Pitviper,
- * with everything that another renderer needs to see the same: tests/system/plants_judge.py.
+/* plants_scene OUT SCENE SUN_DEG: plants on flat ground under a sun of that elevation and an even sky, seen by
+ * Pitviper, with everything that another renderer needs to see the same: tests/system/plants_judge.py.
  *
- * SCENE: oak or pine (one, and its shadow) or stand (ninety trees of seven kinds, from above). Files of OUT, float32 rows:
+ * SCENE: oak or pine (one, and its shadow) or stand (ninety trees of seven kinds, from above). Files of OUT, float32
+ * rows:
  *     quads     12 corner coordinates, organ, kind, outline, albedo
  *     outlines  corners, then 24 u v pairs: one row for each kind and outline
- *     rays      origin, direction, range, kind of hit, plant's organ, then radiance of red, green, near infrared under the
- *               sun alone, and again under sun and sky with what plants scatter
+ *     rays      origin, direction, range, kind of hit, plant's organ, then radiance of red, green, near infrared
+ *               under the sun alone, and again under sun and sky with what plants scatter
  * and scene.txt: names and numbers of the light and the materials. */
 #include "render/frame/shade.h"
 
