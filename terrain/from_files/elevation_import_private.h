@@ -4,7 +4,7 @@
 
 #include "terrain/earth/geoid.h"
 #include "terrain/elevation/levels.h"
-#include "terrain/elevation/patches.h"
+#include "terrain/elevation/raster_patch.h"
 #include "terrain/from_files/elevation_import.h"
 
 enum { import_most_grids = 16, import_join_band = 24 }; /* join_band: posts over which a level goes into the next */
@@ -25,12 +25,12 @@ typedef struct Grid {
 /* Rows of posts of a level, and what the grids hold there. The lattice's nodes are every stride-th post from the
  * level's first on, whichever rows a view has, so that any rows give the same posts. */
 typedef struct View {
-    Field   level;      /* all posts of the level; v unused */
-    int     row0, rows; /* those of the view */
-    int     stride, node_row0, nodes_x, nodes_y;
-    double *n_m; /* [nodes] geoid */
-    Sight   sight[import_most_grids];
-    Patch   patch[import_most_grids];
+    Field       level;      /* all posts of the level; v unused */
+    int         row0, rows; /* those of the view */
+    int         stride, node_row0, nodes_x, nodes_y;
+    double     *n_m; /* [nodes] geoid */
+    Sight       sight[import_most_grids];
+    RasterPatch patch[import_most_grids];
 } View;
 
 typedef struct Import {
@@ -68,7 +68,7 @@ double elevation_import_reads_px(const Import *m, int grid);
 /* elevation_posts.c: lattice of a view; windows of the grids' pixels that it needs; heights above the ellipsoid
  * (STATUS_IO: a stop was requested). View_window: false: the grid has nothing near. */
 Status view_create(View *out, const Import *m, const Field *level, int row0, int rows);
-bool   view_window(PatchWindow *out, const View *view, const Import *m, int grid);
+bool   view_window(RasterPatchWindow *out, const View *view, const Import *m, int grid);
 Status view_heights(float *h_m, const View *view, const Import *m);
 void   view_free(View *view); /* accepts zeroes */
 /* In place, rows of a level: heights above the ellipsoid to ENU z; and blended into the level around. */
@@ -77,14 +77,14 @@ void   view_join(float *rows_m, const Field *level, int row0, int rows, const Fi
 
 /* elevation_plan.c: heights of every level from with_0 ? 0 : 1 on; reads each grid once. finest: the view of the finest
  * level that was read, with its patches; the caller frees it. */
-Status      elevation_import_levels(Import *m, bool with_0, View *finest);
-PatchSource elevation_import_source(const Import *m, int grid);
+Status            elevation_import_levels(Import *m, bool with_0, View *finest);
+RasterPatchSource elevation_import_source(const Import *m, int grid);
 /* All of a report but what is measured. */
 void elevation_import_describe(ElevationReport *r, const Import *m);
 
 enum { samples_places = 100000 };
 /* Draws those numbered first .. end - 1 at random over a patch: posts of the file from number at_posts on. */
-Status samples_draw(Samples *samples, const Import *m, const Patch *patch, int first, int end, int at_posts);
+Status samples_draw(Samples *samples, const Import *m, const RasterPatch *patch, int first, int end, int at_posts);
 /* The stored surface compared with all that were drawn: error_rms_m, error_p99_m, error_max_m and places of the
  * report. */
 Status samples_measure(ElevationReport *report, const Samples *samples, const Elevation *elevation);

@@ -169,11 +169,11 @@ void elevation_import_plan(Import *m, int most_side)
 
 /* ---- heights of whole levels: every grid is read once for all of them ------------------------------------ */
 
-PatchSource elevation_import_source(const Import *m, int grid)
+RasterPatchSource elevation_import_source(const Import *m, int grid)
 {
     const Raster *raster = m->grid[grid].raster;
     const double  a = elevation_lowest_m / raster->metres_per_unit, b = elevation_highest_m / raster->metres_per_unit;
-    return (PatchSource){
+    return (RasterPatchSource){
         .raster = raster, .band = 1, .low = fmin(a, b), .high = fmax(a, b), .key = key, .pool = m->pool};
 }
 
@@ -182,11 +182,11 @@ static bool measure_edges(Import *m, const View *view)
 {
     bool any = false;
     for (int k = 0; k < m->grids; k++) {
-        Grid        *g = &m->grid[k];
-        const Patch *p = &view->patch[k];
-        const int    nx = p->nx[0], ny = p->ny[0];
-        double       sum = 0, low = INFINITY, high = -INFINITY;
-        long         count = 0;
+        Grid              *g = &m->grid[k];
+        const RasterPatch *p = &view->patch[k];
+        const int          nx = p->nx[0], ny = p->ny[0];
+        double             sum = 0, low = INFINITY, high = -INFINITY;
+        long               count = 0;
         if (p->mips == 0) continue;
         for (int j = 0; j < ny; j++)
             for (int i = 0; i < nx; i++) {
@@ -209,15 +209,15 @@ static Status read_all(View view[elevation_max_levels], const Import *m, int fir
 {
     Status status = STATUS_OK;
     for (int grid = 0; grid < m->grids && status == STATUS_OK; grid++) {
-        PatchWindow window[elevation_max_levels];
-        Patch       patch[elevation_max_levels] = {0};
-        int         of[elevation_max_levels], count = 0;
+        RasterPatchWindow window[elevation_max_levels];
+        RasterPatch       patch[elevation_max_levels] = {0};
+        int               of[elevation_max_levels], count = 0;
         for (int k = first; k < m->level_count; k++) {
             if (!view_window(&window[count], &view[k], m, grid)) continue;
             of[count++] = k;
         }
-        const PatchSource source = elevation_import_source(m, grid);
-        if (count > 0) status = patches_read(patch, window, count, &source);
+        const RasterPatchSource source = elevation_import_source(m, grid);
+        if (count > 0) status = raster_patches_read(patch, window, count, &source);
         for (int n = 0; n < count && status == STATUS_OK; n++) view[of[n]].patch[grid] = patch[n];
     }
     return status;

@@ -39,7 +39,7 @@ void view_free(View *view)
         free(s->y);
         free(s->dx);
         free(s->dy);
-        patch_free(&view->patch[k]);
+        raster_patch_free(&view->patch[k]);
     }
     free(view->n_m);
     *view = (View){0};
@@ -93,7 +93,7 @@ done:
 }
 
 /* At the grid's own posting, or averaged to the level's. */
-bool view_window(PatchWindow *out, const View *view, const Import *m, int grid)
+bool view_window(RasterPatchWindow *out, const View *view, const Import *m, int grid)
 {
     const Grid  *g = &m->grid[grid];
     const Sight *s = &view->sight[grid];
@@ -119,7 +119,7 @@ bool view_window(PatchWindow *out, const View *view, const Import *m, int grid)
     }
     int factor = 1;
     while (2 * factor * fmax(g->units[0], g->units[1]) <= view->level.spacing_m * 1.001) factor *= 2;
-    *out = (PatchWindow){from[0], from[1], to[0], to[1], factor, NULL};
+    *out = (RasterPatchWindow){from[0], from[1], to[0], to[1], factor, NULL};
     return true;
 }
 
@@ -127,7 +127,7 @@ bool view_window(PatchWindow *out, const View *view, const Import *m, int grid)
 
 /* One grid at a place in its pixels: height above the ellipsoid, and how far it is beyond its outermost posts; there it
  * is held at its edge, ever more broadly averaged. False: too far to count. */
-static bool grid_at(double *h_m, double *out_m, const Grid *g, const Patch *patch, double x, double y, double n_m)
+static bool grid_at(double *h_m, double *out_m, const Grid *g, const RasterPatch *patch, double x, double y, double n_m)
 {
     if (patch->mips == 0 || !isfinite(x) || !isfinite(y)) return false;
     const double w = g->raster->width - 0.5, h = g->raster->height - 0.5;
@@ -141,7 +141,7 @@ static bool grid_at(double *h_m, double *out_m, const Grid *g, const Patch *patc
         if (*out_m >= g->long_m) return false;
         mip = log2((posting_m + 0.5 * *out_m) / (posting_m * patch->factor));
     }
-    *h_m = patch_at(patch, x, y, mip) * g->raster->metres_per_unit + (g->ellipsoidal ? 0 : n_m);
+    *h_m = raster_patch_at(patch, x, y, mip) * g->raster->metres_per_unit + (g->ellipsoidal ? 0 : n_m);
     return true;
 }
 
@@ -153,7 +153,7 @@ static double coarser_in_holes(const Import *m, const View *view, int at, double
     double sum = 0, left = 1, h_m = filled_m, out_m = 0;
     for (int k = at; k < m->grids; k++) {
         if (k > at && (!grid_at(&h_m, &out_m, &m->grid[k], &view->patch[k], x[k], y[k], n_m) || out_m > 0)) continue;
-        const double inside = patch_hole(&view->patch[k], x[k], y[k]);
+        const double inside = raster_patch_hole(&view->patch[k], x[k], y[k]);
         if (!(inside > 0)) return sum + left * h_m;
         sum += left * (1 - inside) * h_m;
         left *= inside;
@@ -245,14 +245,14 @@ static double run_of_grids(float *h_m, const Import *m, const View *view, size_t
 static void run_of_one(float *h_m, const Import *m, const View *view, int grid, size_t node, const double *b, int from,
                        int count, int rows, double *guess_m)
 {
-    const int    nx = view->nodes_x, level_nx = view->level.nx;
-    const Sight *s = &view->sight[grid];
-    const Grid  *g = &m->grid[grid];
-    const Patch *p = &view->patch[grid];
-    const float *v = p->v[0];
-    const double w = g->raster->width - 0.5, h = g->raster->height - 0.5, unit = g->raster->metres_per_unit;
-    const double inv_factor = 1.0 / p->factor, most_x = p->nx[0] - 1, most_y = p->ny[0] - 1;
-    double       x0[rows_at_once][most_run], y0[rows_at_once][most_run], dx[rows_at_once][most_run],
+    const int          nx = view->nodes_x, level_nx = view->level.nx;
+    const Sight       *s = &view->sight[grid];
+    const Grid        *g = &m->grid[grid];
+    const RasterPatch *p = &view->patch[grid];
+    const float       *v = p->v[0];
+    const double       w = g->raster->width - 0.5, h = g->raster->height - 0.5, unit = g->raster->metres_per_unit;
+    const double       inv_factor = 1.0 / p->factor, most_x = p->nx[0] - 1, most_y = p->ny[0] - 1;
+    double             x0[rows_at_once][most_run], y0[rows_at_once][most_run], dx[rows_at_once][most_run],
         dy[rows_at_once][most_run], n_m[rows_at_once][most_run];
     for (int r = 0; r < rows; r++)
         for (int i = 0; i < count; i++) {

@@ -192,8 +192,9 @@ Status landscape_quick(Landscape *out, double times_s[2], const LocalFrame *fram
 
     const int nx = (int)east_m + 1, ny = (int)north_m + 1;
     cover->invented.seed = invented_hash(seed, 2, 0);
-    status = elevation_level_create(&landscape.elevation, 0, nx, ny, -floor(0.5 * east_m), -floor(0.5 * north_m), 1,
-                                    -512, landscape_quick_step_m);
+    status = elevation_level_create(
+        &landscape.elevation, 0,
+        &(ElevationGrid){nx, ny, -floor(0.5 * east_m), -floor(0.5 * north_m), 1, -512, landscape_quick_step_m});
     for (int o = 0; o < octaves && status == STATUS_OK; o++)
         status = make_octave(&maker.octave[o], o, nx, ny, invented_hash(seed, 3, 0));
     if (status != STATUS_OK) goto done;

@@ -141,7 +141,8 @@ static Status copy_levels(Elevation *out, const Elevation *from)
     Status status = STATUS_OK;
     for (int n = 0; n < from->level_count && status == STATUS_OK; n++) {
         const ElevationLevel *l = &from->level[n];
-        status = elevation_level_create(out, n, l->nx, l->ny, l->x0_m, l->y0_m, l->spacing_m, l->z0_m, l->step_m);
+        status = elevation_level_create(
+            out, n, &(ElevationGrid){l->nx, l->ny, l->x0_m, l->y0_m, l->spacing_m, l->z0_m, l->step_m});
         if (status == STATUS_OK) copy_posts(&out->level[n], l);
     }
     if (status == STATUS_OK) elevation_build_pyramids(out);

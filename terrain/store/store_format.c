@@ -135,7 +135,8 @@ static size_t cells_of(const StoreGrid *grid) { return (size_t)grid->nx * (size_
 
 static Status describe(ElevationLevel *out, const StoreHeaderLevel *l)
 {
-    return elevation_level_describe(out, l->nx, l->ny, l->x0_m, l->y0_m, l->spacing_m, l->z0_m, l->step_m);
+    return elevation_level_describe(out,
+                                    &(ElevationGrid){l->nx, l->ny, l->x0_m, l->y0_m, l->spacing_m, l->z0_m, l->step_m});
 }
 
 bool store_layout(StoreHeader *h)
