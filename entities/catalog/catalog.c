@@ -14,7 +14,8 @@ static const char *const column_name[catalog_columns] = {"type",    "model",    
 
 static const double coarse_chord_error_m = 0.1;
 
-/* Dotted numbers and stars; omitted parts at the end are stars. Fields are 8 bits, the country 16. */
+/* Reads a type: numbers and stars with dots between; parts omitted at the end are stars. Fields have 8 bits, the
+ * country 16. */
 static bool parse_type(int field[catalog_type_fields], const char *text)
 {
     for (int f = 0; f < catalog_type_fields; f++) field[f] = catalog_any;
@@ -35,7 +36,7 @@ static bool parse_type(int field[catalog_type_fields], const char *text)
         if (!*text) return true;
         text++;
     }
-    return false; /* an eighth field */
+    return false; /* there is an eighth field */
 }
 
 static Status open_file(CatalogModel *model, bool *imported, const char *source, double sag_m)
@@ -47,8 +48,8 @@ static Status open_file(CatalogModel *model, bool *imported, const char *source,
     return status;
 }
 
-/* Index of the model of that name or file and size. If it is new a file is read now, and so is a shape that no size of
- * it has called for yet. Files are beside the catalog at `path`. */
+/* Finds or adds the model of that name or file, and size. When it is new, a file is read now, and so is a shape of
+ * which no other size was added before. Files are relative to the folder of `path`. */
 static Status find_or_add(int *out, Catalog *catalog, const char *name, const ModelSize *size, const char *path)
 {
     char        source[1024];
@@ -165,7 +166,8 @@ static Status read_row(CatalogRow *row, Catalog *catalog, const Table *table, in
     return status == STATUS_UNSUPPORTED ? STATUS_BAD_VALUE : status;
 }
 
-/* The user's own first, then longer, then more fields named, then the order of the file: it is the search order. */
+/* The search order of rows: the user's own first, then those named deeper, then those with more fields named, then by
+ * their order in the file. */
 static int row_order(const void *x, const void *y)
 {
     const CatalogRow *a = x, *b = y;
@@ -177,7 +179,7 @@ static int row_order(const void *x, const void *y)
 
 /* ---- the whole ----------------------------------------------------------------------------------- */
 
-/* Which column of the table is which; -1: not there. */
+/* Finds the columns of the table; -1: it is not there. */
 static Status find_columns(int column[catalog_columns], const Table *table)
 {
     for (int c = 0; c < catalog_columns; c++) {

@@ -11,14 +11,14 @@ enum { catalog_type_fields = 7, catalog_any = -1 };
 
 typedef struct CatalogRow {
     int       field[catalog_type_fields]; /* catalog_any: a star */
-    int       length;                     /* fields up to the last one named */
+    int       length;                     /* fields up to and including the last one named */
     int       named;                      /* fields that are not a star */
-    int       order;                      /* in the file */
+    int       order;                      /* its place in the file */
     int       model;
     Origin    origin;
-    bool      own; /* of the user's catalog, which takes precedence */
+    bool      own; /* from the user's catalog, which takes precedence */
     int       line;
-    ModelSize size; /* from the row; of a file: its expected size */
+    ModelSize size; /* size in the row, which for a model from a file is the expected size */
     char     *note; /* may be NULL */
 } CatalogRow;
 
@@ -26,14 +26,14 @@ typedef struct CatalogRow {
  * nodes and parts, with their materials and heat, depend on neither size nor facets. With fine facets and in its size
  * it is built at the first look-up of one of its types: an exercise uses some ten of two hundred models. */
 typedef struct CatalogModel {
-    char            *source;    /* its built-in name, or its file */
-    ModelSize        size;      /* zeroes: its own */
-    int              shape;     /* index of the entry of which this is another size: `first` */
-    int              same_name; /* index of the first of the same name */
-    ModelImport     *import;    /* of a file, else NULL */
-    Model            first;     /* of shape == own index alone: coarse, or of a file */
-    _Atomic(Model *) fine;      /* NULL: not asked for yet, or of a file */
-    atomic_bool      failed;    /* no memory when it was asked for */
+    char            *source;    /* its built-in name, or its file's path */
+    ModelSize        size;      /* size asked for; zeroes: the shape's own */
+    int              shape;     /* index of the model with the same shape whose `first` is used */
+    int              same_name; /* index of the first model of the same name */
+    ModelImport     *import;    /* of a model from a file; else NULL */
+    Model            first;     /* set where shape is the own index: a coarse build, or the model from a file */
+    _Atomic(Model *) fine;      /* fine build; NULL: not asked for yet, or from a file */
+    atomic_bool      failed;    /* there was no memory for the fine build */
 } CatalogModel;
 
 struct Catalog {

@@ -2,8 +2,7 @@
 #include "entities/catalog/catalog_private.h"
 #include "entities/shapes/parametric.h"
 
-/* The first row of the table of the program, in search order, that has all of this row's types, and a shape of its
- * own. */
+/* The first of the program's rows, in search order, that covers all of a row's types and has a shape of its own. */
 static const CatalogRow *row_behind(const Catalog *catalog, const CatalogRow *row)
 {
     for (int r = 0; r < catalog->row_count; r++) {
@@ -44,7 +43,8 @@ void catalog_size_range(SizeRange *out, const Catalog *catalog, int kind, int do
     }
 }
 
-/* Reports a model from a file of whose type the program knows no size, when nothing of its kind is like it. */
+/* Reports a model from a file when the program knows no size for its type, and no thing of its kind has a similar size.
+ * */
 static void warn_odd_size(const Catalog *catalog, const CatalogRow *row, const CatalogModel *m)
 {
     static const double slack = 3;

@@ -7,7 +7,7 @@
 /* ---- memory and look-up -------------------------------------------------------------------------- */
 
 /* Allocates zeroed heights; NULL: no memory. A ray touches few of hundreds of megabytes, so large arrays use huge pages
- * where available: without them half the time of a look-up would be the TLB miss. */
+ * where available; without them half the time of a look-up would be the TLB miss. */
 static void *heights_create(size_t count, size_t size)
 {
     static const size_t page = (size_t)1 << 21;

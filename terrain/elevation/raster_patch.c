@@ -11,7 +11,8 @@ void raster_patch_free(RasterPatch *patch)
     *patch = (RasterPatch){0};
 }
 
-/* Mean of what is valid, NaN where nothing is. in: rows of `pitch` floats, `width` pixels of each, `rows` of them. */
+/* Averages rows: mean of the valid pixels, NaN where none is valid. in: `rows` rows of `width` pixels, `pitch` floats
+ * apart. */
 static void average_row(float *restrict out, int nx, const float *restrict in, size_t pitch, int width, int rows,
                         int factor)
 {
@@ -81,7 +82,8 @@ static double bilinear(const float *v, int nx, int ny, double x, double y)
     return south + w * (north - south);
 }
 
-/* Between the posts of one mip, at a place in pixels of the raster: of the wider patch where the own mips end. */
+/* Value between the posts of one mip at a place in pixels of the raster; from the wider patch where the patch's own
+ * mips end. */
 static double mip_at(const RasterPatch *p, int k, double x_px, double y_px)
 {
     if (k >= p->mips) {
@@ -93,8 +95,8 @@ static double mip_at(const RasterPatch *p, int k, double x_px, double y_px)
     return bilinear(p->v[k], p->nx[k], p->ny[k], (x_px - p->x0) / p->factor * s, (y_px - p->y0) / p->factor * s);
 }
 
-/* Voids of one mip: first from the coarser one, then relaxed towards the mean of the neighbours, so that the
- * filling meets the rim without a step and has no extremum of its own (a membrane; Laplace's equation). */
+/* Fills the voids of one mip: first from the coarser mip, then by relaxing them towards the mean of their neighbours,
+ * so that the filling joins the rim smoothly and has no extremum of its own (a membrane; Laplace's equation). */
 static Status fill(RasterPatch *p, int k)
 {
     enum { sweeps = 24 };
@@ -133,7 +135,7 @@ static Status fill(RasterPatch *p, int k)
 
 enum { square = 8 };
 
-/* Squares are those of the whole raster, whichever window the patch has. */
+/* Number of the square of a pixel. Squares are those of the whole raster, whatever window the patch has. */
 static int first_square(int px, const RasterPatch *p) { return px / p->factor / square; }
 static int squares(int px, int count, const RasterPatch *p)
 {
@@ -195,12 +197,12 @@ typedef struct Reading {
     const RasterPatchWindow *window;
     RasterPatch             *patch;
     int                      count;
-    int                      x0, x1, y0, y1, rows; /* of all windows; rows: of a strip, which a task reads */
-    Status                  *status;               /* [strips] */
+    int     x0, x1, y0, y1, rows; /* pixels that all windows need; rows: those of a strip, which one task reads */
+    Status *status;               /* [strips] */
 } Reading;
 
-/* Columns of a strip: rows y0 .. y1 - 1 of columns x0 .. x1 - 1, averaged into every patch that has some of them.
- * strip: their pixels; NULL: all are `value`. */
+/* Averages part of a strip, rows y0 .. y1 - 1 of columns x0 .. x1 - 1, into every patch that needs some of it. strip:
+ * its pixels; NULL: all are `value`. */
 static void average_columns(const Reading *r, const float *strip, float value, int x0, int x1, int y0, int y1)
 {
     for (int w = 0; w < r->count; w++) {
@@ -221,7 +223,8 @@ static void average_columns(const Reading *r, const float *strip, float value, i
     }
 }
 
-/* Pieces of columns begin at multiples of raster_piece, and so of every factor: no average straddles two. */
+/* Reads one strip in pieces of columns. These begin at multiples of raster_piece, and so of every factor: no average is
+ * split between two. */
 static void read_strip(void *user, int worker, int task)
 {
     const Reading *r = user;

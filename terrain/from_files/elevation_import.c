@@ -34,8 +34,8 @@ void samples_free(Samples *samples)
     *samples = (Samples){0};
 }
 
-/* Places of the grid, each converted exactly to ENU; and posts of it, where peaks between the stored posts are lost
- * most. */
+/* Draws places of the grid, each converted exactly to ENU, and posts of it, since peaks between the stored posts are
+ * lost most. */
 Status samples_draw(Samples *samples, const Import *m, const RasterPatch *patch, int first, int end, int at_posts)
 {
     enum { block = 1000 };
@@ -70,7 +70,7 @@ Status samples_draw(Samples *samples, const Import *m, const RasterPatch *patch,
     return STATUS_OK;
 }
 
-/* Signed distance of the surface below or above one place; NaN off level 0 or where it is joined. */
+/* Signed height of the surface over one place; NaN off level 0 or where it is blended with level 1. */
 static double off_m(const Elevation *elevation, const double p_enu[3])
 {
     const ElevationLevel *level = &elevation->level[0];
@@ -110,7 +110,7 @@ Status samples_measure(ElevationReport *report, const Samples *samples, const El
 
 enum { most_side_0 = 6 << 10 }; /* 36 M posts */
 static const double most_read_gb =
-    1024; /* decoded: an hour; a file of 300 octets may ask for a million times as much */
+    1024; /* decoding that takes an hour; a file of 300 octets may ask for a million times as much */
 
 static Status refuse_vast(const Import *m)
 {

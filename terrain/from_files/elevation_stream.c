@@ -11,7 +11,7 @@ struct ElevationStream {
     Import          m;
     ElevationFiles  files;
     LocalFrame      frame;
-    View            wide; /* of level 1 */
+    View            wide; /* a view of level 1 */
     Samples         samples;
     ElevationReport report;
     int             drawn;
@@ -93,7 +93,7 @@ void elevation_stream_level(StreamLevel *out, const ElevationStream *stream, int
     *out = (StreamLevel){z->spacing_m, z->i0, z->j0, z->nx, z->ny, z->v};
 }
 
-/* What the strip needs of one grid. Where that is as coarse as the levels around have it, theirs is used. */
+/* Reads what the strip needs of one grid. Where that is as coarse as in the levels around, their patch is borrowed. */
 static Status read_patch(View *view, bool *borrowed, const ElevationStream *s, int grid)
 {
     const RasterPatch *wide = &s->wide.patch[grid];
@@ -105,7 +105,7 @@ static Status read_patch(View *view, bool *borrowed, const ElevationStream *s, i
         *borrowed = true;
         return STATUS_OK;
     }
-    w.x0 -= margin_px * w.factor; /* voids are filled alike from strip to strip */
+    w.x0 -= margin_px * w.factor; /* the margin makes voids filled alike from strip to strip */
     w.y0 -= margin_px * w.factor;
     w.x1 += margin_px * w.factor;
     w.y1 += margin_px * w.factor;
@@ -114,11 +114,11 @@ static Status read_patch(View *view, bool *borrowed, const ElevationStream *s, i
     return raster_patches_read(&view->patch[grid], &w, 1, &source);
 }
 
-/* Posts whose nearest pixel of the finest grid there is valid: 1; voids filled from their surroundings: 2; from a
- * coarser grid: 3; beyond the data: 0. */
+/* Marks where posts come from. 1: the nearest pixel of the finest grid there is valid; 2: it is a void filled from its
+ * surroundings; 3: a coarser grid; 0: beyond the data. */
 static void mark(uint8_t *from_file, const View *view, const Import *m)
 {
-    enum { inner = 4 }; /* well inside a hole: a coarser grid may have it */
+    enum { inner = 4 }; /* posts this far inside a hole may come from a coarser grid */
     const int nx = view->level.nx;
     memset(from_file, 0, (size_t)view->rows * (size_t)nx);
     for (int grid = 0; grid < m->grids; grid++) {
@@ -150,7 +150,7 @@ static void mark(uint8_t *from_file, const View *view, const Import *m)
         if (from_file[n] == inner) from_file[n] = 2;
 }
 
-/* Posts of the strip within the data that were filled. */
+/* Counts the filled posts of the strip within the data. */
 static void count_voids(ElevationStream *s, const View *view)
 {
     const RasterPatch *p = &view->patch[s->m.main];

@@ -52,7 +52,7 @@ static const char *evidence_fault(const LandscapeEvidence *said)
     return NULL;
 }
 
-/* Whether x is a whole number, at least `low`, to what rounding leaves. */
+/* Whether x is a whole number of at least `low`, to within rounding. */
 static bool is_whole(double x, double low) { return x >= low && x <= 1e6 && fabs(x - rint(x)) <= 1e-6; }
 
 bool landscape_parts_nested(const ElevationLevel *fine, const ElevationLevel *coarse)
@@ -122,7 +122,7 @@ static const char *photo_fault(const Photo *p)
 
 /* ---- made again -------------------------------------------------------------------------------- */
 
-/* NULL: no memory, or nothing to copy. */
+/* Copies octets. NULL: no memory, or nothing to copy. */
 static void *copied(const void *from, size_t octets)
 {
     void *to = octets ? malloc(octets) : NULL;
@@ -212,8 +212,8 @@ Status landscape_from_parts(Landscape *out, const char **why, const LandscapePar
 
 /* ---- borrowed ------------------------------------------------------------------------------------ */
 
-/* Height above the sea up to which trees grow, a rough guess: they end at some 3900 m within 30 degrees of the
- * equator, and at the sea at 70. */
+/* Height above the sea up to which trees grow, a rough estimate: some 3900 m within 30 degrees of the equator, and the
+ * sea's level at 70. */
 static double treeline_m(double lat_rad) { return clamp(3900 - 97.5 * (fabs(lat_rad) / rad_per_deg - 30), 0, 3900); }
 
 Status landscape_borrow(Landscape *out, const LandscapeParts *parts, const LandscapeMap *map)
