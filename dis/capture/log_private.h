@@ -56,8 +56,8 @@ typedef struct DisCapturePacket {
     uint64_t       at;        /* offset of bytes in the file; UINT64_MAX: it is compressed, or a pipe */
 } DisCapturePacket;
 
-/* A file that is no capture, or cannot be read: a logged reason and the status. tap: as dis_stream_open_tapped has it;
- * may be NULL; dis_capture_drain: reads the rest of the file for it. */
+/* Opens a capture. A file that is not one, or cannot be read, gives an error status and a logged reason. tap: as of
+ * dis_stream_open_tapped, may be NULL. dis_capture_drain: reads the rest of the file for it. */
 Status dis_capture_open_tapped(DisCapture **out, const char *path, DisStreamTap *tap, void *user);
 void   dis_capture_drain(DisCapture *capture);
 int    dis_capture_file(const DisCapture *capture); /* the file's descriptor */

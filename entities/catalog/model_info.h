@@ -19,8 +19,8 @@ typedef struct ModelInfo {
     char        advice[500]; /* what to do about the size */
 } ModelInfo;
 
-/* A built-in model or a file; size: what a built-in one is scaled to and a file is compared with, 0: not given. What is
- * wrong is logged; an odd size is a warning. */
+/* Opens a built-in model or a file. size: a built-in one is scaled to it, and a file is compared with it; 0: not given.
+ * Errors are logged; an odd size is a warning. */
 Status model_info_open(ModelInfo *out, const char *name, const ModelSize *size, double sag_m);
 void   model_info_print(const ModelInfo *info);
 void   model_info_close(ModelInfo *info);

@@ -175,7 +175,7 @@ static bool wrong(double *again_s, const Exercise *x, const Said *said, const Ki
     v3_sub(pace, believed.v_ecef_mps, truth->v_mps);
     const double off_m = v3_length(off);
     m3_tmul(turn, believed.r_ecef_from_body, truth->r_ecef_from_body);
-    /* of small angles the skew part, of large ones the trace: arc cosine has no digits near 1 */
+    /* a small angle follows from the skew part, a large one from the trace, since arc cosine loses its digits near 1 */
     const double skew[3] = {turn[7] - turn[5], turn[2] - turn[6], turn[3] - turn[1]};
     const double angle_rad = atan2(0.5 * v3_length(skew), 0.5 * (turn[0] + turn[4] + turn[8] - 1));
     if (!(off_m < s->dis.threshold_m) || !(angle_rad < threshold_rad)) return true;
