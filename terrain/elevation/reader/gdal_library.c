@@ -59,8 +59,12 @@
     X(OSRGetLinearUnits)                                                                                               \
     X(OSRGetName)                                                                                                      \
     X(OSRGetPROJSearchPaths)                                                                                           \
-    X(OSRGetTargetLinearUnits) X(OSRImportFromEPSG) X(OSRIsCompound) X(OSRIsGeographic) X(OSRIsProjected) X(OSRIsSame) \
-        X(OSRNewSpatialReference) X(OSRSetAxisMappingStrategy) X(OSRSetFromUserInput) X(OSRStripVertical)
+    X(OSRGetTargetLinearUnits)                                                                                         \
+    X(OSRImportFromEPSG)                                                                                               \
+    X(OSRIsCompound)                                                                                                   \
+    X(OSRIsGeographic)                                                                                                 \
+    X(OSRIsProjected)                                                                                                  \
+    X(OSRIsSame) X(OSRNewSpatialReference) X(OSRSetAxisMappingStrategy) X(OSRSetFromUserInput) X(OSRStripVertical)
 LIBRARY(gdal_library, GDAL, "GDAL", PITVIPER_GDAL_FILE, "libgdal32");
 
 Status reader_prepare(void)
