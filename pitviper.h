@@ -43,16 +43,16 @@ typedef void LogSink(void *user, LogLevel level, const char *line);
  * log_suppress: suppresses messages of the calling thread only, until it is undone. */
 void        log_set_sink(LogSink *sink, void *user);
 void        log_set_level(LogLevel lowest);
-const char *log_head(LogLevel level); /* what precedes a line on stderr: "pitviper: error: "; of information "" */
+const char *log_head(LogLevel level); /* Prefix of a line on stderr: "pitviper: error: "; of information "" */
 void        log_suppress(bool hushed);
 /* A line at the end of a terminal, rewritten in place and out of the way of what is logged; NULL: none. Nothing where
  * stderr is no terminal, where information is hidden, and with a sink. Standard output: set it to NULL before. */
 void log_status(const char *text);
-/* What --quiet and --verbose have set. Quiet: no choices, progress or notices; warnings, errors and requested output
+/* Whether --quiet, or --verbose, is set. Quiet: no choices, progress or notices; warnings, errors and requested output
  * stay. */
 bool log_is_quiet(void);
 bool log_is_verbose(void);
-/* To standard output, output not requested: choices, a summary at the end. Nothing when quiet. */
+/* Prints to standard output what was not requested: choices, a summary at the end. Prints nothing when quiet. */
 void log_print(const char *format, ...) __attribute__((format(printf, 1, 2)));
 void log_detail(const char *format, ...) __attribute__((format(printf, 1, 2)));
 void log_info(const char *format, ...) __attribute__((format(printf, 1, 2)));
@@ -87,12 +87,12 @@ void   pool_destroy(Pool *pool);
 int    pool_threads(const Pool *pool);
 /* Runs task(user, worker, i) once for each i, in any order, and returns when all are done. */
 void pool_run(Pool *pool, int count, PoolTask *task, void *user);
-/* Work of minutes that a stop ends where it is, such as an import: how it learns of one, from now on. NULL: nothing
- * ends it. */
+/* Sets how long work, such as an import of minutes, learns from now on that a stop was requested. NULL: nothing stops
+ * it. */
 void work_stop_when(bool (*asked)(void));
 bool work_stop_asked(void);
-/* pool_run, or the caller alone without a pool (NULL); once a stop is asked for tasks that have not begun are left out.
- * False: some may have been. */
+/* Runs as pool_run does, or in the caller alone without a pool (NULL); once a stop is requested, tasks that have not
+ * begun are left out. Returns false when some may have been. */
 bool pool_run_unless_stopped(Pool *pool, int count, PoolTask *task, void *user);
 /* Flush-to-zero and denormals-are-zero for the calling thread; main and the workers call it once. */
 void thread_flush_denormals(void);
@@ -164,8 +164,8 @@ void        word_consider(WordMeant *meant, const char *known);
 void        word_consider_list(WordMeant *meant, const char *list, char separator); /* "a|b|c" */
 const char *word_hint(WordMeant *meant);                                            /* "; did you mean WORD?", or "" */
 
-/* A file of what put prints, by output_begin (pitviper_output.h): it has its name only when it is whole. STATUS_IO:
- * logged as the module's. */
+/* Writes a file of what `put` prints, by output_begin (pitviper_output.h): it has its name only when it is whole.
+ * STATUS_IO is logged as the module's. */
 Status text_write_file(const char *module, const char *path, void (*put)(FILE *to, const void *user), const void *user);
 /* A whole file of at most `most` octets and a 0 behind them; the caller frees it. Failures are logged as the
  * module's. */
@@ -217,17 +217,17 @@ typedef struct NumberList {
 
 /* One key of a struct. SETTING_AT(Config, sensor.width_px) gives offset and size. */
 typedef struct Setting {
-    const char *name; /* `section.key`, or `key` at the top */
+    const char *name; /* `section.key`, or `key` at the top level */
     SettingType type;
     size_t      offset, size;
-    double      low, high; /* of each number; low NaN: any finite one */
-    const char *choices;   /* of text: one of these, separated by `|`; NULL: any. Of SETTING_OWN: see there */
+    double      low, high; /* range of each number; low NaN: any finite number */
+    const char *choices;   /* for a text: the allowed ones, separated by `|`; NULL: any. For SETTING_OWN: see there */
     const char *unit, *help;
 } Setting;
 typedef struct SettingValue {
-    const char *key, *text; /* key: of a map; else NULL */
+    const char *key, *text; /* key: that of an entry of a map; else NULL */
     int         line;
-    bool        wrong_key; /* set by the reader: the key is wrong, not the text */
+    bool        wrong_key; /* set by the reader when the key is wrong, not the text */
 } SettingValue;
 /* STATUS_BAD_VALUE: logged as "'text' is not <choices>", or with a complaint as "'text' is <complaint>". */
 typedef Status SettingOwn(const char **complaint, void *out, const Setting *row, SettingValue *value);
@@ -247,10 +247,10 @@ struct SettingTable {
     int                count;
     const SettingList *list; /* NULL: none */
     int                list_count;
-    size_t             line_at;  /* of an item: offset of an int for the line of its start; 0: none */
+    size_t             line_at;  /* offset in an item of an int that gets the line where it starts; 0: none */
     const char        *all_keys; /* the command that prints them: `pitviper check --default`; NULL: none */
-    const char        *prefix;   /* before its keys in messages, `joints.`; NULL: none */
-    SettingOwn        *own;      /* of rows of SETTING_OWN, _EACH and _MAP */
+    const char        *prefix;   /* prefix of its keys in messages, `joints.`; NULL: none */
+    SettingOwn        *own;      /* reads rows of SETTING_OWN, _EACH and _MAP */
 };
 
 enum { settings_file_octets = 1 << 20 };
@@ -295,7 +295,7 @@ void settings_write_keys(FILE *to, const SettingTable *table);
 enum { probe_max_columns = 24, probe_text_size = 96 };
 
 typedef struct ProbeValue {
-    double      number; /* of an input: its cell as a number. Of an output: written when text is NULL */
+    double      number; /* of an input: its cell as a number. Of an output: the result, written when text is NULL */
     const char *text;   /* of an input: its cell. Of an output: written when not NULL */
     char        buffer[probe_text_size]; /* buffer size of an output's text */
 } ProbeValue;
@@ -305,7 +305,7 @@ typedef struct ProbeValue {
  * all others must be finite numbers; with a `?` it may be missing, or empty, and is then NaN (or "" for text). */
 typedef struct Probe {
     const char *name, *help; /* help: one line, what it computes and from what source */
-    const char *arguments;   /* of the command line after NAME, as usage shows them: "MODEL"; NULL: none */
+    const char *arguments;   /* arguments after NAME on the command line, as usage shows them: "MODEL"; NULL: none */
     const char *in, *out;    /* result columns that could not be computed are NaN, and written empty */
     /* May be NULL. On failure logs why; *state is then not closed. argv[0] is the probe's name. */
     Status (*open)(void **state, int argc, char **argv);

@@ -10,14 +10,14 @@ enum { arena_alignment = 64, arena_block_octets = 1 << 20 };
 
 typedef struct ArenaBlock {
     struct ArenaBlock *next;
-    size_t             size, used; /* of data */
+    size_t             size, used; /* octets of the block, and how many are in use */
     unsigned char     *data;       /* aligned */
 } ArenaBlock;
 
 struct Arena {
-    ArenaBlock     *first, *current; /* all of one size */
-    ArenaBlock     *large;           /* each for one request */
-    pthread_mutex_t mutex;           /* of arena_alloc */
+    ArenaBlock     *first, *current; /* blocks, all of one size */
+    ArenaBlock     *large;           /* larger blocks, each for one request */
+    pthread_mutex_t mutex;           /* is held by arena_alloc */
 };
 
 Arena *arena_create(void)
@@ -52,7 +52,7 @@ void arena_destroy(Arena *arena)
     free(arena);
 }
 
-/* Large blocks that have not been used since the last reset go. */
+/* Frees large blocks that have not been used since the last reset. */
 void arena_reset(Arena *arena)
 {
     for (ArenaBlock *block = arena->first; block; block = block->next) block->used = 0;
@@ -87,7 +87,7 @@ static size_t rounded(size_t octets)
     return octets > SIZE_MAX - step ? octets : (octets + step - 1) / step * step;
 }
 
-/* The smallest that is free. */
+/* Returns the smallest large block that is free. */
 static void *take_large(Arena *arena, size_t octets)
 {
     ArenaBlock *best = NULL;
@@ -120,7 +120,7 @@ static void *take(Arena *arena, size_t octets)
     return memory;
 }
 
-/* *octets: what was taken. */
+/* *octets: gets how many were taken. */
 static void *take_aligned(size_t *octets, Arena *arena, size_t count, size_t size)
 {
     if (__builtin_mul_overflow(count, size, octets) || *octets > SIZE_MAX - arena_alignment) return NULL;

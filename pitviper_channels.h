@@ -30,15 +30,15 @@ typedef struct SpectralChannel {
     double       low_m, high_m;
     ChannelKind  kind;
     ChannelPlace place;
-    bool         standard; /* it is in its place where no other is chosen */
+    bool         standard; /* it has its place when no other channel is chosen */
 } SpectralChannel;
 
 /* Reads the table once, at the first call. Later calls return the same status; failures are logged with file and
  * line. */
 Status channels_load(void);
-/* The same of any file, which then counts for nothing. */
+/* Checks any file in the same way; its rows are not used. */
 Status channels_check(const char *path);
-/* What is in a place; of a table that cannot be read a channel without a name. */
+/* The channel in a place; of a table that cannot be read a channel without a name. */
 const SpectralChannel *channel_in(ChannelPlace place);
 /* NULL: no such channel. */
 const SpectralChannel *channel_named(const char *name, size_t length);

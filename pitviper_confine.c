@@ -99,7 +99,7 @@ enum { this_machine = (int)AUDIT_ARCH_AARCH64 };
 #error "pitviper_confine.c: name this machine's AUDIT_ARCH"
 #endif
 
-/* Whatever their arguments. */
+/* Calls that are allowed with any arguments. */
 static const int harmless[] = {
     /* files and descriptors that are there */
     SYS_read,
@@ -213,7 +213,7 @@ static void put(Filter *f, uint16_t code, uint32_t k, uint8_t yes, uint8_t no)
     f->step[f->count++] = (struct sock_filter)BPF_JUMP(code, k, yes, no);
 }
 
-/* Half of an argument, 0 the low one: these machines have that first. */
+/* Loads half of an argument, 0 the low one, which comes first on these machines. */
 static void load_argument(Filter *f, int number, uint32_t half)
 {
     put(f, BPF_LD | BPF_W | BPF_ABS, (uint32_t)offsetof(struct seccomp_data, args) + 8 * (uint32_t)number + 4 * half, 0,
@@ -224,7 +224,7 @@ static void put_return(Filter *f, uint32_t action) { put(f, BPF_RET | BPF_K, act
 
 static uint32_t fails_with(int error) { return SECCOMP_RET_ERRNO | (uint32_t)error; }
 
-/* A call of this number is decided here: allowed when (argument & mask) == value; else it fails. */
+/* Decides a call of this number: it is allowed when (argument & mask) == value; else it fails. */
 static void put_if(Filter *f, int call, int argument, uint32_t mask, uint32_t value, int error)
 {
     put(f, BPF_JMP | BPF_JEQ | BPF_K, (uint32_t)call, 0, 5);
@@ -255,8 +255,8 @@ bool confine_calls(char why[confine_why_size])
 #endif
     put_if(&f, SYS_clone, 0, thread, thread, EPERM);
     put_if(&f, SYS_tgkill, 0, UINT32_MAX, (uint32_t)getpid(), EPERM); /* abort() */
-    put_if(&f, SYS_prctl, 0, UINT32_MAX, PR_SET_NAME, EPERM);         /* of threads */
-    put(&f, BPF_JMP | BPF_JEQ | BPF_K, SYS_prlimit64, 0, 6);          /* asks for limits, and sets none */
+    put_if(&f, SYS_prctl, 0, UINT32_MAX, PR_SET_NAME, EPERM);         /* sets names of threads */
+    put(&f, BPF_JMP | BPF_JEQ | BPF_K, SYS_prlimit64, 0, 6);          /* only reading of limits is allowed */
     for (uint32_t half = 0; half < 2; half++) {
         load_argument(&f, 2, half);
         put(&f, BPF_JMP | BPF_JEQ | BPF_K, 0, 0, half ? 1 : 3);
@@ -282,7 +282,7 @@ bool confine_network(char why[confine_why_size])
     put(&f, BPF_LD | BPF_W | BPF_ABS, offsetof(struct seccomp_data, nr), 0, 0);
     put(&f, BPF_JMP | BPF_JGE | BPF_K, other_abi, 3, 0);
     put(&f, BPF_JMP | BPF_JEQ | BPF_K, SYS_socket, 2, 0);
-    put(&f, BPF_JMP | BPF_JEQ | BPF_K, SYS_io_uring_setup, 1, 0); /* makes sockets, too */
+    put(&f, BPF_JMP | BPF_JEQ | BPF_K, SYS_io_uring_setup, 1, 0); /* would allow sockets, too */
     put_return(&f, SECCOMP_RET_ALLOW);
     put_return(&f, fails_with(EPERM));
     const struct sock_fprog program = {.len = (unsigned short)f.count, .filter = f.step};

@@ -36,7 +36,7 @@ static const char *kind_name(mode_t mode)
     }
 }
 
-/* A descriptor of this process by its name, as a shell gives it for `<(...)`. */
+/* Whether a name is that of a descriptor of this process, as a shell gives for `<(...)`. */
 static bool is_own_descriptor(const char *path)
 {
     return strncmp(path, "/dev/fd/", 8) == 0 || strncmp(path, "/proc/self/fd/", 14) == 0 ||
@@ -58,8 +58,8 @@ static int failed(char why[file_why_size])
     return -1;
 }
 
-/* Looked at before it is opened, since opening alone does something to some devices, and after, since a name may have
- * become another file's. */
+/* A name is looked at before it is opened, since opening alone does something to some devices; and again after, since
+ * it may have become another file's name. */
 int file_open(char why[file_why_size], uint64_t *octets, const char *path, FileFrom from)
 {
     struct stat about;
@@ -113,7 +113,7 @@ static bool wait_for(int file)
     }
 }
 
-/* A FIFO whose writer has not come yet reads as if it had ended: what is to be read is waited for first. */
+/* A FIFO whose writer has not come yet reads as if it had ended, so this waits until there is something to read. */
 long file_read(int file, void *out, size_t octets)
 {
     struct stat about;
@@ -215,12 +215,13 @@ bool temp_file(char out[temp_path_size], const char *ending)
 
 /* ---- the program's tables: the user's own first, then those of the program ------------------ */
 
-/* Of an installation that was moved, or made with another --prefix: BIN/../share/pitviper. Empty: not known. */
+/* The tables' folder of an installation that was moved, or made with another --prefix: BIN/../share/pitviper. Empty: it
+ * is not known. */
 static void share_beside_program(char *out, size_t out_size)
 {
     const ssize_t length = readlink("/proc/self/exe", out, out_size - 1);
     out[length > 0 ? length : 0] = 0;
-    for (int i = 0; i < 2; i++) { /* the program's name, and bin */
+    for (int i = 0; i < 2; i++) { /* cuts off the program's name, then bin */
         char *slash = strrchr(out, '/');
         if (slash) *slash = 0;
     }
@@ -278,7 +279,7 @@ bool etc_is_complete(void)
     return false;
 }
 
-/* A table of the user's own. */
+/* The user's own tables. */
 
 static struct Own {
     const char *name;

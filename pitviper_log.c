@@ -11,7 +11,7 @@ static LogSink           *log_sink;
 static void              *log_user;
 static LogLevel           log_lowest = LOG_INFO;
 static _Thread_local bool suppressed_here;
-static char               status_line[256]; /* progress line of the terminal, below the log */
+static char               status_line[256]; /* the terminal's progress line, below the log */
 
 const char *status_name(Status status)
 {

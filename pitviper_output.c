@@ -12,14 +12,15 @@
 
 /* ---- locks ------------------------------------------------------------------------------------------ */
 
-enum { lock_tries = 500 }; /* a millisecond apart */
+enum { lock_tries = 500 }; /* attempts, a millisecond apart */
 
-/* False: another process writes it. A program that another thread is starting has copies of this process's descriptors,
- * and with them the locks of what was closed meanwhile, for the moment until it is loaded. */
+/* Locks a file; returns false when another process writes it. A program that another thread is starting holds copies of
+ * this process's descriptors until it is loaded, and with them the locks of files closed meanwhile, so this tries for a
+ * while. */
 static bool lock_file(int file)
 {
     for (int k = 0; flock(file, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
-         k++) { /* else: a file system without locks */
+         k++) { /* with other errors the file system has no locks */
         if (k == lock_tries) return false;
         nanosleep(&(struct timespec){.tv_nsec = 1000000}, NULL);
     }
@@ -33,7 +34,7 @@ typedef struct Held {
     int          folder;
     int          times;
     size_t       length;
-    char         path[]; /* without slashes at its end */
+    char         path[]; /* its path, without slashes at the end */
 } Held;
 
 static Held *held;
@@ -52,7 +53,7 @@ static Held *find_held(const char *folder, size_t length)
     return NULL;
 }
 
-/* The innermost held folder that a path is below, or is. */
+/* The innermost held folder that a path equals or is below. */
 static const Held *held_above(const char *path)
 {
     const Held *best = NULL;
@@ -104,11 +105,11 @@ void output_release(const char *folder)
 
 /* ---- where a path leads ------------------------------------------------------------------------------ */
 
-/* A name in a folder that is open. */
+/* A name in an open folder. */
 typedef struct Place {
     int         folder;
-    bool        opened; /* here, to be closed */
-    const char *name;   /* with a slash in it only where no held folder is above */
+    bool        opened; /* the folder was opened here, and is to be closed */
+    const char *name;   /* it contains a slash only where no held folder is above */
 } Place;
 
 static void leave(const Place *at)
@@ -124,7 +125,7 @@ static bool is_link(int folder, const char *name)
     return fstatat(folder, name, &about, AT_SYMLINK_NOFOLLOW) == 0 && S_ISLNK(about.st_mode);
 }
 
-/* Into a folder of that name, no link. make: creates it where there is none. */
+/* Enters a folder of that name, which must not be a link. make: creates it where there is none. */
 static bool enter(Place *at, const char *name, bool make)
 {
     if (make && mkdirat(at->folder, name, 0777) != 0 && errno != EEXIST) return false;
@@ -138,8 +139,8 @@ static bool enter(Place *at, const char *name, bool make)
     return true;
 }
 
-/* The folder of a path, and its last part. make: creates the folders between; whole: enters the last part as well, and
- * the name is "." then. */
+/* Finds the folder of a path, and its last part. make: creates the folders between; whole: enters the last part as
+ * well, and the name is then ".". */
 static bool place_of(Place *at, const char *path, bool make, bool whole)
 {
     const Held *above = held_above(path);
@@ -206,7 +207,7 @@ static int open_at(const Place *at, unsigned how)
     for (int again = 0; again < 16; again++) {
         struct stat about, there;
         int         file = openat(at->folder, at->name, flags | O_CREAT | O_NONBLOCK, 0666);
-        if (file < 0 && errno == ENXIO) { /* a pipe without a reader so far, or a socket */
+        if (file < 0 && errno == ENXIO) { /* a pipe without a reader yet, or a socket */
             if (!(how & OUTPUT_STREAM)) errno = EMEDIUMTYPE;
             else file = openat(at->folder, at->name, flags);
         }
@@ -220,7 +221,7 @@ static int open_at(const Place *at, unsigned how)
         if (!lock_file(file)) return fail(file, EBUSY);
         const bool found = fstatat(at->folder, at->name, &there, AT_SYMLINK_NOFOLLOW) == 0 && same_file(&about, &there);
         if (found) return how & OUTPUT_KEEP || ftruncate(file, 0) == 0 ? file : fail(file, errno);
-        close(file); /* renamed or removed before it was locked: what has the name now */
+        close(file); /* the file was renamed or removed before it was locked: opens what has the name now */
     }
     errno = EBUSY;
     return -1;
@@ -245,7 +246,7 @@ FILE *output_file(const char *path, unsigned how)
     return file;
 }
 
-/* 0: nothing is there; 1: a regular file; 2: a stream. -1: what cannot be written, errno. */
+/* What is at a path. 0: nothing; 1: a regular file; 2: a stream; -1: something that cannot be written (errno). */
 static int what_is_at(const char *path, unsigned how)
 {
     Place       at;
@@ -273,7 +274,7 @@ static int check_folder(const char *path)
     return result;
 }
 
-/* The folder that a path is in; of `a` the current one. */
+/* The folder that a path is in; for a bare name the current one. */
 static bool folder_above(char above[PATH_MAX], const char *path)
 {
     size_t length = length_of(path);
@@ -319,7 +320,7 @@ FILE *output_begin(const char *path, unsigned how)
     return output_file(what == 2 ? path : part, how);
 }
 
-/* Whether a file is the PATH.part of output_begin, and no stream. */
+/* Whether an open file is the PATH.part of output_begin, and not a stream. */
 static bool is_part(FILE *file, const char *part)
 {
     Place       at;
@@ -334,8 +335,9 @@ bool output_end(FILE *file, const char *path)
 {
     char       part[PATH_MAX];
     const bool named = part_of(part, path) && is_part(file, part);
-    const int locked = dup(fileno(file)); /* until it is renamed: another writer would take what has PATH's name then */
-    bool      whole = !ferror(file);
+    const int  locked = dup(fileno(file)); /* keeps the lock until the file is renamed: otherwise another writer would
+                                              take what has PATH's name then */
+    bool whole = !ferror(file);
     if (fclose(file) != 0) whole = false;
     if (named && whole) whole = output_rename(part, path) == 0;
     const int error = errno;

@@ -19,9 +19,9 @@ extern "C" {
 
 enum {
     OUTPUT_STREAM = 1, /* also a pipe, a device, /dev/stdout or another open descriptor: for a name that a user gives */
-    OUTPUT_READ = 2,   /* for reading too */
-    OUTPUT_KEEP = 4,   /* what is in it stays for now */
-    OUTPUT_FOLDER = 8, /* of output_check: a folder, which output_folder would make */
+    OUTPUT_READ = 2,   /* open for reading too */
+    OUTPUT_KEEP = 4,   /* the file's contents stay for now */
+    OUTPUT_FOLDER = 8, /* only for output_check: a folder, which output_folder would make */
 };
 
 /* A descriptor; -1: failed. */

@@ -8,10 +8,10 @@ enum { row_max_cells = 256, row_max_octets = 1 << 16 };
 typedef struct Column {
     char name[48];
     bool text, optional;
-    int  cell; /* of the row; -1: not there */
+    int  cell; /* number of its cell in the row; -1: the header lacks it */
 } Column;
 
-/* "a,b$,c?" into columns; the table is part of the program, so too many is a bug. */
+/* Splits "a,b$,c?" into columns. The list is part of the program, so too many columns are a bug. */
 static int read_columns(Column *column, const char *list)
 {
     int count = 0;
@@ -31,8 +31,8 @@ static int read_columns(Column *column, const char *list)
     return count;
 }
 
-/* False at the end of the file. A line longer than the limit, or with a NUL in it, is read to its end, and the reason
- * for its rejection is reported. */
+/* Reads a line; returns false at the end of the file. A line longer than the limit, or with a NUL in it, is read to its
+ * end and rejected with a reason. */
 static bool read_line(char *line, FILE *in, const char **error)
 {
     size_t length = 0;
@@ -125,7 +125,7 @@ Status probe_run(const Probe *probe, int argc, char **argv, FILE *in, FILE *out)
             status = STATUS_BAD_VALUE;
             goto done;
         }
-        /* a spreadsheet's mark */
+        /* skips a byte-order mark, which spreadsheets write */
         if (strncmp(line, "\xef\xbb\xbf", 3) == 0) memmove(line, line + 3, strlen(line + 3) + 1);
     } while (!unusable && (!*line || *line == '#'));
     strcpy(copy, line);

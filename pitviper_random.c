@@ -33,7 +33,7 @@ static inline void draw(uint32_t out[4], uint64_t seed, uint32_t stream, uint32_
     philox(out, (uint32_t)seed, (uint32_t)(seed >> 32));
 }
 
-/* 53 bits of two words, in [0, 1): exact. By signed conversions, which AVX2 has. */
+/* A number in [0, 1) from 53 bits of two words, exact. It uses signed conversions, which AVX2 has. */
 static inline double unit_from(uint32_t high, uint32_t low)
 {
     return ((double)(int32_t)(high ^ 0x80000000u) + 0x1p31) * 0x1p-32 + (double)(int32_t)(low >> 11) * 0x1p-53;
@@ -91,7 +91,7 @@ static inline double cos_of_turns(double v)
     return y + y * (z * sum);
 }
 
-/* Box-Muller: one draw a number. */
+/* A normal number by Box-Muller, one draw each. */
 static inline double normal_from(const uint32_t bits[4])
 {
     const double u = 1 - unit_from(bits[0], bits[1]); /* (0, 1], so the logarithm is finite */

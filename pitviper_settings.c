@@ -21,7 +21,7 @@ int settings_find(const SettingTable *table, const char *name)
     return -1;
 }
 
-/* The nearest key; or the same key of another section. */
+/* The known key nearest to a name, or the same key in another section. */
 static WordMeant key_meant(const SettingTable *table, const char *name)
 {
     WordMeant   meant = word_meant(name);
@@ -104,7 +104,7 @@ bool settings_number(double *out, const Setting *row, const char *value)
     return true;
 }
 
-/* Numbers separated by spaces or commas. */
+/* Reads numbers separated by spaces or commas. */
 static bool numbers_of(NumberList *out, const Setting *row, const char *value)
 {
     NumberList list = {0};
@@ -121,7 +121,7 @@ static bool numbers_of(NumberList *out, const Setting *row, const char *value)
     return true;
 }
 
-/* `a, b` without the blanks; out NULL: counted alone. */
+/* Copies `a, b` without the blanks; with out NULL it only counts. */
 static size_t join_words(char *out, const char *value)
 {
     size_t n = 0;
@@ -140,7 +140,7 @@ static size_t join_words(char *out, const char *value)
     return n;
 }
 
-/* False: they do not fit. */
+/* Returns false when the words do not fit. */
 static bool words_into(char *out, size_t out_size, const char *value)
 {
     if (join_words(NULL, value) >= out_size) return false;
@@ -151,9 +151,9 @@ static bool words_into(char *out, size_t out_size, const char *value)
 
 /* ---- names of files: relative to the file that gives them, or made absolute ----------------- */
 
-enum { paths_most = 4096 }; /* largest setting of paths */
+enum { paths_most = 4096 }; /* octets of the longest list of paths */
 
-/* Characters of the folder that paths in this file are relative to, with its slash. A file without a folder (a pipe,
+/* Length of the folder, with its slash, that paths in a file are relative to. A file without a folder (a pipe,
  * /dev/stdin) has none: they are relative to the current folder. */
 static size_t folder_of(const char *file)
 {
@@ -163,7 +163,7 @@ static size_t folder_of(const char *file)
     return (size_t)(slash - file) + 1;
 }
 
-/* Each path behind the folder it is relative to. False: it does not fit. */
+/* Prefixes each path with the folder that it is relative to. Returns false when that does not fit. */
 static bool place_paths(char *out, size_t out_size, SettingType type, const char *value, const char *file)
 {
     const size_t folder = folder_of(file);
@@ -188,7 +188,7 @@ static bool place_paths(char *out, size_t out_size, SettingType type, const char
     return fits;
 }
 
-/* The real path of an existing one; else with the current folder prepended. */
+/* Makes a path absolute: the real path if it exists, else with the current folder prepended. */
 static bool absolute(char *out, size_t out_size, const char *path)
 {
     char       *real = realpath(path, NULL), here[4096];
@@ -254,7 +254,7 @@ void settings_absolute(void *out, const SettingTable *table)
 
 /* ---- one value, stored ----------------------------------------------------------------------- */
 
-/* file: its source; NULL: the command line. */
+/* file: where the value comes from; NULL: the command line. */
 Status settings_store(void *out, const SettingTable *table, const Setting *row, const char *value, const char *source,
                       const char *file)
 {
@@ -301,7 +301,7 @@ Status settings_store(void *out, const SettingTable *table, const Setting *row, 
     case SETTING_OWN:
     case SETTING_EACH:
     case SETTING_MAP:
-        break; /* in files alone */
+        break; /* these exist only in files */
     }
     report_bad(table, source, row, value);
     return STATUS_BAD_VALUE;
@@ -381,7 +381,7 @@ void settings_text(char *out, size_t out_size, const SettingTable *table, const 
     }
 }
 
-/* The shortest of 6, 9 or 17 digits that reads back as the same number. */
+/* Writes a number with the fewest of 6, 9 or 17 digits that read back as the same number. */
 static void readable(char *out, size_t out_size, const Setting *row, const void *from)
 {
     static const char *const formats[] = {"%g", "%.9g", "%.17g"};
@@ -394,7 +394,7 @@ static void readable(char *out, size_t out_size, const Setting *row, const void 
     }
 }
 
-/* Words that YAML needs no quotes for. */
+/* Whether YAML needs no quotes for a text. */
 static bool is_plain(const char *text)
 {
     if (!*text || strchr("-?:,[]{}#&*!|>'\"%@` ", text[0])) return false;

@@ -87,7 +87,7 @@ Status yaml_check(const char *module, const char *path, const char *text, size_t
 typedef struct Reading {
     const char      *path, *file; /* file: paths are relative to its folder */
     yaml_document_t *document;
-    int             *wrong; /* values refused so far: all are reported, up to most_wrong */
+    int             *wrong; /* number of values refused so far; all are reported, up to most_wrong */
 } Reading;
 
 enum { key_size = 160, source_size = 512, words_size = 512, list_size = 4096, most_wrong = 50 };
@@ -109,7 +109,7 @@ static bool holds_nul(const yaml_node_t *node)
 
 static const char *text_of(const yaml_node_t *node)
 {
-    return holds_nul(node) ? "\\0" : (const char *)node->data.scalar.value; /* a NUL inside: not a valid value */
+    return holds_nul(node) ? "\\0" : (const char *)node->data.scalar.value; /* a NUL inside makes the value invalid */
 }
 
 /* The node's text, for messages. */
@@ -118,7 +118,7 @@ static const char *shown(const yaml_node_t *node)
     return node->type == YAML_MAPPING_NODE ? "{...}" : node->type == YAML_SEQUENCE_NODE ? "[...]" : text_of(node);
 }
 
-/* [1, 2, [3, 4]] as numbers in a row. */
+/* Reads [1, 2, [3, 4]] as numbers in a row. */
 static bool flatten(NumberList *out, const Reading *r, const Setting *row, const yaml_node_t *node, int depth)
 {
     if (node->type == YAML_SCALAR_NODE)
@@ -156,7 +156,7 @@ static Status say_own(const Reading *r, const SettingTable *table, const Setting
     return STATUS_BAD_VALUE;
 }
 
-/* key: of a map; else NULL. words: instead of the value's text. */
+/* Fills one key. key: that of an entry of a map; else NULL. words: taken instead of the value's text. */
 static Status fill_one(void *out, const Reading *r, const SettingTable *table, const Setting *row,
                        const yaml_node_t *key, const yaml_node_t *value, const char *words)
 {
@@ -172,7 +172,7 @@ static Status fill_one(void *out, const Reading *r, const SettingTable *table, c
     return status == STATUS_BAD_VALUE ? say_own(r, table, row, v.wrong_key ? key : value, complaint) : status;
 }
 
-/* A list of words as one text with blanks between; false where it is none. */
+/* Joins a list of words to one text with blanks between; returns false where it is not a list of words. */
 static bool join(char out[words_size], const Reading *r, const yaml_node_t *sequence)
 {
     size_t n = 0;
@@ -264,7 +264,8 @@ static Status fill_value(void *out, const Reading *r, const SettingTable *table,
     return settings_store(out, table, row, text_of(value), source, r->file);
 }
 
-/* Ends: an item's table holds only lists that are written in the program, independent of the aliases of a file. */
+/* Fills a struct from a mapping. The recursion ends, as an item's table holds only lists that are written in the
+ * program, whatever aliases a file has. */
 static Status fill_mapping(void *out, bool *given, bool *seen, const Reading *r, const SettingTable *table,
                            const char *section, const yaml_node_t *mapping);
 
@@ -297,7 +298,7 @@ static Status fill_list(void *out, const Reading *r, const SettingTable *table, 
     return worst;
 }
 
-/* The list that a key names; -1: none. */
+/* The list that a key names; -1: it names none. */
 static int find_list(const SettingTable *table, const char *name)
 {
     for (int i = 0; i < table->list_count; i++)
@@ -327,7 +328,7 @@ static Status fill_key(void *out, bool *given, bool *seen, const Reading *r, con
     snprintf(full, sizeof full, "%s%s%s", section, *section ? "." : "", text_of(name));
     if (is_section(table, full)) {
         if (value->type == YAML_MAPPING_NODE) return fill_mapping(out, given, seen, r, table, full, value);
-        /* `section:` without keys */
+        /* a section without keys is allowed */
         if (value->type == YAML_SCALAR_NODE && !*text_of(value)) return STATUS_OK;
     }
     const int list = find_list(table, full), row = settings_find(table, full);

@@ -20,7 +20,7 @@ struct Pool {
     Worker         *worker; /* [threads - 1]; the caller is worker 0 */
     pthread_mutex_t lock;
     pthread_cond_t  work, done;
-    uint64_t        round; /* counts pool_run calls */
+    uint64_t        round; /* number of the present pool_run call */
     int             busy;  /* workers still running */
     bool            stop;
     PoolTask       *task;

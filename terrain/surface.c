@@ -35,7 +35,7 @@ SurfaceClass surface_find(const char *name)
 
 /* ---- codes of files ------------------------------------------------------------------------------ */
 
-/* A CSV of columns code and surface; logs what is wrong with it. */
+/* Reads a CSV with columns code and surface; logs what is wrong with it. */
 static Status surface_table_read(SurfaceTable *out, const char *path)
 {
     Table  table = {0};

@@ -33,14 +33,14 @@ SurfaceClass surface_find(const char *name); /* SURFACE_NONE: no such class, or 
 
 enum { surface_codes_most = 1024 };
 
-/* Of most files 0 is no class; where a table has it (Dynamic World's water) it is one. */
+/* A table of codes. In most files 0 is not a class; where a table lists it (Dynamic World's water) it is one. */
 typedef struct SurfaceTable {
     bool    known[surface_codes_most];
     uint8_t surface[surface_codes_most];
 } SurfaceTable;
 
-/* asked: as cover_grid_read has it. Empty: the table with most of the pixels' codes, 0 left out; of equals the first.
- * name: which it is, in static storage or the caller's. */
+/* asked: as in cover_grid_read. When it is empty the table is chosen that has most of the pixels' codes, without 0; of
+ * equal ones the first. name: that of the table chosen, in static storage or the caller's. */
 Status surface_table_choose(SurfaceTable *out, const char **name, const char *asked,
                             const long histogram[surface_codes_most]);
 /* Whether a table of codes (terrain.cover_table) can be read; logs what is wrong with it. */

@@ -12,23 +12,24 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-/* Senders whose clocks differ are read in the order of their stamps, each a little off in the file. */
+/* Senders whose clocks differ are read in the order of their stamps, which lies a little off the order in the file; the
+ * windows must hold both. */
 enum { stride = 1 << 18, window_octets = stride + dis_log_file_most, windows = 16, buffer_octets = 1 << 18 };
 
 static const uint64_t in_scratch = (uint64_t)1 << 63;
 
 typedef struct Window {
-    uint64_t block; /* of stride octets; UINT64_MAX: none. With in_scratch */
+    uint64_t block; /* number of the block of `stride` octets that it holds, with in_scratch; UINT64_MAX: none */
     size_t   count;
-    uint64_t used;  /* when last */
+    uint64_t used;  /* number of the last use, by which the least recently used window is found */
     uint8_t *octet; /* [window_octets] */
 } Window;
 
 struct DisLogFile {
-    int      file, scratch; /* -1: none */
+    int      file, scratch; /* descriptors of the file and of the scratch file; -1: not open */
     char    *path;
     uint64_t written, uses;
-    size_t   waiting; /* octets in the buffer, not written yet */
+    size_t   waiting; /* octets in the buffer that are not written yet */
     uint8_t *buffer;  /* [buffer_octets] */
     bool     failed;
     Window   window[windows];
@@ -150,7 +151,7 @@ enum { foreign_links_reported = 8 };
 typedef struct Scan {
     DisLog          *log;
     DisPacketReader *reader;
-    int              foreign_links; /* link layers that are not read, the first of them */
+    int              foreign_links; /* number of link layers that are not read; the first of them are listed */
     struct {
         int      link;
         uint64_t packets;
@@ -163,7 +164,7 @@ static void name_link(char out[32], int link)
     snprintf(out, 32, "%s (%d)", name ? name : "unknown", link);
 }
 
-/* One that is not read: remembered by its link layer, to be reported once. */
+/* Notes a packet whose link layer is not read; each such link layer is reported once. */
 static void skip_packet(Scan *scan, int link)
 {
     scan->log->counters.other_link++;
@@ -207,7 +208,7 @@ static Status scan_capture(Scan *scan, DisCapture *capture, const char *path)
         Status read = STATUS_OK;
         if (dis_packet_reads(packet.link)) read = dis_packet_read(scan->reader, &packet);
         else skip_packet(scan, packet.link);
-        if (read == STATUS_IO) return read; /* of the scratch file; logged */
+        if (read == STATUS_IO) return read; /* the scratch file failed, which was logged */
         if (read != STATUS_OK) {
             log_error("log: %s: out of memory after %d datagrams", path, scan->log->count);
             return read;

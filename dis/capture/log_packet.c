@@ -27,7 +27,7 @@ enum {
     ethertype_old_service_vlan = 0x9100,
     assemblies = 64, /* datagrams in reassembly at a time; the oldest is dropped */
     ip_payload_limit = 65535,
-    fragment_unit = 8, /* octets; every fragment but the last is whole units */
+    fragment_unit = 8, /* octets; every fragment but the last has a multiple of them */
     fragment_units = 8192,
     link_null = 0, /* LINKTYPE_ */
     link_ethernet = 1,
@@ -54,12 +54,12 @@ typedef struct Span {
 typedef struct Assembly {
     bool     used;
     uint8_t  key[40]; /* version, protocol, identification, source, destination; zero padded */
-    uint64_t age;     /* order of the first fragment */
+    uint64_t age;     /* number of its first fragment; the smallest is the oldest */
     double   first_s;
     uint32_t packets;
-    uint8_t  next; /* IPv6: header after the fragment header of the first fragment */
+    uint8_t  next; /* IPv6: type of the header that follows the fragment header of the first fragment */
     bool     first_seen;
-    size_t   total; /* octets, 0: the last fragment is missing so far */
+    size_t   total; /* octets of the whole payload; 0: unknown until the last fragment comes */
     size_t   furthest;
     size_t   units; /* received */
     uint64_t have[fragment_units / 64];
@@ -67,18 +67,18 @@ typedef struct Assembly {
 } Assembly;
 
 struct DisPacketReader {
-    DisLog                 *log;
-    Arena                  *arena;
-    int                     capacity;
-    int                     port;
-    bool                    sure;      /* of dis_port_default: one went to 3000 */
-    uint64_t                maybe;     /* packets of datagrams to other ports, which are in the log until then */
-    size_t                  in_memory; /* octets */
+    DisLog  *log;
+    Arena   *arena;
+    int      capacity;
+    int      port;
+    bool     sure;      /* with dis_port_default: a datagram to port 3000 has come */
+    uint64_t maybe;     /* packets with datagrams to other ports, which stay in the log until one to port 3000 comes */
+    size_t   in_memory; /* octets */
     const DisCapturePacket *packet;
     double                  capture_s;
     Assembly                assembly[assemblies];
-    uint64_t                fragments; /* ever, for age */
-    Status                  status;    /* STATUS_NO_MEMORY stops the reading */
+    uint64_t                fragments; /* fragments received so far, from which `age` is numbered */
+    Status                  status;    /* not STATUS_OK (STATUS_NO_MEMORY, STATUS_IO): the reading stops */
 };
 
 /* ---- UDP ----------------------------------------------------------------------------------------- */
@@ -91,8 +91,8 @@ static bool looks_like_dis(Span payload)
            header.length <= payload.octets;
 }
 
-/* Keeps a datagram's octets: in memory up to a limit, beyond it by their place in the file, and those of a datagram of
- * several packets in the scratch file. */
+/* Keeps a datagram's octets: in memory up to a limit; beyond it, by their place in the file. A datagram that came in
+ * several packets goes to the scratch file. */
 static Status keep_octets(DisDatagram *out, DisPacketReader *reader, Span payload)
 {
     const DisCapturePacket *packet = reader->packet;
@@ -204,8 +204,8 @@ static Assembly *find_assembly(DisPacketReader *reader, const uint8_t key[40])
     return free_one;
 }
 
-/* Inserts one fragment. Octets received first are kept, so overlaps are deterministic. Returns the assembly when
- * complete, to be released by the caller; NULL otherwise. */
+/* Inserts one fragment. Of overlapping octets those received first stay, so that the result is deterministic. Returns
+ * the assembly when it is complete, for the caller to release; NULL otherwise. */
 static Assembly *add_fragment(DisPacketReader *reader, const uint8_t key[40], size_t offset, bool more, uint8_t next,
                               Span part)
 {
@@ -252,7 +252,9 @@ static void read_ipv4(DisPacketReader *reader, Span packet)
     const uint8_t *p = packet.at;
     const size_t   header = 4 * (size_t)(p[0] & 15);
     size_t         total = dis_load_u16(p + 2);
-    if (total == 0) total = packet.octets; /* checksum offload: captured before the network card computed it */
+    if (total == 0)
+        total =
+            packet.octets; /* checksum offload: the packet was captured before the network card filled in its length */
     if (p[0] >> 4 != 4 || header < 20) {
         counters->other_protocol++;
         return;
@@ -308,7 +310,7 @@ static void read_ipv6_payload(DisPacketReader *reader, const uint8_t *addresses,
             const size_t   offset = flags & 0xFFF8;
             const bool     more = flags & 1;
             const Span     part = {p + 8, payload.octets - 8};
-            if (offset == 0 && !more) { /* an atomic fragment: RFC 6946 */
+            if (offset == 0 && !more) { /* it is an atomic fragment, a whole payload with a fragment header: RFC 6946 */
                 next = p[0];
                 payload = part;
                 continue;
@@ -376,7 +378,7 @@ static void read_ethertype(DisPacketReader *reader, uint16_t type, Span rest)
         type = dis_load_u16(rest.at + 2);
         rest = (Span){rest.at + 4, rest.octets - 4};
     }
-    /* 802.3 with LLC and SNAP: a length where the EtherType would be */
+    /* 802.3 with LLC and SNAP: a length stands where the EtherType would be */
     static const uint8_t snap[6] = {0xAA, 0xAA, 3, 0, 0, 0};
     if (type < 0x600 && rest.octets >= 8 && memcmp(rest.at, snap, sizeof snap) == 0) {
         type = dis_load_u16(rest.at + 6);
@@ -387,8 +389,8 @@ static void read_ethertype(DisPacketReader *reader, uint16_t type, Span rest)
     else reader->log->counters.other_protocol++;
 }
 
-/* BSD loopback: an address family in the byte order of the machine that captured. 2 is IPv4 everywhere; IPv6
- * is 24, 28 or 30 by BSD, 10 on Linux, 23 on Windows. */
+/* BSD loopback: the packet begins with an address family in the byte order of the machine that captured it. 2 is IPv4
+ * everywhere; IPv6 is 24, 28 or 30 on BSDs, 10 on Linux, 23 on Windows. */
 static bool is_ip_family(uint32_t family)
 {
     if (family > 0xFFFF) family = __builtin_bswap32(family);

@@ -20,8 +20,8 @@ enum {
     option_end = 0,
     option_tsresol = 9,
     option_tsoffset = 14,
-    packet_most = 262144,         /* octets of a packet: libpcap's limit */
-    body_most = packet_most + 32, /* octets of a block that are read */
+    packet_most = 262144,         /* most octets of a packet: libpcap's limit */
+    body_most = packet_most + 32, /* most octets of a block that are read */
     interfaces_most = 65536,
 };
 
@@ -29,23 +29,23 @@ static const uint64_t ns_per_s = 1000000000;
 
 typedef struct Interface {
     int      link;
-    uint32_t snap;     /* octets of a packet that were kept; 0: all */
-    uint64_t per_s;    /* time stamps count so many in a second */
-    int64_t  offset_s; /* seconds that they leave out */
+    uint32_t snap;     /* most octets of a packet that the capture kept; 0: all */
+    uint64_t per_s;    /* units of the time stamps in a second */
+    int64_t  offset_s; /* seconds to be added to the time stamps */
 } Interface;
 
 struct DisCapture {
     DisStream *stream;
-    bool       ng, big;       /* big: the most significant octet first */
-    size_t     record_octets; /* pcap: of a packet's header */
-    Interface *interface;     /* pcap: one */
+    bool       ng, big;       /* ng: pcapng; big: the file is big-endian */
+    size_t     record_octets; /* of pcap: octets of a packet's header */
+    Interface *interface;     /* its interfaces; pcap has one */
     int        count, capacity;
     double     last_s;
-    char      *notes; /* terminated; NULL: none yet */
+    char      *notes; /* terminated text of the notes; NULL: there are none yet */
     size_t     note_octets, note_capacity;
     Status     status;
     char       problem[200];
-    uint64_t   body_at; /* offset in the file; UINT64_MAX: none */
+    uint64_t   body_at; /* offset of the packet's octets in the file; UINT64_MAX: it has none */
     uint8_t    body[body_most];
 };
 
@@ -54,7 +54,7 @@ __attribute__((format(printf, 2, 3))) static bool stop(DisCapture *c, const char
     const char *below = dis_stream_problem(c->stream);
     va_list     arguments;
     va_start(arguments, format);
-    if (below) snprintf(c->problem, sizeof c->problem, "%s", below); /* caused by an error of the file stream */
+    if (below) snprintf(c->problem, sizeof c->problem, "%s", below); /* the problem is an error of the file below */
     else vsnprintf(c->problem, sizeof c->problem, format, arguments);
     va_end(arguments);
     c->status = dis_stream_status(c->stream);
@@ -72,7 +72,7 @@ static uint32_t load_u32(const DisCapture *c, const uint8_t *p)
                   : (uint32_t)load_u16(c, p + 2) << 16 | load_u16(c, p);
 }
 
-/* Whether the octets are the magic number; *big: in big-endian order. */
+/* Whether the octets are the magic number. *big: whether they are in big-endian order. */
 static bool magic_is(bool *big, const uint8_t *p, uint32_t magic)
 {
     const uint32_t little = (uint32_t)p[3] << 24 | (uint32_t)p[2] << 16 | (uint32_t)p[1] << 8 | p[0];
@@ -84,7 +84,7 @@ static bool magic_is(bool *big, const uint8_t *p, uint32_t magic)
 
 static double stamp_s(const Interface *face, uint64_t ticks)
 {
-    static const int64_t most_s = 9000000000; /* times beyond it, or below 0, are clamped */
+    static const int64_t most_s = 9000000000; /* times above this, or below 0, are clamped */
     uint64_t             per_s = face->per_s, part = ticks % per_s, ns;
     const uint64_t       whole_s = ticks / per_s;
     if (ns_per_s % per_s == 0) {
@@ -92,7 +92,8 @@ static double stamp_s(const Interface *face, uint64_t ticks)
     } else if (per_s % ns_per_s == 0) {
         ns = part / (per_s / ns_per_s);
     } else {
-        while (per_s >> 34) per_s >>= 1, part >>= 1; /* powers of two; 2^34 * 10^9 < 2^64 */
+        while (per_s >> 34)
+            per_s >>= 1, part >>= 1; /* divides by powers of two, so that the product below fits: 2^34 * 10^9 < 2^64 */
         ns = part * ns_per_s / per_s;
     }
     const int64_t stamp = whole_s > (uint64_t)most_s ? most_s : (int64_t)whole_s;
@@ -101,7 +102,8 @@ static double stamp_s(const Interface *face, uint64_t ticks)
     return dis_unix_s(s * (int64_t)ns_per_s + (int64_t)ns);
 }
 
-/* if_tsresol: seven bits of a power of 10, or of 2 where the eighth is set. 0: no 64-bit count holds it. */
+/* Units a second from if_tsresol: the lower seven bits are a power of 10, or of 2 where the eighth is set. 0: a 64-bit
+ * number cannot hold it. */
 static uint64_t resolution(uint8_t code)
 {
     uint64_t per_s = 1;
@@ -151,7 +153,7 @@ static bool read_interface(DisCapture *c, size_t octets)
     return add_interface(c, face);
 }
 
-/* What does not fit, or is not whole, is left out: notes are no part of the packets. */
+/* Adds a comment to the notes. One that does not fit, or is cut, is left out: notes are not part of the packets. */
 static void take_note(DisCapture *c, const uint8_t *text, size_t octets)
 {
     enum { notes_most = 1 << 24 };
@@ -205,7 +207,7 @@ static bool take_packet(DisCapturePacket *out, DisCapture *c, const uint8_t *at,
     return true;
 }
 
-/* looked_at: octets of the block's body that are in memory, of `octets`. found: it was a packet. */
+/* looked_at: how many of the block's `octets` are in memory. found: whether the block was a packet. */
 static bool read_block(bool *found, DisCapturePacket *out, DisCapture *c, uint32_t type, size_t looked_at,
                        uint64_t octets)
 {
@@ -237,7 +239,7 @@ static bool next_block(bool *found, DisCapturePacket *out, DisCapture *c)
     if (got == 0 && !dis_stream_problem(c->stream)) return false;
     if (got < 8) return stop(c, "it ends inside a block's header");
     uint32_t   length = load_u32(c, head + 4);
-    const bool section = load_u32(c, head) == block_section; /* the same in either order */
+    const bool section = load_u32(c, head) == block_section; /* this block type is the same in either byte order */
     if (section) {
         if (!begin_section(c, head, &length)) return false;
         begun = 12;
@@ -269,7 +271,7 @@ static bool next_record(DisCapturePacket *out, DisCapture *c)
     c->body_at = dis_stream_offset(c->stream);
     if (dis_stream_read(c->stream, c->body, captured) < captured) return stop(c, "it ends inside a packet");
     const Interface *face = c->interface;
-    Interface        whole = *face; /* seconds of 32 bits, then a fraction that may be more than one */
+    Interface        whole = *face; /* the stamp is 32 bits of seconds, then a fraction that may exceed a second */
     whole.offset_s = (int64_t)load_u32(c, head);
     c->last_s = stamp_s(&whole, load_u32(c, head + 4));
     *out = (DisCapturePacket){c->last_s, face->link, captured, c->body, c->body_at};
@@ -288,7 +290,7 @@ static bool begin_pcap(DisCapture *c, const uint8_t magic[4])
         if (dis_stream_read(c->stream, head, sizeof head) < sizeof head) return stop(c, "it ends inside its header");
         if (load_u16(c, head) != 2) return stop(c, "version %u of pcap", load_u16(c, head));
         c->record_octets = form[i].record_octets;
-        /* the upper bits of the link type give the frame check sequence length */
+        /* only the lower 16 bits are the link type; bits above them give the length of the frame check sequence */
         return add_interface(c, (Interface){.link = load_u16(c, head + (c->big ? 18 : 16)), .per_s = form[i].per_s});
     }
     return stop(c, "its first octets are those of neither");

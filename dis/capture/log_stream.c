@@ -25,18 +25,18 @@ typedef enum Packing { PACKING_NONE, PACKING_GZIP, PACKING_ZSTD, PACKING_BZIP2, 
 static const char *const packing_name[PACKING_COUNT] = {NULL, "gzip", "zstd", "bzip2", "xz"};
 
 struct DisStream {
-    int           file; /* a descriptor */
+    int           file; /* the file's descriptor */
     char         *path;
     Packing       packing;
     bool          pipe;
     DisStreamTap *tap; /* NULL: none */
     void         *tap_user;
-    bool          file_over; /* end of the file */
-    bool          over;      /* nor from the decoder */
+    bool          file_over; /* the file has no more octets */
+    bool          over;      /* the decoder has no more octets either */
     Status        status;
     const char   *problem;
-    uint64_t      read, made; /* octets of the file; octets handed out */
-    size_t        at, count;  /* of what is in `in`: next, end */
+    uint64_t      read, made; /* read: octets read from the file; made: octets handed out */
+    size_t        at, count;  /* of the octets in `in`: where the next is, and where they end */
     uint8_t       in[in_octets];
     z_stream      gzip;
     ZSTD_DStream *zstd;
@@ -166,7 +166,7 @@ static bool begin_decoder(DisStream *s)
 {
     switch (s->packing) {
     case PACKING_GZIP:
-        return inflateInit2(&s->gzip, 15 + 16) == Z_OK; /* 32 KiB of window, gzip's header alone */
+        return inflateInit2(&s->gzip, 15 + 16) == Z_OK; /* 32 KiB of window; 16 stands for gzip's header alone */
     case PACKING_ZSTD:
         s->zstd = ZSTD_createDStream();
         return s->zstd && !ZSTD_isError(ZSTD_DCtx_setParameter(s->zstd, ZSTD_d_windowLogMax, window_log_most));
@@ -191,7 +191,8 @@ static void end_decoder(DisStream *s)
     s->xz = (lzma_stream)LZMA_STREAM_INIT;
 }
 
-/* Behind the end of one stream: another of the same kind, padding, or something else, which is left. */
+/* Handles what follows the end of one stream: another stream of the same kind, padding, or something else, which is not
+ * read. */
 static void next_stream(DisStream *s)
 {
     for (;;) {
@@ -219,7 +220,7 @@ static size_t expand(DisStream *s, uint8_t *out, size_t room)
     fill(s, 1);
     if (s->over) return 0;
     const size_t before = s->at;
-    const bool   bare = s->at == s->count; /* the decoder may still hold some */
+    const bool   bare = s->at == s->count; /* the decoder may still hold octets of its output */
     const Step   how = step(s, out, room, &made);
     switch (how) {
     case STEP_STREAM_ENDS:

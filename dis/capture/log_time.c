@@ -14,18 +14,20 @@
 enum { sender_limit = 256, least_pdus = 10, entity_slots = 4096 };
 
 static const double least_span_s = 5;                 /* shorter logs are too short to check the clock */
-static const double pace_low = 0.8, pace_high = 1.25; /* ratio of capture time to stamp time that is accepted */
-static const double counter_pace = 20;                /* stamps this much slower than packets count something else */
-static const double back_s = 1, ahead_s = 120; /* step of a clock: network order, and the longest heartbeat twice */
-static const double least_path_m = 30, least_speed_mps = 1, motion_pace = 0.2, longest_step_s = 60; /* of what moves */
-static const double gap_s = 1500; /* a gap too long for the hour of a stamp */
+static const double pace_low = 0.8, pace_high = 1.25; /* accepted ratio of capture time to stamp time */
+static const double counter_pace = 20; /* stamps this many times slower than packets count something other than time */
+static const double back_s = 1, ahead_s = 120; /* steps that a clock may make: back by the network's reordering, ahead
+                                                  by twice the longest heartbeat */
+static const double least_path_m = 30, least_speed_mps = 1, motion_pace = 0.2,
+                    longest_step_s = 60; /* least path and speed of an entity that counts as moving */
+static const double gap_s = 1500;        /* over a longer gap the stamp's hour is uncertain */
 
 typedef struct Voice {
     uint16_t sender[2];
     int      pdus;
 } Voice;
 
-/* Header and sender of a datagram's first PDU. False for what names none, or is not stamped. */
+/* Header and sender of a datagram's first PDU. Returns false for a PDU that names no sender, or is not stamped. */
 static bool first_pdu(DisHeader *header, uint16_t sender[2], const DisDatagram *datagram)
 {
     DisCounters    ignored = {0};
@@ -57,8 +59,8 @@ static bool loudest_sender(uint16_t out[2], const DisLog *log)
     return true;
 }
 
-/* Walks the sender's datagrams. write: sets capture_s of all datagrams by its stamps. Returns whether the
- * stamps step like a clock; spans of stamps and of packet times. */
+/* Walks the sender's datagrams. Returns whether the stamps step like a clock, and the spans of stamps and of packet
+ * times. write: also sets capture_s of all datagrams by its stamps. */
 static bool walk(DisLog *log, const uint16_t sender[2], bool write, double *stamps_s, double *packets_s)
 {
     bool     begun = false;
@@ -123,7 +125,7 @@ static bool motion_is_at_packet_pace(const DisLog *log, const uint16_t sender[2]
             v3_sub(moved, now.p_ecef, s->p_ecef);
             if (s->used && s->entity == now.entity && stamps_s > 0 && stamps_s <= longest_step_s && packets_s >= 0 &&
                 packets_s <= longest_step_s && fmin(s->speed_mps, now.speed_mps) >= least_speed_mps &&
-                v3_length(moved) < 1e5 && now.speed_mps < 2e4) { /* false for NaN */
+                v3_length(moved) < 1e5 && now.speed_mps < 2e4) { /* false for NaN too */
                 path_m += v3_length(moved);
                 by_stamps_m += 0.5 * (s->speed_mps + now.speed_mps) * stamps_s;
                 by_packets_m += 0.5 * (s->speed_mps + now.speed_mps) * packets_s;
@@ -150,7 +152,8 @@ bool dis_log_retime(DisLog *log)
 
 /* ---- exercise times ------------------------------------------------------------------------- */
 
-/* The recording's PDUs go through the exercise clock twice: to learn the senders' clocks, and by them. */
+/* Adds PDUs to the times. They go through the exercise clock twice: first it learns the senders' clocks, then it gives
+ * the times. */
 
 static Status add(DisLogTimes *times, size_t *capacity, ExerciseInstant at)
 {
@@ -165,7 +168,7 @@ static Status add(DisLogTimes *times, size_t *capacity, ExerciseInstant at)
     return STATUS_OK;
 }
 
-/* Those whose PDUs all count from their stamps in the end are no anomaly. */
+/* Drops the anomalies of senders all of whose PDUs are timed by their stamps in the end. */
 static void keep_anomalies(ExerciseClockAnomalies *doubts)
 {
     int kept = 0;

@@ -20,7 +20,7 @@ enum {
     ipv6_octets = 40,
     hop_limit = 64,
     file_buffer_octets = 1 << 20,
-    longest_text = 4096, /* of an option */
+    longest_text = 4096, /* most octets of an option's text */
     snap_length = 262144,
 };
 
@@ -31,8 +31,8 @@ struct DisRecorder {
     char    *path;
     char    *comment;
     bool     pcapng, failed;
-    bool     older, begun;   /* there was another recording; it is this one's file now */
-    uint16_t identification; /* of the next IPv4 packet */
+    bool     older, begun;   /* older: another recording has the name still; begun: the file is this recording's */
+    uint16_t identification; /* identification of the next IPv4 packet */
     uint8_t  to4[16], to6[16];
     uint16_t to_port;
 };
@@ -157,7 +157,7 @@ static size_t make_headers(uint8_t out[ipv6_octets + udp_octets], DisRecorder *r
     dis_store_u16(udp, port);
     dis_store_u16(udp + 2, r->to_port);
     dis_store_u16(udp + 4, udp_length);
-    /* over both addresses, protocol and length too; 0 would mean that there is none */
+    /* the checksum covers both addresses, protocol and length too; 0 would mean that there is none */
     const size_t   addresses = v4 ? 8 : 32;
     const uint64_t sum =
         sum_words(udp - addresses, addresses + udp_octets) + protocol_udp + udp_length + sum_words(bytes, octets);
@@ -173,7 +173,7 @@ static void put_pcapng_packet(DisRecorder *r, uint64_t ns, const uint8_t *header
     const size_t   whole = header_octets + octets;
     const uint32_t length = (uint32_t)(32 + whole + padding(whole));
     put(r,
-        (const uint32_t[]){enhanced_packet, length, 0 /* the interface */, (uint32_t)(ns >> 32), (uint32_t)ns,
+        (const uint32_t[]){enhanced_packet, length, 0 /* number of the interface */, (uint32_t)(ns >> 32), (uint32_t)ns,
                            (uint32_t)whole, (uint32_t)whole},
         28);
     put(r, headers, header_octets);
@@ -214,7 +214,9 @@ Status dis_recorder_note(DisRecorder *r, int64_t capture_ns, const char *text)
     const uint64_t ns = (uint64_t)capture_ns;
     const size_t   said = strnlen(text, longest_text);
     const uint32_t length = (uint32_t)(24 + option_octets(said) + end_of_options);
-    put(r, (const uint32_t[]){interface_statistics, length, 0 /* the interface */, (uint32_t)(ns >> 32), (uint32_t)ns},
+    put(r,
+        (const uint32_t[]){interface_statistics, length, 0 /* number of the interface */, (uint32_t)(ns >> 32),
+                           (uint32_t)ns},
         20);
     put_option(r, opt_comment, text, (uint16_t)said);
     put_option(r, 0, NULL, 0);

@@ -7,17 +7,17 @@
 
 typedef struct DisRecorder DisRecorder;
 
-enum { dis_recorder_ipv4_octets = 65507, dis_recorder_ipv6_octets = 65527 }; /* the most a datagram holds */
+enum { dis_recorder_ipv4_octets = 65507, dis_recorder_ipv6_octets = 65527 }; /* most octets of a datagram */
 
-/* Whether a recording may have this name: it ends with .pcapng or .pcap, or has no ending, as /dev/stdout. False:
- * logged, with what, the option or key that names it. */
+/* Whether a recording may have this name: it ends with .pcapng or .pcap, or has no ending, as /dev/stdout. If not, that
+ * is logged. what: the option or key that names it. */
 bool dis_recorder_name(const char *what, const char *path);
 /* comment: of the section, e.g. what made it; may be NULL; pcap has no place for it. STATUS_IO, logged with the path;
  * the beginning of the file is written by then, so a place that takes nothing is known at once. The folder must exist.
  * An older recording of that name stays as it is until the first datagram or note, or begin, takes its place. */
 Status dis_recorder_open(DisRecorder **out, const char *path, const char *comment);
 Status dis_recorder_begin(DisRecorder *recorder);
-/* Whether the file is this recording's: false where an older one has stayed. */
+/* Whether the file is this recording's; false while an older one is still there. */
 bool dis_recorder_begun(const DisRecorder *recorder);
 /* Destination of the datagrams, by which a reader filters. Default: the broadcast of loopback, or ff02::1, port 3000.
  * to: IPv4 as ::ffff:a.b.c.d; NULL: the default. A sender of the other family keeps its previous address. */
@@ -30,9 +30,9 @@ Status dis_recorder_add(DisRecorder *recorder, int64_t capture_ns, const uint8_t
 /* A note among the datagrams, in one line, as the comment of a block of its own (interface statistics): dis_log_open
  * gives all of them as DisLog.notes. STATUS_UNSUPPORTED: pcap has no place for it. */
 Status dis_recorder_note(DisRecorder *recorder, int64_t capture_ns, const char *text);
-/* Hands what is buffered to the system, so that what a killed program had recorded is whole. */
+/* Hands buffered octets to the system, so that a recording is whole even when the program is killed. */
 Status dis_recorder_flush(DisRecorder *recorder);
-/* NULL is fine. STATUS_IO when anything was not written. */
+/* Accepts NULL. Returns STATUS_IO when anything was not written. */
 Status dis_recorder_close(DisRecorder *recorder);
 
 #endif

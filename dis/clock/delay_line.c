@@ -1,10 +1,13 @@
 /* dis/clock/delay_line.c: lower convex hull of delays, kept while points arrive; and their trend. */
 #include "dis/clock/exercise_clock_private.h"
 
-static const double dead_s = 1e-4;            /* a change of offset below it is not applied */
-static const double drift_most = 2e-4;        /* of a clock; a larger slope is no drift */
-static const double slope_least_s = 1e-3;     /* over all points, to be applied */
-enum { slope_points = 64, slope_noise = 30 }; /* chance makes slopes of some J / N over all points */
+static const double dead_s = 1e-4;        /* a change of the offset smaller than this is not applied */
+static const double drift_most = 2e-4;    /* a clock drifts by less than this; a larger slope is not drift */
+static const double slope_least_s = 1e-3; /* a slope is applied when it amounts to this much over all points */
+enum {
+    slope_points = 64,
+    slope_noise = 30
+}; /* by chance alone, jitter J makes slopes of about J / N over all N points */
 
 void delay_line_begin(DelayLine *line, double x_s, double y_s)
 {
@@ -13,7 +16,8 @@ void delay_line_begin(DelayLine *line, double x_s, double y_s)
     line->y_s[0] = y_s;
 }
 
-/* Twice the area of the triangle of three vertices; positive: the middle one is below the line through the others. */
+/* Twice the area of the triangle of three vertices. It is positive where the middle one lies below the line through the
+ * others. */
 static double below(const DelayLine *line, int a, int b, int c)
 {
     return (line->x_s[b] - line->x_s[a]) * (line->y_s[c] - line->y_s[a]) -
@@ -34,7 +38,7 @@ static void drop_flattest(DelayLine *line)
     drop(line, flattest);
 }
 
-/* False: above the hull. */
+/* Inserts a point into the hull. Returns false when the point lies above the hull. */
 static bool insert(DelayLine *line, double x_s, double y_s)
 {
     int i = line->count;
@@ -116,9 +120,9 @@ void delay_trend_add(DelayTrend *t, double x_s, double y_s)
     t->last_x_s = fmax(t->last_x_s, x_s);
 }
 
-static const double tick2_s2 = 4e-12; /* of stamps and arrivals */
+static const double tick2_s2 = 4e-12; /* squares of the resolutions of stamps and of arrivals */
 
-/* Sum of squares about the line. */
+/* Sum of the squared deviations of the points from the line. */
 static double about_line_s2(const DelayTrend *t)
 {
     return fmax(t->yy - (t->xx > tick2_s2 ? t->xy * t->xy / t->xx : 0), (double)t->points * tick2_s2);
@@ -139,7 +143,7 @@ double delay_trend_scatter(const DelayTrend *t)
 
 double delay_trend_critical(uint64_t points)
 {
-    /* Student's t, two-sided, 0.01 %, from one degree of freedom on */
+    /* Student's t for a two-sided probability of 0.01 %; the first entry is for one degree of freedom */
     static const double t[] = {6366, 100, 28.0, 15.5, 11.2, 9.08, 7.88, 7.12};
     if (points < 3) return INFINITY;
     return points - 3 < sizeof t / sizeof t[0] ? t[points - 3] : 6.6;

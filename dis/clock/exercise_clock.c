@@ -12,7 +12,7 @@
 #include <stdlib.h>
 
 enum {
-    sender_limit = 4096, /* beyond that capture time is used */
+    sender_limit = 4096, /* senders beyond this number are timed by capture time */
     segment_limit = 1 << 20,
 };
 
@@ -35,7 +35,7 @@ void exercise_clock_destroy(ExerciseClock *clock)
 
 const ExerciseClockAnomalies *exercise_clock_anomalies(const ExerciseClock *clock) { return &clock->doubts; }
 
-/* NULL when the table is full and this one is not in it, or it is not and none may be added. */
+/* Returns NULL when the table is full and the sender is not in it, or when it is not in it and may not be added. */
 static Sender *find_sender(bool *is_new, ExerciseClock *clock, uint32_t key, bool add)
 {
     /* multiplicative hashing: 2^32 / golden ratio */
@@ -71,7 +71,7 @@ double exercise_clock_shifted_time(const ExerciseClock *clock, Scale scale, cons
     return z_s - delay_line_at(&clock->founder[SCALE_EPOCH], z_s);
 }
 
-/* Whether absolute stamps are on the common scale of them all, and then where. */
+/* Whether the sender's absolute stamps are on the scale that all absolute senders share; if so, sets where. */
 static bool on_absolute_scale(Tie *tie, ExerciseClock *clock, Scale scale, uint32_t stamp, double ruler_s)
 {
     const double past_s = dis_timestamp_seconds(stamp);
@@ -137,7 +137,7 @@ ExerciseInstant exercise_clock_instant(ExerciseClock *clock, uint16_t site, uint
     const bool     absolute = dis_timestamp_is_absolute(timestamp);
     const uint32_t key = (uint32_t)site << 16 | application;
     bool           is_new;
-    if (!(fabs(capture_s) <= capture_limit_s)) capture_s = clock->last_capture_s; /* NaN too */
+    if (!(fabs(capture_s) <= capture_limit_s)) capture_s = clock->last_capture_s; /* true for NaN as well */
     clock->last_capture_s = capture_s;
 
     const bool opens = !clock->started;
@@ -151,14 +151,15 @@ ExerciseInstant exercise_clock_instant(ExerciseClock *clock, uint16_t site, uint
     const Moment          now = {timestamp, capture_s};
     const ExerciseInstant arrival = {.t_s = ruler_s, .ruler_s = ruler_s, .stamp = timestamp};
 
-    /* All bits zero: a sender that does not stamp, or one that does, on the hour. */
+    /* A stamp of which all bits are zero comes from a sender that does not stamp, or from one that does, on the hour.
+     * */
     Sender *sender = find_sender(&is_new, clock, key, timestamp != 0);
     if (timestamp == 0 && !sender) {
         clock->doubts.unstamped++;
         return arrival;
     }
     clock->doubts.stamped++;
-    if (!sender) { /* more senders than are checked: counted as rejected */
+    if (!sender) { /* there are more senders than can be checked: this PDU is counted as rejected */
         clock->doubts.by_arrival++;
         return arrival;
     }
@@ -215,7 +216,7 @@ void exercise_clock_whole_time(ExerciseClock *clock, ExerciseInstant *at)
     if (!(fabs(at->ruler_s) < INFINITY) || (at->stamp == 0 && at->segment == 0)) return;
     if (at->segment && clock->valid_count)
         s = bsearch(&key, clock->valid, (size_t)clock->valid_count, sizeof key, by_number);
-    const bool same = at->by_stamp && at->t_s == at->ruler_s; /* as the first PDU of a sender */
+    const bool same = at->by_stamp && at->t_s == at->ruler_s; /* it gets the same time as a sender's first PDU would */
     at->t_s = !s ? at->ruler_s
                  : exercise_clock_shifted_time(clock, s->scale, &s->line,
                                                exercise_clock_tied_time(&s->tie, at->stamp, at->ruler_s));

@@ -32,34 +32,36 @@ Status exercise_clock_create(ExerciseClock **out);
 void   exercise_clock_destroy(ExerciseClock *clock);
 /* Exercise time of a PDU, with what is needed to find it again when all PDUs are known. */
 typedef struct ExerciseInstant {
-    double   t_s, ruler_s; /* exercise time; that of the arrival */
+    double   t_s, ruler_s; /* t_s: exercise time; ruler_s: exercise time of the arrival */
     uint32_t stamp, segment;
-    uint16_t sender;   /* its slot */
-    bool     by_stamp; /* t_s, as the PDU came */
+    uint16_t sender;   /* slot of its sender */
+    bool     by_stamp; /* whether t_s was taken from the stamp when the PDU came */
 } ExerciseInstant;
 
-/* capture_s: when the datagram was captured or received (Unix time, s). entity: of which of the sender's entities it is
- * a report; -1: of none. */
+/* capture_s: when the datagram was captured or received (Unix time, s). entity: which of the sender's entities the PDU
+ * reports; -1: it is no report. */
 ExerciseInstant exercise_clock_instant(ExerciseClock *clock, uint16_t site, uint16_t application, int entity,
                                        uint32_t timestamp, double capture_s);
-/* Its time alone, s. */
+/* The exercise time of a report alone, s. */
 static inline double exercise_clock_report_time(ExerciseClock *clock, uint16_t site, uint16_t application, int entity,
                                                 uint32_t timestamp, double capture_s)
 {
     return exercise_clock_instant(clock, site, application, entity, timestamp, capture_s).t_s;
 }
-/* The same for a sender with a single entity. */
+/* The exercise time of a PDU whose sender has a single entity. */
 static inline double exercise_clock_time(ExerciseClock *clock, uint16_t site, uint16_t application, uint32_t timestamp,
                                          double capture_s)
 {
     return exercise_clock_report_time(clock, site, application, 0, timestamp, capture_s);
 }
-/* The instant of a PDU by what it says itself; t_s NaN, and the clock unmoved, for one that names no sender. */
+/* The instant of a PDU whose sender and entity are read from the PDU itself. For a PDU that names no sender t_s is NaN
+ * and the clock is unchanged. */
 ExerciseInstant exercise_clock_pdu_instant(ExerciseClock *clock, const DisHeader *header, const uint8_t *pdu,
                                            double capture_s);
 
-/* After the last PDU of a recording, once: what is then known of each sender counts for all its PDUs. Then the second,
- * once for each of them: sets its time, and counts those timed by arrival anew. Fails for want of memory. */
+/* Call exercise_clock_whole once, after the last PDU of a recording: what is then known of each sender applies to all
+ * of its PDUs. Then call the second function once for each PDU: it sets the PDU's time, and counts anew those timed by
+ * arrival. The first one fails only for want of memory. */
 Status exercise_clock_whole(ExerciseClock *clock);
 void   exercise_clock_whole_time(ExerciseClock *clock, ExerciseInstant *at);
 
@@ -69,26 +71,27 @@ typedef enum ExerciseClockReason {
     EXERCISE_CLOCK_STILL,
     EXERCISE_CLOCK_RATE,
     EXERCISE_CLOCK_JUMP,
-    EXERCISE_CLOCK_SHARED /* two senders of one site and application */
+    EXERCISE_CLOCK_SHARED /* two senders use one site and application */
 } ExerciseClockReason;
 
 typedef struct ExerciseClockAnomaly {
     uint16_t            site, application;
-    ExerciseClockReason reason;           /* of the first anomaly */
-    uint64_t            pdus, by_arrival; /* stamped PDUs received; of them, those timed by arrival */
-    double              passed_s;         /* since its first PDU */
-    double              rate, raw_hz;     /* over it: seconds of stamp, and units of the field, per second */
-    double              counted;          /* units of the field a PDU */
-    double              apart_s;          /* two senders: their clocks */
+    ExerciseClockReason reason;           /* reason of the first anomaly */
+    uint64_t            pdus, by_arrival; /* stamped PDUs received, and how many of them were timed by arrival */
+    double              passed_s;         /* time from the sender's first PDU to the anomaly */
+    double              rate, raw_hz; /* over that time: seconds of stamp, and units of the stamp field, per second */
+    double              counted;      /* units of the stamp field per PDU */
+    double              apart_s;      /* with two senders: how far their clocks are apart */
 } ExerciseClockAnomaly;
 
 enum { exercise_clock_anomalies_listed_max = 16, exercise_clock_anomaly_text_size = 160 };
 
 typedef struct ExerciseClockAnomalies {
-    uint64_t by_arrival; /* stamped PDUs of all senders that are timed by arrival; also those of senders
-                          * beyond the 4096 that are checked */
-    uint64_t             stamped, unstamped; /* PDUs; unstamped: all bits zero, which count from their arrival too */
-    int                  count; /* senders below, in the order of their first anomaly; later ones are not listed */
+    uint64_t by_arrival; /* stamped PDUs of all senders that are timed by arrival, those of senders beyond the 4096
+                            checked ones included */
+    uint64_t stamped,
+        unstamped; /* PDUs with a stamp, and PDUs whose stamp is all zero bits, which are also timed by arrival */
+    int count;     /* number of senders listed below, in the order of their first anomaly; later ones are not listed */
     ExerciseClockAnomaly sender[exercise_clock_anomalies_listed_max];
 } ExerciseClockAnomalies;
 

@@ -5,26 +5,28 @@
 #include <stdio.h>
 
 enum {
-    odd_limit = 2,       /* consecutive reports against a sender */
-    votes_needed = 2,    /* consecutive, for a new or rejected sender */
+    odd_limit = 2,       /* so many consecutive reports against a sender reject it */
+    votes_needed = 2,    /* consecutive passed checks that validate a new or rejected sender */
     most_failures = 5,   /* the validation time is doubled at most this often: 2 minutes */
-    switches_needed = 6, /* from one clock to another and back, to be two senders */
-    points_again = 30,   /* before a trend is judged that begins amid stamps that were right */
-    points_known = 8,    /* a new sender with that many stamps in order may have one that is not */
+    switches_needed = 6, /* so many changes from one clock to the other and back show two senders */
+    points_again = 30,   /* points needed to judge a trend that begins amid stamps that were right */
+    points_known = 8,    /* one stamp out of order is tolerated from a new sender after so many in order */
 };
 
-/* Of PDUs in the order of their arrival the latest stamps are of those that were quick: that is a trend too, over as
- * long a time as the jitter. So a trend is one where it exceeds the scatter about it by this. */
+/* Among PDUs in the order of their arrival, the latest stamps belong to those that travelled quickly. That alone makes
+ * a trend, over a time as long as the jitter. So a trend counts only where it exceeds the scatter about it by this
+ * factor. */
 static const double trend_over_scatter = 12;
-/* A stamp that far behind its sender's latest is of a reordered datagram, not of a counter. */
+/* A stamp that is this far behind its sender's latest one comes from a reordered datagram, not from a counter. */
 static const double overtaken_s = 0.1;
 static const double longest_vote_s = 32.0; /* the longest span over which the rate of stamps is checked */
-static const double rate_known = 0.02;     /* to be validated: three standard errors of the rate */
-/* Two reports of one entity that far apart, with stamps that advance less than a twentieth of it: they are constant.
- * Jitter makes that of stamps that advance by more than still_step_s, but not over leave_s. */
+static const double rate_known = 0.02; /* the rate counts as known when three of its standard errors are below this */
+/* Stamps are constant when two reports of one entity arrive so far apart and their stamps advance by less than a
+ * twentieth of that. Jitter can make this appear of stamps that advance by more than still_step_s, but not over
+ * leave_s. */
 static const double still_least_s = 0.1, still_most_s = 1800, still_rate = 0.05, still_step_s = 0.005;
 
-/* Elapsed time of stamps less that of arrivals since a moment, s; modulo whole hours. */
+/* By how much stamps have advanced more than arrivals since a moment, s; modulo whole hours. */
 static double gained_s(Moment since, Moment now)
 {
     const double gained = dis_timestamp_step_s(since.stamp, now.stamp) - (now.capture_s - since.capture_s);
@@ -51,7 +53,8 @@ static bool is_overtaken(const Sender *sender, uint32_t stamp)
     return step_s <= -overtaken_s && step_s >= -leave_s;
 }
 
-/* Whether a sender's stamps have advanced since its first PDU: one that repeats may then be a datagram twice. */
+/* Whether a sender's stamps have advanced since its first PDU. If so, a PDU that repeats a stamp may be a datagram
+ * received twice. */
 static bool advances(const Sender *sender, Moment now)
 {
     const double passed_s = now.capture_s - sender->first.capture_s;
@@ -104,7 +107,7 @@ static void doubt(ExerciseClock *clock, Sender *sender, Moment now, double ruler
     exercise_clock_tie(clock, sender, now, ruler_s, false);
 }
 
-/* Takes this PDU's delay into the sender's and, where it is their founder, into all others'. */
+/* Adds this PDU's delay to the sender's delays and, where the sender founded its scale, to the delays of that scale. */
 static void observe(ExerciseClock *clock, Sender *sender, double t_s, double ruler_s)
 {
     delay_line_add(&sender->line, t_s, ruler_s - t_s);
@@ -112,8 +115,8 @@ static void observe(ExerciseClock *clock, Sender *sender, double t_s, double rul
     if (sender->founds) clock->founder[sender->scale] = sender->line;
 }
 
-/* Whether the stamps run at another rate than their arrivals: by the trend of all PDUs, of a validated sender by the
- * lower edge too, which a queue that fills does not move. */
+/* Whether the stamps run at another rate than their arrivals. The trend of all PDUs decides; for a validated sender the
+ * lower edge of the delays must agree, which a queue that fills does not move. */
 static bool runs_wrong(const Sender *sender)
 {
     const DelayTrend *trend = &sender->trend;
@@ -137,7 +140,7 @@ static bool runs_right(const Sender *sender)
            fabs(slope) <= fmax(3 * drift, 3 * error);
 }
 
-/* Rate check over the span since the mark. */
+/* Checks the rate of the stamps over the span since the mark. */
 static void vote(ExerciseClock *clock, Sender *sender, Moment now, double t_s, double ruler_s)
 {
     if (now.capture_s < sender->mark_s) { /* the capture clock stepped back */
@@ -237,7 +240,7 @@ ExerciseInstant exercise_clock_judge(ExerciseClock *clock, Sender *sender, Momen
 
 /* ---- reporting ------------------------------------------------------------------------------------- */
 
-/* Whether something counted at about a rate; whole counts at both ends. */
+/* Whether something was counted at about a rate, given that counts at both ends are whole numbers. */
 static bool near_rate(double hz, double of_hz, double passed_s)
 {
     return hz > 0 && passed_s >= 4 && fabs(hz - of_hz) <= 0.03 * of_hz + 1 / passed_s;

@@ -19,14 +19,14 @@
 enum { delay_line_vertices = 16 };
 
 typedef struct DelayLine {
-    int      count; /* vertices of the hull, by x */
+    int      count; /* number of the hull's vertices, which are in the order of x */
     double   x_s[delay_line_vertices + 1], y_s[delay_line_vertices + 1];
     uint64_t points;
     double   mean_x_s, mean_y_s;
-    double   offset_s, slope, at_s; /* applied: offset_s + slope (x - at_s) */
+    double   offset_s, slope, at_s; /* the correction that is applied: offset_s + slope (x - at_s) */
 } DelayLine;
 
-/* x_s: the sender's time; y_s: arrival less that. */
+/* x_s: the sender's own time; y_s: arrival time less x_s. */
 void                 delay_line_begin(DelayLine *line, double x_s, double y_s);
 void                 delay_line_add(DelayLine *line, double x_s, double y_s);
 static inline double delay_line_at(const DelayLine *line, double x_s)
@@ -42,7 +42,7 @@ double delay_line_edge(double *span_s, double *middle_s, const DelayLine *line);
 typedef struct DelayTrend {
     uint64_t points;
     double   first_x_s, last_x_s;
-    double   latest_x_s, latest_y_s; /* of the latest added */
+    double   latest_x_s, latest_y_s; /* the point that was added last */
     double   mean_x_s, mean_y_s, xx, xy, yy;
 } DelayTrend;
 
@@ -51,7 +51,7 @@ void delay_trend_add(DelayTrend *trend, double x_s, double y_s);
 /* Slope and its standard error; false: fewer than three points, or all of one stamp. */
 bool   delay_trend_slope(double *slope, double *error, const DelayTrend *trend);
 double delay_trend_scatter(const DelayTrend *trend); /* standard deviation about the line, s */
-/* The ratio of slope to standard error that chance exceeds once in ten thousand times, for that many points. */
+/* The ratio of slope to standard error that chance exceeds once in ten thousand times, given that number of points. */
 double delay_trend_critical(uint64_t points);
 
 /* ---- senders ----------------------------------------------------------------------------------- */
@@ -61,8 +61,9 @@ enum {
     memory_slots = 16384, /* entities remembered for the check; a later one replaces an earlier one */
 };
 
-static const double leave_s = 5.0; /* stamps ahead or behind: IEEE 1278.1, timestamp ahead/behind */
-/* What stamps at another rate must have gained before they are rejected; and the drift of clocks, s a second. */
+static const double leave_s =
+    5.0; /* stamps farther ahead or behind than this are not valid (IEEE 1278.1, timestamp ahead/behind) */
+/* Stamps at another rate are rejected once they have gained gain_s. drift: largest drift of a clock, s a second. */
 static const double gain_s = 0.15, drift = 1e-4;
 static const double vote_s = 2.0; /* the first span over which the rate of stamps is checked */
 
@@ -71,7 +72,7 @@ typedef struct Moment {
     double   capture_s;
 } Moment;
 
-/* Stamps tied to exercise time. */
+/* How stamps are tied to exercise time. */
 typedef struct Tie {
     uint32_t stamp;
     double   t_s;
@@ -83,32 +84,32 @@ typedef enum Standing { SENDER_NEW, SENDER_PROVEN, SENDER_INCONSISTENT } Standin
 typedef enum Scale { SCALE_OWN, SCALE_EPOCH, SCALE_ABSOLUTE } Scale;
 
 typedef struct Sender {
-    uint32_t   key;          /* site, application */
-    bool       used, founds; /* its delays are those of its scale */
-    uint8_t    standing, scale;
-    uint8_t    failures; /* number of rejections, most_failures at most */
-    uint8_t    odd;      /* consecutive reports that deviate from the reference */
-    uint8_t    agree;    /* consecutive passed checks, votes_needed at most */
-    uint8_t    switches; /* consecutive, from one of two clocks to the other */
-    bool       shared;   /* reported as two senders */
-    bool       on_other;
-    bool       renewed;               /* the trend is not of all PDUs since the tie */
-    int        doubt;                 /* index into the clock's anomalies; -1: never rejected, or list full */
-    uint32_t   segment, next_segment; /* next: of PDUs that may begin it; 0: none */
-    uint32_t   latest_stamp;
-    Tie        tie;
-    DelayLine  line;                /* since the tie */
-    DelayTrend trend;               /* since the mark */
-    double     mark_s, next_vote_s; /* capture times: begin of the check's span; from which on there is one */
-    Moment     first, one, other;   /* one, other: the latest of each of two clocks */
+    uint32_t key;          /* site, application */
+    bool     used, founds; /* founds: the sender's delays are those of its scale */
+    uint8_t  standing, scale;
+    uint8_t  failures; /* number of rejections, most_failures at most */
+    uint8_t  odd;      /* consecutive reports that deviate from the reference */
+    uint8_t  agree;    /* consecutive passed checks, votes_needed at most */
+    uint8_t  switches; /* consecutive changes from one of two clocks to the other */
+    bool     shared;   /* it has been reported as two senders */
+    bool     on_other;
+    bool     renewed;               /* the trend does not hold all PDUs since the tie */
+    int      doubt;                 /* index into the clock's anomalies; -1: never rejected, or list full */
+    uint32_t segment, next_segment; /* numbers of its segment and of the next one, of PDUs that may begin it; 0: none */
+    uint32_t latest_stamp;
+    Tie      tie;
+    DelayLine  line;                /* delays since the tie */
+    DelayTrend trend;               /* trend of the delays since the mark */
+    double     mark_s, next_vote_s; /* capture times: when the check's span begins; when the next check is due */
+    Moment     first, one, other;   /* one, other: the latest PDU by each of two clocks */
     uint64_t   pdus;
 } Sender;
 
-/* The last report of an entity that is still_least_s after the one kept before it. */
+/* The last report kept of an entity; it arrived still_least_s or more after the one kept before it. */
 typedef struct Memory {
     uint64_t key_plus_1; /* 0: none */
     Moment   last;
-    int      repeats; /* consecutive reports with the stamp of the one before */
+    int      repeats; /* how many reports in a row had the same stamp as the one before */
 } Memory;
 
 /* A time over which a sender's stamps were valid. */
@@ -120,18 +121,18 @@ typedef struct Segment {
 } Segment;
 
 struct ExerciseClock {
-    bool                   started, first_is_absolute, scales[3]; /* scales: has a founder */
+    bool                   started, first_is_absolute, scales[3]; /* scales: whether each scale has a founder */
     double                 start_s;                               /* exercise time of the first PDU */
-    double                 start_capture_s;                       /* and when it was captured */
+    double                 start_capture_s;                       /* when that PDU was captured */
     double                 last_capture_s;
     int                    senders;
     uint32_t               segments; /* begun */
     ExerciseClockAnomalies doubts;
-    DelayLine              founder[3]; /* delays of the scales' founders; of SCALE_OWN none */
-    Tie                    absolute;   /* of SCALE_ABSOLUTE */
-    Segment               *valid;      /* by number once whole */
+    DelayLine              founder[3]; /* delays of each scale's founder; that of SCALE_OWN is not used */
+    Tie                    absolute;   /* how stamps of SCALE_ABSOLUTE are tied */
+    Segment               *valid;      /* valid segments, in the order of their numbers once the recording is whole */
     int                    valid_count, valid_capacity;
-    bool                   lost_segment; /* memory ran out for one */
+    bool                   lost_segment; /* a segment was lost because memory ran out */
     Sender                 slot[slot_count];
     Memory                 memory[memory_slots];
 };
@@ -140,23 +141,24 @@ struct ExerciseClock {
 
 /* The nearest number of whole hours, s. */
 double exercise_clock_whole_hours(double of_s);
-/* Time of a stamp by a tie: the shorter way round the hour, then whole hours towards the reference. */
+/* The time of a stamp by a tie. The stamp is taken the shorter way round the hour, then whole hours are added to come
+ * nearest to the reference. */
 double exercise_clock_tied_time(const Tie *tie, uint32_t stamp, double ruler_s);
 /* A sender's own time as exercise time. */
 double exercise_clock_shifted_time(const ExerciseClock *clock, Scale scale, const DelayLine *own, double t_s);
-/* Ties the sender to exercise time anew: a segment begins with this PDU. may_found: its delays may be those of its
- * scale. */
+/* Ties the sender to exercise time anew; this PDU begins a segment. may_found: the sender's delays may become those of
+ * its scale. */
 void exercise_clock_tie(ExerciseClock *clock, Sender *sender, Moment now, double ruler_s, bool may_found);
 /* Keeps the sender's segment as one over which its stamps were valid. */
 void exercise_clock_keep(ExerciseClock *clock, const Sender *sender);
 
 /* ---- exercise_clock_check.c ----------------------------------------------------------------------- */
 
-/* How many reports of an entity in a row have the stamp of the one before: one may be a datagram twice, of a bundle as
- * many entities; two are a clock that stands still. Remembers this one. */
+/* Remembers a report, and returns how many reports of its entity in a row had the stamp of the one before. One such
+ * report may be a datagram received twice (of a bundle, as many entities); two show a clock that stands still. */
 int exercise_clock_stands_still(ExerciseClock *clock, uint64_t entity_key, Moment now);
-/* Checks a stamped PDU of a known sender, and gives its time. entity: of the sender, that it is a report of; -1:
- * none. */
+/* Checks a stamped PDU of a known sender, and returns its time. entity: the sender's entity that it reports; -1: none.
+ * */
 ExerciseInstant exercise_clock_judge(ExerciseClock *clock, Sender *sender, Moment now, int entity, double ruler_s);
 
 #endif

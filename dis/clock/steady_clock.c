@@ -6,7 +6,7 @@
 #include <time.h>
 
 static const int64_t ns_per_s = 1000000000;
-static const int64_t least_set_ns = 1000000; /* less is the time between two readings */
+static const int64_t least_set_ns = 1000000; /* a smaller difference is the time that passed between two readings */
 
 static int64_t read_ns(clockid_t id)
 {
@@ -15,7 +15,7 @@ static int64_t read_ns(clockid_t id)
     return (int64_t)t.tv_sec * ns_per_s + t.tv_nsec;
 }
 
-/* The system clock between two readings of the other, as close together as possible. */
+/* Reads the system clock between two readings of the monotonic clock that are as close together as possible. */
 ClockReading steady_clock_reading(void)
 {
     enum { tries = 4 };

@@ -18,8 +18,8 @@ typedef struct ClockReading {
 ClockReading steady_clock_reading(void);
 
 typedef struct SteadyClock {
-    int64_t base_ns; /* Unix time less monotonic time when it began */
-    int64_t set_ns;  /* by how much the system's clock was set since, 0 below a millisecond */
+    int64_t base_ns; /* Unix time less monotonic time when the program started */
+    int64_t set_ns;  /* by how much the system clock was set since then; 0 when below a millisecond */
 } SteadyClock;
 
 static inline SteadyClock steady_clock_begin(ClockReading now)
@@ -33,14 +33,14 @@ static inline int64_t steady_clock_ns(const SteadyClock *clock, ClockReading now
 
 /* Checks for a step of the system clock; returns the step since the last check, ns. */
 int64_t steady_clock_look(SteadyClock *clock, ClockReading now);
-/* A kernel time stamp, corrected by the steps found; never after now: a stamp from before the clock was set
- * may be read when it has been. */
+/* A kernel time stamp, corrected by the steps found. The result is never after now, since a stamp from before the clock
+ * was set may be read afterwards. */
 int64_t steady_clock_of_stamp(const SteadyClock *clock, int64_t stamp_ns, ClockReading now);
 
 /* ---- the program's own, begun by the first call of any of these; thread-safe ----------------------------- */
 
-SteadyClock     steady_clock(void); /* as it began */
+SteadyClock     steady_clock(void); /* a clock as it is when the program starts */
 int64_t         steady_clock_now_ns(void);
-struct timespec steady_clock_monotonic(int64_t unix_ns); /* for waits by CLOCK_MONOTONIC; not before its 0 */
+struct timespec steady_clock_monotonic(int64_t unix_ns); /* the CLOCK_MONOTONIC time to wait for; not below 0 */
 
 #endif

@@ -36,11 +36,12 @@ struct DisUdp {
     char             name[dis_udp_where_size];
     DisUdpConfig     config;
     DisTie           tie;
-    DisLink          link;       /* of the receiving thread; in a sender under sending */
-    pthread_mutex_t  sending;    /* socket and to are replaced under it, and under receive */
-    int64_t          checked_ns; /* sender: time of the last link check */
+    DisLink          link; /* belongs to the receiving thread; of a sender: guarded by `sending` */
+    pthread_mutex_t
+            sending;    /* guards the socket and its destination, which are replaced under this lock and `receive` */
+    int64_t checked_ns; /* only in a sender: time of the last link check */
 
-    /* under receive */
+    /* guarded by `receive` */
     pthread_mutex_t  receive;
     pthread_cond_t   turn;    /* the tick is closed, the thread may continue */
     int64_t          last_ns; /* no arrival time is below this */
@@ -54,17 +55,17 @@ struct DisUdp {
     uint8_t         *buffer; /* [batch][buffer_octets] */
     _Alignas(struct cmsghdr) uint8_t control[batch][control_octets];
 
-    /* under queue */
+    /* guarded by `queue` */
     pthread_mutex_t queue;
     pthread_cond_t  arrived;
     bool            taker_waits;
     DisRing         ring;
-    uint32_t        kernel_drops; /* its counter, modulo 2^32 */
+    uint32_t        kernel_drops; /* the kernel's own counter of drops, modulo 2^32 */
     DisUdpCounters  counters;
 
     atomic_bool          closing, stopping;
     atomic_uint_fast64_t sent, send_failed;
-    atomic_int           send_error, away; /* errno of the latest; the link's state */
+    atomic_int           send_error, away; /* errno of the latest failed send; state of the link */
     bool                 running;
     pthread_t            thread;
 };
@@ -90,7 +91,7 @@ void dis_udp_sleep_until(int64_t until_ns)
 
 void dis_udp_destination(uint8_t to[16], const DisUdp *udp)
 {
-    DisUdp *u = (DisUdp *)udp; /* a lock */
+    DisUdp *u = (DisUdp *)udp; /* to take a lock, which needs the object not to be const */
     pthread_mutex_lock(&u->sending);
     dis_socket_address_octets16(to, &u->to);
     pthread_mutex_unlock(&u->sending);
@@ -105,7 +106,7 @@ static void put_arrival(DisUdp *u, const DisRingRecord *head, const uint8_t *byt
     if (!dis_ring_put(&u->ring, head, bytes)) u->counters.lost_queue++;
 }
 
-/* The kernel's count comes with datagrams and by query, so an older one may follow a newer. */
+/* Drops are reported with datagrams and on query, so an older count may arrive after a newer one. */
 static void note_drops(DisUdp *u, uint32_t drops)
 {
     const uint32_t more = drops - u->kernel_drops;
@@ -145,10 +146,10 @@ bool dis_udp_wait(DisUdp *u, int64_t until_ns)
 
 DisUdpCounters dis_udp_counters(const DisUdp *udp)
 {
-    DisUdp   *u = (DisUdp *)udp; /* locks and the kernel's count: nothing the caller sees as a change */
+    DisUdp   *u = (DisUdp *)udp; /* the call changes only locks and the kernel's count, nothing that the caller sees */
     uint32_t  info[SK_MEMINFO_VARS] = {0};
     socklen_t octets = sizeof info;
-    pthread_mutex_lock(&u->sending); /* and the kernel's count stays this socket's */
+    pthread_mutex_lock(&u->sending); /* the socket must not be replaced while the kernel's count is read from it */
     const bool told = u->wake >= 0 && getsockopt(u->socket, SOL_SOCKET, SO_MEMINFO, info, &octets) == 0 &&
                       octets > SK_MEMINFO_DROPS * sizeof *info;
     pthread_mutex_lock(&u->queue);
@@ -165,7 +166,7 @@ DisUdpCounters dis_udp_counters(const DisUdp *udp)
 
 /* ---- the socket: all under the receive lock ---------------------------------------------------------- */
 
-/* Control messages of a datagram: arrival time, and number of drops. */
+/* Reads the control messages of a datagram: its arrival time, and the number of drops. */
 static void read_control(int64_t *kernel_ns, uint32_t *drops, bool *dropped, struct msghdr *header)
 {
     for (struct cmsghdr *c = CMSG_FIRSTHDR(header); c; c = CMSG_NXTHDR(header, c)) {
@@ -181,7 +182,7 @@ static void read_control(int64_t *kernel_ns, uint32_t *drops, bool *dropped, str
     }
 }
 
-/* Step of the system clock, and so of the kernel's time stamps; reported above one second. */
+/* Checks for a step of the system clock, and so of the kernel's time stamps; logs a step above one second. */
 static ClockReading look_at_clock(DisUdp *u)
 {
     const ClockReading now = steady_clock_reading();
@@ -192,8 +193,8 @@ static ClockReading look_at_clock(DisUdp *u)
     return now;
 }
 
-/* Receives up to a batch without blocking. Returns the number of datagrams, -1 after a failure; *newest_ns: latest
- * time of the kernel's among them. */
+/* Receives up to one batch without blocking. Returns the number of datagrams, or -1 after a failure. *newest_ns: the
+ * latest kernel time stamp among them. */
 static int receive_batch(DisUdp *u, int64_t *newest_ns)
 {
     for (int i = 0; i < batch; i++) {
@@ -236,14 +237,14 @@ static int receive_batch(DisUdp *u, int64_t *newest_ns)
         }
     }
     pthread_mutex_lock(&u->queue);
-    if (dropped) note_drops(u, drops); /* the last is the newest */
+    if (dropped) note_drops(u, drops); /* the last datagram has the newest count */
     for (int i = 0; i < came; i++) put_arrival(u, &record[i], u->vector[i].iov_base);
     if (u->taker_waits && dis_ring_waits(&u->ring)) pthread_cond_signal(&u->arrived);
     pthread_mutex_unlock(&u->queue);
     return came;
 }
 
-/* A lost network is reported once; after its return receiving resumes. */
+/* Logs a lost network once; receiving resumes when the network is back. */
 static void complain(DisUdp *u)
 {
     const int error = errno;
@@ -253,19 +254,20 @@ static void complain(DisUdp *u)
 
 /* ---- loss and return of the network: under the receive lock, in a sender under sending ------------------------ */
 
-/* Replaces the old socket under the same descriptor, so no other code changes. False: not now. */
+/* Replaces the old socket under the same descriptor, so that no other code changes. Returns false when that is not
+ * possible now. */
 static bool remake_socket(DisUdp *u)
 {
     int              made;
     DisSocketAddress to;
     DisTie           tie;
     const bool       listens = u->link.listens;
-    log_suppress(true); /* retried each second */
+    log_suppress(true); /* messages are suppressed, since this is retried each second */
     const Status status = dis_udp_socket(&made, &to, &tie, &u->config, listens);
     log_suppress(false);
     if (status != STATUS_OK) return false;
     if (listens) {
-        dis_udp_counters(u); /* what the old one lost */
+        dis_udp_counters(u); /* reads what the old socket had lost */
         pthread_mutex_lock(&u->sending);
         pthread_mutex_lock(&u->queue);
         u->kernel_drops = 0;
@@ -280,7 +282,7 @@ static bool remake_socket(DisUdp *u)
     return true;
 }
 
-/* True: all is well now. */
+/* Returns true when the link works now. */
 static bool check_link(DisUdp *u)
 {
     bool remake;
@@ -334,7 +336,7 @@ void dis_udp_close_tick(DisUdp *u, int64_t until_ns)
     assert(until_ns < INT64_MAX);
     atomic_store(&u->closing, true);
     pthread_mutex_lock(&u->receive);
-    /* until the socket is empty, or its datagrams arrived after the call: a flood would never end */
+    /* until the socket is empty, or until its datagrams arrived after the call, since a flood would never end */
     while (receive_batch(u, &newest_ns) == batch && newest_ns <= called_ns) {
     }
     if (u->last_ns <= until_ns) u->last_ns = until_ns + 1;
@@ -366,7 +368,8 @@ static bool send_once(DisUdp *u, const uint8_t *bytes, size_t octets)
     return sent >= 0;
 }
 
-/* A listener has a thread that checks the link; a sender checks after a failure, and for its return. */
+/* Whether a sender may send now. After a failure it checks the link, and again later, to notice its return. A listener
+ * has a thread for that. */
 static bool sender_may_go_on(DisUdp *u)
 {
     const int64_t now_ns = dis_udp_now_ns();
@@ -446,7 +449,8 @@ Status dis_udp_open(DisUdp **out, const DisUdpConfig *config)
     DisUdp *u = make(config);
     if (!u) return STATUS_NO_MEMORY;
     u->link.listens = true;
-    u->link.watch = dis_link_watch(); /* first: changes during socket creation are then notified */
+    u->link.watch =
+        dis_link_watch(); /* created before the socket, so that changes while the socket is made are reported */
     Status status = dis_udp_socket(&u->socket, &u->to, &u->tie, config, true);
     if (status != STATUS_OK) goto fail;
     check_link(u);

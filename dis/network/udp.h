@@ -24,8 +24,8 @@ typedef struct DisUdpConfig {
                                          * machine); empty: receives on all, and the system chooses where to send */
     int port;                           /* 1 .. 65535 */
     int ttl;                            /* hops of multicast, 0 .. 255; 0: this machine alone */
-    int queue_octets;                   /* most that waits to be taken, headers of 32 octets included, 131072 .. 2^30;
-                                         * beyond: the oldest stay, new ones are counted lost */
+    int queue_octets; /* capacity of the queue of datagrams not taken yet, with their headers of 32 octets, 131072 ..
+                         2^30; when it is full new datagrams are dropped and counted */
 } DisUdpConfig;
 
 enum { dis_max_datagram = 65535 };
@@ -38,11 +38,11 @@ void dis_udp_where(char out[dis_udp_where_size], const DisUdpConfig *config);
 DisUdpConfig dis_udp_default_config(void);
 
 typedef struct DisUdpCounters {
-    uint64_t datagrams, octets; /* off the socket: taken + waiting + lost_queue */
-    uint64_t lost_kernel;       /* came and found the socket full: the kernel's own count */
-    uint64_t lost_queue;        /* not taken in time */
+    uint64_t datagrams, octets; /* datagrams read off the socket: taken + waiting + lost_queue */
+    uint64_t lost_kernel;       /* datagrams that found the socket's buffer full, by the kernel's own count */
+    uint64_t lost_queue;        /* datagrams dropped because the queue was full */
     uint64_t sent, send_failed;
-    int      send_error; /* errno of the latest that failed */
+    int      send_error; /* errno of the latest failed send */
     bool     away;       /* the interface, its address or the way to the group is not available; already
                           * reported */
 } DisUdpCounters;
@@ -61,12 +61,12 @@ typedef struct DisArrival {
 /* STATUS_BAD_VALUE or STATUS_IO with one logged line: which address, port or interface, why, and what to do next. */
 Status dis_udp_open(DisUdp **out, const DisUdpConfig *config);        /* listens, and may send */
 Status dis_udp_open_sender(DisUdp **out, const DisUdpConfig *config); /* sends only: no port is bound */
-/* NULL is fine. No thread may be inside another function by then. */
+/* Accepts NULL. No thread may be inside another function of this socket. */
 void dis_udp_close(DisUdp *udp);
 
-/* From now on tap is called for each datagram received, before it is queued, also when the queue is full: by the
- * receiving thread or the one that closes a tick, one at a time. tap: NULL: none; after the call it is not inside. It
- * must not call anything here. */
+/* From this call on, tap is called for each datagram received, before it is queued, even when the queue is full. It is
+ * called by the receiving thread or by the one that closes a tick, one at a time. With NULL none is called, and after
+ * the call no call of the earlier one is still running. tap must not call functions of this file. */
 typedef void (*DisUdpTap)(void *user, const DisArrival *arrival);
 void dis_udp_tap(DisUdp *udp, DisUdpTap tap, void *user);
 /* Queues what has arrived so far; after it has returned no datagram gets an arrival time at or before until_ns: a later
@@ -74,15 +74,16 @@ void dis_udp_tap(DisUdp *udp, DisUdpTap tap, void *user);
  * A live node closes a frame's tick this way, so its recording replays bit-identically: dis_unix_ns_until
  * gives the until_ns of a frame time. One thread at a time. */
 void dis_udp_close_tick(DisUdp *udp, int64_t until_ns);
-/* The next in order of arrival, not after until_ns (INT64_MAX: any). False when none waits. One thread at a time. */
+/* Takes the next datagram in order of arrival, not after until_ns (INT64_MAX: any). Returns false when none waits. One
+ * thread at a time. */
 bool dis_udp_take(DisArrival *out, DisUdp *udp, int64_t until_ns);
 /* Waits until the queue is not empty (true) or until the Unix time until_ns (false). */
 bool dis_udp_wait(DisUdp *udp, int64_t until_ns);
-/* A full or missing network is counted, never fatal: STATUS_IO then. Thread-safe. */
+/* A full or missing network is counted and returns STATUS_IO; it is never fatal. Thread-safe. */
 Status         dis_udp_send(DisUdp *udp, const uint8_t *bytes, size_t octets);
 DisUdpCounters dis_udp_counters(const DisUdp *udp);
-/* Unix time in the nanoseconds that arrivals are stamped in: steady_clock.h, not moved when the system's clock is
- * set. */
+/* Unix time in nanoseconds by the clock that stamps arrivals (steady_clock.h): it does not move when the system clock
+ * is set. */
 int64_t dis_udp_now_ns(void);
 /* Sleeps until that Unix time, or until a signal. */
 void dis_udp_sleep_until(int64_t until_ns);

@@ -12,7 +12,8 @@
 #include <time.h>
 #include <unistd.h>
 
-/* An interface is set down before it is deleted, and is down briefly after it is created: a reason must persist. */
+/* An interface is set down before it is deleted, and is down briefly after it is created: so a state must last before
+ * it is logged. */
 static const int64_t settle_ns = 200000000, other_ns = 2000000000;
 
 static int64_t monotonic_ns(void)
@@ -34,8 +35,9 @@ int dis_link_watch(void)
     return -1;
 }
 
-/* Of the named interface: by its index. Of a group that the system chose the interface for: it was joined on the
- * deleted one if it can be left there; that also frees one of the 20 memberships of a socket. */
+/* Notes that an interface was deleted if the socket depends on it. A named interface is known by its index. For a group
+ * on an interface that the system chose, the group was joined on the deleted one if it can be left there; leaving also
+ * frees one of the 20 memberships of a socket. */
 static void note_deleted(DisLink *link, unsigned index, int socket, const DisSocketAddress *to, const DisTie *tie)
 {
     if (tie->narrow) {
@@ -51,12 +53,13 @@ void dis_link_read(DisLink *link, int socket, const DisSocketAddress *to, const 
     if (link->watch < 0) return;
     for (;;) {
         const ssize_t octets = recv(link->watch, buffer, sizeof buffer, MSG_DONTWAIT);
-        if (octets < 0 && (errno == ENOBUFS || errno == EINTR)) continue; /* some are lost: the next poll follows */
+        if (octets < 0 && (errno == ENOBUFS || errno == EINTR))
+            continue; /* some notifications were lost; the next poll makes up for them */
         if (octets <= 0) return;
         unsigned left = (unsigned)octets;
         for (const struct nlmsghdr *m = (const void *)buffer; NLMSG_OK(m, left); m = NLMSG_NEXT(m, left)) {
             const struct ifinfomsg *about = NLMSG_DATA(m);
-            /* a bridge notifies of its ports in a separate family: those are not deleted */
+            /* a bridge reports its ports in a separate family; those are not deleted interfaces */
             if (m->nlmsg_type == RTM_DELLINK && m->nlmsg_len >= NLMSG_LENGTH(sizeof *about) &&
                 about->ifi_family == AF_UNSPEC)
                 note_deleted(link, (unsigned)about->ifi_index, socket, to, tie);
@@ -82,7 +85,7 @@ static DisLinkState look(bool *remake, const DisLink *link, int socket, const Di
     if (tie->narrow) {
         const unsigned index = if_nametoindex(config->interface);
         if (index == 0) return DIS_LINK_GONE;
-        /* of the same index: the socket is bound to it again by itself, the group is not joined */
+        /* with the same index the socket is bound to the interface again by itself, but the group is not joined */
         *remake = index != tie->interface || (link->lost && tie->group);
         return interface_state(socket, config->interface);
     }
@@ -91,10 +94,12 @@ static DisLinkState look(bool *remake, const DisLink *link, int socket, const Di
         *remake = link->lost || !if_indextoname(tie->interface, name);
         return *remake ? DIS_LINK_GONE : DIS_LINK_UP;
     }
-    if (tie->group) { /* joined already: the usual result */
+    if (tie->group) { /* EADDRINUSE, that it is joined already, is the usual result */
         if (dis_udp_join(socket, to, 0) || errno == EADDRINUSE) return DIS_LINK_UP;
         *remake = errno == ENOBUFS;
-        return *remake || !link->lost ? DIS_LINK_UP : DIS_LINK_NO_ROUTE; /* still joined, though without a route */
+        return *remake || !link->lost
+                   ? DIS_LINK_UP
+                   : DIS_LINK_NO_ROUTE; /* the group is still joined, though there is no route to it */
     }
     return tie->own && !dis_udp_is_own(to) ? DIS_LINK_NO_ADDRESS : DIS_LINK_UP;
 }

@@ -24,20 +24,20 @@ static inline socklen_t dis_socket_address_octets(const DisSocketAddress *addres
 /* The address in the form of DisArrival: IPv4 as ::ffff:a.b.c.d. */
 void dis_socket_address_octets16(uint8_t out[16], const DisSocketAddress *address);
 
-/* What a socket depends on. */
+/* What a socket depends on: an interface, a group, an address. */
 typedef struct DisTie {
-    unsigned interface;  /* index when it was made; 0: none named */
-    bool     narrow;     /* bound to that interface */
-    bool     group, own; /* a group was joined; bound to an address of this machine */
+    unsigned interface;  /* index of the interface when the socket was made; 0: none was named */
+    bool     narrow;     /* the socket is bound to that interface */
+    bool     group, own; /* group: it has joined one; own: it is bound to an address of this machine */
 } DisTie;
 
-/* A socket that sends to *to; listen: bound and joined too. Failures as of dis_udp_open. */
+/* Makes a socket that sends to *to. listen: it is also bound, and joins the group. Failures as of dis_udp_open. */
 Status dis_udp_socket(int *out, DisSocketAddress *to, DisTie *tie, const DisUdpConfig *config, bool listen);
 
-/* IGMP and MLD membership. interface: index; 0: the system's choice. False: errno is set. */
+/* Joins a group (IGMP, MLD). interface: its index; 0: the system chooses. Returns false with errno set. */
 bool dis_udp_join(int socket, const DisSocketAddress *group, unsigned interface);
 bool dis_udp_leave(int socket, const DisSocketAddress *group, unsigned interface);
-bool dis_udp_is_own(const DisSocketAddress *address); /* an address of this machine now */
+bool dis_udp_is_own(const DisSocketAddress *address); /* whether it is an address of this machine now */
 
 /* ---- udp_link.c: loss and return of the network ------------------------------------------------ */
 
@@ -56,11 +56,11 @@ typedef enum DisLinkState {
 } DisLinkState;
 
 typedef struct DisLink {
-    int          watch; /* announcements; -1: none, or a sender */
+    int          watch; /* socket of the kernel's notifications; -1: there is none, or this is a sender */
     bool         listens;
-    bool         lost;        /* its interface was deleted since the socket was made */
-    DisLinkState state, said; /* reported: the state last logged */
-    int64_t      since_ns;    /* of the state; monotonic */
+    bool         lost;        /* the interface was deleted since the socket was made */
+    DisLinkState state, said; /* said: the state that was logged last */
+    int64_t      since_ns;    /* when the state began, by the monotonic clock */
 } DisLink;
 
 /* A descriptor of the kernel's notifications, to be polled for POLLIN; -1 where the system has none. */
@@ -71,9 +71,9 @@ void dis_link_read(DisLink *link, int socket, const DisSocketAddress *to, const 
  * caller then clears lost. Once a second and after notifications. */
 void dis_link_check(DisLink *link, bool *remake, int socket, const DisSocketAddress *to, const DisTie *tie,
                     const DisUdpConfig *config);
-/* Logs what the last read or poll found: one line when the link is no longer up, one when it is again; one more when
- * the reason is another for two seconds. where: of dis_udp_where. dis_link_unreported: to be checked again in a tenth
- * of a second. */
+/* Logs what the last read or poll found: one line when the link is no longer up, one when it is again, and one more
+ * when another reason has held for two seconds. where: as dis_udp_where gives it. dis_link_unreported: the link is to
+ * be checked again in a tenth of a second. */
 static inline bool dis_link_unreported(const DisLink *link) { return link->state != link->said; }
 void               dis_link_report(DisLink *link, const char *where, const DisUdpConfig *config);
 
@@ -93,14 +93,16 @@ typedef struct DisRingRecord {
 /* Positions count octets since the beginning: held <= next <= end <= held + octets. */
 typedef struct DisRing {
     uint8_t *bytes;
-    uint64_t octets, held, next, end; /* held .. next: the taker's */
+    uint64_t octets, held, next, end; /* octets from held to next belong to the caller that took them */
 } DisRing;
 
 Status dis_ring_create(DisRing *out, uint64_t octets);
-void   dis_ring_destroy(DisRing *ring); /* a zeroed one is fine */
-/* head: with its number of octets, which follow from bytes. False: the ring is full, and the oldest are kept. */
+void   dis_ring_destroy(DisRing *ring); /* accepts a zeroed ring */
+/* head: the record, with its number of octets, which are copied from bytes. Returns false when the ring is full; the
+ * oldest datagrams stay. */
 bool dis_ring_put(DisRing *ring, const DisRingRecord *head, const uint8_t *bytes);
-/* The next, not after until_ns, its octets behind it; NULL: none. The previous one becomes invalid. */
+/* The next record, not after until_ns, with its octets behind it; NULL: none. The record taken before becomes invalid.
+ * */
 const DisRingRecord *dis_ring_take(DisRing *ring, int64_t until_ns);
 static inline bool   dis_ring_waits(const DisRing *ring) { return ring->next != ring->end; }
 

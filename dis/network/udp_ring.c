@@ -25,14 +25,15 @@ void dis_ring_destroy(DisRing *r)
 
 static DisRingRecord *record_at(const DisRing *r, uint64_t position)
 {
-    return (DisRingRecord *)(void *)(r->bytes + position % r->octets); /* whole units: aligned */
+    return (DisRingRecord *)(void *)(r->bytes +
+                                     position % r->octets); /* records are whole units, so every position is aligned */
 }
 
 static uint64_t units(uint64_t octets) { return (octets + unit - 1) / unit * unit; }
 
 bool dis_ring_put(DisRing *r, const DisRingRecord *head, const uint8_t *bytes)
 {
-    /* empty: from the beginning again, so that a large ring touches no more memory than needed */
+    /* an empty ring begins at its start again, so that a large ring touches no more memory than needed */
     if (r->held == r->end) r->held = r->next = r->end = (r->end + r->octets - 1) / r->octets * r->octets;
     const uint64_t octets = units(sizeof *head + head->octets), to_end = r->octets - r->end % r->octets;
     const uint64_t gap = octets > to_end ? to_end : 0;

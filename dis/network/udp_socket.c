@@ -20,17 +20,18 @@ enum {
 
 /* The kind of address determines how to listen for it. */
 typedef enum Reach {
-    REACH_OWN,       /* one of this machine's: bound to, exclusive */
-    REACH_PEER,      /* another machine's: all datagrams to the port, exclusive */
+    REACH_OWN,       /* an address of this machine: the socket is bound to it, exclusively */
+    REACH_PEER,      /* an address of another machine: all datagrams to the port, exclusively */
     REACH_BROADCAST, /* all datagrams to the port, shared with other programs */
-    REACH_GROUP,     /* joined and bound to: only the group is received, shared with other programs */
+    REACH_GROUP, /* a group, joined and bound to: only its datagrams are received, and other programs may receive them
+                    too */
 } Reach;
 
 typedef struct Plan {
     const DisUdpConfig *config;
     DisSocketAddress    to;
     Reach               reach;
-    unsigned            interface;                       /* index; 0: none given */
+    unsigned            interface;                       /* index of the interface; 0: none was given */
     char                name[dis_udp_address_size + 64]; /* `239.1.2.3 port 3000 on eth0`, for messages */
 } Plan;
 
@@ -62,7 +63,8 @@ static bool is_broadcast(struct in_addr address)
 {
     const uint32_t  host = ntohl(address.s_addr);
     struct ifaddrs *all = NULL;
-    bool            found = host == INADDR_BROADCAST || host == 0x7FFFFFFF; /* loopback's is not listed */
+    bool            found = host == INADDR_BROADCAST ||
+                 host == 0x7FFFFFFF; /* the loopback interface's broadcast address is not listed by the system */
     if (found || getifaddrs(&all) != 0) return found;
     for (const struct ifaddrs *i = all; i && !found; i = i->ifa_next) {
         if (!(i->ifa_flags & IFF_BROADCAST) || !i->ifa_broadaddr || i->ifa_broadaddr->sa_family != AF_INET) continue;
@@ -208,13 +210,14 @@ static bool set_flag(int socket, int level, int name, int value)
     return setsockopt(socket, level, name, &value, sizeof value) == 0;
 }
 
-/* The largest allowed buffer: beyond the limit needs CAP_NET_ADMIN. */
+/* Sets the largest buffer that is allowed; a size beyond the system's limit needs CAP_NET_ADMIN. */
 static void set_buffer(int socket, int forced, int plain, int octets)
 {
     if (!set_flag(socket, SOL_SOCKET, forced, octets)) set_flag(socket, SOL_SOCKET, plain, octets);
 }
 
-/* Multicast interface, hop limit, and loopback, so that programs of this machine receive it too. */
+/* Sets the multicast interface, the hop limit, and loopback, so that programs of this machine receive the datagrams
+ * too. */
 static bool aim(const Plan *plan, int socket)
 {
     const int ttl = plan->config->ttl;
@@ -261,7 +264,7 @@ bool dis_udp_leave(int socket, const DisSocketAddress *group, unsigned interface
     return membership(socket, group, interface, IP_DROP_MEMBERSHIP, IPV6_DROP_MEMBERSHIP);
 }
 
-/* Whether another socket receives all addresses on the port: unicast datagrams then go to only one of them. */
+/* Whether another socket listens on all addresses of the port: then only one of the two gets unicast datagrams. */
 static bool port_shared(int port)
 {
     static const char *const tables[2] = {"/proc/net/udp", "/proc/net/udp6"};
@@ -281,7 +284,7 @@ static bool port_shared(int port)
 static Status listen_there(const Plan *plan, int socket)
 {
     const bool shared = plan->reach == REACH_BROADCAST || plan->reach == REACH_GROUP;
-    /* both: programs that set only one of them must be able to share the port with this one */
+    /* both options, so that programs that set only one of them can share the port */
     if (shared && !(set_flag(socket, SOL_SOCKET, SO_REUSEADDR, 1) && set_flag(socket, SOL_SOCKET, SO_REUSEPORT, 1)))
         return refused(plan, "share");
     if (!set_flag(socket, SOL_SOCKET, SO_TIMESTAMPNS, 1) || !set_flag(socket, SOL_SOCKET, SO_RXQ_OVFL, 1))
@@ -307,7 +310,7 @@ Status dis_udp_socket(int *out, DisSocketAddress *to, DisTie *tie, const DisUdpC
     const int made = socket(family, SOCK_DGRAM | SOCK_CLOEXEC, 0);
     if (made < 0) return refused(&plan, "make a socket for");
     set_buffer(made, SO_SNDBUFFORCE, SO_SNDBUF, send_buffer_octets);
-    /* datagrams to an own address arrive by loopback, so no interface then */
+    /* datagrams to an address of this machine arrive by loopback, so no interface is used then */
     const bool narrow = config->interface[0] && plan.reach != REACH_OWN;
     if (family == AF_INET6 && !set_flag(made, IPPROTO_IPV6, IPV6_V6ONLY, 1)) status = refused(&plan, "set up");
     else if (narrow && setsockopt(made, SOL_SOCKET, SO_BINDTODEVICE, config->interface,

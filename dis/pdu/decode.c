@@ -91,8 +91,8 @@ static size_t encode_data(uint8_t *out, size_t capacity, const DisPdu *pdu)
  * The lengths of the others are not validated. */
 typedef struct PduType {
     const char *name;
-    unsigned    least_octets;                                         /* before variable records; 0: not acted upon */
-    Status (*decode)(DisPdu *out, const uint8_t *pdu, size_t octets); /* NULL: not decoded */
+    unsigned    least_octets; /* octets before the variable records; 0: the type is not acted upon */
+    Status (*decode)(DisPdu *out, const uint8_t *pdu, size_t octets); /* NULL: the type is not decoded */
     size_t (*encode)(uint8_t *out, size_t capacity, const DisPdu *pdu);
 } PduType;
 
@@ -174,7 +174,7 @@ static const PduType pdu_type[256] = {
 
 const char *dis_pdu_type_name(uint8_t type) { return pdu_type[type].name ? pdu_type[type].name : "unknown type"; }
 
-/* What a type needs before its variable records: dis_next_pdu refuses shorter ones. */
+/* The octets of a type before its variable records; dis_next_pdu refuses shorter PDUs. */
 static unsigned least_octets(uint8_t type)
 {
     return pdu_type[type].least_octets ? pdu_type[type].least_octets : dis_header_octets;
@@ -185,7 +185,7 @@ static unsigned least_octets(uint8_t type)
 static size_t whole_octets(const uint8_t *pdu, size_t octets)
 {
     static const struct {
-        uint8_t type, count_at; /* where the number of variable records is */
+        uint8_t type, count_at; /* count_at: where the number of variable records is */
     } counted[] = {{dis_pdu_entity_state, 19}, {dis_pdu_entity_state_update, 19}, {dis_pdu_detonation, 101}};
     enum { record_octets = 16 };
     if (octets < dis_header_octets) return 0;
@@ -293,7 +293,7 @@ bool dis_next_pdu(DisHeader *header, const uint8_t **pdu, const uint8_t **at, co
         }
     }
     counters->dropped[why]++;
-    *at = end; /* so that asking again does not count again */
+    *at = end; /* moves to the end, so that asking again does not count again */
     return false;
 }
 

@@ -17,7 +17,7 @@ typedef struct DisVariableParameter {
     uint32_t      parameter;   /* articulated: class (multiple of 32) + metric (1 .. 16); attached: station */
     float         value;       /* articulated: metres, radians, or per second; may be NaN on the wire */
     DisEntityType type;        /* attached: what hangs there */
-    uint8_t       octets[16];  /* as on the wire; the encoder starts from these */
+    uint8_t       octets[16];  /* the record as on the wire; the encoder starts from these octets */
 } DisVariableParameter;
 
 typedef struct DisEntityState {
@@ -96,17 +96,17 @@ typedef struct DisFire {
     double        p_ecef[3];
     DisDescriptor descriptor;
     float         velocity_mps[3];
-    float         range_m; /* 0 = unknown */
+    float         range_m; /* 0: the range is unknown */
 } DisFire;
 
 typedef struct DisDetonation {
     DisHeader            header;
-    DisEntityId          firing, target, munition; /* target 0:0:0: none */
+    DisEntityId          firing, target, munition; /* a target of 0:0:0 means none */
     DisEventId           event;
     float                velocity_mps[3];
     double               p_ecef[3];
     DisDescriptor        descriptor;
-    float                p_target_m[3]; /* where on the target, its body axes */
+    float                p_target_m[3]; /* where the munition hit, in the target's body axes */
     uint8_t              result;
     uint8_t              variable_count;
     uint8_t              padding[2];
@@ -129,7 +129,7 @@ typedef struct DisClockTime {
  * padding behind it, belong to it alone. */
 typedef struct DisRemoveEntity {
     DisHeader   header;
-    DisEntityId originating, receiving; /* receiving: the entity removed; 0xFFFF is a wildcard */
+    DisEntityId originating, receiving; /* receiving: the entity that is removed; 0xFFFF is a wildcard */
     uint8_t     reliability, reliability_padding[3];
     uint32_t    request;
 } DisRemoveEntity;
@@ -170,8 +170,9 @@ typedef struct DisFixedDatum {
 
 typedef struct DisVariableDatum {
     uint32_t       id, bits;
-    const uint8_t *value;   /* (bits + 7) / 8 octets; when read: inside the PDU */
-    const uint8_t *padding; /* behind it, to the next multiple of 8 octets; NULL: zeros; when read: inside the PDU */
+    const uint8_t *value;   /* (bits + 7) / 8 octets; after reading it points into the PDU */
+    const uint8_t *padding; /* octets behind the value, to the next multiple of 8; NULL: zeros; after reading it points
+                               into the PDU */
 } DisVariableDatum;
 
 enum { dis_data_fixed_max = 64, dis_data_variable_max = 64 };
@@ -187,7 +188,8 @@ typedef struct DisData {
 } DisData;
 
 Status dis_decode_data(DisData *out, const uint8_t *pdu, size_t octets);
-/* Set Data is laid out alike. 0 where it does not fit: into capacity, or into 65535 octets. */
+/* Encodes Data, or Set Data, which has the same layout. Returns 0 where it does not fit into capacity, or into 65535
+ * octets. */
 size_t dis_encode_data(uint8_t *out, size_t capacity, const DisData *pdu);
 
 /* ---- any PDU: a tagged union of the plain structs ---------------------------------------------- */
@@ -204,7 +206,7 @@ typedef struct DisPdu {
         DisRemoveEntity      remove;
         DisStartResume       start;
         DisStopFreeze        stop;
-        DisData              data; /* its values stay inside the octets */
+        DisData              data; /* its values point into the PDU's octets */
     };
 } DisPdu;
 
@@ -216,7 +218,8 @@ typedef struct DisPdu {
 Status dis_decode(DisPdu *out, const uint8_t *pdu, size_t octets);
 /* Writes header.length as computed. Returns the octets written; 0: capacity is too small, or no such type. */
 size_t dis_encode(uint8_t *out, size_t capacity, const DisPdu *pdu);
-/* Counts a PDU that dis_decode refused, by reason; one of a type that is not acted upon is no drop. */
+/* Counts, by reason, a PDU that dis_decode refused. A PDU of a type that is not acted upon is not counted as dropped.
+ * */
 void dis_count_refused(DisCounters *counters, uint8_t type, Status status);
 /* `Entity State`, `Attribute`, ...; `unknown type` beyond 72. */
 const char *dis_pdu_type_name(uint8_t type);
@@ -237,7 +240,7 @@ bool dis_next_pdu(DisHeader *header, const uint8_t **pdu, const uint8_t **at, co
 /* The sender of a PDU: every type of the standard names its site and application right after the header.
  * False, and out untouched, for a type outside it or one too short. */
 bool dis_pdu_sender(uint16_t site_application[2], const DisHeader *header, const uint8_t *pdu);
-/* The entity number that a PDU reports of (Entity State, Entity State Update); -1: it is no report. */
+/* The entity number that a PDU reports (Entity State, Entity State Update); -1: it is not a report. */
 int dis_pdu_entity(const DisHeader *header, const uint8_t *pdu);
 
 #endif

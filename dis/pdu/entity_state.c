@@ -150,8 +150,8 @@ size_t dis_encode_entity_state_update(uint8_t *out, size_t capacity, const DisEn
 
 /* ---- fit for geodesy ----------------------------------------------------------------------------- */
 
-/* 0, 0xFFFE and 0xFFFF in the entity number mean none, assign me one, all. Site and application may be 0:
- * unconfigured senders use it, and their entities are valid. */
+/* In the entity number 0, 0xFFFE and 0xFFFF mean no entity, a request for an id, and all entities. Site and application
+ * may be 0: unconfigured senders send that, and their entities are valid. */
 static bool names_one_entity(DisEntityId id)
 {
     return id.entity != 0 && id.entity < 0xFFFE && id.site != 0xFFFF && id.application != 0xFFFF;
@@ -172,7 +172,7 @@ bool dis_entity_is_usable(DisDrop *why, DisEntityId id, const double p_ecef[3], 
             return false;
         }
     }
-    const double r_m = v3_length(p_ecef); /* may be infinite for finite parts: then it is too far as well */
+    const double r_m = v3_length(p_ecef); /* r_m may be infinite for finite components; then it is too far as well */
     if (!(r_m >= nearest_m && r_m <= farthest_m)) {
         *why = DIS_DROP_BAD_POSITION;
         return false;
@@ -198,8 +198,8 @@ static void write_event_id(DisWriter *w, DisEventId event)
     dis_write_u16(w, event.number);
 }
 
-/* Version 7 gives warhead .. rate another meaning for expendables and explosions that are no munition (status
- * octet); the places and sizes are the same, so the octets come through either way. */
+/* Version 7 gives the fields from warhead to rate another meaning for expendables and for explosions without a munition
+ * (status octet). Their places and sizes are the same, so the octets are kept either way. */
 static DisDescriptor read_descriptor(DisReader *r)
 {
     DisDescriptor d;
@@ -276,7 +276,7 @@ Status dis_decode_detonation(DisDetonation *out, const uint8_t *pdu, size_t octe
 
     const uint8_t *records = dis_take(&r, (size_t)d.variable_count * variable_parameter_octets);
     if (!records) return STATUS_BAD_VALUE;
-    memcpy(out, &d, offsetof(DisDetonation, variable)); /* 255 unused records stay where they are */
+    memcpy(out, &d, offsetof(DisDetonation, variable)); /* copies without the unused ones of the 255 records */
     load_variable_parameters(out->variable, records, d.variable_count);
     return STATUS_OK;
 }

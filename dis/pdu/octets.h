@@ -122,7 +122,7 @@ static inline void dis_store_entity_type(uint8_t *p, DisEntityType type)
 
 /* ---- reading -------------------------------------------------------------------------------- */
 
-/* The next `octets`, or NULL when there are fewer: then everything after fails too. */
+/* The next `octets`, or NULL when fewer are left; every later read then fails too. */
 static inline const uint8_t *dis_take(DisReader *r, size_t octets)
 {
     if ((size_t)(r->end - r->at) < octets) {
@@ -194,8 +194,8 @@ static inline DisEntityType dis_read_entity_type(DisReader *r)
     return p ? dis_load_entity_type(p) : (DisEntityType){0};
 }
 
-/* A reader over one PDU: up to its own length field, and never beyond the octets given; all of these where the field is
- * 0: dis_next_pdu found out how many there are. */
+/* A reader over one PDU: up to its length field, and never beyond the octets given. Where the length field is 0 it
+ * reads all octets given, which dis_next_pdu has found out. */
 static inline DisReader dis_pdu_reader(const uint8_t *pdu, size_t octets)
 {
     const size_t field = octets < dis_header_octets ? 0 : dis_load_u16(pdu + 8), length = field ? field : octets;

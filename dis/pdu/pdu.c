@@ -19,7 +19,7 @@ void dis_entity_id_text(char out[dis_id_text_size], DisEntityId id)
     snprintf(out, dis_id_text_size, "%u:%u:%u", id.site, id.application, id.entity);
 }
 
-/* Digits only: no sign, no blanks, no empty part. */
+/* Parses digits only: no sign, no blanks, not empty. */
 static const char *parse_u16(uint16_t *out, const char *text)
 {
     unsigned value = 0;
@@ -94,11 +94,11 @@ int64_t dis_unix_ns_until(double unix_s)
     static const double most_s = 9e9;
     if (!(unix_s > 0)) return unix_s == 0 ? 0 : -1;
     if (unix_s >= most_s) return (int64_t)most_s * 1000000000;
-    /* doubles are 2 us apart at most here: the result is within this of the initial estimate */
+    /* doubles lie at most 2 us apart here, so the result is within this of the first estimate */
     const int64_t around = 4096, whole_s = (int64_t)unix_s;
     const int64_t guess = whole_s * 1000000000 + (int64_t)((unix_s - (double)whole_s) * 1e9);
     int64_t       low = guess > around ? guess - around : 0, high = guess + around;
-    while (low < high) { /* the last that is not after */
+    while (low < high) { /* searches the last nanosecond that is not after unix_s */
         const int64_t middle = high - (high - low) / 2;
         if (dis_unix_s(middle) <= unix_s) low = middle;
         else high = middle - 1;

@@ -14,7 +14,7 @@ enum {
     dis_pdu_remove_entity = 12,
     dis_pdu_start_resume = 13,
     dis_pdu_stop_freeze = 14,
-    dis_pdu_remove_entity_r = 52, /* with reliability: the same, with a reliability octet more */
+    dis_pdu_remove_entity_r = 52, /* the family with reliability has the same layout and one more octet */
     dis_pdu_start_resume_r = 53,
     dis_pdu_stop_freeze_r = 54,
     dis_pdu_entity_state_update = 67,
@@ -42,7 +42,7 @@ typedef struct DisHeader {
     uint8_t  exercise, type, family;
     uint32_t timestamp; /* raw; see exercise_clock.h */
     uint16_t length;    /* octets, header included */
-    uint8_t  status;    /* meaningful in version 7 only; padding before, kept as read */
+    uint8_t  status;    /* meaningful in version 7 only; a padding octet before, kept as read */
     uint8_t  padding;
 } DisHeader;
 
@@ -59,14 +59,14 @@ void dis_entity_type_text(char out[dis_type_text_size], DisEntityType type);
 typedef enum DisDrop {
     DIS_DROP_SHORT_HEADER,     /* fewer than 12 octets left */
     DIS_DROP_BAD_VERSION,      /* not 5, 6 or 7 */
-    DIS_DROP_LENGTH_ZERO,      /* length field 0, and the datagram's own length does not say what belongs there */
+    DIS_DROP_LENGTH_ZERO,      /* the length field is 0, and the datagram's own length does not tell the PDU's */
     DIS_DROP_LENGTH_TOO_SHORT, /* length field below 12, or below what its type needs */
     DIS_DROP_LENGTH_TOO_LONG,  /* length field beyond the datagram */
     DIS_DROP_TRUNCATED,        /* the record ends before its fields do */
     DIS_DROP_BAD_COUNT,        /* a count that the length cannot hold */
     DIS_DROP_NOT_FINITE,       /* NaN or infinity in a kinematic field */
     DIS_DROP_BAD_POSITION,     /* finite, but not a place near the Earth: the centre, beyond 1e8 m */
-    DIS_DROP_NO_IDENTITY,      /* id with 0, 0xFFFF or 0xFFFE where one entity is needed */
+    DIS_DROP_NO_IDENTITY,      /* the id has 0, 0xFFFF or 0xFFFE where it must name one entity */
     DIS_DROP_OTHER_EXERCISE,   /* filtered by exercise id */
     DIS_DROP_TABLE_FULL,       /* the entity table refused a new entity */
     DIS_DROP_COUNT
@@ -77,11 +77,11 @@ const char *dis_drop_cause(DisDrop drop); /* a few words for people: `a length f
 
 typedef struct DisCounters {
     uint64_t datagrams;
-    uint64_t pdus[256]; /* by type, every well-formed header */
+    uint64_t pdus[256]; /* well-formed headers, counted by type */
     uint64_t dropped[DIS_DROP_COUNT];
-    uint64_t lengths_made;   /* PDUs with a length field of 0, taken by their type and the datagram's length */
-    uint64_t padded;         /* runs of zeros behind a PDU, passed over */
-    uint64_t stamps_doubted; /* PDUs that count from their arrival although they are stamped: exercise_clock.h */
+    uint64_t lengths_made; /* PDUs with a length field of 0, whose length was found from their type and the datagram */
+    uint64_t padded;       /* runs of zeros behind a PDU, passed over */
+    uint64_t stamps_doubted; /* PDUs that are timed by their arrival although they are stamped: exercise_clock.h */
 } DisCounters;
 
 /* ---- arrival times ------------------------------------------------------------------------------- */
@@ -94,7 +94,8 @@ static inline double dis_unix_s(int64_t unix_ns)
     return (double)(unix_ns / 1000000000) + 1e-9 * (double)(unix_ns % 1000000000);
 }
 
-/* The last nanosecond whose dis_unix_s is not after unix_s; -1: before 1970. Beyond 9e9 s (2255): 9e9 s. */
+/* The last nanosecond for which dis_unix_s is not after unix_s; -1: unix_s is before 1970. Times beyond 9e9 s (2255)
+ * count as 9e9 s. */
 int64_t dis_unix_ns_until(double unix_s);
 
 /* ---- enumerations --------------------------------------------------------------------------- */
@@ -110,7 +111,10 @@ enum {
     dis_kind_expendable = 8,
     dis_kind_sensor_emitter = 9
 };
-enum { dis_munition_guided = 1, dis_munition_fixed = 3 }; /* category of a munition; 2: ballistic; fixed: mines */
+enum {
+    dis_munition_guided = 1,
+    dis_munition_fixed = 3
+}; /* values of a munition's category; 2 is ballistic; fixed ones are mines */
 enum {
     dis_domain_land = 1,
     dis_domain_air = 2,

@@ -1,61 +1,25 @@
 /* entities/catalog/catalog.c: entity type -> model, by the longest pattern of etc/catalog.csv. */
 
-#include "entities/catalog/catalog.h"
+#include "entities/catalog/catalog_private.h"
 #include "entities/shapes/parametric.h"
 #include "pitviper_output.h"
 
 #include <pthread.h>
-#include <stdatomic.h>
 #include <stdlib.h>
 #include <unistd.h>
 
-enum { type_fields = 7, any = -1, catalog_columns = 7 };
+enum { catalog_columns = 7 };
 static const char *const column_name[catalog_columns] = {"type",    "model",    "origin", "length_m",
                                                          "width_m", "height_m", "note"};
 
-typedef struct CatalogRow {
-    int       field[type_fields]; /* any: a star */
-    int       length;             /* fields up to the last one named */
-    int       named;              /* fields that are not a star */
-    int       order;              /* in the file */
-    int       model;
-    Origin    origin;
-    bool      own; /* of the user's catalog, which takes precedence */
-    int       line;
-    ModelSize size; /* from the row; of a file: its expected size */
-    char     *note; /* may be NULL */
-} CatalogRow;
-
-/* A model of the catalog. A built-in shape is built coarsely when the catalog is opened, once for all sizes of it:
- * nodes and parts, with their materials and heat, depend on neither size nor facets. With fine facets and in its size
- * it is built at the first look-up of one of its types: an exercise uses some ten of two hundred models. */
-typedef struct CatalogModel {
-    char            *source;    /* its built-in name, or its file */
-    ModelSize        size;      /* zeroes: its own */
-    int              shape;     /* index of the entry of which this is another size: `first` */
-    int              same_name; /* index of the first of the same name */
-    ModelImport     *import;    /* of a file, else NULL */
-    Model            first;     /* of shape == own index alone: coarse, or of a file */
-    _Atomic(Model *) fine;      /* NULL: not asked for yet, or of a file */
-    atomic_bool      failed;    /* no memory when it was asked for */
-} CatalogModel;
-
-struct Catalog {
-    int              row_count, model_count;
-    char            *own_path, *path;
-    CatalogRow      *row;
-    CatalogModel    *model; /* model[0]: unknown */
-    double           sag_m;
-    pthread_mutex_t *building;
-};
-
 static const double coarse_chord_error_m = 0.1;
 
-/* Dotted numbers and stars; omitted parts at the end are stars. Fields are 8 bits, the country 16. */
-static bool parse_type(int field[type_fields], const char *text)
+/* Reads a type: numbers and stars with dots between; parts omitted at the end are stars. Fields have 8 bits, the
+ * country 16. */
+static bool parse_type(int field[catalog_type_fields], const char *text)
 {
-    for (int f = 0; f < type_fields; f++) field[f] = any;
-    for (int f = 0; f < type_fields; f++) {
+    for (int f = 0; f < catalog_type_fields; f++) field[f] = catalog_any;
+    for (int f = 0; f < catalog_type_fields; f++) {
         char         part[8];
         const size_t length = strcspn(text, ".");
         long long    value;
@@ -72,7 +36,7 @@ static bool parse_type(int field[type_fields], const char *text)
         if (!*text) return true;
         text++;
     }
-    return false; /* an eighth field */
+    return false; /* there is an eighth field */
 }
 
 static Status open_file(CatalogModel *model, bool *imported, const char *source, double sag_m)
@@ -84,8 +48,8 @@ static Status open_file(CatalogModel *model, bool *imported, const char *source,
     return status;
 }
 
-/* Index of the model of that name or file and size. If it is new a file is read now, and so is a shape that no size of
- * it has called for yet. Files are beside the catalog at `path`. */
+/* Finds or adds the model of that name or file, and size. When it is new, a file is read now, and so is a shape of
+ * which no other size was added before. Files are relative to the folder of `path`. */
 static Status find_or_add(int *out, Catalog *catalog, const char *name, const ModelSize *size, const char *path)
 {
     char        source[1024];
@@ -179,8 +143,8 @@ static Status read_row(CatalogRow *row, Catalog *catalog, const Table *table, in
         return STATUS_BAD_VALUE;
     }
     row->length = row->named = 0;
-    for (int f = 0; f < type_fields; f++) {
-        if (row->field[f] == any) continue;
+    for (int f = 0; f < catalog_type_fields; f++) {
+        if (row->field[f] == catalog_any) continue;
         row->named++;
         row->length = f + 1;
     }
@@ -202,7 +166,8 @@ static Status read_row(CatalogRow *row, Catalog *catalog, const Table *table, in
     return status == STATUS_UNSUPPORTED ? STATUS_BAD_VALUE : status;
 }
 
-/* The user's own first, then longer, then more fields named, then the order of the file: it is the search order. */
+/* The search order of rows: the user's own first, then those named deeper, then those with more fields named, then by
+ * their order in the file. */
 static int row_order(const void *x, const void *y)
 {
     const CatalogRow *a = x, *b = y;
@@ -212,112 +177,9 @@ static int row_order(const void *x, const void *y)
     return (a->order > b->order) - (a->order < b->order);
 }
 
-/* ---- sizes of files ------------------------------------------------------------------------------ */
-
-/* The first row of the table of the program, in search order, that has all of this row's types, and a shape of its
- * own. */
-static const CatalogRow *row_behind(const Catalog *catalog, const CatalogRow *row)
-{
-    for (int r = 0; r < catalog->row_count; r++) {
-        const CatalogRow *other = catalog->row + r;
-        int               f = 0;
-        if (other->own || other == row || !parametric_known(catalog->model[other->model].source)) continue;
-        while (f < type_fields && (other->field[f] == any || other->field[f] == row->field[f])) f++;
-        if (f == type_fields && other->length > 1) return catalog_has_shape(catalog, other->model) ? other : NULL;
-    }
-    return NULL;
-}
-
-void catalog_size(double size_m[3], const Catalog *catalog, int model)
-{
-    const CatalogModel *m = catalog->model + (model >= 0 && model < catalog->model_count ? model : 0);
-    const Model        *first = &catalog->model[m->shape].first;
-    double              factor[3] = {1, 1, 1};
-    if (!m->import) model_scale_to(factor, first, &m->size);
-    size_m[0] = factor[0] * first->length_m;
-    size_m[1] = factor[1] * first->width_m;
-    size_m[2] = factor[2] * (fmax(first->box_high[2], 0) - first->box_low[2]);
-}
-
-void catalog_size_range(SizeRange *out, const Catalog *catalog, int kind, int domain)
-{
-    *out = (SizeRange){0};
-    for (int r = 0; r < catalog_row_count(catalog); r++) {
-        CatalogRowInfo row;
-        double         m[3];
-        char           who[64];
-        catalog_row(&row, catalog, r);
-        if (row.own || model_is_path(row.source) || !catalog_has_shape(catalog, row.model)) continue;
-        if ((kind >= 0 && row.kind != kind) || (domain >= 0 && row.domain >= 0 && row.domain != domain)) continue;
-        catalog_size(m, catalog, row.model);
-        snprintf(who, sizeof who, "%.40s, line %d", row.note && *row.note ? row.note : row.source, row.line);
-        model_size_range_take(out, fmax(m[0], fmax(m[1], m[2])), who);
-    }
-}
-
-/* Reports a model from a file of whose type the program knows no size, when nothing of its kind is like it. */
-static void warn_odd_size(const Catalog *catalog, const CatalogRow *row, const CatalogModel *m)
-{
-    static const double slack = 3;
-    const double        largest_m = model_size_largest_m(&catalog->model[m->shape].first);
-    SizeRange           range;
-    char                advice[200];
-    catalog_size_range(&range, catalog, row->field[0], row->field[1]);
-    if (!model_size_is_odd(advice, largest_m, &range, slack, m->import)) return;
-    log_warn(
-        "catalog: %s:%d: %s is %.3g m large, but what etc/catalog.csv has of its kind is %.3g m (%s) to %.3g m (%s) large: %s; "
-        "if it is right, say so with length_m, width_m, height_m in the row",
-        row->own ? catalog->own_path : catalog->path, row->line, m->source, largest_m, range.low_m, range.low,
-        range.high_m, range.high, advice);
-}
-
-/* Reports a model from a file with another size than in its row, or, without one there, than in the built-in table of
- * types. */
-static void warn_sizes(const Catalog *catalog)
-{
-    static const double said = 1.1, usual = 1.6;
-    for (int r = 0; r < catalog->row_count; r++) {
-        const CatalogRow   *row = catalog->row + r;
-        const CatalogModel *m = catalog->model + row->model;
-        ModelSize           want = row->size;
-        char                from[200] = "the row";
-        double              size[3];
-        ModelFit            fit;
-        if (!m->import) continue;
-        const bool        stated = want.length_m > 0 || want.width_m > 0 || want.height_m > 0;
-        const CatalogRow *behind = stated ? NULL : row_behind(catalog, row);
-        if (!stated && !behind) {
-            warn_odd_size(catalog, row, m);
-            continue;
-        }
-        if (behind) {
-            catalog_size(size, catalog, behind->model);
-            want = (ModelSize){size[0], size[1], size[2]};
-            snprintf(from, sizeof from, "etc/catalog.csv:%d (%s%s%.60s), for such types,", behind->line,
-                     catalog->model[behind->model].source, behind->note && *behind->note ? ": " : "",
-                     behind->note ? behind->note : "");
-        }
-        const Model *model = &catalog->model[m->shape].first;
-        model_fit(&fit, model, m->import, &want, behind ? usual : said);
-        if (fit.fits) continue;
-        const double    want_m = fmax(want.length_m, fmax(want.width_m, want.height_m));
-        const SizeRange about = {.low_m = want_m, .high_m = want_m};
-        char            advice[200];
-        if (fit.factor == 0 && model_size_is_odd(advice, model_size_largest_m(model), &about, 3, m->import))
-            snprintf(fit.advice, sizeof fit.advice, "%s", advice);
-        char         text[3][24];
-        const double figure[3] = {want.length_m, want.width_m, want.height_m};
-        for (int k = 0; k < 3; k++) snprintf(text[k], sizeof text[k], figure[k] > 0 ? "%.3g" : "?", figure[k]);
-        log_warn("catalog: %s:%d: %s is %.3g x %.3g x %.3g m (length, width, height), but %s says %s x %s x %s: %s%s",
-                 row->own ? catalog->own_path : catalog->path, row->line, m->source, model->length_m, model->width_m,
-                 fmax(model->box_high[2], 0) - model->box_low[2], from, text[0], text[1], text[2], fit.advice,
-                 behind ? "; if it is right, say so with length_m, width_m, height_m in the row" : "");
-    }
-}
-
 /* ---- the whole ----------------------------------------------------------------------------------- */
 
-/* Which column of the table is which; -1: not there. */
+/* Finds the columns of the table; -1: it is not there. */
 static Status find_columns(int column[catalog_columns], const Table *table)
 {
     for (int c = 0; c < catalog_columns; c++) {
@@ -377,7 +239,7 @@ Status catalog_open(Catalog **out, const char *path, double sag_m)
     if (status == STATUS_OK) status = read_table(catalog, &table, false);
     if (status == STATUS_OK && own_path) status = read_table(catalog, &own, true);
     qsort(catalog->row, (size_t)catalog->row_count, sizeof *catalog->row, row_order);
-    if (status == STATUS_OK) warn_sizes(catalog);
+    if (status == STATUS_OK) catalog_warn_sizes(catalog);
 
 done:
     table_close(&table);
@@ -421,8 +283,9 @@ void catalog_row(CatalogRowInfo *out, const Catalog *catalog, int index)
                             .path = row->own ? catalog->own_path : catalog->path,
                             .note = row->note ? row->note : "",
                             .source = catalog->model[row->model].source};
-    for (int f = 0; f < type_fields; f++) {
-        if (row->field[f] == any) n += (size_t)snprintf(out->type + n, sizeof out->type - n, "%s*", f ? "." : "");
+    for (int f = 0; f < catalog_type_fields; f++) {
+        if (row->field[f] == catalog_any)
+            n += (size_t)snprintf(out->type + n, sizeof out->type - n, "%s*", f ? "." : "");
         else n += (size_t)snprintf(out->type + n, sizeof out->type - n, "%s%d", f ? "." : "", row->field[f]);
     }
     out->kind = row->field[0], out->domain = row->field[1];
@@ -461,13 +324,13 @@ int catalog_class(const Catalog *catalog, int model)
 
 int catalog_find(const Catalog *catalog, DisEntityType type, Origin *origin, int *matched)
 {
-    const int field[type_fields] = {type.kind,        type.domain,   type.country, type.category,
-                                    type.subcategory, type.specific, type.extra};
+    const int field[catalog_type_fields] = {type.kind,        type.domain,   type.country, type.category,
+                                            type.subcategory, type.specific, type.extra};
 
     for (int r = 0; r < catalog->row_count; r++) {
         const CatalogRow *row = catalog->row + r;
         int               f = 0;
-        while (f < row->length && (row->field[f] == any || row->field[f] == field[f])) f++;
+        while (f < row->length && (row->field[f] == catalog_any || row->field[f] == field[f])) f++;
         if (f < row->length) continue;
         if (origin) *origin = row->origin;
         if (matched) *matched = row->length;

@@ -29,22 +29,22 @@ Status catalog_open(Catalog **out, const char *path, double sag_m);
  * own catalog would still precede it. */
 Status catalog_open_one(Catalog **out, int *model, const char *name, double sag_m);
 void   catalog_close(Catalog *catalog);
-/* One model for each shape and size; those of one shape have one name. */
+/* The number of models: one for each shape and size; those of one shape have one name. */
 int catalog_model_count(const Catalog *catalog);
 /* False: entities of this model are received and tracked, but not rendered. */
 bool catalog_has_shape(const Catalog *catalog, int model);
-/* A cloud of chaff, which has no shape either: of the radar's scene alone. */
+/* Whether a model is a cloud of chaff, which has no shape either: only the radar sees it. */
 bool catalog_is_chaff(const Catalog *catalog, int model);
 /* The first model of the same name: identifies a class of targets independent of size. */
 int catalog_class(const Catalog *catalog, int model);
-/* Once catalog_find has named it: the model. Before: a coarse form of its shape, in the shape's own size, whose
- * nodes and parts are in number, name, material and heat the model's. Either lives as long as the catalog. */
+/* The model, after catalog_find has returned it. Before that, a coarse form of its shape in the shape's own size, whose
+ * nodes and parts have the model's number, names, materials and heat. Both live as long as the catalog. */
 const Model *catalog_model(const Catalog *catalog, int model);
-/* Whether it is the model. */
+/* Whether catalog_model returns the model itself. */
 bool catalog_is_built(const Catalog *catalog, int model);
 /* Length, width and height (ModelSize) that a model has, or will have once it is built. */
 void catalog_size(double size_m[3], const Catalog *catalog, int model);
-/* Sizes of the program's own rows of a kind and domain; < 0: of any. */
+/* The range of sizes of the program's own rows of a kind and domain; < 0: of any. */
 void catalog_size_range(SizeRange *out, const Catalog *catalog, int kind, int domain);
 
 /* A row, in search order. */
@@ -53,14 +53,14 @@ typedef struct CatalogRowInfo {
     int         kind, domain; /* -1: any */
     int         model, line;
     bool        own;
-    const char *path, *note, *source; /* source: of the model: a built-in name, or its file */
+    const char *path, *note, *source; /* source: the model's built-in name, or its file */
 } CatalogRowInfo;
 int  catalog_row_count(const Catalog *catalog);
 void catalog_row(CatalogRowInfo *out, const Catalog *catalog, int row);
 
-/* Never fails: an unmatched type gets the `unknown` model, model 0. matched (may be NULL): how many leading fields
- * of the type the row covers, up to the last it names; 0 for unmatched. Builds the model the first time; without
- * memory its coarse form stays, logged. Any number of threads. */
+/* The model of a type. It never fails: an unmatched type gets the `unknown` model, number 0. matched (may be NULL): how
+ * many leading fields of the type the row covers, up to the last it names; 0 for an unmatched type. The model is built
+ * at the first call; without memory its coarse form stays, which is logged. Any number of threads may call it. */
 int catalog_find(const Catalog *catalog, DisEntityType type, Origin *origin, int *matched);
 
 #endif

@@ -100,8 +100,8 @@ static void print_parts(const Model *m)
     }
 }
 
-/* A size is odd that is half as large again as anything in the catalog, or hardly that of a thing at all; and, where
- * the name says what the model is, one that is off by a factor of 3. */
+/* Judges a model's size. It is odd when it is half as large again as anything in the catalog, or much smaller than
+ * anything; and, where the name says what the model is, when it is off by a factor of 3. */
 static void judge_size(ModelInfo *info, const char *name)
 {
     static const double slack = 1.5, named_slack = 3;
@@ -113,14 +113,14 @@ static void judge_size(ModelInfo *info, const char *name)
     char         path[4096], advice[200];
     Catalog     *catalog;
     SizeRange    range = {.high_m = 100}, named;
-    log_suppress(true); /* a catalog that is broken is not of this model; what is smaller needs none */
+    log_suppress(true); /* a broken catalog is no fault of this model; a size below the least needs no catalog */
     if (largest_m > range.high_m && etc_path(path, sizeof path, "catalog.csv") &&
         catalog_open(&catalog, path, 0.1) == STATUS_OK) {
         catalog_size_range(&range, catalog, -1, -1);
         catalog_close(catalog);
     }
     log_suppress(false);
-    range.low_m = slack * least_m; /* which model_size_is_odd divides by slack */
+    range.low_m = slack * least_m; /* model_size_is_odd divides this by slack again */
     if (model_size_range_named(&named, slash ? slash + 1 : name) &&
         model_size_is_odd(advice, largest_m, &named, named_slack, &info->import))
         snprintf(info->advice, sizeof info->advice, "it is %.3g m large, and `%s`, as it is called, %.3g m: %s",
@@ -191,7 +191,7 @@ void model_info_print(const ModelInfo *info)
 
 /* ---- the list: built-in shapes, and the model of each entity type of the catalog -------------- */
 
-/* As IEEE 1278.1 and SISO-REF-010 have kinds and domains. */
+/* Names of kinds and domains in IEEE 1278.1 and SISO-REF-010. */
 static const char *kind_name(int kind, int domain)
 {
     static const char *const domains[] = {"other", "land", "air", "surface", "subsurface", "space"};

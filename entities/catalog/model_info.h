@@ -7,20 +7,20 @@
 #include "entities/catalog/model_size.h"
 #include "entities/import/model_import.h"
 
-/* A model and what there is to say of it. */
+/* A model and what is known about it. */
 typedef struct ModelInfo {
     Model       model;
-    ModelImport import; /* of a file */
+    ModelImport import; /* set for a model from a file */
     bool        imported;
     ModelEdges  edges;
-    bool        sized; /* a size was asked for: whether a file has it */
+    bool        sized; /* a size was given; fit: whether the file has it */
     ModelFit    fit;
-    bool        odd;         /* of a size that no thing of the catalog, or of its name, has */
-    char        advice[500]; /* on that */
+    bool        odd;         /* its size is that of nothing in the catalog, or not that of its name */
+    char        advice[500]; /* what to do about the size */
 } ModelInfo;
 
-/* A built-in model or a file; size: what a built-in one is scaled to and a file is compared with, 0: not given. What is
- * wrong is logged; an odd size is a warning. */
+/* Opens a built-in model or a file. size: a built-in one is scaled to it, and a file is compared with it; 0: not given.
+ * Errors are logged; an odd size is a warning. */
 Status model_info_open(ModelInfo *out, const char *name, const ModelSize *size, double sag_m);
 void   model_info_print(const ModelInfo *info);
 void   model_info_close(ModelInfo *info);

@@ -83,7 +83,7 @@ bool model_size_is_odd(char advice[200], double largest_m, const SizeRange *rang
 
 /* ---- an expected size ----------------------------------------------------------------------- */
 
-/* What files are drawn in, as metres, and the same the wrong way round. */
+/* Units that files are drawn in, in metres, and the same units applied the wrong way round. */
 static const struct {
     double      factor;
     const char *unit;
@@ -94,7 +94,7 @@ static const struct {
 /* The axes as loaded come first, then a turn about the vertical, then what a file with another upward axis gives. */
 static const int orders[6][3] = {{0, 1, 2}, {1, 0, 2}, {2, 0, 1}, {0, 2, 1}, {1, 2, 0}, {2, 1, 0}};
 
-/* Largest of the logarithms of what is over what should be. */
+/* The largest logarithm, over the known lengths, of the ratio of actual to expected length. */
 static double misfit(const double has_m[3], const double want_m[3], const int axis[3], double factor)
 {
     double worst = 0;
@@ -103,7 +103,7 @@ static double misfit(const double has_m[3], const double want_m[3], const int ax
     return worst;
 }
 
-/* The same in the mean, to choose among several that agree. */
+/* The rms of these logarithms, to choose among several that agree. */
 static double rms_size_error(const double has_m[3], const double want_m[3], const int axis[3], double factor)
 {
     double sum = 0;
@@ -112,7 +112,7 @@ static double rms_size_error(const double has_m[3], const double want_m[3], cons
     return sqrt(sum);
 }
 
-/* The factor that all lengths would need, in the mean. */
+/* The mean factor that all lengths would need. */
 static double mean_factor(const double has_m[3], const double want_m[3], const int axis[3])
 {
     double sum = 0;
@@ -152,10 +152,11 @@ void model_fit(ModelFit *out, const Model *model, const ModelImport *import, con
 {
     const double has_m[3] = {model->length_m, model->width_m, fmax(model->box_high[2], 0) - model->box_low[2]};
     const double want_m[3] = {want->length_m, want->width_m, want->height_m};
-    const double most = log(tolerance), dearer = 0.02; /* a simpler remedy is preferred to one that fits 2 % better */
-    const char  *unit = NULL;
-    double       best = INFINITY;
-    int          known = 0;
+    const double most = log(tolerance),
+                 dearer = 0.02; /* a simple remedy is preferred to a complicated one that fits 2 % better */
+    const char *unit = NULL;
+    double      best = INFINITY;
+    int         known = 0;
     *out = (ModelFit){.axis = {0, 1, 2}, .factor = 1};
     for (int k = 0; k < 3; k++) {
         known += want_m[k] > 0;
@@ -174,7 +175,7 @@ void model_fit(ModelFit *out, const Model *model, const ModelImport *import, con
             out->factor = units[u].factor;
             unit = fabs(import->scale_m - 1) < 1e-12 ? units[u].unit : NULL;
         }
-    const bool exact = tolerance < 1.25; /* of sizes that are known roughly no odd scale is made */
+    const bool exact = tolerance < 1.25; /* where sizes are known roughly, only usual scales are suggested */
     for (size_t o = 0; o < 6 && exact && !(best < INFINITY) && known > 1; o++) {
         const double factor = mean_factor(has_m, want_m, orders[o]);
         if (misfit(has_m, want_m, orders[o], factor) > most) continue;

@@ -22,8 +22,8 @@ void model_size_range_take(SizeRange *range, double size_m, const char *who);
 bool model_size_range_named(SizeRange *out, const char *name);
 /* Largest side of a model, m. */
 double model_size_largest_m(const Model *model);
-/* False where a model's largest side is beyond `slack` times the range. Else `advice`: the sidecar's `scale` that would
- * bring it there, or that none of the usual units does. */
+/* Whether a model's largest side is beyond `slack` times the range. Then `advice` says which `scale` in the sidecar
+ * would bring it there, or that none of the usual units does. */
 bool model_size_is_odd(char advice[200], double largest_m, const SizeRange *range, double slack,
                        const ModelImport *import);
 
@@ -32,9 +32,10 @@ bool model_size_is_odd(char advice[200], double largest_m, const SizeRange *rang
 /* Whether a model from a file has its expected size; if not, which axes or which unit of the file would give it. */
 
 typedef struct ModelFit {
-    bool   fits;
-    int    axis[3];     /* body axis as loaded (0 forward, 1 right, 2 up) that would have to be forward, right, up */
-    double factor;      /* on all lengths, 0: none explains it */
+    bool fits;
+    int axis[3]; /* for each of forward, right, up: the body axis as loaded (0 forward, 1 right, 2 up) that it should be
+                  */
+    double factor;      /* factor on all lengths that would fit; 0: none does */
     char   advice[320]; /* what to write into the sidecar */
 } ModelFit;
 

@@ -4,7 +4,7 @@
 #include "dis/pdu/pdu.h"
 
 static const double g_mps2 = 9.80665;
-static const double roll_out_s = 2; /* of an entity hit on the ground */
+static const double roll_out_s = 2; /* time for which an entity that was hit rolls on, on the ground */
 
 /* ---- distance along --------------------------------------------------------------------------- */
 
@@ -42,7 +42,7 @@ static double travelled(double *speed_mps, const Cast *cast, int group, double t
     return way;
 }
 
-/* The same for one entity: it ends when it was hit. */
+/* Distance and speed of one entity, which ends its way when it is hit. */
 static double way_of(double *speed_mps, const Cast *cast, const CastEntity *e, double t_s)
 {
     if (!(t_s > e->hit_s) || !isfinite(e->rest_s)) return travelled(speed_mps, cast, e->group, t_s);
@@ -94,7 +94,7 @@ static void fall(CastPose *out, const CastEntity *e, double t_s)
     if (after_s > 0 && isfinite(e->rest_s)) out->p_enu[2] -= 0.5 * g_mps2 * after_s * after_s;
 }
 
-/* Bank angle of a coordinated turn: tan = v^2 / (r g). */
+/* Banks an aircraft as in a coordinated turn: tan = v^2 / (r g). */
 static void lean(double up[3], const double left[3], double speed_mps, double curvature)
 {
     const double tan_bank = clamp(speed_mps * speed_mps * curvature / g_mps2, -2, 2);
@@ -121,7 +121,7 @@ void cast_pose(CastPose *out, const Cast *cast, int entity, double t_s)
     const double left[3] = {-forward[1], forward[0], 0};
     const double x = at.p[0] + e->aside_m * left[0], y = at.p[1] + e->aside_m * left[1];
     const bool   stands = g->route_m.count == 2;
-    if (stands) speed_mps = 0; /* its route only gives a heading */
+    if (stands) speed_mps = 0; /* a stationary entity's route only gives its heading */
     else curvature = (at.d[0] * at.dd[1] - at.d[1] * at.dd[0]) / (along * along * along);
 
     out->p_enu[0] = x, out->p_enu[1] = y;
@@ -185,7 +185,7 @@ bool cast_present(const Cast *cast, int entity, double t_s)
     return !(t_s < g->appears_s) && !(t_s >= g->leaves_s);
 }
 
-static const double flash_s = 0.5; /* a munition's launch flash */
+static const double flash_s = 0.5; /* duration of a munition's launch flash */
 
 uint32_t cast_appearance(const Cast *cast, int entity, double t_s)
 {

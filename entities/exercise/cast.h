@@ -21,12 +21,12 @@
  * cubic B-spline of `smooth_m`, so that velocity and angular rate of vehicles on it are continuous. */
 typedef struct ExerciseGround {
     LocalFrame frame;
-    double     half_curvature[2]; /* of the ellipsoid, eastward and northward, 1/(2 m) */
+    double     half_curvature[2]; /* curvature of the ellipsoid eastward and northward, 1/(2 m) */
     double     swell_m, phase_rad[2];
     bool       real;
     double     smooth_m;
     Elevation  elevation;
-    Landscape  stored; /* of a terrain store, in its own frame; cover NULL: none */
+    Landscape  stored; /* landscape of a terrain store, in its own frame; cover NULL: none */
 } ExerciseGround;
 
 /* Reads the files of ground.elevation. Failures are logged. */
@@ -52,13 +52,13 @@ enum { route_max_points = 128 };
 
 typedef struct Route {
     bool   loop;
-    double length_m, step_m; /* of the plane curve; between knots */
+    double length_m, step_m; /* length of the plane curve; distance between knots */
     int    knots;
     double (*control)[3]; /* [knots + 3] (loop: periodic) */
 } Route;
 
 typedef struct RoutePoint {
-    double p[3], d[3], dd[3]; /* p by distance; |d_xy| = 1 within 1e-3 */
+    double p[3], d[3], dd[3]; /* p and its derivatives by the distance; |d_xy| = 1 within 1e-3 */
 } RoutePoint;
 
 /* point: x, y, z; at least 2 (loop: 3), neighbours at least 0.1 m apart in the plane. Distances are those of the
@@ -72,9 +72,9 @@ void route_at(RoutePoint *out, const Route *route, double distance_m);
 /* ---- entities --------------------------------------------------------------------------------- */
 
 enum { cast_max_joints = 4 };
-static const double cast_ramp_s = 3; /* from standstill to full speed and back */
+static const double cast_ramp_s = 3; /* time from standstill to full speed, and back */
 
-typedef enum Carriage { /* how it moves */
+typedef enum Carriage { /* how an entity moves */
                         CARRIAGE_LAND,
                         CARRIAGE_LIFE,
                         CARRIAGE_SEA,
@@ -85,24 +85,24 @@ typedef enum Carriage { /* how it moves */
 
 typedef struct CastEntity {
     DisEntityType type;
-    uint16_t      number; /* of its DIS id */
+    uint16_t      number; /* entity number of its DIS id */
     uint8_t       force, algorithm;
     Carriage      carriage;
-    int           group;             /* -1: a munition */
-    int           round;             /* of a munition */
-    int           joints;            /* first joint of its model, -1: no articulation parameters sent */
-    float         behind_m, aside_m; /* in its formation: of the route's beginning, to the left */
-    double        hit_s, rest_s;     /* INFINITY: never */
-    uint8_t       damage;            /* since the hit */
+    int           group;             /* group of the scenario; -1: it is a munition */
+    int           round;             /* number of the round that a munition belongs to */
+    int           joints;            /* its first joint in `joint`; -1: no articulation parameters are sent */
+    float         behind_m, aside_m; /* place in its formation: behind the beginning of the route, and to its left */
+    double        hit_s, rest_s;     /* when it is hit, and when it has come to rest; INFINITY: never */
+    uint8_t       damage;            /* its damage since the hit */
 } CastEntity;
 
 /* One shot of one munition. */
 typedef struct CastRound {
-    int           shot, shooter, target, munition; /* entities; -1: none */
+    int           shot, shooter, target, munition; /* numbers of entities; -1: none */
     double        fire_s, impact_s;
     double        launch_enu[3], impact_enu[3];
     DisEntityType type;
-    int           result; /* of its Detonation */
+    int           result; /* result of its Detonation */
 } CastRound;
 
 /* A joint that its model has and the scenario moves. */
@@ -117,9 +117,9 @@ typedef struct Cast {
     int             entity_count, round_count, joint_count;
     CastEntity     *entity;
     CastRound      *round;
-    CastJoint      *joint;  /* cast_max_joints for each kind of entity that has them; class 0 ends */
-    Route          *route;  /* of each group; without knots: stationary */
-    double         *stop_s; /* of each group: starts to stop; INFINITY: does not */
+    CastJoint      *joint;  /* cast_max_joints for each kind of entity that has joints; class 0 ends the list */
+    Route          *route;  /* route of each group; without knots: the group is stationary */
+    double         *stop_s; /* when each group starts to stop; INFINITY: never */
 } Cast;
 
 /* The scenario must outlive the cast. Logs what is wrong with names of types, files of ground, shots that do not
@@ -136,12 +136,13 @@ void cast_pose(CastPose *out, const Cast *cast, int entity, double t_s);
  * that they belong to it; velocity within 1 mm/s of wider differences (tests/entities/test_exercise_cast.c).
  * algorithm: 4. */
 void cast_kinematics(Kinematics *out, const Cast *cast, int entity, double t_s);
-/* Whether it is reported at that time; a munition from its Fire to its Detonation. */
+/* Whether an entity is reported at that time; a munition is from its Fire to its Detonation. */
 bool     cast_present(const Cast *cast, int entity, double t_s);
 uint32_t cast_appearance(const Cast *cast, int entity, double t_s);
-/* Angles and rates of turret and gun; returns how many. */
+/* Computes angles and rates of turret and gun; returns the number of joints. */
 int cast_joints(JointReport joint[cast_max_joints], const Cast *cast, int entity, double t_s);
-/* Whether it is stationary until the next change; the next time of a start, an end or a hit. */
+/* cast_still: whether an entity is stationary until the next change. cast_next_change: when it next starts, ends or is
+ * hit. */
 bool   cast_still(const Cast *cast, int entity, double t_s);
 double cast_next_change(const Cast *cast, int entity, double t_s);
 /* `NAME NUMBER` as its marking; 11 octets, not terminated. */
@@ -152,7 +153,7 @@ void cast_marking(char marking[11], const Cast *cast, int entity);
 Status cast_solve_shots(Cast *cast, const int *ids, const int *first);
 void   cast_munition_pose(CastPose *out, const Cast *cast, const CastRound *round, double t_s);
 
-/* Body axes, columns x forward, y right, z down. */
+/* Axes of a body as columns: x forward, y right, z down. */
 void cast_axes(double r_enu_from_body[9], const double forward[3], const double up[3]);
 
 #endif

@@ -7,14 +7,14 @@
 
 #include <stdlib.h>
 
-/* The last report of an entity, as rounded in the PDU. */
+/* What the last report of an entity said, as rounded in the PDU. */
 typedef struct Said {
     bool        known, gone;
     double      t_s;
     uint32_t    appearance;
     int         joints;
     JointReport joint[cast_max_joints];
-    Kinematics  k; /* in the axes of its algorithm */
+    Kinematics  k; /* kinematics in the axes of its algorithm */
 } Said;
 
 typedef struct Event {
@@ -28,10 +28,10 @@ struct Exercise {
     ExerciseLink         link;
     long long            tick, last_tick;
     double               tick_s;
-    long long            bad; /* sent so far */
+    long long            bad; /* number of bad PDUs sent so far */
     int                  event_count, next_event, heard;
     Event               *event;
-    long long           *look; /* tick of the next check of each [entity_count] */
+    long long           *look; /* [entity_count] tick of each entity's next check */
     Said                *said;
     DisEntityState       es;
     DisEntityStateUpdate esu;
@@ -100,7 +100,7 @@ void exercise_fill_state(DisEntityState *es, const ExerciseLink *link, const Cas
     }
 }
 
-/* Angle, then its rate; a gun hangs on the first part. */
+/* Writes the records of joints: for each the angle, then its rate. A gun is attached to the first part. */
 static int joint_records(DisVariableParameter *record, const JointReport *joint, int count)
 {
     for (int i = 0; i < count; i++)
@@ -175,7 +175,7 @@ static bool wrong(double *again_s, const Exercise *x, const Said *said, const Ki
     v3_sub(pace, believed.v_ecef_mps, truth->v_mps);
     const double off_m = v3_length(off);
     m3_tmul(turn, believed.r_ecef_from_body, truth->r_ecef_from_body);
-    /* of small angles the skew part, of large ones the trace: arc cosine has no digits near 1 */
+    /* a small angle follows from the skew part, a large one from the trace, since arc cosine loses its digits near 1 */
     const double skew[3] = {turn[7] - turn[5], turn[2] - turn[6], turn[3] - turn[1]};
     const double angle_rad = atan2(0.5 * v3_length(skew), 0.5 * (turn[0] + turn[4] + turn[8] - 1));
     if (!(off_m < s->dis.threshold_m) || !(angle_rad < threshold_rad)) return true;
@@ -219,7 +219,7 @@ static void leave(Exercise *x, int entity, double t_s)
     if (!said->known || said->gone) return;
     said->gone = true;
     const CastEntity *e = &x->cast->entity[entity];
-    if (e->group < 0) return; /* by its Detonation */
+    if (e->group < 0) return; /* a munition ends by its Detonation */
     const char *how = x->cast->scenario->group[e->group].leaves;
     Kinematics  k;
     if (*how == 'r') send_removal(x, entity, t_s);
@@ -233,7 +233,8 @@ static bool said_still(const Kinematics *k)
     return k->algorithm == 1 || v3_length(k->v_mps) + v3_length(k->a_mps2) + v3_length(k->w_body_rps) < 1e-6;
 }
 
-/* Whether acceleration and rates of the last Entity State, which an update keeps, would exceed a threshold at once. */
+/* Whether acceleration and rates of the last Entity State, which an update keeps, would cause an error above a
+ * threshold at once. */
 static bool outdated(const Said *said, const Cast *cast, int entity, const Kinematics *k)
 {
     static const double unfelt_mps2 = 1, unfelt_rps = 0.1;
@@ -247,7 +248,7 @@ static bool outdated(const Said *said, const Cast *cast, int entity, const Kinem
 
 static void look_at(Exercise *x, int entity, double t_s)
 {
-    static const double longest_look_s = 1; /* bounds the delay when the bend was underestimated */
+    static const double longest_look_s = 1; /* a check follows within this time, in case the bend was underestimated */
     const Scenario     *s = x->cast->scenario;
     Said               *said = &x->said[entity];
     const double        change_s = cast_next_change(x->cast, entity, t_s + 0.5 * x->tick_s), age_s = t_s - said->t_s;

@@ -151,7 +151,7 @@ void exercise_send_bad(ExerciseLink *link, const Cast *cast, DisEntityState *es,
     Kinematics k;
     if (cast->entity_count == 0) return;
     cast_kinematics(&k, cast, 0, t_s);
-    /* those that are valid drive beside the first entity, not inside it */
+    /* random states that are valid are placed beside the first entity, not inside it */
     const double right[3] = {k.r_ecef_from_body[1], k.r_ecef_from_body[4], k.r_ecef_from_body[7]};
     v3_add_scaled(k.p_ecef, k.p_ecef, kind == 5 ? 25 : -25, right);
     exercise_fill_state(es, link, cast, 0, &k, 0, t_s);

@@ -13,16 +13,17 @@ enum {
     scenario_path_size = 1024,
     scenario_max_groups = 1000,
     scenario_max_shots = 1000,
-    scenario_max_entities = 50000, /* clones and munitions */
+    scenario_max_entities = 50000, /* clones and munitions included */
     scenario_max_rounds = 20000,
 };
 
 /* One line of `vehicles`: one entity, or many of one kind on one route. x east, y north of the place, metres. */
 typedef struct ScenarioGroup {
-    char       name[scenario_name_size];                  /* marking and name for shots: `NAME ID` */
-    int        line;                                      /* in the file */
-    char       type[scenario_type_size];                  /* seven numbers with dots, or a model of etc/catalog.csv */
-    int        id, count, columns, force, dead_reckoning; /* id 0: the next free one; dead_reckoning 0: that of dis */
+    char name[scenario_name_size]; /* marking and name for shots: `NAME ID` */
+    int  line;                     /* line in the file */
+    char type[scenario_type_size]; /* seven numbers with dots, or a model of etc/catalog.csv */
+    int  id, count, columns, force,
+        dead_reckoning; /* id 0: the next free one; dead_reckoning 0: the one of section dis */
     double     spacing_m, column_m, spread_m, behind_m;
     NumberList route_m; /* x, y, x, y ... smooth through them; a single point: stationary */
     bool       loop, engine, parked;
@@ -36,12 +37,12 @@ typedef struct ScenarioGroup {
 typedef struct ScenarioShot {
     char       name[scenario_name_size], type[scenario_type_size];
     int        line;
-    char       from[2 * scenario_name_size], at[2 * scenario_name_size]; /* `NAME ID`; at empty: at_m */
+    char       from[2 * scenario_name_size], at[2 * scenario_name_size]; /* `NAME ID` of both; at empty: at_m counts */
     NumberList at_m, launch_m; /* x, y of a place; forward, right, down of the firing entity */
     int        id, force, rounds, dead_reckoning;
     double     time_s, every_s, launch_mps, boost_mps, boost_s, drag_mps2, loft_m, weave_m, silent_s;
     char       hit[8], damage[12];
-    bool       entity; /* it sends Entity States */
+    bool       entity; /* whether its munition sends Entity States */
 } ScenarioShot;
 
 typedef struct Scenario {

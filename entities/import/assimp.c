@@ -19,12 +19,12 @@ LIBRARY(assimp_library, ASSIMP, "assimp", PITVIPER_ASSIMP_FILE, "libassimp5");
 
 /* ---- assimp's files --------------------------------------------------------------------------------- */
 
-/* What the text of the model itself says, which assimp does not hand on. */
+/* What the text of the model states and assimp does not hand on. */
 typedef struct FileText {
     const char *extension;
-    bool        has_unit, has_up;    /* FBX, COLLADA */
-    char        unit[24], up[24];    /* COLLADA: as it says it */
-    double      stated_m, comment_m; /* unit that the format, or a comment, names; 0: none */
+    bool        has_unit, has_up;    /* of FBX and COLLADA */
+    char        unit[24], up[24];    /* of COLLADA: the words of the file */
+    double      stated_m, comment_m; /* unit that the format, or a comment, states; 0: none */
     char        stated[24], comment[24];
 } FileText;
 
@@ -33,16 +33,16 @@ typedef struct Files {
     ReaderSaid  *said;
     ImportScene *scene;
     FileText     text;
-    Status       status; /* of the model's own text */
-    char        *bytes;  /* that text; NULL: not read yet. assimp opens it several times */
-    size_t       octets;
+    Status       status; /* of reading the model's own text */
+    char  *bytes; /* the model's own text; NULL: not read yet. It is kept because assimp opens the file several times */
+    size_t octets;
 } Files;
 
 typedef struct OpenFile {
     struct aiFile file;
     char         *bytes;
     size_t        octets, at;
-    bool          shared; /* with others that read it */
+    bool          shared; /* the bytes are shared with other openings */
 } OpenFile;
 
 static size_t file_read(struct aiFile *file, char *out, size_t size, size_t count)
@@ -89,7 +89,7 @@ static bool find_after(char out[24], const char *bytes, size_t octets, const cha
     return true;
 }
 
-/* The model's own octets, before assimp sees them. */
+/* Reads the model's own octets before assimp does. */
 static Status see_model(Files *file)
 {
     FileText *t = &file->text;
@@ -156,7 +156,7 @@ static void copy_name(char out[model_name_size], const struct aiString *name)
 typedef struct Flat {
     ImportScene           scene;
     const struct aiScene *source;
-    const char           *said; /* what is wrong */
+    const char           *said; /* what is wrong with it */
 } Flat;
 
 /* Counts what the nodes below draw, meshes as often as they are drawn. */
@@ -257,7 +257,7 @@ static void count_lost(ImportScene *s, const struct aiScene *source)
 
 /* ---- unit and axes ---------------------------------------------------------------------------------- */
 
-/* A number of the scene's own metadata; `otherwise` without it. */
+/* A number in the scene's metadata; `otherwise` when it has none. */
 static double metadata(const struct aiScene *source, const char *key, double otherwise)
 {
     const struct aiMetadata *m = source->mMetaData;
@@ -281,7 +281,7 @@ static double metadata(const struct aiScene *source, const char *key, double oth
     return otherwise;
 }
 
-/* An axis of FBX's settings, 0 .. 2 and a sign; false: no such axis. */
+/* An axis in FBX's settings: 0 .. 2 and a sign. Returns false when there is none. */
 static bool fbx_axis(double out[3], const struct aiScene *source, const char *axis, int otherwise)
 {
     char sign[24];
@@ -320,14 +320,16 @@ static void fbx_frame(ImportScene *s, const struct aiScene *source, const FileTe
     memcpy(s->forward, forward, sizeof forward);
     v3_cross(right, up, forward);
     s->mirrored = fbx_axis(coordinate, source, "CoordAxis", 0) && v3_dot(right, coordinate) < 0;
-    for (int i = 0; i < 12 && s->mirrored; i++) /* the root's row: one coordinate of the file changes its sign */
+    for (int i = 0; i < 12 && s->mirrored;
+         i++) /* the root's first row, which changes the sign of one coordinate of the file */
         if (right[i / 4] != 0) s->node[0].m[i] = -s->node[0].m[i] + 0.0;
     snprintf(s->axes_from, sizeof s->axes_from, "%s%s",
              text->has_up ? "the file's UpAxis and FrontAxis" : "FBX's default: the file says none",
              s->mirrored ? ", left-handed by its CoordAxis: mirrored" : "");
 }
 
-/* Unit and axes by the format: assimp turns most to y up; scanners and printers (PLY, STL) have z up. */
+/* Sets unit and axes by the format: assimp turns most formats to y up; those of scanners and printers (PLY, STL) have z
+ * up. */
 static void frame(ImportScene *s, const struct aiScene *source, const FileText *text, ReaderSaid *said)
 {
     const char *e = text->extension;

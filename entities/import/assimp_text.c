@@ -10,7 +10,7 @@
 
 /* ---- words of a text ------------------------------------------------------------------------ */
 
-/* As isspace() has it, without a call: these are read by the million. */
+/* As isspace(), but inlined, since files have millions of characters. */
 static bool is_blank(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
 
 /* A word of a text: what is between blanks. */
@@ -44,7 +44,7 @@ static bool word_is(Word word, const char *text)
  * or `01` fare no better. So each statement is written anew, in its plainest form: `1e-3` becomes `0.001`, digit by
  * digit, the same number. What is plain already keeps its octets. */
 
-enum { most_shift = 60 }; /* of an exponent: beyond it a number is 0 or too large anyway */
+enum { most_shift = 60 }; /* largest shift by an exponent: beyond it a number is 0 or too large anyway */
 
 typedef struct Out {
     char  *text;
@@ -89,7 +89,7 @@ static bool put_number(Out *out, Word word)
     if (fraction > plain && (fraction == end || (*fraction == '.' && end - fraction > 1))) {
         const char *rest = fraction + (fraction < end);
         while (rest < end && is_digit(*rest)) rest++;
-        if (rest == end) { /* as nearly all are */
+        if (rest == end) { /* the whole number is copied, as most can be */
             put(out, word.at, word.length);
             return true;
         }
@@ -104,7 +104,7 @@ static bool put_number(Out *out, Word word)
         point = point || *at == '.';
         if (*at == '.') continue;
         if (count < (int)sizeof digits - 2 * most_shift) digits[count++] = *at;
-        else if (point) continue; /* digits that no double holds */
+        else if (point) continue; /* a double does not hold these digits */
         else return false;
         before += !point;
     }
@@ -122,7 +122,7 @@ static bool put_number(Out *out, Word word)
         at = end;
     }
     if (at != end) return false;
-    for (; before + shift < 1 && count < (int)sizeof digits; before++, count++) { /* zeros before */
+    for (; before + shift < 1 && count < (int)sizeof digits; before++, count++) { /* adds zeros in front */
         memmove(digits + 1, digits, (size_t)count);
         digits[0] = '0';
     }
@@ -137,7 +137,7 @@ static bool put_number(Out *out, Word word)
     return true;
 }
 
-/* `v` x y z [w | r g b ...], `vn` x y z: numbers beyond those are colours. */
+/* Writes the numbers of `v` x y z [w | r g b ...] or `vn` x y z; those beyond are colours. */
 static bool put_numbers(Out *out, const char *name, const char *at, const char *end)
 {
     Word       word[8];
@@ -169,7 +169,7 @@ static bool read_index(long *out, const char **at, const char *end)
     return digits > 0 && value > 0;
 }
 
-/* `f` and `l` v/vt/vn ...: without vt, and with vn where all of the face have one. */
+/* Writes the corners of `f` or `l`, v/vt/vn ...: without vt, and with vn where all corners of the face have one. */
 static bool put_corners(Out *out, const char *name, const char *at, const char *end)
 {
     const char *again = at;
@@ -219,7 +219,7 @@ Status import_obj_plain(char **text, size_t *octets, int lost[IMPORT_LOST_COUNT]
     Out         out = {0}, joined = {0};
     Status      status = STATUS_OK;
     for (int line = 1; at < end && status == STATUS_OK;) {
-        /* a statement: lines that end with `\` go on */
+        /* reads a statement; a line that ends with `\` goes on */
         const int   first = line;
         const char *s = at, *tail = at;
         joined.octets = 0;
@@ -309,7 +309,7 @@ double import_comment_unit(char word[24], const char *text, size_t octets)
                 for (size_t u = 0; u < sizeof units / sizeof *units; u++) {
                     const size_t length = strlen(units[u].word);
                     if (length > w.length || strncmp(w.at, units[u].word, length) != 0) continue;
-                    if (length < 4 && length != w.length) continue; /* `m` and `mm` are whole words */
+                    if (length < 4 && length != w.length) continue; /* `m` and `mm` count only as whole words */
                     snprintf(word, 24, "%.*s", (int)w.length, w.at);
                     return units[u].unit_m;
                 }

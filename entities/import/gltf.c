@@ -31,7 +31,7 @@ void gltf_place(double out[12], const double a[12], const double b[12])
 
 /* ---- nodes ------------------------------------------------------------------------------------------ */
 
-/* Translation, a quaternion x y z w of any length, scale. */
+/* A placement from a translation, a quaternion x y z w of any length, and a scale. */
 static void place_from_parts(double out[12], const double t[3], const double q[4], const double s[3])
 {
     const double n = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3], k = n > 0 ? 2 / n : 0;
@@ -50,7 +50,7 @@ static Status node_place(double out[12], Gltf *g, const json_t *node)
     double m[16], t[3] = {0, 0, 0}, q[4] = {0, 0, 0, 1}, s[3] = {1, 1, 1};
     bool   wrong = false;
     if (gltf_numbers(m, &wrong, node, "matrix", 16)) {
-        for (int i = 0; i < 12; i++) out[i] = m[4 * (i % 4) + i / 4]; /* by columns there */
+        for (int i = 0; i < 12; i++) out[i] = m[4 * (i % 4) + i / 4]; /* glTF's matrices are by columns */
     } else {
         gltf_numbers(t, &wrong, node, "translation", 3);
         gltf_numbers(q, &wrong, node, "rotation", 4);
@@ -75,7 +75,7 @@ static Status add_node(int *out, Gltf *g, const char *name, int parent, const do
     return STATUS_OK;
 }
 
-/* EXT_mesh_gpu_instancing: nodes below `node`, one an instance. */
+/* Adds the instances of EXT_mesh_gpu_instancing: a node below `node` for each. */
 static Status add_instances(GltfDrawn *drawn, Gltf *g, const json_t *attributes, int node)
 {
     static const struct {
@@ -146,7 +146,7 @@ static Status walk(Gltf *g, const json_t *index, int parent, const double above[
         *drawn = (GltfDrawn){own, at, 1};
         if (json_object_size(instances) > 0) status = add_instances(drawn, g, instances, at);
     }
-    double below[12]; /* another visit of this node may change its world */
+    double below[12]; /* another visit of this node may change its entry in `world` */
     memcpy(below, g->world[own], sizeof below);
     json_array_foreach(json_object_get(node, "children"), i, child)
     {
@@ -156,7 +156,8 @@ static Status walk(Gltf *g, const json_t *index, int parent, const double above[
     return status;
 }
 
-/* The scene's only node is the root, else a node above all. Without a scene: what is nobody's child. */
+/* Walks the scene. If it has one node that is the root, else a node is put above all. Without a scene, the nodes that
+ * are nobody's children are taken. */
 static Status walk_scene(Gltf *g)
 {
     static const double here[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
@@ -272,7 +273,7 @@ static uint32_t word_at(const char *at)
     return b[0] | (uint32_t)b[1] << 8 | (uint32_t)b[2] << 16 | (uint32_t)b[3] << 24;
 }
 
-/* GLB: 12 octets of header, then chunks of a length, a kind, octets. */
+/* Splits a GLB into its parts: 12 octets of header, then chunks of a length, a kind, and octets. */
 static Status take_apart(const char **json, size_t *octets, Gltf *g)
 {
     *json = g->text;
@@ -340,7 +341,8 @@ static Status read_document(Gltf *g)
     s->material = calloc((size_t)s->material_count, sizeof *s->material);
     if (!s->material) return STATUS_NO_MEMORY;
     for (int m = 0; m < s->material_count; m++) fill_material(&s->material[m], json_array_get(materials, (size_t)m));
-    snprintf(s->material[s->material_count - 1].name, model_name_size, "DefaultMaterial"); /* of parts without */
+    snprintf(s->material[s->material_count - 1].name, model_name_size,
+             "DefaultMaterial"); /* the material of parts without one */
     status = walk_scene(g);
     for (int i = 0; i < g->drawn_count && status == STATUS_OK; i++) status = gltf_draw(g, &g->drawn[i]);
     if (status == STATUS_OK && !fill_scene(g)) status = STATUS_NO_MEMORY;

@@ -57,7 +57,7 @@ static Status read_buffer(Gltf *g, int index)
     if (!uri) {
         json_t     *extensions = json_object_get(object, "extensions");
         const char *packed = json_object_iter_key(json_object_iter(extensions));
-        if (packed) /* stands for what the extension unpacks */
+        if (packed) /* the accessor's numbers are those that the extension unpacks */
             return reader_fails(g->said, STATUS_UNSUPPORTED,
                                 "buffer %d is packed by the extension %.80s, which is not read: export it without",
                                 index, packed);
@@ -98,7 +98,7 @@ void gltf_buffers_close(Gltf *g)
 
 /* ---- accessors -------------------------------------------------------------------------------------- */
 
-/* A member that is a count of octets; `otherwise` when it is not there, -1 when it is wrong. */
+/* A member that is a number of octets; `otherwise` when it is missing, -1 when it is wrong. */
 static int64_t octets_of(const json_t *object, const char *key, int64_t otherwise)
 {
     const json_t *value = json_object_get(object, key);
@@ -158,9 +158,9 @@ static double number_at(const char *at, int64_t type, bool normalised)
 
 /* Elements of a view: `count` of `size` octets; all lie within it. */
 typedef struct Elements {
-    const char *what; /* for messages */
+    const char *what; /* name for messages */
     size_t      size, count;
-    bool        strided; /* the view may say how far apart they are */
+    bool        strided; /* the view may have a stride */
 } Elements;
 
 /* Where element i of a view begins: *base + i * *stride. */
@@ -188,12 +188,12 @@ static Status view_at(const char **base, size_t *stride, Gltf *g, int view, int6
 /* How the numbers of an accessor are written. */
 typedef struct Numbers {
     int         components;
-    int64_t     type; /* of a component, as glTF has it */
+    int64_t     type; /* component type, as glTF numbers it */
     bool        normalised;
-    const char *what; /* for messages */
+    const char *what; /* name for messages */
 } Numbers;
 
-/* Other numbers at some places: `indices` and `values`. */
+/* Replaces numbers at some places by those of a sparse accessor: `indices` and `values`. */
 static Status sparse(double *out, size_t count, Gltf *g, const json_t *object, const Numbers *numbers)
 {
     const int     components = numbers->components;
@@ -272,13 +272,13 @@ Status gltf_accessor(double **out, int *count, Gltf *g, int accessor, int compon
 
 /* ---- extensions: which are read, which do no harm, and what is said of others --------------- */
 
-/* What a required extension may be. */
+/* Extensions that a file may require. */
 static const char *const read_here[] = {"KHR_mesh_quantization", "EXT_mesh_gpu_instancing", "KHR_node_visibility",
                                         "KHR_materials_pbrSpecularGlossiness"};
 /* Extensions of pictures: no picture is taken from a model, packed or not. */
 static const char *const of_textures[] = {"KHR_texture_basisu", "KHR_texture_transform", "EXT_texture_webp",
                                           "EXT_texture_avif", "MSFT_texture_dds"};
-/* On nodes, meshes and what they are made of, but not of shape; or counted among what is lost. */
+/* Extensions of nodes, meshes and materials that do not concern shape, or that are counted among what is lost. */
 static const char *const no_shape[] = {
     "KHR_lights_punctual",      "KHR_materials_variants",
     "KHR_xmp_json_ld",          "MSFT_lod",
@@ -287,7 +287,7 @@ static const char *const no_shape[] = {
     "CESIUM_primitive_outline", "FB_ngon_encoding",
     "KHR_node_hoverability",    "KHR_node_selectability",
     "KHR_audio_emitter",        "EXT_meshopt_compression",
-    "KHR_meshopt_compression",  "KHR_draco_mesh_compression"}; /* where the plain numbers are there too */
+    "KHR_meshopt_compression",  "KHR_draco_mesh_compression"}; /* read where the plain numbers are there too */
 
 #define HAS(list, name) has(list, sizeof list / sizeof *list, name)
 static bool has(const char *const *list, size_t count, const char *name)
@@ -337,7 +337,8 @@ bool gltf_numbers(double *out, bool *wrong, const json_t *object, const char *ke
     return fine;
 }
 
-/* Names of extensions on objects of a list, and of their members (primitives, targets), each once, with how many. */
+/* Names of extensions on the objects of a list and on their members (primitives, targets), each once, with how often it
+ * occurs. */
 typedef struct Left {
     int kinds;
     struct {

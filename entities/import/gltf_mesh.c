@@ -6,11 +6,11 @@
 
 enum { most_targets = 4096, most_joints = 65536, most_sets = 4 };
 
-/* What a node adds to its mesh. */
+/* How a node poses its mesh. */
 typedef struct Pose {
     int    weights;
     double weight[most_targets];
-    int    joints;       /* 0: no skin */
+    int    joints;       /* number of joints; 0: no skin */
     double (*joint)[12]; /* p_node = joint (p_mesh, 1) */
 } Pose;
 
@@ -23,7 +23,7 @@ static int attribute(const Gltf *g, const json_t *attributes, const char *name)
 
 /* ---- triangles -------------------------------------------------------------------------------------- */
 
-/* 4: a list; 5: a strip, every other of whose triangles is turned; 6: a fan. */
+/* Number of triangles by mode. 4: a list; 5: a strip, in which every other triangle is turned; 6: a fan. */
 static int triangles_of(int mode, int corners) { return mode == 4 ? corners / 3 : corners > 2 ? corners - 2 : 0; }
 
 static int corner_of(int mode, int t, int k)
@@ -57,7 +57,7 @@ static Status read_triangles(GltfShape *s, Gltf *g, const json_t *primitive, int
 
 /* ---- vertices --------------------------------------------------------------------------------------- */
 
-/* Adds weight times an attribute of each target. */
+/* Adds an attribute of each morph target, multiplied by its weight. */
 static Status blend(double *numbers, int count, Gltf *g, const json_t *primitive, const char *name, const Pose *pose)
 {
     const json_t *targets = json_object_get(primitive, "targets");
@@ -80,7 +80,8 @@ static void mul_point(double out[3], const double m[12], const double p[3])
     for (int i = 0; i < 3; i++) out[i] = m[4 * i] * p[0] + m[4 * i + 1] * p[1] + m[4 * i + 2] * p[2] + m[4 * i + 3];
 }
 
-/* Where the skin puts the vertices. *moved: farther than the file's single precision explains. */
+/* Moves the vertices to where the skin puts them. *moved: whether they moved farther than the file's single precision
+ * explains. */
 static Status pose_vertices(bool *moved, GltfShape *s, Gltf *g, const json_t *attributes, const Pose *pose)
 {
     double *joint[most_sets] = {0}, *weight[most_sets] = {0}, reach = 0;
@@ -139,7 +140,7 @@ static Status read_vertices(GltfShape *s, Gltf *g, const json_t *primitive, cons
     status = blend(position, s->vertices, g, primitive, "POSITION", pose);
     if (status == STATUS_OK && pose->joints) status = pose_vertices(&moved, s, g, attributes, pose);
     if (status != STATUS_OK || moved || !json_object_get(attributes, "NORMAL"))
-        return status; /* turned ones: by crease */
+        return status; /* a skin turns normals, so these are found by crease */
     status = gltf_accessor(&normal, &normals, g, attribute(g, attributes, "NORMAL"), 3, "NORMAL");
     if (status == STATUS_OK && normals != s->vertices)
         status = wrong(g, "NORMAL has another number of vertices than POSITION");
@@ -153,7 +154,7 @@ static Status read_vertices(GltfShape *s, Gltf *g, const json_t *primitive, cons
 
 /* ---- a mesh ----------------------------------------------------------------------------------------- */
 
-/* *drawn: false when it has no triangles. */
+/* Reads the shape of a primitive. *drawn: false when it has no triangles. */
 static Status read_shape(GltfShape *s, bool *drawn, Gltf *g, const json_t *primitive, const Pose *pose)
 {
     const json_t *mode = json_object_get(primitive, "mode"), *attributes = json_object_get(primitive, "attributes");
@@ -174,7 +175,7 @@ static Status read_shape(GltfShape *s, bool *drawn, Gltf *g, const json_t *primi
                             "a mesh is packed by the extension KHR_draco_mesh_compression, which "
                             "is not read: export it without mesh compression");
     s->material = gltf_index(primitive, "material", json_array_size(json_object_get(g->root, "materials")));
-    if (s->material < 0) s->material = g->scene->material_count - 1; /* the default, behind the file's own */
+    if (s->material < 0) s->material = g->scene->material_count - 1; /* the default material follows the file's own */
     Status status = read_vertices(s, g, primitive, pose);
     if (status == STATUS_OK) status = read_triangles(s, g, primitive, kind);
     *drawn = status == STATUS_OK && s->triangles > 0;
@@ -233,7 +234,7 @@ static Status read_skin(Pose *pose, Gltf *g, const json_t *node, int document_no
     int           inverses = 0;
     if (!skin || count == 0) return STATUS_OK;
     if (count > most_joints) return wrong(g, "more than 65536 joints of a skin");
-    if (!invert(to_node, g->world[document_node])) return STATUS_OK; /* drawn flat anyway */
+    if (!invert(to_node, g->world[document_node])) return STATUS_OK; /* it has no volume anyway */
     if (json_object_get(skin, "inverseBindMatrices")) {
         const Status status =
             gltf_accessor(&inverse, &inverses, g, attribute(g, skin, "inverseBindMatrices"), 16, "inverseBindMatrices");
@@ -252,7 +253,7 @@ static Status read_skin(Pose *pose, Gltf *g, const json_t *node, int document_no
             break;
         }
         for (int i = 0; i < 12 && inverse; i++)
-            bind[i] = inverse[16 * j + (size_t)(4 * (i % 4) + i / 4)]; /* by columns there */
+            bind[i] = inverse[16 * j + (size_t)(4 * (i % 4) + i / 4)]; /* glTF's matrices are by columns */
         gltf_place(world, g->world[joint], bind);
         gltf_place(pose->joint[j], to_node, world);
     }
@@ -261,7 +262,7 @@ static Status read_skin(Pose *pose, Gltf *g, const json_t *node, int document_no
     return status;
 }
 
-/* Adds a shape that is read to what is drawn, as often as it is. */
+/* Adds the draws of a shape that has been read, one for each time it is drawn. */
 static Status add_draws(Gltf *g, const GltfDrawn *drawn, int shape)
 {
     ImportScene     *s = g->scene;
@@ -294,7 +295,7 @@ Status gltf_draw(Gltf *g, const GltfDrawn *drawn)
             status = add_draws(g, drawn, g->cached[mesh][0] + k);
         return status;
     }
-    Pose *pose = calloc(1, sizeof *pose); /* large for a stack */
+    Pose *pose = calloc(1, sizeof *pose); /* too large for the stack */
     if (!pose) return STATUS_NO_MEMORY;
     const int first = g->shape_count;
     status = read_weights(pose, g, node, object);

@@ -21,7 +21,7 @@ typedef struct GltfShape {
     uint32_t (*triangle)[3];
 } GltfShape;
 
-/* A node of the document that has a mesh, and the nodes of the scene that draw it: one, or one an instance. */
+/* A node of the document that has a mesh, and the scene's nodes that draw it: one, or one for each instance. */
 typedef struct GltfDrawn {
     int document_node, first, count;
 } GltfDrawn;
@@ -35,28 +35,29 @@ typedef struct Gltf {
     ReaderFiles *files;
     ReaderSaid  *said;
     ImportScene *scene;
-    char        *text; /* the file */
+    char        *text; /* text of the document */
     size_t       octets;
     const char  *binary; /* GLB's second chunk; NULL: none */
     size_t       binary_octets;
     GltfBuffer  *buffer;
     size_t       buffer_count;
-    size_t       nodes, meshes; /* of the document */
-    double (*world)[12];        /* of its nodes: p_file = world (p_node, 1) */
-    bool      *in_scene;        /* whether there is a world */
+    size_t       nodes, meshes; /* numbers of them in the document */
+    double (*world)[12];        /* placements of the document's nodes: p_file = world (p_node, 1) */
+    bool      *in_scene;        /* whether a node is in the scene, so that its world is set */
     int        node_room, drawn_room, drawn_count;
     GltfDrawn *drawn;
     int        shape_count, shape_room, draw_count, draw_room;
     GltfShape *shape;
     GltfDraw  *draw;
-    int (*cached)[2]; /* of meshes: their first shape and how many; -1: not read yet */
+    int (*cached)[2]; /* for each mesh its first shape and their number; -1: not read yet */
 } Gltf;
 
 /* Member `key` when it is an index below `count`, else -1. */
 int     gltf_index(const json_t *object, const char *key, size_t count);
-json_t *gltf_item(const Gltf *g, const char *list, int index); /* NULL: none */
+json_t *gltf_item(const Gltf *g, const char *list, int index); /* NULL: there is no such item */
 json_t *gltf_extension(const json_t *object, const char *name);
-/* `count` numbers; false where there is no such array, *wrong where it is none of `count` numbers. */
+/* Reads `count` numbers. Returns false where there is no such array; *wrong: it is there, but is not an array of
+ * `count` numbers. */
 bool gltf_numbers(double *out, bool *wrong, const json_t *object, const char *key, size_t count);
 
 /* ---- gltf_document.c ------------------------------------------------------------------------------ */
@@ -70,17 +71,17 @@ void gltf_buffers_close(Gltf *g);
 
 /* ---- gltf_mesh.c ---------------------------------------------------------------------------------- */
 
-/* Reads what `drawn` draws: adds to shapes and draws, and to the scene's counts. */
+/* Reads the shapes that `drawn` draws, and adds to shapes, draws and the scene's counts. */
 Status gltf_draw(Gltf *g, const GltfDrawn *drawn);
 void   gltf_shapes_close(Gltf *g);
 
 /* ---- gltf_document.c ---------------------------------------------------------------------------- */
 
-/* Refuses what the file requires and this reader has not; warns of what it leaves out that has to do with shape. */
+/* Refuses extensions that the file requires and this reader does not know; warns of ignored ones that concern shape. */
 Status gltf_extensions(Gltf *g);
-int    gltf_textures(const Gltf *g); /* uses of them by materials */
+int    gltf_textures(const Gltf *g); /* number of uses of textures by materials */
 
-/* Room for one more of *list, whose items have `size` octets. */
+/* Makes room for one more item of *list, whose items have `size` octets. */
 bool gltf_room(void *list, int *room, int count, size_t size);
 /* A 3 x 4 placement: out = a b. */
 void gltf_place(double out[12], const double a[12], const double b[12]);

@@ -67,7 +67,7 @@ static void affine_vector(double out[3], const double m[12], const double d[3])
     for (int i = 0; i < 3; i++) out[i] = m[4 * i] * d[0] + m[4 * i + 1] * d[1] + m[4 * i + 2] * d[2];
 }
 
-/* Position of each node, its path from the root, and whether it exists. */
+/* Finds each node's position, its path from the root, and whether it is in the tree. */
 static Status place_nodes(ImportPlace *place, const ImportScene *scene, const Sidecar *sidecar)
 {
     for (int i = 0; i < scene->node_count; i++) {
@@ -80,7 +80,7 @@ static Status place_nodes(ImportPlace *place, const ImportScene *scene, const Si
             affine_mul(place[i].m, place[node->parent].m, node->m);
             snprintf(path, sizeof path, "%s/%s", place[node->parent].path, node->name);
         }
-        /* a path deeper than patterns need: the name alone, so that memory does not grow with depth */
+        /* a path deeper than any pattern: only the name is kept, so that memory does not grow with depth */
         place[i].path = strdup(strlen(path) < path_max ? path : node->name);
         if (!place[i].path) return STATUS_NO_MEMORY;
         place[i].joint = -1;
@@ -99,8 +99,8 @@ typedef struct Builder {
     const double      *r_body_from_file;
     double             scale_m;
     ImportJoints      *out;
-    int                spec[sidecar_max_joints + 1]; /* of the sidecar, by joint; -1: none */
-    int                first[sidecar_max_joints];    /* joint of a spec that has one; -1: not yet */
+    int                spec[sidecar_max_joints + 1]; /* entry of the sidecar for each joint; -1: none */
+    int                first[sidecar_max_joints];    /* joint of each entry that has one; -1: not found yet */
 } Builder;
 
 static Status refuse_joint(const Builder *b, const SidecarJoint *spec, const char *what, const char *which)
@@ -141,7 +141,8 @@ static void turn_to_dis_sign(ImportJoint *joint)
     }
 }
 
-/* Properties of a degree of freedom in the file. OpenFlight has no articulation class; it may follow from the name. */
+/* Takes over the properties of a degree of freedom in the file. OpenFlight has no articulation class; it may follow
+ * from the name. */
 static void fill_from_dof(ImportJoint *joint, const Builder *b, const ImportDof *dof)
 {
     const int   parent = b->scene->node[dof->node].parent;
@@ -173,7 +174,7 @@ static void fill_from_dof(ImportJoint *joint, const Builder *b, const ImportDof 
     turn_to_dis_sign(joint);
 }
 
-/* A joint's vertices in the file's axes: `each` is called for all of them. */
+/* Calls `each` for all of a joint's vertices, in the file's axes. */
 static void walk_vertices(const Builder *b, int joint, void (*each)(void *user, const double p_file[3]), void *user)
 {
     for (int i = 0; i < b->scene->mesh_count; i++) {
@@ -292,7 +293,7 @@ static Status new_joint(Builder *b, int node, int spec)
     return STATUS_OK;
 }
 
-/* Each node's joint: its own, or that of the node above it. */
+/* Assigns a joint to each node: its own, or that of the node above it. */
 static Status assign_joints(Builder *b)
 {
     for (int j = 0; j < sidecar_max_joints; j++) b->first[j] = -1;
@@ -339,7 +340,7 @@ static Status find_parents(Builder *b)
     return STATUS_OK;
 }
 
-/* Parents first, else as they came. */
+/* Sorts joints: parents first, otherwise in their present order. */
 static Status sort_joints(Builder *b)
 {
     ImportJoint sorted[sidecar_max_joints];

@@ -24,8 +24,8 @@ static Status read_paints(ImportPaints *paints, const char *path)
         status = STATUS_BAD_VALUE;
     }
     for (int r = 0; r < table.rows && status == STATUS_OK; r++) {
-        int row =
-            0; /* of the same name: the user's own replaces it in its place, since the first of two equals counts */
+        int row = 0; /* the user's own row replaces one of the same name in its place, since of two equal ones the first
+                        counts */
         while (row < paints->count && strcmp(paints->name[row], table_text(&table, r, name)) != 0) row++;
         snprintf(paints->name[row], sizeof paints->name[0], "%s", table_text(&table, r, name));
         for (int c = 0; c < 3 && status == STATUS_OK; c++) {
@@ -66,7 +66,8 @@ bool import_paints_have(const ImportPaints *paints, const char *name)
     return false;
 }
 
-/* End of a word in the text, ignoring case; 0: not in it. The rightmost counts: the last word is the most specific. */
+/* Where a word ends in the text, ignoring case; 0: it is not there. The rightmost counts, since the last word is the
+ * most specific. */
 static size_t word_end(const char *text, const char *word)
 {
     size_t       end = 0;
@@ -103,7 +104,7 @@ const char *import_paint_guess(ImportMaterialSource *source, const ImportPaints 
         {"sand", "paint_sand"},
         {"tan", "paint_sand"},
     };
-    /* the colours of things that are painted or left bare; nothing turns into grass */
+    /* colours of painted or bare things; a part is never guessed to be grass */
     static const char *const painted[] = {"paint_olive",       "paint_sand", "paint_grey", "paint_white_missile",
                                           "paint_black_gloss", "steel_worn", "metal_dark", "rubber_black",
                                           "wood_pine",         "brick_red"};
@@ -209,7 +210,7 @@ int import_smooth(double (*vertex)[3], float (*normal)[3], uint32_t (*triangle)[
         if (!v3_normalize(plane[t], n)) plane[t][0] = 1, plane[t][1] = plane[t][2] = 0;
     }
     for (int c = 0; c < corners; c++) {
-        for (int i = 0; i < 3; i++) point[c].p[i] = corner[c][i] + 0.0; /* -0 is 0 */
+        for (int i = 0; i < 3; i++) point[c].p[i] = corner[c][i] + 0.0; /* turns -0 into 0 */
         point[c].corner = c;
     }
     qsort(point, (size_t)corners, sizeof *point, point_order);

@@ -59,12 +59,14 @@ static void set_frame(Build *b)
     memcpy(r->axes_from, r->axes_assumed ? b->scene->axes_from : sidecar, sizeof sidecar);
 }
 
-/* The centre of the base: over the middle of what does not move (DIS measures an entity without its articulated
- * parts), as low as anything of it. */
+/* Sets the origin at the centre of the base: over the middle of what does not move (DIS measures an entity without its
+ * articulated parts), as low as the lowest part. */
 static Status set_origin(Build *b)
 {
     const double low0[3] = {INFINITY, INFINITY, INFINITY};
-    double       low[2][3], high[2][3]; /* in body directions, of the file's origin: [0] all, [1] what does not move */
+    double       low[2][3],
+        high[2]
+            [3]; /* extents in body directions from the file's origin: [0] of everything, [1] of what does not move */
     for (int k = 0; k < 2; k++)
         for (int i = 0; i < 3; i++) {
             low[k][i] = low0[i];
@@ -128,7 +130,7 @@ static void clean_name(char out[model_name_size], const char *name, const char *
 static void make_unique(char name[model_name_size], const char *taken, int count, size_t step)
 {
     char      base[model_name_size];
-    const int room = model_name_size - 12; /* before ~ and a number */
+    const int room = model_name_size - 12; /* leaves room for ~ and a number */
     int       number = 1;
     memcpy(base, name, sizeof base);
     for (int i = 0; i < count; i++) {
@@ -154,7 +156,7 @@ static void turned(double r[9], const double a[3], double angle_rad)
     memcpy(r, m, sizeof m);
 }
 
-/* Node 0 is what does not move; a joint's node has body axes as the file draws it, at its pivot. */
+/* Builds the nodes. Node 0 is what does not move; a joint's node has body axes in the file's pose, at its pivot. */
 static Status build_nodes(Build *b)
 {
     Model *m = &b->model;
@@ -275,7 +277,8 @@ static bool has_area(const double a[3], const double b[3], const double c[3])
     return shortest > 0 && v3_length(n) > 1e-12 * longest;
 }
 
-/* The inverse transpose of a placement's linear part, times its determinant: takes normals along. */
+/* The matrix that transforms normals: the inverse transpose of a placement's linear part, times its determinant, which
+ * is returned. */
 static double normal_matrix(double out[9], const double m[12])
 {
     const double r0[3] = {m[0], m[1], m[2]}, r1[3] = {m[4], m[5], m[6]}, r2[3] = {m[8], m[9], m[10]};
@@ -285,7 +288,7 @@ static double normal_matrix(double out[9], const double m[12])
     return v3_dot(r0, out);
 }
 
-/* One mesh of the file -> one part. */
+/* Builds a part from a mesh of the file. */
 static Status build_part(Build *b, const ImportMesh *mesh)
 {
     Model             *m = &b->model;
@@ -330,7 +333,7 @@ static Status build_part(Build *b, const ImportMesh *mesh)
     if (mesh->has_normals) {
         for (int t = 0; t < triangles; t++)
             for (int k = 0; k < 3; k++) {
-                /* vertices of the file are shared by its triangles: kept where they are, unused ones too */
+                /* triangles share the file's vertices, which are kept where they are, even unused ones */
                 const int v = first + (int)from[t][k];
                 memcpy(m->vertex[v], corner[3 * t + k], sizeof m->vertex[v]);
                 m->triangle[m->triangle_count + t][k] = (uint32_t)v;
@@ -345,7 +348,8 @@ static Status build_part(Build *b, const ImportMesh *mesh)
                 m3_mul_v3(n_file, flip, n);
                 if (determinant < 0) v3_scale(n_file, -1, n_file);
                 m3_mul_v3(n_body, b->report->r_body_from_file, n_file);
-                if (!v3_normalize(n_body, n_body)) { /* none, or not a number: the facet's own */
+                if (!v3_normalize(n_body,
+                                  n_body)) { /* there is no normal, or it is not a number: the facet's own is taken */
                     v3_sub(ab, corner[3 * t + 1], corner[3 * t]);
                     v3_sub(ac, corner[3 * t + 2], corner[3 * t]);
                     v3_cross(plane, ab, ac);
@@ -389,7 +393,7 @@ static Status build_parts(Build *b)
     m->triangle = calloc(triangles + 1, sizeof *m->triangle);
     m->triangle_part = calloc(triangles + 1, sizeof *m->triangle_part);
     if (!m->part || !m->vertex || !m->normal || !m->triangle || !m->triangle_part) return STATUS_NO_MEMORY;
-    for (size_t v = 0; v < vertices; v++) m->normal[v][0] = 1; /* of vertices that no triangle uses */
+    for (size_t v = 0; v < vertices; v++) m->normal[v][0] = 1; /* gives vertices that no triangle uses a normal */
     /* parts of a node must be neighbours */
     for (int node = 0; node < m->node_count; node++)
         for (int i = 0; i < b->scene->mesh_count; i++) {

@@ -11,7 +11,7 @@
 
 #include "entities/models/model.h"
 
-/* What a file has and a Model has not. */
+/* Things that a file may have and a Model has not. */
 typedef enum ImportLost {
     LOST_TEXTURES,
     LOST_LIGHTS,
@@ -19,12 +19,12 @@ typedef enum ImportLost {
     LOST_ANIMATIONS,
     LOST_BONES,
     LOST_MORPH_TARGETS,    /* glTF's stand at their default weights */
-    LOST_POINTS_AND_LINES, /* meshes of them */
-    LOST_LEVELS_OF_DETAIL, /* all but the finest */
+    LOST_POINTS_AND_LINES, /* meshes of points or lines */
+    LOST_LEVELS_OF_DETAIL, /* levels of detail other than the finest */
     LOST_SWITCHED_OFF,     /* children of switches */
     LOST_EXTERNAL_REFERENCES,
-    LOST_FREEDOM_OFFSETS, /* degrees of freedom drawn off their zero, or scaling */
-    LOST_OTHER,           /* objects of a kind unknown here, with all below them */
+    LOST_FREEDOM_OFFSETS, /* degrees of freedom that are drawn off their zero, or that scale */
+    LOST_OTHER,           /* objects of a kind unknown here, and all below them */
     IMPORT_LOST_COUNT
 } ImportLost;
 
@@ -33,29 +33,29 @@ const char *import_lost_name(ImportLost lost);
 /* Where a part's material comes from. */
 typedef enum ImportMaterialSource {
     MATERIAL_BY_SIDECAR,
-    MATERIAL_BY_NAME,    /* words in the file's name for it */
-    MATERIAL_BY_COLOUR,  /* nearest paint */
+    MATERIAL_BY_NAME,    /* from words in the file's name for the material */
+    MATERIAL_BY_COLOUR,  /* the paint nearest to the file's colour */
     MATERIAL_BY_DEFAULT, /* paint_olive */
     MATERIAL_SOURCE_COUNT
 } ImportMaterialSource;
 
 /* Statistics of an import. */
 typedef struct ModelImport {
-    char       file[1024];                   /* the model's own */
+    char       file[1024];                   /* path of the model's own file */
     char       sidecar[1024];                /* empty: none */
-    long long  octets;                       /* of the model's own file, on disk */
+    long long  octets;                       /* octets of the model's own file on disk */
     char       unit_from[96], axes_from[96]; /* where scale and axes come from */
     double     scale_m;                      /* p_body = scale_m r_body_from_file (p_file - p_origin_file) */
     double     r_body_from_file[9], p_origin_file[3];
-    bool       axes_assumed; /* not from the sidecar */
+    bool       axes_assumed; /* the axes are not from the sidecar */
     bool       scale_assumed;
     bool       mirrored; /* the file's axes are left-handed */
     int        source_nodes, source_meshes, source_materials;
     int        unnamed_nodes, shared_names; /* nodes without a name; with one that another has, too */
-    int        dropped_meshes;              /* by the sidecar */
-    int        empty_meshes;                /* nothing left of them */
+    int        dropped_meshes;              /* meshes that the sidecar drops */
+    int        empty_meshes;                /* meshes of which nothing is left */
     int        degenerate_triangles;        /* dropped */
-    int        smoothed_parts;              /* the file had no normals */
+    int        smoothed_parts;              /* parts whose file had no normals */
     int        joints_from_file;
     int        material_parts[MATERIAL_SOURCE_COUNT];
     int        lost[IMPORT_LOST_COUNT];
@@ -68,13 +68,14 @@ typedef struct ModelImport {
  * Limits: 256 MiB unpacked, 8 M vertices and triangles, 65536 nodes, 256 levels, 16384 parts, 256 joints. */
 Status model_import(Model *out, ModelImport *report, const char *path);
 
-/* Says in a line what was taken for what: unit, axes, size, what was lost, and the keys that say otherwise. */
+/* Logs one line with what was assumed and found: unit, axes, size, what was lost, and which keys change that. */
 void model_import_say(const ModelImport *report, const Model *model);
 /* Whether a name means a file: it has a slash or a dot. */
 bool model_is_path(const char *name);
 /* Logs that there is no built-in model of this name, with the nearest one. Returns STATUS_UNSUPPORTED. */
 Status model_say_unknown(const char *name);
-/* Parametric by its name, or imported by its path (*imported: which of them). sag_m: of parametric_build. Logs. */
+/* Builds a parametric model by its name, or imports one by its path (*imported: which of them). sag_m: as for
+ * parametric_build. Failures are logged. */
 Status model_open(Model *out, ModelImport *report, bool *imported, const char *name, double sag_m);
 
 #endif

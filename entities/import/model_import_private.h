@@ -10,15 +10,15 @@
 #include "entities/import/sidecar.h"
 
 enum {
-    import_max_octets = 1 << 28, /* of a file, decompressed */
+    import_max_octets = 1 << 28, /* most octets of a file, decompressed */
     import_max_nodes = 65536,
     import_max_meshes = 16384, /* and so of parts */
     import_max_vertices = 1 << 23,
     import_max_triangles = 1 << 23,
     import_max_materials = 16384,
     import_max_depth = 256,
-    import_max_seconds = 120,       /* of one core, in the reader */
-    import_max_memory = 2000000000, /* what the reader may take on top of what there is */
+    import_max_seconds = 120,       /* most seconds of one core that the reader may take */
+    import_max_memory = 2000000000, /* most memory that the reader may take besides what it has at its start */
 };
 
 /* A degree of freedom that the file itself has (OpenFlight). Axes are unit. */
@@ -26,8 +26,8 @@ typedef struct ImportDof {
     int    node;
     bool   slides, limited;
     double p_pivot_parent[3],
-        axis_parent[3]; /* in the axes of the node's parent; the node itself stands at rest there */
-    double low, high;   /* rad or units of the file */
+        axis_parent[3]; /* axes of the freedom in the axes of the node's parent, where the node stands at rest */
+    double low, high;   /* in rad or in the file's units */
 } ImportDof;
 
 typedef struct ImportNode {
@@ -53,18 +53,18 @@ typedef struct ImportScene {
     ImportNode     *node;
     ImportMaterial *material; /* at least one */
     ImportMesh     *mesh;
-    double (*vertex)[3];     /* of the mesh's node */
-    float (*normal)[3];      /* zero where the mesh has none */
-    uint32_t (*triangle)[3]; /* from the mesh's first vertex */
+    double (*vertex)[3];     /* in the axes of the mesh's node */
+    float (*normal)[3];      /* zero where the mesh has no normals */
+    uint32_t (*triangle)[3]; /* indices of vertices, counted from the mesh's first */
     ImportDof *dof;
-    double     forward[3], up[3];            /* from the file or its format; along axes */
-    double     unit_m;                       /* the same: metres a unit */
+    double     forward[3], up[3];            /* from the file or its format; each along an axis */
+    double     unit_m;                       /* from the same; metres a unit */
     char       unit_from[96], axes_from[96]; /* where they come from, for reports */
     bool       mirrored;                     /* the file's axes are left-handed: one coordinate has changed its sign */
     int        lost[IMPORT_LOST_COUNT];
 } ImportScene;
 
-/* On failure one logged line. path: to a regular file. extension: lower case, without `.gz`. */
+/* Readers log one line on failure. path: of a regular file. extension: in lower case, without `.gz`. */
 Status import_assimp(ImportScene *out, const char *path, const char *extension);
 Status import_gltf(ImportScene *out, const char *path, const char *extension);
 Status import_openflight(ImportScene *out, const char *path);
@@ -75,33 +75,33 @@ Status import_find_files(ModelImport *report, Sidecar *sidecar, const char *path
 /* An OpenSceneGraph text, as osgconv writes it. path: for messages. text is taken apart. */
 Status import_osgt(ImportScene *out, const char *path, char *text, size_t octets);
 void   import_scene_close(ImportScene *scene); /* accepts zeroes */
-/* Everything of it; `.gz` or plain. *out is NUL-terminated. Nothing logged when `quiet`. */
+/* Reads all of a file, `.gz` or plain. *out is NUL-terminated. With `quiet` nothing is logged. */
 Status import_read_whole(char **out, size_t *octets, const char *path, bool quiet);
 
 /* ---- import_joints.c ------------------------------------------------------------------ */
 
 typedef struct ImportJoint {
     char      name[model_name_size];
-    int       parent; /* joint; -1: the hull */
+    int       parent; /* number of the parent joint; -1: the hull */
     int       source; /* the first node that moves with it */
     double    p_pivot_file[3], axis_body[3];
     JointKind kind;
     uint32_t  dis_class, dis_metric;
     double    low, high, rest; /* rad or m; low > high: none */
     double    spin_rps, roll_radius_m;
-    bool      from_file; /* a degree of freedom, not the sidecar's */
+    bool      from_file; /* it is a degree of freedom of the file, not one of the sidecar's */
 } ImportJoint;
 
 typedef struct ImportPlace {
     double m[12]; /* p_file = m (p_node, 1) */
     char  *path;  /* names from the root, with slashes */
-    int    joint; /* that it moves with; -1: none */
+    int    joint; /* joint that it moves with; -1: none */
     bool   dropped;
 } ImportPlace;
 
 typedef struct ImportJoints {
     int          count;
-    ImportJoint *joint; /* parents first */
+    ImportJoint *joint; /* joints, parents first */
     ImportPlace *place; /* [node_count] */
 } ImportJoints;
 
@@ -111,13 +111,13 @@ Status import_joints(ImportJoints *out, const ImportScene *scene, const Sidecar 
 void   import_joints_close(ImportJoints *joints, int node_count);
 /* `*` for any text, `?` for one character. */
 bool import_matches(const char *pattern, const char *text);
-/* The last rule that agrees with a node, by name or path; NULL: none. damage: rules of that state alone. */
+/* The last rule that matches a node by name or path; NULL: none does. damage: only rules for that state. */
 const SidecarRule *import_rule(const SidecarRules *rules, const ImportScene *scene, const ImportPlace *place, int node,
                                int damage);
 
 /* ---- import_names.c -------------------------------------------------------------------- */
 
-/* Logs why a joint of the sidecar has no node: the names that there are, and which was meant. */
+/* Logs why a joint of the sidecar has no node, with the names that there are and the most similar one. */
 void import_report_missing_node(const ImportScene *scene, const ImportPlace *place, const Sidecar *sidecar, int joint);
 /* Warns of names used by a sidecar that several nodes share, and of nodes without a name. */
 void import_warn_names(const ImportScene *scene, const ImportPlace *place, const Sidecar *sidecar, const char *file);
@@ -136,7 +136,8 @@ typedef struct ImportPaints {
 Status import_paints_open(ImportPaints *out);
 void   import_paints_close(ImportPaints *paints);
 bool   import_paints_have(const ImportPaints *paints, const char *name);
-/* The paint of a material: by words in its name, else by colour, else paint_olive; *source: which of these. */
+/* The material of a part: by words in the name of the file's material, else by its colour, else paint_olive; *source:
+ * which of these. */
 const char *import_paint_guess(ImportMaterialSource *source, const ImportPaints *paints,
                                const ImportMaterial *material);
 /* The heat role of a part by words in its path, of which the last one wins; HEAT_PASSIVE without any. */
@@ -161,7 +162,7 @@ typedef struct OsgText {
     int         element_count, element_room, word_count, word_room;
     OsgElement *element;
     char      **word;
-    int        *by_id; /* element with this UniqueID that has more than the id; -1 */
+    int        *by_id; /* element that defines this UniqueID; -1: none does */
     int         id_count;
 } OsgText;
 
@@ -170,7 +171,7 @@ typedef struct OsgText {
 Status osg_text_open(OsgText *out, const char *path, char *text, size_t octets);
 void   osg_text_close(OsgText *text);
 
-const char *osg_word(const OsgText *x, int element, int index); /* "": there is none */
+const char *osg_word(const OsgText *x, int element, int index); /* "" where the element has no such word */
 /* The child with this first word; -1: none. */
 int osg_find(const OsgText *x, int element, const char *name);
 /* A repeated object is written as its id alone: the element with the full definition. */

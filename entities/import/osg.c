@@ -15,7 +15,7 @@ typedef struct Walk {
     int         visits;
 } Walk;
 
-/* Capacity for `more` in a growing array; false: no memory. */
+/* Makes room for `more` items in a growing array; returns false when there is no memory. */
 static bool grow(void *array, int *room, int count, int more, size_t size)
 {
     void *old;
@@ -48,7 +48,7 @@ static Status add_node(int *out, Walk *w, const char *name, int parent)
     return STATUS_OK;
 }
 
-/* Rows of four; OpenSceneGraph multiplies from the left, so this transposes. */
+/* Reads rows of four; OpenSceneGraph multiplies from the left, so this transposes. */
 static bool read_matrix(double m[12], const OsgText *x, int element)
 {
     if (element < 0) return false;
@@ -61,7 +61,7 @@ static bool read_matrix(double m[12], const OsgText *x, int element)
     return true;
 }
 
-/* A degree of freedom's zero: from its parent's axes into its own, a rotation and a place. */
+/* A degree of freedom's zero: a rotation and a position that lead from its parent's axes into its own. */
 typedef struct Freedom {
     double r_own_from_parent[9], p_parent[3];
 } Freedom;
@@ -81,14 +81,14 @@ static bool read_freedom(Freedom *out, const OsgText *x, int element)
     return lengths < 1e-3;
 }
 
-/* A chain of nodes, one for each freedom that the transform has: slides, heading, pitch, roll. Returns the last. */
+/* Adds a chain of nodes, one for each freedom of the transform: slides, heading, pitch, roll. Returns the last one. */
 static Status add_freedoms(int *out, Walk *w, int element, const char *name, int parent)
 {
     static const struct {
         const char *low, *high, *step, *current, *tail;
-        int         component, axis; /* of H P R or x y z; of the transform's own axes */
+        int         component, axis; /* component: of H P R or x y z; axis: of the transform's own axes */
         bool        slides;
-        uint32_t    limited; /* bit of LimitationFlags */
+        uint32_t    limited; /* its bit in LimitationFlags */
     } freedom[6] = {
         {"MinTranslate", "MaxTranslate", "IncrementTranslate", "CurrentTranslate", ".x", 0, 0, true, 1u << 31},
         {"MinTranslate", "MaxTranslate", "IncrementTranslate", "CurrentTranslate", ".y", 1, 1, true, 1u << 30},
@@ -170,7 +170,7 @@ static Status add_triangle(Walk *w, ImportMesh *mesh, long long a, long long b, 
     return STATUS_OK;
 }
 
-/* One run of `count` vertices; index: NULL for first, first + 1 ... */
+/* Adds one run of `count` vertices. index: their indices; NULL: first, first + 1 ... */
 static Status add_primitive(Walk *w, ImportMesh *mesh, const char *mode, long long first, int count,
                             const double *index)
 {
@@ -237,7 +237,7 @@ static Status add_primitives(Walk *w, ImportMesh *mesh, int set)
     return status;
 }
 
-/* Material of a geometry: its colour, its material's name. */
+/* Adds the material of a geometry, by its colour and its material's name. */
 static Status add_material(int *out, Walk *w, const char *name, const float rgb[3], bool has_colour)
 {
     ImportScene *s = &w->s;
@@ -282,7 +282,8 @@ static Status add_geometry(Walk *w, int geometry, int node, int material)
     ImportScene   *s = &w->s;
     const int      vertices = osg_find(x, geometry, "VertexArray"), sets = osg_find(x, geometry, "PrimitiveSetList");
     const int      values = array_numbers(NULL, 0, x, vertices);
-    if (values <= 0 || values % 3 != 0 || sets < 0) return STATUS_OK; /* text, shapes: nothing to trace */
+    if (values <= 0 || values % 3 != 0 || sets < 0)
+        return STATUS_OK; /* it is a text or a shape, which has no triangles */
     const int count = values / 3;
     if (count > import_max_vertices - s->vertex_count) return refuse(w, "more than 8 M vertices");
     if (s->mesh_count == import_max_meshes) return refuse(w, "more than 16384 parts");
@@ -310,7 +311,7 @@ static Status add_geometry(Walk *w, int geometry, int node, int material)
     return status;
 }
 
-/* The osg::Material of an object's state, else the one that holds above it. */
+/* The osg::Material in an object's state, or else the one from above. */
 static int material_of(const OsgText *x, int object, int above)
 {
     const int state = osg_find(x, object, "StateSet");
@@ -322,7 +323,7 @@ static int material_of(const OsgText *x, int object, int above)
 
 /* ---- nodes --------------------------------------------------------------------------------------- */
 
-/* The least distance at which a level of detail is drawn; INFINITY for what is none. */
+/* The least distance at which a level of detail is drawn; INFINITY for other objects. */
 static double nearest_range(const OsgText *x, int object)
 {
     const int list = strstr(osg_word(x, object, 0), "LOD") ? osg_find(x, object, "RangeList") : -1;
@@ -332,7 +333,7 @@ static double nearest_range(const OsgText *x, int object)
     return least;
 }
 
-/* Whether child `index` of a switch or of levels of detail is seen. */
+/* Whether child `index` of a switch, or of levels of detail, is visible. */
 static bool is_seen(Walk *w, int object, const char *kind, int index, int children)
 {
     const OsgText *x = w->x;
@@ -405,7 +406,7 @@ static Status walk_object(Walk *w, int element, int parent, int material, int de
          c = x->element[c].next, index++) {
         const double range = nearest_range(x, osg_resolve(x, c));
         if (isfinite(range) && range > near)
-            w->s.lost[LOST_LEVELS_OF_DETAIL]++; /* OpenFlight's levels are neighbours */
+            w->s.lost[LOST_LEVELS_OF_DETAIL]++; /* OpenFlight writes levels of detail as neighbours */
         else if (is_seen(w, object, kind, index, count)) status = walk_object(w, c, node, material, depth + 1);
     }
     return status;
@@ -418,7 +419,7 @@ Status import_osgt(ImportScene *out, const char *path, char *text, size_t octets
     Walk    w = {.x = &x,
                  .s = {.forward = {0, 1, 0},
                        .up = {0, 0, 1},
-                       .unit_m = 1, /* as OpenFlight has it */
+                       .unit_m = 1, /* OpenFlight's unit here */
                        .unit_from = "the unit of the file's header, turned to metres by osgconv",
                        .axes_from = "OpenFlight's habit"}};
     if (status == STATUS_BAD_VALUE) refuse(&w, "what osgconv wrote is not a whole scene");

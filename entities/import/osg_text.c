@@ -30,7 +30,8 @@ static bool wait_for(int *ended, pid_t child, double seconds)
     return false;
 }
 
-/* This process's environment but for what steers OpenSceneGraph: its optimizer would merge what has names. */
+/* This process's environment without the variables that steer OpenSceneGraph, whose optimizer would merge named nodes.
+ * */
 static char **osg_environment(void)
 {
     size_t count = 0, kept = 0;
@@ -105,7 +106,7 @@ static Status refuse_addresses(const char *path)
         const int      opcode = head[0] << 8 | head[1];
         const size_t   length = (size_t)head[2] << 8 | head[3], rest = octets - at - 4;
         char           name[name_octets + 1], shown[400];
-        if (length < 4) break; /* not OpenFlight: osgconv says so */
+        if (length < 4) break; /* it is not OpenFlight, which osgconv will report */
         at += length;
         if (opcode != external && opcode != texture) continue;
         const size_t count = rest < name_octets ? rest : name_octets;
@@ -153,7 +154,7 @@ Status import_openflight(ImportScene *out, const char *path)
 
 /* ---- the text as a tree of elements --------------------------------------------------------- */
 
-/* Words of one line in place; `"a b"` is one, without its quotes. False: no memory. */
+/* Splits a line into words in place; `"a b"` is one word, without its quotes. Returns false when there is no memory. */
 static bool split_words(OsgText *x, char *line)
 {
     for (char *at = line;;) {
@@ -231,7 +232,7 @@ static Status read_tree(OsgText *x, char *text)
     return depth == 0 && x->element_count > 0 ? STATUS_OK : STATUS_BAD_VALUE;
 }
 
-/* The child with this first word; -1: none. */
+/* The child whose first word this is; -1: there is none. */
 int osg_find(const OsgText *x, int element, const char *name)
 {
     if (element < 0) return -1;
@@ -247,7 +248,7 @@ static long long id_of(const OsgText *x, int element)
     return c >= 0 && text_to_long(&id, osg_word(x, c, 1)) && id >= 0 && id < x->id_count ? id : -1;
 }
 
-/* A repeated object is its id alone. */
+/* A repeated object is written as its id alone. */
 int osg_resolve(const OsgText *x, int element)
 {
     const long long id = id_of(x, element);

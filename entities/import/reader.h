@@ -6,18 +6,19 @@
 #include "entities/import/model_import_private.h"
 #include "pitviper_library.h"
 
-/* The model `tank.obj.gz` is `tank.obj` to a reader; files it names (materials, buffers) are in the same folder. */
+/* The files of a model. `tank.obj.gz` is `tank.obj` to a reader; files that it names (materials, buffers) are in the
+ * same folder. */
 typedef struct ReaderFiles {
-    const char *path;          /* as it is on disk */
+    const char *path;          /* path on disk */
     char        shown[1024];   /* without .gz */
     size_t      folder;        /* length of the folder's name with its slash */
-    bool        no_memory;     /* for a file of it */
-    char        refused[1100]; /* the first file outside the folder, or that is no file */
+    bool        no_memory;     /* there was no memory for a file of the model */
+    char        refused[1100]; /* name of the first file that lies outside of the folder, or is not a file */
 } ReaderFiles;
 
 void reader_files(ReaderFiles *out, const char *path);
-/* Everything of a file, or of `name.gz`. name: with the folder, as `shown` has it. *out is NUL-terminated. Says
- * nothing: STATUS_IO also for what is refused. */
+/* Reads all of a file, or of `name.gz`. name: with the folder, as in `shown`. *out is NUL-terminated. Nothing is
+ * logged: STATUS_IO also where a file is refused. */
 Status reader_read(char **out, size_t *octets, ReaderFiles *files, const char *name);
 
 /* Lines for the user, which the process that asked for the model logs. */
@@ -29,22 +30,22 @@ typedef struct ReaderSaid {
 
 /* Returns `status`, so that a reader can end with it. */
 __attribute__((format(printf, 3, 4))) Status reader_fails(ReaderSaid *said, Status status, const char *format, ...);
-/* Later ones than the eighth are not said. */
+/* Adds a warning; those after the eighth are dropped. */
 __attribute__((format(printf, 2, 3))) void reader_warns(ReaderSaid *said, const char *format, ...);
 
-/* Fills a scene. A failure is in said->error. What was allocated may be left in *out. */
+/* Fills a scene. When it fails, said->error says why, and *out may hold what was allocated. */
 typedef Status Reader(ImportScene *out, ReaderSaid *said, ReaderFiles *files, const char *extension);
 
-/* Runs `read` in a process with limits on time and memory, and checks what comes back as what a stranger wrote. On
- * failure one logged line. */
+/* Runs `read` in a process with limits on time and memory, and checks its result as if a stranger had written it. Logs
+ * one line on failure. */
 Status reader_run(ImportScene *out, Reader *read, const char *path, const char *extension);
 
-/* Room for the scene's counts; its arrays are zero. */
+/* Allocates the scene's arrays, zeroed, by its counts. */
 bool import_scene_room(ImportScene *scene);
 
 /* The same from memory; other files are still of `files`. */
 Status import_gltf_text(ImportScene *out, ReaderSaid *said, ReaderFiles *files, char *text, size_t octets);
-/* False when an index or a count is not what a whole scene has. */
+/* Returns false when an index or a count is not possible in a whole scene. */
 bool import_scene_is_sound(ImportScene *scene);
 
 /* The text of an OBJ file in the forms that assimp reads: numbers without sign and exponent and with a digit before the

@@ -41,7 +41,7 @@ static double joint_value(const ModelNode *node, double value)
     return node->low <= node->high ? clamp(value, node->low, node->high) : value;
 }
 
-/* Rodrigues; the axis is unit, and the matrix is then orthonormal to a few 1e-16. */
+/* Rotation about an axis by Rodrigues' formula; with a unit axis the matrix is orthonormal to a few 1e-16. */
 static void turn_about(double r[9], const double a[3], double angle_rad)
 {
     const double c = cos(angle_rad), s = sin(angle_rad), half = sin(0.5 * angle_rad);
@@ -89,7 +89,7 @@ void model_pose(NodePose *pose, const Model *model, const double *value)
 
 /* ---- measures --------------------------------------------------------------------------------- */
 
-/* A set of points: all within `along` of the centre along an axis and within `across` of that axis. */
+/* A bound of a set of points: all lie within `along` of the centre along an axis, and within `across` of that axis. */
 typedef struct Drum {
     double centre[3], axis[3], along, across;
 } Drum;
@@ -102,7 +102,7 @@ static double drum_reach(const Drum *d)
     return hypot(fabs(h) + d->along, v3_length(off) + d->across);
 }
 
-/* The drum of everything the given one can sweep when it turns freely about `axis` through the origin. */
+/* The drum that holds everything that a drum can sweep when it turns freely about `axis` through the origin. */
 static Drum drum_swept(const Drum *d, const double axis[3])
 {
     const double c = fmin(1, fabs(v3_dot(d->axis, axis))), s = sqrt(1 - c * c), h = v3_dot(d->centre, axis);
@@ -123,8 +123,8 @@ static void drum_moved(Drum *d, const double p[3], const double r[9])
     memcpy(d->axis, axis, sizeof axis);
 }
 
-/* Farthest that a drum in a node's axes gets from the body origin, over all joint values from there up. A
- * free joint sweeps it exactly; a limited one is sampled, and the drum swelled by half a sample's motion. */
+/* The farthest distance of a drum in a node's axes from the body origin, over all values of the joints above it. A free
+ * joint is swept exactly; a limited one is sampled, and the drum enlarged by half a sample's motion. */
 static double farthest(const Model *model, int index, Drum drum, int samples)
 {
     for (; index >= 0; index = model->node[index].parent) {
@@ -206,7 +206,7 @@ Status model_measure(Model *model)
                     box[mp->node][0][i] = fmin(box[mp->node][0][i], v[i]);
                     box[mp->node][1][i] = fmax(box[mp->node][1][i], v[i]);
                 }
-                /* parts on fixed nodes only: their vertices themselves */
+                /* only parts on fixed nodes, so their vertices themselves are measured */
                 bool fixed = true;
                 for (int n = mp->node; n >= 0 && fixed; n = model->node[n].parent)
                     fixed = model->node[n].joint == JOINT_FIXED;
@@ -334,7 +334,7 @@ static int key_order(const void *a, const void *b)
     return p < q ? -1 : p > q;
 }
 
-/* place[vertex]: one number for all vertices at one position. */
+/* Numbers the vertices of a part: place[vertex] is the same for all vertices at one position. */
 static void number_places(uint32_t *place, Corner *corner, const Model *m)
 {
     for (int i = 0; i < m->vertex_count; i++) {
@@ -349,7 +349,8 @@ static void number_places(uint32_t *place, Corner *corner, const Model *m)
     }
 }
 
-/* Properties of the edges of one part. volume_m3: of what they enclose, when it is closed. edge: three per triangle. */
+/* Examines the edges of one part. volume_m3: the volume enclosed, where the part is closed. edge: room for three a
+ * triangle. */
 static void part_edges(ModelEdges *out, double *volume_m3, const Model *m, int part, const uint32_t *place,
                        uint64_t *edge)
 {

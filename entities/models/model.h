@@ -8,7 +8,7 @@
 #include "pitviper.h"
 
 enum {
-    model_name_size = 96,    /* of nodes, parts and models: external models name a part by its whole path */
+    model_name_size = 96,    /* octets of names; models from files name a part by its whole path */
     model_damage_states = 4, /* DIS damage: 0 none, 1 slight, 2 moderate, 3 destroyed */
 };
 
@@ -39,25 +39,26 @@ typedef enum HeatRole {
 } HeatRole;
 
 const char *heat_role_name(HeatRole role);
-bool        heat_role_find(HeatRole *out, const char *name); /* false: none of that name */
+bool        heat_role_find(HeatRole *out, const char *name); /* false: there is no such role */
 
 /* How a node moves in its parent: first translate to `p_parent`, then turn by the joint's value. */
 typedef enum JointKind { JOINT_FIXED, JOINT_ROTATION, JOINT_TRANSLATION } JointKind;
 
 typedef struct ModelNode {
     char      name[model_name_size];
-    int       parent;                /* index of an earlier node; -1 for the hull (node 0) */
-    double    p_parent[3];           /* pivot, in the parent's axes */
+    int       parent;                /* index of the parent, an earlier node; -1 for the hull (node 0) */
+    double    p_parent[3];           /* position of the pivot, in the parent's axes */
     double    r_parent_from_node[9]; /* rest attitude */
     JointKind joint;
-    double    axis[3];         /* unit, in the node's rest axes; turning is right-handed about it */
-    uint32_t  dis_class;       /* articulated-parameter class (4096 primary turret 1, ...), 0: none */
-    uint32_t  dis_metric;      /* 11 azimuth, 13 elevation, 15 rotation, 1 position ... */
-    double    low, high;       /* limits of the value; low > high: none */
-    double    spin_rps_moving; /* turns by itself while the entity runs (rotors), rad/s; 0: no */
-    double    roll_radius_m;   /* wheels: value = distance travelled / radius; 0: no */
-    double    dis_scale;       /* value for a reported 1, where DIS counts 0 .. 1 (doors, gear); 0: as reported */
-    double    value_slow;      /* unreported, the value below articulation_slow_mps (gear down); 0: no */
+    double    axis[3];      /* unit, in the node's rest axes; turning is right-handed about it */
+    uint32_t  dis_class;    /* articulated-parameter class (4096 primary turret 1, ...), 0: none */
+    uint32_t  dis_metric;   /* 11 azimuth, 13 elevation, 15 rotation, 1 position ... */
+    double    low, high;    /* limits of the value; low > high: none */
+    double spin_rps_moving; /* rate at which it turns by itself while the entity runs (rotors), rad/s; 0: it does not */
+    double roll_radius_m;   /* wheels: value = distance travelled / radius; 0: no */
+    double dis_scale;  /* joint value that a reported 1 means, where DIS counts 0 .. 1 (doors, gear); 0: the reported
+                          value itself */
+    double value_slow; /* value without a report while slower than articulation_slow_mps (gear down); 0: none */
 } ModelNode;
 
 typedef struct ModelPart {
@@ -65,7 +66,7 @@ typedef struct ModelPart {
     int      node;
     char     material[32]; /* a row of etc/materials.csv */
     HeatRole role;
-    double   thickness_m; /* of its skin; 0: by role */
+    double   thickness_m; /* thickness of its skin; 0: by its role */
     int      first_triangle, triangle_count;
     /* Effect of damage, by the damage state of the appearance ([0] is not used): hidden (bit
      * 1 << state), or of another material (empty: the same). Parametric models have none; a sidecar may. */
@@ -77,13 +78,13 @@ typedef struct Model {
     char       name[model_name_size];       /* the name in the truth records: tank, truck, helicopter, missile ... */
     double     length_m, width_m, height_m; /* bounding box at rest */
     double     box_low[3], box_high[3];     /* at rest, body axes */
-    double     radius_m;                    /* of a sphere about the body origin that holds every pose */
+    double     radius_m;                    /* radius of a sphere about the body origin that holds every pose */
     double     sag_m;                       /* largest distance between a curved surface and its facets */
     int        node_count, part_count, vertex_count, triangle_count;
-    ModelNode *node;         /* parents first */
-    ModelPart *part;         /* triangles of a part are contiguous; parts of a node too */
-    double (*vertex)[3];     /* node axes of the owning part */
-    float (*normal)[3];      /* unit shading normal a vertex, outward */
+    ModelNode *node;         /* nodes, parents before their children */
+    ModelPart *part;         /* triangles of a part are contiguous, and so are parts of a node */
+    double (*vertex)[3];     /* in the axes of the part's node */
+    float (*normal)[3];      /* shading normal of each vertex, unit, outward */
     uint32_t (*triangle)[3]; /* counter-clockwise seen from outside (in right-handed body axes) */
     uint16_t *triangle_part; /* [triangle_count] */
 } Model;
@@ -120,14 +121,14 @@ bool model_scale_to(double factor[3], const Model *model, const ModelSize *size)
 /* A promise every builder keeps; tests and importers call it: indices in range, closed parts, unit normals,
  * names set, parents first. On failure logs what is wrong. */
 Status model_validate(const Model *model);
-/* What holds of imported models too: all of the above but closed parts. */
+/* As model_validate, but parts need not be closed: what models from files must keep too. */
 Status model_check(const Model *model);
 
 /* How far a model is from closed parts: edges, by vertex position within a part. */
 typedef struct ModelEdges {
-    long long open;                         /* without their reverse */
-    long long crowded;                      /* shared by more than two triangles */
-    int       open_parts, inside_out_parts; /* with open edges; closed, and of negative volume */
+    long long open;                         /* edges without their reverse */
+    long long crowded;                      /* edges shared by more than two triangles */
+    int       open_parts, inside_out_parts; /* parts with open edges; closed parts with negative volume */
 } ModelEdges;
 
 /* STATUS_NO_MEMORY is the only failure. model: one that passes model_check. */

@@ -9,7 +9,7 @@
 
 static double height_of(const Model *m) { return fmax(m->box_high[2], 0) - m->box_low[2]; }
 
-/* What a direction of node axes becomes: symmetric and positive. */
+/* The scaling along body axes, expressed in a node's axes: symmetric and positive. */
 static void scale_in_node(double out[9], const double r_body_from_node[9], const double s[3])
 {
     for (int i = 0; i < 3; i++)
@@ -20,7 +20,7 @@ static void scale_in_node(double out[9], const double r_body_from_node[9], const
         }
 }
 
-/* Round about `axis`: `across` in its plane, `m` along it. */
+/* A scaling that keeps things round about `axis`: `across` in its plane, `along` along it. */
 static void make_round(double m[9], const double axis[3], double across)
 {
     double moved[3];
@@ -57,7 +57,7 @@ static void scale_joint(ModelNode *node, const double scale[9], const double par
     node->roll_radius_m *= wheel;
 }
 
-/* Along the body axes, once. */
+/* Scales a model along the body axes, once. */
 static Status scale_model(Model *m, const double s[3])
 {
     NodePose *pose = calloc((size_t)m->node_count, sizeof *pose);
@@ -69,7 +69,8 @@ static Status scale_model(Model *m, const double s[3])
     for (int n = 0; n < m->node_count; n++) {
         const ModelNode *node = m->node + n;
         const bool       spins = node->roll_radius_m > 0 || node->spin_rps_moving != 0;
-        if (node->parent >= 0 && round[node->parent]) { /* carried by what is round: as that, in its own axes */
+        if (node->parent >= 0 &&
+            round[node->parent]) { /* what a round part carries is scaled like that part, in its own axes */
             double r[9], half[9];
             m3_tmul(r, pose[node->parent].r_body_from_node, pose[n].r_body_from_node);
             m3_mul(half, scale[node->parent], r);
@@ -141,7 +142,7 @@ Status model_resize(Model *m, const ModelSize *size)
         double s[3];
         if (!model_scale_to(s, m, size)) return STATUS_BAD_VALUE;
         if (fabs(s[0] - 1) < 1e-4 && fabs(s[1] - 1) < 1e-4 && fabs(s[2] - 1) < 1e-4) break;
-        /* a figure that was left open is settled by the first step */
+        /* a length that was left open is settled by the first step */
         for (int i = 0; i < 3 && step > 0; i++)
             if (!((const double[3]){size->length_m, size->width_m, size->height_m}[i] > 0)) s[i] = 1;
         const Status status = scale_model(m, s);

@@ -3,20 +3,21 @@
 
 #include <stdlib.h>
 
-static const double small_share = 0.02;  /* cells below this share of their body join another, */
-static const double small_m2 = 0.01;     /* and those below this beside larger ones */
+static const double small_share = 0.02;  /* cells with less than this share of their body's area join another cell, */
+static const double small_m2 = 0.01;     /* and so do cells smaller than this beside larger ones */
 static const double facing_least = 1e-6; /* mean normals shorter than this have no direction */
-static const double better = 0.9;        /* what fits better by less, as mirrored cells may, fits as well */
-static const double open_least = 0.01;   /* of a patch; with less of it outside, none of it is */
-static const double sinkage_m = 0.02; /* what is lower than this over the base, and faces the ground by a cosine of */
+static const double better =
+    0.9; /* a fit must be better by this factor to be preferred, since mirrored cells fit equally */
+static const double open_least = 0.01; /* share of a patch; when less of it is outside, it counts as inside */
+static const double sinkage_m = 0.02;  /* what is lower than this over the base, and faces the ground by a cosine of */
 static const double facing_ground = 0.5; /* this, touches it: a tyre of 0.5 m radius over 0.28 m; estimate */
-enum { candidates = 16 };                /* points of a patch among which some are chosen */
+enum { candidates = 16 };                /* points of a patch from among which some are chosen */
 
 /* Ways to cut bodies, from fine to coarse. */
 static const struct Fineness {
-    double one_below; /* bodies with boxes below this share of the sum of all boxes' surfaces are one patch */
-    int    lengths;   /* at most */
-    bool   sides;     /* false: underside and all else */
+    double one_below; /* bodies whose boxes have less than this share of the sum of all boxes' surfaces are one patch */
+    int    lengths;   /* most lengths that a body is cut into */
+    bool   sides;     /* false: only the underside is apart from all other sides */
 } fineness[] = {{0, 4, true},    {0.0025, 4, true}, {0.005, 4, true}, {0.01, 4, true},  {0.01, 2, true},
                 {0.01, 1, true}, {0.02, 1, true},   {0.04, 1, true},  {0.04, 1, false}, {2, 1, true}};
 enum { finenesses = sizeof fineness / sizeof fineness[0] };
@@ -79,7 +80,7 @@ static void join_sums(Sums *to, const Sums *from)
     v3_add(to->n, to->n, from->n);
 }
 
-/* How ill a small cell and a kept one go together: by place, against the body's size, and by direction. */
+/* How badly a small cell and a kept one go together: by position, relative to the body's size, and by direction. */
 static double mismatch(const Sums *small, const Sums *kept, double size_m)
 {
     double p[3], q[3], d[3], n[3], o[3];
@@ -95,8 +96,8 @@ static bool is_one(const Body *body, const struct Fineness *how, double boxes_m2
     return !(body->box_m2 >= how->one_below * boxes_m2);
 }
 
-/* Patches to expect of a body: a box with ends at its ends. Unlike the count itself it hardly depends on the chord
- * error, so a coarse and a fine build of a model are cut alike. */
+/* The number of patches to expect of a body, a box with ends at its ends. Unlike the true count it hardly depends on
+ * the chord error, so coarse and fine builds of a model are cut alike. */
 static int expected(const Body *body, const struct Fineness *how, double boxes_m2)
 {
     const int lengths = body->lengths < how->lengths ? body->lengths : how->lengths;
@@ -118,7 +119,9 @@ static void map_cells(Body *body, const Sums cell[cells_most], const struct Fine
             face = along = 0;
         } else {
             along = along < body->lengths ? along * lengths / body->lengths : 0;
-            if (!how->sides) face = body->faces == 6 && face % faces_most == 4; /* +z is down */
+            if (!how->sides)
+                face = body->faces == 6 &&
+                       face % faces_most == 4; /* the sides: only the face along +z, down, stays apart */
         }
         group_of[k] = face * lengths_most + along;
         join_sums(&group[group_of[k]], &cell[k]);
@@ -130,7 +133,7 @@ static void map_cells(Body *body, const Sums cell[cells_most], const struct Fine
     body->count = 0;
     for (int k = 0; k < cells_most; k++)
         patch_of[k] = group[k].area_m2 > 0 && group[k].area_m2 >= least ? body->count++ : -1;
-    if (body->count == 0) patch_of[0] = body->count++; /* no area at all */
+    if (body->count == 0) patch_of[0] = body->count++; /* the body has no area at all */
     for (int k = 0; k < cells_most; k++) {
         const int g = group_of[k];
         body->map[k] = patch_of[g] >= 0 ? patch_of[g] : 0;
@@ -146,7 +149,7 @@ static void map_cells(Body *body, const Sums cell[cells_most], const struct Fine
     }
 }
 
-/* Chooses groups and cuts; fills the cutter. */
+/* Chooses the grouping and the cuts; fills the cutter. */
 static Status cut_model(int *count, Cutter *c)
 {
     Sums(*cell)[cells_most] = malloc(patches_most * sizeof *cell);
@@ -196,8 +199,8 @@ static bool is_hidden(const Cutter *c, int triangle, const double p[3], const do
     return hidden_at(c->hidden, triangle, p_body, n_body);
 }
 
-/* weight: of the triangle's area in patch_m2. Of a triangle that is partly hidden, points that are not, where some
- * tries find them. */
+/* Adds points of a triangle. weight: the triangle's share of patch_m2. On a triangle that is partly hidden it takes
+ * points that are not hidden, where some tries find any. */
 static void add_candidates(Candidates *c, double patch_m2, const Facet *f, const Piece *piece, double weight,
                            const Cutter *cutter, int triangle)
 {
@@ -211,7 +214,7 @@ static void add_candidates(Candidates *c, double patch_m2, const Facet *f, const
         for (; c->count < candidates; c->count++) {
             const double ahead = patch_m2 * (c->count + 0.5) / candidates - c->seen_m2 - whole;
             if (!(ahead < area)) break;
-            /* uniform over the triangle, and inside it */
+            /* points are drawn uniformly over the triangle, and inside it */
             bool found = false;
             for (int t = 0; t < tries && !found; t++) {
                 const double s = sqrt(clamp(t ? fmod(ahead / area + t * silver, 1) : ahead / area, 0.01, 0.99));
@@ -231,7 +234,7 @@ static void add_candidates(Candidates *c, double patch_m2, const Facet *f, const
     c->seen_m2 += whole;
 }
 
-/* Coordinate 0 .. 5 of a candidate: where it is, and where it faces as far as that is away. */
+/* Coordinate 0 .. 5 of a candidate: its position, then its direction, scaled to lengths. */
 static double coordinate(const Candidates *c, int i, int axis, double reach_m)
 {
     return axis < 3 ? c->p[i][axis] : reach_m * c->n[i][axis - 3];
@@ -262,7 +265,7 @@ static void sort_widest(const Candidates *c, int *index, int count, double reach
     }
 }
 
-/* Halves by the widest coordinate, those again, and of each quarter the candidate in the middle. */
+/* Halves the candidates by the widest coordinate, then the halves, and takes the middle candidate of each quarter. */
 static void choose_points(Patch *patch, const Candidates *c)
 {
     int index[candidates], quarter = candidates / patch_points;
@@ -274,7 +277,7 @@ static void choose_points(Patch *patch, const Candidates *c)
         double     best = INFINITY;
         int        chosen = own[0];
         for (int i = 0; i < quarter; i++) {
-            double sum = 0; /* of squared distances to the others: least in the middle */
+            double sum = 0; /* sum of squared distances to the others, which is least in the middle */
             for (int k = 0; k < quarter; k++)
                 for (int axis = 0; axis < 6; axis++) {
                     const double d =
@@ -290,7 +293,7 @@ static void choose_points(Patch *patch, const Candidates *c)
     }
 }
 
-/* sums: of what is not hidden, or of all where open_share is 0. */
+/* Computes a patch's figures. sums: over what is not hidden, or over all where open_share is 0. */
 static void finish_patch(Patch *patch, const Body *body, const Sums *sums, const Candidates *c, const NodePose *pose)
 {
     static const double up_body[3] = {0, 0, -1};
@@ -311,7 +314,7 @@ static void finish_patch(Patch *patch, const Body *body, const Sums *sums, const
     }
 }
 
-/* Share of a triangle where a value, straight over it, is at least 0. */
+/* The share of a triangle where a value that is linear over it is at least 0. */
 static double share_above(const double value[3])
 {
     for (int k = 0; k < 3; k++) { /* one corner alone on its side of 0 */
@@ -337,7 +340,7 @@ static double share_on_ground(const Facet *f, const NodePose *pose)
     return share_above(above);
 }
 
-/* Of one patch: all of it, and what is not hidden. */
+/* Sums over all of a patch, and over what is not hidden. */
 typedef struct PatchSums {
     Sums   all, open;
     double ground_m2;
@@ -362,7 +365,7 @@ static void measure_triangle(PatchSums *sums, Candidates *found, const Patches *
         } else if (out->patch[patch].open_share > 0) {
             add_candidates(&found[patch], s->open.area_m2, &f, &piece[i], open, c, t);
         } else {
-            add_candidates(&found[patch], s->all.area_m2, &f, &piece[i], 1, c, t); /* inside as a whole */
+            add_candidates(&found[patch], s->all.area_m2, &f, &piece[i], 1, c, t); /* the patch is inside as a whole */
         }
     }
 }

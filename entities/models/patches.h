@@ -27,15 +27,15 @@
 enum { patches_most = 160, patches_wanted = 110, patch_points = 4 };
 
 typedef struct Patch {
-    int      node, part; /* of the model: the node whose axes it is in; the first part of its body */
-    HeatRole role;       /* of its parts */
-    double   area_m2;    /* of all its triangles */
-    double   open_share; /* of that area: what is not inside other parts; 0: none of it is outside. What follows is of
-                          * this   part of it; where it is 0, of all */
-    double ground_m2;    /* what lies on level ground at the base: within 2 cm of it, facing down */
+    int      node, part; /* the node in whose axes it is; the first part of its body */
+    HeatRole role;       /* role of its parts */
+    double   area_m2;    /* area of all its triangles */
+    double   open_share; /* share of that area that is not inside other parts; 0: all of it is inside. The figures below
+                            are of this share; where it is 0, of the whole patch */
+    double ground_m2;    /* area that lies on level ground at the base: within 2 cm of it, facing down */
     double p_node[3];    /* centroid by area */
-    double n_node[3];    /* unit mean normal; up where the mean is nothing */
-    double facing;       /* length of the mean normal: 1 for a plane, 0 for what faces all ways */
+    double n_node[3];    /* unit mean normal; up where the mean is zero */
+    double facing;       /* length of the mean normal: 1 for a plane, 0 for a surface that faces all ways */
     double reach_m;      /* standard distance of its surface from the centroid */
     /* Points on its triangles, spread over its area and directions, with those triangles' unit normals: where rays
      * start. Each stands for about a quarter of the area. */
@@ -43,7 +43,7 @@ typedef struct Patch {
 } Patch;
 
 static inline double patch_open_m2(const Patch *patch) { return patch->area_m2 * patch->open_share; }
-/* Of what stands for it as a node: its outer surface, or all of what is inside. */
+/* The area by which a patch counts in the network: its outer surface, or all of it when it is inside. */
 static inline double patch_skin_m2(const Patch *patch)
 {
     return patch->open_share > 0 ? patch->area_m2 * patch->open_share : patch->area_m2;
@@ -52,14 +52,14 @@ static inline double patch_skin_m2(const Patch *patch)
 /* Two patches that adjoin: conductance = conductivity thickness length / distance. */
 typedef struct PatchLink {
     int    a, b;
-    double length_m;   /* of the border */
-    double distance_m; /* between centroids, at least 0.02 m */
-    bool   joint;      /* no common border: of different bodies, or of shells of one body that only touch */
+    double length_m;   /* length of the common border */
+    double distance_m; /* distance between the centroids, at least 0.02 m */
+    bool   joint;      /* without a common border: between bodies, or between shells of one body that only touch */
 } PatchLink;
 
 typedef struct Patches {
     int        count, links, bodies, parts;
-    Patch     *patch;         /* those of a body are contiguous [count] */
+    Patch     *patch;         /* [count] patches; those of a body are contiguous */
     PatchLink *link;          /* a < b, each pair once, ascending [links] */
     int       *body_of_part;  /* [parts] */
     int       *first_of_body; /* [bodies + 1] */
@@ -68,7 +68,7 @@ typedef struct Patches {
 
 /* model: one that passes model_check. STATUS_NO_MEMORY is the only failure; then *out is zeroes. */
 Status patches_create(Patches *out, const Model *model);
-/* The same with another number wanted, of which there may be up to patches_most. */
+/* As patches_create, with another number of patches wanted; there may be up to patches_most. */
 Status patches_create_of(Patches *out, const Model *model, int wanted);
 void   patches_destroy(Patches *patches); /* frees and zeroes; accepts zeroes */
 

@@ -8,10 +8,11 @@
 
 #include <stdlib.h>
 
-static const double length_m = 1.5;       /* of one length of a body, about */
-static const double length_least_m = 1.0; /* bodies shorter than this are not cut along */
-static const double inward_least_m = 1;   /* bodies less wide than this have no inner sides */
-static const double prefer_axis = 1.03;   /* an extent is longer when it is by this: x before y before z */
+static const double length_m = 1.5;       /* approximate extent of one length of a body */
+static const double length_least_m = 1.0; /* bodies shorter than this are not cut into lengths */
+static const double inward_least_m = 1;   /* bodies narrower than this have no inner sides */
+static const double prefer_axis =
+    1.03; /* an extent counts as longer only by this factor, so x is preferred to y, and y to z */
 
 /* ---- bodies ----------------------------------------------------------------------------------- */
 
@@ -76,7 +77,7 @@ Status patches_choose_nodes(Cutter *c)
     return STATUS_OK;
 }
 
-/* Whether a node turns by itself or rolls, with its parents, and about which axis of its own. */
+/* Whether a node turns by itself or rolls, or one of its parents does, and about which of its axes. */
 static bool turns(double axis[3], const Cutter *c, int node)
 {
     for (int n = node; n >= 0; n = c->model->node[n].parent) {
@@ -108,7 +109,7 @@ static bool arc_top(double top[3], const double p[3], const double q[3], const f
     v3_sub(chord, q, p);
     v3_add(mean, n1, n2);
     const double change = v3_length(turn), bent = v3_dot(turn, chord), cos_half = 0.5 * v3_length(mean);
-    /* a quarter of a circle at most: what turns faster is an edge of some solid */
+    /* at most a quarter of a circle, since what turns faster is the edge of a solid */
     if (!(bent > 0 && change > 1e-3 && cos_half > 0.7)) return false;
     const double height = 0.5 * bent / change * sqrt((1 - cos_half) / (1 + cos_half)); /* half chord tan(angle / 4) */
     v3_add_scaled(top, p, 0.5, chord);
@@ -167,8 +168,8 @@ void patches_measure_bodies(Cutter *c)
 
 /* ---- triangles ---------------------------------------------------------------------------------- */
 
-/* Planes at 45 degrees are up or down rather than sideways, and left or right rather than fore or aft: an exact tie
- * would be decided by rounding. */
+/* A normal at 45 degrees counts as up or down rather than sideways, and as left or right rather than fore or aft;
+ * rounding would decide an exact tie. */
 static const double axis_weight[3] = {0.996, 0.998, 1.0};
 static const double around_score = 0.7;  /* cosine of the angle to the axis, below which a surface is around it */
 static const double shading_least = 0.3; /* cosine to the facet's normal; below that the shading normal is not used */
@@ -227,7 +228,7 @@ bool facet_read(Facet *f, const Cutter *cutter, int triangle)
     return true;
 }
 
-/* Keeps where a function, given at the triangle's corners, is at least 0. */
+/* Keeps the part where a function, given at the triangle's corners, is at least 0. */
 static void clip(Piece *piece, const double value[3], int border)
 {
     Piece out = {.corners = 0};
@@ -239,13 +240,13 @@ static void clip(Piece *piece, const double value[3], int border)
             out.border[out.corners++] = piece->border[i];
         }
         if ((a >= 0) != (b >= 0)) {
-            /* on the other side of the cut a and b have opposite signs: the same bits */
+            /* on the other side of the cut a and b have opposite signs, so the result has the same bits */
             const double t = a / (a - b);
             for (int k = 0; k < 3; k++)
                 out.at[out.corners][k] = piece->at[i][k] + t * (piece->at[j][k] - piece->at[i][k]);
             out.border[out.corners++] = a >= 0 ? border : piece->border[i];
         }
-        if (out.corners + 2 > piece_corners) break; /* rounding alone could get here */
+        if (out.corners + 2 > piece_corners) break; /* only rounding could lead here */
     }
     *piece = out;
 }

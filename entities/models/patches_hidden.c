@@ -21,15 +21,18 @@
 #include <stdlib.h>
 
 enum { hinge_values = 8, cells_least = 4, cells_side_most = 256, points_of_triangle = 400 };
-static const double leave_m = 2e-3; /* a point stands so far before its triangle: gaps of welded faces are narrower */
-static const double points_of_model = 5000; /* by area, besides one of each triangle */
-static const double entries_most = 64;      /* of cells, a triangle, before the grid is made coarser */
-static const double tests_most = 2e8;       /* of lines with triangles, some 3 s: beyond it nothing counts as hidden */
+static const double leave_m =
+    2e-3; /* a tested point is this far in front of its triangle, which is more than the gaps between welded faces */
+static const double points_of_model =
+    5000; /* tested points on the model, distributed by area, besides one on each triangle */
+static const double entries_most = 64; /* most entries of cells for each triangle; with more the grid is made coarser */
+static const double tests_most =
+    2e8; /* most tests of lines against triangles, some 3 s; after that nothing more counts as hidden */
 
 /* A triangle at rest, in the turned frame. */
 typedef struct Solid {
     double q[3][3];
-    int    group; /* -1: hides nothing */
+    int    group; /* group of parts; -1: the triangle hides nothing */
 } Solid;
 
 typedef struct Grid {
@@ -39,28 +42,28 @@ typedef struct Grid {
     int    *triangle;
 } Grid;
 
-/* A joint between what carries and what it moves, in the turned frame. */
+/* A joint between a carrying and a moved group, in the turned frame. */
 typedef struct Hinge {
     int    group, carrier;
     bool   slides;
-    double pivot[3], axis[3], reach_m; /* reach_m: of the moved group from the pivot */
+    double pivot[3], axis[3], reach_m; /* reach_m: how far the moved group extends from the pivot */
     int    values;
     double value[hinge_values];
 } Hinge;
 
 struct Hidden {
     const Model *model;
-    int         *group; /* [node_count]: the node that carries it without a joint between */
+    int         *group; /* [node_count] the node that carries it without a joint in between */
     double       turn[9];
     int          hinges;
     Hinge       *hinge; /* [node_count] */
     Solid       *solid; /* [triangle_count] */
     float       *open;  /* [triangle_count] */
     Grid         grid[3];
-    double       tests, points; /* so far */
+    double       tests, points; /* tests and points so far */
 };
 
-/* As fmin and fmax of finite numbers, which the compiler calls. */
+/* As fmin and fmax for finite numbers; those compile to calls. */
 static double lesser(double a, double b) { return a < b ? a : b; }
 static double larger(double a, double b) { return a > b ? a : b; }
 
@@ -105,7 +108,8 @@ static int cell_of(const Grid *g, int k, double at)
     return cell > 0 ? cell < g->side ? (int)cell : g->side - 1 : 0;
 }
 
-/* Poses of joints at which what they part must be inside: free ones every 45 degrees, others over their range. */
+/* Finds the joints, and the poses in which a point must be inside to count as hidden: every 45 degrees of a free joint,
+ * else over its range. */
 static void find_hinges(Hidden *h, const NodePose *pose)
 {
     const Model *m = h->model;
@@ -137,7 +141,7 @@ static void find_hinges(Hidden *h, const NodePose *pose)
     }
 }
 
-/* First and last row of cells that a triangle meets, seen along an axis. */
+/* The first and the last row of cells that a triangle meets, seen along an axis. */
 static void rows_of(int row[2], const Grid *g, const Solid *s, int axis)
 {
     const int j = (axis + 2) % 3;
@@ -145,7 +149,7 @@ static void rows_of(int row[2], const Grid *g, const Solid *s, int axis)
     row[1] = cell_of(g, 1, larger(s->q[0][j], larger(s->q[1][j], s->q[2][j])));
 }
 
-/* And its first and last cell in a row: of its edges within the row, a little widened. */
+/* The first and the last cell of a row that a triangle meets: from its edges within the row, slightly widened. */
 static void cells_of(int cell[2], const Grid *g, const Solid *s, int axis, int row)
 {
     const int    i = (axis + 1) % 3, j = (axis + 2) % 3;
@@ -169,8 +173,8 @@ static void cells_of(int cell[2], const Grid *g, const Solid *s, int axis, int r
     cell[1] = cell_of(g, 0, isfinite(wide) ? to + 1e-6 * wide : to);
 }
 
-/* Of all triangles in each cell: their number added to first, or, from the last of them to the first, themselves put
- * below it. */
+/* Visits the triangles of each cell. It adds their number to first or, with `put`, stores them from the last to the
+ * first below it. */
 static double visit_cells(Grid *g, const Hidden *h, int axis, bool put)
 {
     double entries = 0;
@@ -227,7 +231,7 @@ static inline void shares_of(double *a, double *b, double *c, const Solid *s, in
     *a = u1 * v2 - u2 * v1, *b = u2 * v0 - u0 * v2, *c = u0 * v1 - u1 * v0;
 }
 
-/* Whether both ways along an axis leave more surfaces of the group than they enter. */
+/* Whether a line along an axis leaves more surfaces of the group than it enters, both ways. */
 static bool is_within(Hidden *h, int axis, const double q[3], int group)
 {
     const Grid  *g = &h->grid[axis];
@@ -240,7 +244,7 @@ static bool is_within(Hidden *h, int axis, const double q[3], int group)
         double       a, b, c;
         shares_of(&a, &b, &c, s, i, j, q);
         const int positive = (a > 0) + (b > 0) + (c > 0), negative = (a < 0) + (b < 0) + (c < 0);
-        /* one branch that is hardly ever taken: beside it, seen edge on, or of another group */
+        /* one branch for all cases that count nothing: beside the triangle, seen edge on, of another group */
         if (((positive > 0) & (negative > 0)) | (positive + negative == 0) | (s->group != group)) continue;
         const double at = (a * s->q[0][axis] + b * s->q[1][axis] + c * s->q[2][axis]) / (a + b + c);
         /* counter-clockwise: its normal is along the axis */
@@ -255,7 +259,7 @@ static bool is_inside(Hidden *h, const double q[3], int group)
     return is_within(h, 0, q, group) && is_within(h, 1, q, group) && is_within(h, 2, q, group);
 }
 
-/* Where a point of the moved group is at a value of its joint. */
+/* The place of a point of the moved group at a value of its joint. */
 static void moved(double out[3], const Hinge *hinge, const double q[3], double value)
 {
     double d[3], side[3];
@@ -302,7 +306,7 @@ bool hidden_at(Hidden *h, int triangle, const double p_body[3], const double n_b
     return is_covered(h, q, group);
 }
 
-/* Whether a triangle before it in the model has the same place and side there: of equal ones the first is seen. */
+/* Whether an earlier triangle of the model has the same place and side there: of equal ones only the first is seen. */
 static bool is_double(const Hidden *h, int axis, const double q[3], int t, int group, double n_axis)
 {
     static const double same_m = 1e-6;
@@ -345,7 +349,7 @@ static float open_share(Hidden *h, int t, double all_m2)
         double u = fmod(0.5 + h->points * r2[0], 1), v = fmod(0.5 + h->points * r2[1], 1), q[3];
         h->points++;
         if (u + v > 1) u = 1 - u, v = 1 - v;
-        u += shrink * (1.0 / 3 - u), v += shrink * (1.0 / 3 - v); /* off its edges */
+        u += shrink * (1.0 / 3 - u), v += shrink * (1.0 / 3 - v); /* moves the point off the triangle's edges */
         for (int i = 0; i < 3; i++) q[i] = s->q[0][i] + u * (s->q[1][i] - s->q[0][i]) + v * (s->q[2][i] - s->q[0][i]);
         const bool twice = is_double(h, steep, q, t, group, n[steep]);
         v3_add_scaled(q, q, leave_m, n);

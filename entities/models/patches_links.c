@@ -8,11 +8,13 @@
 #include <stdlib.h>
 
 static const double distance_least_m = 0.02;
-static const double border_least = 0.03; /* of the root of the smaller area: a corner, not a border */
-static const double joint_share = 0.25;  /* length of a joint, as a share of the root of the smaller area */
-static const double touch_m = 0.03;      /* bodies with boxes nearer than this touch */
-static const double nearer = 0.9;        /* what is nearer by less, as mirrored patches are, is as near */
-enum { users_most = 32 };                /* of an edge, that are compared; two where shells are closed */
+static const double border_least =
+    0.03; /* shorter borders, as a share of the root of the smaller area, are mere corners */
+static const double joint_share = 0.25; /* length of a joint, as a share of the root of the smaller area */
+static const double touch_m = 0.03;     /* bodies touch when their boxes are nearer than this */
+static const double nearer =
+    0.9;                  /* only a pair nearer by this factor is preferred, since mirrored patches are equally near */
+enum { users_most = 32 }; /* most users of an edge that are compared; a closed shell has two */
 
 /* One side of a stretch of an edge, from its lower corner (0) to the higher (1). */
 typedef struct EdgeUse {
@@ -22,7 +24,7 @@ typedef struct EdgeUse {
 
 typedef struct Edge {
     uint32_t low, high;
-    int      use; /* first of its list; -1: free */
+    int      use; /* first use in its list; -1: none */
 } Edge;
 
 typedef struct Borders {
@@ -63,7 +65,7 @@ static uint32_t place_of(Borders *b, const Cutter *cutter, const int *body_of_ve
     const double *p = cutter->model->vertex[vertex];
     uint64_t      hash = (uint64_t)body_of_vertex[vertex];
     for (int i = 0; i < 3; i++) {
-        const double x = p[i] + 0.0; /* -0 is 0 */
+        const double x = p[i] + 0.0; /* turns -0 into 0 */
         uint64_t     bits;
         memcpy(&bits, &x, sizeof bits);
         hash = mixed(hash + bits);
@@ -204,9 +206,9 @@ static Status measure_borders(Borders *b, const Cutter *cutter)
 
 typedef struct Network {
     const Patches *patches;
-    double        *length_m; /* [count][count], a < b; negative: a joint */
+    double        *length_m; /* [count][count], a < b: length of the border; negative: a joint */
     double         p_body[patches_most][3];
-    int            group[patches_most]; /* of those that are connected: the lowest of them */
+    int            group[patches_most]; /* the lowest patch of those that are connected */
 } Network;
 
 static double distance_m(const Network *w, int a, int b)
@@ -232,8 +234,8 @@ static void add_joint(Network *w, int one, int other)
     connect(w, a, b);
 }
 
-/* The nearest pair with one of first .. end - 1 that is of the group, or of any for -1, and the other one of
- * other_first .. other_end - 1 and not of that group. False: there is none. */
+/* Finds the nearest pair of a patch among first .. end - 1 in the group (-1: in any) and one among other_first ..
+ * other_end - 1 not in that group. Returns false when there is none. */
 static bool nearest_pair(int pair[2], const Network *w, int group, int first, int end, int other_first, int other_end)
 {
     double best = INFINITY;
@@ -271,7 +273,8 @@ static void join_all(Network *w, const Cutter *cutter)
                 nearest_pair(pair, w, -1, a->first, a->first + a->count, b->first, b->first + b->count))
                 add_joint(w, pair[0], pair[1]);
         }
-    /* bodies that touch each other but not the others, as a rotor above its mast; a single one stays alone */
+    /* joins groups of bodies that touch each other but no others, as a rotor above its mast; a single body stays alone
+     * */
     const int count = w->patches->count;
     for (int i = 0; i < cutter->bodies; i++) {
         const int first = cutter->body[i].first;

@@ -11,23 +11,24 @@ enum {
     piece_corners = 16, /* a triangle, two planes across and five lines between faces: 3 + 2 + 5 at most */
 };
 
-/* Parts that are cut together, in the axes of one node. */
+/* Parts that are cut together; described in the axes of one node. */
 typedef struct Body {
-    int      node, part; /* part: the first */
+    int      node, part; /* part: the first of them */
     HeatRole role;
     int      faces; /* 6: half axes of the node; 3: along axis, against it, around it */
     double   axis[3];
-    double   middle[3], inward_m[3]; /* of its box in the node's axes; how far behind the middle a face looks inwards */
-    int      along, lengths;         /* lengths cut along this axis of the node */
-    double   low_m, step_m;          /* where the first length begins; its length */
-    double   box_low[3], box_high[3]; /* at rest, body axes of the model */
-    double   box_m2;                  /* surface of its box in the node's axes: hardly depends on the chord error */
-    double   area_m2;
-    int map[cells_most]; /* patch of each cell, from 0; cell = (face, + faces_most: inwards) lengths_most + length */
-    int first, count;    /* its patches */
+    double middle[3], inward_m[3]; /* middle of its box in the node's axes; distance behind the middle from which a face
+                                      looks inwards */
+    int    along, lengths;         /* lengths cut along this axis of the node */
+    double low_m, step_m;          /* start of the first length, and its extent */
+    double box_low[3], box_high[3]; /* box at rest, in the model's body axes */
+    double box_m2;                  /* surface of its box in the node's axes: hardly depends on the chord error */
+    double area_m2;
+    int    map[cells_most]; /* patch of each cell, from 0; cell = (face, + faces_most: inwards) lengths_most + length */
+    int    first, count;    /* its patches */
 } Body;
 
-/* What of a model's surface lies inside it: patches_hidden.c. */
+/* Finds how much of a model's surface lies inside it: patches_hidden.c. */
 typedef struct Hidden Hidden;
 
 typedef struct Cutter {
@@ -45,11 +46,11 @@ typedef struct Cutter {
 /* Ways to group parts, from fine to coarse. */
 typedef enum Grouping { BY_MATERIAL, BY_NODE_ROLE, BY_ROLE, GROUPINGS } Grouping;
 
-/* Groups parts to bodies. False: more than patches_most. */
+/* Groups parts into bodies. Returns false when there are more than patches_most. */
 bool patches_group(Cutter *cutter, Grouping grouping);
-/* Bodies of several nodes take that of their largest part. */
+/* Chooses the node of bodies with parts of several nodes: that of the largest part. */
 Status patches_choose_nodes(Cutter *cutter);
-/* Extents of the bodies at rest, their lengths and faces. */
+/* Measures the extents of the bodies at rest, and chooses their lengths and faces. */
 void patches_measure_bodies(Cutter *cutter);
 /* A point of a node, moved by its pose. */
 static inline void patches_moved(double out[3], const NodePose *pose, const double p[3])
@@ -66,7 +67,7 @@ typedef struct Facet {
     double p[3][3];
     double n[3]; /* unit normal of its plane */
     double area_m2;
-    double score[faces_most][3]; /* at each corner: the face of the highest score has it */
+    double score[faces_most][3]; /* score of each face at each corner, which belongs to the face with the highest */
     double along_m[3];
 } Facet;
 
@@ -74,13 +75,13 @@ typedef struct Facet {
  * the next: 0 .. 2 an edge of the triangle (from its corner i), above a cut; equal cuts of a triangle are one line. */
 typedef struct Piece {
     int    cell, corners;
-    double share; /* of the triangle's area */
+    double share; /* share of the triangle's area */
     double at[piece_corners][3];
     int    border[piece_corners];
 } Piece;
 
-bool facet_read(Facet *out, const Cutter *cutter, int triangle);               /* false: no area */
-int  facet_cut(Piece piece[cells_most], const Facet *facet, const Body *body); /* how many */
+bool facet_read(Facet *out, const Cutter *cutter, int triangle);               /* false: the triangle has no area */
+int  facet_cut(Piece piece[cells_most], const Facet *facet, const Body *body); /* returns the number of pieces */
 void facet_point(double p[3], const Facet *facet, const double at[3]);
 
 /* ---- patches_hidden.c -------------------------------------------------------------------------- */
@@ -90,12 +91,12 @@ Status hidden_create(Hidden **out, const Model *model, const NodePose *pose);
 void   hidden_destroy(Hidden *hidden); /* accepts NULL */
 /* Share of a triangle that is not inside parts in every pose, 0 .. 1. */
 double hidden_open(const Hidden *hidden, int triangle);
-/* Whether a point of a triangle, with its unit normal, is. */
+/* Whether a point of a triangle, with its unit normal, is inside other parts. */
 bool hidden_at(Hidden *hidden, int triangle, const double p_body[3], const double n_body[3]);
 
 /* ---- patches_links.c --------------------------------------------------------------------------- */
 
-/* patch: finished but for links. STATUS_NO_MEMORY. */
+/* Finds the links. The patches in `out` are finished except for these. Fails with STATUS_NO_MEMORY. */
 Status patches_link(Patches *out, const Cutter *cutter);
 
 #endif

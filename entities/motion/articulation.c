@@ -6,12 +6,12 @@
  * where 4107 was meant: that is no class, and guessing would turn another sender's part. */
 static const uint32_t first_class = 1024, end_class = 8192;
 
-static const double largest_rate = 100; /* rad/s or m/s; beyond it the rate is not followed. Guns slew at 1 */
+static const double largest_rate = 100; /* rad/s or m/s; larger rates are not followed. Guns slew at 1 */
 
 static bool metric_is_rate(uint32_t metric) { return metric % 2 == 0; }
 static bool metric_is_angle(uint32_t metric) { return metric >= 11; }
 
-/* False for a parameter that names no class or no metric. */
+/* Splits a parameter into class and metric; returns false when it names no class or no metric. */
 static bool split_parameter(uint32_t *dis_class, uint32_t *metric, uint32_t parameter)
 {
     *dis_class = parameter & ~UINT32_C(31);
@@ -30,7 +30,7 @@ static int joint_position(const Articulation *articulation, uint32_t parameter)
     return low;
 }
 
-/* The joint of a value parameter, new at 0 when absent; NULL when full. */
+/* The joint of a value's parameter; it is added with value 0 when absent. NULL: there is no room. */
 static JointReport *joint_for(Articulation *articulation, uint32_t parameter)
 {
     const int    at = joint_position(articulation, parameter);
@@ -44,8 +44,8 @@ static JointReport *joint_for(Articulation *articulation, uint32_t parameter)
     return joint;
 }
 
-/* To -pi .. pi. Not remainder() as a rule: that is 20 times slower, and this is within 1e-10 rad for an hour of any
- * rotor. A sender's 1e30 would leave it with a rest of 1e14. */
+/* Brings an angle to -pi .. pi. remainder() is used only for very large angles, since it is 20 times slower; the usual
+ * way is within 1e-10 rad for an hour of any rotor. */
 static double wrapped(double angle_rad)
 {
     if (!(fabs(angle_rad) <= 1e8)) return remainder(angle_rad, 2 * pi_rad);

@@ -15,14 +15,14 @@ enum { articulation_max_joints = 32 };
 /* One motion of one part: an angle (metrics 11, 13, 15) or a length (1, 3, 5, 7, 9), and its rate (metric + 1). */
 typedef struct JointReport {
     uint32_t parameter; /* class + metric of the value */
-    float    value;     /* rad or m, at Articulation.t_s */
-    float    rate;      /* per second; 0 when the report gave none */
+    float    value;     /* value in rad or m, at Articulation.t_s */
+    float    rate;      /* change of the value per second; 0 when none was reported */
 } JointReport;
 
 typedef struct Articulation {
     double      t_s; /* exercise time of the report */
     int         count;
-    int         attached_count; /* attached parts not detached, in the last report; stored, not rendered */
+    int         attached_count; /* parts attached and not detached in the last report; stored, but not rendered */
     JointReport joint[articulation_max_joints]; /* sorted by parameter */
 } Articulation;
 
@@ -37,11 +37,11 @@ int articulation_report(Articulation *articulation, const DisVariableParameter *
 bool articulation_value(double *value, const Articulation *articulation, uint32_t dis_class, uint32_t dis_metric,
                         double t_s, double hold_s);
 
-/* Further inputs of a model's joints: running time, and motion over the ground. */
+/* Other inputs of a model's joints: running time, and motion over the ground. */
 typedef struct JointDrive {
-    double spin_s;     /* time while the engine runs: rotors */
-    double distance_m; /* distance travelled forward: wheels */
-    double speed_mps;  /* landing gear */
+    double spin_s;     /* time for which the engine has run, which turns rotors */
+    double distance_m; /* distance travelled forward, which turns wheels */
+    double speed_mps;  /* speed, by which landing gear is assumed down or up */
 } JointDrive;
 
 /* Below this speed landing gear without a report is assumed down. Fighters approach at 70 .. 80 m/s and may keep

@@ -15,14 +15,15 @@ enum {
     most_absolute = 65536, /* absolute stamps that are compared; the first ones */
 };
 
-static const double largest_speed_mps = 2e4; /* as entity_table.c: nothing is faster and stays */
+static const double largest_speed_mps = 2e4; /* the limit of entity_report.c: nothing faster stays near the Earth */
 static const double year_1990_s = 631152000, year_2100_s = 4102444800;
-static const double absolute_agree_s = 10;  /* clocks of one exercise, and what a network delays */
+static const double absolute_agree_s =
+    10; /* difference of absolute stamps that still agree: clocks of one exercise, and network delays */
 static const double invented_epoch_s = 1e9; /* captures converted from logs without dates start here */
 
 typedef struct TrackBuild {
     int     capacity;
-    uint8_t algorithm; /* of the last Entity State: it gives the axes of an update's velocity */
+    uint8_t algorithm; /* algorithm of the last Entity State, which gives the axes of an update's velocity */
 } TrackBuild;
 
 typedef struct Building {
@@ -32,12 +33,12 @@ typedef struct Building {
     DisPdu        pdu;  /* the log that is read */
     EntityIndex   index;
     int           track_capacity;
-    TrackBuild   *build; /* beside survey->track */
+    TrackBuild   *build; /* one for each survey->track */
     WarfareEvent *warfare;
     int           warfare_count, warfare_capacity;
     uint64_t      points;
     bool          date_is_credible;
-    double       *absolute_unix_s; /* one an absolute stamp: Unix time of exercise time 0, in the order received */
+    double       *absolute_unix_s; /* for each absolute stamp, in the order received: Unix time of exercise time 0 */
     int           absolute_capacity;
 } Building;
 
@@ -54,7 +55,7 @@ static Status grow(void **array, int *capacity, size_t size, int at_least)
     return STATUS_OK;
 }
 
-/* Index of the track of an id, -1 when there is none and none may be made. */
+/* Finds the index of an id's track; -1 when there is none and none may be added. */
 static Status find_or_add_track(int *out, Building *b, DisEntityId id, bool add)
 {
     Survey *survey = b->survey;
@@ -182,7 +183,7 @@ static Status receive_detonation(Building *b, const DisDetonation *pdu, double t
     return add_warfare(b, &event);
 }
 
-/* Exercise time 0 on the simulation's own calendar. A clock of zero, or past 2100, is ignored. */
+/* Reads exercise time 0 on the simulation's own calendar. A clock of zero, or past 2100, is ignored. */
 static void receive_start(Building *b, const DisStartResume *pdu, double t_s)
 {
     const double unix_s = pdu->simulation.hour * 3600.0 + dis_timestamp_seconds(pdu->simulation.past_hour);
@@ -274,7 +275,7 @@ static Status receive_datagram(Building *b, int d, const DisDatagram *datagram, 
         }
         const ExerciseInstant *instant = &b->times.pdu[b->next++];
         const double           t_s = instant->t_s;
-        if (isnan(t_s)) continue; /* of unknown type, and without a sender */
+        if (isnan(t_s)) continue; /* PDUs of unknown type that name no sender */
         if (d < survey_times_most && isnan(survey->datagram_s[d])) survey->datagram_s[d] = t_s;
         if (!(survey->first_s <= t_s)) survey->first_s = t_s;
         if (!(survey->last_s >= t_s)) survey->last_s = t_s;
@@ -303,7 +304,8 @@ static void drop_empty_tracks(Survey *survey)
     survey->track_count = kept;
 }
 
-/* A munition with a Detonation after its last report: the burst is the last point of its track. */
+/* Ends the flight of a munition that has a Detonation after its last report: the burst becomes the last point of its
+ * track. */
 static Status end_flights(Building *b)
 {
     static const double longest_silence_s = 60;
@@ -398,12 +400,12 @@ const Track *survey_track(const Survey *survey, DisEntityId id)
 const Shot *survey_shot(const Survey *survey, DisEntityId munition)
 {
     int low = 0, high = survey->shot_count;
-    if (!survey->shot_by_munition) { /* a survey made by hand */
+    if (!survey->shot_by_munition) { /* the survey was made by hand, as in a test */
         for (int i = 0; i < survey->shot_count; i++)
             if (dis_entity_id_compare(survey->shot[i].munition, munition) == 0) return survey->shot + i;
         return NULL;
     }
-    while (low < high) { /* the first that is not before */
+    while (low < high) { /* searches the first shot that is not before */
         const int   middle = low + (high - low) / 2;
         const Shot *shot = survey->shot + survey->shot_by_munition[middle];
         if (dis_entity_id_compare(shot->munition, munition) < 0) low = middle + 1;

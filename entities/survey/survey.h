@@ -9,18 +9,18 @@
 
 /* One round or missile from its Fire to its Detonation. */
 typedef struct Shot {
-    DisEntityId firing, target, munition; /* as in Fire; target 0:0:0 when unknown */
+    DisEntityId firing, target, munition; /* as in Fire; a target of 0:0:0 means unknown */
     double      fire_s;                   /* NaN: no Fire received */
     double      detonation_s;             /* NaN: no Detonation received */
     double      p_burst_ecef[3];
-    DisEntityId hit; /* target of the Detonation, 0:0:0: none */
+    DisEntityId hit; /* target named by the Detonation; 0:0:0: none */
     uint8_t     result;
 } Shot;
 
 /* One report of where an entity was: 72 octets, and a long log has millions. */
 typedef struct TrackPoint {
     double t_s;
-    double p_ecef[3], v_ecef_mps[3];    /* velocity in world axes for all algorithms */
+    double p_ecef[3], v_ecef_mps[3];    /* velocity in world axes, whatever the algorithm */
     float  euler_rad[3];                /* psi, theta, phi as reported: survey_point_rotation */
     bool   frozen, deactivated, engine; /* engine: its power-plant bit */
 } TrackPoint;
@@ -31,7 +31,7 @@ typedef struct Track {
     char          marking[12];
     uint8_t       force;
     int           count;
-    TrackPoint   *point; /* in order of time; of a munition with a later Detonation, that is the last */
+    TrackPoint   *point; /* in order of time; of a munition with a later Detonation the last point is the burst */
 } Track;
 
 enum { survey_times_most = 65536 };
@@ -43,22 +43,22 @@ typedef struct Survey {
     int   *shot_by_munition;   /* [shot_count] of shot, sorted by munition, then by time; NULL: not made */
     double first_s, last_s;    /* exercise time of the first and last PDU; NaN: none */
     double clock_start_unix_s; /* Unix time of exercise time 0 from Start/Resume; NaN: none received */
-    double absolute_unix_s;    /* the same from absolute stamps with a credible capture date
-                                * (1990 .. 2100, not 2001-09-09's round 1e9 s): of those that agree within
-                                * 10 s, when they are two at least and more than half; NaN: none */
-    int                    absolute_stamps, absolute_left_out; /* how many there were, and of them how many disagree */
-    ExerciseClockAnomalies doubts;                             /* senders with rejected time stamps */
-    DisCounters            counters;                           /* all received and dropped PDUs, whole log */
+    double absolute_unix_s; /* Unix time of exercise time 0 from absolute stamps with a credible capture date (1990 ..
+                               2100, but not the round 1e9 s of 2001-09-09), if at least two and more than half of them
+                               agree within 10 s; NaN: they do not */
+    int absolute_stamps, absolute_left_out; /* number of absolute stamps, and how many of them disagree */
+    ExerciseClockAnomalies doubts;          /* senders with rejected time stamps */
+    DisCounters            counters;        /* all received and dropped PDUs, whole log */
     double                *datagram_s; /* exercise time of the first PDU of each datagram [log->count, of a long log
                                         * the first survey_times_most]; NaN: none */
-    uint64_t refused;                  /* track points dropped because they exceed the memory bound */
-    uint64_t late;                     /* reports older than the one before them, left out */
+    uint64_t refused;                  /* track points dropped because of the memory bound */
+    uint64_t late;                     /* reports left out because they are older than the ones before them */
 } Survey;
 
 /* Reads every PDU of the log once. exercise: only this exercise id; -1: all. */
 Status       survey_log(Survey *out, const DisLog *log, int exercise);
 void         survey_destroy(Survey *survey);
-const Track *survey_track(const Survey *survey, DisEntityId id); /* NULL: never received */
+const Track *survey_track(const Survey *survey, DisEntityId id); /* NULL: no report of it was received */
 /* The first shot of that munition; NULL: none received. O(log shots). */
 const Shot *survey_shot(const Survey *survey, DisEntityId munition);
 
@@ -88,7 +88,7 @@ typedef struct WarfareEvent {
  * event id decides where it can), else to that of the same event id. One received twice within half a second is one.
  * event is put in order of time. *shots is malloc'ed, in order of fire (else detonation) time. */
 Status survey_join_shots(Shot **shots, int *shot_count, WarfareEvent *event, int count);
-/* The numbers of the shots sorted by munition, then by number; malloc'ed. */
+/* Computes the numbers of the shots sorted by munition, then by number; malloc'ed. */
 Status survey_order_shots(int **by_munition, const Shot *shot, int count);
 
 #endif

@@ -4,11 +4,11 @@
 
 #include <stdlib.h>
 
-static const double same_s = 0.5;      /* a repeated PDU */
+static const double same_s = 0.5;      /* a PDU repeated within this time is one */
 static const double clock_slack_s = 1; /* a Detonation may be stamped by another sender's clock than the Fire */
-enum { most_tries = 64 };              /* candidates checked: bounds the cost of a hostile log */
+enum { most_tries = 64 };              /* candidates checked; the limit bounds the cost of a hostile log */
 
-/* Fires by one of their keys, then by time. */
+/* A Fire by one of its keys; sorted by key, then by time. */
 typedef struct FireKey {
     uint64_t key;
     double   t_s;

@@ -3,11 +3,11 @@
 
 #include "dis/pdu/pdu.h"
 
-/* Pitch and roll follow the ground. */
+/* Whether pitch and roll of such an entity follow the ground. */
 static bool leans(DisEntityType type)
 {
     return (type.kind == dis_kind_platform && type.domain == dis_domain_land) ||
-           (type.kind == dis_kind_life_form && type.domain <= dis_domain_land); /* 0: of no domain */
+           (type.kind == dis_kind_life_form && type.domain <= dis_domain_land); /* domain 0: no domain is given */
 }
 
 bool contact_applies(DisEntityType type)
@@ -19,8 +19,9 @@ bool contact_applies(DisEntityType type)
 
 bool contact_floats(DisEntityType type) { return type.kind == dis_kind_platform && type.domain == dis_domain_surface; }
 
-/* Aircraft below the ground that all entities are clamped to, as over real relief that their sender did not know: those
- * that stand still are moved onto it; others as far above it as they are below, at most 20 m. */
+/* Whether such an entity is lifted out of the ground. Where all entities are clamped, aircraft may be below the ground,
+ * over real relief that their sender did not know. Those that stand still are moved onto it; others are moved as far
+ * above it as they were below, at most 20 m. */
 static bool is_lifted(DisEntityType type) { return type.kind == dis_kind_platform && type.domain == dis_domain_air; }
 
 double contact_share(DisEntityType type, double above_m)
@@ -30,7 +31,7 @@ double contact_share(DisEntityType type, double above_m)
     return t * t * (3 - 2 * t);
 }
 
-/* Unit normal of the ellipsoid through a place, ECEF. */
+/* Unit normal of the ellipsoid at a place, ECEF. */
 static bool vertical(double up_ecef[3], const double p_ecef[3])
 {
     Geodetic place;
@@ -42,8 +43,8 @@ static bool vertical(double up_ecef[3], const double p_ecef[3])
     return true;
 }
 
-/* Distance up from p to the ground. The vertical is inclined against ENU, so the query is iterated at the last result;
- * each step is smaller by lean times slope, below a hundredth. */
+/* Distance along the vertical from p to the ground. The vertical is inclined to ENU's z, so the query is repeated at
+ * the last result; each error is below a hundredth of the one before (inclination times slope). */
 static double way_up_m(const ContactGround *ground, const double p_enu[3], const double up_enu[3])
 {
     double way_m = 0;
@@ -65,7 +66,7 @@ double contact_above_m(const ContactGround *ground, const double p_ecef[3])
     return -way_up_m(ground, p_enu, up_enu);
 }
 
-/* Carried through the air, or falling through it. */
+/* Whether an entity is carried through the air, or falls through it. */
 static bool is_airborne(DisEntityType type, const double v_ecef_mps[3], const double up_ecef[3])
 {
     const double v_up = v3_dot(v_ecef_mps, up_ecef), v = v3_length(v_ecef_mps);
@@ -73,13 +74,14 @@ static bool is_airborne(DisEntityType type, const double v_ecef_mps[3], const do
     return v > (type.kind == dis_kind_platform ? 60 : 12) || v_up < -fmax(2, 0.5 * along);
 }
 
-/* The way from a base to the ground. */
+/* The vertical line from an entity's base to the ground. */
 typedef struct WayUp {
-    double up_ecef[3], up[3], p[3]; /* the vertical; ENU: that, and the base */
-    double way_m, share;            /* share of it that it is moved */
+    double up_ecef[3], up[3], p[3]; /* the vertical in ECEF; the vertical and the base in ENU */
+    double way_m, share;            /* way_m: distance to the ground; share: the part of it that the entity is moved */
 } WayUp;
 
-/* Share of the way to the ground that an entity is moved, p_enu being its base: 1 where all entities are clamped. */
+/* The share of the way to the ground that an entity is moved; p_enu is its base. It is 1 where all entities are
+ * clamped. */
 static double share_of(const WayUp *w, DisEntityType type, const double v_ecef_mps[3], const ContactGround *ground)
 {
     if (!ground->landscape) return 1;
@@ -91,14 +93,14 @@ static double share_of(const WayUp *w, DisEntityType type, const double v_ecef_m
     return at_sea ? 0 : share;
 }
 
-/* Clearly consistent with the ground: independent of the inclination of the vertical. */
+/* Whether an entity is clearly consistent with the ground, however the vertical is inclined. */
 static bool stands_near(DisEntityType type, const ContactGround *ground, const double p_enu[3])
 {
     const double above_m = p_enu[2] - elevation_height(ground->elevation, p_enu[0], p_enu[1], NULL);
     return ground->landscape && fabs(p_enu[0]) + fabs(p_enu[1]) < 20000 && contact_share(type, 1.01 * above_m) == 0;
 }
 
-/* False: it stays where it is. */
+/* Finds the way to the ground; returns false where the entity stays where it is. */
 static bool way_to_ground(WayUp *w, DisEntityType type, const double p_ecef[3], const double v_ecef_mps[3],
                           const ContactGround *ground)
 {
@@ -136,9 +138,10 @@ static void lift(SnapshotEntity *e, const ContactGround *ground)
 void contact_set(SnapshotEntity *e, const ContactGround *ground, const Model *model)
 {
     enum { along = 5, across = 3 };
-    static const double steepest = 1; /* tan 45 degrees: a wall of a surface model is not a road */
-    double              r_enu_from_body[9], forward[3], right[3];
-    WayUp               w;
+    static const double steepest =
+        1; /* tan 45 degrees; what is steeper, such as a wall in a surface model, is not a road */
+    double r_enu_from_body[9], forward[3], right[3];
+    WayUp  w;
     if (ground->elevation && !ground->landscape && is_lifted(e->type)) lift(e, ground);
     if (!way_to_ground(&w, e->type, e->p_ecef, e->v_ecef_mps, ground)) return;
     const double *up = w.up, *up_ecef = w.up_ecef, *p = w.p, share = w.share;
@@ -170,14 +173,14 @@ void contact_set(SnapshotEntity *e, const ContactGround *ground, const Model *mo
                 sum_aa += a * a;
                 sum_bb += b * b;
             }
-        if (!isfinite(sum)) return; /* partly outside of the elevation data */
+        if (!isfinite(sum)) return; /* the box is partly outside of the elevation data */
         way_m = sum / (along * across);
         slope_forward = clamp(sum_a / sum_aa, -steepest, steepest);
         slope_right = clamp(sum_b / sum_bb, -steepest, steepest);
     }
     v3_add_scaled(e->p_ecef, e->p_ecef, share * way_m, up_ecef);
     if (!upright) return;
-    if (share < 1) { /* between its own tilt and the ground's */
+    if (share < 1) { /* it is turned a share of the way from its own tilt to the ground's */
         const double own[3] = {r_enu_from_body[1], r_enu_from_body[4], r_enu_from_body[7]};
         const double forward_m = v3_dot(nose, forward), right_m = fmax(v3_dot(own, right), 0.1);
         slope_forward = v3_dot(nose, up) / forward_m + share * (slope_forward - v3_dot(nose, up) / forward_m);

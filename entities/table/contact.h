@@ -13,13 +13,14 @@
 typedef struct ContactGround {
     const LocalFrame *frame;
     const Elevation  *elevation; /* NULL: entities stay at their reported positions */
-    const Landscape  *landscape; /* not NULL: only inconsistent entities are clamped; also gives its sea */
+    const Landscape  *landscape; /* not NULL: the terrain is synthetic, so only inconsistent entities are clamped; it
+                                    also gives the sea */
 } ContactGround;
 
-/* Land platforms; life forms, cultural features, supplies and sensors on land or of no domain, of which the last three
- * keep their attitude. */
+/* Whether an entity is clamped to the ground: land platforms, life forms, cultural features, supplies and sensors, on
+ * land or of no domain. The last three keep their attitude. */
 bool contact_applies(DisEntityType type);
-/* Surface platforms. */
+/* Whether an entity is clamped to the water: surface platforms. */
 bool contact_floats(DisEntityType type);
 
 /* Share of the distance to the ground (or the water) that an inconsistent entity is moved: 0 within 0.1 m of the ground
@@ -38,7 +39,8 @@ double contact_above_m(const ContactGround *ground, const double p_ecef[3]);
  * above 12; sinking faster than 2 m/s and half its horizontal speed) and for those above the sea (on a deck, swimming).
  * Ships are clamped to the sea's surface, or where none is known to the ground; they keep their attitude. */
 void contact_set(SnapshotEntity *e, const ContactGround *ground, const Model *model);
-/* The same of a place alone, such as the end of a track: by the ground under it, without what lies about it. */
+/* Moves a place alone, such as the end of a track, as contact_set moves an entity there, by the ground at the place
+ * itself. */
 void contact_move(double p_ecef[3], DisEntityType type, const double v_ecef_mps[3], const ContactGround *ground);
 
 #endif

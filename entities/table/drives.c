@@ -3,20 +3,21 @@
 
 #include "dis/pdu/pdu.h"
 
-static const double moving_mps = 0.3;          /* above the jitter of reports of a stationary vehicle */
+static const double moving_mps = 0.3;          /* above the jitter in the reports of a stationary vehicle */
 static const double engine_after_stop_s = 120; /* crews halt with the engine on; estimate */
-static const double full_speed_mps = 10;       /* estimate: a vehicle's usual off-road speed */
+static const double full_speed_mps = 10;       /* a vehicle's usual speed off the road; estimate */
 /* Estimates: full power is some 1.2 W a newton of weight (600 kW for 50 t), which would lift it at 1.2 m/s; a turn
  * of 1 rad/s takes all of it in a tracked vehicle. */
 static const double full_climb_mps = 1.2, full_turn_rps = 1;
-static const double burn_s = 2;      /* a TOW's launch and flight motors together: under 2 s */
-static const double flare_s = 4;     /* decoy flares of the MJU class burn for 3 .. 5 s; estimate */
-static const double wreck_s = 600;   /* fuel, rubber and ammunition of a vehicle burn out; estimate */
-static const float  smoulder = 0.1f; /* of what flames give: a fire inside that is not seen; estimate */
+static const double burn_s = 2;    /* a TOW's launch and flight motors together: under 2 s */
+static const double flare_s = 4;   /* decoy flares of the MJU class burn for 3 .. 5 s; estimate */
+static const double wreck_s = 600; /* fuel, rubber and ammunition of a vehicle burn out; estimate */
+static const float  smoulder =
+    0.1f; /* share of the heat of flames that a fire inside, which is not seen, gives; estimate */
 static const double most_fired_kg = 1e9;
 
-/* Two bits, 3 = destroyed, in the same place for every platform domain, for buildings, and (fatally injured) for
- * life forms. */
+/* Whether the damage bits are 3, destroyed. They have the same place for every platform domain, for buildings, and (as
+ * fatally injured) for life forms. */
 static bool is_destroyed(const DriveEvidence *evidence)
 {
     const int kind = evidence->type.kind;
@@ -24,7 +25,7 @@ static bool is_destroyed(const DriveEvidence *evidence)
            (evidence->appearance >> dis_appearance_damage_shift & 3) == dis_damage_destroyed;
 }
 
-/* 0 .. 1 of what is between idling and full power. */
+/* Load of the engine, from 0 at idling to 1 at full power. */
 static double load_of(const DriveEvidence *e, double speed_mps)
 {
     const double climb_mps = isfinite(e->climb_mps) ? e->climb_mps : 0,
@@ -36,8 +37,8 @@ static void take(DriveState *state, const DriveEvidence *evidence, double t_s)
 {
     const bool platform = evidence->type.kind == dis_kind_platform,
                air = platform && evidence->type.domain == dis_domain_air;
-    const int smoke =
-        (int)(evidence->appearance >> dis_appearance_smoke_shift & 3); /* 1: a plume from it, 2: engine smoke */
+    const int  smoke = (int)(evidence->appearance >> dis_appearance_smoke_shift &
+                            3); /* bit 1: a plume of smoke rises from it; bit 2: engine smoke */
     const bool works = !is_destroyed(evidence), was_moving = state->moving;
     const bool lives = evidence->type.kind == dis_kind_life_form || evidence->type.kind == dis_kind_cultural_feature;
 
@@ -58,7 +59,7 @@ static void take(DriveState *state, const DriveEvidence *evidence, double t_s)
     state->alive = lives && works;
     state->flaming = platform && evidence->appearance >> dis_appearance_flaming_bit & 1;
     state->smoulders = platform && smoke & 1 && (evidence->appearance >> dis_appearance_damage_shift & 3) != 0;
-    state->destroyed = platform && !works; /* only machines burn out */
+    state->destroyed = platform && !works; /* only machines burn out; others are just destroyed */
 }
 
 void drives_begin(DriveState *state, const DriveEvidence *evidence, double t_s)

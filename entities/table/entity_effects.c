@@ -2,9 +2,9 @@
  * dis/pdu/pdu.h; a guided munition's motor burns for the time given by drives.c, independent of its bits. */
 #include "entities/table/entity_table_private.h"
 
-static const double moving_mps = 0.3; /* as drives.c: no dust from stationary entities */
+static const double moving_mps = 0.3; /* the limit of drives.c: stationary entities raise no dust */
 
-/* Scale of flames and smoke by the size of the burning entity: 1 for 40 m3 of vehicle. */
+/* Scale of flames and smoke by the size of the burning entity; 1 for a vehicle of 40 m3. */
 static double size_of(const Model *model)
 {
     return clamp(cbrt(model->length_m * model->width_m * model->height_m / 40), 0.25, 4);
@@ -17,7 +17,7 @@ static bool motor_burns(const EntitySlot *slot, double t_s)
             (slot->roles >> HEAT_MOTOR & 1 && slot->drives.motor.until_s > t_s));
 }
 
-/* The vector from the reported position to the centre of the model's base, body axes. */
+/* Distance along body z from the reported position down to the centre of the model's base. */
 static double base_below_m(const EntitySlot *slot, const Model *model)
 {
     return slot->origin == ORIGIN_CENTRE ? 0.5 * model->height_m : 0;
@@ -41,7 +41,7 @@ void entity_effects_end(EntityTable *table, EntitySlot *slot, double t_s)
 
 void entity_effects_report(EntityTable *table, EntitySlot *slot, double t_s)
 {
-    static const double trail_rate[4] = {0, 0.35, 1, 2.5}; /* small, medium, large: estimate */
+    static const double trail_rate[4] = {0, 0.35, 1, 2.5}; /* none, small, medium, large; estimate */
     const uint32_t      bits = slot->appearance;
     const bool platform = slot->type.kind == dis_kind_platform, munition = slot->type.kind == dis_kind_munition;
     const bool air = slot->type.domain == dis_domain_air;
@@ -117,7 +117,7 @@ typedef struct Plume {
     double             length_m, across_scale;
 } Plume;
 
-/* One volume of gas behind the tail with fluctuating length: random at every fiftieth of a second, linear in
+/* Adds one volume of gas behind the tail. Its length fluctuates: random at every fiftieth of a second, linear in
  * between. */
 static int plume_behind(EffectPuff *out, const SnapshotEntity *e, const Model *model, const Plume *plume, double t_s)
 {
@@ -141,7 +141,8 @@ static int plume_behind(EffectPuff *out, const SnapshotEntity *e, const Model *m
                         .scale = across_scale,
                         .along_m = 0.5 * length,
                         .mass_kg = plume->law->mass_kg * across_scale * across_scale * length};
-    tail_body[0] = model->box_low[0] - 0.36 * length; /* a seventh of it inside: at its very end it is thin */
+    tail_body[0] =
+        model->box_low[0] - 0.36 * length; /* a seventh of it is inside the tail, since it is thin at its very end */
     tail_body[2] = -0.5 * model->height_m;
     m3_mul_v3(tail_ecef, e->r_ecef_from_body, tail_body);
     v3_add(out->p_ecef, e->p_ecef, tail_ecef);
@@ -150,8 +151,8 @@ static int plume_behind(EffectPuff *out, const SnapshotEntity *e, const Model *m
     return 1;
 }
 
-/* Where the gas leaves, body axes, and which way: the middle of the model's outlet parts at rest, and the axis along
- * which they lie farthest out; never downwards. False: no such part. */
+/* Where a model's exhaust gas leaves, and in which direction, body axes: the middle of the outlet parts at rest, and
+ * the axis along which they lie farthest out, but never downwards. Returns false where no part is an outlet. */
 static bool outlet_of(double at_body[3], double d_body[3], const Model *model, HeatRole role)
 {
     double sum[3] = {0}, far = -1;
@@ -185,7 +186,7 @@ static bool outlet_of(double at_body[3], double d_body[3], const Model *model, H
     return true;
 }
 
-/* Rotors and a turbine: a rotorcraft, whose gas leaves that. */
+/* Whether a model has rotors and a turbine: a rotorcraft, whose gas leaves the turbine. */
 static bool is_rotorcraft(uint32_t roles) { return roles >> HEAT_ROTOR & 1 && roles >> HEAT_TURBINE & 1; }
 
 void entity_effects_outlet(EntityTable *table, int model)
@@ -211,9 +212,9 @@ typedef struct Exhaust {
     double             drive, scale; /* drive: the engine's share of full power */
 } Exhaust;
 
-/* Exhaust as a jet that mixes with the air: puffs of exactly equal intervals of age, the first one growing in. They
- * left where the outlet was at their age ago, and keep its speed and the jet's for a moment; wind and buoyancy carry
- * them on (effects.c). The whole depends on t alone. */
+/* Adds the exhaust, a jet that mixes with the air, as puffs at equal intervals of age; the first one is still growing.
+ * Each left the outlet where it was at that time, and keeps the outlet's and the jet's speed for a moment; then wind
+ * and buoyancy carry it (effects.c). All of it depends on t alone. */
 static int exhaust_behind(EffectPuff *out, const SnapshotEntity *e, const ModelOutlet *outlet, const Exhaust *exhaust,
                           double t_s)
 {
@@ -242,10 +243,10 @@ static int exhaust_behind(EffectPuff *out, const SnapshotEntity *e, const ModelO
         v3_add(puff->p_ecef, e->p_ecef, at_ecef);
         v3_add_scaled(puff->p_ecef, puff->p_ecef, -puff->age_s, e->v_ecef_mps);
         v3_scale(puff->up_ecef, 1 / v3_length(e->p_ecef), e->p_ecef);
-        /* as long as the way from one puff to the next, seen from the outlet, so that they join */
+        /* a puff is as long as the way to the next puff, seen from the outlet, so that puffs join */
         const double early = exp(-(puff->age_s - 0.5 * interval_s) / jet_decay_s);
         const double jet_m = jet_mps * jet_decay_s * early * -expm1(-interval_s / jet_decay_s);
-        const double left_s = interval_s - jet_m / jet_mps; /* times the outlet's speed */
+        const double left_s = interval_s - jet_m / jet_mps; /* multiplied by the outlet's speed */
         double       way[3];
         for (int i = 0; i < 3; i++) {
             puff->throw_mps[i] = jet_mps * d_ecef[i] + e->v_ecef_mps[i];
@@ -282,7 +283,7 @@ int entity_effects_carried(EffectPuff out[entity_carried_max], const EntityTable
     const ModelOutlet *outlet = &table->outlet[entity->model];
 
     if (!(fabs(t_s) < effect_latest_s)) return 0;
-    if (motor_burns(slot, t_s)) /* a light missile of 1.2 m: 1.5 m of flame */
+    if (motor_burns(slot, t_s)) /* scale: a light missile is 1.2 m long and has 1.5 m of flame */
         return plume_behind(out, entity, model,
                             &(Plume){EFFECT_MOTOR_PLUME, &effects->law[EFFECT_MOTOR_PLUME],
                                      fmax(1.25 * model->length_m, 0.5), clamp(model->width_m / 0.3, 0.5, 4)},
@@ -305,12 +306,14 @@ int entity_effects_carried(EffectPuff out[entity_carried_max], const EntityTable
     return 0;
 }
 
-/* A ground-clamped entity emits smoke there, and a burst on the ground is on the same ground. */
+/* Moves a puff onto the ground. An entity that is clamped to the ground emits smoke there, and a burst on the ground is
+ * on the same ground. */
 static void set_onto_ground(EffectPuff *puff, const ContactGround *ground)
 {
     static const DisEntityType vehicle = {.kind = dis_kind_platform, .domain = dis_domain_land};
     double                     way_m = puff->grounded ? puff->above_m - contact_above_m(ground, puff->p_ecef) : 0;
-    if (ground->landscape) way_m *= contact_share(vehicle, way_m); /* clamped by the same distance as its entity */
+    if (ground->landscape)
+        way_m *= contact_share(vehicle, way_m); /* it is moved by the same share of the way as its entity */
     if (isfinite(way_m)) v3_add_scaled(puff->p_ecef, puff->p_ecef, way_m, puff->up_ecef);
 }
 
@@ -333,7 +336,7 @@ Status entity_effects_snapshot(Snapshot *snapshot, const EntityTable *table, con
     return STATUS_OK;
 }
 
-/* The gun is at its lower stop and the turret at an arbitrary azimuth, unless the sender reports them. */
+/* A wreck's gun is at its lower stop and its turret at an arbitrary azimuth, unless the sender reports these joints. */
 void entity_effects_wreck_joints(double *joint_value, const Model *model, const SnapshotEntity *entity, int reports)
 {
     if (entity->type.kind != dis_kind_platform || reports > 0 ||
@@ -341,7 +344,7 @@ void entity_effects_wreck_joints(double *joint_value, const Model *model, const 
         return;
     for (int n = 0; n < model->node_count; n++) {
         const ModelNode *node = &model->node[n];
-        if (node->dis_class < 4096 || node->dis_class >= 7000) continue; /* turrets and guns */
+        if (node->dis_class < 4096 || node->dis_class >= 7000) continue; /* classes 4096 .. 6999: turrets and guns */
         if (node->dis_metric == 13) joint_value[n] = node->low < node->high ? node->low : -0.1;
         if (node->dis_metric == 11)
             joint_value[n] = 0.6 * (2 * random_uniform(entity_key(entity->id), 79, 0, (uint64_t)n) - 1);

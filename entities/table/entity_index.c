@@ -4,7 +4,8 @@
 
 #include <stdlib.h>
 
-/* Finalizer of SplitMix64 (Steele, Lea, Flood, OOPSLA 2014): ids are small consecutive numbers. */
+/* The cell where a search begins. Ids are small consecutive numbers, so they are mixed by SplitMix64's finalizer
+ * (Steele, Lea, Flood, OOPSLA 2014). */
 static uint32_t home(const EntityIndex *index, uint64_t key_plus_1)
 {
     uint64_t x = key_plus_1;
@@ -13,7 +14,7 @@ static uint32_t home(const EntityIndex *index, uint64_t key_plus_1)
     return (uint32_t)(x ^ x >> 31) & index->mask;
 }
 
-/* The key's cell, or the empty one where it would go. */
+/* The cell that holds the key, or the empty one where it would go. */
 static uint32_t locate(const EntityIndex *index, uint64_t key_plus_1)
 {
     uint32_t at = home(index, key_plus_1);
@@ -53,7 +54,7 @@ void entity_index_remove(EntityIndex *index, uint64_t key)
     uint32_t gap = locate(index, key + 1);
     if (!index->cell[gap].key_plus_1) return;
 
-    /* Each later cell of the run moves into the gap unless that would put it before its home. */
+    /* moves each later cell of the run into the gap, unless that would put it before its home */
     for (uint32_t at = (gap + 1) & index->mask; index->cell[at].key_plus_1; at = (at + 1) & index->mask) {
         const uint32_t from_home = (at - home(index, index->cell[at].key_plus_1)) & index->mask;
         const uint32_t from_gap = (at - gap) & index->mask;

@@ -5,7 +5,7 @@
 
 #include "dis/pdu/pdu.h"
 
-/* The three parts in one number that sorts as dis_entity_id_compare does. */
+/* The three parts of an id in one number; these sort as dis_entity_id_compare does. */
 static inline uint64_t entity_key(DisEntityId id)
 {
     return (uint64_t)id.site << 32 | (uint64_t)id.application << 16 | id.entity;
@@ -23,8 +23,8 @@ typedef struct EntityIndex {
 
 Status entity_index_create(EntityIndex *out, int capacity);
 void   entity_index_destroy(EntityIndex *index);
-int    entity_index_find(const EntityIndex *index, uint64_t key); /* -1: not there */
-/* The key must not be there, and no more than capacity keys ever at once. */
+int    entity_index_find(const EntityIndex *index, uint64_t key); /* -1: the key is not there */
+/* The key must not be there yet, and there are never more keys than the capacity. */
 void entity_index_insert(EntityIndex *index, uint64_t key, int value);
 void entity_index_remove(EntityIndex *index, uint64_t key);
 /* Doubles the capacity; on failure the index is unchanged. */

@@ -8,8 +8,8 @@
 #include <stdlib.h>
 
 enum {
-    tier_count = 4,                       /* known * 2 + near: evicted from in this order */
-    list_count = 2 * entity_rank_classes, /* known * entity_rank_classes + class */
+    tier_count = 4,                       /* tier known * 2 + near; entities are evicted from the lowest tier first */
+    list_count = 2 * entity_rank_classes, /* list known * entity_rank_classes + class */
     nothing = -1,
 };
 
@@ -18,28 +18,28 @@ static const uint32_t near_lists = (UINT32_C(1) << entity_rank_near_classes) - 1
                       new_lists = (UINT32_C(1) << entity_rank_classes) - 1;
 
 typedef struct Node {
-    int     older, newer;  /* in its list */
-    int     before, after; /* of all, in the order of their last reports */
-    int     sender;        /* none: not present */
+    int     older, newer;  /* neighbours in its list */
+    int     before, after; /* neighbours in the order of the last reports of all entities */
+    int     sender;        /* none: the slot is not ranked */
     uint8_t list;
 } Node;
 
 typedef struct Sender {
-    uint32_t key;                                    /* site, application */
-    uint32_t lists;                                  /* bit l: list l holds any */
-    int      count[tier_count], at[tier_count];      /* at: in the heap of the tier, where count > 0 */
-    int      oldest[list_count], newest[list_count]; /* as given by lists */
+    uint32_t key;                               /* site, application */
+    uint32_t lists;                             /* bit l: list l is not empty */
+    int      count[tier_count], at[tier_count]; /* entities of each tier; place in that tier's heap, where count > 0 */
+    int      oldest[list_count], newest[list_count]; /* oldest and newest entity of each list */
 } Sender;
 
 struct EntityRanks {
-    int         room, first, last; /* room: of a tier; first, last: least and most recently reported */
-    Node       *node;              /* [slots] */
-    Sender     *sender;            /* [slots]; used below sender_end */
-    int        *free_sender;
-    int         sender_end, free_count;
-    EntityIndex index; /* of senders */
+    int     room, first, last; /* room: entities reserved for a tier; first, last: reported least and most recently */
+    Node   *node;              /* [slots] */
+    Sender *sender;            /* [slots]; elements below sender_end are in use */
+    int    *free_sender;
+    int     sender_end, free_count;
+    EntityIndex index; /* index of senders by key */
     int         total[tier_count], heap_count[tier_count];
-    int        *heap[tier_count]; /* [slots], of senders */
+    int        *heap[tier_count]; /* [slots] heaps of senders, one for each tier */
 };
 
 Status entity_ranks_create(EntityRanks **out, int slots, int capacity)
@@ -97,7 +97,7 @@ static void set_place(EntityRanks *r, int tier, int place, int sender)
     r->sender[sender].at[tier] = place;
 }
 
-/* Sifts it to its position in the heap, from a free position. */
+/* Sifts a sender from a free place of the heap to the place where it belongs. */
 static void sift(EntityRanks *r, int tier, int place, int sender)
 {
     const int *heap = r->heap[tier], count = r->heap_count[tier];
@@ -254,7 +254,8 @@ int entity_ranks_worst(const EntityRanks *r)
     int tier = nothing;
     for (int t = 0; t < tier_count && tier == nothing; t++)
         if (r->total[t] > r->room) tier = t;
-    for (int t = 0; t < tier_count && tier == nothing; t++) /* only where some that the table keeps are not ranked */
+    for (int t = 0; t < tier_count && tier == nothing;
+         t++) /* reached only where some entities of the table are not ranked */
         if (r->total[t] > 0) tier = t;
     if (tier == nothing) return nothing;
     const Sender *s = r->sender + r->heap[tier][0];
@@ -282,7 +283,7 @@ enum { sender_limit = 4096 };
 
 typedef struct Bucket {
     uint64_t key;
-    double   tokens, filled_s; /* tokens at filled_s, the latest time of a call */
+    double   tokens, filled_s; /* tokens there were at filled_s, the latest time of a call */
 } Bucket;
 
 struct EntityRate {
@@ -342,11 +343,11 @@ bool entity_rate_take(EntityRate *r, DisEntityId id, double t_s)
 
 typedef struct Tombstone {
     uint64_t key;
-    double   end_s, detonated_s; /* the latest of each kind; -inf: none */
+    double end_s, detonated_s; /* end_s: latest end of any kind; detonated_s: latest end by a Detonation; -inf: none */
 } Tombstone;
 
 struct Tombstones {
-    int         capacity, count, next; /* next: the oldest, where count is the capacity */
+    int capacity, count, next; /* next: the element that the next tombstone takes, the oldest once the buffer is full */
     double      keep_s;
     Tombstone  *stone; /* [capacity] */
     EntityIndex index;
@@ -376,7 +377,7 @@ void tombstones_destroy(Tombstones *t)
     free(t);
 }
 
-/* The slot of a new one: a free slot, or that of the oldest. */
+/* Returns a slot for a new tombstone: a free one, or that of the oldest. */
 static int make_room(Tombstones *t, double now_s)
 {
     const int place = t->next;

@@ -23,19 +23,20 @@ typedef struct EntityRanks EntityRanks;
 /* Class 0: within 625 m; k: within 625 m * 2^k. Near: within 10 km. */
 enum { entity_rank_classes = 16, entity_rank_near_classes = 5, entity_rank_unknown = entity_rank_classes - 1 };
 
-/* Entities are numbered 0 .. slots - 1. capacity: most that a table keeps; what a quarter is. */
+/* Entities are numbered 0 .. slots - 1. capacity: most entities that the table keeps, of which each tier has a quarter.
+ * */
 Status entity_ranks_create(EntityRanks **out, int slots, int capacity);
 void   entity_ranks_destroy(EntityRanks *ranks);
 
 int entity_rank_class(const double p_ecef[3], const double from_ecef[3]);
 
-/* A report of it was received: inserts it, or marks it the most recent. */
+/* Inserts an entity whose report was received, or marks it as the most recent. */
 void entity_ranks_put(EntityRanks *ranks, int slot, DisEntityId id, bool known, int distance_class);
-/* Updates the distances of all; times of reports are unchanged. O(slots). */
+/* Updates the distances of all entities; the order of their reports is unchanged. O(slots). */
 void entity_ranks_again(EntityRanks *ranks, int (*distance_class)(const void *user, int slot), const void *user);
-void entity_ranks_remove(EntityRanks *ranks, int slot); /* not there: nothing happens */
-int  entity_ranks_worst(const EntityRanks *ranks);      /* -1: none is there */
-/* The sender with the most entities; returns how many. O(senders). */
+void entity_ranks_remove(EntityRanks *ranks, int slot); /* does nothing when the entity is not ranked */
+int  entity_ranks_worst(const EntityRanks *ranks);      /* the entity to be evicted; -1: none is ranked */
+/* Sets the sender with the most entities; returns how many it has. O(senders). */
 int entity_ranks_largest(DisEntityId *sender, const EntityRanks *ranks);
 
 /* ---- rates ------------------------------------------------------------------------------------- */
@@ -51,7 +52,7 @@ typedef struct EntityRate EntityRate;
 /* new_per_s: at least 1. Memory is fixed when it is made. */
 Status entity_rate_create(EntityRate **out, double new_per_s);
 void   entity_rate_destroy(EntityRate *rate);
-/* One more of this sender at t_s: whether it is admitted, and then counted. Decreasing times add no tokens. */
+/* Whether one more entity of this sender is admitted at t_s; if so it is counted. Times that decrease add no tokens. */
 bool entity_rate_take(EntityRate *rate, DisEntityId id, double t_s);
 
 /* ---- tombstones -------------------------------------------------------------------------------- */
@@ -68,11 +69,12 @@ enum { tombstones_beyond_capacity = 256 };
 Status tombstones_create(Tombstones **out, int capacity, double keep_s);
 void   tombstones_destroy(Tombstones *tombstones);
 
-/* An entity ended at end_s; detonated: by its Detonation. */
+/* Records that an entity ended at end_s. detonated: it ended by its Detonation. */
 void tombstones_put(Tombstones *tombstones, DisEntityId id, double end_s, bool detonated);
-/* Whether a report at t_s is of one that had ended: before its end, or sooner than after_s after its Detonation. */
+/* Whether a report at t_s comes from an entity that had ended: it is before the end, or follows its Detonation by less
+ * than after_s. */
 bool tombstones_ended(const Tombstones *tombstones, DisEntityId id, double t_s, double after_s);
-/* Those that went younger than keep_s. */
+/* How many tombstones were dropped before they were keep_s old. */
 uint64_t tombstones_dropped(const Tombstones *tombstones);
 
 #endif

@@ -2,8 +2,8 @@
  * recorded follows from PDUs: nothing from a snapshot, a timeout or a tick. */
 #include "entities/table/entity_table_private.h"
 
-static const double moving_mps = 0.3;  /* as heat.c */
-static const double stood_s = 60;      /* shorter ones leave no mark */
+static const double moving_mps = 0.3;  /* the limit of drives.c */
+static const double stood_s = 60;      /* shorter stands leave no mark */
 static const double near_ground_m = 3; /* the elevation of senders differs from ours by metres */
 static const double gravity_mps2 = 9.80665;
 
@@ -24,7 +24,8 @@ static bool is_aircraft(const EntitySlot *slot)
     return slot->type.kind == dis_kind_platform && slot->type.domain == dis_domain_air;
 }
 
-/* A hovering helicopter has no speed either: without elevation data no aircraft is parked. */
+/* Whether an aircraft is parked on the ground. A hovering helicopter has no speed either, so without elevation data
+ * none is parked. */
 static bool is_on_ground(const EntityTable *table, const EntitySlot *slot, const double p_ecef[3])
 {
     if (contact_applies(slot->type)) return true;
@@ -39,7 +40,7 @@ static void base_of(double p_base_ecef[3], const EntitySlot *slot, const Model *
     for (int i = 0; i < 3; i++) p_base_ecef[i] = p_ecef[i] + r_ecef_from_body[3 * i + 2] * below_m;
 }
 
-/* A base where its entity is shown: on the ground where that is clamped. */
+/* Moves a base to where its entity is shown: onto the ground, if it is clamped to it. */
 static void settle(double p_base_ecef[3], const EntityTable *table, const EntitySlot *slot, const double v_ecef_mps[3])
 {
     contact_move(p_base_ecef, slot->type, v_ecef_mps, &table->config.ground);
@@ -49,10 +50,11 @@ static void settle(double p_base_ecef[3], const EntityTable *table, const Entity
 
 static double lasts_until_s(const EntitySlot *slot) { return slot->report_s + slot->paused_s + slot->timeout_s; }
 
-/* What its exhaust did from this place, after a report. False: its engine runs again, and that is another stand's. */
+/* Finds what an entity's exhaust did from this place, after a report. Returns false when its engine runs again, which
+ * begins another stand. */
 static bool blows(EntityTable *table, const EntitySlot *slot, EntityMarks *m, bool is_first, double t_s)
 {
-    static const double before_s = 3600; /* render/heat/vehicle_heat.h assumes the same of its past */
+    static const double before_s = 3600; /* render/heat/vehicle_heat.h assumes this time of the engine's past as well */
     const ModelOutlet  *outlet = &table->outlet[slot->model];
     const DriveUntil   *engine = &slot->drives.engine;
     GroundBlow         *b = &m->blow;
@@ -75,7 +77,7 @@ static bool blows(EntityTable *table, const EntitySlot *slot, EntityMarks *m, bo
     return true;
 }
 
-/* Place and attitude of a stand: those that its entity is shown with. */
+/* Sets place and attitude of a stand, as the entity is shown there. */
 static void set_place(GroundStand *stand, const EntityTable *table, const EntitySlot *slot, const EntityMarks *m)
 {
     SnapshotEntity e = {.type = slot->type};
@@ -114,7 +116,7 @@ static const ModelStand *stood_of(EntityTable *table, const EntitySlot *slot)
     return s;
 }
 
-/* Recorded with the first report that finds it old enough, or that ends it. */
+/* Records a stand with the first report that finds it old enough, or that ends it. */
 static void record_stand(EntityTable *table, const EntitySlot *slot, EntityMarks *m, double to_s, double t_s)
 {
     GroundBlow blow = m->blow;
@@ -192,7 +194,7 @@ static double step_of(const EntitySlot *slot, double span_s, int most)
     return step_s;
 }
 
-/* Whose trail, and where its points go: into the history, or into out[count]. */
+/* Where the points of a trail go: into the history of its owner, or into out[count]. */
 typedef struct TrailSink {
     const EntityTable *table;
     const EntitySlot  *slot;
@@ -219,7 +221,7 @@ static void path_point(TrailSink *sink, GroundTrail *trail, double own_s, bool l
     put_point(sink, trail, p_ecef, own_s + slot->paused_s, last);
 }
 
-/* The extrapolated path after from_s, with its end or without; times: the entity's own. */
+/* Follows the extrapolated path after from_s up to its end, which is included or not. Times are the entity's own. */
 static void follow(TrailSink *sink, GroundTrail *trail, double from_s, double to_s, int most, bool with_end)
 {
     const double step_s = step_of(sink->slot, to_s - from_s, most), first = floor(from_s / step_s) + 1;
@@ -228,7 +230,7 @@ static void follow(TrailSink *sink, GroundTrail *trail, double from_s, double to
     if (with_end && to_s > from_s) path_point(sink, trail, to_s, true);
 }
 
-/* End of the extrapolation for t_s, the entity's own time. */
+/* End of the extrapolation for t_s, in the entity's own time. */
 static double own_end_s(const EntitySlot *slot, double t_s) { return slot->report_s + entity_slot_dt(slot, t_s); }
 
 enum { most_points = 64, most_tail_points = 7 };
@@ -243,7 +245,7 @@ void entity_marks_before(EntityTable *table, EntitySlot *slot, double t_s)
     m->followed_s = to_s;
 }
 
-/* After a report. */
+/* Continues an entity's trail after a report. */
 static void report_trail(EntityTable *table, EntitySlot *slot, EntityMarks *m, const double p_base_ecef[3],
                          double speed_mps, double t_s)
 {
@@ -295,7 +297,7 @@ void entity_marks_report(EntityTable *table, EntitySlot *slot, bool is_first, do
     table->counters.marks_forgotten = (uint64_t)ground_history_forgotten(table->ground);
 }
 
-/* A stopped entity does not time out. */
+/* stopped entities do not time out */
 void entity_marks_stop(EntityTable *table, EntitySlot *slot, double t_s)
 {
     if (!slot->marks) return;
@@ -314,11 +316,12 @@ void entity_marks_start(EntityTable *table, EntitySlot *slot, double t_s)
     EntityMarks *m = marks_of(table, slot);
     if (m->stands) ground_stand_until(table->ground, m->stand, fmax(t_s, lasts_until_s(slot)));
     if (!slot->trails) return;
-    m->trail.t_s = m->followed_s + slot->paused_s; /* the pause is not part of its speed */
+    m->trail.t_s = m->followed_s + slot->paused_s; /* the time of the pause is not part of its speed */
     m->trail.piece = 0;
 }
 
-/* After a timeout its stand ends when it was due to report; the path since its last report was never confirmed. */
+/* After a timeout, a stand ends at the time when the entity was due to report. The path since its last report was never
+ * confirmed, and is left out. */
 void entity_marks_end(EntityTable *table, EntitySlot *slot, bool silent, double t_s)
 {
     if (!slot->marks) return;
@@ -351,7 +354,8 @@ void entity_marks_detonation(EntityTable *table, const DisDetonation *pdu, doubl
     static const DisEntityType vehicle = {.kind = dis_kind_platform, .domain = dis_domain_land};
     static const double        still[3] = {0};
     memcpy(burn.p_ecef, pdu->p_ecef, sizeof burn.p_ecef);
-    contact_move(burn.p_ecef, vehicle, still, &table->config.ground); /* by the same distance as a vehicle there */
+    contact_move(burn.p_ecef, vehicle, still,
+                 &table->config.ground); /* moved by the same share as a vehicle at this place would be */
     ground_burn(table->ground, &burn);
     table->counters.marks_forgotten = (uint64_t)ground_history_forgotten(table->ground);
 }

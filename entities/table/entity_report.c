@@ -3,7 +3,7 @@
 
 #include "dis/clock/exercise_clock.h"
 
-/* Shorter than any reuse of an id by a launcher. */
+/* shorter than the time in which a launcher uses an id again */
 static const double after_detonation_s = 1;
 
 /* Above escape velocity (11.2 km/s), and above the acceleration of a gun-launched round in flight. */
@@ -20,16 +20,17 @@ static double timeout_of(const EntityTable *table, const EntitySlot *slot, uint8
     return version >= 7 && (!quick || stands) ? table->config.timeout_land_v7_s : table->config.timeout_s;
 }
 
-/* float to double; false and zero when not finite or above the limit. */
+/* Converts three floats to double. Returns false, and sets zeros, when one is not finite or their length is above the
+ * limit. */
 static bool sanitize(double out[3], const float in[3], double longest)
 {
     const double v[3] = {in[0], in[1], in[2]};
-    const bool   good = v3_length(v) <= longest; /* false for NaN */
+    const bool   good = v3_length(v) <= longest; /* false for NaN too */
     for (int i = 0; i < 3; i++) out[i] = good ? v[i] : 0;
     return good;
 }
 
-/* A stale report: older than the latest. */
+/* Whether a report is stale, that is, older than the entity's latest; it is then counted. */
 static bool is_late(EntityTable *table, const EntitySlot *slot, double t_s)
 {
     if (!(t_s < slot->report_s)) return false;
@@ -77,8 +78,8 @@ static void close_interval(EntitySlot *slot, const double p_next_ecef[3], const 
     if (!isfinite(slot->distance_m) || fabs(slot->distance_m) > 1e9) slot->distance_m = 0;
 }
 
-/* Takes in by how much a report's time has moved against its sender's stamps since the last one, so that the pose goes
- * on from where it was shown. Below 0.1 ms: as it comes; beyond 5 s the sender began anew. */
+/* Notes by how much a report's time has moved against its sender's stamps since the last one, so that the pose
+ * continues from where it was shown. A move below 0.1 ms is ignored; beyond 5 s the sender has begun anew. */
 static void take_shift(const EntityTable *table, EntitySlot *slot, uint32_t stamp, bool is_first, double t_s)
 {
     static const double least_s = 1e-4, most_s = 5;
@@ -95,7 +96,7 @@ static void take_shift(const EntityTable *table, EntitySlot *slot, uint32_t stam
     slot->shift_from_s = table->arrival_s;
 }
 
-/* Position, velocity and attitude, common to both kinds of report. */
+/* Takes in position, velocity and attitude, which both kinds of report have. */
 static void take_place(EntityTable *table, EntitySlot *slot, const double p_ecef[3], const float v_mps[3],
                        const float euler_rad[3], bool is_first, double t_s)
 {
@@ -109,7 +110,7 @@ static void take_place(EntityTable *table, EntitySlot *slot, const double p_ecef
     if (!sanitize(slot->reported.v_mps, v_mps, largest_speed_mps)) table->counters.motion_refused++;
 }
 
-/* Upwards, of its velocity. */
+/* Vertical component of the velocity, upwards positive. */
 static double climb_mps(const Kinematics *k)
 {
     double v_ecef_mps[3], up[3];
@@ -118,7 +119,7 @@ static double climb_mps(const Kinematics *k)
     return v3_normalize(up, k->p_ecef) ? v3_dot(v_ecef_mps, up) : 0;
 }
 
-/* What both kinds of report say beside place and motion. */
+/* What both kinds of report contain besides place and motion. */
 typedef struct ReportedState {
     uint8_t                     version;
     uint32_t                    appearance;
@@ -126,7 +127,7 @@ typedef struct ReportedState {
     int                         records;
 } ReportedState;
 
-/* Appearance, heat, articulation and times: the end of both kinds of report. */
+/* Takes in appearance, heat, articulation and times: the end of both kinds of report. */
 static void take_state(EntityTable *table, EntitySlot *slot, const ReportedState *state, bool is_first, double t_s)
 {
     const uint32_t appearance = state->appearance;

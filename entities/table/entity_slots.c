@@ -22,7 +22,7 @@ EntitySlot *entity_slot_new(EntityTable *table, DisEntityId id, double t_s)
     return slot;
 }
 
-/* Takes an entity out of the table, uncounted. */
+/* Takes an entity out of the table, without counting why. */
 static void free_slot(EntityTable *table, EntitySlot *slot)
 {
     const int s = (int)(slot - table->slot);
@@ -36,7 +36,7 @@ static void free_slot(EntityTable *table, EntitySlot *slot)
 
 void entity_slot_remove(EntityTable *table, EntitySlot *slot, double t_s, uint64_t *counter)
 {
-    if (counter != &table->counters.evicted) { /* which may come back */
+    if (counter != &table->counters.evicted) { /* an evicted entity may come back, so it gets no tombstone */
         tombstones_put(table->tombstones, slot->id, t_s, counter == &table->counters.detonated);
         table->counters.tombstones_dropped = tombstones_dropped(table->tombstones);
     }
@@ -52,7 +52,7 @@ double entity_slot_spin(const EntitySlot *slot, double t_s)
     return slot->spin_s + fmax(0, fmin(t_s, drives_run_until(&slot->drives)) - slot->spin_from_s);
 }
 
-/* Chord times mean heading: within 4 % of the arc up to a radian of turn. */
+/* The chord between both positions along their mean heading; within 4 % of the arc for turns of up to a radian. */
 double entity_slot_forward(const EntitySlot *slot, const double p_ecef[3], const double r_ecef_from_body[9])
 {
     const double *r0 = slot->reported.r_ecef_from_body;

@@ -22,48 +22,6 @@ static double position_error_m(double age_s, double heartbeat_s, double hold_s, 
            speed_mps * fmax(age - hold_s, 0);
 }
 
-void snapshot_drift(double *drift_m, double *drift_rad, double age_s, const SnapshotMiss *missed, double otherwise_m,
-                    double heartbeat_s)
-{
-    static const double threshold_rad = 3 * (3.14159265358979323846 / 180);
-    *drift_m = otherwise_m;
-    *drift_rad = threshold_rad * fmin(fmax(age_s, 0) / heartbeat_s, 1);
-    if (!(missed->s > 0)) return;
-    const double share = clamp(age_s / missed->s, 0, 1);
-    *drift_m = missed->m * share * share;
-    *drift_rad = missed->rad * share;
-}
-
-int snapshot_find(const Snapshot *snapshot, DisEntityId id)
-{
-    int low = 0, high = snapshot->count;
-    while (low < high) {
-        const int middle = low + (high - low) / 2;
-        const int order = dis_entity_id_compare(snapshot->entity[middle].id, id);
-        if (order == 0) return middle;
-        if (order < 0) low = middle + 1;
-        else high = middle;
-    }
-    return -1;
-}
-
-bool snapshot_owns_puff(const Snapshot *snapshot, int index, const EffectPuff *puff)
-{
-    return puff->owner == entity_key(snapshot->entity[index].id) + 1;
-}
-
-int snapshot_damage(const SnapshotEntity *entity)
-{
-    return entity->type.kind == dis_kind_platform ? (int)(entity->appearance >> dis_appearance_damage_shift & 3) : 0;
-}
-
-bool snapshot_is_short_lived(const SnapshotEntity *entity)
-{
-    return entity->type.kind == dis_kind_munition || entity->type.kind == dis_kind_expendable;
-}
-
-bool snapshot_is_wreck(const SnapshotEntity *entity) { return snapshot_damage(entity) == dis_damage_destroyed; }
-
 /* ---- order -------------------------------------------------------------------------------- */
 
 typedef struct Ordered {
@@ -71,8 +29,8 @@ typedef struct Ordered {
     int      slot;
 } Ordered;
 
-/* Radix sort, one octet per pass, six octets of id; a pass with equal octets is skipped. Returns
- * the one of the two arrays that holds the result. */
+/* Sorts by id: radix sort, one octet per pass over the six octets of an id; a pass where all octets are equal is
+ * skipped. Returns that of the two arrays which holds the result. */
 static Ordered *sort_by_id(Ordered *from, Ordered *to, int count)
 {
     for (int shift = 0; shift < 48; shift += 8) {
@@ -94,8 +52,8 @@ static Ordered *sort_by_id(Ordered *from, Ordered *to, int count)
 
 /* ---- limit of rendered entities -------------------------------------------------------------- */
 
-/* Squared distance from the focus, as an integer of the same order: of the reported position, not of the extrapolated
- * one. */
+/* Squared distance of an entity's reported (not extrapolated) position from the focus, as an integer that sorts in the
+ * same order. */
 static uint64_t nearness(const EntityTable *table, const EntitySlot *slot)
 {
     const EntityFocus *focus = &table->focus;
@@ -110,8 +68,8 @@ static uint64_t nearness(const EntityTable *table, const EntitySlot *slot)
     return bits;
 }
 
-/* The `wanted`-th smallest value; *at_it: how many of the values equal to it are within the first `wanted`. Radix
- * select, one octet per pass, from the highest. */
+/* Finds the `wanted`-th smallest value by radix select, one octet per pass, from the highest. *at_it: how many of the
+ * values equal to it are among the first `wanted`. */
 static uint64_t last_wanted(int *at_it, const uint64_t *value, int count, int wanted)
 {
     uint64_t prefix = 0;
@@ -127,8 +85,8 @@ static uint64_t last_wanted(int *at_it, const uint64_t *value, int count, int wa
     return prefix;
 }
 
-/* Chooses, of `count` entities in the order of ids, the config.shown nearest ones, in that order; at equal distance the
- * lower ids. */
+/* Of `count` entities in the order of ids, keeps the config.shown nearest to the focus, in that order; at equal
+ * distance those with lower ids. */
 static Status keep_nearest(Ordered *order, int *count, const EntityTable *table, Arena *arena)
 {
     const int wanted = table->config.shown;
@@ -148,9 +106,9 @@ static Status keep_nearest(Ordered *order, int *count, const EntityTable *table,
 
 /* ---- motion ------------------------------------------------------------------------------- */
 
-enum { block_count = 128 }; /* entities in a chunk, and so at most in a block of one algorithm */
+enum { block_count = 128 }; /* entities in a chunk, and most entities of one algorithm in a block */
 
-/* Arrays of one block: 22 in, 15 out, 37 KB. */
+/* The arrays of one block for dead_reckon_arrays: 22 inputs, 15 outputs, 37 KB. */
 typedef struct MotionBlock {
     double in[22][block_count], out[15][block_count];
 } MotionBlock;
@@ -175,14 +133,14 @@ static void block_arrays(KinematicsArrays *k, MotionArrays *m, MotionBlock *bloc
     for (int i = 0; i < 9; i++) m->r_ecef_from_body[i] = block->out[a++];
 }
 
-/* Range of valid positions: an extrapolation beyond it follows from an invalid report. */
+/* Whether a position is near the Earth. An extrapolated one that is not comes from an invalid report. */
 static bool is_near_earth(const double p_ecef[3])
 {
     const double r_m = v3_length(p_ecef);
     return r_m >= 1e5 && r_m <= 1e8;
 }
 
-/* member[count]: indices into entity and order, all of one algorithm. */
+/* Extrapolates entities of one algorithm. member[count]: their indices into entity and order. */
 static void reckon_block(SnapshotEntity *entity, const EntityTable *table, const Ordered *order, int algorithm,
                          const int *member, int count, double t_s)
 {
@@ -220,7 +178,7 @@ static void reckon_block(SnapshotEntity *entity, const EntityTable *table, const
     }
 }
 
-/* Slots lie far apart, in no order of ids: those of a chunk are prefetched together. */
+/* Prefetches the slots of a chunk, which lie far apart, since they are in no order of ids. */
 static void fetch_slots(const EntityTable *table, const Ordered *order, int first, int end)
 {
     for (int e = first; e < end; e++) {
@@ -229,7 +187,7 @@ static void fetch_slots(const EntityTable *table, const Ordered *order, int firs
     }
 }
 
-/* Entities first .. end - 1, by algorithm. */
+/* Extrapolates entities first .. end - 1, those of each algorithm together. */
 static void reckon_chunk(SnapshotEntity *entity, const EntityTable *table, const Ordered *order, int first, int end,
                          double t_s)
 {
@@ -245,7 +203,8 @@ static void reckon_chunk(SnapshotEntity *entity, const EntityTable *table, const
 
 /* ---- the rest of an entity ---------------------------------------------------------------- */
 
-/* From here on p is the model's origin, the centre of the base, on the ground where it is clamped; z points down. */
+/* Replaces a reported position by the model's origin: the centre of its base, on the ground where it is clamped; z
+ * points down. */
 static void place_origin(SnapshotEntity *e, const EntityTable *table, const EntitySlot *slot)
 {
     const double height_m = catalog_model(table->catalog, slot->model)->height_m;
@@ -254,7 +213,7 @@ static void place_origin(SnapshotEntity *e, const EntityTable *table, const Enti
     contact_set(e, &table->config.ground, catalog_model(table->catalog, slot->model));
 }
 
-/* Of an entity still at its reported position. The travelled distance is needed by rolling parts only. */
+/* What drives the joints of an entity that is still at its reported position. Only rolling parts need the distance. */
 static JointDrive drive_joints(const EntitySlot *slot, const SnapshotEntity *e, double t_s)
 {
     const bool   stands = entity_slot_frozen(slot) || slot->stopped;
@@ -265,7 +224,7 @@ static JointDrive drive_joints(const EntitySlot *slot, const SnapshotEntity *e, 
                         .speed_mps = stands ? 0 : v3_length(e->v_ecef_mps)};
 }
 
-/* What moves an entity's joints: its reports, and its drives at its own time. */
+/* What moves an entity's joints: its reports, and its drives at the entity's own time. */
 typedef struct Joints {
     const Articulation *articulation;
     JointDrive          drive;
@@ -319,7 +278,7 @@ static void finish_entity(SnapshotEntity *e, SnapshotJoints *joints, JointReport
     e->appearance = slot->appearance;
     e->model = slot->model;
     e->age_s = fmax(t_s - slot->report_s, 0);
-    const double moved_s = fmax(e->age_s - slot->paused_s, 0); /* time stopped does not add to an error */
+    const double moved_s = fmax(e->age_s - slot->paused_s, 0); /* while it is stopped its error does not grow */
     e->position_error_m = stands ? 0
                                  : position_error_m(moved_s, slot->timeout_s / timeout_per_heartbeat, slot->hold_s,
                                                     v3_length(e->v_ecef_mps));
@@ -332,10 +291,10 @@ static void finish_entity(SnapshotEntity *e, SnapshotJoints *joints, JointReport
 
     keep_joints(joints, report, slot, e, t_s);
 
-    place_origin(e, table, slot); /* last: distance travelled is measured between reported positions */
+    place_origin(e, table, slot); /* comes last, since the distance travelled is measured between reported positions */
 }
 
-/* Entities by chunks, distributed over the threads: chunks are independent. */
+/* Entities in chunks, which are independent and distributed over the threads. */
 typedef struct Chunks {
     Snapshot          *snapshot;
     const EntityTable *table;
@@ -356,7 +315,7 @@ static void finish_chunk(void *user, int worker, int chunk)
                       all->table->slot + all->order[e].slot, snapshot->t_s);
 }
 
-/* First the puffs attached to entities, then those emitted by them and by shots. */
+/* Adds the puffs attached to entities, then those emitted by entities and shots. */
 static Status add_puffs(Snapshot *snapshot, const EntityTable *table, const Ordered *order, Arena *arena)
 {
     EffectPuff *carried = NULL, some[entity_carried_max];
@@ -377,8 +336,8 @@ static Status add_puffs(Snapshot *snapshot, const EntityTable *table, const Orde
     return entity_effects_snapshot(snapshot, table, carried, count, arena);
 }
 
-/* A cloud of chaff, or of a cartridge of chaff and flare (SISO-REF-010, expendables, category 3), which is a flare too.
- */
+/* Whether an entity is a cloud of chaff: by its model, or as a cartridge of chaff and flare (SISO-REF-010, expendables,
+ * category 3), which is a flare too. */
 static bool is_chaff(const EntityTable *table, const EntitySlot *slot)
 {
     return catalog_is_chaff(table->catalog, slot->model) || (slot->type.kind == 8 && slot->type.category == 3);
@@ -423,7 +382,7 @@ Status entity_table_snapshot(Snapshot *out, const EntityTable *table, double t_s
     int clouds = 0;
     for (int s = 0; s < table->slot_end; s++) {
         const EntitySlot *slot = table->slot + s;
-        if (s + ahead < table->slot_end) { /* the members read are within the first two cache lines of a slot */
+        if (s + ahead < table->slot_end) { /* of a slot only the first two cache lines are read here */
             __builtin_prefetch(slot + ahead);
             __builtin_prefetch((const char *)(slot + ahead) + 64);
         }

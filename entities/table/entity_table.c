@@ -144,8 +144,8 @@ const EffectCounters *entity_table_effect_counters(const EntityTable *table)
 
 static const uint16_t all_ids = 0xFFFF;
 
-enum { frozen_transmits = 1 << 1 }; /* frozen behaviour: entities go on transmitting updates */
-enum { most_rounds = 1000 };        /* of one Fire PDU: a burst, not a number that a sender made up */
+enum { frozen_transmits = 1 << 1 }; /* frozen behaviour: stopped entities go on transmitting updates */
+enum { most_rounds = 1000 };        /* most rounds of one Fire PDU: a burst, and not an arbitrary number */
 
 void entity_table_fire(EntityTable *table, const DisFire *pdu, double t_s)
 {
@@ -202,7 +202,7 @@ void entity_table_remove(EntityTable *table, const DisRemoveEntity *pdu, double 
 
 void entity_table_stop(EntityTable *table, const DisStopFreeze *pdu, double t_s)
 {
-    if (table->stopped_count == table->count) return; /* a repeated one must not cost a walk each time */
+    if (table->stopped_count == table->count) return; /* a repeated PDU must not cost another walk over all entities */
     for (int s = 0; s < table->slot_end; s++) {
         EntitySlot *slot = table->slot + s;
         if (!entity_slot_lives(slot) || slot->stopped || !simulation_matches(pdu->receiving, slot->id)) continue;
@@ -218,7 +218,7 @@ void entity_table_stop(EntityTable *table, const DisStopFreeze *pdu, double t_s)
     }
 }
 
-/* Continues from its position: the pause does not count as motion. */
+/* Continues from the entity's position: the pause does not count as motion. */
 void entity_table_start(EntityTable *table, const DisStartResume *pdu, double t_s)
 {
     if (table->stopped_count == 0) return;
@@ -245,7 +245,7 @@ void entity_table_expire(EntityTable *table, double t_s)
 
 /* ---- by type ------------------------------------------------------------------------------ */
 
-/* Counts what the table itself refuses. */
+/* Passes on a report, and counts what the table refuses. */
 static Status take_report(EntityTable *table, const DisPdu *pdu, double t_s, DisCounters *counters)
 {
     DisDrop    why;

@@ -21,31 +21,31 @@ typedef struct EntityHandle {
 typedef struct EntityTableConfig {
     int    capacity;              /* most entities at once; beyond it entities are evicted by entity_limits.h */
     int    shown;                 /* most entities in a snapshot: those with reported positions nearest the focus */
-    double timeout_s;             /* versions 5 and 6: 12 */
-    double timeout_land_v7_s;     /* version 7, entities with the long heartbeat: land, sea, life forms, standing;
-                                   * 132 */
-    double extrapolation_limit_s; /* longest dead reckoning, then the entity is held; 12. Longer in proportion for
-                                   * those with the long timeout, whose heartbeat is longer too */
-    double        rate_limit_rps; /* a larger angular rate is not extrapolated; 20 */
-    double        new_per_s;      /* new entities of a sender per second, and at once; 65536: all its ids */
-    double        ambient_s;      /* time for which a new entity is assumed to have been in its first state; 3600 */
-    Pool         *pool;           /* helps with snapshots; NULL: the caller alone. The same bits either way */
-    ContactGround ground;         /* ground entities are clamped to it in every pose; none: not clamped */
+    double timeout_s;             /* time-out of versions 5 and 6: 12 */
+    double timeout_land_v7_s;     /* time-out of version 7 for entities with the long heartbeat (land, sea, life forms,
+                                     standing): 132 */
+    double extrapolation_limit_s; /* longest dead reckoning, after which the entity is held: 12. Entities with the long
+                                     timeout get a limit longer in proportion, since their heartbeat is longer too */
+    double rate_limit_rps;        /* larger angular rates are not extrapolated: 20 */
+    double new_per_s;             /* entities a sender may add per second, and at once; 65536: as many as it has ids */
+    double ambient_s;             /* time for which a new entity is assumed to have been in its first state; 3600 */
+    Pool *pool; /* pool that helps with snapshots; NULL: the caller works alone. The result has the same bits either way
+                 */
+    ContactGround ground; /* ground that entities are clamped to in every pose; none: they are not clamped */
 } EntityTableConfig;
 
-/* Why entities came and went, and what was refused, how many. */
+/* How many entities came and went, why, and what was refused. */
 typedef struct EntityCounters {
     uint64_t created, timed_out, deactivated, removed, updates_without_entity, unknown_articulation;
-    uint64_t detonated;          /* munitions ended by their Detonation */
-    uint64_t late;               /* reports older than the latest or than the entity's end, or of a munition after
-                                  * its Detonation */
-    uint64_t motion_refused;     /* reports with a velocity, acceleration or angular rate that is not finite or not
-                                  * possible (2e4 m/s, 1e4 m/s2, rate_limit_rps): that one vector is taken as zero */
-    uint64_t evicted;            /* evicted for others when the table was full */
-    uint64_t refused;            /* refused by a full table, as they would be evicted at once */
-    uint64_t over_rate;          /* reports of new ones, not taken in because their sender added more than new_per_s */
+    uint64_t detonated; /* munitions ended by their Detonation */
+    uint64_t late; /* reports older than the entity's latest report or its end, or of a munition after its Detonation */
+    uint64_t motion_refused; /* reports with a velocity, acceleration or angular rate that is not finite or not
+                              * possible (2e4 m/s, 1e4 m/s2, rate_limit_rps): that one vector is taken as zero */
+    uint64_t evicted;        /* entities evicted for others when the table was full */
+    uint64_t refused;        /* new entities that a full table refused, since they would have been evicted at once */
+    uint64_t over_rate; /* reports of new entities that were refused because their sender had added new_per_s already */
     uint64_t tombstones_dropped; /* tombstones dropped for lack of space while a late report was still possible */
-    uint64_t marks_forgotten;    /* the oldest ground marks, beyond the capacity */
+    uint64_t marks_forgotten; /* ground marks forgotten, the oldest ones, because there were more than the capacity */
 } EntityCounters;
 
 EntityTableConfig entity_table_default_config(void);
@@ -57,7 +57,7 @@ void   entity_table_destroy(EntityTable *table);
  * 0:0:0: none. Without a host, or after its end: the previous position. A snapshot of more than config.shown takes the
  * nearest to that position. Extrapolated positions are not used, so the result does not depend on snapshot times. */
 void entity_table_focus(EntityTable *table, DisEntityId host, DisEntityId also);
-/* The sender that has most entities here; returns how many. O(senders). */
+/* Sets the sender that has most entities here; returns how many. O(senders). */
 int entity_table_largest_sender(DisEntityId *sender, const EntityTable *table);
 
 /* A report that deactivates (appearance bit 23) removes. A frozen entity (bit 21) is stationary, and so is one named by
@@ -72,7 +72,7 @@ void   entity_table_detonation(EntityTable *table, const DisDetonation *pdu, dou
 void   entity_table_remove(EntityTable *table, const DisRemoveEntity *pdu, double t_s);
 void   entity_table_start(EntityTable *table, const DisStartResume *pdu, double t_s);
 void   entity_table_stop(EntityTable *table, const DisStopFreeze *pdu, double t_s);
-/* Removes those silent for too long at t_s. */
+/* Removes the entities that have been silent for too long at t_s. */
 void entity_table_expire(EntityTable *table, double t_s);
 
 /* For PDUs in order of arrival: the next one arrived at now_s, and t_s is by its sender's stamps. The sender's clock
@@ -83,10 +83,11 @@ void entity_table_arrival(EntityTable *table, double now_s, bool by_stamp);
  * ignored, and an instant that is not finite. Every drop is counted. This is what replay and the node call. */
 void entity_table_pdu(EntityTable *table, const DisPdu *pdu, double t_s, DisCounters *counters);
 
-int          entity_table_count(const EntityTable *table);
-EntityHandle entity_table_find(const EntityTable *table, DisEntityId id);
-bool         entity_table_alive(const EntityTable *table, EntityHandle handle);
-bool         entity_table_type(DisEntityType *out, const EntityTable *table, EntityHandle handle); /* false: absent */
+int                   entity_table_count(const EntityTable *table);
+EntityHandle          entity_table_find(const EntityTable *table, DisEntityId id);
+bool                  entity_table_alive(const EntityTable *table, EntityHandle handle);
+bool                  entity_table_type(DisEntityType *out, const EntityTable *table,
+                                        EntityHandle handle); /* false: the entity is not there */
 const EntityCounters *entity_table_counters(const EntityTable *table);
 const EffectCounters *entity_table_effect_counters(const EntityTable *table);
 /* Counts what changes the heat of an entity at once: it appeared, fired or was fired, was destroyed. */
@@ -94,7 +95,7 @@ uint64_t entity_table_changes(const EntityTable *table);
 
 /* One entity's pose and motion at t_s, the same as in a snapshot; no parts, no heat. False when it is not there. */
 bool entity_table_pose(SnapshotEntity *out, const EntityTable *table, EntityHandle handle, double t_s);
-/* The same with its nodes. node, joint_value: as many as its model has nodes; the second is
+/* As entity_table_pose, with the poses of its nodes. node, joint_value: arrays of the model's node_count; the second is
  * scratch. */
 bool entity_table_pose_nodes(SnapshotEntity *out, NodePose *node, double *joint_value, const EntityTable *table,
                              EntityHandle handle, double t_s);
@@ -102,7 +103,7 @@ bool entity_table_pose_nodes(SnapshotEntity *out, NodePose *node, double *joint_
  * of exercise time 0. */
 Status entity_table_marks_save(const EntityTable *table, double unix_s, const char *path);
 Status entity_table_marks_load(EntityTable *table, double unix_s, const char *path);
-/* All of them at t_s, sorted by id, in the arena. */
+/* All entities at t_s, sorted by id, in the arena. */
 Status entity_table_snapshot(Snapshot *out, const EntityTable *table, double t_s, Arena *arena);
 
 #endif

@@ -20,30 +20,31 @@
 
 /* What heats an entity at one instant. */
 typedef struct EntityDrives {
-    double since_s; /* exercise time of its first report */
-    float  engine;  /* share of full power: 0.6 idling, 1 at 10 m/s on level ground, or at less uphill and in turns; air
-                     * platforms 1; 0: stopped */
-    float speed_mps; /* as reported; 0 when frozen */
+    double since_s;  /* exercise time of its first report */
+    float  engine;   /* share of full power: 0.6 idling; 1 at 10 m/s on level ground, or at a lower speed uphill and in
+                        turns; always 1 of air platforms; 0 stopped */
+    float speed_mps; /* speed as reported; 0 when frozen */
     float flying;    /* 1: an air platform that is not destroyed */
-    float alive;     /* 1: a life form alive; a building not destroyed */
-    float burning; /* 1: in flames, or destroyed before our eyes in the last ten minutes; 0.1: damaged, a plume of smoke
-                      from it */
-    float  motor;  /* 1: a munition's motor burns, in its first two seconds */
-    float  flare;  /* 1: an expendable's grain burns, in its first four seconds */
-    double fired_kg[2]; /* propellant of all its shots: of small guns (below drives_large_kg a shot), of large ones */
+    float alive;     /* 1: a life form that is alive, or a building that is not destroyed */
+    float burning;   /* 1: it is in flames, or was destroyed during the exercise in the last ten minutes; 0.1: it is
+                        damaged and smokes */
+    float  motor;    /* 1: a munition's motor burns, in its first two seconds */
+    float  flare;    /* 1: an expendable's grain burns, in its first four seconds */
+    double fired_kg[2]; /* propellant of all its shots: of small guns (less than drives_large_kg a shot), and of large
+                           ones */
 } EntityDrives;
 
-static const double drives_idle = 0.6;   /* engine of one that idles; estimate */
-static const double drives_large_kg = 1; /* of propellant, a shot */
+static const double drives_idle = 0.6;   /* share of full power of an idling engine; estimate */
+static const double drives_large_kg = 1; /* propellant a shot; guns with more are large */
 
 typedef struct DriveUntil {
-    double value, until_s; /* value until then, afterwards 0 */
+    double value, until_s; /* it has this value until until_s, then 0 */
 } DriveUntil;
 
 typedef struct DriveState {
     double     since_s, speed_mps;
     DriveUntil engine, motor, flare, wreck;
-    double     moved_s; /* when it was last known to move; -INFINITY: never */
+    double     moved_s; /* last time it was known to move; -INFINITY: never */
     bool       moving, flying, alive, flaming, smoulders, destroyed;
     double     fired_kg[2];
 } DriveState;
@@ -52,16 +53,17 @@ typedef struct DriveState {
 typedef struct DriveEvidence {
     DisEntityType type;
     uint32_t      appearance;
-    double        speed_mps; /* as reported; 0 when frozen */
+    double        speed_mps; /* speed as reported; 0 when frozen */
     double        climb_mps; /* upwards */
-    double        turn_rps;  /* about its own vertical axis */
+    double        turn_rps;  /* angular rate about its own vertical axis */
 } DriveEvidence;
 
 /* Begins with the first report. A wreck without flames does not burn. Munitions and expendables start with their motor
  * or grain burning. */
 void drives_begin(DriveState *state, const DriveEvidence *evidence, double t_s);
 void drives_report(DriveState *state, const DriveEvidence *evidence, double t_s);
-/* It fired a charge (effect_charge_kg), `rounds` times; or it is the munition that was fired. */
+/* Records that the entity fired a charge (effect_charge_kg) `rounds` times, or that it is the munition that was fired.
+ * */
 void drives_fire(DriveState *state, double charge_kg, int rounds);
 void drives_launch(DriveState *state, double t_s);
 void drives_at(EntityDrives *out, const DriveState *state, double t_s);
@@ -75,62 +77,64 @@ double drives_engine(const DriveState *state, double t_s);
 /* ---- the snapshot ----------------------------------------------------------------------------- */
 
 typedef struct SnapshotEntity {
-    DisEntityId       id;
-    DisEntityType     type;
-    uint8_t           force;
-    char              marking[12]; /* terminated, raw bytes */
-    uint32_t          appearance;
-    int               model;     /* of the catalog */
-    double            p_ecef[3]; /* of the model's origin (base centre), independent of the sender's origin */
-    double            v_ecef_mps[3];
-    double            w_body_rps[3]; /* of the rendered attitude: 0 where the algorithm holds it, and when frozen */
+    DisEntityId   id;
+    DisEntityType type;
+    uint8_t       force;
+    char          marking[12]; /* terminated; bytes as received */
+    uint32_t      appearance;
+    int           model;     /* number of its model in the catalog */
+    double        p_ecef[3]; /* place of the model's origin (base centre), whatever the sender's origin is */
+    double        v_ecef_mps[3];
+    double w_body_rps[3]; /* angular rate of the attitude shown: 0 where the algorithm holds the attitude, and when
+                             frozen */
     double            r_ecef_from_body[9];
-    double            age_s;                /* since the report it was extrapolated from */
-    double            position_error_m;     /* how far from the truth it may be; estimate */
+    double            age_s;                /* time since the report that it was extrapolated from */
+    double            position_error_m;     /* how far p_ecef may be from the truth; estimate */
     double            drift_m, drift_rad;   /* expected distance and angle from the truth: snapshot_drift */
-    int               first_node;           /* into Snapshot.node */
+    int               first_node;           /* index of its first node in Snapshot.node */
     EntityDrives      drives;               /* what heats it */
-    const ExhaustJet *exhaust;              /* of its model; NULL: no outlet is known */
-    int               first_patch, patches; /* into Snapshot.patch_k; -1, 0: none of its temperatures are known */
-    float             dt_k; /* mean temperature of its surface less that of open ground where it is; with patches */
+    const ExhaustJet *exhaust;              /* outlet of its model; NULL: none is known */
+    int               first_patch, patches; /* its temperatures in Snapshot.patch_k; -1, 0: they are not known */
+    float             dt_k; /* with patches: mean temperature of its surface less that of open ground there */
 } SnapshotEntity;
 
 /* Joint state of an entity, kept for its nodes: snapshot_pose. */
 typedef struct SnapshotJoints {
-    double     report_s, hold_s; /* of the joints' report; longest time a rate is followed */
-    double     time_s;           /* the entity's own, of the snapshot */
+    double     report_s, hold_s; /* time of the joints' report; longest time that a reported rate is followed */
+    double     time_s;           /* the entity's own time at the snapshot */
     JointDrive drive;
-    int        first, count; /* into Snapshot.joint_report */
+    int        first, count; /* its reports in Snapshot.joint_report */
 } SnapshotJoints;
 
 /* A cloud of chaff: radar alone sees it (sensor/radar/shot_volume.c). */
 typedef struct SnapshotChaff {
     DisEntityId id;
-    double      p_ecef[3], v_ecef_mps[3]; /* of its middle, as reported and extrapolated */
-    double      age_s;                    /* since its first report */
+    double      p_ecef[3], v_ecef_mps[3]; /* place and velocity of its middle, extrapolated from the report */
+    double      age_s;                    /* time since its first report */
 } SnapshotChaff;
 
 typedef struct Snapshot {
-    double             t_s;
-    int                count, node_count;
-    SnapshotEntity    *entity; /* sorted by id */
-    NodePose          *node;   /* of entity k: entity[k].first_node .. + model's node_count - 1. NULL: snapshot_pose */
-    SnapshotJoints    *joints; /* [count]; NULL where node is not */
+    double          t_s;
+    int             count, node_count;
+    SnapshotEntity *entity; /* sorted by id */
+    NodePose
+        *node; /* nodes of entity k: entity[k].first_node and on, as many as the model has. NULL: see snapshot_pose */
+    SnapshotJoints    *joints; /* [count]; NULL where node is not NULL */
     JointReport       *joint_report;
     int                puff_count;
     EffectPuff        *puff;           /* what burns, smokes and bursts */
-    int64_t            puffs_left_out; /* the oldest, beyond effect_puff_capacity */
+    int64_t            puffs_left_out; /* puffs left out, the oldest, beyond effect_puff_capacity */
     int                chaff_count;
-    SnapshotChaff     *chaff;        /* sorted by id; none of them is an entity */
-    int                left_out;     /* entities beyond the table's config.shown: the farthest */
+    SnapshotChaff     *chaff;        /* sorted by id; none of these is among the entities */
+    int                left_out;     /* entities left out, the farthest, beyond the table's config.shown */
     const EffectTable *effect_table; /* NULL where there are no puffs */
-    GroundMarks        marks;        /* what was left on the ground until t_s */
+    GroundMarks        marks;        /* marks left on the ground until t_s */
     int                patch_count;
     float             *patch_k; /* temperatures of the patches (entities/models/patches.h) of entities, K; filled in by
                                  * render/heat/vehicle_heat.h. NULL: parts are as warm as the air */
 } Snapshot;
 
-/* A munition or an expendable: it did nothing before it appeared. */
+/* Whether an entity is a munition or an expendable, which did nothing before it appeared. */
 bool snapshot_is_short_lived(const SnapshotEntity *entity);
 /* Whether a puff came out of this entity: its own trail, flames or plume. */
 bool snapshot_owns_puff(const Snapshot *snapshot, int index, const EffectPuff *puff);
@@ -139,9 +143,9 @@ int snapshot_damage(const SnapshotEntity *entity);
 /* A platform that its sender calls destroyed. */
 bool snapshot_is_wreck(const SnapshotEntity *entity);
 
-/* By how much the last report set the extrapolation of the one before right, and after how long. */
+/* By how much the last report corrected the previous extrapolation, and after what time. */
 typedef struct SnapshotMiss {
-    double m, rad, s; /* s 0: there was none */
+    double m, rad, s; /* s 0: there was no previous report */
 } SnapshotMiss;
 
 /* Expected error of an extrapolation, from the error of the previous one at the next report; where that is unknown,

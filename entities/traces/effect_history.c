@@ -8,14 +8,14 @@ typedef struct EffectEvent {
     bool     detonation, guided, kinetic;
     uint8_t  result;
     uint64_t key, seed;
-    double   p_ecef[3], d_ecef[3]; /* place; unit direction of flight, or up */
+    double   p_ecef[3], d_ecef[3]; /* place; unit direction of flight, or up where it has none */
     double   charge_kg;
 } EffectEvent;
 
 struct EffectHistory {
     EffectTable    table;
-    double         event_life_s;    /* of the longest-lived puff of any event */
-    uint64_t       events, sources; /* ever; the last is at (n - 1) % capacity */
+    double         event_life_s;    /* life of the longest-lived puff of any event */
+    uint64_t       events, sources; /* number ever recorded; the last is at (n - 1) % capacity */
     EffectCounters counters;
     EffectEvent    event[effect_event_capacity];
     EffectSource   source[effect_source_capacity];
@@ -87,7 +87,7 @@ static uint64_t id_bits(uint16_t a, uint16_t b, uint16_t c) { return (uint64_t)a
 
 static void add_event(EffectHistory *h, const EffectEvent *event, const float velocity_mps[3])
 {
-    static const double same_s = 0.5; /* a repeated PDU */
+    static const double same_s = 0.5; /* a PDU repeated within this time is one event */
     const double        r_m = v3_length(event->p_ecef);
     if (!(r_m >= 1e5 && r_m <= 1e8) || !isfinite(event->t_s)) {
         h->counters.refused++;
@@ -175,17 +175,17 @@ static void put(PuffList *list, const EffectPuff *puff)
     list->count++;
 }
 
-/* A number in -1 .. 1 for place n of puff i. */
+/* A random number in -1 .. 1: number n of puff i. */
 static double draw(uint64_t seed, int i, int n) { return 2 * random_uniform(seed, 77, (uint32_t)i, (uint64_t)n) - 1; }
 
 typedef struct Cloud {
     EffectKind kind;
     int        puffs;
-    double     delay_s;    /* times scale */
-    double     ahead, off; /* from the place along the direction, and about it; times scale */
-    double     throw_out_mps, throw_up_mps, throw_ahead_mps, throw_s; /* speeds times scale */
-    double     mass, size;                                            /* shares of the row's */
-    double     stretch; /* along the direction, over the radius at birth; 0: round */
+    double     delay_s;    /* the times below are multiplied by scale */
+    double     ahead, off; /* distance along the direction, and radius about that place; multiplied by scale */
+    double     throw_out_mps, throw_up_mps, throw_ahead_mps, throw_s; /* speeds are multiplied by scale */
+    double     mass, size;                                            /* shares of the row's mass and size */
+    double     stretch; /* length along the direction, as a multiple of the radius at birth; 0: round */
 } Cloud;
 
 /* Hits on a building: 18 .. 20. */
@@ -213,7 +213,7 @@ static void put_cloud(PuffList *list, const EffectEvent *event, int which, const
         double d[3];
         for (int k = 0; k < 3; k++) d[k] = draw(event->seed, 64 * which + i, k);
         if (!v3_normalize(d, d)) memcpy(d, puff.up_ecef, sizeof d);
-        /* never into the ground: the lower half is turned up */
+        /* not into the ground: directions below the horizon are turned up */
         const double up = v3_dot(d, puff.up_ecef);
         if (up < 0) v3_add_scaled(d, d, -1.6 * up, puff.up_ecef);
         puff.seed = (uint32_t)mix(event->seed + (uint64_t)(64 * which + i));
@@ -234,7 +234,7 @@ static void put_cloud(PuffList *list, const EffectEvent *event, int which, const
 
 static void put_burst(PuffList *list, const EffectEvent *e, double t_s)
 {
-    /* on the ground: less fire, more dust */
+    /* bursts on the ground have less fire and more dust */
     static const Cloud ground[] = {
         {EFFECT_BURST_FLASH, 1, 0, 0, 0.2, 0, 0, 0, 1, 1, 1, 0},
         {EFFECT_FIREBALL, 4, 0, 0, 0.45, 4, 2, 0, 0.12, 0.6, 0.8, 0},
@@ -264,7 +264,7 @@ static void put_burst(PuffList *list, const EffectEvent *e, double t_s)
     if (e->kinetic) cloud = kinetic, count = sizeof kinetic / sizeof *kinetic;
     else if (effect_result_is_ground(e->result)) cloud = ground, count = sizeof ground / sizeof *ground;
     else if (result_is_entity(e->result)) cloud = entity, count = sizeof entity / sizeof *entity;
-    else if (effect_result_is_water(e->result)) count = 1; /* the flash; spray is not modelled */
+    else if (effect_result_is_water(e->result)) count = 1; /* only the flash; spray is not modelled */
     for (int c = 0; c < count; c++) put_cloud(list, e, c, cloud + c, t_s);
 }
 
@@ -284,7 +284,7 @@ static void put_shot(PuffList *list, const EffectEvent *e, double t_s)
     for (int c = 0; c < 3; c++) put_cloud(list, e, c, cloud + c, t_s);
 }
 
-/* Interval of emission of a kind, and the age from which its puffs are thinned out. */
+/* Interval of emission of a kind of effect, and the age from which its puffs are thinned out. */
 static void rhythm(double *interval_s, double *full_s, EffectKind kind)
 {
     *interval_s = 0.25, *full_s = 2;
@@ -334,7 +334,7 @@ static void put_source(PuffList *list, const EffectSource *source, double t_s)
         puff.age_s = t_s - let_go_s;
         const double share = share_of(k, puff.age_s, full_s, &together);
         if (!(share > 0) || !(puff.age_s < life_s)) continue;
-        if (list->count >= list->capacity) { /* counted only */
+        if (list->count >= list->capacity) { /* it is only counted */
             list->count++;
             continue;
         }
@@ -355,13 +355,13 @@ static void put_source(PuffList *list, const EffectSource *source, double t_s)
             puff.above_m = v3_dot(over, puff.up_ecef);
         }
         if (!v3_normalize(puff.axis_ecef, motion.v_ecef_mps)) memcpy(puff.axis_ecef, puff.up_ecef, sizeof puff.up_ecef);
-        /* never ahead of its source: a missile would see its own smoke */
+        /* no puff is ahead of its source, since a missile would see its own smoke */
         puff.along_m = source->speed_mps * fmin(interval_s * together, puff.age_s);
         if (source->kind == EFFECT_FLAME) { /* tongues */
             memcpy(puff.axis_ecef, puff.up_ecef, sizeof puff.axis_ecef);
             puff.along_m = 0.8 * source->scale * (1 + 0.5 * draw(seed, 2, 1));
         }
-        /* eddies: each puff a little to a side of its own, and some stronger than others */
+        /* eddies move each puff to a side of its own, some more than others */
         for (int i = 0; i < 3; i++) puff.throw_mps[i] = 0.5 * source->scale * draw(seed, 1, i);
         const double strength = source->kind == EFFECT_FLAME ? 0.4 + 0.6 * (1 + draw(seed, 2, 0)) : 1;
         puff.seed = (uint32_t)seed;

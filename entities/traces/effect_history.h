@@ -15,26 +15,27 @@ enum { effect_event_capacity = 4096, effect_source_capacity = 16384, effect_puff
 /* One interval of emission: the entity's motion, and its sources. */
 typedef struct EffectSource {
     EffectKind kind;
-    uint64_t   key;          /* of the entity; the puffs' owner */
+    uint64_t   key;          /* entity_key of the emitting entity, which owns the puffs */
     double     from_s, to_s; /* puffs are emitted in from_s <= t < to_s */
-    Kinematics motion;       /* at motion_s */
+    Kinematics motion;       /* motion of the entity at motion_s */
     double     motion_s;
-    double     hold_s;                     /* longest extrapolation of it */
-    double     at_body[3], spread_body[3]; /* source, relative to the reported position, and its radius */
-    double     speed_mps;                  /* along the path: puffs are stretched to join */
-    bool       grounded;                   /* clamped to the ground, its base below_m under the reported position */
-    double     below_m;
-    double     scale, rate; /* lengths; share of the row's mass a second */
+    double     hold_s;                     /* longest time that the motion is extrapolated */
+    double     at_body[3], spread_body[3]; /* place of the source relative to the reported position, and the radius over
+                                              which it spreads */
+    double speed_mps;                      /* speed along the path, by which puffs are stretched to join */
+    bool   grounded; /* its entity is clamped to the ground, with its base below_m under the reported position */
+    double below_m;
+    double scale, rate; /* scale of lengths; share of the row's mass that is emitted a second */
 } EffectSource;
 
 typedef struct EffectCounters {
-    uint64_t refused;        /* Fire or Detonation with no place near the Earth, or no finite one */
-    uint64_t repeated;       /* the same event once more */
-    uint64_t events_dropped; /* still visible when replaced by a newer one */
+    uint64_t refused;        /* Fire or Detonation PDUs with a place that is not finite or not near the Earth */
+    uint64_t repeated;       /* PDUs that repeated an event */
+    uint64_t events_dropped; /* events that were still visible when a newer one replaced them */
     uint64_t sources_dropped;
 } EffectCounters;
 
-/* No puffs beyond: intervals are counted in 64 bits. */
+/* there are no puffs after this time, as intervals are counted in 64 bits */
 static const double effect_latest_s = 1e12;
 
 typedef struct EffectHistory EffectHistory;
@@ -47,22 +48,22 @@ const EffectCounters *effect_history_counters(const EffectHistory *history);
 
 void effect_history_fire(EffectHistory *history, const DisFire *pdu, double t_s);
 void effect_history_detonation(EffectHistory *history, const DisDetonation *pdu, double t_s);
-/* Returns a handle for the close, never 0; to_s of the source is the latest it can last. Closing a dropped one, or 0,
- * has no effect. */
+/* Opens a source, and returns a handle for closing it, never 0; to_s of the source is the latest time it can last.
+ * Closing 0, or a source that was dropped, has no effect. */
 uint64_t effect_history_open(EffectHistory *history, const EffectSource *source);
 void     effect_history_close(EffectHistory *history, uint64_t handle, double t_s);
 
 /* Charge that scales a shot or burst: kg of propellant (fire) or of explosive, from munition type and warhead.
  * Estimates, by class of munition only: within a factor of three. */
 double effect_charge_kg(const DisDescriptor *descriptor, bool fire);
-bool   effect_is_kinetic(const DisDescriptor *descriptor); /* a penetrator, without explosive */
-/* Result of a Detonation: nothing burst; on the ground; on water. */
+bool   effect_is_kinetic(const DisDescriptor *descriptor); /* whether it is a penetrator, without explosive */
+/* Whether a Detonation's result means that nothing burst, that it burst on the ground, or on water. */
 bool effect_result_is_none(int result);
 bool effect_result_is_ground(int result);
 bool effect_result_is_water(int result);
 
-/* All visible puffs at t_s, newest first, at most capacity. Returns how many there are (more than capacity when
- * they do not all fit). out may be NULL with capacity 0. */
+/* All visible puffs at t_s, newest first, up to capacity. Returns how many there are, which exceeds capacity when they
+ * do not all fit. out may be NULL with capacity 0. */
 size_t effect_history_puffs(EffectPuff *out, size_t capacity, const EffectHistory *history, double t_s);
 
 #endif

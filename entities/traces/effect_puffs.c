@@ -3,7 +3,7 @@
 
 #include <stdio.h>
 
-/* Share of a peak density that fills the spheroid on the average. */
+/* mean density of the spheroid as a share of its peak density */
 static const double mean_density = 8.0 / 35;
 
 static const char *const kind_names[EFFECT_KIND_COUNT] = {
@@ -36,9 +36,9 @@ static const struct {
 };
 enum { column_count = sizeof columns / sizeof *columns };
 
-/* ext_ and albedo_ of the channel in each place but pan's. */
+/* columns of ext_ and albedo_ for the channel in each place except pan's */
 typedef struct ChannelColumns {
-    int of[2][effect_band_count]; /* extinction, albedo; -1: pan */
+    int of[2][effect_band_count]; /* columns of extinction and albedo; -1: pan */
 } ChannelColumns;
 
 static bool find_channel_columns(ChannelColumns *out, const Table *table)
@@ -133,7 +133,7 @@ double effect_life_s(const EffectTable *table, EffectKind kind, double scale)
     return law->life_s * time_scale(law, scale);
 }
 
-/* Distance at an initial speed `first`, decaying with tau: exact, and never ahead of first * t. */
+/* Distance covered at an initial speed `first` that decays with tau: exact, and never more than first * t. */
 static double dying_way(double first, double tau_s, double t_s) { return first * tau_s * -expm1(-t_s / tau_s); }
 
 bool effect_volume(EffectVolume *out, const EffectTable *table, const EffectPuff *puff, const Weather *weather,
@@ -145,7 +145,7 @@ bool effect_volume(EffectVolume *out, const EffectTable *table, const EffectPuff
 
     if (!(age_s >= 0 && lived < 1 && puff->mass_kg > 0)) return false;
 
-    /* rise and throw in the place's own axes; the wind in the frame's axes, with north equal within a degree */
+    /* rise and throw are in the place's own axes; the wind is in the frame's, whose north is within a degree */
     v3_add_scaled(p_ecef, puff->p_ecef, puff->scale * dying_way(law->rise_mps, law->rise_s, age_s), puff->up_ecef);
     for (int i = 0; i < 3; i++) way[i] = dying_way(puff->throw_mps[i], puff->throw_s, age_s);
     v3_add(p_ecef, p_ecef, way);
@@ -161,7 +161,7 @@ bool effect_volume(EffectVolume *out, const EffectTable *table, const EffectPuff
     out->along_m = fmax(out->across_m, puff->along_m);
     out->temp_k = weather->air_temp_k + law->temp_rise_k * exp(-age_s / (law->cool_s * times));
 
-    /* thins out towards its end, where slope and value are zero: no abrupt end */
+    /* the puff thins out towards its end, where density and slope reach zero, so it does not end abruptly */
     const double thin = (1 - lived * lived) * (1 - lived * lived);
     const double volume_m3 = 4.0 / 3 * pi_rad * out->across_m * out->across_m * out->along_m;
     const double peak_kg_m3 = puff->mass_kg * thin / (volume_m3 * mean_density);

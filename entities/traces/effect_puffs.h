@@ -51,14 +51,14 @@ enum {
 typedef struct EffectModel {
     double extinction_m2_kg[effect_band_count], albedo[effect_band_count];
     double asymmetry;
-    double mass_kg; /* of a puff; per second for emissions of an entity */
+    double mass_kg; /* mass of a puff; of emissions by entities, mass a second */
     double radius_start_m, radius_end_m, grow_s, spread_mps;
     double rise_mps, rise_s;
     double temp_rise_k, cool_s;
     double life_s;
     double time_power;
     double billow;
-    double co2_share, h2o_share; /* of the mass: hot gas, which emits and absorbs in the thermal bands */
+    double co2_share, h2o_share; /* shares of the mass that are hot gas, which emits and absorbs in the thermal bands */
 } EffectModel;
 
 typedef struct EffectTable {
@@ -71,29 +71,29 @@ Status effect_table_open(EffectTable *out, const char *path);
 /* One puff at one instant, as a Snapshot holds it: still without wind, which is the weather's. */
 typedef struct EffectPuff {
     EffectKind kind;
-    uint64_t   owner;        /* owning entity: snapshot_owns_puff; 0: none */
-    uint32_t   group;        /* puffs of one cloud or trail have one, and shade each other */
-    uint32_t   seed;         /* of its pattern */
+    uint64_t   owner;        /* entity_key + 1 of its owner (snapshot_owns_puff); 0: none */
+    uint32_t   group;        /* the same for puffs of one cloud or trail, which shade each other */
+    uint32_t   seed;         /* seed of its pattern */
     double     age_s;        /* >= 0; 0 for puffs attached to an entity */
-    double     p_ecef[3];    /* position of emission */
+    double     p_ecef[3];    /* place where it was emitted */
     double     up_ecef[3];   /* unit */
     double     throw_mps[3]; /* ECEF, initial velocity; decays with throw_s */
     double     throw_s;
-    double     scale;        /* W^(1/3); lengths */
-    double     mass_kg;      /* all of it, before thinning */
-    double     axis_ecef[3]; /* unit; the spheroid's own axis */
-    double     along_m;      /* least half length along the axis; 0: a sphere */
-    bool       grounded;     /* emitted above_m above the snapshot's ground there */
+    double     scale;        /* scale of lengths: W^(1/3) */
+    double     mass_kg;      /* its mass before thinning */
+    double     axis_ecef[3]; /* unit vector; the spheroid's axis */
+    double     along_m;      /* least half length along the axis; 0: the puff is a sphere */
+    bool       grounded;     /* it was emitted above_m above the snapshot's ground there */
     double     above_m;
 } EffectPuff;
 
 /* A spheroid whose density falls off as (1 - q^2)^2 from its centre to its surface (q = 1). */
 typedef struct EffectVolume {
     double p_enu[3], axis_enu[3];
-    double along_m, across_m; /* half axes; along the axis, and across it */
+    double along_m, across_m; /* half axes, along the axis and across it */
     double temp_k;
-    double extinction_per_m[effect_band_count]; /* at the centre, without gas */
-    double co2_kg_m3, h2o_kg_m3;                /* at the centre */
+    double extinction_per_m[effect_band_count]; /* extinction at the centre, without gas */
+    double co2_kg_m3, h2o_kg_m3;                /* density of gases at the centre */
 } EffectVolume;
 
 /* Time for which a puff of this kind and scale is visible. */
@@ -103,11 +103,11 @@ double effect_life_s(const EffectTable *table, EffectKind kind, double scale);
 bool effect_volume(EffectVolume *out, const EffectTable *table, const EffectPuff *puff, const Weather *weather,
                    const LocalFrame *frame);
 
-/* The gas of an engine where it leaves a model. */
+/* The gas of an engine, where it leaves a model. */
 typedef struct ExhaustJet {
-    double at_body[3], d_body[3]; /* from the centre of the model's base; unit */
-    double radius_m, speed_mps;   /* of the jet */
-    double excess_k;              /* over the air, mixed with that of its first metre */
+    double at_body[3], d_body[3]; /* place relative to the centre of the model's base; unit direction */
+    double radius_m, speed_mps;   /* radius and speed of the jet */
+    double excess_k;              /* temperature above that of the air, once mixed with the air of the first metre */
 } ExhaustJet;
 
 #endif

@@ -23,7 +23,7 @@ bool ground_stand_same_place(const double p_ecef[3], const double r_ecef_from_bo
     static const double near_m = 0.5, cos_5_deg = 0.99619469809174555;
     double              away[3], trace = 0;
     v3_sub(away, p_ecef, q_ecef);
-    for (int i = 0; i < 9; i++) trace += r_ecef_from_body[i] * r_other[i]; /* of the rotation between them */
+    for (int i = 0; i < 9; i++) trace += r_ecef_from_body[i] * r_other[i]; /* trace of the rotation between the two */
     return v3_dot(away, away) <= near_m * near_m && 0.5 * (trace - 1) >= cos_5_deg;
 }
 
@@ -56,7 +56,7 @@ void ground_stand_blows(GroundHistory *h, uint64_t handle, const GroundBlow *blo
 
 uint64_t ground_stand_again(double *from_s, const GroundHistory *h, const GroundStand *stand, double since_s)
 {
-    uint64_t  found = 0; /* of entries with this owner the latest */
+    uint64_t  found = 0; /* number of the latest entry with this owner */
     const int count = ring_count(h->stands, ground_stand_capacity);
     for (int at = 0; at < count; at++) {
         if (h->owner[at] != stand->owner) continue;
@@ -86,7 +86,7 @@ static void add_piece(GroundHistory *h, const GroundTrack *piece)
     h->latest_s = fmax(h->latest_s, piece->a_s);
 }
 
-/* The trail's last piece made longer by this one. */
+/* Extends the trail's last piece by this one, if it may be merged. */
 static bool merge_piece(GroundHistory *h, const GroundTrail *trail, const GroundTrack *piece, double length_m)
 {
     const uint64_t handle = trail->piece;
@@ -122,7 +122,7 @@ static bool is_driven(const GroundTrail *trail, const double way_m[3], double le
            length_m <= correction_m + margin * trail->speed_mps * dt_s && fabs(rise_m) <= 0.71 * length_m;
 }
 
-/* The next piece of a trail, from its end; false: none yet. */
+/* Makes the next piece of a trail, from its end. Returns false when it is not due yet. */
 static bool next_piece(GroundTrack *piece, double *length_m, GroundTrail *trail, const double p_ecef[3], double t_s,
                        bool last)
 {
@@ -181,7 +181,7 @@ int ground_trail_tail(GroundTrack *out, GroundTrail *trail, const double p_ecef[
 
 void ground_burn(GroundHistory *h, const GroundBurn *burn)
 {
-    static const double same_s = 0.5; /* a repeated PDU */
+    static const double same_s = 0.5; /* a burst repeated within this time is one PDU sent twice */
     const uint64_t      look = h->burns < 8 ? h->burns : 8;
     for (uint64_t i = 1; i <= look; i++) {
         const GroundBurn *was = &h->burn[(h->burns - i) % ground_burn_capacity];
@@ -194,7 +194,7 @@ void ground_burn(GroundHistory *h, const GroundBurn *burn)
 
 /* ---- at one instant ------------------------------------------------------------------------- */
 
-/* A ring into an array, the oldest first. */
+/* Copies a ring into an array, the oldest entry first. */
 static void copy_ring(void *out, const void *ring, size_t record, uint64_t ever, int capacity)
 {
     const size_t count = (size_t)ring_count(ever, capacity), first = (size_t)ring_first(ever, capacity);
@@ -203,7 +203,8 @@ static void copy_ring(void *out, const void *ring, size_t record, uint64_t ever,
     if (first > 0) memcpy((char *)out + (count - first) * record, ring, first * record);
 }
 
-/* Leaves out those that begin after t_s: only for an instant before the last PDU, or marks loaded from a later time. */
+/* Leaves out marks that begin after t_s, which exist only when t_s is before the last PDU, or marks were loaded from a
+ * later time. */
 static void leave_out_later(GroundMarks *m, GroundStand *stand, GroundTrack *track, GroundBurn *burn, double t_s)
 {
     int kept = 0;

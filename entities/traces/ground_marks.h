@@ -8,21 +8,21 @@
 
 #include "entities/traces/effect_puffs.h"
 
-/* most: of a snapshot, with the tracks since the last reports. */
+/* most marks of a snapshot, those since the last reports included */
 enum {
     ground_stand_capacity = 4096,
     ground_track_capacity = 32768,
     ground_burn_capacity = 1024,
     ground_tracks_most = 1 << 20
 };
-/* Longer pieces are refused by readers: those made are shorter than 60 m/s for a long timeout. */
+/* Longer pieces are refused when read: recorded ones are shorter than 60 m/s over a long timeout. */
 static const double ground_track_longest_m = 20000;
 
 /* Exhaust from a place where an entity stands: one interval of its engine. */
 typedef struct GroundBlow {
-    float  at_m[3], d[3]; /* ExhaustJet, body axes */
+    float  at_m[3], d[3]; /* as in ExhaustJet, body axes */
     float  radius_m, speed_mps, excess_k;
-    double from_s, to_s; /* exercise time; not after: none */
+    double from_s, to_s; /* exercise time; there is none where to_s is not after from_s */
 } GroundBlow;
 
 /* An entity that stood still within 0.5 m and 5 degrees for 60 s or more, or stands: recorded with the first report
@@ -34,7 +34,7 @@ typedef struct GroundStand {
     double     p_ecef[3]; /* the model's origin (base centre), on the ground where its entity is clamped to it */
     double     r_ecef_from_body[9];
     float      low_m[3], high_m[3]; /* box of the model at rest without guns and rotors, body axes, from that origin */
-    double     from_s, to_s;        /* exercise time; to_s INFINITY: still there */
+    double     from_s, to_s;        /* exercise time; to_s is INFINITY while it still stands */
     uint64_t   owner;               /* entity_key + 1 */
     GroundBlow blow;
 } GroundStand;
@@ -44,7 +44,7 @@ typedef struct GroundTrack {
     double a_ecef[3],
         b_ecef[3];             /* centre line, at the base of the vehicle, on the ground where that is clamped to it */
     double   a_s, b_s;         /* when it passed there */
-    float    width_m, apart_m; /* of one track or tyre; between their centre lines */
+    float    width_m, apart_m; /* width of one track or tyre; distance between both centre lines */
     float    heat_j_m2;        /* friction heat left in the ground under each */
     bool     tracked;
     uint64_t owner; /* entity_key + 1; 0: not known, as of a frame file */
@@ -54,7 +54,7 @@ typedef struct GroundTrack {
 typedef struct GroundBurn {
     double p_ecef[3];
     double t_s;
-    float  radius_m, crater_m; /* burnt; thrown out */
+    float  radius_m, crater_m; /* radius of the burnt ground, and of the crater */
     float  heat_j_m2;
 } GroundBurn;
 
@@ -64,15 +64,15 @@ typedef struct GroundMarks {
     const GroundStand *stand;
     const GroundTrack *track;
     const GroundBurn  *burn;
-    int64_t            forgotten; /* oldest ones beyond capacity */
+    int64_t            forgotten; /* how many of the oldest were forgotten beyond capacity */
 } GroundMarks;
 
 /* The trail of one vehicle: its end, which the next point continues. */
 typedef struct GroundTrail {
     bool        on, has_course;
     double      p_ecef[3], t_s;
-    double      course_ecef[3]; /* unit, of the last piece */
-    double      speed_mps;      /* the larger one of the reports about it */
+    double      course_ecef[3]; /* unit direction of the last piece */
+    double      speed_mps;      /* the larger speed of the two reports around it */
     uint64_t    piece;          /* handle of the last piece; 0: none */
     GroundTrack shape;          /* widths and heat of its pieces */
 } GroundTrail;
@@ -90,7 +90,7 @@ void     ground_stand_until(GroundHistory *history, uint64_t handle, double to_s
 void     ground_stand_blows(GroundHistory *history, uint64_t handle, const GroundBlow *blow);
 /* The latest stand of the owner, if it is in the same place and ended at since_s or later; 0: none. O(capacity). */
 uint64_t ground_stand_again(double *from_s, const GroundHistory *history, const GroundStand *stand, double since_s);
-/* Within 0.5 m and 5 degrees. */
+/* Whether two places and attitudes are the same within 0.5 m and 5 degrees. */
 bool ground_stand_same_place(const double p_ecef[3], const double r_ecef_from_body[9], const double q_ecef[3],
                              const double r_other[9]);
 
@@ -102,7 +102,7 @@ void ground_trail_point(GroundHistory *history, GroundTrail *trail, const double
 /* The same into out, at most one piece, which is not merged. Returns how many. */
 int ground_trail_tail(GroundTrack *out, GroundTrail *trail, const double p_ecef[3], double t_s, bool last);
 
-/* The same burst once more (place, and time within 0.5 s, of the last 8) is ignored. */
+/* Records a burst. One repeated (same place, within 0.5 s, among the last 8) is ignored. */
 void ground_burn(GroundHistory *history, const GroundBurn *burn);
 
 /* Those with from_s, a_s or t_s up to t_s, in the arena; room for tail_capacity more tracks. */

@@ -3,7 +3,8 @@
 
 #include <stdlib.h>
 
-/* Columns; numbers from column `from_unix_s` on. Empty where a kind does not have it. */
+/* Columns of the file; those from `from_unix_s` on are numbers. A cell is empty where the kind of mark has no such
+ * figure. */
 enum {
     at_kind,
     at_owner,
@@ -73,7 +74,7 @@ static const char *const column_name[column_count] = {"kind",
                                                       "blow_to_unix_s"};
 
 static const double latest_unix_s = 1e12, earth_m = 1e8, largest_m = 1000, hottest_j_m2 = 1e9;
-static const double longest_s = 3.2e10; /* of a stand: a thousand years */
+static const double longest_s = 3.2e10; /* longest stand, a thousand years */
 
 /* ---- saved ---------------------------------------------------------------------------------- */
 
@@ -184,10 +185,10 @@ Status ground_marks_save(const GroundHistory *h, double unix_s, const char *path
 
 /* ---- loaded --------------------------------------------------------------------------------- */
 
-/* One row; the first error is kept, and logged by table_number. */
+/* A row that is being read; its first error is kept, and was logged by table_number. */
 typedef struct Row {
     const Table *table;
-    const int   *column; /* [column_count]: in the file */
+    const int   *column; /* [column_count] places of the columns in the file */
     int          row;
     double       unix_s;
     Status       status;
@@ -254,7 +255,7 @@ static void take_stand(GroundHistory *h, Row *r)
     const char *to = table_text(r->table, r->row, r->column[at_to]);
     s.owner = (uint64_t)number(r, at_owner, 1, 0x1p49);
     s.from_s = time_of(r, at_from);
-    s.to_s = *to ? time_of(r, at_to) : fmax(s.from_s, 0); /* of a paused exercise */
+    s.to_s = *to ? time_of(r, at_to) : fmax(s.from_s, 0); /* the exercise was paused */
     place(s.p_ecef, r, at_p);
     numbers(s.r_ecef_from_body, r, at_r, 9, 2);
     lengths(s.low_m, r, at_low, 3, -largest_m, largest_m);
@@ -323,7 +324,7 @@ static Status take_rows(GroundHistory *h, const Table *table, const int column[c
     return r.status;
 }
 
-/* A file may be without exhaust: those columns are -1 then. */
+/* Finds the columns. A file may have none for exhaust: those are -1 then. */
 static bool find_columns(int column[column_count], const Table *table)
 {
     bool blows = false;

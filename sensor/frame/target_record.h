@@ -19,8 +19,8 @@
  * one value, but may show several entities: it counts for `box` when any sample in it shows the target, and for the
  * mask when its own ray does, or, of a small target, when the target fills more than half of it. So COCO's box lies
  * within `box` and is smaller by the rows and columns of pixels that the target only fills in part: none or one on a
- * side of a compact target, more where it ends in a thin part (an antenna, a barrel). Of an ignore region - a target that
- * fills no pixel by more than half, or is below a limit - it is `box` itself.
+ * side of a compact target, more where it ends in a thin part (an antenna, a barrel). Of an ignore region - a target
+ * that fills no pixel by more than half, or is below a limit - it is `box` itself.
  *
  * amodal_box: of the target's vertices, image coordinates, not clipped and not rounded: the first pixel extends from
  * 0 to 1. Only truth.jsonl, coco.json (bbox_amodal: x, y, width, height) and shared memory have it.

@@ -10,7 +10,7 @@
  * that ridges and eaves stay sharp and small furniture goes. */
 typedef struct Plane {
     float height, east, north; /* at the square's centre, per cell */
-    float error;               /* rms; INFINITY: none */
+    float error;               /* rms error of the fit; INFINITY: no plane */
 } Plane;
 
 /* Least-squares plane of the roof's cells about (x, y). */
@@ -40,7 +40,7 @@ static Plane fit(const float *roof, int nx, int ny, int x, int y, int r, int spa
     return p;
 }
 
-/* Roofs of the cells that are CELL_BUILDING. */
+/* Computes the roofs of cells that are CELL_BUILDING. */
 static Status take_apart_roofs(SurfaceParts *out, const SurfaceModel *model, const float *surface_m)
 {
     const int    nx = model->nx, ny = model->ny;
@@ -100,14 +100,15 @@ static Status take_apart_roofs(SurfaceParts *out, const SurfaceModel *model, con
 
 static const float most_radius_m = 12;
 
-/* Popescu and Wynne's pines and deciduous trees together: width 2.515 + 0.00901 h^2. */
+/* Window of a crown by its height: Popescu and Wynne's pines and deciduous trees together, width 2.515 + 0.00901 h^2.
+ * */
 static float window_m(float height_m)
 {
     const float r = (2.515F + 0.00901F * height_m * height_m) / 2;
     return r < 5 ? r : 5;
 }
 
-/* Canopy height smoothed by 1 2 1 both ways; 0 off the trees. */
+/* Smooths the canopy's height by 1 2 1 both ways; it is 0 off the trees. */
 static void smooth(float *to, float *row, const float *from, int nx, int ny)
 {
     for (int y = 0; y < ny; y++) {
@@ -134,14 +135,16 @@ static Status take_apart_crowns(SurfaceParts *out, const SurfaceModel *model, co
     if (!raw || !canopy || !up || !row) goto done;
     for (size_t c = 0; c < n; c++) raw[c] = out->kind[c] == CELL_TREE ? fmaxf(surface_m[c] - out->bare_m[c], 0) : 0;
     smooth(canopy, row, raw, nx, ny);
-    /* a standard deviation of 1 m: branches are no tops; each pass adds half a cell squared of variance */
+    /* smooths with a standard deviation of 1 m, since branches are not tops; each pass adds half a cell squared of
+     * variance */
     const int passes = (int)fmin(2 / (model->cell_m * model->cell_m) + 0.5, 16);
     for (int pass = 1; pass < passes; pass++) {
         memcpy(raw, canopy, n * sizeof *raw);
         smooth(canopy, row, raw, nx, ny);
     }
 
-    /* up: the highest cell within reach, itself for a top; first of 8 neighbours, then for local tops of the window */
+    /* up: the highest cell within reach, which is itself for a top; first among 8 neighbours, then among local tops in
+     * the window */
     size_t tops = 0;
     for (int y = 0; y < ny; y++)
         for (int x = 0; x < nx; x++) {
@@ -201,8 +204,8 @@ done:
 
 static const float most_height_m = 12000, spike_m = 30;
 
-/* The surface without what cannot be: infinities, heights off the Earth, single cells that tower above all others
- * around. NAN: void. */
+/* Copies the surface without impossible values: infinities, heights off the Earth, single cells that tower above all
+ * others around. NAN: void. */
 static void clean(float *out, const float *z, int nx, int ny)
 {
     for (int y = 0; y < ny; y++)
@@ -228,7 +231,7 @@ static Status find_bare(SurfaceParts *out, const SurfaceModel *model, const floa
     uint8_t     *is_ground = out->kind;
     if (!model->bare_m) return take_apart_ground(out->bare_m, is_ground, model, surface_m, 0);
 
-    /* the terrain model is ground but for roofs that were left in it, all of them large */
+    /* the terrain model is ground, except for roofs left in it, all of which are large */
     clean(work, model->bare_m, model->nx, model->ny);
     size_t holes = 0;
     for (size_t c = 0; c < n; c++) holes += isnan(work[c]);

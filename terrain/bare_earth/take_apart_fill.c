@@ -8,7 +8,7 @@ enum { max_levels = 16 };
 typedef struct Level {
     int    nx, ny;
     float *value; /* NAN: not known */
-    bool  *given; /* has values below it: stays as it is */
+    bool  *given; /* a cell with values below it, which stays as it is */
 } Level;
 
 static float mean_of_known(const Level *l, int x, int y)
@@ -25,7 +25,7 @@ static float mean_of_known(const Level *l, int x, int y)
     return count > 0 ? sum / count : NAN;
 }
 
-/* A value for cells next to known ones. */
+/* Gives cells next to known ones a value. */
 static void grow(const Level *l, float *next)
 {
     const size_t n = (size_t)l->nx * (size_t)l->ny;
@@ -57,7 +57,7 @@ static void relax(const Level *l, float *next)
     memcpy(l->value, next, (size_t)nx * (size_t)ny * sizeof *next);
 }
 
-/* From the coarser level, linear between its centres: weights 9 3 3 1. */
+/* Fills from the coarser level, linear between its centres: weights 9 3 3 1. */
 static void refine(const Level *fine, const Level *coarse)
 {
     for (int y = 0; y < fine->ny; y++)
@@ -77,7 +77,7 @@ static void refine(const Level *fine, const Level *coarse)
         }
 }
 
-/* Means of 2 x 2. */
+/* Computes the coarser level as means of 2 x 2. */
 static void coarsen(const Level *coarse, const Level *fine)
 {
     for (int y = 0; y < coarse->ny; y++)
@@ -95,7 +95,7 @@ static void coarsen(const Level *coarse, const Level *fine)
         }
 }
 
-/* Over levels as coarse as coarsest_m; near: with the steps that make it harmonic. */
+/* Fills over levels up to a coarsest one. near: with relaxation, which makes the filling harmonic. */
 static Status fill(float *value, const Blocks *blocks, double coarsest_m, bool near)
 {
     Level        level[max_levels] = {{.nx = blocks->nx, .ny = blocks->ny, .value = value}};
@@ -124,7 +124,7 @@ static Status fill(float *value, const Blocks *blocks, double coarsest_m, bool n
         if (k > 0) coarsen(&level[k], &level[k - 1]);
     }
 
-    /* three steps reach the middle of a roof 100 m wide */
+    /* relaxation steps of each level; three reach the middle of a roof 100 m wide */
     static const int relaxations[] = {4, 3, 2, 2};
     for (int k = 0; near && k < 3; k++) grow(&level[levels - 1], next);
     for (int k = levels - 1; k >= 0; k--) {

@@ -9,7 +9,7 @@
 #include <float.h>
 #include <stdlib.h>
 
-enum { lanes = 32 }; /* columns at a time */
+enum { lanes = 32 }; /* columns that are worked on together */
 
 /* ---- least and greatest of a square about each value --------------------------------------------- */
 
@@ -68,13 +68,13 @@ static const double radius_m[scales] = {2, 4, 8, 14, 22, 34, 52};
 typedef struct Ground {
     Blocks   blocks;
     size_t   count;
-    float   *low;  /* lowest return, NAN: void              [ny][nx] */
+    float   *low;  /* lowest return of each block, NAN: void [ny][nx] */
     float   *high; /* highest                                        */
     float   *opened;
-    float   *slope;  /* of the wide ground, greatest nearby            */
-    float   *height; /* of the ground, filled                          */
+    float   *slope;  /* greatest slope of the wide ground nearby */
+    float   *height; /* height of the ground, with gaps filled */
     float   *work;
-    uint8_t *object; /* not ground                                     */
+    uint8_t *object; /* marks blocks that are not ground */
 } Ground;
 
 static void ground_destroy(Ground *g)
@@ -127,7 +127,7 @@ static void lows(Ground *g, const SurfaceModel *model, const float *surface_m)
         }
 }
 
-/* Opening of `from` into `to`; FLT_MAX: void. Erosion: least; then greatest of the non-void. */
+/* Opens `from` into `to`: the least, then the greatest of what is not void; FLT_MAX: void. */
 static Status opening(float *to, const float *from, const Ground *g, int radius)
 {
     const Blocks *b = &g->blocks;
@@ -155,7 +155,7 @@ static bool clipped(const Blocks *b, const SurfaceModel *model, int x, int y, in
     return x - radius < x0 || y - radius < y0 || x + radius > x1 || y + radius > y1;
 }
 
-/* Slope of the ground over 16 m into `slope`, of an opening; of the clipped blocks alone where `edge`. */
+/* Computes into `slope` the ground's slope over 16 m, from an opening; with `edge` only for the clipped blocks. */
 static Status slope_of_opening(Ground *g, const SurfaceModel *model, int radius, bool edge, int edge_radius)
 {
     const Blocks *b = &g->blocks;
@@ -182,8 +182,8 @@ static Status slope_of_opening(Ground *g, const SurfaceModel *model, int radius,
     return STATUS_OK;
 }
 
-/* Slope of the wide ground, greatest within 12 m. An opening flattens a slope where the window's edge clips its square:
- * there a narrower one gives the slope. */
+/* Finds the slope of the wide ground, the greatest within 12 m. Where the window's edge clips its square an opening
+ * flattens a slope; there a narrower opening gives the slope. */
 static Status find_slope(Ground *g, const SurfaceModel *model)
 {
     const int widest = blocks_in(&g->blocks, radius_m[scales - 1]), narrow = blocks_in(&g->blocks, 16);
@@ -193,7 +193,7 @@ static Status find_slope(Ground *g, const SurfaceModel *model)
     return take_apart_extreme(g->slope, g->blocks.nx, g->blocks.ny, blocks_in(&g->blocks, 12), true);
 }
 
-/* Returns below everything within 14 m but their own neighbours: multipath, wells. */
+/* Drops returns that are below everything within 14 m but their own neighbours: multipath, wells. */
 static Status drop_low_points(Ground *g)
 {
     const Blocks *b = &g->blocks;
@@ -278,14 +278,14 @@ static void regrow(Ground *g)
     }
 }
 
-/* Sums of `from` over squares of 2 radius + 1 blocks, in place. */
+/* Replaces each value by the sum over the square of 2 radius + 1 blocks about it. */
 static void square_sums(float *v, const Blocks *b, int radius, float *line)
 {
     for (int along = 0; along < 2; along++) {
         const int    n = along ? b->ny : b->nx, lines = along ? b->nx : b->ny;
         const size_t step = along ? (size_t)b->nx : 1, next = along ? 1 : (size_t)b->nx;
         for (int l = 0; l < lines; l++) {
-            float *at = v + (size_t)l * next, sum = 0; /* whole numbers: exact */
+            float *at = v + (size_t)l * next, sum = 0; /* sums of whole numbers are exact */
             for (int i = 0; i < n; i++) line[i] = at[(size_t)i * step];
             for (int i = 0; i < n + radius; i++) {
                 if (i < n) sum += line[i];
@@ -313,7 +313,7 @@ static Status give_up_stands(Ground *g)
             const size_t c = (size_t)y * (size_t)nx + (size_t)x;
             if (g->object[c] < 2) continue;
             for (int k = 0; k < 4; k++) {
-                /* a wall's own block may hold both heights: one block further */
+                /* a wall's own block may hold both heights, so the comparison goes one block further */
                 const ptrdiff_t d = di[k] + (ptrdiff_t)dj[k] * nx;
                 const size_t    p = (size_t)((ptrdiff_t)c + d), q = (size_t)((ptrdiff_t)c + 2 * d);
                 if (g->low[p] == FLT_MAX || g->low[q] == FLT_MAX) continue;
@@ -350,7 +350,7 @@ static float ground_at(float *slope, const Ground *g, int x, int y)
     return south + t * (north - south);
 }
 
-/* Cells near the ground of the blocks' lows. */
+/* Marks cells that are near the ground of the blocks' lowest returns. */
 static void near_cells(uint8_t *is_ground, const Ground *g, const SurfaceModel *model, const float *surface_m,
                        float below_m, float above_m, float above_slope_m)
 {
@@ -382,7 +382,7 @@ static Status correct(Ground *g, const SurfaceModel *model, const float *surface
         for (int x = 0; x < b->nx; x++) {
             const size_t at = (size_t)y * (size_t)b->nx + (size_t)x;
             float        sum = 0, count = 0;
-            /* its own cells alone where it has enough */
+            /* a block with enough ground cells uses only its own */
             const int r = 4 * g->opened[at] >= (float)(b->size * b->size) && g->opened[at] > 0 ? 0 : 2;
             for (int j = y - r; j <= y + r; j++)
                 for (int i = x - r; i <= x + r; i++) {

@@ -60,7 +60,7 @@ typedef struct Kinds {
     uint8_t     *kind;
 } Kinds;
 
-/* Marks the cells of straight lines through objects. */
+/* Marks the cells of straight lines that lie on objects. */
 static void mark_straight(const Kinds *k, const SurfaceModel *model)
 {
     const int nx = k->nx, ny = k->ny, spacing = (int)fmax(1, floor(1 / model->cell_m + 0.5));
@@ -93,7 +93,7 @@ static void mark_straight(const Kinds *k, const SurfaceModel *model)
     }
 }
 
-/* Mean of a mask over a square, by running sums: counts in `sum`, [ny][nx]. */
+/* Counts a mask over squares, by running sums: `sum`, [ny][nx]. */
 static Status square_counts(uint16_t *sum, const uint8_t *mask, uint8_t least, int nx, int ny, int r)
 {
     int32_t *column = calloc((size_t)nx + 1, sizeof *column);
@@ -135,7 +135,7 @@ static Status drop_small(const Kinds *k, const SurfaceModel *model)
     Status   status = take_apart_components(&label, &area, k->nx, k->ny, same_kind, k);
     if (status != STATUS_OK) return status;
     const double cell_m2 = model->cell_m * model->cell_m;
-    /* what touches the window's edge is no gap */
+    /* a gap that touches the window's edge may be larger, so it is not filled */
     for (int y = 0; y < k->ny; y++)
         for (int x = 0; x<k->nx; x += y> 0 && y < k->ny - 1 && k->nx > 1 ? k->nx - 1 : 1) {
             const size_t c = (size_t)y * (size_t)k->nx + (size_t)x;
@@ -156,7 +156,8 @@ static bool both_trees(const void *user, size_t c, size_t d)
     return k->kind[c] == CELL_TREE && k->kind[d] == CELL_TREE;
 }
 
-/* Patches too small for a crown belong to the building that they touch (its corners) or are bare (poles, wires). */
+/* Drops patches too small for a crown: they belong to the building that they touch (its corners), or are bare (poles,
+ * wires). */
 static Status drop_small_trees(const Kinds *k, const SurfaceModel *model)
 {
     int32_t *label, *area;
@@ -181,7 +182,7 @@ static Status drop_small_trees(const Kinds *k, const SurfaceModel *model)
     return STATUS_OK;
 }
 
-/* kind = of the cells of `mask` >= least, those with at least `share` of the square about them. */
+/* Sets the kind of those cells of `mask` whose surrounding square has at least `share` of it. */
 static void threshold(const Kinds *k, const uint16_t *sum, double share, int r, bool grow)
 {
     const double all = (2 * r + 1) * (2 * r + 1);
@@ -208,7 +209,7 @@ Status take_apart_kinds(SurfaceParts *out, const SurfaceModel *model, const floa
         for (size_t c = 0; c < n; c++)
             k.kind[c] = !k.object[c] ? CELL_BARE : lines[c] > 0.6 * objects[c] ? CELL_BUILDING : CELL_TREE;
     }
-    /* opened by the least width, then a majority smooths the outline */
+    /* an opening by the least width, then a majority that smooths the outline */
     const int r = cells_in(model, least_width_m / 2 - 0.5 * model->cell_m);
     if (status == STATUS_OK) status = square_counts(lines, k.kind, 3, nx, ny, r);
     for (int pass = 0; pass < 2 && status == STATUS_OK; pass++) {

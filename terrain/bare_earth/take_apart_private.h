@@ -22,7 +22,7 @@ Status take_apart_fill(float *value, const Blocks *blocks);
 Status take_apart_ground(float *bare_m, uint8_t *is_ground, const SurfaceModel *model, const float *surface_m,
                          double first_radius_m);
 
-/* Kinds of the cells from the height of `surface_m` (cleaned) above bare ground. */
+/* Finds the kinds of cells from the height of `surface_m` (cleaned) above bare ground. */
 Status take_apart_kinds(SurfaceParts *out, const SurfaceModel *model, const float *surface_m);
 
 #endif

@@ -40,19 +40,19 @@ static inline void values_of_word(F32x8 *first, F32x8 *second, I32x8 h)
 }
 
 typedef struct Octave {
-    F32x8 first, second;    /* of deviation 1 */
-    F32x8 slope_x, slope_y; /* of the first, a metre */
+    F32x8 first, second;    /* two noise values, each of deviation 1 */
+    F32x8 slope_x, slope_y; /* slope of the first, per metre */
 } Octave;
 
 static const struct {
     double cosine, sine;
-} turn[detail_octaves] = {/* of n + 1 times the golden angle */
+} turn[detail_octaves] = {/* cosine and sine of n + 1 times the golden angle */
                           {-0.73736887807831974, 0.67549029426152385}, {0.087425724716959877, -0.99617104086482777},
                           {0.60843886097886257, 0.79360075129169594},  {-0.98471348531542868, -0.17418195037931164},
                           {0.84375529481239719, -0.53672805262632273}, {-0.25960430490148856, 0.9657150743757783},
                           {-0.4609070247133692, -0.88744842924525458}, {0.93932129632411809, 0.34303863087410202}};
 
-/* two: the second values, too; slopes: the slopes, too. */
+/* two: whether the second value is computed; slopes: whether the slopes are. */
 static inline Octave octave_eight(uint64_t seed, int n, const double x_m[8], const double y_m[8], bool two, bool slopes)
 {
     /* odd multipliers whose lattice of equal words has no vector shorter than 35 000 cells */
@@ -98,14 +98,14 @@ static inline Octave octave_eight(uint64_t seed, int n, const double x_m[8], con
 typedef struct Nodes {
     int32_t class[8], size[8], elongation[8];
     float size_share[8], elongation_share[8];
-    bool  same; /* the eight share class and nodes */
+    bool  same; /* the eight places share class and nodes */
 } Nodes;
 
 /* Nodes are equally spaced between powers of 2: exponent and mantissa of a float are their position. Of eight. */
 static inline I32x8 find_node(float share[8], F32x8 x, int per_doubling_log2, int least_log2, int nodes)
 {
     const int   shift = 23 - per_doubling_log2;
-    const F32x8 at_least = f32x8_max(x, f32x8_set(ldexp(1, least_log2))); /* NaN: least */
+    const F32x8 at_least = f32x8_max(x, f32x8_set(ldexp(1, least_log2))); /* NaN becomes the least */
     const I32x8 bits = i32x8_sub(_mm256_castps_si256(at_least), i32x8_set((127 + least_log2) << 23));
     const I32x8 node = i32x8_shift_right(bits, shift), last = i32x8_set(nodes - 2);
     const F32x8 beyond = i32x8_greater(node, last);
@@ -136,7 +136,7 @@ static void find_nodes(Nodes *out, int some, const uint8_t *surface, const float
     out->same = f32x8_bits(equal) == 0xff;
 }
 
-/* Octaves that any of the places has a weight for, in each field. */
+/* Finds the octaves for which any of the places has a weight, in each field. */
 static void used_octaves(uint8_t used[detail_fields], const DetailTable *t, const Nodes *nodes)
 {
     uint32_t all = 0;

@@ -31,7 +31,7 @@ static const double detail_octave_m[detail_octaves] = {0.08, 0.2, 0.5, 1.25, 3.1
 /* Width of an octave's covariance, as a Gaussian's deviation, in cells. */
 static const double detail_octave_width = 0.57;
 
-/* Of a class and a footprint: standard deviation of each octave in each field, in the field's unit. */
+/* For a class and a footprint: the standard deviation of each octave in each field, in the field's unit. */
 typedef struct DetailWeights {
     float of[detail_fields][detail_octaves];
 } DetailWeights;
@@ -44,14 +44,14 @@ typedef struct DetailStatistics {
 /* Statistics of every class (etc/ground_detail.csv), and the weights of the octaves at every footprint. */
 typedef struct DetailTable {
     DetailStatistics statistics[SURFACE_COUNT][detail_fields];
-    float            bend[SURFACE_COUNT][detail_fields];    /* k above, 1 / unit of the field */
-    float            follows[SURFACE_COUNT][detail_fields]; /* share of the first noise; the rest is of the second */
-    float            apart[SURFACE_COUNT][detail_fields];   /* share of the second */
-    uint8_t          used[SURFACE_COUNT][detail_sizes][detail_longs][detail_fields]; /* octaves with a weight */
-    DetailWeights    weights[SURFACE_COUNT][detail_sizes][detail_longs];
+    float            bend[SURFACE_COUNT][detail_fields]; /* the k of DetailField, in 1 / unit of the field */
+    float   follows[SURFACE_COUNT][detail_fields];       /* share of the first noise value; the rest is the second's */
+    float   apart[SURFACE_COUNT][detail_fields];         /* share of the second noise value */
+    uint8_t used[SURFACE_COUNT][detail_sizes][detail_longs][detail_fields]; /* octaves with a weight other than 0 */
+    DetailWeights weights[SURFACE_COUNT][detail_sizes][detail_longs];
 } DetailTable;
 
-/* From statistics alone. */
+/* Makes a table from statistics alone. */
 Status detail_table_create(DetailTable **out, const DetailStatistics statistics[SURFACE_COUNT][detail_fields],
                            double cut_off);
 /* Logs what is wrong with the file. cut_off: octaves below this share of a field's variance are left out, their
@@ -62,13 +62,13 @@ void                detail_table_close(DetailTable *table); /* accepts NULL */
 
 /* ---- detail at places ---------------------------------------------------------------------------- */
 
-/* Of count places, one array each, [count], the caller's. NULL: not wanted, and not computed. */
+/* Results at `count` places, in arrays [count] of the caller's. NULL: not wanted, and not computed. */
 typedef struct GroundDetail {
     float *albedo;   /* factor of the reflectance, mean 1, > 0 */
     float *warmth_k; /* added to the class's temperature at night, mean 0 (by day more: render/light/thermal.c) */
     float *radar;    /* factor of the backscatter, mean 1, > 0 */
     float *slope_x,
-        *slope_y; /* rise of the detail's height eastwards and northwards, metres a metre; both or neither */
+        *slope_y; /* slope of the detail's height eastwards and northwards, metres a metre; both or neither */
 } GroundDetail;
 
 /* What a sample covers of the ground, m: across the view and along it (at grazing view longer), [count] each. */
@@ -87,7 +87,8 @@ void detail_at(const GroundDetail *out, const DetailTable *table, const Landscap
 void detail_ways(const GroundDetail *detail, const Landscape *landscape, int count, const uint8_t *surface,
                  const double *x_m, const double *y_m, const float *footprint_m);
 
-/* Moves a place of a field with rows (crops, furrows) onto the middle of its row; false: the class has none. */
+/* Moves a place in a field with rows (crops, furrows) onto the middle of its row; returns false when the class has no
+ * rows. */
 bool detail_row(double place_m[2], const Landscape *landscape, SurfaceClass surface, double x_m, double y_m);
 
 #endif

@@ -4,7 +4,7 @@
 #include "terrain/elevation/levels.h"
 #include "terrain/invented/invented_eight.h"
 
-/* What a detail adds: to the factors' 1, and to the rest. */
+/* What a detail adds to the factors of 1, and to the other values. */
 typedef struct Added {
     double albedo, warmth_k, radar, slope; /* slope: across */
 } Added;
@@ -29,7 +29,7 @@ static void add_at(const GroundDetail *out, int n, const Added *a, const double 
 typedef struct Strip {
     double at_m, deviation_m;
     bool   of_edge;                 /* at_m is beyond the edge */
-    double albedo, warmth_k, radar; /* at its middle; the mean over the way is taken off */
+    double albedo, warmth_k, radar; /* values at its middle; the mean over the way is subtracted */
     double height_m;
 } Strip;
 
@@ -44,7 +44,8 @@ static const Strip lane_strips[] = {
     {0, 0.3, true, 0.25, -0.25, 0.50, -0.015},
 };
 static const Strip track_strips[] = {
-    {0.8, 0.2, false, 0.12, 0.25, -0.25, -0.045}, {0, 0.3, false, -0.14, -0.35, 0.30, 0.010}, /* twice: the middle */
+    {0.8, 0.2, false, 0.12, 0.25, -0.25, -0.045},
+    {0, 0.3, false, -0.14, -0.35, 0.30, 0.010}, /* at the middle, both halves overlap */
 };
 
 /* Filtered by a footprint, whose section is taken as a Gaussian of its variance. */
@@ -116,7 +117,7 @@ typedef struct Rows {
 static const Rows rows_of_class[] = {{SURFACE_CROP, 0.75, 0.08, -0.10, 0.15, 0.020},
                                      {SURFACE_PLOUGHED, 1.1, 0.08, -0.15, 0.20, 0.045}};
 
-/* Unit vectors across the rows of the fields that eight places lie in. */
+/* Unit vectors across the rows of the fields in which eight places lie. */
 static void across_rows(float across_x[8], float across_y[8], uint64_t seed, const double x_m[8], const double y_m[8],
                         unsigned lanes)
 {
@@ -140,7 +141,8 @@ static void across_rows(float across_x[8], float across_y[8], uint64_t seed, con
 /* A smooth wave of mean 0 across the rows. */
 static Added row_at(const Rows *rows, double across_m, double share)
 {
-    const double f = across_m / rows->apart_m, whole = 2 * (f - floor(f)) - 1, t = fabs(whole); /* 1 .. 0 .. 1 */
+    const double f = across_m / rows->apart_m, whole = 2 * (f - floor(f)) - 1,
+                 t = fabs(whole); /* falls from 1 to 0 and rises to 1 again */
     const double wave = share * (2 * t * t * (3 - 2 * t) - 1), rise = share * 24 * whole * (1 - t) / rows->apart_m;
     return (Added){rows->albedo * wave, rows->warmth_k * wave, rows->radar * wave, 0.5 * rows->height_m * rise};
 }
@@ -156,7 +158,7 @@ static void rows_detail(const GroundDetail *out, int first, const Landscape *lan
     for (; lanes; lanes &= lanes - 1) {
         const int    k = __builtin_ctz(lanes);
         const double across[2] = {(double)across_x[k], (double)across_y[k]};
-        /* a photograph has the rows itself from two of its pixels on */
+        /* from two of its pixels on, a photograph shows the rows itself */
         const bool  seen = photo_m[k] > 0 && (double)photo_m[k] < rows->apart_m / 2;
         const Added added =
             row_at(rows, x_m[k] * across[0] + y_m[k] * across[1], fade(rows->apart_m, (double)footprint_m[first + k]));
@@ -188,7 +190,7 @@ void detail_ways(const GroundDetail *detail, const Landscape *landscape, int cou
                  const double *x_m, const double *y_m, const float *footprint_m)
 {
     enum { row_kinds = sizeof rows_of_class / sizeof *rows_of_class };
-    static const double widest_m = 3; /* footprints at which something is left */
+    static const double widest_m = 3; /* in footprints: the width below which nothing is left */
     uint64_t            seed;
     if (!landscape_seed(&seed, landscape)) return;
     for (int first = 0; first < count; first += 8) {

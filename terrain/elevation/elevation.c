@@ -6,8 +6,8 @@
 
 /* ---- memory and look-up -------------------------------------------------------------------------- */
 
-/* Zeroed heights. A ray touches a few of hundreds of megabytes: large arrays use huge pages where available, or half of
- * a look-up would be the TLB miss. NULL: no memory. */
+/* Allocates zeroed heights; NULL: no memory. A ray touches few of hundreds of megabytes, so large arrays use huge pages
+ * where available; without them half the time of a look-up would be the TLB miss. */
 static void *heights_create(size_t count, size_t size)
 {
     static const size_t page = (size_t)1 << 21;
@@ -19,20 +19,21 @@ static void *heights_create(size_t count, size_t size)
     return memset(heights, 0, bytes);
 }
 
-Status elevation_level_describe(ElevationLevel *out, int nx, int ny, double x0_m, double y0_m, double spacing_m,
-                                double z0_m, double step_m)
+Status elevation_level_describe(ElevationLevel *out, const ElevationGrid *grid)
 {
+    const int nx = grid->nx, ny = grid->ny;
     if (nx < 2 || ny < 2 || nx > elevation_most_posts || ny > elevation_most_posts) return STATUS_BAD_VALUE;
-    if (!(spacing_m > 0 && step_m > 0) || !isfinite(spacing_m) || !isfinite(step_m)) return STATUS_BAD_VALUE;
-    if (!isfinite(x0_m) || !isfinite(y0_m) || !isfinite(z0_m)) return STATUS_BAD_VALUE;
+    if (!(grid->spacing_m > 0 && grid->step_m > 0) || !isfinite(grid->spacing_m) || !isfinite(grid->step_m))
+        return STATUS_BAD_VALUE;
+    if (!isfinite(grid->x0_m) || !isfinite(grid->y0_m) || !isfinite(grid->z0_m)) return STATUS_BAD_VALUE;
 
     ElevationLevel level = {.nx = nx,
                             .ny = ny,
-                            .x0_m = x0_m,
-                            .y0_m = y0_m,
-                            .spacing_m = spacing_m,
-                            .z0_m = z0_m,
-                            .step_m = step_m,
+                            .x0_m = grid->x0_m,
+                            .y0_m = grid->y0_m,
+                            .spacing_m = grid->spacing_m,
+                            .z0_m = grid->z0_m,
+                            .step_m = grid->step_m,
                             .plain = true};
     level.tiles_x = (nx - 2) / elevation_tile_cells + 1;
     level.tiles_y = (ny - 2) / elevation_tile_cells + 1;
@@ -63,12 +64,11 @@ static void free_arrays(ElevationLevel *level)
     }
 }
 
-Status elevation_level_create(Elevation *elevation, int index, int nx, int ny, double x0_m, double y0_m,
-                              double spacing_m, double z0_m, double step_m)
+Status elevation_level_create(Elevation *elevation, int index, const ElevationGrid *grid)
 {
     ElevationLevel level;
     if (index < 0 || index >= elevation_max_levels) return STATUS_BAD_VALUE;
-    const Status status = elevation_level_describe(&level, nx, ny, x0_m, y0_m, spacing_m, z0_m, step_m);
+    const Status status = elevation_level_describe(&level, grid);
     if (status != STATUS_OK) return status;
 
     level.tile = calloc((size_t)level.tiles_x * (size_t)level.tiles_y, sizeof *level.tile);
@@ -127,7 +127,7 @@ double elevation_height(const Elevation *elevation, double x_m, double y_m, doub
 
 /* ---- tiles: a base and a shift of each, posts alike on the edges that two share ------------------ */
 
-/* A multiple of the unit next to the post, half a unit up; exact for negative posts too. */
+/* Rounds a post to the nearest multiple of the unit, halves upwards; exact for negative posts too. */
 static inline int32_t rounded(int32_t post, int shift)
 {
     return shift ? (post + (1 << (shift - 1))) & ~((1 << shift) - 1) : post;
@@ -147,7 +147,7 @@ static inline uint16_t stored_of(ElevationTile tile, int32_t post)
     return (uint16_t)(stored < 0 ? 0 : stored > 65535 ? 65535 : stored);
 }
 
-/* The tiles that share line n of posts, of `tiles` along this axis: first and last. */
+/* The first and the last of the `tiles` tiles along an axis that share line n of posts. */
 static inline void sharing(int out[2], int n, int tiles)
 {
     const int tile = n / elevation_tile_cells;
@@ -155,7 +155,7 @@ static inline void sharing(int out[2], int n, int tiles)
     out[0] = n % elevation_tile_cells == 0 && n > 0 ? tile - 1 : out[1];
 }
 
-/* The coarsest shift of the tiles from .. to along both axes. */
+/* The coarsest shift among a rectangle of tiles, given by first and last along both axes. */
 static int coarsest(const ElevationLevel *level, const int a[2], const int b[2])
 {
     int shift = 0;
@@ -181,7 +181,7 @@ void elevation_set_post(ElevationLevel *level, int i, int j, int32_t post)
         }
 }
 
-/* Repeats the last column and row of a tile of which only columns x rows posts exist. */
+/* Fills up a tile of which only columns x rows posts exist, by repeating the last column and row. */
 static void fill_up(uint16_t *stored, int columns, int rows)
 {
     for (int j = 0; j < rows && columns < elevation_tile_side; j++) {
@@ -219,7 +219,7 @@ static void fill_tile(ElevationLevel *level, int ti, int tj, const int32_t *row)
         uint16_t      *to = stored + (size_t)j * elevation_tile_side;
         for (int i = 0; i < columns; i++) to[i] = stored_of(of, rounded(from[i], of.shift));
     }
-    /* edges: to the coarsest unit of those that share them */
+    /* edges are rounded to the coarsest unit of the tiles that share them */
     for (int side = 0; side < 4; side++) {
         const bool along_x = side < 2, far_side = side & 1;
         const int  count = along_x ? columns : rows, at = far_side ? elevation_tile_cells : 0;
@@ -293,7 +293,7 @@ static inline uint16_t rounded_up(int32_t posts, int shift) { return (uint16_t)(
 
 static size_t tile_count(const ElevationLevel *level) { return (size_t)level->tiles_x * (size_t)level->tiles_y; }
 
-/* Finest units that hold the level's heights and rises. */
+/* Chooses the finest units that hold the level's heights and rises. */
 static void choose_units(ElevationLevel *level)
 {
     int32_t base = INT32_MAX, top = INT32_MIN, shift = 0;
@@ -308,11 +308,12 @@ static void choose_units(ElevationLevel *level)
         shift = tile.shift > shift ? tile.shift : shift;
     }
     level->pyramid_base = base;
-    level->rise_shift = shift; /* an edge lies in one tile */
+    level->rise_shift = shift; /* an edge of a cell lies in one tile, so any tile's unit is exact */
     for (level->pyramid_shift = 0; top - base > 65535 << level->pyramid_shift;) level->pyramid_shift++;
 }
 
-/* The first maxima, a tile at a time: of the five rows of a square's posts, then of five columns. */
+/* Computes the first level of maxima, one tile at a time: of the five rows of a square's posts, then of five columns.
+ * */
 static void tile_maxima(ElevationLevel *level, int ti, int tj)
 {
     enum { k = elevation_pyramid_first, squares = elevation_tile_cells / square };
@@ -335,7 +336,7 @@ static void tile_maxima(ElevationLevel *level, int ti, int tj)
     }
 }
 
-/* A node's highest of up to four below it; equal for all levels, since they share one unit. */
+/* Each node gets the highest of the up to four nodes below it. All levels of the pyramid share one unit. */
 static void halve_maxima(uint16_t *restrict out, int out_w, int out_h, const uint16_t *restrict in, int w, int h)
 {
     for (int j = 0; j < out_h; j++) {
@@ -348,7 +349,7 @@ static void halve_maxima(uint16_t *restrict out, int out_w, int out_h, const uin
     }
 }
 
-/* Rise from a to b into `to`, from b to a into `from`, of count edges. */
+/* Adds `count` edges to the steepest rises: from a to b into `to`, from b to a into `from`. */
 static void steepest(uint16_t *restrict to, uint16_t *restrict from, const uint16_t *a, const uint16_t *b, int count)
 {
     for (int i = 0; i < count; i++) {
@@ -358,7 +359,8 @@ static void steepest(uint16_t *restrict to, uint16_t *restrict from, const uint1
     }
 }
 
-/* The first rises, a tile at a time: a row of nodes' steepest of each column of edges, then of a node's. */
+/* Computes the first level of rises, one tile at a time: for a row of nodes the steepest of each column of edges, then
+ * of each node. */
 static void tile_rises(ElevationLevel *level, int ti, int tj)
 {
     enum { k = elevation_rise_level, side = elevation_tile_side, squares = elevation_tile_cells / rise_square };

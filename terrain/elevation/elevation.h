@@ -36,7 +36,7 @@
 
 enum {
     elevation_max_levels = 4,
-    elevation_most_posts = 65536, /* a side */
+    elevation_most_posts = 65536, /* most posts along a side of a level */
     elevation_tile_cells = 64,
     elevation_tile_side = 65,
     elevation_tile_posts = 65 * 65,
@@ -64,7 +64,7 @@ typedef struct ElevationLevel {
     int            nx, ny; /* posts, >= 2; post (i, j) at (x0 + i spacing, y0 + j spacing) */
     double         x0_m, y0_m, spacing_m;
     double         z0_m, step_m;     /* dequantisation */
-    int            tiles_x, tiles_y; /* of elevation_tile_cells a side, the last ones filled up */
+    int            tiles_x, tiles_y; /* tiles of elevation_tile_cells a side; the last ones are filled up */
     ElevationTile *tile;             /* [tiles_y][tiles_x] */
     uint16_t      *stored;           /* [tiles_y * tiles_x][65][65], row j northwards */
     bool           plain;            /* every tile has base 0 and shift 0 */
@@ -76,7 +76,7 @@ typedef struct ElevationLevel {
     int32_t        pyramid_base, pyramid_shift, rise_shift;
     uint16_t      *pyramid[elevation_pyramid_levels];
     int            pyramid_nx[elevation_pyramid_levels], pyramid_ny[elevation_pyramid_levels];
-    ElevationRise *rise[elevation_pyramid_levels]; /* as the pyramid, from elevation_rise_level on; else NULL */
+    ElevationRise *rise[elevation_pyramid_levels]; /* as pyramid, for k from elevation_rise_level on; NULL below */
 } ElevationLevel;
 
 typedef struct Elevation {
@@ -84,16 +84,21 @@ typedef struct Elevation {
     ElevationLevel level[elevation_max_levels];
 } Elevation;
 
-/* Sizes of everything in a level without its arrays. STATUS_BAD_VALUE: 2 <= nx, ny <= elevation_most_posts, at most
- * 2^31 - 1 stored posts (2.0e9 posts), spacing and step positive, all finite. */
-Status elevation_level_describe(ElevationLevel *out, int nx, int ny, double x0_m, double y0_m, double spacing_m,
-                                double z0_m, double step_m);
+/* Where the posts of a level are: post (i, j) at (x0 + i spacing, y0 + j spacing), its height z0 + step * post. */
+typedef struct ElevationGrid {
+    int    nx, ny;
+    double x0_m, y0_m, spacing_m, z0_m, step_m;
+} ElevationGrid;
+
+/* Computes the sizes of a level's arrays, which it does not allocate. STATUS_BAD_VALUE unless 2 <= nx, ny <=
+ * elevation_most_posts, stored posts are at most 2^31 - 1 (2.0e9 posts), spacing and step are positive, and all is
+ * finite. */
+Status elevation_level_describe(ElevationLevel *out, const ElevationGrid *grid);
 size_t elevation_level_stored(const ElevationLevel *level); /* elements of `stored` */
 
-/* Allocates level `index` as described, and its pyramid; base, shift and posts zero. The elevation starts zeroed; a
- * level is created once. */
-Status elevation_level_create(Elevation *elevation, int index, int nx, int ny, double x0_m, double y0_m,
-                              double spacing_m, double z0_m, double step_m);
+/* Allocates level `index` and its pyramid; bases, shifts and posts are zero. The elevation must be zeroed before its
+ * first level; each level is created once. */
+Status elevation_level_create(Elevation *elevation, int index, const ElevationGrid *grid);
 void   elevation_build_pyramids(Elevation *elevation); /* not those of borrowed levels */
 
 /* The same of one level, in parts: begin, the rows of tiles (on any threads), finish. */
@@ -155,7 +160,7 @@ static inline int32_t elevation_of_tile(ElevationTile tile, uint16_t stored)
     return (int32_t)((uint32_t)tile.base + ((uint32_t)stored << (tile.shift & 31)));
 }
 
-/* Post (i, j) in whole steps, and in metres. */
+/* Post (i, j) in whole steps, and its height in metres. */
 static inline int32_t elevation_post(const ElevationLevel *level, int i, int j)
 {
     return elevation_of_tile(level->tile[elevation_tile_index(level, i, j)],
@@ -178,7 +183,7 @@ static inline void elevation_cell(int32_t post[4], const ElevationLevel *level, 
     for (int k = 0; k < 4; k++) post[k] = elevation_of_tile(of, south[k % 2 + k / 2 * elevation_tile_side]);
 }
 
-/* Highest post of node (i, j) of pyramid level k, as rounded. */
+/* Highest post under node (i, j) of pyramid level k, rounded up as stored. */
 static inline int32_t elevation_highest(const ElevationLevel *level, int k, int i, int j)
 {
     return level->pyramid_base +

@@ -45,7 +45,7 @@ double levels_height(const Field *posts, double x_m, double y_m, int corner[3], 
 
 void levels_curve(Curve *out, const LocalFrame *frame)
 {
-    static const double a_m = 6378137, b_m = 6356752.314245179498; /* WGS 84 */
+    static const double a_m = 6378137, b_m = 6356752.314245179498; /* semi-axes of WGS 84 */
     for (int k = 0; k < 3; k++) {
         const double inv = out->inv_scale[k] = 1 / (k < 2 ? a_m : b_m);
         out->origin[k] = frame->origin_ecef[k] * inv;
@@ -118,7 +118,7 @@ void levels_join(WorkLevel *level, const WorkLevel *outer, int band)
         for (int i = 0; i < z->nx; i++) {
             const int di = i < z->nx - 1 - i ? i : z->nx - 1 - i, d = di < dj ? di : dj;
             if (d >= band) {
-                i = z->nx - band - 1 > i ? z->nx - band - 1 : i; /* across the middle */
+                i = z->nx - band - 1 > i ? z->nx - band - 1 : i; /* jumps across the middle, which is not blended */
                 continue;
             }
             int          corner[3];
@@ -138,7 +138,8 @@ typedef struct Quanta {
     double z0_m, step_m;
 } Quanta;
 
-/* Power-of-two step that holds the level's heights; origin a multiple of every step that can occur. */
+/* Chooses the step, a power of two, that holds the level's heights, and an origin that is a multiple of every possible
+ * step. */
 static Quanta choose_quanta(const Field *z)
 {
     static const double finest_m = 0x1p-8, origin_m = 64;
@@ -153,7 +154,7 @@ static Quanta choose_quanta(const Field *z)
     return q;
 }
 
-/* All posts of a level whose tiles have base 0 and shift 0, tile by tile. */
+/* Quantises all posts of a level whose tiles have base 0 and shift 0, tile by tile. */
 static void quantise_plain(ElevationLevel *to, const Field *z, float z0, float inv_step, float half)
 {
     for (int tj = 0; tj < to->tiles_y; tj++)
@@ -169,8 +170,8 @@ static void quantise_plain(ElevationLevel *to, const Field *z, float z0, float i
         }
 }
 
-/* Posts of the hole's outline become multiples of the coarse step and of 8 fine steps, rounded down (towards
- * clear lines): then the seven posts between them are whole fine steps. */
+/* Quantises a level. Posts on the hole's outline become multiples of the coarse step and of 8 fine steps, rounded down
+ * (so that lines stay clear): then the seven posts between them are whole fine steps. */
 static void quantise(Elevation *elevation, const WorkLevel *levels, int count, const Quanta *quanta)
 {
     for (int k = count - 1; k >= 0; k--) {
@@ -178,7 +179,7 @@ static void quantise(Elevation *elevation, const WorkLevel *levels, int count, c
         const Field     *z = &level->z;
         ElevationLevel  *to = &elevation->level[k];
         const float      inv_step = (float)(1 / quanta[k].step_m), z0 = (float)quanta[k].z0_m;
-        /* coarse steps may rival the clearance of lines: round down there */
+        /* coarse steps may be as large as the clearance of lines, so posts are rounded down there */
         const float  half = k < 2 ? 0.5f : 0.0f;
         const float *v = z->v;
         if (to->plain) quantise_plain(to, z, z0, inv_step, half);
@@ -229,8 +230,9 @@ Status levels_store(Elevation *out, const WorkLevel *levels, int count)
         const Field *z = &levels[k].z;
         quanta[k] = choose_quanta(z);
         const Status status =
-            elevation_level_create(&elevation, k, z->nx, z->ny, z->i0 * z->spacing_m, z->j0 * z->spacing_m,
-                                   z->spacing_m, quanta[k].z0_m, quanta[k].step_m);
+            elevation_level_create(&elevation, k,
+                                   &(ElevationGrid){z->nx, z->ny, z->i0 * z->spacing_m, z->j0 * z->spacing_m,
+                                                    z->spacing_m, quanta[k].z0_m, quanta[k].step_m});
         if (status != STATUS_OK) {
             elevation_destroy(&elevation);
             return status;
@@ -264,7 +266,7 @@ static Steps choose_steps(const WorkLevel *levels, int count)
             high = high > z->v[n] ? high : z->v[n];
         }
     }
-    /* posts are never negative, so that conversion rounds down */
+    /* posts are never negative, so the conversion rounds down */
     Steps s = {.step_m = finest_m};
     for (;; s.step_m *= 2) {
         s.z0_m = floor(low - seam_posts * s.step_m) - 1;
@@ -272,7 +274,7 @@ static Steps choose_steps(const WorkLevel *levels, int count)
     }
 }
 
-/* The rows of posts of one row of tiles, in steps. */
+/* Writes the rows of posts of one row of tiles, in steps. */
 static void rows_of(int32_t *post, const Field *z, int tile_j, const Steps *steps)
 {
     const int    j0 = tile_j * elevation_tile_cells;
@@ -285,7 +287,7 @@ static void rows_of(int32_t *post, const Field *z, int tile_j, const Steps *step
 
 /* The lines of posts on which a level meets another: its outline, or its hole's. */
 typedef struct Seam {
-    int i0, i1, j0, j1; /* of the level's posts from 0 on; i1 < i0: none */
+    int i0, i1, j0, j1; /* in the level's posts, numbered from 0; i1 < i0: there is no seam */
 } Seam;
 
 static Seam outline_of(const WorkLevel *level)
@@ -309,7 +311,7 @@ static bool tile_meets(const Seam *s, int ti, int tj)
     return !(i0 > s->i0 && i1 < s->i1 && j0 > s->j0 && j1 < s->j1);
 }
 
-/* The tiles that hold any of the posts n0 .. n1 of an axis with this many posts and tiles: first and last. */
+/* The first and the last tile that hold any of the posts n0 .. n1 along an axis with this many posts and tiles. */
 static void holding(int out[2], int n0, int n1, int posts, int tiles)
 {
     n0 = n0 > 0 ? n0 : 0, n1 = n1 < posts - 1 ? n1 : posts - 1;
@@ -324,7 +326,7 @@ static int coarsest_beside(const ElevationLevel *level, int i, int j)
 {
     const bool along_x = j == 0 || j == level->ny - 1, along_y = i == 0 || i == level->nx - 1;
     int        shift = 0;
-    for (int axis = 0; axis < 2; axis++) { /* a corner is on both */
+    for (int axis = 0; axis < 2; axis++) { /* a post at a corner lies on both sides */
         const int reach_i = axis == 0 ? level_ratio : 0, reach_j = axis == 1 ? level_ratio : 0;
         int       a[2], b[2];
         if (!(axis == 0 ? along_x : along_y)) continue;
@@ -339,7 +341,8 @@ static int coarsest_beside(const ElevationLevel *level, int i, int j)
     return shift;
 }
 
-/* Bases and shifts: zero where one range holds the level, so that it is as quick as can be. */
+/* Chooses bases and shifts of tiles. They are zero where one range holds the whole level, which makes look-ups fastest.
+ * */
 static void choose_tiles(ElevationLevel *to, const WorkLevel *level, int32_t *post, const Steps *steps)
 {
     const Seam outline = outline_of(level), hole = hole_of(level);
@@ -361,8 +364,8 @@ static void choose_tiles(ElevationLevel *to, const WorkLevel *level, int32_t *po
     to->plain = true;
 }
 
-/* Posts of the hole's outline become multiples of what divides into eight whole units of the tiles beside them of the
- * level inside, rounded down: a cliff elsewhere on the outline moves none of them. */
+/* Rounds the posts on the hole's outline down to a unit that is eight units of those tiles of the inner level that are
+ * beside them. So a cliff elsewhere on the outline moves none of them. */
 static void round_hole(ElevationLevel *to, const WorkLevel *level, const ElevationLevel *inside)
 {
     const Seam hole = hole_of(level);
@@ -375,7 +378,7 @@ static void round_hole(ElevationLevel *to, const WorkLevel *level, const Elevati
         }
 }
 
-/* Posts of the outline, onto the straight edges of the level around. */
+/* Lays the posts of the outline onto the straight edges of the enclosing level. */
 static void lay_outline(ElevationLevel *to, const WorkLevel *level, const ElevationLevel *outer,
                         const WorkLevel *outer_level)
 {
@@ -403,8 +406,9 @@ Status levels_store_fine(Elevation *out, const WorkLevel *levels, int count)
     if (!post) return STATUS_NO_MEMORY;
     for (int k = 0; k < count && status == STATUS_OK; k++) {
         const Field *z = &levels[k].z;
-        status = elevation_level_create(&elevation, k, z->nx, z->ny, z->i0 * z->spacing_m, z->j0 * z->spacing_m,
-                                        z->spacing_m, steps.z0_m, steps.step_m);
+        status = elevation_level_create(&elevation, k,
+                                        &(ElevationGrid){z->nx, z->ny, z->i0 * z->spacing_m, z->j0 * z->spacing_m,
+                                                         z->spacing_m, steps.z0_m, steps.step_m});
         if (status == STATUS_OK) choose_tiles(&elevation.level[k], &levels[k], post, &steps);
     }
     for (int k = count - 1; k >= 0 && status == STATUS_OK; k--) {

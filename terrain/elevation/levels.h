@@ -20,15 +20,15 @@ void   levels_field_destroy(Field *field);
  * three posts and their shares. */
 double levels_height(const Field *posts, double x_m, double y_m, int corner[3], double weight[3]);
 
-enum { level_ratio = 8 }; /* 2^3 between the spacings of neighbouring levels */
+enum { level_ratio = 8 }; /* ratio of the spacings of neighbouring levels, 2^3 */
 
 typedef struct WorkLevel {
     Field  z;   /* ENU z of the surface; starts as height above the ellipsoid */
-    float *cap; /* highest z allowed by clear lines, NULL: no line is near */
-    /* posts of the hole, inclusive, in this level's own index; hole_i1 < hole_i0: none */
+    float *cap; /* highest z that clear lines allow; NULL: no line is near */
+    /* posts of the hole, inclusive, as indices of this level; hole_i1 < hole_i0: no hole */
     int      hole_i0, hole_i1, hole_j0, hole_j1;
     bool     outermost;
-    uint8_t *water; /* posts of the sea, which nothing moves; NULL: none */
+    uint8_t *water; /* marks posts of the sea, which nothing moves; NULL: there are none */
 } WorkLevel;
 
 static inline double smooth_step(double low, double high, double x)
@@ -39,7 +39,7 @@ static inline double smooth_step(double low, double high, double x)
 
 /* z of the ellipsoid at ENU (x, y), and dz per metre of height there. */
 typedef struct Curve {
-    double origin[3], east[3], north[3], up[3]; /* on the unit sphere */
+    double origin[3], east[3], north[3], up[3]; /* axes and origin on the unit sphere */
     double inv_scale[3];
 } Curve;
 
@@ -53,8 +53,8 @@ Status levels_bend(Field *posts, const Curve *curve);
 void levels_join(WorkLevel *level, const WorkLevel *outer, int band);
 /* Quantises all levels and builds their pyramids; keeps both promises of terrain/elevation/elevation.h on seams. */
 Status levels_store(Elevation *out, const WorkLevel *level, int count);
-/* The same for heights from files: steps of 1/2048 m for all levels (where they are less than 16 km apart in height),
- * shifted in tiles whose heights are more than 31 m apart (in those along a seam, 23 m). */
+/* As levels_store, for heights from files. All levels have steps of 1/2048 m (where their heights span less than 16
+ * km). Steps are coarser in tiles whose heights span more than 31 m, along a seam 23 m. */
 Status levels_store_fine(Elevation *out, const WorkLevel *level, int count);
 
 #endif

@@ -28,13 +28,13 @@ typedef enum RasterVertical { RASTER_VERTICAL_BY_CRS, RASTER_VERTICAL_GEOID, RAS
 
 typedef struct RasterChoice {
     RasterVertical vertical;
-    int            band;              /* 0: the caller's choice */
-    char           unit[16];          /* empty: as the file says */
-    int            sense;             /* 1: upwards, -1: downwards, 0: as the file says */
+    int            band;              /* chosen band; 0: none is chosen */
+    char           unit[16];          /* chosen unit; empty: the file's */
+    int            sense;             /* direction of the numbers; 1: upwards, -1: downwards, 0: as the file says */
     bool           has_void, no_void; /* `nodata=N`; `nodata=none` */
-    double         void_value;        /* where has_void, before scale and offset */
-    char           srs[128];          /* empty: as the file says */
-    char           part[64];          /* empty: the file itself */
+    double         void_value;        /* the number that means void, where has_void, before scale and offset */
+    char           srs[128];          /* chosen coordinate system; empty: the file's */
+    char           part[64];          /* chosen part of the file; empty: the file itself */
 } RasterChoice;
 
 /* Takes the choices off the end of a name. False: *why says what the last of them lacks, in static storage. */
@@ -52,10 +52,10 @@ double raster_unit_m(const char *name);
  * nothing. */
 typedef struct RasterStated {
     char   type[16];              /* GDAL's name: Int16, Float32 ... */
-    char   unit[32];              /* of the band; else of the vertical coordinate system */
-    bool   unit_of_crs;           /* the latter */
-    char   crs[80], crs_unit[32]; /* name; unit of its axes where it is projected */
-    double crs_unit_m;            /* 0: degrees */
+    char   unit[32];              /* unit of the band or, where it has none, of the vertical coordinate system */
+    bool   unit_of_crs;           /* the unit is that of the coordinate system */
+    char   crs[80], crs_unit[32]; /* name of the coordinate system; unit of its axes where it is projected */
+    double crs_unit_m;            /* length of that unit; 0: degrees */
     char   vertical[80];          /* name of the vertical coordinate system */
     bool   down;                  /* its numbers grow downwards */
     bool   coloured;              /* red, green, blue, a palette: a picture */
@@ -68,41 +68,42 @@ typedef struct RasterStated {
 
 typedef struct RasterSheet {
     char              *path;
-    int                x0, y0, width, height; /* px of the Raster */
-    int                band;                  /* of `FILE:BAND`; 0: the caller's choice */
-    struct RasterOpen *open; /* the reader's: handles kept between reads; NULL: the file is opened for each */
+    int                x0, y0, width, height; /* place in the Raster, px */
+    int                band;                  /* the band named in `FILE:BAND`; 0: none is named */
+    struct RasterOpen *open; /* handles that the reader keeps between reads; NULL: the file is opened for each read */
 } RasterSheet;
 
 typedef struct Raster {
     int          width, height, bands;
     double       posting_m[2]; /* along a row and along a column, at the middle */
     bool         ellipsoidal;  /* the CRS is three-dimensional: heights above the ellipsoid */
-    RasterStated stated;       /* by its first sheet */
-    RasterChoice choice;       /* by the list of files */
+    RasterStated stated;       /* what the first sheet states */
+    RasterChoice choice;       /* what the list of files chooses for it */
     double       low, high;    /* numbers outside count as void where sheets overlap; infinite unless the owner knows */
-    int          order;        /* in the list of files, of its first sheet */
+    int          order;        /* place of its first sheet in the list of files */
     int          row_block;    /* rows that are read together at the least cost; a power of two */
-    double       metres_per_unit; /* of the band; negative: its numbers grow downwards. Of an unknown unit 1 */
-    bool         bytes;           /* its samples are octets: of a picture, or a class */
-    bool         whole;           /* they are whole numbers: no elevation in float */
-    bool         sparse;          /* parts are known to be uniform without being read (raster_uniform) */
-    double       data_share;      /* of its pixels, those that must be read; 1: not known to be fewer */
+    double
+        metres_per_unit; /* unit of the band's numbers, m; negative: they grow downwards. 1 where the unit is unknown */
+    bool         bytes;  /* its samples are octets: of a picture, or a class */
+    bool         whole;  /* samples are whole numbers, not floats */
+    bool         sparse; /* parts are known to be uniform without being read (raster_uniform) */
+    double       data_share; /* share of its pixels that must be read; 1: as far as is known all of them */
     int          sheet_count;
     RasterSheet *sheet;
     /* private: */
-    struct RasterChild *child; /* of its set */
+    struct RasterChild *child; /* process that reads its set */
     int                 index; /* there */
     struct RasterKept  *kept;
-    /* the reader's: */
+    /* affine transforms between pixels and the coordinate system, used by the reader */
     double crs_from_px[6], px_from_crs[6];
     double whole_turn_px; /* geographic: px of 360 degrees; else 0 */
     void  *crs, *crs_from_earth, *earth_from_crs;
 } Raster;
 
 typedef struct RasterSet {
-    int                 count;
-    Raster             *raster; /* finest posting first; equals in the order given */
-    struct RasterChild *child;  /* private */
+    int     count;
+    Raster *raster; /* rasters, that of the finest posting first; those of equal posting as they were given */
+    struct RasterChild *child; /* private */
 } RasterSet;
 
 /* paths: files and folders, separated by commas; of a folder, all that GDAL reads. After a name stands what the user
@@ -111,12 +112,12 @@ typedef struct RasterSet {
  * one of raster_sources_from. */
 Status raster_set_open(RasterSet *out, const char *paths, const char *key);
 void   raster_set_close(RasterSet *set); /* accepts zeroes */
-/* Both are of the whole process, for sets opened later, and set before threads read. Folders below which files may lie
- * that other files name, separated by commas; empty: none. */
+/* Both settings are of the whole process and concern sets that are opened later; set them before threads read. Files
+ * that other files name may lie below these folders (separated by commas; empty: none). */
 void        raster_sources_from(const char *folders);
-const char *raster_sources(void); /* as it was set */
-/* From here on only files below this folder are opened, links followed, and none that name others outside it, whatever
- * raster_sources_from has. NULL: anywhere. */
+const char *raster_sources(void); /* the folders as they were set */
+/* From here on only files below this folder are opened, after links are followed, even where raster_sources_from allows
+ * others. NULL: files anywhere. */
 void raster_stay_within(const char *folder);
 
 /* In place, count places: longitude and latitude (rad) to column and row, and back. NaN where the projection has
@@ -140,7 +141,8 @@ Status raster_read(float *out, const Raster *raster, int band, RasterWindow wind
 /* Whether all of a window is known to have one value (NaN: no data) without being read: between sheets, and where a
  * TIFF has no block. False also where it is not known. */
 bool raster_uniform(float *value, const Raster *raster, int band, RasterWindow window, const char *key);
-/* Columns that are best read at once, px: all, or 32768 of a raster so wide that its rows would fill the memory. */
+/* Width, px, of the pieces of rows that are best read at once: the whole width, or 32768 px of a raster so wide that
+ * its rows would fill the memory. */
 int raster_piece(const Raster *raster);
 /* From now on rows of a band that are read, whole or in whole pieces (raster_piece), are kept, decoded, in a nameless
  * file of this folder, and read from it when they are asked for again: 4 octets a pixel, at most most_octets. Nothing

@@ -23,16 +23,16 @@ static _Atomic double patience_s = usual_patience_s;
 void raster_child_patience(double s) { atomic_store(&patience_s, s > 0 ? s : usual_patience_s); }
 
 struct RasterChild {
-    pid_t           process; /* 0: none is left */
+    pid_t           process; /* process that starts readers; 0: there is none */
     int             socket[wire_channels];
-    WireChannel    *channel; /* [wire_channels], shared with it */
+    WireChannel    *channel; /* [wire_channels] memory shared with the reader */
     bool            taken[wire_channels];
-    bool            dead; /* it is asked no more */
+    bool            dead; /* it has been given up: nothing is asked of it any more */
     pthread_mutex_t lock;
     pthread_cond_t  given;
 };
 
-/* Memory that neither side can shrink under the other. */
+/* Makes shared memory that neither process can shrink while the other uses it. */
 static int shared_memory(size_t octets)
 {
     const int memory = memfd_create("rasters", MFD_CLOEXEC | MFD_ALLOW_SEALING);
@@ -49,7 +49,7 @@ static int shared_memory(size_t octets)
 
 static struct {
     pthread_mutex_t lock;
-    pid_t           process, owner; /* owner: of two processes after a fork, the one that may speak to it */
+    pid_t           process, owner; /* owner: the process that may talk to it; a fork of this one may not */
     int             socket;
 } starter = {PTHREAD_MUTEX_INITIALIZER, 0, 0, -1};
 
@@ -75,7 +75,7 @@ static int spawn(pid_t *process, const char *program, int orders)
     return error;
 }
 
-/* Locked. It ends by itself when the program does. */
+/* Forgets the process that starts readers, which ends by itself. Call with the lock held. */
 static void starter_gone(void)
 {
     if (starter.socket >= 0) close(starter.socket);
@@ -88,7 +88,7 @@ static void starter_gone(void)
     starter.process = 0;
 }
 
-/* Locked. 0, or the error. */
+/* Starts the process that starts readers, unless it runs. Returns 0, or the error. Call with the lock held. */
 static int starter_ready(const char *program)
 {
     struct pollfd there = {.fd = starter.socket};
@@ -96,7 +96,8 @@ static int starter_ready(const char *program)
     if (starter.socket >= 0 && starter.owner == getpid() && poll(&there, 1, 0) == 0) return 0;
     starter_gone();
     if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, pair) != 0) return errno;
-    const int far = fcntl(pair[1], F_DUPFD_CLOEXEC, wire_orders + 1); /* away from the number that it gets there */
+    const int far = fcntl(pair[1], F_DUPFD_CLOEXEC,
+                          wire_orders + 1); /* out of the way of the number that it gets in the new process */
     int       error = far < 0 ? errno : 0;
     close(pair[1]);
     if (!error) error = spawn(&starter.process, program, far);
@@ -107,7 +108,8 @@ static int starter_ready(const char *program)
     return error;
 }
 
-/* Locked. descriptors: wire_descriptors of them, or NULL. False: it is gone. */
+/* Sends an order to the process that starts readers, and reads its answer. descriptors: wire_descriptors of them, or
+ * NULL. Returns false when that process is gone. Call with the lock held. */
 static bool starter_asked(int32_t *answer, WireOrderKind kind, pid_t process, const int *descriptors)
 {
     WireOrder    order = {(int32_t)kind, (int32_t)process};
@@ -144,14 +146,14 @@ void raster_child_program(const char *path)
     pthread_mutex_unlock(&starter.lock);
 }
 
-/* 0, or the error. */
+/* Returns 0, or the error. */
 static int start_reader(pid_t *process, const char *program, const int descriptors[wire_descriptors])
 {
     int32_t answer = 0;
     pthread_mutex_lock(&starter.lock);
     int error = starter_ready(program);
     if (!error && !starter_asked(&answer, WIRE_START, 0, descriptors)) {
-        starter_gone(); /* it was killed since: once more */
+        starter_gone(); /* that process was killed meanwhile: try once more */
         error = starter_ready(program);
         if (!error && !starter_asked(&answer, WIRE_START, 0, descriptors)) error = ECHILD;
     }
@@ -199,7 +201,7 @@ Status raster_child_start(RasterChild **out, const char *key)
     return error == ENOMEM ? STATUS_NO_MEMORY : STATUS_IO;
 }
 
-/* Its status as waitpid gives it; 0: unknown. */
+/* Ends a reader. Returns its status as waitpid gives it; 0: unknown. */
 static int end_process(RasterChild *child)
 {
     int32_t how = 0;
@@ -252,7 +254,7 @@ void raster_child_give(RasterChild *child, WireChannel *channel)
 
 typedef enum Fault { FAULT_ENDED, FAULT_SILENT, FAULT_NONSENSE, FAULT_STOP } Fault;
 
-/* The file that the reader says it works at: it may say anything. */
+/* The file that the reader says it works at. It may say anything, so the text is made safe. */
 static void file_at(char out[wire_path_size], const WireChannel *channel)
 {
     memcpy(out, channel->at, wire_path_size);
@@ -260,7 +262,8 @@ static void file_at(char out[wire_path_size], const WireChannel *channel)
     if (!*out) snprintf(out, wire_path_size, "a file");
 }
 
-/* The first thread that notices ends the process and says why; others come here while it does, or later. */
+/* Gives up a reader. The first thread that notices ends the process and logs why; other threads may come here at the
+ * same time or later. */
 static void give_up(RasterChild *child, const WireChannel *channel, Fault fault)
 {
     char path[wire_path_size], key[wire_key_size];
@@ -297,7 +300,7 @@ Status raster_child_distrust(RasterChild *child, WireChannel *channel)
 
 /* ---- requests ------------------------------------------------------------------------------------------ */
 
-/* What the reader would have logged. */
+/* Logs what the reader had to say. */
 static void relay(const WireChannel *channel)
 {
     if (!*(const volatile char *)channel->log) return;

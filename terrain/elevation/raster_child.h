@@ -14,10 +14,10 @@
 
 enum {
     wire_channels = 8,
-    wire_orders = 3,                      /* descriptor that orders come from */
-    wire_descriptors = wire_channels + 1, /* sent along with WIRE_START: sockets, then the memory */
+    wire_orders = 3,                      /* descriptor on which orders arrive */
+    wire_descriptors = wire_channels + 1, /* descriptors sent with WIRE_START: the sockets, then the memory */
     wire_most_rasters = 4096,
-    wire_most_sheets = 65536, /* of all rasters */
+    wire_most_sheets = 65536, /* most sheets of all rasters */
     wire_path_size = 4096,
     wire_key_size = 128,
     wire_log_octets = 16384,
@@ -25,8 +25,8 @@ enum {
 };
 
 typedef enum WireOrderKind {
-    WIRE_START, /* a process for a set; answer: its number, or minus the error */
-    WIRE_END,   /* it is ended, however it does; answer: its status as waitpid gives it */
+    WIRE_START, /* starts a process for a set; answer: its process id, or minus the error */
+    WIRE_END,   /* ends a process; answer: its status as waitpid gives it */
 } WireOrderKind;
 
 typedef struct WireOrder {
@@ -34,22 +34,22 @@ typedef struct WireOrder {
 } WireOrder;
 
 typedef enum WireAsk {
-    WIRE_OPEN,   /* data: texts, each with its 0: the current folder, paths, folder, folders (raster_set.c). count:
-                    rasters */
-    WIRE_RASTER, /* data: WireRaster of `raster` */
-    WIRE_SHEETS, /* data: as many as fit of the sheets of `raster` from `first` on; count: how many */
-    WIRE_PX_FROM_EARTH, /* data: x[count], y[count], replaced */
+    WIRE_OPEN, /* data: texts, each with its 0: current folder, paths, folder, folders (raster_set.c). count: number of
+                  rasters */
+    WIRE_RASTER,        /* data: WireRaster of `raster` */
+    WIRE_SHEETS,        /* data: sheets of `raster` from number `first` on, as many as fit; count: how many */
+    WIRE_PX_FROM_EARTH, /* data: x[count], y[count], which the answer replaces */
     WIRE_EARTH_FROM_PX,
-    WIRE_READ,       /* data: float [height][width], unless it is uniform: then `value` is all of them */
+    WIRE_READ,       /* data: float [height][width], unless the window is uniform, in which case `value` is all of it */
     WIRE_READ_BYTES, /* data: uint8_t [height][width][count], then valid [height][width] */
     WIRE_UNIFORM,    /* whether a window of any size is known to be uniform without being read */
 } WireAsk;
 
 typedef struct WireRequest {
     uint32_t ask;
-    int32_t  raster, first, count; /* first, count: of bands, sheets, places */
+    int32_t  raster, first, count; /* first, count: numbers of bands, sheets or places */
     int32_t  x0, y0, width, height;
-    double   low, high; /* of pixels: numbers outside are voids */
+    double   low, high; /* pixels outside of this range are voids */
     char     key[wire_key_size];
 } WireRequest;
 
@@ -77,15 +77,15 @@ typedef struct WireSheet {
 typedef struct WireChannel {
     WireRequest request;
     WireReply   reply;
-    uint64_t    alive;              /* counts on while a request is worked at, at each file */
-    char        at[wire_path_size]; /* the file that is worked at */
-    char log[wire_log_octets];      /* lines, each a LogLevel as a digit, its text, and a 0; an empty one is the last */
+    uint64_t    alive;              /* increases while a request is worked at, at each file */
+    char        at[wire_path_size]; /* the file that the reader works at */
+    char log[wire_log_octets]; /* log lines, each a LogLevel as a digit, its text, and a 0; an empty line is the last */
     _Alignas(64) uint8_t data[wire_data_octets];
 } WireChannel;
 
 /* ---- the process that reads a set: started, asked, and given up when it ends or does not answer ---- */
 
-enum { raster_most_memory_mb = 4000 }; /* what the reader may take on top of its libraries */
+enum { raster_most_memory_mb = 4000 }; /* most memory of the reader besides its libraries */
 
 typedef struct RasterChild RasterChild;
 
@@ -93,18 +93,18 @@ typedef struct RasterChild RasterChild;
 Status raster_child_start(RasterChild **out, const char *key);
 void   raster_child_stop(RasterChild *child); /* accepts NULL; no request may be under way */
 
-/* A channel that no thread uses; waits for one. */
+/* Returns a channel that no thread uses; waits for one. */
 WireChannel *raster_child_take(RasterChild *child);
 void         raster_child_give(RasterChild *child, WireChannel *channel);
 /* The channel's request, answered: what the reader had to say is logged, and the reply copied. STATUS_IO: the reader
  * has ended or did nothing for too long, which is logged once and ends it for good, or a stop was asked for
  * (work_stop_when). Status of the reply itself: reply->status, one of Status. */
 Status raster_child_ask(RasterChild *child, WireChannel *channel, WireReply *reply);
-/* A reply cannot be what a reader sends: logged once, and the reader is ended. STATUS_BAD_VALUE. */
+/* Call when a reply cannot be what a reader sends: logs that once, and ends the reader. Returns STATUS_BAD_VALUE. */
 Status raster_child_distrust(RasterChild *child, WireChannel *channel);
 
-/* For tests. Seconds without a sign of life after which a reader is given up; 0: as at the start, 120. Another program
- * in the place of pitviper-rasters, NULL: that again; no set may be open. */
+/* For tests. Sets the seconds without a sign of life after which a reader is given up (0: the default, 120), and the
+ * program to be started in place of pitviper-rasters (NULL: that one); no set may be open. */
 void raster_child_patience(double s);
 void raster_child_program(const char *path);
 

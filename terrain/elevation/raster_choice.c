@@ -49,7 +49,8 @@ static bool is_there(const char *path)
     return stat(path, &about) == 0;
 }
 
-/* AUTHORITY:CODE or AUTHORITY:CODE+CODE: nothing that makes PROJ open a file or ask a server. */
+/* Whether it is AUTHORITY:CODE or AUTHORITY:CODE+CODE. Nothing else is passed to PROJ, which might open a file or ask a
+ * server. */
 static bool is_srs(const char *text)
 {
     const size_t word = strspn(text, "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz");
@@ -96,7 +97,7 @@ bool raster_choice_add(RasterChoice *to, const char *text)
     return good;
 }
 
-/* Takes `:N` off the end where what is left is a file. */
+/* Takes `:N` off the end of a path where what remains is a file. */
 static bool is_there_with_band(int *band, char *path)
 {
     char     *colon = strrchr(path, ':');
@@ -112,7 +113,7 @@ static bool is_there_with_band(int *band, char *path)
 bool raster_choice_take(RasterChoice *out, const char **why, char *path)
 {
     RasterChoice c = {0};
-    char        *end = NULL; /* of the file's name */
+    char        *end = NULL; /* where the file's name ends */
     *out = c;
     if (is_there_with_band(&out->band, path)) return true;
     for (char *at = strchr(path, '@'); at && !end; at = strchr(at + 1, '@')) {
@@ -128,7 +129,7 @@ bool raster_choice_take(RasterChoice *out, const char **why, char *path)
         at = next;
     }
     for (char *at = end ? NULL : strrchr(path, '@'); at && take_one(&c, why, at + 1); at = strrchr(path, '@'))
-        *at = 0; /* no file's name: one of GDAL's own, such as a subdataset's */
+        *at = 0; /* this is not a file's name but one of GDAL's own, such as a subdataset's */
     *out = c;
     return good;
 }
@@ -139,7 +140,7 @@ bool raster_choice_write(char *out, size_t out_size, const char *name, const Ras
     const char  *why;
     char         bare[4096], number[40];
     if (snprintf(bare, sizeof bare, "%s", name) >= (int)sizeof bare) return false;
-    (void)raster_choice_take(&own, &why, bare); /* what is wrong with it is said when it is opened */
+    (void)raster_choice_take(&own, &why, bare); /* errors in it are reported when the file is opened */
     const bool unit = *all->unit && !*own.unit, srs = *all->srs && !*own.srs;
     const bool own_void = own.has_void || own.no_void;
     snprintf(number, sizeof number, "%.17g", all->void_value);

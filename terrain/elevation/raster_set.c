@@ -12,7 +12,8 @@
 
 enum { most_side = 100000000, sources_size = 16384 };
 
-static char only_within[PATH_MAX], sources_from[sources_size]; /* empty: anywhere; none */
+static char only_within[PATH_MAX], sources_from[sources_size]; /* files are opened only below only_within (empty:
+                                                                  anywhere); sources_from: see raster_sources_from */
 
 void raster_stay_within(const char *folder) { snprintf(only_within, sizeof only_within, "%s", folder ? folder : ""); }
 
@@ -25,18 +26,21 @@ const char *raster_sources(void) { return sources_from; }
 
 /* ---- rows that were read once, decoded, in a nameless file ---------------------------------------------- */
 
-/* The raster's rows in float, those that have been read, in pieces. */
+/* Rows of a raster that have been read, kept in a file as float, in pieces. */
 typedef struct RasterKept {
     int           file;
     int           band;
-    int           piece, pieces; /* px; of a row */
-    atomic_llong  left;          /* octets that may be written yet */
+    int           piece, pieces; /* width of a piece, px; pieces of a row */
+    atomic_llong  left;          /* octets that may still be written */
     atomic_uchar *has;           /* [height][pieces] */
 } RasterKept;
 
 int raster_piece(const Raster *raster)
 {
-    enum { most = 65536, wide = 32768 }; /* a power of two: averages of 2, 4, 8 ... columns do not straddle pieces */
+    enum {
+        most = 65536,
+        wide = 32768
+    }; /* a power of two, so that no average over 2, 4, 8 ... columns is split between two pieces */
     return raster->width <= most ? raster->width : wide;
 }
 
@@ -62,7 +66,8 @@ void raster_keep(Raster *raster, int band, const char *folder, double most_octet
     if ((double)raster->height * kept->pieces <= most_marks)
         kept->has = calloc((size_t)raster->height * (size_t)kept->pieces, sizeof *kept->has);
     kept->file = open(folder, O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
-    if (!kept->has || kept->file < 0) kept_free(kept); /* no such file system: read twice */
+    if (!kept->has || kept->file < 0)
+        kept_free(kept); /* the file system does not support this, so rows are read again when needed */
     else raster->kept = kept;
 }
 
@@ -82,7 +87,7 @@ static bool whole_io(bool write, int file, float *at, size_t count, size_t offse
     return true;
 }
 
-/* Whole pieces (raster_piece) of rows into the file; a full disk only costs another reading. */
+/* Writes whole pieces (raster_piece) of rows into the file. When the disk is full they are read again later. */
 static void keep_rows(const Raster *raster, float *rows, RasterWindow window)
 {
     const int   x0 = window.x0, y0 = window.y0, width = window.width, height = window.height;
@@ -107,7 +112,7 @@ static void keep_rows(const Raster *raster, float *rows, RasterWindow window)
     }
 }
 
-/* False: not all of the window is there. */
+/* Returns false when part of the window has not been kept. */
 static bool read_kept(float *out, const Raster *raster, RasterWindow window)
 {
     const int         x0 = window.x0, y0 = window.y0, width = window.width, height = window.height;
@@ -137,7 +142,7 @@ static void begin(WireChannel *channel, WireAsk ask, const Raster *raster, const
     snprintf(r->key, sizeof r->key, "%s", key);
 }
 
-/* Replies of a request that may fail: STATUS_OK, or why not. */
+/* Status of the reply to a request that may fail. */
 static Status answer(RasterChild *child, WireChannel *channel, WireReply *reply)
 {
     const Status status = raster_child_ask(child, channel, reply);
@@ -148,7 +153,8 @@ static bool in_range(int value, int low, int high) { return value >= low && valu
 
 static bool is_length(double m) { return m > 0 && isfinite(m); }
 
-/* A text of the reader's, which printed what a file says: within `size`, and nothing that a terminal would obey. */
+/* Copies a text of the reader's, which contains what a file says: within `size`, and with nothing that a terminal would
+ * obey. */
 static void take_text(char *to, const char *from, size_t size)
 {
     memcpy(to, from, size);
@@ -174,7 +180,7 @@ static void take_stated(Raster *out, const WireRaster *w)
     u->has_void = w->has_void != 0, u->no_void = w->no_void != 0, u->void_value = w->void_value;
 }
 
-/* False: no raster is like that. */
+/* Returns false when no raster can have such data. */
 static bool take_raster(Raster *out, const uint8_t *data)
 {
     WireRaster w;
@@ -207,7 +213,7 @@ static bool take_raster(Raster *out, const uint8_t *data)
     return true;
 }
 
-/* The sheets that one reply holds, from number `first` on. STATUS_BAD_VALUE: no sheets are like that. */
+/* Takes the sheets that one reply holds, from number `first` on. STATUS_BAD_VALUE: no raster can have such sheets. */
 static Status take_sheets(Raster *raster, int first, int count, const uint8_t *data)
 {
     size_t at = 0;
@@ -320,7 +326,7 @@ void raster_set_close(RasterSet *set)
 
 /* ---- places ------------------------------------------------------------------------------------------- */
 
-/* In pieces that fit; NaN, too, where the reader has ended. */
+/* Converts places, in batches that fit into a channel. The result is NaN also where the reader has ended. */
 static void places(WireAsk ask, const Raster *raster, int count, double *x, double *y)
 {
     enum { most = wire_data_octets / (2 * sizeof(double)) };
@@ -383,9 +389,9 @@ void raster_enu_box(double low_m[2], double high_m[2], const Raster *raster, con
 
 /* ---- pixels ------------------------------------------------------------------------------------------- */
 
-/* A part of a window whose pixels of `octets` fit into a channel: whole rows, or a piece of one. False: the end. */
+/* A part of a window whose pixels, of `octets` each, fit into a channel: whole rows, or a piece of one row. */
 typedef struct Part {
-    int x, y, width, height; /* from the window's first pixel */
+    int x, y, width, height; /* offset from the window's first pixel */
 } Part;
 
 static bool next_part(Part *p, int width, int height, size_t octets)

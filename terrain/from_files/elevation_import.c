@@ -34,9 +34,9 @@ void samples_free(Samples *samples)
     *samples = (Samples){0};
 }
 
-/* Places of the grid, each converted exactly to ENU; and posts of it, where peaks between the stored posts are lost
- * most. */
-Status samples_draw(Samples *samples, const Import *m, const Patch *patch, int first, int end, int at_posts)
+/* Draws places of the grid, each converted exactly to ENU, and posts of it, since peaks between the stored posts are
+ * lost most. */
+Status samples_draw(Samples *samples, const Import *m, const RasterPatch *patch, int first, int end, int at_posts)
 {
     enum { block = 1000 };
     const Grid  *g = &m->grid[m->main];
@@ -52,7 +52,7 @@ Status samples_draw(Samples *samples, const Import *m, const Patch *patch, int f
             if (hole[0] || hole[1] || hole[patch->nx[0]] || hole[patch->nx[0] + 1]) continue;
             x[drawn] = patch->x0 + u + 0.5;
             y[drawn] = patch->y0 + v + 0.5;
-            h[drawn] = patch_at(patch, x[drawn], y[drawn], 0) * g->raster->metres_per_unit;
+            h[drawn] = raster_patch_at(patch, x[drawn], y[drawn], 0) * g->raster->metres_per_unit;
             at_post[drawn] = n >= at_posts;
             drawn++;
         }
@@ -70,7 +70,7 @@ Status samples_draw(Samples *samples, const Import *m, const Patch *patch, int f
     return STATUS_OK;
 }
 
-/* Signed distance of the surface below or above one place; NaN off level 0 or where it is joined. */
+/* Signed height of the surface over one place; NaN off level 0 or where it is blended with level 1. */
 static double off_m(const Elevation *elevation, const double p_enu[3])
 {
     const ElevationLevel *level = &elevation->level[0];
@@ -110,7 +110,7 @@ Status samples_measure(ElevationReport *report, const Samples *samples, const El
 
 enum { most_side_0 = 6 << 10 }; /* 36 M posts */
 static const double most_read_gb =
-    1024; /* decoded: an hour; a file of 300 octets may ask for a million times as much */
+    1024; /* decoding that takes an hour; a file of 300 octets may ask for a million times as much */
 
 static Status refuse_vast(const Import *m)
 {
@@ -149,7 +149,7 @@ Status elevation_import(Elevation *out, ElevationReport *report, const Elevation
         if (status == STATUS_OK && !m.level[k].outermost) view_join(z->v, z, 0, z->ny, &m.level[k + 1].z);
     }
     if (status == STATUS_OK) status = levels_store_fine(&elevation, m.level, m.level_count);
-    const Patch *patch = &view.patch[m.main];
+    const RasterPatch *patch = &view.patch[m.main];
     if (status == STATUS_OK && patch->mips > 0 && r.correction_m == 0 && patch->factor == 1 && patch->nx[0] > 1 &&
         patch->ny[0] > 1) {
         status = samples_draw(&samples, &m, patch, 0, 2 * samples_places, samples_places);

@@ -17,16 +17,16 @@
 enum { survey_most_voids = 8 };
 
 typedef struct ElevationSurvey {
-    const Raster *raster;        /* its sheets, size, posting, unit and coordinate system */
-    bool          whole;         /* every post was looked at; else a part, and counts are of that part */
-    double        posts;         /* looked at */
-    double        voids;         /* of them declared: nodata, masked, between sheets, or named by the user */
-    double        outside;       /* of them no height on Earth, -12 500 .. 9500 m */
-    double        low_m, high_m; /* range of the others, suspected voids left out; NaN: none */
-    int           suspects;      /* numbers taken for voids that no tag declares */
-    double        suspect[survey_most_voids], suspect_posts; /* as the file has them, lowest height first */
-    double        gap_m;                                     /* from the highest suspect to the lowest height */
-    bool          ellipsoidal; /* heights are taken as above the ellipsoid; set by the caller */
+    const Raster *raster;        /* the raster, with its sheets, size, posting, unit and coordinate system */
+    bool          whole;         /* whether every post was looked at; if not, counts are of the part that was */
+    double        posts;         /* posts that were looked at */
+    double        voids;         /* declared voids: nodata, masked, between sheets, or named by the user */
+    double        outside;       /* posts that cannot be heights on Earth, which lie in -12 500 .. 9500 m */
+    double        low_m, high_m; /* range of the remaining posts without suspected voids; NaN: there are none */
+    int           suspects;      /* different numbers that are taken for voids although no tag declares them */
+    double suspect[survey_most_voids], suspect_posts; /* these numbers as the file has them, in ascending order */
+    double gap_m;                                     /* difference between the highest suspect and the lowest height */
+    bool   ellipsoidal;                               /* heights are taken as above the ellipsoid; set by the caller */
 } ElevationSurvey;
 
 /* Looks at a raster and sets its low and high, so that suspected voids are read as voids. STATUS_BAD_VALUE, logged
@@ -38,7 +38,8 @@ Status elevation_survey(ElevationSurvey *out, Raster *raster, const char *key, P
 void elevation_survey_words(const char **unit, const char **unit_from, const char **datum, const char **datum_from,
                             const ElevationSurvey *survey);
 
-extern const double elevation_lowest_m, elevation_highest_m; /* below the deepest trench, above Everest */
+extern const double elevation_lowest_m,
+    elevation_highest_m; /* a height below the deepest trench, and one above Everest */
 
 /* ---- elevation as nested levels in ENU ----------------------------------------------------------- */
 
@@ -48,39 +49,41 @@ extern const double elevation_lowest_m, elevation_highest_m; /* below the deepes
  * grid ends within a coarser one, within eight of the coarser's posts. Inside a grid nothing is blended. */
 
 typedef enum ElevationVertical {
-    ELEVATION_BY_FILE, /* above the ellipsoid where the CRS is three-dimensional, else above the geoid */
+    ELEVATION_BY_FILE, /* above the ellipsoid where the CRS is three-dimensional, otherwise above the geoid */
     ELEVATION_GEOID,
     ELEVATION_ELLIPSOID
 } ElevationVertical;
 
 typedef struct ElevationFiles {
-    const char       *paths;      /* files and folders, separated by commas */
-    struct RasterSet *opened;     /* the same, opened already: taken over; NULL, or empty: they are opened */
-    const char       *geoid_path; /* empty: EGM96 of proj-data */
+    const char *paths; /* files and folders, separated by commas */
+    struct RasterSet
+               *opened; /* the same files, opened already, which are taken over; NULL, or empty: they are opened here */
+    const char *geoid_path; /* file of the geoid; empty: EGM96 of proj-data */
     ElevationVertical vertical;
-    double            spacing_m; /* of level 0; 0: the posting of the finest data at the origin */
-    double            horizon_m; /* half width of the outermost level */
-    double            size_m[2]; /* width of level 0, about the origin, x and y; 0: all data */
-    const char *keep_folder;     /* large files are decoded once into a nameless file here; NULL: as often as needed */
-    void (*heard)(void *user, const ElevationSurvey *survey); /* of each grid, before its use; NULL: it is not told */
+    double            spacing_m;   /* spacing of level 0; 0: the posting of the finest data at the origin */
+    double            horizon_m;   /* half width of the outermost level */
+    double            size_m[2];   /* width of level 0 in x and y, centred on the origin; 0: all data */
+    const char       *keep_folder; /* folder for a nameless file into which large files are decoded once; NULL: they are
+                                      decoded as often as needed */
+    void (*heard)(void *user, const ElevationSurvey *survey); /* is called for each grid before its use; may be NULL */
     void *heard_user;
 } ElevationFiles;
 
 typedef struct ElevationReport {
     int    sheets, grids;         /* files, and groups of them that share a grid */
-    double posting_m;             /* of the grid that level 0 shows */
-    double spacing_m, width_m[2]; /* of level 0 */
+    double posting_m;             /* posting of the grid that level 0 shows */
+    double spacing_m, width_m[2]; /* spacing and width of level 0 */
     double reach_m[2];            /* from the origin to the nearest and to the farthest edge of the data */
-    double blend_m, beyond_h_m;   /* beyond them */
-    bool   ellipsoidal;           /* heights of that grid were taken as above the ellipsoid */
-    double geoid_m;               /* N at the origin, where it was added */
-    long   voids;                 /* posts of that grid on level 0 filled from their surroundings */
-    long   voids_coarser;         /* and from coarser grids, where it was counted (elevation_import.h) */
+    double blend_m, beyond_h_m;   /* width of the blending beyond the data, and height beyond that */
+    bool   ellipsoidal;           /* heights of level 0's grid were taken as above the ellipsoid */
+    double geoid_m;               /* height of the geoid at the origin, where it was added; 0 elsewhere */
+    long   voids;                 /* posts of level 0 that are voids of its grid, filled from their surroundings */
+    long   voids_coarser;         /* posts filled from coarser grids, where they were counted (elevation_import.h) */
     /* |surface - file| over places of that grid on level 0, voids left out: what resampling cost. The
      * largest is that of 100 000 such places and as many posts; others may exceed it a little. */
     int    places;
     double error_rms_m, error_p99_m, error_max_m;
-    double correction_m; /* largest change by the fit to fixes; 0: none */
+    double correction_m; /* largest change made by the fit to fixes; 0: no fit */
 } ElevationReport;
 
 /* fix: ground places to lead the surface through by a smooth correction (fix_count 0: none). Failures are logged with
@@ -90,9 +93,9 @@ Status elevation_import(Elevation *out, ElevationReport *report, const Elevation
 
 /* ---- the same posts, level 0 a strip of rows at a time, for levels larger than memory ------------ */
 
-/* Between opening and elevation_stream_begin it is known how much there is to do. The levels around level 0 are whole
- * in memory. Strips may overlap and come in any order; a strip reads its part of the files, and takes 5 octets a pixel
- * of it and 4 a post. */
+/* Makes level 0 in strips. How much there is to do is known between elevation_stream_open and elevation_stream_begin.
+ * The levels around level 0 are whole in memory. Strips may overlap and come in any order; each reads its part of the
+ * files, and takes 5 octets for each pixel and 4 for each post. */
 typedef struct ElevationStream ElevationStream;
 
 /* One level: post (i, j) is at ((i0 + i) spacing_m, (j0 + j) spacing_m) of ENU. */
@@ -107,10 +110,10 @@ typedef struct StreamLevel {
  * outlive the stream. Failures are logged. */
 Status elevation_stream_open(ElevationStream **out, const ElevationFiles *files, const LocalFrame *frame,
                              const ElevationStream *like, Pool *pool);
-/* Heights of the levels around level 0, which all that follows needs: reads the files once. keep_octets: of decoded
- * rows that may lie in files->keep_folder meanwhile. */
+/* Computes the heights of the levels around level 0, which all later calls need; the files are read once. keep_octets:
+ * most octets of decoded rows in files->keep_folder. */
 Status elevation_stream_begin(ElevationStream *stream, double keep_octets);
-/* Pixels that this reads, at most. */
+/* Most pixels that elevation_stream_begin reads. */
 double           elevation_stream_reads_px(const ElevationStream *stream);
 void             elevation_stream_close(ElevationStream *stream); /* accepts NULL */
 const RasterSet *elevation_stream_files(const ElevationStream *stream);
@@ -121,14 +124,14 @@ void             elevation_stream_level(StreamLevel *out, const ElevationStream 
  * the voids and samples of these rows are added to the report: true once for each row, from the south. */
 Status elevation_stream_heights(ElevationStream *stream, int row0, int rows, float *h_m, uint8_t *from_file,
                                 bool counted);
-/* In place: to ENU z, blended into level 1 near the outline. */
+/* Converts rows to ENU z in place, and blends them into level 1 near the outline. */
 Status elevation_stream_bend(const ElevationStream *stream, int row0, int rows, float *h_m);
-/* Surface of the levels from 1 on; 0 beyond them. */
+/* Height of the surface of the levels from 1 on; 0 beyond them. */
 double elevation_stream_around(const ElevationStream *stream, double x_m, double y_m);
 /* What is known of the files so far; with the stored surface (NULL: not yet) also the error. */
 Status elevation_stream_report(ElevationReport *out, const ElevationStream *stream, const Elevation *stored);
 
-/* Middle of the finest of the files, without a stream; opened: the files, for ElevationFiles. */
+/* The middle of the finest of the files, found without a stream. opened: gets the opened files, for ElevationFiles. */
 Status elevation_middle(Geodetic *out, RasterSet *opened, const char *paths);
 
 /* ---- a landscape --------------------------------------------------------------------------------- */
@@ -136,13 +139,13 @@ Status elevation_middle(Geodetic *out, RasterSet *opened, const char *paths);
 typedef struct LandscapeFiles {
     ElevationFiles elevation;
     const char    *cover, *cover_table, *photo; /* empty: none */
-    int            cover_band;                  /* 0: chosen */
-    uint64_t       seed;                        /* of texture, and of surfaces not in the files */
+    int            cover_band;                  /* 0: the band is chosen */
+    uint64_t       seed;                        /* seed of the texture, and of surfaces that the files do not have */
 } LandscapeFiles;
 
 typedef struct LandscapeReport {
     ElevationReport elevation;
-    CoverReport     cover; /* where cover is named */
+    CoverReport     cover; /* set where cover is named */
     double          photo_posting_m;
 } LandscapeReport;
 

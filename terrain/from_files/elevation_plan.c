@@ -38,10 +38,10 @@ Status elevation_import_open(Import *m)
         wants_geoid |= !g->ellipsoidal;
         survey.ellipsoidal = g->ellipsoidal;
         if (m->files->heard) m->files->heard(m->files->heard_user, &survey);
-        /* into the coarser grid around: some of its posts */
+        /* width over which it fades into the coarser grid around, in posts of that */
         g->short_m =
             k + 1 < m->grids ? 8 * fmax(m->set.raster[k + 1].posting_m[0], m->set.raster[k + 1].posting_m[1]) : 0;
-        g->long_m = 30000; /* until its edge has been seen */
+        g->long_m = 30000; /* preliminary, until its edge has been measured */
     }
     return wants_geoid ? geoid_open(&m->geoid, m->files->geoid_path) : STATUS_OK;
 }
@@ -62,7 +62,8 @@ static int round_out(double posts)
     return (int)(posts < 0 ? floor(posts / level_ratio) : ceil(posts / level_ratio)) * level_ratio;
 }
 
-/* How far a grid's nearest edge is from the origin: positive inside, negative outside; and the farthest. */
+/* Signed distance of a grid's nearest edge from the origin, positive inside the grid; and the distance of its farthest
+ * edge. */
 static void grid_reach(double reach_m[2], const Raster *raster, const LocalFrame *frame)
 {
     double x = frame->origin.lon_rad, y = frame->origin.lat_rad;
@@ -121,7 +122,7 @@ void elevation_import_plan(Import *m, int most_side)
     double low[2], high[2];
     int    first[2], last[2];
     raster_enu_box(low, high, raster, m->frame, 0.5);
-    for (int k = 0; k < m->grids; k++) { /* neighbours of about the same posting belong to it */
+    for (int k = 0; k < m->grids; k++) { /* grids of about the same posting belong to the main grid */
         double other_low[2], other_high[2];
         if (fmin(m->grid[k].units[0], m->grid[k].units[1]) > 2 * s || k == m->main) continue;
         raster_enu_box(other_low, other_high, m->grid[k].raster, m->frame, 0.5);
@@ -132,7 +133,7 @@ void elevation_import_plan(Import *m, int most_side)
     }
     const int half = most_side / 2 / level_ratio * level_ratio - level_ratio;
     for (int c = 0; c < 2; c++) {
-        if (m->files->size_m[c] > 0) { /* about the origin, whether there are data or not */
+        if (m->files->size_m[c] > 0) { /* centred on the origin, whether there are data or not */
             low[c] = -0.5 * m->files->size_m[c] + margin * s;
             high[c] = 0.5 * m->files->size_m[c] - margin * s;
         }
@@ -145,7 +146,8 @@ void elevation_import_plan(Import *m, int most_side)
     while (m->level_count < elevation_max_levels) {
         const WorkLevel *in = &m->level[m->level_count - 1];
         const int        i1 = in->z.i0 + in->z.nx - 1, j1 = in->z.j0 + in->z.ny - 1;
-        const double narrowest = fmin(fmin(-in->z.i0, i1), fmin(-in->z.j0, j1)) * s; /* data may be one long strip */
+        const double     narrowest = fmin(fmin(-in->z.i0, i1), fmin(-in->z.j0, j1)) *
+                                 s; /* the least distance to an edge, as data may be one long strip */
         if (narrowest >= m->files->horizon_m && !(m->streamed && m->level_count == 1)) break;
         s *= level_ratio;
         const bool ends = m->level_count == elevation_max_levels - 1 || outer_half_posts * s >= m->files->horizon_m;
@@ -169,24 +171,24 @@ void elevation_import_plan(Import *m, int most_side)
 
 /* ---- heights of whole levels: every grid is read once for all of them ------------------------------------ */
 
-PatchSource elevation_import_source(const Import *m, int grid)
+RasterPatchSource elevation_import_source(const Import *m, int grid)
 {
     const Raster *raster = m->grid[grid].raster;
     const double  a = elevation_lowest_m / raster->metres_per_unit, b = elevation_highest_m / raster->metres_per_unit;
-    return (PatchSource){
+    return (RasterPatchSource){
         .raster = raster, .band = 1, .low = fmin(a, b), .high = fmax(a, b), .key = key, .pool = m->pool};
 }
 
-/* Mean and spread of each grid's outline: for the blending from it, and the height beyond the coarsest. */
+/* Measures mean and spread of each grid's outline, for blending beyond it and for the height beyond the coarsest. */
 static bool measure_edges(Import *m, const View *view)
 {
     bool any = false;
     for (int k = 0; k < m->grids; k++) {
-        Grid        *g = &m->grid[k];
-        const Patch *p = &view->patch[k];
-        const int    nx = p->nx[0], ny = p->ny[0];
-        double       sum = 0, low = INFINITY, high = -INFINITY;
-        long         count = 0;
+        Grid              *g = &m->grid[k];
+        const RasterPatch *p = &view->patch[k];
+        const int          nx = p->nx[0], ny = p->ny[0];
+        double             sum = 0, low = INFINITY, high = -INFINITY;
+        long               count = 0;
         if (p->mips == 0) continue;
         for (int j = 0; j < ny; j++)
             for (int i = 0; i < nx; i++) {
@@ -198,26 +200,26 @@ static bool measure_edges(Import *m, const View *view)
                 count++;
             }
         m->base_h_m = sum / (double)count + (g->ellipsoidal ? 0 : m->geoid_m);
-        g->long_m = clamp(15 * (high - low), 2000, 30000); /* a slope of one in fifteen */
+        g->long_m = clamp(15 * (high - low), 2000, 30000); /* the blending slopes by one in fifteen */
         any = true;
     }
     return any;
 }
 
-/* Every grid's windows in one pass over its files. */
+/* Reads every grid's windows in one pass over its files. */
 static Status read_all(View view[elevation_max_levels], const Import *m, int first)
 {
     Status status = STATUS_OK;
     for (int grid = 0; grid < m->grids && status == STATUS_OK; grid++) {
-        PatchWindow window[elevation_max_levels];
-        Patch       patch[elevation_max_levels] = {0};
-        int         of[elevation_max_levels], count = 0;
+        RasterPatchWindow window[elevation_max_levels];
+        RasterPatch       patch[elevation_max_levels] = {0};
+        int               of[elevation_max_levels], count = 0;
         for (int k = first; k < m->level_count; k++) {
             if (!view_window(&window[count], &view[k], m, grid)) continue;
             of[count++] = k;
         }
-        const PatchSource source = elevation_import_source(m, grid);
-        if (count > 0) status = patches_read(patch, window, count, &source);
+        const RasterPatchSource source = elevation_import_source(m, grid);
+        if (count > 0) status = raster_patches_read(patch, window, count, &source);
         for (int n = 0; n < count && status == STATUS_OK; n++) view[of[n]].patch[grid] = patch[n];
     }
     return status;

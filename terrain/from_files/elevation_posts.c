@@ -4,12 +4,13 @@
 
 #include <stdlib.h>
 
-static const double lowest_view_m = -1000, highest_view_m = 9500, rise_m = 4000; /* rise: between the exact look-ups */
+static const double lowest_view_m = -1000, highest_view_m = 9500,
+                    rise_m = 4000; /* rise_m: height of the second exact look-up */
 enum { rows_a_task = 16, most_run = 128, rows_at_once = 4 };
 
 /* ---- where posts lie in the grids ----------------------------------------------------------- */
 
-/* Longitude and latitude on the lattice's nodes of the vertical line at height h. */
+/* Longitude and latitude where the vertical lines of the lattice's nodes are at height h. */
 static Status lattice_places(double *lon, double *lat, const Import *m, const View *view, double h_m)
 {
     const Field *z = &view->level;
@@ -39,20 +40,20 @@ void view_free(View *view)
         free(s->y);
         free(s->dx);
         free(s->dy);
-        patch_free(&view->patch[k]);
+        raster_patch_free(&view->patch[k]);
     }
     free(view->n_m);
     *view = (View){0};
 }
 
-/* A node of the lattice every 16 posts, and every 128 m at least: over that the ellipsoid departs from a plane by
- * 0.3 mm, and where nodes are farther apart by less than a 400th of the posts' spacing. */
+/* Makes a view. Its lattice has a node every 16 posts, and at least every 128 m, over which the ellipsoid departs from
+ * a plane by 0.3 mm; nodes that are farther apart are wrong by less than a 400th of the posts' spacing. */
 Status view_create(View *out, const Import *m, const Field *level, int row0, int rows)
 {
     View v = {.level = *level, .row0 = row0, .rows = rows};
     v.stride = level->spacing_m * 16 >= 128 ? 16 : (int)(128 / level->spacing_m);
     v.node_row0 = row0 / v.stride * v.stride;
-    v.nodes_x = (level->nx - 1) / v.stride + 2; /* one more than the last post stands on */
+    v.nodes_x = (level->nx - 1) / v.stride + 2; /* one node beyond the last post */
     v.nodes_y = (row0 + rows - 1 - v.node_row0) / v.stride + 2;
     const int    nodes = v.nodes_x * v.nodes_y;
     const size_t size = (size_t)nodes * sizeof(double);
@@ -92,8 +93,8 @@ done:
     return status;
 }
 
-/* At the grid's own posting, or averaged to the level's. */
-bool view_window(PatchWindow *out, const View *view, const Import *m, int grid)
+/* The window of a grid that a view needs, at the grid's own posting or averaged to the level's. */
+bool view_window(RasterPatchWindow *out, const View *view, const Import *m, int grid)
 {
     const Grid  *g = &m->grid[grid];
     const Sight *s = &view->sight[grid];
@@ -119,15 +120,16 @@ bool view_window(PatchWindow *out, const View *view, const Import *m, int grid)
     }
     int factor = 1;
     while (2 * factor * fmax(g->units[0], g->units[1]) <= view->level.spacing_m * 1.001) factor *= 2;
-    *out = (PatchWindow){from[0], from[1], to[0], to[1], factor, NULL};
+    *out = (RasterPatchWindow){from[0], from[1], to[0], to[1], factor, NULL};
     return true;
 }
 
 /* ---- heights -------------------------------------------------------------------------------- */
 
-/* One grid at a place in its pixels: height above the ellipsoid, and how far it is beyond its outermost posts; there it
- * is held at its edge, ever more broadly averaged. False: too far to count. */
-static bool grid_at(double *h_m, double *out_m, const Grid *g, const Patch *patch, double x, double y, double n_m)
+/* Height of one grid above the ellipsoid at a place in its pixels, and how far the place is beyond its outermost posts.
+ * There the height is held at the edge, averaged ever more broadly. Returns false when the place is too far away to
+ * count. */
+static bool grid_at(double *h_m, double *out_m, const Grid *g, const RasterPatch *patch, double x, double y, double n_m)
 {
     if (patch->mips == 0 || !isfinite(x) || !isfinite(y)) return false;
     const double w = g->raster->width - 0.5, h = g->raster->height - 0.5;
@@ -141,19 +143,19 @@ static bool grid_at(double *h_m, double *out_m, const Grid *g, const Patch *patc
         if (*out_m >= g->long_m) return false;
         mip = log2((posting_m + 0.5 * *out_m) / (posting_m * patch->factor));
     }
-    *h_m = patch_at(patch, x, y, mip) * g->raster->metres_per_unit + (g->ellipsoidal ? 0 : n_m);
+    *h_m = raster_patch_at(patch, x, y, mip) * g->raster->metres_per_unit + (g->ellipsoidal ? 0 : n_m);
     return true;
 }
 
-/* Inside a hole of grid `at` the next coarser grid that holds the place, and inside a hole of that the next again;
- * where there is none, what the hole was filled with. */
+/* Height inside a hole of grid `at`: that of the next coarser grid at the place, and so on where that has a hole too.
+ * Where there is no other grid, the hole's filling. */
 static double coarser_in_holes(const Import *m, const View *view, int at, double filled_m, const double *x,
                                const double *y, double n_m)
 {
     double sum = 0, left = 1, h_m = filled_m, out_m = 0;
     for (int k = at; k < m->grids; k++) {
         if (k > at && (!grid_at(&h_m, &out_m, &m->grid[k], &view->patch[k], x[k], y[k], n_m) || out_m > 0)) continue;
-        const double inside = patch_hole(&view->patch[k], x[k], y[k]);
+        const double inside = raster_patch_hole(&view->patch[k], x[k], y[k]);
         if (!(inside > 0)) return sum + left * h_m;
         sum += left * (1 - inside) * h_m;
         left *= inside;
@@ -161,8 +163,8 @@ static double coarser_in_holes(const Import *m, const View *view, int at, double
     return sum + left * filled_m;
 }
 
-/* All grids together: the finest that holds the place, led over to by finer ones near by; between and beyond all of
- * them the edges, the nearest first, and farther out the plain. */
+/* Height of all grids together: the finest that holds the place, blended with finer ones near by. Between and beyond
+ * all grids the nearest edges count most, and farther out the base height. */
 static double composed(const Import *m, const View *view, const double *x, const double *y, double n_m)
 {
     double h_m[import_most_grids], out_m[import_most_grids], sum = 0, left = 1, weights = 0, cover = 0;
@@ -192,7 +194,8 @@ static double composed(const Import *m, const View *view, const double *x, const
     return weights > 0 ? cover * sum / weights + (1 - cover) * m->base_h_m : m->base_h_m;
 }
 
-/* Where the vertical line of the ENU plane, which is inclined against the grids' own verticals, intersects them. */
+/* Height at which the vertical line of the ENU plane, which is inclined to the grids' own verticals, meets their
+ * surface. */
 static double height_at(const Import *m, const View *view, const double *x0, const double *y0, const double *dx,
                         const double *dy, double n_m, double guess_m)
 {
@@ -217,7 +220,7 @@ static inline double mix(const double *v, int nx, double a, double b)
     return south + b * (north - south);
 }
 
-/* A run of posts of one row within one cell of the lattice: of all grids. */
+/* Heights of a run of posts in one row within one cell of the lattice, from all grids. */
 static double run_of_grids(float *h_m, const Import *m, const View *view, size_t node, double b, int from, int count,
                            double guess_m)
 {
@@ -240,19 +243,19 @@ static double run_of_grids(float *h_m, const Import *m, const View *view, size_t
     return guess_m;
 }
 
-/* The same where there is one grid alone, its bilinear surface without detours; of several rows at once, because each
- * post waits for the one before it. */
+/* The same where only one grid has anything: its bilinear surface is evaluated directly. Several rows are computed at
+ * once, since each post waits for the one before it. */
 static void run_of_one(float *h_m, const Import *m, const View *view, int grid, size_t node, const double *b, int from,
                        int count, int rows, double *guess_m)
 {
-    const int    nx = view->nodes_x, level_nx = view->level.nx;
-    const Sight *s = &view->sight[grid];
-    const Grid  *g = &m->grid[grid];
-    const Patch *p = &view->patch[grid];
-    const float *v = p->v[0];
-    const double w = g->raster->width - 0.5, h = g->raster->height - 0.5, unit = g->raster->metres_per_unit;
-    const double inv_factor = 1.0 / p->factor, most_x = p->nx[0] - 1, most_y = p->ny[0] - 1;
-    double       x0[rows_at_once][most_run], y0[rows_at_once][most_run], dx[rows_at_once][most_run],
+    const int          nx = view->nodes_x, level_nx = view->level.nx;
+    const Sight       *s = &view->sight[grid];
+    const Grid        *g = &m->grid[grid];
+    const RasterPatch *p = &view->patch[grid];
+    const float       *v = p->v[0];
+    const double       w = g->raster->width - 0.5, h = g->raster->height - 0.5, unit = g->raster->metres_per_unit;
+    const double       inv_factor = 1.0 / p->factor, most_x = p->nx[0] - 1, most_y = p->ny[0] - 1;
+    double             x0[rows_at_once][most_run], y0[rows_at_once][most_run], dx[rows_at_once][most_run],
         dy[rows_at_once][most_run], n_m[rows_at_once][most_run];
     for (int r = 0; r < rows; r++)
         for (int i = 0; i < count; i++) {
@@ -299,7 +302,7 @@ typedef struct Finding {
     const Import *m;
     const View   *view;
     float        *h_m;
-    int           only; /* the one grid that has anything here; -1: several, or none */
+    int           only; /* the only grid that has anything here; -1: several have, or none */
 } Finding;
 
 static void find_rows(void *user, int worker, int task)
@@ -396,7 +399,7 @@ Status view_bend(float *rows_m, const Import *m, const Field *level, int row0, i
     return whole ? STATUS_OK : STATUS_IO;
 }
 
-/* As levels_join, of some rows of a level. */
+/* Blends some rows of a level into the level around, as levels_join does. */
 void view_join(float *rows_m, const Field *level, int row0, int rows, const Field *outer)
 {
     const int band = import_join_band;
@@ -405,7 +408,8 @@ void view_join(float *rows_m, const Field *level, int row0, int rows, const Fiel
         for (int i = 0; i < level->nx; i++) {
             const int di = i < level->nx - 1 - i ? i : level->nx - 1 - i, d = di < dj ? di : dj;
             if (d >= band) {
-                i = level->nx - band - 1 > i ? level->nx - band - 1 : i; /* across the middle */
+                i = level->nx - band - 1 > i ? level->nx - band - 1
+                                             : i; /* jumps across the middle, which is not blended */
                 continue;
             }
             int          corner[3];

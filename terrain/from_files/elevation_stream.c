@@ -11,7 +11,7 @@ struct ElevationStream {
     Import          m;
     ElevationFiles  files;
     LocalFrame      frame;
-    View            wide; /* of level 1 */
+    View            wide; /* a view of level 1 */
     Samples         samples;
     ElevationReport report;
     int             drawn;
@@ -93,11 +93,11 @@ void elevation_stream_level(StreamLevel *out, const ElevationStream *stream, int
     *out = (StreamLevel){z->spacing_m, z->i0, z->j0, z->nx, z->ny, z->v};
 }
 
-/* What the strip needs of one grid. Where that is as coarse as the levels around have it, theirs is used. */
+/* Reads what the strip needs of one grid. Where that is as coarse as in the levels around, their patch is borrowed. */
 static Status read_patch(View *view, bool *borrowed, const ElevationStream *s, int grid)
 {
-    const Patch *wide = &s->wide.patch[grid];
-    PatchWindow  w;
+    const RasterPatch *wide = &s->wide.patch[grid];
+    RasterPatchWindow  w;
     *borrowed = false;
     if (wide->mips == 0 || !view_window(&w, view, &s->m, grid)) return STATUS_OK;
     if (w.factor >= wide->factor) {
@@ -105,25 +105,25 @@ static Status read_patch(View *view, bool *borrowed, const ElevationStream *s, i
         *borrowed = true;
         return STATUS_OK;
     }
-    w.x0 -= margin_px * w.factor; /* voids are filled alike from strip to strip */
+    w.x0 -= margin_px * w.factor; /* the margin makes voids filled alike from strip to strip */
     w.y0 -= margin_px * w.factor;
     w.x1 += margin_px * w.factor;
     w.y1 += margin_px * w.factor;
     w.wider = wide;
-    const PatchSource source = elevation_import_source(&s->m, grid);
-    return patches_read(&view->patch[grid], &w, 1, &source);
+    const RasterPatchSource source = elevation_import_source(&s->m, grid);
+    return raster_patches_read(&view->patch[grid], &w, 1, &source);
 }
 
-/* Posts whose nearest pixel of the finest grid there is valid: 1; voids filled from their surroundings: 2; from a
- * coarser grid: 3; beyond the data: 0. */
+/* Marks where posts come from. 1: the nearest pixel of the finest grid there is valid; 2: it is a void filled from its
+ * surroundings; 3: a coarser grid; 0: beyond the data. */
 static void mark(uint8_t *from_file, const View *view, const Import *m)
 {
-    enum { inner = 4 }; /* well inside a hole: a coarser grid may have it */
+    enum { inner = 4 }; /* posts this far inside a hole may come from a coarser grid */
     const int nx = view->level.nx;
     memset(from_file, 0, (size_t)view->rows * (size_t)nx);
     for (int grid = 0; grid < m->grids; grid++) {
-        const Patch *p = &view->patch[grid];
-        const Sight *s = &view->sight[grid];
+        const RasterPatch *p = &view->patch[grid];
+        const Sight       *s = &view->sight[grid];
         if (p->mips == 0) continue;
         const double w = m->grid[grid].raster->width, h = m->grid[grid].raster->height;
         for (int r = 0; r < view->rows; r++) {
@@ -141,7 +141,7 @@ static void mark(uint8_t *from_file, const View *view, const Import *m)
                 if (c < 0 || q < 0 || c >= p->nx[0] || q >= p->ny[0]) continue;
                 uint8_t   *to = &from_file[(size_t)r * (size_t)nx + (size_t)i];
                 const bool hole = p->hole[(size_t)q * (size_t)p->nx[0] + (size_t)c] != 0;
-                if (*to == 0) *to = !hole ? 1 : patch_hole(p, px, py) > 0.5 ? inner : 2;
+                if (*to == 0) *to = !hole ? 1 : raster_patch_hole(p, px, py) > 0.5 ? inner : 2;
                 else if (*to == inner && !hole) *to = 3;
             }
         }
@@ -150,10 +150,10 @@ static void mark(uint8_t *from_file, const View *view, const Import *m)
         if (from_file[n] == inner) from_file[n] = 2;
 }
 
-/* Posts of the strip within the data that were filled. */
+/* Counts the filled posts of the strip within the data. */
 static void count_voids(ElevationStream *s, const View *view)
 {
-    const Patch *p = &view->patch[s->m.main];
+    const RasterPatch *p = &view->patch[s->m.main];
     if (p->voids == 0 || p->mips == 0) return;
     uint8_t *seen = malloc((size_t)view->rows * (size_t)view->level.nx);
     if (!seen) return;
@@ -176,7 +176,7 @@ Status elevation_stream_heights(ElevationStream *s, int row0, int rows, float *h
         status = read_patch(&view, &borrowed[grid], s, grid);
     if (status == STATUS_OK) status = view_heights(h_m, &view, m);
     if (status == STATUS_OK && from_file) mark(from_file, &view, m);
-    const Patch *patch = &view.patch[m->main];
+    const RasterPatch *patch = &view.patch[m->main];
     if (status == STATUS_OK && counted) {
         count_voids(s, &view);
         const int end = (int)(2.0 * samples_places * (row0 + rows) / ny);
@@ -185,7 +185,7 @@ Status elevation_stream_heights(ElevationStream *s, int row0, int rows, float *h
         s->drawn = end > s->drawn ? end : s->drawn;
     }
     for (int grid = 0; grid < import_most_grids; grid++)
-        if (borrowed[grid]) view.patch[grid] = (Patch){0};
+        if (borrowed[grid]) view.patch[grid] = (RasterPatch){0};
     view_free(&view);
     return status;
 }

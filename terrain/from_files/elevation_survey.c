@@ -9,7 +9,7 @@ enum { window_side = 512, windows_a_side = 8, whole_posts = 16 << 20, least_post
 
 /* ---- numbers --------------------------------------------------------------------------------- */
 
-/* The lowest heights and how often each occurs: complete for those that remain at the end. */
+/* The lowest heights and how often each occurs. Those that remain at the end were counted completely. */
 typedef struct Lowest {
     int    count;
     double h_m[survey_most_voids + 1], posts[survey_most_voids + 1];
@@ -33,10 +33,10 @@ static void lowest_add(Lowest *l, double h_m, double posts)
     l->posts[at] = posts;
 }
 
-/* More than ground falls between two posts. */
+/* A difference larger than ground falls between two posts. */
 static double least_gap_m(const Raster *raster) { return clamp(4 * raster->posting_m[0], 300, 5000); }
 
-/* How many of the lowest lie below all others by more than gap_m; 0: none. */
+/* How many of the lowest heights lie below all others by more than gap_m; 0: none do. */
 static int alone(const Lowest *l, double gap_m)
 {
     for (int k = l->count - 1; k > 0; k--)
@@ -47,8 +47,8 @@ static int alone(const Lowest *l, double gap_m)
 typedef struct Counts {
     Lowest lowest;
     double posts, voids, outside, high_m;
-    double lengths; /* of those outside: what might be heights in another unit, 1e7 at most */
-    bool   beside;  /* numbers that are alone were seen beside others */
+    double lengths; /* how many of those outside may be heights in another unit, 1e7 at most */
+    bool   beside;  /* numbers that are alone were seen beside one another */
     double least_out_m, most_out_m;
 } Counts;
 
@@ -69,7 +69,7 @@ static void counts_add(Counts *to, const Counts *from)
 
 static void count_posts(Counts *c, const float *value, size_t count, double unit_m)
 {
-    double last = INFINITY; /* the lowest that there is no room for */
+    double last = INFINITY; /* the lowest number for which there is no room */
     for (size_t n = 0; n < count; n++) {
         const double h_m = value[n] * unit_m;
         c->posts++;
@@ -95,7 +95,7 @@ typedef struct Job {
     const Raster *raster;
     const char   *key;
     bool          whole;
-    int           band, rows; /* whole: of a strip */
+    int           band, rows; /* rows: those of a strip, when the whole raster is looked at */
     double        gap_m;
     Counts       *counts; /* [tasks] */
     Status       *status;
@@ -158,7 +158,7 @@ static Status look_all(Counts *out, Job *job, Pool *pool)
 
 static const char *path_of(const Raster *raster) { return raster->sheet[0].path; }
 
-/* Whether it can be heights at all, by what the file says. */
+/* Whether the raster can be heights at all, by what the file states. */
 static Status judge_stated(const Raster *raster, const char *key)
 {
     const RasterStated *s = &raster->stated;
@@ -219,7 +219,7 @@ static Status judge_counts(ElevationSurvey *s, Raster *raster, const Counts *c, 
 {
     const double unit_m = raster->metres_per_unit, heights = c->posts - c->voids - c->outside;
     const char  *path = path_of(raster);
-    const bool   constant = !(c->least_out_m < c->most_out_m); /* one number, however often, is a void */
+    const bool   constant = !(c->least_out_m < c->most_out_m); /* a single number is a void, however often it occurs */
     if (!constant && (c->lengths > heights || !(heights > 0))) {
         log_error(
             "%s: %s: numbers of %.6g .. %.6g, which are no heights on Earth in %s; say what they are: %s@cm, %s@dm "

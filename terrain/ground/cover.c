@@ -12,9 +12,9 @@
 
 /* ---- real cover ----------------------------------------------------------------------------- */
 
-/* Elevation files without cover: woods on slopes too steep for the plough and below the tree line, fields in the
- * lowlands, rock where it is steeper than soil stays (40 degrees), the sea where it is flat at its level. SURFACE_NONE:
- * as synthetic. */
+/* Class on real ground where no file has one: woods on slopes too steep for the plough and below the tree line, fields
+ * in the lowlands, rock where it is steeper than soil stays (40 degrees), the sea where it is flat at its level.
+ * SURFACE_NONE: as on synthetic ground. */
 static SurfaceClass unmapped_surface(const Cover *cover, double x_m, double y_m, double z_m, double slope,
                                      double patchy, double woods)
 {
@@ -22,7 +22,8 @@ static SurfaceClass unmapped_surface(const Cover *cover, double x_m, double y_m,
     double       ellipsoid_m, dz_per_h;
     levels_curve_at(&cover->curve, x_m, y_m, &ellipsoid_m, &dz_per_h);
     const double h_msl_m = (z_m - ellipsoid_m) / dz_per_h - cover->geoid_m;
-    if (fabs(h_msl_m) < 1 + 5e-5 * far_m && slope < 0.002) return SURFACE_WATER; /* the geoid tilts by so much */
+    if (fabs(h_msl_m) < 1 + 5e-5 * far_m && slope < 0.002)
+        return SURFACE_WATER; /* the tolerance grows with distance as the geoid may tilt */
     if (slope + 0.12 * patchy > 0.84) return SURFACE_ROCK;
     const double above_m = h_msl_m - cover->treeline_m + 150 * patchy;
     if (above_m > 700) return SURFACE_ROCK;
@@ -35,9 +36,9 @@ static SurfaceClass unmapped_surface(const Cover *cover, double x_m, double y_m,
     return SURFACE_NONE;
 }
 
-/* Land cover from the files; fills those lanes and returns the others. Borders wander by up to half a cell, over
- * wavelengths from a cell down to 0.1 m: real borders have no steps of a cell. Places all of whose corners within reach
- * are of one class need none of it. */
+/* Fills those lanes for which the files have a class, and returns the others. Borders wander by up to half a cell, over
+ * wavelengths from a cell down to 0.1 m, since real borders have no steps of a cell. A place whose surroundings within
+ * reach are of one class needs no wandering. */
 static unsigned mapped_surfaces(int32_t surface[8], const Cover *cover, const double x_m[8], const double y_m[8],
                                 unsigned lanes)
 {
@@ -61,8 +62,9 @@ static unsigned mapped_surfaces(int32_t surface[8], const Cover *cover, const do
     for (int octave = 0; octave < most_octaves; octave++) {
         const double wave_m = cell_m * exp2(-octave);
         if (octave && wave_m < 0.1) break;
-        const F32x8 share = f32x8_set(reach_m * 0.4 * pow(0.6, octave)); /* 0.4 / (1 - 0.6): within reach */
-        F32x8       wave_y;
+        const F32x8 share = f32x8_set(
+            reach_m * 0.4 * pow(0.6, octave)); /* 0.4 / (1 - 0.6): the sum of all octaves stays within reach */
+        F32x8 wave_y;
         dx = f32x8_fma(share, noise_pair_eight(&wave_y, cover->invented.seed + 40 + (uint64_t)octave, wave_m, x_m, y_m),
                        dx);
         dy = f32x8_fma(share, wave_y, dy);
@@ -107,7 +109,7 @@ static void real_surfaces(int32_t surface[8], const Landscape *landscape, const 
 
 /* ---- both ----------------------------------------------------------------------------------- */
 
-/* Fills lanes of the sea and its beaches; returns the others. */
+/* Fills the lanes of the sea and its beaches; returns the others. */
 static unsigned coast_surfaces(int32_t surface[8], const Coast *coast, const double x_m[8], const double y_m[8],
                                unsigned lanes)
 {
@@ -121,7 +123,7 @@ static unsigned coast_surfaces(int32_t surface[8], const Coast *coast, const dou
     return lanes;
 }
 
-/* nodes: NULL, or about the places. */
+/* nodes: those about the places; may be NULL. */
 static void find_surfaces(uint8_t *surface, const Landscape *landscape, const SlowNodes *nodes, int count,
                           const double *x_m, const double *y_m)
 {
@@ -151,7 +153,8 @@ void landscape_surfaces(uint8_t *surface, const Landscape *landscape, int count,
     find_surfaces(surface, landscape, NULL, count, x_m, y_m);
 }
 
-/* Whether a place of a square is looked up first: a quarter of them in a regular pattern, half of few. */
+/* Whether a place of a square is looked up first: a quarter of the places in a regular pattern; half of them in a small
+ * square. */
 static bool looks_first(int side, int row, int column)
 {
     return side < 8 ? (row + column) % 2 == 0 : row % 2 == 0 && (column + row / 2) % 2 == 0;
@@ -225,7 +228,8 @@ void landscape_photo_cells(float cell_m[8], const Landscape *landscape, const do
 
 void cover_measure_photo(Landscape *landscape)
 {
-    /* classes of few pixels lean on the mean of all: a class of a single dark pixel would amplify the others */
+    /* the mean of a class with few pixels leans on the mean of all: otherwise a class of one dark pixel would amplify
+     * the others */
     static const double enough = 200, most = 400e3;
     Cover              *cover = landscape->cover;
     Photo              *p = &cover->photo;
@@ -264,7 +268,7 @@ bool landscape_has_photo(const Landscape *landscape)
 void landscape_albedo(float factor[albedo_channels], const Landscape *landscape, SurfaceClass surface, double x_m,
                       double y_m, double footprint_m)
 {
-    static const double brightest = 6; /* of a class's mean: a white roof in a dark wood */
+    static const double brightest = 6; /* as a factor of the class's mean, such as a white roof in a dark wood */
     const Cover        *cover = landscape->cover;
     double              linear[photo_channels], share = 0, all = 0;
     for (int c = 0; c < albedo_channels; c++) factor[c] = 1;

@@ -8,7 +8,7 @@
 
 /* ---- places of cells in a raster -------------------------------------------------------------- */
 
-/* A window of square cells, and where the corners of blocks of them lie in a raster. */
+/* A window of square cells, and pixels of a raster at the corners of blocks of cells. */
 typedef struct Window {
     double x0_m, y0_m, cell_m;
     int    nx, ny;
@@ -16,15 +16,16 @@ typedef struct Window {
 
 enum { block_cells = 32 };
 
-/* Pixel of the raster under each cell's centre, a row of blocks at a time: exact at the corners of blocks on the
- * surface itself, linear between (over 32 cells of 1 m the lean of a 100 m cliff 8 km out would show as 0.1 m). */
+/* Finds the raster's pixel under each cell's centre, for a row of blocks at a time. It is exact at the corners of
+ * blocks, on the ground itself, and linear between (over 32 cells of 1 m the lean of a 100 m cliff 8 km away would
+ * cause an error of 0.1 m). */
 typedef struct Finder {
     const Raster     *raster;
     const Elevation  *elevation;
     const LocalFrame *frame;
     Window            window;
     double           *x, *y;       /* [2][blocks + 1] */
-    int               blocks, row; /* row of blocks that is loaded */
+    int               blocks, row; /* blocks in a row; number of the row that is loaded */
 } Finder;
 
 static Status finder_create(Finder *f, const Raster *raster, const Elevation *elevation, const LocalFrame *frame,
@@ -58,7 +59,7 @@ static void finder_load(Finder *f, int row)
     f->row = row;
 }
 
-/* Pixel under the centre of a cell. */
+/* The pixel under the centre of a cell. */
 static void finder_at(double px[2], Finder *f, int i, int j)
 {
     if (j / block_cells != f->row) finder_load(f, j / block_cells);
@@ -74,7 +75,8 @@ static void finder_at(double px[2], Finder *f, int i, int j)
 
 static void finder_free(Finder *f) { free(f->x); }
 
-/* Pixels of the raster that one row of blocks can touch; false: none. Reading row by row keeps memory small. */
+/* The range of the raster's pixels that one row of blocks can touch; returns false when there are none. Reading row by
+ * row saves memory. */
 static bool finder_bounds(int box[4], Finder *f, int row)
 {
     double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
@@ -94,13 +96,14 @@ static bool finder_bounds(int box[4], Finder *f, int row)
     return box[2] - box[0] > 1 && box[3] - box[1] > 1;
 }
 
-/* ENU rectangle of a raster about the origin, no wider than `half_m` each way, in whole blocks. */
+/* The ENU rectangle about the origin that a raster covers, no wider than `half_m` each way, in whole blocks. */
 static bool window_of(Window *out, const Raster *raster, const LocalFrame *frame, double cell_m, double half_m)
 {
     double low[2], high[2];
     raster_enu_box(low, high, raster, frame, 0);
-    const double margin_m = 0.01 * (high[0] - low[0]) + 10 * cell_m; /* heights lean outwards */
-    int          n[2];
+    const double margin_m =
+        0.01 * (high[0] - low[0]) + 10 * cell_m; /* room for heights, which appear displaced outwards */
+    int n[2];
     for (int c = 0; c < 2; c++) {
         low[c] = floor(fmax(low[c] - margin_m, -half_m) / cell_m) * cell_m;
         high[c] = fmin(high[c] + margin_m, half_m);
@@ -115,7 +118,8 @@ static const char cover_key[] = "terrain.cover", photo_key[] = "terrain.orthopho
 
 /* ---- cover ---------------------------------------------------------------------------------- */
 
-/* Elevation given for the wrong key is the usual error; its pixels are float. */
+/* Opens a set whose pixels must be bytes or whole numbers: the usual error is elevation given for the wrong key, and
+ * its pixels are floats. */
 static Status open_whole(RasterSet *set, const char *paths, const char *key, const char *what)
 {
     const Status status = raster_set_open(set, paths, key);
@@ -130,7 +134,7 @@ static Status open_whole(RasterSet *set, const char *paths, const char *key, con
     return status;
 }
 
-/* code [ny][nx]: 0 where nothing is known, else one more than the file's. */
+/* code [ny][nx]: one more than the file's code; 0 where nothing is known. */
 static Status cover_codes(uint16_t *code, const Window *window, const Raster *raster, int band,
                           const Elevation *elevation, const LocalFrame *frame)
 {
@@ -252,7 +256,8 @@ SurfaceClass cover_grid_at(const CoverGrid grid[cover_windows], double x_m, doub
         const double     x = (x_m - g->x0_m) / g->cell_m, y = (y_m - g->y0_m) / g->cell_m;
         if (!(g->surface && x >= 0 && y >= 0 && x < g->nx && y < g->ny)) continue;
         const SurfaceClass surface = (SurfaceClass)g->surface[(size_t)y * (size_t)g->nx + (size_t)x];
-        if (surface > SURFACE_NONE && surface < SURFACE_COUNT) return surface; /* a damaged store may hold others */
+        if (surface > SURFACE_NONE && surface < SURFACE_COUNT)
+            return surface; /* a damaged store may hold other values */
     }
     return SURFACE_NONE;
 }
@@ -265,7 +270,7 @@ static int by_value(const void *a, const void *b)
     return x < y ? -1 : x > y;
 }
 
-/* White level of wide samples: the 99.9th percentile over a few rows of the whole image. */
+/* White level of samples wider than a byte: the 99.9th percentile over a few rows of the whole image. */
 static Status white_of(double *white, const Raster *raster, int bands)
 {
     enum { rows = 64 };
@@ -290,15 +295,15 @@ static Status white_of(double *white, const Raster *raster, int bands)
     return status;
 }
 
-/* Pixels of a box of a raster, w x h of each band. */
+/* Pixels of a box of a raster; w x h for each band. */
 typedef struct PhotoBox {
     float *px[3];
     int    bands, w, h;
     bool   bytes;
-    double white; /* of what is wider than bytes */
+    double white; /* white level of samples wider than a byte */
 } PhotoBox;
 
-/* One cell: bilinear between pixel centres, in linear light, held at the rim. */
+/* The colour of one cell: bilinear between pixel centres, in linear light, held at the rim. */
 static void photo_cell(uint8_t to[4], const PhotoBox *box, double x, double y)
 {
     const int w = box->w, h = box->h, bands = box->bands;
@@ -345,7 +350,7 @@ static Status photo_pixels(uint8_t *rgba, const Photo *p, const Raster *raster, 
             for (int i = 0; i < window.nx; i++) {
                 uint8_t *to = rgba + 4 * ((size_t)j * (size_t)window.nx + (size_t)i);
                 double   at[2];
-                if (to[3]) continue; /* covered by an earlier, finer photograph */
+                if (to[3]) continue; /* an earlier, finer photograph covers it */
                 finder_at(at, &f, i, j);
                 if (at[0] >= 0 && at[1] >= 0 && at[0] < raster->width && at[1] < raster->height)
                     photo_cell(to, &some, at[0] - box[0], at[1] - box[1]);
@@ -356,7 +361,7 @@ static Status photo_pixels(uint8_t *rgba, const Photo *p, const Raster *raster, 
     return status;
 }
 
-/* The blocks of all mips; rgba is overwritten by the smaller ones. */
+/* Makes the blocks of all mips; rgba is overwritten by the smaller mips. */
 static Status photo_from_pixels(Photo *p, uint8_t *rgba)
 {
     for (int k = 0; k < p->mips; k++) {
@@ -367,7 +372,8 @@ static Status photo_from_pixels(Photo *p, uint8_t *rgba)
         for (int j = 0; j < ny; j += 4)
             photo_block_row(p->block[k] + (size_t)(j / 4) * photo_blocks_across(nx), rgba + (size_t)j * row, nx,
                             ny - j < 4 ? ny - j : 4);
-        for (int j = 0; k + 1 < p->mips && j < ny; j += 2) /* a row of the next mip ends before those still needed */
+        for (int j = 0; k + 1 < p->mips && j < ny;
+             j += 2) /* each row of the next mip ends before the pixels that are still needed */
             photo_halve_row(rgba + (size_t)(j / 2) * 4 * (size_t)p->nx[k + 1], rgba + (size_t)j * row,
                             j + 1 < ny ? rgba + (size_t)(j + 1) * row : NULL, nx);
     }

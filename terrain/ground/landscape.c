@@ -10,7 +10,7 @@ LandscapeConfig landscape_default_config(void)
     return (LandscapeConfig){.seed = 1, .relief_m = 15, .spacing_m = 4, .half_width_m = 6000, .horizon_m = 420000};
 }
 
-/* The evidence outlives its owner here: the same landscape can be made again from it. */
+/* Copies the evidence, which a landscape keeps so that it can be made again. */
 static Status keep_evidence(LandscapeEvidence *out, const LandscapeEvidence *from)
 {
     const size_t fixes = (size_t)from->fix_count * sizeof *from->fix;
@@ -49,7 +49,7 @@ Status landscape_create_from(Landscape *out, const LandscapeConfig *config, cons
 {
     InventedTerrain terrain;
     Landscape       landscape = {.frame = *frame, .config = *config};
-    /* dyadic, so that every post's place is exact */
+    /* dyadic, so that every post's position is exact */
     landscape.config.spacing_m = rint(config->spacing_m * 64) / 64;
     Cover *cover = calloc(1, sizeof *cover);
     if (!cover) return STATUS_NO_MEMORY;
@@ -85,13 +85,13 @@ void landscape_destroy(Landscape *landscape)
  * 192 M posts of ten octaves in a few seconds of one core. */
 enum { octaves = 10, longest_posts = 4096, rows_a_task = elevation_tile_cells };
 
-static const double span_m = 250; /* valley to top, about: three sigma each way of the octaves' sum */
+static const double span_m = 250; /* height from valley to top, about three deviations of the octaves' sum each way */
 
 typedef struct Octave {
-    int    posts;                    /* of a lattice cell; a power of two */
-    int    nx, ny;                   /* lattice points */
+    int    posts;                    /* posts in a lattice cell; a power of two */
+    int    nx, ny;                   /* number of lattice points */
     float *z;                        /* [ny][nx], m */
-    float  weight[4][longest_posts]; /* by place in the cell */
+    float  weight[4][longest_posts]; /* weights of the spline by the post's place in its cell */
 } Octave;
 
 typedef struct Maker {
@@ -112,7 +112,8 @@ static void spline_weights(double w[4], double t)
     w[3] = t * t * t / 6;
 }
 
-/* Height goes with wavelength, so slopes are equal at every scale except the shortest, which are smoothed. */
+/* Makes an octave. Heights are in proportion to wavelengths, so slopes are equal at every scale except at the shortest,
+ * which are smoothed. */
 static Status make_octave(Octave *o, int index, int nx, int ny, uint64_t seed)
 {
     o->posts = longest_posts >> index;
@@ -192,8 +193,9 @@ Status landscape_quick(Landscape *out, double times_s[2], const LocalFrame *fram
 
     const int nx = (int)east_m + 1, ny = (int)north_m + 1;
     cover->invented.seed = invented_hash(seed, 2, 0);
-    status = elevation_level_create(&landscape.elevation, 0, nx, ny, -floor(0.5 * east_m), -floor(0.5 * north_m), 1,
-                                    -512, landscape_quick_step_m);
+    status = elevation_level_create(
+        &landscape.elevation, 0,
+        &(ElevationGrid){nx, ny, -floor(0.5 * east_m), -floor(0.5 * north_m), 1, -512, landscape_quick_step_m});
     for (int o = 0; o < octaves && status == STATUS_OK; o++)
         status = make_octave(&maker.octave[o], o, nx, ny, invented_hash(seed, 3, 0));
     if (status != STATUS_OK) goto done;
@@ -310,7 +312,7 @@ Status landscape_hedges(HedgePlace **out, int *count, const Landscape *landscape
         for (int64_t i = (int64_t)from[0]; i < (int64_t)end[0]; i++) {
             HedgePlace place;
             if (!hedge_in_square(&place, cover->invented.seed, i, j, spacing_m)) continue;
-            /* what lies over hedgerows is in the classes */
+            /* a class that lies over a hedgerow, such as a road, is found in the classes */
             if (landscape_surface(landscape, place.x_m, place.y_m) != SURFACE_SCRUB) continue;
             const Status status = reserve_place(out, &room, *count + 1);
             if (status != STATUS_OK) {

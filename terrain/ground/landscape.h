@@ -15,19 +15,19 @@ typedef struct Landscape {
     LocalFrame      frame;
     Elevation       elevation;
     LandscapeConfig config;
-    double          fit_worst_m;   /* largest |surface - fix| over the fixes that were kept */
-    int             fixes_dropped; /* inconsistent with their neighbours, above a clear line, or outside of the
-                                    * terrain */
-    LandscapeEvidence fitted_to;   /* a copy of the inputs of a synthetic terrain: landscape_parts.h */
-    void             *cover;       /* private; surface and texture need it */
+    double          fit_worst_m; /* largest |surface - fix| over the fixes that were kept */
+    int fixes_dropped; /* fixes that were dropped: inconsistent with their neighbours, above a clear line, or outside of
+                          the terrain */
+    LandscapeEvidence fitted_to; /* a copy of the inputs of a synthetic terrain: landscape_parts.h */
+    void             *cover;     /* private; holds what surface and texture are computed from */
 } Landscape;
 
 /* The mapped file of a landscape from a terrain store (terrain/store/store.h). */
 typedef struct LandscapeMap {
-    char    *path; /* absolute; NULL: of no store */
+    char    *path; /* absolute path; NULL: the landscape is not from a store */
     void    *map;
     size_t   octets;
-    uint64_t content; /* hash of the store */
+    uint64_t content; /* the store's hash */
 } LandscapeMap;
 
 LandscapeConfig landscape_default_config(void);
@@ -47,7 +47,7 @@ Status landscape_create_from(Landscape *out, const LandscapeConfig *config, cons
                              const LandscapeEvidence *evidence);
 void   landscape_destroy(Landscape *landscape);
 
-/* Whether it is the synthetic terrain, not one from files. */
+/* Whether the terrain is synthetic, not from files. */
 bool landscape_is_synthetic(const Landscape *landscape);
 /* Surface class at a place, anchored to the ground; SURFACE_NONE where there is none, and for NaN. Thread-safe. For
  * many positions at once a tenth of the time each, and the same results. */
@@ -60,15 +60,15 @@ void landscape_surfaces(uint8_t *surface, const Landscape *landscape, int count,
 enum { landscape_square_most = 256 };
 void landscape_surfaces_square(uint8_t *surface, const Landscape *landscape, int side, const double *x_m,
                                const double *y_m);
-/* Where there is a photograph: its brightness relative to its own mean over that class, a channel, averaged over the
- * footprint; multiplied by a material's reflectance the mean over the class is that of the material. 1 without. The
- * detail (terrain/detail/detail.h) then adds only what is finer than the photograph's pixels. factor: red, green,
- * blue, and all three together. */
+/* The photograph's brightness relative to its mean over the class, for each channel, averaged over the footprint; 1
+ * without a photograph. Multiplied by the reflectance of a class's material, its mean over the class is that of the
+ * material. The detail (terrain/detail/detail.h) then adds only what is finer than the photograph's pixels. factor:
+ * red, green, blue, and all three together. */
 bool landscape_has_photo(const Landscape *landscape);
-/* Side of the photograph's pixels at each of the places in `lanes`, 0: no photograph there. */
+/* Side of the photograph's pixels at each of the places in `lanes`; 0: there is no photograph. */
 void landscape_photo_cells(float cell_m[8], const Landscape *landscape, const double x_m[8], const double y_m[8],
                            unsigned lanes);
-/* Seed of what is drawn at random on its surface; false, and 0: it has none. */
+/* Seed of what is drawn at random on the surface. Returns false, and sets 0, when the landscape has none. */
 bool landscape_seed(uint64_t *out, const Landscape *landscape);
 enum { albedo_red, albedo_green, albedo_blue, albedo_all, albedo_channels };
 void landscape_albedo(float factor[albedo_channels], const Landscape *landscape, SurfaceClass surface, double x_m,
@@ -80,17 +80,18 @@ void landscape_albedo(float factor[albedo_channels], const Landscape *landscape,
  * roads are in their cover, as classes without direction. */
 bool landscape_way(WayPlace *out, const Landscape *landscape, double x_m, double y_m);
 
-/* Vertices of a way in order, `most` of them at most; returns their number. 0: no such way. Numbered from 0. */
+/* The vertices of a way in order, up to `most` of them; returns their number. Ways are numbered from 0; returns 0 when
+ * there is no such way. */
 int landscape_way_vertices(double (*out)[2], WayKind *kind, const Landscape *landscape, int way, int most);
 
-/* All plots, owned by the landscape; NULL and 0 where there are none. */
+/* All plots, which the landscape owns; NULL and 0 where there are none. */
 const HousePlot *landscape_plots(const Landscape *landscape, int *count);
-/* Village `index`'s centre; false: no such village. */
+/* Centre of village `index`; returns false when there is no such village. */
 bool landscape_village(double place_m[2], const Landscape *landscape, int index);
 
-/* How wet the ground is (hollows) or, below 0, worn (crests): -1 .. 1; 0 where there are no ways. */
+/* How wet (hollows) or, below 0, worn (crests) the ground is: -1 .. 1; 0 where there are no ways. */
 double landscape_wetness(const Landscape *landscape, double x_m, double y_m);
-/* Whether a way, a pond, a plot or a vehicle's place reaches into the cell of the index about a place. */
+/* Whether a way, a pond, a plot or the place of a vehicle reaches into the index cell of a place. */
 bool landscape_ways_near(const Landscape *landscape, double x_m, double y_m);
 
 /* Places of hedgerows, which are on borders of fields and beside the tracks between them, never on a road, in water or
@@ -109,7 +110,7 @@ static const double landscape_quick_step_m = 1.0 / 64;
  * synthetic terrain. The same posts for any number of threads. times_s: for the posts, and for their pyramid. */
 Status landscape_quick(Landscape *out, double times_s[2], const LocalFrame *frame, double east_m, double north_m,
                        Pool *pool);
-/* Bytes of posts, and of the pyramids above them: of heights, and of rises. */
+/* Bytes of the posts, and bytes of the pyramids above them, of heights and of rises. */
 void landscape_quick_bytes(size_t *posts, size_t *pyramids, const Elevation *elevation);
 
 #endif

@@ -52,7 +52,7 @@ static const char *evidence_fault(const LandscapeEvidence *said)
     return NULL;
 }
 
-/* Whether x is a whole number, at least `low`, to what rounding leaves. */
+/* Whether x is a whole number of at least `low`, to within rounding. */
 static bool is_whole(double x, double low) { return x >= low && x <= 1e6 && fabs(x - rint(x)) <= 1e-6; }
 
 bool landscape_parts_nested(const ElevationLevel *fine, const ElevationLevel *coarse)
@@ -122,7 +122,7 @@ static const char *photo_fault(const Photo *p)
 
 /* ---- made again -------------------------------------------------------------------------------- */
 
-/* NULL: no memory, or nothing to copy. */
+/* Copies octets. NULL: no memory, or nothing to copy. */
 static void *copied(const void *from, size_t octets)
 {
     void *to = octets ? malloc(octets) : NULL;
@@ -141,7 +141,8 @@ static Status copy_levels(Elevation *out, const Elevation *from)
     Status status = STATUS_OK;
     for (int n = 0; n < from->level_count && status == STATUS_OK; n++) {
         const ElevationLevel *l = &from->level[n];
-        status = elevation_level_create(out, n, l->nx, l->ny, l->x0_m, l->y0_m, l->spacing_m, l->z0_m, l->step_m);
+        status = elevation_level_create(
+            out, n, &(ElevationGrid){l->nx, l->ny, l->x0_m, l->y0_m, l->spacing_m, l->z0_m, l->step_m});
         if (status == STATUS_OK) copy_posts(&out->level[n], l);
     }
     if (status == STATUS_OK) elevation_build_pyramids(out);
@@ -211,8 +212,8 @@ Status landscape_from_parts(Landscape *out, const char **why, const LandscapePar
 
 /* ---- borrowed ------------------------------------------------------------------------------------ */
 
-/* Height above the sea up to which trees grow, a rough guess: they end at some 3900 m within 30 degrees of the
- * equator, and at the sea at 70. */
+/* Height above the sea up to which trees grow, a rough estimate: some 3900 m within 30 degrees of the equator, and the
+ * sea's level at 70. */
 static double treeline_m(double lat_rad) { return clamp(3900 - 97.5 * (fabs(lat_rad) / rad_per_deg - 30), 0, 3900); }
 
 Status landscape_borrow(Landscape *out, const LandscapeParts *parts, const LandscapeMap *map)

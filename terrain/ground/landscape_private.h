@@ -7,16 +7,16 @@
 #include "terrain/ground/landscape.h"
 
 typedef struct Cover {
-    InventedGround invented; /* its seed is that of real ground, too */
-    bool           real;     /* elevation from files: no fields on steep slopes, woods instead */
-    Curve          curve;    /* real: heights above the sea are needed */
+    InventedGround invented; /* its seed is also that of real ground */
+    bool           real;     /* elevation is from files: woods, not fields, on steep slopes */
+    Curve          curve;    /* on real ground: gives heights above the sea */
     double         geoid_m, treeline_m;
     CoverGrid      grid[cover_windows];
     Photo          photo;
-    LandscapeMap   store; /* grid, photo and the elevation borrow from it */
+    LandscapeMap   store; /* the mapped store, from which grid, photo and elevation borrow */
 } Cover;
 
-/* Means of the photograph over each class, once the classes are known. */
+/* Measures the means of the photograph over each class; call it once the classes are known. */
 void cover_measure_photo(Landscape *landscape);
 void cover_free(Cover *cover); /* accepts NULL */
 

@@ -19,8 +19,8 @@ static double encoded_of(double linear)
 
 enum { sixths = 6, sums = 255 * sixths + 1 };
 
-static float          linear_of_sum[sums];     /* of the sum of six octets: every mixture of two colours is one */
-static uint8_t        encoded_of_linear[4096]; /* finer than an octet's steps where they are finest */
+static float          linear_of_sum[sums]; /* by the sum of six octets: every mixture of a block's two colours is one */
+static uint8_t        encoded_of_linear[4096]; /* finer than the steps of octets where these are finest */
 static pthread_once_t tables_once = PTHREAD_ONCE_INIT;
 
 static void make_tables(void)
@@ -93,16 +93,17 @@ static inline void unpacked(int colour[3], uint16_t packed565)
     colour[2] = b << 3 | b >> 2;
 }
 
-/* Sixths of the first colour; the rest is of the second. By mode: four colours, or three and "not covered". */
+/* Share of the first colour in sixths; the rest is that of the second. By mode: four colours, or three and "not
+ * covered". */
 static const uint8_t first_sixths[2][4] = {{6, 0, 4, 2}, {6, 0, 3, 0}};
 
 typedef struct Pixels {
     int     count;        /* covered */
-    float   value[3][16]; /* red, green and blue of each */
+    float   value[3][16]; /* red, green and blue of each pixel */
     uint8_t place[16];
 } Pixels;
 
-/* Nearest of a block's colours for each pixel, and the sum of squares of what is left. */
+/* Chooses the nearest of a block's colours for each pixel; returns the sum of the squared errors. */
 static float choose(PhotoBlock *block, const Pixels *px, bool holes)
 {
     int end[2][3];
@@ -111,7 +112,7 @@ static float choose(PhotoBlock *block, const Pixels *px, bool holes)
         block->first = block->second;
         block->second = swapped;
     }
-    const bool three = block->first <= block->second; /* equal: one colour */
+    const bool three = block->first <= block->second; /* when both are equal there is one colour */
     unpacked(end[0], block->first);
     unpacked(end[1], block->second);
     float colour[4][3], sum = 0;
@@ -120,7 +121,7 @@ static float choose(PhotoBlock *block, const Pixels *px, bool holes)
             const int w = first_sixths[three][k];
             colour[k][c] = (float)(w * end[0][c] + (sixths - w) * end[1][c]) * (1.0f / sixths);
         }
-    /* all sixteen at once; those that are not covered are not looked at below */
+    /* all sixteen are computed at once; those that are not covered are ignored below */
     float    least[16];
     uint32_t best[16];
     for (int n = 0; n < 16; n++) {
@@ -134,7 +135,7 @@ static float choose(PhotoBlock *block, const Pixels *px, bool holes)
             best[n] = d2 < least[n] ? k : best[n];
             least[n] = d2 < least[n] ? d2 : least[n];
         }
-    block->index = 0xffffffff; /* not covered, unless set below */
+    block->index = 0xffffffff; /* all pixels are not covered, unless set below */
     for (int n = 0; n < px->count; n++) {
         sum += least[n];
         block->index &= ~((3u ^ best[n]) << 2 * px->place[n]);
@@ -142,11 +143,12 @@ static float choose(PhotoBlock *block, const Pixels *px, bool holes)
     return sum;
 }
 
-/* The axis of most variance, by powers of the covariance; its ends are those of the pixels on it. */
+/* Finds the ends of the pixels along their axis of most variance, which is found by powers of the covariance. */
 static void ends_of(float end[2][3], const Pixels *px)
 {
     float mean[3] = {0}, cov[3][3] = {{0}}, axis[3];
-    for (int n = 0; n < 16 && px->count == 16; n++) /* the same as by division: a power of two */
+    for (int n = 0; n < 16 && px->count == 16;
+         n++) /* a multiplication instead of a division: exact, as sixteen is a power of two */
         for (int c = 0; c < 3; c++) mean[c] += px->value[c][n] * (1.0f / 16);
     for (int n = 0; n < px->count && px->count < 16; n++)
         for (int c = 0; c < 3; c++) mean[c] += px->value[c][n] / (float)px->count;
@@ -192,7 +194,7 @@ static void ends_of(float end[2][3], const Pixels *px)
     }
 }
 
-/* The two colours of least squares for the pixels' indices; false: one colour alone is used. */
+/* Fits the two colours to the pixels' indices by least squares; returns false when only one colour is used. */
 static bool refine(float end[2][3], const PhotoBlock *block, const Pixels *px)
 {
     const bool three = block->first <= block->second;
@@ -216,7 +218,8 @@ static bool refine(float end[2][3], const PhotoBlock *block, const Pixels *px)
     return true;
 }
 
-/* Pixels of one colour: the octet's best mixture, two thirds of one step and one third of another. */
+/* The two colours for pixels that all have one colour: the best mixture for that octet, two thirds of one step and one
+ * third of another. */
 static void even_ends(float end[2][3], const float colour[3])
 {
     static const int most[3] = {31, 63, 31};
@@ -281,8 +284,8 @@ void photo_block_row(PhotoBlock *out, const uint8_t *rgba, int nx, int rows)
 
 /* ---- light at a place ---------------------------------------------------------------------------- */
 
-/* Weights of the four pixels about a place of mip k, in its pixels: premultiplied by coverage, so that what lies beyond
- * the rim does not darken it. */
+/* Sum of the four pixels about a place of mip k, given in its pixels. They are premultiplied by coverage, so that what
+ * lies beyond the rim does not darken it. */
 static void mip_at(double sum[4], const Photo *p, int k, double x, double y, double share)
 {
     const int    nx = p->nx[k], ny = p->ny[k];

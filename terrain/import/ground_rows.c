@@ -7,14 +7,14 @@ enum { node_cells = 64, rows_a_task = 16 };
 
 /* ---- where cells lie ------------------------------------------------------------------------- */
 
-/* Exact at every node_cells-th corner of cells, on the ground itself, linear between. */
+/* Pixels of cells' corners, exact at every node_cells-th corner, on the ground itself; linear between. */
 typedef struct Nodes {
     int     nx, ny;
     double *x, *y;  /* [ny][nx] pixels */
-    int     box[4]; /* of pixels: x0, y0, x1, y1 */
+    int     box[4]; /* box of pixels: x0, y0, x1, y1 */
 } Nodes;
 
-/* False: the raster has nothing here, or there is no memory (*status). */
+/* Returns false when the raster has nothing here, or there is no memory (*status). */
 static bool nodes_create(Nodes *out, Status *status, const Raster *raster, const CellRows *cells,
                          const GroundView *view)
 {
@@ -58,7 +58,7 @@ static bool nodes_create(Nodes *out, Status *status, const Raster *raster, const
     return n.box[2] - n.box[0] > 0 && n.box[3] - n.box[1] > 0 ? true : (free(n.x), false);
 }
 
-/* Pixels under the centres of a run of cells of row j, from cell i on, within one cell of the nodes. */
+/* Pixels under the centres of a run of cells of row j, from cell i on, all within one cell of the nodes. */
 static void places(double *x, double *y, const Nodes *n, int i, int j, int count)
 {
     const int     c = i / node_cells, r = j / node_cells;
@@ -80,7 +80,7 @@ typedef struct Job {
     const GroundView *view;
     Nodes             nodes;
     int               band, bands;
-    uint8_t          *bytes, *valid; /* of the box */
+    uint8_t          *bytes, *valid; /* pixels of the box */
     float            *number;
     void             *out;
     Status           *status;
@@ -110,10 +110,10 @@ typedef enum Samples { AS_BYTES, AS_NUMBERS, AS_THEY_ARE } Samples;
 typedef struct Sampling {
     int       most_bands;
     Samples   samples;
-    PoolTask *sample; /* of some rows of cells */
+    PoolTask *sample; /* samples some rows of cells */
 } Sampling;
 
-/* One raster after the other: its box read, then the rows of cells sampled. */
+/* Samples one raster after the other: reads its box, then samples the rows of cells. */
 static Status each_raster(void *out, const RasterSet *set, int band, const Sampling *how, const CellRows *cells,
                           const GroundView *view)
 {
@@ -151,7 +151,7 @@ static Status each_raster(void *out, const RasterSet *set, int band, const Sampl
 
 /* ---- sampling -------------------------------------------------------------------------------- */
 
-/* Index of the pixel under a place within the box; -1: beyond it. */
+/* Index of the pixel under a place within the box; -1: the place is beyond the box. */
 static inline int64_t pixel_of(const Job *job, double x, double y)
 {
     const int *box = job->nodes.box;
@@ -171,7 +171,8 @@ static void sample_codes(void *user, int worker, int task)
             places(x, y, &job->nodes, i0, j, count);
             for (int i = 0; i < count; i++) {
                 const int64_t at = pixel_of(job, x[i], y[i]);
-                if (at < 0 || to[i] > 1) continue; /* 1: code 0, which most files have where they know nothing */
+                if (at < 0 || to[i] > 1)
+                    continue; /* a value of 1 stands for code 0, by which most files say that they know nothing */
                 const float code = !job->bytes ? job->number[at] : job->valid[at] ? (float)job->bytes[at] : NAN;
                 if (code >= 0 && code < surface_codes_most && (code > 0 || to[i] == 0)) to[i] = (uint16_t)(code + 1);
             }
@@ -198,7 +199,7 @@ static void sample_numbers(void *user, int worker, int task)
 static struct Codes {
     float   linear[256];
     uint8_t of_linear[4096];
-} codes; /* filled in before there are threads at work */
+} codes; /* is filled in before any thread is at work */
 
 static void codes_fill(void)
 {
@@ -206,7 +207,7 @@ static void codes_fill(void)
     for (int k = 0; k < 4096; k++) codes.of_linear[k] = photo_encoded((float)k / 4095);
 }
 
-/* Linear light of the pixels about a place; false: one of them is not valid. */
+/* Linear light of the pixels about a place; returns false when one of them is not valid. */
 static inline bool light_at(float sum[3], const Job *job, double x, double y, float share)
 {
     const int   *box = job->nodes.box, w = box_w(job), h = box[3] - box[1], bands = job->bands;
@@ -231,8 +232,9 @@ static void sample_colours(void *user, int worker, int task)
     const Job    *job = user;
     const Raster *raster = job->raster;
     const double  posting_m = fmin(raster->posting_m[0], raster->posting_m[1]);
-    const int     side = (int)clamp(job->cells->cell_m / posting_m + 0.25, 1, 16); /* samples a cell, each way */
-    double        x[node_cells], y[node_cells];
+    const int     side =
+        (int)clamp(job->cells->cell_m / posting_m + 0.25, 1, 16); /* number of samples in a cell, each way */
+    double x[node_cells], y[node_cells];
     (void)worker;
     for (int j = task * rows_a_task; j < (task + 1) * rows_a_task && j < job->cells->rows; j++)
         for (int i0 = 0; i0 < job->cells->nx; i0 += node_cells) {

@@ -7,14 +7,14 @@
 enum { core_cells = 1024, fade_posts = 24 };
 
 typedef struct Work {
-    StreamLevel   level;
-    int           row0, rows; /* asked for */
-    int           r0, r1;     /* with the margins */
-    int           margin;
-    float        *surface_m, *bare_m, *plain_m; /* [r1 - r0][nx]; plain: of all posts, also beyond the data */
-    uint8_t      *of_file;                      /* [r1 - r0][nx] */
-    uint8_t      *rgb;                          /* [r1 - r0][nx][3]; NULL: none */
-    uint8_t      *away;                         /* [r1 - r0][nx] posts from the data, at most fade_posts */
+    StreamLevel level;
+    int         row0, rows; /* rows that were asked for */
+    int         r0, r1;     /* the same with margins */
+    int         margin;
+    float   *surface_m, *bare_m, *plain_m; /* [r1 - r0][nx]; plain_m: bare ground of all posts, also beyond the data */
+    uint8_t *of_file;                      /* [r1 - r0][nx] */
+    uint8_t *rgb;                          /* [r1 - r0][nx][3]; NULL: none */
+    uint8_t *away;                         /* [r1 - r0][nx] distance from the data in posts, at most fade_posts */
     SurfaceStrip *out;
     int           windows;
     Crown       **crown; /* [windows] */
@@ -31,7 +31,7 @@ void surface_strip_free(SurfaceStrip *strip)
     *strip = (SurfaceStrip){0};
 }
 
-/* City-block distance, in two sweeps. */
+/* Measures the city-block distance from the data, in two sweeps. */
 static void measure_away(Work *w)
 {
     const int nx = w->level.nx, ny = w->r1 - w->r0;
@@ -51,7 +51,7 @@ static void measure_away(Work *w)
         }
 }
 
-/* The middle of a window into the strip. */
+/* Copies the middle of a window into the strip. */
 static void keep_window(Work *w, const SurfaceParts *parts, int task, int i0, int nx, int ny)
 {
     const int    level_nx = w->level.nx, from_i = task * core_cells;
@@ -63,9 +63,10 @@ static void keep_window(Work *w, const SurfaceParts *parts, int task, int i0, in
             const size_t n = (size_t)(j - w->r0) * (size_t)nx + (size_t)(i - i0);
             const size_t at = (size_t)(j - w->row0) * (size_t)level_nx + (size_t)i;
             const size_t src = (size_t)(j - w->r0) * (size_t)level_nx + (size_t)i;
-            const double share = (double)w->away[src] / fade_posts; /* of what the files lead over to */
-            uint8_t      kind = parts->kind[n];
-            double       h_m = (double)parts->bare_m[n];
+            const double share =
+                (double)w->away[src] / fade_posts; /* share of the ground that the files lead over to */
+            uint8_t kind = parts->kind[n];
+            double  h_m = (double)parts->bare_m[n];
             if (!isfinite(h_m)) h_m = (double)w->plain_m[src];
             const double canopy_m = (double)w->surface_m[src] - h_m;
             h_m += share * share * (3 - 2 * share) * ((double)w->plain_m[src] - h_m);
@@ -75,7 +76,7 @@ static void keep_window(Work *w, const SurfaceParts *parts, int task, int i0, in
             w->out->kind[at] = kind;
             w->out->canopy_m[at] = kind == CELL_TREE && canopy_m > 0 ? (float)canopy_m : 0;
         }
-    for (int k = 0; k < parts->crown_count; k++) { /* those whose top is in the middle */
+    for (int k = 0; k < parts->crown_count; k++) { /* keeps crowns whose top is in the middle of the window */
         Crown     c = parts->crown[k];
         const int i = i0 + (int)floor((double)c.x_m / s), j = w->r0 + (int)floor((double)c.y_m / s);
         if (i < from_i || i >= to_i || j < w->row0 || j >= w->row0 + w->rows) continue;
@@ -146,7 +147,7 @@ static Status read_colours(Work *w, const SurfaceSources *from)
     return status;
 }
 
-/* Heights of both models; NaN where a file has none. */
+/* Reads the heights of both models; NaN where a file has none. */
 static Status read_models(Work *w, const SurfaceSources *from)
 {
     const int    rows = w->r1 - w->r0;

@@ -18,7 +18,7 @@ double import_finest_m(const RasterSet *set)
     return set->count ? fmin(set->raster[0].posting_m[0], set->raster[0].posting_m[1]) : 0;
 }
 
-/* Rows of a grid that lie beside rows row0 .. row0 + rows - 1 of level 0: each row once. */
+/* The rows of a grid that lie beside rows row0 .. row0 + rows - 1 of level 0; each row comes up once. */
 static bool rows_of(CellRows *out, int *first, const StoreGrid *g, const StoreImport *m, int row0, int rows)
 {
     if (g->nx == 0) return false;
@@ -33,7 +33,7 @@ static bool rows_of(CellRows *out, int *first, const StoreGrid *g, const StoreIm
     return true;
 }
 
-/* The wide window of classes comes first: its codes choose the table. */
+/* Reads the wide window of classes, which comes first, since its codes choose the table. */
 Status import_cover_wide(StoreImport *m)
 {
     const StoreGrid *g = &m->plan.surface[1];
@@ -74,7 +74,8 @@ Status import_cover_wide(StoreImport *m)
     return status;
 }
 
-/* Classes of a strip: the file's; built where a building stands; grass under crowns where no file says. */
+/* Classes of a strip: that of the file; built-up where a building stands; grass under crowns where the file has none.
+ * */
 Status import_cover(StoreImport *m, int row0, int rows, const SurfaceStrip *strip)
 {
     CellRows cells;
@@ -99,7 +100,8 @@ Status import_cover(StoreImport *m, int row0, int rows, const SurfaceStrip *stri
     }
     long of_class[256] = {0};
     for (size_t n = 0; status == STATUS_OK && n < count; n++) of_class[code[n]]++;
-    for (int s = 1; s < SURFACE_COUNT; s++) m->r.cover.share[s] += (double)of_class[s]; /* made shares at the end */
+    for (int s = 1; s < SURFACE_COUNT; s++)
+        m->r.cover.share[s] += (double)of_class[s]; /* counts, which are turned into shares at the end */
     if (status == STATUS_OK) status = store_write_surface(m->writer, 0, cells.rows, code);
     free(code);
     return status;
@@ -107,7 +109,7 @@ Status import_cover(StoreImport *m, int row0, int rows, const SurfaceStrip *stri
 
 Status import_albedo(StoreImport *m, int row0, int rows)
 {
-    enum { some_rows = 512 }; /* where pixels are finer than posts */
+    enum { some_rows = 512 }; /* rows at a time, where pixels are finer than posts */
     CellRows all;
     int      first;
     if (!rows_of(&all, &first, &m->plan.albedo, m, row0, rows)) return STATUS_OK;
@@ -127,7 +129,8 @@ Status import_albedo(StoreImport *m, int row0, int rows)
 
 /* ---- canopy ---------------------------------------------------------------------------------- */
 
-/* In the unit that the file states. Without one whole numbers above 80 are no metres: LANDFIRE's are tenths of them. */
+/* Finds the unit of the canopy's heights: that which the file states. Without one, whole numbers above 80 cannot be
+ * metres: LANDFIRE's are tenths of them. */
 Status import_canopy_look(StoreImport *m)
 {
     const RasterSet *set = &m->canopy_height;
@@ -182,7 +185,7 @@ static Status canopy_of_file(StoreImport *m, bool height, int row0, int rows)
     return status;
 }
 
-/* Of the crowns that were found: highest, and share of the posts in each cell. */
+/* Canopy from the crowns that were found: in each cell the greatest height, or the share of its posts. */
 static Status canopy_of_strip(StoreImport *m, bool height, int row0, int rows, const SurfaceStrip *strip)
 {
     CellRows         cells;

@@ -10,7 +10,7 @@ enum { rows_plain = 512, rows_apart = 1024, most_sources = 8192, options_size = 
 
 static const char module[] = "terrain import";
 
-/* False: stop. */
+/* Reports progress; returns false when the import is to stop. */
 static bool go_on(StoreImport *m, const char *stage, double share, bool now)
 {
     const double s = wall_clock_s();
@@ -82,8 +82,8 @@ static Status open_sources(StoreImport *m)
     return status;
 }
 
-/* Cells of a power of two times the posts' spacing, about as large as pixels, over level 0; or, with a set, only over
- * its part of that, from whole nodes on. */
+/* Plans a grid over level 0: cells of a power of two times the posts' spacing, about as large as pixels. With a set,
+ * the grid covers only its part of level 0, from whole nodes on. */
 static void plan_grid(StoreGrid *out, const StoreImport *m, double posting_m, const RasterSet *set, int finest)
 {
     const double s = m->level.spacing_m;
@@ -101,7 +101,8 @@ static void plan_grid(StoreGrid *out, const StoreImport *m, double posting_m, co
     }
     int i0 = 0, i1 = nx, j0 = 0, j1 = ny;
     if (set && low[0] < high[0]) {
-        const double lean_m = 0.01 * (high[0] - low[0]) + 10 * cell_m; /* heights lean outwards */
+        const double lean_m =
+            0.01 * (high[0] - low[0]) + 10 * cell_m; /* room for heights, which appear displaced outwards */
         i0 = (int)clamp(floor((low[0] - lean_m - x0_m) / cell_m / 64) * 64, 0, nx);
         i1 = (int)clamp(ceil((high[0] + lean_m - x0_m) / cell_m), 0, nx);
         j0 = (int)clamp(floor((low[1] - lean_m - y0_m) / cell_m / 64) * 64, 0, ny);
@@ -111,7 +112,8 @@ static void plan_grid(StoreGrid *out, const StoreImport *m, double posting_m, co
     else *out = (StoreGrid){i1 - i0, j1 - j0, x0_m + i0 * cell_m, y0_m + j0 * cell_m, cell_m};
 }
 
-/* Over all that the cover files show, at eight times the cells, at most 2000 each way about the origin. */
+/* Plans the wide grid: over all that the cover files show, with cells eight times as large, at most 2000 each way about
+ * the origin. */
 static void plan_wide(StoreGrid *out, const StoreImport *m, double cell_m)
 {
     enum { half = 1000 };
@@ -147,7 +149,7 @@ static Status list_sources(StoreImport *m)
                 }
                 StoreSource *to = &m->source[m->plan.source_count++];
                 to->path = sets[s]->raster[k].sheet[n].path;
-                (void)store_source_look(to); /* one that is no file (GDAL's own names) keeps size 0 */
+                (void)store_source_look(to); /* a source that is not a file (one of GDAL's own names) keeps size 0 */
             }
     m->plan.source = m->source;
     return STATUS_OK;
@@ -214,8 +216,8 @@ static Status plan(StoreImport *m)
     return STATUS_OK;
 }
 
-/* Says what there is to do, before it is done; no more than is allowed, and than the disk has room for. Decoded rows
- * are kept, where that is worth it, in what the store leaves of both. */
+/* Reports how much there is to do before it is done, and refuses more than is allowed or than the disk has room for.
+ * Decoded rows are kept, where that is worthwhile, in what the store leaves of both. */
 static Status say_size(StoreImport *m, const char *path)
 {
     enum { reads_per_octet = 64 };
@@ -255,7 +257,7 @@ static Status say_size(StoreImport *m, const char *path)
     return STATUS_OK;
 }
 
-/* The levels around: all files are read once. */
+/* Makes the levels around level 0; all files are read once. */
 static Status begin(StoreImport *m)
 {
     const bool   both = m->surface && m->terrain;

@@ -16,15 +16,16 @@ typedef struct TerrainOptions {
     /* lists of files and folders, separated by commas; empty: none */
     char elevation[terrain_paths_size], surface[terrain_paths_size], cover[terrain_paths_size],
         photo[terrain_paths_size], canopy_height[terrain_path_size], canopy_cover[terrain_path_size];
-    char cover_table[terrain_path_size], geoid[terrain_path_size]; /* empty: chosen; EGM96 */
-    char unit[16], srs[128], nodata[32];  /* of elevation and surface files that have none after their name */
+    char cover_table[terrain_path_size], geoid[terrain_path_size]; /* cover_table: empty: chosen; geoid: empty: EGM96 */
+    char unit[16], srs[128],
+        nodata[32]; /* what elevation and surface files are taken to have where nothing stands after their name */
     char sources_from[terrain_path_size]; /* folders of files that other files name (raster_sources_from) */
     ElevationVertical vertical;
     double            spacing_m;     /* 0: the posting of the finest data */
     double            origin_deg[2]; /* latitude, longitude; NaN: middle of the finest data */
-    double            size_km[2];    /* 0: all data */
+    double            size_km[2];    /* 0: as large as the data */
     double            horizon_km;
-    double            most_gb; /* that may be written; 64 times as much decoded */
+    double            most_gb; /* most gigabytes that may be written; decoding may take 64 times as much */
 } TerrainOptions;
 
 void terrain_options_default(TerrainOptions *out);
@@ -32,40 +33,41 @@ void terrain_options_default(TerrainOptions *out);
  * canopy-cover, geoid, sources-from, vertical, unit, srs, nodata, spacing, origin, size, horizon, most-gb. False: *why
  * says what is accepted, in static storage, and nothing has changed. */
 bool terrain_options_set(TerrainOptions *o, const char **why, const char *name, const char *value);
-/* The names of a list of elevation or surface files, each with what the options choose for it after it
- * (raster.h). False: too long. */
+/* The names in a list of elevation or surface files, each followed by what the options choose for it (raster.h).
+ * Returns false when that is too long. */
 bool terrain_options_sources(char *out, size_t out_size, const TerrainOptions *o, const char *list);
-/* What is missing or contradicts, in static storage; NULL: nothing. */
+/* What is missing or contradictory in the options, in static storage; NULL: nothing. */
 const char *terrain_options_fault(const TerrainOptions *o);
-/* `name value`, a line each, paths absolute; those that have their default are left out. False: too long. */
+/* The options as text: a line `name value` each, with absolute paths; those with their default value are left out.
+ * Returns false when that is too long. */
 bool terrain_options_text(char *out, size_t out_size, const TerrainOptions *o);
-/* The text of a store's header. False: *why, and *line from 1 on. */
+/* Reads the text of a store's header. Returns false with *why, and *line counted from 1. */
 bool terrain_options_parse(TerrainOptions *out, const char **why, int *line, const char *text);
 
 /* ---- the import ---------------------------------------------------------------------------------- */
 
-/* Called some times a second at most, by the thread of the import; once, before the work, with a line that says how
- * much there is to do, and a share of -1. False: stop, and leave nothing behind. */
+/* Is called a few times a second at most, by the import's thread; and once before the work, with a line that says how
+ * much there is to do, and a share of -1. Returns false to stop the import, which then leaves nothing behind. */
 typedef bool TerrainProgress(void *user, const char *stage, double share);
 
 typedef struct TerrainWatch {
-    TerrainProgress *progress; /* NULL: never stopped */
+    TerrainProgress *progress; /* NULL: the import is never stopped */
     void (*heard)(void                  *user,
-                  const ElevationSurvey *survey); /* of each grid of heights, before it is used; NULL: it is not told */
+                  const ElevationSurvey *survey); /* called for each grid of heights before it is used; may be NULL */
     void *user;
 } TerrainWatch;
 
 typedef struct TerrainReport {
     ElevationReport elevation;
     StoreReport     store;
-    bool            apart, beside;   /* a surface model was taken apart; with a terrain model beside it */
+    bool            apart, beside;   /* whether a surface model was taken apart, and with a terrain model beside it */
     int             nx, ny;          /* posts of level 0 */
-    CoverReport     cover;           /* posting_m 0: none */
-    double          photo_posting_m; /* 0: none */
-    double          canopy_scale_m;  /* of a canopy height file's numbers; 0: none */
-    double          kind_share[3];   /* of the posts: bare, building, tree */
-    double          seconds[4];      /* levels around, posts, cover and photograph, writing */
-    bool            stopped;         /* by the progress function */
+    CoverReport     cover;           /* posting_m 0: there is no cover */
+    double          photo_posting_m; /* 0: there is no photograph */
+    double          canopy_scale_m;  /* unit of the numbers in a canopy height file; 0: there is none */
+    double          kind_share[3];   /* shares of the posts: bare, building, tree */
+    double          seconds[4]; /* time of each stage: levels around level 0, posts, cover and photograph, writing */
+    bool            stopped;    /* whether the progress function stopped it */
 } TerrainReport;
 
 /* pool NULL: one thread. watch may be NULL. Failures are logged with the file and the next step; PATH is replaced
@@ -76,20 +78,21 @@ Status terrain_import(TerrainReport *out, const TerrainOptions *options, const c
  * them. A store may come from a stranger: only what lies in its own folder is read, also of what those files name;
  * anywhere: whatever it names. A requested stop ends it, and leaves the store as it was. */
 Status terrain_store_rebuild(const char *path, const char *options, bool anywhere);
-/* Whether its options name a source outside its own folder; outside: the first. */
+/* Whether a store's options name a source outside of its own folder. outside: the first such source. */
 bool terrain_store_foreign(char *outside, size_t outside_size, const char *path, const char *options);
 
 /* ---- buildings ----------------------------------------------------------------------------------- */
 
-/* Buildings counted row by row: connected parts of cells, courtyards or not. */
+/* Counts buildings row by row, as connected parts of cells, whether they have courtyards or not. */
 typedef struct TerrainBuildings {
-    long count;            /* of all rows so far */
-    int  labels;           /* of the last row */
-    int *label;            /* [nx] of the last row; 0: no building */
+    long count;            /* buildings in all rows so far */
+    int  labels;           /* labels used in the last row */
+    int *label;            /* [nx] labels of the last row; 0: no building */
     int *parent, *compact; /* [2 nx + 2] */
 } TerrainBuildings;
 
-/* The next row: kind is CellKind. Cells that touch at a corner only are apart. out starts zeroed. */
+/* Counts the next row, of CellKind. Cells that touch only at a corner are not connected. out must be zeroed at first.
+ * */
 Status terrain_buildings_count(TerrainBuildings *out, int nx, const uint8_t *kind);
 void   terrain_buildings_free(TerrainBuildings *count); /* accepts zeroes */
 

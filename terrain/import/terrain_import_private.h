@@ -15,7 +15,7 @@
 /* ---- ground_rows.c: codes of land cover, colours of a photograph, numbers, in rows of square cells of ENU. Each call
  * reads the part of the files that its rows need ---- */
 
-/* Rows of cells; x0_m, y0_m: south-west corner of the first. */
+/* Rows of cells; x0_m, y0_m: south-west corner of the first row. */
 typedef struct CellRows {
     int    nx, rows;
     double x0_m, y0_m, cell_m;
@@ -32,11 +32,11 @@ typedef struct GroundView {
     const char       *key; /* for messages */
 } GroundView;
 
-/* Where a cell has no value yet (coverage 0, NaN) it gets that of the first raster of the set that has one. code: 0:
- * none; else one more than the file's, of which a 0 gives way to others'; codes from surface_codes_most on are none.
- * band 0: the sheets' own, else the first. */
+/* Gives each cell without a value (coverage 0, NaN) the value of the first raster of the set that has one. code: one
+ * more than the file's; 0: none. The file's code 0 gives way to other files' codes; codes from surface_codes_most on
+ * count as none. band 0: the band named for a sheet, else the first. */
 Status ground_rows_codes(uint16_t *code, const RasterSet *set, int band, const CellRows *cells, const GroundView *view);
-/* [rows][nx][4]: sRGB and coverage, bilinear in linear light; averaged where pixels are finer than cells. */
+/* [rows][nx][4], sRGB and coverage: bilinear in linear light, or averaged where pixels are finer than cells. */
 Status ground_rows_colours(uint8_t *rgba, const RasterSet *set, const CellRows *cells, const GroundView *view);
 Status ground_rows_numbers(float *value, const RasterSet *set, int band, const CellRows *cells, const GroundView *view);
 
@@ -44,62 +44,63 @@ Status ground_rows_numbers(float *value, const RasterSet *set, int band, const C
 
 typedef struct SurfaceSources {
     ElevationStream  *surface;
-    ElevationStream  *bare;  /* a terrain model over the same levels; NULL: none */
+    ElevationStream  *bare;  /* terrain model on the same levels; NULL: there is none */
     const RasterSet  *photo; /* NULL: none */
     const LocalFrame *frame;
     Pool             *pool;
 } SurfaceSources;
 
-/* Rows of level 0, [rows][nx]; crowns in ENU, allocated. */
+/* Rows of level 0, [rows][nx], and crowns in ENU, which are allocated. */
 typedef struct SurfaceStrip {
-    float   *h_m;      /* above the ellipsoid: bare ground, and roofs where there are buildings */
+    float   *h_m;      /* heights above the ellipsoid of bare ground, and of roofs where there are buildings */
     uint8_t *kind;     /* CellKind */
-    float   *canopy_m; /* surface above bare ground where kind is CELL_TREE, else 0 */
+    float   *canopy_m; /* height of the surface above bare ground where kind is CELL_TREE; 0 elsewhere */
     int      crowns;
     Crown   *crown;
-    long     voids, voids_coarser; /* posts filled from their surroundings; from a coarser file */
+    long     voids, voids_coarser; /* posts filled from their surroundings, and from a coarser file */
 } SurfaceStrip;
 
-/* Strips may be of any height and come in any order: the same posts (take_apart_reach_m). */
+/* Makes a strip. Strips may be of any height and come in any order, with the same posts as a result
+ * (take_apart_reach_m). */
 Status surface_strip_make(SurfaceStrip *out, const SurfaceSources *from, int row0, int rows);
 void   surface_strip_free(SurfaceStrip *strip); /* accepts zeroes */
 
 /* ---- the import ---- */
 
-/* A store in the making: what it is made from, and what is known of it so far. */
+/* A store in the making: its sources, and what is known of it so far. */
 typedef struct StoreImport {
     const TerrainOptions *o;
     Pool                 *pool;
     TerrainWatch          watch;
     double                told_s, keep_octets;
     LocalFrame            frame;
-    ElevationFiles        files[2];                  /* terrain model, surface model */
-    ElevationStream      *terrain, *surface, *first; /* first: whose levels are made */
-    RasterSet             opened;                    /* the first's files, until it has them */
+    ElevationFiles        files[2];                  /* of the terrain model, of the surface model */
+    ElevationStream      *terrain, *surface, *first; /* first: the one of both whose levels are made */
+    RasterSet             opened;                    /* files of `first`, until it has taken them over */
     RasterSet             cover, photo, canopy_height, canopy_cover;
     SurfaceTable          table;
     int                   cover_band;
     StorePlan             plan;
     StoreSource          *source;
-    char                 *list[2]; /* terrain model, surface model: with what the options say of them */
-    char                 *options, notes[2048], datum[256], folder[terrain_path_size];
-    StoreWriter          *writer;
-    StreamLevel           level;
-    int                   strip_rows;
-    long                  kinds[3];
-    TerrainBuildings      buildings;
-    long                  voids, voids_coarser;
-    TerrainReport         r;
+    char        *list[2]; /* names of the terrain model and of the surface model, with what the options say of them */
+    char        *options, notes[2048], datum[256], folder[terrain_path_size];
+    StoreWriter *writer;
+    StreamLevel  level;
+    int          strip_rows;
+    long         kinds[3];
+    TerrainBuildings buildings;
+    long             voids, voids_coarser;
+    TerrainReport    r;
 } StoreImport;
 
 /* ---- terrain_cover.c ---- */
 
-/* The finest posting of a set, 0 for none. */
+/* The finest posting of a set; 0 when it is empty. */
 double import_finest_m(const RasterSet *set);
-/* The unit of the canopy's heights. */
+/* Finds the unit of the canopy's heights. */
 Status import_canopy_look(StoreImport *m);
-/* The wide window of classes; then classes, photograph and canopy beside rows of level 0. strip: of a surface model,
- * NULL: none. */
+/* Import the wide window of classes, then classes, photograph and canopy beside rows of level 0. strip: of a surface
+ * model; NULL: there is none. */
 Status import_cover_wide(StoreImport *m);
 Status import_cover(StoreImport *m, int row0, int rows, const SurfaceStrip *strip);
 Status import_albedo(StoreImport *m, int row0, int rows);

@@ -6,7 +6,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-typedef enum Kind { LIST, NUMBER, PAIR, SIZE, CHOICE, SAYS } Kind; /* SAYS: what raster.h reads after a name */
+typedef enum Kind { LIST, NUMBER, PAIR, SIZE, CHOICE, SAYS } Kind; /* SAYS: a text that raster.h reads after a name */
 
 #define TEXT_AT(member) offsetof(TerrainOptions, member), sizeof(((TerrainOptions *)0)->member)
 
@@ -45,7 +45,7 @@ void terrain_options_default(TerrainOptions *out)
     *out = (TerrainOptions){.origin_deg = {NAN, NAN}, .horizon_km = 100, .most_gb = 16};
 }
 
-/* Two numbers with a separator between them. */
+/* Reads two numbers with a separator between them. */
 static bool pair_of(double out[2], const char *text, char separator)
 {
     char        first[64];
@@ -121,8 +121,8 @@ const char *terrain_options_fault(const TerrainOptions *o)
 
 /* ---- as a text ------------------------------------------------------------------------------- */
 
-/* The next name of a list, without the spaces around it. False: none is left, or it is too long (*at is not at the
- * end). */
+/* The next name of a list, without the spaces around it. Returns false when none is left, or when it is too long (*at
+ * is then not at the end). */
 static bool next_name(char name[terrain_path_size], const char **at)
 {
     for (; **at;) {
@@ -139,7 +139,7 @@ static bool next_name(char name[terrain_path_size], const char **at)
     return false;
 }
 
-/* A list with each name absolute that is a file here, whatever is said after it; others are GDAL's own. */
+/* Makes names of files in a list absolute, whatever follows them; other names are GDAL's own and stay. */
 static bool absolute_list(char *out, size_t size, const char *list)
 {
     char        folder[terrain_path_size], name[terrain_path_size], bare[terrain_path_size];

@@ -9,7 +9,7 @@
 
 /* ---- where the sources lie --------------------------------------------------------------------- */
 
-/* The folder that a store lies in, links followed. False: it is not there. */
+/* The folder that a store lies in, after links are followed. Returns false when it does not exist. */
 static bool source_folder(char out[PATH_MAX], const char *store)
 {
     if (!realpath(store, out)) return false;
@@ -24,7 +24,7 @@ static bool begins_with_folder(const char *path, const char *folder)
     return strncmp(path, folder, length) == 0 && (path[length] == '/' || strcmp(folder, "/") == 0);
 }
 
-/* One name of a list, whatever is said after it. */
+/* Whether one name of a list lies within a folder, whatever follows the name. */
 static bool lies_within(char *name, const char *folder)
 {
     char         whole[PATH_MAX], bare[terrain_path_size];
@@ -36,8 +36,9 @@ static bool lies_within(char *name, const char *folder)
     return begins_with_folder(name, folder) && !strstr(name, "/..") && strncmp(name, "/vsi", 4) != 0;
 }
 
-/* Links are followed; what is not there goes by its name; a name that is no file's (of a server, in an archive) lies
- * outside. outside: the first of the sources that does, "" for none. */
+/* Whether all sources lie within a folder. Links are followed; a file that does not exist is judged by its name; a name
+ * that is not a file's (on a server, in an archive) lies outside. outside: the first source that does, "" when none
+ * does. */
 static bool sources_within(char *outside, size_t outside_size, const TerrainOptions *o, const char *folder)
 {
     const char *const lists[] = {
@@ -111,7 +112,7 @@ Status terrain_store_rebuild(const char *path, const char *options, bool anywher
     }
     if (status == STATUS_OK) status = pool_create(&pool, thread_processors());
     if (status == STATUS_OK) {
-        raster_stay_within(anywhere ? NULL : folder); /* also what those files name */
+        raster_stay_within(anywhere ? NULL : folder); /* this also concerns files that those files name */
         status = terrain_import(&r, o, path, pool, &(TerrainWatch){.progress = tell, .user = &begun_s});
         raster_stay_within(NULL);
     }

@@ -12,8 +12,9 @@
 
 static const double full_clearance_m = 2, least_clearance_m = 0.15;
 static const double taper_slope = 0.05, valley_slope = 0.5;
-static const float  no_cap_m = 1e30f; /* finite, so that a share of nothing of it is nothing */
-static const double touch_m = 8; /* an end this near a fix counts as at the fix: half a big vehicle and its height */
+static const float  no_cap_m = 1e30f; /* no limit; finite, so that a share of 0 of it is 0 */
+static const double touch_m =
+    8; /* an end this near a fix counts as at the fix: half the length of a large vehicle, and its height */
 
 /* ---- the usable lines --------------------------------------------------------------------- */
 
@@ -49,7 +50,8 @@ static int by_place(const void *pa, const void *pb)
     return 0;
 }
 
-/* Not from below the lowest ground on Earth: such a line would lower the terrain with it. */
+/* Whether a line comes from below the lowest ground on Earth. Such a line is ignored, since it would pull the terrain
+ * down. */
 static bool under_the_ground(const double p[3], const Curve *curve)
 {
     double z_m, dz_per_h;
@@ -72,7 +74,7 @@ Status line_set_create(LineSet *out, const ClearLine *line, int count, const Loc
     for (int n = 0; n < count; n++) {
         const double *a = line[n].a_enu, *b = line[n].b_enu;
         if (!v3_is_finite(a) || !v3_is_finite(b)) continue;
-        /* entirely beyond one side of the terrain, or too long for a path */
+        /* ignores a line that is entirely beyond one side of the terrain, or too long for a path */
         if (fmin(a[0], b[0]) > horizon_m || fmax(a[0], b[0]) < -horizon_m || fmin(a[1], b[1]) > horizon_m ||
             fmax(a[1], b[1]) < -horizon_m || !(squared_distance(a, b) < 16 * horizon_m * horizon_m))
             continue;
@@ -82,7 +84,7 @@ Status line_set_create(LineSet *out, const ClearLine *line, int count, const Loc
         if (comes_down(b, fixes)) memcpy(set.touch + 3 * set.touch_count++, b, sizeof line[n].b_enu);
     }
 
-    /* a hundred shots at one tank touch at one place */
+    /* places are kept once: a hundred shots at one tank end at one place */
     qsort(set.touch, (size_t)set.touch_count, 3 * sizeof *set.touch, by_place);
     int kept = 0;
     for (int n = 0; n < set.touch_count; n++) {
@@ -108,7 +110,7 @@ void line_set_destroy(LineSet *set)
     *set = (LineSet){0};
 }
 
-/* Distance to the nearest touch place, infinite beyond 128 m. */
+/* Distance to the nearest place where a line ends at a fix; infinite beyond 128 m. */
 static double touch_distance_m(const LineSet *lines, const double p[3])
 {
     const NearGrid *near = &lines->near_touch;
@@ -144,7 +146,7 @@ Status line_ceilings(FieldAim **out, int *out_count, const LineSet *lines, const
         double d[3];
         v3_sub(d, lines->line[n].b_enu, lines->line[n].a_enu);
         const double length_m = v3_length(d);
-        /* a point that far above h_m cannot come down to it in fewer metres than that */
+        /* a point this far above h_m cannot come down to it within that distance */
         for (double s_m = 0; s_m <= length_m && count < most_aims;) {
             double p[3], z_m, dz_per_h;
             v3_add_scaled(p, lines->line[n].a_enu, length_m > 0 ? s_m / length_m : 0, d);
@@ -175,7 +177,7 @@ Status line_ceilings(FieldAim **out, int *out_count, const LineSet *lines, const
 
 enum { tile_posts = 64 };
 
-/* Highest post of each square of 64 x 64, with the eight squares around it. */
+/* The highest post of each square of 64 x 64 and of the eight squares around it. */
 static Status tile_maxima(Field *out, const Field *z)
 {
     const int nx = (z->nx + tile_posts - 1) / tile_posts, ny = (z->ny + tile_posts - 1) / tile_posts;
@@ -213,14 +215,14 @@ typedef struct Cutter {
     const LineSet *lines;
     const FixSet  *fixes;
     Field          tiles;
-    double         core_m;         /* a cell's diagonal */
+    double         core_m;         /* diagonal of a cell */
     double         top_m;          /* highest post of the level */
-    int            i0, i1, j0, j1; /* posts that are seeded; none: i1 < i0 */
-    double         lowest_m;       /* lowest seed */
-    bool           any_fix;        /* on this level */
+    int            i0, i1, j0, j1; /* range of posts that have been seeded; i1 < i0: none */
+    double         lowest_m;       /* lowest seeded limit */
+    bool           any_fix;        /* whether a fix lies on this level */
 } Cutter;
 
-/* How far below z_m, a height of the line about p, the ground is held. */
+/* How far the ground must stay below z_m, a height of the line near p. */
 static double clearance_m(const Cutter *cutter, const double p[3], double z_m, double touch_distance)
 {
     const double taper_m = taper_of_spacing_m(cutter->level->z.spacing_m);
@@ -247,7 +249,7 @@ static double clearance_m(const Cutter *cutter, const double p[3], double z_m, d
     return fmax(room_m, least_clearance_m);
 }
 
-/* Holds every post within a cell's diagonal of the piece from a to b. */
+/* Limits every post within a cell's diagonal of the piece from a to b. */
 static void seed_piece(Cutter *cutter, const double a[3], const double b[3], double cap_m)
 {
     const Field *z = &cutter->level->z;
@@ -274,7 +276,8 @@ static void seed_piece(Cutter *cutter, const double a[3], const double b[3], dou
     cutter->lowest_m = fmin(cutter->lowest_m, cap_m);
 }
 
-/* The part of the line from a along d over the level's square, widened by margin_m: false when there is none. */
+/* The part of the line from a along d that is over the level's square, widened by margin_m. Returns false when there is
+ * none. */
 static bool clip_to_level(double *t0, double *t1, const double a[3], const double d[3], const Field *z, double margin_m)
 {
     const double low[2] = {z->i0 * z->spacing_m - margin_m, z->j0 * z->spacing_m - margin_m};
@@ -294,7 +297,7 @@ static bool clip_to_level(double *t0, double *t1, const double a[3], const doubl
     return *t0 <= *t1;
 }
 
-/* Deep inside the hole of a level nothing of it exists. */
+/* Whether a place is deep inside the level's hole, where the level does not exist. */
 static bool in_hole(const WorkLevel *level, const double p[3])
 {
     enum { margin = 4 };
@@ -317,7 +320,7 @@ static void seed_line(Cutter *cutter, const ClearLine *line)
         double a[3], b[3], mid[3];
         v3_add_scaled(a, line->a_enu, length_m > 0 ? s_m / length_m : 0, d);
 
-        /* distance without effect: high above the whole level */
+        /* the line can have no effect over this distance, since it is high above the whole level */
         const double above_m = a[2] - full_clearance_m - cutter->top_m;
         if (above_m > 0) {
             const double skip_m = slope > 0 ? above_m / slope : INFINITY;
@@ -342,7 +345,8 @@ static void seed_line(Cutter *cutter, const ClearLine *line)
     }
 }
 
-/* Lets the cap rise by the valley's slope away from the seeds: two chamfer sweeps over the part that matters. */
+/* Lets the limit rise away from the seeded posts with the valley's slope: two chamfer sweeps over the part concerned.
+ * */
 static void spread_valleys(const Cutter *cutter)
 {
     const Field *z = &cutter->level->z;
@@ -411,7 +415,7 @@ Status line_cut(WorkLevel *level, int index, const LineSet *lines, FixSet *fixes
     for (size_t n = 0; n < posts; n++)
         if (!level->water || !level->water[n]) z->v[n] = z->v[n] < level->cap[n] ? z->v[n] : level->cap[n];
 
-    /* rows that would be above the limit of the lines */
+    /* drops rows that lie above the limit of the lines */
     const Field cap = {z->spacing_m, z->i0, z->j0, z->nx, z->ny, level->cap};
     for (int n = 0; n < fixes->count; n++) {
         FixRow *row = &fixes->row[n];

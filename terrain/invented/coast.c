@@ -8,14 +8,17 @@
 #include <stdlib.h>
 
 enum { most_places = 512, block_posts = 16 };
-static const double wander = 0.3; /* of the distance to the nearest place of either kind */
+static const double wander =
+    0.3; /* amplitude of the shoreline's bends, as a share of the distance to the nearest place of either kind */
 static const double most_wander_m = 400;
-static const double innermost_m = 1024; /* half width of the finest grid of the cache; each next is four times it */
-static const double shore_land_m = 400; /* the land has its own height from here on */
-static const double own_land_m = 50;    /* of a land fix: the terrain there may be lower than the sea */
-static const double wild_m = 300;       /* from it: no longer */
+static const double innermost_m =
+    1024; /* half width of the finest grid of the cache; each next grid is four times as wide */
+static const double shore_land_m = 400; /* from this distance inland on the land has its own height */
+static const double own_land_m = 50;    /* so near to a land fix the terrain may be lower than the sea */
+static const double wild_m = 300;       /* so far from a land fix it may not */
 static const double beach_m = 12;
-static const double own_share = 0.8; /* or so near to a place of land, of the way from the shore */
+static const double own_share =
+    0.8; /* the land also has its own height at this share of the way from the shore to a place of land */
 
 /* ---- nearest places ----------------------------------------------------------------------- */
 
@@ -25,12 +28,12 @@ static double nearest_m(const double (*place)[2], int count, double x_m, double 
     for (int n = 0; n < count; n++) {
         const double dx = place[n][0] - x_m, dy = place[n][1] - y_m;
         const double square = dx * dx + dy * dy;
-        least = square < least ? square : least; /* fmin is a call */
+        least = square < least ? square : least; /* not fmin, which compiles to a call */
     }
     return sqrt(least);
 }
 
-/* Those of the places that can be nearest to a point within reach_m of (x, y). */
+/* Finds the places that can be nearest to a point within reach_m of (x, y). */
 static int may_be_nearest(double (*out)[2], const double (*place)[2], int count, double x_m, double y_m, double reach_m)
 {
     const double far_m = nearest_m(place, count, x_m, y_m) + 2 * reach_m;
@@ -42,7 +45,7 @@ static int may_be_nearest(double (*out)[2], const double (*place)[2], int count,
 
 /* ---- the shore ---------------------------------------------------------------------------- */
 
-/* Smooth value noise, -1 .. 1. */
+/* Smooth value noise, -1 .. 1, of waves of wave_m. */
 static double noise(uint64_t seed, double wave_m, double x_m, double y_m)
 {
     const double  x = x_m / wave_m, y = y_m / wave_m;
@@ -65,12 +68,14 @@ static double most_wander_at(double to_sea_m, double to_land_m)
     return fmin(wander * fmin(to_sea_m, to_land_m), most_wander_m);
 }
 
-/* Approximate distance inland, m: half the difference of the distances to sea and land. Negative on the water. */
+/* Approximate distance inland, m: half the difference of the distances to sea and to land. It is negative on the water.
+ * */
 static double inland_m(const Coast *coast, double to_sea_m, double to_land_m, double x_m, double y_m)
 {
     if (!coast->land_count) return -INFINITY;
     const double off_m = to_sea_m - to_land_m, room_m = most_wander_at(to_sea_m, to_land_m);
-    if (off_m < -room_m || off_m > room_m + 2 * shore_land_m) return 0.5 * off_m; /* for any perturbation of the line */
+    if (off_m < -room_m || off_m > room_m + 2 * shore_land_m)
+        return 0.5 * off_m; /* outside of this range no bend of the shoreline can change the answer */
     return 0.5 * (off_m + room_m * wander_at(coast->seed, x_m, y_m));
 }
 
@@ -105,7 +110,7 @@ CoastKind coast_at(const Coast *coast, double x_m, double y_m)
 
 /* ---- construction ------------------------------------------------------------------------- */
 
-/* Places of one kind no nearer to one another than a distance that leaves most_places of them; and again those that the
+/* Thins places of one kind to a least distance that leaves most_places of them; then restores those whose place the
  * thinned ones would give to the other kind. */
 static int thin(double (*out)[2], const LandscapeEvidence *e, bool sea)
 {
@@ -135,7 +140,7 @@ static int keep_contradicted(double (*out)[2], int count, const double (*other)[
     return count;
 }
 
-/* From coarse to fine: a cell inside one that is certain need not be evaluated. */
+/* Makes the grids from coarse to fine: a cell inside a coarser cell that is certain is not evaluated. */
 static Status make_grids(Coast *coast)
 {
     for (int g = coast_grids - 1; g >= 0; g--) {
@@ -198,14 +203,14 @@ void coast_destroy(Coast *coast)
 
 /* ---- heights ------------------------------------------------------------------------------ */
 
-/* Away from the fixes the terrain is not below the sea. */
+/* Height above the sea where there is no fix near: never below it. */
 static double dry_m(double above_m)
 {
     static const double round_m = 2;
     return 0.5 * (above_m + sqrt(above_m * above_m + 4 * round_m * round_m));
 }
 
-/* The land's height above the sea after fading to the shore. */
+/* The land's height above the sea after it is faded towards the shore. */
 static double led_down_m(double above_m, double inland, double to_sea_m, double to_land_m)
 {
     const double wild = smooth_step(own_land_m, wild_m, to_land_m);
@@ -213,8 +218,8 @@ static double led_down_m(double above_m, double inland, double to_sea_m, double 
     return smooth_step(0, 1, own) * (above_m + wild * (dry_m(above_m) - above_m));
 }
 
-/* A block's posts about (x, y): all of them on the water, or inland beyond the influence of the shore, and there all
- * near a place of land or all far from any. */
+/* What is known of all posts of a block about (x, y): all are on the water; or all are inland beyond the influence of
+ * the shore, and all near a place of land or all far from any. */
 typedef enum BlockKind { BLOCK_MIXED, BLOCK_WATER, BLOCK_UNTOUCHED, BLOCK_WILD } BlockKind;
 
 static BlockKind kind_of_block(const Coast *coast, double x_m, double y_m, double reach_m)

@@ -90,7 +90,8 @@ Status field_posts(Field *out, const Field *spline, int i0, int j0, int nx, int 
     return STATUS_OK;
 }
 
-/* The first of the four control points that x depends on, and their weights. False outside the window. */
+/* Sets the first of the four control points that x depends on, and their weights. Returns false outside of the window.
+ * */
 static bool spline_weights(double w[4], int *first, double x_m, double spacing_m, int i0, int nx)
 {
     const double f = x_m / spacing_m, cell = floor(f), t = f - cell;
@@ -103,7 +104,7 @@ static bool spline_weights(double w[4], int *first, double x_m, double spacing_m
     return true;
 }
 
-/* NaN outside. */
+/* Value of a spline; NaN outside of its window. */
 static double field_spline_at(const Field *spline, double x_m, double y_m)
 {
     double wx[4], wy[4], sum = 0;
@@ -117,7 +118,7 @@ static double field_spline_at(const Field *spline, double x_m, double y_m)
     return sum;
 }
 
-/* Held at the edges. */
+/* Bilinear value of a field, held at its edges. */
 static double field_bilinear(const Field *field, double x_m, double y_m)
 {
     const double fx = clamp(x_m / field->spacing_m - field->i0, 0, field->nx - 1);
@@ -132,7 +133,7 @@ static double field_bilinear(const Field *field, double x_m, double y_m)
  * squared weights is 151/315 along each axis. */
 void field_add_hills(Field *spline, uint64_t seed, double rms_m, const Calm *calm)
 {
-    const double span_m = rms_m * (315.0 / 151.0) * sqrt(12.0); /* width of a uniform of that deviation */
+    const double span_m = rms_m * (315.0 / 151.0) * sqrt(12.0); /* width of a uniform distribution of that deviation */
     if (!(rms_m > 0)) return;
     for (int j = 0; j < spline->ny; j++) {
         float *row = spline->v + (size_t)j * spline->nx;
@@ -160,7 +161,7 @@ Status field_pull(Field *spline, const FieldAim *aim, int count)
         return STATUS_NO_MEMORY;
     }
 
-    /* pass 0 gathers, pass 1 spends each control point once */
+    /* pass 0 sums at control points, pass 1 applies each sum once */
     for (int n = 0; n < count; n++) {
         double wx[4], wy[4];
         int    i, j;
@@ -298,7 +299,7 @@ Status invented_correct(WorkLevel *level, int levels, const LocalFrame *frame, d
         spline = fine;
         spacing_m /= 2;
     }
-    /* no data beyond the finest window: faded to 0 over its last eighth */
+    /* there are no data beyond the finest window, so the correction fades to 0 over its last eighth */
     const double edge_m = (half - margin) * spline.spacing_m;
     for (int k = 0; k < levels; k++) {
         Field *z = &level[k].z;

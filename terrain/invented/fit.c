@@ -10,7 +10,7 @@
 
 /* ---- points by place ----------------------------------------------------------------------------- */
 
-/* A hash of square cells; buckets keep the order of the points. */
+/* Bucket of a square cell by a hash; points in a bucket keep their order. */
 static uint32_t bucket_of(const NearGrid *grid, int64_t ci, int64_t cj)
 {
     return (uint32_t)invented_hash(0, ci, cj) & grid->mask;
@@ -37,7 +37,7 @@ Status near_grid_create(NearGrid *out, double cell_m, int count, const double *x
     }
     for (uint32_t b = 0; b <= grid.mask; b++) grid.start[b + 1] += grid.start[b];
     for (int n = count - 1; n >= 0; n--) grid.item[--grid.start[bucket[n] + 1]] = n;
-    /* counting down left each bucket's start one place to the right */
+    /* counting down has left each bucket's start one place to the right */
     for (uint32_t b = 0; b <= grid.mask; b++) grid.start[b] = grid.start[b + 1];
     grid.start[grid.mask + 1] = count;
     free(bucket);
@@ -62,7 +62,7 @@ void near_grid_bucket(const NearGrid *grid, int64_t ci, int64_t cj, int *first, 
 }
 
 static const double steepest = 0.7;       /* tan 35 degrees */
-static const double same_height_m = 0.01; /* one row for fixes of a site closer than this */
+static const double same_height_m = 0.01; /* fixes of a site closer in height than this share a row */
 static const double slack_m = 0.04;       /* fixes at one place may differ by this */
 static const double site_m = 0.5;         /* rows are gathered in squares of this size */
 static const int    most_rows_a_site = 8, most_weight = 20;
@@ -118,7 +118,7 @@ static void merge_site(FixSet *set, const Candidate *site, int count, const Grou
 {
     const int median = (count - 1) / 2, first = set->count;
     for (int n = 0; n < count; n++) {
-        /* the median, then upwards and downwards in the order of height */
+        /* the median first, then the others upwards and downwards from it */
         const int     k = n == 0 ? median : n <= median ? n - 1 : n;
         const FixRow *row = &site[k].row;
         if (contradict(row, &site[median].row)) continue;
@@ -156,8 +156,8 @@ static int most_contradicted_first(const void *pa, const void *pb)
 
 static double weight_of(const FixRow *row) { return row->weight < most_weight ? row->weight : most_weight; }
 
-/* Inconsistent neighbours of a row, weighted: four for each lower one, one for each higher one. Dense cells are
- * sampled, so the cost is bounded. */
+/* Votes of inconsistent neighbours against a row: four for each lower neighbour, one for each higher one. Dense cells
+ * are sampled, so the cost is bounded. */
 static double votes_against(const FixRow *row, int self, const NearGrid *near, const FixRow *rows)
 {
     enum { most_a_cell = 64 };
@@ -205,8 +205,8 @@ static Status drop_contradicted(FixRow *rows, int count, double reach_m)
     return STATUS_OK;
 }
 
-/* The same between squares of 64 m, each represented by its median row, so that a column of reports far off the ground
- * is detected from half a kilometre. */
+/* Drops inconsistent squares of 64 m, each represented by its median row, so that a column of reports far off the
+ * ground is detected from half a kilometre. */
 static Status drop_contradicted_squares(FixSet *set)
 {
     static const double square_m = 64, reach_m = 512;
@@ -220,7 +220,7 @@ static Status drop_contradicted_squares(FixSet *set)
         if (!set->row[n].dropped) {
             order[live] = (Candidate){(int64_t)floor(set->row[n].x_m / square_m),
                                       (int64_t)floor(set->row[n].y_m / square_m), set->row[n]};
-            order[live++].row.fix = n; /* the row's own number from here on */
+            order[live++].row.fix = n; /* from here on the number of the row itself */
         }
     if (status == STATUS_OK) qsort(order, (size_t)live, sizeof *order, by_site_then_height);
     for (int n = 0, end; n < live; n = end) {
@@ -324,9 +324,9 @@ static double meet_row(WorkLevel *level, const FixRow *row, double share)
     return off_m;
 }
 
-/* Kaczmarz's projections, row after row. The smooth field is already within centimetres, so little moves; rows
- * that cannot all be fitted share the error, because the last sweeps take ever smaller steps. Returns the worst
- * that is left. */
+/* Fits rows one after another by Kaczmarz's projections. The smooth field is already within centimetres, so little
+ * moves. Rows that cannot all be fitted share the error, since the last sweeps take ever smaller steps. Returns the
+ * largest error that is left. */
 static double sweep_rows(WorkLevel *level, int index, const FixSet *fixes)
 {
     enum { sweeps = 160, full_sweeps = 110 };
@@ -345,8 +345,8 @@ static double sweep_rows(WorkLevel *level, int index, const FixSet *fixes)
     }
 }
 
-/* A kerb, a step between two roads at one place: the posts cannot fit all fixes. The worst are dropped, a few at a
- * time, until the rest is fitted. */
+/* Fits the posts. Where they cannot fit all fixes, as at a kerb or at two roads of different height, the worst fixes
+ * are dropped, a few at a time, until the rest is fitted. */
 void fit_posts(WorkLevel *level, int index, FixSet *fixes)
 {
     enum { rounds = 15, gentle_rounds = 12 };

@@ -16,7 +16,7 @@ double invented_taper_m(const LandscapeConfig *config) { return taper_of_spacing
 /* ---- plan --------------------------------------------------------------------------------- */
 
 typedef struct Window {
-    int i0, i1, j0, j1; /* inclusive, in posts of its level */
+    int i0, i1, j0, j1; /* range of posts of its level, inclusive */
 } Window;
 
 typedef struct Work {
@@ -36,14 +36,14 @@ typedef struct Work {
 
 static int round_out(double posts) { return (int)(posts < 0 ? floor(posts / ratio) : ceil(posts / ratio)) * ratio; }
 
-/* Level 0 is centred on the origin; it grows to hold the fixes while that stays affordable. */
+/* The window of level 0, which is centred on the origin and grows to hold the fixes while that is affordable. */
 static Window innermost(const LandscapeConfig *config, const FixSet *fixes)
 {
     static const double margin_m = 400, most_posts = 16e6;
     const int           half = round_out(config->half_width_m / config->spacing_m);
     const Window        plain = {-half, half, -half, half};
 
-    /* all fixes; else those within twice the half width */
+    /* tries to hold all fixes, then only those within twice the half width */
     for (int attempt = 0; attempt < 2; attempt++) {
         const double reach_m = attempt ? 2 * config->half_width_m : INFINITY;
         Window       w = plain;
@@ -71,7 +71,7 @@ static Window innermost(const LandscapeConfig *config, const FixSet *fixes)
 static void plan_levels(Work *work, const LandscapeConfig *config)
 {
     enum { least_ring = 2 * ratio };
-    static const double growth = 4.5; /* of half widths, at most, while there are levels to spare */
+    static const double growth = 4.5; /* largest ratio of neighbouring half widths, while there are levels to spare */
 
     const double widths = config->horizon_m / config->half_width_m;
     int          levels = 1;
@@ -110,8 +110,8 @@ static int by_value(const void *pa, const void *pb)
     return (a > b) - (a < b);
 }
 
-/* Height of the terrain away from fixes: the median of the fixes; without any the sea's, else that of the
- * ellipsoid or as much lower as the lines need. */
+/* Chooses the height of the terrain away from fixes: the median of the fixes. Without fixes it is the sea's height or
+ * else the ellipsoid's, or as much lower as the lines require. */
 static Status choose_base(Work *work, const LocalFrame *frame)
 {
     double *h = malloc(((size_t)work->fixes.count + 1) * sizeof *h);
@@ -147,7 +147,7 @@ static Status choose_base(Work *work, const LocalFrame *frame)
     return STATUS_OK;
 }
 
-/* Fixes as aims, then the lines' ceilings; heights from the base. */
+/* Collects fixes as aims, then the lines' ceilings, with heights relative to the base. */
 static Status gather_aims(Work *work, const LandscapeConfig *config, const LocalFrame *frame)
 {
     double top_m = work->base_h_m + 8 * config->relief_m + 50;
@@ -180,7 +180,8 @@ static Status gather_aims(Work *work, const LandscapeConfig *config, const Local
 static double octave_rms_m(double spacing_m, double relief_m)
 {
     static const double knee_m = 512, largest_m = 8192;
-    /* makes the squares of all octaves sum to 1: five alike from the knee up, a third of one below it */
+    /* makes the squares of all octaves sum to 1: above the knee five octaves are equal, below it each adds a third of
+     * the one before */
     static const double normal = 0.433;
     if (spacing_m > largest_m) return 0;
     return relief_m * normal * fmin(1, spacing_m / knee_m);
@@ -217,7 +218,8 @@ static Status read_level(Work *work, int k, const Field *spline)
     return STATUS_OK;
 }
 
-/* Points of the spline that a level needs: a few more than its posts, in half the spacing per octave. */
+/* The window of the spline that a level needs: a few points more than the level has posts, at half the spacing for each
+ * octave. */
 static Window window_at(const Work *work, int k, double spacing_m, int margin)
 {
     const double scale = work->spacing_m[k] / spacing_m;
@@ -272,8 +274,8 @@ static bool config_ok(const LandscapeConfig *config)
     return config->horizon_m >= config->half_width_m && config->horizon_m <= 1e6;
 }
 
-/* A fix that only shares a row is fitted through its neighbour; with a residual above 5 cm (at 4 m posts) it is
- * inconsistent. */
+/* Counts fixes that are not fitted. A fix that shares another's row is fitted through that; with a residual above 5 cm
+ * (at 4 m posts) it is inconsistent. */
 static void count_fixes(InventedTerrain *terrain, const Work *work, const GroundFix *fix, int fix_count)
 {
     for (int n = 0; n < fix_count; n++) {
@@ -289,7 +291,7 @@ static void count_fixes(InventedTerrain *terrain, const Work *work, const Ground
     }
 }
 
-/* Entities on the water give no height of the land. */
+/* Drops fixes on the water, which do not give the land's height. */
 static void drop_fixes_at_sea(Work *work)
 {
     for (int n = 0; work->coast.sea_count && n < work->fixes.count; n++) {

@@ -22,7 +22,7 @@ static inline uint64_t invented_hash(uint64_t seed, int64_t a, int64_t b)
     return h ^ (h >> 31);
 }
 
-/* Top 53 bits as [0, 1). */
+/* A number in [0, 1) from the upper 53 bits. */
 static inline double invented_unit(uint64_t h) { return (double)(h >> 11) * 0x1p-53; }
 
 /* ---- evidence --------------------------------------------------------------------------------- */
@@ -34,7 +34,7 @@ typedef struct GroundFix {
     int    voter; /* >= 0 */
 } GroundFix;
 
-/* A place of which only this is known: sea, or dry land. */
+/* A place of which only one thing is known: that it is sea, or that it is dry land. */
 typedef struct CoastPlace {
     double x_m, y_m;
     bool   sea;
@@ -52,8 +52,8 @@ typedef struct ClearLine {
 typedef struct LandscapeConfig {
     uint64_t seed;
     double   relief_m;     /* rms height of the hills far from any fix, 0 .. 200 */
-    double   spacing_m;    /* of level 0, 1 .. 30 */
-    double   half_width_m; /* of level 0 */
+    double   spacing_m;    /* spacing of level 0, 1 .. 30 */
+    double   half_width_m; /* half width of level 0 */
     double   horizon_m;    /* half width of the outermost level */
 } LandscapeConfig;
 
@@ -63,12 +63,12 @@ typedef struct LandscapeEvidence {
     const GroundFix  *fix;
     const ClearLine  *line;
     const CoastPlace *place;
-    double            sea_h_m; /* of the water's surface, above the ellipsoid */
+    double            sea_h_m; /* height of the water's surface above the ellipsoid */
 } LandscapeEvidence;
 
 /* Radius about an end at a fix within which a line sets no limit. */
 double invented_taper_m(const LandscapeConfig *config);
-/* Which fixes are of a source entity rejected by the consensus: [fix_count] bytes, 1: rejected. Source entities are
+/* Finds the fixes of source entities that the consensus rejects: [fix_count] bytes, 1: rejected. Source entities are
  * numbered from 1, up to the number of fixes. See votes.c. */
 Status invented_inconsistent(uint8_t *outvoted, const GroundFix *fix, int fix_count);
 /* Height of positions above the ground of the source entities near them (the plane of best consensus), and the distance
@@ -80,10 +80,10 @@ Status invented_consensus_height(double *above_m, double *nearest_m, const doubl
 
 enum { coast_grids = 6, coast_cells = 256 };
 
-/* Thinned places, and for quick answers nested grids about the origin that give for each cell whether it is all sea,
- * all land away from the beach, or must be evaluated position by position. */
+/* The extent of the sea: thinned places and, for quick answers, nested grids about the origin. A grid gives for each
+ * cell whether it is all sea, all land away from the beach, or must be evaluated place by place. */
 typedef struct Coast {
-    int sea_count, land_count; /* sea_count 0: no sea */
+    int sea_count, land_count; /* sea_count 0: there is no sea */
     double (*sea)[2], (*land)[2];
     double   h_m;
     uint64_t seed;
@@ -98,7 +98,7 @@ CoastKind coast_at(const Coast *coast, double x_m, double y_m); /* never COAST_U
 
 typedef struct Ways Ways;
 
-/* What covers the ground. */
+/* The parts that determine what covers the ground. */
 typedef struct InventedGround {
     uint64_t seed;
     Coast    coast;
@@ -108,11 +108,11 @@ typedef struct InventedGround {
 typedef struct InventedTerrain {
     Elevation      elevation;
     InventedGround ground;
-    double         fit_worst_m; /* as in Landscape */
+    double         fit_worst_m; /* both as in Landscape (terrain/ground/landscape.h) */
     int            fixes_dropped;
 } InventedTerrain;
 
-/* STATUS_BAD_VALUE: a figure of the configuration out of its range. */
+/* STATUS_BAD_VALUE: a figure of the configuration is out of its range. */
 Status invented_create(InventedTerrain *out, const LandscapeConfig *config, const LocalFrame *frame,
                        const LandscapeEvidence *evidence);
 void   invented_ground_free(InventedGround *ground); /* accepts zeroes */
@@ -135,8 +135,8 @@ typedef enum WayKind { WAY_NONE, WAY_ROAD, WAY_LANE, WAY_TRACK, WAY_STREAM, WAY_
 typedef struct WayPlace {
     WayKind kind;
     int     way;          /* its number */
-    double  across_m;     /* signed distance of its middle, positive on the left */
-    double  along_m;      /* from its start */
+    double  across_m;     /* signed distance from its middle line, positive to the left */
+    double  along_m;      /* distance along it from its start */
     double  half_m;       /* half its width there */
     double  direction[2]; /* unit vector along it, east and north */
 } WayPlace;
@@ -146,32 +146,33 @@ typedef struct HousePlot {
     double x_m, y_m;     /* middle of the plot */
     double direction[2]; /* unit vector along the lane */
     double half_along_m, half_across_m;
-    double house[2];      /* middle of the house from the middle of the plot: along, and towards the lane */
-    double house_half[2]; /* half the house's sides: along, and across */
+    double house[2];      /* middle of the house relative to that of the plot: along the lane, and towards it */
+    double house_half[2]; /* half the house's sides, along the lane and across it */
 } HousePlot;
 
-/* NULL is no ways. The nearest about a place; false: none within some metres of its edge. */
+/* The nearest way about a place. Returns false when no way has its edge within some metres. NULL: there are no ways. */
 bool ways_at(WayPlace *out, const Ways *ways, double x_m, double y_m);
-/* Vertices of a way in order, `most` of them at most; returns their number. */
+/* The vertices of a way in order, up to `most` of them; returns their number. */
 int              ways_vertices(double (*out)[2], WayKind *kind, const Ways *ways, int way, int most);
 const HousePlot *ways_plots(const Ways *ways, int *count);
 bool             ways_village(double place_m[2], const Ways *ways, int index);
 double           ways_wetness(const Ways *ways, double x_m, double y_m);
-/* Whether anything of them reaches into its cell of the index. */
+/* Whether anything of the ways reaches into the index cell of a place. */
 bool ways_touch(const Ways *ways, double x_m, double y_m);
 
 /* ---- hedgerows -------------------------------------------------------------------------------- */
 
-/* Of a whole hedgerow: cut, grown out to shrubs, with trees in it. */
+/* Kind of a whole hedgerow: cut, grown out to shrubs, or with trees in it. */
 typedef enum HedgeHeight { HEDGE_CUT, HEDGE_SHRUBS, HEDGE_TREES } HedgeHeight;
 
 typedef struct HedgePlace {
     double      x_m, y_m;
-    uint64_t    hedge; /* the same number along one hedgerow */
+    uint64_t    hedge; /* a number that is the same along one hedgerow */
     HedgeHeight height;
 } HedgePlace;
 
-/* The place on a hedgerow's middle in square (i, j), of a grid of spacing_m; false: none passes through it. */
+/* The place on the middle of a hedgerow in square (i, j) of a grid of spacing_m. Returns false when no hedgerow passes
+ * through the square. */
 bool hedge_in_square(HedgePlace *out, uint64_t seed, int64_t i, int64_t j, double spacing_m);
 
 #endif

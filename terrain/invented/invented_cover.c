@@ -22,7 +22,7 @@ unsigned invented_grounded(const Elevation *elevation, const double x_m[8], cons
 
 static const double arm_m = 10;
 
-/* Slope over some 20 m, so that what grows does not follow the edges of single triangles. 0 at the very rim. */
+/* Slope over some 20 m, so that the cover does not follow the edges of single triangles; 0 at the very rim. */
 static double slope_about(const Elevation *elevation, double x_m, double y_m)
 {
     const double dx =
@@ -33,7 +33,7 @@ static double slope_about(const Elevation *elevation, double x_m, double y_m)
     return isfinite(slope) ? slope : 0;
 }
 
-/* Places in a level's own cells; far off and NaN: outside. */
+/* Converts coordinates to cells of a level; places outside of it, and NaN, become cells far off. */
 static Lattice level_cells(const double x_m[8], double x0_m, double per_m)
 {
     const F64x4 x0 = f64x4_set(x0_m), most = f64x4_set(1 << 20), least = f64x4_set(-(1 << 20));
@@ -45,14 +45,14 @@ static Lattice level_cells(const double x_m[8], double x0_m, double per_m)
     return lattice_of(cells, 1);
 }
 
-/* Moved by some of a cell. */
+/* Coordinates moved by part of a cell. */
 static Lattice moved(Lattice at, F32x8 by)
 {
     const F32x8 share = at.share + by, whole = f32x8_floor(share);
     return (Lattice){i32x8_add(at.cell, i32x8_truncate(whole)), share - whole};
 }
 
-/* Tiles of lanes within the level's cells. */
+/* The tile of each lane; its cell is within the level. */
 static I32x8 tiles_of(const ElevationLevel *level, Lattice x, Lattice y)
 {
     enum { bits = 6 };
@@ -61,14 +61,14 @@ static I32x8 tiles_of(const ElevationLevel *level, Lattice x, Lattice y)
                      i32x8_shift_right(x.cell, bits));
 }
 
-/* One of the two values of each lane's tile. */
+/* For each lane, one of the two values of its tile. */
 static I32x8 of_tiles(const int32_t *value, I32x8 tile, I32x8 mask)
 {
     return _mm256_mask_i32gather_epi32(i32x8_set(0), value, tile, mask, sizeof(ElevationTile));
 }
 
-/* Heights above `about` in the level's own steps, of lanes within its cells. Two posts of a row take one load;
- * differences are formed of whole steps. */
+/* Heights relative to `about` in the level's own steps, for lanes within its cells. Two posts of a row take one load;
+ * differences are formed between whole steps. */
 static inline F32x8 level_heights(const ElevationLevel *level, Lattice x, Lattice y, F32x8 lanes, I32x8 about)
 {
     const I32x8 post = i32x8_set(0xffff), none = i32x8_set(0), mask = _mm256_castps_si256(lanes);
@@ -94,13 +94,13 @@ static inline F32x8 level_heights(const ElevationLevel *level, Lattice x, Lattic
     return f32x8_of_ints(sw) + f32x8_select(f32x8_less(x.share, y.share), north_west, south_east);
 }
 
-/* Slope about eight places, of those whose arms end on one level together; the others' are evaluated one by one. Within
+/* Slopes about eight places. Those whose arms end on one level are computed together, the others one by one. Within
  * 1e-5 of slope_about. */
 static F32x8 slopes_about(const Elevation *elevation, const double x_m[8], const double y_m[8], unsigned lanes)
 {
     const I32x8 outside = i32x8_set(-1);
     F32x8       slope = f32x8_set(0);
-    unsigned    left = lanes, alone = 0; /* not yet found; on the seam of two levels */
+    unsigned    left = lanes, alone = 0; /* left: lanes not yet found; alone: lanes on the seam of two levels */
     for (int n = 0; n < elevation->level_count && left; n++) {
         const ElevationLevel *level = &elevation->level[n];
         const double          per_m = 1 / level->spacing_m;
@@ -109,7 +109,7 @@ static F32x8 slopes_about(const Elevation *elevation, const double x_m[8], const
         const Lattice         west = moved(x, back), east = moved(x, arm);
         const Lattice         south = moved(y, back), north = moved(y, arm);
         const I32x8           nx = i32x8_set(level->nx), ny = i32x8_set(level->ny), one = i32x8_set(1);
-        /* cells 0 .. n - 2; about them and the outline */
+        /* a place in cells 0 .. n - 2 has all its arms on the level */
         F32x8 in = f32x8_and(i32x8_greater(west.cell, outside), i32x8_greater(south.cell, outside));
         in = f32x8_and(in, i32x8_greater(i32x8_sub(nx, one), east.cell));
         in = f32x8_and(in, i32x8_greater(i32x8_sub(ny, one), north.cell));
@@ -142,7 +142,8 @@ static F32x8 slopes_about(const Elevation *elevation, const double x_m[8], const
     return slope;
 }
 
-/* Beyond some tens of kilometres the tilt of the plane itself would count as a slope; it is not visible there. */
+/* Slopes of the terrain about eight places; see the header. Beyond some tens of kilometres the tilt of the ENU plane
+ * itself would count as a slope, though it is not visible there, so it is taken off. */
 F32x8 invented_slopes(const Elevation *elevation, const double x_m[8], const double y_m[8], unsigned lanes)
 {
     const F32x8 x = f32x8_of_doubles(x_m), y = f32x8_of_doubles(y_m);
@@ -152,7 +153,8 @@ F32x8 invented_slopes(const Elevation *elevation, const double x_m[8], const dou
 
 /* ---- borders that wander ---------------------------------------------------------------------- */
 
-/* -1 .. 1 over wavelengths of some metres down to 0.1 m: only places whose class it can change need it. */
+/* Fine noise, -1 .. 1, by which borders wander, of wavelengths from some metres down to 0.1 m. Only places whose class
+ * it can change need it. */
 static F32x8 wander_eight(uint64_t seed, const double x_m[8], const double y_m[8])
 {
     static const double wave_m[] = {2.7, 1.2, 0.53, 0.24, 0.11}, share[] = {0.42, 0.26, 0.16, 0.10, 0.06};
@@ -166,8 +168,8 @@ static F32x8 wander_eight(uint64_t seed, const double x_m[8], const double y_m[8
 
 static const double track_half_m = 2, hedge_half_m = 1.5, hedge_beyond_m = 3.6, border_wander_m = 0.6;
 
-/* Cover on the border of two fields, at a position near one; SURFACE_NONE: nothing of its own. crop: of the field that
- * the position is in once the border has wandered. */
+/* Class on the border of two fields at a position near it; SURFACE_NONE: that of the field. crop: gets the field of the
+ * position after the border has wandered. */
 static SurfaceClass border_surface(int32_t *crop, PlotCell *cell, uint64_t seed, int site, int other, float x_m,
                                    float y_m, float wander)
 {
@@ -176,7 +178,7 @@ static SurfaceClass border_surface(int32_t *crop, PlotCell *cell, uint64_t seed,
     const double off_m = border_wander_m * (double)wander;
     double       here_m = border.away_m + (border.first ? off_m : -off_m);
     if (here_m < 0) *crop = cell->crop[other], here_m = -here_m;
-    const double edge_m = 0.5 * off_m; /* edges wander less */
+    const double edge_m = 0.5 * off_m; /* edges of tracks and hedges wander less than borders */
     if (border.track && here_m + edge_m < track_half_m) return SURFACE_TRACK;
     if (border.hedge && border.track && here_m > track_half_m && here_m + edge_m < hedge_beyond_m) return SURFACE_SCRUB;
     if (border.hedge && !border.track && here_m + edge_m < hedge_half_m) return SURFACE_SCRUB;
@@ -184,16 +186,16 @@ static SurfaceClass border_surface(int32_t *crop, PlotCell *cell, uint64_t seed,
     return SURFACE_NONE;
 }
 
-/* Lanes within reach of a border to another field than their own; other: site beyond the nearest border. Distances to
+/* Lanes within reach of a border between their field and another. other: site beyond the nearest border. Distances to
  * perpendicular bisectors are compared by their squares, without divisions. */
 static unsigned near_border(I32x8 *other, const PlotCell *cell, F32x8 x, F32x8 y, I32x8 site, F32x8 least)
 {
     const F32x8  own_x = f32x8_gather(cell->x_m, site), own_y = f32x8_gather(cell->y_m, site);
     const I32x8  own = plot_look(cell->field, site);
     const double reach_m = 2 * (hedge_beyond_m + border_wander_m);
-    F32x8        best = f32x8_set(reach_m * reach_m * 1.01), best_apart = f32x8_set(1); /* margin for rounding */
-    F32x8        near = f32x8_set(0);
-    I32x8        found = i32x8_set(0);
+    F32x8 best = f32x8_set(reach_m * reach_m * 1.01), best_apart = f32x8_set(1); /* 1.01: a margin for rounding */
+    F32x8 near = f32x8_set(0);
+    I32x8 found = i32x8_set(0);
     for (int n = 0; n < plot_sites; n++) {
         const F32x8 sx = f32x8_set((double)cell->x_m[n]), sy = f32x8_set((double)cell->y_m[n]);
         const F32x8 dx = x - sx, dy = y - sy, ax = sx - own_x, ay = sy - own_y;
@@ -223,11 +225,11 @@ void invented_fields(SlowFields *out, const InventedGround *ground, const double
 void invented_surfaces(int32_t surface[8], const InventedGround *ground, const double x_m[8], const double y_m[8],
                        const SlowFields *slow, unsigned lanes)
 {
-    static const double wild_wander = 0.02; /* some metres of the patches' borders */
+    static const double wild_wander = 0.02; /* moves the borders of wild patches by some metres */
     const uint64_t      seed = ground->seed;
     const F32x8         zero = f32x8_set(0), step = f32x8_set(wild_wander);
-    /* wild patches, wider where it is steep; rock shows through in their hearts and on worn crests, scrub and wet
-     * grass grow in hollows */
+    /* wild patches are wider where it is steep; rock shows in their middles and on worn crests; scrub and wet grass
+     * grow in hollows */
     const F32x8 middle = slow->middle, patch = slow->patch, wet = slow->wet, slope = slow->slope;
     F32x8       wild = f32x8_fma(f32x8_set(0.5), middle, slow->large);
     wild = f32x8_fma(f32x8_set(0.14), patch, wild);
@@ -264,7 +266,7 @@ void invented_surfaces(int32_t surface[8], const InventedGround *ground, const d
         if (touched) i32x8_store(cell_of, touches);
     }
 
-    /* the finest wander, where it matters */
+    /* the finest noise is evaluated only for lanes near a border */
     F32x8 close = f32x8_less(f32x8_abs(grown), step);
     close = f32x8_or(close, f32x8_less(f32x8_abs(grown - dry_from), step));
     close = f32x8_or(close, f32x8_less(f32x8_abs(stony), step));
@@ -315,7 +317,8 @@ void invented_surfaces(int32_t surface[8], const InventedGround *ground, const d
 
 /* ---- a few metres --------------------------------------------------------------------------- */
 
-/* Longest side and shorter side of the places: the linear field of 17 m is within 0.04 of the true one there. */
+/* longest and shorter side of the area of the places: within it the linear field of 17 m is within 0.04 of the true one
+ * */
 static const double slow_long_m = 12, slow_short_m = 4;
 
 static void span_of(double *low, double *high, int count, const double *v_m)

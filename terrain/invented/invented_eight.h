@@ -8,7 +8,7 @@
 
 /* ---- noise -------------------------------------------------------------------------------- */
 
-/* Eight coordinates in cells of a lattice: whole ones, and how far into them, 0 .. 1. */
+/* Eight coordinates in a lattice: the whole cell of each, and the position in the cell, 0 .. 1. */
 typedef struct Lattice {
     I32x8 cell;
     F32x8 share;
@@ -23,8 +23,8 @@ static inline Lattice lattice_of(const double x_m[8], double cells_per_m)
                      _mm256_set_m128(_mm256_cvtpd_ps(high - high_cell), _mm256_cvtpd_ps(low - low_cell))};
 }
 
-/* -1 .. 1 of a mixed word. The mixing is Wellons' lowbias32 ("Prospecting for Hash Functions", 2018), without the last
- * step, which the upper bits do not feel. */
+/* A number in -1 .. 1 from a mixed word. The mixing is Wellons' lowbias32 ("Prospecting for Hash Functions", 2018),
+ * without the last step, which the upper bits do not depend on. */
 static inline F32x8 noise_of_word(I32x8 h)
 {
     h = i32x8_mul(i32x8_xor(h, i32x8_shift_right(h, 16)), i32x8_set(0x7feb352d));
@@ -32,7 +32,7 @@ static inline F32x8 noise_of_word(I32x8 h)
     return f32x8_of_ints(h) * f32x8_set(0x1p-31);
 }
 
-/* Second noise of the same words, by another mixing. */
+/* A second noise value from the same words, by another mixing. */
 static inline F32x8 second_of_word(I32x8 h)
 {
     h = i32x8_mul(i32x8_xor(h, i32x8_shift_right(h, 15)), i32x8_set((int)0xd168aaadu));
@@ -40,11 +40,11 @@ static inline F32x8 second_of_word(I32x8 h)
     return f32x8_of_ints(h) * f32x8_set(0x1p-31);
 }
 
-/* The lattice cells of eight places in one wavelength, and their weights. */
+/* The lattice cells of eight places for one wavelength, and their weights. */
 typedef struct NoiseCells {
-    I32x8 sw; /* word of the south-western corner; the others are added */
+    I32x8 sw; /* word of the south-western corner; those of the other corners are sums with it */
     F32x8 u, v;
-    bool  same; /* one cell holds the eight: its four corners are mixed at once */
+    bool  same; /* all eight places are in one cell, so its four corners are mixed at once */
 } NoiseCells;
 
 /* odd multipliers whose lattice of equal words has no vector shorter than 35 000 cells */
@@ -75,7 +75,7 @@ static inline F32x8 noise_between(const NoiseCells *c, F32x8 sw, F32x8 se, F32x8
     return f32x8_lerp(f32x8_lerp(sw, se, c->u), f32x8_lerp(nw, ne, c->u), c->v);
 }
 
-/* The same with the four corners' values in the lanes of one. */
+/* As noise_between, where the four corners' values are in the lanes of one vector. */
 static inline F32x8 noise_between_same(const NoiseCells *c, F32x8 corner)
 {
     return noise_between(c, _mm256_permutevar8x32_ps(corner, i32x8_set(0)),
@@ -114,30 +114,31 @@ static inline F32x8 noise_pair_eight(F32x8 *second, uint64_t seed, double wavele
 static const double plot_m = 160;
 enum { plot_sites = 9, plot_cells_kept = 128 };
 
-/* The border between two sites, found when it is first asked for. */
+/* The border between two sites; it is computed when it is first needed. */
 typedef struct PlotEdge {
-    bool   known, first, track, hedge; /* as PlotBorder */
-    double apart_m;                    /* the sites */
+    bool   known, first, track, hedge; /* first, track, hedge: as in PlotBorder */
+    double apart_m;                    /* distance between the sites */
 } PlotEdge;
 
-/* One cell of the grid of fields, and the nine sites a place in it can belong to. From the cell's south-west corner. */
+/* One cell of the grid of fields, and the nine sites that a place in it can belong to. Positions are relative to the
+ * cell's south-west corner. */
 typedef struct PlotCell {
     int64_t  i, j;
     uint64_t seed;
     bool     known;
     float    x_m[plot_sites], y_m[plot_sites];
-    uint64_t id[plot_sites];                             /* of the field; several sites may share one */
-    int32_t  field[plot_sites];                          /* the same within this cell: the first site of the field */
-    int32_t  crop[plot_sites];                           /* SurfaceClass */
-    float    across_x[plot_sites], across_y[plot_sites]; /* unit vector across its rows */
+    uint64_t id[plot_sites];    /* number of the site's field; several sites may share one */
+    int32_t  field[plot_sites]; /* number of the field within this cell: the first of its sites */
+    int32_t  crop[plot_sites];  /* SurfaceClass */
+    float    across_x[plot_sites], across_y[plot_sites]; /* unit vector across the rows of its field */
     PlotEdge edge[plot_sites][plot_sites];
 } PlotCell;
 
 /* The border between two sites of different fields, at a place in the first of them. */
 typedef struct PlotBorder {
-    double away_m;       /* from the place */
+    double away_m;       /* distance of the border from the place */
     bool   first;        /* the place's field comes first of the two */
-    bool   track, hedge; /* along it */
+    bool   track, hedge; /* whether a track, and a hedge, runs along the border */
 } PlotBorder;
 
 PlotBorder plot_border(PlotCell *cell, uint64_t seed, int site, int other, float x_m, float y_m);
@@ -155,7 +156,8 @@ static inline void plot_turn(double *cosine, double *sine, uint64_t seed)
     *cosine = of[h >> 61][swap], *sine = of[h >> 61][1 - swap];
 }
 
-/* The fields are laid out on a plane that is turned, and bent over hundreds of metres: by how much at eight places. */
+/* How far eight places are moved by the bend of the plane on which fields are laid out: it is turned, and bent over
+ * hundreds of metres. */
 static inline void plot_bend_by(F32x8 *by_x, F32x8 *by_y, uint64_t seed, const double x_m[8], const double y_m[8])
 {
     static const double wave_m[] = {2300, 330}, away_m[] = {260, 28};
@@ -194,7 +196,7 @@ static inline void plot_bend(double bent_x[8], double bent_y[8], uint64_t seed, 
 /* Valid until the thread's next call. */
 PlotCell *plot_cell_at(uint64_t seed, int64_t i, int64_t j);
 
-/* Of the places in `left`, those in the same cell as the first of them. */
+/* Those of the lanes in `left` whose place is in the same cell as that of the first of them. */
 static inline unsigned plot_cell_lanes(const double i[8], const double j[8], unsigned left)
 {
     const int   first = __builtin_ctz(left);
@@ -208,7 +210,7 @@ static inline unsigned plot_cell_lanes(const double i[8], const double j[8], uns
     return same & left;
 }
 
-/* Whole cells of plots that eight places lie in, and the places from their cells' corners. */
+/* The whole cells of fields that eight places lie in, and the positions relative to the cells' corners. */
 static inline void plot_cells_of(double i[8], double j[8], F32x8 *x, F32x8 *y, const double x_m[8], const double y_m[8])
 {
     float in_x[8], in_y[8];
@@ -219,7 +221,8 @@ static inline void plot_cells_of(double i[8], double j[8], F32x8 *x, F32x8 *y, c
     *x = f32x8_load(in_x), *y = f32x8_load(in_y);
 }
 
-/* The nearest site of a cell to each of eight places from its corner; of equals the first. */
+/* The site of a cell nearest to each of eight places, which are relative to the cell's corner; of sites at equal
+ * distance the first. */
 static inline F32x8 plot_nearest(I32x8 *site, const PlotCell *cell, F32x8 x_m, F32x8 y_m)
 {
     F32x8 least = f32x8_set(INFINITY);
@@ -238,35 +241,36 @@ static inline I32x8 plot_look(const int32_t value[plot_sites], I32x8 site) { ret
 
 /* ---- classes ------------------------------------------------------------------------------ */
 
-/* What the synthetic cover follows, of wavelengths from 17 m on, at eight places. */
+/* The slowly varying fields that the synthetic cover follows, of wavelengths from 17 m on, at eight places. */
 typedef struct SlowFields {
     F32x8 large, middle, patch; /* noise of 310, 83 and 17 m */
     F32x8 slope, wet;
     F32x8 bend_x, bend_y; /* plot_bend_by */
 } SlowFields;
 
-/* Nodes about places of a few metres, two by four: between them the slow fields are linear. */
+/* Two by four nodes about places a few metres apart: between the nodes the slow fields are linear. */
 typedef struct SlowNodes {
     bool       known;
-    bool       east;             /* four of them from west to east; else from south to north */
-    double     x0_m, y0_m;       /* the south-west one */
+    bool       east;             /* the four nodes lie from west to east; otherwise from south to north */
+    double     x0_m, y0_m;       /* place of the south-west node */
     double     per_x_m, per_y_m; /* nodes a metre */
-    SlowFields field;            /* lane: along the longer side, then across */
+    SlowFields field;            /* lanes: nodes along the longer side, then across */
 } SlowNodes;
 
-/* Lanes where there is ground: the outermost level encloses the others. NaN: none. */
+/* Lanes of places where there is ground, that is, inside the outermost level, which encloses the others. NaN: no
+ * ground. */
 unsigned invented_grounded(const Elevation *elevation, const double x_m[8], const double y_m[8]);
 /* Slope of the terrain about the places, without the tilt of the plane far from its origin. */
 F32x8 invented_slopes(const Elevation *elevation, const double x_m[8], const double y_m[8], unsigned lanes);
 
 void invented_fields(SlowFields *out, const InventedGround *ground, const double x_m[8], const double y_m[8],
                      F32x8 slope);
-/* Nodes about these places; not known where they lie too far apart. */
+/* Computes nodes about these places; they are marked unknown where the places lie too far apart. */
 void invented_nodes(SlowNodes *out, const InventedGround *ground, const Elevation *elevation, int count,
                     const double *x_m, const double *y_m);
-/* The fields between known nodes. */
+/* The slow fields at places between known nodes. */
 void invented_between(SlowFields *out, const SlowNodes *nodes, const double x_m[8], const double y_m[8]);
-/* Surface classes of these lanes. */
+/* Surface classes at the places of these lanes. */
 void invented_surfaces(int32_t surface[8], const InventedGround *ground, const double x_m[8], const double y_m[8],
                        const SlowFields *slow, unsigned lanes);
 

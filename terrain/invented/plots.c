@@ -16,7 +16,7 @@ static uint64_t field_of_site(uint64_t seed, int64_t i, int64_t j)
 static SurfaceClass crop_of_field(uint64_t id, bool arable)
 {
     static const struct {
-        double       arable, pasture; /* up to this share */
+        double       arable, pasture; /* this kind is drawn where a uniform number is below this share */
         SurfaceClass surface;
     } share[] = {
         {0.38, 0.10, SURFACE_CROP},  {0.58, 0.15, SURFACE_PLOUGHED},  {0.70, 0.20, SURFACE_BARE_SOIL},
@@ -31,7 +31,7 @@ static SurfaceClass crop_of_field(uint64_t id, bool arable)
 static void find_cell(PlotCell *cell, uint64_t seed, int64_t ci, int64_t cj)
 {
     static const double jitter = 0.5;
-    double              whole_x[16] = {0}, whole_y[16] = {0}; /* a place that belongs to the field as a whole */
+    double              whole_x[16] = {0}, whole_y[16] = {0}; /* a place that stands for the field as a whole */
     *cell = (PlotCell){.i = ci, .j = cj, .seed = seed, .known = true};
     for (int n = 0; n < plot_sites; n++) {
         const int64_t  di = n % 3 - 1, dj = n / 3 - 1, i = ci + di, j = cj + dj;
@@ -55,8 +55,8 @@ static void find_cell(PlotCell *cell, uint64_t seed, int64_t ci, int64_t cj)
     for (int n = 0; n < plot_sites; n++) cell->crop[n] = (int32_t)crop_of_field(cell->id[n], arable[n] > -0.15f);
 }
 
-/* Cells of earlier look-ups: what a cell holds is of its seed and place alone, so that results do not depend on which
- * are kept. */
+/* The cell comes from earlier look-ups where it is kept. A cell's content depends on its seed and place alone, so
+ * results do not depend on which cells are kept. */
 PlotCell *plot_cell_at(uint64_t seed, int64_t i, int64_t j)
 {
     static _Thread_local PlotCell kept[plot_cells_kept];
@@ -65,13 +65,13 @@ PlotCell *plot_cell_at(uint64_t seed, int64_t i, int64_t j)
     return cell;
 }
 
-/* Blocks of four by four sites: tracks run about most of them, and so join up. */
+/* The block of four by four sites that a site is in. Tracks run along the borders of most blocks, and so join up. */
 static uint64_t block_of(const PlotCell *cell, uint64_t seed, int site)
 {
     return invented_hash(seed + 8, (cell->i + site % 3 - 1) >> 2, (cell->j + site / 3 - 1) >> 2);
 }
 
-/* The line between two sites: what all its places share. */
+/* The properties of the border between two sites that all its places share. */
 static PlotEdge find_edge(const PlotCell *cell, uint64_t seed, int site, int other)
 {
     const double   dx = (double)(cell->x_m[other] - cell->x_m[site]), dy = (double)(cell->y_m[other] - cell->y_m[site]);
@@ -86,7 +86,7 @@ static PlotEdge find_edge(const PlotCell *cell, uint64_t seed, int site, int oth
 
 PlotBorder plot_border(PlotCell *cell, uint64_t seed, int site, int other, float x_m, float y_m)
 {
-    /* distance to the perpendicular bisector */
+    /* distance to the perpendicular bisector of the two sites */
     const double own_x = (double)(x_m - cell->x_m[site]), own_y = (double)(y_m - cell->y_m[site]);
     const double off_x = (double)(x_m - cell->x_m[other]), off_y = (double)(y_m - cell->y_m[other]);
     const double more = off_x * off_x + off_y * off_y - (own_x * own_x + own_y * own_y);
@@ -136,11 +136,11 @@ static HedgeHeight height_of(uint64_t hedge)
     return u < 0.45 ? HEDGE_CUT : u < 0.8 ? HEDGE_SHRUBS : HEDGE_TREES;
 }
 
-/* Beside a track: on the square's side of it. */
+/* The place is beside a track, where there is one, on the square's side of it. */
 bool hedge_in_square(HedgePlace *out, uint64_t seed, int64_t i, int64_t j, double spacing_m)
 {
     double x = ((double)i + 0.5) * spacing_m, y = ((double)j + 0.5) * spacing_m;
-    for (int step = 0; step < 4; step++) { /* the plane is bent: towards it, again */
+    for (int step = 0; step < 4; step++) { /* the plane is bent, so the step towards the border is repeated */
         PlotBorder border;
         double     away[2];
         if (!plot_border_about(&border, away, &out->hedge, seed, x, y) || !border.hedge) return false;

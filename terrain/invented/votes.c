@@ -15,7 +15,7 @@
 
 enum { most_neighbours = 6, most_kept = 64, most_judged = 8, most_a_cell = 128 };
 static const double reach_m = 300;      /* farther apart, entities do not constrain each other */
-static const double apart_m = 8;        /* between the positions kept of one entity */
+static const double apart_m = 8;        /* least distance between the positions kept of one entity */
 static const double alike_m = 40;       /* neighbours nearer than this weigh about the same: the closest may be wrong */
 static const double steepest = 0.7;     /* tan 35 degrees */
 static const double trust_m = 1.5;      /* tolerance for two senders' terrain, suspension, model origin */
@@ -30,9 +30,9 @@ typedef struct ConsensusPoint {
 /* The positions of all source entities, sorted by entity. */
 typedef struct Assembly {
     int             voters, places;
-    int            *first; /* [voters + 2] of place; voter 0 has none */
+    int            *first; /* [voters + 2] first of each entity in `place`; voter 0 has none */
     ConsensusPoint *place;
-    uint8_t        *out; /* [voters + 1] rejected */
+    uint8_t        *out; /* [voters + 1] 1: the entity was rejected */
     NearGrid        near;
 } Assembly;
 
@@ -60,11 +60,11 @@ static Status assemble(Assembly *a, const GroundFix *fix, int fix_count)
     a->place = calloc((size_t)fix_count + most_kept + 1, sizeof *a->place);
     a->out = calloc((size_t)a->voters + 1, 1);
     Status status = number && start && a->first && a->place && a->out ? STATUS_OK : STATUS_NO_MEMORY;
-    if (status == STATUS_OK) { /* fix numbers by source entity, in their order */
+    if (status == STATUS_OK) { /* sorts fix numbers by source entity, keeping their order */
         for (int n = 0; n < fix_count; n++) start[fix[n].voter + 1]++;
         for (int v = 0; v <= a->voters; v++) start[v + 1] += start[v];
         for (int n = fix_count - 1; n >= 0; n--) number[--start[fix[n].voter + 1]] = n;
-        for (int v = 1; v <= a->voters; v++) { /* each start now is one place to the right */
+        for (int v = 1; v <= a->voters; v++) { /* each start is one place to the right now */
             const int first = start[v + 1], count = (v < a->voters ? start[v + 2] : fix_count) - first;
             a->first[v] = a->places;
             double step_m = apart_m;
@@ -91,7 +91,7 @@ static void dismiss(Assembly *a)
 /* ---- neighbours --------------------------------------------------------------------------- */
 
 typedef struct Neighbour {
-    double d[3], away_m, weight; /* from the query position */
+    double d[3], away_m, weight; /* relative to the query position */
     int    voter;
 } Neighbour;
 
@@ -132,8 +132,8 @@ static int find_neighbours(Neighbour out[most_neighbours], Assembly *a, const Co
 /* ---- planes ------------------------------------------------------------------------------- */
 
 typedef struct Plane {
-    double z_m, slope[2]; /* at the query position */
-    double cost;          /* share of the weight that does not support it, and something for its slope */
+    double z_m, slope[2]; /* height and slope at the query position */
+    double cost;          /* share of the weight that does not support the plane, and a penalty for its slope */
     double support_m;     /* distance of its nearest supporter */
 } Plane;
 
@@ -156,13 +156,13 @@ static bool plane_through(Plane *out, const Neighbour *a, const Neighbour *b, co
 {
     double       slope[2];
     const double ux = b->d[0] - a->d[0], uy = b->d[1] - a->d[1], uz = b->d[2] - a->d[2];
-    if (!c) { /* along the line, level across it */
+    if (!c) { /* two positions: sloping along the line through them, level across it */
         const double square = ux * ux + uy * uy;
         if (!(square > 1)) return false;
         slope[0] = uz * ux / square, slope[1] = uz * uy / square;
     } else {
         const double vx = c->d[0] - a->d[0], vy = c->d[1] - a->d[1], vz = c->d[2] - a->d[2], det = ux * vy - uy * vx;
-        /* nearly collinear: errors of a metre would be amplified */
+        /* the three are nearly collinear, so errors of a metre would be amplified */
         if (!(fabs(det) > 0.2 * hypot(ux, uy) * hypot(vx, vy)) || !(fabs(det) > 1)) return false;
         slope[0] = (uz * vy - uy * vz) / det, slope[1] = (ux * vz - uz * vx) / det;
     }
@@ -171,7 +171,7 @@ static bool plane_through(Plane *out, const Neighbour *a, const Neighbour *b, co
     return true;
 }
 
-enum { most_planes = 41 }; /* of six neighbours: level through each, along each pair, through each three */
+enum { most_planes = 41 }; /* planes from six neighbours: level through each, through each pair, through each three */
 
 static int candidates(Plane plane[most_planes], const Neighbour *q, int count)
 {
@@ -187,7 +187,8 @@ static int candidates(Plane plane[most_planes], const Neighbour *q, int count)
     return planes;
 }
 
-/* Deviation of a position from the consensus of its neighbours: above 1 it is an outlier. 0: too few neighbours. */
+/* How far a position deviates from the consensus of its neighbours; above 1 it is an outlier. 0: it has too few
+ * neighbours. */
 static double contradiction(Assembly *a, const ConsensusPoint *from, double *nearest_m)
 {
     static const double benefit = 0.25;
@@ -213,7 +214,8 @@ static int by_value(const void *pa, const void *pb)
     return (a > b) - (a < b);
 }
 
-/* The median deviation of those positions of a source entity where it is about as near to others as it ever is. */
+/* The median deviation of an entity's positions, over those positions where it is about as near to others as it ever
+ * is. */
 static double judge(Assembly *a, int voter)
 {
     double    found[most_judged], nearest_m[most_judged], least_m = INFINITY;
@@ -259,7 +261,7 @@ Status invented_inconsistent(uint8_t *outvoted, const GroundFix *fix, int fix_co
     Assembly a = {.voters = voters_of(fix, fix_count)};
     if (a.voters < 0) return STATUS_BAD_VALUE;
     for (int n = 0; n < fix_count; n++) outvoted[n] = 0;
-    if (a.voters < 3) return STATUS_OK; /* no majority */
+    if (a.voters < 3) return STATUS_OK; /* with fewer there is no majority */
 
     Status   status = assemble(&a, fix, fix_count);
     Suspect *suspect = calloc((size_t)a.voters + 1, sizeof *suspect);

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 
 static const double index_cell_m = 24, coarse_step_m = 64;
-/* reach of a way beyond its own edge: verge, margin, banks */
+/* how far a way reaches beyond its own edge: verge, margin, banks */
 static const double beside_m[WAY_KINDS] = {
     [WAY_ROAD] = 4, [WAY_LANE] = 3, [WAY_TRACK] = 2.5, [WAY_STREAM] = 8, [WAY_GULLY] = 4,
 };
@@ -61,7 +61,7 @@ double ways_height(const Ways *ways, const WaysGround *ground, double x_m, doubl
 
 /* ---- vehicles --------------------------------------------------------------------------------- */
 
-/* One place for each square of 3 m that holds a fix. */
+/* Collects the places to be kept clear: one for each square of 3 m that holds a fix. */
 static Status gather_clear(Ways *ways, const WaysGround *ground)
 {
     static const double grain_m = 3;
@@ -140,7 +140,7 @@ static Box item_box(const Ways *ways, WayItem type, int n)
     return (Box){x - reach, x + reach, y - reach, y + reach};
 }
 
-/* Counts (item NULL) or files one kind of item in the cells that its box touches. */
+/* Files one kind of item in the index cells that its box touches; with item NULL it counts them. */
 static void file_items(Ways *ways, WayItem type, int count, int32_t *fill)
 {
     for (int n = 0; n < count; n++) {
@@ -186,7 +186,7 @@ I32x8 ways_cells(const Ways *ways, const double x_m[8], const double y_m[8])
     for (int axis = 0; axis < 2; axis++)
         for (int k = 0; k < 8; k += 4) {
             const F64x4 g = (f64x4_loadu(from[axis] + k) - f64x4_set(corner_m[axis])) * per_m;
-            f64x4_storeu(at[axis] + k, f64x4_min(f64x4_max(g, least), most)); /* NaN: least */
+            f64x4_storeu(at[axis] + k, f64x4_min(f64x4_max(g, least), most)); /* NaN becomes `least` */
         }
     const Lattice x = lattice_of(at[0], 1), y = lattice_of(at[1], 1);
     const I32x8   nx = i32x8_set(ways->nx), ny = i32x8_set(ways->ny), outside = i32x8_set(-1);
@@ -207,7 +207,7 @@ F32x8 ways_wet(const Ways *ways, const double x_m[8], const double y_m[8])
     const double  corner_m[2] = {ways->x0_m, ways->y0_m}, most[2] = {ways->cx - 1.001, ways->cy - 1.001};
     const F64x4   per_m = f64x4_set(1 / ways->coarse_m);
     for (int axis = 0; axis < 2; axis++)
-        for (int k = 0; k < 8; k += 4) { /* held at the rim; NaN: there */
+        for (int k = 0; k < 8; k += 4) { /* positions are held at the rim; those of NaN are there too */
             const F64x4 g = (f64x4_loadu(from[axis] + k) - f64x4_set(corner_m[axis])) * per_m;
             f64x4_storeu(at[axis] + k, f64x4_min(f64x4_max(g, f64x4_set(0)), f64x4_set(most[axis])));
         }
@@ -224,7 +224,7 @@ F32x8 ways_wet(const Ways *ways, const double x_m[8], const double y_m[8])
 
 /* ---- nearest ---------------------------------------------------------------------------------- */
 
-/* Distance beyond the edge of a segment, with its signed distance across and its place along. */
+/* Distance from a place to the edge of a segment, with its signed distance across and its position along. */
 static double beyond_edge(double *across_m, double *along_m, const WaySegment *s, double x_m, double y_m)
 {
     const double px = x_m - (double)s->x_m, py = y_m - (double)s->y_m;
@@ -269,7 +269,7 @@ static bool is_open(SurfaceClass surface)
            surface == SURFACE_SAND;
 }
 
-/* What a way makes of a place `beyond_m` outside of its edge; SURFACE_NONE: nothing. */
+/* The class that a way gives to a place `beyond_m` outside of its edge; SURFACE_NONE: it does not change it. */
 static SurfaceClass way_surface(WayKind kind, double beyond_m, double half_m, float wander, float patch)
 {
     const double w = (double)wander;
@@ -295,23 +295,23 @@ static SurfaceClass way_surface(WayKind kind, double beyond_m, double half_m, fl
     }
 }
 
-/* Radius of a pond in a direction, by the angle on a square: exact and without roots. */
+/* Radius of a pond in a direction, which is given as a position on a square: exact, and needs no roots. */
 static double pond_radius(const Pond *pond, double dx, double dy)
 {
     const double sum = fabs(dx) + fabs(dy), s = sum > 0 ? dy / sum : 0;
-    const double turn = dx >= 0 ? (s < 0 ? 4 + s : s) : 2 - s; /* 0 .. 4 */
+    const double turn = dx >= 0 ? (s < 0 ? 4 + s : s) : 2 - s; /* position on the square, 0 .. 4 */
     const double at = turn * (pond_radii / 4.0), whole = floor(at), share = at - whole;
     const int    n = (int)whole % pond_radii;
     return (1 - share) * (double)pond->radius_m[n] + share * (double)pond->radius_m[(n + 1) % pond_radii];
 }
 
-/* House, drive, hedge and garden. */
+/* The class at a place of a plot: house, drive, hedge or garden. */
 static SurfaceClass plot_surface(const HousePlot *p, double dx, double dy, float wander, float patch)
 {
     const double along = dx * p->direction[0] + dy * p->direction[1];
     const double across = p->direction[0] * dy - p->direction[1] * dx;
     if (fabs(along) > p->half_along_m || fabs(across) > p->half_across_m) return SURFACE_NONE;
-    /* the lane is on the side that the house's place tells */
+    /* the sign of the house's place tells the side of the lane */
     const double front = p->house[1] < 0 ? -across : across, house_front = fabs(p->house[1]);
     if (fabs(along - p->house[0]) < p->house_half[0] && fabs(front - house_front) < p->house_half[1])
         return SURFACE_BUILT;

@@ -12,7 +12,7 @@
 
 enum { pond_radii = 32, ways_most_villages = 64, clear_radius_m = 8 };
 
-/* Places are from the south-west corner of the ways' square. */
+/* Positions are relative to the south-west corner of the ways' square. */
 typedef struct WaySegment {
     float    x_m, y_m, dx, dy; /* start, and unit vector along it */
     float    length_m, along_m;
@@ -36,61 +36,62 @@ struct Ways {
     double      x0_m, y0_m, side_m[2];
     double      index_m; /* side of an index cell */
     int         nx, ny;
-    int32_t    *start; /* [nx ny + 1] first of each cell in item */
-    uint32_t   *item;  /* WayItem << 28 | number */
+    int32_t    *start; /* [nx ny + 1] first item of each cell in `item` */
+    uint32_t   *item;  /* items, as WayItem << 28 | number */
     int         segments, ponds, plots, clears, ways, villages;
     int         segments_room, ponds_room, plots_room, clears_room;
     WaySegment *segment;
     Pond       *pond;
     HousePlot  *plot;
     ClearPlace *clear;
-    NearGrid    clear_near;  /* of the clear places, while ways are laid */
-    NearGrid    stream_near; /* of the starts of streams' segments, while roads are laid */
+    NearGrid    clear_near;  /* grid of the clear places, used while ways are laid */
+    NearGrid    stream_near; /* grid of the starts of streams' segments, used while roads are laid */
     double      village[ways_most_villages][2];
-    /* coarse grid: how wet (hollows, valleys) or worn (crests) the ground is, -127 .. 127: the four corners of a cell
-     */
+    /* A coarse grid of how wet (hollows, valleys) or worn (crests) the ground is, -127 .. 127; an entry has the four
+     * corners of a cell. */
     double    coarse_m;
     int       cx, cy; /* posts */
-    uint32_t *wet;    /* [cy][cx] corners SW, SE, NW, NE from the lowest octet */
+    uint32_t *wet;    /* [cy][cx] corners SW, SE, NW, NE, from the lowest octet on */
     /* while ways are laid */
     float   *height;      /* [cy][cx] above the ellipsoid's curve */
-    float   *flow;        /* [cy][cx] cells that drain through this one */
-    int32_t *road_vertex; /* [cy][cx] a segment of a road in this cell, -1: none */
+    float   *flow;        /* [cy][cx] how many cells drain through this one */
+    int32_t *road_vertex; /* [cy][cx] a road's segment in this cell; -1: none */
 };
 
 Status ways_lay_streams(Ways *ways, const WaysGround *ground);
-/* After the streams: villages, roads, lanes, plots, tracks. */
+/* Lays villages, roads, lanes, plots and tracks; call it after the streams. */
 Status ways_lay_roads(Ways *ways, const WaysGround *ground);
 
-/* Villages: on gentle dry land without vehicles, one in most squares of this side, chosen before there are roads; and,
- * once roads join them, their lanes and plots. */
+/* Villages lie on gentle dry land without vehicles, one in most squares of this side. They are chosen before there are
+ * roads; their lanes and plots are laid once roads join them. */
 static const double ways_village_grid_m = 2600;
 Status              ways_choose_villages(Ways *ways, const WaysGround *ground);
 Status              ways_lay_villages(Ways *ways, const WaysGround *ground);
 
-/* A line from the square's corner. */
+/* A line; its positions are relative to the square's corner. */
 typedef struct WayLine {
     double (*p)[2];
     int count, room;
 } WayLine;
 
 Status ways_line_add(WayLine *line, double x, double y);
-/* A cubic B-spline about control points, through the first and the last, with a vertex every some metres. */
+/* Draws a cubic B-spline about control points, through the first and the last, with a vertex every few metres. */
 Status ways_draw_spline(WayLine *out, const WayLine *control);
-/* As ways, but not where a vehicle was reported: they end before and go on after. */
+/* Appends a way where no vehicle was reported: near a report it ends, and goes on behind it. */
 Status ways_lay_line(Ways *ways, WayKind kind, WayLine *line, double half_m);
 
-/* Appends a way along points from the square's corner; half widths at its ends. */
+/* Appends a way along points relative to the square's corner, with half widths at its ends. */
 Status ways_append(Ways *ways, WayKind kind, const double (*p)[2], int count, double half_m, double half_end_m);
 Status ways_reserve(void **rows, int *room, int count, size_t size);
-/* Height over the curve of the Earth; NaN beyond the terrain. From the square's corner. */
+/* Height above the curve of the Earth at a place relative to the square's corner; NaN beyond the terrain. */
 double ways_height(const Ways *ways, const WaysGround *ground, double x_m, double y_m);
-/* Whether a reported vehicle is that near; from the square's corner. near_m: at most 96. */
+/* Whether a vehicle was reported within near_m (at most 96) of a place relative to the square's corner. */
 bool ways_vehicle_near(const Ways *ways, double x_m, double y_m, double near_m);
 
-/* The index cells that eight places are in: -1 where no way touches them. */
+/* The index cells that eight places are in; -1 where no way touches the cell. */
 I32x8 ways_cells(const Ways *ways, const double x_m[8], const double y_m[8]);
-/* The class at a place in a touched cell. wander: -1 .. 1, of the borders; patch: -1 .. 1, of what grows beside. */
+/* The class at a place in a cell that ways touch. wander, -1 .. 1: moves borders; patch, -1 .. 1: selects what grows
+ * beside ways. */
 SurfaceClass ways_surface(const Ways *ways, int32_t cell, double x_m, double y_m, SurfaceClass field, float wander,
                           float patch);
 /* How wet eight places are, -1 .. 1. */

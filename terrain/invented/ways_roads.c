@@ -25,7 +25,7 @@ Status ways_draw_spline(WayLine *out, const WayLine *control)
     Status status = ways_line_add(out, control->p[0][0], control->p[0][1]);
     for (int k = -1; k < n && status == STATUS_OK; k++) {
         double c[4][2];
-        for (int m = 0; m < 4; m++) /* mirrored beyond the ends */
+        for (int m = 0; m < 4; m++) /* control points beyond the ends are mirrored */
             for (int a = 0; a < 2; a++) {
                 const int i = k - 1 + m;
                 c[m][a] = i < 0    ? 2 * control->p[0][a] - control->p[-i < n ? -i : n - 1][a]
@@ -56,7 +56,7 @@ static int ways_post_near(const Ways *ways, double x, double y)
 
 Status ways_lay_line(Ways *ways, WayKind kind, WayLine *line, double half_m)
 {
-    /* no road where a vehicle was reported: it ends before and goes on after */
+    /* no road passes where a vehicle was reported: it ends before, and goes on behind */
     static const double near_m = 14;
     const int           first = ways->segments;
     Status              status = STATUS_OK;
@@ -78,9 +78,9 @@ typedef struct Open {
 } Open;
 
 typedef struct Search {
-    float *cost; /* [posts] so far */
+    float *cost; /* [posts] least cost found so far */
     int   *from; /* [posts] */
-    float *dear; /* [posts] factor of a post: vehicles, water */
+    float *dear; /* [posts] factor of a post's cost: high near vehicles and on water */
     Open  *heap;
     int    heap_count, heap_room;
 } Search;
@@ -111,15 +111,15 @@ static Open heap_pop(Search *s)
     return top;
 }
 
-/* Whole posts to a neighbour: sixteen directions, so that routes turn by half a right angle's half. */
+/* Steps to a neighbouring post: sixteen directions, so that routes turn by 22.5 degrees. */
 static const int8_t neighbour[16][2] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}, {1, 1},   {-1, 1},  {-1, -1}, {1, -1},
                                         {2, 1}, {1, 2}, {-1, 2}, {-2, 1}, {-2, -1}, {-1, -2}, {1, -2},  {2, -1}};
 
-static const double least_cost = 0.3; /* of a post's distance: along a road */
+static const double least_cost = 0.3; /* cost of a post's distance along a road */
 
 static double root_of(int di, int dj) { return sqrt((double)(di * di + dj * dj)); }
 
-/* Cheapest route between two posts; path from goal to start. Returns its length, 0: none. */
+/* Finds the cheapest route between two posts; path is from goal to start. *count is its length; 0: there is none. */
 static Status find_route(int **path, int *count, Search *s, const Ways *ways, int start, int goal)
 {
     const int posts = ways->cx * ways->cy;
@@ -161,7 +161,7 @@ static Status find_route(int **path, int *count, Search *s, const Ways *ways, in
     return STATUS_OK;
 }
 
-/* The pieces of a route that are not on roads yet, as roads; their ends on vertices of the roads they meet. */
+/* Lays those pieces of a route that are not on roads yet; their ends are on vertices of the roads they meet. */
 static Status lay_route(Ways *ways, const int *path, int count)
 {
     enum { skip = 3 };
@@ -204,8 +204,8 @@ static Status join(Ways *ways, Search *s, int start, int goal)
 
 /* ---- columns ---------------------------------------------------------------------------------- */
 
-/* Tracks along the routes of vehicles: reports of one vehicle in turn that go on in much the same direction. Where
- * another has driven the same way, its track serves. */
+/* Lays tracks along the routes of vehicles: successive reports of one vehicle that go on in much the same direction.
+ * Where a track leads the same way already, it is used. */
 static Status lay_columns(Ways *ways, const WaysGround *ground)
 {
     static const double longest_m = 160, least_m = 10, shortest_route_m = 120, beside_route_m = 7;
@@ -230,11 +230,11 @@ static Status lay_columns(Ways *ways, const WaysGround *ground)
                 if (step > longest_m) break;
                 if (control.count > 1) {
                     const double *prior = control.p[control.count - 2];
-                    if (dx * (last[0] - prior[0]) + dy * (last[1] - prior[1]) < 0) break; /* turned back */
+                    if (dx * (last[0] - prior[0]) + dy * (last[1] - prior[1]) < 0) break; /* the vehicle turned back */
                 }
                 length_m += step;
             }
-            /* another's track */
+            /* another vehicle's track may lead the same way */
             const uint64_t key =
                 ((uint64_t)(int64_t)(x / beside_route_m) << 32 | (uint64_t)(int64_t)(y / beside_route_m)) + 1;
             uint32_t at = (uint32_t)invented_hash(2, (int64_t)key, 0) & mask;
@@ -244,7 +244,8 @@ static Status lay_columns(Ways *ways, const WaysGround *ground)
         }
         if (status == STATUS_OK && length_m > shortest_route_m && control.count > 2) {
             line.count = 0;
-            for (int k = 0; k < control.count && status == STATUS_OK; k++) /* through the reports themselves */
+            for (int k = 0; k < control.count && status == STATUS_OK;
+                 k++) /* the track goes through the reported positions themselves */
                 status = ways_line_add(&line, control.p[k][0], control.p[k][1]);
             if (status == STATUS_OK)
                 status =
@@ -252,7 +253,7 @@ static Status lay_columns(Ways *ways, const WaysGround *ground)
             for (int k = 1; k < control.count && used < mask / 2; k++) {
                 const double *a = control.p[k - 1], *b = control.p[k];
                 const int     parts = (int)ceil(hypot(b[0] - a[0], b[1] - a[1]) / (0.5 * beside_route_m));
-                for (int s = 0; s < parts * 9 && used < mask / 2; s++) { /* and the squares about */
+                for (int s = 0; s < parts * 9 && used < mask / 2; s++) { /* the squares around count too */
                     const double   t = (double)(s / 9) / parts;
                     const double   x = a[0] + t * (b[0] - a[0]), y = a[1] + t * (b[1] - a[1]);
                     const int64_t  i = (int64_t)(x / beside_route_m) + s % 9 % 3 - 1;
@@ -272,7 +273,7 @@ static Status lay_columns(Ways *ways, const WaysGround *ground)
 
 /* ---- the whole -------------------------------------------------------------------------------- */
 
-/* Every village to the nearest one of those joined already, and some to another; then the four sides. */
+/* Joins every village to the nearest one that is joined already, and some to another one; then joins the four sides. */
 static Status join_villages(Ways *ways, Search *s)
 {
     bool   joined[ways_most_villages] = {true};
@@ -321,7 +322,7 @@ static Status search_create(Search *s, const Ways *ways, const WaysGround *groun
     if (!s->cost || !s->from || !s->dear) return STATUS_NO_MEMORY;
     for (int n = 0; n < posts; n++) {
         const double x = (n % ways->cx) * ways->coarse_m, y = (n / ways->cx) * ways->coarse_m;
-        /* no two posts alike: a road over a plain is not ruled */
+        /* no two posts cost the same, so that a road over a plain is not dead straight */
         s->dear[n] = 1 + 0.5f * (float)invented_unit(invented_hash(ground->seed + 63, n, 0));
         if (ways_vehicle_near(ways, x, y, 50)) s->dear[n] += 25;
         if (ground->coast->sea_count && coast_at(ground->coast, ways->x0_m + x, ways->y0_m + y) == COAST_SEA)

@@ -4,7 +4,9 @@
 
 #include <stdlib.h>
 
-static const double stream_cells = 34, gully_cells = 5; /* coarse cells that drain through a place: where one starts */
+static const double stream_cells = 34,
+                    gully_cells =
+                        5; /* coarse cells that must drain through a place for a stream, and a gully, to start there */
 enum { most_steps = 4000 };
 
 /* ---- coarse grid ------------------------------------------------------------------------------ */
@@ -64,7 +66,8 @@ static Status gather_flow(Ways *ways, const WaysGround *ground)
     return STATUS_OK;
 }
 
-/* Hollows and valleys are wet, crests worn: by the height over the mean of the neighbours and the flow. */
+/* How wet or worn the ground is: hollows and valleys are wet, crests worn. It follows from the height relative to the
+ * mean of the neighbours, and from the flow. */
 static double wet_at(const Ways *ways, int i, int j)
 {
     static const double deep_m = 1.6;
@@ -109,10 +112,10 @@ typedef struct Trace {
     double   p[most_steps][2];
     int      count;
     TraceEnd end;
-    int      joined; /* segment of the stream that it meets */
+    int      joined; /* segment of another stream that it joins */
 } Trace;
 
-/* Streams so far by place: a segment's start by square of 12 m, open addressing. */
+/* The streams laid so far by place: for each square of 12 m the start of a segment, by open addressing. */
 typedef struct Laid {
     uint64_t *key;
     int32_t  *segment;
@@ -145,7 +148,7 @@ static void laid_put(Laid *laid, double x, double y, int segment)
     laid->count++;
 }
 
-/* A lower place on rings about a pit: what a stream has cut through since. */
+/* Finds a lower place on rings about a pit, from which the stream goes on as if it had cut through. */
 static bool lower_about(double out[2], const Ways *ways, const WaysGround *ground, const double p[2], double h)
 {
     for (double r = 20; r <= 100; r += 20) {
@@ -179,7 +182,7 @@ static void follow(Trace *t, const Ways *ways, const WaysGround *ground, const L
             return;
         }
         const int met = laid_find(laid, x, y);
-        if (met >= 0 && t->count > 1) { /* the end of that segment, if it is lower */
+        if (met >= 0 && t->count > 1) { /* goes on to the end of that segment, if that is lower */
             const WaySegment *s = &ways->segment[met];
             const double      ex = (double)(s->x_m + s->dx * s->length_m), ey = (double)(s->y_m + s->dy * s->length_m);
             if (ways_height(ways, ground, ex, ey) < h && t->count < most_steps) {
@@ -194,7 +197,8 @@ static void follow(Trace *t, const Ways *ways, const WaysGround *ground, const L
         const double gy = ways_height(ways, ground, x, y + arm_m) - ways_height(ways, ground, x, y - arm_m);
         const double steep = hypot(gx, gy);
         bool         moved = false;
-        for (int straight = 1; straight >= 0 && steep > 1e-9 && !moved; straight--) { /* with its momentum; without */
+        for (int straight = 1; straight >= 0 && steep > 1e-9 && !moved;
+             straight--) { /* tries with the stream's momentum, then without */
             const double ax = -gx / steep + 0.8 * straight * dir[0], ay = -gy / steep + 0.8 * straight * dir[1];
             const double length = fmax(hypot(ax, ay), 1e-6);
             const double nx = x + step_m * ax / length, ny = y + step_m * ay / length;
@@ -210,7 +214,7 @@ static void follow(Trace *t, const Ways *ways, const WaysGround *ground, const L
         dir[0] = (to[0] - x) / length, dir[1] = (to[1] - y) / length;
         x = to[0], y = to[1], h = ways_height(ways, ground, x, y);
     }
-    t->count = 0; /* endless: none */
+    t->count = 0; /* it does not end, so it is not laid */
 }
 
 /* ---- ponds ------------------------------------------------------------------------------------ */
@@ -223,7 +227,7 @@ static Status lay_pond(Ways *ways, const WaysGround *ground, const double p[2])
     Pond         pond = {.x_m = (float)p[0], .y_m = (float)p[1]};
     const double level_m = ways_height(ways, ground, p[0], p[1]) + deep_m;
     for (int n = 0; n < pond_radii; n++) {
-        /* directions as pond_radius takes them: even along a square */
+        /* directions evenly spaced along a square, as pond_radius takes them */
         const double turn = 4.0 * n / pond_radii, s = turn <= 1 ? turn : turn <= 3 ? 2 - turn : turn - 4;
         const double c = (1 - fabs(s)) * (turn <= 1 || turn >= 3 ? 1 : -1), length = hypot(c, s);
         double       r = least_m;
@@ -231,7 +235,7 @@ static Status lay_pond(Ways *ways, const WaysGround *ground, const double p[2])
             r += march_m;
         pond.radius_m[n] = (float)r;
     }
-    for (int pass = 0; pass < 2; pass++) { /* no spikes */
+    for (int pass = 0; pass < 2; pass++) { /* smooths the outline */
         float       before = pond.radius_m[pond_radii - 1];
         const float first = pond.radius_m[0];
         for (int n = 0; n < pond_radii; n++) {
@@ -254,7 +258,7 @@ static double flow_at(const Ways *ways, const double p[2])
     return (double)ways->flow[j * ways->cx + i];
 }
 
-/* From below the last reported vehicle on; -1: nothing of it is left. */
+/* The index from which on a stream stays, behind the last reported vehicle; -1: nothing of it stays. */
 static int open_from(const Trace *t, const Ways *ways)
 {
     static const double near_m = 26;
@@ -285,7 +289,7 @@ static Status lay_stream(Ways *ways, const WaysGround *ground, Laid *laid, Trace
     return status;
 }
 
-/* Short, steep and dry: down to where it is gentle, or to the next stream. */
+/* Lays a gully, which is short, steep and dry: down to where it is gentle, or to the next stream. */
 static Status lay_gully(Ways *ways, const WaysGround *ground, Laid *laid, Trace *t)
 {
     static const double steep = 0.09;
@@ -305,7 +309,7 @@ static Status lay_gully(Ways *ways, const WaysGround *ground, Laid *laid, Trace 
     return status;
 }
 
-/* Where the flow first reaches a limit: no neighbour that drains into it has as much. */
+/* Whether the flow first reaches a limit here: no neighbour that drains into it has as much. */
 static bool is_head(const Ways *ways, int at, double limit)
 {
     const int i = at % ways->cx, j = at / ways->cx;

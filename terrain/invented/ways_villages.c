@@ -7,7 +7,7 @@ static const double lane_half_m = 2.2;
 
 /* ---- villages --------------------------------------------------------------------------------- */
 
-/* Gentle dry land without vehicles, one in most squares of the grid. */
+/* Chooses places for villages: gentle dry land without vehicles, one in most squares of the grid. */
 static void choose_villages(Ways *ways, const WaysGround *ground)
 {
     static const double margin_m = 300, vehicle_m = 96, steepest = 0.09;
@@ -42,7 +42,7 @@ static void choose_villages(Ways *ways, const WaysGround *ground)
     }
 }
 
-/* The segments so far are those of streams and gullies. */
+/* Indexes the segments laid so far, which are those of streams and gullies. */
 static Status index_streams(Ways *ways)
 {
     double *xy = malloc(2 * ((size_t)ways->segments + 1) * sizeof *xy);
@@ -62,7 +62,7 @@ Status ways_choose_villages(Ways *ways, const WaysGround *ground)
 
 /* ---- plots ------------------------------------------------------------------------------------ */
 
-/* From the starts of streams and gullies, and from ponds. near_m: at most 64. */
+/* Whether the start of a segment of a stream or gully, or a pond, is within near_m (at most 64). */
 static bool stream_near(const Ways *ways, double x, double y, double near_m)
 {
     const NearGrid *grid = &ways->stream_near;
@@ -97,10 +97,10 @@ static double other_road_m(const Ways *ways, const int *near, int count, int way
     return least;
 }
 
-/* Plots along both sides of the roads and lanes about a village. */
+/* Lays plots along both sides of the roads and lanes about a village. */
 static Status lay_plots(Ways *ways, const WaysGround *ground, const double centre[2], double radius_m)
 {
-    static const double back_m = 1.4; /* of the way's edge */
+    static const double back_m = 1.4; /* distance of a plot from the way's edge */
     int                 near[4096], nears = 0;
     const int           first_plot = ways->plots;
     Status              status = STATUS_OK;
@@ -126,7 +126,7 @@ static Status lay_plots(Ways *ways, const WaysGround *ground, const double centr
             const double x = (double)s->x_m + p.half_along_m * (double)s->dx - sign * off_m * (double)s->dy;
             const double y = (double)s->y_m + p.half_along_m * (double)s->dy + sign * off_m * (double)s->dx;
             next[side] = (double)s->along_m + 6;
-            if (z < 0.12) continue; /* a gap */
+            if (z < 0.12) continue; /* leaves a gap between plots */
             const double reach = hypot(p.half_along_m, p.half_across_m);
             if (other_road_m(ways, near, nears, s->way, x, y) < p.half_across_m + 6) continue;
             if (ways_vehicle_near(ways, x, y, fmin(reach + 20, 95)) || stream_near(ways, x, y, reach + 8)) continue;
@@ -136,7 +136,7 @@ static Status lay_plots(Ways *ways, const WaysGround *ground, const double centr
                         0.9 * (p.half_along_m + ways->plot[k].half_along_m);
             if (taken) continue;
             p.x_m = ways->x0_m + x, p.y_m = ways->y0_m + y;
-            /* the house towards the lane, which lies across < 0 of a plot on the left */
+            /* moves the house towards the lane, which is at negative values across a plot on the left */
             p.house_half[0] = 5 + 2.5 * v, p.house_half[1] = 4 + 1.5 * u;
             p.house[0] = (z - 0.5) * (p.half_along_m - p.house_half[0] - 2);
             p.house[1] = -sign * (p.half_across_m - p.house_half[1] - 4 - 4 * z);
@@ -148,7 +148,7 @@ static Status lay_plots(Ways *ways, const WaysGround *ground, const double centr
     return status;
 }
 
-/* Lanes that leave the roads about a village, bent, to the left and right in turn; some meet at their ends. */
+/* Lays lanes that leave the roads about a village, bent to the left and right in turn; some meet at their ends. */
 static Status lay_lanes(Ways *ways, const WaysGround *ground, const double centre[2], double radius_m)
 {
     WayLine   control = {0}, line = {0};
@@ -191,7 +191,7 @@ Status ways_lay_villages(Ways *ways, const WaysGround *ground)
     Status status = STATUS_OK;
     for (int n = 0; n < ways->villages && status == STATUS_OK; n++) {
         const double size = invented_unit(invented_hash(ground->seed + 64, n, 0));
-        const double radius_m = n % 2 ? 90 + 60 * size : 220 + 110 * size; /* hamlets, and villages */
+        const double radius_m = n % 2 ? 90 + 60 * size : 220 + 110 * size; /* radius of hamlets, and of villages */
         status = lay_lanes(ways, ground, ways->village[n], radius_m);
         if (status == STATUS_OK) status = lay_plots(ways, ground, ways->village[n], radius_m);
     }

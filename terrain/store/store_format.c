@@ -17,7 +17,7 @@ static uint64_t mixed(uint64_t h)
     return h ^ (h >> 31);
 }
 
-/* 64 well mixed bits of any octets. */
+/* A hash of octets whose 64 bits are all well mixed. */
 static uint64_t store_hash(uint64_t seed, const void *octets, size_t count)
 {
     const uint8_t *at = octets;
@@ -91,7 +91,8 @@ uint64_t store_content(const StoreHeader *header, const uint8_t *map, Pool *pool
             else
                 for (int k = 0; k < pieces; k++) hash_piece(&job, 0, k);
             h = store_hash(h, job.hash, (size_t)pieces * sizeof *job.hash);
-            madvise((void *)(uintptr_t)job.at, job.octets, MADV_DONTNEED); /* of a file: its pages stay in the cache */
+            madvise((void *)(uintptr_t)job.at, job.octets,
+                    MADV_DONTNEED); /* pages of a mapped file can be dropped: they stay in the system's cache */
             done += job.octets;
         }
     }
@@ -102,7 +103,7 @@ uint64_t store_content(const StoreHeader *header, const uint8_t *map, Pool *pool
 
 static size_t aligned(size_t octets, size_t unit) { return (octets + unit - 1) / unit * unit; }
 
-/* Octets of a level's pyramid; to is set, where not NULL, to point into `at`. */
+/* Octets of a level's pyramid, which begins at `at`. Where `to` is not NULL its pyramid is set to point there. */
 static size_t store_pyramid(ElevationLevel *to, uint8_t *at, const ElevationLevel *level)
 {
     size_t sum = 0;
@@ -135,7 +136,8 @@ static size_t cells_of(const StoreGrid *grid) { return (size_t)grid->nx * (size_
 
 static Status describe(ElevationLevel *out, const StoreHeaderLevel *l)
 {
-    return elevation_level_describe(out, l->nx, l->ny, l->x0_m, l->y0_m, l->spacing_m, l->z0_m, l->step_m);
+    return elevation_level_describe(out,
+                                    &(ElevationGrid){l->nx, l->ny, l->x0_m, l->y0_m, l->spacing_m, l->z0_m, l->step_m});
 }
 
 bool store_layout(StoreHeader *h)

@@ -9,7 +9,7 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
-/* The whole header with its texts, malloc'd; *why stays NULL for a failure of the system, in errno. */
+/* Reads the whole header with its texts, malloc'd. When the system fails, *why stays NULL and errno has the reason. */
 static StoreHeader *read_header(const char **why, Status *status, int file, uint64_t file_octets)
 {
     StoreHeader first, *all;
@@ -163,7 +163,7 @@ Status store_open_landscape(Landscape *out, const char *path, uint64_t seed)
                               .octets = store.octets,
                               .content = store.content};
     status = map.path ? store_landscape(out, &store, seed, &map) : STATUS_NO_MEMORY;
-    if (status == STATUS_OK) store.map = NULL; /* the landscape's now */
+    if (status == STATUS_OK) store.map = NULL; /* the landscape owns the mapping now */
     else free(map.path);
     store_close(&store);
     return status;

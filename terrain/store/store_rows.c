@@ -7,10 +7,11 @@
 
 enum { cells = elevation_tile_cells };
 
-/* Unless a stop is requested. */
+/* Runs tasks, unless a stop is requested. */
 static void run(Pool *pool, int count, PoolTask *task, void *user)
 {
-    (void)pool_run_unless_stopped(count > 1 ? pool : NULL, count, task, user); /* what is not whole is never sealed */
+    (void)pool_run_unless_stopped(count > 1 ? pool : NULL, count, task,
+                                  user); /* tasks may be left out: a file that is not whole is never sealed */
 }
 
 /* ---- posts ------------------------------------------------------------------------------------------ */
@@ -20,7 +21,7 @@ Status store_posts_begin(StoreWriter *w, int index, int seam_shift)
     PostRows             *rows = &w->posts[index];
     const ElevationLevel *level = &w->elevation.level[index];
     const int bands = w->pool ? pool_threads(w->pool) : 1, most = level->tiles_y < bands ? level->tiles_y : bands;
-    /* the last row of tiles waits for the next one's shifts: edge posts have the coarser unit */
+    /* the last row of tiles waits for the shifts of the next row, since their common posts have the coarser unit */
     rows->capacity = (most + 1) * cells + 1;
     rows->seam_shift = seam_shift;
     rows->row = malloc((size_t)rows->capacity * (size_t)level->nx * sizeof *rows->row);
@@ -34,10 +35,10 @@ void store_posts_end(StoreWriter *w)
 
 /* ---- whole steps ----------------------------------------------------------------------------------- */
 
-/* The outline of the level inside, in posts of this one: i0 .. i1, j0 .. j1. */
+/* The outline of the inner level, in posts of this one: i0 .. i1, j0 .. j1. */
 typedef struct Hole {
     int     i0, i1, j0, j1;
-    int32_t unit; /* posts on it are multiples of this many steps; 0: there is none */
+    int32_t unit; /* posts on the outline are multiples of this many steps; 0: there is no inner level */
 } Hole;
 
 static Hole hole_of(const StoreWriter *w, int index)
@@ -58,14 +59,14 @@ static int32_t to_unit(int32_t post, int32_t unit) { return (int32_t)floor((doub
 
 typedef struct RowsJob {
     StoreWriter *writer;
-    int          index; /* of the level */
-    int          first; /* row of z_m[0] */
+    int          index; /* number of the level */
+    int          first; /* number of the row that z_m[0] is */
     const float *z_m;
     Hole         hole;
-    bool         bad; /* set by any task: a post that is no number, or beyond what a level holds */
+    bool         bad; /* any task sets it: a post is not a number, or beyond what a level holds */
 } RowsJob;
 
-/* The post on the straight edge between two posts of the level around. */
+/* The post's height on the straight edge between two posts of the level around. */
 static int32_t edge_post(const RowsJob *job, int i, int j)
 {
     const ElevationLevel *in = &job->writer->elevation.level[job->index];
@@ -93,12 +94,12 @@ static void quantise_row(void *user, int worker, int task)
     bool                  bad = false;
     for (int i = 0; i < nx; i++) {
         const double post = rint(((double)z_m[i] - level->z0_m) * inv_step);
-        const bool   fits = post >= elevation_lowest_post && post <= elevation_highest_post; /* false for NaN */
+        const bool   fits = post >= elevation_lowest_post && post <= elevation_highest_post; /* false for NaN too */
         bad |= !fits;
         to[i] = fits ? (int32_t)post : 0;
     }
     if (bad) {
-        job->bad = true; /* all tasks set the same value */
+        job->bad = true; /* tasks may set it at once, all to the same value */
         return;
     }
     const Hole h = job->hole;
@@ -131,7 +132,7 @@ static void fill_tiles(void *user, int worker, int task)
     const PostRows *rows = &job->writer->posts[job->index];
     const int       tile_j = rows->first / cells + task;
     elevation_fill_tiles(level, tile_j, rows->row + (size_t)task * cells * (size_t)level->nx);
-    /* written back by the system when it likes; this process need not hold it */
+    /* the system writes these pages back when it likes; this process need not keep them */
     const size_t row = (size_t)level->tiles_x * elevation_tile_posts * sizeof *level->stored;
     const size_t at = (size_t)((uint8_t *)level->stored - job->writer->map) + (size_t)tile_j * row;
     const size_t from = (at + store_page - 1) / store_page * store_page;
@@ -139,12 +140,12 @@ static void fill_tiles(void *user, int worker, int task)
         madvise(job->writer->map + from, (row - store_page) / store_page * store_page, MADV_DONTNEED);
 }
 
-/* Shapes what is whole, fills what has shaped neighbours, and keeps the rest. */
+/* Chooses the shifts of whole rows of tiles, fills those whose neighbours have shifts, and keeps the remaining rows. */
 static void take_rows(RowsJob *job)
 {
     ElevationLevel *level = &job->writer->elevation.level[job->index];
     PostRows       *rows = &job->writer->posts[job->index];
-    const int       end = rows->first + rows->count; /* rows 0 .. end - 1 are here */
+    const int       end = rows->first + rows->count; /* rows before `end` have been given */
     const bool      last = end == level->ny;
     const int       whole = last ? level->tiles_y : (end - 1) / cells;
     if (whole > rows->shaped) run(job->writer->pool, whole - rows->shaped, shape_tiles, job);
@@ -165,7 +166,7 @@ static void pyramid_tiles(void *user, int worker, int task)
     elevation_build_pyramid_tiles(user, task);
 }
 
-/* The level is complete: its pyramid, and what a header says of it. */
+/* Finishes a complete level: builds its pyramid, and sets what the header says of it. */
 static void finish_level(StoreWriter *w, int index)
 {
     ElevationLevel   *level = &w->elevation.level[index];
@@ -179,7 +180,8 @@ static void finish_level(StoreWriter *w, int index)
     elevation_begin_pyramid(level);
     run(w->pool, level->tiles_y, pyramid_tiles, level);
     elevation_finish_pyramid(level);
-    l->worst_m = 0.5 * level->step_m * (shift ? 1 + (1 << shift) : 1); /* rounded to steps, then to units */
+    l->worst_m =
+        0.5 * level->step_m * (shift ? 1 + (1 << shift) : 1); /* a post is rounded to steps, then to the tile's unit */
     l->pyramid_base = level->pyramid_base;
     l->pyramid_shift = level->pyramid_shift;
     l->rise_shift = level->rise_shift;
@@ -249,7 +251,7 @@ typedef struct BlocksJob {
     int            nx, rows;
 } BlocksJob;
 
-/* Pieces of a row of blocks: copied together, as photo_block_row takes whole rows. */
+/* Encodes a piece of a row of blocks. It is copied first, as photo_block_row takes whole rows. */
 static void encode_piece(void *user, int worker, int task)
 {
     (void)worker;
@@ -263,8 +265,8 @@ static void encode_piece(void *user, int worker, int task)
     photo_block_row(job->to + i0 / 4, (const uint8_t *)some, nx, job->rows);
 }
 
-/* A row of mip 0, and with it a row of each mip that has become whole. The rows of mip k are in `rgba`; those of the
- * next in w->halved, which is free again once they are copied. */
+/* Adds a row of mip k, and a row of each further mip that this completes. Rows of mip k are in `rgba`; the row of the
+ * next mip is in w->halved, which can be used again once it is copied. */
 static void add_row(StoreWriter *w, int k, const uint8_t *rgba)
 {
     const Photo *p = &w->photo;

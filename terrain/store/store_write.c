@@ -21,7 +21,7 @@ bool store_source_look(StoreSource *source)
     return true;
 }
 
-/* A tile's shift takes what its relief needs: a finer step costs nothing. */
+/* a fine step costs nothing: a tile's shift adapts to its relief */
 static const double store_step_m = 0x1p-11;
 
 /* ---- the plan ------------------------------------------------------------------------------------ */
@@ -42,8 +42,8 @@ static bool is_power_of_two(double x)
     return x > 0 && isfinite(x) && frexp(x, &exponent) == 0.5;
 }
 
-/* How far the ellipsoid lies below the plane of the posts at the corner of a level farthest from its origin; radius:
- * of the pole, where it bends least, so that nothing is refused that fits. */
+/* How far the ellipsoid lies below the plane of the posts at the corner of a level farthest from its origin. The radius
+ * is that at the pole, where the ellipsoid curves least, so that no level is refused that fits. */
 static double deepest_m(const StoreHeaderLevel *l)
 {
     static const double radius_m = 6.4e6;
@@ -68,7 +68,7 @@ static const char *plan_fault(const StorePlan *plan, const StoreHeader *h)
     return NULL;
 }
 
-/* A text of the header with its 0. */
+/* Writes a text of the header with its 0. */
 static void put_text(FILE *to, StoreHeader *h, StoreText text, const char *value)
 {
     const char *it = value ? value : "";
@@ -86,7 +86,7 @@ static void put_sources(FILE *to, StoreHeader *h, const StorePlan *plan)
     h->text[STORE_SOURCES] = (uint32_t)(ftell(to) - from);
 }
 
-/* The header as far as it is known, with its texts. */
+/* Makes the header, as far as it is known, with its texts. */
 static Status make_header(StoreHeader **out, const StorePlan *plan)
 {
     char  *octets = NULL;
@@ -149,7 +149,7 @@ static Status io_fault(const StoreWriter *w, const char *what)
     return STATUS_IO;
 }
 
-/* Locked while it is written: of two writers of one store the second stops. */
+/* Opens and locks the file to be written: of two writers of one store the second stops. */
 static Status open_part(StoreWriter *w)
 {
     w->file = output_check(w->path, 0) == 0 ? output_open(w->part, OUTPUT_READ) : -1;
@@ -159,7 +159,8 @@ static Status open_part(StoreWriter *w)
         return STATUS_IO;
     }
     const uint64_t octets = w->header->file_octets;
-    const int      full = posix_fallocate(w->file, 0, (off_t)octets); /* a full disk is found here, not by SIGBUS */
+    const int      full =
+        posix_fallocate(w->file, 0, (off_t)octets); /* a full disk is found here, and not by SIGBUS later */
     if (full != 0) {
         errno = full;
         return io_fault(w, "reserve the space of");
@@ -171,7 +172,7 @@ static Status open_part(StoreWriter *w)
     return STATUS_OK;
 }
 
-/* Where everything will be: the levels and the photograph in the map. */
+/* Sets where levels and photograph will be in the map. */
 static Status begin(StoreWriter *w, const StorePlan *plan)
 {
     TerrainStore at;
@@ -187,7 +188,7 @@ static Status begin(StoreWriter *w, const StorePlan *plan)
     return status == STATUS_OK ? store_albedo_begin(w) : status;
 }
 
-/* The header of a plan, laid out; logged what no store holds. */
+/* Makes the header of a plan and lays out its sections; logs what no store can hold. */
 static Status plan_header(StoreHeader **out, const char *path, const StorePlan *plan)
 {
     const char *why = NULL;
@@ -257,7 +258,7 @@ typedef struct OctetRaster {
     const char      *what;
 } OctetRaster;
 
-/* The next rows of one. */
+/* Writes the next rows of a raster. */
 static Status write_rows(StoreWriter *w, const OctetRaster *to, int rows, const uint8_t *value)
 {
     const StoreGrid *grid = to->grid;
@@ -328,7 +329,7 @@ static const char *missing(const StoreWriter *w)
     return w->canopy_cover_rows < h->canopy_cover.ny ? "canopy covers" : NULL;
 }
 
-/* The file at its final length, mapped whole. */
+/* Sets the file to its final length, and maps it whole. */
 static Status extend(StoreWriter *w)
 {
     w->header->crown_count = w->crowns;
@@ -343,7 +344,7 @@ static Status extend(StoreWriter *w)
     return STATUS_OK;
 }
 
-/* The means of the photograph over each class, from the store's own landscape. */
+/* Measures the photograph's means over each class, with the store's own landscape. */
 static Status measure_photo(StoreWriter *w)
 {
     TerrainStore store;
@@ -354,7 +355,7 @@ static Status measure_photo(StoreWriter *w)
     Landscape landscape;
     status = store_landscape(&landscape, &store, w->seed, NULL);
     if (status != STATUS_OK) return status;
-    landscape_photo_means(w->header->mean, &landscape); /* the first of store_classes rows */
+    landscape_photo_means(w->header->mean, &landscape); /* sets the first of store_classes rows */
     landscape_destroy(&landscape);
     return STATUS_OK;
 }
@@ -367,14 +368,14 @@ static void date(char out[32])
     strftime(out, 32, "%Y-%m-%dT%H:%M:%SZ", &utc);
 }
 
-/* The folder too, so that the new name survives a loss of power. */
+/* Syncs the folder as well, so that the new name survives a loss of power. */
 static void sync_folder(const char *path)
 {
     char *folder = strdup(path), *slash = folder ? strrchr(folder, '/') : NULL;
     if (slash) slash[slash == folder] = 0;
     const int fd = folder ? open(slash ? folder : ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC) : -1;
     if (fd >= 0) {
-        fsync(fd); /* advisory: the file itself is safe */
+        fsync(fd); /* advisory: the file itself is safe already */
         close(fd);
     }
     free(folder);
@@ -382,7 +383,7 @@ static void sync_folder(const char *path)
 
 static Status seal(StoreWriter *w)
 {
-    enum { synced_at_once = 64 << 20 }; /* octets; a stop waits for so many */
+    enum { synced_at_once = 64 << 20 }; /* octets that are synced at once, which a stop must wait for */
     StoreHeader *h = w->header;
     if (work_stop_asked()) return STATUS_IO;
     h->content = store_content(h, w->map, w->pool);

@@ -7,19 +7,19 @@
 
 #include "terrain/store/store_format.h"
 
-/* Rows of one level that are not in tiles yet. */
+/* Rows of one level that are not yet in tiles. */
 typedef struct PostRows {
-    int      done;  /* rows given */
-    int      first; /* row of the buffer's first one: a multiple of elevation_tile_cells */
+    int      done;  /* rows given so far */
+    int      first; /* number of the buffer's first row: a multiple of elevation_tile_cells */
     int      count, capacity;
-    int      shaped; /* rows of tiles that have base and shift */
+    int      shaped; /* rows of tiles that have bases and shifts */
     int32_t *row;    /* [capacity][nx] */
     int      seam_shift;
 } PostRows;
 
-/* Rows of one mip, up to four: a row of blocks. */
+/* Rows of one mip, up to four, which make a row of blocks. */
 typedef struct MipRows {
-    int      done; /* rows given */
+    int      done; /* rows given so far */
     uint8_t *row;  /* [4][nx][4] */
 } MipRows;
 
@@ -27,13 +27,13 @@ struct StoreWriter {
     char        *path, *part;
     int          file;
     uint8_t     *map;
-    uint64_t     map_octets, end; /* end: of the crowns so far */
+    uint64_t     map_octets, end; /* end: offset behind the crowns written so far */
     Pool        *pool;
-    StoreHeader *header; /* header_octets, with its texts */
+    StoreHeader *header; /* header with its texts, header_octets in all */
     uint64_t     seed, crowns;
-    Elevation    elevation; /* in the map */
+    Elevation    elevation; /* its arrays are in the map */
     PostRows     posts[elevation_max_levels];
-    Photo        photo; /* in the map */
+    Photo        photo; /* its blocks are in the map */
     MipRows      mip[ground_image_mips];
     uint8_t     *halved; /* a row of the next mip */
     int          surface_rows[cover_windows], canopy_height_rows, canopy_cover_rows;
@@ -44,8 +44,8 @@ void   store_posts_end(StoreWriter *writer);
 Status store_albedo_begin(StoreWriter *writer);
 void   store_albedo_end(StoreWriter *writer);
 
-/* The landscape of an attached store, for its reader and its writer. Borrows from the store, whose frame is set; takes
- * over map, where not NULL. */
+/* The landscape of an attached store, whose frame is set; for its reader and its writer. It borrows the store's arrays,
+ * and takes over map where that is not NULL. */
 Status store_landscape(Landscape *out, const TerrainStore *store, uint64_t seed, const LandscapeMap *map);
 
 #endif

@@ -10,12 +10,12 @@ typedef enum CourseKind { COURSE_CONSTANT, COURSE_CLEAR, COURSE_ROWS } CourseKin
 struct WeatherCourse {
     CourseKind          kind;
     WeatherCourseConfig config;
-    double              vapour_pa; /* of a clear day */
+    double              vapour_pa; /* vapour pressure of a clear day */
     WeatherRows         rows;
     char                about[640];
 };
 
-static const double radiation_gap_s = 3 * 3600; /* longer ones are not bridged */
+static const double radiation_gap_s = 3 * 3600; /* longer gaps in radiation are not filled */
 
 /* ---- clear day: times of the sun ------------------------------------------------------------ */
 
@@ -33,21 +33,22 @@ static void noon_of(double *noon_s, double *length_h, const WeatherCourseConfig 
     const double sin_delta = sin(epsilon) * sin(lambda), cos_delta = sqrt(1 - sin_delta * sin_delta);
     const double time_equation_rad = remainder(mean_rad - alpha, 2 * pi_rad);
     *noon_s = mean_noon_s - time_equation_rad / (2 * pi_rad) * weather_day_s;
-    /* cos H = -tan(latitude) tan(declination), with nothing divided by 0 at the poles */
+    /* cos H = -tan(latitude) tan(declination), computed without a division by 0 at the poles */
     const double top = -sin(config->latitude_rad) * sin_delta, bottom = cos(config->latitude_rad) * cos_delta;
     *length_h = top >= bottom ? 0 : top <= -bottom ? 24 : acos(top / bottom) * 24 / pi_rad;
 }
 
 /* ---- clear day: Parton & Logan -------------------------------------------------------------- */
 
-static const double lag_max_h = 1.86, lag_min_h = -0.17, night_decay = 2.20; /* their a, c, b of air at 150 cm */
+static const double lag_max_h = 1.86, lag_min_h = -0.17,
+                    night_decay = 2.20; /* the paper's a, c and b for air at 150 cm */
 
-/* One day's course: from its minimum to the next day's. */
+/* One day's course, from its minimum to that of the next day. */
 typedef struct Cycle {
     double min_s;    /* Unix time of the minimum */
-    double day_h;    /* from there to sunset */
+    double day_h;    /* time from the minimum to sunset */
     double period_h; /* half a period of the sine */
-    double range;    /* of the nominal one: 1, less towards polar night and within 5 degrees of a pole */
+    double range;    /* share of the nominal range: 1; less towards polar night and within 5 degrees of a pole */
 } Cycle;
 
 static Cycle cycle_of(const WeatherCourseConfig *config, double day)
@@ -62,7 +63,7 @@ static Cycle cycle_of(const WeatherCourseConfig *config, double day)
                        fmin(1, length_h / 4) * fmin(1, (pi_rad / 2 - fabs(config->latitude_rad)) / (5 * rad_per_deg))};
 }
 
-/* Mean of a cycle above its minimum, as a share of the nominal range. night_h: from sunset to the next minimum. */
+/* Mean of a cycle above its minimum, as a share of the nominal range. night_h: time from sunset to the next minimum. */
 static double cycle_mean(const Cycle *c, double night_h)
 {
     const double end = sin(pi_rad * c->day_h / c->period_h), left = exp(-night_decay);
@@ -76,7 +77,7 @@ static double clear_share(const WeatherCourseConfig *config, double unix_s)
 {
     const double lon_s = config->longitude_rad / (2 * pi_rad) * weather_day_s;
     double       day = floor((unix_s + lon_s) / weather_day_s);
-    Cycle        c[4]; /* of yesterday, today, and the two days after */
+    Cycle        c[4]; /* cycles of yesterday, today, and the two days after */
     c[1] = cycle_of(config, day);
     if (unix_s < c[1].min_s) c[1] = cycle_of(config, --day);
     for (int i = 0; i < 4; i++)
@@ -94,7 +95,7 @@ static double clear_share(const WeatherCourseConfig *config, double unix_s)
     double       above;
     if (since_h < c[1].day_h) {
         above = sin(pi_rad * since_h / c[1].period_h);
-    } else { /* displaced to reach 0 at the next minimum; the paper's own would end 1/9 of the way above it */
+    } else { /* displaced so that it reaches 0 at the next minimum; in the paper it ends 1/9 of the way above that */
         const double night_h = (c[2].min_s - c[1].min_s) / 3600 - c[1].day_h, left = exp(-night_decay);
         above = sin(pi_rad * c[1].day_h / c[1].period_h) *
                 (exp(-night_decay * (since_h - c[1].day_h) / night_h) - left) / (1 - left);
@@ -116,11 +117,11 @@ static double second_of_year(double local_s)
     return (double)((day + 59) % 365) * weather_day_s + (local_s - (double)days * weather_day_s);
 }
 
-/* Where a time lies in the rows. */
+/* The two rows that a time lies between. */
 typedef struct Between {
     int    a, b;  /* rows */
     double u;     /* 0: at a, 1: at b */
-    double gap_s; /* from a to b */
+    double gap_s; /* time from a to b */
 } Between;
 
 static Between between(const WeatherRows *rows, double unix_s)
@@ -131,7 +132,7 @@ static Between between(const WeatherRows *rows, double unix_s)
     double        t_s = unix_s;
     if (rows->each_year) {
         t_s = second_of_year(unix_s + rows->utc_offset_s);
-    } else if (last_s - first_s >= weather_day_s) { /* the first or the last 24 h again */
+    } else if (last_s - first_s >= weather_day_s) { /* repeats the first or the last 24 h of the file */
         if (t_s < first_s) t_s = first_s + (t_s - first_s - weather_day_s * floor((t_s - first_s) / weather_day_s));
         if (t_s > last_s) t_s = last_s + (t_s - last_s - weather_day_s * ceil((t_s - last_s) / weather_day_s));
     } else {
@@ -169,7 +170,7 @@ static bool is_mean(int column) { return is_radiation(column) || column == WEATH
 static double mix(int column, double a, double b, double u)
 {
     if (column != WEATHER_WIND_FROM_RAD) return a + u * (b - a);
-    const double turned = a + u * remainder(b - a, 2 * pi_rad); /* the short way round */
+    const double turned = a + u * remainder(b - a, 2 * pi_rad); /* turns the short way round */
     return turned - 2 * pi_rad * floor(turned / (2 * pi_rad));
 }
 
@@ -181,8 +182,7 @@ static double value_at(const WeatherRows *rows, int column, const Between *at)
     return mix(column, value[at->a], value[at->b], at->u);
 }
 
-/* Fills one run of rows without a value, from row a to row b, which have one; b may be beyond the last: of next year.
- */
+/* Fills rows without a value between rows a and b, which have one; b may lie beyond the last row, in the next year. */
 static void fill_run(WeatherRows *rows, int column, int a, int b)
 {
     double      *value = rows->value[column];
@@ -195,7 +195,7 @@ static void fill_run(WeatherRows *rows, int column, int a, int b)
     }
 }
 
-/* Values not given: linear between those that are, over at most 3 h of radiation. */
+/* Fills in values that are not given, linear between those that are; gaps in radiation only up to 3 h. */
 static void fill_gaps(WeatherRows *rows, int column)
 {
     double *value = rows->value[column];
@@ -216,7 +216,7 @@ static void fill_gaps(WeatherRows *rows, int column)
 
 static void rows_at(Weather *w, const WeatherRows *rows, double unix_s)
 {
-    /* a mean over the time before the row is that of the middle */
+    /* a mean over the time before the row counts for the middle of that time */
     const Between at = between(rows, unix_s);
     const Between at_mean = rows->mean_s > 0 ? between(rows, unix_s + 0.5 * rows->mean_s) : at;
     double *const out[weather_columns] = {

@@ -9,32 +9,33 @@
 
 enum { most_octets = 1 << 26, most_rows = 1000000, most_cells = 128 };
 
-/* Read like columns, used to fill one. */
+/* Fields that are read as columns are, and from which a column is computed. */
 enum { field_dew_point_k = weather_columns, field_opaque_cloud, field_rain_h, field_count };
 
-/* A number of a row. Behind the place in the row: its unit's way to ours. */
+/* A number in a row: the index where its value goes, and how its unit is converted. */
 typedef struct Field {
     const char *name;
     int         column;
-    double      low, high;    /* as written in the file */
+    double      low, high;    /* range as written in the file */
     double      scale, shift; /* value = scale * number + shift */
-    double      missing;      /* > 0: numbers from it upwards are not given; < 0: from it downwards; 0: every one is */
-    int         cell;         /* in a row; -1: absent */
+    double
+        missing; /* > 0: numbers from this upwards mean missing; < 0: numbers from this downwards; 0: no number does */
+    int cell;    /* its cell in a row; -1: the file does not have it */
 } Field;
 
 typedef struct Reader {
     const char  *path;
-    char        *next;             /* rest of the text */
+    char        *next;             /* the text that is not read yet */
     int          line;             /* number of the last line */
-    char        *cell[most_cells]; /* of the last line */
-    int          cells;            /* may be more than most_cells */
+    char        *cell[most_cells]; /* cells of the last line */
+    int          cells;            /* number of cells, which may exceed most_cells */
     int          capacity;         /* rows that memory was allocated for */
     WeatherRows *rows;
 } Reader;
 
 /* ---- lines and cells ---------------------------------------------------------------------- */
 
-/* NULL: there is none. */
+/* Reads the next line; returns NULL when there is none. */
 static char *next_line(Reader *r)
 {
     char *line = r->next;
@@ -53,7 +54,8 @@ static bool split(Reader *r, char *line)
     return false;
 }
 
-/* The next line that is neither blank nor a comment. False: none, or *status is not STATUS_OK. */
+/* Reads the next line that is neither blank nor a comment. Returns false when there is none, or *status is not
+ * STATUS_OK. */
 static bool next_row(Reader *r, bool comments, Status *status)
 {
     for (char *line; (line = next_line(r));) {
@@ -87,7 +89,7 @@ static Status number_of(double *out, const Reader *r, const char *name, int cell
     return STATUS_OK;
 }
 
-/* value[field_count], NaN where not given. */
+/* value[field_count]: NaN where the row does not give it. */
 static Status fields_of(double *value, const Reader *r, const Field *field, int count)
 {
     for (int i = 0; i < field_count; i++) value[i] = NAN;
@@ -104,7 +106,7 @@ static Status fields_of(double *value, const Reader *r, const Field *field, int 
     return STATUS_OK;
 }
 
-/* What follows from other fields of the row, and what files write beyond the ranges of Weather. */
+/* Computes what follows from other fields of the row, and corrects what files write beyond the ranges of Weather. */
 static void finish_fields(double *value)
 {
     if (isnan(value[WEATHER_HUMIDITY])) /* NaN stays where either temperature is not given */
@@ -113,9 +115,9 @@ static void finish_fields(double *value)
     if (isnan(value[WEATHER_CLOUD])) value[WEATHER_CLOUD] = value[field_opaque_cloud];
     if (value[field_rain_h] > 1) value[WEATHER_RAIN_MM_H] /= value[field_rain_h];
     if (value[WEATHER_RAIN_MM_H] > 300) value[WEATHER_RAIN_MM_H] = 300; /* NREL's 703165TY has 508 mm in an hour */
-    if (value[WEATHER_LONGWAVE] <= 0) value[WEATHER_LONGWAVE] = NAN;    /* files without it hold 0 */
+    if (value[WEATHER_LONGWAVE] <= 0) value[WEATHER_LONGWAVE] = NAN;    /* files without longwave radiation hold 0 */
     if (value[WEATHER_HUMIDITY] > 1) value[WEATHER_HUMIDITY] = 1;
-    if (value[WEATHER_DIRECT] < 0) value[WEATHER_DIRECT] = 0; /* offsets of instruments at night */
+    if (value[WEATHER_DIRECT] < 0) value[WEATHER_DIRECT] = 0; /* instruments have offsets at night */
     if (value[WEATHER_DIFFUSE] < 0) value[WEATHER_DIFFUSE] = 0;
     value[WEATHER_VISIBILITY_M] = clamp(value[WEATHER_VISIBILITY_M], 100, 300000);
 }
@@ -142,7 +144,8 @@ static Status add_row(Reader *r, double time_s, const double *value)
 
 static const int month_days[12] = {31, 28, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31};
 
-/* hour 1 .. 24 ends at the row's time. False: no such date; 29 February is one, with a time of -1. */
+/* hour 1 .. 24 ends at the row's time. Returns false when there is no such date; 29 February is one, with a time of -1.
+ * */
 static bool time_in_year(double *time_s, int month, int day, int hour)
 {
     if (month < 1 || month > 12 || day < 1 || day > month_days[month - 1] + (month == 2) || hour < 1 || hour > 24)
@@ -253,8 +256,8 @@ static Status read_epw(Reader *r)
 
 /* ---- tables whose header names the columns -------------------------------------------------- */
 
-/* Sets the cell of each field whose name the last line has. other: names that are no fields, up to a NULL; NULL: any.
- */
+/* Sets the cell of each field whose name is in the last line. other: names that are accepted but are not fields, up to
+ * a NULL; NULL: any name is accepted. */
 static Status find_columns(Reader *r, Field *field, int count, const char *const *other)
 {
     if (r->cells > most_cells) {
@@ -271,7 +274,7 @@ static Status find_columns(Reader *r, Field *field, int count, const char *const
                 field[i].cell = c;
                 found = 1;
             }
-        if (!other) continue; /* foreign files have columns we do not use */
+        if (!other) continue; /* other people's files have columns that are not used here */
         for (int i = 0; other[i]; i++) found |= strcmp(other[i], name) == 0;
         for (int i = 0; i < c; i++) twice |= strcmp(r->cell[i], name) == 0;
         if (!found || twice) {
@@ -344,7 +347,7 @@ static Status read_tmy3(Reader *r)
         snprintf(date, sizeof date, "%s %s", d, t);
         if (sscanf(d, "%2d/%2d/%4d%n", &month, &day, &year, &date_end) != 3 || d[date_end] ||
             sscanf(t, "%2d:%2d%n", &hour, &minute, &time_end) != 2 || t[time_end] || minute != 0)
-            month = 0; /* no such date */
+            month = 0; /* such a date does not exist */
         status = add_row_of_year(r, date, month, day, hour, field, fields);
         if (status != STATUS_OK) return status;
     }
@@ -420,7 +423,7 @@ static Status allocate(WeatherRows *rows, int capacity)
     return ok ? STATUS_OK : STATUS_NO_MEMORY;
 }
 
-/* Frees the columns that no row gives. */
+/* Frees the columns for which no row has a value. */
 static void drop_empty(WeatherRows *rows)
 {
     for (int c = 0; c < weather_columns; c++) {

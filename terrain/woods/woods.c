@@ -8,7 +8,7 @@
 
 /* ---- low plants and stones, a square of 8 m at a time -------------------------------------------- */
 
-/* A lattice of 0.5 m with a candidate a cell; in fields with rows it is moved onto its row. */
+/* Low plants: a lattice of 0.5 m with a candidate in each cell; in fields with rows it is moved onto its row. */
 enum { low_side = 16, low_cells = low_side * low_side };
 static const double low_cell_m = 0.5;
 
@@ -19,7 +19,7 @@ int woods_low_plants(Plant plant[woods_low_most], const Woods *woods, int64_t i,
     uint8_t            surface[low_cells], kept_surface[low_cells], bears[low_cells];
     uint64_t           hash[low_cells], kept_hash[low_cells];
     int                count = 0, out = 0;
-    /* the lattice is that of the ground: the woods' origin is a whole number of squares from the landscape's */
+    /* the lattice belongs to the ground: the woods' origin is a whole number of squares from the landscape's */
     const int64_t per_square = (int64_t)(woods_square_m / woods_low_m);
     const int64_t a0 = (s->i0 * per_square + i) * low_side, b0 = (s->j0 * per_square + j) * low_side;
     for (int k = 0; k < low_cells; k++) {
@@ -119,7 +119,7 @@ Status woods_of_class(Woods *out, SurfaceClass surface, double density, uint64_t
     for (int n = 0; n < squares * squares; n++) {
         woods.first[n] = (uint32_t)all.count;
         for (int k = 0; k < cells; k++) {
-            double         x_m, y_m, far_m[2]; /* far: where groves are others for each plant */
+            double         x_m, y_m, far_m[2]; /* far_m: another random place for each plant, whose groves it takes */
             Plant          plant;
             const uint64_t hash = woods_candidate(&x_m, &y_m, &s, n % squares, n / squares, k);
             if (!(woods_unit(woods_hash(hash, 7, 0, 0)) < density * class->per_m2 * woods_cell_m * woods_cell_m))
@@ -363,7 +363,7 @@ void woods_destroy(Woods *woods)
 
 double woods_trunk_m(const Plant *plant)
 {
-    /* of the prototypes: 1 to 3 hundredths of the height (render/trace/plants/plants_grow.c) */
+    /* as a share of the height, as in the prototypes: 1 to 3 hundredths (render/trace/plants/plants_grow.c) */
     static const double share[PLANT_TREES] = {0.016, 0.014, 0.011, 0.028, 0.024, 0.024, 0.030};
     return plant_is_tree((PlantKind)plant->kind) ? share[plant->kind] * plant_height_m(plant) * plant->width / 128 : 0;
 }

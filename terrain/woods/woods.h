@@ -12,38 +12,38 @@
 
 /* A straight piece of a path along which invented woods are cleared. */
 typedef struct WoodsPath {
-    double a_m[2], b_m[2]; /* ENU of the landscape */
-    double half_m;         /* half its width for what stands */
-    double low_half_m;     /* for low plants; 0: they stay, as below a flight */
+    double a_m[2], b_m[2]; /* ends, in the landscape's ENU */
+    double half_m;         /* half the width that is cleared of standing plants */
+    double low_half_m;     /* half the width that is cleared of low plants; 0: they stay, as below a flight */
 } WoodsPath;
 
 typedef struct WoodsConfig {
     uint64_t seed;
     double centre_m[2]; /* ENU: trees beyond most_trees are left out, farthest from here first, whole cells at a time */
-    double half_width_m; /* of the square about it in which plants stand; 50 .. 50000 */
+    double half_width_m; /* half width of the square about the centre in which plants stand; 50 .. 50000 */
     int    most_trees;   /* 0 .. woods_most_trees */
     const char *store;   /* path of the terrain store of the landscape, for its canopy layers and crowns; NULL: none */
     int         path_count;
-    const WoodsPath *path; /* cleared of plants */
+    const WoodsPath *path; /* paths that are cleared of plants */
 } WoodsConfig;
 
 enum { woods_most_trees = 4000000 };
 
-/* Squares of standing plants, for those who look for them by place: plants of square (i, j), whose south-west corner is
- * at origin + woods_square_m (i, j), are plant[first[j * nx + i]] .. plant[first[j * nx + i + 1] - 1]. */
+/* Squares of standing plants, for look-ups by place: the plants of square (i, j), whose south-west corner is at origin
+ * + woods_square_m (i, j), are plant[first[j * nx + i]] .. plant[first[j * nx + i + 1] - 1]. */
 static const double woods_square_m = 64;
 
 typedef struct Woods {
-    double           origin_enu[3]; /* of plant positions, and of the squares (its x and y) */
+    double           origin_enu[3]; /* origin of plant positions and, in x and y, of the squares */
     int              nx, ny;        /* squares */
     uint32_t        *first;         /* [nx * ny + 1] */
     int              count;
     Plant           *plant; /* [count] square by square, and in a fixed order within a square */
     int              by_kind[PLANT_KINDS];
-    int              left_out; /* trees beyond most_trees */
-    uint8_t         *bare;     /* [nx * ny] 1: of such a square; NULL: none is */
-    double           reach_m;  /* from centre_m: trees within are complete */
-    int              from_crowns, from_canopy, from_classes, from_hedges; /* sources of the plants */
+    int              left_out; /* trees left out beyond most_trees */
+    uint8_t         *bare;     /* [nx * ny] 1: the square's trees were left out; NULL: no square's were */
+    double           reach_m;  /* distance from centre_m within which no tree was left out */
+    int              from_crowns, from_canopy, from_classes, from_hedges; /* how many plants came from each source */
     const Landscape *landscape;                                           /* borrowed */
     void            *low;                                                 /* private: what woods_low_plants needs */
 } Woods;
@@ -52,8 +52,9 @@ typedef struct Woods {
 Status woods_create(Woods *out, const Landscape *landscape, const WoodsConfig *config, Pool *pool);
 void   woods_destroy(Woods *woods);
 
-/* Low plants of a square of woods_low_m, south-west corner at origin + woods_low_m (i, j): at most `most` into plant,
- * positions from the square's own south-west corner and Woods.origin_enu[2]. Returns their number. Thread-safe. */
+/* Lists the low plants of the square of woods_low_m whose south-west corner is at origin + woods_low_m (i, j): at most
+ * `most`, into plant. Positions are relative to that corner and to Woods.origin_enu[2]. Returns their number.
+ * Thread-safe. */
 static const double woods_low_m = 8;
 enum { woods_low_most = 4096 };
 int woods_low_plants(Plant plant[woods_low_most], const Woods *woods, int64_t i, int64_t j);
@@ -63,8 +64,8 @@ int woods_low_plants(Plant plant[woods_low_most], const Woods *woods, int64_t i,
  * -1: that of the class; density[count]: plants there over the class's mean. surface: of the places. */
 void woods_not_standing(uint8_t *stand, float *cover, float *density, const Woods *woods, int count,
                         const uint8_t *surface, const double *x_m, const double *y_m);
-/* Plants of one class alone on level ground of height 0, squares x squares about the origin, everywhere as many, over
- * the class's mean, and with all its kinds. */
+/* Makes plants of one class on level ground of height 0, squares x squares about the origin, evenly dense and with all
+ * kinds of the class. density: relative to the class's mean. */
 Status woods_of_class(Woods *out, SurfaceClass surface, double density, uint64_t seed, int squares);
 
 /* The standing plants whose trunk or stem (woods_trunk_m of radius) a circle touches: at most `most` of their indices;
@@ -76,10 +77,10 @@ double woods_trunk_m(const Plant *plant);
 /* ---- what grows on each surface class (etc/woods.csv) -------------------------------------------- */
 
 typedef struct WoodsClass {
-    double    per_m2; /* woody plants */
+    double    per_m2; /* woody plants per square metre */
     double    low_m, high_m;
     double    share[PLANT_STANDING]; /* their sum is 1, or 0 where per_m2 is 0 */
-    PlantKind floor;                 /* PLANT_KINDS: none */
+    PlantKind floor;                 /* PLANT_KINDS: there is none */
     double    floor_per_m2, floor_low_m, floor_high_m;
 } WoodsClass;
 

@@ -5,7 +5,7 @@
 #include "terrain/store/store.h"
 #include "terrain/woods/woods.h"
 
-/* Pieces of paths, and vehicles' places, by the squares of woods_square_m that they reach into. */
+/* Pieces of paths and places of vehicles, listed for each square of woods_square_m that they reach into. */
 typedef struct WoodsClearings {
     int        count;
     WoodsPath *path; /* [count] */
@@ -15,11 +15,11 @@ typedef struct WoodsClearings {
     uint32_t  *item;
 } WoodsClearings;
 
-/* Crowns of a terrain store by squares. */
+/* Crowns of a terrain store, listed by squares. */
 typedef struct WoodsCrowns {
-    uint32_t *first; /* [nx * ny + 1] of the woods' squares; NULL: none */
+    uint32_t *first; /* [nx * ny + 1] by the woods' squares; NULL: no crowns */
     uint32_t *item;
-    double    low[2], high[2]; /* where crowns were looked for: about all of them */
+    double    low[2], high[2]; /* box about the crowns, in which they were looked for */
 } WoodsCrowns;
 
 typedef struct WoodsSource {
@@ -31,7 +31,7 @@ typedef struct WoodsSource {
     WoodsClearings   clearings;
     WoodsCrowns      crowns;
     double           origin_enu[3];
-    int64_t          i0, j0; /* of the first square */
+    int64_t          i0, j0; /* number of the first square */
     int              nx, ny;
     double           centre_m[2];
 } WoodsSource;
@@ -47,10 +47,10 @@ static inline uint64_t woods_hash(uint64_t seed, int64_t a, int64_t b, uint64_t 
 }
 static inline double woods_unit(uint64_t hash) { return (double)(hash >> 11) * 0x1p-53; }
 
-/* Fills in all but p_m: kind and height are given; lean, twist and width drawn. */
+/* Draws lean, twist and width of a plant of a given kind and height; all but p_m is set. */
 Plant woods_draw_plant(uint64_t hash, PlantKind kind, double height_m, double width);
-/* Whether the ground there bears a trunk: none on roads, tracks, water, roofs, in clearings. Many places of one square
- * at a time; bears[count]: 1 or 0. */
+/* Whether the ground bears a trunk: it does not on roads, tracks, water, roofs and clearings. For many places of one
+ * square at once; bears[count]: 1 or 0. */
 void woods_bears(uint8_t *bears, const WoodsSource *s, int count, const double *x_m, const double *y_m, double room_m,
                  bool low);
 
@@ -58,7 +58,7 @@ Status woods_clearings_create(WoodsClearings *out, const WoodsSource *s, const W
 bool   woods_is_cleared(const WoodsClearings *c, double x_m, double y_m, double room_m, bool low);
 void   woods_clearings_free(WoodsClearings *c);
 
-/* Standing plants of one square; positions from the woods' origin. */
+/* The standing plants of one square; positions are relative to the woods' origin. */
 typedef struct SquarePlants {
     Plant *plant;
     int    count, room;
@@ -68,16 +68,18 @@ typedef struct SquarePlants {
 void woods_fill_square(SquarePlants *out, const WoodsSource *s, int i, int j);
 void woods_add_plant(SquarePlants *out, const WoodsSource *s, Plant plant, double x_m, double y_m);
 
-/* Square (i, j) has woods_side_cells squared candidates: place of number k, and the hash that it is drawn with. */
+/* Square (i, j) has woods_side_cells squared candidates. For candidate k: its place, and the hash from which its plant
+ * is drawn. */
 enum { woods_cell_m = 4, woods_side_cells = 16 };
 uint64_t woods_candidate(double *x_m, double *y_m, const WoodsSource *s, int i, int j, int k);
-/* A plant of a class, of the kinds that are frequent there; and plants there over the class's mean. */
+/* Draws a plant of a class, of the kinds that are frequent there; and the density of plants there relative to the
+ * class's mean. */
 void   woods_draw_of_class(Plant *out, const WoodsSource *s, const WoodsClass *class, double x_m, double y_m,
                            uint64_t hash);
 double woods_density(const WoodsSource *s, double x_m, double y_m);
 /* The class whose plants stand on a surface. */
 SurfaceClass woods_class_at(const WoodsSource *s, uint8_t surface, double x_m, double y_m);
-/* The canopy layers of the store; false: none there. */
+/* The values of the store's canopy layers at a place; returns false when they have none there. */
 bool woods_canopy_at(double *cover, double *height_m, const WoodsSource *s, double x_m, double y_m);
 
 #endif

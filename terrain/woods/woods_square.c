@@ -12,7 +12,7 @@ static const double vehicle_m = 4, way_room_m = 1;
 
 /* ---- clearings -------------------------------------------------------------------------------- */
 
-/* From the path's middle. */
+/* Distance of a place from the path's middle line. */
 static double away_from(const WoodsPath *p, double x_m, double y_m)
 {
     const double dx = p->b_m[0] - p->a_m[0], dy = p->b_m[1] - p->a_m[1], square = dx * dx + dy * dy;
@@ -24,7 +24,7 @@ static double away_from(const WoodsPath *p, double x_m, double y_m)
 /* Calls count or put for every square that a path may reach into. */
 static void walk_squares(WoodsClearings *c, uint32_t *at, bool put)
 {
-    static const double reach_m = 4; /* more room than any plant is given */
+    static const double reach_m = 4; /* no plant is given more room than this */
     for (int n = 0; n < c->count; n++) {
         const WoodsPath *p = &c->path[n];
         int64_t          from[2], end[2];
@@ -60,7 +60,7 @@ Status woods_clearings_create(WoodsClearings *out, const WoodsSource *s, const W
         const double *p = known->fix[n].p_enu;
         c.path[c.count++] = (WoodsPath){{p[0], p[1]}, {p[0], p[1]}, vehicle_m, vehicle_m};
     }
-    /* counted at first[2 ..], then summed: while they are filled, first[n + 1] is the next place of square n */
+    /* counts at first[2 ..], then sums: while squares are filled, first[n + 1] is the next place of square n */
     walk_squares(&c, c.first + 2, false);
     for (size_t n = 1; n <= squares; n++) c.first[n + 1] += c.first[n];
     c.item = calloc((size_t)c.first[squares + 1] + 1, sizeof *c.item);
@@ -129,8 +129,8 @@ void woods_bears(uint8_t *bears, const WoodsSource *s, int count, const double *
 
 enum { square_cells = woods_side_cells * woods_side_cells };
 static const double cell_m = woods_cell_m;
-static const double grove_m = 140, patch_m = 70; /* waves of species, and of density */
-static const double hedges_reach_m = 3000;       /* from the centre: farther off they are the colour of their ground */
+static const double grove_m = 140, patch_m = 70; /* wavelengths by which kinds, and density, vary */
+static const double hedges_reach_m = 3000;       /* beyond it hedges have the colour of their ground */
 
 /* Smooth noise, -1 .. 1, of waves of length_m. */
 static double woods_noise(uint64_t seed, uint64_t stream, double x_m, double y_m, double length_m)
@@ -145,7 +145,8 @@ static double woods_noise(uint64_t seed, uint64_t stream, double x_m, double y_m
     return 2 * (south + t * (north - south)) - 1;
 }
 
-/* Lean: 3 degrees rms each way (two uniform numbers make a bell), within 15. */
+/* Draws lean, twist and width. Lean: 3 degrees rms each way (the sum of two uniform numbers is bell-shaped), within 15.
+ * */
 Plant woods_draw_plant(uint64_t hash, PlantKind kind, double height_m, double width)
 {
     Plant p = {.kind = (uint8_t)kind, .twist = (uint16_t)hash};
@@ -158,13 +159,13 @@ Plant woods_draw_plant(uint64_t hash, PlantKind kind, double height_m, double wi
     return p;
 }
 
-/* Heavier towards the tall end of a stand. */
+/* Draws a height; heights near the upper end are more frequent. */
 static double height_of(uint64_t hash, double low_m, double high_m)
 {
     return low_m + (high_m - low_m) * sqrt(woods_unit(woods_hash(hash, 3, 0, 0)));
 }
 
-/* By the class's shares, each kind more where its own noise is high: groves. */
+/* Draws a kind by the class's shares; each is more frequent where its own noise is high, which makes groves. */
 static PlantKind kind_at(const WoodsSource *s, const double share[PLANT_STANDING], double x_m, double y_m,
                          uint64_t hash)
 {
@@ -184,7 +185,7 @@ static PlantKind kind_at(const WoodsSource *s, const double share[PLANT_STANDING
     return (PlantKind)last;
 }
 
-/* Denser and thinner in patches; mean 1. */
+/* Density relative to the mean, which varies in patches. */
 double woods_density(const WoodsSource *s, double x_m, double y_m)
 {
     return 1 + 0.7 * woods_noise(s->seed, 30, x_m, y_m, patch_m) +
@@ -225,7 +226,7 @@ static bool is_marked(const WoodsSource *s, double x_m, double y_m)
     return c->first && x_m >= c->low[0] && y_m >= c->low[1] && x_m <= c->high[0] && y_m <= c->high[1];
 }
 
-/* What grows where the class has no trees, but a layer or a crown says that there are some. */
+/* The shares of kinds where the class has no trees, but a layer or a crown says that there are some. */
 static const double *shares_of(const WoodsSource *s, uint8_t surface)
 {
     const WoodsClass *class = &s->table.of[surface];
@@ -273,7 +274,8 @@ bool woods_canopy_at(double *cover, double *height_m, const WoodsSource *s, doub
            layer_at(height_m, &s->store.canopy_height_grid, s->store.canopy_height, store_canopy_height_m, x_m, y_m);
 }
 
-/* A plant of the canopy layers; false: none here. found: the layers have a value. */
+/* Draws a plant from the canopy layers; returns false when there is none. found: whether the layers have a value here.
+ * */
 static bool from_canopy(Plant *out, bool *found, const WoodsSource *s, uint8_t surface, double x_m, double y_m,
                         uint64_t hash)
 {
@@ -284,14 +286,15 @@ static bool from_canopy(Plant *out, bool *found, const WoodsSource *s, uint8_t s
     const PlantKind kind = each_m < 2.5 ? PLANT_BUSH : kind_at(s, shares_of(s, surface), x_m, y_m, hash);
     const double    radius_m = each_m * plant_crown_share(kind), area_m2 = pi_rad * radius_m * radius_m;
     const double    per_cell = -log(1 - fmin(cover, 0.97)) * cell_m * cell_m / area_m2;
-    /* where one plant a cell is not enough, it is wider */
+    /* where one plant a cell is not enough to reach the cover, it is made wider */
     const double width = clamp(sqrt(fmax(per_cell / 0.9, 1)), 1, 1.99);
     if (!(woods_unit(woods_hash(hash, 6, 0, 0)) < per_cell / (width * width))) return false;
     *out = woods_draw_plant(hash, kind, each_m, width);
     return true;
 }
 
-/* The synthetic terrain has no class of woods: its wild patches are scrub, and most of them are wooded. */
+/* The class whose plants stand on a surface. The synthetic terrain has no class of woods: its wild patches are scrub,
+ * and most of them are wooded. */
 SurfaceClass woods_class_at(const WoodsSource *s, uint8_t surface, double x_m, double y_m)
 {
     static const double wood_m = 260;
@@ -319,7 +322,7 @@ static bool from_class(Plant *out, const WoodsSource *s, uint8_t surface, double
     return true;
 }
 
-/* Hedgerows are of class scrub: what stands on their middle. */
+/* Adds what stands on the middle of a hedgerow, whose class is scrub. */
 static bool add_hedge(SquarePlants *out, const WoodsSource *s, double x_m, double y_m)
 {
     static const double spacing_m = 2;

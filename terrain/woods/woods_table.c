@@ -26,7 +26,7 @@ static const struct {
 
 const char *plant_name(PlantKind kind) { return kind >= 0 && kind < PLANT_KINDS ? kinds[kind].name : "none"; }
 
-/* PLANT_KINDS: no such kind. */
+/* The kind of that name; PLANT_KINDS: there is none. */
 static PlantKind plant_find(const char *name)
 {
     for (int k = 0; k < PLANT_KINDS; k++)

@@ -9,7 +9,9 @@ static Elevation plane(double half_m, double spacing_m, double base_m, double sl
     Elevation    ground = {0};
     const int    n = (int)(2 * half_m / spacing_m) + 1;
     const double step_m = 1.0 / 64, z0_m = base_m - 500;
-    assert_int_equal(elevation_level_create(&ground, 0, n, n, -half_m, -half_m, spacing_m, z0_m, step_m), STATUS_OK);
+    assert_int_equal(
+        elevation_level_create(&ground, 0, &(ElevationGrid){n, n, -half_m, -half_m, spacing_m, z0_m, step_m}),
+        STATUS_OK);
     for (int j = 0; j < n; j++)
         for (int i = 0; i < n; i++) {
             const double z_m = base_m + slope_x * (i * spacing_m - half_m) + slope_y * (j * spacing_m - half_m);

@@ -295,7 +295,7 @@ static void the_ground_decides(void **state)
     Elevation         ground = {0};
     EntityTableConfig config = entity_table_default_config();
     CHECK(local_frame_at(&frame, &origin) == STATUS_OK);
-    CHECK(elevation_level_create(&ground, 0, 101, 101, -500, -500, 10, 0, 0.5) == STATUS_OK);
+    CHECK(elevation_level_create(&ground, 0, &(ElevationGrid){101, 101, -500, -500, 10, 0, 0.5}) == STATUS_OK);
     for (int j = 0; j < 101; j++)
         for (int i = 0; i < 101; i++) elevation_set_post(&ground.level[0], i, j, 60);
     elevation_build_pyramids(&ground);
@@ -345,7 +345,7 @@ static void marks_lie_where_their_entity_is_shown(void **state)
     Elevation         ground = {0};
     EntityTableConfig config = entity_table_default_config();
     CHECK(local_frame_at(&frame, &origin) == STATUS_OK);
-    CHECK(elevation_level_create(&ground, 0, 101, 101, -500, -500, 10, -200, 1) == STATUS_OK);
+    CHECK(elevation_level_create(&ground, 0, &(ElevationGrid){101, 101, -500, -500, 10, -200, 1}) == STATUS_OK);
     for (int j = 0; j < 101; j++)
         for (int i = 0; i < 101; i++) elevation_set_post(&ground.level[0], i, j, 185 + 2 * (j - 50));
     elevation_build_pyramids(&ground);

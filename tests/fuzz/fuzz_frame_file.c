@@ -86,8 +86,8 @@ static void small_file(ByteSink *out, bool invented, bool planted)
     } else {
         ElevationLevel *level = file.ground.elevation.level;
         file.ground.elevation.level_count = 2;
-        if (elevation_level_describe(&level[0], 17, 17, -8, -8, 1, 0, 0.1) != STATUS_OK) abort();
-        if (elevation_level_describe(&level[1], 9, 9, -32, -32, 8, 0, 0.1) != STATUS_OK) abort();
+        if (elevation_level_describe(&level[0], &(ElevationGrid){17, 17, -8, -8, 1, 0, 0.1}) != STATUS_OK) abort();
+        if (elevation_level_describe(&level[1], &(ElevationGrid){9, 9, -32, -32, 8, 0, 0.1}) != STATUS_OK) abort();
         level[0].tile = level[1].tile = tile, level[0].stored = level[1].stored = stored;
         level[1].plain = false;
         file.ground.cover[0] = (CoverGrid){.nx = 16, .ny = 16, .x0_m = -8, .y0_m = -8, .cell_m = 1, .surface = cover};

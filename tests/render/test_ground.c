@@ -31,7 +31,8 @@ static void normals_at(double n_geo[3], double n_enu[3], const Ground *ground, c
 static void make_level(Elevation *e, int index, int nx, int ny, double x0_m, double y0_m, double spacing_m, double z0_m,
                        double step_m)
 {
-    assert_int_equal(elevation_level_create(e, index, nx, ny, x0_m, y0_m, spacing_m, z0_m, step_m), STATUS_OK);
+    assert_int_equal(elevation_level_create(e, index, &(ElevationGrid){nx, ny, x0_m, y0_m, spacing_m, z0_m, step_m}),
+                     STATUS_OK);
 }
 
 static void make_rough(Elevation *e, int index, int highest)

@@ -25,7 +25,8 @@ static double spikes(double x_m, double y_m) { return lround(x_m) % 23 == 0 && l
 static void add_level(Elevation *e, int index, int nx, int ny, double x0_m, double y0_m, double spacing_m,
                       Country *country)
 {
-    CHECK(elevation_level_create(e, index, nx, ny, x0_m, y0_m, spacing_m, -20, 1.0 / 128) == STATUS_OK);
+    CHECK(elevation_level_create(e, index, &(ElevationGrid){nx, ny, x0_m, y0_m, spacing_m, -20, 1.0 / 128}) ==
+          STATUS_OK);
     for (int j = 0; j < ny; j++)
         for (int i = 0; i < nx; i++)
             elevation_set_post(&e->level[index], i, j,

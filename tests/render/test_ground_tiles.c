@@ -40,7 +40,8 @@ static void make_ground(Elevation *e, Shape *shape, double spacing_m)
     int32_t *post = malloc((size_t)nx * ny * sizeof *post);
     CHECK(post);
     *e = (Elevation){0};
-    CHECK(elevation_level_create(e, 0, nx, ny, -0.5 * nx * spacing_m, -0.5 * ny * spacing_m, spacing_m, 0, 1.0 / 512) ==
+    CHECK(elevation_level_create(
+              e, 0, &(ElevationGrid){nx, ny, -0.5 * nx * spacing_m, -0.5 * ny * spacing_m, spacing_m, 0, 1.0 / 512}) ==
           STATUS_OK);
     for (int j = 0; j < ny; j++)
         for (int i = 0; i < nx; i++) post[j * nx + i] = shape(i, j);
@@ -194,7 +195,7 @@ static void another_base_and_shift_is_the_same_ground(void **state)
     Elevation     plain = {0}, tiled = {0};
     Elevation    *both[2] = {&plain, &tiled};
     for (int k = 0; k < 2; k++)
-        CHECK(elevation_level_create(both[k], 0, nx, ny, -75, -70, 1, -100, 1.0 / 128) == STATUS_OK);
+        CHECK(elevation_level_create(both[k], 0, &(ElevationGrid){nx, ny, -75, -70, 1, -100, 1.0 / 128}) == STATUS_OK);
     ElevationLevel *l = &tiled.level[0];
     l->plain = false;
     for (int t = 0; t < l->tiles_x * l->tiles_y; t++)

@@ -155,7 +155,8 @@ typedef double Country(double x_m, double y_m);
 static void add_level(Elevation *e, int index, int nx, int ny, double x0_m, double y0_m, double spacing_m,
                       Country *country)
 {
-    assert_int_equal(elevation_level_create(e, index, nx, ny, x0_m, y0_m, spacing_m, -20, 1.0 / 128), STATUS_OK);
+    assert_int_equal(elevation_level_create(e, index, &(ElevationGrid){nx, ny, x0_m, y0_m, spacing_m, -20, 1.0 / 128}),
+                     STATUS_OK);
     ElevationLevel *level = &e->level[index];
     for (int j = 0; j < ny; j++)
         for (int i = 0; i < nx; i++)

@@ -12,7 +12,8 @@ static void ridge(double high_m)
 {
     elevation_destroy(&ground);
     ground = (Elevation){0};
-    CHECK(elevation_level_create(&ground, 0, posts, posts, -800, -800, spacing_m, -100, 1.0 / 64) == STATUS_OK);
+    CHECK(elevation_level_create(&ground, 0, &(ElevationGrid){posts, posts, -800, -800, spacing_m, -100, 1.0 / 64}) ==
+          STATUS_OK);
     for (int t = 0; t < ground.level[0].tiles_x * ground.level[0].tiles_y; t++)
         ground.level[0].tile[t] = (ElevationTile){0, 0};
     ground.level[0].plain = true;

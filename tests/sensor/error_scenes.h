@@ -46,8 +46,9 @@ static inline Landscape every_fourth(const Landscape *of)
     for (int n = 0; n < of->elevation.level_count; n++) {
         const ElevationLevel *l = &of->elevation.level[n];
         const int             stride = n == 0 ? 4 : 1, nx = (l->nx - 1) / stride + 1, ny = (l->ny - 1) / stride + 1;
-        assert_int_equal(elevation_level_create(&made.elevation, n, nx, ny, l->x0_m, l->y0_m, stride * l->spacing_m,
-                                                l->z0_m, l->step_m),
+        assert_int_equal(elevation_level_create(
+                             &made.elevation, n,
+                             &(ElevationGrid){nx, ny, l->x0_m, l->y0_m, stride * l->spacing_m, l->z0_m, l->step_m}),
                          STATUS_OK);
         for (int j = 0; j < ny; j++)
             for (int i = 0; i < nx; i++)

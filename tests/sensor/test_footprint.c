@@ -20,7 +20,8 @@ static int lab_open(void **state)
     if (local_frame_at(&lab.world.frame, &origin) != STATUS_OK) return -1;
     Elevation   *elevation = &lab.landscape.elevation;
     const double half_m = 0.5 * (posts - 1) * spacing_m;
-    if (elevation_level_create(elevation, 0, posts, posts, -half_m, -half_m, spacing_m, ground_m, 1) != STATUS_OK)
+    if (elevation_level_create(elevation, 0,
+                               &(ElevationGrid){posts, posts, -half_m, -half_m, spacing_m, ground_m, 1}) != STATUS_OK)
         return -1;
     for (int j = 0; j < posts; j++) elevation_set_post(&elevation->level[0], 40, j, 900);
     elevation->level_count = 1;

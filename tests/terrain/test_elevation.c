@@ -10,7 +10,7 @@ static void one_cell_is_two_triangles(void **state)
 {
     (void)state;
     Elevation e = {0};
-    CHECK(elevation_level_create(&e, 0, 2, 2, 100, 200, 10, 5, 0.5) == STATUS_OK);
+    CHECK(elevation_level_create(&e, 0, &(ElevationGrid){2, 2, 100, 200, 10, 5, 0.5}) == STATUS_OK);
     static const int32_t post[4] = {0, 4, 2, 20}; /* sw 5, se 7, nw 6, ne 15 m */
     CHECK(elevation_fill(&e.level[0], post) == STATUS_OK);
     double n[3];
@@ -41,8 +41,8 @@ static void the_inner_level_wins(void **state)
 {
     (void)state;
     Elevation e = {0};
-    CHECK(elevation_level_create(&e, 1, 5, 5, -16, -16, 8, 0, 1) == STATUS_OK);
-    CHECK(elevation_level_create(&e, 0, 9, 9, -8, -8, 2, 100, 1) == STATUS_OK);
+    CHECK(elevation_level_create(&e, 1, &(ElevationGrid){5, 5, -16, -16, 8, 0, 1}) == STATUS_OK);
+    CHECK(elevation_level_create(&e, 0, &(ElevationGrid){9, 9, -8, -8, 2, 100, 1}) == STATUS_OK);
     CHECK(e.level_count == 2);
     CHECK_NEAR(elevation_height(&e, 0, 0, NULL), 100, 0);
     CHECK_NEAR(elevation_height(&e, 8, -8, NULL), 100, 0);
@@ -130,7 +130,7 @@ static void pyramids_are_maxima(void **state)
     for (int n = 0; n < post_kinds * (int)(sizeof size / sizeof size[0]); n++) {
         const int *side = size[n / post_kinds], kind = n % post_kinds;
         Elevation  e = {0};
-        CHECK(elevation_level_create(&e, 0, side[0], side[1], 0, 0, 1, 0, 1) == STATUS_OK);
+        CHECK(elevation_level_create(&e, 0, &(ElevationGrid){side[0], side[1], 0, 0, 1, 0, 1}) == STATUS_OK);
         int32_t *post = some_posts(kind, (uint64_t)n, side[0], side[1]);
         CHECK(elevation_fill(&e.level[0], post) == STATUS_OK);
         CHECK(e.level[0].plain == (kind == plain_posts));
@@ -150,7 +150,7 @@ static void tiles_share_their_edges(void **state)
     enum { nx = 263, ny = 200 };
     for (int kind = 0; kind < post_kinds; kind++) {
         Elevation e = {0};
-        CHECK(elevation_level_create(&e, 0, nx, ny, 0, 0, 1, 0, 1) == STATUS_OK);
+        CHECK(elevation_level_create(&e, 0, &(ElevationGrid){nx, ny, 0, 0, 1, 0, 1}) == STATUS_OK);
         ElevationLevel *level = &e.level[0];
         int32_t        *post = some_posts(kind, 7, nx, ny);
         int             coarse = 0, mixed = 0;
@@ -206,7 +206,7 @@ static void borrowed_arrays_are_left_alone(void **state)
     static uint16_t      stored[elevation_tile_posts], top[1] = {41};
     static ElevationTile tile[1] = {{-1024, 1}};
     Elevation            e = {.level_count = 1};
-    CHECK(elevation_level_describe(&e.level[0], 3, 3, 0, 0, 1, 0, 1) == STATUS_OK);
+    CHECK(elevation_level_describe(&e.level[0], &(ElevationGrid){3, 3, 0, 0, 1, 0, 1}) == STATUS_OK);
     ElevationLevel *level = &e.level[0];
     level->borrowed = true, level->plain = false;
     level->tile = tile, level->stored = stored, level->pyramid[elevation_pyramid_first] = top;
@@ -226,14 +226,14 @@ static void large_levels_have_small_pyramids(void **state)
     (void)state;
     ElevationLevel level;
     double         octets = 0;
-    CHECK(elevation_level_describe(&level, 12001, 16001, 0, 0, 1, 0, 1) == STATUS_OK);
+    CHECK(elevation_level_describe(&level, &(ElevationGrid){12001, 16001, 0, 0, 1, 0, 1}) == STATUS_OK);
     for (int k = 0; k < level.pyramid_count; k++) {
         const double nodes = (double)level.pyramid_nx[k] * level.pyramid_ny[k];
         if (k >= elevation_pyramid_first) octets += nodes * sizeof **level.pyramid;
         if (k >= elevation_rise_level) octets += nodes * sizeof **level.rise;
     }
     CHECK(octets > 0 && octets <= 100e6);
-    CHECK(elevation_level_describe(&level, 40001, 50001, 0, 0, 1, 0, 1) == STATUS_OK);
+    CHECK(elevation_level_describe(&level, &(ElevationGrid){40001, 50001, 0, 0, 1, 0, 1}) == STATUS_OK);
     CHECK(elevation_level_stored(&level) <= INT32_MAX);
 }
 
@@ -241,17 +241,18 @@ static void bad_sizes_are_refused(void **state)
 {
     (void)state;
     Elevation e = {0};
-    CHECK(elevation_level_create(&e, 0, 1, 5, 0, 0, 1, 0, 1) == STATUS_BAD_VALUE);
-    CHECK(elevation_level_create(&e, elevation_max_levels, 5, 5, 0, 0, 1, 0, 1) == STATUS_BAD_VALUE);
-    CHECK(elevation_level_create(&e, -1, 5, 5, 0, 0, 1, 0, 1) == STATUS_BAD_VALUE);
-    CHECK(elevation_level_create(&e, 0, 5, 65537, 0, 0, 1, 0, 1) == STATUS_BAD_VALUE);
-    CHECK(elevation_level_create(&e, 0, 65536, 65536, 0, 0, 1, 0, 1) == STATUS_BAD_VALUE); /* more than indices reach */
-    CHECK(elevation_level_create(&e, 0, 5, 5, NAN, 0, 1, 0, 1) == STATUS_BAD_VALUE);
-    CHECK(elevation_level_create(&e, 0, 5, 5, 0, 0, 0, 0, 1) == STATUS_BAD_VALUE);
-    CHECK(elevation_level_create(&e, 0, 5, 5, 0, 0, 1, 0, -1) == STATUS_BAD_VALUE);
+    CHECK(elevation_level_create(&e, 0, &(ElevationGrid){1, 5, 0, 0, 1, 0, 1}) == STATUS_BAD_VALUE);
+    CHECK(elevation_level_create(&e, elevation_max_levels, &(ElevationGrid){5, 5, 0, 0, 1, 0, 1}) == STATUS_BAD_VALUE);
+    CHECK(elevation_level_create(&e, -1, &(ElevationGrid){5, 5, 0, 0, 1, 0, 1}) == STATUS_BAD_VALUE);
+    CHECK(elevation_level_create(&e, 0, &(ElevationGrid){5, 65537, 0, 0, 1, 0, 1}) == STATUS_BAD_VALUE);
+    CHECK(elevation_level_create(&e, 0, &(ElevationGrid){65536, 65536, 0, 0, 1, 0, 1}) ==
+          STATUS_BAD_VALUE); /* more than indices reach */
+    CHECK(elevation_level_create(&e, 0, &(ElevationGrid){5, 5, NAN, 0, 1, 0, 1}) == STATUS_BAD_VALUE);
+    CHECK(elevation_level_create(&e, 0, &(ElevationGrid){5, 5, 0, 0, 0, 0, 1}) == STATUS_BAD_VALUE);
+    CHECK(elevation_level_create(&e, 0, &(ElevationGrid){5, 5, 0, 0, 1, 0, -1}) == STATUS_BAD_VALUE);
     CHECK(e.level_count == 0 && !e.level[0].stored);
     /* the longest side still fits the pyramid */
-    CHECK(elevation_level_create(&e, 0, 65536, 2, 0, 0, 1, 0, 1) == STATUS_OK);
+    CHECK(elevation_level_create(&e, 0, &(ElevationGrid){65536, 2, 0, 0, 1, 0, 1}) == STATUS_OK);
     CHECK(e.level[0].pyramid_nx[e.level[0].pyramid_count - 1] == 1);
     elevation_destroy(&e);
     elevation_destroy(NULL);

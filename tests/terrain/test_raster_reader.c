@@ -2,7 +2,7 @@
  * when it ends, hangs or is taken over by a file, and that gaps cost nothing. labels: threads */
 #include "tests/terrain/raster_lab.h"
 
-#include "terrain/elevation/patches.h"
+#include "terrain/elevation/raster_patch.h"
 
 #include <arpa/inet.h>
 #include <errno.h>

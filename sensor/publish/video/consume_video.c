@@ -82,7 +82,7 @@ static void label(Video *v, const EncoderConfig *form, Band band, int column, in
         const int box[4] = {t->box[0] + column, t->box[1], t->box[2] + column, t->box[3]};
         picture_text_box(&d, box);
         picture_text_draw(&d, box[0], box[1] >= 10 * times + 2 ? box[1] - 9 * times - 2 : box[3] + 3 * times, times,
-                     *t->marking ? t->marking : id);
+                          *t->marking ? t->marking : id);
     }
     picture_text_draw(&d, column + 2 * times, 2 * times, times, band_name(band));
 }

@@ -98,8 +98,8 @@ static void post_fields(Fields *f, ElevationLevel *l, const GroundCutout *kept)
     uint16_t *post = NULL;
     if (f->from && fields_good(f)) {
         ElevationLevel described;
-        if (elevation_level_describe(&described, l->nx, l->ny, l->x0_m, l->y0_m, l->spacing_m, l->z0_m, l->step_m) !=
-            STATUS_OK)
+        if (elevation_level_describe(&described, &(ElevationGrid){l->nx, l->ny, l->x0_m, l->y0_m, l->spacing_m, l->z0_m,
+                                                                  l->step_m}) != STATUS_OK)
             f->fault = "size of a level";
         else *l = described;
     }

@@ -25,8 +25,8 @@ LIBRARY(gdal_library, GDAL, "GDAL", PITVIPER_GDAL_FILE, "libgdal32");
 
 Status reader_prepare(void)
 {
-    static const GIntBig most_cache = 256 << 20; /* octets; by default a twentieth of the memory */
-    static bool          done;                   /* by the process that this one was forked from */
+    static const GIntBig most_cache = 256 << 20; /* octets; GDAL's default is a twentieth of the memory */
+    static bool          done;                   /* already done by the process that this one was forked from */
     const Status         status = library_load(&gdal_library);
     if (status != STATUS_OK || done) return status;
     done = true;
@@ -34,7 +34,7 @@ Status reader_prepare(void)
     /* A file may name others (VRT): none makes this process ask a server, which could not be reached. */
     CPLSetConfigOption("GDAL_SKIP",
                        "HTTP,WMS,WMTS,WCS,DAAS,EEDA,EEDAI,PLMosaic,NGW,OGCAPI,STACTA,STACIT,PostGISRaster");
-    CPLSetConfigOption("CPL_VSIL_CURL_ALLOWED_FILENAME", "none"); /* of /vsicurl/ and those of its kind */
+    CPLSetConfigOption("CPL_VSIL_CURL_ALLOWED_FILENAME", "none"); /* concerns /vsicurl/ and similar names */
     GDALAllRegister();
     if (GDALGetCacheMax64() > most_cache) GDALSetCacheMax64(most_cache);
     return STATUS_OK;

@@ -21,8 +21,8 @@
 static RasterSet                  set;
 static WireChannel               *channels;
 static int                        sockets[wire_channels];
-static _Thread_local WireChannel *here; /* whose request this thread works at */
-static _Thread_local size_t       said; /* octets of its log */
+static _Thread_local WireChannel *here; /* channel of the request that this thread works at */
+static _Thread_local size_t       said; /* octets of its log so far */
 
 void reader_works_at(const char *path)
 {
@@ -31,7 +31,7 @@ void reader_works_at(const char *path)
     __atomic_fetch_add(&here->alive, 1, __ATOMIC_RELAXED);
 }
 
-/* A line for the program's log; those that do not fit are left out. */
+/* Adds a line to the log that the program gets; lines that do not fit are left out. */
 static void say(void *user, LogLevel level, const char *line)
 {
     (void)user;
@@ -45,7 +45,8 @@ static void say(void *user, LogLevel level, const char *line)
 
 /* ---- confinement --------------------------------------------------------------------------------------- */
 
-/* What GDAL, PROJ and the C library open of their own while they read: tables, and modules for character sets. */
+/* Folders of files that GDAL, PROJ and the C library open by themselves while they read: tables, and modules for
+ * character sets. */
 static char **own_folders(void)
 {
     static const char *const fixed[] = {"/usr/share/gdal", "/usr/share/proj", "/usr/lib/x86_64-linux-gnu/gconv",
@@ -173,7 +174,7 @@ static Status answer(WireChannel *c)
     const WireRequest *q = &c->request;
     if (q->ask == WIRE_OPEN) return set.count ? STATUS_BAD_VALUE : open_set(c, q->key);
     if (q->raster < 0 || q->raster >= set.count) return STATUS_BAD_VALUE;
-    Raster limited = set.raster[q->raster]; /* by what this request takes for voids */
+    Raster limited = set.raster[q->raster]; /* voids are numbers outside of the range in this request */
     limited.low = q->low, limited.high = q->high;
     const Raster *raster = &limited;
     switch ((WireAsk)q->ask) {
@@ -217,7 +218,7 @@ static void *serve_channel(void *number)
         char          octet;
         const ssize_t got = read(socket, &octet, 1);
         if (got < 0 && errno == EINTR) continue;
-        if (got != 1) _exit(0); /* the program has no more use for it, or is no more */
+        if (got != 1) _exit(0); /* the program does not need this process any more, or has ended */
         said = 0;
         here->log[0] = 0;
         here->reply = (WireReply){.status = STATUS_IO};
@@ -228,7 +229,7 @@ static void *serve_channel(void *number)
 
 /* ---- processes ----------------------------------------------------------------------------------------- */
 
-/* In the process of one set. */
+/* Runs in the process of one set: opens it, and answers requests. */
 static void read_set(const int descriptor[wire_descriptors], pid_t parent)
 {
     prctl(PR_SET_PDEATHSIG, SIGKILL);
@@ -244,7 +245,8 @@ static void read_set(const int descriptor[wire_descriptors], pid_t parent)
     serve_channel(NULL);
 }
 
-/* False: the program has ended. descriptor[0] -1: none came along. */
+/* Reads the next order. Returns false when the program has ended. descriptor[0] is -1 when no descriptors came with the
+ * order. */
 static bool next_order(WireOrder *order, int descriptor[wire_descriptors])
 {
     struct iovec text = {order, sizeof *order};
@@ -275,7 +277,7 @@ int main(void)
         signal(left_to_the_program[k], SIG_IGN);
     signal(SIGCHLD, SIG_DFL);
     close_range(wire_orders + 1, ~0u, 0);
-    log_suppress(true); /* what is missing is said by the process that is asked for a set */
+    log_suppress(true); /* errors are reported by the process that is asked for a set */
     (void)reader_prepare();
     log_suppress(false);
     while (next_order(&order, descriptor)) {
@@ -287,7 +289,7 @@ int main(void)
             answer = process > 0 ? (int32_t)process : -errno;
             for (int n = 0; n < wire_descriptors; n++) close(descriptor[n]);
         } else if (order.kind == WIRE_END && order.process > 0) {
-            kill(order.process, SIGKILL); /* one that has ended already keeps its own status */
+            kill(order.process, SIGKILL); /* a process that has ended already keeps its own status */
             while (waitpid(order.process, &how, 0) < 0 && errno == EINTR) {
             }
             answer = how;

@@ -17,7 +17,7 @@ static void through(const double t[6], int count, double *x, double *y)
     }
 }
 
-/* A transformation of PROJ serves one thread at a time. */
+/* A PROJ transformation serves one thread at a time, so calls take this lock. */
 static pthread_mutex_t transforming = PTHREAD_MUTEX_INITIALIZER;
 
 static void transform(void *by, int count, double *x, double *y)
@@ -37,7 +37,7 @@ void reader_px_from_earth(const Raster *raster, int count, double *lon_to_x, dou
     }
     transform(raster->crs_from_earth, count, lon_to_x, lat_to_y);
     through(raster->px_from_crs, count, lon_to_x, lat_to_y);
-    if (raster->whole_turn_px > 0) /* the full turn of longitude of the raster */
+    if (raster->whole_turn_px > 0) /* adds or subtracts whole turns of longitude */
         for (int k = 0; k < count; k++)
             lon_to_x[k] -= raster->whole_turn_px * rint((lon_to_x[k] - 0.5 * raster->width) / raster->whole_turn_px);
 }
@@ -83,7 +83,7 @@ static void sheet_done(const RasterSheet *s, int row_block, int y, GDALDatasetH 
     else pthread_mutex_unlock(&s->open->lock[y / (row_block > 0 ? row_block : 1) % handles]);
 }
 
-/* What a sheet and a window have in common, px of the raster. False: nothing. */
+/* The part that a sheet and a window have in common, px of the raster. Returns false when there is none. */
 static bool common_part(int part[4], const RasterSheet *s, RasterWindow window)
 {
     const int x0 = window.x0, y0 = window.y0, width = window.width, height = window.height;
@@ -101,7 +101,7 @@ static Status damaged(const RasterSheet *s, const char *key)
     return STATUS_IO;
 }
 
-/* One sheet's part of the window, over what is there already: the first sheet that has a value wins. */
+/* Reads one sheet's part of the window, only where no earlier sheet has a value. */
 static Status read_sheet(float *out, const Raster *raster, const RasterSheet *s, bool first, int number,
                          RasterWindow window, const char *key)
 {
@@ -128,7 +128,7 @@ static Status read_sheet(float *out, const Raster *raster, const RasterSheet *s,
     if (!has_offset || !isfinite(offset)) offset = 0;
     const bool  more = masked || raster->choice.has_void || isfinite(raster->low) || isfinite(raster->high);
     const float hole = raster->choice.has_void ? (float)raster->choice.void_value : NAN;
-    if (first && !more && scale == 1 && offset == 0) { /* nothing else is there: without a copy */
+    if (first && !more && scale == 1 && offset == 0) { /* nothing else is in the window, so no copy is needed */
         float *to = out + (size_t)(part[1] - y0) * (size_t)width + (size_t)(part[0] - x0);
         status = GDALRasterIO(band, GF_Read, part[0] - s->x0, part[1] - s->y0, w, h, to, w, h, GDT_Float32, 0,
                               width * (int)sizeof *to) == CE_None
@@ -190,7 +190,7 @@ static Status read_sheet_bytes(uint8_t *out, uint8_t *valid, const Raster *raste
         goto done;
     }
     const bool masked = !(GDALGetMaskFlags(of) & GMF_ALL_VALID);
-    if (raster->sheet_count == 1 && !masked) { /* nothing else is there: without a copy */
+    if (raster->sheet_count == 1 && !masked) { /* nothing else is in the window, so no copy is needed */
         const size_t at = (size_t)(part[1] - y0) * (size_t)width + (size_t)(part[0] - x0);
         const CPLErr error =
             GDALDatasetRasterIO(file, GF_Read, part[0] - s->x0, part[1] - s->y0, w, h, out + at * (size_t)bands, w, h,

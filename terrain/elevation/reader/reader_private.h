@@ -14,7 +14,7 @@
 
 /* ---- gdal_library.c ---- */
 
-/* Before the process is confined: drivers registered, what GDAL looks up once looked up. */
+/* Registers GDAL's drivers and loads the tables that GDAL looks for once. Call it before the process is confined. */
 Status reader_prepare(void);
 void   reader_quiet(void); /* GDAL's messages are kept for reader_reason */
 void   reader_loud(void);
@@ -23,7 +23,7 @@ const char *reader_reason(const char *else_text);
 
 /* ---- reader_sheet.c: what a file is ---- */
 
-/* What decides whether sheets share a grid. */
+/* The properties that decide whether sheets share a grid. */
 typedef struct SheetOpened {
     double               transform[6];
     int                  width, height, bands;
@@ -35,7 +35,8 @@ typedef struct SheetOpened {
     OGRSpatialReferenceH crs;
 } SheetOpened;
 
-/* The grid that is asked for of those in a file, in path; false, logged: there is none, or none was asked for. */
+/* Sets path to the grid that is asked for among the grids of a file. Returns false, logged, when the file has no such
+ * grid, or when none is asked for. */
 bool reader_choose_part(char path[wire_path_size], GDALDatasetH file, const char *asked, const char *key);
 /* Failures are logged. The caller destroys out->crs. */
 Status reader_describe(SheetOpened *out, GDALDatasetH file, const RasterChoice *choice, const char *path,
@@ -62,29 +63,29 @@ Status reader_read(float *out, const Raster *raster, int band, RasterWindow wind
 Status reader_read_bytes(uint8_t *out, uint8_t *valid, const Raster *raster, int first_band, int bands,
                          RasterWindow window, const char *key);
 
-/* Without reading. */
+/* As raster_uniform; nothing is read. */
 bool reader_uniform(float *value, const Raster *raster, int band, RasterWindow window, const char *key);
-/* Pixels of a file whose blocks are there. */
+/* How many pixels of a file lie in blocks that the file has. */
 double reader_data_px(GDALDatasetH file);
 
 /* ---- reader_source.c: which files GDAL may be given: it opens by name ---- */
 
-/* within: nothing else; from: folders below which files may lie that others name, separated by commas. Empty: none. */
+/* Sets what reader_file_allowed accepts. within: the only folder whose files are read; from: folders below which files
+ * may lie that other files name, separated by commas. Empty: none. */
 void reader_source_begin(const char *within, const char *from);
 /* Folders and files that the named ones need, to be opened at all: allocated, NULL at the end; NULL: no memory. */
 char **reader_source_folders(const char *paths);
-/* Names of files beside and within which it would look are good when they are regular files (GDAL waits for a FIFO),
- * or when it is no file's name (a subdataset, a file in an archive), which is GDAL's own. Else it is logged as key's.
- */
+/* Whether a name may be opened: it, and the files that GDAL would look for beside it, are regular files (GDAL waits for
+ * a FIFO), or it is one of GDAL's own names (a subdataset, a file in an archive). If not, that is logged as key's. */
 bool reader_file_allowed(const char *path, const char *key);
-/* The same of a file that `owner`, which the user named, leads to. */
+/* The same of a file that is named in `owner`, a file named by the user. */
 bool reader_part_allowed(const char *path, const char *owner, const char *key);
-/* Whether what any part names itself must be looked at by name: nothing else would stop it, or say where it lies. */
+/* Whether the names in a file must be checked by name, because nothing else would stop or locate them. */
 extern bool reader_by_name;
 
 /* ---- reader_main.c ---- */
 
-/* A sign of life: this file is worked at now. */
+/* Gives a sign of life, and says that this file is worked at now. */
 void reader_works_at(const char *path);
 
 #endif

@@ -12,7 +12,7 @@ enum { most_sheets = 4096, path_size = wire_path_size };
 
 /* ---- grids ---------------------------------------------------------------------------------- */
 
-/* But for the band, which each sheet has for itself. */
+/* Whether two choices are the same except for the band, which each sheet has for itself. */
 static bool same_choice(const RasterChoice *a, const RasterChoice *b)
 {
     return a->vertical == b->vertical && strcmp(a->unit, b->unit) == 0 && a->sense == b->sense &&
@@ -74,7 +74,8 @@ static Status start_raster(Raster *raster, SheetOpened *o)
     return status;
 }
 
-/* Of a file that names others, such as a VRT, those too; what those name where nothing else stops it. */
+/* Whether a file, and the files it names (as a VRT does), may be opened. Those that these name in turn are checked
+ * where nothing else stops them. */
 static bool parts_may_be_opened(GDALDatasetH file, const char *path, const char *owner, const char *key, int depth)
 {
     char **parts = GDALGetFileList(file);
@@ -170,7 +171,7 @@ done:
     return status;
 }
 
-/* The outermost corner becomes pixel (0, 0). */
+/* Makes the outermost corner pixel (0, 0). */
 static Status finish_raster(Raster *raster)
 {
     int x0 = raster->sheet[0].x0, y0 = raster->sheet[0].y0, x1 = x0, y1 = y0;
@@ -232,7 +233,8 @@ static Status add_folder(RasterSet *set, const char *path, const RasterChoice *c
             status = STATUS_IO;
             break;
         }
-        if (!GDALIdentifyDriver(full, NULL)) continue; /* notes, world files, overviews' sidecars */
+        if (!GDALIdentifyDriver(full, NULL))
+            continue; /* the file is not a raster but notes, a world file, an overview's sidecar */
         char **more = names < most_sheets ? realloc(name, ((size_t)names + 1) * sizeof *name) : NULL;
         if (more) name = more;
         if (!more || !(name[names] = strdup(full))) status = STATUS_NO_MEMORY;
@@ -256,14 +258,14 @@ static Status add_folder(RasterSet *set, const char *path, const RasterChoice *c
 static int finer_first(const void *a, const void *b)
 {
     const Raster *p = a, *q = b;
-    /* within a hundredth they are the same: a posting in degrees changes along the meridian */
+    /* postings within a hundredth count as equal, since a posting in degrees changes along the meridian */
     const double x = rint(100 * log(fmax(p->posting_m[0], p->posting_m[1]))),
                  y = rint(100 * log(fmax(q->posting_m[0], q->posting_m[1])));
     if (x != y) return x < y ? -1 : 1;
     return p->order < q->order ? -1 : p->order > q->order;
 }
 
-/* Room for handles, unless that takes more files than a process may have open. */
+/* Allocates room for handles, unless that takes more files than a process may have open. */
 static void keep_open(RasterSet *set)
 {
     int sheets = 0;

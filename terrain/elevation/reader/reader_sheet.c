@@ -4,7 +4,7 @@
 
 #include <strings.h>
 
-/* sheets lie within 1e8 px of the first, so that sums stay in an int */
+/* most_side: sheets lie within 1e8 px of the first, so that sums stay in an int */
 enum { path_size = wire_path_size, most_side = 100000000 };
 
 /* ---- what it says of a band ------------------------------------------------------------------ */
@@ -68,7 +68,7 @@ static void state(RasterStated *out, void *file, int number, void *crs)
 
 /* ---- the sheet ------------------------------------------------------------------------------ */
 
-/* The coordinate system that the user names, else the file's; NULL, logged: none. */
+/* The coordinate system that the user names, or else the file's; NULL, logged: there is none. */
 static OGRSpatialReferenceH crs_of(const RasterChoice *choice, GDALDatasetH file, const char *path, const char *key)
 {
     const OGRSpatialReferenceH stated = GDALGetSpatialRef(file);
@@ -87,7 +87,7 @@ static OGRSpatialReferenceH crs_of(const RasterChoice *choice, GDALDatasetH file
     return NULL;
 }
 
-/* Corner 0, 0 and pixels of 1 are what GDAL gives a file that says nothing. */
+/* Whether a file says where its pixels are. GDAL gives one that does not the corner (0, 0) and pixels of 1. */
 static bool is_placed(double transform[6], GDALDatasetH file)
 {
     static const double nothing[6] = {0, 1, 0, 0, 0, 1};

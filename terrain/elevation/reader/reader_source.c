@@ -11,7 +11,7 @@
 #include <strings.h>
 #include <sys/stat.h>
 
-static char only_within[PATH_MAX]; /* empty: anywhere */
+static char only_within[PATH_MAX]; /* the only folder whose files are read; empty: any folder */
 static char from_folders[4 * PATH_MAX];
 bool        reader_by_name = true;
 
@@ -35,7 +35,8 @@ static bool is_file(const char *path)
     return stat(path, &about) == 0 && S_ISREG(about.st_mode);
 }
 
-/* The file that one of GDAL's own names leads to: /vsizip/ARCHIVE/NAME, NETCDF:"FILE":VARIABLE. False: none. */
+/* The file behind one of GDAL's own names, such as /vsizip/ARCHIVE/NAME or NETCDF:"FILE":VARIABLE. Returns false when
+ * there is none. */
 static bool file_of_name(char out[PATH_MAX], const char *name)
 {
     const char *at = name;
@@ -46,7 +47,7 @@ static bool file_of_name(char out[PATH_MAX], const char *name)
     }
     if ((size_t)snprintf(out, PATH_MAX, "%s", at) >= PATH_MAX) return false;
     if (at == name && is_there(name)) return true;
-    for (;;) { /* in an archive */
+    for (;;) { /* looks for the archive that contains the name */
         if (is_file(out)) return true;
         char *slash = strrchr(out, '/');
         if (!slash || slash == out) break;
@@ -72,7 +73,7 @@ static void folder_of(char out[PATH_MAX], const char *path)
     else snprintf(out, PATH_MAX, "%.*s", slash == path ? 1 : (int)(slash - path), path);
 }
 
-/* Links followed. */
+/* Whether a path lies below a folder, after links are followed. */
 static bool is_below(const char *path, const char *folder)
 {
     char whole[PATH_MAX], top[PATH_MAX];
@@ -99,7 +100,8 @@ static size_t stem_of(const char **name, const char *path)
     return dot ? (size_t)(dot - *name) : strlen(*name);
 }
 
-/* x.tif.aux.xml, x.tfw, x.prj beside x.tif: read with it, and links as good as it is. */
+/* Whether a file is read along with its owner, as x.tif.aux.xml, x.tfw and x.prj are with x.tif; links among these are
+ * as trusted as the owner. */
 static bool is_beside(const char *path, const char *owner)
 {
     char        a[PATH_MAX], b[PATH_MAX];
@@ -132,7 +134,7 @@ static void add(Names *names, const char *name)
     names->name[names->count] = NULL;
 }
 
-/* What links in a folder lead to: those of all files, or of what lies beside one. */
+/* Adds the targets of a folder's links: of all its files, or of those beside one file. */
 static void add_links(Names *names, const char *folder, const char *beside)
 {
     char path[PATH_MAX], whole[PATH_MAX];
@@ -162,7 +164,7 @@ char **reader_source_folders(const char *paths)
             struct stat  about;
             RasterChoice choice;
             const char  *why;
-            (void)raster_choice_take(&choice, &why, path); /* what is wrong with it is said when it is opened */
+            (void)raster_choice_take(&choice, &why, path); /* errors in it are reported when the file is opened */
             if (stat(path, &about) == 0 && S_ISDIR(about.st_mode)) {
                 add(&names, path);
                 add_links(&names, path, NULL);
@@ -173,7 +175,7 @@ char **reader_source_folders(const char *paths)
             add(&names, folder);
             add_links(&names, folder, file);
             if (realpath(file, folder) && lstat(file, &about) == 0 &&
-                S_ISLNK(about.st_mode)) { /* what a VRT names lies there */
+                S_ISLNK(about.st_mode)) { /* a VRT's files may lie there */
                 char real[PATH_MAX];
                 folder_of(real, folder);
                 add(&names, real);
@@ -192,7 +194,7 @@ char **reader_source_folders(const char *paths)
  */
 static bool beside_may_be_opened(const char *path, const char *key)
 {
-    static _Thread_local char plain[wire_path_size]; /* the last folder that holds files and folders alone */
+    static _Thread_local char plain[wire_path_size]; /* the folder checked last, if it holds only files and folders */
     char                      full[wire_path_size], why[file_why_size];
     const char               *name;
     const size_t              stem = stem_of(&name, path);
@@ -240,7 +242,7 @@ bool reader_part_allowed(const char *path, const char *owner, const char *key)
     if (named && !within && file_of_name(own, owner)) {
         folder_of(folder, own);
         within = is_below(file, folder);
-        if (!within && realpath(own, real)) { /* a link to it */
+        if (!within && realpath(own, real)) { /* the file is a link into the folder */
             folder_of(folder, real);
             within = is_below(file, folder);
         }

@@ -51,7 +51,8 @@ static bool field_open(Field *f, int shape, double x0_m, double y0_m)
     *f = (Field){.shape = shape, .side = tiles ? side_most : 33, .spacing_m = 4};
     if (tiles) f->spacing_m = (shape - shapes) % 2 ? 100 : 0.1;
     const int side = f->side;
-    if (elevation_level_create(&f->elevation, 0, side, side, x0_m, y0_m, f->spacing_m, -64, tiles ? 0x1p-9 : 0x1p-5) !=
+    if (elevation_level_create(&f->elevation, 0,
+                               &(ElevationGrid){side, side, x0_m, y0_m, f->spacing_m, -64, tiles ? 0x1p-9 : 0x1p-5}) !=
         STATUS_OK)
         return false;
     for (int j = 0; j < side; j++)
@@ -337,8 +338,8 @@ static double seams(void *user, bool quick)
     Dice      dice = {.stream = 23};
     double    worst_m = 0;
     (void)user;
-    if (elevation_level_create(&e, 0, side, side, -64, -64, 4, 0, 0.0625) != STATUS_OK ||
-        elevation_level_create(&e, 1, side, side, -1024, -1024, 64, 0, 0.0625) != STATUS_OK)
+    if (elevation_level_create(&e, 0, &(ElevationGrid){side, side, -64, -64, 4, 0, 0.0625}) != STATUS_OK ||
+        elevation_level_create(&e, 1, &(ElevationGrid){side, side, -1024, -1024, 64, 0, 0.0625}) != STATUS_OK)
         return INFINITY;
     for (int k = 0; k < 2; k++) /* one slope through both, so that the outline is on straight edges */
         for (int j = 0; j < side; j++)

@@ -50,8 +50,8 @@ static double bytes_of(const Elevation *e)
 static Status thinned(Elevation *out, const ElevationLevel *from, int step)
 {
     const int    nx = (from->nx - 1) / step + 1, ny = (from->ny - 1) / step + 1;
-    const Status status = elevation_level_create(out, 0, nx, ny, from->x0_m, from->y0_m, step * from->spacing_m,
-                                                 from->z0_m, from->step_m);
+    const Status status = elevation_level_create(
+        out, 0, &(ElevationGrid){nx, ny, from->x0_m, from->y0_m, step * from->spacing_m, from->z0_m, from->step_m});
     if (status != STATUS_OK) return status;
     for (int j = 0; j < ny; j++)
         for (int i = 0; i < nx; i++) elevation_set_post(&out->level[0], i, j, elevation_post(from, i * step, j * step));
@@ -261,7 +261,8 @@ static Status tunable_store(Bench *bench)
             if (step_m[k] > 0) post[n] = (int32_t)floor((z_m - z0_m) / step_m[k] + 0.5);
         }
         if (step_m[k] > 0) {
-            status = elevation_level_create(&s->ground, 0, mountain_posts, mountain_posts, 0, 0, 4, z0_m, step_m[k]);
+            status = elevation_level_create(&s->ground, 0,
+                                            &(ElevationGrid){mountain_posts, mountain_posts, 0, 0, 4, z0_m, step_m[k]});
             if (status == STATUS_OK) status = elevation_fill(&s->ground.level[0], post);
         } else {
             s->narrow = narrow;

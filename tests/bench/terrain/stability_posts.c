@@ -51,8 +51,8 @@ static const Sheet huge_sheet = {16385, 16385, -8192, -8192, 1, 0, 0x1p-4}; /* h
 
 static Status fill(Elevation *out, const Sheet *s, Shape shape)
 {
-    const Status status =
-        elevation_level_create(out, 0, s->nx, s->ny, s->x0_m, s->y0_m, s->spacing_m, s->z0_m, s->step_m);
+    const Status status = elevation_level_create(
+        out, 0, &(ElevationGrid){s->nx, s->ny, s->x0_m, s->y0_m, s->spacing_m, s->z0_m, s->step_m});
     if (status != STATUS_OK) return status;
     for (int j = 0; j < s->ny; j++)
         for (int i = 0; i < s->nx; i++) elevation_set_post(&out->level[0], i, j, shape_post(shape, i, j, s->nx, s->ny));
@@ -195,7 +195,8 @@ static void refusals(Bench *bench)
         else if (n < 10) v[4] = none[n - 5];
         else if (n < 19) v[(n - 10) / 3 == 2 ? 3 : (n - 10) / 3] = none[2 + (n - 10) % 3];
         else s[(n - 19) % 2] = size[(n - 19) / 2];
-        taken += elevation_level_create(&ground, 0, s[0], s[1], v[0], v[1], v[2], v[3], v[4]) == STATUS_OK;
+        taken +=
+            elevation_level_create(&ground, 0, &(ElevationGrid){s[0], s[1], v[0], v[1], v[2], v[3], v[4]}) == STATUS_OK;
         elevation_destroy(&ground);
     }
     bench_stress(bench, "ground: sizes and scales that are none, accepted", taken, 0, "grids", "refusal");

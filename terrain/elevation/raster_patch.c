@@ -1,17 +1,18 @@
-/* terrain/elevation/patches.c: a window of a raster: averaged, its voids filled, and reduced to mip levels. */
-#include "terrain/elevation/patches.h"
+/* terrain/elevation/raster_patch.c: a window of a raster: averaged, its voids filled, and reduced to mip levels. */
+#include "terrain/elevation/raster_patch.h"
 
 #include <stdlib.h>
 
-void patch_free(Patch *patch)
+void raster_patch_free(RasterPatch *patch)
 {
-    for (int k = 0; k < patch_most_mips; k++) free(patch->v[k]);
+    for (int k = 0; k < raster_patch_most_mips; k++) free(patch->v[k]);
     free(patch->hole);
     free(patch->share);
-    *patch = (Patch){0};
+    *patch = (RasterPatch){0};
 }
 
-/* Mean of what is valid, NaN where nothing is. in: rows of `pitch` floats, `width` pixels of each, `rows` of them. */
+/* Averages rows: mean of the valid pixels, NaN where none is valid. in: `rows` rows of `width` pixels, `pitch` floats
+ * apart. */
 static void average_row(float *restrict out, int nx, const float *restrict in, size_t pitch, int width, int rows,
                         int factor)
 {
@@ -63,7 +64,7 @@ static void halve_rows(void *user, int worker, int task)
         }
 }
 
-static void halve(Patch *p, int k, Pool *pool)
+static void halve(RasterPatch *p, int k, Pool *pool)
 {
     Halving h = {p->v[k], p->v[k - 1], p->nx[k], p->ny[k], p->nx[k - 1], p->ny[k - 1]};
     (void)pool_run_unless_stopped(pool, (h.out_ny + rows_a_task - 1) / rows_a_task, halve_rows, &h);
@@ -81,8 +82,9 @@ static double bilinear(const float *v, int nx, int ny, double x, double y)
     return south + w * (north - south);
 }
 
-/* Between the posts of one mip, at a place in pixels of the raster: of the wider patch where the own mips end. */
-static double mip_at(const Patch *p, int k, double x_px, double y_px)
+/* Value between the posts of one mip at a place in pixels of the raster; from the wider patch where the patch's own
+ * mips end. */
+static double mip_at(const RasterPatch *p, int k, double x_px, double y_px)
 {
     if (k >= p->mips) {
         k -= p->mips;
@@ -93,9 +95,9 @@ static double mip_at(const Patch *p, int k, double x_px, double y_px)
     return bilinear(p->v[k], p->nx[k], p->ny[k], (x_px - p->x0) / p->factor * s, (y_px - p->y0) / p->factor * s);
 }
 
-/* Voids of one mip: first from the coarser one, then relaxed towards the mean of the neighbours, so that the
- * filling meets the rim without a step and has no extremum of its own (a membrane; Laplace's equation). */
-static Status fill(Patch *p, int k)
+/* Fills the voids of one mip: first from the coarser mip, then by relaxing them towards the mean of their neighbours,
+ * so that the filling joins the rim smoothly and has no extremum of its own (a membrane; Laplace's equation). */
+static Status fill(RasterPatch *p, int k)
 {
     enum { sweeps = 24 };
     float       *v = p->v[k];
@@ -133,14 +135,14 @@ static Status fill(Patch *p, int k)
 
 enum { square = 8 };
 
-/* Squares are those of the whole raster, whichever window the patch has. */
-static int first_square(int px, const Patch *p) { return px / p->factor / square; }
-static int squares(int px, int count, const Patch *p)
+/* Number of the square of a pixel. Squares are those of the whole raster, whatever window the patch has. */
+static int first_square(int px, const RasterPatch *p) { return px / p->factor / square; }
+static int squares(int px, int count, const RasterPatch *p)
 {
     return (px / p->factor + count - 1) / square - first_square(px, p) + 1;
 }
 
-static Status measure_holes(Patch *p)
+static Status measure_holes(RasterPatch *p)
 {
     const int i0 = p->x0 / p->factor, j0 = p->y0 / p->factor, a0 = first_square(p->x0, p), b0 = first_square(p->y0, p);
     const int nx = squares(p->x0, p->nx[0], p), ny = squares(p->y0, p->ny[0], p);
@@ -154,7 +156,7 @@ static Status measure_holes(Patch *p)
     return STATUS_OK;
 }
 
-double patch_hole(const Patch *p, double x_px, double y_px)
+double raster_patch_hole(const RasterPatch *p, double x_px, double y_px)
 {
     if (!p->share) return 0;
     const double   x = (x_px - p->x0) / p->factor, y = (y_px - p->y0) / p->factor;
@@ -173,13 +175,13 @@ double patch_hole(const Patch *p, double x_px, double y_px)
     return here * t * t * (3 - 2 * t);
 }
 
-static Status fill_all(Patch *p, Pool *pool)
+static Status fill_all(RasterPatch *p, Pool *pool)
 {
     Status status = STATUS_OK;
     for (int k = 1; k < p->mips; k++) halve(p, k, pool);
     const bool none = p->wider ? p->wider->mips == 0 : isnan(p->v[p->mips - 1][0]);
     if (none) {
-        patch_free(p);
+        raster_patch_free(p);
         return STATUS_OK;
     }
     for (int k = p->wider ? p->mips - 1 : p->mips - 2; status == STATUS_OK && k >= 0; k--) status = fill(p, k);
@@ -191,23 +193,23 @@ static Status fill_all(Patch *p, Pool *pool)
 /* ---- reading --------------------------------------------------------------------------------- */
 
 typedef struct Reading {
-    const PatchSource *source;
-    const PatchWindow *window;
-    Patch             *patch;
-    int                count;
-    int                x0, x1, y0, y1, rows; /* of all windows; rows: of a strip, which a task reads */
-    Status            *status;               /* [strips] */
+    const RasterPatchSource *source;
+    const RasterPatchWindow *window;
+    RasterPatch             *patch;
+    int                      count;
+    int     x0, x1, y0, y1, rows; /* pixels that all windows need; rows: those of a strip, which one task reads */
+    Status *status;               /* [strips] */
 } Reading;
 
-/* Columns of a strip: rows y0 .. y1 - 1 of columns x0 .. x1 - 1, averaged into every patch that has some of them.
- * strip: their pixels; NULL: all are `value`. */
+/* Averages part of a strip, rows y0 .. y1 - 1 of columns x0 .. x1 - 1, into every patch that needs some of it. strip:
+ * its pixels; NULL: all are `value`. */
 static void average_columns(const Reading *r, const float *strip, float value, int x0, int x1, int y0, int y1)
 {
     for (int w = 0; w < r->count; w++) {
-        const PatchWindow *of = &r->window[w];
-        Patch             *p = &r->patch[w];
-        const int          from = y0 > p->y0 ? y0 : p->y0, to = y1 < of->y1 ? y1 : of->y1;
-        const int          west = x0 > p->x0 ? x0 : p->x0, east = x1 < of->x1 ? x1 : of->x1;
+        const RasterPatchWindow *of = &r->window[w];
+        RasterPatch             *p = &r->patch[w];
+        const int                from = y0 > p->y0 ? y0 : p->y0, to = y1 < of->y1 ? y1 : of->y1;
+        const int                west = x0 > p->x0 ? x0 : p->x0, east = x1 < of->x1 ? x1 : of->x1;
         if (west >= east) continue;
         const int i0 = (west - p->x0) / p->factor, nx = (east - p->x0 + p->factor - 1) / p->factor - i0;
         for (int y = from; y < to; y += p->factor) {
@@ -221,7 +223,8 @@ static void average_columns(const Reading *r, const float *strip, float value, i
     }
 }
 
-/* Pieces of columns begin at multiples of raster_piece, and so of every factor: no average straddles two. */
+/* Reads one strip in pieces of columns. These begin at multiples of raster_piece, and so of every factor: no average is
+ * split between two. */
 static void read_strip(void *user, int worker, int task)
 {
     const Reading *r = user;
@@ -260,11 +263,11 @@ static void read_strip(void *user, int worker, int task)
     free(strip);
 }
 
-static Status allocate(Patch *p, const PatchWindow *w)
+static Status allocate(RasterPatch *p, const RasterPatchWindow *w)
 {
     int nx = (w->x1 - w->x0 + w->factor - 1) / w->factor, ny = (w->y1 - w->y0 + w->factor - 1) / w->factor;
-    int most = patch_most_mips;
-    *p = (Patch){.factor = w->factor, .x0 = w->x0, .y0 = w->y0, .wider = w->wider};
+    int most = raster_patch_most_mips;
+    *p = (RasterPatch){.factor = w->factor, .x0 = w->x0, .y0 = w->y0, .wider = w->wider};
     if (w->wider && w->wider->mips > 0)
         for (most = 0; w->factor << most < w->wider->factor;) most++;
     for (int k = 0; k < most; k++) {
@@ -281,19 +284,20 @@ static Status allocate(Patch *p, const PatchWindow *w)
     return p->hole ? STATUS_OK : STATUS_NO_MEMORY;
 }
 
-Status patches_read(Patch *out, const PatchWindow *window, int count, const PatchSource *source)
+Status raster_patches_read(RasterPatch *out, const RasterPatchWindow *window, int count,
+                           const RasterPatchSource *source)
 {
-    const Raster *raster = source->raster;
-    PatchWindow  *w = calloc((size_t)count, sizeof *w);
-    Patch        *p = calloc((size_t)count, sizeof *p);
-    Reading       r = {.source = source,
-                       .window = w,
-                       .patch = p,
-                       .count = count,
-                       .x0 = raster->width,
-                       .y0 = raster->height,
-                       .rows = raster->row_block > 0 ? raster->row_block : 64};
-    Status        status = w && p ? STATUS_OK : STATUS_NO_MEMORY;
+    const Raster      *raster = source->raster;
+    RasterPatchWindow *w = calloc((size_t)count, sizeof *w);
+    RasterPatch       *p = calloc((size_t)count, sizeof *p);
+    Reading            r = {.source = source,
+                            .window = w,
+                            .patch = p,
+                            .count = count,
+                            .x0 = raster->width,
+                            .y0 = raster->height,
+                            .rows = raster->row_block > 0 ? raster->row_block : 64};
+    Status             status = w && p ? STATUS_OK : STATUS_NO_MEMORY;
     for (int k = 0; status == STATUS_OK && k < count; k++) {
         w[k] = window[k];
         /* aligned to the wider patch's posts, so that the mips go on there */
@@ -318,7 +322,7 @@ Status patches_read(Patch *out, const PatchWindow *window, int count, const Patc
     for (int k = 0; status == STATUS_OK && k < count; k++) status = fill_all(&p[k], source->pool);
     for (int k = 0; p && k < count; k++) {
         if (status == STATUS_OK) out[k] = p[k];
-        else patch_free(&p[k]);
+        else raster_patch_free(&p[k]);
     }
     free(r.status);
     free(w);
@@ -326,7 +330,7 @@ Status patches_read(Patch *out, const PatchWindow *window, int count, const Patc
     return status;
 }
 
-double patch_at(const Patch *patch, double x_px, double y_px, double mip)
+double raster_patch_at(const RasterPatch *patch, double x_px, double y_px, double mip)
 {
     if (!(mip > 0)) return mip_at(patch, 0, x_px, y_px);
     const int most = patch->mips - 1 + (patch->wider ? patch->wider->mips : 0);
