@@ -161,16 +161,15 @@ static void next_bounce(RadarReturns *out, int nth, Block *s)
     }
 }
 
-void radar_shade(RadarReturns *out, const RadarConfig *config, const Visibility *v, const Materials *materials,
-                 const Hits *hits, const Rays *rays, int hidden, VisibilityCounters *counters)
+void radar_shade(RadarReturns *out, const RadarConfig *config, const RadarRays *from, VisibilityCounters *counters)
 {
     Block s; /* its working memory is written before it is read, so not cleared: it is large */
-    s.config = config, s.visibility = v, s.materials = materials;
-    s.rays = rays, s.hidden = hidden, s.counters = counters;
+    s.config = config, s.visibility = from->visibility, s.materials = from->materials;
+    s.rays = from->rays, s.hidden = from->hidden, s.counters = counters;
     for (int b = 0; b < radar_bounces; b++) {
-        memset(out->power[b], 0, (size_t)hits->count * sizeof out->power[b][0]);
-        memset(out->slant_m[b], 0, (size_t)hits->count * sizeof out->slant_m[b][0]);
+        memset(out->power[b], 0, (size_t)from->hits->count * sizeof out->power[b][0]);
+        memset(out->slant_m[b], 0, (size_t)from->hits->count * sizeof out->slant_m[b][0]);
     }
-    first_bounce(out, &s, hits);
+    first_bounce(out, &s, from->hits);
     for (int b = 1; b < radar_mirrors + config->more_bounces && s.paths.count > 0; b++) next_bounce(out, b, &s);
 }

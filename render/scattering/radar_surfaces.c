@@ -18,12 +18,12 @@ void fresnel_half_space(double complex *te, double complex *tm, double complex e
     *tm = (eps * cosine - q) / (eps * cosine + q);
 }
 
-void fresnel_slab(double complex *te, double complex *tm, double complex *tte, double complex *ttm, double complex eps,
-                  double thick_m, double k, double cosine)
+void fresnel_slab(double complex *te, double complex *tm, double complex *tte, double complex *ttm,
+                  const RadarSurface *surface, double k, double cosine)
 {
-    const double complex p = cexp(-I * k * thick_m * inward(eps, cosine));
+    const double complex p = cexp(-I * k * surface->thick_m * inward(surface->eps, cosine));
     double complex       g[2], *out[2] = {te, tm}, *through[2] = {tte, ttm};
-    fresnel_half_space(&g[0], &g[1], eps, cosine);
+    fresnel_half_space(&g[0], &g[1], surface->eps, cosine);
     for (int i = 0; i < 2; i++) {
         const double complex under = 1 - g[i] * g[i] * p * p;
         *out[i] = g[i] * (1 - p * p) / under;
@@ -54,7 +54,7 @@ void fresnel_surface(double complex *te, double complex *tm, const RadarSurface 
         fresnel_half_space(te, tm, surface->eps, cosine);
         break;
     case RADAR_SLAB:
-        fresnel_slab(te, tm, NULL, NULL, surface->eps, surface->thick_m, k, cosine);
+        fresnel_slab(te, tm, NULL, NULL, surface, k, cosine);
         break;
     case RADAR_COATED:
         fresnel_coated(te, tm, surface->eps, surface->thick_m, k, cosine);

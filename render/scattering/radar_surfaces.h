@@ -31,9 +31,9 @@ typedef struct RadarSurface {
 } RadarSurface;
 
 void fresnel_half_space(double complex *te, double complex *tm, double complex eps, double cosine);
-/* tte, ttm: amplitude transmitted, at the far face; may be NULL. */
-void fresnel_slab(double complex *te, double complex *tm, double complex *tte, double complex *ttm, double complex eps,
-                  double thick_m, double k, double cosine);
+/* A slab of surface->eps and thick_m in air. tte, ttm: amplitude transmitted, at the far face; may be NULL. */
+void fresnel_slab(double complex *te, double complex *tm, double complex *tte, double complex *ttm,
+                  const RadarSurface *surface, double k, double cosine);
 void fresnel_coated(double complex *te, double complex *tm, double complex eps, double thick_m, double k,
                     double cosine);
 

@@ -66,8 +66,11 @@ enum { before = line_scan_taps / 2 - 1 };
 
 /* Columns at their own times: along the rows at the time of the column's centre, then down it at each pixel's own. */
 static void resample_columns(float *out, const float *in, int width, int height, const LineScan *scan,
-                             const double rate_px_s[2], float *line, const Taps *taps)
+                             const double rate_px_s[2], float *line)
 {
+    Taps        made;
+    const Taps *taps = &made;
+    make_taps(&made);
     const size_t w = (size_t)width;
     for (int c = 0; c < width; c++) {
         int       phase;
@@ -98,11 +101,11 @@ void line_scan_resample(float *out, const float *in, int width, int height, cons
         memcpy(out, in, (size_t)width * (size_t)height * sizeof *out);
         return;
     }
-    make_taps(&taps);
     if (scan->by_columns) {
-        resample_columns(out, in, width, height, scan, rate_px_s, line, &taps);
+        resample_columns(out, in, width, height, scan, rate_px_s, line);
         return;
     }
+    make_taps(&taps);
     for (int r = 0; r < height; r++) {
         /* down the columns at the time of the line's centre, then along the line at each pixel's own */
         int          phase;

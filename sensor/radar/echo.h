@@ -1,7 +1,7 @@
 /* sensor/radar/echo.h: what a receiver samples of many point echoes over the rows of a coherent interval.
  *
  * An echo of complex amplitude a, whose two-way path is longer by path_m than that to the reference and grows by
- * path_per_pulse_m from row to row, adds to sample m of row n, at the frequency f and the time t of waveform.h,
+ * path_per_pulse_m from row to row, adds to sample m of row n, at the frequency f and the time t of interval.h,
  *
  *     a exp(-j 2 pi f(m) (path + path_per_pulse repeat t(m, n)) / c)
  *

@@ -246,7 +246,8 @@ static bool find_ground(Bounce *b, double p_enu[3], const RadarShot *shot, const
     const GroundSurface of = ground_surface(&shot->radar->mirror.row[surface], shot->preset->wave.centre_hz);
     const double        k = 2 * pi_rad / shot->preset->antenna.wavelength_m;
     ground_leg_direct(&b->direct, &t->antenna, right);
-    if (!ground_leg_image(&b->by_ground, &t->antenna, &b->image, extra_m, &b->plane, &of, k, right)) return false;
+    if (!ground_leg_image(&b->by_ground, &(GroundMirror){&t->antenna, &b->image, extra_m, &b->plane}, &of, k, right))
+        return false;
     return b->by_ground.coherence >= ground_least_coherence && extra_m < shot->half_window_m;
 }
 

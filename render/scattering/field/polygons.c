@@ -1,6 +1,6 @@
 /* render/scattering/field/polygons.c: flat faces in closed form: their triangles, and their field. */
 #include "render/scattering/field/currents_private.h"
-#include "render/scattering/field/polygons.h"
+#include "render/scattering/field/total_field.h"
 
 #include <stdlib.h>
 
@@ -293,32 +293,32 @@ static void sum_chunk(void *user, int worker, int task)
     }
 }
 
-Status polygons_sweep(ScatterMatrix *s, int count, double first_hz, double step_hz, const Polygons *polygons,
-                      const ScatterAntenna *tx, const ScatterAntenna *rx, Pool *pool)
+Status polygons_sweep(ScatterMatrix *s, const FrequencySweep *sweep, const Polygons *polygons, Pool *pool)
 {
     const double k_per_hz = 2 * pi_rad / light_mps;
     const int    chunks = (polygons->count + chunk_polygons - 1) / chunk_polygons;
-    Sweep        sweep = {.polygons = polygons,
-                          .tx = tx ? *tx : polygons->tx,
-                          .rx = rx ? *rx : polygons->rx,
-                          .moved = tx || rx,
-                          .count = count,
-                          .first_k = first_hz * k_per_hz,
-                          .step_k = step_hz * k_per_hz};
+    Sweep        sum = {.polygons = polygons,
+                        .tx = sweep->tx ? *sweep->tx : polygons->tx,
+                        .rx = sweep->rx ? *sweep->rx : polygons->rx,
+                        .moved = sweep->tx || sweep->rx,
+                        .count = sweep->count,
+                        .first_k = sweep->first_hz * k_per_hz,
+                        .step_k = sweep->step_hz * k_per_hz};
     if (chunks == 0) return STATUS_OK;
-    sweep.sum = calloc(4 * (size_t)count * (size_t)chunks, sizeof *sweep.sum);
-    if (!sweep.sum) return STATUS_NO_MEMORY;
-    if (pool) pool_run(pool, chunks, sum_chunk, &sweep);
+    sum.sum = calloc(4 * (size_t)sweep->count * (size_t)chunks, sizeof *sum.sum);
+    if (!sum.sum) return STATUS_NO_MEMORY;
+    if (pool) pool_run(pool, chunks, sum_chunk, &sum);
     else
-        for (int t = 0; t < chunks; t++) sum_chunk(&sweep, 0, t);
-    for (int f = 0; f < count; f++) {
-        const double complex scale = CMPLX(0, -(sweep.first_k + f * sweep.step_k) / (2 * pi_rad));
+        for (int t = 0; t < chunks; t++) sum_chunk(&sum, 0, t);
+    for (int f = 0; f < sweep->count; f++) {
+        const double complex scale = CMPLX(0, -(sum.first_k + f * sum.step_k) / (2 * pi_rad));
         for (int t = 0; t < chunks; t++) {
-            const double complex *sum = sweep.sum + 4 * ((size_t)count * (size_t)t + (size_t)f);
-            s[f].hh += scale * sum[0], s[f].hv += scale * sum[1], s[f].vh += scale * sum[2], s[f].vv += scale * sum[3];
+            const double complex *part = sum.sum + 4 * ((size_t)sweep->count * (size_t)t + (size_t)f);
+            s[f].hh += scale * part[0], s[f].hv += scale * part[1], s[f].vh += scale * part[2],
+                s[f].vv += scale * part[3];
         }
     }
-    free(sweep.sum);
+    free(sum.sum);
     return STATUS_OK;
 }
 

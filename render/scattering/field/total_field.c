@@ -149,34 +149,33 @@ static void finish(ScatterMatrix *s, const Sweep *sweep, int chunks, int f)
     for (int p = 0; p < 4; p++) *to[p] = CMPLX(-scale * whole[2 * p + 1], scale * whole[2 * p]);
 }
 
-Status field_sweep(ScatterMatrix *s, int count, double first_hz, double step_hz, const TubeHits *hits,
-                   const ScatterAntenna *tx, const ScatterAntenna *rx, Pool *pool)
+Status field_sweep(ScatterMatrix *s, const FrequencySweep *sweep, const TubeHits *hits, Pool *pool)
 {
     const double k_per_hz = 2 * pi_rad / light_mps;
     const int    chunks = (int)((hits->count + chunk_hits - 1) / chunk_hits);
-    Sweep        sweep = {.count = count,
-                          .first_k = first_hz * k_per_hz,
-                          .step_k = step_hz * k_per_hz,
-                          .hits = hits,
-                          .moved = tx || rx,
-                          .tx = tx ? *tx : hits->tx,
-                          .rx = rx ? *rx : hits->rx,
-                          .padded = (count + lanes - 1) / lanes * lanes};
-    const size_t sums = 8 * (size_t)sweep.padded * (size_t)(chunks + 1);
-    sweep.sum = aligned_alloc(64, sums * sizeof *sweep.sum);
-    if (!sweep.sum) return STATUS_NO_MEMORY;
-    memset(sweep.sum, 0, sums * sizeof *sweep.sum);
-    if (pool) pool_run(pool, chunks, sum_chunk, &sweep);
+    Sweep        sum = {.count = sweep->count,
+                        .first_k = sweep->first_hz * k_per_hz,
+                        .step_k = sweep->step_hz * k_per_hz,
+                        .hits = hits,
+                        .moved = sweep->tx || sweep->rx,
+                        .tx = sweep->tx ? *sweep->tx : hits->tx,
+                        .rx = sweep->rx ? *sweep->rx : hits->rx,
+                        .padded = (sweep->count + lanes - 1) / lanes * lanes};
+    const size_t sums = 8 * (size_t)sum.padded * (size_t)(chunks + 1);
+    sum.sum = aligned_alloc(64, sums * sizeof *sum.sum);
+    if (!sum.sum) return STATUS_NO_MEMORY;
+    memset(sum.sum, 0, sums * sizeof *sum.sum);
+    if (pool) pool_run(pool, chunks, sum_chunk, &sum);
     else
-        for (int t = 0; t < chunks; t++) sum_chunk(&sweep, 0, t);
-    for (int f = 0; f < count; f++) finish(&s[f], &sweep, chunks, f);
-    free(sweep.sum);
+        for (int t = 0; t < chunks; t++) sum_chunk(&sum, 0, t);
+    for (int f = 0; f < sweep->count; f++) finish(&s[f], &sum, chunks, f);
+    free(sum.sum);
     return STATUS_OK;
 }
 
 Status field_at(ScatterMatrix *s, double frequency_hz, const TubeHits *hits, Pool *pool)
 {
-    return field_sweep(s, 1, frequency_hz, 0, hits, NULL, NULL, pool);
+    return field_sweep(s, &(FrequencySweep){.count = 1, .first_hz = frequency_hz}, hits, pool);
 }
 
 double rcs_dbsm(double complex s)
@@ -364,17 +363,17 @@ static void add_segment(ScatterMatrix *s, int count, double first_k, double step
     }
 }
 
-Status total_field_sweep(ScatterMatrix *s, int count, double first_hz, double step_hz, const TotalField *field,
-                         const ScatterAntenna *tx, const ScatterAntenna *rx, Pool *pool)
+Status total_field_sweep(ScatterMatrix *s, const FrequencySweep *sweep, const TotalField *field, Pool *pool)
 {
-    const double k_per_hz = 2 * pi_rad / light_mps;
-    Status       status = field_sweep(s, count, first_hz, step_hz, &field->hits, tx, rx, pool);
-    if (status == STATUS_OK) status = polygons_sweep(s, count, first_hz, step_hz, &field->polygons, tx, rx, pool);
+    const ScatterAntenna *tx = sweep->tx, *rx = sweep->rx;
+    const double          k_per_hz = 2 * pi_rad / light_mps;
+    Status                status = field_sweep(s, sweep, &field->hits, pool);
+    if (status == STATUS_OK) status = polygons_sweep(s, sweep, &field->polygons, pool);
     for (int i = 0; i < field->edges.count && status == STATUS_OK; i++) {
         const EdgeSegment *e = &field->edges.segment[i];
         const double       path_m =
             tx || rx ? moved_path_m(e, field, tx ? tx : &field->hits.tx, rx ? rx : &field->hits.rx) : e->path_m;
-        add_segment(s, count, first_hz * k_per_hz, step_hz * k_per_hz, e, path_m);
+        add_segment(s, sweep->count, sweep->first_hz * k_per_hz, sweep->step_hz * k_per_hz, e, path_m);
     }
     return status;
 }

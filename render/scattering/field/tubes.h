@@ -41,7 +41,7 @@ typedef struct TubeConfig {
     double   warp_m, warp_length_m; /* surfaces uneven by this height, rms, over this length (Warp); 0, 0.5 */
     uint64_t warp_seed;
     uint64_t seed;          /* of the grid */
-    int      polygon_faces; /* total_field_trace sums flat faces in closed form (polygons.h) on targets of at
+    int      polygon_faces; /* total_field_trace sums flat faces in closed form (polygons.c) on targets of at
                              * most so many of them; 0: on none, as for signatures; polygon_faces_few */
 } TubeConfig;
 

@@ -263,11 +263,13 @@ void ground_leg_direct(GroundLeg *out, const ScatterAntenna *antenna, const doub
         for (int a = 0; a < 2; a++) out->m[p][a] = v3_dot(basis[p], axis[a]);
 }
 
-bool ground_leg_image(GroundLeg *out, const ScatterAntenna *antenna, const ScatterAntenna *image, double extra_m,
-                      const GroundPlane *plane, const GroundSurface *surface, double k, const double right[3])
+bool ground_leg_image(GroundLeg *out, const GroundMirror *from, const GroundSurface *surface, double k,
+                      const double right[3])
 {
-    double         u[3], basis[2][3], axis[2][3], d[3], across[3], before[3], after[3], d_out[3];
-    double complex te, tm;
+    const ScatterAntenna *antenna = from->antenna, *image = from->image;
+    const GroundPlane    *plane = from->plane;
+    double                u[3], basis[2][3], axis[2][3], d[3], across[3], before[3], after[3], d_out[3];
+    double complex        te, tm;
     mirror(u, image->u, plane);
     const double sine = v3_dot(plane->n, u);
     if (!(sine > 0)) return false;
@@ -281,7 +283,7 @@ bool ground_leg_image(GroundLeg *out, const ScatterAntenna *antenna, const Scatt
     v3_normalize(across, across);
     v3_cross(before, d, across);
     v3_cross(after, d_out, across);
-    *out = (GroundLeg){.extra_m = extra_m,
+    *out = (GroundLeg){.extra_m = from->extra_m,
                        .spread = isinf(antenna->range_m) ? 1 : antenna->range_m / image->range_m,
                        .coherence = fmax(cabs(te), cabs(tm))};
     for (int p = 0; p < 2; p++)

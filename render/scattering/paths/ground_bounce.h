@@ -108,9 +108,15 @@ typedef struct GroundLeg {
 /* right: direction in the target's frame along which, as far as it is across the line of sight, the antenna's first
  * axis lies; the second is u x first. Must not lie along it. */
 void ground_leg_direct(GroundLeg *out, const ScatterAntenna *antenna, const double right[3]);
-/* image: of ground_image, with the extra path that it returned. False: the antenna is beneath the plane. */
-bool ground_leg_image(GroundLeg *out, const ScatterAntenna *antenna, const ScatterAntenna *image, double extra_m,
-                      const GroundPlane *plane, const GroundSurface *surface, double k, const double right[3]);
+/* An antenna and its mirror image beneath a ground plane. */
+typedef struct GroundMirror {
+    const ScatterAntenna *antenna, *image; /* image: filled by ground_image */
+    double                extra_m;         /* the extra path that ground_image returned */
+    const GroundPlane    *plane;
+} GroundMirror;
+/* The leg by the ground. False: the antenna is beneath the plane. */
+bool ground_leg_image(GroundLeg *out, const GroundMirror *from, const GroundSurface *surface, double k,
+                      const double right[3]);
 
 /* s: of a receiver at the end of one leg and a transmitter at the end of the other, in the target's bases; out: in the
  * antenna's axes, without spread and phase of the extra paths. May be one. */

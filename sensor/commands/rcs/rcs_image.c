@@ -92,8 +92,13 @@ static Status shoot(Pulses *pulses, const RcsImage *image, RcsSweep *sweep)
             traced_deg = bin_deg;
         }
         if (status == STATUS_OK)
-            status = total_field_sweep(s, count, first_hz, step_hz, &sweep->field, &pulses->antenna[p],
-                                       &pulses->antenna[p], sweep->pool);
+            status = total_field_sweep(s,
+                                       &(FrequencySweep){.count = count,
+                                                         .first_hz = first_hz,
+                                                         .step_hz = step_hz,
+                                                         .tx = &pulses->antenna[p],
+                                                         .rx = &pulses->antenna[p]},
+                                       &sweep->field, sweep->pool);
         for (int q = 0; q < 2 && status == STATUS_OK; q++) {
             for (int f = 0; f < count; f++) w[f] = (q ? s[f].hv : s[f].hh) * (hamming(f, count) / sum);
             make_profile(pulses->profile[q] + (size_t)p * (size_t)pulses->samples, pulses->samples, pulses->bin_m, w,

@@ -185,24 +185,25 @@ static Status take_traces(Snapshot *s, const DisEntityId *id, int count, Arena *
     return STATUS_OK;
 }
 
-Status pairs_take_away(Snapshot *without, const DisEntityId **taken, int *taken_count, const Snapshot *with, bool all,
-                       DisEntityId aim, int host, Arena *arena)
+Status pairs_take_away(Frame *frame, const PairsTaken *take)
 {
-    const int       only = all || dis_entity_id_is_none(aim) ? -1 : snapshot_find(with, aim);
-    SnapshotEntity *entity = arena_alloc(arena, (size_t)with->count + 1, sizeof *entity);
-    DisEntityId    *ids = arena_alloc(arena, (size_t)with->count + 1, sizeof *ids);
+    const Snapshot *with = &frame->seen.snapshot;
+    Snapshot       *without = &frame->without->snapshot;
+    const int       only = take->all || dis_entity_id_is_none(take->aim) ? -1 : snapshot_find(with, take->aim);
+    SnapshotEntity *entity = arena_alloc(frame->arena, (size_t)with->count + 1, sizeof *entity);
+    DisEntityId    *ids = arena_alloc(frame->arena, (size_t)with->count + 1, sizeof *ids);
     if (!entity || !ids) return STATUS_NO_MEMORY;
-    *taken = ids;
-    *taken_count = 0;
+    frame->taken = ids;
+    frame->taken_count = 0;
     if (with->count > 0) memcpy(entity, with->entity, (size_t)with->count * sizeof *entity);
     for (int i = 0; i < with->count; i++) {
-        if (i == host || (!all && i != only)) continue;
+        if (i == take->host || (!take->all && i != only)) continue;
         entity[i].model = -1;
-        ids[(*taken_count)++] = entity[i].id;
+        ids[frame->taken_count++] = entity[i].id;
     }
     *without = *with;
     without->entity = entity;
-    return take_traces(without, ids, *taken_count, arena);
+    return take_traces(without, ids, frame->taken_count, frame->arena);
 }
 
 static Status write_member(Pairs *p, int m, Frame *frame)

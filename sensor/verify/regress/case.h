@@ -25,7 +25,7 @@
  *       lwir_k: 0.05
  *
  * record/ holds NNNNNN.exr for each frame, all planes in one (range_m, entity, part, material, temp_k, nx, ny, nz,
- * optical.R ..., mwir.Y, lwir.Y, radar.Y), rounded and coded as sensor/verify/regress/record_frame.h says;
+ * optical.R ..., mwir.Y, lwir.Y, radar.Y), rounded and coded as sensor/verify/regress/verdict.h says;
  * NNNNNN.profile.exr, a row of range bins; truth.jsonl as the run wrote it, and run.json without times. */
 #ifndef SENSOR_VERIFY_REGRESS_CASE_H
 #define SENSOR_VERIFY_REGRESS_CASE_H

@@ -59,7 +59,8 @@ static void run_looks(void *user)
         look_of(&antenna, i);
         w->status = total_field_trace(&w->field, w->target, &antenna, &antenna, &w->tubes, false, w->pool);
         if (w->status == STATUS_OK)
-            w->status = total_field_sweep(&w->s[i], 1, w->tubes.frequency_hz, 0, &w->field, NULL, NULL, w->pool);
+            w->status = total_field_sweep(&w->s[i], &(FrequencySweep){.count = 1, .first_hz = w->tubes.frequency_hz},
+                                          &w->field, w->pool);
     }
     bench_keep(w);
 }
@@ -229,8 +230,13 @@ static void sweep(void *user)
 {
     Reuse *r = user;
     if (r->status == STATUS_OK)
-        r->status = total_field_sweep(r->s, frequencies, r->centre_hz - 0.5 * band_hz, band_hz / (frequencies - 1),
-                                      &r->field, &r->now, &r->now, r->pool);
+        r->status = total_field_sweep(r->s,
+                                      &(FrequencySweep){.count = frequencies,
+                                                        .first_hz = r->centre_hz - 0.5 * band_hz,
+                                                        .step_hz = band_hz / (frequencies - 1),
+                                                        .tx = &r->now,
+                                                        .rx = &r->now},
+                                      &r->field, r->pool);
     bench_keep(r);
 }
 

@@ -126,7 +126,9 @@ static Status error_of_bin(RadarSpeed *r, double *error_db)
     bench_progress(r->bench, "a list of four times the tubes");
     Status status = total_field_trace(&finer, r->target, &r->middle, &r->middle, &tubes, true, r->many);
     if (status == STATUS_OK)
-        status = total_field_sweep(want, 17, r->config.frequency_hz - half_hz, half_hz / 8, &finer, NULL, NULL, NULL);
+        status = total_field_sweep(
+            want, &(FrequencySweep){.count = 17, .first_hz = r->config.frequency_hz - half_hz, .step_hz = half_hz / 8},
+            &finer, NULL);
     if (status == STATUS_OK) status = centres_make(&r->centres, &r->signature, &r->middle, &r->middle, NULL);
     for (int f = 0; f < 17 && status == STATUS_OK; f++) {
         centres_field(&got, &r->centres, r->config.frequency_hz - half_hz + f * half_hz / 8);
@@ -187,7 +189,8 @@ static Status add_target_rows(RadarSpeed *r)
         status = centres_make(&r->centres, &r->signature, &r->now, &r->now, NULL);
         for (int end = -1; end <= 1 && status == STATUS_OK; end += 2) {
             const double f_hz = wave->centre_hz + 0.5 * end * wave->bandwidth_hz;
-            status = total_field_sweep(want, 1, f_hz, 0, &r->field, &r->now, &r->now, NULL);
+            status = total_field_sweep(
+                want, &(FrequencySweep){.count = 1, .first_hz = f_hz, .tx = &r->now, .rx = &r->now}, &r->field, NULL);
             centres_field(&got, &r->centres, f_hz);
             add_error(&error, &power, &got, &want[0]);
         }
@@ -213,8 +216,11 @@ static Status add_target_rows(RadarSpeed *r)
     r->now = r->middle;
     reuse(r);
     profile(r);
-    status = total_field_sweep(want, wave->samples, wave->centre_hz - 0.5 * wave->bandwidth_hz,
-                               wave->bandwidth_hz / wave->samples, &r->field, NULL, NULL, NULL);
+    status = total_field_sweep(want,
+                               &(FrequencySweep){.count = wave->samples,
+                                                 .first_hz = wave->centre_hz - 0.5 * wave->bandwidth_hz,
+                                                 .step_hz = wave->bandwidth_hz / wave->samples},
+                               &r->field, NULL);
     error = power = 0;
     for (int m = 0; m < wave->samples && status == STATUS_OK; m++) {
         const double complex of =

@@ -1,5 +1,5 @@
-/* sensor/frame/json_values.c: JSON read into a flat list of paths and values. */
-#include "sensor/frame/json_values.h"
+/* sensor/verify/regress/json_values.c: JSON read into a flat list of paths and values. */
+#include "sensor/verify/regress/verdict.h"
 
 #include <jansson.h>
 #include <stdlib.h>
