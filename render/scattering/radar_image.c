@@ -23,7 +23,7 @@ double radar_lobe(double lobe_rad, double cosine)
  * worth tracing. exp(-40) of the peak. */
 static bool lobe_is_dark(double lobe_rad, double cosine) { return !(1 - cosine < 20 * lobe_rad * lobe_rad); }
 
-/* Active paths, as arrays: position of the last mirror, direction in which the ray leaves it. */
+/* The paths that are still followed, as arrays. The ray that leaves the last mirror is in Block.onward. */
 typedef struct Paths {
     int    count;
     int    sample[hits_capacity];      /* of the eye ray it started as */
@@ -31,7 +31,7 @@ typedef struct Paths {
     double travelled_m[hits_capacity]; /* from the eye to the last mirror */
 } Paths;
 
-/* Next rays: from the last mirrors on, clear of them by a millimetre along their own normals. */
+/* Adds a ray that starts at a mirror, a millimetre clear of it along its own normal. */
 static void add_ray(Rays *rays, const double p_enu[3], const double n_geo[3], const double d_enu[3], double far_m)
 {
     const int k = rays->count++;
@@ -42,7 +42,7 @@ static void add_ray(Rays *rays, const double p_enu[3], const double n_geo[3], co
     rays->far_m[k] = far_m;
 }
 
-/* Mirror direction at hit k of a ray along d_enu; false when a shading normal tilts it into the surface. */
+/* Computes the mirror direction at hit k of a ray along d_enu. False: a shading normal tilts it into the surface. */
 static bool mirror(double out_enu[3], const Hits *hits, int k, const double d_enu[3])
 {
     const double n_enu[3] = {hits->n_enu[0][k], hits->n_enu[1][k], hits->n_enu[2][k]};

@@ -4,7 +4,7 @@
 
 #include <stdlib.h>
 
-/* Component of the wave vector across the surface, inside, over k: decays inwards. */
+/* Component across the surface of the wave vector inside, over k; its sign makes the wave decay inwards. */
 static double complex inward(double complex eps, double cosine)
 {
     const double complex q = csqrt(eps - (1 - cosine * cosine));
@@ -117,7 +117,7 @@ static Status read_kind(RadarMaterial *material, const Table *table, int row, co
     return STATUS_OK;
 }
 
-/* A row, of a new material or one more frequency of the last. */
+/* Reads a row: it begins a new material, or adds a frequency to the last one. */
 static Status read_row(RadarMaterials *m, const Table *table, int row, const int column[])
 {
     const char   *name = table_text(table, row, column[column_name]);
@@ -149,7 +149,8 @@ static Status read_row(RadarMaterials *m, const Table *table, int row, const int
     return STATUS_OK;
 }
 
-/* Materials without a row of their own, by the default for metal and for others; and `metal`, of shapes. */
+/* Adds the materials that have no row of their own, by the defaults for metal and for others; and `metal`, for shapes.
+ */
 static Status add_defaults(RadarMaterials *m, const Materials *optical, const char *path)
 {
     const int own = radar_materials_find(m, "other_default"), metal = radar_materials_find(m, "metal_default");

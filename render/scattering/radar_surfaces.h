@@ -41,7 +41,7 @@ void fresnel_coated(double complex *te, double complex *tm, double complex eps, 
  * with rms h, slopes small. Source: Ament, Proc. IRE 41, 142, 1953. */
 double fresnel_rough(double rough_m, double k, double cosine);
 
-/* Of any surface, its roughness included. */
+/* Reflection of any kind of surface, its roughness included. */
 void fresnel_surface(double complex *te, double complex *tm, const RadarSurface *surface, double k, double cosine);
 
 /* ---- materials ---------------------------------------------------------------------------------- */

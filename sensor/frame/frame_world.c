@@ -29,7 +29,7 @@ Status frame_world_plant(World *world, const Woods *woods, const Config *config,
     return status;
 }
 
-/* Of the settings alone: what a course of the weather starts from. With an atmosphere. */
+/* The weather by the settings alone, which a course of the weather starts from. The world must have an atmosphere. */
 static Weather frame_weather(const Config *config, const World *world)
 {
     Weather base = weather_default();

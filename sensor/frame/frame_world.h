@@ -14,7 +14,8 @@ Status frame_world(World *out, const Config *config, const Catalog *catalog, con
 Status frame_world_plant(World *world, const Woods *woods, const Config *config, const char *isa, Pool *pool);
 /* The same as its course has it then. */
 Weather frame_weather_at(const Config *config, const World *world, double unix_s);
-/* Its heat, over the weather of weather.* up to unix_s, that of exercise time 0. After the plants. */
+/* Warms the world over the weather of weather.* up to unix_s, which is exercise time 0. Call it after
+ * frame_world_plant. */
 Status frame_world_warm(World *world, const Config *config, double unix_s, Pool *pool);
 
 /* The radar of radar.preset, which is not none. live: signatures that are missing are made in the background. */

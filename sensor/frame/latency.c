@@ -84,7 +84,7 @@ static void count_one(Histogram *h, double ms)
     h->max_ms = fmax(h->max_ms, ms);
 }
 
-/* The upper limit of the bin with the nearest rank. */
+/* Returns the upper limit of the bin with the nearest rank. */
 static double percentile(const Histogram *h, double share)
 {
     const uint64_t rank = (uint64_t)fmax(1, ceil(share * (double)h->count - 1e-9));

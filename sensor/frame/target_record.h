@@ -67,11 +67,11 @@ typedef struct TargetRecord {
     TargetBand     band[BAND_COUNT];
 } TargetRecord;
 
-/* In the order of target. NULL: no memory. */
+/* Makes the records, in the order of target. NULL: out of memory. */
 TargetRecord *target_records(const Target *target, int count, const Snapshot *snapshot, const Catalog *catalog,
                              Arena *arena);
 
-/* What hides most of it: the id of an entity, `ground`, `trees`, `entity`; NULL: nothing. */
+/* Names what hides most of it: the id of an entity, `ground`, `trees` or `entity`; NULL: nothing. */
 const char *target_occluder_text(char text[dis_id_text_size], const TargetRecord *target);
 
 /* ---- a box in other forms ------------------------------------------------------------------------ */
@@ -79,11 +79,12 @@ const char *target_occluder_text(char text[dis_id_text_size], const TargetRecord
 static inline bool target_box_is_empty(const int box[4]) { return box[2] <= box[0] || box[3] <= box[1]; }
 /* x, y, width, height */
 void target_box_coco(int out[4], const int box[4]);
-/* left, top, right, bottom; the last two exclusive; beyond 0 .. 65535: the nearest */
+/* Writes left, top, right, bottom, the last two exclusive. Values beyond 0 .. 65535 become the nearest. */
 void target_box_u16(uint16_t out[4], const int box[4]);
 /* Of the first and the last pixel, in an image of that width. An empty box has none: both 0. */
 void target_box_pixel_numbers(uint64_t out[2], const int box[4], int width);
-/* Of the pixel that holds the centre; of a box of even width or height the one right of or below it. Empty: 0. */
+/* The number of the pixel that holds the box's centre; of a box of even width or height, the one right of or below it.
+ * Of an empty box: 0. */
 uint64_t target_box_centre_number(const int box[4], int width);
 
 /* ---- classes ------------------------------------------------------------------------------------- */
@@ -103,7 +104,7 @@ uint64_t target_box_centre_number(const int box[4], int width);
 int         target_class_count(void);
 const char *target_class_name(int number);
 const char *target_class_group(int number); /* COCO's supercategory */
-/* `other` if no category matches. */
+/* Finds the category of a type; `other` if none matches. */
 int target_class(DisEntityType type);
 
 #endif

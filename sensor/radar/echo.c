@@ -103,7 +103,7 @@ static void prepare(PulsePoint *p, Echo *left_over, const EchoGrid *g, const Ech
     p->terms = echo_terms(g, growth_m);
     if (isfinite(g->fold_m)) {
         path_m -= g->fold_m * nearbyint(path_m / g->fold_m);
-        /* folds over within the interval */
+        /* the echo folds over within the interval */
         if (fabs(path_m) + 0.5 * g->wave.pulses * fabs(growth_m) > 0.5 * g->fold_m) p->terms = 0;
     }
     if (p->terms == 0) return;

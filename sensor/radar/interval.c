@@ -229,7 +229,7 @@ void interval_process(RangeDoppler *out, IntervalPlan *p, const Interval *in, Po
 
 double interval_noise_share(const IntervalPlan *p) { return p->noise_share; }
 
-/* By the cubic through four neighbours. */
+/* Interpolates by the cubic through four neighbours. */
 double interval_lobe(const IntervalPlan *p, bool doppler, double cells)
 {
     const double  at = fmin(fabs(cells), 1.5) * lobe_steps;

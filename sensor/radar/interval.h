@@ -57,14 +57,14 @@ typedef struct Waveform {
     bool         uncompensated; /* the receiver does not follow the rate of the reference's path, but its middle */
 } Waveform;
 
-/* From one sample of a row to the next, s. */
+/* Time from one sample of a row to the next, s. */
 double waveform_step_s(const Waveform *wave);
-/* Of a row, that its samples take: 0 .. 1. */
+/* Share of a row, 0 .. 1, over which its samples are taken. */
 double waveform_share_of_row(const Waveform *wave);
 /* t(m, n), s; f(m), Hz. */
 double waveform_time_s(const Waveform *wave, int m, int n);
 double waveform_frequency_hz(const Waveform *wave, int m);
-/* Noise bandwidth of a sample, Hz: that of the signal to noise of a matched filter, P pulse / (k T F) a pulse. */
+/* Noise bandwidth of a sample, Hz, for which a matched filter has the signal to noise P pulse / (k T F) a pulse. */
 double waveform_noise_hz(const Waveform *wave);
 /* Amplitude that is left of an echo by what its receiver misses of it: pulse_doppler, the share of the pulse that
  * arrives while nothing is transmitted; fmcw, the share of the sweep that overlaps its echo. 1 for others. A share
@@ -78,7 +78,7 @@ double waveform_fold_m(const Waveform *wave);
  * receiver does not follow: folded over and coupled. */
 double waveform_appears_m(const Waveform *wave, double off_m, double rate_mps);
 
-/* Times and limits that follow. */
+/* The times and limits that follow from a waveform. */
 typedef struct WaveformTiming {
     double sample_s;      /* from one sample to the next */
     double profile_s;     /* over which the samples of a range profile are taken; 0: at once */
@@ -111,7 +111,7 @@ typedef struct RangeDoppler {
     double complex *cell;                          /* [channels][rows][columns] */
 } RangeDoppler;
 
-/* The two maps for processing; holds the compressed pulses of one interval at a time. */
+/* The plan by which intervals are processed into maps; it holds the compressed pulses of one interval at a time. */
 typedef struct IntervalPlan IntervalPlan;
 Status interval_plan_create(IntervalPlan **out, const Waveform *wave, const Window *range, const Window *doppler);
 void   interval_plan_destroy(IntervalPlan *plan); /* accepts NULL */
@@ -120,15 +120,15 @@ void interval_compress(IntervalPlan *plan, const Interval *in, int channels, Poo
 /* Compresses all channels, and transforms them over the pulses. out->cell: [channels][pulses][samples]; the rest is
  * filled. */
 void interval_process(RangeDoppler *out, IntervalPlan *plan, const Interval *in, Pool *pool);
-/* Of a map: RangeDoppler.noise_share. */
+/* RangeDoppler.noise_share of the maps that the plan makes. */
 double interval_noise_share(const IntervalPlan *plan);
 /* Amplitude at an offset of up to 1.5 cells of the response to a point, 1 at 0, over range or over Doppler; to 1e-7. */
 double interval_lobe(const IntervalPlan *plan, bool doppler, double cells);
 /* Of a channel that was compressed: all pulses, [pulses][samples] complex. */
 const double *interval_pulses(const IntervalPlan *plan, int channel);
-/* Complex range profile of one pulse: out[samples]. */
+/* Gives the complex range profile of one pulse: out[samples]. */
 void interval_pulse(double complex *out, const IntervalPlan *plan, int channel, int pulse);
-/* Range profile over all pulses, without Doppler: profile[samples], mean power over pulses. */
+/* Gives the range profile over all pulses, without Doppler: profile[samples], the mean power over pulses. */
 void interval_profile(double *profile, const IntervalPlan *plan, int channel);
 
 /* ---- the receiver ------------------------------------------------------------------------------- */
@@ -158,7 +158,7 @@ typedef struct ReceiverReport {
     long   saturated; /* I or Q values at the end of the converter's range */
 } ReceiverReport;
 
-/* In place. number: of the interval, so that each has noise of its own. */
+/* Changes the samples in place. number: that of the interval, so that each has noise of its own. */
 void interval_receive(ReceiverReport *report, Interval *interval, const Receiver *receiver, uint64_t seed,
                       uint32_t stream, uint32_t number);
 /* Noise power of a sample, W. */

@@ -67,7 +67,7 @@ typedef struct RadarBounceTruth {
     double once_m2[3], twice_m2[3]; /* by the ground one way (both ways round together), by the ground both ways */
     double rcs_m2[3];               /* of all paths together, the direct one included */
 } RadarBounceTruth;
-/* One of an entity's scattering centres. */
+/* One of the scattering centres of an entity. */
 typedef struct RadarScatterer {
     double hh_m2, vv_m2; /* its cross section */
     double p_body[3];    /* m: middle of its path's first and last mirror */
@@ -77,7 +77,7 @@ typedef struct RadarScatterer {
 
 enum { radar_strongest = 8 };
 
-/* Truth of one entity within beam and range window. */
+/* The truth about one entity within beam and range window. */
 typedef struct RadarTruth {
     int            entity;                  /* index in the snapshot */
     double         range_m, range_rate_mps; /* of the origin of its model */

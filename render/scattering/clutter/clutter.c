@@ -11,7 +11,7 @@ static const uint32_t speckle_stream = 0x434c5500, place_stream = 0x434c5520, te
 
 /* ---- cells -------------------------------------------------------------------------------------------- */
 
-/* First cell with its centre at or beyond x. */
+/* Returns the index of the first cell whose centre is at or beyond x. */
 static int64_t first_from(double x_m, double side_m)
 {
     assert(fabs(x_m) <= side_m * 0x1p30);
@@ -114,9 +114,10 @@ void clutter_place(double p_m[2], const ClutterGrid *grid, const ClutterCell *ce
 
 /* ---- texture -------------------------------------------------------------------------------------------- */
 
-/* A standard normal field: four by four nodes of a lattice about a place, with Gaussian weights whose squares sum to 1,
- * so that each point's value is exactly normal and the gamma distribution of the texture exact. Weights of nodes that
- * come and go are 3e-4. Correlated nearly as exp(-(distance / length)^2); not at all from four lengths on. */
+/* Value at a place of a standard normal field. It is the sum of the values at four by four nodes of a lattice, with
+ * Gaussian weights whose squares sum to 1, so that each value is exactly normal and the gamma distribution of the
+ * texture exact. A node comes and goes with a weight of 3e-4. The correlation is nearly exp(-(distance / length)^2),
+ * and 0 from four lengths on. */
 static double deviate_at(uint64_t seed, double length_m, const double p_m[2])
 {
     enum { nodes = 4 };
@@ -132,7 +133,7 @@ static double deviate_at(uint64_t seed, double length_m, const double p_m[2])
         }
         for (int k = 0; k < nodes; k++) weight[a][k] /= sqrt(square);
     }
-    /* columns from 2^31 on, so that those of a row follow one another */
+    /* columns count from 2^31, so that those of a row follow one another */
     const uint64_t column = (uint64_t)(int64_t)first[0] + 0x80000000u;
     double         sum = 0;
     for (int y = 0; y < nodes; y++) {
@@ -144,14 +145,14 @@ static double deviate_at(uint64_t seed, double length_m, const double p_m[2])
     return sum;
 }
 
-/* A cell has the texture of one place in it, for all of it: means over many cells then vary more than those of the
- * field, by (1 - V^2) / count, V^2 the share of its variance that a cell's mean keeps. What the deviations are
- * scaled by so that they vary alike: 1 for cells much smaller than the texture, 0.96, 0.75, 0.43 for 1, 2, 4 of its
- * lengths. */
+/* Scale of a cell's deviations. All of a cell has the texture of one place in it, so means over many cells would vary
+ * more than those of the field: by (1 - V^2) / count, where V^2 is the share of its variance that the mean of a cell
+ * keeps. Scaled, they vary alike. The scale is 1 for cells much smaller than the texture, and 0.96, 0.75, 0.43 for
+ * cells of 1, 2, 4 of its lengths. */
 static double level_share(double side_m, double length_m)
 {
     const double a = side_m / length_m, field = pi_rad / (a * a);
-    /* of exp(-d^2) over a square; its series where the closed form cancels */
+    /* kept: the mean of exp(-d^2) over a square; a series replaces its closed form where that cancels */
     const double kept = a < 1e-2 ? 1 - a * a / 6 : (sqrt(pi_rad) * a * erf(a) + expm1(-a * a)) / (a * a);
     return sqrt(field / (field + 1 - kept * kept));
 }
@@ -173,7 +174,7 @@ enum {
     normals = clutter_terms * of_term + moving * of_velocity
 };
 
-/* From so many standard normals; texture: mean power over all draws. */
+/* Draws a scatterer from n standard normal values. texture: the mean power over all draws. */
 static void draw_from(ClutterScatterer *out, const ClutterRow *row, const double normal[normals], double texture)
 {
     const double power = 0.5 * texture;
@@ -215,7 +216,7 @@ void clutter_draw(ClutterScatterer *out, const ClutterGrid *grid, const ClutterT
     for (int i = 0; i < count; i++) draw(&out[i], grid, &table->row[surface[i]][band], &cell[i]);
 }
 
-/* z (re + i im), without the tests for infinity of a complex product. */
+/* Multiplies z by re + i im, without the tests for infinity of a complex product. */
 static inline double complex turned(const float z[2], double re, double im)
 {
     return CMPLX((double)z[0] * re - (double)z[1] * im, (double)z[0] * im + (double)z[1] * re);

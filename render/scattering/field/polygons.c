@@ -26,8 +26,8 @@ double complex polygon_mean(const double x[3])
         const double complex bc = turn(0.5 * (m + c)) * scatter_sinc(0.5 * (m - c));
         return 2 * I * (ab - bc) / (a - c);
     }
-    /* Nearly specular, where those cancel: 2 sum of (-j)^n h_n / (n + 2)!, h_n the sum of all products of n about the
-     * middle. */
+    /* near the specular direction, where the other form cancels: 2 sum of (-j)^n h_n / (n + 2)!, with h_n the sum of
+     * all products of n factors, about the middle */
     const double middle = (x[0] + x[1] + x[2]) / 3, p = x[0] - middle, q = x[1] - middle, r = x[2] - middle;
     const double e2 = p * q + q * r + r * p, e3 = p * q * r;
     double       h[9] = {1, 0, -e2}, re = 1, im = 0, per = 0.5; /* 1 / (n + 1)! */
@@ -166,7 +166,7 @@ static Status add_polygon(PolygonBuilder *builder, const double corner[3][3], co
     return STATUS_OK;
 }
 
-/* A face that is seen; none of it where it does not fit. */
+/* Adds a face that is seen. Adds none of it where it does not fit. */
 static Status add_face(PolygonBuilder *builder, int face)
 {
     const RadarTarget *target = builder->target;

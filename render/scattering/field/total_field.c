@@ -36,7 +36,7 @@ static double path_of(const Sweep *sweep, size_t i)
     return sweep->hits->path_m[i] + (sweep->moved ? moved_by(sweep, i) : 0);
 }
 
-/* One hit, each frequency by itself. */
+/* Adds one hit, with each frequency computed by itself. */
 static void add_plain(double *sum, const Sweep *sweep, size_t i)
 {
     const TubeHits *h = sweep->hits;
@@ -137,7 +137,7 @@ static void sum_chunk(void *user, int worker, int task)
         for (size_t i = first; i < end; i++) add_plain(sum, sweep, i);
 }
 
-/* The field at a frequency from the chunks' sums, in their order. */
+/* Sums the chunks' fields at one frequency, in the order of the chunks. */
 static void finish(ScatterMatrix *s, const Sweep *sweep, int chunks, int f)
 {
     double       whole[8] = {0};
@@ -201,7 +201,8 @@ static bool sees(void *user, const double p[3], int antenna)
     return !parts_occluded(sight->entity, p, way, false);
 }
 
-/* Rays just above a face: from edge to edge, and down to it at three places on the way. */
+/* Tests whether a face is clear between two edges, by rays just above it: from edge to edge, and down to it at three
+ * places on the way. */
 static bool is_clear(void *user, const double p[3], const double q[3], const double n[3])
 {
     static const double above_m = 1e-3, inside_m = 2e-3;
@@ -265,7 +266,7 @@ static Status append(EdgeSegments *out, const EdgeSegments *more, int first_wedg
     return STATUS_OK;
 }
 
-/* Chunks of wedges, then of pairs of them, over the threads; their segments in order. */
+/* Finds the segments of chunks of wedges, then of pairs of wedges, on all threads; they are kept in order. */
 static Status find_edges(EdgeSegments *out, const RadarTarget *target, const EdgePairConfig *config, const Sight *sight,
                          Pool *pool)
 {
@@ -315,7 +316,7 @@ Status total_field_trace(TotalField *out, const RadarTarget *target, const Scatt
     return find_edges(&out->edges, target, &edge, &sight, pool);
 }
 
-/* A segment as moved antennas see it: its path changes, its amplitude hardly. */
+/* Path of a segment for antennas that have moved a little; its amplitude hardly changes. */
 static double moved_path_m(const EdgeSegment *s, const TotalField *field, const ScatterAntenna *tx,
                            const ScatterAntenna *rx)
 {
@@ -324,7 +325,7 @@ static double moved_path_m(const EdgeSegment *s, const TotalField *field, const 
            (scatter_path(way, rx, s->p) - scatter_path(way, &field->hits.rx, s->p));
 }
 
-/* exp(j a) from frequency to frequency, restarted each 64. */
+/* exp(j a), carried from one frequency to the next by a product, and computed anew every 64. */
 typedef struct Wave {
     double length_m, re, im, turn_re, turn_im;
 } Wave;

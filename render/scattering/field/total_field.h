@@ -81,7 +81,8 @@ typedef struct TotalField {
     Polygons     polygons;
 } TotalField;
 
-/* out: zeroed, or of an earlier call. edges: false leaves them out. Statuses as tubes_trace. */
+/* Traces a look. out is zeroed, or holds the result of an earlier call. edges false: edges are left out. Returns the
+ * statuses of tubes_trace. */
 Status total_field_trace(TotalField *out, const RadarTarget *target, const ScatterAntenna *tx, const ScatterAntenna *rx,
                          const TubeConfig *config, bool edges, Pool *pool);
 /* Fills S as field_sweep does, with the edges and polygons added. */
@@ -97,7 +98,7 @@ void   total_field_free(TotalField *field); /* accepts zeroes */
 Status field_sweep(ScatterMatrix *s, const FrequencySweep *sweep, const TubeHits *hits, Pool *pool);
 Status field_at(ScatterMatrix *s, double frequency_hz, const TubeHits *hits, Pool *pool);
 
-/* 4 pi |s|^2 in dB over 1 m^2; -INFINITY for 0. */
+/* Cross section 4 pi |s|^2 in dB over 1 m^2; -INFINITY for 0. */
 double rcs_dbsm(double complex s);
 
 #endif

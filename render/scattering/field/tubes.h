@@ -47,7 +47,8 @@ typedef struct TubeConfig {
 
 TubeConfig tubes_default_config(double frequency_hz);
 
-/* S = -(j k / 2 pi) sum of amplitude sinc(k slope_0) sinc(k slope_1) exp(-j k path). */
+/* The hits of a look. Their field is S = -(j k / 2 pi) sum of amplitude sinc(k slope_0) sinc(k slope_1) exp(-j k path).
+ */
 typedef struct TubeHits {
     ScatterAntenna tx, rx;
     double         frequency_hz, spacing_m;
@@ -89,9 +90,9 @@ typedef struct Warp {
     double phase_rad[warp_waves];
 } Warp;
 
-/* rms_m >= 0, length_m > 0. A function of its arguments alone. */
+/* Makes an unevenness. rms_m >= 0, length_m > 0. The result depends on the arguments alone. */
 void tubes_warp_make(Warp *out, double rms_m, double length_m, uint64_t seed, int part);
-/* Height, m, its gradient, and its second derivatives, row by row, 1/m. */
+/* Gives the height of an unevenness, m, its gradient, and its second derivatives row by row, 1/m. */
 void tubes_warp_at(double *height_m, double gradient[3], double bend[9], const Warp *warp, const double p[3]);
 
 #endif

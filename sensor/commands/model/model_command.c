@@ -187,7 +187,7 @@ static void draw_scale(uint8_t *rgb, double px_per_m)
     write_text(rgb, 12, y - 20, text);
 }
 
-/* View from the south, slightly above, with the whole model in the image; px_per_m: scale at the model. */
+/* Gives a view from the south, slightly above, with the whole model in the image. px_per_m: the scale at the model. */
 static View view_of(double *px_per_m, const ModelStage *stage)
 {
     const Model *model = catalog_model(stage->catalog, stage->model);
@@ -225,7 +225,7 @@ static Status draw_side(float *const plane[3], double white[3], double *px_per_m
                                    .edge_samples = 4,
                                    .target_samples = 48,
                                    .hidden_entity = -1};
-    /* first nose on, then clockwise from above: right side, tail ... */
+    /* the first view is nose on; the others follow clockwise from above: right side, tail ... */
     Status status = model_stage_put(&snapshot, &entity, stage, -0.5 * pi_rad - side * 0.25 * pi_rad);
     /* sun, atmosphere and view are the same for all sides: only the model turns */
     if (status == STATUS_OK && side == 0) status = model_stage_light(stage, &request, stage->begin_s);

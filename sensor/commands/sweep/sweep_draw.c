@@ -71,13 +71,13 @@ static Status count_kinds(SweepAxis *axis)
 
 static double uniform(const Sweep *sweep, int draw, const SweepAxis *axis)
 {
-    /* of the key's name, FNV-1a: an additional axis changes no draw of the others */
+    /* a hash of the key's name, FNV-1a, so that an additional axis changes no draw of the others */
     uint64_t key = 14695981039346656037u;
     for (const char *at = axis->key; *at; at++) key = (key ^ (uint8_t)*at) * 1099511628211u;
     return random_uniform((uint64_t)sweep->draw, 0x53770000u, (uint32_t)draw, key);
 }
 
-/* The kind on an axis of the n-th combination in order, the last axis fastest. */
+/* Which kind an axis has in the n-th combination; the last axis changes fastest. */
 static int kind_in_order(const Sweep *sweep, int n, int axis)
 {
     for (int i = sweep->axis_count - 1; i > axis; i--) n /= sweep->axis[i].kinds;

@@ -14,7 +14,7 @@
 /* manifest.jsonl and variant.json of a sweep (sensor/commands/sweep/sweep.h), and the fields that they share with the
  * run.json of a completed run. */
 
-/* The result of a run. Empty texts, no frames: not in the file. */
+/* The result of a run. Texts that are empty and lists of no frames are left out of the file. */
 typedef struct VariantRun {
     char version[32], config_sha256[sha256_text_size], log_sha256[sha256_text_size], settings_sha256[sha256_text_size];
     bool complete;             /* rendered to its last frame */
@@ -37,7 +37,7 @@ typedef struct VariantRecord {
     const VariantRun *run;     /* NULL: there is none */
 } VariantRecord;
 
-/* One line without its newline, freed by the caller. NULL: out of memory. */
+/* Makes one line without its newline, which the caller frees. NULL: out of memory. */
 char *variant_line(const VariantRecord *record);
 
 /* ---- drawn values ----------------------------------------------------------------------------------- */
@@ -89,14 +89,14 @@ typedef struct Outcome {
 
 /* ---- what is written about its variants ------------------------------------------------------------- */
 
-/* key=value of each axis, separated; truncated to the size of out. */
+/* Writes key=value of each axis, separated; truncated to the size of out. */
 void sweep_settings_words(char out[sweep_words_size], const Sweep *sweep, int number, const char *between);
 /* Opens manifest.html and manifest.jsonl in the folder of the sweep. */
 Status sweep_manifest_begin(SweepRun *s);
-/* Adds the variant to the page, with a thumbnail of the middle frame of its run, and tells of it. place: of it among
- * all. */
+/* Adds the variant to the page, with a thumbnail of the middle frame of its run, and prints a line about it. place: its
+ * number among all variants. */
 void sweep_report_variant(SweepRun *s, const Variant *v, const Outcome *outcome, int place);
-/* The variant's line of manifest.jsonl, malloc'd. NULL: out of memory. */
+/* Makes the variant's line of manifest.jsonl, which the caller frees. NULL: out of memory. */
 char *sweep_manifest_line(const SweepRun *s, const Variant *v, const Outcome *outcome);
 /* Ends what was opened. STATUS_IO, logged, also for the page. */
 Status sweep_manifest_end(SweepRun *s);

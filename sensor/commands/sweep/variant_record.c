@@ -3,7 +3,6 @@
 
 #include "sensor/frame/json_object.h"
 
-#include <jansson.h>
 #include <stdlib.h>
 
 /* ---- read back -------------------------------------------------------------------------------- */

@@ -296,7 +296,7 @@ typedef struct Wanted {
     long long      threads;
 } Wanted;
 
-/* 0: go on; else the exit code. */
+/* Returns 0 to go on; else the exit code. */
 static int parse(Wanted *w, int argc, char **argv)
 {
     enum { OUT = 'o', HELP = 'h', OVERWRITE = 256, THREADS, JSON, VALUE };
@@ -305,7 +305,7 @@ static int parse(Wanted *w, int argc, char **argv)
                                             {"threads", 1, NULL, THREADS},
                                             {"json", 0, NULL, JSON},
                                             {"help", 0, NULL, HELP},
-                                            /* those of terrain/import/terrain_import.h */
+                                            /* these options are those of terrain/import/terrain_import.h */
                                             {"surface", 1, NULL, VALUE},
                                             {"cover", 1, NULL, VALUE + 1},
                                             {"cover-table", 1, NULL, VALUE + 2},

@@ -75,7 +75,7 @@ typedef struct HealthSample {
 } HealthSample;
 
 HealthReason health_evaluate(HealthTopic topic, const HealthSample *sample);
-/* Of a run without any frame: the first fault, however short it lasted. */
+/* The first fault of a run without any frame, however short it lasted. */
 HealthReason health_final(const HealthSample *sample);
 
 /* What the messages name. */
@@ -87,7 +87,7 @@ typedef struct HealthNames {
     const char *host; /* as requested, or the present one */
 } HealthNames;
 
-/* The fault and its remedy, one line; empty for HEALTH_FINE. */
+/* Writes the fault and its remedy in one line, empty for HEALTH_FINE. */
 enum { health_text_size = 640 };
 void health_text(char out[health_text_size], HealthReason reason, const HealthSample *sample, const HealthNames *names);
 const char *health_name(HealthReason reason); /* a few words */
@@ -103,8 +103,8 @@ typedef struct Health {
 
 void health_begin(Health *health, double now_s);
 void health_own(Health *health, double now_s); /* a datagram of this node's own site and application */
-/* A datagram of another sender. exercise: the configured one; -1: any. checked: only a report with a usable position
- * counts. */
+/* Takes note of a datagram of another sender. exercise: the configured one; -1: any. checked: only a report with a
+ * usable position counts. */
 void health_received(Health *health, const DisDatagram *datagram, int exercise, bool checked, double now_s);
 void health_rendering(Health *health, double now_s); /* the choices are made, the first frame is due */
 /* A frame that was rendered. */

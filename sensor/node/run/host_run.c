@@ -191,7 +191,7 @@ typedef struct HostChoice {
     Choices       choices; /* the lines of all hosts, and of this one */
 } HostChoice;
 
-/* The choices and the world, with their messages. */
+/* Makes the choices and the world, and prints their messages. */
 static Status choose(HostChoice *out, Run *run, const DisEntityId *host)
 {
     const Options    *o = &run->options;

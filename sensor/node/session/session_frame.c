@@ -6,7 +6,7 @@
 #include "sensor/publish/consumers/consume_pairs.h"
 #include "sensor/frame/frame_world.h"
 
-/* The image motion of a stationary point at the image centre. */
+/* Computes how a stationary point at the image centre moves on the image. */
 static void rate_of_scene(double rate_px_s[2], const Eye *eye, const Picture *picture)
 {
     const size_t middle = (size_t)(picture->height / 2) * (size_t)picture->width + (size_t)(picture->width / 2);

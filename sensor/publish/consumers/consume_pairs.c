@@ -61,7 +61,7 @@ static json_t *member_json(const PairRecord *r, const PairMember *m)
     return member;
 }
 
-/* One line, flushed. STATUS_IO when it cannot be written; STATUS_NO_MEMORY. */
+/* Writes one line and flushes it. STATUS_IO when it cannot be written; STATUS_NO_MEMORY. */
 static Status write_pair_record(FILE *file, const PairRecord *r)
 {
     json_t *removed = json_array(), *members = json_array();
@@ -165,7 +165,7 @@ static bool is_of(uint64_t owner, const DisEntityId *id, int count)
     return false;
 }
 
-/* Their smoke, dust and flames; where they stood, and their tracks. */
+/* Removes the smoke, dust and flames of these entities, the marks where they stood, and their tracks. */
 static Status take_traces(Snapshot *s, const DisEntityId *id, int count, Arena *arena)
 {
     EffectPuff  *puff = arena_alloc(arena, (size_t)s->puff_count + 1, sizeof *puff);

@@ -107,7 +107,7 @@ typedef struct DisRecordSender {
     uint32_t timestamp; /* raw, at the time of the frame */
 } DisRecordSender;
 
-/* One frame's PDU of one band. Returns its size in octets, at most dis_smallest_mtu. */
+/* Encodes one frame of one band as a PDU. Returns its size in octets, at most dis_smallest_mtu. */
 size_t dis_record_frame(uint8_t out[dis_smallest_mtu], const DisRecordSender *sender, const FrameRecord *frame,
                         Band band, bool truth);
 /* The n-th PDU, from 0, of the detections of a frame with a radar; how many it has. */

@@ -21,7 +21,7 @@ typedef struct Drawing {
 
 /* times: the size of a dot; a letter takes 6 times that, and 7 down. */
 void drawing_text(const Drawing *drawing, int x, int y, int times, const char *text);
-/* White, 1 px, just outside [x0, x1) x [y0, y1), with a black line around it. */
+/* Draws a white line of 1 px just outside [x0, x1) x [y0, y1), with a black line around it. */
 void drawing_box(const Drawing *drawing, const int box[4]);
 
 #endif

@@ -11,7 +11,7 @@
 
 static const int64_t key_interval_90k = 90000;
 
-/* A video: one band, or several side by side; encoded once for its outputs. */
+/* One video, of one band or of several side by side. It is encoded once for all its outputs. */
 typedef struct Channel {
     unsigned     bands;
     VideoOutput *output[3];
@@ -51,7 +51,7 @@ static Status make_room(Video *v, size_t octets)
     return v->image_octets ? STATUS_OK : STATUS_NO_MEMORY;
 }
 
-/* One band's tile into a column of the image. */
+/* Puts the tile of one band into a column of the image. */
 static void put_tile(uint8_t *image, const uint8_t *tile, const EncoderConfig *c, int column, int width, int planes)
 {
     const size_t octets = video_encoder_bits(c->codec) == 8 ? 1 : 2, values = c->colour ? 3 : 1;

@@ -29,7 +29,8 @@ typedef struct VideoOf {
  * thread, before its pool starts. STATUS_IO, logged with what to install. */
 Status video_prepare(const Config *config);
 
-/* STATUS_UNSUPPORTED, logged: built without FFmpeg's libraries; or a file or stream of several hosts. */
+/* STATUS_UNSUPPORTED, logged: the program was built without FFmpeg's libraries, or several hosts would share a file or
+ * stream. */
 Status consume_video(Consumer **out, const VideoOf *of);
 
 #endif

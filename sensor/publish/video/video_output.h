@@ -23,8 +23,8 @@
 typedef enum KlvMode { KLV_NONE, KLV_ASYNCHRONOUS, KLV_SYNCHRONOUS } KlvMode;
 enum { klv_octets_most = 60000 }; /* of a frame: fits into one PES packet */
 
-/* Where the bytes go: MPEG-TS in whole packets of 188 octets, at most transport_octets at a time. seek: to an absolute
- * position; NULL: it cannot. false from either: it failed, and the transport reports it. */
+/* Where the bytes go: MPEG-TS in whole packets of 188 octets, at most transport_octets at a time. seek goes to an
+ * absolute position; NULL: it cannot. When one of them returns false it failed, and the transport reports that. */
 enum { transport_octets = 7 * 188 };
 typedef struct TransportSink {
     bool (*write)(void *user, const uint8_t *bytes, size_t count);
@@ -43,8 +43,8 @@ typedef struct Transport Transport;
 
 /* Logged failures: STATUS_UNSUPPORTED: the container does not take this video; STATUS_IO: the sink's. */
 Status video_transport_open(Transport **out, const TransportConfig *config, const Encoder *encoder);
-/* One frame at once: when this returns the sink has all of it (MP4 and Matroska: with the next key frame). klv may be
- * NULL, count klv_octets_most at most. pts_90k increases. STATUS_IO: the sink failed; nothing is logged. */
+/* Puts one frame: on return the sink has all of it (MP4 and Matroska: with the next key frame). klv may be NULL, count
+ * klv_octets_most at most. pts_90k increases. STATUS_IO: the sink failed; nothing is logged. */
 Status video_transport_put(Transport *transport, const VideoPacket *packet, int64_t pts_90k, const uint8_t *klv,
                            size_t klv_count);
 /* What the container still keeps goes to the sink. STATUS_IO as above. */
@@ -63,7 +63,8 @@ void video_transport_forget_positions(Transport *transport);
 
 typedef struct VideoUdp VideoUdp;
 
-/* interface: its name; empty: the system's choice. ttl: of multicast; local programs receive it in any case. Logged. */
+/* interface: its name; empty: the system chooses. ttl: that of multicast; local programs receive it in any case.
+ * Failures are logged. */
 Status video_udp_open(VideoUdp **out, const StreamUrl *to, const char *interface, int ttl);
 
 /* ---- an output of either kind -------------------------------------------------------------------- */

@@ -70,7 +70,7 @@ bool case_path(char out[case_path_size], char reason[256], const Case *c, const 
 /* Replaces, in text on the heap, absolute paths in the case's folder by relative ones and those in $PITVIPER_DATA by
  * ${PITVIPER_DATA}/..., so that a baseline is the same wherever it was made. */
 Status case_relative(char **text, const Case *c);
-/* The keys of case.yaml with ranges and meaning: for --help. */
+/* Prints the keys of case.yaml with ranges and meaning, for --help. */
 void case_write_keys(FILE *to);
 
 #endif

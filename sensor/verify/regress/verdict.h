@@ -32,8 +32,8 @@ enum { json_values_most = 4000000 };
 Status json_values_read(JsonValues *out, const char *text, size_t octets, const char *module, const char *source);
 void   json_values_free(JsonValues *values);
 const JsonValue *json_values_find(const JsonValues *values, const char *path); /* NULL: absent */
-/* The object of `text` without these top-level keys, formatted as run.json. *out: the caller's, freed with free.
- * STATUS_BAD_VALUE, logged: not a JSON object. */
+/* Makes a text of the object of `text` without these top-level keys, formatted as run.json. *out: freed by the caller
+ * with free. STATUS_BAD_VALUE, logged: it is not a JSON object. */
 Status json_text_without(char **out, const char *text, size_t octets, const char *const *key, int keys,
                          const char *module, const char *source);
 
@@ -93,7 +93,7 @@ bool        record_plane_is_id(RecordPlane plane);
 Status record_frame_from_run(RecordFrame *out, const char *folder, int number);
 /* The same of record/. like: only a frame of that size and number of bins is read; else STATUS_BAD_VALUE, logged. */
 Status record_frame_from_record(RecordFrame *out, const char *folder, const RecordFrame *like);
-/* Of record/: sizes in the headers of its files, without reading planes. bins 0: no profile. */
+/* The sizes in record/, from the headers of its files, without reading planes. bins 0: there is no profile. */
 typedef struct RecordFrameSize {
     int width, height, bins;
 } RecordFrameSize;
@@ -133,8 +133,8 @@ typedef struct PlaneVerdict {
     double expected, got; /* there */
 } PlaneVerdict;
 
-/* The limit of a pixel is absolute + relative |expected|. ignored: pixels left out where not 0, whose difference is 0;
- * may be NULL. */
+/* The limit of a pixel is absolute + relative |expected|. ignored: the difference counts as 0 where it is not 0; may be
+ * NULL. */
 typedef struct PlaneLimits {
     double         absolute, relative;
     const uint8_t *ignored;
@@ -156,12 +156,12 @@ static const double apparent_floor_k = 100;
 /* Radiance to apparent temperature, K, apparent_floor_k at least; NaN of what is no radiance (NaN, infinite, below 0).
  * low_m .. high_m: the band. */
 void verdict_plane_to_kelvin(float *out, const float *radiance_w_m2_sr, size_t count, double low_m, double high_m);
-/* Power to dB relative to `full`, at least -span_db. */
+/* Converts power to dB relative to `full`, at least -span_db. */
 void verdict_plane_to_db(float *out, const float *power, size_t count, double full, double span_db);
 
 /* ---- a run --------------------------------------------------------------------------------------- */
 
-/* In the order of the data path. */
+/* The channels, in the order of the data path. */
 typedef enum Channel {
     CHANNEL_SIZE,     /* of the images and the range profile: frames of different size are not compared further */
     CHANNEL_COUNTERS, /* of PDUs, drops, entities, events: run.json */
@@ -189,7 +189,7 @@ typedef enum Channel {
 typedef struct ChannelResult {
     bool there, failed;
     char line[512]; /* message; empty: none */
-    /* of planes: the worst plane of the worst frame */
+    /* for planes: the worst plane of the worst frame */
     bool         picture;
     int          frame;
     RecordPlane  plane;
@@ -211,8 +211,8 @@ typedef struct Verdict {
 
 const char *verdict_channel_name(Channel channel);
 const char *verdict_channel_about(Channel channel); /* a short description */
-/* A value of a plane as text with its unit, or "below 100 K", "no surface", "not a number", "out of range". digits:
- * 1 .. 9. */
+/* Writes a value of a plane as text with its unit, or "below 100 K", "no surface", "not a number", "out of range".
+ * digits: 1 .. 9. */
 void verdict_channel_value(char out[64], Channel channel, double value, int digits);
 
 /* A plane of baseline and run in the channel's unit, for the report. Freed by the caller with free. */

@@ -7,7 +7,7 @@
 
 /* ---- results ------------------------------------------------------------------------------ */
 
-/* Of a complex plane the magnitude. */
+/* Reads a value of a plane, and of a complex plane its magnitude. */
 static double value_at(const Plane *plane, size_t i)
 {
     const float *part = plane->values;
@@ -118,7 +118,7 @@ int saved_differences(const SavedFrame *file, const SavedMade *made, bool said)
 
 /* ---- the radar ----------------------------------------------------------------------------------- */
 
-/* SHA-256 of the map; with a scan, of the map and both its images over range and azimuth. */
+/* Hashes the map; with a sweep of the sector, the map and both its images over range and azimuth. */
 static Status hash_of(char out[sha256_text_size], const RadarFrame *r)
 {
     const RadarSector *s = r->scan;

@@ -26,7 +26,7 @@ static void stand_close(Stand *s)
     model_destroy(&s->model);
 }
 
-/* The field of one look. False: refused. */
+/* Computes the field of one look. False: it is refused. */
 static bool look(ScatterMatrix *out, Stand *s, const ScatterAntenna *a, double f_hz)
 {
     const TubeConfig config = tubes_default_config(f_hz);
@@ -34,8 +34,8 @@ static bool look(ScatterMatrix *out, Stand *s, const ScatterAntenna *a, double f
            total_field_sweep(out, &(FrequencySweep){.count = 1, .first_hz = f_hz}, &s->field, NULL) == STATUS_OK;
 }
 
-/* A corner reflector at 94 GHz from 1 m to 1000 km away: the mirror image of a point is a point, so beyond the near
- * field its cross section tends to that of plane waves as 1 / range. */
+/* Looks at a corner reflector at 94 GHz from 1 m to 1000 km away: the mirror image of a point is a point, so beyond the
+ * near field its cross section tends to that of plane waves as 1 / range. */
 static double ranges(void *user, bool quick)
 {
     Stand  s;
@@ -57,7 +57,7 @@ static double ranges(void *user, bool quick)
     return good ? worst : INFINITY;
 }
 
-/* Target and antenna moved together, up to 20 km, and turned, at 94 GHz: the same field. */
+/* Moves target and antenna together, up to 20 km, and turns them, at 94 GHz: the field must be the same. */
 static double offsets(void *user, bool quick)
 {
     Stand  s;

@@ -92,7 +92,7 @@ static void add_error(double *error, double *power, const ScatterMatrix *got, co
     }
 }
 
-/* The look of number i of those about the bin: its corners and the middles of its sides. */
+/* Gives look i of those about the bin: its corners and the middles of its sides. */
 static ScatterAntenna look_of(const RadarSpeed *r, int i)
 {
     static const int at[seen_looks][2] = {{-1, -1}, {1, 1}, {-1, 1}, {1, -1}, {0, 1}, {1, 0}, {0, -1}, {-1, 0}};
@@ -146,7 +146,7 @@ static void reuse(void *user)
     bench_keep(r->centres.centre);
 }
 
-/* Samples of one pulse and channel at the middle of the interval, as points of the centres. */
+/* Fills the samples of one pulse and channel at the middle of the interval, as points of the centres. */
 static void fill_echoes(RadarSpeed *r)
 {
     for (int i = 0; i < r->centres.count; i++) {
@@ -340,7 +340,7 @@ static Status on_ground(RadarSpeed *r, SceneRows rows)
 
 static const char *const bounce_preset = "seeker_35";
 
-/* Each with the radar of its own: without the ground's mirror and with it. */
+/* Opens two updates, each with a radar of its own: without the ground's mirror and with it. */
 static Status open_bounce(RadarUpdate u[2], RadarSpeed *r, const char *catalog)
 {
     Status status = STATUS_OK;
@@ -362,7 +362,7 @@ static Status open_bounce(RadarUpdate u[2], RadarSpeed *r, const char *catalog)
     return status;
 }
 
-/* What the mirror of the ground costs: a tank alone, bins at hand. */
+/* Times the mirror of the ground: a tank alone, whose bins are there already. */
 static Status time_bounce(RadarSpeed *r, TrialScene *scene, Arena *const arena[3])
 {
     static const char *const what[2] = {"radar, 35 GHz: a tank at 1 km, bins at hand, no ground, 1 thread",
