@@ -43,9 +43,9 @@ typedef struct Live {
     const Player *player; /* once there is one */
     /* wall clock, s */
     double   begun_s, flushed_s, shown_s;
-    uint64_t shown_frames; /* by then */
+    uint64_t shown_frames; /* frames rendered by shown_s */
     int64_t  due_ns;       /* Unix time of the present frame */
-    double   latency_s;    /* from then until it was rendered, the worst since shown_s; NaN: none */
+    double   latency_s;    /* the longest time from due_ns until a frame was rendered, since shown_s; NaN: none */
 } Live;
 
 /* Whether it is to send Data PDUs. */
@@ -325,7 +325,7 @@ static Status live_frames(Run *run, Session *session, Player *player, const Host
         flush_recording(l);
         check_health(l, session);
     }
-    if (status == STATUS_OK && last >= 0 && over(l)) { /* those that were due while the last one was made */
+    if (status == STATUS_OK && last >= 0 && over(l)) { /* frames that were due while the last one was made */
         const double ended_s = fmin(player_time_s(player, dis_unix_s(dis_udp_now_ns())), isnan(to_s) ? INFINITY : to_s);
         const double newest = floor(ended_s * grid->rate_hz) - grid->origin;
         if (newest > last) l->counters.frames_late += (uint64_t)(newest - last);

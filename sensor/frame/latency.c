@@ -24,8 +24,8 @@ typedef struct Histogram {
 typedef struct Entry {
     uint64_t key; /* 0: none */
     double   stage_ms[LATENCY_STAGE_COUNT];
-    double   done_ms[latency_consumers_max]; /* of the last of that name so far */
-    int      waits[latency_consumers_max];   /* how many of that name are outstanding */
+    double   done_ms[latency_consumers_max]; /* when the last consumer of that name was done so far */
+    int      waits[latency_consumers_max];   /* consumers of that name that are not done yet */
     int      outstanding;                    /* their sum */
 } Entry;
 

@@ -90,7 +90,7 @@ typedef struct RunRecord {
     uint64_t            entities_created, entities_timed_out, entities_deactivated, entities_removed;
     uint64_t            entities_evicted, entities_refused; /* by a full table */
     uint64_t            entities_over_rate, tombstones_dropped, marks_forgotten;
-    uint64_t            shots_forgotten, munitions_forgotten; /* of those that may yet become the host */
+    uint64_t            shots_forgotten, munitions_forgotten; /* of munitions that may yet become the host */
     int                 frames_crowded, most_left_out; /* frames without all entities; the most that one frame lacks */
     EffectCounters      effects;
     RenderCounters      render;

@@ -49,7 +49,7 @@ typedef struct TargetRecord {
     double         amodal_box[4];
     double         pixels;                   /* area, parts of pixels too */
     double         visible_fraction;         /* of its area on the image */
-    double         foliage_fraction;         /* of it, hidden by plants */
+    double         foliage_fraction;         /* share of it that plants hide */
     double         p_ecef[3], v_ecef_mps[3]; /* of the model's origin */
     double         range_m, closing_mps;
     double         aspect_rad; /* 0: nose on, to its right, below 2 pi */
@@ -57,7 +57,7 @@ typedef struct TargetRecord {
     double         los_az_rad, los_el_rad;  /* from the sensor, in its own ENU; azimuth from north over east */
     double         los_rate_rps[2];         /* inertial; camera right and up */
     double         boresight_error_rad[2];  /* camera right and up */
-    TargetOccluder occluder;                /* of the most of it */
+    TargetOccluder occluder;                /* what hides most of it */
     DisEntityId    occluder_id;             /* none: the ground, trees, or not known */
     double         dt_k;                    /* mean of its patches less the ground in the open */
     int            patches;                 /* 0: their temperatures are not known */

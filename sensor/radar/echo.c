@@ -13,18 +13,18 @@ static const double part = 2e-3; /* of an amplitude, at the ends of band and int
 struct EchoGrid {
     Waveform    wave;
     PulseGrid  *even;         /* of slow echoes, by delay and Doppler */
-    RowGrid    *rows;         /* of the others */
+    RowGrid    *rows;         /* of fast echoes, row by row */
     double      wave_rad_m;   /* of a metre of path, at the centre */
     double      turns_m;      /* a sample, of a metre of path */
     double      growth_rad_m; /* of the phase that delay and Doppler leave, at its most, over the growth a row */
     double      fold_m;       /* of two-way path */
     double      coupled;      /* path by which an echo appears farther, over its growth a row */
-    double      within_s;     /* of one frequency, over that from row to row */
+    double      within_s;     /* time over which one frequency is taken, over the time from row to row */
     double      unfollowed_m;
     Status      status;
     PulsePoint *point; /* [chunk] */
     Echo       *echo;  /* [chunk] */
-    Pool       *pool;  /* of the last that were added */
+    Pool       *pool;  /* of the echoes that were added last */
 };
 
 void echo_forget(EchoGrid *g)

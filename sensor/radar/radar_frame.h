@@ -53,7 +53,7 @@ typedef struct RadarSector {
     double    *sharp_w;               /* [azimuths][columns] */
     float     *resolution_m;          /* [azimuths][columns]: across, at half power, of what stands there */
     uint8_t   *sharpened;             /* [azimuths][columns] */
-    double     sharpened_share;       /* of these cells */
+    double     sharpened_share;       /* share of these cells that are sharpened */
     int        width, height;         /* of the frame's pixels; 0: none were given */
     float     *view_w, *view_sharp_w; /* [height][width]; NAN: sky, or out of sector or window */
 } RadarSector;
@@ -105,7 +105,7 @@ typedef struct RadarFrame {
     double             notch_mps; /* detections so near to the ground's range rate in their direction count as ground */
     double             v_enu_mps[3], aim_m,
         aim_v_enu_mps[3];   /* as in its RadarScene: of the antenna; to the aim, NAN: none; of it */
-    uint32_t        number; /* likewise: for its noise */
+    uint32_t        number; /* interval number, for its noise */
     double          air_db; /* one way, over the reference range */
     RangeDoppler    map;
     double complex *profile; /* [2][samples]: range profiles of the middle pulse, sqrt(W): the transmitted polarisation,
@@ -118,7 +118,7 @@ typedef struct RadarFrame {
     const RadarTruth  *target;
     ReceiverReport     receiver;
     const RadarSector *scan;            /* NULL: the beam stares */
-    int    ground_cells, ground_hidden; /* scatterers of the ground; of them, hidden by relief or entities */
+    int    ground_cells, ground_hidden; /* scatterers of the ground; how many of them relief or entities hide */
     double rain_1_m;                    /* backscatter of rain by its volume, m2/m3 */
     int    echoes;                      /* of entities, before any goes by way of the ground */
     int    crowns, clouds;              /* plants, and clouds of chaff, within beam and window */

@@ -279,7 +279,7 @@ typedef struct BeamJob {
     const RadarShot *beam;
     int              first, end;
     bool             sum_alone;
-    Echo            *echo; /* those of block b from b * block on */
+    Echo            *echo; /* echoes of block b begin at b * block */
     int              kept[beam_batch / block];
 } BeamJob;
 

@@ -33,7 +33,7 @@ typedef struct RadarPoint {
     double complex same, other;              /* scattered, m: received as transmitted, and in the other polarisation */
     double         share;                    /* of the amplitude that is in sight */
     double         widest, room_m;           /* counts so far off an axis (sine), and beyond the window */
-    bool           own; /* of one position, not the frame's: place and path are those at its instant */
+    bool           own; /* made for one position of the beam: place and path are those at its instant */
 } RadarPoint;
 
 typedef struct RadarPoints {
@@ -72,7 +72,7 @@ struct SeekerRadar {
     EchoGrid         *echoes;
     IntervalPlan     *plan;
     RadarPoints       points;        /* of the frame at work */
-    int               target_points; /* of them, of entities: the first */
+    int               target_points; /* how many of the points are of entities; they come first */
     Arena            *position;      /* what one position of the sector needs; NULL: it stares */
     Echo             *batch;         /* [beam_batch] */
     SectorPlan        sector;        /* positions 1: the beam stares */
@@ -120,8 +120,7 @@ void shot_sight(Sight *out, const RadarShot *shot, const double p_enu[3], double
 /* Sine of the angle off the beam's axis, off the nearest of its axes if it will turn. */
 double shot_off_axis(const RadarShot *shot, const Sight *sight);
 
-/* Range rate of a place that moves, relative to the antenna; and over the reference's as growth of the two-way path
- * a pulse. */
+/* Range rate of a moving place relative to the antenna, m/s. */
 double shot_range_rate(const RadarShot *shot, const Sight *sight, const double v_enu_mps[3]);
 
 /* The range at which a profile has its echo: folded over, and coupled to its range rate. */

@@ -50,7 +50,7 @@ typedef struct GroundJob {
     int                cells;
     double             widest; /* sine off the axis of the main lobe's null */
     Ground            *ground; /* [blocks] */
-    RadarPoint        *point;  /* [cells]: those of block b from b * block on */
+    RadarPoint        *point;  /* [cells]: points of block b begin at b * block */
     int               *hidden; /* [blocks] */
 } GroundJob;
 

@@ -51,15 +51,16 @@ typedef struct Config {
         double bin_m;
         int    bins;
         double lobe_deg;
-        char   preset[32];          /* a row of etc/radars.csv, or of `table`; none */
-        char   table[1024];         /* radars in place of etc/radars.csv; empty: none */
-        bool   ground;              /* of the preset: the ground scatters */
-        bool   ground_bounce;       /* likewise: the ground mirrors entities */
-        double warp_mm;             /* likewise: unevenness of surfaces */
-        char   given[256];          /* likewise: list of signatures that are given; empty: none */
-        char   library[1024];       /* likewise: a folder of targets' signatures; empty: none */
-        double chaff_dipoles;       /* likewise: resonant ones in a cloud */
-        double scan_deg, scan_step; /* likewise: sector of its scan, 0: it stares; step over the beamwidth */
+        char   preset[32];    /* a row of etc/radars.csv, or of `table`; none */
+        char   table[1024];   /* radars in place of etc/radars.csv; empty: none */
+        bool   ground;        /* of the preset: the ground scatters */
+        bool   ground_bounce; /* with a preset: the ground mirrors entities */
+        double warp_mm;       /* with a preset: unevenness of surfaces */
+        char   given[256];    /* with a preset: list of signatures that are given; empty: none */
+        char   library[1024]; /* with a preset: a folder of targets' signatures; empty: none */
+        double chaff_dipoles; /* with a preset: resonant dipoles in a cloud of chaff */
+        double scan_deg,
+            scan_step; /* with a preset: sector that the beam sweeps, 0: it stares; step over the beamwidth */
     } radar;
     struct {
         int    port, exercise;   /* exercise -1: the one with the most PDUs, -2: all */
@@ -111,7 +112,7 @@ typedef struct Config {
     } weather;
     struct {
         double step_s;         /* of the ground's state */
-        double vehicle_step_s; /* longest step of that of vehicles */
+        double vehicle_step_s; /* longest step of the vehicles' heat */
         int    facets;         /* normals of the ground, a side */
         double shadow_m;       /* cells of the shadow map; 0: none */
         char   given[1024];    /* file of temperatures of parts; empty: none */

@@ -38,7 +38,7 @@ typedef struct DisplacedTarget {
     const PlanckTable  *planck;
     double              way_px;
     double              further_k2; /* squared errors from other sources */
-    double              air_k;      /* for those of its heat; NaN: left out */
+    double              air_k;      /* air temperature, for the errors of its heat; NaN: they are left out */
 } DisplacedTarget;
 
 /* Adds the pixels whose value would change, or that are the target's, to touched; of these the target's own to own. */

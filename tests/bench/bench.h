@@ -77,7 +77,7 @@ typedef struct BenchSetting {
     double      error;      /* in BenchTunable.error_unit, against a reference that does not approximate */
     double      also;       /* a second error of the same setting, checked like the first; 0: there is none */
     const char *also_is;    /* its meaning, of the first setting: "of 8-12 um, K" */
-    double      bytes;      /* memory it needs; 0: the same for all; 1: negligible */
+    double      bytes;      /* memory that the setting needs; 0: the same for all; 1: negligible */
     bool        is_default; /* exactly one is */
 } BenchSetting;
 

@@ -55,7 +55,7 @@ static int by_wedges(const void *a, const void *b)
     return 0;
 }
 
-/* Whether two faces are one, and their edges opposite. */
+/* Whether two faces are the same face, and their edges lie opposite each other on it. */
 static bool opposite(EdgePair *out, const Face *a, const Face *b, const Wedge *wedge)
 {
     if (v3_dot(a->n, b->n) < cos(same_rad) || v3_dot(a->x, b->x) > -cos(same_rad)) return false;

@@ -227,7 +227,7 @@ typedef struct EdgeWork {
     const RadarTarget    *target;
     const EdgePairConfig *config;
     const Sight          *sight;
-    int                   wedge_chunks; /* then those of pairs */
+    int                   wedge_chunks; /* chunks of wedges; chunks of pairs follow */
     EdgeSegments         *chunk;
     Status               *status;
 } EdgeWork;

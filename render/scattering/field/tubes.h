@@ -26,7 +26,7 @@
 enum { tubes_splits_most = 5, polygon_faces_few = 64 };
 
 typedef struct TubeConfig {
-    double frequency_hz;        /* of materials and spacing: the highest, or the centre, of those to come */
+    double frequency_hz; /* sets materials and spacing: the highest, or the centre, of the frequencies to be computed */
     double rays_per_wavelength; /* 1.25: a sphere of ka 800 is within 0.1 dB; with 1 within 0.15 */
     double rays_per_radius;     /* at least this many over the radius of the target's sphere: edges are cut in steps
                                  * of a tube, whose error is that of its share of the target; 128 */
@@ -52,7 +52,7 @@ TubeConfig tubes_default_config(double frequency_hz);
 typedef struct TubeHits {
     ScatterAntenna tx, rx;
     double         frequency_hz, spacing_m;
-    long long      rays;               /* shot, those of divided tubes and at the tiles' borders too */
+    long long      rays;               /* that were shot, also for divided tubes and at the tiles' borders */
     size_t         count, capacity;    /* behind the last hit there is one more of no amplitude */
     double        *path_m;             /* two-way, less that over the phase centre; see scatter.h */
     float         *slope_m[2];         /* half the change of path over the footprint's sides */

@@ -77,7 +77,8 @@ static void start_tube(TubeTile *tile, const TubeWork *work, double x, double y,
 /* What a tube meets. */
 typedef struct Facing {
     double base[3], flat[3];      /* the point of the facet, and its normal, towards the ray */
-    double p[3], n[3], smooth[3]; /* the same where its surface is warped; the normal of what facets approximate */
+    double p[3], n[3], smooth[3]; /* point and normal where the surface is warped; the normal of the curved surface that
+                                     facets approximate */
     double sign;                  /* -1: the facet is seen from behind */
     bool   warped;
     double bend[9]; /* second derivatives of the height, towards the ray, 1/m */

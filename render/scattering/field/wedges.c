@@ -62,7 +62,7 @@ Status wedges_weld(int *place, const Model *m, double weld_m)
             for (int k = 0; k < 3; k++) node[m->triangle[t][k]] = m->part[m->triangle_part[t]].node;
         for (int v = 0; v < n; v++) {
             place[v] = find_place(&cells, node, v);
-            if (place[v] != v) continue; /* only those that stand for others are looked for */
+            if (place[v] != v) continue; /* only vertices that stand for others are looked for */
             int *head = &cells.head[cell_of(&cells, m->vertex[v], (const int[3]){0, 0, 0})];
             cells.next[v] = *head;
             *head = v;

@@ -15,7 +15,7 @@ typedef struct ScatterCentre {
     double        weight;    /* sum of its amplitudes, m */
     int           bounce;    /* mirrors of its strongest hit; 0: an edge */
     int           part;      /* of the model, of its strongest hit or edge */
-    double        strongest; /* amplitude of that, m */
+    double        strongest; /* amplitude of the strongest point, m */
 } ScatterCentre;
 
 typedef struct Centres {

@@ -46,7 +46,7 @@ typedef struct SignatureCentre {
     int16_t  s[8];
     int8_t   moment[2][8];
     uint16_t part;   /* of the model, of its strongest hit or edge */
-    uint8_t  bounce; /* mirrors of that; 0: an edge */
+    uint8_t  bounce; /* mirrors of the strongest hit; 0: an edge */
     uint8_t  zero;
 } SignatureCentre; /* 84 octets, no gaps */
 

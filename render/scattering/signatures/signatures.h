@@ -53,8 +53,9 @@ typedef struct SignaturesConfig {
 } SignaturesConfig;
 
 typedef struct SignatureCounters {
-    uint64_t made, fetched, reused, dropped, missing, rays; /* missing: finds of one that was still to be made */
-    double   spent_s;                                       /* wall clock, making them */
+    uint64_t made, fetched, reused, dropped, missing,
+        rays;       /* missing: how often a signature was asked for that was still to be made */
+    double spent_s; /* wall clock, making them */
 } SignatureCounters;
 
 typedef struct Signatures Signatures;

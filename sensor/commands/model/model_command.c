@@ -465,7 +465,7 @@ int model_command(int argc, char **argv)
             continue;
         }
         static char called[] = "pitviper model";
-        argv[1] = called; /* of messages */
+        argv[1] = called; /* the name that messages begin with */
         return actions[i].run(argc - 1, argv + 1);
     }
     return command_line_wrong("model", "no such action: %s%s", argv[1],

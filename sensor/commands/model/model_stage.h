@@ -18,7 +18,7 @@ typedef struct ModelStage {
     Catalog  *catalog;
     World     world;
     Pool     *pool;
-    Arena    *arena, *air_arena; /* the caller resets them: of one image; of what is the same for several */
+    Arena    *arena, *air_arena; /* for one image; for what several images share. The caller resets them */
     Air       air;
     int       model;               /* of the catalog */
     double    begin_s, place_m[2]; /* Unix time; east and north of the origin */

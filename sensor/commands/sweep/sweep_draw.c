@@ -54,7 +54,7 @@ static Status count_kinds(SweepAxis *axis)
         listed[i].is_number = number && text_to_double(&listed[i].number, axis->value[i]);
     }
     qsort(listed, (size_t)axis->count, sizeof *listed, by_value_and_place);
-    for (int i = 0, first = 0; i < axis->count; i++) { /* for now: the place of the first of its kind */
+    for (int i = 0, first = 0; i < axis->count; i++) { /* holds, for now, the place of the first of its kind */
         if (i == 0 || by_value(&listed[i - 1], &listed[i]) != 0) first = listed[i].place;
         axis->kind_of[listed[i].place] = first;
     }

@@ -199,7 +199,8 @@ static const char again_help[] =
     "Makes a terrain store again with the sources and options that it was made with, which are printed first. A node does\n"
     "that by itself where all of them lie in the store's own folder: a store from elsewhere makes it read no other file.\n";
 
-/* The options that a store was made with, of a whole or a damaged file; malloc'd. NULL, logged: none. */
+/* Reads the options that a store was made with, from a whole or a damaged file; the caller frees them. NULL, logged:
+ * there are none. */
 static char *options_of(const char *path)
 {
     TerrainStore store;

@@ -43,7 +43,7 @@ struct Run {
     void (*publish)(void *user, const FrameRecord *frame); /* may be NULL */
     void (*note)(void *user, const char *text);            /* into the recording; may be NULL */
     DisSend *send;                             /* sends the Data PDUs of publish.dis; NULL: they are not sent */
-    void    *user;                             /* of these four */
+    void    *user;                             /* passed to these four */
     double (*wall_s)(void *clock, double t_s); /* SessionShared.wall_s: frames are rendered by the clock; NULL: not */
     void *clock;
 };

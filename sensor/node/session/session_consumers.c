@@ -168,7 +168,8 @@ static Status add_detections(Consumers *list, Session *s)
     return status == STATUS_OK ? consumers_add(list, consumer) : status;
 }
 
-/* Shared memory never waits: before all other consumers, but for raw counts behind the displays that they belong to. */
+/* Adds shared memory. It never waits, so it comes before all other consumers; with raw counts it comes after the
+ * displays, which make these. */
 static Status add_memory(Consumers *list, Session *s, bool behind_displays)
 {
     const SessionShared *shared = s->shared;

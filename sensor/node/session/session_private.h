@@ -18,7 +18,7 @@ struct Session {
     HostPlan             plan; /* host and aim are filled in when they are received */
     char                 out[4096];
     char                 host_text[dis_id_text_size];
-    bool                 opened; /* all of it */
+    bool                 opened; /* everything is open */
     EntityTable         *table;
     Player              *player;          /* the caller's */
     GivenHeat           *given;           /* of vehicles; NULL: none */
@@ -33,7 +33,7 @@ struct Session {
     bool                 aim_known;
     Mount                mount;
     int                  mount_model, mount_at; /* mount_at: as seeker_mount_node, of that model; -1: none yet */
-    NodePose            *node;                  /* of the host, [most nodes of a model]; joint: the same */
+    NodePose            *node; /* poses and joint values of the host's nodes, [most nodes of a model] */
     double              *joint;
     bool                 limit_reported; /* last report of the gimbal limit, and its tick */
     int64_t              limit_tick;

@@ -10,7 +10,7 @@
 #include "sensor/frame/frame.h"
 
 typedef enum FrameWant {
-    WANT_PLANES = 1 << 0,    /* of truth; those of the bands are always present */
+    WANT_PLANES = 1 << 0,    /* planes of truth; planes of the bands are always present */
     WANT_TARGETS = 1 << 1,   /* record.target */
     WANT_ERROR = 1 << 2,     /* record.error, where the error budget is on */
     WANT_CELLS = 1 << 3,     /* picture.small: small targets as a detector needs them */

@@ -131,7 +131,7 @@ typedef struct DisOf {
     uint8_t         version, exercise; /* as in the exercise */
     DisSend        *send;
     void           *user;
-    DisArrivalTime *arrival_s; /* of the time stamps: those of a replay are those of the recorded hour */
+    DisArrivalTime *arrival_s; /* time stamps follow it: those of a replay are of the recorded hour */
     const void     *clock;
 } DisOf;
 

@@ -11,8 +11,8 @@
     X(image_module_write_exr)                                                                                          \
     X(image_module_write_png)                                                                                          \
     X(image_module_info)                                                                                               \
-    X(image_module_read_f32) X(image_module_read_u32) X(image_module_read_png) X(image_module_read_string)             \
-        X(image_module_read_number)
+    X(image_module_read_f32)                                                                                           \
+    X(image_module_read_u32) X(image_module_read_png) X(image_module_read_string) X(image_module_read_number)
 static char path_of_module[4200];
 LIBRARY(image_library, IMAGE_MODULE, "OpenImageIO", path_of_module, "libopenimageio2.4");
 

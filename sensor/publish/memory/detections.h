@@ -17,7 +17,7 @@ enum { detections_frames_kept = 256 };
 typedef struct DetectionSet {
     int               frame;
     Band              band;
-    double            time_s, unix_s; /* of that frame, exercise time */
+    double            time_s, unix_s; /* exercise time of the frame */
     double            received_s;     /* wall_clock_s */
     int               count;
     PitviperDetection detection[pitviper_detections_most];

@@ -29,7 +29,7 @@ typedef struct Video {
     Consumer      consumer;
     Labels        labels;
     VideoOf       of;
-    unsigned      to; /* VideoTo: those of `of` that are configured */
+    unsigned      to; /* VideoTo: the outputs of `of` that are configured */
     KlvMode       klv;
     int           channels;
     Channel       channel[BAND_COUNT + 1];
@@ -115,7 +115,7 @@ static Status compose(EncoderConfig *form, Video *v, const Channel *c, const Fra
     return STATUS_OK;
 }
 
-/* Later than the last one, whatever the clock of the exercise does. */
+/* Time of a frame, which is later than that of the last frame whatever the clock of the exercise does. */
 static int64_t time_of(const Channel *c, double unix_s)
 {
     const int64_t at = (int64_t)llround(unix_s * 90000);

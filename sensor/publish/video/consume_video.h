@@ -15,7 +15,7 @@
 
 typedef struct VideoOf {
     const Config   *config;
-    unsigned        to;          /* VideoTo: which of those that are configured; encoded once for both */
+    unsigned        to;          /* VideoTo: outputs to use where they are configured; encoded once for both */
     unsigned        bands;       /* rendered */
     double          rate_hz;     /* of the run */
     const char     *host_folder; /* of several hosts: this one's, below that of the videos; NULL: the only one */

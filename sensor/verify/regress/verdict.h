@@ -128,7 +128,7 @@ typedef struct PlaneVerdict {
     double share;         /* beyond / compared; 0 of none */
     double max;           /* of the difference; infinity when anything finite met what is not */
     double rms;           /* of the differences that are finite */
-    size_t unmatched;     /* those where only one is finite, or infinities or NaN differ */
+    size_t unmatched;     /* pixels where only one is finite, or infinities or NaN differ */
     int    column, row;   /* first pixel with this max; -1: nothing differs */
     double expected, got; /* there */
 } PlaneVerdict;

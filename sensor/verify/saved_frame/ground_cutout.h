@@ -12,7 +12,7 @@ typedef struct GroundCutout {
     const double (*p_m)[2]; /* positions, ENU */
     double reach_m;         /* posts: the tiles of the positions, and those within this distance of them, are kept;
                              * INFINITY: all */
-    double looks_reach_m;   /* the same of cover and photograph */
+    double looks_reach_m;   /* reach of cover and photograph */
 } GroundCutout;
 
 enum { cutout_tile = 32 }; /* values a side */

@@ -134,7 +134,7 @@ static size_t good_other(uint8_t *out, size_t room, const World *w, uint8_t type
         return dis_encode_fire(out, room, &fire);
     }
     if (type == dis_pdu_detonation) {
-        static DisDetonation burst; /* large; all but these stays zero */
+        static DisDetonation burst; /* static, since it is large; all fields but those set below stay zero */
         burst.header = header, burst.firing = id, burst.event = (DisEventId){1, 1, w->entity}, burst.descriptor = shell;
         burst.p_ecef[0] = 6378137, burst.velocity_mps[1] = 500, burst.result = (uint8_t)(1 + w->entity % 5);
         return dis_encode_detonation(out, room, &burst);

@@ -105,7 +105,7 @@ static double horizon_jump(void *user, bool quick)
     }
     for (int k = 0; k < values; k++) scale[k] = fmax(scale[k], 1e-6);
     for (int n = 0; n < (quick ? 2 : 8); n++) {
-        int    steepest = 0; /* of those not tested */
+        int    steepest = 0; /* the steepest step that was not tested */
         double most = -1;
         for (int i = 0; i < steps; i++) {
             const double here = looked_at[i] ? -1 : stands_out(at, i, steps, scale);

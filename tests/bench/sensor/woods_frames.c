@@ -141,7 +141,7 @@ static void render_frame(void *user)
     trial_frame(&f->frame);
 }
 
-/* South of the vehicles, so far that its middle is at their height. */
+/* Places the view south of the vehicles, so far that its middle is at their height. */
 static View view_of(const WoodsBench *w, int v)
 {
     const double back_m = places[v].above_m / tan(places[v].down_deg * rad_per_deg);
