@@ -211,7 +211,7 @@ static int run_named(int argc, char **argv)
     return unknown(argv[0][0] == '-' ? "option" : "command", argv[0], false);
 }
 
-/* `pitviper help` COMMAND, TOPIC, or --markdown. */
+/* Runs `pitviper help`, with a COMMAND, a TOPIC or --markdown. */
 static int help_command(int argc, char **argv)
 {
     static char help[] = "--help";

@@ -241,7 +241,9 @@ static const char *trace(ScatterMatrix *s, RcsProbe *p, const ScatterAntenna *tx
     const Status status = total_field_trace(&p->field, p->model->target, tx, rx, &config, true, p->pool);
     if (status == STATUS_NO_MEMORY) return "out of memory";
     if (status != STATUS_OK) return "too near or too large (see the log)";
-    return total_field_sweep(s, 1, f_hz, 0, &p->field, NULL, NULL, p->pool) == STATUS_OK ? NULL : "out of memory";
+    return total_field_sweep(s, &(FrequencySweep){.count = 1, .first_hz = f_hz}, &p->field, p->pool) == STATUS_OK
+               ? NULL
+               : "out of memory";
 }
 
 static const char *look_up(ScatterMatrix *s, const RcsProbe *p, const ScatterAntenna *antenna, double f_hz,

@@ -119,7 +119,7 @@ static const char *noise3d_row(void *state, const ProbeValue *in, ProbeValue *ou
 
 /* ---- mrtd ------------------------------------------------------------------------------------- */
 
-/* mrtd [SHEET]: of every row, in place of a preset of etc/sensors.csv. */
+/* Opens `mrtd [SHEET]`: it takes every row of the sheet, in place of a preset of etc/sensors.csv. */
 static Status mrtd_open(void **state, int argc, char **argv)
 {
     if (argc > 2) {

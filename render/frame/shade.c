@@ -330,8 +330,13 @@ static void light_channels(Shader *shader, const ShadeScene *scene, Samples *s)
 
 static void light_radar(Shader *shader, const ShadeScene *scene, Samples *s)
 {
-    radar_shade(&s->returns, &scene->world->radar, scene->visibility, &scene->world->materials, &s->hits, &s->rays,
-                scene->hidden_entity, &shader->counters);
+    radar_shade(&s->returns, &scene->world->radar,
+                &(RadarRays){.visibility = scene->visibility,
+                             .materials = &scene->world->materials,
+                             .hits = &s->hits,
+                             .rays = &s->rays,
+                             .hidden = scene->hidden_entity},
+                &shader->counters);
     for (int i = 0; i < s->hits.count; i++) s->returns.power[0][i] *= shader->radar[i];
     for (int i = 0; i < s->hits.count; i++) {
         double sum = 0;

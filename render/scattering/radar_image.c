@@ -23,7 +23,7 @@ double radar_lobe(double lobe_rad, double cosine)
  * worth tracing. exp(-40) of the peak. */
 static bool lobe_is_dark(double lobe_rad, double cosine) { return !(1 - cosine < 20 * lobe_rad * lobe_rad); }
 
-/* Active paths, as arrays: position of the last mirror, direction in which the ray leaves it. */
+/* The paths that are still followed, as arrays. The ray that leaves the last mirror is in Block.onward. */
 typedef struct Paths {
     int    count;
     int    sample[hits_capacity];      /* of the eye ray it started as */
@@ -31,7 +31,7 @@ typedef struct Paths {
     double travelled_m[hits_capacity]; /* from the eye to the last mirror */
 } Paths;
 
-/* Next rays: from the last mirrors on, clear of them by a millimetre along their own normals. */
+/* Adds a ray that starts at a mirror, a millimetre clear of it along its own normal. */
 static void add_ray(Rays *rays, const double p_enu[3], const double n_geo[3], const double d_enu[3], double far_m)
 {
     const int k = rays->count++;
@@ -42,7 +42,7 @@ static void add_ray(Rays *rays, const double p_enu[3], const double n_geo[3], co
     rays->far_m[k] = far_m;
 }
 
-/* Mirror direction at hit k of a ray along d_enu; false when a shading normal tilts it into the surface. */
+/* Computes the mirror direction at hit k of a ray along d_enu. False: a shading normal tilts it into the surface. */
 static bool mirror(double out_enu[3], const Hits *hits, int k, const double d_enu[3])
 {
     const double n_enu[3] = {hits->n_enu[0][k], hits->n_enu[1][k], hits->n_enu[2][k]};
@@ -161,16 +161,15 @@ static void next_bounce(RadarReturns *out, int nth, Block *s)
     }
 }
 
-void radar_shade(RadarReturns *out, const RadarConfig *config, const Visibility *v, const Materials *materials,
-                 const Hits *hits, const Rays *rays, int hidden, VisibilityCounters *counters)
+void radar_shade(RadarReturns *out, const RadarConfig *config, const RadarRays *from, VisibilityCounters *counters)
 {
     Block s; /* its working memory is written before it is read, so not cleared: it is large */
-    s.config = config, s.visibility = v, s.materials = materials;
-    s.rays = rays, s.hidden = hidden, s.counters = counters;
+    s.config = config, s.visibility = from->visibility, s.materials = from->materials;
+    s.rays = from->rays, s.hidden = from->hidden, s.counters = counters;
     for (int b = 0; b < radar_bounces; b++) {
-        memset(out->power[b], 0, (size_t)hits->count * sizeof out->power[b][0]);
-        memset(out->slant_m[b], 0, (size_t)hits->count * sizeof out->slant_m[b][0]);
+        memset(out->power[b], 0, (size_t)from->hits->count * sizeof out->power[b][0]);
+        memset(out->slant_m[b], 0, (size_t)from->hits->count * sizeof out->slant_m[b][0]);
     }
-    first_bounce(out, &s, hits);
+    first_bounce(out, &s, from->hits);
     for (int b = 1; b < radar_mirrors + config->more_bounces && s.paths.count > 0; b++) next_bounce(out, b, &s);
 }

@@ -28,8 +28,16 @@ typedef struct RadarReturns {
  * beyond 1e6 rad those count. */
 double radar_lobe(double lobe_rad, double cosine);
 
-/* Total of a sample = sum of power over the bounces. hidden as in visibility_first_hit. Some 350 KB of stack. */
-void radar_shade(RadarReturns *out, const RadarConfig *config, const Visibility *v, const Materials *materials,
-                 const Hits *hits, const Rays *rays, int hidden, VisibilityCounters *counters);
+/* Eye rays and their first hits, and what the paths after them are followed through. */
+typedef struct RadarRays {
+    const Visibility *visibility;
+    const Materials  *materials;
+    const Hits       *hits;
+    const Rays       *rays;   /* from the eye */
+    int               hidden; /* as in visibility_first_hit */
+} RadarRays;
+
+/* Total of a sample = sum of power over the bounces. It takes some 350 KB of stack. */
+void radar_shade(RadarReturns *out, const RadarConfig *config, const RadarRays *from, VisibilityCounters *counters);
 
 #endif

@@ -4,7 +4,7 @@
 
 #include <stdlib.h>
 
-/* Component of the wave vector across the surface, inside, over k: decays inwards. */
+/* Component across the surface of the wave vector inside, over k; its sign makes the wave decay inwards. */
 static double complex inward(double complex eps, double cosine)
 {
     const double complex q = csqrt(eps - (1 - cosine * cosine));
@@ -18,12 +18,12 @@ void fresnel_half_space(double complex *te, double complex *tm, double complex e
     *tm = (eps * cosine - q) / (eps * cosine + q);
 }
 
-void fresnel_slab(double complex *te, double complex *tm, double complex *tte, double complex *ttm, double complex eps,
-                  double thick_m, double k, double cosine)
+void fresnel_slab(double complex *te, double complex *tm, double complex *tte, double complex *ttm,
+                  const RadarSurface *surface, double k, double cosine)
 {
-    const double complex p = cexp(-I * k * thick_m * inward(eps, cosine));
+    const double complex p = cexp(-I * k * surface->thick_m * inward(surface->eps, cosine));
     double complex       g[2], *out[2] = {te, tm}, *through[2] = {tte, ttm};
-    fresnel_half_space(&g[0], &g[1], eps, cosine);
+    fresnel_half_space(&g[0], &g[1], surface->eps, cosine);
     for (int i = 0; i < 2; i++) {
         const double complex under = 1 - g[i] * g[i] * p * p;
         *out[i] = g[i] * (1 - p * p) / under;
@@ -54,7 +54,7 @@ void fresnel_surface(double complex *te, double complex *tm, const RadarSurface 
         fresnel_half_space(te, tm, surface->eps, cosine);
         break;
     case RADAR_SLAB:
-        fresnel_slab(te, tm, NULL, NULL, surface->eps, surface->thick_m, k, cosine);
+        fresnel_slab(te, tm, NULL, NULL, surface, k, cosine);
         break;
     case RADAR_COATED:
         fresnel_coated(te, tm, surface->eps, surface->thick_m, k, cosine);
@@ -117,7 +117,7 @@ static Status read_kind(RadarMaterial *material, const Table *table, int row, co
     return STATUS_OK;
 }
 
-/* A row, of a new material or one more frequency of the last. */
+/* Reads a row: it begins a new material, or adds a frequency to the last one. */
 static Status read_row(RadarMaterials *m, const Table *table, int row, const int column[])
 {
     const char   *name = table_text(table, row, column[column_name]);
@@ -149,7 +149,8 @@ static Status read_row(RadarMaterials *m, const Table *table, int row, const int
     return STATUS_OK;
 }
 
-/* Materials without a row of their own, by the default for metal and for others; and `metal`, of shapes. */
+/* Adds the materials that have no row of their own, by the defaults for metal and for others; and `metal`, for shapes.
+ */
 static Status add_defaults(RadarMaterials *m, const Materials *optical, const char *path)
 {
     const int own = radar_materials_find(m, "other_default"), metal = radar_materials_find(m, "metal_default");

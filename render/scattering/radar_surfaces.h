@@ -31,9 +31,9 @@ typedef struct RadarSurface {
 } RadarSurface;
 
 void fresnel_half_space(double complex *te, double complex *tm, double complex eps, double cosine);
-/* tte, ttm: amplitude transmitted, at the far face; may be NULL. */
-void fresnel_slab(double complex *te, double complex *tm, double complex *tte, double complex *ttm, double complex eps,
-                  double thick_m, double k, double cosine);
+/* A slab of surface->eps and thick_m in air. tte, ttm: amplitude transmitted, at the far face; may be NULL. */
+void fresnel_slab(double complex *te, double complex *tm, double complex *tte, double complex *ttm,
+                  const RadarSurface *surface, double k, double cosine);
 void fresnel_coated(double complex *te, double complex *tm, double complex eps, double thick_m, double k,
                     double cosine);
 
@@ -41,7 +41,7 @@ void fresnel_coated(double complex *te, double complex *tm, double complex eps, 
  * with rms h, slopes small. Source: Ament, Proc. IRE 41, 142, 1953. */
 double fresnel_rough(double rough_m, double k, double cosine);
 
-/* Of any surface, its roughness included. */
+/* Reflection of any kind of surface, its roughness included. */
 void fresnel_surface(double complex *te, double complex *tm, const RadarSurface *surface, double k, double cosine);
 
 /* ---- materials ---------------------------------------------------------------------------------- */

@@ -25,7 +25,8 @@ typedef struct ScatterMatrix {
     double complex hh, hv, vh, vv; /* m; first index: received polarisation, second: transmitted */
 } ScatterMatrix;
 
-/* One antenna, seen from the target: unit direction to it, and its distance; INFINITY: a plane wave. */
+/* One antenna, seen from the target: the unit direction to it and its distance. A distance of INFINITY means a plane
+ * wave. */
 typedef struct ScatterAntenna {
     double u[3];
     double range_m;
@@ -49,8 +50,8 @@ static inline void scatter_basis(double h[3], double v[3], const double u[3])
     v3_cross(v, u, h);
 }
 
-/* From a basis h, v to one whose first axis is along `right`, as far as that is across the line of sight: an antenna
- * that is rolled. All in one frame; right must not lie along the line of sight. */
+/* Turns a matrix from a basis h, v to one whose first axis is along `right`, as far as that is across the line of
+ * sight: for an antenna that is rolled. All are in one frame; right must not lie along the line of sight. */
 static inline void scatter_turn(ScatterMatrix *s, const double h[3], const double v[3], const double right[3])
 {
     const double along_h = v3_dot(right, h), along_v = v3_dot(right, v);

@@ -45,7 +45,7 @@ static struct {
     double visibility_m;
 } known;
 
-/* Logged after the error itself: the setting that led there. Returns false. */
+/* Logs the setting that led to a table or model, after the error itself. Returns false. */
 static bool report(const Check *c, const char *key, const char *next)
 {
     const int line = config_line(key, c->path);
@@ -272,7 +272,7 @@ static bool check_file(const char *path)
     if (read != STATUS_OK && read != STATUS_BAD_VALUE) return false;
     const Config given = *config; /* a preset changes keys that were not given */
     Check        c = {.path = path, .config = config};
-    /* all of it, so that one run reports everything */
+    /* `&=`, not `&&`: all is read, so that one run reports everything */
     bool good = read == STATUS_OK;
     good &= run_prepare(&run) == STATUS_OK;
     good &= tables_are_valid(&c);

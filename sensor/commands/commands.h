@@ -5,8 +5,8 @@
 #ifndef SENSOR_COMMANDS_COMMANDS_H
 #define SENSOR_COMMANDS_COMMANDS_H
 
-/* `pitviper run`: a node on a DIS exercise. Its frames equal those of `replay --causal` of its recording, to the bit:
- * the same functions, at the same exercise times, with the same arrival times. */
+/* `pitviper run`: a node on a DIS exercise. Its frames equal to the bit those of `replay --causal` of its recording,
+ * since both call the same functions at the same exercise times, with the same arrival times. */
 int run_command(int argc, char **argv);
 /* `pitviper replay LOG`: from a recorded exercise to images and truth. */
 int replay_command(int argc, char **argv);

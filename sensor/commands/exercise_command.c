@@ -130,7 +130,7 @@ static bool parse_speed(double *out, const char *text)
     return false;
 }
 
-/* 0: go on; else exit with this code - 1. */
+/* Returns 0 to go on; else the program exits with this code - 1. */
 static int parse(Options *o, int argc, char **argv)
 {
     enum { OUT = 'o', HELP = 'h', SEND = 256, SET, DATAGRAMS, INTERFACE, TTL, SPEED, KEYS, OVERWRITE };
@@ -276,7 +276,7 @@ typedef struct Run {
     bool         failed, stopped; /* stopped: before the end of the scenario */
 } Run;
 
-/* Writes each PDU as DIR/NNNN.pdu: the corpus of a fuzzer. */
+/* Writes each PDU as DIR/NNNN.pdu, for the corpus of a fuzzer. */
 static bool datagram_file(Run *run, const uint8_t *bytes, size_t octets)
 {
     char path[path_size];

@@ -41,7 +41,7 @@ typedef struct FrameOptions {
     bool        overwrite, no_skip, forced;
 } FrameOptions;
 
-/* 0: go on; else exit with this code - 1. */
+/* Returns 0 to go on; else the program exits with this code - 1. */
 static int parse(FrameOptions *o, int argc, char **argv)
 {
     enum { OUT = 256, OVERWRITE, THREADS, NO_SKIP, FORCE, HELP };

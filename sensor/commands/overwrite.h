@@ -10,7 +10,8 @@
  * an empty or irregular file may be replaced. */
 Status overwrite_folder(const char *command, const char *out, bool allowed);
 Status overwrite_file(const char *command, const char *path, bool allowed);
-/* The videos of a run (publish.video); host_folder: of one host among several, NULL: the only one. */
+/* Checks the videos of a run (publish.video). host_folder: the folder of one host among several; NULL: there is only
+ * one. */
 Status overwrite_video(const char *command, const Config *config, unsigned bands, const char *host_folder,
                        bool allowed);
 

@@ -44,7 +44,7 @@ static bool copy_text(char *out, size_t out_size, const char *name, const char *
     return false;
 }
 
-/* 0: go on; else exit with this code - 1. */
+/* Returns 0 to go on; else the program exits with this code - 1. */
 static int parse(Options *o, int argc, char **argv)
 {
     enum { OUT = 'o', HELP = 'h', ADDRESS = 256, INTERFACE, PORT, FOR, COUNT, OVERWRITE };

@@ -28,7 +28,7 @@ static void show_progress(double n, double first, double last, double begun_s)
     log_status(text);
 }
 
-/* The clock of a paced replay: the log's own, times speed. */
+/* The clock of a paced replay: it runs at `speed` times the log's own time. */
 typedef struct Pace {
     double begun_s, first_s, speed; /* wall clock; exercise time then; INFINITY: as fast as possible */
 } Pace;
@@ -60,8 +60,8 @@ static bool wanted(const Options *o, int *at, double n)
     return *at < o->only_count && o->only[*at] == n;
 }
 
-/* The part of a span that --only needs: up to the last frame it names; all of them, and those to be saved, must be in
- * the span. */
+/* Ends the span at the last frame that --only names. All of these frames, and those to be saved, must be in the span.
+ */
 static Status take_only(double *last, const Options *o, double first)
 {
     for (int i = 0, at = 0; i < o->save_count; i++)
@@ -82,7 +82,7 @@ static Status take_only(double *last, const Options *o, double first)
     return STATUS_OK;
 }
 
-/* The host of a plan, as session_host names it at first. */
+/* Names the host of a plan as session_host names it at first. */
 static void host_name(char out[dis_id_text_size], const HostPlan *plan)
 {
     if (plan->any_munition) strcpy(out, host_munition);
@@ -312,8 +312,8 @@ static Status send_pdu(void *user, const uint8_t *pdu, size_t octets)
     return dis_udp_send(s->udp, pdu, octets);
 }
 
-/* A replay at the pace of the recording, or a multiple of it, sends what the live node would send; at full speed it
- * would flood the network. */
+/* Opens the sending of a replay at the pace of the recording or a multiple of it, which sends what the live node would;
+ * at full speed a replay would flood the network. */
 static Status open_sending(Sending *s, Run *run, const DisLog *log)
 {
     const Options     *o = &run->options;

@@ -37,15 +37,15 @@ typedef struct Live {
     double         health_s;                /* when it was last checked */
     char           host[dis_id_text_size];  /* at the end */
     char           to[run_network_to_size]; /* destination, for messages */
-    /* datagrams received before the choices, each with its own memory */
+    /* datagrams received before the choices; each owns its memory */
     DisDatagram  *heard;
     int           received_count, received_capacity;
     const Player *player; /* once there is one */
     /* wall clock, s */
     double   begun_s, flushed_s, shown_s;
-    uint64_t shown_frames; /* by then */
+    uint64_t shown_frames; /* frames rendered by shown_s */
     int64_t  due_ns;       /* Unix time of the present frame */
-    double   latency_s;    /* from then until it was rendered, the worst since shown_s; NaN: none */
+    double   latency_s;    /* the longest time from due_ns until a frame was rendered, since shown_s; NaN: none */
 } Live;
 
 /* Whether it is to send Data PDUs. */
@@ -65,7 +65,7 @@ static void flush_recording(Live *l)
     l->flushed_s = now_s;
 }
 
-/* -1: any. Before the choices, as configured. */
+/* The exercise to join before the choices are made: as configured; -1: any. */
 static int exercise_to_join(const Live *l)
 {
     return l->player ? l->run.exercise : l->run.options.config.exercise.exercise;
@@ -162,8 +162,8 @@ static Status store_received(Live *l, const DisDatagram *datagram)
     return STATUS_OK;
 }
 
-/* Collects the datagrams for the choices: the rule of player_opening, applied on arrival. heard: false when stopped
- * before. */
+/* Collects the datagrams for the choices, by the rule of player_opening, as they arrive. heard: false when the node is
+ * stopped before. */
 static Status listen_first(bool *heard, Live *l)
 {
     const Config *config = &l->run.options.config;
@@ -325,7 +325,7 @@ static Status live_frames(Run *run, Session *session, Player *player, const Host
         flush_recording(l);
         check_health(l, session);
     }
-    if (status == STATUS_OK && last >= 0 && over(l)) { /* those that were due while the last one was made */
+    if (status == STATUS_OK && last >= 0 && over(l)) { /* frames that were due while the last one was made */
         const double ended_s = fmin(player_time_s(player, dis_unix_s(dis_udp_now_ns())), isnan(to_s) ? INFINITY : to_s);
         const double newest = floor(ended_s * grid->rate_hz) - grid->origin;
         if (newest > last) l->counters.frames_late += (uint64_t)(newest - last);
@@ -373,8 +373,8 @@ static Status open_files(Live *l)
     return live_recording_open(&l->recording, config->record.path, comment, l->udp, run_network(config).port);
 }
 
-/* The time of a frame on this machine, measured once: the only clock that a choice of quality depends on. Reported
- * so that a replay with the same quality.machine_factor gives the same images. */
+/* Measures the time of a frame on this machine, once: the only clock that a choice of quality depends on. It is
+ * reported, so that a replay with the same quality.machine_factor gives the same images. */
 static Status measure_machine(Live *l)
 {
     Config *config = &l->run.options.config;
@@ -398,8 +398,8 @@ static bool idle(HealthReason reason)
            reason == HEALTH_EARLY;
 }
 
-/* A run without any result of one requested kind is a failure: no frame, no file of any frame, no PDU of any. One that
- * is stopped while it waits is none. */
+/* A run fails when one kind of result that was asked for is missing altogether: frames, files, or PDUs. A run that is
+ * stopped while it waits does not fail. */
 static Status verdict(Live *l)
 {
     HealthSample *s = &l->health.sample;

@@ -12,7 +12,7 @@ static const bool has_h[noise_axes] = {true, false, true, true, false, false, tr
 
 double noise3d_unit(NoiseAxis axis, uint64_t seed, uint32_t stream, int frame, int row, int column)
 {
-    /* separate streams, apart from the small numbers used elsewhere */
+    /* these streams are separate from the small numbers used elsewhere */
     const uint32_t own = 0x3d000000u + 8 * stream + (uint32_t)axis;
     return random_normal(seed, own, has_t[axis] ? (uint32_t)frame : 0,
                          (uint64_t)(has_v[axis] ? row : 0) << 32 | (uint32_t)(has_h[axis] ? column : 0));
@@ -26,7 +26,7 @@ double noise3d_at(const Noise3d *noise, uint64_t seed, uint32_t stream, int fram
     return sum;
 }
 
-/* plane += whole(frame) + rows(frame, row) + columns(frame, column) + pixels, of the axes given */
+/* Adds the components of the axes given: whole(frame) + rows(frame, row) + columns(frame, column) + pixels. */
 static void add(float *plane, int width, int height, const Noise3d *noise, const NoiseDraw *draw,
                 const NoiseAxis axis[4], double *columns)
 {
@@ -134,7 +134,7 @@ Status noise3d_estimate(Noise3d *out, const float *cube, int frames, int rows, i
         for (int c = 0; c < H; c++) h[c] += vh[r * H + c] / V;
     for (int k = 0; k < T; k++) all += t[k] / T;
 
-    /* the part in no average */
+    /* the part that is in no average */
     double sum = 0;
     for (int k = 0; k < T; k++)
         for (int r = 0; r < V; r++) {

@@ -24,9 +24,9 @@ typedef struct Noise3d {
     double sigma[noise_axes];
 } Noise3d;
 
-/* Standard normal of one component. stream < 2^16; frame, row, column >= 0. */
+/* A standard normal value of one component. stream < 2^16; frame, row, column >= 0. */
 double noise3d_unit(NoiseAxis axis, uint64_t seed, uint32_t stream, int frame, int row, int column);
-/* The sum of all seven at one pixel of one frame. */
+/* The sum of all seven components at one pixel of one frame. */
 double noise3d_at(const Noise3d *noise, uint64_t seed, uint32_t stream, int frame, int row, int column);
 
 /* plane += the components v, h and vh; plane is [height][width]. */
@@ -56,7 +56,8 @@ void bad_pixels_make(uint8_t *map, int width, int height, double share, double c
 /* Dead: 0. Hot: full. Blinking: full scale in a random half of the periods of 8 frames, else unchanged. */
 void bad_pixels_insert(uint16_t *count, const uint8_t *map, int width, int height, uint16_t full,
                        const NoiseDraw *draw);
-/* Each becomes the mean of the nearest good pixels (a ring of 1, then 2, ... to 8 px; if none: unchanged). */
+/* Replaces each bad pixel by the mean of the nearest good pixels, in a ring of 1, then 2, ... to 8 px; where there are
+ * none it stays. */
 void bad_pixels_replace(uint16_t *count, const uint8_t *map, int width, int height);
 
 #endif

@@ -15,7 +15,8 @@ double mtf_aperture(double x, double obscuration)
     if (x == 0) return 1; /* to the bit, so that a mean is kept */
     if (!(e > 0)) return lens(x);
 
-    /* autocorrelation of an annulus: outer with outer, inner with inner, less twice outer with inner */
+    /* the autocorrelation of an annulus is that of the outer disc plus that of the inner disc, less twice their
+     * cross-correlation */
     const double outer = lens(x), inner = e * e * lens(x / e);
     double       cross = 2 * e * e; /* the inner circle lies wholly inside */
     if (2 * x > 1 - e) {
@@ -46,7 +47,7 @@ double mtf_optics(const MtfChain *c, double fx, double fy)
     return isinf(c->cutoff_cyc_px) ? 1 : mtf_aperture(sqrt(fx * fx + fy * fy) / c->cutoff_cyc_px, c->obscuration);
 }
 
-/* sinc(w f) over the mean of n samples at (k + 0.5) / n of a pixel, k = 0 .. n - 1. */
+/* Computes sinc(w f) over the transfer of averaging n samples at (k + 0.5) / n of a pixel, k = 0 .. n - 1. */
 static double footprint_axis(double footprint_px, int n, double f)
 {
     return mtf_sinc(footprint_px * f) * mtf_sinc(f / n) / mtf_sinc(f);

@@ -8,8 +8,9 @@
 
 #include "pitviper.h"
 
-/* Diffraction of a circular aperture in incoherent light. x = f / cutoff >= 0, 0 beyond 1; obscuration: central, share
- * of the diameter, 0 .. 0.95. Source: O'Neill, "Transfer function for an annular aperture", JOSA 46 (1956) 285. */
+/* MTF of a circular aperture that diffracts incoherent light. x = f / cutoff >= 0; the MTF is 0 beyond 1. obscuration:
+ * the central one, as a share of the diameter, 0 .. 0.95. Source: O'Neill, "Transfer function for an annular aperture",
+ * JOSA 46 (1956) 285. */
 double mtf_aperture(double x, double obscuration);
 /* sin(pi x) / (pi x): a footprint or a smear of length w at frequency f is mtf_sinc(w f). May be negative. */
 double mtf_sinc(double x);
@@ -52,16 +53,17 @@ double mtf_chain(const MtfChain *chain, double fx, double fy);
  * an oblique smear except in the corners. 720 x 486, one core: 5 ms; 17 ms with an oblique smear. */
 typedef struct Blur Blur;
 
-/* Without the smear of the chain, which changes per frame. STATUS_NO_MEMORY. One user at a time. */
+/* Creates a blur of the chain without its smear, which changes per frame. STATUS_NO_MEMORY. One thread may use it at a
+ * time. */
 Status blur_create(Blur **out, int width, int height, const MtfChain *chain);
 /* The frequency at which the chain is evaluated for frequency f of a row or column, -0.5 .. 0.5. */
 double blur_tapered(double f_cyc_px);
-/* Transfer of a smear at (fx, fy), tapered; the difference between fx and -fx fades from 0.4 to 0.5. */
+/* Transfer of a smear at (fx, fy), tapered: the difference between fx and -fx fades from 0.4 to 0.5 cycles a pixel. */
 double blur_smear_pass(const double smear_px[2], double fx, double fy);
 void   blur_destroy(Blur *blur);
 /* Rows top down; in and out may be the same. Values that are not finite become 0 before, and come back afterwards. */
 void blur_apply(Blur *blur, float *out, const float *in, const double smear_px[2]);
-/* The same with a plane added before clipping at 0; more: NULL: none. */
+/* Does the same, and adds a plane before clipping at 0. more NULL: adds none. */
 void blur_apply_with(Blur *blur, float *out, const float *in, const double smear_px[2], const double *more);
 
 #endif

@@ -30,7 +30,8 @@ void chain_expose(Chain *chain, const float *const radiance[]);
  * NULL: they stay in whole pixels. rate_px_s: image motion of the scene, column and row. */
 void chain_run(Chain *chain, const float *const radiance[], const SmallTargets *small, int frame,
                const double rate_px_s[2]);
-/* Of the last run: [height][width], 0 .. 2^bits - 1; as numbers for levels and displays, the same. */
+/* Counts of the last run: [height][width], 0 .. 2^bits - 1. The second gives the same counts as numbers, for levels and
+ * displays. */
 const uint16_t *chain_counts(const Chain *chain, int channel);
 const float    *chain_values(const Chain *chain, int channel);
 
@@ -38,7 +39,7 @@ const float    *chain_values(const Chain *chain, int channel);
 double chain_counts_at(const Chain *chain, int channel, double radiance_w_m2_sr);
 /* Rms of all noise at this radiance, as radiance: temporal, fixed and along lines, without defective pixels. */
 double chain_sigma(const Chain *chain, int channel, double radiance_w_m2_sr);
-/* The same as a temperature difference of a blackbody, K. */
+/* The same noise as a temperature difference of a blackbody, K. */
 double chain_netd_k(const Chain *chain, double temp_k);
 /* Electrons per count. */
 double chain_step_e(const Chain *chain);

@@ -12,7 +12,7 @@ void detector_counts(uint16_t *out, const float *in, size_t count, double step, 
 
 /* ---- display ------------------------------------------------------------------------------ */
 
-/* Linear light 0 .. 1 -> sRGB code value 0 .. 1, IEC 61966-2-1. */
+/* Encodes linear light 0 .. 1 as an sRGB code value 0 .. 1 (IEC 61966-2-1). */
 static double srgb_encode(double linear)
 {
     return linear <= 0.0031308 ? 12.92 * linear : 1.055 * pow(linear, 1 / 2.4) - 0.055;
@@ -22,7 +22,7 @@ static double srgb_encode(double linear)
  * step; monotone, since the curve is. */
 enum { curve_intervals = 4096 };
 
-/* Gain, level and curve of one display, folded: code = curve(in * scale + shift) * full. */
+/* Gain, level and curve of one display in one expression: code = curve(in * scale + shift) * full. */
 typedef struct Display {
     double scale, shift, full;
     bool   gamma;
@@ -77,7 +77,7 @@ void detector_display_rgb(void *out, const float *const in[3], size_t count, con
         const double mean = ((double)in[0][i] + in[1][i] + in[2][i]) / 3, lit = mean * d.scale + d.shift;
         const double shown = lit > 0 ? lit : 0;
         const bool   has_hue = mean > 0 && mean < INFINITY;
-        /* beyond full scale: the brightest channel to full scale, the others with it */
+        /* beyond full scale the brightest channel is scaled down to full scale, and the others with it */
         const float  brighter = in[0][i] > in[1][i] ? in[0][i] : in[1][i];
         const double most = (brighter > in[2][i] ? brighter : in[2][i]) / mean;
         const double kept = has_hue && shown * most > 1 ? 1 / most : shown;

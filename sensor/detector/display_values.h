@@ -6,7 +6,7 @@
 
 #include "sensor/detector/level.h"
 
-/* The converter: value / step, rounded to nearest, 0 .. full. */
+/* The converter: counts are value / step, rounded to nearest, 0 .. full. */
 void detector_counts(uint16_t *out, const float *in, size_t count, double step, uint16_t full);
 
 /* Quantisation to config->bits: monotone, saturating, rounding to nearest. out: uint8_t or uint16_t [count]. */

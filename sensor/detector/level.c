@@ -65,7 +65,7 @@ static float from_ordered(uint32_t key)
 
 enum { digit_bits = 11, digits = 1 << digit_bits };
 
-/* Finite, and below a limit: in the order of ordered(). */
+/* A range of finite values below a limit, in the order of ordered(). */
 typedef struct Range {
     uint32_t above, below;
 } Range;
@@ -84,7 +84,7 @@ typedef struct Prefix {
     uint32_t histogram[digits]; /* of their next digit */
 } Prefix;
 
-/* How many of the values have each digit (key >> shift) & (digits - 1), of those with either prefix. */
+/* Counts, among the values with either prefix, those with each digit (key >> shift) & (digits - 1). */
 static void count_digits(Prefix prefix[2], const float *const *plane, int plane_count, size_t count, Range of,
                          int shift)
 {
@@ -122,9 +122,9 @@ static void take_digit(Prefix *p, int shift)
     p->mask |= (uint32_t)(digits - 1) << shift;
 }
 
-/* The values at two shares of those of a range in order (0: the least): digit by digit from the top, 11 + 11 + 10 bits.
- * Exact, three passes, no copy of the plane, and NaN cannot upset it as it would a sort. Returns how many there are;
- * out is unset where there are less than `least`, or none. */
+/* Finds the values at two shares of those of a range in order (share 0: the least), digit by digit from the top: 11 +
+ * 11 + 10 bits. This is exact, takes three passes and no copy of the plane, and NaN cannot upset it as it would a sort.
+ * Returns how many values there are; out is unset where there are less than `least`, or none. */
 static uint64_t order_statistics(double out[2], const float *const *plane, int plane_count, size_t count, Range of,
                                  uint64_t least, const double share[2])
 {
@@ -183,7 +183,7 @@ DetectorLevel detector_level(const DetectorConfig *config, const float *const *p
     return level;
 }
 
-/* The share of the difference to `now` that is left after step_s; left: the difference, in spans. */
+/* Share of the difference to `now` that remains after step_s. left: the difference, in spans. */
 static double follow_keep(bool *quick, double left, double step_s, double time_s)
 {
     /* spans; of time_s. 1.8 spans are what comes when sky leaves a picture (tests/system/test_level.sh): averaged */

@@ -28,7 +28,7 @@ typedef struct DetectorConfig {
 
 /* gain 1, offset 0, no noise, 8 bits, automatic linear level 1 % .. 99 % with a margin of 0.05; nothing is a fire. */
 DetectorConfig detector_default_config(void);
-/* STATUS_BAD_VALUE and one log line (field, value, range) for anything outside the ranges above. */
+/* STATUS_BAD_VALUE, with one log line (field, value, range), for a value outside the ranges above. */
 Status detector_check_config(const DetectorConfig *config);
 
 /* Values of black and white, in the plane's unit; high > low always. */
@@ -58,14 +58,15 @@ void detector_level_follow(DetectorLevel *state, bool *quick, DetectorLevel now,
  */
 enum { curve_steps = 256 };
 
-/* Value displayed at k / curve_steps of full scale, ascending; linear between. */
+/* The curve: the value that is displayed at k / curve_steps of full scale, ascending; it is linear between. */
 typedef struct DetectorCurve {
     double value[curve_steps + 1];
 } DetectorCurve;
 
-/* Of one plane: config->plateau, min_span and step count. Bins are min_span / 64 wide, or a step, from the least
- * value up; what is beyond the last of 16384 counts with it. The slope is at most full scale over min_span, about
- * the middle of the scale where that leaves some of it unused. No finite value: 0 .. 1. */
+/* Makes the curve of one plane by config->plateau, min_span and step count. Bins are min_span / 64 wide, or one step,
+ * from the least value up; values beyond bin 16384 count in it. The slope is at most full scale over min_span; where
+ * the curve then needs only part of the scale, that part is about the middle. Without finite values the curve spans 0
+ * .. 1. */
 void detector_plateau(DetectorCurve *out, const DetectorConfig *config, const float *plane, size_t count);
 
 /* A curve with a time constant, as detector_level_follow; its span is that of the middle eight tenths of the grey

@@ -9,7 +9,8 @@ static double white_left(double length_px)
     return length_px > 1 ? (1 - 1 / (3 * length_px)) / length_px : 1 - length_px / 3;
 }
 
-/* Of noise correlated as exp(-x / reach): variance of a mean over a length, and covariance of two adjacent ones. */
+/* For noise whose correlation is exp(-x / reach): the variance of its mean over a length, and the covariance of two
+ * adjacent such means. */
 static double line_left(double length_px, double reach_px)
 {
     const double u = length_px / reach_px;
@@ -22,7 +23,7 @@ static double line_shared(double length_px, double reach_px)
     return mean * mean;
 }
 
-/* As in the detector's chain (chain.c), on an image averaged over whole pixels. */
+/* The MTF of the detector's chain (chain.c), for an image averaged over whole pixels. */
 static double mtf_along(const SensorPreset *p, int axis, double f)
 {
     const PhotonDetector *d = &p->photons;

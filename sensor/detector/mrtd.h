@@ -33,7 +33,7 @@ typedef struct Mrtd {
     double first_k[2]; /* with the first harmonic alone */
 } Mrtd;
 
-/* f_cyc_px: 0 .. 0.5, not 0. Of MWIR and LWIR sensors. */
+/* Predicts the MRTD of an MWIR or LWIR sensor. f_cyc_px: above 0, to 0.5. */
 void mrtd_predict(Mrtd *out, const SensorPreset *preset, double f_cyc_px, const MrtdObserver *observer);
 
 #endif

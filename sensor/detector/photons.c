@@ -8,7 +8,7 @@
 /* Exact since the 2019 SI. */
 static const double h_j_s = 6.62607015e-34, c_mps = 299792458.0, k_j_k = 1.380649e-23;
 
-/* 8-point Gauss-Legendre on [-1, 1], the positive half (Abramowitz & Stegun, table 25.4). */
+/* The positive half of the 8-point Gauss-Legendre rule on [-1, 1] (Abramowitz & Stegun, table 25.4). */
 static const double gauss_node[4] = {0.1834346424956498049394761424, 0.5255324099163289858177390492,
                                      0.7966664774136267395915539365, 0.9602898564975362316835608686};
 static const double gauss_weight[4] = {0.3626837833783619829651504493, 0.3137066458778872873379622020,
@@ -75,7 +75,8 @@ double photon_netd_k(const PhotonDetector *d, double temp_k, double count_e, dou
 
 /* ---- table ------------------------------------------------------------------------------------ */
 
-/* Photons per watt depend weakly on temperature: knots uniform in the logarithm of radiance, linear between. */
+/* Photons per watt depend weakly on temperature: they are tabulated at even steps of the logarithm of radiance, and
+ * linear between. */
 enum { knots = 4096 };
 
 struct PhotonTable {

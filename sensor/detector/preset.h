@@ -30,8 +30,8 @@ typedef struct SensorPreset {
     bool                   smear;       /* motion within the integration time, and between lines */
 } SensorPreset;
 
-/* The row of that name. On error logs file, line, column, value and range; for an unknown name the known
- * ones. */
+/* Reads the row of that name. An error is logged with file, line, column, value and range; an unknown name with the
+ * known ones. */
 Status preset_read(SensorPreset *out, const char *path, const char *name);
 /* Every row of a table is read; the first that is wrong is logged. */
 Status preset_check(const char *path);
@@ -42,7 +42,8 @@ Status preset_has(bool *has, const char *path, const char *name);
 PhotonDetector preset_photons(const SensorPreset *preset);
 /* After fields were changed by settings. */
 void preset_refresh(SensorPreset *preset);
-/* Edges of a band in wavelength, as in the renderer. Channel 0 .. 2 of OPTICAL_RGB: R G B; -1: the whole. */
+/* Edges of a band in wavelength, as the renderer has them. Channel 0 .. 2 of OPTICAL_RGB: R, G, B; -1: the whole band.
+ */
 void preset_band(double *low_m, double *high_m, Band band, OpticalChannels optical, int channel);
 
 /* ---- sheet.c: data sheets ----------------------------------------------------------------------- */

@@ -231,7 +231,7 @@ static double d_star_noise_e(const Sheet *s, double integration_s)
     return s->qe * nep_w * integration_s * 1e-6 * s->cut_off_um / (h_j_s * c_mps);
 }
 
-/* Read noise: the noise of the sheet minus that of photons, dark current and quantisation. */
+/* Computes the read noise: the sheet's noise without that of photons, dark current and quantisation. */
 static Status noise_of_reading(SensorPreset *p, const Sheet *s, const char *path)
 {
     p->photons.read_e = 0;

@@ -39,7 +39,7 @@ struct SubPixel {
     double    *node;   /* [most_nodes] */
 };
 
-/* Frequency of an index of a transform of n points, period_px long. */
+/* The frequency of an index of a transform of n points over period_px. */
 static double frequency(int k, int n) { return (double)(k <= n / 2 ? k : k - n) / period_px; }
 
 /* A target's light is distributed to nodes by hat functions 2 / nodes_per_px wide. */
@@ -116,7 +116,7 @@ void subpixel_destroy(SubPixel *s)
 
 /* ---- the kernels of a smear -------------------------------------------------------------------- */
 
-/* At the Nyquist frequency f and -f are the same: the transfer of an oblique smear is averaged over both. */
+/* The frequencies f and -f are the same at Nyquist, so the transfer of an oblique smear is averaged over both. */
 static double smear_pass(const double smear_px[2], double fx, double fy, bool both)
 {
     const double along = smear_px[0] * fx, down = smear_px[1] * fy;
@@ -207,7 +207,7 @@ static double electrons_of(const SubPixelPlane *p, float radiance)
     return isfinite(e) ? e : 0;
 }
 
-/* Electrons of the cells minus those of the background behind them. */
+/* Sums the electrons of the cells, less those of the background behind them. */
 static void share_target(SubPixel *s, const Grid *g, const SmallTarget *t, const SubPixelPlane *p)
 {
     const double *box = t->box_px, cell_x = (box[2] - box[0]) / t->columns, cell_y = (box[3] - box[1]) / t->rows;

@@ -36,7 +36,7 @@ void   subpixel_destroy(SubPixel *s);
 /* A plane of the image, and how its radiance becomes electrons. */
 typedef struct SubPixelPlane {
     float             *electrons; /* [height][width] */
-    double            *more;      /* likewise: what is to be added after the blur */
+    double            *more;      /* filled: what is to be added after the blur */
     int                width, height;
     int                plane; /* of the targets' cells */
     const PhotonTable *photons;

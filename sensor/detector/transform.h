@@ -17,7 +17,8 @@ typedef enum TransformKind {
     TRANSFORM_ROWS_BACK,    /* exp(+...); there and back multiplies by columns */
 } TransformKind;
 
-/* For these two buffers alone, from transform_alloc; the same for all but WAVES_BACK. Several threads may call it. */
+/* Makes a transform for these two buffers of transform_alloc alone; all but WAVES_BACK may have in and out the same.
+ * Several threads may call it. */
 Status transform_create(Transform **out, TransformKind kind, int rows, int columns, double *from, double *to);
 void   transform_destroy(Transform *t);
 /* No allocation. */

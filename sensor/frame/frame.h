@@ -31,7 +31,7 @@ typedef struct FrameArray {
     const void *values;
 } FrameArray;
 
-/* The rendering of a snapshot: the planes, and their inputs. */
+/* What was rendered of a snapshot: the planes, and what they were rendered from. */
 typedef struct FrameView {
     Picture    picture;
     Snapshot   snapshot;
@@ -78,19 +78,20 @@ struct Frame {
     int                holds; /* protected by the pool's lock */
 };
 
-/* The planes of an image in the order of their groups: bands, then truth, profiles last. Borrowed from it. */
+/* Lists the planes of an image in the order of their groups: bands, then truth, then profiles. They are borrowed from
+ * it. */
 int frame_planes(FrameArray plane[frame_max_planes], const Picture *picture, const RenderRequest *request);
-/* As named in the hash: GROUP/NAME, and as a plane of two axes: the first ones are rows, the last one columns. */
+/* A plane as the hash names it, GROUP/NAME, and as two axes: rows are all its axes but the last, which is columns. */
 enum { frame_plane_name_size = 64 };
 Plane frame_plane(char name[frame_plane_name_size], const FrameArray *plane);
-/* Of all planes. Computed on the first call, in the publishing thread. */
+/* Computes the SHA-256 of all planes, on the first call; in the publishing thread. */
 Status frame_sha256(FrameView *view);
 
 typedef struct FramePool FramePool;
 
 Status frame_pool_create(FramePool **out, int frames);
 void   frame_pool_destroy(FramePool *pool); /* all frames must have been released. NULL is valid */
-/* A frame with one reference and an empty arena. Waits for one. */
+/* Takes a frame with one reference and an empty arena; waits until one is free. */
 Frame *frame_pool_take(FramePool *pool);
 void   frame_hold(Frame *frame);
 void   frame_release(Frame *frame);

@@ -30,14 +30,14 @@ static double mean_radiance(const Picture *picture, int band)
     return planes ? fmax(0, sum / ((double)count * planes)) : 0;
 }
 
-/* Without a sensor: a share of the image's mean in each optical channel. */
+/* Noise without a sensor: a share of the image's mean in each optical channel. */
 static double optical_sigma(const Picture *picture, const Config *config)
 {
     return config->detector.noise * config->detector.noise_optical * mean_radiance(picture, BAND_OPTICAL);
 }
 
-/* What a camera without a sensor's data sheet resolves in the dark, W/(m2 sr): a twentieth of the least span of its
- * display, and of grey surfaces below some 0.2 lux; ordinary colour cameras end at 0.1 to 0.5 lux. */
+/* Least light that a camera without a data sheet resolves, W/(m2 sr): a twentieth of the least span of its display.
+ * Grey surfaces give it at some 0.2 lux; ordinary colour cameras end at 0.1 to 0.5 lux. */
 static const double optical_least_span = 1e-3, optical_dark_sigma = 5e-5;
 
 /* Dry ground and roofs in the sun stay below 350 K; engines, exhausts and fires do not. In channels of reflected
@@ -64,8 +64,8 @@ void frame_expose(TruthNoise *noise, Chain *const chain[BAND_COUNT], const Pictu
     }
 }
 
-/* The display of one band: gain and level, quantisation; and noise, without a sensor. In radiance, or in counts of
- * the band's sensor. */
+/* How a band is displayed: its gain, level and quantisation, and its noise where there is no sensor. In radiance, or in
+ * counts of the band's sensor. */
 static DetectorConfig detector_of(const DisplaysOf *of, int band)
 {
     const Config  *c = of->config;
@@ -134,8 +134,7 @@ static void add_noise(float *const memory[3], const FrameDisplay *d, const Displ
                        &(NoiseDraw){(uint64_t)of->config->seed, (uint32_t)(3 * band + c), (int)of->frame});
 }
 
-/* The input of a display of a band, before its level: counts, or radiance with noise, in memory already; of R G B
- * balanced. */
+/* Prepares the input of a band's display, before its level: counts, or radiance with noise; R G B are balanced. */
 static void detect(FrameDisplay *out, float *const memory[3], const DisplaysOf *of, int band)
 {
     const Picture *p = of->picture;
@@ -159,7 +158,7 @@ static void detect(FrameDisplay *out, float *const memory[3], const DisplaysOf *
     }
 }
 
-/* Of one band, frame after frame: the state of the level is its own. */
+/* Sets the level of one band, frame after frame; each band has its own state. */
 static void set_level(FrameDisplay *d, FrameLevel *state, double time_s, double agc_s, size_t count)
 {
     const double step_s = time_s - state->time_s;
@@ -190,7 +189,7 @@ typedef struct DisplayJobs {
     int               count, band[BAND_COUNT];
 } DisplayJobs;
 
-/* Rows of the noise of a band: a task each, so that one band alone uses all threads. */
+/* Makes the noise of some rows of a band; a task each, so that one band alone uses all threads. */
 enum { noise_rows = 32 };
 
 static int noise_tasks(const Picture *p) { return (p->height + noise_rows - 1) / noise_rows; }

@@ -9,7 +9,7 @@
 #include "sensor/settings/config.h"
 #include "sensor/truth/truth.h"
 
-/* A band's image behind its detector, before quantisation. Without a sensor: radiance with noise as configured. */
+/* A band's image after its detector, before quantisation. Without a sensor it is radiance, with noise as configured. */
 typedef struct FrameDisplay {
     int             planes;   /* 0: none; 1: grey; 3: R, G, B */
     const float    *plane[3]; /* [height][width] */
@@ -21,7 +21,7 @@ typedef struct FrameDisplay {
     int             count_bits;
 } FrameDisplay;
 
-/* An automatic level with a time constant; starts with the first frame. */
+/* An automatic level with a time constant. It starts with the first frame. */
 typedef struct FrameLevel {
     bool          known, quick; /* quick: detector_level_follow */
     double        time_s;
@@ -46,7 +46,7 @@ void frame_expose(TruthNoise *noise, Chain *const chain[BAND_COUNT], const Pictu
 /* Exposes and runs the detectors of these bands (1 << Band), one task per band. STATUS_NO_MEMORY. */
 Status frame_displays_make(FrameDisplay display[BAND_COUNT], const DisplaysOf *of, unsigned bands, Pool *pool,
                            Arena *arena);
-/* To 8 .. 16 bits: uint8_t (8) or uint16_t values of a grey image, or of R G B interleaved. */
+/* Quantises to 8 .. 16 bits: uint8_t (8) or uint16_t values of a grey image, or of R G B interleaved. */
 void frame_display_quantise(void *out, const FrameDisplay *display, size_t count, int bits);
 
 #endif

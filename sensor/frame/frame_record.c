@@ -138,7 +138,7 @@ static json_t *target_json(const TargetRecord *t)
     return target;
 }
 
-/* By source: as a share, and the same in a unit. */
+/* Makes an object of errors by source: each as a share, and in a unit. */
 static json_t *error_by_source(const double share[error_sources], const double same[error_sources], const char *unit)
 {
     static const char *const name[error_sources] = {"sampling", "level_of_detail", "table",

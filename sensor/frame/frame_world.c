@@ -29,7 +29,7 @@ Status frame_world_plant(World *world, const Woods *woods, const Config *config,
     return status;
 }
 
-/* Of the settings alone: what a course of the weather starts from. With an atmosphere. */
+/* The weather by the settings alone, which a course of the weather starts from. The world must have an atmosphere. */
 static Weather frame_weather(const Config *config, const World *world)
 {
     Weather base = weather_default();
@@ -96,8 +96,8 @@ Status frame_radar_open(SeekerRadar **out, const Config *config, const char *isa
 
 /* ---- sun and atmosphere of one frame, from time, position, weather and view ---------------------- */
 
-Status frame_light(Air *air, Sun *sun, double r_host_from_enu[9], const World *world, const Config *config,
-                   const FrameEye *eye, Pool *pool, Arena *arena)
+Status frame_light(FrameLight *out, const World *world, const Config *config, const FrameEye *eye, Pool *pool,
+                   Arena *arena)
 {
     const Weather weather = frame_weather_at(config, world, eye->unix_s);
     HeatScene    *heat = NULL;
@@ -106,13 +106,13 @@ Status frame_light(Air *air, Sun *sun, double r_host_from_enu[9], const World *w
     Status        status = geodetic_from_ecef(&place, eye->p_ecef);
     if (status == STATUS_OK) status = ecef_from_geodetic(p_ecef, r_ecef_from_host, &place);
     if (status == STATUS_OK)
-        status = sun_at(sun, eye->unix_s, &place, weather.pressure_mbar, weather.air_temp_k - 273.15, NAN);
+        status = sun_at(&out->sun, eye->unix_s, &place, weather.pressure_mbar, weather.air_temp_k - 273.15, NAN);
     if (status == STATUS_OK) status = world_heat_at(&heat, world, eye->marks, eye->unix_s, arena);
     if (status != STATUS_OK) return status;
-    Sun local = *sun;
-    m3_mul_v3(d_ecef, r_ecef_from_host, sun->d_enu);
+    Sun local = out->sun;
+    m3_mul_v3(d_ecef, r_ecef_from_host, out->sun.d_enu);
     m3_tmul_v3(local.d_enu, world->frame.r_ecef_from_enu, d_ecef);
-    m3_tmul(r_host_from_enu, r_ecef_from_host, world->frame.r_ecef_from_enu);
+    m3_tmul(out->r_host_from_enu, r_ecef_from_host, world->frame.r_ecef_from_enu);
 
     /* heights in the atmosphere are above the ground at the origin, and the tangent plane departs from the Earth */
     const double   *p_enu = eye->view->p_enu;
@@ -121,8 +121,8 @@ Status frame_light(Air *air, Sun *sun, double r_host_from_enu[9], const World *w
     const double    ground_k = heat ? heat_ground_k(heat->now, SURFACE_GRASS, (const double[3]){0, 0, 1}, 0, 1, 1) : 0;
     const AirSource source = {world->atmosphere, world->planck_mwir, world->planck_lwir, ground_k};
     const AirEye    air_eye = {eye_height_m, render_air_bands(eye->bands, config_optical(config)), eye->view};
-    status = air_at(air, &source, &weather, &local, &air_eye, pool, arena);
-    air->heat = heat;
+    status = air_at(&out->air, &source, &weather, &local, &air_eye, pool, arena);
+    out->air.heat = heat;
     return status;
 }
 

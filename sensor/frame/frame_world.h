@@ -14,7 +14,8 @@ Status frame_world(World *out, const Config *config, const Catalog *catalog, con
 Status frame_world_plant(World *world, const Woods *woods, const Config *config, const char *isa, Pool *pool);
 /* The same as its course has it then. */
 Weather frame_weather_at(const Config *config, const World *world, double unix_s);
-/* Its heat, over the weather of weather.* up to unix_s, that of exercise time 0. After the plants. */
+/* Warms the world over the weather of weather.* up to unix_s, which is exercise time 0. Call it after
+ * frame_world_plant. */
 Status frame_world_warm(World *world, const Config *config, double unix_s, Pool *pool);
 
 /* The radar of radar.preset, which is not none. live: signatures that are missing are made in the background. */
@@ -22,7 +23,7 @@ Status frame_radar_open(SeekerRadar **out, const Config *config, const char *isa
 
 /* ---- sun and atmosphere of one frame, and the axes for normals in its products ------------------- */
 
-/* The inputs of sun and atmosphere, besides the world and the settings of the weather. */
+/* Where a frame is seen from, when, and in which bands. */
 typedef struct FrameEye {
     double             unix_s;
     double             p_ecef[3];
@@ -31,10 +32,14 @@ typedef struct FrameEye {
     const GroundMarks *marks; /* NULL: none */
 } FrameEye;
 
-/* Sun at the sensor position, its direction rotated into the world's frame. r_host_from_enu: from the world's ENU to
- * that of the sensor position. */
-Status frame_light(Air *air, Sun *sun, double r_host_from_enu[9], const World *world, const Config *config,
-                   const FrameEye *eye, Pool *pool, Arena *arena);
+/* The light of a frame. */
+typedef struct FrameLight {
+    Air    air;
+    Sun    sun;                /* at the sensor position, in its own ENU */
+    double r_host_from_enu[9]; /* from the world's ENU to that of the sensor position */
+} FrameLight;
+Status frame_light(FrameLight *out, const World *world, const Config *config, const FrameEye *eye, Pool *pool,
+                   Arena *arena);
 /* Products give normals in the host's own ENU. */
 void frame_turn_normals(Picture *picture, const double r_host_from_enu[9]);
 

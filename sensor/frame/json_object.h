@@ -36,7 +36,7 @@ static inline json_t *json_number_list(const double *value, int count)
     return array;
 }
 
-/* The JSON of a file. NULL: not there, no regular file, or not JSON. */
+/* Reads the JSON of a file. NULL: it is absent, no regular file, or not JSON. */
 static inline json_t *json_read_file(const char *path)
 {
     char    why[file_why_size];

@@ -24,8 +24,8 @@ typedef struct Histogram {
 typedef struct Entry {
     uint64_t key; /* 0: none */
     double   stage_ms[LATENCY_STAGE_COUNT];
-    double   done_ms[latency_consumers_max]; /* of the last of that name so far */
-    int      waits[latency_consumers_max];   /* how many of that name are outstanding */
+    double   done_ms[latency_consumers_max]; /* when the last consumer of that name was done so far */
+    int      waits[latency_consumers_max];   /* consumers of that name that are not done yet */
     int      outstanding;                    /* their sum */
 } Entry;
 
@@ -84,7 +84,7 @@ static void count_one(Histogram *h, double ms)
     h->max_ms = fmax(h->max_ms, ms);
 }
 
-/* The upper limit of the bin with the nearest rank. */
+/* Returns the upper limit of the bin with the nearest rank. */
 static double percentile(const Histogram *h, double share)
 {
     const uint64_t rank = (uint64_t)fmax(1, ceil(share * (double)h->count - 1e-9));

@@ -24,14 +24,15 @@ typedef enum LatencyStage {
 } LatencyStage;
 extern const char *const latency_stage_name[LATENCY_STAGE_COUNT];
 
-/* Of one frame; 0: not there. arrived: the newest datagram that the frame used; fresh: no earlier frame used it. Only
- * then is it in the statistics: a silent exercise is no latency. */
+/* The times of one frame; 0: there is no such time. arrived: that of the newest datagram that the frame used; fresh: no
+ * earlier frame used this datagram. Only fresh frames are in the statistics, since a silent exercise is no latency. */
 typedef struct LatencyTimes {
     double arrived_s, posed_s, render_s, rendered_s;
     bool   fresh;
 } LatencyTimes;
 
-/* Of one frame, ms; NaN: not there. Of displays and of a consumer: after the end of rendering; NaN: not done. */
+/* The latencies of one frame, ms; NaN: there is none. Those of displays and of a consumer count from the end of
+ * rendering; NaN: not done. */
 typedef struct LatencyLine {
     double stage_ms[LATENCY_STAGE_COUNT];
     int    consumers;
@@ -46,7 +47,7 @@ typedef struct LatencyFigures {
     uint64_t histogram[latency_edges + 1];      /* below the first edge; between edges; from the last on */
 } LatencyFigures;
 
-/* Of all frames so far. */
+/* The latencies of all frames so far. */
 typedef struct LatencySummary {
     double         edge_ms[latency_edges];
     LatencyFigures stage[LATENCY_STAGE_COUNT];
@@ -59,8 +60,8 @@ typedef struct Latency Latency;
 
 Status latency_create(Latency **out);
 void   latency_destroy(Latency *latency); /* NULL is valid */
-/* Before the first frame: one more consumer of this name. Several of one name are done when the last of them is. NULL,
- * or more names than fit: not in the ledger. */
+/* Announces one more consumer of this name; before the first frame. Consumers of one name are done when the last of
+ * them is. A name of NULL, or one too many, is not kept in the ledger. */
 void latency_expect(Latency *latency, const char *name);
 
 /* A rendered frame, before its consumers get it; returns its key. */

@@ -8,7 +8,7 @@
 /* C64: two floats, real, imaginary. */
 typedef enum PlaneType { PLANE_F32, PLANE_U32, PLANE_F64, PLANE_C64, PLANE_U8 } PlaneType;
 
-/* Borrowed, never owned. values: float, uint32_t, double, float complex or uint8_t [height][width], rows top down. */
+/* A plane borrows its values: float, uint32_t, double, float complex or uint8_t [height][width], rows top down. */
 typedef struct Plane {
     const char *name; /* channel name; for a hash with the folder before it: `lwir/Y`, `truth/range_m` */
     PlaneType   type;

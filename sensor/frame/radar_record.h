@@ -10,7 +10,7 @@
 /* Of the map of all channels, before it is rounded for a file. */
 Status radar_map_sha256(char out[sha256_text_size], const RadarFrame *radar);
 
-/* A new JSON object (json_t); the caller's. */
+/* Makes a JSON object (json_t), which the caller owns. */
 struct json_t *radar_record_json(const RadarFrame *radar, const Snapshot *snapshot, const Catalog *catalog);
 
 #endif

@@ -44,10 +44,10 @@ typedef struct FrameRecord {
     const RadarFrame     *radar;        /* NULL: none */
 } FrameRecord;
 
-/* One line, flushed. STATUS_IO when it cannot be written. */
+/* Writes one line and flushes it. STATUS_IO when it cannot be written. */
 Status record_write_frame(FILE *file, const FrameRecord *record);
-/* The same in two steps: the line as text, freed by the caller with free, NULL when out of memory; then written, with
- * `latency_ms` when latency is not NULL. */
+/* These do the same in two steps. The first makes the line as text, which the caller frees with free; NULL: out of
+ * memory. The second writes it, with `latency_ms` when latency is not NULL. */
 char  *record_frame_text(const FrameRecord *record);
 Status record_write_text(FILE *file, const char *text, const LatencyLine *latency);
 
@@ -57,7 +57,7 @@ typedef struct LiveCounters {
     uint64_t frames_late, files_failed, files_left_out;
     double   rate_hz; /* asked for; 0: it ended before that was known */
 } LiveCounters;
-/* Of the frames that were due, those that were made; 1 where none was due. */
+/* Share of the due frames that were made; 1 where none was due. */
 double record_live_kept_share(const LiveCounters *counters, uint64_t frames);
 
 /* Plants of a run. */
@@ -90,7 +90,7 @@ typedef struct RunRecord {
     uint64_t            entities_created, entities_timed_out, entities_deactivated, entities_removed;
     uint64_t            entities_evicted, entities_refused; /* by a full table */
     uint64_t            entities_over_rate, tombstones_dropped, marks_forgotten;
-    uint64_t            shots_forgotten, munitions_forgotten; /* of those that may yet become the host */
+    uint64_t            shots_forgotten, munitions_forgotten; /* of munitions that may yet become the host */
     int                 frames_crowded, most_left_out; /* frames without all entities; the most that one frame lacks */
     EffectCounters      effects;
     RenderCounters      render;

@@ -164,7 +164,7 @@ static json_t *counters_json(const RunRecord *r)
     return counters;
 }
 
-/* `section.key=value`, lines; all values as text. */
+/* Makes an object of lines `section.key=value`; all values are text. */
 static json_t *settings_json(const char *text)
 {
     json_t *settings = json_object();

@@ -51,7 +51,7 @@ typedef struct TargetRecord {
     double         amodal_box[4];
     double         pixels;                   /* area, parts of pixels too */
     double         visible_fraction;         /* of its area on the image */
-    double         foliage_fraction;         /* of it, hidden by plants */
+    double         foliage_fraction;         /* share of it that plants hide */
     double         p_ecef[3], v_ecef_mps[3]; /* of the model's origin */
     double         range_m, closing_mps;
     double         aspect_rad; /* 0: nose on, to its right, below 2 pi */
@@ -59,7 +59,7 @@ typedef struct TargetRecord {
     double         los_az_rad, los_el_rad;  /* from the sensor, in its own ENU; azimuth from north over east */
     double         los_rate_rps[2];         /* inertial; camera right and up */
     double         boresight_error_rad[2];  /* camera right and up */
-    TargetOccluder occluder;                /* of the most of it */
+    TargetOccluder occluder;                /* what hides most of it */
     DisEntityId    occluder_id;             /* none: the ground, trees, or not known */
     double         dt_k;                    /* mean of its patches less the ground in the open */
     int            patches;                 /* 0: their temperatures are not known */
@@ -69,11 +69,11 @@ typedef struct TargetRecord {
     TargetBand     band[BAND_COUNT];
 } TargetRecord;
 
-/* In the order of target. NULL: no memory. */
+/* Makes the records, in the order of target. NULL: out of memory. */
 TargetRecord *target_records(const Target *target, int count, const Snapshot *snapshot, const Catalog *catalog,
                              Arena *arena);
 
-/* What hides most of it: the id of an entity, `ground`, `trees`, `entity`; NULL: nothing. */
+/* Names what hides most of it: the id of an entity, `ground`, `trees` or `entity`; NULL: nothing. */
 const char *target_occluder_text(char text[dis_id_text_size], const TargetRecord *target);
 
 /* ---- a box in other forms ------------------------------------------------------------------------ */
@@ -81,11 +81,12 @@ const char *target_occluder_text(char text[dis_id_text_size], const TargetRecord
 static inline bool target_box_is_empty(const int box[4]) { return box[2] <= box[0] || box[3] <= box[1]; }
 /* x, y, width, height */
 void target_box_coco(int out[4], const int box[4]);
-/* left, top, right, bottom; the last two exclusive; beyond 0 .. 65535: the nearest */
+/* Writes left, top, right, bottom, the last two exclusive. Values beyond 0 .. 65535 become the nearest. */
 void target_box_u16(uint16_t out[4], const int box[4]);
 /* Of the first and the last pixel, in an image of that width. An empty box has none: both 0. */
 void target_box_pixel_numbers(uint64_t out[2], const int box[4], int width);
-/* Of the pixel that holds the centre; of a box of even width or height the one right of or below it. Empty: 0. */
+/* The number of the pixel that holds the box's centre; of a box of even width or height, the one right of or below it.
+ * Of an empty box: 0. */
 uint64_t target_box_centre_number(const int box[4], int width);
 
 /* ---- classes ------------------------------------------------------------------------------------- */
@@ -105,7 +106,7 @@ uint64_t target_box_centre_number(const int box[4], int width);
 int         target_class_count(void);
 const char *target_class_name(int number);
 const char *target_class_group(int number); /* COCO's supercategory */
-/* `other` if no category matches. */
+/* Finds the category of a type; `other` if none matches. */
 int target_class(DisEntityType type);
 
 #endif

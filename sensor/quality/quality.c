@@ -183,7 +183,7 @@ bool quality_wanted(const QualityTable *table, int row)
 {
     const QualityRow *r = &table->row[row];
     for (unsigned bands = 1; bands < 1u << quality_bands; bands++) {
-        /* the tightest targets of this row: a faster row that meets them dominates it */
+        /* the tightest targets of this row: a faster row that meets them is better in all */
         const QualityTarget target = {
             worst(r->percent, bands, BAND_OPTICAL), worst(r->kelvin, bands, BAND_MWIR), NAN, 1, 1, bands, r->scene};
         bool quicker = false;

@@ -11,7 +11,7 @@
 
 #include "sensor/settings/config.h"
 
-/* The bands with an error in the table; not the radar. */
+/* The bands whose error is in the table: all but the radar. */
 enum { quality_bands = BAND_LWIR + 1, quality_rows_max = 256 };
 
 /* Rays among leaves take several times as long as over bare ground, and err more. */
@@ -38,7 +38,7 @@ typedef struct QualityTable {
 
 /* STATUS_BAD_VALUE, logged with file, line, column and range. With a column `scene` there are rows of every scene. */
 Status quality_open(QualityTable *out, const char *path);
-/* `# ` and comment, then the rows. STATUS_IO, logged. */
+/* Writes `# ` and the comment, then the rows. STATUS_IO, logged. */
 Status quality_write(const char *path, const QualityTable *table, const char *comment);
 
 /* Targets; NaN: none. */
@@ -49,8 +49,8 @@ typedef struct QualityTarget {
     QualityScene scene;
 } QualityTarget;
 
-/* Of the scene's rows: the fastest row that meets every target; if there is none, the closest: within frame_ms if any
- * row is, then with the smallest ratio of error to target. Ties: the first. With frame_ms alone: the smallest error
+/* Picks a row of the scene: the fastest that meets every target. If there is none, the closest: within frame_ms if any
+ * row is, and with the smallest ratio of error to target. Of equals the first. With frame_ms alone: the smallest error
  * within it. reached: all targets are met. */
 int quality_pick(bool *reached, const QualityTable *table, const QualityTarget *target);
 

@@ -107,7 +107,7 @@ Status quality_machine_factor(double *factor, const char *table_path, int thread
             table_path);
         return STATUS_BAD_VALUE;
     }
-    /* the fastest settings by the wall clock, the best of five */
+    /* finds the fastest settings by the wall clock, from the best of five */
     status = quality_measure_open(&m, threads, false);
     quality_measure_enlarge(&m);
     double best_s = INFINITY;

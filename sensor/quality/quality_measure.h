@@ -36,9 +36,9 @@ void quality_measure_enlarge(QualityMeasure *measure);
  * machine, or by the wall clock. NaN: a frame failed. */
 double quality_measure_time(const QualityMeasure *measure, QualitySettings settings, bool wall);
 
-/* The machine factor: this machine's time of the table's first row, divided by the table's: on this many threads, to
- * two digits. About two seconds, mostly for the scenes. STATUS_BAD_VALUE, logged: the table's first row is not the
- * fastest settings. */
+/* The machine factor: this machine's time of the table's first row, on this many threads, divided by the table's, to
+ * two digits. It takes about two seconds, mostly for the scenes. STATUS_BAD_VALUE, logged: the table's first row is not
+ * the fastest settings. */
 Status quality_machine_factor(double *factor, const char *table_path, int threads);
 
 #endif

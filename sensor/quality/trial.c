@@ -30,7 +30,7 @@ Status trial_scene_place(const TrialScene *scene, const TrialPlace *place)
     pdu.psi_rad = (float)euler[0];
     pdu.theta_rad = (float)euler[1];
     pdu.phi_rad = (float)euler[2];
-    /* primary turret 1 azimuth, primary gun 1 elevation */
+    /* the azimuth of primary turret 1, and the elevation of primary gun 1 */
     pdu.variable[0] = (DisVariableParameter){.parameter = 4096 + 11, .value = (float)(turn - 3)};
     pdu.variable[1] = (DisVariableParameter){.parameter = 4416 + 13, .value = 0.1f};
     pdu.variable_count = 2;

@@ -27,7 +27,8 @@ Status trial_scene_warm(TrialScene *scene, const HeatConfig *config);
 Status trial_warm(TrialScene *scene, Snapshot *snapshot, Arena *arena);
 void   trial_scene_close(TrialScene *scene);
 
-/* One more report at the scene's time: at this distance east and north of the origin, this high above the ground. */
+/* Where trial_scene_place puts an entity at the scene's time: this far east and north of the origin, and this high
+ * above the ground. */
 typedef struct TrialPlace {
     DisEntityType type;
     int           number;                             /* 1 .. 65535: the entity */
@@ -36,7 +37,7 @@ typedef struct TrialPlace {
 } TrialPlace;
 Status trial_scene_place(const TrialScene *scene, const TrialPlace *place);
 
-/* A view of the origin from this far south of it and this high above it. */
+/* Gives a view of the origin from this far south of it and this high above it. */
 View trial_view(const TrialScene *scene, double back_m, double above_m, double hfov_rad, int width, int height);
 
 /* What a node asks for with the default settings (sensor/node/session/session_frame.c): all bands and planes of
@@ -44,8 +45,9 @@ View trial_view(const TrialScene *scene, double back_m, double above_m, double h
  * about range_m. */
 RenderRequest trial_default_request(const TrialScene *scene, const View *view, double range_m);
 
-/* The stages of a frame, in order. Of those summed over threads the mean per thread: on one thread they add up to
- * the frame. The passes split the same time differently: by the kind of sample. */
+/* The stages of a frame, in order. A stage that several threads work on has the mean of their times, so that on one
+ * thread the stages add up to the frame. The passes (STAGE_BASE, STAGE_EDGES) split the same time by the kind of
+ * sample. */
 typedef enum TrialStage {
     STAGE_FRAME,
     STAGE_SNAPSHOT,
@@ -80,7 +82,7 @@ typedef struct TrialFrame {
 
 /* user: a TrialFrame. */
 void trial_frame(void *user);
-/* Every plane of its picture. */
+/* Hashes every plane of its picture. */
 Status trial_frame_hash(char out[sha256_text_size], const TrialFrame *frame);
 
 #endif

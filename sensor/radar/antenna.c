@@ -38,7 +38,7 @@ AntennaGain antenna_gain(const Antenna *a, double cos_right, double cos_down)
     return (AntennaGain){peak * lambda(n + 1, u), slope * reach * cos_right, slope * reach * cos_down};
 }
 
-/* Where a falling function of u in low .. high passes value. */
+/* Finds where a function that falls with u passes value, between low and high. */
 static double solve(int m, double scale, double low, double high, double value, double (*of)(int, double, double))
 {
     for (int i = 0; i < 60; i++) {
@@ -60,7 +60,7 @@ double antenna_width_rad(const Antenna *a) { return width_rad(a, 0.5); }
 
 double antenna_two_way_width_rad(const Antenna *a) { return width_rad(a, sqrt(0.5)); }
 
-/* Of the ratio, negative: it rises without bound up to the sum's first zero. */
+/* Minus the ratio of the patterns, which falls as the ratio rises without bound up to the sum's first zero. */
 static double minus_ratio(int n, double scale, double u) { return -scale * u * lambda(n + 2, u) / lambda(n + 1, u); }
 
 void antenna_direction(double *cos_right, double *cos_down, const Antenna *a, double right, double down)

@@ -25,13 +25,13 @@ typedef struct AntennaGain {
     double sum, right, down; /* amplitude (voltage) gains over an isotropic antenna, one way; right, down: signed */
 } AntennaGain;
 
-/* u of the patterns for a sine of 1 off the axis: pi diameter / wavelength. */
+/* u of the patterns for a direction whose sine off the axis is 1: pi diameter / wavelength. */
 double antenna_u_per_sine(const Antenna *antenna);
-/* In a direction by its cosines along the antenna's right and down axes; behind the antenna: 0. */
+/* Gains in a direction, given by its cosines along the antenna's right and down axes. Behind the antenna they are 0. */
 AntennaGain antenna_gain(const Antenna *antenna, double cos_right, double cos_down);
 /* Power gain on the axis: efficiency (2 taper + 1) / (taper + 1)^2 times (pi d / wavelength)^2. */
 double antenna_peak_gain(const Antenna *antenna);
-/* Full width between half-power directions, one way, rad. To 1e-9. */
+/* Full width between half-power directions, one way, rad; within 1e-9. */
 double antenna_width_rad(const Antenna *antenna);
 /* Both ways: between directions where the product of both ways' gains is half of its peak. To 1e-9. */
 double antenna_two_way_width_rad(const Antenna *antenna);

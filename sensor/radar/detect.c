@@ -10,7 +10,7 @@ double detect_cfar_multiplier(int training, double pfa)
     return training * expm1(-log(pfa) / training);
 }
 
-/* Log of the rate of false alarms, falling in a. */
+/* Log of the false-alarm rate, which falls with a. */
 static double ordered_log_pfa(int training, int rank, double a)
 {
     double sum = 0;
@@ -132,16 +132,16 @@ static double power_at(const RangeDoppler *map, int row, int column)
     return creal(v) * creal(v) + cimag(v) * cimag(v);
 }
 
-/* How much stronger one neighbour of a peak is than the other, over the peak, as amplitudes, for a point that lies
- * `cells` from the peak's cell: rises over 0 .. 0.5. */
+/* Imbalance of a peak's neighbours for a point that lies `cells` from the peak's cell: the difference of their
+ * amplitudes over that of the peak. It rises over 0 .. 0.5. */
 static double imbalance(const IntervalPlan *plan, bool doppler, double cells)
 {
     return (fabs(interval_lobe(plan, doppler, 1 - cells)) - fabs(interval_lobe(plan, doppler, 1 + cells))) /
            interval_lobe(plan, doppler, cells);
 }
 
-/* Where a point lies whose peak and neighbours have these powers, in cells from the middle one, -0.5 .. 0.5. *rise:
- * factor of its power there. */
+/* Finds where a point lies whose peak and neighbours have these powers, in cells from the middle one, -0.5 .. 0.5.
+ * *rise: the factor from the peak's power to the point's. */
 static double place(double *rise, const IntervalPlan *plan, bool doppler, double before, double peak, double after)
 {
     const double measured = (sqrt(after) - sqrt(before)) / sqrt(peak);

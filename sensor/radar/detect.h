@@ -19,7 +19,7 @@
  *
  * Sources: Finn & Johnson, RCA Review 29, 1968; Rohling, IEEE Trans. AES-19(4), 1983. */
 
-/* training 1 .. 100000 cells, pfa in 0 .. 1 exclusive; else NaN. Relative error 1e-12. */
+/* Multiplier for training cells, 1 .. 100000, and a pfa between 0 and 1; else NaN. Relative error 1e-12. */
 double detect_cfar_multiplier(int training, double pfa);
 /* rank 1 .. training. Relative error 1e-12. */
 double detect_ordered_multiplier(int training, int rank, double pfa);

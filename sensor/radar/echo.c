@@ -13,18 +13,18 @@ static const double part = 2e-3; /* of an amplitude, at the ends of band and int
 struct EchoGrid {
     Waveform    wave;
     PulseGrid  *even;         /* of slow echoes, by delay and Doppler */
-    RowGrid    *rows;         /* of the others */
+    RowGrid    *rows;         /* of fast echoes, row by row */
     double      wave_rad_m;   /* of a metre of path, at the centre */
     double      turns_m;      /* a sample, of a metre of path */
     double      growth_rad_m; /* of the phase that delay and Doppler leave, at its most, over the growth a row */
     double      fold_m;       /* of two-way path */
     double      coupled;      /* path by which an echo appears farther, over its growth a row */
-    double      within_s;     /* of one frequency, over that from row to row */
+    double      within_s;     /* time over which one frequency is taken, over the time from row to row */
     double      unfollowed_m;
     Status      status;
     PulsePoint *point; /* [chunk] */
     Echo       *echo;  /* [chunk] */
-    Pool       *pool;  /* of the last that were added */
+    Pool       *pool;  /* of the echoes that were added last */
 };
 
 void echo_forget(EchoGrid *g)
@@ -103,7 +103,7 @@ static void prepare(PulsePoint *p, Echo *left_over, const EchoGrid *g, const Ech
     p->terms = echo_terms(g, growth_m);
     if (isfinite(g->fold_m)) {
         path_m -= g->fold_m * nearbyint(path_m / g->fold_m);
-        /* folds over within the interval */
+        /* the echo folds over within the interval */
         if (fabs(path_m) + 0.5 * g->wave.pulses * fabs(growth_m) > 0.5 * g->fold_m) p->terms = 0;
     }
     if (p->terms == 0) return;

@@ -1,7 +1,7 @@
 /* sensor/radar/echo.h: what a receiver samples of many point echoes over the rows of a coherent interval.
  *
  * An echo of complex amplitude a, whose two-way path is longer by path_m than that to the reference and grows by
- * path_per_pulse_m from row to row, adds to sample m of row n, at the frequency f and the time t of waveform.h,
+ * path_per_pulse_m from row to row, adds to sample m of row n, at the frequency f and the time t of interval.h,
  *
  *     a exp(-j 2 pi f(m) (path + path_per_pulse repeat t(m, n)) / c)
  *
@@ -21,7 +21,7 @@
 
 #include "sensor/radar/interval.h"
 
-/* One echo: above is what it adds. */
+/* One echo; its samples are given above. */
 typedef struct Echo {
     double         path_m, path_per_pulse_m; /* in the middle of the interval; from row to row */
     double complex amplitude[interval_channels];
@@ -29,7 +29,7 @@ typedef struct Echo {
 
 typedef struct EchoGrid EchoGrid;
 
-/* For wave->samples 8 .. 65536, pulses 1 .. 4096, at most 2^22 of both. */
+/* Makes a grid for wave->samples of 8 .. 65536 and pulses of 1 .. 4096, whose product is at most 2^22. */
 Status echo_grid_create(EchoGrid **out, const Waveform *wave);
 void   echo_grid_destroy(EchoGrid *grid); /* accepts NULL */
 /* Adds to those of earlier calls. pool may be NULL. */
@@ -40,7 +40,7 @@ void echo_forget(EchoGrid *grid);
 /* Of echoes added from here on: growth of the reference's own two-way path from row to row that the receiver does not
  * follow, so that it is in every echo. 0 at first; while nothing is added. */
 void echo_unfollowed(EchoGrid *grid, double path_per_pulse_m);
-/* Terms for an echo whose path so grows, on the grid over delay and Doppler; 0: row by row. */
+/* Number of terms for an echo whose path grows so, on the grid over delay and Doppler; 0: it is added row by row. */
 int echo_terms(const EchoGrid *grid, double path_per_pulse_m);
 /* STATUS_NO_MEMORY once a grid could not be had: sums since are wrong. */
 Status echo_status(const EchoGrid *grid);

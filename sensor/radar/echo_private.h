@@ -46,7 +46,7 @@ typedef struct PulsePoint {
 
 typedef struct PulseGrid PulseGrid;
 
-/* samples even, from 8; pulses from 1; bend 0 .. 1. */
+/* samples: even, from 8; pulses: from 1; bend: 0 .. 1. */
 Status pulse_grid_create(PulseGrid **out, int samples, int pulses, double bend);
 void   pulse_grid_destroy(PulseGrid *grid); /* accepts NULL */
 /* Adds to those of earlier calls. pool may be NULL. STATUS_NO_MEMORY: sums are wrong until it is made to forget. */

@@ -53,7 +53,7 @@ typedef struct RadarSector {
     double    *sharp_w;               /* [azimuths][columns] */
     float     *resolution_m;          /* [azimuths][columns]: across, at half power, of what stands there */
     uint8_t   *sharpened;             /* [azimuths][columns] */
-    double     sharpened_share;       /* of these cells */
+    double     sharpened_share;       /* share of these cells that are sharpened */
     int        width, height;         /* of the frame's pixels; 0: none were given */
     float     *view_w, *view_sharp_w; /* [height][width]; NAN: sky, or out of sector or window */
 } RadarSector;
@@ -67,7 +67,7 @@ typedef struct RadarBounceTruth {
     double once_m2[3], twice_m2[3]; /* by the ground one way (both ways round together), by the ground both ways */
     double rcs_m2[3];               /* of all paths together, the direct one included */
 } RadarBounceTruth;
-/* One of an entity's scattering centres. */
+/* One of the scattering centres of an entity. */
 typedef struct RadarScatterer {
     double hh_m2, vv_m2; /* its cross section */
     double p_body[3];    /* m: middle of its path's first and last mirror */
@@ -77,7 +77,7 @@ typedef struct RadarScatterer {
 
 enum { radar_strongest = 8 };
 
-/* Truth of one entity within beam and range window. */
+/* The truth about one entity within beam and range window. */
 typedef struct RadarTruth {
     int            entity;                  /* index in the snapshot */
     double         range_m, range_rate_mps; /* of the origin of its model */
@@ -105,7 +105,7 @@ typedef struct RadarFrame {
     double             notch_mps; /* detections so near to the ground's range rate in their direction count as ground */
     double             v_enu_mps[3], aim_m,
         aim_v_enu_mps[3];   /* as in its RadarScene: of the antenna; to the aim, NAN: none; of it */
-    uint32_t        number; /* likewise: for its noise */
+    uint32_t        number; /* interval number, for its noise */
     double          air_db; /* one way, over the reference range */
     RangeDoppler    map;
     double complex *profile; /* [2][samples]: range profiles of the middle pulse, sqrt(W): the transmitted polarisation,
@@ -118,7 +118,7 @@ typedef struct RadarFrame {
     const RadarTruth  *target;
     ReceiverReport     receiver;
     const RadarSector *scan;            /* NULL: the beam stares */
-    int    ground_cells, ground_hidden; /* scatterers of the ground; of them, hidden by relief or entities */
+    int    ground_cells, ground_hidden; /* scatterers of the ground; how many of them relief or entities hide */
     double rain_1_m;                    /* backscatter of rain by its volume, m2/m3 */
     int    echoes;                      /* of entities, before any goes by way of the ground */
     int    crowns, clouds;              /* plants, and clouds of chaff, within beam and window */

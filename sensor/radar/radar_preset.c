@@ -67,7 +67,7 @@ static Status read_window(Window *out, const Table *t, int row, const char *name
     return accepted ? refuse(t, row, name, text, accepted) : STATUS_OK;
 }
 
-/* What the kinds of waveform ask of each other's columns. */
+/* Checks what each kind of waveform requires of the columns together. */
 static Status check_waveform(const Table *t, int row, const Waveform *w, double far_m, int mti_rows)
 {
     char         accepted[96];

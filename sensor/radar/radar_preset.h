@@ -18,7 +18,8 @@ typedef struct RadarPreset {
     bool     transmits_h; /* else vertical */
 } RadarPreset;
 
-/* The row of that name. On error logs file, line, column, value and range; for an unknown name the known ones. */
+/* Reads the row of that name. An error is logged with file, line, column, value and range; an unknown name with the
+ * known ones. */
 Status radar_preset_read(RadarPreset *out, const char *path, const char *name);
 /* Every row of a table is read; the first that is wrong is logged. */
 Status radar_preset_check(const char *path);

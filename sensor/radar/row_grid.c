@@ -37,7 +37,7 @@ void row_grid_forget(RowGrid *g)
     g->ranks = 0;
 }
 
-/* Grids up to `ranks`, empty. */
+/* Makes empty grids up to `ranks`. */
 static Status have_ranks(RowGrid *g, int ranks)
 {
     for (int r = 0; r < ranks; r++) {
@@ -99,8 +99,8 @@ static void deposit(double *row, int points, int first, const double weight[widt
     }
 }
 
-/* J_0 .. J_(most - 1) of x > 0: recurrence downwards from an order where they vanish, scaled so that J_0 + 2 J_2 +
- * 2 J_4 + ... = 1 (Miller; Abramowitz & Stegun 9.12). */
+/* Computes J_0 .. J_(most - 1) of x > 0 by the recurrence downwards from an order where they vanish, scaled so that J_0
+ * + 2 J_2 + 2 J_4 + ... = 1 (Miller; Abramowitz & Stegun 9.12). */
 static void bessel(double *j, int most, double x)
 {
     double after = 0, here = 1e-30, sum = 0;

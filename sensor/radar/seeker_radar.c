@@ -194,12 +194,13 @@ static void follow(RadarShot *shot)
     set_reach(shot);
     echo_unfollowed(shot->radar->echoes, shot->preset->wave.uncompensated ? 2 * shot->reference_rate_mps * row_s : 0);
     f->ground_rate_mps = -v3_dot(v, shot->ahead);
-    /* the ground's rates over the beam: within its width either way, and two cells of Doppler for the window */
+    /* the range rates of the ground over the beam: within its width on either side, and two cells of Doppler for the
+     * window */
     f->notch_mps = hypot(v3_dot(v, right), v3_dot(v, down)) * antenna_width_rad(&shot->preset->antenna) +
                    2 * f->timing.blind_mps / shot->preset->wave.pulses;
 }
 
-/* Loss by the air over the reference range, taken as even along it. */
+/* Computes the loss by the air over the reference range; it is taken to be even along it. */
 static Status air_between(RadarShot *shot)
 {
     const World  *world = shot->scene->world;
@@ -250,7 +251,7 @@ void shot_position(RadarShot *out, const RadarShot *shot, double azimuth_rad, do
     }
 }
 
-/* The echo of a point in this position. False: the position leaves it out. */
+/* Makes the echo of a point in this position. False: this position leaves the point out. */
 static bool echo_of(Echo *e, const RadarShot *beam, const RadarPoint *q)
 {
     double p[3];
@@ -278,7 +279,7 @@ typedef struct BeamJob {
     const RadarShot *beam;
     int              first, end;
     bool             sum_alone;
-    Echo            *echo; /* those of block b from b * block on */
+    Echo            *echo; /* echoes of block b begin at b * block */
     int              kept[beam_batch / block];
 } BeamJob;
 
@@ -348,7 +349,7 @@ static Status indicate_moving(RadarShot *shot, Detection *detection)
 
 /* ---- one interval --------------------------------------------------------------------------------- */
 
-/* From the samples of an interval to its map, profiles and detections. */
+/* Processes the samples of an interval into its map, profiles and detections. */
 static Status process(RadarShot *shot, const Interval *interval)
 {
     RadarFrame        *f = shot->frame;

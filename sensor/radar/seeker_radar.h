@@ -70,7 +70,7 @@ typedef struct RadarScene {
     const uint32_t *entity;  /* likewise: snapshot index + 1, 0: none */
 } RadarScene;
 
-/* What a radar of this configuration makes signatures with, now or beforehand. */
+/* The configuration with which a radar makes signatures, during a run or beforehand. */
 SignaturesConfig seeker_radar_signatures(const RadarPreset *preset, double warp_m, const char *isa);
 
 /* *out in the arena. NULL: left out, as signatures are still being made in the background. */

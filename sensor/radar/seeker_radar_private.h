@@ -23,17 +23,17 @@
 
 /* ---- points -------------------------------------------------------------------------------------- */
 
-/* A point echo of a frame. Those of ground and plants are made once for all positions of the beam, those of
- * entities and rain anew for each. A position leaves out points that are farther off its axis than their own
- * `widest` (entities: u = 16, ground: the main lobe's null) or beyond its range window; tests/sensor/test_scan.c:
- * what that loses. */
+/* A point echo of a frame. The points of ground and plants are made once for all positions of the beam, those of
+ * entities and rain anew for each. A position leaves out points that are farther off its axis than their own `widest`
+ * (entities: u = 16, ground: the main lobe's null) or beyond its range window; tests/sensor/test_scan.c has what that
+ * loses. */
 typedef struct RadarPoint {
     double         p_enu[3], v_enu_mps[3];
     double         path_m, path_per_pulse_m; /* as Echo's, at the frame's time */
     double complex same, other;              /* scattered, m: received as transmitted, and in the other polarisation */
     double         share;                    /* of the amplitude that is in sight */
     double         widest, room_m;           /* counts so far off an axis (sine), and beyond the window */
-    bool           own; /* of one position, not the frame's: place and path are those at its instant */
+    bool           own; /* made for one position of the beam: place and path are those at its instant */
 } RadarPoint;
 
 typedef struct RadarPoints {
@@ -41,7 +41,7 @@ typedef struct RadarPoints {
     RadarPoint *point;
 } RadarPoints;
 
-/* Room for as many behind the last, not yet counted; NULL: no memory. */
+/* Makes room for `more` points behind the last, which are not yet counted. NULL: out of memory. */
 RadarPoint *radar_points_room(RadarPoints *points, int more);
 
 /* ---- the radar and a shot -------------------------------------------------------------------------- */
@@ -72,7 +72,7 @@ struct SeekerRadar {
     EchoGrid         *echoes;
     IntervalPlan     *plan;
     RadarPoints       points;        /* of the frame at work */
-    int               target_points; /* of them, of entities: the first */
+    int               target_points; /* how many of the points are of entities; they come first */
     Arena            *position;      /* what one position of the sector needs; NULL: it stares */
     Echo             *batch;         /* [beam_batch] */
     SectorPlan        sector;        /* positions 1: the beam stares */
@@ -120,8 +120,7 @@ void shot_sight(Sight *out, const RadarShot *shot, const double p_enu[3], double
 /* Sine of the angle off the beam's axis, off the nearest of its axes if it will turn. */
 double shot_off_axis(const RadarShot *shot, const Sight *sight);
 
-/* Range rate of a place that moves, relative to the antenna; and over the reference's as growth of the two-way path
- * a pulse. */
+/* Range rate of a moving place relative to the antenna, m/s. */
 double shot_range_rate(const RadarShot *shot, const Sight *sight, const double v_enu_mps[3]);
 
 /* The range at which a profile has its echo: folded over, and coupled to its range rate. */
@@ -156,11 +155,12 @@ typedef struct Target {
     const NodePose       *pose;    /* [node_count], body axes, as in its list of hits */
     double               *joint;
 } Target;
-/* Velocity of a point of a node, ENU: of the entity, its turning, and what spins and rolls on it. node -1: of none. */
+/* Velocity of a point of a node, ENU: that of the entity, of its turning, and of what spins and rolls on it. node -1:
+ * the point is on no node. */
 void shot_target_velocity(double v_enu_mps[3], const Target *target, int node, const double p_body[3]);
 /* Adds the echoes of entities to the radar's points, and their truth to the frame. */
 Status shot_targets(RadarShot *shot);
-/* Adds those of entities in one position of the sector. */
+/* Adds the points of entities in one position of the sector. */
 Status shot_targets_anew(RadarShot *beam);
 
 /* ---- shot_ground.c --------------------------------------------------------------------------------- */
@@ -170,18 +170,18 @@ Status shot_ground(RadarShot *shot);
 /* Adds the echoes of an entity by way of the ground, whose field is direct without it (body bases), and their
  * truth. With signatures missing it asks for its own alone. */
 Status shot_bounce(RadarShot *shot, const Target *target, const ScatterMatrix *direct, RadarTruth *truth);
-/* Rectangle in plan about what the main lobe lights within the window. */
+/* The rectangle in plan around what the main lobe lights within the window. */
 void shot_lit_rectangle(double low_m[2], double high_m[2], const RadarShot *shot);
 
 /* ---- shot_volume.c --------------------------------------------------------------------------------- */
 
-/* Before any echo: finds the foliage and chaff that weaken all of them on their way. */
+/* Finds the foliage and chaff that weaken all echoes on their way; called before any echo. */
 Status shot_volume_open(RadarShot *shot);
-/* Their loss to a sight's place in nepers of power, one way. */
+/* Loss by foliage and chaff on the way to a sight's place, in nepers of power, one way. */
 double shot_volume_np(const RadarShot *shot, const Sight *sight);
 /* Adds the echoes of foliage and chaff to the radar's points. */
 Status shot_volume(RadarShot *shot);
-/* Adds those of the rain in one position of the beam. */
+/* Adds the points of the rain in one position of the beam. */
 Status shot_rain(RadarShot *beam);
 
 /* ---- seeker_radar.c -------------------------------------------------------------------------------- */

@@ -50,11 +50,11 @@ typedef struct GroundJob {
     int                cells;
     double             widest; /* sine off the axis of the main lobe's null */
     Ground            *ground; /* [blocks] */
-    RadarPoint        *point;  /* [cells]: those of block b from b * block on */
+    RadarPoint        *point;  /* [cells]: points of block b begin at b * block */
     int               *hidden; /* [blocks] */
 } GroundJob;
 
-/* Where the block's cells lie, those within beam and window alone. */
+/* Places the cells of the block, as far as they are within beam and window. */
 static void place_block(Ground *g, const GroundJob *job, int first, int end)
 {
     const RadarShot *shot = job->shot;
@@ -100,7 +100,7 @@ static void drop_hidden(Ground *g, const RadarShot *shot, int *hidden)
     g->count = kept;
 }
 
-/* Where plants stand on their own, the ground of woods is what grows below them: as grass. */
+/* Where plants have echoes of their own, the ground of woods is what grows below them, and is taken as grass. */
 static void take_canopy_off(Ground *g, const Foliage *foliage)
 {
     for (int i = 0; i < g->count && foliage; i++) {
@@ -218,7 +218,7 @@ static bool plane_at(Bounce *b, const RadarShot *shot, const Target *t, const do
     return true;
 }
 
-/* The point of the plane by which the antenna sees the entity's origin. */
+/* Finds the point of the ground plane by which the antenna sees the entity's origin. */
 static void reflection_of(double p_enu[3], const Bounce *b, const Target *t)
 {
     double p_body[3];
@@ -227,8 +227,8 @@ static void reflection_of(double p_enu[3], const Bounce *b, const Target *t)
     v3_add(p_enu, p_enu, t->p_enu);
 }
 
-/* The plane of the ground under an entity that is near it; else that at the reflection, found in a few steps. False:
- * the ground does not mirror this entity to the antenna. */
+/* Finds the plane of the ground: under an entity that is near it, else at the reflection, which takes a few steps.
+ * False: the ground does not mirror this entity to the antenna. */
 static bool find_ground(Bounce *b, double p_enu[3], const RadarShot *shot, const Target *t)
 {
     double extra_m = 0, right[3];
@@ -246,7 +246,8 @@ static bool find_ground(Bounce *b, double p_enu[3], const RadarShot *shot, const
     const GroundSurface of = ground_surface(&shot->radar->mirror.row[surface], shot->preset->wave.centre_hz);
     const double        k = 2 * pi_rad / shot->preset->antenna.wavelength_m;
     ground_leg_direct(&b->direct, &t->antenna, right);
-    if (!ground_leg_image(&b->by_ground, &t->antenna, &b->image, extra_m, &b->plane, &of, k, right)) return false;
+    if (!ground_leg_image(&b->by_ground, &(GroundMirror){&t->antenna, &b->image, extra_m, &b->plane}, &of, k, right))
+        return false;
     return b->by_ground.coherence >= ground_least_coherence && extra_m < shot->half_window_m;
 }
 
@@ -264,7 +265,7 @@ static bool reflection_is_seen(const RadarShot *shot, const Target *t, const Bou
 
 /* ---- their echoes ------------------------------------------------------------------------------------------- */
 
-/* One way between the antenna and a place: length, its growth, and the antenna's gain in its direction. */
+/* One way between the antenna and a place: its length, how fast it grows, and the antenna's gain in its direction. */
 typedef struct Way {
     double      range_m, rate_mps;
     double      volume_np; /* power lost in foliage and chaff; by the ground: as directly */
@@ -293,7 +294,7 @@ static Way way_by_ground(const RadarShot *shot, const Bounce *b, const double p_
                  antenna_gain(&shot->preset->antenna, v3_dot(d, shot->right), v3_dot(d, shot->down))};
 }
 
-/* As shot_amplitudes, out by one way and back by another. */
+/* Adds amplitudes as shot_amplitudes has them, with one way out and another way back. */
 static void add_amplitudes(double complex amplitude[interval_channels], const RadarShot *shot, const Way *out,
                            const Way *back, const ScatterMatrix *s)
 {
@@ -309,7 +310,7 @@ static void add_amplitudes(double complex amplitude[interval_channels], const Ra
     amplitude[CHANNEL_CROSS] += other * back->gain.sum;
 }
 
-/* Of the centres at hand, by the ground one way and (once) the other way round, or both ways. */
+/* Adds the echoes of the centres at hand that go by the ground one way, in either order (once), or both ways. */
 static Status add_echoes(RadarShot *shot, const Target *t, const Bounce *b, const RadarTruth *truth, bool once)
 {
     SeekerRadar *r = shot->radar;

@@ -22,7 +22,7 @@ enum { cells_a_resolution = 3, finer_most = 64 };
 
 /* ---- one place ---------------------------------------------------------------------------------- */
 
-/* Range cell of the place in a position, and the direction to it then. -1: not within the window. */
+/* The range cell of the place in a position, and the direction to the place then. -1: it is not within the window. */
 static int column_of(Sight *sight, const SectorWork *w, int position, const double p_enu[3], const double v_enu_mps[3])
 {
     const RadarShot *beam = &w->beam[position];
@@ -34,7 +34,7 @@ static int column_of(Sight *sight, const SectorWork *w, int position, const doub
     return sight->within && at >= 0 && at < w->sector->columns ? (int)at : -1;
 }
 
-/* Power of the real beam at x positions from the first. */
+/* Computes the power of the real beam at positions counted from the first. */
 static bool real_beam(double *power_w, const SectorWork *w, double x, const double p_enu[3], const double v_enu_mps[3])
 {
     const RadarSector *s = w->sector;
@@ -100,7 +100,7 @@ static double sharp_rad(const SectorWork *w, const double d_enu[3])
     return width < w->sector->beam_rad ? width : INFINITY;
 }
 
-/* A position's pulses summed for still ground in a direction. */
+/* Sums the pulses of a position as for still ground in a direction. */
 static double sum_power(const SectorWork *w, int position, int column, const Sight *sight)
 {
     static const double   still[3] = {0, 0, 0};
@@ -121,7 +121,7 @@ static double sum_power(const SectorWork *w, int position, int column, const Sig
     return (creal(sum) * creal(sum) + cimag(sum) * cimag(sum)) / loss;
 }
 
-/* False: out of sector or window. */
+/* Fills a look. False: it is out of the sector or the window. */
 static bool look_at(SectorLook *out, const SectorWork *w, const double p_enu[3], const double v_enu_mps[3])
 {
     const RadarShot   *shot = w->shot;
@@ -201,7 +201,7 @@ static int finer(const SectorWork *w)
     return (int)clamp(ceil(cells_a_resolution * s->plan.step_rad / finest), 1, room < finer_most ? room : finer_most);
 }
 
-/* The sharpened picture: the arrays of the sector. */
+/* Sharpens the picture: fills the arrays of the sector. */
 static Status sharpen(SectorWork *w)
 {
     RadarSector *s = w->sector;
@@ -268,7 +268,7 @@ static Status look_at_pixels(SectorWork *w)
 
 enum { stream_scan = 0x3d800000 }; /* noise of position i: from here + 2 i */
 
-/* One position's pulses, compressed, and their mean power. */
+/* Keeps the compressed pulses of one position, and their mean power. */
 static void keep_position(SectorWork *w, const Interval *interval, int i)
 {
     SeekerRadar    *r = w->shot->radar;

@@ -41,7 +41,7 @@ static double node_at(const Axis *axis, int i)
                             : axis->low + (axis->high - axis->low) * i / (axis->nodes - 1);
 }
 
-/* A node with nothing on it yet: like a point of the target, at the node's place. */
+/* Makes a node that holds nothing yet: a point like those of the target, at the node's place. */
 static RadarPoint node_of(const Axis axis[axes], size_t number, const RadarPoint *like, const RadarShot *shot)
 {
     int        at[axes];
@@ -216,7 +216,7 @@ static void add_turned(ScatterMatrix *sum, const ScatterMatrix *s, double comple
     sum->hh += s->hh * turn, sum->hv += s->hv * turn, sum->vh += s->vh * turn, sum->vv += s->vv * turn;
 }
 
-/* power: of the centres, HH and VV together, as cross section. */
+/* power: that of the centres as a cross section, HH and VV together. */
 static void add_error(RadarTruth *truth, const Centres *centres, const double complex field[3], double power_m2)
 {
     SignatureError error;
@@ -242,7 +242,7 @@ typedef struct CentreJob {
     int    count, points;
 } CentreJob;
 
-/* field: of the target, in the body's bases. */
+/* field: that of the target, in the bases of its body. */
 static void add_truth(RadarTruth *truth, ScatterMatrix *field, const CentreJob *job, const bool *seen)
 {
     const RadarShot  *shot = job->shot;
@@ -396,7 +396,7 @@ static Status add_target(RadarShot *shot, Target *t, const Sight *sight, RadarTr
     return truth->given || !(truth->visible > 0) ? STATUS_OK : shot_bounce(shot, t, &field, truth);
 }
 
-/* False: it cannot be seen by this radar. */
+/* taken: false when this radar cannot see it. */
 static Status take_target(bool *taken, RadarShot *shot, Target *t, Sight *sight)
 {
     const SnapshotEntity *e = t->entity;

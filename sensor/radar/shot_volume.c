@@ -20,7 +20,7 @@ static const double turbulence_mps = 1.0; /* rms, each way: Nathanson, Radar Des
 
 /* ---- points ------------------------------------------------------------------------------------- */
 
-/* Of this interval and no other, for random_uniform's `frame`. */
+/* A key of this interval and no other, for the `frame` of random_uniform. */
 static uint32_t interval_key(const RadarShot *shot)
 {
     const uint32_t key[2] = {(uint32_t)shot->radar->seed, (uint32_t)(shot->radar->seed >> 32)};
@@ -35,7 +35,7 @@ static uint32_t interval_key(const RadarShot *shot)
     return mixed[0];
 }
 
-/* Towards which the wind blows. */
+/* Gives the velocity of the wind: the direction that it blows towards. */
 static void wind_of(double v_enu_mps[3], const RadarShot *shot)
 {
     const Weather *w = shot->scene->weather;
@@ -136,8 +136,8 @@ typedef struct Rain {
 
 enum { slices_a_task = hits_capacity / strata };
 
-/* One scatterer in each of the strata of a slice of range: equal steps of the square of the sine off the axis, by
- * equal sectors; so the power of a slice hardly depends on where they fall. */
+/* Places one scatterer in each stratum of a slice of range. Strata are equal steps of the square of the sine off the
+ * axis by equal sectors, so that the power of a slice hardly depends on where the scatterers fall. */
 static bool place_drop(VolumePoint *out, const RadarShot *shot, const Rain *rain, int slice, int stratum)
 {
     const uint64_t at = (uint64_t)slice * strata + (uint64_t)stratum;

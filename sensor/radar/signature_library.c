@@ -193,7 +193,7 @@ static void refused(SignatureLibrary *l, const char *path)
     if (tell) log_warn("radar: %s is damaged; its signature is computed again and the file replaced", path);
 }
 
-/* The whole file; NULL: not there, or not of a length that one can have. */
+/* Reads the whole file. NULL: it is absent, or no signature has its length. */
 static uint8_t *read_whole(size_t *count, const char *path)
 {
     static const uint64_t most = head_octets + hash_octets + (uint64_t)most_centres * sizeof(SignatureCentre);

@@ -19,7 +19,8 @@
 
 typedef struct SignatureLibrary SignatureLibrary;
 
-/* The folder is made if it is not there. config: its band, bins, tubes and unevenness; materials: in use. Logs. */
+/* Opens a folder, which is made if it is not there. config: its band, bins, tubes and unevenness count; materials:
+ * those in use. Failures are logged. */
 Status signature_library_open(SignatureLibrary **out, const char *folder, const SignaturesConfig *config,
                               const RadarMaterials *materials);
 void   signature_library_close(SignatureLibrary *library); /* accepts NULL */
@@ -33,7 +34,8 @@ typedef struct SignatureLibraryCounters {
 } SignatureLibraryCounters;
 SignatureLibraryCounters signature_library_counters(SignatureLibrary *library);
 
-/* A file's octets; parts: of the model. Fills count and centre of out. STATUS_BAD_VALUE: anything is wrong. */
+/* Reads the octets of a file into count and centre of out. parts: how many the model has. STATUS_BAD_VALUE: anything is
+ * wrong. */
 Status signature_from_octets(Signature *out, const uint8_t *octets, size_t count, const char key[sha256_text_size],
                              int parts);
 /* Its length, and the octets where out is not NULL. */

@@ -97,7 +97,7 @@ const char *window_parse(Window *out, const char *text)
     return NULL;
 }
 
-/* The place right of the peak where the power falls to half of it, in samples. */
+/* Finds the place right of the peak where the power falls to half of it, in samples. */
 static double half_power(const double *power)
 {
     int i = 1;

@@ -24,13 +24,14 @@ typedef struct Window {
     double     beta;        /* Kaiser, 0 .. 40 */
 } Window;
 
-/* w[n], greatest value 1. n >= 2. O(n), Chebyshev O(n^2). STATUS_BAD_VALUE: a parameter out of its range. */
+/* Fills the weights w[n], whose greatest is 1. n >= 2. Costs O(n), Chebyshev O(n^2). STATUS_BAD_VALUE: a parameter is
+ * out of its range. */
 Status window_weights(double *w, int n, const Window *window);
 /* `rect`, `hann`, `hamming`, `taylor:5:40` (nbar, dB), `chebyshev:60` (dB), `kaiser:6` (beta). NULL, or what is
  * accepted. */
 const char *window_parse(Window *out, const char *text);
 
-/* Of the response to a point, by a transform of n weights zero-padded to window_padding n. */
+/* Properties of the response to a point, from a transform of n weights zero-padded to window_padding n. */
 enum { window_padding = 256 };
 typedef struct WindowFigures {
     double width_3db; /* of the main lobe at half power, in bins of 1 / n: range resolution = width c / (2 bandwidth) */

@@ -50,7 +50,7 @@ extern const Reference reference_products, reference_truth, reference_run, refer
 void reference_list(FILE *to);
 /* `pitviper help TOPIC`, for a terminal; a product's file name is accepted too. False: no such topic. */
 bool reference_write(FILE *to, const char *topic);
-/* All topics, as Markdown: products.md. */
+/* Writes all topics as Markdown: products.md. */
 void reference_write_markdown(FILE *to);
 
 /* ---- placeholders used in several topics --------------------------------------------------------- */

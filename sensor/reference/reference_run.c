@@ -11,7 +11,7 @@ static const char *what_skip(int i) { return visibility_skip_what((Skip)i); }
 static const char *kind(int i) { return i < PLANT_STANDING ? plant_name((PlantKind)i) : NULL; }
 static const char *stage(int i) { return i < session_stages ? session_stage_name[i] : NULL; }
 
-/* All but those that are no fault. */
+/* Gives the reasons that are faults. */
 static const char *answer_fault(int i)
 {
     const int reason = i + 1 + (i + 1 >= DETECTIONS_LATE);

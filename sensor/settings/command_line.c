@@ -18,7 +18,7 @@ int command_line_wrong(const char *command, const char *format, ...)
     return 2;
 }
 
-/* The number of options with this prefix; 1 for an exact match. */
+/* Returns the number of options with this prefix, and 1 for an exact match. */
 static int matches(const struct option **found, const struct option *list, const char *name, size_t length)
 {
     int count = 0;

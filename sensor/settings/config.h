@@ -51,15 +51,16 @@ typedef struct Config {
         double bin_m;
         int    bins;
         double lobe_deg;
-        char   preset[32];          /* a row of etc/radars.csv, or of `table`; none */
-        char   table[1024];         /* radars in place of etc/radars.csv; empty: none */
-        bool   ground;              /* of the preset: the ground scatters */
-        bool   ground_bounce;       /* likewise: the ground mirrors entities */
-        double warp_mm;             /* likewise: unevenness of surfaces */
-        char   given[256];          /* likewise: list of signatures that are given; empty: none */
-        char   library[1024];       /* likewise: a folder of targets' signatures; empty: none */
-        double chaff_dipoles;       /* likewise: resonant ones in a cloud */
-        double scan_deg, scan_step; /* likewise: sector of its scan, 0: it stares; step over the beamwidth */
+        char   preset[32];    /* a row of etc/radars.csv, or of `table`; none */
+        char   table[1024];   /* radars in place of etc/radars.csv; empty: none */
+        bool   ground;        /* of the preset: the ground scatters */
+        bool   ground_bounce; /* with a preset: the ground mirrors entities */
+        double warp_mm;       /* with a preset: unevenness of surfaces */
+        char   given[256];    /* with a preset: list of signatures that are given; empty: none */
+        char   library[1024]; /* with a preset: a folder of targets' signatures; empty: none */
+        double chaff_dipoles; /* with a preset: resonant dipoles in a cloud of chaff */
+        double scan_deg,
+            scan_step; /* with a preset: sector that the beam sweeps, 0: it stares; step over the beamwidth */
     } radar;
     struct {
         int    port, exercise;   /* exercise -1: the one with the most PDUs, -2: all */
@@ -111,7 +112,7 @@ typedef struct Config {
     } weather;
     struct {
         double step_s;         /* of the ground's state */
-        double vehicle_step_s; /* longest step of that of vehicles */
+        double vehicle_step_s; /* longest step of the vehicles' heat */
         int    facets;         /* normals of the ground, a side */
         double shadow_m;       /* cells of the shadow map; 0: none */
         char   given[1024];    /* file of temperatures of parts; empty: none */
@@ -166,12 +167,12 @@ bool   config_local_solar(double *clock_s, const Config *config);
 Config config_default(void);
 /* Sets the keys of the file, keeps the others. On failure logs and leaves the configuration as it was. */
 Status config_read(Config *config, const char *path);
-/* The same with config_check, for `pitviper check`: also where keys of the file are wrong, so that one run reports all;
- * those keep their values. STATUS_BAD_VALUE: *config holds what is right. */
+/* Does the same with config_check, for `pitviper check`: it goes on where keys of the file are wrong, so that one run
+ * reports all; those keep their values. STATUS_BAD_VALUE: *config holds what is right. */
 Status config_read_checked(Config *config, const char *path);
 /* The same as config_read; paths in it are relative to the folder of `file`. */
 Status config_read_as(Config *config, const char *path, const char *file);
-/* One key, as on the command line: `sensor.width_px`, `720`. source: its origin, for messages. */
+/* Sets one key as the command line does: `sensor.width_px`, `720`. source: where it comes from, for messages. */
 Status config_set(Config *config, const char *key, const char *value, const char *source);
 /* The same for a value from that file: paths are relative to its folder. NULL: to the current one. */
 Status config_set_from(Config *config, const char *key, const char *value, const char *source, const char *file);
@@ -183,7 +184,8 @@ const char *config_where(const Config *config, const char *key);
 const char *config_sheet(const Config *config);
 /* Makes the tables of this configuration take precedence (etc_own), for the whole process. */
 Status config_own_tables(const Config *config);
-/* The same from a file of settings, as commands with `--config` do that read nothing else of it; NULL: none. */
+/* Reads the tables' settings from a file, for commands that take nothing else from `--config`; NULL: there is no file.
+ */
 Status config_tables_of(const char *path);
 /* Whether a file or the command line has set it; the key must exist. */
 bool config_given(const Config *config, const char *key);
@@ -196,16 +198,16 @@ OpticalChannels config_optical(const Config *config);
 bool config_adaptive(const Config *config);
 /* Checks that involve several keys; logs every contradiction. */
 Status config_check(const Config *config);
-/* A file to start from: every key with its value, commented out, and its meaning. */
+/* Writes a file to start from: every key with its value, commented out, and its meaning. */
 void config_write(FILE *to, const Config *config);
 /* A file that reads back as *config: keys that were given; all others commented out. */
 void config_write_settings(FILE *to, const Config *config);
-/* The first key whose value differs, or that only one of them was given; NULL: none. */
+/* The first key whose value differs, or that only one of them was given; NULL: there is none. */
 const char *config_difference(const Config *a, const Config *b);
 /* `key = value` of those that were given, a line each, indented. */
 void config_write_given(FILE *to, const Config *config);
-/* The canonical text, hashed as config_sha256: every key and value, in table order; keys that change no plane
- * (network, publish, record, port, time span) with their defaults. */
+/* Writes the canonical text, which is hashed as config_sha256: every key and value, in table order. Keys that change no
+ * plane (network, publish, record, port, time span) have their defaults in it. */
 void config_text(char *out, size_t out_size, const Config *config);
 
 /* ---- settings whose text has a grammar --------------------------------------------------------------- */
@@ -218,7 +220,7 @@ bool config_bands_choose(unsigned *bands, const char *text);
  * shows it; +12 is seconds after the start of the recording, -5 seconds before its end. An empty text is valid: no
  * limit. */
 bool config_span_good(const char *text);
-/* NaN: empty, or not a time. */
+/* Reads a time. NaN: the text is empty, or not a time. */
 double config_span_time_s(const char *text, double first_s, double last_s);
 /* Whether `from` is after `to` in every recording: both are of one kind. */
 bool config_span_backward(const char *from, const char *to);
@@ -229,7 +231,7 @@ bool config_span_outside(const char *from, const char *to, double first_s, doubl
 
 enum { choices_capacity = 32, choice_text_size = 200 };
 
-/* A line for each choice, with the key that changes it. */
+/* Lines, one for each choice that was made, with the key that changes it. */
 typedef struct Choices {
     int  count;
     char line[choices_capacity][choice_text_size];

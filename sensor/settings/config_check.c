@@ -9,7 +9,7 @@
 
 /* ---- bands: with further channels chosen in their places ------------------------------------------ */
 
-/* The band with this name of its own, optical, mwir, lwir or radar; -1: none has it. */
+/* The band of this name: optical, mwir, lwir or radar; -1: it is none. */
 static int band_named(const char *name, size_t length)
 {
     static const char *const names[BAND_COUNT] = {"optical", "mwir", "lwir", "radar"};
@@ -64,8 +64,8 @@ static int band_of(const SpectralChannel *channel)
     return channel->place == SPECTRAL_NIR ? BAND_OPTICAL : channel->place == SPECTRAL_MWIR ? BAND_MWIR : BAND_LWIR;
 }
 
-/* The set of bands, and the further channels that take the places of some. where: of the setting in a file, for
- * messages; or "". */
+/* Reads the set of bands, and the further channels that take the places of some. where: place of the setting in a file,
+ * for messages; or "". */
 static bool bands_parse(unsigned *bands, const SpectralChannel *further[BAND_COUNT], const char *text,
                         const char *where)
 {

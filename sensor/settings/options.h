@@ -41,8 +41,8 @@ typedef struct Options {
 int         options_parse(Options *o, CommandName command, int argc, char **argv);
 const char *options_command(const Options *o); /* `replay`, `run` */
 
-/* The command line of a variant of a sweep: these options, with the settings from a file and a folder of its own.
- * argv: points into o and to the two paths, ends with NULL. */
+/* Makes the command line of a variant of a sweep: these options, with a settings file and a folder of its own. argv:
+ * points into o and to the two paths, ends with NULL. */
 void options_variant(const char *argv[options_variant_argv], const Options *o, const char *settings, const char *out);
 
 /* The table itself, for tests over all options. False: not an option of the command. */

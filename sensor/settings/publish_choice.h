@@ -49,7 +49,7 @@ bool               publish_stream_parse(StreamUrl *out, const char **why, const 
 static inline bool publish_stream_multicast(const StreamUrl *url) { return url->address[0] >> 4 == 14; }
 enum { publish_stream_port_step = 2 }; /* from one band to the next */
 
-/* Of publish.video, by the end of its name. */
+/* The kind of publish.video, by the end of its name. */
 typedef enum VideoKind { VIDEO_NONE, VIDEO_FOLDER, VIDEO_MP4, VIDEO_MKV, VIDEO_TS } VideoKind;
 VideoKind video_kind(const char *path);
 

@@ -33,7 +33,7 @@ static void apply_raster(Config *config, const SensorPreset *p)
     if (!config_given(config, "sensor.hfov_deg")) config->sensor.hfov_deg = p->hfov_deg;
 }
 
-/* name: of a preset; NULL: the sheet of sensor.table. */
+/* name: that of a preset; NULL: the sheet of sensor.table is added. */
 static Status add_sensor(Sensors *s, const Config *config, const char *name, unsigned bands)
 {
     char         path[4096];

@@ -13,9 +13,9 @@ typedef struct Sensors {
     double       lateral[2]; /* RenderRequest */
 } Sensors;
 
-/* Reads sensor.preset; raster and field of view of the first are written to *config unless given. A choice per
- * sensor lists its properties. STATUS_BAD_VALUE, logged: an unknown name, two of one band, a band that is not
- * rendered, noise given for a band whose sensor has its own, a distortion that is not invertible. */
+/* Reads sensor.preset. The raster and field of view of the first are written to *config unless they were given. A
+ * choice for each sensor lists its properties. STATUS_BAD_VALUE, logged: an unknown name, two of one band, a band that
+ * is not rendered, noise given for a band whose sensor has its own, a distortion that is not invertible. */
 Status sensors_choose(Sensors *out, Choices *choices, Config *config, unsigned bands);
 
 /* Creates the detectors of the bands that have one; others stay NULL. On failure those created are in chain, for the

@@ -7,7 +7,7 @@
 enum { sha256_text_size = 65 };
 
 Status sha256_bytes(char out[sha256_text_size], const void *bytes, size_t count);
-/* Of a file's bytes. Logs path and reason on failure. */
+/* Hashes the bytes of a file. Logs path and reason on failure. */
 Status sha256_file(char out[sha256_text_size], const char *path);
 
 /* In pieces. Begin gives NULL, add false when memory is out. */

@@ -92,9 +92,9 @@ void error_spread_of_displaced(ErrorSpread *touched, ErrorSpread *own, const Dis
 /* Rows of a target are subsampled to about this many pixels at most. */
 enum { target_most_px = 4096 };
 
-/* Sums over the pixels of one target in one plane: squared differences between neighbours, at least one of them the
- * target's, less the squared differences of the ground alone, estimated from the surrounding ground; and squared
- * differences of its pixels from the mean of the surroundings. */
+/* Sums over the pixels of one target in one plane. One is of squared differences between neighbours of which at least
+ * one is the target's, less those of the ground alone, which are estimated from the surrounding ground. The other is of
+ * squared differences of its pixels from the mean of the surroundings. */
 typedef struct Outline {
     double steps, apart;
 } Outline;
@@ -145,8 +145,8 @@ static Outline outline_of(const Picture *p, const TargetPixels *px, int index, c
     return o;
 }
 
-/* Squared error over the image of a displacement by `way` pixels: proportional to the square of the displacement
- * below a pixel, to the swept area beyond, and at most that of a target at an unrelated position. */
+/* Squared error over the image when it is displaced by way_px pixels: below a pixel it grows with the square of the
+ * displacement, beyond with the swept area; it is at most that of a target at an unrelated position. */
 static double shifted(const Outline *o, double way_px)
 {
     const double swept = o->steps * way_px * way_px / (2 + 0.5 * pi_rad * way_px), most = 2 * o->apart;
@@ -161,8 +161,8 @@ static Band band_of(int plane)
                                     : BAND_OPTICAL;
 }
 
-/* A ground error displaces and tilts a clamped entity: taken from the errors of the ground at four points, at half
- * its radius from its centre. */
+/* How far the ground's error moves a target on the image: it displaces and tilts a clamped entity. It is taken from the
+ * errors of the ground at four points, at half the entity's radius from its centre. */
 static double ground_way_m(const World *world, const SnapshotEntity *e, const Model *model)
 {
     static const double place[4][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}};
@@ -210,9 +210,9 @@ static void error_of_target(ErrorSpread *all, Target *t, const DisplacedTarget *
     t->band[band].error_median_k = error_spread_median_k(&own);
 }
 
-/* The pixels that no displaced target touches: as the probes say, which stand for those whose own samples say nothing;
- * the sum of squares of the others is spread over them as an exponential distribution, of which nine steps are taken.
- * further_k2: the same for all. */
+/* Adds the error of the pixels that no displaced target touches. It is that of the probes, which stand for pixels whose
+ * own samples say nothing; the sum of squares of the others is spread over them as an exponential distribution, taken
+ * in nine steps. further_k2: a squared error that all of them have besides. */
 static void error_of_the_rest(ErrorSpread *all, const ErrorBudget *budget, int plane, double pixels, double kelvin,
                               double further_k2)
 {
@@ -354,7 +354,8 @@ static double radar_error_of_moving(const RadarPreset *preset, double cells)
     return 2 * (1 - fabs(sum) / all);
 }
 
-/* Squared error over the square of the field, from a standard deviation of the cross section (signature_error_db). */
+/* Squared error over the square of the field, from a standard deviation of the cross section in dB
+ * (signature_error_db). */
 static double square_of_db(double db)
 {
     const double root = pow(10, 0.1 * db) - 1;

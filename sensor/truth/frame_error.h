@@ -28,8 +28,8 @@ double error_spread_rms_k(const ErrorSpread *spread);
  * 1; NaN: no pixels. */
 double error_spread_beyond(const ErrorSpread *spread);
 
-/* A target that may be way_px off, in an unknown direction: by its pixels and the pixels as far from them as that, of
- * at most some 1024 pixels evenly spread. */
+/* A target that may be off by way_px in an unknown direction. It is described by at most some 1024 of its pixels,
+ * evenly spread, and by the pixels at that distance from them. */
 typedef struct DisplacedTarget {
     const Picture      *picture;
     const TargetPixels *px;
@@ -38,13 +38,13 @@ typedef struct DisplacedTarget {
     const PlanckTable  *planck;
     double              way_px;
     double              further_k2; /* squared errors from other sources */
-    double              air_k;      /* for those of its heat; NaN: left out */
+    double              air_k;      /* air temperature, for the errors of its heat; NaN: they are left out */
 } DisplacedTarget;
 
 /* Adds the pixels whose value would change, or that are the target's, to touched; of these the target's own to own. */
 void error_spread_of_displaced(ErrorSpread *touched, ErrorSpread *own, const DisplacedTarget *target);
 
-/* Share of a pixel that the target covers; id: index + 1. */
+/* Share of a pixel that the target covers. id: its index + 1. */
 static inline double pixel_share_of(const Picture *p, const TargetPixels *px, uint32_t id, size_t at)
 {
     if (px->small && p->covered && p->covered[at] > 0) return (double)p->covered[at];
@@ -103,9 +103,9 @@ typedef struct FrameErrorOf {
     double               air_k;   /* of the weather; NaN: heat is left out */
 } FrameErrorOf;
 
-/* target: receives error_px - the rms displacement on the image of each by dead reckoning, facets and the ground's
- * error, all of it if it lies across the line of sight - and the errors of its bands. False without a budget in the
- * picture or without truth planes. */
+/* Computes the errors of a frame. target: receives error_px, the rms displacement of each on the image by dead
+ * reckoning, facets and the ground's error (all of it, as if it lay across the line of sight), and the errors of its
+ * bands. False: the picture has no budget or no truth planes. */
 bool frame_error(FrameError *out, const FrameErrorOf *of, Target *target, int targets);
 
 /* ---- a radar's map ------------------------------------------------------------------------------- */
@@ -131,7 +131,8 @@ typedef struct RadarError {
 
 void radar_error(RadarError *out, const RadarFrame *radar, const Snapshot *snapshot);
 
-/* Of an echo's amplitude, what gridding leaves, rms over the interval (tests/sensor/test_radar_error.c). */
+/* Error that gridding leaves in an echo, over its amplitude; rms over the interval (tests/sensor/test_radar_error.c).
+ */
 double radar_error_of_gridding(void);
 
 #endif

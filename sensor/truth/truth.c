@@ -3,7 +3,7 @@
 #include "terrain/earth/geodesy.h"
 #include "render/trace/ground/ground.h"
 
-/* Earth's rate, rad/s. Source: IERS Conventions 2010, table 1.2 (nominal mean angular velocity). */
+/* Rate at which the Earth turns, rad/s. Source: IERS Conventions 2010, table 1.2 (nominal mean angular velocity). */
 static const double earth_rate_rps = 7.292115e-5;
 
 /* ---- geometry ------------------------------------------------------------------------------- */
@@ -17,7 +17,7 @@ static void line_of_sight(Target *t, const SnapshotEntity *entity, const Model *
     t->range_m = v3_length(r_ecef);
     if (!v3_normalize(u_ecef, r_ecef)) return;
 
-    /* velocity of the centre: that of the origin, plus the rotation of the body */
+    /* the velocity of the centre is that of the origin plus that by the rotation of the body */
     double turn_body[3], turn_ecef[3], v_ecef[3];
     v3_cross(turn_body, entity->w_body_rps, centre_body);
     m3_mul_v3(turn_ecef, entity->r_ecef_from_body, turn_body);
@@ -92,7 +92,7 @@ static void ring_box(int ring[4], const Target *t, const Picture *picture)
 
 enum { run_px = 256 };
 
-/* The compared values, of adjacent pixels from px on, at most run_px. */
+/* Gives the values to compare, of at most run_px adjacent pixels from px on. */
 typedef void PixelValues(double *value, const void *user, size_t px, int count);
 
 /* Ring: pixels in the box that show neither this target nor another, nor part of a small one. */
@@ -148,7 +148,7 @@ static void luminance(double *value, const void *user, size_t px, int count)
     for (int i = 0; i < count; i++) value[i] = (r[i] + g[i] + b[i]) / 3.0;
 }
 
-/* Of the target's own radiance over the area it fills, whole pixels or parts of them. */
+/* Turns a radiance of the target's own into an intensity: times the area it fills, of whole pixels or parts of them. */
 static double per_intensity(const Target *t, const View *view)
 {
     return 1 / (view->focal_px * view->focal_px) * t->range_m * t->range_m;
@@ -194,7 +194,8 @@ static bool look_at(Look *look, const Target *t, const TargetPixels *px, const P
     return true;
 }
 
-/* The contrast of a small target is that of its fullest pixel: proportional to its share of it. */
+/* The contrast of a small target over noise is that of its fullest pixel, which is proportional to the target's share
+ * of that pixel. */
 static double to_noise(const Look *look, const TargetPixels *px, double noise_sigma)
 {
     const double sigma = sqrt(look->ring_variance + noise_sigma * noise_sigma), apart = look->mean - look->ring_mean;

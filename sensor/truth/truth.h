@@ -18,7 +18,8 @@ typedef struct TargetBand {
                                   * mean over the noise. 0: no contrast; NaN: no ring, or neither clutter nor noise */
     double intensity_w_sr;       /* in-band, at the aperture: its own radiance times the area it fills, at its range */
     double intensity_error_w_sr; /* rms sampling error; of a small target, in a frame with a budget */
-    double veil_transmittance;   /* of smoke and dust in front of it, mean over its visible pixels; 1: none */
+    double
+        veil_transmittance; /* transmittance of smoke and dust in front of it, mean over its visible pixels; 1: none */
     double error_rms_k, error_median_k; /* thermal: of its pixels, by its position, heat and tables (frame_error.h) */
 } TargetBand;
 

@@ -4,8 +4,8 @@
 
 #include "pitviper.h"
 
-/* One line of a table. Fields without a value are NaN, or NULL for text; bench_row gives a row of those. A row is
- * identified by suite and `what`, in other versions and on other machines, too: no measured figure in it. */
+/* One line of a table. Fields without a value are NaN, or NULL for text; bench_row gives a row of those. Suite and
+ * `what` identify a row in other versions and on other machines, too, so `what` holds no measured figure. */
 typedef struct BenchRow {
     const char *what;
     double      median, best; /* of an item; unit "s" is printed as ns .. s, any other as it is */
@@ -36,7 +36,8 @@ typedef struct BenchSuite {
 
 BenchRow bench_row(const char *what);
 void     bench_add(Bench *bench, const BenchRow *row);
-/* For rows with errors only: the largest so far, by magnitude; NaN counts as larger than any. And its row. */
+/* Keeps the largest error so far, by magnitude, where NaN counts as larger than any; and makes its row. For rows with
+ * errors only. */
 void bench_worse(double *worst, double error);
 void bench_stress(Bench *bench, const char *what, double error, double limit, const char *unit, const char *against);
 bool bench_quick(const Bench *bench); /* seconds, not minutes: fewer rounds */
@@ -57,7 +58,7 @@ typedef struct BenchTime {
     double item_s[bench_rounds_max]; /* of each round */
     double median_s, best_s;         /* of an item */
 } BenchTime;
-/* Median and best of item_s[rounds]. */
+/* Computes the median and the best of item_s[rounds]. */
 void bench_time_finish(BenchTime *time);
 /* Runs all of them in turn, round after round, after one warm-up round. */
 void   bench_time(BenchTime *out, Bench *bench, const BenchWork *work, int count);
@@ -76,7 +77,7 @@ typedef struct BenchSetting {
     double      error;      /* in BenchTunable.error_unit, against a reference that does not approximate */
     double      also;       /* a second error of the same setting, checked like the first; 0: there is none */
     const char *also_is;    /* its meaning, of the first setting: "of 8-12 um, K" */
-    double      bytes;      /* memory it needs; 0: the same for all; 1: negligible */
+    double      bytes;      /* memory that the setting needs; 0: the same for all; 1: negligible */
     bool        is_default; /* exactly one is */
 } BenchSetting;
 
@@ -98,8 +99,8 @@ void bench_tunable(Bench *bench, const BenchTunable *tunable, const BenchWork *w
 void bench_tunable_rows(Bench *bench, const BenchTunable *tunable, const BenchSetting *point, int count);
 bool bench_dominates(const BenchTunable *tunable, const BenchSetting *a, const BenchSetting *b); /* a dominates b */
 bool bench_on_front(const BenchTunable *tunable, const BenchSetting *point, int count, int index);
-/* The verdict on the default as text: the errors it keeps, and the better settings there are. quick: times are not
- * checked. */
+/* Writes the verdict on the default as text: the errors it keeps, and the better settings there are. quick: times are
+ * not checked. */
 void bench_verdict(char out[512], const BenchTunable *tunable, const BenchSetting *point, int count, bool quick);
 /* More rounds of the same works, appended to the existing ones, up to bench_rounds_max. */
 void bench_time_more(BenchTime *time, Bench *bench, const BenchWork *work, int count);

@@ -112,7 +112,7 @@ static void list_options(struct option list[list_most], Bench *bench, BenchNext 
     list[count + bench->options] = (struct option){NULL, 0, NULL, 0};
 }
 
-/* 0: go on; else exit with this code - 1. */
+/* Returns 0 to go on; else the program exits with this code - 1. */
 static int parse(Bench *bench, Outputs *out, int argc, char **argv, BenchNext *next)
 {
     static char   called[] = "pitviper bench";
@@ -149,8 +149,8 @@ static int parse(Bench *bench, Outputs *out, int argc, char **argv, BenchNext *n
     return 0;
 }
 
-/* What would be refused only after minutes: values of options, files that cannot be written. 0: good; else the exit
- * code. */
+/* Checks beforehand what would be refused only after minutes: values of options, files that cannot be written. Returns
+ * 0 if all is good; else the exit code. */
 static int check(const Bench *bench, const Outputs *out, BenchNext *next)
 {
     size_t state[2] = {0};
@@ -188,7 +188,7 @@ static void csv_head(const Bench *bench, const BenchMachine *m, const char *line
           bench->csv);
 }
 
-/* The suites of that name in all libraries, one after the other. */
+/* Runs the suites of that name in all libraries, one after the other. */
 static void run_part(Bench *bench, const char *name, BenchNext *next)
 {
     const double begun_s = wall_clock_s();
@@ -221,8 +221,8 @@ static void run_all(Bench *bench, BenchNext *next)
     log_status(NULL);
 }
 
-/* The bench's name as it was typed, which is cut: SUITE, `all`, or either with /ROOM behind it, for the suites of one
- * room alone, as tests/CMakeLists.txt has them run. False, and said: there is none. */
+/* Takes a bench's name apart: SUITE or `all`, for one room alone with /ROOM after it, as tests/CMakeLists.txt runs
+ * them. False, with a message: there is none of that name. */
 static bool read_name(Bench *bench, char *typed, BenchNext *next)
 {
     size_t    state[2] = {0};
@@ -242,7 +242,7 @@ static bool read_name(Bench *bench, char *typed, BenchNext *next)
     return false;
 }
 
-/* The last lines of output, and the exit code. */
+/* Prints the last lines of output, and returns the exit code. */
 static int conclude(const Bench *bench, double took_s)
 {
     int failed = 0;

@@ -159,7 +159,7 @@ static void match(Run *a, Run *b)
 
 /* ---- evaluation ---------------------------------------------------------------------------------- */
 
-/* Beyond noise: see the head of this file. */
+/* Whether two times differ beyond noise: the head of this file says how. */
 static bool apart(const Entry *a, const Entry *b, double ratio, double least)
 {
     const double by = ratio > 1 ? ratio : 1 / ratio;
@@ -343,7 +343,7 @@ static int by_value(const void *pa, const void *pb)
     return (a > b) - (a < b);
 }
 
-/* The median of all ratios of times: the change common to all rows. */
+/* Shows the median of all ratios of times: the change common to all rows. */
 static void show_drift(FILE *page, const Run *a, const Run *b)
 {
     double *ratio = calloc((size_t)b->count + 1, sizeof *ratio);

@@ -57,14 +57,14 @@ struct Bench {
     int         parts;
 };
 
-/* At share 0 .. 1 of sorted values, interpolated linearly. */
+/* Gives the value at a share 0 .. 1 of sorted values, interpolated linearly. */
 double bench_quantile(const double *value, int count, double share);
-/* Three digits and a unit; seconds with a fitting prefix. */
+/* Writes three digits and a unit, seconds with a fitting prefix. */
 void bench_show(char out[32], double value, const char *unit);
 /* Whether its error is within its limit, or has none. */
 bool bench_holds(const BenchRow *row);
 
-/* The stored rows, part by part, with their plots, failures first. took_s: the whole run. */
+/* Writes the stored rows, part by part, with their plots, failures first. took_s: the time of the whole run. */
 Status bench_report(const Bench *bench, const BenchMachine *machine, const char *path, double took_s);
 /* `bench compare A.csv B.csv [--report FILE] [--slower FACTOR]`; argv[0]: compare. Exit code. */
 int bench_compare(int argc, char **argv);

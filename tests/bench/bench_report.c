@@ -169,7 +169,7 @@ static bool blocks_in(const Bench *bench, const BenchPart *part)
     return false;
 }
 
-/* A line for each: its verdict, before any of its settings. */
+/* Shows a line for each unit: its verdict, before any of its settings. */
 static void show_overview(FILE *page, const Bench *bench, const BenchPart *part)
 {
     bool begun = false;
@@ -202,7 +202,7 @@ static void show_overview(FILE *page, const Bench *bench, const BenchPart *part)
     if (begun) end_table(page);
 }
 
-/* Its plot next to its verdict as text, and its settings. */
+/* Shows a plot next to its verdict as text, and its settings. */
 static void show_block(FILE *page, const Bench *bench, const BenchBlock *b)
 {
     const char *plot = bench->kept[b->first + b->rows - 1].plot;

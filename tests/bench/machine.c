@@ -12,7 +12,8 @@
 #include <sys/utsname.h>
 #include <unistd.h>
 
-/* The first line of a file that begins with key, after the colon; all of its first line without a key. */
+/* Finds the first line of a file that begins with key, and copies what follows its colon; without a key, all of the
+ * first line. */
 static void line_of(char *out, size_t out_size, const char *path, const char *key)
 {
     char  line[512];

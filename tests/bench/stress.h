@@ -19,7 +19,7 @@ typedef struct StressCase {
 /* Runs each and adds its row. */
 void stress_cases(Bench *bench, const StressCase *cases, int count, void *user);
 
-/* A random stream of each case's own: the same figure whichever cases ran before. */
+/* A random stream of each case's own, so that it gives the same figure whichever cases ran before. */
 typedef struct Dice {
     uint32_t stream;
     uint64_t index;
@@ -36,12 +36,12 @@ Status stress_model(Model *out, int vertices, int triangles);
 void   stress_model_free(Model *model);
 void   stress_triangle(Model *model, const double a[3], const double b[3], const double c[3]);
 void   stress_box(Model *model, const double low[3], const double high[3]); /* 8 vertices, 12 triangles */
-/* Vertices on a sphere, joined: 2 + (bands - 1) 2 bands of them, 4 bands (bands - 1) triangles. */
+/* Makes a sphere of joined vertices: 2 + (bands - 1) 2 bands of them, 4 bands (bands - 1) triangles. */
 void stress_sphere(Model *model, double radius_m, int bands);
 
 /* ---- matrices ----------------------------------------------------------------------------------- */
 
-/* The deviation of a matrix from a rotation: R'R - I, worst element, and its handedness. */
+/* Adds how far a matrix is from a rotation: the worst element of R'R - I, and its handedness. */
 void stress_off_rotation(double *worst, const double r[9]);
 
 #endif

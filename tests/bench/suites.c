@@ -2,7 +2,7 @@
  * order. */
 #include "tests/bench/suites.h"
 
-/* The stress cases of render, in order; the rest goes on after one that fails. */
+/* Runs the stress cases of render, in order; a case that fails does not stop the rest. */
 static Status bench_stability_render(Bench *bench)
 {
     static Status (*const part[])(Bench *) = {bench_stability_parts,  bench_stability_ground,   bench_stability_light,

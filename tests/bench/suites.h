@@ -6,7 +6,8 @@
 
 #include "tests/bench/bench.h"
 
-/* One after the other, room by room from the first, from a zeroed state; NULL: no more. A BenchNext. */
+/* Gives the suites one after the other, room by room from the first, starting from a zeroed state; NULL: there are no
+ * more. It is a BenchNext. */
 const BenchSuite *bench_next_suite(size_t state[2]);
 
 /* ---- dis ----------------------------------------------------------------------------------------- */

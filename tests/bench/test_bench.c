@@ -35,7 +35,7 @@ static Status judged_run(Bench *bench)
 
 /* ---- the rule of tunables ------------------------------------------------------------------------ */
 
-/* Nine rounds about a time, each so much above or below it. */
+/* Makes nine rounds about a time, each so much above or below it. */
 static BenchSetting point_of(const char *setting, double s, double spread, double error, double bytes)
 {
     BenchSetting p = {.setting = setting, .time = {.rounds = 9}, .error = error, .bytes = bytes};

@@ -75,7 +75,7 @@ bool bench_on_front(const BenchTunable *tunable, const BenchSetting *point, int 
 
 /* ---- the plot --------------------------------------------------------------------------------- */
 
-/* As in a file name: letters, digits and `-`. */
+/* Makes a name fit for a file: letters, digits and `-`. */
 static void file_name(char out[64], const char *name)
 {
     int n = 0;
@@ -116,7 +116,7 @@ static void write_plot(Bench *bench, const BenchTunable *tunable, const char *te
 
 /* ---- rows ------------------------------------------------------------------------------------- */
 
-/* The settings that dominate the default: the best of them, NULL: none, and how many. */
+/* Finds the settings that dominate the default: the best of them (NULL: none), and how many there are. */
 static const BenchSetting *who_dominates(int *how_many, const BenchTunable *tunable, const BenchSetting *point,
                                          int count, int chosen)
 {

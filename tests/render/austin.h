@@ -185,7 +185,7 @@ static inline void run(RadarStage *s, const char *file, double theta_deg, Window
         v3_normalize(a.u, a.u);
         ScatterMatrix m;
         CHECK(total_field_trace(&field, s->target, &a, &a, &s->config, edges, s->pool) == STATUS_OK);
-        CHECK(total_field_sweep(&m, 1, x[0], 0, &field, NULL, NULL, s->pool) == STATUS_OK);
+        CHECK(total_field_sweep(&m, &(FrequencySweep){.count = 1, .first_hz = x[0]}, &field, s->pool) == STATUS_OK);
         const double got[2] = {sigma(m.hh), sigma(m.vv)};
         for (int w = 0; w < windows; w++) {
             if (!(x[2] >= window[w].low_deg && x[2] <= window[w].high_deg)) continue;

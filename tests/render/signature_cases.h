@@ -43,7 +43,8 @@ static inline double normalised_error(const Case *c, double *rms_db, double *sai
         config.rays_per_wavelength = 0.5;
         config.splits = 0; /* as signatures are made */
         CHECK(total_field_trace(&used, model.target, &middle, &middle, &config, true, pool) == STATUS_OK);
-        CHECK(total_field_sweep(&got, 1, hz, 0, &used, &antenna, &antenna, pool) == STATUS_OK);
+        CHECK(total_field_sweep(&got, &(FrequencySweep){.count = 1, .first_hz = hz, .tx = &antenna, .rx = &antenna},
+                                &used, pool) == STATUS_OK);
         const SignatureCells cells = signature_default_cells(hz, 1, 0.3 * rad_per_deg, 0);
         CHECK(signature_make(&signature, &used, NULL, &cells) == STATUS_OK);
         CHECK(centres_make(&centres, &signature, &antenna, &antenna, NULL) == STATUS_OK);
@@ -51,7 +52,7 @@ static inline double normalised_error(const Case *c, double *rms_db, double *sai
         config.rays_per_radius *= 4;
         config.rays_per_wavelength *= 4;
         CHECK(total_field_trace(&finer, model.target, &antenna, &antenna, &config, true, pool) == STATUS_OK);
-        CHECK(total_field_sweep(&want, 1, hz, 0, &finer, NULL, NULL, pool) == STATUS_OK);
+        CHECK(total_field_sweep(&want, &(FrequencySweep){.count = 1, .first_hz = hz}, &finer, pool) == STATUS_OK);
         const double complex of[2][2] = {{got.hh, want.hh}, {got.vv, want.vv}};
         for (int p = 0; p < 2; p++) {
             const double off_db = rcs_dbsm(of[p][0]) - rcs_dbsm(of[p][1]),

@@ -87,7 +87,9 @@ static void error_at(double phase_rad, double *of_band, double *of_bin, int *cou
     CHECK(signature_make(&signature, &(TotalField){.hits = h}, NULL, &cells) == STATUS_OK);
     CHECK(signature_is_sound(&signature, 7) && !signature_is_sound(&signature, 3));
     double error = 0, power = 0;
-    CHECK(field_sweep(want, frequencies, centre_hz - 0.5 * band_hz, step_hz, &h, NULL, NULL, NULL) == STATUS_OK);
+    CHECK(field_sweep(
+              want, &(FrequencySweep){.count = frequencies, .first_hz = centre_hz - 0.5 * band_hz, .step_hz = step_hz},
+              &h, NULL) == STATUS_OK);
     CHECK(centres_make(&centres, &signature, &antenna, &antenna, NULL) == STATUS_OK);
     for (int f = 0; f < frequencies; f++) {
         centres_field(&got, &centres, centre_hz - 0.5 * band_hz + f * step_hz);
@@ -98,7 +100,8 @@ static void error_at(double phase_rad, double *of_band, double *of_bin, int *cou
     for (int i = 0; i < 18; i++) {
         const ScatterAntenna now = moved(i % 3 - 1, i / 3 % 3 - 1, i < 9 ? 1.09 : 0.917);
         ScatterMatrix        exact;
-        CHECK(field_sweep(&exact, 1, centre_hz, 0, &h, &now, &now, NULL) == STATUS_OK);
+        CHECK(field_sweep(&exact, &(FrequencySweep){.count = 1, .first_hz = centre_hz, .tx = &now, .rx = &now}, &h,
+                          NULL) == STATUS_OK);
         CHECK(centres_make(&centres, &signature, &now, &now, NULL) == STATUS_OK);
         centres_field(&got, &centres, centre_hz);
         add(&error, &power, &got, &exact);
@@ -173,7 +176,8 @@ static void edges_are_centres_too(void **state)
         memcpy(e->u[1], way[1], sizeof way[1]);
         for (int c = 0; c < 4; c++) e->amplitude[c / 2][c % 2] = 0.01 * random_normal(6, (uint32_t)c, 0, (uint64_t)i);
     }
-    CHECK(total_field_sweep(&want, 1, centre_hz, 0, &field, &now, &now, NULL) == STATUS_OK);
+    CHECK(total_field_sweep(&want, &(FrequencySweep){.count = 1, .first_hz = centre_hz, .tx = &now, .rx = &now}, &field,
+                            NULL) == STATUS_OK);
     const SignatureCells cells = cells_of(0.05);
     CHECK(signature_make(&signature, &field, NULL, &cells) == STATUS_OK);
     CHECK(centres_make(&centres, &signature, &now, &now, NULL) == STATUS_OK);

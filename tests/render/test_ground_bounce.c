@@ -75,7 +75,7 @@ static void a_mirror_has_no_field_along_it(void **state)
         if (i % 10 == 0)
             for (int c = 0; c < 3; c++) a.u[c] = plane.n[c]; /* straight above */
         const double extra_m = ground_image(&image, &a, &plane);
-        CHECK(ground_leg_image(&leg, &a, &image, extra_m, &plane, &mirror, 200, right));
+        CHECK(ground_leg_image(&leg, &(GroundMirror){&a, &image, extra_m, &plane}, &mirror, 200, right));
         ground_leg_direct(&direct, &a, right);
         v3_add_scaled(axis[0], right, -v3_dot(right, a.u), a.u);
         v3_normalize(axis[0], axis[0]);
@@ -99,7 +99,7 @@ static void a_mirror_has_no_field_along_it(void **state)
     GroundLeg           leg;
     static const double right[3] = {0, 1, 0};
     const double        extra_m = ground_image(&image, &a, &above);
-    CHECK(!ground_leg_image(&leg, &a, &image, extra_m, &above, &mirror, 200, right));
+    CHECK(!ground_leg_image(&leg, &(GroundMirror){&a, &image, extra_m, &above}, &mirror, 200, right));
 }
 
 /* exp(-x) I0(x) by its integral, exp(x (cos t - 1)) over t; and Ament's. */
@@ -198,7 +198,7 @@ static void a_point_has_the_two_ray_pattern(void **state)
             ScatterMatrix        s;
             const double         extra_m = ground_image(&image, &a, &plane);
             ground_leg_direct(&legs[0], &a, right);
-            CHECK(ground_leg_image(&legs[1], &a, &image, extra_m, &plane, &surface, k, right));
+            CHECK(ground_leg_image(&legs[1], &(GroundMirror){&a, &image, extra_m, &plane}, &surface, k, right));
             ground_sum(&s, &one, &legs[0], &legs[1], k);
             const double complex q = csqrt(ground[g].eps - (1 - sine * sine));
             const double complex fresnel = (sine - q) / (sine + q);
@@ -237,7 +237,8 @@ static ScatterMatrix trace(RadarStage *s, const ScatterAntenna *tx, const Scatte
     ScatterMatrix m;
     CHECK(total_field_trace(&field, s->target, tx, rx, &s->config, edges, s->pool) == STATUS_OK);
     CHECK(ground_hide(&field, s->target, plane, image, s->pool) == STATUS_OK);
-    CHECK(total_field_sweep(&m, 1, s->config.frequency_hz, 0, &field, NULL, NULL, s->pool) == STATUS_OK);
+    CHECK(total_field_sweep(&m, &(FrequencySweep){.count = 1, .first_hz = s->config.frequency_hz}, &field, s->pool) ==
+          STATUS_OK);
     for (size_t h = 0; least_x && h < field.hits.count; h++) *least_x = fmin(*least_x, (double)field.hits.first[0][h]);
     total_field_free(&field);
     return m;
@@ -252,7 +253,7 @@ static void trace_paths(Paths *p, RadarStage *s, const ScatterAntenna *a, const 
     p->a = *a;
     p->seen_deepest_m = INFINITY;
     ground_leg_direct(&p->direct, a, h);
-    CHECK(ground_leg_image(&p->image, a, &p->i, extra_m, plane, surface, k, h));
+    CHECK(ground_leg_image(&p->image, &(GroundMirror){a, &p->i, extra_m, plane}, surface, k, h));
     p->s.direct = trace(s, a, a, plane, edges, (bool[]){false, false}, NULL);
     p->s.once = trace(s, a, &p->i, plane, edges, (bool[]){false, true}, NULL);
     p->s.twice = trace(s, &p->i, &p->i, plane, edges, (bool[]){true, true}, &p->seen_deepest_m);
@@ -502,7 +503,7 @@ static void a_truck_on_the_ground(void **state)
         const double extra_m = p.image.extra_m, sine = -v3_dot(plane.n, p.i.u);
         rough.rms_m =
             sqrt(-0.5 * log(ground_least_coherence / p.image.coherence)) / (k * sine) * (1 + 1e-9); /* just left out */
-        CHECK(ground_leg_image(&p.image, &a, &p.i, extra_m, &plane, &rough, k, h));
+        CHECK(ground_leg_image(&p.image, &(GroundMirror){&a, &p.i, extra_m, &plane}, &rough, k, h));
         CHECK_NEAR(p.image.coherence / ground_least_coherence, 1, 1e-6);
         CHECK(p.image.coherence < ground_least_coherence);
         ground_sum(&sum, &p.s, &p.direct, &p.image, k);

@@ -21,7 +21,8 @@ static ScatterMatrix look(RadarStage *s, const ScatterAntenna *tx, const Scatter
     ScatterMatrix out;
     s->config.polygon_faces = polygon_faces;
     if (total_field_trace(&field, s->target, tx, rx, &s->config, false, s->pool) != STATUS_OK) fail_msg("no look");
-    if (total_field_sweep(&out, 1, s->config.frequency_hz, 0, &field, NULL, NULL, s->pool) != STATUS_OK)
+    if (total_field_sweep(&out, &(FrequencySweep){.count = 1, .first_hz = s->config.frequency_hz}, &field, s->pool) !=
+        STATUS_OK)
         fail_msg("no field");
     return out;
 }
@@ -451,11 +452,13 @@ static void a_tank_keeps_its_field_and_bits(void **state)
             config.polygon_faces = kind == 1 ? INT_MAX : 0;
             config.seed = kind == 2;
             CHECK(total_field_trace(&by[0], tank.target, &tx, rx, &config, true, pool) == STATUS_OK);
-            CHECK(total_field_sweep(&m[kind], 1, x_hz, 0, &by[0], NULL, NULL, pool) == STATUS_OK);
+            CHECK(total_field_sweep(&m[kind], &(FrequencySweep){.count = 1, .first_hz = x_hz}, &by[0], pool) ==
+                  STATUS_OK);
             if (kind != 1) continue;
             CHECK(by[0].polygons.count > 100);
             CHECK(total_field_trace(&by[1], tank.target, &tx, rx, &config, true, NULL) == STATUS_OK);
-            CHECK(total_field_sweep(&again, 1, x_hz, 0, &by[1], NULL, NULL, NULL) == STATUS_OK);
+            CHECK(total_field_sweep(&again, &(FrequencySweep){.count = 1, .first_hz = x_hz}, &by[1], NULL) ==
+                  STATUS_OK);
             CHECK(by[0].polygons.count == by[1].polygons.count && by[0].hits.count == by[1].hits.count);
             CHECK(memcmp(by[0].polygons.whole, by[1].polygons.whole, (size_t)tank.model.triangle_count) == 0);
             CHECK(memcmp(by[0].hits.path_m, by[1].hits.path_m, by[0].hits.count * sizeof(double)) == 0);
@@ -490,13 +493,16 @@ static void sweeps_and_moved_antennas(void **state)
     stage_open(&s, "plate:0.3x0.2", x_hz);
     const ScatterAntenna a = antenna_at(9, 4, 30), b = antenna_at(9.2, 3.9, 30);
     look(&s, &a, &a, polygon_faces_few);
-    CHECK(total_field_sweep(many, count, 9e9, 25e6, &field, NULL, NULL, s.pool) == STATUS_OK);
+    CHECK(total_field_sweep(many, &(FrequencySweep){.count = count, .first_hz = 9e9, .step_hz = 25e6}, &field,
+                            s.pool) == STATUS_OK);
     for (int f = 0; f < count; f++) {
         ScatterMatrix single;
-        CHECK(total_field_sweep(&single, 1, 9e9 + f * 25e6, 0, &field, NULL, NULL, NULL) == STATUS_OK);
+        CHECK(total_field_sweep(&single, &(FrequencySweep){.count = 1, .first_hz = 9e9 + f * 25e6}, &field, NULL) ==
+              STATUS_OK);
         worst = fmax(worst, cabs(single.hh - many[f].hh)), peak = fmax(peak, cabs(single.hh));
     }
-    CHECK(total_field_sweep(&moved, 1, x_hz, 0, &field, &b, &b, s.pool) == STATUS_OK);
+    CHECK(total_field_sweep(&moved, &(FrequencySweep){.count = 1, .first_hz = x_hz, .tx = &b, .rx = &b}, &field,
+                            s.pool) == STATUS_OK);
     own = look(&s, &b, &b, polygon_faces_few);
     const double off_db = 2 * decibels(cabs(moved.vv - own.vv) / cabs(own.vv));
     printf("sweep: within %.0e of the peak; a list 0.2 degrees away %.0f dB\n", worst / peak, off_db);

@@ -27,7 +27,7 @@ static void half_spaces_and_slabs_equal_the_table(void **state)
         const double cosine = cos(x[3] * rad_per_deg), k = 2 * pi_rad * x[0] / 299792458.0;
         fresnel_half_space(&te, &tm, CMPLX(x[1], -x[2]), cosine);
         space = worst(te, CMPLX(x[4], x[5]), worst(tm, CMPLX(x[6], x[7]), space));
-        fresnel_slab(&te, &tm, &tte, &ttm, CMPLX(x[1], -x[2]), x[8], k, cosine);
+        fresnel_slab(&te, &tm, &tte, &ttm, &(RadarSurface){.eps = CMPLX(x[1], -x[2]), .thick_m = x[8]}, k, cosine);
         slab = worst(te, CMPLX(x[9], x[10]), worst(tm, CMPLX(x[11], x[12]), slab));
         through = worst(pow(cabs(tte), 2), x[13], worst(pow(cabs(ttm), 2), x[14], through));
     }
@@ -45,7 +45,7 @@ static void limits_hold(void **state)
         const double         thick_m = 1e-5 * (1 + i);
         const double complex eps = CMPLX(1 + 8 * random_uniform(1, 2, 4, (uint64_t)i), 0);
         /* no loss: what is not reflected passes, and a coating returns all */
-        fresnel_slab(&te, &tm, &tte, &ttm, eps, thick_m, k, cosine);
+        fresnel_slab(&te, &tm, &tte, &ttm, &(RadarSurface){.eps = eps, .thick_m = thick_m}, k, cosine);
         CHECK_NEAR(pow(cabs(te), 2) + pow(cabs(tte), 2), 1, 1e-12);
         CHECK_NEAR(pow(cabs(tm), 2) + pow(cabs(ttm), 2), 1, 1e-12);
         fresnel_coated(&te, &tm, eps, thick_m, k, cosine);
@@ -59,7 +59,7 @@ static void limits_hold(void **state)
         fresnel_half_space(&te2, &tm2, eps - 2 * I, cosine);
         fresnel_coated(&te, &tm, eps - 2 * I, 1, k, cosine);
         CHECK(cabs(te - te2) < 1e-12 && cabs(tm - tm2) < 1e-12);
-        fresnel_slab(&te, &tm, NULL, NULL, eps - 2 * I, 1, k, cosine);
+        fresnel_slab(&te, &tm, NULL, NULL, &(RadarSurface){.eps = eps - 2 * I, .thick_m = 1}, k, cosine);
         CHECK(cabs(te - te2) < 1e-12 && cabs(tm - tm2) < 1e-12);
         fresnel_coated(&te, &tm, eps, 1e-14, k, cosine);
         CHECK(cabs(te + 1) < 1e-8 && cabs(tm - 1) < 1e-8);

@@ -175,7 +175,13 @@ static Sum look(const double towards_eye[3], const double aim_enu[3], int n, int
         if (rays.count < hits_capacity && i + 1 < n * n) continue;
         visibility_first_hit(&hits, bench.visibility, &rays, NULL, -1, hidden, &counters);
         memset(&returns, 0xff, sizeof returns); /* NaN: whatever is left unwritten is found */
-        radar_shade(&returns, &config, bench.visibility, &bench.materials, &hits, &rays, hidden, &counters);
+        radar_shade(&returns, &config,
+                    &(RadarRays){.visibility = bench.visibility,
+                                 .materials = &bench.materials,
+                                 .hits = &hits,
+                                 .rays = &rays,
+                                 .hidden = hidden},
+                    &counters);
         for (int h = 0; h < hits.count; h++) {
             sum.first_hits += hits.range_m[h] < INFINITY;
             for (int b = 0; b < radar_bounces; b++) {

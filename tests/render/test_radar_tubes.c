@@ -108,7 +108,8 @@ static void threads_change_no_bit(void **state)
         if (threads > 0) CHECK(pool_create(&pool, threads) == STATUS_OK);
         TubeHits *hits = threads == 0 ? &first : &s.hits;
         CHECK(tubes_trace(hits, s.target, &tx, &rx, &s.config, pool) == STATUS_OK);
-        CHECK(field_sweep(threads == 0 ? want : got, 33, 9e9, 3e7, hits, NULL, NULL, pool) == STATUS_OK);
+        CHECK(field_sweep(threads == 0 ? want : got, &(FrequencySweep){.count = 33, .first_hz = 9e9, .step_hz = 3e7},
+                          hits, pool) == STATUS_OK);
         pool_destroy(pool);
         if (threads == 0) continue;
         CHECK(hits->count == first.count && hits->count > 1000);
@@ -132,7 +133,8 @@ static void a_sweep_equals_its_frequencies(void **state)
     double        worst = 0;
     stage_open(&s, "trihedral:0.4", x_hz);
     const double peak = cabs(stage_look(&s, 50, 25, INFINITY).hh);
-    CHECK(field_sweep(sweep, count, 9.5e9, 5e6, &s.hits, NULL, NULL, s.pool) == STATUS_OK);
+    CHECK(field_sweep(sweep, &(FrequencySweep){.count = count, .first_hz = 9.5e9, .step_hz = 5e6}, &s.hits, s.pool) ==
+          STATUS_OK);
     for (int f = 0; f < count; f += 13) {
         CHECK(field_at(&one, 9.5e9 + f * 5e6, &s.hits, s.pool) == STATUS_OK);
         worst = fmax(worst, cabs(one.hh - sweep[f].hh) / peak);
@@ -195,8 +197,12 @@ static void lists_serve_other_aspects(void **state)
         const ScatterAntenna to = antenna_at(30 + step_deg[k] * 0.8, 20 - step_deg[k] * 0.6, 2000);
         double               off = 0, whole = 0;
         stage_bistatic(&s, &to, &to);
-        CHECK(field_sweep(got, count, 9.5e9, 1e9 / count, &list, &to, &to, s.pool) == STATUS_OK);
-        CHECK(field_sweep(want, count, 9.5e9, 1e9 / count, &s.hits, NULL, NULL, s.pool) == STATUS_OK);
+        CHECK(field_sweep(
+                  got,
+                  &(FrequencySweep){.count = count, .first_hz = 9.5e9, .step_hz = 1e9 / count, .tx = &to, .rx = &to},
+                  &list, s.pool) == STATUS_OK);
+        CHECK(field_sweep(want, &(FrequencySweep){.count = count, .first_hz = 9.5e9, .step_hz = 1e9 / count}, &s.hits,
+                          s.pool) == STATUS_OK);
         for (int f = 0; f < count; f++) {
             off += pow(cabs(got[f].hh - want[f].hh), 2) + pow(cabs(got[f].vv - want[f].vv), 2);
             whole += pow(cabs(want[f].hh), 2) + pow(cabs(want[f].vv), 2);
@@ -403,7 +409,8 @@ static void edges_are_added_to_the_rays(void **state)
     const ScatterAntenna tx2 = antenna_at(50.02, 20.01, 300), rx2 = antenna_at(55.01, 18, 300);
     CHECK(total_field_trace(&field, s.target, &tx, &rx, &s.config, true, s.pool) == STATUS_OK);
     CHECK(field.edges.count > 100);
-    CHECK(total_field_sweep(got, count, 9e9, 2e7, &field, NULL, NULL, s.pool) == STATUS_OK);
+    CHECK(total_field_sweep(got, &(FrequencySweep){.count = count, .first_hz = 9e9, .step_hz = 2e7}, &field, s.pool) ==
+          STATUS_OK);
     for (int f = 0; f < count; f += 3) {
         CHECK(field_at(&want, 9e9 + f * 2e7, &field.hits, s.pool) == STATUS_OK);
         const double complex rays = want.vv;
@@ -414,11 +421,14 @@ static void edges_are_added_to_the_rays(void **state)
     }
     /* the same without threads */
     CHECK(total_field_trace(&alone, s.target, &tx, &rx, &s.config, true, NULL) == STATUS_OK);
-    CHECK(total_field_sweep(one, count, 9e9, 2e7, &alone, NULL, NULL, NULL) == STATUS_OK);
+    CHECK(total_field_sweep(one, &(FrequencySweep){.count = count, .first_hz = 9e9, .step_hz = 2e7}, &alone, NULL) ==
+          STATUS_OK);
     CHECK(memcmp(got, one, sizeof got) == 0);
     /* moved antennas, against a look of their own; the rays' own list aside */
-    CHECK(total_field_sweep(got, 1, x_hz, 0, &field, &tx2, &rx2, s.pool) == STATUS_OK);
-    CHECK(field_sweep(one, 1, x_hz, 0, &field.hits, &tx2, &rx2, s.pool) == STATUS_OK);
+    CHECK(total_field_sweep(got, &(FrequencySweep){.count = 1, .first_hz = x_hz, .tx = &tx2, .rx = &rx2}, &field,
+                            s.pool) == STATUS_OK);
+    CHECK(field_sweep(one, &(FrequencySweep){.count = 1, .first_hz = x_hz, .tx = &tx2, .rx = &rx2}, &field.hits,
+                      s.pool) == STATUS_OK);
     CHECK(total_field_trace(&alone, s.target, &tx2, &rx2, &s.config, true, s.pool) == STATUS_OK);
     want = (ScatterMatrix){0};
     edge_segments_field(&want, &alone.edges, 2 * pi_rad * x_hz / light_mps);

@@ -224,7 +224,8 @@ static void a_list_serves_its_bin(void **state)
             tubes.splits = 0;
             tubes.seed = (uint64_t)turned;
             CHECK(total_field_trace(&own, target, &a, &a, &tubes, true, NULL) == STATUS_OK);
-            CHECK(total_field_sweep(&want[turned], 1, frequency_hz, 0, &own, NULL, NULL, NULL) == STATUS_OK);
+            CHECK(total_field_sweep(&want[turned], &(FrequencySweep){.count = 1, .first_hz = frequency_hz}, &own,
+                                    NULL) == STATUS_OK);
         }
         error += pow(cabs(got.vv - want[0].vv), 2) + pow(cabs(got.hh - want[0].hh), 2);
         grid += pow(cabs(want[1].vv - want[0].vv), 2) + pow(cabs(want[1].hh - want[0].hh), 2);

@@ -16,7 +16,7 @@ static const Waveform wave = {.centre_hz = 94e9,
                               .pulses = pulses};
 static double complex got[interval_channels * most_pulses * samples], want[interval_channels * most_pulses * samples];
 
-/* What they stand for, from the times and frequencies of waveform.h's first lines. */
+/* What they stand for, from the times and frequencies of interval.h's Waveform. */
 static void add_by_hand(const Waveform *w, const Echo *e, double unfollowed_m)
 {
     const double step_hz = w->bandwidth_hz / samples, row_s = 1 / w->repeat_hz;

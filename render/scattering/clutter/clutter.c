@@ -11,7 +11,7 @@ static const uint32_t speckle_stream = 0x434c5500, place_stream = 0x434c5520, te
 
 /* ---- cells -------------------------------------------------------------------------------------------- */
 
-/* First cell with its centre at or beyond x. */
+/* Returns the index of the first cell whose centre is at or beyond x. */
 static int64_t first_from(double x_m, double side_m)
 {
     assert(fabs(x_m) <= side_m * 0x1p30);
@@ -114,9 +114,10 @@ void clutter_place(double p_m[2], const ClutterGrid *grid, const ClutterCell *ce
 
 /* ---- texture -------------------------------------------------------------------------------------------- */
 
-/* A standard normal field: four by four nodes of a lattice about a place, with Gaussian weights whose squares sum to 1,
- * so that each point's value is exactly normal and the gamma distribution of the texture exact. Weights of nodes that
- * come and go are 3e-4. Correlated nearly as exp(-(distance / length)^2); not at all from four lengths on. */
+/* Value at a place of a standard normal field. It is the sum of the values at four by four nodes of a lattice, with
+ * Gaussian weights whose squares sum to 1, so that each value is exactly normal and the gamma distribution of the
+ * texture exact. A node comes and goes with a weight of 3e-4. The correlation is nearly exp(-(distance / length)^2),
+ * and 0 from four lengths on. */
 static double deviate_at(uint64_t seed, double length_m, const double p_m[2])
 {
     enum { nodes = 4 };
@@ -132,7 +133,7 @@ static double deviate_at(uint64_t seed, double length_m, const double p_m[2])
         }
         for (int k = 0; k < nodes; k++) weight[a][k] /= sqrt(square);
     }
-    /* columns from 2^31 on, so that those of a row follow one another */
+    /* columns count from 2^31, so that those of a row follow one another */
     const uint64_t column = (uint64_t)(int64_t)first[0] + 0x80000000u;
     double         sum = 0;
     for (int y = 0; y < nodes; y++) {
@@ -144,14 +145,14 @@ static double deviate_at(uint64_t seed, double length_m, const double p_m[2])
     return sum;
 }
 
-/* A cell has the texture of one place in it, for all of it: means over many cells then vary more than those of the
- * field, by (1 - V^2) / count, V^2 the share of its variance that a cell's mean keeps. What the deviations are
- * scaled by so that they vary alike: 1 for cells much smaller than the texture, 0.96, 0.75, 0.43 for 1, 2, 4 of its
- * lengths. */
+/* Scale of a cell's deviations. All of a cell has the texture of one place in it, so means over many cells would vary
+ * more than those of the field: by (1 - V^2) / count, where V^2 is the share of its variance that the mean of a cell
+ * keeps. Scaled, they vary alike. The scale is 1 for cells much smaller than the texture, and 0.96, 0.75, 0.43 for
+ * cells of 1, 2, 4 of its lengths. */
 static double level_share(double side_m, double length_m)
 {
     const double a = side_m / length_m, field = pi_rad / (a * a);
-    /* of exp(-d^2) over a square; its series where the closed form cancels */
+    /* kept: the mean of exp(-d^2) over a square; a series replaces its closed form where that cancels */
     const double kept = a < 1e-2 ? 1 - a * a / 6 : (sqrt(pi_rad) * a * erf(a) + expm1(-a * a)) / (a * a);
     return sqrt(field / (field + 1 - kept * kept));
 }
@@ -173,7 +174,7 @@ enum {
     normals = clutter_terms * of_term + moving * of_velocity
 };
 
-/* From so many standard normals; texture: mean power over all draws. */
+/* Draws a scatterer from n standard normal values. texture: the mean power over all draws. */
 static void draw_from(ClutterScatterer *out, const ClutterRow *row, const double normal[normals], double texture)
 {
     const double power = 0.5 * texture;
@@ -215,22 +216,29 @@ void clutter_draw(ClutterScatterer *out, const ClutterGrid *grid, const ClutterT
     for (int i = 0; i < count; i++) draw(&out[i], grid, &table->row[surface[i]][band], &cell[i]);
 }
 
-/* z (re + i im), without the tests for infinity of a complex product. */
+/* Multiplies z by re + i im, without the tests for infinity of a complex product. */
 static inline double complex turned(const float z[2], double re, double im)
 {
     return CMPLX((double)z[0] * re - (double)z[1] * im, (double)z[0] * im + (double)z[1] * re);
 }
 
-/* Terms first .. end - 1 in direction u, added to s. */
-static void add_terms(ScatterMatrix *s, const ClutterScatterer *from, int first, int end, const double u[3], double k2,
-                      double moved_m, double size)
+/* The terms first .. end - 1 of a scatterer, by how far those that move have moved, and the amplitude of each. */
+typedef struct ClutterTerms {
+    int    first, end;
+    double moved_m, size;
+} ClutterTerms;
+
+/* Adds the terms, seen from direction u, to s. k2: twice the wave number, rad/m. */
+static void add_terms(ScatterMatrix *s, const ClutterScatterer *from, const ClutterTerms *terms, const double u[3],
+                      double k2)
 {
-    for (int m = first; m < end; m++) {
+    for (int m = terms->first; m < terms->end; m++) {
         const float *offset_m = from->offset_m[m];
-        const double gone_m = m < clutter_still_terms ? 0 : moved_m * (double)from->velocity[m - clutter_still_terms];
+        const double gone_m =
+            m < clutter_still_terms ? 0 : terms->moved_m * (double)from->velocity[m - clutter_still_terms];
         const double towards_m =
             u[0] * (double)offset_m[0] + u[1] * (double)offset_m[1] + u[2] * (double)offset_m[2] + gone_m;
-        const double re = size * cos(k2 * towards_m), im = size * sin(k2 * towards_m);
+        const double re = terms->size * cos(k2 * towards_m), im = terms->size * sin(k2 * towards_m);
         s->vv += turned(from->vv[m], re, im);
         s->hh += turned(from->hh[m], re, im);
         s->hv += turned(from->hv[m], re, im);
@@ -260,10 +268,12 @@ void clutter_see(ScatterMatrix *out, const ClutterGrid *grid, const ClutterTable
         if (!(sine > 0 && n_enu[2] > 0)) continue;
         const double sigma0 = clutter_sigma0(&table->row[ground->surface[i]][band], asin(fmin(sine, 1)), wavelength_m);
         const double size = sqrt(sigma0 * side_m * side_m / (4 * pi_rad * n_enu[2]));
-        add_terms(&out[i], &scatterer[i], 0, clutter_still_terms, u, k2, 0, size * sqrt(moves->still));
+        add_terms(&out[i], &scatterer[i], &(ClutterTerms){0, clutter_still_terms, 0, size * sqrt(moves->still)}, u, k2);
         if (moves->still < 1)
-            add_terms(&out[i], &scatterer[i], clutter_still_terms, clutter_terms, u, k2, moves->spread_mps * look->t_s,
-                      size * sqrt(1 - moves->still));
+            add_terms(&out[i], &scatterer[i],
+                      &(ClutterTerms){clutter_still_terms, clutter_terms, moves->spread_mps * look->t_s,
+                                      size * sqrt(1 - moves->still)},
+                      u, k2);
         out[i].vh = out[i].hv;
     }
 }
@@ -276,10 +286,12 @@ void clutter_see_leaf(ScatterMatrix *out, const ClutterScatterer *scatterer, con
     v3_sub(u, look->antenna_enu, p_enu);
     *out = (ScatterMatrix){0};
     if (!v3_normalize(u, u)) return;
-    add_terms(out, scatterer, 0, clutter_still_terms, u, k2, 0, size * sqrt(motion->still));
+    add_terms(out, scatterer, &(ClutterTerms){0, clutter_still_terms, 0, size * sqrt(motion->still)}, u, k2);
     if (motion->still < 1)
-        add_terms(out, scatterer, clutter_still_terms, clutter_terms, u, k2, motion->spread_mps * look->t_s,
-                  size * sqrt(1 - motion->still));
+        add_terms(out, scatterer,
+                  &(ClutterTerms){clutter_still_terms, clutter_terms, motion->spread_mps * look->t_s,
+                                  size * sqrt(1 - motion->still)},
+                  u, k2);
     out->vh = out->hv;
 }
 

@@ -50,8 +50,8 @@ size_t clutter_cells_at(ClutterCell *out, size_t capacity, const ClutterGrid *gr
 void clutter_centre(double p_m[2], const ClutterGrid *grid, const ClutterCell *cell);
 void clutter_place(double p_m[2], const ClutterGrid *grid, const ClutterCell *cell);
 
-/* A scatterer as the sum of a few terms: complex amplitude of mean power 1 at VV over all of them, an offset of a few
- * millimetres (what decorrelates one scatterer over aspect), and a velocity in units of the wind's spread. */
+/* A scatterer is the sum of a few terms. Each has a complex amplitude (their mean power at VV is 1 in all), an offset
+ * of a few millimetres, which decorrelates the scatterer over aspect, and a velocity in units of the wind's spread. */
 typedef struct ClutterScatterer {
     float vv[clutter_terms][2], hh[clutter_terms][2], hv[clutter_terms][2];
     float offset_m[clutter_terms][3];
@@ -85,8 +85,8 @@ typedef struct ClutterLook {
 void clutter_see(ScatterMatrix *out, const ClutterGrid *grid, const ClutterTable *table,
                  const ClutterScatterer *scatterer, const ClutterGround *ground, const ClutterLook *look);
 
-/* One of the scatterers of a crown (foliage.h) by its number, and what it returns: as above, but without texture or
- * slope, and <4 pi |S_vv|^2> = sigma_m2. Its place is the caller's. */
+/* These two draw a scatterer of a crown (foliage.h) by its number, and compute what it returns, as above but without
+ * texture or slope: <4 pi |S_vv|^2> = sigma_m2. The caller knows its place. */
 void clutter_draw_leaf(ClutterScatterer *out, const ClutterRow *row, uint64_t seed, uint32_t crown, uint32_t number);
 void clutter_see_leaf(ScatterMatrix *out, const ClutterScatterer *scatterer, const ClutterMotion *motion,
                       double sigma_m2, const double p_enu[3], const ClutterLook *look);
@@ -110,7 +110,8 @@ typedef struct ClutterKind {
 /* A cache is for one kind. */
 Status clutter_cache_create(ClutterCache **out);
 void   clutter_cache_destroy(ClutterCache *cache); /* accepts NULL */
-/* As clutter_draw; cache NULL: just that. Any number of threads. */
+/* Does what clutter_draw does, but takes from the cache what was drawn before. cache NULL: draws all. Any number of
+ * threads may call it. */
 void clutter_cache_draw(ClutterScatterer *out, ClutterCache *cache, const ClutterKind *kind, int count,
                         const ClutterCell *cell, const uint8_t *surface);
 

@@ -89,7 +89,7 @@ typedef struct Column {
     size_t      offset;
     double      low, high;
     bool        decibel; /* in the file; a ratio in the row */
-    int         model;   /* may be empty in rows of the other one; -1: of both */
+    int         model;   /* rows of the other model may leave it empty; -1: rows of both may */
 } Column;
 static const Column columns[] = {
     {"gamma_db", offsetof(ClutterRow, gamma), -60, 20, true, CLUTTER_GAMMA},

@@ -37,7 +37,7 @@ typedef struct ClutterTable {
 Status clutter_table_open(ClutterTable *out, const char *path);
 
 const char *clutter_band_name(ClutterBand band); /* Ku, Ka, W */
-/* 12-18, 27-40, 75-110 GHz (IEEE 521); false: none of these. */
+/* Finds the band of IEEE 521: 12-18, 27-40 or 75-110 GHz. False: the frequency is in none of them. */
 bool clutter_band_of(ClutterBand *out, double frequency_hz);
 
 /* Mean cross section of the ground at VV by its area, a ratio; times hh and hv for those. 0 at and below grazing.
@@ -60,8 +60,8 @@ typedef struct ClutterMotion {
     double spread_mps; /* 1 / beta; rms velocity is sqrt(2) of it. 0 where still is 1 */
 } ClutterMotion;
 ClutterMotion clutter_motion(const ClutterRow *row, double frequency_hz, double wind_mps);
-/* Correlation of the complex amplitude over a lag: still + (1 - still) / (1 + (4 pi lag spread / lambda)^2), the
- * spectrum's transform. */
+/* Correlation of the complex amplitude over a lag, which is the transform of the spectrum: still + (1 - still) / (1 +
+ * (4 pi lag spread / lambda)^2). */
 double clutter_correlation(const ClutterMotion *motion, double lag_s, double wavelength_m);
 
 /* ---- foliage ------------------------------------------------------------------------------------- */

@@ -40,7 +40,7 @@ static FoliageCrown crown_of(const Plant *plant, const Plants *plants)
     return crown;
 }
 
-/* Squares that a crown reaches into. */
+/* The squares that a crown reaches into. */
 typedef struct Reach {
     int x0, x1, y0, y1;
 } Reach;
@@ -145,7 +145,7 @@ int foliage_in(int *index, int most, const Foliage *f, const double low_m[2], co
             for (uint32_t at = f->first[s]; at < f->first[s + 1]; at++) {
                 const FoliageCrown *c = &f->crown[f->listed[at]];
                 const double        cx = (double)c->centre_m[0], cy = (double)c->centre_m[1];
-                /* listed in each square that it reaches into; counted in that of its middle */
+                /* a crown is listed in each square that it reaches into, and counted in the square of its middle */
                 if (square_at(cx, f->side_m, f->nx) != x || square_at(cy, f->side_m, f->ny) != y) continue;
                 if (!(cx >= low[0] && cx < high[0] && cy >= low[1] && cy < high[1])) continue;
                 if (count < most) index[count] = (int)f->listed[at];
@@ -157,7 +157,7 @@ int foliage_in(int *index, int most, const Foliage *f, const double low_m[2], co
 
 /* ---- along a ray --------------------------------------------------------------------------------- */
 
-/* A ray with the woods' origin, between two lengths. */
+/* A stretch of a ray between two distances from its start. The ray starts from the woods' origin. */
 typedef struct Stretch {
     double o[3], d[3], from_m, to_m;
 } Stretch;

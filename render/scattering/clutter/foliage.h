@@ -20,8 +20,9 @@ typedef struct FoliageCrown {
     uint8_t surface;        /* SurfaceClass of its row */
 } FoliageCrown;
 
-/* Of all standing plants of woods, which need not outlive it. Squares of 16 m (larger where the woods are so wide that
- * there would be more than four million) list what reaches into them: 24 octets a plant and some 10 more. */
+/* Makes the foliage of all standing plants of woods, which need not outlive it. Each plant is listed in every square of
+ * 16 m that it reaches into (the squares are larger where there would be more than four million). It takes 24 octets a
+ * plant and some 10 more. */
 Status       foliage_create(Foliage **out, const Woods *woods, const Plants *plants, const ClutterTable *table,
                             ClutterBand band);
 void         foliage_destroy(Foliage *foliage);     /* accepts NULL */

@@ -86,7 +86,8 @@ double chaff_radius_m(double age_s)
     return thrown_m + (bloomed_m - thrown_m) * -expm1(-t_s / bloom_s) + spread_mps * t_s;
 }
 
-/* hh = a + b, vv = a - b, hv = c: <|a|^2> = 2/3, <|b|^2> = <|c|^2> = 1/3 of sigma / 4 pi. */
+/* The matrix is drawn as hh = a + b, vv = a - b, hv = c, with <|a|^2> = 2/3 and <|b|^2> = <|c|^2> = 1/3 of sigma / 4
+ * pi. */
 void chaff_scatter(ScatterMatrix *out, double sigma_m2, const double n[6])
 {
     const double unit = sqrt(sigma_m2 / (8 * pi_rad)), large = unit * sqrt(2.0 / 3), small = unit * sqrt(1.0 / 3);

@@ -55,7 +55,7 @@ typedef struct RainScatter {
  * (tests/render/test_rain_scatter.c). 0.4 ms. Real rain of one rate differs by a factor of two with its drops. */
 bool rain_scatter(RainScatter *out, double f_ghz, double temp_k, double rain_mm_h);
 
-/* Fall speed, m/s, of the drop below which the share u (0 .. 1) of what comes back arises. */
+/* Fall speed, m/s, of the drop that is larger than those from which the share u (0 .. 1) of the power comes back. */
 double rain_fall_mps(const RainScatter *rain, double u);
 
 /* ---- chaff -------------------------------------------------------------------------------------- */
@@ -79,7 +79,7 @@ static const double chaff_same = 0.151, chaff_taken = 0.15915494309189535; /* of
  * dispenser throws, 1 m, tends to 8 m with a time constant of 1 s by the ejection and the wake, and spreads by 0.3 m/s
  * as dipoles fall at different speeds: estimates, after films of cartridges that bloom within a second. */
 double chaff_radius_m(double age_s);
-/* Fall of a dipole in still air: the figure in common use, and an estimate of its spread. */
+/* Speed at which a dipole falls in still air: the figure in common use, and an estimate of its spread. */
 static const double chaff_fall_mps = 0.3, chaff_fall_spread_mps = 0.07;
 static const double chaff_turbulence_mps = 0.5; /* rms of the air's motion within a cloud, each way; estimate */
 
@@ -87,7 +87,8 @@ static const double chaff_turbulence_mps = 0.5; /* rms of the air's motion withi
  * normals: complex Gaussian, <|hh|^2> = <|vv|^2> = 3 <|hv|^2> = 3 <hh vv*>. The same in any basis. */
 void chaff_scatter(ScatterMatrix *out, double sigma_m2, const double normal[6]);
 
-/* Dipoles by area along a ray, 1/m2, from its start to range_m: of `dipoles` about centre_m, seen from its start. */
+/* Number of dipoles per area, 1/m2, that a ray passes from its start to range_m. centre_m: middle of the cloud, seen
+ * from the start of the ray. */
 double chaff_column_1_m2(double dipoles, double radius_m, const double centre_m[3], const double d[3], double range_m);
 
 #endif

@@ -40,7 +40,7 @@ static inline void add_part(Field *a, double complex g, const Field *e, const do
     v3_add_scaled(a->im, a->im, y, to);
 }
 
-/* The field mirrored by a surface of normal n, from direction d to d_out. */
+/* Computes the field that a surface of normal n mirrors from direction d into d_out. */
 static inline void reflect_field(Field *out, const Field *e, const RadarSurface *surface, double complex te,
                                  double complex tm, const double n[3], const double d[3], const double d_out[3])
 {
@@ -64,8 +64,8 @@ static inline void reflect_field(Field *out, const Field *e, const RadarSurface 
     add_part(out, tm, e, in, away);
 }
 
-/* Twice the currents' far field towards s over -jk/4pi, less its part along s: n x (d x E + d_out x E') - (n x (E +
- * E')) x s. */
+/* Computes the far field of the currents towards s, twice, over -jk/4pi, without its component along s: n x (d x E +
+ * d_out x E') - (n x (E + E')) x s. */
 static inline void radiate(double out[3], const double e[3], const double e_out[3], const double n[3],
                            const double d[3], const double d_out[3], const double s[3])
 {
@@ -86,7 +86,7 @@ static inline void mirror_direction(double out[3], const double d[3], const doub
     v3_normalize(out, out);
 }
 
-/* The antenna's polarisation, across a ray of direction d. */
+/* Gives the polarisation of the antenna across a ray of direction d. */
 static inline void polarise(double out[2][3], const ScatterAntenna *antenna, const double d[3])
 {
     scatter_basis(out[0], out[1], antenna->u);

@@ -21,7 +21,7 @@
 
 /* ---- what a wedge scatters per length ------------------------------------------------------------------ */
 
-/* w of a shadowed face, g of a lit one; x between -2 pi_rad and 2 pi_rad, real part. */
+/* Real part of the kernel: w of a shadowed face, g of a lit one. x is between -2 pi_rad and 2 pi_rad. */
 static double complex kernel(double complex x, double n, bool lit)
 {
     if (!lit) return 1 / (2 * n * ctan(x / (2 * n)));
@@ -40,7 +40,7 @@ typedef struct Strip {
     double sum_over_sin; /* (w(a - f) + w(a + f)) / sin a */
 } Strip;
 
-/* below: 1 + m, above: 1 - m, both without cancellation. */
+/* below is 1 + m and above is 1 - m, both computed without cancellation. */
 static Strip strip_integrals(double f, double n, bool lit, double below, double above)
 {
     static const double h = 1e-30, pole = 1e-9, small = 1e-3;
@@ -139,7 +139,7 @@ static void point_along(double out[3], const Wedge *w, double share)
     for (int i = 0; i < 3; i++) out[i] = w->p[0][i] + share * (w->p[1][i] - w->p[0][i]);
 }
 
-/* Distance of an antenna from a point over that from the phase centre; path as in scatter.h. */
+/* Ratio of an antenna's distance from a point to its distance from the phase centre; path is as in scatter.h. */
 static double distance_ratio(const ScatterAntenna *a, double path_m) { return 1 + path_m / a->range_m; }
 
 static bool seen(const View *view, const Wedge *w, double share)
@@ -151,7 +151,7 @@ static bool seen(const View *view, const Wedge *w, double share)
         if (edge_angle(&w->frame, u[a]) > w->frame.exterior_pi * pi_rad) return false;
     }
     if (!view->config->visible) return true;
-    /* halfway between the faces, whence none of them hides anything that the edge sees */
+    /* u is halfway between the faces, so that none of them hides anything that the edge sees */
     const double half = w->frame.exterior_pi * pi_rad / 2, clear_m = view->config->clear_m;
     v3_add_scaled(p, p, clear_m * cos(half), w->frame.x);
     v3_add_scaled(p, p, clear_m * sin(half), w->frame.y);
@@ -184,7 +184,7 @@ static void emit_segment(const View *view, const Wedge *w, int index, double mid
     view->emit(view->user, &s);
 }
 
-/* The stretch from .. to (shares of the length) in equal segments. */
+/* Appends the stretch from .. to, which are shares of the length, as equal segments. */
 static void emit_stretch(const View *view, const Wedge *w, int index, double from, double to, double edge_m)
 {
     double p[3], u[3], bend_per_m = 0;

@@ -47,7 +47,7 @@ typedef struct EdgeSegments {
     EdgeSegment *segment; /* by wedge, then along it */
 } EdgeSegments;
 
-/* What becomes of a segment's amplitude at another k. */
+/* Factor of a segment's amplitude at another k. */
 static inline double edge_fade(const EdgeSegment *s, double k_per_m)
 {
     if (s->order == 0) return 1;
@@ -62,7 +62,7 @@ void   edge_segments_destroy(EdgeSegments *segments); /* frees and zeroes; accep
 /* Adds the field of segments to out, in their order; k_per_m: not above that of their config. */
 void edge_segments_field(ScatterMatrix *out, const EdgeSegments *segments, double k_per_m);
 
-/* The same for one frequency, config->k_per_m, without keeping segments. */
+/* Adds the same for one frequency, config->k_per_m, and keeps no segments. */
 void edge_field(ScatterMatrix *out, const Wedge *wedge, int count, const ScatterAntenna *transmitter,
                 const ScatterAntenna *receiver, const EdgeConfig *config);
 
@@ -138,7 +138,7 @@ typedef struct EdgePairs {
     EdgePair *pair; /* ascending in wedge[0], then wedge[1], each pair once */
 } EdgePairs;
 
-/* Of wedges of one part each. STATUS_NO_MEMORY is the only failure. */
+/* Finds the pairs among wedges that are of one part each. It fails only with STATUS_NO_MEMORY. */
 Status edge_pairs_find(EdgePairs *out, const Wedge *wedge, int count);
 void   edge_pairs_destroy(EdgePairs *pairs); /* frees and zeroes; accepts zeroes */
 

@@ -55,7 +55,7 @@ static int by_wedges(const void *a, const void *b)
     return 0;
 }
 
-/* Whether two faces are one, and their edges opposite. */
+/* Whether two faces are the same face, and their edges lie opposite each other on it. */
 static bool opposite(EdgePair *out, const Face *a, const Face *b, const Wedge *wedge)
 {
     if (v3_dot(a->n, b->n) < cos(same_rad) || v3_dot(a->x, b->x) > -cos(same_rad)) return false;
@@ -127,7 +127,7 @@ double complex edge_transition(double x)
         const double complex y = 1 / (2 * I * x);
         return 1 + y * (-1 + y * (3 + y * (-15 + y * 105)));
     }
-    /* the integral from 0 as a power series */
+    /* the power series of the integral from 0 */
     const double   root = sqrt(x);
     double complex term = root, sum = root;
     for (int n = 1; n < 80; n++) {
@@ -138,8 +138,8 @@ double complex edge_transition(double x)
     return 2 * I * root * cexp(I * x) * rest;
 }
 
-/* A wedge's coefficient between an antenna at `angle` from a face and a point width away along that face, over -exp(-j
- * pi / 4) / sqrt(2 pi k). */
+/* Coefficient of a wedge between an antenna at `angle` from a face and a point at distance `width` along that face,
+ * divided by -exp(-j pi / 4) / sqrt(2 pi k). */
 static double complex along_face(double angle, double exterior_pi, double k_width)
 {
     const double         n = exterior_pi, c = cos(0.5 * angle), x = 2 * k_width * c * c;
@@ -156,7 +156,8 @@ static double face_angle(const Wedge *w, int face, const double u[3])
     return face == 0 ? angle : opening - angle;
 }
 
-/* A way of waves along a face: in at a, out at b, after one crossing from a to b, or two, from a and back. */
+/* How waves cross a face: they come in at edge a and go out at edge b after one crossing from a to b, or after two
+ * crossings from a and back. */
 typedef struct Crossing {
     const Wedge *a, *b;
     int          face_a, face_b, index;
@@ -165,8 +166,8 @@ typedef struct Crossing {
     const Wedge *beyond; /* order 2: the edge in between */
 } Crossing;
 
-/* What an edge sends back along its face of what comes along it, over the incident wave at the face, width away. A half
- * plane sends as much along its other face, and from there it comes to the same. */
+/* What an edge sends back along its face, over the wave that arrives along this face, at the distance `width` from the
+ * edge. A half plane sends as much along its other face, which has the same effect. */
 static double complex sent_back(const Wedge *w, double k_width)
 {
     const double n = w->frame.exterior_pi, sides = n > 1.999 ? 2 : 1;
@@ -187,7 +188,8 @@ static void along_edge(double out[2], const ScatterAntenna *antenna, const doubl
     }
 }
 
-/* A piece of length_m of a crossing: p, q on its edges. False: neither antenna's wave crosses here. */
+/* Fills the segment of a piece of a crossing, length_m long, with p and q on its two edges. False: no wave of either
+ * antenna crosses here. */
 static bool piece(EdgeSegment *s, const Crossing *c, const double p[3], const double q[3], double length_m,
                   const ScatterAntenna *tx, const ScatterAntenna *rx, double k)
 {
@@ -220,7 +222,7 @@ static bool piece(EdgeSegment *s, const Crossing *c, const double p[3], const do
     return true;
 }
 
-/* A point beside an edge, clear of its faces. */
+/* Gives a point beside an edge that is clear of its faces. */
 static void beside(double out[3], const Wedge *w, const double p[3], double clear_m)
 {
     const double half = w->frame.exterior_pi * pi / 2;
@@ -251,7 +253,7 @@ static bool add_segment(EdgeSegments *out, const EdgeSegment *s)
     return true;
 }
 
-/* Pieces short enough for both paths to be lines along them. */
+/* Number of pieces, so short that the path to either antenna is linear along each. */
 static int pieces_of(double length_m, const ScatterAntenna *tx, const ScatterAntenna *rx, const EdgePairConfig *config,
                      const double p[3])
 {
@@ -263,7 +265,7 @@ static int pieces_of(double length_m, const ScatterAntenna *tx, const ScatterAnt
     return (int)fmin(fmax(ceil(length_m / longest_m), 1), pieces_most);
 }
 
-/* The four ways across a pair: there, back, and each edge's own. */
+/* Lists the four ways across a pair of edges: from a to b, from b to a, and from each edge to the other and back. */
 static void ways_of(Crossing way[4], const EdgePair *of, const Wedge *wedge)
 {
     const Wedge *a = &wedge[of->wedge[0]], *b = &wedge[of->wedge[1]];

@@ -30,7 +30,7 @@ static bool triangle_normal(double n[3], const Model *m, int t)
     return v3_normalize(n, n);
 }
 
-/* Of an area, and of one vertex normal that is its plane's. */
+/* Whether a triangle has an area, and vertex normals that are all its plane's. */
 static bool is_flat(const Model *m, int t)
 {
     const uint32_t *v = m->triangle[t];
@@ -66,7 +66,7 @@ static int root_of(int *of, int t)
     return t;
 }
 
-/* Joins those about one corner; the lowest stands for its face. */
+/* Joins the triangles about one corner; the lowest index stands for their face. */
 static void join_about(int *of, const Model *m, const Corner *corner, int count)
 {
     for (int i = 1; i < count; i++)

@@ -1,6 +1,6 @@
 /* render/scattering/field/polygons.c: flat faces in closed form: their triangles, and their field. */
 #include "render/scattering/field/currents_private.h"
-#include "render/scattering/field/polygons.h"
+#include "render/scattering/field/total_field.h"
 
 #include <stdlib.h>
 
@@ -26,8 +26,8 @@ double complex polygon_mean(const double x[3])
         const double complex bc = turn(0.5 * (m + c)) * scatter_sinc(0.5 * (m - c));
         return 2 * I * (ab - bc) / (a - c);
     }
-    /* Nearly specular, where those cancel: 2 sum of (-j)^n h_n / (n + 2)!, h_n the sum of all products of n about the
-     * middle. */
+    /* near the specular direction, where the other form cancels: 2 sum of (-j)^n h_n / (n + 2)!, with h_n the sum of
+     * all products of n factors, about the middle */
     const double middle = (x[0] + x[1] + x[2]) / 3, p = x[0] - middle, q = x[1] - middle, r = x[2] - middle;
     const double e2 = p * q + q * r + r * p, e3 = p * q * r;
     double       h[9] = {1, 0, -e2}, re = 1, im = 0, per = 0.5; /* 1 / (n + 1)! */
@@ -166,7 +166,7 @@ static Status add_polygon(PolygonBuilder *builder, const double corner[3][3], co
     return STATUS_OK;
 }
 
-/* A face that is seen; none of it where it does not fit. */
+/* Adds a face that is seen. Adds none of it where it does not fit. */
 static Status add_face(PolygonBuilder *builder, int face)
 {
     const RadarTarget *target = builder->target;
@@ -293,32 +293,32 @@ static void sum_chunk(void *user, int worker, int task)
     }
 }
 
-Status polygons_sweep(ScatterMatrix *s, int count, double first_hz, double step_hz, const Polygons *polygons,
-                      const ScatterAntenna *tx, const ScatterAntenna *rx, Pool *pool)
+Status polygons_sweep(ScatterMatrix *s, const FrequencySweep *sweep, const Polygons *polygons, Pool *pool)
 {
     const double k_per_hz = 2 * pi_rad / light_mps;
     const int    chunks = (polygons->count + chunk_polygons - 1) / chunk_polygons;
-    Sweep        sweep = {.polygons = polygons,
-                          .tx = tx ? *tx : polygons->tx,
-                          .rx = rx ? *rx : polygons->rx,
-                          .moved = tx || rx,
-                          .count = count,
-                          .first_k = first_hz * k_per_hz,
-                          .step_k = step_hz * k_per_hz};
+    Sweep        sum = {.polygons = polygons,
+                        .tx = sweep->tx ? *sweep->tx : polygons->tx,
+                        .rx = sweep->rx ? *sweep->rx : polygons->rx,
+                        .moved = sweep->tx || sweep->rx,
+                        .count = sweep->count,
+                        .first_k = sweep->first_hz * k_per_hz,
+                        .step_k = sweep->step_hz * k_per_hz};
     if (chunks == 0) return STATUS_OK;
-    sweep.sum = calloc(4 * (size_t)count * (size_t)chunks, sizeof *sweep.sum);
-    if (!sweep.sum) return STATUS_NO_MEMORY;
-    if (pool) pool_run(pool, chunks, sum_chunk, &sweep);
+    sum.sum = calloc(4 * (size_t)sweep->count * (size_t)chunks, sizeof *sum.sum);
+    if (!sum.sum) return STATUS_NO_MEMORY;
+    if (pool) pool_run(pool, chunks, sum_chunk, &sum);
     else
-        for (int t = 0; t < chunks; t++) sum_chunk(&sweep, 0, t);
-    for (int f = 0; f < count; f++) {
-        const double complex scale = CMPLX(0, -(sweep.first_k + f * sweep.step_k) / (2 * pi_rad));
+        for (int t = 0; t < chunks; t++) sum_chunk(&sum, 0, t);
+    for (int f = 0; f < sweep->count; f++) {
+        const double complex scale = CMPLX(0, -(sum.first_k + f * sum.step_k) / (2 * pi_rad));
         for (int t = 0; t < chunks; t++) {
-            const double complex *sum = sweep.sum + 4 * ((size_t)count * (size_t)t + (size_t)f);
-            s[f].hh += scale * sum[0], s[f].hv += scale * sum[1], s[f].vh += scale * sum[2], s[f].vv += scale * sum[3];
+            const double complex *part = sum.sum + 4 * ((size_t)sweep->count * (size_t)t + (size_t)f);
+            s[f].hh += scale * part[0], s[f].hv += scale * part[1], s[f].vh += scale * part[2],
+                s[f].vv += scale * part[3];
         }
     }
-    free(sweep.sum);
+    free(sum.sum);
     return STATUS_OK;
 }
 

@@ -65,7 +65,7 @@ static void begin_part(Builder *b, const char *name)
     part->triangle_count = 0;
 }
 
-/* Flat: its own normal, right-handed about a, b, c. */
+/* Adds a flat triangle with its own normal, right-handed about a, b, c. */
 static void add_flat(Builder *b, const double a[3], const double c[3], const double d[3])
 {
     double ab[3], ac[3], n[3], p[3][3], normal[3][3];
@@ -211,7 +211,7 @@ enum { shape_count = sizeof shapes / sizeof *shapes };
 /* A name means a shape where it has a colon. */
 static bool is_shape(const char *name) { return strchr(name, ':') != NULL; }
 
-/* The shape's number, and its dimensions; -1: not one. */
+/* Reads the number of a shape, and its dimensions. -1: the name is no shape. */
 static int read_name(double size_m[2], const char *name)
 {
     const char  *colon = strchr(name, ':');

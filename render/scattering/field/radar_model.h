@@ -30,7 +30,8 @@ void   radar_model_close(RadarModel *m); /* accepts zeroes */
  * All metal, one part but for the cylinder. Curved ones lie within sag_m of their facets, corners of facets on the
  * surface. */
 
-/* STATUS_BAD_VALUE, logged: no such shape, dimensions outside 1 mm .. 100 m, or more than 4 M facets. */
+/* STATUS_BAD_VALUE, logged: there is no such shape, its dimensions are outside 1 mm .. 100 m, or it needs more than 4 M
+ * facets. */
 Status radar_shape_build(Model *out, const char *name, double sag_m);
 
 #endif

@@ -13,10 +13,9 @@
 
 /* ---- flat faces -------------------------------------------------------------------------------------- */
 
-/* The flat faces of a model: triangles of one part that touch and lie in one plane.
- *
- * Triangles that stand for a curved surface, by their vertex normals, are none. What is summed by faces and not by
- * triangles has its borders at real edges alone. */
+/* The flat faces of a model: triangles of one part that touch and lie in one plane. Triangles whose vertex normals make
+ * them stand for a curved surface are left out. A sum over faces, other than one over triangles, has borders at real
+ * edges alone. */
 typedef struct FlatFaces {
     int       count;
     int      *first;    /* [count + 1]: of each, in triangle */
@@ -94,8 +93,9 @@ static inline double radar_corners_normal(double n[3], const double corner[3][3]
     return 0.5 * area2;
 }
 
-/* Which flat faces are wholly seen: seen [faces], zeroes, becomes 1 for each face with all antennas on one side that
- * rays from each of them meet first wherever they go. Returns the number of rays; -1: out of memory. */
+/* Finds the flat faces that are wholly seen: all antennas are on one side, and rays from each antenna meet the face
+ * first everywhere. seen [faces]: given as zeroes, becomes 1 for these. Returns the number of rays; -1: out of memory.
+ */
 long long radar_flat_faces_seen(uint8_t *seen, const RadarTarget *target, const ScatterAntenna antenna[2], int antennas,
                                 Pool *pool);
 

@@ -36,7 +36,7 @@ static double path_of(const Sweep *sweep, size_t i)
     return sweep->hits->path_m[i] + (sweep->moved ? moved_by(sweep, i) : 0);
 }
 
-/* One hit, each frequency by itself. */
+/* Adds one hit, with each frequency computed by itself. */
 static void add_plain(double *sum, const Sweep *sweep, size_t i)
 {
     const TubeHits *h = sweep->hits;
@@ -137,7 +137,7 @@ static void sum_chunk(void *user, int worker, int task)
         for (size_t i = first; i < end; i++) add_plain(sum, sweep, i);
 }
 
-/* The field at a frequency from the chunks' sums, in their order. */
+/* Sums the chunks' fields at one frequency, in the order of the chunks. */
 static void finish(ScatterMatrix *s, const Sweep *sweep, int chunks, int f)
 {
     double       whole[8] = {0};
@@ -149,34 +149,33 @@ static void finish(ScatterMatrix *s, const Sweep *sweep, int chunks, int f)
     for (int p = 0; p < 4; p++) *to[p] = CMPLX(-scale * whole[2 * p + 1], scale * whole[2 * p]);
 }
 
-Status field_sweep(ScatterMatrix *s, int count, double first_hz, double step_hz, const TubeHits *hits,
-                   const ScatterAntenna *tx, const ScatterAntenna *rx, Pool *pool)
+Status field_sweep(ScatterMatrix *s, const FrequencySweep *sweep, const TubeHits *hits, Pool *pool)
 {
     const double k_per_hz = 2 * pi_rad / light_mps;
     const int    chunks = (int)((hits->count + chunk_hits - 1) / chunk_hits);
-    Sweep        sweep = {.count = count,
-                          .first_k = first_hz * k_per_hz,
-                          .step_k = step_hz * k_per_hz,
-                          .hits = hits,
-                          .moved = tx || rx,
-                          .tx = tx ? *tx : hits->tx,
-                          .rx = rx ? *rx : hits->rx,
-                          .padded = (count + lanes - 1) / lanes * lanes};
-    const size_t sums = 8 * (size_t)sweep.padded * (size_t)(chunks + 1);
-    sweep.sum = aligned_alloc(64, sums * sizeof *sweep.sum);
-    if (!sweep.sum) return STATUS_NO_MEMORY;
-    memset(sweep.sum, 0, sums * sizeof *sweep.sum);
-    if (pool) pool_run(pool, chunks, sum_chunk, &sweep);
+    Sweep        sum = {.count = sweep->count,
+                        .first_k = sweep->first_hz * k_per_hz,
+                        .step_k = sweep->step_hz * k_per_hz,
+                        .hits = hits,
+                        .moved = sweep->tx || sweep->rx,
+                        .tx = sweep->tx ? *sweep->tx : hits->tx,
+                        .rx = sweep->rx ? *sweep->rx : hits->rx,
+                        .padded = (sweep->count + lanes - 1) / lanes * lanes};
+    const size_t sums = 8 * (size_t)sum.padded * (size_t)(chunks + 1);
+    sum.sum = aligned_alloc(64, sums * sizeof *sum.sum);
+    if (!sum.sum) return STATUS_NO_MEMORY;
+    memset(sum.sum, 0, sums * sizeof *sum.sum);
+    if (pool) pool_run(pool, chunks, sum_chunk, &sum);
     else
-        for (int t = 0; t < chunks; t++) sum_chunk(&sweep, 0, t);
-    for (int f = 0; f < count; f++) finish(&s[f], &sweep, chunks, f);
-    free(sweep.sum);
+        for (int t = 0; t < chunks; t++) sum_chunk(&sum, 0, t);
+    for (int f = 0; f < sweep->count; f++) finish(&s[f], &sum, chunks, f);
+    free(sum.sum);
     return STATUS_OK;
 }
 
 Status field_at(ScatterMatrix *s, double frequency_hz, const TubeHits *hits, Pool *pool)
 {
-    return field_sweep(s, 1, frequency_hz, 0, hits, NULL, NULL, pool);
+    return field_sweep(s, &(FrequencySweep){.count = 1, .first_hz = frequency_hz}, hits, pool);
 }
 
 double rcs_dbsm(double complex s)
@@ -202,7 +201,8 @@ static bool sees(void *user, const double p[3], int antenna)
     return !parts_occluded(sight->entity, p, way, false);
 }
 
-/* Rays just above a face: from edge to edge, and down to it at three places on the way. */
+/* Tests whether a face is clear between two edges, by rays just above it: from edge to edge, and down to it at three
+ * places on the way. */
 static bool is_clear(void *user, const double p[3], const double q[3], const double n[3])
 {
     static const double above_m = 1e-3, inside_m = 2e-3;
@@ -227,7 +227,7 @@ typedef struct EdgeWork {
     const RadarTarget    *target;
     const EdgePairConfig *config;
     const Sight          *sight;
-    int                   wedge_chunks; /* then those of pairs */
+    int                   wedge_chunks; /* chunks of wedges; chunks of pairs follow */
     EdgeSegments         *chunk;
     Status               *status;
 } EdgeWork;
@@ -266,7 +266,7 @@ static Status append(EdgeSegments *out, const EdgeSegments *more, int first_wedg
     return STATUS_OK;
 }
 
-/* Chunks of wedges, then of pairs of them, over the threads; their segments in order. */
+/* Finds the segments of chunks of wedges, then of pairs of wedges, on all threads; they are kept in order. */
 static Status find_edges(EdgeSegments *out, const RadarTarget *target, const EdgePairConfig *config, const Sight *sight,
                          Pool *pool)
 {
@@ -316,7 +316,7 @@ Status total_field_trace(TotalField *out, const RadarTarget *target, const Scatt
     return find_edges(&out->edges, target, &edge, &sight, pool);
 }
 
-/* A segment as moved antennas see it: its path changes, its amplitude hardly. */
+/* Path of a segment for antennas that have moved a little; its amplitude hardly changes. */
 static double moved_path_m(const EdgeSegment *s, const TotalField *field, const ScatterAntenna *tx,
                            const ScatterAntenna *rx)
 {
@@ -325,7 +325,7 @@ static double moved_path_m(const EdgeSegment *s, const TotalField *field, const 
            (scatter_path(way, rx, s->p) - scatter_path(way, &field->hits.rx, s->p));
 }
 
-/* exp(j a) from frequency to frequency, restarted each 64. */
+/* exp(j a), carried from one frequency to the next by a product, and computed anew every 64. */
 typedef struct Wave {
     double length_m, re, im, turn_re, turn_im;
 } Wave;
@@ -364,17 +364,17 @@ static void add_segment(ScatterMatrix *s, int count, double first_k, double step
     }
 }
 
-Status total_field_sweep(ScatterMatrix *s, int count, double first_hz, double step_hz, const TotalField *field,
-                         const ScatterAntenna *tx, const ScatterAntenna *rx, Pool *pool)
+Status total_field_sweep(ScatterMatrix *s, const FrequencySweep *sweep, const TotalField *field, Pool *pool)
 {
-    const double k_per_hz = 2 * pi_rad / light_mps;
-    Status       status = field_sweep(s, count, first_hz, step_hz, &field->hits, tx, rx, pool);
-    if (status == STATUS_OK) status = polygons_sweep(s, count, first_hz, step_hz, &field->polygons, tx, rx, pool);
+    const ScatterAntenna *tx = sweep->tx, *rx = sweep->rx;
+    const double          k_per_hz = 2 * pi_rad / light_mps;
+    Status                status = field_sweep(s, sweep, &field->hits, pool);
+    if (status == STATUS_OK) status = polygons_sweep(s, sweep, &field->polygons, pool);
     for (int i = 0; i < field->edges.count && status == STATUS_OK; i++) {
         const EdgeSegment *e = &field->edges.segment[i];
         const double       path_m =
             tx || rx ? moved_path_m(e, field, tx ? tx : &field->hits.tx, rx ? rx : &field->hits.rx) : e->path_m;
-        add_segment(s, count, first_hz * k_per_hz, step_hz * k_per_hz, e, path_m);
+        add_segment(s, sweep->count, sweep->first_hz * k_per_hz, sweep->step_hz * k_per_hz, e, path_m);
     }
     return status;
 }

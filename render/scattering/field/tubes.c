@@ -70,7 +70,7 @@ void tubes_free(TubeHits *hits)
 
 /* ---- the grid --------------------------------------------------------------------------------------- */
 
-/* Of the look, the same for looks that differ by a rounding. */
+/* Hashes a look; looks that differ by a rounding have the same hash. */
 static uint64_t hash_look(const TubeConfig *config, const ScatterAntenna *tx)
 {
     uint64_t hash = config->seed + 0x9E3779B97F4A7C15u;
@@ -83,8 +83,8 @@ static uint64_t hash_look(const TubeConfig *config, const ScatterAntenna *tx)
     return hash;
 }
 
-/* Where the line from the transmitter through a point meets the grid's plane, in its axes. False: behind the
- * transmitter. */
+/* Finds where the line from the transmitter through a point meets the grid's plane, in the grid's axes. False: this is
+ * behind the transmitter. */
 static bool on_grid(double at_m[2], const TubeGrid *grid, const double p[3])
 {
     double from[3];
@@ -99,7 +99,7 @@ static bool on_grid(double at_m[2], const TubeGrid *grid, const double p[3])
     return true;
 }
 
-/* Sides turned by an angle about the axis. */
+/* Turns the sides of a grid by an angle about its axis. */
 static void turn_grid(TubeGrid *grid, double angle_rad)
 {
     double       x[3], y[3];

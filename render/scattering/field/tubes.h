@@ -26,7 +26,7 @@
 enum { tubes_splits_most = 5, polygon_faces_few = 64 };
 
 typedef struct TubeConfig {
-    double frequency_hz;        /* of materials and spacing: the highest, or the centre, of those to come */
+    double frequency_hz; /* sets materials and spacing: the highest, or the centre, of the frequencies to be computed */
     double rays_per_wavelength; /* 1.25: a sphere of ka 800 is within 0.1 dB; with 1 within 0.15 */
     double rays_per_radius;     /* at least this many over the radius of the target's sphere: edges are cut in steps
                                  * of a tube, whose error is that of its share of the target; 128 */
@@ -41,17 +41,18 @@ typedef struct TubeConfig {
     double   warp_m, warp_length_m; /* surfaces uneven by this height, rms, over this length (Warp); 0, 0.5 */
     uint64_t warp_seed;
     uint64_t seed;          /* of the grid */
-    int      polygon_faces; /* total_field_trace sums flat faces in closed form (polygons.h) on targets of at
+    int      polygon_faces; /* total_field_trace sums flat faces in closed form (polygons.c) on targets of at
                              * most so many of them; 0: on none, as for signatures; polygon_faces_few */
 } TubeConfig;
 
 TubeConfig tubes_default_config(double frequency_hz);
 
-/* S = -(j k / 2 pi) sum of amplitude sinc(k slope_0) sinc(k slope_1) exp(-j k path). */
+/* The hits of a look. Their field is S = -(j k / 2 pi) sum of amplitude sinc(k slope_0) sinc(k slope_1) exp(-j k path).
+ */
 typedef struct TubeHits {
     ScatterAntenna tx, rx;
     double         frequency_hz, spacing_m;
-    long long      rays;               /* shot, those of divided tubes and at the tiles' borders too */
+    long long      rays;               /* that were shot, also for divided tubes and at the tiles' borders */
     size_t         count, capacity;    /* behind the last hit there is one more of no amplitude */
     double        *path_m;             /* two-way, less that over the phase centre; see scatter.h */
     float         *slope_m[2];         /* half the change of path over the footprint's sides */
@@ -89,9 +90,9 @@ typedef struct Warp {
     double phase_rad[warp_waves];
 } Warp;
 
-/* rms_m >= 0, length_m > 0. A function of its arguments alone. */
+/* Makes an unevenness. rms_m >= 0, length_m > 0. The result depends on the arguments alone. */
 void tubes_warp_make(Warp *out, double rms_m, double length_m, uint64_t seed, int part);
-/* Height, m, its gradient, and its second derivatives, row by row, 1/m. */
+/* Gives the height of an unevenness, m, its gradient, and its second derivatives row by row, 1/m. */
 void tubes_warp_at(double *height_m, double gradient[3], double bend[9], const Warp *warp, const double p[3]);
 
 #endif

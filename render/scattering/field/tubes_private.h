@@ -38,7 +38,7 @@ typedef struct TubeMark {
     bool     whole; /* the first, on a face that is not summed by tubes */
 } TubeMark;
 
-/* A cell of the grid or, at level n, a 4^n-th of one. */
+/* A cell of the grid or, at level n, one of the 4^n parts of a cell. */
 typedef struct TubeCell {
     int      x, y;     /* within its tile, in cells of its level; -1 and tile_side at level 0: about it */
     int      from, to; /* mirrors that count here: from <= mirror < to; the rest is its parent's, its children's */

@@ -67,8 +67,8 @@ static bool continues(const TubeMark *a, const TubeMark *b, int x, int y, double
            k * fabs(step_m + 2 * (x * (double)b->slope_m[0] + y * (double)b->slope_m[1])) <= most_rad;
 }
 
-/* The mirror from which two neighbours have no more in common; 0: none. Faces that are summed whole do not part them:
- * only what comes after does. */
+/* Finds the mirror from which the paths of two neighbours differ; 0: there is none. Faces that are summed whole do not
+ * count: only what comes after them does. */
 static int parting(const TubeWork *work, const TubeCell *a, const TubeCell *b)
 {
     const int marks = a->marks < b->marks ? a->marks : b->marks, from = a->from > b->from ? a->from : b->from;

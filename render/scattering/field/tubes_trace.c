@@ -34,7 +34,7 @@ size_t tube_tile_octets(void) { return sizeof(TubeTile); }
 
 /* ---- the start -------------------------------------------------------------------------------------- */
 
-/* x, y: place in the grid, in its cells; side_m: of the tube. */
+/* Starts a tube at x, y of the grid, which are counted in cells. side_m: side of the tube. */
 static void start_tube(TubeTile *tile, const TubeWork *work, double x, double y, double side_m)
 {
     const TubeGrid *grid = &work->grid;
@@ -77,7 +77,8 @@ static void start_tube(TubeTile *tile, const TubeWork *work, double x, double y,
 /* What a tube meets. */
 typedef struct Facing {
     double base[3], flat[3];      /* the point of the facet, and its normal, towards the ray */
-    double p[3], n[3], smooth[3]; /* the same where its surface is warped; the normal of what facets approximate */
+    double p[3], n[3], smooth[3]; /* point and normal where the surface is warped; the normal of the curved surface that
+                                     facets approximate */
     double sign;                  /* -1: the facet is seen from behind */
     bool   warped;
     double bend[9]; /* second derivatives of the height, towards the ray, 1/m */
@@ -100,7 +101,7 @@ static double cross_section(const double u[3], const double v[3], const double d
     return v3_dot(w, d);
 }
 
-/* From its last mirror to a point t_m on: spreads the field and widens the tube. */
+/* Carries a tube from its last mirror to a point t_m on: spreads the field and widens the tube. */
 static void carry(Tube *tube, double t_m)
 {
     const double a = cross_section(tube->side[0], tube->side[1], tube->d);
@@ -146,7 +147,8 @@ static double warp_hit(Facing *facing, const Tube *tube, const Warp *warp, const
     return facing->sign * height_m / under;
 }
 
-/* Place of the hit and the tube there. False: the ray, without its lift, meets the facet's plane behind it. */
+/* Computes the place of the hit and the tube there. False: the ray, without its lift, meets the facet's plane behind
+ * it. */
 static bool arrive(Tube *tube, Facing *facing, const TubeTile *tile, const TubeWork *work, const PosedFacet *facet,
                    const Warp *warp, int i)
 {
@@ -182,7 +184,7 @@ static bool arrive(Tube *tube, Facing *facing, const TubeTile *tile, const TubeW
     return v3_length(tube->side[0]) <= work->widest_m && v3_length(tube->side[1]) <= work->widest_m;
 }
 
-/* Change of the smooth normal over a displacement on the facet. */
+/* Computes how the smooth normal changes over a displacement on the facet. */
 static void bend(double dn[3], const Model *model, const PosedFacet *facet, const Facing *facing, const double w[3])
 {
     double          at[3], cross[3], turned[3];
@@ -201,7 +203,7 @@ static void bend(double dn[3], const Model *model, const PosedFacet *facet, cons
     v3_add_scaled(dn, dn, -v3_dot(dn, facing->smooth), facing->smooth);
 }
 
-/* The tube's direction, spreading and field beyond the mirror. */
+/* Gives the tube the direction, the spreading and the field that it has after the mirror. */
 static void leave(Tube *tube, const TubeWork *work, const PosedFacet *facet, const Facing *facing,
                   const RadarSurface *surface, double complex te, double complex tm)
 {
@@ -234,7 +236,7 @@ static void leave(Tube *tube, const TubeWork *work, const PosedFacet *facet, con
     memcpy(tube->d, d_out, sizeof tube->d);
 }
 
-/* The record of what a facet radiates. False: nothing that way. */
+/* Records what a facet radiates towards the receiver. False: it radiates nothing that way. */
 static bool record_hit(TubeHit *record, const Tube *tube, const TubeWork *work, const Facing *facing,
                        const RadarSurface *surface, double complex te, double complex tm, int part)
 {
@@ -286,7 +288,8 @@ static bool keep(TubeWorker *worker, const TubeHit *hit)
     return true;
 }
 
-/* Rays of a list that met something: their records, and the way on. Fills `alive` with those that go on. */
+/* Mirrors the rays of a list that met something: records them and sets the way on. Fills `alive` with those that go on.
+ */
 static int mirror_all(TubeTile *tile, TubeWork *work, const int *list, int count)
 {
     const Model *model = work->target->model;
@@ -367,7 +370,7 @@ static void open_tile(TubeTile *tile, const TubeWork *work, long long number, in
                    share * work->grid.spacing_m);
 }
 
-/* What a cell's tube met at a mirror. */
+/* Notes in a cell what its tube met at a mirror. */
 static void leave_mark(TubeCell *cell, const TubeTile *tile, int i, int bounce)
 {
     if (!tile->arrived[i] || bounce > trail_most) return;

@@ -30,7 +30,7 @@ static uint32_t cell_of(const Cells *c, const double p[3], const int shift[3])
     return (uint32_t)hash & c->mask;
 }
 
-/* The first corner of the same node within weld_m among those before it; itself where there is none. */
+/* Finds the first corner of the same node within weld_m; where there is none before it, the corner itself. */
 static int find_place(const Cells *c, const int *node, int vertex)
 {
     const double *p = c->model->vertex[vertex];
@@ -62,7 +62,7 @@ Status wedges_weld(int *place, const Model *m, double weld_m)
             for (int k = 0; k < 3; k++) node[m->triangle[t][k]] = m->part[m->triangle_part[t]].node;
         for (int v = 0; v < n; v++) {
             place[v] = find_place(&cells, node, v);
-            if (place[v] != v) continue; /* only those that stand for others are looked for */
+            if (place[v] != v) continue; /* only vertices that stand for others are looked for */
             int *head = &cells.head[cell_of(&cells, m->vertex[v], (const int[3]){0, 0, 0})];
             cells.next[v] = *head;
             *head = v;
@@ -76,7 +76,7 @@ Status wedges_weld(int *place, const Model *m, double weld_m)
 
 /* --- Faces about an edge --- */
 
-/* A triangle at one of its sides. */
+/* A triangle, and one of its sides. */
 typedef struct Side {
     int    low, high; /* places, low < high */
     int    part, triangle;
@@ -208,7 +208,7 @@ static void add_junction(Found *f, const Fan *fan, int fans)
     else add_wedge(f, a, a->along, widest);
 }
 
-/* The faces side[0 .. count) of one edge. */
+/* Adds an edge with the faces side[0 .. count) that meet at it. */
 static void add_edge(Found *f, const Side *const *side, int count)
 {
     Fan fan[fans_most] = {0};
@@ -279,7 +279,7 @@ static void find_pieces(Found *f, const Side *side, int count, bool *open, const
 
 /* --- Straight pieces --- */
 
-/* The same wedge with its faces exchanged. */
+/* Gives the same wedge with its faces exchanged. */
 static void turn(Wedge *out, const Wedge *w)
 {
     const double opening = w->frame.exterior_pi * pi;

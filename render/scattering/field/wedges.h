@@ -46,7 +46,7 @@ typedef struct WedgeList {
 Status wedges_find(WedgeList *out, const Model *model, const WedgeConfig *config);
 void   wedges_destroy(WedgeList *list); /* frees and zeroes; accepts zeroes */
 
-/* place[vertex_count]: the first of the vertices of one node that lie within weld_m of each. */
+/* place[vertex_count]: for each vertex, the first of those of its node that lie within weld_m of it. */
 Status wedges_weld(int *place, const Model *model, double weld_m);
 
 /* Wedges [list->count] in body axes, moved by -origin_body (the phase centre); pose: of all nodes. */

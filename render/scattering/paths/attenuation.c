@@ -91,8 +91,8 @@ void gas_attenuation(GasAttenuation *out, const GasLines *lines, double f_ghz, c
         const double coupling = (oxygen->c[4][i] + oxygen->c[5][i] * theta) * 1e-4 * (p + e) * theta08;
         add_line(&dry, &dry_ppm, strength, f, oxygen->f_ghz[i], sqrt(width * width + 2.25e-6) /* Zeeman */, coupling);
     }
-    /* Debye spectrum of oxygen below 10 GHz, pressure-induced nitrogen above 100; d / (d^2 + f^2), not 1 / d: no air,
-     * no width */
+    /* the Debye spectrum of oxygen below 10 GHz, and pressure-induced nitrogen above 100; written as d / (d^2 + f^2)
+     * and not with 1 / d, since without air there is no width */
     const double d = 5.6e-4 * (p + e) * theta08, debye = 6.14e-5 * p * theta * theta / (d * d + f * f);
     dry += f * d * debye + f * p * theta * theta * 1.4e-12 * p * theta * sqrt(theta) / (1 + 1.9e-5 * f * sqrt(f));
     dry_ppm -= f * f * debye;
@@ -111,7 +111,7 @@ void gas_attenuation(GasAttenuation *out, const GasLines *lines, double f_ghz, c
         .dry_db_km = 0.1820 * f * dry, .wet_db_km = 0.1820 * f * wet, .dry_ppm = dry_ppm, .wet_ppm = wet_ppm};
 }
 
-/* P.840-9, eqs. 2 to 11, and the liquid water of fog. */
+/* Permittivity by P.840-9, equations 2 to 11, and the liquid water of fog. */
 
 double complex water_permittivity(double f_ghz, double temp_k)
 {

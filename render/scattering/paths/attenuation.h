@@ -9,7 +9,8 @@
 
 /* ---- gases -------------------------------------------------------------------------------------- */
 
-/* Recommendation ITU-R P.676-13, Annex 1, line by line: oxygen, water vapour, and the continuum of dry air. */
+/* Absorption by Recommendation ITU-R P.676-13, Annex 1, line by line: oxygen, water vapour, and the continuum of dry
+ * air. */
 enum { gas_lines_max = 64 };
 
 /* Coefficient k of line i is c[k][i]: a1 .. a6 of oxygen, b1 .. b6 of water, as P.676-13 numbers them. */
@@ -47,7 +48,7 @@ typedef struct GasAttenuation {
  * attenuation (tests/render/test_radar_propagation.c). */
 void gas_attenuation(GasAttenuation *out, const GasLines *lines, double f_ghz, const GasState *air);
 
-/* Water vapour: partial pressure, hPa, of a density, g/m3, at a temperature (P.676-13, eq. 4). */
+/* Partial pressure of water vapour, hPa, from its density, g/m3, at a temperature (P.676-13, eq. 4). */
 static inline double gas_vapour_hpa(double density_g_m3, double temp_k) { return density_g_m3 * temp_k / 216.7; }
 
 /* ---- cloud and fog ------------------------------------------------------------------------------ */
@@ -86,7 +87,7 @@ double fog_liquid_g_m3(double visibility_m);
  * distribution of drop sizes (Laws and Parsons): real rain scatters by tens of percent about it. */
 bool rain_coefficients(double *k, double *alpha, double f_ghz, double elevation_rad, double tilt_rad);
 
-/* dB/km one way. rain_mm_h 0 .. 300. NaN outside. About 1 us. */
+/* Attenuation by rain, dB/km, one way. rain_mm_h 0 .. 300; NaN outside. A call takes about 1 us. */
 double rain_attenuation(double f_ghz, double rain_mm_h, double elevation_rad, double tilt_rad);
 
 #endif

@@ -79,7 +79,7 @@ GroundSurface ground_surface(const GroundRow *row, double frequency_hz)
     return (GroundSurface){CMPLX(e1, -e2), row->rms_m, row->waves};
 }
 
-/* exp(-x) I0(x), x >= 0. Source: Abramowitz and Stegun 9.8.1, 9.8.2, to 2e-7. */
+/* Computes exp(-x) I0(x) for x >= 0, to 2e-7. Source: Abramowitz and Stegun 9.8.1, 9.8.2. */
 static double scaled_i0(double x)
 {
     static const double small[] = {1, 3.5156229, 3.0899424, 1.2067492, 0.2659732, 0.0360768, 0.0045813};
@@ -123,7 +123,8 @@ void ground_plane(GroundPlane *out, const double p_ground[3], const double n_gro
     out->height_m = v3_dot(from, n_ground) / v3_length(n_ground);
 }
 
-/* A direction mirrored. Of that to an image: that from the ground to the antenna. */
+/* Mirrors a direction at the ground. Applied to the direction to an image, it gives the direction from the ground to
+ * the antenna. */
 static void mirror(double out[3], const double d[3], const GroundPlane *plane)
 {
     v3_add_scaled(out, d, -2 * v3_dot(plane->n, d), plane->n);
@@ -167,7 +168,7 @@ static void point_of(double p[3], const TotalField *field, size_t i, int end)
     for (int c = 0; c < 3; c++) p[c] = (double)(end ? h->last[c][i] : h->first[c][i]);
 }
 
-/* From where the line to the image crosses the plane, to the antenna. */
+/* Tests the rays from where the line to the image crosses the plane to the antenna. */
 static void hide_chunk(void *user, int worker, int task)
 {
     const Hide           *hide = user;
@@ -241,7 +242,7 @@ Status ground_hide(TotalField *field, const RadarTarget *target, const GroundPla
 
 const double ground_least_coherence = 1e-3;
 
-/* The antenna's axes for a wave from it whose way back is u. */
+/* The antenna's axes for a wave from it that returns in direction u. */
 static void antenna_axes(double axis[2][3], const double u[3], const double right[3])
 {
     double h[3], v[3];
@@ -263,11 +264,13 @@ void ground_leg_direct(GroundLeg *out, const ScatterAntenna *antenna, const doub
         for (int a = 0; a < 2; a++) out->m[p][a] = v3_dot(basis[p], axis[a]);
 }
 
-bool ground_leg_image(GroundLeg *out, const ScatterAntenna *antenna, const ScatterAntenna *image, double extra_m,
-                      const GroundPlane *plane, const GroundSurface *surface, double k, const double right[3])
+bool ground_leg_image(GroundLeg *out, const GroundMirror *from, const GroundSurface *surface, double k,
+                      const double right[3])
 {
-    double         u[3], basis[2][3], axis[2][3], d[3], across[3], before[3], after[3], d_out[3];
-    double complex te, tm;
+    const ScatterAntenna *antenna = from->antenna, *image = from->image;
+    const GroundPlane    *plane = from->plane;
+    double                u[3], basis[2][3], axis[2][3], d[3], across[3], before[3], after[3], d_out[3];
+    double complex        te, tm;
     mirror(u, image->u, plane);
     const double sine = v3_dot(plane->n, u);
     if (!(sine > 0)) return false;
@@ -281,7 +284,7 @@ bool ground_leg_image(GroundLeg *out, const ScatterAntenna *antenna, const Scatt
     v3_normalize(across, across);
     v3_cross(before, d, across);
     v3_cross(after, d_out, across);
-    *out = (GroundLeg){.extra_m = extra_m,
+    *out = (GroundLeg){.extra_m = from->extra_m,
                        .spread = isinf(antenna->range_m) ? 1 : antenna->range_m / image->range_m,
                        .coherence = fmax(cabs(te), cabs(tm))};
     for (int p = 0; p < 2; p++)

@@ -9,10 +9,11 @@
 
 /* ---- what it is made of ------------------------------------------------------------------------- */
 
-/* A rough half space a class, from etc/radar/ground.csv (with a source a row). */
+/* The ground as a rough half space, one for each class of surface, from etc/radar/ground.csv (with a source a row). */
 enum { ground_points = 8 };
 
-/* A class: permittivity on straight lines over log frequency between points, constant beyond. */
+/* One class of surface. Its permittivity is a straight line over log frequency between points, and constant beyond
+ * them. */
 typedef struct GroundRow {
     int    points;
     double frequency_hz[ground_points], e1[ground_points], e2[ground_points];
@@ -40,7 +41,8 @@ GroundSurface ground_surface(const GroundRow *row, double frequency_hz);
  * small, nothing in its own shadow. Within 3e-7 (tests/render/test_ground_bounce.c). */
 double ground_roughness(double rms_m, bool waves, double k, double sin_grazing);
 
-/* Reflection for E across and in the plane of incidence (radar_surfaces.h's signs), roughness included. */
+/* Reflection coefficients for E across and in the plane of incidence, with the signs of radar_surfaces.h; the roughness
+ * is included. */
 void ground_reflection(double complex *te, double complex *tm, const GroundSurface *surface, double k,
                        double sin_grazing);
 
@@ -108,19 +110,26 @@ typedef struct GroundLeg {
 /* right: direction in the target's frame along which, as far as it is across the line of sight, the antenna's first
  * axis lies; the second is u x first. Must not lie along it. */
 void ground_leg_direct(GroundLeg *out, const ScatterAntenna *antenna, const double right[3]);
-/* image: of ground_image, with the extra path that it returned. False: the antenna is beneath the plane. */
-bool ground_leg_image(GroundLeg *out, const ScatterAntenna *antenna, const ScatterAntenna *image, double extra_m,
-                      const GroundPlane *plane, const GroundSurface *surface, double k, const double right[3]);
+/* An antenna and its mirror image beneath a ground plane. */
+typedef struct GroundMirror {
+    const ScatterAntenna *antenna, *image; /* image: filled by ground_image */
+    double                extra_m;         /* the extra path that ground_image returned */
+    const GroundPlane    *plane;
+} GroundMirror;
+/* The leg by the ground. False: the antenna is beneath the plane. */
+bool ground_leg_image(GroundLeg *out, const GroundMirror *from, const GroundSurface *surface, double k,
+                      const double right[3]);
 
-/* s: of a receiver at the end of one leg and a transmitter at the end of the other, in the target's bases; out: in the
- * antenna's axes, without spread and phase of the extra paths. May be one. */
+/* Turns a field of the target, s, into the antenna's axes, out. s has the receiver at the end of one leg and the
+ * transmitter at the end of the other, in the target's bases. out leaves out the spread and the phase of the extra
+ * paths. s and out may be the same. */
 void ground_through(ScatterMatrix *out, const ScatterMatrix *s, const GroundLeg *receive, const GroundLeg *transmit);
 
 /* Fields of a target by paths: direct; transmitted directly and received by the ground; by the ground both ways. */
 typedef struct GroundFields {
     ScatterMatrix direct, once, twice;
 } GroundFields;
-/* Their sum, in the antenna's axes. */
+/* Sums these fields, in the antenna's axes. */
 void ground_sum(ScatterMatrix *out, const GroundFields *s, const GroundLeg *direct, const GroundLeg *image, double k);
 
 /* Below this coherence c the ground's paths are left out: what is missed is at most 2 c |S(i, a)| + c^2 |S(i, i)|, as

@@ -9,7 +9,7 @@ static const double earth_m = 6371000, level_m = 100, top_m = 20000, fade_m = 20
 
 /* ---- air by height ----------------------------------------------------------------------------- */
 
-/* Partial pressure of vapour; vapour_g_m3: at the ground. */
+/* Partial pressure of vapour at a height. vapour_g_m3 is the density at the ground. */
 static double vapour_hpa(double vapour_g_m3, double height_m, double temp_k)
 {
     const double hpa = gas_vapour_hpa(vapour_g_m3 * exp(-height_m / fade_m), temp_k);
@@ -26,7 +26,7 @@ void radar_air_at(GasState *out, const RadarAir *air, double height_m)
     out->dry_hpa = exp(air->ln_hpa[i] + w * (air->ln_hpa[i + 1] - air->ln_hpa[i])) - out->vapour_hpa;
 }
 
-/* d ln p / dz of moist air: -g / (R Tv). */
+/* Computes d ln p / dz of moist air: -g / (R Tv). */
 static double pressure_slope(double hpa, double vapour_g_m3, double height_m, double temp_k)
 {
     static const double g_mps2 = 9.80665, gas_j_kgk = 287.05;
@@ -120,7 +120,7 @@ typedef struct Walk {
     int              fine;
 } Walk;
 
-/* Gauss-Legendre, three points, over [-1, 1]. */
+/* Nodes and weights of the three-point Gauss-Legendre rule over [-1, 1]. */
 static const double gauss_x[3] = {-0.77459666924148337704, 0, 0.77459666924148337704};
 static const double gauss_w[3] = {5.0 / 9, 8.0 / 9, 5.0 / 9};
 

@@ -49,7 +49,8 @@ typedef struct RadarPath {
     double tilt_rad; /* polarisation, as in attenuation.h */
 } RadarPath;
 
-/* One way. Everything NaN for a path outside the ranges; liquid_db alone where only the frequency is out of P.840's. */
+/* The loss over one way. Everything is NaN for a path outside the ranges; only liquid_db is where just the frequency is
+ * out of P.840's. */
 typedef struct RadarLoss {
     double dry_db, wet_db, rain_db, liquid_db;
     double
@@ -61,10 +62,10 @@ typedef struct RadarLoss {
  * (tests/render/test_radar_propagation.c). Rain and layers begin and end exactly. Level, 10 km: 12 us; 20 km straight
  * up: 0.7 ms. */
 void radar_path_loss(RadarLoss *out, const RadarPath *path, const GasLines *lines, const RadarAir *air);
-/* For tests and benchmarks: fine times as many panels. */
+/* Does the same with `fine` times as many panels, for tests and benchmarks. */
 void radar_path_loss_fine(RadarLoss *out, const RadarPath *path, const GasLines *lines, const RadarAir *air, int fine);
 
-/* Two ways: factor of a voltage (exp(+j w t)); its square of the modulus that of a power. */
+/* Factor of a voltage over the path and back, exp(+j w t); the square of its modulus is the factor of a power. */
 double complex       radar_path_factor(const RadarLoss *loss);
 static inline double radar_loss_db(const RadarLoss *loss) /* one way, all together */
 {
@@ -86,7 +87,8 @@ typedef struct RadarLink {
     double loss; /* >= 1, of power, both ways, of the system; and of the air where `path` is not used */
 } RadarLink;
 
-/* Pt Gt Gr lambda^2 sigma / ((4 pi)^3 R^4 L), W. NaN outside the ranges, and for a cross-section below 0. */
+/* Received power, W: Pt Gt Gr lambda^2 sigma / ((4 pi)^3 R^4 L). NaN outside the ranges, and for a cross section below
+ * 0. */
 double radar_received_w(const RadarLink *link, double rcs_m2);
 
 /* Received wave of a target of scattering amplitude S (render/scattering/scatter.h: sigma = 4 pi |S|^2), sqrt(W),
@@ -94,7 +96,7 @@ double radar_received_w(const RadarLink *link, double rcs_m2);
  * of radar_path_factor; 1: none. */
 double complex radar_voltage(const RadarLink *link, double complex scattering_m, double complex path);
 
-/* Thermal noise at the input, k 290 K B F, W: bandwidth_hz > 0, noise_factor >= 1. NaN outside. */
+/* Thermal noise at the input, W: k 290 K B F. bandwidth_hz > 0, noise_factor >= 1; NaN outside. */
 double radar_noise_w(double bandwidth_hz, double noise_factor);
 
 #endif

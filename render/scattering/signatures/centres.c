@@ -89,8 +89,8 @@ void centres_free(Centres *c)
 
 /* ---- error -------------------------------------------------------------------------------------- */
 
-/* Of a tube's power, what is error: fitted to a tank at 10 and 35 GHz. Co-polarised fields are mostly of whole
- * faces, whose tubes are wrong at their edges alone; cross-polarised ones of edges and corners. */
+/* Share of a tube's power that is error, fitted to a tank at 10 and 35 GHz. Co-polarised fields come mostly from whole
+ * faces, whose tubes are wrong at their edges alone; cross-polarised fields come from edges and corners. */
 static const double same_share = 0.25, cross_share = 0.9;
 
 void signature_error(SignatureError *out, const Centres *centres)

@@ -15,7 +15,7 @@ typedef struct ScatterCentre {
     double        weight;    /* sum of its amplitudes, m */
     int           bounce;    /* mirrors of its strongest hit; 0: an edge */
     int           part;      /* of the model, of its strongest hit or edge */
-    double        strongest; /* amplitude of that, m */
+    double        strongest; /* amplitude of the strongest point, m */
 } ScatterCentre;
 
 typedef struct Centres {
@@ -29,7 +29,7 @@ typedef struct Centres {
 Status centres_make(Centres *out, const Signature *signature, const ScatterAntenna *tx, const ScatterAntenna *rx,
                     Pool *pool);
 void   centres_free(Centres *centres);
-/* Their whole field at a frequency of the band. */
+/* Sums the field of all centres at a frequency of the band. */
 void centres_field(ScatterMatrix *out, const Centres *centres, double frequency_hz);
 
 /* ---- error -------------------------------------------------------------------------------------- */
@@ -41,12 +41,12 @@ void centres_field(ScatterMatrix *out, const Centres *centres, double frequency_
  * interfere. The share is measured (tank, 10 and 35 GHz); held-out models and frequencies are within a factor of
  * two of it (tests/render/test_signature_error.c). What physical optics and the model leave out is not in it. */
 
-/* Mean square of the field's error, m2: co-polarised (HH or VV), cross-polarised. */
+/* Mean square of the field's error, m2: of the co-polarised (HH or VV) and of the cross-polarised part. */
 typedef struct SignatureError {
     double same_m2, cross_m2;
 } SignatureError;
 
-/* Of centres of a list of hits; of a given signature: 0. */
+/* Error of the centres of a list of hits; that of a given signature is 0. */
 void signature_error(SignatureError *out, const Centres *centres);
 /* Standard deviation in dB of a cross section, of a field s with an error of mean square error_m2: 10 log10(1 +
  * sqrt(2 e) / |s|), which for small errors is that of a sum of vectors of random phase. NaN for s = 0. */

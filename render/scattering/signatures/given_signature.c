@@ -142,7 +142,7 @@ static int index_of(const GivenAxis *axis, double at)
     return (int)(found - axis->at);
 }
 
-/* One row's values: fields, or decibels of each polarisation. */
+/* Reads the values of one row: fields, or decibels of each polarisation. */
 static Status read_values(double complex *s, const Table *table, int row, const int re[polarisations],
                           const int im[polarisations], const int power[polarisations], bool has_phase)
 {
@@ -259,13 +259,13 @@ void given_signature_close(GivenSignature *g)
 
 /* ---- at a look -------------------------------------------------------------------------------------- */
 
-/* Between two values along an axis. */
+/* The two values of an axis that a value lies between. */
 typedef struct Between {
     int    low, high;
     double share; /* of high */
 } Between;
 
-/* False: beyond its ends by more than `beyond`. */
+/* False: the value is beyond the ends of the axis by more than `beyond`. */
 static bool between(Between *out, const GivenAxis *axis, double at, double beyond)
 {
     const int last = axis->count - 1;

@@ -39,7 +39,7 @@ bool given_signature_knows(const GivenSignature *given, const ScatterAntenna *an
 /* What it scatters back, where it is known; else 0. */
 void given_signature_field(ScatterMatrix *s, const GivenSignature *given, const ScatterAntenna *antenna,
                            double frequency_hz);
-/* As scattering centres, whose sum that is; their part is -1. One of no amplitude is left out. */
+/* Gives scattering centres whose sum this signature is; their part is -1. A centre of no amplitude is left out. */
 Status given_signature_centres(Centres *out, const GivenSignature *given, const ScatterAntenna *antenna,
                                double frequency_hz);
 

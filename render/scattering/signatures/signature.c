@@ -147,7 +147,7 @@ static void share_of_hit(Share *out, const TubeHits *h, size_t i, double k)
         out->first[x] = (double)h->first[x][i];
         out->last[x] = (double)h->last[x][i];
     }
-    /* -j k / 2 pi, and the footprint's share */
+    /* the factor -j k / 2 pi, and the share of the footprint */
     const double share =
         k / (2 * pi_rad) * scatter_sinc(k * (double)h->slope_m[0][i]) * scatter_sinc(k * (double)h->slope_m[1][i]);
     for (int p = 0; p < 4; p++) {
@@ -190,7 +190,8 @@ typedef struct SignatureBuilder {
 
 static int32_t cell_number(double x_m, double side_m) { return (int32_t)clamp(floor(x_m / side_m), -1e9, 1e9); }
 
-/* Half a cell from the middle, half the bin away, both ways; of range rate, half the interval away. */
+/* Sets how much centres vary over a cell: half a cell from the middle and half the bin away, both ways; for range rate,
+ * half the interval away. */
 static Status measure_cells(SignatureBuilder *builder, const RadarTarget *target, const SignatureCells *cells)
 {
     static const double rolls_mps = 20, most_m = 0.1; /* so that what hides part of a target hides whole cells */
@@ -374,7 +375,7 @@ static Status mark_weak(SignatureBuilder *builder, double part)
     return STATUS_OK;
 }
 
-/* All hits, then all edges. */
+/* Visits all hits, then all edges. */
 static Status each_share(SignatureBuilder *builder, const TotalField *field,
                          Status (*take)(SignatureBuilder *, const Share *))
 {

@@ -31,7 +31,7 @@ typedef struct SignatureCells {
 /* Phases of 0.2, 0.2 and 1 rad; a hundredth over cells four times as wide. */
 SignatureCells signature_default_cells(double frequency_hz, double bandwidth_hz, double turn_rad, double interval_s);
 
-/* Power of the error that those cells leave, at most, over the power of their centres. */
+/* Most that the error of those cells may be: its power over the power of their centres. */
 double signature_cells_error(void);
 
 typedef struct SignatureCentre {
@@ -46,7 +46,7 @@ typedef struct SignatureCentre {
     int16_t  s[8];
     int8_t   moment[2][8];
     uint16_t part;   /* of the model, of its strongest hit or edge */
-    uint8_t  bounce; /* mirrors of that; 0: an edge */
+    uint8_t  bounce; /* mirrors of the strongest hit; 0: an edge */
     uint8_t  zero;
 } SignatureCentre; /* 84 octets, no gaps */
 
@@ -64,7 +64,7 @@ typedef struct Signature {
 /* out: zeroed. target: whose field it is, as posed; NULL: all parts move as one. */
 Status signature_make(Signature *out, const TotalField *field, const RadarTarget *target, const SignatureCells *cells);
 void   signature_free(Signature *signature); /* frees and zeroes; accepts zeroes */
-/* What follows from its antennas and cells. */
+/* Fills what follows from the antennas and the cells. */
 void signature_axes(Signature *out, const SignatureCells *cells);
 /* Whether all numbers are finite and within what signature_make gives; parts: of the model. */
 bool signature_is_sound(const Signature *signature, int parts);

@@ -17,13 +17,13 @@ typedef struct Kept {
     uint64_t      used; /* number of the call */
 } Kept;
 
-/* What making one takes; the background has its own. */
+/* The memory and tables to make one signature with; the background has its own. */
 typedef struct Maker {
     RadarTarget **target; /* [models]; NULL: not met yet */
     TotalField    field;  /* memory that is used again */
 } Maker;
 
-/* The thread that makes what is missing. */
+/* The thread that makes missing signatures. */
 typedef struct Background {
     pthread_t         thread;
     bool              runs;
@@ -271,7 +271,7 @@ static void ask(Signatures *s, Kept *one)
     for (int i = 0; i < b->done && !known; i++) known = same(&b->made[i], one, of);
     for (int i = 0; i < b->waiting; i++) {
         if (!same(&b->wait[i], one, of)) continue;
-        /* asked for again: the next */
+        /* a signature that was asked for again is made next */
         const Kept again = b->wait[i];
         memmove(&b->wait[i], &b->wait[i + 1], (size_t)(b->waiting - i - 1) * sizeof *b->wait);
         b->wait[b->waiting - 1] = again;

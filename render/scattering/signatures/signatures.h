@@ -53,8 +53,9 @@ typedef struct SignaturesConfig {
 } SignaturesConfig;
 
 typedef struct SignatureCounters {
-    uint64_t made, fetched, reused, dropped, missing, rays; /* missing: finds of one that was still to be made */
-    double   spent_s;                                       /* wall clock, making them */
+    uint64_t made, fetched, reused, dropped, missing,
+        rays;       /* missing: how often a signature was asked for that was still to be made */
+    double spent_s; /* wall clock, making them */
 } SignatureCounters;
 
 typedef struct Signatures Signatures;
@@ -68,7 +69,7 @@ void   signatures_destroy(Signatures *signatures); /* accepts NULL; waits for th
  * be NULL. */
 Status signatures_find(const Signature **out, Signatures *signatures, int model, const double *joint, int damage,
                        const SignatureLook *look, Pool *pool);
-/* Transmitter and receiver at one place, nothing by way of the ground. */
+/* The look of a transmitter and receiver at one place, with nothing by way of the ground. */
 SignatureLook signature_look(const ScatterAntenna *antenna);
 /* Pose of the nodes in the signature found last, body axes. */
 const NodePose   *signatures_pose(const Signatures *signatures);
@@ -80,7 +81,7 @@ int signatures_waiting(const Signatures *signatures);
 void signature_bin(ScatterAntenna *middle, const ScatterAntenna *antenna, double aspect_rad);
 /* The middles of a look's bins; what does not count for it is zero. */
 void signature_look_bin(SignatureLook *middle, const SignatureLook *look, double aspect_rad);
-/* Of a model's unevenness: a function of its name. */
+/* Seed of a model's unevenness: a function of its name. */
 uint64_t signature_warp_seed(const Model *model);
 
 #endif

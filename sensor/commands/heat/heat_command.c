@@ -257,7 +257,7 @@ static bool read_drive(HeatOptions *o, const char *text)
     return o->course.drive_from_s < o->course.drive_to_s && o->course.drive_to_s <= 86400;
 }
 
-/* 0: valid; else exit with this code - 1. */
+/* Returns 0 if the arguments are valid; else the program exits with this code - 1. */
 static int parse(HeatOptions *o, int argc, char **argv)
 {
     enum { OUT = 'o', CONFIG = 'c', AT = 256, DAY, DRIVE, HEADING, STEP, OVERWRITE, HELP };

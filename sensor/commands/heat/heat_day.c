@@ -40,7 +40,7 @@ void heat_images_close(HeatImages *images)
     *images = (HeatImages){0};
 }
 
-/* The view from 60 m, or three lengths; the whole model fits for any heading. */
+/* Places the view at 60 m, or at three lengths of the model, so that the whole model fits at any heading. */
 static View view_of(const ModelStage *stage)
 {
     const Model *model = catalog_model(stage->catalog, stage->model);
@@ -138,7 +138,7 @@ Status heat_images_write(const HeatImages *images, const ModelStage *stage, cons
 
 /* ---- names of patches ------------------------------------------------------------------------------- */
 
-/* The side of the vehicle that a patch faces, at rest. */
+/* Names the side of the vehicle that a patch faces at rest. */
 static const char *side_of(const Patch *patch, const NodePose *pose)
 {
     static const char *const sides[3][2] = {{"rear", "front"}, {"left", "right"}, {"top", "bottom"}};

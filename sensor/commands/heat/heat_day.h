@@ -46,7 +46,7 @@ typedef struct HeatImages {
 
 Status heat_images_open(HeatImages *images);
 void   heat_images_close(HeatImages *images); /* accepts zeroes */
-/* path[2]: PNG, MWIR and LWIR. One scale of apparent temperature a band. */
+/* Writes the images. path[2]: the PNG of MWIR and that of LWIR. Each band has one scale of apparent temperature. */
 Status heat_images_write(const HeatImages *images, const ModelStage *stage, const char *const path[2]);
 
 /* day: zeroes. Draws the images on its way. On failure heat_day_free is still due. */

@@ -264,8 +264,8 @@ static Status print_summary(const DisLog *log, const char *path, int exercise)
 
 /* ---- one line per Entity State ---------------------------------------------------------------------- */
 
-/* The lines are those of `tshark -T fields`, column names and number formats too, so that the two programs can be
- * compared. */
+/* The lines have the column names and number formats of `tshark -T fields`, so that the two programs can be compared.
+ */
 
 static const char tsv_header[] =
     "frame.number\tdis.proto_ver\tdis.exer_id\tdis.timestamp\tdis.pdu_length\tdis.entity_id_site\t"
@@ -383,7 +383,7 @@ typedef struct InspectOptions {
     long long   port, exercise; /* exercise -1: all */
 } InspectOptions;
 
-/* 0: go on; else exit with this code - 1. */
+/* Returns 0 to go on; else the program exits with this code - 1. */
 static int read_options(InspectOptions *o, int argc, char **argv)
 {
     enum { CONFIG = 'c', PDUS = 256, FULL, PORT, EXERCISE, HELP };

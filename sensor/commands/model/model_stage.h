@@ -18,7 +18,7 @@ typedef struct ModelStage {
     Catalog  *catalog;
     World     world;
     Pool     *pool;
-    Arena    *arena, *air_arena; /* the caller resets them: of one image; of what is the same for several */
+    Arena    *arena, *air_arena; /* for one image; for what several images share. The caller resets them */
     Air       air;
     int       model;               /* of the catalog */
     double    begin_s, place_m[2]; /* Unix time; east and north of the origin */
@@ -27,11 +27,11 @@ typedef struct ModelStage {
 /* stage: zeroes. On failure, logged, model_stage_close is still due. */
 Status model_stage_open(ModelStage *stage, const ModelStageConfig *config);
 void   model_stage_close(ModelStage *stage); /* accepts zeroes */
-/* Where it stands: on the ground. */
+/* Gives the place of the model: on the ground. */
 void model_stage_place(double p_enu[3], const ModelStage *stage);
-/* The model on the ground, its nose turned by turn_rad from east towards north, at exercise time 0. */
+/* Puts the model on the ground at exercise time 0, its nose turned by turn_rad from east towards north. */
 Status model_stage_put(Snapshot *out, SnapshotEntity *entity, const ModelStage *stage, double turn_rad);
-/* Sun, atmosphere and the ground's heat at a time, for the view of a request, into stage->air. */
+/* Fills stage->air: the sun, the atmosphere and the ground's heat at a time, for the view of a request. */
 Status model_stage_light(ModelStage *stage, const RenderRequest *request, double unix_s);
 
 #endif

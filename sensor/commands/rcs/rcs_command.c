@@ -111,7 +111,7 @@ static bool read_joint(RcsConfig *config, const char *text)
     return in_range(&joint->value, equals + 1, -3600, 3600);
 }
 
-/* 0: valid; else exit with this code - 1. */
+/* Returns 0 if the arguments are valid; else the program exits with this code - 1. */
 static int parse(RcsOptions *o, int argc, char **argv)
 {
     enum {

@@ -38,14 +38,15 @@ static void plan_image(RcsImage *image, const RcsSweep *sweep)
     /* 1.3: the width that the window adds */
     image->bandwidth_hz = fmin(1.3 * light_mps / (2 * image->resolution_m * cosine), f_hz);
     image->span_deg = fmin(1.3 * wavelength_m / (2 * image->resolution_m * cosine) / rad_per_deg, 60);
-    /* so far no image of the target lies beside it */
+    /* at this distance no image of the target lies beside it */
     const double free_m = fmax(2.2 * entity->radius_m, 1.6 * image->side_m);
     image->frequencies = (int)ceil(image->bandwidth_hz * 2 * free_m / light_mps) + 2;
     image->pulses = (int)ceil(image->span_deg * rad_per_deg * 2 * free_m / wavelength_m) + 2;
     image->pixels = image_pixels;
 }
 
-/* The profile of a sweep of frequencies: sum of w S exp(+j (k - k0) path) over the samples of path. */
+/* Makes the profile of a sweep of frequencies: the sum of w S exp(+j (k - k0) path) over the frequencies, at each
+ * sample of path. */
 static void make_profile(double complex *out, int samples, double bin_m, const double complex *s, int count,
                          double step_k)
 {
@@ -92,8 +93,13 @@ static Status shoot(Pulses *pulses, const RcsImage *image, RcsSweep *sweep)
             traced_deg = bin_deg;
         }
         if (status == STATUS_OK)
-            status = total_field_sweep(s, count, first_hz, step_hz, &sweep->field, &pulses->antenna[p],
-                                       &pulses->antenna[p], sweep->pool);
+            status = total_field_sweep(s,
+                                       &(FrequencySweep){.count = count,
+                                                         .first_hz = first_hz,
+                                                         .step_hz = step_hz,
+                                                         .tx = &pulses->antenna[p],
+                                                         .rx = &pulses->antenna[p]},
+                                       &sweep->field, sweep->pool);
         for (int q = 0; q < 2 && status == STATUS_OK; q++) {
             for (int f = 0; f < count; f++) w[f] = (q ? s[f].hv : s[f].hh) * (hamming(f, count) / sum);
             make_profile(pulses->profile[q] + (size_t)p * (size_t)pulses->samples, pulses->samples, pulses->bin_m, w,
@@ -183,7 +189,7 @@ Status rcs_image_make(RcsImage *out, RcsSweep *sweep)
 
 /* ---- the picture ------------------------------------------------------------------------------------ */
 
-/* The colour of a share from 0 to 1: black, violet, orange, white. */
+/* Paints the colour of a share from 0 to 1: black, violet, orange, white. */
 static void paint(uint8_t *rgb, double share)
 {
     static const double stop[5][3] = {{0, 0, 4}, {80, 18, 123}, {182, 54, 121}, {251, 136, 97}, {252, 253, 191}};

@@ -72,7 +72,7 @@ static bool span_in(double out[2], const char *text, double low, double high)
     return number_in(&out[0], first, low, high) && number_in(&out[1], colon + 1, low, high) && out[0] <= out[1];
 }
 
-/* 0: valid; else exit with this code - 1. */
+/* Returns 0 if the arguments are valid; else the program exits with this code - 1. */
 static int parse(LibraryOptions *o, int argc, char **argv)
 {
     enum { CONFIG = 'c', LIBRARY = 256, PRESET, AZIMUTH, ELEVATION, RANGE, WARP, DAMAGE, JOINT, HELP };

@@ -53,7 +53,7 @@ const char *rcs_target_name(const RcsSweep *sweep);
 double      rcs_look_deg(const RcsConfig *config, int look);
 
 void rcs_write_csv(FILE *to, const RcsSweep *sweep);
-/* HH and VV of the first frequency over azimuth, polar: SVG. */
+/* Draws HH and VV of the first frequency over azimuth as a polar SVG. */
 void rcs_plot(FILE *to, const RcsSweep *sweep);
 
 /* An inverse synthetic aperture picture: range by frequency, cross range by azimuth, on the plane through the middle
@@ -71,7 +71,7 @@ void   rcs_image_free(RcsImage *image);
 
 /* `pitviper rcs MODEL --library FOLDER`: signatures for a seeker's radar, beforehand. */
 extern const char rcs_library_help[];
-/* argv as of `rcs`; exit code. */
+/* Runs it with the argv of `rcs`; returns the exit code. */
 int rcs_library_command(int argc, char **argv);
 
 #endif

@@ -129,7 +129,8 @@ static Status look_at(ScatterMatrix *s, RcsSweep *sweep, int look, uint64_t seed
     sweep->rays += sweep->field.hits.rays;
     sweep->hit_count += (long long)sweep->field.hits.count;
     for (int f = 0; f < sweep->config.frequencies && status == STATUS_OK; f++)
-        status = total_field_sweep(&s[f], 1, sweep->config.frequency_hz[f], 0, &sweep->field, NULL, NULL, sweep->pool);
+        status = total_field_sweep(&s[f], &(FrequencySweep){.count = 1, .first_hz = sweep->config.frequency_hz[f]},
+                                   &sweep->field, sweep->pool);
     return status;
 }
 

@@ -201,7 +201,7 @@ static Status check_folders(const SweepRun *s)
         snprintf(folder, sizeof folder, "%s/%s", s->options->out, v->name);
         bool other = read_run(&run, folder, "run.json") && run.complete && !is_run(&run, s, v);
         variant_run_free(&run);
-        /* settings outside of config_sha256: time span, planes */
+        /* these settings are not in config_sha256: time span and planes */
         if (!other && read_run(&run, folder, "variant.json")) {
             other = strcmp(run.settings_sha256, v->settings_sha256) != 0;
             variant_run_free(&run);

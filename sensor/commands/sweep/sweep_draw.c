@@ -54,7 +54,7 @@ static Status count_kinds(SweepAxis *axis)
         listed[i].is_number = number && text_to_double(&listed[i].number, axis->value[i]);
     }
     qsort(listed, (size_t)axis->count, sizeof *listed, by_value_and_place);
-    for (int i = 0, first = 0; i < axis->count; i++) { /* for now: the place of the first of its kind */
+    for (int i = 0, first = 0; i < axis->count; i++) { /* holds, for now, the place of the first of its kind */
         if (i == 0 || by_value(&listed[i - 1], &listed[i]) != 0) first = listed[i].place;
         axis->kind_of[listed[i].place] = first;
     }
@@ -71,13 +71,13 @@ static Status count_kinds(SweepAxis *axis)
 
 static double uniform(const Sweep *sweep, int draw, const SweepAxis *axis)
 {
-    /* of the key's name, FNV-1a: an additional axis changes no draw of the others */
+    /* a hash of the key's name, FNV-1a, so that an additional axis changes no draw of the others */
     uint64_t key = 14695981039346656037u;
     for (const char *at = axis->key; *at; at++) key = (key ^ (uint8_t)*at) * 1099511628211u;
     return random_uniform((uint64_t)sweep->draw, 0x53770000u, (uint32_t)draw, key);
 }
 
-/* The kind on an axis of the n-th combination in order, the last axis fastest. */
+/* Which kind an axis has in the n-th combination; the last axis changes fastest. */
 static int kind_in_order(const Sweep *sweep, int n, int axis)
 {
     for (int i = sweep->axis_count - 1; i > axis; i--) n /= sweep->axis[i].kinds;

@@ -125,7 +125,7 @@ static Status read_axis(const Reading *r, const char *key, const yaml_node_t *na
     return STATUS_OK;
 }
 
-/* section: "" at the top; below it keys only. */
+/* Reads the axes of a section. section: "" at the top of the file; in a section only keys are allowed. */
 static Status read_axes(const Reading *r, const char *section, const yaml_node_t *mapping)
 {
     if (mapping->type != YAML_MAPPING_NODE) return refuse(r, mapping, "axes", "needs `key: [values]` below it");

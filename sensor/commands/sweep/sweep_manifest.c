@@ -76,8 +76,8 @@ static bool make_thumbnail(const char *made, const char *folder, int frame)
     return status == STATUS_OK;
 }
 
-/* Makes OUT/folder/thumbnail.png from the display images of this frame; without any, text only. text: lines below it,
- * the first in bold; bad: the reason of a failure. */
+/* Makes OUT/folder/thumbnail.png from the display images of this frame; if there are none, there is text only. text:
+ * lines below it, the first in bold; bad: the reason of a failure. */
 static void add_figure(SweepPage *sheet, const char *out, const char *folder, int frame, const char *text, bool bad)
 {
     char   below[path_size], made[path_size + 16], *bytes = NULL;

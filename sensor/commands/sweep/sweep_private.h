@@ -3,9 +3,42 @@
 #ifndef SENSOR_COMMANDS_SWEEP_SWEEP_PRIVATE_H
 #define SENSOR_COMMANDS_SWEEP_SWEEP_PRIVATE_H
 
+#include "sensor/frame/plane.h"
 #include "sensor/commands/sweep/sweep.h"
 #include "sensor/publish/coco/coco_file.h"
-#include "sensor/publish/files/variant_record.h"
+
+#include <stdio.h>
+
+/* ---- records of variants (variant_record.c) -------------------------------------------------- */
+
+/* manifest.jsonl and variant.json of a sweep (sensor/commands/sweep/sweep.h), and the fields that they share with the
+ * run.json of a completed run. */
+
+/* The result of a run. Texts that are empty and lists of no frames are left out of the file. */
+typedef struct VariantRun {
+    char version[32], config_sha256[sha256_text_size], log_sha256[sha256_text_size], settings_sha256[sha256_text_size];
+    bool complete;             /* rendered to its last frame */
+    int  frames, middle_frame; /* middle_frame: the number of the one in the middle of the list */
+    int  hash_count;
+    char (*hash)[sha256_text_size]; /* [hash_count] of each frame's planes */
+} VariantRun;
+
+/* run.json or variant.json. False: it is absent or not such a record, and *out is empty. */
+bool variant_run_read(VariantRun *out, const char *path);
+void variant_run_free(VariantRun *run);
+
+typedef struct VariantRecord {
+    const char        *name, *status, *error; /* error: "": none */
+    int                number;                /* 1 is the first */
+    int                setting_count;
+    const char *const *key, *const *value; /* [setting_count] */
+    const char       *config_sha256, *settings_sha256, *log_sha256;
+    double            seconds; /* 0: not given */
+    const VariantRun *run;     /* NULL: there is none */
+} VariantRecord;
+
+/* Makes one line without its newline, which the caller frees. NULL: out of memory. */
+char *variant_line(const VariantRecord *record);
 
 /* ---- drawn values ----------------------------------------------------------------------------------- */
 
@@ -56,14 +89,14 @@ typedef struct Outcome {
 
 /* ---- what is written about its variants ------------------------------------------------------------- */
 
-/* key=value of each axis, separated; truncated to the size of out. */
+/* Writes key=value of each axis, separated; truncated to the size of out. */
 void sweep_settings_words(char out[sweep_words_size], const Sweep *sweep, int number, const char *between);
 /* Opens manifest.html and manifest.jsonl in the folder of the sweep. */
 Status sweep_manifest_begin(SweepRun *s);
-/* Adds the variant to the page, with a thumbnail of the middle frame of its run, and tells of it. place: of it among
- * all. */
+/* Adds the variant to the page, with a thumbnail of the middle frame of its run, and prints a line about it. place: its
+ * number among all variants. */
 void sweep_report_variant(SweepRun *s, const Variant *v, const Outcome *outcome, int place);
-/* The variant's line of manifest.jsonl, malloc'd. NULL: out of memory. */
+/* Makes the variant's line of manifest.jsonl, which the caller frees. NULL: out of memory. */
 char *sweep_manifest_line(const SweepRun *s, const Variant *v, const Outcome *outcome);
 /* Ends what was opened. STATUS_IO, logged, also for the page. */
 Status sweep_manifest_end(SweepRun *s);

@@ -199,7 +199,8 @@ static const char again_help[] =
     "Makes a terrain store again with the sources and options that it was made with, which are printed first. A node does\n"
     "that by itself where all of them lie in the store's own folder: a store from elsewhere makes it read no other file.\n";
 
-/* The options that a store was made with, of a whole or a damaged file; malloc'd. NULL, logged: none. */
+/* Reads the options that a store was made with, from a whole or a damaged file; the caller frees them. NULL, logged:
+ * there are none. */
 static char *options_of(const char *path)
 {
     TerrainStore store;
@@ -296,7 +297,7 @@ typedef struct Wanted {
     long long      threads;
 } Wanted;
 
-/* 0: go on; else the exit code. */
+/* Returns 0 to go on; else the exit code. */
 static int parse(Wanted *w, int argc, char **argv)
 {
     enum { OUT = 'o', HELP = 'h', OVERWRITE = 256, THREADS, JSON, VALUE };
@@ -305,7 +306,7 @@ static int parse(Wanted *w, int argc, char **argv)
                                             {"threads", 1, NULL, THREADS},
                                             {"json", 0, NULL, JSON},
                                             {"help", 0, NULL, HELP},
-                                            /* those of terrain/import/terrain_import.h */
+                                            /* these options are those of terrain/import/terrain_import.h */
                                             {"surface", 1, NULL, VALUE},
                                             {"cover", 1, NULL, VALUE + 1},
                                             {"cover-table", 1, NULL, VALUE + 2},

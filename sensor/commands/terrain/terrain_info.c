@@ -31,7 +31,7 @@ static void mean_heights(float *out, int nx, int ny, const ElevationLevel *level
         }
 }
 
-/* Cosine of the angle to the light, as a grey. */
+/* Gives the cosine of the angle to the light as a grey. */
 static uint8_t shade(const float *z_m, int nx, int ny, int x, int y, double apart_m)
 {
     static const double light[3] = {-0.5, 0.5, 0.7071067811865476}; /* from the north-west, 45 degrees high */

@@ -25,14 +25,15 @@ typedef struct HostPlan {
 
 extern const char host_munition[], host_observer[]; /* values of exercise.host that are not ids */
 
-/* Of the guided munitions, else of the others, never mines: the one with a Detonation of result entity impact,
- * longest flight first; else the longest flight; else an observer orbiting the vehicle with the longest path; else
- * an observer orbiting the centre of all entities received. Causal: the longest flight among munitions that are
+/* Chooses the host. First come guided munitions, else the others, never mines: the one with a Detonation of result
+ * entity impact, longest flight first, else the longest flight. Then comes an observer that orbits the vehicle with the
+ * longest path, then one that orbits the centre of all entities. Causal: the longest flight among munitions that are
  * still present, else the observer. */
 Status choice_host(HostPlan *out, Choices *choices, const Survey *survey, const Config *config);
-/* For a host given by name; 0:0:0: the observer. STATUS_BAD_VALUE and a message when the log does not contain it. */
+/* Takes a host given by name; 0:0:0 is the observer. STATUS_BAD_VALUE and a message when the log does not contain it.
+ */
 Status choice_named_host(HostPlan *out, Choices *choices, const Survey *survey, const Config *config, DisEntityId host);
-/* Frames per second of exercise time, into the plan. */
+/* Puts the frames per second of exercise time into the plan. */
 void choice_rate(HostPlan *plan, Choices *choices, const Config *config);
 /* Whether it is a platform of domain land. */
 bool choice_is_land(const Track *track);
@@ -45,11 +46,11 @@ int choice_exercise(Choices *choices, const DisLog *log, const Config *config);
 /* Unix time of exercise time 0. Also reports senders whose time stamps are not a clock. */
 Status choice_time(double *unix_s, Choices *choices, const Survey *survey, const Config *config,
                    const LocalFrame *frame);
-/* Reports when optical images of this place will be black: the sun more than 6 degrees below the horizon, the end of
- * civil twilight, at the beginning or the end of the plan. */
+/* Reports when optical images of this place will be black: at the beginning or the end of the plan the sun is more than
+ * 6 degrees below the horizon (the end of civil twilight). */
 void choice_report_night(Choices *choices, unsigned bands, double unix_s, const HostPlan *plan,
                          const LocalFrame *frame);
-/* The local frame, with its origin amid the entities. */
+/* Gives the local frame, whose origin is amid the entities. */
 Status choice_frame(LocalFrame *out, const Survey *survey, const HostPlan *plan);
 /* Builds the models of all types in the survey, so that no frame waits for one, and reports each type once when it
  * is not rendered (`none` in the catalog), or when no row matches (rendered as a wedge). At most four types by name. */
@@ -72,9 +73,9 @@ typedef enum GroundContact { GROUND_CONTACT_NONE, GROUND_CONTACT_INCONSISTENT, G
  * ground_evidence.h). contact: which entities are clamped to it (terrain.ground), later ones too. */
 Status choice_ground(Landscape *out, GroundContact *contact, Choices *choices, const ChoiceBasis *basis,
                      const LocalFrame *frame);
-/* With terrain.store: the store's own local frame, for everything. Looks at the store's sources: changed ones are
- * imported again first. aim: the frame that the exercise would have by itself; STATUS_BAD_VALUE, logged, when that is
- * not on the store's ground. */
+/* With terrain.store everything uses the store's own local frame. Changed sources of the store are imported again
+ * first. aim: the frame that the exercise would have without it. STATUS_BAD_VALUE, logged: that frame's origin is not
+ * on the store's ground. */
 Status choice_store_frame(LocalFrame *out, Choices *choices, const Config *config, const LocalFrame *aim);
 
 /* Where plants stand in a run: about the aim, clear of what the exercise says.

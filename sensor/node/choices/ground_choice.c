@@ -323,7 +323,7 @@ static int worst_first(const void *pa, const void *pb)
     return (a->track > b->track) - (a->track < b->track);
 }
 
-/* The report of the entity farthest from this ground (or its sea). */
+/* Finds the entity whose report is farthest from this ground, or from its sea. */
 static double farthest_m(const ContactGround *ground, const Track *track, const GroundEvidence *e, int t)
 {
     double farthest = 0;

@@ -109,7 +109,7 @@ static bool says_engines(const Survey *survey, const bool *runs, int t)
     return false;
 }
 
-/* Which aircraft ever report a running engine: [track_count]. */
+/* Finds which aircraft ever report a running engine: [track_count]. */
 static void find_running(bool *runs, const Survey *survey)
 {
     for (int t = 0; t < survey->track_count; t++)
@@ -146,7 +146,7 @@ static int find_still(Still *out, int most, const Gathering *g)
 
 static void add_voter(Gathering *g, int t, bool landed);
 
-/* Those on the ground give fixes as others do; called after the others, whose fixes it uses. */
+/* Judges aircraft on the ground, which give fixes as others do. Called after the others, whose fixes it uses. */
 static Status judge_landed(Gathering *g)
 {
     enum { most = 4096 };
@@ -241,7 +241,7 @@ static void add_flight(Gathering *g, int t)
     const Shot   *shot = track->type.kind == dis_kind_munition ? survey_shot(survey, track->id) : NULL;
     const Track  *target = shot ? survey_track(survey, shot->hit) : NULL;
     const bool   *fixed = g->e->fixed + g->e->first[t];
-    /* a hit without an entity id: the hit found for the host's own munition */
+    /* a hit that names no entity is taken to be the hit found for the host's own munition */
     if (shot && !target && shot->result == dis_result_entity_impact && dis_entity_id_compare(track->id, g->host) == 0)
         target = survey_track(survey, g->aim);
     for (int i = 0, next; i + 1 < track->count; i = next) {
@@ -283,7 +283,7 @@ static Status add_impacts(Gathering *g)
 
 /* ---- the sea ------------------------------------------------------------------------------ */
 
-/* The mean height of a ship's waterline over its reports. */
+/* Averages the height of a ship's waterline over its reports. */
 static double waterline_h_m(const Gathering *g, int t, double *highest_m)
 {
     enum { most = 64 };

@@ -37,7 +37,8 @@ typedef struct GroundEvidence {
     int               impacts;
 } GroundEvidence;
 
-/* p_aim: the hit found for the host's own munition, for a Detonation that names no entity; 0:0:0: none. */
+/* p_aim: the hit found for the host's own munition, which is used for a Detonation that names no entity. An id of 0:0:0
+ * means none. */
 Status ground_evidence_collect(GroundEvidence *out, const Survey *survey, const LocalFrame *frame,
                                const Catalog *catalog, DisEntityId host, DisEntityId aim);
 void   ground_evidence_free(GroundEvidence *evidence);

@@ -205,8 +205,8 @@ static bool lies(const Track *track)
     return true;
 }
 
-/* Longest flight among munitions, guided or not, except mines. impact: only those with a Detonation of result entity
- * impact. NULL: none. */
+/* Finds the longest flight among munitions, guided or not, except mines. impact: only those whose Detonation has the
+ * result entity impact count. NULL: there is none. */
 static const Track *longest_flight(const Survey *survey, const Config *config, bool guided, bool impact)
 {
     const Track *longest = NULL;

@@ -15,7 +15,7 @@ static void enu_of(double p_enu[3], const Landscape *landscape, const double p_e
     enu_from_ecef(p_enu, &landscape->frame, p_ecef);
 }
 
-/* How far an entity's reports reach from the centre, east or north; those beyond far_m are left out. */
+/* How far an entity's reports reach from the centre, east or north; reports beyond far_m do not count. */
 static double reach_of(const Track *track, const Landscape *landscape, const double centre_m[2], double far_m)
 {
     double reach_m = 0;

@@ -124,7 +124,7 @@ static DisDrop most_dropped(const HealthSample *s)
     return (DisDrop)most;
 }
 
-/* `2 (14 PDUs), 7 (1)`: the exercises with the most PDUs, and the first of them. */
+/* Lists the exercises with the most PDUs, as in `2 (14 PDUs), 7 (1)`, and returns the first of them. */
 static int list_exercises(char *out, size_t size, const HealthSample *s)
 {
     enum { most = 4 };
@@ -147,7 +147,7 @@ static int list_exercises(char *out, size_t size, const HealthSample *s)
     return first;
 }
 
-/* The remedy for an error of the system. */
+/* Gives the remedy for an error of the operating system. */
 static const char *send_advice(int error)
 {
     switch (error) {

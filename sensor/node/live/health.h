@@ -32,7 +32,7 @@ typedef enum HealthReason {
     HEALTH_MUNITION_GONE,
     HEALTH_NO_TRAFFIC, /* frames are rendered, but there are no entities */
     HEALTH_NO_VIEW,    /* entities, none in the field of view */
-    HEALTH_HIDDEN,     /* some in it, none of them visible */
+    HEALTH_HIDDEN,     /* targets in the view, none of them visible */
     HEALTH_NOT_SENT,   /* the system accepts no datagram */
     HEALTH_LOST,       /* datagrams arrived faster than they were read */
     HEALTH_LATE,       /* frames dropped */
@@ -45,7 +45,7 @@ typedef enum HealthHost { HEALTH_OBSERVER, HEALTH_BY_ID, HEALTH_MUNITION } Healt
 typedef struct HealthSample {
     double now_s;
     /* received since the last usable Entity State, or since the beginning */
-    double   usable_s, any_s;         /* when that was; of the latest datagram of any kind */
+    double   usable_s, any_s;         /* times of the latest usable one, and of the latest datagram of any kind */
     uint64_t usable;                  /* total */
     uint64_t junk, own;               /* datagrams */
     uint64_t pdus;                    /* of the configured exercise */
@@ -56,18 +56,18 @@ typedef struct HealthSample {
     /* rendered */
     bool       rendering; /* the choices are made, frames follow */
     HealthHost host;
-    uint64_t   frames, missing;      /* rendered; due since the last of them while the host was absent */
+    uint64_t   frames, missing;      /* rendered; due since the last one while the host was absent */
     double     frame_s;              /* of the last frame, or when rendering began */
     int        entities;             /* in the table */
     uint64_t   over_rate;            /* reports of new ones above the rate limit */
     int        others;               /* of the last frame: except the host */
-    double     nearest_m;            /* of them, from the sensor position; NaN: not computed */
+    double     nearest_m;            /* range to the nearest of them; NaN: not computed */
     double     in_view_s, visible_s; /* last frame with an entity in view, with a visible part; or when rendering
                                       * began */
     /* sent */
     bool     publishes;
     uint64_t sent, failed, unsent; /* unsent: failures since the last successful one */
-    double   failing_s;            /* when the first of those occurred */
+    double   failing_s;            /* when the first of these failures occurred */
     int      error;                /* errno of the latest */
     /* lost, dropped */
     uint64_t lost_kernel, lost_queue, late;
@@ -75,7 +75,7 @@ typedef struct HealthSample {
 } HealthSample;
 
 HealthReason health_evaluate(HealthTopic topic, const HealthSample *sample);
-/* Of a run without any frame: the first fault, however short it lasted. */
+/* The first fault of a run without any frame, however short it lasted. */
 HealthReason health_final(const HealthSample *sample);
 
 /* What the messages name. */
@@ -87,7 +87,7 @@ typedef struct HealthNames {
     const char *host; /* as requested, or the present one */
 } HealthNames;
 
-/* The fault and its remedy, one line; empty for HEALTH_FINE. */
+/* Writes the fault and its remedy in one line, empty for HEALTH_FINE. */
 enum { health_text_size = 640 };
 void health_text(char out[health_text_size], HealthReason reason, const HealthSample *sample, const HealthNames *names);
 const char *health_name(HealthReason reason); /* a few words */
@@ -103,8 +103,8 @@ typedef struct Health {
 
 void health_begin(Health *health, double now_s);
 void health_own(Health *health, double now_s); /* a datagram of this node's own site and application */
-/* A datagram of another sender. exercise: the configured one; -1: any. checked: only a report with a usable position
- * counts. */
+/* Takes note of a datagram of another sender. exercise: the configured one; -1: any. checked: only a report with a
+ * usable position counts. */
 void health_received(Health *health, const DisDatagram *datagram, int exercise, bool checked, double now_s);
 void health_rendering(Health *health, double now_s); /* the choices are made, the first frame is due */
 /* A frame that was rendered. */

@@ -14,7 +14,7 @@ Status live_recording_note(LiveRecording *recording, int64_t unix_ns, const char
 /* Flushes to the operating system, so that the recording of a killed program is complete. NULL is valid, here and
  * below. */
 void live_recording_flush(LiveRecording *recording);
-/* Datagrams that could not be recorded. */
+/* Counts the datagrams that could not be recorded. */
 uint64_t live_recording_failed(LiveRecording *recording);
 /* Stops recording. STATUS_IO when anything was not written. The udp must still be open. */
 Status live_recording_close(LiveRecording *recording);

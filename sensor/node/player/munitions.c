@@ -5,7 +5,8 @@
 
 /* A munition that was not heard for this long does not become the host. */
 static const double munition_silent_s = 4;
-/* A burst without ids: clocks and dead reckoning; beyond the second distance a munition flies on. */
+/* Limits for a burst that names no ids, for differences of clocks and dead reckoning. Beyond the second distance a
+ * munition is taken to fly on. */
 static const double burst_slack_s = 0.1, burst_near_m = 10, burst_far_m = 50;
 
 static bool same(DisEntityId a, DisEntityId b) { return dis_entity_id_compare(a, b) == 0; }
@@ -162,7 +163,7 @@ static bool is_there(const EntityTable *table, DisEntityId id)
     return entity_table_alive(table, entity_table_find(table, id));
 }
 
-/* The munition received first of those that are in the table and still fly. */
+/* Finds the munition received first, of those that are in the table and still fly. */
 static bool first_there(DisEntityId *id, const MunitionRing *ring, const EntityTable *table, double now_s)
 {
     const uint64_t kept = ring->count < munitions_kept ? ring->count : munitions_kept;

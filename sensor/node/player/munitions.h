@@ -18,7 +18,7 @@ typedef struct MunitionRing {
     double      heard_s[munitions_kept];         /* of the latest report in flight */
     bool        spent[munitions_kept];           /* it detonated */
     bool        by_place[munitions_kept];        /* as its place and time say, not an id */
-    double      p_burst_ecef[munitions_kept][3]; /* of those */
+    double      p_burst_ecef[munitions_kept][3]; /* where these burst */
     uint64_t    count;
 } MunitionRing;
 

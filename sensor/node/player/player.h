@@ -13,7 +13,7 @@
 
 typedef struct Player Player;
 
-/* exercise: only this id; -1: all. */
+/* exercise: only PDUs of this id are used; -1: of all. */
 Status player_create(Player **out, int exercise, bool causal);
 void   player_destroy(Player *player);
 
@@ -28,7 +28,7 @@ Status player_add_log(Player *player, const DisLog *log);
  * memory, before it feeds anything. */
 Status player_feed(Player *player, EntityTable *table, double t_s);
 
-/* Exercise time of an arrival; NaN before the first PDU. */
+/* Exercise time of a datagram's arrival; NaN before the first PDU. */
 double player_time_s(const Player *player, double capture_s);
 /* Everything that counts at t_s arrived at or before this Unix time, to the last bit. */
 double player_arrival_s(const Player *player, double t_s);
@@ -36,9 +36,9 @@ double player_arrival_s(const Player *player, double t_s);
 double player_fed_s(const Player *player);
 double player_last_s(const Player *player); /* exercise time of the latest arrival; -inf before the first */
 
-/* Target of the latest Fire fed that names this munition. */
+/* Gives the target of the latest Fire that names this munition. */
 bool player_target(DisEntityId *target, const Player *player, DisEntityId munition);
-/* Whether it detonated (munitions_burst), and no report came after a silence since. */
+/* Whether the munition detonated (munitions_burst), and sent no report after a silence since. */
 bool player_spent(const Player *player, DisEntityId munition);
 /* The munition that is the host now, of those fed. munition: in and out (0:0:0: none so far). A guided one
  * (SISO-REF-010, category 1) that is in the table and has not detonated stays; else the guided one received first of
@@ -62,7 +62,7 @@ const DisCounters *player_counters(const Player *player); /* all PDUs added, and
  * time of day comes first): a long silence needs no more memory. */
 enum { player_opening_before = 1024 };
 
-/* Whether this node sent it, by the sender of its first PDU (node.site, node.application). */
+/* Whether this node sent the datagram, by the sender of its first PDU (node.site, node.application). */
 bool player_own(const DisDatagram *datagram, const Config *config);
 /* Removes this node's own datagrams from a log; returns how many. */
 int player_drop_own(DisLog *log, const Config *config);
@@ -74,8 +74,8 @@ bool player_starts(DisHeader *header, const DisDatagram *datagram, const Config 
 /* Arrival time, Unix s, at which listening ends when this datagram starts it. */
 double player_listens_until_s(const DisDatagram *starts, const Config *config);
 
-/* The rule applied to a complete log. view: the log from the beginning of the exercise; heard: its datagrams
- * received in time for the choices; both borrow from the log. False when no datagram starts it. */
+/* Applies the rule to a complete log. view: the log from the beginning of the exercise; heard: those of its datagrams
+ * that were received in time for the choices. Both borrow from the log. False: no datagram starts the exercise. */
 bool player_opening(DisLog *view, DisLog *heard, double *until_s, const DisLog *log, const Config *config);
 
 #endif

@@ -43,24 +43,25 @@ struct Run {
     void (*publish)(void *user, const FrameRecord *frame); /* may be NULL */
     void (*note)(void *user, const char *text);            /* into the recording; may be NULL */
     DisSend *send;                             /* sends the Data PDUs of publish.dis; NULL: they are not sent */
-    void    *user;                             /* of these four */
+    void    *user;                             /* passed to these four */
     double (*wall_s)(void *clock, double t_s); /* SessionShared.wall_s: frames are rendered by the clock; NULL: not */
     void *clock;
 };
 
 /* Bands, sensors, hash of the configuration: before anything is received. */
 Status run_prepare(Run *run);
-/* Exercise and survey from the received datagrams; catalog and pool. */
+/* Finds exercise and survey from the received datagrams, and opens catalog and pool. */
 Status run_survey(Run *run, const DisLog *heard);
 /* Host, aim and span of a host as run_host has them: what is wrong with them is logged, in a second. */
 Status run_check(Run *run, const DisEntityId *host);
-/* One host: its own ground and frame, its own folder when there are several. host: NULL: as configured, or chosen. */
+/* Runs one host, with its own ground and frame, and its own folder when there are several. host NULL: the configured or
+ * chosen one. */
 Status run_host(Run *run, const DisEntityId *host);
 /* run.json of a live run that ended before it heard an entity, without a frame; nothing where an earlier run's products
  * are, which stay until a first frame. */
 Status run_unheard(Run *run);
 void   run_close(Run *run);
-/* The folder for the products of one host. */
+/* Names the folder for the products of one host. */
 enum { run_folder_size = 4096 };
 void run_folder(char out[run_folder_size], const Options *options, DisEntityId host);
 

@@ -11,12 +11,12 @@
  * program at once. A signal may be delivered to any thread and ends no wait: poll regularly. A wait for a pipe
  * (pitviper_file.h) does. Calls stop_outlive_readers. */
 void stop_by_signals(void);
-/* What reads the output may go (`| head`), and a file may reach its limit (ulimit -f): the write fails, and the program
- * goes on to its products. */
+/* Makes the program finish its products when the reader of its output goes (`| head`) or a file reaches its limit
+ * (ulimit -f): the write fails instead of ending the program. */
 void stop_outlive_readers(void);
 bool stop_asked(void);
-/* 128 plus the number of the stop signal, as in a shell's exit status: 130 for Ctrl-C, 143 for SIGTERM, 129 for
- * SIGHUP, 138 for SIGUSR1; 0: none. */
+/* Exit code after a stop signal, 128 plus its number as in a shell: 130 for Ctrl-C, 143 for SIGTERM, 129 for SIGHUP,
+ * 138 for SIGUSR1; 0: there was none. */
 int stop_exit_code(void);
 
 #endif

@@ -38,7 +38,7 @@ Mount seeker_mount(const Config *config)
                           .offset_m = {config->sensor.mount_x_m, config->sensor.mount_y_m, config->sensor.mount_z_m}};
     const double yaw_rad = config->sensor.mount_yaw_deg * rad_per_deg, c = cos(yaw_rad), s = sin(yaw_rad);
     const double pitch_rad = config->sensor.mount_pitch_deg * rad_per_deg, e = cos(pitch_rad), f = sin(pitch_rad);
-    /* right-handed about z (down), then about the turned y (right) */
+    /* the axes turn right-handed about z (down), then about the turned y (right) */
     const double r[9] = {c * e, -s, c * f, s * e, c, s * f, -f, 0, e};
     memcpy(mount.r_base_from_mount, r, sizeof r);
     _Static_assert(sizeof mount.part == sizeof config->sensor.mount, "one name");
@@ -99,7 +99,7 @@ void seeker_step(Seeker *seeker, const double d_body[3])
     double d[3];
     if (!v3_is_finite(d_body) || !v3_normalize(d, d_body)) return;
 
-    /* An aim beyond the limit: the nearest direction on the cone, in the plane of axis and aim. */
+    /* an aim beyond the limit is replaced by the nearest direction on the cone, in the plane of axis and aim */
     const double off_rad = atan2(hypot(d[1], d[2]), d[0]);
     seeker->off_rad = off_rad;
     seeker->at_limit = off_rad > seeker->config.limit_rad;
@@ -141,7 +141,7 @@ static void boresight(double d_enu[3], const Seeker *seeker, const double r_enu_
     v3_normalize(d_enu, d_enu);
 }
 
-/* The first up direction of a head that points straight up or down. */
+/* Gives the first up direction of a head that points straight up or down. */
 static void first_top(double top_enu[3], const double d_enu[3], const double r_enu_from_body[9])
 {
     const double nose[3] = {r_enu_from_body[0], r_enu_from_body[3], r_enu_from_body[6]};

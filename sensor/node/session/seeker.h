@@ -32,11 +32,12 @@ typedef struct Mount {
 enum { mount_body = -1, mount_missing = -2 };
 
 Mount seeker_mount(const Config *config);
-/* Node of a model that the sensor goes with; mount_body: the body itself; mount_missing: no such part. */
+/* The node of a model that the sensor moves with. mount_body: the body itself; mount_missing: there is no such part. */
 int seeker_mount_node(const Mount *mount, const Model *model);
-/* Class number of an articulated part's words or number; 0: neither. */
+/* Finds the class number of an articulated part from its words or number; 0: it is neither. */
 uint32_t seeker_mount_class(const char *part);
-/* Sensor position and mount axes. node: poses of the host's nodes; at: of seeker_mount_node, negative: on the body. */
+/* Sensor position and mount axes. node: the poses of the host's nodes; at: the result of seeker_mount_node, negative
+ * for the body. */
 void seeker_mount_place(double p_ecef[3], double r_ecef_from_mount[9], const Mount *mount, const SnapshotEntity *host,
                         const Model *model, const NodePose *node, int at);
 
@@ -80,7 +81,7 @@ typedef struct Seeker {
 /* One tick towards a direction in body axes. The first call points there at once, as a head that is
  * locked on before launch. An aim that is not finite leaves the gimbal where it is. */
 void seeker_step(Seeker *seeker, const double d_body[3]);
-/* The roll at the same tick: call after seeker_step. */
+/* Computes the roll at the same tick; call it after seeker_step. */
 void seeker_roll(Seeker *seeker, const double r_enu_from_body[9]);
 
 /* Camera axes of the present gimbal angles: r_enu_from_cam, for a body whose attitude is r_enu_from_body. Upright where

@@ -72,8 +72,8 @@ typedef struct SessionResult {
 
 typedef struct Session Session;
 
-/* Its files are made at once where `out` has no products of an earlier run; those stay until the first frame takes
- * their place. The player and shared must outlive the session. */
+/* Opens a session. It makes its files at once where `out` has no products of an earlier run; else these stay until the
+ * first frame takes their place. The player and shared must outlive the session. */
 Status session_open(Session **out, const SessionShared *shared, const HostPlan *plan, Player *player,
                     const char *folder);
 /* Processes everything up to t_s, then renders the frame. t_s must not decrease. shown: false when the host is

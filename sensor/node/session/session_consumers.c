@@ -62,7 +62,7 @@ static const Geoid *geoid_of(Session *s)
     return s->geoid.n_m ? &s->geoid : NULL;
 }
 
-/* to: VideoTo, of those configured. patient: a failure ends nothing. */
+/* to: those of the configured outputs, VideoTo. patient: a failure ends nothing. */
 static Status add_video(Consumers *list, Session *s, unsigned to, bool patient)
 {
     const SessionShared *shared = s->shared;
@@ -154,7 +154,7 @@ static Status add_call(Consumers *list, const SessionShared *shared)
     return status == STATUS_OK ? consumers_add(list, consumer) : status;
 }
 
-/* A recogniser's detections: answers.jsonl, and metadata. */
+/* Adds the consumers of a recogniser's detections: answers.jsonl, and metadata. */
 static Status add_detections(Consumers *list, Session *s)
 {
     const Config *config = s->shared->config;
@@ -168,7 +168,8 @@ static Status add_detections(Consumers *list, Session *s)
     return status == STATUS_OK ? consumers_add(list, consumer) : status;
 }
 
-/* Shared memory never waits: before all other consumers, but for raw counts behind the displays that they belong to. */
+/* Adds shared memory. It never waits, so it comes before all other consumers; with raw counts it comes after the
+ * displays, which make these. */
 static Status add_memory(Consumers *list, Session *s, bool behind_displays)
 {
     const SessionShared *shared = s->shared;
@@ -271,8 +272,8 @@ static Status for_replay(Session *s, FrameDone *done, unsigned raw)
     return status;
 }
 
-/* By the clock: what is sent is sent at once or left out, and never delays rendering. A live node's files are left out
- * too when the disk is late; those of a replay delay it. */
+/* Adds the consumers that work by the clock: what is sent is sent at once or left out, and never delays rendering. A
+ * live node's files are left out too when the disk is late; those of a replay delay it. */
 static Status by_the_clock(Session *s, FrameDone *done, unsigned raw)
 {
     const Config *config = s->shared->config;
@@ -300,7 +301,7 @@ static Status by_the_clock(Session *s, FrameDone *done, unsigned raw)
     return status;
 }
 
-/* Those of an earlier run, where they lie in its folder: of bands that are not in this one too. */
+/* Removes the videos of an earlier run in this run's folder, also of bands that this run lacks. */
 static void clear_videos(const Session *s)
 {
     const char  *folder = s->shared->config->publish.video;
@@ -339,6 +340,6 @@ Status session_consumers(Session *s, FrameDone *done)
         status = shared->live || shared->paced ? by_the_clock(s, done, raw) : for_replay(s, done, raw);
     consumers_expect(&s->consumers, s->latency);
     s->wants = further_wants(s, consumers_wants(&s->consumers));
-    /* the one being rendered, and of each queue the one that waits and the one being published */
+    /* the frame being rendered, and of each queue the frame that waits and the one being published */
     return status == STATUS_OK ? frame_pool_create(&s->frames, 1 + 2 * s->queues) : status;
 }

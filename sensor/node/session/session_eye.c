@@ -88,8 +88,8 @@ static bool mounted(Mounted *out, Session *s, double t_s)
     return true;
 }
 
-/* The same a tick later, as far as it is known at t_s: dead reckoning from the same report, so that the next report
- * does not make the camera jump. At the end of a replay's track it is extrapolated. */
+/* Does the same for a tick later, as far as it is known at t_s: by dead reckoning from the same report, so that the
+ * next report does not make the camera jump. At the end of a replay's track it is extrapolated. */
 static bool mounted_ahead(Mounted *out, Session *s, const Mounted *now, double t_s)
 {
     static const double step_s = 1.0 / seeker_ticks_per_s;
@@ -199,7 +199,7 @@ static void step_gimbal(Session *s, double t_s)
     report_limit(s, t_s);
 }
 
-/* Rotation of the camera and motion of the sensor: to its position a tick later. */
+/* Computes the camera's rotation and the sensor's motion from its position a tick later. */
 static void camera_motion(Eye *eye, Session *s, const Mounted *now, double t_s)
 {
     static const double step_s = 1.0 / seeker_ticks_per_s;
@@ -301,7 +301,8 @@ static bool host_eye(Eye *eye, Session *s, Snapshot *snapshot, double t_s)
     return true;
 }
 
-/* On a circle about the aim, clockwise from above, starting in the south; never below the ground. */
+/* Places the observer on a circle about the aim, clockwise from above, starting in the south; never below the ground.
+ */
 static void observer_position(double p_ecef[3], double aim_enu[3], const Session *s, double t_s)
 {
     const Config     *config = s->shared->config;

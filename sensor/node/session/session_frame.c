@@ -6,7 +6,7 @@
 #include "sensor/publish/consumers/consume_pairs.h"
 #include "sensor/frame/frame_world.h"
 
-/* The image motion of a stationary point at the image centre. */
+/* Computes how a stationary point at the image centre moves on the image. */
 static void rate_of_scene(double rate_px_s[2], const Eye *eye, const Picture *picture)
 {
     const size_t middle = (size_t)(picture->height / 2) * (size_t)picture->width + (size_t)(picture->width / 2);
@@ -49,33 +49,33 @@ static void make_request(RenderRequest *request, const Session *s, const Eye *ey
 }
 
 /* Renders the view's picture once and lists its planes. */
-static Status look(FrameView *view, const Session *s, const RenderRequest *request, const Air *air,
-                   const double r_host_from_enu[9], Arena *arena)
+static Status look(FrameView *view, const Session *s, const RenderRequest *request, const FrameLight *light,
+                   Arena *arena)
 {
     const Status status =
-        render(&view->picture, s->shared->world, &view->snapshot, request, air, s->shared->pool, arena);
+        render(&view->picture, s->shared->world, &view->snapshot, request, &light->air, s->shared->pool, arena);
     if (status != STATUS_OK) return status;
-    if (view->picture.normal[0]) frame_turn_normals(&view->picture, r_host_from_enu);
+    if (view->picture.normal[0]) frame_turn_normals(&view->picture, light->r_host_from_enu);
     view->plane_count = frame_planes(view->plane, &view->picture, request);
     return STATUS_OK;
 }
 
 /* Renders the frame once more without its target, or without any entity (publish.pairs). */
-static Status look_without(Frame *f, const Session *s, const Air *air, const double r_host_from_enu[9], int host)
+static Status look_without(Frame *f, const Session *s, const FrameLight *light, int host)
 {
     const bool all = strcmp(s->shared->config->publish.pairs, "all") == 0;
     f->without = arena_alloc(f->arena, 1, sizeof *f->without);
     if (!f->without) return STATUS_NO_MEMORY;
     *f->without->sha256 = 0;
-    Status     status = pairs_take_away(&f->without->snapshot, &f->taken, &f->taken_count, &f->seen.snapshot, all,
-                                        s->plan.aim, host, f->arena);
-    HeatScene *heat = NULL;
-    if (status == STATUS_OK) /* the ground as it is where it did not stand */
+    const PairsTaken take = {.all = all, .aim = s->plan.aim, .host = host};
+    Status           status = pairs_take_away(f, &take);
+    HeatScene       *heat = NULL;
+    if (status == STATUS_OK) /* the ground as it is where the target never stood */
         status = world_heat_at(&heat, s->shared->world, &f->without->snapshot.marks, f->unix_s, f->arena);
     if (status != STATUS_OK) return status;
-    Air without = *air;
-    without.heat = heat;
-    return look(f->without, s, &f->request, &without, r_host_from_enu, f->arena);
+    FrameLight without = *light;
+    without.air.heat = heat;
+    return look(f->without, s, &f->request, &without, f->arena);
 }
 
 /* Adds what the radar on the same axis measures, unless this frame is one of those without radar. */
@@ -192,16 +192,16 @@ Status session_make_frame(bool *shown, int *left_out, Frame *f, Session *s, int 
     f->world = shared->world;
     memcpy(f->host, s->host_text, sizeof f->host);
 
-    Air            air;
-    double         r_host_from_enu[9] = {0};
+    FrameLight     light = {0};
     const double  *p_ecef = eye.state.p_ecef;
     const FrameEye at = {
         f->unix_s, {p_ecef[0], p_ecef[1], p_ecef[2]}, &eye.view, shared->bands, &f->seen.snapshot.marks};
-    status = frame_light(&air, &f->sun, r_host_from_enu, shared->world, shared->config, &at, shared->pool, f->arena);
+    status = frame_light(&light, shared->world, shared->config, &at, shared->pool, f->arena);
+    f->sun = light.sun;
     make_request(&f->request, s, &eye, t_s);
     const double posed_s = wall_clock_s();
-    if (status == STATUS_OK) status = look(&f->seen, s, &f->request, &air, r_host_from_enu, f->arena);
-    if (status == STATUS_OK && s->wants & WANT_WITHOUT) status = look_without(f, s, &air, r_host_from_enu, eye.hidden);
+    if (status == STATUS_OK) status = look(&f->seen, s, &f->request, &light, f->arena);
+    if (status == STATUS_OK && s->wants & WANT_WITHOUT) status = look_without(f, s, &light, eye.hidden);
     if (status != STATUS_OK) return status;
     if (f->seen.picture.range_m) rate_of_scene(f->rate_px_s, &eye, &f->seen.picture);
     fill_record(f, s, &eye);

@@ -18,7 +18,7 @@ struct Session {
     HostPlan             plan; /* host and aim are filled in when they are received */
     char                 out[4096];
     char                 host_text[dis_id_text_size];
-    bool                 opened; /* all of it */
+    bool                 opened; /* everything is open */
     EntityTable         *table;
     Player              *player;          /* the caller's */
     GivenHeat           *given;           /* of vehicles; NULL: none */
@@ -33,7 +33,7 @@ struct Session {
     bool                 aim_known;
     Mount                mount;
     int                  mount_model, mount_at; /* mount_at: as seeker_mount_node, of that model; -1: none yet */
-    NodePose            *node;                  /* of the host, [most nodes of a model]; joint: the same */
+    NodePose            *node; /* poses and joint values of the host's nodes, [most nodes of a model] */
     double              *joint;
     bool                 limit_reported; /* last report of the gimbal limit, and its tick */
     int64_t              limit_tick;
@@ -71,7 +71,7 @@ typedef struct Eye {
     double   w_cam_rps[3]; /* how the camera turns, in its own axes */
 } Eye;
 
-/* The present host into the result's list, once. */
+/* Adds the present host to the result's list, once. */
 void session_note_host(Session *s);
 /* Feeds everything that counts by t_s, finds host and aim, and moves the gimbal, on a fixed grid of exercise time. */
 void session_advance(Session *s, double t_s);
@@ -85,7 +85,7 @@ bool session_eye(Eye *eye, Session *s, Snapshot *snapshot, double t_s);
 /* One frame, of all but what its consumers do. shown: false when the host is absent. left_out: entities that are not
  * in it. */
 Status session_make_frame(bool *shown, int *left_out, Frame *f, Session *s, int number, double t_s);
-/* Makes the folders and files of its products, once, in place of those of an earlier run. */
+/* Makes the folders and files of the products, once, in place of those of an earlier run. */
 Status session_begin_files(Session *s);
 /* The consumers of this session's frames, from the configuration; and a pool for as many frames as they need. done:
  * each frame that all consumers have received. */

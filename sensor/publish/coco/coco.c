@@ -27,7 +27,7 @@ void coco_mask_extents(CocoMaskExtent *extent, int count, const uint32_t *plane,
 
 size_t coco_mask_text_size(const CocoMaskExtent *extent)
 {
-    /* a column begins and ends a run at most once in two of its rows; one more run on either side of the box */
+    /* a run begins and ends at most once in two rows of a column; one more run lies on either side of the box */
     const size_t columns = (size_t)(extent->box[2] - extent->box[0]), rows = (size_t)(extent->box[3] - extent->box[1]);
     return coco_mask_run_characters * (columns * (rows + 1) + 2) + 1;
 }
@@ -60,8 +60,8 @@ void coco_mask_text(char *text, const uint32_t *plane, uint32_t value, int width
     long long end = 0; /* of the last run */
     bool      on = false;
     for (int x = extent->box[0]; x < extent->box[2]; x++) {
-        /* from row 0 on where the previous column ended within the mask, to the row after the box or the last row of
-         * the image */
+        /* a column begins at row 0 where the previous column ended within the mask, and ends at the row after the box
+         * or at the last row of the image */
         const int first = on ? 0 : extent->box[1], behind = extent->box[3] < height ? extent->box[3] + 1 : height;
         for (int y = first; y < behind; y++) {
             if ((plane[(size_t)y * (size_t)width + (size_t)x] == value) == on) continue;
@@ -161,7 +161,7 @@ static bool is_visible(const TargetRecord *t, const CocoMaskExtent *mask)
     return mask->pixels > 0 || !target_box_is_empty(t->box);
 }
 
-/* The box of an ignore region: all pixels that show a part of it, among them those of the mask. */
+/* The box of an ignore region: it holds all pixels that show a part of the region, and so those of the mask. */
 static CocoMaskExtent region_of(const TargetRecord *t, const CocoMaskExtent *mask)
 {
     CocoMaskExtent region = *mask;
@@ -179,7 +179,7 @@ static void set_text(json_t *object, const char *key, const char *text)
     if (text) json_object_set_new(object, key, json_string(text));
 }
 
-/* Of the target in the image's band. */
+/* Sets the signal of the target in the image's band. */
 static void set_signal(json_t *out, const TargetRecord *t, Band band)
 {
     const TargetBand *signal = &t->band[band];

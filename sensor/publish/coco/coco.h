@@ -32,12 +32,12 @@ typedef struct CocoLimits {
     double min_snr;     /* 0 or more: of its snr without the sign, in the image's band */
 } CocoLimits;
 
-/* ending: of the images named, "png" or "exr". */
+/* ending: that of the image files, "png" or "exr". */
 Status coco_open(Coco **out, const char *folder, const char *ending, CocoLimits limits, const char *config_sha256,
                  long long seed);
 /* Opens FOLDER/coco.json, before the first frame. */
 Status coco_begin(Coco *coco);
-/* entity: truth plane of the frame, [height][width], snapshot index + 1. STATUS_IO, logged. */
+/* entity: the truth plane of the frame, [height][width], with snapshot index + 1. STATUS_IO, logged. */
 Status coco_frame(Coco *coco, const FrameRecord *record, const uint32_t *entity);
 /* Joins the parts and renames the file; after a failure, or when this one fails (STATUS_IO, logged), there is none.
  * NULL is valid. */
@@ -52,7 +52,7 @@ Status coco_close(Coco *coco);
  * lowest first, with a sixth bit when more follow and the sign in the last group's highest, as the character 48 +
  * group. */
 
-/* Extent of a value in a plane. */
+/* Where a value lies in a plane. */
 typedef struct CocoMaskExtent {
     long long pixels;
     int       box[4]; /* first column, first row, last column + 1, last row + 1; no pixels: all 0 */
@@ -64,7 +64,7 @@ void coco_mask_extents(CocoMaskExtent *extent, int count, const uint32_t *plane,
 enum { coco_mask_run_characters = 7 };
 /* Characters that hold the text of any mask of this extent, including its terminator. */
 size_t coco_mask_text_size(const CocoMaskExtent *extent);
-/* The pixels of this value. text: coco_mask_text_size characters. */
+/* Writes the mask of the pixels of this value. text: coco_mask_text_size characters. */
 void coco_mask_text(char *text, const uint32_t *plane, uint32_t value, int width, int height,
                     const CocoMaskExtent *extent);
 /* All pixels of the extent's box, which is not empty and lies within the image. */

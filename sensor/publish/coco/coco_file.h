@@ -28,9 +28,9 @@ Status coco_file_close(CocoFile *file, json_t *info, bool whole);
 
 /* ---- a sweep ------------------------------------------------------------------------------------- */
 
-/* One coco.json from those of the variants of a sweep: new ids from 1 on, in the order of the
- * variants; images are named relative to the sweep's folder, and name their variant (`variant`). Categories
- * are the same in all. */
+/* Merges the coco.json of the variants of a sweep into one. Ids are new, from 1 on, in the order of the variants;
+ * images are named relative to the sweep's folder, and name their variant (`variant`). All variants have the same
+ * categories. */
 
 typedef struct CocoMerge CocoMerge;
 

@@ -61,7 +61,7 @@ static json_t *member_json(const PairRecord *r, const PairMember *m)
     return member;
 }
 
-/* One line, flushed. STATUS_IO when it cannot be written; STATUS_NO_MEMORY. */
+/* Writes one line and flushes it. STATUS_IO when it cannot be written; STATUS_NO_MEMORY. */
 static Status write_pair_record(FILE *file, const PairRecord *r)
 {
     json_t *removed = json_array(), *members = json_array();
@@ -165,7 +165,7 @@ static bool is_of(uint64_t owner, const DisEntityId *id, int count)
     return false;
 }
 
-/* Their smoke, dust and flames; where they stood, and their tracks. */
+/* Removes the smoke, dust and flames of these entities, the marks where they stood, and their tracks. */
 static Status take_traces(Snapshot *s, const DisEntityId *id, int count, Arena *arena)
 {
     EffectPuff  *puff = arena_alloc(arena, (size_t)s->puff_count + 1, sizeof *puff);
@@ -185,24 +185,25 @@ static Status take_traces(Snapshot *s, const DisEntityId *id, int count, Arena *
     return STATUS_OK;
 }
 
-Status pairs_take_away(Snapshot *without, const DisEntityId **taken, int *taken_count, const Snapshot *with, bool all,
-                       DisEntityId aim, int host, Arena *arena)
+Status pairs_take_away(Frame *frame, const PairsTaken *take)
 {
-    const int       only = all || dis_entity_id_is_none(aim) ? -1 : snapshot_find(with, aim);
-    SnapshotEntity *entity = arena_alloc(arena, (size_t)with->count + 1, sizeof *entity);
-    DisEntityId    *ids = arena_alloc(arena, (size_t)with->count + 1, sizeof *ids);
+    const Snapshot *with = &frame->seen.snapshot;
+    Snapshot       *without = &frame->without->snapshot;
+    const int       only = take->all || dis_entity_id_is_none(take->aim) ? -1 : snapshot_find(with, take->aim);
+    SnapshotEntity *entity = arena_alloc(frame->arena, (size_t)with->count + 1, sizeof *entity);
+    DisEntityId    *ids = arena_alloc(frame->arena, (size_t)with->count + 1, sizeof *ids);
     if (!entity || !ids) return STATUS_NO_MEMORY;
-    *taken = ids;
-    *taken_count = 0;
+    frame->taken = ids;
+    frame->taken_count = 0;
     if (with->count > 0) memcpy(entity, with->entity, (size_t)with->count * sizeof *entity);
     for (int i = 0; i < with->count; i++) {
-        if (i == host || (!all && i != only)) continue;
+        if (i == take->host || (!take->all && i != only)) continue;
         entity[i].model = -1;
-        ids[(*taken_count)++] = entity[i].id;
+        ids[frame->taken_count++] = entity[i].id;
     }
     *without = *with;
     without->entity = entity;
-    return take_traces(without, ids, *taken_count, arena);
+    return take_traces(without, ids, frame->taken_count, frame->arena);
 }
 
 static Status write_member(Pairs *p, int m, Frame *frame)

@@ -33,10 +33,15 @@ typedef struct PairsOf {
 
 /* Requires each frame without its target too (Frame.without). */
 Status consume_pairs(Consumer **out, const PairsOf *made_of);
-/* The same snapshot, including its indices, without the removed entities and what is theirs; their ids are listed: aim,
- * or all. host:
- * snapshot index, stays; -1. */
-Status pairs_take_away(Snapshot *without, const DisEntityId **taken, int *taken_count, const Snapshot *with, bool all,
-                       DisEntityId aim, int host, Arena *arena);
+/* Which entities a frame is rendered without. */
+typedef struct PairsTaken {
+    bool        all; /* every entity but the host; else only aim */
+    DisEntityId aim;
+    int         host; /* snapshot index of the entity that stays; -1: none */
+} PairsTaken;
+
+/* Fills frame->without->snapshot: frame->seen.snapshot with the same indices, without the entities to be taken and
+ * without their smoke and marks. Lists the ids of these entities in frame->taken. */
+Status pairs_take_away(Frame *frame, const PairsTaken *take);
 
 #endif

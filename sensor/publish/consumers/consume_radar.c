@@ -84,9 +84,9 @@ enum { plot_rows = 96, map_rows = 256 };
 
 static double power_db(double complex v) { return 10 * log10(creal(v) * creal(v) + cimag(v) * cimag(v)); }
 
-/* To look at: the range profile, columns as high as their decibels; below it the power of the map's sum channel in
- * decibels, each row as often as makes it some 256 rows high, approaching on top. Both from 5 dB below the noise to
- * the greatest, at least 45 dB. */
+/* Writes a picture to look at. On top is the range profile, as columns of its decibels; below it the power of the map's
+ * sum channel in decibels, approaching echoes on top, each row repeated to make some 256 rows. Both go from 5 dB below
+ * the noise to the greatest value, over at least 45 dB. */
 static Status write_picture(const char *path, const RadarFrame *r)
 {
     const int    columns = r->map.columns, again = map_rows / r->map.rows > 1 ? map_rows / r->map.rows : 1;
@@ -123,7 +123,8 @@ enum { picture_columns = 384 };
 /* Of a column, so that a picture of few is wide enough to look at. */
 static int repeats(int columns) { return columns < picture_columns ? picture_columns / columns : 1; }
 
-/* [azimuths][ranges], the nearest first, as an image: a row a range, the farthest on top, a column an azimuth. */
+/* Turns [azimuths][ranges], nearest first, into an image: a row for each range, the farthest on top, and a column for
+ * each azimuth. */
 static float *as_image(const double *from, int azimuths, int ranges)
 {
     float *to = malloc((size_t)azimuths * (size_t)ranges * sizeof *to);
@@ -135,7 +136,8 @@ static float *as_image(const double *from, int azimuths, int ranges)
     return to;
 }
 
-/* In decibels from 5 dB below the noise to the greatest, at least 45 dB; NaN: black. Each column again and again. */
+/* Writes a map in decibels as greys, from 5 dB below the noise to the greatest value, but over at least 45 dB; NaN is
+ * black. Each column is repeated. */
 static Status write_grey(const char *stem, const char *ending, const float *value, int width, int height, int again,
                          double noise_w)
 {
@@ -243,7 +245,7 @@ static Status write_pixels(const char *stem, const Frame *f, bool png)
     return status;
 }
 
-/* Resolution over azimuth, at the reference range. */
+/* Writes the resolution over azimuth, at the reference range. */
 static void put_azimuths(FILE *file, const void *user)
 {
     const RadarFrame  *r = user;
@@ -261,7 +263,8 @@ static void put_azimuths(FILE *file, const void *user)
     }
 }
 
-/* Those of a frame with frame->radar->scan, each beginning with stem (PATH/NNNNNN). png: pictures to look at too. */
+/* Writes the files of a frame with frame->radar->scan, whose names begin with stem (PATH/NNNNNN). png: pictures to look
+ * at too. */
 static Status write_scan(const char *stem, const Frame *f, bool png)
 {
     char   path[frame_path_size];

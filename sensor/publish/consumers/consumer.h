@@ -10,7 +10,7 @@
 #include "sensor/frame/frame.h"
 
 typedef enum FrameWant {
-    WANT_PLANES = 1 << 0,    /* of truth; those of the bands are always present */
+    WANT_PLANES = 1 << 0,    /* planes of truth; planes of the bands are always present */
     WANT_TARGETS = 1 << 1,   /* record.target */
     WANT_ERROR = 1 << 2,     /* record.error, where the error budget is on */
     WANT_CELLS = 1 << 3,     /* picture.small: small targets as a detector needs them */
@@ -25,7 +25,7 @@ typedef enum FrameWant {
 typedef struct Consumer Consumer;
 struct Consumer {
     unsigned wants;
-    /* One frame, in order of time. Any result but STATUS_OK, logged, ends the run. */
+    /* Takes one frame, in order of time. Any result but STATUS_OK, which is logged, ends the run. */
     Status (*put)(Consumer *consumer, Frame *frame);
     /* The frame was rendered and is not put, for lack of time; called in the rendering thread. NULL: not needed. */
     void (*left_out)(Consumer *consumer, const Frame *frame);
@@ -49,7 +49,7 @@ Status   consumers_add(Consumers *list, Consumer *consumer);
 unsigned consumers_wants(const Consumers *list);
 /* Of each that has a begin; the first failure ends it. */
 Status consumers_begin(const Consumers *list);
-/* The frame to each in turn; the first failure ends it. */
+/* Puts the frame to each consumer in turn; the first failure ends it. */
 Status consumers_put(const Consumers *list, Frame *frame);
 /* Their names into the ledger. NULL: none is kept. */
 void consumers_expect(const Consumers *list, Latency *latency);
@@ -102,7 +102,7 @@ static inline bool retry_due(const RetryBackoff *p)
     return due;
 }
 
-/* After a try, with its status; after none, with STATUS_IO. */
+/* Call this after a try, with its status; where none was made, with STATUS_IO. */
 static inline void retry_done(RetryBackoff *p, bool tried, Status status)
 {
     if (tried) log_suppress(false);
@@ -118,7 +118,7 @@ static inline void retry_done(RetryBackoff *p, bool tried, Status status)
     p->off_s = wall_clock_s() + retry_interval_s;
 }
 
-/* At the end of the run: what it lacks, if that has not been said yet. */
+/* Logs at the end of the run what is missing, if that has not been said yet. */
 static inline void retry_end(const RetryBackoff *p)
 {
     if (p->failed) log_warn("session: %d frames lack %s", p->lacking, p->what);

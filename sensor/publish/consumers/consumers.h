@@ -14,8 +14,8 @@ typedef struct Chains {
 } Chains;
 void chains_destroy(Chains *chains);
 
-/* frame.display of every frame put, in order; in a list before those that want it. counts: raw counts too. Takes the
- * chains over, also on failure. */
+/* Makes frame.display of every frame put, in order; in a list it comes before the consumers that want it. counts: it
+ * makes raw counts too. Takes the chains over, also on failure. */
 Status consume_displays(Consumer **out, const Config *config, Pool *pool, Chains *chains, bool counts);
 
 /* OUT/frames, raw and profiles (frame_files.h). patient: a frame that cannot be written is dropped, reported, and
@@ -32,7 +32,7 @@ Status consume_pictures(Consumer **out, const PictureFiles *made_of);
  * with a measurement of a radar (frame.radar). */
 Status consume_radar(Consumer **out, const PictureFiles *made_of);
 
-/* OUT/latest/BAND.png: the newest display of each band, 8 bits, replaced as a whole. patient: as above. */
+/* Writes OUT/latest/BAND.png: the newest display of each band, 8 bits, replaced as a whole. patient: as above. */
 Status consume_latest(Consumer **out, const char *folder, bool patient);
 
 /* OUT/truth.jsonl, a line per frame. patient: a line that cannot be written is dropped; failed: how many, when
@@ -42,12 +42,12 @@ Status consume_truth_lines(Consumer **out, const char *folder, bool patient, int
 /* OUT/coco.json. */
 Status consume_coco(Consumer **out, const char *folder, const Config *config, const char *config_sha256);
 
-/* Each frame's record, passed to a function: health of a live node, tests. targets: with its targets. */
+/* Passes each frame's record to a function: health of a live node, tests. targets: the record has its targets. */
 typedef void FrameCall(void *user, const FrameRecord *record);
 Status       consume_by_call(Consumer **out, FrameCall *call, void *user, bool targets);
 
-/* The hash of each frame (hashes: false: none), and that it has been published: the last of a list. done is called for
- * each. */
+/* Takes the hash of each frame (hashes false: none) and calls done for each when it has been published. It is the last
+ * of a list. */
 typedef void FrameDone(void *user, const Frame *frame);
 Status       consume_hashes(Consumer **out, FrameDone *done, void *user, bool hashes);
 

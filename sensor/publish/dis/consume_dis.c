@@ -57,7 +57,7 @@ static void add_fixed(DisData *pdu, uint32_t id, uint32_t value)
     pdu->fixed[pdu->fixed_count++] = (DisFixedDatum){id, value};
 }
 
-/* The octets written since `from`. */
+/* Adds the octets written since `from`. */
 static void add_variable(DisData *pdu, uint32_t id, const Octets *o, size_t from)
 {
     pdu->variable[pdu->variable_count++] =
@@ -307,7 +307,7 @@ typedef struct Sending {
     double   announced; /* intervals of dis_announce_s at the last announcement; NaN: none so far */
 } Sending;
 
-/* With the first frame of each interval of exercise time. */
+/* Whether the announcement is due: it goes out with the first frame of each interval of exercise time. */
 static bool announcement_is_due(Sending *s, double time_s)
 {
     const double interval = floor(time_s / dis_announce_s);

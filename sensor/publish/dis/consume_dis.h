@@ -107,7 +107,7 @@ typedef struct DisRecordSender {
     uint32_t timestamp; /* raw, at the time of the frame */
 } DisRecordSender;
 
-/* One frame's PDU of one band. Returns its size in octets, at most dis_smallest_mtu. */
+/* Encodes one frame of one band as a PDU. Returns its size in octets, at most dis_smallest_mtu. */
 size_t dis_record_frame(uint8_t out[dis_smallest_mtu], const DisRecordSender *sender, const FrameRecord *frame,
                         Band band, bool truth);
 /* The n-th PDU, from 0, of the detections of a frame with a radar; how many it has. */
@@ -131,7 +131,7 @@ typedef struct DisOf {
     uint8_t         version, exercise; /* as in the exercise */
     DisSend        *send;
     void           *user;
-    DisArrivalTime *arrival_s; /* of the time stamps: those of a replay are those of the recorded hour */
+    DisArrivalTime *arrival_s; /* time stamps follow it: those of a replay are of the recorded hour */
     const void     *clock;
 } DisOf;
 

@@ -52,7 +52,7 @@ typedef struct Rgb {
     double r, g, b; /* 0 .. 1 */
 } Rgb;
 
-/* A full hue from an id. The golden ratio spreads neighbouring numbers round the circle (Knuth, TAOCP 3, 6.4). */
+/* Makes a full hue from an id. The golden ratio spreads neighbouring numbers round the circle (Knuth, TAOCP 3, 6.4). */
 static Rgb id_colour(DisEntityId id)
 {
     const uint32_t mixed = (id.entity + 31u * id.application + 977u * id.site) * 2654435769u;

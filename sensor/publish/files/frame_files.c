@@ -48,7 +48,7 @@ static unsigned planes_of(const Config *config)
 
 bool frame_files_truth(const Config *config) { return planes_of(config) != planes_none; }
 
-/* The planes of one group that go into its file; truth: those in `kept`. */
+/* Lists the planes of one group that go into its file; of truth those in `kept`. */
 static int group_planes(FrameArray out[frame_max_planes], const FrameFiles *frame, const char *group, unsigned kept)
 {
     static const struct {
@@ -99,7 +99,7 @@ static void emissivity_plane(float *out, Band band, const Picture *picture, cons
     }
 }
 
-/* An emissivity for each thermal band. STATUS_NO_MEMORY. */
+/* Makes a plane of emissivity for each thermal band. STATUS_NO_MEMORY. */
 static Status make_planes(MadePlanes *made, const FrameFiles *frame, unsigned kept)
 {
     const Picture *picture = frame->picture;

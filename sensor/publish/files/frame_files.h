@@ -18,7 +18,7 @@ typedef struct FrameFiles {
     int                  frame;
     double               time_s, unix_s;
     bool                 png, raw; /* displays; raw counts, where there are any */
-    const FrameDisplay  *display;  /* [BAND_COUNT]; of those and truth, if it is png */
+    const FrameDisplay  *display;  /* [BAND_COUNT]; displays of bands and truth, if png */
 } FrameFiles;
 
 /* Bands with a detector: all but radar. */

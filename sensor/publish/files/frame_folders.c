@@ -117,7 +117,7 @@ static void product_folder(char path[path_size], const char *out, int b)
                                : "radar");
 }
 
-/* Those with a folder for each band; and the one of consume_radar, with files. */
+/* Folders that have a folder for each band; the last is that of consume_radar, with files. */
 static const char *const parents[] = {"frames", "profiles", "raw"}, radar_folder[] = "radar";
 
 const char *const pair_folder[pair_folders] = {"pairs/clean", "pairs/background", "pairs/background_clean"};

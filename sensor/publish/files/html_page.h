@@ -9,7 +9,7 @@
 FILE *html_begin(const char *path, const char *title);
 /* Plain text: markup characters are escaped. */
 __attribute__((format(printf, 2, 3))) void html_text(FILE *page, const char *format, ...);
-/* An embedded image. type: "png", "svg+xml". */
+/* Embeds an image. type: "png" or "svg+xml". */
 void html_image(FILE *page, const char *type, const void *bytes, size_t count, const char *alt);
 /* Ends the page and renames the file into place. STATUS_IO, logged, and no file, when any part could not be written. */
 Status html_end(FILE *page, const char *path);

@@ -10,7 +10,7 @@
 /* clang-format off */
 #define IMAGE_MODULE(X)                                                                                              \
     X(image_module_write_exr) X(image_module_write_png) X(image_module_info) X(image_module_read_f32)                \
-    X(image_module_read_u32) X(image_module_read_png) X(image_module_read_string) X(image_module_read_number)                \
+    X(image_module_read_u32) X(image_module_read_png) X(image_module_read_string) X(image_module_read_number)        \
     X(image_module_letters)
 /* clang-format on */
 static char path_of_module[4200];

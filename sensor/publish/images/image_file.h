@@ -77,9 +77,9 @@ Status image_info(ImageInfo *out, const char *path);
  * conversion, hence no loss. STATUS_BAD_VALUE: no such channel, or of another type. */
 Status image_read_f32(float *out, const char *path, const char *channel);
 Status image_read_u32(uint32_t *out, const char *path, const char *channel);
-/* All channels interleaved, 8 or 16 bits as in the file. */
+/* Reads all channels interleaved, with 8 or 16 bits as in the file. */
 Status image_read_png(void *out, const char *path);
-/* False when absent or of another kind. */
+/* These return false when the attribute is absent or of another kind. */
 bool image_read_string(char *out, size_t out_size, const char *path, const char *attribute);
 bool image_read_number(double *out, const char *path, const char *attribute);
 

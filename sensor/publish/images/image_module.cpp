@@ -32,7 +32,7 @@ static const int  png_level = 1;
 static const int  png_filter = 0x10; /* libpng's PNG_FILTER_SUB */
 static const char png_strategy[] = "rle";
 
-/* One thread each: the caller's pool has one frame per worker, and the bytes must not depend on threads. */
+/* The library uses one thread: the caller's pool has one frame per worker, and the bytes must not depend on threads. */
 static void library_set_up()
 {
     static std::once_flag once;
@@ -102,7 +102,7 @@ class PartFile final : public OIIO::Filesystem::IOFile
     int         reason_ = 0;
 };
 
-/* FORMAT: the library's name for it. write_rows: `bool (ImageOutput *)`. */
+/* FORMAT is the library's name for the format. write_rows is a `bool (ImageOutput *)`. */
 template <typename WriteRows>
 static Status write_file(const char *path, const char *format, const ImageSpec &spec, WriteRows write_rows)
 {
@@ -257,7 +257,7 @@ try {
     return refuse(STATUS_NO_MEMORY, "read", path, e.what());
 }
 
-/* Channels come back in alphabetical order, not the writer's: by name only. */
+/* Channels come back in alphabetical order, not in the writer's, so they are found by name only. */
 static Status read_channel(void *out, const char *path, const char *channel, TypeDesc type)
 try {
     auto in = open_input(path);

@@ -16,7 +16,7 @@ enum {
     klv_vmti_version = 6,
 };
 
-/* A target, of truth or of a recogniser. */
+/* A target, from the truth or from a recogniser. */
 typedef struct KlvTarget {
     uint64_t    id;         /* the same target has the same id in all frames */
     int         box[4];     /* left, top, right, bottom, px from 0, the last two beyond it; empty: not known */
@@ -47,8 +47,8 @@ typedef struct KlvSource {
     const Geoid *geoid;   /* for heights above mean sea level; NULL: they are absent */
 } KlvSource;
 
-/* The packet of one frame; unix_s: its exercise time. targets NULL: no tag 74. Returns its octets; 0: refused, unix_s
- * is not a time from 1970 to 2200. */
+/* Writes the packet of one frame. unix_s: its exercise time. targets NULL: there is no tag 74. Returns its octets; 0:
+ * refused, since unix_s is not a time from 1970 to 2200. */
 size_t klv_frame(uint8_t out[klv_most_octets], const FrameRecord *record, double unix_s, const KlvSource *source,
                  const KlvTargets *targets);
 

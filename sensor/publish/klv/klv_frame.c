@@ -7,10 +7,10 @@ enum { key_octets = 16, text_most = 63 };
 static const uint8_t uas_key[key_octets] = {0x06, 0x0E, 0x2B, 0x34, 0x02, 0x0B, 0x01, 0x01,
                                             0x0E, 0x01, 0x03, 0x01, 0x01, 0x00, 0x00, 0x00};
 
-/* Operational mode (tag 77) of ST 0601. */
+/* The operational mode (tag 77) of ST 0601. */
 enum { mode_exercise = 3 };
 
-/* Attitude of a body (x forward, y right, z down), in degrees: yaw clockwise from above, pitch up, roll right. */
+/* Attitude of a body (x forward, y right, z down), in degrees: yaw is clockwise from above, pitch up, roll right. */
 typedef struct Attitude {
     double yaw_deg, pitch_deg, roll_deg;
 } Attitude;
@@ -58,7 +58,7 @@ static double geoid_m(const KlvSource *source, double lat_rad, double lon_rad)
     return source->geoid ? geoid_height_m(source->geoid, lat_rad, lon_rad) : NAN;
 }
 
-/* Latitude and longitude, in this tag and the next: both or none. */
+/* Puts latitude and longitude into this tag and the next, both or none. */
 static void put_place(KlvWriter *w, unsigned tag, double lat_rad, double lon_rad)
 {
     if (!(fabs(lat_rad) <= 0.5 * pi_rad && fabs(lon_rad) <= pi_rad)) return;

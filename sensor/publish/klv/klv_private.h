@@ -8,11 +8,11 @@
 /* Names of sensors as they are in both local sets. */
 const char *klv_sensor_name(const KlvSource *source);
 double      klv_vfov_deg(const FrameRecord *record);
-/* Microseconds since 1970. False, and out untouched: not a time from 1970 to 2200. */
+/* Converts to microseconds since 1970. False, with out untouched: it is not a time from 1970 to 2200. */
 bool klv_time_us(uint64_t *out, double unix_s);
 
-/* The VMTI local set as the value of tag 74: without key, length and checksum, which are those of the packet around
- * it. time_us: of the packet. */
+/* Writes the VMTI local set as the value of tag 74: without key, length and checksum, which the packet around it has.
+ * time_us: the time of the packet. */
 void klv_vmti(KlvWriter *w, const FrameRecord *record, uint64_t time_us, const KlvSource *source,
               const KlvTargets *targets);
 

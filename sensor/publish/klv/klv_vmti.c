@@ -60,7 +60,7 @@ static void put_place(KlvWriter *w, const Geodetic *place)
     klv_put_imapb(w, 2, -900, 19000, place->h_m);
 }
 
-/* The local set of a VTarget pack, behind its id. */
+/* Puts the local set of a VTarget pack after its id. */
 static void put_target(KlvWriter *w, const View *view, const KlvTarget *t, int class_id, int algorithm_id)
 {
     double percent = 0;
@@ -83,7 +83,7 @@ static void put_target(KlvWriter *w, const View *view, const KlvTarget *t, int c
     }
 }
 
-/* Behind its length, as every element of a series. */
+/* Puts an element of a series after its length, as all of them are. */
 static void put_element(KlvWriter *series, const KlvWriter *element)
 {
     klv_put_length(series, element->used);
@@ -108,7 +108,7 @@ static void put_algorithms(KlvWriter *w, const Names *names, bool truth)
     w->full |= series.full;
 }
 
-/* A name as the last part of a URN. */
+/* Puts a name as the last part of a URN. */
 static void put_class(KlvWriter *series, int id, const char *name, const char *kind)
 {
     uint8_t   of[set_room];
@@ -139,7 +139,8 @@ static void put_classes(KlvWriter *w, const Names *names, bool truth)
     w->full |= series.full;
 }
 
-/* The series of VTarget packs; how many are in it. An id is in it once: of two targets with the same one the first. */
+/* Puts the series of VTarget packs, and returns how many there are. An id occurs once: of two targets with the same id,
+ * the first is kept. */
 static int put_targets(KlvWriter *series, Names *names, const View *view, const KlvTargets *targets)
 {
     uint64_t id[klv_most_targets];

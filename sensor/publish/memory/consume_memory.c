@@ -117,7 +117,7 @@ typedef struct Memory {
 
 /* ---- the planes, before there is a frame ---------------------------------------------------------- */
 
-/* The list that frame_planes gives for such a run: of a picture whose planes have no values yet. */
+/* Lists the planes that frame_planes gives for such a run, from a picture whose planes have no values yet. */
 static int radiance_planes(FrameArray plane[frame_max_planes], const MemoryOf *of)
 {
     static float        none;

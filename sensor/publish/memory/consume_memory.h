@@ -16,7 +16,7 @@ typedef struct MemoryOf {
     const char *host;    /* of several hosts of one run: its id, or `observer`; NULL: one alone */
 } MemoryOf;
 
-/* Of the ring in /dev/shm; host as above. */
+/* Names the ring in /dev/shm; host as above. */
 enum { memory_name_size = 96 };
 void memory_name(char out[memory_name_size], const Config *config, const char *host);
 

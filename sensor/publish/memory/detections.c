@@ -54,7 +54,7 @@ typedef struct DetectionOf1 {
 } DetectionOf1;
 _Static_assert(sizeof(DetectionOf1) == 48, "as version 1 was laid out");
 
-/* The class needs its 0 within its own room, whatever follows it here. */
+/* The class must end with a 0 within its own room, whatever follows it here. */
 static bool from_1(PitviperDetection *out, const uint8_t *bytes)
 {
     DetectionOf1 d;
@@ -133,7 +133,7 @@ static Status answers_open(Answers **out, const char *folder)
     return STATUS_IO;
 }
 
-/* As a sender wrote it, and not the nearest double of its float. */
+/* Rounds a float to the decimal that its sender wrote, since the nearest double of the float shows further digits. */
 static double digits(float value, double unit) { return round((double)value / unit) * unit; }
 
 /* Detection `number` of the answer, from 1 on; 0: there is none. */
@@ -221,7 +221,7 @@ static KnownFrame *known(Detections *d, int frame)
     return NULL;
 }
 
-/* A well-formed one. With the lock held. */
+/* Keeps a well-formed message. The lock must be held. */
 static DetectionsReason keep(KnownFrame *of, Detections *d, const PitviperDetections *one)
 {
     DetectionSet *set = &d->newest[one->band];

@@ -17,7 +17,7 @@ enum { detections_frames_kept = 256 };
 typedef struct DetectionSet {
     int               frame;
     Band              band;
-    double            time_s, unix_s; /* of that frame, exercise time */
+    double            time_s, unix_s; /* exercise time of the frame */
     double            received_s;     /* wall_clock_s */
     int               count;
     PitviperDetection detection[pitviper_detections_most];
@@ -33,13 +33,14 @@ typedef struct DetectionsOf {
 
 /* STATUS_IO, logged: the port is in use. */
 Status detections_open(Detections **out, const DetectionsOf *of);
-/* From now on answers are written to answers.jsonl of a folder. Once. STATUS_IO, logged: the file cannot be written. */
+/* From now on answers are written to answers.jsonl of a folder. Call it once. STATUS_IO, logged: the file cannot be
+ * written. */
 Status detections_record(Detections *detections, const char *folder);
-/* NULL is valid. Logs the counts. counters: receives them; may be NULL, and is set to 0 without detections. */
+/* Logs the counts and frees all. NULL is valid. counters: receives them, 0 without detections; may be NULL. */
 void detections_close(Detections *detections, AnswerCounters *counters);
 /* A frame that detections may refer to from now on. rendered_s: wall_clock_s; 0: not known. */
 void detections_frame(Detections *detections, int frame, double time_s, double unix_s, double rendered_s);
-/* The newest of a band; false: none yet. From any thread. */
+/* Copies the newest detections of a band; false: there are none yet. Any thread may call it. */
 bool detections_latest(Detections *detections, Band band, DetectionSet *out);
 /* So far. */
 void detections_counters(Detections *detections, AnswerCounters *out);
@@ -47,7 +48,8 @@ void detections_counters(Detections *detections, AnswerCounters *out);
 /* Tells them of every frame, and has them recorded; detections and folder stay the caller's and outlive it. */
 Status consume_detections(Consumer **out, Detections *detections, const char *folder);
 
-/* One datagram of version 1 or 2, but for the frame it refers to. out: valid if DETECTIONS_GOOD, and of version 2. */
+/* Reads one datagram of version 1 or 2, without looking up the frame that it refers to. out: valid if DETECTIONS_GOOD,
+ * and then of version 2. */
 DetectionsReason detections_parse(PitviperDetections *out, const uint8_t *bytes, size_t size, unsigned bands, int width,
                                   int height);
 

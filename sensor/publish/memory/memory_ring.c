@@ -29,7 +29,8 @@ enum { path_size = 256 };
 
 static void path_of(char out[path_size], const char *name) { snprintf(out, path_size, "/dev/shm/%s", name); }
 
-/* A lock of the open file: it ends with the process, however that ends, and readers ask for it without taking one. */
+/* Takes a lock of the open file: it ends with the process, however that ends, and readers ask for it without taking
+ * one. */
 static bool lock_file(int file)
 {
     struct flock lock = {.l_type = F_WRLCK, .l_whence = SEEK_SET};

@@ -27,10 +27,11 @@ Status memory_ring_create(MemoryRing **out, const MemoryRingOf *of);
 /* Whether readers can find it: its name is neither removed nor another's. */
 bool   memory_ring_is_named(const MemoryRing *ring);
 size_t memory_ring_size(const MemoryRing *ring); /* octets */
-/* To be filled in for the next frame: all but lock, sequence and written_ns; targets: [target_room]. */
+/* The record to fill in for the next frame: all but lock, sequence and written_ns. targets: [target_room]. */
 PitviperMemoryRecord *memory_ring_record(MemoryRing *ring);
 PitviperMemoryTarget *memory_ring_targets(MemoryRing *ring);
-/* The record, its targets and the planes as the newest frame. plane: [plane_count], of the ring's sizes and types. */
+/* Publishes the record, its targets and the planes as the newest frame. plane: [plane_count], of the ring's sizes and
+ * types. */
 void memory_ring_put(MemoryRing *ring, const void *const *plane);
 /* Tells readers that it has ended, and removes it. NULL is valid. */
 void memory_ring_close(MemoryRing *ring);

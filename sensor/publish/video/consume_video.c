@@ -11,7 +11,7 @@
 
 static const int64_t key_interval_90k = 90000;
 
-/* A video: one band, or several side by side; encoded once for its outputs. */
+/* One video, of one band or of several side by side. It is encoded once for all its outputs. */
 typedef struct Channel {
     unsigned     bands;
     VideoOutput *output[3];
@@ -29,7 +29,7 @@ typedef struct Video {
     Consumer      consumer;
     Labels        labels;
     VideoOf       of;
-    unsigned      to; /* VideoTo: those of `of` that are configured */
+    unsigned      to; /* VideoTo: the outputs of `of` that are configured */
     KlvMode       klv;
     int           channels;
     Channel       channel[BAND_COUNT + 1];
@@ -51,7 +51,7 @@ static Status make_room(Video *v, size_t octets)
     return v->image_octets ? STATUS_OK : STATUS_NO_MEMORY;
 }
 
-/* One band's tile into a column of the image. */
+/* Puts the tile of one band into a column of the image. */
 static void put_tile(uint8_t *image, const uint8_t *tile, const EncoderConfig *c, int column, int width, int planes)
 {
     const size_t octets = video_encoder_bits(c->codec) == 8 ? 1 : 2, values = c->colour ? 3 : 1;
@@ -115,7 +115,7 @@ static Status compose(EncoderConfig *form, Video *v, const Channel *c, const Fra
     return STATUS_OK;
 }
 
-/* Later than the last one, whatever the clock of the exercise does. */
+/* Time of a frame, which is later than that of the last frame whatever the clock of the exercise does. */
 static int64_t time_of(const Channel *c, double unix_s)
 {
     const int64_t at = (int64_t)llround(unix_s * 90000);

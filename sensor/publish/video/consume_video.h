@@ -15,7 +15,7 @@
 
 typedef struct VideoOf {
     const Config   *config;
-    unsigned        to;          /* VideoTo: which of those that are configured; encoded once for both */
+    unsigned        to;          /* VideoTo: outputs to use where they are configured; encoded once for both */
     unsigned        bands;       /* rendered */
     double          rate_hz;     /* of the run */
     const char     *host_folder; /* of several hosts: this one's, below that of the videos; NULL: the only one */
@@ -29,7 +29,8 @@ typedef struct VideoOf {
  * thread, before its pool starts. STATUS_IO, logged with what to install. */
 Status video_prepare(const Config *config);
 
-/* STATUS_UNSUPPORTED, logged: built without FFmpeg's libraries; or a file or stream of several hosts. */
+/* STATUS_UNSUPPORTED, logged: the program was built without FFmpeg's libraries, or several hosts would share a file or
+ * stream. */
 Status consume_video(Consumer **out, const VideoOf *of);
 
 #endif

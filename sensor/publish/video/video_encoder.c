@@ -82,7 +82,7 @@ FOR_BOTH void luma_row(uint8_t *to, const void *image, size_t at, int width, boo
               octet);
 }
 
-/* Of one value of a pixel, or of the columns left, here and right of two rows with weights 1 2 1. */
+/* Takes one value of a pixel, or the weighted sum, 1 2 1, of the columns left, here and right in two rows. */
 FOR_BOTH int64_t sum_of(const void *image, size_t here, size_t left, size_t right, size_t row, bool octet)
 {
     int64_t sum = 0;

@@ -20,7 +20,7 @@ typedef struct EncoderConfig {
     double     rate_hz; /* nominal: of players that show it; real times are the muxer's */
 } EncoderConfig;
 
-/* Valid until the next call. */
+/* A packet is valid until the next call. */
 typedef struct VideoPacket {
     const uint8_t *bytes;
     size_t         count;
@@ -44,7 +44,7 @@ const EncoderConfig *video_encoder_config(const Encoder *encoder);
 struct AVCodecParameters;
 Status video_encoder_parameters(struct AVCodecParameters *out, const Encoder *encoder);
 
-/* One line of the libraries' own messages for each of ours, at most: `pitviper -v` shows them. Called by
+/* Lets through at most one line of the libraries' own messages for each of ours, shown by `pitviper -v`. Called by
  * video_encoder_open and video_transport_open. */
 void video_quiet_libraries(void);
 
@@ -68,8 +68,9 @@ typedef struct VideoPlanes {
     int         width, height, bits; /* 8: octets; else 16-bit values */
 } VideoPlanes;
 
-/* image: grey, or (colour) R G B interleaved, of the planes' bits. RGB to YCbCr: BT.709, full range, in integers;
- * within 0.51 of the exact value. Chroma 4:2:0: weights 1 2 1 about each even column, of two rows. */
+/* Converts an image, grey or (colour) R G B interleaved, with the planes' bits. RGB becomes YCbCr by BT.709, full
+ * range, in integers, within 0.51 of the exact value. Chroma is 4:2:0, with weights 1 2 1 about each even column of two
+ * rows. */
 void video_pixels(const VideoPlanes *out, const void *image, bool colour);
 
 #endif

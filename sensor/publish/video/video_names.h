@@ -17,7 +17,7 @@ unsigned video_wanted(const Config *config);
 bool video_path(char out[video_path_size], const Config *config, const char *host_folder, Band band, VideoKind kind);
 /* The containers of a folder for this codec; returns how many. */
 int video_folder_kinds(VideoKind kind[2], const Config *config);
-/* Of one band among those of the run. False: there is no stream. */
+/* The stream of one band among those of the run. False: there is no stream. */
 bool video_stream_url(StreamUrl *out, const Config *config, unsigned bands, Band band);
 
 /* STATUS_UNSUPPORTED, logged: several hosts, and a video that is one file, or a stream. */

@@ -60,7 +60,7 @@ static bool write_all(VideoFile *f, const uint8_t *bytes, size_t count)
     return true;
 }
 
-/* False: it failed; what is written until the next mark is dropped. */
+/* False: it failed; what follows up to the next mark is dropped. */
 static bool video_file_write(VideoFile *f, const uint8_t *bytes, size_t count)
 {
     if (f->dropping) return false;
@@ -87,7 +87,7 @@ static bool video_file_mark(VideoFile *f)
     return whole;
 }
 
-/* The reason of the last failure. */
+/* Gives the reason of the last failure. */
 static const char *video_file_error(const VideoFile *f) { return strerror(f->error); }
 
 /* Logged. NULL is valid. */

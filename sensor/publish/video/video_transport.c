@@ -1,7 +1,7 @@
 /* sensor/publish/video/video_transport.c: packets of video and KLV metadata into a container, through libavformat.
  *
  * av_write_frame, not the interleaving form: that would keep metadata back until the next frame. */
-#include "sensor/publish/video/video_transport.h"
+#include "sensor/publish/video/video_output.h"
 
 #include <libavcodec/avcodec.h>
 #include <libavformat/avformat.h>
@@ -128,7 +128,7 @@ fail:
     return status;
 }
 
-/* Times of MPEG-TS: positive, and modulo 2^33 those of the clock. */
+/* Times of MPEG-TS: they are positive, and equal those of the clock modulo 2^33. */
 static int64_t time_of(Transport *t, int64_t pts_90k)
 {
     const int64_t turn = (int64_t)1 << 33;
@@ -146,7 +146,8 @@ static int write_klv(Transport *t, int64_t at_90k, const uint8_t *klv, size_t co
     const bool   sync = t->config.klv == KLV_SYNCHRONOUS;
     const size_t head = sync ? sync_header_octets : 0;
     if (count > klv_octets_most) return AVERROR(EINVAL);
-    /* a metadata AU cell (ISO/IEC 13818-1, 2.12.4): service 0, its number, whole and decodable by itself, length */
+    /* the header of a metadata AU cell (ISO/IEC 13818-1, 2.12.4): service 0, its number, a flag that it is whole and
+     * decodable by itself, its length */
     const uint8_t cell[sync_header_octets] = {0, t->klv_sequence, 0xDF, (uint8_t)(count >> 8), (uint8_t)count};
     memcpy(t->cell, cell, head);
     memcpy(t->cell + head, klv, count);

@@ -48,7 +48,7 @@ static const Setting keys[] = {
 static const SettingTable table = {
     .module = "regress", .row = keys, .count = sizeof keys / sizeof *keys, .all_keys = "`pitviper regress --keys`"};
 
-/* Below any significance for a user of the products, above the rounding of sensor/verify/regress/record_frame.h: a
+/* Below any significance for a user of the products, above the rounding of sensor/verify/regress/verdict.h: a
  * value that crosses from one step to the next is still within. No allowance for threads, ISAs and builds, which give
  * the same bits (tests/system/test_determinism*.sh). */
 Case case_default(void)
@@ -98,7 +98,7 @@ static Status check(const Case *c, const char *path)
     return STATUS_BAD_VALUE;
 }
 
-/* The last component of the folder's absolute path. */
+/* Copies the last component of the folder's absolute path. */
 static void name_of(char out[128], const char *folder)
 {
     char       *whole = realpath(folder, NULL);
@@ -161,7 +161,7 @@ bool case_path(char out[case_path_size], char reason[256], const Case *c, const 
     return false;
 }
 
-/* Every `from/` at the start of a path, which follows a quote, a comma or a blank, becomes to. */
+/* Replaces every `from/` at the start of a path, which follows a quote, a comma or a blank, by `to`. */
 static Status replace_folder(char **text, const char *from, const char *to)
 {
     const size_t length = strlen(from);

@@ -25,7 +25,7 @@
  *       lwir_k: 0.05
  *
  * record/ holds NNNNNN.exr for each frame, all planes in one (range_m, entity, part, material, temp_k, nx, ny, nz,
- * optical.R ..., mwir.Y, lwir.Y, radar.Y), rounded and coded as sensor/verify/regress/record_frame.h says;
+ * optical.R ..., mwir.Y, lwir.Y, radar.Y), rounded and coded as sensor/verify/regress/verdict.h says;
  * NNNNNN.profile.exr, a row of range bins; truth.jsonl as the run wrote it, and run.json without times. */
 #ifndef SENSOR_VERIFY_REGRESS_CASE_H
 #define SENSOR_VERIFY_REGRESS_CASE_H
@@ -70,7 +70,7 @@ bool case_path(char out[case_path_size], char reason[256], const Case *c, const 
 /* Replaces, in text on the heap, absolute paths in the case's folder by relative ones and those in $PITVIPER_DATA by
  * ${PITVIPER_DATA}/..., so that a baseline is the same wherever it was made. */
 Status case_relative(char **text, const Case *c);
-/* The keys of case.yaml with ranges and meaning: for --help. */
+/* Prints the keys of case.yaml with ranges and meaning, for --help. */
 void case_write_keys(FILE *to);
 
 #endif

@@ -25,7 +25,7 @@ bool case_child_add(ChildLine *line, const char *argument)
     return true;
 }
 
-/* The environment of this process, but with LC_ALL=C and TZ=UTC. */
+/* Copies the environment of this process, with LC_ALL=C and TZ=UTC. */
 static char **environment(void)
 {
     static char locale[] = "LC_ALL=C", zone[] = "TZ=UTC";

@@ -93,7 +93,7 @@ static Status write_products(const CaseResult *r, const char *out, const char *t
     return status;
 }
 
-/* The present content of card.md, from its first entry on; NULL: none. */
+/* Reads the present content of card.md from its first entry on. NULL: there is none. */
 static char *old_card(const char *path)
 {
     char  *text;
@@ -110,7 +110,7 @@ static void put_line(FILE *to, const char *text)
     for (; *text; text++) fputc((unsigned char)*text < ' ' ? ' ' : *text, to);
 }
 
-/* What the update changes: each channel that fails against the old baseline. */
+/* Writes what the update changes: each channel that fails against the old baseline. */
 static void put_changes(FILE *to, const CaseResult *r)
 {
     if (!r->compared) {
@@ -184,7 +184,7 @@ static double record_octets(const char *folder)
     return sum;
 }
 
-/* The automatic choices that replay printed: host, aim, terrain, time. */
+/* Copies the automatic choices that replay printed: host, aim, terrain, time. */
 static void take_choices(CaseResult *r, const JsonValues *run)
 {
     const JsonValue *host = json_values_find(run, "hosts[0]"), *aim = json_values_find(run, "settings.exercise.aim");

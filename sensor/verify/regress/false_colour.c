@@ -63,7 +63,8 @@ static void between(uint8_t out[3], const uint8_t colour[][3], int count, double
 
 static void colour_of(uint8_t out[3], float value, Colours colours, Scale scale)
 {
-    /* dark blue, purple, orange, pale yellow: monotonic brightness, readable with colour blindness */
+    /* dark blue, purple, orange, pale yellow: brightness rises steadily, so they can be told apart with colour
+     * blindness */
     static const uint8_t heat[5][3] = {{8, 8, 40}, {84, 24, 110}, {182, 54, 84}, {246, 140, 40}, {252, 250, 190}};
     static const uint8_t sides[5][3] = {
         {10, 60, 160}, {120, 170, 225}, {250, 250, 250}, {235, 150, 110}, {165, 15, 30}};

@@ -1,6 +1,6 @@
 /* sensor/verify/regress/record_frame.c: reads the planes of a frame from a run and from a baseline, and writes the
  * latter. */
-#include "sensor/verify/regress/record_frame.h"
+#include "sensor/verify/regress/verdict.h"
 
 #include "sensor/publish/images/image_file.h"
 
@@ -134,7 +134,8 @@ static Status take_size(RecordFrame *f, const ImageInfo *info, const char *path)
     return STATUS_BAD_VALUE;
 }
 
-/* The names of the material plane, if the file has them; a list too long for any table of materials in use is none. */
+/* Reads the names of the material plane, if the file has them. A list too long for any table of materials in use counts
+ * as none. */
 static Status read_material_names(RecordFrame *f, const char *path)
 {
     enum { most = 65536 };

@@ -92,7 +92,7 @@ static bool parse_count(int *out, const char *text)
     return true;
 }
 
-/* 0: continue; else exit with this code - 1. */
+/* Returns 0 to continue; else the program exits with this code - 1. */
 static int parse(Options *o, int argc, char **argv)
 {
     enum { UPDATE = 256, WHY, JUNIT, REPORT, WORK, JOBS, THREADS, ISA, KEYS, ALLOW, HELP };
@@ -235,7 +235,7 @@ const char *case_state_name(CaseState state)
     return names[state];
 }
 
-/* Each line prefixed with the case's name and a word. */
+/* Prints lines, each after the case's name and a word. */
 static void print_lines(const CaseResult *r, const char *word, const char *text)
 {
     for (size_t length; *text; text += length + (text[length] == '\n')) {
@@ -244,7 +244,7 @@ static void print_lines(const CaseResult *r, const char *word, const char *text)
     }
 }
 
-/* Changed inputs before the channels that failed. */
+/* Prints a case's line: the inputs that changed, then the channels that failed. */
 static void print_line(const CaseResult *r)
 {
     if (r->state == CASE_FAILED) print_lines(r, "changed: ", r->verdict.remarks);
@@ -294,7 +294,7 @@ static int remove_one(const char *path, const struct stat *about, int kind, stru
 /* Called only for a folder that this process has made by mkdtemp. */
 static void remove_made(const char *folder) { nftw(folder, remove_one, 16, FTW_DEPTH | FTW_PHYS | FTW_MOUNT); }
 
-/* A temporary folder (its path in own), or the one given by --work. */
+/* Opens a temporary folder (its path in own), or the one given by --work. */
 static bool open_work(Suite *s, char own[case_path_size])
 {
     *own = 0;

@@ -41,12 +41,12 @@ typedef struct CaseHow {
 /* result->c has been read and result->work named; the folder is made here. Log lines of the calling thread go to
  * result->said. */
 void run_case(CaseResult *result, const CaseHow *how);
-/* Destination of the log lines during a case. NULL: the default. */
+/* The LogSink of the log lines during a case, with a CaseResult as user. NULL: the default. */
 void run_case_log(void *user, LogLevel level, const char *line); /* a LogSink */
 
 /* ---- approval of a run as the baseline of its case (case_update.c) ------------------------------- */
 
-/* The products in result->work become result->c.folder/record, all or none of them; card.md gets an entry: why, what
+/* Moves the products in result->work to result->c.folder/record, all or none of them. card.md gets an entry: why, what
  * differs from the previous baseline, date of the exercise, version, hash of the settings. Sets the result: CASE_OK,
  * updated, or CASE_BROKEN with the reason in result->line. */
 void case_update(CaseResult *result, const char *why);
@@ -57,8 +57,8 @@ const char *case_state_name(CaseState state); /* `ok`, `FAILED`, `skipped` */
 
 /* JUnit's testsuite: failure: beyond tolerance, or no baseline; error: could not be run; skipped: no log. */
 Status regress_junit_write(const char *path, const CaseResult *const *result, int count);
-/* One self-contained page: a table of all cases, images of what failed side by side, passed cases collapsed. Reads the
- * products of each case again: the work folders must still exist. */
+/* Writes one self-contained page: a table of all cases, images of what failed side by side, passed cases collapsed. It
+ * reads the products of each case again, so the work folders must still exist. */
 Status regress_report_write(const char *path, const CaseResult *const *result, int count);
 
 /* ---- planes as PNG in a page, enlarged so that single pixels are visible (false_colour.c) -------- */
@@ -73,7 +73,7 @@ typedef struct Scale {
     double low, high;
 } Scale;
 
-/* From the 0.5th to the 99.5th percentile of both together; a plane of one value gets a width. */
+/* Makes a scale from the 0.5th to the 99.5th percentile of both planes together; for a single value it gets a width. */
 Scale false_colour_scale(const float *a, const float *b, size_t count);
 /* -most .. most: the largest of the finite differences but one in two hundred of those that are not 0, at least
  * `least`. */
@@ -115,9 +115,9 @@ bool case_child_add(ChildLine *line, const char *argument);
  * started. */
 Status case_child_run(ChildEnd *end, const ChildLine *line, const char *out_path, const char *error_path,
                       double timeout_s);
-/* The command line, quoted for a shell. */
+/* Writes the command line, quoted for a shell. */
 void case_child_text(char *out, size_t out_size, const ChildLine *line);
-/* The last lines of a file, that many octets at most; "" when it cannot be read. */
+/* Reads the last lines of a file, at most that many octets; "" when it cannot be read. */
 void case_child_tail(char *out, size_t out_size, const char *path);
 
 #endif

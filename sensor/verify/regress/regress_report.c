@@ -34,7 +34,7 @@ static bool both_frames(RecordFrame *expected, RecordFrame *got, const CaseResul
 
 /* ---- a channel that failed -------------------------------------------------------------------- */
 
-/* The tolerance of a channel, as text. */
+/* Writes the tolerance of a channel as text. */
 static void tolerance_text(char out[96], int channel, const ChannelResult *found)
 {
     const char *unit = found->unit ? found->unit : "", *space = *unit ? " " : "";
@@ -53,7 +53,7 @@ static bool at_floor(int channel, const ChannelResult *found)
            (v->expected <= apparent_floor_k || v->got <= apparent_floor_k);
 }
 
-/* How many pixels, by how much, where. */
+/* Writes how many pixels differ, by how much and where. */
 static void put_facts(FILE *page, const ChannelResult *found, int channel)
 {
     const PlaneVerdict *v = &found->verdict;
@@ -177,7 +177,7 @@ static void put_profile(FILE *page, const CaseResult *r, const ChannelResult *fo
     free(db);
 }
 
-/* open: expanded from the start. */
+/* open: the channel is shown expanded from the start. */
 static void put_channel(FILE *page, const CaseResult *r, int channel, bool open)
 {
     const ChannelResult *found = &r->verdict.channel[channel];
@@ -260,7 +260,7 @@ static void put_failed(FILE *page, const CaseResult *r, int number)
     fputs("</p>\n", page);
     put_block(page, "Inputs that differ from those of the baseline", r->compared ? r->verdict.remarks : "");
     if (r->compared) put_numbers(page, r);
-    /* expanded: the probable cause, and the first channel with an image */
+    /* expanded at first are the probable cause and the first channel with an image */
     if (r->compared) fputs("<h3>Failed channels, in the order of the data path</h3>\n", page);
     bool pictured = false;
     for (int k = 0; k < CHANNEL_COUNT && r->compared; k++) {
@@ -273,7 +273,7 @@ static void put_failed(FILE *page, const CaseResult *r, int number)
     put_block(page, "To reproduce", r->command);
 }
 
-/* One image per band, of the first frame. */
+/* Puts one image of the first frame for each band. */
 static void put_thumbnails(FILE *page, const CaseResult *r)
 {
     static const RecordPlane band[] = {FRAME_OPTICAL_R, FRAME_OPTICAL_Y, FRAME_MWIR, FRAME_LWIR, FRAME_RADAR};

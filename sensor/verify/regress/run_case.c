@@ -36,7 +36,7 @@ void run_case_log(void *user, LogLevel level, const char *line)
     say(case_here, "\n");
 }
 
-/* The last error in the output of the processes. */
+/* Finds the last error in the output of the processes. */
 static void last_error(char *out, size_t out_size, const char *said)
 {
     const char       *found = NULL;

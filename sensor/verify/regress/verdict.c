@@ -38,7 +38,7 @@ static const char *text_of(const JsonValues *values, const char *path)
 
 static bool begins(const char *text, const char *head) { return strncmp(text, head, strlen(head)) == 0; }
 
-/* Each value below `head` that differs: tables by their hash, settings by their text. */
+/* Remarks on each value below `head` that differs: tables are compared by their hash, settings by their text. */
 static int remark_group(Verdict *v, const JsonValues *was, const JsonValues *is, const char *head, bool hashes)
 {
     const char *const what = hashes ? "table" : "setting";
@@ -86,7 +86,7 @@ static void remark_inputs(Verdict *v, const JsonValues *was, const JsonValues *i
     if (v->other_log) remark(v, "the log is not that of the baseline (log_sha256)");
 }
 
-/* Version, ISA, libraries, automatic choices. */
+/* Remarks on differences of version, ISA, libraries and automatic choices. */
 static void remark_runs(Verdict *v, const JsonValues *was, const JsonValues *is)
 {
     remark_inputs(v, was, is);

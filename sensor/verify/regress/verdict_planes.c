@@ -64,7 +64,7 @@ void verdict_channel_value(char out[64], Channel channel, double value, int digi
 
 /* ---- units ----------------------------------------------------------------------------------- */
 
-/* Largest finite value: the reference of dB. */
+/* Finds the largest finite value, which dB are relative to. */
 static double largest(const float *value, size_t count)
 {
     double most = 0;
@@ -73,7 +73,8 @@ static double largest(const float *value, size_t count)
     return most;
 }
 
-/* A plane in the unit of its tolerance. full: largest value of the expected plane, the reference of dB. */
+/* Converts a plane to the unit of its tolerance. full: the largest value of the expected plane, which dB are relative
+ * to. */
 static void to_unit(float *out, const float *value, size_t count, RecordPlane plane, double full, const Tolerance *t)
 {
     double low_m, high_m;
@@ -229,7 +230,7 @@ static void compare_id_plane(ChannelResult *result, const FramePair *h, Channel 
     keep_worse(result, &found);
 }
 
-/* Sum of the bounces: a profile's bins share one scale. */
+/* Compares the sum of the bounces, since a profile's bins share one scale. */
 static void compare_profile(ChannelResult *result, const FramePair *h)
 {
     const RecordFrame *was = h->expected, *is = h->got;

@@ -75,7 +75,8 @@ static const struct Field {
     {"bands", 0, 0},
     {"frame", 0, 0},
     {"scene_rate_px_s", 0.01, 1e-5},
-    /* of a radar with phase: a hundredth of a cell, and of what a look's grid of tubes scatters by */
+    /* fields of a radar with phase: tolerances are a hundredth of a cell, and the scatter by the grid of tubes of a
+       look */
     {"preset", 0, 0},
     {"reference_m", 1e-3, 1e-6},
     {"reference_rate_mps", 1e-3, 1e-6},
@@ -100,7 +101,7 @@ static const struct Field {
     {"part", 0, 0},
 };
 
-/* Fields with a tolerance that older baselines lack. */
+/* Whether a field with a tolerance is one that older baselines lack. */
 static bool is_newer(const struct Field *field)
 {
     static const char *const names[] = {"error_px", "error_rms_k", "error_median_k", "median_k", "beyond_1k"};

@@ -49,7 +49,7 @@ const uint8_t *source_bytes(ByteSource *source, size_t count);
 uint32_t       source_u32(ByteSource *source);
 uint64_t       source_u64(ByteSource *source);
 void           source_f64s(ByteSource *source, double *value, int count);
-/* Within the arena, terminated; at most `most` octets, none of them 0. NULL: otherwise. */
+/* Reads a terminated text into the arena: at most `most` octets, none of them 0. NULL: it is not such a text. */
 char                *source_text(ByteSource *source, size_t most, Arena *arena);
 static inline int    source_i32(ByteSource *source) { return (int)source_u32(source); }
 static inline double source_f64(ByteSource *source)
@@ -69,9 +69,9 @@ typedef struct ChunkSource {
     const char *fault;   /* text of the failure; static storage */
 } ChunkSource;
 
-/* STATUS_UNSUPPORTED: a later version, STATUS_BAD_VALUE: not a frame file. */
+/* STATUS_UNSUPPORTED: the version is later; STATUS_BAD_VALUE: it is no frame file. */
 Status chunks_open(ChunkSource *out, const uint8_t *bytes, size_t count, Arena *arena);
-/* The next chunk; STATUS_OK with an empty name: the end. */
+/* Reads the next chunk; STATUS_OK with an empty name is the end. */
 Status chunks_next(ChunkSource *chunks, char name[chunk_name_size + 1], ByteSource *content);
 
 /* ---- fields of a chunk --------------------------------------------------------------------------- */
@@ -106,7 +106,7 @@ void field_bytes(Fields *f, void *bytes, size_t count);
 void field_text(Fields *f, const char *name, const char **text, size_t most);
 /* In place, terminated. */
 void field_chars(Fields *f, const char *name, char *text, size_t size);
-/* A count and, reading, an allocation for that many records; octets: the least size of one in the file. False:
+/* Takes a count; when reading, it allocates that many records. octets: the least size of a record in the file. False:
  * nothing more is to be read. */
 bool field_array(Fields *f, const char *name, int *count, void **array, size_t record, size_t octets, int most);
 

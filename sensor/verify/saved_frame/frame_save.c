@@ -16,7 +16,7 @@ enum { path_size = 4096 };
 
 /* ---- collected ----------------------------------------------------------------------------------- */
 
-/* Without terrain files, which the frame file replaces, and without settings that affect no plane. */
+/* Writes the settings, without terrain files, which the frame file replaces, and without those that affect no plane. */
 static Status write_settings(char **text, const Config *config)
 {
     Config plain = *config;
@@ -31,7 +31,7 @@ static Status write_settings(char **text, const Config *config)
     return fclose(to) == 0 && whole ? STATUS_OK : STATUS_NO_MEMORY;
 }
 
-/* Each model of the snapshot once. */
+/* Lists each model of the snapshot once. */
 static Status list_models(SavedFrame *file, const Catalog *catalog, Arena *arena)
 {
     const Snapshot *s = &file->snapshot;
@@ -54,8 +54,8 @@ static Status list_models(SavedFrame *file, const Catalog *catalog, Arena *arena
     return status;
 }
 
-/* The nodes of all entities: the snapshot of a frame poses only those that are rendered. joint: their joints' values.
- */
+/* Poses the nodes of all entities, since the snapshot of a frame poses only those that are rendered. joint: the values
+ * of their joints. */
 static Status pose_nodes(SavedFrame *file, double **joint, const Catalog *catalog, Arena *arena)
 {
     Snapshot    *s = &file->snapshot;
@@ -108,7 +108,8 @@ static Status gather(SavedFrame *file, SavedMade *made, char **settings, const F
     return STATUS_OK;
 }
 
-/* Points where the frame's rays hit the ground, or entities on it; the sensor, the origin, and smoke on the ground. */
+/* Gathers the points where the frame's rays hit the ground or entities on it, the sensor, the origin, and smoke on the
+ * ground. */
 static Status gather_places(GroundCutout *out, const Frame *f, Arena *arena)
 {
     const Picture    *picture = &f->seen.picture;
@@ -176,8 +177,8 @@ static Status prove(bool *same, const ByteSink *bytes, const FrameSave *save, Se
     return status;
 }
 
-/* The smallest of a few cut-outs that gives the same bits. reach_m: its own. Directly visible ground is in the
- * first; glossy surfaces reflect hills that are farther away than those in the image. */
+/* Packs the smallest of a few cut-outs that gives the same bits. reach_m: how far it reaches. The first cut-out has the
+ * ground that is directly visible; glossy surfaces reflect hills that are farther away than those in the image. */
 static Status pack_proved(ByteSink *bytes, double *reach_m, const SavedFrame *file, const FrameSave *save,
                           Arena *gathered)
 {

@@ -17,8 +17,8 @@ typedef struct FrameSave {
     const WoodsConfig *woods; /* of the world's plants; NULL: none */
 } FrameSave;
 
-/* Writes it only after rendering it again from its own octets to the same bits; with terrain from files it includes
- * more of the terrain until that holds. Takes the time of a few frames. Logs failures. */
+/* Writes a frame file after rendering it again from its own octets to the same bits; with terrain from files it
+ * includes more of the terrain until they agree. Takes the time of a few frames. Failures are logged. */
 Status frame_save(const FrameSave *save);
 
 #endif

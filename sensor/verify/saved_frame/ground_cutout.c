@@ -18,7 +18,7 @@ static Tiles tiles_of(const CutoutGrid *grid)
 
 static bool is_kept(const uint8_t *kept, size_t tile) { return kept[tile / 8] >> tile % 8 & 1; }
 
-/* First and last tile of one axis with the values next to a position; false: none. */
+/* Finds the first and last tile of one axis that hold the values next to a position. False: there are none. */
 static bool tiles_about(int range[2], double at_m, double x0_m, double spacing_m, int n)
 {
     const double at = floor((at_m - x0_m) / spacing_m), low = at - 1, high = at + 2;

@@ -12,7 +12,7 @@ typedef struct GroundCutout {
     const double (*p_m)[2]; /* positions, ENU */
     double reach_m;         /* posts: the tiles of the positions, and those within this distance of them, are kept;
                              * INFINITY: all */
-    double looks_reach_m;   /* the same of cover and photograph */
+    double looks_reach_m;   /* reach of cover and photograph */
 } GroundCutout;
 
 enum { cutout_tile = 32 }; /* values a side */
@@ -23,8 +23,8 @@ typedef struct CutoutGrid {
     double x0_m, y0_m, spacing_m;
 } CutoutGrid;
 
-/* Which tiles are kept, a bit each, then their values, row by row, tile by tile. In a tile, of values of two octets
- * (posts) the differences, their low octets before their high ones; of one (classes) and of eight (blocks of pixels) as
+/* Puts which tiles are kept, a bit each, then their values, tile by tile and row by row. Values of two octets (posts)
+ * are put as differences, low octets before high ones; values of one octet (classes) and of eight (blocks of pixels) as
  * they are. */
 void ground_cutout_put(ByteSink *sink, const CutoutGrid *grid, const void *values, const GroundCutout *kept);
 /* values: [ny][nx]; those of omitted tiles are left as they are. */

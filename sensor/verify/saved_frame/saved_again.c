@@ -7,7 +7,7 @@
 
 /* ---- results ------------------------------------------------------------------------------ */
 
-/* Of a complex plane the magnitude. */
+/* Reads a value of a plane, and of a complex plane its magnitude. */
 static double value_at(const Plane *plane, size_t i)
 {
     const float *part = plane->values;
@@ -71,14 +71,14 @@ Status saved_again(SavedAgain *out, const SavedStage *stage, bool no_skip)
                             &request.view,
                             request.bands,
                             &stage->snapshot->marks};
-    Air               air;
-    double            r_host_from_enu[9];
+    FrameLight        light;
     request.skips_off = no_skip ? skips_all_off : 0;
-    Status status = frame_light(&air, &out->sun, r_host_from_enu, world, stage->config, &at, stage->pool, stage->arena);
+    Status status = frame_light(&light, world, stage->config, &at, stage->pool, stage->arena);
     if (status == STATUS_OK)
-        status = render(&out->picture, world, stage->snapshot, &request, &air, stage->pool, stage->arena);
+        status = render(&out->picture, world, stage->snapshot, &request, &light.air, stage->pool, stage->arena);
     if (status != STATUS_OK) return status;
-    if (out->picture.normal[0]) frame_turn_normals(&out->picture, r_host_from_enu);
+    out->sun = light.sun;
+    if (out->picture.normal[0]) frame_turn_normals(&out->picture, light.r_host_from_enu);
     FrameArray plane[frame_max_planes];
     return saved_made(&out->made, plane, frame_planes(plane, &out->picture, &request));
 }
@@ -118,7 +118,7 @@ int saved_differences(const SavedFrame *file, const SavedMade *made, bool said)
 
 /* ---- the radar ----------------------------------------------------------------------------------- */
 
-/* SHA-256 of the map; with a scan, of the map and both its images over range and azimuth. */
+/* Hashes the map; with a sweep of the sector, the map and both its images over range and azimuth. */
 static Status hash_of(char out[sha256_text_size], const RadarFrame *r)
 {
     const RadarSector *s = r->scan;

@@ -23,7 +23,7 @@ typedef struct SavedAgain {
     SavedMade made;
 } SavedAgain;
 
-/* A frame file, and with what it is rendered again. */
+/* A frame file, and what it is rendered again with. */
 typedef struct SavedStage {
     const SavedFrame *file;
     const Snapshot   *snapshot; /* the file's, with an effect table */
@@ -34,12 +34,12 @@ typedef struct SavedStage {
 } SavedStage;
 
 Status saved_again(SavedAgain *out, const SavedStage *stage, bool no_skip);
-/* How many planes differ from those of the file, including planes that only one of them has. said: each is logged. */
+/* Counts the planes that differ from those of the file, or that only one of them has. said: each is logged. */
 int saved_differences(const SavedFrame *file, const SavedMade *made, bool said);
 
 /* ---- the radar: what it was given, and its map measured again ------------------------------------ */
 
-/* Of a frame with one; joint: values of all nodes' joints of its snapshot. */
+/* Gathers the radar of a frame that has one. joint: the values of all nodes' joints of its snapshot. */
 Status saved_radar_gather(SavedFrame *file, const RadarFrame *radar, double *joint);
 /* Measured again, by a radar of the file's settings. picture: rendered again, for what a scan shows on its pixels. */
 Status saved_radar_again(const RadarFrame **out, SeekerRadar *radar, const SavedStage *stage, const Picture *picture);

@@ -51,7 +51,7 @@ static void grid_values(Fields *f, const GroundCutout *kept, void **values, cons
     if (*values) ground_cutout_get(f->from, grid, *values);
 }
 
-/* No more than `most` values in all of a ground's grids of one kind. */
+/* Limits the values in all of a ground's grids of one kind to `most`. */
 static void limit(Fields *f, const char *name, size_t *sum, int nx, int ny, size_t most)
 {
     *sum += (size_t)nx * (size_t)ny;
@@ -76,7 +76,7 @@ static void tile_fields(Fields *f, ElevationLevel *l)
     }
 }
 
-/* Stored posts, those of an edge in the tile that begins with it, row by row. */
+/* Puts stored posts into rows; the posts of an edge are stored in the tile that begins with it. */
 static void stored_to_rows(uint16_t *post, const ElevationLevel *l)
 {
     for (int j = 0; j < l->ny; j++)

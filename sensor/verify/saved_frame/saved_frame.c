@@ -57,7 +57,7 @@ static const SavedModel *model_of(const SavedFrame *file, int model)
     return NULL;
 }
 
-/* Indices from one chunk into another. */
+/* Checks the indices that one chunk has into another. NULL: they agree; else the reason. */
 static const char *disagreement(const SavedFrame *file)
 {
     const Snapshot *s = &file->snapshot;

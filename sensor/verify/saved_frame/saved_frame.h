@@ -32,7 +32,7 @@ typedef struct SavedPlane {
     double finite, mean, low, high;
 } SavedPlane;
 
-/* What a radar was given besides, and what it made. */
+/* What a radar was given besides the scene, and what it made. */
 typedef struct SavedRadar {
     double   v_enu_mps[3]; /* of the antenna */
     bool     has_aim;
@@ -68,14 +68,14 @@ typedef struct SavedFrame {
     SavedPlane    *plane;
 } SavedFrame;
 
-/* The file's octets. kept: of terrain from files, the part that is stored (ground_cutout.h); NULL: all of it. */
+/* Writes the file's octets. kept: the part of terrain from files that is stored (ground_cutout.h); NULL: all of it. */
 struct GroundCutout;
 Status saved_frame_pack(ByteSink *out, const SavedFrame *file, const struct GroundCutout *kept);
 /* From octets that may be hostile: every count bounded, every value in its range, so that world and render() can use
  * it once its models are known to agree. All in the arena. Errors are logged with the path. */
 Status saved_frame_parse(SavedFrame *out, const uint8_t *bytes, size_t count, const char *path, Arena *arena);
 
-/* SHA-256 of a model's nodes, parts and facets. */
+/* Hashes the nodes, parts and facets of a model. */
 Status saved_model_sha256(char out[sha256_text_size], const Model *model);
 
 #endif

@@ -36,8 +36,8 @@ Status saved_ground_plant(World *world, Woods *woods, const SavedFrame *file, co
 
 /* ---- tables -------------------------------------------------------------------------------------- */
 
-/* The tables that a frame depends on: those of tables_used, and the user's own; models.catalog and models.materials are
- * listed by these names. catalog: that of etc/. */
+/* Lists the tables that a frame depends on: those of tables_used, and the user's own, where models.catalog and
+ * models.materials have these names. catalog: that of etc/. */
 Status saved_tables(TablesUsed *out, const Config *config, const char *catalog);
 
 #endif

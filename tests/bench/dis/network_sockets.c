@@ -43,7 +43,7 @@ typedef struct Flow {
     double  *late_s; /* [count], in order of arrival; NULL: not needed */
 } Flow;
 
-/* Its number, and words that follow from it. */
+/* Fills a datagram with its number, and with words that follow from the number. */
 static void fill(uint8_t *out, int octets, uint64_t number)
 {
     uint64_t word = number;

@@ -39,7 +39,7 @@ static uint32_t roll(uint32_t stream, uint32_t index)
     return word[0];
 }
 
-/* Up to five records, two as a rule: a tank's turret and gun. */
+/* Makes a PDU with up to five records, two as a rule: a tank's turret and gun. */
 static size_t make_pdu(uint8_t *out, int kind, uint32_t index)
 {
     const uint32_t dice = roll(100 + (uint32_t)kind, index);
@@ -58,7 +58,7 @@ static size_t make_pdu(uint8_t *out, int kind, uint32_t index)
     return length;
 }
 
-/* kind < 0: of all kinds, Entity States eight in ten. */
+/* Makes the octets of PDUs. kind < 0: of all kinds, eight in ten of them Entity States. */
 static Status make_octets(Octets *out, int kind, int pdus)
 {
     *out = (Octets){.pdus = pdus,

@@ -21,7 +21,7 @@ static double uniform(uint32_t stream, uint64_t index, double low, double high)
 
 enum { near_ends = 48, special_ticks = 6 * near_ends };
 
-/* Ticks about 0, the half hour and the full hour, and some in between. */
+/* Gives ticks about 0, the half hour and the full hour, and some in between. */
 static uint32_t special_tick(int i)
 {
     const int64_t about[6] = {0, hour_ticks / 2, hour_ticks, hour_ticks / 4, hour_ticks / 3, 123456789};
@@ -78,7 +78,7 @@ typedef struct Trip {
     bool    absolute, backwards; /* every packet after the next one */
 } Trip;
 
-/* Worst |exercise time - truth| over the trip, s. */
+/* Worst difference between exercise time and truth over the trip, s. */
 static double clock_error_s(const Trip *trip, int packets)
 {
     ExerciseClock *clock = NULL;
@@ -169,7 +169,7 @@ static void hostile_clock(Bench *bench)
 
 /* ---- retiming ------------------------------------------------------------------------------- */
 
-/* A capture without time of its own, 26 hours of stamps from just before the wrap. */
+/* Takes a capture without times of its own: 26 hours of stamps from just before the wrap. */
 static void retimed_log(Bench *bench)
 {
     enum { packets = 2600 };
@@ -207,7 +207,7 @@ static void unix_times(Bench *bench)
         const int64_t until = dis_unix_ns_until(unix_s);
         if (until < ns || dis_unix_s(until) > unix_s || dis_unix_s(until + 1) <= unix_s) back++;
     }
-    /* at 8.9e9 s a double steps by 1.9 us: half of it, and a rounding of the sum's smaller term */
+    /* at 8.9e9 s a double steps by 1.9 us: the limit is half of that, and a rounding of the sum's smaller term */
     bench_stress(bench, "Unix nanoseconds to seconds, 1970 .. 2255", off_s, 1e-6, "s", "long double");
     bench_stress(bench, "the same: steps back in time, and inverses that miss", back, 0, "instants",
                  "order of whole numbers");

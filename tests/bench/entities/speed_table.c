@@ -94,7 +94,7 @@ static void crowd_close(Crowd *c)
 
 /* ---- the works -------------------------------------------------------------------------------- */
 
-/* All entities report once more, as octets. */
+/* Lets all entities report once more, as octets. */
 static void update_all(void *user)
 {
     Crowd         *c = user;
@@ -109,7 +109,7 @@ static void update_all(void *user)
     bench_keep(c->table);
 }
 
-/* The same from one decoded report under the id of each entity. */
+/* Does the same with one decoded report under the id of each entity. */
 static void update_decoded(void *user)
 {
     Crowd *c = user;
@@ -140,7 +140,7 @@ static void slope_of(double out[9], const double r[9], const double w[3])
     m3_mul(out, r, cross);
 }
 
-/* One step of Runge and Kutta's fourth order. */
+/* Takes one step by Runge and Kutta's fourth order. */
 static void step_attitude(double r[9], const double w[3], double h_s)
 {
     double slope[4][9], at[9];
@@ -152,7 +152,8 @@ static void step_attitude(double r[9], const double w[3], double h_s)
     for (int i = 0; i < 9; i++) r[i] += h_s / 6 * (slope[0][i] + 2 * slope[1][i] + 2 * slope[2][i] + slope[3][i]);
 }
 
-/* p' = v + a t in the world's axes, or R (v + a t) in those of a body that turns; Simpson's rule over each step. */
+/* Integrates p' = v + a t in the world's axes, or R (v + a t) in those of a body that turns, by Simpson's rule over
+ * each step. */
 static void integrate(double p_ecef[3], const DisEntityState *s, double t_s)
 {
     enum { steps = 3000 };
@@ -175,7 +176,7 @@ static void integrate(double p_ecef[3], const DisEntityState *s, double t_s)
     v3_add(p_ecef, s->p_ecef, way);
 }
 
-/* Largest position error in a snapshot, m, over a sample of the entities. */
+/* Finds the largest position error in a snapshot, m, over a sample of the entities. */
 static double worst_place_m(Crowd *c)
 {
     double worst = 0;

@@ -49,7 +49,7 @@ static double model_volume(const Model *m)
     return (double)(sum / 6);
 }
 
-/* Joints at rest, at random, far beyond their limits, and at what is no number. */
+/* Sets joints at rest, at random, far beyond their limits, and to values that are no number. */
 static void look_at_model(ModelErrors *errors, const Model *m, int poses)
 {
     static const double wild[] = {0, 1e300, -1e300, INFINITY, -INFINITY, NAN, 1e-310, 3.4e38};

@@ -22,7 +22,7 @@ static double uniform(uint32_t stream, uint64_t index, double low, double high)
 
 /* ---- reference ----------------------------------------------------------------------------- */
 
-/* Over a time t, with W u = w x u: e^(Wt), its integral, and that of s e^(Ws). */
+/* For a rotation over a time t, where W u = w x u: e^(Wt), its integral, and the integral of s e^(Ws). */
 typedef struct Exponential {
     Wide e[9], i1[9], i2[9];
 } Exponential;
@@ -34,8 +34,8 @@ static void wide_mul(Wide out[9], const Wide a[9], const Wide b[9])
             out[3 * i + j] = a[3 * i] * b[j] + a[3 * i + 1] * b[3 + j] + a[3 * i + 2] * b[6 + j];
 }
 
-/* Taylor's series over t / 2^n, where |w| t / 2^n < 1/2; then n times twice the time:
- * e(2h) = e e, i1(2h) = i1 + e i1, i2(2h) = i2 + e (i2 + h i1). */
+/* Computes them by Taylor's series over t / 2^n, where |w| t / 2^n < 1/2, and n doublings of the time: e(2h) = e e,
+ * i1(2h) = i1 + e i1, i2(2h) = i2 + e (i2 + h i1). */
 static void exponential(Exponential *out, const double w[3], double t_s)
 {
     const Wide cross[9] = {0, -(Wide)w[2], w[1], w[2], 0, -(Wide)w[0], -(Wide)w[1], w[0], 0};
@@ -76,7 +76,7 @@ typedef struct MotionErrors {
     double crooked;
 } MotionErrors;
 
-/* One roundoff of each quantity that enters, and of the angle itself: 2^-53 of x radians. */
+/* Allows one roundoff of each quantity that enters, and of the angle itself: 2^-53 of x radians. */
 static void judge(MotionErrors *errors, const Kinematics *k, const Exponential *x, double t_s)
 {
     const int    a = k->algorithm;
@@ -146,7 +146,7 @@ static MotionErrors motions(const Reach *reach, int count)
         Kinematics     k = random_motion(at, reach);
         double         t_s = (n & 1 ? -1 : 1) * pow(10, uniform(17, at, log10(reach->least_s), log10(reach->most_s)));
         Exponential    x;
-        /* where series and closed form meet, |w| t = 1/2, and its neighbours */
+        /* the series and the closed form meet at |w| t = 1/2, which is tried with its neighbours */
         if (n % 7 == 3 && v3_length(k.w_body_rps) > 0) {
             const double joint_s = 0.5 / v3_length(k.w_body_rps);
             if (joint_s <= reach->most_s) t_s = n % 3 == 0 ? joint_s : nextafter(joint_s, n % 3 == 1 ? 0 : INFINITY);
@@ -167,7 +167,7 @@ static void dead_reckoning(Bench *bench)
                                    ? "exponential of the turn by doubling, 113 bits"
                                    : "exponential of the turn by doubling, 64 bits";
     const MotionErrors whole = motions(&all, count), believed = motions(&table, count), common = motions(&real, count);
-    /* some roundings: products, sums, and the closed form's cancellation at 1/2 rad */
+    /* the limit allows some roundings: products, sums, and the closed form's cancellation at 1/2 rad */
     bench_stress(bench, "dead reckoning, nine algorithms, 1e-12 .. 60 rad/s, 1 us .. 1e4 s: place", whole.place, 8,
                  "roundings", judge);
     bench_stress(bench, "the same: velocity", whole.speed, 8, "roundings", judge);
@@ -175,7 +175,7 @@ static void dead_reckoning(Bench *bench)
     bench_stress(bench, "the same: attitude not square, unit, right-handed", fmax(whole.crooked, believed.crooked),
                  4e-15, "", "R'R = I");
     bench_stress(bench, "dead reckoning of 1 km/s, 100 m/s2, 12 s: place", common.place_m, 4e-9, "m", judge);
-    /* 8.7e7 m in 132 s, of which a double steps by 1.5e-8 m */
+    /* the entity moves 8.7e7 m in 132 s, where a double steps by 1.5e-8 m */
     bench_stress(bench, "dead reckoning of all that a report may say: place", believed.place_m, 5e-8, "m", judge);
 }
 
@@ -206,7 +206,7 @@ static void extremes(Bench *bench)
                  "its start");
 }
 
-/* A body rotated in many small steps, each from the result of the last. */
+/* Rotates a body in many small steps, each from the result of the last. */
 static void drift(Bench *bench)
 {
     const int   steps = bench_quick(bench) ? 20000 : 1000000;
@@ -273,13 +273,13 @@ static void euler(Bench *bench)
             e[c] = n >= 3 * specials ? uniform(20 + (uint32_t)c, (uint64_t)n, -7, 7)
                    : n < specials    ? special
                                      : nextafter(special, n < 2 * specials ? 10 : -10);
-            /* and close to straight up from either side */
+            /* also angles close to straight up, from either side */
             if (n >= 3 * specials && c == 1 && n % 2)
                 e[c] = copysign(0.5 * pi_rad, e[c]) + pow(10, uniform(23, (uint64_t)n, -17, -1)) * (n % 4 - 2);
         }
         r_ecef_from_body_euler(r, e[0], e[1], e[2]);
         stress_off_rotation(&crooked, r);
-        /* Rz(psi) Ry(theta) Rx(phi) as three products */
+        /* Computes Rz(psi) Ry(theta) Rx(phi) as three products. */
         long double sine[3], cosine[3];
         for (int c = 0; c < 3; c++) sine[c] = sinl(e[c]), cosine[c] = cosl(e[c]);
         const long double z[9] = {cosine[0], -sine[0], 0, sine[0], cosine[0], 0, 0, 0, 1};
@@ -318,7 +318,7 @@ static void euler(Bench *bench)
 
 /* ---- a recorded track ------------------------------------------------------------------------- */
 
-/* Between two reports: a turn of 0 .. pi about any axis, and half of it. */
+/* Takes a time between two reports: a turn of 0 .. pi about any axis, and half of it. */
 static void tracks(Bench *bench)
 {
     const int count = bench_quick(bench) ? 5000 : 300000;

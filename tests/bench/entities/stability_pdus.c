@@ -90,7 +90,8 @@ static void world_close(World *w)
     arena_destroy(w->arena);
 }
 
-/* A tank with smoke, fire and dust; a helicopter; a missile with its motor burning; on the equator. */
+/* Makes a good report of a tank with smoke, fire and dust, a helicopter, or a missile with its motor burning, on the
+ * equator. */
 static size_t good_state(uint8_t *out, size_t room, const World *w, int kind, int algorithm)
 {
     static const DisEntityType types[3] = {{1, 1, 222, 1, 1, 1, 0}, {1, 2, 225, 20, 1, 0, 0}, {2, 2, 225, 1, 1, 3, 0}};
@@ -133,7 +134,7 @@ static size_t good_other(uint8_t *out, size_t room, const World *w, uint8_t type
         return dis_encode_fire(out, room, &fire);
     }
     if (type == dis_pdu_detonation) {
-        static DisDetonation burst; /* large; all but these stays zero */
+        static DisDetonation burst; /* static, since it is large; all fields but those set below stay zero */
         burst.header = header, burst.firing = id, burst.event = (DisEventId){1, 1, w->entity}, burst.descriptor = shell;
         burst.p_ecef[0] = 6378137, burst.velocity_mps[1] = 500, burst.result = (uint8_t)(1 + w->entity % 5);
         return dis_encode_detonation(out, room, &burst);
@@ -249,8 +250,8 @@ static void poke(uint8_t *pdu, const Field *field, int value)
     dis_store_u32(pdu + field->at + 4, (uint32_t)bits);
 }
 
-/* One field, or it and its two neighbours of the same kind, at one value; before it a good report, behind it another.
- */
+/* Sets one field, or it and its two neighbours of the same kind, to one value; sends a good report before it and
+ * another after it. */
 static void stress_pdu(World *w, uint8_t type, const Field *field, int left, int value, int kind, int algorithm,
                        bool together)
 {
@@ -302,7 +303,7 @@ Status bench_stability_pdus(Bench *bench)
         for (int f = 0; f < row[r].fields; f++)
             for (int v = 0; v < (row[r].field[f].wide ? double_count : single_count); v++)
                 for (int variant = 0; variant < (row[r].type == dis_pdu_entity_state ? 54 : 6); variant++) {
-                    /* not all of the variants, but others for every number */
+                    /* each number is tried with some of the variants, which differ from number to number */
                     if ((variant + 7 * v + 5 * f) % (bench_quick(bench) ? 54 : 5) != 0 &&
                         row[r].type == dis_pdu_entity_state)
                         continue;

@@ -8,7 +8,7 @@
 
 enum { paths = 1000, all_bands = (1 << AIR_BAND_COUNT) - 1, skies = 1000 };
 
-/* One eye and its view; sun 45 degrees up. */
+/* One eye and its view; the sun is 45 degrees up. */
 typedef struct AirSet {
     const Atmosphere  *atmosphere;
     const PlanckTable *planck[2];
@@ -26,7 +26,7 @@ typedef struct AirSet {
     Status             status;
 } AirSet;
 
-/* 20 degrees wide, 10 degrees down from up there and level from the ground, 40 degrees beside the sun. */
+/* Looks 20 degrees wide, 10 degrees down from up there and level from the ground, 40 degrees beside the sun. */
 static void look(AirSet *s)
 {
     const double down_rad = s->eye_m < 10 ? 0 : 10 * rad_per_deg, a = s->sun.azimuth_rad + 40 * rad_per_deg;
@@ -53,7 +53,7 @@ static void make_air(void *user)
     s->status = air_at(&s->air, &source, &weather, &s->sun, &eye, NULL, s->arena);
 }
 
-/* To the ground or some of the way; level and rising ones to 20 km. */
+/* Makes paths to the ground or some of the way to it; level and rising ones reach 20 km. */
 static void make_paths(AirSet *s)
 {
     s->hits.count = s->rays.count = s->paths;
@@ -95,8 +95,8 @@ static void ask_atmosphere(void *user)
     bench_keep(s->path);
 }
 
-/* Error of the apparent radiance of a warm body, or of one of 10 % reflectance in the open, through the path, in
- * these bands, %. */
+/* Computes the error, %, of the apparent radiance in these bands of a warm body, or of one of 10 % reflectance in the
+ * open, seen through the path. */
 static int seen_errors(double *error, const AirSet *s, int first, int end)
 {
     int n = 0;
@@ -117,8 +117,8 @@ static int seen_errors(double *error, const AirSet *s, int first, int end)
 
 /* ---- tables with every second node ---------------------------------------------------------------- */
 
-/* Odd nodes become the mean of their neighbours: the result of a table of half as many along this axis. lines:
- * outer x inner of them; stride: of the axis, in values. */
+/* Replaces odd nodes by the mean of their neighbours, as a table of half as many nodes along this axis would give.
+ * lines: outer x inner of them; stride: that of the axis, in values. */
 static void thin(float *table, int outer, size_t outer_stride, int nodes, size_t stride, int inner)
 {
     for (int a = 0; a < outer; a++)
@@ -267,7 +267,7 @@ static void ask_skies(void *user)
     bench_keep(s->out);
 }
 
-/* The visible sky at random directions, as seen from the ground. */
+/* Samples the visible sky in random directions, as seen from the ground. */
 static void tunable_sky(Bench *bench, const AirSet *from)
 {
     enum { settings = 3 };

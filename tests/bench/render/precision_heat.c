@@ -22,7 +22,8 @@ static HeatConfig config_of(const HeatDay *day, double step_s, int facets, doubl
 
 /* ---- a day of level ground --------------------------------------------------------------------- */
 
-/* Every kind, after a day of spin-up; at even times, straight between two times of its own grid. */
+/* Temperatures of every kind of ground, after a day of spin-up, at even times; each is interpolated between two times
+ * of the heat's own grid. */
 typedef struct DaySet {
     const GroundKinds *kinds;
     GroundGrid         grid;
@@ -65,7 +66,7 @@ static void run_day(void *user)
     bench_keep(s->temp_k);
 }
 
-/* Largest, and rms, over kinds and times. */
+/* Finds the largest and the rms difference, over kinds and times. */
 static void compare_days(BenchSetting *point, const DaySet *a, const DaySet *fine)
 {
     double sum = 0;
@@ -146,7 +147,7 @@ typedef struct FacetSet {
     double unix_s;
 } FacetSet;
 
-/* One step of the grid further. */
+/* Goes one step of the grid further. */
 static void step_heat(void *user)
 {
     FacetSet *s = user;
@@ -156,7 +157,7 @@ static void step_heat(void *user)
     if (heat_now(&now, s->heat, s->unix_s, s->arena) == STATUS_OK) bench_keep(now);
 }
 
-/* Up to 45 degrees, then to walls. */
+/* Makes slopes of up to 45 degrees, then walls. */
 static void slope_normal(double n_enu[3], int i)
 {
     const double up = i < slopes / 2 ? 0.7071 + 0.2929 * random_uniform(19, 0, 0, (uint64_t)i)
@@ -245,7 +246,7 @@ typedef struct ShadeSet {
     Status           status;
 } ShadeSet;
 
-/* Groves and hedges: 12 m high, with clearings. */
+/* Makes groves and hedges, 12 m high, with clearings. */
 static void groves(ShadowStand *out, const void *user, double x_m, double y_m)
 {
     (void)user;
@@ -264,7 +265,7 @@ static void cast(void *user)
     bench_keep(s->map);
 }
 
-/* rms, and share of places off by more than 1 K. */
+/* Computes the rms difference, and the share of places that are off by more than 1 K. */
 static void compare_shade(BenchSetting *point, const ShadeSet *a, const ShadeSet *fine, const HeatNow *now,
                           double half_m)
 {
@@ -365,7 +366,8 @@ static void shade_slots(uint8_t shadow[heat_day_slots], const HeatDay *day, cons
 
 static Status shade_rows(Bench *bench, const GroundKinds *kinds, Pool *pool)
 {
-    /* in it, afterwards; measured, worst of the three: 0.94, 0.22; 4.6, 1.8; 3.9, 1.7; 5.1, 1.8 */
+    /* limits while in shadow and afterwards; measured, the worst of the three: 0.94, 0.22; 4.6, 1.8; 3.9, 1.7; 5.1, 1.8
+     */
     static const double limit_k[slope_kinds][2] = {{1.2, 0.4}, {5.5, 2.2}, {4.8, 2.2}, {6.2, 2.2}};
     static HeatPiece    piece[slope_kinds][shade_windows];
     const HeatDay       day = heat_day_default();

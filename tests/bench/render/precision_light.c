@@ -289,7 +289,7 @@ typedef struct SmokeSet {
     SmokeRays   out;
 } SmokeSet;
 
-/* Overlapping puffs 100 .. 160 m away, of different brightness; without a pattern. */
+/* Makes overlapping puffs 100 .. 160 m away, of different brightness, without a pattern. */
 static void make_smoke(SmokeSet *s)
 {
     for (int v = 0; v < smoke_volumes; v++) {

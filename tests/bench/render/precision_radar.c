@@ -24,8 +24,8 @@ static double off_percent(const ScatterMatrix *got, const ScatterMatrix *want, i
 
 /* ---- flat faces ------------------------------------------------------------------------------- */
 
-/* The first bounce by ray tubes and in closed form: the time of a look against its error. Plates and boxes against
- * their formulas; others against tubes divided to the finest. */
+/* Compares the first bounce by ray tubes and in closed form: the time of a look against its error. Plates and boxes are
+ * compared with their formulas, others with tubes divided to the finest. */
 
 enum { face_looks = 3 };
 
@@ -59,12 +59,13 @@ static void run_looks(void *user)
         look_of(&antenna, i);
         w->status = total_field_trace(&w->field, w->target, &antenna, &antenna, &w->tubes, false, w->pool);
         if (w->status == STATUS_OK)
-            w->status = total_field_sweep(&w->s[i], 1, w->tubes.frequency_hz, 0, &w->field, NULL, NULL, w->pool);
+            w->status = total_field_sweep(&w->s[i], &(FrequencySweep){.count = 1, .first_hz = w->tubes.frequency_hz},
+                                          &w->field, w->pool);
     }
     bench_keep(w);
 }
 
-/* A side of a box, or a plate: its normal's axis, and which way. */
+/* Adds a side of a box, or a plate, by the axis of its normal and the sense of it. */
 static void add_side(ScatterMatrix *s, const Case *c, const ScatterAntenna *a, int axis, double sign)
 {
     const int    u = (axis + 1) % 3, v = (axis + 2) % 3;
@@ -229,8 +230,13 @@ static void sweep(void *user)
 {
     Reuse *r = user;
     if (r->status == STATUS_OK)
-        r->status = total_field_sweep(r->s, frequencies, r->centre_hz - 0.5 * band_hz, band_hz / (frequencies - 1),
-                                      &r->field, &r->now, &r->now, r->pool);
+        r->status = total_field_sweep(r->s,
+                                      &(FrequencySweep){.count = frequencies,
+                                                        .first_hz = r->centre_hz - 0.5 * band_hz,
+                                                        .step_hz = band_hz / (frequencies - 1),
+                                                        .tx = &r->now,
+                                                        .rx = &r->now},
+                                      &r->field, r->pool);
     bench_keep(r);
 }
 
@@ -252,7 +258,7 @@ static void add_row(Bench *bench, const char *what, void (*run)(void *), Reuse *
     bench_add(bench, &row);
 }
 
-/* Edges left out, and waves between them. */
+/* Prices the edges, and the waves between them, by leaving them out. */
 static void edges(Bench *bench, Reuse *r)
 {
     ScatterMatrix whole[frequencies];
@@ -271,7 +277,7 @@ static void edges(Bench *bench, Reuse *r)
     r->edges = true;
 }
 
-/* A list for an antenna elsewhere, against a list of its own. */
+/* Compares a list used for an antenna elsewhere with a list of its own. */
 static void aspects(Bench *bench, Reuse *r)
 {
     static const struct {
@@ -426,7 +432,7 @@ static Status tunable_tubes(Bench *bench, const RadarModel *model, Pool *pool)
                                      18});
 }
 
-/* At 10 GHz, where edges rule; on quick runs one look, the last setting left out. */
+/* Measures at 10 GHz, where edges rule; quick runs take one look and leave the last setting out. */
 static Status tunable_splits(Bench *bench, const RadarModel *model, Pool *pool)
 {
     enum { settings = 4 };

@@ -58,7 +58,7 @@ static float height_over_float(const ElevationLevel *g, const float u[2], float 
                 (float)g->step_m * (a >= b ? sw + a * (se - sw) + b * (ne - se) : sw + a * (ne - nw) + b * (nw - sw)));
 }
 
-/* As walk_ground below, in float only: the accuracy of a float triangle tracer on this ground. */
+/* Does what walk_ground does, in float only: the accuracy of a float triangle tracer on this ground. */
 static double walk_ground_float(const ElevationLevel *g, const GroundRays *r, int i)
 {
     const float s = (float)g->spacing_m, d2 = (float)r->d[2][i], o2 = (float)r->o[2][i];
@@ -111,7 +111,7 @@ static long double height_over(const ElevationLevel *g, const long double p[3])
     return p[2] - ((long double)g->z0_m + (long double)g->step_m * posts);
 }
 
-/* From one line of posts or diagonal to the next, in long double; between them the height above the ground is
+/* Walks from one line of posts or diagonal to the next, in long double; between them the height above the ground is
  * linear. */
 static long double walk_ground(const ElevationLevel *g, const GroundRays *r, int i)
 {
@@ -196,7 +196,7 @@ static Status tunable_ground(Bench *bench)
 enum { part_rays = 1024 };
 
 typedef struct PartSet {
-    /* 0: Embree's triangles from the eye, 1: from the model's sphere, 2: boxes, tested exactly in double */
+    /* 0: Embree's triangles from the eye; 1: those from the model's sphere; 2: boxes, then exact tests in double */
     int          way;
     PosedEntity *posed;
     RTCScene     scene;
@@ -239,7 +239,7 @@ static void trace_parts(void *user)
     bench_keep(s->range_m);
 }
 
-/* All triangles of a posed model about its centre, in float. */
+/* Makes a scene of all triangles of a posed model about its centre, in float. */
 static RTCScene float_scene(RTCDevice device, const Model *model, const PosedEntity *posed, const NodePose *pose)
 {
     RTCScene    scene = rtcNewScene(device);

@@ -134,7 +134,7 @@ Status bench_speed_network(Bench *bench)
 
 /* ---- patches ------------------------------------------------------------------------------------ */
 
-/* Temperatures over the surface, as a picture blends them, against those of the most patches. */
+/* Compares temperatures over the surface, as a picture blends them, with those of the most patches. */
 
 enum { patch_settings = 3, ticks = 60 };
 static const double tick_s = 30;
@@ -167,7 +167,7 @@ static Status morning(PlaceHeat *out, const void *user, double unix_s, const dou
     return STATUS_OK;
 }
 
-/* A tank that idles, nose north, its last half hour in view. */
+/* A tank that idles, nose north; its last half hour is in view. */
 typedef struct Morning {
     const Stage   *stage;
     PatchSet       patches;

@@ -18,7 +18,7 @@ typedef struct CrowdFrame {
 
 static const DisEntityType tank_type = {1, 1, 222, 1, 1, 1, 0};
 
-/* East and north of tank k. */
+/* Gives the place of tank k, east and north. */
 typedef void CrowdPlace(double p_enu[2], int k);
 
 static double crowd_dice(uint32_t stream, int k) { return random_uniform(1, stream, 0, (uint64_t)k); }
@@ -114,7 +114,7 @@ static double thread_s(void)
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-/* Time of a thread: for the snapshot of a world, and for the tree over it. */
+/* Times one thread: the snapshot of a world, and the tree over it. */
 static Status time_tree(Crowds *all, const TrialScene *scene)
 {
     enum { rounds = 15 };

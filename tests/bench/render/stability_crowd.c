@@ -31,7 +31,7 @@ static double crowd(StressWorld *w, int count)
         stress_add(w, p, r);
     }
     request.bands = all_bands;
-    /* time grows with the square of the number of entities */
+    /* the time grows with the square of the number of entities, so large crowds get fewer samples and bands */
     if (count > 1000) request.target_samples = 8, request.bands = 1 << BAND_LWIR;
     if (!stress_render(w, &request)) return INFINITY;
     for (int k = 0; k < count; k++) visible += w->picture.target[k].visible;
@@ -73,7 +73,7 @@ static double stacked_many(void *user, bool quick)
     return draw_stack(w, &request, stress_entities) ? stress_bad_values(&w->picture) : INFINITY;
 }
 
-/* By the tree, and by testing every entity. */
+/* Compares the tree with a test of every entity. */
 static double stacked_some(void *user, bool quick)
 {
     StressWorld  *w = user;
@@ -165,8 +165,9 @@ static double two_in_one_place(void *user, bool quick)
 
 /* ---- where the eye is ------------------------------------------------------------------------------ */
 
-/* Inside a block, on its side and edge-on to it, under the ground, on it, at 1000 km; level, straight up and straight
- * down, by day, night and with the sun on the horizon, overhead and at the nadir; wide and narrow. */
+/* Places eyes inside a block, on its side and edge-on to it, under the ground, on it and at 1000 km; looking level,
+ * straight up and straight down; by day, at night and with the sun on the horizon, overhead and at the nadir; wide and
+ * narrow. */
 static double eyes(void *user, bool quick)
 {
     static const double place[][3] = {{0, 101, 20.3}, {0, 100, 20.3}, {0, 99.999999, 20.3}, {0, 0, -40},
@@ -197,8 +198,8 @@ static double eyes(void *user, bool quick)
     return wrong;
 }
 
-/* Straight down and straight up, rotated by quarters about the axis: the same picture, rotated. In air of uniform
- * radiance and from above a block; worst change of a pixel's radiance. */
+/* Looks straight down and straight up, rotated by quarters about the axis: the picture must be the same, rotated. In
+ * air of uniform radiance and from above a block. Returns the worst change of a pixel's radiance. */
 static double turned(void *user, bool quick)
 {
     enum { side = 64 };

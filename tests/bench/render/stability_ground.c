@@ -42,7 +42,8 @@ static int32_t tile_post(int shape, int i, int j, Dice *dice)
     return (int32_t)stress_uniform(dice, 0, 1 << (8 + 3 * tile)) + 100000 * tile;
 }
 
-/* Of one range, spacings and steps are powers of two: posts are exact, and so are rays along them. */
+/* Opens a field. Spacings and steps of its one range are powers of two, so posts are exact, and so are rays along them.
+ */
 static bool field_open(Field *f, int shape, double x0_m, double y0_m)
 {
     static int32_t post[side_most * side_most];
@@ -87,7 +88,7 @@ static bool field_open(Field *f, int shape, double x0_m, double y0_m)
 
 static double post_m(const Field *f, int i, int j) { return elevation_post_m(&f->elevation.level[0], i, j); }
 
-/* A ray of one of ten degenerate kinds. */
+/* Makes a ray of one of ten degenerate kinds. */
 static void field_ray(double o[3], double d[3], const Field *f, Dice *dice, int kind)
 {
     const ElevationLevel *e = &f->elevation.level[0];
@@ -263,7 +264,7 @@ static double tiles_invented(void *user, bool quick)
     return field(quick, count_invented, shapes, shapes_all);
 }
 
-/* The same rays eight at a time and as a tile: number of different bits, cells and halves. */
+/* Traces the same rays eight at a time and as a tile, and counts the bits, cells and halves that differ. */
 static double field_company(void *user, bool quick)
 {
     enum { block = 1000 };
@@ -302,8 +303,8 @@ static double field_company(void *user, bool quick)
     return wrong;
 }
 
-/* The field 200 km from the terrain's origin, which is a whole number of its lines: the same rays, moved with it. An
- * eye there is rounded to 3e-11 m, which a face a thousandth of a radian from edge-on makes 3e-8 m of range. */
+/* Moves the field 200 km from the terrain's origin, by a whole number of its lines, and the same rays with it. An eye
+ * there is rounded to 3e-11 m, which a face a thousandth of a radian from edge-on makes 3e-8 m of range. */
 static double far_fields(void *user, bool quick)
 {
     static const double away_m[2] = {131072, -163840};
@@ -329,7 +330,8 @@ static double far_fields(void *user, bool quick)
     return worst_m;
 }
 
-/* Two levels that meet exactly: down on posts and outline, up to the horizon's last line. Nothing falls through. */
+/* Joins two levels that meet exactly, and sends rays down on posts and outline and up to the horizon's last line.
+ * Nothing may fall through. */
 static double seams(void *user, bool quick)
 {
     enum { side = 33 };

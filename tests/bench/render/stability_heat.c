@@ -30,7 +30,7 @@ typedef struct Worst {
     double excess, energy; /* shares: of the range; of the heat that moved */
 } Worst;
 
-/* Ground of one temperature in surroundings of another, twenty steps. */
+/* Conducts heat for twenty steps in ground of one temperature with surroundings of another. */
 static void conduct(Worst *worst, const ColumnLayer *layer, int layers, double first_m, double begin_k,
                     const Around *around, double dt_s)
 {
@@ -159,7 +159,7 @@ static double wrong_values(const HeatNow *now, Dice *dice)
     return wrong;
 }
 
-/* Over hours_h from the beginning. */
+/* Computes the error over hours_h from the beginning. */
 static double wrong_of(const HeatStress *s, const HeatConfig *config, double hours_h, int looks)
 {
     Heat  *heat = NULL;
@@ -247,7 +247,7 @@ static double threads_agree(void *user, bool quick)
     return different;
 }
 
-/* To times in any order, of one object, and each by an object of its own. */
+/* Moves one object to times in any order, and compares it with an object of its own for each time. */
 static double back_in_time(void *user, bool quick)
 {
     static const double at_s[] = {20000, 100, 0, 7300, 7300, -1e6, 3599.5, 20000, 1};

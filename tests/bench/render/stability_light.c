@@ -73,8 +73,8 @@ static double planck_round_trip(void *user, bool quick)
     return worst_k;
 }
 
-/* The table's radiance, held in a float as a picture holds it, and back: over all temperatures whose radiance a float
- * holds. A step of a float is worth 6e-8 of the radiance: 1 mK at 10,000 K. */
+/* Holds the table's radiance in a float, as a picture does, and turns it back into a temperature, for all temperatures
+ * whose radiance a float holds. A step of a float is worth 6e-8 of the radiance: 1 mK at 10,000 K. */
 static double table_round_trip(void *user, bool quick)
 {
     const Light *light = user;
@@ -149,8 +149,8 @@ static double path_values(void *user, bool quick)
     return wrong;
 }
 
-/* The parameters of frames: eyes from below the ground to space, suns from nadir to zenith, rays of zero length, of
- * 1000 km and to the sky, straight up and down. */
+/* Tries the parameters of frames: eyes from below the ground to space, suns from nadir to zenith, rays of zero length,
+ * of 1000 km and to the sky, straight up and down. */
 static double veil_values(void *user, bool quick)
 {
     static const double eye_m[] = {-50, 0, 2, 300, 19999, 20000, 1e6},

@@ -38,7 +38,7 @@ static void body_close(Body *b)
     *b = (Body){0};
 }
 
-/* 4 m wide, 3 m high, in the plane x = 0. */
+/* Opens a plate 4 m wide and 3 m high in the plane x = 0. */
 static bool plate_open(Body *b)
 {
     static const double corner[4][3] = {{0, -2, -1.5}, {0, 2, -1.5}, {0, 2, 1.5}, {0, -2, 1.5}};
@@ -53,7 +53,7 @@ static bool plate_open(Body *b)
 
 static int rays_of(bool quick, int full) { return quick ? full / 10 : full; }
 
-/* A ray to a point on the plate, at 6 degrees to it or more; its range from the plane's equation. */
+/* Makes a ray to a point on the plate, at 6 degrees to it or more; its range follows from the plane's equation. */
 static double plate_ray(double o[3], double d[3], Dice *dice, double far_m)
 {
     const double to[3] = {0, stress_uniform(dice, -1.99, 1.99), stress_uniform(dice, -1.49, 1.49)};
@@ -107,7 +107,7 @@ static double plate_edges(void *user, bool quick)
     return wrong;
 }
 
-/* The whole scene translated and rotated, eye included: change of the range. */
+/* Translates and rotates the whole scene, eye included, and returns the change of the range. */
 static double plate_far_origins(void *user, bool quick)
 {
     Body   b;
@@ -185,8 +185,8 @@ static bool heap_open(Body *b, Dice *dice)
     return body_open(b);
 }
 
-/* How a ray passes a triangle: metres inside its nearest edge, below 0 outside; range; twice its area projected
- * along the ray. -INFINITY: never. */
+/* Computes how a ray passes a triangle: metres inside its nearest edge, below 0 outside; range; twice its area
+ * projected along the ray. -INFINITY: it never does. */
 static long double passes(long double *range_m, long double *seen_m2, const Model *m, int triangle, const double o[3],
                           const double d[3])
 {
@@ -425,7 +425,7 @@ static double odd_rays(void *user, bool quick)
             d[c] = stress_uniform(&dice, 0, 1) < 0.5 ? odd[(int)stress_uniform(&dice, 0, odds)]
                                                      : stress_uniform(&dice, -1, 1);
         }
-        /* too long or short to be normalised */
+        /* the direction is too long or too short to be normalised */
         if (!v3_normalize(d, d) && v3_is_finite(d) && v3_dot(d, d) > 0) continue;
         PartHit      hit;
         const double range_m = parts_first_hit(&hit, &b.entity, o, d, INFINITY, n % 3 == 0);

@@ -25,12 +25,13 @@ static void facing(double r[9], const double d_enu[3])
 typedef struct Ranges {
     StressWorld *world;
     bool         done;
-    /* worst: of rho E cos / pi and Planck, of the area; px; of the range */
+    /* worst relative errors: radiance, against rho E cos / pi and Planck; size, of the area; edge_px in pixels; of the
+     * range */
     double radiance, size, edge_px, range;
 } Ranges;
 
-/* The block fills 100 columns at every range. Both ways of sampling: as what
- * it is, and as a small target, 5 columns wide. */
+/* Lets the block fill 100 columns at every range, sampled in both ways: as what it is, and as a small target, 5 columns
+ * wide. */
 static void one_range(Ranges *r, double range_m, double columns)
 {
     StressWorld *w = r->world;
@@ -113,7 +114,8 @@ static bool origin_picture(StressWorld *w, const double away_enu[3])
     return stress_render(w, &request);
 }
 
-/* The same scene with the terrain's origin elsewhere on the Earth, and itself up to 200 km from it. */
+/* Puts the terrain's origin elsewhere on the Earth, and the scene up to 200 km from it: the picture must be the same.
+ */
 static const Origins *origins(void *user, bool quick)
 {
     Origins        *o = user;
@@ -238,7 +240,7 @@ static double sizes(void *user, bool quick)
         w->arena = own;
         small = w->picture;
         wrong += made ? stress_bad_values(&small) : INFINITY;
-        /* of the same parity, so that the middles agree; by one row or column of tiles at least */
+        /* the sizes have the same parity, so that the middles agree, and differ by a row or column of tiles at least */
         request.view.width = size[k][0] % 2 + (size[k][0] > 100 ? 8190 : quick ? 64 : 256);
         request.view.height = size[k][1] % 2 + (size[k][1] > 100 ? 8190 : quick ? 64 : 256);
         const int w0 = size[k][0] < request.view.width ? size[k][0] : request.view.width;
@@ -253,7 +255,7 @@ static double sizes(void *user, bool quick)
     return wrong;
 }
 
-/* The largest possible size, long-wave alone: its centre is that of a small one, its values are valid. */
+/* Renders the largest possible size, long-wave alone: its centre must be that of a small one, and its values valid. */
 static double largest(void *user, bool quick)
 {
     StressWorld  *w = user;
@@ -285,8 +287,8 @@ static double largest(void *user, bool quick)
     return made && w->arena ? wrong : INFINITY;
 }
 
-/* One block in front of every pixel, at the finest sampling: the largest fixed-point sums. Compared with count and
- * mean. */
+/* Puts one block in front of every pixel, at the finest sampling, for the largest fixed-point sums, which are compared
+ * with count and mean. */
 static double full_sums(void *user, bool quick)
 {
     StressWorld *w = user;

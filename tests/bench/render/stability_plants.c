@@ -116,7 +116,7 @@ static void judge(PlantFigures *f, PlantRays *r, const PlantStress *s, const Sta
     r->count = 0;
 }
 
-/* A place on a leaf of a plant, ENU, and its card's normal. */
+/* Finds a place on a leaf of a plant, ENU, and its card's normal. */
 static bool leaf_place(double p[3], double n[3], const Stand *stand, const Plants *plants, int i, Dice *dice)
 {
     const Plant      *plant = &stand->woods.plant[i];
@@ -142,7 +142,7 @@ static bool leaf_place(double p[3], double n[3], const Stand *stand, const Plant
 
 /* ---- the cases ----------------------------------------------------------------------------------- */
 
-/* From 5 cm to 200 m, 1e-4 rad from the plane of a card. */
+/* Looks from 5 cm to 200 m away, 1e-4 rad from the plane of a card. */
 static bool edge_on(PlantFigures *f, PlantStress *s, bool quick)
 {
     static const double origin[3] = {100, -50, 300}, off_rad = 1e-4;
@@ -226,7 +226,7 @@ static bool far_away(PlantFigures *f, PlantStress *s, bool quick)
     return true;
 }
 
-/* A million trees, 2 to 25 m high, in 64 x 64 m: from above and from the side. */
+/* Looks at a million trees, 2 to 25 m high, in 64 x 64 m, from above and from the side. */
 static bool crowded(PlantFigures *f, PlantStress *s, bool quick)
 {
     static const double origin[3] = {0, 0, 40}, one_mb = 1e6;
@@ -285,7 +285,8 @@ static double any_apart(void *user, bool quick)
            figures(user, quick, CROWDED)->apart;
 }
 
-/* In blocks of any size: the same bits. And rays of no direction, not finite, from 1e300 m: nothing is met, no NaN. */
+/* Traces blocks of any size, which must give the same bits; and rays of no direction, not finite, or from 1e300 m,
+ * which must meet nothing and give no NaN. */
 static double company(void *user, bool quick)
 {
     static const double origin[3] = {0, 0, 0};
@@ -341,7 +342,7 @@ static double odd_rays(void *user, bool quick)
                 if (stress_uniform(&dice, 0, 1) < 0.5) o[c] = odd[(int)stress_uniform(&dice, 0, odds)];
                 if (stress_uniform(&dice, 0, 1) < 0.5) d[c] = odd[(int)stress_uniform(&dice, 0, odds)];
             }
-            /* too long or short to be normalised */
+            /* the direction is too long or too short to be normalised */
             if (!v3_normalize(d, d) && v3_is_finite(d) && v3_dot(d, d) > 0) continue;
             add_ray(&rays, o, d);
         }

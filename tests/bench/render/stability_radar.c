@@ -26,16 +26,16 @@ static void stand_close(Stand *s)
     model_destroy(&s->model);
 }
 
-/* The field of one look. False: refused. */
+/* Computes the field of one look. False: it is refused. */
 static bool look(ScatterMatrix *out, Stand *s, const ScatterAntenna *a, double f_hz)
 {
     const TubeConfig config = tubes_default_config(f_hz);
     return total_field_trace(&s->field, s->target, a, a, &config, true, NULL) == STATUS_OK &&
-           total_field_sweep(out, 1, f_hz, 0, &s->field, NULL, NULL, NULL) == STATUS_OK;
+           total_field_sweep(out, &(FrequencySweep){.count = 1, .first_hz = f_hz}, &s->field, NULL) == STATUS_OK;
 }
 
-/* A corner reflector at 94 GHz from 1 m to 1000 km away: the mirror image of a point is a point, so beyond the near
- * field its cross section tends to that of plane waves as 1 / range. */
+/* Looks at a corner reflector at 94 GHz from 1 m to 1000 km away: the mirror image of a point is a point, so beyond the
+ * near field its cross section tends to that of plane waves as 1 / range. */
 static double ranges(void *user, bool quick)
 {
     Stand  s;
@@ -57,7 +57,7 @@ static double ranges(void *user, bool quick)
     return good ? worst : INFINITY;
 }
 
-/* Target and antenna moved together, up to 20 km, and turned, at 94 GHz: the same field. */
+/* Moves target and antenna together, up to 20 km, and turns them, at 94 GHz: the field must be the same. */
 static double offsets(void *user, bool quick)
 {
     Stand  s;
@@ -114,7 +114,7 @@ static double needles(void *user, bool quick)
         if (n < 3) a.u[n] = n % 2 ? -1 : 1;
         else stress_direction(a.u, &dice);
         good = total_field_trace(&field, target, &a, &a, &config, true, NULL) == STATUS_OK &&
-               total_field_sweep(&s, 1, 10e9, 0, &field, NULL, NULL, NULL) == STATUS_OK;
+               total_field_sweep(&s, &(FrequencySweep){.count = 1, .first_hz = 10e9}, &field, NULL) == STATUS_OK;
         wrong +=
             good && !isfinite(scatter_power(s.hh) + scatter_power(s.hv) + scatter_power(s.vh) + scatter_power(s.vv));
     }

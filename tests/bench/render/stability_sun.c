@@ -62,7 +62,7 @@ static void light_at(Lit *lit, double elevation_rad)
         }
 }
 
-/* Largest change of any value over the bracket, relative to the value's maximum in `scale`. */
+/* Finds the largest change of any value over the bracket, relative to the value's maximum in `scale`. */
 static double change(const double *a, const double *b, const double *scale)
 {
     double most = 0;
@@ -73,7 +73,7 @@ static double change(const double *a, const double *b, const double *scale)
     return most;
 }
 
-/* Excess of the change of any value in a step over that in the neighbouring steps: a possible jump. */
+/* Finds by how much the change of a value in a step exceeds that in the neighbouring steps: a possible jump. */
 static double stands_out(double (*at)[values], int i, int steps, const double *scale)
 {
     double most = 0;
@@ -85,9 +85,9 @@ static double stands_out(double (*at)[values], int i, int steps, const double *s
     return most;
 }
 
-/* From -0.6 to 0.6 degrees in steps; those that stand out halved to 1e-8 degree towards the steeper half: a
- * continuous change goes to zero with the step, a jump remains. There is one of 0.3 % on walls wherever a light of
- * the ring about the sun (daylight.c) sinks below the horizon: it is switched off at once. */
+/* Steps from -0.6 to 0.6 degrees, and halves steps that stand out to 1e-8 degree towards the steeper half: a continuous
+ * change goes to zero with the step, a jump remains. There is one of 0.3 % on walls wherever a light of the ring about
+ * the sun (daylight.c) sinks below the horizon: it is switched off at once. */
 static double horizon_jump(void *user, bool quick)
 {
     enum { most_steps = 240 };
@@ -105,7 +105,7 @@ static double horizon_jump(void *user, bool quick)
     }
     for (int k = 0; k < values; k++) scale[k] = fmax(scale[k], 1e-6);
     for (int n = 0; n < (quick ? 2 : 8); n++) {
-        int    steepest = 0; /* of those not tested */
+        int    steepest = 0; /* the steepest step that was not tested */
         double most = -1;
         for (int i = 0; i < steps; i++) {
             const double here = looked_at[i] ? -1 : stands_out(at, i, steps, scale);

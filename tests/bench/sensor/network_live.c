@@ -137,7 +137,7 @@ static int by_value(const void *pa, const void *pb)
     return (a > b) - (a < b);
 }
 
-/* From one time in the hour to another, by the shorter way. */
+/* Time from one time in the hour to another, by the shorter way. */
 static double after_s(double from_s, double to_s) { return remainder(to_s - from_s, 3600); }
 
 /* The time in the hour of a datagram's frame; NaN: it is not a frame of the node. */
@@ -154,7 +154,7 @@ static double frame_of(const DisDatagram *d, const Config *config)
                : NAN;
 }
 
-/* Of each report between the first frame and the last: the delay to the first frame after it. */
+/* Reads, for each report between the first frame and the last, the delay to the first frame after it. */
 static Status read_latency(Live *l)
 {
     const Config config = config_default();

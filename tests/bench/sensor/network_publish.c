@@ -66,7 +66,7 @@ static bool open_receivers(Node *n)
     return true;
 }
 
-/* The first two processors for the node, the others, if there are any, for its exercise. */
+/* Gives the node the first two processors, and its exercise the others, if there are any. */
 static void choose_processors(cpu_set_t *node, cpu_set_t *others)
 {
     cpu_set_t all;
@@ -181,7 +181,7 @@ static BenchRow row_of(char what[160], const Node *n, const char *name)
     return bench_row(what);
 }
 
-/* Median and 99 % of one of the ledger's figures, s; limit_s NaN: none. */
+/* Adds the median and the 99 % quantile of one of the ledger's figures, s; limit_s NaN: there is no limit. */
 static void add_latency(const Node *n, const char *text, const char *name, const char *const *key, double limit_s,
                         const char *against)
 {

@@ -11,7 +11,7 @@
 
 extern char **environ;
 
-/* The program beside this one, else that of PATH. Room for it: out. */
+/* Finds the program: beside this one, else on PATH. out: room for its path. */
 static void find_pitviper(char out[PATH_MAX + 16])
 {
     const ssize_t length = readlink("/proc/self/exe", out, PATH_MAX);

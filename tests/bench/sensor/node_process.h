@@ -9,12 +9,12 @@
 
 /* argument: NULL at the end. Redirects standard output and error to these. -1: it did not start. */
 pid_t node_start(const char *const *argument, int out, int err);
-/* Its exit code; killed, and -1, after the timeout. */
+/* Waits for its exit code; after the timeout the process is killed, and -1 returned. */
 int node_finish(pid_t child, double within_s, struct rusage *usage);
 /* Waits until it has printed this text, or for the timeout. */
 bool node_hears(int from, const char *text, double within_s);
 
-/* The number after the first such key that follows the other keys. NaN: it is not there. */
+/* Finds the number after the first such key that follows the other keys. NaN: it is not there. */
 double node_number(const char *text, const char *const *key, int keys);
 #define NUMBER_AT(text, ...)                                                                                           \
     node_number(text, (const char *const[]){__VA_ARGS__}, sizeof((const char *[]){__VA_ARGS__}) / sizeof(char *))

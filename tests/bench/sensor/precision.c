@@ -17,7 +17,7 @@ static View view_of(const Precision *p, PrecisionShot shot)
     static const double back_m[SHOT_COUNT] = {600, 110, 1500, 3000}, above_m[SHOT_COUNT] = {60, 30, 300, 40};
     const int           w = p->shot_px[0], h = p->shot_px[1];
     View                view = trial_view(&p->scene, back_m[shot], above_m[shot], 2 * atan(0.5 * w / focal_px), w, h);
-    /* away from the vehicles, down a slope; and level, ground below and sky above */
+    /* away from the vehicles, down a slope; and level, with ground below and sky above */
     static const double away_enu[3] = {0.2, -0.97, -0.12}, level_enu[3] = {0, 1, 0};
     double              d_enu[3];
     if (shot != SHOT_GROUND && shot != SHOT_HORIZON) return view;

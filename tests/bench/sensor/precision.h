@@ -23,13 +23,13 @@ typedef struct Precision {
 
 Status precision_open(Precision *out, Bench *bench);
 void   precision_close(Precision *p);
-/* A central piece of a shot's view, no larger than it, with the default settings of a node. */
+/* Requests a central piece of a shot's view, no larger than it, with the default settings of a node. */
 RenderRequest precision_request(const Precision *p, PrecisionShot shot, int width, int height);
 /* Moves around the central vehicle, by 1.3 rad a turn, aimed at it; returns its range, m. */
 double precision_go_round(View *view, const Precision *p, int turn);
 /* Of a shot's poses and atmosphere; in the arena, which is not reset. */
 Status precision_render(Picture *out, Precision *p, PrecisionShot shot, const RenderRequest *request, Arena *arena);
-/* Root of the mean squared difference over the radiance planes, each over its own mean; of thermal ones as K. */
+/* Root of the mean squared difference over the radiance planes, each relative to its own mean; thermal planes in K. */
 double precision_rms(const Picture *got, const Picture *want);
 double precision_rms_k(const Picture *got, const Picture *want, const PlanckTable *lwir);
 

@@ -24,7 +24,7 @@ static void make_plane(float *plane, double low, double span)
     }
 }
 
-/* The chain's product in the cosine transform of both axes, by direct sums, to Nyquist without taper. */
+/* Applies the chain's product in the cosine transform of both axes, by direct sums, up to Nyquist and without taper. */
 static void blur_by_sums(double *out, const float *in, const MtfChain *chain)
 {
     static double across[wide][wide], down[high][high], half[high][wide], value[high][wide];
@@ -63,7 +63,8 @@ typedef struct Blurring {
     float       *out;
 } Blurring;
 
-/* The point spread within a radius, of sum 1: the inverse transform of the chain's product on 64 x 64 frequencies. */
+/* Computes the point spread within a radius, scaled to the sum 1: the inverse transform of the chain's product on 64 x
+ * 64 frequencies. */
 static void make_kernel(Blurring *b, const MtfChain *chain)
 {
     enum { n = 64 };

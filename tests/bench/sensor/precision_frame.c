@@ -140,7 +140,7 @@ typedef struct TargetShot {
 
 static PrecisionShot target_shot(int size) { return size == 0 ? SHOT_NEAR : SHOT_SMALL; }
 
-/* The central truck from one side or another, so many pixels long. */
+/* Requests the central truck from one side or another, so many pixels long. */
 static RenderRequest target_request(const Precision *p, int size, int turn, double px, int side_px)
 {
     RenderRequest request = precision_request(p, target_shot(size), side_px, side_px);

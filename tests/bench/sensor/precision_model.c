@@ -71,7 +71,7 @@ static void trace_facets(void *user)
     bench_keep(f->range_m);
 }
 
-/* From ahead, from the right and from above; 6 m wide, 40 m off. */
+/* Makes rays from ahead, from the right and from above, over 6 m and from 40 m away. */
 static void facet_rays(double *o[3], double *d[3], int side_px)
 {
     static const double towards[sides][3] = {{-1, 0, 0}, {0.3, 0.9, -0.2}, {-0.5, 0.3, -0.8}};
@@ -91,8 +91,8 @@ static void facet_rays(double *o[3], double *d[3], int side_px)
     }
 }
 
-/* Of rays that meet the same part twice the range's difference exceeded by one in a hundred, m; and the share of the
- * silhouettes by which they differ, %. */
+/* Computes two errors: the difference in range that one in a hundred exceeds, m, of rays that meet the same part twice;
+ * and the share by which the silhouettes differ, %. */
 static void facet_errors(double *range_m, double *area, const Faceted *got, const Faceted *want)
 {
     const int rays = sides * got->side_px * got->side_px;

@@ -86,7 +86,7 @@ static void render_timed(void *user)
     }
 }
 
-/* Errors of one rendering against another in the worse of its shots: %, and K of 8-12 um. */
+/* Errors of one rendering against another in the worse of its shots: in %, and in K of 8-12 um. */
 static Status worst_errors(double *percent, double *kelvin, const PlantRendering *r, const PlantRendering *against)
 {
     *percent = *kelvin = 0;
@@ -109,7 +109,7 @@ static Status errors_of(BenchSetting *point, const PlantRendering *r, const Plan
 
 /* ---- levels of detail --------------------------------------------------------------------------- */
 
-/* Of one band, root of the mean square over its mean, %. */
+/* Root of the mean squared difference of one band, over its mean, %. */
 static double plane_rms(const float *a, const float *b, size_t count)
 {
     double square = 0, mean = 0;
@@ -120,7 +120,7 @@ static double plane_rms(const float *a, const float *b, size_t count)
     return 100 * sqrt(square * (double)count) / mean;
 }
 
-/* A row a band: the worse shot. */
+/* Adds a row for each band, of the worse shot. */
 static Status price_bands(PlantPrecision *p, int forest)
 {
     static const char *const name[picture_plane_count] = {"red", "green", "blue", "3-5 um", "8-12 um", "radar"};

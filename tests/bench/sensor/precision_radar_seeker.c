@@ -8,7 +8,7 @@
 enum { tanks = 12 };
 static const DisEntityType tank_type = {1, 1, 222, 1, 1, 1, 0};
 
-/* Root of the power of what differs over that of the map, %. */
+/* Root of the power by which the maps differ, over that of the map, %. */
 static double apart(const RadarFrame *got, const RadarFrame *want)
 {
     const size_t cells = (size_t)interval_channels * (size_t)want->map.rows * (size_t)want->map.columns;

@@ -83,7 +83,7 @@ static void look(void *user)
     bench_keep(w->out);
 }
 
-/* Rms over positions within a pixel of the centroid's distance from the ideal's, along rows. */
+/* Distance between the centroid's error and the ideal's along rows, rms over positions within a pixel. */
 static double centroid_error(SmallWay *w)
 {
     double square = 0;

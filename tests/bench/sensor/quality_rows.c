@@ -25,7 +25,7 @@ static const QualitySettings grid[] = {{1, 0, 0},   {1, 2, 8},    {1, 2, 24}, {1
                                        {5, 10, 96}, {6, 12, 128}, {8, 0, 0},  {8, 16, 128}};
 enum { grid_count = sizeof grid / sizeof *grid };
 
-/* Of one image, percent and kelvin per band. */
+/* Computes the errors of one image in percent and in kelvin per band. */
 static void errors_of(double percent[quality_bands], double kelvin[quality_bands], const Picture *p,
                       const Picture *true_one, const World *world)
 {
@@ -50,7 +50,7 @@ static void errors_of(double percent[quality_bands], double kelvin[quality_bands
     for (int b = 0; b < quality_bands; b++) percent[b] = 100 * sqrt(shares[b]);
 }
 
-/* Trees over all of the lab's ground but for the vehicles' places. */
+/* Plants trees over all of the trial's ground but the vehicles' places. */
 static Status plant_lab(Woods *woods, QualityMeasure *lab)
 {
     const Config       config = config_default();
@@ -74,7 +74,7 @@ static Status plant_lab(Woods *woods, QualityMeasure *lab)
     return status == STATUS_OK ? trial_scene_warm(&lab->scene, &heat) : status;
 }
 
-/* rows: of this scene, in the order of the grid. Among plants every second view. */
+/* Measures the errors of rows of this scene, in the order of the grid. Among plants every second view is taken. */
 static Status measure_errors(QualityRow *rows, QualityMeasure *lab, Bench *bench)
 {
     const bool woods = rows->scene == QUALITY_WOODS;
@@ -180,7 +180,7 @@ static Status measure(QualityTable *table, BenchTime *time, Woods *woods, Qualit
     return STATUS_OK;
 }
 
-/* As a table has them: rows that differ beyond it are the same. */
+/* Rounds rows as a table has them: rows that differ by less are the same. */
 static void round_rows(QualityTable *table)
 {
     for (int k = 0; k < table->count; k++) {

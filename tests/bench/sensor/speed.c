@@ -46,7 +46,7 @@ TrialFrame speed_frame(const Speed *s, const TrialScene *scene, const RenderRequ
         .scene = scene, .request = *request, .pool = many ? s->many : s->one, .arena = s->arena[many ? 0 : 1]};
 }
 
-/* 0 when these planes are those of one thread without skips, else 1; NaN: the comparison failed. */
+/* Returns 0 when these planes are those of one thread without skips, else 1; NaN: the comparison failed. */
 static double differs(const Speed *s, const TrialFrame *frame)
 {
     TrialFrame plain = *frame;
@@ -76,7 +76,7 @@ static void judge_frame(BenchRow *row, const TrialFrame *frame)
 
 /* ---- four views ------------------------------------------------------------------------------- */
 
-/* Root of the mean squared difference over all radiance planes, each over its own mean. */
+/* Root of the mean squared difference over all radiance planes, each relative to its own mean. */
 static double rms_of(const Picture *a, const Picture *b)
 {
     const size_t count = (size_t)a->width * (size_t)a->height;
@@ -96,7 +96,8 @@ static double rms_of(const Picture *a, const Picture *b)
     return sqrt(sum / planes);
 }
 
-/* A central piece, 96 x 64 px or less: adaptive and plain against 16 x 16 rays in every pixel. */
+/* Renders a central piece, 96 x 64 px or less, adaptively and plain, and compares both with 16 x 16 rays in every
+ * pixel. */
 static double antialias_error(const Speed *s, const RenderRequest *request, double *plain)
 {
     TrialFrame fine = {.scene = &s->scene, .request = *request, .pool = s->many, .arena = s->arena[2]};
@@ -215,7 +216,7 @@ static const struct {
                    {STAGE_BASE, "of all this: pass over every pixel"},
                    {STAGE_EDGES, "of all this: pass over edges"}};
 
-/* The stages of these frames, interleaved, on one thread; a frame's mean. */
+/* Times the stages of these frames, interleaved, on one thread; gives a frame's mean. */
 static Status time_stages(Speed *s, const char *name, TrialFrame *frame, int count)
 {
     BenchTime      time[TRIAL_STAGE_COUNT] = {0}, hash_time = {0};
@@ -280,7 +281,7 @@ static Status time_picture(Speed *s, const char *name, const TrialScene *scene, 
     return many.status;
 }
 
-/* With one ray a pixel, and with the antialiasing of the default. */
+/* Times a frame with one ray a pixel, and with the antialiasing of the default. */
 static Status time_pair(Speed *s, const char *name, const TrialScene *scene, const RenderRequest *request)
 {
     const RenderRequest plain = one_ray(request);
@@ -290,7 +291,7 @@ static Status time_pair(Speed *s, const char *name, const TrialScene *scene, con
     return status == STATUS_OK ? time_picture(s, name, scene, request) : status;
 }
 
-/* With one ray a pixel, with the edges of the default, and optical alone. */
+/* Times a close frame with one ray a pixel, with the edges of the default, and optical alone. */
 static Status time_close(Speed *s)
 {
     Status status = speed_open_close(s);

@@ -28,7 +28,7 @@ typedef struct Start {
     double     begun_s, sum_s;
 } Start;
 
-/* The time since the last one. */
+/* Prints the time since the last line. */
 static void say(Start *s, const char *part)
 {
     char         what[what_size];
@@ -42,7 +42,7 @@ static void say(Start *s, const char *part)
     s->begun_s = wall_clock_s();
 }
 
-/* Places of plants: in a square as wide as a node's about one vehicle (sensor/node/choices/woods_choice.c). */
+/* Places plants in a square as wide as a node's about one vehicle (sensor/node/choices/woods_choice.c). */
 static Status stand(Start *s, const Config *config)
 {
     const double      half_m = config->terrain.woods_half_m >= 50 ? config->terrain.woods_half_m : 4000;
@@ -110,7 +110,7 @@ static Status time_setup(Start *s)
 
 /* ---- a sweep ------------------------------------------------------------------------------------ */
 
-/* All of a folder of temp_folder. */
+/* Removes everything in a folder made by temp_folder. */
 static void remove_tree(const char *path)
 {
     char        inside[4096];
@@ -201,7 +201,7 @@ static void encode(void *user)
     if (e->status == STATUS_OK) e->status = frame_files_write(e->hash, &e->files, e->pool);
 }
 
-/* Values of the file's planes that differ from those of the picture. */
+/* Counts the values of the file's planes that differ from those of the picture. */
 static double differing(const char *out, const Picture *p)
 {
     const size_t count = (size_t)p->width * (size_t)p->height;

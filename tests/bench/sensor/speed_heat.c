@@ -179,8 +179,8 @@ static void render_heat(void *user)
         render(&f->picture, &f->of->scene->world, &f->of->snapshot, &f->of->request, &f->air, f->pool, f->arena);
 }
 
-/* Rendering alone, from 100 m up: the same snapshot and air, with the ground as warm as the air, with its heat, and
- * with its shadows. */
+/* Times rendering alone, from 100 m up, with the same snapshot and air: with the ground as warm as the air, with its
+ * heat, and with its shadows. */
 static Status time_frames(Speed *s, const HeatNow *now)
 {
     static HeatFrame         frame[3];
@@ -218,8 +218,8 @@ static Status time_frames(Speed *s, const HeatNow *now)
 
 enum { vehicle_rounds = 5 };
 
-/* What the longest 0.1 s and the mean one cost, over a minute in which all of the scene's vehicles appear at once,
- * stand, and after half of it turn round; and the seconds until all are warm. Their models are known. */
+/* Measures what the longest 0.1 s and the mean one cost, over a minute in which all of the scene's vehicles appear at
+ * once, stand, and after half of it turn round; and the seconds until all are warm. Their models are known. */
 static Status time_vehicle_minute(double out_s[3], size_t *bytes, const TrialScene *scene, Snapshot snapshot)
 {
     WorldVehicles *v = NULL;

@@ -22,7 +22,7 @@ typedef struct Speed {
     char       target[96]; /* what fills the image, and the sensor position */
 } Speed;
 
-/* Size, pools and arenas by the options; the ground, with its rows; the scene of the close target. */
+/* Opens size, pools and arenas by the options, the ground with its rows, and the scene of the close target. */
 Status speed_open(Speed *s);
 Status speed_make_ground(Speed *s);
 Status speed_open_close(Speed *s);
@@ -30,12 +30,12 @@ Status speed_open_close(Speed *s);
 bool          speed_wants(const Bench *bench, const char *rows);
 RenderRequest speed_request(const View *view, unsigned bands, bool truth);
 TrialFrame    speed_frame(const Speed *s, const TrialScene *scene, const RenderRequest *request, bool many);
-/* The rows of a frame's files; of memory. */
+/* Makes the rows of a frame's files and of memory. */
 Status speed_files(Speed *s);
 void   speed_memory(Speed *s);
-/* The rows of a world's set-up by parts, and of a sweep's variant. */
+/* Makes the rows of a world's set-up by parts, and of a sweep's variant. */
 Status speed_start(Speed *s);
-/* The rows of the ground's heat; warms the scene's world. */
+/* Makes the rows of the ground's heat; warms the scene's world. */
 Status speed_heat(Speed *s);
 
 /* ---- speed_rays.c: the rays of an image of one sample per pixel, in a frame's own order, for the tracers alone ----
@@ -48,9 +48,9 @@ typedef struct RawRays RawRays;
 Status raw_rays_create(RawRays **out, const TrialFrame *frame);
 void   raw_rays_destroy(RawRays *raw);
 int    raw_rays_count(const RawRays *raw);
-/* A frame's own tracers, of the ground by tiles and of the parts by packets, with its tiles, order and limits: of
- * eye rays the parts and then the ground in front of them, of sun rays the parts and then the ground for the rays
- * not blocked. Nothing else. user: a RawRays with a pool. */
+/* Traces the rays of a frame by its own tracers, ground by tiles and parts by packets, with its tiles, order and
+ * limits, and does nothing else. Eye rays go to the parts and then to the ground in front of them, sun rays to the
+ * parts and, if not blocked, to the ground. user: a RawRays with a pool. */
 void raw_trace(void *user);
 void raw_use_pool(RawRays *raw, Pool *pool);
 /* Worst difference in range, m, between the ground tracer and a reference walk from one post line to the next in

@@ -92,7 +92,7 @@ static void add_error(double *error, double *power, const ScatterMatrix *got, co
     }
 }
 
-/* The look of number i of those about the bin: its corners and the middles of its sides. */
+/* Gives look i of those about the bin: its corners and the middles of its sides. */
 static ScatterAntenna look_of(const RadarSpeed *r, int i)
 {
     static const int at[seen_looks][2] = {{-1, -1}, {1, 1}, {-1, 1}, {1, -1}, {0, 1}, {1, 0}, {0, -1}, {-1, 0}};
@@ -126,7 +126,9 @@ static Status error_of_bin(RadarSpeed *r, double *error_db)
     bench_progress(r->bench, "a list of four times the tubes");
     Status status = total_field_trace(&finer, r->target, &r->middle, &r->middle, &tubes, true, r->many);
     if (status == STATUS_OK)
-        status = total_field_sweep(want, 17, r->config.frequency_hz - half_hz, half_hz / 8, &finer, NULL, NULL, NULL);
+        status = total_field_sweep(
+            want, &(FrequencySweep){.count = 17, .first_hz = r->config.frequency_hz - half_hz, .step_hz = half_hz / 8},
+            &finer, NULL);
     if (status == STATUS_OK) status = centres_make(&r->centres, &r->signature, &r->middle, &r->middle, NULL);
     for (int f = 0; f < 17 && status == STATUS_OK; f++) {
         centres_field(&got, &r->centres, r->config.frequency_hz - half_hz + f * half_hz / 8);
@@ -144,7 +146,7 @@ static void reuse(void *user)
     bench_keep(r->centres.centre);
 }
 
-/* Samples of one pulse and channel at the middle of the interval, as points of the centres. */
+/* Fills the samples of one pulse and channel at the middle of the interval, as points of the centres. */
 static void fill_echoes(RadarSpeed *r)
 {
     for (int i = 0; i < r->centres.count; i++) {
@@ -187,7 +189,8 @@ static Status add_target_rows(RadarSpeed *r)
         status = centres_make(&r->centres, &r->signature, &r->now, &r->now, NULL);
         for (int end = -1; end <= 1 && status == STATUS_OK; end += 2) {
             const double f_hz = wave->centre_hz + 0.5 * end * wave->bandwidth_hz;
-            status = total_field_sweep(want, 1, f_hz, 0, &r->field, &r->now, &r->now, NULL);
+            status = total_field_sweep(
+                want, &(FrequencySweep){.count = 1, .first_hz = f_hz, .tx = &r->now, .rx = &r->now}, &r->field, NULL);
             centres_field(&got, &r->centres, f_hz);
             add_error(&error, &power, &got, &want[0]);
         }
@@ -213,8 +216,11 @@ static Status add_target_rows(RadarSpeed *r)
     r->now = r->middle;
     reuse(r);
     profile(r);
-    status = total_field_sweep(want, wave->samples, wave->centre_hz - 0.5 * wave->bandwidth_hz,
-                               wave->bandwidth_hz / wave->samples, &r->field, NULL, NULL, NULL);
+    status = total_field_sweep(want,
+                               &(FrequencySweep){.count = wave->samples,
+                                                 .first_hz = wave->centre_hz - 0.5 * wave->bandwidth_hz,
+                                                 .step_hz = wave->bandwidth_hz / wave->samples},
+                               &r->field, NULL);
     error = power = 0;
     for (int m = 0; m < wave->samples && status == STATUS_OK; m++) {
         const double complex of =
@@ -334,7 +340,7 @@ static Status on_ground(RadarSpeed *r, SceneRows rows)
 
 static const char *const bounce_preset = "seeker_35";
 
-/* Each with the radar of its own: without the ground's mirror and with it. */
+/* Opens two updates, each with a radar of its own: without the ground's mirror and with it. */
 static Status open_bounce(RadarUpdate u[2], RadarSpeed *r, const char *catalog)
 {
     Status status = STATUS_OK;
@@ -356,7 +362,7 @@ static Status open_bounce(RadarUpdate u[2], RadarSpeed *r, const char *catalog)
     return status;
 }
 
-/* What the mirror of the ground costs: a tank alone, bins at hand. */
+/* Times the mirror of the ground: a tank alone, whose bins are there already. */
 static Status time_bounce(RadarSpeed *r, TrialScene *scene, Arena *const arena[3])
 {
     static const char *const what[2] = {"radar, 35 GHz: a tank at 1 km, bins at hand, no ground, 1 thread",

@@ -245,7 +245,7 @@ static Part part_of(const RawRays *raw, int b)
                   .count = raw->first[b + 1] - first};
 }
 
-/* The vehicles, then the ground in front of them. */
+/* Traces the vehicles, then the ground in front of them. */
 static void trace_eyes(RawRays *raw, int b)
 {
     const Part p = part_of(raw, b);

@@ -124,7 +124,7 @@ Status speed_make_ground(Speed *s)
 
 /* ---- the close target ------------------------------------------------------------------------- */
 
-/* Into a file of this folder. */
+/* Writes a text into a file of this folder. */
 static bool write_text(const char *folder, const char *name, const char *format, const char *path)
 {
     char text[temp_name_size];

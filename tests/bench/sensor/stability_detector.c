@@ -32,8 +32,8 @@ static void fill_plane(float *plane, int kind, Dice *dice)
     }
 }
 
-/* Every preset, 1 to 16 bits, no noise to a million times it: counts within the converter's scale, values that are
- * those counts. */
+/* Runs every preset with 1 to 16 bits, and noise from none to a million times its own: counts must be within the
+ * converter's scale, and values must be those counts. */
 static double counts_in_scale(void *user, bool quick)
 {
     static float plane[3][pixels];
@@ -104,7 +104,8 @@ static double even_planes(void *user, bool quick)
     return worst;
 }
 
-/* One NaN pixel: the other pixels that change, against the same image with a 0 there. Static, no noise, no patches. */
+/* Counts the pixels that one NaN pixel changes, against the same image with a 0 there; without noise and patches, on a
+ * static scene. */
 static double one_bad_pixel(void *user, bool quick)
 {
     static float       plane[pixels];
@@ -236,8 +237,8 @@ static void multiply(void *user, int worker, int task)
     d->modes[task] = _mm_getcsr() & 0xffc0; /* all flags except those already raised */
 }
 
-/* The smallest normal numbers, halved, by the main thread and the pool's: threads that get another number, or flush
- * denormals differently, or round differently. */
+/* Lets the main thread and the pool's halve the smallest normal numbers, and counts the threads that get another
+ * number, flush denormals differently, or round differently. */
 static double threads_agree(void *user, bool quick)
 {
     Denormals d = {.tiny = 2.2250738585072014e-308, .tiny_f = 1.17549435e-38f};

@@ -87,7 +87,7 @@ static Status make_vehicles(WoodsBench *w)
     return trial_scene_open(&w->scene, &w->landscape, catalog, types, sizeof types / sizeof *types, vehicles);
 }
 
-/* Clear of each vehicle by 6 m. */
+/* Makes woods that stay clear of each vehicle by 6 m. */
 static Status make_woods(WoodsBench *w)
 {
     WoodsStand stand = {.landscape = &w->landscape, .east_m = w->east_m, .north_m = w->north_m, .trees = w->trees};
@@ -141,7 +141,7 @@ static void render_frame(void *user)
     trial_frame(&f->frame);
 }
 
-/* South of the vehicles, so far that its middle is at their height. */
+/* Places the view south of the vehicles, so far that its middle is at their height. */
 static View view_of(const WoodsBench *w, int v)
 {
     const double back_m = places[v].above_m / tan(places[v].down_deg * rad_per_deg);
@@ -234,7 +234,7 @@ static void say_planes(WoodsBench *w, int v, const char *of, const Picture *got,
     }
 }
 
-/* 1: other planes on one thread, with nothing skipped. */
+/* Returns 1 if one thread, with nothing skipped, gives other planes. */
 static double differs(WoodsBench *w, const WoodsFrame *many)
 {
     WoodsFrame one = *many;
@@ -293,8 +293,8 @@ static Status time_view(WoodsBench *w, int v)
     return STATUS_OK;
 }
 
-/* As a node asks for it: edges, small targets and the estimate of its error. Its bits are those of one ray a pixel and
- * of the tests: here time alone. */
+/* Times a frame as a node asks for it: with edges, small targets and the estimate of its error. Its bits are compared
+ * elsewhere, with one ray a pixel and by the tests. */
 static Status time_default(WoodsBench *w, int v)
 {
     const View    view = view_of(w, v);
@@ -325,7 +325,7 @@ static Status time_default(WoodsBench *w, int v)
     return STATUS_OK;
 }
 
-/* A piece about the middle, a third of the picture's sides, with one ray and with 16. */
+/* Times a piece about the middle, a third of the picture's sides, with one ray and with 16. */
 static Status price_view(WoodsBench *w, int v)
 {
     RenderRequest request[2] = {request_of(w, v, 1), request_of(w, v, 4)};
@@ -348,7 +348,7 @@ static Status price_view(WoodsBench *w, int v)
     return STATUS_OK;
 }
 
-/* Where the time goes: stages of one thread, where they add up. */
+/* Times the stages on one thread, where they add up. */
 static Status time_stages(WoodsBench *w, int v)
 {
     static const struct {
@@ -423,7 +423,7 @@ static Status open_bench(WoodsBench *w)
     return status;
 }
 
-/* What a node holds that shows one view after another, in full detail. */
+/* Prints the memory of a node that shows one view after another, in full detail. */
 static Status say_memories(WoodsBench *w)
 {
     static const double most_mb = 2000;

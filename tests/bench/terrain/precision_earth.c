@@ -255,7 +255,7 @@ static void tunable_geoid(Bench *bench)
 
 /* ---- sun ------------------------------------------------------------------------------------------ */
 
-/* The example of NREL/TP-560-34302: Golden, Colorado, 2003-10-17 12:30:30 at UTC - 7 h, TT - UT1 67 s. */
+/* The example of NREL/TP-560-34302: Golden, Colorado, 2003-10-17 12:30:30 at UTC - 7 h, with TT - UT1 = 67 s. */
 static const double   spa_unix_s = 1066419030, spa_zenith_deg = 50.11162, spa_azimuth_deg = 194.34024;
 static const Geodetic spa_place = {39.742476 * 0.017453292519943295769, -105.1786 * 0.017453292519943295769, 1830.14};
 
@@ -265,7 +265,7 @@ typedef struct SunSet {
     double d_enu[3];
 } SunSet;
 
-/* The Astronomical Almanac's (page C5): 0.01 degree until 2050; with the same refraction left out. */
+/* The formula of the Astronomical Almanac (page C5), good to 0.01 degree until 2050, with the refraction left out. */
 static void short_formula(double d_enu[3], double unix_s, const Geodetic *place)
 {
     const double n = unix_s / 86400 - 10957.5, l = (280.460 + 0.9856474 * n) * rad_per_deg,

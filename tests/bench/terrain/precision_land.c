@@ -46,7 +46,7 @@ static double bytes_of(const Elevation *e)
     return (double)(posts + pyramids);
 }
 
-/* Every so-manieth post of a ground. */
+/* Keeps every n-th post of a ground. */
 static Status thinned(Elevation *out, const ElevationLevel *from, int step)
 {
     const int    nx = (from->nx - 1) / step + 1, ny = (from->ny - 1) / step + 1;
@@ -94,7 +94,7 @@ static Status tunable_spacing(Bench *bench, const LocalFrame *frame)
     return status;
 }
 
-/* How far the finest level reaches: what a coarser one costs there, over its distance. */
+/* Measures how far the finest level should reach: what a coarser one costs there, over its distance. */
 static Status tunable_reach(Bench *bench, const LocalFrame *frame)
 {
     enum { settings = 4 };
@@ -213,7 +213,7 @@ typedef struct StoreSet {
     double       at[mountain_asks][2], z_m[mountain_asks];
 } StoreSet;
 
-/* 1.4 km of relief over 2 km of posts 4 m apart; up to some 150 m in a tile of 256 m. */
+/* A mountain of 1.4 km of relief over 2 km of posts 4 m apart; up to some 150 m of relief in a tile of 256 m. */
 static double mountain_height(double i, double j)
 {
     return 1500 + 600 * sin(i / 170 - 1.4) * cos(j / 240) + 60 * sin(i / 23.3 + 1) * sin(j / 31.9) +
@@ -238,7 +238,7 @@ static void ask_store(void *user)
     bench_keep(s->z_m);
 }
 
-/* One range for all posts as before tiles, or a step that tiles shift as far as their own heights need. */
+/* Compares one range for all posts, as before tiles, with a step that tiles shift as far as their own heights need. */
 static Status tunable_store(Bench *bench)
 {
     enum { settings = 6 };

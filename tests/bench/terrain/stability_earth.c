@@ -46,7 +46,7 @@ enum {
     special_places = lats * lons * heights
 };
 
-/* A special angle, or its neighbour below or above. */
+/* Gives a special angle, or its neighbour below or above. */
 static double neighbour_rad(const double *deg, int i)
 {
     const double rad = deg[i / 3] * rad_per_deg;
@@ -200,7 +200,7 @@ static void any_origin(Bench *bench)
             for (int c = 0; c < 3; c++) bench_worse(far ? &far_m : &near_m, seen_ecef[c] - d_ecef[c]);
         }
     }
-    /* 100 km times 2^-53, three products and two sums; and 14 000 km for the far side of the Earth */
+    /* the limit is 100 km times 2^-53, for three products and two sums; and 14 000 km for the far side of the Earth */
     bench_stress(bench, "two points 0 .. 50 m apart, seen from origins within 170 km", near_m, 1e-10, "m",
                  "their difference in ECEF");
     bench_stress(bench, "the same from origins anywhere, the far side of the Earth too", far_m, 2e-8, "m",
@@ -209,8 +209,9 @@ static void any_origin(Bench *bench)
 
 /* ---- sun ------------------------------------------------------------------------------------ */
 
-/* ERFA by its other method: the CIO-based matrix, light time to the Sun's barycentric position, and the aberration of
- * an observer rotating with the Earth. Unit vector at the position, ENU, no refraction. */
+/* Computes the sun by another method of ERFA: the CIO-based matrix, light time to the Sun's barycentric position, and
+ * the aberration of an observer rotating with the Earth. Gives a unit vector at the position, ENU, without refraction.
+ */
 static void sun_another_way(double d_enu[3], double unix_s, const Geodetic *place, double delta_t_s)
 {
     const double au_m = 149597870700.0, c_au_day = 173.144632674, day = floor(unix_s / 86400), jd = 2440587.5 + day;
@@ -375,7 +376,7 @@ Status bench_stability_earth(Bench *bench)
     bench_progress(bench, "places");
     places(bench);
     awkward_points(bench);
-    /* the origin's own 7 nm and one of the sum's */
+    /* the limit is the origin's own 7 nm and one of the sum's */
     frames_within(bench, 1e5, 8e-9, 2e-9, "local frame, points 100 km away", "the same, there and back");
     frames_within(bench, 1e6, 8e-9, 2e-9, "local frame, points 1000 km away", "the same, 1000 km, there and back");
     any_origin(bench);

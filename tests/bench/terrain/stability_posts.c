@@ -60,7 +60,7 @@ static Status fill(Elevation *out, const Sheet *s, Shape shape)
     return STATUS_OK;
 }
 
-/* A place of the grid: a post, an edge, a diagonal, each with its neighbours, or anywhere. */
+/* Gives a place of the grid: a post, an edge or a diagonal, each with its neighbours, or any place. */
 static double coordinate(double x0_m, double spacing_m, int n, uint32_t stream, uint64_t at)
 {
     const double post = floor(uniform(stream, at, 0, n)), share = uniform(stream + 1, at, 0, 1);
@@ -232,7 +232,7 @@ static const File files[] = {
     {"one post, the rest void", 48, 48, post_lonely, 123, 123, -122, 36, 3e-4},
     {"1 x 1", 1, 1, post_flat, NAN, NAN, -122, 36, 3e-4},
     {"all void", 32, 32, post_void, NAN, NAN, -122, 36, 3e-4},
-    /* the rest in full */
+    /* further cases, in full runs only */
     {"flat, 2 x 2", 2, 2, post_flat, 431.25, 431.25, -122, 36, 3e-4},
     {"flat, over the date line", 64, 64, post_flat, 431.25, 431.25, 179.99, 10, 3e-4},
     {"cliff of 21 km", 64, 64, post_cliff, -12000, 9000, -122, 36, 3e-4},
@@ -247,7 +247,7 @@ enum { few_files = 5, all_files = sizeof files / sizeof *files };
 
 static const char *const parts[] = {"ground.hdr", "ground.prj", "ground.flt", "ground.flt.aux.xml"};
 
-/* An ESRI grid of floats, its header and its coordinate system, in the folder. */
+/* Writes an ESRI grid of floats, its header and its coordinate system into the folder. */
 static bool write_file(const char *folder, const File *f)
 {
     bool ok = true;
@@ -342,7 +342,7 @@ static Status imports(Bench *bench)
                  "what they hold");
     bench_stress(bench, "ground of files: places without height or normal", absent, 0, "places",
                  "every place to the horizon");
-    /* half a quantum of 22 km in 16 bits, and the chord between posts under the Earth's bend */
+    /* the limit is half a quantum of 22 km in 16 bits, and the chord between posts under the Earth's bend */
     bench_stress(bench, "ground of files: beyond the heights that the file holds", over_m, 0.5, "m",
                  "least and greatest of the file");
     return STATUS_OK;

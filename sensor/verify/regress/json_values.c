@@ -1,7 +1,7 @@
-/* sensor/frame/json_values.c: JSON read into a flat list of paths and values. */
-#include "sensor/frame/json_values.h"
+/* sensor/verify/regress/json_values.c: JSON read into a flat list of paths and values. */
+#include "sensor/verify/regress/verdict.h"
 
-#include <jansson.h>
+#include "sensor/frame/json_object.h"
 #include <stdlib.h>
 
 enum { path_size = 500, deepest = 16 };
@@ -81,7 +81,7 @@ static int compare_paths(const void *a, const void *b)
     return strcmp(((const JsonValue *)a)->path, ((const JsonValue *)b)->path);
 }
 
-/* NULL, logged: not a JSON object. */
+/* Reads a JSON object. NULL, logged: it is not one. */
 static json_t *object_of(const char *text, size_t octets, const char *module, const char *source)
 {
     json_error_t error;

@@ -1,9 +1,8 @@
-/* sensor/publish/files/variant_record.c: manifest.jsonl and variant.json of a sweep. */
-#include "sensor/publish/files/variant_record.h"
+/* sensor/commands/sweep/variant_record.c: manifest.jsonl and variant.json of a sweep. */
+#include "sensor/commands/sweep/sweep_private.h"
 
 #include "sensor/frame/json_object.h"
 
-#include <jansson.h>
 #include <stdlib.h>
 
 /* ---- read back -------------------------------------------------------------------------------- */
