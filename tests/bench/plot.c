@@ -11,7 +11,8 @@ enum { width_px = 640, height_px = 418, zero_px = 34, points_max = 64 };
 
 static const SvgBox frame = {.left = 76, .right = width_px - 20, .top = 52, .bottom = height_px - 74};
 static const SvgPen front_pen = {SVG_BLUE, 2, NULL}, default_pen = {SVG_AMBER, 2.5, NULL},
-                    stated_pen = {SVG_RED, 1, "6 4"}, leader_pen = {SVG_GREY, 0.8, NULL};
+                    stated_pen = {SVG_RED, 1, "6 4"}, leader_pen = {SVG_GREY, 0.8, NULL}, on_pen = {.colour = SVG_BLUE},
+                    off_pen = {.colour = SVG_GREY};
 static const double letter_px = 6.7, line_px = 14, dot_px = 4.5;
 
 typedef struct Box {
@@ -162,26 +163,16 @@ static void lay_out(Plot *p, const BenchTunable *tunable, const BenchSetting *po
     }
 }
 
-static void draw_axes(FILE *to, const Plot *p, const BenchTunable *tunable, const char *unit)
-{
-    char time[96], error[48];
-    snprintf(time, sizeof time, "run time, %s: %.60s", unit, tunable->of ? tunable->of : "");
-    snprintf(error, sizeof error, "error%s%.30s", tunable->error_unit ? ", " : "",
-             tunable->error_unit ? tunable->error_unit : "");
-    if (!isnan(p->zero_y_px)) svg_tick_y(to, &frame, p->zero_y_px, "0");
-    svg_axes(to, &frame, &p->time, time, &p->error, error);
-}
-
 /* The legend, below the axis; and the verdict on the default, above the plot. */
 static void draw_legend(FILE *to, const Plot *p, const BenchSetting *point)
 {
     const int y = height_px - 14;
-    svg_dot(to, SVG_BLUE, 84, y, dot_px);
-    svg_ring(to, &default_pen, 84, y, dot_px + 4);
+    svg_circle(to, &on_pen, 84, y, dot_px);
+    svg_circle(to, &default_pen, 84, y, dot_px + 4);
     svg_text(to, SVG_INK, SVG_LEFT, 98, y + 4, "default");
     svg_legend(to, &front_pen, 160, y, "the front: none is better in all");
-    svg_dot(to, SVG_BLUE, 171, y, dot_px);
-    svg_dot(to, SVG_GREY, 398, y, dot_px);
+    svg_circle(to, &on_pen, 171, y, dot_px);
+    svg_circle(to, &off_pen, 398, y, dot_px);
     svg_text(to, SVG_INK, SVG_LEFT, 408, y + 4, "another is better");
     if (!isnan(p->stated_y_px)) svg_legend(to, &stated_pen, 524, y, "stated");
     for (int k = 0; k < p->points; k++) {
@@ -211,13 +202,16 @@ void plot_tunable(FILE *to, const BenchTunable *tunable, const BenchSetting *poi
     while (u < 3 && fast < units[u].s) u++;
     lay_out(p, tunable, point, count, units[u].s);
 
-    char heading[96], below[192];
-    snprintf(heading, sizeof heading, "%.70s", tunable->name);
+    char below[192], time[96], error[48];
     snprintf(below, sizeof below, "%.50s%s%s%.90s", tunable->turned_by ? tunable->turned_by : "",
              tunable->turned_by && tunable->against ? "; " : "", tunable->against ? "error: " : "",
              tunable->against ? tunable->against : "");
-    svg_begin(to, width_px, height_px, heading, below);
-    draw_axes(to, p, tunable, units[u].name);
+    snprintf(time, sizeof time, "run time, %s: %.60s", units[u].name, tunable->of ? tunable->of : "");
+    snprintf(error, sizeof error, "error%s%.30s", tunable->error_unit ? ", " : "",
+             tunable->error_unit ? tunable->error_unit : "");
+    svg_begin(to, width_px, height_px, tunable->name, "", below);
+    if (!isnan(p->zero_y_px)) svg_tick_y(to, &frame, p->zero_y_px, "0");
+    svg_axes(to, &frame, &p->time, time, &p->error, error);
     draw_legend(to, p, point);
 
     if (!isnan(p->stated_y_px)) {
@@ -233,8 +227,8 @@ void plot_tunable(FILE *to, const BenchTunable *tunable, const BenchSetting *poi
     for (int k = 0; k < p->lines; k++) svg_curve_point(to, p->x_px[p->line[k]], p->y_px[p->line[k]]);
     svg_curve_end(to);
     for (int k = 0; k < p->points; k++) {
-        if (point[p->index[k]].is_default) svg_ring(to, &default_pen, p->x_px[k], p->y_px[k], dot_px + 4);
-        svg_dot(to, p->front[k] ? SVG_BLUE : SVG_GREY, p->x_px[k], p->y_px[k], dot_px);
+        if (point[p->index[k]].is_default) svg_circle(to, &default_pen, p->x_px[k], p->y_px[k], dot_px + 4);
+        svg_circle(to, p->front[k] ? &on_pen : &off_pen, p->x_px[k], p->y_px[k], dot_px);
     }
     for (int k = 0; k < p->points; k++) draw_label(to, p, k, &point[p->index[k]], bytes_differ);
     if (p->points < count)

@@ -15,7 +15,8 @@
 
 enum { width_px = 900, height_px = 470, legend_x = 668, most_parts = 10 };
 
-static const SvgBox box = {.left = 58, .right = 650, .top = 74, .bottom = 416};
+static const SvgBox  box = {.left = 58, .right = 650, .top = 74, .bottom = 416};
+static const SvgAxis hours = {SVG_HOURS, 0, 24, 58, 650, 9, {0, 3, 6, 9, 12, 15, 18, 21, 24}};
 
 typedef struct Curve {
     const char *name;
@@ -23,7 +24,6 @@ typedef struct Curve {
     double      area_m2, low_k, high_k, k[heat_day_rows];
 } Curve;
 
-static double x_of(double hour) { return box.left + (box.right - box.left) * hour / 24; }
 static double row_y(int row) { return box.top + 22 * row + 20; }
 
 static void find_range(Curve *c)
@@ -66,24 +66,16 @@ static int part_curves(Curve out[most_parts], const HeatDay *day)
     return count;
 }
 
-static void draw_axes(FILE *to, const SvgAxis *kelvin)
-{
-    char text[8];
-    for (int hour = 0; hour <= 24; hour += 3) {
-        snprintf(text, sizeof text, "%02d:00", hour);
-        svg_tick_x(to, &box, x_of(hour), text);
-    }
-    svg_axes(to, &box, NULL, "local mean solar time, h", kelvin, "temperature, K");
-}
-
 /* Draws a curve, and its row of the legend. */
 static void draw_curve(FILE *to, const Curve *c, const SvgAxis *kelvin, int row)
 {
+    char name[21];
     svg_curve_begin(to, &c->pen);
     for (int r = 0; r < heat_day_rows; r++)
-        svg_curve_point(to, x_of(r * heat_day_row_s / 3600.0), svg_at(kelvin, c->k[r]));
+        svg_curve_point(to, svg_at(&hours, r * heat_day_row_s / 3600.0), svg_at(kelvin, c->k[r]));
     svg_curve_end(to);
-    svg_legend(to, &c->pen, legend_x, row_y(row), "%.20s", c->name);
+    snprintf(name, sizeof name, "%s", c->name);
+    svg_legend(to, &c->pen, legend_x, row_y(row), name);
     svg_text(to, SVG_DIM, SVG_RIGHT, width_px - 12, row_y(row) + 4, "%.1f \u2013 %.1f", c->low_k, c->high_k);
 }
 
@@ -93,9 +85,9 @@ static void draw_crossings(FILE *to, const HeatDay *day, int row)
     const SvgPen pen = {SVG_RED, 1, "2 3"};
     bool         raised = false;
     for (int i = 0; i < day->crossings; i++) {
-        const double x = x_of(day->crossing_h[i]);
+        const double x = svg_at(&hours, day->crossing_h[i]);
         const int    minutes = (int)(60 * day->crossing_h[i] + 0.5);
-        const bool   close = i > 0 && x - x_of(day->crossing_h[i - 1]) < 36;
+        const bool   close = i > 0 && x - svg_at(&hours, day->crossing_h[i - 1]) < 36;
         raised = close && !raised; /* so that its label stands clear of the one before */
         svg_line(to, &pen, x, box.top, x, box.bottom);
         svg_text(to, SVG_RED, SVG_MIDDLE, x, box.top - (raised ? 17 : 5), "%02d:%02d", minutes / 60, minutes % 60);
@@ -109,7 +101,6 @@ static void plot_day(FILE *to, const HeatDay *day, const char *about)
     static const char *const colours[most_parts] = {"#1f77b4", "#e0a100", "#2ca02c", "#d1495b", "#6a4c93",
                                                     "#17a2a2", "#a0522d", "#e377c2", "#7f7f7f", "#8bc34a"};
     static Curve             curve[most_parts + 2];
-    char                     heading[128];
     double                   low_k = INFINITY, high_k = -INFINITY;
     int                      count = part_curves(curve, day);
     for (int i = 0; i < count; i++) curve[i].pen = (SvgPen){colours[i], 2, NULL};
@@ -122,9 +113,8 @@ static void plot_day(FILE *to, const HeatDay *day, const char *about)
     for (int i = 0; i < count; i++) low_k = fmin(low_k, curve[i].low_k), high_k = fmax(high_k, curve[i].high_k);
     const SvgAxis kelvin = svg_linear_axis(low_k, high_k, box.bottom, box.top);
 
-    snprintf(heading, sizeof heading, "%.60s: temperatures of its parts, means by area", day->model);
-    svg_begin(to, width_px, height_px, heading, about);
-    draw_axes(to, &kelvin);
+    svg_begin(to, width_px, height_px, day->model, ": temperatures of its parts, means by area", about);
+    svg_axes(to, &box, &hours, "local mean solar time, h", &kelvin, "temperature, K");
     for (int i = 0; i < count; i++) draw_curve(to, &curve[i], &kelvin, i);
     draw_crossings(to, day, count);
     svg_text(to, SVG_DIM, SVG_RIGHT, width_px - 12, box.top + 2, "coldest \u2013 warmest, K");

@@ -203,7 +203,7 @@ void rcs_write_csv(FILE *to, const RcsSweep *sweep)
 
 enum { width_px = 800, height_px = 640, middle_x = 320, middle_y = 344, radius_px = 252, legend_x = width_px - 206 };
 
-static const char *const names[2] = {"HH", "VV"}, *const colours[2] = {"#1f77b4", "#d1495b"};
+static const char *const colours[2] = {"#1f77b4", "#d1495b"};
 
 static double complex field_of(const RcsSweep *sweep, int look, int p)
 {
@@ -228,6 +228,7 @@ static SvgAxis rings_of(const RcsSweep *sweep)
 /* Draws a curve, and its row of the legend with the mean over its looks. */
 static void draw_curve(FILE *to, const RcsSweep *sweep, const SvgAxis *rings, int p)
 {
+    char   text[64];
     double mean_m2 = 0;
     svg_curve_begin(to, &(SvgPen){colours[p], 1.2, NULL});
     for (int look = 0; look < sweep->config.looks; look++) {
@@ -238,21 +239,20 @@ static void draw_curve(FILE *to, const RcsSweep *sweep, const SvgAxis *rings, in
         mean_m2 += 4 * pi_rad * (creal(s) * creal(s) + cimag(s) * cimag(s)) / sweep->config.looks;
     }
     svg_curve_end(to);
-    svg_legend(to, &(SvgPen){colours[p], 2, NULL}, legend_x, 96 + 22 * p, "%s, mean %.1f dBsm", names[p],
-               mean_m2 > 0 ? 10 * log10(mean_m2) : -INFINITY);
+    snprintf(text, sizeof text, "%s, mean %.1f dBsm", p ? "VV" : "HH", mean_m2 > 0 ? 10 * log10(mean_m2) : -INFINITY);
+    svg_legend(to, &(SvgPen){colours[p], 2, NULL}, legend_x, 96 + 22 * p, text);
 }
 
 void rcs_plot(FILE *to, const RcsSweep *sweep)
 {
     const RcsConfig *config = &sweep->config;
     const SvgAxis    rings = rings_of(sweep);
-    char             heading[128], below[256], range[48] = "far field";
+    char             below[256], range[48] = "far field";
     if (!isinf(config->range_m)) snprintf(range, sizeof range, "range %g m", config->range_m);
-    snprintf(heading, sizeof heading, "%.60s: radar cross section, dBsm", rcs_target_name(sweep));
     snprintf(below, sizeof below,
              "%g GHz, elevation %g deg, %s; azimuth clockwise from the nose, deg; ray tubes and edges",
              config->frequency_hz[0] * 1e-9, config->elevation_deg, range);
-    svg_begin(to, width_px, height_px, heading, below);
+    svg_begin(to, width_px, height_px, rcs_target_name(sweep), ": radar cross section, dBsm", below);
     svg_polar_grid(to, middle_x, middle_y, &rings);
     for (int p = 0; p < 2; p++) draw_curve(to, sweep, &rings, p);
     if (!isnan(sweep->grid_db))

@@ -18,8 +18,8 @@
 
 typedef struct SvgPen {
     const char *colour;
-    double      width_px;
-    const char *dashes; /* as stroke-dasharray; NULL: none */
+    double      width_px; /* 0: filled */
+    const char *dashes;   /* as stroke-dasharray; NULL: none */
 } SvgPen;
 
 typedef enum SvgAlign { SVG_LEFT, SVG_MIDDLE, SVG_RIGHT } SvgAlign;
@@ -27,8 +27,8 @@ typedef enum SvgAlign { SVG_LEFT, SVG_MIDDLE, SVG_RIGHT } SvgAlign;
 enum { svg_ticks_max = 16 };
 
 typedef struct SvgAxis {
-    bool   logarithmic;
-    double low, high; /* log10 of the values where logarithmic */
+    enum { SVG_LINEAR, SVG_LOG, SVG_HOURS } scale;
+    double low, high; /* log10 of the values on SVG_LOG */
     double from_px, to_px;
     int    ticks;
     double tick[svg_ticks_max];
@@ -45,25 +45,22 @@ SvgAxis svg_log_axis(double low, double high, double from_px, double to_px);
 double  svg_at(const SvgAxis *axis, double value);
 void    svg_number(char out[24], double value);
 
-/* heading is the title, too; below: the line below it. All texts are plain: they are escaped. */
-void svg_begin(FILE *to, int width_px, int height_px, const char *heading, const char *below);
+/* Heading and title are name, in 70 bytes, and about. All texts are plain: they are escaped. */
+void svg_begin(FILE *to, int width_px, int height_px, const char *name, const char *about, const char *below);
 void svg_end(FILE *to);
 __attribute__((format(printf, 6, 7))) void svg_text(FILE *to, const char *colour, SvgAlign align, double x, double y,
                                                     const char *format, ...);
 void svg_line(FILE *to, const SvgPen *pen, double x0, double y0, double x1, double y1);
-void svg_ring(FILE *to, const SvgPen *pen, double x, double y, double radius_px);
-void svg_dot(FILE *to, const char *colour, double x, double y, double radius_px);
+void svg_circle(FILE *to, const SvgPen *pen, double x, double y, double radius_px);
 void svg_curve_begin(FILE *to, const SvgPen *pen);
 void svg_curve_point(FILE *to, double x, double y);
 void svg_curve_end(FILE *to);
 /* A row of the legend: a stroke from x, its middle at y, and its text. */
-__attribute__((format(printf, 5, 6))) void svg_legend(FILE *to, const SvgPen *pen, double x, double y,
-                                                      const char *format, ...);
+void svg_legend(FILE *to, const SvgPen *pen, double x, double y, const char *text);
 
 /* A grid line with its label. */
-void svg_tick_x(FILE *to, const SvgBox *box, double x, const char *label);
 void svg_tick_y(FILE *to, const SvgBox *box, double y, const char *label);
-/* Ticks, axes and their names. x NULL: its ticks are drawn already. */
+/* Ticks, axes and their names. */
 void svg_axes(FILE *to, const SvgBox *box, const SvgAxis *x, const char *x_name, const SvgAxis *y, const char *y_name);
 /* Rings at the ticks of radius, px from the middle, and a spoke each 30 deg, clockwise from above. */
 void svg_polar_grid(FILE *to, double middle_x, double middle_y, const SvgAxis *radius);
