@@ -4,7 +4,7 @@
 
 #include "sensor/commands/heat/heat_day.h"
 #include "sensor/commands/overwrite.h"
-#include "sensor/publish/files/html_page.h"
+#include "sensor/publish/files/svg_plot.h"
 #include "sensor/settings/command_line.h"
 #include "sensor/settings/config.h"
 
@@ -13,29 +13,18 @@
 
 /* ---- the plot: SVG, temperatures of its parts, air and ground by the hour --------------------------- */
 
-enum { width_px = 900, height_px = 470, left_px = 58, right_px = 650, top_px = 74, bottom_px = 416, most_parts = 10 };
+enum { width_px = 900, height_px = 470, legend_x = 668, most_parts = 10 };
 
-static const char style[] =
-    "<style>.pvh text{font:12px system-ui,'DejaVu Sans',sans-serif}.pvh text.h{font-weight:600;font-size:14px}"
-    "@media (prefers-color-scheme:dark){.pvh .t,.pvh .h{fill:#ddd}.pvh .d{fill:#999}.pvh .bg{fill:#1b1b1d}"
-    ".pvh .g{stroke:#3a3a3e}}</style>";
+static const SvgBox  box = {.left = 58, .right = 650, .top = 74, .bottom = 416};
+static const SvgAxis hours = {SVG_HOURS, 0, 24, 58, 650, 9, {0, 3, 6, 9, 12, 15, 18, 21, 24}};
 
 typedef struct Curve {
-    const char *name, *colour;
-    bool        dashed;
+    const char *name;
+    SvgPen      pen;
     double      area_m2, low_k, high_k, k[heat_day_rows];
 } Curve;
 
-typedef struct Scale {
-    double low_k, high_k, step_k;
-} Scale;
-
-static double x_of(double hour) { return left_px + (right_px - left_px) * hour / 24; }
-
-static double y_of(const Scale *s, double k)
-{
-    return bottom_px - (bottom_px - top_px) * (k - s->low_k) / (s->high_k - s->low_k);
-}
+static double row_y(int row) { return box.top + 22 * row + 20; }
 
 static void find_range(Curve *c)
 {
@@ -77,81 +66,33 @@ static int part_curves(Curve out[most_parts], const HeatDay *day)
     return count;
 }
 
-static Scale scale_of(const Curve *curve, int count)
-{
-    static const double steps[] = {1, 2, 5, 10, 20, 50, 100, 200, 500};
-    double              low_k = INFINITY, high_k = -INFINITY;
-    size_t              s = 0;
-    for (int i = 0; i < count; i++) low_k = fmin(low_k, curve[i].low_k), high_k = fmax(high_k, curve[i].high_k);
-    while (s + 1 < sizeof steps / sizeof *steps && (high_k - low_k) / steps[s] > 9) s++;
-    return (Scale){floor(low_k / steps[s]) * steps[s], (floor(high_k / steps[s]) + 1) * steps[s], steps[s]};
-}
-
-static void draw_axes(FILE *to, const Scale *s)
-{
-    const int ticks = (int)lround((s->high_k - s->low_k) / s->step_k);
-    for (int i = 0; i <= ticks; i++) {
-        const double k = s->low_k + i * s->step_k, y = y_of(s, k);
-        fprintf(to,
-                "<line class=\"g\" stroke=\"#ddd\" x1=\"%d\" y1=\"%.1f\" x2=\"%d\" y2=\"%.1f\"/>"
-                "<text class=\"t\" fill=\"#222\" text-anchor=\"end\" x=\"%d\" y=\"%.1f\">%g</text>\n",
-                left_px, y, right_px, y, left_px - 7, y + 4, k);
-    }
-    for (int hour = 0; hour <= 24; hour += 3)
-        fprintf(to,
-                "<line class=\"g\" stroke=\"#ddd\" x1=\"%.1f\" y1=\"%d\" x2=\"%.1f\" y2=\"%d\"/>"
-                "<text class=\"t\" fill=\"#222\" text-anchor=\"middle\" x=\"%.1f\" y=\"%d\">%02d:00</text>\n",
-                x_of(hour), top_px, x_of(hour), bottom_px, x_of(hour), bottom_px + 17, hour);
-    fprintf(to, "<path fill=\"none\" stroke=\"#777\" d=\"M%d %dV%dH%d\"/>\n", left_px, top_px, bottom_px, right_px);
-    fprintf(to,
-            "<text class=\"t\" fill=\"#222\" text-anchor=\"middle\" x=\"%d\" y=\"%d\">"
-            "local mean solar time, h</text>\n",
-            (left_px + right_px) / 2, bottom_px + 38);
-    fprintf(to,
-            "<text class=\"t\" fill=\"#222\" text-anchor=\"middle\" transform=\"translate(16 %d) rotate(-90)\">"
-            "temperature, K</text>\n",
-            (top_px + bottom_px) / 2);
-}
-
 /* Draws a curve, and its row of the legend. */
-static void draw_curve(FILE *to, const Curve *c, const Scale *s, int row)
+static void draw_curve(FILE *to, const Curve *c, const SvgAxis *kelvin, int row)
 {
-    const char  *dashes = c->dashed ? " stroke-dasharray=\"6 4\"" : "";
-    const double y = top_px + 22 * row + 20;
-    fprintf(to, "<polyline fill=\"none\" stroke-width=\"2\" stroke-linejoin=\"round\"%s stroke=\"%s\" points=\"",
-            dashes, c->colour);
+    char name[21];
+    svg_curve_begin(to, &c->pen);
     for (int r = 0; r < heat_day_rows; r++)
-        fprintf(to, "%s%.1f,%.1f", r ? " " : "", x_of(r * heat_day_row_s / 3600.0), y_of(s, c->k[r]));
-    fprintf(to, "\"/>\n<path fill=\"none\" stroke-width=\"2\"%s stroke=\"%s\" d=\"M%d %.0fh22\"/>", dashes, c->colour,
-            right_px + 18, y);
-    fprintf(to, "<text class=\"t\" fill=\"#222\" x=\"%d\" y=\"%.0f\">", right_px + 46, y + 4);
-    html_text(to, "%.20s", c->name);
-    fprintf(to,
-            "</text><text class=\"d\" fill=\"#666\" text-anchor=\"end\" x=\"%d\" y=\"%.0f\">"
-            "%.1f &#8211; %.1f</text>\n",
-            width_px - 12, y + 4, c->low_k, c->high_k);
+        svg_curve_point(to, svg_at(&hours, r * heat_day_row_s / 3600.0), svg_at(kelvin, c->k[r]));
+    svg_curve_end(to);
+    snprintf(name, sizeof name, "%s", c->name);
+    svg_legend(to, &c->pen, legend_x, row_y(row), name);
+    svg_text(to, SVG_DIM, SVG_RIGHT, width_px - 12, row_y(row) + 4, "%.1f \u2013 %.1f", c->low_k, c->high_k);
 }
 
 /* Marks when the vehicle is as warm as the ground. */
 static void draw_crossings(FILE *to, const HeatDay *day, int row)
 {
-    bool raised = false;
+    const SvgPen pen = {SVG_RED, 1, "2 3"};
+    bool         raised = false;
     for (int i = 0; i < day->crossings; i++) {
-        const double x = x_of(day->crossing_h[i]);
+        const double x = svg_at(&hours, day->crossing_h[i]);
         const int    minutes = (int)(60 * day->crossing_h[i] + 0.5);
-        const bool   close = i > 0 && x - x_of(day->crossing_h[i - 1]) < 36;
+        const bool   close = i > 0 && x - svg_at(&hours, day->crossing_h[i - 1]) < 36;
         raised = close && !raised; /* so that its label stands clear of the one before */
-        fprintf(to,
-                "<line stroke=\"#c0392b\" stroke-dasharray=\"2 3\" x1=\"%.1f\" y1=\"%d\" x2=\"%.1f\" y2=\"%d\"/>"
-                "<text fill=\"#c0392b\" text-anchor=\"middle\" x=\"%.1f\" y=\"%d\">%02d:%02d</text>\n",
-                x, top_px, x, bottom_px, x, top_px - (raised ? 17 : 5), minutes / 60, minutes % 60);
+        svg_line(to, &pen, x, box.top, x, box.bottom);
+        svg_text(to, SVG_RED, SVG_MIDDLE, x, box.top - (raised ? 17 : 5), "%02d:%02d", minutes / 60, minutes % 60);
     }
-    if (day->crossings == 0) return;
-    const int y = top_px + 22 * row + 20;
-    fprintf(to,
-            "<line stroke=\"#c0392b\" stroke-dasharray=\"2 3\" x1=\"%d\" y1=\"%d\" x2=\"%d\" y2=\"%d\"/>"
-            "<text class=\"t\" fill=\"#222\" x=\"%d\" y=\"%d\">contrast crossover</text>\n",
-            right_px + 18, y, right_px + 40, y, right_px + 46, y + 4);
+    if (day->crossings > 0) svg_legend(to, &pen, legend_x, row_y(row), "contrast crossover");
 }
 
 /* Draws all of it. about: the line below the title. */
@@ -160,36 +101,24 @@ static void plot_day(FILE *to, const HeatDay *day, const char *about)
     static const char *const colours[most_parts] = {"#1f77b4", "#e0a100", "#2ca02c", "#d1495b", "#6a4c93",
                                                     "#17a2a2", "#a0522d", "#e377c2", "#7f7f7f", "#8bc34a"};
     static Curve             curve[most_parts + 2];
+    double                   low_k = INFINITY, high_k = -INFINITY;
     int                      count = part_curves(curve, day);
-    for (int i = 0; i < count; i++) curve[i].colour = colours[i];
+    for (int i = 0; i < count; i++) curve[i].pen = (SvgPen){colours[i], 2, NULL};
     Curve *air = &curve[count++], *ground = &curve[count++];
-    *air = (Curve){.name = "air", .colour = "#5b8db8", .dashed = true};
-    *ground = (Curve){.name = "ground", .colour = "#5a7d3a", .dashed = true};
+    *air = (Curve){.name = "air", .pen = {"#5b8db8", 2, "6 4"}};
+    *ground = (Curve){.name = "ground", .pen = {"#5a7d3a", 2, "6 4"}};
     for (int r = 0; r < heat_day_rows; r++) air->k[r] = day->row[r].air_k, ground->k[r] = day->row[r].ground_k;
     find_range(air);
     find_range(ground);
-    const Scale s = scale_of(curve, count);
+    for (int i = 0; i < count; i++) low_k = fmin(low_k, curve[i].low_k), high_k = fmax(high_k, curve[i].high_k);
+    const SvgAxis kelvin = svg_linear_axis(low_k, high_k, box.bottom, box.top);
 
-    fprintf(to,
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"pvh\" width=\"%d\" height=\"%d\" "
-            "viewBox=\"0 0 %d %d\" role=\"img\">%s<title>",
-            width_px, height_px, width_px, height_px, style);
-    html_text(to, "temperatures of %s over a day", day->model);
-    fprintf(to,
-            "</title>\n<rect class=\"bg\" fill=\"#fff\" width=\"%d\" height=\"%d\"/>\n"
-            "<text class=\"h\" fill=\"#222\" font-weight=\"600\" x=\"14\" y=\"20\">",
-            width_px, height_px);
-    html_text(to, "%.60s: temperatures of its parts, means by area", day->model);
-    fputs("</text><text class=\"d\" fill=\"#666\" x=\"14\" y=\"38\">", to);
-    html_text(to, "%s", about);
-    fputs("</text>\n", to);
-    draw_axes(to, &s);
-    for (int i = 0; i < count; i++) draw_curve(to, &curve[i], &s, i);
+    svg_begin(to, width_px, height_px, day->model, ": temperatures of its parts, means by area", about);
+    svg_axes(to, &box, &hours, "local mean solar time, h", &kelvin, "temperature, K");
+    for (int i = 0; i < count; i++) draw_curve(to, &curve[i], &kelvin, i);
     draw_crossings(to, day, count);
-    fprintf(to,
-            "<text class=\"d\" fill=\"#666\" text-anchor=\"end\" x=\"%d\" y=\"%d\">"
-            "coldest &#8211; warmest, K</text>\n</svg>\n",
-            width_px - 12, top_px + 2);
+    svg_text(to, SVG_DIM, SVG_RIGHT, width_px - 12, box.top + 2, "coldest \u2013 warmest, K");
+    svg_end(to);
 }
 
 /* ---- the command line ------------------------------------------------------------------------------- */
