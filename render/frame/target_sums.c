@@ -311,17 +311,17 @@ static void gather_target(TargetPixels *target, const SumRules *rules, const Tar
     if (sum.amodal > 0) memcpy(target->amodal_box, sum.amodal_box, sizeof sum.amodal_box);
 }
 
-Status target_sums_gather(Picture *picture, const SumRules *rules, const TargetSums *const *sums, int workers,
-                          const TargetPixels *boxes, int entities, int profile_bins, Arena *arena)
+Status target_sums_gather(Picture *picture, const SumRules *rules, const WorkerSums *of, Arena *arena)
 {
     Status status = STATUS_OK;
     if (picture->target) {
-        for (int i = 0; i < entities; i++) gather_target(&picture->target[i], rules, sums, workers, boxes, i);
-        status = name_occluders(picture->target, entities, sums, workers, arena);
+        for (int i = 0; i < of->entities; i++)
+            gather_target(&picture->target[i], rules, of->sums, of->workers, of->boxes, i);
+        status = name_occluders(picture->target, of->entities, of->sums, of->workers, arena);
     }
-    for (int i = 0; picture->profile && i < profile_bins * radar_bounces; i++) {
+    for (int i = 0; picture->profile && i < of->profile_bins * radar_bounces; i++) {
         int64_t sum = 0;
-        for (int w = 0; w < workers; w++) sum += sums[w]->profile[i];
+        for (int w = 0; w < of->workers; w++) sum += of->sums[w]->profile[i];
         picture->profile[i] = (double)sum * rules->profile_quantum;
     }
     return status;

@@ -1,4 +1,4 @@
-/* render/heat/column.c: see column.h. */
+/* render/heat/column.c: solves the heat conduction into layers, step by step (column.h). */
 #include "render/heat/column.h"
 
 Status column_create(Column *out, const ColumnLayer *layer, int layers, double first_m, double growth)

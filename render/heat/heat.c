@@ -1,4 +1,4 @@
-/* render/heat/heat.c: see heat.h. */
+/* render/heat/heat.c: steps the columns of the ground, its trunks and branches through an exercise (heat.h). */
 #include "render/heat/heat_private.h"
 
 #include "pitviper_simd.h"

@@ -1,4 +1,4 @@
-/* render/heat/mark_heat.c: see heat.h. */
+/* render/heat/mark_heat.c: the heat that vehicles leave on the ground: where they stood, drove and burnt (heat.h). */
 #include "render/heat/heat.h"
 
 #include "render/heat/vehicle_load.h"

@@ -1,4 +1,4 @@
-/* render/heat/vehicle_state.c: see vehicle_state.h. */
+/* render/heat/vehicle_state.c: keeps the temperatures of one entity from step to step (vehicle_state.h). */
 #include "render/heat/vehicle_state.h"
 
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-/* render/light/far_woods.c: see far_woods.h. */
+/* render/light/far_woods.c: shows the ground of distant woods as their canopy (far_woods.h). */
 #include "render/light/far_woods.h"
 
 #include "render/heat/heat.h"
