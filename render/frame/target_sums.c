@@ -79,7 +79,7 @@ static int compare_pairs(const void *a, const void *b)
     return p->occluder < q->occluder ? -1 : p->occluder > q->occluder;
 }
 
-/* By target, counted, and each target's by occluder. False: no memory. */
+/* Sorts the pairs by target (a counting sort), and those of each target by occluder. False: no memory. */
 static bool sort_pairs(Occlusion **pair, size_t count, int entities, Arena *arena)
 {
     size_t    *first = arena_alloc(arena, (size_t)entities + 1, sizeof *first);
@@ -160,7 +160,7 @@ static int64_t sample_steps(int64_t *seen, const SumRules *rules, const PixelBlo
     return whole;
 }
 
-/* One sample that shows the target. */
+/* Counts one sample that shows the target. */
 static void count_seen(TargetSums *sums, int index, const SumRules *rules, const Samples *s, const PixelBlock *block,
                        double share, int sample)
 {

@@ -117,7 +117,7 @@ static int newton_matrix(double t_s, N_Vector y, N_Vector fy, SUNMatrix matrix, 
     return 0;
 }
 
-/* Of the errors: none of held nodes and of the heat from outside. */
+/* Weights of the errors for ARKODE: held nodes and the heat from outside have none. */
 static int weights(N_Vector y, N_Vector out, void *user)
 {
     const Network *n = user;

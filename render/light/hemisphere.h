@@ -56,11 +56,10 @@ typedef struct HemisphereNear {
                                  * this beyond their sphere */
 } HemisphereNear;
 
-/* out[hits->count]. From points on the ground the ground is not traced: only
- * parts change their light. notes: where meetings are kept (render/light/sky_visibility.h), the same bits; NULL:
- * nowhere. Three bounces; the open form is subtracted direction by direction, so that points with an unobstructed sky
- * get 0, without noise. The bright ring about the sun has separate directions, since it would cause most of the noise.
- */
+/* out[hits->count]. From points on the ground the ground is not traced: only parts change their light. notes: where
+ * meetings are kept (render/light/sky_visibility.h), the same bits; NULL: nowhere. Three bounces; the open form is
+ * subtracted direction by direction, so that points with an unobstructed sky get 0, without noise. The bright ring
+ * about the sun has separate directions, since it would cause most of the noise. */
 void hemisphere_change(HemisphereChange *out, const HemisphereScene *scene, const Hits *hits,
                        const HemisphereNear *near, const uint64_t *key, struct SkyNotes *notes,
                        VisibilityCounters *counters);

@@ -58,7 +58,7 @@ static double ring_radiance(const AirSky *sky, const SkyPlace *at, const SkyPlac
     return daylight_sky_there(sky, at) - daylight_sky_there(sky, edge);
 }
 
-/* At the edge of the ring, for a direction within it. */
+/* Moves a direction within the ring about the sun to the edge of that ring. */
 static SkyPlace ring_edge(const SkyPlace *at)
 {
     SkyPlace edge = *at;
@@ -115,7 +115,7 @@ static void count_first(Change *to, const Paths *p, int i, const HemisphereScene
     to->sunlit += p->sun[i] > 0 && along > 0;
 }
 
-/* Of one call. */
+/* What one call of hemisphere_change shares among its steps. */
 typedef struct ChangeJob {
     const HemisphereScene *scene;
     unsigned               bands;
@@ -299,7 +299,7 @@ static void v2_turn(double turn[2], const double by[2])
     turn[0] = x;
 }
 
-/* Of points whose meetings are known: all but the rays towards the ring. */
+/* Follows the paths of points whose meetings are known, all but the rays towards the ring. */
 static void follow_known(Change *sum, Paths *p, const ChangeJob *job, const SkyMet *const *of, int count)
 {
     const SkyMet *known[hits_capacity];
