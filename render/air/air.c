@@ -78,10 +78,15 @@ Status air_at(Air *out, const AirSource *source, const Weather *weather, const S
 {
     *out = (Air){.eye_height_m = clamp(eye->height_m, 0, air_top_m)};
     /* ten metres of air below the eye do not change the sky above it */
-    const bool on_ground = out->eye_height_m < 10;
-    AirJob     job;
-    Status     status = daylight_begin(&job.light, &out->light, source, weather, sun, eye->bands,
-                                   on_ground ? NULL : out->sky_eye, out->eye_height_m, arena);
+    const bool          on_ground = out->eye_height_m < 10;
+    const DaylightInput in = {.source = source,
+                              .weather = weather,
+                              .sun = sun,
+                              .bands = eye->bands,
+                              .other = on_ground ? NULL : out->sky_eye,
+                              .other_m = out->eye_height_m};
+    AirJob              job;
+    Status              status = daylight_begin(&job.light, &out->light, &in, arena);
     if (status != STATUS_OK) return status;
     if (eye->view) out->light.zero_z_m = daylight_height(&out->light, eye->view->p_enu) - eye->height_m;
     sun_at_eye(out, source->atmosphere, sun, eye->bands);

@@ -20,9 +20,18 @@ typedef struct DaylightJob DaylightJob;
 /* The totals of these bands and of pan. diffuse_w_m2: the tables' own. */
 void daylight_sums(Daylight *out, const AirSource *source, const Weather *weather, const Sun *sun, unsigned bands,
                    double diffuse_w_m2[AIR_BAND_COUNT]);
-/* other: [AIR_BAND_COUNT], filled in with the sky from another height; NULL: not requested. */
-Status daylight_begin(DaylightJob **out, Daylight *light, const AirSource *source, const Weather *weather,
-                      const Sun *sun, unsigned bands, AirSky *other, double other_m, Arena *arena);
+/* What daylight is computed from, and which of it is requested. */
+typedef struct DaylightInput {
+    const AirSource *source;
+    const Weather   *weather;
+    const Sun       *sun;
+    unsigned         bands;   /* 1 << AirBand */
+    AirSky          *other;   /* [AIR_BAND_COUNT], filled in with the sky from another height; NULL: not requested */
+    double           other_m; /* that height */
+} DaylightInput;
+
+/* Allocates the passes, and evaluates what they share. STATUS_NO_MEMORY, and what air_day_at returns. */
+Status daylight_begin(DaylightJob **out, Daylight *light, const DaylightInput *in, Arena *arena);
 int    daylight_asks(const DaylightJob *job);
 void   daylight_ask(DaylightJob *job, int ask);
 int    daylight_draws(const DaylightJob *job);

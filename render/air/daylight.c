@@ -377,20 +377,19 @@ void daylight_end(DaylightJob *job)
 
 /* ---- the complete tables ------------------------------------------------------------------------ */
 
-Status daylight_begin(DaylightJob **out, Daylight *light, const AirSource *source, const Weather *weather,
-                      const Sun *sun, unsigned bands, AirSky *other, double other_m, Arena *arena)
+Status daylight_begin(DaylightJob **out, Daylight *light, const DaylightInput *in, Arena *arena)
 {
     DaylightJob *job = arena_alloc(arena, 1, sizeof *job);
     if (!job) return STATUS_NO_MEMORY;
     *light = (Daylight){0};
-    job->light = light, job->bands = bands, job->other = other, job->other_m = other_m;
-    daylight_sums(light, source, weather, sun, bands, job->diffuse_w_m2);
+    job->light = light, job->bands = in->bands, job->other = in->other, job->other_m = in->other_m;
+    daylight_sums(light, in->source, in->weather, in->sun, in->bands, job->diffuse_w_m2);
     for (int a = 0; a <= asked_azimuths; a++) job->azimuth_rad[a] = a * pi_rad / asked_azimuths;
     double temp_k[air_temps + 1];
     memcpy(temp_k, emitter_temp_k, sizeof emitter_temp_k);
     temp_k[air_temps] = light->weather.air_temp_k;
-    const Status status = air_day_at(&light->day, source->atmosphere, weather->visibility_m, light->day_zenith_rad,
-                                     bands, temp_k, air_temps + 1, arena);
+    const Status status = air_day_at(&light->day, in->source->atmosphere, in->weather->visibility_m,
+                                     light->day_zenith_rad, in->bands, temp_k, air_temps + 1, arena);
     job->day = light->day;
     *out = job;
     return status;
@@ -424,8 +423,9 @@ void air_run(Pool *pool, int count, PoolTask *task, void *user)
 Status daylight_by_direction(Daylight *out, const AirSource *source, const Weather *weather, const Sun *sun,
                              unsigned bands, Pool *pool, Arena *arena)
 {
-    DaylightJob *job;
-    const Status status = daylight_begin(&job, out, source, weather, sun, bands, NULL, 0, arena);
+    const DaylightInput in = {.source = source, .weather = weather, .sun = sun, .bands = bands};
+    DaylightJob        *job;
+    const Status        status = daylight_begin(&job, out, &in, arena);
     if (status != STATUS_OK) return status;
     air_run(pool, daylight_asks(job), ask_task, job);
     air_run(pool, daylight_draws(job), draw_task, job);

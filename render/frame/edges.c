@@ -44,7 +44,7 @@ static bool sphere_box(double box[4], const View *view, const double centre_enu[
     return true;
 }
 
-/* From the target's foot to where its top's shadow falls on level ground. */
+/* The box on the image from the target's foot to where the shadow of its top falls on level ground. */
 static bool shadow_box(double box[4], const Job *job, int index)
 {
     const SnapshotEntity *entity = &job->scene.snapshot->entity[index];

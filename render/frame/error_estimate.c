@@ -64,21 +64,6 @@ typedef struct Budget {
 
 /* ---- which pixels ---------------------------------------------------------------------------- */
 
-/* Planes whose error at a pixel cannot be estimated from its own samples; see refine.c. */
-static unsigned planes_to_ask(const Job *job, size_t px)
-{
-    const unsigned flags = job->refine ? job->refine[px] : 0;
-    unsigned       planes = 0;
-    if (flags & refine_all || (job->picture->covered && job->picture->covered[px] > 0)) return 0;
-    for (int k = 0; k < picture_plane_count; k++) {
-        const bool sunlit = picture_band(k) == BAND_OPTICAL || picture_band(k) == BAND_MWIR;
-        if (picture_plane(job->picture, k) &&
-            !(flags & refine_sun && !(flags & (refine_step | refine_plants)) && sunlit))
-            planes |= 1u << k;
-    }
-    return planes;
-}
-
 /* Marks the boxes of targets and a pixel about them. */
 static Status mark_targets(Budget *b, Arena *arena)
 {
@@ -103,7 +88,7 @@ static Status mark_targets(Budget *b, Arena *arena)
 static void read_candidate(Candidate *c, const Job *job)
 {
     const Picture *p = job->picture;
-    c->planes = planes_to_ask(job, pixel_index(job, c->x, c->y));
+    c->planes = planes_to_resample(job, pixel_index(job, c->x, c->y));
     for (int k = 0; k < picture_plane_count; k++) {
         const float *value = picture_plane(p, k);
         if (!value) continue;
@@ -112,7 +97,8 @@ static void read_candidate(Candidate *c, const Job *job)
     }
 }
 
-/* One of as many equal shares of the targets' pixels, in the picture's order: candidates behind those of the fields. */
+/* Divides the targets' pixels, in the picture's order, into equal shares and draws a candidate from each; they follow
+ * the candidates of the fields. */
 static void add_target_candidates(Budget *b)
 {
     const int    width = b->job->picture->width;
@@ -128,7 +114,7 @@ static void add_target_candidates(Budget *b)
     }
 }
 
-/* A field's candidate stands for those of its pixels that are no target's, and is one of them. */
+/* Moves a field's candidate to a pixel that is no target's, and lets it stand for the number of those. */
 static void leave_targets_out(Candidate *c, const Budget *b, int x0, int y0, int w, int h)
 {
     const int first = (c->y - y0) * w + c->x - x0;
@@ -144,7 +130,7 @@ static void leave_targets_out(Candidate *c, const Budget *b, int x0, int y0, int
     c->x = (uint16_t)(x0 + found % w), c->y = (uint16_t)(y0 + found / w);
 }
 
-/* A row of fields. */
+/* A pool task: draws the candidates of a row of fields. */
 static void candidate_task(void *user, int worker, int row)
 {
     const Budget  *b = user;
@@ -164,7 +150,7 @@ static void candidate_task(void *user, int worker, int row)
     }
 }
 
-/* Of candidates from .. end - 1, by weight, in steps. Returns how many. */
+/* Draws at most `most` of the candidates from .. end - 1, in equal steps of their summed weight. Returns how many. */
 static int draw(ProbeOf *out, int most, const Budget *b, int from, int end)
 {
     double sum = 0, gone = 0;
@@ -182,8 +168,9 @@ static int draw(ProbeOf *out, int most, const Budget *b, int from, int end)
     return count;
 }
 
-/* Weight: root of the difference from its neighbours over each plane's own mean difference (so that the ground's noise
- * in one band does not hide the borders of another), and no less than a uniform share. */
+/* Draws probes. A candidate's weight is the root of the difference from its neighbours over each plane's own mean
+ * difference (so that the ground's noise in one band does not hide the borders of another), and no less than a uniform
+ * share. */
 static int draw_probes(ProbeOf *out, int most, Budget *b, int from, int end)
 {
     double sum = 0, area = 0, typical[picture_plane_count] = {0};
@@ -222,12 +209,12 @@ static int add_hottest(ProbeOf *out, const Budget *b)
         size_t       most = 0;
         for (size_t i = 1; value && i < pixels; i++)
             if (value[i] > value[most]) most = i;
-        if (!value || !planes_to_ask(b->job, most)) continue;
+        if (!value || !planes_to_resample(b->job, most)) continue;
         Candidate *c = &b->candidate[b->candidates + count];
         *c = (Candidate){.x = (uint16_t)(most % (size_t)p->width),
                          .y = (uint16_t)(most / (size_t)p->width),
                          .area = 1,
-                         .planes = planes_to_ask(b->job, most),
+                         .planes = planes_to_resample(b->job, most),
                          .weight = 1};
         for (int k = 0; k < picture_plane_count; k++)
             if (picture_plane(p, k)) c->value[k] = picture_plane(p, k)[most];
@@ -237,8 +224,9 @@ static int add_hottest(ProbeOf *out, const Budget *b)
     return count;
 }
 
-/* Weight: brightness over each plane's mean, and no less than a uniform share: the error of the tables is
- * proportional to it, and a few hot pixels can hold half of a thermal band. */
+/* Draws the probes of the tables. A candidate's weight is its brightness over each plane's mean, and no less than a
+ * uniform share: the error of the tables is proportional to it, and a few hot pixels can hold half of a thermal band.
+ */
 static int draw_tables(Budget *b, const double mean[picture_plane_count])
 {
     for (int i = 0; i < b->candidates; i++) {
@@ -255,13 +243,13 @@ static int draw_tables(Budget *b, const double mean[picture_plane_count])
 
 static const Candidate *candidate_of(const ProbeTask *t, int p) { return &t->candidate[t->probe[p].candidate]; }
 
-/* Squared error of probe p at hand, for which a plane has to be asked. */
+/* Adds to the squared error of the probe p at hand, if the plane is a thermal one. */
 static void take_square(ProbeTask *t, int p, int plane, double square)
 {
     if (plane == picture_mwir || plane == picture_lwir) t->square[plane - picture_mwir][t->first + p] += (float)square;
 }
 
-/* Change of the pixels' values of a plane with more rays: sampling error, from their own variance where they have as
+/* Adds the change of a plane's values with more rays: sampling error, from their own variance where they have as
  * many rays as the picture. */
 static void take_rays(ProbeTask *t, const Job *job, int n, const float *value, int plane)
 {
@@ -283,7 +271,7 @@ static void take_rays(ProbeTask *t, const Job *job, int n, const float *value, i
     }
 }
 
-/* Change when the ground is known at every second post only. */
+/* Adds the change of a plane's values when the ground is known at every second post only. */
 static void take_coarse(ProbeTask *t, const float *value, int plane)
 {
     for (int p = 0; p < t->count; p++) {
@@ -296,7 +284,7 @@ static void take_coarse(ProbeTask *t, const float *value, int plane)
     }
 }
 
-/* Change when no plant is simplified. */
+/* Adds the change of a plane's values when no plant is simplified. */
 static void take_full_plants(ProbeTask *t, const float *value, int plane)
 {
     for (int p = 0; p < t->count; p++) {
@@ -335,7 +323,7 @@ static void coarsen(Samples *s, const Job *job, ProbeTask *t)
     }
 }
 
-/* The task's pixels, n x n samples each, shaded. */
+/* Shades the task's pixels with n x n samples each. */
 static void shade_pixels(Worker *w, const Job *job, const ProbeTask *t, int n, int listed)
 {
     w->block.n = n;
@@ -346,7 +334,7 @@ static void shade_pixels(Worker *w, const Job *job, const ProbeTask *t, int n, i
     block_light(w, job);
 }
 
-/* One sample a pixel: the reference of the comparison. */
+/* Shades one sample a pixel, the reference of the comparisons. */
 static void shade_base(Worker *w, const Job *job, ProbeTask *t, int listed)
 {
     shade_pixels(w, job, t, 1, listed);
@@ -431,7 +419,7 @@ static Status plan(Budget *b, Pool *pool, Arena *arena)
     return ok ? mark_targets(b, arena) : STATUS_NO_MEMORY;
 }
 
-/* Blocks of re-sampled pixels, then those that check the tables; returns the number of both. */
+/* Fills the tasks: blocks of re-sampled pixels, then those that check the tables; returns the number of both. */
 static int deal(Budget *b, int probes, int of_tables)
 {
     for (int i = 0; i < probes; i++) {

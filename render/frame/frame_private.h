@@ -122,10 +122,15 @@ void target_sums_radiance(TargetSums *sums, const SumRules *rules, const Hits *h
 void target_sums_profile(TargetSums *sums, const SumRules *rules, const RenderRequest *request, const Samples *s,
                          const double *area_px);
 
-/* All workers' sums into the picture: targets, their occluders, and the profile. boxes: where the targets lie.
- * STATUS_NO_MEMORY. */
-Status target_sums_gather(Picture *picture, const SumRules *rules, const TargetSums *const *sums, int workers,
-                          const TargetPixels *boxes, int entities, int profile_bins, Arena *arena);
+/* The sums of a frame over all its samples, as its workers left them. */
+typedef struct WorkerSums {
+    const TargetSums *const *sums; /* [workers] */
+    int                      workers, entities, profile_bins;
+    const TargetPixels      *boxes; /* [entities]: where the targets lie */
+} WorkerSums;
+
+/* Adds all workers' sums into the picture: targets, their occluders, and the profile. STATUS_NO_MEMORY. */
+Status target_sums_gather(Picture *picture, const SumRules *rules, const WorkerSums *of, Arena *arena);
 
 /* ---- passes: passes.c ------------------------------------------------------------------------ */
 
@@ -270,6 +275,8 @@ void split_ground(Worker *w, const Job *job, int side, int most);
 
 /* A pool task: selects the pixels of a tile to refine (edges.h), and samples them. */
 void refine_tile(void *job, int worker, int task);
+/* After the edges: the planes (1 << plane) whose error at a pixel cannot be estimated from its own samples. */
+unsigned planes_to_resample(const Job *job, size_t px);
 
 /* Radiance of plants, smoothed from pixel to pixel.
  *

@@ -89,7 +89,7 @@ typedef struct SquarePlaces {
     double x_m[ground_mix_places], y_m[ground_mix_places];
 } SquarePlaces;
 
-/* Their places on the picture, from the sample's, for a square of 1 / n px. */
+/* Finds the picture positions of the points, relative to the sample's, for a square of 1 / n px. */
 static void places_about(SquarePlaces *out, double offset_px[2][ground_mix_places], const double centre_px[2],
                          int places)
 {
@@ -97,7 +97,7 @@ static void places_about(SquarePlaces *out, double offset_px[2][ground_mix_place
         for (int k = 0; k < places; k++) out->at_px[c][k] = centre_px[c] + offset_px[c][k];
 }
 
-/* As plane_through, of many directions: without a lens they are linear in the place on the picture. */
+/* Does what plane_through does for many directions: without a lens they are linear in the place on the picture. */
 static void places_on_plane(SquarePlaces *out, const View *view, const double n[3], const double d_hit[3],
                             double range_m, const double centre_px[2], int places)
 {

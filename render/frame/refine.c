@@ -241,3 +241,17 @@ void refine_tile(void *user, int worker, int task)
         if (w->block.pixels > 0) refine_block(w, job, how, list_block(w, job, listed), crowd, law);
     }
 }
+
+unsigned planes_to_resample(const Job *job, size_t px)
+{
+    const unsigned flags = job->refine ? job->refine[px] : 0;
+    unsigned       planes = 0;
+    if (flags & refine_all || (job->picture->covered && job->picture->covered[px] > 0)) return 0;
+    for (int k = 0; k < picture_plane_count; k++) {
+        const bool sunlit = picture_band(k) == BAND_OPTICAL || picture_band(k) == BAND_MWIR;
+        if (picture_plane(job->picture, k) &&
+            !(flags & refine_sun && !(flags & (refine_step | refine_plants)) && sunlit))
+            planes |= 1u << k;
+    }
+    return planes;
+}

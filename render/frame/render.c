@@ -146,8 +146,12 @@ static Status gather_sums(Job *job, int workers, Arena *arena)
         picture->times.shade_ms += 1e3 * w->shader.shade_s;
         picture->times.radar_ms += 1e3 * w->shader.radar_s;
     }
-    const Status status = target_sums_gather(picture, &job->rules, sums, workers, job->boxes,
-                                             job->scene.snapshot->count, job->request->profile_bins, arena);
+    const WorkerSums of = {.sums = sums,
+                           .workers = workers,
+                           .entities = job->scene.snapshot->count,
+                           .profile_bins = job->request->profile_bins,
+                           .boxes = job->boxes};
+    const Status     status = target_sums_gather(picture, &job->rules, &of, arena);
     if (status == STATUS_OK && picture->target) target_grids_sample(job);
     return status;
 }

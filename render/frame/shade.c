@@ -35,8 +35,12 @@ Status shade_scene_create(ShadeScene *out, const World *world, const Snapshot *s
                         .air = air,
                         .sky_samples = request->sky_samples,
                         .hidden_entity = request->hidden_entity};
-    Status status = smoke_effects_scene(&out->effects, snapshot, request->hidden_entity, &world->frame, &request->view,
-                                        air, world->materials.ground_rho, channels, arena);
+    const EffectView seen = {.frame = &world->frame,
+                             .view = &request->view,
+                             .ground_rho = world->materials.ground_rho,
+                             .bands = channels,
+                             .hidden = request->hidden_entity};
+    Status           status = smoke_effects_scene(&out->effects, snapshot, &seen, air, arena);
     if (status != STATUS_OK) return status;
     int *volume = arena_alloc(arena, (size_t)out->effects.count + 1, sizeof *volume);
     if (!volume) return STATUS_NO_MEMORY;

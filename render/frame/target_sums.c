@@ -79,7 +79,7 @@ static int compare_pairs(const void *a, const void *b)
     return p->occluder < q->occluder ? -1 : p->occluder > q->occluder;
 }
 
-/* By target, counted, and each target's by occluder. False: no memory. */
+/* Sorts the pairs by target (a counting sort), and those of each target by occluder. False: no memory. */
 static bool sort_pairs(Occlusion **pair, size_t count, int entities, Arena *arena)
 {
     size_t    *first = arena_alloc(arena, (size_t)entities + 1, sizeof *first);
@@ -160,7 +160,7 @@ static int64_t sample_steps(int64_t *seen, const SumRules *rules, const PixelBlo
     return whole;
 }
 
-/* One sample that shows the target. */
+/* Counts one sample that shows the target. */
 static void count_seen(TargetSums *sums, int index, const SumRules *rules, const Samples *s, const PixelBlock *block,
                        double share, int sample)
 {
@@ -311,17 +311,17 @@ static void gather_target(TargetPixels *target, const SumRules *rules, const Tar
     if (sum.amodal > 0) memcpy(target->amodal_box, sum.amodal_box, sizeof sum.amodal_box);
 }
 
-Status target_sums_gather(Picture *picture, const SumRules *rules, const TargetSums *const *sums, int workers,
-                          const TargetPixels *boxes, int entities, int profile_bins, Arena *arena)
+Status target_sums_gather(Picture *picture, const SumRules *rules, const WorkerSums *of, Arena *arena)
 {
     Status status = STATUS_OK;
     if (picture->target) {
-        for (int i = 0; i < entities; i++) gather_target(&picture->target[i], rules, sums, workers, boxes, i);
-        status = name_occluders(picture->target, entities, sums, workers, arena);
+        for (int i = 0; i < of->entities; i++)
+            gather_target(&picture->target[i], rules, of->sums, of->workers, of->boxes, i);
+        status = name_occluders(picture->target, of->entities, of->sums, of->workers, arena);
     }
-    for (int i = 0; picture->profile && i < profile_bins * radar_bounces; i++) {
+    for (int i = 0; picture->profile && i < of->profile_bins * radar_bounces; i++) {
         int64_t sum = 0;
-        for (int w = 0; w < workers; w++) sum += sums[w]->profile[i];
+        for (int w = 0; w < of->workers; w++) sum += of->sums[w]->profile[i];
         picture->profile[i] = (double)sum * rules->profile_quantum;
     }
     return status;

@@ -1,4 +1,4 @@
-/* render/heat/column.c: see column.h. */
+/* render/heat/column.c: solves the heat conduction into layers, step by step (column.h). */
 #include "render/heat/column.h"
 
 Status column_create(Column *out, const ColumnLayer *layer, int layers, double first_m, double growth)
@@ -87,7 +87,7 @@ static double surface_root(const ColumnBoundary *b, const void *law, double line
     return temp_k;
 }
 
-/* Of (C / stage + K), without the surface's own exchange. */
+/* Eliminates (C / stage + K), without the surface's own exchange. */
 static void eliminate(ColumnFactors *f, const Column *c, double stage_s)
 {
     const double *g = c->conductance_w_m2k;
@@ -142,7 +142,7 @@ typedef struct Step {
     double                dt_s; /* of the whole step */
 } Step;
 
-/* Of (C / stage + K + falls) x = right / stage, x at the surface. */
+/* Solves (C / stage + K + falls) x = right / stage; returns x at the surface. */
 static double filtered_k(const Column *c, const ColumnFactors *f, const double right_j_m2[], double falls,
                          double stage_s)
 {

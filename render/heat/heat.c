@@ -1,4 +1,4 @@
-/* render/heat/heat.c: see heat.h. */
+/* render/heat/heat.c: steps the columns of the ground, its trunks and branches through an exercise (heat.h). */
 #include "render/heat/heat_private.h"
 
 #include "pitviper_simd.h"
@@ -52,7 +52,7 @@ static GroundWeather no_sun(const GroundWeather *w)
     return out;
 }
 
-/* In steps. */
+/* Number of steps in half an hour. */
 static int64_t half_hour(const Heat *h) { return (int64_t)fmax(1, round(slot_s / h->config.step_s)); }
 
 typedef struct StepJob {
@@ -80,7 +80,7 @@ static void step_kind(void *user, int worker, int task)
     }
 }
 
-/* In the sun, and in the shade; below them grass. */
+/* Steps all branches, in the sun and in the shade; the ground below them is grass. */
 static void step_branches(Heat *h, const GroundWeather *after, double dt_s)
 {
     const double grass_k = h->state[SURFACE_GRASS].column[h->config.facets * h->config.facets / 2].state.temp_k[0];

@@ -15,7 +15,7 @@ static inline F64x4 clamp4(F64x4 x, double low, double high) /* NaN: high */
     return f64x4_max(f64x4_min(x, f64x4_set(high)), f64x4_set(low));
 }
 
-/* Of a kind by the height of its normal: node in the table, and how far it is from the next. */
+/* Interpolates a kind's table in the height of the normal: node is the lower one, share the way to the next. */
 static inline F64x4 by_up(const float table[ground_kinds][heat_ups], __m128i node, F64x4 share)
 {
     const F64x4 low = lanes_of_table(&table[0][0], node), high = lanes_of_table(&table[0][1], node);

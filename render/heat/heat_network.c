@@ -1,4 +1,4 @@
-/* render/heat/heat_network.c: see heat_network.h.
+/* render/heat/heat_network.c: steps a network of thermal nodes with SUNDIALS' ARKODE (heat_network.h).
  *
  * The system that ARKODE sees: the nodes' temperatures, and one number more, the heat from outside over the sum of the
  * capacities. Every Runge-Kutta stage keeps the sum of C_i T_i less that heat, and so does every Newton iteration, as
@@ -117,7 +117,7 @@ static int newton_matrix(double t_s, N_Vector y, N_Vector fy, SUNMatrix matrix, 
     return 0;
 }
 
-/* Of the errors: none of held nodes and of the heat from outside. */
+/* Weights of the errors for ARKODE: held nodes and the heat from outside have none. */
 static int weights(N_Vector y, N_Vector out, void *user)
 {
     const Network *n = user;

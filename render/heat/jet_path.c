@@ -1,4 +1,4 @@
-/* render/heat/jet_path.c: see vehicle_load.h. */
+/* render/heat/jet_path.c: the path of an exhaust jet in the wind, and the boxes that contain it (vehicle_load.h). */
 #include "render/heat/vehicle_load.h"
 
 static const double along_share = 0.08, across_share = 0.6, gravity_mps2 = 9.80665, least_k = 1;

@@ -1,4 +1,4 @@
-/* render/heat/mark_heat.c: see heat.h. */
+/* render/heat/mark_heat.c: the heat that vehicles leave on the ground: where they stood, drove and burnt (heat.h). */
 #include "render/heat/heat.h"
 
 #include "render/heat/vehicle_load.h"
@@ -85,7 +85,7 @@ static void put_line(MarkHeat *m, int mark, const Track *t)
     }
 }
 
-/* Its exhaust, where that comes near the ground. */
+/* Follows the exhaust of a standing vehicle, and keeps it where it comes near the ground. */
 static Status blow_of(Stand *out, const GroundBlow *b, double air_k, double exercise_s, Arena *arena)
 {
     static const double still[3] = {0};

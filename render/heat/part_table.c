@@ -1,4 +1,4 @@
-/* render/heat/part_table.c: see part_table.h. */
+/* render/heat/part_table.c: reads etc/heat.csv and etc/heat_machines.csv (part_table.h). */
 #include "render/heat/part_table.h"
 
 static bool find_name(int *out, const char *const *names, int count, const char *name)

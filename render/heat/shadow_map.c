@@ -1,4 +1,4 @@
-/* render/heat/shadow_map.c: see heat.h. */
+/* render/heat/shadow_map.c: a map of what shades the ground, for several directions of the sun (heat.h). */
 #include "render/heat/heat.h"
 
 #include <stdlib.h>

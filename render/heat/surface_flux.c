@@ -1,4 +1,5 @@
-/* render/heat/surface_flux.c: see surface_flux.h. */
+/* render/heat/surface_flux.c: the heat flux into a surface in the open, and its slope in temperature (surface_flux.h).
+ */
 #include "render/heat/surface_flux.h"
 
 #include "terrain/weather/weather.h"

@@ -88,7 +88,7 @@ static void need_bodies(VehicleHeat *h)
     h->bodied = true;
 }
 
-/* Its neighbours, once a second. */
+/* Searches for an entity's neighbours, once a second. */
 static Status check_neighbours(VehicleHeat *h, int at)
 {
     VehicleState *s = h->state[at];
@@ -236,7 +236,7 @@ static const VehicleState *find_state(const VehicleHeat *h, DisEntityId id)
     return at < 0 ? NULL : h->state[at];
 }
 
-/* By outer area. */
+/* Mean of the patches' values, weighted by outer area. */
 static double mean_of(const Patches *p, const float *value)
 {
     double sum = 0, m2 = 0;

@@ -1,4 +1,4 @@
-/* render/heat/vehicle_load.c: see vehicle_load.h. */
+/* render/heat/vehicle_load.c: what heats and cools each node of a model at a moment (vehicle_load.h). */
 #include "render/heat/vehicle_load.h"
 
 #include "render/heat/surface_flux.h"

@@ -59,7 +59,7 @@ static VehicleNear *new_near(int patches)
 
 static const double most_fill = 4; /* of one, in the account of work */
 
-/* Its views are to be of what it sees of them. */
+/* Begins new views of the neighbours that the entity sees. */
 static void start_looking(VehicleNear *near, const Neighbours *found, const NearScene *scene, int patches)
 {
     near->next_seen = 0, near->looked = 0, near->fill = 0;

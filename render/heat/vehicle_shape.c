@@ -1,4 +1,4 @@
-/* render/heat/vehicle_shape.c: see vehicle_load.h. */
+/* render/heat/vehicle_shape.c: the thermal network of a model, made from its patches and parts (vehicle_load.h). */
 #include "render/heat/vehicle_load.h"
 
 #include <stdlib.h>

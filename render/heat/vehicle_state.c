@@ -1,4 +1,4 @@
-/* render/heat/vehicle_state.c: see vehicle_state.h. */
+/* render/heat/vehicle_state.c: keeps the temperatures of one entity from step to step (vehicle_state.h). */
 #include "render/heat/vehicle_state.h"
 
 #include <stdlib.h>
@@ -12,7 +12,7 @@ static size_t block_bytes(const VehicleShape *shape, const Model *model)
            p * (sizeof(PatchView) + 5 * sizeof(float) + sizeof(int));
 }
 
-/* One block: the state and all its arrays. */
+/* Allocates the state and all its arrays as one block. */
 VehicleState *vehicle_state_create(const VehicleShape *shape, const Model *model)
 {
     const size_t n = (size_t)shape->nodes, p = (size_t)shape->patches->count, j = (size_t)model->node_count;
@@ -57,7 +57,7 @@ int vehicle_state_find(VehicleState *const *state, int count, DisEntityId id)
     return -1;
 }
 
-/* Of all parts of a body, what names one the closest. */
+/* Finds the given temperature of each patch: of the parts of its body, the one that is named most closely counts. */
 void vehicle_state_given(VehicleState *s, const GivenHeat *given, const Patches *patches, const Model *model)
 {
     int best[patches_most];
@@ -73,7 +73,7 @@ void vehicle_state_given(VehicleState *s, const GivenHeat *given, const Patches 
     }
 }
 
-/* On the straight line between its own two times. */
+/* Interpolates a patch's temperature linearly between the entity's own two times. */
 static float between(const VehicleState *s, int patch, double t_s)
 {
     const float share = s->next_s > s->t_s ? (float)clamp((t_s - s->t_s) / (s->next_s - s->t_s), 0, 1) : 0;

@@ -83,7 +83,7 @@ static Status find_ground(VehicleMoment *m, const VehicleHeat *h, double unix_s,
     return status;
 }
 
-/* With its sun and its neighbours. t_s: exercise time. lately: engines run as now. */
+/* Fills in the place of an entity with its sun and its neighbours. t_s: exercise time. lately: engines run as now. */
 static Status find_place(VehicleMoment *m, VehicleHeat *h, const VehicleState *s, double t_s, bool present, bool lately)
 {
     NearWork work = {0};
@@ -150,7 +150,7 @@ static void take_shots(VehicleHeat *h, VehicleState *s, const EntityDrives *d)
 
 /* ---- states ------------------------------------------------------------------------------- */
 
-/* Where its present loads lead it until its next own time. */
+/* Predicts the temperatures at the entity's next own time from its present loads. */
 static Status predict(VehicleHeat *h, VehicleState *s, const VehicleMoment *m)
 {
     double *temp_k = arena_alloc(h->arena, (size_t)m->shape->nodes, sizeof *temp_k);
@@ -208,7 +208,7 @@ static const KeptNodes *kept_of(const VehicleHeat *h, const VehicleState *s)
     return k && gap_s >= 0 && gap_s <= longest_s ? k : NULL;
 }
 
-/* From kept temperatures until now, in as many steps as a past has. */
+/* Steps an entity from kept temperatures until now, in as many steps as a past has. */
 static Status live_since(VehicleHeat *h, VehicleState *s, VehicleMoment *m, const KeptNodes *kept)
 {
     const double since_s = kept->unix_s - h->config.unix_s, span_s = (s->seen_s - since_s) / past_steps;
@@ -219,7 +219,7 @@ static Status live_since(VehicleHeat *h, VehicleState *s, VehicleMoment *m, cons
     return status;
 }
 
-/* One span of its past. */
+/* Steps an entity through one span of its past. */
 static Status live_on(VehicleHeat *h, VehicleState *s, VehicleMoment *m)
 {
     static const double now_s = 3600;
@@ -256,7 +256,7 @@ static Status appear(VehicleHeat *h, VehicleState *s, VehicleMoment *m, double t
     return predict(h, s, m);
 }
 
-/* Its views are to be of this pose: those of another entity of its model that is posed alike, or none yet. */
+/* Begins the views of this pose: copies those of another entity of its model that is posed alike, or has none yet. */
 static void start_looking(VehicleState *s, const VehicleMoment *m, const VehicleHeat *h)
 {
     const int patches = m->shape->patches->count;
@@ -290,7 +290,7 @@ static Status advance(VehicleHeat *h, VehicleState *s, VehicleMoment *m, double 
     return predict(h, s, m);
 }
 
-/* What its neighbours take of its views. False: there is no room for all of it. */
+/* Finds what the neighbours hide of an entity's views. False: the work budget has no room for all of it. */
 static bool look_about(Status *status, VehicleHeat *h, VehicleState *s, const VehicleMoment *m)
 {
     const PatchPose *pose[near_seen_most];
@@ -304,7 +304,7 @@ static bool look_about(Status *status, VehicleHeat *h, VehicleState *s, const Ve
     return true;
 }
 
-/* As much as there is room for of what waits: a step, views, the past. */
+/* Does as much of the waiting work as the budget has room for: a step, views, the past. */
 Status vehicle_work_on(VehicleHeat *h, VehicleState *s)
 {
     const double        t_s = h->near.snapshot->t_s;

@@ -1,4 +1,4 @@
-/* render/light/far_woods.c: see far_woods.h. */
+/* render/light/far_woods.c: shows the ground of distant woods as their canopy (far_woods.h). */
 #include "render/light/far_woods.h"
 
 #include "render/heat/heat.h"
@@ -139,7 +139,7 @@ static double sky_at(const Sunlight *s, AirBand band, const double n[3])
     return daylight_plane_there(&s->air->light, band, &p);
 }
 
-/* What falls on one side of an organ of sky, ground and leaves: up, down: shares of the first two. */
+/* Irradiance of one side of an organ by sky, ground and leaves; up and down are the shares of sky and ground. */
 static double around(double up, double down, double all, double sky_w_m2, double ground_w_m2, double leaves_w_m2)
 {
     return up * sky_w_m2 + down * ground_w_m2 + fmax(all - up - down, 0) * leaves_w_m2;
@@ -199,7 +199,7 @@ static double ground_k(const Look *l, const Air *air, int surface)
     return heat_ground_k(now, kind, level, heat_taken(now, kind, level, shadow), l->view->ground_open, 1);
 }
 
-/* Of branches of every tilt, whose sides are seen as the cosine to the eye. */
+/* Mean temperature of the bark of branches of every tilt, whose sides are weighted by their cosine to the eye. */
 static double bark_k(const Look *l, const HeatNow *now)
 {
     static const double turned_deg[5] = {-65, -35, 0, 35, 65}, tilt[3] = {-0.6, 0, 0.6};
@@ -343,7 +343,7 @@ static void add_node(FarNode *sum, const FarNode *n, float share)
     sum->sun += share * n->sun, sum->radar += share * n->radar;
 }
 
-/* Of a hit, between the nodes of the dense stand (share dense) and those of the sparse one. */
+/* Interpolates the node of a hit between those of the dense stand (its share is dense) and of the sparse one. */
 static void look_there(FarNode *out, const FarWoodsFrame *f, int stand, float dense, double to_eye, const Hits *hits,
                        const Rays *rays, int i)
 {

@@ -69,7 +69,7 @@ static double about(const double *node_deg, int nodes, int k, double u)
     return (node_deg[k] + 0.25 * fmin(below, above) * (2 * u - 1)) * rad_per_deg;
 }
 
-/* From the height of the tallest plant, ahead of it as much of the stand as behind. */
+/* Starts a ray at the height of the tallest plant, with as much of the stand ahead of it as behind. */
 static void start_ray(double o[3], double d[3], double *azimuth_rad, int view, int ray)
 {
     static const double top_m = 27, half_m = 120;

@@ -45,15 +45,23 @@ typedef struct HemisphereChange {
 
 enum { hemisphere_change_bounces = 3 };
 
-/* out[hits->count]. At each bounce only what is nearer than reach_m counts, and of the listed entities alone, which
- * must include all that bounces times that far; points on the ground are sampled only towards entities within whose own
- * reach, list_reach_m[listed] beyond their sphere, they lie. From points on the ground the ground is not traced: only
- * parts change their light. notes: where meetings are kept (render/light/sky_visibility.h), the same bits; NULL:
- * nowhere. Three bounces; the open form is subtracted direction by direction, so that points with an unobstructed sky
- * get 0, without noise. The bright ring about the sun has separate directions, since it would cause most of the noise.
- */
-void hemisphere_change(HemisphereChange *out, const HemisphereScene *scene, const Hits *hits, unsigned bands,
-                       int samples, double reach_m, const double *list_reach_m, const uint64_t *key, const int *list,
-                       int listed, struct SkyNotes *notes, VisibilityCounters *counters);
+/* What may change the light, and how finely that is sampled. */
+typedef struct HemisphereNear {
+    unsigned      bands;        /* 1 << AirBand */
+    int           samples;      /* directions a point */
+    double        reach_m;      /* at each bounce only what is nearer counts */
+    int           listed;       /* number of entities that count */
+    const int    *list;         /* [listed]: must include all that are nearer than bounces x reach_m */
+    const double *list_reach_m; /* [listed]: a point on the ground is sampled only towards entities that are nearer than
+                                 * this beyond their sphere */
+} HemisphereNear;
+
+/* out[hits->count]. From points on the ground the ground is not traced: only parts change their light. notes: where
+ * meetings are kept (render/light/sky_visibility.h), the same bits; NULL: nowhere. Three bounces; the open form is
+ * subtracted direction by direction, so that points with an unobstructed sky get 0, without noise. The bright ring
+ * about the sun has separate directions, since it would cause most of the noise. */
+void hemisphere_change(HemisphereChange *out, const HemisphereScene *scene, const Hits *hits,
+                       const HemisphereNear *near, const uint64_t *key, struct SkyNotes *notes,
+                       VisibilityCounters *counters);
 
 #endif

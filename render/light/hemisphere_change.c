@@ -58,7 +58,7 @@ static double ring_radiance(const AirSky *sky, const SkyPlace *at, const SkyPlac
     return daylight_sky_there(sky, at) - daylight_sky_there(sky, edge);
 }
 
-/* At the edge of the ring, for a direction within it. */
+/* Moves a direction within the ring about the sun to the edge of that ring. */
 static SkyPlace ring_edge(const SkyPlace *at)
 {
     SkyPlace edge = *at;
@@ -115,7 +115,7 @@ static void count_first(Change *to, const Paths *p, int i, const HemisphereScene
     to->sunlit += p->sun[i] > 0 && along > 0;
 }
 
-/* Of one call. */
+/* What one call of hemisphere_change shares among its steps. */
 typedef struct ChangeJob {
     const HemisphereScene *scene;
     unsigned               bands;
@@ -299,7 +299,7 @@ static void v2_turn(double turn[2], const double by[2])
     turn[0] = x;
 }
 
-/* Of points whose meetings are known: all but the rays towards the ring. */
+/* Follows the paths of points whose meetings are known, all but the rays towards the ring. */
 static void follow_known(Change *sum, Paths *p, const ChangeJob *job, const SkyMet *const *of, int count)
 {
     const SkyMet *known[hits_capacity];
@@ -318,24 +318,24 @@ static void follow_known(Change *sum, Paths *p, const ChangeJob *job, const SkyM
     if (p->rays.count > 0) follow_change(sum, p, job, known);
 }
 
-void hemisphere_change(HemisphereChange *out, const HemisphereScene *scene, const Hits *hits, unsigned bands,
-                       int samples, double reach_m, const double *list_reach_m, const uint64_t *key, const int *list,
-                       int listed, SkyNotes *notes, VisibilityCounters *counters)
+void hemisphere_change(HemisphereChange *out, const HemisphereScene *scene, const Hits *hits,
+                       const HemisphereNear *near, const uint64_t *key, SkyNotes *notes, VisibilityCounters *counters)
 {
+    const int     samples = near->samples;
     Paths         paths;
     Change        sum[hits_capacity];
     const SkyMet *known[hits_capacity];
     ChangeJob     job = {.scene = scene,
-                         .bands = bands,
+                         .bands = near->bands,
                          .samples = samples,
-                         .reach_m = reach_m,
+                         .reach_m = near->reach_m,
                          .key = key,
-                         .list = list,
-                         .listed = listed,
+                         .list = near->list,
+                         .listed = near->listed,
                          .notes = notes,
                          .counters = counters};
     const double  golden_turn[2] = {cos(2 * pi_rad * golden_ratio), sin(2 * pi_rad * golden_ratio)};
-    open_light(&job.open, scene, bands);
+    open_light(&job.open, scene, near->bands);
     memset(sum, 0, (size_t)hits->count * sizeof *sum);
     for (int i = 0; i < hits->count; i++) known[i] = NULL, job.ground_points |= !hits->entity[i];
     if (notes) {
@@ -348,16 +348,17 @@ void hemisphere_change(HemisphereChange *out, const HemisphereScene *scene, cons
         if (known[i] && !job.open.ring_shines) continue;
         const double u0 = random_uniform(0, stream_first, 0, key[i]), v0 = random_uniform(0, stream_first, 1, key[i]);
         int          close[close_most];
-        const int    closes = hits->entity[i] ? 0 : list_close(close, scene, hits, i, list_reach_m, list, listed);
-        double       turn[2] = {cos(2 * pi_rad * v0), sin(2 * pi_rad * v0)};
-        Base         base;
+        const int    closes =
+            hits->entity[i] ? 0 : list_close(close, scene, hits, i, near->list_reach_m, near->list, near->listed);
+        double turn[2] = {cos(2 * pi_rad * v0), sin(2 * pi_rad * v0)};
+        Base   base;
         hemisphere_base_at(&base, hits, i);
         for (int k = known[i] ? samples : 0; k < samples + (job.open.ring_shines ? ring_directions : 0); k++) {
             const int at = k < samples ? hemisphere_leave_base(&paths.rays, &base, (k + u0) / samples, turn)
                                        : leave_to_ring(&paths, hits, i, &job, k - samples, u0, v0);
             v2_turn(turn, golden_turn);
             if (at < 0) continue;
-            if (!hits->entity[i] && !ray_may_meet(scene, &paths.rays, at, reach_m, close, closes)) {
+            if (!hits->entity[i] && !ray_may_meet(scene, &paths.rays, at, near->reach_m, close, closes)) {
                 paths.rays.count = at; /* would contribute nothing */
                 continue;
             }
@@ -371,7 +372,7 @@ void hemisphere_change(HemisphereChange *out, const HemisphereScene *scene, cons
         }
     }
     if (paths.rays.count > 0) follow_change(sum, &paths, &job, NULL);
-    if (notes) sky_notes_keep(notes, hits, key, samples, reach_m, known);
+    if (notes) sky_notes_keep(notes, hits, key, samples, near->reach_m, known);
     for (int i = 0; i < hits->count; i++) {
         const Change *s = &sum[i];
         out[i] = (HemisphereChange){.blocked = (float)s->blocked / (float)samples,

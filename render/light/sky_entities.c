@@ -211,9 +211,14 @@ static void ask_points(const SkyVisibility *v, SkyWorker *w, int task)
         sky_box_grow(box, places, to);
     }
     if (places->count == 0) return;
-    const int listed = sky_list_near(w, v, box, paths_m, false);
-    hemisphere_change(w->change, scene, places, v->scene.air_bands, grid_directions, look_m, w->near_reach_m, w->key,
-                      w->near, listed, w->notes, &unused);
+    const int            listed = sky_list_near(w, v, box, paths_m, false);
+    const HemisphereNear near = {.bands = v->scene.air_bands,
+                                 .samples = grid_directions,
+                                 .reach_m = look_m,
+                                 .listed = listed,
+                                 .list = w->near,
+                                 .list_reach_m = w->near_reach_m};
+    hemisphere_change(w->change, scene, places, &near, w->key, w->notes, &unused);
     for (int k = 0; k < places->count; k++) {
         const double *centre_enu = visibility_posed(scene->visibility, index)->centre_enu;
         SkyAnswer     found;

@@ -171,7 +171,7 @@ void sky_kept_size(size_t out[2], SkyKept *kept)
     atomic_flag_clear(&kept->busy);
 }
 
-/* Where a point is, or the free place for it. The table must have one. */
+/* Finds the slot that holds a point, or the free one for it; the table must have one of the two. */
 static SkyPoint **place_of(const SkyKept *kept, uint64_t key, const double p_enu[3], const float n_enu[3], int samples)
 {
     for (uint64_t at = point_hash(key, p_enu, n_enu, samples);; at++) {

@@ -1,5 +1,5 @@
-/* render/light/sky_visibility.c: see sky_visibility.h. Sample points on the ground about a hit, refinement, and the
- * cache of points. */
+/* render/light/sky_visibility.c: sample points on the ground about a hit, their refinement, and the cache that keeps
+ * them (sky_visibility.h). */
 #include "render/light/sky_visibility_private.h"
 
 #include "render/light/optical.h"
@@ -190,8 +190,13 @@ static void ask_ground(SkyWorker *w, const SkyVisibility *v, const int *slots, i
         w->key[i] = w->slot[slots[i]].key;
         place_ground(places, i, v, w->key[i]);
     }
-    hemisphere_change(w->change, &v->scene.gather, places, v->scene.air_bands, ground_directions, look_m,
-                      w->near_reach_m, w->key, list, listed, w->notes, &unused);
+    const HemisphereNear near = {.bands = v->scene.air_bands,
+                                 .samples = ground_directions,
+                                 .reach_m = look_m,
+                                 .listed = listed,
+                                 .list = list,
+                                 .list_reach_m = w->near_reach_m};
+    hemisphere_change(w->change, &v->scene.gather, places, &near, w->key, w->notes, &unused);
     for (int i = 0; i < count; i++) {
         SkySlot     *s = &w->slot[slots[i]];
         const double n_enu[3] = {places->n_enu[0][i], places->n_enu[1][i], places->n_enu[2][i]};

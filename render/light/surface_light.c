@@ -1,5 +1,5 @@
-/* render/light/surface_light.c: see surface_light.h. The formulas and their reasons are in optical.c, thermal.c and
- * materials.c; here are forms of them that are accurate in float. */
+/* render/light/surface_light.c: radiance of ground and parts, eight hits at a time (surface_light.h). The formulas and
+ * their reasons are in optical.c, thermal.c and materials.c; here are forms of them that are accurate in float. */
 #include "render/light/surface_light.h"
 
 #include "render/light/optical.h"

@@ -14,7 +14,7 @@
 
 /* ---- temperature -------------------------------------------------------------------------- */
 
-/* Of the patches about the place; as warm as the air where none are known. */
+/* Temperature of a part at a hit, from the patches about it; that of the air where no patch is known. */
 static double part_k(const PartTemps *parts, double air_k, const Hits *hits, int i)
 {
     const double n_enu[3] = {(double)hits->n_geo[0][i], (double)hits->n_geo[1][i], (double)hits->n_geo[2][i]};
@@ -38,7 +38,8 @@ static F32x8 air_k8(const Air *air, const Hits *hits, int first)
     return f32x8_lerp(low, high, at - f32x8_of_ints(node)) + f32x8_set(air->light.weather.air_temp_k);
 }
 
-/* Leaves by the sun of now, wood by that of the day (air->heat; NULL: as the air). */
+/* Temperature of a plant at a hit: a leaf follows the sun of the moment, wood the sun of the day (air->heat; where that
+ * is NULL, wood is as warm as the air). */
 static double plant_k(const Air *air, const Material *m, int material, double air_k, const Hits *hits, int i,
                       const float *sun)
 {
@@ -50,11 +51,11 @@ static double plant_k(const Air *air, const Material *m, int material, double ai
            air->light.weather.air_temp_k;
 }
 
-/* Ground at the listed hits, of which temp_k holds that of the air; with the class's noise in kelvins
- * (etc/ground_detail.csv), twice that of the night where the sun has lifted it by 16 K, an estimate. The noise stands
- * for what differs within a class: moisture, cover, reflectance. Darkness is therefore taken from the photograph alone,
- * which shows what the noise does not contain: half of its relative brightness becomes relative absorptance (a guess),
- * within 0.6 .. 1.4. Snow is no warmer than it melts, the sea no colder than it freezes. */
+/* Replaces the air temperature that temp_k holds at the listed hits by that of the ground; with the class's noise in
+ * kelvins (etc/ground_detail.csv), twice that of the night where the sun has lifted it by 16 K, an estimate. The noise
+ * stands for what differs within a class: moisture, cover, reflectance. Darkness is therefore taken from the photograph
+ * alone, which shows what the noise does not contain: half of its relative brightness becomes relative absorptance (a
+ * guess), within 0.6 .. 1.4. Snow is no warmer than it melts, the sea no colder than it freezes. */
 static void grounds_k(float *temp_k, const Air *air, const Hits *hits, const int *list, int count, const float *photo,
                       const float *warmth_k)
 {

@@ -140,12 +140,19 @@ typedef struct EffectScene {
     SmokeVolume *volume; /* sorted by range */
 } EffectScene;
 
-/* Volumes inside the view frustum, with the air between them and the eye. hidden: the snapshot index of the host,
- * whose own smoke its eye does not see, as it does not see its own parts (a missile's reported and interpolated
- * positions differ by more than its length at launch, and its trail must not appear ahead of its nose); -1: none.
- * bands: 1 << band of smoke.h that will be requested. ground_rho: of the lit ground below, by optical
- * channel. No puffs: count 0, and nothing is done. */
-Status smoke_effects_scene(EffectScene *out, const Snapshot *snapshot, int hidden, const LocalFrame *frame,
-                           const View *view, const Air *air, const float *ground_rho, unsigned bands, Arena *arena);
+/* How the smoke of a snapshot is seen. */
+typedef struct EffectView {
+    const LocalFrame *frame;
+    const View       *view;
+    const float      *ground_rho; /* of the lit ground below, by optical channel */
+    unsigned          bands;      /* 1 << band of smoke.h that will be requested */
+    int               hidden; /* snapshot index of the host, -1: none. Its eye does not see its own smoke, as it does
+                               * not see its own parts: a missile's reported and interpolated positions differ by
+                               * more than its length at launch, and its trail must not appear ahead of its nose */
+} EffectView;
+
+/* Finds the volumes inside the view frustum, and lights them. No puffs: count 0, and nothing is done. */
+Status smoke_effects_scene(EffectScene *out, const Snapshot *snapshot, const EffectView *seen, const Air *air,
+                           Arena *arena);
 
 #endif

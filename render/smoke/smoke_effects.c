@@ -178,9 +178,11 @@ static int keep_visible(Placed *placed, int count, unsigned bands)
     return kept;
 }
 
-Status smoke_effects_scene(EffectScene *out, const Snapshot *snapshot, int hidden, const LocalFrame *frame,
-                           const View *view, const Air *air, const float *ground_rho, unsigned bands, Arena *arena)
+Status smoke_effects_scene(EffectScene *out, const Snapshot *snapshot, const EffectView *seen, const Air *air,
+                           Arena *arena)
 {
+    const View    *view = seen->view;
+    const unsigned bands = seen->bands;
     *out = (EffectScene){0};
     if (snapshot->puff_count == 0 || !snapshot->effect_table || bands == 0) return STATUS_OK;
     Placed *placed = arena_alloc(arena, (size_t)snapshot->puff_count, sizeof *placed);
@@ -191,8 +193,8 @@ Status smoke_effects_scene(EffectScene *out, const Snapshot *snapshot, int hidde
         const EffectPuff  *puff = &snapshot->puff[i];
         const EffectModel *law = &snapshot->effect_table->law[puff->kind];
         EffectVolume       volume;
-        if (hidden >= 0 && snapshot_owns_puff(snapshot, hidden, puff)) continue;
-        if (!effect_volume(&volume, snapshot->effect_table, puff, &air->light.weather, frame)) continue;
+        if (seen->hidden >= 0 && snapshot_owns_puff(snapshot, seen->hidden, puff)) continue;
+        if (!effect_volume(&volume, snapshot->effect_table, puff, &air->light.weather, seen->frame)) continue;
         if (!may_matter(view, &volume)) continue;
 
         SmokeVolume *v = &placed[count].volume;
@@ -225,7 +227,7 @@ Status smoke_effects_scene(EffectScene *out, const Snapshot *snapshot, int hidde
     Status status = add_gas(placed, count, bands, view->p_enu[2], arena);
     if (status != STATUS_OK) return status;
     count = keep_visible(placed, count, bands);
-    status = light_volumes(placed, count, view, air, ground_rho, bands, arena);
+    status = light_volumes(placed, count, view, air, seen->ground_rho, bands, arena);
     if (status != STATUS_OK) return status;
     qsort(placed, (size_t)count, sizeof *placed, by_range);
     SmokeVolume *volume = arena_alloc(arena, (size_t)count + 1, sizeof *volume);

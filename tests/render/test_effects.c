@@ -106,8 +106,11 @@ static void boresight(double transmittance[effect_band_count], double added[effe
 
     arena_reset(arena);
     const float ground_rho[optical_channel_count] = {0};
-    CHECK(smoke_effects_scene(&scene, &snapshot, -1, &world.frame, &view, air, ground_rho, all_bands, arena) ==
-          STATUS_OK);
+    CHECK(smoke_effects_scene(
+              &scene, &snapshot,
+              &(EffectView){
+                  .frame = &world.frame, .view = &view, .ground_rho = ground_rho, .bands = all_bands, .hidden = -1},
+              air, arena) == STATUS_OK);
     CHECK(scene.count == 1);
     scene.volume[0].billow = 0;
     rays.count = 1;
@@ -362,8 +365,13 @@ static void a_host_does_not_see_its_own(void **state)
         for (int k = 0; k < 3; k++) {
             EffectScene scene;
             arena_reset(arena);
-            CHECK(smoke_effects_scene(&scene, &snapshot, seen_by[k], &world.frame, &view, &air, ground_rho, all_bands,
-                                      arena) == STATUS_OK);
+            CHECK(smoke_effects_scene(&scene, &snapshot,
+                                      &(EffectView){.frame = &world.frame,
+                                                    .view = &view,
+                                                    .ground_rho = ground_rho,
+                                                    .bands = all_bands,
+                                                    .hidden = seen_by[k]},
+                                      &air, arena) == STATUS_OK);
             CHECK(scene.count == (puff.owner && seen_by[k] == 0 ? 0 : 1));
         }
         if (puff.owner) break;

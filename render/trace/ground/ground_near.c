@@ -197,7 +197,7 @@ static inline void cell(Rays4 *r, const GroundLevel *g)
     leave(r);
 }
 
-/* From the place to the cell or node of level k there. */
+/* Enters the cell or node of level k that contains the ray's place. */
 static inline void enter(Rays4 *r, const GroundLevel *g, int k)
 {
     const F64x4 per_size = f64x4_set(1.0 / (1 << k)), t = f64x4_select(r->on, r->t_m, f64x4_set(0));
@@ -205,7 +205,7 @@ static inline void enter(Rays4 *r, const GroundLevel *g, int k)
     r->j = f64x4_and(r->on, f64x4_floor(cell_at(r->v0, r->dv, r->per_dv, t, f64x4_set(g->cells_y - 1)) * per_size));
 }
 
-/* From its position to the node so many levels above it. */
+/* Moves the ray from its cell to the node that lies so many levels above. */
 static inline void ascend(Rays4 *r, int levels)
 {
     const F64x4 per_size = f64x4_set(1.0 / (1 << levels));

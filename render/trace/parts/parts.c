@@ -130,7 +130,7 @@ static void outermost_first(NodeMesh *mesh)
     }
 }
 
-/* In the order in which triangles come to them, so that a block's lie close together. */
+/* Lists the corners in the order in which triangles use them, so that those of a block lie close together. */
 static Status list_corners(NodeMesh *mesh)
 {
     const Model *model = mesh->model;

@@ -33,7 +33,7 @@ typedef struct ListRay {
     PlantFrame                 kept[frames_kept]; /* of plants that earlier rays met */
 } ListRay;
 
-/* The same in the axes of a prototype, about the middle of its box, from where it enters that. */
+/* The ray in the axes of a prototype, about the middle of its box, beginning where it enters that box. */
 typedef struct QuadRay {
     struct RTCIntersectContext base;
     const ShapeScene          *shape;
@@ -100,7 +100,7 @@ static double reach_along(const ShapeScene *shape, const double along[3])
     return across * (mix + 1e-4) + fmax(along[2] * up, along[2] * down);
 }
 
-/* The same by the shape's box: cheaper. */
+/* An upper bound of the same reach from the shape's box, which is cheaper. */
 static double box_along(const ShapeScene *shape, const double along[3])
 {
     double reach = 0;
@@ -137,7 +137,7 @@ void plant_box(const struct RTCBoundsFunctionArguments *a)
     }
 }
 
-/* As to_prototype, to the same bits. */
+/* Does what to_prototype does, to the same bits. */
 static inline F64x4 turned(const PlantFrame *stands, double x, double y, double z)
 {
     return (stands->column[0] * f64x4_set(x) + stands->column[1] * f64x4_set(y) + stands->column[2] * f64x4_set(z)) *

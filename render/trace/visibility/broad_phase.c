@@ -172,7 +172,7 @@ static int compare_items(const void *a, const void *b)
     return (p > q) - (p < q);
 }
 
-/* By a bitmap of their range where that is short enough. */
+/* Sorts the list, by a bitmap of the range of its items where that is short enough. */
 static void sort_items(int *list, int count)
 {
     uint64_t bitmap[bitmap_bits / 64];

@@ -12,7 +12,7 @@ static void place_entity(double p_enu[3], double r_enu_from_body[9], const Visib
     m3_tmul(r_enu_from_body, v->frame->r_ecef_from_enu, e->r_ecef_from_body);
 }
 
-/* One thread at a time. NULL: no memory. */
+/* Poses an entity; only one thread at a time may call it. NULL: no memory. */
 static const PosedEntity *pose_entity(const Visibility *v, int k)
 {
     const SnapshotEntity *e = &v->snapshot->entity[k];
