@@ -4,7 +4,7 @@
 #define ENTITIES_CATALOG_CATALOG_H
 
 #include "dis/pdu/pdu.h"
-#include "entities/catalog/model_size.h"
+#include "entities/catalog/model_size_private.h"
 #include "entities/models/model.h"
 
 /* What the sender's position refers to. */

@@ -4,7 +4,7 @@
 #define ENTITIES_CATALOG_MODEL_INFO_H
 
 #include "entities/catalog/catalog.h"
-#include "entities/catalog/model_size.h"
+#include "entities/catalog/model_size_private.h"
 #include "entities/import/model_import.h"
 
 /* A model and what is known about it. */

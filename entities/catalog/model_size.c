@@ -1,7 +1,7 @@
 /* entities/catalog/model_size.c: lengths of things, from the catalog and the built-in shapes; a model's size against
  * what is expected, under other axes and units. */
 
-#include "entities/catalog/model_size.h"
+#include "entities/catalog/model_size_private.h"
 #include "entities/shapes/parametric.h"
 
 #include <ctype.h>

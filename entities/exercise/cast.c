@@ -1,5 +1,5 @@
 /* entities/exercise/cast.c: poses of all entities. Their creation: cast_entities.c; missiles: cast_shots.c. */
-#include "entities/exercise/cast.h"
+#include "entities/exercise/cast_private.h"
 
 #include "dis/pdu/pdu.h"
 

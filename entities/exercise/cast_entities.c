@@ -1,6 +1,6 @@
 /* entities/exercise/cast_entities.c: from a scenario to its entities (Cast): types, routes, formations, joints, then
  * the shots. */
-#include "entities/exercise/cast.h"
+#include "entities/exercise/cast_private.h"
 
 #include "dis/pdu/pdu.h"
 #include "entities/catalog/catalog.h"

@@ -1,6 +1,6 @@
 /* entities/exercise/cast_ground.c: the ground of an exercise, from files or synthetic, and the routes over it. */
 
-#include "entities/exercise/cast.h"
+#include "entities/exercise/cast_private.h"
 #include "terrain/from_files/elevation_import.h"
 #include "terrain/store/store.h"
 

@@ -2,7 +2,7 @@
  *
  * The path is the straight line from launch to impact with loft and weave, both zero at either end. Motion along the
  * line: launch speed, a motor with decaying thrust, and a constant drag. */
-#include "entities/exercise/cast.h"
+#include "entities/exercise/cast_private.h"
 
 #include "dis/pdu/decode.h"
 

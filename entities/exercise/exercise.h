@@ -11,7 +11,7 @@
 #ifndef ENTITIES_EXERCISE_EXERCISE_H
 #define ENTITIES_EXERCISE_EXERCISE_H
 
-#include "entities/exercise/cast.h"
+#include "entities/exercise/cast_private.h"
 
 /* One datagram at exercise time t_s; times do not decrease. False: stop. */
 typedef bool ExerciseSink(void *user, double t_s, const uint8_t *bytes, size_t octets);

@@ -1,6 +1,6 @@
 /* entities/import/assimp.c: files that assimp reads, in the reader's process. */
 
-#include "entities/import/reader.h"
+#include "entities/import/reader_private.h"
 
 #include <assimp/cfileio.h>
 #include <assimp/cimport.h>

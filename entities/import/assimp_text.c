@@ -1,7 +1,7 @@
 /* entities/import/assimp_text.c: texts that assimp reads: OBJ files in the forms that it understands, and the units of
  * length that it does not hand on. */
 
-#include "entities/import/reader.h"
+#include "entities/import/reader_private.h"
 
 #include <ctype.h>
 #include <stdlib.h>

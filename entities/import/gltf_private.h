@@ -3,7 +3,7 @@
 #ifndef ENTITIES_IMPORT_GLTF_PRIVATE_H
 #define ENTITIES_IMPORT_GLTF_PRIVATE_H
 
-#include "entities/import/reader.h"
+#include "entities/import/reader_private.h"
 
 #include <jansson.h>
 

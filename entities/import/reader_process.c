@@ -2,7 +2,7 @@
  *
  * Readers have crashed on broken files often enough: they run in a child, which hands the flat scene back in memory
  * that both have: header, then arrays. The result is validated like untrusted input. */
-#include "entities/import/reader.h"
+#include "entities/import/reader_private.h"
 #include "pitviper_confine.h"
 #include "pitviper_file.h"
 

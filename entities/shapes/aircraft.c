@@ -12,7 +12,7 @@
  * landing gear (3072, position). All turn right-handed about body y and z: elevation up takes a trailing edge down,
  * rudder azimuth takes its trailing edge to the left. */
 #include "entities/shapes/parametric.h"
-#include "entities/shapes/parts.h"
+#include "entities/shapes/parts_private.h"
 
 static const double half_length_m = 15.06 / 2, half_span_m = 9.144 / 2, half_rails_m = 9.45 / 2, height_m = 5.09;
 static const double centre_chord_m = 5.04, tip_chord_m = 1.056, sweep_rad = 40 * rad_per_deg;

@@ -14,7 +14,7 @@
  * The base is the ground under the wheels. Where the gear folds (3072 position, as the fighter's) it is up at rest, so
  * the lowest point at rest is the belly or an engine. Propellers turn while the aircraft runs. */
 #include "entities/shapes/parametric.h"
-#include "entities/shapes/parts.h"
+#include "entities/shapes/parts_private.h"
 
 #include <stdio.h>
 

@@ -10,7 +10,7 @@
  * Articulated: launcher (4096 azimuth, 4736 elevation), turret (4096 azimuth) and gun (4416 elevation); gun of the
  * towed howitzer and tube of the mortar (4096 azimuth, 4416 elevation). Wheels roll. */
 #include "entities/shapes/parametric.h"
-#include "entities/shapes/parts.h"
+#include "entities/shapes/parts_private.h"
 
 static int turning(MeshBuilder *b, const char *name, int parent, double x, double h_from_parent, uint32_t dis_class)
 {

@@ -1,6 +1,6 @@
 /* entities/shapes/decoys.c: decoys: an inflatable tank, a flare, a corner reflector. */
 #include "entities/shapes/parametric.h"
-#include "entities/shapes/parts.h"
+#include "entities/shapes/parts_private.h"
 
 /* ---- inflatable tank -------------------------------------------------------------------------- */
 

@@ -11,7 +11,7 @@
  * The base is the lowest point, as of every model; the body's axis lies along x. */
 
 #include "entities/shapes/parametric.h"
-#include "entities/shapes/parts.h"
+#include "entities/shapes/parts_private.h"
 
 typedef struct Fins {
     int    count;

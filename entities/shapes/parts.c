@@ -1,6 +1,6 @@
 /* entities/shapes/parts.c: wheels, tracks, guns and other shapes that several built-in models share. */
 
-#include "entities/shapes/parts.h"
+#include "entities/shapes/parts_private.h"
 
 #include <stdio.h>
 

@@ -6,7 +6,7 @@
  *
  * One rigid body: stance and weapon bits of a life form's appearance are not followed. */
 #include "entities/shapes/parametric.h"
-#include "entities/shapes/parts.h"
+#include "entities/shapes/parts_private.h"
 
 static const double stature_m = 1.745, sole_m = 0.025, height_m = 1.80;
 

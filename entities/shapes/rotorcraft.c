@@ -9,7 +9,7 @@
  *
  * At rest a blade lies forward, so the length is that over turning rotors. Rotors turn while the aircraft runs. */
 #include "entities/shapes/parametric.h"
-#include "entities/shapes/parts.h"
+#include "entities/shapes/parts_private.h"
 
 #include <stdio.h>
 

@@ -9,7 +9,7 @@
  * Articulated: gun turret (4096 azimuth), gun (4416 elevation), two small guns (5696 and 5728 azimuth, 6016 and 6048
  * elevation; left, right), radar (5376 azimuth; unreported it turns at 24 rpm while the ship runs). */
 #include "entities/shapes/parametric.h"
-#include "entities/shapes/parts.h"
+#include "entities/shapes/parts_private.h"
 
 #include <stdlib.h>
 

@@ -9,7 +9,7 @@
  * long, 1.6 m at the withers, estimate. */
 
 #include "entities/shapes/parametric.h"
-#include "entities/shapes/parts.h"
+#include "entities/shapes/parts_private.h"
 
 static void build_crates(MeshBuilder *b)
 {

@@ -1,6 +1,6 @@
 /* entities/shapes/tracked.c: tracked vehicles with a load: an infantry carrier and an air-defence launcher. */
 #include "entities/shapes/parametric.h"
-#include "entities/shapes/parts.h"
+#include "entities/shapes/parts_private.h"
 
 /* ---- infantry carrier ------------------------------------------------------------------------ */
 

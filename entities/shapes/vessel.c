@@ -9,7 +9,7 @@
  * The base is the waterline: z = 0 is the sea, and the hull reaches its draught below it. Superstructures are boxes and
  * the hull is a few sections of straight lines: good for a silhouette, not for lines. */
 #include "entities/shapes/parametric.h"
-#include "entities/shapes/parts.h"
+#include "entities/shapes/parts_private.h"
 
 /* One hull section: at x the half widths at keel, waterline and deck, and heights (the keel's negative). */
 typedef struct Section {

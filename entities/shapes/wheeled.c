@@ -14,7 +14,7 @@
  * Articulated: wheels roll; carrier_wheeled turret (4096 azimuth) and gun (4416 elevation); rocket_truck table (4096
  * azimuth) and tubes (4736 elevation). */
 #include "entities/shapes/parametric.h"
-#include "entities/shapes/parts.h"
+#include "entities/shapes/parts_private.h"
 
 static void lamps(MeshBuilder *b, double x, double y0, double y1, double low_m, double high_m)
 {

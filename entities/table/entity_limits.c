@@ -2,7 +2,7 @@
  * and of each tier a heap of senders by how many they have in it; token buckets of senders; a ring buffer of
  * tombstones. */
 
-#include "entities/table/entity_limits.h"
+#include "entities/table/entity_limits_private.h"
 #include "entities/table/entity_index.h"
 
 #include <stdlib.h>

@@ -1,5 +1,5 @@
 /* entities/table/entity_slots.c: slots of entities: found, made and ended; and which of them a full table keeps, by
- * their ranks (entity_limits.h) and the focus. */
+ * their ranks (entity_limits_private.h) and the focus. */
 #include "entities/table/entity_table_private.h"
 
 EntitySlot *entity_slot_find(const EntityTable *table, DisEntityId id)

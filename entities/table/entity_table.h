@@ -19,7 +19,7 @@ typedef struct EntityHandle {
 } EntityHandle;
 
 typedef struct EntityTableConfig {
-    int    capacity;              /* most entities at once; beyond it entities are evicted by entity_limits.h */
+    int    capacity;              /* most entities at once; beyond it entities are evicted by entity_limits_private.h */
     int    shown;                 /* most entities in a snapshot: those with reported positions nearest the focus */
     double timeout_s;             /* time-out of versions 5 and 6: 12 */
     double timeout_land_v7_s;     /* time-out of version 7 for entities with the long heartbeat (land, sea, life forms,

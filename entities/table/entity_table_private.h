@@ -8,7 +8,7 @@
 #include "entities/traces/effect_history.h"
 #include "entities/traces/ground_marks.h"
 #include "entities/table/entity_index.h"
-#include "entities/table/entity_limits.h"
+#include "entities/table/entity_limits_private.h"
 #include "entities/table/entity_table.h"
 #include "entities/table/snapshot.h"
 

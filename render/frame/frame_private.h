@@ -3,7 +3,7 @@
 #define RENDER_FRAME_FRAME_PRIVATE_H
 
 #include "render/frame/picture.h"
-#include "render/frame/shade.h"
+#include "render/frame/shade_private.h"
 #include "render/frame/world.h"
 #include "pitviper.h"
 

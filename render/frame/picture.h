@@ -83,7 +83,7 @@ typedef struct TargetPixels {
 enum { small_target_px = 16, small_target_long_px = 4 * small_target_px };
 
 /* The samples of a small target, for models that need the position of its light within a pixel: a detector behind
- * optics (sensor/detector/subpixel.h). The cells fill the box evenly, row by row; their radiance is that at the
+ * optics (sensor/detector/subpixel_private.h). The cells fill the box evenly, row by row; their radiance is that at the
  * aperture. */
 typedef struct SmallTarget {
     double        box_px[4];                   /* columns and rows from, to; may reach beyond the picture */

@@ -10,7 +10,7 @@
 
 /* Number of different positions along a row (or column) of a pixel over which an edge is averaged: n^2 for the
  * rotated grid of n x n rays that edges get. The footprint of a detector must not reduce it again
- * (sensor/detector/blur.h). */
+ * (sensor/detector/blur_private.h). */
 int render_places(int samples, int edge_samples);
 
 /* An entity whose model is -1 keeps its index in the snapshot and is not drawn: no pixel, no shadow, no echo. */

@@ -1,6 +1,6 @@
 /* render/frame/shade.c: rays to hits to radiance: one set of eye rays and one set of sun rays serve all requested
  * channels. */
-#include "render/frame/shade.h"
+#include "render/frame/shade_private.h"
 
 #include "render/light/optical.h"
 #include "render/light/thermal.h"

@@ -1,5 +1,5 @@
 /* render/heat/column.c: solves the heat conduction into layers, step by step (column.h). */
-#include "render/heat/column.h"
+#include "render/heat/column_private.h"
 
 Status column_create(Column *out, const ColumnLayer *layer, int layers, double first_m, double growth)
 {

@@ -1,7 +1,7 @@
 /* render/heat/ground_column.c: kinds of ground under the weather: their rows of etc/ground_heat.csv, their soil, their
  * balance. */
 
-#include "render/heat/ground_column.h"
+#include "render/heat/ground_column_private.h"
 
 Status ground_layers(Column *out, const GroundKind *kind, const GroundGrid *grid)
 {

@@ -3,7 +3,7 @@
 #ifndef RENDER_HEAT_HEAT_H
 #define RENDER_HEAT_HEAT_H
 
-#include "render/heat/ground_column.h"
+#include "render/heat/ground_column_private.h"
 #include "terrain/elevation/elevation.h"
 #include "entities/table/snapshot.h"
 #include "terrain/earth/geodesy.h"
@@ -57,11 +57,11 @@ double heat_branch_film_w_m2k(double radius_m, double wind_mps);
 
 /* Temperatures of the ground over an exercise: what stays of sun, shade and wind of the hours before.
  *
- * Columns. Each kind of ground is conduction in layers (ground_column.h) under the weather, for normals over the whole
- * upper hemisphere: in the open, in the shade of the direct sun, without any sun, and beneath something that hides the
- * sky. They advance on a fixed grid of time, step_s, from two days before the exercise, whatever frames are rendered:
- * temperatures at any time are straight lines between two times of the grid. A frame at a time before the last one
- * starts again from the beginning of the exercise.
+ * Columns. Each kind of ground is conduction in layers (ground_column_private.h) under the weather, for normals over
+ * the whole upper hemisphere: in the open, in the shade of the direct sun, without any sun, and beneath something that
+ * hides the sky. They advance on a fixed grid of time, step_s, from two days before the exercise, whatever frames are
+ * rendered: temperatures at any time are straight lines between two times of the grid. A frame at a time before the
+ * last one starts again from the beginning of the exercise.
  *
  * Shade of the hours before. A column's response to a loss of flux at a time in the past is that of a pulse of heat at
  * its surface now, computed backwards (conduction is its own adjoint), about the losses of that day. It gives a weight
@@ -200,11 +200,11 @@ double heat_shadow_cell_m(const ShadowMap *map);
  * gives kelvins by the kind's response, scaled as the shade of heat.h is: sun hidden all day, or all of the sky hidden,
  * are the columns that see none. A track was rubbed warm once, by a pulse of heat that the same response lets fade, and
  * lies loosened: some of the way to ploughed ground, for good. A burst burnt its ground but for the crater, which is
- * loose soil, and left heat. The exhaust of what stands warms the ground that it reaches (vehicle_load.h, in still air:
- * what reaches the ground does so within metres of the outlet, before a wind bends it): a flux by the film of its speed
- * (vehicle_heat.h) that falls as the ground warms, through the kind's response; ground that the sun has made warmer
- * than the gas is not cooled, and the gas' radiation is left out. Estimates: the loosened share (0.6 of tracks, 0.3 of
- * wheels), the burnt edge. */
+ * loose soil, and left heat. The exhaust of what stands warms the ground that it reaches (vehicle_load_private.h, in
+ * still air: what reaches the ground does so within metres of the outlet, before a wind bends it): a flux by the film
+ * of its speed (vehicle_heat.h) that falls as the ground warms, through the kind's response; ground that the sun has
+ * made warmer than the gas is not cooled, and the gas' radiation is left out. Estimates: the loosened share (0.6 of
+ * tracks, 0.3 of wheels), the burnt edge. */
 
 typedef struct MarkHeat MarkHeat;
 

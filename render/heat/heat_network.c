@@ -1,11 +1,11 @@
-/* render/heat/heat_network.c: steps a network of thermal nodes with SUNDIALS' ARKODE (heat_network.h).
+/* render/heat/heat_network.c: steps a network of thermal nodes with SUNDIALS' ARKODE (heat_network_private.h).
  *
  * The system that ARKODE sees: the nodes' temperatures, and one number more, the heat from outside over the sum of the
  * capacities. Every Runge-Kutta stage keeps the sum of C_i T_i less that heat, and so does every Newton iteration, as
  * its matrix does: energy is kept to rounding, whatever the error of the step. Held nodes have the equation T' = 0. */
-#include "render/heat/heat_network.h"
+#include "render/heat/heat_network_private.h"
 
-#include "render/heat/surface_flux.h"
+#include "render/heat/surface_flux_private.h"
 
 #include <arkode/arkode_arkstep.h>
 #include <assert.h>

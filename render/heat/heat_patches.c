@@ -2,7 +2,7 @@
  * parts and neighbours. */
 
 #include "render/heat/vehicle_heat.h"
-#include "render/heat/vehicle_load.h"
+#include "render/heat/vehicle_load_private.h"
 
 #include <pthread.h>
 #include <stdlib.h>

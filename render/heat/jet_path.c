@@ -1,5 +1,6 @@
-/* render/heat/jet_path.c: the path of an exhaust jet in the wind, and the boxes that contain it (vehicle_load.h). */
-#include "render/heat/vehicle_load.h"
+/* render/heat/jet_path.c: the path of an exhaust jet in the wind, and the boxes that contain it
+ * (vehicle_load_private.h). */
+#include "render/heat/vehicle_load_private.h"
 
 static const double along_share = 0.08, across_share = 0.6, gravity_mps2 = 9.80665, least_k = 1;
 static const double developed = 13; /* diameters from the outlet, after which a jet mixes evenly (Hill 1972) */

@@ -1,8 +1,8 @@
 /* render/heat/mark_heat.c: the heat that vehicles leave on the ground: where they stood, drove and burnt (heat.h). */
 #include "render/heat/heat.h"
 
-#include "render/heat/vehicle_load.h"
-#include "render/heat/surface_flux.h"
+#include "render/heat/vehicle_load_private.h"
+#include "render/heat/surface_flux_private.h"
 
 static const double cell_m = 32, least_sun = 0.1; /* lower suns cast no lasting shadow */
 static const double touches_m = 1.5;              /* of a mark's height over the ground that it belongs to */

@@ -1,6 +1,7 @@
-/* render/heat/surface_flux.c: the heat flux into a surface in the open, and its slope in temperature (surface_flux.h).
+/* render/heat/surface_flux.c: the heat flux into a surface in the open, and its slope in temperature
+ * (surface_flux_private.h).
  */
-#include "render/heat/surface_flux.h"
+#include "render/heat/surface_flux_private.h"
 
 #include "terrain/weather/weather.h"
 

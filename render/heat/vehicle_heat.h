@@ -6,7 +6,7 @@
 #include "entities/table/snapshot.h"
 #include "dis/pdu/pdu.h"
 #include "render/heat/given_heat.h"
-#include "render/heat/vehicle_load.h"
+#include "render/heat/vehicle_load_private.h"
 #include "render/trace/parts/parts.h"
 
 /* ---- patches --------------------------------------------------------------------------------- */
@@ -46,13 +46,13 @@ static inline double patch_set_temp_k(const PatchSet *set, const Snapshot *snaps
 /* Temperatures of entities over an exercise: what stays of their engine, motion, shots
  * and of the sun of the hours before.
  *
- * Each entity is a thermal network of the patches of its model (vehicle_load.h). Its state advances at ticks of
+ * Each entity is a thermal network of the patches of its model (vehicle_load_private.h). Its state advances at ticks of
  * exercise time, whatever frames are rendered: at once when its drives change, otherwise in steps that double from
  * first_step_s to step_s. Between two times of its own its patches lie on straight lines to what its present drives
  * lead to. So temperatures are a function of the log, the settings and the time.
  *
- * What a patch takes and gives: vehicle_load.h; what neighbours do to each other: vehicle_state.h. Within a tick all
- * that read another's temperatures read those of its beginning, so the order of work decides nothing.
+ * What a patch takes and gives: vehicle_load_private.h; what neighbours do to each other: vehicle_state_private.h.
+ * Within a tick all that read another's temperatures read those of its beginning, so the order of work decides nothing.
  *
  * Work is done in pieces, those that have waited longest first, and no more of it in any 0.1 s of exercise time than
  * window_us (vehicle_heat_private.h), but for what neighbours add to a piece: at most eight that are posed, four jets
@@ -94,7 +94,7 @@ typedef struct VehicleHeatWorld {
 
 typedef struct VehicleHeatCounters {
     uint64_t steps, begun, left_out;
-    uint64_t neighbours_left_out; /* beyond the numbers of vehicle_load.h, at each look for them */
+    uint64_t neighbours_left_out; /* beyond the numbers of vehicle_load_private.h, at each look for them */
     uint64_t failed;              /* steps that the solver gave up; the entity stays as it was */
     double   spent_s, longest_s;  /* wall clock; of the longest tick */
 } VehicleHeatCounters;

@@ -4,7 +4,7 @@
 #define RENDER_HEAT_VEHICLE_HEAT_PRIVATE_H
 
 #include "render/heat/vehicle_heat.h"
-#include "render/heat/vehicle_state.h"
+#include "render/heat/vehicle_state_private.h"
 
 /* An account of work in pieces: no more than a limit in any 0.1 s of exercise time, in
  * units that are the same on every machine.

@@ -1,7 +1,7 @@
-/* render/heat/vehicle_load.c: what heats and cools each node of a model at a moment (vehicle_load.h). */
-#include "render/heat/vehicle_load.h"
+/* render/heat/vehicle_load.c: what heats and cools each node of a model at a moment (vehicle_load_private.h). */
+#include "render/heat/vehicle_load_private.h"
 
-#include "render/heat/surface_flux.h"
+#include "render/heat/surface_flux_private.h"
 
 static const double leak_s = 25000;    /* engine that has stopped, and a cabin: to the air through its bay; estimate */
 static const double moving_mps = 0.3;  /* above the jitter of reports of a vehicle that stands */

@@ -1,8 +1,8 @@
-/* render/heat/vehicle_near.c: what neighbours do to the heat of an entity (vehicle_state.h). */
+/* render/heat/vehicle_near.c: what neighbours do to the heat of an entity (vehicle_state_private.h). */
 
-#include "render/heat/vehicle_state.h"
-#include "render/heat/surface_flux.h"
-#include "render/heat/vehicle_load.h"
+#include "render/heat/vehicle_state_private.h"
+#include "render/heat/surface_flux_private.h"
+#include "render/heat/vehicle_load_private.h"
 
 #include <stdlib.h>
 

@@ -1,5 +1,5 @@
 /* render/heat/vehicle_neighbours.c: who is near enough to an entity to matter to its heat. */
-#include "render/heat/vehicle_load.h"
+#include "render/heat/vehicle_load_private.h"
 
 static const double least_share = 0.005;  /* a quarter of one of the 48 rays of a patch */
 static const double seen_radii = 15;      /* beyond the entity's own, at which they fill less */

@@ -1,5 +1,6 @@
-/* render/heat/vehicle_shape.c: the thermal network of a model, made from its patches and parts (vehicle_load.h). */
-#include "render/heat/vehicle_load.h"
+/* render/heat/vehicle_shape.c: the thermal network of a model, made from its patches and parts
+ * (vehicle_load_private.h). */
+#include "render/heat/vehicle_load_private.h"
 
 #include <stdlib.h>
 

@@ -1,5 +1,5 @@
-/* render/heat/vehicle_state.c: keeps the temperatures of one entity from step to step (vehicle_state.h). */
-#include "render/heat/vehicle_state.h"
+/* render/heat/vehicle_state.c: keeps the temperatures of one entity from step to step (vehicle_state_private.h). */
+#include "render/heat/vehicle_state_private.h"
 
 #include <stdlib.h>
 

@@ -166,7 +166,7 @@ static const double view_most_lateral = 0.02; /* less than the margin of a lens 
 
 /* ---- axes of a camera, from its viewing direction and its up direction ----------------------- */
 
-static const double camera_vertical_rad = 2e-3; /* reason: sensor/node/session/seeker.h */
+static const double camera_vertical_rad = 2e-3; /* reason: sensor/node/session/seeker_private.h */
 
 bool view_near_vertical(const double d_enu[3]);
 

@@ -1,5 +1,5 @@
 /* sensor/detector/blur.c: modulation transfer in closed forms, and its application to a plane. */
-#include "sensor/detector/blur.h"
+#include "sensor/detector/blur_private.h"
 #include "sensor/detector/transform.h"
 
 #include <stdlib.h>

@@ -3,10 +3,10 @@
 
 #include "render/materials/planck.h"
 #include "sensor/detector/array_noise.h"
-#include "sensor/detector/blur.h"
-#include "sensor/detector/line_scan.h"
+#include "sensor/detector/blur_private.h"
+#include "sensor/detector/line_scan_private.h"
 #include "sensor/detector/display_values.h"
-#include "sensor/detector/subpixel.h"
+#include "sensor/detector/subpixel_private.h"
 
 #include <stdlib.h>
 

@@ -1,6 +1,6 @@
 /* sensor/detector/line_scan.c: time of each pixel of a scanned image, resampling in motion, noise along lines, and AC
  * coupling. */
-#include "sensor/detector/line_scan.h"
+#include "sensor/detector/line_scan_private.h"
 
 double line_scan_time_s(const LineScan *scan, int width, int height, double column_px, int row)
 {

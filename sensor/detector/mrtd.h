@@ -20,7 +20,7 @@
 #ifndef SENSOR_DETECTOR_MRTD_H
 #define SENSOR_DETECTOR_MRTD_H
 
-#include "sensor/detector/blur.h"
+#include "sensor/detector/blur_private.h"
 #include "sensor/detector/preset.h"
 
 typedef struct MrtdObserver {

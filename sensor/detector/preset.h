@@ -5,7 +5,7 @@
 #include "pitviper_channels.h"
 #include "render/scene/view.h"
 #include "sensor/detector/array_noise.h"
-#include "sensor/detector/line_scan.h"
+#include "sensor/detector/line_scan_private.h"
 #include "sensor/detector/photons.h"
 
 typedef struct SensorPreset {

@@ -1,7 +1,7 @@
 /* sensor/detector/subpixel.c: corrects small targets for their subpixel positions, from their cells. */
-#include "sensor/detector/subpixel.h"
+#include "sensor/detector/subpixel_private.h"
 
-#include "sensor/detector/blur.h"
+#include "sensor/detector/blur_private.h"
 #include "sensor/detector/transform.h"
 
 #include <assert.h>

@@ -7,7 +7,7 @@
 #define SENSOR_FRAME_FRAME_H
 
 #include "sensor/frame/frame_display.h"
-#include "sensor/frame/latency.h"
+#include "sensor/frame/latency_private.h"
 #include "sensor/frame/plane.h"
 #include "sensor/frame/records.h"
 #include "sensor/radar/radar_frame.h"

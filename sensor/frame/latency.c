@@ -1,5 +1,5 @@
 /* sensor/frame/latency.c: the latest frames' ledgers, and fine histograms of all, under one lock. */
-#include "sensor/frame/latency.h"
+#include "sensor/frame/latency_private.h"
 
 #include <pthread.h>
 #include <stdlib.h>

@@ -13,7 +13,7 @@
 #include "sensor/radar/radar_frame.h"
 #include "sensor/truth/truth.h"
 #include "sensor/frame/target_record.h"
-#include "sensor/frame/latency.h"
+#include "sensor/frame/latency_private.h"
 #include "sensor/truth/frame_error.h"
 #include "terrain/earth/sun.h"
 #include "terrain/woods/woods.h"

@@ -4,7 +4,7 @@
 #ifndef SENSOR_QUALITY_QUALITY_MEASURE_H
 #define SENSOR_QUALITY_QUALITY_MEASURE_H
 
-#include "sensor/quality/trial.h"
+#include "sensor/quality/trial_private.h"
 
 typedef struct QualityMeasure {
     Landscape  ground;

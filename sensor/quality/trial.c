@@ -1,5 +1,5 @@
 /* sensor/quality/trial.c: the scene of a measurement, and one frame of it with the time of each stage. */
-#include "sensor/quality/trial.h"
+#include "sensor/quality/trial_private.h"
 
 #include "entities/motion/dead_reckoning.h"
 #include "render/scene/view.h"

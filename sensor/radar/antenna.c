@@ -1,5 +1,5 @@
 /* sensor/radar/antenna.c: patterns in closed form, their widths, and directions from their ratios. */
-#include "sensor/radar/antenna.h"
+#include "sensor/radar/antenna_private.h"
 
 /* 2^m m! J_m(u) / u^m, m up to 4: sum of (-u^2 / 4)^k m! / (k! (m + k)!), whose terms are small about the main lobe. */
 static double lambda(int m, double u)

@@ -1,5 +1,5 @@
 /* sensor/radar/detect.c: thresholds of constant false alarms, detections between cells, and moving targets. */
-#include "sensor/radar/detect.h"
+#include "sensor/radar/detect_private.h"
 #include "render/scattering/scatter.h"
 
 #include <stdlib.h>

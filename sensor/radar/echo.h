@@ -19,7 +19,7 @@
 #ifndef SENSOR_RADAR_ECHO_H
 #define SENSOR_RADAR_ECHO_H
 
-#include "sensor/radar/interval.h"
+#include "sensor/radar/interval_private.h"
 
 /* One echo; its samples are given above. */
 typedef struct Echo {

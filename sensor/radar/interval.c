@@ -1,5 +1,5 @@
 /* sensor/radar/interval.c: waveforms; a receiver's errors; pulses compressed and transformed over the rows. */
-#include "sensor/radar/interval.h"
+#include "sensor/radar/interval_private.h"
 #include "render/scattering/scatter.h"
 #include "sensor/detector/transform.h"
 #include "render/scattering/paths/radar_path.h"

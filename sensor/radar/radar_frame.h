@@ -6,7 +6,7 @@
 #ifndef SENSOR_RADAR_RADAR_FRAME_H
 #define SENSOR_RADAR_RADAR_FRAME_H
 
-#include "sensor/radar/detect.h"
+#include "sensor/radar/detect_private.h"
 #include "sensor/radar/radar_preset.h"
 
 /* ---- the pictures of a sector ----------------------------------------------------------------------- */

@@ -2,8 +2,8 @@
 #ifndef SENSOR_RADAR_RADAR_PRESET_H
 #define SENSOR_RADAR_RADAR_PRESET_H
 
-#include "sensor/radar/antenna.h"
-#include "sensor/radar/interval.h"
+#include "sensor/radar/antenna_private.h"
+#include "sensor/radar/interval_private.h"
 
 typedef struct RadarPreset {
     char     name[32];

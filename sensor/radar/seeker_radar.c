@@ -3,7 +3,7 @@
 #include "sensor/radar/seeker_radar_private.h"
 #include "render/scattering/paths/attenuation.h"
 #include "render/scattering/paths/radar_path.h"
-#include "sensor/radar/detect.h"
+#include "sensor/radar/detect_private.h"
 
 #include <stdlib.h>
 

@@ -1,5 +1,5 @@
 /* sensor/radar/window.c: weights by their formulas, and figures of the response to a point. */
-#include "sensor/radar/window.h"
+#include "sensor/radar/window_private.h"
 
 #include "sensor/detector/transform.h"
 

@@ -1,5 +1,5 @@
 /* terrain/store/store.h: the terrain store: a disposable, versioned cache of terrain in one file, which is mapped
- * read-only. The file's layout: terrain/store/store_format.h.
+ * read-only. The file's layout: terrain/store/store_format_private.h.
  *
  * Writer. Levels coarse before fine, the rows of everything from south to north. The whole file is reserved at the
  * start, written under PATH.tmp, and renamed when it is complete: a full disk is an error before any work, and no half

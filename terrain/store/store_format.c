@@ -1,5 +1,5 @@
 /* terrain/store/store_format.c: where everything is in a terrain store, and what of a header can be believed. */
-#include "terrain/store/store_format.h"
+#include "terrain/store/store_format_private.h"
 
 #include "pitviper_file.h"
 #include "terrain/ground/landscape_parts.h"

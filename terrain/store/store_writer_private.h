@@ -5,7 +5,7 @@
 #ifndef TERRAIN_STORE_STORE_WRITER_PRIVATE_H
 #define TERRAIN_STORE_STORE_WRITER_PRIVATE_H
 
-#include "terrain/store/store_format.h"
+#include "terrain/store/store_format_private.h"
 
 /* Rows of one level that are not yet in tiles. */
 typedef struct PostRows {

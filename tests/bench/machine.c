@@ -1,7 +1,7 @@
 /* tests/bench/machine.c: the machine and the program of a run. */
 #include "tests/bench/bench_private.h"
 
-#include "entities/import/reader.h"
+#include "entities/import/reader_private.h"
 #include "sensor/publish/images/image_file.h"
 
 #include <gnu/libc-version.h>

@@ -1,7 +1,7 @@
 /* tests/entities/test_entity_eviction.c: which entities are kept when the table is full: against a list that is
  * searched from end to end, and in floods of invented entities. */
 #include "tests/entities/entity_fixture.h"
-#include "entities/table/entity_limits.h"
+#include "entities/table/entity_limits_private.h"
 
 /* ---- ranks against a plain list ------------------------------------------------------------- */
 
@@ -18,7 +18,7 @@ static Plain plain[slots];
 
 static int tier_of(const Plain *p) { return 2 * p->known + (p->class <= 4); }
 
-/* By the words of entity_limits.h alone. */
+/* By the words of entity_limits_private.h alone. */
 static int plain_worst(void)
 {
     int total[4] = {0}, tier = -1, most = 0, worst = -1;

@@ -2,7 +2,7 @@
  * add; and shots found among many. */
 #include "tests/entities/entity_fixture.h"
 #include "entities/survey/survey.h"
-#include "entities/table/entity_limits.h"
+#include "entities/table/entity_limits_private.h"
 
 #include <stdlib.h>
 

@@ -2,7 +2,7 @@
  * slope, banked turns, formations, shots that arrive; the ground of the plane against GeographicLib. */
 #include "tests/check.h"
 
-#include "entities/exercise/cast.h"
+#include "entities/exercise/cast_private.h"
 
 static Scenario scenario;
 

@@ -2,7 +2,7 @@
  * must be the one that was put in. */
 #include "tests/check.h"
 
-#include "entities/catalog/model_size.h"
+#include "entities/catalog/model_size_private.h"
 
 static const double sides_m[3] = {6.7, 3.1, 2.6};
 

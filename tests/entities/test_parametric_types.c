@@ -3,7 +3,7 @@
 #include "tests/entities/model_fixture.h"
 
 #include "entities/motion/articulation.h"
-#include "entities/shapes/parts.h"
+#include "entities/shapes/parts_private.h"
 
 /* ---- size ------------------------------------------------------------------------------------- */
 

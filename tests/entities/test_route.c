@@ -2,7 +2,7 @@
  * its derivatives are those that differences give. */
 #include "tests/check.h"
 
-#include "entities/exercise/cast.h"
+#include "entities/exercise/cast_private.h"
 
 static void straight_line(void **state)
 {

@@ -1,7 +1,7 @@
 /* Scenarios: what is wrong is refused in one line with file, line, key and range; nothing hostile takes long. */
 #include "tests/check.h"
 
-#include "entities/exercise/cast.h"
+#include "entities/exercise/cast_private.h"
 
 static Status read_text(Scenario *s, const char *text)
 {

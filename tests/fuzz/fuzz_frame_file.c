@@ -4,7 +4,7 @@
 #include "tests/fuzz/fuzz_seed.h"
 
 #include "sensor/verify/saved_frame/saved_frame.h"
-#include "sensor/verify/saved_frame/ground_cutout.h"
+#include "sensor/verify/saved_frame/ground_cutout_private.h"
 
 #include <stdlib.h>
 

@@ -1,7 +1,7 @@
 /* tests/fuzz/fuzz_gltf.c: any octets as a glTF file, text or binary. Without a fuzzer run_corpus.c drives it. */
 #include "tests/fuzz/fuzz_seed.h"
 
-#include "entities/import/reader.h"
+#include "entities/import/reader_private.h"
 
 #include <stdlib.h>
 

@@ -2,7 +2,7 @@
  * plain again nothing changes. Without a fuzzer run_corpus.c drives it. */
 #include "tests/fuzz/fuzz_seed.h"
 
-#include "entities/import/reader.h"
+#include "entities/import/reader_private.h"
 
 #include <stdlib.h>
 

@@ -2,7 +2,7 @@
  * Without a fuzzer run_corpus.c drives it. */
 #include "tests/fuzz/fuzz_seed.h"
 
-#include "terrain/store/store_format.h"
+#include "terrain/store/store_format_private.h"
 
 #include <stdlib.h>
 

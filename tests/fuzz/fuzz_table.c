@@ -12,7 +12,7 @@
 #include "render/materials/materials.h"
 #include "render/scattering/paths/attenuation.h"
 #include "render/scattering/signatures/given_signature.h"
-#include "render/scattering/clutter/clutter_table.h"
+#include "render/scattering/clutter/clutter_table_private.h"
 #include "render/scattering/paths/ground_bounce.h"
 #include "sensor/detector/preset.h"
 #include "sensor/radar/radar_preset.h"

@@ -84,7 +84,7 @@ def check_rooms(tree):
             elif not allowed(path, header):
                 yield f'{path}: {room_of(path)} may not include {header}'
             elif (header.endswith('_private.h') and os.path.dirname(header) != os.path.dirname(path)
-                  and not path.startswith(('tests/bench/', 'tests/scenes/'))):
+                  and not path.startswith('tests/')):
                 yield f'{path}: {header} is private to {os.path.dirname(header)}/'
 
 

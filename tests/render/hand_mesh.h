@@ -3,7 +3,7 @@
 #define TESTS_RENDER_HAND_MESH_H
 
 #include "tests/check.h"
-#include "render/scattering/field/wedges.h"
+#include "render/scattering/field/wedges_private.h"
 
 enum { most_vertices = 20000, most_triangles = 10000 };
 

@@ -4,7 +4,7 @@
 #ifndef TESTS_RENDER_SHADE_LIST_H
 #define TESTS_RENDER_SHADE_LIST_H
 
-#include "render/frame/shade.h"
+#include "render/frame/shade_private.h"
 
 #include <assert.h>
 

@@ -3,7 +3,7 @@
 #include "tests/check.h"
 
 #include "render/scattering/field/radar_model.h"
-#include "render/scattering/field/radar_target.h"
+#include "render/scattering/field/radar_target_private.h"
 
 static void a_sphere_says_its_chord(void **state)
 {

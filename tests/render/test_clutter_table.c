@@ -1,6 +1,6 @@
 /* The table of clutter: what it must hold, what it must refuse, and the forms its figures go into. labels: physics */
 #include "tests/check.h"
-#include "render/scattering/clutter/clutter_table.h"
+#include "render/scattering/clutter/clutter_table_private.h"
 
 static ClutterTable table;
 

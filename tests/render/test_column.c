@@ -2,7 +2,7 @@
  * loads at the default step, steps with the sub-steps that the solver takes at a jump, graded elements.
  * labels: physics */
 #include "tests/check.h"
-#include "render/heat/column.h"
+#include "render/heat/column_private.h"
 
 static const double day_s = 86400, step_s = 300, base_k = 300;
 

@@ -1,6 +1,6 @@
 /* Integrals along edges against quadrature; plates against integral-equation results (Austin RCS Benchmark Suite). */
 #include "tests/render/hand_mesh.h"
-#include "render/scattering/field/edge_field.h"
+#include "render/scattering/field/edge_field_private.h"
 
 static const double pi = 3.14159265358979323846, c_mps = 299792458;
 

@@ -2,7 +2,7 @@
  * (15 days of May 1998, bare moist soil). Weather is theirs, and what the soil is made of is looked up: no figure is
  * fitted to these days. labels: physics */
 #include "tests/check.h"
-#include "render/heat/ground_column.h"
+#include "render/heat/ground_column_private.h"
 
 enum { most_columns = 24, most_rows = 2000 };
 typedef struct Rows {

@@ -2,7 +2,7 @@
  * axis. labels: physics */
 #include "tests/check.h"
 
-#include "render/heat/vehicle_load.h"
+#include "render/heat/vehicle_load_private.h"
 
 static const double ahead[3] = {1, 0, 0}, origin[3] = {0, 0, 0}, still[3] = {0, 0, 0};
 

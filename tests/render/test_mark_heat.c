@@ -3,7 +3,7 @@
  * labels: physics */
 #include "tests/scenes/paper_day.h"
 
-#include "render/heat/vehicle_load.h"
+#include "render/heat/vehicle_load_private.h"
 #include "render/heat/heat.h"
 
 static GroundKinds kinds;

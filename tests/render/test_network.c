@@ -1,7 +1,7 @@
 /* Networks of thermal nodes, against closed forms (mpmath; Carslaw & Jaeger, Conduction of Heat in Solids, 1959) in one
  * call over the whole time; energy, memory of earlier steps, extremes. labels: physics */
 #include "tests/check.h"
-#include "render/heat/heat_network.h"
+#include "render/heat/heat_network_private.h"
 
 enum { most = 64 };
 

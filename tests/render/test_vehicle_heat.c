@@ -3,7 +3,7 @@
  * the past decides. labels: physics */
 #include "tests/render/vehicle_stage.h"
 
-#include "render/heat/surface_flux.h"
+#include "render/heat/surface_flux_private.h"
 
 static PlaceHeat weather;  /* at all times and places */
 static double    sun_up_s; /* exercise time from which its sun shines; Unix time of exercise time 0 is 0 */

@@ -4,8 +4,8 @@
 #include "tests/render/hand_models.h"
 #include "tests/render/vehicle_stage.h"
 
-#include "render/heat/surface_flux.h"
-#include "render/heat/vehicle_state.h"
+#include "render/heat/surface_flux_private.h"
+#include "render/heat/vehicle_state_private.h"
 
 static PlaceHeat weather; /* at all times and places */
 

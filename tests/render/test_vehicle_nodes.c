@@ -3,7 +3,7 @@
  * labels: physics */
 #include "tests/render/vehicle_stage.h"
 
-#include "render/heat/surface_flux.h"
+#include "render/heat/surface_flux_private.h"
 
 #include <sys/stat.h>
 #include <unistd.h>

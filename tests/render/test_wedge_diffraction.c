@@ -6,7 +6,7 @@
  * / x: q^v / v, with q = sqrt(p^2 + 1) - p. The sums are geometric series; for -1 < m < 1 they stand for their limit
  * without losses. labels: physics */
 #include "tests/check.h"
-#include "render/scattering/field/edge_field.h"
+#include "render/scattering/field/edge_field_private.h"
 
 static const double pi = 3.14159265358979323846;
 

@@ -4,7 +4,7 @@
 #ifndef TESTS_SCENES_PLATE_VEHICLE_H
 #define TESTS_SCENES_PLATE_VEHICLE_H
 
-#include "render/heat/heat_network.h"
+#include "render/heat/heat_network_private.h"
 
 enum { vehicle_most_nodes = 100, vehicle_flows = 3 }; /* links, and exchanges, a node */
 

@@ -4,7 +4,7 @@
 #define TESTS_SENSOR_ERROR_SCENES_H
 
 #include "entities/motion/dead_reckoning.h"
-#include "sensor/quality/trial.h"
+#include "sensor/quality/trial_private.h"
 #include "sensor/truth/frame_error.h"
 #include "tests/check.h"
 

@@ -5,7 +5,7 @@
 
 #include "tests/check.h"
 
-#include "sensor/quality/trial.h"
+#include "sensor/quality/trial_private.h"
 #include "terrain/ground/landscape.h"
 
 enum { most_entities = 24 };

@@ -4,7 +4,7 @@
 
 #include "tests/check.h"
 
-#include "sensor/quality/trial.h"
+#include "sensor/quality/trial_private.h"
 
 enum { frames = 3 };
 

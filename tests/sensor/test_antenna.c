@@ -2,7 +2,7 @@
  * monopulse. labels: physics */
 #include "tests/check.h"
 
-#include "sensor/radar/antenna.h"
+#include "sensor/radar/antenna_private.h"
 
 /* Skolnik's table of tapered circular apertures: half-power width in wavelengths over diameter, first side lobe,
  * relative gain; printed to three figures. */

@@ -1,7 +1,7 @@
 /* What of vehicles is seen between trees: the default frame against 12 x 12 rays in every pixel, which know neither
  * grids nor edges; one ray a pixel is told from it. labels: deep */
 #include "tests/scenes/woods_stand.h"
-#include "sensor/quality/trial.h"
+#include "sensor/quality/trial_private.h"
 #include "sensor/settings/config.h"
 #include "terrain/ground/landscape.h"
 #include "tests/check.h"

@@ -2,7 +2,7 @@
  * forms. labels: physics */
 #include "tests/check.h"
 
-#include "sensor/detector/blur.h"
+#include "sensor/detector/blur_private.h"
 
 enum { width = 200, height = 160 };
 static float        edge[width * height], out[width * height];

@@ -4,7 +4,7 @@
 #include "tests/render/hand_world.h"
 
 #include "sensor/detector/chain.h"
-#include "sensor/detector/blur.h"
+#include "sensor/detector/blur_private.h"
 
 enum { side_px = 48, places = 9 };
 static const double eye_enu[3] = {0, 0, 3000}, sun_enu[3] = {-0.6, 0, 0.8}, focal_px = 2250, still[2] = {0, 0};

@@ -2,7 +2,7 @@
  * targets that are found. labels: physics */
 #include "tests/check.h"
 
-#include "sensor/radar/detect.h"
+#include "sensor/radar/detect_private.h"
 
 /* Probability that cell averaging detects a target whose power is exponential with mean snr times that of the noise, in
  * one look (Swerling 1). */

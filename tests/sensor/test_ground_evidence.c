@@ -4,7 +4,7 @@
 
 #include "dis/pdu/pdu.h"
 #include "entities/table/contact.h"
-#include "sensor/node/choices/ground_evidence.h"
+#include "sensor/node/choices/ground_evidence_private.h"
 #include "tests/sensor/stood_exercise.h"
 
 static void gather(GroundEvidence *out, const Exercise *e)

@@ -3,7 +3,7 @@
 #include "tests/check.h"
 
 #include "sensor/publish/klv/consume_klv.h"
-#include "sensor/publish/klv/klv_writer.h"
+#include "sensor/publish/klv/klv_writer_private.h"
 
 static KlvWriter writer_on(uint8_t *octets, size_t room)
 {

@@ -5,7 +5,7 @@
 
 #include "sensor/publish/memory/detections.h"
 #include "sensor/frame/target_record.h"
-#include "sensor/publish/memory/memory_ring.h"
+#include "sensor/publish/memory/memory_ring_private.h"
 #include "sensor/settings/config.h"
 
 #include <arpa/inet.h>

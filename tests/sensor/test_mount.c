@@ -1,7 +1,7 @@
 /* Where the sensor sits on its host and which way it looks: sensor.mount*, by hand. labels: physics */
 #include "tests/sensor/eye_lab.h"
 
-#include "sensor/node/session/seeker.h"
+#include "sensor/node/session/seeker_private.h"
 
 static const DisEntityType tank = {1, 1, 225, 1, 1, 1, 0}, plane = {1, 2, 225, 1, 1, 1, 0};
 

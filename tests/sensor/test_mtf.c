@@ -2,7 +2,7 @@
  * are the closed forms of. labels: physics */
 #include "tests/check.h"
 
-#include "sensor/detector/blur.h"
+#include "sensor/detector/blur_private.h"
 
 /* Given to 12 digits; half a unit of the last, and as much for us. */
 static void aperture_has_its_published_values(void **state)

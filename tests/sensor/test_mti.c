@@ -3,7 +3,7 @@
 #include "tests/check.h"
 
 #include "sensor/radar/echo.h"
-#include "sensor/radar/detect.h"
+#include "sensor/radar/detect_private.h"
 
 enum { samples = 128, pulses = 256, all = samples * pulses, echoes = 12000 };
 static const double   light = 299792458.0;

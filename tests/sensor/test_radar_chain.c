@@ -3,9 +3,9 @@
 #include "tests/check.h"
 
 #include "render/scattering/paths/radar_path.h"
-#include "sensor/radar/detect.h"
+#include "sensor/radar/detect_private.h"
 #include "sensor/radar/echo.h"
-#include "sensor/radar/interval.h"
+#include "sensor/radar/interval_private.h"
 
 /* 94 GHz, 0.3 m of range, 64 pulses. */
 static const Waveform wave = {

@@ -5,7 +5,7 @@
 
 #include "sensor/radar/seeker_radar.h"
 
-#include "render/scattering/clutter/clutter_table.h"
+#include "render/scattering/clutter/clutter_table_private.h"
 #include "render/scattering/paths/attenuation.h"
 #include "render/scattering/clutter/volume_scatter.h"
 #include "render/scattering/paths/radar_path.h"

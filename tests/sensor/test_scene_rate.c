@@ -2,7 +2,7 @@
 #include "tests/check.h"
 
 #include "render/scene/view.h"
-#include "sensor/node/session/seeker.h"
+#include "sensor/node/session/seeker_private.h"
 
 /* Rotation by an angle about a unit axis, Rodrigues. */
 static void rotation(double r[9], const double axis[3], double angle_rad)

@@ -2,7 +2,7 @@
 #include "tests/check.h"
 
 #include "entities/motion/dead_reckoning.h"
-#include "sensor/node/session/seeker.h"
+#include "sensor/node/session/seeker_private.h"
 #include "terrain/earth/geodesy.h"
 #include "tests/sensor/attitude.h"
 

@@ -4,7 +4,7 @@
 
 #include "sensor/radar/seeker_radar.h"
 
-#include "render/scattering/clutter/clutter_table.h"
+#include "render/scattering/clutter/clutter_table_private.h"
 #include "render/scattering/paths/radar_path.h"
 
 static double      height_m = 250, aim_m = 900, reference_m = 900; /* of the axis; of the window */

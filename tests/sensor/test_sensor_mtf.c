@@ -3,7 +3,7 @@
 #include "tests/render/hand_world.h"
 
 #include "sensor/detector/chain.h"
-#include "sensor/detector/blur.h"
+#include "sensor/detector/blur_private.h"
 
 enum { wide_px = 256, high_px = 160, bins_per_px = 32 };
 static const double eye_enu[3] = {0, 0, 3000}, focal_px = 2250, slant_rad = 5 * rad_per_deg;

@@ -5,7 +5,7 @@
 #include "tests/check.h"
 
 #include "render/light/sky_visibility.h"
-#include "sensor/quality/trial.h"
+#include "sensor/quality/trial_private.h"
 #include "terrain/ground/landscape.h"
 
 enum { width = 56, height = 42 };

@@ -4,7 +4,7 @@
  * physics slow */
 #include "tests/check.h"
 
-#include "sensor/quality/trial.h"
+#include "sensor/quality/trial_private.h"
 #include "terrain/ground/landscape.h"
 
 enum { width = 160, height = 108, block_px = 5, reference_samples = 64 };

@@ -4,7 +4,7 @@
 
 #include "terrain/from_files/elevation_import.h"
 #include "terrain/ground/landscape_parts.h"
-#include "terrain/store/store_format.h"
+#include "terrain/store/store_format_private.h"
 
 #include <fcntl.h>
 #include <sys/stat.h>

@@ -7,8 +7,8 @@
 #include "sensor/settings/publish_choice.h"
 
 #ifdef PITVIPER_VIDEO
-#include "sensor/publish/video/video_encoder.h"
-#include "sensor/publish/video/video_encoder.h"
+#include "sensor/publish/video/video_encoder_private.h"
+#include "sensor/publish/video/video_encoder_private.h"
 
 #include <libavcodec/avcodec.h>
 

@@ -2,7 +2,7 @@
  * known on paper. labels: physics */
 #include "tests/check.h"
 
-#include "sensor/radar/window.h"
+#include "sensor/radar/window_private.h"
 
 /* data/radar/signal/windows_psf.csv: N = 256, SciPy's hann, hamming, taylor, chebwin, kaiser (sym = True). Its
  * widths are between samples 1 / 256 of a bin apart, as ours are. */

@@ -4,7 +4,7 @@
 
 #include "tests/check.h"
 
-#include "terrain/store/store_format.h"
+#include "terrain/store/store_format_private.h"
 
 /* Two levels: 769 x 641 posts of 1 m in 161 x 129 of 8 m; classes of 1 m and 8 m, a photograph of 1 m with a rim that
  * is not covered, canopy rasters of 4 m. */

@@ -7,7 +7,7 @@
  * first frames are not counted. Standard output is CSV, a frame a line, with the frame's own counters; lines with # say
  * what the count depends on, --about prints these alone. */
 #include "tests/scenes/woods_stand.h"
-#include "sensor/quality/trial.h"
+#include "sensor/quality/trial_private.h"
 #include "sensor/settings/config.h"
 #include "terrain/ground/landscape.h"
 

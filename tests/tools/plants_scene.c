@@ -8,7 +8,7 @@
  *     rays      origin, direction, range, kind of hit, plant's organ, then radiance of red, green, near infrared
  *               under the sun alone, and again under sun and sky with what plants scatter
  * and scene.txt: names and numbers of the light and the materials. */
-#include "render/frame/shade.h"
+#include "render/frame/shade_private.h"
 
 #include <stdio.h>
 #include <stdlib.h>

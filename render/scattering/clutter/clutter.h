@@ -18,7 +18,7 @@
 #ifndef RENDER_SCATTERING_CLUTTER_CLUTTER_H
 #define RENDER_SCATTERING_CLUTTER_CLUTTER_H
 
-#include "render/scattering/clutter/clutter_table.h"
+#include "render/scattering/clutter/clutter_table_private.h"
 #include "render/scattering/scatter.h"
 
 enum { clutter_levels = 16, clutter_still_terms = 3, clutter_terms = 7 };

@@ -1,6 +1,6 @@
 /* render/scattering/clutter/clutter_table.c: reads what the ground of each surface class sends back, and the forms
  * its figures go into. */
-#include "render/scattering/clutter/clutter_table.h"
+#include "render/scattering/clutter/clutter_table_private.h"
 
 static const struct {
     const char *name;

@@ -9,7 +9,7 @@
 #define RENDER_SCATTERING_CLUTTER_FOLIAGE_H
 
 #include "render/trace/plants/plants.h"
-#include "render/scattering/clutter/clutter_table.h"
+#include "render/scattering/clutter/clutter_table_private.h"
 #include "terrain/woods/woods.h"
 
 typedef struct Foliage Foliage;

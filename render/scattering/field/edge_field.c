@@ -14,7 +14,7 @@
  *
  * Physical optics is the same with N = 1: on a lit face (f < pi) w becomes g(x) = cot(x / 2N) / 2N - cot(x / 2) / 2,
  * which is regular at x = 0, where the boundaries are. H_z at the edge is 2 / N, for physical optics 2. */
-#include "render/scattering/field/edge_field.h"
+#include "render/scattering/field/edge_field_private.h"
 
 #include <assert.h>
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 /* render/scattering/field/edge_pairs.c: finds edges that face one another across a flat face, and what waves
  * between them add. */
-#include "render/scattering/field/edge_field.h"
+#include "render/scattering/field/edge_field_private.h"
 
 #include <assert.h>
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 /* render/scattering/field/flat_faces.c: the flat faces of a model, and which of them antennas see wholly. Triangles
  * are joined by the corners that they share. */
-#include "render/scattering/field/radar_target.h"
+#include "render/scattering/field/radar_target_private.h"
 
 #include <stdlib.h>
 

@@ -3,7 +3,7 @@
 #ifndef RENDER_SCATTERING_FIELD_RADAR_MODEL_H
 #define RENDER_SCATTERING_FIELD_RADAR_MODEL_H
 
-#include "render/scattering/field/radar_target.h"
+#include "render/scattering/field/radar_target_private.h"
 
 /* Stays where it was opened: the target points to the model. */
 typedef struct RadarModel {

@@ -1,5 +1,5 @@
 /* render/scattering/field/radar_target.c: prepares a target for radar rays. */
-#include "render/scattering/field/radar_target.h"
+#include "render/scattering/field/radar_target_private.h"
 
 #include <stdlib.h>
 

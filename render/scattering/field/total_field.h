@@ -8,7 +8,7 @@
 #define RENDER_SCATTERING_FIELD_TOTAL_FIELD_H
 
 #include "render/scattering/field/tubes.h"
-#include "render/scattering/field/edge_field.h"
+#include "render/scattering/field/edge_field_private.h"
 
 /* The frequencies first_hz + i step_hz of a sweep, i = 0 .. count - 1, and its antennas: NULL for those that the
  * field was traced with, else moved a little from them. */
@@ -43,9 +43,9 @@ typedef struct FrequencySweep {
  * For a look and its frequencies, not for signatures: those add up what lies in cells of a few wavelengths, and a
  * face is larger than a cell. Cut into pieces that small it would be as many as the tubes that it replaces.
  *
- * Polarisation, surfaces and S are those of tubes (currents_private.h, scatter.h); edge_field.h adds to either alike.
- * Against the transform of a triangle and a direct integral near a plate: tests/render/test_polygons.c.
- * Source: Gordon, IEEE Trans. Antennas Propag. 23(4), 590, 1975. */
+ * Polarisation, surfaces and S are those of tubes (currents_private.h, scatter.h); edge_field_private.h adds to either
+ * alike. Against the transform of a triangle and a direct integral near a plate: tests/render/test_polygons.c. Source:
+ * Gordon, IEEE Trans. Antennas Propag. 23(4), 590, 1975. */
 typedef struct Polygon {
     double   corner[3][3]; /* target frame, m; of a triangle */
     double   path_m[3];    /* two-way, at the corners */

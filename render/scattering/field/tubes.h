@@ -13,15 +13,15 @@
  * Tubes whose neighbours met something else are divided (tubes_split.c): the list then holds smaller ones from that
  * mirror on. Two grids of a tank at 10 GHz differ by -34 dB of its power, by -25 with splits 0 (test_tubes_split.c).
  *
- * Left out: diffraction at edges (edge_field.h), creeping waves, what passes through thin materials; currents on the
- * side that is turned away from the receiver, so forward scatter (bistatic angles beyond some 120 degrees) is not
- * computed.
+ * Left out: diffraction at edges (edge_field_private.h), creeping waves, what passes through thin materials; currents
+ * on the side that is turned away from the receiver, so forward scatter (bistatic angles beyond some 120 degrees) is
+ * not computed.
  *
  * Source: Ling, Chou & Lee, IEEE Trans. Antennas Propag. 37(2), 194, 1989; ray differentials: Igehy, SIGGRAPH 1999. */
 #ifndef RENDER_SCATTERING_FIELD_TUBES_H
 #define RENDER_SCATTERING_FIELD_TUBES_H
 
-#include "render/scattering/field/radar_target.h"
+#include "render/scattering/field/radar_target_private.h"
 
 enum { tubes_splits_most = 5, polygon_faces_few = 64 };
 

@@ -1,6 +1,6 @@
 /* render/scattering/field/wedges.c: finds the wedges of a triangle mesh. Corners are welded, faces sorted by edge,
  * straight pieces joined. */
-#include "render/scattering/field/wedges.h"
+#include "render/scattering/field/wedges_private.h"
 
 #include <assert.h>
 #include <stdlib.h>

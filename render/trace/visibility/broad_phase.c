@@ -1,5 +1,5 @@
 /* render/trace/visibility/broad_phase.c: a bounding-volume tree over spheres. */
-#include "render/trace/visibility/broad_phase.h"
+#include "render/trace/visibility/broad_phase_private.h"
 
 #include <immintrin.h>
 #include <stdlib.h>

@@ -56,9 +56,9 @@ static inline bool skips(unsigned off, Skip skip) { return !(off >> skip & 1); }
 
 /* ---- hits and shadows ------------------------------------------------------------------------ */
 
-/* One frame's world: a tree over the spheres of all entities (render/trace/visibility/broad_phase.h), and the nodes of
- * those that are needed. Posing costs transforms only; nothing is committed or kept between frames, so any number of
- * them may be alive and traced at once. */
+/* One frame's world: a tree over the spheres of all entities (render/trace/visibility/broad_phase_private.h), and the
+ * nodes of those that are needed. Posing costs transforms only; nothing is committed or kept between frames, so any
+ * number of them may be alive and traced at once. */
 typedef struct Visibility Visibility;
 
 typedef struct VisibilityCounters {

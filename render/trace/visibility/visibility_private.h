@@ -7,7 +7,7 @@
 
 #include "render/trace/ground/ground.h"
 #include "render/trace/parts/parts.h"
-#include "render/trace/visibility/broad_phase.h"
+#include "render/trace/visibility/broad_phase_private.h"
 #include "render/trace/visibility/visibility.h"
 
 /* Up to so many entities are tested one after the other, all rays of a block together; more are traversed by the

@@ -2,7 +2,7 @@
  * vehicle's day. */
 #include "sensor/commands/commands.h"
 
-#include "sensor/commands/heat/heat_day.h"
+#include "sensor/commands/heat/heat_day_private.h"
 #include "sensor/commands/overwrite.h"
 #include "sensor/publish/files/svg_plot.h"
 #include "sensor/settings/command_line.h"

@@ -1,6 +1,6 @@
 /* sensor/commands/heat/heat_day.c: a vehicle's day, step by step; its table, and its images from the south-east in
  * MWIR and LWIR. */
-#include "sensor/commands/heat/heat_day.h"
+#include "sensor/commands/heat/heat_day_private.h"
 
 #include "render/frame/world.h"
 #include "render/materials/planck.h"

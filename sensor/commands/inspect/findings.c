@@ -1,5 +1,5 @@
 /* sensor/commands/inspect/findings.c: one pass over a log: every PDU decoded once, rows by id. */
-#include "sensor/commands/inspect/findings.h"
+#include "sensor/commands/inspect/findings_private.h"
 
 #include "dis/capture/log.h"
 #include "dis/pdu/decode.h"

@@ -5,7 +5,7 @@
 #include "dis/pdu/decode.h"
 #include "dis/capture/log.h"
 #include "entities/catalog/catalog.h"
-#include "sensor/commands/inspect/findings.h"
+#include "sensor/commands/inspect/findings_private.h"
 #include "sensor/settings/command_line.h"
 #include "sensor/settings/config.h"
 #include "terrain/earth/geodesy.h"

@@ -70,7 +70,7 @@ typedef struct ChoiceBasis {
 typedef enum GroundContact { GROUND_CONTACT_NONE, GROUND_CONTACT_INCONSISTENT, GROUND_CONTACT_ALL } GroundContact;
 
 /* The ground: from terrain.store or the files of terrain.*, else synthetic terrain with its sea, fitted to the log (see
- * ground_evidence.h). contact: which entities are clamped to it (terrain.ground), later ones too. */
+ * ground_evidence_private.h). contact: which entities are clamped to it (terrain.ground), later ones too. */
 Status choice_ground(Landscape *out, GroundContact *contact, Choices *choices, const ChoiceBasis *basis,
                      const LocalFrame *frame);
 /* With terrain.store everything uses the store's own local frame. Changed sources of the store are imported again

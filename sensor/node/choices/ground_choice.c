@@ -3,7 +3,7 @@
 #include "sensor/node/choices/choices.h"
 
 #include "entities/table/contact.h"
-#include "sensor/node/choices/ground_evidence.h"
+#include "sensor/node/choices/ground_evidence_private.h"
 #include "terrain/elevation/raster.h"
 #include "terrain/import/terrain_import.h"
 #include "terrain/from_files/elevation_import.h"

@@ -1,5 +1,5 @@
 /* sensor/node/choices/ground_evidence.c: what the reports of an exercise imply about its ground and its sea. */
-#include "sensor/node/choices/ground_evidence.h"
+#include "sensor/node/choices/ground_evidence_private.h"
 
 #include "dis/pdu/pdu.h"
 #include "entities/table/contact.h"

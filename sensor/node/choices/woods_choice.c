@@ -4,7 +4,7 @@
 
 #include "dis/pdu/pdu.h"
 #include "dis/pdu/decode.h"
-#include "sensor/node/choices/ground_evidence.h"
+#include "sensor/node/choices/ground_evidence_private.h"
 
 #include <stdlib.h>
 

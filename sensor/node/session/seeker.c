@@ -1,5 +1,5 @@
 /* sensor/node/session/seeker.c: the sensor on its host: its mount, its gimbal, and how fast its image moves. */
-#include "sensor/node/session/seeker.h"
+#include "sensor/node/session/seeker_private.h"
 
 #include "dis/pdu/pdu.h"
 

@@ -2,7 +2,7 @@
 #include "sensor/node/session/session_private.h"
 
 #include "dis/pdu/pdu.h"
-#include "sensor/node/session/seeker.h"
+#include "sensor/node/session/seeker_private.h"
 
 #include <stdio.h>
 

@@ -4,7 +4,7 @@
 
 #include "render/frame/world.h"
 #include "sensor/frame/frame_world.h"
-#include "sensor/node/session/seeker.h"
+#include "sensor/node/session/seeker_private.h"
 #include "sensor/node/player/player.h"
 #include "sensor/node/session/session.h"
 #include "sensor/publish/consumers/consumers.h"

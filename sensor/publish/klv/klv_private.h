@@ -3,7 +3,7 @@
 #define SENSOR_PUBLISH_KLV_KLV_PRIVATE_H
 
 #include "sensor/publish/klv/klv.h"
-#include "sensor/publish/klv/klv_writer.h"
+#include "sensor/publish/klv/klv_writer_private.h"
 
 /* Names of sensors as they are in both local sets. */
 const char *klv_sensor_name(const KlvSource *source);

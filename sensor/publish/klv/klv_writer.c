@@ -1,5 +1,5 @@
 /* sensor/publish/klv/klv_writer.c: key, length, value into a bounded buffer. */
-#include "sensor/publish/klv/klv_writer.h"
+#include "sensor/publish/klv/klv_writer_private.h"
 
 void klv_put(KlvWriter *w, const void *octets, size_t count)
 {

@@ -2,7 +2,7 @@
  * in shared memory. */
 #include "sensor/publish/memory/consume_memory.h"
 #include "sensor/frame/target_record.h"
-#include "sensor/publish/memory/memory_ring.h"
+#include "sensor/publish/memory/memory_ring_private.h"
 
 #include <pitviper_memory.h>
 #include <stdlib.h>

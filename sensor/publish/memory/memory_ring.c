@@ -3,7 +3,7 @@
  * lives, and removed at the end.
  *
  * A name in use by a living process is refused; one that a killed process left behind is replaced. */
-#include "sensor/publish/memory/memory_ring.h"
+#include "sensor/publish/memory/memory_ring_private.h"
 
 #include <sys/types.h>
 #include <errno.h>

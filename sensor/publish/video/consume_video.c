@@ -4,8 +4,8 @@
 #include "sensor/frame/frame_display.h"
 #include "sensor/publish/files/frame_files.h"
 #include "sensor/publish/images/picture_text.h"
-#include "sensor/publish/video/video_encoder.h"
-#include "sensor/publish/video/video_output.h"
+#include "sensor/publish/video/video_encoder_private.h"
+#include "sensor/publish/video/video_output_private.h"
 
 #include <stdlib.h>
 

@@ -1,6 +1,6 @@
 /* sensor/publish/video/video_encoder.c: images to packets of compressed video, through libavcodec, whose functions
  * are loaded when first needed. */
-#include "sensor/publish/video/video_encoder.h"
+#include "sensor/publish/video/video_encoder_private.h"
 
 #include <libavcodec/avcodec.h>
 #include <libavutil/opt.h>

@@ -1,6 +1,6 @@
 /* sensor/publish/video/video_output.c: the outputs of an encoded video: a file, cut back to its last whole frame when
  * a write fails, or a stream over UDP. */
-#include "sensor/publish/video/video_output.h"
+#include "sensor/publish/video/video_output_private.h"
 #include "pitviper_output.h"
 
 #include <errno.h>

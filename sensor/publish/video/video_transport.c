@@ -1,7 +1,7 @@
 /* sensor/publish/video/video_transport.c: packets of video and KLV metadata into a container, through libavformat.
  *
  * av_write_frame, not the interleaving form: that would keep metadata back until the next frame. */
-#include "sensor/publish/video/video_output.h"
+#include "sensor/publish/video/video_output_private.h"
 
 #include <libavcodec/avcodec.h>
 #include <libavformat/avformat.h>

@@ -1,5 +1,5 @@
 /* sensor/verify/regress/case.c: reads case.yaml: its keys, default tolerances and checks. */
-#include "sensor/verify/regress/case.h"
+#include "sensor/verify/regress/case_private.h"
 
 #include <errno.h>
 #include <stdlib.h>
@@ -48,7 +48,7 @@ static const Setting keys[] = {
 static const SettingTable table = {
     .module = "regress", .row = keys, .count = sizeof keys / sizeof *keys, .all_keys = "`pitviper regress --keys`"};
 
-/* Below any significance for a user of the products, above the rounding of sensor/verify/regress/verdict.h: a
+/* Below any significance for a user of the products, above the rounding of sensor/verify/regress/verdict_private.h: a
  * value that crosses from one step to the next is still within. No allowance for threads, ISAs and builds, which give
  * the same bits (tests/system/test_determinism*.sh). */
 Case case_default(void)

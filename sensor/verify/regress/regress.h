@@ -1,5 +1,5 @@
 /* sensor/verify/regress/regress.h: the command `pitviper regress`: re-renders recorded exercises and compares them
- * with approved baselines. Format of a case: sensor/verify/regress/case.h. */
+ * with approved baselines. Format of a case: sensor/verify/regress/case_private.h. */
 #ifndef SENSOR_VERIFY_REGRESS_REGRESS_H
 #define SENSOR_VERIFY_REGRESS_REGRESS_H
 

@@ -3,7 +3,7 @@
 #ifndef SENSOR_VERIFY_REGRESS_REGRESS_PRIVATE_H
 #define SENSOR_VERIFY_REGRESS_REGRESS_PRIVATE_H
 
-#include "sensor/verify/regress/verdict.h"
+#include "sensor/verify/regress/verdict_private.h"
 
 /* ---- the result of a case, and its messages ------------------------------------------------------ */
 

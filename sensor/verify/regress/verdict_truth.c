@@ -1,5 +1,5 @@
 /* sensor/verify/regress/verdict_truth.c: fields of truth.jsonl and run.json, each by its own tolerance. */
-#include "sensor/verify/regress/verdict.h"
+#include "sensor/verify/regress/verdict_private.h"
 
 /* Tolerances by the last key of the path. Angles: the resolution of a seeker; what follows from pixels (number,
  * radiance): the tolerances of the planes. A field that is not listed may be added, but not removed or changed beyond

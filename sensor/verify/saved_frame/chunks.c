@@ -1,7 +1,7 @@
 /* sensor/verify/saved_frame/chunks.c: named chunks, each with its size and checksum: written to memory, and read from
  * it. */
 
-#include "sensor/verify/saved_frame/chunks.h"
+#include "sensor/verify/saved_frame/chunks_private.h"
 
 #include <stdlib.h>
 #include <zlib.h>

@@ -5,7 +5,7 @@
 
 #include "sensor/verify/saved_frame/saved_again.h"
 #include "sensor/verify/saved_frame/saved_scene.h"
-#include "sensor/verify/saved_frame/ground_cutout.h"
+#include "sensor/verify/saved_frame/ground_cutout_private.h"
 #include "sensor/frame/frame_world.h"
 
 #include <errno.h>

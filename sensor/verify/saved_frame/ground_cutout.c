@@ -1,5 +1,5 @@
 /* sensor/verify/saved_frame/ground_cutout.c: grids by tiles, of which those around given positions are kept. */
-#include "sensor/verify/saved_frame/ground_cutout.h"
+#include "sensor/verify/saved_frame/ground_cutout_private.h"
 
 #include <stdlib.h>
 

@@ -13,7 +13,7 @@
 #include "sensor/settings/tables_used.h"
 #include "sensor/truth/truth.h"
 #include "terrain/ground/landscape_parts.h"
-#include "sensor/verify/saved_frame/chunks.h"
+#include "sensor/verify/saved_frame/chunks_private.h"
 
 enum { saved_models_max = 4096, saved_entities_max = 1 << 20 };
 
@@ -68,7 +68,8 @@ typedef struct SavedFrame {
     SavedPlane    *plane;
 } SavedFrame;
 
-/* Writes the file's octets. kept: the part of terrain from files that is stored (ground_cutout.h); NULL: all of it. */
+/* Writes the file's octets. kept: the part of terrain from files that is stored (ground_cutout_private.h); NULL: all of
+ * it. */
 struct GroundCutout;
 Status saved_frame_pack(ByteSink *out, const SavedFrame *file, const struct GroundCutout *kept);
 /* From octets that may be hostile: every count bounded, every value in its range, so that world and render() can use

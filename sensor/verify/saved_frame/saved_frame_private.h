@@ -3,9 +3,9 @@
 #ifndef SENSOR_VERIFY_SAVED_FRAME_SAVED_FRAME_PRIVATE_H
 #define SENSOR_VERIFY_SAVED_FRAME_SAVED_FRAME_PRIVATE_H
 
-#include "sensor/verify/saved_frame/chunks.h"
+#include "sensor/verify/saved_frame/chunks_private.h"
 #include "sensor/verify/saved_frame/saved_frame.h"
-#include "sensor/verify/saved_frame/ground_cutout.h"
+#include "sensor/verify/saved_frame/ground_cutout_private.h"
 
 /* Bounds of positions, far beyond any in an image: in ECEF, and in a local frame. */
 static const double earth_m = 1e8, local_m = 2e7;

@@ -129,8 +129,9 @@ static void tunable_elements(Bench *bench, const GroundKinds *kinds)
         compare_days(&point[k], &set[k], &fine);
     }
     bench_tunable(bench,
-                  &(BenchTunable){"elements of the ground's heat", "render/heat/ground_column.h", "a day of one column",
-                                  "K", "largest, of all kinds over a day, elements from 0.7 mm", 0.1},
+                  &(BenchTunable){"elements of the ground's heat", "render/heat/ground_column_private.h",
+                                  "a day of one column", "K", "largest, of all kinds over a day, elements from 0.7 mm",
+                                  0.1},
                   work, point, settings);
 }
 

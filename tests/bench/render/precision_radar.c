@@ -1,7 +1,7 @@
 /* tests/bench/render/precision_radar.c: the field that a target scatters: ray tubes a wavelength, their divisions at
  * edges, mirrors of a path; flat faces by ray tubes and in closed form; what a list of hits saves when it is used
  * again. */
-#include "render/scattering/field/radar_target.h"
+#include "render/scattering/field/radar_target_private.h"
 #include "tests/bench/bench.h"
 #include "render/scattering/field/radar_model.h"
 #include "render/scattering/field/total_field.h"

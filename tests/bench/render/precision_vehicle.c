@@ -2,7 +2,7 @@
  * loads that change within them and are straight between their ends; what a step costs; the number of its patches. */
 #include "tests/scenes/plate_vehicle.h"
 #include "tests/bench/suites.h"
-#include "render/heat/surface_flux.h"
+#include "render/heat/surface_flux_private.h"
 #include "render/heat/vehicle_heat.h"
 #include "render/trace/parts/parts.h"
 
@@ -71,8 +71,8 @@ static Status tunable_step(Bench *bench, const PlateVehicle *vehicle, Network *n
     }
     if (status != STATUS_OK) return status;
     bench_tunable(bench,
-                  &(BenchTunable){"steps of a vehicle's heat", "render/heat/heat_network.h", "a minute of 100 nodes",
-                                  "K", "largest, over two hours, steps of 1 s", 0.2},
+                  &(BenchTunable){"steps of a vehicle's heat", "render/heat/heat_network_private.h",
+                                  "a minute of 100 nodes", "K", "largest, over two hours, steps of 1 s", 0.2},
                   work, point, settings);
     return STATUS_OK;
 }

@@ -4,7 +4,7 @@
 
 #include "tests/bench/bench.h"
 #include "terrain/ground/landscape.h"
-#include "sensor/quality/trial.h"
+#include "sensor/quality/trial_private.h"
 #include "sensor/settings/config.h"
 
 #include <time.h>

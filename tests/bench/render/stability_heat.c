@@ -3,7 +3,7 @@
 #include "tests/bench/suites.h"
 #include "tests/bench/stress.h"
 #include "tests/scenes/heat_day.h"
-#include "render/heat/heat_network.h"
+#include "render/heat/heat_network_private.h"
 
 #include <stdlib.h>
 

@@ -2,7 +2,7 @@
 #include "tests/bench/sensor/precision.h"
 
 #include "sensor/settings/config.h"
-#include "sensor/node/session/seeker.h"
+#include "sensor/node/session/seeker_private.h"
 #include "terrain/ground/landscape.h"
 
 const char *const precision_shot_name[SHOT_COUNT] = {"ground alone", "vehicles of 70 px", "vehicles of 5 px",

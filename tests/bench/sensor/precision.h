@@ -3,7 +3,7 @@
 #ifndef TESTS_BENCH_SENSOR_PRECISION_H
 #define TESTS_BENCH_SENSOR_PRECISION_H
 
-#include "sensor/quality/trial.h"
+#include "sensor/quality/trial_private.h"
 #include "tests/bench/bench.h"
 
 /* The images in which errors are measured: several, so that no error is that of a lucky one. */

@@ -2,7 +2,7 @@
 #include "tests/bench/sensor/precision.h"
 
 #include "render/materials/planck.h"
-#include "sensor/detector/blur.h"
+#include "sensor/detector/blur_private.h"
 #include "sensor/detector/photons.h"
 #include "sensor/detector/display_values.h"
 

@@ -3,8 +3,8 @@
 #include "tests/bench/sensor/precision.h"
 
 #include "render/materials/planck.h"
-#include "sensor/detector/blur.h"
-#include "sensor/detector/subpixel.h"
+#include "sensor/detector/blur_private.h"
+#include "sensor/detector/subpixel_private.h"
 
 enum { size_px = 32, most_places = 16, half_px = 7 };
 

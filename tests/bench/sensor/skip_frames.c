@@ -3,7 +3,7 @@
  * its time without the skip; the planes must be the same. */
 #include "tests/bench/suites.h"
 
-#include "sensor/quality/trial.h"
+#include "sensor/quality/trial_private.h"
 #include "sensor/settings/config.h"
 #include "terrain/ground/landscape.h"
 

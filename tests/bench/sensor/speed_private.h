@@ -3,7 +3,7 @@
 #define TESTS_BENCH_SENSOR_SPEED_PRIVATE_H
 
 #include "tests/bench/suites.h"
-#include "sensor/quality/trial.h"
+#include "sensor/quality/trial_private.h"
 
 enum { what_size = 160 };
 
