@@ -1,4 +1,5 @@
-/* dis/network/udp_ring.c: ring buffer of records, each a whole number of units. */
+/* dis/network/udp_ring.c: a ring buffer of datagrams with their headers, each padded to a whole number of units of 32
+ * octets. */
 #include "dis/network/udp_private.h"
 
 #include <stdlib.h>

@@ -1,5 +1,5 @@
-/* entities/table/entity_index.c: linear probing, at most half full; removal closes the gap, so there are no tombstones
- * and a probe always ends at the first empty cell. */
+/* entities/table/entity_index.c: finds the slot of an entity id: a hash table with linear probing, at most half full.
+ * Removal closes the gap, so there are no tombstones, and a probe always ends at the first empty cell. */
 #include "entities/table/entity_index.h"
 
 #include <stdlib.h>

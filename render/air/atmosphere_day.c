@@ -1,5 +1,5 @@
-/* render/air/atmosphere_day.c: loops over bands and steps where render/air/atmosphere.c evaluates one at a time. The
- * formulas are the same; only loop invariants are hoisted. */
+/* render/air/atmosphere_day.c: the formulas of render/air/atmosphere.c for one day, in loops over bands and steps;
+ * only what does not change in a loop is taken out of it. */
 #include "render/air/atmosphere.h"
 
 #include "render/air/atmosphere_private.h"

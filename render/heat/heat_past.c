@@ -1,5 +1,5 @@
-/* render/heat/heat_past.c: what flux of the hours before does to the surface by now (heat.h: shade of the hours
- * before). */
+/* render/heat/heat_past.c: what the flux of earlier hours, such as the shade of a vehicle that has left, does to the
+ * temperature of the surface now. */
 #include "render/heat/heat_private.h"
 
 typedef struct Linear {

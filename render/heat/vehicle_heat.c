@@ -1,4 +1,4 @@
-/* render/heat/vehicle_heat.c: see vehicle_heat.h. */
+/* render/heat/vehicle_heat.c: the temperatures of all vehicles: begun, stepped by exercise time, and read. */
 #include "render/heat/vehicle_heat_private.h"
 
 #include <stdlib.h>

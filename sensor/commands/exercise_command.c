@@ -1,5 +1,5 @@
-/* sensor/commands/exercise_command.c: writes the datagrams of a scenario to a file, to the network by the clock, or
- * one by one to a folder. */
+/* sensor/commands/exercise_command.c: `pitviper exercise`: writes the datagrams of a scenario to a file, to the
+ * network by the clock, or one by one to a folder. */
 #include "sensor/commands/commands.h"
 #include "pitviper_output.h"
 

@@ -1,4 +1,5 @@
-/* sensor/commands/record_command.c: from the receive queue to the file, and how it ends. */
+/* sensor/commands/record_command.c: `pitviper record`: writes datagrams from the receive queue to a file, and how
+ * that ends. */
 #include "sensor/commands/commands.h"
 
 #include "dis/capture/recorder.h"

@@ -1,4 +1,4 @@
-/* sensor/commands/replay_command.c: replays a recorded exercise to images and truth. */
+/* sensor/commands/replay_command.c: `pitviper replay LOG`: replays a recorded exercise to images and truth. */
 #include "sensor/commands/commands.h"
 
 #include "dis/pdu/decode.h"

@@ -12,7 +12,7 @@ Status frame_world(World *out, const Config *config, const Catalog *catalog, con
                    const LocalFrame *frame, const char *isa);
 /* Its plants, as terrain.woods_* say. woods must outlive the world; NULL: there are none. */
 Status frame_world_plant(World *world, const Woods *woods, const Config *config, const char *isa, Pool *pool);
-/* The same as its course has it then. */
+/* The weather at unix_s. */
 Weather frame_weather_at(const Config *config, const World *world, double unix_s);
 /* Warms the world over the weather of weather.* up to unix_s, which is exercise time 0. Call it after
  * frame_world_plant. */

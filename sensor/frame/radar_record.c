@@ -1,4 +1,4 @@
-/* sensor/frame/radar_record.c: see radar_record.h. */
+/* sensor/frame/radar_record.c: writes what the radar measured in a frame as the radar object of truth.jsonl. */
 #include "sensor/frame/radar_record.h"
 
 #include "sensor/frame/json_object.h"

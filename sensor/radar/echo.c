@@ -1,5 +1,5 @@
-/* sensor/radar/echo.c: shares echoes out to the grid over delay and Doppler or the grids row by row, and adds up their
- * sums. */
+/* sensor/radar/echo.c: adds echoes to the grid over delay and Doppler, in tasks by rows, and sums what the tasks
+ * have. */
 #include "sensor/radar/echo.h"
 
 #include "render/scattering/scatter.h"

@@ -1,4 +1,5 @@
-/* terrain/elevation/raster_choice.c: what a user says of a file, read off the end of its name. */
+/* terrain/elevation/raster_choice.c: reads the options that a user puts behind the name of a raster: band, unit, no
+ * data, reference system. */
 #include "terrain/elevation/raster.h"
 
 #include <strings.h>

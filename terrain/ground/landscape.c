@@ -1,5 +1,5 @@
-/* terrain/ground/landscape.c: an invented landscape: made, from evidence or quickly, and freed; its ways and its
- * hedgerows. */
+/* terrain/ground/landscape.c: makes and frees a landscape without files: invented from evidence, or quickly; its ways
+ * and its hedgerows. */
 #include "terrain/ground/landscape_private.h"
 
 #include <stdlib.h>

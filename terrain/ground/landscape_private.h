@@ -1,4 +1,4 @@
-/* terrain/ground/landscape_private.h: what covers a landscape. */
+/* terrain/ground/landscape_private.h: Cover: what a landscape has of surface classes, photographs and water. */
 #ifndef TERRAIN_GROUND_LANDSCAPE_PRIVATE_H
 #define TERRAIN_GROUND_LANDSCAPE_PRIVATE_H
 

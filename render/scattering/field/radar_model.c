@@ -1,4 +1,5 @@
-/* render/scattering/field/radar_model.c: builds shapes, and opens a target by its name. */
+/* render/scattering/field/radar_model.c: builds the simple shapes (sphere, plate, corner ...) as targets, and opens
+ * any target by its name. */
 #include "render/scattering/field/radar_model.h"
 #include "entities/import/model_import.h"
 

@@ -1,4 +1,5 @@
-/* render/scattering/field/tubes.c: a smooth random height over a part's surface. */
+/* render/scattering/field/tubes.c: shoots the grid of ray tubes at a target, and warps its faces by a smooth random
+ * height. */
 #include "render/scattering/field/tubes.h"
 #include "render/scattering/field/tubes_private.h"
 

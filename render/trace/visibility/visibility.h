@@ -1,5 +1,5 @@
 /* render/trace/visibility/visibility.h: first hits of rays, and shadows of the sun. The only interface to the tracing
- * of ground and parts.
+ * of ground, parts and plants.
  *
  * The ground is a height field, traced in double, scalar and eight wide with the same bits. Each moving part is
  * traced in its own node's frame: the ray is transformed there in double, advanced to the node's bounding sphere,

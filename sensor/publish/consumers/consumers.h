@@ -1,4 +1,5 @@
-/* sensor/publish/consumers/consumers.h: all consumers, each in a file of its own.
+/* sensor/publish/consumers/consumers.h: makes the consumers of this folder; klv, memory, video and Data PDUs have
+ * folders of their own (publish/.../consume_*.h).
  *
  * Their arguments must outlive them. Folders and files that they write are made by their begin. */
 #ifndef SENSOR_PUBLISH_CONSUMERS_CONSUMERS_H

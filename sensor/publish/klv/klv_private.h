@@ -1,4 +1,4 @@
-/* sensor/publish/klv/klv_private.h: between the encoders. */
+/* sensor/publish/klv/klv_private.h: what the encoders of the local sets share. */
 #ifndef SENSOR_PUBLISH_KLV_KLV_PRIVATE_H
 #define SENSOR_PUBLISH_KLV_KLV_PRIVATE_H
 
