@@ -222,23 +222,17 @@ static inline double complex turned(const float z[2], double re, double im)
     return CMPLX((double)z[0] * re - (double)z[1] * im, (double)z[0] * im + (double)z[1] * re);
 }
 
-/* The terms first .. end - 1 of a scatterer, by how far those that move have moved, and the amplitude of each. */
-typedef struct ClutterTerms {
-    int    first, end;
-    double moved_m, size;
-} ClutterTerms;
-
-/* Adds the terms, seen from direction u, to s. k2: twice the wave number, rad/m. */
-static void add_terms(ScatterMatrix *s, const ClutterScatterer *from, const ClutterTerms *terms, const double u[3],
-                      double k2)
+/* Adds the terms first .. end - 1 of a scatterer, seen from direction u, to s. k2: twice the wave number, rad/m;
+ * moved_m: how far those that move have moved; size: the amplitude of each. */
+static void add_terms(ScatterMatrix *s, const ClutterScatterer *from, int first, int end, const double u[3], double k2,
+                      double moved_m, double size)
 {
-    for (int m = terms->first; m < terms->end; m++) {
+    for (int m = first; m < end; m++) {
         const float *offset_m = from->offset_m[m];
-        const double gone_m =
-            m < clutter_still_terms ? 0 : terms->moved_m * (double)from->velocity[m - clutter_still_terms];
+        const double gone_m = m < clutter_still_terms ? 0 : moved_m * (double)from->velocity[m - clutter_still_terms];
         const double towards_m =
             u[0] * (double)offset_m[0] + u[1] * (double)offset_m[1] + u[2] * (double)offset_m[2] + gone_m;
-        const double re = terms->size * cos(k2 * towards_m), im = terms->size * sin(k2 * towards_m);
+        const double re = size * cos(k2 * towards_m), im = size * sin(k2 * towards_m);
         s->vv += turned(from->vv[m], re, im);
         s->hh += turned(from->hh[m], re, im);
         s->hv += turned(from->hv[m], re, im);
@@ -268,12 +262,10 @@ void clutter_see(ScatterMatrix *out, const ClutterGrid *grid, const ClutterTable
         if (!(sine > 0 && n_enu[2] > 0)) continue;
         const double sigma0 = clutter_sigma0(&table->row[ground->surface[i]][band], asin(fmin(sine, 1)), wavelength_m);
         const double size = sqrt(sigma0 * side_m * side_m / (4 * pi_rad * n_enu[2]));
-        add_terms(&out[i], &scatterer[i], &(ClutterTerms){0, clutter_still_terms, 0, size * sqrt(moves->still)}, u, k2);
+        add_terms(&out[i], &scatterer[i], 0, clutter_still_terms, u, k2, 0, size * sqrt(moves->still));
         if (moves->still < 1)
-            add_terms(&out[i], &scatterer[i],
-                      &(ClutterTerms){clutter_still_terms, clutter_terms, moves->spread_mps * look->t_s,
-                                      size * sqrt(1 - moves->still)},
-                      u, k2);
+            add_terms(&out[i], &scatterer[i], clutter_still_terms, clutter_terms, u, k2, moves->spread_mps * look->t_s,
+                      size * sqrt(1 - moves->still));
         out[i].vh = out[i].hv;
     }
 }
@@ -286,12 +278,10 @@ void clutter_see_leaf(ScatterMatrix *out, const ClutterScatterer *scatterer, con
     v3_sub(u, look->antenna_enu, p_enu);
     *out = (ScatterMatrix){0};
     if (!v3_normalize(u, u)) return;
-    add_terms(out, scatterer, &(ClutterTerms){0, clutter_still_terms, 0, size * sqrt(motion->still)}, u, k2);
+    add_terms(out, scatterer, 0, clutter_still_terms, u, k2, 0, size * sqrt(motion->still));
     if (motion->still < 1)
-        add_terms(out, scatterer,
-                  &(ClutterTerms){clutter_still_terms, clutter_terms, motion->spread_mps * look->t_s,
-                                  size * sqrt(1 - motion->still)},
-                  u, k2);
+        add_terms(out, scatterer, clutter_still_terms, clutter_terms, u, k2, motion->spread_mps * look->t_s,
+                  size * sqrt(1 - motion->still));
     out->vh = out->hv;
 }
 
