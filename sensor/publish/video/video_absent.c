@@ -1,6 +1,7 @@
 /* sensor/publish/video/video_absent.c: in place of videos and streams in a program built without FFmpeg's libraries.
  * Its settings are refused before (sensor/settings/publish_choice.c). */
 #include "sensor/publish/video/consume_video.h"
+#include "sensor/publish/video/video_names.h"
 
 Status consume_video(Consumer **out, const VideoOf *of)
 {
@@ -14,6 +15,12 @@ Status consume_video(Consumer **out, const VideoOf *of)
 Status video_prepare(const Config *config)
 {
     (void)config;
+    return STATUS_OK;
+}
+
+Status video_hosts_check(const Config *config, int hosts)
+{
+    (void)config, (void)hosts;
     return STATUS_OK;
 }
 
