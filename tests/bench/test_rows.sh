@@ -45,10 +45,10 @@ speed)
         "set-up: ground" "set-up: catalog" "set-up: places of plants" "set-up: plants grown" "set-up: ground warmed up" \
         "set-up: twenty tanks" "set-up: all" "sweep: a variant" "memory: posts" "memory: arena" "memory: resident"
     run bench speed --quick --size 17
-    check "a size that is none is refused" [ $code = 1 ]
+    check "a size that is none is refused" [ $code = 2 ]
     check "and said" complained "size: '17' is not"
     run bench speed --quick --ground 1x1 --model "$tmp/none.obj"
-    check "a model that is not there is refused" [ $code = 1 ]
+    check "a model that is not there is refused" [ $code = 2 ]
     check "and said, too" complained "none.obj" ;;
 skip)
     rows "outside a block" "by their sphere" "parts missed" "behind the part that was met" "below a block" "walked together" \
