@@ -156,8 +156,8 @@ static Status walk(Gltf *g, const json_t *index, int parent, const double above[
     return status;
 }
 
-/* Walks the scene. If it has one node that is the root, else a node is put above all. Without a scene, the nodes that
- * are nobody's children are taken. */
+/* Walks the scene. If it has one node that is the root, else a node is put above all. Without a scene, the nodes
+ * that are children of no other are taken. */
 static Status walk_scene(Gltf *g)
 {
     static const double here[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
