@@ -54,13 +54,23 @@ Status settings_say_unknown(const SettingTable *table, const char *source, const
     return STATUS_BAD_VALUE;
 }
 
-static bool is_choice(const char *choices, const char *value)
+/* The place of a word among choices, from 0; -1: it is none of them. */
+static int choice_place(const char *choices, const char *value)
 {
-    const size_t length = strlen(value);
-    if (strchr(value, '|')) return false;
-    for (const char *at = choices; at; at = strchr(at, '|'), at = at ? at + 1 : NULL)
-        if (strncmp(at, value, length) == 0 && (at[length] == '|' || !at[length])) return true;
-    return false;
+    const size_t length = strcspn(value, "|");
+    int          place = 0;
+    if (value[length]) return -1;
+    for (const char *at = choices; at; at = strchr(at, '|'), at = at ? at + 1 : NULL, place++)
+        if (strncmp(at, value, length) == 0 && (at[length] == '|' || !at[length])) return place;
+    return -1;
+}
+
+/* The word at a place, and `|` and more behind it; *length: without those. */
+static const char *choice_word(int *length, const char *choices, int place)
+{
+    for (; place > 0; place--) choices = strchr(choices, '|') + 1;
+    *length = (int)strcspn(choices, "|");
+    return choices;
 }
 
 const char *settings_prefix(const SettingTable *table) { return table->prefix ? table->prefix : ""; }
@@ -85,7 +95,7 @@ void settings_accepted(char *out, size_t out_size, const Setting *row)
 static void report_bad(const SettingTable *table, const char *source, const Setting *row, const char *value)
 {
     char       shown[160], accepted[512];
-    const bool long_text = !row->choices && (row->type == SETTING_TEXT || row->type == SETTING_WORDS || is_path(row));
+    const bool long_text = row->type == SETTING_TEXT || row->type == SETTING_WORDS || is_path(row);
     WordMeant  meant = word_meant(value);
     text_escape(shown, sizeof shown, value, strnlen(value, sizeof shown));
     if (long_text) snprintf(accepted, sizeof accepted, "longer than %zu characters", row->size - 1);
@@ -261,6 +271,7 @@ Status settings_store(void *out, const SettingTable *table, const Setting *row, 
     char      *at = (char *)out + row->offset;
     double     number;
     long long  whole;
+    int        small;
     NumberList list;
     switch (row->type) {
     case SETTING_DOUBLE:
@@ -273,13 +284,23 @@ Status settings_store(void *out, const SettingTable *table, const Setting *row, 
         if (row->type == SETTING_LONG) {
             memcpy(at, &whole, sizeof whole);
         } else {
-            const int small = (int)whole;
+            small = (int)whole;
             memcpy(at, &small, sizeof small);
         }
         return STATUS_OK;
     case SETTING_BOOL:
         if (strcmp(value, "true") != 0 && strcmp(value, "false") != 0) break;
         *(bool *)at = value[0] == 't';
+        return STATUS_OK;
+    case SETTING_SWITCH:
+        if (choice_place(row->choices, value) < 0) break;
+        *(bool *)at = strcmp(value, "on") == 0;
+        return STATUS_OK;
+    case SETTING_CHOICE:
+        small = choice_place(row->choices, value);
+        assert(row->size == sizeof small); /* an enum */
+        if (small < 0) break;
+        memcpy(at, &small, sizeof small);
         return STATUS_OK;
     case SETTING_PATH:
     case SETTING_PATHS:
@@ -290,7 +311,7 @@ Status settings_store(void *out, const SettingTable *table, const Setting *row, 
         if (!words_into(at, row->size, value)) break;
         return STATUS_OK;
     case SETTING_TEXT:
-        if (strlen(value) >= row->size || (row->choices && !is_choice(row->choices, value))) break;
+        if (strlen(value) >= row->size) break;
         memset(at, 0, row->size);
         strcpy(at, value);
         return STATUS_OK;
@@ -332,6 +353,7 @@ static int value_text(char *out, size_t out_size, const Setting *row, const void
     double            number;
     long long         whole;
     int               small, n = 0;
+    const char       *word;
     const NumberList *list;
     switch (row->type) {
     case SETTING_DOUBLE:
@@ -345,6 +367,12 @@ static int value_text(char *out, size_t out_size, const Setting *row, const void
         return snprintf(out, out_size, "%lld", whole);
     case SETTING_BOOL:
         return snprintf(out, out_size, "%s", *(const bool *)at ? "true" : "false");
+    case SETTING_SWITCH:
+        return snprintf(out, out_size, "%s", *(const bool *)at ? "on" : "off");
+    case SETTING_CHOICE:
+        memcpy(&small, at, sizeof small);
+        word = choice_word(&n, row->choices, small);
+        return snprintf(out, out_size, "%.*s", n, word);
     case SETTING_TEXT:
     case SETTING_WORDS:
     case SETTING_PATH:

@@ -2,7 +2,7 @@
 #ifndef PITVIPER_SETTINGS_PRIVATE_H
 #define PITVIPER_SETTINGS_PRIVATE_H
 
-#include "pitviper.h"
+#include "pitviper_settings.h"
 
 /* A value within its row's range. */
 bool settings_number(double *out, const Setting *row, const char *value);

@@ -207,11 +207,9 @@ uint32_t cast_appearance(const Cast *cast, int entity, double t_s)
         double speed_mps;
         way_of(&speed_mps, cast, e, t_s);
         /* tracks raise more dust than wheels */
-        const uint32_t trail = *g->dust == 'a'   ? (e->type.category <= 4 ? 2 : 1)
-                               : *g->dust == 's' ? 1
-                               : *g->dust == 'm' ? 2
-                               : *g->dust == 'l' ? 3
-                                                 : 0;
+        static const uint32_t trails[] = {
+            [SCENARIO_DUST_SMALL] = 1, [SCENARIO_DUST_MEDIUM] = 2, [SCENARIO_DUST_LARGE] = 3};
+        const uint32_t trail = g->dust == SCENARIO_DUST_AUTO ? (e->type.category <= 4 ? 2 : 1) : trails[g->dust];
         if (fabs(speed_mps) > 1 && g->route_m.count > 2) bits |= trail << dis_appearance_trail_shift;
     }
     return bits;
@@ -222,7 +220,7 @@ int cast_joints(JointReport joint[cast_max_joints], const Cast *cast, int entity
     const CastEntity *e = &cast->entity[entity];
     int               count = 0;
     if (e->joints < 0) return 0;
-    const bool   swings = cast->scenario->group[e->group].turret[1] == 'w';
+    const bool   swings = cast->scenario->group[e->group].turret == SCENARIO_TURRET_SWING;
     const double phase = 2 * pi_rad * random_uniform((uint64_t)cast->scenario->seed, 1, 0, (uint64_t)entity);
     const double rate = 0.35 + 0.08 * (entity % 4), halted = t_s > e->hit_s && isfinite(e->rest_s) ? 0 : 1;
     if (isfinite(e->rest_s)) t_s = fmin(t_s, e->hit_s);

@@ -183,7 +183,8 @@ static Status cast_group(Cast *cast, int group, int first, int first_id, const T
     Status     status = make_route(cast, group, flies);
     if (status != STATUS_OK) return status;
     cast->stop_s[group] = stop_time(cast, group, e.carriage);
-    if (strcmp(g->turret, "none") != 0 && (e.joints = joints_of(cast, catalog, e.type)) == -2) return STATUS_NO_MEMORY;
+    if (g->turret != SCENARIO_TURRET_NONE && (e.joints = joints_of(cast, catalog, e.type)) == -2)
+        return STATUS_NO_MEMORY;
 
     const int size = scenario_group_size(s, g);
     for (int k = 0; k < size; k++) {
@@ -231,7 +232,7 @@ static Status cast_shot(Cast *cast, int shot, int *entity, int *round, int first
 static bool needs_models(const Scenario *s)
 {
     for (int i = 0; i < s->group_count; i++)
-        if (strcmp(s->group[i].turret, "none") != 0) return true;
+        if (s->group[i].turret != SCENARIO_TURRET_NONE) return true;
     return false;
 }
 

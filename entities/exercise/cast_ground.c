@@ -62,14 +62,14 @@ Status exercise_ground_create(ExerciseGround *out, const Scenario *scenario)
         }
     }
     if (*scenario->ground.elevation) {
-        const char          *vertical = scenario->ground.vertical;
-        ElevationReport      report;
-        const ElevationFiles files = {.paths = scenario->ground.elevation,
-                                      .geoid_path = scenario->ground.geoid,
-                                      .vertical = *vertical == 'g'   ? ELEVATION_GEOID
-                                                  : *vertical == 'e' ? ELEVATION_ELLIPSOID
-                                                                     : ELEVATION_BY_FILE,
-                                      .horizon_m = horizon_m};
+        static const ElevationVertical vertical[] = {[SCENARIO_VERTICAL_FILE] = ELEVATION_BY_FILE,
+                                                     [SCENARIO_VERTICAL_GEOID] = ELEVATION_GEOID,
+                                                     [SCENARIO_VERTICAL_ELLIPSOID] = ELEVATION_ELLIPSOID};
+        ElevationReport                report;
+        const ElevationFiles           files = {.paths = scenario->ground.elevation,
+                                                .geoid_path = scenario->ground.geoid,
+                                                .vertical = vertical[scenario->ground.vertical],
+                                                .horizon_m = horizon_m};
         status = elevation_import(&ground.elevation, &report, &files, &ground.frame, NULL, 0);
         if (status != STATUS_OK) return status;
         ground.real = true;

@@ -101,9 +101,9 @@ static void impact_place(double p_enu[3], const Cast *cast, const CastRound *rou
         p_enu[2] = exercise_ground_at(NULL, &cast->ground, p_enu[0], p_enu[1]);
     }
     up_at(up, &cast->ground, p_enu);
-    if (*shot->hit == 'e') {
+    if (shot->hit == SCENARIO_HIT_ENTITY) {
         v3_add_scaled(p_enu, p_enu, above_base_m, up);
-    } else if (*shot->hit == 'm') {
+    } else if (shot->hit == SCENARIO_HIT_MISS) {
         v3_sub(line, p_enu, round->launch_enu);
         if (v3_normalize(line, line)) v3_add_scaled(p_enu, p_enu, past_m, line);
         v3_add_scaled(p_enu, p_enu, over_m, up);
@@ -149,11 +149,11 @@ static bool beyond_barrel(CastRound *round, const ScenarioShot *shot)
 
 static void damage(Cast *cast, const CastRound *round)
 {
-    static const double stops_s = 2, g_mps2 = 9.80665;
-    const char         *name = cast->scenario->shot[round->shot].damage;
-    CastEntity         *e = &cast->entity[round->target];
-    if (isfinite(e->hit_s) || *name == 'n') return;
-    e->damage = *name == 's' ? 1 : *name == 'm' ? 2 : 3;
+    static const double       stops_s = 2, g_mps2 = 9.80665;
+    const enum ScenarioDamage damage = cast->scenario->shot[round->shot].damage;
+    CastEntity               *e = &cast->entity[round->target];
+    if (isfinite(e->hit_s) || damage == SCENARIO_DAMAGE_NONE) return;
+    e->damage = (uint8_t)damage; /* as DIS numbers it */
     if (e->damage > 1 && e->carriage != CARRIAGE_ROTARY && e->carriage != CARRIAGE_FIXED_WING) {
         e->rest_s = round->impact_s + stops_s;
     } else if (e->damage == 3) { /* it falls: until it hits the ground */
@@ -189,10 +189,10 @@ Status cast_solve_shots(Cast *cast, const int *ids, const int *first)
                       s->path, shot->line, round->fire_s, v3_length(line));
             return STATUS_BAD_VALUE;
         }
-        round->result = *shot->hit == 'e'   ? dis_result_entity_impact
-                        : *shot->hit == 'g' ? dis_result_ground_impact
-                                            : dis_result_none;
-        if (*shot->hit == 'e') damage(cast, round);
+        round->result = shot->hit == SCENARIO_HIT_ENTITY   ? dis_result_entity_impact
+                        : shot->hit == SCENARIO_HIT_GROUND ? dis_result_ground_impact
+                                                           : dis_result_none;
+        if (shot->hit == SCENARIO_HIT_ENTITY) damage(cast, round);
         else round->target = -1;
     }
     return STATUS_OK;

@@ -220,10 +220,10 @@ static void leave(Exercise *x, int entity, double t_s)
     said->gone = true;
     const CastEntity *e = &x->cast->entity[entity];
     if (e->group < 0) return; /* a munition ends by its Detonation */
-    const char *how = x->cast->scenario->group[e->group].leaves;
-    Kinematics  k;
-    if (*how == 'r') send_removal(x, entity, t_s);
-    if (*how != 'd') return;
+    const enum ScenarioLeaves how = x->cast->scenario->group[e->group].leaves;
+    Kinematics                k;
+    if (how == SCENARIO_LEAVES_REMOVED) send_removal(x, entity, t_s);
+    if (how != SCENARIO_LEAVES_DEACTIVATED) return;
     cast_kinematics(&k, x->cast, entity, t_s);
     send_state(x, entity, &k, said->appearance | 1u << dis_appearance_deactivated_bit, true, t_s);
 }

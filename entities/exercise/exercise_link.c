@@ -13,18 +13,30 @@ static void put_u16(uint8_t *at, unsigned v)
 
 static uint32_t stamp(const ExerciseLink *link, double t_s)
 {
-    const char  *stamps = link->scenario->dis.stamps;
     const double hour_s = link->scenario->dis.stamp_s;
-    const bool   absolute = strcmp(stamps, "absolute") == 0;
-    if (strcmp(stamps, "none") == 0) return 0;
-    if (strcmp(stamps, "constant") == 0) return 12345678;
-    if (strcmp(stamps, "counter") == 0) return (uint32_t)link->number + 1;
-    if (strcmp(stamps, "milliseconds") == 0) return (uint32_t)(uint64_t)((hour_s + t_s) * 1e3);
-    if (strcmp(stamps, "microseconds") == 0) return (uint32_t)(uint64_t)((hour_s + t_s) * 1e6);
-    if (strcmp(stamps, "unix") == 0) return (uint32_t)(uint64_t)(link->epoch_unix_s + t_s);
-    if (strcmp(stamps, "half-rate") == 0) return dis_timestamp(hour_s + 0.5 * t_s, false);
-    if (strcmp(stamps, "double-rate") == 0) return dis_timestamp(hour_s + 2 * t_s, false);
-    return dis_timestamp((absolute ? fmod(link->epoch_unix_s, 3600) : hour_s) + t_s, absolute);
+    switch (link->scenario->dis.stamps) {
+    case SCENARIO_STAMPS_NONE:
+        return 0;
+    case SCENARIO_STAMPS_CONSTANT:
+        return 12345678;
+    case SCENARIO_STAMPS_COUNTER:
+        return (uint32_t)link->number + 1;
+    case SCENARIO_STAMPS_MILLISECONDS:
+        return (uint32_t)(uint64_t)((hour_s + t_s) * 1e3);
+    case SCENARIO_STAMPS_MICROSECONDS:
+        return (uint32_t)(uint64_t)((hour_s + t_s) * 1e6);
+    case SCENARIO_STAMPS_UNIX:
+        return (uint32_t)(uint64_t)(link->epoch_unix_s + t_s);
+    case SCENARIO_STAMPS_HALF_RATE:
+        return dis_timestamp(hour_s + 0.5 * t_s, false);
+    case SCENARIO_STAMPS_DOUBLE_RATE:
+        return dis_timestamp(hour_s + 2 * t_s, false);
+    case SCENARIO_STAMPS_ABSOLUTE:
+        return dis_timestamp(fmod(link->epoch_unix_s, 3600) + t_s, true);
+    case SCENARIO_STAMPS_RELATIVE:
+        break;
+    }
+    return dis_timestamp(hour_s + t_s, false);
 }
 
 DisHeader link_header(const ExerciseLink *link, uint8_t type, uint8_t family, double t_s)

@@ -5,132 +5,12 @@
 
 /* ---- keys ------------------------------------------------------------------------------------- */
 
-#define AT(member)    SETTING_AT(Scenario, member)
-#define GROUP(member) SETTING_AT(ScenarioGroup, member)
-#define SHOT(member)  SETTING_AT(ScenarioShot, member)
+#define ROW(...)       SETTING_ROW(Scenario, __VA_ARGS__)
+#define GROUP_ROW(...) SETTING_ROW(ScenarioGroup, __VA_ARGS__)
+#define SHOT_ROW(...)  SETTING_ROW(ScenarioShot, __VA_ARGS__)
 
-static const Setting group_keys[] = {
-    {"name", SETTING_TEXT, GROUP(name), 0, 0, NULL, "", "marking; the id is appended"},
-    {"type", SETTING_TEXT, GROUP(type), 0, 0, NULL, "",
-     "kind.domain.country.category.subcategory.specific.extra, or a model of etc/catalog.csv"},
-    {"id", SETTING_INT, GROUP(id), 0, 65533, NULL, "", "entity number of the first; 0: the next free one"},
-    {"force", SETTING_INT, GROUP(force), 0, 255, NULL, "", "1 friendly, 2 opposing, 3 neutral"},
-    {"count", SETTING_INT, GROUP(count), 1, 50000, NULL, "", "number of entities"},
-    {"columns", SETTING_INT, GROUP(columns), 1, 1000, NULL, "", "side by side"},
-    {"spacing_m", SETTING_DOUBLE, GROUP(spacing_m), 0, 1e4, NULL, "m",
-     "distance from each entity to the next one behind it"},
-    {"column_m", SETTING_DOUBLE, GROUP(column_m), 0, 1e4, NULL, "m", "distance between columns"},
-    {"spread_m", SETTING_DOUBLE, GROUP(spread_m), 0, 1e4, NULL, "m",
-     "largest random displacement from their places, along and across"},
-    {"behind_m", SETTING_DOUBLE, GROUP(behind_m), -1e5, 1e5, NULL, "m",
-     "distance of the first entity behind the start of the route"},
-    {"route_m", SETTING_NUMBERS, GROUP(route_m), -50000, 50000, NULL, "m", "[[x, y], ...] east and north of the place"},
-    {"loop", SETTING_BOOL, GROUP(loop), 0, 1, NULL, "", "the route is repeated"},
-    {"speed_mps", SETTING_DOUBLE, GROUP(speed_mps), 0, 2000, NULL, "m/s", ""},
-    {"unsteady_m", SETTING_DOUBLE, GROUP(unsteady_m), 0, 100, NULL, "m",
-     "amplitude of the motion ahead and behind of its place; period 25 s"},
-    {"heading_deg", SETTING_DOUBLE, GROUP(heading_deg), -360, 360, NULL, "deg",
-     "of entities that stand, clockwise from north"},
-    {"height_m", SETTING_DOUBLE, GROUP(height_m), -1000, 100000, NULL, "m", "above the ground at each point"},
-    {"start_s", SETTING_DOUBLE, GROUP(start_s), 0, 1e6, NULL, "s",
-     "stands until then; absent: moves from the beginning"},
-    {"stop_s", SETTING_DOUBLE, GROUP(stop_s), 0, 1e6, NULL, "s",
-     "begins to stop then; absent: at the end of the route"},
-    {"appears_s", SETTING_DOUBLE, GROUP(appears_s), 0, 1e6, NULL, "s", "no report before then"},
-    {"leaves_s", SETTING_DOUBLE, GROUP(leaves_s), 0, 1e6, NULL, "s", "no report afterwards"},
-    {"leaves", SETTING_TEXT, GROUP(leaves), 0, 0, "silent|deactivated|removed", "", "how it leaves"},
-    {"turret", SETTING_TEXT, GROUP(turret), 0, 0, "none|still|swing", "",
-     "articulation reported for primary turret and gun"},
-    {"dust", SETTING_TEXT, GROUP(dust), 0, 0, "auto|none|small|medium|large", "", "dust trail reported while it moves"},
-    {"engine", SETTING_BOOL, GROUP(engine), 0, 1, NULL, "", "runs"},
-    {"parked", SETTING_BOOL, GROUP(parked), 0, 1, NULL, "", "an aircraft stands on the ground"},
-    {"appearance", SETTING_INT, GROUP(appearance), 0, 2147483647, NULL, "", "further appearance bits, as one number"},
-    {"dead_reckoning", SETTING_INT, GROUP(dead_reckoning), 0, 9, NULL, "",
-     "algorithm 1 .. 9; 0: as dis.dead_reckoning"},
-};
-
-static const Setting shot_keys[] = {
-    {"from", SETTING_TEXT, SHOT(from), 0, 0, NULL, "", "the entity that shoots, `NAME ID`"},
-    {"at", SETTING_TEXT, SHOT(at), 0, 0, NULL, "", "the target, `NAME ID`"},
-    {"at_m", SETTING_NUMBERS, SHOT(at_m), -50000, 50000, NULL, "m", "[x, y] of a place, instead of a target"},
-    {"time_s", SETTING_DOUBLE, SHOT(time_s), 0, 1e6, NULL, "s", "of the first"},
-    {"rounds", SETTING_INT, SHOT(rounds), 1, scenario_max_rounds, NULL, "", "so many"},
-    {"every_s", SETTING_DOUBLE, SHOT(every_s), 0.01, 1e6, NULL, "s", "time between rounds"},
-    {"entity", SETTING_BOOL, SHOT(entity), 0, 1, NULL, "", "the munition sends Entity States while it flies"},
-    {"name", SETTING_TEXT, SHOT(name), 0, 0, NULL, "", "its marking, with the id behind it"},
-    {"id", SETTING_INT, SHOT(id), 0, 65533, NULL, "", "its entity number; 0: the next free one"},
-    {"type", SETTING_TEXT, SHOT(type), 0, 0, NULL, "", "entity type of the munition"},
-    {"force", SETTING_INT, SHOT(force), 0, 255, NULL, "", "of what flies"},
-    {"launch_m", SETTING_NUMBERS, SHOT(launch_m), -100, 100, NULL, "m",
-     "[forward, right, down] of the shooter's origin"},
-    {"launch_mps", SETTING_DOUBLE, SHOT(launch_mps), 1, 5000, NULL, "m/s", "speed at launch"},
-    {"boost_mps", SETTING_DOUBLE, SHOT(boost_mps), 0, 5000, NULL, "m/s", "speed that its motor adds"},
-    {"boost_s", SETTING_DOUBLE, SHOT(boost_s), 0.01, 100, NULL, "s", "time constant of the boost"},
-    {"drag_mps2", SETTING_DOUBLE, SHOT(drag_mps2), 0, 100, NULL, "m/s2", "what it loses"},
-    {"loft_m", SETTING_DOUBLE, SHOT(loft_m), 0, 5000, NULL, "m", "above the straight line at half way"},
-    {"weave_m", SETTING_DOUBLE, SHOT(weave_m), 0, 100, NULL, "m", "about it"},
-    {"hit", SETTING_TEXT, SHOT(hit), 0, 0, "entity|ground|miss", "",
-     "the entity, the ground beside it, or past it into the air"},
-    {"damage", SETTING_TEXT, SHOT(damage), 0, 0, "none|slight|moderate|destroyed", "",
-     "damage of the entity that is hit"},
-    {"silent_s", SETTING_DOUBLE, SHOT(silent_s), 0, 1000, NULL, "s", "time between its last Entity State and its end"},
-    {"dead_reckoning", SETTING_INT, SHOT(dead_reckoning), 0, 9, NULL, "", "algorithm 1 .. 9; 0: as dis.dead_reckoning"},
-};
-
-static const Setting keys[] = {
-    {"duration_s", SETTING_DOUBLE, AT(duration_s), 0, 1e6, NULL, "s", ""},
-    {"seed", SETTING_LONG, AT(seed), 0, 1e15, NULL, "", "seed of all random numbers"},
-    {"scale", SETTING_DOUBLE, AT(scale), 0.0001, 1000, NULL, "", "factor of every count above 1"},
-    {"place.lat_deg", SETTING_DOUBLE, AT(place.lat_deg), -90, 90, NULL, "deg", "where x and y are 0"},
-    {"place.lon_deg", SETTING_DOUBLE, AT(place.lon_deg), -180, 180, NULL, "deg", ""},
-    {"place.height_m", SETTING_DOUBLE, AT(place.height_m), -400, 8000, NULL, "m",
-     "height of synthetic ground above the ellipsoid"},
-    {"place.turn_deg", SETTING_DOUBLE, AT(place.turn_deg), -360, 360, NULL, "deg",
-     "rotation of all routes and places, clockwise"},
-    {"ground.swell_m", SETTING_DOUBLE, AT(ground.swell_m), 0, 20, NULL, "m",
-     "height of the swells of synthetic ground, which are 0.4 to 0.6 km long"},
-    {"ground.store", SETTING_PATH, AT(ground.store), 0, 0, NULL, "",
-     "terrain store of real ground (`pitviper terrain import`), instead of ground.elevation; empty: none"},
-    {"ground.elevation", SETTING_PATHS, AT(ground.elevation), 0, 0, NULL, "",
-     "files and folders of real ground, separated by commas, or a list; empty: synthetic ground"},
-    {"ground.vertical", SETTING_TEXT, AT(ground.vertical), 0, 0, "file|geoid|ellipsoid", "",
-     "vertical datum of their heights"},
-    {"ground.geoid", SETTING_PATH, AT(ground.geoid), 0, 0, NULL, "", "geoid grid; empty: EGM96 of proj-data"},
-    {"ground.smooth_m", SETTING_DOUBLE, AT(ground.smooth_m), 0.5, 30, NULL, "m",
-     "vehicles do not follow bumps of real ground that are shorter than this"},
-    {"dis.version", SETTING_INT, AT(dis.version), 5, 7, NULL, "", ""},
-    {"dis.exercise", SETTING_INT, AT(dis.exercise), 0, 255, NULL, "", ""},
-    {"dis.site", SETTING_INT, AT(dis.site), 1, 65533, NULL, "", ""},
-    {"dis.application", SETTING_INT, AT(dis.application), 1, 65533, NULL, "", ""},
-    {"dis.bundle", SETTING_BOOL, AT(dis.bundle), 0, 1, NULL, "", "several PDUs in a datagram"},
-    {"dis.mtu", SETTING_INT, AT(dis.mtu), 576, 65000, NULL, "octets", "largest bundle"},
-    {"dis.fillers", SETTING_BOOL, AT(dis.fillers), 0, 1, NULL, "",
-     "an Attribute or Data PDU after each PDU, as some simulators send"},
-    {"dis.updates", SETTING_BOOL, AT(dis.updates), 0, 1, NULL, "",
-     "Entity State Update between heartbeats; versions 6 and 7"},
-    {"dis.stamps", SETTING_TEXT, AT(dis.stamps), 0, 0,
-     "relative|absolute|none|constant|counter|milliseconds|microseconds|unix|half-rate|double-rate", "",
-     "kind of time stamps; all but the first two are errors that senders are known to make"},
-    {"dis.stamp_s", SETTING_DOUBLE, AT(dis.stamp_s), 0, 3600, NULL, "s",
-     "time past the hour at which relative time stamps begin"},
-    {"dis.date", SETTING_TEXT, AT(dis.date), 0, 0, NULL, "",
-     "UTC of the beginning in a recording, 2024-06-21T18:00:00Z"},
-    {"dis.clock", SETTING_TEXT, AT(dis.clock), 0, 0, NULL, "",
-     "a Start/Resume PDU first, with this UTC as simulation time"},
-    {"dis.heartbeat_s", SETTING_DOUBLE, AT(dis.heartbeat_s), 0.1, 3600, NULL, "s", ""},
-    {"dis.threshold_m", SETTING_DOUBLE, AT(dis.threshold_m), 0.01, 1000, NULL, "m",
-     "error of dead reckoning at which a report is sent"},
-    {"dis.threshold_deg", SETTING_DOUBLE, AT(dis.threshold_deg), 0.01, 180, NULL, "deg", ""},
-    {"dis.dead_reckoning", SETTING_INT, AT(dis.dead_reckoning), 1, 9, NULL, "", "algorithm of entities that name none"},
-    {"dis.rate_hz", SETTING_DOUBLE, AT(dis.rate_hz), 1, 1000, NULL, "Hz", "update rate of the simulator"},
-    {"dis.announce_per_s", SETTING_DOUBLE, AT(dis.announce_per_s), 1, 1e6, NULL, "1/s",
-     "rate of first reports, so that a large exercise does not begin with a burst"},
-    {"faults.bad_every_s", SETTING_DOUBLE, AT(faults.bad_every_s), 0, 1e6, NULL, "s",
-     "a malformed PDU, of 14 kinds in turn, 0.001 s apart at least; 0: none"},
-    {"faults.loss", SETTING_DOUBLE, AT(faults.loss), 0, 1, NULL, "", "share of datagrams lost"},
-    {"faults.duplicate", SETTING_DOUBLE, AT(faults.duplicate), 0, 1, NULL, "", "share sent twice"},
-    {"faults.reorder", SETTING_DOUBLE, AT(faults.reorder), 0, 1, NULL, "", "share overtaken by the next one"},
-};
+static const Setting group_keys[] = {SCENARIO_GROUP(GROUP_ROW)}, shot_keys[] = {SCENARIO_SHOT(SHOT_ROW)},
+                     keys[] = {SCENARIO_ROWS(ROW)};
 enum {
     key_count = sizeof keys / sizeof *keys,
     group_key_count = sizeof group_keys / sizeof *group_keys,
@@ -139,42 +19,9 @@ enum {
 
 /* ---- items -------------------------------------------------------------------------------------- */
 
-static ScenarioGroup default_group(void)
-{
-    return (ScenarioGroup){.name = "Entity",
-                           .type = "tank",
-                           .count = 1,
-                           .columns = 1,
-                           .force = 1,
-                           .spacing_m = 40,
-                           .column_m = 40,
-                           .engine = true,
-                           .start_s = NAN,
-                           .stop_s = NAN,
-                           .appears_s = NAN,
-                           .leaves_s = NAN,
-                           .leaves = "deactivated",
-                           .turret = "none",
-                           .dust = "auto"};
-}
+static ScenarioGroup default_group(void) { return (ScenarioGroup){SCENARIO_GROUP(SETTING_DEFAULT)}; }
 
-static ScenarioShot default_shot(void)
-{
-    return (ScenarioShot){.name = "Missile",
-                          .type = "missile",
-                          .force = 1,
-                          .rounds = 1,
-                          .every_s = 6,
-                          .launch_mps = 65,
-                          .boost_mps = 280,
-                          .boost_s = 0.6,
-                          .drag_mps2 = 5,
-                          .loft_m = 3,
-                          .weave_m = 0.8,
-                          .entity = true,
-                          .hit = "entity",
-                          .damage = "destroyed"};
-}
+static ScenarioShot default_shot(void) { return (ScenarioShot){SCENARIO_SHOT(SETTING_DEFAULT)}; }
 
 /* Capacity for one more, doubled at each power of two. NULL: too many, or no memory. */
 static void *grown(void **items, int count, int most, size_t size)
@@ -227,27 +74,7 @@ static const SettingList  lists[] = {{"vehicles", &group_table, add_group}, {"sh
 static const SettingTable table = {
     .module = "scenario", .row = keys, .count = key_count, .list = lists, .list_count = 2, .all_keys = ALL_KEYS};
 
-static Scenario default_scenario(void)
-{
-    return (Scenario){.duration_s = 30,
-                      .scale = 1,
-                      .seed = 1,
-                      .place = {.lat_deg = 36, .lon_deg = -123, .height_m = 120},
-                      .ground = {.swell_m = 1.5, .smooth_m = 2, .vertical = "file"},
-                      .dis = {.site = 1,
-                              .application = 3001,
-                              .exercise = 1,
-                              .version = 7,
-                              .mtu = 1400,
-                              .dead_reckoning = 4,
-                              .stamps = "relative",
-                              .stamp_s = 1350,
-                              .heartbeat_s = 5,
-                              .threshold_m = 1,
-                              .threshold_deg = 3,
-                              .rate_hz = 60,
-                              .announce_per_s = 4000}};
-}
+static Scenario default_scenario(void) { return (Scenario){SCENARIO_ROWS(SETTING_DEFAULT)}; }
 
 /* ---- checks across keys ------------------------------------------------------------------------- */
 
@@ -396,7 +223,7 @@ static bool shot_fits(const Scenario *s, const int *ids, const ScenarioShot *sho
         log_error("scenario: %s:%d: shots: at: '%s' shoots at itself", s->path, shot->line, shot->at);
         return false;
     }
-    if (!*shot->at && strcmp(shot->hit, "entity") == 0) {
+    if (!*shot->at && shot->hit == SCENARIO_HIT_ENTITY) {
         log_error("scenario: %s:%d: shots: hit: a place is not an entity; use hit: ground, or miss", s->path,
                   shot->line);
         return false;

@@ -6,6 +6,7 @@
 #define ENTITIES_EXERCISE_SCENARIO_H
 
 #include "dis/pdu/pdu.h"
+#include "pitviper_settings.h"
 
 enum {
     scenario_name_size = 24,
@@ -17,59 +18,161 @@ enum {
     scenario_max_rounds = 20000,
 };
 
+/* The keys, as pitviper_settings.h says; those of an item of `vehicles`, then of `shots`. */
+/* clang-format off */
+#define SCENARIO_GROUP(ROW) \
+    ROW(TEXT, , name, "Entity", scenario_name_size, "", "marking; the id is appended") \
+    ROW(TEXT, , type, "tank", scenario_type_size, "", \
+        "kind.domain.country.category.subcategory.specific.extra, or a model of etc/catalog.csv") \
+    ROW(INT, , id, 0, 0, 65533, "", "entity number of the first; 0: the next free one") \
+    ROW(INT, , force, 1, 0, 255, "", "1 friendly, 2 opposing, 3 neutral") \
+    ROW(INT, , count, 1, 1, 50000, "", "number of entities") \
+    ROW(INT, , columns, 1, 1, 1000, "", "side by side") \
+    ROW(DOUBLE, , spacing_m, 40, 0, 1e4, "m", "distance from each entity to the next one behind it") \
+    ROW(DOUBLE, , column_m, 40, 0, 1e4, "m", "distance between columns") \
+    ROW(DOUBLE, , spread_m, 0, 0, 1e4, "m", "largest random displacement from their places, along and across") \
+    ROW(DOUBLE, , behind_m, 0, -1e5, 1e5, "m", "distance of the first entity behind the start of the route") \
+    ROW(NUMBERS, , route_m, {0}, -50000, 50000, "m", "[[x, y], ...] east and north of the place") \
+    ROW(BOOL, , loop, false, "the route is repeated") \
+    ROW(DOUBLE, , speed_mps, 0, 0, 2000, "m/s", "") \
+    ROW(DOUBLE, , unsteady_m, 0, 0, 100, "m", "amplitude of the motion ahead and behind of its place; period 25 s") \
+    ROW(DOUBLE, , heading_deg, 0, -360, 360, "deg", "of entities that stand, clockwise from north") \
+    ROW(DOUBLE, , height_m, 0, -1000, 100000, "m", "above the ground at each point") \
+    ROW(DOUBLE, , start_s, NAN, 0, 1e6, "s", "stands until then; absent: moves from the beginning") \
+    ROW(DOUBLE, , stop_s, NAN, 0, 1e6, "s", "begins to stop then; absent: at the end of the route") \
+    ROW(DOUBLE, , appears_s, NAN, 0, 1e6, "s", "no report before then") \
+    ROW(DOUBLE, , leaves_s, NAN, 0, 1e6, "s", "no report afterwards") \
+    ROW(CHOICE, , leaves, SCENARIO_LEAVES_DEACTIVATED, ScenarioLeaves, \
+        (SCENARIO_LEAVES_SILENT, "silent")(SCENARIO_LEAVES_DEACTIVATED, "deactivated") \
+        (SCENARIO_LEAVES_REMOVED, "removed"), \
+        "how it leaves") \
+    ROW(CHOICE, , turret, SCENARIO_TURRET_NONE, ScenarioTurret, \
+        (SCENARIO_TURRET_NONE, "none")(SCENARIO_TURRET_STILL, "still")(SCENARIO_TURRET_SWING, "swing"), \
+        "articulation reported for primary turret and gun") \
+    ROW(CHOICE, , dust, SCENARIO_DUST_AUTO, ScenarioDust, \
+        (SCENARIO_DUST_AUTO, "auto")(SCENARIO_DUST_NONE, "none")(SCENARIO_DUST_SMALL, "small") \
+        (SCENARIO_DUST_MEDIUM, "medium")(SCENARIO_DUST_LARGE, "large"), \
+        "dust trail reported while it moves") \
+    ROW(BOOL, , engine, true, "runs") \
+    ROW(BOOL, , parked, false, "an aircraft stands on the ground") \
+    ROW(INT, , appearance, 0, 0, 2147483647, "", "further appearance bits, as one number") \
+    ROW(INT, , dead_reckoning, 0, 0, 9, "", "algorithm 1 .. 9; 0: as dis.dead_reckoning")
+
+#define SCENARIO_SHOT(ROW) \
+    ROW(TEXT, , from, "", 2 * scenario_name_size, "", "the entity that shoots, `NAME ID`") \
+    ROW(TEXT, , at, "", 2 * scenario_name_size, "", "the target, `NAME ID`") \
+    ROW(NUMBERS, , at_m, {0}, -50000, 50000, "m", "[x, y] of a place, instead of a target") \
+    ROW(DOUBLE, , time_s, 0, 0, 1e6, "s", "of the first") \
+    ROW(INT, , rounds, 1, 1, scenario_max_rounds, "", "so many") \
+    ROW(DOUBLE, , every_s, 6, 0.01, 1e6, "s", "time between rounds") \
+    ROW(BOOL, , entity, true, "the munition sends Entity States while it flies") \
+    ROW(TEXT, , name, "Missile", scenario_name_size, "", "its marking, with the id behind it") \
+    ROW(INT, , id, 0, 0, 65533, "", "its entity number; 0: the next free one") \
+    ROW(TEXT, , type, "missile", scenario_type_size, "", "entity type of the munition") \
+    ROW(INT, , force, 1, 0, 255, "", "of what flies") \
+    ROW(NUMBERS, , launch_m, {0}, -100, 100, "m", "[forward, right, down] of the shooter's origin") \
+    ROW(DOUBLE, , launch_mps, 65, 1, 5000, "m/s", "speed at launch") \
+    ROW(DOUBLE, , boost_mps, 280, 0, 5000, "m/s", "speed that its motor adds") \
+    ROW(DOUBLE, , boost_s, 0.6, 0.01, 100, "s", "time constant of the boost") \
+    ROW(DOUBLE, , drag_mps2, 5, 0, 100, "m/s2", "what it loses") \
+    ROW(DOUBLE, , loft_m, 3, 0, 5000, "m", "above the straight line at half way") \
+    ROW(DOUBLE, , weave_m, 0.8, 0, 100, "m", "about it") \
+    ROW(CHOICE, , hit, SCENARIO_HIT_ENTITY, ScenarioHit, \
+        (SCENARIO_HIT_ENTITY, "entity")(SCENARIO_HIT_GROUND, "ground")(SCENARIO_HIT_MISS, "miss"), \
+        "the entity, the ground beside it, or past it into the air") \
+    ROW(CHOICE, , damage, SCENARIO_DAMAGE_DESTROYED, ScenarioDamage, \
+        (SCENARIO_DAMAGE_NONE, "none")(SCENARIO_DAMAGE_SLIGHT, "slight")(SCENARIO_DAMAGE_MODERATE, "moderate") \
+        (SCENARIO_DAMAGE_DESTROYED, "destroyed"), \
+        "damage of the entity that is hit") \
+    ROW(DOUBLE, , silent_s, 0, 0, 1000, "s", "time between its last Entity State and its end") \
+    ROW(INT, , dead_reckoning, 0, 0, 9, "", "algorithm 1 .. 9; 0: as dis.dead_reckoning")
+
+#define SCENARIO_ROWS(ROW) \
+    SCENARIO_TOP(ROW) SCENARIO_PLACE(ROW) SCENARIO_GROUND(ROW) SCENARIO_DIS(ROW) SCENARIO_FAULTS(ROW)
+
+#define SCENARIO_TOP(ROW) \
+    ROW(DOUBLE, , duration_s, 30, 0, 1e6, "s", "") \
+    ROW(LONG, , seed, 1, 0, 1e15, "", "seed of all random numbers") \
+    ROW(DOUBLE, , scale, 1, 0.0001, 1000, "", "factor of every count above 1")
+
+#define SCENARIO_PLACE(ROW) \
+    ROW(DOUBLE, place., lat_deg, 36, -90, 90, "deg", "where x and y are 0") \
+    ROW(DOUBLE, place., lon_deg, -123, -180, 180, "deg", "") \
+    ROW(DOUBLE, place., height_m, 120, -400, 8000, "m", "height of synthetic ground above the ellipsoid") \
+    ROW(DOUBLE, place., turn_deg, 0, -360, 360, "deg", "rotation of all routes and places, clockwise")
+
+#define SCENARIO_GROUND(ROW) \
+    ROW(DOUBLE, ground., swell_m, 1.5, 0, 20, "m", \
+        "height of the swells of synthetic ground, which are 0.4 to 0.6 km long") \
+    ROW(PATH, ground., store, "", 1024, \
+        "terrain store of real ground (`pitviper terrain import`), instead of ground.elevation; empty: none") \
+    ROW(PATHS, ground., elevation, "", scenario_path_size, \
+        "files and folders of real ground, separated by commas, or a list; empty: synthetic ground") \
+    ROW(CHOICE, ground., vertical, SCENARIO_VERTICAL_FILE, ScenarioVertical, \
+        (SCENARIO_VERTICAL_FILE, "file")(SCENARIO_VERTICAL_GEOID, "geoid")(SCENARIO_VERTICAL_ELLIPSOID, "ellipsoid"), \
+        "vertical datum of their heights") \
+    ROW(PATH, ground., geoid, "", scenario_path_size, "geoid grid; empty: EGM96 of proj-data") \
+    ROW(DOUBLE, ground., smooth_m, 2, 0.5, 30, "m", \
+        "vehicles do not follow bumps of real ground that are shorter than this")
+
+#define SCENARIO_DIS(ROW) \
+    ROW(INT, dis., version, 7, 5, 7, "", "") \
+    ROW(INT, dis., exercise, 1, 0, 255, "", "") \
+    ROW(INT, dis., site, 1, 1, 65533, "", "") \
+    ROW(INT, dis., application, 3001, 1, 65533, "", "") \
+    ROW(BOOL, dis., bundle, false, "several PDUs in a datagram") \
+    ROW(INT, dis., mtu, 1400, 576, 65000, "octets", "largest bundle") \
+    ROW(BOOL, dis., fillers, false, "an Attribute or Data PDU after each PDU, as some simulators send") \
+    ROW(BOOL, dis., updates, false, "Entity State Update between heartbeats; versions 6 and 7") \
+    ROW(CHOICE, dis., stamps, SCENARIO_STAMPS_RELATIVE, ScenarioStamps, \
+        (SCENARIO_STAMPS_RELATIVE, "relative")(SCENARIO_STAMPS_ABSOLUTE, "absolute")(SCENARIO_STAMPS_NONE, "none") \
+        (SCENARIO_STAMPS_CONSTANT, "constant")(SCENARIO_STAMPS_COUNTER, "counter") \
+        (SCENARIO_STAMPS_MILLISECONDS, "milliseconds")(SCENARIO_STAMPS_MICROSECONDS, "microseconds") \
+        (SCENARIO_STAMPS_UNIX, "unix")(SCENARIO_STAMPS_HALF_RATE, "half-rate") \
+        (SCENARIO_STAMPS_DOUBLE_RATE, "double-rate"), \
+        "kind of time stamps; all but the first two are errors that senders are known to make") \
+    ROW(DOUBLE, dis., stamp_s, 1350, 0, 3600, "s", "time past the hour at which relative time stamps begin") \
+    ROW(TEXT, dis., date, "", 32, "", "UTC of the beginning in a recording, 2024-06-21T18:00:00Z") \
+    ROW(TEXT, dis., clock, "", 32, "", "a Start/Resume PDU first, with this UTC as simulation time") \
+    ROW(DOUBLE, dis., heartbeat_s, 5, 0.1, 3600, "s", "") \
+    ROW(DOUBLE, dis., threshold_m, 1, 0.01, 1000, "m", "error of dead reckoning at which a report is sent") \
+    ROW(DOUBLE, dis., threshold_deg, 3, 0.01, 180, "deg", "") \
+    ROW(INT, dis., dead_reckoning, 4, 1, 9, "", "algorithm of entities that name none") \
+    ROW(DOUBLE, dis., rate_hz, 60, 1, 1000, "Hz", "update rate of the simulator") \
+    ROW(DOUBLE, dis., announce_per_s, 4000, 1, 1e6, "1/s", \
+        "rate of first reports, so that a large exercise does not begin with a burst")
+
+#define SCENARIO_FAULTS(ROW) \
+    ROW(DOUBLE, faults., bad_every_s, 0, 0, 1e6, "s", \
+        "a malformed PDU, of 14 kinds in turn, 0.001 s apart at least; 0: none") \
+    ROW(DOUBLE, faults., loss, 0, 0, 1, "", "share of datagrams lost") \
+    ROW(DOUBLE, faults., duplicate, 0, 0, 1, "", "share sent twice") \
+    ROW(DOUBLE, faults., reorder, 0, 0, 1, "", "share overtaken by the next one")
+
 /* One line of `vehicles`: one entity, or many of one kind on one route. x east, y north of the place, metres. */
 typedef struct ScenarioGroup {
-    char name[scenario_name_size]; /* marking and name for shots: `NAME ID` */
-    int  line;                     /* line in the file */
-    char type[scenario_type_size]; /* seven numbers with dots, or a model of etc/catalog.csv */
-    int  id, count, columns, force,
-        dead_reckoning; /* id 0: the next free one; dead_reckoning 0: the one of section dis */
-    double     spacing_m, column_m, spread_m, behind_m;
-    NumberList route_m; /* x, y, x, y ... smooth through them; a single point: stationary */
-    bool       loop, engine, parked;
-    double     speed_mps, unsteady_m, heading_deg, height_m;
-    double     start_s, stop_s, appears_s, leaves_s; /* NaN: moving from the beginning, to the end of the route, ... */
-    char       leaves[16], turret[8], dust[8];
-    int        appearance; /* more bits */
+    SCENARIO_GROUP(SETTING_MEMBER) /* name: marking, and for shots `NAME ID`; route_m: smooth through its points */
+    int line;                      /* line in the file */
 } ScenarioGroup;
 
-/* One line of `shots`: a missile or rounds. */
+/* One line of `shots`: a missile or rounds. at empty: at_m counts. */
 typedef struct ScenarioShot {
-    char       name[scenario_name_size], type[scenario_type_size];
-    int        line;
-    char       from[2 * scenario_name_size], at[2 * scenario_name_size]; /* `NAME ID` of both; at empty: at_m counts */
-    NumberList at_m, launch_m; /* x, y of a place; forward, right, down of the firing entity */
-    int        id, force, rounds, dead_reckoning;
-    double     time_s, every_s, launch_mps, boost_mps, boost_s, drag_mps2, loft_m, weave_m, silent_s;
-    char       hit[8], damage[12];
-    bool       entity; /* whether its munition sends Entity States */
+    SCENARIO_SHOT(SETTING_MEMBER)
+    int line;
 } ScenarioShot;
 
 typedef struct Scenario {
-    char      path[scenario_path_size];
-    double    duration_s, scale;
-    long long seed;
-    struct {
-        double lat_deg, lon_deg, height_m, turn_deg;
-    } place;
-    struct {
-        double swell_m, smooth_m;
-        char   store[1024];
-        char   elevation[scenario_path_size], geoid[scenario_path_size], vertical[12];
-    } ground;
-    struct {
-        int    site, application, exercise, version, mtu, dead_reckoning;
-        bool   bundle, fillers, updates;
-        char   stamps[16], clock[32], date[32];
-        double stamp_s, heartbeat_s, threshold_m, threshold_deg, rate_hz, announce_per_s;
-    } dis;
-    struct {
-        double bad_every_s, loss, duplicate, reorder;
-    } faults;
+    char path[scenario_path_size];
+    SCENARIO_TOP(SETTING_MEMBER)
+    struct { SCENARIO_PLACE(SETTING_MEMBER) } place;
+    struct { SCENARIO_GROUND(SETTING_MEMBER) } ground;
+    struct { SCENARIO_DIS(SETTING_MEMBER) } dis;
+    struct { SCENARIO_FAULTS(SETTING_MEMBER) } faults;
     int            group_count, shot_count;
     ScenarioGroup *group; /* [group_count] */
     ScenarioShot  *shot;  /* [shot_count] */
 } Scenario;
+/* clang-format on */
 
 /* Reads and checks a file: ranges, types, routes, names in shots. No side effects beyond the log. On failure one line
  * is logged with file, line, key, value, range; *out is then empty. No other file is opened. */

@@ -1,5 +1,6 @@
 /* entities/import/sidecar.c: the sidecar's YAML into plain values, by tables of settings. */
 #include "entities/import/sidecar.h"
+#include "pitviper_settings.h"
 
 #include <stdlib.h>
 

@@ -331,7 +331,7 @@ static double epoch_of(const Scenario *scenario, bool live)
     double              unix_s;
     if (live) return 1e-9 * (double)dis_udp_now_ns();
     if (*scenario->dis.date && text_to_unix_s(&unix_s, scenario->dis.date)) return unix_s;
-    return scenario->dis.stamps[0] == 'a' ? summer_unix_s : undated_unix_s;
+    return scenario->dis.stamps == SCENARIO_STAMPS_ABSOLUTE ? summer_unix_s : undated_unix_s;
 }
 
 static Status play(Run *run, const Cast *cast, double epoch_unix_s, double speed)

@@ -103,10 +103,11 @@ static Status find_span(FrameSpan *out, const Run *run, const Player *player, co
     const Options *o = &run->options;
     const Config  *config = &o->config;
     double         from_s = plan->start_s, to_s = plan->end_s;
-    const double   first_s = run->survey.first_s, last_s = config->causal ? player_last_s(player) : run->survey.last_s;
-    const double   wanted_from_s = config_span_time_s(config->exercise.from, first_s, last_s);
-    const double   wanted_to_s = config_span_time_s(config->exercise.to, first_s, last_s);
-    if (config_span_outside(config->exercise.from, config->exercise.to, first_s, last_s)) return STATUS_BAD_VALUE;
+    const double   first_s = run->survey.first_s,
+                 last_s = config->exercise.causal ? player_last_s(player) : run->survey.last_s;
+    const double wanted_from_s = config_span_time_s(config->exercise.from_s, first_s, last_s);
+    const double wanted_to_s = config_span_time_s(config->exercise.to_s, first_s, last_s);
+    if (config_span_outside(config->exercise.from_s, config->exercise.to_s, first_s, last_s)) return STATUS_BAD_VALUE;
     if (!isfinite(to_s) && isnan(wanted_to_s)) to_s = last_s;
     if (wanted_from_s > from_s) from_s = wanted_from_s;
     if (wanted_to_s < to_s) to_s = wanted_to_s;
@@ -122,7 +123,7 @@ static Status find_span(FrameSpan *out, const Run *run, const Player *player, co
                   "shown from %.3f s on; widen --from and --to or change --rate%s",
                   last >= first ? "more than a million frames" : "no frame", from_s, to_s, grid->rate_hz, first_s,
                   last_s, last_s - first_s, host, plan->start_s,
-                  config->causal ? ", or listen less (exercise.listen_s)" : "");
+                  config->exercise.causal ? ", or listen less (exercise.listen_s)" : "");
         return STATUS_BAD_VALUE;
     }
     if (single) last = first;
@@ -191,7 +192,7 @@ static Status check_hosts(DisEntityId host[options_hosts_max], const Run *run)
                 log_error("replay: --host: %s is given twice", o->host[i]);
                 return STATUS_BAD_VALUE;
             }
-        if (!observer && !survey_track(&run->survey, host[i]) && !o->config.causal) {
+        if (!observer && !survey_track(&run->survey, host[i]) && !o->config.exercise.causal) {
             log_error("replay: --host: %s is not in the log; `pitviper inspect LOG` lists the entities", o->host[i]);
             return STATUS_BAD_VALUE;
         }
@@ -277,7 +278,7 @@ static Status open_log(Run *run, DisLog *log)
     run->stopped = status != STATUS_OK && stop_asked(); /* while a pipe was waited for */
     if (status != STATUS_OK) return status;
     run->link = &log->counters;
-    if (o->config.causal) take_packet_times(log);
+    if (o->config.exercise.causal) take_packet_times(log);
     if (log->retimed)
         choice_add(&run->choices, "clock: the time stamps; the capture's packet times do not keep pace with them");
     if (log->any_port && o->config.exercise.port == dis_port_default)
@@ -289,7 +290,8 @@ static Status open_log(Run *run, DisLog *log)
                    "node.application)",
                    (unsigned long long)run->own, o->config.node.site, o->config.node.application);
     run->view = heard = *log;
-    const bool starts = !o->config.causal || player_opening(&run->view, &heard, &run->until_s, log, &o->config);
+    const bool starts =
+        !o->config.exercise.causal || player_opening(&run->view, &heard, &run->until_s, log, &o->config);
     status = run_survey(run, &heard);
     if (status == STATUS_OK && dis_log_failed(log)) status = STATUS_IO;
     if (status == STATUS_OK && (!starts || run->survey.track_count == 0)) {
@@ -318,7 +320,7 @@ static Status open_sending(Sending *s, Run *run, const DisLog *log)
 {
     const Options     *o = &run->options;
     const DisUdpConfig udp = run_network(&o->config);
-    if (strcmp(o->config.publish.dis, "off") == 0) return STATUS_OK;
+    if (o->config.publish.dis == PUBLISH_DIS_OFF) return STATUS_OK;
     if (!isfinite(o->speed)) {
         log_warn("replay: publish.dis: Data PDUs are not sent at full speed; add --speed 1 to send them at the pace of "
                  "the recording");

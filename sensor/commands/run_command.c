@@ -49,7 +49,7 @@ typedef struct Live {
 } Live;
 
 /* Whether it is to send Data PDUs. */
-static bool publishes(const Live *l) { return strcmp(l->run.options.config.publish.dis, "off") != 0; }
+static bool publishes(const Live *l) { return l->run.options.config.publish.dis != PUBLISH_DIS_OFF; }
 
 /* ---- when to stop ------------------------------------------------------------------------------ */
 
@@ -295,9 +295,9 @@ static Status live_frames(Run *run, Session *session, Player *player, const Host
     const Options *o = &run->options;
     Status         status = STATUS_OK;
     double         last = -1; /* number of the last frame */
-    const double   given_s = config_span_time_s(o->config.exercise.from, plan->start_s, NAN); /* NaN: none */
+    const double   given_s = config_span_time_s(o->config.exercise.from_s, plan->start_s, NAN); /* NaN: none */
     const double   from_s = fmax(plan->start_s, given_s);
-    const double   to_s = config_span_time_s(o->config.exercise.to, plan->start_s, NAN);
+    const double   to_s = config_span_time_s(o->config.exercise.to_s, plan->start_s, NAN);
     const double   first = fmax(ceil(from_s * grid->rate_hz - 1e-9) - grid->origin, 0);
     l->player = player;
     l->counters.rate_hz = grid->rate_hz;
@@ -467,7 +467,7 @@ int run_command(int argc, char **argv)
     char      name[sizeof l->run.options.config.record.path];
     const int stop = options_parse(&l->run.options, COMMAND_RUN, argc, argv);
     if (stop) return stop - 1;
-    l->run.options.config.causal = true;
+    l->run.options.config.exercise.causal = true;
     l->run.live = &l->counters;
     l->run.user = l;
     l->run.publish = count_frame;

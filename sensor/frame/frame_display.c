@@ -74,7 +74,7 @@ static DetectorConfig detector_of(const DisplaysOf *of, int band)
     d.bits = c->detector.bits;
     d.gain = c->detector.gain;
     d.offset = c->detector.offset;
-    d.auto_level = strcmp(c->detector.level, "manual") != 0;
+    d.auto_level = c->detector.level != DISPLAY_LEVEL_MANUAL;
     d.step = chain != NULL;
     if (band == BAND_OPTICAL) {
         d.display_gamma = true;
@@ -90,7 +90,7 @@ static DetectorConfig detector_of(const DisplaysOf *of, int band)
         d.noise_sigma = c->detector.noise * slope * (mwir ? c->detector.netd_mwir_k : c->detector.netd_lwir_k);
         d.highlight = 1.5; /* with fire on up to half of the pixels normal noise keeps 0.56 of its contrast */
         d.fire_from = low_m > 2.9e-6 ? planck_band(low_m, high_m, hottest_ground_k, NULL) : INFINITY;
-        d.plateau = strcmp(c->detector.level, "plateau") == 0 ? c->detector.plateau : 0;
+        d.plateau = c->detector.level == DISPLAY_LEVEL_PLATEAU ? c->detector.plateau : 0;
         d.min_span = 2 * slope; /* never stretch less than 2 K over the display */
         d.level_low = planck_band(low_m, high_m, mwir ? c->detector.mwir_low_k : c->detector.lwir_low_k, NULL);
         d.level_high = planck_band(low_m, high_m, mwir ? c->detector.mwir_high_k : c->detector.lwir_high_k, NULL);

@@ -10,7 +10,7 @@ Status frame_world(World *out, const Config *config, const Catalog *catalog, con
         status = atmosphere_open_at(&out->atmosphere, config->weather.atmosphere, config->weather.visibility_m);
     if (status != STATUS_OK) return status;
     out->radar.lobe_rad = config->radar.lobe_deg * rad_per_deg;
-    if (strcmp(config->terrain.detail, "off") == 0) {
+    if (!config->terrain.detail) {
         detail_table_close(out->detail);
         out->detail = NULL;
     }
@@ -19,7 +19,7 @@ Status frame_world(World *out, const Config *config, const Catalog *catalog, con
 
 Status frame_world_plant(World *world, const Woods *woods, const Config *config, const char *isa, Pool *pool)
 {
-    const ForestConfig forest = {.leaves = strcmp(config->terrain.woods_leaves, "on") == 0,
+    const ForestConfig forest = {.leaves = config->terrain.woods_leaves,
                                  .level1_px = config->terrain.woods_level1_px,
                                  .sway = config->terrain.woods_sway};
     if (!woods) return STATUS_OK;

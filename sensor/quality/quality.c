@@ -224,10 +224,7 @@ static void take(char *kept, size_t size, int *to, int value, const Config *conf
     else snprintf(kept + strlen(kept), size - strlen(kept), "; %s as given", key);
 }
 
-static bool has_plants(const Config *config)
-{
-    return strcmp(config->terrain.woods, "on") == 0 && config->terrain.woods_trees > 0;
-}
+static bool has_plants(const Config *config) { return config->terrain.woods && config->terrain.woods_trees > 0; }
 
 Status quality_choose(Config *config, Choices *choices, unsigned bands)
 {
@@ -253,7 +250,7 @@ Status quality_choose(Config *config, Choices *choices, unsigned bands)
         take(kept, sizeof kept, &config->sensor.target_samples, r->target_samples, config, "sensor.target_samples");
     }
     if (!config_given(config, "sensor.antialias"))
-        strcpy(config->sensor.antialias, r->edge_samples > 0 ? "adaptive" : "off");
+        config->sensor.antialias = r->edge_samples > 0 ? ANTIALIAS_ADAPTIVE : ANTIALIAS_OFF;
     add(wants, sizeof wants, " %g %% rmse", target.percent);
     add(wants, sizeof wants, " %g K rms", target.kelvin);
     add(wants, sizeof wants, " %g ms", target.frame_ms);

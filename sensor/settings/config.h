@@ -1,4 +1,4 @@
-/* sensor/settings/config.h: all settings, in one table: key, unit, range, default, help.
+/* sensor/settings/config.h: the settings of a run: read, set, checked, written, hashed.
  *
  * A configuration file is YAML, sections of keys. Names of files in it are relative to its own folder. A missing key
  * keeps its default; an unknown or repeated key or a value out of range is an error with file, line, key, value and the
@@ -7,158 +7,34 @@
 #define SENSOR_SETTINGS_CONFIG_H
 
 #include "render/scene/view.h"
-#include "pitviper.h"
+#include "sensor/settings/config_rows.h"
 
-enum { config_keys_max = 256, config_paths_size = 4096, config_text_size = 65536 };
+enum { config_keys_max = 256, config_text_size = 65536 };
 
+/* clang-format off */
 typedef struct Config {
-    struct {
-        int    width_px, height_px;
-        double hfov_deg;
-        double rate_hz;                      /* 0: chosen by the kind of host */
-        int    samples;                      /* N: N x N rays per pixel */
-        char   antialias[12];                /* adaptive or off */
-        int    edge_samples, target_samples; /* rays per side: of an edge pixel; over a small target */
-        char   bands[64];                    /* comma separated */
-        char   optical[8];                   /* rgb, pan or nir */
-        int    sky_samples;                  /* directions per hit; 0: closed form */
-        char   sky_visibility[8];            /* with the closed form: on or off */
-        double gimbal_limit_deg, gimbal_rate_dps, gimbal_lag_s;
-        char   mount[48];                       /* auto, or a part of the host */
-        double mount_x_m, mount_y_m, mount_z_m; /* NaN: the mount's own */
-        double mount_yaw_deg, mount_pitch_deg, mount_roll_deg;
-        char   preset[96];  /* none, or names of etc/sensors.csv, comma separated */
-        char   table[1024]; /* a sensor's sheet (sensor/detector/preset.h), or a .csv of sensors; empty: none */
-        double lens_k1, lens_k2, lens_k3, lens_p1, lens_p2; /* of the image (render/scene/view.h); NaN: of the preset */
-        double lateral_r, lateral_b;
-    } sensor;
-    struct {
-        int    bits;
-        char   level[16]; /* auto, plateau or manual */
-        double plateau;   /* share of the pixels that counts in a bin */
-        double gain, offset;
-        double noise_optical; /* share of the mean */
-        double netd_mwir_k, netd_lwir_k;
-        double lwir_low_k, lwir_high_k, mwir_low_k, mwir_high_k; /* manual levels, apparent temperature */
-        double optical_high_w_m2_sr;
-        double agc_s; /* automatic level: time constant; 0: each frame by itself */
-        double noise; /* factor of all noise */
-        /* overrides of the preset; NaN: none */
-        double f_number, obscuration, integration_ms, jitter_px, bad_share, ac_per_line, line_noise;
-        bool   smear, raw; /* of a preset: motion; files of raw counts */
-    } detector;
-    struct {
-        double bin_m;
-        int    bins;
-        double lobe_deg;
-        char   preset[32];    /* a row of etc/radars.csv, or of `table`; none */
-        char   table[1024];   /* radars in place of etc/radars.csv; empty: none */
-        bool   ground;        /* of the preset: the ground scatters */
-        bool   ground_bounce; /* with a preset: the ground mirrors entities */
-        double warp_mm;       /* with a preset: unevenness of surfaces */
-        char   given[256];    /* with a preset: list of signatures that are given; empty: none */
-        char   library[1024]; /* with a preset: a folder of targets' signatures; empty: none */
-        double chaff_dipoles; /* with a preset: resonant dipoles in a cloud of chaff */
-        double scan_deg,
-            scan_step; /* with a preset: sector that the beam sweeps, 0: it stares; step over the beamwidth */
-    } radar;
-    struct {
-        int    port, exercise;   /* exercise -1: the one with the most PDUs, -2: all */
-        char   utc[32];          /* of the first PDU; empty: chosen */
-        char   local_solar[32];  /* likewise, in mean solar time; not with utc */
-        char   host[24];         /* an id; munition: munitions as they appear, causal only; observer; empty: chosen */
-        char   aim[24];          /* empty: chosen */
-        char   from[32], to[32]; /* a time as in sensor/settings/config.h; empty: no limit */
-        double listen_s;         /* causal: time until the choices are made */
-    } exercise;
-    struct {
-        char address[64], interface[32];
-        int  ttl, queue_mb;
-    } network;
-    struct {
-        int site, application; /* of this node; PDUs of that sender are ignored */
-    } node;
-    struct {
-        char   dis[8]; /* off, sensor or truth */
-        bool   files, png;
-        char   planes[64]; /* of truth: all, none or a list */
-        char   pairs[8];   /* off, target or all */
-        bool   coco;
-        int    coco_min_pixels; /* targets below any of these are ignore regions */
-        double coco_min_visible, coco_min_snr;
-        bool   truth;                    /* truth.jsonl, and the hash of each frame */
-        bool   latest;                   /* OUT/latest: the newest display of each band */
-        char   video[config_paths_size]; /* a file (.mp4, .mkv, .ts) or a folder; empty: none */
-        char   video_codec[16];          /* h264, h264-10, hevc-12 or ffv1 */
-        char   video_labels[8];          /* off, bands or targets: drawn into videos and streams */
-        char   stream[128];              /* udp://HOST:PORT; empty: none */
-        char   klv[8];                   /* async, sync or off */
-        char   vmti[8];                  /* atr, truth or off */
-        bool   klv_files;                /* OUT/BAND.klv */
-        char   memory[64];               /* name of the shared memory; empty: none */
-        char   memory_planes[8];         /* float or counts */
-        char   memory_record[8];         /* sensor or truth */
-        int    memory_slots;
-        int    detections_port; /* UDP, loopback; 0: none */
-    } publish;
-    struct {
-        char path[1024]; /* empty: nothing is recorded */
-    } record;
-    struct {
-        char   atmosphere[1024]; /* a folder of etc/atmosphere; with a dot or a slash, any folder */
-        char   day[1024];        /* clear, constant or a file */
-        double visibility_m, air_temp_k, pressure_mbar, wind_mps, wind_from_deg; /* air_temp_k NaN: the atmosphere's */
-        double air_range_k, humidity_pct, cloud, rain_mmh;
-    } weather;
-    struct {
-        double step_s;         /* of the ground's state */
-        double vehicle_step_s; /* longest step of the vehicles' heat */
-        int    facets;         /* normals of the ground, a side */
-        double shadow_m;       /* cells of the shadow map; 0: none */
-        char   given[1024];    /* file of temperatures of parts; empty: none */
-        char   vehicles[1024]; /* file of their temperatures over a restart; empty: none */
-        char   marks[1024];    /* file of ground marks over a restart; empty: none */
-    } heat;
-    struct {
-        double relief_m, spacing_m;
-        char   store[1024]; /* a terrain store; empty: none */
-        char   elevation[config_paths_size], vertical[16], geoid[1024];
-        char   cover[config_paths_size], cover_table[1024];
-        int    cover_band;
-        char   orthophoto[config_paths_size];
-        char   sources_from[config_paths_size];
-        char   ground[8];
-        char   detail[8];                 /* on or off: noise of the ground */
-        char   woods[8], woods_leaves[8]; /* on or off: trees and other plants; their leaves in winter */
-        int    woods_trees;               /* at most */
-        double woods_half_m;              /* half width of the square in which they stand; 0: chosen */
-        double woods_low_m;               /* reach of low plants about the eye; 0: none */
-        double woods_sway, woods_level1_px;
-    } terrain;
-    struct {
-        double range_m, height_m, rate_dps; /* the stand-off observer */
-    } observer;
-    struct {
-        char   catalog[1024], materials[1024]; /* rows that take precedence over those of etc/; empty: none */
-        double sag_m;
-    } models;
-    struct {
-        double timeout_s, timeout_land_v7_s, extrapolation_limit_s;
-        int    capacity, shown, new_per_s;
-    } entities;
-    struct {
-        char   budget[8];                                          /* off or on */
-        double radiance_rmse_percent, temperature_rms_k, frame_ms; /* targets; NaN: none */
-        double machine_factor;
-        char   table[1024]; /* empty: etc/quality.csv */
-    } quality;
-    long long seed;
-    bool      causal;
-    bool      given[config_keys_max]; /* set by a file or the command line: not changed by a preset */
+    struct { CONFIG_SENSOR(SETTING_MEMBER) } sensor;
+    struct { CONFIG_DETECTOR(SETTING_MEMBER) } detector;
+    struct { CONFIG_RADAR(SETTING_MEMBER) } radar;
+    struct { CONFIG_EXERCISE(SETTING_MEMBER) } exercise;
+    struct { CONFIG_NETWORK(SETTING_MEMBER) } network;
+    struct { CONFIG_NODE(SETTING_MEMBER) } node;
+    struct { CONFIG_PUBLISH(SETTING_MEMBER) } publish;
+    struct { CONFIG_RECORD(SETTING_MEMBER) } record;
+    struct { CONFIG_WEATHER(SETTING_MEMBER) } weather;
+    struct { CONFIG_HEAT(SETTING_MEMBER) } heat;
+    struct { CONFIG_TERRAIN(SETTING_MEMBER) } terrain;
+    struct { CONFIG_OBSERVER(SETTING_MEMBER) } observer;
+    struct { CONFIG_MODELS(SETTING_MEMBER) } models;
+    struct { CONFIG_ENTITIES(SETTING_MEMBER) } entities;
+    struct { CONFIG_QUALITY(SETTING_MEMBER) } quality;
+    CONFIG_TOP(SETTING_MEMBER)
+    bool given[config_keys_max]; /* set by a file or the command line: not changed by a preset */
     /* For messages: the last file read, empty where its name is longer, and which keys were set after it. */
     char file[512];
     bool later[config_keys_max];
 } Config;
+/* clang-format on */
 
 /* Whether it is a list of words, such as sensor.bands. */
 bool config_takes_list(const char *name);

@@ -145,7 +145,7 @@ bool config_span_outside(const char *from, const char *to, double first_s, doubl
     /* a live node renders frames after the last report until the entities time out; --to may ask for them */
     const bool late = from_s > last_s + (to_s > last_s ? 60 : 0), early = to_s<first_s, backward = from_s> to_s;
     if (!late && !early && !backward) return false;
-    char which[2 * sizeof((Config *)0)->exercise.from + 24];
+    char which[2 * sizeof((Config *)0)->exercise.from_s + 24];
     if (backward && !late && !early) snprintf(which, sizeof which, "--from %s is after --to %s", from, to);
     else
         snprintf(which, sizeof which,
@@ -182,7 +182,7 @@ static bool store_alone(const Config *config)
                       other[k].key);
             return false;
         }
-    if (strcmp(config->terrain.ground, "fit") == 0) {
+    if (config->terrain.ground == TERRAIN_GROUND_FIT) {
         log_error("config: terrain.ground: a terrain store is mapped read-only and cannot be led through the entities; "
                   "use clamp or trust, or terrain.elevation instead of terrain.store for a fit");
         return false;
@@ -253,7 +253,7 @@ static bool terrain_good(const Config *config)
 static bool products_good(const Config *config)
 {
     bool       good = true;
-    const bool pairs = strcmp(config->publish.pairs, "off") != 0;
+    const bool pairs = config->publish.pairs != PUBLISH_PAIRS_OFF;
     if ((pairs || config->publish.coco) && !config->publish.files) {
         log_error("config: %spublish.%s: needs image files; set publish.files: true",
                   config_where(config, pairs ? "publish.pairs" : "publish.coco"), pairs ? "pairs" : "coco");
@@ -269,7 +269,7 @@ static bool products_good(const Config *config)
         good = false;
     }
     const unsigned of_woods = 1u << PLANE_INSTANCE | 1u << PLANE_COVER;
-    if (planes != planes_all && planes & of_woods && strcmp(config->terrain.woods, "on") != 0) {
+    if (planes != planes_all && planes & of_woods && !config->terrain.woods) {
         log_error("config: %spublish.planes: instance and cover are of a world with plants: terrain.woods: on",
                   config_where(config, "publish.planes"));
         good = false;
@@ -338,7 +338,7 @@ static bool exercise_good(const Config *config)
                   config_where(config, "exercise.local_solar"));
         good = false;
     }
-    const char *const moment[2] = {config->exercise.from, config->exercise.to};
+    const char *const moment[2] = {config->exercise.from_s, config->exercise.to_s};
     bool              good_spans = true;
     for (int i = 0; i < 2; i++)
         if (!config_span_good(moment[i])) {
@@ -349,9 +349,9 @@ static bool exercise_good(const Config *config)
                 config_where(config, i ? "exercise.to_s" : "exercise.from_s"), i ? "to_s" : "from_s", moment[i]);
             good = false;
         }
-    if (good_spans && config_span_backward(config->exercise.from, config->exercise.to)) {
+    if (good_spans && config_span_backward(config->exercise.from_s, config->exercise.to_s)) {
         log_error("config: %sexercise.from_s: %s is after exercise.to_s: %s", config_where(config, "exercise.from_s"),
-                  config->exercise.from, config->exercise.to);
+                  config->exercise.from_s, config->exercise.to_s);
         good = false;
     }
     return good;
@@ -367,9 +367,8 @@ Status config_check(const Config *config)
     good = scene_good(config) && good;
     good = exercise_good(config) && good;
     good &= !*config->record.path || dis_recorder_name("config: record.path", config->record.path);
-    good &= publish_video_check(config->publish.video, config->publish.stream, config->publish.video_codec,
-                                config->sensor.bands) == STATUS_OK;
+    good &= publish_video_check(config) == STATUS_OK;
     const bool sensor = strcmp(config->sensor.preset, "none") != 0 || *config_sheet(config);
-    good &= publish_memory_check(config->publish.memory, config->publish.memory_planes, sensor) == STATUS_OK;
+    good &= publish_memory_check(config, sensor) == STATUS_OK;
     return good ? STATUS_OK : STATUS_BAD_VALUE;
 }

@@ -1,24 +1,34 @@
-/* sensor/settings/config_file.c: sets the settings from files and command lines, says what they are, and writes them.
- */
+/* sensor/settings/config_file.c: the table of settings and their defaults; sets them from files and command lines, says
+ * what they are, and writes them. */
 #include "sensor/settings/config_private.h"
 
 #include "pitviper_channels.h"
 #include "pitviper_file.h"
+#include "terrain/woods/woods.h"
 
 #include <stdarg.h>
 #include <strings.h>
+
+#define CONFIG_ROW(...) SETTING_ROW(Config, __VA_ARGS__)
+static const Setting keys[] = {CONFIG_ROWS(CONFIG_ROW)};
+enum { key_count = sizeof keys / sizeof keys[0] };
+_Static_assert((int)key_count <= (int)config_keys_max, "Config.given is too small");
+const SettingTable config_table = {
+    .module = "config", .row = keys, .count = key_count, .all_keys = "`pitviper check --default`"};
+
+Config config_default(void) { return (Config){CONFIG_ROWS(SETTING_DEFAULT)}; }
 
 /* ---- what they say ---------------------------------------------------------------------------------- */
 
 OpticalChannels config_optical(const Config *config)
 {
     /* a channel selected in place of nir is all there is of the band */
-    return strcmp(config->sensor.optical, "nir") == 0 || !channel_in(SPECTRAL_NIR)->standard ? OPTICAL_NIR
-           : strcmp(config->sensor.optical, "rgb") == 0                                      ? OPTICAL_RGB
-                                                                                             : OPTICAL_PAN;
+    return config->sensor.optical == SENSOR_OPTICAL_NIR || !channel_in(SPECTRAL_NIR)->standard ? OPTICAL_NIR
+           : config->sensor.optical == SENSOR_OPTICAL_RGB                                      ? OPTICAL_RGB
+                                                                                               : OPTICAL_PAN;
 }
 
-bool config_adaptive(const Config *config) { return strcmp(config->sensor.antialias, "adaptive") == 0; }
+bool config_adaptive(const Config *config) { return config->sensor.antialias == ANTIALIAS_ADAPTIVE; }
 
 bool config_given(const Config *config, const char *name) { return config->given[settings_find(&config_table, name)]; }
 
@@ -144,8 +154,8 @@ void config_text(char *out, size_t out_size, const Config *config)
     hashed.publish = plain.publish;
     hashed.record = plain.record;
     hashed.exercise.port = plain.exercise.port;
-    memcpy(hashed.exercise.from, plain.exercise.from, sizeof hashed.exercise.from);
-    memcpy(hashed.exercise.to, plain.exercise.to, sizeof hashed.exercise.to);
+    memcpy(hashed.exercise.from_s, plain.exercise.from_s, sizeof hashed.exercise.from_s);
+    memcpy(hashed.exercise.to_s, plain.exercise.to_s, sizeof hashed.exercise.to_s);
     hashed.quality = plain.quality; /* the settings that it selects are hashed themselves */
     settings_absolute(&hashed, &config_table);
     settings_text(out, out_size, &config_table, &hashed);

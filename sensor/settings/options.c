@@ -420,7 +420,7 @@ int options_parse(Options *o, CommandName command, int argc, char **argv)
     if (command == COMMAND_REPLAY) o->log = argv[optind];
     if (o->host_count == 1 && config_set(&o->config, "exercise.host", o->host[0], "--host") != STATUS_OK) return 1 + 2;
     if (o->host_count == 1) o->host_count = 0; /* a single host is kept as a setting */
-    if (command == COMMAND_RUN && (strcmp(o->config.publish.pairs, "off") != 0 || o->config.publish.coco)) {
+    if (command == COMMAND_RUN && (o->config.publish.pairs != PUBLISH_PAIRS_OFF || o->config.publish.coco)) {
         log_error("options: publish.%s: only made by `replay`; use --record, then `replay --causal`",
                   o->config.publish.coco ? "coco" : "pairs");
         return 1 + 2;

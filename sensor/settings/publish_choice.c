@@ -65,8 +65,9 @@ static bool memory_name_good(const char *name)
     return true;
 }
 
-Status publish_memory_check(const char *name, const char *planes, bool sensor)
+Status publish_memory_check(const Config *config, bool sensor)
 {
+    const char *name = config->publish.memory;
     if (!*name) return STATUS_OK;
     if (!memory_name_good(name)) {
         log_error("config: publish.memory: '%s' is not a name of letters, digits, `-`, `_` and `.` that begins with a "
@@ -74,7 +75,7 @@ Status publish_memory_check(const char *name, const char *planes, bool sensor)
                   name);
         return STATUS_BAD_VALUE;
     }
-    if (strcmp(planes, "counts") == 0 && !sensor) {
+    if (config->publish.memory_planes == MEMORY_PLANES_COUNTS && !sensor) {
         log_error("config: publish.memory_planes: counts are those of a sensor; choose one with sensor.preset or "
                   "sensor.table, or set publish.memory_planes: float");
         return STATUS_BAD_VALUE;
@@ -166,14 +167,6 @@ static bool other_video(const char *path)
     return known && !(stat(path, &about) == 0 && S_ISDIR(about.st_mode));
 }
 
-VideoCodec video_codec(const char *name)
-{
-    static const char *const names[] = {"h264", "h264-10", "hevc-12", "ffv1"};
-    int                      i = 0;
-    while (i < VIDEO_FFV1 && strcmp(name, names[i]) != 0) i++;
-    return (VideoCodec)i;
-}
-
 /* The number of bands in a list; their names are checked elsewhere. */
 static int bands_listed(const char *text)
 {
@@ -182,10 +175,10 @@ static int bands_listed(const char *text)
     return count;
 }
 
-Status publish_video_check(const char *video, const char *stream, const char *codec, const char *bands)
+Status publish_video_check(const Config *config)
 {
+    const char     *video = config->publish.video, *stream = config->publish.stream, *why = NULL;
     const VideoKind kind = video_kind(video);
-    const char     *why = NULL;
     StreamUrl       url;
     if (kind == VIDEO_NONE && !*stream) return STATUS_OK;
 #ifndef PITVIPER_VIDEO
@@ -205,14 +198,14 @@ Status publish_video_check(const char *video, const char *stream, const char *co
         log_error("config: publish.stream: '%s' %s; for example udp://239.1.2.3:5004", stream, why);
         return STATUS_BAD_VALUE;
     }
-    const int steps = (bands_listed(bands) - 1) * publish_stream_port_step;
+    const int steps = (bands_listed(config->sensor.bands) - 1) * publish_stream_port_step;
     if (*stream && url.port + steps > 65535) {
         log_error("config: publish.stream: port %d: the last of %d bands would be sent to port %d; choose one of at "
                   "most %d",
                   url.port, steps / publish_stream_port_step + 1, url.port + steps, 65535 - steps);
         return STATUS_BAD_VALUE;
     }
-    const bool lossless = video_codec(codec) == VIDEO_FFV1;
+    const bool lossless = config->publish.video_codec == VIDEO_FFV1;
     if (lossless && *stream) {
         log_error("config: publish.video_codec: ffv1 is for files; MPEG-TS (publish.stream) does not carry it; choose "
                   "h264, h264-10 or hevc-12");

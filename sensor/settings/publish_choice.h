@@ -2,7 +2,7 @@
 #ifndef SENSOR_SETTINGS_PUBLISH_CHOICE_H
 #define SENSOR_SETTINGS_PUBLISH_CHOICE_H
 
-#include "pitviper.h"
+#include "sensor/settings/config.h"
 
 /* ---- truth planes ------------------------------------------------------------------------------------- */
 
@@ -33,7 +33,7 @@ void publish_planes_why(char *out, size_t out_size, const char *text);
 
 /* Checks publish.memory, the name of a ring, and publish.memory_planes. sensor: whether a band has one.
  * STATUS_BAD_VALUE, logged with what to do. Part of config_check. */
-Status publish_memory_check(const char *name, const char *planes, bool sensor);
+Status publish_memory_check(const Config *config, bool sensor);
 
 /* ---- videos and streams ------------------------------------------------------------------------------- */
 
@@ -53,11 +53,8 @@ enum { publish_stream_port_step = 2 }; /* from one band to the next */
 typedef enum VideoKind { VIDEO_NONE, VIDEO_FOLDER, VIDEO_MP4, VIDEO_MKV, VIDEO_TS } VideoKind;
 VideoKind video_kind(const char *path);
 
-typedef enum VideoCodec { VIDEO_H264, VIDEO_H264_10, VIDEO_HEVC_12, VIDEO_FFV1 } VideoCodec;
-VideoCodec video_codec(const char *name); /* of the setting */
-
 /* STATUS_BAD_VALUE, logged: contradictions between these settings, with a next step. Without FFmpeg's libraries
  * videos and streams are refused. Part of config_check. */
-Status publish_video_check(const char *video, const char *stream, const char *codec, const char *bands);
+Status publish_video_check(const Config *config);
 
 #endif

@@ -1,7 +1,7 @@
 /* Settings: what is wrong is refused with its line; lists and numbers; what is written reads back the same. */
 #include "tests/check.h"
 
-#include "pitviper.h"
+#include "pitviper_settings.h"
 
 typedef struct Thing {
     double     size_m;

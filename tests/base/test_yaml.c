@@ -1,6 +1,8 @@
 /* YAML that would keep its parser busy for minutes is refused, in time that grows with its length alone. */
 #include "tests/check.h"
 
+#include "pitviper_settings.h"
+
 static char *repeated(const char *head, const char *part, int times, const char *tail)
 {
     const size_t n = strlen(head) + strlen(part) * (size_t)times + strlen(tail) + 1;

@@ -40,10 +40,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     if (!(config.sensor.width_px >= 8 && config.sensor.width_px <= 8192)) abort();
     if (!(config.sensor.hfov_deg >= 0.01 && config.sensor.hfov_deg <= 120)) abort();
     if (!(config.entities.capacity >= 1 && config.entities.capacity <= 1000000)) abort();
-    if (strcmp(config.sensor.optical, "rgb") != 0 && strcmp(config.sensor.optical, "pan") != 0 &&
-        strcmp(config.sensor.optical, "nir") != 0)
-        abort();
-    if (strcmp(config.detector.level, "auto") != 0 && strcmp(config.detector.level, "manual") != 0) abort();
+    if ((unsigned)config.sensor.optical > SENSOR_OPTICAL_NIR) abort();
+    if ((unsigned)config.detector.level > DISPLAY_LEVEL_MANUAL) abort();
     static char text[1 << 16];
     config_text(text, sizeof text, &config);
     if (strlen(text) >= sizeof text - 1) abort();

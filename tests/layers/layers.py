@@ -31,7 +31,7 @@ MAY = {
     'top': ('*',), 'fuzz': ('*',), 'analytic': ('*',),
 }
 BASE_HEADERS = ('pitviper.h', 'pitviper_channels.h', 'pitviper_confine.h', 'pitviper_file.h', 'pitviper_library.h', 'pitviper_output.h',
-                'pitviper_simd.h')
+                'pitviper_settings.h', 'pitviper_simd.h')
 
 # Libraries that one file, or one folder, knows: header, places.
 LIBRARIES = (
@@ -198,7 +198,28 @@ def check_named(tree, documents, there):
                 yield f'{path}: names {name}, which does not exist'
 
 
-CHECKS = (check_rooms, check_circles, check_first_lines, check_writers)
+# Settings (lists of pitviper_settings.h): what is chosen among words is a CHOICE or a SWITCH, an enum or a bool, so that nothing compares
+# words. Texts of any content that have a word of their own as well:
+ENTRY = re.compile(r'\bROW\((\w+), (\w*)\.?, (\w+),')
+WORDS_OF_TEXTS = {'sensor.preset', 'radar.preset', 'sensor.mount', 'exercise.host', 'weather.day'}
+
+
+def check_choices(tree):
+    keys = {(section, key) for path, text in tree.items() if path.endswith('.h') for kind, section, key in ENTRY.findall(text) if section}
+    keys = '|'.join(sorted(rf'{section}\.{key}' for section, key in keys)) or 'no key'
+    compared = re.compile(rf"""\bstrn?(?:case)?cmp\([^;"]*?(?:->|\.)({keys})\b, *"|\*[\w>.\[\]-]*(?:->|\.)({keys})\b *[=!]= *'""")
+    for path, text in tree.items():
+        if path.startswith('tests/'):
+            continue
+        for found in compared.finditer(text):
+            key = found.group(1) or found.group(2)
+            if key not in WORDS_OF_TEXTS:
+                yield f'{path}: the words of {key} are compared: make it a CHOICE or a SWITCH (etc/ADDING.md)'
+        if re.search(r'\{[^{}]*\bSETTING_TEXT\b[^{}]*"[\w-]+(?:\|[\w-]+)+"', text):
+            yield f'{path}: a text with choices: make it a CHOICE or a SWITCH (etc/ADDING.md)'
+
+
+CHECKS = (check_rooms, check_circles, check_first_lines, check_writers, check_choices)
 
 
 def violations(tree):
@@ -268,6 +289,13 @@ def twins():
                         ('tests/dis/test_a.c', '#include "tests/check.h"'), ('main.c', '')):
         if not violations({path: first + '\n'}):
             wrong.append(f'twin: not caught: {path} begins {first}')
+    entries = '#define A(ROW) \\\n ROW(TEXT, lamp., colour, "red", 8, "", "") \\\n ROW(TEXT, sensor., preset, "none", 8, "", "")\n'
+    for bad, line in ((True, 'strcmp(config->lamp.colour, "red")'), (True, 'f(1, !strncmp(s->of.config.lamp.colour, "red", 2))'),
+                      (True, "if (*c->lamp.colour == 'r')"), (True, '{"lamp.colour", SETTING_TEXT, AT(colour), 0, 0, "red|dark-blue", "", ""}'),
+                      (False, 'strcmp(config->lamp.colour, b->lamp.colour)'), (False, 'strcmp(config->sensor.preset, "none")'),
+                      (False, 'strcmp(lamp->colour, "red")'), (False, 'if (!*c->lamp.colour)')):
+        if bool(violations({'sensor/rows.h': entries, 'sensor/a.c': f'/* sensor/a.c: planted. */\n{line};\n'})) != bad:
+            wrong.append(f'twin: {"not caught" if bad else "wrongly caught"}: {line}')
     for bad, line in ((True, '/* see dis/b.h */'), (False, '/* see dis/a.c */'), (False, '/* see dis/NAME.c */'), (False, 'puts("dis/b.h");')):
         if bool(list(check_named({'dis/a.c': line}, {}, lambda name: name == 'dis/a.c'))) != bad:
             wrong.append(f'twin: {"not caught" if bad else "wrongly caught"}: {line}')

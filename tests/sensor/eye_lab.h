@@ -147,14 +147,14 @@ static inline void lab_run(const Config *given, double from_s, double rate_hz, i
     Sensors  sensors = {0};
     config.sensor.width_px = 24, config.sensor.height_px = 16;
     config.publish.files = config.publish.png = false;
-    strcpy(config.sensor.antialias, "off");
-    strcpy(config.quality.budget, "off");
+    config.sensor.antialias = ANTIALIAS_OFF;
+    config.quality.budget = false;
     qsort(lab.datagram, (size_t)lab.reports, sizeof *lab.datagram, lab_compare);
     DisLog log = {.count = lab.reports, .datagram = lab.datagram};
     assert_int_equal(survey_log(&survey, &log, -1), STATUS_OK);
     assert_int_equal(choice_host(&plan, &choices, &survey, &config), STATUS_OK);
-    if (config.causal) plan.start_s = survey.first_s, plan.end_s = INFINITY;
-    assert_int_equal(player_create(&player, -1, config.causal), STATUS_OK);
+    if (config.exercise.causal) plan.start_s = survey.first_s, plan.end_s = INFINITY;
+    assert_int_equal(player_create(&player, -1, config.exercise.causal), STATUS_OK);
     assert_int_equal(player_add_log(player, &log), STATUS_OK);
     const SessionShared shared = {.config = &config,
                                   .survey = &survey,

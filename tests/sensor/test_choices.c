@@ -37,7 +37,7 @@ static void the_exercise_heard_most_is_taken(void **state)
     config.exercise.exercise = -1;
     log.count = 1;
     assert_int_equal(choice_exercise(&choices, &log, &config), -1); /* there is but one: nothing to choose */
-    config.causal = true;
+    config.exercise.causal = true;
     assert_int_equal(choice_exercise(&choices, &log, &config), 7); /* and others may come */
     CHECK(choices.count == 0);
 }
@@ -240,7 +240,7 @@ static void a_causal_host_is_one_that_is_still_there(void **state)
     Choices  choices = {0};
     HostPlan plan;
     log_set_sink(check_listen, NULL);
-    config.causal = true;
+    config.exercise.causal = true;
     assert_int_equal(choice_host(&plan, &choices, &survey, &config), STATUS_OK);
     CHECK(plan.host.entity == 21 && plan.aim.entity == 10 && plan.munition && !plan.any_munition);
     tracks[2] = tracks[1]; /* 21 as ended as 20 is: the one seen once */
@@ -260,7 +260,7 @@ static void a_causal_host_is_one_that_is_still_there(void **state)
     config.exercise.aim[0] = 0;
     assert_int_equal(choice_host(&plan, &choices, &survey, &config), STATUS_OK);
     CHECK(plan.any_munition && dis_entity_id_is_none(plan.host) && dis_entity_id_is_none(plan.aim));
-    config.causal = false; /* of a whole log: from the first that flies to the end of the last */
+    config.exercise.causal = false; /* of a whole log: from the first that flies to the end of the last */
     assert_int_equal(choice_host(&plan, &choices, &survey, &config), STATUS_OK);
     CHECK(plan.any_munition && dis_entity_id_is_none(plan.host) && plan.start_s == 0 && plan.end_s == 29);
     survey.track_count = 1; /* a vehicle */
@@ -321,7 +321,7 @@ static void an_observer_may_be_asked_for(void **state)
     assert_int_equal(config_check(&config), STATUS_OK);
     for (int causal = 0; causal < 2; causal++) {
         Choices choices = {0};
-        config.causal = causal;
+        config.exercise.causal = causal;
         config.exercise.aim[0] = 0;
         assert_int_equal(choice_host(&plan, &choices, &survey, &config), STATUS_OK);
         CHECK(dis_entity_id_is_none(plan.host) && !plan.any_munition && !plan.munition && plan.aim.entity == 10);

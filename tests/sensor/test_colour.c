@@ -371,7 +371,7 @@ static void a_frame_is_balanced_by_its_own_day(void **state)
     for (int pass = 0; pass < 3; pass++) {
         if (pass > 0) shown.chain = chains;
         if (pass == 2) {
-            strcpy(config.detector.level, "manual");
+            config.detector.level = DISPLAY_LEVEL_MANUAL;
             config.detector.optical_high_w_m2_sr = (white[0] + white[1] + white[2]) / 3;
         }
         level[BAND_OPTICAL].known = false;

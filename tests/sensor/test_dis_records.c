@@ -340,7 +340,7 @@ static void a_consumer_sends_detections(void **state)
         Sent     *sent = calloc(1, sizeof *sent);
         Consumer *consumer;
         Frame     frame = {.record = frame_of(3, 0)};
-        strcpy(config.publish.dis, truth ? "truth" : "sensor");
+        config.publish.dis = truth ? PUBLISH_DIS_TRUTH : PUBLISH_DIS_SENSOR;
         const DisOf of = {.config = &config,
                           .bands = 1u << BAND_LWIR,
                           .version = 7,
@@ -366,7 +366,7 @@ static void a_consumer_sends_each_frame_and_band(void **state)
     static const double time_s[2] = {100, 100.5};
     Config              config = config_default();
     for (int truth = 0; truth <= 1; truth++) {
-        strcpy(config.publish.dis, truth ? "truth" : "sensor");
+        config.publish.dis = truth ? PUBLISH_DIS_TRUTH : PUBLISH_DIS_SENSOR;
         Sent *sent = send_frames(&config, time_s, 2, truth ? STATUS_IO : STATUS_OK);
         CHECK(sent->count == 4);
         for (int i = 0; i < 4; i++) {
@@ -397,11 +397,11 @@ static void streams_are_announced(void **state)
     enum { frames = sizeof due / sizeof *due };
     Config   config = config_default();
     uint32_t bits;
-    strcpy(config.publish.dis, "sensor");
+    config.publish.dis = PUBLISH_DIS_SENSOR;
     strcpy(config.publish.stream, "udp://239.1.2.3:5004");
-    strcpy(config.publish.video_codec, "hevc-12");
-    strcpy(config.publish.klv, "sync");
-    strcpy(config.publish.vmti, "atr");
+    config.publish.video_codec = VIDEO_HEVC_12;
+    config.publish.klv = KLV_SYNC;
+    config.publish.vmti = VMTI_ATR;
     Sent *sent = send_frames(&config, time_s, frames, STATUS_OK);
     int   at = 0;
     for (int i = 0; i < frames; i++) {
@@ -423,7 +423,7 @@ static void streams_are_announced(void **state)
     }
     CHECK(at == sent->count);
     free(sent);
-    strcpy(config.publish.klv, "off"); /* so there are no targets either */
+    config.publish.klv = KLV_OFF; /* so there are no targets either */
     sent = send_frames(&config, time_s, 1, STATUS_OK);
     CHECK(fixed(sent->pdu[0], 600010) == 0 && fixed(sent->pdu[0], 600011) == 0);
     free(sent);

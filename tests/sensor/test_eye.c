@@ -216,7 +216,7 @@ static void a_missile_holds_its_aim(void **state)
             }
             strcpy(config.exercise.host, causal ? "munition" : "1:1:2");
             strcpy(config.exercise.aim, "1:1:1");
-            config.causal = causal;
+            config.exercise.causal = causal;
             config.sensor.gimbal_limit_deg = 80;
             lab_run(&config, 1.5, 100, 14);
             CHECK(lab.shots == 14);

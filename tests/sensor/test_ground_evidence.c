@@ -19,7 +19,7 @@ static void choose(Landscape *out, GroundContact *contact, Choices *choices, con
     Config   config = config_default();
     HostPlan plan = {0};
     choices->count = 0;
-    strcpy(config.terrain.ground, ground);
+    assert_int_equal(config_set(&config, "terrain.ground", ground, "test"), STATUS_OK);
     config.terrain.spacing_m = 8; /* a quarter of the time */
     assert_int_equal(choice_ground(out, contact, choices, &(ChoiceBasis){&e->survey, &config, catalog, &plan}, &frame),
                      STATUS_OK);

@@ -46,7 +46,7 @@ static void the_sensor_goes_from_one_to_the_next(void **state)
     (void)state;
     Config config = config_default();
     strcpy(config.exercise.host, "munition");
-    config.causal = true;
+    config.exercise.causal = true;
     scene();
     lab_run(&config, 0, 20, 116);
     static LabFrame all[lab_most_frames];
@@ -83,7 +83,7 @@ static void a_named_host_stays(void **state)
     (void)state;
     Config config = config_default();
     strcpy(config.exercise.host, "1:1:2");
-    config.causal = true;
+    config.exercise.causal = true;
     scene();
     lab_run(&config, 0, 4, 24);
     for (int k = 0; k < lab.shots; k++) CHECK(lab.shot[k].host.entity == 2);

@@ -173,7 +173,7 @@ static void all_options_together_reach_a_variant(void **state)
     parse_variant(&o[1], &o[0]);
     assert_null(difference(&o[0], &o[1]));
     CHECK(o[1].threads == 1 && o[1].only_count == 2 && o[1].only[1] == 7 && o[1].speed == 4 && o[1].no_skip);
-    CHECK(o[1].config.publish.coco && !o[1].config.publish.png && o[1].config.causal && o[1].config.seed == 3);
+    CHECK(o[1].config.publish.coco && !o[1].config.publish.png && o[1].config.exercise.causal && o[1].config.seed == 3);
     assert_string_equal(o[1].config.exercise.host, "1:2:3");
     free(o);
 }

@@ -263,11 +263,11 @@ static void given_keys_stay_and_the_choice_is_said(void **state)
     assert_int_equal(config_set(&config, "quality.frame_ms", "5", "test"), STATUS_OK);
     CHECK(quality_wants_factor(&config));
     assert_int_equal(quality_choose(&config, &choices, 7), STATUS_OK);
-    CHECK(strcmp(config.sensor.antialias, "off") == 0 && config.sensor.samples == 1);
+    CHECK(config.sensor.antialias == ANTIALIAS_OFF && config.sensor.samples == 1);
     assert_int_equal(config_set(&config, "quality.machine_factor", "0.1", "test"), STATUS_OK);
     CHECK(!quality_wants_factor(&config));
     assert_int_equal(quality_choose(&config, &choices, 7), STATUS_OK); /* 0.35 megapixels, 90 ms, a tenth: 3.1 ms */
-    CHECK(config.sensor.samples == 2 && strcmp(config.sensor.antialias, "adaptive") == 0);
+    CHECK(config.sensor.samples == 2 && config.sensor.antialias == ANTIALIAS_ADAPTIVE);
     CHECK(config_set(&config, "quality.frame_ms", "0", "test") == STATUS_BAD_VALUE);
     CHECK(config_set(&config, "quality.machine_factor", "-1", "test") == STATUS_BAD_VALUE);
     CHECK(config_set(&config, "quality.radiance_rmse_percent", "nan", "test") == STATUS_BAD_VALUE);

@@ -69,8 +69,8 @@ static Consumer *open_video(Config *config, const char *path, const char *codec,
     Consumer *consumer = NULL;
     *config = config_default();
     snprintf(config->publish.video, sizeof config->publish.video, "%s", path);
-    strcpy(config->publish.video_codec, codec);
-    strcpy(config->publish.klv, "off");
+    assert_int_equal(config_set(config, "publish.video_codec", codec, "test"), STATUS_OK);
+    config->publish.klv = KLV_OFF;
     const VideoOf of = {.config = config,
                         .to = VIDEO_TO_FILE,
                         .bands = 1u << BAND_MWIR | 1u << BAND_LWIR,

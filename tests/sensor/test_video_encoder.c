@@ -65,7 +65,7 @@ static void one_packet_for_each_image_and_the_same_bytes(void **state)
     (void)state;
     static uint8_t first[octets_most], again[octets_most];
     for (int codec = VIDEO_H264; codec <= VIDEO_FFV1; codec++) {
-        const EncoderConfig config = {(VideoCodec)codec, width, height, codec == VIDEO_FFV1, 30};
+        const EncoderConfig config = {(enum VideoCodec)codec, width, height, codec == VIDEO_FFV1, 30};
         const size_t        count = encode_all(first, &config, true);
         assert_int_equal(encode_all(again, &config, false), count);
         assert_memory_equal(first, again, count);
@@ -151,7 +151,7 @@ static void grey_levels_come_back(void **state)
     static const double most_rms[] = {2, 4.5, 14, 0}; /* of 256, 1024, 4096 and 65536 levels */
     for (int codec = VIDEO_H264; codec <= VIDEO_FFV1; codec++)
         for (int start = 0; start <= 3; start += 3) {
-            const EncoderConfig config = {(VideoCodec)codec, width, height, false, 30};
+            const EncoderConfig config = {(enum VideoCodec)codec, width, height, false, 30};
             double              rms, worst;
             decoded_error(&rms, &worst, &config, start);
             print_message("codec %d from frame %d: rms %.2f, worst %.0f of %d levels, PSNR %.1f dB\n", codec, start,
@@ -283,7 +283,7 @@ static void contradictions_are_refused(void **state)
         strcpy(config.sensor.bands, cases[i].bands);
         strcpy(config.publish.video, cases[i].video);
         strcpy(config.publish.stream, cases[i].stream);
-        strcpy(config.publish.video_codec, cases[i].codec);
+        assert_int_equal(config_set(&config, "publish.video_codec", cases[i].codec, "test"), STATUS_OK);
         if ((config_check(&config) == STATUS_OK) != cases[i].good) fail_msg("case %zu", i);
     }
     log_set_level(LOG_INFO);

@@ -9,7 +9,7 @@
 static Config woods_on(void)
 {
     Config config = config_default();
-    strcpy(config.terrain.woods, "on");
+    config.terrain.woods = true;
     config.terrain.woods_half_m = 400;
     config.terrain.spacing_m = 8;
     return config;
@@ -171,15 +171,15 @@ static void off_is_off_and_few_are_few(void **state)
     Config      config = woods_on();
     Exercise   *e = fresh();
     stand(e, tank, 0, 0, 500, 8, 12);
-    strcpy(config.terrain.woods, "off");
+    config.terrain.woods = false;
     plant(&woods, &land, &choices, e, &config);
     CHECK(!woods.on && woods.woods.count == 0 && !woods.path);
     CHECK(!said(&choices, "woods"));
     choice_woods_free(&woods);
     landscape_destroy(&land);
 
-    strcpy(config.terrain.woods, "on");
-    strcpy(config.terrain.woods_leaves, "off");
+    config.terrain.woods = true;
+    config.terrain.woods_leaves = false;
     config.terrain.woods_trees = 50;
     plant(&woods, &land, &choices, e, &config);
     int trees = 0;

@@ -28,7 +28,7 @@ int choice_exercise(Choices *choices, const DisLog *log, const Config *config)
         exercises += heard[e] > 0;
         if (heard[e] > heard[most]) most = e;
     }
-    if (exercises <= 1) return config->causal && exercises ? most : -1;
+    if (exercises <= 1) return config->exercise.causal && exercises ? most : -1;
     choice_add(choices, "exercise: %d, heard most of %d (exercise.exercise)", most, exercises);
     return most;
 }

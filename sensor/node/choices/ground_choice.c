@@ -210,20 +210,20 @@ static void report_cover(Choices *choices, const CoverReport *cover)
 static Status import(Landscape *out, Choices *choices, const Config *config, const LocalFrame *frame,
                      const GroundEvidence *e, bool fit)
 {
-    LandscapeReport      r;
-    const char          *vertical = config->terrain.vertical;
-    const LandscapeFiles files = {.elevation = {.paths = config->terrain.elevation,
-                                                .geoid_path = config->terrain.geoid,
-                                                .vertical = strcmp(vertical, "geoid") == 0       ? ELEVATION_GEOID
-                                                            : strcmp(vertical, "ellipsoid") == 0 ? ELEVATION_ELLIPSOID
-                                                                                                 : ELEVATION_BY_FILE,
-                                                .spacing_m = config->terrain.spacing_m,
-                                                .horizon_m = landscape_default_config().horizon_m},
-                                  .cover = config->terrain.cover,
-                                  .cover_table = config->terrain.cover_table,
-                                  .cover_band = config->terrain.cover_band,
-                                  .photo = config->terrain.orthophoto,
-                                  .seed = (uint64_t)config->seed};
+    static const ElevationVertical vertical[] = {[TERRAIN_VERTICAL_AUTO] = ELEVATION_BY_FILE,
+                                                 [TERRAIN_VERTICAL_GEOID] = ELEVATION_GEOID,
+                                                 [TERRAIN_VERTICAL_ELLIPSOID] = ELEVATION_ELLIPSOID};
+    LandscapeReport                r;
+    const LandscapeFiles           files = {.elevation = {.paths = config->terrain.elevation,
+                                                          .geoid_path = config->terrain.geoid,
+                                                          .vertical = vertical[config->terrain.vertical],
+                                                          .spacing_m = config->terrain.spacing_m,
+                                                          .horizon_m = landscape_default_config().horizon_m},
+                                            .cover = config->terrain.cover,
+                                            .cover_table = config->terrain.cover_table,
+                                            .cover_band = config->terrain.cover_band,
+                                            .photo = config->terrain.orthophoto,
+                                            .seed = (uint64_t)config->seed};
     raster_sources_from(config->terrain.sources_from);
     const Status status = landscape_import(out, &r, &files, frame, e->fix, fit ? e->said.fix_count : 0);
     if (status != STATUS_OK) return status;
@@ -236,7 +236,7 @@ static Status import(Landscape *out, Choices *choices, const Config *config, con
         1e-3 * r.elevation.width_m[0], 1e-3 * r.elevation.width_m[1]);
     if (r.elevation.ellipsoidal)
         choice_add(choices, "ground: heights taken as above the ellipsoid%s (terrain.vertical)",
-                   strcmp(vertical, "auto") == 0 ? ", as the files' CRS says" : "");
+                   config->terrain.vertical == TERRAIN_VERTICAL_AUTO ? ", as the files' CRS says" : "");
     else
         choice_add(choices,
                    "ground: heights taken as above the geoid, which lies %+.2f m from the ellipsoid here "
@@ -399,17 +399,17 @@ Status choice_ground(Landscape *out, GroundContact *contact, Choices *choices, c
     const Config       *config = basis->config;
     const HostPlan     *plan = basis->plan;
     GroundEvidence      e = {0};
-    const char         *said = config->terrain.ground;
+    enum TerrainGround  said = config->terrain.ground;
     const bool          stored = *config->terrain.store, real = stored || *config->terrain.elevation;
-    const bool          by_itself = strcmp(said, "auto") == 0;
-    const GroundContact fitted = strcmp(said, "trust") == 0 ? GROUND_CONTACT_NONE : GROUND_CONTACT_INCONSISTENT;
-    const GroundContact set = strcmp(said, "clamp") == 0 || (by_itself && real) ? GROUND_CONTACT_ALL
-                              : real                                            ? GROUND_CONTACT_NONE
-                                                                                : fitted;
+    const bool          by_itself = said == TERRAIN_GROUND_AUTO;
+    const GroundContact fitted = said == TERRAIN_GROUND_TRUST ? GROUND_CONTACT_NONE : GROUND_CONTACT_INCONSISTENT;
+    const GroundContact set = said == TERRAIN_GROUND_CLAMP || (by_itself && real) ? GROUND_CONTACT_ALL
+                              : real                                              ? GROUND_CONTACT_NONE
+                                                                                  : fitted;
     Status              status = ground_evidence_collect(&e, survey, frame, basis->catalog, plan->host, plan->aim);
     if (status == STATUS_OK)
         status = stored ? open_store(out, choices, config)
-                 : real ? import(out, choices, config, frame, &e, strcmp(said, "fit") == 0)
+                 : real ? import(out, choices, config, frame, &e, said == TERRAIN_GROUND_FIT)
                         : invent(out, config, frame, &e);
     if (status == STATUS_OK && !real) status = report_fit(choices, set, out, survey, &e);
     if (status == STATUS_OK && (real || set == GROUND_CONTACT_ALL))

@@ -90,7 +90,7 @@ static void choose_aim(HostPlan *plan, Choices *choices, const Survey *survey, c
             return;
         }
     }
-    if (plan->munition && config->causal)
+    if (plan->munition && config->exercise.causal)
         choice_add(choices, "aim: the target of its Fire PDU once that is heard, till then along the body axis "
                             "(exercise.aim)");
     else choice_add(choices, "aim: along the body axis, no target is known (exercise.aim)");
@@ -104,7 +104,7 @@ static Status aim_is_known(const Survey *survey, const Config *config)
         log_error("replay: exercise.aim: '%s' is not site:application:entity", config->exercise.aim);
         return STATUS_BAD_VALUE;
     }
-    if (!survey_track(survey, aim) && !config->causal) {
+    if (!survey_track(survey, aim) && !config->exercise.causal) {
         log_error("replay: exercise.aim: %s is not in the log; `pitviper inspect LOG` lists the entities",
                   config->exercise.aim);
         return STATUS_BAD_VALUE;
@@ -146,7 +146,7 @@ static Status plan_observer(HostPlan *out, Choices *choices, const Survey *surve
     if (asked) choice_add(choices, "host: a stand-off observer (exercise.host)");
     else
         choice_add(choices, "host: a stand-off observer, no munition flies here%s (exercise.host)",
-                   config->causal ? " now" : "");
+                   config->exercise.causal ? " now" : "");
     choice_add(choices, "aim: %s, circled at %g m, %g m above (exercise.aim, observer.*)", who(name, survey, plan.aim),
                config->observer.range_m, config->observer.height_m);
     *out = plan;
@@ -160,7 +160,7 @@ Status choice_named_host(HostPlan *out, Choices *choices, const Survey *survey, 
     Status       status = aim_is_known(survey, config);
     if (status != STATUS_OK) return status;
     if (dis_entity_id_is_none(host)) return plan_observer(out, choices, survey, config, true);
-    if (!track && config->causal) {
+    if (!track && config->exercise.causal) {
         HostPlan later = {.host = host, .munition = true, .start_s = survey->last_s, .end_s = survey->last_s};
         dis_entity_id_text(text, host);
         choice_add(choices, "host: %s, not heard so far (exercise.host)", text);
@@ -210,14 +210,14 @@ static bool lies(const Track *track)
 static const Track *longest_flight(const Survey *survey, const Config *config, bool guided, bool impact)
 {
     const Track *longest = NULL;
-    double       most_s = config->causal ? -1 : 0; /* a single report: the flight may continue */
+    double       most_s = config->exercise.causal ? -1 : 0; /* a single report: the flight may continue */
     for (int i = 0; i < survey->track_count; i++) {
         const Track *track = &survey->track[i];
         const Shot  *shot = survey_shot(survey, track->id);
         if (track->type.kind != dis_kind_munition || track->type.category == dis_munition_fixed) continue;
         if ((track->type.category == dis_munition_guided) != guided) continue;
         if (!guided && lies(track)) continue;
-        if (config->causal && has_ended(survey, track, config)) continue;
+        if (config->exercise.causal && has_ended(survey, track, config)) continue;
         if (impact && !(shot && shot->result == dis_result_entity_impact)) continue;
         const double end_s =
             shot && isfinite(shot->detonation_s) ? shot->detonation_s : track->point[track->count - 1].t_s;
@@ -275,7 +275,7 @@ static Status plan_munitions(HostPlan *out, Choices *choices, const Survey *surv
     else
         choice_add(choices, "aim: the target of its Fire PDU once that is heard, till then along the body axis "
                             "(exercise.aim)");
-    const Status status = config->causal ? STATUS_OK : span_of_munitions(&plan, survey, config);
+    const Status status = config->exercise.causal ? STATUS_OK : span_of_munitions(&plan, survey, config);
     if (status == STATUS_OK) *out = plan;
     return status;
 }

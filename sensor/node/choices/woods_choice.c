@@ -226,8 +226,7 @@ static void report(Choices *choices, const WoodsChoice *w, const Config *config,
     if (w->in_trunks > 0)
         choice_add(choices, "woods: %d of %d entities on the ground begin within a trunk%s (terrain.woods)",
                    w->in_trunks, w->entities, real ? "; real trees stay" : "");
-    if (strcmp(config->terrain.woods_leaves, "off") == 0)
-        choice_add(choices, "woods: deciduous trees are bare (terrain.woods_leaves)");
+    if (!config->terrain.woods_leaves) choice_add(choices, "woods: deciduous trees are bare (terrain.woods_leaves)");
 }
 
 /* ---- all of it ----------------------------------------------------------------------------------- */
@@ -241,7 +240,7 @@ Status choice_woods(WoodsChoice *out, Choices *choices, const ChoiceBasis *basis
     const bool     stored = *config->terrain.store, real = stored || *config->terrain.elevation;
     GroundEvidence e = {0};
     int            impacts = 0;
-    *out = (WoodsChoice){.on = strcmp(config->terrain.woods, "on") == 0};
+    *out = (WoodsChoice){.on = config->terrain.woods};
     if (!out->on) return STATUS_OK;
     out->config = (WoodsConfig){.seed = (uint64_t)config->seed,
                                 .most_trees = config->terrain.woods_trees,

@@ -150,7 +150,7 @@ static Status choose_who(HostPlan *plan, Choices *choices, Run *run, const DisEn
 /* Causal: nothing is rendered of the time before the choices; the end is open. */
 static void open_span(HostPlan *plan, const Run *run, const Player *player)
 {
-    if (!run->options.config.causal) return;
+    if (!run->options.config.exercise.causal) return;
     plan->start_s = player_time_s(player, run->until_s);
     plan->end_s = INFINITY;
 }
@@ -168,8 +168,8 @@ Status run_check(Run *run, const DisEntityId *host)
     if (!choices) return STATUS_NO_MEMORY;
     *choices = run->choices;
     Status status = choose_who(&plan, choices, run, host);
-    if (status == STATUS_OK) status = player_create(&player, run->exercise, run->options.config.causal);
-    if (status == STATUS_OK && run->options.config.causal) status = player_add_log(player, &run->view);
+    if (status == STATUS_OK) status = player_create(&player, run->exercise, run->options.config.exercise.causal);
+    if (status == STATUS_OK && run->options.config.exercise.causal) status = player_add_log(player, &run->view);
     if (status == STATUS_OK) {
         open_span(&plan, run, player);
         choice_rate(&plan, choices, &run->options.config);
@@ -241,7 +241,7 @@ Status run_host(Run *run, const DisEntityId *host)
         log_print("host: %s (--host)\n", host_text);
     }
     Status status = choose(&chosen, run, host);
-    if (status == STATUS_OK) status = player_create(&player, run->exercise, o->config.causal);
+    if (status == STATUS_OK) status = player_create(&player, run->exercise, o->config.exercise.causal);
     if (status == STATUS_OK) status = player_add_log(player, &run->view);
     if (status != STATUS_OK) goto done;
     open_span(&chosen.plan, run, player);
@@ -298,7 +298,7 @@ Status run_host(Run *run, const DisEntityId *host)
                             .choices = &chosen.choices,
                             .result = &result,
                             .woods = &chosen.woods,
-                            .heard = o->config.causal ? player_counters(player) : &run->survey.counters};
+                            .heard = o->config.exercise.causal ? player_counters(player) : &run->survey.counters};
         const Status written = run_conclude(run, &end);
         if (status == STATUS_OK) status = written;
     }

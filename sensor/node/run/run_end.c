@@ -144,7 +144,7 @@ Status run_conclude(const Run *run, const RunEnd *end)
     if (result->buried > 0)
         log_warn("%s: the eye was below the ground in %d of %d frames and saw nothing of use%s", name, result->buried,
                  result->frames,
-                 *config->terrain.elevation && strcmp(config->terrain.ground, "fit") != 0
+                 *config->terrain.elevation && config->terrain.ground != TERRAIN_GROUND_FIT
                      ? "; over other ground than the exercise's, terrain.ground=fit leads it through"
                      : "");
     return status;

@@ -175,7 +175,7 @@ static Status add_memory(Consumers *list, Session *s, bool behind_displays)
     const SessionShared *shared = s->shared;
     const Config        *config = shared->config;
     Consumer            *consumer = NULL;
-    const bool           counts = strcmp(config->publish.memory_planes, "counts") == 0;
+    const bool           counts = config->publish.memory_planes == MEMORY_PLANES_COUNTS;
     if (!*config->publish.memory || counts != behind_displays) return STATUS_OK;
     MemoryOf of = {.config = config,
                    .config_sha256 = shared->config_sha256,
@@ -248,7 +248,7 @@ static Status replay_files(Consumers *list, Session *s, FrameDone *done, Pool *p
     if (status == STATUS_OK) status = add_truth_lines(list, s);
     if (status == STATUS_OK && config->publish.coco) status = add_coco(list, s);
     if (status == STATUS_OK && config->publish.klv_files) status = add_klv(list, s);
-    if (status == STATUS_OK && strcmp(config->publish.pairs, "off") != 0) status = add_pairs(list, s, pool, raw);
+    if (status == STATUS_OK && config->publish.pairs != PUBLISH_PAIRS_OFF) status = add_pairs(list, s, pool, raw);
     return status == STATUS_OK ? add_hashes(list, s, done) : status;
 }
 

@@ -25,7 +25,8 @@ static bool aim_pose(double p_ecef[3], const Session *s, double t_s)
 static bool tracked(const Session *s, double t_s)
 {
     const Track *track = survey_track(s->shared->survey, s->plan.host);
-    return s->plan.munition && !s->shared->config->causal && track && t_s <= track->point[track->count - 1].t_s;
+    return s->plan.munition && !s->shared->config->exercise.causal && track &&
+           t_s <= track->point[track->count - 1].t_s;
 }
 
 /* Pose of the host at t_s, and of its nodes where the sensor is mounted on one. */
@@ -141,7 +142,7 @@ static void find_host(Session *s)
         log_info("aim: %s, the target of its Fire PDU", aim);
     }
     const Shot *shot =
-        s->shared->config->causal || !plan->any_munition ? NULL : survey_shot(s->shared->survey, plan->host);
+        s->shared->config->exercise.causal || !plan->any_munition ? NULL : survey_shot(s->shared->survey, plan->host);
     if (shot && dis_entity_id_is_none(plan->aim) && !dis_entity_id_is_none(shot->hit)) plan->aim = shot->hit;
 }
 
@@ -253,7 +254,7 @@ void session_advance(Session *s, double t_s)
     for (double tick_s; (tick_s = (double)s->tick / seeker_ticks_per_s) <= t_s; s->tick++) {
         feed(s, tick_s);
         if (s->tick % expire_ticks == 0) entity_table_expire(s->table, tick_s);
-        if (s->shared->config->causal || s->plan.any_munition) find_host(s);
+        if (s->shared->config->exercise.causal || s->plan.any_munition) find_host(s);
         session_keep(s);
         warm_vehicles(s, tick_s);
         step_gimbal(s, tick_s);

@@ -23,12 +23,12 @@ static void make_request(RenderRequest *request, const Session *s, const Eye *ey
                                .optical = config_optical(config),
                                .lateral = {s->shared->sensors->lateral[0], s->shared->sensors->lateral[1]},
                                .sky_samples = config->sensor.sky_samples,
-                               .sky_visibility = strcmp(config->sensor.sky_visibility, "on") == 0,
+                               .sky_visibility = config->sensor.sky_visibility,
                                .samples = config->sensor.samples,
                                .hidden_entity = eye->hidden,
                                .t_s = t_s,
                                .low_plants_m = s->shared->world->forest ? config->terrain.woods_low_m : 0,
-                               .budget = strcmp(config->quality.budget, "on") == 0,
+                               .budget = config->quality.budget,
                                .skips_off = s->shared->no_skip ? skips_all_off : 0};
     for (int b = 0; b < BAND_COUNT; b++) request->hand_over_cells |= s->shared->sensors->has[b];
     if (config_adaptive(config)) {
@@ -63,7 +63,7 @@ static Status look(FrameView *view, const Session *s, const RenderRequest *reque
 /* Renders the frame once more without its target, or without any entity (publish.pairs). */
 static Status look_without(Frame *f, const Session *s, const FrameLight *light, int host)
 {
-    const bool all = strcmp(s->shared->config->publish.pairs, "all") == 0;
+    const bool all = s->shared->config->publish.pairs == PUBLISH_PAIRS_ALL;
     f->without = arena_alloc(f->arena, 1, sizeof *f->without);
     if (!f->without) return STATUS_NO_MEMORY;
     *f->without->sha256 = 0;

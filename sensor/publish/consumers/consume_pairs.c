@@ -289,7 +289,7 @@ Status consume_pairs(Consumer **out, const PairsOf *of)
     p->consumer = (Consumer){
         WANT_WITHOUT | WANT_CELLS | WANT_PLANES | WANT_SHA256 | WANT_DISPLAY, put, NULL, close_pairs, "pairs", begin};
     p->of = *of;
-    p->all = strcmp(of->config->publish.pairs, "all") == 0;
+    p->all = of->config->publish.pairs == PUBLISH_PAIRS_ALL;
     p->noiseless = *of->config;
     p->noiseless.detector.noise = 0;
     p->member[CLEAN].chains = of->clean;

@@ -259,22 +259,15 @@ size_t dis_record_radar(uint8_t out[dis_smallest_mtu], const DisRecordSender *se
     return dis_encode_data(out, dis_smallest_mtu, &pdu);
 }
 
-/* Number of a word in a list that ends with NULL, from 0; 0: not in it. */
-static uint32_t number_of(const char *word, const char *const *list)
-{
-    for (uint32_t i = 0; list[i]; i++)
-        if (strcmp(word, list[i]) == 0) return i;
-    return 0;
-}
-
 /* The announcement of the band's video stream, which is number `stream` of the run's, from 0, by publish.stream,
  * video_codec, klv and vmti. 0: there is no such stream. */
 static size_t dis_record_stream(uint8_t out[dis_smallest_mtu], const DisRecordSender *sender, const FrameRecord *r,
                                 Band band, const Config *config, int stream)
 {
-    static const char *const codec[] = {"", "h264", "h264-10", "hevc-12", "ffv1", NULL};
-    static const char *const klv[] = {"off", "async", "sync", NULL}, *const targets[] = {"off", "atr", "truth", NULL};
-    const bool  no_klv = strcmp(config->publish.klv, "off") == 0; /* then it has no targets either */
+    static const uint32_t codec[] = {[VIDEO_H264] = 1, [VIDEO_H264_10] = 2, [VIDEO_HEVC_12] = 3, [VIDEO_FFV1] = 4},
+                          klv[] = {[KLV_OFF] = 0, [KLV_ASYNC] = 1, [KLV_SYNC] = 2},
+                          targets[] = {[VMTI_OFF] = 0, [VMTI_ATR] = 1, [VMTI_TRUTH] = 2};
+    const bool  no_klv = config->publish.klv == KLV_OFF; /* then it has no targets either */
     const char *why;
     char        text[40];
     StreamUrl   url;
@@ -286,9 +279,9 @@ static size_t dis_record_stream(uint8_t out[dis_smallest_mtu], const DisRecordSe
     add_fixed(&pdu, datum_band, (uint32_t)band);
     add_fixed(&pdu, datum_kind, datum_kind_stream);
     add_image(&pdu, r);
-    add_fixed(&pdu, datum_stream_codec, number_of(config->publish.video_codec, codec));
-    add_fixed(&pdu, datum_stream_klv, number_of(config->publish.klv, klv));
-    add_fixed(&pdu, datum_stream_targets, no_klv ? 0 : number_of(config->publish.vmti, targets));
+    add_fixed(&pdu, datum_stream_codec, codec[config->publish.video_codec]);
+    add_fixed(&pdu, datum_stream_klv, klv[config->publish.klv]);
+    add_fixed(&pdu, datum_stream_targets, no_klv ? 0 : targets[config->publish.vmti]);
     add_time(&pdu, &o, r);
     add_host(&pdu, &o, r);
     const size_t from = o.used;
@@ -332,7 +325,7 @@ static Status put_frame(Consumer *consumer, Frame *frame)
     Sending              *s = (Sending *)consumer;
     const Config         *config = s->of.config;
     const FrameRecord    *record = &frame->record;
-    const bool            truth = strcmp(config->publish.dis, "truth") == 0;
+    const bool            truth = config->publish.dis == PUBLISH_DIS_TRUTH;
     const DisRecordSender sender = {.version = s->of.version,
                                     .exercise = s->of.exercise,
                                     .site = (uint16_t)config->node.site,

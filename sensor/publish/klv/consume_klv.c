@@ -34,15 +34,15 @@ static const KlvTargets *klv_detections(KlvDetections *k, const Frame *frame, Ba
     return &k->targets;
 }
 
-size_t klv_of_band(uint8_t out[klv_most_octets], KlvDetections *k, const char *vmti, const Frame *frame, Band band,
+size_t klv_of_band(uint8_t out[klv_most_octets], KlvDetections *k, enum VmtiSource vmti, const Frame *frame, Band band,
                    const Geoid *geoid)
 {
     const KlvSource   source = {.band = band, .geoid = geoid};
     const KlvTargets *targets = NULL;
-    if (strcmp(vmti, "truth") == 0) {
+    if (vmti == VMTI_TRUTH) {
         klv_truth_targets(&k->targets, k->kept, &frame->record);
         targets = &k->targets;
-    } else if (strcmp(vmti, "atr") == 0) {
+    } else if (vmti == VMTI_ATR) {
         targets = klv_detections(k, frame, band);
     }
     return klv_frame(out, &frame->record, frame->unix_s, &source, targets);
@@ -130,7 +130,7 @@ Status consume_klv(Consumer **out, const KlvFiles *of)
 {
     KlvConsumer *k = calloc(1, sizeof *k);
     if (!k) return STATUS_NO_MEMORY;
-    const bool truth = strcmp(of->config->publish.vmti, "truth") == 0;
+    const bool truth = of->config->publish.vmti == VMTI_TRUTH;
     k->of = *of;
     k->found = (KlvDetections){.from = of->detections};
     k->patience = (RetryBackoff){.what = "packets in .klv files"};

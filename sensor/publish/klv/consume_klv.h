@@ -43,8 +43,8 @@ typedef struct KlvDetections {
 } KlvDetections;
 
 /* The packet of a band, with the targets of publish.vmti (vmti). Returns its octets; 0: there is none. */
-size_t klv_of_band(uint8_t out[klv_most_octets], KlvDetections *kept, const char *vmti, const Frame *frame, Band band,
-                   const Geoid *geoid);
+size_t klv_of_band(uint8_t out[klv_most_octets], KlvDetections *kept, enum VmtiSource vmti, const Frame *frame,
+                   Band band, const Geoid *geoid);
 
 /* A box is rounded outwards to whole pixels. The id is the track; of a detection without one 2^32 plus its place in the
  * list, which says nothing from frame to frame. */

@@ -227,8 +227,8 @@ Status consume_memory(Consumer **out, const MemoryOf *of)
     const Config *config = of->config;
     Memory       *m = calloc(1, sizeof *m);
     if (!m) return STATUS_NO_MEMORY;
-    const bool truth = strcmp(config->publish.memory_record, "truth") == 0;
-    m->counts = strcmp(config->publish.memory_planes, "counts") == 0;
+    const bool truth = config->publish.memory_record == MEMORY_RECORD_TRUTH;
+    m->counts = config->publish.memory_planes == MEMORY_PLANES_COUNTS;
     m->room = truth ? target_room : 0;
     m->width = config->sensor.width_px;
     m->height = config->sensor.height_px;

@@ -23,19 +23,17 @@ typedef struct Channel {
     int64_t      last_90k, key_90k; /* of the last frame and key frame; INT64_MIN: none yet */
 } Channel;
 
-typedef enum Labels { LABEL_OFF, LABEL_BANDS, LABEL_TARGETS } Labels;
-
 typedef struct Video {
-    Consumer      consumer;
-    Labels        labels;
-    VideoOf       of;
-    unsigned      to; /* VideoTo: the outputs of `of` that are configured */
-    KlvMode       klv;
-    int           channels;
-    Channel       channel[BAND_COUNT + 1];
-    uint8_t      *image, *tile; /* for the largest frame so far */
-    size_t        image_octets;
-    KlvDetections found; /* by a recogniser */
+    Consumer         consumer;
+    enum VideoLabels labels;
+    VideoOf          of;
+    unsigned         to; /* VideoTo: the outputs of `of` that are configured */
+    enum KlvMode     klv;
+    int              channels;
+    Channel          channel[BAND_COUNT + 1];
+    uint8_t         *image, *tile; /* for the largest frame so far */
+    size_t           image_octets;
+    KlvDetections    found; /* by a recogniser */
 } Video;
 
 /* ---- one frame ---------------------------------------------------------------------------------- */
@@ -74,7 +72,7 @@ static void label(Video *v, const EncoderConfig *form, Band band, int column, in
     const int     bits = video_encoder_bits(form->codec), times = width < 320 ? 1 : 2;
     const Drawing d = {v->image, form->width,     form->height, form->colour ? 3 : 1,
                        bits > 8, (1 << bits) - 1, column,       column + width};
-    for (int i = 0; v->labels == LABEL_TARGETS && i < frame->record.target_count; i++) {
+    for (int i = 0; v->labels == VIDEO_LABELS_TARGETS && i < frame->record.target_count; i++) {
         const TargetRecord *t = &frame->record.target[i];
         char                id[dis_id_text_size];
         dis_entity_id_text(id, t->id);
@@ -92,10 +90,8 @@ static Status compose(EncoderConfig *form, Video *v, const Channel *c, const Fra
 {
     const int width = frame->seen.picture.width, height = frame->seen.picture.height;
     const int tiles = __builtin_popcount(c->bands);
-    *form = (EncoderConfig){.codec = video_codec(v->of.config->publish.video_codec),
-                            .width = tiles * width,
-                            .height = height,
-                            .rate_hz = v->of.rate_hz};
+    *form = (EncoderConfig){
+        .codec = v->of.config->publish.video_codec, .width = tiles * width, .height = height, .rate_hz = v->of.rate_hz};
     for (int b = 0; b < BAND_COUNT; b++)
         if (c->bands >> b & 1 && frame->display[b].planes == 3) form->colour = true;
     const int    bits = video_encoder_bits(form->codec);
@@ -109,7 +105,7 @@ static Status compose(EncoderConfig *form, Video *v, const Channel *c, const Fra
         if (display->planes) frame_display_quantise(v->tile, display, (size_t)width * (size_t)height, bits);
         else memset(v->tile, 0, (size_t)width * (size_t)height * (bits == 8 ? 1 : 2));
         put_tile(v->image, v->tile, form, column, width, planes);
-        if (v->labels != LABEL_OFF) label(v, form, (Band)b, column, width, frame);
+        if (v->labels != VIDEO_LABELS_OFF) label(v, form, (Band)b, column, width, frame);
         column += width;
     }
     return STATUS_OK;
@@ -217,11 +213,11 @@ static Status add_output(VideoOutput **out, Video *v, Channel *c, VideoKind kind
     if (!o) return STATUS_NO_MEMORY;
     c->output[c->outputs++] = o;
     o->kind = kind;
-    o->klv = kind == VIDEO_TS && one ? v->klv : KLV_NONE;
+    o->klv = kind == VIDEO_TS && one ? v->klv : KLV_OFF;
     o->patient = v->of.patient;
     o->needs_key = true;
     o->retry.what = o->path;
-    c->klv = c->klv || o->klv != KLV_NONE;
+    c->klv = c->klv || o->klv != KLV_OFF;
     snprintf(o->title, sizeof o->title, "%s", one ? band_name(band) : "all bands");
     *out = o;
     return STATUS_OK;
@@ -294,18 +290,13 @@ Status consume_video(Consumer **out, const VideoOf *of)
     v->of.to = to;
     v->found = (KlvDetections){.from = of->detections};
     v->to = to;
-    v->labels = strcmp(of->config->publish.video_labels, "off") == 0     ? LABEL_OFF
-                : strcmp(of->config->publish.video_labels, "bands") == 0 ? LABEL_BANDS
-                                                                         : LABEL_TARGETS;
-    v->klv = strcmp(of->config->publish.klv, "async") == 0  ? KLV_ASYNCHRONOUS
-             : strcmp(of->config->publish.klv, "sync") == 0 ? KLV_SYNCHRONOUS
-                                                            : KLV_NONE;
+    v->labels = of->config->publish.video_labels;
+    v->klv = of->config->publish.klv;
     const Status status = add_channels(v);
     for (int i = 0; i < v->channels; i++)
         if (v->channel[i].klv) v->consumer.wants |= WANT_FOOTPRINT;
-    if (v->consumer.wants & WANT_FOOTPRINT && strcmp(of->config->publish.vmti, "truth") == 0)
-        v->consumer.wants |= WANT_TARGETS;
-    if (v->labels == LABEL_TARGETS) v->consumer.wants |= WANT_TARGETS;
+    if (v->consumer.wants & WANT_FOOTPRINT && of->config->publish.vmti == VMTI_TRUTH) v->consumer.wants |= WANT_TARGETS;
+    if (v->labels == VIDEO_LABELS_TARGETS) v->consumer.wants |= WANT_TARGETS;
     if (status == STATUS_OK) *out = &v->consumer;
     else close_video(&v->consumer);
     return status;

@@ -158,7 +158,7 @@ static const struct Form {
     {16, "ffv1", NULL, {AV_PIX_FMT_GRAY16LE, AV_PIX_FMT_NONE, AV_PIX_FMT_NONE, AV_PIX_FMT_RGB48LE}},
 };
 
-int video_encoder_bits(VideoCodec codec) { return forms[codec].bits; }
+int video_encoder_bits(enum VideoCodec codec) { return forms[codec].bits; }
 
 const EncoderConfig *video_encoder_config(const Encoder *encoder) { return &encoder->config; }
 

@@ -5,7 +5,7 @@
 
 int video_folder_kinds(VideoKind kind[2], const Config *config)
 {
-    const bool lossless = video_codec(config->publish.video_codec) == VIDEO_FFV1;
+    const bool lossless = config->publish.video_codec == VIDEO_FFV1;
     kind[0] = lossless ? VIDEO_MKV : VIDEO_TS;
     kind[1] = VIDEO_MP4;
     return lossless ? 1 : 2;

@@ -20,7 +20,6 @@
  *     synchronous    stream type 0x15, stream id 0xFC, the frame's time stamp, metadata AU cells
  * MP4 is fragmented, a fragment for each key frame, and Matroska begins a cluster there: what a run that was killed
  * leaves behind can be played. Both start at 0, and carry no metadata. */
-typedef enum KlvMode { KLV_NONE, KLV_ASYNCHRONOUS, KLV_SYNCHRONOUS } KlvMode;
 enum { klv_octets_most = 60000 }; /* of a frame: fits into one PES packet */
 
 /* Where the bytes go: MPEG-TS in whole packets of 188 octets, at most transport_octets at a time. seek goes to an
@@ -34,7 +33,7 @@ typedef struct TransportSink {
 
 typedef struct TransportConfig {
     VideoKind     container; /* VIDEO_TS, VIDEO_MP4 or VIDEO_MKV */
-    KlvMode       klv;       /* of VIDEO_TS */
+    enum KlvMode  klv;       /* of VIDEO_TS */
     const char   *title;
     TransportSink sink;
 } TransportConfig;
@@ -76,7 +75,7 @@ Status video_udp_open(VideoUdp **out, const StreamUrl *to, const char *interface
 
 typedef struct VideoOutput {
     VideoKind         kind;
-    KlvMode           klv;
+    enum KlvMode      klv;
     bool              patient;
     VideoUdp         *udp;                   /* of a stream, open; NULL: a file */
     StreamCounters   *sent;                  /* its counters are added to these at the end; NULL: nowhere */

@@ -56,13 +56,13 @@ static Status add_streams(Transport *t, const Encoder *encoder)
     t->video->codecpar->codec_tag = 0;
     if (t->config.container == VIDEO_MP4 && c->codec == VIDEO_HEVC_12) /* parameter sets out of band: Apple's players */
         t->video->codecpar->codec_tag = MKTAG('h', 'v', 'c', '1');
-    if (t->config.container != VIDEO_TS || t->config.klv == KLV_NONE) return STATUS_OK;
+    if (t->config.container != VIDEO_TS || t->config.klv == KLV_OFF) return STATUS_OK;
     t->klv = avformat_new_stream(t->format, NULL);
     if (!t->klv) return STATUS_NO_MEMORY;
     t->klv->time_base = (AVRational){1, 90000};
     t->klv->codecpar->codec_type = AVMEDIA_TYPE_DATA;
     t->klv->codecpar->codec_id = AV_CODEC_ID_SMPTE_KLV;
-    if (t->config.klv == KLV_SYNCHRONOUS) t->klv->codecpar->profile = FF_PROFILE_KLVA_SYNC;
+    if (t->config.klv == KLV_SYNC) t->klv->codecpar->profile = FF_PROFILE_KLVA_SYNC;
     return STATUS_OK;
 }
 
@@ -143,7 +143,7 @@ static int64_t time_of(Transport *t, int64_t pts_90k)
 static int write_klv(Transport *t, int64_t at_90k, const uint8_t *klv, size_t count)
 {
     AVPacket    *p = t->packet;
-    const bool   sync = t->config.klv == KLV_SYNCHRONOUS;
+    const bool   sync = t->config.klv == KLV_SYNC;
     const size_t head = sync ? sync_header_octets : 0;
     if (count > klv_octets_most) return AVERROR(EINVAL);
     /* the header of a metadata AU cell (ISO/IEC 13818-1, 2.12.4): service 0, its number, a flag that it is whole and

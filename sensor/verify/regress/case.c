@@ -5,70 +5,13 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-#define AT(member) SETTING_AT(Case, member)
+#define CASE_ROW(...) SETTING_ROW(Case, __VA_ARGS__)
 
-static const Setting keys[] = {
-    {"purpose", SETTING_TEXT, AT(purpose), 0, 0, NULL, "", "purpose of the case, in one sentence"},
-    {"scenario", SETTING_TEXT, AT(scenario), 0, 0, NULL, "",
-     "scenario of `pitviper exercise`: a name, or a YAML file in the case's folder"},
-    {"scenario_set", SETTING_TEXT, AT(scenario_set), 0, 0, NULL, "",
-     "settings of the scenario: KEY=VALUE, separated by blanks or lines"},
-    {"log", SETTING_TEXT, AT(log), 0, 0, NULL, "",
-     "recording, in place of a scenario: in the case's folder, or "
-     "${PITVIPER_DATA}/..."},
-    {"config", SETTING_TEXT, AT(config), 0, 0, NULL, "",
-     "settings of `pitviper replay`, indented below `config: |`; paths in them are relative to the case's folder"},
-    {"config_file", SETTING_TEXT, AT(config_file), 0, 0, NULL, "",
-     "file of settings in the case's folder, in place "
-     "of config"},
-    {"frames", SETTING_NUMBERS, AT(frames), 0, 999999, NULL, "", "numbers of the frames to compare, as in replay"},
-    {"causal", SETTING_BOOL, AT(causal), 0, 1, NULL, "", "replay --causal"},
-    {"log_may_be_absent", SETTING_BOOL, AT(log_may_be_absent), 0, 1, NULL, "",
-     "a missing log skips the case instead of failing it"},
-    {"timeout_s", SETTING_DOUBLE, AT(timeout_s), 0.1, 86400, NULL, "s", "time limit of each process of the case"},
-    {"tolerance.range_rel", SETTING_DOUBLE, AT(tolerance.range_rel), 0, 1, NULL, "", "range, relative"},
-    {"tolerance.normal", SETTING_DOUBLE, AT(tolerance.normal), 0, 2, NULL, "", "each component of a normal"},
-    {"tolerance.temp_k", SETTING_DOUBLE, AT(tolerance.temp_k), 0, 1000, NULL, "K", "surface temperature"},
-    {"tolerance.optical_rel", SETTING_DOUBLE, AT(tolerance.optical_rel), 0, 10, NULL, "", "optical radiance, relative"},
-    {"tolerance.optical_w_m2_sr", SETTING_DOUBLE, AT(tolerance.optical_w_m2_sr), 0, 1e4, NULL, "W/(m2 sr)",
-     "optical radiance, absolute, in addition"},
-    {"tolerance.mwir_k", SETTING_DOUBLE, AT(tolerance.mwir_k), 0, 1000, NULL, "K", "apparent temperature"},
-    {"tolerance.lwir_k", SETTING_DOUBLE, AT(tolerance.lwir_k), 0, 1000, NULL, "K", "apparent temperature"},
-    {"tolerance.radar_db", SETTING_DOUBLE, AT(tolerance.radar_db), 0, 100, NULL, "dB", "radar image"},
-    {"tolerance.profile_db", SETTING_DOUBLE, AT(tolerance.profile_db), 0, 100, NULL, "dB", "range profile"},
-    {"tolerance.radar_span_db", SETTING_DOUBLE, AT(tolerance.radar_span_db), 1, 200, NULL, "dB",
-     "radar: power this far below the brightest counts as zero"},
-    {"tolerance.share", SETTING_DOUBLE, AT(tolerance.share), 0, 1, NULL, "",
-     "share of pixels that may be beyond tolerance, of temperature and radiance"},
-    {"tolerance.edge_share", SETTING_DOUBLE, AT(tolerance.edge_share), 0, 1, NULL, "",
-     "share of edge pixels whose ids may differ, with different libraries or ISA"},
-    {"tolerance.truth", SETTING_DOUBLE, AT(tolerance.truth), 0, 1e6, NULL, "",
-     "factor on the tolerances of truth.jsonl"},
-};
+static const Setting      keys[] = {CASE_TOP(CASE_ROW) CASE_TOLERANCE(CASE_ROW)};
 static const SettingTable table = {
     .module = "regress", .row = keys, .count = sizeof keys / sizeof *keys, .all_keys = "`pitviper regress --keys`"};
 
-/* Below any significance for a user of the products, above the rounding of sensor/verify/regress/verdict_private.h: a
- * value that crosses from one step to the next is still within. No allowance for threads, ISAs and builds, which give
- * the same bits (tests/system/test_determinism*.sh). */
-Case case_default(void)
-{
-    return (Case){
-        .timeout_s = 300,
-        .tolerance = {.range_rel = 3e-5,   /* 6 cm in 2 km: two steps of the baseline */
-                      .normal = 0.004,     /* 0.2 degree: two steps of the baseline */
-                      .temp_k = 0.05,      /* surface temperature: as in the thermal bands */
-                      .optical_rel = 0.01, /* a step of the baseline is 0.8 %; the sun 0.1 degree off is 7 x .share */
-                      .optical_w_m2_sr = 1e-3, /* half a step of 8 bits on a screen; a dark night */
-                      .mwir_k = 0.05,
-                      .lwir_k = 0.05, /* NETD of the sensors of this band */
-                      .radar_db = 0.1,
-                      .profile_db = 0.1,   /* stated accuracy of the radar models: Mie, trihedral */
-                      .radar_span_db = 60, /* range of the display */
-                      .share = 0.001,      /* 6 pixels of 96 x 64 */
-                      .edge_share = 0.02,  /* ISAs of the ray tracer differ in t for 5 % of the rays, in ids for none */
-                      .truth = 1}};
-}
+Case case_default(void) { return (Case){CASE_TOP(SETTING_DEFAULT) CASE_TOLERANCE(SETTING_DEFAULT)}; }
 
 /* Checks that involve several keys. */
 static Status check(const Case *c, const char *path)

@@ -21,7 +21,7 @@
  *     causal: true                # --causal; false by default
  *     log_may_be_absent: true     # then the case is skipped; by default it fails
  *     timeout_s: 300              # a process that takes longer is ended, and the case fails
- *     tolerance:                  # overrides of the defaults, whose reasons are in case_default
+ *     tolerance:                  # overrides of the defaults, whose reasons are in CASE_TOLERANCE
  *       lwir_k: 0.05
  *
  * record/ holds NNNNNN.exr for each frame, all planes in one (range_m, entity, part, material, temp_k, nx, ny, nz,
@@ -30,34 +30,65 @@
 #ifndef SENSOR_VERIFY_REGRESS_CASE_PRIVATE_H
 #define SENSOR_VERIFY_REGRESS_CASE_PRIVATE_H
 
-#include "pitviper.h"
+#include "pitviper_settings.h"
 
 enum { case_path_size = 4096, case_frames_max = 64 };
 
+/* The keys, as pitviper_settings.h says. The tolerances are below any significance for a user of the products, above
+ * the rounding of sensor/verify/regress/verdict_private.h: a value that crosses from one step to the next is still
+ * within. No allowance for threads, ISAs and builds, which give the same bits (tests/system/test_determinism*.sh). */
+/* clang-format off */
+#define CASE_TOP(ROW) \
+    ROW(TEXT, , purpose, "", 400, "", "purpose of the case, in one sentence") \
+    ROW(TEXT, , scenario, "", 1024, "", \
+        "scenario of `pitviper exercise`: a name, or a YAML file in the case's folder") \
+    ROW(TEXT, , scenario_set, "", 4096, "", "settings of the scenario: KEY=VALUE, separated by blanks or lines") \
+    ROW(TEXT, , log, "", 1024, "", "recording, in place of a scenario: in the case's folder, or ${PITVIPER_DATA}/...") \
+    ROW(TEXT, , config, "", 16384, "", \
+        "settings of `pitviper replay`, indented below `config: |`; paths in them are relative to the case's " \
+        "folder") \
+    ROW(TEXT, , config_file, "", 1024, "", "file of settings in the case's folder, in place of config") \
+    ROW(NUMBERS, , frames, {0}, 0, 999999, "", "numbers of the frames to compare, as in replay") \
+    ROW(BOOL, , causal, false, "replay --causal") \
+    ROW(BOOL, , log_may_be_absent, false, "a missing log skips the case instead of failing it") \
+    ROW(DOUBLE, , timeout_s, 300, 0.1, 86400, "s", "time limit of each process of the case")
+
+#define CASE_TOLERANCE(ROW) \
+    /* 6 cm in 2 km: two steps of the baseline */ \
+    ROW(DOUBLE, tolerance., range_rel, 3e-5, 0, 1, "", "range, relative") \
+    /* 0.2 degree: two steps of the baseline */ \
+    ROW(DOUBLE, tolerance., normal, 0.004, 0, 2, "", "each component of a normal") \
+    /* surface temperature: as in the thermal bands */ \
+    ROW(DOUBLE, tolerance., temp_k, 0.05, 0, 1000, "K", "surface temperature") \
+    /* a step of the baseline is 0.8 %; the sun 0.1 degree off is 7 x .share */ \
+    ROW(DOUBLE, tolerance., optical_rel, 0.01, 0, 10, "", "optical radiance, relative") \
+    /* half a step of 8 bits on a screen; a dark night */ \
+    ROW(DOUBLE, tolerance., optical_w_m2_sr, 1e-3, 0, 1e4, "W/(m2 sr)", "optical radiance, absolute, in addition") \
+    ROW(DOUBLE, tolerance., mwir_k, 0.05, 0, 1000, "K", "apparent temperature") \
+    ROW(DOUBLE, tolerance., lwir_k, 0.05, 0, 1000, "K", "apparent temperature") /* NETD of the sensors of this band */ \
+    ROW(DOUBLE, tolerance., radar_db, 0.1, 0, 100, "dB", "radar image") \
+    /* stated accuracy of the radar models: Mie, trihedral */ \
+    ROW(DOUBLE, tolerance., profile_db, 0.1, 0, 100, "dB", "range profile") \
+    /* range of the display */ \
+    ROW(DOUBLE, tolerance., radar_span_db, 60, 1, 200, "dB", \
+        "radar: power this far below the brightest counts as zero") \
+    /* 6 pixels of 96 x 64 */ \
+    ROW(DOUBLE, tolerance., share, 0.001, 0, 1, "", \
+        "share of pixels that may be beyond tolerance, of temperature and radiance") \
+    /* ISAs of the ray tracer differ in t for 5 % of the rays, in ids for none */ \
+    ROW(DOUBLE, tolerance., edge_share, 0.02, 0, 1, "", \
+        "share of edge pixels whose ids may differ, with different libraries or ISA") \
+    ROW(DOUBLE, tolerance., truth, 1, 0, 1e6, "", "factor on the tolerances of truth.jsonl")
+
 /* The largest accepted differences, and the share of pixels that may be beyond them. */
-typedef struct Tolerance {
-    double range_rel; /* range: relative */
-    double normal;    /* each component */
-    double temp_k;
-    double optical_rel, optical_w_m2_sr; /* both added */
-    double mwir_k, lwir_k;               /* apparent temperature */
-    double radar_db, profile_db;
-    double radar_span_db; /* power this far below the brightest counts as zero */
-    double share;         /* of pixels, temperature and radiance */
-    double edge_share;    /* of edge pixels whose ids may differ; only under other libraries or another ISA */
-    double truth; /* factor on the tolerances of the fields of truth.jsonl (sensor/verify/regress/verdict_truth.c) */
-} Tolerance;
+typedef struct Tolerance { CASE_TOLERANCE(SETTING_MEMBER) } Tolerance;
 
 typedef struct Case {
-    char       folder[case_path_size], name[128];
-    char       purpose[400];
-    char       log[1024], scenario[1024], scenario_set[4096];
-    char       config[16384], config_file[1024];
-    NumberList frames;
-    bool       causal, log_may_be_absent;
-    double     timeout_s;
-    Tolerance  tolerance;
+    char folder[case_path_size], name[128];
+    CASE_TOP(SETTING_MEMBER)
+    Tolerance tolerance;
 } Case;
+/* clang-format on */
 
 Case case_default(void);
 /* case.yaml of this folder. Any bytes; on failure logs file, line, key, value, range and what to do. */

@@ -37,7 +37,7 @@ RenderRequest precision_request(const Precision *p, PrecisionShot shot, int widt
                              .edge_samples = config.sensor.edge_samples,
                              .target_samples = config.sensor.target_samples,
                              .sky_samples = config.sensor.sky_samples,
-                             .sky_visibility = strcmp(config.sensor.sky_visibility, "on") == 0,
+                             .sky_visibility = config.sensor.sky_visibility,
                              .hidden_entity = -1};
     request.view.width = width;
     request.view.height = height;

@@ -57,7 +57,7 @@ static RenderRequest request_of(const PlantRendering *r, PlantShot shot)
                              .samples = r->samples,
                              .edge_samples = r->edge_samples,
                              .sky_samples = r->sky_samples,
-                             .sky_visibility = strcmp(config.sensor.sky_visibility, "on") == 0,
+                             .sky_visibility = config.sensor.sky_visibility,
                              .hidden_entity = -1,
                              .low_plants_m = r->low_m};
     if (r->nir) request.bands = 1u << BAND_OPTICAL;

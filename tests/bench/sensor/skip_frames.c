@@ -96,7 +96,7 @@ static RenderRequest request_of(const SkipBench *s, const TrialScene *scene, con
                            .samples = 1,
                            .edge_samples = config.sensor.edge_samples,
                            .target_samples = config.sensor.target_samples,
-                           .sky_visibility = strcmp(config.sensor.sky_visibility, "on") == 0,
+                           .sky_visibility = config.sensor.sky_visibility,
                            .hidden_entity = -1,
                            .skips_off = off};
 }

@@ -28,7 +28,7 @@ RenderRequest speed_request(const View *view, unsigned bands, bool truth)
                            .samples = 1,
                            .edge_samples = config.sensor.edge_samples,
                            .target_samples = config.sensor.target_samples,
-                           .sky_visibility = strcmp(config.sensor.sky_visibility, "on") == 0,
+                           .sky_visibility = config.sensor.sky_visibility,
                            .hidden_entity = -1};
 }
 
