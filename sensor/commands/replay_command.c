@@ -3,6 +3,7 @@
 
 #include "dis/pdu/decode.h"
 #include "sensor/publish/files/frame_files.h"
+#include "sensor/node/clock/log_clock.h"
 #include "sensor/node/run/host_run.h"
 #include "sensor/node/player/player.h"
 #include "sensor/commands/overwrite.h"
@@ -14,7 +15,6 @@
 #include <libgen.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <time.h>
 #include <unistd.h>
 
 /* ---- the frames ------------------------------------------------------------------------------ */
@@ -26,30 +26,6 @@ static void show_progress(double n, double first, double last, double begun_s)
     snprintf(text, sizeof text, "frame %.0f of %.0f  %3.0f %%  %.0f s left", n - first + 1, last - first + 1,
              100 * done, spent_s * (1 - done) / done);
     log_status(text);
-}
-
-/* The clock of a paced replay: it runs at `speed` times the log's own time. */
-typedef struct Pace {
-    double begun_s, first_s, speed; /* wall clock; exercise time then; INFINITY: as fast as possible */
-} Pace;
-
-static double wall_of(void *clock, double t_s)
-{
-    const Pace *p = clock;
-    return p->begun_s + (t_s - p->first_s) / p->speed;
-}
-
-/* Waits until that clock has reached t_s, or a signal. */
-static void pace(Pace *p, double t_s)
-{
-    if (!isfinite(p->speed)) return;
-    const double        until_s = wall_of(p, t_s);
-    static const double look_s = 0.1; /* a signal that comes just before a wait does not end it */
-    for (double now_s = wall_clock_s(); now_s < until_s && !stop_asked(); now_s = wall_clock_s()) {
-        const double    next_s = fmin(until_s, now_s + look_s);
-        struct timespec next = {(time_t)next_s, (long)((next_s - floor(next_s)) * 1e9)};
-        clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &next, NULL);
-    }
 }
 
 /* Whether frame n is requested; at: of --only, the next one. */
@@ -137,25 +113,43 @@ static Status check_span(Run *run, const Player *player, const HostPlan *plan, c
     return find_span(&span, run, player, plan, grid);
 }
 
+/* What the loop over frames works on. */
+typedef struct Replay {
+    Session       *session;
+    const LogSpan *span;
+    double         begun_s; /* wall clock */
+} Replay;
+
+static bool over(void *user)
+{
+    (void)user;
+    return stop_asked();
+}
+
+static Status make_frame(void *user, const FrameTime *frame)
+{
+    const Replay *r = user;
+    bool          shown;
+    const Status  status = session_frame(&shown, r->session, frame);
+    if (status == STATUS_OK) show_progress(frame->number, r->span->first, r->span->last, r->begun_s);
+    return status;
+}
+
 static Status replay_frames(Run *run, Session *session, Player *player, const HostPlan *plan, const FrameGrid *grid)
 {
     const Options *o = &run->options;
     FrameSpan      span = {0};
     Status         status = find_span(&span, run, player, plan, grid);
-    int            next = 0;
-    Pace          *clock = run->clock;
-    const double   begun_s = wall_clock_s();
-    *clock = (Pace){begun_s, span.single ? span.from_s : run_frame_s(grid, span.first), o->speed};
-    for (double n = span.first; n <= span.last && status == STATUS_OK; n++) {
-        const double t_s = span.single ? span.from_s : run_frame_s(grid, n);
-        bool         shown;
-        if (!wanted(o, &next, n)) continue;
-        pace(clock, t_s);
-        run->stopped = stop_asked();
-        if (run->stopped) break;
-        status = session_frame(&shown, session, (int)n, t_s);
-        if (status == STATUS_OK) show_progress(n, span.first, span.last, begun_s);
-    }
+    if (status != STATUS_OK) return status;
+    const LogSpan frames = {.grid = *grid,
+                            .first = (int)span.first,
+                            .last = (int)span.last,
+                            .only = o->only,
+                            .only_count = o->only_count,
+                            .single_s = span.single ? span.from_s : NAN};
+    log_clock_begin((LogClock *)run->clock, &frames);
+    Replay replay = {session, &frames, wall_clock_s()};
+    status = frame_loop(&run->stopped, &(FrameLoop){run->clock, over, NULL, make_frame, &replay});
     log_status(NULL);
     if (status != STATUS_OK) return status;
     if (session_result(session)->frames == 0 && !run->stopped) {
@@ -402,8 +396,8 @@ static Status look_at_variant(Run *run)
 
 int replay_command(int argc, char **argv)
 {
-    Pace        clock = {0};
-    Run         run = {.check = check_span, .frames = replay_frames, .clock = &clock};
+    LogClock    clock;
+    Run         run = {.check = check_span, .frames = replay_frames, .clock = &clock.clock};
     Sending     sending = {0};
     DisLog      log = {0};
     DisEntityId host[options_hosts_max];
@@ -411,7 +405,7 @@ int replay_command(int argc, char **argv)
     const int   stop = options_parse(&run.options, COMMAND_REPLAY, argc, argv);
     if (stop) return stop - 1;
     stop_by_signals();
-    if (isfinite(run.options.speed)) run.wall_s = wall_of;
+    clock = log_clock(run.options.speed);
     if (run.options.sweep) return sweep_replay(&run.options, look_at_variant);
 
     snprintf(log_name, sizeof log_name, "%s", run.options.log);

@@ -8,6 +8,7 @@
 
 #include "dis/pdu/decode.h"
 #include "entities/motion/dead_reckoning.h"
+#include "sensor/node/clock/log_clock.h"
 #include "sensor/node/session/session.h"
 
 enum { lab_most_reports = 512, lab_most_frames = 512, lab_octets = 256 };
@@ -32,6 +33,7 @@ static struct {
     char          folder[temp_path_size];
     SessionResult result;
     double        first_s;
+    FrameClock   *clock; /* of the next run; NULL: that of its span */
 } lab;
 
 static inline int lab_open(void **state)
@@ -128,6 +130,18 @@ static inline void lab_shoot(void *user, const FrameRecord *record)
     m3_tmul(shot->r_enu_from_cam, lab.frame.r_ecef_from_enu, record->r_ecef_from_cam);
 }
 
+static inline bool lab_over(void *user)
+{
+    (void)user;
+    return false;
+}
+
+static inline Status lab_make(void *user, const FrameTime *frame)
+{
+    bool shown;
+    return session_frame(&shown, user, frame);
+}
+
 static inline int lab_compare(const void *a, const void *b)
 {
     const DisDatagram *p = a, *q = b;
@@ -169,12 +183,14 @@ static inline void lab_run(const Config *given, double from_s, double rate_hz, i
     assert_int_equal(session_open(&session, &shared, &plan, player, lab.folder), STATUS_OK);
     lab.shots = 0;
     lab.first_s = survey.first_s;
-    for (int k = 0; k < frames; k++) {
-        bool shown;
-        /* on ticks, to the bit */
-        const double t_s = rint((survey.first_s + from_s) * rate_hz + k) / rate_hz;
-        assert_int_equal(session_frame(&shown, session, k, t_s), STATUS_OK);
-    }
+    bool     over;
+    LogClock clock = log_clock(INFINITY);
+    /* on ticks, to the bit */
+    log_clock_begin(&clock,
+                    &(LogSpan){{rint((survey.first_s + from_s) * rate_hz), rate_hz}, 0, frames - 1, NULL, 0, NAN});
+    assert_int_equal(
+        frame_loop(&over, &(FrameLoop){lab.clock ? lab.clock : &clock.clock, lab_over, NULL, lab_make, session}),
+        STATUS_OK);
     session_result_free(&lab.result);
     assert_int_equal(session_close(session, &lab.result), STATUS_OK);
     player_destroy(player);

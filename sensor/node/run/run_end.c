@@ -109,7 +109,7 @@ Status run_write(const Run *run, const RunEnd *end)
                                     .stage_count = session_stages,
                                     .stage = session_stage_name,
                                     .stage_ms = stage_ms,
-                                    .latency = run->wall_s ? &result->latency : NULL,
+                                    .latency = clock_on_wall(run->clock) ? &result->latency : NULL,
                                     .woods = woods->on ? &plants : NULL,
                                     .memory = *config->publish.memory ? ring : NULL,
                                     .detections_port = config->publish.detections_port,

@@ -211,22 +211,22 @@ static void begin_latency(Session *s, Frame *f)
     const SessionShared *shared = s->shared;
     const double         fed_s = player_fed_s(s->player);
     if (!s->latency) return;
-    f->times.arrived_s = isfinite(fed_s) ? shared->wall_s(shared->clock, fed_s) : 0;
+    f->times.arrived_s = isfinite(fed_s) ? shared->clock->wall_s(shared->clock, fed_s) : 0;
     f->times.fresh = fed_s > s->fed_s;
     s->fed_s = fed_s;
     f->latency = s->latency;
     f->latency_key = latency_begin(s->latency, &f->times);
 }
 
-Status session_frame(bool *shown, Session *s, int number, double t_s)
+Status session_frame(bool *shown, Session *s, const FrameTime *at)
 {
     int left_out = 0;
-    session_advance(s, t_s);
+    session_advance(s, at->t_s);
     Status status = s->advance_status;
     *shown = false;
     if (status == STATUS_OK && session_host_is_there(s)) { /* otherwise nothing is extrapolated for it */
         Frame *frame = frame_pool_take(s->frames);
-        status = session_make_frame(shown, &left_out, frame, s, number, t_s);
+        status = session_make_frame(shown, &left_out, frame, s, at);
         if (status == STATUS_OK && *shown) {
             begin_latency(s, frame);
             status = consumers_put(&s->consumers, frame);
@@ -236,7 +236,7 @@ Status session_frame(bool *shown, Session *s, int number, double t_s)
     report_crowd(s, left_out);
     if (status == STATUS_OK && *shown) s->result.frames++;
     if (status == STATUS_NO_MEMORY)
-        log_error("session: out of memory at frame %d; choose a smaller --size or fewer --samples", number);
+        log_error("session: out of memory at frame %d; choose a smaller --size or fewer --samples", at->number);
     return status;
 }
 

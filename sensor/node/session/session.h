@@ -5,6 +5,7 @@
 #include "entities/table/entity_table.h"
 #include "render/frame/render.h"
 #include "sensor/node/choices/choices.h"
+#include "sensor/node/clock/frame_clock.h"
 #include "sensor/node/player/player.h"
 #include "sensor/publish/dis/consume_dis.h"
 #include "sensor/settings/sensors.h"
@@ -25,15 +26,13 @@ typedef struct SessionShared {
     bool           no_skip;
     GroundContact  contact; /* which entities are clamped to the world's ground */
     bool           live;    /* a file that cannot be written does not end the session */
-    bool           paced;   /* a replay by the clock: streams are left out when late, as live */
     const char    *config_sha256;
     const Sensors *sensors;
     void (*publish)(void *user, const FrameRecord *frame); /* called for each frame; NULL: not */
-    void        *user;
-    const DisOf *dis;                           /* Data PDUs of each frame, its clock being the player; NULL: none */
-    double (*wall_s)(void *clock, double t_s);  /* wall_clock_s at which exercise time t_s arrives here; NULL: no
-                                                 * latency ledger is kept */
-    void              *clock;                   /* of wall_s */
+    void             *user;
+    const DisOf      *dis;                      /* Data PDUs of each frame, its clock being the player; NULL: none */
+    const FrameClock *clock;                    /* one on the wall: a latency ledger is kept, and streams are left out
+                                                 * when late; NULL: none */
     int                save_count;              /* frames that are also written as frame files, ascending */
     const int         *save;                    /* [save_count] */
     const WoodsConfig *woods;                   /* of the world's plants; NULL: none */
@@ -76,9 +75,9 @@ typedef struct Session Session;
  * first frame takes their place. The player and shared must outlive the session. */
 Status session_open(Session **out, const SessionShared *shared, const HostPlan *plan, Player *player,
                     const char *folder);
-/* Processes everything up to t_s, then renders the frame. t_s must not decrease. shown: false when the host is
+/* Processes everything up to its t_s, which must not decrease, then renders the frame. shown: false when the host is
  * absent. */
-Status session_frame(bool *shown, Session *session, int number, double t_s);
+Status session_frame(bool *shown, Session *session, const FrameTime *frame);
 /* So far. */
 const SessionResult *session_result(const Session *session);
 int                  session_entities(const Session *session); /* entities present */

@@ -175,8 +175,9 @@ static Status save_frame(const Session *s, const Frame *f, const Eye *eye)
     return STATUS_OK;
 }
 
-Status session_make_frame(bool *shown, int *left_out, Frame *f, Session *s, int number, double t_s)
+Status session_make_frame(bool *shown, int *left_out, Frame *f, Session *s, const FrameTime *when)
 {
+    const double         t_s = when->t_s;
     const SessionShared *shared = s->shared;
     Eye                  eye;
     *shown = false;
@@ -186,7 +187,7 @@ Status session_make_frame(bool *shown, int *left_out, Frame *f, Session *s, int 
     if (status != STATUS_OK || !session_eye(&eye, s, &f->seen.snapshot, t_s)) return status;
     f->times.posed_s = wall_clock_s();
     *left_out = f->seen.snapshot.left_out;
-    f->number = number;
+    f->number = when->number;
     f->time_s = t_s;
     f->unix_s = shared->unix_s + t_s;
     f->world = shared->world;

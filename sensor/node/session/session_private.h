@@ -84,7 +84,7 @@ bool session_host_is_there(const Session *s);
 bool session_eye(Eye *eye, Session *s, Snapshot *snapshot, double t_s);
 /* One frame, of all but what its consumers do. shown: false when the host is absent. left_out: entities that are not
  * in it. */
-Status session_make_frame(bool *shown, int *left_out, Frame *f, Session *s, int number, double t_s);
+Status session_make_frame(bool *shown, int *left_out, Frame *f, Session *s, const FrameTime *when);
 /* Makes the folders and files of the products, once, in place of those of an earlier run. */
 Status session_begin_files(Session *s);
 /* The consumers of this session's frames, from the configuration; and a pool for as many frames as they need. done:
