@@ -104,6 +104,7 @@ Status run_write(const Run *run, const RunEnd *end)
                                     .most_left_out = result->most_left_out,
                                     .at_limit = result->at_limit,
                                     .radar_left_out = result->radar_left_out,
+                                    .frames_reduced = result->frames_reduced,
                                     .effects = result->effects,
                                     .render = result->counters,
                                     .stage_count = session_stages,

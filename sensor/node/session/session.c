@@ -57,8 +57,7 @@ static Status open_radar(Session *s)
 {
     const SessionShared *shared = s->shared;
     if (strcmp(shared->config->radar.preset, "none") == 0) return STATUS_OK;
-    const Status status = session_radar_absent_read(&s->radar_absent, shared->notes);
-    return status == STATUS_OK ? frame_radar_open(&s->radar, shared->config, shared->isa, shared->live) : status;
+    return frame_radar_open(&s->radar, shared->config, shared->isa, shared->live);
 }
 
 static Status open_session(Session *s)
@@ -105,6 +104,7 @@ static Status open_session(Session *s)
     if (status == STATUS_OK) status = read_marks(s);
     if (status == STATUS_OK) status = open_vehicles(s);
     if (status == STATUS_OK) status = open_radar(s);
+    if (status == STATUS_OK) status = frame_verdicts_read(&s->verdicts, shared->notes);
     if (status == STATUS_OK) session_keep(s);
     if (status == STATUS_OK) status = sensors_chains(s->chain, shared->sensors, shared->config);
     return status == STATUS_OK ? session_consumers(s, list_frame) : status;
@@ -291,7 +291,7 @@ Status session_close(Session *s, SessionResult *result)
     else session_result_free(&s->result);
     for (int b = 0; b < BAND_COUNT; b++) chain_destroy(s->chain[b]);
     seeker_radar_destroy(s->radar);
-    session_radar_absent_free(s->radar_absent);
+    frame_verdicts_free(s->verdicts);
     world_vehicles_destroy(s->vehicles);
     given_heat_close(s->given);
     heat_kept_close(s->kept);

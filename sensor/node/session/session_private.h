@@ -4,6 +4,7 @@
 
 #include "render/frame/world.h"
 #include "sensor/frame/frame_world.h"
+#include "sensor/node/session/frame_verdict.h"
 #include "sensor/node/session/seeker_private.h"
 #include "sensor/node/player/player.h"
 #include "sensor/node/session/session.h"
@@ -40,7 +41,7 @@ struct Session {
     uint64_t             given_up_reported; /* last report of a full table, and its time; wall clock */
     double               given_up_reported_s, left_out_reported_s;
     SeekerRadar         *radar;             /* NULL: none */
-    RadarAbsent         *radar_absent;      /* frames that had no radar when they were recorded; NULL: none */
+    FrameVerdicts       *verdicts;          /* of the recording that is played; NULL: none */
     Chain               *chain[BAND_COUNT]; /* of the bands with a sensor of etc/sensors.csv: noise figures for
                                              * targets */
     Consumers     consumers;
