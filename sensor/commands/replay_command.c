@@ -66,14 +66,9 @@ static void host_name(char out[dis_id_text_size], const HostPlan *plan)
     else dis_entity_id_text(out, plan->host);
 }
 
-/* Frames to be rendered; single: one, at from_s. */
-typedef struct FrameSpan {
-    double from_s, to_s, first, last; /* exercise time; numbers */
-    bool   single;
-} FrameSpan;
-
-/* The span of the plan and of --from and --to, or, causal, to the last datagram received unless --to is later. */
-static Status find_span(FrameSpan *out, const Run *run, const Player *player, const HostPlan *plan,
+/* The span of the plan and of --from and --to, or, causal, to the last datagram received unless --to is later. span_s:
+ * its ends, exercise time. */
+static Status find_span(LogSpan *out, double span_s[2], const Run *run, const Player *player, const HostPlan *plan,
                         const FrameGrid *grid)
 {
     const Options *o = &run->options;
@@ -103,21 +98,22 @@ static Status find_span(FrameSpan *out, const Run *run, const Player *player, co
     }
     if (single) last = first;
     const Status status = take_only(&last, o, first);
-    *out = (FrameSpan){from_s, to_s, first, last, single};
+    *out = (LogSpan){*grid, (int)first, (int)last, o->only, o->only_count, single ? from_s : NAN};
+    span_s[0] = from_s, span_s[1] = to_s;
     return status;
 }
 
 static Status check_span(Run *run, const Player *player, const HostPlan *plan, const FrameGrid *grid)
 {
-    FrameSpan span;
-    return find_span(&span, run, player, plan, grid);
+    LogSpan span;
+    double  span_s[2];
+    return find_span(&span, span_s, run, player, plan, grid);
 }
 
 /* What the loop over frames works on. */
 typedef struct Replay {
-    Session       *session;
-    const LogSpan *span;
-    double         begun_s; /* wall clock */
+    Session  *session;
+    LogClock *clock;
 } Replay;
 
 static bool over(void *user)
@@ -128,27 +124,22 @@ static bool over(void *user)
 
 static Status make_frame(void *user, const FrameTime *frame)
 {
-    const Replay *r = user;
-    bool          shown;
-    const Status  status = session_frame(&shown, r->session, frame);
-    if (status == STATUS_OK) show_progress(frame->number, r->span->first, r->span->last, r->begun_s);
+    const Replay  *r = user;
+    const LogSpan *span = &r->clock->span;
+    bool           shown;
+    const Status   status = session_frame(&shown, r->session, frame);
+    if (status == STATUS_OK) show_progress(frame->number, span->first, span->last, r->clock->begun_s);
     return status;
 }
 
 static Status replay_frames(Run *run, Session *session, Player *player, const HostPlan *plan, const FrameGrid *grid)
 {
-    const Options *o = &run->options;
-    FrameSpan      span = {0};
-    Status         status = find_span(&span, run, player, plan, grid);
+    LogSpan span;
+    double  span_s[2];
+    Status  status = find_span(&span, span_s, run, player, plan, grid);
     if (status != STATUS_OK) return status;
-    const LogSpan frames = {.grid = *grid,
-                            .first = (int)span.first,
-                            .last = (int)span.last,
-                            .only = o->only,
-                            .only_count = o->only_count,
-                            .single_s = span.single ? span.from_s : NAN};
-    log_clock_begin((LogClock *)run->clock, &frames);
-    Replay replay = {session, &frames, wall_clock_s()};
+    Replay replay = {session, (LogClock *)run->clock};
+    log_clock_begin(replay.clock, &span);
     status = frame_loop(&run->stopped, &(FrameLoop){run->clock, over, NULL, make_frame, &replay});
     log_status(NULL);
     if (status != STATUS_OK) return status;
@@ -156,7 +147,7 @@ static Status replay_frames(Run *run, Session *session, Player *player, const Ho
         if (plan->any_munition)
             log_error("replay: exercise.host: munition: none flew at a frame's time between %.3f and %.3f s; `pitviper "
                       "inspect %s` lists who was there, --host ID or --host observer shows what there is",
-                      span.from_s, span.to_s, o->log);
+                      span_s[0], span_s[1], run->options.log);
         else
             log_error("replay: %s was never there at a frame's time; see `pitviper inspect`, --from, --to and --rate",
                       session_host(session));

@@ -12,18 +12,6 @@ const char *const session_stage_name[session_stages] = {"frame", "snapshot", "vi
 
 /* ---- its state, at the beginning -------------------------------------------------------------------- */
 
-static bool observes(const HostPlan *plan) { return dis_entity_id_is_none(plan->host) && !plan->any_munition; }
-
-void session_note_host(Session *s)
-{
-    SessionResult *r = &s->result;
-    for (int i = 0; i < r->host_count; i++)
-        if (strcmp(r->host[i], s->host_text) == 0) return;
-    if (r->host_count == session_hosts_kept) return;
-    _Static_assert(sizeof r->host[0] == sizeof s->host_text, "one text");
-    memcpy(r->host[r->host_count++], s->host_text, sizeof s->host_text);
-}
-
 static void list_frame(void *user, const Frame *frame);
 
 /* Reads the ground marks of what stood and drove before a restart. */
@@ -77,30 +65,12 @@ static Status open_session(Session *s)
             .frame = &shared->world->frame,
             .elevation = &shared->world->landscape->elevation,
             .landscape = shared->contact == GROUND_CONTACT_INCONSISTENT ? shared->world->landscape : NULL};
-    s->seeker.config = (SeekerConfig){
-        shared->config->sensor.gimbal_limit_deg * rad_per_deg, shared->config->sensor.gimbal_rate_dps * rad_per_deg,
-        shared->config->sensor.gimbal_lag_s, shared->config->sensor.mount_roll_deg * rad_per_deg};
-    s->mount = seeker_mount(shared->config);
-    s->mount_model = -1;
-    s->limit_tick = -1;
     s->given_up_reported_s = s->left_out_reported_s = -INFINITY;
     s->tick = (int64_t)ceil(s->plan.start_s * seeker_ticks_per_s);
     memcpy(s->p_aim_ecef, s->plan.p_aim_ecef, sizeof s->p_aim_ecef);
-    if (observes(&s->plan)) strcpy(s->host_text, "observer");
-    else if (s->plan.any_munition) strcpy(s->host_text, "munition");
-    else dis_entity_id_text(s->host_text, s->plan.host);
-    if (!s->plan.any_munition) session_note_host(s);
-
-    int most_nodes = 1;
-    for (int m = 0; m < catalog_model_count(shared->catalog); m++) {
-        const int nodes = catalog_model(shared->catalog, m)->node_count;
-        most_nodes = nodes > most_nodes ? nodes : most_nodes;
-    }
-    s->node = calloc((size_t)most_nodes, sizeof *s->node);
-    s->joint = calloc((size_t)most_nodes, sizeof *s->joint);
-    if (!s->node || !s->joint) return STATUS_NO_MEMORY;
-
-    Status status = entity_table_create(&s->table, &table, shared->catalog);
+    const bool observes = dis_entity_id_is_none(s->plan.host) && !s->plan.any_munition;
+    Status     status = observes ? session_host_observer(&s->host, s) : session_host_entity(&s->host, s);
+    if (status == STATUS_OK) status = entity_table_create(&s->table, &table, shared->catalog);
     if (status == STATUS_OK) status = read_marks(s);
     if (status == STATUS_OK) status = open_vehicles(s);
     if (status == STATUS_OK) status = open_radar(s);
@@ -224,7 +194,7 @@ Status session_frame(bool *shown, Session *s, const FrameTime *at)
     session_advance(s, at->t_s);
     Status status = s->advance_status;
     *shown = false;
-    if (status == STATUS_OK && session_host_is_there(s)) { /* otherwise nothing is extrapolated for it */
+    if (status == STATUS_OK && s->host->is_there(s->host)) { /* otherwise nothing is extrapolated for it */
         Frame *frame = frame_pool_take(s->frames);
         status = session_make_frame(shown, &left_out, frame, s, at);
         if (status == STATUS_OK && *shown) {
@@ -299,8 +269,7 @@ Status session_close(Session *s, SessionResult *result)
     entity_table_destroy(s->table);
     frame_pool_destroy(s->frames);
     pool_destroy(s->publish_pool);
-    free(s->node);
-    free(s->joint);
+    if (s->host) s->host->destroy(s->host);
     free(s);
     return status;
 }
