@@ -3,6 +3,7 @@
 
 #include "dis/pdu/decode.h"
 #include "sensor/publish/files/frame_files.h"
+#include "sensor/node/clock/log_clock.h"
 #include "sensor/node/run/host_run.h"
 #include "sensor/node/player/player.h"
 #include "sensor/commands/overwrite.h"
@@ -14,7 +15,6 @@
 #include <libgen.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <time.h>
 #include <unistd.h>
 
 /* ---- the frames ------------------------------------------------------------------------------ */
@@ -26,30 +26,6 @@ static void show_progress(double n, double first, double last, double begun_s)
     snprintf(text, sizeof text, "frame %.0f of %.0f  %3.0f %%  %.0f s left", n - first + 1, last - first + 1,
              100 * done, spent_s * (1 - done) / done);
     log_status(text);
-}
-
-/* The clock of a paced replay: it runs at `speed` times the log's own time. */
-typedef struct Pace {
-    double begun_s, first_s, speed; /* wall clock; exercise time then; INFINITY: as fast as possible */
-} Pace;
-
-static double wall_of(void *clock, double t_s)
-{
-    const Pace *p = clock;
-    return p->begun_s + (t_s - p->first_s) / p->speed;
-}
-
-/* Waits until that clock has reached t_s, or a signal. */
-static void pace(Pace *p, double t_s)
-{
-    if (!isfinite(p->speed)) return;
-    const double        until_s = wall_of(p, t_s);
-    static const double look_s = 0.1; /* a signal that comes just before a wait does not end it */
-    for (double now_s = wall_clock_s(); now_s < until_s && !stop_asked(); now_s = wall_clock_s()) {
-        const double    next_s = fmin(until_s, now_s + look_s);
-        struct timespec next = {(time_t)next_s, (long)((next_s - floor(next_s)) * 1e9)};
-        clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &next, NULL);
-    }
 }
 
 /* Whether frame n is requested; at: of --only, the next one. */
@@ -90,14 +66,9 @@ static void host_name(char out[dis_id_text_size], const HostPlan *plan)
     else dis_entity_id_text(out, plan->host);
 }
 
-/* Frames to be rendered; single: one, at from_s. */
-typedef struct FrameSpan {
-    double from_s, to_s, first, last; /* exercise time; numbers */
-    bool   single;
-} FrameSpan;
-
-/* The span of the plan and of --from and --to, or, causal, to the last datagram received unless --to is later. */
-static Status find_span(FrameSpan *out, const Run *run, const Player *player, const HostPlan *plan,
+/* The span of the plan and of --from and --to, or, causal, to the last datagram received unless --to is later. span_s:
+ * its ends, exercise time. */
+static Status find_span(LogSpan *out, double span_s[2], const Run *run, const Player *player, const HostPlan *plan,
                         const FrameGrid *grid)
 {
     const Options *o = &run->options;
@@ -128,42 +99,56 @@ static Status find_span(FrameSpan *out, const Run *run, const Player *player, co
     }
     if (single) last = first;
     const Status status = take_only(&last, o, first);
-    *out = (FrameSpan){from_s, to_s, first, last, single};
+    *out = (LogSpan){*grid, (int)first, (int)last, o->only, o->only_count, single ? from_s : NAN};
+    span_s[0] = from_s, span_s[1] = to_s;
     return status;
 }
 
 static Status check_span(Run *run, const Player *player, const HostPlan *plan, const FrameGrid *grid)
 {
-    FrameSpan span;
-    return find_span(&span, run, player, plan, grid);
+    LogSpan span;
+    double  span_s[2];
+    return find_span(&span, span_s, run, player, plan, grid);
+}
+
+/* What the loop over frames works on. */
+typedef struct Replay {
+    Session  *session;
+    LogClock *clock;
+} Replay;
+
+static bool over(void *user)
+{
+    (void)user;
+    return stop_asked();
+}
+
+static Status make_frame(void *user, const FrameTime *frame)
+{
+    const Replay  *r = user;
+    const LogSpan *span = &r->clock->span;
+    bool           shown;
+    const Status   status = session_frame(&shown, r->session, frame);
+    if (status == STATUS_OK) show_progress(frame->number, span->first, span->last, r->clock->begun_s);
+    return status;
 }
 
 static Status replay_frames(Run *run, Session *session, Player *player, const HostPlan *plan, const FrameGrid *grid)
 {
-    const Options *o = &run->options;
-    FrameSpan      span = {0};
-    Status         status = find_span(&span, run, player, plan, grid);
-    int            next = 0;
-    Pace          *clock = run->clock;
-    const double   begun_s = wall_clock_s();
-    *clock = (Pace){begun_s, span.single ? span.from_s : run_frame_s(grid, span.first), o->speed};
-    for (double n = span.first; n <= span.last && status == STATUS_OK; n++) {
-        const double t_s = span.single ? span.from_s : run_frame_s(grid, n);
-        bool         shown;
-        if (!wanted(o, &next, n)) continue;
-        pace(clock, t_s);
-        run->stopped = stop_asked();
-        if (run->stopped) break;
-        status = session_frame(&shown, session, (int)n, t_s);
-        if (status == STATUS_OK) show_progress(n, span.first, span.last, begun_s);
-    }
+    LogSpan span;
+    double  span_s[2];
+    Status  status = find_span(&span, span_s, run, player, plan, grid);
+    if (status != STATUS_OK) return status;
+    Replay replay = {session, (LogClock *)run->clock};
+    log_clock_begin(replay.clock, &span);
+    status = frame_loop(&run->stopped, &(FrameLoop){run->clock, over, NULL, make_frame, &replay});
     log_status(NULL);
     if (status != STATUS_OK) return status;
     if (session_result(session)->frames == 0 && !run->stopped) {
         if (plan->any_munition)
             log_error("replay: exercise.host: munition: none flew at a frame's time between %.3f and %.3f s; `pitviper "
                       "inspect %s` lists who was there, --host ID or --host observer shows what there is",
-                      span.from_s, span.to_s, o->log);
+                      span_s[0], span_s[1], run->options.log);
         else
             log_error("replay: %s was never there at a frame's time; see `pitviper inspect`, --from, --to and --rate",
                       session_host(session));
@@ -404,8 +389,8 @@ static Status look_at_variant(Run *run)
 
 int replay_command(int argc, char **argv)
 {
-    Pace        clock = {0};
-    Run         run = {.check = check_span, .frames = replay_frames, .clock = &clock};
+    LogClock    clock;
+    Run         run = {.check = check_span, .frames = replay_frames, .clock = &clock.clock};
     Sending     sending = {0};
     DisLog      log = {0};
     DisEntityId host[options_hosts_max];
@@ -413,7 +398,7 @@ int replay_command(int argc, char **argv)
     const int   stop = options_parse(&run.options, COMMAND_REPLAY, argc, argv);
     if (stop) return stop - 1;
     stop_by_signals();
-    if (isfinite(run.options.speed)) run.wall_s = wall_of;
+    clock = log_clock(run.options.speed);
     if (run.options.sweep) return sweep_replay(&run.options, look_at_variant);
 
     snprintf(log_name, sizeof log_name, "%s", run.options.log);

@@ -3,7 +3,7 @@
 #include "sensor/commands/commands.h"
 #include "pitviper_output.h"
 
-#include "dis/clock/steady_clock.h"
+#include "sensor/node/clock/live_clock.h"
 #include "sensor/node/live/health.h"
 #include "sensor/publish/files/frame_files.h"
 #include "sensor/node/run/host_run.h"
@@ -20,7 +20,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <strings.h>
-#include <time.h>
 #include <unistd.h>
 
 static const double  flush_s = 0.5, show_s = 1;
@@ -38,9 +37,11 @@ typedef struct Live {
     char           host[dis_id_text_size];  /* at the end */
     char           to[run_network_to_size]; /* destination, for messages */
     /* datagrams received before the choices; each owns its memory */
-    DisDatagram  *heard;
-    int           received_count, received_capacity;
-    const Player *player; /* once there is one */
+    DisDatagram *heard;
+    int          received_count, received_capacity;
+    LiveClock    clock;
+    Player      *player;  /* once there is one */
+    Session     *session; /* likewise */
     /* wall clock, s */
     double   begun_s, flushed_s, shown_s;
     uint64_t shown_frames; /* frames rendered by shown_s */
@@ -230,19 +231,11 @@ static Status send_pdu(void *user, const uint8_t *pdu, size_t octets)
 
 /* ---- frame after frame ------------------------------------------------------------------------- */
 
-/* Exercise time as the time of arrival that it stands for, on the clock of wall_clock_s. */
-static double wall_of(void *user, double t_s)
-{
-    const Live           *l = user;
-    const struct timespec at = steady_clock_monotonic(dis_unix_ns_until(player_arrival_s(l->player, t_s)));
-    return (double)at.tv_sec + 1e-9 * (double)at.tv_nsec;
-}
-
-static Status feed(Live *l, Player *player, int64_t until_ns)
+static Status feed(Live *l, int64_t until_ns)
 {
     DisDatagram datagram;
     while (take(&datagram, l, until_ns)) {
-        const Status status = player_add(player, &datagram, true);
+        const Status status = player_add(l->player, &datagram, true);
         if (status != STATUS_OK) {
             log_error("run: out of memory for what was heard");
             return status;
@@ -251,18 +244,34 @@ static Status feed(Live *l, Player *player, int64_t until_ns)
     return STATUS_OK;
 }
 
-/* Receives until that Unix time has passed. False: the run is over. */
-static Status wait_until(bool *there, Live *l, const Session *session, Player *player, int64_t until_ns)
+/* Receives while the clock waits for a frame. */
+static Status receive(void *user, const FrameTime *next)
 {
-    for (;;) {
-        const int64_t now_ns = dis_udp_now_ns();
-        *there = now_ns > until_ns;
-        if (*there || over(l)) return STATUS_OK;
-        check_health(l, session);
-        dis_udp_sleep_until(until_ns < now_ns + check_ns ? until_ns + 1 : now_ns + check_ns);
-        const Status status = feed(l, player, until_ns);
-        if (status != STATUS_OK) return status;
-    }
+    Live *l = user;
+    check_health(l, l->session);
+    return feed(l, live_clock_due_ns(&l->clock, next->t_s));
+}
+
+static bool enough(void *user)
+{
+    const Live *l = user;
+    const int   most = l->run.options.frames;
+    return over(l) || (most && session_result(l->session)->frames >= most);
+}
+
+static Status make_frame(void *user, const FrameTime *frame)
+{
+    Live *l = user;
+    bool  shown;
+    l->counters.frames_late += frame->dropped;
+    l->due_ns = live_clock_due_ns(&l->clock, frame->t_s);
+    dis_udp_close_tick(l->udp, l->due_ns);
+    Status status = feed(l, l->due_ns);
+    if (status == STATUS_OK) status = session_frame(&shown, l->session, frame);
+    if (status == STATUS_OK && !shown) l->health.sample.missing++;
+    flush_recording(l);
+    check_health(l, l->session);
+    return status;
 }
 
 /* Closes the recording with the remaining datagrams, and hashes it. */
@@ -288,48 +297,25 @@ static void conclude(Live *l)
     }
 }
 
-/* Renders the newest frame that is due, else the next: when late, frames are dropped, not queued. */
 static Status live_frames(Run *run, Session *session, Player *player, const HostPlan *plan, const FrameGrid *grid)
 {
-    Live          *l = run->user;
-    const Options *o = &run->options;
-    Status         status = STATUS_OK;
-    double         last = -1; /* number of the last frame */
-    const double   given_s = config_span_time_s(o->config.exercise.from_s, plan->start_s, NAN); /* NaN: none */
-    const double   from_s = fmax(plan->start_s, given_s);
-    const double   to_s = config_span_time_s(o->config.exercise.to_s, plan->start_s, NAN);
-    const double   first = fmax(ceil(from_s * grid->rate_hz - 1e-9) - grid->origin, 0);
-    l->player = player;
+    Live         *l = run->user;
+    const Config *config = &run->options.config;
+    bool          ended;
+    const double  given_s = config_span_time_s(config->exercise.from_s, plan->start_s, NAN); /* NaN: none */
+    l->clock.grid = *grid;
+    l->clock.first = fmax(ceil(fmax(plan->start_s, given_s) * grid->rate_hz - 1e-9) - grid->origin, 0);
+    l->clock.to_s = config_span_time_s(config->exercise.to_s, plan->start_s, NAN);
+    l->clock.player = l->player = player;
+    l->session = session;
     l->counters.rate_hz = grid->rate_hz;
     health_rendering(&l->health, wall_clock_s());
     l->health.sample.host = plan->any_munition                  ? HEALTH_MUNITION
                             : dis_entity_id_is_none(plan->host) ? HEALTH_OBSERVER
                                                                 : HEALTH_BY_ID;
-    while (status == STATUS_OK && !over(l) && !(o->frames && session_result(session)->frames >= o->frames)) {
-        const double now_s = player_time_s(player, dis_unix_s(dis_udp_now_ns()));
-        const double newest = floor(now_s * grid->rate_hz) - grid->origin;
-        const double n = fmax(fmax(newest, last + 1), first);
-        const double t_s = run_frame_s(grid, n);
-        if (t_s > to_s) break;
-        const int64_t until_ns = dis_unix_ns_until(player_arrival_s(player, t_s));
-        bool          there, shown;
-        status = wait_until(&there, l, session, player, until_ns);
-        if (status != STATUS_OK || !there) break;
-        if (last >= 0 && n > last + 1) l->counters.frames_late += (uint64_t)(n - last - 1);
-        last = n;
-        dis_udp_close_tick(l->udp, until_ns);
-        status = feed(l, player, until_ns);
-        l->due_ns = until_ns;
-        if (status == STATUS_OK) status = session_frame(&shown, session, (int)n, t_s);
-        if (status == STATUS_OK && !shown) l->health.sample.missing++;
-        flush_recording(l);
-        check_health(l, session);
-    }
-    if (status == STATUS_OK && last >= 0 && over(l)) { /* frames that were due while the last one was made */
-        const double ended_s = fmin(player_time_s(player, dis_unix_s(dis_udp_now_ns())), isnan(to_s) ? INFINITY : to_s);
-        const double newest = floor(ended_s * grid->rate_hz) - grid->origin;
-        if (newest > last) l->counters.frames_late += (uint64_t)(newest - last);
-    }
+    const Status status = frame_loop(&ended, &(FrameLoop){&l->clock.clock, enough, receive, make_frame, l});
+    /* and those that were due while the last one was made */
+    if (status == STATUS_OK && over(l)) l->counters.frames_late += live_clock_behind(&l->clock);
     log_status(NULL);
     snprintf(l->host, sizeof l->host, "%s", session_host(session));
     l->health.sample.entities = session_entities(session);
@@ -462,7 +448,7 @@ static Status run_node(Live *l)
 
 int run_command(int argc, char **argv)
 {
-    Live      live = {.run = {.frames = live_frames, .log_name = "live"}};
+    Live      live = {.run = {.frames = live_frames, .log_name = "live"}, .clock = live_clock()};
     Live     *l = &live;
     char      name[sizeof l->run.options.config.record.path];
     const int stop = options_parse(&l->run.options, COMMAND_RUN, argc, argv);
@@ -473,8 +459,7 @@ int run_command(int argc, char **argv)
     l->run.publish = count_frame;
     if (publishes(l)) l->run.send = send_pdu;
     if (*l->run.options.config.record.path) l->run.note = note;
-    l->run.wall_s = wall_of;
-    l->run.clock = l;
+    l->run.clock = &l->clock.clock;
     memcpy(name, l->run.options.config.record.path, sizeof name);
     if (*name) l->run.log_name = basename(name);
     l->latency_s = NAN;

@@ -192,6 +192,7 @@ char *record_frame_text(const FrameRecord *r)
     for (int i = 0; i < r->target_count; i++) json_array_append_new(targets, target_json(&r->target[i]));
     json_object_set_new(line, "targets", targets);
     if (r->error || r->radar_error) json_object_set_new(line, "error", error_json(r));
+    if (r->given_up) json_object_set_new(line, "given_up", json_string(r->given_up));
     if (r->radar) json_object_set_new(line, "radar", radar_record_json(r->radar, r->snapshot, r->catalog));
 
     char *text = json_dumps(line, JSON_COMPACT | JSON_REAL_PRECISION(15));

@@ -42,6 +42,7 @@ typedef struct FrameRecord {
     const RadarError     *radar_error;  /* likewise */
     const GroundPoint    *footprint;    /* [FOOTPRINT_COUNT]; NULL: not requested */
     const RadarFrame     *radar;        /* NULL: none */
+    const char           *given_up;     /* of quality, by a live node; NULL: nothing */
 } FrameRecord;
 
 /* Writes one line and flushes it. STATUS_IO when it cannot be written. */
@@ -86,6 +87,7 @@ typedef struct RunRecord {
     uint64_t            own;            /* datagrams of this node itself, ignored */
     const LiveCounters *live;           /* NULL: a replay */
     int                 radar_left_out; /* frames without radar, for want of signatures */
+    int                 frames_reduced; /* frames with something in their given_up */
     int                 at_limit;       /* frames whose aim was beyond the gimbal limit */
     uint64_t            entities_created, entities_timed_out, entities_deactivated, entities_removed;
     uint64_t            entities_evicted, entities_refused; /* by a full table */

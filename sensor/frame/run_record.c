@@ -125,6 +125,7 @@ static json_t *counters_json(const RunRecord *r)
     set_if_any(counters, "frames_in_a_lost_ring", r->sent->frames_unnamed);
     json_object_set_new(counters, "frames_at_gimbal_limit", json_integer(r->at_limit));
     set_if_any(counters, "frames_without_radar", (uint64_t)r->radar_left_out);
+    set_if_any(counters, "frames_reduced", (uint64_t)r->frames_reduced);
     set_count(entities, "created", r->entities_created);
     set_count(entities, "timed_out", r->entities_timed_out);
     set_count(entities, "deactivated", r->entities_deactivated);

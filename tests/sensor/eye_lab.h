@@ -8,6 +8,7 @@
 
 #include "dis/pdu/decode.h"
 #include "entities/motion/dead_reckoning.h"
+#include "sensor/node/clock/log_clock.h"
 #include "sensor/node/session/session.h"
 
 enum { lab_most_reports = 512, lab_most_frames = 512, lab_octets = 256 };
@@ -16,6 +17,8 @@ typedef struct LabFrame {
     double      t_s, p_enu[3], r_enu_from_cam[9], rate_px_s[2], focal_px;
     bool        at_limit;
     DisEntityId host;
+    int         target_samples;
+    char        given_up[16];
 } LabFrame;
 
 static struct {
@@ -32,6 +35,12 @@ static struct {
     char          folder[temp_path_size];
     SessionResult result;
     double        first_s;
+    /* of the next runs */
+    FrameClock *clock;          /* NULL: that of its span */
+    bool        adaptive, live; /* rays by antialias: adaptive; as a live node */
+    const char *notes;          /* SessionShared's, as these two */
+    void (*note)(void *user, const char *text);
+    unsigned (*choose)(void *user, const FrameTime *frame);
 } lab;
 
 static inline int lab_open(void **state)
@@ -122,10 +131,24 @@ static inline void lab_shoot(void *user, const FrameRecord *record)
     *shot = (LabFrame){.t_s = record->time_s,
                        .focal_px = record->request->view.focal_px,
                        .at_limit = record->gimbal_at_limit,
+                       .target_samples = record->request->target_samples,
                        .rate_px_s = {record->scene_rate_px_s[0], record->scene_rate_px_s[1]}};
     if (record->host) shot->host = record->host->id;
+    if (record->given_up) snprintf(shot->given_up, sizeof shot->given_up, "%s", record->given_up);
     enu_from_ecef(shot->p_enu, &lab.frame, record->p_eye_ecef);
     m3_tmul(shot->r_enu_from_cam, lab.frame.r_ecef_from_enu, record->r_ecef_from_cam);
+}
+
+static inline bool lab_over(void *user)
+{
+    (void)user;
+    return false;
+}
+
+static inline Status lab_make(void *user, const FrameTime *frame)
+{
+    bool shown;
+    return session_frame(&shown, user, frame);
 }
 
 static inline int lab_compare(const void *a, const void *b)
@@ -147,7 +170,7 @@ static inline void lab_run(const Config *given, double from_s, double rate_hz, i
     Sensors  sensors = {0};
     config.sensor.width_px = 24, config.sensor.height_px = 16;
     config.publish.files = config.publish.png = false;
-    config.sensor.antialias = ANTIALIAS_OFF;
+    if (!lab.adaptive) config.sensor.antialias = ANTIALIAS_OFF;
     config.quality.budget = false;
     qsort(lab.datagram, (size_t)lab.reports, sizeof *lab.datagram, lab_compare);
     DisLog log = {.count = lab.reports, .datagram = lab.datagram};
@@ -165,16 +188,22 @@ static inline void lab_run(const Config *given, double from_s, double rate_hz, i
                                   .bands = 1u << BAND_LWIR,
                                   .config_sha256 = "",
                                   .sensors = &sensors,
-                                  .publish = lab_shoot};
+                                  .publish = lab_shoot,
+                                  .live = lab.live,
+                                  .note = lab.note,
+                                  .notes = lab.notes,
+                                  .choose = lab.choose};
     assert_int_equal(session_open(&session, &shared, &plan, player, lab.folder), STATUS_OK);
     lab.shots = 0;
     lab.first_s = survey.first_s;
-    for (int k = 0; k < frames; k++) {
-        bool shown;
-        /* on ticks, to the bit */
-        const double t_s = rint((survey.first_s + from_s) * rate_hz + k) / rate_hz;
-        assert_int_equal(session_frame(&shown, session, k, t_s), STATUS_OK);
-    }
+    bool     over;
+    LogClock clock = log_clock(INFINITY);
+    /* on ticks, to the bit */
+    log_clock_begin(&clock,
+                    &(LogSpan){{rint((survey.first_s + from_s) * rate_hz), rate_hz}, 0, frames - 1, NULL, 0, NAN});
+    assert_int_equal(
+        frame_loop(&over, &(FrameLoop){lab.clock ? lab.clock : &clock.clock, lab_over, NULL, lab_make, session}),
+        STATUS_OK);
     session_result_free(&lab.result);
     assert_int_equal(session_close(session, &lab.result), STATUS_OK);
     player_destroy(player);

@@ -15,8 +15,6 @@
 
 enum { path_size = 4096 };
 
-double run_frame_s(const FrameGrid *grid, double n) { return (grid->origin + n) / grid->rate_hz; }
-
 /* ---- before ---------------------------------------------------------------------------------- */
 
 /* Hashes every setting that the images depend on: threads, speed and paths do not change it. */
@@ -33,7 +31,7 @@ static Status hash_config(char out[sha256_text_size], const Options *o)
 
 Status run_prepare(Run *run)
 {
-    if (!run->options.config.publish.truth && !run->wall_s) {
+    if (!run->options.config.publish.truth && !clock_on_wall(run->clock)) {
         log_error(
             "%s: publish.truth: false is for `run` and `replay --speed X`; a replay at full speed always has truth",
             options_command(&run->options));
@@ -261,14 +259,12 @@ Status run_host(Run *run, const DisEntityId *host)
                                   .bands = run->bands,
                                   .no_skip = o->no_skip,
                                   .live = o->command == COMMAND_RUN,
-                                  .paced = o->command == COMMAND_REPLAY && isfinite(o->speed),
                                   .sensors = &run->sensors,
                                   .contact = chosen.contact,
                                   .config_sha256 = run->config_sha256,
                                   .publish = run->publish,
                                   .user = run->user,
                                   .dis = run->send ? &dis : NULL,
-                                  .wall_s = run->wall_s,
                                   .note = run->note,
                                   .notes = run->view.notes,
                                   .clock = run->clock,

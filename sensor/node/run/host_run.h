@@ -4,16 +4,10 @@
 #define SENSOR_NODE_RUN_HOST_RUN_H
 
 #include "dis/network/udp.h"
+#include "sensor/node/clock/frame_clock.h"
 #include "sensor/node/session/session.h"
 #include "sensor/settings/options.h"
 #include "sensor/settings/tables_used.h"
-
-/* Frame n is at (origin + n) / rate_hz of exercise time: on multiples of the interval, wherever the span begins, so
- * that a part of a run equals that part of the full run. */
-typedef struct FrameGrid {
-    double origin, rate_hz;
-} FrameGrid;
-double run_frame_s(const FrameGrid *grid, double n);
 
 typedef struct Run Run;
 struct Run {
@@ -42,10 +36,9 @@ struct Run {
     Status (*frames)(Run *run, Session *session, Player *player, const HostPlan *plan, const FrameGrid *grid);
     void (*publish)(void *user, const FrameRecord *frame); /* may be NULL */
     void (*note)(void *user, const char *text);            /* into the recording; may be NULL */
-    DisSend *send;                             /* sends the Data PDUs of publish.dis; NULL: they are not sent */
-    void    *user;                             /* passed to these four */
-    double (*wall_s)(void *clock, double t_s); /* SessionShared.wall_s: frames are rendered by the clock; NULL: not */
-    void *clock;
+    DisSend    *send;  /* sends the Data PDUs of publish.dis; NULL: they are not sent */
+    void       *user;  /* passed to these four */
+    FrameClock *clock; /* the command's, of `frames`; NULL where none are made */
 };
 
 /* Bands, sensors, hash of the configuration: before anything is received. */

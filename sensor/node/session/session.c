@@ -12,18 +12,6 @@ const char *const session_stage_name[session_stages] = {"frame", "snapshot", "vi
 
 /* ---- its state, at the beginning -------------------------------------------------------------------- */
 
-static bool observes(const HostPlan *plan) { return dis_entity_id_is_none(plan->host) && !plan->any_munition; }
-
-void session_note_host(Session *s)
-{
-    SessionResult *r = &s->result;
-    for (int i = 0; i < r->host_count; i++)
-        if (strcmp(r->host[i], s->host_text) == 0) return;
-    if (r->host_count == session_hosts_kept) return;
-    _Static_assert(sizeof r->host[0] == sizeof s->host_text, "one text");
-    memcpy(r->host[r->host_count++], s->host_text, sizeof s->host_text);
-}
-
 static void list_frame(void *user, const Frame *frame);
 
 /* Reads the ground marks of what stood and drove before a restart. */
@@ -57,8 +45,7 @@ static Status open_radar(Session *s)
 {
     const SessionShared *shared = s->shared;
     if (strcmp(shared->config->radar.preset, "none") == 0) return STATUS_OK;
-    const Status status = session_radar_absent_read(&s->radar_absent, shared->notes);
-    return status == STATUS_OK ? frame_radar_open(&s->radar, shared->config, shared->isa, shared->live) : status;
+    return frame_radar_open(&s->radar, shared->config, shared->isa, shared->live);
 }
 
 static Status open_session(Session *s)
@@ -78,33 +65,16 @@ static Status open_session(Session *s)
             .frame = &shared->world->frame,
             .elevation = &shared->world->landscape->elevation,
             .landscape = shared->contact == GROUND_CONTACT_INCONSISTENT ? shared->world->landscape : NULL};
-    s->seeker.config = (SeekerConfig){
-        shared->config->sensor.gimbal_limit_deg * rad_per_deg, shared->config->sensor.gimbal_rate_dps * rad_per_deg,
-        shared->config->sensor.gimbal_lag_s, shared->config->sensor.mount_roll_deg * rad_per_deg};
-    s->mount = seeker_mount(shared->config);
-    s->mount_model = -1;
-    s->limit_tick = -1;
     s->given_up_reported_s = s->left_out_reported_s = -INFINITY;
     s->tick = (int64_t)ceil(s->plan.start_s * seeker_ticks_per_s);
     memcpy(s->p_aim_ecef, s->plan.p_aim_ecef, sizeof s->p_aim_ecef);
-    if (observes(&s->plan)) strcpy(s->host_text, "observer");
-    else if (s->plan.any_munition) strcpy(s->host_text, "munition");
-    else dis_entity_id_text(s->host_text, s->plan.host);
-    if (!s->plan.any_munition) session_note_host(s);
-
-    int most_nodes = 1;
-    for (int m = 0; m < catalog_model_count(shared->catalog); m++) {
-        const int nodes = catalog_model(shared->catalog, m)->node_count;
-        most_nodes = nodes > most_nodes ? nodes : most_nodes;
-    }
-    s->node = calloc((size_t)most_nodes, sizeof *s->node);
-    s->joint = calloc((size_t)most_nodes, sizeof *s->joint);
-    if (!s->node || !s->joint) return STATUS_NO_MEMORY;
-
-    Status status = entity_table_create(&s->table, &table, shared->catalog);
+    const bool observes = dis_entity_id_is_none(s->plan.host) && !s->plan.any_munition;
+    Status     status = observes ? session_host_observer(&s->host, s) : session_host_entity(&s->host, s);
+    if (status == STATUS_OK) status = entity_table_create(&s->table, &table, shared->catalog);
     if (status == STATUS_OK) status = read_marks(s);
     if (status == STATUS_OK) status = open_vehicles(s);
     if (status == STATUS_OK) status = open_radar(s);
+    if (status == STATUS_OK) status = frame_verdicts_read(&s->verdicts, shared->notes);
     if (status == STATUS_OK) session_keep(s);
     if (status == STATUS_OK) status = sensors_chains(s->chain, shared->sensors, shared->config);
     return status == STATUS_OK ? session_consumers(s, list_frame) : status;
@@ -211,22 +181,22 @@ static void begin_latency(Session *s, Frame *f)
     const SessionShared *shared = s->shared;
     const double         fed_s = player_fed_s(s->player);
     if (!s->latency) return;
-    f->times.arrived_s = isfinite(fed_s) ? shared->wall_s(shared->clock, fed_s) : 0;
+    f->times.arrived_s = isfinite(fed_s) ? shared->clock->wall_s(shared->clock, fed_s) : 0;
     f->times.fresh = fed_s > s->fed_s;
     s->fed_s = fed_s;
     f->latency = s->latency;
     f->latency_key = latency_begin(s->latency, &f->times);
 }
 
-Status session_frame(bool *shown, Session *s, int number, double t_s)
+Status session_frame(bool *shown, Session *s, const FrameTime *at)
 {
     int left_out = 0;
-    session_advance(s, t_s);
+    session_advance(s, at->t_s);
     Status status = s->advance_status;
     *shown = false;
-    if (status == STATUS_OK && session_host_is_there(s)) { /* otherwise nothing is extrapolated for it */
+    if (status == STATUS_OK && s->host->is_there(s->host)) { /* otherwise nothing is extrapolated for it */
         Frame *frame = frame_pool_take(s->frames);
-        status = session_make_frame(shown, &left_out, frame, s, number, t_s);
+        status = session_make_frame(shown, &left_out, frame, s, at);
         if (status == STATUS_OK && *shown) {
             begin_latency(s, frame);
             status = consumers_put(&s->consumers, frame);
@@ -236,7 +206,7 @@ Status session_frame(bool *shown, Session *s, int number, double t_s)
     report_crowd(s, left_out);
     if (status == STATUS_OK && *shown) s->result.frames++;
     if (status == STATUS_NO_MEMORY)
-        log_error("session: out of memory at frame %d; choose a smaller --size or fewer --samples", number);
+        log_error("session: out of memory at frame %d; choose a smaller --size or fewer --samples", at->number);
     return status;
 }
 
@@ -291,7 +261,7 @@ Status session_close(Session *s, SessionResult *result)
     else session_result_free(&s->result);
     for (int b = 0; b < BAND_COUNT; b++) chain_destroy(s->chain[b]);
     seeker_radar_destroy(s->radar);
-    session_radar_absent_free(s->radar_absent);
+    frame_verdicts_free(s->verdicts);
     world_vehicles_destroy(s->vehicles);
     given_heat_close(s->given);
     heat_kept_close(s->kept);
@@ -299,8 +269,7 @@ Status session_close(Session *s, SessionResult *result)
     entity_table_destroy(s->table);
     frame_pool_destroy(s->frames);
     pool_destroy(s->publish_pool);
-    free(s->node);
-    free(s->joint);
+    if (s->host) s->host->destroy(s->host);
     free(s);
     return status;
 }

@@ -5,6 +5,7 @@
 #include "entities/table/entity_table.h"
 #include "render/frame/render.h"
 #include "sensor/node/choices/choices.h"
+#include "sensor/node/clock/frame_clock.h"
 #include "sensor/node/player/player.h"
 #include "sensor/publish/dis/consume_dis.h"
 #include "sensor/settings/sensors.h"
@@ -25,22 +26,23 @@ typedef struct SessionShared {
     bool           no_skip;
     GroundContact  contact; /* which entities are clamped to the world's ground */
     bool           live;    /* a file that cannot be written does not end the session */
-    bool           paced;   /* a replay by the clock: streams are left out when late, as live */
     const char    *config_sha256;
     const Sensors *sensors;
     void (*publish)(void *user, const FrameRecord *frame); /* called for each frame; NULL: not */
-    void        *user;
-    const DisOf *dis;                           /* Data PDUs of each frame, its clock being the player; NULL: none */
-    double (*wall_s)(void *clock, double t_s);  /* wall_clock_s at which exercise time t_s arrives here; NULL: no
-                                                 * latency ledger is kept */
-    void              *clock;                   /* of wall_s */
+    void             *user;
+    const DisOf      *dis;                      /* Data PDUs of each frame, its clock being the player; NULL: none */
+    const FrameClock *clock;                    /* one on the wall: a latency ledger is kept, and streams are left out
+                                                 * when late; NULL: none */
     int                save_count;              /* frames that are also written as frame files, ascending */
     const int         *save;                    /* [save_count] */
     const WoodsConfig *woods;                   /* of the world's plants; NULL: none */
     const char        *isa;                     /* as tracer_create */
     void (*note)(void *user, const char *text); /* into the live recording; NULL: there is none; user: as above */
     const char *notes;                          /* of the recording that is played, DisLog.notes; NULL: none */
-    bool        several; /* hosts, one after the other: what has a name of its own gets the host's too */
+    /* What a frame of a live node gives up (frame_verdict.h), chosen before it is rendered, and noted. NULL: nothing;
+     * user: as above. */
+    unsigned (*choose)(void *user, const FrameTime *frame);
+    bool several; /* hosts, one after the other: what has a name of its own gets the host's too */
 } SessionShared;
 
 enum { session_stages = 6, session_frames_kept = 1000000, session_hosts_kept = 64 };
@@ -57,6 +59,7 @@ typedef struct SessionResult {
     int            host_count;                    /* the first session_hosts_kept hosts, in order */
     char           host[session_hosts_kept][dis_id_text_size];
     int            radar_left_out;      /* frames without radar, for want of signatures */
+    int            frames_reduced;      /* frames of less quality than was set */
     AnswerCounters answers;             /* of a recogniser; when closed */
     SentCounters   sent;                /* likewise: streams, ring of frames */
     int files_failed, files_left_out;   /* live: frames without files, for disk errors, for time; when closed */
@@ -76,9 +79,9 @@ typedef struct Session Session;
  * first frame takes their place. The player and shared must outlive the session. */
 Status session_open(Session **out, const SessionShared *shared, const HostPlan *plan, Player *player,
                     const char *folder);
-/* Processes everything up to t_s, then renders the frame. t_s must not decrease. shown: false when the host is
+/* Processes everything up to its t_s, which must not decrease, then renders the frame. shown: false when the host is
  * absent. */
-Status session_frame(bool *shown, Session *session, int number, double t_s);
+Status session_frame(bool *shown, Session *session, const FrameTime *frame);
 /* So far. */
 const SessionResult *session_result(const Session *session);
 int                  session_entities(const Session *session); /* entities present */
@@ -87,19 +90,5 @@ const char *session_host(const Session *session);      /* id as text, `observer`
 /* The caller frees the session's result with session_result_free; NULL: it is freed too. */
 Status session_close(Session *session, SessionResult *result);
 void   session_result_free(SessionResult *result);
-
-/* ---- frames without radar, as notes of a recording -------------------------------------------------- */
-
-/* A live node has no radar in a frame where signatures are still to be made. It notes so in its recording, and a
- * replay leaves out the same. A note holds for the frame of that number and time alone: a replay at another rate has
- * its radar in every frame. */
-enum { session_radar_absent_size = 96 };
-void session_radar_absent_text(char out[session_radar_absent_size], int number, double t_s);
-
-typedef struct RadarAbsent RadarAbsent;
-/* From DisLog.notes; other notes are passed over. *out NULL: none. */
-Status session_radar_absent_read(RadarAbsent **out, const char *notes);
-void   session_radar_absent_free(RadarAbsent *absent);                             /* accepts NULL */
-bool   session_radar_absent_in(const RadarAbsent *absent, int number, double t_s); /* of NULL: false */
 
 #endif

@@ -244,7 +244,8 @@ static Status replay_files(Consumers *list, Session *s, FrameDone *done, Pool *p
     if (status == STATUS_OK && config->publish.files) status = add_radar(list, s, pool);
     if (status == STATUS_OK && config->publish.latest) status = add_latest(list, s);
     if (status == STATUS_OK)
-        status = add_video(list, s, s->shared->paced ? VIDEO_TO_FILE : VIDEO_TO_FILE | VIDEO_TO_STREAM, false);
+        status = add_video(list, s, clock_on_wall(s->shared->clock) ? VIDEO_TO_FILE : VIDEO_TO_FILE | VIDEO_TO_STREAM,
+                           false);
     if (status == STATUS_OK) status = add_truth_lines(list, s);
     if (status == STATUS_OK && config->publish.coco) status = add_coco(list, s);
     if (status == STATUS_OK && config->publish.klv_files) status = add_klv(list, s);
@@ -331,13 +332,13 @@ Status session_consumers(Session *s, FrameDone *done)
     for (int b = 0; b < BAND_COUNT; b++)
         if (s->chain[b] && config->detector.raw && config->publish.files) raw |= 1u << b;
     s->raw = raw;
-    Status status = shared->wall_s ? latency_create(&s->latency) : STATUS_OK;
+    Status status = clock_on_wall(shared->clock) ? latency_create(&s->latency) : STATUS_OK;
     if (status == STATUS_OK) status = add_detections(&s->consumers, s); /* before a frame can be answered */
     if (status == STATUS_OK) status = add_memory(&s->consumers, s, false);
     if (status == STATUS_OK && shared->publish) status = add_call(&s->consumers, shared);
     if (status == STATUS_OK && shared->dis) status = add_dis(&s->consumers, s); /* before the disk */
     if (status == STATUS_OK)
-        status = shared->live || shared->paced ? by_the_clock(s, done, raw) : for_replay(s, done, raw);
+        status = shared->live || clock_on_wall(shared->clock) ? by_the_clock(s, done, raw) : for_replay(s, done, raw);
     consumers_expect(&s->consumers, s->latency);
     s->wants = further_wants(s, consumers_wants(&s->consumers));
     /* the frame being rendered, and of each queue the frame that waits and the one being published */

@@ -15,6 +15,27 @@ static void rate_of_scene(double rate_px_s[2], const Eye *eye, const Picture *pi
     seeker_scene_rate(rate_px_s, eye->w_cam_rps, v_cam_mps, eye->view.focal_px, picture->range_m[middle]);
 }
 
+/* Notes what a live frame gives up in the recording. */
+static void note_verdict(const Session *s, unsigned verdict, const FrameTime *when)
+{
+    char text[frame_verdict_text_size];
+    for (unsigned one = 1; s->shared->note && one <= verdict; one <<= 1) {
+        if (!(verdict & one)) continue;
+        frame_verdict_text(text, one, when->number, when->t_s);
+        s->shared->note(s->shared->user, text);
+    }
+}
+
+/* What this frame gives up: by choice of a live node, or as its recording says. */
+static unsigned judge(const Session *s, const FrameTime *when)
+{
+    const SessionShared *shared = s->shared;
+    if (!shared->live || !shared->choose) return frame_verdicts_of(s->verdicts, when->number, when->t_s);
+    const unsigned verdict = shared->choose(shared->user, when);
+    note_verdict(s, verdict, when);
+    return verdict;
+}
+
 static void make_request(RenderRequest *request, const Session *s, const Eye *eye, double t_s)
 {
     const Config *config = s->shared->config;
@@ -78,10 +99,10 @@ static Status look_without(Frame *f, const Session *s, const FrameLight *light, 
     return look(f->without, s, &f->request, &without, f->arena);
 }
 
-/* Adds what the radar on the same axis measures, unless this frame is one of those without radar. */
-static Status measure(Frame *f, Session *s, const Eye *eye)
+/* Adds what the radar on the same axis measures, unless this frame gives it up. */
+static Status measure(Frame *f, Session *s, const Eye *eye, unsigned verdict)
 {
-    if (session_radar_absent_in(s->radar_absent, f->number, f->time_s)) {
+    if (verdict & VERDICT_NO_RADAR) {
         s->result.radar_left_out++;
         return STATUS_OK;
     }
@@ -109,11 +130,7 @@ static Status measure(Frame *f, Session *s, const Eye *eye)
     const Status status = seeker_radar_measure(&f->radar, s->radar, &scene, s->shared->pool, f->arena);
     if (status != STATUS_OK || f->radar) return status;
     s->result.radar_left_out++;
-    if (s->shared->note) {
-        char text[session_radar_absent_size];
-        session_radar_absent_text(text, f->number, f->time_s);
-        s->shared->note(s->shared->user, text);
-    }
+    note_verdict(s, VERDICT_NO_RADAR, &(FrameTime){.number = f->number, .t_s = f->time_s});
     return status;
 }
 
@@ -175,8 +192,9 @@ static Status save_frame(const Session *s, const Frame *f, const Eye *eye)
     return STATUS_OK;
 }
 
-Status session_make_frame(bool *shown, int *left_out, Frame *f, Session *s, int number, double t_s)
+Status session_make_frame(bool *shown, int *left_out, Frame *f, Session *s, const FrameTime *when)
 {
+    const double         t_s = when->t_s;
     const SessionShared *shared = s->shared;
     Eye                  eye;
     *shown = false;
@@ -186,7 +204,7 @@ Status session_make_frame(bool *shown, int *left_out, Frame *f, Session *s, int 
     if (status != STATUS_OK || !session_eye(&eye, s, &f->seen.snapshot, t_s)) return status;
     f->times.posed_s = wall_clock_s();
     *left_out = f->seen.snapshot.left_out;
-    f->number = number;
+    f->number = when->number;
     f->time_s = t_s;
     f->unix_s = shared->unix_s + t_s;
     f->world = shared->world;
@@ -199,18 +217,22 @@ Status session_make_frame(bool *shown, int *left_out, Frame *f, Session *s, int 
     status = frame_light(&light, shared->world, shared->config, &at, shared->pool, f->arena);
     f->sun = light.sun;
     make_request(&f->request, s, &eye, t_s);
+    const unsigned verdict = judge(s, when);
+    frame_verdict_apply(&f->request, verdict);
     const double posed_s = wall_clock_s();
     if (status == STATUS_OK) status = look(&f->seen, s, &f->request, &light, f->arena);
     if (status == STATUS_OK && s->wants & WANT_WITHOUT) status = look_without(f, s, &light, eye.hidden);
     if (status != STATUS_OK) return status;
     if (f->seen.picture.range_m) rate_of_scene(f->rate_px_s, &eye, &f->seen.picture);
     fill_record(f, s, &eye);
+    f->record.given_up = frame_verdict_name(verdict);
+    s->result.frames_reduced += f->record.given_up != NULL;
     if (s->wants & WANT_FOOTPRINT) {
         truth_footprint(f->footprint, shared->world, &eye.view);
         f->record.footprint = f->footprint;
     }
     f->radar = NULL;
-    if (s->radar) status = measure(f, s, &eye);
+    if (s->radar) status = measure(f, s, &eye, verdict);
     f->record.radar = f->radar;
     if (status == STATUS_OK && s->wants & WANT_TARGETS) status = know_targets(f, s, &eye);
     if (status != STATUS_OK) return status;

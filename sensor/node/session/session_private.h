@@ -4,6 +4,7 @@
 
 #include "render/frame/world.h"
 #include "sensor/frame/frame_world.h"
+#include "sensor/node/session/frame_verdict.h"
 #include "sensor/node/session/seeker_private.h"
 #include "sensor/node/player/player.h"
 #include "sensor/node/session/session.h"
@@ -12,6 +13,8 @@
 #include "sensor/publish/klv/consume_klv.h"
 #include "sensor/publish/memory/detections.h"
 #include "sensor/radar/seeker_radar.h"
+
+typedef struct HostMotion HostMotion;
 
 struct Session {
     const SessionShared *shared;
@@ -27,20 +30,14 @@ struct Session {
     Arena               *vehicle_arena;   /* of the snapshot of a tick */
     Status               advance_status;  /* the first failure of what outlasts a frame: frames fail with it */
     uint64_t             vehicle_changes; /* entity_table_changes at the last */
-    Seeker               seeker;
-    int64_t              tick;          /* next gimbal tick */
+    HostMotion          *host;
+    int64_t              tick;          /* the next one */
     double               p_aim_ecef[3]; /* last known */
     bool                 aim_known;
-    Mount                mount;
-    int                  mount_model, mount_at; /* mount_at: as seeker_mount_node, of that model; -1: none yet */
-    NodePose            *node; /* poses and joint values of the host's nodes, [most nodes of a model] */
-    double              *joint;
-    bool                 limit_reported; /* last report of the gimbal limit, and its tick */
-    int64_t              limit_tick;
     uint64_t             given_up_reported; /* last report of a full table, and its time; wall clock */
     double               given_up_reported_s, left_out_reported_s;
     SeekerRadar         *radar;             /* NULL: none */
-    RadarAbsent         *radar_absent;      /* frames that had no radar when they were recorded; NULL: none */
+    FrameVerdicts       *verdicts;          /* of the recording that is played; NULL: none */
     Chain               *chain[BAND_COUNT]; /* of the bands with a sensor of etc/sensors.csv: noise figures for
                                              * targets */
     Consumers     consumers;
@@ -71,20 +68,40 @@ typedef struct Eye {
     double   w_cam_rps[3]; /* how the camera turns, in its own axes */
 } Eye;
 
-/* Adds the present host to the result's list, once. */
-void session_note_host(Session *s);
-/* Feeds everything that counts by t_s, finds host and aim, and moves the gimbal, on a fixed grid of exercise time. */
+/* How the eye moves, by whoever owns it. One implementation is a struct that begins with this; it names its host by
+ * session_name_host when it knows it. */
+struct HostMotion {
+    Session *s;
+    /* State that outlasts a frame: called on a fixed grid of exercise time, whatever frames there are. */
+    void (*tick)(HostMotion *host, double tick_s);
+    bool (*is_there)(const HostMotion *host); /* false: no image will be rendered */
+    /* As session_eye; eye: nothing is filled in yet. */
+    bool (*eye)(Eye *eye, HostMotion *host, Snapshot *snapshot, double t_s);
+    void (*destroy)(HostMotion *host);
+};
+
+/* An entity of the table, or munitions one after the other, and a sensor mounted on it with a gimbal. *out may be there
+ * after a failure, to be destroyed. */
+Status session_host_entity(HostMotion **out, Session *s);
+/* A stand-off observer. */
+Status session_host_observer(HostMotion **out, Session *s);
+
+/* Names the present host, 0:0:0 an observer, and adds it to the result's list, once. */
+void session_name_host(Session *s, DisEntityId host);
+/* The centre of the aim at t_s; false when it is absent. */
+bool session_aim_at(double p_ecef[3], const Session *s, double t_s);
+/* Position and direction of the sensor at t_s, not before the last tick. The pose of a host that is an entity is
+ * written into the snapshot; NULL: into none. False: the host is absent. */
+bool session_eye(Eye *eye, Session *s, Snapshot *snapshot, double t_s);
+/* What follows from state.p_ecef and view.r_enu_from_cam. */
+void session_finish_eye(Eye *eye, const Session *s);
+/* Feeds everything that counts by t_s and moves the host, on a fixed grid of exercise time. */
 void session_advance(Session *s, double t_s);
 /* Sets the entities that a full table keeps: host and aim, and those near the host, else near the aim. */
 void session_keep(Session *s);
-/* False: no image will be rendered. */
-bool session_host_is_there(const Session *s);
-/* Position and direction of the sensor at t_s. The host's pose is written into the snapshot. False: the host is
- * absent. */
-bool session_eye(Eye *eye, Session *s, Snapshot *snapshot, double t_s);
 /* One frame, of all but what its consumers do. shown: false when the host is absent. left_out: entities that are not
  * in it. */
-Status session_make_frame(bool *shown, int *left_out, Frame *f, Session *s, int number, double t_s);
+Status session_make_frame(bool *shown, int *left_out, Frame *f, Session *s, const FrameTime *when);
 /* Makes the folders and files of the products, once, in place of those of an earlier run. */
 Status session_begin_files(Session *s);
 /* The consumers of this session's frames, from the configuration; and a pool for as many frames as they need. done:
