@@ -58,14 +58,6 @@ static Status take_only(double *last, const Options *o, double first)
     return STATUS_OK;
 }
 
-/* Names the host of a plan as session_host names it at first. */
-static void host_name(char out[dis_id_text_size], const HostPlan *plan)
-{
-    if (plan->any_munition) strcpy(out, host_munition);
-    else if (dis_entity_id_is_none(plan->host)) strcpy(out, host_observer);
-    else dis_entity_id_text(out, plan->host);
-}
-
 /* The span of the plan and of --from and --to, or, causal, to the last datagram received unless --to is later. span_s:
  * its ends, exercise time. */
 static Status find_span(LogSpan *out, double span_s[2], const Run *run, const Player *player, const HostPlan *plan,
@@ -88,7 +80,7 @@ static Status find_span(LogSpan *out, double span_s[2], const Run *run, const Pl
     const bool single = to_s >= from_s && !(last >= first); /* shorter than an interval: one frame, at its start */
     if (!(last >= first || single) || last > 999999) {
         char host[dis_id_text_size];
-        host_name(host, plan);
+        choice_host_name(host, plan);
         log_error("replay: %s between %.3f and %.3f s at %g Hz: the recording goes from %.3f to %.3f s (+0 to +%.3f), "
                   "%s can be "
                   "shown from %.3f s on; widen --from and --to or change --rate%s",

@@ -24,6 +24,8 @@ typedef struct HostPlan {
 } HostPlan;
 
 extern const char host_munition[], host_observer[]; /* values of exercise.host that are not ids */
+/* Names the host of a plan: its id, or one of these. */
+void choice_host_name(char out[dis_id_text_size], const HostPlan *plan);
 
 /* Chooses the host. First come guided munitions, else the others, never mines: the one with a Detonation of result
  * entity impact, longest flight first, else the longest flight. Then comes an observer that orbits the vehicle with the

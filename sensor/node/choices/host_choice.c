@@ -9,6 +9,12 @@
 
 const char host_munition[] = "munition", host_observer[] = "observer";
 
+void choice_host_name(char out[dis_id_text_size], const HostPlan *plan)
+{
+    if (!dis_entity_id_is_none(plan->host)) dis_entity_id_text(out, plan->host);
+    else strcpy(out, plan->any_munition ? host_munition : host_observer);
+}
+
 enum { who_size = 80 };
 
 bool choice_is_land(const Track *track)

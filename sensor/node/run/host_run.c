@@ -234,8 +234,7 @@ Status run_host(Run *run, const DisEntityId *host)
     char           out[run_folder_size], host_text[dis_id_text_size];
 
     if (host) {
-        if (dis_entity_id_is_none(*host)) strcpy(host_text, host_observer);
-        else dis_entity_id_text(host_text, *host);
+        choice_host_name(host_text, &(HostPlan){.host = *host});
         log_print("host: %s (--host)\n", host_text);
     }
     Status status = choose(&chosen, run, host);

@@ -117,7 +117,7 @@ static void take_host(EntityHost *h, DisEntityId host, bool guided)
         h->s->plan.aim = (DisEntityId){0};
         h->s->aim_known = false;
     }
-    session_name_host(h->s, host);
+    session_name_host(h->s);
     log_info("host: %s, %s %s munition", h->s->host_text, first ? "the first" : "the next",
              guided ? "guided" : "unguided");
 }
@@ -283,7 +283,6 @@ Status session_host_entity(HostMotion **out, Session *s)
     h->joint = calloc((size_t)most_nodes, sizeof *h->joint);
     *out = &h->motion;
     if (!h->node || !h->joint) return STATUS_NO_MEMORY;
-    if (s->plan.any_munition) strcpy(s->host_text, "munition");
-    else session_name_host(s, s->plan.host);
+    session_name_host(s);
     return STATUS_OK;
 }

@@ -22,13 +22,15 @@ static void observer_position(double p_ecef[3], double aim_enu[3], const Session
     ecef_from_enu(p_ecef, frame, p_enu);
 }
 
-static void observer_camera(double r_enu_from_cam[9], const double p_ecef[3], const double aim_enu[3],
+/* False: it is where it looks. */
+static bool observer_camera(double r_enu_from_cam[9], const double p_ecef[3], const double aim_enu[3],
                             const LocalFrame *frame)
 {
     double p_enu[3], d_enu[3];
     enu_from_ecef(p_enu, frame, p_ecef);
     v3_sub(d_enu, aim_enu, p_enu);
     view_upright(r_enu_from_cam, d_enu);
+    return v3_length(d_enu) > 0;
 }
 
 static bool observer_eye(Eye *eye, HostMotion *motion, Snapshot *snapshot, double t_s)
@@ -37,7 +39,7 @@ static bool observer_eye(Eye *eye, HostMotion *motion, Snapshot *snapshot, doubl
     const Session      *s = motion->s;
     static const double half_s = 0.005; /* velocity by difference: it follows the aim, and the terrain */
     const LocalFrame   *frame = &s->shared->world->frame;
-    double              before_ecef[3], after_ecef[3], p_enu[3], aim_enu[3], d_enu[3], r_before[9], r_after[9];
+    double              before_ecef[3], after_ecef[3], aim_enu[3], r_before[9], r_after[9];
     observer_position(before_ecef, aim_enu, s, t_s - half_s);
     observer_camera(r_before, before_ecef, aim_enu, frame);
     observer_position(after_ecef, aim_enu, s, t_s + half_s);
@@ -45,10 +47,7 @@ static bool observer_eye(Eye *eye, HostMotion *motion, Snapshot *snapshot, doubl
     seeker_turn_rate(eye->w_cam_rps, r_before, r_after, 2 * half_s);
     observer_position(eye->state.p_ecef, aim_enu, s, t_s);
     for (int k = 0; k < 3; k++) eye->state.v_ecef_mps[k] = (after_ecef[k] - before_ecef[k]) / (2 * half_s);
-    enu_from_ecef(p_enu, frame, eye->state.p_ecef);
-    v3_sub(d_enu, aim_enu, p_enu);
-    if (!(v3_length(d_enu) > 0)) return false;
-    view_upright(eye->view.r_enu_from_cam, d_enu);
+    if (!observer_camera(eye->view.r_enu_from_cam, eye->state.p_ecef, aim_enu, frame)) return false;
     eye->hidden = eye->state.host_index = -1;
     eye->aim_known = true;
     memcpy(eye->p_aim_ecef, s->p_aim_ecef, sizeof eye->p_aim_ecef);
@@ -77,6 +76,6 @@ Status session_host_observer(HostMotion **out, Session *s)
     *out = malloc(sizeof **out);
     if (!*out) return STATUS_NO_MEMORY;
     **out = (HostMotion){s, observer_tick, observer_is_there, observer_eye, observer_destroy};
-    session_name_host(s, (DisEntityId){0});
+    session_name_host(s);
     return STATUS_OK;
 }

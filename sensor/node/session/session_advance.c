@@ -5,11 +5,11 @@
 /* Between two of these, poses and snapshots omit timed-out entities: they are never visible. */
 enum { expire_ticks = seeker_ticks_per_s / 10, work_ticks = seeker_ticks_per_s / 10 };
 
-void session_name_host(Session *s, DisEntityId host)
+void session_name_host(Session *s)
 {
     SessionResult *r = &s->result;
-    if (dis_entity_id_is_none(host)) strcpy(s->host_text, "observer");
-    else dis_entity_id_text(s->host_text, host);
+    choice_host_name(s->host_text, &s->plan);
+    if (dis_entity_id_is_none(s->plan.host) && s->plan.any_munition) return;
     for (int i = 0; i < r->host_count; i++)
         if (strcmp(r->host[i], s->host_text) == 0) return;
     if (r->host_count == session_hosts_kept) return;

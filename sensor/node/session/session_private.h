@@ -86,8 +86,8 @@ Status session_host_entity(HostMotion **out, Session *s);
 /* A stand-off observer. */
 Status session_host_observer(HostMotion **out, Session *s);
 
-/* Names the present host, 0:0:0 an observer, and adds it to the result's list, once. */
-void session_name_host(Session *s, DisEntityId host);
+/* Names the host of the plan, and adds it to the result's list, once. */
+void session_name_host(Session *s);
 /* The centre of the aim at t_s; false when it is absent. */
 bool session_aim_at(double p_ecef[3], const Session *s, double t_s);
 /* Position and direction of the sensor at t_s, not before the last tick. The pose of a host that is an entity is
