@@ -2,7 +2,7 @@
 #include "render/frame/planes.h"
 
 #define BANDS(band) (1u << BAND_##band)
-#define AT(member) offsetof(Picture, member)
+#define AT(member)  offsetof(Picture, member)
 
 /* Emissivity of the surface at each pixel's centre in a thermal band, 0 .. 1: 1 - reflectance - transmittance of its
  * row of etc/materials.csv or etc/plant_optics.csv, hemispherical; NaN: sky. */

@@ -20,7 +20,7 @@ typedef struct PlaneRounding {
 typedef struct PlaneRow {
     const char *group, *name; /* the folder of its file, and its channel there; of the standard channels of light */
     PlaneKind   kind;
-    PlaneType   type; /* F32 numbers; U32, U8 numbers of things, 0: none */
+    PlaneType   type;                          /* F32 numbers; U32, U8 numbers of things, 0: none */
     const char *unit, *frame, *absent, *about; /* as ReferenceField (sensor/reference/reference.h) */
     unsigned    bands;                         /* 1 << Band: it is there with any of them; 0: truth of every request */
     bool        rgb;                           /* of the optical band with three colours; else with one */
@@ -28,10 +28,10 @@ typedef struct PlaneRow {
     size_t      at; /* in a Picture, of the pointer to its values; unless made */
     /* Made when its file is written, and in no hash of a frame: out [height][width]. NULL: as rendered. */
     void (*make)(float *out, const struct PlaneRow *row, const Picture *picture, const Materials *materials);
-    const char   *choice;          /* of truth: its name in publish.planes, which planes side by side may share */
-    const char   *record, *verdict; /* its name in a baseline of regress, and the channel of a verdict, with its
-                                       tolerance (sensor/verify/regress/verdict_planes.c). NULL: it is not compared */
-    PlaneRounding rounding;        /* there */
+    const char *choice;           /* of truth: its name in publish.planes, which planes side by side may share */
+    const char *record, *verdict; /* its name in a baseline of regress, and the channel of a verdict, with its
+                                     tolerance (sensor/verify/regress/verdict_planes.c). NULL: it is not compared */
+    PlaneRounding rounding;       /* there */
 } PlaneRow;
 
 /* 1 << row. */
@@ -42,12 +42,12 @@ enum { planes_most = 48 };
 extern const PlaneRow plane_rows[];
 extern const int      plane_row_count;
 
-int         plane_find(const char *group, const char *name);       /* row; -1: none */
+int plane_find(const char *group, const char *name); /* row; -1: none */
 /* The i-th that a baseline of regress has: truth, then bands, which a run may lack. NULL at the end. */
 const PlaneRow *plane_recorded(int i);
-PlaneSet    planes_named(const char *choice, size_t length);       /* none: 0; all that have a name: planes_named("", 0) */
-const char *plane_group(const PlaneRow *row);                      /* as this run names its channels of light */
-Band        plane_band(const PlaneRow *row);                       /* the first of its bands; BAND_COUNT: of all */
+PlaneSet    planes_named(const char *choice, size_t length); /* none: 0; all that have a name: planes_named("", 0) */
+const char *plane_group(const PlaneRow *row);                /* as this run names its channels of light */
+Band        plane_band(const PlaneRow *row);                 /* the first of its bands; BAND_COUNT: of all */
 const void *plane_values(const PlaneRow *row, const Picture *picture); /* NULL: not there, or not listed */
 /* Whether a request has the bands, or colours, that it is of. */
 bool plane_of_bands(const PlaneRow *row, unsigned bands, OpticalChannels optical);
