@@ -28,19 +28,20 @@ static const char radiance[] = "radiance at the aperture", per_sr[] = "W/(m2 sr)
 static const char not_rgb[] = "with sensor.optical pan or nir", bare[] = "with terrain.woods off";
 
 /* clang-format off */
+#define LIGHT(group, name, frame, absent, band, member, mantissa, three) \
+    {group, name, PLANE_RADIANCE, PLANE_F32, per_sr, frame, absent, radiance, BANDS(band), .at = AT(member), \
+     .record = group "." name, .verdict = group, .rounding = {.bits = mantissa}, .rgb = three}
+#define NORMAL(name, k, frame, about) \
+    {"truth", name, PLANE_TRUTH, PLANE_F32, "", "ENU at the terrain origin, " frame, "", about, \
+     .at = AT(normal[k]), .choice = "normal", .record = name, .verdict = "normal", .rounding = {.step = 1.0 / 512}}
+
 const PlaneRow plane_rows[] = {
-    {"optical", "R", PLANE_RADIANCE, PLANE_F32, per_sr, "0.6-0.7 um", not_rgb, radiance,
-     .bands = BANDS(OPTICAL), .rgb = true, .at = AT(optical[0]), .record = "optical.R", .verdict = "optical", .rounding = {.bits = 7}},
-    {"optical", "G", PLANE_RADIANCE, PLANE_F32, per_sr, "0.5-0.6 um", not_rgb, radiance,
-     .bands = BANDS(OPTICAL), .rgb = true, .at = AT(optical[1]), .record = "optical.G", .verdict = "optical", .rounding = {.bits = 7}},
-    {"optical", "B", PLANE_RADIANCE, PLANE_F32, per_sr, "0.4-0.5 um", not_rgb, radiance,
-     .bands = BANDS(OPTICAL), .rgb = true, .at = AT(optical[2]), .record = "optical.B", .verdict = "optical", .rounding = {.bits = 7}},
-    {"optical", "Y", PLANE_RADIANCE, PLANE_F32, per_sr, "pan 0.4-0.7 um, nir 0.7-1.1 um", "with sensor.optical rgb", radiance,
-     .bands = BANDS(OPTICAL), .at = AT(optical[0]), .record = "optical.Y", .verdict = "optical", .rounding = {.bits = 7}},
-    {"mwir", "Y", PLANE_RADIANCE, PLANE_F32, per_sr, "3.4-4.8 um", "", radiance,
-     .bands = BANDS(MWIR), .at = AT(mwir), .record = "mwir.Y", .verdict = "mwir", .rounding = {.bits = 10}},
-    {"lwir", "Y", PLANE_RADIANCE, PLANE_F32, per_sr, "8-12 um", "", radiance,
-     .bands = BANDS(LWIR), .at = AT(lwir), .record = "lwir.Y", .verdict = "lwir", .rounding = {.bits = 11}},
+    LIGHT("optical", "R", "0.6-0.7 um", not_rgb, OPTICAL, optical[0], 7, true),
+    LIGHT("optical", "G", "0.5-0.6 um", not_rgb, OPTICAL, optical[1], 7, true),
+    LIGHT("optical", "B", "0.4-0.5 um", not_rgb, OPTICAL, optical[2], 7, true),
+    LIGHT("optical", "Y", "pan 0.4-0.7 um, nir 0.7-1.1 um", "with sensor.optical rgb", OPTICAL, optical[0], 7, false),
+    LIGHT("mwir", "Y", "3.4-4.8 um", "", MWIR, mwir, 10, false),
+    LIGHT("lwir", "Y", "8-12 um", "", LWIR, lwir, 11, false),
     {"radar", "Y", PLANE_RADIANCE, PLANE_F32, "relative", "", "",
      "power of the pseudo-radar: comparable within a run, in no physical unit",
      .bands = BANDS(RADAR), .at = AT(radar), .record = "radar.Y", .verdict = "radar", .rounding = {.bits = 7}},
@@ -65,12 +66,9 @@ const PlaneRow plane_rows[] = {
      .bands = BANDS(MWIR), .make = make_emissivity, .choice = "emissivity"},
     {"truth", "emissivity_lwir", PLANE_TRUTH, PLANE_F32, "", "0 .. 1", "without lwir", same,
      .bands = BANDS(LWIR), .make = make_emissivity, .choice = "emissivity"},
-    {"truth", "nx", PLANE_TRUTH, PLANE_F32, "", "ENU at the terrain origin, east", "", "unit normal of the surface",
-     .at = AT(normal[0]), .choice = "normal", .record = "nx", .verdict = "normal", .rounding = {.step = 1.0 / 512}},
-    {"truth", "ny", PLANE_TRUTH, PLANE_F32, "", "ENU at the terrain origin, north", "", same,
-     .at = AT(normal[1]), .choice = "normal", .record = "ny", .verdict = "normal", .rounding = {.step = 1.0 / 512}},
-    {"truth", "nz", PLANE_TRUTH, PLANE_F32, "", "ENU at the terrain origin, up", "", same,
-     .at = AT(normal[2]), .choice = "normal", .record = "nz", .verdict = "normal", .rounding = {.step = 1.0 / 512}},
+    NORMAL("nx", 0, "east", "unit normal of the surface"),
+    NORMAL("ny", 1, "north", same),
+    NORMAL("nz", 2, "up", same),
     {"radar", "profile", PLANE_PROFILE, PLANE_F64, "relative", .bands = BANDS(RADAR), .at = AT(profile)},
 };
 /* clang-format on */

@@ -38,17 +38,7 @@ void sink_bytes(ByteSink *sink, const void *bytes, size_t count)
     if (to) memcpy(to, bytes, count);
 }
 
-void sink_u32(ByteSink *sink, uint32_t value) { sink_bytes(sink, &value, sizeof value); }
-void sink_f64s(ByteSink *sink, const double *value, int count)
-{
-    sink_bytes(sink, value, (size_t)count * sizeof *value);
-}
-
-void sink_text(ByteSink *sink, const char *text)
-{
-    sink_u32(sink, (uint32_t)strlen(text));
-    sink_bytes(sink, text, strlen(text));
-}
+void sink_text(ByteSink *sink, const char *text) { field_text(&(Fields){.to = sink}, &text, 0); }
 
 void sink_free(ByteSink *sink)
 {
@@ -58,8 +48,9 @@ void sink_free(ByteSink *sink)
 
 void chunks_begin(ByteSink *file)
 {
+    uint32_t version = chunks_version;
     sink_bytes(file, magic, sizeof magic);
-    sink_u32(file, chunks_version);
+    field_u32(&(Fields){.to = file}, &version);
 }
 
 typedef struct ChunkHeader {

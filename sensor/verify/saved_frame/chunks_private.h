@@ -22,12 +22,9 @@ typedef struct ByteSink {
     bool     failed; /* no memory; later writes are lost */
 } ByteSink;
 
-void               sink_bytes(ByteSink *sink, const void *bytes, size_t count);
-void               sink_u32(ByteSink *sink, uint32_t value);
-void               sink_f64s(ByteSink *sink, const double *value, int count);
-void               sink_text(ByteSink *sink, const char *text); /* u32 length, octets */
-void               sink_free(ByteSink *sink);
-static inline void sink_i32(ByteSink *sink, int value) { sink_u32(sink, (uint32_t)value); }
+void sink_bytes(ByteSink *sink, const void *bytes, size_t count);
+void sink_text(ByteSink *sink, const char *text); /* u32 length, octets */
+void sink_free(ByteSink *sink);
 
 void chunks_begin(ByteSink *file);
 /* Compressed where that is shorter. */
