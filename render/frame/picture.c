@@ -1,4 +1,4 @@
-/* render/frame/picture.c: the planes of a frame, and the channel of light that each shows. */
+/* render/frame/picture.c: the radiance planes of a picture, and the channel of light that each shows. */
 #include "render/frame/picture.h"
 
 int picture_channels(PictureChannel out[picture_radar], unsigned bands, OpticalChannels optical)
@@ -47,54 +47,12 @@ Band picture_band(int plane)
                                     : BAND_OPTICAL;
 }
 
-static float **plane_slot(Picture *picture, int plane)
+float *picture_plane(const Picture *picture, int plane)
 {
-    return plane == picture_mwir    ? &picture->mwir
-           : plane == picture_lwir  ? &picture->lwir
-           : plane == picture_radar ? &picture->radar
-                                    : &picture->optical[plane - picture_optical];
-}
-
-float *picture_plane(const Picture *picture, int plane) { return *plane_slot((Picture *)picture, plane); }
-
-Status picture_create(Picture *picture, const RenderRequest *request, int entities, bool plants, Arena *arena)
-{
-    const size_t px = (size_t)request->view.width * (size_t)request->view.height;
-    bool         ok = true;
-    *picture = (Picture){0};
-    picture->width = request->view.width;
-    picture->height = request->view.height;
-
-    PictureChannel of[picture_radar];
-    for (int k = picture_channels(of, request->bands, request->optical) - 1; k >= 0; k--)
-        ok = (*plane_slot(picture, of[k].plane) = arena_alloc(arena, px, sizeof(float))) && ok;
-    if (has_band(request->bands, BAND_RADAR)) {
-        ok = (picture->radar = arena_alloc(arena, px, sizeof(float))) && ok;
-        if (request->profile_bins > 0)
-            ok = (picture->profile =
-                      arena_alloc(arena, (size_t)request->profile_bins * radar_bounces, sizeof(double))) &&
-                 ok;
-    }
-    if (request->truth || looks_for_edges(request)) { /* edges are where truth changes */
-        ok = (picture->range_m = arena_alloc(arena, px, sizeof(float))) && ok;
-        ok = (picture->entity = arena_alloc(arena, px, sizeof(uint32_t))) && ok;
-        ok = (picture->part = arena_alloc(arena, px, sizeof(uint32_t))) && ok;
-        ok = (picture->material = arena_alloc(arena, px, sizeof(uint32_t))) && ok;
-        ok = (picture->temp_k = arena_alloc(arena, px, sizeof(float))) && ok;
-        ok = (picture->cover = arena_alloc(arena, px, sizeof(uint8_t))) && ok;
-        if (plants) ok = (picture->instance = arena_alloc(arena, px, sizeof(uint32_t))) && ok;
-        for (int k = 0; k < 3; k++) ok = (picture->normal[k] = arena_alloc(arena, px, sizeof(float))) && ok;
-    }
-    if (request->truth) ok = (picture->target = arena_alloc(arena, (size_t)entities, sizeof(TargetPixels))) && ok;
-    return ok ? STATUS_OK : STATUS_NO_MEMORY;
-}
-
-void picture_forget_truth(Picture *picture)
-{
-    picture->range_m = picture->temp_k = NULL;
-    picture->entity = picture->part = picture->material = picture->instance = NULL;
-    picture->cover = NULL;
-    for (int k = 0; k < 3; k++) picture->normal[k] = NULL;
+    return plane == picture_mwir    ? picture->mwir
+           : plane == picture_lwir  ? picture->lwir
+           : plane == picture_radar ? picture->radar
+                                    : picture->optical[plane - picture_optical];
 }
 
 double picture_contrast(const Picture *p, const float *value, int x, int y)

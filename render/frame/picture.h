@@ -119,7 +119,8 @@ typedef struct RenderTimes {
 /* Planes are width * height, rows top down; NULL where not requested. All in the frame's arena.
  *
  * Truth of a pixel is that of the sample nearest its centre; of a small target where it covers more than half of the
- * pixel, and then that of the target's sample nearest the centre. */
+ * pixel, and then that of the target's sample nearest the centre. What is made, when, and what is said of it:
+ * render/frame/planes.h. */
 typedef struct Picture {
     int       width, height;
     float    *optical[3];       /* R G B, or pan or near infrared in [0] alone: W/(m2 sr) */
@@ -180,13 +181,6 @@ static inline bool picture_shows_plant(const Picture *picture, size_t px)
 {
     return picture->instance && picture->instance[px] && !picture->entity[px];
 }
-
-/* Planes for a request, all 0; truth planes where truth is requested and where edges are looked for. plants: the world
- * has some.
- * STATUS_NO_MEMORY: of the arena. */
-Status picture_create(Picture *out, const RenderRequest *request, int entities, bool plants, Arena *arena);
-/* Removes from the picture the planes that only the search for edges needed. */
-void picture_forget_truth(Picture *picture);
 
 /* Mean squared difference of a pixel to its neighbours, left, right, above and below. */
 double picture_contrast(const Picture *picture, const float *value, int x, int y);

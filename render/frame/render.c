@@ -3,6 +3,7 @@
 
 #include "render/frame/render.h"
 #include "render/frame/frame_private.h"
+#include "render/frame/planes.h"
 #include "render/light/optical.h"
 
 int render_places(int samples, int edge_samples)
@@ -112,7 +113,7 @@ static Status prepare(Job *job, Pool *pool, Arena *arena)
     job->tiles_y = (request->view.height + job->side_px - 1) / job->side_px;
     job->channels = picture_channels(job->channel, request->bands, request->optical);
 
-    Status status = picture_create(job->picture, request, scene->snapshot->count, world->forest != NULL, arena);
+    Status status = planes_create(job->picture, request, scene->snapshot->count, world->forest != NULL, arena);
     if (status == STATUS_OK && job->picture->optical[1]) optical_white(job->picture->white_w_m2_sr, scene->air);
     if (status == STATUS_OK)
         status = shade_scene_create(scene, world, scene->snapshot, scene->air, request,
@@ -198,7 +199,7 @@ static Status render_once(Picture *out, const World *world, const Snapshot *snap
     sky_visibility_close(job.scene.sky, &picture.counters.visibility);
     shade_scene_close(&job.scene);
     if (status != STATUS_OK) return status;
-    if (!request->truth) picture_forget_truth(&picture);
+    if (!request->truth) planes_forget_truth(&picture);
     *out = picture;
     return STATUS_OK;
 }

@@ -1,4 +1,4 @@
-/* sensor/frame/frame.c: the pool of frames, and the planes of a frame by name. */
+/* sensor/frame/frame.c: the pool of frames, and the planes of a frame as arrays. */
 #include "sensor/frame/frame.h"
 #include "pitviper_channels.h"
 
@@ -78,69 +78,35 @@ void frame_release(Frame *frame)
     pthread_mutex_unlock(&pool->lock);
 }
 
-/* ---- the planes of an image: the one list of the fields of a Picture for all code that works on planes  */
-
-typedef struct PlaneList {
-    FrameArray *plane;
-    int         count, width, height;
-} PlaneList;
-
-static void add(PlaneList *list, const char *group, PlaneKind kind, const char *name, const char *unit, PlaneType type,
-                const void *values)
-{
-    if (values)
-        list->plane[list->count++] = (FrameArray){.group = group,
-                                                  .name = name,
-                                                  .unit = unit,
-                                                  .kind = kind,
-                                                  .type = type,
-                                                  .axes = 2,
-                                                  .axis = {"row", "column"},
-                                                  .size = {list->height, list->width},
-                                                  .values = values};
-}
+/* ---- the planes of an image ---------------------------------------------------------------------- */
 
 int frame_planes(FrameArray plane[frame_max_planes], const Picture *p, const RenderRequest *request)
 {
-    static const char *const rgb[3] = {"R", "G", "B"}, *const normal[3] = {"nx", "ny", "nz"};
-    static const char *const truth = "truth", *const radiance = "W/(m2 sr)", *const relative = "relative";
-    static const char *const radar_model = "pseudo-radar";
-    const char *const        wavelengths_um = request->optical == OPTICAL_RGB   ? "R 0.6-0.7, G 0.5-0.6, B 0.4-0.5"
-                                              : request->optical == OPTICAL_NIR ? channel_in(SPECTRAL_NIR)->edges_um
-                                                                                : channel_in(SPECTRAL_PAN)->edges_um;
-    PlaneList                list = {plane, 0, p->width, p->height};
-    for (int k = 0; k < picture_plane_count; k++) {
-        const Band band = k < picture_mwir ? BAND_OPTICAL : (Band)(BAND_OPTICAL + 1 + k - picture_mwir);
-        if (!(request->bands >> band & 1)) continue;
-        add(&list, band_name(band), PLANE_RADIANCE, k < picture_mwir && p->optical[1] ? rgb[k] : "Y",
-            band == BAND_RADAR ? relative : radiance, PLANE_F32, picture_plane(p, k));
-        if (list.count == 0) continue;
-        FrameArray *added = &plane[list.count - 1];
-        if (band == BAND_OPTICAL) added->wavelengths_um = wavelengths_um;
-        if (band == BAND_RADAR) added->model = radar_model;
+    const char *const wavelengths_um = request->optical == OPTICAL_RGB   ? "R 0.6-0.7, G 0.5-0.6, B 0.4-0.5"
+                                       : request->optical == OPTICAL_NIR ? channel_in(SPECTRAL_NIR)->edges_um
+                                                                         : channel_in(SPECTRAL_PAN)->edges_um;
+    int               count = 0;
+    for (int k = 0; k < plane_row_count; k++) {
+        const PlaneRow *row = &plane_rows[k];
+        const void     *values = plane_values(row, p);
+        if (!values || !plane_of_bands(row, request->bands, request->optical)) continue;
+        FrameArray *a = &plane[count++];
+        *a = (FrameArray){.group = plane_group(row),
+                          .name = row->name,
+                          .unit = row->unit,
+                          .kind = row->kind,
+                          .type = row->type,
+                          .axes = 2,
+                          .axis = {"row", "column"},
+                          .size = {p->height, p->width},
+                          .values = values};
+        if (plane_band(row) == BAND_RADAR) a->model = "pseudo-radar";
+        if (plane_band(row) == BAND_OPTICAL) a->wavelengths_um = wavelengths_um;
+        if (row->kind != PLANE_PROFILE) continue;
+        a->axis[0] = "bin", a->axis[1] = "bounce";
+        a->size[0] = request->profile_bins, a->size[1] = radar_bounces;
     }
-    add(&list, truth, PLANE_TRUTH, "range_m", "m", PLANE_F32, p->range_m);
-    add(&list, truth, PLANE_TRUTH, "entity", "", PLANE_U32, p->entity);
-    add(&list, truth, PLANE_TRUTH, "part", "", PLANE_U32, p->part);
-    add(&list, truth, PLANE_TRUTH, "material", "", PLANE_U32, p->material);
-    if (p->instance) { /* a world without plants has neither */
-        add(&list, truth, PLANE_TRUTH, "instance", "", PLANE_U32, p->instance);
-        add(&list, truth, PLANE_TRUTH, "cover", "", PLANE_U8, p->cover);
-    }
-    add(&list, truth, PLANE_TRUTH, "temp_k", "K", PLANE_F32, p->temp_k);
-    for (int k = 0; k < 3; k++) add(&list, truth, PLANE_TRUTH, normal[k], "", PLANE_F32, p->normal[k]);
-    if (p->profile)
-        plane[list.count++] = (FrameArray){.group = band_name(BAND_RADAR),
-                                           .name = "profile",
-                                           .unit = relative,
-                                           .model = radar_model,
-                                           .kind = PLANE_PROFILE,
-                                           .type = PLANE_F64,
-                                           .axes = 2,
-                                           .axis = {"bin", "bounce"},
-                                           .size = {request->profile_bins, radar_bounces},
-                                           .values = p->profile};
-    return list.count;
+    return count;
 }
 
 Plane frame_plane(char name[frame_plane_name_size], const FrameArray *p)

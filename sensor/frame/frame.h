@@ -6,15 +6,14 @@
 #ifndef SENSOR_FRAME_FRAME_H
 #define SENSOR_FRAME_FRAME_H
 
+#include "render/frame/planes.h"
 #include "sensor/frame/frame_display.h"
 #include "sensor/frame/latency_private.h"
 #include "sensor/frame/plane.h"
 #include "sensor/frame/records.h"
 #include "sensor/radar/radar_frame.h"
 
-enum { frame_max_planes = 48, frame_max_axes = 4 };
-
-typedef enum PlaneKind { PLANE_RADIANCE, PLANE_TRUTH, PLANE_PROFILE } PlaneKind;
+enum { frame_max_planes = planes_most, frame_max_axes = 4 };
 
 /* A named array. The last axis is contiguous in memory. */
 typedef struct FrameArray {
@@ -78,8 +77,8 @@ struct Frame {
     int                holds; /* protected by the pool's lock */
 };
 
-/* Lists the planes of an image in the order of their groups: bands, then truth, then profiles. They are borrowed from
- * it. */
+/* Lists the planes of an image that its hash covers, as render/frame/planes.h orders them. They are borrowed from it.
+ */
 int frame_planes(FrameArray plane[frame_max_planes], const Picture *picture, const RenderRequest *request);
 /* A plane as the hash names it, GROUP/NAME, and as two axes: rows are all its axes but the last, which is columns. */
 enum { frame_plane_name_size = 64 };

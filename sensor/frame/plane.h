@@ -3,10 +3,8 @@
 #define SENSOR_FRAME_PLANE_H
 
 #include "pitviper.h"
+#include "render/frame/plane_type.h"
 #include "sensor/settings/sha256.h"
-
-/* C64: two floats, real, imaginary. */
-typedef enum PlaneType { PLANE_F32, PLANE_U32, PLANE_F64, PLANE_C64, PLANE_U8 } PlaneType;
 
 /* A plane borrows its values: float, uint32_t, double, float complex or uint8_t [height][width], rows top down. */
 typedef struct Plane {

@@ -3,6 +3,7 @@
 
 #include "entities/motion/dead_reckoning.h"
 #include "render/scene/view.h"
+#include "sensor/frame/frame.h"
 #include "sensor/settings/config.h"
 
 /* ---- entities ----------------------------------------------------------------------------- */
@@ -206,21 +207,9 @@ void trial_frame(void *user)
 
 Status trial_frame_hash(char out[sha256_text_size], const TrialFrame *f)
 {
-    static const char *const radiance[picture_plane_count] = {"R", "G", "B", "mwir", "lwir", "radar"};
-    static const char *const normal[3] = {"nx", "ny", "nz"};
-    const Picture           *p = &f->picture;
-    const int                w = p->width, h = p->height;
-    Plane                    plane[24];
-    int                      n = 0;
-    for (int k = 0; k < picture_plane_count; k++)
-        if (picture_plane(p, k)) plane[n++] = plane_f32(radiance[k], w, h, picture_plane(p, k));
-    if (p->range_m) {
-        plane[n++] = plane_f32("range_m", w, h, p->range_m);
-        plane[n++] = plane_u32("entity", w, h, p->entity);
-        plane[n++] = plane_u32("part", w, h, p->part);
-        plane[n++] = plane_u32("material", w, h, p->material);
-        plane[n++] = plane_f32("temp_k", w, h, p->temp_k);
-        for (int k = 0; k < 3; k++) plane[n++] = plane_f32(normal[k], w, h, p->normal[k]);
-    }
-    return plane_hash(out, plane, n);
+    FrameView view = {.plane_count = 0};
+    view.plane_count = frame_planes(view.plane, &f->picture, &f->request);
+    const Status status = frame_sha256(&view);
+    memcpy(out, view.sha256, sha256_text_size);
+    return status;
 }

@@ -76,6 +76,13 @@ static void put_field(FILE *to, const ReferenceField *f)
     put_wrapped(to, line, 6);
 }
 
+static void put_fields(FILE *to, const Reference *r, void (*put)(FILE *to, const ReferenceField *f))
+{
+    ReferenceField f;
+    for (int i = 0; r->listed && r->listed(&f, i); i++) put(to, &f);
+    for (int i = 0; i < r->field_count; i++) put(to, &r->field[i]);
+}
+
 static void put_words(FILE *to, const Reference *r)
 {
     for (int i = 0; i < r->word_count; i++) {
@@ -118,7 +125,7 @@ bool reference_write(FILE *to, const char *topic)
         put_wrapped(to, r->notation, 0);
     }
     if (r->field_count) fputc('\n', to);
-    for (int i = 0; i < r->field_count; i++) put_field(to, &r->field[i]);
+    put_fields(to, r, put_field);
     put_words(to, r);
     if (r->python) {
         fputs("\nin Python, in the folder given by --out\n\n", to);
@@ -158,7 +165,7 @@ static void put_topic(FILE *to, const Reference *r)
         fputs("\n| field | type | unit | frame, order, index base | absent | meaning |\n"
               "|---|---|---|---|---|---|\n",
               to);
-    for (int i = 0; i < r->field_count; i++) put_row(to, &r->field[i]);
+    put_fields(to, r, put_row);
     for (int i = 0; i < r->word_count; i++) {
         const ReferenceWord *w = &r->word[i];
         fprintf(to, "\n`%s`: %s", w->word, w->about);

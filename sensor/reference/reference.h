@@ -26,11 +26,14 @@ typedef struct ReferenceWord {
 } ReferenceWord;
 
 typedef struct Reference {
-    const char           *topic;    /* of `pitviper help TOPIC` */
-    const char           *file;     /* in the folder of the products */
-    const char           *title;    /* in one line */
-    const char           *about;    /* paragraphs, lines of at most 110 columns */
-    const char           *notation; /* of path and type, where it is not JSON; may be NULL */
+    const char *topic;    /* of `pitviper help TOPIC` */
+    const char *file;     /* in the folder of the products */
+    const char *title;    /* in one line */
+    const char *about;    /* paragraphs, lines of at most 110 columns */
+    const char *notation; /* of path and type, where it is not JSON; may be NULL */
+    /* The i-th field that another list has; they stand before `field`. Its texts hold until the next call. False: there
+     * is no more. NULL: none. */
+    bool (*listed)(ReferenceField *out, int i);
     const ReferenceField *field;
     int                   field_count;
     const ReferenceWord  *word;

@@ -2,6 +2,8 @@
  * coco.json, answers.jsonl, the manifest of a sweep, the baseline of a regression. */
 #include "sensor/reference/reference.h"
 
+#include "render/frame/planes.h"
+
 static const ReferenceField pair_fields[] = {
     {"frame", "integer", "", "from 0", "", "number of the frame"},
     {"time_s", "number", "s", "exercise time", "", "instant of the frame"},
@@ -226,24 +228,25 @@ const Reference reference_sheet = {
 
 /* ---- the baseline of a case of `pitviper regress` ------------------------------------------------ */
 
-#define STEP_OF "when it is not in the bands of the case"
+static bool regress_plane(ReferenceField *out, int i)
+{
+    static char     path[64], unit[64], about[64];
+    const PlaneRow *row = plane_recorded(i);
+    if (!row) return false;
+    const bool coded = row->type == PLANE_F32, of_band = row->kind != PLANE_TRUTH;
+    snprintf(path, sizeof path, "channel frame/%s", row->record);
+    if (!coded) *unit = 0;
+    else if (row->rounding.bits) snprintf(unit, sizeof unit, "%d bits of mantissa", row->rounding.bits);
+    else snprintf(unit, sizeof unit, "1/%.0f%s%s", 1 / row->rounding.step, *row->unit ? " " : "", row->unit);
+    if (!coded) snprintf(about, sizeof about, "as %s/%s, not coded", row->group, row->name);
+    else if (i == 0) snprintf(about, sizeof about, "coded; as %s/%s of `help exr`", row->group, row->name);
+    else strcpy(about, "coded");
+    *out = (ReferenceField){path, "uint", unit, coded ? "" : "from 1", row->absent, about};
+    if (of_band && (row->rgb || !*row->absent)) out->absent = "when it is not in the bands of the case";
+    return true;
+}
 
 static const ReferenceField regress_fields[] = {
-    {"channel frame/range_m", "uint", "16 bits of mantissa", "", "", "coded; as truth/range_m of `help exr`"},
-    {"channel frame/entity", "uint", "", "from 1", "", "as truth/entity, not coded"},
-    {"channel frame/part", "uint", "", "from 1", "", "as truth/part, not coded"},
-    {"channel frame/material", "uint", "", "from 1", "", "as truth/material, not coded"},
-    {"channel frame/temp_k", "uint", "1/32 K", "", "", "coded"},
-    {"channel frame/nx", "uint", "1/512", "", "", "coded"},
-    {"channel frame/ny", "uint", "1/512", "", "", "coded"},
-    {"channel frame/nz", "uint", "1/512", "", "", "coded"},
-    {"channel frame/optical.R", "uint", "7 bits of mantissa", "", STEP_OF, "coded"},
-    {"channel frame/optical.G", "uint", "7 bits of mantissa", "", STEP_OF, "coded"},
-    {"channel frame/optical.B", "uint", "7 bits of mantissa", "", STEP_OF, "coded"},
-    {"channel frame/optical.Y", "uint", "7 bits of mantissa", "", "with sensor.optical rgb", "coded"},
-    {"channel frame/mwir.Y", "uint", "10 bits of mantissa", "", STEP_OF, "coded"},
-    {"channel frame/lwir.Y", "uint", "11 bits of mantissa", "", STEP_OF, "coded"},
-    {"channel frame/radar.Y", "uint", "7 bits of mantissa", "", STEP_OF, "coded"},
     {"header frame/frame", "int", "", "from 0", "", "number of the frame"},
     {"header frame/material_names", "string", "", "separated by commas; the first is material 1", "in older baselines",
      "names of the materials, by which material is compared"},
@@ -272,6 +275,7 @@ const Reference reference_regress = {
                 "in\n"
                 "the upper 16 bits (exclusive or). The unit is the step: a fixed one, or the upper bits of a float32;\n"
                 "2^30 steps are NaN, 2^30 - 1 infinity.",
+    .listed = regress_plane,
     .field = REFERENCE_FIELDS(regress_fields),
     .python =
         "import glob, numpy, OpenEXR\n"

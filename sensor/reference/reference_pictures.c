@@ -1,39 +1,26 @@
 /* sensor/reference/reference_pictures.c: EXR, PNG, raw counts and range profiles. */
 #include "sensor/reference/reference.h"
 
+#include "render/frame/planes.h"
+
 /* ---- EXR ------------------------------------------------------------------------------------- */
 
+/* All planes but the profile, which is a file of its own. */
+static bool exr_plane(ReferenceField *out, int i)
+{
+    static char path[64];
+    for (int k = 0; k < plane_row_count; k++) {
+        const PlaneRow *row = &plane_rows[k];
+        if (row->kind == PLANE_PROFILE || i-- > 0) continue;
+        snprintf(path, sizeof path, "channel %s/%s", row->group, row->name);
+        *out = (ReferenceField){
+            path, row->type == PLANE_F32 ? "float" : "uint", row->unit, row->frame, row->absent, row->about};
+        return true;
+    }
+    return false;
+}
+
 static const ReferenceField exr_fields[] = {
-    {"channel optical/R", "float", "W/(m2 sr)", "0.6-0.7 um", "with sensor.optical pan or nir",
-     "radiance at the aperture"},
-    {"channel optical/G", "float", "W/(m2 sr)", "0.5-0.6 um", "with sensor.optical pan or nir",
-     "radiance at the aperture"},
-    {"channel optical/B", "float", "W/(m2 sr)", "0.4-0.5 um", "with sensor.optical pan or nir",
-     "radiance at the aperture"},
-    {"channel optical/Y", "float", "W/(m2 sr)", "pan 0.4-0.7 um, nir 0.7-1.1 um", "with sensor.optical rgb",
-     "radiance at the aperture"},
-    {"channel mwir/Y", "float", "W/(m2 sr)", "3.4-4.8 um", "", "radiance at the aperture"},
-    {"channel lwir/Y", "float", "W/(m2 sr)", "8-12 um", "", "radiance at the aperture"},
-    {"channel radar/Y", "float", "relative", "", "",
-     "power of the pseudo-radar: comparable within a run, in no physical unit"},
-    {"channel truth/range_m", "float", "m", "from the sensor, along the ray", "",
-     "range of the surface at the pixel's centre; +infinity: sky"},
-    {"channel truth/entity", "uint", "", "from 1, into entity_ids; 0: none", "", "entity"},
-    {"channel truth/part", "uint", "", "from 1, into the parts of its model in part_names; 0: none", "",
-     "part of its model"},
-    {"channel truth/material", "uint", "", "from 1, into material_names; 0: none", "", "material"},
-    {"channel truth/instance", "uint", "", "from 1; from 2147483648 low plants; 0: none", "with terrain.woods off",
-     "plant: each one has its own number; low plants, which stand only near the sensor, theirs in this frame"},
-    {"channel truth/cover", "uint", "", "from 1, into surface_names; 0: no ground", "with terrain.woods off",
-     "surface class of the ground"},
-    {"channel truth/temp_k", "float", "K", "", "", "temperature of the surface; NaN: sky"},
-    {"channel truth/emissivity_mwir", "float", "", "0 .. 1", "without mwir",
-     "1 - reflectance - transmittance of the material, hemispherical: its row of etc/materials.csv, of plants etc/plant_optics.csv; "
-     "NaN: sky"},
-    {"channel truth/emissivity_lwir", "float", "", "0 .. 1", "without lwir", "the same"},
-    {"channel truth/nx", "float", "", "ENU at the terrain origin, east", "", "unit normal of the surface"},
-    {"channel truth/ny", "float", "", "ENU at the terrain origin, north", "", "the same"},
-    {"channel truth/nz", "float", "", "ENU at the terrain origin, up", "", "the same"},
     {"header band", "string", "", "", "", "BAND, or `truth`"},
     {"header unit", "string", "", "", "in truth", "`W/(m2 sr)` or `relative`"},
     {"header model", "string", "", "", "but in radar", "`pseudo-radar`"},
@@ -66,6 +53,7 @@ const Reference reference_exr = {
              "Python: `pip install OpenEXR numpy` (3.3 or later); OpenImageIO reads them as well.",
     .notation = "`channel BAND/NAME`: a channel, float (32 bits) or uint (32 bits, exact); `header NAME`: an "
                 "attribute.",
+    .listed = exr_plane,
     .field = REFERENCE_FIELDS(exr_fields),
     .word = REFERENCE_FIELDS(bands),
     .python = "import glob, numpy, OpenEXR\n"

@@ -259,17 +259,19 @@ static bool products_good(const Config *config)
                   config_where(config, pairs ? "publish.pairs" : "publish.coco"), pairs ? "pairs" : "coco");
         good = false;
     }
-    unsigned planes;
+    PlaneSet planes;
     if (!publish_planes_parse(&planes, config->publish.planes)) {
-        char why[200];
+        char why[200], names[400] = "";
         publish_planes_why(why, sizeof why, config->publish.planes);
-        log_error("config: %spublish.planes: '%s' is not all, none, or a list of range, entity, part, material, "
-                  "temperature, normal, emissivity, instance, cover, each once, for example range,entity%s",
-                  config_where(config, "publish.planes"), config->publish.planes, why);
+        for (int i = 0, n = 0; publish_planes_name(i) && n < (int)sizeof names; i++)
+            n += snprintf(names + n, sizeof names - (size_t)n, "%s, ", publish_planes_name(i));
+        log_error(
+            "config: %spublish.planes: '%s' is not all, none, or a list of %seach once, for example range,entity%s",
+            config_where(config, "publish.planes"), config->publish.planes, names, why);
         good = false;
     }
-    const unsigned of_woods = 1u << PLANE_INSTANCE | 1u << PLANE_COVER;
-    if (planes != planes_all && planes & of_woods && !config->terrain.woods) {
+    const PlaneSet of_woods = planes_named("instance", 8) | planes_named("cover", 5);
+    if (planes != planes_named("", 0) && planes & of_woods && !config->terrain.woods) {
         log_error("config: %spublish.planes: instance and cover are of a world with plants: terrain.woods: on",
                   config_where(config, "publish.planes"));
         good = false;

@@ -10,47 +10,51 @@
 
 /* ---- truth planes ------------------------------------------------------------------------------------- */
 
-static const char *const plane_name[PLANE_CHOICES] = {"range",  "entity",   "part",  "material",  "temperature",
-                                                      "normal", "instance", "cover", "emissivity"};
-
-bool publish_planes_parse(unsigned *planes, const char *text)
+bool publish_planes_parse(PlaneSet *planes, const char *text)
 {
-    unsigned set = 0;
-    *planes = planes_none;
-    if (strcmp(text, "none") == 0) return true;
-    if (strcmp(text, "all") == 0) {
-        *planes = planes_all;
-        return true;
-    }
+    PlaneSet set = 0;
+    *planes = strcmp(text, "all") == 0 ? planes_named("", 0) : 0;
+    if (*planes || strcmp(text, "none") == 0) return true;
     for (const char *at = text; at;) {
-        const size_t length = strcspn(at, ",");
-        int          k = 0;
-        while (k < PLANE_CHOICES && (strlen(plane_name[k]) != length || strncmp(plane_name[k], at, length) != 0)) k++;
-        if (k == PLANE_CHOICES || set >> k & 1) return false; /* unknown, or named twice */
-        set |= 1u << k;
+        const size_t   length = strcspn(at, ",");
+        const PlaneSet named = length ? planes_named(at, length) : 0;
+        if (!named || set & named) return false; /* unknown, or named twice */
+        set |= named;
         at = at[length] ? at + length + 1 : NULL;
     }
     *planes = set;
     return true;
 }
 
+const char *publish_planes_name(int i)
+{
+    for (int pass = 0; pass < 3; pass++)
+        for (int k = 0; k < plane_row_count; k++) {
+            const PlaneRow *row = &plane_rows[k];
+            const char     *before = k > 0 ? plane_rows[k - 1].choice : NULL;
+            if (!row->choice || (before && strcmp(before, row->choice) == 0)) continue;
+            if (pass == (row->plants != PLANTS_OR_NOT ? 2 : row->bands ? 1 : 0) && i-- == 0) return row->choice;
+        }
+    return NULL;
+}
+
 void publish_planes_why(char *out, size_t out_size, const char *text)
 {
-    unsigned set = 0;
+    PlaneSet set = 0;
     char     word[64];
     *out = 0;
     for (const char *at = text; at; at = strchr(at, ',') ? strchr(at, ',') + 1 : NULL) {
         snprintf(word, sizeof word, "%.*s", (int)strcspn(at, ","), at);
-        int       k = 0;
-        WordMeant meant = word_meant(word);
-        while (k < PLANE_CHOICES && strcmp(plane_name[k], word) != 0) word_consider(&meant, plane_name[k++]);
-        if (k == PLANE_CHOICES) {
+        const PlaneSet named = *word ? planes_named(word, strlen(word)) : 0;
+        if (!named) {
+            WordMeant meant = word_meant(word);
+            for (int i = 0; publish_planes_name(i); i++) word_consider(&meant, publish_planes_name(i));
             word_consider_list(&meant, "all|none", '|');
             snprintf(out, out_size, "%s", word_hint(&meant));
             return;
         }
-        if (set >> k & 1) snprintf(out, out_size, "; %s is named twice", word);
-        set |= 1u << k;
+        if (set & named) snprintf(out, out_size, "; %s is named twice", word);
+        set |= named;
     }
 }
 

@@ -3,29 +3,18 @@
 #define SENSOR_SETTINGS_PUBLISH_CHOICE_H
 
 #include "sensor/settings/config.h"
+#include "render/frame/planes.h"
 
 /* ---- truth planes ------------------------------------------------------------------------------------- */
 
-/* Truth planes written to files (publish.planes, --planes). All but emissivity are computed in any case: truth.jsonl,
- * coco.json and the hash of a frame do not depend on the choice. */
-typedef enum PlaneChoice {
-    PLANE_RANGE,
-    PLANE_ENTITY,
-    PLANE_PART,
-    PLANE_MATERIAL,
-    PLANE_TEMPERATURE,
-    PLANE_NORMAL,
-    PLANE_INSTANCE,
-    PLANE_COVER,      /* of a world with plants */
-    PLANE_EMISSIVITY, /* of thermal bands, made for the file (sensor/publish/files/frame_files.c) */
-    PLANE_CHOICES
-} PlaneChoice;
+/* Truth planes written to files (publish.planes, --planes), by their names in render/frame/planes.h. All that are not
+ * made for the file are computed in any case: truth.jsonl, coco.json and the hash of a frame do not depend on the
+ * choice. */
 
-enum { planes_none = 0, planes_all = (1 << PLANE_CHOICES) - 1 };
-
-/* all, none, or a list of names with commas, as a set of 1 << PlaneChoice. False: it is neither. */
-bool publish_planes_parse(unsigned *planes, const char *text);
-
+/* all, none, or a list of names with commas. False: it is neither, and the set is empty. */
+bool publish_planes_parse(PlaneSet *planes, const char *text);
+/* The i-th name, in the order of help: those of every run, of bands, of plants; NULL at the end. */
+const char *publish_planes_name(int i);
 /* What is wrong with a list that is refused: "; NAME is named twice", "; did you mean NAME?", or "". */
 void publish_planes_why(char *out, size_t out_size, const char *text);
 

@@ -94,7 +94,7 @@ static void units_are_those_of_physics(void **state)
 static void numbers_are_rounded_to_steps(void **state)
 {
     (void)state;
-    const Rounding one = {1, 0}, half = {0, 0.5}, fine = {16, 0};
+    const PlaneRounding one = {1, 0}, half = {0, 0.5}, fine = {16, 0};
     CHECK_NEAR(record_value(&one, record_steps(&one, 1.2f)), 1, 0);
     CHECK_NEAR(record_value(&one, record_steps(&one, 1.25f)), 1.5, 0);
     CHECK_NEAR(record_value(&one, record_steps(&one, 1.8f)), 2, 0);
@@ -124,9 +124,9 @@ static void a_coded_plane_comes_back(void **state)
 {
     (void)state;
     enum { width = 37, height = 5 };
-    const Rounding rounding[2] = {{11, 0}, {0, 1.0 / 32}};
-    float          value[width * height], back[width * height];
-    uint32_t       coded[width * height];
+    const PlaneRounding rounding[2] = {{11, 0}, {0, 1.0 / 32}};
+    float               value[width * height], back[width * height];
+    uint32_t            coded[width * height];
     for (uint32_t i = 0; i < width * height; i++)
         value[i] = i % 11 == 3 ? NAN : i % 13 == 5 ? INFINITY : (float)(600 * (random_uniform(4, 5, 6, i) - 0.5));
     for (int k = 0; k < 2; k++) {
@@ -152,23 +152,24 @@ enum { pixels = 40 * 25 };
 static void make_frame(RecordFrame *f)
 {
     *f = (RecordFrame){.number = 7, .width = 40, .height = 25};
-    for (int p = 0; p < FRAME_PLANES; p++) {
-        if (p == FRAME_OPTICAL_Y) continue;
-        if (record_plane_is_id((RecordPlane)p)) f->id_plane[p] = calloc(pixels, sizeof(uint32_t));
+    for (int p = 0; plane_recorded(p); p++) {
+        if (p == record_plane("optical.Y")) continue;
+        if (record_plane_is_id(p)) f->id_plane[p] = calloc(pixels, sizeof(uint32_t));
         else f->number_plane[p] = calloc(pixels, sizeof(float));
         for (int i = 0; i < pixels; i++) {
             if (f->id_plane[p]) f->id_plane[p][i] = i < 500 ? 1 : 2;
-            else f->number_plane[p][i] = p == FRAME_TEMP ? 290 : p == FRAME_RANGE ? 1000 : 10;
+            else f->number_plane[p][i] = p == record_plane("temp_k") ? 290 : p == record_plane("range_m") ? 1000 : 10;
         }
     }
 }
 
 /* Spoils so many pixels of a plane, and asks what is said first. */
-static int first_failure(RecordPlane plane, int count, float by, bool edges_allowed)
+static int first_failure(const char *name, int count, float by, bool edges_allowed)
 {
     RecordFrame     expected, got;
     const Tolerance tolerance = case_default().tolerance;
     ChannelResult   result[CHANNEL_COUNT] = {{0}};
+    const int       plane = record_plane(name);
     int             first = -1;
     make_frame(&expected);
     make_frame(&got);
@@ -190,31 +191,32 @@ static int first_failure(RecordPlane plane, int count, float by, bool edges_allo
 static void each_channel_has_its_own_limit(void **state)
 {
     (void)state;
-    CHECK(first_failure(FRAME_TEMP, 0, 0, false) == -1);
-    CHECK(first_failure(FRAME_TEMP, 500, 0.04f, false) == -1);
-    CHECK(first_failure(FRAME_TEMP, 1, 5, false) == -1);
-    CHECK(first_failure(FRAME_TEMP, 2, 0.07f, false) == CHANNEL_TEMP);
-    CHECK(first_failure(FRAME_OPTICAL_G, 500, 0.09f, false) == -1);
-    CHECK(first_failure(FRAME_OPTICAL_G, 2, 0.12f, false) == CHANNEL_OPTICAL);
-    CHECK(first_failure(FRAME_RADAR, 2, -0.2f, false) == -1);
-    CHECK(first_failure(FRAME_RADAR, 2, -0.3f, false) == CHANNEL_RADAR);
-    CHECK(first_failure(FRAME_LWIR, 2, 0.5f, false) == CHANNEL_LWIR);
-    CHECK(first_failure(FRAME_MWIR, 2, 0.5f, false) == CHANNEL_MWIR);
-    CHECK(first_failure(FRAME_NY, 1, 0.005f, false) == CHANNEL_NORMAL); /* geometry: not one pixel */
-    CHECK(first_failure(FRAME_RANGE, 1, 0.02f, false) == -1);
-    CHECK(first_failure(FRAME_RANGE, 1, 0.04f, false) == CHANNEL_RANGE);
-    CHECK(first_failure(FRAME_ENTITY, 1, 1, false) == CHANNEL_ENTITY);
-    CHECK(first_failure(FRAME_PART, 1, 1, false) == CHANNEL_PART);
-    CHECK(first_failure(FRAME_MATERIAL, 1, 1, false) == CHANNEL_MATERIAL);
-    CHECK(first_failure(FRAME_LWIR, 2, NAN, false) == CHANNEL_LWIR);
+    CHECK(first_failure("temp_k", 0, 0, false) == -1);
+    CHECK(first_failure("temp_k", 500, 0.04f, false) == -1);
+    CHECK(first_failure("temp_k", 1, 5, false) == -1);
+    CHECK(first_failure("temp_k", 2, 0.07f, false) == CHANNEL_TEMP);
+    CHECK(first_failure("optical.G", 500, 0.09f, false) == -1);
+    CHECK(first_failure("optical.G", 2, 0.12f, false) == CHANNEL_OPTICAL);
+    CHECK(first_failure("radar.Y", 2, -0.2f, false) == -1);
+    CHECK(first_failure("radar.Y", 2, -0.3f, false) == CHANNEL_RADAR);
+    CHECK(first_failure("lwir.Y", 2, 0.5f, false) == CHANNEL_LWIR);
+    CHECK(first_failure("mwir.Y", 2, 0.5f, false) == CHANNEL_MWIR);
+    CHECK(first_failure("ny", 1, 0.005f, false) == CHANNEL_NORMAL); /* geometry: not one pixel */
+    CHECK(first_failure("range_m", 1, 0.02f, false) == -1);
+    CHECK(first_failure("range_m", 1, 0.04f, false) == CHANNEL_RANGE);
+    CHECK(first_failure("entity", 1, 1, false) == CHANNEL_ENTITY);
+    CHECK(first_failure("part", 1, 1, false) == CHANNEL_PART);
+    CHECK(first_failure("material", 1, 1, false) == CHANNEL_MATERIAL);
+    CHECK(first_failure("lwir.Y", 2, NAN, false) == CHANNEL_LWIR);
 }
 
 /* Two pixels of a plane get a value; the line that is said of it. */
-static const char *line_of(char out[512], RecordPlane plane, Channel channel, float was, float is)
+static const char *line_of(char out[512], const char *name, Channel channel, float was, float is)
 {
     RecordFrame     expected, got;
     const Tolerance tolerance = case_default().tolerance;
     ChannelResult   result[CHANNEL_COUNT] = {{0}};
+    const int       plane = record_plane(name);
     make_frame(&expected);
     make_frame(&got);
     for (int i = 3; i < 5; i++) {
@@ -232,13 +234,13 @@ static void what_has_no_number_is_said_in_words(void **state)
 {
     (void)state;
     char said[512], value[64];
-    CHECK(strstr(line_of(said, FRAME_LWIR, CHANNEL_LWIR, 10, 0), "K became below 100 K at frame 7 (3, 0)"));
-    CHECK(strstr(line_of(said, FRAME_LWIR, CHANNEL_LWIR, 0, 10), "worst below 100 K became "));
-    CHECK(!*line_of(said, FRAME_LWIR, CHANNEL_LWIR, 0, 1e-20f)); /* both colder than anything seen */
-    CHECK(strstr(line_of(said, FRAME_MWIR, CHANNEL_MWIR, 10, NAN), "K became not a number"));
-    CHECK(strstr(line_of(said, FRAME_RANGE, CHANNEL_RANGE, INFINITY, 500), "no surface became 500 m"));
-    CHECK(strstr(line_of(said, FRAME_RANGE, CHANNEL_RANGE, 500, NAN), "500 m became not a number"));
-    CHECK(strstr(line_of(said, FRAME_OPTICAL_G, CHANNEL_OPTICAL, 10, INFINITY), "10 W/(m2 sr) became out of range"));
+    CHECK(strstr(line_of(said, "lwir.Y", CHANNEL_LWIR, 10, 0), "K became below 100 K at frame 7 (3, 0)"));
+    CHECK(strstr(line_of(said, "lwir.Y", CHANNEL_LWIR, 0, 10), "worst below 100 K became "));
+    CHECK(!*line_of(said, "lwir.Y", CHANNEL_LWIR, 0, 1e-20f)); /* both colder than anything seen */
+    CHECK(strstr(line_of(said, "mwir.Y", CHANNEL_MWIR, 10, NAN), "K became not a number"));
+    CHECK(strstr(line_of(said, "range_m", CHANNEL_RANGE, INFINITY, 500), "no surface became 500 m"));
+    CHECK(strstr(line_of(said, "range_m", CHANNEL_RANGE, 500, NAN), "500 m became not a number"));
+    CHECK(strstr(line_of(said, "optical.G", CHANNEL_OPTICAL, 10, INFINITY), "10 W/(m2 sr) became out of range"));
     for (int c = 0; c < CHANNEL_COUNT; c++) {
         const double odd[] = {INFINITY, -INFINITY, NAN, 0, 1};
         for (int i = 0; i < 5; i++) {
@@ -252,8 +254,8 @@ static void what_has_no_number_is_said_in_words(void **state)
 static void other_libraries_may_change_a_few_edges(void **state)
 {
     (void)state;
-    CHECK(first_failure(FRAME_ENTITY, 1, 1, true) == -1);
-    CHECK(first_failure(FRAME_ENTITY, 8, 1, true) == CHANNEL_ENTITY);
+    CHECK(first_failure("entity", 1, 1, true) == -1);
+    CHECK(first_failure("entity", 8, 1, true) == CHANNEL_ENTITY);
 }
 
 /* ---- truth ----------------------------------------------------------------------------------- */
@@ -344,15 +346,15 @@ static void materials_are_compared_by_name(void **state)
     char        before[] = "turf,steel,paint", after[] = "paint,turf,steel", more[] = "turf,a,b,glass";
     RecordFrame record = {.width = 4, .height = 1, .material_names = before};
     RecordFrame run = {.width = 4, .height = 1, .material_names = after};
-    record.id_plane[FRAME_MATERIAL] = was;
-    run.id_plane[FRAME_MATERIAL] = is;
+    record.id_plane[record_plane("material")] = was;
+    run.id_plane[record_plane("material")] = is;
     CHECK(record_frame_rename_materials(&run, &record) == STATUS_OK && memcmp(is, was, sizeof is) == 0);
     run.material_names = more;
-    run.id_plane[FRAME_MATERIAL] = other;
+    run.id_plane[record_plane("material")] = other;
     CHECK(record_frame_rename_materials(&run, &record) == STATUS_OK);
     CHECK(other[0] == 0 && other[1] == 1 && other[2] > 3 && other[3] > 3 && other[2] != other[3]);
     run.material_names = NULL; /* by number */
-    run.id_plane[FRAME_MATERIAL] = was;
+    run.id_plane[record_plane("material")] = was;
     CHECK(record_frame_rename_materials(&run, &record) == STATUS_OK && was[3] == 3);
 }
 

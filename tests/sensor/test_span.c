@@ -54,13 +54,24 @@ static void what_lies_outside_states_the_span(void **state)
 static void planes_are_listed_by_name(void **state)
 {
     (void)state;
-    unsigned planes;
-    CHECK(publish_planes_parse(&planes, "all") && planes == 511);
-    CHECK(publish_planes_parse(&planes, "none") && planes == 0);
-    CHECK(publish_planes_parse(&planes, "range,entity,part,material,temperature,normal") && planes == 63);
-    CHECK(publish_planes_parse(&planes, "instance,cover") && planes == (1u << PLANE_INSTANCE | 1u << PLANE_COVER));
-    CHECK(publish_planes_parse(&planes, "emissivity") && planes == 1u << PLANE_EMISSIVITY);
-    CHECK(publish_planes_parse(&planes, "normal") && planes == 1u << PLANE_NORMAL);
+    static const struct {
+        const char *list;
+        const char *name[20]; /* of the planes in files/truth */
+    } chosen[] = {{"none", {0}},
+                  {"range,entity,part,material,temperature,normal",
+                   {"range_m", "entity", "part", "material", "temp_k", "nx", "ny", "nz"}},
+                  {"instance,cover", {"instance", "cover"}},
+                  {"emissivity", {"emissivity_mwir", "emissivity_lwir"}},
+                  {"all",
+                   {"range_m", "entity", "part", "material", "temp_k", "nx", "ny", "nz", "instance", "cover",
+                    "emissivity_mwir", "emissivity_lwir"}}};
+    PlaneSet planes;
+    for (size_t i = 0; i < sizeof chosen / sizeof *chosen; i++) {
+        PlaneSet want = 0;
+        for (int k = 0; chosen[i].name[k]; k++) want |= (PlaneSet)1 << plane_find("truth", chosen[i].name[k]);
+        CHECK(publish_planes_parse(&planes, chosen[i].list) && planes == want);
+    }
+    CHECK(plane_find("truth", "Y") == -1 && plane_find("lwir", "Y") >= 0 && publish_planes_name(9) == NULL);
     static const char *const bad[] = {
         "", ",", "range,", ",range", "rang", "ranges", "range entity", "all,range", "none,range", "part,entity,part"};
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) CHECK(!publish_planes_parse(&planes, bad[i]));

@@ -40,9 +40,10 @@ Status run_prepare(Run *run)
     if (!run->options.config.publish.truth)
         choice_add(&run->choices, "truth: no truth.jsonl and no hashes of frames (publish.truth)");
     if (!config_bands_choose(&run->bands, run->options.config.sensor.bands)) return STATUS_BAD_VALUE;
-    unsigned planes = planes_none;
+    PlaneSet planes;
     publish_planes_parse(&planes, run->options.config.publish.planes);
-    if (planes != planes_all && planes >> PLANE_EMISSIVITY & 1 && !(run->bands & (1u << BAND_MWIR | 1u << BAND_LWIR))) {
+    if (planes != planes_named("", 0) && planes & planes_named("emissivity", 10) &&
+        !(run->bands & (1u << BAND_MWIR | 1u << BAND_LWIR))) {
         log_error(
             "%s: publish.planes: emissivity is of thermal bands, and none is rendered; add mwir or lwir to sensor.bands",
             options_command(&run->options));

@@ -40,76 +40,49 @@ bool frame_path(char path[frame_path_size], const FrameFiles *frame, const char 
     return false;
 }
 
-static unsigned planes_of(const Config *config)
+static PlaneSet planes_of(const Config *config)
 {
-    unsigned planes;
-    return publish_planes_parse(&planes, config->publish.planes) ? planes : planes_all; /* it was checked */
+    PlaneSet planes;
+    return publish_planes_parse(&planes, config->publish.planes) ? planes : planes_named("", 0); /* it was checked */
 }
 
-bool frame_files_truth(const Config *config) { return planes_of(config) != planes_none; }
+bool frame_files_truth(const Config *config) { return planes_of(config) != 0; }
 
 /* Lists the planes of one group that go into its file; of truth those in `kept`. */
-static int group_planes(FrameArray out[frame_max_planes], const FrameFiles *frame, const char *group, unsigned kept)
+static int group_planes(FrameArray out[frame_max_planes], const FrameFiles *frame, const char *group, PlaneSet kept)
 {
-    static const struct {
-        const char *name;
-        PlaneChoice choice;
-    } truth[] = {{"range_m", PLANE_RANGE},     {"entity", PLANE_ENTITY},      {"part", PLANE_PART},
-                 {"material", PLANE_MATERIAL}, {"temp_k", PLANE_TEMPERATURE}, {"nx", PLANE_NORMAL},
-                 {"ny", PLANE_NORMAL},         {"nz", PLANE_NORMAL},          {"instance", PLANE_INSTANCE},
-                 {"cover", PLANE_COVER}};
     FrameArray all[frame_max_planes];
     const int  count = frame_planes(all, frame->picture, frame->request);
     int        n = 0;
-    for (int i = 0; i < count; i++) {
-        bool wanted = strcmp(all[i].group, group) == 0 && all[i].kind != PLANE_PROFILE;
-        for (size_t k = 0; k < sizeof truth / sizeof *truth && all[i].kind == PLANE_TRUTH; k++)
-            if (strcmp(all[i].name, truth[k].name) == 0) wanted &= kept >> truth[k].choice & 1;
-        if (wanted) out[n++] = all[i];
-    }
+    for (int i = 0; i < count; i++)
+        if (strcmp(all[i].group, group) == 0 && all[i].kind != PLANE_PROFILE &&
+            (all[i].kind != PLANE_TRUTH || kept >> plane_find(group, all[i].name) & 1))
+            out[n++] = all[i];
     return n;
 }
 
 /* Planes of truth that are made for the file. */
 typedef struct MadePlanes {
     int    count;
-    char   name[BAND_COUNT][frame_plane_name_size];
-    float *values[BAND_COUNT];
+    char   name[planes_most][frame_plane_name_size]; /* of a band: with its name */
+    float *values[planes_most];
 } MadePlanes;
 
-/* Emissivity of the surface at each pixel's centre in a thermal band, 0 .. 1: 1 - reflectance - transmittance of its
- * row of etc/materials.csv or etc/plant_optics.csv, hemispherical; NaN: sky. out: [height][width]. It follows from the
- * plane of materials, is made when it is written, and is in no hash of a frame. */
-static void emissivity_plane(float *out, Band band, const Picture *picture, const Materials *materials)
-{
-    const size_t    count = (size_t)picture->width * (size_t)picture->height;
-    const Material *row = materials->material;
-    uint32_t        last = 0;
-    float           value = NAN;
-    for (size_t i = 0; i < count; i++) {
-        const uint32_t material = picture->material[i];
-        if (material != last) { /* neighbours are mostly of one material */
-            const Material *m = material < (uint32_t)materials->count ? &row[material] : NULL;
-            value = !m || material == 0 ? NAN
-                    : band == BAND_MWIR ? 1 - m->rho_mwir - m->tau_mwir
-                                        : 1 - m->rho_lwir - m->tau_lwir;
-            last = material;
-        }
-        out[i] = value;
-    }
-}
-
-/* Makes a plane of emissivity for each thermal band. STATUS_NO_MEMORY. */
-static Status make_planes(MadePlanes *made, const FrameFiles *frame, unsigned kept)
+/* Makes each of `kept` whose band is in the request. STATUS_NO_MEMORY. */
+static Status make_planes(MadePlanes *made, const FrameFiles *frame, PlaneSet kept)
 {
     const Picture *picture = frame->picture;
     made->count = 0;
-    for (int b = BAND_MWIR; b <= BAND_LWIR; b++) {
-        if (!(kept >> PLANE_EMISSIVITY & 1) || !(frame->request->bands >> b & 1) || !picture->material) continue;
+    for (int k = 0; k < plane_row_count && picture->material; k++) {
+        const PlaneRow *row = &plane_rows[k];
+        if (!row->make || !(kept >> k & 1) || !plane_of_bands(row, frame->request->bands, frame->request->optical))
+            continue;
         float *values = malloc((size_t)picture->width * (size_t)picture->height * sizeof *values);
         if (!values) return STATUS_NO_MEMORY;
-        emissivity_plane(values, (Band)b, picture, &frame->world->materials);
-        snprintf(made->name[made->count], sizeof made->name[0], "emissivity_%s", band_name((Band)b));
+        row->make(values, row, picture, &frame->world->materials);
+        if (row->bands)
+            snprintf(made->name[made->count], sizeof made->name[0], "%s_%s", row->choice, band_name(plane_band(row)));
+        else snprintf(made->name[made->count], sizeof made->name[0], "%s", row->name);
         made->values[made->count++] = values;
     }
     return STATUS_OK;

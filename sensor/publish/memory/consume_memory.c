@@ -117,44 +117,23 @@ typedef struct Memory {
 
 /* ---- the planes, before there is a frame ---------------------------------------------------------- */
 
-/* Lists the planes that frame_planes gives for such a run, from a picture whose planes have no values yet. */
-static int radiance_planes(FrameArray plane[frame_max_planes], const MemoryOf *of)
-{
-    static float        none;
-    const RenderRequest request = {.bands = of->bands, .optical = config_optical(of->config)};
-    const Picture       picture = {.width = of->config->sensor.width_px,
-                                   .height = of->config->sensor.height_px,
-                                   .optical = {&none, request.optical == OPTICAL_RGB ? &none : NULL,
-                                         request.optical == OPTICAL_RGB ? &none : NULL},
-                                   .mwir = &none,
-                                   .lwir = &none,
-                                   .radar = &none};
-    return frame_planes(plane, &picture, &request);
-}
-
-static Band band_of(const char *group)
-{
-    Band band = BAND_OPTICAL;
-    while (band < BAND_COUNT - 1 && strcmp(band_name(band), group) != 0) band++;
-    return band;
-}
-
 static void describe(MemoryRingOf *ring, Memory *m, const MemoryOf *of)
 {
-    FrameArray plane[frame_max_planes];
-    const int  count = radiance_planes(plane, of);
-    for (int i = 0; i < count; i++) {
-        const Band band = band_of(plane[i].group);
-        if (m->counts && !of->count_bits[band]) continue;
+    for (int k = 0; k < plane_row_count; k++) {
+        const PlaneRow *row = &plane_rows[k];
+        const Band      band = plane_band(row);
+        if (row->kind != PLANE_RADIANCE || !plane_of_bands(row, of->bands, config_optical(of->config)) ||
+            (m->counts && !of->count_bits[band]))
+            continue;
         PitviperMemoryPlane *p = &ring->plane[ring->plane_count];
         *p = (PitviperMemoryPlane){.band = (uint32_t)band,
                                    .width = (uint32_t)m->width,
                                    .height = (uint32_t)m->height,
                                    .type = m->counts ? PITVIPER_PLANE_UINT16 : PITVIPER_PLANE_FLOAT32,
                                    .bits = m->counts ? (uint32_t)of->count_bits[band] : 0};
-        snprintf(p->band_name, sizeof p->band_name, "%s", plane[i].group);
-        snprintf(p->name, sizeof p->name, "%s", plane[i].name);
-        snprintf(p->unit, sizeof p->unit, "%s", m->counts ? "counts" : plane[i].unit);
+        snprintf(p->band_name, sizeof p->band_name, "%s", plane_group(row));
+        snprintf(p->name, sizeof p->name, "%s", row->name);
+        snprintf(p->unit, sizeof p->unit, "%s", m->counts ? "counts" : row->unit);
         m->band[ring->plane_count++] = band;
     }
     m->plane_count = ring->plane_count;

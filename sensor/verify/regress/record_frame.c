@@ -9,40 +9,26 @@
 
 enum { path_size = 4096 };
 
-/* Folder and channel of each plane in a run, and its rounding. */
-static const struct Row {
-    const char *name, *folder, *channel;
-    bool        is_id;
-    Rounding    rounding;
-} rows[FRAME_PLANES] = {
-    [FRAME_RANGE] = {"range_m", "truth", "range_m", false, {16, 0}},
-    [FRAME_ENTITY] = {"entity", "truth", "entity", true, {0, 0}},
-    [FRAME_PART] = {"part", "truth", "part", true, {0, 0}},
-    [FRAME_MATERIAL] = {"material", "truth", "material", true, {0, 0}},
-    [FRAME_TEMP] = {"temp_k", "truth", "temp_k", false, {0, 1.0 / 32}},
-    [FRAME_NX] = {"nx", "truth", "nx", false, {0, 1.0 / 512}},
-    [FRAME_NY] = {"ny", "truth", "ny", false, {0, 1.0 / 512}},
-    [FRAME_NZ] = {"nz", "truth", "nz", false, {0, 1.0 / 512}},
-    [FRAME_OPTICAL_R] = {"optical.R", "optical", "R", false, {7, 0}},
-    [FRAME_OPTICAL_G] = {"optical.G", "optical", "G", false, {7, 0}},
-    [FRAME_OPTICAL_B] = {"optical.B", "optical", "B", false, {7, 0}},
-    [FRAME_OPTICAL_Y] = {"optical.Y", "optical", "Y", false, {7, 0}},
-    [FRAME_MWIR] = {"mwir.Y", "mwir", "Y", false, {10, 0}},
-    [FRAME_LWIR] = {"lwir.Y", "lwir", "Y", false, {11, 0}},
-    [FRAME_RADAR] = {"radar.Y", "radar", "Y", false, {7, 0}},
-};
-static const Rounding    profile_rounding = {7, 0};
-static const char *const bounce_name[frame_bounces] = {"bounce_1", "bounce_2", "bounce_3"};
-static const char        compression[] = "zip:9";
+static const PlaneRounding profile_rounding = {7, 0};
+static const char *const   bounce_name[frame_bounces] = {"bounce_1", "bounce_2", "bounce_3"};
+static const char          compression[] = "zip:9";
 
-const char *record_plane_name(RecordPlane plane) { return rows[plane].name; }
-bool        record_plane_is_id(RecordPlane plane) { return rows[plane].is_id; }
+RecordPlane record_plane(const char *name)
+{
+    const PlaneRow *row;
+    for (int p = 0; (row = plane_recorded(p)); p++)
+        if (strcmp(row->record, name) == 0) return p;
+    return record_no_plane;
+}
+
+const char *record_plane_name(RecordPlane plane) { return plane_recorded(plane)->record; }
+bool        record_plane_is_id(RecordPlane plane) { return plane_recorded(plane)->type != PLANE_F32; }
 
 /* ---- rounding -------------------------------------------------------------------------------- */
 
 enum { steps_nan = 1 << 30, steps_infinity = steps_nan - 1, steps_most = 1 << 29 };
 
-int32_t record_steps(const Rounding *rounding, float value)
+int32_t record_steps(const PlaneRounding *rounding, float value)
 {
     const float size = fabsf(value);
     int32_t     steps;
@@ -61,7 +47,7 @@ int32_t record_steps(const Rounding *rounding, float value)
     return value < 0 ? -steps : steps;
 }
 
-float record_value(const Rounding *rounding, int32_t steps)
+float record_value(const PlaneRounding *rounding, int32_t steps)
 {
     const int64_t size = steps < 0 ? -(int64_t)steps : steps;
     float         value;
@@ -79,7 +65,7 @@ float record_value(const Rounding *rounding, int32_t steps)
 
 /* Zigzag coding makes small differences of either sign small numbers; they are repeated in both halves of the word
  * because OpenEXR stores octets 0 and 2 of a word in one run, 1 and 3 in another, each as differences. */
-void record_code_plane(uint32_t *coded, const float *value, int width, int height, const Rounding *rounding)
+void record_code_plane(uint32_t *coded, const float *value, int width, int height, const PlaneRounding *rounding)
 {
     for (int y = 0; y < height; y++) {
         uint32_t left = 0;
@@ -93,7 +79,7 @@ void record_code_plane(uint32_t *coded, const float *value, int width, int heigh
     }
 }
 
-void record_decode_plane(float *value, const uint32_t *coded, int width, int height, const Rounding *rounding)
+void record_decode_plane(float *value, const uint32_t *coded, int width, int height, const PlaneRounding *rounding)
 {
     for (int y = 0; y < height; y++) {
         uint32_t steps = 0;
@@ -106,7 +92,7 @@ void record_decode_plane(float *value, const uint32_t *coded, int width, int hei
     }
 }
 
-static void round_plane(float *value, size_t count, const Rounding *rounding)
+static void round_plane(float *value, size_t count, const PlaneRounding *rounding)
 {
     for (size_t i = 0; i < count; i++) value[i] = record_value(rounding, record_steps(rounding, value[i]));
 }
@@ -153,14 +139,15 @@ static Status read_plane(RecordFrame *f, int plane, const char *path, const char
     const size_t count = (size_t)f->width * (size_t)f->height;
     void        *value = malloc(count * sizeof(float));
     if (!value) return STATUS_NO_MEMORY;
-    if (rows[plane].is_id) f->id_plane[plane] = value;
+    const bool is_id = record_plane_is_id(plane);
+    if (is_id) f->id_plane[plane] = value;
     else f->number_plane[plane] = value;
-    return rows[plane].is_id ? image_read_u32(value, path, channel) : image_read_f32(value, path, channel);
+    return is_id ? image_read_u32(value, path, channel) : image_read_f32(value, path, channel);
 }
 
 /* A coded plane of a record. */
 static Status read_coded(float **out, const char *path, const char *channel, int width, int height,
-                         const Rounding *rounding)
+                         const PlaneRounding *rounding)
 {
     const size_t count = (size_t)width * (size_t)height;
     uint32_t    *coded = malloc(count * sizeof *coded);
@@ -208,26 +195,26 @@ static Status read_profile_csv(RecordFrame *f, const char *path)
 
 Status record_frame_from_run(RecordFrame *out, const char *folder, int number)
 {
-    RecordFrame f = {.number = number};
-    char        path[path_size];
-    ImageInfo   info;
-    Status      status = STATUS_OK;
-    const char *opened = "";
-    for (int p = 0; p < FRAME_PLANES && status == STATUS_OK; p++) {
-        snprintf(path, sizeof path, "%s/frames/%s/%06d.exr", folder, rows[p].folder, number);
-        if (p > 0 && strcmp(rows[p].folder, "truth") != 0 && access(path, F_OK) != 0)
-            continue; /* a band not requested */
-        if (strcmp(opened, rows[p].folder) != 0) {
+    RecordFrame     f = {.number = number};
+    char            path[path_size];
+    ImageInfo       info;
+    Status          status = STATUS_OK;
+    const char     *opened = "";
+    const PlaneRow *row;
+    for (int p = 0; (row = plane_recorded(p)) && status == STATUS_OK; p++) {
+        snprintf(path, sizeof path, "%s/frames/%s/%06d.exr", folder, row->group, number);
+        if (row->kind != PLANE_TRUTH && access(path, F_OK) != 0) continue; /* a band not requested */
+        if (strcmp(opened, row->group) != 0) {
             status = image_info(&info, path);
             if (status == STATUS_OK) status = take_size(&f, &info, path);
-            opened = rows[p].folder;
+            opened = row->group;
         }
-        if (status != STATUS_OK || !has_channel(&info, rows[p].channel)) continue;
-        status = read_plane(&f, p, path, rows[p].channel);
-        if (status == STATUS_OK && !rows[p].is_id)
-            round_plane(f.number_plane[p], (size_t)f.width * (size_t)f.height, &rows[p].rounding);
+        if (status != STATUS_OK || !has_channel(&info, row->name)) continue;
+        status = read_plane(&f, p, path, row->name);
+        if (status == STATUS_OK && f.number_plane[p])
+            round_plane(f.number_plane[p], (size_t)f.width * (size_t)f.height, &row->rounding);
         if (p == 0 && !image_read_string(f.date, sizeof f.date, path, "DateTime")) *f.date = 0;
-        if (p == FRAME_MATERIAL && status == STATUS_OK) status = read_material_names(&f, path);
+        if (p == 0 && status == STATUS_OK) status = read_material_names(&f, path);
     }
     snprintf(path, sizeof path, "%s/profiles/radar/%06d.csv", folder, number);
     if (status == STATUS_OK && access(path, F_OK) == 0) status = read_profile_csv(&f, path);
@@ -275,11 +262,12 @@ Status record_frame_from_record(RecordFrame *out, const char *folder, const Reco
     snprintf(path, sizeof path, "%s/%06d.exr", folder, like->number);
     Status status = image_info(&info, path);
     if (status == STATUS_OK) status = take_size(&f, &info, path);
-    for (int p = 0; p < FRAME_PLANES && status == STATUS_OK; p++)
-        if (has_channel(&info, rows[p].name))
-            status = rows[p].is_id
-                         ? read_plane(&f, p, path, rows[p].name)
-                         : read_coded(&f.number_plane[p], path, rows[p].name, f.width, f.height, &rows[p].rounding);
+    const PlaneRow *row;
+    for (int p = 0; (row = plane_recorded(p)) && status == STATUS_OK; p++)
+        if (has_channel(&info, row->record))
+            status = record_plane_is_id(p)
+                         ? read_plane(&f, p, path, row->record)
+                         : read_coded(&f.number_plane[p], path, row->record, f.width, f.height, &row->rounding);
     if (status == STATUS_OK && !image_read_string(f.date, sizeof f.date, path, "DateTime")) *f.date = 0;
     if (status == STATUS_OK) status = read_material_names(&f, path);
     snprintf(path, sizeof path, "%s/%06d.profile.exr", folder, like->number);
@@ -294,18 +282,20 @@ Status record_frame_from_record(RecordFrame *out, const char *folder, const Reco
 
 Status record_frame_write(const char *folder, const RecordFrame *f)
 {
-    Plane        plane[FRAME_PLANES];
+    Plane        plane[planes_most];
     char         path[path_size];
-    int          planes = 0;
+    int          planes = 0, rows = 0;
     const size_t count = (size_t)f->width * (size_t)f->height, bins = (size_t)f->bins;
     const char  *date = *f->date ? f->date : NULL;
-    uint32_t    *coded = malloc((FRAME_PLANES * count + frame_bounces * bins) * sizeof *coded);
+    while (plane_recorded(rows)) rows++;
+    uint32_t *coded = malloc(((size_t)rows * count + frame_bounces * bins) * sizeof *coded);
     if (!coded) return STATUS_NO_MEMORY;
-    for (int p = 0; p < FRAME_PLANES; p++) {
-        uint32_t *to = coded + (size_t)p * count;
-        if (f->number_plane[p]) record_code_plane(to, f->number_plane[p], f->width, f->height, &rows[p].rounding);
-        if (f->number_plane[p]) plane[planes++] = plane_u32(rows[p].name, f->width, f->height, to);
-        if (f->id_plane[p]) plane[planes++] = plane_u32(rows[p].name, f->width, f->height, f->id_plane[p]);
+    for (int p = 0; p < rows; p++) {
+        const PlaneRow *row = plane_recorded(p);
+        uint32_t       *to = coded + (size_t)p * count;
+        if (f->number_plane[p]) record_code_plane(to, f->number_plane[p], f->width, f->height, &row->rounding);
+        if (f->number_plane[p]) plane[planes++] = plane_u32(row->record, f->width, f->height, to);
+        if (f->id_plane[p]) plane[planes++] = plane_u32(row->record, f->width, f->height, f->id_plane[p]);
     }
     const ImageAttribute number = image_int("frame", f->number);
     const ImageAttribute named[] = {number, image_string("material_names", f->material_names ? f->material_names : "")};
@@ -314,7 +304,7 @@ Status record_frame_write(const char *folder, const RecordFrame *f)
 
     const ImageAttribute attribute[] = {number, image_double("near_m", f->near_m), image_double("bin_m", f->bin_m)};
     for (int b = 0; b < frame_bounces && f->bins > 0; b++) {
-        uint32_t *to = coded + FRAME_PLANES * count + (size_t)b * bins;
+        uint32_t *to = coded + (size_t)rows * count + (size_t)b * bins;
         record_code_plane(to, f->profile[b], f->bins, 1, &profile_rounding);
         plane[b] = plane_u32(bounce_name[b], f->bins, 1, to);
     }
@@ -343,7 +333,7 @@ static uint32_t number_of(uint32_t *count, const char *list, const char *name, s
 
 Status record_frame_rename_materials(RecordFrame *frame, const RecordFrame *like)
 {
-    uint32_t *id = frame->id_plane[FRAME_MATERIAL], count, beyond, most;
+    uint32_t *id = frame->id_plane[record_plane("material")], count, beyond, most;
     if (!id || !frame->material_names || !like->material_names ||
         strcmp(frame->material_names, like->material_names) == 0)
         return STATUS_OK;
@@ -368,7 +358,7 @@ Status record_frame_rename_materials(RecordFrame *frame, const RecordFrame *like
 void record_frame_free(RecordFrame *frame)
 {
     free(frame->material_names);
-    for (int p = 0; p < FRAME_PLANES; p++) {
+    for (int p = 0; p < planes_most; p++) {
         free(frame->number_plane[p]);
         free(frame->id_plane[p]);
     }

@@ -276,7 +276,7 @@ static void put_failed(FILE *page, const CaseResult *r, int number)
 /* Puts one image of the first frame for each band. */
 static void put_thumbnails(FILE *page, const CaseResult *r)
 {
-    static const RecordPlane band[] = {FRAME_OPTICAL_R, FRAME_OPTICAL_Y, FRAME_MWIR, FRAME_LWIR, FRAME_RADAR};
+    static const char *const plane_name[] = {"optical.R", "optical.Y", "mwir.Y", "lwir.Y", "radar.Y"};
     static const char *const name[] = {"optical", "optical", "mwir, W/(m2 sr)", "lwir, W/(m2 sr)", "radar, dB"};
     char                     out[path_size], scratch[path_size];
     RecordFrame              f = {0};
@@ -285,12 +285,12 @@ static void put_thumbnails(FILE *page, const CaseResult *r)
     if (record_frame_from_run(&f, out, (int)r->c.frames.number[0]) != STATUS_OK) return;
     const size_t count = (size_t)f.width * (size_t)f.height;
     float       *db = malloc(count * sizeof *db);
-    for (size_t i = 0; i < sizeof band / sizeof *band && db; i++) {
-        const float *plane[3] = {f.number_plane[band[i]], f.number_plane[FRAME_OPTICAL_G],
-                                 f.number_plane[FRAME_OPTICAL_B]};
-        const bool   rgb = band[i] == FRAME_OPTICAL_R && plane[1] && plane[2];
+    for (int i = 0; i < 5 && db; i++) {
+        const float *plane[3] = {f.number_plane[record_plane(plane_name[i])], f.number_plane[record_plane("optical.G")],
+                                 f.number_plane[record_plane("optical.B")]};
+        const bool   rgb = i == 0 && plane[1] && plane[2];
         if (!plane[0]) continue;
-        if (band[i] == FRAME_RADAR) {
+        if (i == 4) {
             double full = 0;
             for (size_t k = 0; k < count; k++) full = isfinite(plane[0][k]) ? fmax(full, (double)plane[0][k]) : full;
             verdict_plane_to_db(db, plane[0], count, full, r->c.tolerance.radar_span_db);
@@ -303,7 +303,7 @@ static void put_thumbnails(FILE *page, const CaseResult *r)
             page, &(FalseColour){{plane[0], plane[1], plane[2]}, rgb ? 3 : 1, f.width, f.height, COLOURS_HEAT, scale},
             thumbnail_width, scratch, name[i]);
         fputs("<figcaption>", page);
-        if (rgb || band[i] == FRAME_OPTICAL_Y) html_text(page, "%s", name[i]);
+        if (rgb || i == 1) html_text(page, "%s", name[i]);
         else html_text(page, "%s: %.4g .. %.4g", name[i], scale.low, scale.high);
         fputs("</figcaption></figure>\n", page);
     }

@@ -8,46 +8,58 @@
 
 /* ---- channels ------------------------------------------------------------------------------------ */
 
+enum { as_it_is, kelvin, decibel }; /* what a plane is compared as */
+#define LIMIT(member) (1 + offsetof(Tolerance, member))
+
+/* A plane names its channel (render/frame/planes.h). */
 static const struct ChannelRow {
     const char *name, *about, *unit;
-    RecordPlane plane[4];
-    int         planes;
+    size_t      absolute, relative; /* members of Tolerance: LIMIT; 0: equal */
+    int         as;
+    Band        band; /* of kelvin */
 } rows[CHANNEL_COUNT] = {
-    [CHANNEL_SIZE] = {"size", "size of the images and of the range profile", "", {0}, 0},
-    [CHANNEL_COUNTERS] = {"counters", "PDUs, drops, entities and effects, over the whole log", "", {0}, 0},
-    [CHANNEL_TIME] = {"time", "number and time of the frames", "", {0}, 0},
-    [CHANNEL_POSE] = {"pose", "position and attitude of the sensor", "", {0}, 0},
-    [CHANNEL_SUN] = {"sun", "direction of the sun, from the sensor", "", {0}, 0},
-    [CHANNEL_MOTION] = {"motion", "which entities there are, and their dead-reckoned positions", "", {0}, 0},
-    [CHANNEL_ENTITY] = {"entity", "entity of each pixel", "", {FRAME_ENTITY}, 1},
-    [CHANNEL_PART] = {"part", "part of the model of each pixel", "", {FRAME_PART}, 1},
-    [CHANNEL_RANGE] = {"range", "range of the surface of each pixel", "m", {FRAME_RANGE}, 1},
-    [CHANNEL_NORMAL] = {"normal", "normal of the surface of each pixel", "", {FRAME_NX, FRAME_NY, FRAME_NZ}, 3},
-    [CHANNEL_TARGETS] = {"targets", "visible fraction and box of each target, and what occludes it", "", {0}, 0},
-    [CHANNEL_MATERIAL] = {"material", "material of each pixel", "", {FRAME_MATERIAL}, 1},
-    [CHANNEL_TEMP] = {"temperature", "temperature of the surface of each pixel", "K", {FRAME_TEMP}, 1},
-    [CHANNEL_OPTICAL] = {"optical",
-                         "radiance at the sensor",
-                         "W/(m2 sr)",
-                         {FRAME_OPTICAL_R, FRAME_OPTICAL_G, FRAME_OPTICAL_B, FRAME_OPTICAL_Y},
-                         4},
-    [CHANNEL_MWIR] = {"mwir", "radiance at the sensor as apparent temperature, 3.4-4.8 um", "K", {FRAME_MWIR}, 1},
-    [CHANNEL_LWIR] = {"lwir", "radiance at the sensor as apparent temperature, 8-12 um", "K", {FRAME_LWIR}, 1},
+    [CHANNEL_SIZE] = {"size", "size of the images and of the range profile", ""},
+    [CHANNEL_COUNTERS] = {"counters", "PDUs, drops, entities and effects, over the whole log", ""},
+    [CHANNEL_TIME] = {"time", "number and time of the frames", ""},
+    [CHANNEL_POSE] = {"pose", "position and attitude of the sensor", ""},
+    [CHANNEL_SUN] = {"sun", "direction of the sun, from the sensor", ""},
+    [CHANNEL_MOTION] = {"motion", "which entities there are, and their dead-reckoned positions", ""},
+    [CHANNEL_ENTITY] = {"entity", "entity of each pixel", ""},
+    [CHANNEL_PART] = {"part", "part of the model of each pixel", ""},
+    [CHANNEL_RANGE] = {"range", "range of the surface of each pixel", "m", .relative = LIMIT(range_rel)},
+    [CHANNEL_NORMAL] = {"normal", "normal of the surface of each pixel", "", .absolute = LIMIT(normal)},
+    [CHANNEL_TARGETS] = {"targets", "visible fraction and box of each target, and what occludes it", ""},
+    [CHANNEL_MATERIAL] = {"material", "material of each pixel", ""},
+    [CHANNEL_TEMP] = {"temperature", "temperature of the surface of each pixel", "K", .absolute = LIMIT(temp_k)},
+    [CHANNEL_OPTICAL] = {"optical", "radiance at the sensor", "W/(m2 sr)", LIMIT(optical_w_m2_sr), LIMIT(optical_rel)},
+    [CHANNEL_MWIR] = {"mwir", "radiance at the sensor as apparent temperature, 3.4-4.8 um", "K",
+                      .absolute = LIMIT(mwir_k), .as = kelvin, .band = BAND_MWIR},
+    [CHANNEL_LWIR] = {"lwir", "radiance at the sensor as apparent temperature, 8-12 um", "K", .absolute = LIMIT(lwir_k),
+                      .as = kelvin, .band = BAND_LWIR},
     [CHANNEL_RADAR] = {"radar",
                        "of the band, power of each pixel, relative to the brightest of the baseline; of "
                        "radar.preset, detections and truth",
-                       "dB",
-                       {FRAME_RADAR},
-                       1},
-    [CHANNEL_PROFILE] = {"radar profile",
-                         "radar power over range, relative to the largest of the "
-                         "baseline",
-                         "dB",
-                         {0},
-                         0},
-    [CHANNEL_SIGNALS] = {"target signals", "contrast, signal-to-noise ratio and intensity of each target", "", {0}, 0},
-    [CHANNEL_ERROR] = {"error budget", "the run's estimate of its own error", "", {0}, 0},
+                       "dB", .absolute = LIMIT(radar_db), .as = decibel},
+    [CHANNEL_PROFILE] = {"radar profile", "radar power over range, relative to the largest of the baseline", "dB"},
+    [CHANNEL_SIGNALS] = {"target signals", "contrast, signal-to-noise ratio and intensity of each target", ""},
+    [CHANNEL_ERROR] = {"error budget", "the run's estimate of its own error", ""},
 };
+
+static Channel channel_of(const PlaneRow *row)
+{
+    int c = 0;
+    while (c < CHANNEL_COUNT - 1 && strcmp(rows[c].name, row->verdict) != 0) c++;
+    return (Channel)c;
+}
+
+/* Whether its message names the plane, since others are in the same channel. */
+static bool shares_channel(RecordPlane plane)
+{
+    const PlaneRow *row = plane_recorded(plane), *other;
+    for (int p = 0; (other = plane_recorded(p)); p++)
+        if (p != plane && strcmp(other->verdict, row->verdict) == 0) return true;
+    return false;
+}
 
 const char *verdict_channel_name(Channel channel) { return rows[channel].name; }
 const char *verdict_channel_about(Channel channel) { return rows[channel].about; }
@@ -55,7 +67,7 @@ const char *verdict_channel_about(Channel channel) { return rows[channel].about;
 void verdict_channel_value(char out[64], Channel channel, double value, int digits)
 {
     const char *unit = rows[channel].unit, *space = *unit ? " " : "";
-    const bool  thermal = channel == CHANNEL_MWIR || channel == CHANNEL_LWIR;
+    const bool  thermal = rows[channel].as == kelvin;
     if (isnan(value)) snprintf(out, 64, "not a number");
     else if (isinf(value)) snprintf(out, 64, channel == CHANNEL_RANGE && value > 0 ? "no surface" : "out of range");
     else if (thermal && value <= apparent_floor_k) snprintf(out, 64, "below %.0f K", apparent_floor_k);
@@ -73,58 +85,27 @@ static double largest(const float *value, size_t count)
     return most;
 }
 
-/* Converts a plane to the unit of its tolerance. full: the largest value of the expected plane, which dB are relative
+/* Converts a plane to the unit of its channel. full: the largest value of the expected plane, which dB are relative
  * to. */
-static void to_unit(float *out, const float *value, size_t count, RecordPlane plane, double full, const Tolerance *t)
+static void to_unit(float *out, const float *value, size_t count, Channel channel, double full, const Tolerance *t)
 {
     double low_m, high_m;
-    if (plane == FRAME_MWIR || plane == FRAME_LWIR) {
-        preset_band(&low_m, &high_m, plane == FRAME_MWIR ? BAND_MWIR : BAND_LWIR, OPTICAL_PAN, -1);
+    if (rows[channel].as == kelvin) {
+        preset_band(&low_m, &high_m, rows[channel].band, OPTICAL_PAN, -1);
         verdict_plane_to_kelvin(out, value, count, low_m, high_m);
-    } else if (plane == FRAME_RADAR) {
+    } else if (rows[channel].as == decibel) {
         verdict_plane_to_db(out, value, count, full, t->radar_span_db);
     } else {
         memcpy(out, value, count * sizeof *out);
     }
 }
 
-static void limits_of(double *absolute, double *relative, RecordPlane plane, const Tolerance *t)
+/* A member of the tolerances. Both planes were rounded to floats: a difference of exactly the limit is accepted. */
+static double limit_of(size_t member, const Tolerance *t)
 {
-    *absolute = *relative = 0;
-    switch (plane) {
-    case FRAME_RANGE:
-        *relative = t->range_rel;
-        break;
-    case FRAME_NX:
-    case FRAME_NY:
-    case FRAME_NZ:
-        *absolute = t->normal;
-        break;
-    case FRAME_TEMP:
-        *absolute = t->temp_k;
-        break;
-    case FRAME_MWIR:
-        *absolute = t->mwir_k;
-        break;
-    case FRAME_LWIR:
-        *absolute = t->lwir_k;
-        break;
-    case FRAME_RADAR:
-        *absolute = t->radar_db;
-        break;
-    case FRAME_OPTICAL_R:
-    case FRAME_OPTICAL_G:
-    case FRAME_OPTICAL_B:
-    case FRAME_OPTICAL_Y:
-        *absolute = t->optical_w_m2_sr;
-        *relative = t->optical_rel;
-        break;
-    default:
-        break;
-    }
-    /* both were rounded to floats: a difference of exactly the limit is accepted */
-    *absolute *= 1 + 1e-6;
-    *relative *= 1 + 1e-6;
+    double value = 0;
+    if (member) memcpy(&value, (const char *)t + member - 1, sizeof value);
+    return value * (1 + 1e-6);
 }
 
 /* ---- one plane ------------------------------------------------------------------------------- */
@@ -145,7 +126,7 @@ static void one_sided(ChannelResult *result, Channel channel, RecordPlane plane,
     ChannelResult found = {
         .there = true, .failed = true, .frame = frame, .plane = plane, .verdict = {.share = 1, .max = INFINITY}};
     snprintf(found.line, sizeof found.line, "%s of frame %d is %s",
-             plane < FRAME_PLANES ? record_plane_name(plane) : rows[channel].name, frame,
+             plane != record_no_plane ? record_plane_name(plane) : rows[channel].name, frame,
              recorded ? "in the baseline and not in the run" : "not in the baseline");
     keep_worse(result, &found);
 }
@@ -157,8 +138,7 @@ static void write_line(ChannelResult *r, Channel channel)
     const PlaneVerdict *v = &r->verdict;
     char                limit[64], worst[160], plane[24] = "", was[64], is[64];
     const char         *unit = rows[channel].unit, *space = *unit ? " " : "";
-    const bool          floor = (channel == CHANNEL_MWIR || channel == CHANNEL_LWIR) &&
-                       (v->expected <= apparent_floor_k || v->got <= apparent_floor_k);
+    const bool floor = rows[channel].as == kelvin && (v->expected <= apparent_floor_k || v->got <= apparent_floor_k);
     verdict_channel_value(was, channel, v->expected, 4);
     verdict_channel_value(is, channel, v->got, 4);
     if (channel == CHANNEL_RANGE) snprintf(limit, sizeof limit, "%.3g relative", r->relative);
@@ -168,7 +148,7 @@ static void write_line(ChannelResult *r, Channel channel)
         snprintf(worst, sizeof worst, "%.3g %%", 100 * v->max / v->expected);
     else if (isfinite(v->max) && !floor) snprintf(worst, sizeof worst, "%.3g%s%s", v->max, space, unit);
     else snprintf(worst, sizeof worst, "%s became %s", was, is);
-    if (rows[channel].planes > 1) snprintf(plane, sizeof plane, "%s: ", record_plane_name(r->plane));
+    if (shares_channel(r->plane)) snprintf(plane, sizeof plane, "%s: ", record_plane_name(r->plane));
     snprintf(r->line, sizeof r->line, "%s%.3g %% of pixels beyond %s, worst %s at frame %d (%d, %d)", plane,
              100 * v->share, limit, worst, r->frame, v->column, v->row);
 }
@@ -189,12 +169,16 @@ static void compare_plane(ChannelResult *result, const FramePair *h, Channel cha
         one_sided(result, channel, plane, h->got->number, was != NULL);
         return;
     }
-    const double  full = plane == FRAME_RADAR ? largest(was, h->count) : 0;
-    ChannelResult found = {
-        .there = true, .picture = true, .frame = h->got->number, .plane = plane, .unit = rows[channel].unit};
-    limits_of(&found.limit, &found.relative, plane, h->tolerance);
-    to_unit(h->scratch, was, h->count, plane, full, h->tolerance);
-    to_unit(h->scratch + h->count, is, h->count, plane, full, h->tolerance);
+    const double  full = rows[channel].as == decibel ? largest(was, h->count) : 0;
+    ChannelResult found = {.there = true,
+                           .picture = true,
+                           .frame = h->got->number,
+                           .plane = plane,
+                           .unit = rows[channel].unit,
+                           .limit = limit_of(rows[channel].absolute, h->tolerance),
+                           .relative = limit_of(rows[channel].relative, h->tolerance)};
+    to_unit(h->scratch, was, h->count, channel, full, h->tolerance);
+    to_unit(h->scratch + h->count, is, h->count, channel, full, h->tolerance);
     verdict_compare_numbers(&found.verdict, NULL, h->scratch, h->scratch + h->count, h->got->width, h->got->height,
                             &(PlaneLimits){found.limit, found.relative, h->other});
     found.allowed = is_geometry(channel) ? 0 : h->tolerance->share;
@@ -237,7 +221,7 @@ static void compare_profile(ChannelResult *result, const FramePair *h)
     if (was->bins == 0 && is->bins == 0) return;
     if (was->bins > 0 && is->bins > 0 && was->bins != is->bins) return; /* reported by CHANNEL_SIZE */
     if (was->bins != is->bins) {
-        one_sided(result, CHANNEL_PROFILE, FRAME_PLANES, is->number, was->bins > 0);
+        one_sided(result, CHANNEL_PROFILE, record_no_plane, is->number, was->bins > 0);
         return;
     }
     double full = 0;
@@ -246,7 +230,7 @@ static void compare_profile(ChannelResult *result, const FramePair *h)
     for (int b = 0; db && b < frame_bounces; b++) {
         ChannelResult found = {.there = true,
                                .frame = is->number,
-                               .plane = FRAME_PLANES,
+                               .plane = record_no_plane,
                                .bounce = b,
                                .unit = "dB",
                                .limit = h->tolerance->profile_db * (1 + 1e-6),
@@ -282,21 +266,20 @@ void verdict_frame(ChannelResult result[CHANNEL_COUNT], const RecordFrame *expec
         h.other = calloc(count, 1);
     }
     if (h.scratch && (!edges_allowed || (h.edge && h.other))) {
-        for (int p = 0; p < FRAME_PLANES && h.edge; p++)
+        for (int p = 0; p < planes_most && h.edge; p++)
             if (expected->id_plane[p] && got->id_plane[p])
                 h.edges = verdict_mark_edges(h.edge, expected->id_plane[p], got->id_plane[p], got->width, got->height);
         /* ids first: pixels of different entities are left out of the comparison of numbers */
         for (int pass = 0; pass < 2; pass++)
-            for (int c = 0; c < CHANNEL_COUNT; c++)
-                for (int i = 0; i < rows[c].planes; i++) {
-                    const RecordPlane plane = rows[c].plane[i];
-                    if (record_plane_is_id(plane) != (pass == 0)) continue;
-                    if (pass == 0) compare_id_plane(&result[c], &h, (Channel)c, plane);
-                    else compare_plane(&result[c], &h, (Channel)c, plane);
-                }
+            for (int p = 0; plane_recorded(p); p++) {
+                const Channel channel = channel_of(plane_recorded(p));
+                if (record_plane_is_id(p) != (pass == 0)) continue;
+                if (pass == 0) compare_id_plane(&result[channel], &h, channel, p);
+                else compare_plane(&result[channel], &h, channel, p);
+            }
         compare_profile(&result[CHANNEL_PROFILE], &h);
     } else {
-        one_sided(&result[CHANNEL_TIME], CHANNEL_TIME, FRAME_PLANES, got->number, true);
+        one_sided(&result[CHANNEL_TIME], CHANNEL_TIME, record_no_plane, got->number, true);
         snprintf(result[CHANNEL_TIME].line, sizeof result->line, "out of memory at frame %d", got->number);
     }
     free(h.scratch);
@@ -329,9 +312,10 @@ bool verdict_channel_planes(ChannelPlanes *out, const ChannelResult *r, const Re
             p.got[i] = (float)got->id_plane[r->plane][i];
         }
     } else {
-        const double full = r->plane == FRAME_RADAR ? largest(expected->number_plane[r->plane], count) : 0;
-        to_unit(p.expected, expected->number_plane[r->plane], count, r->plane, full, tolerance);
-        to_unit(p.got, got->number_plane[r->plane], count, r->plane, full, tolerance);
+        const Channel channel = channel_of(plane_recorded(r->plane));
+        const double  full = rows[channel].as == decibel ? largest(expected->number_plane[r->plane], count) : 0;
+        to_unit(p.expected, expected->number_plane[r->plane], count, channel, full, tolerance);
+        to_unit(p.got, got->number_plane[r->plane], count, channel, full, tolerance);
     }
     verdict_compare_numbers(&verdict, p.difference, p.expected, p.got, p.width, p.height, &(PlaneLimits){0, 0, NULL});
     *out = p;

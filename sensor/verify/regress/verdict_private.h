@@ -4,6 +4,7 @@
 #define SENSOR_VERIFY_REGRESS_VERDICT_PRIVATE_H
 
 #include "pitviper.h"
+#include "render/frame/planes.h"
 #include "sensor/verify/regress/case_private.h"
 
 /* ---- values of JSON (json_values.c) ---------------------------------------------------------- */
@@ -41,51 +42,29 @@ Status json_text_without(char **out, const char *text, size_t octets, const char
  * a baseline.
  *
  * A baseline is small because its numbers are rounded, below the tolerances of case_default; a run is rounded the same
- * way before it is compared, so that equal runs have zero difference. One step of each:
- *
- *     range_m            16 bits of mantissa      1.5e-5 relative at most
- *     nx, ny, nz         1/512                    0.002
- *     temp_k             1/32 K                   0.03 K
- *     optical            7 bits of mantissa       0.8 % at most
- *     mwir, lwir         10, 11 bits              0.03 K apparent at 300 K at most
- *     radar, profile     7 bits                   0.03 dB at most
- *     entity, part, material   as they are
+ * way before it is compared, so that equal runs have zero difference. One step of each is in render/frame/planes.c: of
+ * ranges 1.5e-5 relative at most, of optical radiance 0.8 %, of thermal 0.03 K apparent at 300 K, of radar 0.03 dB.
  *
  * In the file a number is its count of steps, less that of its left neighbour, so that deflate finds small numbers
  * (half the size of rounded floats): see record_code_plane. 96 x 64 in all bands is some 45 kB a frame. */
 
-typedef enum RecordPlane {
-    FRAME_RANGE,
-    FRAME_ENTITY,
-    FRAME_PART,
-    FRAME_MATERIAL,
-    FRAME_TEMP,
-    FRAME_NX,
-    FRAME_NY,
-    FRAME_NZ,
-    FRAME_OPTICAL_R,
-    FRAME_OPTICAL_G,
-    FRAME_OPTICAL_B,
-    FRAME_OPTICAL_Y,
-    FRAME_MWIR,
-    FRAME_LWIR,
-    FRAME_RADAR,
-    FRAME_PLANES
-} RecordPlane;
+/* A plane of a baseline: its place among those that are compared (plane_recorded of render/frame/planes.h). */
+typedef int RecordPlane;
 
-enum { frame_bounces = 3, frame_size_max = 8192, frame_bins_max = 65536 };
+enum { record_no_plane = planes_most, frame_bounces = 3, frame_size_max = 8192, frame_bins_max = 65536 };
 
 typedef struct RecordFrame {
     int       number, width, height;
-    float    *number_plane[FRAME_PLANES]; /* [height][width]; NULL: absent, or a plane of ids */
-    uint32_t *id_plane[FRAME_PLANES];     /* entity, part, material */
-    int       bins;                       /* 0: no profile */
-    double    near_m, bin_m;              /* middle of the first bin; spacing */
-    float    *profile[frame_bounces];     /* [bins] */
-    char      date[32];                   /* of the exercise, as EXR writes it */
-    char     *material_names;             /* comma-separated: the k-th is material k; NULL: an older baseline */
+    float    *number_plane[planes_most]; /* [height][width]; NULL: absent, or a plane of ids */
+    uint32_t *id_plane[planes_most];     /* entity, part, material */
+    int       bins;                      /* 0: no profile */
+    double    near_m, bin_m;             /* middle of the first bin; spacing */
+    float    *profile[frame_bounces];    /* [bins] */
+    char      date[32];                  /* of the exercise, as EXR writes it */
+    char     *material_names;            /* comma-separated: the k-th is material k; NULL: an older baseline */
 } RecordFrame;
 
+RecordPlane record_plane(const char *name);       /* by its channel in the baseline; record_no_plane: none */
 const char *record_plane_name(RecordPlane plane); /* channel in the baseline */
 bool        record_plane_is_id(RecordPlane plane);
 
@@ -104,17 +83,12 @@ Status record_frame_rename_materials(RecordFrame *frame, const RecordFrame *like
 Status record_frame_write(const char *folder, const RecordFrame *frame);
 void   record_frame_free(RecordFrame *frame);
 
-/* Rounding in whole steps: to that many bits of mantissa (1 .. 22), or to the nearest multiple of a step. Infinity and
- * NaN have reserved numbers; -0 is 0. record_value is the inverse. */
-typedef struct Rounding {
-    int    bits; /* 0: by step */
-    double step;
-} Rounding;
-int32_t record_steps(const Rounding *rounding, float value);
-float   record_value(const Rounding *rounding, int32_t steps);
+/* Rounding in whole steps. Infinity and NaN have reserved numbers; -0 is 0. record_value is the inverse. */
+int32_t record_steps(const PlaneRounding *rounding, float value);
+float   record_value(const PlaneRounding *rounding, int32_t steps);
 /* Differences to the left neighbour, as stored in the file; and the inverse. Must not alias. */
-void record_code_plane(uint32_t *coded, const float *value, int width, int height, const Rounding *rounding);
-void record_decode_plane(float *value, const uint32_t *coded, int width, int height, const Rounding *rounding);
+void record_code_plane(uint32_t *coded, const float *value, int width, int height, const PlaneRounding *rounding);
+void record_decode_plane(float *value, const uint32_t *coded, int width, int height, const PlaneRounding *rounding);
 
 /* ---- two planes ---------------------------------------------------------------------------------- */
 
@@ -193,7 +167,7 @@ typedef struct ChannelResult {
     bool         picture;
     int          frame;
     RecordPlane  plane;
-    int          bounce; /* of a profile, which has no plane: FRAME_PLANES */
+    int          bounce; /* of a profile, whose plane is record_no_plane */
     PlaneVerdict verdict;
     double       limit, relative; /* absolute, and of the expected */
     double       allowed;         /* share of pixels that may be beyond */

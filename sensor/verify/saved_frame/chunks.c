@@ -38,18 +38,7 @@ void sink_bytes(ByteSink *sink, const void *bytes, size_t count)
     if (to) memcpy(to, bytes, count);
 }
 
-void sink_u32(ByteSink *sink, uint32_t value) { sink_bytes(sink, &value, sizeof value); }
-void sink_u64(ByteSink *sink, uint64_t value) { sink_bytes(sink, &value, sizeof value); }
-void sink_f64s(ByteSink *sink, const double *value, int count)
-{
-    sink_bytes(sink, value, (size_t)count * sizeof *value);
-}
-
-void sink_text(ByteSink *sink, const char *text)
-{
-    sink_u32(sink, (uint32_t)strlen(text));
-    sink_bytes(sink, text, strlen(text));
-}
+void sink_text(ByteSink *sink, const char *text) { field_text(&(Fields){.to = sink}, &text, 0); }
 
 void sink_free(ByteSink *sink)
 {
@@ -59,40 +48,48 @@ void sink_free(ByteSink *sink)
 
 void chunks_begin(ByteSink *file)
 {
+    uint32_t version = chunks_version;
     sink_bytes(file, magic, sizeof magic);
-    sink_u32(file, chunks_version);
+    field_u32(&(Fields){.to = file}, &version);
 }
 
-static void put_header(ByteSink *file, const char *name, uint32_t method, uint32_t crc, uint64_t plain, uint64_t stored)
+typedef struct ChunkHeader {
+    char     name[chunk_name_size];
+    uint32_t method, crc;
+    uint64_t plain, stored;
+} ChunkHeader;
+
+static void header_fields(Fields *f, ChunkHeader *h)
 {
-    char padded[chunk_name_size] = {0};
-    memcpy(padded, name, strnlen(name, sizeof padded));
-    sink_bytes(file, padded, sizeof padded);
-    sink_u32(file, method);
-    sink_u32(file, crc);
-    sink_u64(file, plain);
-    sink_u64(file, stored);
+    field_bytes(f, h->name, sizeof h->name);
+    field_u32(f, &h->method);
+    field_u32(f, &h->crc);
+    field_u64(f, &h->plain);
+    field_u64(f, &h->stored);
 }
 
 void chunks_put(ByteSink *file, const char *name, const ByteSink *content)
 {
-    const uint32_t crc = content->count ? (uint32_t)crc32_z(0, content->bytes, content->count) : 0;
-    uLongf         stored = compressBound((uLong)content->count);
-    uint8_t       *packed = malloc(stored);
+    ChunkHeader h = {.plain = content->count};
+    uLongf      stored = compressBound((uLong)content->count);
+    uint8_t    *packed = malloc(stored);
     file->failed |= content->failed || !packed;
     if (file->failed) goto done;
     const bool shorter =
         content->count > 0 && stored > 0 &&
         compress2(packed, &stored, content->bytes, (uLong)content->count, Z_DEFAULT_COMPRESSION) == Z_OK &&
         stored < content->count;
-    if (!shorter) stored = content->count;
-    put_header(file, name, shorter ? method_zlib : method_plain, crc, content->count, stored);
-    sink_bytes(file, shorter ? packed : content->bytes, stored);
+    memcpy(h.name, name, strnlen(name, sizeof h.name));
+    h.method = shorter ? method_zlib : method_plain;
+    h.crc = content->count ? (uint32_t)crc32_z(0, content->bytes, content->count) : 0;
+    h.stored = shorter ? stored : content->count;
+    header_fields(&(Fields){.to = file}, &h);
+    sink_bytes(file, shorter ? packed : content->bytes, h.stored);
 done:
     free(packed);
 }
 
-void chunks_end(ByteSink *file) { put_header(file, "end", method_plain, 0, 0, 0); }
+void chunks_end(ByteSink *file) { header_fields(&(Fields){.to = file}, &(ChunkHeader){.name = "end"}); }
 
 /* ---- reading ------------------------------------------------------------------------------------ */
 
@@ -108,52 +105,12 @@ const uint8_t *source_bytes(ByteSource *source, size_t count)
     return bytes;
 }
 
-uint32_t source_u32(ByteSource *source)
-{
-    uint32_t       value = 0;
-    const uint8_t *bytes = source_bytes(source, sizeof value);
-    if (bytes) memcpy(&value, bytes, sizeof value);
-    return value;
-}
-
-uint64_t source_u64(ByteSource *source)
-{
-    uint64_t       value = 0;
-    const uint8_t *bytes = source_bytes(source, sizeof value);
-    if (bytes) memcpy(&value, bytes, sizeof value);
-    return value;
-}
-
-void source_f64s(ByteSource *source, double *value, int count)
-{
-    const size_t   octets = (size_t)count * sizeof *value;
-    const uint8_t *bytes = source_bytes(source, octets);
-    if (bytes) memcpy(value, bytes, octets);
-    else memset(value, 0, octets);
-}
-
-char *source_text(ByteSource *source, size_t most, Arena *arena)
-{
-    const uint32_t length = source_u32(source);
-    const uint8_t *bytes = length <= most ? source_bytes(source, length) : NULL;
-    char          *text = bytes && !memchr(bytes, 0, length) ? arena_alloc(arena, (size_t)length + 1, 1) : NULL;
-    source->truncated |= !text;
-    return text ? memcpy(text, bytes, length) : NULL;
-}
-
-int source_count(ByteSource *source, size_t octets, int most)
-{
-    const uint32_t count = source_u32(source);
-    if (count <= (uint32_t)most && (uint64_t)count * octets <= (uint64_t)(source->end - source->at)) return (int)count;
-    source->truncated = true;
-    return 0;
-}
-
 Status chunks_open(ChunkSource *out, const uint8_t *bytes, size_t count, Arena *arena)
 {
     *out = (ChunkSource){.rest = {bytes, bytes + count, false}, .arena = arena};
     const uint8_t *mark = source_bytes(&out->rest, sizeof magic);
-    const uint32_t version = source_u32(&out->rest);
+    uint32_t       version;
+    field_u32(&(Fields){.from = &out->rest}, &version);
     if (!mark || memcmp(mark, magic, sizeof magic) != 0) {
         out->fault = "it does not begin as a frame file does";
         return STATUS_BAD_VALUE;
@@ -172,35 +129,35 @@ static Status damaged(ChunkSource *chunks, Status status, const char *fault)
 
 Status chunks_next(ChunkSource *chunks, char name[chunk_name_size + 1], ByteSource *content)
 {
-    ByteSource    *rest = &chunks->rest;
-    const uint8_t *named = source_bytes(rest, chunk_name_size);
-    const uint32_t method = source_u32(rest), crc = source_u32(rest);
-    const uint64_t plain = source_u64(rest), stored = source_u64(rest);
-    if (rest->truncated || stored > (uint64_t)(rest->end - rest->at))
+    ByteSource *rest = &chunks->rest;
+    ChunkHeader h;
+    header_fields(&(Fields){.from = rest}, &h);
+    if (rest->truncated || h.stored > (uint64_t)(rest->end - rest->at))
         return damaged(chunks, STATUS_TRUNCATED, "it ends too early");
-    memcpy(name, named, chunk_name_size);
+    memcpy(name, h.name, chunk_name_size);
     name[chunk_name_size] = 0;
     *content = (ByteSource){0};
     if (strcmp(name, "end") == 0) {
         name[0] = 0;
-        return plain == 0 && stored == 0 ? STATUS_OK : damaged(chunks, STATUS_BAD_VALUE, "its end is damaged");
+        return h.plain == 0 && h.stored == 0 ? STATUS_OK : damaged(chunks, STATUS_BAD_VALUE, "its end is damaged");
     }
-    const uint8_t *bytes = source_bytes(rest, stored);
+    const uint8_t *bytes = source_bytes(rest, h.stored);
     /* zlib compresses by a factor of 1000 at most: no more is allocated than the octets can hold */
-    if (method > method_zlib || (method == method_plain && plain != stored) || plain / 1032 > stored ||
-        plain > chunk_most_octets - chunks->octets)
+    if (h.method > method_zlib || (h.method == method_plain && h.plain != h.stored) || h.plain / 1032 > h.stored ||
+        h.plain > chunk_most_octets - chunks->octets)
         return damaged(chunks, STATUS_BAD_VALUE, "the size of a chunk is damaged");
-    chunks->octets += plain;
-    if (method == method_zlib) {
-        uint8_t *unpacked = arena_alloc(chunks->arena, plain + 1, 1);
-        uLongf   octets = (uLongf)plain;
+    chunks->octets += h.plain;
+    if (h.method == method_zlib) {
+        uint8_t *unpacked = arena_alloc(chunks->arena, h.plain + 1, 1);
+        uLongf   octets = (uLongf)h.plain;
         if (!unpacked) return damaged(chunks, STATUS_NO_MEMORY, "there is no memory for it");
-        if (uncompress(unpacked, &octets, bytes, (uLong)stored) != Z_OK || octets != plain)
+        if (uncompress(unpacked, &octets, bytes, (uLong)h.stored) != Z_OK || octets != h.plain)
             return damaged(chunks, STATUS_BAD_VALUE, "a chunk is damaged");
         bytes = unpacked;
     }
-    if (crc32_z(0, bytes, plain) != crc && plain > 0) return damaged(chunks, STATUS_BAD_VALUE, "a chunk is damaged");
-    *content = (ByteSource){bytes, bytes + plain, false};
+    if (crc32_z(0, bytes, h.plain) != h.crc && h.plain > 0)
+        return damaged(chunks, STATUS_BAD_VALUE, "a chunk is damaged");
+    *content = (ByteSource){bytes, bytes + h.plain, false};
     return STATUS_OK;
 }
 
@@ -224,14 +181,10 @@ void field_bytes(Fields *f, void *bytes, size_t count)
 
 void field_int(Fields *f, const char *name, int *value, int low, int high)
 {
-    if (f->to) {
-        sink_i32(f->to, *value);
-        return;
-    }
-    *value = source_i32(f->from);
-    if (*value >= low && *value <= high) return;
+    field_bytes(f, value, sizeof *value);
+    if (f->to || (*value >= low && *value <= high)) return;
     expect(f, name, false);
-    *value = low; /* an index is never out of its array, even when writing */
+    *value = low; /* an index is never out of its array */
 }
 
 void field_u32(Fields *f, uint32_t *value) { field_bytes(f, value, sizeof *value); }
@@ -278,16 +231,18 @@ void field_rotation(Fields *f, const char *name, double r[9])
     expect(f, name, v3_dot(across, r + 6) > 0);
 }
 
-void field_text(Fields *f, const char *name, const char **text, size_t most)
+void field_text(Fields *f, const char **text, size_t most)
 {
+    uint32_t length = f->to ? (uint32_t)strlen(*text) : 0;
+    field_u32(f, &length);
     if (f->to) {
-        sink_text(f->to, *text);
+        sink_bytes(f->to, *text, length);
         return;
     }
-    *text = source_text(f->from, most, f->arena);
-    if (*text) return;
-    expect(f, name, false);
-    *text = "";
+    const uint8_t *bytes = length <= most ? source_bytes(f->from, length) : NULL;
+    char          *copy = bytes && !memchr(bytes, 0, length) ? arena_alloc(f->arena, (size_t)length + 1, 1) : NULL;
+    f->from->truncated |= !copy;
+    *text = copy ? memcpy(copy, bytes, length) : "";
 }
 
 void field_chars(Fields *f, const char *name, char *text, size_t size)
@@ -298,20 +253,31 @@ void field_chars(Fields *f, const char *name, char *text, size_t size)
     text[size - 1] = 0;
 }
 
-bool field_array(Fields *f, const char *name, int *count, void **array, size_t record, size_t octets, int most)
+/* The octets of a record in a file of this version: those of one that is all 0. */
+static size_t octets_of(int version, size_t record, FieldsOf *fields)
 {
-    if (f->to) {
-        sink_i32(f->to, *count);
-        return true;
+    ByteSink sink = {0};
+    void    *zeros = calloc(1, record);
+    if (zeros) fields(&(Fields){.to = &sink, .version = version}, zeros);
+    free(zeros);
+    const size_t octets = sink.count;
+    sink_free(&sink);
+    return octets;
+}
+
+bool field_list(Fields *f, int *count, void **array, size_t record, int most, FieldsOf *fields)
+{
+    if (!fields_good(f)) return false;
+    uint32_t number = f->to ? (uint32_t)*count : 0;
+    field_u32(f, &number);
+    if (f->from) {
+        const uint64_t left = (uint64_t)(f->from->end - f->from->at);
+        f->from->truncated |=
+            number > (uint32_t)most || number * (uint64_t)octets_of(f->version, record, fields) > left;
+        *array = fields_good(f) ? arena_alloc(f->arena, (size_t)number + 1, record) : NULL;
+        f->no_memory |= fields_good(f) && !*array;
+        *count = *array ? (int)number : 0;
     }
-    *count = 0;
-    *array = NULL;
-    if (!fields_good(f)) return false;
-    const int found = source_count(f->from, octets, most);
-    expect(f, name, !f->from->truncated);
-    *array = fields_good(f) ? arena_alloc(f->arena, (size_t)found + 1, record) : NULL;
-    if (fields_good(f) && !*array) f->no_memory = true;
-    if (!fields_good(f)) return false;
-    *count = found;
-    return true;
+    for (int i = 0; i < *count && fields_good(f); i++) fields(f, (char *)*array + (size_t)i * record);
+    return fields_good(f);
 }

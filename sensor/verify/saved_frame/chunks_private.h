@@ -22,14 +22,9 @@ typedef struct ByteSink {
     bool     failed; /* no memory; later writes are lost */
 } ByteSink;
 
-void               sink_bytes(ByteSink *sink, const void *bytes, size_t count);
-void               sink_u32(ByteSink *sink, uint32_t value);
-void               sink_u64(ByteSink *sink, uint64_t value);
-void               sink_f64s(ByteSink *sink, const double *value, int count);
-void               sink_text(ByteSink *sink, const char *text); /* u32 length, octets */
-void               sink_free(ByteSink *sink);
-static inline void sink_i32(ByteSink *sink, int value) { sink_u32(sink, (uint32_t)value); }
-static inline void sink_f64(ByteSink *sink, double value) { sink_f64s(sink, &value, 1); }
+void sink_bytes(ByteSink *sink, const void *bytes, size_t count);
+void sink_text(ByteSink *sink, const char *text); /* u32 length, octets */
+void sink_free(ByteSink *sink);
 
 void chunks_begin(ByteSink *file);
 /* Compressed where that is shorter. */
@@ -46,20 +41,6 @@ typedef struct ByteSource {
 
 /* NULL: fewer octets are left. */
 const uint8_t *source_bytes(ByteSource *source, size_t count);
-uint32_t       source_u32(ByteSource *source);
-uint64_t       source_u64(ByteSource *source);
-void           source_f64s(ByteSource *source, double *value, int count);
-/* Reads a terminated text into the arena: at most `most` octets, none of them 0. NULL: it is not such a text. */
-char                *source_text(ByteSource *source, size_t most, Arena *arena);
-static inline int    source_i32(ByteSource *source) { return (int)source_u32(source); }
-static inline double source_f64(ByteSource *source)
-{
-    double value;
-    source_f64s(source, &value, 1);
-    return value;
-}
-/* A count of records of at least `octets` octets each, which the remaining octets can hold; else 0, and truncated. */
-int source_count(ByteSource *source, size_t octets, int most);
 
 typedef struct ChunkSource {
     ByteSource  rest;
@@ -103,11 +84,13 @@ void field_floats(Fields *f, const char *name, float *value, int count, float lo
 void field_unit(Fields *f, const char *name, double v[3]);     /* length 1 within 1e-6 */
 void field_rotation(Fields *f, const char *name, double r[9]); /* orthonormal within 1e-6, right-handed */
 void field_bytes(Fields *f, void *bytes, size_t count);
-void field_text(Fields *f, const char *name, const char **text, size_t most);
+void field_text(Fields *f, const char **text, size_t most); /* at most that many octets, none of them 0 */
 /* In place, terminated. */
 void field_chars(Fields *f, const char *name, char *text, size_t size);
-/* Takes a count; when reading, it allocates that many records. octets: the least size of a record in the file. False:
- * nothing more is to be read. */
-bool field_array(Fields *f, const char *name, int *count, void **array, size_t record, size_t octets, int most);
+/* The fields of one record: the same octets whatever it holds. */
+typedef void FieldsOf(Fields *f, void *record);
+/* A count and as many records, of `record` octets in memory; reading, they are allocated, if the octets left can hold
+ * them. False: nothing more is to be read. */
+bool field_list(Fields *f, int *count, void **array, size_t record, int most, FieldsOf *fields);
 
 #endif

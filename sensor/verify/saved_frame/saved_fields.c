@@ -13,18 +13,15 @@ static const double long_s = 1e12;
 
 void saved_fields_about(Fields *f, SavedFrame *file)
 {
-    field_text(f, "version", &file->version, 64);
-    field_text(f, "host", &file->host, 64);
-    field_text(f, "config_sha256", &file->config_sha256, sha256_text_size - 1);
+    field_text(f, &file->version, 64);
+    field_text(f, &file->host, 64);
+    field_text(f, &file->config_sha256, sha256_text_size - 1);
     field_int(f, "frame", &file->frame, 0, 999999999);
     field_real(f, "time_s", &file->time_s, -long_s, long_s);
     field_real(f, "unix_s", &file->unix_s, -long_s, long_s);
 }
 
-void saved_fields_settings(Fields *f, SavedFrame *file)
-{
-    field_text(f, "settings", &file->settings, settings_file_octets);
-}
+void saved_fields_settings(Fields *f, SavedFrame *file) { field_text(f, &file->settings, settings_file_octets); }
 
 void saved_fields_tables(Fields *f, SavedFrame *file)
 {
@@ -35,34 +32,35 @@ void saved_fields_tables(Fields *f, SavedFrame *file)
     }
 }
 
+static void model_fields(Fields *f, void *record)
+{
+    SavedModel *m = record;
+    field_int(f, "model", &m->model, 0, INT32_MAX - 1);
+    field_int(f, "nodes of a model", &m->node_count, 1, 1 << 20);
+    field_chars(f, "model name", m->name, sizeof m->name);
+    field_chars(f, "model sha256", m->sha256, sizeof m->sha256);
+}
+
 void saved_fields_models(Fields *f, SavedFrame *file)
 {
-    if (!field_array(f, "models", &file->model_count, (void **)&file->model, sizeof *file->model, 169,
-                     saved_models_max))
-        return;
-    for (int i = 0; i < file->model_count && fields_good(f); i++) {
-        SavedModel *m = &file->model[i];
-        field_int(f, "model", &m->model, 0, INT32_MAX - 1);
-        field_int(f, "nodes of a model", &m->node_count, 1, 1 << 20);
-        field_chars(f, "model name", m->name, sizeof m->name);
-        field_chars(f, "model sha256", m->sha256, sizeof m->sha256);
-    }
+    field_list(f, &file->model_count, (void **)&file->model, sizeof *file->model, saved_models_max, model_fields);
 }
 
 /* ---- snapshot ----------------------------------------------------------------------------------- */
 
-static void entity_fields(Fields *f, SnapshotEntity *e)
+static void entity_fields(Fields *f, void *record)
 {
-    uint32_t id[3] = {e->id.site, e->id.application, e->id.entity}, appearance = e->appearance;
-    uint8_t  type[9] = {e->type.kind,
-                        e->type.domain,
-                        (uint8_t)(e->type.country >> 8),
-                        (uint8_t)e->type.country,
-                        e->type.category,
-                        e->type.subcategory,
-                        e->type.specific,
-                        e->type.extra,
-                        e->force};
+    SnapshotEntity *e = record;
+    uint32_t        id[3] = {e->id.site, e->id.application, e->id.entity}, appearance = e->appearance;
+    uint8_t         type[9] = {e->type.kind,
+                               e->type.domain,
+                               (uint8_t)(e->type.country >> 8),
+                               (uint8_t)e->type.country,
+                               e->type.category,
+                               e->type.subcategory,
+                               e->type.specific,
+                               e->type.extra,
+                               e->force};
     for (int k = 0; k < 3; k++) field_u32(f, &id[k]);
     field_bytes(f, type, sizeof type);
     e->id = (DisEntityId){(uint16_t)id[0], (uint16_t)id[1], (uint16_t)id[2]};
@@ -86,15 +84,16 @@ static void entity_fields(Fields *f, SnapshotEntity *e)
         field_int(f, "patches of an entity", &e->patches, 0, INT32_MAX - 1);
         field_floats(f, "warmth of an entity", &e->dt_k, 1, -1e5f, 1e5f);
     } else { /* heat by role, of which nothing is made any more */
-        float heat[21];
+        float heat[21] = {0};
         e->first_patch = -1, e->patches = 0, e->dt_k = 0;
         field_floats(f, "heat of an entity", heat, 21, -1000, 10000);
     }
 }
 
-static void puff_fields(Fields *f, EffectPuff *p)
+static void puff_fields(Fields *f, void *record)
 {
-    int kind = (int)p->kind;
+    EffectPuff *p = record;
+    int         kind = (int)p->kind;
     field_int(f, "kind of a puff", &kind, 0, EFFECT_KIND_COUNT - 1);
     p->kind = (EffectKind)kind;
     field_u64(f, &p->owner);
@@ -113,6 +112,15 @@ static void puff_fields(Fields *f, EffectPuff *p)
     field_reals(f, "height of a puff", &p->above_m, 1, local_m);
 }
 
+static void node_fields(Fields *f, void *record)
+{
+    NodePose *n = record;
+    field_reals(f, "place of a node", n->p_body, 3, local_m);
+    field_rotation(f, "attitude of a node", n->r_body_from_node);
+}
+
+static void patch_fields(Fields *f, void *record) { field_floats(f, "temperature of a patch", record, 1, 0.1f, 1e5f); }
+
 static void check_order(Fields *f, const Snapshot *s)
 {
     for (int e = 0; e < s->count && fields_good(f); e++)
@@ -129,20 +137,11 @@ void saved_fields_snapshot(Fields *f, SavedFrame *file)
     field_int(f, "entities left out", &s->left_out, 0, INT32_MAX - 1);
     field_bytes(f, &left, sizeof left);
     s->puffs_left_out = left;
-    if (!field_array(f, "entities", &s->count, (void **)&s->entity, sizeof *s->entity, 220, saved_entities_max)) return;
-    for (int e = 0; e < s->count && fields_good(f); e++) entity_fields(f, &s->entity[e]);
-    if (!field_array(f, "nodes", &s->node_count, (void **)&s->node, sizeof *s->node, 96, INT32_MAX - 1)) return;
-    for (int n = 0; n < s->node_count && fields_good(f); n++) {
-        field_reals(f, "place of a node", s->node[n].p_body, 3, local_m);
-        field_rotation(f, "attitude of a node", s->node[n].r_body_from_node);
-    }
-    if (!field_array(f, "puffs", &s->puff_count, (void **)&s->puff, sizeof *s->puff, 150, effect_puff_capacity)) return;
-    for (int p = 0; p < s->puff_count && fields_good(f); p++) puff_fields(f, &s->puff[p]);
-    if (f->version >= 3) {
-        if (!field_array(f, "patches", &s->patch_count, (void **)&s->patch_k, sizeof *s->patch_k, 4, INT32_MAX - 1))
-            return;
-        field_floats(f, "temperature of a patch", s->patch_k, s->patch_count, 0.1f, 1e5f);
-    }
+    field_list(f, &s->count, (void **)&s->entity, sizeof *s->entity, saved_entities_max, entity_fields);
+    field_list(f, &s->node_count, (void **)&s->node, sizeof *s->node, INT32_MAX - 1, node_fields);
+    field_list(f, &s->puff_count, (void **)&s->puff, sizeof *s->puff, effect_puff_capacity, puff_fields);
+    if (f->version >= 3)
+        field_list(f, &s->patch_count, (void **)&s->patch_k, sizeof *s->patch_k, INT32_MAX - 1, patch_fields);
     for (int e = 0; f->from && e < s->count && fields_good(f); e++)
         if (s->entity[e].first_patch >= 0 && s->entity[e].first_patch > s->patch_count - s->entity[e].patches)
             f->fault = "patches of an entity";
@@ -164,8 +163,9 @@ static void blow_fields(Fields *f, GroundBlow *b)
     field_real(f, "exhaust of a stand", &b->to_s, -long_s, INFINITY);
 }
 
-static void stand_fields(Fields *f, GroundStand *s)
+static void stand_fields(Fields *f, void *record)
 {
+    GroundStand *s = record;
     field_reals(f, "place of a stand", s->p_ecef, 3, earth_m);
     field_rotation(f, "attitude of a stand", s->r_ecef_from_body);
     field_floats(f, "box of a stand", s->low_m, 3, -largest_m, largest_m);
@@ -177,8 +177,9 @@ static void stand_fields(Fields *f, GroundStand *s)
     if (f->version >= 4) blow_fields(f, &s->blow);
 }
 
-static void track_fields(Fields *f, GroundTrack *t)
+static void track_fields(Fields *f, void *record)
 {
+    GroundTrack *t = record;
     field_reals(f, "begin of a track", t->a_ecef, 3, earth_m);
     field_reals(f, "end of a track", t->b_ecef, 3, earth_m);
     field_real(f, "time of a track", &t->a_s, -long_s, long_s);
@@ -189,8 +190,9 @@ static void track_fields(Fields *f, GroundTrack *t)
     field_bool(f, "kind of a track", &t->tracked);
 }
 
-static void burn_fields(Fields *f, GroundBurn *b)
+static void burn_fields(Fields *f, void *record)
 {
+    GroundBurn *b = record;
     field_reals(f, "place of a burn", b->p_ecef, 3, earth_m);
     field_real(f, "time of a burn", &b->t_s, -long_s, long_s);
     field_floats(f, "size of a burn", &b->radius_m, 1, 0, largest_m);
@@ -200,25 +202,14 @@ static void burn_fields(Fields *f, GroundBurn *b)
 
 void saved_fields_marks(Fields *f, SavedFrame *file)
 {
-    enum { stand_octets = 144, track_octets = 80, burn_octets = 44 };
     GroundMarks *m = &file->snapshot.marks;
-    GroundStand *stand = (GroundStand *)m->stand; /* written: not changed */
-    GroundTrack *track = (GroundTrack *)m->track;
-    GroundBurn  *burn = (GroundBurn *)m->burn;
     uint64_t     forgotten = (uint64_t)m->forgotten;
     field_u64(f, &forgotten);
     m->forgotten = (int64_t)forgotten;
     if (f->from && m->forgotten < 0 && fields_good(f)) f->fault = "marks forgotten";
-    if (!field_array(f, "stands", &m->stands, (void **)&stand, sizeof *stand, stand_octets, ground_stand_capacity))
-        return;
-    m->stand = stand;
-    for (int i = 0; i < m->stands && fields_good(f); i++) stand_fields(f, &stand[i]);
-    if (!field_array(f, "tracks", &m->tracks, (void **)&track, sizeof *track, track_octets, ground_tracks_most)) return;
-    m->track = track;
-    for (int i = 0; i < m->tracks && fields_good(f); i++) track_fields(f, &track[i]);
-    if (!field_array(f, "burns", &m->burns, (void **)&burn, sizeof *burn, burn_octets, ground_burn_capacity)) return;
-    m->burn = burn;
-    for (int i = 0; i < m->burns && fields_good(f); i++) burn_fields(f, &burn[i]);
+    field_list(f, &m->stands, (void **)&m->stand, sizeof *m->stand, ground_stand_capacity, stand_fields);
+    field_list(f, &m->tracks, (void **)&m->track, sizeof *m->track, ground_tracks_most, track_fields);
+    field_list(f, &m->burns, (void **)&m->burn, sizeof *m->burn, ground_burn_capacity, burn_fields);
 }
 
 /* ---- view and request ---------------------------------------------------------------------------- */
@@ -277,11 +268,19 @@ void saved_fields_request(Fields *f, SavedFrame *file)
 
 /* ---- plants -------------------------------------------------------------------------------------- */
 
+static void path_fields(Fields *f, void *record)
+{
+    WoodsPath *path = record;
+    field_reals(f, "path", path->a_m, 2, local_m);
+    field_reals(f, "path", path->b_m, 2, local_m);
+    field_real(f, "path", &path->half_m, 0, 1e4);
+    field_real(f, "path", &path->low_half_m, 0, path->half_m);
+}
+
 void saved_fields_woods(Fields *f, SavedFrame *file)
 {
-    enum { path_octets = 48, most_paths = 1 << 22 };
+    enum { most_paths = 1 << 22 };
     WoodsConfig *w = &file->woods;
-    WoodsPath   *path = (WoodsPath *)w->path; /* written: not changed */
     file->planted = true;
     field_real(f, "time of plants", &file->request.t_s, -long_s, long_s);
     field_real(f, "reach of low plants", &file->request.low_plants_m, 0, 1000);
@@ -289,17 +288,12 @@ void saved_fields_woods(Fields *f, SavedFrame *file)
     field_reals(f, "centre of plants", w->centre_m, 2, local_m);
     field_real(f, "width of plants", &w->half_width_m, 50, 50000);
     field_int(f, "trees", &w->most_trees, 0, woods_most_trees);
-    if (!field_array(f, "paths", &w->path_count, (void **)&path, sizeof *path, path_octets, most_paths)) return;
-    for (int i = 0; i < w->path_count && fields_good(f); i++) {
-        field_reals(f, "path", path[i].a_m, 2, local_m);
-        field_reals(f, "path", path[i].b_m, 2, local_m);
-        field_real(f, "path", &path[i].half_m, 0, 1e4);
-        field_real(f, "path", &path[i].low_half_m, 0, path[i].half_m);
-    }
-    w->path = path;
+    field_list(f, &w->path_count, (void **)&w->path, sizeof *w->path, most_paths, path_fields);
 }
 
 /* ---- radar --------------------------------------------------------------------------------------- */
+
+static void joint_fields(Fields *f, void *record) { field_real(f, "a joint", record, -1e12, 1e12); }
 
 void saved_fields_radar(Fields *f, SavedFrame *file)
 {
@@ -312,25 +306,24 @@ void saved_fields_radar(Fields *f, SavedFrame *file)
     field_u32(f, &r->number);
     field_chars(f, "map of a radar", r->map_sha256, sizeof r->map_sha256);
     field_int(f, "detections of a radar", &r->detections, 0, INT32_MAX - 1);
-    if (!field_array(f, "joints", &r->joint_count, (void **)&r->joint, sizeof *r->joint, 8, INT32_MAX - 1)) return;
-    for (int n = 0; n < r->joint_count && fields_good(f); n++) field_real(f, "a joint", &r->joint[n], -1e12, 1e12);
+    field_list(f, &r->joint_count, (void **)&r->joint, sizeof *r->joint, INT32_MAX - 1, joint_fields);
 }
 
 /* ---- results ------------------------------------------------------------------------------ */
 
+static void plane_fields(Fields *f, void *record)
+{
+    SavedPlane *p = record;
+    field_chars(f, "plane name", p->name, sizeof p->name);
+    field_chars(f, "plane sha256", p->sha256, sizeof p->sha256);
+    field_real(f, "plane", &p->finite, 0, 1e12);
+    field_real(f, "plane", &p->mean, -INFINITY, INFINITY);
+    field_real(f, "plane", &p->low, -INFINITY, INFINITY);
+    field_real(f, "plane", &p->high, -INFINITY, INFINITY);
+}
+
 void saved_fields_planes(Fields *f, SavedFrame *file)
 {
     field_chars(f, "frame sha256", file->frame_sha256, sizeof file->frame_sha256);
-    if (!field_array(f, "planes", &file->plane_count, (void **)&file->plane, sizeof *file->plane, 161,
-                     frame_max_planes))
-        return;
-    for (int i = 0; i < file->plane_count && fields_good(f); i++) {
-        SavedPlane *p = &file->plane[i];
-        field_chars(f, "plane name", p->name, sizeof p->name);
-        field_chars(f, "plane sha256", p->sha256, sizeof p->sha256);
-        field_real(f, "plane", &p->finite, 0, 1e12);
-        field_real(f, "plane", &p->mean, -INFINITY, INFINITY);
-        field_real(f, "plane", &p->low, -INFINITY, INFINITY);
-        field_real(f, "plane", &p->high, -INFINITY, INFINITY);
-    }
+    field_list(f, &file->plane_count, (void **)&file->plane, sizeof *file->plane, frame_max_planes, plane_fields);
 }

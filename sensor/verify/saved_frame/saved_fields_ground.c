@@ -6,35 +6,35 @@
 
 #include <stdlib.h>
 
+static void fix_fields(Fields *f, void *record)
+{
+    GroundFix *fix = record;
+    field_reals(f, "place of the ground", fix->p_enu, 3, local_m);
+    field_int(f, "voter", &fix->voter, 0, INT32_MAX - 1);
+}
+
+static void line_fields(Fields *f, void *record)
+{
+    ClearLine *line = record;
+    field_reals(f, "clear line", line->a_enu, 3, local_m);
+    field_reals(f, "clear line", line->b_enu, 3, local_m);
+}
+
+static void place_fields(Fields *f, void *record)
+{
+    CoastPlace *place = record;
+    field_real(f, "place of sea or land", &place->x_m, -local_m, local_m);
+    field_real(f, "place of sea or land", &place->y_m, -local_m, local_m);
+    field_bool(f, "place of sea or land", &place->sea);
+}
+
 static void evidence_fields(Fields *f, LandscapeEvidence *said)
 {
-    GroundFix  *fix = (GroundFix *)said->fix;
-    ClearLine  *line = (ClearLine *)said->line;
-    CoastPlace *place = (CoastPlace *)said->place;
+    enum { most = landscape_parts_rows };
     field_real(f, "height of the sea", &said->sea_h_m, -local_m, local_m);
-    if (!field_array(f, "places of the ground", &said->fix_count, (void **)&fix, sizeof *fix, 28, landscape_parts_rows))
-        return;
-    for (int i = 0; i < said->fix_count && fields_good(f); i++) {
-        field_reals(f, "place of the ground", fix[i].p_enu, 3, local_m);
-        field_int(f, "voter", &fix[i].voter, 0, INT32_MAX - 1);
-    }
-    if (!field_array(f, "clear lines", &said->line_count, (void **)&line, sizeof *line, 48, landscape_parts_rows))
-        return;
-    for (int i = 0; i < said->line_count && fields_good(f); i++) {
-        field_reals(f, "clear line", line[i].a_enu, 3, local_m);
-        field_reals(f, "clear line", line[i].b_enu, 3, local_m);
-    }
-    if (!field_array(f, "places of sea and land", &said->place_count, (void **)&place, sizeof *place, 20,
-                     landscape_parts_rows))
-        return;
-    for (int i = 0; i < said->place_count && fields_good(f); i++) {
-        field_real(f, "place of sea or land", &place[i].x_m, -local_m, local_m);
-        field_real(f, "place of sea or land", &place[i].y_m, -local_m, local_m);
-        field_bool(f, "place of sea or land", &place[i].sea);
-    }
-    said->fix = fix;
-    said->line = line;
-    said->place = place;
+    field_list(f, &said->fix_count, (void **)&said->fix, sizeof *said->fix, most, fix_fields);
+    field_list(f, &said->line_count, (void **)&said->line, sizeof *said->line, most, line_fields);
+    field_list(f, &said->place_count, (void **)&said->place, sizeof *said->place, most, place_fields);
 }
 
 /* The values of a grid; reading, they are all allocated. */
@@ -193,7 +193,7 @@ void saved_fields_ground(Fields *f, SavedFrame *file, const GroundCutout *kept)
     }
     if (!g->store) g->store = "";
     if (f->version >= 2) {
-        field_text(f, "terrain store", &g->store, 4096);
+        field_text(f, &g->store, 4096);
         field_u64(f, &g->store_content);
     }
     if (!fields_good(f) || (g->store && *g->store)) return;

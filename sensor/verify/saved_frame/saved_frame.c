@@ -134,9 +134,9 @@ Status saved_model_sha256(char out[sha256_text_size], const Model *model)
     for (int n = 0; n < model->node_count; n++) {
         const ModelNode *node = &model->node[n];
         sink_text(&s, node->name);
-        sink_i32(&s, node->parent);
-        sink_f64s(&s, node->p_parent, 3);
-        sink_f64s(&s, node->r_parent_from_node, 9);
+        sink_bytes(&s, &node->parent, sizeof node->parent);
+        sink_bytes(&s, node->p_parent, 3 * sizeof(double));
+        sink_bytes(&s, node->r_parent_from_node, 9 * sizeof(double));
     }
     for (int p = 0; p < model->part_count; p++) {
         const ModelPart *part = &model->part[p];
@@ -144,7 +144,7 @@ Status saved_model_sha256(char out[sha256_text_size], const Model *model)
         sink_text(&s, part->name);
         sink_text(&s, part->material);
         sink_bytes(&s, number, sizeof number);
-        sink_u32(&s, part->damage_hidden);
+        sink_bytes(&s, &(uint32_t){part->damage_hidden}, sizeof(uint32_t));
         for (int d = 0; d < model_damage_states; d++) sink_text(&s, part->damage_material[d]);
     }
     const size_t vertices = (size_t)model->vertex_count, triangles = (size_t)model->triangle_count;
