@@ -129,11 +129,8 @@ void record_block(const Worker *w, const Job *job, double share)
     if (!record_wants(job, block)) return;
     PixelStep *step = add_step(r);
     if (!step) return;
-    *step = (PixelStep){.kind = PIXEL_MEAN,
-                        .group = r->steps,
-                        .n = block->n,
-                        .several = w->samples.hits.several,
-                        .share = share};
+    *step = (PixelStep){
+        .kind = PIXEL_MEAN, .group = r->steps, .n = block->n, .several = w->samples.hits.several, .share = share};
     for (int plane = 0; plane < picture_plane_count; plane++)
         if (block_values(w, job, plane)) step->planes |= 1u << plane;
     for (int i = 0; i < w->samples.hits.count; i++) {
@@ -159,10 +156,10 @@ void record_cells(const TargetGrid *f, const Worker *w, const Job *job, const in
 
 void record_smoothed(const Job *job, const float weight[9])
 {
-    PixelRecord  *r = job->request->record;
-    const int     width = job->picture->width;
-    const size_t  px = pixel_index(job, r->x, r->y);
-    PixelStep    *step = add_step(r);
+    PixelRecord *r = job->request->record;
+    const int    width = job->picture->width;
+    const size_t px = pixel_index(job, r->x, r->y);
+    PixelStep   *step = add_step(r);
     if (!step) return;
     step->kind = PIXEL_SMOOTHED;
     memcpy(step->weight, weight, sizeof step->weight);

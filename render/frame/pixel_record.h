@@ -19,10 +19,10 @@
  *                       radiance the path is, the sun's disc
  *   smoke before it     that times smoke_transmittance + smoke */
 typedef struct PixelLight {
-    float  emitted, reflected, sunlit;           /* at the surface; emitted 0 in optical channels */
-    float  reflected_sky, reflected_ground;      /* of `reflected`, to rounding; the rest: plants, or all surroundings */
+    float  emitted, reflected, sunlit;      /* at the surface; emitted 0 in optical channels */
+    float  reflected_sky, reflected_ground; /* of `reflected`, to rounding; the rest: plants, or all surroundings */
     float  transmittance, air_transmittance, sun_transmittance; /* of the path, for the spectrum of each */
-    float  path;                                 /* radiance of the path */
+    float  path;                                                /* radiance of the path */
     double beyond, disc;
     float  beyond_transmittance;
     bool   smoky;

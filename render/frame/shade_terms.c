@@ -1,5 +1,5 @@
-/* render/frame/shade_terms.c: the terms of a block's light and temperatures, for the record of a pixel. Each is what the
- * functions that shade the block give when everything else is switched off, so that no formula is written twice. */
+/* render/frame/shade_terms.c: the terms of a block's light and temperatures, for the record of a pixel. Each is what
+ * the functions that shade the block give when everything else is switched off, so that no formula is written twice. */
 #include "render/frame/shade_private.h"
 
 #include "render/light/optical.h"

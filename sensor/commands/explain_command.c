@@ -1,4 +1,5 @@
-/* sensor/commands/explain_command.c: `pitviper explain OUT FRAME X Y`: what one pixel of a rendered frame is made of. */
+/* sensor/commands/explain_command.c: `pitviper explain OUT FRAME X Y`: what one pixel of a rendered frame is made of.
+ */
 #include "sensor/commands/commands.h"
 
 #include "pitviper_file.h"
@@ -50,8 +51,10 @@ static bool take(int *out, const char *what, const char *text)
 static int parse(ExplainOptions *o, int argc, char **argv)
 {
     enum { JSON = 256, THREADS, FORCE, HELP };
-    static const struct option options[] = {{"json", 0, NULL, JSON},   {"threads", 1, NULL, THREADS},
-                                            {"force", 0, NULL, FORCE}, {"help", 0, NULL, HELP},
+    static const struct option options[] = {{"json", 0, NULL, JSON},
+                                            {"threads", 1, NULL, THREADS},
+                                            {"force", 0, NULL, FORCE},
+                                            {"help", 0, NULL, HELP},
                                             {NULL, 0, NULL, 0}};
     *o = (ExplainOptions){.threads = thread_processors()};
     optind = 0; /* start anew */
@@ -79,7 +82,8 @@ static int parse(ExplainOptions *o, int argc, char **argv)
     }
     if (argc - optind < 4)
         return 1 + command_line_wrong("explain", "OUT FRAME X Y are needed: a folder, a frame, a column and a row");
-    if (argc - optind > 4) return 1 + command_line_wrong("explain", "one pixel at a time, not also '%s'", argv[optind + 4]);
+    if (argc - optind > 4)
+        return 1 + command_line_wrong("explain", "one pixel at a time, not also '%s'", argv[optind + 4]);
     o->out = argv[optind];
     return take(&o->frame, "FRAME", argv[optind + 1]) && take(&o->x, "X", argv[optind + 2]) &&
                    take(&o->y, "Y", argv[optind + 3])
@@ -145,20 +149,23 @@ static void say_missing(const ExplainOptions *o)
     snprintf(path, sizeof path, "%s/run.json", o->out);
     json_t *run = json_read_file(path);
     if (!run) {
-        log_error("explain: %s is not a folder of products: it has no run.json; name one that `pitviper replay LOG --out "
-                  "OUT` wrote",
-                  o->out);
+        log_error(
+            "explain: %s is not a folder of products: it has no run.json; name one that `pitviper replay LOG --out "
+            "OUT` wrote",
+            o->out);
         return;
     }
     const bool any = frames_of(&has, range, o);
     if (any && !has)
-        log_error("explain: %s has no frame %d; its frames are %d to %d (`replay --only N --save-frame N` makes another)",
-                  o->out, o->frame, range[0], range[1]);
+        log_error(
+            "explain: %s has no frame %d; its frames are %d to %d (`replay --only N --save-frame N` makes another)",
+            o->out, o->frame, range[0], range[1]);
     else
-        log_error("explain: frame %d was not saved, and a picture alone does not say what it was made from: replay %s "
-                  "again with the same options and --only %d --save-frame %d --out ANOTHER, then explain ANOTHER %d %d %d",
-                  o->frame, json_is_string(json_object_get(run, "log")) ? "the log" : "its recording", o->frame, o->frame,
-                  o->frame, o->x, o->y);
+        log_error(
+            "explain: frame %d was not saved, and a picture alone does not say what it was made from: replay %s "
+            "again with the same options and --only %d --save-frame %d --out ANOTHER, then explain ANOTHER %d %d %d",
+            o->frame, json_is_string(json_object_get(run, "log")) ? "the log" : "its recording", o->frame, o->frame,
+            o->frame, o->x, o->y);
     json_decref(run);
 }
 
@@ -176,8 +183,8 @@ static Status read_frame(SavedFrame *file, char **bytes, const ExplainOptions *o
     if (status != STATUS_OK) return status;
     const View *view = &file->request.view;
     if (o->x < view->width && o->y < view->height) return STATUS_OK;
-    log_error("explain: column %d, row %d is outside the picture of %d x %d: columns are 0 to %d, rows 0 to %d", o->x, o->y,
-              view->width, view->height, view->width - 1, view->height - 1);
+    log_error("explain: column %d, row %d is outside the picture of %d x %d: columns are 0 to %d, rows 0 to %d", o->x,
+              o->y, view->width, view->height, view->width - 1, view->height - 1);
     return STATUS_BAD_VALUE;
 }
 

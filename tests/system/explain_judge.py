@@ -62,7 +62,7 @@ def pixels():
     }
     for kind, where in kinds.items():
         found = np.argwhere(where)
-        for k in sorted({len(found) // 3, 2 * len(found) // 3}) if len(found) > 1 else range(len(found)):
+        for k in {len(found) // 3} if len(found) else ():
             print(kind, found[k][1], found[k][0])
 
 

@@ -7,8 +7,8 @@
 #include <stdlib.h>
 
 const char *const explain_term_name[EXPLAIN_TERMS] = {
-    "emitted", "sun", "sky",   "ground",     "surroundings", "path",    "beyond",
-    "disc",    "smoke", "neighbours", "bounce_1",     "bounce_2", "bounce_3_and_more"};
+    "emitted", "sun",        "sky",      "ground",   "surroundings",     "path", "beyond", "disc",
+    "smoke",   "neighbours", "bounce_1", "bounce_2", "bounce_3_and_more"};
 
 /* ---- names ------------------------------------------------------------------------------------- */
 
@@ -80,8 +80,7 @@ static Status explain_plane(ExplainedPlane *p, const Explained *e, Arena *arena)
         const PixelSample *s = &r->sample[i];
         if (p->weight[i] == 0) continue;
         if (p->is_radar)
-            for (int b = 0; b < radar_bounces; b++)
-                p->term[EXPLAIN_BOUNCES + b] += p->weight[i] * (double)s->radar[b];
+            for (int b = 0; b < radar_bounces; b++) p->term[EXPLAIN_BOUNCES + b] += p->weight[i] * (double)s->radar[b];
         else add_light(p, s, p->weight[i]), add_passes(p, s, p->weight[i], met);
     }
     p->passes[0] = met[0] > 0 ? p->passes[0] / met[0] : NAN;
@@ -89,8 +88,8 @@ static Status explain_plane(ExplainedPlane *p, const Explained *e, Arena *arena)
     p->passes[2] = met[1] > 0 ? 1 + p->passes[2] / met[1] : NAN;
     p->temp_k = NAN;
     if (!p->is_radar && p->channel >= AIR_MWIR)
-        p->temp_k = planck_table_temp(p->channel == AIR_MWIR ? e->scene->world.planck_mwir : e->scene->world.planck_lwir,
-                                      (double)p->value);
+        p->temp_k = planck_table_temp(
+            p->channel == AIR_MWIR ? e->scene->world.planck_mwir : e->scene->world.planck_lwir, (double)p->value);
     return STATUS_OK;
 }
 
@@ -126,7 +125,8 @@ static Status explain_planes(Explained *e, Arena *arena)
         status = explain_plane(p, e, arena);
         if (status != STATUS_OK || bits_of(p->sum) == bits_of(p->value)) continue;
         e->wrong++;
-        log_error("explain: %s at column %d, row %d is %.9g (0x%08" PRIx32 "), and its terms add up to %.9g (0x%08" PRIx32
+        log_error("explain: %s at column %d, row %d is %.9g (0x%08" PRIx32
+                  "), and its terms add up to %.9g (0x%08" PRIx32
                   "): a fault of this program; please report it with the frame file",
                   p->name, e->x, e->y, (double)p->value, bits_of(p->value), (double)p->sum, bits_of(p->sum));
     }
@@ -144,8 +144,7 @@ static Status explain_bands(Explained *e, Pool *pool, Arena *arena)
     FrameDisplay      display[BAND_COUNT];
     FrameLevel       *level = arena_alloc(arena, BAND_COUNT, sizeof *level);
     uint8_t          *shown = arena_alloc(arena, 3 * count, 1);
-    Status            status =
-        level && shown ? sensors_chains(chain, &e->scene->sensors, &e->scene->config) : STATUS_NO_MEMORY;
+    Status status = level && shown ? sensors_chains(chain, &e->scene->sensors, &e->scene->config) : STATUS_NO_MEMORY;
     for (int b = 0; b < BAND_COUNT; b++) {
         e->band[b].watch.px = px;
         if (chain[b]) chain_watch(chain[b], &e->band[b].watch);
@@ -183,8 +182,8 @@ Status explain_pixel(Explained *e, SavedFrame *file, SavedScene *scene, int x, i
     for (int k = 0; k < pixel_records; k++) pixel_record_open(&e->record[k], x, y);
     if (!again) return STATUS_NO_MEMORY;
     file->request.record = e->record;
-    Status status = saved_again(again, &(SavedStage){file, &scene->snapshot, &scene->world, &scene->config, pool, arena},
-                                false);
+    Status status =
+        saved_again(again, &(SavedStage){file, &scene->snapshot, &scene->world, &scene->config, pool, arena}, false);
     file->request.record = NULL;
     for (int k = 0; k < pixel_records; k++)
         if (status == STATUS_OK && e->record[k].lost) status = STATUS_NO_MEMORY;
@@ -192,10 +191,10 @@ Status explain_pixel(Explained *e, SavedFrame *file, SavedScene *scene, int x, i
     e->picture = &again->picture;
     e->differ = saved_differences(file, &again->made, true);
     if (e->differ)
-        log_error("explain: the frame rendered here is not that of the file (%d planes differ)%s; what follows explains "
-                  "the one rendered here",
-                  e->differ,
-                  strcmp(file->version, PITVIPER_VERSION) == 0 ? "" : ": another version of pitviper made it");
+        log_error(
+            "explain: the frame rendered here is not that of the file (%d planes differ)%s; what follows explains "
+            "the one rendered here",
+            e->differ, strcmp(file->version, PITVIPER_VERSION) == 0 ? "" : ": another version of pitviper made it");
     status = explain_planes(e, arena);
     return status == STATUS_OK ? explain_bands(e, pool, arena) : status;
 }

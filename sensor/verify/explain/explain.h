@@ -1,8 +1,8 @@
 /* sensor/verify/explain/explain.h: one pixel of a saved frame, explained: its rays, what they met, the terms of its
  * light, and its way through the detector; `pitviper explain`.
  *
- * The frame is rendered again from its file, whole, with a record of that pixel (render/frame/pixel_record.h). Terms come
- * from the functions that shade; their sum in the order of the program must be the plane's value to the bit. */
+ * The frame is rendered again from its file, whole, with a record of that pixel (render/frame/pixel_record.h). Terms
+ * come from the functions that shade; their sum in the order of the program must be the plane's value to the bit. */
 #ifndef SENSOR_VERIFY_EXPLAIN_EXPLAIN_H
 #define SENSOR_VERIFY_EXPLAIN_EXPLAIN_H
 
@@ -42,8 +42,8 @@ typedef struct ExplainedPlane {
     double             term[EXPLAIN_TERMS];
     double             passes[3]; /* mean transmittance, by weight: of the path for what is emitted and for light of the
                                      air; of smoke. NaN: no surface */
-    double             temp_k;    /* apparent temperature; NaN: not thermal */
-    double            *weight;    /* [record->samples]: of each sample in the value */
+    double  temp_k;               /* apparent temperature; NaN: not thermal */
+    double *weight;               /* [record->samples]: of each sample in the value */
 } ExplainedPlane;
 
 /* A band behind its detector at the pixel. */

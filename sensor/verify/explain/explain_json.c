@@ -21,7 +21,8 @@ static json_t *light_json(const PixelLight *l, bool met, AirBand channel)
 {
     json_t *light = json_object();
     if (met) {
-        if (channel >= AIR_MWIR) set(light, "emitted", (double)l->emitted), set(light, "transmittance", (double)l->transmittance);
+        if (channel >= AIR_MWIR)
+            set(light, "emitted", (double)l->emitted), set(light, "transmittance", (double)l->transmittance);
         set(light, "reflected", (double)l->reflected);
         set(light, "reflected_sky", (double)l->reflected_sky);
         set(light, "reflected_ground", (double)l->reflected_ground);
@@ -34,7 +35,8 @@ static json_t *light_json(const PixelLight *l, bool met, AirBand channel)
         set(light, "disc", l->disc);
     }
     set(light, "path", (double)l->path);
-    if (l->smoky) set(light, "smoke_transmittance", (double)l->smoke_transmittance), set(light, "smoke", (double)l->smoke);
+    if (l->smoky)
+        set(light, "smoke_transmittance", (double)l->smoke_transmittance), set(light, "smoke", (double)l->smoke);
     set(light, "sum", (double)pixel_light_sum(l, channel, met));
     return light;
 }
@@ -147,7 +149,7 @@ static json_t *plane_json(const Explained *e, const ExplainedPlane *p)
 
 static json_t *band_json(const ExplainedBand *b)
 {
-    static const char *const stage[chain_stages] = {"electrons", "small_targets", "optics", "lines",  "gain",
+    static const char *const stage[chain_stages] = {"electrons", "small_targets", "optics",     "lines", "gain",
                                                     "noise",     "pattern",       "ac_coupled", "counts"};
     json_t                  *band = json_object(), *channels = json_array();
     set(band, "black", b->level.low), set(band, "white", b->level.high);

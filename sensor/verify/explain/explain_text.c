@@ -105,9 +105,9 @@ static void print_heat(FILE *to, const Explained *e, const Surface *s)
     fprintf(to, "\n");
     for (int k = 0; k < of->patches && k < 2 && (k == 0 || of->patch[k].share >= 0.005F); k++) {
         const Patch *patch = &e->scene->world.patches->of[of->model].patch[of->patch[k].index];
-        fprintf(to, "%s%.0f %% patch %d (%s) %.2f K", k ? ", " : "            first ray: ",
-                100 * (double)of->patch[k].share, of->patch[k].index, heat_role_name(patch->role),
-                (double)of->patch[k].temp_k);
+        fprintf(to, "%s%.0f %% patch %d (%s) %.2f K",
+                k ? ", " : "            first ray: ", 100 * (double)of->patch[k].share, of->patch[k].index,
+                heat_role_name(patch->role), (double)of->patch[k].temp_k);
     }
     if (of->patches > 0) fprintf(to, "\n");
 }
@@ -224,16 +224,16 @@ static void print_mean(FILE *to, const PixelRecord *r, int k)
     else fprintf(to, "%smean of %d rays (%d x %d)", k ? "sampled again: " : "", rays, s->n, s->n);
     if (s->several && parts > rays) fprintf(to, ", split by ground class into %d", parts);
     if (k > 0 && s->share == 1) fprintf(to, ", in place of the value before");
-    if (s->share != 1) fprintf(to, ": %.1f %% of the value, and %.1f %% of the one before", 100 * s->share,
-                               100 - 100 * s->share);
+    if (s->share != 1)
+        fprintf(to, ": %.1f %% of the value, and %.1f %% of the one before", 100 * s->share, 100 - 100 * s->share);
 }
 
 static void print_target(FILE *to, const Explained *e, const PixelRecord *r, const PixelStep *s)
 {
     char id[dis_id_text_size];
     dis_entity_id_text(id, e->scene->snapshot.entity[s->entity].id);
-    fprintf(to, "+ %s%s: %d rays of its own grid", s->kind == PIXEL_BEFORE ? "what hides parts of " : "the small target ",
-            id, samples_of(r, s->group));
+    fprintf(to, "+ %s%s: %d rays of its own grid",
+            s->kind == PIXEL_BEFORE ? "what hides parts of " : "the small target ", id, samples_of(r, s->group));
 }
 
 static void print_steps(FILE *to, const Explained *e)
@@ -249,8 +249,7 @@ static void print_steps(FILE *to, const Explained *e)
         if (s->kind == PIXEL_MEAN) print_mean(to, r, k);
         else if (s->kind == PIXEL_SMOOTHED)
             fprintf(to, "plants are smoothed over 3 x 3 pixels: %.1f %% is its own", 100 * (double)s->weight[4]);
-        else if (s->kind == PIXEL_BESIDE)
-            fprintf(to, "x %.4f: the share of the pixel beside small targets", s->share);
+        else if (s->kind == PIXEL_BESIDE) fprintf(to, "x %.4f: the share of the pixel beside small targets", s->share);
         else print_target(to, e, r, s);
         fprintf(to, " (%s)\n", planes);
     }
@@ -260,9 +259,9 @@ static void print_steps(FILE *to, const Explained *e)
 
 /* ---- the detector ---------------------------------------------------------------------------------------- */
 
-static const char *const stage_name[chain_stages] = {
-    "electrons", "small targets", "optics and motion", "line times", "gain", "dark current and noise",
-    "pattern noise", "AC coupling", "counts"};
+static const char *const stage_name[chain_stages] = {"electrons",     "small targets", "optics and motion",
+                                                     "line times",    "gain",          "dark current and noise",
+                                                     "pattern noise", "AC coupling",   "counts"};
 
 static void print_chain(FILE *to, const ExplainedBand *b, int c)
 {
@@ -292,8 +291,8 @@ static void print_band(FILE *to, const ExplainedBand *band, int b)
     for (int c = 0; c < band->channels; c++)
         fprintf(to, "%s%s%.6g -> displayed %d", c ? ", " : "", band->channels == 3 ? rgb[c] : "",
                 (double)band->displayed[c], band->grey[c]);
-    fprintf(to, " of 255 (%sblack %.6g, white %.6g%s)\n", band->channels == 3 ? "white-balanced; " : "", band->level.low,
-            band->level.high, band->curved ? ", by a curve" : "");
+    fprintf(to, " of 255 (%sblack %.6g, white %.6g%s)\n", band->channels == 3 ? "white-balanced; " : "",
+            band->level.low, band->level.high, band->curved ? ", by a curve" : "");
 }
 
 static void print_bands(FILE *to, const Explained *e)
@@ -306,7 +305,8 @@ static void print_bands(FILE *to, const Explained *e)
         print_band(to, &e->band[b], b);
     }
     if (any && e->scene->config.detector.agc_s > 0)
-        fprintf(to, "  black and white are of this frame alone; in the run they follow earlier ones (detector.agc_s)\n");
+        fprintf(to,
+                "  black and white are of this frame alone; in the run they follow earlier ones (detector.agc_s)\n");
 }
 
 void explain_print(FILE *to, const Explained *e)
@@ -315,15 +315,16 @@ void explain_print(FILE *to, const Explained *e)
     const ExplainedPlane *p = main_plane(e);
     Surface               surface[surfaces_most];
     const int             count = e->planes ? find_surfaces(surface, p) : 0;
-    fprintf(to, "column %d, row %d of frame %d of host %s at %.3f s; %d x %d pixels\n", e->x, e->y, file->frame, file->host,
-            file->time_s, e->picture->width, e->picture->height);
+    fprintf(to, "column %d, row %d of frame %d of host %s at %.3f s; %d x %d pixels\n", e->x, e->y, file->frame,
+            file->host, file->time_s, e->picture->width, e->picture->height);
     print_steps(to, e);
     if (count > 0) print_surfaces(to, e, surface, count, p->name);
     print_heats(to, e, surface, count);
     print_light(to, e);
     print_radar(to, e);
     print_bands(to, e);
-    fprintf(to, "\n%s\n", e->wrong ? "SUMS DIFFER from the planes: see above"
-                : e->differ        ? "the sums are the planes' values to the bit; but the planes are not those of the run"
-                                   : "the sums are the planes' values to the bit, and the planes are those of the run");
+    fprintf(to, "\n%s\n",
+            e->wrong    ? "SUMS DIFFER from the planes: see above"
+            : e->differ ? "the sums are the planes' values to the bit; but the planes are not those of the run"
+                        : "the sums are the planes' values to the bit, and the planes are those of the run");
 }
