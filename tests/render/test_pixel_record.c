@@ -1,5 +1,5 @@
-/* The record of a pixel: its terms, added up in the order of the program, are the planes' values to the bit, whatever the
- * passes did to it; and the picture is the same with and without it. labels: slow */
+/* The record of a pixel: its terms, added up in the order of the program, are the planes' values to the bit, whatever
+ * the passes did to it; and the picture is the same with and without it. labels: slow */
 #include "tests/render/hand_plants.h"
 #include "tests/render/strewn_world.h"
 #include "render/frame/pixel_record.h"
@@ -90,7 +90,7 @@ static void record(Met *met, RenderRequest request, const Picture *plain, int x,
 /* The picture in memory of its own: the arena is that of the next. */
 static Picture kept(const RenderRequest *request)
 {
-    static float plane[picture_plane_count][pixels], covered[pixels];
+    static float    plane[picture_plane_count][pixels], covered[pixels];
     static uint32_t entity[pixels], instance[pixels];
     arena_reset(hand.arena);
     Picture p = hand_render(request, hand.pool);
@@ -121,11 +121,12 @@ static void terms_are_the_pixel(void **state)
     (void)state;
     const RenderRequest request = smoky_request();
     const Met           met = record_some(&request, 131);
-    print_message("%d pixels; means %d (%d split, %d refined), smoothed %d, small targets %d and what hides them %d; rays "
-                  "to the sky %d, ground %d, parts %d, plants %d; %d behind smoke\n",
-                  met.pixels, met.kinds[PIXEL_MEAN], met.split, met.refined, met.kinds[PIXEL_SMOOTHED],
-                  met.kinds[PIXEL_TARGET], met.kinds[PIXEL_BEFORE], met.surfaces[hit_sky], met.surfaces[hit_ground],
-                  met.surfaces[hit_part], met.surfaces[hit_plant], met.smoky);
+    print_message(
+        "%d pixels; means %d (%d split, %d refined), smoothed %d, small targets %d and what hides them %d; rays "
+        "to the sky %d, ground %d, parts %d, plants %d; %d behind smoke\n",
+        met.pixels, met.kinds[PIXEL_MEAN], met.split, met.refined, met.kinds[PIXEL_SMOOTHED], met.kinds[PIXEL_TARGET],
+        met.kinds[PIXEL_BEFORE], met.surfaces[hit_sky], met.surfaces[hit_ground], met.surfaces[hit_part],
+        met.surfaces[hit_plant], met.smoky);
     CHECK(met.pixels > 40 && met.split > 0 && met.refined > 0 && met.smoky > 0);
     for (int k = 0; k <= PIXEL_TARGET; k++) CHECK(met.kinds[k] > 0);
     for (int k = 0; k <= hit_plant; k++) CHECK(met.surfaces[k] > 0);

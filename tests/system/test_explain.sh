@@ -7,7 +7,8 @@ judges python3.OpenEXR python3.numpy python3.PIL
 
 judge() { python3 tests/system/explain_judge.py "$@"; }
 # with plants
-bare=(--set heat.facets=3 --set heat.step_s=1800 --set heat.shadow_m=64 --set heat.vehicle_step_s=600 --set detector.agc_s=0)
+bare=(--set heat.facets=3 --set heat.step_s=3600 --set heat.shadow_m=64 --set heat.vehicle_step_s=600 --set detector.agc_s=0
+    --set terrain.woods=on --set terrain.woods_half_m=300 --set terrain.woods_trees=1000 "${coarse[@]}")
 exercise demo "$tmp/demo.pcap"
 
 # explained OUT FRAME KIND X Y: judged; what it was made of is added to $tmp/facts
@@ -33,7 +34,7 @@ for kind in ground sky plant inside edge beside; do check "some $kind" grep -q "
 for what in matte smoke mean1 mean4 smoothed beside target; do
     check "some pixel has $what" grep -qE "^FACTS .* $what( .*)? \|" "$tmp/facts"
 done
-for what in sky ground birch truck; do check "some ray met $what" grep -qE "\|.* ?$what" "$tmp/facts"; done
+for what in sky ground alder truck; do check "some ray met $what" grep -qE "\|.* ?$what" "$tmp/facts"; done
 
 # the twin: one term of one ray a thousandth off, and the judge refuses
 read -r _ x y < <(grep '^inside' "$tmp/pixels")

@@ -220,7 +220,7 @@ static void print_mean(FILE *to, const PixelRecord *r, int k)
 {
     const PixelStep *s = &r->step[k];
     const int        rays = s->n * s->n, parts = samples_of(r, s->group);
-    if (rays == 1) fprintf(to, k ? "its ray, with the ground about it" : "one ray");
+    if (rays == 1) fprintf(to, k ? "the same ray, with the ground about it" : "one ray");
     else fprintf(to, "%smean of %d rays (%d x %d)", k ? "sampled again: " : "", rays, s->n, s->n);
     if (s->several && parts > rays) fprintf(to, ", split by ground class into %d", parts);
     if (k > 0 && s->share == 1) fprintf(to, ", in place of the value before");
