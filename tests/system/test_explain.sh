@@ -48,12 +48,25 @@ check "text: no more than 50 lines" [ "$(wc -l <"$tmp/stdout")" -le 50 ]
 check "text: the verdict" said 'the sums are the planes. values to the bit, and the planes are those of the run'
 check "text: value and sum" [ "$(grep -E "^  sum, in the|^  the plane's value " "$tmp/stdout" | awk '{print $(NF-4), $NF}' | sort -u | wc -l)" = 1 ]
 
+px=($x $y)
+
 # sensors: raw counts; lateral colour: R and B have rays of their own
 run replay "$tmp/demo.pcap" --out "$tmp/sensor" --size 96x64 --only 12 --save-frame 12 --bands optical,lwir --threads 2 \
     --set sensor.preset=staring_lwir --set detector.raw=true --set sensor.lateral_r=0.002 --set sensor.lateral_b=-0.002
 check "sensors: replay" [ "$code" = 0 ]
 judge "$tmp/sensor" 12 pixels | grep -E '^(edge|ground)' >"$tmp/pixels"
 while read -r kind x y; do explained "$tmp/sensor" 12 "$kind" "$x" "$y"; done <"$tmp/pixels"
+
+# another table: refused by name; forced, the pixel of another picture is explained, and that is said
+cp -r etc "$tmp/etc"
+sed -i '/^[a-z]/s/,0\.0\([0-9]\)/,0.1\1/g' "$tmp/etc/materials.csv"
+PITVIPER_ETC=$tmp/etc run explain "$tmp/out" 38 "${px[@]}"
+check "another table: refused" [ "$code" = 1 ]
+check "another table: named" complained 'materials\.csv is not the table'
+PITVIPER_ETC=$tmp/etc run explain "$tmp/out" 38 "${px[@]}" --force
+check "another table, forced: exit code" [ "$code" = 1 ]
+check "another table, forced: says so" complained 'explain: the frame rendered here is not that of the file'
+check "another table, forced: in the verdict" said "values to the bit; but the planes are not those of the run"
 
 # what cannot be explained
 refused() { # refused CODE WHAT WORDS ARGUMENTS
