@@ -141,6 +141,8 @@ static const struct Command {
     {"replay", replay_command, "render what a missile's seeker sees in a recorded exercise", true, false},
     {"frame", frame_command, "re-render one saved frame without its log and verify that it is the same to the bit",
      true, false},
+    {"explain", explain_command, "what one pixel of a saved frame is made of: rays, surfaces, light, air, detector",
+     true, true},
     {"regress", regress_command, "re-render recorded exercises and compare them with approved baselines", true, false},
     {"inspect", inspect_command, "list the entities of a recording, what they did, what was malformed", true, true},
     {"check", check_command, "validate a configuration file; or print one to start from", true, true},

@@ -3,6 +3,7 @@
 #define RENDER_FRAME_FRAME_PRIVATE_H
 
 #include "render/frame/picture.h"
+#include "render/frame/pixel_record.h"
 #include "render/frame/shade_private.h"
 #include "render/frame/world.h"
 #include "pitviper.h"
@@ -162,7 +163,8 @@ typedef struct Worker {
     double         area_px[hits_capacity];
     uint8_t        meets[hits_capacity];
     EntityHits     known;
-    Hits           hits; /* before some of them are removed or split */
+    ShadeTerms    *terms; /* NULL: no pixel is recorded */
+    Hits           hits;  /* before some of them are removed or split */
     Rays           rays;
 } Worker;
 
@@ -316,6 +318,25 @@ void target_grids_composite(Job *job);
 /* Their areas and radiance into the picture's targets, after target_sums_gather. */
 void target_grids_sample(const Job *job);
 
+/* ---- the record of a pixel: pixel_notes.c; its meaning: pixel_record.h ---------------------------- */
+
+/* Whether a block has the pixel that is recorded, if any is. */
+bool record_wants(const Job *job, const PixelBlock *block);
+/* What block_write does to that pixel, before it does. */
+void record_block(const Worker *w, const Job *job, double share);
+/* Cells of a small target that lie on it, once they are lit: of the target, or of what hides it. From any thread. */
+void record_cells(const TargetGrid *f, const Worker *w, const Job *job, const int *cell, PixelStepKind kind);
+/* A step of the composite. */
+void record_composite(const Job *job, PixelStepKind kind, int entity, double share);
+/* Weights of 3 x 3 pixels about it, before any is replaced. */
+void record_smoothed(const Job *job, const float weight[9]);
+/* Whether a small target's box has the pixel that is recorded, if any is. */
+static inline bool record_in_box(const Job *job, int x0, int y0, int x1, int y1)
+{
+    const PixelRecord *r = job->request->record;
+    return r && r->x >= x0 && r->x < x1 && r->y >= y0 && r->y < y1;
+}
+
 /* ---- the error estimate: error_estimate.c; its meaning: render.h ----------------------------- */
 
 /* The last pass: fills picture->budget. STATUS_NO_MEMORY. */
@@ -350,6 +371,14 @@ struct TargetGrid {
     bool *met;                          /* cells that show the target */
     int   amodal_box[4];
 };
+
+/* The pixels that a cell overlaps: no more than two each way, since cells are no larger than a pixel. */
+enum { shares_most = 9 };
+typedef struct CellShares {
+    int    count, pixel[shares_most], x[shares_most], y[shares_most];
+    double area[shares_most]; /* px */
+} CellShares;
+void target_grid_shares(CellShares *out, const TargetGrid *f, int cell);
 
 /* The first and last pixels, of a box that is all 0 at first. */
 static inline void grow_pixel_box(int box[4], int x, int y)

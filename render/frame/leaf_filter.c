@@ -55,6 +55,7 @@ static void smooth_tile(void *user, int worker, int task)
                 for (int k = 0; k < 9; k++)
                     sum += weight[k] = leaf[y - tile.y0 + k / 3][x - tile.x0 + k % 3] ? of[k] : 0;
                 for (int k = 0; k < 9; k++) weight[k] /= sum;
+                if (record_in_box(job, x, y, x + 1, y + 1)) record_smoothed(job, weight);
             }
             for (int c = 0; c < job->channels; c++) {
                 const float *value = picture_plane(job->picture, job->channel[c].plane) + px;

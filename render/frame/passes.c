@@ -180,6 +180,7 @@ void block_light(Worker *w, const Job *job)
     w->samples.per_rad = job->request->view.focal_px * w->block.n;
     if (job->scene.sky_samples > 0) pixels_keys(w->key, &w->block, &w->samples.hits, job->picture->width);
     w->samples.key = w->key;
+    w->shader.terms = record_wants(job, &w->block) ? w->terms : NULL;
     shade_samples_light(&w->shader, &job->scene, &w->samples);
 }
 
@@ -221,6 +222,7 @@ void block_add_areas(Worker *w, const Job *job, double share, const int *list, i
 
 void block_write(Worker *w, const Job *job, double share)
 {
+    if (job->request->record) record_block(w, job, share);
     for (int plane = 0; plane < picture_plane_count; plane++) {
         const float *value = block_values(w, job, plane);
         if (value)

@@ -32,6 +32,7 @@ typedef struct RenderRequest {
     double low_plants_m;    /* low plants stand within this of the eye; 0: none */
     double profile_near_m, profile_bin_m; /* radar range profile */
     int    profile_bins;
+    struct PixelRecord *record; /* [pixel_records]: what a pixel is made of (render/frame/pixel_record.h); NULL: none */
 } RenderRequest;
 
 /* ---- the picture ----------------------------------------------------------------------------- */

@@ -23,6 +23,7 @@ static Status create_worker(Worker **out, const Job *job, Arena *arena)
     w->volume = arena_alloc(arena, (size_t)job->scene.effects.count + 1, sizeof *w->volume);
     w->outline = arena_alloc(arena, (size_t)entities, sizeof *w->outline);
     if (!w->list || !w->outline || !w->volume) return STATUS_NO_MEMORY;
+    if (job->request->record && !(w->terms = arena_alloc(arena, 1, sizeof *w->terms))) return STATUS_NO_MEMORY;
     const Status status = shade_samples_create(&w->samples, hits_capacity, arena);
     return status == STATUS_OK ? target_sums_create(&w->sums, entities, job->request->profile_bins, arena) : status;
 }
@@ -112,6 +113,11 @@ static Status prepare(Job *job, Pool *pool, Arena *arena)
     job->tiles_x = (request->view.width + job->side_px - 1) / job->side_px;
     job->tiles_y = (request->view.height + job->side_px - 1) / job->side_px;
     job->channels = picture_channels(job->channel, request->bands, request->optical);
+
+    if (request->record) {
+        request->record->channels = job->channels;
+        memcpy(request->record->channel, job->channel, sizeof job->channel);
+    }
 
     Status status = planes_create(job->picture, request, scene->snapshot->count, world->forest != NULL, arena);
     if (status == STATUS_OK && job->picture->optical[1]) optical_white(job->picture->white_w_m2_sr, scene->air);
@@ -224,6 +230,7 @@ Status render(Picture *out, const World *world, const Snapshot *snapshot, const 
         one.bands = 1u << BAND_OPTICAL;
         one.optical = k == 0 ? OPTICAL_RED : OPTICAL_BLUE;
         one.truth = one.budget = false;
+        if (one.record) one.record += 1 + k;
         one.view.focal_px *= 1 + request->lateral[k];
         status = render_once(&colour, world, snapshot, &one, air, pool, arena);
         if (status != STATUS_OK) break;

@@ -300,11 +300,12 @@ static const float *sun_of(const Shader *shader, const Samples *s)
 
 static void light_channels(Shader *shader, const ShadeScene *scene, Samples *s)
 {
-    const World *world = scene->world;
+    const World    *world = scene->world;
+    const PartTemps parts = {scene->snapshot, world->patches, scene->visibility};
     if (s->channels & (1u << AIR_MWIR | 1u << AIR_LWIR) || s->temperature)
-        thermal_temperature(s->temp_k, scene->air, &world->materials,
-                            &(PartTemps){scene->snapshot, world->patches, scene->visibility}, &s->hits,
-                            s->hits.material, s->sun, shader->photo, shader->warmth_k);
+        thermal_temperature(s->temp_k, scene->air, &world->materials, &parts, &s->hits, s->hits.material, s->sun,
+                            shader->photo, shader->warmth_k);
+    if (shader->terms) shade_terms_heat(shader->terms, scene, s, &parts, shader->photo, shader->warmth_k);
     if (s->channels & (1u << AIR_MWIR | 1u << AIR_LWIR) || s->temperature) warm_far(shader, scene, s);
     if (!s->channels) return;
     air_paths_of(shader->air, scene->air, s->channels, &s->hits, &s->rays, s->temp_k);
@@ -326,6 +327,7 @@ static void light_channels(Shader *shader, const ShadeScene *scene, Samples *s)
     }
     keep_normals(shader, &s->hits);
     surface_light_shade(out, &scene->surface_light, &block);
+    if (shader->terms) shade_terms_light(shader->terms, scene, s, &block);
     restore_normals(shader, &s->hits);
     shade_beyond(shader, scene, s, out);
     for (int b = 0; b < AIR_BAND_COUNT; b++)

@@ -11,6 +11,7 @@
 #include "render/light/hemisphere.h"
 #include "render/light/sky_visibility.h"
 #include "render/light/surface_light.h"
+#include "render/light/thermal.h"
 #include "render/smoke/smoke.h"
 
 /* The scene of a frame, shared by its threads. */
@@ -64,6 +65,26 @@ typedef struct Samples {
 /* Allocates arrays of `capacity` samples, at most hits_capacity. STATUS_NO_MEMORY: of the arena. */
 Status shade_samples_create(Samples *out, int capacity, Arena *arena);
 
+/* The terms of a block's light and temperatures, of the record of a pixel (pixel_record.h has their meaning), and
+ * memory to find them: shade_terms.c. */
+typedef struct ShadeTerms {
+    float  emitted[AIR_BAND_COUNT][hits_capacity], reflected[AIR_BAND_COUNT][hits_capacity];
+    float  sunlit[AIR_BAND_COUNT][hits_capacity], sky[AIR_BAND_COUNT][hits_capacity];
+    float  ground[AIR_BAND_COUNT][hits_capacity];
+    double beyond[AIR_BAND_COUNT], disc[AIR_BAND_COUNT][hits_capacity];
+    float  air_k[hits_capacity], still_k[hits_capacity], sunlit_k[hits_capacity], detailed_k[hits_capacity];
+    /* working memory */
+    AirPaths     path[AIR_BAND_COUNT];
+    SurfaceLight light;
+    CanopyLight  canopy;
+    Hits         hits;
+    float        none[hits_capacity], one[hits_capacity];
+} ShadeTerms;
+
+void shade_terms_light(ShadeTerms *terms, const ShadeScene *scene, const Samples *s, const SurfaceBlock *block);
+void shade_terms_heat(ShadeTerms *terms, const ShadeScene *scene, const Samples *s, const PartTemps *parts,
+                      const float *photo, const float *warmth_k);
+
 /* A thread's own working memory. */
 typedef struct Shader {
     SkyWorker         *sky; /* with ShadeScene.sky */
@@ -84,6 +105,7 @@ typedef struct Shader {
     FarPlaces          far;
     uint16_t           far_material[hits_capacity];
     float              far_sun[hits_capacity], far_k[hits_capacity], of_far[hits_capacity];
+    ShadeTerms        *terms; /* of these hits; NULL: not wanted */
     VisibilityCounters counters;
     double             visibility_s, shadow_s, shade_s, radar_s;
 } Shader;

@@ -240,14 +240,7 @@ static void cell_sample(double at_px[2], const TargetGrid *f, int cell)
     at_px[1] = f->box[1] + (f->box[3] - f->box[1]) * (row + v - floor(v)) / f->rows;
 }
 
-/* The pixels that a cell overlaps: no more than two each way, since cells are no larger than a pixel (cells_of). */
-enum { shares_most = 9 };
-typedef struct CellShares {
-    int    count, pixel[shares_most], x[shares_most], y[shares_most];
-    double area[shares_most];
-} CellShares;
-
-static void shares_of(CellShares *out, const TargetGrid *f, int cell)
+void target_grid_shares(CellShares *out, const TargetGrid *f, int cell)
 {
     const Span across = cell_span(f, 0, cell % f->columns), down = cell_span(f, 1, cell / f->columns);
     out->count = 0;
@@ -331,7 +324,7 @@ static void count_hidden(TargetGrid *f, Worker *w, const Job *job, const int *ce
         const double area = cell_area(f, cell[i]);
         CellShares   shares;
         f->amodal += area;
-        shares_of(&shares, f, cell[i]);
+        target_grid_shares(&shares, f, cell[i]);
         for (int k = 0; k < shares.count; k++) grow_pixel_box(f->amodal_box, shares.x[k], shares.y[k]);
         if (hits->entity[i] == id) continue;
         if (hits->entity[i]) {
@@ -376,6 +369,7 @@ static void light_cells(const TargetGrid *f, Worker *w, const Job *job, const in
     for (int i = 0; i < s->hits.count && job->scene.sky_samples > 0; i++) w->key[i] = cell_key(f, cell[i]);
     s->key = w->key;
     s->per_rad = job->request->view.focal_px;
+    w->shader.terms = record_in_box(job, f->x0, f->y0, f->x1, f->y1) ? w->terms : NULL;
     shade_samples_sun(&w->shader, &job->scene, s);
     shade_samples_light(&w->shader, &job->scene, s);
 }
@@ -388,7 +382,7 @@ static void shade_hidden(TargetGrid *f, Worker *w, const Job *job, int *cell)
     for (int i = 0; i < w->hits.count; i++) {
         CellShares shares;
         bool       shown = false;
-        shares_of(&shares, f, cell[i]);
+        target_grid_shares(&shares, f, cell[i]);
         for (int k = 0; k < shares.count; k++) shown |= f->area[shares.pixel[k]] > 0;
         if (!shown) continue;
         cell[kept] = cell[i];
@@ -397,11 +391,12 @@ static void shade_hidden(TargetGrid *f, Worker *w, const Job *job, int *cell)
     s->hits.count = s->rays.count = kept;
     if (kept == 0) return;
     light_cells(f, w, job, cell);
+    record_cells(f, w, job, cell, PIXEL_BEFORE);
     const float *value[picture_plane_count];
     for (int plane = 0; plane < picture_plane_count; plane++) value[plane] = block_values(w, job, plane);
     for (int i = 0; i < kept; i++) {
         CellShares shares;
-        shares_of(&shares, f, cell[i]);
+        target_grid_shares(&shares, f, cell[i]);
         for (int plane = 0; plane < picture_plane_count; plane++)
             if (value[plane]) add_value(f->before_sum[plane], &shares, (double)value[plane][i]);
         add_area(f->before, &shares);
@@ -414,11 +409,12 @@ static void shade_cells(TargetGrid *f, Worker *w, const Job *job, const int *cel
     Samples *s = &w->samples;
     ask_smoke(w, job, f->box);
     light_cells(f, w, job, cell);
+    record_cells(f, w, job, cell, PIXEL_TARGET);
     const float *value[picture_plane_count];
     for (int plane = 0; plane < picture_plane_count; plane++) value[plane] = block_values(w, job, plane);
     for (int i = 0; i < count; i++) {
         CellShares shares;
-        shares_of(&shares, f, cell[i]);
+        target_grid_shares(&shares, f, cell[i]);
         w->area_px[i] = cell_area(f, cell[i]);
         for (int plane = 0; plane < picture_plane_count; plane++) {
             if (!value[plane]) continue;

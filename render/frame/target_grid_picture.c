@@ -132,12 +132,17 @@ static void hand_over(const Job *job, TargetGrid *f)
     }
 }
 
+/* Factor of the light of what hides small targets: targets that overlap may be hidden by the same leaf. */
+static double before_share(const Job *job, size_t px)
+{
+    const double open = 1 - (double)job->picture->covered[px], before = (double)job->before[px];
+    return before > open ? open / before : 1;
+}
+
 /* A pixel's own mean, scaled to its share, and the light of what hides small targets there. */
 static void put_beside(const Job *job, const TargetGrid *f, int k, size_t px, bool own)
 {
-    const double open = 1 - (double)job->picture->covered[px], before = (double)job->before[px];
-    /* targets that overlap may be hidden by the same leaf */
-    const double share = before > open ? open / before : 1;
+    const double share = before_share(job, px);
     for (int plane = 0; plane < picture_plane_count; plane++) {
         float *value = picture_plane(job->picture, plane);
         if (!value) continue;
@@ -155,11 +160,18 @@ static void put_target(const Job *job, const TargetGrid *f, int k, size_t px)
     if (f->truth) put_truth_on(job, f, k, px);
 }
 
+static void record_part(const Job *job, const TargetGrid *f, size_t px, PixelStepKind step)
+{
+    if (step == PIXEL_TARGET) record_composite(job, step, f->entity, 1);
+    else if (step == PIXEL_BEFORE) record_composite(job, step, f->entity, before_share(job, px));
+    else if (job->coverer[px] == f->entity) record_composite(job, step, f->entity, own_share(job, px));
+}
+
 void target_grids_composite(Job *job)
 {
-    enum { own, before, target, steps }; /* a pixel may hold parts of several */
-    for (int step = own; step < steps; step++) {
-        for (int n = 0; n < job->footprints && step == target && job->request->hand_over_cells; n++)
+    /* a pixel may hold parts of several targets */
+    for (PixelStepKind step = PIXEL_BESIDE; step <= PIXEL_TARGET; step++) {
+        for (int n = 0; n < job->footprints && step == PIXEL_TARGET && job->request->hand_over_cells; n++)
             hand_over(job, &job->footprint[n]);
         for (int n = 0; n < job->footprints; n++) {
             const TargetGrid *f = &job->footprint[n];
@@ -167,8 +179,9 @@ void target_grids_composite(Job *job)
                 for (int x = f->x0; x < f->x1; x++, k++) {
                     const size_t px = pixel_index(job, x, y);
                     if (!(f->area[k] > 0)) continue;
-                    if (step == target) put_target(job, f, k, px);
-                    else put_beside(job, f, k, px, step == own);
+                    if (record_in_box(job, x, y, x + 1, y + 1)) record_part(job, f, px, step);
+                    if (step == PIXEL_TARGET) put_target(job, f, k, px);
+                    else put_beside(job, f, k, px, step == PIXEL_BESIDE);
                 }
         }
     }

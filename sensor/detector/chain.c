@@ -36,6 +36,7 @@ struct Chain {
     double      *more;               /* [height][width]: what small targets add to a channel */
     float       *work, *line, *pool; /* pool: [line_scan_pool][height][width], or NULL */
     double      *columns;
+    ChainWatch  *watch; /* NULL: none */
 };
 
 static bool has_fixed(const SensorPreset *p)
@@ -221,6 +222,17 @@ void chain_expose(Chain *c, const float *const radiance[])
     if (most > exposed_share * d->well_e) c->exposure = exposed_share * d->well_e / most;
 }
 
+/* Notes the watched pixel's electrons after a stage. */
+static void note(const Chain *c, int index, ChainStage stage, const float *e)
+{
+    ChainWatch *w = c->watch;
+    if (!w) return;
+    w->value[index][stage] = (double)e[w->px];
+    w->has[index] |= 1u << stage;
+}
+
+void chain_watch(Chain *c, ChainWatch *watch) { c->watch = watch; }
+
 static void run_channel(Chain *c, int index, const float *radiance, const SmallTargets *small, int frame,
                         const double rate_px_s[2])
 {
@@ -234,6 +246,7 @@ static void run_channel(Chain *c, int index, const float *radiance, const SmallT
     float                *e = ch->value;
 
     for (size_t i = 0; i < count; i++) e[i] = (float)(c->exposure * photon_table_electrons(ch->photons, radiance[i]));
+    note(c, index, CHAIN_ELECTRONS, e);
 
     /* the motion of the sweep itself passes over a detector within a stage's integration time; the scene's own
      * motion, which the stages do not follow, over all stages, which integrate one after the other */
@@ -252,14 +265,18 @@ static void run_channel(Chain *c, int index, const float *radiance, const SmallT
                                 .photons = ch->photons,
                                 .exposure = c->exposure};
     if (few) subpixel_targets(ch->sub, &fine, small, moving_px);
+    if (few) note(c, index, CHAIN_SMALL_TARGETS, e);
     blur_apply_with(ch->blur, e, e, moving_px, few ? c->more : NULL);
+    note(c, index, CHAIN_OPTICS, e);
     if (p->smear && p->scan.line_s > 0 && (rate_px_s[0] != 0 || rate_px_s[1] != 0)) {
         line_scan_resample(c->work, e, w, h, &p->scan, rate_px_s, c->line);
         memcpy(e, c->work, count * sizeof *e);
+        note(c, index, CHAIN_LINES, e);
     }
 
     const double dark_e = c->exposure * d->dark_e, floor_e = d->read_e * d->read_e, scale = p->noise_scale;
     for (size_t i = 0; ch->gain && i < count; i++) e[i] *= ch->gain[i];
+    if (ch->gain) note(c, index, CHAIN_GAIN, e);
     if (scale > 0) {
         const double pattern_e = scale * c->sigma_ref_e;
         for (int r = 0; r < h; r++)
@@ -268,6 +285,7 @@ static void run_channel(Chain *c, int index, const float *radiance, const SmallT
                 const double sigma = scale * sqrt((e[i] > 0 ? e[i] : 0) + dark_e + floor_e);
                 e[i] = (float)(e[i] + dark_e + sigma * noise3d_unit(NOISE_TVH, c->seed, stream, frame, r, k));
             }
+        note(c, index, CHAIN_NOISE, e);
         if (ch->fixed)
             for (size_t i = 0; i < count; i++) e[i] = (float)(e[i] + pattern_e * ch->fixed[i]);
         const Noise3d moving = {.sigma = {[NOISE_TV] = pattern_e * p->ratio.sigma[NOISE_TV],
@@ -278,12 +296,15 @@ static void run_channel(Chain *c, int index, const float *radiance, const SmallT
             const float *line = c->pool + (size_t)(frame % line_scan_pool) * count;
             for (size_t i = 0; i < count; i++) e[i] = (float)(e[i] + pattern_e * p->line_noise * line[i]);
         }
+        note(c, index, CHAIN_PATTERN, e);
     } else {
         for (size_t i = 0; i < count; i++) e[i] = (float)(e[i] + dark_e);
+        note(c, index, CHAIN_NOISE, e);
     }
     /* the path of the scan passes a column in line_s active / width, or in line_s; cut-off x that time */
     const double active = p->scan.active > 0 ? p->scan.active : 1;
     line_scan_couple(e, w, h, &p->scan, p->scan.by_columns ? p->ac_per_line : p->ac_per_line * active / w);
+    note(c, index, CHAIN_AC_COUPLED, e);
 
     detector_counts(ch->count, e, count, c->step_e, c->full);
     if (ch->bad) {
@@ -291,6 +312,8 @@ static void run_channel(Chain *c, int index, const float *radiance, const SmallT
         bad_pixels_replace(ch->count, ch->patched, w, h);
     }
     for (size_t i = 0; i < count; i++) ch->value[i] = ch->count[i];
+    note(c, index, CHAIN_COUNTS, ch->value);
+    if (c->watch) c->watch->defect = ch->bad ? ch->bad[c->watch->px] : PIXEL_GOOD, c->watch->exposure = c->exposure;
 }
 
 void chain_run(Chain *c, const float *const radiance[], const SmallTargets *small, int frame, const double rate_px_s[2])

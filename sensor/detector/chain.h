@@ -24,6 +24,31 @@ double chain_wavelength_m(const SensorPreset *preset, int channel);
 Status chain_create(Chain **out, const SensorPreset *preset, int width, int height, int places, uint64_t seed);
 void   chain_destroy(Chain *chain);
 
+/* One pixel's values after each stage of a run: electrons, at last counts. */
+typedef enum ChainStage {
+    CHAIN_ELECTRONS,     /* of its radiance */
+    CHAIN_SMALL_TARGETS, /* small targets in the pixels behind them */
+    CHAIN_OPTICS,        /* optics, footprint, jitter, smear; small targets at their places */
+    CHAIN_LINES,         /* each line at its own time */
+    CHAIN_GAIN,          /* gain from pixel to pixel */
+    CHAIN_NOISE,         /* + dark current, and shot, dark and read noise */
+    CHAIN_PATTERN,       /* + noise of rows, columns, frames and lines */
+    CHAIN_AC_COUPLED,
+    CHAIN_COUNTS, /* converted, defective pixels replaced */
+    chain_stages
+} ChainStage;
+
+typedef struct ChainWatch {
+    size_t   px;     /* row * width + column */
+    unsigned has[3]; /* of each channel, 1 << ChainStage: those that it has */
+    double   value[3][chain_stages];
+    int      defect; /* PIXEL_GOOD ... of array_noise.h */
+    double   exposure;
+} ChainWatch;
+
+/* Notes a pixel in the runs that follow; NULL: none. */
+void chain_watch(Chain *chain, ChainWatch *watch);
+
 /* Sets the exposure for these planes, [channels], in-band W/(m2 sr). Before the calls below. */
 void chain_expose(Chain *chain, const float *const radiance[]);
 /* small: the small targets of the image, whose cells pass through the optics at their subpixel positions (subpixel.h);
