@@ -2,7 +2,7 @@
 #ifndef TERRAIN_SURFACE_H
 #define TERRAIN_SURFACE_H
 
-#include "pitviper.h"
+#include "pitviper_table.h"
 
 typedef enum SurfaceClass {
     SURFACE_NONE = 0,
@@ -28,6 +28,10 @@ typedef enum SurfaceClass {
 
 const char  *surface_name(SurfaceClass surface);
 SurfaceClass surface_find(const char *name); /* SURFACE_NONE: no such class, or "none" */
+/* A column of tables with a row for each class: TABLE_OWN of a SurfaceClass; "none" is not accepted. */
+const char *surface_parse(void *out, const char *text);
+/* Whether each class but SURFACE_NONE was seen; else its missing row is logged, STATUS_BAD_VALUE. */
+Status surface_rows_whole(const TableRows *rows, const bool seen[SURFACE_COUNT]);
 
 /* ---- from the codes of land cover files ---------------------------------------------------------- */
 

@@ -31,7 +31,7 @@ MAY = {
     'top': ('*',), 'fuzz': ('*',), 'analytic': ('*',),
 }
 BASE_HEADERS = ('pitviper.h', 'pitviper_channels.h', 'pitviper_confine.h', 'pitviper_file.h', 'pitviper_library.h', 'pitviper_output.h',
-                'pitviper_simd.h')
+                'pitviper_simd.h', 'pitviper_table.h')
 
 # Libraries that one file, or one folder, knows: header, places.
 LIBRARIES = (

@@ -258,7 +258,7 @@ static void bad_rows_are_named(void **state)
         {"auto,2000", "sometimes,2000", "'sometimes' is not one of fixed, auto"},
         {",f_number,", ",f_nummer,", "no column f_number"},
         {"tv,optical", "television,optical", "no sensor named 'tv'"},
-        {"tv,optical,720,", "tv,optical,720.5,", "whole numbers"},
+        {"tv,optical,720,", "tv,optical,720.5,", "width_px: '720.5' is not a whole number in 8 .. 8192"},
     };
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         SensorPreset p;
