@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-enum { table_max_octets = 1 << 26 };
+enum { table_max_octets = 1 << 26, said_size = 640 };
 
 static char *trim(char *text)
 {
@@ -252,24 +252,63 @@ Status table_rows_open(TableRows *out, const TableFormat *format, const char *pa
 
 void table_rows_close(TableRows *rows) { table_close(&rows->table); }
 
-/* The place of a word among "a, b, c"; -1: it is none of them. */
-static int choice_of(const char *choices, const char *word)
+/* ---- words ------------------------------------------------------------------------------------ */
+
+/* The next of "a, b, c": its length, and *at where the one after it begins; NULL: it was the last. */
+static int next_choice(const char **at)
 {
-    const size_t length = strlen(word);
-    for (int place = 0;; place++) {
-        const size_t one = strcspn(choices, ",");
-        if (one == length && memcmp(choices, word, length) == 0) return place;
-        if (!choices[one]) return -1;
-        choices += one + 2; /* ", " */
-    }
+    const char *comma = strchr(*at, ',');
+    const int   length = comma ? (int)(comma - *at) : (int)strlen(*at);
+    *at = comma ? comma + 2 : NULL; /* ", " */
+    return length;
 }
+
+/* The word of a column that stands for k. */
+static void word_of(char out[64], const TableColumn *column, int k)
+{
+    const char *at = column->choices, *word = at;
+    if (column->type == TABLE_NAMED) {
+        snprintf(out, 64, "%s", column->named(k));
+        return;
+    }
+    int length = next_choice(&at);
+    for (; k > 0; k--) word = at, length = next_choice(&at);
+    snprintf(out, 64, "%.*s", length, word);
+}
+
+static int last_word(const TableColumn *column)
+{
+    if (column->type == TABLE_NAMED) return (int)column->high;
+    int last = 0;
+    for (const char *at = column->choices; at[0]; at++) last += at[0] == ',';
+    return last;
+}
+
+/* NULL, and *out for which it stands; else what is accepted. */
+static const char *read_word(int *out, char said[said_size], const TableColumn *column, const char *text)
+{
+    char   word[64];
+    size_t n = (size_t)snprintf(said, said_size, "one of");
+    for (int k = (int)column->low; k <= last_word(column); k++) {
+        word_of(word, column, k);
+        if (strcmp(word, text) == 0) {
+            *out = k;
+            return NULL;
+        }
+        if (n + 72 < said_size) n += (size_t)snprintf(said + n, said_size - n, "%s %s", n > 6 ? "," : "", word);
+    }
+    return said;
+}
+
+/* ---- rows into structs ------------------------------------------------------------------------ */
 
 /* Puts a number where it belongs; an int's range is its column's, which fits. */
 static void put_number(void *out, const TableColumn *column, double number)
 {
     const double value = column->unit != 0 ? column->unit * number : number;
     if (column->type == TABLE_FLOAT) *(float *)out = (float)value;
-    else if (column->type == TABLE_INT || column->type == TABLE_CHOICE) *(int *)out = (int)value;
+    else if (column->type == TABLE_INT || column->type == TABLE_CHOICE || column->type == TABLE_NAMED)
+        *(int *)out = (int)value;
     else *(double *)out = value;
 }
 
@@ -281,10 +320,9 @@ static void put_absent(void *out, const TableColumn *column)
 }
 
 /* What is accepted where the text is not; said: room for it. NULL: it was put into *out. */
-static const char *read_cell(void *out, char said[256], const TableColumn *column, const char *text)
+static const char *read_cell(void *out, char said[said_size], const TableColumn *column, const char *text)
 {
     double number;
-    int    choice;
     switch (column->type) {
     case TABLE_CELL:
         *(const char **)out = text;
@@ -292,16 +330,14 @@ static const char *read_cell(void *out, char said[256], const TableColumn *colum
     case TABLE_OWN:
         return column->parse(out, text);
     case TABLE_CHOICE:
-        choice = choice_of(column->choices, text);
-        if (choice >= 0) *(int *)out = choice;
-        snprintf(said, 256, "one of %s", column->choices);
-        return choice >= 0 ? NULL : said;
+    case TABLE_NAMED:
+        return read_word(out, said, column, text);
     case TABLE_NAME:
         if (*text && strlen(text) < column->size) {
             memcpy(out, text, strlen(text) + 1);
             return NULL;
         }
-        snprintf(said, 256, "a name of 1 to %zu characters", column->size - 1);
+        snprintf(said, said_size, "a name of 1 to %zu characters", column->size - 1);
         return said;
     default:
         break;
@@ -312,7 +348,7 @@ static const char *read_cell(void *out, char said[256], const TableColumn *colum
         put_number(out, column, number);
         return NULL;
     }
-    snprintf(said, 256, "a %snumber in %g .. %g", whole ? "whole " : "", column->low, column->high);
+    snprintf(said, said_size, "a %snumber in %g .. %g", whole ? "whole " : "", column->low, column->high);
     return said;
 }
 
@@ -322,7 +358,7 @@ Status table_rows_get(void *out, const TableRows *rows, int row)
         const TableColumn *column = &rows->format->column[c];
         void              *member = (char *)out + column->offset;
         const char        *text = rows->at[c] >= 0 ? table_text(&rows->table, row, rows->at[c]) : "";
-        char               said[256];
+        char               said[said_size];
         if (rows->at[c] < 0 || (!*text && column->absent >= TABLE_EMPTY)) {
             put_absent(member, column);
             continue;
@@ -345,18 +381,62 @@ Status table_rows_numbers(double **out, const TableRows *rows)
     return status;
 }
 
-Status table_each(const TableFormat *format, const char *path, void *row, size_t size, TableTake *take, TableDone *done,
-                  void *user)
+/* ---- every row, by its keys -------------------------------------------------------------------- */
+
+/* Place among all combinations of keys of those of a row; with all: their number. */
+static size_t key_of(const TableFormat *format, const void *row, bool all)
 {
-    TableRows rows;
-    Status    status = table_rows_open(&rows, format, path);
+    size_t place = 0, number = 1;
+    for (int c = 0; c < format->count; c++) {
+        const TableColumn *column = &format->column[c];
+        if (!column->key) continue;
+        const size_t values = (size_t)(last_word(column) + 1);
+        if (!all) place = place * values + (size_t) * (const int *)((const char *)row + column->offset);
+        number *= values;
+    }
+    return all ? number : place;
+}
+
+/* The words of a combination; false: some key's number has none. */
+static bool key_text(char out[256], const TableFormat *format, size_t key)
+{
+    char   word[64], behind[256];
+    size_t values = 1;
+    *out = 0;
+    for (int c = format->count - 1; c >= 0; c--, key /= values) {
+        const TableColumn *column = &format->column[c];
+        values = column->key ? (size_t)(last_word(column) + 1) : 1;
+        if (!column->key) continue;
+        const int k = (int)(key % values);
+        if (k < (int)column->low) return false;
+        word_of(word, column, k);
+        snprintf(behind, sizeof behind, "%s", out);
+        snprintf(out, 256, "%s %s%s%.150s", column->name, word, *behind ? ", " : "", behind);
+    }
+    return *out != 0;
+}
+
+Status table_each(const TableFormat *format, const char *path, void *row, size_t size, TableTake *take, void *user)
+{
+    TableRows    rows;
+    char         said[256];
+    const size_t keys = key_of(format, NULL, true);
+    Status       status = table_rows_open(&rows, format, path);
     if (status != STATUS_OK) return status;
+    bool *seen = calloc(keys, sizeof *seen);
+    if (!seen) status = STATUS_NO_MEMORY;
     for (int r = 0; r < rows.table.rows && status == STATUS_OK; r++) {
         memset(row, 0, size);
         status = table_rows_get(row, &rows, r);
+        const size_t key = status == STATUS_OK ? key_of(format, row, false) : 0;
+        if (status == STATUS_OK && seen[key] && key_text(said, format, key))
+            status = table_rows_refuse(&rows, r, NULL, "a second row of %s", said);
         if (status == STATUS_OK) status = take(user, row, &rows, r);
+        seen[key] = true;
     }
-    if (status == STATUS_OK && done) status = done(user, &rows);
+    for (size_t key = 0; key < keys && format->every && status == STATUS_OK; key++)
+        if (!seen[key] && key_text(said, format, key)) status = table_rows_lack(&rows, "no row of %s", said);
+    free(seen);
     table_rows_close(&rows);
     return status;
 }

@@ -22,6 +22,7 @@ typedef enum TableType {
     TABLE_NAME,   /* char[]: 1 .. size - 1 octets */
     TABLE_CELL,   /* const char *: any text, the empty one too; the table's, until it is closed */
     TABLE_CHOICE, /* an enum, or an int: the place of the word in choices */
+    TABLE_NAMED,  /* an enum, or an int: the k in low .. high whose named(k) is the text */
     TABLE_OWN,    /* read by parse */
 } TableType;
 
@@ -42,6 +43,8 @@ typedef struct TableColumn {
     double      otherwise; /* the number (file's unit) or choice where absent; a text is "", TABLE_OWN is not written */
     const char *choices;   /* TABLE_CHOICE: "a, b, c" */
     const char *(*parse)(void *member, const char *text); /* TABLE_OWN; NULL: it is read; else what is accepted */
+    const char *(*named)(int k);                          /* TABLE_NAMED */
+    bool key; /* TABLE_CHOICE, TABLE_NAMED: table_each refuses two rows with the same keys */
 } TableColumn;
 #define TABLE_AT(type, member) offsetof(type, member), sizeof(((type *)0)->member)
 
@@ -51,6 +54,7 @@ typedef struct TableFormat {
     int                count;                 /* <= table_columns_most */
     const char        *next;                  /* what to do when it is wrong: "etc/sensors.csv explains the columns" */
     int                least_rows, most_rows; /* most_rows 0: any number */
+    bool               every;                 /* table_each needs a row with each combination of keys */
 } TableFormat;
 
 enum { table_columns_most = 64 };
@@ -91,11 +95,9 @@ Status table_rows_lack(const TableRows *rows, const char *what, ...) __attribute
 #define TABLE_AT_NUMBER(k) (k) * sizeof(double), sizeof(double)
 Status table_rows_numbers(double **out, const TableRows *rows);
 
-/* Every row of a file, in order: `row` (size octets) is zeroed, filled, and given to take, which checks and keeps it;
- * then done, may be NULL, once, for what is missing. */
+/* Every row of a file, in order: `row` (size octets) is zeroed, filled, and given to take, which checks and keeps it.
+ */
 typedef Status TableTake(void *user, const void *row, const TableRows *rows, int number);
-typedef Status TableDone(void *user, const TableRows *rows);
-Status table_each(const TableFormat *format, const char *path, void *row, size_t size, TableTake *take, TableDone *done,
-                  void *user);
+Status table_each(const TableFormat *format, const char *path, void *row, size_t size, TableTake *take, void *user);
 
 #endif

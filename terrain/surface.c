@@ -33,18 +33,7 @@ SurfaceClass surface_find(const char *name)
     return SURFACE_NONE;
 }
 
-const char *surface_parse(void *out, const char *text)
-{
-    *(SurfaceClass *)out = surface_find(text);
-    return *(SurfaceClass *)out == SURFACE_NONE ? "one of etc/surfaces.csv: no such surface" : NULL;
-}
-
-Status surface_rows_whole(const TableRows *rows, const bool seen[SURFACE_COUNT])
-{
-    for (int s = SURFACE_NONE + 1; s < SURFACE_COUNT; s++)
-        if (!seen[s]) return table_rows_lack(rows, "no row of surface %s", surface_name((SurfaceClass)s));
-    return STATUS_OK;
-}
+const char *surface_named(int surface) { return surface_name((SurfaceClass)surface); }
 
 /* ---- codes of files ------------------------------------------------------------------------------ */
 
@@ -52,11 +41,6 @@ typedef struct CodeRow {
     int          code;
     SurfaceClass surface;
 } CodeRow;
-
-static const char *parse_any_surface(void *out, const char *text)
-{
-    return strcmp(text, surface_name(SURFACE_NONE)) == 0 ? NULL : surface_parse(out, text);
-}
 
 static Status take_code(void *user, const void *row, const TableRows *rows, int number)
 {
@@ -73,11 +57,11 @@ static Status surface_table_read(SurfaceTable *out, const char *path)
 {
     static const TableColumn columns[] = {
         {"code", TABLE_INT, TABLE_AT(CodeRow, code), .low = 0, .high = surface_codes_most - 1},
-        {"surface", TABLE_OWN, TABLE_AT(CodeRow, surface), .parse = parse_any_surface}};
+        {"surface", TABLE_NAMED, TABLE_AT(CodeRow, surface), SURFACE_OR_NONE}};
     static const TableFormat format = {"cover", columns, 2, .next = "etc/cover_nlcd.csv is an example"};
     CodeRow                  row;
     SurfaceTable             table = {0};
-    const Status             status = table_each(&format, path, &row, sizeof row, take_code, NULL, &table);
+    const Status             status = table_each(&format, path, &row, sizeof row, take_code, &table);
     if (status == STATUS_OK) *out = table;
     return status;
 }

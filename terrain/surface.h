@@ -28,10 +28,10 @@ typedef enum SurfaceClass {
 
 const char  *surface_name(SurfaceClass surface);
 SurfaceClass surface_find(const char *name); /* SURFACE_NONE: no such class, or "none" */
-/* A column of tables with a row for each class: TABLE_OWN of a SurfaceClass; "none" is not accepted. */
-const char *surface_parse(void *out, const char *text);
-/* Whether each class but SURFACE_NONE was seen; else its missing row is logged, STATUS_BAD_VALUE. */
-Status surface_rows_whole(const TableRows *rows, const bool seen[SURFACE_COUNT]);
+/* Of the column `surface` of tables: TABLE_NAMED of a SurfaceClass; with "none", or without. */
+const char *surface_named(int surface);
+#define SURFACE_NAMED   .low = SURFACE_NONE + 1, .high = SURFACE_COUNT - 1, .named = surface_named
+#define SURFACE_OR_NONE .high = SURFACE_COUNT - 1, .named = surface_named
 
 /* ---- from the codes of land cover files ---------------------------------------------------------- */
 

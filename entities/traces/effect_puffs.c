@@ -20,44 +20,24 @@ typedef struct Row {
     EffectModel law;
 } Row;
 
-typedef struct Reading {
-    EffectTable effects;
-    bool        seen[EFFECT_KIND_COUNT];
-} Reading;
-
-static const char *parse_kind(void *out, const char *text)
-{
-    int *kind = out;
-    for (*kind = 0; *kind < EFFECT_KIND_COUNT; ++*kind)
-        if (strcmp(kind_names[*kind], text) == 0) return NULL;
-    return "one of etc/effects.csv: no such effect";
-}
+static const char *kind_named(int kind) { return kind_names[kind]; }
 
 static Status take_row(void *user, const void *read, const TableRows *rows, int number)
 {
-    Reading *r = user;
-    Row      row = *(const Row *)read;
-    if (r->seen[row.kind]) return table_rows_refuse(rows, number, NULL, "a second row of %s", kind_names[row.kind]);
+    Row row = *(const Row *)read;
+    (void)rows, (void)number;
     for (int which = 0; which < 2; which++) {
         double *of = which ? row.law.albedo : row.law.extinction_m2_kg;
         of[effect_band_pan] = (of[effect_band_b] + of[effect_band_g] + of[effect_band_r]) / 3;
     }
-    r->seen[row.kind] = true;
-    r->effects.law[row.kind] = row.law;
-    return STATUS_OK;
-}
-
-static Status all_rows(void *user, const TableRows *rows)
-{
-    for (int kind = 0; kind < EFFECT_KIND_COUNT; kind++)
-        if (!((Reading *)user)->seen[kind]) return table_rows_lack(rows, "effect %s has no row", kind_names[kind]);
+    ((EffectTable *)user)->law[row.kind] = row.law;
     return STATUS_OK;
 }
 
 #define FIELD(member) TABLE_AT(Row, member)
 
 static const TableColumn own_columns[] = {
-    {"name", TABLE_OWN, FIELD(kind), .parse = parse_kind},
+    {"name", TABLE_NAMED, FIELD(kind), .high = EFFECT_KIND_COUNT - 1, .named = kind_named, .key = true},
     {"asymmetry", TABLE_DOUBLE, FIELD(law.asymmetry), .low = -0.95, .high = 0.95},
     {"mass_kg", TABLE_DOUBLE, FIELD(law.mass_kg), .low = 0, .high = 1e4},
     {"radius_start_m", TABLE_DOUBLE, FIELD(law.radius_start_m), .low = 0.01, .high = 100},
@@ -80,8 +60,8 @@ Status effect_table_open(EffectTable *out, const char *path)
 {
     TableColumn columns[own_count + channel_columns];
     char        name[channel_columns][32];
-    TableFormat format = {"effects", columns, own_count, .next = "etc/effects.csv explains the columns"};
-    Reading     r = {0};
+    TableFormat format = {"effects", columns, own_count, .every = true, .next = "etc/effects.csv explains the columns"};
+    EffectTable effects = {0};
     Row         row;
     if (channels_load() != STATUS_OK) return STATUS_BAD_VALUE;
     memcpy(columns, own_columns, sizeof own_columns);
@@ -94,8 +74,8 @@ Status effect_table_open(EffectTable *out, const char *path)
         columns[format.count++] =
             (TableColumn){.name = name[k], .offset = of + (size_t)b * sizeof(double), .high = albedo ? 1 : 1e5};
     }
-    const Status status = table_each(&format, path, &row, sizeof row, take_row, all_rows, &r);
-    if (status == STATUS_OK) *out = r.effects;
+    const Status status = table_each(&format, path, &row, sizeof row, take_row, &effects);
+    if (status == STATUS_OK) *out = effects;
     return status;
 }
 

@@ -168,14 +168,9 @@ typedef struct Row {
 
 #define KIND(member) TABLE_AT(Row, k.member)
 
-static const char *parse_kind(void *out, const char *text)
-{
-    *(int *)out = ground_kind_find(text);
-    return *(int *)out < 0 ? "a surface: no such surface" : NULL;
-}
-
 static const TableColumn columns[] = {
-    {"surface", TABLE_OWN, TABLE_AT(Row, kind), .parse = parse_kind},
+    {"surface", TABLE_NAMED, TABLE_AT(Row, kind), .low = 1, .high = ground_kinds - 1, .named = ground_kind_name,
+     .key = true},
     {"vapour", TABLE_CHOICE, KIND(vapour), .choices = "dry, soil, leaves, water"},
     {"absorptance", TABLE_DOUBLE, KIND(absorptance), .low = 0, .high = 1, .absent = TABLE_EMPTY, .otherwise = NAN},
     {"top_m", TABLE_DOUBLE, KIND(layer[0].thickness_m), .low = 0, .high = 10},
@@ -192,7 +187,7 @@ static const TableColumn columns[] = {
     {"roughness_m", TABLE_DOUBLE, KIND(roughness_m), .low = 1e-5, .high = 3},
     {"leaf_s_m", TABLE_DOUBLE, KIND(resistance_s_m), .low = 0, .high = 5000},
 };
-static const TableFormat format = {"ground heat", columns, sizeof columns / sizeof *columns,
+static const TableFormat format = {"ground heat", columns, sizeof columns / sizeof *columns, .every = true,
                                    .next = "etc/ground_heat.csv explains the columns"};
 
 typedef struct Reading {
@@ -219,7 +214,6 @@ static Status take_row(void *user, const void *read, const TableRows *rows, int 
     const int       k = ((const Row *)read)->kind;
     GroundKind     *kind = &r->kinds->kind[k];
     const Material *m = &r->materials->material[r->materials->surface[k < SURFACE_COUNT ? k : SURFACE_BARE_SOIL]];
-    if (*kind->name) return table_rows_refuse(rows, number, NULL, "surface repeated: %s", kind->name);
     *kind = ((const Row *)read)->k;
     if (isnan(kind->absorptance)) kind->absorptance = (double)m->solar_absorptance;
     kind->emissivity = 1 - (double)m->rho_lwir;
@@ -232,18 +226,11 @@ static Status take_row(void *user, const void *read, const TableRows *rows, int 
     return STATUS_OK;
 }
 
-static Status all_rows(void *user, const TableRows *rows)
-{
-    GroundKinds *kinds = ((Reading *)user)->kinds;
-    for (int k = 1; k < ground_kinds; k++)
-        if (!*kinds->kind[k].name) return table_rows_lack(rows, "no row of surface %s", ground_kind_name(k));
-    kinds->kind[SURFACE_NONE] = kinds->kind[SURFACE_BARE_SOIL];
-    return STATUS_OK;
-}
-
 Status ground_kinds_open(GroundKinds *out, const char *path, const Materials *materials)
 {
     Row row;
     *out = (GroundKinds){0};
-    return table_each(&format, path, &row, sizeof row, take_row, all_rows, &(Reading){out, materials});
+    const Status status = table_each(&format, path, &row, sizeof row, take_row, &(Reading){out, materials});
+    out->kind[SURFACE_NONE] = out->kind[SURFACE_BARE_SOIL];
+    return status;
 }

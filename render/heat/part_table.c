@@ -13,13 +13,10 @@ typedef struct RoleRow {
 #define ROLE(member)    TABLE_AT(RoleRow, member)
 #define MACHINE(member) TABLE_AT(MachineRow, member)
 
-static const char *parse_role(void *out, const char *text)
-{
-    return heat_role_find(out, text) ? NULL : "a role: no such role";
-}
+static const char *role_named(int role) { return heat_role_name((HeatRole)role); }
 
 static const TableColumn role_columns[] = {
-    {"role", TABLE_OWN, ROLE(role), .parse = parse_role},
+    {"role", TABLE_NAMED, ROLE(role), .high = HEAT_ROLE_COUNT - 1, .named = role_named, .key = true},
     {"thickness_mm", TABLE_DOUBLE, ROLE(part.thickness_m), .low = 0.1, .high = 1000, .unit = 1e-3},
     {"inside", TABLE_CHOICE, ROLE(part.inside),
      .choices = "none, engine, cabin, exhaust, turbine, motor, body, room, flue, grain"},
@@ -28,37 +25,21 @@ static const TableColumn role_columns[] = {
     {"drive", TABLE_CHOICE, ROLE(part.drive), .choices = "none, motion, firing"},
     {"drive_value", TABLE_DOUBLE, ROLE(part.drive_value), .low = 0, .high = 1e7},
 };
-static const TableFormat role_format = {"heat", role_columns, sizeof role_columns / sizeof *role_columns,
+static const TableFormat role_format = {"heat", role_columns, sizeof role_columns / sizeof *role_columns, .every = true,
                                         .next = "etc/heat.csv explains the columns"};
-
-typedef struct Reading {
-    PartTable *table;
-    bool       seen[HEAT_ROLE_COUNT];
-} Reading;
 
 static Status take_role(void *user, const void *read, const TableRows *rows, int number)
 {
-    Reading       *r = user;
     const RoleRow *row = read;
-    if (r->seen[row->role])
-        return table_rows_refuse(rows, number, NULL, "a second row of %s", heat_role_name(row->role));
-    r->seen[row->role] = true;
-    r->table->role[row->role] = row->part;
-    return STATUS_OK;
-}
-
-static Status all_roles(void *user, const TableRows *rows)
-{
-    for (int role = 0; role < HEAT_ROLE_COUNT; role++)
-        if (!((Reading *)user)->seen[role])
-            return table_rows_lack(rows, "role %s has no row", heat_role_name((HeatRole)role));
+    (void)rows, (void)number;
+    ((PartTable *)user)->role[row->role] = row->part;
     return STATUS_OK;
 }
 
 Status part_table_roles(PartTable *out, const char *path)
 {
     RoleRow row;
-    return table_each(&role_format, path, &row, sizeof row, take_role, all_roles, &(Reading){.table = out});
+    return table_each(&role_format, path, &row, sizeof row, take_role, out);
 }
 
 /* ---- machines ----------------------------------------------------------------------------- */
@@ -83,25 +64,19 @@ static const TableFormat machine_format = {"heat",
 
 static Status take_machine(void *user, const void *read, const TableRows *rows, int number)
 {
-    PartTable *table = user;
-    (void)rows, (void)number;
-    table->machine[table->machines++] = *(const MachineRow *)read;
-    return STATUS_OK;
-}
-
-static Status others_last(void *user, const TableRows *rows)
-{
-    const PartTable *table = user;
-    return strcmp(table->machine[table->machines - 1].model, "*") == 0
+    PartTable        *table = user;
+    const MachineRow *row = read;
+    table->machine[table->machines++] = *row;
+    return number < rows->table.rows - 1 || strcmp(row->model, "*") == 0
                ? STATUS_OK
-               : table_rows_lack(rows, "the last row must be *, for all other models");
+               : table_rows_refuse(rows, number, "model", "*: the last row must be that of all other models");
 }
 
 Status part_table_machines(PartTable *out, const char *path)
 {
     MachineRow row;
     out->machines = 0;
-    return table_each(&machine_format, path, &row, sizeof row, take_machine, others_last, out);
+    return table_each(&machine_format, path, &row, sizeof row, take_machine, out);
 }
 
 Status part_table_open(PartTable *out, const char *parts_path, const char *machines_path)

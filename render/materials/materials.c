@@ -168,53 +168,33 @@ typedef struct SurfaceRow {
     const char  *material;
 } SurfaceRow;
 
-typedef struct Reading {
-    Materials *m;
-    bool       seen[SURFACE_COUNT];
-} Reading;
-
-/* As surface_parse, with the row of "none", whose material is none. */
-static const char *parse_surface_or_none(void *out, const char *text)
-{
-    return strcmp(text, surface_name(SURFACE_NONE)) == 0 ? NULL : surface_parse(out, text);
-}
-
 static Status take_surface(void *user, const void *read, const TableRows *rows, int number)
 {
-    Reading          *r = user;
+    Materials        *m = user;
     const SurfaceRow *row = read;
-    if (row->surface == SURFACE_NONE) return STATUS_OK;
-    const int material = materials_find(r->m, row->material);
+    const int         material = materials_find(m, row->material);
     if (material < 0) return table_rows_refuse(rows, number, "material", "the name of a material");
-    if (r->seen[row->surface])
-        return table_rows_refuse(rows, number, NULL, "a second row of %s", surface_name(row->surface));
-    r->seen[row->surface] = true;
-    r->m->surface[row->surface] = material;
+    m->surface[row->surface] = material;
     return STATUS_OK;
-}
-
-/* Each class exactly once; then the mean reflectance of the common land: neither water nor the classes that only cover
- * files contain. */
-static Status all_surfaces(void *user, const TableRows *rows)
-{
-    Materials   *m = ((Reading *)user)->m;
-    const Status status = surface_rows_whole(rows, ((Reading *)user)->seen);
-    double       sum[optical_channel_count] = {0};
-    int          land = 0;
-    for (int s = SURFACE_NONE + 1; s < SURFACE_WATER; s++, land++)
-        for (int c = 0; c < optical_channel_count; c++) sum[c] += m->material[m->surface[s]].rho[c];
-    for (int c = 0; c < optical_channel_count; c++) m->ground_rho[c] = (float)(sum[c] / land);
-    return status;
 }
 
 static Status read_surfaces(Materials *m, const char *path)
 {
     static const TableColumn columns[] = {
-        {"surface", TABLE_OWN, TABLE_AT(SurfaceRow, surface), .parse = parse_surface_or_none},
+        {"surface", TABLE_NAMED, TABLE_AT(SurfaceRow, surface), SURFACE_NAMED, .key = true},
         {"material", .type = TABLE_CELL, TABLE_AT(SurfaceRow, material)}};
-    static const TableFormat format = {"materials", columns, 2, .next = "etc/surfaces.csv is an example"};
+    static const TableFormat format = {"materials", columns, 2, .every = true,
+                                       .next = "etc/surfaces.csv is an example"};
     SurfaceRow               row;
-    return table_each(&format, path, &row, sizeof row, take_surface, all_surfaces, &(Reading){.m = m});
+    const Status             status = table_each(&format, path, &row, sizeof row, take_surface, m);
+    int                      land = 0;
+    double                   sum[optical_channel_count] = {0};
+    if (status != STATUS_OK) return status;
+    /* the common land: neither water nor the classes that only cover files contain */
+    for (int s = SURFACE_NONE + 1; s < SURFACE_WATER; s++, land++)
+        for (int c = 0; c < optical_channel_count; c++) sum[c] += m->material[m->surface[s]].rho[c];
+    for (int c = 0; c < optical_channel_count; c++) m->ground_rho[c] = (float)(sum[c] / land);
+    return STATUS_OK;
 }
 
 static Status find_part_material(int *out, const Materials *m, const Model *model, int part, const char *name,
@@ -308,11 +288,11 @@ static Status take_beneath(void *user, const void *read, const TableRows *rows, 
 
 static Status read_ground_beneath(Materials *m, const char *path)
 {
-    static const TableColumn columns[] = {{"surface", TABLE_OWN, TABLE_AT(SurfaceRow, surface), .parse = surface_parse},
+    static const TableColumn columns[] = {{"surface", TABLE_NAMED, TABLE_AT(SurfaceRow, surface), SURFACE_NAMED},
                                           {"ground", .type = TABLE_CELL, TABLE_AT(SurfaceRow, material)}};
     static const TableFormat format = {"materials", columns, 2, .next = "etc/woods.csv explains the columns"};
     SurfaceRow               row;
-    return table_each(&format, path, &row, sizeof row, take_beneath, NULL, m);
+    return table_each(&format, path, &row, sizeof row, take_beneath, m);
 }
 
 /* Row `was` of the user's own is row map[was - first] now. */

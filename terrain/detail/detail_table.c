@@ -246,8 +246,7 @@ void detail_table_close(DetailTable *table) { free(table); }
 /* ---- the file ----------------------------------------------------------------------------------- */
 
 /* The largest standard deviation of each field, in its unit. */
-static const double      most_sigma[detail_fields] = {1, 10, 2, 0.05};
-static const char *const field_name[detail_fields] = {"albedo", "temperature", "radar", "height"};
+static const double most_sigma[detail_fields] = {1, 10, 2, 0.05};
 
 typedef struct Row {
     SurfaceClass     surface;
@@ -258,8 +257,8 @@ typedef struct Row {
 #define FIELD(member) TABLE_AT(Row, member)
 
 static const TableColumn columns[] = {
-    {"surface", TABLE_OWN, FIELD(surface), .parse = surface_parse},
-    {"field", TABLE_CHOICE, FIELD(field), .choices = "albedo, temperature, radar, height"},
+    {"surface", TABLE_NAMED, FIELD(surface), SURFACE_NAMED, .key = true},
+    {"field", TABLE_CHOICE, FIELD(field), .choices = "albedo, temperature, radar, height", .key = true},
     {"sigma", TABLE_DOUBLE, FIELD(s.sigma), .low = 0, .high = 10},
     {"length_m", TABLE_DOUBLE, FIELD(s.length_m), .low = 0.05, .high = 50},
     {"far_share", TABLE_DOUBLE, FIELD(s.far_share), .low = 0, .high = 1},
@@ -267,46 +266,26 @@ static const TableColumn columns[] = {
     {"skew", TABLE_DOUBLE, FIELD(s.skew), .low = -1.5, .high = 1.5},
     {"follows_albedo", TABLE_DOUBLE, FIELD(s.follows), .low = -1, .high = 1},
 };
-static const TableFormat format = {"ground detail", columns, sizeof columns / sizeof *columns,
+static const TableFormat format = {"ground detail", columns, sizeof columns / sizeof *columns, .every = true,
                                    .next = "etc/ground_detail.csv explains the columns"};
-
-typedef struct Reading {
-    DetailStatistics statistics[SURFACE_COUNT][detail_fields];
-    bool             seen[SURFACE_COUNT][detail_fields];
-} Reading;
 
 static Status take_row(void *user, const void *read, const TableRows *rows, int number)
 {
-    Reading   *r = user;
+    DetailStatistics(*statistics)[detail_fields] = user;
     const Row *row = read;
     const int  f = row->field;
-    if (r->seen[row->surface][f])
-        return table_rows_refuse(rows, number, NULL, "a second row of surface %s, field %s", surface_name(row->surface),
-                                 field_name[f]);
     if (row->s.sigma > most_sigma[f])
         return table_rows_refuse(rows, number, "sigma", "a number in 0 .. %g", most_sigma[f]);
     if ((f == DETAIL_ALBEDO || f == DETAIL_HEIGHT) && row->s.follows != 1)
         return table_rows_refuse(rows, number, "follows_albedo", "1, as of albedo and height it is");
-    r->seen[row->surface][f] = true;
-    r->statistics[row->surface][f] = row->s;
-    return STATUS_OK;
-}
-
-static Status all_rows(void *user, const TableRows *rows)
-{
-    const Reading *r = user;
-    for (int s = SURFACE_NONE + 1; s < SURFACE_COUNT; s++)
-        for (int f = 0; f < detail_fields; f++)
-            if (!r->seen[s][f])
-                return table_rows_lack(rows, "no row of surface %s, field %s", surface_name((SurfaceClass)s),
-                                       field_name[f]);
+    statistics[row->surface][f] = row->s;
     return STATUS_OK;
 }
 
 Status detail_table_open(DetailTable **out, const char *path, double cut_off)
 {
-    Reading      r = {0};
-    Row          row;
-    const Status status = table_each(&format, path, &row, sizeof row, take_row, all_rows, &r);
-    return status == STATUS_OK ? detail_table_create(out, r.statistics, cut_off) : status;
+    DetailStatistics statistics[SURFACE_COUNT][detail_fields] = {{{0}}};
+    Row              row;
+    const Status     status = table_each(&format, path, &row, sizeof row, take_row, statistics);
+    return status == STATUS_OK ? detail_table_create(out, statistics, cut_off) : status;
 }

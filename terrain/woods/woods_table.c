@@ -73,11 +73,6 @@ typedef struct Row {
     WoodsClass class;
 } Row;
 
-typedef struct Reading {
-    WoodsTable woods;
-    bool       seen[SURFACE_COUNT];
-} Reading;
-
 static const char *parse_floor(void *out, const char *text)
 {
     const PlantKind floor = plant_find(text);
@@ -89,18 +84,15 @@ static const char *parse_floor(void *out, const char *text)
 
 static Status take_row(void *user, const void *read, const TableRows *rows, int number)
 {
-    Reading           *r = user;
     const SurfaceClass surface = ((const Row *)read)->surface;
     WoodsClass         c = ((const Row *)read)->class;
     double             sum = 0;
     for (int k = 0; k < PLANT_STANDING; k++) sum += c.share[k];
-    if (r->seen[surface]) return table_rows_refuse(rows, number, NULL, "a second row of %s", surface_name(surface));
     if (c.high_m < c.low_m) return table_rows_refuse(rows, number, "high_m", "at least low_m");
     if (c.floor_high_m < c.floor_low_m) return table_rows_refuse(rows, number, "floor_high_m", "at least floor_low_m");
     if (c.per_m2 > 0 && !(sum > 0)) return table_rows_refuse(rows, number, NULL, "the shares of plants are all 0");
     for (int k = 0; k < PLANT_STANDING && sum > 0; k++) c.share[k] /= sum;
-    r->seen[surface] = true;
-    r->woods.of[surface] = c;
+    ((WoodsTable *)user)->of[surface] = c;
     return STATUS_OK;
 }
 
@@ -110,7 +102,7 @@ Status woods_table_read(WoodsTable *out, const char *path)
 {
     enum { own = 8 };
     TableColumn columns[own + PLANT_STANDING] = {
-        {"surface", TABLE_OWN, FIELD(surface), .parse = surface_parse},
+        {"surface", TABLE_NAMED, FIELD(surface), SURFACE_NAMED, .key = true},
         {"floor", TABLE_OWN, FIELD(class.floor), .parse = parse_floor},
         {"per_ha", TABLE_DOUBLE, FIELD(class.per_m2), .low = 0, .high = 600, .unit = 1e-4},
         {"low_m", TABLE_DOUBLE, FIELD(class.low_m), .low = 0.2, .high = 60},
@@ -124,10 +116,10 @@ Status woods_table_read(WoodsTable *out, const char *path)
                                          .offset = offsetof(Row, class.share) + (size_t)k * sizeof(double),
                                          .high = 1};
     const TableFormat format = {"woods", columns, own + PLANT_STANDING, .next = "etc/woods.csv explains the columns"};
-    Reading           r = {0};
+    WoodsTable        woods = {0};
     Row               row;
-    for (int s = 0; s < SURFACE_COUNT; s++) r.woods.of[s].floor = PLANT_KINDS;
-    const Status status = table_each(&format, path, &row, sizeof row, take_row, NULL, &r);
-    if (status == STATUS_OK) *out = r.woods;
+    for (int s = 0; s < SURFACE_COUNT; s++) woods.of[s].floor = PLANT_KINDS;
+    const Status status = table_each(&format, path, &row, sizeof row, take_row, &woods);
+    if (status == STATUS_OK) *out = woods;
     return status;
 }

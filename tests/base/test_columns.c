@@ -1,6 +1,6 @@
 /* tests/base/test_columns.c: rows of CSV into a toy struct (pitviper_table.h), against answers written by hand: types,
  * units, ranges, columns that are missing, doubled, later or unknown, and files that spreadsheets and vandals write.
- * The toy is one file: this one; a further column of it is one row of `columns` and one member. */
+ * The toy touches one file, this one; etc/ADDING.md's column is one row of `columns` and one member. */
 #include "tests/check.h"
 #include "pitviper_table.h"
 
@@ -9,7 +9,7 @@ typedef enum Colour { RED, DARK_GREEN, BLUE } Colour;
 typedef struct Toy {
     char        name[8];
     const char *note;
-    double      length_m, whole, later;
+    double      length_m, whole, later, paint_m;
     float       share;
     int         wheels;
     Colour      colour;
@@ -34,6 +34,8 @@ static const TableColumn columns[] = {
     {"initial", TABLE_OWN, TABLE_AT(Toy, initial), .parse = parse_initial, .absent = TABLE_OPTIONAL},
     {"later", TABLE_DOUBLE, TABLE_AT(Toy, later), .low = 0, .high = 9, .unit = 2, .absent = TABLE_LATER,
      .otherwise = 3},
+    {"paint_um", TABLE_DOUBLE, TABLE_AT(Toy, paint_m), .low = 0, .high = 900, .unit = 1e-6, .absent = TABLE_LATER,
+     .otherwise = 40},
 };
 enum { count = sizeof columns / sizeof *columns };
 static const TableFormat format = {"toys",          columns,       count, .next = "the toy's maker knows",
@@ -43,7 +45,7 @@ static const TableFormat format = {"toys",          columns,       count, .next 
 
 typedef struct Box {
     Toy toy[3];
-    int toys, done;
+    int toys;
 } Box;
 
 static Status take(void *user, const void *row, const TableRows *rows, int number)
@@ -56,14 +58,6 @@ static Status take(void *user, const void *row, const TableRows *rows, int numbe
                                                        : STATUS_OK;
 }
 
-static Status done(void *user, const TableRows *rows)
-{
-    Box *box = user;
-    box->done++;
-    return box->toys == 0 || strcmp(box->toy[0].name, "last") != 0 ? STATUS_OK
-                                                                   : table_rows_lack(rows, "no row of first");
-}
-
 static Status read_text(Box *box, const char *text)
 {
     char path[text_file_size];
@@ -72,7 +66,7 @@ static Status read_text(Box *box, const char *text)
     text_file(path, text);
     check_said[0] = 0;
     log_set_sink(check_listen, NULL);
-    const Status status = table_each(&format, path, &toy, sizeof toy, take, done, box);
+    const Status status = table_each(&format, path, &toy, sizeof toy, take, box);
     log_set_sink(NULL, NULL);
     remove(path);
     return status;
@@ -88,7 +82,7 @@ static void cells_become_members(void **state)
               "\xef\xbb\xbf# toys\r\nwhole, colour,name,\"length_64ths\",stranger,note,share,wheels,later,initial\r\n"
               "\r\n 1e3 ,dark green, car ,64,\"x,y\",\"say \"\"hi\"\", ok\",0.25,-2,4.5,c\r\n"
               "0,blue,\"b,\",-5,,,,18,0,\r\n") == STATUS_OK);
-    CHECK(box.toys == 2 && box.done == 1);
+    CHECK(box.toys == 2);
     const Toy *a = &box.toy[0], *b = &box.toy[1];
     assert_string_equal(a->name, "car");
     CHECK(a->length_m == 1 && a->whole == 1000 && a->later == 9 && a->share == 0.25f && a->wheels == -2);
@@ -137,7 +131,38 @@ static void a_file_older_than_a_column_is_read(void **state)
     CHECK(box.toys == 1 && box.toy[0].later == 6 && box.toy[0].initial == 0 && box.toy[0].share == 0.5f);
     CHECK(read_text(&box, "name,note,length_64ths,whole,wheels,colour\na,,1,1,1,red\n") == STATUS_BAD_VALUE);
     CHECK(strstr(check_said, ":1: no column share; the toy's maker knows"));
-    CHECK(box.toys == 0 && box.done == 0);
+    CHECK(box.toys == 0);
+}
+
+/* The row of etc/ADDING.md is the one above, to the letter but for blanks; a file that has its column gives the member.
+ */
+static void the_column_of_adding_is_read(void **state)
+{
+    (void)state;
+    static const char        row[] = "{\"paint_um\",TABLE_DOUBLE,TABLE_AT(Toy,paint_m),.low=0,.high=900,.unit=1e-6,"
+                                     ".absent=TABLE_LATER,.otherwise=40},";
+    static const char *const file[] = {"etc/ADDING.md", "tests/base/test_columns.c"};
+    for (int f = 0; f < 2; f++) {
+        char  *text = NULL, dense[128];
+        size_t octets = 0, n = 0;
+        CHECK(text_read_file(&text, &octets, "test", file[f], 1 << 20) == STATUS_OK);
+        const char *at = strstr(text, "\n    {\"paint_um\"");
+        CHECK(at != NULL);
+        for (; *at && n < sizeof row - 1; at++)
+            if (*at != ' ' && *at != '\n') dense[n++] = *at;
+        dense[n] = 0;
+        assert_string_equal(dense, row);
+        free(text);
+    }
+    Box box;
+    CHECK(read_text(&box, "name,note,length_64ths,whole,share,wheels,colour,paint_um\na,,1,1,,1,red,900\n") ==
+          STATUS_OK);
+    CHECK_NEAR(box.toy[0].paint_m, 9e-4, 1e-18);
+    CHECK(read_text(&box, "name,note,length_64ths,whole,share,wheels,colour\na,,1,1,,1,red\n") == STATUS_OK);
+    CHECK_NEAR(box.toy[0].paint_m, 4e-5, 1e-18);
+    CHECK(read_text(&box, "name,note,length_64ths,whole,share,wheels,colour,paint_um\na,,1,1,,1,red,901\n") ==
+          STATUS_BAD_VALUE);
+    CHECK(strstr(check_said, "column paint_um: '901' is not a number in 0 .. 900"));
 }
 
 /* Of two columns of one name the first is read, as everywhere before. */
@@ -177,7 +202,6 @@ static void what_is_wrong_is_said_in_one_way(void **state)
         {HEAD ",,1,1,0,1,red,a,1\n", ":2: column name: '' is not a name of 1 to 7 characters"},
         {HEAD "eightlet,,1,1,0,1,red,a,1\n", ":2: column name: 'eightlet' is not a name of 1 to 7 characters"},
         {HEAD "thief,,1,1,0,1,red,a,1\n", ":2: column name: 'thief' is not an honest one; the toy's maker knows"},
-        {HEAD "last,,1,1,0,1,red,a,1\n", ": no row of first; the toy's maker knows"},
         {HEAD "a,,1,1,0,1,red,a\n", ":2: 8 columns where the header has 9"},
         {HEAD "a,\"x,1,1,0,1,red,a,1\n", ":2: a quote is not closed"},
         {HEAD "a,,1,1,0,1,red,a,1\na,,1,1,0,1,red,a,1\na,,1,1,0,1,red,a,1\na,,1,1,0,1,red,a,1\n",
@@ -218,8 +242,64 @@ static void a_bad_row_is_given_to_nobody(void **state)
     (void)state;
     Box box;
     CHECK(read_text(&box, HEAD "a,,1,1,0,1,red,a,1\nb,,9999,1,0,1,red,a,1\nc,,1,1,0,1,red,a,1\n") == STATUS_BAD_VALUE);
-    CHECK(box.toys == 1 && box.done == 0);
-    CHECK(table_each(&format, "/nonexistent/toys.csv", &box.toy[0], sizeof(Toy), take, done, &box) == STATUS_IO);
+    CHECK(box.toys == 1);
+    CHECK(table_each(&format, "/nonexistent/toys.csv", &box.toy[0], sizeof(Toy), take, &box) == STATUS_IO);
+}
+
+/* ---- keys: no two rows of the same, and where the format says so one of each ---- */
+
+typedef struct Cell {
+    int    size, colour;
+    double number;
+} Cell;
+
+static const char *size_named(int size) { return size == 1 ? "small" : size == 2 ? "large" : "none"; }
+
+static const TableColumn cell_columns[] = {
+    {"size", TABLE_NAMED, TABLE_AT(Cell, size), .low = 1, .high = 2, .named = size_named, .key = true},
+    {"number", TABLE_DOUBLE, TABLE_AT(Cell, number), .low = 0, .high = 99},
+    {"colour", TABLE_CHOICE, TABLE_AT(Cell, colour), .choices = "red, blue", .key = true},
+};
+
+static Status take_cell(void *user, const void *row, const TableRows *rows, int number)
+{
+    const Cell *cell = row;
+    (void)rows, (void)number;
+    ((double *)user)[2 * cell->size + cell->colour] = cell->number;
+    return STATUS_OK;
+}
+
+static void rows_have_keys(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *text, *said; /* NULL: it is read */
+        bool        every;
+    } cases[] = {
+        {"small,1,red\nlarge,2,blue\nlarge,3,red\nsmall,4,blue\n", NULL, true},
+        {"small,1,red\nlarge,2,blue\n", NULL, false},
+        {"small,1,red\nlarge,2,blue\nlarge,3,red\n", ": no row of size small, colour blue; ask", true},
+        {"", ": no row of size small, colour red; ask", true},
+        {"small,1,red\nsmall,2,blue\nsmall,3,red\n", ":4: a second row of size small, colour red; ask", false},
+        {"none,1,red\n", ":2: column size: 'none' is not one of small, large; ask", false},
+        {"small,100,red\n", ":2: column number: '100'", false},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        const TableFormat cells = {"cells", cell_columns, 3, .every = cases[i].every, .next = "ask"};
+        char              path[text_file_size], text[256];
+        Cell              row;
+        double            got[6] = {0};
+        snprintf(text, sizeof text, "size,number,colour\n%s", cases[i].text);
+        text_file(path, text);
+        check_said[0] = 0;
+        log_set_sink(check_listen, NULL);
+        const Status status = table_each(&cells, path, &row, sizeof row, take_cell, got);
+        log_set_sink(NULL, NULL);
+        remove(path);
+        CHECK(status == (cases[i].said ? STATUS_BAD_VALUE : STATUS_OK));
+        if (cases[i].said && !strstr(check_said, cases[i].said)) fail_msg("case %zu: said '%s'", i, check_said);
+        if (i == 0) CHECK(got[2] == 1 && got[3] == 4 && got[4] == 3 && got[5] == 2);
+    }
 }
 
 int main(void)
@@ -228,10 +308,12 @@ int main(void)
         cmocka_unit_test(cells_become_members),
         cmocka_unit_test(rows_are_read_in_any_order),
         cmocka_unit_test(a_file_older_than_a_column_is_read),
+        cmocka_unit_test(the_column_of_adding_is_read),
         cmocka_unit_test(of_doubled_columns_the_first_is_read),
         cmocka_unit_test(what_is_wrong_is_said_in_one_way),
         cmocka_unit_test(very_long_lines),
         cmocka_unit_test(a_bad_row_is_given_to_nobody),
+        cmocka_unit_test(rows_have_keys),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

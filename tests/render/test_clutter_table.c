@@ -66,8 +66,8 @@ static void what_is_wrong_is_refused(void **state)
     } cases[] = {
         {NULL, "no row"},
         {"crop,Ku,gamma,-14,,,,,20,4,1,0,-8,0.6,0.7,3,5,1.2,test", "a second row"},
-        {"lava,Ka,gamma,-14,,,,,20,4,1,0,-8,0.6,0.7,3,5,1.2,test", "no such surface"},
-        {"none,Ka,gamma,-14,,,,,20,4,1,0,-8,0.6,0.7,3,5,1.2,test", "no such surface"},
+        {"lava,Ka,gamma,-14,,,,,20,4,1,0,-8,0.6,0.7,3,5,1.2,test", "surface: 'lava' is not one of grass, dry_grass"},
+        {"none,Ka,gamma,-14,,,,,20,4,1,0,-8,0.6,0.7,3,5,1.2,test", "surface: 'none' is not one of grass, dry_grass"},
         {"crop,X,gamma,-14,,,,,20,4,1,0,-8,0.6,0.7,3,5,1.2,test", "band: 'X' is not one of Ku, Ka, W"},
         {"crop,Ka,ulaby,-14,,,,,20,4,1,0,-8,0.6,0.7,3,5,1.2,test", "model: 'ulaby' is not one of gamma, git"},
         {"crop,Ka,gamma,,,,,,20,4,1,0,-8,0.6,0.7,3,5,1.2,test", "gamma_db"},

@@ -95,8 +95,8 @@ typedef struct Row {
 #define FIELD(member) TABLE_AT(Row, member)
 
 static const TableColumn columns[] = {
-    {"surface", TABLE_OWN, FIELD(surface), .parse = surface_parse},
-    {"band", TABLE_CHOICE, FIELD(band), .choices = "Ku, Ka, W"},
+    {"surface", TABLE_NAMED, FIELD(surface), SURFACE_NAMED, .key = true},
+    {"band", TABLE_CHOICE, FIELD(band), .choices = "Ku, Ka, W", .key = true},
     {"model", TABLE_CHOICE, FIELD(of.model), .choices = "gamma, git"},
     {"gamma_db", TABLE_DOUBLE, FIELD(of.gamma), .low = -60, .high = 20, .absent = TABLE_EMPTY, .otherwise = NAN},
     {"a", TABLE_DOUBLE, FIELD(of.a), .low = 1e-9, .high = 1e3, .absent = TABLE_EMPTY, .otherwise = NAN},
@@ -115,13 +115,8 @@ static const TableColumn columns[] = {
     {"extent_mm", TABLE_DOUBLE, FIELD(of.extent_m), .low = 0, .high = 1e3, .unit = 1e-3},
     {"foliage_db_m", TABLE_DOUBLE, FIELD(of.foliage_db_m), .low = 0, .high = 100},
 };
-static const TableFormat format = {"clutter", columns, sizeof columns / sizeof *columns,
+static const TableFormat format = {"clutter", columns, sizeof columns / sizeof *columns, .every = true,
                                    .next = "etc/reference/radar_clutter.md explains the columns"};
-
-typedef struct Reading {
-    ClutterTable table;
-    bool         seen[SURFACE_COUNT][CLUTTER_BAND_COUNT];
-} Reading;
 
 /* Whether a figure is there, which only rows of one model need; without it 0. */
 static bool given(double *figure)
@@ -135,14 +130,9 @@ static Status take_row(void *user, const void *read, const TableRows *rows, int 
 {
     static const double      smallest_nu = 0.05;
     static const char *const of_git[] = {"a", "b", "c", "d", "roughness_mm"};
-    Reading                 *r = user;
     const Row               *row = read;
-    ClutterRow              *to = &r->table.row[row->surface][row->band];
+    ClutterRow              *to = &((ClutterTable *)user)->row[row->surface][row->band];
     const bool               git = row->of.model == CLUTTER_GIT;
-    if (r->seen[row->surface][row->band])
-        return table_rows_refuse(rows, number, NULL, "a second row of %s, band %s", surface_name(row->surface),
-                                 bands[row->band].name);
-    r->seen[row->surface][row->band] = true;
     *to = row->of;
     double *const figure[] = {&to->a, &to->b, &to->c, &to->d, &to->roughness_m};
     for (int k = 0; k < 5; k++)
@@ -160,25 +150,14 @@ static Status take_row(void *user, const void *read, const TableRows *rows, int 
     return STATUS_OK;
 }
 
-static Status all_rows(void *user, const TableRows *rows)
-{
-    const Reading *r = user;
-    for (int s = SURFACE_NONE + 1; s < SURFACE_COUNT; s++)
-        for (int b = 0; b < CLUTTER_BAND_COUNT; b++)
-            if (!r->seen[s][b])
-                return table_rows_lack(rows, "no row of surface %s, band %s", surface_name((SurfaceClass)s),
-                                       bands[b].name);
-    return STATUS_OK;
-}
-
 Status clutter_table_open(ClutterTable *out, const char *path)
 {
-    Reading      r = {0};
+    ClutterTable table;
     Row          row;
-    const Status status = table_each(&format, path, &row, sizeof row, take_row, all_rows, &r);
+    const Status status = table_each(&format, path, &row, sizeof row, take_row, &table);
     if (status != STATUS_OK) return status;
-    memcpy(r.table.row[SURFACE_NONE], r.table.row[SURFACE_BARE_SOIL], sizeof r.table.row[SURFACE_NONE]);
-    *out = r.table;
+    memcpy(table.row[SURFACE_NONE], table.row[SURFACE_BARE_SOIL], sizeof table.row[SURFACE_NONE]);
+    *out = table;
     return STATUS_OK;
 }
 

@@ -57,7 +57,7 @@ static Status read_list(GasLineList *out, const char *path, const char *standard
         log_error("gas lines: no etc/%s", standard);
         return STATUS_IO;
     }
-    return table_each(format, path ? path : found, row, sizeof row, take_line, NULL, out);
+    return table_each(format, path ? path : found, row, sizeof row, take_line, out);
 }
 
 Status gas_lines_read(GasLines *out, const char *oxygen_path, const char *water_path)

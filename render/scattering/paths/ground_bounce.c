@@ -13,7 +13,7 @@ typedef struct Row {
 } Row;
 
 static const TableColumn columns[] = {
-    {"surface", TABLE_OWN, TABLE_AT(Row, surface), .parse = surface_parse},
+    {"surface", TABLE_NAMED, TABLE_AT(Row, surface), SURFACE_NAMED},
     {"f_ghz", TABLE_DOUBLE, TABLE_AT(Row, frequency_hz), .low = 0.1, .high = 1000, .unit = 1e9},
     {"eps_re", TABLE_DOUBLE, TABLE_AT(Row, e1), .low = 1, .high = 1000},
     {"eps_im", TABLE_DOUBLE, TABLE_AT(Row, e2), .low = 0, .high = 1e6},
@@ -42,19 +42,11 @@ static Status take_row(void *user, const void *read, const TableRows *rows, int 
     return STATUS_OK;
 }
 
-static Status all_rows(void *user, const TableRows *rows)
-{
-    const GroundTable *table = user;
-    bool               seen[SURFACE_COUNT];
-    for (int s = 0; s < SURFACE_COUNT; s++) seen[s] = table->row[s].points > 0;
-    return surface_rows_whole(rows, seen);
-}
-
 Status ground_table_open(GroundTable *out, const char *path)
 {
     GroundTable  table = {0};
     Row          row;
-    const Status status = table_each(&format, path, &row, sizeof row, take_row, all_rows, &table);
+    const Status status = table_each(&format, path, &row, sizeof row, take_row, &table);
     if (status != STATUS_OK) return status;
     table.row[SURFACE_NONE] = table.row[SURFACE_BARE_SOIL];
     *out = table;
