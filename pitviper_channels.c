@@ -1,12 +1,12 @@
 /* pitviper_channels.c: reads etc/channels.csv once; maps channels to array indices. */
 #include "pitviper_channels.h"
+#include "pitviper_table.h"
 
 #include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
 
 static const char *const standard_names[SPECTRAL_PLACES] = {"b", "g", "r", "pan", "nir", "mwir", "lwir"};
-static const char *const kind_names[] = {"reflective", "emissive", "both"};
 
 typedef struct ChannelList {
     int             count;
@@ -35,69 +35,65 @@ static bool edge_of(double *edge_m, const char *um)
            *edge_m >= 0.3e-6 && *edge_m <= 30e-6;
 }
 
-/* What is wrong with a row; NULL: nothing. */
-static const char *read_channel(ChannelList *list, const Table *t, int row, const int column[5])
+/* A row as it is in the file. */
+typedef struct Row {
+    SpectralChannel c;
+    const char     *low_um, *high_um;
+} Row;
+
+static const char *parse_name(void *out, const char *text)
 {
-    const char     *text[5];
-    SpectralChannel c = {0};
-    for (int k = 0; k < 5; k++) text[k] = table_text(t, row, column[k]);
-    const size_t length = strlen(text[0]);
-    for (size_t i = 0; i < length; i++)
-        if (!strchr("abcdefghijklmnopqrstuvwxyz0123456789_", text[0][i])) return "name: a-z, 0-9 and _ alone";
-    if (length == 0 || length >= sizeof c.name) return "name: 1 to 15 characters";
-    memcpy(c.name, text[0], length + 1);
-    for (int i = 0; i < list->count; i++)
-        if (strcmp(list->channel[i].name, c.name) == 0) return "a second row of this name";
-    if (!edge_of(&c.low_m, text[1]) || !edge_of(&c.high_m, text[2]) || !(c.low_m < c.high_m))
-        return "low_um below high_um, both 0.3 to 30";
-    snprintf(c.edges_um, sizeof c.edges_um, "%.12s-%.12s", text[1], text[2]);
-    int kind = 0;
-    while (kind < 3 && strcmp(kind_names[kind], text[3]) != 0) kind++;
-    if (kind == 3) return "kind: reflective, emissive or both";
-    c.kind = (ChannelKind)kind;
-    const int place = place_of(text[4]);
-    if (place == SPECTRAL_PLACES) return "place: b, g, r, pan, nir, mwir or lwir";
-    c.place = (ChannelPlace)place;
-    c.standard = strcmp(c.name, text[4]) == 0;
-    if (!c.standard && place_of(c.name) < SPECTRAL_PLACES) return "a standard channel has its own place";
-    if (!c.standard && place < SPECTRAL_NIR) return "place: nir, mwir or lwir";
-    if (kind != (place < SPECTRAL_MWIR    ? SPECTRAL_REFLECTIVE
-                 : place == SPECTRAL_MWIR ? SPECTRAL_BOTH
-                                          : SPECTRAL_EMISSIVE))
-        return "kind: nir's place is reflective, mwir's both, lwir's emissive";
-    list->channel[list->count++] = c;
+    const size_t length = strlen(text);
+    if (length == 0 || length >= sizeof((SpectralChannel *)0)->name ||
+        strspn(text, "abcdefghijklmnopqrstuvwxyz0123456789_") != length)
+        return "a name of 1 to 15 of a-z, 0-9 and _";
+    memcpy(out, text, length + 1);
     return NULL;
+}
+
+static const TableColumn columns[] = {
+    {"name", TABLE_OWN, TABLE_AT(Row, c.name), .parse = parse_name},
+    {"low_um", .type = TABLE_CELL, TABLE_AT(Row, low_um)},
+    {"high_um", .type = TABLE_CELL, TABLE_AT(Row, high_um)},
+    {"kind", TABLE_CHOICE, TABLE_AT(Row, c.kind), .choices = "reflective, emissive, both"},
+    {"place", TABLE_CHOICE, TABLE_AT(Row, c.place), .choices = "b, g, r, pan, nir, mwir, lwir"},
+};
+static const TableFormat format = {"channels", columns, 5, .next = "etc/channels.csv explains the columns",
+                                   .most_rows = channels_most};
+
+static Status take_channel(void *user, const void *read, const TableRows *rows, int row)
+{
+    ChannelList    *list = user;
+    const Row      *r = read;
+    SpectralChannel c = r->c;
+    for (int i = 0; i < list->count; i++)
+        if (strcmp(list->channel[i].name, c.name) == 0)
+            return table_rows_refuse(rows, row, NULL, "a second row of name %s", c.name);
+    if (!edge_of(&c.low_m, r->low_um) || !edge_of(&c.high_m, r->high_um) || !(c.low_m < c.high_m))
+        return table_rows_refuse(rows, row, "low_um", "below high_um, both 0.3 to 30");
+    snprintf(c.edges_um, sizeof c.edges_um, "%.12s-%.12s", r->low_um, r->high_um);
+    c.standard = strcmp(c.name, standard_names[c.place]) == 0;
+    if (!c.standard && place_of(c.name) < SPECTRAL_PLACES)
+        return table_rows_refuse(rows, row, "place", "that of the standard channel %s", c.name);
+    if (!c.standard && c.place < SPECTRAL_NIR) return table_rows_refuse(rows, row, "place", "nir, mwir or lwir");
+    if (c.kind != (c.place < SPECTRAL_MWIR    ? SPECTRAL_REFLECTIVE
+                   : c.place == SPECTRAL_MWIR ? SPECTRAL_BOTH
+                                              : SPECTRAL_EMISSIVE))
+        return table_rows_refuse(rows, row, "kind", "reflective of nir's place, both of mwir's, emissive of lwir's");
+    list->channel[list->count++] = c;
+    return STATUS_OK;
 }
 
 static Status read_list(ChannelList *list, const char *path)
 {
-    static const char *const columns[5] = {"name", "low_um", "high_um", "kind", "place"};
-    Table                    t = {0};
-    int                      column[5];
-    Status                   status = table_open(&t, path);
-    if (status != STATUS_OK) return status;
-    for (int k = 0; k < 5; k++)
-        if ((column[k] = table_column(&t, columns[k])) < 0) {
-            log_error("channels: %s:%d: column missing: %s", path, t.line[0], columns[k]);
-            status = STATUS_BAD_VALUE;
-        }
-    if (status == STATUS_OK && t.rows > channels_most) {
-        log_error("channels: %s: %d rows, of at most %d", path, t.rows, (int)channels_most);
-        status = STATUS_BAD_VALUE;
-    }
-    for (int row = 0; row < t.rows && status == STATUS_OK; row++) {
-        const char *wrong = read_channel(list, &t, row, column);
-        if (!wrong) continue;
-        log_error("channels: %s:%d: %s: %s", path, t.line[row + 1], table_text(&t, row, column[0]), wrong);
-        status = STATUS_BAD_VALUE;
-    }
-    table_close(&t);
-    bool has[SPECTRAL_PLACES] = {false};
+    Row          row;
+    bool         has[SPECTRAL_PLACES] = {false};
+    const Status status = table_each(&format, path, &row, sizeof row, take_channel, list);
     for (int i = 0; i < list->count; i++) has[list->channel[i].place] |= list->channel[i].standard;
     for (int p = 0; p < SPECTRAL_PLACES && status == STATUS_OK; p++) {
         if (has[p]) continue;
-        log_error("channels: %s: no row of %s", path, standard_names[p]);
-        status = STATUS_BAD_VALUE;
+        log_error("channels: %s: no row of %s; %s", path, standard_names[p], format.next);
+        return STATUS_BAD_VALUE;
     }
     return status;
 }

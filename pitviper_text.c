@@ -1,4 +1,4 @@
-/* pitviper_text.c: numbers from text, sanitizing of untrusted bytes, tables of text, and the word that was meant. */
+/* pitviper_text.c: numbers from text, sanitizing of untrusted bytes, and the word that was meant. */
 
 #include "pitviper_file.h"
 #include "pitviper_output.h"
@@ -9,8 +9,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <unistd.h>
-
-enum { table_max_octets = 1 << 26 };
 
 bool text_to_double(double *out, const char *text)
 {
@@ -132,155 +130,6 @@ void text_print(FILE *to, const char *format, ...)
 Status text_read_file(char **out, size_t *octets, const char *module, const char *path, size_t most)
 {
     return file_read_whole(out, octets, module, path, most, FILE_FROM_DISK);
-}
-
-/* ---- tables ------------------------------------------------------------------------------- */
-
-static char *trim(char *text)
-{
-    while (*text == ' ' || *text == '\t') text++;
-    char *end = text + strlen(text);
-    while (end > text && strchr(" \t\r", end[-1])) *--end = 0;
-    return text;
-}
-
-int text_split(char **cell, int capacity, char *line)
-{
-    int   count = 0;
-    char *at = line;
-    for (;;) {
-        while (*at == ' ' || *at == '\t') at++;
-        char *start = at, *end;
-        if (*at == '"') {
-            char *to = start = ++at;
-            while (*at && !(at[0] == '"' && at[1] != '"')) {
-                if (*at == '"') at++;
-                *to++ = *at++;
-            }
-            if (!*at) return -1;
-            at++;
-            end = to;
-            while (*at && *at != ',') at++;
-        } else {
-            while (*at && *at != ',') at++;
-            end = at;
-        }
-        const bool more = *at == ',';
-        *end = 0;
-        if (count < capacity) cell[count] = trim(start);
-        count++;
-        if (!more) return count;
-        at++;
-    }
-}
-
-Status table_open(Table *out, const char *path)
-{
-    Table  table = {0};
-    size_t octets = 0;
-    Status status = text_read_file(&table.text, &octets, "text", path, table_max_octets);
-    if (status != STATUS_OK) return status;
-    if (strlen(table.text) != octets) {
-        log_error("text: %s: holds a NUL octet; is it a text file?", path);
-        status = STATUS_BAD_VALUE;
-        goto fail;
-    }
-    status = STATUS_NO_MEMORY;
-    table.path = strdup(path);
-    if (!table.path) goto fail;
-
-    int lines = 1;
-    for (const char *c = table.text; *c; c++) lines += *c == '\n';
-    table.line = calloc((size_t)lines, sizeof *table.line);
-    if (!table.line) goto fail;
-
-    int number = 0;
-    table.rows = -1; /* the header is row -1 while counting */
-    for (char *next = table.text, *line; next && *next;) {
-        line = next;
-        next = strchr(line, '\n');
-        if (next) *next++ = 0;
-        number++;
-        line = trim(line);
-        if (!*line || *line == '#') continue;
-        if (table.rows < 0) {
-            int columns = 1;
-            for (const char *c = line; *c; c++) columns += *c == ',';
-            /* a row has at least one octet per column: bounds the memory for a wide header over many blank lines */
-            size_t cells_most = (size_t)columns * (size_t)lines;
-            if (cells_most > octets + (size_t)columns) cells_most = octets + (size_t)columns;
-            table.cell = calloc(cells_most, sizeof *table.cell);
-            if (!table.cell) goto fail;
-            table.columns = columns;
-        }
-        char    **row = table.cell + (size_t)(table.rows + 1) * (size_t)table.columns;
-        const int cells = text_split(row, table.columns, line);
-        if (table.rows < 0 && cells > 0) table.columns = cells;
-        if (cells != table.columns) {
-            if (cells < 0) log_error("text: %s:%d: a quote is not closed", path, number);
-            else log_error("text: %s:%d: %d columns where the header has %d", path, number, cells, table.columns);
-            status = STATUS_BAD_VALUE;
-            goto fail;
-        }
-        table.line[++table.rows] = number;
-    }
-    if (table.rows < 0) {
-        log_error("text: %s: no header line", path);
-        status = STATUS_BAD_VALUE;
-        goto fail;
-    }
-    log_detail("table: %s: %d rows", path, table.rows);
-    *out = table;
-    return STATUS_OK;
-
-fail:
-    table_close(&table);
-    return status;
-}
-
-void table_close(Table *table)
-{
-    free(table->path);
-    free(table->cell);
-    free(table->line);
-    free(table->text);
-    memset(table, 0, sizeof *table);
-}
-
-int table_column(const Table *table, const char *name)
-{
-    for (int i = 0; i < table->columns; i++)
-        if (strcmp(table->cell[i], name) == 0) return i;
-    return -1;
-}
-
-const char *table_text(const Table *table, int row, int column)
-{
-    return table->cell[(size_t)(row + 1) * (size_t)table->columns + (size_t)column];
-}
-
-bool table_columns(int *column, const Table *table, const char *const *name, int count, const char *module)
-{
-    for (int c = 0; c < count; c++) {
-        column[c] = table_column(table, name[c]);
-        if (column[c] >= 0) continue;
-        log_error("%s: %s has no column %s", module, table->path, name[c]);
-        return false;
-    }
-    return true;
-}
-
-Status table_number(double *out, const Table *table, int row, int column, double low, double high)
-{
-    const char *text = table_text(table, row, column);
-    double      value;
-    if (!text_to_double(&value, text) || !(value >= low && value <= high)) {
-        log_error("text: %s:%d: column %s: '%s' is not a number in %g .. %g", table->path, table->line[row + 1],
-                  table->cell[column], text, low, high);
-        return STATUS_BAD_VALUE;
-    }
-    *out = value;
-    return STATUS_OK;
 }
 
 /* Days since 1970-01-01 of a proleptic Gregorian date. Source: Hinnant, "chrono-compatible low-level date

@@ -33,40 +33,36 @@ SurfaceClass surface_find(const char *name)
     return SURFACE_NONE;
 }
 
+const char *surface_named(int surface) { return surface_name((SurfaceClass)surface); }
+
 /* ---- codes of files ------------------------------------------------------------------------------ */
+
+typedef struct CodeRow {
+    int          code;
+    SurfaceClass surface;
+} CodeRow;
+
+static Status take_code(void *user, const void *row, const TableRows *rows, int number)
+{
+    SurfaceTable  *t = user;
+    const CodeRow *r = row;
+    if (t->known[r->code]) return table_rows_refuse(rows, number, NULL, "a second row of code %d", r->code);
+    t->known[r->code] = true;
+    t->surface[r->code] = (uint8_t)r->surface;
+    return STATUS_OK;
+}
 
 /* Reads a CSV with columns code and surface; logs what is wrong with it. */
 static Status surface_table_read(SurfaceTable *out, const char *path)
 {
-    Table  table = {0};
-    Status status = table_open(&table, path);
-    if (status != STATUS_OK) return status;
-    SurfaceTable t = {0};
-    const int    code_column = table_column(&table, "code"), surface_column = table_column(&table, "surface");
-    status = STATUS_BAD_VALUE;
-    if (code_column < 0 || surface_column < 0) {
-        log_error("cover: %s needs the columns code and surface", path);
-        goto done;
-    }
-    for (int row = 0; row < table.rows; row++) {
-        double      code;
-        const char *name = table_text(&table, row, surface_column);
-        if (table_number(&code, &table, row, code_column, 0, surface_codes_most - 1) != STATUS_OK) goto done;
-        const SurfaceClass surface = surface_find(name);
-        if (code != floor(code) || t.known[(int)code] || (surface == SURFACE_NONE && strcmp(name, "none") != 0)) {
-            log_error(
-                "cover: %s:%d: code %g is not whole, given twice, or its surface '%s' unknown; terrain/surface.h and "
-                "etc/surfaces.csv list them",
-                path, table.line[row + 1], code, name);
-            goto done;
-        }
-        t.known[(int)code] = true;
-        t.surface[(int)code] = (uint8_t)surface;
-    }
-    *out = t;
-    status = STATUS_OK;
-done:
-    table_close(&table);
+    static const TableColumn columns[] = {
+        {"code", TABLE_INT, TABLE_AT(CodeRow, code), .low = 0, .high = surface_codes_most - 1},
+        {"surface", TABLE_NAMED, TABLE_AT(CodeRow, surface), SURFACE_OR_NONE}};
+    static const TableFormat format = {"cover", columns, 2, .next = "etc/cover_nlcd.csv is an example"};
+    CodeRow                  row;
+    SurfaceTable             table = {0};
+    const Status             status = table_each(&format, path, &row, sizeof row, take_code, &table);
+    if (status == STATUS_OK) *out = table;
     return status;
 }
 

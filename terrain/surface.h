@@ -2,7 +2,7 @@
 #ifndef TERRAIN_SURFACE_H
 #define TERRAIN_SURFACE_H
 
-#include "pitviper.h"
+#include "pitviper_table.h"
 
 typedef enum SurfaceClass {
     SURFACE_NONE = 0,
@@ -28,6 +28,10 @@ typedef enum SurfaceClass {
 
 const char  *surface_name(SurfaceClass surface);
 SurfaceClass surface_find(const char *name); /* SURFACE_NONE: no such class, or "none" */
+/* Of the column `surface` of tables: TABLE_NAMED of a SurfaceClass; with "none", or without. */
+const char *surface_named(int surface);
+#define SURFACE_NAMED   .low = SURFACE_NONE + 1, .high = SURFACE_COUNT - 1, .named = surface_named
+#define SURFACE_OR_NONE .high = SURFACE_COUNT - 1, .named = surface_named
 
 /* ---- from the codes of land cover files ---------------------------------------------------------- */
 

@@ -1,6 +1,7 @@
 /* entities/catalog/catalog.c: entity type -> model, by the longest pattern of etc/catalog.csv. */
 
 #include "entities/catalog/catalog_private.h"
+#include "pitviper_table.h"
 #include "entities/shapes/parametric.h"
 #include "pitviper_output.h"
 
@@ -8,15 +9,11 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-enum { catalog_columns = 7 };
-static const char *const column_name[catalog_columns] = {"type",    "model",    "origin", "length_m",
-                                                         "width_m", "height_m", "note"};
-
 static const double coarse_chord_error_m = 0.1;
 
 /* Reads a type: numbers and stars with dots between; parts omitted at the end are stars. Fields have 8 bits, the
  * country 16. */
-static bool parse_type(int field[catalog_type_fields], const char *text)
+static bool read_type(int field[catalog_type_fields], const char *text)
 {
     for (int f = 0; f < catalog_type_fields; f++) field[f] = catalog_any;
     for (int f = 0; f < catalog_type_fields; f++) {
@@ -117,52 +114,55 @@ static void build_fine(const Catalog *catalog, int index)
     pthread_mutex_unlock(catalog->building);
 }
 
-static Status read_size(ModelSize *size, const Table *table, int r, const int column[catalog_columns])
+/* A row as it is in the file. */
+typedef struct Row {
+    int         field[catalog_type_fields], origin;
+    const char *model, *note;
+    ModelSize   size;
+} Row;
+
+static const char *parse_type(void *out, const char *text)
 {
-    double *const figure[3] = {&size->length_m, &size->width_m, &size->height_m};
-    for (int k = 0; k < 3; k++) {
-        *figure[k] = 0;
-        if (column[3 + k] < 0 || !*table_text(table, r, column[3 + k])) continue;
-        const Status status = table_number(figure[k], table, r, column[3 + k], 0.001, 2000);
-        if (status != STATUS_OK) return status;
-    }
-    return STATUS_OK;
+    return read_type(out, text) ? NULL : "an entity type: kind.domain.country... of 0 .. 255 (country 0 .. 65535) or *";
 }
 
-static Status read_row(CatalogRow *row, Catalog *catalog, const Table *table, int r, const int column[catalog_columns])
+#define LENGTH(member) TABLE_DOUBLE, TABLE_AT(Row, size.member), .low = 0.001, .high = 2000, .absent = TABLE_OPTIONAL
+
+static const TableColumn columns[] = {
+    {"type", TABLE_OWN, TABLE_AT(Row, field), .parse = parse_type},
+    {"model", .type = TABLE_CELL, TABLE_AT(Row, model)},
+    {"origin", TABLE_CHOICE, TABLE_AT(Row, origin), .choices = "base, centre"},
+    {"length_m", LENGTH(length_m)},
+    {"width_m", LENGTH(width_m)},
+    {"height_m", LENGTH(height_m)},
+    {"note", TABLE_CELL, TABLE_AT(Row, note), .absent = TABLE_LATER},
+};
+static const TableFormat format = {"catalog", columns, sizeof columns / sizeof *columns,
+                                   .next = "etc/catalog.csv explains the columns"};
+
+static Status take_row(CatalogRow *row, Catalog *catalog, const TableRows *rows, int number)
 {
     static const ModelSize own_size = {0};
-    const char            *type = table_text(table, r, column[0]), *model = table_text(table, r, column[1]);
-    const char            *origin = table_text(table, r, column[2]);
-    const int              line = row->line = table->line[r + 1];
-
-    if (!parse_type(row->field, type)) {
-        log_error("catalog: not an entity type: file=%s line=%d type=\"%s\" want=kind.domain.country... of 0 .. 255 "
-                  "(country 0 .. 65535) or *",
-                  table->path, line, type);
-        return STATUS_BAD_VALUE;
-    }
+    Row                    read = {0};
+    Status                 status = table_rows_get(&read, rows, number);
+    if (status != STATUS_OK) return status;
+    memcpy(row->field, read.field, sizeof row->field);
+    row->line = rows->table.line[number + 1];
+    row->size = read.size;
+    row->origin = read.origin == 0 ? ORIGIN_BASE : ORIGIN_CENTRE;
     row->length = row->named = 0;
     for (int f = 0; f < catalog_type_fields; f++) {
         if (row->field[f] == catalog_any) continue;
         row->named++;
         row->length = f + 1;
     }
-    if (strcmp(origin, "base") == 0) row->origin = ORIGIN_BASE;
-    else if (strcmp(origin, "centre") == 0) row->origin = ORIGIN_CENTRE;
-    else {
-        log_error("catalog: not an origin: file=%s line=%d origin=\"%s\" want=base or centre", table->path, line,
-                  origin);
-        return STATUS_BAD_VALUE;
-    }
-    Status status = read_size(&row->size, table, r, column);
-    if (status != STATUS_OK) return status;
-    if (column[6] >= 0 && !(row->note = strdup(table_text(table, r, column[6])))) return STATUS_NO_MEMORY;
-    status = find_or_add(&row->model, catalog, model, model_is_path(model) ? &own_size : &row->size, table->path);
+    if (!(row->note = strdup(read.note))) return STATUS_NO_MEMORY;
+    status = find_or_add(&row->model, catalog, read.model, model_is_path(read.model) ? &own_size : &row->size,
+                         rows->table.path);
     if (status != STATUS_OK)
         log_error("catalog: cannot use this model: file=%s line=%d model=\"%s\" reason=%s; `pitviper model list` lists "
                   "what is built in, `pitviper model info FILE` says what is in a file",
-                  table->path, line, model, status_name(status));
+                  rows->table.path, row->line, read.model, status_name(status));
     return status == STATUS_UNSUPPORTED ? STATUS_BAD_VALUE : status;
 }
 
@@ -179,27 +179,13 @@ static int row_order(const void *x, const void *y)
 
 /* ---- the whole ----------------------------------------------------------------------------------- */
 
-/* Finds the columns of the table; -1: it is not there. */
-static Status find_columns(int column[catalog_columns], const Table *table)
+static Status take_rows(Catalog *catalog, const TableRows *rows, bool own)
 {
-    for (int c = 0; c < catalog_columns; c++) {
-        column[c] = table_column(table, column_name[c]);
-        if (column[c] >= 0 || c >= 3) continue;
-        log_error("catalog: a column is missing: file=%s line=%d column=%s", table->path, table->line[0],
-                  column_name[c]);
-        return STATUS_BAD_VALUE;
-    }
-    return STATUS_OK;
-}
-
-static Status read_table(Catalog *catalog, const Table *table, bool own)
-{
-    int    column[catalog_columns];
-    Status status = find_columns(column, table);
-    for (int r = 0; r < table->rows && status == STATUS_OK; r++) {
+    Status status = STATUS_OK;
+    for (int r = 0; r < rows->table.rows && status == STATUS_OK; r++) {
         CatalogRow *row = catalog->row + catalog->row_count;
         row->own = own;
-        status = read_row(row, catalog, table, r, column);
+        status = take_row(row, catalog, rows, r);
         row->order = catalog->row_count++;
     }
     return status;
@@ -209,7 +195,7 @@ Status catalog_open(Catalog **out, const char *path, double sag_m)
 {
     static const ModelSize own_size = {0};
     const char            *own_path = etc_own("catalog.csv");
-    Table                  table = {0}, own = {0};
+    TableRows              rows = {0}, own = {0};
     int                    unknown;
     Catalog               *catalog = NULL;
 
@@ -217,15 +203,15 @@ Status catalog_open(Catalog **out, const char *path, double sag_m)
         log_error("catalog: sag out of range: sag_m=%g range=1e-5..0.1", sag_m);
         return STATUS_BAD_VALUE;
     }
-    Status status = table_open(&table, path);
-    if (status == STATUS_OK && own_path) status = table_open(&own, own_path);
+    Status status = table_rows_open(&rows, &format, path);
+    if (status == STATUS_OK && own_path) status = table_rows_open(&own, &format, own_path);
     if (status != STATUS_OK) goto done;
     status = STATUS_NO_MEMORY;
     catalog = calloc(1, sizeof *catalog);
     if (!catalog) goto done;
-    const size_t rows = (size_t)table.rows + (size_t)own.rows + 1;
-    catalog->row = calloc(rows, sizeof *catalog->row);
-    catalog->model = calloc(rows, sizeof *catalog->model);
+    const size_t most = (size_t)rows.table.rows + (size_t)own.table.rows + 1;
+    catalog->row = calloc(most, sizeof *catalog->row);
+    catalog->model = calloc(most, sizeof *catalog->model);
     catalog->building = calloc(1, sizeof *catalog->building);
     catalog->path = strdup(path);
     catalog->own_path = strdup(own_path ? own_path : "");
@@ -236,14 +222,14 @@ Status catalog_open(Catalog **out, const char *path, double sag_m)
     status = find_or_add(&unknown, catalog, "unknown", &own_size, "");
     if (status != STATUS_OK) log_error("catalog: cannot build the unknown model: %s", status_name(status));
     /* the program's models keep their numbers, whatever the user adds: row_order decides the precedence */
-    if (status == STATUS_OK) status = read_table(catalog, &table, false);
-    if (status == STATUS_OK && own_path) status = read_table(catalog, &own, true);
+    if (status == STATUS_OK) status = take_rows(catalog, &rows, false);
+    if (status == STATUS_OK && own_path) status = take_rows(catalog, &own, true);
     qsort(catalog->row, (size_t)catalog->row_count, sizeof *catalog->row, row_order);
     if (status == STATUS_OK) catalog_warn_sizes(catalog);
 
 done:
-    table_close(&table);
-    table_close(&own);
+    table_rows_close(&rows);
+    table_rows_close(&own);
     if (status == STATUS_OK) *out = catalog;
     else catalog_close(catalog);
     return status;

@@ -3,21 +3,29 @@
 #include "entities/exercise/cast_private.h"
 
 #include "dis/pdu/pdu.h"
+#include "pitviper_table.h"
 #include "entities/catalog/catalog.h"
 
 #include <stdlib.h>
 
 /* ---- types ------------------------------------------------------------------------------------ */
 
+typedef struct TypeRow {
+    const char *type, *model;
+} TypeRow;
+
+static const TableColumn type_columns[] = {{"type", .type = TABLE_CELL, TABLE_AT(TypeRow, type)},
+                                           {"model", .type = TABLE_CELL, TABLE_AT(TypeRow, model)}};
+static const TableFormat type_format = {"catalog", type_columns, 2, .next = "etc/catalog.csv explains the columns"};
+
 /* The first row of the catalog with this model; its wildcards become 0. */
-static bool type_of_model(DisEntityType *out, const Table *catalog, const char *model)
+static bool type_of_model(DisEntityType *out, const TableRows *catalog, const char *model)
 {
-    const int type = table_column(catalog, "type"), name = table_column(catalog, "model");
-    for (int row = 0; type >= 0 && name >= 0 && row < catalog->rows; row++) {
-        if (strcmp(table_text(catalog, row, name), model) != 0) continue;
+    for (int row = 0; row < catalog->table.rows; row++) {
+        if (strcmp(table_rows_text(catalog, row, "model"), model) != 0) continue;
         char text[scenario_type_size], *to = text;
         int  fields = 1;
-        for (const char *at = table_text(catalog, row, type); *at && to < text + sizeof text - 16; at++) {
+        for (const char *at = table_rows_text(catalog, row, "type"); *at && to < text + sizeof text - 16; at++) {
             fields += *at == '.';
             *to++ = *at == '*' ? '0' : *at;
         }
@@ -28,18 +36,18 @@ static bool type_of_model(DisEntityType *out, const Table *catalog, const char *
     return false;
 }
 
-static bool find_type(DisEntityType *out, const Cast *cast, const Table *catalog, int line, const char *list,
+static bool find_type(DisEntityType *out, const Cast *cast, const TableRows *catalog, int line, const char *list,
                       const char *type)
 {
     if (scenario_type_parse(out, type) || type_of_model(out, catalog, type)) return true;
     char shown[128], known[512];
-    int  n = 0, name = table_column(catalog, "model");
+    int  n = 0;
     text_escape(shown, sizeof shown, type, strlen(type));
     known[0] = 0;
-    for (int row = 0; name >= 0 && row < catalog->rows; row++) {
-        const char *model = table_text(catalog, row, name);
+    for (int row = 0; row < catalog->table.rows; row++) {
+        const char *model = table_rows_text(catalog, row, "model");
         bool        met = false;
-        for (int k = 0; k < row && !met; k++) met = strcmp(table_text(catalog, k, name), model) == 0;
+        for (int k = 0; k < row && !met; k++) met = strcmp(table_rows_text(catalog, k, "model"), model) == 0;
         if (!met && n < (int)sizeof known - 80)
             n += snprintf(known + n, sizeof known - (size_t)n, "%s%.64s", n ? ", " : "", model);
     }
@@ -160,7 +168,7 @@ static double stop_time(const Cast *cast, int group, Carriage carriage)
 
 /* ---- all entities ----------------------------------------------------------------------------- */
 
-static Status cast_group(Cast *cast, int group, int first, int first_id, const Table *types, const Catalog *catalog)
+static Status cast_group(Cast *cast, int group, int first, int first_id, const TableRows *types, const Catalog *catalog)
 {
     const Scenario      *s = cast->scenario;
     const ScenarioGroup *g = &s->group[group];
@@ -199,7 +207,7 @@ static Status cast_group(Cast *cast, int group, int first, int first_id, const T
     return STATUS_OK;
 }
 
-static Status cast_shot(Cast *cast, int shot, int *entity, int *round, int first_id, const Table *types)
+static Status cast_shot(Cast *cast, int shot, int *entity, int *round, int first_id, const TableRows *types)
 {
     const Scenario     *s = cast->scenario;
     const ScenarioShot *each = &s->shot[shot];
@@ -241,11 +249,11 @@ static Status fill(Cast *cast, int *ids, int *first)
     static const double coarse_chord_error_m = 0.1; /* only joints are needed, not shapes */
     const Scenario     *s = cast->scenario;
     char                path[4096];
-    Table               types;
+    TableRows           types;
     Catalog            *catalog = NULL;
     int                 entity = 0, round = 0;
     if (!etc_path(path, sizeof path, "catalog.csv")) return STATUS_BAD_VALUE;
-    Status status = table_open(&types, path);
+    Status status = table_rows_open(&types, &type_format, path);
     if (status != STATUS_OK) return status;
     if (needs_models(s)) status = catalog_open(&catalog, path, coarse_chord_error_m);
     for (int g = 0; g < s->group_count && status == STATUS_OK; g++) {
@@ -256,7 +264,7 @@ static Status fill(Cast *cast, int *ids, int *first)
     for (int i = 0; i < s->shot_count && status == STATUS_OK; i++)
         status = cast_shot(cast, i, &entity, &round, ids[s->group_count + i], &types);
     if (catalog) catalog_close(catalog);
-    table_close(&types);
+    table_rows_close(&types);
     return status == STATUS_OK ? cast_solve_shots(cast, ids, first) : status;
 }
 

@@ -1,41 +1,45 @@
 /* entities/import/import_surface.c: default surface of a part: material, heat, normals. */
 #include "entities/import/model_import_private.h"
+#include "pitviper_table.h"
 
 #include <ctype.h>
 #include <stdlib.h>
 
 /* ---- materials ---------------------------------------------------------------------------------------- */
 
+typedef struct PaintRow {
+    const char *name;
+    float       rgb[3];
+} PaintRow;
+
 static Status read_paints(ImportPaints *paints, const char *path)
 {
-    Table  table;
-    Status status = table_open(&table, path);
+    static const TableColumn columns[] = {{"name", .type = TABLE_CELL, TABLE_AT(PaintRow, name)},
+                                          {"rho_r", TABLE_FLOAT, TABLE_AT(PaintRow, rgb[0]), .high = 1},
+                                          {"rho_g", TABLE_FLOAT, TABLE_AT(PaintRow, rgb[1]), .high = 1},
+                                          {"rho_b", TABLE_FLOAT, TABLE_AT(PaintRow, rgb[2]), .high = 1}};
+    static const TableFormat format = {"model", columns, 4, .next = "etc/materials.csv explains the columns"};
+    TableRows                rows;
+    Status                   status = table_rows_open(&rows, &format, path);
     if (status != STATUS_OK) return status;
-    const int name = table_column(&table, "name"), before = paints->count,
-              column[3] = {table_column(&table, "rho_r"), table_column(&table, "rho_g"), table_column(&table, "rho_b")};
-    char(*names)[32] = realloc(paints->name, ((size_t)before + (size_t)table.rows + 1) * sizeof *names);
+    const size_t most = (size_t)paints->count + (size_t)rows.table.rows + 1;
+    char(*names)[32] = realloc(paints->name, most * sizeof *names);
     if (names) paints->name = names;
-    float(*rgb)[3] = realloc(paints->rgb, ((size_t)before + (size_t)table.rows + 1) * sizeof *rgb);
+    float(*rgb)[3] = realloc(paints->rgb, most * sizeof *rgb);
     if (rgb) paints->rgb = rgb;
-    if (!names || !rgb) {
-        status = STATUS_NO_MEMORY;
-    } else if (name < 0 || column[0] < 0 || column[1] < 0 || column[2] < 0) {
-        log_error("model: a column is missing: file=%s columns=name,rho_r,rho_g,rho_b", path);
-        status = STATUS_BAD_VALUE;
+    if (!names || !rgb) status = STATUS_NO_MEMORY;
+    for (int r = 0; r < rows.table.rows && status == STATUS_OK; r++) {
+        PaintRow row;
+        int      at = 0; /* the user's own row replaces one of the same name in its place, since of two equal ones the
+                            first counts */
+        status = table_rows_get(&row, &rows, r);
+        if (status != STATUS_OK) break;
+        while (at < paints->count && strcmp(paints->name[at], row.name) != 0) at++;
+        snprintf(paints->name[at], sizeof paints->name[0], "%s", row.name);
+        memcpy(paints->rgb[at], row.rgb, sizeof row.rgb);
+        paints->count += at == paints->count;
     }
-    for (int r = 0; r < table.rows && status == STATUS_OK; r++) {
-        int row = 0; /* the user's own row replaces one of the same name in its place, since of two equal ones the first
-                        counts */
-        while (row < paints->count && strcmp(paints->name[row], table_text(&table, r, name)) != 0) row++;
-        snprintf(paints->name[row], sizeof paints->name[0], "%s", table_text(&table, r, name));
-        for (int c = 0; c < 3 && status == STATUS_OK; c++) {
-            double rho = 0;
-            status = table_number(&rho, &table, r, column[c], 0, 1);
-            paints->rgb[row][c] = (float)rho;
-        }
-        paints->count += row == paints->count;
-    }
-    table_close(&table);
+    table_rows_close(&rows);
     return status;
 }
 

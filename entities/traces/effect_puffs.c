@@ -1,6 +1,8 @@
 /* entities/traces/effect_puffs.c: the rows of etc/effects.csv, and a puff's closed form. */
 #include "entities/traces/effect_puffs.h"
 
+#include "pitviper_table.h"
+
 #include <stdio.h>
 
 /* mean density of the spheroid as a share of its peak density */
@@ -13,109 +15,66 @@ static const char *const kind_names[EFFECT_KIND_COUNT] = {
 
 /* ---- table -------------------------------------------------------------------------------- */
 
-static const struct {
-    const char *name;
-    size_t      offset;
-    double      low, high;
-} columns[] = {
-    {"asymmetry", offsetof(EffectModel, asymmetry), -0.95, 0.95},
-    {"mass_kg", offsetof(EffectModel, mass_kg), 0, 1e4},
-    {"radius_start_m", offsetof(EffectModel, radius_start_m), 0.01, 100},
-    {"radius_end_m", offsetof(EffectModel, radius_end_m), 0.01, 1000},
-    {"grow_s", offsetof(EffectModel, grow_s), 1e-4, 1e4},
-    {"spread_mps", offsetof(EffectModel, spread_mps), 0, 10},
-    {"rise_mps", offsetof(EffectModel, rise_mps), 0, 50},
-    {"rise_s", offsetof(EffectModel, rise_s), 0.01, 1e4},
-    {"temp_rise_k", offsetof(EffectModel, temp_rise_k), 0, 5000},
-    {"cool_s", offsetof(EffectModel, cool_s), 1e-4, 1e4},
-    {"life_s", offsetof(EffectModel, life_s), 1e-3, 1e4},
-    {"time_power", offsetof(EffectModel, time_power), 0, 1},
-    {"billow", offsetof(EffectModel, billow), 0, 1},
-    {"co2_share", offsetof(EffectModel, co2_share), 0, 1},
-    {"h2o_share", offsetof(EffectModel, h2o_share), 0, 1},
-};
-enum { column_count = sizeof columns / sizeof *columns };
+typedef struct Row {
+    int         kind;
+    EffectModel law;
+} Row;
 
-/* columns of ext_ and albedo_ for the channel in each place except pan's */
-typedef struct ChannelColumns {
-    int of[2][effect_band_count]; /* columns of extinction and albedo; -1: pan */
-} ChannelColumns;
+static const char *kind_named(int kind) { return kind_names[kind]; }
 
-static bool find_channel_columns(ChannelColumns *out, const Table *table)
+static Status take_row(void *user, const void *read, const TableRows *rows, int number)
 {
-    bool all = channels_load() == STATUS_OK;
-    for (int which = 0; which < 2; which++)
-        for (int b = 0; b < effect_band_count; b++) {
-            char name[32];
-            out->of[which][b] = -1;
-            if (b == effect_band_pan) continue;
-            snprintf(name, sizeof name, "%s_%s", which ? "albedo" : "ext", channel_in((ChannelPlace)b)->name);
-            out->of[which][b] = table_column(table, name);
-            if (out->of[which][b] >= 0) continue;
-            log_error("effects: a column is missing: file=%s column=%s", table->path, name);
-            all = false;
-        }
-    return all;
-}
-
-static Status read_row(EffectTable *effects, bool seen[EFFECT_KIND_COUNT], const Table *table, int row, int name_column,
-                       const int column[column_count], const ChannelColumns *channels)
-{
-    const char *name = table_text(table, row, name_column);
-    int         kind = 0;
-    while (kind < EFFECT_KIND_COUNT && strcmp(kind_names[kind], name) != 0) kind++;
-    if (kind == EFFECT_KIND_COUNT || seen[kind]) {
-        log_error("effects: %s: file=%s line=%d name=\"%s\"",
-                  kind == EFFECT_KIND_COUNT ? "no such effect" : "a second row for an effect", table->path,
-                  table->line[row + 1], name);
-        return STATUS_BAD_VALUE;
-    }
-    seen[kind] = true;
-    EffectModel *law = &effects->law[kind];
-    for (int c = 0; c < column_count; c++) {
-        double      *to = (double *)((char *)law + columns[c].offset);
-        const Status status = table_number(to, table, row, column[c], columns[c].low, columns[c].high);
-        if (status != STATUS_OK) return status;
-    }
+    Row row = *(const Row *)read;
+    (void)rows, (void)number;
     for (int which = 0; which < 2; which++) {
-        double *of = which ? law->albedo : law->extinction_m2_kg;
-        for (int b = 0; b < effect_band_count; b++) {
-            if (channels->of[which][b] < 0) continue;
-            const Status status = table_number(&of[b], table, row, channels->of[which][b], 0, which ? 1 : 1e5);
-            if (status != STATUS_OK) return status;
-        }
+        double *of = which ? row.law.albedo : row.law.extinction_m2_kg;
         of[effect_band_pan] = (of[effect_band_b] + of[effect_band_g] + of[effect_band_r]) / 3;
     }
+    ((EffectTable *)user)->law[row.kind] = row.law;
     return STATUS_OK;
 }
 
+#define FIELD(member) TABLE_AT(Row, member)
+
+static const TableColumn own_columns[] = {
+    {"name", TABLE_NAMED, FIELD(kind), .high = EFFECT_KIND_COUNT - 1, .named = kind_named, .key = true},
+    {"asymmetry", TABLE_DOUBLE, FIELD(law.asymmetry), .low = -0.95, .high = 0.95},
+    {"mass_kg", TABLE_DOUBLE, FIELD(law.mass_kg), .low = 0, .high = 1e4},
+    {"radius_start_m", TABLE_DOUBLE, FIELD(law.radius_start_m), .low = 0.01, .high = 100},
+    {"radius_end_m", TABLE_DOUBLE, FIELD(law.radius_end_m), .low = 0.01, .high = 1000},
+    {"grow_s", TABLE_DOUBLE, FIELD(law.grow_s), .low = 1e-4, .high = 1e4},
+    {"spread_mps", TABLE_DOUBLE, FIELD(law.spread_mps), .low = 0, .high = 10},
+    {"rise_mps", TABLE_DOUBLE, FIELD(law.rise_mps), .low = 0, .high = 50},
+    {"rise_s", TABLE_DOUBLE, FIELD(law.rise_s), .low = 0.01, .high = 1e4},
+    {"temp_rise_k", TABLE_DOUBLE, FIELD(law.temp_rise_k), .low = 0, .high = 5000},
+    {"cool_s", TABLE_DOUBLE, FIELD(law.cool_s), .low = 1e-4, .high = 1e4},
+    {"life_s", TABLE_DOUBLE, FIELD(law.life_s), .low = 1e-3, .high = 1e4},
+    {"time_power", TABLE_DOUBLE, FIELD(law.time_power), .low = 0, .high = 1},
+    {"billow", TABLE_DOUBLE, FIELD(law.billow), .low = 0, .high = 1},
+    {"co2_share", TABLE_DOUBLE, FIELD(law.co2_share), .low = 0, .high = 1, .absent = TABLE_LATER},
+    {"h2o_share", TABLE_DOUBLE, FIELD(law.h2o_share), .low = 0, .high = 1, .absent = TABLE_LATER},
+};
+enum { own_count = sizeof own_columns / sizeof *own_columns, channel_columns = 2 * effect_band_count };
+
 Status effect_table_open(EffectTable *out, const char *path)
 {
+    TableColumn columns[own_count + channel_columns];
+    char        name[channel_columns][32];
+    TableFormat format = {"effects", columns, own_count, .every = true, .next = "etc/effects.csv explains the columns"};
     EffectTable effects = {0};
-    bool        seen[EFFECT_KIND_COUNT] = {false};
-    Table       table = {0};
-    int         column[column_count];
-    Status      status = table_open(&table, path);
-
-    if (status != STATUS_OK) return status;
-    const int name_column = table_column(&table, "name");
-    for (int c = -1; c < column_count; c++) {
-        const int at = c < 0 ? name_column : table_column(&table, columns[c].name);
-        if (c >= 0) column[c] = at;
-        if (at >= 0) continue;
-        log_error("effects: a column is missing: file=%s column=%s", path, c < 0 ? "name" : columns[c].name);
-        status = STATUS_BAD_VALUE;
+    Row         row;
+    if (channels_load() != STATUS_OK) return STATUS_BAD_VALUE;
+    memcpy(columns, own_columns, sizeof own_columns);
+    /* ext_ and albedo_ of the channel in each place except pan's */
+    for (int k = 0; k < channel_columns; k++) {
+        const int    b = k % effect_band_count, albedo = k / effect_band_count;
+        const size_t of = albedo ? offsetof(Row, law.albedo) : offsetof(Row, law.extinction_m2_kg);
+        if (b == effect_band_pan) continue;
+        snprintf(name[k], sizeof name[k], "%s_%s", albedo ? "albedo" : "ext", channel_in((ChannelPlace)b)->name);
+        columns[format.count++] =
+            (TableColumn){.name = name[k], .offset = of + (size_t)b * sizeof(double), .high = albedo ? 1 : 1e5};
     }
-    ChannelColumns channels;
-    if (!find_channel_columns(&channels, &table)) status = STATUS_BAD_VALUE;
-    for (int row = 0; row < table.rows && status == STATUS_OK; row++)
-        status = read_row(&effects, seen, &table, row, name_column, column, &channels);
-    for (int kind = 0; kind < EFFECT_KIND_COUNT && status == STATUS_OK; kind++) {
-        if (seen[kind]) continue;
-        log_error("effects: an effect has no row: file=%s name=%s", path, kind_names[kind]);
-        status = STATUS_BAD_VALUE;
-    }
-    table_close(&table);
+    const Status status = table_each(&format, path, &row, sizeof row, take_row, &effects);
     if (status == STATUS_OK) *out = effects;
     return status;
 }

@@ -1,6 +1,8 @@
 /* entities/traces/ground_marks_file.c: ground marks as a CSV file, over a restart. */
 #include "entities/traces/ground_marks_private.h"
 
+#include "pitviper_table.h"
+
 #include <stdlib.h>
 
 /* Columns of the file; those from `from_unix_s` on are numbers. A cell is empty where the kind of mark has no such
@@ -73,7 +75,6 @@ static const char *const column_name[column_count] = {"kind",
                                                       "blow_from_unix_s",
                                                       "blow_to_unix_s"};
 
-static const double latest_unix_s = 1e12, earth_m = 1e8, largest_m = 1000, hottest_j_m2 = 1e9;
 static const double longest_s = 3.2e10; /* longest stand, a thousand years */
 
 /* ---- saved ---------------------------------------------------------------------------------- */
@@ -185,46 +186,90 @@ Status ground_marks_save(const GroundHistory *h, double unix_s, const char *path
 
 /* ---- loaded --------------------------------------------------------------------------------- */
 
-/* A row that is being read; its first error is kept, and was logged by table_number. */
+/* A row as it is in the file: of each kind of mark a part. */
 typedef struct Row {
-    const Table *table;
-    const int   *column; /* [column_count] places of the columns in the file */
-    int          row;
-    double       unix_s;
-    Status       status;
+    int    kind;
+    double owner, from_unix_s, to_unix_s; /* owner 0: none; to_unix_s NaN: no end is known */
+    double p[3], q[3], r[9];
+    float  low[3], high[3], width_m, apart_m, radius_m, crater_m, heat_j_m2;
+    double tracked;
+    float  blow[3], blow_d[3], blow_radius_m, blow_mps, blow_excess_k;
+    double blow_from_unix_s, blow_to_unix_s;
 } Row;
 
-static Status complain(const Row *r, const char *what)
-{
-    log_error("marks: %s:%d: %s", r->table->path, r->table->line[r->row + 1], what);
-    return STATUS_BAD_VALUE;
-}
+/* Columns of the file from `at` on, whose members are beside one another. */
+typedef struct Part {
+    int         at, count;
+    TableType   type;
+    size_t      offset;
+    double      low, high;
+    TableAbsent absent;
+} Part;
 
-static double number(Row *r, int at, double low, double high)
-{
-    double value = low;
-    if (r->status == STATUS_OK) r->status = table_number(&value, r->table, r->row, r->column[at], low, high);
-    return value;
-}
+#define PLACE(at, member)                                                                                              \
+    {                                                                                                                  \
+        at, 3, TABLE_DOUBLE, offsetof(Row, member), -1e8, 1e8, TABLE_REQUIRED                                          \
+    }
+#define LENGTH(at, count, member, low, high)                                                                           \
+    {                                                                                                                  \
+        at, count, TABLE_FLOAT, offsetof(Row, member), low, high, TABLE_REQUIRED                                       \
+    }
+#define TIME(at, member, absent)                                                                                       \
+    {                                                                                                                  \
+        at, 1, TABLE_DOUBLE, offsetof(Row, member), -1e12, 1e12, absent                                                \
+    }
 
-static void numbers(double *out, Row *r, int at, int count, double most)
-{
-    for (int i = 0; i < count; i++) out[i] = number(r, at + i, -most, most);
-}
+enum { KIND_STAND, KIND_TRACK, KIND_BURN, KIND_BLOW, kinds, parts_most = 10 };
 
-static void lengths(float *out, Row *r, int at, int count, double low, double high)
-{
-    for (int i = 0; i < count; i++) out[i] = (float)number(r, at + i, low, high);
-}
+static const Part parts[kinds][parts_most] = {
+    [KIND_STAND] = {{at_owner, 1, TABLE_DOUBLE, offsetof(Row, owner), 1, 0x1p49, TABLE_REQUIRED},
+                    TIME(at_from, from_unix_s, TABLE_REQUIRED),
+                    TIME(at_to, to_unix_s, TABLE_EMPTY),
+                    PLACE(at_p, p),
+                    {at_r, 9, TABLE_DOUBLE, offsetof(Row, r), -2, 2, TABLE_REQUIRED},
+                    LENGTH(at_low, 3, low, -1000, 1000),
+                    LENGTH(at_high, 3, high, -1000, 1000)},
+    [KIND_TRACK] = {{at_owner, 1, TABLE_DOUBLE, offsetof(Row, owner), 1, 0x1p49, TABLE_EMPTY},
+                    TIME(at_from, from_unix_s, TABLE_REQUIRED),
+                    TIME(at_to, to_unix_s, TABLE_REQUIRED),
+                    PLACE(at_p, p),
+                    PLACE(at_q, q),
+                    LENGTH(at_width, 1, width_m, 0, 1000),
+                    LENGTH(at_apart, 1, apart_m, 0, 1000),
+                    LENGTH(at_heat, 1, heat_j_m2, 0, 1e9),
+                    {at_tracked, 1, TABLE_WHOLE, offsetof(Row, tracked), 0, 1, TABLE_REQUIRED}},
+    [KIND_BURN] = {TIME(at_from, from_unix_s, TABLE_REQUIRED), PLACE(at_p, p), LENGTH(at_radius, 1, radius_m, 0, 1000),
+                   LENGTH(at_crater, 1, crater_m, 0, 1000), LENGTH(at_heat, 1, heat_j_m2, 0, 1e9)},
+    [KIND_BLOW] = {LENGTH(at_blow, 3, blow, -1000, 1000), LENGTH(at_blow_d, 3, blow_d, -1.001, 1.001),
+                   LENGTH(at_blow_radius, 1, blow_radius_m, 0, 1000), LENGTH(at_blow_speed, 1, blow_mps, 0, 1000),
+                   LENGTH(at_blow_excess, 1, blow_excess_k, 0, 5000),
+                   TIME(at_blow_from, blow_from_unix_s, TABLE_REQUIRED),
+                   TIME(at_blow_to, blow_to_unix_s, TABLE_EMPTY)}};
 
-static double time_of(Row *r, int at) { return number(r, at, -latest_unix_s, latest_unix_s) - r->unix_s; }
+/* A file's rows as those of each kind; all share one table. A file may have no columns of exhaust. */
+typedef struct Reading {
+    TableColumn    column[kinds][column_count];
+    TableFormat    format[kinds];
+    TableRows      of[kinds];
+    bool           blows;
+    GroundHistory *to;
+    double         unix_s;
+} Reading;
 
-static void place(double p_ecef[3], Row *r, int at)
+static void fill_format(TableFormat *out, TableColumn *column, const Part *part)
 {
-    numbers(p_ecef, r, at, 3, earth_m);
-    const double r_m = v3_length(p_ecef);
-    if (r->status == STATUS_OK && !(r_m >= 1e5 && r_m <= earth_m))
-        r->status = complain(r, "a place far from the Earth's surface");
+    *out = (TableFormat){.module = "marks", .column = column, .next = "the program writes such files itself"};
+    for (int k = 0; k < parts_most && part[k].count > 0; k++)
+        for (int i = 0; i < part[k].count; i++) {
+            const size_t size = part[k].type == TABLE_FLOAT ? sizeof(float) : sizeof(double);
+            column[out->count++] = (TableColumn){.name = column_name[part[k].at + i],
+                                                 .type = part[k].type,
+                                                 .offset = part[k].offset + (size_t)i * size,
+                                                 .low = part[k].low,
+                                                 .high = part[k].high,
+                                                 .absent = part[k].absent,
+                                                 .otherwise = part[k].at == at_owner ? 0 : NAN};
+        }
 }
 
 static bool is_rotation(const double m[9])
@@ -237,120 +282,120 @@ static bool is_rotation(const double m[9])
     return v3_dot(across, m + 6) > 0;
 }
 
-static void take_blow(GroundBlow *b, Row *r, double stand_to_s)
+static bool near_earth(const double p_ecef[3])
 {
-    const char *to = table_text(r->table, r->row, r->column[at_blow_to]);
-    lengths(b->at_m, r, at_blow, 3, -largest_m, largest_m);
-    lengths(b->d, r, at_blow_d, 3, -1.001, 1.001);
-    lengths(&b->radius_m, r, at_blow_radius, 1, 0, largest_m);
-    lengths(&b->speed_mps, r, at_blow_speed, 1, 0, 1000);
-    lengths(&b->excess_k, r, at_blow_excess, 1, 0, 5000);
-    b->from_s = time_of(r, at_blow_from);
-    b->to_s = *to ? fmin(time_of(r, at_blow_to), stand_to_s) : stand_to_s;
+    const double r_m = v3_length(p_ecef);
+    return r_m >= 1e5 && r_m <= 1e8;
 }
 
-static void take_stand(GroundHistory *h, Row *r)
+/* What is wrong with the mark; NULL: it was taken. */
+static const char *take_stand(const Reading *g, const Row *r)
 {
-    GroundStand s = {0};
-    const char *to = table_text(r->table, r->row, r->column[at_to]);
-    s.owner = (uint64_t)number(r, at_owner, 1, 0x1p49);
-    s.from_s = time_of(r, at_from);
-    s.to_s = *to ? time_of(r, at_to) : fmax(s.from_s, 0); /* the exercise was paused */
-    place(s.p_ecef, r, at_p);
-    numbers(s.r_ecef_from_body, r, at_r, 9, 2);
-    lengths(s.low_m, r, at_low, 3, -largest_m, largest_m);
-    lengths(s.high_m, r, at_high, 3, -largest_m, largest_m);
-    if (r->column[at_blow_from] >= 0 && *table_text(r->table, r->row, r->column[at_blow_from]))
-        take_blow(&s.blow, r, s.to_s);
-    if (r->status != STATUS_OK) return;
-    if (!is_rotation(s.r_ecef_from_body)) r->status = complain(r, "r11 to r33 are no rotation");
-    else if (!(s.from_s <= s.to_s && (!*to || s.to_s - s.from_s <= longest_s)))
-        r->status = complain(r, "to_unix_s is before from_unix_s, or a thousand years later");
-    for (int i = 0; i < 3 && r->status == STATUS_OK; i++)
-        if (!(s.low_m[i] <= s.high_m[i])) r->status = complain(r, "the box ends before it begins");
-    if (r->status == STATUS_OK) ground_stand_open(h, &s);
+    const bool  ends = !isnan(r->to_unix_s);
+    GroundStand s = {.owner = (uint64_t)r->owner, .from_s = r->from_unix_s - g->unix_s};
+    s.to_s = ends ? r->to_unix_s - g->unix_s : fmax(s.from_s, 0); /* the exercise was paused */
+    memcpy(s.p_ecef, r->p, sizeof s.p_ecef);
+    memcpy(s.r_ecef_from_body, r->r, sizeof s.r_ecef_from_body);
+    memcpy(s.low_m, r->low, sizeof s.low_m);
+    memcpy(s.high_m, r->high, sizeof s.high_m);
+    if (r->blow_radius_m >= 0) {
+        GroundBlow *b = &s.blow;
+        memcpy(b->at_m, r->blow, sizeof b->at_m);
+        memcpy(b->d, r->blow_d, sizeof b->d);
+        b->radius_m = r->blow_radius_m, b->speed_mps = r->blow_mps, b->excess_k = r->blow_excess_k;
+        b->from_s = r->blow_from_unix_s - g->unix_s;
+        b->to_s = isnan(r->blow_to_unix_s) ? s.to_s : fmin(r->blow_to_unix_s - g->unix_s, s.to_s);
+    }
+    if (!is_rotation(s.r_ecef_from_body)) return "r11 to r33 are no rotation";
+    if (!(s.from_s <= s.to_s && (!ends || s.to_s - s.from_s <= longest_s)))
+        return "to_unix_s is before from_unix_s, or a thousand years later";
+    for (int i = 0; i < 3; i++)
+        if (!(s.low_m[i] <= s.high_m[i])) return "the box ends before it begins";
+    ground_stand_open(g->to, &s);
+    return NULL;
 }
 
-static void take_track(GroundHistory *h, Row *r)
+static const char *take_track(const Reading *g, const Row *r)
 {
-    GroundTrack t = {0};
-    double      along[3];
-    if (*table_text(r->table, r->row, r->column[at_owner])) t.owner = (uint64_t)number(r, at_owner, 1, 0x1p49);
-    t.a_s = time_of(r, at_from);
-    t.b_s = time_of(r, at_to);
-    place(t.a_ecef, r, at_p);
-    place(t.b_ecef, r, at_q);
-    lengths(&t.width_m, r, at_width, 1, 0, largest_m);
-    lengths(&t.apart_m, r, at_apart, 1, 0, largest_m);
-    lengths(&t.heat_j_m2, r, at_heat, 1, 0, hottest_j_m2);
-    const double tracked = number(r, at_tracked, 0, 1);
-    if (r->status != STATUS_OK) return;
-    t.tracked = tracked != 0;
+    GroundHistory *h = g->to;
+    GroundTrack    t = {.owner = (uint64_t)r->owner,
+                        .a_s = r->from_unix_s - g->unix_s,
+                        .b_s = r->to_unix_s - g->unix_s,
+                        .width_m = r->width_m,
+                        .apart_m = r->apart_m,
+                        .heat_j_m2 = r->heat_j_m2,
+                        .tracked = r->tracked != 0};
+    double         along[3];
+    memcpy(t.a_ecef, r->p, sizeof t.a_ecef);
+    memcpy(t.b_ecef, r->q, sizeof t.b_ecef);
     v3_sub(along, t.b_ecef, t.a_ecef);
-    if (tracked != 0 && tracked != 1) r->status = complain(r, "tracked is neither 0 nor 1");
-    else if (!(t.a_s <= t.b_s)) r->status = complain(r, "to_unix_s is before from_unix_s");
-    else if (!(v3_length(along) <= ground_track_longest_m)) r->status = complain(r, "a piece of a track is too long");
-    if (r->status != STATUS_OK) return;
+    if (!near_earth(r->q)) return "a place far from the Earth's surface";
+    if (!(t.a_s <= t.b_s)) return "to_unix_s is before from_unix_s";
+    if (!(v3_length(along) <= ground_track_longest_m)) return "a piece of a track is too long";
     h->track[h->tracks++ % ground_track_capacity] = t;
     h->latest_s = fmax(h->latest_s, t.a_s);
+    return NULL;
 }
 
-static void take_burn(GroundHistory *h, Row *r)
+static const char *take_burn(const Reading *g, const Row *r)
 {
-    GroundBurn b = {0};
-    b.t_s = time_of(r, at_from);
-    place(b.p_ecef, r, at_p);
-    lengths(&b.radius_m, r, at_radius, 1, 0, largest_m);
-    lengths(&b.crater_m, r, at_crater, 1, 0, largest_m);
-    lengths(&b.heat_j_m2, r, at_heat, 1, 0, hottest_j_m2);
-    if (r->status != STATUS_OK) return;
+    GroundHistory *h = g->to;
+    GroundBurn     b = {
+            .t_s = r->from_unix_s - g->unix_s, .radius_m = r->radius_m, .crater_m = r->crater_m, .heat_j_m2 = r->heat_j_m2};
+    memcpy(b.p_ecef, r->p, sizeof b.p_ecef);
     h->burn[h->burns++ % ground_burn_capacity] = b;
     h->latest_s = fmax(h->latest_s, b.t_s);
+    return NULL;
 }
 
-static Status take_rows(GroundHistory *h, const Table *table, const int column[column_count], double unix_s)
+static Status take_row(Reading *g, const TableRows *rows, int number)
 {
-    Row r = {.table = table, .column = column, .unix_s = unix_s};
-    for (; r.row < table->rows && r.status == STATUS_OK; r.row++) {
-        const char *kind = table_text(table, r.row, column[at_kind]);
-        if (strcmp(kind, "stand") == 0) take_stand(h, &r);
-        else if (strcmp(kind, "track") == 0) take_track(h, &r);
-        else if (strcmp(kind, "burn") == 0) take_burn(h, &r);
-        else r.status = complain(&r, "kind is not stand, track or burn");
-        if (r.status == STATUS_OK &&
-            (h->stands > ground_stand_capacity || h->tracks > ground_track_capacity || h->burns > ground_burn_capacity))
-            r.status = complain(&r, "more marks than the program keeps");
-    }
-    return r.status;
+    Row                  row = {.blow_radius_m = -1};
+    const GroundHistory *h = g->to;
+    Status               status = table_rows_get(&row, rows, number);
+    if (status == STATUS_OK) status = table_rows_get(&row, &g->of[row.kind], number);
+    if (status == STATUS_OK && row.kind == KIND_STAND && g->blows && *table_rows_text(rows, number, "blow_from_unix_s"))
+        status = table_rows_get(&row, &g->of[KIND_BLOW], number);
+    if (status != STATUS_OK) return status;
+    const char *wrong = !near_earth(row.p)       ? "a place far from the Earth's surface"
+                        : row.kind == KIND_STAND ? take_stand(g, &row)
+                        : row.kind == KIND_TRACK ? take_track(g, &row)
+                                                 : take_burn(g, &row);
+    if (!wrong &&
+        (h->stands > ground_stand_capacity || h->tracks > ground_track_capacity || h->burns > ground_burn_capacity))
+        wrong = "more marks than the program keeps";
+    return wrong ? table_rows_refuse(rows, number, NULL, "%s", wrong) : STATUS_OK;
 }
 
-/* Finds the columns. A file may have none for exhaust: those are -1 then. */
-static bool find_columns(int column[column_count], const Table *table)
+static Status take_rows(Reading *g, const char *path)
 {
-    bool blows = false;
-    for (int c = at_blow; c < column_count; c++) {
-        column[c] = table_column(table, column_name[c]);
-        blows |= column[c] >= 0;
+    static const TableColumn kind = {"kind", TABLE_CHOICE, TABLE_AT(Row, kind), .choices = "stand, track, burn"};
+    static const TableFormat format = {"marks", &kind, 1, .next = "the program writes such files itself"};
+    TableRows                rows;
+    Status                   status = table_rows_open(&rows, &format, path);
+    if (status != STATUS_OK) return status;
+    for (int c = at_blow; c < column_count; c++) g->blows |= table_rows_has(&rows, column_name[c]);
+    for (int k = 0; k < (g->blows ? kinds : KIND_BLOW) && status == STATUS_OK; k++) {
+        fill_format(&g->format[k], g->column[k], parts[k]);
+        g->of[k].table = rows.table;
+        status = table_rows_use(&g->of[k], &g->format[k]);
     }
-    return table_columns(column, table, column_name, blows ? column_count : at_blow, "marks");
+    for (int r = 0; r < rows.table.rows && status == STATUS_OK; r++) status = take_row(g, &rows, r);
+    table_rows_close(&rows);
+    return status;
 }
 
 Status ground_marks_load(GroundHistory *h, double unix_s, const char *path)
 {
-    Table          table = {0};
-    GroundHistory *loaded = NULL;
-    int            column[column_count];
     if (!isfinite(unix_s)) return STATUS_BAD_VALUE;
     if (h->stands || h->tracks || h->burns) {
         log_error("marks: %s can be loaded before the exercise only", path);
         return STATUS_UNSUPPORTED;
     }
-    Status status = table_open(&table, path);
-    if (status == STATUS_OK && !find_columns(column, &table)) status = STATUS_BAD_VALUE;
-    if (status == STATUS_OK) status = ground_history_create(&loaded);
-    if (status == STATUS_OK) status = take_rows(loaded, &table, column, unix_s);
-    if (status == STATUS_OK) *h = *loaded;
-    ground_history_destroy(loaded);
-    table_close(&table);
+    Reading g = {.unix_s = unix_s};
+    Status  status = ground_history_create(&g.to);
+    if (status == STATUS_OK) status = take_rows(&g, path);
+    if (status == STATUS_OK) *h = *g.to;
+    ground_history_destroy(g.to);
     return status;
 }

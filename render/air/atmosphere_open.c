@@ -259,17 +259,6 @@ static int axis_find(const double *axis, int count, double x)
 
 /* ---- grids ---------------------------------------------------------------------------------- */
 
-static Status find_columns(int *at, const Table *table, const GridColumn *column, int count)
-{
-    for (int i = 0; i < count; i++) {
-        at[i] = table_column(table, column[i].name);
-        if (at[i] >= 0) continue;
-        log_error("atmosphere: %s:%d: column missing: %s", table->path, table->line[0], column[i].name);
-        return STATUS_BAD_VALUE;
-    }
-    return STATUS_OK;
-}
-
 static size_t grid_nodes(const Grid *grid)
 {
     size_t nodes = 1;
@@ -277,26 +266,24 @@ static size_t grid_nodes(const Grid *grid)
     return nodes;
 }
 
-/* Finds the values of each axis from the rows. */
-static Status find_axes(Grid *grid, const Table *table, const GridColumn *axis, const int *column, double *scratch)
+/* Finds the values of each axis from the numbers of all rows; scratch: room for one a row. */
+static Status find_axes(Grid *grid, const TableRows *rows, const double *number, double *scratch)
 {
     for (int i = 0; i < grid->axes; i++) {
-        for (int row = 0; row < table->rows; row++)
-            if (table_number(&scratch[row], table, row, column[i], axis[i].low, axis[i].high) != STATUS_OK)
-                return STATUS_BAD_VALUE;
+        for (int row = 0; row < rows->table.rows; row++)
+            scratch[row] = number[(size_t)row * (size_t)rows->format->count + (size_t)i];
         grid->axis[i] = calloc(grid_max_nodes, sizeof *grid->axis[i]);
         if (!grid->axis[i]) return STATUS_NO_MEMORY;
-        grid->nodes[i] = axis_from(grid->axis[i], grid_max_nodes, scratch, table->rows);
-        if (grid->nodes[i] < 0) {
-            log_error("atmosphere: %s: more than %d values of %s", table->path, (int)grid_max_nodes, axis[i].name);
-            return STATUS_BAD_VALUE;
-        }
+        grid->nodes[i] = axis_from(grid->axis[i], grid_max_nodes, scratch, rows->table.rows);
+        if (grid->nodes[i] < 0)
+            return table_rows_lack(rows, "more than %d values of %s", (int)grid_max_nodes,
+                                   rows->format->column[i].name);
     }
     return STATUS_OK;
 }
 
 /* Reports the first combination that no row has; the rows present have no duplicates. */
-static void report_missing(const Grid *grid, const Table *table, const GridColumn *axis, const bool *seen)
+static Status report_missing(const Grid *grid, const TableRows *rows, const bool *seen)
 {
     size_t node = 0;
     while (seen[node]) node++;
@@ -308,68 +295,59 @@ static void report_missing(const Grid *grid, const Table *table, const GridColum
     }
     for (int i = 0; i < grid->axes; i++) {
         const size_t length = strlen(text);
-        snprintf(text + length, sizeof text - length, " %s=%g", axis[i].name, at[i]);
+        snprintf(text + length, sizeof text - length, " %s=%g", rows->format->column[i].name, at[i]);
     }
-    log_error("atmosphere: %s:%d: a point is missing:%s (every combination is needed once)", table->path,
-              table->line[table->rows], text);
+    return table_rows_refuse(rows, rows->table.rows - 1, NULL,
+                             "a point is missing:%s (every combination is needed once)", text);
+}
+
+/* Puts the values of each row at its node. */
+static Status fill_grid(Grid *grid, const TableRows *rows, const double *number, bool *seen)
+{
+    const size_t count = (size_t)rows->table.rows, values = (size_t)grid->values;
+    for (int row = 0; row < rows->table.rows; row++) {
+        const double *at = number + (size_t)row * (size_t)rows->format->count;
+        size_t        node = 0;
+        for (int i = 0; i < grid->axes; i++)
+            node = node * (size_t)grid->nodes[i] + (size_t)axis_find(grid->axis[i], grid->nodes[i], at[i]);
+        if (node >= count) continue; /* more combinations than rows: one is missing, reported below */
+        if (seen[node]) return table_rows_refuse(rows, row, NULL, "this point is there twice");
+        seen[node] = true;
+        memcpy(grid->value + node * values, at + grid->axes, values * sizeof *at);
+    }
+    return grid_nodes(grid) > count ? report_missing(grid, rows, seen) : STATUS_OK;
+}
+
+TableFormat atmosphere_format(TableColumn *column, const GridColumn *first, int firsts, const GridColumn *then,
+                              int thens)
+{
+    for (int k = 0; k < firsts + thens; k++) {
+        const GridColumn *of = k < firsts ? &first[k] : &then[k - firsts];
+        column[k] = (TableColumn){of->name, TABLE_DOUBLE, TABLE_AT_NUMBER((size_t)k), .low = of->low, .high = of->high};
+    }
+    return (TableFormat){"atmosphere", column, firsts + thens, .next = "etc/atmosphere/README.md explains the columns"};
 }
 
 Status grid_open(Grid *out, const char *path, const GridColumn *axis, int axes, const GridColumn *value, int values)
 {
-    Table  table = {0};
-    Status status = table_open(&table, path);
+    TableColumn       column[grid_max_axes + grid_max_values];
+    const TableFormat format = atmosphere_format(column, axis, axes, value, values);
+    TableRows         rows;
+    Status            status = table_rows_open(&rows, &format, path);
     if (status != STATUS_OK) return status;
-
-    Grid    grid = {.axes = axes, .values = values};
-    int     axis_column[grid_max_axes], value_column[grid_max_values];
-    double *scratch = calloc((size_t)table.rows + 1, sizeof *scratch);
-    bool   *seen = calloc((size_t)table.rows + 1, sizeof *seen);
-    status = STATUS_NO_MEMORY;
-    if (!scratch || !seen) goto done;
-    status = STATUS_BAD_VALUE;
-    if (table.rows == 0) {
-        log_error("atmosphere: %s:%d: no rows", path, table.line[0]);
-        goto done;
-    }
-    if (find_columns(axis_column, &table, axis, axes) != STATUS_OK ||
-        find_columns(value_column, &table, value, values) != STATUS_OK)
-        goto done;
-    status = find_axes(&grid, &table, axis, axis_column, scratch);
-    if (status != STATUS_OK) goto done;
-    status = STATUS_BAD_VALUE;
-    const size_t nodes = grid_nodes(&grid);
-    grid.value = calloc((size_t)table.rows * (size_t)values, sizeof *grid.value);
-    if (!grid.value) {
-        status = STATUS_NO_MEMORY;
-        goto done;
-    }
-    for (int row = 0; row < table.rows; row++) {
-        size_t node = 0;
-        for (int i = 0; i < axes; i++) {
-            double x;
-            if (table_number(&x, &table, row, axis_column[i], axis[i].low, axis[i].high) != STATUS_OK) goto done;
-            node = node * (size_t)grid.nodes[i] + (size_t)axis_find(grid.axis[i], grid.nodes[i], x);
-        }
-        if (node >= (size_t)table.rows) continue; /* more combinations than rows: one is missing, reported below */
-        if (seen[node]) {
-            log_error("atmosphere: %s:%d: this point is there twice", path, table.line[row + 1]);
-            goto done;
-        }
-        seen[node] = true;
-        for (int i = 0; i < values; i++)
-            if (table_number(&grid.value[node * (size_t)values + (size_t)i], &table, row, value_column[i], value[i].low,
-                             value[i].high) != STATUS_OK)
-                goto done;
-    }
-    if (nodes > (size_t)table.rows) {
-        report_missing(&grid, &table, axis, seen);
-        goto done;
-    }
-    status = STATUS_OK;
-done:
+    const size_t count = (size_t)rows.table.rows;
+    Grid         grid = {.axes = axes, .values = values, .value = calloc(count * (size_t)values + 1, sizeof(double))};
+    double      *number = NULL, *scratch = calloc(count + 1, sizeof *scratch);
+    bool        *seen = calloc(count + 1, sizeof *seen);
+    if (!grid.value || !scratch || !seen) status = STATUS_NO_MEMORY;
+    else if (count == 0) status = table_rows_lack(&rows, "no rows");
+    if (status == STATUS_OK) status = table_rows_numbers(&number, &rows);
+    if (status == STATUS_OK) status = find_axes(&grid, &rows, number, scratch);
+    if (status == STATUS_OK) status = fill_grid(&grid, &rows, number, seen);
+    free(number);
     free(scratch);
     free(seen);
-    table_close(&table);
+    table_rows_close(&rows);
     if (status == STATUS_OK) *out = grid;
     else grid_close(&grid);
     return status;

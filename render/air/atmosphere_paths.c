@@ -107,39 +107,32 @@ static int compare_keys(const void *a, const void *b)
 }
 
 /* Of paths_*.csv the first three, of scattered.csv all, with a direction instead of a target. */
-static const GridColumn  path_key[5] = {{"observer_m", 0, height_max_m},
-                                        {"target_m", 0, height_max_m},
-                                        {"range_m", 1, range_max_m},
-                                        {"sun_zenith_deg", 0, 90},
-                                        {"rel_azimuth_deg", 0, 180}};
-static const GridColumn  direction_key = {"zenith_deg", 0, 180};
-static const GridColumn *key_column(int keys, int k) { return keys == 5 && k == 1 ? &direction_key : &path_key[k]; }
+static const GridColumn path_key[5] = {{"observer_m", 0, height_max_m},
+                                       {"target_m", 0, height_max_m},
+                                       {"range_m", 1, range_max_m},
+                                       {"sun_zenith_deg", 0, 90},
+                                       {"rel_azimuth_deg", 0, 180}},
+                        direction_key[5] = {{"observer_m", 0, height_max_m},
+                                            {"zenith_deg", 0, 180},
+                                            {"range_m", 1, range_max_m},
+                                            {"sun_zenith_deg", 0, 90},
+                                            {"rel_azimuth_deg", 0, 180}};
 
-/* Rows in order; their keys are read, and the lengths are valid. */
-static Status read_keys(PathKey *key, const Table *table, int keys)
+/* Rows in order; their keys are the first of their numbers, and the lengths are valid. */
+static Status take_keys(PathKey *key, const TableRows *rows, const double *number, int keys)
 {
-    int column[5];
-    for (int k = 0; k < keys; k++) {
-        column[k] = table_column(table, key_column(keys, k)->name);
-        if (column[k] >= 0) continue;
-        log_error("atmosphere: %s:%d: column missing: %s", table->path, table->line[0], key_column(keys, k)->name);
-        return STATUS_BAD_VALUE;
-    }
-    for (int row = 0; row < table->rows; row++) {
+    const int count = rows->table.rows;
+    for (int row = 0; row < count; row++) {
+        const double *at = number + (size_t)row * (size_t)rows->format->count;
         key[row] = (PathKey){.row = row};
-        for (int k = 0; k < keys; k++)
-            if (table_number(&key[row].at[k], table, row, column[k], key_column(keys, k)->low,
-                             key_column(keys, k)->high) != STATUS_OK)
-                return STATUS_BAD_VALUE;
-        const double *at = key[row].at;
-        if (keys == 5 || at[2] >= fabs(at[0] - at[1]) * (1 - 1e-6)) continue;
-        log_error("atmosphere: %s:%d: range_m %g is less than the %g m between the ends' heights", table->path,
-                  table->line[row + 1], at[2], fabs(at[0] - at[1]));
-        return STATUS_BAD_VALUE;
+        memcpy(key[row].at, at, (size_t)keys * sizeof *at);
+        if (keys == 3 && !(at[2] >= fabs(at[0] - at[1]) * (1 - 1e-6)))
+            return table_rows_refuse(rows, row, NULL, "range_m %g is less than the %g m between the ends' heights",
+                                     at[2], fabs(at[0] - at[1]));
     }
     bool sorted = true;
-    for (int row = 1; row < table->rows && sorted; row++) sorted = compare_keys(&key[row - 1], &key[row]) < 0;
-    if (!sorted) qsort(key, (size_t)table->rows, sizeof *key, compare_keys);
+    for (int row = 1; row < count && sorted; row++) sorted = compare_keys(&key[row - 1], &key[row]) < 0;
+    if (!sorted) qsort(key, (size_t)count, sizeof *key, compare_keys);
     return STATUS_OK;
 }
 
@@ -153,71 +146,66 @@ static int key_axis(double *axis, int capacity, const PathKey *key, int rows, in
     return nodes;
 }
 
-static Status find_path_axes(PathTable *out, const Table *table, const PathKey *key, int keys)
+static Status find_path_axes(PathTable *out, const TableRows *rows, const PathKey *key, int keys)
 {
     out->suns = out->azimuths = 1;
-    for (int i = 0; i < 2; i++) out->nodes[i] = key_axis(out->axis[i], path_max_nodes, key, table->rows, i);
+    for (int i = 0; i < 2; i++) out->nodes[i] = key_axis(out->axis[i], path_max_nodes, key, rows->table.rows, i);
     if (keys == 5) {
-        out->suns = key_axis(out->sun_x, path_max_suns, key, table->rows, 3);
-        out->azimuths = key_axis(out->azimuth_deg, path_max_suns, key, table->rows, 4);
+        out->suns = key_axis(out->sun_x, path_max_suns, key, rows->table.rows, 3);
+        out->azimuths = key_axis(out->azimuth_deg, path_max_suns, key, rows->table.rows, 4);
     }
     const int least = (int)fmin(fmin(out->nodes[0], out->nodes[1]), fmin(out->suns, out->azimuths));
     if (least == -2) return STATUS_NO_MEMORY;
     if (least > 0) return STATUS_OK;
-    log_error("atmosphere: %s: more than %d heights or directions, or %d sun zeniths or azimuths", table->path,
-              (int)path_max_nodes, (int)path_max_suns);
-    return STATUS_BAD_VALUE;
+    return table_rows_lack(rows, "more than %d heights or directions, or %d sun zeniths or azimuths",
+                           (int)path_max_nodes, (int)path_max_suns);
 }
 
 /* The rows from one on that share its first three keys: every sun and azimuth once, in order. Returns their number;
  * 0: not so. */
-static int block_length(const PathTable *paths, const Table *table, const PathKey *key, int row, int keys)
+static int block_length(const PathTable *paths, const TableRows *rows, const PathKey *key, int row, int keys)
 {
     const int inner = paths->suns * paths->azimuths;
     for (int i = 0; i < inner; i++) {
         const PathKey *k = &key[row + i];
-        const bool     same = row + i < table->rows && memcmp(k->at, key[row].at, 3 * sizeof *k->at) == 0;
+        const bool     same = row + i < rows->table.rows && memcmp(k->at, key[row].at, 3 * sizeof *k->at) == 0;
         if (same && (keys < 5 || (k->at[3] == paths->sun_x[i / paths->azimuths] &&
                                   k->at[4] == paths->azimuth_deg[i % paths->azimuths])))
             continue;
-        log_error("atmosphere: %s:%d: a sun zenith and azimuth of this path is missing or there twice", table->path,
-                  table->line[key[row].row + 1]);
+        table_rows_refuse(rows, key[row].row, NULL, "a sun zenith and azimuth of this path is missing or there twice");
         return 0;
     }
     return inner;
 }
 
 /* Axes of the sorted keys; checks that every pair of nodes has ranges, and every range every sun and azimuth. */
-static Status arrange(PathTable *out, const Table *table, const PathKey *key, int keys)
+static Status arrange(PathTable *out, const TableRows *rows, const PathKey *key, int keys)
 {
-    const int    rows = table->rows;
-    const Status status = find_path_axes(out, table, key, keys);
+    const int    count = rows->table.rows;
+    const Status status = find_path_axes(out, rows, key, keys);
     if (status != STATUS_OK) return status;
     const int pairs = out->nodes[0] * out->nodes[1];
     out->first = calloc((size_t)pairs + 1, sizeof *out->first);
-    out->ln_range = calloc((size_t)rows + 1, sizeof *out->ln_range);
+    out->ln_range = calloc((size_t)count + 1, sizeof *out->ln_range);
     if (!out->first || !out->ln_range) return STATUS_NO_MEMORY;
     int row = 0;
     out->ln_range_low = INFINITY;
     for (int pair = 0; pair < pairs; pair++) {
         const double a = out->axis[0][pair / out->nodes[1]], b = out->axis[1][pair % out->nodes[1]];
         out->first[pair] = out->rows;
-        while (row < rows && key[row].at[0] == a && key[row].at[1] == b) {
+        while (row < count && key[row].at[0] == a && key[row].at[1] == b) {
             const double x = log(key[row].at[2]);
-            if (out->rows > out->first[pair] && x == out->ln_range[out->rows - 1]) {
-                log_error("atmosphere: %s:%d: this path is there twice", table->path, table->line[key[row].row + 1]);
-                return STATUS_BAD_VALUE;
-            }
-            const int length = block_length(out, table, key, row, keys);
+            if (out->rows > out->first[pair] && x == out->ln_range[out->rows - 1])
+                return table_rows_refuse(rows, key[row].row, NULL, "this path is there twice");
+            const int length = block_length(out, rows, key, row, keys);
             if (length == 0) return STATUS_BAD_VALUE;
             row += length;
             out->ln_range[out->rows++] = x;
             out->ln_range_low = fmin(out->ln_range_low, x);
         }
         if (out->rows > out->first[pair]) continue;
-        log_error("atmosphere: %s:%d: no path: %s=%g %s=%g (every pair of these is needed)", table->path,
-                  table->line[rows], key_column(keys, 0)->name, a, key_column(keys, 1)->name, b);
-        return STATUS_BAD_VALUE;
+        return table_rows_refuse(rows, count - 1, NULL, "no path: %s=%g %s=%g (every pair of these is needed)",
+                                 rows->format->column[0].name, a, rows->format->column[1].name, b);
     }
     out->first[pairs] = out->rows;
     return STATUS_OK;
@@ -231,54 +219,46 @@ void paths_close(PathTable *table)
     *table = (PathTable){0};
 }
 
+/* Keys and values of a file whose columns are found. */
+static Status read_paths(PathTable *out, const TableRows *rows, int keys)
+{
+    const size_t count = (size_t)rows->table.rows, numbers = (size_t)rows->format->count,
+                 values = numbers - (size_t)keys;
+    PathKey *key = calloc(count + 1, sizeof *key);
+    double  *number = NULL;
+    Status   status = key ? table_rows_numbers(&number, rows) : STATUS_NO_MEMORY;
+    if (status == STATUS_OK) status = take_keys(key, rows, number, keys);
+    if (status == STATUS_OK) status = arrange(out, rows, key, keys);
+    if (status == STATUS_OK) {
+        out->values = out->suns * out->azimuths * (int)values;
+        out->value = calloc(count * values, sizeof *out->value);
+        if (!out->value) status = STATUS_NO_MEMORY;
+    }
+    for (size_t i = 0; i < count && status == STATUS_OK; i++)
+        memcpy(out->value + i * values, number + (size_t)key[i].row * numbers + keys, values * sizeof *number);
+    free(number);
+    free(key);
+    return status;
+}
+
 Status paths_open(PathTable *out, const char *path, int keys, const GridColumn *value, int values, PathColumns *choose)
 {
-    Table  table = {0};
-    Status status = table_open(&table, path);
+    const GridColumn *key = keys == 5 ? direction_key : path_key;
+    GridColumn        chosen[path_max_weights + 1];
+    TableColumn       column[5 + grid_max_values];
+    TableFormat       format = atmosphere_format(column, key, keys, value, choose ? 0 : values);
+    PathTable         paths = {0};
+    TableRows         rows;
+    Status            status = table_rows_open(&rows, &format, path);
     if (status != STATUS_OK) return status;
-
-    PathTable  paths = {0};
-    GridColumn column[path_max_weights + 1];
-    int        at[path_max_weights + 1], count = values;
-    PathKey   *key = calloc((size_t)table.rows + 1, sizeof *key);
-    status = STATUS_NO_MEMORY;
-    if (!key) goto done;
-    status = STATUS_BAD_VALUE;
-    if (table.rows == 0) {
-        log_error("atmosphere: %s:%d: no rows", path, table.line[0]);
-        goto done;
+    if (rows.table.rows == 0) status = table_rows_lack(&rows, "no rows");
+    if (status == STATUS_OK && choose) {
+        status = choose(&paths, &rows, chosen, &values);
+        if (status == STATUS_OK) format = atmosphere_format(column, key, keys, chosen, values);
+        if (status == STATUS_OK) status = table_rows_use(&rows, &format);
     }
-    if (choose) {
-        status = choose(&paths, &table, column, &count);
-        if (status != STATUS_OK) goto done;
-    } else {
-        memcpy(column, value, (size_t)values * sizeof *value);
-    }
-    status = STATUS_BAD_VALUE;
-    for (int i = 0; i < count; i++) {
-        at[i] = table_column(&table, column[i].name);
-        if (at[i] >= 0) continue;
-        log_error("atmosphere: %s:%d: column missing: %s", path, table.line[0], column[i].name);
-        goto done;
-    }
-    status = read_keys(key, &table, keys);
-    if (status == STATUS_OK) status = arrange(&paths, &table, key, keys);
-    if (status != STATUS_OK) goto done;
-    const int inner = paths.suns * paths.azimuths;
-    paths.values = inner * count;
-    paths.value = calloc((size_t)table.rows * (size_t)count, sizeof *paths.value);
-    status = STATUS_NO_MEMORY;
-    if (!paths.value) goto done;
-    status = STATUS_BAD_VALUE;
-    for (int i = 0; i < table.rows; i++)
-        for (int v = 0; v < count; v++)
-            if (table_number(&paths.value[(size_t)i * (size_t)count + (size_t)v], &table, key[i].row, at[v],
-                             column[v].low, column[v].high) != STATUS_OK)
-                goto done;
-    status = STATUS_OK;
-done:
-    free(key);
-    table_close(&table);
+    if (status == STATUS_OK) status = read_paths(&paths, &rows, keys);
+    table_rows_close(&rows);
     if (status == STATUS_OK) *out = paths;
     else paths_close(&paths);
     return status;

@@ -2,6 +2,7 @@
 #ifndef RENDER_AIR_ATMOSPHERE_PRIVATE_H
 #define RENDER_AIR_ATMOSPHERE_PRIVATE_H
 
+#include "pitviper_table.h"
 #include "render/air/atmosphere.h"
 #include "render/materials/planck.h"
 
@@ -27,6 +28,9 @@ typedef struct Grid {
     double *value;               /* [node of axis 0][..][values] */
 } Grid;
 
+/* The format of a file of numbers, in room for its columns: those and these. */
+TableFormat atmosphere_format(TableColumn *column, const GridColumn *first, int firsts, const GridColumn *then,
+                              int thens);
 /* Every combination of the axes' values exactly once, in any order. */
 Status grid_open(Grid *out, const char *path, const GridColumn *axis, int axes, const GridColumn *value, int values);
 void   grid_close(Grid *grid);
@@ -63,7 +67,7 @@ typedef struct PathTable {
 } PathTable;
 
 /* Selects the value columns of a header; logs the reason on failure. */
-typedef Status PathColumns(PathTable *out, const Table *table, GridColumn *column, int *count);
+typedef Status PathColumns(PathTable *out, const TableRows *rows, GridColumn *column, int *count);
 /* Rows keyed by the first keys (3 or 5) of observer_m, target_m (5: zenith_deg), range_m, sun_zenith_deg,
  * rel_azimuth_deg; as value columns those given or, with choose, those it finds. Values as they are in the file, by
  * rising keys; axis 1 and sun_x in metres or degrees. */

@@ -9,12 +9,12 @@ enum { depth_max = 1000 };
 /* ---- paths ---------------------------------------------------------------------------------- */
 
 /* Columns of paths_*.csv: depth_sun, any depth_<kelvin>k in rising order, thermal_w_m2_sr where there are such. */
-static Status choose_weights(PathTable *out, const Table *table, GridColumn *column, int *count)
+static Status choose_weights(PathTable *out, const TableRows *rows, GridColumn *column, int *count)
 {
     int n = 0;
     column[n++] = (GridColumn){"depth_sun", 1e-12, depth_max};
-    for (int c = 0; c < table->columns; c++) {
-        const char  *name = table->cell[c];
+    for (int c = 0; c < rows->table.columns; c++) {
+        const char  *name = rows->table.cell[c];
         char         text[32];
         const size_t length = strlen(name);
         if (strncmp(name, "depth_", 6) != 0 || strcmp(name, "depth_sun") == 0) continue;
@@ -22,12 +22,10 @@ static Status choose_weights(PathTable *out, const Table *table, GridColumn *col
         const bool fits = length > 7 && length < sizeof text && name[length - 1] == 'k';
         if (fits) snprintf(text, length - 6, "%s", name + 6);
         if (!fits || !text_to_double(&temp_k, text) || !(temp_k >= 50 && temp_k <= 1e4) || n == path_max_weights ||
-            (n > 1 && !(temp_k > out->weight_temp_k[n - 1]))) {
-            log_error("atmosphere: %s:%d: column %s: want depth_sun and depth_<kelvin>k, 50 to 10000 K rising, at most "
-                      "%d",
-                      table->path, table->line[0], name, path_max_weights - 1);
-            return STATUS_BAD_VALUE;
-        }
+            (n > 1 && !(temp_k > out->weight_temp_k[n - 1])))
+            return table_rows_refuse(rows, -1, NULL,
+                                     "column %s: want depth_sun and depth_<kelvin>k, 50 to 10000 K rising, at most %d",
+                                     name, path_max_weights - 1);
         out->weight_temp_k[n] = temp_k;
         column[n++] = (GridColumn){name, 1e-12, depth_max};
     }
@@ -37,9 +35,9 @@ static Status choose_weights(PathTable *out, const Table *table, GridColumn *col
 }
 
 /* With haze: the radiance of the path, too. */
-static Status choose_weights_and_radiance(PathTable *out, const Table *table, GridColumn *column, int *count)
+static Status choose_weights_and_radiance(PathTable *out, const TableRows *rows, GridColumn *column, int *count)
 {
-    const Status status = choose_weights(out, table, column, count);
+    const Status status = choose_weights(out, rows, column, count);
     if (status == STATUS_OK && *count > 1) column[(*count)++] = (GridColumn){"thermal_w_m2_sr", 1e-30, 1e4};
     return status;
 }
@@ -404,41 +402,43 @@ Status slice_open(Slice *slice, const Atmosphere *atmosphere, const char *folder
 
 /* ---- data shared by all visibilities --------------------------------------------------------------------------- */
 
+typedef struct TopRow {
+    const char *band;
+    double      sun_top_w_m2;
+} TopRow;
+
+static Status take_top(void *user, const void *read, const TableRows *rows, int number)
+{
+    double                *sun_top_w_m2 = user;
+    const TopRow          *row = read;
+    const SpectralChannel *channel = channel_named(row->band, strlen(row->band));
+    const AirBand          band = channel ? channel->place : AIR_BAND_COUNT;
+    if (channel && channel_in(band) != channel) return STATUS_OK; /* another channel replaces it */
+    if (band == AIR_BAND_COUNT || air_tabled_index(band) < 0 || sun_top_w_m2[band] > 0)
+        return table_rows_refuse(rows, number, NULL, "band %s is unknown or there twice", row->band);
+    sun_top_w_m2[band] = row->sun_top_w_m2;
+    return STATUS_OK;
+}
+
 Status sun_top_open(double sun_top_w_m2[AIR_BAND_COUNT])
 {
-    char path[1024];
+    static const TableColumn columns[] = {
+        {"band", .type = TABLE_CELL, TABLE_AT(TopRow, band)},
+        {"sun_top_w_m2", TABLE_DOUBLE, TABLE_AT(TopRow, sun_top_w_m2), .low = 1e-3, .high = 1361}};
+    static const TableFormat format = {"atmosphere", columns, 2,
+                                       .next = "etc/atmosphere/README.md explains the columns"};
+    char                     path[1024];
+    TopRow                   row;
     if (!etc_path(path, sizeof path, "atmosphere/bands.csv")) return STATUS_BAD_VALUE;
-    Table  table = {0};
-    Status status = table_open(&table, path);
+    const Status status = table_each(&format, path, &row, sizeof row, take_top, sun_top_w_m2);
     if (status != STATUS_OK) return status;
-    status = STATUS_BAD_VALUE;
-    const int name = table_column(&table, "band"), top = table_column(&table, "sun_top_w_m2");
-    if (name < 0 || top < 0) {
-        log_error("atmosphere: %s:%d: column missing: %s", path, table.line[0], name < 0 ? "band" : "sun_top_w_m2");
-        goto done;
-    }
-    for (int row = 0; row < table.rows; row++) {
-        const char            *text = table_text(&table, row, name);
-        const SpectralChannel *channel = channel_named(text, strlen(text));
-        const AirBand          band = channel ? channel->place : AIR_BAND_COUNT;
-        if (channel && channel_in(band) != channel) continue; /* another channel replaces it */
-        if (band == AIR_BAND_COUNT || air_tabled_index(band) < 0 || sun_top_w_m2[band] > 0) {
-            log_error("atmosphere: %s:%d: band %s is unknown or there twice", path, table.line[row + 1],
-                      table_text(&table, row, name));
-            goto done;
-        }
-        if (table_number(&sun_top_w_m2[band], &table, row, top, 1e-3, 1361) != STATUS_OK) goto done;
-    }
     for (int i = 0; i < air_tabled_count; i++) {
         if (sun_top_w_m2[air_tabled[i]] > 0) continue;
         log_error("atmosphere: %s: band missing: %s", path, air_band_name(air_tabled[i]));
-        goto done;
+        return STATUS_BAD_VALUE;
     }
     sun_top_w_m2[AIR_PAN] = sun_top_w_m2[AIR_B] + sun_top_w_m2[AIR_G] + sun_top_w_m2[AIR_R];
-    status = STATUS_OK;
-done:
-    table_close(&table);
-    return status;
+    return STATUS_OK;
 }
 
 Status clear_open(Atmosphere *atmosphere, const char *folder)

@@ -2,6 +2,7 @@
  * restart. */
 
 #include "render/heat/given_heat.h"
+#include "pitviper_table.h"
 
 #include <stdlib.h>
 
@@ -18,7 +19,7 @@ typedef struct GivenPart {
 } GivenPart;
 
 struct GivenHeat {
-    Table      table;
+    TableRows  rows;
     int        count;
     GivenPart *part;
     double    *t_s, *temp_k; /* [rows], those of a part together */
@@ -27,9 +28,19 @@ struct GivenHeat {
 /* A row, to be brought together with those of its part. */
 typedef struct GivenRow {
     const char *entity, *part;
+    double      t_s, temp_k;
     int         row;
     char        id[dis_id_text_size]; /* entity, where it is an id, in one way */
 } GivenRow;
+
+static const TableColumn given_columns[] = {
+    {"entity", .type = TABLE_CELL, TABLE_AT(GivenRow, entity)},
+    {"part", .type = TABLE_CELL, TABLE_AT(GivenRow, part)},
+    {"t_s", TABLE_DOUBLE, TABLE_AT(GivenRow, t_s), .low = -1e9, .high = 1e9},
+    {"temp_k", TABLE_DOUBLE, TABLE_AT(GivenRow, temp_k), .low = 1, .high = 4000},
+};
+static const TableFormat given_format = {"heat.given", given_columns, sizeof given_columns / sizeof *given_columns,
+                                         .next = "etc/reference/vehicle_heat.md explains the columns"};
 
 static const char *entity_of(const GivenRow *row) { return *row->id ? row->id : row->entity; }
 
@@ -41,17 +52,11 @@ static int by_part(const void *a, const void *b)
     return order != 0 ? order : (p->row > q->row) - (p->row < q->row);
 }
 
-static Status complain(const Table *table, int row, const char *what)
-{
-    log_error("heat.given: %s:%d: %s", table->path, table->line[row + 1], what);
-    return STATUS_BAD_VALUE;
-}
-
-static Status begin_part(GivenPart *out, const Table *table, const GivenRow *row, int at)
+static Status begin_part(GivenPart *out, const TableRows *rows, const GivenRow *row, int at)
 {
     *out = (GivenPart){.model = row->entity, .part = row->part, .first = at, .last = at};
     if (!*row->entity || !*row->part)
-        return complain(table, row->row, "entity or part is empty; * stands for all of them");
+        return table_rows_refuse(rows, row->row, NULL, "entity or part is empty; * stands for all of them");
     out->entity_by = strcmp(row->entity, "*") == 0                ? by_any
                      : dis_entity_id_parse(&out->id, row->entity) ? by_name
                                                                   : by_kind;
@@ -60,45 +65,43 @@ static Status begin_part(GivenPart *out, const Table *table, const GivenRow *row
     return STATUS_OK;
 }
 
-static Status take_rows(GivenHeat *g, GivenRow *row, const int column[4])
+static Status take_rows(GivenHeat *g, GivenRow *row, int count)
 {
-    Status status = STATUS_OK;
-    for (int i = 0; i < g->table.rows; i++) {
-        DisEntityId id;
-        row[i] = (GivenRow){
-            .entity = table_text(&g->table, i, column[0]), .part = table_text(&g->table, i, column[1]), .row = i};
+    for (int i = 0; i < count; i++) {
+        DisEntityId  id;
+        const Status status = table_rows_get(&row[i], &g->rows, i);
+        if (status != STATUS_OK) return status;
+        row[i].row = i;
         if (dis_entity_id_parse(&id, row[i].entity)) dis_entity_id_text(row[i].id, id);
     }
-    qsort(row, (size_t)g->table.rows, sizeof *row, by_part);
-    for (int i = 0; i < g->table.rows && status == STATUS_OK; i++) {
+    qsort(row, (size_t)count, sizeof *row, by_part);
+    for (int i = 0; i < count; i++) {
         const bool same = i > 0 && strcmp(entity_of(&row[i]), entity_of(&row[i - 1])) == 0 &&
                           strcmp(row[i].part, row[i - 1].part) == 0;
-        if (!same) status = begin_part(&g->part[g->count++], &g->table, &row[i], i);
-        if (status == STATUS_OK) status = table_number(&g->t_s[i], &g->table, row[i].row, column[2], -1e9, 1e9);
-        if (status == STATUS_OK) status = table_number(&g->temp_k[i], &g->table, row[i].row, column[3], 1, 4000);
-        if (status == STATUS_OK && same && !(g->t_s[i] > g->t_s[i - 1]))
-            status =
-                complain(&g->table, row[i].row, "t_s does not ascend for this entity and part; sort the rows by time");
+        const Status status = same ? STATUS_OK : begin_part(&g->part[g->count++], &g->rows, &row[i], i);
+        if (status != STATUS_OK) return status;
+        g->t_s[i] = row[i].t_s;
+        g->temp_k[i] = row[i].temp_k;
+        if (same && !(g->t_s[i] > g->t_s[i - 1]))
+            return table_rows_refuse(&g->rows, row[i].row, NULL,
+                                     "t_s does not ascend for this entity and part; sort the rows by time");
         g->part[g->count - 1].last = i + 1;
     }
-    return status;
+    return STATUS_OK;
 }
 
 Status given_heat_open(GivenHeat **out, const char *path)
 {
-    static const char *const name[4] = {"entity", "part", "t_s", "temp_k"};
-    int                      column[4];
-    GivenHeat               *g = calloc(1, sizeof *g);
+    GivenHeat *g = calloc(1, sizeof *g);
     if (!g) return STATUS_NO_MEMORY;
-    Status status = table_open(&g->table, path);
-    if (status == STATUS_OK && !table_columns(column, &g->table, name, 4, "heat.given")) status = STATUS_BAD_VALUE;
-    const size_t rows = status == STATUS_OK ? (size_t)g->table.rows : 0;
+    Status       status = table_rows_open(&g->rows, &given_format, path);
+    const size_t rows = (size_t)g->rows.table.rows;
     GivenRow    *row = calloc(rows + 1, sizeof *row);
     g->part = calloc(rows + 1, sizeof *g->part);
     g->t_s = calloc(rows + 1, sizeof *g->t_s);
     g->temp_k = calloc(rows + 1, sizeof *g->temp_k);
     if (status == STATUS_OK && !(row && g->part && g->t_s && g->temp_k)) status = STATUS_NO_MEMORY;
-    if (status == STATUS_OK) status = take_rows(g, row, column);
+    if (status == STATUS_OK) status = take_rows(g, row, (int)rows);
     free(row);
     if (status == STATUS_OK) *out = g;
     else given_heat_close(g);
@@ -108,7 +111,7 @@ Status given_heat_open(GivenHeat **out, const char *path)
 void given_heat_close(GivenHeat *g)
 {
     if (!g) return;
-    table_close(&g->table);
+    table_rows_close(&g->rows);
     free(g->part);
     free(g->t_s);
     free(g->temp_k);
@@ -160,18 +163,16 @@ double given_heat_k(const GivenHeat *g, int index, double t_s)
 enum { most_nodes = 4096 };
 
 struct KeptHeat {
-    Table      table;
+    TableRows  rows;
     int        count;
     KeptNodes *entity; /* [count], by id */
     double    *temp_k;
 };
 
-static Status complain_kept(const Table *table, int row, const char *what)
-{
-    log_error("heat.vehicles: %s:%d: %s; without the file the program assumes what entities did before", table->path,
-              table->line[row + 1], what);
-    return STATUS_BAD_VALUE;
-}
+typedef struct KeptRow {
+    KeptNodes   nodes;
+    const char *temp_k; /* nodes.nodes numbers */
+} KeptRow;
 
 /* Numbers with blanks between. -1: something else, or out of range. */
 static int read_numbers(double *out, const char *text)
@@ -196,28 +197,39 @@ static int by_id(const void *a, const void *b)
     return order != 0 ? order : (p->temp_k > q->temp_k) - (p->temp_k < q->temp_k);
 }
 
-static Status take_kept_rows(KeptHeat *k, const int column[4])
+static const char *parse_id(void *out, const char *text)
+{
+    return dis_entity_id_parse(out, text) ? NULL : "an id such as 1:2:3";
+}
+
+static const TableColumn kept_columns[] = {
+    {"entity", TABLE_OWN, TABLE_AT(KeptRow, nodes.id), .parse = parse_id},
+    {"model", .type = TABLE_CELL, TABLE_AT(KeptRow, nodes.model)},
+    {"unix_s", TABLE_DOUBLE, TABLE_AT(KeptRow, nodes.unix_s), .low = -1e12, .high = 1e12},
+    {"node_k", .type = TABLE_CELL, TABLE_AT(KeptRow, temp_k)},
+};
+static const TableFormat kept_format = {"heat.vehicles", kept_columns, sizeof kept_columns / sizeof *kept_columns,
+                                        .next = "without the file the program assumes what entities did before"};
+
+static Status take_kept_rows(KeptHeat *k)
 {
     size_t all = 0, at = 0;
-    for (int row = 0; row < k->table.rows; row++) {
-        const int nodes = read_numbers(NULL, table_text(&k->table, row, column[3]));
-        if (nodes <= 0) return complain_kept(&k->table, row, "node_k is not a list of temperatures of 0.5 .. 10000 K");
+    for (int row = 0; row < k->rows.table.rows; row++) {
+        const int nodes = read_numbers(NULL, table_rows_text(&k->rows, row, "node_k"));
+        if (nodes <= 0) return table_rows_refuse(&k->rows, row, "node_k", "a list of temperatures of 0.5 .. 10000 K");
         all += (size_t)nodes;
     }
-    k->entity = calloc((size_t)k->table.rows + 1, sizeof *k->entity);
+    k->entity = calloc((size_t)k->rows.table.rows + 1, sizeof *k->entity);
     k->temp_k = calloc(all + 1, sizeof *k->temp_k);
     if (!k->entity || !k->temp_k) return STATUS_NO_MEMORY;
-    for (int row = 0; row < k->table.rows; row++) {
-        KeptNodes *e = &k->entity[k->count];
-        e->model = table_text(&k->table, row, column[1]);
-        e->temp_k = k->temp_k + at;
-        if (!dis_entity_id_parse(&e->id, table_text(&k->table, row, column[0])))
-            return complain_kept(&k->table, row, "entity is no id such as 1:2:3");
-        const Status status = table_number(&e->unix_s, &k->table, row, column[2], -1e12, 1e12);
+    for (int row = 0; row < k->rows.table.rows; row++) {
+        KeptRow      read = {0};
+        const Status status = table_rows_get(&read, &k->rows, row);
         if (status != STATUS_OK) return status;
-        e->nodes = read_numbers(k->temp_k + at, table_text(&k->table, row, column[3]));
-        at += (size_t)e->nodes;
-        k->count++;
+        read.nodes.nodes = read_numbers(k->temp_k + at, read.temp_k);
+        read.nodes.temp_k = k->temp_k + at;
+        at += (size_t)read.nodes.nodes;
+        k->entity[k->count++] = read.nodes;
     }
     qsort(k->entity, (size_t)k->count, sizeof *k->entity, by_id);
     return STATUS_OK;
@@ -225,13 +237,10 @@ static Status take_kept_rows(KeptHeat *k, const int column[4])
 
 Status heat_kept_open(KeptHeat **out, const char *path)
 {
-    static const char *const name[4] = {"entity", "model", "unix_s", "node_k"};
-    int                      column[4];
-    KeptHeat                *k = calloc(1, sizeof *k);
+    KeptHeat *k = calloc(1, sizeof *k);
     if (!k) return STATUS_NO_MEMORY;
-    Status status = table_open(&k->table, path);
-    if (status == STATUS_OK && !table_columns(column, &k->table, name, 4, "heat.vehicles")) status = STATUS_BAD_VALUE;
-    if (status == STATUS_OK) status = take_kept_rows(k, column);
+    Status status = table_rows_open(&k->rows, &kept_format, path);
+    if (status == STATUS_OK) status = take_kept_rows(k);
     if (status == STATUS_OK) *out = k;
     else heat_kept_close(k);
     return status;
@@ -240,7 +249,7 @@ Status heat_kept_open(KeptHeat **out, const char *path)
 void heat_kept_close(KeptHeat *k)
 {
     if (!k) return;
-    table_close(&k->table);
+    table_rows_close(&k->rows);
     free(k->entity);
     free(k->temp_k);
     free(k);

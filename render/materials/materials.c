@@ -2,6 +2,8 @@
  * compared later. */
 #include "render/materials/materials.h"
 
+#include "pitviper_table.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -14,75 +16,80 @@ int materials_find(const Materials *materials, const char *name)
     return -1;
 }
 
-/* Every number column of a material, its member and its valid range. Without a name: rho_<name> of the channel of
- * that index. */
-static const struct {
-    const char  *name;
-    size_t       offset;
-    double       low, high;
-    ChannelPlace place;
-} number_columns[] = {
-    {NULL, offsetof(Material, rho[optical_channel_b]), 0, 1, SPECTRAL_B},
-    {NULL, offsetof(Material, rho[optical_channel_g]), 0, 1, SPECTRAL_G},
-    {NULL, offsetof(Material, rho[optical_channel_r]), 0, 1, SPECTRAL_R},
-    {NULL, offsetof(Material, rho[optical_channel_pan]), 0, 1, SPECTRAL_PAN},
-    {NULL, offsetof(Material, rho[optical_channel_nir]), 0, 1, SPECTRAL_NIR},
-    {NULL, offsetof(Material, rho_mwir), 0, 1, SPECTRAL_MWIR},
-    {NULL, offsetof(Material, rho_lwir), 0, 1, SPECTRAL_LWIR},
-    {"solar_absorptance", offsetof(Material, solar_absorptance), 0, 1, 0},
-    {"gloss", offsetof(Material, gloss), 0, 1, 0},
-    {"roughness_rad", offsetof(Material, roughness), 0, 1.5, 0},
-    {"metal", offsetof(Material, metal), 0, 1, 0},
-    {"radar_gamma", offsetof(Material, radar_gamma), 0, 100, 0},
-    /* from still air and aerogel to copper, tungsten and hydrogen-rich liquids, with margin */
-    {"conductivity_w_mk", offsetof(Material, conductivity_w_mk), 0.01, 1000, 0},
-    {"density_kg_m3", offsetof(Material, density_kg_m3), 1, 25000, 0},
-    {"heat_capacity_j_kgk", offsetof(Material, heat_capacity_j_kgk), 50, 10000, 0},
-};
-enum { number_column_count = sizeof number_columns / sizeof *number_columns };
+/* A row as it is in the file. */
+typedef struct Row {
+    Material m;
+    double   tau[SPECTRAL_PLACES];
+} Row;
 
-/* Transmittances: of plants only. Named tau_<name>. */
-static const struct {
-    size_t       offset, rho;
-    ChannelPlace place;
-} tau_columns[] = {
-    {offsetof(Material, tau[optical_channel_b]), offsetof(Material, rho[optical_channel_b]), SPECTRAL_B},
-    {offsetof(Material, tau[optical_channel_g]), offsetof(Material, rho[optical_channel_g]), SPECTRAL_G},
-    {offsetof(Material, tau[optical_channel_r]), offsetof(Material, rho[optical_channel_r]), SPECTRAL_R},
-    {offsetof(Material, tau[optical_channel_pan]), offsetof(Material, rho[optical_channel_pan]), SPECTRAL_PAN},
-    {offsetof(Material, tau[optical_channel_nir]), offsetof(Material, rho[optical_channel_nir]), SPECTRAL_NIR},
-    {offsetof(Material, tau_mwir), offsetof(Material, rho_mwir), SPECTRAL_MWIR},
-    {offsetof(Material, tau_lwir), offsetof(Material, rho_lwir), SPECTRAL_LWIR},
+#define FIELD(member) TABLE_AT(Row, m.member)
+
+static const TableColumn fixed_columns[] = {
+    {"name", .type = TABLE_NAME, FIELD(name)},
+    {"solar_absorptance", TABLE_FLOAT, FIELD(solar_absorptance), .low = 0, .high = 1},
+    {"gloss", TABLE_FLOAT, FIELD(gloss), .low = 0, .high = 1},
+    {"roughness_rad", TABLE_FLOAT, FIELD(roughness), .low = 0, .high = 1.5},
+    {"metal", TABLE_FLOAT, FIELD(metal), .low = 0, .high = 1},
+    {"radar_gamma", TABLE_FLOAT, FIELD(radar_gamma), .low = 0, .high = 100},
+    /* from still air and aerogel to copper, tungsten and hydrogen-rich liquids, with margin */
+    {"conductivity_w_mk", TABLE_FLOAT, FIELD(conductivity_w_mk), .low = 0.01, .high = 1000},
+    {"density_kg_m3", TABLE_FLOAT, FIELD(density_kg_m3), .low = 1, .high = 25000},
+    {"heat_capacity_j_kgk", TABLE_FLOAT, FIELD(heat_capacity_j_kgk), .low = 50, .high = 10000},
 };
-enum { tau_column_count = sizeof tau_columns / sizeof *tau_columns };
+enum { fixed_count = sizeof fixed_columns / sizeof *fixed_columns };
+
+/* Reflectance and transmittance in a channel's place. */
+static const struct {
+    size_t rho, tau;
+} places[SPECTRAL_PLACES] = {
+    [SPECTRAL_B] = {offsetof(Material, rho[optical_channel_b]), offsetof(Material, tau[optical_channel_b])},
+    [SPECTRAL_G] = {offsetof(Material, rho[optical_channel_g]), offsetof(Material, tau[optical_channel_g])},
+    [SPECTRAL_R] = {offsetof(Material, rho[optical_channel_r]), offsetof(Material, tau[optical_channel_r])},
+    [SPECTRAL_PAN] = {offsetof(Material, rho[optical_channel_pan]), offsetof(Material, tau[optical_channel_pan])},
+    [SPECTRAL_NIR] = {offsetof(Material, rho[optical_channel_nir]), offsetof(Material, tau[optical_channel_nir])},
+    [SPECTRAL_MWIR] = {offsetof(Material, rho_mwir), offsetof(Material, tau_mwir)},
+    [SPECTRAL_LWIR] = {offsetof(Material, rho_lwir), offsetof(Material, tau_lwir)},
+};
+
+/* The columns of a file of materials: rho_CHANNEL, and tau_CHANNEL behind them. */
+typedef struct Columns {
+    TableColumn column[fixed_count + 2 * SPECTRAL_PLACES];
+    char        name[2 * SPECTRAL_PLACES][32];
+    TableFormat plain, with_tau;
+} Columns;
+
+static void fill_columns(Columns *out)
+{
+    memcpy(out->column, fixed_columns, sizeof fixed_columns);
+    for (int k = 0; k < 2 * SPECTRAL_PLACES; k++) {
+        const int  p = k % SPECTRAL_PLACES;
+        const bool tau = k >= SPECTRAL_PLACES;
+        snprintf(out->name[k], sizeof out->name[k], "%s_%s", tau ? "tau" : "rho", channel_in((ChannelPlace)p)->name);
+        out->column[fixed_count + k] =
+            (TableColumn){.name = out->name[k],
+                          .type = tau ? TABLE_DOUBLE : TABLE_FLOAT,
+                          .offset = tau ? offsetof(Row, tau) + (size_t)p * sizeof(double) : places[p].rho,
+                          .high = 1};
+    }
+    out->plain = (TableFormat){.module = "materials",
+                               .column = out->column,
+                               .count = fixed_count + SPECTRAL_PLACES,
+                               .next = "etc/materials.csv explains the columns"};
+    out->with_tau = out->plain;
+    out->with_tau.count += SPECTRAL_PLACES;
+}
 
 /* A row's transmittances; with its reflectance each at most 1. */
-static Status read_tau(Material *material, const Table *table, int row)
+static Status take_tau(Row *row, const TableRows *rows, int number, const Columns *columns)
 {
-    for (int i = 0; i < tau_column_count; i++) {
-        char         wanted[32];
-        double       value;
-        const float *rho = (const float *)((const char *)material + tau_columns[i].rho);
-        snprintf(wanted, sizeof wanted, "tau_%s", channel_in(tau_columns[i].place)->name);
-        const int column = table_column(table, wanted);
-        if (column < 0) {
-            log_error("materials: column missing: file=%s column=%s", table->path, wanted);
-            return STATUS_BAD_VALUE;
-        }
-        const Status got = table_number(&value, table, row, column, 0, 1);
-        if (got != STATUS_OK) return got;
-        if (value + (double)*rho > 1) {
-            log_error("materials: reflectance and transmittance exceed 1 together: file=%s line=%d column=%s",
-                      table->path, table->line[row + 1], wanted);
-            return STATUS_BAD_VALUE;
-        }
-        if (value > 0 && (!(*rho > 0) || material->gloss > 0)) {
-            log_error("materials: what lets light through reflects some as well, and has no gloss: file=%s line=%d "
-                      "column=%s",
-                      table->path, table->line[row + 1], wanted);
-            return STATUS_BAD_VALUE;
-        }
-        *(float *)((char *)material + tau_columns[i].offset) = (float)value;
+    for (int p = 0; p < SPECTRAL_PLACES; p++) {
+        const char  *name = columns->name[SPECTRAL_PLACES + p];
+        const double rho = (double)*(const float *)((const char *)&row->m + places[p].rho), tau = row->tau[p];
+        if (tau + rho > 1) return table_rows_refuse(rows, number, name, "at most 1 together with the reflectance");
+        if (tau > 0 && (!(rho > 0) || row->m.gloss > 0))
+            return table_rows_refuse(rows, number, name,
+                                     "0: what lets light through reflects some as well, and has no gloss");
+        *(float *)((char *)&row->m + places[p].tau) = (float)tau;
     }
     return STATUS_OK;
 }
@@ -91,72 +98,51 @@ static Status read_tau(Material *material, const Table *table, int row)
  * user's replaces that row in its place. */
 typedef enum RowsOf { ROWS_PROGRAM, ROWS_PLANTS, ROWS_OWN } RowsOf;
 
-static bool name_repeated(const Table *table, int row, int column)
+static bool name_repeated(const TableRows *rows, int row, const char *name)
 {
     for (int earlier = 0; earlier < row; earlier++)
-        if (strcmp(table_text(table, earlier, column), table_text(table, row, column)) == 0) return true;
+        if (strcmp(table_rows_text(rows, earlier, "name"), name) == 0) return true;
     return false;
+}
+
+static Status take_rows(Materials *m, const TableRows *rows, const Columns *columns, RowsOf of)
+{
+    for (int i = 0; i < rows->table.rows; i++) {
+        Row    row = {0};
+        Status status = table_rows_get(&row, rows, i);
+        if (status == STATUS_OK && rows->format == &columns->with_tau) status = take_tau(&row, rows, i, columns);
+        if (status != STATUS_OK) return status;
+        const int same = materials_find(m, row.m.name);
+        if (same == 0 || name_repeated(rows, i, row.m.name))
+            return table_rows_refuse(rows, i, "name", "a name of its own: repeated, or that of the program's row 0");
+        if (same < 0) m->material[m->count++] = row.m;
+        else if (of == ROWS_OWN) m->material[same] = row.m;
+    }
+    return STATUS_OK;
 }
 
 /* Appends the rows of one file to those present. */
 static Status read_rows(Materials *m, const char *path, RowsOf of)
 {
-    Table     table = {0};
-    const int before = m->count;
+    TableRows rows;
+    Columns   columns;
     Status    status = channels_load();
-    if (status == STATUS_OK) status = table_open(&table, path);
     if (status != STATUS_OK) return status;
-
-    status = STATUS_BAD_VALUE;
-    const int name_column = table_column(&table, "name");
-    int       column[number_column_count];
-    for (int i = -1; i < number_column_count; i++) {
-        char wanted[32] = "name";
-        if (i >= 0 && number_columns[i].name) snprintf(wanted, sizeof wanted, "%s", number_columns[i].name);
-        else if (i >= 0) snprintf(wanted, sizeof wanted, "rho_%s", channel_in(number_columns[i].place)->name);
-        if (i >= 0) column[i] = table_column(&table, wanted);
-        if ((i < 0 ? name_column : column[i]) >= 0) continue;
-        log_error("materials: column missing: file=%s line=%d column=%s", path, table.line[0], wanted);
-        goto done;
+    fill_columns(&columns);
+    status = table_rows_open(&rows, &columns.plain, path);
+    if (status != STATUS_OK) return status;
+    if (of == ROWS_PLANTS || (of == ROWS_OWN && table_rows_has(&rows, columns.name[SPECTRAL_PLACES])))
+        status = table_rows_use(&rows, &columns.with_tau);
+    if (status == STATUS_OK && rows.table.rows > materials_limit - m->count)
+        status = table_rows_lack(&rows, "%d rows are too many; the limit is %d", rows.table.rows, (int)materials_limit);
+    Material *larger = NULL;
+    if (status == STATUS_OK) {
+        larger = realloc(m->material, ((size_t)m->count + (size_t)rows.table.rows + 1) * sizeof *m->material);
+        if (larger) m->material = larger;
+        else status = STATUS_NO_MEMORY;
     }
-    char first_tau[32];
-    snprintf(first_tau, sizeof first_tau, "tau_%s", channel_in(tau_columns[0].place)->name);
-    const bool lets_through = of == ROWS_PLANTS || (of == ROWS_OWN && table_column(&table, first_tau) >= 0);
-    if (table.rows > materials_limit - before) {
-        log_error("materials: too many rows: file=%s rows=%d limit=%d", path, table.rows, (int)materials_limit);
-        goto done;
-    }
-    Material *larger = realloc(m->material, ((size_t)before + (size_t)table.rows + 1) * sizeof *m->material);
-    if (!larger) {
-        status = STATUS_NO_MEMORY;
-        goto done;
-    }
-    m->material = larger;
-    for (int row = 0; row < table.rows; row++) {
-        const char  *name = table_text(&table, row, name_column);
-        const size_t length = strlen(name);
-        const int    same = materials_find(m, name);
-        if (length == 0 || length >= sizeof m->material->name || same == 0 || name_repeated(&table, row, name_column)) {
-            log_error("materials: name empty, repeated or longer than %zu: file=%s line=%d name=%s",
-                      sizeof m->material->name - 1, path, table.line[row + 1], name);
-            goto done;
-        }
-        Material material = {0};
-        memcpy(material.name, name, length + 1);
-        for (int i = 0; i < number_column_count; i++) {
-            double       value;
-            const Status got =
-                table_number(&value, &table, row, column[i], number_columns[i].low, number_columns[i].high);
-            if (got != STATUS_OK) goto done;
-            *(float *)((char *)&material + number_columns[i].offset) = (float)value;
-        }
-        if (lets_through && read_tau(&material, &table, row) != STATUS_OK) goto done;
-        if (same < 0) m->material[m->count++] = material;
-        else if (of == ROWS_OWN) m->material[same] = material;
-    }
-    status = STATUS_OK;
-done:
-    table_close(&table);
+    if (status == STATUS_OK) status = take_rows(m, &rows, &columns, of);
+    table_rows_close(&rows);
     return status;
 }
 
@@ -177,73 +163,38 @@ static Status read_materials(Materials *m, const char *path)
     return status == STATUS_OK && own ? read_rows(m, own, ROWS_OWN) : status;
 }
 
-/* Row of the class of this name in a file of one row a class; logged when unknown. */
-static Status find_surface(SurfaceClass *out, const Table *table, int row, int column)
-{
-    const char *name = table_text(table, row, column);
-    for (int s = SURFACE_NONE + 1; s < SURFACE_COUNT; s++)
-        if (strcmp(surface_name((SurfaceClass)s), name) == 0) {
-            *out = (SurfaceClass)s;
-            return STATUS_OK;
-        }
-    log_error("materials: no such surface class: file=%s line=%d surface=%s", table->path, table->line[row + 1], name);
-    return STATUS_BAD_VALUE;
-}
+typedef struct SurfaceRow {
+    SurfaceClass surface;
+    const char  *material;
+} SurfaceRow;
 
-/* Each class exactly once. */
-static Status check_materials_used(const bool seen[SURFACE_COUNT], const char *path)
+static Status take_surface(void *user, const void *read, const TableRows *rows, int number)
 {
-    for (int s = SURFACE_NONE + 1; s < SURFACE_COUNT; s++)
-        if (!seen[s]) {
-            log_error("materials: surface class missing: file=%s surface=%s", path, surface_name((SurfaceClass)s));
-            return STATUS_BAD_VALUE;
-        }
+    Materials        *m = user;
+    const SurfaceRow *row = read;
+    const int         material = materials_find(m, row->material);
+    if (material < 0) return table_rows_refuse(rows, number, "material", "the name of a material");
+    m->surface[row->surface] = material;
     return STATUS_OK;
 }
 
 static Status read_surfaces(Materials *m, const char *path)
 {
-    Table  table = {0};
-    Status status = table_open(&table, path);
+    static const TableColumn columns[] = {
+        {"surface", TABLE_NAMED, TABLE_AT(SurfaceRow, surface), SURFACE_NAMED, .key = true},
+        {"material", .type = TABLE_CELL, TABLE_AT(SurfaceRow, material)}};
+    static const TableFormat format = {"materials", columns, 2, .every = true,
+                                       .next = "etc/surfaces.csv is an example"};
+    SurfaceRow               row;
+    const Status             status = table_each(&format, path, &row, sizeof row, take_surface, m);
+    int                      land = 0;
+    double                   sum[optical_channel_count] = {0};
     if (status != STATUS_OK) return status;
-
-    status = STATUS_BAD_VALUE;
-    bool      seen[SURFACE_COUNT] = {0};
-    const int surface_column = table_column(&table, "surface"), material_column = table_column(&table, "material");
-    if (surface_column < 0 || material_column < 0) {
-        log_error("materials: column missing: file=%s column=%s", path, surface_column < 0 ? "surface" : "material");
-        goto done;
-    }
-    for (int row = 0; row < table.rows; row++) {
-        const char *name = table_text(&table, row, material_column);
-        if (strcmp(table_text(&table, row, surface_column), surface_name(SURFACE_NONE)) == 0) continue; /* is "none" */
-        SurfaceClass surface;
-        if (find_surface(&surface, &table, row, surface_column) != STATUS_OK) goto done;
-        const int material = materials_find(m, name);
-        if (material < 0 || seen[surface]) {
-            log_error("materials: surface repeated or its material unknown: file=%s line=%d surface=%s material=%s",
-                      path, table.line[row + 1], surface_name(surface), name);
-            goto done;
-        }
-        seen[surface] = true;
-        m->surface[surface] = material;
-    }
-    status = check_materials_used(seen, path);
-    if (status != STATUS_OK) goto done;
-
-    int    land = 0;
-    double sum[optical_channel_count] = {0};
-    for (int s = SURFACE_NONE + 1; s < SURFACE_COUNT; s++) {
-        if (s >= SURFACE_WATER)
-            continue; /* the common land: neither water nor the classes that only cover files
-                       * contain */
+    /* the common land: neither water nor the classes that only cover files contain */
+    for (int s = SURFACE_NONE + 1; s < SURFACE_WATER; s++, land++)
         for (int c = 0; c < optical_channel_count; c++) sum[c] += m->material[m->surface[s]].rho[c];
-        land++;
-    }
     for (int c = 0; c < optical_channel_count; c++) m->ground_rho[c] = (float)(sum[c] / land);
-done:
-    table_close(&table);
-    return status;
+    return STATUS_OK;
 }
 
 static Status find_part_material(int *out, const Materials *m, const Model *model, int part, const char *name,
@@ -324,31 +275,24 @@ static Status find_plants(Materials *m, const char *path)
     return STATUS_OK;
 }
 
+static Status take_beneath(void *user, const void *read, const TableRows *rows, int number)
+{
+    Materials        *m = user;
+    const SurfaceRow *row = read;
+    const int         material = materials_find(m, row->material);
+    if (strcmp(row->material, "same") == 0) return STATUS_OK;
+    if (material < 0) return table_rows_refuse(rows, number, "ground", "same, or the name of a material");
+    m->surface[row->surface] = material;
+    return STATUS_OK;
+}
+
 static Status read_ground_beneath(Materials *m, const char *path)
 {
-    Table  table = {0};
-    Status status = table_open(&table, path);
-    if (status != STATUS_OK) return status;
-    const int surface_column = table_column(&table, "surface"), ground_column = table_column(&table, "ground");
-    if (surface_column < 0 || ground_column < 0) {
-        log_error("materials: column missing: file=%s columns=surface,ground", path);
-        status = STATUS_BAD_VALUE;
-    }
-    for (int row = 0; row < table.rows && status == STATUS_OK; row++) {
-        SurfaceClass surface;
-        const char  *name = table_text(&table, row, ground_column);
-        status = find_surface(&surface, &table, row, surface_column);
-        if (status != STATUS_OK || strcmp(name, "same") == 0) continue;
-        const int material = materials_find(m, name);
-        if (material < 0) {
-            log_error("materials: no such material: file=%s line=%d ground=%s", path, table.line[row + 1], name);
-            status = STATUS_BAD_VALUE;
-        } else {
-            m->surface[surface] = material;
-        }
-    }
-    table_close(&table);
-    return status;
+    static const TableColumn columns[] = {{"surface", TABLE_NAMED, TABLE_AT(SurfaceRow, surface), SURFACE_NAMED},
+                                          {"ground", .type = TABLE_CELL, TABLE_AT(SurfaceRow, material)}};
+    static const TableFormat format = {"materials", columns, 2, .next = "etc/woods.csv explains the columns"};
+    SurfaceRow               row;
+    return table_each(&format, path, &row, sizeof row, take_beneath, m);
 }
 
 /* Row `was` of the user's own is row map[was - first] now. */

@@ -2,6 +2,8 @@
  * etc/radar/materials.csv. */
 #include "render/scattering/radar_surfaces.h"
 
+#include "pitviper_table.h"
+
 #include <stdlib.h>
 
 /* Component across the surface of the wave vector inside, over k; its sign makes the wave decay inwards. */
@@ -69,21 +71,24 @@ void fresnel_surface(double complex *te, double complex *tm, const RadarSurface 
 
 /* ---- materials ---------------------------------------------------------------------------------- */
 
-static const char *const column_names[] = {"name",   "kind",     "f_ghz",    "eps_re",
-                                           "eps_im", "thick_mm", "rough_mm", "source"};
-enum {
-    column_name,
-    column_kind,
-    column_f,
-    column_e1,
-    column_e2,
-    column_thick,
-    column_rough,
-    column_source,
-    column_count
-};
+typedef struct Row {
+    const char *name, *source;
+    int         kind;
+    double      frequency_hz, e1, e2, thick_mm, rough_mm;
+} Row;
 
-static const char *const kind_names[RADAR_SURFACE_KINDS] = {"metal", "half_space", "slab", "coated"};
+static const TableColumn columns[] = {
+    {"name", .type = TABLE_CELL, TABLE_AT(Row, name)},
+    {"source", .type = TABLE_CELL, TABLE_AT(Row, source)},
+    {"kind", TABLE_CHOICE, TABLE_AT(Row, kind), .choices = "metal, half_space, slab, coated"},
+    {"thick_mm", TABLE_DOUBLE, TABLE_AT(Row, thick_mm), .low = 0, .high = 1000},
+    {"rough_mm", TABLE_DOUBLE, TABLE_AT(Row, rough_mm), .low = 0, .high = 1000},
+    {"f_ghz", TABLE_DOUBLE, TABLE_AT(Row, frequency_hz), .low = 0.1, .high = 1000, .unit = 1e9},
+    {"eps_re", TABLE_DOUBLE, TABLE_AT(Row, e1), .low = 1, .high = 1000},
+    {"eps_im", TABLE_DOUBLE, TABLE_AT(Row, e2), .low = 0, .high = 1e6},
+};
+static const TableFormat format = {"radar materials", columns, sizeof columns / sizeof *columns,
+                                   .next = "etc/radar/materials.csv explains the columns"};
 
 int radar_materials_find(const RadarMaterials *m, const char *name)
 {
@@ -92,72 +97,44 @@ int radar_materials_find(const RadarMaterials *m, const char *name)
     return -1;
 }
 
-static Status refuse(const Table *table, int row, const char *what, const char *value)
+/* Takes a row: it begins a new material, or adds a frequency to the last one. */
+static Status take_row(RadarMaterials *m, const Row *row, const TableRows *rows, int number)
 {
-    log_error("radar materials: %s: file=%s line=%d value=%s", what, table->path, table->line[row + 1], value);
-    return STATUS_BAD_VALUE;
-}
-
-static Status read_kind(RadarMaterial *material, const Table *table, int row, const int column[])
-{
-    const char *kind = table_text(table, row, column[column_kind]);
-    double      thick_mm, rough_mm;
-    int         k = 0;
-    while (k < RADAR_SURFACE_KINDS && strcmp(kind_names[k], kind) != 0) k++;
-    if (k == RADAR_SURFACE_KINDS) return refuse(table, row, "kind is none of metal, half_space, slab, coated", kind);
-    if (table_number(&thick_mm, table, row, column[column_thick], 0, 1000) != STATUS_OK ||
-        table_number(&rough_mm, table, row, column[column_rough], 0, 1000) != STATUS_OK)
-        return STATUS_BAD_VALUE;
-    if ((thick_mm > 0) != (k == RADAR_SLAB || k == RADAR_COATED))
-        return refuse(table, row, "thick_mm must be above 0 for slab and coated, and 0 for others",
-                      table_text(table, row, column[column_thick]));
-    material->kind = (RadarSurfaceKind)k;
-    material->thick_m = thick_mm / 1000;
-    material->rough_m = rough_mm / 1000;
-    return STATUS_OK;
-}
-
-/* Reads a row: it begins a new material, or adds a frequency to the last one. */
-static Status read_row(RadarMaterials *m, const Table *table, int row, const int column[])
-{
-    const char   *name = table_text(table, row, column[column_name]);
-    const int     known = radar_materials_find(m, name);
-    RadarMaterial next = {0};
-    double        f_ghz, e1, e2;
-    if (!*name || strlen(name) >= sizeof next.name) return refuse(table, row, "name is empty or longer than 31", name);
-    if (!*table_text(table, row, column[column_source])) return refuse(table, row, "a row needs its source", name);
-    if (known >= 0 && known != m->count - 1) return refuse(table, row, "rows of a material must be together", name);
-    if (known >= 0) next = m->material[known];
-    else snprintf(next.name, sizeof next.name, "%s", name);
-    const RadarMaterial before = next;
-    if (read_kind(&next, table, row, column) != STATUS_OK) return STATUS_BAD_VALUE;
-    if (table_number(&f_ghz, table, row, column[column_f], 0.1, 1000) != STATUS_OK ||
-        table_number(&e1, table, row, column[column_e1], 1, 1000) != STATUS_OK ||
-        table_number(&e2, table, row, column[column_e2], 0, 1e6) != STATUS_OK)
-        return STATUS_BAD_VALUE;
-    if (known >= 0) {
-        if (next.kind != before.kind || next.thick_m != before.thick_m || next.rough_m != before.rough_m)
-            return refuse(table, row, "kind, thick_mm and rough_mm must be those of the material's first row", name);
-        if (next.points == radar_material_points) return refuse(table, row, "more than 8 frequencies", name);
-        if (!(f_ghz * 1e9 > next.frequency_hz[next.points - 1]))
-            return refuse(table, row, "f_ghz must rise from row to row", name);
+    const int     known = radar_materials_find(m, row->name);
+    const double  thick_m = row->thick_mm / 1000, rough_m = row->rough_mm / 1000;
+    RadarMaterial next = {.kind = (RadarSurfaceKind)row->kind, .thick_m = thick_m, .rough_m = rough_m};
+    if (!*row->name || strlen(row->name) >= sizeof next.name)
+        return table_rows_refuse(rows, number, NULL, "name is empty or longer than 31");
+    if (!*row->source) return table_rows_refuse(rows, number, NULL, "a row needs its source");
+    if (known >= 0 && known != m->count - 1)
+        return table_rows_refuse(rows, number, NULL, "rows of a material must be together: %s", row->name);
+    if ((row->thick_mm > 0) != (row->kind == RADAR_SLAB || row->kind == RADAR_COATED))
+        return table_rows_refuse(rows, number, "thick_mm", "above 0, for slab and coated, and 0 for others");
+    if (known < 0) {
+        snprintf(next.name, sizeof next.name, "%s", row->name);
+    } else {
+        next = m->material[known];
+        if ((int)next.kind != row->kind || next.thick_m != thick_m || next.rough_m != rough_m)
+            return table_rows_refuse(rows, number, NULL,
+                                     "kind, thick_mm and rough_mm must be those of the material's first row");
+        if (next.points == radar_material_points)
+            return table_rows_refuse(rows, number, NULL, "more than 8 frequencies");
+        if (!(row->frequency_hz > next.frequency_hz[next.points - 1]))
+            return table_rows_refuse(rows, number, NULL, "f_ghz must rise from row to row");
     }
-    next.frequency_hz[next.points] = f_ghz * 1e9;
-    next.e1[next.points] = e1;
-    next.e2[next.points++] = e2;
+    next.frequency_hz[next.points] = row->frequency_hz;
+    next.e1[next.points] = row->e1;
+    next.e2[next.points++] = row->e2;
     m->material[known >= 0 ? known : m->count++] = next;
     return STATUS_OK;
 }
 
 /* Adds the materials that have no row of their own, by the defaults for metal and for others; and `metal`, for shapes.
  */
-static Status add_defaults(RadarMaterials *m, const Materials *optical, const char *path)
+static Status add_defaults(RadarMaterials *m, const Materials *optical, const TableRows *rows)
 {
     const int own = radar_materials_find(m, "other_default"), metal = radar_materials_find(m, "metal_default");
-    if (own < 0 || metal < 0) {
-        log_error("radar materials: row missing: file=%s name=%s", path, own < 0 ? "other_default" : "metal_default");
-        return STATUS_BAD_VALUE;
-    }
+    if (own < 0 || metal < 0) return table_rows_lack(rows, "no row of %s", own < 0 ? "other_default" : "metal_default");
     for (int i = 0; i < optical->count; i++) {
         const Material *o = &optical->material[i];
         if (radar_materials_find(m, o->name) >= 0) continue;
@@ -170,20 +147,19 @@ static Status add_defaults(RadarMaterials *m, const Materials *optical, const ch
 
 Status radar_materials_open(RadarMaterials *out, const char *path, const Materials *optical)
 {
-    Table          table = {0};
+    TableRows      rows;
     RadarMaterials m = {0};
-    int            column[column_count];
-    Status         status = table_open(&table, path);
+    Status         status = table_rows_open(&rows, &format, path);
     if (status != STATUS_OK) return status;
-    if (!table_columns(column, &table, column_names, column_count, "radar materials")) {
-        table_close(&table);
-        return STATUS_BAD_VALUE;
-    }
-    m.material = calloc((size_t)table.rows + (size_t)optical->count + 1, sizeof *m.material);
+    m.material = calloc((size_t)rows.table.rows + (size_t)optical->count + 1, sizeof *m.material);
     if (!m.material) status = STATUS_NO_MEMORY;
-    for (int row = 0; row < table.rows && status == STATUS_OK; row++) status = read_row(&m, &table, row, column);
-    if (status == STATUS_OK) status = add_defaults(&m, optical, path);
-    table_close(&table);
+    for (int i = 0; i < rows.table.rows && status == STATUS_OK; i++) {
+        Row row;
+        status = table_rows_get(&row, &rows, i);
+        if (status == STATUS_OK) status = take_row(&m, &row, &rows, i);
+    }
+    if (status == STATUS_OK) status = add_defaults(&m, optical, &rows);
+    table_rows_close(&rows);
     if (status == STATUS_OK) *out = m;
     else radar_materials_close(&m);
     return status;

@@ -1,57 +1,64 @@
 /* sensor/detector/preset.c: reads rows of etc/sensors.csv. */
 #include "sensor/detector/preset.h"
 
+#include "pitviper_table.h"
 #include "render/air/atmosphere.h"
 
-typedef struct Column {
-    const char *name;
-    size_t      offset;
-    double      low, high, unit; /* of the file; unit: factor to the field's */
-} Column;
+/* A row as it is in the file. */
+typedef struct Row {
+    SensorPreset p;
+    const char  *name, *band;
+    int          exposure, scan; /* places among their words */
+} Row;
 
-#define FIELD(member) offsetof(SensorPreset, member)
+#define FIELD(member) TABLE_AT(Row, member)
 
-static const Column columns[] = {
-    {"width_px", FIELD(width_px), 8, 8192, 1},
-    {"height_px", FIELD(height_px), 8, 8192, 1},
-    {"hfov_deg", FIELD(hfov_deg), 0.01, 120, 1},
-    {"f_number", FIELD(photons.f_number), 0.5, 100, 1},
-    {"obscuration", FIELD(obscuration), 0, 0.95, 1},
-    {"pitch_um", FIELD(photons.pitch_m), 0.5, 1000, 1e-6},
-    {"footprint", FIELD(footprint), 0.1, 1, 1},
-    {"transmission", FIELD(photons.transmission), 0.001, 1, 1},
-    {"qe", FIELD(photons.qe), 0.001, 1, 1},
-    {"integration_ms", FIELD(photons.integration_s), 1e-6, 1e4, 1e-3},
-    {"dark_e_s", FIELD(dark_e_s), 0, 1e15, 1},
-    {"read_e", FIELD(photons.read_e), 0, 1e9, 1},
-    {"well_e", FIELD(photons.well_e), 100, 1e12, 1},
-    {"bits", FIELD(bits), 8, 16, 1},
-    {"jitter_px", FIELD(jitter_px), 0, 10, 1},
-    {"tv", FIELD(ratio.sigma[NOISE_TV]), 0, 100, 1},
-    {"th", FIELD(ratio.sigma[NOISE_TH]), 0, 100, 1},
-    {"vh", FIELD(ratio.sigma[NOISE_VH]), 0, 100, 1},
-    {"t", FIELD(ratio.sigma[NOISE_T]), 0, 100, 1},
-    {"v", FIELD(ratio.sigma[NOISE_V]), 0, 100, 1},
-    {"h", FIELD(ratio.sigma[NOISE_H]), 0, 100, 1},
-    {"prnu", FIELD(prnu), 0, 0.5, 1},
-    {"line_us", FIELD(scan.line_s), 0, 1e6, 1e-6},
-    {"active", FIELD(scan.active), 0, 1, 1},
-    {"ac_per_line", FIELD(ac_per_line), 0, 100, 1},
-    {"line_noise", FIELD(line_noise), 0, 100, 1},
-    {"line_noise_px", FIELD(line_noise_px), 0, 1e4, 1},
-    {"bad_share", FIELD(bad_share), 0, 0.2, 1},
-    {"bad_clustered", FIELD(bad_clustered), 0, 1, 1},
-    {"bad_patched", FIELD(bad_patched), 0, 1, 1},
-    {"tdi", FIELD(tdi), 1, 1000, 1},
-    {"k1", FIELD(lens[0]), -1e6, 1e6, 1},
-    {"k2", FIELD(lens[1]), -1e9, 1e9, 1},
-    {"k3", FIELD(lens[2]), -1e12, 1e12, 1},
-    {"p1", FIELD(lens[3]), -1e3, 1e3, 1},
-    {"p2", FIELD(lens[4]), -1e3, 1e3, 1},
-    {"lateral_r", FIELD(lateral[0]), -0.02, 0.02, 1},
-    {"lateral_b", FIELD(lateral[1]), -0.02, 0.02, 1},
+static const TableColumn columns[] = {
+    {"name", .type = TABLE_CELL, FIELD(name)},
+    {"band", .type = TABLE_CELL, FIELD(band)},
+    {"exposure", TABLE_CHOICE, FIELD(exposure), .choices = "fixed, auto"},
+    {"scan", TABLE_CHOICE, FIELD(scan), .choices = "stare, lines, both, columns"},
+    {"width_px", TABLE_WHOLE, FIELD(p.width_px), .low = 8, .high = 8192},
+    {"height_px", TABLE_WHOLE, FIELD(p.height_px), .low = 8, .high = 8192},
+    {"hfov_deg", TABLE_DOUBLE, FIELD(p.hfov_deg), .low = 0.01, .high = 120},
+    {"f_number", TABLE_DOUBLE, FIELD(p.photons.f_number), .low = 0.5, .high = 100},
+    {"obscuration", TABLE_DOUBLE, FIELD(p.obscuration), .low = 0, .high = 0.95},
+    {"pitch_um", TABLE_DOUBLE, FIELD(p.photons.pitch_m), .low = 0.5, .high = 1000, .unit = 1e-6},
+    {"footprint", TABLE_DOUBLE, FIELD(p.footprint), .low = 0.1, .high = 1},
+    {"transmission", TABLE_DOUBLE, FIELD(p.photons.transmission), .low = 0.001, .high = 1},
+    {"qe", TABLE_DOUBLE, FIELD(p.photons.qe), .low = 0.001, .high = 1},
+    {"integration_ms", TABLE_DOUBLE, FIELD(p.photons.integration_s), .low = 1e-6, .high = 1e4, .unit = 1e-3},
+    {"dark_e_s", TABLE_DOUBLE, FIELD(p.dark_e_s), .low = 0, .high = 1e15},
+    {"read_e", TABLE_DOUBLE, FIELD(p.photons.read_e), .low = 0, .high = 1e9},
+    {"well_e", TABLE_DOUBLE, FIELD(p.photons.well_e), .low = 100, .high = 1e12},
+    {"bits", TABLE_WHOLE, FIELD(p.bits), .low = 8, .high = 16},
+    {"jitter_px", TABLE_DOUBLE, FIELD(p.jitter_px), .low = 0, .high = 10},
+    {"tv", TABLE_DOUBLE, FIELD(p.ratio.sigma[NOISE_TV]), .low = 0, .high = 100},
+    {"th", TABLE_DOUBLE, FIELD(p.ratio.sigma[NOISE_TH]), .low = 0, .high = 100},
+    {"vh", TABLE_DOUBLE, FIELD(p.ratio.sigma[NOISE_VH]), .low = 0, .high = 100},
+    {"t", TABLE_DOUBLE, FIELD(p.ratio.sigma[NOISE_T]), .low = 0, .high = 100},
+    {"v", TABLE_DOUBLE, FIELD(p.ratio.sigma[NOISE_V]), .low = 0, .high = 100},
+    {"h", TABLE_DOUBLE, FIELD(p.ratio.sigma[NOISE_H]), .low = 0, .high = 100},
+    {"prnu", TABLE_DOUBLE, FIELD(p.prnu), .low = 0, .high = 0.5},
+    {"line_us", TABLE_DOUBLE, FIELD(p.scan.line_s), .low = 0, .high = 1e6, .unit = 1e-6},
+    {"active", TABLE_DOUBLE, FIELD(p.scan.active), .low = 0, .high = 1},
+    {"ac_per_line", TABLE_DOUBLE, FIELD(p.ac_per_line), .low = 0, .high = 100},
+    {"line_noise", TABLE_DOUBLE, FIELD(p.line_noise), .low = 0, .high = 100},
+    {"line_noise_px", TABLE_DOUBLE, FIELD(p.line_noise_px), .low = 0, .high = 1e4},
+    {"bad_share", TABLE_DOUBLE, FIELD(p.bad_share), .low = 0, .high = 0.2},
+    {"bad_clustered", TABLE_DOUBLE, FIELD(p.bad_clustered), .low = 0, .high = 1},
+    {"bad_patched", TABLE_DOUBLE, FIELD(p.bad_patched), .low = 0, .high = 1},
+    {"tdi", TABLE_WHOLE, FIELD(p.tdi), .low = 1, .high = 1000, .absent = TABLE_LATER, .otherwise = 1},
+    {"k1", TABLE_DOUBLE, FIELD(p.lens[0]), .low = -1e6, .high = 1e6, .absent = TABLE_LATER},
+    {"k2", TABLE_DOUBLE, FIELD(p.lens[1]), .low = -1e9, .high = 1e9, .absent = TABLE_LATER},
+    {"k3", TABLE_DOUBLE, FIELD(p.lens[2]), .low = -1e12, .high = 1e12, .absent = TABLE_LATER},
+    {"p1", TABLE_DOUBLE, FIELD(p.lens[3]), .low = -1e3, .high = 1e3, .absent = TABLE_LATER},
+    {"p2", TABLE_DOUBLE, FIELD(p.lens[4]), .low = -1e3, .high = 1e3, .absent = TABLE_LATER},
+    {"lateral_r", TABLE_DOUBLE, FIELD(p.lateral[0]), .low = -0.02, .high = 0.02, .absent = TABLE_LATER},
+    {"lateral_b", TABLE_DOUBLE, FIELD(p.lateral[1]), .low = -0.02, .high = 0.02, .absent = TABLE_LATER},
 };
-enum { column_count = sizeof columns / sizeof columns[0] };
+static const TableFormat format = {"sensors", columns, sizeof columns / sizeof *columns,
+                                   .next = "etc/sensors.csv explains the columns"};
 
 void preset_band(double *low_m, double *high_m, Band band, OpticalChannels optical, int channel)
 {
@@ -81,111 +88,61 @@ void preset_refresh(SensorPreset *p)
     p->ratio.sigma[NOISE_TVH] = 1;
 }
 
-static Status bad_word(const Table *t, int row, const char *column, const char *value, const char *words)
+static Status read_row(SensorPreset *out, const TableRows *rows, int number)
 {
-    log_error("sensors: %s:%d: %s: '%s' is not one of %s", t->path, t->line[row + 1], column, value, words);
-    return STATUS_BAD_VALUE;
-}
-
-/* A required column. */
-static int need(const Table *t, const char *name)
-{
-    const int column = table_column(t, name);
-    if (column < 0) log_error("sensors: %s: no column %s", t->path, name);
-    return column;
-}
-
-static Status read_row(SensorPreset *out, const Table *t, int row)
-{
-    SensorPreset p = {.noise_scale = 1, .smear = true};
-    const int    band = need(t, "band"), exposure = need(t, "exposure"), scan = need(t, "scan");
-    if (band < 0 || exposure < 0 || scan < 0) return STATUS_BAD_VALUE;
-    snprintf(p.name, sizeof p.name, "%s", table_text(t, row, table_column(t, "name")));
-
-    const char *text = table_text(t, row, band);
-    p.channel = channel_named(text, strlen(text));
-    if (p.channel ? p.channel->place < (p.channel->standard ? SPECTRAL_MWIR : SPECTRAL_NIR)
-                  : strcmp(text, "optical") != 0)
-        return bad_word(t, row, "band", text, "optical, mwir, lwir, or another channel of etc/channels.csv");
-    p.band = !p.channel || p.channel->place == SPECTRAL_NIR ? BAND_OPTICAL
-             : p.channel->place == SPECTRAL_MWIR            ? BAND_MWIR
-                                                            : BAND_LWIR;
-    text = table_text(t, row, exposure);
-    if (strcmp(text, "fixed") != 0 && strcmp(text, "auto") != 0)
-        return bad_word(t, row, "exposure", text, "fixed, auto");
-    p.auto_exposure = text[0] == 'a';
-    text = table_text(t, row, scan);
-    if (strcmp(text, "stare") != 0 && strcmp(text, "lines") != 0 && strcmp(text, "both") != 0 &&
-        strcmp(text, "columns") != 0)
-        return bad_word(t, row, "scan", text, "stare, lines, both, columns");
-    p.scan.bidirectional = text[0] == 'b';
-    p.scan.by_columns = text[0] == 'c';
-
-    for (int i = 0; i < column_count; i++) {
-        double    value;
-        const int column = need(t, columns[i].name);
-        if (column < 0) return STATUS_BAD_VALUE;
-        const Status status = table_number(&value, t, row, column, columns[i].low, columns[i].high);
-        if (status != STATUS_OK) return status;
-        value *= columns[i].unit;
-        memcpy((char *)&p + columns[i].offset, &value, sizeof value);
-    }
-    if (floor(p.bits) != p.bits || floor(p.width_px) != p.width_px || floor(p.height_px) != p.height_px ||
-        floor(p.tdi) != p.tdi) {
-        log_error("sensors: %s:%d: bits=%g, width_px=%g, height_px=%g and tdi=%g must be whole numbers", t->path,
-                  t->line[row + 1], p.bits, p.width_px, p.height_px, p.tdi);
-        return STATUS_BAD_VALUE;
-    }
-    preset_refresh(&p);
-    *out = p;
+    Row          row = {.p = {.noise_scale = 1, .smear = true}};
+    const Status status = table_rows_get(&row, rows, number);
+    if (status != STATUS_OK) return status;
+    SensorPreset *p = &row.p;
+    snprintf(p->name, sizeof p->name, "%s", row.name);
+    p->channel = channel_named(row.band, strlen(row.band));
+    if (p->channel ? p->channel->place < (p->channel->standard ? SPECTRAL_MWIR : SPECTRAL_NIR)
+                   : strcmp(row.band, "optical") != 0)
+        return table_rows_refuse(rows, number, "band",
+                                 "one of optical, mwir, lwir, or another channel of etc/channels.csv");
+    p->band = !p->channel || p->channel->place == SPECTRAL_NIR ? BAND_OPTICAL
+              : p->channel->place == SPECTRAL_MWIR             ? BAND_MWIR
+                                                               : BAND_LWIR;
+    p->auto_exposure = row.exposure == 1;
+    p->scan.bidirectional = row.scan == 2;
+    p->scan.by_columns = row.scan == 3;
+    preset_refresh(p);
+    *out = *p;
     return STATUS_OK;
 }
 
 Status preset_read(SensorPreset *out, const char *path, const char *name)
 {
-    Table  table;
-    char   known[512] = "", before[600] = "";
-    Status status = table_open(&table, path);
+    TableRows rows;
+    char      before[600] = "";
+    int       row;
+    Status    status = table_rows_open(&rows, &format, path);
     if (status != STATUS_OK) return status;
-    const int column = need(&table, "name");
-    int       row = -1;
-    WordMeant meant = word_meant(name);
-    status = STATUS_BAD_VALUE;
-    for (int i = 0; column >= 0 && i < table.rows; i++) {
-        const char  *here = table_text(&table, i, column);
-        const size_t length = strlen(known);
-        if (strcmp(here, name) == 0 && row < 0) row = i;
-        snprintf(known + length, sizeof known - length, "%s%s", i ? ", " : "", here);
-        word_consider(&meant, here);
-    }
-    if (row < 0 && etc_own("sensors.csv")) snprintf(before, sizeof before, " (nor in %s)", etc_own("sensors.csv"));
-    if (row >= 0) status = read_row(out, &table, row);
-    else if (column >= 0)
-        log_error("sensors: %s: no sensor named '%s'%s; there are: %s%s", path, name, before, known, word_hint(&meant));
-    table_close(&table);
+    if (etc_own("sensors.csv")) snprintf(before, sizeof before, " (nor in %s)", etc_own("sensors.csv"));
+    status = table_rows_find(&row, &rows, name, "sensor", before, "");
+    if (status == STATUS_OK) status = read_row(out, &rows, row);
+    table_rows_close(&rows);
     return status;
 }
 
 Status preset_has(bool *has, const char *path, const char *name)
 {
-    Table  table;
-    Status status = table_open(&table, path);
+    TableRows    rows;
+    const Status status = table_rows_open(&rows, &format, path);
     if (status != STATUS_OK) return status;
-    const int column = need(&table, "name");
     *has = false;
-    for (int i = 0; column >= 0 && i < table.rows; i++) *has |= strcmp(table_text(&table, i, column), name) == 0;
-    table_close(&table);
-    return column >= 0 ? STATUS_OK : STATUS_BAD_VALUE;
+    for (int i = 0; i < rows.table.rows; i++) *has |= strcmp(table_rows_text(&rows, i, "name"), name) == 0;
+    table_rows_close(&rows);
+    return STATUS_OK;
 }
 
 Status preset_check(const char *path)
 {
-    Table        table;
+    TableRows    rows;
     SensorPreset p;
-    Status       status = table_open(&table, path);
+    Status       status = table_rows_open(&rows, &format, path);
     if (status != STATUS_OK) return status;
-    if (need(&table, "name") < 0) status = STATUS_BAD_VALUE;
-    for (int i = 0; i < table.rows && status == STATUS_OK; i++) status = read_row(&p, &table, i);
-    table_close(&table);
+    for (int i = 0; i < rows.table.rows && status == STATUS_OK; i++) status = read_row(&p, &rows, i);
+    table_rows_close(&rows);
     return status;
 }

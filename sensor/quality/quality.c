@@ -1,15 +1,30 @@
 /* sensor/quality/quality.c: the table of settings, the selection from it, and its application to the configuration. */
 #include "sensor/quality/quality.h"
+#include "pitviper_table.h"
 #include "pitviper_output.h"
 
 #include <errno.h>
 
-static const char *const columns[] = {"samples",         "edge_samples", "target_samples",
-                                      "optical_percent", "mwir_percent", "lwir_percent",
-                                      "mwir_k",          "lwir_k",       "ms_megapixel"};
+#define FIELD(member) TABLE_AT(QualityRow, member)
+
+static const TableColumn columns[] = {
+    {"scene", TABLE_CHOICE, FIELD(scene), .choices = "bare, woods", .absent = TABLE_LATER,
+     .otherwise = quality_any_scene},
+    {"samples", TABLE_INT, FIELD(samples), .low = 1, .high = 16},
+    {"edge_samples", TABLE_INT, FIELD(edge_samples), .low = 0, .high = 16},
+    {"target_samples", TABLE_INT, FIELD(target_samples), .low = 0, .high = 256},
+    {"optical_percent", TABLE_DOUBLE, FIELD(percent[0]), .low = 0, .high = 1e6},
+    {"mwir_percent", TABLE_DOUBLE, FIELD(percent[1]), .low = 0, .high = 1e6},
+    {"lwir_percent", TABLE_DOUBLE, FIELD(percent[2]), .low = 0, .high = 1e6},
+    {"mwir_k", TABLE_DOUBLE, FIELD(kelvin[1]), .low = 0, .high = 1e6},
+    {"lwir_k", TABLE_DOUBLE, FIELD(kelvin[2]), .low = 0, .high = 1e6},
+    {"ms_megapixel", TABLE_DOUBLE, FIELD(ms_megapixel), .low = 1e-3, .high = 1e9},
+};
 enum { column_count = sizeof columns / sizeof *columns };
-static const double lows[column_count] = {1, 0, 0, 0, 0, 0, 0, 0, 1e-3};
-static const double highs[column_count] = {16, 16, 256, 1e6, 1e6, 1e6, 1e6, 1e6, 1e9};
+static const TableFormat table_format = {
+    "quality",       columns,
+    column_count,    .next = "`pitviper bench quality --table FILE` writes a complete table",
+    .least_rows = 1, .most_rows = quality_rows_max};
 
 static const char *const scene_names[quality_scenes] = {"bare", "woods"};
 
@@ -17,47 +32,17 @@ const char *quality_scene_name(QualityScene scene) { return scene_names[scene]; 
 
 /* ---- the table -------------------------------------------------------------------------------- */
 
-static bool is_whole(double x) { return x == floor(x); }
-
-static Status read_scene(QualityScene *out, const Table *table, int column, int row, const char *path)
+static Status take_row(void *user, const void *read, const TableRows *rows, int number)
 {
-    *out = quality_any_scene;
-    if (column < 0) return STATUS_OK;
-    const char *name = table_text(table, row, column);
-    for (int k = 0; k < quality_scenes; k++)
-        if (strcmp(name, scene_names[k]) == 0) *out = (QualityScene)k;
-    if (*out != quality_any_scene) return STATUS_OK;
-    log_error("quality: %s:%d: scene `%s` is not bare or woods", path, table->line[row + 1], name);
-    return STATUS_BAD_VALUE;
-}
-
-/* scene: its column; -1: none. */
-static Status read_row(QualityRow *out, const Table *table, const int at[column_count], int scene, int row,
-                       const char *path)
-{
-    double       value[column_count];
-    QualityScene of;
-    if (read_scene(&of, table, scene, row, path) != STATUS_OK) return STATUS_BAD_VALUE;
-    for (int c = 0; c < column_count; c++) {
-        const Status status = table_number(&value[c], table, row, at[c], lows[c], highs[c]);
-        if (status != STATUS_OK) return status;
-    }
-    const bool off = value[1] == 0 && value[2] == 0;
-    if (!is_whole(value[0]) || !is_whole(value[1]) || !is_whole(value[2]) ||
-        !(off || (value[1] >= 2 && value[2] >= 8))) {
-        log_error("quality: %s:%d: samples %g, edge_samples %g, target_samples %g: whole numbers, the last two both 0 "
-                  "or 2 .. 16 "
-                  "and 8 .. 256",
-                  path, table->line[row + 1], value[0], value[1], value[2]);
-        return STATUS_BAD_VALUE;
-    }
-    *out = (QualityRow){.scene = of,
-                        .samples = (int)value[0],
-                        .edge_samples = (int)value[1],
-                        .target_samples = (int)value[2],
-                        .percent = {value[3], value[4], value[5]},
-                        .kelvin = {NAN, value[6], value[7]},
-                        .ms_megapixel = value[8]};
+    QualityTable *table = user;
+    QualityRow    row = *(const QualityRow *)read;
+    const bool    off = row.edge_samples == 0 && row.target_samples == 0;
+    if (!off && !(row.edge_samples >= 2 && row.target_samples >= 8))
+        return table_rows_refuse(rows, number, NULL,
+                                 "edge_samples %d and target_samples %d: both 0, or 2 .. 16 and 8 .. 256",
+                                 row.edge_samples, row.target_samples);
+    row.kelvin[0] = NAN;
+    table->row[table->count++] = row;
     return STATUS_OK;
 }
 
@@ -79,35 +64,14 @@ static const QualityRow *fastest(const QualityTable *table, QualityScene scene)
 
 Status quality_open(QualityTable *out, const char *path)
 {
-    Table  table;
-    int    at[column_count];
-    Status status = table_open(&table, path);
-    if (status != STATUS_OK) return status;
-    QualityTable *made = out;
-    for (int c = 0; c < column_count && status == STATUS_OK; c++)
-        if ((at[c] = table_column(&table, columns[c])) < 0) {
-            log_error("quality: %s: no column %s; `pitviper bench quality --table FILE` writes a complete table", path,
-                      columns[c]);
-            status = STATUS_BAD_VALUE;
-        }
-    if (status == STATUS_OK && (table.rows < 1 || table.rows > quality_rows_max)) {
-        log_error("quality: %s: %d rows are not 1 .. %d", path, table.rows, quality_rows_max);
-        status = STATUS_BAD_VALUE;
+    QualityRow row;
+    out->count = 0;
+    const Status status = table_each(&table_format, path, &row, sizeof row, take_row, out);
+    for (int k = 0; k < quality_scenes && status == STATUS_OK; k++) {
+        if (fastest(out, (QualityScene)k)) continue;
+        log_error("quality: %s: no row of scene `%s`; %s", path, scene_names[k], table_format.next);
+        return STATUS_BAD_VALUE;
     }
-    const int scene = table_column(&table, "scene");
-    made->count = 0;
-    for (int row = 0; status == STATUS_OK && row < table.rows; row++) {
-        status = read_row(&made->row[row], &table, at, scene, row, path);
-        made->count += status == STATUS_OK;
-    }
-    for (int k = 0; k < quality_scenes && status == STATUS_OK; k++)
-        if (!fastest(made, (QualityScene)k)) {
-            log_error(
-                "quality: %s: no row of scene `%s`; `pitviper bench quality --table FILE` writes a complete table",
-                path, scene_names[k]);
-            status = STATUS_BAD_VALUE;
-        }
-    table_close(&table);
     return status;
 }
 
@@ -117,8 +81,8 @@ Status quality_write(const char *path, const QualityTable *table, const char *co
     bool       ok = file != NULL;
     const bool scenes = table->count > 0 && table->row[0].scene != quality_any_scene; /* else none has one */
     ok = ok && fprintf(file, "# %s\n%s", comment, scenes ? "scene," : "") > 0;
-    for (int c = 0; ok && c < column_count; c++)
-        ok = fprintf(file, "%s%s", columns[c], c + 1 < column_count ? "," : "\n") > 0;
+    for (int c = 1; ok && c < column_count; c++)
+        ok = fprintf(file, "%s%s", columns[c].name, c + 1 < column_count ? "," : "\n") > 0;
     for (int k = 0; ok && k < table->count; k++) {
         const QualityRow *r = &table->row[k];
         if (scenes) ok = fprintf(file, "%s,", scene_names[r->scene]) > 0;

@@ -1,5 +1,6 @@
 /* sensor/settings/tables_used.c: the tables and models that a run reads, each with its SHA-256. */
 #include "sensor/settings/tables_used.h"
+#include "pitviper_table.h"
 
 #include <dirent.h>
 #include <errno.h>
@@ -97,15 +98,16 @@ static Status add_folder(TablesUsed *out, const char *name)
 /* Adds the model files of the catalog, relative to it, and the sidecar of each. */
 static Status add_models(TablesUsed *out, const char *catalog)
 {
-    Table       table;
-    char        path[path_size], name[table_used_name_size];
-    const char *slash = strrchr(catalog, '/');
-    const int   folder = slash ? (int)(slash - catalog) + 1 : 0;
-    Status      status = table_open(&table, catalog);
+    static const TableColumn column = {"model", .absent = TABLE_LATER, .type = TABLE_CELL, .size = sizeof(char *)};
+    static const TableFormat format = {"catalog", &column, 1, .next = "etc/catalog.csv explains the columns"};
+    TableRows                rows;
+    char                     path[path_size], name[table_used_name_size];
+    const char              *slash = strrchr(catalog, '/');
+    const int                folder = slash ? (int)(slash - catalog) + 1 : 0;
+    Status                   status = table_rows_open(&rows, &format, catalog);
     if (status != STATUS_OK) return status;
-    const int column = table_column(&table, "model");
-    for (int row = 0; column >= 0 && row < table.rows && status == STATUS_OK; row++) {
-        const char *model = table_text(&table, row, column);
+    for (int row = 0; row < rows.table.rows && status == STATUS_OK; row++) {
+        const char *model = table_rows_text(&rows, row, "model");
         if (!strpbrk(model, "./") || strlen(model) >= sizeof name - 8) continue;
         const int before = *model == '/' ? 0 : folder;
         snprintf(path, sizeof path, "%.*s%s", before, catalog, model);
@@ -116,7 +118,7 @@ static Status add_models(TablesUsed *out, const char *catalog)
         snprintf(path, sizeof path, "%.*s%s", before, catalog, name);
         if (status == STATUS_OK) status = add(out, name, path);
     }
-    table_close(&table);
+    table_rows_close(&rows);
     return status;
 }
 

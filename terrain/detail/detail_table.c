@@ -7,6 +7,7 @@
  * samples are those of the filtered class, and no octave that the samples cannot resolve remains: a sample that moves
  * by a part of its footprint sees nearly the same. */
 #include "terrain/detail/detail.h"
+#include "pitviper_table.h"
 
 #include <stdlib.h>
 
@@ -244,70 +245,47 @@ void detail_table_close(DetailTable *table) { free(table); }
 
 /* ---- the file ----------------------------------------------------------------------------------- */
 
-static const struct {
-    const char *name;
-    double      most; /* standard deviation, in the field's unit */
-} field_of[detail_fields] = {{"albedo", 1}, {"temperature", 10}, {"radar", 2}, {"height", 0.05}};
+/* The largest standard deviation of each field, in its unit. */
+static const double most_sigma[detail_fields] = {1, 10, 2, 0.05};
 
-static Status read_row(DetailStatistics statistics[SURFACE_COUNT][detail_fields],
-                       bool seen[SURFACE_COUNT][detail_fields], const Table *t, int row)
+typedef struct Row {
+    SurfaceClass     surface;
+    int              field;
+    DetailStatistics s;
+} Row;
+
+#define FIELD(member) TABLE_AT(Row, member)
+
+static const TableColumn columns[] = {
+    {"surface", TABLE_NAMED, FIELD(surface), SURFACE_NAMED, .key = true},
+    {"field", TABLE_CHOICE, FIELD(field), .choices = "albedo, temperature, radar, height", .key = true},
+    {"sigma", TABLE_DOUBLE, FIELD(s.sigma), .low = 0, .high = 10},
+    {"length_m", TABLE_DOUBLE, FIELD(s.length_m), .low = 0.05, .high = 50},
+    {"far_share", TABLE_DOUBLE, FIELD(s.far_share), .low = 0, .high = 1},
+    {"far_length_m", TABLE_DOUBLE, FIELD(s.far_length_m), .low = 0.05, .high = 50},
+    {"skew", TABLE_DOUBLE, FIELD(s.skew), .low = -1.5, .high = 1.5},
+    {"follows_albedo", TABLE_DOUBLE, FIELD(s.follows), .low = -1, .high = 1},
+};
+static const TableFormat format = {"ground detail", columns, sizeof columns / sizeof *columns, .every = true,
+                                   .next = "etc/ground_detail.csv explains the columns"};
+
+static Status take_row(void *user, const void *read, const TableRows *rows, int number)
 {
-    const SurfaceClass surface = surface_find(table_text(t, row, table_column(t, "surface")));
-    const char        *name = table_text(t, row, table_column(t, "field"));
-    int                f = 0;
-    while (f < detail_fields && strcmp(field_of[f].name, name) != 0) f++;
-    if (surface == SURFACE_NONE || f == detail_fields || seen[surface][f]) {
-        log_error("ground detail: surface or field unknown or repeated: file=%s line=%d surface=%s field=%s", t->path,
-                  t->line[row + 1], table_text(t, row, table_column(t, "surface")), name);
-        return STATUS_BAD_VALUE;
-    }
-    DetailStatistics *s = &statistics[surface][f];
-    seen[surface][f] = true;
-    const struct {
-        double     *to;
-        const char *column;
-        double      low, high;
-    } number[] = {{&s->sigma, "sigma", 0, field_of[f].most},
-                  {&s->length_m, "length_m", 0.05, 50},
-                  {&s->far_share, "far_share", 0, 1},
-                  {&s->far_length_m, "far_length_m", 0.05, 50},
-                  {&s->skew, "skew", -1.5, 1.5},
-                  {&s->follows, "follows_albedo", -1, 1}};
-    for (size_t k = 0; k < sizeof number / sizeof *number; k++) {
-        const Status status =
-            table_number(number[k].to, t, row, table_column(t, number[k].column), number[k].low, number[k].high);
-        if (status != STATUS_OK) return status;
-    }
-    if ((f == DETAIL_ALBEDO || f == DETAIL_HEIGHT) && s->follows != 1) {
-        log_error("ground detail: follows_albedo of albedo and height is 1: file=%s line=%d", t->path,
-                  t->line[row + 1]);
-        return STATUS_BAD_VALUE;
-    }
+    DetailStatistics(*statistics)[detail_fields] = user;
+    const Row *row = read;
+    const int  f = row->field;
+    if (row->s.sigma > most_sigma[f])
+        return table_rows_refuse(rows, number, "sigma", "a number in 0 .. %g", most_sigma[f]);
+    if ((f == DETAIL_ALBEDO || f == DETAIL_HEIGHT) && row->s.follows != 1)
+        return table_rows_refuse(rows, number, "follows_albedo", "1, as of albedo and height it is");
+    statistics[row->surface][f] = row->s;
     return STATUS_OK;
 }
 
 Status detail_table_open(DetailTable **out, const char *path, double cut_off)
 {
-    static const char *const column[] = {"surface",   "field",        "sigma", "length_m",
-                                         "far_share", "far_length_m", "skew",  "follows_albedo"};
-    DetailStatistics         statistics[SURFACE_COUNT][detail_fields] = {{{0}}};
-    bool                     seen[SURFACE_COUNT][detail_fields] = {{0}};
-    Table                    t = {0};
-    Status                   status = table_open(&t, path);
-    if (status != STATUS_OK) return status;
-    for (size_t k = 0; k < sizeof column / sizeof *column && status == STATUS_OK; k++)
-        if (table_column(&t, column[k]) < 0) {
-            log_error("ground detail: column missing: file=%s column=%s", path, column[k]);
-            status = STATUS_BAD_VALUE;
-        }
-    for (int row = 0; row < t.rows && status == STATUS_OK; row++) status = read_row(statistics, seen, &t, row);
-    for (int s = SURFACE_NONE + 1; s < SURFACE_COUNT && status == STATUS_OK; s++)
-        for (int f = 0; f < detail_fields && status == STATUS_OK; f++)
-            if (!seen[s][f]) {
-                log_error("ground detail: row missing: file=%s surface=%s field=%s", path,
-                          surface_name((SurfaceClass)s), field_of[f].name);
-                status = STATUS_BAD_VALUE;
-            }
-    table_close(&t);
+    DetailStatistics statistics[SURFACE_COUNT][detail_fields] = {{{0}}};
+    Row              row;
+    const Status     status = table_each(&format, path, &row, sizeof row, take_row, statistics);
     return status == STATUS_OK ? detail_table_create(out, statistics, cut_off) : status;
 }

@@ -86,7 +86,8 @@ static void malformed_rows_are_named(void **state)
         snprintf(text, sizeof text, "type,model,origin\n# comment\n1.1,tank,base\n%s\n", bad_row[i]);
         if (open_text(&c, text) != STATUS_BAD_VALUE) fail_msg("accepted: %s", bad_row[i]);
         CHECK(c == NULL);
-        if (!strstr(last_error, "line=4")) fail_msg("no line in: %s", last_error);
+        if (!strstr(last_error, ":4: column ") && !strstr(last_error, "line=4 model="))
+            fail_msg("no line in: %s", last_error);
     }
     Catalog *c = NULL;
     CHECK(open_text(&c, "type,model\n1,tank\n") == STATUS_BAD_VALUE && strstr(last_error, "origin"));

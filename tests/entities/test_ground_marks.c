@@ -602,7 +602,7 @@ static void bad_files_are_refused(void **state)
     static const struct {
         const char *row, *said;
     } bad[] = {
-        {"hole,,0,,6378137,0,0,,,,,,,,,,,,,,,,,,,,,,1,1,1\n", "kind is not"},
+        {"hole,,0,,6378137,0,0,,,,,,,,,,,,,,,,,,,,,,1,1,1\n", "kind: 'hole' is not one of stand, track, burn"},
         {"burn,,0,,6378137,0,0,,,,,,,,,,,,,,,,,,,,,,-1,1,1\n", "radius_m"},
         {"burn,,0,,6378137,0,0,,,,,,,,,,,,,,,,,,,,,,nan,1,1\n", "radius_m"},
         {"burn,,0,,0,0,0,,,,,,,,,,,,,,,,,,,,,,1,1,1\n", "far from the Earth"},

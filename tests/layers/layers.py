@@ -31,7 +31,7 @@ MAY = {
     'top': ('*',), 'fuzz': ('*',), 'analytic': ('*',),
 }
 BASE_HEADERS = ('pitviper.h', 'pitviper_channels.h', 'pitviper_confine.h', 'pitviper_file.h', 'pitviper_library.h', 'pitviper_output.h',
-                'pitviper_settings.h', 'pitviper_simd.h')
+                'pitviper_settings.h', 'pitviper_simd.h', 'pitviper_table.h')
 
 # Libraries that one file, or one folder, knows: header, places.
 LIBRARIES = (
@@ -45,6 +45,14 @@ LIBRARIES = (
 # Files are opened for writing, and renamed, by pitviper_output.c alone, which follows no link; shared memory has names of its own; pitviper_confine.c forbids it.
 WRITES = re.compile(r'\bf(?:re)?open\s*\([^;]*"[wa]|\bO_CREAT\b|(?<![\w.>])(?:creat|rename|truncate)\s*\(|\bjson_dump_file\b')
 WRITERS = ('pitviper_output.c', 'pitviper_confine.c', 'sensor/publish/memory/memory_ring.c')
+
+# CSV is read by the base: pitviper_table.h gives rows as structs. Elsewhere nobody splits a line at its commas, or asks for
+# cells one by one.
+CELLS = re.compile(r'\b(?:text_split|table_open|table_column|table_number|table_text)\s*\(|'
+                   r'\b(?:strtok(?:_r)?|strsep|strchr|strcspn|strpbrk)\s*\([^;()\n]*,\s*(?:"(?:[^"\n\\]|\\.)*,(?:[^"\n\\]|\\.)*"|\',\')\s*[,)]')
+# Who else: lines before the header, places instead of names, codes for what is missing (EPW, TMY3); lists of words in one value.
+SPLITTERS = ('terrain/weather/weather_file.c', 'entities/import/gltf_document.c', 'sensor/settings/*', 'sensor/verify/regress/record_frame.c',
+             'terrain/elevation/reader/reader_set.c', 'terrain/import/terrain_*.c')
 
 # Includes from one wing into another that are left out when circles between wings are looked for, with the reason.
 WING_EXCEPTIONS = {}
@@ -185,6 +193,14 @@ def check_writers(tree):
             yield f'{path}: {found.group(0).split("(")[0].strip()}: pitviper_output.h opens files for writing'
 
 
+def check_cells(tree):
+    for path, text in tree.items():
+        if path.startswith(('tests/', 'pitviper')) or any(fnmatch.fnmatch(path, place) for place in SPLITTERS):
+            continue
+        for found in CELLS.finditer(text):
+            yield f'{path}: {found.group(0).split("(")[0].strip()}: pitviper_table.h reads rows of CSV'
+
+
 # A path of ours in a comment or a document. NAME stands for what a reader fills in, kiosk.c is one's own example.
 NAMED = re.compile(r'(?<![\w/.-])((?:dis|terrain|entities|render|sensor|tests)/[\w./-]*\w\.(?:c|h|cpp|sh|py))\b')
 
@@ -219,7 +235,7 @@ def check_choices(tree):
             yield f'{path}: a text with choices: make it a CHOICE or a SWITCH (etc/ADDING.md)'
 
 
-CHECKS = (check_rooms, check_circles, check_first_lines, check_writers, check_choices)
+CHECKS = (check_rooms, check_circles, check_first_lines, check_writers, check_choices, check_cells)
 
 
 def violations(tree):
@@ -301,6 +317,11 @@ def twins():
             wrong.append(f'twin: {"not caught" if bad else "wrongly caught"}: {line}')
     for bad, line in ((True, 'f = fopen(path, "wb");'), (True, 'open(p, O_WRONLY | O_CREAT, 0666);'), (True, 'rename(part, path);'),
                       (False, 'f = fopen(path, "rb");'), (False, 'output_rename(part, path);')):
+        if bool(violations({'dis/a.c': f'/* dis/a.c: planted. */\n{line}\n'})) != bad:
+            wrong.append(f'twin: {"not caught" if bad else "wrongly caught"}: {line}')
+    for bad, line in ((True, 'n = text_split(cell, 9, line);'), (True, 'for (char *at; (at = strsep(&line, ","));) n++;'), (True, 'word = strtok_r(line, ",;", &rest);'),
+                      (True, "at = strchr(at, ',');"), (True, 'status = table_number(&x, &table, row, 3, 0, 1);'), (False, 'status = table_rows_get(&row, &rows, 3);'),
+                      (False, 'word = strtok_r(line, " ", &rest);')):
         if bool(violations({'dis/a.c': f'/* dis/a.c: planted. */\n{line}\n'})) != bad:
             wrong.append(f'twin: {"not caught" if bad else "wrongly caught"}: {line}')
     return wrong

@@ -77,7 +77,7 @@ static void broken_tables_are_refused(void **state)
     static const struct {
         const char *rows, *said;
     } cases[] = {
-        {"a,gel,10,2,0,0,0,x\n", "kind is none of"},
+        {"a,gel,10,2,0,0,0,x\n", "kind: 'gel' is not one of metal, half_space, slab, coated"},
         {"a,half_space,10,0.5,0,0,0,x\n", "eps_re"},
         {"a,half_space,10,2,-1,0,0,x\n", "eps_im"},
         {"a,slab,10,2,0,0,0,x\n", "thick_mm"},

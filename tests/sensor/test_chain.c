@@ -258,7 +258,7 @@ static void bad_rows_are_named(void **state)
         {"auto,2000", "sometimes,2000", "'sometimes' is not one of fixed, auto"},
         {",f_number,", ",f_nummer,", "no column f_number"},
         {"tv,optical", "television,optical", "no sensor named 'tv'"},
-        {"tv,optical,720,", "tv,optical,720.5,", "whole numbers"},
+        {"tv,optical,720,", "tv,optical,720.5,", "width_px: '720.5' is not a whole number in 8 .. 8192"},
     };
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         SensorPreset p;
@@ -275,6 +275,32 @@ static void bad_rows_are_named(void **state)
     }
 }
 
+/* A table of a user's from before detectors were summed and lenses bent: the columns are dropped, the rest is read. */
+static void a_table_older_than_its_columns_is_read(void **state)
+{
+    (void)state;
+    static const char head[] =
+        "name,band,width_px,height_px,hfov_deg,f_number,obscuration,pitch_um,footprint,transmission,qe,"
+        "integration_ms,exposure,dark_e_s,read_e,well_e,bits,jitter_px,tv,th,vh,t,v,h,prnu,line_us,"
+        "active,scan,ac_per_line,line_noise,line_noise_px,bad_share,bad_clustered,bad_patched";
+    static const char row[] =
+        "old,lwir,320,240,10,2,0,25,0.95,0.8,0.7,0.1,fixed,5e9,1000,3.3e7,14,0.1,0.05,0.05,0.4,0.1,0.1,"
+        "0.1,0.0003,0,0,stare,0,0,0,0.005,0.3,0.9";
+    char         path[text_file_size], text[2048];
+    SensorPreset p;
+    snprintf(text, sizeof text, "%s,source\n%s,ours\n", head, row);
+    text_file(path, text);
+    CHECK(preset_read(&p, path, "old") == STATUS_OK);
+    CHECK(p.tdi == 1 && p.width_px == 320 && p.bad_patched == 0.9);
+    for (int k = 0; k < 5; k++) CHECK(p.lens[k] == 0);
+    CHECK(p.lateral[0] == 0 && p.lateral[1] == 0);
+    remove(path);
+    snprintf(text, sizeof text, "%s,tdi,k1,source\n%s,4,-0.5,ours\n", head, row);
+    text_file(path, text);
+    CHECK(preset_read(&p, path, "old") == STATUS_OK && p.tdi == 4 && p.lens[0] == -0.5 && p.lens[1] == 0);
+    remove(path);
+}
+
 int main(void)
 {
     thread_flush_denormals();
@@ -287,6 +313,7 @@ int main(void)
         cmocka_unit_test(light_counts_by_its_own_wavelength),
         cmocka_unit_test(levels_follow_with_their_time_constant),
         cmocka_unit_test(bad_rows_are_named),
+        cmocka_unit_test(a_table_older_than_its_columns_is_read),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

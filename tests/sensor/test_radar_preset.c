@@ -74,11 +74,27 @@ static void bad_rows_are_refused(void **state)
     }
 }
 
+/* The columns of etc/radars.csv before waveforms were named: LFM, compensated, nothing folded, two rows. */
+static void a_table_older_than_its_columns_is_read(void **state)
+{
+    (void)state;
+    RadarPreset p;
+    char        path[text_file_size];
+    text_file(path,
+              "name,centre_ghz,bandwidth_mhz,samples,pulses,repeat_khz,pulse_us,power_w,loss_db,dish_m,taper,transmit,"
+              "noise_figure_db,phase_noise_deg,iq_gain_db,iq_phase_deg,bits,range_window,doppler_window,pfa,source\n"
+              "x,94,500,512,64,20,20,10,5,0.2,1,v,8,2,0,0,12,hann,hann,1e-6,s\n");
+    CHECK(radar_preset_read(&p, path, "x") == STATUS_OK);
+    CHECK(p.wave.kind == WAVEFORM_LFM && !p.wave.uncompensated && p.far_m == 0 && p.mti_rows == 2 && !p.transmits_h);
+    remove(path);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(bundled_rows_are_read),
         cmocka_unit_test(bad_rows_are_refused),
+        cmocka_unit_test(a_table_older_than_its_columns_is_read),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

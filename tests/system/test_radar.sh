@@ -104,7 +104,7 @@ done
 sed 's/,stepped,/,chirped,/; s/,fmcw,/,chirped,/' "$tmp/radars.csv" >"$tmp/bad.csv"
 printf 'radar: {table: %s, preset: mine}\n' "$tmp/bad.csv" >"$tmp/bad.yaml"
 run check "$tmp/bad.yaml"
-check "check: a table of radars refused with its line and column" [ $code = 1 ] && complained 'bad.csv:3: waveform: .chirped.'
+check "check: a table of radars refused with its line and column" [ $code = 1 ] && complained 'bad.csv:3: column waveform: .chirped.'
 printf 'radar: {preset: hubble}\n' >"$tmp/bad.yaml"
 run check "$tmp/bad.yaml"
 check "check: refused with file, line and key" [ $code = 1 ] && complained 'bad.yaml:1: radar.preset'

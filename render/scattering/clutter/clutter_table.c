@@ -2,6 +2,8 @@
  * its figures go into. */
 #include "render/scattering/clutter/clutter_table_private.h"
 
+#include "pitviper_table.h"
+
 static const struct {
     const char *name;
     double      low_ghz, high_ghz;
@@ -84,103 +86,78 @@ double clutter_texture(const ClutterRow *row, double deviate)
 
 /* ---- reading --------------------------------------------------------------------------------------- */
 
-typedef struct Column {
-    const char *name;
-    size_t      offset;
-    double      low, high;
-    bool        decibel; /* in the file; a ratio in the row */
-    int         model;   /* rows of the other model may leave it empty; -1: rows of both may */
-} Column;
-static const Column columns[] = {
-    {"gamma_db", offsetof(ClutterRow, gamma), -60, 20, true, CLUTTER_GAMMA},
-    {"a", offsetof(ClutterRow, a), 1e-9, 1e3, false, CLUTTER_GIT},
-    {"b", offsetof(ClutterRow, b), 0, 10, false, CLUTTER_GIT},
-    {"c", offsetof(ClutterRow, c), 0, 1, false, CLUTTER_GIT},
-    {"d", offsetof(ClutterRow, d), 0, 100, false, CLUTTER_GIT},
-    {"roughness_mm", offsetof(ClutterRow, roughness_m), 0, 1e5, false, CLUTTER_GIT},
-    {"nu", offsetof(ClutterRow, nu), 0, 1e4, false, -1},
-    {"texture_m", offsetof(ClutterRow, texture_m), 0.1, 1e4, false, -1},
-    {"hh_vv_db", offsetof(ClutterRow, hh), -30, 30, true, -1},
-    {"hv_vv_db", offsetof(ClutterRow, hv), -60, 10, true, -1},
-    {"rho", offsetof(ClutterRow, rho), 0, 1, false, -1},
-    {"motion", offsetof(ClutterRow, motion), 0, 10, false, -1},
-    {"still", offsetof(ClutterRow, still), 0, 1e6, false, -1},
-    {"extent_mm", offsetof(ClutterRow, extent_m), 0, 1e3, false, -1},
-    {"foliage_db_m", offsetof(ClutterRow, foliage_db_m), 0, 100, false, -1},
-};
-enum { numbers = sizeof columns / sizeof *columns };
-static const char *const text_columns[] = {"surface", "band", "model"};
+typedef struct Row {
+    SurfaceClass surface;
+    int          band;
+    ClutterRow   of; /* NaN: figures of the other model that are not given */
+} Row;
 
-static Status bad_row(const Table *table, int row, const char *what, const char *value)
+#define FIELD(member) TABLE_AT(Row, member)
+
+static const TableColumn columns[] = {
+    {"surface", TABLE_NAMED, FIELD(surface), SURFACE_NAMED, .key = true},
+    {"band", TABLE_CHOICE, FIELD(band), .choices = "Ku, Ka, W", .key = true},
+    {"model", TABLE_CHOICE, FIELD(of.model), .choices = "gamma, git"},
+    {"gamma_db", TABLE_DOUBLE, FIELD(of.gamma), .low = -60, .high = 20, .absent = TABLE_EMPTY, .otherwise = NAN},
+    {"a", TABLE_DOUBLE, FIELD(of.a), .low = 1e-9, .high = 1e3, .absent = TABLE_EMPTY, .otherwise = NAN},
+    {"b", TABLE_DOUBLE, FIELD(of.b), .low = 0, .high = 10, .absent = TABLE_EMPTY, .otherwise = NAN},
+    {"c", TABLE_DOUBLE, FIELD(of.c), .low = 0, .high = 1, .absent = TABLE_EMPTY, .otherwise = NAN},
+    {"d", TABLE_DOUBLE, FIELD(of.d), .low = 0, .high = 100, .absent = TABLE_EMPTY, .otherwise = NAN},
+    {"roughness_mm", TABLE_DOUBLE, FIELD(of.roughness_m), .low = 0, .high = 1e5, .unit = 1e-3, .absent = TABLE_EMPTY,
+     .otherwise = NAN},
+    {"nu", TABLE_DOUBLE, FIELD(of.nu), .low = 0, .high = 1e4},
+    {"texture_m", TABLE_DOUBLE, FIELD(of.texture_m), .low = 0.1, .high = 1e4},
+    {"hh_vv_db", TABLE_DOUBLE, FIELD(of.hh), .low = -30, .high = 30},
+    {"hv_vv_db", TABLE_DOUBLE, FIELD(of.hv), .low = -60, .high = 10},
+    {"rho", TABLE_DOUBLE, FIELD(of.rho), .low = 0, .high = 1},
+    {"motion", TABLE_DOUBLE, FIELD(of.motion), .low = 0, .high = 10},
+    {"still", TABLE_DOUBLE, FIELD(of.still), .low = 0, .high = 1e6},
+    {"extent_mm", TABLE_DOUBLE, FIELD(of.extent_m), .low = 0, .high = 1e3, .unit = 1e-3},
+    {"foliage_db_m", TABLE_DOUBLE, FIELD(of.foliage_db_m), .low = 0, .high = 100},
+};
+static const TableFormat format = {"clutter", columns, sizeof columns / sizeof *columns, .every = true,
+                                   .next = "etc/reference/radar_clutter.md explains the columns"};
+
+/* Whether a figure is there, which only rows of one model need; without it 0. */
+static bool given(double *figure)
 {
-    log_error("clutter: %s: file=%s line=%d value=\"%s\"", what, table->path, table->line[row + 1], value);
-    return STATUS_BAD_VALUE;
+    if (!isnan(*figure)) return true;
+    *figure = 0;
+    return false;
 }
 
-static Status read_row(ClutterTable *out, bool seen[SURFACE_COUNT][CLUTTER_BAND_COUNT], const Table *table, int row,
-                       const int at[numbers], const int text[3])
+static Status take_row(void *user, const void *read, const TableRows *rows, int number)
 {
-    static const double smallest_nu = 0.05;
-    const char         *surface_text = table_text(table, row, text[0]), *band_text = table_text(table, row, text[1]),
-               *model_text = table_text(table, row, text[2]);
-    const SurfaceClass surface = surface_find(surface_text);
-    int                band = 0;
-    while (band < CLUTTER_BAND_COUNT && strcmp(bands[band].name, band_text) != 0) band++;
-    if (surface == SURFACE_NONE) return bad_row(table, row, "no such surface", surface_text);
-    if (band == CLUTTER_BAND_COUNT) return bad_row(table, row, "band is Ku, Ka or W", band_text);
-    if (seen[surface][band]) return bad_row(table, row, "a second row of a surface and band", surface_text);
-    seen[surface][band] = true;
-    const bool git = strcmp(model_text, "git") == 0;
-    if (!git && strcmp(model_text, "gamma") != 0) return bad_row(table, row, "model is gamma or git", model_text);
-
-    ClutterRow *to = &out->row[surface][band];
-    *to = (ClutterRow){.model = git ? CLUTTER_GIT : CLUTTER_GAMMA};
-    for (int c = 0; c < numbers; c++) {
-        double    *value = (double *)((char *)to + columns[c].offset);
-        const bool foreign = columns[c].model >= 0 && columns[c].model != (int)to->model;
-        if (foreign && !*table_text(table, row, at[c])) continue;
-        const Status status = table_number(value, table, row, at[c], columns[c].low, columns[c].high);
-        if (status != STATUS_OK) return status;
-        if (columns[c].decibel) *value = pow(10, 0.1 * *value);
+    static const double      smallest_nu = 0.05;
+    static const char *const of_git[] = {"a", "b", "c", "d", "roughness_mm"};
+    const Row               *row = read;
+    ClutterRow              *to = &((ClutterTable *)user)->row[row->surface][row->band];
+    const bool               git = row->of.model == CLUTTER_GIT;
+    *to = row->of;
+    double *const figure[] = {&to->a, &to->b, &to->c, &to->d, &to->roughness_m};
+    for (int k = 0; k < 5; k++)
+        if (!given(figure[k]) && git) return table_rows_refuse(rows, number, of_git[k], "a number, which git needs");
+    if (!given(&to->gamma)) {
+        if (!git) return table_rows_refuse(rows, number, "gamma_db", "a number, which gamma needs");
+    } else {
+        to->gamma = pow(10, 0.1 * to->gamma);
     }
-    to->roughness_m *= 1e-3;
-    to->extent_m *= 1e-3;
-    if (to->nu == 0) {
-        to->nu = INFINITY;
-        return STATUS_OK;
-    }
-    if (to->nu < smallest_nu) return bad_row(table, row, "nu is 0 or 0.05 .. 10000", table_text(table, row, at[6]));
-    fill_texture(to);
+    to->hh = pow(10, 0.1 * to->hh);
+    to->hv = pow(10, 0.1 * to->hv);
+    if (to->nu != 0 && to->nu < smallest_nu) return table_rows_refuse(rows, number, "nu", "0 or 0.05 .. 10000");
+    if (to->nu == 0) to->nu = INFINITY;
+    else fill_texture(to);
     return STATUS_OK;
 }
 
 Status clutter_table_open(ClutterTable *out, const char *path)
 {
-    Table        table = {0};
-    ClutterTable read;
-    bool         seen[SURFACE_COUNT][CLUTTER_BAND_COUNT] = {{false}};
-    int          at[numbers], text[3];
-    const char  *name[numbers];
-
-    Status status = table_open(&table, path);
+    ClutterTable table;
+    Row          row;
+    const Status status = table_each(&format, path, &row, sizeof row, take_row, &table);
     if (status != STATUS_OK) return status;
-    for (int c = 0; c < numbers; c++) name[c] = columns[c].name;
-    if (!table_columns(text, &table, text_columns, 3, "clutter") ||
-        !table_columns(at, &table, name, numbers, "clutter"))
-        status = STATUS_BAD_VALUE;
-    for (int row = 0; row < table.rows && status == STATUS_OK; row++)
-        status = read_row(&read, seen, &table, row, at, text);
-    table_close(&table);
-    for (int s = SURFACE_NONE + 1; s < SURFACE_COUNT && status == STATUS_OK; s++)
-        for (int b = 0; b < CLUTTER_BAND_COUNT && status == STATUS_OK; b++)
-            if (!seen[s][b]) {
-                log_error("clutter: no row: file=%s surface=%s band=%s", path, surface_name((SurfaceClass)s),
-                          bands[b].name);
-                status = STATUS_BAD_VALUE;
-            }
-    if (status != STATUS_OK) return status;
-    memcpy(read.row[SURFACE_NONE], read.row[SURFACE_BARE_SOIL], sizeof read.row[SURFACE_NONE]);
-    *out = read;
+    memcpy(table.row[SURFACE_NONE], table.row[SURFACE_BARE_SOIL], sizeof table.row[SURFACE_NONE]);
+    *out = table;
     return STATUS_OK;
 }
 

@@ -7,58 +7,64 @@
  * Its imaginary part is the F of P.676-13, eq. 5; the real part belongs to it by causality. */
 #include "render/scattering/paths/attenuation.h"
 
-typedef struct LineColumn {
-    const char *name;
-    double      low, high;
-} LineColumn;
+#include "pitviper_table.h"
 
 enum { line_columns = 7 };
 
-static const LineColumn oxygen_column[line_columns] = {
-    {"line_ghz", 1, 5000},     {"strength", 0, 1e5},  {"strength_slope", 0, 20},  {"width", 0.1, 1000},
-    {"width_exponent", -1, 1}, {"coupling", -50, 50}, {"coupling_slope", -50, 50}};
-static const LineColumn water_column[line_columns] = {
-    {"line_ghz", 1, 5000},     {"strength", 0, 1e5}, {"strength_slope", 0, 20}, {"width", 0.1, 1000},
-    {"width_exponent", -1, 5}, {"self", 0, 100},     {"self_exponent", -1, 10}};
+/* A row is double[line_columns], the frequency first. */
+static const TableColumn oxygen_columns[line_columns] = {
+    {"line_ghz", TABLE_DOUBLE, TABLE_AT_NUMBER(0), .low = 1, .high = 5000},
+    {"strength", TABLE_DOUBLE, TABLE_AT_NUMBER(1), .low = 0, .high = 1e5},
+    {"strength_slope", TABLE_DOUBLE, TABLE_AT_NUMBER(2), .low = 0, .high = 20},
+    {"width", TABLE_DOUBLE, TABLE_AT_NUMBER(3), .low = 0.1, .high = 1000},
+    {"width_exponent", TABLE_DOUBLE, TABLE_AT_NUMBER(4), .low = -1, .high = 1},
+    {"coupling", TABLE_DOUBLE, TABLE_AT_NUMBER(5), .low = -50, .high = 50},
+    {"coupling_slope", TABLE_DOUBLE, TABLE_AT_NUMBER(6), .low = -50, .high = 50},
+};
+static const TableColumn water_columns[line_columns] = {
+    {"line_ghz", TABLE_DOUBLE, TABLE_AT_NUMBER(0), .low = 1, .high = 5000},
+    {"strength", TABLE_DOUBLE, TABLE_AT_NUMBER(1), .low = 0, .high = 1e5},
+    {"strength_slope", TABLE_DOUBLE, TABLE_AT_NUMBER(2), .low = 0, .high = 20},
+    {"width", TABLE_DOUBLE, TABLE_AT_NUMBER(3), .low = 0.1, .high = 1000},
+    {"width_exponent", TABLE_DOUBLE, TABLE_AT_NUMBER(4), .low = -1, .high = 5},
+    {"self", TABLE_DOUBLE, TABLE_AT_NUMBER(5), .low = 0, .high = 100},
+    {"self_exponent", TABLE_DOUBLE, TABLE_AT_NUMBER(6), .low = -1, .high = 10},
+};
+static const TableFormat oxygen_format = {"gas lines",     oxygen_columns,
+                                          line_columns,    .next = "etc/radar/oxygen_lines.csv explains the columns",
+                                          .least_rows = 1, .most_rows = gas_lines_max};
+static const TableFormat water_format = {"gas lines",     water_columns,
+                                         line_columns,    .next = "etc/radar/water_lines.csv explains the columns",
+                                         .least_rows = 1, .most_rows = gas_lines_max};
 
-static Status read_list(GasLineList *out, const char *path, const char *standard, const LineColumn column[line_columns])
+static Status take_line(void *user, const void *row, const TableRows *rows, int number)
 {
-    Table       table;
-    char        found[1024];
-    const char *name[line_columns];
-    int         at[line_columns];
+    GasLineList  *list = user;
+    const double *x = row;
+    if (number > 0 && !(x[0] > list->f_ghz[number - 1]))
+        return table_rows_refuse(rows, number, "line_ghz", "above that of the row before");
+    list->f_ghz[number] = x[0];
+    for (int c = 1; c < line_columns; c++) list->c[c - 1][number] = x[c];
+    list->count = number + 1;
+    return STATUS_OK;
+}
+
+static Status read_list(GasLineList *out, const char *path, const char *standard, const TableFormat *format)
+{
+    char   found[1024];
+    double row[line_columns];
     if (!path && !etc_path(found, sizeof found, standard)) {
         log_error("gas lines: no etc/%s", standard);
         return STATUS_IO;
     }
-    Status status = table_open(&table, path ? path : found);
-    if (status != STATUS_OK) return status;
-    for (int c = 0; c < line_columns; c++) name[c] = column[c].name;
-    if (!table_columns(at, &table, name, line_columns, "gas lines")) status = STATUS_BAD_VALUE;
-    if (status == STATUS_OK && (table.rows < 1 || table.rows > gas_lines_max)) {
-        log_error("gas lines: %s: rows=%d: want 1 to %d", table.path, table.rows, (int)gas_lines_max);
-        status = STATUS_BAD_VALUE;
-    }
-    for (int row = 0; status == STATUS_OK && row < table.rows; row++) {
-        for (int c = 0; c < line_columns && status == STATUS_OK; c++)
-            status = table_number(c == 0 ? &out->f_ghz[row] : &out->c[c - 1][row], &table, row, at[c], column[c].low,
-                                  column[c].high);
-        if (status == STATUS_OK && row > 0 && !(out->f_ghz[row] > out->f_ghz[row - 1])) {
-            log_error("gas lines: %s:%d: line_ghz=%g is not above that of the row before", table.path,
-                      table.line[row + 1], out->f_ghz[row]);
-            status = STATUS_BAD_VALUE;
-        }
-    }
-    out->count = table.rows;
-    table_close(&table);
-    return status;
+    return table_each(format, path ? path : found, row, sizeof row, take_line, out);
 }
 
 Status gas_lines_read(GasLines *out, const char *oxygen_path, const char *water_path)
 {
     GasLines lines = {0};
-    Status   status = read_list(&lines.oxygen, oxygen_path, "radar/oxygen_lines.csv", oxygen_column);
-    if (status == STATUS_OK) status = read_list(&lines.water, water_path, "radar/water_lines.csv", water_column);
+    Status   status = read_list(&lines.oxygen, oxygen_path, "radar/oxygen_lines.csv", &oxygen_format);
+    if (status == STATUS_OK) status = read_list(&lines.water, water_path, "radar/water_lines.csv", &water_format);
     if (status == STATUS_OK) *out = lines;
     return status;
 }

@@ -2,66 +2,54 @@
  * and the sum of the paths. */
 #include "render/scattering/paths/ground_bounce.h"
 
+#include "pitviper_table.h"
+
 #include <stdlib.h>
 
-enum { column_surface, column_f, column_e1, column_e2, column_rms, column_heights, column_count };
-static const char *const column_names[] = {"surface", "f_ghz", "eps_re", "eps_im", "rms_mm", "heights"};
+typedef struct Row {
+    SurfaceClass surface;
+    double       frequency_hz, e1, e2, rms_m;
+    int          waves;
+} Row;
 
-static Status bad_row(const Table *table, int row, const char *what, const char *value)
-{
-    log_error("radar ground: %s: file=%s line=%d value=\"%s\"", what, table->path, table->line[row + 1], value);
-    return STATUS_BAD_VALUE;
-}
+static const TableColumn columns[] = {
+    {"surface", TABLE_NAMED, TABLE_AT(Row, surface), SURFACE_NAMED},
+    {"f_ghz", TABLE_DOUBLE, TABLE_AT(Row, frequency_hz), .low = 0.1, .high = 1000, .unit = 1e9},
+    {"eps_re", TABLE_DOUBLE, TABLE_AT(Row, e1), .low = 1, .high = 1000},
+    {"eps_im", TABLE_DOUBLE, TABLE_AT(Row, e2), .low = 0, .high = 1e6},
+    {"rms_mm", TABLE_DOUBLE, TABLE_AT(Row, rms_m), .low = 0, .high = 1e5, .unit = 1e-3},
+    {"heights", TABLE_CHOICE, TABLE_AT(Row, waves), .choices = "gaussian, waves"},
+};
+static const TableFormat format = {"radar ground", columns, sizeof columns / sizeof *columns,
+                                   .next = "etc/radar/ground.csv explains the columns"};
 
-static Status read_row(GroundTable *out, const Table *table, int row, const int at[column_count])
+static Status take_row(void *user, const void *read, const TableRows *rows, int number)
 {
-    const char        *name = table_text(table, row, at[column_surface]);
-    const char        *heights = table_text(table, row, at[column_heights]);
-    const SurfaceClass surface = surface_find(name);
-    const bool         waves = strcmp(heights, "waves") == 0;
-    double             f_ghz, e1, e2, rms_mm;
-    if (surface == SURFACE_NONE) return bad_row(table, row, "no such surface; use one of etc/surfaces.csv", name);
-    if (!waves && strcmp(heights, "gaussian") != 0) return bad_row(table, row, "heights is gaussian or waves", heights);
-    if (table_number(&f_ghz, table, row, at[column_f], 0.1, 1000) != STATUS_OK ||
-        table_number(&e1, table, row, at[column_e1], 1, 1000) != STATUS_OK ||
-        table_number(&e2, table, row, at[column_e2], 0, 1e6) != STATUS_OK ||
-        table_number(&rms_mm, table, row, at[column_rms], 0, 1e5) != STATUS_OK)
-        return STATUS_BAD_VALUE;
-    GroundRow *to = &out->row[surface];
-    if (to->points == 0) {
-        to->rms_m = 1e-3 * rms_mm;
-        to->waves = waves;
-    } else {
-        if (to->rms_m != 1e-3 * rms_mm || to->waves != waves)
-            return bad_row(table, row, "rms_mm and heights must be those of the surface's first row", name);
-        if (to->points == ground_points) return bad_row(table, row, "more than 8 frequencies of a surface", name);
-        if (!(1e9 * f_ghz > to->frequency_hz[to->points - 1]))
-            return bad_row(table, row, "f_ghz must rise from row to row of a surface", name);
-    }
-    to->frequency_hz[to->points] = 1e9 * f_ghz;
-    to->e1[to->points] = e1;
-    to->e2[to->points++] = e2;
+    const Row *row = read;
+    GroundRow *to = &((GroundTable *)user)->row[row->surface];
+    const bool waves = row->waves == 1;
+    if (to->points > 0 && (to->rms_m != row->rms_m || to->waves != waves))
+        return table_rows_refuse(rows, number, NULL, "rms_mm and heights must be those of the surface's first row");
+    if (to->points == ground_points)
+        return table_rows_refuse(rows, number, NULL, "more than 8 frequencies of a surface");
+    if (to->points > 0 && !(row->frequency_hz > to->frequency_hz[to->points - 1]))
+        return table_rows_refuse(rows, number, "f_ghz", "above that of the surface's row before");
+    to->rms_m = row->rms_m;
+    to->waves = waves;
+    to->frequency_hz[to->points] = row->frequency_hz;
+    to->e1[to->points] = row->e1;
+    to->e2[to->points++] = row->e2;
     return STATUS_OK;
 }
 
 Status ground_table_open(GroundTable *out, const char *path)
 {
-    Table       table = {0};
-    GroundTable read = {0};
-    int         at[column_count];
-    Status      status = table_open(&table, path);
+    GroundTable  table = {0};
+    Row          row;
+    const Status status = table_each(&format, path, &row, sizeof row, take_row, &table);
     if (status != STATUS_OK) return status;
-    if (!table_columns(at, &table, column_names, column_count, "radar ground")) status = STATUS_BAD_VALUE;
-    for (int row = 0; row < table.rows && status == STATUS_OK; row++) status = read_row(&read, &table, row, at);
-    table_close(&table);
-    for (int s = SURFACE_NONE + 1; s < SURFACE_COUNT && status == STATUS_OK; s++)
-        if (read.row[s].points == 0) {
-            log_error("radar ground: no row of a surface: file=%s surface=%s", path, surface_name((SurfaceClass)s));
-            status = STATUS_BAD_VALUE;
-        }
-    if (status != STATUS_OK) return status;
-    read.row[SURFACE_NONE] = read.row[SURFACE_BARE_SOIL];
-    *out = read;
+    table.row[SURFACE_NONE] = table.row[SURFACE_BARE_SOIL];
+    *out = table;
     return STATUS_OK;
 }
 

@@ -1,14 +1,13 @@
 /* render/scattering/signatures/given_signature.c: reads signatures that are given and lists of them, and looks them up.
  */
 #include "render/scattering/signatures/given_signature.h"
+#include "pitviper_table.h"
 
 #include <stdlib.h>
 
 enum { most_rows = 1 << 22 };
 enum { HH, HV, VH, VV, polarisations };
 enum { AZIMUTH, ELEVATION, FREQUENCY, axes };
-
-static const char *const polarisation_name[polarisations] = {"hh", "hv", "vh", "vv"};
 
 typedef struct GivenScatterer {
     double         p[3];
@@ -39,73 +38,64 @@ const char *given_signature_path(const char *name)
 
 /* ---- reading ---------------------------------------------------------------------------------------- */
 
-static Status complain(const Table *table, int row, const char *what)
-{
-    log_error("signature: %s:%d: %s", table->path, table->line[row + 1], what);
-    return STATUS_BAD_VALUE;
-}
-
-/* A number of a column that may be missing or empty. */
-static Status optional(double *out, const Table *table, int row, int column, double low, double high, double otherwise)
-{
-    *out = otherwise;
-    return column < 0 || !*table_text(table, row, column) ? STATUS_OK
-                                                          : table_number(out, table, row, column, low, high);
-}
-
-static int column_of(const Table *table, int p, const char *what)
-{
-    char name[16];
-    snprintf(name, sizeof name, "%s_%s", polarisation_name[p], what);
-    return table_column(table, name);
-}
+static const char of_signatures[] = "etc/reference/radar_given.md explains the columns; repeat those of one "
+                                    "polarisation as hh and vv where only one was measured";
 
 static double complex of_dbsm(double dbsm, double phase_rad)
 {
     return sqrt(pow(10, dbsm / 10) / (4 * pi_rad)) * CMPLX(cos(phase_rad), sin(phase_rad));
 }
 
-static Status need(const Table *table, const int *column, const char *names)
-{
-    if (column[HH] >= 0 && column[VV] >= 0) return STATUS_OK;
-    log_error("signature: %s: needs the columns %s; repeat one of them where only one polarisation was measured",
-              table->path, names);
-    return STATUS_BAD_VALUE;
-}
+/* A place on the target, and what it returns. A polarisation that is not given has NaN. */
+typedef struct ScattererRow {
+    double p[3], dbsm[polarisations], phase_rad[polarisations];
+    double azimuth_rad, azimuth_wide_rad, elevation_rad, elevation_wide_rad;
+} ScattererRow;
 
-static Status read_scatterers(GivenSignature *g, const Table *table)
+#define SCATTERER(member) TABLE_AT(ScattererRow, member)
+#define ANGLE(lowest, highest, without)                                                                                \
+    .low = lowest, .high = highest, .unit = rad_per_deg, .absent = TABLE_OPTIONAL, .otherwise = without
+#define DBSM(when) .low = -200, .high = 100, .absent = when, .otherwise = NAN
+
+static const TableColumn scatterer_columns[] = {
+    {"x_m", TABLE_DOUBLE, SCATTERER(p[0]), .low = -1000, .high = 1000},
+    {"y_m", TABLE_DOUBLE, SCATTERER(p[1]), .low = -1000, .high = 1000},
+    {"z_m", TABLE_DOUBLE, SCATTERER(p[2]), .low = -1000, .high = 1000},
+    {"hh_dbsm", TABLE_DOUBLE, SCATTERER(dbsm[HH]), DBSM(TABLE_EMPTY)},
+    {"hv_dbsm", TABLE_DOUBLE, SCATTERER(dbsm[HV]), DBSM(TABLE_OPTIONAL)},
+    {"vh_dbsm", TABLE_DOUBLE, SCATTERER(dbsm[VH]), DBSM(TABLE_OPTIONAL)},
+    {"vv_dbsm", TABLE_DOUBLE, SCATTERER(dbsm[VV]), DBSM(TABLE_EMPTY)},
+    {"hh_deg", TABLE_DOUBLE, SCATTERER(phase_rad[HH]), ANGLE(-1e6, 1e6, 0)},
+    {"hv_deg", TABLE_DOUBLE, SCATTERER(phase_rad[HV]), ANGLE(-1e6, 1e6, 0)},
+    {"vh_deg", TABLE_DOUBLE, SCATTERER(phase_rad[VH]), ANGLE(-1e6, 1e6, 0)},
+    {"vv_deg", TABLE_DOUBLE, SCATTERER(phase_rad[VV]), ANGLE(-1e6, 1e6, 0)},
+    {"az_deg", TABLE_DOUBLE, SCATTERER(azimuth_rad), ANGLE(-720, 720, 0)},
+    {"az_width_deg", TABLE_DOUBLE, SCATTERER(azimuth_wide_rad), ANGLE(0, 360, 360)},
+    {"el_deg", TABLE_DOUBLE, SCATTERER(elevation_rad), ANGLE(-90, 90, 0)},
+    {"el_width_deg", TABLE_DOUBLE, SCATTERER(elevation_wide_rad), ANGLE(0, 180, 180)},
+};
+static const TableFormat scatterer_format = {
+    "signature", scatterer_columns, sizeof scatterer_columns / sizeof *scatterer_columns, .next = of_signatures};
+
+static Status read_scatterers(GivenSignature *g, TableRows *rows)
 {
-    static const char *const place[3] = {"x_m", "y_m", "z_m"};
-    int                      at[3], power[polarisations], phase[polarisations];
-    if (!table_columns(at, table, place, 3, "signature")) return STATUS_BAD_VALUE;
-    for (int p = 0; p < polarisations; p++)
-        power[p] = column_of(table, p, "dbsm"), phase[p] = column_of(table, p, "deg");
-    const int look[4] = {table_column(table, "az_deg"), table_column(table, "az_width_deg"),
-                         table_column(table, "el_deg"), table_column(table, "el_width_deg")};
-    Status    status = need(table, power, "hh_dbsm and vv_dbsm");
-    g->scatterer = calloc((size_t)table->rows + 1, sizeof *g->scatterer);
+    Status status = table_rows_use(rows, &scatterer_format);
+    g->scatterer = calloc((size_t)rows->table.rows + 1, sizeof *g->scatterer);
     if (!g->scatterer) return STATUS_NO_MEMORY;
-    for (int i = 0; i < table->rows && status == STATUS_OK; i++) {
+    for (int i = 0; i < rows->table.rows && status == STATUS_OK; i++) {
         GivenScatterer *s = &g->scatterer[i];
-        double          dbsm[polarisations], deg[polarisations], of[4];
-        for (int k = 0; k < 3 && status == STATUS_OK; k++)
-            status = table_number(&s->p[k], table, i, at[k], -1000, 1000);
-        for (int p = 0; p < polarisations && status == STATUS_OK; p++) {
-            status = optional(&dbsm[p], table, i, power[p], -200, 100, NAN);
-            if (status == STATUS_OK) status = optional(&deg[p], table, i, phase[p], -1e6, 1e6, 0);
-            if (status == STATUS_OK && !isnan(dbsm[p])) s->s[p] = of_dbsm(dbsm[p], deg[p] * rad_per_deg);
-        }
-        if (status == STATUS_OK) status = optional(&of[0], table, i, look[0], -720, 720, 0);
-        if (status == STATUS_OK) status = optional(&of[1], table, i, look[1], 0, 360, 360);
-        if (status == STATUS_OK) status = optional(&of[2], table, i, look[2], -90, 90, 0);
-        if (status == STATUS_OK) status = optional(&of[3], table, i, look[3], 0, 180, 180);
+        ScattererRow    row = {0};
+        status = table_rows_get(&row, rows, i);
         if (status != STATUS_OK) break;
-        if (power[HV] < 0 || isnan(dbsm[HV])) s->s[HV] = s->s[VH];
-        if (power[VH] < 0 || isnan(dbsm[VH])) s->s[VH] = s->s[HV];
-        s->azimuth_rad = of[0] * rad_per_deg, s->azimuth_half_rad = 0.5 * of[1] * rad_per_deg;
-        s->elevation_rad = of[2] * rad_per_deg, s->elevation_half_rad = 0.5 * of[3] * rad_per_deg;
+        memcpy(s->p, row.p, sizeof s->p);
+        for (int p = 0; p < polarisations; p++)
+            if (!isnan(row.dbsm[p])) s->s[p] = of_dbsm(row.dbsm[p], row.phase_rad[p]);
+        if (isnan(row.dbsm[HV])) s->s[HV] = s->s[VH];
+        if (isnan(row.dbsm[VH])) s->s[VH] = s->s[HV];
+        s->azimuth_rad = row.azimuth_rad, s->azimuth_half_rad = 0.5 * row.azimuth_wide_rad;
+        s->elevation_rad = row.elevation_rad, s->elevation_half_rad = 0.5 * row.elevation_wide_rad;
     }
-    g->scatterers = table->rows;
+    g->scatterers = rows->table.rows;
     return status;
 }
 
@@ -115,16 +105,14 @@ static int ascending(const void *a, const void *b)
     return (p > q) - (p < q);
 }
 
-static Status read_axis(GivenAxis *axis, const Table *table, int column, double low, double high)
+/* The values in one column of rows of numbers, `columns` each. */
+static Status fill_axis(GivenAxis *axis, const double *number, int columns, int rows)
 {
-    axis->at = calloc((size_t)table->rows + 1, sizeof *axis->at);
+    axis->at = calloc((size_t)rows + 1, sizeof *axis->at);
     if (!axis->at) return STATUS_NO_MEMORY;
-    for (int i = 0; i < table->rows; i++) {
-        const Status status = table_number(&axis->at[i], table, i, column, low, high);
-        if (status != STATUS_OK) return status;
-    }
-    qsort(axis->at, (size_t)table->rows, sizeof *axis->at, ascending);
-    for (int i = 0; i < table->rows; i++)
+    for (int i = 0; i < rows; i++) axis->at[i] = number[(size_t)i * (size_t)columns];
+    qsort(axis->at, (size_t)rows, sizeof *axis->at, ascending);
+    for (int i = 0; i < rows; i++)
         if (i == 0 || axis->at[i] > axis->at[axis->count - 1]) axis->at[axis->count++] = axis->at[i];
     return STATUS_OK;
 }
@@ -142,26 +130,13 @@ static int index_of(const GivenAxis *axis, double at)
     return (int)(found - axis->at);
 }
 
-/* Reads the values of one row: fields, or decibels of each polarisation. */
-static Status read_values(double complex *s, const Table *table, int row, const int re[polarisations],
-                          const int im[polarisations], const int power[polarisations], bool has_phase)
+/* Values of one row: fields (x, y), or decibels x of each polarisation; NaN: not given. */
+static void take_values(double complex *s, const double x[polarisations], const double y[polarisations], bool has_phase)
 {
-    Status status = STATUS_OK;
-    bool   is_there[polarisations];
-    for (int p = 0; p < polarisations && status == STATUS_OK; p++) {
-        double x = NAN, y = 0;
-        if (has_phase) {
-            status = optional(&x, table, row, im[p] < 0 ? -1 : re[p], -1e6, 1e6, NAN);
-            if (status == STATUS_OK) status = optional(&y, table, row, im[p], -1e6, 1e6, 0);
-        } else {
-            status = optional(&x, table, row, power[p], -200, 100, NAN);
-        }
-        is_there[p] = !isnan(x);
-        s[p] = is_there[p] ? CMPLX(x, y) : has_phase ? 0 : -200;
-    }
-    if (status == STATUS_OK && !is_there[HV]) s[HV] = s[VH];
-    if (status == STATUS_OK && !is_there[VH]) s[VH] = s[HV];
-    return status;
+    for (int p = 0; p < polarisations; p++)
+        s[p] = !isnan(x[p]) ? CMPLX(x[p], has_phase ? y[p] : 0) : has_phase ? 0 : -200;
+    if (isnan(x[HV])) s[HV] = s[VH];
+    if (isnan(x[VH])) s[VH] = s[HV];
 }
 
 /* Neighbours in azimuth whose fields do not follow one another cannot be interpolated. */
@@ -180,69 +155,99 @@ static void warn_of_coarse_steps(const GivenSignature *g, const Table *table)
             table->path, along / whole);
 }
 
-static Status read_grid(GivenSignature *g, const Table *table)
+/* Numbers of a row of a grid: axes; fields, or decibels (x), and their imaginary parts (y). */
+enum { AT_X = axes, AT_Y = AT_X + polarisations, grid_numbers = AT_Y + polarisations };
+
+#define FIELD(k, when, without)                                                                                        \
+    TABLE_DOUBLE, TABLE_AT_NUMBER(k), .low = -1e6, .high = 1e6, .absent = when, .otherwise = without
+#define AXES                                                                                                           \
+    {"az_deg", TABLE_DOUBLE, TABLE_AT_NUMBER(AZIMUTH), .low = -720, .high = 720},                                      \
+        {"el_deg", TABLE_DOUBLE, TABLE_AT_NUMBER(ELEVATION), .low = -90, .high = 90},                                  \
+    {                                                                                                                  \
+        "f_ghz", TABLE_DOUBLE, TABLE_AT_NUMBER(FREQUENCY), .low = 0.1, .high = 300                                     \
+    }
+
+static const TableColumn field_columns[grid_numbers] = {
+    AXES,
+    {"hh_re_m", FIELD(AT_X + HH, TABLE_EMPTY, NAN)},
+    {"hv_re_m", FIELD(AT_X + HV, TABLE_OPTIONAL, NAN)},
+    {"vh_re_m", FIELD(AT_X + VH, TABLE_OPTIONAL, NAN)},
+    {"vv_re_m", FIELD(AT_X + VV, TABLE_OPTIONAL, NAN)},
+    {"hh_im_m", FIELD(AT_Y + HH, TABLE_EMPTY, 0)},
+    {"hv_im_m", FIELD(AT_Y + HV, TABLE_OPTIONAL, 0)},
+    {"vh_im_m", FIELD(AT_Y + VH, TABLE_OPTIONAL, 0)},
+    {"vv_im_m", FIELD(AT_Y + VV, TABLE_EMPTY, 0)},
+};
+static const TableColumn decibel_columns[grid_numbers] = {
+    AXES,
+    {"hh_dbsm", TABLE_DOUBLE, TABLE_AT_NUMBER(AT_X + HH), DBSM(TABLE_EMPTY)},
+    {"hv_dbsm", TABLE_DOUBLE, TABLE_AT_NUMBER(AT_X + HV), DBSM(TABLE_OPTIONAL)},
+    {"vh_dbsm", TABLE_DOUBLE, TABLE_AT_NUMBER(AT_X + VH), DBSM(TABLE_OPTIONAL)},
+    {"vv_dbsm", TABLE_DOUBLE, TABLE_AT_NUMBER(AT_X + VV), DBSM(TABLE_EMPTY)},
+};
+static const TableFormat field_format = {"signature", field_columns, grid_numbers, .next = of_signatures},
+                         decibel_format = {"signature", decibel_columns, AT_Y, .next = of_signatures};
+
+static Status fill_grid(GivenSignature *g, const TableRows *rows, const double *numbers, const bool read[polarisations])
 {
-    static const char *const name[axes] = {"az_deg", "el_deg", "f_ghz"};
-    static const double      low[axes] = {-720, -90, 0.1}, high[axes] = {720, 90, 300};
-    int                      column[axes], re[polarisations], im[polarisations], power[polarisations];
-    if (!table_columns(column, table, name, axes, "signature")) return STATUS_BAD_VALUE;
-    for (int p = 0; p < polarisations; p++)
-        re[p] = column_of(table, p, "re_m"), im[p] = column_of(table, p, "im_m"),
-        power[p] = column_of(table, p, "dbsm");
-    g->has_phase = re[HH] >= 0 && im[HH] >= 0;
-    Status status = g->has_phase ? need(table, im, "hh_re_m, hh_im_m, vv_re_m and vv_im_m")
-                                 : need(table, power, "hh_dbsm and vv_dbsm, or hh_re_m, hh_im_m, vv_re_m and vv_im_m");
-    for (int a = 0; a < axes && status == STATUS_OK; a++)
-        status = read_axis(&g->axis[a], table, column[a], low[a], high[a]);
-    if (status != STATUS_OK) return status;
+    const int        count = rows->table.rows, columns = rows->format->count;
     const GivenAxis *az = &g->axis[AZIMUTH], *el = &g->axis[ELEVATION], *f = &g->axis[FREQUENCY];
     const double     span_deg = az->at[az->count - 1] - az->at[0];
     const long long  cells = (long long)az->count * el->count * f->count;
     if (!(span_deg <= 360 + 1e-9))
-        return complain(table, 0, "azimuths span more than 360 degrees; give each look once");
-    if (cells != table->rows) {
-        log_error(
-            "signature: %s: %d rows for %d azimuths, %d elevations and %d frequencies, which need %lld; give each combination "
-            "once",
-            table->path, table->rows, az->count, el->count, f->count, cells);
-        return STATUS_BAD_VALUE;
-    }
+        return table_rows_refuse(rows, 0, NULL, "azimuths span more than 360 degrees; give each look once");
+    if (cells != count)
+        return table_rows_lack(rows,
+                               "%d rows for %d azimuths, %d elevations and %d frequencies, which need %lld; give each "
+                               "combination once",
+                               count, az->count, el->count, f->count, cells);
     g->axis[AZIMUTH].round = az->count > 2 && 360 - span_deg <= 1.5 * widest_step(az);
     g->s = calloc((size_t)cells * polarisations, sizeof *g->s);
     uint8_t *met = calloc((size_t)cells, 1);
-    if (!g->s || !met) status = STATUS_NO_MEMORY;
-    for (int i = 0; i < table->rows && status == STATUS_OK; i++) {
-        double at[axes];
-        for (int a = 0; a < axes && status == STATUS_OK; a++)
-            status = table_number(&at[a], table, i, column[a], low[a], high[a]);
-        if (status != STATUS_OK) break;
-        const size_t cell =
+    Status   status = g->s && met ? STATUS_OK : STATUS_NO_MEMORY;
+    for (int i = 0; i < count && status == STATUS_OK; i++) {
+        const double *at = numbers + (size_t)i * (size_t)columns;
+        const size_t  cell =
             ((size_t)index_of(az, at[AZIMUTH]) * (size_t)el->count + (size_t)index_of(el, at[ELEVATION])) *
                 (size_t)f->count +
             (size_t)index_of(f, at[FREQUENCY]);
-        if (met[cell]) status = complain(table, i, "this look and frequency were given before");
+        if (met[cell]) status = table_rows_refuse(rows, i, NULL, "this look and frequency were given before");
         met[cell] = 1;
-        if (status == STATUS_OK)
-            status = read_values(g->s + polarisations * cell, table, i, re, im, power, g->has_phase);
+        double x[polarisations];
+        for (int p = 0; p < polarisations; p++) x[p] = read[p] ? at[AT_X + p] : NAN;
+        take_values(g->s + polarisations * cell, x, at + AT_Y, g->has_phase);
     }
     free(met);
-    if (status == STATUS_OK) warn_of_coarse_steps(g, table);
+    return status;
+}
+
+static Status read_grid(GivenSignature *g, TableRows *rows)
+{
+    bool    read[polarisations] = {true, true, true, true};
+    double *numbers = NULL;
+    g->has_phase = table_rows_has(rows, "hh_re_m") && table_rows_has(rows, "hh_im_m");
+    Status status = table_rows_use(rows, g->has_phase ? &field_format : &decibel_format);
+    for (int p = 0; p < polarisations && g->has_phase; p++) /* a real part alone is none */
+        read[p] = table_rows_has(rows, field_columns[AT_Y + p].name);
+    if (status == STATUS_OK) status = table_rows_numbers(&numbers, rows);
+    for (int a = 0; a < axes && status == STATUS_OK; a++)
+        status = fill_axis(&g->axis[a], numbers + a, rows->format->count, rows->table.rows);
+    if (status == STATUS_OK) status = fill_grid(g, rows, numbers, read);
+    free(numbers);
+    if (status == STATUS_OK) warn_of_coarse_steps(g, &rows->table);
     return status;
 }
 
 Status given_signature_open(GivenSignature **out, const char *path)
 {
-    Table           table = {0};
-    GivenSignature *g = calloc(1, sizeof *g);
+    static const TableFormat any = {"signature",           NULL, 0, .next = of_signatures, .least_rows = 1,
+                                    .most_rows = most_rows};
+    TableRows                rows = {0};
+    GivenSignature          *g = calloc(1, sizeof *g);
     if (!g) return STATUS_NO_MEMORY;
-    Status status = table_open(&table, path);
-    if (status == STATUS_OK && (table.rows < 1 || table.rows > most_rows)) {
-        log_error("signature: %s: %d rows; it needs 1 to %d", path, table.rows, most_rows);
-        status = STATUS_BAD_VALUE;
-    }
-    if (status == STATUS_OK)
-        status = table_column(&table, "x_m") >= 0 ? read_scatterers(g, &table) : read_grid(g, &table);
-    table_close(&table);
+    Status status = table_rows_open(&rows, &any, path);
+    if (status == STATUS_OK) status = table_rows_has(&rows, "x_m") ? read_scatterers(g, &rows) : read_grid(g, &rows);
+    table_rows_close(&rows);
     if (status == STATUS_OK) *out = g;
     else given_signature_close(g);
     return status;
@@ -423,42 +428,47 @@ struct GivenList {
     GivenRow *row;
 };
 
-static Status complain_of_list(const Table *table, int row, const char *what)
-{
-    log_error("radar.given: %s:%d: %s", table->path, table->line[row + 1], what);
-    return STATUS_BAD_VALUE;
-}
+typedef struct ListRow {
+    const char *entity, *signature;
+} ListRow;
 
-static Status take_row(GivenRow *out, const Table *table, int row, const int column[2])
+static const TableColumn list_columns[] = {
+    {"entity", .type = TABLE_CELL, TABLE_AT(ListRow, entity)},
+    {"signature", .type = TABLE_CELL, TABLE_AT(ListRow, signature)},
+};
+static const TableFormat list_format = {"radar.given", list_columns, 2,
+                                        .next = "etc/reference/radar_given.md explains the columns"};
+
+static Status take_row(GivenRow *out, const TableRows *rows, int number)
 {
-    const char *entity = table_text(table, row, column[0]), *file = table_text(table, row, column[1]);
-    const char *slash = strrchr(table->path, '/');
-    char        path[4096];
+    ListRow      row;
+    const char  *slash = strrchr(rows->table.path, '/');
+    char         path[4096];
+    const Status status = table_rows_get(&row, rows, number);
+    if (status != STATUS_OK) return status;
+    const char *entity = row.entity, *file = row.signature;
     if (!*entity || !*file)
-        return complain_of_list(table, row, "entity or signature is empty; * stands for all entities");
+        return table_rows_refuse(rows, number, NULL, "entity or signature is empty; * stands for all entities");
     out->by = strcmp(entity, "*") == 0 ? by_any : dis_entity_id_parse(&out->id, entity) ? by_id : by_model;
     if (snprintf(out->model, sizeof out->model, "%s", entity) >= (int)sizeof out->model)
-        return complain_of_list(table, row, "the name of a model is too long; see `pitviper model list`");
-    const int folder = slash && *file != '/' ? (int)(slash - table->path) + 1 : 0;
-    if (snprintf(path, sizeof path, "%.*s%s", folder, table->path, file) >= (int)sizeof path)
-        return complain_of_list(table, row, "the path of the signature is too long");
+        return table_rows_refuse(rows, number, NULL, "the name of a model is too long; see `pitviper model list`");
+    const int folder = slash && *file != '/' ? (int)(slash - rows->table.path) + 1 : 0;
+    if (snprintf(path, sizeof path, "%.*s%s", folder, rows->table.path, file) >= (int)sizeof path)
+        return table_rows_refuse(rows, number, NULL, "the path of the signature is too long");
     return given_signature_open(&out->signature, path);
 }
 
 Status given_list_open(GivenList **out, const char *path)
 {
-    static const char *const name[2] = {"entity", "signature"};
-    int                      column[2];
-    Table                    table = {0};
-    GivenList               *list = calloc(1, sizeof *list);
+    TableRows  rows = {0};
+    GivenList *list = calloc(1, sizeof *list);
     if (!list) return STATUS_NO_MEMORY;
-    Status status = table_open(&table, path);
-    if (status == STATUS_OK && !table_columns(column, &table, name, 2, "radar.given")) status = STATUS_BAD_VALUE;
-    if (status == STATUS_OK) list->row = calloc((size_t)table.rows + 1, sizeof *list->row);
+    Status status = table_rows_open(&rows, &list_format, path);
+    if (status == STATUS_OK) list->row = calloc((size_t)rows.table.rows + 1, sizeof *list->row);
     if (status == STATUS_OK && !list->row) status = STATUS_NO_MEMORY;
-    for (int i = 0; status == STATUS_OK && i < table.rows; i++)
-        status = take_row(&list->row[list->count++], &table, i, column);
-    table_close(&table);
+    for (int i = 0; status == STATUS_OK && i < rows.table.rows; i++)
+        status = take_row(&list->row[list->count++], &rows, i);
+    table_rows_close(&rows);
     if (status == STATUS_OK) *out = list;
     else given_list_close(list);
     return status;

@@ -1,5 +1,6 @@
 /* sensor/verify/regress/record_frame.c: reads the planes of a frame from a run and from a baseline, and writes the
  * latter. */
+#include "pitviper_table.h"
 #include "sensor/verify/regress/verdict_private.h"
 
 #include "sensor/publish/images/image_file.h"
@@ -162,34 +163,30 @@ static Status read_coded(float **out, const char *path, const char *channel, int
 /* bins lines of `middle,bounce_1,bounce_2,bounce_3`. */
 static Status read_profile_csv(RecordFrame *f, const char *path)
 {
-    Table  table;
-    Status status = table_open(&table, path);
+    enum { numbers = 1 + frame_bounces };
+    TableColumn column[numbers] = {{"range_m", TABLE_DOUBLE, TABLE_AT_NUMBER(0), .low = -1e9, .high = 1e9}};
+    for (int b = 0; b < frame_bounces; b++)
+        column[1 + b] =
+            (TableColumn){bounce_name[b], TABLE_DOUBLE, TABLE_AT_NUMBER((size_t)b + 1), .low = -1e30, .high = 1e30};
+    const TableFormat format = {"regress",       column,
+                                numbers,         .next = "replay writes range profiles",
+                                .least_rows = 2, .most_rows = frame_bins_max};
+    TableRows         lines;
+    double           *number = NULL;
+    Status            status = table_rows_open(&lines, &format, path);
     if (status != STATUS_OK) return status;
-    double    first = 0, second = 0;
-    int       column[frame_bounces];
-    const int middle = table_column(&table, "range_m");
-    bool      whole = middle >= 0 && table.rows >= 2 && table.rows <= frame_bins_max;
-    for (int b = 0; b < frame_bounces; b++) whole &= (column[b] = table_column(&table, bounce_name[b])) >= 0;
-    if (!whole) status = STATUS_BAD_VALUE;
-    if (whole) {
-        f->bins = table.rows;
-        status = table_number(&first, &table, 0, middle, -1e9, 1e9);
-        if (status == STATUS_OK) status = table_number(&second, &table, 1, middle, -1e9, 1e9);
-        f->near_m = first;
-        f->bin_m = second - first;
-    }
+    status = table_rows_numbers(&number, &lines);
+    f->bins = lines.table.rows;
+    if (status == STATUS_OK) f->near_m = number[0], f->bin_m = number[numbers] - number[0];
     for (int b = 0; b < frame_bounces && status == STATUS_OK; b++) {
         f->profile[b] = malloc((size_t)f->bins * sizeof(float));
         if (!f->profile[b]) status = STATUS_NO_MEMORY;
-        for (int i = 0; i < f->bins && status == STATUS_OK; i++) {
-            double value = 0;
-            status = table_number(&value, &table, i, column[b], -1e30, 1e30);
-            f->profile[b][i] = (float)value;
-        }
+        for (int i = 0; i < f->bins && status == STATUS_OK; i++)
+            f->profile[b][i] = (float)number[(size_t)i * numbers + 1 + (size_t)b];
         if (status == STATUS_OK) round_plane(f->profile[b], (size_t)f->bins, &profile_rounding);
     }
-    if (!whole) log_error("regress: %s: is not a range profile as replay writes it", path);
-    table_close(&table);
+    free(number);
+    table_rows_close(&lines);
     return status;
 }
 
