@@ -19,19 +19,21 @@ typedef struct LabFrame {
 } LabFrame;
 
 static struct {
-    LocalFrame    frame;
-    Landscape     ground;
-    Catalog      *catalog;
-    World         world;
-    Pool         *pool;
-    uint8_t       octets[lab_most_reports][lab_octets];
-    DisDatagram   datagram[lab_most_reports];
-    int           reports;
-    LabFrame      shot[lab_most_frames];
-    int           shots;
-    char          folder[temp_path_size];
-    SessionResult result;
-    double        first_s;
+    LocalFrame                   frame;
+    Landscape                    ground;
+    Catalog                     *catalog;
+    World                        world;
+    Pool                        *pool;
+    uint8_t                      octets[lab_most_reports][lab_octets];
+    DisDatagram                  datagram[lab_most_reports];
+    int                          reports;
+    LabFrame                     shot[lab_most_frames];
+    int                          shots;
+    char                         folder[temp_path_size];
+    SessionResult                result;
+    double                       first_s;
+    const InstrumentKind *const *kinds;           /* NULL: the program's */
+    void (*look)(void *user, const Frame *frame); /* at each frame, in place of lab_shoot; NULL: that */
 } lab;
 
 static inline int lab_open(void **state)
@@ -114,8 +116,9 @@ static inline void lab_say(const LabReport *r)
 
 static inline void lab_forget(void) { lab.reports = 0; }
 
-static inline void lab_shoot(void *user, const FrameRecord *record)
+static inline void lab_shoot(void *user, const Frame *frame)
 {
+    const FrameRecord *record = &frame->record;
     (void)user;
     CHECK(lab.shots < lab_most_frames);
     LabFrame *shot = &lab.shot[lab.shots++];
@@ -165,7 +168,8 @@ static inline void lab_run(const Config *given, double from_s, double rate_hz, i
                                   .bands = 1u << BAND_LWIR,
                                   .config_sha256 = "",
                                   .sensors = &sensors,
-                                  .publish = lab_shoot};
+                                  .instruments = lab.kinds ? lab.kinds : instrument_kinds,
+                                  .publish = lab.look ? lab.look : lab_shoot};
     assert_int_equal(session_open(&session, &shared, &plan, player, lab.folder), STATUS_OK);
     lab.shots = 0;
     lab.first_s = survey.first_s;

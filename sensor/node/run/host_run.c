@@ -263,6 +263,7 @@ Status run_host(Run *run, const DisEntityId *host)
                                   .live = o->command == COMMAND_RUN,
                                   .paced = o->command == COMMAND_REPLAY && isfinite(o->speed),
                                   .sensors = &run->sensors,
+                                  .instruments = instrument_kinds,
                                   .contact = chosen.contact,
                                   .config_sha256 = run->config_sha256,
                                   .publish = run->publish,

@@ -40,10 +40,10 @@ struct Run {
     Status (*check)(Run *run, const Player *player, const HostPlan *plan, const FrameGrid *grid);
     /* Renders the frames. */
     Status (*frames)(Run *run, Session *session, Player *player, const HostPlan *plan, const FrameGrid *grid);
-    void (*publish)(void *user, const FrameRecord *frame); /* may be NULL */
-    void (*note)(void *user, const char *text);            /* into the recording; may be NULL */
-    DisSend *send;                             /* sends the Data PDUs of publish.dis; NULL: they are not sent */
-    void    *user;                             /* passed to these four */
+    void (*publish)(void *user, const Frame *frame); /* may be NULL */
+    void (*note)(void *user, const char *text);      /* into the recording; may be NULL */
+    DisSend *send;                                   /* sends the Data PDUs of publish.dis; NULL: they are not sent */
+    void    *user;                                   /* passed to these four */
     double (*wall_s)(void *clock, double t_s); /* SessionShared.wall_s: frames are rendered by the clock; NULL: not */
     void *clock;
 };

@@ -7,7 +7,7 @@
 #include <stdio.h>
 
 /* Between two of these, poses and snapshots omit timed-out entities: they are never visible. */
-enum { expire_ticks = seeker_ticks_per_s / 10, work_ticks = seeker_ticks_per_s / 10 };
+enum { expire_ticks = seeker_ticks_per_s / 10 };
 
 /* The centre of the aim at t_s; false when it is absent. */
 static bool aim_pose(double p_ecef[3], const Session *s, double t_s)
@@ -219,31 +219,9 @@ static void camera_motion(Eye *eye, Session *s, const Mounted *now, double t_s)
     seeker_turn_rate(eye->w_cam_rps, eye->view.r_enu_from_cam, r_next, step_s);
 }
 
-static void note_failure(Session *s, const char *what, Status status)
-{
-    if (status == STATUS_OK || s->advance_status != STATUS_OK) return;
-    log_error("%s: %s", what, status_name(status));
-    s->advance_status = status;
-}
-
-/* Every second, when something appeared, fired or burst, and while work is left. */
-static void warm_vehicles(Session *s, double tick_s)
-{
-    const uint64_t changes = entity_table_changes(s->table);
-    if (!s->vehicles) return;
-    const bool left = s->tick % work_ticks == 0 && vehicle_heat_waits(world_vehicles_heat(s->vehicles));
-    if (s->tick % seeker_ticks_per_s != 0 && changes == s->vehicle_changes && !left) return;
-    Snapshot snapshot;
-    arena_reset(s->vehicle_arena);
-    Status status = entity_table_snapshot(&snapshot, s->table, tick_s, s->vehicle_arena);
-    if (status == STATUS_OK) status = world_vehicles_tick(s->vehicles, &snapshot);
-    note_failure(s, "heat of vehicles", status);
-    s->vehicle_changes = changes;
-}
-
 static void feed(Session *s, double t_s)
 {
-    note_failure(s, "times of the recording", player_feed(s->player, s->table, t_s));
+    session_note_failure(s, "times of the recording", player_feed(s->player, s->table, t_s));
 }
 
 /* State that outlasts a frame changes at ticks alone: it does not depend on which frames are rendered. */
@@ -255,7 +233,7 @@ void session_advance(Session *s, double t_s)
         if (s->tick % expire_ticks == 0) entity_table_expire(s->table, tick_s);
         if (s->shared->config->causal || s->plan.any_munition) find_host(s);
         session_keep(s);
-        warm_vehicles(s, tick_s);
+        session_heat_warm(s, tick_s);
         step_gimbal(s, tick_s);
     }
     feed(s, t_s);
@@ -276,16 +254,17 @@ static void finish_eye(Eye *eye, const Session *s)
 static bool host_eye(Eye *eye, Session *s, Snapshot *snapshot, double t_s)
 {
     Mounted   at;
-    const int index = snapshot_find(snapshot, s->plan.host);
-    if (index < 0 || !mounted(&at, s, t_s)) return false;
+    const int index = snapshot ? snapshot_find(snapshot, s->plan.host) : -1;
+    if ((snapshot && index < 0) || !mounted(&at, s, t_s)) return false;
 
-    /* the interpolated pose is the host's in every product: its shadow starts from there */
     const SnapshotEntity *host = &at.host;
-    SnapshotEntity       *shown = &snapshot->entity[index];
-    memcpy(shown->p_ecef, host->p_ecef, sizeof shown->p_ecef);
-    memcpy(shown->v_ecef_mps, host->v_ecef_mps, sizeof shown->v_ecef_mps);
-    memcpy(shown->r_ecef_from_body, host->r_ecef_from_body, sizeof shown->r_ecef_from_body);
-    shown->age_s = host->age_s;
+    if (snapshot) { /* the interpolated pose is the host's in every product: its shadow starts from there */
+        SnapshotEntity *shown = &snapshot->entity[index];
+        memcpy(shown->p_ecef, host->p_ecef, sizeof shown->p_ecef);
+        memcpy(shown->v_ecef_mps, host->v_ecef_mps, sizeof shown->v_ecef_mps);
+        memcpy(shown->r_ecef_from_body, host->r_ecef_from_body, sizeof shown->r_ecef_from_body);
+        shown->age_s = host->age_s;
+    }
 
     double r_enu_from_mount[9];
     enu_axes(r_enu_from_mount, s, &at);
@@ -354,15 +333,15 @@ static bool observer_eye(Eye *eye, const Session *s, double t_s)
     return true;
 }
 
-static bool observes(const Session *s) { return dis_entity_id_is_none(s->plan.host) && !s->plan.any_munition; }
+bool session_observes(const Session *s) { return dis_entity_id_is_none(s->plan.host) && !s->plan.any_munition; }
 
 bool session_host_is_there(const Session *s)
 {
-    return observes(s) || entity_table_alive(s->table, entity_table_find(s->table, s->plan.host));
+    return session_observes(s) || entity_table_alive(s->table, entity_table_find(s->table, s->plan.host));
 }
 
 bool session_eye(Eye *eye, Session *s, Snapshot *snapshot, double t_s)
 {
     *eye = (Eye){.hidden = -1};
-    return observes(s) ? observer_eye(eye, s, t_s) : host_eye(eye, s, snapshot, t_s);
+    return session_observes(s) ? observer_eye(eye, s, t_s) : host_eye(eye, s, snapshot, t_s);
 }

@@ -11,7 +11,22 @@
 #include "sensor/publish/consumers/consumer.h"
 #include "sensor/publish/klv/consume_klv.h"
 #include "sensor/publish/memory/detections.h"
-#include "sensor/radar/seeker_radar.h"
+#include "sensor/instruments/camera.h"
+
+/* Of entities; without a band that shows temperatures there are none. */
+typedef struct SessionHeat {
+    GivenHeat     *given;    /* NULL: none */
+    KeptHeat      *kept;     /* of a run before; NULL: none */
+    WorldVehicles *vehicles; /* NULL: parts are as warm as the air */
+    Arena         *arena;    /* of the snapshot of a tick */
+    uint64_t       changes;  /* entity_table_changes at the last */
+} SessionHeat;
+
+/* The last reports of a full table, and of entities that are not shown. */
+typedef struct SessionCrowd {
+    uint64_t given_up;
+    double   given_up_s, left_out_s; /* wall clock */
+} SessionCrowd;
 
 struct Session {
     const SessionShared *shared;
@@ -20,13 +35,10 @@ struct Session {
     char                 host_text[dis_id_text_size];
     bool                 opened; /* everything is open */
     EntityTable         *table;
-    Player              *player;          /* the caller's */
-    GivenHeat           *given;           /* of vehicles; NULL: none */
-    KeptHeat            *kept;            /* of a run before; NULL: none */
-    WorldVehicles       *vehicles;        /* NULL: parts are as warm as the air */
-    Arena               *vehicle_arena;   /* of the snapshot of a tick */
-    Status               advance_status;  /* the first failure of what outlasts a frame: frames fail with it */
-    uint64_t             vehicle_changes; /* entity_table_changes at the last */
+    Player              *player; /* the caller's */
+    SessionHeat          heat;
+    SessionCrowd         crowd;
+    Status               advance_status; /* the first failure of what outlasts a frame: frames fail with it */
     Seeker               seeker;
     int64_t              tick;          /* next gimbal tick */
     double               p_aim_ecef[3]; /* last known */
@@ -37,28 +49,24 @@ struct Session {
     double              *joint;
     bool                 limit_reported; /* last report of the gimbal limit, and its tick */
     int64_t              limit_tick;
-    uint64_t             given_up_reported; /* last report of a full table, and its time; wall clock */
-    double               given_up_reported_s, left_out_reported_s;
-    SeekerRadar         *radar;             /* NULL: none */
-    RadarAbsent         *radar_absent;      /* frames that had no radar when they were recorded; NULL: none */
-    Chain               *chain[BAND_COUNT]; /* of the bands with a sensor of etc/sensors.csv: noise figures for
-                                             * targets */
-    Consumers     consumers;
-    unsigned      raw;        /* bands of whose raw counts there are files */
-    Detections   *detections; /* received; NULL: none */
-    Geoid         geoid;      /* for metadata; n_m NULL: none */
-    unsigned      wants;      /* of all consumers */
-    FramePool    *frames;
-    Latency      *latency;           /* NULL: none is kept */
-    double        fed_s;             /* of the last frame in it: player_fed_s */
-    Pool         *publish_pool;      /* of the publishing thread; NULL: publishing is done in this one */
-    int           queues;            /* consumers in threads of their own */
-    QueueCounters written, streamed; /* by the clock: files, streams; when closed */
-    int           lines_failed;      /* live: lines of truth.jsonl; when closed */
-    int           published;         /* frames that all consumers have received: used by the publishing thread */
-    Status        listed;            /* of the result's lists: used by the publishing thread */
-    SessionResult result;
-    int           capacity; /* of the result's lists */
+    Instruments          instruments;
+    RadarAbsent         *radar_absent; /* frames that had no radar when they were recorded; NULL: none */
+    Consumers            consumers;
+    unsigned             raw;        /* bands of whose raw counts there are files */
+    Detections          *detections; /* received; NULL: none */
+    Geoid                geoid;      /* for metadata; n_m NULL: none */
+    unsigned             wants;      /* of all consumers */
+    FramePool           *frames;
+    Latency             *latency;           /* NULL: none is kept */
+    double               fed_s;             /* of the last frame in it: player_fed_s */
+    Pool                *publish_pool;      /* of the publishing thread; NULL: publishing is done in this one */
+    int                  queues;            /* consumers in threads of their own */
+    QueueCounters        written, streamed; /* by the clock: files, streams; when closed */
+    int                  lines_failed;      /* live: lines of truth.jsonl; when closed */
+    int                  published;         /* frames that all consumers have received: used by the publishing thread */
+    Status               listed;            /* of the result's lists: used by the publishing thread */
+    SessionResult        result;
+    int                  capacity; /* of the result's lists */
 };
 
 typedef struct Eye {
@@ -73,14 +81,28 @@ typedef struct Eye {
 
 /* Adds the present host to the result's list, once. */
 void session_note_host(Session *s);
+/* The first failure of what outlasts a frame; logged. */
+void session_note_failure(Session *s, const char *what, Status status);
+/* Lists a frame that all consumers have received; called in the publishing thread. */
+void session_list_frame(void *session, const Frame *frame);
+/* Reports entities that did not fit: at once, and then once a minute while there are more. */
+void session_report_crowd(Session *s, int left_out);
+
+Status session_heat_open(Session *s);
+void   session_heat_warm(Session *s, double tick_s); /* at each tick */
+void   session_heat_report(const Session *s);
+Status session_heat_keep(const Session *s); /* for a later run, if there is a file to keep it in */
+void   session_heat_close(Session *s);
+
 /* Feeds everything that counts by t_s, finds host and aim, and moves the gimbal, on a fixed grid of exercise time. */
 void session_advance(Session *s, double t_s);
 /* Sets the entities that a full table keeps: host and aim, and those near the host, else near the aim. */
 void session_keep(Session *s);
+bool session_observes(const Session *s); /* an observer's eye: there is no host */
 /* False: no image will be rendered. */
 bool session_host_is_there(const Session *s);
-/* Position and direction of the sensor at t_s. The host's pose is written into the snapshot. False: the host is
- * absent. */
+/* Position and direction of the sensor at t_s. The host's pose is written into the snapshot; NULL: into none.
+ * False: the host is absent. */
 bool session_eye(Eye *eye, Session *s, Snapshot *snapshot, double t_s);
 /* One frame, of all but what its consumers do. shown: false when the host is absent. left_out: entities that are not
  * in it. */
