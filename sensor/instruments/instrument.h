@@ -28,8 +28,8 @@ typedef struct InstrumentPoses {
 
 /* What an instrument may look at in one frame. */
 typedef struct InstrumentLook {
-    Frame          *frame; /* rendered: number, times, seen, request, world; its arena is for what is handed out, and
-                            * an instrument fills its own part of frame->record */
+    Frame *frame; /* rendered: number, times, seen, request, world; its arena is for what is handed out, and
+                   * an instrument fills its own part of frame->record */
     const EyeState *eye;
     unsigned        wants; /* FrameWant, of all consumers */
     int             aim;   /* snapshot index of what the eye follows, -1: none */
