@@ -12,6 +12,7 @@
 #include "sensor/publish/images/image_file.h"
 #include "sensor/frame/records.h"
 #include "sensor/truth/frame_error.h"
+#include "sensor/instruments/camera.h"
 #include "sensor/instruments/radar.h"
 
 #include <errno.h>
@@ -200,8 +201,7 @@ static Status write_radar(const char *out, const SavedFrame *file, const SavedSc
     return status == STATUS_OK ? closed : status;
 }
 
-/* The detectors start with this frame: their state from earlier frames (detector.agc_s, lines of AC coupling) is not
- * in the file. */
+/* The camera starts with this frame: what it carries from earlier ones is not in the file. */
 static Status write_products(const FrameOptions *o, const SavedFrame *file, SavedScene *s, const SavedAgain *again,
                              const RadarFrame *radar, Pool *pool, Arena *arena)
 {
@@ -247,6 +247,9 @@ static Status write_products(const FrameOptions *o, const SavedFrame *file, Save
         status = write_truth(o->out, file, s, again, &noise, radar, arena);
     if (status == STATUS_OK && radar) status = write_radar(o->out, file, s, radar);
     if (status == STATUS_OK) log_print("its pictures are in %s/frames\n", o->out);
+    if (status == STATUS_OK)
+        log_detail("frame: its %s starts with this frame, without what it carries (%s)", camera_kind.name,
+                   camera_kind.carries);
     if (camera) camera_close(camera);
     return status;
 }

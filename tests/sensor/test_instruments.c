@@ -1,6 +1,6 @@
-/* An instrument is one file and one row of a list of kinds (ADDING.md, an instrument): a gauge of ranges, two of them in
- * one session. It asks for its planes, its arrays and records reach a consumer and are those of a level ground, its poses
- * at other times are those of the host's motion, and what it leaves out is counted with its reason. */
+/* An instrument is one file and one row of a list of kinds (ADDING.md, an instrument): a gauge of ranges, two of them
+ * in one session. It asks for its planes, its arrays and records reach a consumer and are those of a level ground, its
+ * poses at other times are those of the host's motion, and what it leaves out is counted with its reason. */
 #include "tests/sensor/eye_lab.h"
 
 #include "sensor/instruments/camera.h"
@@ -64,7 +64,7 @@ static Status gauge_look(FrameOutput *out, Instrument *instrument, const Instrum
         out->left_out = "it rests";
         return STATUS_OK;
     }
-    double *range_m = arena_alloc(f->arena, (size_t)2 * gauge_rows, sizeof *range_m);
+    double      *range_m = arena_alloc(f->arena, (size_t)2 * gauge_rows, sizeof *range_m);
     FrameArray  *array = arena_alloc(f->arena, 1, sizeof *array);
     GaugeRecord *record = arena_alloc(f->arena, 1, sizeof *record);
     if (!range_m || !array || !record) return STATUS_NO_MEMORY;
@@ -85,10 +85,10 @@ static Status gauge_look(FrameOutput *out, Instrument *instrument, const Instrum
                           .size = {gauge_rows, 2},
                           .values = range_m};
     *record = (GaugeRecord){.looks = g->looks};
-    EyeState                 eye;
-    SnapshotEntity           there;
-    const SnapshotEntity    *host = f->record.host;
-    const InstrumentPoses   *poses = &look->poses;
+    EyeState               eye;
+    SnapshotEntity         there;
+    const SnapshotEntity  *host = f->record.host;
+    const InstrumentPoses *poses = &look->poses;
     CHECK(host && poses->eye(&eye, poses->of, f->time_s + gauge_ahead_s));
     CHECK(poses->entity(&there, poses->of, host->id, f->time_s + gauge_ahead_s));
     CHECK(!poses->entity(&there, poses->of, (DisEntityId){9, 9, 9}, f->time_s));
