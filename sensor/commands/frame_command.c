@@ -12,7 +12,8 @@
 #include "sensor/publish/images/image_file.h"
 #include "sensor/frame/records.h"
 #include "sensor/truth/frame_error.h"
-#include "sensor/frame/frame_world.h"
+#include "sensor/instruments/camera.h"
+#include "sensor/instruments/radar.h"
 
 #include <errno.h>
 #include <stdlib.h>
@@ -186,8 +187,11 @@ static Status write_truth(const char *out, const SavedFrame *file, const SavedSc
 static Status write_radar(const char *out, const SavedFrame *file, const SavedScene *s, const RadarFrame *radar)
 {
     Consumer *consumer;
-    Frame     frame = {
-            .number = file->frame, .time_s = file->time_s, .unix_s = file->unix_s + file->time_s, .radar = radar};
+    Frame     frame = {.number = file->frame,
+                       .time_s = file->time_s,
+                       .unix_s = file->unix_s + file->time_s,
+                       .output = {{.kind = &radar_kind, .record = radar}},
+                       .outputs = 1};
     snprintf(frame.host, sizeof frame.host, "%s", file->host);
     Status status = consume_radar(&consumer, &(PictureFiles){.out = out, .config = &s->config});
     if (status != STATUS_OK) return status;
@@ -197,27 +201,24 @@ static Status write_radar(const char *out, const SavedFrame *file, const SavedSc
     return status == STATUS_OK ? closed : status;
 }
 
-/* The detectors start with this frame: their state from earlier frames (detector.agc_s, lines of AC coupling) is not
- * in the file. */
+/* The camera starts with this frame: what it carries from earlier ones is not in the file. */
 static Status write_products(const FrameOptions *o, const SavedFrame *file, SavedScene *s, const SavedAgain *again,
                              const RadarFrame *radar, Pool *pool, Arena *arena)
 {
-    Chain       *chain[BAND_COUNT] = {NULL};
-    FrameLevel  *level = arena_alloc(arena, BAND_COUNT, sizeof *level);
+    Camera      *camera = arena_alloc(arena, 1, sizeof *camera);
     FrameDisplay display[BAND_COUNT];
     TruthNoise   noise;
     char         hash[sha256_text_size];
     unsigned     raw = 0;
-    Status       status = level ? sensors_chains(chain, &s->sensors, &s->config) : STATUS_NO_MEMORY;
+    Status       status = camera ? camera_open(camera, &s->sensors, &s->config, true) : STATUS_NO_MEMORY;
     for (int b = 0; b < BAND_COUNT; b++)
-        if (chain[b] && s->config.detector.raw) raw |= 1u << b;
+        if (status == STATUS_OK && camera->chain[b] && s->config.detector.raw) raw |= 1u << b;
     const unsigned kept = file->request.bands | (frame_files_truth(&s->config) ? frame_truth : 0);
     if (status == STATUS_OK) status = frame_files_prepare(o->out, kept, raw);
     if (status == STATUS_OK) {
         const DisplaysOf of = {.config = &s->config,
                                .picture = &again->picture,
-                               .chain = chain,
-                               .level = level,
+                               .camera = camera,
                                .frame = file->frame,
                                .time_s = file->time_s,
                                .rate_px_s = {file->rate_px_s[0], file->rate_px_s[1]},
@@ -239,14 +240,17 @@ static Status write_products(const FrameOptions *o, const SavedFrame *file, Save
                                   .png = s->config.publish.png,
                                   .raw = raw != 0,
                                   .display = display};
-        frame_expose(&noise, chain, &again->picture, &s->config);
+        camera_expose(&noise, camera, &again->picture, &s->config);
         status = frame_files_write(hash, &files, pool);
     }
     if (status == STATUS_OK && again->picture.target)
         status = write_truth(o->out, file, s, again, &noise, radar, arena);
     if (status == STATUS_OK && radar) status = write_radar(o->out, file, s, radar);
     if (status == STATUS_OK) log_print("its pictures are in %s/frames\n", o->out);
-    for (int b = 0; b < BAND_COUNT; b++) chain_destroy(chain[b]);
+    if (status == STATUS_OK)
+        log_detail("frame: its %s starts with this frame, without what it carries (%s)", camera_kind.name,
+                   camera_kind.carries);
+    if (camera) camera_close(camera);
     return status;
 }
 
@@ -258,7 +262,7 @@ static Status measure(const RadarFrame **out, int *differ, const SavedFrame *fil
 {
     bool         same;
     SeekerRadar *radar;
-    Status       status = frame_radar_open(&radar, &s->config, "avx2", false);
+    Status       status = radar_open(&radar, &s->config, "avx2", false);
     if (status != STATUS_OK) return status;
     status =
         saved_radar_again(out, radar, &(SavedStage){file, &s->snapshot, &s->world, &s->config, pool, arena}, picture);

@@ -209,11 +209,11 @@ static Status listen_first(bool *heard, Live *l)
 /* ---- publishing -------------------------------------------------------------------------------- */
 
 /* Counts every frame rendered, before it is sent. */
-static void count_frame(void *user, const FrameRecord *frame)
+static void count_frame(void *user, const Frame *frame)
 {
     Live *l = user;
     l->latency_s = fmax(l->latency_s, 1e-9 * (double)(dis_udp_now_ns() - l->due_ns));
-    health_frame(&l->health, frame, wall_clock_s());
+    health_frame(&l->health, &frame->record, wall_clock_s());
 }
 
 /* Writes a note into the recording. That one has no room for notes (.pcap) was said when it was opened. */

@@ -78,6 +78,13 @@ void frame_release(Frame *frame)
     pthread_mutex_unlock(&pool->lock);
 }
 
+const FrameOutput *frame_output(const Frame *frame, const InstrumentKind *kind)
+{
+    for (int i = 0; i < frame->outputs; i++)
+        if (frame->output[i].kind == kind) return &frame->output[i];
+    return NULL;
+}
+
 /* ---- the planes of an image ---------------------------------------------------------------------- */
 
 int frame_planes(FrameArray plane[frame_max_planes], const Picture *p, const RenderRequest *request)

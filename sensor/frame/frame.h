@@ -13,7 +13,22 @@
 #include "sensor/frame/records.h"
 #include "sensor/radar/radar_frame.h"
 
-enum { frame_max_planes = planes_most, frame_max_axes = 4 };
+enum { frame_max_planes = planes_most, frame_max_axes = 4, frame_max_outputs = 8 };
+
+/* What consumers may want of a frame. */
+typedef enum FrameWant {
+    WANT_PLANES = 1 << 0,    /* planes of truth; planes of the bands are always present */
+    WANT_TARGETS = 1 << 1,   /* record.target */
+    WANT_ERROR = 1 << 2,     /* record.error, where the error budget is on */
+    WANT_CELLS = 1 << 3,     /* picture.small: small targets as a detector needs them */
+    WANT_WITHOUT = 1 << 4,   /* a second rendering without the target, or without all entities */
+    WANT_SHA256 = 1 << 5,    /* of all planes, truth too */
+    WANT_DISPLAY = 1 << 6,   /* frame.display: behind the detector, with gain and level */
+    WANT_COUNTS = 1 << 7,    /* frame.display.counts: raw counts of the bands with a sensor */
+    WANT_FOOTPRINT = 1 << 8, /* record.footprint: where the boresight and the corners meet the ground */
+    WANT_LATENCY = 1 << 9,   /* when other consumers are done with the frame: closed after those that do not want it */
+} FrameWant;
+
 
 /* A named array. The last axis is contiguous in memory. */
 typedef struct FrameArray {
@@ -29,6 +44,17 @@ typedef struct FrameArray {
     int         size[frame_max_axes];
     const void *values;
 } FrameArray;
+
+/* What an instrument hands out in a frame (sensor/instruments/instrument.h). */
+typedef struct InstrumentKind InstrumentKind;
+typedef struct FrameOutput {
+    const char           *name; /* of the instrument: several of a kind have different ones */
+    const InstrumentKind *kind;
+    int                   arrays;
+    const FrameArray     *array;    /* [arrays] */
+    const void           *record;   /* its type is the kind's; NULL: none */
+    const char           *left_out; /* why there is nothing; NULL: nothing is left out */
+} FrameOutput;
 
 /* What was rendered of a snapshot: the planes, and what they were rendered from. */
 typedef struct FrameView {
@@ -62,9 +88,9 @@ struct Frame {
     const World       *world;        /* materials and catalog alone: the tracer belongs to the next frame */
     double             rate_px_s[2]; /* image motion of the scene: column, row */
     Sun                sun;
-    const RadarFrame  *radar; /* NULL: no radar was asked for */
     FrameError         error;
-    RadarError         radar_error;
+    FrameOutput        output[frame_max_outputs]; /* [outputs] of the instruments, in their order */
+    int                outputs;
     FrameRecord        record; /* its lists and all fields of truth.jsonl; frame_sha256 is NULL */
     Provenance         provenance;
     bool               buried;          /* the sensor was below the ground */
@@ -77,6 +103,8 @@ struct Frame {
     int                holds; /* protected by the pool's lock */
 };
 
+/* The output of the frame's first instrument of a kind; NULL: there is none. */
+const FrameOutput *frame_output(const Frame *frame, const InstrumentKind *kind);
 /* Lists the planes of an image that its hash covers, as render/frame/planes.h orders them. They are borrowed from it.
  */
 int frame_planes(FrameArray plane[frame_max_planes], const Picture *picture, const RenderRequest *request);

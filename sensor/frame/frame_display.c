@@ -44,9 +44,32 @@ static const double optical_least_span = 1e-3, optical_dark_sigma = 5e-5;
  * sunlight nothing is told by it. */
 static const double hottest_ground_k = 350;
 
-void frame_expose(TruthNoise *noise, Chain *const chain[BAND_COUNT], const Picture *picture, const Config *config)
+Status camera_open(Camera *out, const Sensors *sensors, const Config *config, bool noise)
 {
-    const float *plane[3];
+    const int places = render_places(config->sensor.samples, config_adaptive(config) ? config->sensor.edge_samples : 0);
+    Status    status = STATUS_OK;
+    *out = (Camera){.chain = {NULL}};
+    for (int b = 0; b < BAND_COUNT && status == STATUS_OK; b++) {
+        SensorPreset preset = sensors->preset[b];
+        if (!noise) preset.noise_scale = 0;
+        if (sensors->has[b])
+            status = chain_create(&out->chain[b], &preset, config->sensor.width_px, config->sensor.height_px, places,
+                                  (uint64_t)config->seed);
+    }
+    if (status != STATUS_OK) camera_close(out);
+    return status;
+}
+
+void camera_close(Camera *camera)
+{
+    for (int b = 0; b < BAND_COUNT; b++) chain_destroy(camera->chain[b]);
+    *camera = (Camera){.chain = {NULL}};
+}
+
+void camera_expose(TruthNoise *noise, Camera *camera, const Picture *picture, const Config *config)
+{
+    Chain *const *chain = camera->chain;
+    const float  *plane[3];
     *noise = (TruthNoise){.netd_mwir_k = config->detector.noise * config->detector.netd_mwir_k,
                           .netd_lwir_k = config->detector.noise * config->detector.netd_lwir_k};
     for (int b = 0; b < BAND_COUNT; b++)
@@ -69,7 +92,7 @@ void frame_expose(TruthNoise *noise, Chain *const chain[BAND_COUNT], const Pictu
 static DetectorConfig detector_of(const DisplaysOf *of, int band)
 {
     const Config  *c = of->config;
-    const Chain   *chain = of->chain[band];
+    const Chain   *chain = of->camera->chain[band];
     DetectorConfig d = detector_default_config();
     d.bits = c->detector.bits;
     d.gain = c->detector.gain;
@@ -109,7 +132,7 @@ static DetectorConfig detector_of(const DisplaysOf *of, int band)
  * radiance, so white is taken at a radiance that any sensor can count. */
 static DisplayColour colour_of(const DisplaysOf *of)
 {
-    const Chain  *chain = of->chain[BAND_OPTICAL];
+    const Chain  *chain = of->camera->chain[BAND_OPTICAL];
     const double *white = of->picture->white_w_m2_sr, mean = (white[0] + white[1] + white[2]) / 3;
     DisplayColour colour;
     if (!chain || !(mean > 0)) {
@@ -139,7 +162,7 @@ static void detect(FrameDisplay *out, float *const memory[3], const DisplaysOf *
 {
     const Picture *p = of->picture;
     const size_t   count = (size_t)p->width * (size_t)p->height;
-    Chain         *chain = of->chain[band];
+    Chain         *chain = of->camera->chain[band];
     const float   *in[3] = {NULL, NULL, NULL}, *seen[3];
     band_radiance(in, p, band);
     if (chain) chain_run(chain, in, &p->small, of->frame, of->rate_px_s);
@@ -202,7 +225,7 @@ static void run_noise(void *user, int worker, int task)
     const int         band = jobs->band[task / noise_tasks(p)], row = task % noise_tasks(p) * noise_rows;
     const int         rows = p->height - row < noise_rows ? p->height - row : noise_rows;
     (void)worker;
-    if (!of->chain[band])
+    if (!of->camera->chain[band])
         add_noise(jobs->memory[band], &jobs->display[band], of, band, (size_t)row * (size_t)p->width,
                   (size_t)rows * (size_t)p->width);
 }
@@ -216,9 +239,9 @@ static void run_job(void *user, int worker, int task)
     FrameDisplay     *d = &jobs->display[band];
     (void)worker;
     detect(d, jobs->memory[band], of, band);
-    set_level(d, &of->level[band], of->time_s, of->config->detector.agc_s, count);
+    set_level(d, &of->camera->level[band], of->time_s, of->config->detector.agc_s, count);
     for (int c = 0; c < d->planes && jobs->counts[band][c]; c++) {
-        memcpy(jobs->counts[band][c], chain_counts(of->chain[band], c), count * sizeof(uint16_t));
+        memcpy(jobs->counts[band][c], chain_counts(of->camera->chain[band], c), count * sizeof(uint16_t));
         d->counts[c] = jobs->counts[band][c];
     }
 }
@@ -240,12 +263,12 @@ Status frame_displays_make(FrameDisplay display[BAND_COUNT], const DisplaysOf *o
         jobs.band[jobs.count++] = b;
         for (int c = 0; c < d->planes; c++) {
             if (!(jobs.memory[b][c] = arena_alloc(arena, count, sizeof(float)))) return STATUS_NO_MEMORY;
-            if (!of->counts || !of->chain[b]) continue;
+            if (!of->counts || !of->camera->chain[b]) continue;
             if (!(jobs.counts[b][c] = arena_alloc(arena, count, sizeof(uint16_t)))) return STATUS_NO_MEMORY;
-            d->count_bits = (int)lround(log2(chain_full(of->chain[b]) + 1));
+            d->count_bits = (int)lround(log2(chain_full(of->camera->chain[b]) + 1));
         }
     }
-    frame_expose(&ignored, of->chain, p, of->config);
+    camera_expose(&ignored, of->camera, p, of->config);
     for (int k = 0; k < jobs.count; k++) display[jobs.band[k]].detector = detector_of(of, jobs.band[k]);
     pool_run(pool, jobs.count * noise_tasks(p), run_noise, &jobs);
     pool_run(pool, jobs.count, run_job, &jobs);

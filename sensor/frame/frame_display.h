@@ -6,7 +6,7 @@
 #include "render/frame/render.h"
 #include "sensor/detector/chain.h"
 #include "sensor/detector/level.h"
-#include "sensor/settings/config.h"
+#include "sensor/settings/sensors.h"
 #include "sensor/truth/truth.h"
 
 /* A band's image after its detector, before quantisation. Without a sensor it is radiance, with noise as configured. */
@@ -29,20 +29,29 @@ typedef struct FrameLevel {
     DetectorCurve curve; /* instead, of plateau equalisation */
 } FrameLevel;
 
+/* The detectors of a picture's bands, with what they carry from frame to frame. */
+typedef struct Camera {
+    Chain     *chain[BAND_COUNT]; /* NULL: no sensor; white noise as configured */
+    FrameLevel level[BAND_COUNT];
+} Camera;
+
+/* The detectors of the bands that have a sensor; noise false: without theirs. On failure it is closed. */
+Status camera_open(Camera *out, const Sensors *sensors, const Config *config, bool noise);
+void   camera_close(Camera *camera);
+/* Exposes the sensors for this image, and gives their noise at its mean radiance. */
+void camera_expose(TruthNoise *noise, Camera *camera, const Picture *picture, const Config *config);
+
 typedef struct DisplaysOf {
     const Config  *config;
     const Picture *picture;
     const Picture *noise_of; /* the image whose mean white noise is a share of; NULL: picture */
-    Chain *const  *chain;    /* [BAND_COUNT]; NULL: white noise as configured */
-    FrameLevel    *level;    /* [BAND_COUNT] */
+    Camera        *camera;
     int            frame;
     double         time_s;
     double         rate_px_s[2]; /* image motion of the scene: column, row */
     bool           counts;       /* raw counts too */
 } DisplaysOf;
 
-/* Exposes the sensors for this image, and gives their noise at its mean radiance. */
-void frame_expose(TruthNoise *noise, Chain *const chain[BAND_COUNT], const Picture *picture, const Config *config);
 /* Exposes and runs the detectors of these bands (1 << Band), one task per band. STATUS_NO_MEMORY. */
 Status frame_displays_make(FrameDisplay display[BAND_COUNT], const DisplaysOf *of, unsigned bands, Pool *pool,
                            Arena *arena);

@@ -1,5 +1,4 @@
-/* sensor/frame/frame_world.c: a world with the atmosphere, the radar and the plants of the settings, and the sun of a
- * frame. */
+/* sensor/frame/frame_world.c: a world with the atmosphere and the plants of the settings, and the sun of a frame. */
 #include "sensor/frame/frame_world.h"
 
 Status frame_world(World *out, const Config *config, const Catalog *catalog, const Landscape *landscape,
@@ -71,27 +70,6 @@ Status frame_world_warm(World *world, const Config *config, double unix_s, Pool 
                    1e3 * (wall_clock_s() - begun_s), 1e-6 * (double)heat_bytes(world->heat),
                    world->shadow ? 1e-6 * (double)heat_shadow_bytes(world->shadow) : 0.0);
     return status;
-}
-
-Status frame_radar_open(SeekerRadar **out, const Config *config, const char *isa, bool live)
-{
-    char catalog[4096];
-    if (!etc_path(catalog, sizeof catalog, "catalog.csv")) return STATUS_BAD_VALUE;
-    return seeker_radar_create(out, &(SeekerRadarConfig){.preset = config->radar.preset,
-                                                         .table = config->radar.table,
-                                                         .catalog = catalog,
-                                                         .isa = isa,
-                                                         .ground = config->radar.ground,
-                                                         .ground_bounce = config->radar.ground_bounce,
-                                                         .warp_m = 1e-3 * config->radar.warp_mm,
-                                                         .given = config->radar.given,
-                                                         .wind_mps = config->weather.wind_mps,
-                                                         .chaff_dipoles = config->radar.chaff_dipoles,
-                                                         .scan_rad = config->radar.scan_deg * rad_per_deg,
-                                                         .scan_step = config->radar.scan_step,
-                                                         .seed = (uint64_t)config->seed,
-                                                         .library = config->radar.library,
-                                                         .background = live});
 }
 
 /* ---- sun and atmosphere of one frame, from time, position, weather and view ---------------------- */

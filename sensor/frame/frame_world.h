@@ -1,11 +1,10 @@
 /* sensor/frame/frame_world.h: what the settings say of a frame's world: models and ground, materials, atmosphere,
- * plants, radar, sun. */
+ * plants, sun. */
 #ifndef SENSOR_FRAME_FRAME_WORLD_H
 #define SENSOR_FRAME_FRAME_WORLD_H
 
 #include "render/frame/render.h"
 #include "sensor/settings/config.h"
-#include "sensor/radar/seeker_radar.h"
 
 /* Borrows catalog and landscape. On failure the only valid call is world_close. */
 Status frame_world(World *out, const Config *config, const Catalog *catalog, const Landscape *landscape,
@@ -17,9 +16,6 @@ Weather frame_weather_at(const Config *config, const World *world, double unix_s
 /* Warms the world over the weather of weather.* up to unix_s, which is exercise time 0. Call it after
  * frame_world_plant. */
 Status frame_world_warm(World *world, const Config *config, double unix_s, Pool *pool);
-
-/* The radar of radar.preset, which is not none. live: signatures that are missing are made in the background. */
-Status frame_radar_open(SeekerRadar **out, const Config *config, const char *isa, bool live);
 
 /* ---- sun and atmosphere of one frame, and the axes for normals in its products ------------------- */
 

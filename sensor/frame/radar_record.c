@@ -2,7 +2,6 @@
 #include "sensor/frame/radar_record.h"
 
 #include "sensor/frame/json_object.h"
-#include "sensor/frame/plane.h"
 
 #include <jansson.h>
 
@@ -102,32 +101,66 @@ static json_t *target_json(const RadarTruth *t, const Snapshot *snapshot, const 
     return o;
 }
 
-Status radar_map_sha256(char out[sha256_text_size], const RadarFrame *r)
+int radar_arrays(FrameArray array[radar_arrays_most], const RadarFrame *r)
 {
-    const Plane plane = {"range_doppler", PLANE_F64, 2 * r->map.columns, interval_channels * r->map.rows, r->map.cell};
-    return plane_hash(out, &plane, 1);
+    const RadarSector *s = r->scan;
+    array[0] = (FrameArray){.group = "radar",
+                            .name = "range_doppler",
+                            .unit = "sqrt(W)",
+                            .kind = PLANE_RADIANCE,
+                            .type = PLANE_F64,
+                            .axes = 3,
+                            .axis = {"channel", "range rate", "range: re, im"},
+                            .size = {interval_channels, r->map.rows, 2 * r->map.columns},
+                            .values = r->map.cell};
+    if (!s) return 1;
+    array[1] = array[2] = (FrameArray){.group = "radar",
+                                       .name = "scan",
+                                       .unit = "W",
+                                       .kind = PLANE_RADIANCE,
+                                       .type = PLANE_F64,
+                                       .axes = 2,
+                                       .axis = {"azimuth", "range"},
+                                       .size = {s->plan.positions, s->columns},
+                                       .values = s->power_w};
+    array[2].name = "dbs";
+    array[2].size[0] = s->azimuths;
+    array[2].values = s->sharp_w;
+    return radar_arrays_most;
+}
+
+Status radar_sha256(char out[sha256_text_size], const RadarFrame *r, int first, int most)
+{
+    FrameArray array[radar_arrays_most];
+    Plane      plane[radar_arrays_most];
+    char       ignored[frame_plane_name_size];
+    int        count = 0;
+    for (int i = first; i < radar_arrays(array, r) && count < most; i++) {
+        plane[count] = frame_plane(ignored, &array[i]);
+        plane[count++].name = array[i].name;
+    }
+    return plane_hash(out, plane, count);
 }
 
 static void set_hash(json_t *o, const RadarFrame *r)
 {
     char hash[sha256_text_size];
-    if (radar_map_sha256(hash, r) == STATUS_OK) json_object_set_new(o, "map_sha256", json_string(hash));
+    if (radar_sha256(hash, r, 0, 1) == STATUS_OK) json_object_set_new(o, "map_sha256", json_string(hash));
 }
 
 /* The scan: how it was made, and the hash of its pictures before anything is rounded for a file. */
-static json_t *scan_json(const RadarSector *s)
+static json_t *scan_json(const RadarFrame *r)
 {
-    json_t     *o = json_object();
-    char        hash[sha256_text_size];
-    const Plane plane[] = {{"scan", PLANE_F64, s->columns, s->plan.positions, s->power_w},
-                           {"dbs", PLANE_F64, s->columns, s->azimuths, s->sharp_w}};
+    const RadarSector *s = r->scan;
+    json_t            *o = json_object();
+    char               hash[sha256_text_size];
     json_object_set_new(o, "positions", json_integer(s->plan.positions));
     json_set_number(o, "step_deg", s->plan.step_rad / rad_per_deg);
     json_set_number(o, "interval_s", s->plan.interval_s);
     json_set_number(o, "beam_deg", s->beam_rad / rad_per_deg);
     json_set_number(o, "noise_dbw", db(s->noise_w));
     json_set_number(o, "sharpened_share", s->sharpened_share);
-    if (plane_hash(hash, plane, 2) == STATUS_OK) json_object_set_new(o, "sha256", json_string(hash));
+    if (radar_sha256(hash, r, 1, 2) == STATUS_OK) json_object_set_new(o, "sha256", json_string(hash));
     return o;
 }
 
@@ -149,7 +182,7 @@ json_t *radar_record_json(const RadarFrame *r, const Snapshot *snapshot, const C
     json_object_set_new(o, "rain_1_m", json_real(r->rain_1_m));
     json_object_set_new(o, "ground_hidden", json_integer(r->ground_hidden));
     set_hash(o, r);
-    if (r->scan) json_object_set_new(o, "scan", scan_json(r->scan));
+    if (r->scan) json_object_set_new(o, "scan", scan_json(r));
     for (int i = 0; i < r->detections; i++) json_array_append_new(detections, detection_json(&r->detection[i]));
     json_object_set_new(o, "detections", detections);
     json_object_set_new(o, "detections_in_all", json_integer(r->detections_in_all));

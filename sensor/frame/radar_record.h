@@ -5,10 +5,14 @@
 #include "sensor/radar/radar_frame.h"
 #include "entities/catalog/catalog.h"
 #include "entities/table/snapshot.h"
-#include "sensor/frame/plane.h"
+#include "sensor/frame/frame.h"
 
-/* Of the map of all channels, before it is rounded for a file. */
-Status radar_map_sha256(char out[sha256_text_size], const RadarFrame *radar);
+/* What a radar measured, as arrays: the map of all channels, of a beam that scans also both pictures of its sector.
+ * Returns how many. They are borrowed from it. */
+enum { radar_arrays_most = 3 };
+int radar_arrays(FrameArray array[radar_arrays_most], const RadarFrame *radar);
+/* Of these arrays from `first` on, `most` of them or as many as there are, before anything is rounded for a file. */
+Status radar_sha256(char out[sha256_text_size], const RadarFrame *radar, int first, int most);
 
 /* Makes a JSON object (json_t), which the caller owns. */
 struct json_t *radar_record_json(const RadarFrame *radar, const Snapshot *snapshot, const Catalog *catalog);

@@ -169,14 +169,3 @@ Status sensors_choose(Sensors *out, Choices *choices, Config *config, unsigned b
     *out = s;
     return STATUS_OK;
 }
-
-Status sensors_chains(Chain *chain[BAND_COUNT], const Sensors *sensors, const Config *config)
-{
-    const int places = render_places(config->sensor.samples, config_adaptive(config) ? config->sensor.edge_samples : 0);
-    Status    status = STATUS_OK;
-    for (int b = 0; b < BAND_COUNT && status == STATUS_OK; b++)
-        if (sensors->has[b])
-            status = chain_create(&chain[b], &sensors->preset[b], config->sensor.width_px, config->sensor.height_px,
-                                  places, (uint64_t)config->seed);
-    return status;
-}

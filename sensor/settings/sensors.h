@@ -18,8 +18,4 @@ typedef struct Sensors {
  * is not rendered, noise given for a band whose sensor has its own, a distortion that is not invertible. */
 Status sensors_choose(Sensors *out, Choices *choices, Config *config, unsigned bands);
 
-/* Creates the detectors of the bands that have one; others stay NULL. On failure those created are in chain, for the
- * caller to destroy. */
-Status sensors_chains(Chain *chain[BAND_COUNT], const Sensors *sensors, const Config *config);
-
 #endif

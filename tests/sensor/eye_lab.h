@@ -41,6 +41,8 @@ static struct {
     const char *notes;          /* SessionShared's, as these two */
     void (*note)(void *user, const char *text);
     unsigned (*choose)(void *user, const FrameTime *frame);
+    const InstrumentKind *const *kinds;           /* NULL: the program's */
+    void (*look)(void *user, const Frame *frame); /* at each frame, in place of lab_shoot; NULL: that */
 } lab;
 
 static inline int lab_open(void **state)
@@ -123,8 +125,9 @@ static inline void lab_say(const LabReport *r)
 
 static inline void lab_forget(void) { lab.reports = 0; }
 
-static inline void lab_shoot(void *user, const FrameRecord *record)
+static inline void lab_shoot(void *user, const Frame *frame)
 {
+    const FrameRecord *record = &frame->record;
     (void)user;
     CHECK(lab.shots < lab_most_frames);
     LabFrame *shot = &lab.shot[lab.shots++];
@@ -188,7 +191,8 @@ static inline void lab_run(const Config *given, double from_s, double rate_hz, i
                                   .bands = 1u << BAND_LWIR,
                                   .config_sha256 = "",
                                   .sensors = &sensors,
-                                  .publish = lab_shoot,
+                                  .instruments = lab.kinds ? lab.kinds : instrument_kinds,
+.publish = lab.look ? lab.look : lab_shoot,
                                   .live = lab.live,
                                   .note = lab.note,
                                   .notes = lab.notes,

@@ -335,9 +335,8 @@ static void a_frame_is_balanced_by_its_own_day(void **state)
     for (int i = 0; i < 256; i++)
         for (int c = 0; c < 3; c++) picture.optical[c][i] = (float)(white[c] * (i % 16) / 16);
     for (int c = 0; c < 3; c++) kept[c] = picture.optical[c][15];
-    Config       config = config_default();
-    Chain *const chain[BAND_COUNT] = {NULL};
-    FrameLevel   level[BAND_COUNT] = {0};
+    Config config = config_default();
+    Camera camera = {.chain = {NULL}};
     config.detector.noise = 0;
     config.detector.raw = false;
     char           folder[temp_path_size], path[temp_path_size + 64];
@@ -345,7 +344,7 @@ static void a_frame_is_balanced_by_its_own_day(void **state)
     CHECK(temp_folder(folder));
     assert_int_equal(frame_files_prepare_displays(folder, request.bands, 0), STATUS_OK);
     FrameDisplay     display[BAND_COUNT];
-    DisplaysOf       shown = {.config = &config, .picture = &picture, .chain = chain, .level = level};
+    DisplaysOf       shown = {.config = &config, .picture = &picture, .camera = &camera};
     const FrameFiles files = {.out = folder,
                               .config = &config,
                               .world = &hand.world,
@@ -361,20 +360,19 @@ static void a_frame_is_balanced_by_its_own_day(void **state)
 
     /* by radiance; then by counts of a camera without noise, at a level by itself and at one by hand */
     SensorPreset preset;
-    Chain       *camera, *chains[BAND_COUNT] = {NULL};
+    Chain       *colour;
     assert_int_equal(preset_read(&preset, "etc/sensors.csv", "tv"), STATUS_OK);
     preset.optical = OPTICAL_RGB;
     preset.noise_scale = preset.bad_share = 0;
     preset_refresh(&preset);
-    assert_int_equal(chain_create(&camera, &preset, 16, 16, 1, 1), STATUS_OK);
-    chains[BAND_OPTICAL] = camera;
+    assert_int_equal(chain_create(&colour, &preset, 16, 16, 1, 1), STATUS_OK);
     for (int pass = 0; pass < 3; pass++) {
-        if (pass > 0) shown.chain = chains;
+        if (pass > 0) camera.chain[BAND_OPTICAL] = colour;
         if (pass == 2) {
             config.detector.level = DISPLAY_LEVEL_MANUAL;
             config.detector.optical_high_w_m2_sr = (white[0] + white[1] + white[2]) / 3;
         }
-        level[BAND_OPTICAL].known = false;
+        camera.level[BAND_OPTICAL].known = false;
         assert_int_equal(frame_displays_make(display, &shown, request.bands, hand.pool, hand.arena), STATUS_OK);
         assert_int_equal(frame_files_write_displays(&files, hand.pool), STATUS_OK);
         assert_int_equal(image_read_png(rgb, path), STATUS_OK);
@@ -383,7 +381,7 @@ static void a_frame_is_balanced_by_its_own_day(void **state)
         CHECK(rgb[3 * 14] > 220 && rgb[3 * 1] < 110);
         if (pass == 2) CHECK(rgb[3 * 8] >= 186 && rgb[3 * 8] <= 190); /* sRGB of 8 / 16 */
     }
-    chain_destroy(camera);
+    chain_destroy(colour);
     for (int c = 0; c < 3; c++) CHECK(picture.optical[c][15] == kept[c]);
     remove(path);
 }

@@ -206,7 +206,7 @@ static DetectorLevel shown_after(unsigned made, unsigned written)
     Config        config = config_default();
     Consumer     *displays = NULL, *pictures = NULL;
     FramePool    *pool = NULL;
-    Chains        chains = {{NULL}};
+    const Sensors none = {0};
     char          folder[temp_path_size], path[temp_path_size + 64];
     static float  plane[side * side];
     DetectorLevel last = {NAN, NAN};
@@ -217,7 +217,7 @@ static DetectorLevel shown_after(unsigned made, unsigned written)
     CHECK(temp_folder(folder));
     assert_int_equal(frame_files_prepare(folder, 1u << BAND_LWIR, 0), STATUS_OK);
     assert_int_equal(frame_pool_create(&pool, 1), STATUS_OK);
-    assert_int_equal(consume_displays(&displays, &config, hand.pool, &chains, false), STATUS_OK);
+    assert_int_equal(consume_displays(&displays, &config, &none, hand.pool, false), STATUS_OK);
     assert_int_equal(consume_pictures(&pictures, &(PictureFiles){.out = folder, .config = &config, .pool = hand.pool}),
                      STATUS_OK);
     CHECK(displays->wants == WANT_CELLS && pictures->wants == WANT_DISPLAY);
@@ -267,16 +267,15 @@ static void a_display_of_any_depth(void **state)
     (void)state;
     enum { side = 16, count = side * side };
     Config       config = config_default();
-    FrameLevel   level[BAND_COUNT] = {0};
+    Camera       camera = {.chain = {NULL}};
     FrameDisplay display[BAND_COUNT];
-    Chain *const chain[BAND_COUNT] = {NULL};
     static float plane[count];
     uint8_t      eight[count];
     uint16_t     deep[3][count];
     for (int i = 0; i < count; i++) plane[i] = 30.0f + 0.01f * (float)i;
     config.detector.noise = 0;
     const Picture    picture = {.width = side, .height = side, .lwir = plane};
-    const DisplaysOf of = {.config = &config, .picture = &picture, .chain = chain, .level = level};
+    const DisplaysOf of = {.config = &config, .picture = &picture, .camera = &camera};
     Arena           *arena = arena_create();
     assert_non_null(arena);
     assert_int_equal(frame_displays_make(display, &of, 1u << BAND_LWIR | 1u << BAND_MWIR, hand.pool, arena), STATUS_OK);

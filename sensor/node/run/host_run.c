@@ -260,6 +260,7 @@ Status run_host(Run *run, const DisEntityId *host)
                                   .no_skip = o->no_skip,
                                   .live = o->command == COMMAND_RUN,
                                   .sensors = &run->sensors,
+                                  .instruments = instrument_kinds,
                                   .contact = chosen.contact,
                                   .config_sha256 = run->config_sha256,
                                   .publish = run->publish,

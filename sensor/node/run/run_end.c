@@ -1,6 +1,7 @@
 /* sensor/node/run/run_end.c: the end of a host's run: run.json, and the messages that say what there is. */
 #include "sensor/node/run/host_run_private.h"
 
+#include "sensor/instruments/radar.h"
 #include "sensor/publish/memory/consume_memory.h"
 
 #include <stdlib.h>
@@ -103,7 +104,7 @@ Status run_write(const Run *run, const RunEnd *end)
                                     .frames_crowded = result->frames_crowded,
                                     .most_left_out = result->most_left_out,
                                     .at_limit = result->at_limit,
-                                    .radar_left_out = result->radar_left_out,
+                                    .radar_left_out = instruments_left_out(result->instrument, &radar_kind),
                                     .frames_reduced = result->frames_reduced,
                                     .effects = result->effects,
                                     .render = result->counters,
@@ -134,11 +135,12 @@ Status run_conclude(const Run *run, const RunEnd *end)
     else if (!config->publish.truth) log_print("%d frames; figures in %s/run.json\n", result->frames, end->folder);
     else log_print("%d frames; their truth is in %s/truth.jsonl\n", result->frames, end->folder);
     fflush(stdout);
-    if (result->radar_left_out > 0)
-        log_warn("%s: %d of %d frames are without radar: signatures of targets were still to be made%s", name,
-                 result->radar_left_out, result->frames,
-                 run->live ? "; radar.library keeps them for the next run (`pitviper rcs MODEL --library` makes them)"
-                           : " when it was recorded");
+    for (int i = 0; i < instruments_most; i++) {
+        const InstrumentCount *lacking = &result->instrument[i];
+        if (lacking->left_out > 0)
+            log_warn("%s: %d of %d frames are without %s: %s", name, lacking->left_out, result->frames, lacking->name,
+                     lacking->why);
+    }
     if (result->at_limit > 0) /* its warning came when it was */
         log_print("the aim was beyond the gimbal in %d of %d frames (sensor.gimbal_limit_deg)\n", result->at_limit,
                   result->frames);

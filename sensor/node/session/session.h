@@ -8,7 +8,7 @@
 #include "sensor/node/clock/frame_clock.h"
 #include "sensor/node/player/player.h"
 #include "sensor/publish/dis/consume_dis.h"
-#include "sensor/settings/sensors.h"
+#include "sensor/instruments/instrument.h"
 #include "sensor/frame/publish_counters.h"
 #include "sensor/frame/plane.h"
 #include "sensor/frame/records.h"
@@ -28,7 +28,8 @@ typedef struct SessionShared {
     bool           live;    /* a file that cannot be written does not end the session */
     const char    *config_sha256;
     const Sensors *sensors;
-    void (*publish)(void *user, const FrameRecord *frame); /* called for each frame; NULL: not */
+    const InstrumentKind *const *instruments; /* instrument_kinds */
+    void (*publish)(void *user, const Frame *frame); /* called for each frame; NULL: not */
     void             *user;
     const DisOf      *dis;                      /* Data PDUs of each frame, its clock being the player; NULL: none */
     const FrameClock *clock;                    /* one on the wall: a latency ledger is kept, and streams are left out
@@ -50,18 +51,18 @@ extern const char *const session_stage_name[session_stages];
 
 /* Lists hold the first session_frames_kept frames; a live node may render more. */
 typedef struct SessionResult {
-    bool           begun; /* it has files: what an earlier run left is gone */
-    int            frames;
-    int            listed;
-    int            buried;                        /* frames with the sensor below the ground */
-    int            at_limit;                      /* frames whose aim was beyond the gimbal limit */
-    int            frames_crowded, most_left_out; /* frames without all entities; the most that one frame lacks */
-    int            host_count;                    /* the first session_hosts_kept hosts, in order */
-    char           host[session_hosts_kept][dis_id_text_size];
-    int            radar_left_out;      /* frames without radar, for want of signatures */
-    int            frames_reduced;      /* frames of less quality than was set */
-    AnswerCounters answers;             /* of a recogniser; when closed */
-    SentCounters   sent;                /* likewise: streams, ring of frames */
+    bool            begun; /* it has files: what an earlier run left is gone */
+    int             frames;
+    int             listed;
+    int             buried;                        /* frames with the sensor below the ground */
+    int             at_limit;                      /* frames whose aim was beyond the gimbal limit */
+    int             frames_crowded, most_left_out; /* frames without all entities; the most that one frame lacks */
+    int             host_count;                    /* the first session_hosts_kept hosts, in order */
+    char            host[session_hosts_kept][dis_id_text_size];
+    InstrumentCount instrument[instruments_most]; /* frames that lack one */
+    int frames_reduced; /* frames of less quality than was set */
+    AnswerCounters  answers;                      /* of a recogniser; when closed */
+    SentCounters    sent;                         /* likewise: streams, ring of frames */
     int files_failed, files_left_out;   /* live: frames without files, for disk errors, for time; when closed */
     int(*number);                       /* [listed] */
     char (*hash)[sha256_text_size];     /* [listed] */

@@ -3,7 +3,7 @@
 #include "sensor/node/session/session_private.h"
 
 /* Between two of these, poses and snapshots omit timed-out entities: they are never visible. */
-enum { expire_ticks = seeker_ticks_per_s / 10, work_ticks = seeker_ticks_per_s / 10 };
+enum { expire_ticks = seeker_ticks_per_s / 10 };
 
 void session_name_host(Session *s)
 {
@@ -52,31 +52,16 @@ void session_keep(Session *s)
     entity_table_focus(s->table, dis_entity_id_is_none(plan->host) ? plan->aim : plan->host, plan->aim);
 }
 
-static void note_failure(Session *s, const char *what, Status status)
+void session_note_failure(Session *s, const char *what, Status status)
 {
     if (status == STATUS_OK || s->advance_status != STATUS_OK) return;
     log_error("%s: %s", what, status_name(status));
     s->advance_status = status;
 }
 
-/* Every second, when something appeared, fired or burst, and while work is left. */
-static void warm_vehicles(Session *s, double tick_s)
-{
-    const uint64_t changes = entity_table_changes(s->table);
-    if (!s->vehicles) return;
-    const bool left = s->tick % work_ticks == 0 && vehicle_heat_waits(world_vehicles_heat(s->vehicles));
-    if (s->tick % seeker_ticks_per_s != 0 && changes == s->vehicle_changes && !left) return;
-    Snapshot snapshot;
-    arena_reset(s->vehicle_arena);
-    Status status = entity_table_snapshot(&snapshot, s->table, tick_s, s->vehicle_arena);
-    if (status == STATUS_OK) status = world_vehicles_tick(s->vehicles, &snapshot);
-    note_failure(s, "heat of vehicles", status);
-    s->vehicle_changes = changes;
-}
-
 static void feed(Session *s, double t_s)
 {
-    note_failure(s, "times of the recording", player_feed(s->player, s->table, t_s));
+    session_note_failure(s, "times of the recording", player_feed(s->player, s->table, t_s));
 }
 
 /* State that outlasts a frame changes at ticks alone: it does not depend on which frames are rendered. */
@@ -88,7 +73,7 @@ void session_advance(Session *s, double t_s)
         if (s->tick % expire_ticks == 0) entity_table_expire(s->table, tick_s);
         s->host->tick(s->host, tick_s);
         session_keep(s);
-        warm_vehicles(s, tick_s);
+        session_heat_warm(s, tick_s);
     }
     feed(s, t_s);
 }

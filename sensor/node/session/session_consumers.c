@@ -4,28 +4,16 @@
 #include "sensor/publish/memory/consume_memory.h"
 #include "sensor/publish/consumers/consume_pairs.h"
 #include "sensor/publish/video/consume_video.h"
-
-#include <stdlib.h>
-
-/* Adds the detectors of one consumer. */
-static Status chains_of(Chains *out, const Sensors *sensors, const Config *config)
-{
-    *out = (Chains){{NULL}};
-    const Status status = sensors_chains(out->band, sensors, config);
-    if (status != STATUS_OK) chains_destroy(out);
-    return status;
-}
+#include "sensor/instruments/radar.h"
 
 /* Adds displays, if a consumer of the other list wants them. */
 static Status add_displays(Consumers *list, Session *s, Pool *pool, unsigned wants)
 {
     const SessionShared *shared = s->shared;
     Consumer            *consumer = NULL;
-    Chains               chains;
     if (!(wants & (WANT_DISPLAY | WANT_COUNTS))) return STATUS_OK;
-    Status status = chains_of(&chains, shared->sensors, shared->config);
-    if (status == STATUS_OK)
-        status = consume_displays(&consumer, shared->config, pool, &chains, (wants & WANT_COUNTS) != 0);
+    const Status status =
+        consume_displays(&consumer, shared->config, shared->sensors, pool, (wants & WANT_COUNTS) != 0);
     return status == STATUS_OK ? consumers_add(list, consumer) : status;
 }
 
@@ -41,7 +29,7 @@ static Status add_pictures(Consumers *list, Session *s, Pool *pool)
 static Status add_radar(Consumers *list, Session *s, Pool *pool)
 {
     Consumer *consumer = NULL;
-    if (!s->radar) return STATUS_OK;
+    if (!instruments_find(&s->instruments, &radar_kind)) return STATUS_OK;
     const Status status = consume_radar(
         &consumer,
         &(PictureFiles){.out = s->out, .config = s->shared->config, .pool = pool, .patient = s->shared->live});
@@ -87,28 +75,15 @@ static Status add_video(Consumers *list, Session *s, unsigned to, bool patient)
 static Status add_pairs(Consumers *list, Session *s, Pool *pool, unsigned raw)
 {
     const SessionShared *shared = s->shared;
-    PairsOf              of = {.out = s->out,
+    const PairsOf        of = {.out = s->out,
                                .config = shared->config,
                                .config_sha256 = shared->config_sha256,
                                .pool = pool,
+                               .sensors = shared->sensors,
                                .bands = shared->bands,
                                .raw = raw};
     Consumer            *consumer = NULL;
-    Sensors             *quiet = malloc(sizeof *quiet);
-    if (!quiet) return STATUS_NO_MEMORY;
-    *quiet = *shared->sensors;
-    for (int b = 0; b < BAND_COUNT; b++) quiet->preset[b].noise_scale = 0;
-    Status status = chains_of(&of.clean, quiet, shared->config);
-    if (status == STATUS_OK) status = chains_of(&of.background, shared->sensors, shared->config);
-    if (status == STATUS_OK) status = chains_of(&of.background_clean, quiet, shared->config);
-    free(quiet);
-    if (status == STATUS_OK) {
-        status = consume_pairs(&consumer, &of);
-    } else {
-        chains_destroy(&of.clean);
-        chains_destroy(&of.background);
-        chains_destroy(&of.background_clean);
-    }
+    const Status         status = consume_pairs(&consumer, &of);
     return status == STATUS_OK ? consumers_add(list, consumer) : status;
 }
 
@@ -177,13 +152,14 @@ static Status add_memory(Consumers *list, Session *s, bool behind_displays)
     Consumer            *consumer = NULL;
     const bool           counts = config->publish.memory_planes == MEMORY_PLANES_COUNTS;
     if (!*config->publish.memory || counts != behind_displays) return STATUS_OK;
-    MemoryOf of = {.config = config,
-                   .config_sha256 = shared->config_sha256,
-                   .bands = shared->bands,
-                   .unnamed = &s->result.sent.frames_unnamed,
-                   .host = shared->several ? s->host_text : NULL};
-    for (int b = 0; b < BAND_COUNT; b++)
-        if (s->chain[b]) of.count_bits[b] = (int)lround(log2(chain_full(s->chain[b]) + 1));
+    MemoryOf      of = {.config = config,
+                        .config_sha256 = shared->config_sha256,
+                        .bands = shared->bands,
+                        .unnamed = &s->result.sent.frames_unnamed,
+                        .host = shared->several ? s->host_text : NULL};
+    const Camera *camera = camera_of(&s->instruments);
+    for (int b = 0; b < BAND_COUNT && camera; b++)
+        if (camera->chain[b]) of.count_bits[b] = (int)lround(log2(chain_full(camera->chain[b]) + 1));
     const Status status = consume_memory(&consumer, &of);
     return status == STATUS_OK ? consumers_add(list, consumer) : status;
 }
@@ -222,16 +198,11 @@ static Status add_all(Consumers *list, Consumers *others)
     return status;
 }
 
-/* What consumers need beyond what they state: a frame file is of all planes; so are image files of truth; and the image
- * motion that a detector blurs by is known from the truth plane of ranges. */
-static unsigned further_wants(const Session *s, unsigned wants)
+/* What is needed beyond what consumers state: a frame file is of all planes; so are image files of truth. */
+static unsigned further_wants(const Session *s)
 {
     const Config *config = s->shared->config;
-    bool          sensor = false;
-    for (int b = 0; b < BAND_COUNT; b++) sensor |= s->chain[b] != NULL;
-    const bool planes = s->shared->save_count > 0 || (config->publish.files && frame_files_truth(config)) ||
-                        (sensor && wants & (WANT_DISPLAY | WANT_COUNTS));
-    return wants | (planes ? WANT_PLANES : 0);
+    return s->shared->save_count > 0 || (config->publish.files && frame_files_truth(config)) ? WANT_PLANES : 0;
 }
 
 /* ---- what a session's frames go to -------------------------------------------------------------- */
@@ -328,9 +299,10 @@ Status session_consumers(Session *s, FrameDone *done)
 {
     const SessionShared *shared = s->shared;
     const Config        *config = shared->config;
+    const Camera        *camera = camera_of(&s->instruments);
     unsigned             raw = 0;
-    for (int b = 0; b < BAND_COUNT; b++)
-        if (s->chain[b] && config->detector.raw && config->publish.files) raw |= 1u << b;
+    for (int b = 0; b < BAND_COUNT && camera; b++)
+        if (camera->chain[b] && config->detector.raw && config->publish.files) raw |= 1u << b;
     s->raw = raw;
     Status status = clock_on_wall(shared->clock) ? latency_create(&s->latency) : STATUS_OK;
     if (status == STATUS_OK) status = add_detections(&s->consumers, s); /* before a frame can be answered */
@@ -340,7 +312,7 @@ Status session_consumers(Session *s, FrameDone *done)
     if (status == STATUS_OK)
         status = shared->live || clock_on_wall(shared->clock) ? by_the_clock(s, done, raw) : for_replay(s, done, raw);
     consumers_expect(&s->consumers, s->latency);
-    s->wants = further_wants(s, consumers_wants(&s->consumers));
+    s->wants = consumers_wants(&s->consumers) | further_wants(s);
     /* the frame being rendered, and of each queue the frame that waits and the one being published */
     return status == STATUS_OK ? frame_pool_create(&s->frames, 1 + 2 * s->queues) : status;
 }

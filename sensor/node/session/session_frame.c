@@ -36,6 +36,14 @@ static unsigned judge(const Session *s, const FrameTime *when)
     return verdict;
 }
 
+/* Range to where the aim is, or was last, m; NAN: never known. */
+static double aim_range(const Eye *eye)
+{
+    double to_aim[3];
+    v3_sub(to_aim, eye->p_aim_ecef, eye->state.p_ecef);
+    return eye->aim_known ? v3_length(to_aim) : NAN;
+}
+
 static void make_request(RenderRequest *request, const Session *s, const Eye *eye, double t_s)
 {
     const Config *config = s->shared->config;
@@ -51,18 +59,14 @@ static void make_request(RenderRequest *request, const Session *s, const Eye *ey
                                .low_plants_m = s->shared->world->forest ? config->terrain.woods_low_m : 0,
                                .budget = config->quality.budget,
                                .skips_off = s->shared->no_skip ? skips_all_off : 0};
-    for (int b = 0; b < BAND_COUNT; b++) request->hand_over_cells |= s->shared->sensors->has[b];
     if (config_adaptive(config)) {
         request->edge_samples = config->sensor.edge_samples;
         request->target_samples = config->sensor.target_samples;
     }
     consumers_request(request, s->wants);
+    instruments_request(request, &s->instruments, s->wants);
     if (s->shared->bands >> BAND_RADAR & 1) {
-        double to_aim[3], range_m = 1000;
-        if (eye->aim_known) {
-            v3_sub(to_aim, eye->p_aim_ecef, eye->state.p_ecef);
-            range_m = v3_length(to_aim);
-        }
+        const double range_m = eye->aim_known ? aim_range(eye) : 1000;
         request->profile_bins = config->radar.bins;
         request->profile_bin_m = config->radar.bin_m;
         request->profile_near_m = fmax(0, range_m - 0.5 * config->radar.bins * config->radar.bin_m);
@@ -99,39 +103,39 @@ static Status look_without(Frame *f, const Session *s, const FrameLight *light, 
     return look(f->without, s, &f->request, &without, f->arena);
 }
 
-/* Adds what the radar on the same axis measures, unless this frame gives it up. */
+static bool eye_at(EyeState *out, void *of, double t_s)
+{
+    Eye        eye;
+    const bool there = session_eye(&eye, of, NULL, t_s);
+    *out = eye.state;
+    return there;
+}
+
+static bool entity_at(SnapshotEntity *out, void *of, DisEntityId id, double t_s)
+{
+    const Session *s = of;
+    return entity_table_pose(out, s->table, entity_table_find(s->table, id), t_s);
+}
+
+/* Lets the instruments look. What one leaves out by chance goes into the recording. */
 static Status measure(Frame *f, Session *s, const Eye *eye, unsigned verdict)
 {
-    if (verdict & VERDICT_NO_RADAR) {
-        s->result.radar_left_out++;
-        return STATUS_OK;
-    }
-    const LocalFrame *frame = &s->shared->world->frame;
-    const Weather     weather = frame_weather_at(s->shared->config, s->shared->world, f->unix_s);
-    RadarScene        scene = {.world = s->shared->world,
-                               .snapshot = &f->seen.snapshot,
-                               .view = &eye->view,
-                               .hidden = eye->hidden,
-                               .reference_m = NAN,
-                               .t_s = f->time_s,
-                               .weather = &weather,
-                               .number = (uint32_t)f->number,
-                               .range_m = f->seen.picture.range_m,
-                               .entity = f->seen.picture.entity};
-    m3_tmul_v3(scene.v_enu_mps, frame->r_ecef_from_enu, eye->state.v_ecef_mps);
-    const int aim = dis_entity_id_is_none(s->plan.aim) ? -1 : snapshot_find(&f->seen.snapshot, s->plan.aim);
-    if (eye->aim_known) {
-        double to_aim[3];
-        v3_sub(to_aim, eye->p_aim_ecef, eye->state.p_ecef);
-        scene.reference_m = v3_length(to_aim);
-    }
-    if (aim >= 0)
-        m3_tmul_v3(scene.reference_v_enu_mps, frame->r_ecef_from_enu, f->seen.snapshot.entity[aim].v_ecef_mps);
-    const Status status = seeker_radar_measure(&f->radar, s->radar, &scene, s->shared->pool, f->arena);
-    if (status != STATUS_OK || f->radar) return status;
-    s->result.radar_left_out++;
-    note_verdict(s, VERDICT_NO_RADAR, &(FrameTime){.number = f->number, .t_s = f->time_s});
-    return status;
+    const InstrumentLook look = {
+        .frame = f,
+        .eye = &eye->state,
+        .wants = s->wants,
+        .aim = dis_entity_id_is_none(s->plan.aim) ? -1 : snapshot_find(&f->seen.snapshot, s->plan.aim),
+        .aim_m = aim_range(eye),
+        .noted = (verdict & VERDICT_NO_RADAR) != 0,
+        .pool = s->shared->pool,
+        .poses = {eye_at, entity_at, s}};
+    const Status status = instruments_look(&s->instruments, &look);
+    if (status != STATUS_OK) return status;
+    instruments_count(s->result.instrument, f);
+    for (int i = 0; i < f->outputs && !look.noted; i++)
+        if (f->output[i].left_out && f->output[i].kind->noted)
+            note_verdict(s, VERDICT_NO_RADAR, &(FrameTime){.number = f->number, .t_s = f->time_s});
+    return STATUS_OK;
 }
 
 /* Adds the targets and the error budget to the frame's record. */
@@ -141,11 +145,9 @@ static Status know_targets(Frame *f, const Session *s, const Eye *eye)
     const FrameView     *seen = &f->seen;
     FrameRecord         *r = &f->record;
     Target              *target = arena_alloc(f->arena, (size_t)seen->snapshot.count, sizeof *target);
-    TruthNoise           noise;
     if (!target) return STATUS_NO_MEMORY;
-    frame_expose(&noise, s->chain, &seen->picture, shared->config);
-    r->target_count =
-        truth_targets(target, &seen->picture, shared->world, &seen->snapshot, &f->request, &eye->state, &noise);
+    r->target_count = truth_targets(target, &seen->picture, shared->world, &seen->snapshot, &f->request, &eye->state,
+                                    camera_noise(f));
     if (s->wants & WANT_ERROR &&
         frame_error(&f->error,
                     &(FrameErrorOf){&seen->picture, shared->world, &seen->snapshot, &f->request,
@@ -155,10 +157,6 @@ static Status know_targets(Frame *f, const Session *s, const Eye *eye)
         r->error = &f->error;
     r->target = target_records(target, r->target_count, &seen->snapshot, shared->catalog, f->arena);
     if (!r->target) return STATUS_NO_MEMORY;
-    if (s->wants & WANT_ERROR && f->request.budget && f->radar) {
-        radar_error(&f->radar_error, f->radar, &seen->snapshot);
-        r->radar_error = &f->radar_error;
-    }
     return STATUS_OK;
 }
 
@@ -200,7 +198,8 @@ Status session_make_frame(bool *shown, int *left_out, Frame *f, Session *s, cons
     *shown = false;
     f->provenance.begun_s = wall_clock_s();
     Status status = entity_table_snapshot(&f->seen.snapshot, s->table, t_s, f->arena);
-    if (status == STATUS_OK && s->vehicles) status = world_vehicles_show(s->vehicles, &f->seen.snapshot, f->arena);
+    if (status == STATUS_OK && s->heat.vehicles)
+        status = world_vehicles_show(s->heat.vehicles, &f->seen.snapshot, f->arena);
     if (status != STATUS_OK || !session_eye(&eye, s, &f->seen.snapshot, t_s)) return status;
     f->times.posed_s = wall_clock_s();
     *left_out = f->seen.snapshot.left_out;
@@ -231,9 +230,7 @@ Status session_make_frame(bool *shown, int *left_out, Frame *f, Session *s, cons
         truth_footprint(f->footprint, shared->world, &eye.view);
         f->record.footprint = f->footprint;
     }
-    f->radar = NULL;
-    if (s->radar) status = measure(f, s, &eye, verdict);
-    f->record.radar = f->radar;
+    status = measure(f, s, &eye, verdict);
     if (status == STATUS_OK && s->wants & WANT_TARGETS) status = know_targets(f, s, &eye);
     if (status != STATUS_OK) return status;
     if (shared->world->landscape) {

@@ -12,7 +12,22 @@
 #include "sensor/publish/consumers/consumer.h"
 #include "sensor/publish/klv/consume_klv.h"
 #include "sensor/publish/memory/detections.h"
-#include "sensor/radar/seeker_radar.h"
+#include "sensor/instruments/camera.h"
+
+/* Of entities; without a band that shows temperatures there are none. */
+typedef struct SessionHeat {
+    GivenHeat     *given;    /* NULL: none */
+    KeptHeat      *kept;     /* of a run before; NULL: none */
+    WorldVehicles *vehicles; /* NULL: parts are as warm as the air */
+    Arena         *arena;    /* of the snapshot of a tick */
+    uint64_t       changes;  /* entity_table_changes at the last */
+} SessionHeat;
+
+/* The last reports of a full table, and of entities that are not shown. */
+typedef struct SessionCrowd {
+    uint64_t given_up;
+    double   given_up_s, left_out_s; /* wall clock */
+} SessionCrowd;
 
 typedef struct HostMotion HostMotion;
 
@@ -23,39 +38,32 @@ struct Session {
     char                 host_text[dis_id_text_size];
     bool                 opened; /* everything is open */
     EntityTable         *table;
-    Player              *player;          /* the caller's */
-    GivenHeat           *given;           /* of vehicles; NULL: none */
-    KeptHeat            *kept;            /* of a run before; NULL: none */
-    WorldVehicles       *vehicles;        /* NULL: parts are as warm as the air */
-    Arena               *vehicle_arena;   /* of the snapshot of a tick */
-    Status               advance_status;  /* the first failure of what outlasts a frame: frames fail with it */
-    uint64_t             vehicle_changes; /* entity_table_changes at the last */
-    HostMotion          *host;
+    Player              *player; /* the caller's */
+    SessionHeat          heat;
+    SessionCrowd         crowd;
+    Status               advance_status; /* the first failure of what outlasts a frame: frames fail with it */
+    HostMotion *host;
     int64_t              tick;          /* the next one */
     double               p_aim_ecef[3]; /* last known */
     bool                 aim_known;
-    uint64_t             given_up_reported; /* last report of a full table, and its time; wall clock */
-    double               given_up_reported_s, left_out_reported_s;
-    SeekerRadar         *radar;             /* NULL: none */
-    FrameVerdicts       *verdicts;          /* of the recording that is played; NULL: none */
-    Chain               *chain[BAND_COUNT]; /* of the bands with a sensor of etc/sensors.csv: noise figures for
-                                             * targets */
-    Consumers     consumers;
-    unsigned      raw;        /* bands of whose raw counts there are files */
-    Detections   *detections; /* received; NULL: none */
-    Geoid         geoid;      /* for metadata; n_m NULL: none */
-    unsigned      wants;      /* of all consumers */
-    FramePool    *frames;
-    Latency      *latency;           /* NULL: none is kept */
-    double        fed_s;             /* of the last frame in it: player_fed_s */
-    Pool         *publish_pool;      /* of the publishing thread; NULL: publishing is done in this one */
-    int           queues;            /* consumers in threads of their own */
-    QueueCounters written, streamed; /* by the clock: files, streams; when closed */
-    int           lines_failed;      /* live: lines of truth.jsonl; when closed */
-    int           published;         /* frames that all consumers have received: used by the publishing thread */
-    Status        listed;            /* of the result's lists: used by the publishing thread */
-    SessionResult result;
-    int           capacity; /* of the result's lists */
+    Instruments          instruments;
+    FrameVerdicts *verdicts; /* of the recording that is played; NULL: none */
+    Consumers            consumers;
+    unsigned             raw;        /* bands of whose raw counts there are files */
+    Detections          *detections; /* received; NULL: none */
+    Geoid                geoid;      /* for metadata; n_m NULL: none */
+    unsigned             wants;      /* of all consumers */
+    FramePool           *frames;
+    Latency             *latency;           /* NULL: none is kept */
+    double               fed_s;             /* of the last frame in it: player_fed_s */
+    Pool                *publish_pool;      /* of the publishing thread; NULL: publishing is done in this one */
+    int                  queues;            /* consumers in threads of their own */
+    QueueCounters        written, streamed; /* by the clock: files, streams; when closed */
+    int                  lines_failed;      /* live: lines of truth.jsonl; when closed */
+    int                  published;         /* frames that all consumers have received: used by the publishing thread */
+    Status               listed;            /* of the result's lists: used by the publishing thread */
+    SessionResult        result;
+    int                  capacity; /* of the result's lists */
 };
 
 typedef struct Eye {
@@ -95,6 +103,19 @@ bool session_aim_at(double p_ecef[3], const Session *s, double t_s);
 bool session_eye(Eye *eye, Session *s, Snapshot *snapshot, double t_s);
 /* What follows from state.p_ecef and view.r_enu_from_cam. */
 void session_finish_eye(Eye *eye, const Session *s);
+/* The first failure of what outlasts a frame; logged. */
+void session_note_failure(Session *s, const char *what, Status status);
+/* Lists a frame that all consumers have received; called in the publishing thread. */
+void session_list_frame(void *session, const Frame *frame);
+/* Reports entities that did not fit: at once, and then once a minute while there are more. */
+void session_report_crowd(Session *s, int left_out);
+
+Status session_heat_open(Session *s);
+void   session_heat_warm(Session *s, double tick_s); /* at each tick */
+void   session_heat_report(const Session *s);
+Status session_heat_keep(const Session *s); /* for a later run, if there is a file to keep it in */
+void   session_heat_close(Session *s);
+
 /* Feeds everything that counts by t_s and moves the host, on a fixed grid of exercise time. */
 void session_advance(Session *s, double t_s);
 /* Sets the entities that a full table keeps: host and aim, and those near the host, else near the aim. */

@@ -90,8 +90,7 @@ enum { WITH, CLEAN, BACKGROUND, BACKGROUND_CLEAN, path_size = frame_path_size };
 /* The detector products of one member. The first is the run's own. */
 typedef struct Member {
     char         folder[path_size];
-    Chains       chains;
-    FrameLevel   level[BAND_COUNT];
+    Camera       camera;
     FrameDisplay display[BAND_COUNT]; /* of the present frame */
 } Member;
 
@@ -116,7 +115,7 @@ static Status close_pairs(Consumer *consumer)
         log_error("pairs: cannot write pairs.jsonl: %s", strerror(errno));
         status = STATUS_IO;
     }
-    for (int m = CLEAN; m < pair_members; m++) chains_destroy(&p->member[m].chains);
+    for (int m = CLEAN; m < pair_members; m++) camera_close(&p->member[m].camera);
     free(p);
     return status;
 }
@@ -214,8 +213,7 @@ static Status write_member(Pairs *p, int m, Frame *frame)
     const DisplaysOf of = {.config = config,
                            .picture = &view->picture,
                            .noise_of = m < BACKGROUND ? NULL : &frame->seen.picture,
-                           .chain = member->chains.band,
-                           .level = member->level,
+                           .camera = &member->camera,
                            .frame = frame->number,
                            .time_s = frame->time_s,
                            .rate_px_s = {frame->rate_px_s[0], frame->rate_px_s[1]},
@@ -281,20 +279,17 @@ static Status begin(Consumer *consumer)
 Status consume_pairs(Consumer **out, const PairsOf *of)
 {
     Pairs *p = calloc(1, sizeof *p);
-    if (!p) {
-        Chains chains[3] = {of->clean, of->background, of->background_clean};
-        for (int m = 0; m < 3; m++) chains_destroy(&chains[m]);
-        return STATUS_NO_MEMORY;
-    }
+    if (!p) return STATUS_NO_MEMORY;
     p->consumer = (Consumer){
         WANT_WITHOUT | WANT_CELLS | WANT_PLANES | WANT_SHA256 | WANT_DISPLAY, put, NULL, close_pairs, "pairs", begin};
     p->of = *of;
     p->all = of->config->publish.pairs == PUBLISH_PAIRS_ALL;
     p->noiseless = *of->config;
     p->noiseless.detector.noise = 0;
-    p->member[CLEAN].chains = of->clean;
-    p->member[BACKGROUND].chains = of->background;
-    p->member[BACKGROUND_CLEAN].chains = of->background_clean;
-    *out = &p->consumer;
-    return STATUS_OK;
+    Status status = STATUS_OK;
+    for (int m = CLEAN; m < pair_members && status == STATUS_OK; m++)
+        status = camera_open(&p->member[m].camera, of->sensors, of->config, m == BACKGROUND);
+    if (status == STATUS_OK) *out = &p->consumer;
+    else close_pairs(&p->consumer);
+    return status;
 }

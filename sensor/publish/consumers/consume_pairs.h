@@ -23,12 +23,12 @@
 
 /* The inputs of the members. */
 typedef struct PairsOf {
-    const char   *out;    /* the run's folder; those below it are created */
-    const Config *config; /* publish.pairs: target or all */
-    const char   *config_sha256;
-    Pool         *pool;
-    unsigned      bands, raw;
-    Chains        clean, background, background_clean; /* taken over, also on failure; clean: without noise */
+    const char    *out;    /* the run's folder; those below it are created */
+    const Config  *config; /* publish.pairs: target or all */
+    const char    *config_sha256;
+    Pool          *pool;
+    unsigned       bands, raw;
+    const Sensors *sensors;
 } PairsOf;
 
 /* Requires each frame without its target too (Frame.without). */

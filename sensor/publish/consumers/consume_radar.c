@@ -2,7 +2,7 @@
  * Doppler, scans. */
 #include "sensor/publish/consumers/consumers.h"
 #include "sensor/publish/images/image_file.h"
-#include "sensor/frame/frame.h"
+#include "sensor/instruments/radar.h"
 #include "sensor/publish/files/frame_files.h"
 
 #include <stdlib.h>
@@ -46,7 +46,7 @@ static void put_profile(FILE *file, const void *user)
 
 static Status write_map(const char *path, const Frame *f)
 {
-    const RadarFrame *r = f->radar;
+    const RadarFrame *r = radar_of(f);
     const int         rows = r->map.rows, columns = r->map.columns;
     const size_t      cells = (size_t)rows * (size_t)columns;
     float            *value = malloc(2 * interval_channels * cells * sizeof *value);
@@ -164,7 +164,7 @@ static Status write_grey(const char *stem, const char *ending, const float *valu
 static Status write_exr(const char *stem, const char *ending, const Frame *f, const Plane *plane, int planes,
                         double first_rad, double step_rad)
 {
-    const RadarFrame  *r = f->radar;
+    const RadarFrame  *r = radar_of(f);
     const RadarSector *s = r->scan;
     char               path[frame_path_size], date[32];
     const bool         polar = step_rad > 0;
@@ -190,7 +190,7 @@ static Status write_exr(const char *stem, const char *ending, const Frame *f, co
 
 static Status write_real_beam(const char *stem, const Frame *f, bool png)
 {
-    const RadarSector *s = f->radar->scan;
+    const RadarSector *s = radar_of(f)->scan;
     const int          width = s->plan.positions, height = s->columns;
     float             *power = as_image(s->power_w, width, height);
     if (!power) return STATUS_NO_MEMORY;
@@ -205,7 +205,7 @@ static Status write_real_beam(const char *stem, const Frame *f, bool png)
 
 static Status write_sharpened(const char *stem, const Frame *f, bool png)
 {
-    const RadarSector *s = f->radar->scan;
+    const RadarSector *s = radar_of(f)->scan;
     const int          width = s->azimuths, height = s->columns;
     const size_t       cells = (size_t)width * (size_t)height;
     float *power = as_image(s->sharp_w, width, height), *resolution = malloc(2 * cells * sizeof *resolution);
@@ -233,7 +233,7 @@ static Status write_sharpened(const char *stem, const Frame *f, bool png)
 
 static Status write_pixels(const char *stem, const Frame *f, bool png)
 {
-    const RadarSector *s = f->radar->scan;
+    const RadarSector *s = radar_of(f)->scan;
     if (s->width == 0) return STATUS_OK;
     const Plane plane[] = {{"scan", PLANE_F32, s->width, s->height, s->view_w},
                            {"dbs", PLANE_F32, s->width, s->height, s->view_sharp_w}};
@@ -263,8 +263,8 @@ static void put_azimuths(FILE *file, const void *user)
     }
 }
 
-/* Writes the files of a frame with frame->radar->scan, whose names begin with stem (PATH/NNNNNN). png: pictures to look
- * at too. */
+/* Writes the files of a frame with radar_of(frame)->scan, whose names begin with stem (PATH/NNNNNN). png: pictures to
+ * look at too. */
 static Status write_scan(const char *stem, const Frame *f, bool png)
 {
     char   path[frame_path_size];
@@ -273,7 +273,7 @@ static Status write_scan(const char *stem, const Frame *f, bool png)
     if (status == STATUS_OK) status = write_pixels(stem, f, png);
     if (status != STATUS_OK) return status;
     if (snprintf(path, sizeof path, "%s_dbs.csv", stem) >= (int)sizeof path) return STATUS_BAD_VALUE;
-    return text_write_file("radar", path, put_azimuths, f->radar);
+    return text_write_file("radar", path, put_azimuths, radar_of(f));
 }
 
 /* ---- the consumer ------------------------------------------------------------------------------------ */
@@ -282,11 +282,11 @@ static Status write_files(RadarFiles *to, const Frame *f)
 {
     char   path[frame_path_size];
     Status status =
-        path_of(path, to, f, "csv") ? text_write_file("radar", path, put_profile, f->radar) : STATUS_BAD_VALUE;
+        path_of(path, to, f, "csv") ? text_write_file("radar", path, put_profile, radar_of(f)) : STATUS_BAD_VALUE;
     if (status == STATUS_OK) status = path_of(path, to, f, "exr") ? write_map(path, f) : STATUS_BAD_VALUE;
     if (status == STATUS_OK && to->of.config->publish.png)
-        status = path_of(path, to, f, "png") ? write_picture(path, f->radar) : STATUS_BAD_VALUE;
-    if (status == STATUS_OK && f->radar->scan) {
+        status = path_of(path, to, f, "png") ? write_picture(path, radar_of(f)) : STATUS_BAD_VALUE;
+    if (status == STATUS_OK && radar_of(f)->scan) {
         status = path_of(path, to, f, "") ? STATUS_OK : STATUS_BAD_VALUE;
         path[strlen(path) - 1] = 0; /* the point */
         if (status == STATUS_OK) status = write_scan(path, f, to->of.config->publish.png);
@@ -297,7 +297,7 @@ static Status write_files(RadarFiles *to, const Frame *f)
 static Status put(Consumer *consumer, Frame *frame)
 {
     RadarFiles *to = (RadarFiles *)consumer;
-    if (!frame->radar) return STATUS_OK;
+    if (!radar_of(frame)) return STATUS_OK;
     const bool due = !to->of.patient || retry_due(&to->retry);
     Status     status = due ? write_files(to, frame) : STATUS_IO;
     if (!to->of.patient) return status;
@@ -326,7 +326,6 @@ Status consume_radar(Consumer **out, const PictureFiles *made_of)
     *to = (RadarFiles){.consumer = {0, put, NULL, close_files, "radar_files", begin},
                        .of = *made_of,
                        .retry = {.what = "files of the radar"}};
-    if (made_of->config->radar.scan_deg > 0) to->consumer.wants |= WANT_PLANES; /* what each pixel shows */
     *out = &to->consumer;
     return STATUS_OK;
 }

@@ -9,19 +9,6 @@
 
 #include "sensor/frame/frame.h"
 
-typedef enum FrameWant {
-    WANT_PLANES = 1 << 0,    /* planes of truth; planes of the bands are always present */
-    WANT_TARGETS = 1 << 1,   /* record.target */
-    WANT_ERROR = 1 << 2,     /* record.error, where the error budget is on */
-    WANT_CELLS = 1 << 3,     /* picture.small: small targets as a detector needs them */
-    WANT_WITHOUT = 1 << 4,   /* a second rendering without the target, or without all entities */
-    WANT_SHA256 = 1 << 5,    /* of all planes, truth too */
-    WANT_DISPLAY = 1 << 6,   /* frame.display: behind the detector, with gain and level */
-    WANT_COUNTS = 1 << 7,    /* frame.display.counts: raw counts of the bands with a sensor */
-    WANT_FOOTPRINT = 1 << 8, /* record.footprint: where the boresight and the corners meet the ground */
-    WANT_LATENCY = 1 << 9,   /* when other consumers are done with the frame: closed after those that do not want it */
-} FrameWant;
-
 typedef struct Consumer Consumer;
 struct Consumer {
     unsigned wants;

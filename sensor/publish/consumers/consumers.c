@@ -13,23 +13,15 @@ typedef struct DisplayMaker {
     const Config *config;
     Pool         *pool;
     bool          counts;
-    Chains        chains;
-    FrameLevel    level[BAND_COUNT];
+    Camera        camera;
 } DisplayMaker;
-
-void chains_destroy(Chains *chains)
-{
-    for (int b = 0; b < BAND_COUNT; b++) chain_destroy(chains->band[b]);
-    *chains = (Chains){{NULL}};
-}
 
 static Status put_displays(Consumer *consumer, Frame *frame)
 {
     DisplayMaker    *m = (DisplayMaker *)consumer;
     const DisplaysOf of = {.config = m->config,
                            .picture = &frame->seen.picture,
-                           .chain = m->chains.band,
-                           .level = m->level,
+                           .camera = &m->camera,
                            .frame = frame->number,
                            .time_s = frame->time_s,
                            .rate_px_s = {frame->rate_px_s[0], frame->rate_px_s[1]},
@@ -42,26 +34,23 @@ static Status put_displays(Consumer *consumer, Frame *frame)
 static Status close_displays(Consumer *consumer)
 {
     DisplayMaker *m = (DisplayMaker *)consumer;
-    chains_destroy(&m->chains);
+    camera_close(&m->camera);
     free(m);
     return STATUS_OK;
 }
 
-Status consume_displays(Consumer **out, const Config *config, Pool *pool, Chains *chains, bool counts)
+Status consume_displays(Consumer **out, const Config *config, const Sensors *sensors, Pool *pool, bool counts)
 {
     DisplayMaker *m = calloc(1, sizeof *m);
-    if (!m) {
-        chains_destroy(chains);
-        return STATUS_NO_MEMORY;
-    }
+    if (!m) return STATUS_NO_MEMORY;
     *m = (DisplayMaker){.consumer = {WANT_CELLS, put_displays, NULL, close_displays, NULL},
                         .config = config,
                         .pool = pool,
-                        .counts = counts,
-                        .chains = *chains};
-    *chains = (Chains){{NULL}};
-    *out = &m->consumer;
-    return STATUS_OK;
+                        .counts = counts};
+    const Status status = camera_open(&m->camera, sensors, config, true);
+    if (status == STATUS_OK) *out = &m->consumer;
+    else free(m);
+    return status;
 }
 
 /* ---- functions called with each record, or with each frame and its hash -------------------------- */
@@ -77,7 +66,7 @@ typedef struct Call {
 static Status put_record(Consumer *consumer, Frame *frame)
 {
     const Call *c = (const Call *)consumer;
-    c->call(c->user, &frame->record);
+    c->call(c->user, frame);
     return STATUS_OK;
 }
 

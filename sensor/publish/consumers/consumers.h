@@ -9,15 +9,9 @@
 #include "sensor/publish/consumers/consumer.h"
 #include "sensor/publish/files/frame_files.h"
 
-/* Detectors of each band, owned by the consumer that is created with them, also when that fails. */
-typedef struct Chains {
-    Chain *band[BAND_COUNT];
-} Chains;
-void chains_destroy(Chains *chains);
-
-/* Makes frame.display of every frame put, in order; in a list it comes before the consumers that want it. counts: it
- * makes raw counts too. Takes the chains over, also on failure. */
-Status consume_displays(Consumer **out, const Config *config, Pool *pool, Chains *chains, bool counts);
+/* Makes frame.display of every frame put, in order, by a camera of its own; in a list it comes before the consumers
+ * that want it. counts: it makes raw counts too. */
+Status consume_displays(Consumer **out, const Config *config, const Sensors *sensors, Pool *pool, bool counts);
 
 /* OUT/frames, raw and profiles (frame_files.h). patient: a frame that cannot be written is dropped, reported, and
  * writing is retried at intervals (consumer.h). */
@@ -30,7 +24,7 @@ typedef struct PictureFiles {
 Status consume_pictures(Consumer **out, const PictureFiles *made_of);
 
 /* OUT/radar: NNNNNN.csv, the range profile; .exr, the map of range and Doppler; .png, the same to look at. Of frames
- * with a measurement of a radar (frame.radar). */
+ * with a measurement of a radar (radar_of). */
 Status consume_radar(Consumer **out, const PictureFiles *made_of);
 
 /* Writes OUT/latest/BAND.png: the newest display of each band, 8 bits, replaced as a whole. patient: as above. */
@@ -43,8 +37,8 @@ Status consume_truth_lines(Consumer **out, const char *folder, bool patient, int
 /* OUT/coco.json. */
 Status consume_coco(Consumer **out, const char *folder, const Config *config, const char *config_sha256);
 
-/* Passes each frame's record to a function: health of a live node, tests. targets: the record has its targets. */
-typedef void FrameCall(void *user, const FrameRecord *record);
+/* Passes each frame to a function: health of a live node, tests. targets: its record has its targets. */
+typedef void FrameCall(void *user, const Frame *frame);
 Status       consume_by_call(Consumer **out, FrameCall *call, void *user, bool targets);
 
 /* Takes the hash of each frame (hashes false: none) and calls done for each when it has been published. It is the last

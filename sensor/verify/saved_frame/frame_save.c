@@ -7,6 +7,7 @@
 #include "sensor/verify/saved_frame/saved_scene.h"
 #include "sensor/verify/saved_frame/ground_cutout_private.h"
 #include "sensor/frame/frame_world.h"
+#include "sensor/instruments/radar.h"
 
 #include <errno.h>
 #include <stdlib.h>
@@ -99,7 +100,7 @@ static Status gather(SavedFrame *file, SavedMade *made, char **settings, const F
     if (status == STATUS_OK) status = pose_nodes(file, &joint, f->world->catalog, arena);
     if (status == STATUS_OK) status = list_models(file, f->world->catalog, arena);
     if (status == STATUS_OK) status = saved_made(made, f->seen.plane, f->seen.plane_count);
-    if (status == STATUS_OK && f->radar) status = saved_radar_gather(file, f->radar, joint);
+    if (status == STATUS_OK && radar_of(f)) status = saved_radar_gather(file, radar_of(f), joint);
     if (status != STATUS_OK) return status;
     file->settings = *settings;
     file->plane = made->plane;
@@ -188,7 +189,7 @@ static Status pack_proved(ByteSink *bytes, double *reach_m, const SavedFrame *fi
     SeekerRadar        *radar = NULL;
     bool                same = false;
     Status              status = arena ? STATUS_OK : STATUS_NO_MEMORY;
-    if (status == STATUS_OK && file->measured) status = frame_radar_open(&radar, save->config, "avx2", false);
+    if (status == STATUS_OK && file->measured) status = radar_open(&radar, save->config, "avx2", false);
     /* where plants stand follows from all of the ground */
     const bool cut = !file->ground.invented && !(file->ground.store && *file->ground.store) && !file->planted;
     if (status == STATUS_OK && cut) status = gather_places(&kept, save->frame, gathered);

@@ -118,18 +118,6 @@ int saved_differences(const SavedFrame *file, const SavedMade *made, bool said)
 
 /* ---- the radar ----------------------------------------------------------------------------------- */
 
-/* Hashes the map; with a sweep of the sector, the map and both its images over range and azimuth. */
-static Status hash_of(char out[sha256_text_size], const RadarFrame *r)
-{
-    const RadarSector *s = r->scan;
-    if (!s) return radar_map_sha256(out, r);
-    const int   rows = interval_channels * r->map.rows;
-    const Plane plane[] = {{"range_doppler", PLANE_F64, 2 * r->map.columns, rows, r->map.cell},
-                           {"scan", PLANE_F64, s->columns, s->plan.positions, s->power_w},
-                           {"dbs", PLANE_F64, s->columns, s->azimuths, s->sharp_w}};
-    return plane_hash(out, plane, 3);
-}
-
 Status saved_radar_gather(SavedFrame *file, const RadarFrame *radar, double *joint)
 {
     SavedRadar *r = &file->radar;
@@ -142,7 +130,7 @@ Status saved_radar_gather(SavedFrame *file, const RadarFrame *radar, double *joi
                       .detections = radar->detections_in_all};
     memcpy(r->v_enu_mps, radar->v_enu_mps, sizeof r->v_enu_mps);
     memcpy(r->aim_v_enu_mps, radar->aim_v_enu_mps, sizeof r->aim_v_enu_mps);
-    return hash_of(r->map_sha256, radar);
+    return radar_sha256(r->map_sha256, radar, 0, radar_arrays_most); /* with a scan its pictures too */
 }
 
 Status saved_radar_again(const RadarFrame **out, SeekerRadar *radar, const SavedStage *stage, const Picture *picture)
@@ -169,7 +157,7 @@ Status saved_radar_again(const RadarFrame **out, SeekerRadar *radar, const Saved
 Status saved_radar_same(bool *same, const SavedFrame *file, const RadarFrame *radar)
 {
     char         hash[sha256_text_size];
-    const Status status = hash_of(hash, radar);
+    const Status status = radar_sha256(hash, radar, 0, radar_arrays_most);
     *same = status == STATUS_OK && strcmp(hash, file->radar.map_sha256) == 0 &&
             radar->detections_in_all == file->radar.detections;
     return status;

@@ -240,8 +240,7 @@ Status speed_files(Speed *s)
     const View          view = trial_view(&s->scene, 600, 100, 40 * rad_per_deg, s->width, s->height);
     const RenderRequest request = speed_request(&view, three_bands, true);
     TrialFrame          frame = speed_frame(s, &s->scene, &request, true);
-    Chain              *chain[BAND_COUNT] = {NULL};
-    FrameLevel          level[BAND_COUNT] = {{0}};
+    Camera              camera = {.chain = {NULL}};
     char                out[temp_path_size], what[what_size];
     BenchTime           time[2];
     bench_progress(s->bench, "files");
@@ -263,7 +262,7 @@ Status speed_files(Speed *s)
                              .config_sha256 = "",
                              .unix_s = s->scene.unix_s,
                              .png = true},
-                   .shown = {.config = &config, .picture = &frame.picture, .chain = chain, .level = level},
+                   .shown = {.config = &config, .picture = &frame.picture, .camera = &camera},
                    .arena = arena};
     Encode without = with;
     with.files.display = with.display;
