@@ -210,6 +210,20 @@ static void each_channel_has_its_own_limit(void **state)
     CHECK(first_failure("lwir.Y", 2, NAN, false) == CHANNEL_LWIR);
 }
 
+/* A row of the list of planes names a channel that there is, and one name is of one plane. */
+static void each_plane_has_a_channel(void **state)
+{
+    (void)state;
+    const PlaneRow *row;
+    for (int p = 0; (row = plane_recorded(p)); p++) {
+        int channels = 0;
+        for (int c = 0; c < CHANNEL_COUNT; c++) channels += strcmp(verdict_channel_name((Channel)c), row->verdict) == 0;
+        CHECK(channels == 1 && record_plane(row->record) == p);
+        CHECK((row->type != PLANE_F32) == (row->rounding.bits == 0 && !(row->rounding.step > 0)));
+    }
+    CHECK(record_plane("cover") == record_no_plane);
+}
+
 /* Two pixels of a plane get a value; the line that is said of it. */
 static const char *line_of(char out[512], const char *name, Channel channel, float was, float is)
 {
@@ -369,6 +383,7 @@ int main(void)
         cmocka_unit_test(numbers_are_rounded_to_steps),
         cmocka_unit_test(a_coded_plane_comes_back),
         cmocka_unit_test(each_channel_has_its_own_limit),
+        cmocka_unit_test(each_plane_has_a_channel),
         cmocka_unit_test(what_has_no_number_is_said_in_words),
         cmocka_unit_test(other_libraries_may_change_a_few_edges),
         cmocka_unit_test(each_field_has_its_own_tolerance),

@@ -1,5 +1,5 @@
-/* tests/sensor/test_saved_fields.c: fields of a frame file: one line writes and reads each, and a list of records takes its
- * least size from them. */
+/* tests/sensor/test_saved_fields.c: fields of a frame file: one line writes and reads each, and a list of records takes
+ * its least size from them. */
 #include "tests/check.h"
 
 #include "sensor/verify/saved_frame/chunks_private.h"
@@ -94,10 +94,14 @@ static void what_is_out_of_range_is_named(void **state)
     static const struct {
         Toy         toy;
         const char *fault;
-    } cases[] = {{{-4, 1, {0}, "", false}, "number"},          {{8, 1, {0}, "", false}, "number"},
-                 {{0, NAN, {0}, "", false}, "metres"},         {{0, 100.5, {0}, "", false}, "metres"},
-                 {{0, 1, {0, 1.5f}, "", false}, "warmth"},     {{0, 1, {NAN, 0}, "", false}, "warmth"},
-                 {{0, 1, {0}, {'a', 'b', 'c', 'd', 'e', 'f'}, false}, "name"}, {{7, 100, {1, -1}, "abcde", true}, NULL}};
+    } cases[] = {{{-4, 1, {0}, "", false}, "number"},
+                 {{8, 1, {0}, "", false}, "number"},
+                 {{0, NAN, {0}, "", false}, "metres"},
+                 {{0, 100.5, {0}, "", false}, "metres"},
+                 {{0, 1, {0, 1.5f}, "", false}, "warmth"},
+                 {{0, 1, {NAN, 0}, "", false}, "warmth"},
+                 {{0, 1, {0}, {'a', 'b', 'c', 'd', 'e', 'f'}, false}, "name"},
+                 {{7, 100, {1, -1}, "abcde", true}, NULL}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         Toy        toy = cases[i].toy;
         Fields     f;
@@ -116,9 +120,9 @@ static void what_is_out_of_range_is_named(void **state)
 static void a_count_is_no_more_than_the_octets_hold(void **state)
 {
     (void)state;
-    Arena     *arena = arena_create();
-    Fields     f;
-    ByteSource from;
+    Arena         *arena = arena_create();
+    Fields         f;
+    ByteSource     from;
     static uint8_t octets[8 + (most_toys + 1) * (toy_octets + 4)];
     for (uint32_t count = 0; count < 4; count++)
         for (int held = 0; held < 4; held++) {

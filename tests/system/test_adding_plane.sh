@@ -38,6 +38,15 @@ plain=$pitviper
 exercise demo "$tmp/demo.pcap"
 run replay "$tmp/demo.pcap" --out "$tmp/plain" "${small[@]}"
 
+# the two texts that name the planes in words are complete
+printf 'publish: {planes: none_such}\n' >"$tmp/none.yaml"
+run check "$tmp/none.yaml"
+names=$(grep -oE 'a list of .*, each once' "$tmp/stderr" | sed 's/a list of //; s/, each once//; s/ //g')
+for help in "replay --help" "check --default"; do
+    run $help
+    check "$help: names all planes" grep -qF "any of $names" <<<"$(tr -s ' \n' ' ' <"$tmp/stdout" | sed 's/material, temp/material,temp/')"
+done
+
 # ---- made for the file: as in ADDING
 plane tilt "$tmp/row.c" "$tmp/function.c"
 pitviper=$tmp/tilt/pitviper
