@@ -29,7 +29,6 @@ typedef enum FrameWant {
     WANT_LATENCY = 1 << 9,   /* when other consumers are done with the frame: closed after those that do not want it */
 } FrameWant;
 
-
 /* A named array. The last axis is contiguous in memory. */
 typedef struct FrameArray {
     const char *group; /* `lwir`, `radar`, `truth`: planes that go into one file */

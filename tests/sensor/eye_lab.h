@@ -192,7 +192,7 @@ static inline void lab_run(const Config *given, double from_s, double rate_hz, i
                                   .config_sha256 = "",
                                   .sensors = &sensors,
                                   .instruments = lab.kinds ? lab.kinds : instrument_kinds,
-.publish = lab.look ? lab.look : lab_shoot,
+                                  .publish = lab.look ? lab.look : lab_shoot,
                                   .live = lab.live,
                                   .note = lab.note,
                                   .notes = lab.notes,

@@ -23,7 +23,8 @@ typedef struct EntityHost {
 static bool tracked(const EntityHost *h, double t_s)
 {
     const Track *track = survey_track(h->s->shared->survey, h->s->plan.host);
-    return h->s->plan.munition && !h->s->shared->config->exercise.causal && track && t_s <= track->point[track->count - 1].t_s;
+    return h->s->plan.munition && !h->s->shared->config->exercise.causal && track &&
+           t_s <= track->point[track->count - 1].t_s;
 }
 
 /* Pose of the host at t_s, and of its nodes where the sensor is mounted on one. */
@@ -137,8 +138,9 @@ static void find_host(EntityHost *h)
         dis_entity_id_text(aim, plan->aim);
         log_info("aim: %s, the target of its Fire PDU", aim);
     }
-    const Shot *shot =
-        h->s->shared->config->exercise.causal || !plan->any_munition ? NULL : survey_shot(h->s->shared->survey, plan->host);
+    const Shot *shot = h->s->shared->config->exercise.causal || !plan->any_munition
+                           ? NULL
+                           : survey_shot(h->s->shared->survey, plan->host);
     if (shot && dis_entity_id_is_none(plan->aim) && !dis_entity_id_is_none(shot->hit)) plan->aim = shot->hit;
 }
 

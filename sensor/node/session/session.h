@@ -16,19 +16,19 @@
 
 /* Shared by all hosts of one run. */
 typedef struct SessionShared {
-    const Config  *config;
-    const Survey  *survey;
-    const Catalog *catalog;
-    World         *world;
-    Pool          *pool;
-    double         unix_s; /* Unix time of exercise time 0 */
-    unsigned       bands;
-    bool           no_skip;
-    GroundContact  contact; /* which entities are clamped to the world's ground */
-    bool           live;    /* a file that cannot be written does not end the session */
-    const char    *config_sha256;
-    const Sensors *sensors;
-    const InstrumentKind *const *instruments; /* instrument_kinds */
+    const Config                *config;
+    const Survey                *survey;
+    const Catalog               *catalog;
+    World                       *world;
+    Pool                        *pool;
+    double                       unix_s; /* Unix time of exercise time 0 */
+    unsigned                     bands;
+    bool                         no_skip;
+    GroundContact                contact; /* which entities are clamped to the world's ground */
+    bool                         live;    /* a file that cannot be written does not end the session */
+    const char                  *config_sha256;
+    const Sensors               *sensors;
+    const InstrumentKind *const *instruments;        /* instrument_kinds */
     void (*publish)(void *user, const Frame *frame); /* called for each frame; NULL: not */
     void             *user;
     const DisOf      *dis;                      /* Data PDUs of each frame, its clock being the player; NULL: none */
@@ -60,7 +60,7 @@ typedef struct SessionResult {
     int             host_count;                    /* the first session_hosts_kept hosts, in order */
     char            host[session_hosts_kept][dis_id_text_size];
     InstrumentCount instrument[instruments_most]; /* frames that lack one */
-    int frames_reduced; /* frames of less quality than was set */
+    int             frames_reduced;               /* frames of less quality than was set */
     AnswerCounters  answers;                      /* of a recogniser; when closed */
     SentCounters    sent;                         /* likewise: streams, ring of frames */
     int files_failed, files_left_out;   /* live: frames without files, for disk errors, for time; when closed */

@@ -42,12 +42,12 @@ struct Session {
     SessionHeat          heat;
     SessionCrowd         crowd;
     Status               advance_status; /* the first failure of what outlasts a frame: frames fail with it */
-    HostMotion *host;
+    HostMotion          *host;
     int64_t              tick;          /* the next one */
     double               p_aim_ecef[3]; /* last known */
     bool                 aim_known;
     Instruments          instruments;
-    FrameVerdicts *verdicts; /* of the recording that is played; NULL: none */
+    FrameVerdicts       *verdicts; /* of the recording that is played; NULL: none */
     Consumers            consumers;
     unsigned             raw;        /* bands of whose raw counts there are files */
     Detections          *detections; /* received; NULL: none */

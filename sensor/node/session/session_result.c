@@ -5,7 +5,6 @@
 
 const char *const session_stage_name[session_stages] = {"frame", "snapshot", "visibility", "shade", "radar", "publish"};
 
-
 static Status room_in_lists(SessionResult *r, int *capacity)
 {
     if (r->listed < *capacity) return STATUS_OK;
