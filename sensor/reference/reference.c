@@ -95,6 +95,32 @@ static void put_python(FILE *to, const char *python)
     }
 }
 
+/* ---- fields -------------------------------------------------------------------------------------- */
+
+typedef void PutField(FILE *to, const ReferenceField *field);
+
+static void put_table(FILE *to, const FieldTable *table, const char *above, PutField *put)
+{
+    char path[200];
+    for (int i = 0; i < table->count; i++) {
+        const Field *f = &table->row[i];
+        snprintf(path, sizeof path, "%s%s%s", above, *above ? "." : "", f->name);
+        put(to, &(ReferenceField){path, f->type, f->unit, f->frame, f->absent, f->about});
+        snprintf(path, sizeof path, "%s%s%s%s", above, *above ? "." : "", f->name, field_is_list(f) ? "[]" : "");
+        if (f->rows) put_table(to, f->rows, path, put);
+    }
+}
+
+static void put_fields(FILE *to, const Reference *r, PutField *put)
+{
+    for (int i = 0; i < r->field_count; i++) put(to, &r->field[i]);
+    if (r->table) put_table(to, r->table, "", put);
+}
+
+static bool has_fields(const Reference *r) { return r->field_count || r->table; }
+
+/* ---- topics -------------------------------------------------------------------------------------- */
+
 void reference_list(FILE *to)
 {
     for (int i = 0; i < topic_count; i++) fprintf(to, "%s%s", i ? " " : "", topics[i]->topic);
@@ -117,8 +143,8 @@ bool reference_write(FILE *to, const char *topic)
         fputc('\n', to);
         put_wrapped(to, r->notation, 0);
     }
-    if (r->field_count) fputc('\n', to);
-    for (int i = 0; i < r->field_count; i++) put_field(to, &r->field[i]);
+    if (has_fields(r)) fputc('\n', to);
+    put_fields(to, r, put_field);
     put_words(to, r);
     if (r->python) {
         fputs("\nin Python, in the folder given by --out\n\n", to);
@@ -154,11 +180,11 @@ static void put_topic(FILE *to, const Reference *r)
 {
     fprintf(to, "\n## %s\n\n`%s`: %s\n\n%s\n", r->topic, r->file, r->title, r->about);
     if (r->notation) fprintf(to, "\n%s\n", r->notation);
-    if (r->field_count)
+    if (has_fields(r))
         fputs("\n| field | type | unit | frame, order, index base | absent | meaning |\n"
               "|---|---|---|---|---|---|\n",
               to);
-    for (int i = 0; i < r->field_count; i++) put_row(to, &r->field[i]);
+    put_fields(to, r, put_row);
     for (int i = 0; i < r->word_count; i++) {
         const ReferenceWord *w = &r->word[i];
         fprintf(to, "\n`%s`: %s", w->word, w->about);

@@ -2,12 +2,13 @@
  * when it is absent; and Python to read it.
  *
  * One table, out of which come `pitviper help TOPIC`, the PRODUCTS section of the manual page and products.md. A new
- * field of a product is one row here: tests/system/test_reference.sh replays exercises with all products and fails for
- * a field without a row, a row without a field, a different type, and a missing field whose row has no `absent`. */
+ * field of a product is one row here, of truth.jsonl and run.json the row that also writes it:
+ * tests/system/test_reference.sh replays exercises with all products and fails for a field without a row, a row without
+ * a field, a different type, and a missing field whose row has no `absent`. */
 #ifndef SENSOR_REFERENCE_REFERENCE_H
 #define SENSOR_REFERENCE_REFERENCE_H
 
-#include "pitviper.h"
+#include "sensor/frame/field.h"
 
 /* path: of JSON, keys joined by dots, `[]` for each item of a list; else what `notation` of the topic says. A word in
  * capitals is a placeholder (ReferenceWord).
@@ -33,6 +34,7 @@ typedef struct Reference {
     const char           *notation; /* of path and type, where it is not JSON; may be NULL */
     const ReferenceField *field;
     int                   field_count;
+    const FieldTable     *table; /* the fields of truth.jsonl and run.json, from where they are written; else NULL */
     const ReferenceWord  *word;
     int                   word_count;
     const char           *python; /* run in the folder given by --out; may be NULL */
