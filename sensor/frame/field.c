@@ -20,40 +20,36 @@ json_t *field_id(DisEntityId id)
     return json_string(text);
 }
 
+json_t *field_octets(const char *octets, size_t count)
+{
+    char text[256];
+    text_escape(text, sizeof text, octets, count);
+    return json_string(text);
+}
+
+const void *field_keyed(FieldAt *at, const char *key, const void *item)
+{
+    snprintf(at->key, sizeof at->key, "%s", key);
+    return item;
+}
+
 static double turned(const Field *f, double value) { return f->as ? f->as(value) : value; }
-
-static json_t *doubles(const Field *f, const double *value)
-{
-    json_t *array = json_array();
-    for (size_t i = 0; i < f->size / sizeof *value; i++) json_array_append_new(array, json_real(turned(f, value[i])));
-    return array;
-}
-
-static json_t *counts(const Field *f, const uint64_t *value)
-{
-    json_t *array = json_array();
-    for (size_t i = 0; i < f->size / sizeof *value; i++)
-        json_array_append_new(array, json_integer((json_int_t)value[i]));
-    return array;
-}
-
-static json_t *ints(const Field *f, const int *value)
-{
-    json_t *array = json_array();
-    for (size_t i = 0; i < f->size / sizeof *value; i++) json_array_append_new(array, json_integer(value[i]));
-    return array;
-}
 
 static json_t *whole(const Field *f, json_int_t value)
 {
     return f->unless_0 && value == 0 ? NULL : json_integer(value);
 }
 
-static json_t *octets(const Field *f, const char *bytes)
+/* All plurals: of 8 octets, or int. */
+static json_t *list_of_member(const Field *f, const void *at)
 {
-    char text[256];
-    text_escape(text, sizeof text, bytes, strnlen(bytes, f->size - 1));
-    return json_string(text);
+    json_t   *array = json_array();
+    const int count = (int)(f->size / (f->kind == FIELD_OF_INTS ? sizeof(int) : sizeof(double)));
+    for (int i = 0; i < count; i++)
+        json_array_append_new(array, f->kind == FIELD_OF_DOUBLES ? json_real(turned(f, ((const double *)at)[i]))
+                                     : f->kind == FIELD_OF_INTS  ? json_integer(((const int *)at)[i])
+                                                                 : json_integer((json_int_t)((const uint64_t *)at)[i]));
+    return array;
 }
 
 static json_t *member(const Field *f, const void *of)
@@ -64,31 +60,67 @@ static json_t *member(const Field *f, const void *of)
         return NULL;
     case FIELD_OF_DOUBLE:
         return field_number(turned(f, *(const double *)at));
-    case FIELD_OF_DOUBLES:
-        return doubles(f, at);
     case FIELD_OF_INT:
         return whole(f, *(const int *)at);
-    case FIELD_OF_INTS:
-        return ints(f, at);
     case FIELD_OF_LONG:
         return whole(f, *(const long *)at);
     case FIELD_OF_LONG_LONG:
         return whole(f, *(const long long *)at);
     case FIELD_OF_COUNT:
         return whole(f, (json_int_t) * (const uint64_t *)at);
+    case FIELD_OF_DOUBLES:
+    case FIELD_OF_INTS:
     case FIELD_OF_COUNTS:
-        return counts(f, at);
+        return list_of_member(f, at);
     case FIELD_OF_BOOL:
         return json_boolean(*(const bool *)at);
     case FIELD_OF_TEXT:
         return *(const char *const *)at ? json_string(*(const char *const *)at) : NULL;
     case FIELD_OF_OCTETS:
-        return octets(f, at);
+        return field_octets(at, strnlen(at, f->size - 1));
     case FIELD_OF_ID:
         return field_id(*(const DisEntityId *)at);
     }
     return NULL;
 }
+
+/* ---- types --------------------------------------------------------------------------------------- */
+
+bool field_is_list(const Field *f) { return f->type && strncmp(f->type, "list", 4) == 0; }
+
+const char *field_type(char out[field_type_size], const Field *f)
+{
+    const int doubles = (int)(f->size / sizeof(double)), ints = (int)(f->size / sizeof(int));
+    switch (f->type ? FIELD_OF_NONE : f->kind) {
+    case FIELD_OF_NONE:
+        return f->type ? f->type : "";
+    case FIELD_OF_DOUBLE:
+        return "number";
+    case FIELD_OF_INT:
+    case FIELD_OF_LONG:
+    case FIELD_OF_LONG_LONG:
+    case FIELD_OF_COUNT:
+        return "integer";
+    case FIELD_OF_BOOL:
+        return "boolean";
+    case FIELD_OF_TEXT:
+    case FIELD_OF_OCTETS:
+    case FIELD_OF_ID:
+        return "string";
+    case FIELD_OF_DOUBLES:
+        snprintf(out, field_type_size, "list of %d numbers", doubles);
+        break;
+    case FIELD_OF_INTS:
+        snprintf(out, field_type_size, "list of %d integers", ints);
+        break;
+    case FIELD_OF_COUNTS:
+        snprintf(out, field_type_size, "list of %d integers", doubles);
+        break;
+    }
+    return out;
+}
+
+static bool is_word(const Field *f) { return *f->name >= 'A' && *f->name <= 'Z'; }
 
 /* ---- objects ------------------------------------------------------------------------------------- */
 
@@ -102,15 +134,6 @@ static json_t *value_of(const Field *f, const void *of, const void *record)
     return NULL;
 }
 
-static json_t *list_of(const Field *f, const void *of, const void *record)
-{
-    FieldItem   item = {.key = ""};
-    json_t     *array = json_array();
-    const void *one;
-    for (int i = 0; (one = f->item(&item, of, i, record)); i++) json_array_append_new(array, value_of(f, one, record));
-    return array;
-}
-
 static void set(json_t *object, const char *key, json_t *value)
 {
     if (value) json_object_set_new(object, key, value);
@@ -118,18 +141,20 @@ static void set(json_t *object, const char *key, json_t *value)
 
 static void put(json_t *object, const Field *f, const void *of, const void *record)
 {
-    FieldItem   item = {.key = ""};
+    FieldAt     at = {.of = f->in ? f->in(of) : of, .record = record};
     const void *one;
-    if (f->elsewhere || (f->at && !(of = f->at(of)))) return;
+    if (!at.of) return;
     if (f->get) {
-        set(object, f->name, f->get(of, record));
+        set(object, f->name, f->get(&at));
     } else if (f->item && field_is_list(f)) {
-        set(object, f->name, list_of(f, of, record));
-    } else if (f->item && field_is_word(f)) {
-        for (int i = 0; (one = f->item(&item, of, i, record)); i++)
-            if (*item.key) set(object, item.key, value_of(f, one, record));
+        json_t *list = json_array();
+        for (int i = 0; (one = f->item(&at, i)); i++) json_array_append_new(list, value_of(f, one, record));
+        set(object, f->name, list);
+    } else if (f->item && is_word(f)) {
+        for (int i = 0; (one = f->item(&at, i)); i++)
+            if (*at.key) set(object, at.key, value_of(f, one, record));
     } else {
-        one = f->item ? f->item(&item, of, 0, record) : of;
+        one = f->item ? f->item(&at, 0) : at.of;
         if (one) set(object, f->name, value_of(f, one, record));
     }
 }
@@ -147,18 +172,20 @@ json_t *field_object(const FieldTable *table, const void *record) { return objec
 
 static const Field *row_of(const FieldTable *table, const char *key, size_t length)
 {
-    for (int i = 0; i < table->count; i++)
-        if (strlen(table->row[i].name) == length && memcmp(table->row[i].name, key, length) == 0) return &table->row[i];
-    for (int i = 0; i < table->count; i++)
-        if (field_is_word(&table->row[i])) return &table->row[i];
-    return NULL;
+    const Field *word = NULL;
+    for (int i = 0; table && i < table->count; i++) {
+        const Field *f = &table->row[i];
+        if (strlen(f->name) == length && memcmp(f->name, key, length) == 0) return f;
+        if (is_word(f)) word = f;
+    }
+    return word;
 }
 
 const Field *field_find(FieldChannel *channel, const FieldTable *table, const char *path)
 {
     for (;;) {
         const size_t length = strcspn(path, ".[");
-        const Field *row = table ? row_of(table, path, length) : NULL;
+        const Field *row = row_of(table, path, length);
         if (!row) return NULL;
         if (row->channel != FIELD_AS_ABOVE) *channel = row->channel;
         path += length;

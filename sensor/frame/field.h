@@ -3,7 +3,7 @@
  *
  * A row is all there is to a field: field_object writes it, `pitviper help` and products.md list it
  * (sensor/reference/reference.h), and `pitviper regress` compares it. Rows stand in the order of the file. An object,
- * or a list of them, is a row with a table of its own; paths are joined as in `targets[].bands.BAND.snr`. A name in
+ * or a list of them, is a row with rows of its own; paths are joined as in `targets[].bands.BAND.snr`. A name in
  * capitals stands for any key (ReferenceWord). */
 #ifndef SENSOR_FRAME_FIELD_H
 #define SENSOR_FRAME_FIELD_H
@@ -15,9 +15,9 @@
 struct json_t;
 
 typedef enum FieldKind {
-    FIELD_OF_NONE, /* written by `get`, or elsewhere */
+    FIELD_OF_NONE, /* given by `get`, or put into the file by another function */
     FIELD_OF_DOUBLE,
-    FIELD_OF_DOUBLES, /* an array */
+    FIELD_OF_DOUBLES, /* an array, as the other plurals */
     FIELD_OF_INT,
     FIELD_OF_INTS,
     FIELD_OF_LONG,
@@ -30,7 +30,7 @@ typedef enum FieldKind {
     FIELD_OF_ID,
 } FieldKind;
 
-/* What a difference in it is reported as, and in which order (sensor/verify/regress). */
+/* What a difference in it is reported as (sensor/verify/regress). */
 typedef enum FieldChannel {
     FIELD_AS_ABOVE, /* as the object that it is in */
     FIELD_APART,    /* it is not compared with that of another run */
@@ -47,34 +47,32 @@ typedef enum FieldChannel {
     FIELD_CHANNELS
 } FieldChannel;
 
+/* Where the writing is: in the struct that the rows are of, in the one of the whole product. An item of several sets
+ * its key, where the name is in capitals (empty: it is left out), and has room for a struct that is made for it. */
+typedef struct FieldAt {
+    const void *of, *record;
+    char        key[48];
+    max_align_t room[12];
+} FieldAt;
+
+/* name .. about: as in ReferenceField. A value is a member (FIELD_MEMBER), on the way to the file turned by `as`, or
+ * made by `get`. A number that is not finite is absent. */
 typedef struct Field Field;
 typedef struct FieldTable {
     const Field *row;
     int          count;
 } FieldTable;
-
-/* One of several: its key, where the name is in capitals, empty: it is left out; room for a struct that is made for it.
- */
-typedef struct FieldItem {
-    char        key[48];
-    max_align_t room[12];
-} FieldItem;
-
-/* name .. about: as in ReferenceField. Then where the value is: at a place in the struct that the row is of, and on the
- * way to the file turned by `as`; or given by a function. In these `record` is the struct of the whole product.
- * A number that is not finite is absent. */
 struct Field {
-    const char *name, *type, *unit, *frame, *absent, *about;
-    FieldKind   kind; /* FIELD_MEMBER */
+    const char *name, *unit, *frame, *absent, *about;
+    const char *type; /* NULL: as the member's */
+    FieldKind   kind;
     size_t      offset, size;
     double (*as)(double);
-    const void *(*at)(const void *of);                         /* finds the struct; NULL: `of`. Of NULL: absent */
-    struct json_t *(*get)(const void *of, const void *record); /* makes the value, owned by the caller; NULL: absent */
-    const void *(*item)(FieldItem *item, const void *of, int i, const void *record); /* of rows; NULL at the end */
+    const void *(*in)(const void *of);       /* finds the struct of the member or the rows; NULL: none, absent */
+    struct json_t *(*get)(FieldAt *at);      /* the caller owns it; NULL: absent */
+    const void *(*item)(FieldAt *at, int i); /* the i-th struct of the rows, or place of the member; NULL: no more */
     const FieldTable *rows;
-    bool              unless_0;     /* a count of 0 is absent */
-    bool              unless_empty; /* so is an object without a field */
-    bool              elsewhere;    /* it is put into the file by another function */
+    bool              unless_0, unless_empty; /* a count of 0 is absent; an object without a field is */
     /* comparison: equal within absolute + relative |expected|. Not held: within 1e-6 of it, and older records may lack
      * it; newer: held where the older record has it */
     bool         held, newer;
@@ -83,26 +81,29 @@ struct Field {
 };
 
 #define FIELD_TABLE(list)                                                                                              \
-    {                                                                                                                  \
-        (list), (int)(sizeof(list) / sizeof *(list))                                                                   \
-    }
+    (const FieldTable) { (list), (int)(sizeof(list) / sizeof *(list)) }
 #define FIELD_KIND(value)                                                                                              \
     _Generic((value),                                                                                                  \
         double: FIELD_OF_DOUBLE,                                                                                       \
         double *: FIELD_OF_DOUBLES,                                                                                    \
         int: FIELD_OF_INT,                                                                                             \
         int *: FIELD_OF_INTS,                                                                                          \
-        long long: FIELD_OF_LONG_LONG, \
         long: FIELD_OF_LONG,                                                                                           \
-        uint64_t *: FIELD_OF_COUNTS, \
+        long long: FIELD_OF_LONG_LONG,                                                                                 \
         uint64_t: FIELD_OF_COUNT,                                                                                      \
+        uint64_t *: FIELD_OF_COUNTS,                                                                                   \
         bool: FIELD_OF_BOOL,                                                                                           \
         const char *: FIELD_OF_TEXT,                                                                                   \
         char *: FIELD_OF_OCTETS,                                                                                       \
         DisEntityId: FIELD_OF_ID)
-/* Where a value is. */
+/* What a row is of. */
 #define FIELD_MEMBER(Struct, member)                                                                                   \
     .kind = FIELD_KIND(((Struct *)0)->member), .offset = offsetof(Struct, member), .size = sizeof(((Struct *)0)->member)
+#define FIELD_IN(find, Struct, member) .in = (find), FIELD_MEMBER(Struct, member)
+#define FIELD_GET(what, made_by)       .type = (what), .get = (made_by)
+#define FIELD_OBJECT(list)             .type = "object", .rows = &FIELD_TABLE(list)
+#define FIELD_OBJECTS(list)            .type = "list of objects", .rows = &FIELD_TABLE(list)
+#define FIELD_ELSEWHERE(what)          .type = (what) /* put into the file with the object that it is in */
 /* How far two runs may differ. */
 #define FIELD_WITHIN(most, share) .held = true, .absolute = (most), .relative = (share)
 #define FIELD_EXACT               .held = true
@@ -115,9 +116,10 @@ const Field *field_find(FieldChannel *channel, const FieldTable *table, const ch
 
 /* ---- for rows ------------------------------------------------------------------------------------ */
 
-/* Whether its name stands for any key. */
-static inline bool field_is_word(const Field *f) { return *f->name >= 'A' && *f->name <= 'Z'; }
-static inline bool field_is_list(const Field *f) { return strncmp(f->type, "list", 4) == 0; }
+enum { field_type_size = 32 };
+/* Its type in words, as in ReferenceField: `list of 2 numbers`. */
+const char *field_type(char out[field_type_size], const Field *field);
+bool        field_is_list(const Field *field);
 
 /* `as`: radians in degrees; a ratio in dB; in thousandths and millionths; ms to the microsecond. */
 double field_deg(double rad);
@@ -128,5 +130,8 @@ double field_ms(double ms);
 /* Values made by `get`. NULL: the number is not finite. */
 struct json_t *field_number(double value);
 struct json_t *field_id(DisEntityId id);
+struct json_t *field_octets(const char *octets, size_t count); /* what cannot be printed is escaped */
+/* Returns an item, whose key it sets. */
+const void *field_keyed(FieldAt *at, const char *key, const void *item);
 
 #endif

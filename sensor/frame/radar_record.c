@@ -13,21 +13,19 @@ Status radar_map_sha256(char out[sha256_text_size], const RadarFrame *r)
     return plane_hash(out, &plane, 1);
 }
 
-static json_t *map_hash(const void *of, const void *record)
+static json_t *map_hash(FieldAt *at)
 {
     char hash[sha256_text_size];
-    (void)record;
-    return radar_map_sha256(hash, of) == STATUS_OK ? json_string(hash) : NULL;
+    return radar_map_sha256(hash, at->of) == STATUS_OK ? json_string(hash) : NULL;
 }
 
 /* Of its pictures, before anything is rounded for a file. */
-static json_t *scan_hash(const void *of, const void *record)
+static json_t *scan_hash(FieldAt *at)
 {
-    const RadarSector *s = of;
+    const RadarSector *s = at->of;
     char               hash[sha256_text_size];
     const Plane        plane[] = {{"scan", PLANE_F64, s->columns, s->plan.positions, s->power_w},
                                   {"dbs", PLANE_F64, s->columns, s->azimuths, s->sharp_w}};
-    (void)record;
     return plane_hash(hash, plane, 2) == STATUS_OK ? json_string(hash) : NULL;
 }
 
@@ -35,306 +33,247 @@ static json_t *scan_hash(const void *of, const void *record)
 
 /* Cosines along the sensor's right and down axes in degrees. */
 static double azimuth(double cos_right) { return field_deg(asin(clamp(cos_right, -1, 1))); }
-static double elevation(double cos_down) { return -asin(clamp(cos_down, -1, 1)) / rad_per_deg; }
+static double elevation(double cos_down) { return -field_deg(asin(clamp(cos_down, -1, 1))); }
 
 static const void *preset_of(const void *of) { return ((const RadarFrame *)of)->preset; }
 static const void *scan_of(const void *of) { return ((const RadarFrame *)of)->scan; }
 
-static json_t *preset_name(const void *of, const void *record)
+static json_t *preset_name(FieldAt *at) { return json_string(((const RadarFrame *)at->of)->preset->name); }
+static json_t *waveform_kind(FieldAt *at)
 {
-    const RadarFrame *r = of;
-    (void)record;
-    return json_string(r->preset->name);
+    return json_string(waveform_name[((const RadarFrame *)at->of)->preset->wave.kind]);
 }
 
-static json_t *waveform_kind(const void *of, const void *record)
+static json_t *cell_noise(FieldAt *at)
 {
-    const RadarFrame *r = of;
-    (void)record;
-    return json_string(waveform_name[r->preset->wave.kind]);
-}
-
-static json_t *cell_noise(const void *of, const void *record)
-{
-    const RadarFrame *r = of;
-    (void)record;
+    const RadarFrame *r = at->of;
     return field_number(field_db(r->receiver.noise_w * r->map.noise_share));
 }
 
-static const void *next_detection(FieldItem *item, const void *of, int i, const void *record)
+static const void *next_detection(FieldAt *at, int i)
 {
-    const RadarFrame *r = of;
-    (void)item, (void)record;
+    const RadarFrame *r = at->of;
     return i < r->detections ? &r->detection[i] : NULL;
 }
 
-static const void *next_truth(FieldItem *item, const void *of, int i, const void *record)
+static const void *next_truth(FieldAt *at, int i)
 {
-    const RadarFrame *r = of;
-    (void)item, (void)record;
+    const RadarFrame *r = at->of;
     return i < r->targets ? &r->target[i] : NULL;
 }
 
 /* ---- of an entity -------------------------------------------------------------------------------- */
 
-static const SnapshotEntity *entity_of(const RadarTruth *t, const FrameRecord *record)
+static const SnapshotEntity *entity_of(const FieldAt *at)
 {
-    return &record->snapshot->entity[t->entity];
+    return &((const FrameRecord *)at->record)->snapshot->entity[((const RadarTruth *)at->of)->entity];
 }
 
-static json_t *entity_id(const void *of, const void *record) { return field_id(entity_of(of, record)->id); }
-
-static json_t *signature(const void *of, const void *record)
-{
-    const RadarTruth *t = of;
-    (void)record;
-    return json_string(t->given ? "given" : "model");
-}
+static json_t *entity_id(FieldAt *at) { return field_id(entity_of(at)->id); }
+static json_t *signature(FieldAt *at) { return json_string(((const RadarTruth *)at->of)->given ? "given" : "model"); }
 
 /* NULL: by a signature of radar.given. */
-static const void *by_model(const void *of)
-{
-    const RadarTruth *t = of;
-    return t->given ? NULL : t;
-}
+static const void *by_model(const void *of) { return ((const RadarTruth *)of)->given ? NULL : of; }
 
 static const void *bounce_of(const void *of)
 {
-    const RadarTruth *t = of;
-    return t->bounce.coherence > 0 ? &t->bounce : NULL;
+    const RadarBounceTruth *bounce = &((const RadarTruth *)of)->bounce;
+    return bounce->coherence > 0 ? bounce : NULL;
 }
+
+/* Powers by polarisation, as the arrays of RadarBounceTruth have them. */
+typedef struct Powers {
+    double hh, vv, hv;
+} Powers;
+static const void *rcs_of(const void *of) { return ((const RadarBounceTruth *)of)->rcs_m2; }
+static const void *once_of(const void *of) { return ((const RadarBounceTruth *)of)->once_m2; }
+static const void *twice_of(const void *of) { return ((const RadarBounceTruth *)of)->twice_m2; }
 
 typedef struct Strongest {
     RadarScatterer centre;
     const char    *part; /* name; NULL: of a given signature */
 } Strongest;
-_Static_assert(sizeof(Strongest) <= sizeof((FieldItem){0}).room, "it has no room");
+_Static_assert(sizeof(Strongest) <= sizeof((FieldAt){0}).room, "it has no room");
 
-static const void *next_strongest(FieldItem *item, const void *of, int i, const void *record)
+static const void *next_strongest(FieldAt *at, int i)
 {
-    const RadarTruth *t = of;
+    const RadarTruth *t = at->of;
     if (i >= t->strongest_count) return NULL;
-    const FrameRecord *r = record;
-    const Model       *model = catalog_model(r->catalog, entity_of(t, r)->model);
-    const int          part = t->strongest[i].part;
-    Strongest         *out = (Strongest *)item->room;
+    const Model *model = catalog_model(((const FrameRecord *)at->record)->catalog, entity_of(at)->model);
+    const int    part = t->strongest[i].part;
+    Strongest   *out = (Strongest *)at->room;
     *out = (Strongest){t->strongest[i], part >= 0 && part < model->part_count ? model->part[part].name : NULL};
     return out;
 }
 
 /* ---- the fields ---------------------------------------------------------------------------------- */
 
+#define OF_RADAR(member)     FIELD_MEMBER(RadarFrame, member)
+#define OF_SCAN(member)      FIELD_MEMBER(RadarSector, member)
+#define OF_DETECTION(member) FIELD_MEMBER(Detection, member)
+#define OF_TRUTH(member)     FIELD_MEMBER(RadarTruth, member)
+#define OF_POWERS(member)    FIELD_MEMBER(Powers, member)
+#define OF_STRONGEST(member) FIELD_MEMBER(Strongest, member)
+
 static const Field waveform_rows[] = {
-    {"kind", "string", "", "", "", "lfm, stepped, pulse_doppler or fmcw", .get = waveform_kind},
-    {"pulse_us", "number", "us", "", "", "length of a pulse; of fmcw of a sweep", .at = preset_of,
-     FIELD_MEMBER(RadarPreset, wave.pulse_s), .as = field_micro},
-    {"sample_us", "number", "us", "", "", "from one frequency of a profile to the next; 0: at once",
-     FIELD_MEMBER(RadarFrame, timing.sample_s), .as = field_micro},
-    {"profile_ms", "number", "ms", "", "", "over which a range profile is taken",
-     FIELD_MEMBER(RadarFrame, timing.profile_s), .as = field_milli},
-    {"row_ms", "number", "ms", "", "", "from one profile to the next", FIELD_MEMBER(RadarFrame, timing.row_s),
+    {"kind", "", "", "", "lfm, stepped, pulse_doppler or fmcw", FIELD_GET("string", waveform_kind)},
+    {"pulse_us", "us", "", "", "length of a pulse; of fmcw of a sweep", FIELD_IN(preset_of, RadarPreset, wave.pulse_s),
+     .as = field_micro},
+    {"sample_us", "us", "", "", "from one frequency of a profile to the next; 0: at once", OF_RADAR(timing.sample_s),
+     .as = field_micro},
+    {"profile_ms", "ms", "", "", "over which a range profile is taken", OF_RADAR(timing.profile_s), .as = field_milli},
+    {"row_ms", "ms", "", "", "from one profile to the next", OF_RADAR(timing.row_s), .as = field_milli},
+    {"interval_ms", "ms", "", "", "coherent interval, about the frame's time", OF_RADAR(timing.interval_s),
      .as = field_milli},
-    {"interval_ms", "number", "ms", "", "", "coherent interval, about the frame's time",
-     FIELD_MEMBER(RadarFrame, timing.interval_s), .as = field_milli},
-    {"window_m", "number", "m", "", "", "width of the range window", FIELD_MEMBER(RadarFrame, timing.window_m)},
-    {"unambiguous_m", "number", "m", "", "", "range by which echoes fold over",
-     FIELD_MEMBER(RadarFrame, timing.unambiguous_m)},
-    {"blind_mps", "number", "m/s", "", "",
-     "range rates apart by it look alike; its multiples from the ground are blind speeds",
-     FIELD_MEMBER(RadarFrame, timing.blind_mps)},
-    {"coupling_s", "number", "s", "", "", "an echo appears farther by it times its range rate over the reference's",
-     FIELD_MEMBER(RadarFrame, timing.coupling_s)},
-    {"smear_s", "number", "s", "", "", "and is smeared in range over it times the same rate",
-     FIELD_MEMBER(RadarFrame, timing.smear_s)},
-    {"beat_hz_m", "number", "Hz/m", "", "", "beat frequency of lfm, deramped, and fmcw; else 0",
-     FIELD_MEMBER(RadarFrame, timing.beat_hz_m)},
+    {"window_m", "m", "", "", "width of the range window", OF_RADAR(timing.window_m)},
+    {"unambiguous_m", "m", "", "", "range by which echoes fold over", OF_RADAR(timing.unambiguous_m)},
+    {"blind_mps", "m/s", "", "", "range rates apart by it look alike; its multiples from the ground are blind speeds",
+     OF_RADAR(timing.blind_mps)},
+    {"coupling_s", "s", "", "", "an echo appears farther by it times its range rate over the reference's",
+     OF_RADAR(timing.coupling_s)},
+    {"smear_s", "s", "", "", "and is smeared in range over it times the same rate", OF_RADAR(timing.smear_s)},
+    {"beat_hz_m", "Hz/m", "", "", "beat frequency of lfm, deramped, and fmcw; else 0", OF_RADAR(timing.beat_hz_m)},
 };
-static const FieldTable waveform_fields = FIELD_TABLE(waveform_rows);
 
 static const Field scan_rows[] = {
-    {"positions", "integer", "", "", "", "of the beam, an odd number; the middle one is the frame's interval",
-     FIELD_MEMBER(RadarSector, plan.positions)},
-    {"step_deg", "number", "deg", "", "", "between positions, left to right, about the camera's rows axis",
-     FIELD_MEMBER(RadarSector, plan.step_rad), .as = field_deg},
-    {"interval_s", "number", "s", "", "", "from one position to the next", FIELD_MEMBER(RadarSector, plan.interval_s)},
-    {"beam_deg", "number", "deg", "", "", "width of the two-way beam at half power",
-     FIELD_MEMBER(RadarSector, beam_rad), .as = field_deg},
-    {"noise_dbw", "number", "dB over 1 W", "", "", "thermal noise in a cell of the real-beam image",
-     FIELD_MEMBER(RadarSector, noise_w), .as = field_db, FIELD_WITHIN(0.01, 0)},
-    {"sharpened_share", "number", "", "0 .. 1", "",
-     "of the sharpened image's cells where Doppler is finer than the beam", FIELD_MEMBER(RadarSector, sharpened_share)},
-    {"sha256", "string", "", "", "",
-     "SHA-256 of both images over range and azimuth, before they are rounded for a file", .get = scan_hash},
+    {"positions", "", "", "", "of the beam, an odd number; the middle one is the frame's interval",
+     OF_SCAN(plan.positions)},
+    {"step_deg", "deg", "", "", "between positions, left to right, about the camera's rows axis",
+     OF_SCAN(plan.step_rad), .as = field_deg},
+    {"interval_s", "s", "", "", "from one position to the next", OF_SCAN(plan.interval_s)},
+    {"beam_deg", "deg", "", "", "width of the two-way beam at half power", OF_SCAN(beam_rad), .as = field_deg},
+    {"noise_dbw", "dB over 1 W", "", "", "thermal noise in a cell of the real-beam image", OF_SCAN(noise_w),
+     .as = field_db, FIELD_WITHIN(0.01, 0)},
+    {"sharpened_share", "", "0 .. 1", "", "of the sharpened image's cells where Doppler is finer than the beam",
+     OF_SCAN(sharpened_share)},
+    {"sha256", "", "", "", "SHA-256 of both images over range and azimuth, before they are rounded for a file",
+     FIELD_GET("string", scan_hash)},
 };
-static const FieldTable scan_fields = FIELD_TABLE(scan_rows);
 
 static const Field detection_rows[] = {
-    {"range_m", "number", "m", "from the sensor", "", "between cells", FIELD_MEMBER(Detection, range_m),
-     FIELD_WITHIN(1e-3, 1e-6)},
-    {"range_rate_mps", "number", "m/s", "above 0: receding", "", "between cells; folds over at half of the map",
-     FIELD_MEMBER(Detection, range_rate_mps), FIELD_WITHIN(0.01, 1e-5)},
-    {"az_deg", "number", "deg", "camera, right positive", "", "by monopulse", FIELD_MEMBER(Detection, cos_right),
-     .as = azimuth, FIELD_WITHIN(0.005, 0)},
-    {"el_deg", "number", "deg", "camera, up positive", "", "by monopulse", FIELD_MEMBER(Detection, cos_down),
-     .as = elevation, FIELD_WITHIN(0.005, 0)},
-    {"snr_db", "number", "dB", "", "", "over the noise and clutter about it", FIELD_MEMBER(Detection, snr),
+    {"range_m", "m", "from the sensor", "", "between cells", OF_DETECTION(range_m), FIELD_WITHIN(1e-3, 1e-6)},
+    {"range_rate_mps", "m/s", "above 0: receding", "", "between cells; folds over at half of the map",
+     OF_DETECTION(range_rate_mps), FIELD_WITHIN(0.01, 1e-5)},
+    {"az_deg", "deg", "camera, right positive", "", "by monopulse", OF_DETECTION(cos_right), .as = azimuth,
+     FIELD_WITHIN(0.005, 0)},
+    {"el_deg", "deg", "camera, up positive", "", "by monopulse", OF_DETECTION(cos_down), .as = elevation,
+     FIELD_WITHIN(0.005, 0)},
+    {"snr_db", "dB", "", "", "over the noise and clutter about it", OF_DETECTION(snr), .as = field_db,
+     FIELD_WITHIN(0.1, 0)},
+    {"rcs_dbsm", "dB over 1 m2", "", "", "by the radar equation, as one point where it was found", OF_DETECTION(rcs_m2),
      .as = field_db, FIELD_WITHIN(0.1, 0)},
-    {"rcs_dbsm", "number", "dB over 1 m2", "", "", "by the radar equation, as one point where it was found",
-     FIELD_MEMBER(Detection, rcs_m2), .as = field_db, FIELD_WITHIN(0.1, 0)},
-    {"moving", "boolean", "", "", "", "clear of the ground's range rate by more than notch_mps",
-     FIELD_MEMBER(Detection, moving)},
+    {"moving", "", "", "", "clear of the ground's range rate by more than notch_mps", OF_DETECTION(moving)},
 };
-static const FieldTable detection_fields = FIELD_TABLE(detection_rows);
 
 static const Field rcs_rows[] = {
-    {"hh", "number", "dB over 1 m2", "received, transmitted", "when it is 0", "h along the camera's columns",
-     FIELD_MEMBER(RadarTruth, rcs_m2[0]), .as = field_db, FIELD_WITHIN(0.1, 0)},
-    {"vv", "number", "dB over 1 m2", "", "when it is 0", "v along its rows", FIELD_MEMBER(RadarTruth, rcs_m2[1]),
+    {"hh", "dB over 1 m2", "received, transmitted", "when it is 0", "h along the camera's columns", OF_TRUTH(rcs_m2[0]),
      .as = field_db, FIELD_WITHIN(0.1, 0)},
-    {"hv", "number", "dB over 1 m2", "", "when it is 0", "received h, transmitted v",
-     FIELD_MEMBER(RadarTruth, rcs_m2[2]), .as = field_db, FIELD_WITHIN(0.5, 0)},
-};
-static const FieldTable rcs_fields = FIELD_TABLE(rcs_rows);
-
-static const Field rcs_error_rows[] = {
-    {"hh", "number", "dB", "", "when it scatters nothing back", "of HH", FIELD_MEMBER(RadarTruth, rcs_error_db[0]),
+    {"vv", "dB over 1 m2", "", "when it is 0", "v along its rows", OF_TRUTH(rcs_m2[1]), .as = field_db,
      FIELD_WITHIN(0.1, 0)},
-    {"vv", "number", "dB", "", "when it scatters nothing back", "of VV", FIELD_MEMBER(RadarTruth, rcs_error_db[1]),
-     FIELD_WITHIN(0.1, 0)},
-    {"hv", "number", "dB", "", "when it scatters nothing back", "of HV", FIELD_MEMBER(RadarTruth, rcs_error_db[2]),
+    {"hv", "dB over 1 m2", "", "when it is 0", "received h, transmitted v", OF_TRUTH(rcs_m2[2]), .as = field_db,
      FIELD_WITHIN(0.5, 0)},
 };
-static const FieldTable rcs_error_fields = FIELD_TABLE(rcs_error_rows);
 
-static const Field bounce_rcs_rows[] = {
-    {"hh", "number", "dB over 1 m2", "", "when it is 0", "likewise", FIELD_MEMBER(RadarBounceTruth, rcs_m2[0]),
-     .as = field_db, FIELD_WITHIN(0.1, 0)},
-    {"vv", "number", "dB over 1 m2", "", "when it is 0", "likewise", FIELD_MEMBER(RadarBounceTruth, rcs_m2[1]),
-     .as = field_db, FIELD_WITHIN(0.1, 0)},
-    {"hv", "number", "dB over 1 m2", "", "when it is 0", "likewise", FIELD_MEMBER(RadarBounceTruth, rcs_m2[2]),
-     .as = field_db, FIELD_WITHIN(0.5, 0)},
+static const Field rcs_error_rows[] = {
+    {"hh", "dB", "", "when it scatters nothing back", "of HH", OF_TRUTH(rcs_error_db[0]), FIELD_WITHIN(0.1, 0)},
+    {"vv", "dB", "", "when it scatters nothing back", "of VV", OF_TRUTH(rcs_error_db[1]), FIELD_WITHIN(0.1, 0)},
+    {"hv", "dB", "", "when it scatters nothing back", "of HV", OF_TRUTH(rcs_error_db[2]), FIELD_WITHIN(0.5, 0)},
 };
-static const FieldTable bounce_rcs_fields = FIELD_TABLE(bounce_rcs_rows);
 
-static const Field once_rows[] = {
-    {"hh", "number", "dB over 1 m2", "", "when it is 0", "likewise", FIELD_MEMBER(RadarBounceTruth, once_m2[0]),
-     .as = field_db, FIELD_WITHIN(0.1, 0)},
-    {"vv", "number", "dB over 1 m2", "", "when it is 0", "likewise", FIELD_MEMBER(RadarBounceTruth, once_m2[1]),
-     .as = field_db, FIELD_WITHIN(0.1, 0)},
-    {"hv", "number", "dB over 1 m2", "", "when it is 0", "likewise", FIELD_MEMBER(RadarBounceTruth, once_m2[2]),
-     .as = field_db, FIELD_WITHIN(0.5, 0)},
+static const Field mirrored_rows[] = {
+    {"hh", "dB over 1 m2", "", "when it is 0", "likewise", OF_POWERS(hh), .as = field_db, FIELD_WITHIN(0.1, 0)},
+    {"vv", "dB over 1 m2", "", "when it is 0", "likewise", OF_POWERS(vv), .as = field_db, FIELD_WITHIN(0.1, 0)},
+    {"hv", "dB over 1 m2", "", "when it is 0", "likewise", OF_POWERS(hv), .as = field_db, FIELD_WITHIN(0.5, 0)},
 };
-static const FieldTable once_fields = FIELD_TABLE(once_rows);
-
-static const Field twice_rows[] = {
-    {"hh", "number", "dB over 1 m2", "", "when it is 0", "likewise", FIELD_MEMBER(RadarBounceTruth, twice_m2[0]),
-     .as = field_db, FIELD_WITHIN(0.1, 0)},
-    {"vv", "number", "dB over 1 m2", "", "when it is 0", "likewise", FIELD_MEMBER(RadarBounceTruth, twice_m2[1]),
-     .as = field_db, FIELD_WITHIN(0.1, 0)},
-    {"hv", "number", "dB over 1 m2", "", "when it is 0", "likewise", FIELD_MEMBER(RadarBounceTruth, twice_m2[2]),
-     .as = field_db, FIELD_WITHIN(0.5, 0)},
-};
-static const FieldTable twice_fields = FIELD_TABLE(twice_rows);
 
 static const Field bounce_rows[] = {
-    {"coherence", "number", "", "0.001 .. 1", "",
+    {"coherence", "", "0.001 .. 1", "",
      "share of the amplitude that the ground mirrors, roughness included; the larger of both polarisations",
      FIELD_MEMBER(RadarBounceTruth, coherence)},
-    {"rcs_dbsm", "object", "", "", "", "cross section by all paths together, the direct one included",
-     .rows = &bounce_rcs_fields},
-    {"once_dbsm", "object", "", "", "", "by the ground one way alone, both ways round together", .rows = &once_fields},
-    {"twice_dbsm", "object", "", "", "", "by the ground both ways alone", .rows = &twice_fields},
+    {"rcs_dbsm", "", "", "", "cross section by all paths together, the direct one included", .in = rcs_of,
+     FIELD_OBJECT(mirrored_rows)},
+    {"once_dbsm", "", "", "", "by the ground one way alone, both ways round together", .in = once_of,
+     FIELD_OBJECT(mirrored_rows)},
+    {"twice_dbsm", "", "", "", "by the ground both ways alone", .in = twice_of, FIELD_OBJECT(mirrored_rows)},
 };
-static const FieldTable bounce_fields = FIELD_TABLE(bounce_rows);
 
 static const Field strongest_rows[] = {
-    {"rcs_hh_dbsm", "number", "dB over 1 m2", "", "when it returns nothing so", "its cross section",
-     FIELD_MEMBER(Strongest, centre.hh_m2), .as = field_db},
-    {"rcs_vv_dbsm", "number", "dB over 1 m2", "", "when it returns nothing so", "its cross section",
-     FIELD_MEMBER(Strongest, centre.vv_m2), .as = field_db, FIELD_WITHIN(0.1, 0)},
-    {"body_m", "list of 3 numbers", "m", "body", "", "middle of its path's first and last mirror",
-     FIELD_MEMBER(Strongest, centre.p_body), FIELD_WITHIN(0.01, 0)},
-    {"bounces", "integer", "", "0: an edge", "", "mirrors on its path", FIELD_MEMBER(Strongest, centre.bounce),
-     FIELD_EXACT},
-    {"visible", "boolean", "", "", "", "nothing else is in its way", FIELD_MEMBER(Strongest, centre.seen)},
-    {"part", "string", "", "", "of a given signature", "part of the model with the last mirror",
-     FIELD_MEMBER(Strongest, part), FIELD_EXACT},
+    {"rcs_hh_dbsm", "dB over 1 m2", "", "when it returns nothing so", "its cross section", OF_STRONGEST(centre.hh_m2),
+     .as = field_db},
+    {"rcs_vv_dbsm", "dB over 1 m2", "", "when it returns nothing so", "its cross section", OF_STRONGEST(centre.vv_m2),
+     .as = field_db, FIELD_WITHIN(0.1, 0)},
+    {"body_m", "m", "body", "", "middle of its path's first and last mirror", OF_STRONGEST(centre.p_body),
+     FIELD_WITHIN(0.01, 0)},
+    {"bounces", "", "0: an edge", "", "mirrors on its path", OF_STRONGEST(centre.bounce), FIELD_EXACT},
+    {"visible", "", "", "", "nothing else is in its way", OF_STRONGEST(centre.seen)},
+    {"part", "", "", "of a given signature", "part of the model with the last mirror", OF_STRONGEST(part), FIELD_EXACT},
 };
-static const FieldTable strongest_fields = FIELD_TABLE(strongest_rows);
 
 static const Field truth_rows[] = {
-    {"entity", "string", "", "site:application:entity", "", "id", .get = entity_id, FIELD_EXACT},
-    {"signature", "string", "", "model, given", "", "by its model, or by a signature of radar.given", .get = signature},
-    {"range_m", "number", "m", "from the sensor", "", "to the origin of its model", FIELD_MEMBER(RadarTruth, range_m),
-     FIELD_WITHIN(1e-3, 1e-6)},
-    {"range_rate_mps", "number", "m/s", "above 0: receding", "", "of that origin",
-     FIELD_MEMBER(RadarTruth, range_rate_mps), FIELD_WITHIN(0.01, 1e-5)},
-    {"appears_m", "number", "m", "from the sensor", "",
-     "range at which the profile has that origin: folded over, and coupled to its range rate",
-     FIELD_MEMBER(RadarTruth, appears_m)},
-    {"az_deg", "number", "deg", "camera, right positive", "", "direction of that origin",
-     FIELD_MEMBER(RadarTruth, cos_right), .as = azimuth, FIELD_WITHIN(0.005, 0)},
-    {"el_deg", "number", "deg", "camera, up positive", "", "likewise", FIELD_MEMBER(RadarTruth, cos_down),
-     .as = elevation, FIELD_WITHIN(0.005, 0)},
-    {"visible_fraction", "number", "", "0 .. 1", "",
-     "share of its scattering centres' power in sight: those centres alone return", FIELD_MEMBER(RadarTruth, visible),
+    {"entity", "", "site:application:entity", "", "id", FIELD_GET("string", entity_id), FIELD_EXACT},
+    {"signature", "", "model, given", "", "by its model, or by a signature of radar.given",
+     FIELD_GET("string", signature)},
+    {"range_m", "m", "from the sensor", "", "to the origin of its model", OF_TRUTH(range_m), FIELD_WITHIN(1e-3, 1e-6)},
+    {"range_rate_mps", "m/s", "above 0: receding", "", "of that origin", OF_TRUTH(range_rate_mps),
+     FIELD_WITHIN(0.01, 1e-5)},
+    {"appears_m", "m", "from the sensor", "",
+     "range at which the profile has that origin: folded over, and coupled to its range rate", OF_TRUTH(appears_m)},
+    {"az_deg", "deg", "camera, right positive", "", "direction of that origin", OF_TRUTH(cos_right), .as = azimuth,
      FIELD_WITHIN(0.005, 0)},
-    {"rcs_dbsm", "object", "", "", "",
-     "cross section at the centre frequency, as if wholly in sight, without the ground", .rows = &rcs_fields},
-    {"rcs_error_db", "object", "", "", "of a given signature",
+    {"el_deg", "deg", "camera, up positive", "", "likewise", OF_TRUTH(cos_down), .as = elevation,
+     FIELD_WITHIN(0.005, 0)},
+    {"visible_fraction", "", "0 .. 1", "",
+     "share of its scattering centres' power in sight: those centres alone return", OF_TRUTH(visible),
+     FIELD_WITHIN(0.005, 0)},
+    {"rcs_dbsm", "", "", "", "cross section at the centre frequency, as if wholly in sight, without the ground",
+     FIELD_OBJECT(rcs_rows)},
+    {"rcs_error_db", "", "", "of a given signature",
      "estimated standard deviation of these, by the grid of ray tubes alone: not by the model or physical optics",
-     .at = by_model, .rows = &rcs_error_fields},
-    {"map_error_db", "number", "dB", "", "of a given signature",
+     .in = by_model, FIELD_OBJECT(rcs_error_rows)},
+    {"map_error_db", "dB", "", "of a given signature",
      "error of its cells of the map, over its power in them: by ray tubes and by scattering centres",
-     FIELD_MEMBER(RadarTruth, map_error), .as = field_db},
-    {"snr_db", "number", "dB", "", "when none of it is in sight",
-     "by the radar equation, of its centres in sight in one cell, over the thermal noise of a cell",
-     FIELD_MEMBER(RadarTruth, snr), .as = field_db, FIELD_WITHIN(0.1, 0)},
-    {"centres", "integer", "", "", "", "scattering centres that it was summed from", FIELD_MEMBER(RadarTruth, centres),
-     FIELD_WITHIN(0, 0.01)},
-    {"ground_bounce", "object", "", "", "where the ground near it mirrors too little, or out of sight",
-     "what the ground near it mirrors; as if wholly in sight", .at = bounce_of, .rows = &bounce_fields},
-    {"strongest", "list of objects", "", "strongest first, at most 8", "",
-     "the strongest of them, by the mean of HH and VV", .item = next_strongest, .rows = &strongest_fields},
+     OF_TRUTH(map_error), .as = field_db},
+    {"snr_db", "dB", "", "when none of it is in sight",
+     "by the radar equation, of its centres in sight in one cell, over the thermal noise of a cell", OF_TRUTH(snr),
+     .as = field_db, FIELD_WITHIN(0.1, 0)},
+    {"centres", "", "", "", "scattering centres that it was summed from", OF_TRUTH(centres), FIELD_WITHIN(0, 0.01)},
+    {"ground_bounce", "", "", "where the ground near it mirrors too little, or out of sight",
+     "what the ground near it mirrors; as if wholly in sight", .in = bounce_of, FIELD_OBJECT(bounce_rows)},
+    {"strongest", "", "strongest first, at most 8", "", "the strongest of them, by the mean of HH and VV",
+     .item = next_strongest, FIELD_OBJECTS(strongest_rows)},
 };
-static const FieldTable truth_fields = FIELD_TABLE(truth_rows);
 
 static const Field radar_rows[] = {
-    {"preset", "string", "", "", "", "row of etc/radars.csv or radar.table", .get = preset_name, FIELD_EXACT},
-    {"waveform", "object", "", "", "", "its times, and what they limit (etc/reference/radar_waveforms.md)",
-     .rows = &waveform_fields},
-    {"reference_m", "number", "m", "from the sensor", "", "middle of the range window: the aim, else the ground ahead",
-     FIELD_MEMBER(RadarFrame, reference_m), FIELD_WITHIN(1e-3, 1e-6)},
-    {"reference_rate_mps", "number", "m/s", "above 0: receding", "", "range rate in the middle of the map",
-     FIELD_MEMBER(RadarFrame, reference_rate_mps), FIELD_WITHIN(1e-3, 1e-6)},
-    {"ground_rate_mps", "number", "m/s", "above 0: receding", "", "of still ground on the axis",
-     FIELD_MEMBER(RadarFrame, ground_rate_mps)},
-    {"notch_mps", "number", "m/s", "", "",
-     "detections so near to the ground's range rate in their direction count as ground",
-     FIELD_MEMBER(RadarFrame, notch_mps)},
-    {"air_db", "number", "dB", "one way", "", "loss by gases, rain and fog over that range",
-     FIELD_MEMBER(RadarFrame, air_db), FIELD_WITHIN(1e-3, 1e-3)},
-    {"noise_dbw", "number", "dB over 1 W", "", "", "thermal noise in a cell of the map", .get = cell_noise,
+    {"preset", "", "", "", "row of etc/radars.csv or radar.table", FIELD_GET("string", preset_name), FIELD_EXACT},
+    {"waveform", "", "", "", "its times, and what they limit (etc/reference/radar_waveforms.md)",
+     FIELD_OBJECT(waveform_rows)},
+    {"reference_m", "m", "from the sensor", "", "middle of the range window: the aim, else the ground ahead",
+     OF_RADAR(reference_m), FIELD_WITHIN(1e-3, 1e-6)},
+    {"reference_rate_mps", "m/s", "above 0: receding", "", "range rate in the middle of the map",
+     OF_RADAR(reference_rate_mps), FIELD_WITHIN(1e-3, 1e-6)},
+    {"ground_rate_mps", "m/s", "above 0: receding", "", "of still ground on the axis", OF_RADAR(ground_rate_mps)},
+    {"notch_mps", "m/s", "", "", "detections so near to the ground's range rate in their direction count as ground",
+     OF_RADAR(notch_mps)},
+    {"air_db", "dB", "one way", "", "loss by gases, rain and fog over that range", OF_RADAR(air_db),
+     FIELD_WITHIN(1e-3, 1e-3)},
+    {"noise_dbw", "dB over 1 W", "", "", "thermal noise in a cell of the map", FIELD_GET("number", cell_noise),
      FIELD_WITHIN(0.01, 0)},
-    {"saturated", "integer", "", "", "", "I and Q values at the end of the converter's range",
-     FIELD_MEMBER(RadarFrame, receiver.saturated), FIELD_EXACT},
-    {"ground_cells", "integer", "", "", "", "scatterers of the ground within main lobe and window",
-     FIELD_MEMBER(RadarFrame, ground_cells), FIELD_WITHIN(0, 0.001)},
-    {"plants", "integer", "", "", "", "plants within main lobe and window, which return from their crowns",
-     FIELD_MEMBER(RadarFrame, crowns)},
-    {"chaff", "integer", "", "", "", "clouds of chaff within beam and window", FIELD_MEMBER(RadarFrame, clouds)},
-    {"rain_1_m", "number", "m2/m3", "", "", "backscatter of the rain by its volume; 0: none falls",
-     FIELD_MEMBER(RadarFrame, rain_1_m)},
-    {"ground_hidden", "integer", "", "", "", "of ground_cells, hidden by relief or entities",
-     FIELD_MEMBER(RadarFrame, ground_hidden), FIELD_WITHIN(0, 0.01)},
-    {"map_sha256", "string", "", "", "", "SHA-256 of the map of all channels, before it is rounded for a file",
-     .get = map_hash, .channel = FIELD_APART},
-    {"scan", "object", "", "", "with radar.scan_deg 0", "how the beam scanned", .at = scan_of, .rows = &scan_fields},
-    {"detections", "list of objects", "", "strongest first, at most 256", "",
-     "peaks over the threshold of constant false alarms", .item = next_detection, .rows = &detection_fields},
-    {"detections_in_all", "integer", "", "", "", "how many passed the threshold",
-     FIELD_MEMBER(RadarFrame, detections_in_all), FIELD_EXACT},
-    {"targets", "list of objects", "", "", "", "truth of each entity near beam and window, in order of ids",
-     .item = next_truth, .rows = &truth_fields},
+    {"saturated", "", "", "", "I and Q values at the end of the converter's range", OF_RADAR(receiver.saturated),
+     FIELD_EXACT},
+    {"ground_cells", "", "", "", "scatterers of the ground within main lobe and window", OF_RADAR(ground_cells),
+     FIELD_WITHIN(0, 0.001)},
+    {"plants", "", "", "", "plants within main lobe and window, which return from their crowns", OF_RADAR(crowns)},
+    {"chaff", "", "", "", "clouds of chaff within beam and window", OF_RADAR(clouds)},
+    {"rain_1_m", "m2/m3", "", "", "backscatter of the rain by its volume; 0: none falls", OF_RADAR(rain_1_m)},
+    {"ground_hidden", "", "", "", "of ground_cells, hidden by relief or entities", OF_RADAR(ground_hidden),
+     FIELD_WITHIN(0, 0.01)},
+    {"map_sha256", "", "", "", "SHA-256 of the map of all channels, before it is rounded for a file",
+     FIELD_GET("string", map_hash), .channel = FIELD_APART},
+    {"scan", "", "", "with radar.scan_deg 0", "how the beam scanned", .in = scan_of, FIELD_OBJECT(scan_rows)},
+    {"detections", "", "strongest first, at most 256", "", "peaks over the threshold of constant false alarms",
+     .item = next_detection, FIELD_OBJECTS(detection_rows)},
+    {"detections_in_all", "", "", "", "how many passed the threshold", OF_RADAR(detections_in_all), FIELD_EXACT},
+    {"targets", "", "", "", "truth of each entity near beam and window, in order of ids", .item = next_truth,
+     FIELD_OBJECTS(truth_rows)},
 };
-const FieldTable radar_fields = FIELD_TABLE(radar_rows);
+const FieldTable radar_fields = {radar_rows, sizeof radar_rows / sizeof *radar_rows};

@@ -101,12 +101,12 @@ typedef void PutField(FILE *to, const ReferenceField *field);
 
 static void put_table(FILE *to, const FieldTable *table, const char *above, PutField *put)
 {
-    char path[200];
+    char path[200], type[field_type_size];
     for (int i = 0; i < table->count; i++) {
         const Field *f = &table->row[i];
-        snprintf(path, sizeof path, "%s%s%s", above, *above ? "." : "", f->name);
-        put(to, &(ReferenceField){path, f->type, f->unit, f->frame, f->absent, f->about});
-        snprintf(path, sizeof path, "%s%s%s%s", above, *above ? "." : "", f->name, field_is_list(f) ? "[]" : "");
+        const int    n = snprintf(path, sizeof path, "%s%s%s", above, *above ? "." : "", f->name);
+        put(to, &(ReferenceField){path, field_type(type, f), f->unit, f->frame, f->absent, f->about});
+        if (field_is_list(f)) snprintf(path + n, sizeof path - (size_t)n, "[]");
         if (f->rows) put_table(to, f->rows, path, put);
     }
 }

@@ -34,97 +34,82 @@ static const void *latency_of(const void *of)
 
 /* ---- one of several ------------------------------------------------------------------------------ */
 
-static const void *next_kind(FieldItem *item, const void *of, int i, const void *record)
+static const void *next_kind(FieldAt *at, int i)
 {
-    const WoodsChoice *w = of;
-    (void)record;
-    return i < PLANT_STANDING ? run_keyed(item, plant_name((PlantKind)i), &w->woods.by_kind[i]) : NULL;
+    const WoodsChoice *w = at->of;
+    return i < PLANT_STANDING ? field_keyed(at, plant_name((PlantKind)i), &w->woods.by_kind[i]) : NULL;
 }
 
-static const void *next_stage(FieldItem *item, const void *of, int i, const void *record)
+static const void *next_stage(FieldAt *at, int i)
 {
-    const RunRecord *r = of;
-    (void)record;
-    return i < session_stages ? run_keyed(item, session_stage_name[i], &r->stage[i]) : NULL;
+    const RunRecord *r = at->of;
+    return i < session_stages ? field_keyed(at, session_stage_name[i], &r->stage[i]) : NULL;
 }
 
-static const void *next_latency(FieldItem *item, const void *of, int i, const void *record)
+static const void *next_latency(FieldAt *at, int i)
 {
-    const LatencySummary *l = of;
-    (void)record;
+    const LatencySummary *l = at->of;
     if (i == LATENCY_STAGE_COUNT) return NULL;
-    return run_keyed(item, l->stage[i].count > 0 ? latency_stage_name[i] : "", &l->stage[i]);
+    return field_keyed(at, l->stage[i].count > 0 ? latency_stage_name[i] : "", &l->stage[i]);
 }
 
-static const void *next_consumer(FieldItem *item, const void *of, int i, const void *record)
+static const void *next_consumer(FieldAt *at, int i)
 {
-    const LatencySummary *l = of;
-    (void)record;
-    return i < l->consumers ? run_keyed(item, l->name[i], &l->consumer[i]) : NULL;
+    const LatencySummary *l = at->of;
+    return i < l->consumers ? field_keyed(at, l->name[i], &l->consumer[i]) : NULL;
 }
 
 /* ---- values that are no plain member ------------------------------------------------------------- */
 
 static void append(json_t *array, const char *text) { json_array_append_new(array, json_string(text)); }
 
-static json_t *escaped(const char *text, size_t octets)
+static json_t *program_version(FieldAt *at)
 {
-    char out[256];
-    text_escape(out, sizeof out, text, octets);
-    return json_string(out);
-}
-
-static json_t *program_version(const void *of, const void *record)
-{
-    (void)of, (void)record;
+    (void)at;
     return json_string(PITVIPER_VERSION);
 }
 
-static json_t *planes(const void *of, const void *record)
+static json_t *planes(FieldAt *at)
 {
-    const Config *config = run_config_of(record);
-    (void)of;
+    const Config *config = run_config_of(at->record);
     return json_string(config->publish.files ? config->publish.planes : "none");
 }
 
 /* Lines `section.key=value`; all values are text. */
-static json_t *settings(const void *of, const void *record)
+static json_t *settings(FieldAt *at)
 {
     json_t *object = json_object();
     char    lines[config_text_size], key[96];
     size_t  length;
-    (void)of;
-    config_text(lines, sizeof lines, run_config_of(record));
+    config_text(lines, sizeof lines, run_config_of(at->record));
     for (const char *text = lines; *text; text += length + (text[length] == '\n')) {
         length = strcspn(text, "\n");
         const size_t name = strcspn(text, "=");
         if (name >= length || name >= sizeof key) continue;
         snprintf(key, sizeof key, "%.*s", (int)name, text);
-        json_object_set_new(object, key, escaped(text + name + 1, length - name - 1));
+        json_object_set_new(object, key, field_octets(text + name + 1, length - name - 1));
     }
     return object;
 }
 
-static json_t *tables(const void *of, const void *record)
+static json_t *tables(FieldAt *at)
 {
-    const TablesUsed *t = &((const Run *)run_of_record(of))->tables;
+    const TablesUsed *t = &((const Run *)run_of_record(at->of))->tables;
     json_t           *object = json_object();
-    (void)record;
     for (int i = 0; i < t->count; i++) json_object_set_new(object, t->table[i].name, json_string(t->table[i].sha256));
     return object;
 }
 
-static json_t *log_name(const void *of, const void *record)
+static json_t *log_name(FieldAt *at)
 {
-    const Run *run = run_of_record(of);
-    (void)record;
-    return escaped(run->log_name, strlen(run->log_name));
+    const Run *run = run_of_record(at->of);
+    return field_octets(run->log_name, strlen(run->log_name));
 }
 
 /* Versions of the program's libraries. Headers of the libraries are included only by the files that use them: versions
  * come from the build (CMakeLists.txt); that of the C library, whose functions affect every number, from the running
  * one. */
-static json_t *libraries(const void *of, const void *record)
+static json_t *libraries(FieldAt *at)
 {
     const char *const name[][2] = {{"embree", PITVIPER_EMBREE_VERSION},
                                    {"openimageio", PITVIPER_OPENIMAGEIO_VERSION},
@@ -134,217 +119,186 @@ static json_t *libraries(const void *of, const void *record)
                                    {"libc", gnu_get_libc_version()},
                                    {"compiler", PITVIPER_COMPILER}};
     json_t           *object = json_object();
-    (void)of, (void)record;
+    (void)at;
     for (size_t i = 0; i < sizeof name / sizeof *name; i++)
         json_object_set_new(object, name[i][0], json_string(name[i][1]));
     return object;
 }
 
-static json_t *hosts(const void *of, const void *record)
+static json_t *hosts(FieldAt *at)
 {
-    const RunEnd *end = end_of(of);
+    const RunEnd *end = end_of(at->of);
     json_t       *array = json_array();
-    (void)record;
     for (int i = 0; i < end->result->host_count; i++) append(array, end->result->host[i]);
     if (end->result->host_count == 0) append(array, end->host); /* not received so far */
     return array;
 }
 
-static json_t *choices(const void *of, const void *record)
+static json_t *choices(FieldAt *at)
 {
-    const Choices *c = ((const RunEnd *)end_of(of))->choices;
+    const Choices *c = ((const RunEnd *)end_of(at->of))->choices;
     json_t        *array = json_array();
-    (void)record;
     for (int i = 0; i < c->count; i++) append(array, c->line[i]);
     return array;
 }
 
-static json_t *frame_hashes(const void *of, const void *record)
+static json_t *frame_hashes(FieldAt *at)
 {
-    const SessionResult *result = run_result_of(of);
-    json_t              *array = run_config_of(record)->publish.truth ? json_array() : NULL;
+    const SessionResult *result = run_result_of(at->of);
+    json_t              *array = run_config_of(at->record)->publish.truth ? json_array() : NULL;
     for (int i = 0; array && i < result->listed; i++) append(array, result->hash[i]);
     return array;
 }
 
-static json_t *frame_numbers(const void *of, const void *record)
+static json_t *frame_numbers(FieldAt *at)
 {
-    const SessionResult *result = run_result_of(of);
+    const SessionResult *result = run_result_of(at->of);
     json_t              *array = json_array();
-    (void)record;
     for (int i = 0; i < result->listed; i++) json_array_append_new(array, json_integer(result->number[i]));
     return array;
 }
 
-static json_t *list_mb(const void *of, const void *record)
+static json_t *list_mb(FieldAt *at)
 {
-    const Woods *w = &((const WoodsChoice *)of)->woods;
-    (void)record;
+    const Woods *w = &((const WoodsChoice *)at->of)->woods;
     return field_number(
         1e-6 * (double)((size_t)w->count * sizeof *w->plant + ((size_t)w->nx * (size_t)w->ny + 1) * sizeof *w->first));
 }
 
-static json_t *materials(const void *of, const void *record)
+static json_t *materials(FieldAt *at)
 {
-    const Materials *m = &((const Run *)run_of_record(of))->world.materials;
+    const Materials *m = &((const Run *)run_of_record(at->of))->world.materials;
     json_t          *array = m->count > 1 ? json_array() : NULL;
-    (void)record;
     for (int i = 1; i < m->count; i++) append(array, m->material[i].name);
     return array;
 }
 
 /* ---- the fields ---------------------------------------------------------------------------------- */
 
+#define IN_RUN(member)     FIELD_IN(run_of_record, Run, member)
+#define IN_RESULT(member)  FIELD_IN(run_result_of, SessionResult, member)
+#define OF_WOODS(member)   FIELD_MEMBER(WoodsChoice, member)
+#define OF_FIGURES(member) FIELD_MEMBER(LatencyFigures, member)
+#define OF_STAGE(member)   FIELD_MEMBER(StageTimes, member)
+
 static const Field key_rows[] = {
-    {"KEY", "string", "as in `pitviper check --default`", "", "", "its value as text; `nan`: not given",
-     .elsewhere = true},
+    {"KEY", "as in `pitviper check --default`", "", "", "its value as text; `nan`: not given",
+     FIELD_ELSEWHERE("string")},
 };
-static const FieldTable key_fields = FIELD_TABLE(key_rows);
 
 static const Field file_rows[] = {
-    {"FILE", "string", "", "", "", "SHA-256; of a folder of the atmosphere: of all its tables", .elsewhere = true},
+    {"FILE", "", "", "", "SHA-256; of a folder of the atmosphere: of all its tables", FIELD_ELSEWHERE("string")},
 };
-static const FieldTable file_fields = FIELD_TABLE(file_rows);
 
 static const Field library_rows[] = {
-    {"LIBRARY", "string", "", "", "", "its version", .elsewhere = true},
+    {"LIBRARY", "", "", "", "its version", FIELD_ELSEWHERE("string")},
 };
-static const FieldTable library_fields = FIELD_TABLE(library_rows);
 
 static const Field kind_rows[] = {
-    {"KIND", "integer", "", "", "", "plants", .item = next_kind, .kind = FIELD_OF_INT},
+    {"KIND", "", "", "", "plants", .item = next_kind, .kind = FIELD_OF_INT},
 };
-static const FieldTable kind_fields = FIELD_TABLE(kind_rows);
 
 static const Field origin_rows[] = {
-    {"crowns", "integer", "", "", "", "trunks marked in the terrain store",
-     FIELD_MEMBER(WoodsChoice, woods.from_crowns)},
-    {"canopy", "integer", "", "", "", "its layers of canopy height and cover",
-     FIELD_MEMBER(WoodsChoice, woods.from_canopy)},
-    {"classes", "integer", "", "", "", "surface classes alone", FIELD_MEMBER(WoodsChoice, woods.from_classes)},
-    {"hedges", "integer", "", "", "", "edges of fields", FIELD_MEMBER(WoodsChoice, woods.from_hedges)},
+    {"crowns", "", "", "", "trunks marked in the terrain store", OF_WOODS(woods.from_crowns)},
+    {"canopy", "", "", "", "its layers of canopy height and cover", OF_WOODS(woods.from_canopy)},
+    {"classes", "", "", "", "surface classes alone", OF_WOODS(woods.from_classes)},
+    {"hedges", "", "", "", "edges of fields", OF_WOODS(woods.from_hedges)},
 };
-static const FieldTable origin_fields = FIELD_TABLE(origin_rows);
 
 static const Field woods_rows[] = {
-    {"plants", "integer", "", "", "", "trees, bushes and hedges", FIELD_MEMBER(WoodsChoice, woods.count)},
-    {"kinds", "object", "", "", "", "of these, by kind", .rows = &kind_fields},
-    {"from", "object", "", "", "", "by what says where they stand", .rows = &origin_fields},
-    {"left_out", "integer", "", "", "", "plants beyond terrain.woods_trees", FIELD_MEMBER(WoodsChoice, woods.left_out)},
-    {"reach_m", "number", "m", "from the aim, when the world was made", "", "within it none is left out",
-     FIELD_MEMBER(WoodsChoice, woods.reach_m)},
-    {"paths", "integer", "", "", "", "straight pieces of paths cleared of plants; on real ground none",
-     FIELD_MEMBER(WoodsChoice, config.path_count)},
-    {"entities", "integer", "", "", "", "entities on the ground at their first report",
-     FIELD_MEMBER(WoodsChoice, entities)},
-    {"in_trunks", "integer", "", "", "", "of these, within a trunk", FIELD_MEMBER(WoodsChoice, in_trunks)},
-    {"list_mb", "number", "MB", "", "", "memory of the list of plants, without the ray tracer's", .get = list_mb},
+    {"plants", "", "", "", "trees, bushes and hedges", OF_WOODS(woods.count)},
+    {"kinds", "", "", "", "of these, by kind", FIELD_OBJECT(kind_rows)},
+    {"from", "", "", "", "by what says where they stand", FIELD_OBJECT(origin_rows)},
+    {"left_out", "", "", "", "plants beyond terrain.woods_trees", OF_WOODS(woods.left_out)},
+    {"reach_m", "m", "from the aim, when the world was made", "", "within it none is left out",
+     OF_WOODS(woods.reach_m)},
+    {"paths", "", "", "", "straight pieces of paths cleared of plants; on real ground none",
+     OF_WOODS(config.path_count)},
+    {"entities", "", "", "", "entities on the ground at their first report", OF_WOODS(entities)},
+    {"in_trunks", "", "", "", "of these, within a trunk", OF_WOODS(in_trunks)},
+    {"list_mb", "MB", "", "", "memory of the list of plants, without the ray tracer's", FIELD_GET("number", list_mb)},
 };
-static const FieldTable woods_fields = FIELD_TABLE(woods_rows);
 
 static const Field stage_rows[] = {
-    {"median", "number", "ms", "", "", "median over the frames", FIELD_MEMBER(StageTimes, median_ms)},
-    {"p95", "number", "ms", "", "", "95th percentile", FIELD_MEMBER(StageTimes, p95_ms)},
-    {"max", "number", "ms", "", "", "maximum", FIELD_MEMBER(StageTimes, max_ms)},
+    {"median", "ms", "", "", "median over the frames", OF_STAGE(median_ms)},
+    {"p95", "ms", "", "", "95th percentile", OF_STAGE(p95_ms)},
+    {"max", "ms", "", "", "maximum", OF_STAGE(max_ms)},
 };
-static const FieldTable stage_fields = FIELD_TABLE(stage_rows);
 
 static const Field timing_rows[] = {
-    {"STAGE", "object", "", "", "", "one stage; `frame` is the total", .item = next_stage, .rows = &stage_fields},
+    {"STAGE", "", "", "", "one stage; `frame` is the total", .item = next_stage, FIELD_OBJECT(stage_rows)},
 };
-static const FieldTable timing_fields = FIELD_TABLE(timing_rows);
 
 static const Field figure_rows[] = {
-    {"median", "number", "ms", "", "", "median, at most 2.4 % above the exact one",
-     FIELD_MEMBER(LatencyFigures, median_ms), .as = field_ms},
-    {"p95", "number", "ms", "", "", "95th percentile, likewise", FIELD_MEMBER(LatencyFigures, p95_ms), .as = field_ms},
-    {"p99", "number", "ms", "", "", "99th percentile, likewise", FIELD_MEMBER(LatencyFigures, p99_ms), .as = field_ms},
-    {"max", "number", "ms", "", "", "maximum", FIELD_MEMBER(LatencyFigures, max_ms), .as = field_ms},
-    {"count", "integer", "", "", "", "number of frames", FIELD_MEMBER(LatencyFigures, count)},
-    {"histogram", "list of 32 integers", "", "below the first edge, between edges, above the last", "",
-     "number of frames by latency", FIELD_MEMBER(LatencyFigures, histogram)},
+    {"median", "ms", "", "", "median, at most 2.4 % above the exact one", OF_FIGURES(median_ms), .as = field_ms},
+    {"p95", "ms", "", "", "95th percentile, likewise", OF_FIGURES(p95_ms), .as = field_ms},
+    {"p99", "ms", "", "", "99th percentile, likewise", OF_FIGURES(p99_ms), .as = field_ms},
+    {"max", "ms", "", "", "maximum", OF_FIGURES(max_ms), .as = field_ms},
+    {"count", "", "", "", "number of frames", OF_FIGURES(count)},
+    {"histogram", "", "below the first edge, between edges, above the last", "", "number of frames by latency",
+     OF_FIGURES(histogram)},
 };
-static const FieldTable figure_fields = FIELD_TABLE(figure_rows);
 
 static const Field consumer_rows[] = {
-    {"median", "number", "ms", "", "when it was done with no frame", "as above",
-     FIELD_MEMBER(LatencyFigures, median_ms), .as = field_ms},
-    {"p95", "number", "ms", "", "when it was done with no frame", "as above", FIELD_MEMBER(LatencyFigures, p95_ms),
-     .as = field_ms},
-    {"p99", "number", "ms", "", "when it was done with no frame", "as above", FIELD_MEMBER(LatencyFigures, p99_ms),
-     .as = field_ms},
-    {"max", "number", "ms", "", "when it was done with no frame", "as above", FIELD_MEMBER(LatencyFigures, max_ms),
-     .as = field_ms},
-    {"count", "integer", "", "", "", "frames that it was done with", FIELD_MEMBER(LatencyFigures, count)},
-    {"left_out", "integer", "", "", "", "frames that it was not given, for lack of time",
-     FIELD_MEMBER(LatencyFigures, left_out)},
-    {"histogram", "list of 32 integers", "", "as above", "", "number of frames by latency",
-     FIELD_MEMBER(LatencyFigures, histogram)},
+    {"median", "ms", "", "when it was done with no frame", "as above", OF_FIGURES(median_ms), .as = field_ms},
+    {"p95", "ms", "", "when it was done with no frame", "as above", OF_FIGURES(p95_ms), .as = field_ms},
+    {"p99", "ms", "", "when it was done with no frame", "as above", OF_FIGURES(p99_ms), .as = field_ms},
+    {"max", "ms", "", "when it was done with no frame", "as above", OF_FIGURES(max_ms), .as = field_ms},
+    {"count", "", "", "", "frames that it was done with", OF_FIGURES(count)},
+    {"left_out", "", "", "", "frames that it was not given, for lack of time", OF_FIGURES(left_out)},
+    {"histogram", "", "as above", "", "number of frames by latency", OF_FIGURES(histogram)},
 };
-static const FieldTable consumer_fields = FIELD_TABLE(consumer_rows);
 
 static const Field consumers_rows[] = {
-    {"CONSUMER", "object", "", "", "", "one consumer", .item = next_consumer, .rows = &consumer_fields},
+    {"CONSUMER", "", "", "", "one consumer", .item = next_consumer, FIELD_OBJECT(consumer_rows)},
 };
-static const FieldTable consumers_fields = FIELD_TABLE(consumers_rows);
 
 static const Field latency_rows[] = {
-    {"edges_ms", "list of 31 numbers", "ms", "ascending", "",
-     "edges of the histograms' bins, five a decade, 0.01 ms .. 10 s", FIELD_MEMBER(LatencySummary, edge_ms)},
-    {"LATENCY", "object", "", "", "when no frame has it",
+    {"edges_ms", "ms", "ascending", "", "edges of the histograms' bins, five a decade, 0.01 ms .. 10 s",
+     FIELD_MEMBER(LatencySummary, edge_ms)},
+    {"LATENCY", "", "", "when no frame has it",
      "one step; arrival_to_pose: only of frames that used a datagram which no earlier frame used", .item = next_latency,
-     .rows = &figure_fields},
-    {"consumers", "object", "", "", "", "by consumer: from the end of rendering until it was done",
-     .rows = &consumers_fields},
+     FIELD_OBJECT(figure_rows)},
+    {"consumers", "", "", "", "by consumer: from the end of rendering until it was done", FIELD_OBJECT(consumers_rows)},
 };
-static const FieldTable latency_fields = FIELD_TABLE(latency_rows);
 
 static const Field run_rows[] = {
-    {"pitviper", "string", "", "", "", "version of the program", .get = program_version},
-    {"status", "string", "", "", "", "complete; stopped: by a signal; failed", .at = end_of,
-     FIELD_MEMBER(RunEnd, state)},
-    {"planes", "string", "", "", "", "planes of the truth files, or `none` (--planes, --no-files)", .get = planes},
-    {"config_sha256", "string", "", "", "", "SHA-256 of every setting that the planes depend on", .at = run_of_record,
-     FIELD_MEMBER(Run, config_sha256)},
-    {"settings", "object", "", "", "", "those settings, given or by default", .get = settings, .rows = &key_fields},
-    {"tables_sha256", "object", "", "", "", "the tables and model files that were readable", .get = tables,
-     .rows = &file_fields},
-    {"log", "string", "", "", "", "name of the log, or of the network's address", .get = log_name},
-    {"log_sha256", "string", "", "", "in a live run", "SHA-256 of the log's octets", .at = logged,
-     FIELD_MEMBER(Run, log_sha256)},
-    {"seed", "integer", "", "", "", "of all random numbers", .at = run_of_record,
-     FIELD_MEMBER(Run, options.config.seed)},
-    {"threads", "integer", "", "", "", "number of threads; no effect on the planes", .at = run_of_record,
-     FIELD_MEMBER(Run, options.threads)},
-    {"isa", "string", "", "", "", "instruction set of the ray tracer", .at = run_of_record,
-     FIELD_MEMBER(Run, options.isa)},
-    {"libraries", "object", "", "", "", "libraries used in the computation", .get = libraries, .rows = &library_fields},
-    {"memory", "string", "", "", "without publish.memory", "name of the ring of frames in /dev/shm",
+    {"pitviper", "", "", "", "version of the program", FIELD_GET("string", program_version)},
+    {"status", "", "", "", "complete; stopped: by a signal; failed", FIELD_IN(end_of, RunEnd, state)},
+    {"planes", "", "", "", "planes of the truth files, or `none` (--planes, --no-files)", FIELD_GET("string", planes)},
+    {"config_sha256", "", "", "", "SHA-256 of every setting that the planes depend on", IN_RUN(config_sha256)},
+    {"settings", "", "", "", "those settings, given or by default", FIELD_OBJECT(key_rows), .get = settings},
+    {"tables_sha256", "", "", "", "the tables and model files that were readable", FIELD_OBJECT(file_rows),
+     .get = tables},
+    {"log", "", "", "", "name of the log, or of the network's address", FIELD_GET("string", log_name)},
+    {"log_sha256", "", "", "in a live run", "SHA-256 of the log's octets", FIELD_IN(logged, Run, log_sha256)},
+    {"seed", "", "", "", "of all random numbers", IN_RUN(options.config.seed)},
+    {"threads", "", "", "", "number of threads; no effect on the planes", IN_RUN(options.threads)},
+    {"isa", "", "", "", "instruction set of the ray tracer", IN_RUN(options.isa)},
+    {"libraries", "", "", "", "libraries used in the computation", FIELD_OBJECT(library_rows), .get = libraries},
+    {"memory", "", "", "without publish.memory", "name of the ring of frames in /dev/shm",
      FIELD_MEMBER(RunRecord, memory)},
-    {"detections_port", "integer", "", "", "without publish.detections_port",
-     "UDP port that received a recogniser's detections", .at = run_of_record,
-     FIELD_MEMBER(Run, options.config.publish.detections_port), .unless_0 = true},
-    {"hosts", "list of strings", "", "site:application:entity, or `observer`", "",
-     "which entities carried the sensor, one after the other", .get = hosts},
-    {"choices", "list of strings", "", "`what: choice`", "", "automatic choices, as printed", .get = choices},
-    {"frames", "integer", "", "", "", "number of frames rendered", .at = run_result_of,
-     FIELD_MEMBER(SessionResult, frames)},
-    {"frame_sha256", "list of strings", "", "as frame_number", "with publish.truth false",
-     "SHA-256 of all planes before they are encoded", .get = frame_hashes},
-    {"frame_number", "list of integers", "", "from 0", "",
-     "numbers of the frames in frame_sha256; of a very long run only the first", .get = frame_numbers},
-    {"woods", "object", "", "", "with terrain.woods off", "plants that stand on the ground", .at = woods_of,
-     .rows = &woods_fields},
-    {"materials", "list of strings", "", "", "",
-     "names of the materials: the k-th, from 1, is value k of the material planes", .get = materials},
-    {"counters", "object", "", "", "", "over the whole run", .rows = &run_counter_fields},
-    {"timings_ms", "object", "", "", "", "wall time per stage of a frame; differs in every run",
-     .rows = &timing_fields},
-    {"latency_ms", "object", "", "", "in a replay at full speed",
-     "latency_ms of truth.jsonl over all frames; of a run and of replay --speed X", .at = latency_of,
-     .rows = &latency_fields},
+    {"detections_port", "", "", "without publish.detections_port", "UDP port that received a recogniser's detections",
+     IN_RUN(options.config.publish.detections_port), .unless_0 = true},
+    {"hosts", "", "site:application:entity, or `observer`", "",
+     "which entities carried the sensor, one after the other", FIELD_GET("list of strings", hosts)},
+    {"choices", "", "`what: choice`", "", "automatic choices, as printed", FIELD_GET("list of strings", choices)},
+    {"frames", "", "", "", "number of frames rendered", IN_RESULT(frames)},
+    {"frame_sha256", "", "as frame_number", "with publish.truth false", "SHA-256 of all planes before they are encoded",
+     FIELD_GET("list of strings", frame_hashes)},
+    {"frame_number", "", "from 0", "", "numbers of the frames in frame_sha256; of a very long run only the first",
+     FIELD_GET("list of integers", frame_numbers)},
+    {"woods", "", "", "with terrain.woods off", "plants that stand on the ground", .in = woods_of,
+     FIELD_OBJECT(woods_rows)},
+    {"materials", "", "", "", "names of the materials: the k-th, from 1, is value k of the material planes",
+     FIELD_GET("list of strings", materials)},
+    {"counters", "", "", "", "over the whole run", .type = "object", .rows = &run_counter_fields},
+    {"timings_ms", "", "", "", "wall time per stage of a frame; differs in every run", FIELD_OBJECT(timing_rows)},
+    {"latency_ms", "", "", "in a replay at full speed",
+     "latency_ms of truth.jsonl over all frames; of a run and of replay --speed X", .in = latency_of,
+     FIELD_OBJECT(latency_rows)},
 };
-const FieldTable run_record_fields = FIELD_TABLE(run_rows);
+const FieldTable run_record_fields = {run_rows, sizeof run_rows / sizeof *run_rows};
 
 /* ---- writing ------------------------------------------------------------------------------------- */
 

@@ -23,11 +23,4 @@ static inline const Config *run_config_of(const RunRecord *r) { return &r->run->
 static inline const void   *run_of_record(const void *of) { return ((const RunRecord *)of)->run; }
 static inline const void   *run_result_of(const void *of) { return ((const RunRecord *)of)->end->result; }
 
-/* One of several, by its key. */
-static inline const void *run_keyed(FieldItem *item, const char *key, const void *value)
-{
-    snprintf(item->key, sizeof item->key, "%s", key);
-    return value;
-}
-
 #endif
