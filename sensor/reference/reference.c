@@ -133,10 +133,8 @@ static const Reference *find(const char *topic)
     return NULL;
 }
 
-bool reference_write(FILE *to, const char *topic)
+void reference_write_topic(FILE *to, const Reference *r)
 {
-    const Reference *r = find(topic);
-    if (!r) return false;
     fprintf(to, "%s: %s\n\n", r->file, r->title);
     put_wrapped(to, r->about, 0);
     if (r->notation) {
@@ -150,7 +148,13 @@ bool reference_write(FILE *to, const char *topic)
         fputs("\nin Python, in the folder given by --out\n\n", to);
         put_python(to, r->python);
     }
-    return true;
+}
+
+bool reference_write(FILE *to, const char *topic)
+{
+    const Reference *r = find(topic);
+    if (r) reference_write_topic(to, r);
+    return r != NULL;
 }
 
 /* ---- Markdown -------------------------------------------------------------------------------- */

@@ -52,6 +52,8 @@ extern const Reference reference_products, reference_truth, reference_run, refer
 void reference_list(FILE *to);
 /* `pitviper help TOPIC`, for a terminal; a product's file name is accepted too. False: no such topic. */
 bool reference_write(FILE *to, const char *topic);
+/* The same of a topic that is in no list. */
+void reference_write_topic(FILE *to, const Reference *topic);
 /* Writes all topics as Markdown: products.md. */
 void reference_write_markdown(FILE *to);
 

@@ -43,17 +43,9 @@ static bool equal(const JsonValue *expected, const JsonValue *got, const Field *
 /* Older baselines state errors of the pseudo-radar, which are no longer given. */
 static bool is_of_old(const char *path) { return strncmp(path, "error.radar.", 12) == 0; }
 
-/* Which values of two records are compared, and how. */
-typedef struct WalkRule {
-    const FieldTable *table;
-    FieldChannel      channel; /* of fields that have none; FIELD_APART: they are not compared */
-    bool              exact;   /* numbers are equal; else within a tolerance, times this factor: */
-    double            factor;
-} WalkRule;
-
 /* Both lists are sorted by path: merges them. */
-static void walk(ChannelResult result[CHANNEL_COUNT], int frame, const JsonValues *expected, const JsonValues *got,
-                 const WalkRule *rule)
+void verdict_fields(ChannelResult result[CHANNEL_COUNT], int frame, const JsonValues *expected, const JsonValues *got,
+                    const FieldRule *rule)
 {
     const bool exact = rule->exact;
     int        i = 0, k = 0;
@@ -80,10 +72,10 @@ static void walk(ChannelResult result[CHANNEL_COUNT], int frame, const JsonValue
 void verdict_truth(ChannelResult result[CHANNEL_COUNT], int frame, const JsonValues *expected, const JsonValues *got,
                    double factor)
 {
-    walk(result, frame, expected, got, &(WalkRule){&record_frame_fields, FIELD_POSE, false, factor});
+    verdict_fields(result, frame, expected, got, &(FieldRule){&record_frame_fields, FIELD_POSE, false, factor});
 }
 
 void verdict_counters(ChannelResult result[CHANNEL_COUNT], const JsonValues *expected, const JsonValues *got)
 {
-    walk(result, -1, expected, got, &(WalkRule){&run_record_fields, FIELD_APART, true, 0});
+    verdict_fields(result, -1, expected, got, &(FieldRule){&run_record_fields, FIELD_APART, true, 0});
 }
