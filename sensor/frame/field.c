@@ -168,6 +168,12 @@ static json_t *object_of(const FieldTable *table, const void *of, const void *re
 
 json_t *field_object(const FieldTable *table, const void *record) { return object_of(table, record, record); }
 
+void field_carry(json_t *object, const FieldTable *table, const char *name, const void *record)
+{
+    for (int i = 0; i < table->count; i++)
+        if (strcmp(table->row[i].name, name) == 0) put(object, &table->row[i], record, record);
+}
+
 /* ---- paths --------------------------------------------------------------------------------------- */
 
 static const Field *row_of(const FieldTable *table, const char *key, size_t length)

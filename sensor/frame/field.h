@@ -110,6 +110,8 @@ struct Field {
 
 /* Makes the object of a struct, owned by the caller. */
 struct json_t *field_object(const FieldTable *table, const void *record);
+/* Puts one field of it, by its name in the table, into another product's object, where it is absent as there. */
+void field_carry(struct json_t *object, const FieldTable *table, const char *name, const void *record);
 /* The row of a path as in a file, `targets[1:2:3].bands.lwir.snr`, and its channel, that of its objects if it has none
  * of its own, else the given one. NULL: there is no such row; the channel is that of the objects which there are. */
 const Field *field_find(FieldChannel *channel, const FieldTable *table, const char *path);
