@@ -1,219 +1,308 @@
-/* sensor/frame/frame_record.c: truth.jsonl, a line per frame. */
+/* sensor/frame/frame_record.c: truth.jsonl, a line per frame: its fields, and how it is written. */
 #include "sensor/frame/records.h"
 
 #include "sensor/frame/json_object.h"
-#include "sensor/frame/radar_record.h"
-#include "sensor/frame/target_record.h"
+#include "sensor/frame/record_fields.h"
 
 #include <errno.h>
-#include <jansson.h>
 #include <stdlib.h>
 
-static json_t *pair_deg(const double value_rad[2])
-{
-    const double deg[2] = {value_rad[0] / rad_per_deg, value_rad[1] / rad_per_deg};
-    return json_number_list(deg, 2);
-}
+/* ---- the host and its sensor --------------------------------------------------------------------- */
 
-static void set_id(json_t *object, const char *key, DisEntityId id)
-{
-    char text[dis_id_text_size];
-    dis_entity_id_text(text, id);
-    json_object_set_new(object, key, json_string(text));
-}
+/* NaN: not known. */
+typedef struct Host {
+    const SnapshotEntity *entity; /* NULL: an observer */
+    double                p_ecef[3], psi_rad, theta_rad, phi_rad, speed_mps;
+    Geodetic              place;
+} Host;
+_Static_assert(sizeof(Host) <= sizeof((FieldAt){0}).room, "it has no room");
 
-static json_t *host_json(const FrameRecord *r)
+static const void *the_host(FieldAt *at, int i)
 {
-    json_t  *host = json_object();
-    Geodetic place;
-    if (r->host) {
-        set_id(host, "entity", r->host->id);
-        json_set_text(host, "marking", r->host->marking, strnlen(r->host->marking, 11));
-    } else {
-        json_object_set_new(host, "entity", json_string("observer"));
-    }
-    json_object_set_new(host, "ecef_m", json_number_list(r->p_eye_ecef, 3));
-    if (geodetic_from_ecef(&place, r->p_eye_ecef) == STATUS_OK) {
-        json_set_number(host, "lat_deg", place.lat_rad / rad_per_deg);
-        json_set_number(host, "lon_deg", place.lon_rad / rad_per_deg);
-        json_set_number(host, "height_m", place.h_m);
-    }
-    double psi_rad, theta_rad, phi_rad;
-    euler_from_r_ecef_from_body(&psi_rad, &theta_rad, &phi_rad, r->r_ecef_from_body);
-    json_set_number(host, "psi_deg", psi_rad / rad_per_deg);
-    json_set_number(host, "theta_deg", theta_rad / rad_per_deg);
-    json_set_number(host, "phi_deg", phi_rad / rad_per_deg);
-    json_set_number(host, "speed_mps", v3_length(r->host ? r->host->v_ecef_mps : r->v_eye_mps));
+    const FrameRecord *r = at->of;
+    Host              *host = (Host *)at->room;
+    (void)i;
+    *host = (Host){.entity = r->host, .speed_mps = v3_length(r->host ? r->host->v_ecef_mps : r->v_eye_mps)};
+    memcpy(host->p_ecef, r->p_eye_ecef, sizeof host->p_ecef);
+    if (geodetic_from_ecef(&host->place, r->p_eye_ecef) != STATUS_OK) host->place = (Geodetic){NAN, NAN, NAN};
+    euler_from_r_ecef_from_body(&host->psi_rad, &host->theta_rad, &host->phi_rad, r->r_ecef_from_body);
     return host;
 }
 
-static json_t *sensor_json(const FrameRecord *r)
+static const void *entity_of(const void *of) { return ((const Host *)of)->entity; }
+static const void *sun_of(const void *of) { return ((const FrameRecord *)of)->sun; }
+static const void *view_of(const void *of) { return &((const FrameRecord *)of)->request->view; }
+static const void *radar_of(const void *of) { return ((const FrameRecord *)of)->radar; }
+
+static json_t *host_id(FieldAt *at)
 {
-    json_t     *sensor = json_object(), *bands = json_array();
-    const View *view = &r->request->view;
-    for (int b = 0; b < BAND_COUNT; b++)
-        if (r->request->bands >> b & 1) json_array_append_new(bands, json_string(band_name((Band)b)));
-    json_object_set_new(sensor, "name", json_string("seeker"));
-    json_object_set_new(sensor, "bands", bands);
-    json_object_set_new(sensor, "width_px", json_integer(view->width));
-    json_object_set_new(sensor, "height_px", json_integer(view->height));
-    json_set_number(sensor, "hfov_deg", r->hfov_rad / rad_per_deg);
-    json_set_number(sensor, "vfov_deg", 2 * atan(0.5 * view->height / view->focal_px) / rad_per_deg);
-    if (view_has_lens(view)) {
-        const Lens  *l = &view->lens;
-        const double opencv[5] = {l->k[0], l->k[1], l->p[0], l->p[1], l->k[2]};
-        json_object_set_new(sensor, "distortion", json_number_list(opencv, 5));
-    }
-    if (r->request->lateral[0] != 0 || r->request->lateral[1] != 0)
-        json_object_set_new(sensor, "lateral_colour", json_number_list(r->request->lateral, 2));
-    json_object_set_new(sensor, "ecef_from_cam", json_number_list(r->r_ecef_from_cam, 9));
-    json_object_set_new(sensor, "gimbal_at_limit", json_boolean(r->gimbal_at_limit));
-    json_object_set_new(sensor, "scene_rate_px_s", json_number_list(r->scene_rate_px_s, 2));
-    return sensor;
+    const SnapshotEntity *host = entity_of(at->of);
+    return host ? field_id(host->id) : json_string("observer");
 }
 
-static json_t *bands_json(const TargetRecord *t)
+static const void *the_sensor(FieldAt *at, int i) { return i == 0 ? at->of : NULL; }
+
+static json_t *sensor_name(FieldAt *at)
 {
-    json_t *bands = json_object();
-    for (int b = 0; b < BAND_COUNT; b++) {
-        json_t           *band = json_object();
-        const TargetBand *v = &t->band[b];
-        json_set_number(band, "contrast_k", v->contrast_k);
-        json_set_number(band, "dt_rss_k", v->dt_rss_k);
-        json_set_number(band, "contrast", v->contrast);
-        json_set_number(band, "snr", v->snr);
-        json_set_number(band, "veil_transmittance", v->veil_transmittance);
-        json_set_number(band, "intensity_w_sr", v->intensity_w_sr);
-        json_set_number(band, "intensity_error_w_sr", v->intensity_error_w_sr);
-        json_set_number(band, "error_rms_k", v->error_rms_k);
-        json_set_number(band, "error_median_k", v->error_median_k);
-        if (json_object_size(band) > 0) json_object_set_new(bands, band_name((Band)b), band);
-        else json_decref(band);
-    }
+    (void)at;
+    return json_string("seeker");
+}
+
+static json_t *bands_rendered(FieldAt *at)
+{
+    json_t *bands = json_array();
+    for (int b = 0; b < BAND_COUNT; b++)
+        if (((const FrameRecord *)at->of)->request->bands >> b & 1)
+            json_array_append_new(bands, json_string(band_name((Band)b)));
     return bands;
 }
 
-static json_t *target_json(const TargetRecord *t)
+static json_t *vertical_view(FieldAt *at)
 {
-    json_t *target = json_object();
-    char    type[dis_type_text_size], occluder_id[dis_id_text_size];
-
-    set_id(target, "entity", t->id);
-    json_set_text(target, "marking", t->marking, strnlen(t->marking, 11));
-    dis_entity_type_text(type, t->type);
-    json_object_set_new(target, "type", json_string(type));
-    json_object_set_new(target, "class", json_string(target_class_name(t->class_number)));
-    json_object_set_new(target, "plane_value", json_integer(t->plane_value));
-    json_object_set_new(target, "model", json_string(t->model));
-    json_set_number(target, "range_m", t->range_m);
-    json_set_number(target, "closing_mps", t->closing_mps);
-    json_set_number(target, "aspect_deg", t->aspect_rad / rad_per_deg);
-    json_set_number(target, "depression_deg", t->depression_rad / rad_per_deg);
-    json_set_number(target, "los_az_deg", t->los_az_rad / rad_per_deg);
-    json_set_number(target, "los_el_deg", t->los_el_rad / rad_per_deg);
-    json_object_set_new(target, "los_rate_dps", pair_deg(t->los_rate_rps));
-    json_object_set_new(target, "boresight_error_deg", pair_deg(t->boresight_error_rad));
-    json_set_number(target, "pixels", t->pixels);
-    json_set_number(target, "visible_fraction", t->visible_fraction);
-    json_set_number(target, "foliage_fraction", t->foliage_fraction);
-    if (!target_box_is_empty(t->box)) {
-        json_t *box = json_array();
-        for (int k = 0; k < 4; k++) json_array_append_new(box, json_integer(t->box[k]));
-        json_object_set_new(target, "box_px", box);
-    }
-    json_object_set_new(target, "amodal_box_px", json_number_list(t->amodal_box, 4));
-    const char *occluder = target_occluder_text(occluder_id, t);
-    if (occluder) json_object_set_new(target, "occluded_by", json_string(occluder));
-    json_set_number(target, "dt_k", t->dt_k);
-    if (t->patches > 0) {
-        json_t *patches = json_array();
-        for (int k = 0; k < t->patches; k++)
-            json_array_append_new(patches, json_real(round(100 * (double)t->patch_k[k]) / 100));
-        json_object_set_new(target, "patch_temp_k", patches);
-    }
-    json_set_number(target, "age_s", t->age_s);
-    json_set_number(target, "position_error_m", t->position_error_m);
-    json_set_number(target, "error_px", t->error_px);
-    json_object_set_new(target, "bands", bands_json(t));
-    return target;
+    const View *view = view_of(at->of);
+    return field_number(field_deg(2 * atan(0.5 * view->height / view->focal_px)));
 }
 
-/* Makes an object of errors by source: each as a share, and in a unit. */
-static json_t *error_by_source(const double share[error_sources], const double same[error_sources], const char *unit)
+static json_t *distortion(FieldAt *at)
 {
-    static const char *const name[error_sources] = {"sampling", "level_of_detail", "table",
-                                                    "heat",     "dead_reckoning",  "total"};
-    json_t                  *band = json_object();
-    char                     key[32];
-    for (int s = 0; s < error_sources; s++) {
-        snprintf(key, sizeof key, "%s_%s", name[s], unit);
-        json_set_number(band, name[s], share[s]);
-        json_set_number(band, key, same[s]);
-    }
-    return band;
+    const View  *view = view_of(at->of);
+    const Lens  *l = &view->lens;
+    const double opencv[5] = {l->k[0], l->k[1], l->p[0], l->p[1], l->k[2]};
+    return view_has_lens(view) ? json_number_list(opencv, 5) : NULL;
 }
 
-static void set_if_known(json_t *error, const char *of, json_t *band)
+/* NULL: it has no lateral colour. */
+static const void *lateral_of(const void *of)
 {
-    if (json_object_size(band) > 0) json_object_set_new(error, of, band);
-    else json_decref(band);
+    const RenderRequest *request = ((const FrameRecord *)of)->request;
+    return request->lateral[0] != 0 || request->lateral[1] != 0 ? request : NULL;
 }
 
-/* rms over the image as a share of the band's mean; _k: the same in kelvin about that mean. The mean of the
- * pseudo-radar is that of a few mirrors, and no measure. Of the radar over its map; _db: of an entity's cross section.
- */
-static json_t *error_json(const FrameRecord *r)
+static const void *next_target(FieldAt *at, int i)
 {
-    const FrameError *e = r->error;
-    json_t           *error = json_object();
-    for (int b = 0; b < BAND_RADAR && e; b++) {
-        json_t *band = error_by_source(e->share[b], e->kelvin[b], "k");
-        json_set_number(band, "median_k", e->median_k[b]);
-        json_set_number(band, "beyond_1k", e->beyond_1k[b]);
-        set_if_known(error, band_name((Band)b), band);
-    }
-    if (r->radar_error)
-        set_if_known(error, "range_doppler", error_by_source(r->radar_error->share, r->radar_error->db, "db"));
-    return error;
+    const FrameRecord *r = at->of;
+    return i < r->target_count ? &r->target[i] : NULL;
 }
 
-char *record_frame_text(const FrameRecord *r)
-{
-    json_t *line = json_object(), *sun = json_object(), *sensors = json_array(), *targets = json_array();
-    json_object_set_new(line, "frame", json_integer(r->frame));
-    json_set_number(line, "time_s", r->time_s);
-    if (r->frame_sha256) json_object_set_new(line, "frame_sha256", json_string(r->frame_sha256));
-    json_object_set_new(line, "host", host_json(r));
-    json_set_number(sun, "azimuth_deg", r->sun->azimuth_rad / rad_per_deg);
-    json_set_number(sun, "elevation_deg", r->sun->elevation_rad / rad_per_deg);
-    json_object_set_new(line, "sun", sun);
-    json_array_append_new(sensors, sensor_json(r));
-    json_object_set_new(line, "sensors", sensors);
-    for (int i = 0; i < r->target_count; i++) json_array_append_new(targets, target_json(&r->target[i]));
-    json_object_set_new(line, "targets", targets);
-    if (r->error || r->radar_error) json_object_set_new(line, "error", error_json(r));
-    if (r->given_up) json_object_set_new(line, "given_up", json_string(r->given_up));
-    if (r->radar) json_object_set_new(line, "radar", radar_record_json(r->radar, r->snapshot, r->catalog));
+/* ---- its error ----------------------------------------------------------------------------------- */
 
-    char *text = json_dumps(line, JSON_COMPACT | JSON_REAL_PRECISION(15));
-    json_decref(line);
+/* rms over the image as a share of the band's mean, and in kelvin about that mean. The mean of the pseudo-radar is that
+ * of a few mirrors, and no measure. */
+typedef struct BandError {
+    double share[error_sources], kelvin[error_sources], median_k, beyond_1k;
+} BandError;
+_Static_assert(sizeof(BandError) <= sizeof((FieldAt){0}).room, "it has no room");
+
+static const void *error_of_band(FieldAt *at, int i)
+{
+    const FrameError *e = ((const FrameRecord *)at->of)->error;
+    BandError        *out = (BandError *)at->room;
+    if (!e || i == BAND_RADAR) return NULL;
+    *out = (BandError){.median_k = e->median_k[i], .beyond_1k = e->beyond_1k[i]};
+    memcpy(out->share, e->share[i], sizeof out->share);
+    memcpy(out->kelvin, e->kelvin[i], sizeof out->kelvin);
+    return field_keyed(at, band_name((Band)i), out);
+}
+
+static const void *errors_of(const void *of)
+{
+    const FrameRecord *r = of;
+    return r->error || r->radar_error ? r : NULL;
+}
+
+static const void *radar_error_of(const void *of) { return ((const FrameRecord *)of)->radar_error; }
+
+/* ---- its latency, which is put behind the line when its consumers are done ------------------------ */
+
+static json_t *latency_later(FieldAt *at)
+{
+    (void)at;
+    return NULL;
+}
+
+static const void *next_consumer(FieldAt *at, int i)
+{
+    const LatencyLine *l = at->of;
+    return i < l->consumers ? field_keyed(at, l->name[i], &l->done_ms[i]) : NULL;
+}
+
+/* ---- the fields ---------------------------------------------------------------------------------- */
+
+#define OF_FRAME(member) FIELD_MEMBER(FrameRecord, member)
+#define OF_HOST(member)  FIELD_MEMBER(Host, member)
+#define OF_ERROR(member) FIELD_MEMBER(BandError, member)
+#define OF_RADAR(member) FIELD_MEMBER(RadarError, member)
+
+static const Field host_rows[] = {
+    {"entity", "", "site:application:entity", "", "id, or `observer`: a sensor position that is no entity",
+     FIELD_GET("string", host_id), FIELD_EXACT},
+    {"marking", "", "", "when the host is an observer", "its marking, at most 11 characters",
+     FIELD_IN(entity_of, SnapshotEntity, marking), FIELD_EXACT},
+    {"ecef_m", "m", "ecef", "", "position of the sensor", OF_HOST(p_ecef), FIELD_WITHIN(1e-3, 0)},
+    {"lat_deg", "deg", "WGS 84, geodetic", "", "latitude of the sensor, north positive", OF_HOST(place.lat_rad),
+     .as = field_deg, FIELD_WITHIN(1e-8, 0)},
+    {"lon_deg", "deg", "WGS 84", "", "longitude of the sensor, east positive", OF_HOST(place.lon_rad), .as = field_deg,
+     FIELD_WITHIN(1e-8, 0)},
+    {"height_m", "m", "above the WGS 84 ellipsoid", "", "height of the sensor", OF_HOST(place.h_m),
+     FIELD_WITHIN(1e-3, 0)},
+    {"psi_deg", "deg", "ecef to body, as in an Entity State", "",
+     "first Euler angle of the host's body, about z; of an observer: of the camera", OF_HOST(psi_rad), .as = field_deg,
+     FIELD_WITHIN(1e-4, 0)},
+    {"theta_deg", "deg", "ecef to body", "", "second Euler angle, about y", OF_HOST(theta_rad), .as = field_deg,
+     FIELD_WITHIN(1e-4, 0)},
+    {"phi_deg", "deg", "ecef to body", "", "third Euler angle, about x", OF_HOST(phi_rad), .as = field_deg,
+     FIELD_WITHIN(1e-4, 0)},
+    {"speed_mps", "m/s", "relative to the rotating Earth", "", "speed of the host", OF_HOST(speed_mps),
+     FIELD_WITHIN(1e-3, 0)},
+};
+
+static const Field sun_rows[] = {
+    {"azimuth_deg", "deg", "ENU at the sensor, from north over east", "", "0 .. 360", FIELD_MEMBER(Sun, azimuth_rad),
+     .as = field_deg, FIELD_WITHIN(0.005, 0)},
+    {"elevation_deg", "deg", "ENU at the sensor", "", "above the horizontal, with refraction",
+     FIELD_MEMBER(Sun, elevation_rad), .as = field_deg, FIELD_WITHIN(0.005, 0)},
+};
+
+static const Field sensor_rows[] = {
+    {"name", "", "", "", "`seeker`", FIELD_GET("string", sensor_name), FIELD_EXACT},
+    {"bands", "", "", "", "which of optical, mwir, lwir, radar were rendered",
+     FIELD_GET("list of strings", bands_rendered), FIELD_EXACT},
+    {"width_px", "px", "", "", "columns", FIELD_IN(view_of, View, width), FIELD_EXACT},
+    {"height_px", "px", "", "", "rows", FIELD_IN(view_of, View, height), FIELD_EXACT},
+    {"hfov_deg", "deg", "", "", "horizontal field of view", OF_FRAME(hfov_rad), .as = field_deg, FIELD_WITHIN(1e-6, 0)},
+    {"vfov_deg", "deg", "", "", "vertical field of view", FIELD_GET("number", vertical_view), FIELD_WITHIN(1e-6, 0)},
+    {"distortion", "", "k1, k2, p1, p2, k3 as OpenCV has them", "without a lens (sensor.lens_*)",
+     "Brown-Conrady coefficients of tangents of angles; boxes and masks follow",
+     FIELD_GET("list of 5 numbers", distortion)},
+    {"lateral_colour", "", "red, blue", "without (sensor.lateral_*)", "magnification relative to green, minus 1",
+     FIELD_IN(lateral_of, RenderRequest, lateral)},
+    {"ecef_from_cam", "", "row by row; its columns are the camera's x, y, z in ecef", "", "rotation: ecef = R camera",
+     OF_FRAME(r_ecef_from_cam), FIELD_WITHIN(2e-6, 0)},
+    {"gimbal_at_limit", "", "", "", "the aim point is beyond sensor.gimbal_limit_deg", OF_FRAME(gimbal_at_limit),
+     FIELD_EXACT},
+    {"scene_rate_px_s", "px/s", "image: column, row", "", "image motion of a stationary object at the image centre",
+     OF_FRAME(scene_rate_px_s), FIELD_WITHIN(0.01, 1e-5), .channel = FIELD_TARGETS},
+};
+
+static const Field band_error_rows[] = {
+    {"sampling", "", "share of the band's mean", "", "finite number of rays per pixel", OF_ERROR(share[ERROR_SAMPLING]),
+     FIELD_WITHIN(1e-3, 0.05)},
+    {"sampling_k", "K, apparent", "", "in optical", "the same in temperature", OF_ERROR(kelvin[ERROR_SAMPLING]),
+     FIELD_WITHIN(0.05, 0.05)},
+    {"level_of_detail", "", "share of the band's mean", "", "level of detail of ground and models",
+     OF_ERROR(share[ERROR_LEVEL_OF_DETAIL]), FIELD_WITHIN(1e-3, 0.05)},
+    {"level_of_detail_k", "K, apparent", "", "in optical", "the same in temperature",
+     OF_ERROR(kelvin[ERROR_LEVEL_OF_DETAIL]), FIELD_WITHIN(0.05, 0.05)},
+    {"table", "", "share of the band's mean", "", "interpolation in tables of the atmosphere and Planck's law",
+     OF_ERROR(share[ERROR_TABLES]), FIELD_WITHIN(1e-3, 0.05)},
+    {"table_k", "K, apparent", "", "in optical", "the same in temperature", OF_ERROR(kelvin[ERROR_TABLES]),
+     FIELD_WITHIN(0.05, 0.05)},
+    {"heat", "", "share of the band's mean", "",
+     "steps, elements and facets of the heat of ground and parts; 0 in optical", OF_ERROR(share[ERROR_HEAT]),
+     FIELD_WITHIN(1e-3, 0.05)},
+    {"heat_k", "K, apparent", "", "in optical", "the same in temperature", OF_ERROR(kelvin[ERROR_HEAT]),
+     FIELD_WITHIN(0.05, 0.05)},
+    {"dead_reckoning", "", "share of the band's mean", "", "position errors of dead-reckoned entities",
+     OF_ERROR(share[ERROR_DEAD_RECKONING]), FIELD_WITHIN(1e-3, 0.05)},
+    {"dead_reckoning_k", "K, apparent", "", "in optical", "the same in temperature",
+     OF_ERROR(kelvin[ERROR_DEAD_RECKONING]), FIELD_WITHIN(0.05, 0.05)},
+    {"total", "", "share of the band's mean", "", "total of these", OF_ERROR(share[ERROR_TOTAL]),
+     FIELD_WITHIN(1e-3, 0.05)},
+    {"total_k", "K, apparent", "", "in optical", "the same in temperature", OF_ERROR(kelvin[ERROR_TOTAL]),
+     FIELD_WITHIN(0.05, 0.05)},
+    {"median_k", "K, apparent", "", "in optical", "median of the pixels' expected errors: half of them are better",
+     OF_ERROR(median_k), FIELD_WITHIN(0.05, 0.05), .newer = true},
+    {"beyond_1k", "share of the image", "0 .. 1", "in optical", "pixels that are expected to be off by more than 1 K",
+     OF_ERROR(beyond_1k), FIELD_WITHIN(0.01, 0.05), .newer = true},
+};
+
+static const Field radar_error_rows[] = {
+    {"sampling", "", "share of the cells' rms", "", "grid of ray tubes on entities", OF_RADAR(share[ERROR_SAMPLING]),
+     FIELD_WITHIN(1e-3, 0.05)},
+    {"sampling_db", "dB", "", "without an entity in sight, or of given signatures alone",
+     "the same of an entity's cross section, and of a detection's: one standard deviation",
+     OF_RADAR(db[ERROR_SAMPLING])},
+    {"level_of_detail", "", "share of the cells' rms", "", "scattering centres in place of what the tubes hit",
+     OF_RADAR(share[ERROR_LEVEL_OF_DETAIL]), FIELD_WITHIN(1e-3, 0.05)},
+    {"level_of_detail_db", "dB", "", "likewise", "likewise", OF_RADAR(db[ERROR_LEVEL_OF_DETAIL])},
+    {"table", "", "share of the cells' rms", "", "gridding of echoes over delay and Doppler",
+     OF_RADAR(share[ERROR_TABLES]), FIELD_WITHIN(1e-3, 0.05)},
+    {"table_db", "dB", "", "likewise", "likewise", OF_RADAR(db[ERROR_TABLES])},
+    {"dead_reckoning", "", "share of the cells' rms", "",
+     "position errors of dead-reckoned entities along the line of sight: of the cells' magnitudes",
+     OF_RADAR(share[ERROR_DEAD_RECKONING]), FIELD_WITHIN(1e-3, 0.05)},
+    {"total", "", "share of the cells' rms", "", "total of these", OF_RADAR(share[ERROR_TOTAL]),
+     FIELD_WITHIN(1e-3, 0.05)},
+    {"total_db", "dB", "", "likewise", "likewise, of these three", OF_RADAR(db[ERROR_TOTAL])},
+};
+
+static const Field error_rows[] = {
+    {"BAND", "", "", "when the band was not rendered; of the pseudo-radar, whose mean is that of a few mirrors",
+     "rms over the image: that of the brightest pixels, if these may be off", .item = error_of_band,
+     .unless_empty = true, FIELD_OBJECT(band_error_rows)},
+    {"range_doppler", "", "", "with radar.preset none",
+     "the same of the radar's map, rms over the cells of its sum channel", .in = radar_error_of, .unless_empty = true,
+     FIELD_OBJECT(radar_error_rows)},
+};
+
+static const Field consumer_rows[] = {
+    {"CONSUMER", "ms", "after the end of rendering", "when it was not given the frame, or not done two frames later",
+     "the consumer was done with the frame", .item = next_consumer, .kind = FIELD_OF_DOUBLE, .as = field_ms},
+};
+
+static const Field latency_rows[] = {
+    {"arrival_to_pose", "ms", "", "before the first datagram",
+     "from the arrival of the newest datagram that the frame used until the sensor's pose was sampled",
+     FIELD_MEMBER(LatencyLine, stage_ms[LATENCY_ARRIVAL_TO_POSE]), .as = field_ms},
+    {"pose_to_render", "ms", "", "", "from then until rendering began",
+     FIELD_MEMBER(LatencyLine, stage_ms[LATENCY_POSE_TO_RENDER]), .as = field_ms},
+    {"render", "ms", "", "", "rendering, with the truth of targets where it is requested",
+     FIELD_MEMBER(LatencyLine, stage_ms[LATENCY_RENDER]), .as = field_ms},
+    {"display", "ms", "after the end of rendering", "when no consumer takes displays, or not done two frames later",
+     "displays made: the detector, gain and level", FIELD_MEMBER(LatencyLine, stage_ms[LATENCY_DISPLAY]),
+     .as = field_ms},
+    {"consumers", "", "", "", "by consumer of the frame", FIELD_OBJECT(consumer_rows)},
+};
+
+static const Field frame_rows[] = {
+    {"frame", "", "from 0", "", "number of the frame, as in the names of its files", OF_FRAME(frame), FIELD_EXACT},
+    {"time_s", "s", "exercise time", "", "instant of the frame", OF_FRAME(time_s), FIELD_WITHIN(1e-6, 0),
+     .channel = FIELD_TIME},
+    {"frame_sha256", "", "", "when hashes are not requested", "SHA-256 of all planes before they are encoded",
+     OF_FRAME(frame_sha256), .channel = FIELD_APART},
+    {"host", "", "", "", "the entity that carries the sensor", .item = the_host, FIELD_OBJECT(host_rows)},
+    {"sun", "", "", "", "direction of the sun", .in = sun_of, FIELD_OBJECT(sun_rows), .channel = FIELD_SUN},
+    {"sensors", "", "from 0", "", "one: all bands share the optics and the instant", .item = the_sensor,
+     FIELD_OBJECTS(sensor_rows)},
+    {"targets", "", "in the order of the frame's entity table", "",
+     "every entity in the field of view except the host, occluded ones too", .item = next_target,
+     .type = "list of objects", .rows = &target_fields, .channel = FIELD_MOTION},
+    {"error", "", "", "with quality.budget off", "the frame's estimate of its own error", .in = errors_of,
+     FIELD_OBJECT(error_rows), .channel = FIELD_ERROR},
+    {"given_up", "", "", "in a frame of full quality", "what a live node gave up in this frame to keep its rate",
+     OF_FRAME(given_up), .channel = FIELD_APART},
+    {"radar", "", "", "with radar.preset none", "what the radar on the sensor's axis measured, and the truth of it",
+     .in = radar_of, .type = "object", .rows = &radar_fields, .channel = FIELD_RADAR},
+    {"latency_ms", "", "", "in a replay at full speed",
+     "when each step of the frame was done; of a run and of replay --speed X", FIELD_OBJECT(latency_rows),
+     .get = latency_later},
+};
+const FieldTable record_frame_fields = {frame_rows, sizeof frame_rows / sizeof *frame_rows};
+
+/* ---- writing ------------------------------------------------------------------------------------- */
+
+static char *text_of(json_t *object, size_t digits)
+{
+    char *text = json_dumps(object, JSON_COMPACT | JSON_REAL_PRECISION(digits));
+    json_decref(object);
     return text;
 }
 
-static char *latency_text(const LatencyLine *l)
-{
-    json_t *latency = json_object(), *consumers = json_object();
-    for (int i = 0; i < LATENCY_STAGE_COUNT; i++) json_set_ms(latency, latency_stage_name[i], l->stage_ms[i]);
-    for (int i = 0; i < l->consumers; i++) json_set_ms(consumers, l->name[i], l->done_ms[i]);
-    json_object_set_new(latency, "consumers", consumers);
-    char *text = json_dumps(latency, JSON_COMPACT | JSON_REAL_PRECISION(9));
-    json_decref(latency);
-    return text;
-}
+char *record_frame_text(const FrameRecord *r) { return text_of(field_object(&record_frame_fields, r), 15); }
 
 Status record_write_text(FILE *file, const char *text, const LatencyLine *latency)
 {
-    char *more = latency ? latency_text(latency) : NULL;
+    char *more = latency ? text_of(field_object(&FIELD_TABLE(latency_rows), latency), 9) : NULL;
     if (latency && !more) return STATUS_NO_MEMORY;
     const int  length = (int)strlen(text) - 1; /* the object is still open: without its last brace */
     const bool ok =

@@ -1,105 +1,11 @@
-/* sensor/frame/radar_record.c: writes what the radar measured in a frame as the radar object of truth.jsonl. */
+/* sensor/frame/radar_record.c: the fields of what the radar measured in a frame: the object radar of truth.jsonl. */
 #include "sensor/frame/radar_record.h"
 
 #include "sensor/frame/json_object.h"
+#include "sensor/frame/record_fields.h"
+#include "sensor/frame/records.h"
 
-#include <jansson.h>
-
-static double db(double ratio) { return 10 * log10(ratio); }
-
-static json_t *direction_json(json_t *object, double cos_right, double cos_down)
-{
-    json_set_number(object, "az_deg", asin(clamp(cos_right, -1, 1)) / rad_per_deg);
-    json_set_number(object, "el_deg", -asin(clamp(cos_down, -1, 1)) / rad_per_deg);
-    return object;
-}
-
-static json_t *detection_json(const Detection *d)
-{
-    json_t *o = json_object();
-    json_set_number(o, "range_m", d->range_m);
-    json_set_number(o, "range_rate_mps", d->range_rate_mps);
-    direction_json(o, d->cos_right, d->cos_down);
-    json_set_number(o, "snr_db", db(d->snr));
-    json_set_number(o, "rcs_dbsm", db(d->rcs_m2));
-    json_object_set_new(o, "moving", json_boolean(d->moving));
-    return o;
-}
-
-static json_t *timing_json(const RadarFrame *r)
-{
-    const WaveformTiming *t = &r->timing;
-    const Waveform       *w = &r->preset->wave;
-    json_t               *o = json_object();
-    json_object_set_new(o, "kind", json_string(waveform_name[w->kind]));
-    json_set_number(o, "pulse_us", 1e6 * w->pulse_s);
-    json_set_number(o, "sample_us", 1e6 * t->sample_s);
-    json_set_number(o, "profile_ms", 1e3 * t->profile_s);
-    json_set_number(o, "row_ms", 1e3 * t->row_s);
-    json_set_number(o, "interval_ms", 1e3 * t->interval_s);
-    json_set_number(o, "window_m", t->window_m);
-    json_set_number(o, "unambiguous_m", t->unambiguous_m);
-    json_set_number(o, "blind_mps", t->blind_mps);
-    json_set_number(o, "coupling_s", t->coupling_s);
-    json_set_number(o, "smear_s", t->smear_s);
-    json_set_number(o, "beat_hz_m", t->beat_hz_m);
-    return o;
-}
-
-static json_t *scatterer_json(const RadarScatterer *s, const Model *model)
-{
-    json_t *o = json_object(), *at = json_array();
-    for (int k = 0; k < 3; k++) json_array_append_new(at, json_real(s->p_body[k]));
-    json_set_number(o, "rcs_hh_dbsm", db(s->hh_m2));
-    json_set_number(o, "rcs_vv_dbsm", db(s->vv_m2));
-    json_object_set_new(o, "body_m", at);
-    json_object_set_new(o, "bounces", json_integer(s->bounce));
-    json_object_set_new(o, "visible", json_boolean(s->seen));
-    if (s->part >= 0 && s->part < model->part_count)
-        json_object_set_new(o, "part", json_string(model->part[s->part].name));
-    return o;
-}
-
-static json_t *target_json(const RadarTruth *t, const Snapshot *snapshot, const Catalog *catalog)
-{
-    static const char *const polarisation[3] = {"hh", "vv", "hv"};
-    json_t                  *o = json_object(), *rcs = json_object(), *error = json_object(), *strongest = json_array();
-    const SnapshotEntity    *e = &snapshot->entity[t->entity];
-    char                     text[dis_id_text_size];
-    dis_entity_id_text(text, e->id);
-    json_object_set_new(o, "entity", json_string(text));
-    json_object_set_new(o, "signature", json_string(t->given ? "given" : "model"));
-    json_set_number(o, "range_m", t->range_m);
-    json_set_number(o, "range_rate_mps", t->range_rate_mps);
-    json_set_number(o, "appears_m", t->appears_m);
-    direction_json(o, t->cos_right, t->cos_down);
-    json_set_number(o, "visible_fraction", t->visible);
-    for (int p = 0; p < 3; p++) json_set_number(rcs, polarisation[p], db(t->rcs_m2[p]));
-    json_object_set_new(o, "rcs_dbsm", rcs);
-    for (int p = 0; p < 3; p++) json_set_number(error, polarisation[p], t->rcs_error_db[p]);
-    if (!t->given) json_object_set_new(o, "rcs_error_db", error);
-    else json_decref(error);
-    json_set_number(o, "map_error_db", db(t->map_error));
-    json_set_number(o, "snr_db", db(t->snr));
-    json_object_set_new(o, "centres", json_integer(t->centres));
-    if (t->bounce.coherence > 0) {
-        const double *const      m2[3] = {t->bounce.rcs_m2, t->bounce.once_m2, t->bounce.twice_m2};
-        static const char *const name[3] = {"rcs_dbsm", "once_dbsm", "twice_dbsm"};
-        json_t                  *bounce = json_object();
-        json_set_number(bounce, "coherence", t->bounce.coherence);
-        for (int i = 0; i < 3; i++) {
-            json_t *by = json_object();
-            for (int p = 0; p < 3; p++) json_set_number(by, polarisation[p], db(m2[i][p]));
-            json_object_set_new(bounce, name[i], by);
-        }
-        json_object_set_new(o, "ground_bounce", bounce);
-    }
-    const Model *model = catalog_model(catalog, e->model);
-    for (int i = 0; i < t->strongest_count; i++)
-        json_array_append_new(strongest, scatterer_json(&t->strongest[i], model));
-    json_object_set_new(o, "strongest", strongest);
-    return o;
-}
+/* ---- hashes -------------------------------------------------------------------------------------- */
 
 int radar_arrays(FrameArray array[radar_arrays_most], const RadarFrame *r)
 {
@@ -142,51 +48,264 @@ Status radar_sha256(char out[sha256_text_size], const RadarFrame *r, int first, 
     return plane_hash(out, plane, count);
 }
 
-static void set_hash(json_t *o, const RadarFrame *r)
+static json_t *map_hash(FieldAt *at)
 {
     char hash[sha256_text_size];
-    if (radar_sha256(hash, r, 0, 1) == STATUS_OK) json_object_set_new(o, "map_sha256", json_string(hash));
+    return radar_sha256(hash, at->of, 0, 1) == STATUS_OK ? json_string(hash) : NULL;
 }
 
-/* The scan: how it was made, and the hash of its pictures before anything is rounded for a file. */
-static json_t *scan_json(const RadarFrame *r)
+/* Of its pictures, before anything is rounded for a file. */
+static json_t *scan_hash(FieldAt *at)
 {
-    const RadarSector *s = r->scan;
-    json_t            *o = json_object();
-    char               hash[sha256_text_size];
-    json_object_set_new(o, "positions", json_integer(s->plan.positions));
-    json_set_number(o, "step_deg", s->plan.step_rad / rad_per_deg);
-    json_set_number(o, "interval_s", s->plan.interval_s);
-    json_set_number(o, "beam_deg", s->beam_rad / rad_per_deg);
-    json_set_number(o, "noise_dbw", db(s->noise_w));
-    json_set_number(o, "sharpened_share", s->sharpened_share);
-    if (radar_sha256(hash, r, 1, 2) == STATUS_OK) json_object_set_new(o, "sha256", json_string(hash));
-    return o;
+    char hash[sha256_text_size];
+    return radar_sha256(hash, ((const FrameRecord *)at->record)->radar, 1, 2) == STATUS_OK ? json_string(hash) : NULL;
 }
 
-json_t *radar_record_json(const RadarFrame *r, const Snapshot *snapshot, const Catalog *catalog)
+/* ---- values that are no plain member ------------------------------------------------------------- */
+
+/* Cosines along the sensor's right and down axes in degrees. */
+static double azimuth(double cos_right) { return field_deg(asin(clamp(cos_right, -1, 1))); }
+static double elevation(double cos_down) { return -field_deg(asin(clamp(cos_down, -1, 1))); }
+
+static const void *preset_of(const void *of) { return ((const RadarFrame *)of)->preset; }
+static const void *scan_of(const void *of) { return ((const RadarFrame *)of)->scan; }
+
+static json_t *preset_name(FieldAt *at) { return json_string(((const RadarFrame *)at->of)->preset->name); }
+static json_t *waveform_kind(FieldAt *at)
 {
-    json_t *o = json_object(), *detections = json_array(), *targets = json_array();
-    json_object_set_new(o, "preset", json_string(r->preset->name));
-    json_object_set_new(o, "waveform", timing_json(r));
-    json_set_number(o, "reference_m", r->reference_m);
-    json_set_number(o, "reference_rate_mps", r->reference_rate_mps);
-    json_set_number(o, "ground_rate_mps", r->ground_rate_mps);
-    json_set_number(o, "notch_mps", r->notch_mps);
-    json_set_number(o, "air_db", r->air_db);
-    json_set_number(o, "noise_dbw", db(r->receiver.noise_w * r->map.noise_share));
-    json_object_set_new(o, "saturated", json_integer(r->receiver.saturated));
-    json_object_set_new(o, "ground_cells", json_integer(r->ground_cells));
-    json_object_set_new(o, "plants", json_integer(r->crowns));
-    json_object_set_new(o, "chaff", json_integer(r->clouds));
-    json_object_set_new(o, "rain_1_m", json_real(r->rain_1_m));
-    json_object_set_new(o, "ground_hidden", json_integer(r->ground_hidden));
-    set_hash(o, r);
-    if (r->scan) json_object_set_new(o, "scan", scan_json(r));
-    for (int i = 0; i < r->detections; i++) json_array_append_new(detections, detection_json(&r->detection[i]));
-    json_object_set_new(o, "detections", detections);
-    json_object_set_new(o, "detections_in_all", json_integer(r->detections_in_all));
-    for (int i = 0; i < r->targets; i++) json_array_append_new(targets, target_json(&r->target[i], snapshot, catalog));
-    json_object_set_new(o, "targets", targets);
-    return o;
+    return json_string(waveform_name[((const RadarFrame *)at->of)->preset->wave.kind]);
 }
+
+static json_t *cell_noise(FieldAt *at)
+{
+    const RadarFrame *r = at->of;
+    return field_number(field_db(r->receiver.noise_w * r->map.noise_share));
+}
+
+static const void *next_detection(FieldAt *at, int i)
+{
+    const RadarFrame *r = at->of;
+    return i < r->detections ? &r->detection[i] : NULL;
+}
+
+static const void *next_truth(FieldAt *at, int i)
+{
+    const RadarFrame *r = at->of;
+    return i < r->targets ? &r->target[i] : NULL;
+}
+
+/* ---- of an entity -------------------------------------------------------------------------------- */
+
+static const SnapshotEntity *entity_of(const FieldAt *at)
+{
+    return &((const FrameRecord *)at->record)->snapshot->entity[((const RadarTruth *)at->of)->entity];
+}
+
+static json_t *entity_id(FieldAt *at) { return field_id(entity_of(at)->id); }
+static json_t *signature(FieldAt *at) { return json_string(((const RadarTruth *)at->of)->given ? "given" : "model"); }
+
+/* NULL: by a signature of radar.given. */
+static const void *by_model(const void *of) { return ((const RadarTruth *)of)->given ? NULL : of; }
+
+static const void *bounce_of(const void *of)
+{
+    const RadarBounceTruth *bounce = &((const RadarTruth *)of)->bounce;
+    return bounce->coherence > 0 ? bounce : NULL;
+}
+
+/* Powers by polarisation, as the arrays of RadarBounceTruth have them. */
+typedef struct Powers {
+    double hh, vv, hv;
+} Powers;
+static const void *rcs_of(const void *of) { return ((const RadarBounceTruth *)of)->rcs_m2; }
+static const void *once_of(const void *of) { return ((const RadarBounceTruth *)of)->once_m2; }
+static const void *twice_of(const void *of) { return ((const RadarBounceTruth *)of)->twice_m2; }
+
+typedef struct Strongest {
+    RadarScatterer centre;
+    const char    *part; /* name; NULL: of a given signature */
+} Strongest;
+_Static_assert(sizeof(Strongest) <= sizeof((FieldAt){0}).room, "it has no room");
+
+static const void *next_strongest(FieldAt *at, int i)
+{
+    const RadarTruth *t = at->of;
+    if (i >= t->strongest_count) return NULL;
+    const Model *model = catalog_model(((const FrameRecord *)at->record)->catalog, entity_of(at)->model);
+    const int    part = t->strongest[i].part;
+    Strongest   *out = (Strongest *)at->room;
+    *out = (Strongest){t->strongest[i], part >= 0 && part < model->part_count ? model->part[part].name : NULL};
+    return out;
+}
+
+/* ---- the fields ---------------------------------------------------------------------------------- */
+
+#define OF_RADAR(member)     FIELD_MEMBER(RadarFrame, member)
+#define OF_SCAN(member)      FIELD_MEMBER(RadarSector, member)
+#define OF_DETECTION(member) FIELD_MEMBER(Detection, member)
+#define OF_TRUTH(member)     FIELD_MEMBER(RadarTruth, member)
+#define OF_POWERS(member)    FIELD_MEMBER(Powers, member)
+#define OF_STRONGEST(member) FIELD_MEMBER(Strongest, member)
+
+static const Field waveform_rows[] = {
+    {"kind", "", "", "", "lfm, stepped, pulse_doppler or fmcw", FIELD_GET("string", waveform_kind)},
+    {"pulse_us", "us", "", "", "length of a pulse; of fmcw of a sweep", FIELD_IN(preset_of, RadarPreset, wave.pulse_s),
+     .as = field_micro},
+    {"sample_us", "us", "", "", "from one frequency of a profile to the next; 0: at once", OF_RADAR(timing.sample_s),
+     .as = field_micro},
+    {"profile_ms", "ms", "", "", "over which a range profile is taken", OF_RADAR(timing.profile_s), .as = field_milli},
+    {"row_ms", "ms", "", "", "from one profile to the next", OF_RADAR(timing.row_s), .as = field_milli},
+    {"interval_ms", "ms", "", "", "coherent interval, about the frame's time", OF_RADAR(timing.interval_s),
+     .as = field_milli},
+    {"window_m", "m", "", "", "width of the range window", OF_RADAR(timing.window_m)},
+    {"unambiguous_m", "m", "", "", "range by which echoes fold over", OF_RADAR(timing.unambiguous_m)},
+    {"blind_mps", "m/s", "", "", "range rates apart by it look alike; its multiples from the ground are blind speeds",
+     OF_RADAR(timing.blind_mps)},
+    {"coupling_s", "s", "", "", "an echo appears farther by it times its range rate over the reference's",
+     OF_RADAR(timing.coupling_s)},
+    {"smear_s", "s", "", "", "and is smeared in range over it times the same rate", OF_RADAR(timing.smear_s)},
+    {"beat_hz_m", "Hz/m", "", "", "beat frequency of lfm, deramped, and fmcw; else 0", OF_RADAR(timing.beat_hz_m)},
+};
+
+static const Field scan_rows[] = {
+    {"positions", "", "", "", "of the beam, an odd number; the middle one is the frame's interval",
+     OF_SCAN(plan.positions)},
+    {"step_deg", "deg", "", "", "between positions, left to right, about the camera's rows axis",
+     OF_SCAN(plan.step_rad), .as = field_deg},
+    {"interval_s", "s", "", "", "from one position to the next", OF_SCAN(plan.interval_s)},
+    {"beam_deg", "deg", "", "", "width of the two-way beam at half power", OF_SCAN(beam_rad), .as = field_deg},
+    {"noise_dbw", "dB over 1 W", "", "", "thermal noise in a cell of the real-beam image", OF_SCAN(noise_w),
+     .as = field_db, FIELD_WITHIN(0.01, 0)},
+    {"sharpened_share", "", "0 .. 1", "", "of the sharpened image's cells where Doppler is finer than the beam",
+     OF_SCAN(sharpened_share)},
+    {"sha256", "", "", "", "SHA-256 of both images over range and azimuth, before they are rounded for a file",
+     FIELD_GET("string", scan_hash)},
+};
+
+static const Field detection_rows[] = {
+    {"range_m", "m", "from the sensor", "", "between cells", OF_DETECTION(range_m), FIELD_WITHIN(1e-3, 1e-6)},
+    {"range_rate_mps", "m/s", "above 0: receding", "", "between cells; folds over at half of the map",
+     OF_DETECTION(range_rate_mps), FIELD_WITHIN(0.01, 1e-5)},
+    {"az_deg", "deg", "camera, right positive", "", "by monopulse", OF_DETECTION(cos_right), .as = azimuth,
+     FIELD_WITHIN(0.005, 0)},
+    {"el_deg", "deg", "camera, up positive", "", "by monopulse", OF_DETECTION(cos_down), .as = elevation,
+     FIELD_WITHIN(0.005, 0)},
+    {"snr_db", "dB", "", "", "over the noise and clutter about it", OF_DETECTION(snr), .as = field_db,
+     FIELD_WITHIN(0.1, 0)},
+    {"rcs_dbsm", "dB over 1 m2", "", "", "by the radar equation, as one point where it was found", OF_DETECTION(rcs_m2),
+     .as = field_db, FIELD_WITHIN(0.1, 0)},
+    {"moving", "", "", "", "clear of the ground's range rate by more than notch_mps", OF_DETECTION(moving)},
+};
+
+static const Field rcs_rows[] = {
+    {"hh", "dB over 1 m2", "received, transmitted", "when it is 0", "h along the camera's columns", OF_TRUTH(rcs_m2[0]),
+     .as = field_db, FIELD_WITHIN(0.1, 0)},
+    {"vv", "dB over 1 m2", "", "when it is 0", "v along its rows", OF_TRUTH(rcs_m2[1]), .as = field_db,
+     FIELD_WITHIN(0.1, 0)},
+    {"hv", "dB over 1 m2", "", "when it is 0", "received h, transmitted v", OF_TRUTH(rcs_m2[2]), .as = field_db,
+     FIELD_WITHIN(0.5, 0)},
+};
+
+static const Field rcs_error_rows[] = {
+    {"hh", "dB", "", "when it scatters nothing back", "of HH", OF_TRUTH(rcs_error_db[0]), FIELD_WITHIN(0.1, 0)},
+    {"vv", "dB", "", "when it scatters nothing back", "of VV", OF_TRUTH(rcs_error_db[1]), FIELD_WITHIN(0.1, 0)},
+    {"hv", "dB", "", "when it scatters nothing back", "of HV", OF_TRUTH(rcs_error_db[2]), FIELD_WITHIN(0.5, 0)},
+};
+
+static const Field mirrored_rows[] = {
+    {"hh", "dB over 1 m2", "", "when it is 0", "likewise", OF_POWERS(hh), .as = field_db, FIELD_WITHIN(0.1, 0)},
+    {"vv", "dB over 1 m2", "", "when it is 0", "likewise", OF_POWERS(vv), .as = field_db, FIELD_WITHIN(0.1, 0)},
+    {"hv", "dB over 1 m2", "", "when it is 0", "likewise", OF_POWERS(hv), .as = field_db, FIELD_WITHIN(0.5, 0)},
+};
+
+static const Field bounce_rows[] = {
+    {"coherence", "", "0.001 .. 1", "",
+     "share of the amplitude that the ground mirrors, roughness included; the larger of both polarisations",
+     FIELD_MEMBER(RadarBounceTruth, coherence)},
+    {"rcs_dbsm", "", "", "", "cross section by all paths together, the direct one included", .in = rcs_of,
+     FIELD_OBJECT(mirrored_rows)},
+    {"once_dbsm", "", "", "", "by the ground one way alone, both ways round together", .in = once_of,
+     FIELD_OBJECT(mirrored_rows)},
+    {"twice_dbsm", "", "", "", "by the ground both ways alone", .in = twice_of, FIELD_OBJECT(mirrored_rows)},
+};
+
+static const Field strongest_rows[] = {
+    {"rcs_hh_dbsm", "dB over 1 m2", "", "when it returns nothing so", "its cross section", OF_STRONGEST(centre.hh_m2),
+     .as = field_db},
+    {"rcs_vv_dbsm", "dB over 1 m2", "", "when it returns nothing so", "its cross section", OF_STRONGEST(centre.vv_m2),
+     .as = field_db, FIELD_WITHIN(0.1, 0)},
+    {"body_m", "m", "body", "", "middle of its path's first and last mirror", OF_STRONGEST(centre.p_body),
+     FIELD_WITHIN(0.01, 0)},
+    {"bounces", "", "0: an edge", "", "mirrors on its path", OF_STRONGEST(centre.bounce), FIELD_EXACT},
+    {"visible", "", "", "", "nothing else is in its way", OF_STRONGEST(centre.seen)},
+    {"part", "", "", "of a given signature", "part of the model with the last mirror", OF_STRONGEST(part), FIELD_EXACT},
+};
+
+static const Field truth_rows[] = {
+    {"entity", "", "site:application:entity", "", "id", FIELD_GET("string", entity_id), FIELD_EXACT},
+    {"signature", "", "model, given", "", "by its model, or by a signature of radar.given",
+     FIELD_GET("string", signature)},
+    {"range_m", "m", "from the sensor", "", "to the origin of its model", OF_TRUTH(range_m), FIELD_WITHIN(1e-3, 1e-6)},
+    {"range_rate_mps", "m/s", "above 0: receding", "", "of that origin", OF_TRUTH(range_rate_mps),
+     FIELD_WITHIN(0.01, 1e-5)},
+    {"appears_m", "m", "from the sensor", "",
+     "range at which the profile has that origin: folded over, and coupled to its range rate", OF_TRUTH(appears_m)},
+    {"az_deg", "deg", "camera, right positive", "", "direction of that origin", OF_TRUTH(cos_right), .as = azimuth,
+     FIELD_WITHIN(0.005, 0)},
+    {"el_deg", "deg", "camera, up positive", "", "likewise", OF_TRUTH(cos_down), .as = elevation,
+     FIELD_WITHIN(0.005, 0)},
+    {"visible_fraction", "", "0 .. 1", "",
+     "share of its scattering centres' power in sight: those centres alone return", OF_TRUTH(visible),
+     FIELD_WITHIN(0.005, 0)},
+    {"rcs_dbsm", "", "", "", "cross section at the centre frequency, as if wholly in sight, without the ground",
+     FIELD_OBJECT(rcs_rows)},
+    {"rcs_error_db", "", "", "of a given signature",
+     "estimated standard deviation of these, by the grid of ray tubes alone: not by the model or physical optics",
+     .in = by_model, FIELD_OBJECT(rcs_error_rows)},
+    {"map_error_db", "dB", "", "of a given signature",
+     "error of its cells of the map, over its power in them: by ray tubes and by scattering centres",
+     OF_TRUTH(map_error), .as = field_db},
+    {"snr_db", "dB", "", "when none of it is in sight",
+     "by the radar equation, of its centres in sight in one cell, over the thermal noise of a cell", OF_TRUTH(snr),
+     .as = field_db, FIELD_WITHIN(0.1, 0)},
+    {"centres", "", "", "", "scattering centres that it was summed from", OF_TRUTH(centres), FIELD_WITHIN(0, 0.01)},
+    {"ground_bounce", "", "", "where the ground near it mirrors too little, or out of sight",
+     "what the ground near it mirrors; as if wholly in sight", .in = bounce_of, FIELD_OBJECT(bounce_rows)},
+    {"strongest", "", "strongest first, at most 8", "", "the strongest of them, by the mean of HH and VV",
+     .item = next_strongest, FIELD_OBJECTS(strongest_rows)},
+};
+
+static const Field radar_rows[] = {
+    {"preset", "", "", "", "row of etc/radars.csv or radar.table", FIELD_GET("string", preset_name), FIELD_EXACT},
+    {"waveform", "", "", "", "its times, and what they limit (etc/reference/radar_waveforms.md)",
+     FIELD_OBJECT(waveform_rows)},
+    {"reference_m", "m", "from the sensor", "", "middle of the range window: the aim, else the ground ahead",
+     OF_RADAR(reference_m), FIELD_WITHIN(1e-3, 1e-6)},
+    {"reference_rate_mps", "m/s", "above 0: receding", "", "range rate in the middle of the map",
+     OF_RADAR(reference_rate_mps), FIELD_WITHIN(1e-3, 1e-6)},
+    {"ground_rate_mps", "m/s", "above 0: receding", "", "of still ground on the axis", OF_RADAR(ground_rate_mps)},
+    {"notch_mps", "m/s", "", "", "detections so near to the ground's range rate in their direction count as ground",
+     OF_RADAR(notch_mps)},
+    {"air_db", "dB", "one way", "", "loss by gases, rain and fog over that range", OF_RADAR(air_db),
+     FIELD_WITHIN(1e-3, 1e-3)},
+    {"noise_dbw", "dB over 1 W", "", "", "thermal noise in a cell of the map", FIELD_GET("number", cell_noise),
+     FIELD_WITHIN(0.01, 0)},
+    {"saturated", "", "", "", "I and Q values at the end of the converter's range", OF_RADAR(receiver.saturated),
+     FIELD_EXACT},
+    {"ground_cells", "", "", "", "scatterers of the ground within main lobe and window", OF_RADAR(ground_cells),
+     FIELD_WITHIN(0, 0.001)},
+    {"plants", "", "", "", "plants within main lobe and window, which return from their crowns", OF_RADAR(crowns)},
+    {"chaff", "", "", "", "clouds of chaff within beam and window", OF_RADAR(clouds)},
+    {"rain_1_m", "m2/m3", "", "", "backscatter of the rain by its volume; 0: none falls", OF_RADAR(rain_1_m)},
+    {"ground_hidden", "", "", "", "of ground_cells, hidden by relief or entities", OF_RADAR(ground_hidden),
+     FIELD_WITHIN(0, 0.01)},
+    {"map_sha256", "", "", "", "SHA-256 of the map of all channels, before it is rounded for a file",
+     FIELD_GET("string", map_hash), .channel = FIELD_APART},
+    {"scan", "", "", "with radar.scan_deg 0", "how the beam scanned", .in = scan_of, FIELD_OBJECT(scan_rows)},
+    {"detections", "", "strongest first, at most 256", "", "peaks over the threshold of constant false alarms",
+     .item = next_detection, FIELD_OBJECTS(detection_rows)},
+    {"detections_in_all", "", "", "", "how many passed the threshold", OF_RADAR(detections_in_all), FIELD_EXACT},
+    {"targets", "", "", "", "truth of each entity near beam and window, in order of ids", .item = next_truth,
+     FIELD_OBJECTS(truth_rows)},
+};
+const FieldTable radar_fields = {radar_rows, sizeof radar_rows / sizeof *radar_rows};

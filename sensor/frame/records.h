@@ -1,4 +1,4 @@
-/* sensor/frame/records.h: truth.jsonl and run.json: the names that other tools read (see
+/* sensor/frame/records.h: truth.jsonl: the names that other tools read (see
  * etc/reference/products.md).
  *
  * Numbering in files: frames as the run counts them, from 0 on; pixels of boxes from 0 on; everything else - the
@@ -16,8 +16,6 @@
 #include "sensor/frame/latency_private.h"
 #include "sensor/truth/frame_error.h"
 #include "terrain/earth/sun.h"
-#include "terrain/woods/woods.h"
-#include "render/materials/materials.h"
 
 #include <stdio.h>
 
@@ -59,57 +57,10 @@ typedef struct LiveCounters {
     double   rate_hz; /* asked for; 0: it ended before that was known */
 } LiveCounters;
 /* Share of the due frames that were made; 1 where none was due. */
-double record_live_kept_share(const LiveCounters *counters, uint64_t frames);
-
-/* Plants of a run. */
-typedef struct WoodsRecord {
-    const Woods *woods;
-    int          paths;               /* pieces cleared of plants */
-    int          entities, in_trunks; /* on the ground at their first report; of these within a trunk */
-} WoodsRecord;
-
-typedef struct RunRecord {
-    const char        *config_sha256, *log_name, *log_sha256, *isa;
-    const char        *settings;    /* `section.key=value`, lines: the text hashed as config_sha256 */
-    int                table_count; /* files that were read from etc/, and models */
-    const char *const *table, *const *table_sha256;
-    long long           seed;
-    const char         *planes; /* of truth in files: all, none or a list; NULL: no files */
-    const char         *status; /* complete; stopped: by a signal before its last frame; failed */
-    int                 threads, host_count, choice_count, frames;
-    int                 listed; /* length of the two lists */
-    const int          *frame_number;
-    const char *const  *host; /* ids as text */
-    const char *const  *choice;
-    const char *const  *frame_sha256; /* NULL: not computed */
-    const DisCounters  *dis;
-    uint64_t            link_dropped;   /* packets of the capture without a datagram */
-    uint64_t            own;            /* datagrams of this node itself, ignored */
-    const LiveCounters *live;           /* NULL: a replay */
-    int                 radar_left_out; /* frames without radar, for want of signatures */
-    int                 frames_reduced; /* frames with something in their given_up */
-    int                 at_limit;       /* frames whose aim was beyond the gimbal limit */
-    uint64_t            entities_created, entities_timed_out, entities_deactivated, entities_removed;
-    uint64_t            entities_evicted, entities_refused; /* by a full table */
-    uint64_t            entities_over_rate, tombstones_dropped, marks_forgotten;
-    uint64_t            shots_forgotten, munitions_forgotten; /* of munitions that may yet become the host */
-    int                 frames_crowded, most_left_out; /* frames without all entities; the most that one frame lacks */
-    EffectCounters      effects;
-    RenderCounters      render;
-    int                 stage_count; /* timings */
-    const char *const  *stage;
-    double (*stage_ms)[3];                 /* median, p95, max */
-    const LatencySummary *latency;         /* NULL: no ledger was kept */
-    const char           *memory;          /* name of the ring of frames; NULL: none */
-    int                   detections_port; /* 0: none */
-    const AnswerCounters *answers;         /* received there; NULL: none */
-    const SentCounters   *sent;            /* not NULL */
-    bool                  streams;         /* it has streams */
-    const WoodsRecord    *woods;           /* NULL: no plants */
-    const Materials      *materials;       /* of the material planes; NULL: not given */
-} RunRecord;
-
-/* The complete file, atomically. */
-Status record_write_run(const char *path, const RunRecord *record);
+static inline double record_live_kept_share(const LiveCounters *counters, uint64_t frames)
+{
+    const uint64_t due = frames + counters->frames_late;
+    return due ? (double)frames / (double)due : 1;
+}
 
 #endif

@@ -102,6 +102,32 @@ static void put_python(FILE *to, const char *python)
     }
 }
 
+/* ---- fields -------------------------------------------------------------------------------------- */
+
+typedef void PutField(FILE *to, const ReferenceField *field);
+
+static void put_table(FILE *to, const FieldTable *table, const char *above, PutField *put)
+{
+    char path[200], type[field_type_size];
+    for (int i = 0; i < table->count; i++) {
+        const Field *f = &table->row[i];
+        const int    n = snprintf(path, sizeof path, "%s%s%s", above, *above ? "." : "", f->name);
+        put(to, &(ReferenceField){path, field_type(type, f), f->unit, f->frame, f->absent, f->about});
+        if (field_is_list(f)) snprintf(path + n, sizeof path - (size_t)n, "[]");
+        if (f->rows) put_table(to, f->rows, path, put);
+    }
+}
+
+static void put_fields(FILE *to, const Reference *r, PutField *put)
+{
+    for (int i = 0; i < r->field_count; i++) put(to, &r->field[i]);
+    if (r->table) put_table(to, r->table, "", put);
+}
+
+static bool has_fields(const Reference *r) { return r->field_count || r->table; }
+
+/* ---- topics -------------------------------------------------------------------------------------- */
+
 void reference_list(FILE *to)
 {
     for (int i = 0; i < topic_count; i++) fprintf(to, "%s%s", i ? " " : "", topics[i]->topic);
@@ -114,24 +140,28 @@ static const Reference *find(const char *topic)
     return NULL;
 }
 
-bool reference_write(FILE *to, const char *topic)
+void reference_write_topic(FILE *to, const Reference *r)
 {
-    const Reference *r = find(topic);
-    if (!r) return false;
     fprintf(to, "%s: %s\n\n", r->file, r->title);
     put_wrapped(to, r->about, 0);
     if (r->notation) {
         fputc('\n', to);
         put_wrapped(to, r->notation, 0);
     }
-    if (r->field_count) fputc('\n', to);
+    if (has_fields(r)) fputc('\n', to);
     put_fields(to, r, put_field);
     put_words(to, r);
     if (r->python) {
         fputs("\nin Python, in the folder given by --out\n\n", to);
         put_python(to, r->python);
     }
-    return true;
+}
+
+bool reference_write(FILE *to, const char *topic)
+{
+    const Reference *r = find(topic);
+    if (r) reference_write_topic(to, r);
+    return r != NULL;
 }
 
 /* ---- Markdown -------------------------------------------------------------------------------- */
@@ -161,7 +191,7 @@ static void put_topic(FILE *to, const Reference *r)
 {
     fprintf(to, "\n## %s\n\n`%s`: %s\n\n%s\n", r->topic, r->file, r->title, r->about);
     if (r->notation) fprintf(to, "\n%s\n", r->notation);
-    if (r->field_count)
+    if (has_fields(r))
         fputs("\n| field | type | unit | frame, order, index base | absent | meaning |\n"
               "|---|---|---|---|---|---|\n",
               to);

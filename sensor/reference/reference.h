@@ -2,12 +2,13 @@
  * when it is absent; and Python to read it.
  *
  * One table, out of which come `pitviper help TOPIC`, the PRODUCTS section of the manual page and products.md. A new
- * field of a product is one row here: tests/system/test_reference.sh replays exercises with all products and fails for
- * a field without a row, a row without a field, a different type, and a missing field whose row has no `absent`. */
+ * field of a product is one row here, of truth.jsonl and run.json the row that also writes it:
+ * tests/system/test_reference.sh replays exercises with all products and fails for a field without a row, a row without
+ * a field, a different type, and a missing field whose row has no `absent`. */
 #ifndef SENSOR_REFERENCE_REFERENCE_H
 #define SENSOR_REFERENCE_REFERENCE_H
 
-#include "pitviper.h"
+#include "sensor/frame/field.h"
 
 /* path: of JSON, keys joined by dots, `[]` for each item of a list; else what `notation` of the topic says. A word in
  * capitals is a placeholder (ReferenceWord).
@@ -36,6 +37,7 @@ typedef struct Reference {
     bool (*listed)(ReferenceField *out, int i);
     const ReferenceField *field;
     int                   field_count;
+    const FieldTable     *table; /* the fields of truth.jsonl and run.json, from where they are written; else NULL */
     const ReferenceWord  *word;
     int                   word_count;
     const char           *python; /* run in the folder given by --out; may be NULL */
@@ -53,6 +55,8 @@ extern const Reference reference_products, reference_truth, reference_run, refer
 void reference_list(FILE *to);
 /* `pitviper help TOPIC`, for a terminal; a product's file name is accepted too. False: no such topic. */
 bool reference_write(FILE *to, const char *topic);
+/* The same of a topic that is in no list. */
+void reference_write_topic(FILE *to, const Reference *topic);
 /* Writes all topics as Markdown: products.md. */
 void reference_write_markdown(FILE *to);
 

@@ -3,6 +3,7 @@
 #include "sensor/publish/coco/coco.h"
 #include "sensor/frame/json_object.h"
 #include "sensor/publish/coco/coco_file.h"
+#include "sensor/frame/record_fields.h"
 #include "sensor/frame/target_record.h"
 
 #include <stdlib.h>
@@ -174,11 +175,6 @@ static CocoMaskExtent region_of(const TargetRecord *t, const CocoMaskExtent *mas
     return region;
 }
 
-static void set_text(json_t *object, const char *key, const char *text)
-{
-    if (text) json_object_set_new(object, key, json_string(text));
-}
-
 /* Sets the signal of the target in the image's band. */
 static void set_signal(json_t *out, const TargetRecord *t, Band band)
 {
@@ -193,7 +189,7 @@ static json_t *annotation_json(const Coco *c, const FrameRecord *r, const Target
 {
     const double *all = t->amodal_box;
     int           box[4];
-    char          name[dis_id_text_size], type[dis_type_text_size], occluder[dis_id_text_size];
+    char          name[dis_id_text_size], type[dis_type_text_size];
     target_box_coco(box, extent->box);
     dis_entity_id_text(name, t->id);
     dis_entity_type_text(type, t->type);
@@ -204,13 +200,12 @@ static json_t *annotation_json(const Coco *c, const FrameRecord *r, const Target
                             t->plane_value, "type", type, "model", t->model, "pixels", t->pixels, "segmentation",
                             "size", r->request->view.height, r->request->view.width, "counts", c->text);
     if (!out) return NULL;
-    set_text(out, "ignored_as", why);
+    if (why) json_object_set_new(out, "ignored_as", json_string(why));
     json_object_set_new(out, "bbox_amodal", json_pack("[f,f,f,f]", all[0], all[1], all[2] - all[0], all[3] - all[1]));
-    json_set_number(out, "range_m", t->range_m);
-    json_set_number(out, "aspect_deg", t->aspect_rad / rad_per_deg);
-    json_set_number(out, "visible_fraction", t->visible_fraction);
-    json_set_number(out, "foliage_fraction", t->foliage_fraction);
-    set_text(out, "occluded_by", target_occluder_text(occluder, t));
+    static const char *const as_in_truth[] = {"range_m", "aspect_deg", "visible_fraction", "foliage_fraction",
+                                              "occluded_by"};
+    for (size_t i = 0; i < sizeof as_in_truth / sizeof *as_in_truth; i++)
+        field_carry(out, &target_fields, as_in_truth[i], t);
     set_signal(out, t, band);
     return out;
 }

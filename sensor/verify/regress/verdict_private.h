@@ -5,6 +5,7 @@
 
 #include "pitviper.h"
 #include "render/frame/planes.h"
+#include "sensor/frame/field.h"
 #include "sensor/verify/regress/case_private.h"
 
 /* ---- values of JSON (json_values.c) ---------------------------------------------------------- */
@@ -207,6 +208,15 @@ Status verdict_of(Verdict *out, const Case *c, const char *record, const char *r
  * differ (different libraries or ISA). */
 void verdict_frame(ChannelResult result[CHANNEL_COUNT], const RecordFrame *expected, const RecordFrame *got,
                    const Tolerance *tolerance, bool edges_allowed);
+/* Which fields of two records are compared, and how. */
+typedef struct FieldRule {
+    const FieldTable *table;
+    FieldChannel      channel; /* of fields that have none; FIELD_APART: they are not compared */
+    bool              exact;   /* numbers are equal; else within a tolerance, times this factor: */
+    double            factor;
+} FieldRule;
+void verdict_fields(ChannelResult result[CHANNEL_COUNT], int frame, const JsonValues *expected, const JsonValues *got,
+                    const FieldRule *rule);
 /* A line of truth.jsonl. */
 void verdict_truth(ChannelResult result[CHANNEL_COUNT], int frame, const JsonValues *expected, const JsonValues *got,
                    double factor);
