@@ -306,7 +306,7 @@ void recall_ground(Worker *w, const Job *job)
         hits->entity[i] = 0;
         hits->part[i] = hits->model[i] = 0;
         hits->inside[i] = 0;
-        hits->plant[i] = 0;
+        hits->instance[i] = 0;
         rays->far_m[i] = INFINITY;
         for (int k = 0; k < 3; k++) {
             rays->o_enu[k][i] = view->p_enu[k];

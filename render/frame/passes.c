@@ -253,7 +253,7 @@ static void write_truth(const Worker *w, const Job *job)
         for (int k = 0; k < run; k++) material[k] = s->hits.material[first + k * samples];
         for (int k = 0; k < run; k++) picture->cover[px + (size_t)k] = hits->surface[first + k * samples];
         for (int k = 0; picture->instance && k < run; k++)
-            picture->instance[px + (size_t)k] = hits->plant[first + k * samples];
+            picture->instance[px + (size_t)k] = hits->instance[first + k * samples];
         for (int k = 0; k < run; k++) picture->temp_k[px + (size_t)k] = s->temp_k[first + k * samples];
         for (int c = 0; c < 3; c++)
             for (int k = 0; k < run; k++) picture->normal[c][px + (size_t)k] = hits->n_enu[c][first + k * samples];

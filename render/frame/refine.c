@@ -40,7 +40,7 @@ static void restore_first(Worker *w, const Job *job)
     for (size_t p = 0; p < (size_t)block->pixels; p++) {
         const size_t px = pixel_index(job, block->x[p], block->y[p]);
         s->hits.entity[p] = picture->entity[px];
-        s->hits.plant[p] = picture->instance ? picture->instance[px] : 0;
+        s->hits.instance[p] = picture->instance ? picture->instance[px] : 0;
         s->hits.range_m[p] = picture->range_m[px] * (1 - 1e-6); /* a float's: no farther than it was */
     }
 }

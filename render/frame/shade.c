@@ -16,11 +16,10 @@ static Status open_plants(ShadeScene *scene, Visibility *visibility, const Rende
         scene->bare = scene->full = visibility;
         return STATUS_OK;
     }
-    const Status status =
-        forest_frame_open(&scene->plants, scene->world->forest, request->view.p_enu, request->view.focal_px,
-                          request->low_plants_m, request->t_s, wind_mps, pool, arena);
+    Status status = forest_frame_open(&scene->plants, scene->world->forest, request->view.p_enu, request->view.focal_px,
+                                      request->low_plants_m, request->t_s, wind_mps, pool, arena);
+    if (status == STATUS_OK) status = visibility_plants(visibility, &scene->plants);
     if (status != STATUS_OK) return status;
-    visibility_plants(visibility, &scene->plants);
     scene->bare = visibility_without_plants(visibility, arena);
     scene->full = visibility_with_full_plants(visibility, arena);
     return scene->bare && scene->full ? STATUS_OK : STATUS_NO_MEMORY;

@@ -224,7 +224,7 @@ void target_sums_areas(TargetSums *sums, const SumRules *rules, const Samples *s
             if (s->hits.entity[i]) {
                 count->hidden_entity += whole;
                 occlusion_add(&sums->hidden, rules->arena, index, (int)s->hits.entity[i] - 1, whole, 0);
-            } else if (s->hits.plant[i]) {
+            } else if (s->hits.instance[i]) {
                 count->hidden_plants += whole;
             } else {
                 count->hidden_ground += whole;

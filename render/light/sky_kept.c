@@ -359,7 +359,7 @@ void sky_met_load(Hits *hits, Rays *rays, int i, const SkyMet *met)
     hits->model[i] = met->model;
     hits->inside[i] = met->inside;
     hits->surface[i] = met->surface;
-    hits->plant[i] = 0;
+    hits->instance[i] = 0;
 }
 
 void sky_notes_begin(SkyNotes *notes, int points)

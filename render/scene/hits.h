@@ -40,11 +40,12 @@ typedef struct Hits {
     uint16_t model[hits_capacity];    /* of the catalog, where entity > 0 */
     uint8_t  inside[hits_capacity];   /* 1: a part was met from the inner side of its surface */
     uint8_t  surface[hits_capacity];  /* SurfaceClass where the ground was met, else 0 */
-    uint32_t plant[hits_capacity];    /* 1 + ForestHit.plant, where kind is hit_plant, else 0; of such hits alone: */
-    float    albedo[hits_capacity];   /* reflectance over that of the material */
-    float    radius_m[hits_capacity]; /* of the branch; 0: a leaf */
-    float    open_up[hits_capacity], open_down[hits_capacity]; /* shares of even light from above and below that
-                                                                * reach it past its own plant, 0 .. 1 */
+    uint32_t instance[hits_capacity]; /* 1 + its number in its kind (plants: ForestHit.plant); 0: none, or entity */
+    /* of plants alone: */
+    float albedo[hits_capacity];                            /* reflectance over that of the material */
+    float radius_m[hits_capacity];                          /* of the branch; 0: a leaf */
+    float open_up[hits_capacity], open_down[hits_capacity]; /* shares of even light from above and below that
+                                                             * reach it past its own plant, 0 .. 1 */
 } Hits;
 
 /* Row `from` of others is copied to row `to`, as one return of weight 1; rays as well. from and to may be the same
@@ -60,7 +61,7 @@ static inline void hits_copy(Hits *hits, Rays *rays, int to, const Hits *from_hi
     hits->model[to] = from_hits->model[from];
     hits->inside[to] = from_hits->inside[from];
     hits->surface[to] = from_hits->surface[from];
-    hits->plant[to] = from_hits->plant[from];
+    hits->instance[to] = from_hits->instance[from];
     hits->albedo[to] = from_hits->albedo[from];
     hits->radius_m[to] = from_hits->radius_m[from];
     hits->open_up[to] = from_hits->open_up[from];
@@ -93,7 +94,7 @@ static inline void hits_copy_all(Hits *hits, Rays *rays, const Hits *from_hits, 
     COPY_ROWS(hits->model, from_hits->model);
     COPY_ROWS(hits->inside, from_hits->inside);
     COPY_ROWS(hits->surface, from_hits->surface);
-    COPY_ROWS(hits->plant, from_hits->plant);
+    COPY_ROWS(hits->instance, from_hits->instance);
     COPY_ROWS(hits->albedo, from_hits->albedo);
     COPY_ROWS(hits->radius_m, from_hits->radius_m);
     COPY_ROWS(hits->open_up, from_hits->open_up);

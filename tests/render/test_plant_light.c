@@ -63,7 +63,7 @@ static void random_leaves(void)
             rays.o_enu[k][i] = hits.p_enu[k][i] + 10 * n[k];
         }
         hits.range_m[i] = 10;
-        hits.kind[i] = hit_plant, hits.plant[i] = 1, hits.material[i] = 1;
+        hits.kind[i] = hit_plant, hits.instance[i] = 1, hits.material[i] = 1;
         hits.albedo[i] = hits.open_up[i] = hits.open_down[i] = texture[i] = sun[i] = 1;
         temp_k[i] = 300;
     }

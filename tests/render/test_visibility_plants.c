@@ -130,7 +130,7 @@ static void the_nearer_of_both(void **state)
         of[hits.kind[i]]++;
         CHECK(hits.range_m[i] == fmin(range_m[i], bare.range_m[i]));
         assert_int_equal(hits.kind[i] == hit_plant, range_m[i] < bare.range_m[i]);
-        assert_int_equal(hits.plant[i], range_m[i] < bare.range_m[i] ? hit[i].plant + 1 : 0);
+        assert_int_equal(hits.instance[i], range_m[i] < bare.range_m[i] ? hit[i].plant + 1 : 0);
         if (hits.kind[i] != hit_plant)
             assert_true(hits.entity[i] == bare.entity[i] && hits.surface[i] == bare.surface[i]);
         else assert_true(hits.entity[i] == 0 && hits.part[i] == 0);
@@ -183,7 +183,7 @@ static void full_plants_on_demand(void **state)
     see(&hits, visibility_with_full_plants(stage.v[1], stage.arena));
     see(&other, stage.v[0]);
     for (int i = 0; i < rays.count; i++)
-        assert_true(hits.range_m[i] == other.range_m[i] && hits.plant[i] == other.plant[i]);
+        assert_true(hits.range_m[i] == other.range_m[i] && hits.instance[i] == other.instance[i]);
     assert_ptr_equal(visibility_with_full_plants(stage.v[0], stage.arena), stage.v[0]);
 }
 

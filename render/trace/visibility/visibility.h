@@ -1,5 +1,5 @@
 /* render/trace/visibility/visibility.h: first hits of rays, and shadows of the sun. The only interface to the tracing
- * of ground, parts and plants.
+ * of ground, parts, plants and what joins them (trace_entry.h).
  *
  * The ground is a height field, traced in double, scalar and eight wide with the same bits. Each moving part is
  * traced in its own node's frame: the ray is transformed there in double, advanced to the node's bounding sphere,
@@ -87,8 +87,9 @@ void visibility_tighten(const Visibility *v);
 /* The table that Hits.material indexes: set before anything is traced. Without: all 0. It must outlive the frame. */
 void visibility_materials(Visibility *v, const Materials *materials);
 
-/* The plants that rays meet as well: set before anything is traced, after the materials. It must outlive the frame. */
-void visibility_plants(Visibility *v, const ForestFrame *plants);
+/* The plants join the list of what rays meet (render/trace/visibility/trace_entry.h; so do others), before anything is
+ * traced. It must outlive the frame. STATUS_NO_MEMORY: the list is full. */
+Status visibility_plants(Visibility *v, const ForestFrame *plants);
 /* The same frame without them, in the arena; v itself where there are none. NULL: no memory. */
 const Visibility *visibility_without_plants(const Visibility *v, Arena *arena);
 /* The same frame with every plant at its full detail; v itself where no plant is simplified. NULL: no memory. */

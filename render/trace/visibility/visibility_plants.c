@@ -1,30 +1,6 @@
 /* render/trace/visibility/visibility_plants.c: plants among the first hits of rays, and in the shadows. */
 #include "render/trace/visibility/visibility_private.h"
 
-void visibility_plants(Visibility *v, const ForestFrame *plants) { v->plants = plants; }
-
-const Visibility *visibility_without_plants(const Visibility *v, Arena *arena)
-{
-    Visibility *bare;
-    if (!v->plants) return v;
-    bare = arena_alloc(arena, 1, sizeof *bare);
-    if (!bare) return NULL;
-    *bare = *v;
-    bare->plants = NULL;
-    return bare;
-}
-
-const Visibility *visibility_with_full_plants(const Visibility *v, Arena *arena)
-{
-    Visibility *full;
-    if (!v->plants || !forest_simplifies(v->plants->forest)) return v;
-    full = arena_alloc(arena, 1, sizeof *full);
-    if (!full) return NULL;
-    *full = *v;
-    full->full_plants = true;
-    return full;
-}
-
 /* ---- rays near entities ----------------------------------------------------------------------- */
 
 typedef struct NearEntities {
@@ -69,43 +45,105 @@ static void find_near(uint8_t near[hits_capacity], const Visibility *v, const Ra
 
 /* ---- hits ------------------------------------------------------------------------------------- */
 
-static void complete_plant_hit(Hits *hits, int i, const Visibility *v, const ForestHit *hit, const Rays *rays)
+static void plants_first(double *range_m, void *found, const TraceBlock *block, const void *self)
 {
-    const double  o[3] = {rays->o_enu[0][i], rays->o_enu[1][i], rays->o_enu[2][i]};
-    const double  d[3] = {rays->d_enu[0][i], rays->d_enu[1][i], rays->d_enu[2][i]};
-    const double  range_m = hits->range_m[i];
-    ForestSurface at;
-    forest_surface(&at, v->plants, hit, o, d, range_m, (float)(range_m / v->plants->per_rad));
-    for (int c = 0; c < 3; c++) hits->p_enu[c][i] = o[c] + range_m * d[c];
-    visibility_store_normals(hits, i, at.n_geo, at.n_enu, d);
-    hits->kind[i] = hit_plant;
-    hits->plant[i] = hit->plant + 1;
-    hits->albedo[i] = at.albedo;
-    hits->radius_m[i] = at.radius_m;
-    hits->open_up[i] = at.open_up;
-    hits->open_down[i] = at.open_down;
-    hits->material[i] = v->materials ? (uint16_t)v->materials->plant[hit->kind][hit->organ] : 0;
-    hits->entity[i] = hits->facet[i] = 0;
-    hits->part[i] = hits->model[i] = 0;
-    hits->inside[i] = hit->organ != PLANT_LEAF && hit->back;
+    const ForestFrame *plants = self;
+    const bool         simplified = forest_simplifies(plants->forest);
+    const int          count = block->rays->count;
+    uint8_t            real[hits_capacity];
+    memcpy(range_m, block->limit_m, (size_t)count * sizeof *range_m);
+    if (block->v->full_plants) memset(real, 1, (size_t)count);
+    else if (simplified) find_near(real, block->v, block->rays, block->hidden);
+    block->counters->rays_plants +=
+        forest_first_hits(range_m, found, plants, count, block->o_enu, block->d_enu, simplified ? real : NULL);
+    for (int i = 0; i < count; i++) range_m[i] = range_m[i] < block->limit_m[i] ? range_m[i] : INFINITY;
 }
 
-void plants_first_hits(Hits *hits, const Visibility *v, const Rays *rays, int hidden, VisibilityCounters *counters)
+static void plants_finish(Hits *hits, const int *list, int count, const void *found, const TraceBlock *block,
+                          const void *self)
 {
-    const double *const o[3] = {rays->o_enu[0], rays->o_enu[1], rays->o_enu[2]};
-    const double *const d[3] = {rays->d_enu[0], rays->d_enu[1], rays->d_enu[2]};
-    const bool          simplified = forest_simplifies(v->plants->forest);
-    ForestHit           plant[hits_capacity];
-    double              limit_m[hits_capacity], nearer_m[hits_capacity];
-    uint8_t             real[hits_capacity];
-    for (int i = 0; i < hits->count; i++)
-        nearer_m[i] = limit_m[i] = hits->range_m[i] < rays->far_m[i] ? hits->range_m[i] : rays->far_m[i];
-    if (v->full_plants) memset(real, 1, (size_t)hits->count);
-    else if (simplified) find_near(real, v, rays, hidden);
-    counters->rays_plants += forest_first_hits(nearer_m, plant, v->plants, hits->count, o, d, simplified ? real : NULL);
-    for (int i = 0; i < hits->count; i++) {
-        if (!(nearer_m[i] < limit_m[i])) continue;
-        hits->range_m[i] = nearer_m[i];
-        complete_plant_hit(hits, i, v, &plant[i], rays);
+    const ForestFrame *plants = self;
+    const Materials   *materials = block->v->materials;
+    for (int k = 0; k < count; k++) {
+        const int        i = list[k];
+        const ForestHit *hit = (const ForestHit *)found + i;
+        const double     o[3] = {block->o_enu[0][i], block->o_enu[1][i], block->o_enu[2][i]};
+        const double     d[3] = {block->d_enu[0][i], block->d_enu[1][i], block->d_enu[2][i]};
+        const double     range_m = hits->range_m[i];
+        ForestSurface    at;
+        forest_surface(&at, plants, hit, o, d, range_m, (float)(range_m / plants->per_rad));
+        visibility_store_normals(hits, i, at.n_geo, at.n_enu, d);
+        hits->kind[i] = hit_plant;
+        hits->instance[i] = hit->plant + 1;
+        hits->albedo[i] = at.albedo;
+        hits->radius_m[i] = at.radius_m;
+        hits->open_up[i] = at.open_up;
+        hits->open_down[i] = at.open_down;
+        hits->material[i] = materials ? (uint16_t)materials->plant[hit->kind][hit->organ] : 0;
+        hits->inside[i] = hit->organ != PLANT_LEAF && hit->back;
     }
+}
+
+/* ---- shadows ---------------------------------------------------------------------------------- */
+
+/* Traced only for rays that nothing has stopped. */
+static void plants_any(const TraceShadow *s, const void *self)
+{
+    const Visibility *v = s->v;
+    double            start[3][hits_capacity], far_m[hits_capacity];
+    uint8_t           dark[hits_capacity], real[hits_capacity];
+    int               ray[hits_capacity], left = 0;
+    for (int i = 0; i < s->count; i++) {
+        if (s->dark[i] && skips(v->skips_off, SKIP_SUN_STOPPED)) continue;
+        for (int c = 0; c < 3; c++) start[c][left] = s->o_enu[c][i];
+        far_m[left] = INFINITY;
+        dark[left] = 0;
+        real[left] = v->full_plants || s->hits->entity[s->hit_of[i]] != 0; /* on entities falls that of real plants */
+        ray[left++] = i;
+    }
+    if (left == 0) return;
+    const double *const o[3] = {start[0], start[1], start[2]};
+    s->counters->rays_sun_plants += forest_any_hits(dark, self, left, o, s->d_enu, far_m, real);
+    for (int k = 0; k < left; k++) s->dark[ray[k]] |= dark[k];
+}
+
+static const TraceEntry trace_plants = {.turn = 2,
+                                        .found_octets = hits_capacity * sizeof(ForestHit),
+                                        .first_hits = plants_first,
+                                        .finish = plants_finish,
+                                        .any_hits = plants_any};
+
+/* ---- the list with plants, and without -------------------------------------------------------- */
+
+Status visibility_plants(Visibility *v, const ForestFrame *plants) { return visibility_add(v, &trace_plants, plants); }
+
+static const ListedEntry *find_plants(const Visibility *v)
+{
+    for (int k = 0; k < v->entries; k++)
+        if (v->entry[k].of == &trace_plants) return &v->entry[k];
+    return NULL;
+}
+
+const Visibility *visibility_without_plants(const Visibility *v, Arena *arena)
+{
+    if (!find_plants(v)) return v;
+    Visibility *bare = arena_alloc(arena, 1, sizeof *bare);
+    if (!bare) return NULL;
+    *bare = *v;
+    bare->entries = 0, bare->found_octets = 0;
+    for (int k = 0; k < v->entries; k++)
+        if (v->entry[k].of != &trace_plants && visibility_add(bare, v->entry[k].of, v->entry[k].self) != STATUS_OK)
+            return NULL;
+    return bare;
+}
+
+const Visibility *visibility_with_full_plants(const Visibility *v, Arena *arena)
+{
+    const ListedEntry *plants = find_plants(v);
+    if (!plants || !forest_simplifies(((const ForestFrame *)plants->self)->forest)) return v;
+    Visibility *full = arena_alloc(arena, 1, sizeof *full);
+    if (!full) return NULL;
+    *full = *v;
+    full->full_plants = true;
+    return full;
 }

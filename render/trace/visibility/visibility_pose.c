@@ -126,7 +126,9 @@ Status visibility_create(Visibility **out, Tracer *tracer, const Landscape *grou
     if (!v->posed || !v->loose || !v->poser) return STATUS_NO_MEMORY;
     pthread_mutex_init(&v->poser->lock, NULL); /* holds nothing that must be released */
     v->poser->arena = arena;
-    const Status status = bound_entities(v, arena);
+    Status status = visibility_add(v, &trace_ground, NULL); /* the list of what rays can meet, in its order */
+    if (status == STATUS_OK) status = visibility_add(v, &trace_parts, NULL);
+    if (status == STATUS_OK) status = bound_entities(v, arena);
     if (status != STATUS_OK) return status;
     for (int k = 0; k < v->count; k++) {
         const int nodes = v->loose[k] ? tracer_model(tracer, snapshot->entity[k].model)->node_count : 0;

@@ -8,6 +8,7 @@
 #include "render/trace/ground/ground.h"
 #include "render/trace/parts/parts.h"
 #include "render/trace/visibility/broad_phase_private.h"
+#include "render/trace/visibility/trace_entry.h"
 #include "render/trace/visibility/visibility.h"
 
 /* Up to so many entities are tested one after the other, all rays of a block together; more are traversed by the
@@ -23,14 +24,23 @@ typedef struct Poser {
     atomic_bool     lost;        /* no memory for some entity: the frame is incomplete */
 } Poser;
 
+/* An entry of the list; found: where its memory begins. */
+typedef struct ListedEntry {
+    const TraceEntry *of;
+    const void       *self;
+    size_t            found;
+} ListedEntry;
+
 struct Visibility {
+    ListedEntry                   entry[trace_entries];
+    int                           entries, in_turn[trace_entries];
+    size_t                        found_octets;
     Tracer                       *tracer;
     const Landscape              *landscape;
     const Materials              *materials; /* NULL: hits have no material */
     const LocalFrame             *frame;
     const Snapshot               *snapshot;
     Ground                        ground;
-    const ForestFrame            *plants;      /* NULL: none */
     bool                          full_plants; /* none is simplified */
     unsigned                      skips_off;
     int                           count, drawable;
@@ -45,11 +55,7 @@ struct Visibility {
 void rays_meet_sphere(uint8_t *meets, int count, const double *const o[3], const double *const d[3],
                       const double *limit_m, const double centre[3], double radius_m);
 
-/* visibility_plants.c. Replaces hits by those of plants that are nearer; count, range_m and kind are set. hidden: the
- * entity that the rays do not see. */
-void plants_first_hits(Hits *hits, const Visibility *v, const Rays *rays, int hidden, VisibilityCounters *counters);
-/* visibility.c. Unit normals of a hit, the shading normal turned to the ray's side. */
-void visibility_store_normals(Hits *hits, int i, const double n_geo[3], const double n_enu[3], const double d_enu[3]);
+extern const TraceEntry trace_ground, trace_parts; /* self: NULL */
 
 /* visibility_crowd.c. First hits by the tree; limit_m, entity (index + 1) and hit are as if all of the list had been
  * tested one after the other. list: ascending; list_count -1: all but hidden. known: NULL, or of these rays. */
@@ -86,29 +92,6 @@ static inline int list_asked(int list[hits_capacity], const int order[hits_capac
         listed += ask[order[k]] != 0;
     }
     return listed;
-}
-
-enum { clear_rays = 128 }; /* that are tested together */
-
-static inline void grow_box(double box[2][3], const double p[3])
-{
-    for (int c = 0; c < 3; c++) {
-        box[0][c] = p[c] < box[0][c] ? p[c] : box[0][c];
-        box[1][c] = p[c] > box[1][c] ? p[c] : box[1][c];
-    }
-}
-
-/* First hits with the ground, with the walk that is shared or without. */
-static inline void ground_hits(double *range_m, GroundHit *hit, const Visibility *v, int count,
-                               const double *const o[3], const double *const d[3], const double *far_m,
-                               VisibilityCounters *counters)
-{
-    if (skips(v->skips_off, SKIP_GROUND_WALK)) {
-        ground_first_hits_together(range_m, hit, &v->ground, count, o, d, far_m);
-        counters->skipped[SKIP_GROUND_WALK] += (uint64_t)count;
-    } else {
-        ground_first_hits(range_m, hit, &v->ground, count, o, d, far_m);
-    }
 }
 
 #endif

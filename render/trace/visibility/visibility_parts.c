@@ -1,0 +1,276 @@
+/* render/trace/visibility/visibility_parts.c: the parts of entities among what rays can meet; one entity alone. */
+#include "render/trace/visibility/visibility_private.h"
+
+typedef struct PartsFound {
+    uint32_t entity[hits_capacity]; /* index + 1; 0: none */
+    PartHit  hit[hits_capacity];
+} PartsFound;
+
+/* Whether each ray comes within an entity's sphere, ahead of it and before limit_m. Plain arrays in, one flag out:
+ * no branches. */
+void rays_meet_sphere(uint8_t *meets, int count, const double *const o[3], const double *const d[3],
+                      const double *limit_m, const double centre[3], double radius_m)
+{
+    const double *ox = o[0], *oy = o[1], *oz = o[2], *dx = d[0], *dy = d[1], *dz = d[2];
+    for (int i = 0; i < count; i++) {
+        const double mx = centre[0] - ox[i], my = centre[1] - oy[i], mz = centre[2] - oz[i];
+        const double along = mx * dx[i] + my * dy[i] + mz * dz[i];
+        const double cx = mx - along * dx[i], cy = my - along * dy[i], cz = mz - along * dz[i];
+        const double left = radius_m * radius_m - (cx * cx + cy * cy + cz * cz);
+        const double half = sqrt(left > 0 ? left : 0);
+        meets[i] = (left > 0) & (along + half > 0) & (along - half < limit_m[i]);
+    }
+}
+
+static void parts_first(double *range_m, void *found, const TraceBlock *block, const void *self)
+{
+    const Visibility          *v = block->v;
+    const double *const *const o = block->o_enu, *const *const d = block->d_enu;
+    const int   count = block->rays->count;
+    PartsFound *of = found;
+    double      limit_m[hits_capacity]; /* of what may still be nearer */
+    double      nearer_m[hits_capacity];
+    int         order[hits_capacity], asked_ray[hits_capacity];
+    uint8_t     ask[hits_capacity];
+    (void)self;
+    memcpy(limit_m, block->limit_m, (size_t)count * sizeof *limit_m);
+    memset(of->entity, 0, (size_t)count * sizeof *of->entity);
+    const int  asked_count = block->list_count < 0 ? v->count : block->list_count;
+    const bool crowd =
+        skips(v->skips_off, SKIP_TREE) && (block->list_count < 0 ? v->drawable : block->list_count) > crowd_least;
+    const uint64_t drawable = (uint64_t)(v->drawable - (block->hidden >= 0 && v->loose[block->hidden]));
+    uint64_t       offered = 0, asked = 0;
+    if (crowd) {
+        CrowdCounts counts = {0};
+        order_rays(order, count, block->rays->columns);
+        crowd_first_hits(limit_m, of->entity, of->hit, &counts, v, count, o, d, order, block->list, block->list_count,
+                         block->hidden, block->known);
+        asked = counts.asked;
+        block->counters->skipped[SKIP_PART] += counts.nodes - counts.asked_nodes;
+        block->counters->skipped[SKIP_TREE] +=
+            (uint64_t)count * (block->list_count < 0 ? drawable : (uint64_t)block->list_count) - asked;
+    }
+    bool ordered = false;
+    for (int k = 0; k < asked_count && !crowd; k++) {
+        const int index = block->list_count < 0 ? k : block->list[k];
+        if (index == block->hidden || !v->loose[index]) continue;
+        const PosedEntity *entity = visibility_posed(v, index);
+        if (entity->model < 0) continue;
+        if (block->known && block->known->entity == index) {
+            for (int i = 0; i < count; i++) {
+                if (!(block->known->range_m[i] < limit_m[i])) continue;
+                limit_m[i] = block->known->range_m[i];
+                of->hit[i] = block->known->hit[i];
+                of->entity[i] = (uint32_t)index + 1;
+            }
+            continue;
+        }
+        if (skips(v->skips_off, SKIP_SPHERE))
+            rays_meet_sphere(ask, count, o, d, limit_m, entity->centre_enu, entity->radius_m);
+        else memset(ask, 1, sizeof ask);
+        if (!ordered) order_rays(order, count, block->rays->columns);
+        ordered = true;
+        const int listed = list_asked(asked_ray, order, ask, count);
+        offered += (uint64_t)count;
+        if (listed == 0) continue;
+        asked += (uint64_t)listed;
+        for (int n = 0; n < listed; n++) nearer_m[asked_ray[n]] = INFINITY;
+        block->counters->skipped[SKIP_PART] += (uint64_t)listed * (uint64_t)entity->node_count -
+                                               parts_first_hits(nearer_m, of->hit, entity, o, d, limit_m, asked_ray,
+                                                                listed, !skips(v->skips_off, SKIP_PART));
+        for (int n = 0; n < listed; n++) {
+            const int i = asked_ray[n];
+            if (!(nearer_m[i] < INFINITY)) continue;
+            limit_m[i] = nearer_m[i];
+            of->entity[i] = (uint32_t)index + 1;
+        }
+    }
+    for (int i = 0; i < count; i++) range_m[i] = of->entity[i] ? limit_m[i] : INFINITY;
+    block->counters->rays_parts += asked;
+    block->counters->skipped_parts += drawable * (uint64_t)count - asked;
+    if (!crowd) block->counters->skipped[SKIP_SPHERE] += offered - asked;
+}
+
+static void complete_part_hit(Hits *hits, int i, const Visibility *v, int entity, const PartHit *hit, PosedFacet *facet,
+                              const double o[3], const double d[3])
+{
+    const PosedEntity *posed = visibility_posed(v, entity);
+    const Model       *model = tracer_model(v->tracer, posed->model);
+    double             n_geo[3], n_enu[3];
+    if (facet->node != &posed->node[hit->node] || facet->triangle != hit->triangle)
+        parts_facet(facet, model, posed, hit);
+    parts_facet_normals(n_geo, n_enu, model, facet, o, d, hits->range_m[i]);
+    visibility_store_normals(hits, i, n_geo, n_enu, d);
+    hits->entity[i] = (uint32_t)entity + 1;
+    hits->model[i] = (uint16_t)posed->model;
+    hits->inside[i] = v3_dot(facet->geo_enu, d) > 0;
+    hits->part[i] = (uint16_t)(model->triangle_part[hit->triangle] + 1);
+    hits->kind[i] = hit_part;
+    hits->facet[i] = hit->triangle;
+    if (v->materials)
+        hits->material[i] = (uint16_t)material_of_part(v->materials, posed->model, hits->part[i] - 1, posed->damage);
+}
+
+static void parts_finish(Hits *hits, const int *list, int count, const void *found, const TraceBlock *block,
+                         const void *self)
+{
+    const double *const *const o = block->o_enu, *const *const d = block->d_enu;
+    const PartsFound *of = found;
+    PosedFacet        facet = {.node = NULL}; /* neighbours often meet the same */
+    (void)self;
+    for (int k = 0; k < count; k++) {
+        const int    i = list[k];
+        const double o_enu[3] = {o[0][i], o[1][i], o[2][i]}, d_enu[3] = {d[0][i], d[1][i], d[2][i]};
+        complete_part_hit(hits, i, block->v, (int)of->entity[i] - 1, &of->hit[i], &facet, o_enu, d_enu);
+    }
+}
+
+/* ---- shadows ---------------------------------------------------------------------------------- */
+
+/* A sphere round the origins of a block's sun rays. */
+static double bound_points(double centre[3], int count, const double *const p[3])
+{
+    double square = 0;
+    for (int c = 0; c < 3; c++) {
+        double low = INFINITY, high = -INFINITY;
+        for (int i = 0; i < count; i++) {
+            low = p[c][i] < low ? p[c][i] : low;
+            high = p[c][i] > high ? p[c][i] : high;
+        }
+        centre[c] = 0.5 * (low + high);
+        square += 0.25 * (high - low) * (high - low);
+    }
+    return sqrt(square) * (1 + 1e-9) + 1e-6;
+}
+
+/* Whether a ray along d from within a sphere can meet another. */
+static bool sphere_may_shadow(const PosedEntity *entity, const double centre[3], double radius_m, const double d[3])
+{
+    double       m[3], across[3];
+    const double reach_m = radius_m + entity->radius_m;
+    v3_sub(m, entity->centre_enu, centre);
+    const double along = v3_dot(m, d);
+    v3_add_scaled(across, m, -along, d);
+    return along > -reach_m && v3_dot(across, across) < reach_m * reach_m;
+}
+
+static void parts_any(const TraceShadow *s, const void *self)
+{
+    const Visibility *v = s->v;
+    double            far_m[hits_capacity];
+    int               in_turn[hits_capacity], list[hits_capacity];
+    uint8_t           ask[hits_capacity];
+    (void)self;
+    for (int i = 0; i < s->count; i++) far_m[i] = INFINITY, in_turn[i] = i;
+    double         centre[3];
+    const double   radius_m = bound_points(centre, s->count, s->o_enu);
+    const uint64_t drawable = (uint64_t)v->drawable;
+    uint64_t       offered = 0, asked = 0;
+    int            near[crowd_least], nears = v->count;
+    const bool     by_tree = skips(v->skips_off, SKIP_TREE);
+    if (by_tree) nears = broad_phase_swept(near, crowd_least, v->tree, centre, radius_m, s->way_enu);
+    if (nears < 0) {
+        CrowdCounts counts = {0};
+        crowd_any_hits(s->dark, &counts, v, s->count, s->o_enu, s->d_enu);
+        offered = asked = counts.asked;
+        s->counters->skipped[SKIP_PART] += counts.nodes - counts.asked_nodes;
+    }
+    for (int k = 0; k < nears; k++) {
+        const int index = by_tree ? near[k] : k;
+        if (!v->loose[index]) continue;
+        const PosedEntity *entity = visibility_posed(v, index);
+        if (entity->model < 0) continue;
+        offered += (uint64_t)s->count;
+        if (skips(v->skips_off, SKIP_SUN_SPHERE)) {
+            if (!sphere_may_shadow(entity, centre, radius_m, s->way_enu)) continue;
+            rays_meet_sphere(ask, s->count, s->o_enu, s->d_enu, far_m, entity->centre_enu, entity->radius_m);
+            for (int i = 0; i < s->count; i++) ask[i] &= !s->dark[i];
+        } else {
+            memset(ask, 1, sizeof ask);
+        }
+        const int listed = list_asked(list, in_turn, ask, s->count);
+        s->counters->skipped[SKIP_PART] +=
+            (uint64_t)listed * (uint64_t)entity->node_count -
+            parts_any_hits(s->dark, entity, s->o_enu, s->d_enu, far_m, list, listed, !skips(v->skips_off, SKIP_PART));
+        asked += (uint64_t)listed;
+    }
+    s->counters->rays_sun_parts += asked;
+    s->counters->skipped_sun_parts += drawable * (uint64_t)s->count - asked;
+    s->counters->skipped[SKIP_SUN_SPHERE] += offered - asked;
+    if (by_tree) s->counters->skipped[SKIP_TREE] += drawable * (uint64_t)s->count - offered;
+}
+
+const TraceEntry trace_parts = {.turn = 0,
+                                .found_octets = sizeof(PartsFound),
+                                .first_hits = parts_first,
+                                .finish = parts_finish,
+                                .any_hits = parts_any};
+
+/* ---- one entity alone --------------------------------------------------------------------- */
+
+void visibility_entity_only(uint8_t *meets, const Visibility *v, const Rays *rays, int index,
+                            VisibilityCounters *counters)
+{
+    const double *const o[3] = {rays->o_enu[0], rays->o_enu[1], rays->o_enu[2]};
+    const double *const d[3] = {rays->d_enu[0], rays->d_enu[1], rays->d_enu[2]};
+    const PosedEntity  *entity = visibility_posed(v, index);
+    if (entity->model < 0) {
+        memset(meets, 0, (size_t)rays->count);
+        return;
+    }
+    if (skips(v->skips_off, SKIP_SPHERE))
+        rays_meet_sphere(meets, rays->count, o, d, rays->far_m, entity->centre_enu, entity->radius_m);
+    else memset(meets, 1, (size_t)rays->count);
+    int order[hits_capacity], list[hits_capacity];
+    order_rays(order, rays->count, rays->columns);
+    const int listed = list_asked(list, order, meets, rays->count);
+    memset(meets, 0, (size_t)rays->count);
+    counters->skipped[SKIP_SPHERE] += (uint64_t)(rays->count - listed);
+    counters->skipped[SKIP_PART] +=
+        (uint64_t)listed * (uint64_t)entity->node_count -
+        parts_any_hits(meets, entity, o, d, rays->far_m, list, listed, !skips(v->skips_off, SKIP_PART));
+}
+
+void visibility_entity_hits(EntityHits *out, const Visibility *v, const Rays *rays, int index,
+                            VisibilityCounters *counters)
+{
+    const double *const o[3] = {rays->o_enu[0], rays->o_enu[1], rays->o_enu[2]};
+    const double *const d[3] = {rays->d_enu[0], rays->d_enu[1], rays->d_enu[2]};
+    const PosedEntity  *entity = visibility_posed(v, index);
+    uint8_t             meets[hits_capacity];
+    int                 order[hits_capacity], list[hits_capacity];
+    out->entity = index;
+    for (int i = 0; i < rays->count; i++) out->range_m[i] = INFINITY;
+    if (entity->model < 0) return;
+    if (skips(v->skips_off, SKIP_SPHERE))
+        rays_meet_sphere(meets, rays->count, o, d, rays->far_m, entity->centre_enu, entity->radius_m);
+    else memset(meets, 1, sizeof meets);
+    order_rays(order, rays->count, rays->columns);
+    const int listed = list_asked(list, order, meets, rays->count);
+    counters->skipped[SKIP_SPHERE] += (uint64_t)(rays->count - listed);
+    counters->skipped[SKIP_PART] += (uint64_t)listed * (uint64_t)entity->node_count -
+                                    parts_first_hits(out->range_m, out->hit, entity, o, d, rays->far_m, list, listed,
+                                                     !skips(v->skips_off, SKIP_PART));
+}
+
+/* As rays_meet_sphere: plain arrays, no branches. */
+void visibility_lie_beyond(uint8_t *may, const Visibility *v, int index, const Rays *rays, const double *range_m)
+{
+    const PosedEntity *entity = visibility_posed(v, index);
+    const double      *ox = rays->o_enu[0], *oy = rays->o_enu[1], *oz = rays->o_enu[2];
+    const double      *dx = rays->d_enu[0], *dy = rays->d_enu[1], *dz = rays->d_enu[2];
+    const double       x = entity->centre_enu[0], y = entity->centre_enu[1], z = entity->centre_enu[2];
+    const double       radius_m = entity->radius_m;
+    const bool         all = !skips(v->skips_off, SKIP_AMODAL);
+    if (all || entity->model < 0) {
+        memset(may, all, (size_t)rays->count);
+        return;
+    }
+    for (int i = 0; i < rays->count; i++) {
+        const double mx = x - ox[i], my = y - oy[i], mz = z - oz[i];
+        const double along = mx * dx[i] + my * dy[i] + mz * dz[i], past_m = range_m[i] - along;
+        const double cx = mx - along * dx[i], cy = my - along * dy[i], cz = mz - along * dz[i];
+        const double left = radius_m * radius_m - (cx * cx + cy * cy + cz * cz);
+        may[i] = (past_m < radius_m) & (left > 0) & ((past_m <= 0) | (past_m * past_m < left));
+    }
+}
