@@ -98,7 +98,7 @@ static void add_sample(const Worker *w, const Job *job, int i, int group, double
                              .range_m = hits->range_m[i],
                              .entity = hits->entity[i],
                              .part = hits->part[i],
-                             .plant = hits->plant[i],
+                             .plant = hits->instance[i],
                              .model = hits->model[i],
                              .material = w->shader.any_far ? w->shader.far_material[i] : hits->material[i],
                              .surface = hits->surface[i],

@@ -76,13 +76,6 @@ static void put_field(FILE *to, const ReferenceField *f)
     put_wrapped(to, line, 6);
 }
 
-static void put_fields(FILE *to, const Reference *r, void (*put)(FILE *to, const ReferenceField *f))
-{
-    ReferenceField f;
-    for (int i = 0; r->listed && r->listed(&f, i); i++) put(to, &f);
-    for (int i = 0; i < r->field_count; i++) put(to, &r->field[i]);
-}
-
 static void put_words(FILE *to, const Reference *r)
 {
     for (int i = 0; i < r->word_count; i++) {
@@ -120,11 +113,13 @@ static void put_table(FILE *to, const FieldTable *table, const char *above, PutF
 
 static void put_fields(FILE *to, const Reference *r, PutField *put)
 {
+    ReferenceField f;
+    for (int i = 0; r->listed && r->listed(&f, i); i++) put(to, &f);
     for (int i = 0; i < r->field_count; i++) put(to, &r->field[i]);
     if (r->table) put_table(to, r->table, "", put);
 }
 
-static bool has_fields(const Reference *r) { return r->field_count || r->table; }
+static bool has_fields(const Reference *r) { return r->listed || r->field_count || r->table; }
 
 /* ---- topics -------------------------------------------------------------------------------------- */
 

@@ -47,13 +47,6 @@ void session_list_frame(void *user, const Frame *f)
     r->listed++;
 }
 
-void session_note_failure(Session *s, const char *what, Status status)
-{
-    if (status == STATUS_OK || s->advance_status != STATUS_OK) return;
-    log_error("%s: %s", what, status_name(status));
-    s->advance_status = status;
-}
-
 void session_result_free(SessionResult *result)
 {
     free(result->number);

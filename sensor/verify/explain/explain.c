@@ -140,19 +140,18 @@ static Status explain_bands(Explained *e, Pool *pool, Arena *arena)
     const SavedFrame *file = e->file;
     const Picture    *picture = e->picture;
     const size_t      count = (size_t)picture->width * (size_t)picture->height, px = picture_index(picture, e->x, e->y);
-    Chain            *chain[BAND_COUNT] = {NULL};
     FrameDisplay      display[BAND_COUNT];
-    FrameLevel       *level = arena_alloc(arena, BAND_COUNT, sizeof *level);
+    Camera           *camera = arena_alloc(arena, 1, sizeof *camera);
     uint8_t          *shown = arena_alloc(arena, 3 * count, 1);
-    Status status = level && shown ? sensors_chains(chain, &e->scene->sensors, &e->scene->config) : STATUS_NO_MEMORY;
-    for (int b = 0; b < BAND_COUNT; b++) {
+    if (!camera || !shown) return STATUS_NO_MEMORY;
+    Status status = camera_open(camera, &e->scene->sensors, &e->scene->config, true);
+    for (int b = 0; b < BAND_COUNT && status == STATUS_OK; b++) {
         e->band[b].watch.px = px;
-        if (chain[b]) chain_watch(chain[b], &e->band[b].watch);
+        if (camera->chain[b]) chain_watch(camera->chain[b], &e->band[b].watch);
     }
     const DisplaysOf of = {.config = &e->scene->config,
                            .picture = picture,
-                           .chain = chain,
-                           .level = level,
+                           .camera = camera,
                            .frame = file->frame,
                            .time_s = file->time_s,
                            .rate_px_s = {file->rate_px_s[0], file->rate_px_s[1]}};
@@ -162,14 +161,14 @@ static Status explain_bands(Explained *e, Pool *pool, Arena *arena)
         ExplainedBand      *to = &e->band[b];
         if (d->planes == 0) continue;
         frame_display_quantise(shown, d, count, 8);
-        to->there = true, to->has_chain = chain[b] != NULL, to->curved = d->detector.plateau > 0;
+        to->there = true, to->has_chain = camera->chain[b] != NULL, to->curved = d->detector.plateau > 0;
         to->channels = d->planes, to->level = d->level;
         for (int c = 0; c < d->planes; c++) {
             to->grey[c] = shown[px * (size_t)d->planes + (size_t)c];
             to->displayed[c] = d->plane[c][px];
         }
     }
-    for (int b = 0; b < BAND_COUNT; b++) chain_destroy(chain[b]);
+    camera_close(camera);
     return status;
 }
 
