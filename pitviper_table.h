@@ -44,7 +44,7 @@ typedef struct TableColumn {
     const char *choices;   /* TABLE_CHOICE: "a, b, c" */
     const char *(*parse)(void *member, const char *text); /* TABLE_OWN; NULL: it is read; else what is accepted */
     const char *(*named)(int k);                          /* TABLE_NAMED */
-    bool key; /* TABLE_CHOICE, TABLE_NAMED: table_each refuses two rows with the same keys */
+    bool key; /* TABLE_CHOICE, TABLE_NAMED: table_each refuses two rows with the same keys. Required, .low >= 0 */
 } TableColumn;
 #define TABLE_AT(type, member) offsetof(type, member), sizeof(((type *)0)->member)
 

@@ -183,6 +183,8 @@ static void what_is_wrong_is_said_in_one_way(void **state)
     } bad[] = {
         {HEAD "a,,1,1,0,1,red,a,1\n# x\nb,,4096.5,1,0,1,red,a,1\n",
          ":4: column length_64ths: '4096.5' is not a number in -5 .. 4096; the toy's maker knows"},
+        {HEAD "a,,-5.25,1,0,1,red,a,1\n", ":2: column length_64ths: '-5.25' is not a number in -5 .. 4096"},
+        {HEAD "a,,1,1,0,-3,red,a,1\n", ":2: column wheels: '-3' is not a whole number in -2 .. 18"},
         {HEAD "a,,nan,1,0,1,red,a,1\n", ":2: column length_64ths: 'nan' is not a number in -5 .. 4096"},
         {HEAD "a,,-inf,1,0,1,red,a,1\n", ":2: column length_64ths: '-inf' is not a number"},
         {HEAD "a,,1e999,1,0,1,red,a,1\n", ":2: column length_64ths: '1e999' is not a number"},
