@@ -44,9 +44,15 @@ static Status take_row(void *user, const void *read, const TableRows *rows, int 
 
 Status ground_table_open(GroundTable *out, const char *path)
 {
-    GroundTable  table = {0};
-    Row          row;
-    const Status status = table_each(&format, path, &row, sizeof row, take_row, &table);
+    GroundTable table = {0};
+    Row         row;
+    Status      status = table_each(&format, path, &row, sizeof row, take_row, &table);
+    for (int s = SURFACE_NONE + 1; s < SURFACE_COUNT && status == STATUS_OK; s++)
+        if (table.row[s].points == 0) {
+            log_error("%s: %s: no row of surface %s; %s", format.module, path, surface_name((SurfaceClass)s),
+                      format.next);
+            status = STATUS_BAD_VALUE;
+        }
     if (status != STATUS_OK) return status;
     table.row[SURFACE_NONE] = table.row[SURFACE_BARE_SOIL];
     *out = table;
