@@ -81,6 +81,8 @@ static void set_light(PixelLight *out, const Worker *w, int b, int i)
     out->transmittance = b >= AIR_MWIR ? air->transmittance[i] : 0;
 }
 
+static bool has_temp(const Samples *s) { return s->temperature || s->channels & (1u << AIR_MWIR | 1u << AIR_LWIR); }
+
 static void add_sample(const Worker *w, const Job *job, int i, int group, double weight)
 {
     PixelRecord      *r = job->request->record;
@@ -109,7 +111,7 @@ static void add_sample(const Worker *w, const Job *job, int i, int group, double
                              .still_k = t->still_k[i],
                              .sunlit_k = t->sunlit_k[i],
                              .detailed_k = t->detailed_k[i],
-                             .temp_k = s->temp_k[i],
+                             .temp_k = has_temp(s) ? s->temp_k[i] : NAN,
                              .channels = s->channels,
                              .has_radar = s->radar};
         for (int k = 0; k < 3; k++) out->p_enu[k] = hits->p_enu[k][i], out->n_enu[k] = hits->n_enu[k][i];

@@ -9,6 +9,16 @@ void pixel_record_open(PixelRecord *out, int x, int y)
     pthread_mutex_init(&out->lock, NULL);
 }
 
+void pixel_record_sort(PixelRecord *record)
+{
+    for (int i = 1; i < record->samples; i++) {
+        const PixelSample one = record->sample[i];
+        int               at = i;
+        for (; at > 0 && record->sample[at - 1].group > one.group; at--) record->sample[at] = record->sample[at - 1];
+        if (at < i) record->sample[at] = one;
+    }
+}
+
 void pixel_record_close(PixelRecord *record)
 {
     free(record->step);

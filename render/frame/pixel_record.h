@@ -94,6 +94,8 @@ enum { pixel_records = 3 };
 
 void pixel_record_open(PixelRecord *out, int x, int y);
 void pixel_record_close(PixelRecord *record); /* accepts zeroes */
+/* Puts the samples in order of their groups, which threads note one beside another; within a group they keep theirs. */
+void pixel_record_sort(PixelRecord *record);
 
 /* The sum of a light's terms in the order of the program. met: of a surface. */
 float pixel_light_sum(const PixelLight *light, AirBand channel, bool met);

@@ -164,8 +164,9 @@ static void say_missing(const ExplainOptions *o)
         log_error(
             "explain: frame %d was not saved, and a picture alone does not say what it was made from: replay %s "
             "again with the same options and --only %d --save-frame %d --out ANOTHER, then explain ANOTHER %d %d %d",
-            o->frame, json_is_string(json_object_get(run, "log")) ? "the log" : "its recording", o->frame, o->frame,
-            o->frame, o->x, o->y);
+            o->frame,
+            json_object_get(run, "log_sha256") ? "the log" : "its recording (`pitviper run --record LOG` makes one)",
+            o->frame, o->frame, o->frame, o->x, o->y);
     json_decref(run);
 }
 

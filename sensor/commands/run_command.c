@@ -301,7 +301,6 @@ static Status live_frames(Run *run, Session *session, Player *player, const Host
 {
     Live         *l = run->user;
     const Config *config = &run->options.config;
-    bool          ended;
     const double  given_s = config_span_time_s(config->exercise.from_s, plan->start_s, NAN); /* NaN: none */
     l->clock.grid = *grid;
     l->clock.first = fmax(ceil(fmax(plan->start_s, given_s) * grid->rate_hz - 1e-9) - grid->origin, 0);
@@ -313,7 +312,7 @@ static Status live_frames(Run *run, Session *session, Player *player, const Host
     l->health.sample.host = plan->any_munition                  ? HEALTH_MUNITION
                             : dis_entity_id_is_none(plan->host) ? HEALTH_OBSERVER
                                                                 : HEALTH_BY_ID;
-    const Status status = frame_loop(&ended, &(FrameLoop){&l->clock.clock, enough, receive, make_frame, l});
+    const Status status = frame_loop(NULL, &(FrameLoop){&l->clock.clock, enough, receive, make_frame, l});
     /* and those that were due while the last one was made */
     if (status == STATUS_OK && over(l)) l->counters.frames_late += live_clock_behind(&l->clock);
     log_status(NULL);

@@ -50,9 +50,9 @@ typedef struct FrameOutput {
     const char           *name; /* of the instrument: several of a kind have different ones */
     const InstrumentKind *kind;
     int                   arrays;
-    const FrameArray     *array;    /* [arrays] */
-    const void           *record;   /* its type is the kind's; NULL: none */
-    const char           *left_out; /* why there is nothing; NULL: nothing is left out */
+    const FrameArray     *array;  /* [arrays] */
+    const void           *record; /* its type is the kind's; NULL: none */
+    const char *left_out;         /* why there is nothing, in a text that outlives the run; NULL: nothing is left out */
 } FrameOutput;
 
 /* What was rendered of a snapshot: the planes, and what they were rendered from. */

@@ -1,5 +1,6 @@
 /* sensor/instruments/camera.h: the camera as an instrument: the picture's bands behind the detectors of sensor.preset.
- * Their displays are made later and elsewhere, by consume_displays, if a consumer wants them. */
+ * Their displays are made later, by consume_displays, if a consumer wants them: by a Camera of its own, in its thread,
+ * which carries their levels. A session that has targets has a camera. */
 #ifndef SENSOR_INSTRUMENTS_CAMERA_H
 #define SENSOR_INSTRUMENTS_CAMERA_H
 

@@ -18,8 +18,9 @@ typedef struct InstrumentsOf {
     bool           live; /* what is not ready is left out, not waited for */
 } InstrumentsOf;
 
-/* Poses at other times than the frame's, near it: of pulses, of a scanner's lines. Frames and units as in the structs;
- * gimbal angles and reports are those known at the frame. False: not there at t_s (exercise time). */
+/* Poses at other times than the frame's, at most a tick (0.01 s) before it: of pulses, of a scanner's lines. Frames and
+ * units as in the structs; gimbal angles and reports are those known at the frame. For the calling thread alone. False:
+ * not there at t_s (exercise time), *out is as it was. */
 typedef struct InstrumentPoses {
     bool (*eye)(EyeState *out, void *of, double t_s); /* host_index is -1 */
     bool (*entity)(SnapshotEntity *out, void *of, DisEntityId id, double t_s);
@@ -54,7 +55,8 @@ typedef struct Instruments {
 struct InstrumentKind {
     const char *name;
     const char *carries; /* from frame to frame, what a frame file lacks; NULL: nothing, each frame stands alone */
-    const char *noted;   /* why frames lack it whose recording notes so; NULL: it leaves nothing out by chance */
+    const char *noted;   /* why frames lack it whose recording notes so; NULL: it leaves nothing out by chance. One kind
+                          * alone has it, the radar: the note (frame_verdict.h) names no other */
     /* Adds those that the settings ask for, by instruments_add. STATUS_BAD_VALUE, STATUS_IO, logged. */
     Status (*open)(Instruments *list, const InstrumentsOf *of);
     /* Adds to what is rendered. NULL: it needs nothing. */

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # etc/ADDING.md, a plane: its row in the one list, and no other file, is a plane in files, by name, in help and in
-# regression; a row of what the renderer has is in hashes and saved frames too. A field of a frame file: its line. labels: two
+# regression; a row of what the renderer has is in hashes and saved frames too. A field of a frame file: its line. labels: two deep
 . "$(dirname "$0")/common.sh"
 . "$(dirname "$0")/regress.sh"
 judges python3.numpy python3.OpenEXR

@@ -48,8 +48,8 @@ typedef struct TraceShadow {
 typedef struct TraceEntry {
     int    turn; /* the lower are asked first; of equal ones, the earlier in the list */
     size_t found_octets;
-    /* Writes every range_m: of the first hit nearer than limit_m, m, or INFINITY. One beyond limit_m is allowed where
-     * a search does not end there: it is not taken. */
+    /* Writes every range_m: of the first hit nearer than limit_m, m, or INFINITY. Of a ray that met something, one
+     * beyond limit_m is not taken; of one that met nothing, limit_m is its far_m, and nothing beyond is written. */
     void (*first_hits)(double *range_m, void *found, const TraceBlock *block, const void *self);
     /* Of hits that are this entry's, those listed (ascending): kind, instance, material, normals
      * (visibility_store_normals) and what its kind has of its own. range_m and p_enu are there; all else is 0, albedo,

@@ -24,6 +24,6 @@ Status frame_loop(bool *over, const FrameLoop *loop)
         if (answer != CLOCK_DUE || status != STATUS_OK) break;
         clock->done(clock, &frame);
     }
-    *over = status == STATUS_OK && answer == CLOCK_EARLY;
+    if (over) *over = status == STATUS_OK && answer == CLOCK_EARLY;
     return status;
 }

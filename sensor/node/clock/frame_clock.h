@@ -1,5 +1,5 @@
-/* sensor/node/clock/frame_clock.h: when the next frame is due: what a recording, the wall and whoever else holds the
- * time are to the one loop over frames. */
+/* sensor/node/clock/frame_clock.h: when the next frame is due: a recording, the wall or another holder of the time,
+ * as the one loop over frames sees it. */
 #ifndef SENSOR_NODE_CLOCK_FRAME_CLOCK_H
 #define SENSOR_NODE_CLOCK_FRAME_CLOCK_H
 
@@ -15,7 +15,7 @@ static inline double frame_grid_s(const FrameGrid *grid, double n) { return (gri
 typedef struct FrameTime {
     int      number;
     double   t_s;     /* exercise time */
-    double   late_s;  /* how long ago it was due, when its work begins; 0: nobody waits for it */
+    double   late_s;  /* how long ago it was due, when its work begins; 0: this clock is not on the wall */
     uint64_t dropped; /* frames before it that were due and are not made */
 } FrameTime;
 
@@ -56,7 +56,7 @@ typedef struct FrameLoop {
 } FrameLoop;
 
 /* Frame after frame, until the clock ends, a frame fails, or over() says so: before a frame and while it waits for one,
- * and only where there is a further frame. over: whether it ended by that. */
+ * and only where there is a further frame. over: whether it ended by that; NULL: not asked. */
 Status frame_loop(bool *over, const FrameLoop *loop);
 
 #endif

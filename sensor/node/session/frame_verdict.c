@@ -21,7 +21,7 @@ struct FrameVerdicts {
 /* The words of a note, and the name in truth.jsonl, by bit. */
 static const struct {
     const char *note, *name;
-} kind[VERDICT_COUNT] = {{"no radar", NULL}, {"no grids of small targets", "target_grids"}};
+} kind[verdict_count] = {{"no radar", NULL}, {"no grids of small targets", "target_grids"}};
 
 void frame_verdict_apply(RenderRequest *request, unsigned verdict)
 {
@@ -31,7 +31,7 @@ void frame_verdict_apply(RenderRequest *request, unsigned verdict)
 const char *frame_verdict_name(unsigned verdict)
 {
     const char *name = NULL;
-    for (int i = 0; i < VERDICT_COUNT && !name; i++)
+    for (int i = 0; i < verdict_count && !name; i++)
         if (verdict >> i & 1) name = kind[i].name;
     return name;
 }
@@ -55,7 +55,7 @@ static bool read_line(Verdict *out, const char *line)
     double      number, t_s;
     if (!at || sscanf(at, " in frame %lf at %lf s", &number, &t_s) != 2) return false;
     if (!(number >= 0 && number <= INT32_MAX && fabs(t_s) < 1e9)) return false;
-    for (int i = 0; i < VERDICT_COUNT; i++) {
+    for (int i = 0; i < verdict_count; i++) {
         *out = (Verdict){(int)number, t_s, 1u << i};
         frame_verdict_text(again, out->given_up, out->number, out->t_s);
         if (strcmp(text, again) == 0) return true;

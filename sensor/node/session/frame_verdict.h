@@ -11,8 +11,8 @@
 enum {
     VERDICT_NO_RADAR = 1,        /* signatures of targets are still to be made */
     VERDICT_NO_TARGET_GRIDS = 2, /* targets that are small on the image have the samples of all others */
-    VERDICT_COUNT = 2
 };
+enum { verdict_count = 2 };
 
 /* Takes what is given up out of the request of a frame. */
 void frame_verdict_apply(RenderRequest *request, unsigned verdict);

@@ -1,4 +1,4 @@
-/* sensor/node/session/session_advance.c: what goes on between frames, and what all eyes have alike, whoever moves them.
+/* sensor/node/session/session_advance.c: what happens between frames, and what the eyes of all hosts share.
  */
 #include "sensor/node/session/session_private.h"
 

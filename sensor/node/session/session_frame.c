@@ -6,6 +6,8 @@
 #include "sensor/publish/consumers/consume_pairs.h"
 #include "sensor/frame/frame_world.h"
 
+#include <assert.h>
+
 /* Computes how a stationary point at the image centre moves on the image. */
 static void rate_of_scene(double rate_px_s[2], const Eye *eye, const Picture *picture)
 {
@@ -19,9 +21,10 @@ static void rate_of_scene(double rate_px_s[2], const Eye *eye, const Picture *pi
 static void note_verdict(const Session *s, unsigned verdict, const FrameTime *when)
 {
     char text[frame_verdict_text_size];
-    for (unsigned one = 1; s->shared->note && one <= verdict; one <<= 1) {
-        if (!(verdict & one)) continue;
-        frame_verdict_text(text, one, when->number, when->t_s);
+    assert(verdict >> verdict_count == 0);
+    for (int i = 0; s->shared->note && i < verdict_count; i++) {
+        if (!(verdict >> i & 1)) continue;
+        frame_verdict_text(text, 1u << i, when->number, when->t_s);
         s->shared->note(s->shared->user, text);
     }
 }
@@ -107,7 +110,7 @@ static bool eye_at(EyeState *out, void *of, double t_s)
 {
     Eye        eye;
     const bool there = session_eye(&eye, of, NULL, t_s);
-    *out = eye.state;
+    if (there) *out = eye.state;
     return there;
 }
 
@@ -132,9 +135,9 @@ static Status measure(Frame *f, Session *s, const Eye *eye, unsigned verdict)
     const Status status = instruments_look(&s->instruments, &look);
     if (status != STATUS_OK) return status;
     instruments_count(s->result.instrument, f);
-    for (int i = 0; i < f->outputs && !look.noted; i++)
-        if (f->output[i].left_out && f->output[i].kind->noted)
-            note_verdict(s, VERDICT_NO_RADAR, &(FrameTime){.number = f->number, .t_s = f->time_s});
+    bool by_chance = false;
+    for (int i = 0; i < f->outputs && !look.noted; i++) by_chance |= f->output[i].left_out && f->output[i].kind->noted;
+    if (by_chance) note_verdict(s, VERDICT_NO_RADAR, &(FrameTime){.number = f->number, .t_s = f->time_s});
     return STATUS_OK;
 }
 

@@ -76,8 +76,8 @@ typedef struct Eye {
     double   w_cam_rps[3]; /* how the camera turns, in its own axes */
 } Eye;
 
-/* How the eye moves, by whoever owns it. One implementation is a struct that begins with this; it names its host by
- * session_name_host when it knows it. */
+/* How the eye moves: an entity of the table, an observer. One implementation is a struct that begins with this; it
+ * names its host by session_name_host when it knows it. */
 struct HostMotion {
     Session *s;
     /* State that outlasts a frame: called on a fixed grid of exercise time, whatever frames there are. */

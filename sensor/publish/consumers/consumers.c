@@ -53,7 +53,7 @@ Status consume_displays(Consumer **out, const Config *config, const Sensors *sen
     return status;
 }
 
-/* ---- functions called with each record, or with each frame and its hash -------------------------- */
+/* ---- functions called with each frame, or with each frame and its hash -------------------------- */
 
 typedef struct Call {
     Consumer   consumer;
@@ -63,7 +63,7 @@ typedef struct Call {
     bool       hashes;
 } Call;
 
-static Status put_record(Consumer *consumer, Frame *frame)
+static Status put_call(Consumer *consumer, Frame *frame)
 {
     const Call *c = (const Call *)consumer;
     c->call(c->user, frame);
@@ -96,7 +96,7 @@ static Status open_call(Consumer **out, const Call *made_of)
 Status consume_by_call(Consumer **out, FrameCall *call, void *user, bool targets)
 {
     const Call made = {
-        .consumer = {targets ? WANT_TARGETS : 0, put_record, NULL, close_call, NULL}, .call = call, .user = user};
+        .consumer = {targets ? WANT_TARGETS : 0, put_call, NULL, close_call, NULL}, .call = call, .user = user};
     return open_call(out, &made);
 }
 

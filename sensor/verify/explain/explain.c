@@ -194,6 +194,7 @@ Status explain_pixel(Explained *e, SavedFrame *file, SavedScene *scene, int x, i
             "explain: the frame rendered here is not that of the file (%d planes differ)%s; what follows explains "
             "the one rendered here",
             e->differ, strcmp(file->version, PITVIPER_VERSION) == 0 ? "" : ": another version of pitviper made it");
+    for (int k = 0; k < pixel_records; k++) pixel_record_sort(&e->record[k]);
     status = explain_planes(e, arena);
     return status == STATUS_OK ? explain_bands(e, pool, arena) : status;
 }

@@ -170,7 +170,7 @@ Status explain_print_json(FILE *to, const Explained *e)
 {
     json_t *root = json_object(), *planes = json_array(), *samples = json_array(), *bands = json_object();
     set_index(root, "frame", e->file->frame);
-    json_object_set_new(root, "host", json_string(e->file->host));
+    json_set_text(root, "host", e->file->host, strlen(e->file->host));
     set(root, "time_s", e->file->time_s);
     set_index(root, "x", e->x), set_index(root, "y", e->y);
     set_index(root, "width", e->picture->width), set_index(root, "height", e->picture->height);

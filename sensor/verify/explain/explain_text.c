@@ -315,8 +315,9 @@ void explain_print(FILE *to, const Explained *e)
     const ExplainedPlane *p = main_plane(e);
     Surface               surface[surfaces_most];
     const int             count = e->planes ? find_surfaces(surface, p) : 0;
-    fprintf(to, "column %d, row %d of frame %d of host %s at %.3f s; %d x %d pixels\n", e->x, e->y, file->frame,
-            file->host, file->time_s, e->picture->width, e->picture->height);
+    fprintf(to, "column %d, row %d of frame %d of host ", e->x, e->y, file->frame);
+    text_print(to, "%s", file->host);
+    fprintf(to, " at %.3f s; %d x %d pixels\n", file->time_s, e->picture->width, e->picture->height);
     print_steps(to, e);
     if (count > 0) print_surfaces(to, e, surface, count, p->name);
     print_heats(to, e, surface, count);
