@@ -1,6 +1,7 @@
 /* tests/base/test_columns.c: rows of CSV into a toy struct (pitviper_table.h), against answers written by hand: types,
  * units, ranges, columns that are missing, doubled, later or unknown, and files that spreadsheets and vandals write.
  * The toy touches one file, this one; etc/ADDING.md's column is one row of `columns` and one member. */
+#include "tests/adding_snippet.h"
 #include "tests/check.h"
 #include "pitviper_table.h"
 
@@ -134,26 +135,11 @@ static void a_file_older_than_a_column_is_read(void **state)
     CHECK(box.toys == 0);
 }
 
-/* The row of etc/ADDING.md is the one above, to the letter but for blanks; a file that has its column gives the member.
- */
+/* The row of etc/ADDING.md is the one above; a file that has its column gives the member. */
 static void the_column_of_adding_is_read(void **state)
 {
     (void)state;
-    static const char        row[] = "{\"paint_um\",TABLE_DOUBLE,TABLE_AT(Toy,paint_m),.low=0,.high=900,.unit=1e-6,"
-                                     ".absent=TABLE_LATER,.otherwise=40},";
-    static const char *const file[] = {"etc/ADDING.md", "tests/base/test_columns.c"};
-    for (int f = 0; f < 2; f++) {
-        char  *text = NULL, dense[128];
-        size_t octets = 0, n = 0;
-        CHECK(text_read_file(&text, &octets, "test", file[f], 1 << 20) == STATUS_OK);
-        const char *at = strstr(text, "\n    {\"paint_um\"");
-        CHECK(at != NULL);
-        for (; *at && n < sizeof row - 1; at++)
-            if (*at != ' ' && *at != '\n') dense[n++] = *at;
-        dense[n] = 0;
-        assert_string_equal(dense, row);
-        free(text);
-    }
+    check_adding_snippet("column", "tests/base/test_columns.c");
     Box box;
     CHECK(read_text(&box, "name,note,length_64ths,whole,share,wheels,colour,paint_um\na,,1,1,,1,red,900\n") ==
           STATUS_OK);
@@ -163,6 +149,19 @@ static void the_column_of_adding_is_read(void **state)
     CHECK(read_text(&box, "name,note,length_64ths,whole,share,wheels,colour,paint_um\na,,1,1,,1,red,901\n") ==
           STATUS_BAD_VALUE);
     CHECK(strstr(check_said, "column paint_um: '901' is not a number in 0 .. 900"));
+}
+
+/* What is shown of a source stands in it, or not (tests/adding_snippet.h, by which other sections are compared too). */
+static void what_is_shown_stands(void **state)
+{
+    (void)state;
+    static const char source[] = "int a(void)\n{\n    return 1;\n}\nint b ( void ) { }\n";
+    CHECK(adding_stands("int a(void) { return 1; }\nint b(void)\n{\n}", source));
+    CHECK(adding_stands("int a(void) { ... }\n\nint b(void)", source) && adding_stands("int a(void)\n\n}", source));
+    CHECK(!adding_stands("int a(void) { return 2; }", source) && !adding_stands("int a(void) { }", source));
+    CHECK(!adding_stands("int b(void) { ... int a(void)", source) &&
+          !adding_stands("int b(void)\n\nint a(void)", source));
+    CHECK(!adding_stands("int b(void) { }\nint c(void);", source) && !adding_stands("", source));
 }
 
 /* Of two columns of one name the first is read, as everywhere before. */
@@ -311,6 +310,7 @@ int main(void)
         cmocka_unit_test(rows_are_read_in_any_order),
         cmocka_unit_test(a_file_older_than_a_column_is_read),
         cmocka_unit_test(the_column_of_adding_is_read),
+        cmocka_unit_test(what_is_shown_stands),
         cmocka_unit_test(of_doubled_columns_the_first_is_read),
         cmocka_unit_test(what_is_wrong_is_said_in_one_way),
         cmocka_unit_test(very_long_lines),

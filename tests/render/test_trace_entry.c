@@ -1,5 +1,7 @@
 /* Something else that rays can meet, through render/trace/visibility/trace_entry.h: a sphere, whose hits are known on
- * paper. This file is all that it takes (etc/ADDING.md, "Something that rays meet"), with its lines visibility_add. */
+ * paper. This file is all that it takes, with its lines visibility_add: etc/ADDING.md, "Something that rays meet",
+ * shows it. */
+#include "tests/adding_snippet.h"
 #include "tests/check.h"
 #include "tests/render/hand_models.h"
 
@@ -306,6 +308,12 @@ static void a_full_list(void **state)
     assert_int_equal(more, trace_entries - 2); /* ground and parts are there */
 }
 
+static void adding_shows_the_ball(void **state)
+{
+    (void)state;
+    check_adding_snippet("ray", "tests/render/test_trace_entry.c");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -315,6 +323,7 @@ int main(void)
         cmocka_unit_test(shadows),
         cmocka_unit_test(unseen_changes_nothing),
         cmocka_unit_test(a_full_list),
+        cmocka_unit_test(adding_shows_the_ball),
     };
     return cmocka_run_group_tests(tests, open_stage, close_stage);
 }

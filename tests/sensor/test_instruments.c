@@ -1,6 +1,8 @@
-/* An instrument is one file and one row of a list of kinds (ADDING.md, an instrument): a gauge of ranges, two of them
- * in one session. It asks for its planes, its arrays and records reach a consumer and are those of a level ground, its
- * poses at other times are those of the host's motion, and what it leaves out is counted with its reason. */
+/* An instrument is one file and one row of a list of kinds (etc/ADDING.md, "An instrument", shows this one): a gauge of
+ * ranges, two of them in one session. It asks for its planes, its arrays and records reach a consumer and are those of
+ * a level ground, its poses at other times are those of the host's motion, and what it leaves out is counted with its
+ * reason. */
+#include "tests/adding_snippet.h"
 #include "tests/sensor/eye_lab.h"
 
 #include "sensor/instruments/camera.h"
@@ -25,6 +27,13 @@ typedef struct GaugeRecord {
 static const InstrumentKind gauge_kind;
 static int                  gauges_closed;
 
+static void gauge_moved(double out[3], const double to_ecef[3], const double from_ecef[3])
+{
+    double way[3];
+    v3_sub(way, to_ecef, from_ecef);
+    m3_tmul_v3(out, lab.frame.r_ecef_from_enu, way);
+}
+
 static Status gauge_add(Instruments *list, const char *name, int first_row, bool rests)
 {
     Gauge *g = calloc(1, sizeof *g);
@@ -45,13 +54,6 @@ static void gauge_request(RenderRequest *request, const Instrument *instrument, 
     (void)instrument;
     (void)wants;
     request->truth = true;
-}
-
-static void gauge_moved(double out[3], const double to_ecef[3], const double from_ecef[3])
-{
-    double way[3];
-    v3_sub(way, to_ecef, from_ecef);
-    m3_tmul_v3(out, lab.frame.r_ecef_from_enu, way);
 }
 
 static Status gauge_look(FrameOutput *out, Instrument *instrument, const InstrumentLook *look)
@@ -110,8 +112,8 @@ static void gauge_close(Instrument *instrument)
 static const InstrumentKind gauge_kind = {
     .name = "gauge", .open = gauge_open, .request = gauge_request, .look = gauge_look, .close = gauge_close};
 
-/* Its one line elsewhere, in place of the row of instrument_kinds. */
-static const InstrumentKind *const with_gauges[] = {&camera_kind, &gauge_kind, NULL};
+/* Its one line elsewhere. */
+static const InstrumentKind *const with_gauges[] = {&camera_kind, &gauge_kind, NULL}; /* as instrument_kinds */
 
 /* ---- what a consumer gets ------------------------------------------------------------------------------- */
 
@@ -227,12 +229,19 @@ static void one_too_many_is_refused_and_closed(void **state)
     CHECK(gauges_closed == 1 + instruments_most && !instruments_find(&list, &gauge_kind));
 }
 
+static void adding_shows_this_one(void **state)
+{
+    (void)state;
+    check_adding_snippet("instrument", "tests/sensor/test_instruments.c");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(two_of_a_kind_look_along_one_eye),
         cmocka_unit_test(without_them_nothing_of_theirs_is_made),
         cmocka_unit_test(one_too_many_is_refused_and_closed),
+        cmocka_unit_test(adding_shows_this_one),
     };
     return cmocka_run_group_tests(tests, lab_open, lab_close);
 }
