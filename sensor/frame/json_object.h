@@ -15,12 +15,6 @@ static inline void json_set_number(json_t *object, const char *key, double value
     if (isfinite(value)) json_object_set_new(object, key, json_real(value));
 }
 
-/* Milliseconds, to the microsecond. */
-static inline void json_set_ms(json_t *object, const char *key, double ms)
-{
-    json_set_number(object, key, round(1e3 * ms) * 1e-3);
-}
-
 /* Octets of others: those that are no printable text are escaped. */
 static inline void json_set_text(json_t *object, const char *key, const char *bytes, size_t count)
 {
