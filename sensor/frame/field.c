@@ -129,7 +129,7 @@ static json_t *object_of(const FieldTable *table, const void *of, const void *re
 static json_t *value_of(const Field *f, const void *of, const void *record)
 {
     json_t *value = f->rows ? object_of(f->rows, of, record) : member(f, of);
-    if (!value || !f->unless_empty || json_object_size(value) > 0) return value;
+    if (!value || !f->unless_empty || json_object_size(value) > 0 || json_string_length(value) > 0) return value;
     json_decref(value);
     return NULL;
 }
@@ -167,6 +167,14 @@ static json_t *object_of(const FieldTable *table, const void *of, const void *re
 }
 
 json_t *field_object(const FieldTable *table, const void *record) { return object_of(table, record, record); }
+
+char *field_line(const FieldTable *table, const void *record, int digits)
+{
+    json_t *object = field_object(table, record);
+    char   *text = json_dumps(object, JSON_COMPACT | JSON_REAL_PRECISION((size_t)digits));
+    json_decref(object);
+    return text;
+}
 
 void field_carry(json_t *object, const FieldTable *table, const char *name, const void *record)
 {

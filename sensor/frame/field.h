@@ -72,7 +72,7 @@ struct Field {
     struct json_t *(*get)(FieldAt *at);      /* the caller owns it; NULL: absent */
     const void *(*item)(FieldAt *at, int i); /* the i-th struct of the rows, or place of the member; NULL: no more */
     const FieldTable *rows;
-    bool              unless_0, unless_empty; /* a count of 0 is absent; an object without a field is */
+    bool              unless_0, unless_empty; /* a count of 0 is absent; an object without a field, an empty text */
     /* comparison: equal within absolute + relative |expected|. Not held: within 1e-6 of it, and older records may lack
      * it; newer: held where the older record has it */
     bool         held, newer;
@@ -110,6 +110,8 @@ struct Field {
 
 /* Makes the object of a struct, owned by the caller. */
 struct json_t *field_object(const FieldTable *table, const void *record);
+/* The same as text in one line, without its newline; digits: of a number. NULL: out of memory. */
+char *field_line(const FieldTable *table, const void *record, int digits);
 /* Puts one field of it, by its name in the table, into another product's object, where it is absent as there. */
 void field_carry(struct json_t *object, const FieldTable *table, const char *name, const void *record);
 /* The row of a path as in a file, `targets[1:2:3].bands.lwir.snr`, and its channel, that of its objects if it has none

@@ -291,18 +291,11 @@ const FieldTable record_frame_fields = {frame_rows, sizeof frame_rows / sizeof *
 
 /* ---- writing ------------------------------------------------------------------------------------- */
 
-static char *text_of(json_t *object, size_t digits)
-{
-    char *text = json_dumps(object, JSON_COMPACT | JSON_REAL_PRECISION(digits));
-    json_decref(object);
-    return text;
-}
-
-char *record_frame_text(const FrameRecord *r) { return text_of(field_object(&record_frame_fields, r), 15); }
+char *record_frame_text(const FrameRecord *r) { return field_line(&record_frame_fields, r, 15); }
 
 Status record_write_text(FILE *file, const char *text, const LatencyLine *latency)
 {
-    char *more = latency ? text_of(field_object(&FIELD_TABLE(latency_rows), latency), 9) : NULL;
+    char *more = latency ? field_line(&FIELD_TABLE(latency_rows), latency, 9) : NULL;
     if (latency && !more) return STATUS_NO_MEMORY;
     const int  length = (int)strlen(text) - 1; /* the object is still open: without its last brace */
     const bool ok =

@@ -2,7 +2,7 @@
  * when it is absent; and Python to read it.
  *
  * One table, out of which come `pitviper help TOPIC`, the PRODUCTS section of the manual page and products.md. A new
- * field of a product is one row here, of truth.jsonl and run.json the row that also writes it:
+ * field of a product is one row here, of what has a FieldTable the row that also writes it:
  * tests/system/test_reference.sh replays exercises with all products and fails for a field without a row, a row without
  * a field, a different type, and a missing field whose row has no `absent`. */
 #ifndef SENSOR_REFERENCE_REFERENCE_H
@@ -37,7 +37,7 @@ typedef struct Reference {
     bool (*listed)(ReferenceField *out, int i);
     const ReferenceField *field;
     int                   field_count;
-    const FieldTable     *table; /* the fields of truth.jsonl and run.json, from where they are written; else NULL */
+    const FieldTable     *table; /* of products written by rows, from where they are written; else NULL */
     const ReferenceWord  *word;
     int                   word_count;
     const char           *python; /* run in the folder given by --out; may be NULL */

@@ -3,27 +3,10 @@
 #include "sensor/reference/reference.h"
 
 #include "render/frame/planes.h"
+#include "sensor/commands/sweep/sweep.h"
+#include "sensor/publish/consumers/consume_pairs.h"
+#include "sensor/publish/memory/detections.h"
 
-static const ReferenceField pair_fields[] = {
-    {"frame", "integer", "", "from 0", "", "number of the frame"},
-    {"time_s", "number", "s", "exercise time", "", "instant of the frame"},
-    {"seed", "integer", "", "", "", "seed of the noise, the same in all members"},
-    {"removed", "list of strings", "", "site:application:entity", "", "entities removed from the background"},
-    {"frame_sha256", "string", "", "", "", "SHA-256 of the planes with the target, as in truth.jsonl"},
-    {"background_sha256", "string", "", "", "", "SHA-256 of the planes without it"},
-    {"members", "list of objects", "", "with noise, with; with, without; without, with; without, without", "",
-     "the four images of each band"},
-    {"members[].target", "boolean", "", "", "", "with the target"},
-    {"members[].noise", "boolean", "", "", "", "with the detector's noise"},
-    {"members[].truth", "string", "", "file, from the folder of pairs.jsonl", "", "its truth EXR"},
-    {"members[].bands", "object", "", "", "", "its images"},
-    {"members[].bands.BAND", "object", "", "", "when the band was not rendered", "of one band"},
-    {"members[].bands.BAND.radiance", "string", "", "file", "", "its EXR, always without detector noise"},
-    {"members[].bands.BAND.display", "string", "", "file", "with --no-png", "its PNG; radar: without noise too"},
-    {"members[].bands.BAND.raw", "string", "", "file", "without a sensor, and in radar", "its counts"},
-    {"members[].bands.BAND.level", "list of 2 numbers", "counts of the sensor; else W/(m2 sr)", "black, white",
-     "in radar and with --no-png", "values shown as black and white; RGB: after white balance"},
-};
 static const ReferenceWord words[] = {REFERENCE_WORD_BAND};
 
 const Reference reference_pairs = {
@@ -32,7 +15,7 @@ const Reference reference_pairs = {
     .title = "each frame with and without its target, with and without noise: a line of JSON per frame",
     .about = "With --pairs target or --pairs all. The files lie in frames/ and raw/ (as without --pairs) and in\n"
              "pairs/clean, pairs/background and pairs/background_clean, each with folders of the same names.",
-    .field = REFERENCE_FIELDS(pair_fields),
+    .table = &pair_fields,
     .word = REFERENCE_FIELDS(words),
     .python = "import json\n"
               "for line in open('pairs.jsonl'):\n"
@@ -126,22 +109,6 @@ const Reference reference_coco = {
         "# with pycocotools: COCO('coco.json').annToMask(a) is the mask, [row][column]\n",
 };
 
-static const ReferenceField answer_fields[] = {
-    {"frame", "integer", "", "from 0", "", "number of the frame that was answered"},
-    {"band", "string", "", "", "", "BAND that was answered"},
-    {"time_s", "number", "s", "exercise time", "", "instant of that frame"},
-    {"answer", "integer", "", "from 1", "", "number of the detection among those of the answer; 0: it found nothing"},
-    {"of", "integer", "", "", "", "detections of the answer: so many lines belong together"},
-    {"class", "string", "", "", "when nothing was found", "the recogniser's own word, at most 31 characters"},
-    {"box_px", "list of 4 numbers", "px", "image: left, top, right, bottom; from 0, the last two beyond it",
-     "when nothing was found", "bounding box"},
-    {"score", "number", "", "0 .. 1", "when nothing was found", "confidence"},
-    {"track", "integer", "", "", "when the recogniser gave none",
-     "the same number for the same object in later frames"},
-    {"latency_ms", "number", "ms", "", "", "from the end of the frame's rendering until the answer was received"},
-    {"late", "boolean", "", "", "", "a newer frame of the band was answered before: not in metadata"},
-};
-
 const Reference reference_answers = {
     .topic = "answers",
     .file = "answers.jsonl",
@@ -150,7 +117,7 @@ const Reference reference_answers = {
         "With publish.detections_port (etc/reference/memory.md). One answer counts for a frame and band, the first; "
         "repeated ones,\n"
         "and all that are refused, are counted in run.json: counters.answers.",
-    .field = REFERENCE_FIELDS(answer_fields),
+    .table = &answer_fields,
     .word = REFERENCE_FIELDS(words),
     .python =
         "import json\n"
@@ -163,22 +130,6 @@ const Reference reference_answers = {
 
 /* ---- manifest.jsonl and the page of a sweep ------------------------------------------------------ */
 
-static const ReferenceField sweep_fields[] = {
-    {"variant", "string", "", "", "", "its name, a hash of its settings"},
-    {"folder", "string", "", "from the folder of manifest.jsonl", "", "where its products are"},
-    {"number", "integer", "", "from 1", "", "its position in the sweep"},
-    {"status", "string", "", "", "", "`made`; `kept`: complete from an earlier run; `failed`"},
-    {"settings", "object", "", "", "", "settings of the axes"},
-    {"settings.KEY", "string", "as in `pitviper check --default`", "", "", "its value as text"},
-    {"config_sha256", "string", "", "", "", "as in its run.json"},
-    {"settings_sha256", "string", "", "", "", "SHA-256 of its settings.yaml"},
-    {"log_sha256", "string", "", "", "", "SHA-256 of the log's octets"},
-    {"pitviper", "string", "", "", "", "version of the program"},
-    {"error", "string", "", "", "when it has not failed", "reason; details in log.txt of its folder"},
-    {"seconds", "number", "s", "", "when it was kept", "run time"},
-    {"frames", "integer", "", "", "when it failed", "number of frames rendered"},
-    {"frame_sha256", "list of strings", "", "", "when it failed", "as in its run.json"},
-};
 static const ReferenceWord sweep_words[] = {
     {"KEY", "a setting's section and key with a dot between, such as weather.visibility_m", NULL, NULL},
 };
@@ -189,7 +140,7 @@ const Reference reference_manifest = {
     .title = "the variants of a sweep: a line of JSON each",
     .about = "Of --sweep FILE. Each variant's line, with status `made`, is also its FOLDER/variant.json: it marks\n"
              "the variant as complete, to be kept by the next run.",
-    .field = REFERENCE_FIELDS(sweep_fields),
+    .table = &variant_fields,
     .word = REFERENCE_FIELDS(sweep_words),
     .python = "import json, os\n"
               "for line in open('manifest.jsonl'):\n"

@@ -22,6 +22,7 @@
 #ifndef SENSOR_COMMANDS_SWEEP_SWEEP_H
 #define SENSOR_COMMANDS_SWEEP_SWEEP_H
 
+#include "sensor/frame/field.h"
 #include "sensor/node/run/host_run.h"
 #include "sensor/settings/config.h"
 
@@ -31,6 +32,8 @@ typedef Status SweepLook(Run *run);
 /* Exit code: 0; 1: a variant failed, or the sweep could not be written, or look refuses what no axis changes; 2: the
  * file or settings of a variant are invalid. */
 int sweep_replay(const Options *options, SweepLook *look);
+
+extern const FieldTable variant_fields; /* a line of manifest.jsonl */
 
 /* ---- the settings that a sweep varies --------------------------------------------------------------- */
 

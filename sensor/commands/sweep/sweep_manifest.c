@@ -151,31 +151,6 @@ void sweep_settings_words(char out[sweep_words_size], const Sweep *sweep, int nu
     }
 }
 
-char *sweep_manifest_line(const SweepRun *s, const Variant *v, const Outcome *outcome)
-{
-    char        text[sweep_axes_max][sweep_value_size];
-    const char *key[sweep_axes_max], *value[sweep_axes_max];
-    for (int i = 0; i < s->sweep.axis_count; i++) {
-        sweep_value(text[i], &s->sweep, v->number, i);
-        key[i] = s->sweep.axis[i].key;
-        value[i] = text[i];
-    }
-    return variant_line(&(VariantRecord){
-        .name = v->name,
-        .status = outcome->status,
-        .error = outcome->why,
-        .number = v->number + 1,
-        .setting_count = s->sweep.axis_count,
-        .key = key,
-        .value = value,
-        .config_sha256 = v->config_sha256,
-        .settings_sha256 = v->settings_sha256,
-        .log_sha256 = s->log_sha256,
-        .seconds = outcome->seconds,
-        .run = outcome->has_run ? &outcome->run : NULL,
-    });
-}
-
 void sweep_report_variant(SweepRun *s, const Variant *v, const Outcome *outcome, int place)
 {
     char words[sweep_words_size], text[sweep_words_size + 600];

@@ -27,19 +27,6 @@ typedef struct VariantRun {
 bool variant_run_read(VariantRun *out, const char *path);
 void variant_run_free(VariantRun *run);
 
-typedef struct VariantRecord {
-    const char        *name, *status, *error; /* error: "": none */
-    int                number;                /* 1 is the first */
-    int                setting_count;
-    const char *const *key, *const *value; /* [setting_count] */
-    const char       *config_sha256, *settings_sha256, *log_sha256;
-    double            seconds; /* 0: not given */
-    const VariantRun *run;     /* NULL: there is none */
-} VariantRecord;
-
-/* Makes one line without its newline, which the caller frees. NULL: out of memory. */
-char *variant_line(const VariantRecord *record);
-
 /* ---- drawn values ----------------------------------------------------------------------------------- */
 
 /* Random: finds `count` draws that differ. Logs path and line when there are fewer. */

@@ -50,24 +50,73 @@ void variant_run_free(VariantRun *run)
 
 /* ---- written ---------------------------------------------------------------------------------- */
 
-char *variant_line(const VariantRecord *r)
+/* A line of manifest.jsonl. */
+typedef struct VariantLine {
+    const Sweep      *sweep;
+    const Variant    *variant;
+    const VariantRun *run;                                   /* NULL: there is none */
+    int               number;                                /* from 1 */
+    double            seconds;                               /* NaN: not given */
+    const char       *status, *error, *log_sha256, *version; /* error: "": none */
+} VariantLine;
+
+static const void *variant_of(const void *of) { return ((const VariantLine *)of)->variant; }
+static const void *run_of(const void *of) { return ((const VariantLine *)of)->run; }
+
+static json_t *settings(FieldAt *at)
 {
-    json_t *settings = json_object();
-    for (int i = 0; i < r->setting_count; i++) json_object_set_new(settings, r->key[i], json_string(r->value[i]));
-    json_t *line =
-        json_pack("{s:s,s:s,s:i,s:s,s:o,s:s,s:s,s:s,s:s}", "variant", r->name, "folder", r->name, "number", r->number,
-                  "status", r->status, "settings", settings, "config_sha256", r->config_sha256, "settings_sha256",
-                  r->settings_sha256, "log_sha256", r->log_sha256, "pitviper", PITVIPER_VERSION);
-    if (!line) return NULL;
-    if (*r->error) json_object_set_new(line, "error", json_string(r->error));
-    if (r->seconds > 0) json_object_set_new(line, "seconds", json_real(r->seconds));
-    if (r->run) {
-        json_t *hashes = json_array();
-        for (int i = 0; i < r->run->hash_count; i++) json_array_append_new(hashes, json_string(r->run->hash[i]));
-        json_object_set_new(line, "frames", json_integer(r->run->frames));
-        json_object_set_new(line, "frame_sha256", hashes);
+    const VariantLine *line = at->of;
+    json_t            *object = json_object();
+    char               value[sweep_value_size];
+    for (int i = 0; i < line->sweep->axis_count; i++) {
+        sweep_value(value, line->sweep, line->number - 1, i);
+        json_object_set_new(object, line->sweep->axis[i].key, json_string(value));
     }
-    char *text = json_dumps(line, JSON_COMPACT | JSON_REAL_PRECISION(6));
-    json_decref(line);
-    return text;
+    return object;
+}
+
+static const void *next_hash(FieldAt *at, int i)
+{
+    const VariantRun *run = at->of;
+    return i < run->hash_count ? run->hash[i] : NULL;
+}
+
+#define OF_LINE(member)    FIELD_MEMBER(VariantLine, member)
+#define IN_VARIANT(member) FIELD_IN(variant_of, Variant, member)
+
+static const Field key_rows[] = {
+    {"KEY", "as in `pitviper check --default`", "", "", "its value as text", FIELD_ELSEWHERE("string")},
+};
+
+static const Field variant_rows[] = {
+    {"variant", "", "", "", "its name, a hash of its settings", IN_VARIANT(name)},
+    {"folder", "", "from the folder of manifest.jsonl", "", "where its products are", IN_VARIANT(name)},
+    {"number", "", "from 1", "", "its position in the sweep", OF_LINE(number)},
+    {"status", "", "", "", "`made`; `kept`: complete from an earlier run; `failed`", OF_LINE(status)},
+    {"settings", "", "", "", "settings of the axes", .get = settings, FIELD_OBJECT(key_rows)},
+    {"config_sha256", "", "", "", "as in its run.json", IN_VARIANT(config_sha256)},
+    {"settings_sha256", "", "", "", "SHA-256 of its settings.yaml", IN_VARIANT(settings_sha256)},
+    {"log_sha256", "", "", "", "SHA-256 of the log's octets", OF_LINE(log_sha256)},
+    {"pitviper", "", "", "", "version of the program", OF_LINE(version)},
+    {"error", "", "", "when it has not failed", "reason; details in log.txt of its folder", OF_LINE(error),
+     .unless_empty = true},
+    {"seconds", "s", "", "when it was kept", "run time", OF_LINE(seconds)},
+    {"frames", "", "", "when it failed", "number of frames rendered", FIELD_IN(run_of, VariantRun, frames)},
+    {"frame_sha256", "", "", "when it failed", "as in its run.json", .type = "list of strings", .in = run_of,
+     .item = next_hash, .kind = FIELD_OF_OCTETS, .size = sha256_text_size},
+};
+const FieldTable variant_fields = {variant_rows, sizeof variant_rows / sizeof *variant_rows};
+
+char *sweep_manifest_line(const SweepRun *s, const Variant *v, const Outcome *outcome)
+{
+    const VariantLine line = {&s->sweep,
+                              v,
+                              outcome->has_run ? &outcome->run : NULL,
+                              v->number + 1,
+                              outcome->seconds > 0 ? outcome->seconds : NAN,
+                              outcome->status,
+                              outcome->why,
+                              s->log_sha256,
+                              PITVIPER_VERSION};
+    return field_line(&variant_fields, &line, 6);
 }

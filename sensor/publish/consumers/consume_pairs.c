@@ -10,98 +10,29 @@
 #include <stdlib.h>
 #include <jansson.h>
 
-/* ---- a line of pairs.jsonl: a frame with all its members and their files ------------------------- */
-
-enum { pair_members = 1 + pair_folders };
-
-typedef struct PairMember {
-    bool        target, noise;
-    const char *radiance, *shown; /* folders below the run's: of radiance and truth, of displays and raw counts */
-    const FrameDisplay *display;  /* [BAND_COUNT] values of black and white */
-} PairMember;
-
-typedef struct PairRecord {
-    int                frame;
-    double             time_s;
-    long long          seed;
-    int                removed_count;
-    const DisEntityId *removed; /* removed entities */
-    const char        *frame_sha256, *background_sha256;
-    unsigned           bands, raw; /* 1 << Band: rendered; with raw counts */
-    bool               png, truth;
-    PairMember         member[pair_members];
-} PairRecord;
-
-static void set_file(json_t *object, const char *key, const char *below, const char *place, const char *band, int frame,
-                     const char *ending)
-{
-    char path[128];
-    snprintf(path, sizeof path, "%s%s%s/%s/%06d.%s", below, *below ? "/" : "", place, band, frame, ending);
-    json_object_set_new(object, key, json_string(path));
-}
-
-static json_t *member_json(const PairRecord *r, const PairMember *m)
-{
-    json_t *member = json_pack("{s:b,s:b}", "target", m->target, "noise", m->noise), *bands = json_object();
-    if (r->truth) set_file(member, "truth", m->radiance, "frames", "truth", r->frame, "exr");
-    for (int b = 0; b < BAND_COUNT; b++) {
-        if (!(r->bands >> b & 1)) continue;
-        const char *name = band_name((Band)b);
-        json_t     *band = json_object();
-        set_file(band, "radiance", m->radiance, "frames", name, r->frame, "exr");
-        /* radar has no detector noise: its image is listed with its radiance */
-        if (r->png)
-            set_file(band, "display", b == BAND_RADAR ? m->radiance : m->shown, "frames", name, r->frame, "png");
-        if (r->raw >> b & 1) set_file(band, "raw", m->shown, "raw", name, r->frame, "png");
-        if (r->png && b != BAND_RADAR)
-            json_object_set_new(band, "level", json_pack("[f,f]", m->display[b].level.low, m->display[b].level.high));
-        json_object_set_new(bands, name, band);
-    }
-    json_object_set_new(member, "bands", bands);
-    return member;
-}
-
-/* Writes one line and flushes it. STATUS_IO when it cannot be written; STATUS_NO_MEMORY. */
-static Status write_pair_record(FILE *file, const PairRecord *r)
-{
-    json_t *removed = json_array(), *members = json_array();
-    for (int i = 0; i < r->removed_count; i++) {
-        char id[dis_id_text_size];
-        dis_entity_id_text(id, r->removed[i]);
-        json_array_append_new(removed, json_string(id));
-    }
-    for (int m = 0; m < pair_members; m++) json_array_append_new(members, member_json(r, &r->member[m]));
-    json_t *line = json_pack("{s:i,s:f,s:I,s:o,s:s,s:s,s:o}", "frame", r->frame, "time_s", r->time_s, "seed",
-                             (json_int_t)r->seed, "removed", removed, "frame_sha256", r->frame_sha256,
-                             "background_sha256", r->background_sha256, "members", members);
-    char   *text = line ? json_dumps(line, JSON_COMPACT | JSON_REAL_PRECISION(15)) : NULL;
-    json_decref(line);
-    if (!text) return STATUS_NO_MEMORY;
-    const bool ok = fprintf(file, "%s\n", text) > 0 && fflush(file) == 0;
-    free(text);
-    return ok ? STATUS_OK : STATUS_IO;
-}
-
 /* ---- the consumer -------------------------------------------------------------------------------- */
 
 /* The members of a pair, with the target and without it; CLEAN: without noise. */
-enum { WITH, CLEAN, BACKGROUND, BACKGROUND_CLEAN, path_size = frame_path_size };
+enum { WITH, CLEAN, BACKGROUND, BACKGROUND_CLEAN, pair_members = 1 + pair_folders, path_size = frame_path_size };
 
 /* The detector products of one member. The first is the run's own. */
 typedef struct Member {
+    bool         target, noise;
+    const char  *radiance, *shown; /* folders below the run's: of radiance and truth, of displays and raw counts */
     char         folder[path_size];
     Camera       camera;
     FrameDisplay display[BAND_COUNT]; /* of the present frame */
 } Member;
 
 typedef struct Pairs {
-    Consumer consumer;
-    PairsOf  of;
-    Config   noiseless;
-    bool     all;
-    FILE    *index;
-    int      frames, taken; /* taken: entities removed, over all frames */
-    Member   member[pair_members];
+    Consumer     consumer;
+    PairsOf      of;
+    Config       noiseless;
+    bool         all;
+    FILE        *index;
+    int          frames, taken; /* taken: entities removed, over all frames */
+    Member       member[pair_members];
+    const Frame *frame; /* the present one */
 } Pairs;
 
 static Status close_pairs(Consumer *consumer)
@@ -120,33 +51,95 @@ static Status close_pairs(Consumer *consumer)
     return status;
 }
 
-/* ---- the index -------------------------------------------------------------------------------- */
+/* ---- a line of pairs.jsonl: a frame with all its members and their files ------------------------- */
 
-static Status write_line(const Pairs *p, const Frame *frame)
+/* One band of a member. An empty name: there is no such file. */
+typedef struct PairBand {
+    char   radiance[96], display[96], raw[96];
+    double level[2]; /* NaN: none */
+} PairBand;
+
+static void put_name(char out[96], const Pairs *p, const char *below, const char *place, const char *band,
+                     const char *ending)
 {
-    PairRecord r = {.frame = frame->number,
-                    .time_s = frame->time_s,
-                    .seed = p->of.config->seed,
-                    .removed = frame->taken,
-                    .removed_count = frame->taken_count,
-                    .frame_sha256 = frame->seen.sha256,
-                    .background_sha256 = frame->without->sha256,
-                    .bands = frame->request.bands,
-                    .raw = p->of.raw,
-                    .png = p->of.config->publish.png,
-                    .truth = frame_files_truth(p->of.config)};
-    for (int m = WITH; m < pair_members; m++)
-        r.member[m] = (PairMember){
-            .target = m < BACKGROUND,
-            .noise = m == WITH || m == BACKGROUND,
-            .radiance = m < BACKGROUND ? "" : pair_folder[BACKGROUND - 1],
-            .shown = m == WITH ? "" : pair_folder[m - 1],
-            .display = m == WITH ? frame->display : p->member[m].display,
-        };
-    const Status status = write_pair_record(p->index, &r);
-    if (status == STATUS_IO) log_error("pairs: cannot write pairs.jsonl: %s", strerror(errno));
-    return status;
+    snprintf(out, 96, "%s%s%s/%s/%06d.%s", below, *below ? "/" : "", place, band, p->frame->number, ending);
 }
+
+static const void *next_band(FieldAt *at, int i)
+{
+    const Pairs  *p = at->record;
+    const Member *m = at->of;
+    const bool    png = p->of.config->publish.png, radar = i == BAND_RADAR;
+    PairBand     *b = (PairBand *)at->room;
+    if (i >= BAND_COUNT || !(p->frame->request.bands >> i & 1)) return i < BAND_COUNT ? field_keyed(at, "", b) : NULL;
+    const char          *name = band_name((Band)i);
+    const DetectorLevel *level = &(m == p->member ? p->frame->display : m->display)[i].level;
+    *b = (PairBand){.level = {png && !radar ? level->low : NAN, level->high}};
+    put_name(b->radiance, p, m->radiance, "frames", name, "exr");
+    /* radar has no detector noise: its image is listed with its radiance */
+    if (png) put_name(b->display, p, radar ? m->radiance : m->shown, "frames", name, "png");
+    if (p->of.raw >> i & 1) put_name(b->raw, p, m->shown, "raw", name, "png");
+    return field_keyed(at, name, b);
+}
+
+static json_t *truth_file(FieldAt *at)
+{
+    char name[96];
+    put_name(name, at->record, ((const Member *)at->of)->radiance, "frames", "truth", "exr");
+    return frame_files_truth(((const Pairs *)at->record)->of.config) ? json_string(name) : NULL;
+}
+
+static const void *next_removed(FieldAt *at, int i)
+{
+    const Frame *frame = at->of;
+    return i < frame->taken_count ? &frame->taken[i] : NULL;
+}
+
+static const void *next_member(FieldAt *at, int i)
+{
+    return i < pair_members ? &((const Pairs *)at->of)->member[i] : NULL;
+}
+
+static const void *frame_of(const void *of) { return ((const Pairs *)of)->frame; }
+static const void *without_of(const void *of) { return ((const Pairs *)of)->frame->without; }
+static const void *config_of(const void *of) { return ((const Pairs *)of)->of.config; }
+static const void *levelled(const void *of) { return isfinite(((const PairBand *)of)->level[0]) ? of : NULL; }
+
+#define OF_BAND(member) FIELD_MEMBER(PairBand, member)
+
+static const Field band_rows[] = {
+    {"radiance", "", "file", "", "its EXR, always without detector noise", OF_BAND(radiance)},
+    {"display", "", "file", "with --no-png", "its PNG; radar: without noise too", OF_BAND(display),
+     .unless_empty = true},
+    {"raw", "", "file", "without a sensor, and in radar", "its counts", OF_BAND(raw), .unless_empty = true},
+    {"level", "counts of the sensor; else W/(m2 sr)", "black, white", "in radar and with --no-png",
+     "values shown as black and white; RGB: after white balance", FIELD_IN(levelled, PairBand, level)},
+};
+
+static const Field bands_rows[] = {
+    {"BAND", "", "", "when the band was not rendered", "of one band", .item = next_band, FIELD_OBJECT(band_rows)},
+};
+
+static const Field member_rows[] = {
+    {"target", "", "", "", "with the target", FIELD_MEMBER(Member, target)},
+    {"noise", "", "", "", "with the detector's noise", FIELD_MEMBER(Member, noise)},
+    {"truth", "", "file, from the folder of pairs.jsonl", "", "its truth EXR", FIELD_GET("string", truth_file)},
+    {"bands", "", "", "", "its images", FIELD_OBJECT(bands_rows)},
+};
+
+static const Field pair_rows[] = {
+    {"frame", "", "from 0", "", "number of the frame", FIELD_IN(frame_of, Frame, number)},
+    {"time_s", "s", "exercise time", "", "instant of the frame", FIELD_IN(frame_of, Frame, time_s)},
+    {"seed", "", "", "", "seed of the noise, the same in all members", FIELD_IN(config_of, Config, seed)},
+    {"removed", "", "site:application:entity", "", "entities removed from the background", .in = frame_of,
+     .item = next_removed, .type = "list of strings", .kind = FIELD_OF_ID},
+    {"frame_sha256", "", "", "", "SHA-256 of the planes with the target, as in truth.jsonl",
+     FIELD_IN(frame_of, Frame, seen.sha256)},
+    {"background_sha256", "", "", "", "SHA-256 of the planes without it", FIELD_IN(without_of, FrameView, sha256)},
+    {"members", "", "with noise, with; with, without; without, with; without, without", "",
+     "the four images of each band", .item = next_member, FIELD_OBJECTS(member_rows)},
+};
+const FieldTable pair_fields = {pair_rows, sizeof pair_rows / sizeof *pair_rows};
 
 /* ---- a frame ---------------------------------------------------------------------------------- */
 
@@ -246,7 +239,13 @@ static Status put(Consumer *consumer, Frame *frame)
     if (status != STATUS_OK) return status;
     p->frames++;
     p->taken += frame->taken_count;
-    return write_line(p, frame);
+    p->frame = frame;
+    char *text = field_line(&pair_fields, p, 15);
+    if (!text) return STATUS_NO_MEMORY;
+    const bool ok = fprintf(p->index, "%s\n", text) > 0 && fflush(p->index) == 0;
+    if (!ok) log_error("pairs: cannot write pairs.jsonl: %s", strerror(errno));
+    free(text);
+    return ok ? STATUS_OK : STATUS_IO;
 }
 
 /* ---- opened ----------------------------------------------------------------------------------- */
@@ -287,6 +286,12 @@ Status consume_pairs(Consumer **out, const PairsOf *of)
     p->noiseless = *of->config;
     p->noiseless.detector.noise = 0;
     Status status = STATUS_OK;
+    for (int m = WITH; m < pair_members; m++) {
+        p->member[m].target = m < BACKGROUND;
+        p->member[m].noise = m == WITH || m == BACKGROUND;
+        p->member[m].radiance = m < BACKGROUND ? "" : pair_folder[BACKGROUND - 1];
+        p->member[m].shown = m == WITH ? "" : pair_folder[m - 1];
+    }
     for (int m = CLEAN; m < pair_members && status == STATUS_OK; m++)
         status = camera_open(&p->member[m].camera, of->sensors, of->config, m == BACKGROUND);
     if (status == STATUS_OK) *out = &p->consumer;

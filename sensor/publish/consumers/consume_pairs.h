@@ -19,6 +19,7 @@
 #ifndef SENSOR_PUBLISH_CONSUMERS_CONSUME_PAIRS_H
 #define SENSOR_PUBLISH_CONSUMERS_CONSUME_PAIRS_H
 
+#include "sensor/frame/field.h"
 #include "sensor/publish/consumers/consumers.h"
 
 /* The inputs of the members. */
@@ -31,6 +32,7 @@ typedef struct PairsOf {
     const Sensors *sensors;
 } PairsOf;
 
+extern const FieldTable pair_fields; /* a line of pairs.jsonl */
 /* Requires each frame without its target too (Frame.without). */
 Status consume_pairs(Consumer **out, const PairsOf *made_of);
 /* Which entities a frame is rendered without. */

@@ -3,7 +3,6 @@
 #include "sensor/publish/memory/detections.h"
 #include "pitviper_output.h"
 #include "render/scene/view.h"
-#include "sensor/frame/json_object.h"
 
 #include <arpa/inet.h>
 #include <errno.h>
@@ -107,12 +106,41 @@ typedef struct Answers {
     bool  failed; /* reported */
 } Answers;
 
-/* The frame that was answered. */
-typedef struct AnsweredFrame {
-    double time_s;     /* exercise time */
-    double latency_ms; /* from the end of its rendering to the answer's arrival; NaN: not known */
-    bool   late;       /* a newer frame of the band was answered before */
-} AnsweredFrame;
+/* A line; box_px .. track: only with class_name. */
+typedef struct AnswerLine {
+    int         frame, answer, of;
+    const char *band, *class_name; /* NULL: nothing was found */
+    double      time_s;            /* exercise time */
+    double      box_px[4], score;
+    long long   track;      /* 0: none */
+    double      latency_ms; /* NaN: not known */
+    bool        late;
+} AnswerLine;
+
+static const void *found(const void *of) { return ((const AnswerLine *)of)->class_name ? of : NULL; }
+
+#define OF_LINE(member)  FIELD_MEMBER(AnswerLine, member)
+#define OF_FOUND(member) FIELD_IN(found, AnswerLine, member)
+
+static const Field answer_rows[] = {
+    {"frame", "", "from 0", "", "number of the frame that was answered", OF_LINE(frame)},
+    {"band", "", "", "", "BAND that was answered", OF_LINE(band)},
+    {"time_s", "s", "exercise time", "", "instant of that frame", OF_LINE(time_s)},
+    {"answer", "", "from 1", "", "number of the detection among those of the answer; 0: it found nothing",
+     OF_LINE(answer)},
+    {"of", "", "", "", "detections of the answer: so many lines belong together", OF_LINE(of)},
+    {"class", "", "", "when nothing was found", "the recogniser's own word, at most 31 characters",
+     OF_LINE(class_name)},
+    {"box_px", "px", "image: left, top, right, bottom; from 0, the last two beyond it", "when nothing was found",
+     "bounding box", OF_FOUND(box_px)},
+    {"score", "", "0 .. 1", "when nothing was found", "confidence", OF_FOUND(score)},
+    {"track", "", "", "when the recogniser gave none", "the same number for the same object in later frames",
+     OF_FOUND(track), .unless_0 = true},
+    {"latency_ms", "ms", "", "", "from the end of the frame's rendering until the answer was received",
+     OF_LINE(latency_ms), .as = field_ms},
+    {"late", "", "", "", "a newer frame of the band was answered before: not in metadata", OF_LINE(late)},
+};
+const FieldTable answer_fields = {answer_rows, sizeof answer_rows / sizeof *answer_rows};
 
 /* Creates the file in this folder. STATUS_IO, logged. */
 static Status answers_open(Answers **out, const char *folder)
@@ -136,45 +164,27 @@ static Status answers_open(Answers **out, const char *folder)
 /* Rounds a float to the decimal that its sender wrote, since the nearest double of the float shows further digits. */
 static double digits(float value, double unit) { return round((double)value / unit) * unit; }
 
-/* Detection `number` of the answer, from 1 on; 0: there is none. */
-static json_t *line_of(const PitviperDetections *answer, const AnsweredFrame *frame, uint32_t number)
-{
-    json_t *line = json_pack("{s:i,s:s,s:f,s:I,s:I}", "frame", answer->frame, "band", band_name((Band)answer->band),
-                             "time_s", frame->time_s, "answer", (json_int_t)number, "of", (json_int_t)answer->count);
-    if (line && number > 0) {
-        const PitviperDetection *d = &answer->detection[number - 1];
-        json_object_set_new(line, "class", json_string(d->class_name));
-        json_object_set_new(line, "box_px",
-                            json_pack("[f,f,f,f]", digits(d->left, 1e-4), digits(d->top, 1e-4), digits(d->right, 1e-4),
-                                      digits(d->bottom, 1e-4)));
-        json_set_number(line, "score", digits(d->score, 1e-6));
-        if (d->track) json_object_set_new(line, "track", json_integer((json_int_t)d->track));
-    }
-    if (line) json_set_number(line, "latency_ms", round(1e3 * frame->latency_ms) * 1e-3);
-    if (line) json_object_set_new(line, "late", json_boolean(frame->late));
-    return line;
-}
-
-static bool write_line(FILE *file, json_t *line)
-{
-    char      *text = line ? json_dumps(line, JSON_COMPACT | JSON_REAL_PRECISION(12)) : NULL;
-    const bool ok = text && fprintf(file, "%s\n", text) > 0;
-    free(text);
-    json_decref(line);
-    return ok;
-}
-
 /* The lines of an answer, flushed. What cannot be written is counted, and reported once. */
-static void answers_write(Answers *a, const PitviperDetections *answer, const AnsweredFrame *frame,
-                          AnswerCounters *counters)
+static void answers_write(Answers *a, const PitviperDetections *answer, AnswerLine line, AnswerCounters *counters)
 {
-    const uint32_t lines = answer->count > 0 ? answer->count : 1;
-    bool           ok = true;
-    for (uint32_t i = 0; i < lines; i++)
-        ok = write_line(a->file, line_of(answer, frame, answer->count > 0 ? i + 1 : 0)) && ok;
+    const int lines = answer->count > 0 ? (int)answer->count : 1;
+    bool      ok = true;
+    line.frame = answer->frame, line.band = band_name((Band)answer->band), line.of = (int)answer->count;
+    for (int i = 0; i < lines; i++) {
+        const PitviperDetection *d = &answer->detection[i];
+        const float              box[] = {d->left, d->top, d->right, d->bottom};
+        for (int k = 0; k < 4; k++) line.box_px[k] = digits(box[k], 1e-4);
+        line.answer = line.of > 0 ? i + 1 : 0;
+        line.class_name = line.of > 0 ? d->class_name : NULL;
+        line.score = digits(d->score, 1e-6);
+        line.track = d->track;
+        char *text = field_line(&answer_fields, &line, 12);
+        ok = text && fprintf(a->file, "%s\n", text) > 0 && ok;
+        free(text);
+    }
     ok = fflush(a->file) == 0 && ok;
-    counters->lines += ok ? lines : 0;
-    counters->lines_failed += ok ? 0 : lines;
+    counters->lines += ok ? (uint64_t)lines : 0;
+    counters->lines_failed += ok ? 0 : (uint64_t)lines;
     if (!ok && !a->failed)
         log_warn("detections: cannot write answers.jsonl: %s; such lines are counted", strerror(errno));
     a->failed |= !ok;
@@ -260,9 +270,9 @@ static bool receive(Detections *d)
     pthread_mutex_unlock(&d->lock);
     if (!answers || (reason != DETECTIONS_GOOD && reason != DETECTIONS_LATE)) return true;
     answers_write(answers, &one,
-                  &(AnsweredFrame){.time_s = frame.time_s,
-                                   .late = reason == DETECTIONS_LATE,
-                                   .latency_ms = frame.rendered_s > 0 ? 1e3 * (now_s - frame.rendered_s) : NAN},
+                  (AnswerLine){.time_s = frame.time_s,
+                               .late = reason == DETECTIONS_LATE,
+                               .latency_ms = frame.rendered_s > 0 ? 1e3 * (now_s - frame.rendered_s) : NAN},
                   &written);
     pthread_mutex_lock(&d->lock);
     d->counters.lines += written.lines;

@@ -7,6 +7,7 @@
 #ifndef SENSOR_PUBLISH_MEMORY_DETECTIONS_H
 #define SENSOR_PUBLISH_MEMORY_DETECTIONS_H
 
+#include "sensor/frame/field.h"
 #include "sensor/frame/publish_counters.h"
 #include "sensor/publish/consumers/consumer.h"
 
@@ -45,6 +46,7 @@ bool detections_latest(Detections *detections, Band band, DetectionSet *out);
 /* So far. */
 void detections_counters(Detections *detections, AnswerCounters *out);
 
+extern const FieldTable answer_fields; /* a line of answers.jsonl */
 /* Tells them of every frame, and has them recorded; detections and folder stay the caller's and outlive it. */
 Status consume_detections(Consumer **out, Detections *detections, const char *folder);
 
