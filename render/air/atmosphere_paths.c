@@ -10,15 +10,21 @@ static double extinction(const Atmosphere *atmosphere, const Blend *blend, AirBa
     return column_mean(&atmosphere->clear, band, a_m, b_m) + blend_haze_mean(blend, band, a_m, b_m);
 }
 
-/* Adds a step of the path at a height, between two optical depths: single-scattered sunlight, and a uniform diffuse
- * term of twice the diffuse light on a plane with a fifth of what reaches it. */
-static void add_step(ScatterParts *sum, const Atmosphere *atmosphere, const Blend *blend, AirBand band, double height_m,
-                     double sun_zenith_rad, double step_m, double depth, double next)
+/* A step of a path, at a height, between two optical depths from the observer. */
+typedef struct PathStep {
+    double height_m, length_m, depth, next;
+} PathStep;
+
+/* Adds a step's single-scattered sunlight, and a uniform diffuse term of twice the diffuse light on a plane with a
+ * fifth of what reaches it. */
+static void add_step(ScatterParts *sum, const Atmosphere *atmosphere, const Blend *blend, AirBand band,
+                     const PathStep *step, double sun_zenith_rad)
 {
-    SunAir sun;
+    const double height_m = step->height_m, depth = step->depth, next = step->next;
+    SunAir       sun;
     blend_sun(&sun, atmosphere, blend, band, height_m, sun_zenith_rad);
     const double d = next - depth;
-    const double seen_m = step_m * (d > 1e-6 ? (exp(-depth) - exp(-next)) / d : exp(-depth)) / (4 * pi_rad);
+    const double seen_m = step->length_m * (d > 1e-6 ? (exp(-depth) - exp(-next)) / d : exp(-depth)) / (4 * pi_rad);
     const double clear = seen_m * column_scatter(&atmosphere->clear, band, height_m);
     const double haze = seen_m * blend_haze_scatter(blend, band, height_m);
     const double glow = 2 * sun.diffuse_horizontal_w_m2 +
@@ -57,9 +63,10 @@ void scatter_parts(ScatterParts *out, const Atmosphere *atmosphere, const Blend 
     *out = (ScatterParts){0};
     depth = 0;
     for (int i = 0; i < steps; i++) {
-        const double a_m = path->observer_m + rise_m * i / steps, b_m = path->observer_m + rise_m * (i + 1) / steps;
-        const double next = depth + ratio * step_m * extinction(atmosphere, blend, band, a_m, b_m);
-        add_step(out, atmosphere, blend, band, (a_m + b_m) / 2, path->sun_zenith_rad, step_m, depth, next);
+        const double   a_m = path->observer_m + rise_m * i / steps, b_m = path->observer_m + rise_m * (i + 1) / steps;
+        const double   next = depth + ratio * step_m * extinction(atmosphere, blend, band, a_m, b_m);
+        const PathStep step = {(a_m + b_m) / 2, step_m, depth, next};
+        add_step(out, atmosphere, blend, band, &step, path->sun_zenith_rad);
         depth = next;
     }
 }
@@ -79,7 +86,8 @@ void scatter_parts_sky(ScatterParts *out, const Atmosphere *atmosphere, const Bl
         const double s = (double)i / steps, t = (double)(i + 1) / steps;
         const double a_m = observer_m + rise_m * s * s, b_m = observer_m + rise_m * t * t, step_m = slant * (b_m - a_m);
         const double next = depth + step_m * extinction(atmosphere, blend, band, a_m, b_m);
-        add_step(out, atmosphere, blend, band, (a_m + b_m) / 2, sun_zenith_rad, step_m, depth, next);
+        const PathStep step = {(a_m + b_m) / 2, step_m, depth, next};
+        add_step(out, atmosphere, blend, band, &step, sun_zenith_rad);
         depth = next;
     }
 }

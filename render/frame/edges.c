@@ -168,6 +168,12 @@ void mark_boxes(Job *job)
 
 /* ---- neighbours ------------------------------------------------------------------------------- */
 
+/* Two pixels: their places in the planes, and on the picture. */
+typedef struct PixelPair {
+    size_t a, b;
+    int    xa, ya, xb, yb;
+} PixelPair;
+
 /* Range at which a ray meets the plane of another pixel's hit; the eye is the origin. NaN: never. */
 static double plane_range(const Picture *p, size_t at, const double d_at[3], const double d[3])
 {
@@ -186,14 +192,14 @@ static bool lies_off(const Picture *p, size_t a, size_t b, const double d_a[3], 
 
 /* Whether each of two hits is off the other's plane; `either`: one is enough (a roof and the wall below it, one of
  * them seen edge-on). */
-static bool steps_in_depth(const Job *job, size_t a, size_t b, int xa, int ya, int xb, int yb, double step_m,
-                           double bent, bool either)
+static bool steps_in_depth(const Job *job, const PixelPair *pair, double step_m, double bent, bool either)
 {
     const Picture *p = job->picture;
+    const size_t   a = pair->a, b = pair->b;
     double         d_a[3], d_b[3];
     if (fabsf(p->range_m[a] - p->range_m[b]) <= step_m) return false;
-    view_ray(d_a, &job->request->view, xa + 0.5, ya + 0.5);
-    view_ray(d_b, &job->request->view, xb + 0.5, yb + 0.5);
+    view_ray(d_a, &job->request->view, pair->xa + 0.5, pair->ya + 0.5);
+    view_ray(d_b, &job->request->view, pair->xb + 0.5, pair->yb + 0.5);
     const bool from_a = lies_off(p, a, b, d_a, d_b, step_m, bent), from_b = lies_off(p, b, a, d_b, d_a, step_m, bent);
     return either ? from_a || from_b : from_a && from_b;
 }
@@ -212,12 +218,13 @@ static unsigned edge_between(const Job *job, int xa, int ya, int xb, int yb, boo
     const bool   other = p->material[a] != p->material[b];
     const double cosine =
         p->normal[0][a] * p->normal[0][b] + p->normal[1][a] * p->normal[1][b] + p->normal[2][a] * p->normal[2][b];
-    const double near_m = fmin(p->range_m[a], p->range_m[b]);
-    const bool   kinds = other && !part; /* a crest between two ground classes is worth refining when it is low */
-    const double step_m = part    ? step_part * near_m
-                          : kinds ? near_m / job->request->view.focal_px
-                                  : step_ground * near_m;
-    if (!(cosine > sharp_cosine) || steps_in_depth(job, a, b, xa, ya, xb, yb, step_m, kinds ? kinds_bent : 0, kinds))
+    const double    near_m = fmin(p->range_m[a], p->range_m[b]);
+    const bool      kinds = other && !part; /* a crest between two ground classes is worth refining when it is low */
+    const double    step_m = part    ? step_part * near_m
+                             : kinds ? near_m / job->request->view.focal_px
+                                     : step_ground * near_m;
+    const PixelPair pair = {a, b, xa, ya, xb, yb};
+    if (!(cosine > sharp_cosine) || steps_in_depth(job, &pair, step_m, kinds ? kinds_bent : 0, kinds))
         return part ? refine_all : refine_step;
     if (part && other) return refine_all;
     return (other ? refine_ground : 0) | (job->sun[a] != job->sun[b] ? refine_sun : 0);

@@ -112,9 +112,16 @@ void sum_rules_choose(SumRules *rules, const RenderRequest *request, const Radar
 /* cos^3 of the angle off the axis at a pixel's centre: what its solid angle has less than 1 / focal_px^2. */
 double pixel_cosine3(const View *view, int x, int y);
 
-/* A share of the visible and amodal area of the listed entities: all that the block can show. */
-void target_sums_areas(TargetSums *sums, const SumRules *rules, const Samples *s, const PixelBlock *block, double share,
-                       const int *list, int listed, VisibilityCounters *counters);
+/* A block's samples, and the share of its pixels' areas that they are to count for. */
+typedef struct SharedBlock {
+    const Samples    *samples;
+    const PixelBlock *block;
+    double            share;
+} SharedBlock;
+
+/* The visible and amodal area of the listed entities: all that the block can show. */
+void target_sums_areas(TargetSums *sums, const SumRules *rules, const SharedBlock *of, const int *list, int listed,
+                       VisibilityCounters *counters);
 /* The block's radiance of a plane, weighted by area, to the targets that it shows. target_sums_view comes first. */
 void target_sums_view(TargetSums *sums, const PixelBlock *block, const View *view);
 void target_sums_radiance(TargetSums *sums, const SumRules *rules, const Hits *hits, const PixelBlock *block,

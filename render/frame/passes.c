@@ -134,8 +134,8 @@ Tile tile_of(const Job *job, int task)
 
 int list_entities(Worker *w, const Job *job, const double box_px[4], bool small_ones)
 {
-    const int all = visibility_block_entities(w->list, job->scene.visibility, &job->request->view, box_px[0], box_px[1],
-                                              box_px[2], box_px[3], job->request->hidden_entity, &w->shader.counters);
+    const int all = visibility_block_entities(w->list, job->scene.visibility, &job->request->view, box_px,
+                                              job->request->hidden_entity, &w->shader.counters);
     int       listed = 0;
     if (small_ones) return all;
     for (int k = 0; k < all; k++)
@@ -217,7 +217,8 @@ void block_add(Worker *w, const Job *job, double share)
 
 void block_add_areas(Worker *w, const Job *job, double share, const int *list, int listed)
 {
-    target_sums_areas(&w->sums, &job->rules, &w->samples, &w->block, share, list, listed, &w->shader.counters);
+    const SharedBlock of = {&w->samples, &w->block, share};
+    target_sums_areas(&w->sums, &job->rules, &of, list, listed, &w->shader.counters);
 }
 
 void block_write(Worker *w, const Job *job, double share)

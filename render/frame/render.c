@@ -122,8 +122,7 @@ static Status prepare(Job *job, Pool *pool, Arena *arena)
     Status status = planes_create(job->picture, request, scene->snapshot->count, world->forest != NULL, arena);
     if (status == STATUS_OK && job->picture->optical[1]) optical_white(job->picture->white_w_m2_sr, scene->air);
     if (status == STATUS_OK)
-        status = shade_scene_create(scene, world, scene->snapshot, scene->air, request,
-                                    render_air_bands(request->bands, request->optical), pool, arena);
+        status = shade_scene_create(scene, request, render_air_bands(request->bands, request->optical), pool, arena);
     if (status == STATUS_OK) status = create_job(job, pool_threads(pool), arena);
     if (status != STATUS_OK) return status;
     choose_rules(job);

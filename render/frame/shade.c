@@ -25,38 +25,40 @@ static Status open_plants(ShadeScene *scene, Visibility *visibility, const Rende
     return scene->bare && scene->full ? STATUS_OK : STATUS_NO_MEMORY;
 }
 
-Status shade_scene_create(ShadeScene *out, const World *world, const Snapshot *snapshot, const Air *air,
-                          const RenderRequest *request, unsigned channels, Pool *pool, Arena *arena)
+Status shade_scene_create(ShadeScene *scene, const RenderRequest *request, unsigned channels, Pool *pool, Arena *arena)
 {
-    Visibility *posed = NULL;
-    *out = (ShadeScene){.world = world,
-                        .snapshot = snapshot,
-                        .air = air,
-                        .sky_samples = request->sky_samples,
-                        .hidden_entity = request->hidden_entity};
+    const World    *world = scene->world;
+    const Snapshot *snapshot = scene->snapshot;
+    const Air      *air = scene->air;
+    Visibility     *posed = NULL;
+    *scene = (ShadeScene){.world = world,
+                          .snapshot = snapshot,
+                          .air = air,
+                          .sky_samples = request->sky_samples,
+                          .hidden_entity = request->hidden_entity};
     const EffectView seen = {.frame = &world->frame,
                              .view = &request->view,
                              .ground_rho = world->materials.ground_rho,
                              .bands = channels,
                              .hidden = request->hidden_entity};
-    Status           status = smoke_effects_scene(&out->effects, snapshot, &seen, air, arena);
+    Status           status = smoke_effects_scene(&scene->effects, snapshot, &seen, air, arena);
     if (status != STATUS_OK) return status;
-    int *volume = arena_alloc(arena, (size_t)out->effects.count + 1, sizeof *volume);
+    int *volume = arena_alloc(arena, (size_t)scene->effects.count + 1, sizeof *volume);
     if (!volume) return STATUS_NO_MEMORY;
-    for (int n = 0; n < out->effects.count; n++) volume[n] = n;
-    out->all_volumes = volume;
+    for (int n = 0; n < scene->effects.count; n++) volume[n] = n;
+    scene->all_volumes = volume;
     status =
         visibility_create(&posed, world->tracer, world->landscape, &world->frame, snapshot, request->skips_off, arena);
     if (status != STATUS_OK) return status;
     visibility_materials(posed, &world->materials);
-    out->visibility = posed;
+    scene->visibility = posed;
     status = world_need_patches(world, snapshot);
     if (status != STATUS_OK) return status;
-    status = open_plants(out, posed, request, pool, arena);
+    status = open_plants(scene, posed, request, pool, arena);
     if (status != STATUS_OK) return status;
-    status = far_woods_frame(&out->far, world->far_woods, air, &world->materials, arena);
+    status = far_woods_frame(&scene->far, world->far_woods, air, &world->materials, arena);
     if (status != STATUS_OK) return status;
-    return surface_light_prepare(&out->surface_light, air, &world->materials, arena);
+    return surface_light_prepare(&scene->surface_light, air, &world->materials, arena);
 }
 
 void shade_scene_close(ShadeScene *scene) { forest_frame_close(&scene->plants); }
@@ -76,8 +78,8 @@ Status shade_samples_create(Samples *out, int capacity, Arena *arena)
 void shade_samples_trace(Shader *shader, const ShadeScene *scene, Samples *s, const int *list, int listed)
 {
     const double t0 = wall_clock_s();
-    visibility_first_hit_knowing(&s->hits, scene->visibility, &s->rays, list, listed, scene->hidden_entity, s->known,
-                                 &shader->counters);
+    visibility_first_hit(&s->hits, scene->visibility, &s->rays,
+                         (RayEntities){list, listed, scene->hidden_entity, s->known}, &shader->counters);
     s->hits.several = false;
     shader->visibility_s += wall_clock_s() - t0;
 }

@@ -32,11 +32,12 @@ typedef struct ShadeScene {
     int               hidden_entity; /* snapshot index of the entity whose parts these rays do not meet; -1: none */
 } ShadeScene;
 
-/* Poses the snapshot and prepares its plants, light and smoke, seen from the eye of this view; sky: left NULL.
- * channels: 1 << AirBand, those that will be requested. pool may be NULL: one thread. All other arguments must outlive
- * it; the arena owns its memory. shade_scene_close before the arena is reset, after a failure as well. */
-Status shade_scene_create(ShadeScene *out, const World *world, const Snapshot *snapshot, const Air *air,
-                          const RenderRequest *request, unsigned channels, Pool *pool, Arena *arena);
+/* Poses the snapshot and prepares its plants, light and smoke, seen from the eye of this view. scene: world, snapshot
+ * and air are set; all else is written, sky as NULL.
+ * channels: 1 << AirBand, those that will be requested. pool may be NULL: one thread. What is set, and all other
+ * arguments, must outlive it; the arena owns its memory. shade_scene_close before the arena is reset, after a failure
+ * as well. */
+Status shade_scene_create(ShadeScene *scene, const RenderRequest *request, unsigned channels, Pool *pool, Arena *arena);
 void   shade_scene_close(ShadeScene *scene);
 
 /* A list of samples: inputs and results. Arrays of `capacity`, of the arena they came from. */

@@ -152,23 +152,24 @@ static void merge_box(int box[4], const int other[4])
 }
 
 /* A sample's area in steps, which divide by every share, and the part of it that no small target covers. */
-static int64_t sample_steps(int64_t *seen, const SumRules *rules, const PixelBlock *block, double share, size_t px)
+static int64_t sample_steps(int64_t *seen, const SumRules *rules, const SharedBlock *of, size_t px)
 {
-    const int64_t whole = llrint((double)rules->steps_per_px * share / (block->n * block->n));
+    const int64_t whole = llrint((double)rules->steps_per_px * of->share / (of->block->n * of->block->n));
     const double  covered = rules->picture->covered ? (double)rules->picture->covered[px] : 0;
     *seen = covered > 0 ? llrint((double)whole * (1 - covered)) : whole;
     return whole;
 }
 
 /* Counts one sample that shows the target. */
-static void count_seen(TargetSums *sums, int index, const SumRules *rules, const Samples *s, const PixelBlock *block,
-                       double share, int sample)
+static void count_seen(TargetSums *sums, int index, const SumRules *rules, const SharedBlock *of, int sample)
 {
-    const int     pixel = sample / (block->n * block->n), x = block->x[pixel], y = block->y[pixel];
-    const size_t  px = picture_index(rules->picture, x, y);
-    TargetCount  *count = &sums->target[index];
-    int64_t       seen;
-    const int64_t whole = sample_steps(&seen, rules, block, share, px);
+    const Samples    *s = of->samples;
+    const PixelBlock *block = of->block;
+    const int         pixel = sample / (block->n * block->n), x = block->x[pixel], y = block->y[pixel];
+    const size_t      px = picture_index(rules->picture, x, y);
+    TargetCount      *count = &sums->target[index];
+    int64_t           seen;
+    const int64_t     whole = sample_steps(&seen, rules, of, px);
     count->visible += seen;
     for (int b = 0; b < BAND_COUNT && s->smoke.any; b++)
         count->veiled[b] += llrint((double)seen * samples_smoke_taken(s, rules->smoke_channel[b], sample));
@@ -180,11 +181,13 @@ static void count_seen(TargetSums *sums, int index, const SumRules *rules, const
     occlusion_add(&sums->hidden, rules->arena, index, rules->coverer[px], whole - seen, 0);
 }
 
-void target_sums_areas(TargetSums *sums, const SumRules *rules, const Samples *s, const PixelBlock *block, double share,
-                       const int *list, int listed, VisibilityCounters *counters)
+void target_sums_areas(TargetSums *sums, const SumRules *rules, const SharedBlock *of, const int *list, int listed,
+                       VisibilityCounters *counters)
 {
-    const int samples = block->n * block->n;
-    Rays     *some = &sums->some;
+    const Samples    *s = of->samples;
+    const PixelBlock *block = of->block;
+    const int         samples = block->n * block->n;
+    Rays             *some = &sums->some;
     assert(!s->hits.several); /* areas are of the samples as they were shot */
     for (int n = 0; n < listed; n++) {
         const int      index = list[n];
@@ -196,7 +199,7 @@ void target_sums_areas(TargetSums *sums, const SumRules *rules, const Samples *s
         visibility_lie_beyond(sums->beyond, rules->visibility, index, &s->rays, s->hits.range_m);
         for (int i = 0; i < s->hits.count; i++) {
             if (s->hits.entity[i] == id) {
-                count_seen(sums, index, rules, s, block, share, i);
+                count_seen(sums, index, rules, of, i);
                 continue;
             }
             if (!sums->beyond[i]) {
@@ -218,7 +221,7 @@ void target_sums_areas(TargetSums *sums, const SumRules *rules, const Samples *s
             if (!sums->meets[k]) continue;
             const int     i = sums->some_index[k], x = block->x[i / samples], y = block->y[i / samples];
             int64_t       seen;
-            const int64_t whole = sample_steps(&seen, rules, block, share, picture_index(rules->picture, x, y));
+            const int64_t whole = sample_steps(&seen, rules, of, picture_index(rules->picture, x, y));
             count->amodal += whole;
             grow_box(count->amodal_box, x, y);
             if (s->hits.entity[i]) {

@@ -133,7 +133,7 @@ static void follow(double sum[AIR_BAND_COUNT][hits_capacity], Paths *p, const He
 
     for (int bounce = 0; bounce < bounces && p->rays.count > 0; bounce++) {
         const bool last = bounce == bounces - 1;
-        visibility_first_hit(&p->hits, scene->visibility, &p->rays, NULL, -1, -1, counters);
+        visibility_first_hit(&p->hits, scene->visibility, &p->rays, visibility_all_but(-1), counters);
         hemisphere_light_met(p, scene, bands, true, counters);
         float rho[AIR_BAND_COUNT][hits_capacity];
         for (int b = 0; b < AIR_BAND_COUNT; b++) {

@@ -146,9 +146,9 @@ static void meet(Paths *p, const ChangeJob *job, int bounce, const SkyMet *const
     } else {
         bool parts_alone = bounce == 0; /* from points on the ground, the ground is not traced */
         for (int i = 0; i < p->rays.count; i++) p->rays.far_m[i] = job->reach_m, parts_alone &= p->from_ground[i];
-        if (parts_alone)
-            visibility_first_part(&p->hits, scene->visibility, &p->rays, job->list, job->listed, job->counters);
-        else visibility_first_hit(&p->hits, scene->visibility, &p->rays, job->list, job->listed, -1, job->counters);
+        const RayEntities among = visibility_listed(job->list, job->listed, -1);
+        if (parts_alone) visibility_first_part(&p->hits, scene->visibility, &p->rays, among, job->counters);
+        else visibility_first_hit(&p->hits, scene->visibility, &p->rays, among, job->counters);
     }
     hemisphere_light_met(p, scene, job->bands, asks_sun(job, bounce), job->counters);
 }

@@ -187,15 +187,16 @@ static void ask_points(const SkyVisibility *v, SkyWorker *w, int task)
         const double *c = visibility_posed(scene->visibility, index)->centre_enu;
         const int     near = visibility_near(w->near, scene->visibility, c, c,
                                              look_m + 2 * visibility_posed(scene->visibility, index)->radius_m);
-        visibility_first_part(met, scene->visibility, rays, w->near, near, &unused);
+        visibility_first_part(met, scene->visibility, rays, visibility_listed(w->near, near, -1), &unused);
     } else {
         /* those that the rows of these points may see: with many entities a fraction of all */
         const double y_px = e->low[1] + e->step[1] * (point[0] / e->columns),
                      end_px = e->low[1] + e->step[1] * (point[count - 1] / e->columns + 1);
-        const int seen =
-            visibility_block_entities(w->near, scene->visibility, view, e->low[0], y_px,
-                                      e->low[0] + e->step[0] * e->columns, end_px, v->scene.hidden_entity, &unused);
-        visibility_first_hit(met, scene->visibility, rays, w->near, seen, v->scene.hidden_entity, &unused);
+        const double box_px[4] = {e->low[0], y_px, e->low[0] + e->step[0] * e->columns, end_px};
+        const int    seen =
+            visibility_block_entities(w->near, scene->visibility, view, box_px, v->scene.hidden_entity, &unused);
+        visibility_first_hit(met, scene->visibility, rays, visibility_listed(w->near, seen, v->scene.hidden_entity),
+                             &unused);
     }
     places->count = 0;
     for (int i = 0; i < count; i++) {

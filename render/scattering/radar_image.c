@@ -58,7 +58,7 @@ typedef struct Block {
     const Visibility   *visibility;
     const Materials    *materials;
     const Rays         *rays;   /* from the eye */
-    int                 hidden; /* as in visibility_first_hit */
+    int                 hidden; /* as in RayEntities */
     VisibilityCounters *counters;
     Rays                onward, back;
     Hits                met, between;
@@ -105,7 +105,7 @@ static void next_bounce(RadarReturns *out, int nth, Block *s)
     const Rays        *rays = s->rays;
     const bool         beyond = nth >= radar_bounces;
     const int          bounce = beyond ? radar_bounces - 1 : nth;
-    visibility_first_hit(&s->met, s->visibility, &s->onward, NULL, -1, s->hidden, s->counters);
+    visibility_first_hit(&s->met, s->visibility, &s->onward, visibility_all_but(s->hidden), s->counters);
 
     Paths *paths = &s->paths;
     int    going = 0;
@@ -149,7 +149,7 @@ static void next_bounce(RadarReturns *out, int nth, Block *s)
     paths->count = onward->count = going;
     if (s->back.count == 0) return;
 
-    visibility_first_hit(&s->between, s->visibility, &s->back, NULL, -1, s->hidden, s->counters);
+    visibility_first_hit(&s->between, s->visibility, &s->back, visibility_all_but(s->hidden), s->counters);
     for (int k = 0; k < s->back.count; k++) {
         if (s->between.range_m[k] < INFINITY) continue;
         const int    i = s->back_sample[k];

@@ -34,7 +34,7 @@ typedef struct RadarRays {
     const Materials  *materials;
     const Hits       *hits;
     const Rays       *rays;   /* from the eye */
-    int               hidden; /* as in visibility_first_hit */
+    int               hidden; /* as in RayEntities */
 } RadarRays;
 
 /* Total of a sample = sum of power over the bounces. It takes some 350 KB of stack. */

@@ -147,7 +147,7 @@ static double range_ahead(const RadarShot *shot)
         rays.o_enu[k][0] = shot->scene->view->p_enu[k];
         rays.d_enu[k][0] = shot->ahead[k];
     }
-    visibility_first_hit(&hits, shot->visibility, &rays, NULL, -1, shot->scene->hidden, &counters);
+    visibility_first_hit(&hits, shot->visibility, &rays, visibility_all_but(shot->scene->hidden), &counters);
     return hits.count > 0 && isfinite(hits.range_m[0]) ? hits.range_m[0] : NAN;
 }
 

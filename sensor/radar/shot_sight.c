@@ -81,7 +81,7 @@ void shot_hidden(bool *hidden, const RadarShot *shot, const double from_enu[3], 
             rays.d_enu[k][i] = sight[i].d_enu[k];
         }
     }
-    visibility_first_hit(&hits, shot->visibility, &rays, NULL, -1, shot->scene->hidden, &counters);
+    visibility_first_hit(&hits, shot->visibility, &rays, visibility_all_but(shot->scene->hidden), &counters);
     for (int i = 0; i < hits.count; i++) {
         const int  ray = hit_ray(&hits, i);
         const bool before = hits.kind[i] != hit_sky && sight[ray].range_m - hits.range_m[i] > slack_m[ray];

@@ -134,11 +134,9 @@ static void mean_of(double out[shown_bands], const World *world, const Air *air,
          .samples = 1,
          .hidden_entity = -1};
     ShadedRays shaded;
-    ShadeScene scene;
+    ShadeScene scene = {.world = world, .snapshot = &nobody, .air = air};
     for (int c = 0; c < 3; c++) request.view.p_enu[c] = 1000 * to_eye[c];
-    assert_int_equal(
-        shade_scene_create(&scene, world, &nobody, air, &request, (1u << AIR_BAND_COUNT) - 1, NULL, place.arena),
-        STATUS_OK);
+    assert_int_equal(shade_scene_create(&scene, &request, (1u << AIR_BAND_COUNT) - 1, NULL, place.arena), STATUS_OK);
     assert_int_equal(shade_samples_create(&block, hits_capacity, place.arena), STATUS_OK);
     assert_int_equal(shaded_rays_create(&shaded, rays, place.arena), STATUS_OK);
     for (int i = 0; i < rays; i++)

@@ -103,7 +103,7 @@ static void look_at(Rays *rays, Hits *hits, VisibilityCounters *counters, const 
         for (int k = 0; k < 3; k++) rays->o_enu[k][i] = o[k], rays->d_enu[k][i] = d[k];
         rays->far_m[i] = INFINITY;
     }
-    visibility_first_hit(hits, stage.visibility, rays, NULL, -1, -1, counters);
+    visibility_first_hit(hits, stage.visibility, rays, visibility_all_but(-1), counters);
 }
 
 static void sphere_over_a_plane(void **state)

@@ -178,11 +178,11 @@ static void white_stand_vanishes(void **state)
         Hits met;
         for (int k = 0; k < 3; k++) one.o_enu[k][0] = eye[k], one.d_enu[k][0] = d[k];
         one.far_m[0] = INFINITY;
-        visibility_first_hit(&met, visibility, &one, NULL, -1, -1, &counters);
+        visibility_first_hit(&met, visibility, &one, visibility_all_but(-1), &counters);
         rays.count += met.kind[0] == hit_plant;
     }
     assert_int_equal(rays.count, leaf_count);
-    visibility_first_hit(&hits, visibility, &rays, NULL, -1, -1, &counters);
+    visibility_first_hit(&hits, visibility, &rays, visibility_all_but(-1), &counters);
     hits.several = false;
     for (int i = 0; i < leaf_count; i++) texture[i] = sun[i] = 1, temp_k[i] = 300, of[hits.radius_m[i] > 0]++;
     CHECK(of[0] > 10 && of[1] > 3);

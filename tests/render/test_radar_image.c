@@ -173,7 +173,7 @@ static Sum look(const double towards_eye[3], const double aim_enu[3], int n, int
         for (int a = 0; a < 3; a++) rays.o_enu[a][k] = eye[a], rays.d_enu[a][k] = d[a];
         rays.far_m[k] = INFINITY;
         if (rays.count < hits_capacity && i + 1 < n * n) continue;
-        visibility_first_hit(&hits, bench.visibility, &rays, NULL, -1, hidden, &counters);
+        visibility_first_hit(&hits, bench.visibility, &rays, visibility_all_but(hidden), &counters);
         memset(&returns, 0xff, sizeof returns); /* NaN: whatever is left unwritten is found */
         radar_shade(&returns, &config,
                     &(RadarRays){.visibility = bench.visibility,

@@ -44,9 +44,8 @@ static void pose(int sky_samples)
         hand_add(k % 2 ? hand_sphere_model : hand_plate_model, p_enu, r);
     }
     request.sky_samples = sky_samples;
-    assert_int_equal(shade_scene_create(&scene, &hand.world, &hand.snapshot, &hand.air, &request,
-                                        (1u << AIR_BAND_COUNT) - 1, NULL, arena),
-                     STATUS_OK);
+    scene = (ShadeScene){.world = &hand.world, .snapshot = &hand.snapshot, .air = &hand.air};
+    assert_int_equal(shade_scene_create(&scene, &request, (1u << AIR_BAND_COUNT) - 1, NULL, arena), STATUS_OK);
     for (int i = 0; i < all_rays; i++) {
         double d[3];
         for (int k = 0; k < 3; k++) d[k] = random_uniform(3, (uint32_t)k, 0, (uint64_t)i) - 0.5;

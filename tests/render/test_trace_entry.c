@@ -152,7 +152,7 @@ static void look(double half_m, double far_m)
 static VisibilityCounters see(Hits *out, const Visibility *v)
 {
     VisibilityCounters counters = {0};
-    visibility_first_hit(out, v, &rays, NULL, -1, -1, &counters);
+    visibility_first_hit(out, v, &rays, visibility_all_but(-1), &counters);
     return counters;
 }
 

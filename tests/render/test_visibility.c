@@ -165,11 +165,11 @@ static void a_sphere_covers_its_ellipse(void **state)
         int          covered = 0;
         for (int row = 0; row < 256; row += 32)
             for (int column = 0; column < 256; column += 32) {
-                int       list[most_entities], amodal;
-                const int count = visibility_block_entities(list, v, &view, column, row, column + 32, row + 32, -1,
-                                                            &(VisibilityCounters){0});
+                int          list[most_entities], amodal;
+                const double box_px[4] = {column, row, column + 32, row + 32};
+                const int    count = visibility_block_entities(list, v, &view, box_px, -1, &(VisibilityCounters){0});
                 block_rays(&rays, &view, column, row);
-                visibility_first_hit(&hits, v, &rays, list, count, -1, &stage.counters);
+                visibility_first_hit(&hits, v, &rays, visibility_listed(list, count, -1), &stage.counters);
                 uint8_t meets[hits_capacity];
                 visibility_entity_only(meets, v, &rays, 0, &(VisibilityCounters){0});
                 for (int i = 0; i < rays.count; i++) {
@@ -234,12 +234,12 @@ static void a_plate_covers_the_pixels_between_its_edges(void **state)
         for (int k = 0; k < 4; k++)
             area2 += corner_px[k][0] * corner_px[(k + 1) % 4][1] - corner_px[k][1] * corner_px[(k + 1) % 4][0];
         for (int block = 0; block < 9; block++) {
-            const int column = block % 3 * 32, row = block / 3 * 32;
-            int       list[most_entities];
-            const int count = visibility_block_entities(list, v, &view, column, row, column + 32, row + 32, -1,
-                                                        &(VisibilityCounters){0});
+            const int    column = block % 3 * 32, row = block / 3 * 32;
+            int          list[most_entities];
+            const double box_px[4] = {column, row, column + 32, row + 32};
+            const int    count = visibility_block_entities(list, v, &view, box_px, -1, &(VisibilityCounters){0});
             block_rays(&rays, &view, column, row);
-            visibility_first_hit(&hits, v, &rays, list, count, -1, &stage.counters);
+            visibility_first_hit(&hits, v, &rays, visibility_listed(list, count, -1), &stage.counters);
             for (int i = 0; i < rays.count; i++) {
                 const double x = column + i % 32 + 0.5, y = row + i / 32 + 0.5;
                 double       least_px = INFINITY;
@@ -294,20 +294,20 @@ static void the_nearest_wins_and_the_lowest_id_of_equals(void **state)
     one_ray(eye, to);
     for (int no_skip = 0; no_skip < 2; no_skip++) {
         Visibility *v = see(true, no_skip);
-        visibility_first_hit(&hits, v, &rays, NULL, -1, -1, &stage.counters);
+        visibility_first_hit(&hits, v, &rays, visibility_all_but(-1), &stage.counters);
         assert_int_equal(hits.entity[0], 2);
         assert_int_equal(hits.part[0], 1);
         assert_int_equal(hits.model[0], model_plate);
         assert_int_equal(hits.surface[0], 0);
         CHECK_NEAR(hits.range_m[0], 50, 1e-7);
         CHECK_NEAR(hits.p_enu[1][0], 30, 1e-7);
-        visibility_first_hit(&hits, v, &rays, NULL, -1, 1, &stage.counters);
+        visibility_first_hit(&hits, v, &rays, visibility_all_but(1), &stage.counters);
         assert_int_equal(hits.entity[0], 3);
         const int list[1] = {0};
-        visibility_first_hit(&hits, v, &rays, list, 1, -1, &stage.counters);
+        visibility_first_hit(&hits, v, &rays, visibility_listed(list, 1, -1), &stage.counters);
         assert_int_equal(hits.entity[0], 1);
         rays.far_m[0] = 59;
-        visibility_first_hit(&hits, v, &rays, list, 1, -1, &stage.counters);
+        visibility_first_hit(&hits, v, &rays, visibility_listed(list, 1, -1), &stage.counters);
         assert_int_equal(hits.entity[0], 0);
         CHECK(isinf(hits.range_m[0]));
         rays.far_m[0] = INFINITY;
@@ -336,7 +336,7 @@ static void the_ground_hides_and_is_hidden(void **state)
     uint8_t     meets[1];
 
     one_ray((const double[3]){10, 10, z + 100}, (const double[3]){10, 10, z - 5});
-    visibility_first_hit(&hits, v, &rays, NULL, -1, -1, &stage.counters);
+    visibility_first_hit(&hits, v, &rays, visibility_all_but(-1), &stage.counters);
     assert_int_equal(hits.entity[0], 0);
     CHECK(hits.surface[0] > 0 && hits.surface[0] < SURFACE_COUNT);
     assert_int_equal(hits.surface[0], landscape_surface(&stage.landscape, hits.p_enu[0][0], hits.p_enu[1][0]));
@@ -352,14 +352,14 @@ static void the_ground_hides_and_is_hidden(void **state)
     }
 
     one_ray((const double[3]){60, 10, z + 100}, (const double[3]){60, 10, z});
-    visibility_first_hit(&hits, v, &rays, NULL, -1, -1, &stage.counters);
+    visibility_first_hit(&hits, v, &rays, visibility_all_but(-1), &stage.counters);
     assert_int_equal(hits.entity[0], 2);
     CHECK_NEAR(hits.p_enu[2][0], ground_at(60, 10) + 3, 1e-7);
     for (int c = 0; c < 3; c++) CHECK_NEAR(hits.n_geo[c][0], c == 2, 1e-7);
 
     /* sky */
     one_ray((const double[3]){60, 10, z + 100}, (const double[3]){60, 10, z + 101});
-    visibility_first_hit(&hits, v, &rays, NULL, -1, -1, &stage.counters);
+    visibility_first_hit(&hits, v, &rays, visibility_all_but(-1), &stage.counters);
     CHECK(isinf(hits.range_m[0]) && hits.entity[0] == 0 && hits.surface[0] == 0 && hits.part[0] == 0);
     uint8_t shadow = 7;
     visibility_shadow(&shadow, v, &hits, (const double[3]){0, 0, 1}, &stage.counters);
@@ -402,7 +402,7 @@ static void a_plate_shades_what_lies_behind_it(void **state)
     for (int block = 0; block < 16; block++) {
         block_rays(&rays, &view, block % 4 * 32, block / 4 * 32);
         /* the plate is the host: unseen, and still it shades */
-        visibility_first_hit(&hits, v, &rays, NULL, -1, host, &stage.counters);
+        visibility_first_hit(&hits, v, &rays, visibility_all_but(host), &stage.counters);
         visibility_shadow(shadow, v, &hits, sun, &stage.counters);
         for (int i = 0; i < rays.count; i++) {
             const double p[3] = {hits.p_enu[0][i], hits.p_enu[1][i], hits.p_enu[2][i]};
@@ -439,7 +439,7 @@ static void a_sphere_is_lit_on_one_side(void **state)
     int            lit = 0, dark = 0;
     for (int block = 0; block < 9; block++) {
         block_rays(&rays, &view, block % 3 * 32, block / 3 * 32);
-        visibility_first_hit(&hits, v, &rays, NULL, -1, -1, &stage.counters);
+        visibility_first_hit(&hits, v, &rays, visibility_all_but(-1), &stage.counters);
         visibility_shadow(shadow, v, &hits, sun, &stage.counters);
         for (int i = 0; i < rays.count; i++) {
             if (hits.entity[i] != 1) continue;
@@ -491,18 +491,18 @@ static void skipping_changes_no_bit(void **state)
         const View   view = view_towards(eye, to, 96, 96, 180);
         Visibility  *skip = see(true, false), *all = see(true, true);
         for (int block = 0; block < 9; block++) {
-            const int column = block % 3 * 32, row = block / 3 * 32, hidden = scene % 2 ? 5 : -1;
-            int       list[most_entities], every[most_entities];
-            const int count = visibility_block_entities(list, skip, &view, column, row, column + 32, row + 32, hidden,
-                                                        &(VisibilityCounters){0});
-            assert_int_equal(visibility_block_entities(every, all, &view, column, row, column + 32, row + 32, hidden,
-                                                       &(VisibilityCounters){0}),
+            const int    column = block % 3 * 32, row = block / 3 * 32, hidden = scene % 2 ? 5 : -1;
+            int          list[most_entities], every[most_entities];
+            const double box_px[4] = {column, row, column + 32, row + 32};
+            const int    count = visibility_block_entities(list, skip, &view, box_px, hidden, &(VisibilityCounters){0});
+            assert_int_equal(visibility_block_entities(every, all, &view, box_px, hidden, &(VisibilityCounters){0}),
                              hidden < 0 ? 24 : 23);
             block_rays(&rays, &view, column, row);
-            visibility_first_hit(&hits, skip, &rays, list, count, hidden, &stage.counters);
-            visibility_first_hit(&other_hits, all, &rays, every, hidden < 0 ? 24 : 23, hidden, &stage.counters);
+            visibility_first_hit(&hits, skip, &rays, visibility_listed(list, count, hidden), &stage.counters);
+            visibility_first_hit(&other_hits, all, &rays, visibility_listed(every, hidden < 0 ? 24 : 23, hidden),
+                                 &stage.counters);
             same_hits(&hits, &other_hits);
-            visibility_first_hit(&other_hits, skip, &rays, NULL, -1, hidden, &stage.counters);
+            visibility_first_hit(&other_hits, skip, &rays, visibility_all_but(hidden), &stage.counters);
             same_hits(&hits, &other_hits);
             visibility_shadow(shadow, skip, &hits, sun, &stage.counters);
             visibility_shadow(other_shadow, all, &hits, sun, &stage.counters);
@@ -556,32 +556,33 @@ static void a_crowd_is_met_as_without_the_tree(void **state)
         const View   view = view_towards(eye, to, 64, 32, 90);
         Visibility  *tree = see(scene % 2, false), *all = see(scene % 2, true);
         for (int block = 0; block < 2; block++) {
-            static int list[most_entities], some[most_entities];
-            const int  hidden = scene == 2 ? 4 : -1;
-            const int  count = visibility_block_entities(list, tree, &view, 32 * block, 0, 32 * block + 32, 32, hidden,
-                                                         &stage.counters);
-            int        odd = 0;
+            static int   list[most_entities], some[most_entities];
+            const int    hidden = scene == 2 ? 4 : -1;
+            const double box_px[4] = {32 * block, 0, 32 * block + 32, 32};
+            const int    count = visibility_block_entities(list, tree, &view, box_px, hidden, &stage.counters);
+            int          odd = 0;
             for (int k = 0; k < count; k++) {
                 CHECK(k == 0 || list[k - 1] < list[k]);
                 if (list[k] % 2) some[odd++] = list[k];
             }
             block_rays(&rays, &view, 32 * block, 0);
             if (scene == 3) rays.columns = 32;
-            visibility_first_hit(&hits, tree, &rays, list, count, hidden, &stage.counters);
-            visibility_first_hit(&other_hits, all, &rays, NULL, -1, hidden, &(VisibilityCounters){0});
+            visibility_first_hit(&hits, tree, &rays, visibility_listed(list, count, hidden), &stage.counters);
+            visibility_first_hit(&other_hits, all, &rays, visibility_all_but(hidden), &(VisibilityCounters){0});
             same_hits(&hits, &other_hits);
             visibility_shadow(shadow, tree, &hits, sun, &stage.counters);
             visibility_shadow(other_shadow, all, &hits, sun, &(VisibilityCounters){0});
             assert_memory_equal(shadow, other_shadow, (size_t)rays.count);
-            visibility_first_hit(&other_hits, tree, &rays, NULL, -1, hidden, &stage.counters);
+            visibility_first_hit(&other_hits, tree, &rays, visibility_all_but(hidden), &stage.counters);
             same_hits(&hits, &other_hits);
             for (int i = 0; i < hits.count; i++) {
                 seen += hits.entity[i] > 0, shaded += shadow[i];
                 CHECK(hits.entity[i] % 10 != 2 || hits.entity[i] == 2); /* of those in one place the first */
             }
             /* those of a list alone */
-            visibility_first_hit(&hits, tree, &rays, some, odd, hidden, &stage.counters);
-            visibility_first_hit(&other_hits, all, &rays, some, odd, hidden, &(VisibilityCounters){0});
+            visibility_first_hit(&hits, tree, &rays, visibility_listed(some, odd, hidden), &stage.counters);
+            visibility_first_hit(&other_hits, all, &rays, visibility_listed(some, odd, hidden),
+                                 &(VisibilityCounters){0});
             same_hits(&hits, &other_hits);
             for (int i = 0; i < hits.count; i++) CHECK(hits.entity[i] % 2 == 0);
         }
@@ -603,7 +604,7 @@ static void a_block_is_the_sum_of_its_rays(void **state)
     Visibility *v = see(true, false);
     static Rays alone;
     block_rays(&rays, &view, 0, 0);
-    visibility_first_hit(&hits, v, &rays, NULL, -1, -1, &stage.counters);
+    visibility_first_hit(&hits, v, &rays, visibility_all_but(-1), &stage.counters);
     for (int i = 0; i < rays.count; i++) {
         alone.count = 1;
         alone.far_m[0] = INFINITY;
@@ -611,7 +612,7 @@ static void a_block_is_the_sum_of_its_rays(void **state)
             alone.o_enu[c][0] = rays.o_enu[c][i];
             alone.d_enu[c][0] = rays.d_enu[c][i];
         }
-        visibility_first_hit(&other_hits, v, &alone, NULL, -1, -1, &stage.counters);
+        visibility_first_hit(&other_hits, v, &alone, visibility_all_but(-1), &stage.counters);
         CHECK(other_hits.range_m[0] == hits.range_m[i] && other_hits.entity[0] == hits.entity[i]);
         for (int c = 0; c < 3; c++) CHECK(other_hits.n_enu[c][0] == hits.n_enu[c][i]);
     }

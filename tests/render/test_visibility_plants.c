@@ -102,7 +102,7 @@ static void look(double half_m)
 static void see(Hits *out, const Visibility *v)
 {
     VisibilityCounters counters = {0};
-    visibility_first_hit(out, v, &rays, NULL, -1, -1, &counters);
+    visibility_first_hit(out, v, &rays, visibility_all_but(-1), &counters);
 }
 
 /* Ranges of the plants alone, asked of the forest. */

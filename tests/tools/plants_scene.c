@@ -197,14 +197,14 @@ static Status see_row(float (*radiance)[hits_capacity], Samples *s, World *world
     double              sky[AIR_BAND_COUNT];
     unsigned            channels = 0;
     Air                 air;
-    ShadeScene          scene;
+    ShadeScene          scene = {.world = world, .snapshot = &empty, .air = &air};
     for (int b = 0; b < bands; b++) channels |= 1u << band_of[b];
     for (int b = 0; b < AIR_BAND_COUNT; b++) sky[b] = full ? sky_w_m2_sr : 0;
     for (int c = 0; c < optical_channel_count; c++) world->materials.ground_rho[c] = full ? (float)ground_rho : 0;
     if (!full) world->canopy = NULL;
     air_even(&air, sun_enu, sun_w_m2, sky, 0, world->planck_mwir, world->planck_lwir);
     arena_reset(arena);
-    Status status = shade_scene_create(&scene, world, &empty, &air, &request, channels, NULL, arena);
+    Status status = shade_scene_create(&scene, &request, channels, NULL, arena);
     if (status == STATUS_OK) status = shade_samples_create(s, view->width, arena);
     if (status == STATUS_OK) {
         fill_rays(s, view, row);

@@ -11,7 +11,7 @@
 /* render/trace/visibility/visibility.h */
 typedef struct Visibility         Visibility;
 typedef struct VisibilityCounters VisibilityCounters;
-typedef struct EntityHits         EntityHits;
+typedef struct RayEntities        RayEntities;
 
 enum {
     trace_entries = 8,                      /* at most, in a frame */
@@ -23,9 +23,7 @@ typedef struct TraceBlock {
     const Visibility    *v;
     const Rays          *rays;
     const double *const *o_enu, *const *d_enu; /* [3][rays->count], those of rays */
-    const int          *list;                  /* entities that may be met; list_count -1: all but hidden */
-    int                 list_count, hidden;
-    const EntityHits   *known;                  /* or NULL */
+    const RayEntities  *among;
     double              limit_m[hits_capacity]; /* nothing from here on can be a first hit of this entry */
     uint8_t             met[hits_capacity];     /* some entry was met by now: 1 + its place in the list; else 0 */
     VisibilityCounters *counters;

@@ -104,27 +104,19 @@ static void first_hit(Hits *hits, TraceBlock *block, const TraceEntry *only)
     }
 }
 
-void visibility_first_hit(Hits *hits, const Visibility *v, const Rays *rays, const int *list, int list_count,
-                          int hidden, VisibilityCounters *counters)
-{
-    visibility_first_hit_knowing(hits, v, rays, list, list_count, hidden, NULL, counters);
-}
-
-void visibility_first_hit_knowing(Hits *hits, const Visibility *v, const Rays *rays, const int *list, int list_count,
-                                  int hidden, const EntityHits *known, VisibilityCounters *counters)
+void visibility_first_hit(Hits *hits, const Visibility *v, const Rays *rays, RayEntities among,
+                          VisibilityCounters *counters)
 {
     TraceBlock block;
-    block.v = v, block.rays = rays, block.known = known, block.counters = counters;
-    block.list = list, block.list_count = list_count, block.hidden = hidden;
+    block.v = v, block.rays = rays, block.among = &among, block.counters = counters;
     first_hit(hits, &block, NULL);
 }
 
-void visibility_first_part(Hits *hits, const Visibility *v, const Rays *rays, const int *list, int list_count,
+void visibility_first_part(Hits *hits, const Visibility *v, const Rays *rays, RayEntities among,
                            VisibilityCounters *counters)
 {
     TraceBlock block;
-    block.v = v, block.rays = rays, block.known = NULL, block.counters = counters;
-    block.list = list, block.list_count = list_count, block.hidden = -1;
+    block.v = v, block.rays = rays, block.among = &among, block.counters = counters;
     first_hit(hits, &block, &trace_parts);
 }
 

@@ -108,15 +108,10 @@ Status visibility_status(const Visibility *v);
 int visibility_near(int *list, const Visibility *v, const double low[3], const double high[3], double more_m);
 
 /* View-frustum cull: the entities that a pixel block may see, those whose bounding sphere meets the block's pyramid
- * (all of them without SKIP_BLOCK). list: capacity = snapshot count; returns the count, ascending. hidden: never
- * listed (-1). */
-int visibility_block_entities(int *list, const Visibility *v, const View *view, double column0_px, double row0_px,
-                              double column1_px, double row1_px, int hidden, VisibilityCounters *counters);
-
-/* First hits of a block against the ground, the plants and the listed entities. A list of count -1 means every entity
- * but `hidden`, culled per ray. Thread-safe; counters are the caller's own. */
-void visibility_first_hit(Hits *hits, const Visibility *v, const Rays *rays, const int *list, int list_count,
-                          int hidden, VisibilityCounters *counters);
+ * (all of them without SKIP_BLOCK). box_px: x0, y0, x1, y1. list: capacity = snapshot count; returns the count,
+ * ascending. hidden: never listed (-1). */
+int visibility_block_entities(int *list, const Visibility *v, const View *view, const double box_px[4], int hidden,
+                              VisibilityCounters *counters);
 
 /* What rays meet of one entity with nothing else in the world; INFINITY: nothing. */
 typedef struct EntityHits {
@@ -126,12 +121,27 @@ typedef struct EntityHits {
 } EntityHits;
 void visibility_entity_hits(EntityHits *out, const Visibility *v, const Rays *rays, int index,
                             VisibilityCounters *counters);
-/* As visibility_first_hit, for rays of which that is known: the entity is not traced again. */
-void visibility_first_hit_knowing(Hits *hits, const Visibility *v, const Rays *rays, const int *list, int list_count,
-                                  int hidden, const EntityHits *known, VisibilityCounters *counters);
 
+/* The entities that a block's rays may meet, as snapshot indices. */
+typedef struct RayEntities {
+    const int        *list;   /* [count], ascending */
+    int               count;  /* -1: no list: every entity, culled per ray */
+    int               hidden; /* never met; -1: none */
+    const EntityHits *known;  /* of these rays: that entity is not traced again; NULL: none */
+} RayEntities;
+
+static inline RayEntities visibility_all_but(int hidden) { return (RayEntities){NULL, -1, hidden, NULL}; }
+static inline RayEntities visibility_listed(const int *list, int count, int hidden)
+{
+    return (RayEntities){list, count, hidden, NULL};
+}
+
+/* First hits of a block against the ground, the plants and these entities. Thread-safe; counters are the caller's
+ * own. */
+void visibility_first_hit(Hits *hits, const Visibility *v, const Rays *rays, RayEntities among,
+                          VisibilityCounters *counters);
 /* The same as if there were neither ground nor plants. */
-void visibility_first_part(Hits *hits, const Visibility *v, const Rays *rays, const int *list, int list_count,
+void visibility_first_part(Hits *hits, const Visibility *v, const Rays *rays, RayEntities among,
                            VisibilityCounters *counters);
 
 /* 1 where any entity (also the hidden host), the ground or a plant is between the hit and the direction d_enu, else 0;

@@ -9,12 +9,10 @@ typedef struct Walk {
     int               count;       /* of rays */
     CrowdCounts      *counts;
     /* first hits */
-    const int        *list;
-    int               list_count, hidden;
-    const EntityHits *known; /* of rays of the block: */
-    const int        *index; /* [count] */
-    uint32_t          entity[broad_packet];
-    PartHit           hit[broad_packet];
+    RayEntities among;
+    const int  *index; /* [count]: of the block's rays, as those that among.known is of */
+    uint32_t    entity[broad_packet];
+    PartHit     hit[broad_packet];
     /* any hits */
     uint8_t dark[broad_packet];
 } Walk;
@@ -72,7 +70,7 @@ static void visit_first(void *user, int item)
     double  until_m[broad_packet], nearer_m[broad_packet];
     uint8_t ask[broad_packet];
     int     list[broad_packet];
-    if (item == w->hidden || !is_listed(w->list, w->list_count, item)) return;
+    if (item == w->among.hidden || !is_listed(w->among.list, w->among.count, item)) return;
     const PosedEntity *entity = visibility_posed(w->v, item);
     if (entity->model < 0) return;
     /* at equal range the lower index has priority */
@@ -80,12 +78,13 @@ static void visit_first(void *user, int item)
         until_m[k] = w->rays.limit_m[k];
         if (w->entity[k] > (uint32_t)item + 1) until_m[k] = next_up(until_m[k]);
     }
-    if (w->known && w->known->entity == item) {
+    const EntityHits *known = w->among.known;
+    if (known && known->entity == item) {
         for (int k = 0; k < w->count; k++) {
-            const double range_m = w->known->range_m[w->index[k]];
+            const double range_m = known->range_m[w->index[k]];
             if (!(range_m < until_m[k])) continue;
             w->rays.limit_m[k] = range_m;
-            w->hit[k] = w->known->hit[w->index[k]];
+            w->hit[k] = known->hit[w->index[k]];
             w->entity[k] = (uint32_t)item + 1;
         }
         return;
@@ -106,20 +105,21 @@ static void visit_first(void *user, int item)
     }
 }
 
-void crowd_first_hits(double *limit_m, uint32_t *entity, PartHit *hit, CrowdCounts *counts, const Visibility *v,
-                      int count, const double *const o[3], const double *const d[3], const int *order, const int *list,
-                      int list_count, int hidden, const EntityHits *known)
+void crowd_first_hits(double *limit_m, uint32_t *entity, PartHit *hit, CrowdCounts *counts, const TraceBlock *block,
+                      const int *order)
 {
-    Walk walk = {.v = v, .counts = counts, .list = list, .list_count = list_count, .hidden = hidden, .known = known};
+    const int count = block->rays->count;
+    Walk      walk = {.v = block->v, .counts = counts, .among = *block->among};
     for (int first = 0; first < count; first += broad_packet) {
-        take_rays(&walk, o, d, order + first, count - first < broad_packet ? count - first : broad_packet);
+        take_rays(&walk, block->o_enu, block->d_enu, order + first,
+                  count - first < broad_packet ? count - first : broad_packet);
         walk.index = order + first;
         for (int k = 0; k < walk.count; k++) {
             const int i = order[first + k];
             walk.rays.limit_m[k] = limit_m[i];
             walk.entity[k] = 0;
         }
-        broad_phase_rays(v->tree, &walk.rays, visit_first, &walk);
+        broad_phase_rays(block->v->tree, &walk.rays, visit_first, &walk);
         for (int k = 0; k < walk.count; k++) {
             const int i = order[first + k];
             if (!walk.entity[k]) continue;

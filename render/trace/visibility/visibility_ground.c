@@ -12,16 +12,14 @@ static void grow_box(double box[2][3], const double p[3])
     }
 }
 
-/* First hits with the ground, with the walk that is shared or without. */
-static void ground_hits(double *range_m, GroundHit *hit, const Visibility *v, int count, const double *const o[3],
-                        const double *const d[3], const double *far_m, VisibilityCounters *counters)
+/* First hits with the ground, with the walk that is shared or without. Returns the rays that shared it. */
+static uint64_t ground_hits(double *range_m, GroundHit *hit, const Visibility *v, int count, const double *const o[3],
+                            const double *const d[3], const double *far_m)
 {
-    if (skips(v->skips_off, SKIP_GROUND_WALK)) {
-        ground_first_hits_together(range_m, hit, &v->ground, count, o, d, far_m);
-        counters->skipped[SKIP_GROUND_WALK] += (uint64_t)count;
-    } else {
-        ground_first_hits(range_m, hit, &v->ground, count, o, d, far_m);
-    }
+    const bool together = skips(v->skips_off, SKIP_GROUND_WALK);
+    if (together) ground_first_hits_together(range_m, hit, &v->ground, count, o, d, far_m);
+    else ground_first_hits(range_m, hit, &v->ground, count, o, d, far_m);
+    return together ? (uint64_t)count : 0;
 }
 
 /* Whether every ray met something, and all of the ground is below all of them up to there. */
@@ -60,8 +58,8 @@ static void ground_first(double *range_m, void *found, const TraceBlock *block, 
         for (int i = 0; i < count; i++) range_m[i] = INFINITY;
         counters->skipped[SKIP_GROUND_BELOW] += (uint64_t)count;
     } else {
-        ground_hits(range_m, found, v, count, block->o_enu, block->d_enu, behind ? block->limit_m : block->rays->far_m,
-                    counters);
+        counters->skipped[SKIP_GROUND_WALK] += ground_hits(range_m, found, v, count, block->o_enu, block->d_enu,
+                                                           behind ? block->limit_m : block->rays->far_m);
     }
 }
 
@@ -165,7 +163,7 @@ static void ground_any(const TraceShadow *s, const void *self)
         ray[left++] = i;
     }
     const double *const o[3] = {start[0], start[1], start[2]};
-    ground_hits(range_m, NULL, v, left, o, s->d_enu, far_m, s->counters);
+    s->counters->skipped[SKIP_GROUND_WALK] += ground_hits(range_m, NULL, v, left, o, s->d_enu, far_m);
     for (int k = 0; k < left; k++) s->dark[ray[k]] |= range_m[k] < INFINITY;
     s->counters->rays_sun_ground += (uint64_t)lit;
 }

@@ -55,12 +55,11 @@ static int list_all(int *list, const Visibility *v)
     return count;
 }
 
-int visibility_block_entities(int *list, const Visibility *v, const View *view, double column0_px, double row0_px,
-                              double column1_px, double row1_px, int hidden, VisibilityCounters *counters)
+int visibility_block_entities(int *list, const Visibility *v, const View *view, const double box_px[4], int hidden,
+                              VisibilityCounters *counters)
 {
-    const double box_px[4] = {column0_px, row0_px, column1_px, row1_px};
-    const bool   by_tree = skips(v->skips_off, SKIP_TREE) && skips(v->skips_off, SKIP_BLOCK);
-    int          count = 0, listed = 0;
+    const bool by_tree = skips(v->skips_off, SKIP_TREE) && skips(v->skips_off, SKIP_BLOCK);
+    int        count = 0, listed = 0;
     if (by_tree) {
         double plane[5][4];
         pyramid_planes(plane, view, box_px);

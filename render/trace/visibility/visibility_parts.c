@@ -25,6 +25,7 @@ void rays_meet_sphere(uint8_t *meets, int count, const double *const o[3], const
 static void parts_first(double *range_m, void *found, const TraceBlock *block, const void *self)
 {
     const Visibility          *v = block->v;
+    const RayEntities          among = *block->among;
     const double *const *const o = block->o_enu, *const *const d = block->d_enu;
     const int   count = block->rays->count;
     PartsFound *of = found;
@@ -35,32 +36,30 @@ static void parts_first(double *range_m, void *found, const TraceBlock *block, c
     (void)self;
     memcpy(limit_m, block->limit_m, (size_t)count * sizeof *limit_m);
     memset(of->entity, 0, (size_t)count * sizeof *of->entity);
-    const int  asked_count = block->list_count < 0 ? v->count : block->list_count;
-    const bool crowd =
-        skips(v->skips_off, SKIP_TREE) && (block->list_count < 0 ? v->drawable : block->list_count) > crowd_least;
-    const uint64_t drawable = (uint64_t)(v->drawable - (block->hidden >= 0 && v->loose[block->hidden]));
+    const int  asked_count = among.count < 0 ? v->count : among.count;
+    const bool crowd = skips(v->skips_off, SKIP_TREE) && (among.count < 0 ? v->drawable : among.count) > crowd_least;
+    const uint64_t drawable = (uint64_t)(v->drawable - (among.hidden >= 0 && v->loose[among.hidden]));
     uint64_t       offered = 0, asked = 0;
     if (crowd) {
         CrowdCounts counts = {0};
         order_rays(order, count, block->rays->columns);
-        crowd_first_hits(limit_m, of->entity, of->hit, &counts, v, count, o, d, order, block->list, block->list_count,
-                         block->hidden, block->known);
+        crowd_first_hits(limit_m, of->entity, of->hit, &counts, block, order);
         asked = counts.asked;
         block->counters->skipped[SKIP_PART] += counts.nodes - counts.asked_nodes;
         block->counters->skipped[SKIP_TREE] +=
-            (uint64_t)count * (block->list_count < 0 ? drawable : (uint64_t)block->list_count) - asked;
+            (uint64_t)count * (among.count < 0 ? drawable : (uint64_t)among.count) - asked;
     }
     bool ordered = false;
     for (int k = 0; k < asked_count && !crowd; k++) {
-        const int index = block->list_count < 0 ? k : block->list[k];
-        if (index == block->hidden || !v->loose[index]) continue;
+        const int index = among.count < 0 ? k : among.list[k];
+        if (index == among.hidden || !v->loose[index]) continue;
         const PosedEntity *entity = visibility_posed(v, index);
         if (entity->model < 0) continue;
-        if (block->known && block->known->entity == index) {
+        if (among.known && among.known->entity == index) {
             for (int i = 0; i < count; i++) {
-                if (!(block->known->range_m[i] < limit_m[i])) continue;
-                limit_m[i] = block->known->range_m[i];
-                of->hit[i] = block->known->hit[i];
+                if (!(among.known->range_m[i] < limit_m[i])) continue;
+                limit_m[i] = among.known->range_m[i];
+                of->hit[i] = among.known->hit[i];
                 of->entity[i] = (uint32_t)index + 1;
             }
             continue;
@@ -91,17 +90,21 @@ static void parts_first(double *range_m, void *found, const TraceBlock *block, c
     if (!crowd) block->counters->skipped[SKIP_SPHERE] += offered - asked;
 }
 
-static void complete_part_hit(Hits *hits, int i, const Visibility *v, int entity, const PartHit *hit, PosedFacet *facet,
-                              const double o[3], const double d[3])
+/* facet: of the hit completed before, and of this one after. */
+static void complete_part_hit(Hits *hits, int i, PosedFacet *facet, const PartsFound *found, const TraceBlock *block)
 {
-    const PosedEntity *posed = visibility_posed(v, entity);
+    const Visibility  *v = block->v;
+    const PartHit     *hit = &found->hit[i];
+    const PosedEntity *posed = visibility_posed(v, (int)found->entity[i] - 1);
     const Model       *model = tracer_model(v->tracer, posed->model);
+    const double       o[3] = {block->o_enu[0][i], block->o_enu[1][i], block->o_enu[2][i]};
+    const double       d[3] = {block->d_enu[0][i], block->d_enu[1][i], block->d_enu[2][i]};
     double             n_geo[3], n_enu[3];
     if (facet->node != &posed->node[hit->node] || facet->triangle != hit->triangle)
         parts_facet(facet, model, posed, hit);
     parts_facet_normals(n_geo, n_enu, model, facet, o, d, hits->range_m[i]);
     visibility_store_normals(hits, i, n_geo, n_enu, d);
-    hits->entity[i] = (uint32_t)entity + 1;
+    hits->entity[i] = found->entity[i];
     hits->model[i] = (uint16_t)posed->model;
     hits->inside[i] = v3_dot(facet->geo_enu, d) > 0;
     hits->part[i] = (uint16_t)(model->triangle_part[hit->triangle] + 1);
@@ -114,15 +117,9 @@ static void complete_part_hit(Hits *hits, int i, const Visibility *v, int entity
 static void parts_finish(Hits *hits, const int *list, int count, const void *found, const TraceBlock *block,
                          const void *self)
 {
-    const double *const *const o = block->o_enu, *const *const d = block->d_enu;
-    const PartsFound *of = found;
-    PosedFacet        facet = {.node = NULL}; /* neighbours often meet the same */
+    PosedFacet facet = {.node = NULL}; /* neighbours often meet the same */
     (void)self;
-    for (int k = 0; k < count; k++) {
-        const int    i = list[k];
-        const double o_enu[3] = {o[0][i], o[1][i], o[2][i]}, d_enu[3] = {d[0][i], d[1][i], d[2][i]};
-        complete_part_hit(hits, i, block->v, (int)of->entity[i] - 1, &of->hit[i], &facet, o_enu, d_enu);
-    }
+    for (int k = 0; k < count; k++) complete_part_hit(hits, list[k], &facet, found, block);
 }
 
 /* ---- shadows ---------------------------------------------------------------------------------- */

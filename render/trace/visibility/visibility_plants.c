@@ -53,7 +53,7 @@ static void plants_first(double *range_m, void *found, const TraceBlock *block, 
     uint8_t            real[hits_capacity];
     memcpy(range_m, block->limit_m, (size_t)count * sizeof *range_m);
     if (block->v->full_plants) memset(real, 1, (size_t)count);
-    else if (simplified) find_near(real, block->v, block->rays, block->hidden);
+    else if (simplified) find_near(real, block->v, block->rays, block->among->hidden);
     block->counters->rays_plants +=
         forest_first_hits(range_m, found, plants, count, block->o_enu, block->d_enu, simplified ? real : NULL);
     for (int i = 0; i < count; i++) range_m[i] = range_m[i] < block->limit_m[i] ? range_m[i] : INFINITY;

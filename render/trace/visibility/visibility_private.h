@@ -57,14 +57,13 @@ void rays_meet_sphere(uint8_t *meets, int count, const double *const o[3], const
 
 extern const TraceEntry trace_ground, trace_parts; /* self: NULL */
 
-/* visibility_crowd.c. First hits by the tree; limit_m, entity (index + 1) and hit are as if all of the list had been
- * tested one after the other. list: ascending; list_count -1: all but hidden. known: NULL, or of these rays. */
+/* visibility_crowd.c. First hits by the tree; limit_m, entity (index + 1) and hit are as if all of block->among had
+ * been tested one after the other. order: as of order_rays. */
 typedef struct CrowdCounts {
     uint64_t asked, asked_nodes, nodes; /* ray-entity pairs, ray-node pairs; of the pairs' entities all nodes */
 } CrowdCounts;
-void crowd_first_hits(double *limit_m, uint32_t *entity, PartHit *hit, CrowdCounts *counts, const Visibility *v,
-                      int count, const double *const o[3], const double *const d[3], const int *order, const int *list,
-                      int list_count, int hidden, const EntityHits *known);
+void crowd_first_hits(double *limit_m, uint32_t *entity, PartHit *hit, CrowdCounts *counts, const TraceBlock *block,
+                      const int *order);
 /* dark becomes 1 where anything is met. */
 void crowd_any_hits(uint8_t *dark, CrowdCounts *counts, const Visibility *v, int count, const double *const o[3],
                     const double *const d[3]);

@@ -103,8 +103,9 @@ static void add_tile(RawRays *raw, Rays *rays, Hits *hits, const TrialFrame *f, 
         }
     raw->first[++raw->blocks] = raw->count;
     if (raw->block_of_tile < 2) return;
-    const int listed = visibility_block_entities(list, v, view, x0, y0, x1, y1, -1, &(VisibilityCounters){0});
-    visibility_first_hit(hits, v, rays, list, listed, -1, &counters);
+    const int listed =
+        visibility_block_entities(list, v, view, (const double[4]){x0, y0, x1, y1}, -1, &(VisibilityCounters){0});
+    visibility_first_hit(hits, v, rays, visibility_listed(list, listed, -1), &counters);
     in_squares(order, x1 - x0, y1 - y0);
     for (int k = 0; k < hits->count; k++) {
         const int    i = order[k];
