@@ -56,7 +56,6 @@ static int parse(FrameOptions *o, int argc, char **argv)
     *o = (FrameOptions){.threads = thread_processors()};
     optind = 0; /* start anew */
     for (int option; (option = command_line_option(argc, argv, "h", options)) != -1;) {
-        long long number;
         switch (option) {
         case OUT:
             o->out = optarg;
@@ -71,10 +70,7 @@ static int parse(FrameOptions *o, int argc, char **argv)
             o->forced = true;
             break;
         case THREADS:
-            if (!text_to_long(&number, optarg) || number < 1 || number > 256) {
-                return 1 + command_line_wrong("frame", "--threads: '%s' is not a whole number in 1 .. 256", optarg);
-            }
-            o->threads = (int)number;
+            if (!command_line_threads(&o->threads, "frame", optarg)) return 1 + 2;
             break;
         case HELP:
         case 'h':

@@ -109,3 +109,14 @@ int command_line_option(int argc, char **argv, const char *letters, const struct
     if (option == '?') say_wrong(command_of(argv[0]), argc, argv, all, list);
     return option;
 }
+
+bool command_line_threads(int *threads, const char *command, const char *text)
+{
+    long long number;
+    if (text_to_long(&number, text) && number >= 1 && number <= 256) {
+        *threads = (int)number;
+        return true;
+    }
+    command_line_wrong(command, "--threads: '%s' is not a whole number in 1 .. 256", text);
+    return false;
+}

@@ -77,7 +77,8 @@ static void cells_become_members(void **state)
 {
     (void)state;
     Box box;
-    /* CRLF, a byte-order mark, quotes with commas and doubled quotes, another order, a column nobody asked for */
+    /* CRLF, a byte-order mark, quotes with commas and doubled quotes, another order, a column that no TableColumn names
+     */
     CHECK(read_text(
               &box,
               "\xef\xbb\xbf# toys\r\nwhole, colour,name,\"length_64ths\",stranger,note,share,wheels,later,initial\r\n"

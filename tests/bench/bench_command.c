@@ -66,17 +66,6 @@ static void usage(FILE *to, BenchNext *next)
         if (is_first(suite, next)) usage_parts(to, suite->name, next);
 }
 
-static bool parse_threads(int *out, const char *value)
-{
-    long long number;
-    if (!text_to_long(&number, value) || number < 1 || number > 256) {
-        command_line_wrong("bench", "--threads: '%s' is not a whole number in 1 .. 256", value);
-        return false;
-    }
-    *out = (int)number;
-    return true;
-}
-
 typedef struct Outputs {
     const char *csv, *report;
 } Outputs;
@@ -134,7 +123,7 @@ static int parse(Bench *bench, Outputs *out, int argc, char **argv, BenchNext *n
             bench->quick = true;
             break;
         case THREADS:
-            if (!parse_threads(&bench->threads, optarg)) return 1 + 2;
+            if (!command_line_threads(&bench->threads, "bench", optarg)) return 1 + 2;
             break;
         case HELP:
             if (bench->all) usage(stdout, next);

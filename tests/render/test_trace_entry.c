@@ -168,7 +168,7 @@ static void check_same(const Hits *a, const Hits *b)
 
 /* ---- tests ------------------------------------------------------------------------------------ */
 
-/* A ball that hides a corner of the box and sinks into the ground: the nearer of both on every ray, whoever is asked
+/* A ball that hides a corner of the box and sinks into the ground: the nearer of both on every ray, whichever is asked
  * first, with and without skips. */
 static void nearest_of_all(void **state)
 {
