@@ -8,6 +8,15 @@
 #include "render/scattering/radar_image.h"
 #include "render/trace/visibility/visibility.h"
 
+/* Which pixels of ground, plants and sky get rays of their own; what an entity may touch is sampled in full in every
+ * step. Each is cheaper than the one before. */
+typedef enum Sampling {
+    SAMPLING_ALL,
+    SAMPLING_TARGETS,      /* borders of ground, horizon and shadow edges are not refined */
+    SAMPLING_CHECKERBOARD, /* every second pixel, the others from their four neighbours */
+    SAMPLING_QUARTER,      /* one of 2 x 2, bilinear */
+} Sampling;
+
 typedef struct RenderRequest {
     View            view;
     unsigned        bands; /* 1 << Band, the bands that have consumers */
@@ -32,6 +41,7 @@ typedef struct RenderRequest {
     double low_plants_m;    /* low plants stand within this of the eye; 0: none */
     double profile_near_m, profile_bin_m; /* radar range profile */
     int    profile_bins;
+    Sampling            sampling;
     struct PixelRecord *record; /* [pixel_records]: what a pixel is made of (render/frame/pixel_record.h); NULL: none */
 } RenderRequest;
 

@@ -8,6 +8,7 @@
 #include "sensor/publish/files/frame_files.h"
 #include "sensor/node/run/host_run.h"
 #include "sensor/node/live/live_recording.h"
+#include "sensor/node/live/pace.h"
 #include "sensor/node/player/player.h"
 #include "sensor/commands/overwrite.h"
 #include "sensor/publish/video/video_names.h"
@@ -44,9 +45,10 @@ typedef struct Live {
     Session     *session; /* likewise */
     /* wall clock, s */
     double   begun_s, flushed_s, shown_s;
-    uint64_t shown_frames; /* frames rendered by shown_s */
-    int64_t  due_ns;       /* Unix time of the present frame */
-    double   latency_s;    /* the longest time from due_ns until a frame was rendered, since shown_s; NaN: none */
+    uint64_t shown_frames; /* frames kept by shown_s */
+    Pace     pace;
+    int64_t  due_ns;    /* Unix time of the present frame */
+    double   latency_s; /* the longest time from due_ns until a frame was rendered, since shown_s; NaN: none */
 } Live;
 
 /* Whether it is to send Data PDUs. */
@@ -129,10 +131,14 @@ static void check_health(Live *l, const Session *session)
     const HealthNames names = names_of(l, session);
     health_check(&l->health, &l->counters, &names, now_s);
     if (now_s - l->shown_s < show_s) return;
-    const uint64_t frames = l->health.sample.frames;
-    health_line(line, &l->health, (double)(frames - l->shown_frames) / (now_s - l->shown_s), l->latency_s);
+    const uint64_t   kept = l->health.sample.frames - l->counters.frames_lacking;
+    const HealthPace pace = {.kept_hz = (double)(kept - l->shown_frames) / (now_s - l->shown_s),
+                             .rate_hz = l->counters.rate_hz,
+                             .step = pace_step_name(l->pace.step),
+                             .latency_s = l->latency_s};
+    health_line(line, &l->health, &pace);
     log_status(line);
-    l->shown_frames = frames;
+    l->shown_frames = kept;
     l->shown_s = now_s;
     l->latency_s = NAN;
 }
@@ -212,7 +218,11 @@ static Status listen_first(bool *heard, Live *l)
 static void count_frame(void *user, const Frame *frame)
 {
     Live *l = user;
+    bool  lacks = false;
     l->latency_s = fmax(l->latency_s, 1e-9 * (double)(dis_udp_now_ns() - l->due_ns));
+    for (int i = 0; i < frame->outputs; i++) lacks |= frame->output[i].left_out && frame->output[i].kind->noted;
+    l->counters.frames_lacking += lacks;
+    l->counters.frames_at[frame->request.sampling]++;
     health_frame(&l->health, &frame->record, wall_clock_s());
 }
 
@@ -230,6 +240,13 @@ static Status send_pdu(void *user, const uint8_t *pdu, size_t octets)
 }
 
 /* ---- frame after frame ------------------------------------------------------------------------- */
+
+static unsigned choose_quality(void *user, const FrameTime *frame)
+{
+    Live        *l = user;
+    const double gone_s = 1e-9 * (double)(dis_udp_now_ns() - live_clock_due_ns(&l->clock, frame->t_s));
+    return pace_choose(&l->pace, session_host(l->session), gone_s, wall_clock_s());
+}
 
 static Status feed(Live *l, int64_t until_ns)
 {
@@ -271,6 +288,8 @@ static Status make_frame(void *user, const FrameTime *frame)
     if (status == STATUS_OK && !shown) l->health.sample.missing++;
     flush_recording(l);
     check_health(l, l->session);
+    pace_report(&l->pace, wall_clock_s());
+    pace_done(&l->pace, status == STATUS_OK && shown, wall_clock_s());
     return status;
 }
 
@@ -308,6 +327,7 @@ static Status live_frames(Run *run, Session *session, Player *player, const Host
     l->clock.player = l->player = player;
     l->session = session;
     l->counters.rate_hz = grid->rate_hz;
+    l->pace = pace_begin(config, grid->rate_hz);
     health_rendering(&l->health, wall_clock_s());
     l->health.sample.host = plan->any_munition                  ? HEALTH_MUNITION
                             : dis_entity_id_is_none(plan->host) ? HEALTH_OBSERVER
@@ -351,10 +371,12 @@ static Status open_files(Live *l)
     if (status == STATUS_OK) status = overwrite_video("run", config, l->run.bands, NULL, o->overwrite);
     if (status != STATUS_OK || !*config->record.path) return status;
     snprintf(comment, sizeof comment, "pitviper run: %s", l->where);
-    if (strcmp(config->radar.preset, "none") != 0 && strcasecmp(output_ending(config->record.path), ".pcap") == 0)
+    const bool radar = strcmp(config->radar.preset, "none") != 0;
+    if ((radar || config->quality.deadline) && strcasecmp(output_ending(config->record.path), ".pcap") == 0)
         log_warn(
-            "run: %s has no room for which frames are without radar (pcap): a replay has it in all; name it .pcapng",
-            config->record.path);
+            "run: %s has no room for which frames give up sampling (quality.deadline)%s (pcap): a replay has it in all; "
+            "name it .pcapng",
+            config->record.path, radar ? ", or are without radar" : "");
     return live_recording_open(&l->recording, config->record.path, comment, l->udp, run_network(config).port);
 }
 
@@ -442,6 +464,7 @@ static Status run_node(Live *l)
         if (status == STATUS_OK) status = run_unheard(&l->run);
     }
     health_summary(&l->counters, &l->health.sample, l->run.own);
+    pace_summary(&l->counters);
     return status == STATUS_OK ? verdict(l) : status;
 }
 
@@ -456,6 +479,7 @@ int run_command(int argc, char **argv)
     l->run.live = &l->counters;
     l->run.user = l;
     l->run.publish = count_frame;
+    if (l->run.options.config.quality.deadline) l->run.choose = choose_quality;
     if (publishes(l)) l->run.send = send_pdu;
     if (*l->run.options.config.record.path) l->run.note = note;
     l->run.clock = &l->clock.clock;

@@ -40,7 +40,7 @@ typedef struct FrameRecord {
     const RadarError     *radar_error;  /* likewise */
     const GroundPoint    *footprint;    /* [FOOTPRINT_COUNT]; NULL: not requested */
     const RadarFrame     *radar;        /* NULL: none */
-    const char           *given_up;     /* of quality, by a live node; NULL: nothing */
+    const char           *given_up;     /* of quality, by a live node, separated by commas; NULL: nothing */
 } FrameRecord;
 
 /* Writes one line and flushes it. STATUS_IO when it cannot be written. */
@@ -51,16 +51,19 @@ char  *record_frame_text(const FrameRecord *record);
 Status record_write_text(FILE *file, const char *text, const LatencyLine *latency);
 
 /* Counters of a live node only. */
+enum { live_steps = SAMPLING_QUARTER + 1 };
 typedef struct LiveCounters {
     uint64_t datagrams, lost_kernel, lost_queue, sent, send_failed, record_failed;
     uint64_t frames_late, files_failed, files_left_out;
-    double   rate_hz; /* asked for; 0: it ended before that was known */
+    uint64_t frames_at[live_steps]; /* made, by step of sampling (RenderRequest.sampling) */
+    uint64_t frames_lacking;        /* made, but without a band that was asked for */
+    double   rate_hz;               /* asked for; 0: it ended before that was known */
 } LiveCounters;
-/* Share of the due frames that were made; 1 where none was due. */
+/* Share of the due frames that were made and lack no band; 1 where none was due. */
 static inline double record_live_kept_share(const LiveCounters *counters, uint64_t frames)
 {
     const uint64_t due = frames + counters->frames_late;
-    return due ? (double)frames / (double)due : 1;
+    return due ? (double)(frames - counters->frames_lacking) / (double)due : 1;
 }
 
 #endif

@@ -345,6 +345,9 @@ enum { config_paths_size = 4096 };
 #define CONFIG_QUALITY(ROW) \
     ROW(SWITCH, quality., budget, true, "off|on", \
         "each frame's estimate of its own error, in truth.jsonl; changes no image") \
+    ROW(SWITCH, quality., deadline, true, "off|on", \
+        "`run` alone: a frame that would not be done in time gives up rays of ground, plants and sky, never of " \
+        "targets, and notes it in the recording; it never has more than sensor.* sets; off: frames are left out") \
     ROW(DOUBLE, quality., radiance_rmse_percent, NAN, 0.01, 1000, "%", \
         "largest sampling error, rms relative to the band's mean: selects sensor.samples, edge_samples, " \
         "target_samples, antialias") \

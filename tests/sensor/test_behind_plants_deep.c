@@ -67,9 +67,9 @@ static int lab_close(void **state)
     return 0;
 }
 
-typedef enum Sampling { AS_USUAL, MANY, ONE } Sampling;
+typedef enum SampledBy { AS_USUAL, MANY, ONE } SampledBy;
 
-static TrialFrame frame_of(int v, Sampling kind)
+static TrialFrame frame_of(int v, SampledBy kind)
 {
     const View view =
         trial_view(&lab.scene, views[v].back_m, views[v].above_m, views[v].hfov_deg * rad_per_deg, width_px, height_px);

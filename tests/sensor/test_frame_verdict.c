@@ -66,6 +66,43 @@ static void the_note_of_the_radar_is_as_it_was(void **state)
     CHECK(frame_verdicts_read(&v, NULL) == STATUS_OK && !v && frame_verdicts_of(v, 5, 1) == 0);
 }
 
+/* Each step of sampling has a note and a bit of its own; of what a frame gives up beside it truth.jsonl names all. */
+static void steps_of_sampling(void **state)
+{
+    (void)state;
+    static const char *const note[] = {NULL, "targets alone refined", "ground sampled as a checkerboard",
+                                       "ground sampled by quarters"};
+    static const char *const name[] = {"", "targets", "checkerboard", "quarter"};
+    char     text[frame_verdict_text_size], want[frame_verdict_text_size], names[frame_verdict_names_size];
+    unsigned all = VERDICT_NO_RADAR | VERDICT_NO_TARGET_GRIDS;
+    for (int step = SAMPLING_ALL; step <= SAMPLING_QUARTER; step++) {
+        const unsigned verdict = frame_verdict_of_sampling((Sampling)step);
+        RenderRequest  request = {.target_samples = 48};
+        frame_verdict_names(names, verdict);
+        assert_string_equal(names, name[step]);
+        frame_verdict_apply(&request, verdict);
+        CHECK((int)request.sampling == step && request.target_samples == 48);
+        CHECK((all & verdict) == 0);
+        all |= verdict;
+        if (step == SAMPLING_ALL) {
+            CHECK(verdict == 0);
+            continue;
+        }
+        frame_verdict_text(text, verdict, 12, 34.5);
+        snprintf(want, sizeof want, "pitviper: %s in frame 12 at 34.500000 s", note[step]);
+        assert_string_equal(text, want);
+        FrameVerdicts *v;
+        CHECK(frame_verdicts_read(&v, text) == STATUS_OK && frame_verdicts_of(v, 12, 34.5) == verdict);
+        frame_verdicts_free(v);
+        frame_verdict_names(names, verdict | VERDICT_NO_RADAR | VERDICT_NO_TARGET_GRIDS);
+        snprintf(want, sizeof want, "target_grids,%s", name[step]);
+        assert_string_equal(names, want);
+    }
+    CHECK(all == (1u << verdict_count) - 1 && (all & 32) == 0); /* whole, and 32 is kept for the radar */
+    frame_verdict_names(names, all);
+    CHECK(strlen(names) + 1 < frame_verdict_names_size);
+}
+
 static const char *const spoilt[] = {"",
                                      "\n\n",
                                      "pitviper: no radar in frame",
@@ -77,6 +114,9 @@ static const char *const spoilt[] = {"",
                                      " pitviper: no radar in frame 5 at 1.000000 s\n",
                                      "pitviper: no radar  in frame 5 at 1.000000 s\n",
                                      "pitviper: no light in frame 5 at 1.000000 s\n",
+                                     "pitviper: targets alone in frame 5 at 1.000000 s\n",
+                                     "pitviper: ground sampled by quarters in frame 5 at 1 s\n",
+                                     "pitviper: ground sampled as a checkerboard in frame 5\n",
                                      "pitviper:  in frame 5 at 1.000000 s\n",
                                      "pitviper: no grids of small targets in frame 5.5 at 1.000000 s\n",
                                      "pitviper: no grids of small targets in frame 5 at 1.0000000 s\n",
@@ -218,6 +258,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(notes_come_back),
         cmocka_unit_test(the_note_of_the_radar_is_as_it_was),
+        cmocka_unit_test(steps_of_sampling),
         cmocka_unit_test(spoilt_notes_are_passed_over),
         cmocka_unit_test(a_late_frame_gives_up_and_its_replay_too),
     };

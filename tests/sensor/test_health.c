@@ -203,11 +203,36 @@ static void the_line_counts_what_is_over_the_rate(void **state)
     Health h;
     char   line[health_line_size];
     health_begin(&h, 0);
-    health_line(line, &h, 5, NAN);
+    health_line(line, &h, &(HealthPace){5, 5, NULL, NAN});
     CHECK(strstr(line, "over rate") == NULL);
     h.sample.over_rate = 1234;
-    health_line(line, &h, 5, NAN);
+    health_line(line, &h, &(HealthPace){5, 5, NULL, NAN});
     CHECK(strstr(line, "  1234 over rate") != NULL);
+}
+
+static void the_line_says_what_is_kept_and_given_up(void **state)
+{
+    (void)state;
+    Health h;
+    char   line[health_line_size];
+    health_begin(&h, 0);
+    h.sample.entities = 12;
+    health_line(line, &h, &(HealthPace){4.9, 5, "checkerboard", 0.034});
+    assert_string_equal(line, "12 entities  kept 4.9 of 5 frames/s  checkerboard  0 late  34 ms  0 lost");
+    health_line(line, &h, &(HealthPace){4.9, 5, NULL, 0.034});
+    assert_string_equal(line, "12 entities  kept 4.9 of 5 frames/s  0 late  34 ms  0 lost");
+    health_line(line, &h, &(HealthPace){0, 0, NULL, NAN}); /* it listens: no rate yet */
+    assert_string_equal(line, "12 entities  0 late  0 lost");
+}
+
+/* A frame that lacks a band that was asked for is not kept. */
+static void kept_are_frames_with_all_bands(void **state)
+{
+    (void)state;
+    LiveCounters c = {.frames_late = 2};
+    CHECK(record_live_kept_share(&c, 8) == 0.8);
+    c.frames_lacking = 4;
+    CHECK(record_live_kept_share(&c, 8) == 0.4);
 }
 
 static void each_change_is_said_once(void **state)
@@ -289,6 +314,8 @@ int main(void)
         cmocka_unit_test(why_there_was_no_frame_at_all),
         cmocka_unit_test(every_reason_has_a_next_step),
         cmocka_unit_test(the_line_counts_what_is_over_the_rate),
+        cmocka_unit_test(the_line_says_what_is_kept_and_given_up),
+        cmocka_unit_test(kept_are_frames_with_all_bands),
         cmocka_unit_test(each_change_is_said_once),
         cmocka_unit_test(what_flickers_is_said_once_a_minute),
         cmocka_unit_test(malformed_and_other_pdus_are_told_apart),

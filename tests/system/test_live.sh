@@ -50,7 +50,9 @@ for name in "${nodes[@]}"; do
     check "$name: says how many of the frames it kept" grep -qE 'kept [0-9.]+ of [0-9.]+ frames a second' "$tmp/$name.out"
     check "$name: so does run.json" python3 -c 'import json, sys
 run = json.load(open(sys.argv[1])); live = run["counters"]["live"]
-assert live["rate_hz"] > 0 and abs(live["kept_share"] - run["frames"] / (run["frames"] + live["frames_late"])) < 1e-9, live' "$tmp/$name/run.json"
+made = [live["frames_" + step] for step in ("full", "targets", "checkerboard", "quarter")]
+assert live["rate_hz"] > 0 and abs(live["kept_share"] - run["frames"] / (run["frames"] + live["frames_late"])) < 1e-9, live
+assert sum(made) == run["frames"] and run["counters"].get("frames_reduced", 0) == sum(made[1:]) >= 1, live' "$tmp/$name/run.json"
     check "$name: run.json counts what was lost: nothing" [ "$(live_counter "$tmp/$name" lost_kernel)$(live_counter "$tmp/$name" lost_queue)" = 00 ]
 done
 end_sender

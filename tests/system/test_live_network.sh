@@ -125,7 +125,7 @@ check "who is second is told how both hear" grep -q 'another program of this mac
 
 # ---- the line of a terminal ------------------------------------------------------------------------------------------
 if command -v script >/dev/null; then
-    health=$'\r.*[1-9][0-9]* entities  [0-9.]+ frames/s  [0-9]+ late  [0-9]+ ms  [0-9]+ lost'
+    health=$'\r.*[1-9][0-9]* entities  kept [0-9.]+ of [0-9.]+ frames/s  ([a-z]+  )?[0-9]+ late  [0-9]+ ms  [0-9]+ lost'
     check "a terminal: a line of health, rewritten" grep -qE "$health" "$tmp/observer.out"
     lines=$(grep -o ' frames/s ' "$tmp/observer.out" | wc -l)
     check "a terminal: at most once a second ($lines)" [ "$lines" -ge 1 -a "$lines" -le $((SECONDS + 1)) ]

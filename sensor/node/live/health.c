@@ -410,12 +410,17 @@ void health_check(Health *h, const LiveCounters *counters, const HealthNames *na
     }
 }
 
-void health_line(char out[health_line_size], const Health *h, double frames_hz, double latency_s)
+void health_line(char out[health_line_size], const Health *h, const HealthPace *pace)
 {
     const HealthSample *s = &h->sample;
-    size_t n = (size_t)snprintf(out, health_line_size, "%d entities  %.1f frames/s  %llu late", s->entities, frames_hz,
-                                (unsigned long long)s->late);
-    if (isfinite(latency_s)) n += (size_t)snprintf(out + n, health_line_size - n, "  %.0f ms", 1e3 * latency_s);
+    size_t              n = (size_t)snprintf(out, health_line_size, "%d entities", s->entities);
+    if (pace->rate_hz > 0)
+        n +=
+            (size_t)snprintf(out + n, health_line_size - n, "  kept %.1f of %g frames/s", pace->kept_hz, pace->rate_hz);
+    if (pace->step) n += (size_t)snprintf(out + n, health_line_size - n, "  %s", pace->step);
+    n += (size_t)snprintf(out + n, health_line_size - n, "  %llu late", (unsigned long long)s->late);
+    if (isfinite(pace->latency_s))
+        n += (size_t)snprintf(out + n, health_line_size - n, "  %.0f ms", 1e3 * pace->latency_s);
     n += (size_t)snprintf(out + n, health_line_size - n, "  %llu lost",
                           (unsigned long long)(s->lost_kernel + s->lost_queue));
     if (s->over_rate > 0 && n < health_line_size)

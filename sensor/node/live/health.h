@@ -111,9 +111,15 @@ void health_rendering(Health *health, double now_s); /* the choices are made, th
 void health_frame(Health *health, const FrameRecord *frame, double now_s);
 /* Evaluates the counters and reports changes; no message twice within a minute. */
 void health_check(Health *health, const LiveCounters *counters, const HealthNames *names, double now_s);
-/* `12 entities  5.0 frames/s  0 late  34 ms  0 lost  nothing heard` */
-enum { health_line_size = 160 };
-void health_line(char out[health_line_size], const Health *health, double frames_hz, double latency_s);
+/* `12 entities  kept 4.9 of 5 frames/s  checkerboard  0 late  34 ms  0 lost  nothing heard`, with what the last frame
+ * gave up. */
+typedef struct HealthPace {
+    double      kept_hz, rate_hz; /* frames with all bands; those asked for, 0: not known yet */
+    const char *step;             /* NULL: it gave up nothing */
+    double      latency_s;        /* NAN: none */
+} HealthPace;
+enum { health_line_size = 192 };
+void health_line(char out[health_line_size], const Health *health, const HealthPace *pace);
 
 /* The last lines of `pitviper run`. own: datagrams heard that the node itself had sent. */
 void health_summary(const LiveCounters *counters, const HealthSample *sample, uint64_t own);

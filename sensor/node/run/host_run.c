@@ -268,6 +268,7 @@ Status run_host(Run *run, const DisEntityId *host)
                                   .dis = run->send ? &dis : NULL,
                                   .note = run->note,
                                   .notes = run->view.notes,
+                                  .choose = run->choose,
                                   .clock = run->clock,
                                   .save_count = o->save_count,
                                   .save = o->save,

@@ -34,11 +34,12 @@ struct Run {
     Status (*check)(Run *run, const Player *player, const HostPlan *plan, const FrameGrid *grid);
     /* Renders the frames. */
     Status (*frames)(Run *run, Session *session, Player *player, const HostPlan *plan, const FrameGrid *grid);
-    void (*publish)(void *user, const Frame *frame); /* may be NULL */
-    void (*note)(void *user, const char *text);      /* into the recording; may be NULL */
-    DisSend    *send;                                /* sends the Data PDUs of publish.dis; NULL: they are not sent */
-    void       *user;                                /* passed to these four */
-    FrameClock *clock;                               /* the command's, of `frames`; NULL where none are made */
+    void (*publish)(void *user, const Frame *frame);        /* may be NULL */
+    void (*note)(void *user, const char *text);             /* into the recording; may be NULL */
+    unsigned (*choose)(void *user, const FrameTime *frame); /* SessionShared.choose; may be NULL */
+    DisSend    *send;  /* sends the Data PDUs of publish.dis; NULL: they are not sent */
+    void       *user;  /* passed to these five */
+    FrameClock *clock; /* the command's, of `frames`; NULL where none are made */
 };
 
 /* Bands, sensors, hash of the configuration: before anything is received. */

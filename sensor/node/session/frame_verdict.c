@@ -18,22 +18,37 @@ struct FrameVerdicts {
     Verdict verdict[]; /* by number */
 };
 
-/* The words of a note, and the name in truth.jsonl, by bit. */
+/* The words of a note, the name in truth.jsonl, and the step of sampling, by bit. */
 static const struct {
     const char *note, *name;
-} kind[verdict_count] = {{"no radar", NULL}, {"no grids of small targets", "target_grids"}};
+    Sampling    sampling;
+} kind[verdict_count] = {{"no radar", NULL, SAMPLING_ALL},
+                         {"no grids of small targets", "target_grids", SAMPLING_ALL},
+                         {"targets alone refined", "targets", SAMPLING_TARGETS},
+                         {"ground sampled as a checkerboard", "checkerboard", SAMPLING_CHECKERBOARD},
+                         {"ground sampled by quarters", "quarter", SAMPLING_QUARTER}};
+
+unsigned frame_verdict_of_sampling(Sampling sampling)
+{
+    for (int i = 0; i < verdict_count; i++)
+        if (sampling != SAMPLING_ALL && kind[i].sampling == sampling) return 1u << i;
+    return 0;
+}
 
 void frame_verdict_apply(RenderRequest *request, unsigned verdict)
 {
     if (verdict & VERDICT_NO_TARGET_GRIDS) request->target_samples = 0;
+    for (int i = 0; i < verdict_count; i++)
+        if (verdict >> i & 1 && kind[i].sampling > request->sampling) request->sampling = kind[i].sampling;
 }
 
-const char *frame_verdict_name(unsigned verdict)
+void frame_verdict_names(char out[frame_verdict_names_size], unsigned verdict)
 {
-    const char *name = NULL;
-    for (int i = 0; i < verdict_count && !name; i++)
-        if (verdict >> i & 1) name = kind[i].name;
-    return name;
+    size_t n = 0;
+    *out = 0;
+    for (int i = 0; i < verdict_count; i++)
+        if (verdict >> i & 1 && kind[i].name && n < frame_verdict_names_size)
+            n += (size_t)snprintf(out + n, frame_verdict_names_size - n, "%s%s", n ? "," : "", kind[i].name);
 }
 
 void frame_verdict_text(char out[frame_verdict_text_size], unsigned one, int number, double t_s)

@@ -11,13 +11,21 @@
 enum {
     VERDICT_NO_RADAR = 1,        /* signatures of targets are still to be made */
     VERDICT_NO_TARGET_GRIDS = 2, /* targets that are small on the image have the samples of all others */
+    VERDICT_TARGETS = 4,         /* a step of sampling (Sampling), of these three at most one */
+    VERDICT_CHECKERBOARD = 8,
+    VERDICT_QUARTER = 16,
+    /* 32: room for a radar that sees targets by coarse signatures */
 };
-enum { verdict_count = 2 };
+enum { verdict_count = 5 };
+
+/* SAMPLING_ALL: 0. */
+unsigned frame_verdict_of_sampling(Sampling sampling);
 
 /* Takes what is given up out of the request of a frame. */
 void frame_verdict_apply(RenderRequest *request, unsigned verdict);
-/* Its name in truth.jsonl; NULL: that has nothing of its own to say. */
-const char *frame_verdict_name(unsigned verdict);
+/* Its names in truth.jsonl, separated by commas; empty: that has nothing of its own to say. */
+enum { frame_verdict_names_size = 64 };
+void frame_verdict_names(char out[frame_verdict_names_size], unsigned verdict);
 
 /* The note of one of them. */
 enum { frame_verdict_text_size = 96 };

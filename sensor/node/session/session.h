@@ -41,7 +41,7 @@ typedef struct SessionShared {
     void (*note)(void *user, const char *text); /* into the live recording; NULL: there is none; user: as above */
     const char *notes;                          /* of the recording that is played, DisLog.notes; NULL: none */
     /* What a frame of a live node gives up (frame_verdict.h), chosen before it is rendered, and noted. NULL: nothing;
-     * user: as above. The program's nodes set none so far. */
+     * user: as above. */
     unsigned (*choose)(void *user, const FrameTime *frame);
     bool several; /* hosts, one after the other: what has a name of its own gets the host's too */
 } SessionShared;

@@ -221,13 +221,16 @@ Status session_make_frame(bool *shown, int *left_out, Frame *f, Session *s, cons
     make_request(&f->request, s, &eye, t_s);
     const unsigned verdict = judge(s, when);
     frame_verdict_apply(&f->request, verdict);
+    char *given_up = arena_alloc(f->arena, frame_verdict_names_size, 1);
+    if (!given_up) return STATUS_NO_MEMORY;
     const double posed_s = wall_clock_s();
     if (status == STATUS_OK) status = look(&f->seen, s, &f->request, &light, f->arena);
     if (status == STATUS_OK && s->wants & WANT_WITHOUT) status = look_without(f, s, &light, eye.hidden);
     if (status != STATUS_OK) return status;
     if (f->seen.picture.range_m) rate_of_scene(f->rate_px_s, &eye, &f->seen.picture);
     fill_record(f, s, &eye);
-    f->record.given_up = frame_verdict_name(verdict);
+    frame_verdict_names(given_up, verdict);
+    if (*given_up) f->record.given_up = given_up;
     s->result.frames_reduced += f->record.given_up != NULL;
     if (s->wants & WANT_FOOTPRINT) {
         truth_footprint(f->footprint, shared->world, &eye.view);
