@@ -253,6 +253,94 @@ static void a_late_frame_gives_up_and_its_replay_too(void **state)
     lab.notes = NULL, lab.choose = NULL, lab.adaptive = false;
 }
 
+enum { many_frames = 120 };
+
+/* Each third frame gives up something else: steps up and down, alone and with the grids of small targets. */
+static unsigned by_turns(int number)
+{
+    static const unsigned turn[] = {VERDICT_QUARTER,
+                                    0,
+                                    VERDICT_TARGETS,
+                                    VERDICT_NO_TARGET_GRIDS,
+                                    VERDICT_CHECKERBOARD,
+                                    VERDICT_QUARTER | VERDICT_NO_TARGET_GRIDS,
+                                    VERDICT_CHECKERBOARD | VERDICT_NO_TARGET_GRIDS};
+    return turn[number / 3 % (int)(sizeof turn / sizeof *turn)];
+}
+
+static unsigned choose_by_turns(void *user, const FrameTime *frame)
+{
+    (void)user;
+    return by_turns(frame->number);
+}
+
+static char many_notes[120 * many_frames * 2];
+
+static void record_many(void *user, const char *text)
+{
+    (void)user;
+    const size_t n = strlen(many_notes);
+    snprintf(many_notes + n, sizeof many_notes - n, "%s\n", text);
+}
+
+static RenderRequest asked_for[many_frames];
+static int           looked;
+
+static void look(void *user, const Frame *frame)
+{
+    (void)user;
+    CHECK(looked < many_frames);
+    asked_for[looked++] = frame->request;
+}
+
+static void run_many(char hash[many_frames][sha256_text_size], const Config *config)
+{
+    looked = 0;
+    lab_run(config, 0.5, 30, many_frames);
+    CHECK(looked == many_frames && lab.result.listed == many_frames);
+    for (int k = 0; k < many_frames; k++) memcpy(hash[k], lab.result.hash[k], sha256_text_size);
+}
+
+/* A hundred and twenty frames whose steps change each third: the notes bring back each request and each plane. */
+static void steps_that_change_all_the_time_come_back(void **state)
+{
+    (void)state;
+    static char full[many_frames][sha256_text_size], live[many_frames][sha256_text_size],
+        again[many_frames][sha256_text_size];
+    Config config = config_default();
+    strcpy(config.exercise.host, "observer");
+    lab.adaptive = true, lab.look = look;
+    run_many(full, &config);
+    lab.live = true, lab.note = record_many, lab.choose = choose_by_turns;
+    run_many(live, &config);
+    static RenderRequest as_live[many_frames];
+    memcpy(as_live, asked_for, sizeof as_live);
+    const int reduced = lab.result.frames_reduced;
+    lab.live = false, lab.note = NULL, lab.choose = NULL, lab.notes = many_notes;
+    run_many(again, &config);
+    CHECK(lab.result.frames_reduced == reduced);
+    int want = 0, other = 0;
+    for (int k = 0; k < many_frames; k++) {
+        const unsigned verdict = by_turns(k);
+        want += verdict != 0;
+        other += strcmp(full[k], live[k]) != 0;
+        CHECK(strcmp(live[k], again[k]) == 0);
+        CHECK(as_live[k].sampling == asked_for[k].sampling && as_live[k].target_samples == asked_for[k].target_samples);
+        CHECK(frame_verdict_of_sampling(asked_for[k].sampling) ==
+              (verdict & (VERDICT_TARGETS | VERDICT_CHECKERBOARD | VERDICT_QUARTER)));
+        if (verdict == 0) CHECK(strcmp(full[k], live[k]) == 0); /* nothing of what was given up before is left */
+        if (verdict & VERDICT_NO_TARGET_GRIDS) CHECK(strcmp(full[k], live[k]) != 0);
+    }
+    CHECK(reduced == want && other >= want / 3);
+    /* the twin: without notes those frames are others */
+    lab.notes = NULL;
+    run_many(again, &config);
+    int differ = 0;
+    for (int k = 0; k < many_frames; k++) differ += strcmp(live[k], again[k]) != 0;
+    CHECK(differ == other && differ > 0);
+    lab.adaptive = false, lab.look = NULL;
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -261,6 +349,7 @@ int main(void)
         cmocka_unit_test(steps_of_sampling),
         cmocka_unit_test(spoilt_notes_are_passed_over),
         cmocka_unit_test(a_late_frame_gives_up_and_its_replay_too),
+        cmocka_unit_test(steps_that_change_all_the_time_come_back),
     };
     return cmocka_run_group_tests(tests, lab_open, lab_close);
 }

@@ -223,6 +223,21 @@ static Status add_rows(const Node *n)
     snprintf(against, sizeof against, "of those due; made: %.0f; without video: %.0f", made, left);
     row.against = against;
     bench_add(n->bench, &row);
+    row = row_of(what, n, "frames kept, with all bands");
+    row.error = 100 * NUMBER_AT(text, "live", "kept_share");
+    row.error_unit = "%";
+    row.against = "of those due";
+    bench_add(n->bench, &row);
+    static const char *const step[] = {"frames_targets", "frames_checkerboard", "frames_quarter"};
+    double                   at[3];
+    for (int i = 0; i < 3; i++) at[i] = NUMBER_AT(text, "live", step[i]);
+    row = row_of(what, n, "frames that gave up sampling (quality.deadline)");
+    row.error = made > 0 ? 100 * (at[0] + at[1] + at[2]) / made : 0;
+    row.error_unit = "%";
+    snprintf(against, sizeof against, "of those made; targets %.0f, checkerboard %.0f, quarter %.0f", at[0], at[1],
+             at[2]);
+    row.against = against;
+    bench_add(n->bench, &row);
     row = row_of(what, n, "datagrams lost");
     row.error = NUMBER_AT(text, "live", "lost_kernel") + NUMBER_AT(text, "live", "lost_queue");
     row.error_unit = "datagrams";
