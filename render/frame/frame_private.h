@@ -148,6 +148,7 @@ Status target_sums_gather(Picture *picture, const SumRules *rules, const WorkerS
  *   boxes          every entity's box on the image                         target_sums.c
  *   small targets  each sampled on a grid over its own box                 target_grid.c
  *   base           every pixel, without the small targets                  passes.c
+ *   fill           at cheaper steps of sampling, pixels without rays       sampling.c
  *   edges          pixels whose neighbours differ, with more rays          edges.c selects, refine.c samples
  *   leaves         pixels of plants, smoothed among themselves              leaf_filter.c
  *   composite      the small targets, over the pixels                      target_grid_picture.c
@@ -201,6 +202,7 @@ typedef struct Job {
     /* edges; NULL: not looked for */
     uint8_t *refine;   /* a pixel: RefineFlag */
     float   *sun;      /* a pixel: Samples.sun of the sample that truth is of */
+    uint8_t *whole;    /* a pixel: 1, it has its rays at every step of sampling (sampling.c); NULL: all have */
     float  **smoothed; /* [channels]: each plane's pixels, smoothed (leaf_filter.c); NULL: they are not */
     bool    *leafy;    /* [tiles]: some plant is in or beside it */
     double (*law)[picture_plane_count]; /* [tiles]: squared errors, summed; NULL: no error estimate */
@@ -238,6 +240,15 @@ float *block_values(const Worker *w, const Job *job, int plane);
 
 /* The base pass, with the sample count that all pixels have: a pool task: planes, truth and sums of a tile. */
 void base_tile(void *job, int worker, int task);
+
+/* ---- pixels without rays of their own: sampling.c --------------------------------------------- */
+
+/* Marks what is whole. After mark_boxes. */
+void sampling_mark(Job *job);
+/* Whether a pixel has rays of its own. */
+bool sampling_traces(const Job *job, int x, int y);
+/* A pool task, after the base pass: fills a tile's other pixels from those beside them. */
+void sampling_fill_tile(void *job, int worker, int task);
 
 /* ---- pixels that one sample does not represent: edges.c -------------------------------------- */
 

@@ -262,28 +262,50 @@ static void write_truth(const Worker *w, const Job *job)
     }
 }
 
+/* Shades the block's pixels. share: of the picture that each stands for in sums over it. */
+static void base_block(Worker *w, const Job *job, int listed, double share)
+{
+    if (w->block.pixels == 0) return;
+    block_trace(w, job, job->request->bands, listed);
+    shade_samples_sun(&w->shader, &job->scene, &w->samples);
+    block_light(w, job);
+    block_write(w, job, 1);
+    block_add(w, job, share);
+    if (job->picture->target) block_add_areas(w, job, share, w->list, listed);
+    if (job->picture->entity) write_truth(w, job);
+}
+
+/* The tile's pixels that have rays at this step of sampling. whole: those that always have; else the others, which
+ * stand for more than themselves. Returns how many of the kind there are. */
+static int collect(Worker *w, const Job *job, const Tile *tile, bool whole)
+{
+    int count = 0;
+    w->block.pixels = w->block.columns = 0;
+    for (int y = tile->y0; y < tile->y1; y++)
+        for (int x = tile->x0; x < tile->x1; x++) {
+            if ((!job->whole || job->whole[pixel_index(job, x, y)]) != whole) continue;
+            count++;
+            if (sampling_traces(job, x, y)) pixels_add(&w->block, x, y);
+        }
+    return count;
+}
+
 void base_tile(void *user, int worker, int task)
 {
     const Job   *job = user;
     Worker      *w = job->worker[worker];
     const Tile   tile = tile_of(job, task);
-    PixelBlock  *block = &w->block;
     const double box_px[4] = {tile.x0, tile.y0, tile.x1, tile.y1};
+    const int    listed = list_entities(w, job, box_px, false);
+    const int    pixels = (tile.x1 - tile.x0) * (tile.y1 - tile.y0), whole = collect(w, job, &tile, true);
 
-    block->n = job->request->samples;
-    block->columns = block->n == 1 ? tile.x1 - tile.x0 : 0;
-    block->pixels = 0;
-    for (int y = tile.y0; y < tile.y1; y++)
-        for (int x = tile.x0; x < tile.x1; x++) pixels_add(block, x, y);
-    const int listed = list_entities(w, job, box_px, false);
-    w->counters.pixels += (uint64_t)block->pixels;
+    w->block.n = job->request->samples;
+    if (w->block.n == 1 && whole == pixels) w->block.columns = tile.x1 - tile.x0;
+    w->counters.pixels += (uint64_t)pixels;
     w->counters.tiles++;
     w->counters.tiles_without_entities += listed == 0;
-    block_trace(w, job, job->request->bands, listed);
-    shade_samples_sun(&w->shader, &job->scene, &w->samples);
-    block_light(w, job);
-    block_write(w, job, 1);
-    block_add(w, job, 1);
-    if (job->picture->target) block_add_areas(w, job, 1, w->list, listed);
-    if (job->picture->entity) write_truth(w, job);
+    base_block(w, job, listed, 1);
+    if (whole == pixels) return;
+    const int others = collect(w, job, &tile, false);
+    if (w->block.pixels > 0) base_block(w, job, listed, (double)others / w->block.pixels);
 }

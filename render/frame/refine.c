@@ -199,6 +199,7 @@ void refine_tile(void *user, int worker, int task)
     const unsigned all = job->request->bands, no_radar = all & ~(1u << BAND_RADAR);
     const unsigned sunlit = all & (1u << BAND_OPTICAL | 1u << BAND_MWIR), lwir = all & 1u << BAND_LWIR;
     unsigned       any = 0;
+    const bool     bare = job->request->sampling > SAMPLING_ALL; /* borders of ground are not refined */
 
     const Refinement ways[] = {
         {refine_all, 0, all, edge},
@@ -212,8 +213,11 @@ void refine_tile(void *user, int worker, int task)
     refine_flags(flags_of, job, tile.x0, tile.y0, tile.x1, tile.y1);
     for (int y = tile.y0; y < tile.y1; y++)
         for (int x = tile.x0; x < tile.x1; x++) {
-            const unsigned flags = flags_of[(y - tile.y0) * (tile.x1 - tile.x0) + x - tile.x0];
-            job->refine[pixel_index(job, x, y)] = (uint8_t)flags;
+            const size_t px = pixel_index(job, x, y);
+            unsigned     flags = flags_of[(y - tile.y0) * (tile.x1 - tile.x0) + x - tile.x0];
+            if (bare) flags &= job->refine[px] | refine_all | refine_plants;
+            if (job->whole && !job->whole[px]) flags = 0;
+            job->refine[px] = (uint8_t)flags;
             any |= flags;
             w->counters.pixels_refined += flags != 0;
         }

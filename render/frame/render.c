@@ -42,6 +42,9 @@ static Status create_job(Job *job, int workers, Arena *arena)
         if (!job->refine || !job->sun) return STATUS_NO_MEMORY;
         if (job->request->budget && !(job->law = arena_alloc(arena, tiles, sizeof *job->law))) return STATUS_NO_MEMORY;
     }
+    if (job->request->sampling > SAMPLING_TARGETS &&
+        !(job->whole = arena_alloc(arena, (size_t)job->picture->width * (size_t)job->picture->height, 1)))
+        return STATUS_NO_MEMORY;
     Status status = leaf_filter_prepare(job, arena);
     for (int k = 0; k < workers && status == STATUS_OK; k++) status = create_worker(&job->worker[k], job, arena);
     return status;
@@ -90,7 +93,8 @@ static bool request_is_good(const RenderRequest *r)
            (r->target_samples == 0 || (r->target_samples >= 8 && r->target_samples <= 256)) && r->view.width >= 1 &&
            r->view.height >= 1 && r->view.width <= 8192 && r->view.height <= 8192 && r->view.focal_px > 0 &&
            v3_is_finite(r->view.p_enu) && r->profile_bins >= 0 && fabs(r->lateral[0]) <= view_most_lateral &&
-           fabs(r->lateral[1]) <= view_most_lateral && r->sky_samples >= 0 && r->sky_samples <= hemisphere_samples_max;
+           fabs(r->lateral[1]) <= view_most_lateral && r->sky_samples >= 0 &&
+           r->sky_samples <= hemisphere_samples_max && r->sampling <= SAMPLING_QUARTER;
 }
 
 static void choose_rules(Job *job)
@@ -126,7 +130,8 @@ static Status prepare(Job *job, Pool *pool, Arena *arena)
     if (status == STATUS_OK) status = create_job(job, pool_threads(pool), arena);
     if (status != STATUS_OK) return status;
     choose_rules(job);
-    if (request->truth || request->target_samples > 0 || looks_for_edges(request) || request->sky_visibility)
+    if (request->truth || request->target_samples > 0 || looks_for_edges(request) || request->sky_visibility ||
+        job->whole)
         pool_run(pool, scene->snapshot->count, project_target, job);
     visibility_tighten(scene->visibility);
     status = prepare_sky(job, pool, arena);
@@ -172,8 +177,10 @@ static Status run_passes(Job *job, Pool *pool, Arena *arena)
         target_grids_cover(job);
     }
     if (looks_for_edges(request)) mark_boxes(job);
+    sampling_mark(job);
     const double small_s = wall_clock_s();
     pool_run(pool, job->tiles_x * job->tiles_y, base_tile, job);
+    if (job->whole) pool_run(pool, job->tiles_x * job->tiles_y, sampling_fill_tile, job);
     const double base_s = wall_clock_s();
     if (looks_for_edges(request)) pool_run(pool, job->tiles_x * job->tiles_y, refine_tile, job);
     if (job->smoothed) leaf_filter(job, pool);
