@@ -26,7 +26,9 @@ check "it says how many frames gave up, at which step, with the error" \
 
 last=$(time_of "$tmp/held" '$')
 again=(--causal --port 0 --to "$last" "${few[@]}")
-replay "$tmp/held.pcapng" "$tmp/again" "${again[@]}" --only "$(frames_of held)"
+first=$(frames_of held | cut -d, -f1)
+hash_of() { numbered "$tmp/$1" | awk -v n="$first" '$1 == n { print $2 }'; }
+replay "$tmp/held.pcapng" "$tmp/again" "${again[@]}" --only "$(frames_of held)" --save-frame "$first"
 check "its recording replays" [ $code = 0 ]
 check "to the same planes" part_of "$tmp/held" "$tmp/again" 40
 cat >"$tmp/judge.py" <<'P'
@@ -61,12 +63,12 @@ sys.exit(not (not wrong and notes == reduced and by == seen and replayed == len(
               and compared >= 60 and not lacking))
 P
 check "notes, truth, counters, pictures and raw counts agree" python3 "$tmp/judge.py" "$tmp/held" "$tmp/again" "$tmp/held.pcapng"
+run frame "$tmp/again/frame_$(printf %06d "$first").pvf"
+check "a frame that gave up, saved and rendered again: the same" grep -q "frame $(hash_of held)" "$tmp/stdout"
 
-# the twins: no note is read; and other notes
+# the twin: no note is read
 sed 's/pitviper: ground sampled/pitviper: ground Sampled/g; s/pitviper: targets alone/pitviper: targets Alone/g' "$tmp/held.pcapng" >"$tmp/spoilt.pcapng"
 replay "$tmp/spoilt.pcapng" "$tmp/spoilt" "${again[@]}" --only "$(frames_of held | cut -d, -f-6)"
-first=$(frames_of held | cut -d, -f1)
-hash_of() { numbered "$tmp/$1" | awk -v n="$first" '$1 == n { print $2 }'; }
 check "without notes nothing is given up" [ "$(grep -c given_up "$tmp/spoilt/truth.jsonl")" = 0 ]
 check "without its note the first frame has other planes" [ -n "$(hash_of spoilt)" -a "$(hash_of spoilt)" != "$(hash_of held)" ]
 

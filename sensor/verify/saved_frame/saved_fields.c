@@ -231,7 +231,7 @@ void saved_fields_request(Fields *f, SavedFrame *file)
 {
     RenderRequest *r = &file->request;
     View          *v = &r->view;
-    int            bands = (int)r->bands, optical = (int)r->optical;
+    int            bands = (int)r->bands, optical = (int)r->optical, sampling = (int)r->sampling;
     field_int(f, "picture width", &v->width, 8, 8192);
     field_int(f, "picture height", &v->height, 8, 8192);
     field_real(f, "focal length", &v->focal_px, 1e-3, 1e9);
@@ -264,6 +264,9 @@ void saved_fields_request(Fields *f, SavedFrame *file)
     field_reals(f, "rate of the scene", file->rate_px_s, 2, INFINITY);
     field_bool(f, "gimbal", &file->at_limit);
     field_bool(f, "contact", &file->all_on_ground);
+    if (f->version >= 5) field_int(f, "sampling", &sampling, SAMPLING_ALL, SAMPLING_QUARTER);
+    else sampling = SAMPLING_ALL;
+    r->sampling = (Sampling)sampling;
 }
 
 /* ---- plants -------------------------------------------------------------------------------------- */
