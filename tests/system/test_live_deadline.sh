@@ -65,6 +65,10 @@ P
 check "notes, truth, counters, pictures and raw counts agree" python3 "$tmp/judge.py" "$tmp/held" "$tmp/again" "$tmp/held.pcapng"
 run frame "$tmp/again/frame_$(printf %06d "$first").pvf"
 check "a frame that gave up, saved and rendered again: the same" grep -q "frame $(hash_of held)" "$tmp/stdout"
+run explain "$tmp/again" "$first" 1 1
+check "a pixel without rays of its own is said to be one" eval '[ $code = 1 ] && complained "no ray of its own in this frame.*explain column 0, row 0"'
+run explain "$tmp/again" "$first" 0 0
+check "one beside it has its ray" [ $code = 0 ]
 
 # the twin: no note is read
 sed 's/pitviper: ground sampled/pitviper: ground Sampled/g; s/pitviper: targets alone/pitviper: targets Alone/g' "$tmp/held.pcapng" >"$tmp/spoilt.pcapng"

@@ -22,11 +22,11 @@ struct FrameVerdicts {
 static const struct {
     const char *note, *name;
     Sampling    sampling;
-} kind[verdict_count] = {{"no radar", NULL, SAMPLING_ALL},
-                         {"no grids of small targets", "target_grids", SAMPLING_ALL},
-                         {"targets alone refined", "targets", SAMPLING_TARGETS},
-                         {"ground sampled as a checkerboard", "checkerboard", SAMPLING_CHECKERBOARD},
-                         {"ground sampled by quarters", "quarter", SAMPLING_QUARTER}};
+} kind[verdict_count] = {[0] = {"no radar", NULL, SAMPLING_ALL},
+                         [1] = {"no grids of small targets", "target_grids", SAMPLING_ALL},
+                         [2] = {"targets alone refined", "targets", SAMPLING_TARGETS},
+                         [3] = {"ground sampled as a checkerboard", "checkerboard", SAMPLING_CHECKERBOARD},
+                         [4] = {"ground sampled by quarters", "quarter", SAMPLING_QUARTER}};
 
 unsigned frame_verdict_of_sampling(Sampling sampling)
 {
@@ -71,6 +71,7 @@ static bool read_line(Verdict *out, const char *line)
     if (!at || sscanf(at, " in frame %lf at %lf s", &number, &t_s) != 2) return false;
     if (!(number >= 0 && number <= INT32_MAX && fabs(t_s) < 1e9)) return false;
     for (int i = 0; i < verdict_count; i++) {
+        if (!kind[i].note) continue;
         *out = (Verdict){(int)number, t_s, 1u << i};
         frame_verdict_text(again, out->given_up, out->number, out->t_s);
         if (strcmp(text, again) == 0) return true;

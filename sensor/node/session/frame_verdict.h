@@ -14,9 +14,8 @@ enum {
     VERDICT_TARGETS = 4,         /* a step of sampling (Sampling), of these three at most one */
     VERDICT_CHECKERBOARD = 8,
     VERDICT_QUARTER = 16,
-    /* 32: room for a radar that sees targets by coarse signatures */
 };
-enum { verdict_count = 5 };
+enum { verdict_count = 6 }; /* bits; 32 is free, for the radar */
 
 /* SAMPLING_ALL: 0. */
 unsigned frame_verdict_of_sampling(Sampling sampling);

@@ -194,6 +194,18 @@ Status explain_pixel(Explained *e, SavedFrame *file, SavedScene *scene, int x, i
             "explain: the frame rendered here is not that of the file (%d planes differ)%s; what follows explains "
             "the one rendered here",
             e->differ, strcmp(file->version, PITVIPER_VERSION) == 0 ? "" : ": another version of pitviper made it");
+    if (e->record[0].samples == 0 && file->request.sampling > SAMPLING_TARGETS) {
+        const bool quarter = file->request.sampling == SAMPLING_QUARTER;
+        log_error(
+            "explain: column %d, row %d has no ray of its own in this frame, which gave up sampling to be in time: it is "
+            "the mean of the pixels beside it that have some; explain column %d, row %d",
+            x, y,
+            quarter ? x & ~1
+            : x > 0 ? x - 1
+                    : x + 1,
+            quarter ? y & ~1 : y);
+        return STATUS_BAD_VALUE;
+    }
     for (int k = 0; k < pixel_records; k++) pixel_record_sort(&e->record[k]);
     status = explain_planes(e, arena);
     return status == STATUS_OK ? explain_bands(e, pool, arena) : status;
