@@ -42,6 +42,10 @@ stop live
 end_sender
 check "the node ends well" [ $code = 0 ] || tail -n 5 "$tmp/live.out"
 check "it says how many frames are without radar" grep -q 'frames are without radar: signatures of targets were still to be made; radar.library' "$tmp/live.out"
+check "frames without radar are not kept" python3 -c 'import json, sys
+run = json.load(open(sys.argv[1])); c = run["counters"]; live = c["live"]
+assert live["frames_lacking"] == c.get("frames_without_radar", 0), c
+assert abs(live["kept_share"] - (run["frames"] - live["frames_lacking"]) / (run["frames"] + live["frames_late"])) < 1e-9, live' "$tmp/live/run.json"
 check "detections on the network are those of truth.jsonl" \
     python3 tests/system/data_pdus.py radar "$tmp/live.pcapng" "$tmp/live/truth.jsonl" 3
 files=$(ls "$tmp/library" | grep -c '^[0-9a-f]\{64\}\.sig$')
