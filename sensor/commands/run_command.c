@@ -47,8 +47,9 @@ typedef struct Live {
     double   begun_s, flushed_s, shown_s;
     uint64_t shown_frames; /* frames kept by shown_s */
     Pace     pace;
-    int64_t  due_ns;    /* Unix time of the present frame */
-    double   latency_s; /* the longest time from due_ns until a frame was rendered, since shown_s; NaN: none */
+    bool     host_there; /* in the last frame that was due */
+    int64_t  due_ns;     /* Unix time of the present frame */
+    double   latency_s;  /* the longest time from due_ns until a frame was rendered, since shown_s; NaN: none */
 } Live;
 
 /* Whether it is to send Data PDUs. */
@@ -279,16 +280,16 @@ static bool enough(void *user)
 static Status make_frame(void *user, const FrameTime *frame)
 {
     Live *l = user;
-    bool  shown;
-    l->counters.frames_late += frame->dropped;
+    bool  shown = false;
     l->due_ns = live_clock_due_ns(&l->clock, frame->t_s);
     dis_udp_close_tick(l->udp, l->due_ns);
     Status status = feed(l, l->due_ns);
     if (status == STATUS_OK) status = session_frame(&shown, l->session, frame);
     if (status == STATUS_OK && !shown) l->health.sample.missing++;
+    if (l->host_there || shown) l->counters.frames_late += frame->dropped; /* without a host none was to be made */
+    l->host_there = shown;
     flush_recording(l);
     check_health(l, l->session);
-    pace_report(&l->pace, wall_clock_s());
     pace_done(&l->pace, status == STATUS_OK && shown, wall_clock_s());
     return status;
 }
@@ -334,7 +335,7 @@ static Status live_frames(Run *run, Session *session, Player *player, const Host
                                                                 : HEALTH_BY_ID;
     const Status status = frame_loop(NULL, &(FrameLoop){&l->clock.clock, enough, receive, make_frame, l});
     /* and those that were due while the last one was made */
-    if (status == STATUS_OK && over(l)) l->counters.frames_late += live_clock_behind(&l->clock);
+    if (status == STATUS_OK && over(l) && l->host_there) l->counters.frames_late += live_clock_behind(&l->clock);
     log_status(NULL);
     snprintf(l->host, sizeof l->host, "%s", session_host(session));
     l->health.sample.entities = session_entities(session);

@@ -24,7 +24,6 @@ static double go(Pace *p, const char *host, double load, int frames, double begu
         const double due_s = begun_s + 0.2 * k;
         pace_choose(p, host, 0.005, due_s + 0.005);
         const double done_s = due_s + 0.005 + 0.2 * load * share[p->step];
-        pace_report(p, done_s);
         pace_done(p, true, done_s);
     }
     return begun_s + 0.2 * frames;

@@ -61,6 +61,7 @@ later = [b - a - 1 for a, b in zip(numbers[behind + 3:], numbers[behind + 4:])]
 print("kept %d of %d (%.1f %%), of the standstill %d left out; %s; %d changes of step; left out behind it %d of %d; entities seen %s" % (
     len(numbers), due, 100 * len(numbers) / due, longest, dict(collections.Counter(steps)), changes, sum(later), len(later),
     run["counters"]["entities"]["created"]))
+print("left out behind frames:", ", ".join("%d: %d" % (a, n) for n, a in gaps if n))
 lines = [json.loads(line) for line in open(out + "/truth.jsonl")]
 for k in range(0, len(lines), 15):
     part = lines[k:k + 15]

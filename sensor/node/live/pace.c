@@ -41,14 +41,7 @@ unsigned pace_choose(Pace *p, const char *host, double gone_s, double now_s)
     return frame_verdict_of_sampling((Sampling)p->step);
 }
 
-void pace_done(Pace *p, bool shown, double now_s)
-{
-    if (p->chosen) deadline_done(&p->deadline, now_s - p->chosen_s);
-    if (!shown) *p->host = 0;
-    p->chosen = false;
-}
-
-void pace_report(Pace *p, double now_s)
+static void report(Pace *p, double now_s)
 {
     const bool gives = p->step > 0;
     if (!p->on || gives == p->said || now_s - p->changed_s < pace_hold_s[gives]) return;
@@ -63,6 +56,14 @@ void pace_report(Pace *p, double now_s)
         p->said = true;
         p->said_s = now_s;
     }
+}
+
+void pace_done(Pace *p, bool shown, double now_s)
+{
+    report(p, now_s);
+    if (p->chosen) deadline_done(&p->deadline, now_s - p->chosen_s);
+    if (!shown) *p->host = 0;
+    p->chosen = false;
 }
 
 void pace_summary(const LiveCounters *c)

@@ -30,10 +30,9 @@ Pace pace_begin(const Config *config, double rate_hz);
 /* The verdict (frame_verdict.h) of a frame of this host that was due gone_s ago. What other hosts' frames cost does not
  * count: the first one of a host is made at the cheapest step. */
 unsigned pace_choose(Pace *pace, const char *host, double gone_s, double now_s);
-/* The frame is done; shown: false, there was none, as the host was not there. */
+/* The frame is done; shown: false, there was none, as the host was not there. Says when frames begin to give up, and
+ * when they no longer do; once per change. */
 void pace_done(Pace *pace, bool shown, double now_s);
-/* Says when it begins to give up, and when it no longer does; once per change. */
-void pace_report(Pace *pace, double now_s);
 /* `checkerboard`; NULL: in full. */
 const char *pace_step_name(int step);
 /* At the end: how many frames at each step, and its error. Nothing where none gave up. */
