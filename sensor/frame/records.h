@@ -55,6 +55,7 @@ typedef struct LiveCounters {
     uint64_t datagrams, lost_kernel, lost_queue, sent, send_failed, record_failed;
     uint64_t frames_late, files_failed, files_left_out;
     double   rate_hz; /* asked for; 0: it ended before that was known */
+    double   ready_s; /* ready for its entities, after the first was heard; 0: never */
 } LiveCounters;
 /* Share of the due frames that were made; 1 where none was due. */
 static inline double record_live_kept_share(const LiveCounters *counters, uint64_t frames)

@@ -8,7 +8,8 @@
  * them: one would not be met twice. The least recently used make room for others.
  *
  * One that is not at hand is fetched from a store (a library on disk), else made, and given to the store. With
- * `background` it is made in a thread of its own, newest request first, and until then there is none. */
+ * `background` it is made in a thread of its own, newest request first, and until then there is none; what is prepared
+ * (signatures_prepare) comes after all requests. Coarse ones (coarse.h) are of wide bins, whatever the range. */
 #ifndef RENDER_SCATTERING_SIGNATURES_SIGNATURES_H
 #define RENDER_SCATTERING_SIGNATURES_SIGNATURES_H
 
@@ -44,10 +45,12 @@ typedef struct SignaturesConfig {
     double         aspect_rad;                 /* side of a bin */
     double         interval_s;                 /* SignatureCells */
     double         rays_per_wavelength;
-    int            splits;      /* of tubes at edges (tubes.h); 0: fastest */
-    double         warp_m;      /* unevenness of surfaces (tubes.h), rms; 0: plane as the model has them */
-    size_t         most_octets; /* of all; the one in use is kept beyond it */
+    int            splits;        /* of tubes at edges (tubes.h); 0: fastest */
+    double         warp_m;        /* unevenness of surfaces (tubes.h), rms; 0: plane as the model has them */
+    size_t         most_octets;   /* of all; the one in use is kept beyond it */
+    double         coarse_for_hz; /* coarse.h: the frequency that these are coarse ones for; 0: they are fine */
     bool           background;
+    int            nice;  /* of the background's thread, 0 .. 19 */
     SignatureStore store; /* fetch NULL: none */
     const char    *isa;   /* as tracer_create */
 } SignaturesConfig;
@@ -76,6 +79,10 @@ const NodePose   *signatures_pose(const Signatures *signatures);
 SignatureCounters signatures_counters(const Signatures *signatures);
 /* Those that are to be made in the background. */
 int signatures_waiting(const Signatures *signatures);
+/* Has the coarse signatures of a model made for all aspects (coarse_bins) in the background, when nothing that was
+ * asked for waits; once for each model and damage. Called again and again, it takes in what was made. Without
+ * `background` or of fine ones: nothing. */
+Status signatures_prepare(Signatures *signatures, int model, int damage);
 
 /* The middle of the bin that an antenna is in. */
 void signature_bin(ScatterAntenna *middle, const ScatterAntenna *antenna, double aspect_rad);

@@ -59,6 +59,7 @@ typedef struct HealthSample {
     uint64_t   frames, missing;      /* rendered; due since the last one while the host was absent */
     double     frame_s;              /* of the last frame, or when rendering began */
     int        entities;             /* in the table */
+    int        preparing;            /* things that are being made before frames need them */
     uint64_t   over_rate;            /* reports of new ones above the rate limit */
     int        others;               /* of the last frame: except the host */
     double     nearest_m;            /* range to the nearest of them; NaN: not computed */
@@ -111,7 +112,8 @@ void health_rendering(Health *health, double now_s); /* the choices are made, th
 void health_frame(Health *health, const FrameRecord *frame, double now_s);
 /* Evaluates the counters and reports changes; no message twice within a minute. */
 void health_check(Health *health, const LiveCounters *counters, const HealthNames *names, double now_s);
-/* `12 entities  5.0 frames/s  0 late  34 ms  0 lost  nothing heard` */
+/* `12 entities  5.0 frames/s  0 late  34 ms  0 lost  nothing heard`; `preparing 12` while that
+ * many things are still to be made */
 enum { health_line_size = 160 };
 void health_line(char out[health_line_size], const Health *health, double frames_hz, double latency_s);
 

@@ -21,7 +21,9 @@ struct FrameVerdicts {
 /* The words of a note, and the name in truth.jsonl, by bit. */
 static const struct {
     const char *note, *name;
-} kind[verdict_count] = {{"no radar", NULL}, {"no grids of small targets", "target_grids"}};
+} kind[verdict_count] = {[0] = {"no radar", NULL},
+                         [1] = {"no grids of small targets", "target_grids"},
+                         [5] = {"coarse radar", "radar_detail"}};
 
 void frame_verdict_apply(RenderRequest *request, unsigned verdict)
 {
@@ -56,6 +58,7 @@ static bool read_line(Verdict *out, const char *line)
     if (!at || sscanf(at, " in frame %lf at %lf s", &number, &t_s) != 2) return false;
     if (!(number >= 0 && number <= INT32_MAX && fabs(t_s) < 1e9)) return false;
     for (int i = 0; i < verdict_count; i++) {
+        if (!kind[i].note) continue;
         *out = (Verdict){(int)number, t_s, 1u << i};
         frame_verdict_text(again, out->given_up, out->number, out->t_s);
         if (strcmp(text, again) == 0) return true;

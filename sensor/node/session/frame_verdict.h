@@ -11,8 +11,9 @@
 enum {
     VERDICT_NO_RADAR = 1,        /* signatures of targets are still to be made */
     VERDICT_NO_TARGET_GRIDS = 2, /* targets that are small on the image have the samples of all others */
+    VERDICT_COARSE_RADAR = 32,   /* the radar has coarse signatures: finer ones are still to be made */
 };
-enum { verdict_count = 2 };
+enum { verdict_count = 6 }; /* bits; 4, 8 and 16 are free */
 
 /* Takes what is given up out of the request of a frame. */
 void frame_verdict_apply(RenderRequest *request, unsigned verdict);

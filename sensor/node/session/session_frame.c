@@ -120,7 +120,32 @@ static bool entity_at(SnapshotEntity *out, void *of, DisEntityId id, double t_s)
     return entity_table_pose(out, s->table, entity_table_find(s->table, id), t_s);
 }
 
-/* Lets the instruments look. What one leaves out by chance goes into the recording. */
+/* What the recording says of the instruments. */
+static InstrumentNote noted_by(unsigned verdict)
+{
+    if (verdict & VERDICT_NO_RADAR) return INSTRUMENT_ABSENT;
+    return verdict & VERDICT_COARSE_RADAR ? INSTRUMENT_COARSE : INSTRUMENT_NOT_NOTED;
+}
+
+/* What instruments lacked in this frame because it was not ready. */
+static unsigned lacked(const Frame *f)
+{
+    unsigned verdict = 0;
+    for (int i = 0; i < f->outputs; i++) {
+        if (f->output[i].left_out && f->output[i].kind->noted) verdict |= VERDICT_NO_RADAR;
+        if (f->output[i].coarse) verdict |= VERDICT_COARSE_RADAR;
+    }
+    return verdict;
+}
+
+/* Says in the record what the frame gave up. */
+static void give_up(Frame *f, Session *s, unsigned verdict)
+{
+    f->record.given_up = frame_verdict_name(verdict);
+    s->result.frames_reduced += f->record.given_up != NULL;
+}
+
+/* Lets the instruments look. What one lacks by chance goes into the recording. */
 static Status measure(Frame *f, Session *s, const Eye *eye, unsigned verdict)
 {
     const InstrumentLook look = {
@@ -129,15 +154,15 @@ static Status measure(Frame *f, Session *s, const Eye *eye, unsigned verdict)
         .wants = s->wants,
         .aim = dis_entity_id_is_none(s->plan.aim) ? -1 : snapshot_find(&f->seen.snapshot, s->plan.aim),
         .aim_m = aim_range(eye),
-        .noted = (verdict & VERDICT_NO_RADAR) != 0,
+        .noted = noted_by(verdict),
         .pool = s->shared->pool,
         .poses = {eye_at, entity_at, s}};
     const Status status = instruments_look(&s->instruments, &look);
     if (status != STATUS_OK) return status;
     instruments_count(s->result.instrument, f);
-    bool by_chance = false;
-    for (int i = 0; i < f->outputs && !look.noted; i++) by_chance |= f->output[i].left_out && f->output[i].kind->noted;
-    if (by_chance) note_verdict(s, VERDICT_NO_RADAR, &(FrameTime){.number = f->number, .t_s = f->time_s});
+    const unsigned by_chance = look.noted ? 0 : lacked(f);
+    note_verdict(s, by_chance, &(FrameTime){.number = f->number, .t_s = f->time_s});
+    give_up(f, s, verdict | by_chance);
     return STATUS_OK;
 }
 
@@ -227,8 +252,6 @@ Status session_make_frame(bool *shown, int *left_out, Frame *f, Session *s, cons
     if (status != STATUS_OK) return status;
     if (f->seen.picture.range_m) rate_of_scene(f->rate_px_s, &eye, &f->seen.picture);
     fill_record(f, s, &eye);
-    f->record.given_up = frame_verdict_name(verdict);
-    s->result.frames_reduced += f->record.given_up != NULL;
     if (s->wants & WANT_FOOTPRINT) {
         truth_footprint(f->footprint, shared->world, &eye.view);
         f->record.footprint = f->footprint;
