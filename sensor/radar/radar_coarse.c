@@ -1,5 +1,5 @@
-/* sensor/radar/radar_coarse.c: a radar's coarse signatures (render/scattering/signatures/coarse.h): opened when they are
- * needed, and prepared while a node has nothing in sight. */
+/* sensor/radar/radar_coarse.c: a radar's coarse signatures (render/scattering/signatures/coarse.h): opened when they
+ * are needed, and prepared while a node has nothing in sight. */
 #include "sensor/radar/seeker_radar_private.h"
 
 enum { coarse_nice = 0 }; /* before fine ones */
@@ -7,7 +7,7 @@ enum { coarse_nice = 0 }; /* before fine ones */
 Status radar_coarse_open(SeekerRadar *r)
 {
     if (r->coarse) return STATUS_OK;
-    SignaturesConfig config = coarse_config(&r->fine);
+    SignaturesConfig config = signatures_coarse(&r->fine);
     config.nice = coarse_nice;
     const Status status = catalog_open(&r->coarse_catalog, r->catalog_path, coarse_sag_m());
     return status == STATUS_OK ? signatures_create(&r->coarse, &config, r->coarse_catalog, &r->materials) : status;
@@ -26,8 +26,8 @@ Status seeker_radar_prepare(SeekerRadar *r, const Catalog *catalog, const Snapsh
         const SnapshotEntity *e = &snapshot->entity[i];
         Origin                origin;
         if (!catalog_has_shape(catalog, e->model)) continue;
-        status = signatures_prepare(r->coarse, catalog_find(r->coarse_catalog, e->type, &origin, NULL),
-                                    snapshot_damage(e));
+        status =
+            signatures_prepare(r->coarse, catalog_find(r->coarse_catalog, e->type, &origin, NULL), snapshot_damage(e));
     }
     return status;
 }

@@ -17,6 +17,7 @@
 #include "render/scattering/paths/radar_path.h"
 #include "render/scattering/signatures/centres.h"
 #include "render/scattering/signatures/given_signature.h"
+#include "render/scattering/signatures/signatures.h"
 #include "render/scattering/signatures/coarse.h"
 #include "sensor/radar/echo.h"
 #include "sensor/radar/seeker_radar.h"

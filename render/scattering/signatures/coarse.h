@@ -8,7 +8,7 @@
  * grow with the frequency; what comes by two mirrors and more is scaled by a power of it, fitted to a tank and a truck
  * at 35 GHz.
  *
- *     bins        15 degrees, of any range (seen from infinitely far)
+ *     bins        15 degrees, about the target's axes: its sides shine in the middle of one; of any range
  *     frequency   8 GHz, or the radar's own where that is lower
  *     centres     sums alone: no moments, which hold for a narrow bin
  *     joints      at rest: a turret that turns does not make another
@@ -20,19 +20,22 @@
 #ifndef RENDER_SCATTERING_SIGNATURES_COARSE_H
 #define RENDER_SCATTERING_SIGNATURES_COARSE_H
 
-#include "render/scattering/signatures/signatures.h"
+#include "render/scattering/signatures/bins.h"
+#include "render/scattering/signatures/signature.h"
 
 enum { coarse_most_bins = 256 };
 
-/* The configuration of the coarse signatures of a radar whose fine ones are these: without a store. */
-SignaturesConfig coarse_config(const SignaturesConfig *fine);
+/* Their frequency at most. */
+double coarse_hz(void);
+/* The middle of the wide bin that an antenna is in. */
+void coarse_bin(ScatterAntenna *middle, const ScatterAntenna *antenna);
 /* Sets what coarse signatures have of their own. */
 void coarse_tubes(TubeConfig *tubes, SignatureCells *cells);
-/* Makes a signature of the lower frequency one for antennas of the wide bin. */
-void coarse_widen(Signature *signature, const SignaturesConfig *config);
-/* Middles of the bins that targets near the ground are seen in, from 15 degrees below to 45 above, the likeliest first;
+/* Makes a signature of frequency_hz one for antennas of the wide bin and for_hz. */
+void coarse_widen(Signature *signature, double frequency_hz, double for_hz);
+/* Middles of the bins that targets near the ground are seen in, from 20 degrees below to 50 above, the likeliest first;
  * returns how many. */
-int coarse_bins(ScatterAntenna bin[coarse_most_bins], double aspect_rad);
+int coarse_bins(ScatterAntenna bin[coarse_most_bins]);
 /* Standard deviation of the cross section's mean over a third of a fine bin, against fine signatures, dB. */
 double coarse_error_db(void);
 /* Chord error of the models that they are made of: lobes of theirs are wide. */

@@ -1,5 +1,6 @@
 /* render/scattering/signatures/signatures.c: finds signatures by their bins, and makes what is missing, in the
  * background too. */
+#include "render/scattering/signatures/signatures.h"
 #include "render/scattering/signatures/coarse.h"
 
 #include <pthread.h>
@@ -65,36 +66,6 @@ struct Signatures {
 };
 
 static bool is_coarse(const Signatures *s) { return s->config.coarse_for_hz > 0; }
-
-void signature_bin(ScatterAntenna *middle, const ScatterAntenna *antenna, double aspect_rad)
-{
-    const double elevation = asin(clamp(antenna->u[2], -1, 1)), azimuth = atan2(antenna->u[1], antenna->u[0]);
-    const double el = clamp(aspect_rad * (floor(elevation / aspect_rad) + 0.5), -0.5 * pi_rad, 0.5 * pi_rad);
-    const double bins = fmax(1, nearbyint(2 * pi_rad * cos(el) / aspect_rad)), width = 2 * pi_rad / bins;
-    const double az = width * (fmin(floor((azimuth + pi_rad) / width), bins - 1) + 0.5) - pi_rad;
-    middle->u[0] = cos(el) * cos(az);
-    middle->u[1] = cos(el) * sin(az);
-    middle->u[2] = sin(el);
-    middle->range_m = isinf(antenna->range_m) ? INFINITY : exp2(nearbyint(4 * log2(antenna->range_m)) / 4);
-}
-
-static const double plane_rad = 1 * rad_per_deg, plane_m = 0.02;
-
-void signature_look_bin(SignatureLook *middle, const SignatureLook *look, double aspect_rad)
-{
-    memset(middle, 0, sizeof *middle);
-    signature_bin(&middle->tx, &look->tx, aspect_rad);
-    signature_bin(&middle->rx, &look->rx, aspect_rad);
-    if (!look->image[0] && !look->image[1]) return;
-    const ScatterAntenna normal = {{look->plane.n[0], look->plane.n[1], look->plane.n[2]}, INFINITY};
-    ScatterAntenna       of;
-    signature_bin(&of, &normal, plane_rad);
-    memcpy(middle->image, look->image, sizeof look->image);
-    memcpy(middle->plane.n, of.u, sizeof of.u);
-    middle->plane.height_m = plane_m * nearbyint(look->plane.height_m / plane_m);
-}
-
-SignatureLook signature_look(const ScatterAntenna *antenna) { return (SignatureLook){.tx = *antenna, .rx = *antenna}; }
 
 static bool same_antenna(const ScatterAntenna *a, const ScatterAntenna *b)
 {
@@ -204,7 +175,8 @@ static Status make(Kept *out, SignatureCounters *counters, const Signatures *s, 
     if (status == STATUS_OK && (look->image[0] || look->image[1]))
         status = ground_hide(&maker->field, *target, &look->plane, look->image, pool);
     if (status == STATUS_OK) status = signature_make(&out->signature, &maker->field, *target, &cells);
-    if (status == STATUS_OK && is_coarse(s)) coarse_widen(&out->signature, &s->config);
+    if (status == STATUS_OK && is_coarse(s))
+        coarse_widen(&out->signature, s->config.frequency_hz, s->config.coarse_for_hz);
     free(pose);
     if (status != STATUS_OK) return status;
     counters->made++;
@@ -368,6 +340,18 @@ static void end_background(Signatures *s)
 
 /* ---- the interface ---------------------------------------------------------------------------------- */
 
+SignaturesConfig signatures_coarse(const SignaturesConfig *fine)
+{
+    SignaturesConfig config = *fine;
+    config.frequency_hz = fmin(fine->frequency_hz, coarse_hz());
+    config.interval_s *= fine->frequency_hz / config.frequency_hz; /* what spins is told apart as finely */
+    config.splits = 0;
+    config.coarse_for_hz = fine->frequency_hz;
+    config.most_octets = (size_t)1 << 28;
+    config.store = (SignatureStore){0};
+    return config;
+}
+
 Status signatures_create(Signatures **out, const SignaturesConfig *config, const Catalog *catalog,
                          const RadarMaterials *materials)
 {
@@ -390,7 +374,7 @@ Status signatures_create(Signatures **out, const SignaturesConfig *config, const
         Background *b = &s->background;
         pthread_mutex_init(&b->lock, NULL);
         pthread_cond_init(&b->changed, NULL);
-        if (is_coarse(s)) b->bins = coarse_bins(b->bin, config->aspect_rad);
+        if (is_coarse(s)) b->bins = coarse_bins(b->bin);
         b->runs = pthread_create(&b->thread, NULL, run_background, s) == 0;
         if (!b->runs) status = STATUS_NO_MEMORY;
     }
@@ -410,6 +394,14 @@ void signatures_destroy(Signatures *s)
     free(s);
 }
 
+/* Without the ground. */
+static void coarse_look_bin(SignatureLook *middle, const SignatureLook *look)
+{
+    memset(middle, 0, sizeof *middle);
+    coarse_bin(&middle->tx, &look->tx);
+    coarse_bin(&middle->rx, &look->rx);
+}
+
 Status signatures_find(const Signature **out, Signatures *s, int model, const double *joint, int damage,
                        const SignatureLook *look, Pool *pool)
 {
@@ -418,8 +410,8 @@ Status signatures_find(const Signature **out, Signatures *s, int model, const do
     const bool   posed = joint && !is_coarse(s);
     for (int n = 0; n < of->node_count; n++) s->joint[n] = posed && of->node[n].roll_radius_m == 0 ? joint[n] : 0;
     model_pose(s->pose, of, s->joint);
-    signature_look_bin(&one.middle, look, s->config.aspect_rad);
-    if (is_coarse(s)) one.middle.tx.range_m = one.middle.rx.range_m = INFINITY;
+    if (is_coarse(s)) coarse_look_bin(&one.middle, look);
+    else signature_look_bin(&one.middle, look, s->config.aspect_rad);
     s->calls++;
     Status status = collect(s);
     if (status != STATUS_OK) return status;

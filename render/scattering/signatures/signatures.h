@@ -14,15 +14,8 @@
 #define RENDER_SCATTERING_SIGNATURES_SIGNATURES_H
 
 #include "entities/catalog/catalog.h"
+#include "render/scattering/signatures/bins.h"
 #include "render/scattering/signatures/centres.h"
-#include "render/scattering/paths/ground_bounce.h"
-
-/* What a signature is for: antennas in the target's frame. */
-typedef struct SignatureLook {
-    ScatterAntenna tx, rx;
-    bool           image[2]; /* whether transmitter, receiver is an image in the ground (ground_bounce.h) */
-    GroundPlane    plane;    /* where one is. Kept for a degree of its normal and 2 cm of its height */
-} SignatureLook;
 
 /* What a signature is of. */
 typedef struct SignatureKey {
@@ -63,6 +56,8 @@ typedef struct SignatureCounters {
 
 typedef struct Signatures Signatures;
 
+/* The configuration of the coarse signatures (coarse.h) of a radar whose fine ones are these: without a store. */
+SignaturesConfig signatures_coarse(const SignaturesConfig *fine);
 /* catalog, materials, and the store's: must outlive it. */
 Status signatures_create(Signatures **out, const SignaturesConfig *config, const Catalog *catalog,
                          const RadarMaterials *materials);
@@ -72,8 +67,6 @@ void   signatures_destroy(Signatures *signatures); /* accepts NULL; waits for th
  * be NULL. */
 Status signatures_find(const Signature **out, Signatures *signatures, int model, const double *joint, int damage,
                        const SignatureLook *look, Pool *pool);
-/* The look of a transmitter and receiver at one place, with nothing by way of the ground. */
-SignatureLook signature_look(const ScatterAntenna *antenna);
 /* Pose of the nodes in the signature found last, body axes. */
 const NodePose   *signatures_pose(const Signatures *signatures);
 SignatureCounters signatures_counters(const Signatures *signatures);
@@ -84,10 +77,6 @@ int signatures_waiting(const Signatures *signatures);
  * `background` or of fine ones: nothing. */
 Status signatures_prepare(Signatures *signatures, int model, int damage);
 
-/* The middle of the bin that an antenna is in. */
-void signature_bin(ScatterAntenna *middle, const ScatterAntenna *antenna, double aspect_rad);
-/* The middles of a look's bins; what does not count for it is zero. */
-void signature_look_bin(SignatureLook *middle, const SignatureLook *look, double aspect_rad);
 /* Seed of a model's unevenness: a function of its name. */
 uint64_t signature_warp_seed(const Model *model);
 

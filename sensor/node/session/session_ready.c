@@ -1,5 +1,5 @@
-/* sensor/node/session/session_ready.c: what a live session makes ready of the entities heard, before frames need it: the
- * models of the tracer, the beginnings of their heat (session_heat.c), and what instruments need. */
+/* sensor/node/session/session_ready.c: what a live session makes ready of the entities heard, before frames need it:
+ * the models of the tracer, the beginnings of their heat (session_heat.c), and what instruments need. */
 #include "sensor/node/session/session_private.h"
 
 #include "render/heat/vehicle_heat.h"
@@ -60,7 +60,7 @@ void session_prepare(Session *s, double t_s)
 SessionReady session_ready(const Session *s)
 {
     const InstrumentReady instruments = instruments_ready(&s->instruments);
-    const bool heat = s->heat.vehicles && vehicle_heat_waits(world_vehicles_heat(s->heat.vehicles));
+    const bool            heat = s->heat.vehicles && vehicle_heat_waits(world_vehicles_heat(s->heat.vehicles));
     return (SessionReady){.entities = s->ready.entities,
                           .models = s->ready.models,
                           .signatures = instruments.made,
