@@ -2,7 +2,7 @@
  * are needed, and prepared while a node has nothing in sight. */
 #include "sensor/radar/seeker_radar_private.h"
 
-enum { coarse_nice = 0 }; /* before fine ones */
+enum { coarse_nice = 5 }; /* before fine ones, after rendering */
 
 Status radar_coarse_open(SeekerRadar *r)
 {

@@ -132,10 +132,10 @@ static void prepared_is_there(void **state)
     double joint[256] = {0};
     for (int n = 0; n < catalog_model(catalog, model)->node_count; n++) joint[n] = 0.1;
     for (int i = 0; i < 100; i++) {
-        const ScatterAntenna a =
-            antenna_at(360 * random_uniform(3, 0, 0, (uint64_t)i), 44 * random_uniform(3, 1, 0, (uint64_t)i), 100 + 90 * i);
-        const SignatureLook look = signature_look(&a);
-        const Signature    *got;
+        const ScatterAntenna a = antenna_at(360 * random_uniform(3, 0, 0, (uint64_t)i),
+                                            44 * random_uniform(3, 1, 0, (uint64_t)i), 100 + 90 * i);
+        const SignatureLook  look = signature_look(&a);
+        const Signature     *got;
         CHECK(signatures_find(&got, s, model, joint, 0, &look, NULL) == STATUS_OK);
         CHECK(got && got->count > 20 && isinf(got->tx.range_m));
     }
