@@ -306,8 +306,12 @@ void saved_fields_radar(Fields *f, SavedFrame *file)
     field_u32(f, &r->number);
     field_chars(f, "map of a radar", r->map_sha256, sizeof r->map_sha256);
     field_int(f, "detections of a radar", &r->detections, 0, INT32_MAX - 1);
-    if (f->version >= 5) field_bool(f, "coarse signatures of a radar", &r->coarse);
     field_list(f, &r->joint_count, (void **)&r->joint, sizeof *r->joint, INT32_MAX - 1, joint_fields);
+}
+
+void saved_fields_coarse(Fields *f, SavedFrame *file)
+{
+    field_bool(f, "coarse signatures of a radar", &file->radar.coarse);
 }
 
 /* ---- results ------------------------------------------------------------------------------ */
