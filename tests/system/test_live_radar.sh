@@ -88,12 +88,12 @@ place: {lat_deg: 36, lon_deg: -123, height_m: 120}
 dis: {site: 1, application: 3001, exercise: 1, version: 7}
 vehicles:
   - {name: Tank, id: 11, type: 1.1.222.1.1.1.0, force: 2, route_m: [[0, 0], [600, 0]], speed_mps: 5, turret: swing}
-  - {name: Watch, id: 31, type: 1.2.225.20.1.0.0, force: 1, route_m: [[-985, 0]], height_m: 150}
+  - {name: Watch, id: 31, type: 1.1.225.83.7.0.0, force: 1, route_m: [[-985, 0]], height_m: 150}
 Y
 free_port
 turret=(--size 32x24 --bands lwir --rate 4 --threads 1 --host 1:3001:31 --set exercise.listen_s=0.3 --set publish.files=false
     --set sensor.gimbal_limit_deg=180 --set exercise.aim=1:3001:11 --set radar.preset=search_ku --set radar.ground=false
-    --address 127.0.0.1 --port $port)
+    --set models.catalog="$tmp/catalog.csv" --address 127.0.0.1 --port $port)
 node turret "${turret[@]}" --record "$tmp/turret.pcapng"
 check "it listens" heard_by turret 'listening on'
 sender "$tmp/turret.yaml" --send 127.0.0.1:$port
@@ -106,8 +106,10 @@ end_sender
 check "the node ends well" [ $code = 0 ] || tail -n 5 "$tmp/turret.out"
 check "run.json says when it was ready" grep -q '"ready_s": [0-9]' "$tmp/turret/run.json"
 run replay "$tmp/turret.pcapng" --out "$tmp/turned" --overwrite --causal --to "$(time_of "$tmp/turret" '$')" \
-    --only "$(frames_of turret)" "${turret[@]}"
+    --only "$(frames_of turret)" "${turret[@]}" --save-frame "$(frames_of turret | sed 's/.*,//')"
 check "a causal replay" [ $code = 0 ] || tail -n 3 "$tmp/stderr"
+run frame "$tmp/turned"/frame_*.pvf
+check "a saved frame has its coarse radar again" [ $code = 0 ] || tail -n 3 "$tmp/stderr"
 check "coarse frames are noted, counted, and the same to the bit" python3 - "$tmp/turret" "$tmp/turned" <<'P'
 import json, sys
 live, again = ({f["frame"]: f for f in map(json.loads, open(out + "/truth.jsonl"))} for out in sys.argv[1:])
