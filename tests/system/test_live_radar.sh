@@ -88,12 +88,12 @@ place: {lat_deg: 36, lon_deg: -123, height_m: 120}
 dis: {site: 1, application: 3001, exercise: 1, version: 7}
 vehicles:
   - {name: Tank, id: 11, type: 1.1.222.1.1.1.0, force: 2, route_m: [[0, 0], [600, 0]], speed_mps: 5, turret: swing}
-  - {name: Watch, id: 31, type: 1.1.225.83.7.0.0, force: 1, route_m: [[-985, 0]], height_m: 150}
+  - {name: Watch, id: 31, type: 1.2.225.20.1.0.0, force: 1, route_m: [[-985, 0]], height_m: 150}
 Y
 free_port
 turret=(--size 32x24 --bands lwir --rate 4 --threads 1 --host 1:3001:31 --set exercise.listen_s=0.3 --set publish.files=false
     --set sensor.gimbal_limit_deg=180 --set exercise.aim=1:3001:11 --set radar.preset=search_ku --set radar.ground=false
-    --set models.catalog="$tmp/catalog.csv" --address 127.0.0.1 --port $port)
+    --address 127.0.0.1 --port $port)
 node turret "${turret[@]}" --record "$tmp/turret.pcapng"
 check "it listens" heard_by turret 'listening on'
 sender "$tmp/turret.yaml" --send 127.0.0.1:$port
@@ -118,6 +118,7 @@ count = [json.load(open(out + "/run.json"))["counters"].get("frames_of_coarse_ra
 coarse = [n for n in live if live[n].get("given_up") == "radar_detail"]
 print(len(live), "frames,", len(coarse), "coarse, counted", count)
 of = lambda f: [t["signature"] for t in f["radar"]["targets"]]
+assert all(live[n]["radar"]["targets"][0]["visible_fraction"] > 0.5 for n in coarse)
 assert len(coarse) >= 5 and count == [len(coarse)] * 2
 assert all(of(live[n]) == ["coarse"] and live[n]["radar"]["targets"][0]["rcs_error_db"]["hh"] == 7 for n in coarse)
 assert all(live[n].get("radar") == again[n].get("radar") and live[n].get("given_up") == again[n].get("given_up") for n in live)

@@ -1,5 +1,5 @@
-/* tests/bench/sensor/precision_coarse.c: coarse signatures of targets (render/scattering/signatures/coarse.h) beside fine
- * ones: the time of one, and how far the cross section's mean is off. */
+/* tests/bench/sensor/precision_coarse.c: coarse signatures of targets (render/scattering/signatures/coarse.h) beside
+ * fine ones: the time of one, and how far the cross section's mean is off. */
 #include "tests/bench/sensor/precision.h"
 
 #include "render/scattering/signatures/coarse.h"
@@ -69,8 +69,7 @@ static Status open_kind(Kind *kind, bool coarse)
     if (!etc_path(path, sizeof path, "catalog.csv")) return STATUS_BAD_VALUE;
     Status status = catalog_open(&kind->catalog, path, coarse ? coarse_sag_m() : radar_sag_m(frequency_hz));
     if (status == STATUS_OK) status = radar_materials_load(&kind->materials);
-    if (status == STATUS_OK)
-        status = signatures_create(&kind->signatures, &config, kind->catalog, &kind->materials);
+    if (status == STATUS_OK) status = signatures_create(&kind->signatures, &config, kind->catalog, &kind->materials);
     if (status == STATUS_OK) kind->model = catalog_find(kind->catalog, tank_type, &origin, NULL);
     return status;
 }
