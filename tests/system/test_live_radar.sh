@@ -120,7 +120,7 @@ print(len(live), "frames,", len(coarse), "coarse, counted", count)
 of = lambda f: [t["signature"] for t in f["radar"]["targets"]]
 assert all(live[n]["radar"]["targets"][0]["visible_fraction"] > 0.5 for n in coarse)
 assert len(coarse) >= 5 and count == [len(coarse)] * 2
-assert all(of(live[n]) == ["coarse"] and live[n]["radar"]["targets"][0]["rcs_error_db"]["hh"] == 7 for n in coarse)
+assert all(of(live[n]) == ["coarse"] and live[n]["radar"]["targets"][0]["rcs_error_db"]["hh"] == 8 for n in coarse)
 assert all(live[n].get("radar") == again[n].get("radar") and live[n].get("given_up") == again[n].get("given_up") for n in live)
 P
 check "the notes are in the recording" grep -aq 'pitviper: coarse radar in frame' "$tmp/turret.pcapng"
