@@ -9,6 +9,7 @@
 #include "sensor/node/run/host_run.h"
 #include "sensor/node/live/live_recording.h"
 #include "sensor/node/live/pace.h"
+#include "sensor/node/live/ready.h"
 #include "sensor/node/player/player.h"
 #include "sensor/commands/overwrite.h"
 #include "sensor/publish/video/video_names.h"
@@ -34,6 +35,7 @@ typedef struct Live {
     char           where[dis_udp_where_size];
     LiveCounters   counters;
     Health         health;
+    Ready          ready;
     double         health_s;                /* when it was last checked */
     char           host[dis_id_text_size];  /* at the end */
     char           to[run_network_to_size]; /* destination, for messages */
@@ -128,6 +130,10 @@ static void check_health(Live *l, const Session *session)
     if (session) {
         l->health.sample.entities = session_entities(session);
         l->health.sample.over_rate = session_over_rate(session);
+        const SessionReady ready = session_ready(session);
+        ready_check(&l->ready, &ready, now_s);
+        l->counters.ready_s = l->ready.first_s;
+        l->health.sample.preparing = ready.waiting;
     }
     const HealthNames names = names_of(l, session);
     health_check(&l->health, &l->counters, &names, now_s);
@@ -190,6 +196,7 @@ static Status listen_first(bool *heard, Live *l)
                 until_ns = dis_unix_ns_until(l->run.until_s);
                 if (l->received_count > player_opening_before + 1)
                     drop_received(l, l->received_count - player_opening_before - 1);
+                l->ready.heard_s = l->ready.since_s = wall_clock_s();
                 log_info("run: heard the first entity; listening for %g s (exercise.listen_s)",
                          config->exercise.listen_s);
                 log_info(

@@ -53,6 +53,7 @@ typedef struct FrameOutput {
     const FrameArray     *array;  /* [arrays] */
     const void           *record; /* its type is the kind's; NULL: none */
     const char *left_out;         /* why there is nothing, in a text that outlives the run; NULL: nothing is left out */
+    bool        coarse;           /* what it needs was not ready, and something coarser stood in */
 } FrameOutput;
 
 /* What was rendered of a snapshot: the planes, and what they were rendered from. */

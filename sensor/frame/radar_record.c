@@ -102,7 +102,11 @@ static const SnapshotEntity *entity_of(const FieldAt *at)
 }
 
 static json_t *entity_id(FieldAt *at) { return field_id(entity_of(at)->id); }
-static json_t *signature(FieldAt *at) { return json_string(((const RadarTruth *)at->of)->given ? "given" : "model"); }
+static json_t *signature(FieldAt *at)
+{
+    const RadarTruth *t = at->of;
+    return json_string(t->given ? "given" : t->coarse ? "coarse" : "model");
+}
 
 /* NULL: by a signature of radar.given. */
 static const void *by_model(const void *of) { return ((const RadarTruth *)of)->given ? NULL : of; }
@@ -243,7 +247,8 @@ static const Field strongest_rows[] = {
 
 static const Field truth_rows[] = {
     {"entity", "", "site:application:entity", "", "id", FIELD_GET("string", entity_id), FIELD_EXACT},
-    {"signature", "", "model, given", "", "by its model, or by a signature of radar.given",
+    {"signature", "", "model, coarse, given", "",
+     "by its model, by a coarse signature of that while finer ones are made (live), or by a signature of radar.given",
      FIELD_GET("string", signature)},
     {"range_m", "m", "from the sensor", "", "to the origin of its model", OF_TRUTH(range_m), FIELD_WITHIN(1e-3, 1e-6)},
     {"range_rate_mps", "m/s", "above 0: receding", "", "of that origin", OF_TRUTH(range_rate_mps),
@@ -260,7 +265,8 @@ static const Field truth_rows[] = {
     {"rcs_dbsm", "", "", "", "cross section at the centre frequency, as if wholly in sight, without the ground",
      FIELD_OBJECT(rcs_rows)},
     {"rcs_error_db", "", "", "of a given signature",
-     "estimated standard deviation of these, by the grid of ray tubes alone: not by the model or physical optics",
+     "estimated standard deviation of these, by the grid of ray tubes alone, not by the model or physical optics; of a coarse signature that of its "
+     "mean over 0.1 degrees",
      .in = by_model, FIELD_OBJECT(rcs_error_rows)},
     {"map_error_db", "dB", "", "of a given signature",
      "error of its cells of the map, over its power in them: by ray tubes and by scattering centres",

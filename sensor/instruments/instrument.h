@@ -27,6 +27,13 @@ typedef struct InstrumentPoses {
     void *of;
 } InstrumentPoses;
 
+/* What a recording says of a frame in which a live node lacked what chance had not made ready. */
+typedef enum InstrumentNote {
+    INSTRUMENT_NOT_NOTED, /* nothing: all is there, or in a live node chance decides */
+    INSTRUMENT_COARSE,    /* it looked with what is coarse */
+    INSTRUMENT_ABSENT     /* it was left out */
+} InstrumentNote;
+
 /* What an instrument may look at in one frame. */
 typedef struct InstrumentLook {
     Frame *frame; /* rendered: number, times, seen, request, world; its arena is for what is handed out, and
@@ -35,7 +42,7 @@ typedef struct InstrumentLook {
     unsigned        wants; /* FrameWant, of all consumers */
     int             aim;   /* snapshot index of what the eye follows, -1: none */
     double          aim_m; /* range to where that is, or was last; NAN: unknown */
-    bool            noted; /* the recording says that what chance leaves out was left out in this frame */
+    InstrumentNote  noted; /* by the recording, for instruments whose kind has something to note */
     Pool           *pool;
     InstrumentPoses poses;
 } InstrumentLook;
@@ -52,11 +59,15 @@ typedef struct Instruments {
     Instrument *instrument[instruments_most];
 } Instruments;
 
+typedef struct InstrumentReady {
+    int made, waiting;
+} InstrumentReady;
+
 struct InstrumentKind {
     const char *name;
     const char *carries; /* from frame to frame, what a frame file lacks; NULL: nothing, each frame stands alone */
     const char *noted;   /* why frames lack it whose recording notes so; NULL: it leaves nothing out by chance. One kind
-                          * alone has it, the radar: the note (frame_verdict.h) names no other */
+                          * alone has it, the radar: the notes (frame_verdict.h) name no other */
     /* Adds those that the settings ask for, by instruments_add. STATUS_BAD_VALUE, STATUS_IO, logged. */
     Status (*open)(Instruments *list, const InstrumentsOf *of);
     /* Adds to what is rendered. NULL: it needs nothing. */
@@ -64,6 +75,10 @@ struct InstrumentKind {
     /* Fills arrays and record, or left_out; name and kind are set. */
     Status (*look)(FrameOutput *out, Instrument *instrument, const InstrumentLook *look);
     void (*close)(Instrument *instrument);
+    /* Live: makes ready, beside the frames, what looks at the snapshot's entities will need. NULL: it needs nothing. */
+    Status (*prepare)(Instrument *instrument, const Catalog *catalog, const Snapshot *snapshot);
+    /* What was made so, and what is still to be made. NULL: nothing. */
+    InstrumentReady (*ready)(const Instrument *instrument);
 };
 
 /* The program's kinds; NULL ends them. */
@@ -80,18 +95,24 @@ void        instruments_request(RenderRequest *request, const Instruments *list,
 /* Fills frame->output: one of each instrument, in their order. */
 Status instruments_look(const Instruments *list, const InstrumentLook *look);
 
+/* Of all of them. */
+Status          instruments_prepare(const Instruments *list, const Catalog *catalog, const Snapshot *snapshot);
+InstrumentReady instruments_ready(const Instruments *list);
+
 /* ---- over a run ------------------------------------------------------------------------------------- */
 
-/* Frames in which an instrument had nothing, and why it had nothing in the last of them. */
+/* Frames in which an instrument had nothing, and why it had nothing in the last of them; frames in which it looked with
+ * what is coarse. */
 typedef struct InstrumentCount {
     const InstrumentKind *kind;
     const char           *name, *why;
-    int                   left_out;
+    int                   left_out, coarse;
 } InstrumentCount;
 
 /* Counts a frame's outputs, [frame->outputs] in their order. */
 void instruments_count(InstrumentCount count[instruments_most], const Frame *frame);
 /* Frames that lack an instrument of this kind. */
 int instruments_left_out(const InstrumentCount count[instruments_most], const InstrumentKind *kind);
+int instruments_coarse(const InstrumentCount count[instruments_most], const InstrumentKind *kind); /* likewise */
 
 #endif

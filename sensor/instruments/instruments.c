@@ -50,10 +50,32 @@ Status instruments_look(const Instruments *list, const InstrumentLook *look)
         const InstrumentKind *kind = one->kind;
         FrameOutput          *out = &frame->output[frame->outputs];
         *out = (FrameOutput){.name = one->name, .kind = kind};
-        if (look->noted && kind->noted) out->left_out = kind->noted;
+        if (look->noted == INSTRUMENT_ABSENT && kind->noted) out->left_out = kind->noted;
         else status = kind->look(out, one, look);
     }
     return status;
+}
+
+Status instruments_prepare(const Instruments *list, const Catalog *catalog, const Snapshot *snapshot)
+{
+    Status status = STATUS_OK;
+    for (int i = 0; i < list->count && status == STATUS_OK; i++) {
+        Instrument *one = list->instrument[i];
+        if (one->kind->prepare) status = one->kind->prepare(one, catalog, snapshot);
+    }
+    return status;
+}
+
+InstrumentReady instruments_ready(const Instruments *list)
+{
+    InstrumentReady all = {0};
+    for (int i = 0; i < list->count; i++) {
+        const Instrument     *one = list->instrument[i];
+        const InstrumentReady ready = one->kind->ready ? one->kind->ready(one) : (InstrumentReady){0};
+        all.made += ready.made;
+        all.waiting += ready.waiting;
+    }
+    return all;
 }
 
 void instruments_count(InstrumentCount count[instruments_most], const Frame *frame)
@@ -62,6 +84,7 @@ void instruments_count(InstrumentCount count[instruments_most], const Frame *fra
         const FrameOutput *out = &frame->output[i];
         count[i].kind = out->kind;
         count[i].name = out->name;
+        count[i].coarse += out->coarse;
         if (!out->left_out) continue;
         count[i].why = out->left_out;
         count[i].left_out++;
@@ -73,5 +96,13 @@ int instruments_left_out(const InstrumentCount count[instruments_most], const In
     int frames = 0;
     for (int i = 0; i < instruments_most; i++)
         if (count[i].kind == kind) frames += count[i].left_out;
+    return frames;
+}
+
+int instruments_coarse(const InstrumentCount count[instruments_most], const InstrumentKind *kind)
+{
+    int frames = 0;
+    for (int i = 0; i < instruments_most; i++)
+        if (count[i].kind == kind) frames += count[i].coarse;
     return frames;
 }

@@ -68,6 +68,7 @@ static Status measure(FrameOutput *out, Instrument *instrument, const Instrument
                                     .t_s = f->time_s,
                                     .weather = &weather,
                                     .number = (uint32_t)f->number,
+                                    .coarse = look->noted == INSTRUMENT_COARSE,
                                     .range_m = f->seen.picture.range_m,
                                     .entity = f->seen.picture.entity};
     m3_tmul_v3(scene.v_enu_mps, frame->r_ecef_from_enu, look->eye->v_ecef_mps);
@@ -80,6 +81,7 @@ static Status measure(FrameOutput *out, Instrument *instrument, const Instrument
                         "(`pitviper rcs MODEL --library` makes them)";
         return STATUS_OK;
     }
+    out->coarse = measured->coarse;
     FrameArray *array = arena_alloc(f->arena, radar_arrays_most, sizeof *array);
     if (!array) return STATUS_NO_MEMORY;
     out->array = array;
@@ -100,12 +102,25 @@ static void close_radar(Instrument *instrument)
     free(instrument);
 }
 
+static Status prepare(Instrument *instrument, const Catalog *catalog, const Snapshot *snapshot)
+{
+    return seeker_radar_prepare(((RadarInstrument *)instrument)->radar, catalog, snapshot);
+}
+
+static InstrumentReady ready(const Instrument *instrument)
+{
+    const RadarPrepared prepared = seeker_radar_prepared(((const RadarInstrument *)instrument)->radar);
+    return (InstrumentReady){prepared.made, prepared.waiting};
+}
+
 const InstrumentKind radar_kind = {.name = "radar",
                                    .noted = "signatures of targets were still to be made when it was recorded",
                                    .open = open_radar,
                                    .request = request,
                                    .look = measure,
-                                   .close = close_radar};
+                                   .close = close_radar,
+                                   .prepare = prepare,
+                                   .ready = ready};
 
 const RadarFrame *radar_of(const Frame *frame)
 {

@@ -79,14 +79,16 @@ enum { radar_strongest = 8 };
 
 /* The truth about one entity within beam and range window. */
 typedef struct RadarTruth {
-    int            entity;                  /* index in the snapshot */
-    double         range_m, range_rate_mps; /* of the origin of its model */
-    double         appears_m; /* range at which its echo is on the profile: folded over, coupled to its range rate */
-    double         cos_right, cos_down;
-    bool           given;     /* by a signature of radar.given, else by its model */
-    double         visible;   /* share of its centres' power that relief, plants and other entities leave in sight */
-    double         rcs_m2[3]; /* hh, vv, hv, at the centre frequency, as if wholly visible and without ground */
-    double         rcs_error_db[3]; /* standard deviation, by the grid of tubes (signature_error); NAN: given */
+    int    entity;                  /* index in the snapshot */
+    double range_m, range_rate_mps; /* of the origin of its model */
+    double appears_m; /* range at which its echo is on the profile: folded over, coupled to its range rate */
+    double cos_right, cos_down;
+    bool   given;             /* by a signature of radar.given, else by its model */
+    bool   coarse;            /* by a coarse signature of that (coarse.h) */
+    double visible;           /* share of its centres' power that relief, plants and other entities leave in sight */
+    double rcs_m2[3];         /* hh, vv, hv, at the centre frequency, as if wholly visible and without ground */
+    double rcs_error_db[3];   /* standard deviation, by the grid of tubes (signature_error), or of a coarse signature
+                               * (coarse_error_db); NAN: given */
     double         map_error; /* error of the map's cells over its centres' power: tubes, and what centres leave out */
     double         snr; /* by the radar equation, of the centres in sight, in one cell of the map; 0: there is none */
     int            centres; /* scattering centres that it was summed from */
@@ -106,6 +108,7 @@ typedef struct RadarFrame {
     double             v_enu_mps[3], aim_m,
         aim_v_enu_mps[3];   /* as in its RadarScene: of the antenna; to the aim, NAN: none; of it */
     uint32_t        number; /* interval number, for its noise */
+    bool            coarse; /* of coarse signatures (coarse.h), and without the ground's image of entities */
     double          air_db; /* one way, over the reference range */
     RangeDoppler    map;
     double complex *profile; /* [2][samples]: range profiles of the middle pulse, sqrt(W): the transmitted polarisation,

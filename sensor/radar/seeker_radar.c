@@ -7,7 +7,7 @@
 
 #include <stdlib.h>
 
-enum { detections_most = 256, stream_noise = 0x3d000000 };
+enum { fine_nice = 15, detections_most = 256, stream_noise = 0x3d000000 };
 static const double fog_top_m = 300;       /* above the ground; of fogs 100 .. 500 m deep: estimate */
 static const double no_reference_m = 1000; /* where there is neither an aim nor ground ahead */
 
@@ -92,7 +92,11 @@ Status seeker_radar_create(SeekerRadar **out, const SeekerRadarConfig *config)
         status = signature_library_open(&r->library, config->library, &signatures, &r->materials);
     if (r->library) signatures.store = signature_library_store(r->library);
     signatures.background = config->background;
+    signatures.nice = fine_nice;
     if (status == STATUS_OK) status = signatures_create(&r->signatures, &signatures, r->catalog, &r->materials);
+    r->fine = signatures;
+    snprintf(r->catalog_path, sizeof r->catalog_path, "%s", config->catalog);
+    if (status == STATUS_OK && config->background) status = radar_coarse_open(r);
     if (status == STATUS_OK && config->given && *config->given) status = given_list_open(&r->given, config->given);
     if (status == STATUS_OK && r->ground) status = clutter_cache_create(&r->drawn);
     if (status == STATUS_OK) status = echo_grid_create(&r->echoes, wave);
@@ -123,6 +127,7 @@ void seeker_radar_destroy(SeekerRadar *r)
     free(r->batch);
     free(r->sector_pulse);
     if (r->position) arena_destroy(r->position);
+    radar_coarse_close(r);
     signatures_destroy(r->signatures);
     signature_library_close(r->library);
     given_list_close(r->given);
@@ -446,7 +451,16 @@ Status seeker_radar_measure(const RadarFrame **out, SeekerRadar *radar, const Ra
         shot.down[k] = r[3 * k + 1];
         shot.ahead[k] = r[3 * k + 2];
     }
-    const Status status = make(&shot);
+    Status status = scene->coarse ? radar_coarse_open(radar) : STATUS_OK;
+    shot.coarse = scene->coarse;
+    if (status == STATUS_OK) status = make(&shot);
+    if (status == STATUS_OK && shot.missing > 0 && !shot.coarse) { /* then all targets by coarse ones */
+        echo_forget(radar->echoes);
+        shot.coarse = true;
+        shot.missing = 0;
+        status = make(&shot);
+    }
+    frame->coarse = shot.coarse;
     if (status != STATUS_OK || shot.missing > 0) echo_forget(radar->echoes);
     frame->spent_s = wall_clock_s() - begun_s;
     radar->left_out += shot.missing > 0;

@@ -44,7 +44,8 @@ typedef struct SeekerRadarConfig {
     double      chaff_dipoles; /* resonant ones in a cloud of chaff; 0: chaff is not seen */
     uint64_t    seed;
     const char *library;    /* folder of signatures, read and added to; NULL or empty: none */
-    bool        background; /* signatures that are missing are made in a thread of their own; the update is left out */
+    bool        background; /* signatures that are missing are made in threads of their own; meanwhile an update is of
+                             * coarse ones (coarse.h), all its targets alike, or is left out where these are missing too */
 } SeekerRadarConfig;
 
 typedef struct SeekerRadar SeekerRadar;
@@ -64,6 +65,7 @@ typedef struct RadarScene {
     double          t_s;                    /* exercise time */
     const Weather  *weather;                /* at the ground */
     uint32_t        number;                 /* of the frame: for its noise */
+    bool            coarse;                 /* with coarse signatures, as it was when it was recorded */
     double          reach;                  /* factor on the angles beyond which echoes are left out; 0: 1 */
     bool            apart;                  /* each scattering centre is an echo of its own (slower, exact) */
     const float    *range_m; /* [view height][width]: of what each pixel shows, INFINITY: sky. NULL: no pixels */
@@ -73,8 +75,19 @@ typedef struct RadarScene {
 /* The configuration with which a radar makes signatures, during a run or beforehand. */
 SignaturesConfig seeker_radar_signatures(const RadarPreset *preset, double warp_m, const char *isa);
 
-/* *out in the arena. NULL: left out, as signatures are still being made in the background. */
+/* *out in the arena. NULL: left out, as even coarse signatures are still being made in the background. */
 Status seeker_radar_measure(const RadarFrame **out, SeekerRadar *radar, const RadarScene *scene, Pool *pool,
                             Arena *arena);
+
+/* ---- before anything is in sight (radar_coarse.c) ------------------------------------------------------ */
+
+/* Has the coarse signatures of a snapshot's entities made in the background, for all aspects. Without a background:
+ * nothing. */
+Status seeker_radar_prepare(SeekerRadar *radar, const Catalog *catalog, const Snapshot *snapshot);
+/* Coarse signatures that were made, and that are still to be made. */
+typedef struct RadarPrepared {
+    int made, waiting;
+} RadarPrepared;
+RadarPrepared seeker_radar_prepared(const SeekerRadar *radar);
 
 #endif

@@ -2,6 +2,7 @@
  * (RadarShot): what the files of this folder share.
  *
  *     seeker_radar.c   what lasts; the order of work in a shot; the echoes of all points, the receiver, detections
+ *     radar_coarse.c   coarse signatures, and what is prepared of them
  *     shot_sight.c     the way from the antenna to a place, and what stands before it
  *     shot_targets.c   points of entities
  *     shot_ground.c    points of the ground, and of entities by way of it
@@ -17,6 +18,7 @@
 #include "render/scattering/signatures/centres.h"
 #include "render/scattering/signatures/given_signature.h"
 #include "render/scattering/signatures/signatures.h"
+#include "render/scattering/signatures/coarse.h"
 #include "sensor/radar/echo.h"
 #include "sensor/radar/seeker_radar.h"
 #include "sensor/radar/signature_library.h"
@@ -57,9 +59,13 @@ struct SeekerRadar {
     RadarMaterials    materials;
     SignatureLibrary *library; /* NULL: none */
     Signatures       *signatures;
-    uint64_t          left_out; /* updates, for want of signatures */
-    GivenList        *given;    /* NULL: none */
-    Centres           centres;  /* of the target at work */
+    SignaturesConfig  fine; /* of these */
+    char              catalog_path[4096];
+    Catalog          *coarse_catalog; /* as fine as coarse signatures need; NULL until these are needed */
+    Signatures       *coarse;         /* likewise */
+    uint64_t          left_out;       /* updates, for want of signatures */
+    GivenList        *given;          /* NULL: none */
+    Centres           centres;        /* of the target at work */
     ClutterTable      clutter;
     GroundTable       mirror; /* how the ground reflects */
     bool              ground_bounce;
@@ -85,6 +91,7 @@ typedef struct RadarShot {
     const RadarScene        *scene;
     const RadarPreset       *preset;
     const Visibility        *visibility;
+    bool                     coarse; /* with coarse signatures */
     RadarFrame              *frame;
     double                   p_enu[3];                    /* of the antenna */
     double                   right[3], down[3], ahead[3]; /* its axes, ENU */
@@ -107,6 +114,12 @@ typedef struct RadarShot {
     Pool                    *pool;
     Arena                   *arena;
 } RadarShot;
+
+/* ---- radar_coarse.c --------------------------------------------------------------------------------- */
+
+/* Has the radar's coarse signatures at hand, once. */
+Status radar_coarse_open(SeekerRadar *radar);
+void   radar_coarse_close(SeekerRadar *radar);
 
 /* ---- shot_sight.c ---------------------------------------------------------------------------------- */
 

@@ -367,7 +367,8 @@ Status shot_bounce(RadarShot *shot, const Target *t, const ScatterMatrix *direct
     Bounce       b;
     GroundFields s;
     double       p_enu[3];
-    if (!r->ground_bounce || !shot->scene->world->landscape || !find_ground(&b, p_enu, shot, t)) return STATUS_OK;
+    if (!r->ground_bounce || shot->coarse || !shot->scene->world->landscape || !find_ground(&b, p_enu, shot, t))
+        return STATUS_OK;
     if (!reflection_is_seen(shot, t, &b, p_enu)) return STATUS_OK;
     v3_scale(b.p_image_enu, b.image.range_m, b.image.u);
     m3_mul_v3(b.p_image_enu, t->r_enu_from_body, (double[3]){b.p_image_enu[0], b.p_image_enu[1], b.p_image_enu[2]});

@@ -225,6 +225,9 @@ static void add_error(RadarTruth *truth, const Centres *centres, const double co
         truth->rcs_error_db[p] =
             truth->given ? NAN : signature_error_db(field[p], p == 2 ? error.cross_m2 : error.same_m2);
     truth->map_error = truth->given ? NAN : 8 * pi_rad * error.same_m2 / power_m2 + signature_cells_error();
+    if (!truth->coarse) return;
+    for (int p = 0; p < 3; p++) truth->rcs_error_db[p] = coarse_error_db();
+    truth->map_error = 2; /* phases of no relation */
 }
 
 /* The centres of one entity, in blocks. */
@@ -290,11 +293,13 @@ static Status find_centres(bool *found, RadarShot *shot, Target *t, RadarTruth *
     *found = true;
     truth->given = given && given_signature_knows(given, &t->antenna, centre_hz);
     if (truth->given) return given_signature_centres(&r->centres, given, &t->antenna, centre_hz);
+    Signatures  *of = shot->coarse ? r->coarse : r->signatures;
     const Status status =
-        signatures_find(&signature, r->signatures, t->model, t->joint, snapshot_damage(t->entity), &direct, shot->pool);
+        signatures_find(&signature, of, t->model, t->joint, snapshot_damage(t->entity), &direct, shot->pool);
     if (status != STATUS_OK) return status;
     *found = signature != NULL;
-    t->pose = signatures_pose(r->signatures);
+    truth->coarse = shot->coarse;
+    t->pose = signatures_pose(of);
     return signature ? centres_make(&r->centres, signature, &t->antenna, &t->antenna, shot->pool) : STATUS_OK;
 }
 
@@ -412,8 +417,9 @@ static Status take_target(bool *taken, RadarShot *shot, Target *t, Sight *sight)
     shot_sight(sight, shot, t->p_enu, shown->radius_m);
     const double sine = shot_off_axis(shot, sight), room = shown->radius_m / fmax(sight->range_m, 1);
     if (!sight->within || sine > shot->widest + room || sight->range_m < 2 * shown->radius_m) return STATUS_OK;
-    t->model = catalog_find(shot->radar->catalog, e->type, &origin, NULL);
-    t->of = catalog_model(shot->radar->catalog, t->model);
+    const Catalog *catalog = shot->coarse ? shot->radar->coarse_catalog : shot->radar->catalog;
+    t->model = catalog_find(catalog, e->type, &origin, NULL);
+    t->of = catalog_model(catalog, t->model);
     m3_tmul(t->r_enu_from_body, frame->r_ecef_from_enu, e->r_ecef_from_body);
     NodePose *pose = arena_alloc(shot->arena, (size_t)t->of->node_count + 1, sizeof *pose);
     t->joint = arena_alloc(shot->arena, (size_t)t->of->node_count + 1, sizeof *t->joint);

@@ -16,8 +16,8 @@ static void notes_come_back(void **state)
     (void)state;
     static const int      number[5] = {7, 3, 2000000000, 0, 3};
     static const double   t_s[5] = {1.75, 1368.333333, 0.1, -0.5, 1368.333333};
-    static const unsigned given_up[5] = {VERDICT_NO_RADAR, VERDICT_NO_RADAR, VERDICT_NO_TARGET_GRIDS, VERDICT_NO_RADAR,
-                                         VERDICT_NO_TARGET_GRIDS};
+    static const unsigned given_up[5] = {VERDICT_COARSE_RADAR, VERDICT_NO_RADAR, VERDICT_NO_TARGET_GRIDS,
+                                         VERDICT_NO_RADAR, VERDICT_NO_TARGET_GRIDS};
     static const uint8_t  pdu[12] = {7, 1, 1, 1, [9] = 12};
     char                  path[80], text[frame_verdict_text_size];
     DisRecorder          *r;

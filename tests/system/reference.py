@@ -360,6 +360,8 @@ def main():
     for topic, row in rows:
         if row.absent == "when 0": check(re.search(r'\{"%s",[^{}]*\.unless_0' % row.path.split(".")[-1], source), topic.name, row.path, "is never written")
         elif row.path == "given_up": continue  # whether a live frame gives anything up is the machine's business: tests/sensor/test_frame_verdict.c writes it
+        # by chance, of a live node that lasts: tests/system/test_live_radar.sh has both
+        elif row.path in ("counters.frames_of_coarse_radar", "counters.live.ready_s"): continue
         else: check(row.found, topic.name, row.path, "is in the reference and in no product")
     for line in sorted(set(wrong))[:500]: print("FAILED:", line)
     print(len(topics), "topics,", len(rows), "rows")

@@ -2,6 +2,8 @@
 # A live node with a radar: its detections arrive as Data PDUs, those of truth.jsonl. What is seen before its signatures are
 # made is left out, counted and noted in the recording; `replay --causal` of that makes the same maps, detections and targets
 # to the bit, and leaves out the same frames. The library of signatures serves another run.
+# A tank whose turret turns never has fine ones: each frame has coarse signatures, says so, and is the same to the bit in the
+# replay; prepared before they are needed, and that is said.
 . "$(dirname "$0")/common.sh"
 . "$(dirname "$0")/live.sh"
 judges python3
@@ -81,6 +83,51 @@ for library in "" "$tmp/library"; do
     check "left out, counted, and the same in the replay$of" python3 "$tmp/judge.py" "$tmp/live" "$tmp/again"
 done
 check "the library had all that it takes" [ "$(ls "$tmp/library" | wc -l)" = "$files" ]
+
+# the turret turns: no signature is met twice. What is coarse has its note, and the replay the same maps
+cat >"$tmp/turret.yaml" <<'Y'
+duration_s: 900
+seed: 1
+place: {lat_deg: 36, lon_deg: -123, height_m: 120}
+dis: {site: 1, application: 3001, exercise: 1, version: 7}
+vehicles:
+  - {name: Tank, id: 11, type: 1.1.222.1.1.1.0, force: 2, route_m: [[0, 0], [600, 0]], speed_mps: 5, turret: swing}
+  - {name: Watch, id: 31, type: 1.2.225.20.1.0.0, force: 1, route_m: [[-985, 0]], height_m: 150}
+Y
+free_port
+turret=(--size 32x24 --bands lwir --rate 4 --threads 1 --host 1:3001:31 --set exercise.listen_s=0.3 --set publish.files=false
+    --set sensor.gimbal_limit_deg=180 --set exercise.aim=1:3001:11 --set radar.preset=search_ku --set radar.ground=false
+    --address 127.0.0.1 --port $port)
+node turret "${turret[@]}" --record "$tmp/turret.pcapng"
+check "it listens" heard_by turret 'listening on'
+sender "$tmp/turret.yaml" --send 127.0.0.1:$port
+coarse() { [ "$(grep -c '"signature":"coarse"' "$tmp/turret/truth.jsonl")" -ge 5 ]; }
+check "it makes frames" makes turret 1
+check "five frames have coarse signatures" until_of turret coarse
+check "it says that it is ready" heard_by turret 'ready: 2 models, [0-9]* signatures, .* s after the first entity'
+stop turret
+end_sender
+check "the node ends well" [ $code = 0 ] || tail -n 5 "$tmp/turret.out"
+check "run.json says when it was ready" grep -q '"ready_s": [0-9]' "$tmp/turret/run.json"
+kept=$(grep '"signature":"coarse"' "$tmp/turret/truth.jsonl" | sed -n '1s/.*"frame":\([0-9]*\),.*/\1/p')
+run replay "$tmp/turret.pcapng" --out "$tmp/turned" --overwrite --causal --to "$(time_of "$tmp/turret" '$')" \
+    --only "$(frames_of turret)" "${turret[@]}" --save-frame "$kept"
+check "a causal replay" [ $code = 0 ] || tail -n 3 "$tmp/stderr"
+run frame "$tmp/turned"/frame_*"$kept".pvf
+check "a saved frame ($kept) has its coarse radar again" [ $code = 0 -a -n "$kept" ] || tail -n 3 "$tmp/stderr"
+check "coarse frames are noted, counted, and the same to the bit" python3 - "$tmp/turret" "$tmp/turned" <<'P'
+import json, sys
+live, again = ({f["frame"]: f for f in map(json.loads, open(out + "/truth.jsonl"))} for out in sys.argv[1:])
+count = [json.load(open(out + "/run.json"))["counters"].get("frames_of_coarse_radar", 0) for out in sys.argv[1:]]
+coarse = [n for n in live if live[n].get("given_up") == "radar_detail"]
+print(len(live), "frames,", len(coarse), "coarse, counted", count)
+of = lambda f: [t["signature"] for t in f["radar"]["targets"]]
+assert all(live[n]["radar"]["targets"][0]["visible_fraction"] > 0.5 for n in coarse)
+assert len(coarse) >= 5 and count == [len(coarse)] * 2
+assert all(of(live[n]) == ["coarse"] and live[n]["radar"]["targets"][0]["rcs_error_db"]["hh"] == 8 for n in coarse)
+assert all(live[n].get("radar") == again[n].get("radar") and live[n].get("given_up") == again[n].get("given_up") for n in live)
+P
+check "the notes are in the recording" grep -aq 'pitviper: coarse radar in frame' "$tmp/turret.pcapng"
 
 # a signature from elsewhere in place of the box: said, and of its level; what is wrong with one is refused
 printf 'entity,signature\nbox,points.csv\n' >"$tmp/given.csv"

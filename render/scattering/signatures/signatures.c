@@ -1,11 +1,14 @@
 /* render/scattering/signatures/signatures.c: finds signatures by their bins, and makes what is missing, in the
  * background too. */
 #include "render/scattering/signatures/signatures.h"
+#include "render/scattering/signatures/coarse.h"
 
 #include <pthread.h>
 #include <stdlib.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
-enum { most_kept = 4096, most_waiting = 256 };
+enum { most_kept = 4096, most_waiting = 256, most_planned = 256 };
 
 /* One that is kept, or to be made. */
 typedef struct Kept {
@@ -23,6 +26,12 @@ typedef struct Maker {
     TotalField    field;  /* memory that is used again */
 } Maker;
 
+/* All aspects of a model that are made when nothing else waits. */
+typedef struct Planned {
+    int  model, damage, next; /* next: of the bins */
+    bool made[coarse_most_bins];
+} Planned;
+
 /* The thread that makes missing signatures. */
 typedef struct Background {
     pthread_t         thread;
@@ -35,6 +44,9 @@ typedef struct Background {
     Kept              busy;                                   /* being made; joint NULL: none */
     SignatureCounters counters;                               /* made, rays, spent_s */
     Status            status;                                 /* the first failure */
+    int               planned, bins;
+    ScatterAntenna    bin[coarse_most_bins]; /* of every model that is planned */
+    Planned           plan[most_planned];
 } Background;
 
 struct Signatures {
@@ -53,35 +65,7 @@ struct Signatures {
     SignatureCounters     counters;
 };
 
-void signature_bin(ScatterAntenna *middle, const ScatterAntenna *antenna, double aspect_rad)
-{
-    const double elevation = asin(clamp(antenna->u[2], -1, 1)), azimuth = atan2(antenna->u[1], antenna->u[0]);
-    const double el = clamp(aspect_rad * (floor(elevation / aspect_rad) + 0.5), -0.5 * pi_rad, 0.5 * pi_rad);
-    const double bins = fmax(1, nearbyint(2 * pi_rad * cos(el) / aspect_rad)), width = 2 * pi_rad / bins;
-    const double az = width * (fmin(floor((azimuth + pi_rad) / width), bins - 1) + 0.5) - pi_rad;
-    middle->u[0] = cos(el) * cos(az);
-    middle->u[1] = cos(el) * sin(az);
-    middle->u[2] = sin(el);
-    middle->range_m = isinf(antenna->range_m) ? INFINITY : exp2(nearbyint(4 * log2(antenna->range_m)) / 4);
-}
-
-static const double plane_rad = 1 * rad_per_deg, plane_m = 0.02;
-
-void signature_look_bin(SignatureLook *middle, const SignatureLook *look, double aspect_rad)
-{
-    memset(middle, 0, sizeof *middle);
-    signature_bin(&middle->tx, &look->tx, aspect_rad);
-    signature_bin(&middle->rx, &look->rx, aspect_rad);
-    if (!look->image[0] && !look->image[1]) return;
-    const ScatterAntenna normal = {{look->plane.n[0], look->plane.n[1], look->plane.n[2]}, INFINITY};
-    ScatterAntenna       of;
-    signature_bin(&of, &normal, plane_rad);
-    memcpy(middle->image, look->image, sizeof look->image);
-    memcpy(middle->plane.n, of.u, sizeof of.u);
-    middle->plane.height_m = plane_m * nearbyint(look->plane.height_m / plane_m);
-}
-
-SignatureLook signature_look(const ScatterAntenna *antenna) { return (SignatureLook){.tx = *antenna, .rx = *antenna}; }
+static bool is_coarse(const Signatures *s) { return s->config.coarse_for_hz > 0; }
 
 static bool same_antenna(const ScatterAntenna *a, const ScatterAntenna *b)
 {
@@ -170,14 +154,15 @@ static Status make(Kept *out, SignatureCounters *counters, const Signatures *s, 
     const double         begun_s = wall_clock_s();
     const Model         *of = catalog_model(s->catalog, out->model);
     const SignatureLook *look = &out->middle;
-    const SignatureCells cells = signature_default_cells(s->config.frequency_hz, s->config.bandwidth_hz,
-                                                         s->config.aspect_rad, s->config.interval_s);
-    TubeConfig           config = tubes_default_config(s->config.frequency_hz);
-    Status               status = STATUS_OK;
+    SignatureCells cells = signature_default_cells(s->config.frequency_hz, s->config.bandwidth_hz, s->config.aspect_rad,
+                                                   s->config.interval_s);
+    TubeConfig     config = tubes_default_config(s->config.frequency_hz);
+    Status         status = STATUS_OK;
     config.rays_per_wavelength = s->config.rays_per_wavelength;
     config.splits = s->config.splits;
     config.warp_m = s->config.warp_m;
     config.warp_seed = signature_warp_seed(of);
+    if (is_coarse(s)) coarse_tubes(&config, &cells);
     RadarTarget **target = &maker->target[out->model];
     if (!*target) status = radar_target_create(target, of, s->materials, s->config.isa);
     NodePose *pose = calloc((size_t)of->node_count + 1, sizeof *pose);
@@ -185,11 +170,13 @@ static Status make(Kept *out, SignatureCounters *counters, const Signatures *s, 
     if (status == STATUS_OK) {
         model_pose(pose, of, out->joint);
         radar_target_pose(*target, pose, out->damage);
-        status = total_field_trace(&maker->field, *target, &look->tx, &look->rx, &config, true, pool);
+        status = total_field_trace(&maker->field, *target, &look->tx, &look->rx, &config, !is_coarse(s), pool);
     }
     if (status == STATUS_OK && (look->image[0] || look->image[1]))
         status = ground_hide(&maker->field, *target, &look->plane, look->image, pool);
     if (status == STATUS_OK) status = signature_make(&out->signature, &maker->field, *target, &cells);
+    if (status == STATUS_OK && is_coarse(s))
+        coarse_widen(&out->signature, s->config.frequency_hz, s->config.coarse_for_hz);
     free(pose);
     if (status != STATUS_OK) return status;
     counters->made++;
@@ -212,26 +199,69 @@ static void maker_free(Maker *maker, int models)
 
 /* ---- in the background ------------------------------------------------------------------------------ */
 
+/* The plan that has got least far, of those with bins left; NULL: none. */
+static Planned *least_planned(Background *b)
+{
+    Planned *least = NULL;
+    for (int i = 0; i < b->planned; i++) {
+        Planned *p = &b->plan[i];
+        while (p->next < b->bins && p->made[p->next]) p->next++;
+        if (p->next < b->bins && (!least || p->next < least->next)) least = p;
+    }
+    return least;
+}
+
+/* Takes what is to be made next into b->busy: what was asked for, newest first, else what is planned. False: nothing.
+ */
+static bool take_next(Background *b, const Signatures *s)
+{
+    if (b->done == most_waiting) return false;
+    if (b->waiting > 0) {
+        b->busy = b->wait[--b->waiting];
+        b->wait[b->waiting] = (Kept){0};
+        return true;
+    }
+    const Planned *p = least_planned(b);
+    if (!p) return false;
+    double *joint = calloc((size_t)catalog_model(s->catalog, p->model)->node_count, sizeof *joint);
+    if (!joint) b->status = STATUS_NO_MEMORY, b->planned = 0;
+    else
+        b->busy =
+            (Kept){.model = p->model, .damage = p->damage, .joint = joint, .middle = signature_look(&b->bin[p->next])};
+    return joint != NULL;
+}
+
+/* Crosses out what is made, or given up, of what is planned. */
+static void cross_out(Background *b, const Kept *one)
+{
+    for (int i = 0; i < b->planned; i++)
+        for (int bin = 0; bin < b->bins; bin++) {
+            Planned *p = &b->plan[i];
+            if (p->model == one->model && p->damage == one->damage && same_antenna(&b->bin[bin], &one->middle.tx))
+                p->made[bin] = true;
+        }
+}
+
 static void *run_background(void *user)
 {
     Signatures *s = user;
     Background *b = &s->background;
     Maker       maker = {.target = calloc((size_t)s->models + 1, sizeof *maker.target)};
+    if (s->config.nice > 0) setpriority(PRIO_PROCESS, (id_t)gettid(), s->config.nice); /* this thread's alone */
     thread_flush_denormals();
     pthread_mutex_lock(&b->lock);
     while (!b->ends) {
-        if (b->waiting == 0 || b->done == most_waiting) {
+        if (!take_next(b, s)) {
             pthread_cond_wait(&b->changed, &b->lock);
             continue;
         }
-        b->busy = b->wait[--b->waiting];
-        b->wait[b->waiting] = (Kept){0};
         Kept              one = b->busy; /* ask() compares with b->busy meanwhile: its joints are only read */
         SignatureCounters counters = {0};
         pthread_mutex_unlock(&b->lock);
         const Status status = maker.target ? make(&one, &counters, s, &maker, NULL) : STATUS_NO_MEMORY;
         pthread_mutex_lock(&b->lock);
         b->busy = (Kept){0};
+        cross_out(b, &one);
         if (status == STATUS_OK) b->made[b->done++] = one;
         else kept_free(&one);
         if (b->status == STATUS_OK) b->status = status;
@@ -310,6 +340,18 @@ static void end_background(Signatures *s)
 
 /* ---- the interface ---------------------------------------------------------------------------------- */
 
+SignaturesConfig signatures_coarse(const SignaturesConfig *fine)
+{
+    SignaturesConfig config = *fine;
+    config.frequency_hz = fmin(fine->frequency_hz, coarse_hz());
+    config.interval_s *= fine->frequency_hz / config.frequency_hz; /* what spins is told apart as finely */
+    config.splits = 0;
+    config.coarse_for_hz = fine->frequency_hz;
+    config.most_octets = (size_t)1 << 28;
+    config.store = (SignatureStore){0};
+    return config;
+}
+
 Status signatures_create(Signatures **out, const SignaturesConfig *config, const Catalog *catalog,
                          const RadarMaterials *materials)
 {
@@ -332,6 +374,7 @@ Status signatures_create(Signatures **out, const SignaturesConfig *config, const
         Background *b = &s->background;
         pthread_mutex_init(&b->lock, NULL);
         pthread_cond_init(&b->changed, NULL);
+        if (is_coarse(s)) b->bins = coarse_bins(b->bin);
         b->runs = pthread_create(&b->thread, NULL, run_background, s) == 0;
         if (!b->runs) status = STATUS_NO_MEMORY;
     }
@@ -351,14 +394,24 @@ void signatures_destroy(Signatures *s)
     free(s);
 }
 
+/* Without the ground. */
+static void coarse_look_bin(SignatureLook *middle, const SignatureLook *look)
+{
+    memset(middle, 0, sizeof *middle);
+    coarse_bin(&middle->tx, &look->tx);
+    coarse_bin(&middle->rx, &look->rx);
+}
+
 Status signatures_find(const Signature **out, Signatures *s, int model, const double *joint, int damage,
                        const SignatureLook *look, Pool *pool)
 {
     const Model *of = catalog_model(s->catalog, model);
     Kept         one = {.model = model, .damage = damage, .joint = s->joint};
-    for (int n = 0; n < of->node_count; n++) s->joint[n] = joint && of->node[n].roll_radius_m == 0 ? joint[n] : 0;
+    const bool   posed = joint && !is_coarse(s);
+    for (int n = 0; n < of->node_count; n++) s->joint[n] = posed && of->node[n].roll_radius_m == 0 ? joint[n] : 0;
     model_pose(s->pose, of, s->joint);
-    signature_look_bin(&one.middle, look, s->config.aspect_rad);
+    if (is_coarse(s)) coarse_look_bin(&one.middle, look);
+    else signature_look_bin(&one.middle, look, s->config.aspect_rad);
     s->calls++;
     Status status = collect(s);
     if (status != STATUS_OK) return status;
@@ -408,7 +461,25 @@ int signatures_waiting(const Signatures *s)
     Background *b = (Background *)(uintptr_t)&s->background;
     if (!b->runs) return 0;
     pthread_mutex_lock(&b->lock);
-    const int waiting = b->waiting + (b->busy.joint != NULL);
+    int waiting = b->waiting + (b->busy.joint != NULL);
+    for (int i = 0; i < b->planned; i++)
+        for (int bin = 0; bin < b->bins; bin++) waiting += !b->plan[i].made[bin];
     pthread_mutex_unlock(&b->lock);
     return waiting;
+}
+
+Status signatures_prepare(Signatures *s, int model, int damage)
+{
+    Background  *b = &s->background;
+    const Status status = collect(s);
+    if (!b->runs || !is_coarse(s) || status != STATUS_OK) return status;
+    pthread_mutex_lock(&b->lock);
+    bool known = b->planned == most_planned; /* more are made when they are asked for */
+    for (int i = 0; i < b->planned && !known; i++) known = b->plan[i].model == model && b->plan[i].damage == damage;
+    if (!known) {
+        b->plan[b->planned++] = (Planned){.model = model, .damage = damage};
+        pthread_cond_signal(&b->changed);
+    }
+    pthread_mutex_unlock(&b->lock);
+    return STATUS_OK;
 }

@@ -8,20 +8,14 @@
  * them: one would not be met twice. The least recently used make room for others.
  *
  * One that is not at hand is fetched from a store (a library on disk), else made, and given to the store. With
- * `background` it is made in a thread of its own, newest request first, and until then there is none. */
+ * `background` it is made in a thread of its own, newest request first, and until then there is none; what is prepared
+ * (signatures_prepare) comes after all requests. Coarse ones (coarse.h) are of wide bins, whatever the range. */
 #ifndef RENDER_SCATTERING_SIGNATURES_SIGNATURES_H
 #define RENDER_SCATTERING_SIGNATURES_SIGNATURES_H
 
 #include "entities/catalog/catalog.h"
+#include "render/scattering/signatures/bins.h"
 #include "render/scattering/signatures/centres.h"
-#include "render/scattering/paths/ground_bounce.h"
-
-/* What a signature is for: antennas in the target's frame. */
-typedef struct SignatureLook {
-    ScatterAntenna tx, rx;
-    bool           image[2]; /* whether transmitter, receiver is an image in the ground (ground_bounce.h) */
-    GroundPlane    plane;    /* where one is. Kept for a degree of its normal and 2 cm of its height */
-} SignatureLook;
 
 /* What a signature is of. */
 typedef struct SignatureKey {
@@ -44,10 +38,12 @@ typedef struct SignaturesConfig {
     double         aspect_rad;                 /* side of a bin */
     double         interval_s;                 /* SignatureCells */
     double         rays_per_wavelength;
-    int            splits;      /* of tubes at edges (tubes.h); 0: fastest */
-    double         warp_m;      /* unevenness of surfaces (tubes.h), rms; 0: plane as the model has them */
-    size_t         most_octets; /* of all; the one in use is kept beyond it */
+    int            splits;        /* of tubes at edges (tubes.h); 0: fastest */
+    double         warp_m;        /* unevenness of surfaces (tubes.h), rms; 0: plane as the model has them */
+    size_t         most_octets;   /* of all; the one in use is kept beyond it */
+    double         coarse_for_hz; /* coarse.h: the frequency that these are coarse ones for; 0: they are fine */
     bool           background;
+    int            nice;  /* of the background's thread, 0 .. 19 */
     SignatureStore store; /* fetch NULL: none */
     const char    *isa;   /* as tracer_create */
 } SignaturesConfig;
@@ -60,6 +56,8 @@ typedef struct SignatureCounters {
 
 typedef struct Signatures Signatures;
 
+/* The configuration of the coarse signatures (coarse.h) of a radar whose fine ones are these: without a store. */
+SignaturesConfig signatures_coarse(const SignaturesConfig *fine);
 /* catalog, materials, and the store's: must outlive it. */
 Status signatures_create(Signatures **out, const SignaturesConfig *config, const Catalog *catalog,
                          const RadarMaterials *materials);
@@ -69,18 +67,16 @@ void   signatures_destroy(Signatures *signatures); /* accepts NULL; waits for th
  * be NULL. */
 Status signatures_find(const Signature **out, Signatures *signatures, int model, const double *joint, int damage,
                        const SignatureLook *look, Pool *pool);
-/* The look of a transmitter and receiver at one place, with nothing by way of the ground. */
-SignatureLook signature_look(const ScatterAntenna *antenna);
 /* Pose of the nodes in the signature found last, body axes. */
 const NodePose   *signatures_pose(const Signatures *signatures);
 SignatureCounters signatures_counters(const Signatures *signatures);
 /* Those that are to be made in the background. */
 int signatures_waiting(const Signatures *signatures);
+/* Has the coarse signatures of a model made for all aspects (coarse_bins) in the background, when nothing that was
+ * asked for waits; once for each model and damage. Called again and again, it takes in what was made. Without
+ * `background` or of fine ones: nothing. */
+Status signatures_prepare(Signatures *signatures, int model, int damage);
 
-/* The middle of the bin that an antenna is in. */
-void signature_bin(ScatterAntenna *middle, const ScatterAntenna *antenna, double aspect_rad);
-/* The middles of a look's bins; what does not count for it is zero. */
-void signature_look_bin(SignatureLook *middle, const SignatureLook *look, double aspect_rad);
 /* Seed of a model's unevenness: a function of its name. */
 uint64_t signature_warp_seed(const Model *model);
 

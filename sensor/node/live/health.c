@@ -425,6 +425,8 @@ void health_line(char out[health_line_size], const Health *h, const HealthPace *
                           (unsigned long long)(s->lost_kernel + s->lost_queue));
     if (s->over_rate > 0 && n < health_line_size)
         n += (size_t)snprintf(out + n, health_line_size - n, "  %llu over rate", (unsigned long long)s->over_rate);
+    if (s->preparing > 0 && n < health_line_size)
+        n += (size_t)snprintf(out + n, health_line_size - n, "  preparing %d", s->preparing);
     for (int t = 0; t < HEALTH_LOSS && n < health_line_size; t++)
         if (h->now[t] != HEALTH_FINE)
             n += (size_t)snprintf(out + n, health_line_size - n, "  %s", health_name(h->now[t]));

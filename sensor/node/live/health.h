@@ -59,6 +59,7 @@ typedef struct HealthSample {
     uint64_t   frames, missing;      /* rendered; due since the last one while the host was absent */
     double     frame_s;              /* of the last frame, or when rendering began */
     int        entities;             /* in the table */
+    int        preparing;            /* things that are being made before frames need them */
     uint64_t   over_rate;            /* reports of new ones above the rate limit */
     int        others;               /* of the last frame: except the host */
     double     nearest_m;            /* range to the nearest of them; NaN: not computed */
@@ -112,7 +113,7 @@ void health_frame(Health *health, const FrameRecord *frame, double now_s);
 /* Evaluates the counters and reports changes; no message twice within a minute. */
 void health_check(Health *health, const LiveCounters *counters, const HealthNames *names, double now_s);
 /* `12 entities  kept 4.9 of 5 frames/s  checkerboard  0 late  34 ms  0 lost  nothing heard`, with what the last frame
- * gave up. */
+ * gave up; `preparing 12` while that many things are still to be made. */
 typedef struct HealthPace {
     double      kept_hz, rate_hz; /* frames with all bands; those asked for, 0: not known yet */
     const char *step;             /* NULL: it gave up nothing */

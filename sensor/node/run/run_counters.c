@@ -23,6 +23,13 @@ static const void *streams_of(const void *of)
     return *run_config_of(r)->publish.stream ? &r->end->result->sent.stream : NULL;
 }
 
+/* NULL: it was never ready. */
+static const void *made_ready(const void *of)
+{
+    const LiveCounters *live = of;
+    return live->ready_s > 0 ? live : NULL;
+}
+
 /* NULL: it ended before its rate was known. */
 static const void *rated(const void *of)
 {
@@ -78,6 +85,14 @@ static json_t *without_radar(FieldAt *at)
 {
     const SessionResult *result = run_result_of(at->record);
     const int            frames = instruments_left_out(result->instrument, &radar_kind);
+    return frames ? json_integer(frames) : NULL;
+}
+
+/* NULL: none is of coarse signatures. */
+static json_t *coarse_radar(FieldAt *at)
+{
+    const SessionResult *result = run_result_of(at->record);
+    const int            frames = instruments_coarse(result->instrument, &radar_kind);
     return frames ? json_integer(frames) : NULL;
 }
 
@@ -140,6 +155,9 @@ static const Field live_rows[] = {
      OF_LIVE(frames_at[SAMPLING_TARGETS])},
     {"frames_checkerboard", "", "", "", "the same: `checkerboard`", OF_LIVE(frames_at[SAMPLING_CHECKERBOARD])},
     {"frames_quarter", "", "", "", "the same: `quarter`", OF_LIVE(frames_at[SAMPLING_QUARTER])},
+    {"ready_s", "s", "after the first entity was heard", "when it never was",
+     "when everything was made that the entities heard so far need in frames: models, heat, coarse signatures",
+     FIELD_IN(made_ready, LiveCounters, ready_s)},
     {"files_failed", "", "", "", "frames whose files could not be written", OF_LIVE(files_failed)},
     {"files_left_out", "", "", "", "frames without files because the disk was too slow", OF_LIVE(files_left_out)},
 };
@@ -226,6 +244,9 @@ static const Field counter_rows[] = {
     {"frames_without_radar", "", "", "radar.preset, live or a recording of that",
      "frames whose radar was left out, as signatures of targets were still to be made; absent: none",
      FIELD_GET("integer", without_radar), .unless_0 = true},
+    {"frames_of_coarse_radar", "", "", "radar.preset, live or a recording of that",
+     "frames whose radar had coarse signatures, as finer ones were still to be made; absent: none",
+     FIELD_GET("integer", coarse_radar), .unless_0 = true},
     {"frames_reduced", "", "", "when 0", "frames in which a live node gave something up to keep its rate",
      IN_RESULT(frames_reduced), .unless_0 = true},
     {"frames_without_all_entities", "", "", "", "frames that left some out", IN_RESULT(frames_crowded)},

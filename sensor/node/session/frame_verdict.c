@@ -26,7 +26,8 @@ static const struct {
                          [1] = {"no grids of small targets", "target_grids", SAMPLING_ALL},
                          [2] = {"targets alone refined", "targets", SAMPLING_TARGETS},
                          [3] = {"ground sampled as a checkerboard", "checkerboard", SAMPLING_CHECKERBOARD},
-                         [4] = {"ground sampled by quarters", "quarter", SAMPLING_QUARTER}};
+                         [4] = {"ground sampled by quarters", "quarter", SAMPLING_QUARTER},
+                         [5] = {"coarse radar", "radar_detail", SAMPLING_ALL}};
 
 unsigned frame_verdict_of_sampling(Sampling sampling)
 {

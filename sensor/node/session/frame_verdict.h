@@ -14,8 +14,9 @@ enum {
     VERDICT_TARGETS = 4,         /* a step of sampling (Sampling), of these three at most one */
     VERDICT_CHECKERBOARD = 8,
     VERDICT_QUARTER = 16,
+    VERDICT_COARSE_RADAR = 32, /* the radar has coarse signatures: finer ones are still to be made */
 };
-enum { verdict_count = 6 }; /* bits; 32 is free, for the radar */
+enum { verdict_count = 6 }; /* bits */
 
 /* SAMPLING_ALL: 0. */
 unsigned frame_verdict_of_sampling(Sampling sampling);

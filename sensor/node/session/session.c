@@ -39,6 +39,7 @@ static Status open_session(Session *s)
     if (status == STATUS_OK) status = entity_table_create(&s->table, &table, shared->catalog);
     if (status == STATUS_OK) status = read_marks(s);
     if (status == STATUS_OK) status = session_heat_open(s);
+    if (status == STATUS_OK) status = session_ready_open(s);
     if (status == STATUS_OK) status = frame_verdicts_read(&s->verdicts, shared->notes);
     if (status == STATUS_OK)
         status = instruments_open(&s->instruments, shared->instruments,
@@ -86,6 +87,7 @@ Status session_frame(bool *shown, Session *s, const FrameTime *at)
 {
     int left_out = 0;
     session_advance(s, at->t_s);
+    session_prepare(s, at->t_s);
     Status status = s->advance_status;
     *shown = false;
     if (status == STATUS_OK && s->host->is_there(s->host)) { /* otherwise nothing is extrapolated for it */
@@ -135,6 +137,7 @@ Status session_close(Session *s, SessionResult *result)
     instruments_close(&s->instruments);
     frame_verdicts_free(s->verdicts);
     session_heat_close(s);
+    session_ready_close(s);
     entity_table_destroy(s->table);
     frame_pool_destroy(s->frames);
     pool_destroy(s->publish_pool);

@@ -86,8 +86,13 @@ Status session_frame(bool *shown, Session *session, const FrameTime *frame);
 /* So far. */
 const SessionResult *session_result(const Session *session);
 int                  session_entities(const Session *session); /* entities present */
-uint64_t    session_over_rate(const Session *session); /* reports of new entities above the rate: entities.new_per_s */
-const char *session_host(const Session *session);      /* id as text, `observer`, or `munition` while there is none */
+uint64_t session_over_rate(const Session *session); /* reports of new entities above the rate: entities.new_per_s */
+/* What a live session has made ready of the entities heard, and how much is still to be made. */
+typedef struct SessionReady {
+    int entities, models, signatures, waiting;
+} SessionReady;
+SessionReady session_ready(const Session *session);
+const char  *session_host(const Session *session); /* id as text, `observer`, or `munition` while there is none */
 /* The caller frees the session's result with session_result_free; NULL: it is freed too. */
 Status session_close(Session *session, SessionResult *result);
 void   session_result_free(SessionResult *result);

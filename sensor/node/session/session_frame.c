@@ -120,7 +120,36 @@ static bool entity_at(SnapshotEntity *out, void *of, DisEntityId id, double t_s)
     return entity_table_pose(out, s->table, entity_table_find(s->table, id), t_s);
 }
 
-/* Lets the instruments look. What one leaves out by chance goes into the recording. */
+/* What the recording says of the instruments. */
+static InstrumentNote noted_by(unsigned verdict)
+{
+    if (verdict & VERDICT_NO_RADAR) return INSTRUMENT_ABSENT;
+    return verdict & VERDICT_COARSE_RADAR ? INSTRUMENT_COARSE : INSTRUMENT_NOT_NOTED;
+}
+
+/* What instruments lacked in this frame because it was not ready. */
+static unsigned lacked(const Frame *f)
+{
+    unsigned verdict = 0;
+    for (int i = 0; i < f->outputs; i++) {
+        if (f->output[i].left_out && f->output[i].kind->noted) verdict |= VERDICT_NO_RADAR;
+        if (f->output[i].coarse) verdict |= VERDICT_COARSE_RADAR;
+    }
+    return verdict;
+}
+
+/* Says in the record what the frame gave up. */
+static Status give_up(Frame *f, Session *s, unsigned verdict)
+{
+    char *names = arena_alloc(f->arena, frame_verdict_names_size, 1);
+    if (!names) return STATUS_NO_MEMORY;
+    frame_verdict_names(names, verdict);
+    if (*names) f->record.given_up = names;
+    s->result.frames_reduced += f->record.given_up != NULL;
+    return STATUS_OK;
+}
+
+/* Lets the instruments look. What one lacks by chance goes into the recording. */
 static Status measure(Frame *f, Session *s, const Eye *eye, unsigned verdict)
 {
     const InstrumentLook look = {
@@ -129,16 +158,15 @@ static Status measure(Frame *f, Session *s, const Eye *eye, unsigned verdict)
         .wants = s->wants,
         .aim = dis_entity_id_is_none(s->plan.aim) ? -1 : snapshot_find(&f->seen.snapshot, s->plan.aim),
         .aim_m = aim_range(eye),
-        .noted = (verdict & VERDICT_NO_RADAR) != 0,
+        .noted = noted_by(verdict),
         .pool = s->shared->pool,
         .poses = {eye_at, entity_at, s}};
     const Status status = instruments_look(&s->instruments, &look);
     if (status != STATUS_OK) return status;
     instruments_count(s->result.instrument, f);
-    bool by_chance = false;
-    for (int i = 0; i < f->outputs && !look.noted; i++) by_chance |= f->output[i].left_out && f->output[i].kind->noted;
-    if (by_chance) note_verdict(s, VERDICT_NO_RADAR, &(FrameTime){.number = f->number, .t_s = f->time_s});
-    return STATUS_OK;
+    const unsigned by_chance = look.noted ? 0 : lacked(f);
+    note_verdict(s, by_chance, &(FrameTime){.number = f->number, .t_s = f->time_s});
+    return give_up(f, s, verdict | by_chance);
 }
 
 /* Adds the targets and the error budget to the frame's record. */
@@ -221,17 +249,12 @@ Status session_make_frame(bool *shown, int *left_out, Frame *f, Session *s, cons
     make_request(&f->request, s, &eye, t_s);
     const unsigned verdict = judge(s, when);
     frame_verdict_apply(&f->request, verdict);
-    char *given_up = arena_alloc(f->arena, frame_verdict_names_size, 1);
-    if (!given_up) return STATUS_NO_MEMORY;
     const double posed_s = wall_clock_s();
     if (status == STATUS_OK) status = look(&f->seen, s, &f->request, &light, f->arena);
     if (status == STATUS_OK && s->wants & WANT_WITHOUT) status = look_without(f, s, &light, eye.hidden);
     if (status != STATUS_OK) return status;
     if (f->seen.picture.range_m) rate_of_scene(f->rate_px_s, &eye, &f->seen.picture);
     fill_record(f, s, &eye);
-    frame_verdict_names(given_up, verdict);
-    if (*given_up) f->record.given_up = given_up;
-    s->result.frames_reduced += f->record.given_up != NULL;
     if (s->wants & WANT_FOOTPRINT) {
         truth_footprint(f->footprint, shared->world, &eye.view);
         f->record.footprint = f->footprint;

@@ -29,6 +29,14 @@ typedef struct SessionCrowd {
     double   given_up_s, left_out_s; /* wall clock */
 } SessionCrowd;
 
+/* What is made ready, live. */
+typedef struct SessionMadeReady {
+    bool  *built; /* [models of the catalog]: by the tracer */
+    Arena *arena; /* of a snapshot */
+    double next_s;
+    int    entities, models, unbuilt;
+} SessionMadeReady;
+
 typedef struct HostMotion HostMotion;
 
 struct Session {
@@ -41,6 +49,7 @@ struct Session {
     Player              *player; /* the caller's */
     SessionHeat          heat;
     SessionCrowd         crowd;
+    SessionMadeReady     ready;
     Status               advance_status; /* the first failure of what outlasts a frame: frames fail with it */
     HostMotion          *host;
     int64_t              tick;          /* the next one */
@@ -115,6 +124,10 @@ void   session_heat_warm(Session *s, double tick_s); /* at each tick */
 void   session_heat_report(const Session *s);
 Status session_heat_keep(const Session *s); /* for a later run, if there is a file to keep it in */
 void   session_heat_close(Session *s);
+
+Status session_ready_open(Session *s);
+void   session_prepare(Session *s, double t_s); /* before each frame */
+void   session_ready_close(Session *s);
 
 /* Feeds everything that counts by t_s and moves the host, on a fixed grid of exercise time. */
 void session_advance(Session *s, double t_s);

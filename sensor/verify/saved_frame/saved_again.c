@@ -127,7 +127,8 @@ Status saved_radar_gather(SavedFrame *file, const RadarFrame *radar, double *joi
                       .number = radar->number,
                       .joint_count = file->snapshot.node_count,
                       .joint = joint,
-                      .detections = radar->detections_in_all};
+                      .detections = radar->detections_in_all,
+                      .coarse = radar->coarse};
     memcpy(r->v_enu_mps, radar->v_enu_mps, sizeof r->v_enu_mps);
     memcpy(r->aim_v_enu_mps, radar->aim_v_enu_mps, sizeof r->aim_v_enu_mps);
     return radar_sha256(r->map_sha256, radar, 0, radar_arrays_most); /* with a scan its pictures too */
@@ -147,6 +148,7 @@ Status saved_radar_again(const RadarFrame **out, SeekerRadar *radar, const Saved
                                .t_s = file->time_s,
                                .weather = &weather,
                                .number = r->number,
+                               .coarse = r->coarse,
                                .range_m = picture->range_m,
                                .entity = picture->entity};
     memcpy(scene.v_enu_mps, r->v_enu_mps, sizeof scene.v_enu_mps);

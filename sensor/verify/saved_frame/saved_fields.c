@@ -312,6 +312,11 @@ void saved_fields_radar(Fields *f, SavedFrame *file)
     field_list(f, &r->joint_count, (void **)&r->joint, sizeof *r->joint, INT32_MAX - 1, joint_fields);
 }
 
+void saved_fields_coarse(Fields *f, SavedFrame *file)
+{
+    field_bool(f, "coarse signatures of a radar", &file->radar.coarse);
+}
+
 /* ---- results ------------------------------------------------------------------------------ */
 
 static void plane_fields(Fields *f, void *record)

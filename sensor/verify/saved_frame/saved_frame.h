@@ -42,6 +42,7 @@ typedef struct SavedRadar {
     double  *joint; /* [snapshot.node_count] */
     char     map_sha256[sha256_text_size];
     int      detections; /* in all */
+    bool     coarse;     /* with coarse signatures */
 } SavedRadar;
 
 typedef struct SavedFrame {

@@ -40,5 +40,6 @@ Status precision_detectors(Bench *bench);
 Status precision_small_target(Bench *bench);
 Status precision_plants(Bench *bench);
 Status precision_radar_seeker(Bench *bench);
+Status precision_coarse(Bench *bench);
 
 #endif

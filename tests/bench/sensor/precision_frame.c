@@ -321,6 +321,7 @@ Status bench_precision(Bench *bench)
     if (status == STATUS_OK) status = precision_plants(bench);
     if (status == STATUS_OK) status = precision_detectors(bench);
     if (status == STATUS_OK) status = precision_radar_seeker(bench);
+    if (status == STATUS_OK) status = precision_coarse(bench);
     if (status != STATUS_OK) log_error("bench: precision: %s", status_name(status));
     return status;
 }

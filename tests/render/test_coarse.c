@@ -1,0 +1,153 @@
+/* Coarse signatures: the mean of a cross section over their wide bin against laws of optics, and what is prepared of
+ * them. labels: physics */
+#include "tests/render/radar_stage.h"
+
+#include <time.h>
+
+#include "render/scattering/signatures/coarse.h"
+#include "render/scattering/signatures/signatures.h"
+
+static const double radar_hz = 94e9;
+
+/* Mean of the cross section over looks within the bin that a look is in, m2, by the coarse signature of a shape. */
+static double mean_over_bin(const char *shape, double az_deg, double el_deg)
+{
+    enum { looks = 400 };
+    const double   hz = coarse_hz();
+    SignatureCells cells = signature_default_cells(hz, 500e6, 0.3 * rad_per_deg, 0);
+    RadarStage     s;
+    TotalField     field = {0};
+    Signature      signature = {0};
+    Centres        centres = {0};
+    ScatterAntenna look = antenna_at(az_deg, el_deg, INFINITY), middle;
+    double         sum = 0;
+    stage_open(&s, shape, hz);
+    s.config.rays_per_wavelength = 0.5;
+    coarse_tubes(&s.config, &cells);
+    coarse_bin(&middle, &look);
+    CHECK(total_field_trace(&field, s.target, &middle, &middle, &s.config, false, s.pool) == STATUS_OK);
+    CHECK(signature_make(&signature, &field, s.target, &cells) == STATUS_OK);
+    coarse_widen(&signature, hz, radar_hz);
+    for (int i = 0, n = 0; i < looks; n++) {
+        const double   az = az_deg + 30 * (random_uniform(1, 0, 0, (uint64_t)n) - 0.5);
+        const double   el = el_deg + 30 * (random_uniform(1, 1, 0, (uint64_t)n) - 0.5);
+        ScatterAntenna one = antenna_at(az, el, INFINITY), of;
+        ScatterMatrix  m;
+        coarse_bin(&of, &one);
+        if (memcmp(&of, &middle, sizeof of) != 0) continue;
+        one.range_m = 2000;
+        CHECK(centres_make(&centres, &signature, &one, &one, NULL) == STATUS_OK);
+        centres_field(&m, &centres, radar_hz);
+        sum += 4 * pi_rad * scatter_power(m.vv) / looks;
+        i++;
+    }
+    centres_free(&centres);
+    signature_free(&signature);
+    total_field_free(&field);
+    stage_close(&s);
+    return sum;
+}
+
+/* A sphere scatters pi r^2 everywhere, at any frequency. */
+static void a_sphere(void **state)
+{
+    (void)state;
+    double off = 0;
+    for (int i = 0; i < 6; i++) {
+        const double db = decibels(mean_over_bin("sphere:1", 55 * i + 7.0, 10 * i - 20.0) / pi_rad);
+        off += db * db / 6;
+    }
+    print_message("sphere: %.1f dB rms\n", sqrt(off));
+    CHECK(sqrt(off) < 3);
+}
+
+/* A flat plate of area A scatters 4 pi A^2 / lambda^2 within lambda / 2 over its sides: pi A over all directions, at
+ * any frequency. Its mean over a bin that holds the whole of that is pi A over the bin's solid angle. */
+static void a_plate(void **state)
+{
+    (void)state;
+    const double bin_sr = 15 * rad_per_deg * 2 * sin(7.5 * rad_per_deg);
+    double       want[2];
+    for (int i = 0; i < 2; i++) {
+        char shape[40];
+        snprintf(shape, sizeof shape, i ? "plate:1x0.6" : "plate:0.7x0.7");
+        want[i] = pi_rad * (i ? 0.6 : 0.49) / bin_sr;
+        const double db = decibels(mean_over_bin(shape, 0, 0) / want[i]);
+        print_message("plate: %.1f dB of %.1f dBsm\n", db, decibels(want[i]));
+        CHECK(fabs(db) < coarse_error_db());
+    }
+}
+
+/* Every aspect that a target near the ground is seen in has its bin, once. */
+static void bins_cover(void **state)
+{
+    (void)state;
+    static ScatterAntenna bin[coarse_most_bins];
+    const int             count = coarse_bins(bin);
+    CHECK(count > 60 && count < coarse_most_bins);
+    for (int i = 0; i < count; i++)
+        for (int k = 0; k < i; k++) CHECK(memcmp(&bin[i], &bin[k], sizeof bin[i]) != 0);
+    for (int i = 0; i < 5000; i++) {
+        const ScatterAntenna a = antenna_at(360 * random_uniform(2, 0, 0, (uint64_t)i),
+                                            -14.9 + 59.8 * random_uniform(2, 1, 0, (uint64_t)i), INFINITY);
+        ScatterAntenna       middle;
+        bool                 there = false;
+        coarse_bin(&middle, &a);
+        for (int k = 0; k < count && !there; k++) there = memcmp(&bin[k], &middle, sizeof middle) == 0;
+        CHECK(there);
+    }
+}
+
+/* What is prepared is there when it is asked for, whatever the range and the joints, and is made once. */
+static void prepared_is_there(void **state)
+{
+    (void)state;
+    static const DisEntityType truck = {1, 1, 225, 7, 1, 0, 0};
+    const SignaturesConfig     fine = {.frequency_hz = 3e9,
+                                       .bandwidth_hz = 2e7,
+                                       .aspect_rad = 0.3 * rad_per_deg,
+                                       .rays_per_wavelength = 0.5,
+                                       .most_octets = 1 << 30,
+                                       .isa = "avx2",
+                                       .background = true};
+    SignaturesConfig           config = signatures_coarse(&fine);
+    Catalog                   *catalog;
+    RadarMaterials             materials;
+    Signatures                *s;
+    Origin                     origin;
+    char                       path[4096];
+    static ScatterAntenna      bin[coarse_most_bins];
+    const int                  bins = coarse_bins(bin);
+    CHECK(etc_path(path, sizeof path, "catalog.csv") && catalog_open(&catalog, path, coarse_sag_m()) == STATUS_OK);
+    const int model = catalog_find(catalog, truck, &origin, NULL);
+    CHECK(radar_materials_load(&materials) == STATUS_OK);
+    CHECK(signatures_create(&s, &config, catalog, &materials) == STATUS_OK);
+    CHECK(signatures_prepare(s, model, 0) == STATUS_OK);
+    CHECK(signatures_waiting(s) > 0);
+    for (int tries = 0; tries < 3000 && signatures_waiting(s) > 0; tries++) {
+        CHECK(signatures_prepare(s, model, 0) == STATUS_OK); /* takes in what was made, and plans nothing twice */
+        nanosleep(&(struct timespec){.tv_nsec = 20000000}, NULL);
+    }
+    CHECK(signatures_waiting(s) == 0 && signatures_counters(s).made == (uint64_t)bins);
+    double joint[256] = {0};
+    for (int n = 0; n < catalog_model(catalog, model)->node_count; n++) joint[n] = 0.1;
+    for (int i = 0; i < 100; i++) {
+        const ScatterAntenna a = antenna_at(360 * random_uniform(3, 0, 0, (uint64_t)i),
+                                            44 * random_uniform(3, 1, 0, (uint64_t)i), 100 + 90 * i);
+        const SignatureLook  look = signature_look(&a);
+        const Signature     *got;
+        CHECK(signatures_find(&got, s, model, joint, 0, &look, NULL) == STATUS_OK);
+        CHECK(got && got->count > 20 && isinf(got->tx.range_m));
+    }
+    CHECK(signatures_counters(s).missing == 0 && signatures_counters(s).made == (uint64_t)bins);
+    signatures_destroy(s);
+    radar_materials_close(&materials);
+    catalog_close(catalog);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(a_sphere), cmocka_unit_test(a_plate),
+                                       cmocka_unit_test(bins_cover), cmocka_unit_test(prepared_is_there)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
