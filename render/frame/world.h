@@ -48,7 +48,8 @@ Status world_plant(World *world, const Woods *woods, const ForestConfig *config,
 Status world_warm(World *world, WeatherCourse *course, const HeatConfig *config, double shadow_m, Pool *pool);
 /* Undoes it: before another atmosphere, which its heat points to. */
 void world_cool(World *world);
-/* The same as world_warm for a clear day of the atmosphere's own temperature: what benches and pictures of models stand on. */
+/* The same as world_warm for a clear day of the atmosphere's own temperature: what benches and pictures of models stand
+ * on. */
 Status world_warm_clear(World *world, const HeatConfig *config, double shadow_m, Pool *pool);
 /* The ground's heat at a time, in the arena; *out NULL where the world is not warm. marks: may be NULL. */
 Status world_heat_at(HeatScene **out, const World *world, const GroundMarks *marks, double unix_s, Arena *arena);

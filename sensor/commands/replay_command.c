@@ -356,12 +356,8 @@ static Status look_at_variant(Run *run)
 /* made: of a run before in this process; NULL: there is none. */
 static int replay(const Options *options, MadeWorld *made)
 {
-    LogClock    clock = log_clock(options->speed);
-    Run         run = {.options = *options,
-                       .made = made,
-                       .check = check_span,
-                       .frames = replay_frames,
-                       .clock = &clock.clock};
+    LogClock clock = log_clock(options->speed);
+    Run run = {.options = *options, .made = made, .check = check_span, .frames = replay_frames, .clock = &clock.clock};
     Sending     sending = {0};
     DisEntityId host[options_hosts_max];
     char        log_name[4096];

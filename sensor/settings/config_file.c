@@ -174,13 +174,12 @@ static bool names_key(const char *words, const char *key)
     return named;
 }
 
-void config_part(Config *out, const Config *from, const char *keys)
+void config_part(Config *out, const Config *from, const char *words)
 {
     *out = config_default();
     for (int i = 0; i < config_table.count; i++) {
         const Setting *row = &config_table.row[i];
-        if (names_key(keys, row->name))
-            memcpy((char *)out + row->offset, (const char *)from + row->offset, row->size);
+        if (names_key(words, row->name)) memcpy((char *)out + row->offset, (const char *)from + row->offset, row->size);
     }
 }
 

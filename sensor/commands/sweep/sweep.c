@@ -302,8 +302,7 @@ static Status write_settings(const char *path, const Options *o, const Variant *
     return status;
 }
 
-static void make_variant(Outcome *outcome, SweepRun *s, const Variant *v, const char *folder,
-                         const Config *config)
+static void make_variant(Outcome *outcome, SweepRun *s, const Variant *v, const char *folder, const Config *config)
 {
     char path[path_size + 32];
     *outcome = (Outcome){.status = "failed"};

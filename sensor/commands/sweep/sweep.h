@@ -36,7 +36,7 @@ int sweep_replay(const Options *options, SweepLook *look);
 
 /* `pitviper replay --variants`, which sweep_replay starts, and no user: makes variants until its standard input, a
  * socket, ends. Exit code of a variant: as of a replay; made is what variants share. */
-typedef int SweepVariant(int argc, char **argv, MadeWorld *made);
+typedef int       SweepVariant(int argc, char **argv, MadeWorld *made);
 extern const char sweep_worker_option[];
 int               sweep_worker(SweepVariant *make);
 

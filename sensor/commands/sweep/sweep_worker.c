@@ -1,5 +1,5 @@
-/* sensor/commands/sweep/sweep_worker.c: the process that makes a sweep's variants, one after another, and what the sweep
- * tells it. */
+/* sensor/commands/sweep/sweep_worker.c: the process that makes a sweep's variants, one after another, and what the
+ * sweep tells it. */
 #include "sensor/commands/sweep/sweep_private.h"
 
 #include "pitviper_output.h"
@@ -17,8 +17,8 @@
 
 const char sweep_worker_option[] = "--variants";
 
-/* A variant as it is told: octets of what follows, then texts that end with 0: the file of its messages and the words of
- * its command line. The answer is its exit code. */
+/* A variant as it is told: octets of what follows, then texts that end with 0: the file of its messages and the words
+ * of its command line. The answer is its exit code. */
 enum { told_most = 1 << 20, words_most = options_variant_argv + 1 };
 
 /* False: the other end has gone, or a stop was asked for. */
@@ -133,7 +133,8 @@ int sweep_worker_end(SweepWorker *w)
     int state = 0;
     if (!w->there) return -1;
     close(w->socket);
-    while (waitpid(w->process, &state, 0) < 0 && errno == EINTR) {}
+    while (waitpid(w->process, &state, 0) < 0 && errno == EINTR) {
+    }
     w->there = false;
     return WIFEXITED(state) ? WEXITSTATUS(state) : -1;
 }
@@ -146,7 +147,7 @@ static bool tell(const SweepWorker *w, const char *said, const char *const argv[
     if (!all) return false;
     fwrite(said, 1, strlen(said) + 1, all);
     for (int i = 0; argv[i]; i++) fwrite(argv[i], 1, strlen(argv[i]) + 1, all);
-    bool good = fclose(all) == 0 && octets <= told_most;
+    bool           good = fclose(all) == 0 && octets <= told_most;
     const uint32_t count = (uint32_t)octets;
     good = good && transmit(w->socket, &count, sizeof count) && transmit(w->socket, text, octets);
     free(text);

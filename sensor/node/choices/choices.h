@@ -61,8 +61,8 @@ void choice_shapes(Choices *choices, const Survey *survey, const Catalog *catalo
 
 /* ---- ground and plants -------------------------------------------------------------------------------- */
 
-/* What the reports of an exercise imply about its ground, in one frame (ground_evidence_private.h). Of the plan, host and
- * aim: a hit that names no entity is the aim's. choice_evidence_free accepts NULL. */
+/* What the reports of an exercise imply about its ground, in one frame (ground_evidence_private.h). Of the plan, host
+ * and aim: a hit that names no entity is the aim's. choice_evidence_free accepts NULL. */
 typedef struct GroundEvidence GroundEvidence;
 Status choice_evidence(GroundEvidence **out, const Survey *survey, const Catalog *catalog, const HostPlan *plan,
                        const LocalFrame *frame);

@@ -28,7 +28,7 @@ typedef enum Stance {
 struct GroundEvidence {
     int               tracks;
     size_t            points; /* of all tracks */
-    LandscapeEvidence said; /* its arrays are those below */
+    LandscapeEvidence said;   /* its arrays are those below */
     GroundFix        *fix;
     ClearLine        *line;
     CoastPlace       *place;

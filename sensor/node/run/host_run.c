@@ -210,8 +210,7 @@ static Status choose(HostChoice *out, Run *run, const DisEntityId *host)
     }
     if (status == STATUS_OK) status = choice_time(&out->unix_s, choices, &made->survey, &o->config, &frame);
     if (status == STATUS_OK)
-        status =
-            made_world(made, choices, &(MadeOf){&o->config, &run->tables, plan, &frame, out->unix_s, o->isa});
+        status = made_world(made, choices, &(MadeOf){&o->config, &run->tables, plan, &frame, out->unix_s, o->isa});
     if (status != STATUS_OK) return status;
     report_visibility(choices, &o->config, made->world.atmosphere);
     report_air_temp(choices, &o->config, made->world.atmosphere,

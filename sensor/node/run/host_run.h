@@ -24,9 +24,9 @@ struct Run {
     unsigned              bands;
     int                   exercise; /* -1: all */
     DisHeader             first;    /* of the first usable Entity State: version and exercise of what is sent */
-    MadeWorld            *made;  /* log, survey, catalog, world, threads; the caller's, or by run_made */
-    bool                  owns;  /* made */
-    Choices               choices; /* shared by all hosts */
+    MadeWorld            *made;     /* log, survey, catalog, world, threads; the caller's, or by run_made */
+    bool                  owns;     /* made */
+    Choices               choices;  /* shared by all hosts */
     Sensors               sensors;
     TablesUsed            tables; /* in run.json */
     /* Whether there are frames to be rendered, before the world is set up; may be NULL. */

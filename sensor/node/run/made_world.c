@@ -8,8 +8,8 @@
 #include <stdlib.h>
 #include <sys/stat.h>
 
-static const char *const layer_name[MADE_LAYERS] = {"log", "survey", "catalog", "ground", "woods", "models", "air",
-                                                    "warmth"};
+static const char *const layer_name[MADE_LAYERS] = {"log",   "survey", "catalog", "ground",
+                                                    "woods", "models", "air",     "warmth"};
 
 /* Keys of the configuration that a layer may follow from (config_part). */
 static const char *const layer_keys[MADE_LAYERS] = {
@@ -191,8 +191,8 @@ static void take_packet_times(DisLog *log)
 static Status open_log(MadeWorld *m, const char *path, const Config *config)
 {
     Hash   hash = {sha256_begin(), true}; /* of the octets as they are read: once */
-    Status status = hash.digest ? dis_log_open_read(&m->log, path, config->exercise.port, hash_octets, &hash)
-                                : STATUS_NO_MEMORY;
+    Status status =
+        hash.digest ? dis_log_open_read(&m->log, path, config->exercise.port, hash_octets, &hash) : STATUS_NO_MEMORY;
     if (hash.digest) {
         const Status ended = sha256_end(m->log_sha256, hash.digest, hash.good);
         if (status == STATUS_OK) status = ended;

@@ -37,8 +37,8 @@ typedef struct MadeWorld {
     GroundContact contact;
     WoodsChoice   woods;
     World         world;
-    Config        part[MADE_LAYERS]; /* the settings that a layer was made by */
-    Choices       said[MADE_LAYERS]; /* its lines */
+    Config        part[MADE_LAYERS];                  /* the settings that a layer was made by */
+    Choices       said[MADE_LAYERS];                  /* its lines */
     char          key[MADE_LAYERS][sha256_text_size]; /* empty: not made */
     int           made[MADE_LAYERS];                  /* how often, since it was created */
 } MadeWorld;
