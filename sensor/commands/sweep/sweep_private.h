@@ -38,12 +38,11 @@ void   sweep_drawn_value(char out[sweep_value_size], const Sweep *sweep, int dra
 
 enum { sweep_name_size = 16, sweep_words_size = 4096 };
 
-/* manifest.html: a thumbnail of each variant, its bands side by side, and its settings. Written as variants end;
- * renamed into place when complete. */
+/* manifest.html: the thumbnail of each variant (vXXXXXXXXXX/thumbnail.png), its bands side by side, and its settings.
+ * Written as variants end; renamed into place when complete. */
 typedef struct SweepPage {
     FILE *page;
     char  path[4300];
-    int   shown;
 } SweepPage;
 
 typedef struct Variant {
