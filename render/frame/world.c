@@ -72,7 +72,7 @@ Status world_plant(World *world, const Woods *woods, const ForestConfig *config,
     return far_woods_create(&world->far_woods, woods, world->forest, &world->materials, config->leaves, pool);
 }
 
-static void world_cool(World *world)
+void world_cool(World *world)
 {
     heat_shadow_destroy(world->shadow);
     heat_destroy(world->heat);

@@ -46,7 +46,10 @@ Status world_plant(World *world, const Woods *woods, const ForestConfig *config,
 /* Warms the ground up to unix_s, that of exercise time 0. course becomes the world's, on failure too. shadow_m: cells
  * of its shadow map; 0: none. After world_plant, with an atmosphere. */
 Status world_warm(World *world, WeatherCourse *course, const HeatConfig *config, double shadow_m, Pool *pool);
-/* The same for a clear day of the atmosphere's own temperature: what benches and pictures of models stand on. */
+/* Undoes it: before another atmosphere, which its heat points to. */
+void world_cool(World *world);
+/* The same as world_warm for a clear day of the atmosphere's own temperature: what benches and pictures of models stand
+ * on. */
 Status world_warm_clear(World *world, const HeatConfig *config, double shadow_m, Pool *pool);
 /* The ground's heat at a time, in the arena; *out NULL where the world is not warm. marks: may be NULL. */
 Status world_heat_at(HeatScene **out, const World *world, const GroundMarks *marks, double unix_s, Arena *arena);

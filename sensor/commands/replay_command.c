@@ -2,11 +2,13 @@
 #include "sensor/commands/commands.h"
 
 #include "dis/pdu/decode.h"
+#include "pitviper_output.h"
 #include "sensor/publish/files/frame_files.h"
 #include "sensor/node/clock/log_clock.h"
 #include "sensor/node/run/host_run.h"
 #include "sensor/node/player/player.h"
 #include "sensor/commands/overwrite.h"
+#include "sensor/commands/program.h"
 #include "sensor/publish/video/video_names.h"
 #include "sensor/settings/config.h"
 #include "sensor/node/run/stop.h"
@@ -66,8 +68,8 @@ static Status find_span(LogSpan *out, double span_s[2], const Run *run, const Pl
     const Options *o = &run->options;
     const Config  *config = &o->config;
     double         from_s = plan->start_s, to_s = plan->end_s;
-    const double   first_s = run->survey.first_s,
-                 last_s = config->exercise.causal ? player_last_s(player) : run->survey.last_s;
+    const double   first_s = run->made->survey.first_s,
+                 last_s = config->exercise.causal ? player_last_s(player) : run->made->survey.last_s;
     const double wanted_from_s = config_span_time_s(config->exercise.from_s, first_s, last_s);
     const double wanted_to_s = config_span_time_s(config->exercise.to_s, first_s, last_s);
     if (config_span_outside(config->exercise.from_s, config->exercise.to_s, first_s, last_s)) return STATUS_BAD_VALUE;
@@ -169,7 +171,7 @@ static Status check_hosts(DisEntityId host[options_hosts_max], const Run *run)
                 log_error("replay: --host: %s is given twice", o->host[i]);
                 return STATUS_BAD_VALUE;
             }
-        if (!observer && !survey_track(&run->survey, host[i]) && !o->config.exercise.causal) {
+        if (!observer && !survey_track(&run->made->survey, host[i]) && !o->config.exercise.causal) {
             log_error("replay: --host: %s is not in the log; `pitviper inspect LOG` lists the entities", o->host[i]);
             return STATUS_BAD_VALUE;
         }
@@ -177,32 +179,11 @@ static Status check_hosts(DisEntityId host[options_hosts_max], const Run *run)
     return STATUS_OK;
 }
 
-/* Takes arrival times as a live node received them, independent of the time stamps. */
-static void take_packet_times(DisLog *log)
-{
-    if (log->retimed)
-        log_warn("replay: the packet times do not keep pace with the time stamps; --causal takes them as they are");
-    for (int i = 0; i < log->count; i++) log->datagram[i].capture_s = log->datagram[i].packet_s;
-    log->retimed = false;
-}
-
-/* Hashes the log's octets as they are read: it is read once. */
-typedef struct Hash {
-    Sha256 *digest;
-    bool    good;
-} Hash;
-
-static void hash_octets(void *user, const void *octets, size_t count)
-{
-    Hash *hash = user;
-    hash->good = hash->good && sha256_add(hash->digest, octets, count);
-}
-
 /* Tells why a log shows nothing: other exercises, what is malformed, or another port. */
 static void log_nothing(const Run *run, const DisLog *log)
 {
     const char        *path = run->options.log;
-    const DisCounters *c = &run->survey.counters;
+    const DisCounters *c = &run->made->survey.counters;
     char               heard[128] = "";
     size_t             n = 0;
     int                why = 0;
@@ -241,26 +222,22 @@ static void log_nothing(const Run *run, const DisLog *log)
                   path, (unsigned long long)c->datagrams, path);
 }
 
-static Status open_log(Run *run, DisLog *log)
+static Status open_log(Run *run)
 {
     const Options *o = &run->options;
     DisLog         heard;
-    Hash           hash = {sha256_begin(), true};
-    Status         status =
-        hash.digest ? dis_log_open_read(log, o->log, o->config.exercise.port, hash_octets, &hash) : STATUS_NO_MEMORY;
-    if (hash.digest) {
-        const Status ended = sha256_end(run->log_sha256, hash.digest, hash.good);
-        if (status == STATUS_OK) status = ended;
-    }
+    Status         status = run_made(run);
+    if (status == STATUS_OK) status = made_log(run->made, o->log, &o->config);
     run->stopped = status != STATUS_OK && stop_asked(); /* while a pipe was waited for */
     if (status != STATUS_OK) return status;
+    const DisLog *log = &run->made->log;
+    strcpy(run->log_sha256, run->made->log_sha256);
     run->link = &log->counters;
-    if (o->config.exercise.causal) take_packet_times(log);
     if (log->retimed)
         choice_add(&run->choices, "clock: the time stamps; the capture's packet times do not keep pace with them");
     if (log->any_port && o->config.exercise.port == dis_port_default)
         choice_add(&run->choices, "port: any that carries DIS, nothing went to 3000 (exercise.port)");
-    run->own = (uint64_t)player_drop_own(log, &o->config);
+    run->own = run->made->own;
     if (run->own > 0)
         choice_add(&run->choices,
                    "own: %llu datagrams of %d:%d are this node's, left out (node.site, "
@@ -271,7 +248,7 @@ static Status open_log(Run *run, DisLog *log)
         !o->config.exercise.causal || player_opening(&run->view, &heard, &run->until_s, log, &o->config);
     status = run_survey(run, &heard);
     if (status == STATUS_OK && dis_log_failed(log)) status = STATUS_IO;
-    if (status == STATUS_OK && (!starts || run->survey.track_count == 0)) {
+    if (status == STATUS_OK && (!starts || run->made->survey.track_count == 0)) {
         log_nothing(run, log);
         return STATUS_BAD_VALUE;
     }
@@ -357,12 +334,12 @@ static Status open_folders(const Run *run, const DisEntityId host[])
 }
 
 /* Finds everything that can be known to be wrong, in seconds, before a file is touched. */
-static Status prepare(Run *run, DisLog *log, DisEntityId host[options_hosts_max])
+static Status prepare(Run *run, DisEntityId host[options_hosts_max])
 {
     const Options *o = &run->options;
     Status         status = run_prepare(run);
     if (status == STATUS_OK) status = video_hosts_check(&o->config, o->host_count);
-    if (status == STATUS_OK) status = open_log(run, log);
+    if (status == STATUS_OK) status = open_log(run);
     if (status == STATUS_OK) status = check_hosts(host, run);
     if (status == STATUS_OK && o->host_count == 0) status = run_check(run, NULL);
     for (int i = 0; i < o->host_count && status == STATUS_OK; i++) status = run_check(run, &host[i]);
@@ -371,41 +348,31 @@ static Status prepare(Run *run, DisLog *log, DisEntityId host[options_hosts_max]
 
 static Status look_at_variant(Run *run)
 {
-    DisLog      log = {0};
     DisEntityId host[options_hosts_max];
     run->check = check_span;
-    const Status status = prepare(run, &log, host);
-    dis_log_close(&log);
-    return status;
+    return prepare(run, host);
 }
 
-int replay_command(int argc, char **argv)
+/* made: of a run before in this process; NULL: there is none. */
+static int replay(const Options *options, MadeWorld *made)
 {
-    LogClock    clock;
-    Run         run = {.check = check_span, .frames = replay_frames, .clock = &clock.clock};
+    LogClock clock = log_clock(options->speed);
+    Run run = {.options = *options, .made = made, .check = check_span, .frames = replay_frames, .clock = &clock.clock};
     Sending     sending = {0};
-    DisLog      log = {0};
     DisEntityId host[options_hosts_max];
     char        log_name[4096];
-    const int   stop = options_parse(&run.options, COMMAND_REPLAY, argc, argv);
-    if (stop) return stop - 1;
-    stop_by_signals();
-    clock = log_clock(run.options.speed);
-    if (run.options.sweep) return sweep_replay(&run.options, look_at_variant);
-
     snprintf(log_name, sizeof log_name, "%s", run.options.log);
     run.log_name = basename(log_name);
-    thread_flush_denormals();
-    Status failed = STATUS_OK, status = prepare(&run, &log, host);
-    if (status == STATUS_OK) status = open_sending(&sending, &run, &log);
+    Status failed = STATUS_OK, status = prepare(&run, host);
+    if (status == STATUS_OK) status = open_sending(&sending, &run, &run.made->log);
     if (status == STATUS_OK) status = open_folders(&run, host);
     if (status == STATUS_OK) video_watch_print(&run.options.config, run.bands);
     if (status == STATUS_OK && run.options.host_count == 0) status = run_host(&run, NULL);
-    int made = 0;
+    int done = 0;
     for (int i = 0; status == STATUS_OK && !run.stopped && i < run.options.host_count; i++) {
         const Status one = run_host(&run, &host[i]);
         if (one != STATUS_OK) failed = one; /* the others are still rendered */
-        else if (made++ == 0 && run.options.host_count > 1) frame_files_clear(run.options.out); /* a run of one host */
+        else if (done++ == 0 && run.options.host_count > 1) frame_files_clear(run.options.out); /* a run of one host */
     }
     if (status == STATUS_OK) status = failed;
     const Status sent = close_sending(&sending);
@@ -413,9 +380,35 @@ int replay_command(int argc, char **argv)
     if (status == STATUS_NO_MEMORY)
         log_error("replay: out of memory; smaller pictures (--size), fewer bands (--bands) or more memory");
 
-    const bool unheard = run.stopped && log.count == 0;
+    const bool unheard = run.stopped && run.made && run.made->log.count == 0;
     run_close(&run);
-    dis_log_close(&log);
+    output_release(run.options.out);
     if (status != STATUS_OK && !unheard) return 1;
     return run.stopped ? stop_exit_code() : 0;
+}
+
+/* A variant of a sweep, in a process that has made others. */
+static int replay_variant(int argc, char **argv, MadeWorld *made)
+{
+    static char called[] = "pitviper replay"; /* for messages: argv begins with the program and the command */
+    Options    *options = argc > 1 ? malloc(sizeof *options) : NULL;
+    if (options) argv[1] = called;
+    const int stop = options ? options_parse(options, COMMAND_REPLAY, argc - 1, argv + 1) : 1 + 1;
+    const int code = stop ? stop - 1 : replay(options, made);
+    free(options);
+    return program_printed(code);
+}
+
+int replay_command(int argc, char **argv)
+{
+    Options options;
+    thread_flush_denormals();
+    if (argc == 2 && strcmp(argv[1], sweep_worker_option) == 0) {
+        stop_by_signals();
+        return sweep_worker(replay_variant);
+    }
+    const int stop = options_parse(&options, COMMAND_REPLAY, argc, argv);
+    if (stop) return stop - 1;
+    stop_by_signals();
+    return options.sweep ? sweep_replay(&options, look_at_variant) : replay(&options, NULL);
 }

@@ -1,18 +1,36 @@
 /* sensor/frame/frame_world.c: a world with the atmosphere and the plants of the settings, and the sun of a frame. */
 #include "sensor/frame/frame_world.h"
 
-Status frame_world(World *out, const Config *config, const Catalog *catalog, const Landscape *landscape,
-                   const LocalFrame *frame, const char *isa)
+Status frame_world_open(World *out, const Config *config, const Catalog *catalog, const Landscape *landscape,
+                        const LocalFrame *frame, const char *isa)
 {
-    Status status = world_open(out, catalog, landscape, frame, isa);
-    if (status == STATUS_OK)
-        status = atmosphere_open_at(&out->atmosphere, config->weather.atmosphere, config->weather.visibility_m);
-    if (status != STATUS_OK) return status;
-    out->radar.lobe_rad = config->radar.lobe_deg * rad_per_deg;
-    if (!config->terrain.detail) {
+    const Status status = world_open(out, catalog, landscape, frame, isa);
+    if (status == STATUS_OK && !config->terrain.detail) {
         detail_table_close(out->detail);
         out->detail = NULL;
     }
+    return status;
+}
+
+Status frame_world_air(World *world, const Config *config)
+{
+    world_cool(world);
+    atmosphere_close(world->atmosphere);
+    world->atmosphere = NULL;
+    return atmosphere_open_at(&world->atmosphere, config->weather.atmosphere, config->weather.visibility_m);
+}
+
+void frame_world_radar(World *world, const Config *config)
+{
+    world->radar.lobe_rad = config->radar.lobe_deg * rad_per_deg;
+}
+
+Status frame_world(World *out, const Config *config, const Catalog *catalog, const Landscape *landscape,
+                   const LocalFrame *frame, const char *isa)
+{
+    Status status = frame_world_open(out, config, catalog, landscape, frame, isa);
+    if (status == STATUS_OK) status = frame_world_air(out, config);
+    if (status == STATUS_OK) frame_world_radar(out, config);
     return status;
 }
 

@@ -9,6 +9,11 @@
 /* Borrows catalog and landscape. On failure the only valid call is world_close. */
 Status frame_world(World *out, const Config *config, const Catalog *catalog, const Landscape *landscape,
                    const LocalFrame *frame, const char *isa);
+/* Its parts: without atmosphere and radar; its atmosphere, in place of another; its radar. */
+Status frame_world_open(World *out, const Config *config, const Catalog *catalog, const Landscape *landscape,
+                        const LocalFrame *frame, const char *isa);
+Status frame_world_air(World *world, const Config *config);
+void   frame_world_radar(World *world, const Config *config);
 /* Its plants, as terrain.woods_* say. woods must outlive the world; NULL: there are none. */
 Status frame_world_plant(World *world, const Woods *woods, const Config *config, const char *isa, Pool *pool);
 /* The weather at unix_s. */

@@ -85,6 +85,10 @@ void config_write_given(FILE *to, const Config *config);
 /* Writes the canonical text, which is hashed as config_sha256: every key and value, in table order. Keys that change no
  * plane (network, publish, record, port, time span) have their defaults in it. */
 void config_text(char *out, size_t out_size, const Config *config);
+/* The defaults, and of `from` the keys that words name: with blanks between, each a key or the beginning of some,
+ * `weather.`; with - before it: left out again. Nothing is given (config_given) in it: what is made by it follows from
+ * these keys alone. */
+void config_part(Config *out, const Config *from, const char *words);
 
 /* ---- settings whose text has a grammar --------------------------------------------------------------- */
 

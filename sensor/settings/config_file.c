@@ -161,6 +161,28 @@ void config_text(char *out, size_t out_size, const Config *config)
     settings_text(out, out_size, &config_table, &hashed);
 }
 
+/* Whether words (config_part) name the key: the last of them that it begins with decides. */
+static bool names_key(const char *words, const char *key)
+{
+    bool named = false;
+    while (*words) {
+        const size_t length = strcspn(words, " ");
+        const bool   out = *words == '-';
+        if (length > out && strncmp(key, words + out, length - out) == 0) named = !out;
+        words += length + (words[length] == ' ');
+    }
+    return named;
+}
+
+void config_part(Config *out, const Config *from, const char *words)
+{
+    *out = config_default();
+    for (int i = 0; i < config_table.count; i++) {
+        const Setting *row = &config_table.row[i];
+        if (names_key(words, row->name)) memcpy((char *)out + row->offset, (const char *)from + row->offset, row->size);
+    }
+}
+
 void config_write(FILE *to, const Config *config)
 {
     static const bool none[config_keys_max] = {false};

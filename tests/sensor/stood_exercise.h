@@ -75,6 +75,32 @@ static inline bool says(const Choices *choices, const char *text)
     return false;
 }
 
+/* The ground and the woods of a plan, as a run chooses them. */
+static inline Status stood_ground(Landscape *out, GroundContact *contact, Choices *choices, const Exercise *e,
+                                  const Config *config, const HostPlan *plan)
+{
+    GroundEvidence *evidence = NULL;
+    Status          status = choice_evidence(&evidence, &e->survey, catalog, plan, &frame);
+    if (status == STATUS_OK)
+        status = choice_ground(out, contact, choices, &(ChoiceBasis){&e->survey, config, catalog, evidence}, &frame);
+    if (status == STATUS_OK) choice_report_submerged(choices, &e->survey, evidence, plan);
+    choice_evidence_free(evidence);
+    return status;
+}
+
+static inline Status stood_woods(WoodsChoice *out, Choices *choices, const Exercise *e, const Config *config,
+                                 const HostPlan *plan, const Landscape *land)
+{
+    GroundEvidence *evidence = NULL;
+    WoodsSquare     square;
+    Status          status = choice_evidence(&evidence, &e->survey, catalog, plan, &land->frame);
+    if (status == STATUS_OK) status = choice_square(&square, &e->survey, config, &land->frame, plan);
+    if (status == STATUS_OK)
+        status = choice_woods(out, choices, &(ChoiceBasis){&e->survey, config, catalog, evidence}, &square, land, NULL);
+    choice_evidence_free(evidence);
+    return status;
+}
+
 static int open_place(void **state)
 {
     (void)state;

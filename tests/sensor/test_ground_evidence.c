@@ -21,8 +21,7 @@ static void choose(Landscape *out, GroundContact *contact, Choices *choices, con
     choices->count = 0;
     assert_int_equal(config_set(&config, "terrain.ground", ground, "test"), STATUS_OK);
     config.terrain.spacing_m = 8; /* a quarter of the time */
-    assert_int_equal(choice_ground(out, contact, choices, &(ChoiceBasis){&e->survey, &config, catalog, &plan}, &frame),
-                     STATUS_OK);
+    assert_int_equal(stood_ground(out, contact, choices, e, &config, &plan), STATUS_OK);
 }
 
 /* Base of every report of a track above the ground, the farthest. */

@@ -21,10 +21,8 @@ static void plant(WoodsChoice *out, Landscape *land, Choices *choices, const Exe
     HostPlan      plan = {0};
     GroundContact contact;
     choices->count = 0;
-    assert_int_equal(choice_ground(land, &contact, choices, &(ChoiceBasis){&e->survey, config, catalog, &plan}, &frame),
-                     STATUS_OK);
-    assert_int_equal(choice_woods(out, choices, &(ChoiceBasis){&e->survey, config, catalog, &plan}, land, NULL),
-                     STATUS_OK);
+    assert_int_equal(stood_ground(land, &contact, choices, e, config, &plan), STATUS_OK);
+    assert_int_equal(stood_woods(out, choices, e, config, &plan, land), STATUS_OK);
 }
 
 static double to_segment_m(const double p[2], const double a[2], const double b[2])
@@ -129,8 +127,7 @@ static void entities_in_trunks_are_counted_where_trees_stay(void **state)
     stand(e, tank, 0, 0, 500, 0, 3);
     plant(&woods, &land, &choices, e, &config);
     choice_woods_free(&woods);
-    assert_int_equal(choice_woods(&woods, &choices, &(ChoiceBasis){&e->survey, &real, catalog, &plan}, &land, NULL),
-                     STATUS_OK);
+    assert_int_equal(stood_woods(&woods, &choices, e, &real, &plan, &land), STATUS_OK);
     CHECK(woods.entities == 1 && woods.config.path_count == 0);
     double tree_m[3] = {NAN, NAN, 500};
     int    trunk;
@@ -145,16 +142,14 @@ static void entities_in_trunks_are_counted_where_trees_stay(void **state)
 
     stand(e, man, tree_m[0], tree_m[1], 500, 0, 3);
     choices.count = 0;
-    assert_int_equal(choice_woods(&woods, &choices, &(ChoiceBasis){&e->survey, &real, catalog, &plan}, &land, NULL),
-                     STATUS_OK);
+    assert_int_equal(stood_woods(&woods, &choices, e, &real, &plan, &land), STATUS_OK);
     CHECK(woods.entities == 2 && woods.in_trunks == 1 && woods.config.path_count == 0);
     CHECK(woods_near(&trunk, 1, &woods.woods, tree_m[0], tree_m[1], 1) > 0);
     CHECK(says(&choices, "1 of 2 entities on the ground begin within a trunk; real trees stay"));
     choice_woods_free(&woods);
 
     choices.count = 0;
-    assert_int_equal(choice_woods(&woods, &choices, &(ChoiceBasis){&e->survey, &config, catalog, &plan}, &land, NULL),
-                     STATUS_OK);
+    assert_int_equal(stood_woods(&woods, &choices, e, &config, &plan, &land), STATUS_OK);
     CHECK(woods.entities == 2 && woods.in_trunks == 0);
     CHECK(woods_near(&trunk, 1, &woods.woods, tree_m[0], tree_m[1], 1) == 0);
     CHECK(!said(&choices, "begin within a trunk"));
@@ -211,11 +206,8 @@ static void the_square_holds_the_exercise(void **state)
     plan.end_s = 104;
     GroundContact contact;
     choices.count = 0;
-    assert_int_equal(
-        choice_ground(&land, &contact, &choices, &(ChoiceBasis){&e->survey, &config, catalog, &plan}, &frame),
-        STATUS_OK);
-    assert_int_equal(choice_woods(&woods, &choices, &(ChoiceBasis){&e->survey, &config, catalog, &plan}, &land, NULL),
-                     STATUS_OK);
+    assert_int_equal(stood_ground(&land, &contact, &choices, e, &config, &plan), STATUS_OK);
+    assert_int_equal(stood_woods(&woods, &choices, e, &config, &plan, &land), STATUS_OK);
     enu(p, &land, e->track[0].point[0].p_ecef);
     CHECK_NEAR(woods.config.centre_m[0], p[0], 0.1);
     CHECK_NEAR(woods.config.centre_m[1], p[1], 0.1);

@@ -10,3 +10,17 @@ axes:
   seed: [1, 2]
   sensor.hfov_deg: 5
 Y
+# compare FOLDER: each variant is the run of its settings, alone
+compare() {
+    local number=0 folder
+    for folder in $(grep -oE '"folder":"v[0-9a-f]{10}"' "$1/manifest.jsonl" | cut -d'"' -f4); do
+        number=$((number + 1))
+        "$pitviper" replay "$tmp/demo.pcap" -c "$1/$folder/settings.yaml" --threads 1 --out "$tmp/alone" --overwrite >"$tmp/alone.txt" 2>&1
+        check "variant $number: the bits of a run alone" same_hashes "$tmp/alone" "$1/$folder"
+        check "variant $number: its pictures" cmp -s <(cat "$tmp"/alone/frames/*/*.png) <(cat "$1/$folder"/frames/*/*.png)
+        check "variant $number: its truth" cmp -s "$tmp/alone/truth.jsonl" "$1/$folder/truth.jsonl"
+        check "variant $number: its messages" cmp -s <(grep -v 'frames in' "$tmp/alone.txt") <(grep -v 'frames in' "$1/$folder/log.txt")
+        (cd "$tmp/alone" && cat frames/lwir/*.png truth.jsonl | sha256sum) >>"$1/all"
+    done
+    check "no two are alike: every axis counts" [ "$(sort -u "$1/all" | wc -l)" = "$2" ]
+}

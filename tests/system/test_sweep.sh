@@ -12,7 +12,8 @@ sweep "$tmp/grid.yaml" "$tmp/g" --coco
 check "a grid" [ "$code" = 0 ]
 check "four made" [ "$(statuses "$tmp/g")" = ' 4 "status":"made" ' ]
 check "the last axis first" grep -q '"number":2,.*"weather.visibility_m":"5000","seed":"2"' <(sed -n 2p "$tmp/g/manifest.jsonl")
-check "a page with four pictures" [ "$(grep -c '<img src="data:image/png' "$tmp/g/manifest.html")" = 4 ]
+check "a page with four pictures, which lie beside it" [ "$(grep -oE 'src="v[0-9a-f]{10}/thumbnail.png"' "$tmp/g/manifest.html" | cut -d'"' -f2 | (cd "$tmp/g" && xargs ls) | wc -l)" = 4 ]
+check "of both manifests less than 1 kB a variant, but for the page's head" [ "$(cat "$tmp/g/manifest.jsonl" <(grep '<figure>' "$tmp/g/manifest.html") | wc -c)" -lt 4000 ]
 second=$(folders "$tmp/g" | sed -n 2p)
 replay "$tmp/demo.pcap" "$tmp/direct" "${few[@]}" --set weather.visibility_m=5000 --seed 2 --set sensor.hfov_deg=5 --coco
 check "its coco.json too" cmp -s "$tmp/direct/coco.json" "$tmp/g/$second/coco.json"

@@ -1,5 +1,4 @@
-/* sensor/commands/sweep/sweep.c: `replay --sweep`: validates every variant, then runs one after another, each in a
- * process of its own. */
+/* sensor/commands/sweep/sweep.c: `replay --sweep`: validates every variant, then has one after another made. */
 #include "sensor/commands/sweep/sweep_private.h"
 
 #include "pitviper_output.h"
@@ -7,12 +6,7 @@
 #include "sensor/publish/files/frame_files.h"
 
 #include <errno.h>
-#include <fcntl.h>
-#include <signal.h>
-#include <spawn.h>
 #include <stdlib.h>
-#include <sys/wait.h>
-#include <time.h>
 #include <unistd.h>
 
 enum { path_size = 4200 };
@@ -252,39 +246,15 @@ static Status write_file(const char *path, const char *text, size_t octets)
     return STATUS_IO;
 }
 
-/* Passes on a stop as SIGTERM, so that the child ends after its frame; Ctrl-C reaches it from the terminal. */
-static void wait_for(int *state, pid_t child)
-{
-    bool told = false;
-    while (waitpid(child, state, WNOHANG) == 0) {
-        if (stop_asked() && !told) kill(child, SIGTERM);
-        told = stop_asked();
-        nanosleep(&(struct timespec){0, 5000000}, NULL);
-    }
-}
-
-/* Runs the variant as a child process. Returns its exit code; -1: ended by a signal, or not started. */
-static int run_child(const Options *o, const char *folder)
+/* Has the variant made. Returns its exit code; -1: ended by a signal, or not started. */
+static int run_variant(SweepRun *s, const char *folder)
 {
     char        settings[path_size + 32], said[path_size + 32];
     const char *argv[options_variant_argv];
     snprintf(settings, sizeof settings, "%s/settings.yaml", folder);
     snprintf(said, sizeof said, "%s/log.txt", folder);
-    options_variant(argv, o, settings, folder);
-    posix_spawn_file_actions_t files;
-    pid_t                      child;
-    int                        state = -1;
-    const int                  log = output_open(said, 0);
-    if (log < 0) log_error("sweep: cannot write %s: %s", said, output_reason(errno));
-    if (log < 0 || posix_spawn_file_actions_init(&files) != 0) return -1;
-    const bool ready = posix_spawn_file_actions_addopen(&files, 0, "/dev/null", O_RDONLY, 0) == 0 &&
-                       posix_spawn_file_actions_adddup2(&files, log, 1) == 0 &&
-                       posix_spawn_file_actions_adddup2(&files, log, 2) == 0;
-    if (ready && posix_spawn(&child, "/proc/self/exe", &files, NULL, (char *const *)argv, environ) == 0)
-        wait_for(&state, child);
-    posix_spawn_file_actions_destroy(&files);
-    close(log);
-    return state != -1 && WIFEXITED(state) ? WEXITSTATUS(state) : -1;
+    options_variant(argv, s->options, settings, folder);
+    return sweep_worker_make(&s->worker, said, argv);
 }
 
 /* Finds the last error that the run logged. */
@@ -332,8 +302,7 @@ static Status write_settings(const char *path, const Options *o, const Variant *
     return status;
 }
 
-static void make_variant(Outcome *outcome, const SweepRun *s, const Variant *v, const char *folder,
-                         const Config *config)
+static void make_variant(Outcome *outcome, SweepRun *s, const Variant *v, const char *folder, const Config *config)
 {
     char path[path_size + 32];
     *outcome = (Outcome){.status = "failed"};
@@ -349,7 +318,7 @@ static void make_variant(Outcome *outcome, const SweepRun *s, const Variant *v, 
         return;
     }
     const double begun_s = wall_clock_s();
-    const int    code = run_child(s->options, folder);
+    const int    code = run_variant(s, folder);
     outcome->seconds = wall_clock_s() - begun_s;
     outcome->has_run = code == 0 && read_run(&outcome->run, folder, "run.json");
     if (stop_asked() && code != 0) {
@@ -362,7 +331,7 @@ static void make_variant(Outcome *outcome, const SweepRun *s, const Variant *v, 
 }
 
 /* Runs the variant, or keeps the run in its folder. */
-static Status make_or_keep(Outcome *outcome, const SweepRun *s, const Variant *v, const char *folder)
+static Status make_or_keep(Outcome *outcome, SweepRun *s, const Variant *v, const char *folder)
 {
     Config *config = malloc(sizeof *config);
     Status  status = config ? sweep_config(config, &s->sweep, &s->options->config, v->number) : STATUS_NO_MEMORY;
@@ -412,6 +381,7 @@ static Status run_all(SweepRun *s)
         s->stopped = stop_asked();
         if (!s->stopped) status = one_variant(s, i);
     }
+    sweep_worker_end(&s->worker);
     const Status ended = sweep_manifest_end(s);
     if (status == STATUS_OK) status = ended;
     const Status merged = coco_merge_close(s->coco, status == STATUS_OK);

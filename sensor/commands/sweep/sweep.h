@@ -14,9 +14,10 @@
  * settings.yaml, which must read back equal, every other option on the command line of the variant (options_variant).
  * Several --host are refused.
  *
- * Every variant is validated (combinations of settings, sensors) before the first run. Each runs in a process of its
- * own, one after another, with all threads: a crash affects one variant only, and no state is carried over. The cost
- * is that log, models and terrain are loaded for each, about 0.7 s. A variant is kept when its folder holds a complete
+ * Every variant is validated (combinations of settings, sensors) before the first run. They are made one after another,
+ * with all threads, in a process beside the sweep's, which keeps log, models, ground, woods and warmth from one variant
+ * to the next, as far as their axes do not change what these follow from (sensor/node/run/made_world.h). A variant that
+ * fails or crashes ends that process and affects no other. A variant is kept when its folder holds a complete
  * run of these settings (time span and products included), this log and this version; deleted images, and changes of
  * etc/ or of terrain files, are not detected. */
 #ifndef SENSOR_COMMANDS_SWEEP_SWEEP_H
@@ -32,6 +33,12 @@ typedef Status SweepLook(Run *run);
 /* Exit code: 0; 1: a variant failed, or the sweep could not be written, or look refuses what no axis changes; 2: the
  * file or settings of a variant are invalid. */
 int sweep_replay(const Options *options, SweepLook *look);
+
+/* `pitviper replay --variants`, which sweep_replay starts, and no user: makes variants until its standard input, a
+ * socket, ends. Exit code of a variant: as of a replay; made is what variants share. */
+typedef int       SweepVariant(int argc, char **argv, MadeWorld *made);
+extern const char sweep_worker_option[];
+int               sweep_worker(SweepVariant *make);
 
 extern const FieldTable variant_fields; /* a line of manifest.jsonl */
 

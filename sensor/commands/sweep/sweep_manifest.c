@@ -14,7 +14,6 @@
 /* ---- the page --------------------------------------------------------------------------------------- */
 
 enum { thumbnail_px = 160, path_size = 4300 };
-enum { page_inside = 400 }; /* most thumbnails embedded in the page (some 30 MB); the others are linked */
 
 static double sample_of(const void *pixels, const ImageInfo *info, size_t at)
 {
@@ -80,18 +79,13 @@ static bool make_thumbnail(const char *made, const char *folder, int frame)
  * lines below it, the first in bold; bad: the reason of a failure. */
 static void add_figure(SweepPage *sheet, const char *out, const char *folder, int frame, const char *text, bool bad)
 {
-    char   below[path_size], made[path_size + 16], *bytes = NULL;
-    size_t octets;
+    char below[path_size], made[path_size + 16];
     snprintf(below, sizeof below, "%s/%s", out, folder);
     snprintf(made, sizeof made, "%s/thumbnail.png", below);
     const int first = (int)strcspn(text, "\n");
     fputs("<figure>", sheet->page);
     if (!make_thumbnail(made, below, frame)) output_remove(made);
-    else if (sheet->shown++ >= page_inside)
-        fprintf(sheet->page, "<img loading=\"lazy\" src=\"%s/thumbnail.png\" alt=\"%s\">", folder, folder);
-    else if (text_read_file(&bytes, &octets, "sweep", made, 1 << 26) == STATUS_OK)
-        html_image(sheet->page, "png", bytes, octets, folder);
-    free(bytes);
+    else fprintf(sheet->page, "<img loading=\"lazy\" src=\"%s/thumbnail.png\" alt=\"%s\">", folder, folder);
     fprintf(sheet->page, "<figcaption><b%s>", bad ? " class=\"bad\"" : "");
     html_text(sheet->page, "%.*s", first, text);
     fputs("</b>", sheet->page);

@@ -8,6 +8,7 @@
 #include "sensor/publish/coco/coco_file.h"
 
 #include <stdio.h>
+#include <sys/types.h>
 
 /* ---- records of variants (variant_record.c) -------------------------------------------------- */
 
@@ -37,12 +38,11 @@ void   sweep_drawn_value(char out[sweep_value_size], const Sweep *sweep, int dra
 
 enum { sweep_name_size = 16, sweep_words_size = 4096 };
 
-/* manifest.html: a thumbnail of each variant, its bands side by side, and its settings. Written as variants end;
- * renamed into place when complete. */
+/* manifest.html: the thumbnail of each variant (vXXXXXXXXXX/thumbnail.png), its bands side by side, and its settings.
+ * Written as variants end; renamed into place when complete. */
 typedef struct SweepPage {
     FILE *page;
     char  path[4300];
-    int   shown;
 } SweepPage;
 
 typedef struct Variant {
@@ -51,6 +51,20 @@ typedef struct Variant {
     char config_sha256[sha256_text_size];
     char settings_sha256[sha256_text_size]; /* of its settings.yaml: equal ones are the same run */
 } Variant;
+
+/* The process that makes variants; zeroes: none is there. It keeps what they share (sensor/node/run/made_world.h), and
+ * ends with a variant that fails: the next one is made by a fresh one. */
+typedef struct SweepWorker {
+    bool  there;
+    pid_t process;
+    int   socket;
+} SweepWorker;
+
+/* Makes a variant by this command line (options_variant), its messages going into the file `said`. Its exit code; -1:
+ * ended by a signal, or not started. */
+int sweep_worker_make(SweepWorker *worker, const char *said, const char *const argv[]);
+/* Lets it end. Its exit code; -1: ended by a signal, or there was none. */
+int sweep_worker_end(SweepWorker *worker);
 
 typedef struct SweepRun {
     const Options *options;
@@ -61,6 +75,7 @@ typedef struct SweepRun {
     FILE          *manifest;
     SweepPage      sheet;
     CocoMerge     *coco;
+    SweepWorker    worker;
     int            made, kept, failed;
     bool           stopped; /* by a signal, before the last */
 } SweepRun;

@@ -7,6 +7,7 @@
 #include "entities/catalog/catalog.h"
 #include "entities/survey/survey.h"
 #include "sensor/settings/config.h"
+#include "sensor/settings/sha256.h"
 #include "terrain/ground/landscape.h"
 #include "terrain/woods/woods.h"
 
@@ -60,12 +61,21 @@ void choice_shapes(Choices *choices, const Survey *survey, const Catalog *catalo
 
 /* ---- ground and plants -------------------------------------------------------------------------------- */
 
-/* What both follow from. */
+/* What the reports of an exercise imply about its ground, in one frame (ground_evidence_private.h). Of the plan, host
+ * and aim: a hit that names no entity is the aim's. choice_evidence_free accepts NULL. */
+typedef struct GroundEvidence GroundEvidence;
+Status choice_evidence(GroundEvidence **out, const Survey *survey, const Catalog *catalog, const HostPlan *plan,
+                       const LocalFrame *frame);
+void   choice_evidence_free(GroundEvidence *evidence);
+/* Adds all of it to a hash. False: out of memory. */
+bool choice_evidence_hash(Sha256 *digest, const GroundEvidence *evidence);
+
+/* What ground and plants follow from: no host and no aim but by the evidence. */
 typedef struct ChoiceBasis {
-    const Survey   *survey;
-    const Config   *config;
-    const Catalog  *catalog;
-    const HostPlan *plan;
+    const Survey         *survey;
+    const Config         *config;
+    const Catalog        *catalog;
+    const GroundEvidence *evidence;
 } ChoiceBasis;
 
 /* Entities that are clamped to the ground: none, those inconsistent with synthetic terrain, or all on the ground. */
@@ -75,6 +85,9 @@ typedef enum GroundContact { GROUND_CONTACT_NONE, GROUND_CONTACT_INCONSISTENT, G
  * ground_evidence_private.h). contact: which entities are clamped to it (terrain.ground), later ones too. */
 Status choice_ground(Landscape *out, GroundContact *contact, Choices *choices, const ChoiceBasis *basis,
                      const LocalFrame *frame);
+/* Reports an aim under water, which is not visible from above it. */
+void choice_report_submerged(Choices *choices, const Survey *survey, const GroundEvidence *evidence,
+                             const HostPlan *plan);
 /* With terrain.store everything uses the store's own local frame. Changed sources of the store are imported again
  * first. aim: the frame that the exercise would have without it. STATUS_BAD_VALUE, logged: that frame's origin is not
  * on the store's ground. */
@@ -93,10 +106,16 @@ typedef struct WoodsChoice {
     int         entities, in_trunks; /* on the ground at their first report; of these within a trunk */
 } WoodsChoice;
 
-/* The landscape must outlive it. With terrain.woods off: not on, nothing is done. choice_woods_free after success and
- * failure. */
-Status choice_woods(WoodsChoice *out, Choices *choices, const ChoiceBasis *basis, const Landscape *landscape,
-                    Pool *pool);
+/* The square in which they stand. */
+typedef struct WoodsSquare {
+    double centre_m[2], half_width_m; /* ENU */
+} WoodsSquare;
+Status choice_square(WoodsSquare *out, const Survey *survey, const Config *config, const LocalFrame *frame,
+                     const HostPlan *plan);
+/* The landscape and the configuration must outlive it. With terrain.woods off: not on, nothing is done.
+ * choice_woods_free after success and failure. */
+Status choice_woods(WoodsChoice *out, Choices *choices, const ChoiceBasis *basis, const WoodsSquare *square,
+                    const Landscape *landscape, Pool *pool);
 void   choice_woods_free(WoodsChoice *woods);
 
 #endif

@@ -378,9 +378,7 @@ static Status report_fit(Choices *choices, GroundContact contact, const Landscap
     return STATUS_OK;
 }
 
-/* Reports an aim under water, which is not visible from above it. */
-static void report_aim_below_ground(Choices *choices, const Survey *survey, const GroundEvidence *e,
-                                    const HostPlan *plan)
+void choice_report_submerged(Choices *choices, const Survey *survey, const GroundEvidence *e, const HostPlan *plan)
 {
     char         id[dis_id_text_size];
     const Track *aim = survey_track(survey, plan->aim);
@@ -395,27 +393,22 @@ static void report_aim_below_ground(Choices *choices, const Survey *survey, cons
 Status choice_ground(Landscape *out, GroundContact *contact, Choices *choices, const ChoiceBasis *basis,
                      const LocalFrame *frame)
 {
-    const Survey       *survey = basis->survey;
-    const Config       *config = basis->config;
-    const HostPlan     *plan = basis->plan;
-    GroundEvidence      e = {0};
-    enum TerrainGround  said = config->terrain.ground;
-    const bool          stored = *config->terrain.store, real = stored || *config->terrain.elevation;
-    const bool          by_itself = said == TERRAIN_GROUND_AUTO;
-    const GroundContact fitted = said == TERRAIN_GROUND_TRUST ? GROUND_CONTACT_NONE : GROUND_CONTACT_INCONSISTENT;
-    const GroundContact set = said == TERRAIN_GROUND_CLAMP || (by_itself && real) ? GROUND_CONTACT_ALL
-                              : real                                              ? GROUND_CONTACT_NONE
-                                                                                  : fitted;
-    Status              status = ground_evidence_collect(&e, survey, frame, basis->catalog, plan->host, plan->aim);
-    if (status == STATUS_OK)
-        status = stored ? open_store(out, choices, config)
-                 : real ? import(out, choices, config, frame, &e, said == TERRAIN_GROUND_FIT)
-                        : invent(out, config, frame, &e);
-    if (status == STATUS_OK && !real) status = report_fit(choices, set, out, survey, &e);
+    const Survey         *survey = basis->survey;
+    const Config         *config = basis->config;
+    const GroundEvidence *e = basis->evidence;
+    enum TerrainGround    said = config->terrain.ground;
+    const bool            stored = *config->terrain.store, real = stored || *config->terrain.elevation;
+    const bool            by_itself = said == TERRAIN_GROUND_AUTO;
+    const GroundContact   fitted = said == TERRAIN_GROUND_TRUST ? GROUND_CONTACT_NONE : GROUND_CONTACT_INCONSISTENT;
+    const GroundContact   set = said == TERRAIN_GROUND_CLAMP || (by_itself && real) ? GROUND_CONTACT_ALL
+                                : real                                              ? GROUND_CONTACT_NONE
+                                                                                    : fitted;
+    Status                status = stored ? open_store(out, choices, config)
+                                   : real ? import(out, choices, config, frame, e, said == TERRAIN_GROUND_FIT)
+                                          : invent(out, config, frame, e);
+    if (status == STATUS_OK && !real) status = report_fit(choices, set, out, survey, e);
     if (status == STATUS_OK && (real || set == GROUND_CONTACT_ALL))
-        status = report_contact(choices, set == GROUND_CONTACT_ALL, out, survey, &e);
-    if (status == STATUS_OK) report_aim_below_ground(choices, survey, &e, plan);
+        status = report_contact(choices, set == GROUND_CONTACT_ALL, out, survey, e);
     if (status == STATUS_OK) *contact = set;
-    ground_evidence_free(&e);
     return status;
 }

@@ -415,6 +415,7 @@ static Status make_room(Gathering *g)
         e->first[t] = points;
         points += (size_t)g->survey->track[t].count;
     }
+    e->tracks = (int)tracks, e->points = points;
     g->step = 1 + (int)(points / most_evidence);
     e->fixed = calloc(points + 1, sizeof *e->fixed);
     const size_t kept = points / (size_t)g->step + tracks;

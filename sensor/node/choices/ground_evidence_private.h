@@ -12,6 +12,7 @@
 
 #include "entities/catalog/catalog.h"
 #include "entities/survey/survey.h"
+#include "sensor/node/choices/choices.h"
 #include "terrain/ground/landscape.h"
 
 typedef enum Stance {
@@ -24,8 +25,10 @@ typedef enum Stance {
     STANCE_ABOARD,    /* a ship */
 } Stance;
 
-typedef struct GroundEvidence {
-    LandscapeEvidence said; /* its arrays are those below */
+struct GroundEvidence {
+    int               tracks;
+    size_t            points; /* of all tracks */
+    LandscapeEvidence said;   /* its arrays are those below */
     GroundFix        *fix;
     ClearLine        *line;
     CoastPlace       *place;
@@ -35,7 +38,7 @@ typedef struct GroundEvidence {
     size_t           *first;                    /* [track_count] of its reports in fixed */
     int               count[STANCE_ABOARD + 1]; /* tracks of each stance */
     int               impacts;
-} GroundEvidence;
+};
 
 /* p_aim: the hit found for the host's own munition, which is used for a Detonation that names no entity. An id of 0:0:0
  * means none. */

@@ -16,12 +16,12 @@ static void enu_of(double p_enu[3], const Landscape *landscape, const double p_e
 }
 
 /* How far an entity's reports reach from the centre, east or north; reports beyond far_m do not count. */
-static double reach_of(const Track *track, const Landscape *landscape, const double centre_m[2], double far_m)
+static double reach_of(const Track *track, const LocalFrame *frame, const double centre_m[2], double far_m)
 {
     double reach_m = 0;
     for (int n = 0; n < track->count; n++) {
         double p_enu[3];
-        enu_of(p_enu, landscape, track->point[n].p_ecef);
+        enu_from_ecef(p_enu, frame, track->point[n].p_ecef);
         const double off_m = fmax(fabs(p_enu[0] - centre_m[0]), fabs(p_enu[1] - centre_m[1]));
         if (off_m < far_m) reach_m = fmax(reach_m, off_m);
     }
@@ -29,20 +29,20 @@ static double reach_of(const Track *track, const Landscape *landscape, const dou
 }
 
 /* The square is about the aim and reaches as far as the host and what is on the ground go, and sight_m more. */
-static Status choose_square(WoodsConfig *out, const Survey *survey, const Config *config, const Landscape *landscape,
-                            const HostPlan *plan)
+Status choice_square(WoodsSquare *out, const Survey *survey, const Config *config, const LocalFrame *frame,
+                     const HostPlan *plan)
 {
     static const double sight_m = 4000, far_m = 12000, least_m = 50, most_m = 50000;
     LocalFrame          aim;
     double              p_enu[3], reach_m = 0;
     const Status        status = choice_frame(&aim, survey, plan);
     if (status != STATUS_OK) return status;
-    enu_of(p_enu, landscape, aim.origin_ecef);
+    enu_from_ecef(p_enu, frame, aim.origin_ecef);
     memcpy(out->centre_m, p_enu, sizeof out->centre_m);
     for (int t = 0; t < survey->track_count; t++) {
         const Track *track = &survey->track[t];
         if (choice_is_land(track) || dis_entity_id_compare(track->id, plan->host) == 0)
-            reach_m = fmax(reach_m, reach_of(track, landscape, out->centre_m, far_m));
+            reach_m = fmax(reach_m, reach_of(track, frame, out->centre_m, far_m));
     }
     reach_m = fmax(reach_m, dis_entity_id_is_none(plan->host) ? config->observer.range_m : 0);
     out->half_width_m = config->terrain.woods_half_m >= least_m ? config->terrain.woods_half_m
@@ -231,41 +231,38 @@ static void report(Choices *choices, const WoodsChoice *w, const Config *config,
 
 /* ---- all of it ----------------------------------------------------------------------------------- */
 
-Status choice_woods(WoodsChoice *out, Choices *choices, const ChoiceBasis *basis, const Landscape *landscape,
-                    Pool *pool)
+Status choice_woods(WoodsChoice *out, Choices *choices, const ChoiceBasis *basis, const WoodsSquare *square,
+                    const Landscape *landscape, Pool *pool)
 {
-    const Survey  *survey = basis->survey;
-    const Config  *config = basis->config;
-    const Catalog *catalog = basis->catalog;
-    const bool     stored = *config->terrain.store, real = stored || *config->terrain.elevation;
-    GroundEvidence e = {0};
-    int            impacts = 0;
+    const Survey         *survey = basis->survey;
+    const Config         *config = basis->config;
+    const Catalog        *catalog = basis->catalog;
+    const GroundEvidence *e = basis->evidence;
+    const bool            stored = *config->terrain.store, real = stored || *config->terrain.elevation;
+    int                   impacts = 0;
     *out = (WoodsChoice){.on = config->terrain.woods};
     if (!out->on) return STATUS_OK;
     out->config = (WoodsConfig){.seed = (uint64_t)config->seed,
+                                .centre_m = {square->centre_m[0], square->centre_m[1]},
+                                .half_width_m = square->half_width_m,
                                 .most_trees = config->terrain.woods_trees,
                                 .store = stored ? config->terrain.store : NULL};
-    Status status = choose_square(&out->config, survey, config, landscape, basis->plan);
-    if (status == STATUS_OK)
-        status = ground_evidence_collect(&e, survey, &landscape->frame, catalog, basis->plan->host, basis->plan->aim);
-    if (status != STATUS_OK) return status;
     Paths paths = {.square = &out->config, .landscape = landscape};
-    if (!real) add_known(&paths, &impacts, survey, catalog, &e);
+    if (!real) add_known(&paths, &impacts, survey, catalog, e);
     out->path = paths.path;
     out->config.path = paths.path;
     out->config.path_count = paths.count;
     const double begun_s = wall_clock_s();
-    status = paths.no_memory ? STATUS_NO_MEMORY : woods_create(&out->woods, landscape, &out->config, pool);
+    const Status status = paths.no_memory ? STATUS_NO_MEMORY : woods_create(&out->woods, landscape, &out->config, pool);
     log_detail("woods: placed in %.0f ms, %d pieces of paths", 1e3 * (wall_clock_s() - begun_s), paths.count);
     if (status == STATUS_OK) {
-        count_in_trunks(out, survey, landscape, catalog, &e);
+        count_in_trunks(out, survey, landscape, catalog, e);
         report(choices, out, config, real, impacts);
     } else {
         log_error("woods: no plants could be placed: %s; terrain.woods=off shows bare ground, terrain.woods_trees "
                   "fewer trees",
                   status_name(status));
     }
-    ground_evidence_free(&e);
     return status;
 }
 

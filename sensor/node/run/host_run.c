@@ -65,15 +65,24 @@ static Status load_libraries(const Config *config)
     return status == STATUS_OK ? video_prepare(config) : status;
 }
 
+Status run_made(Run *run)
+{
+    if (run->made) return STATUS_OK;
+    run->owns = true;
+    return made_world_create(&run->made);
+}
+
 Status run_survey(Run *run, const DisLog *heard)
 {
     const Options *o = &run->options;
     char           path[path_size];
+    Status         status = run_made(run);
+    if (status != STATUS_OK) return status;
     run->exercise = choice_exercise(&run->choices, heard, &o->config);
     log_detail("%s: %d threads, %s, config_sha256 %s", options_command(o), o->threads, o->isa, run->config_sha256);
-    Status status = survey_log(&run->survey, heard, run->exercise);
+    status = made_survey(run->made, heard, run->exercise);
     if (status != STATUS_OK) return status;
-    const DisCounters *counters = &run->survey.counters;
+    const DisCounters *counters = &run->made->survey.counters;
     for (int i = 0; i < DIS_DROP_COUNT; i++)
         if (counters->dropped[i])
             log_warn("%s: dropped: %s=%llu: %s", options_command(o), dis_drop_name((DisDrop)i),
@@ -83,19 +92,17 @@ Status run_survey(Run *run, const DisLog *heard)
                  "datagram's length",
                  options_command(o), (unsigned long long)counters->lengths_made);
     if (!etc_path(path, sizeof path, "catalog.csv")) return STATUS_BAD_VALUE;
-    status = catalog_open(&run->catalog, path, o->config.models.sag_m);
-    if (status == STATUS_OK) status = tables_used(&run->tables, &o->config, path);
+    status = tables_used(&run->tables, &o->config, path);
+    if (status == STATUS_OK) status = made_catalog(run->made, &o->config, &run->tables);
     if (status == STATUS_OK) status = tables_given(&run->tables, &o->config);
     if (status == STATUS_OK) status = load_libraries(&o->config);
-    if (status == STATUS_OK) status = pool_create(&run->pool, o->threads);
-    return status;
+    return status == STATUS_OK ? made_pool(run->made, o->threads) : status;
 }
 
 void run_close(Run *run)
 {
-    pool_destroy(run->pool);
-    catalog_close(run->catalog);
-    survey_destroy(&run->survey);
+    if (run->owns) made_world_destroy(run->made);
+    run->made = NULL;
 }
 
 /* ---- its folder ------------------------------------------------------------------------------ */
@@ -142,8 +149,8 @@ static void report_air_temp(Choices *choices, const Config *config, const Atmosp
 static Status choose_who(HostPlan *plan, Choices *choices, Run *run, const DisEntityId *host)
 {
     const Config *config = &run->options.config;
-    return host ? choice_named_host(plan, choices, &run->survey, config, *host)
-                : choice_host(plan, choices, &run->survey, config);
+    const Survey *survey = &run->made->survey;
+    return host ? choice_named_host(plan, choices, survey, config, *host) : choice_host(plan, choices, survey, config);
 }
 
 /* Causal: nothing is rendered of the time before the choices; the end is open. */
@@ -182,42 +189,32 @@ Status run_check(Run *run, const DisEntityId *host)
 
 /* What is chosen for one host. */
 typedef struct HostChoice {
-    HostPlan      plan;
-    double        unix_s; /* of exercise time 0 */
-    Landscape     landscape;
-    GroundContact contact;
-    WoodsChoice   woods;
-    Choices       choices; /* the lines of all hosts, and of this one */
+    HostPlan plan;
+    double   unix_s;  /* of exercise time 0 */
+    Choices  choices; /* the lines of all hosts, and of this one */
 } HostChoice;
 
 /* Makes the choices and the world, and prints their messages. */
 static Status choose(HostChoice *out, Run *run, const DisEntityId *host)
 {
-    const Options    *o = &run->options;
-    World            *world = &run->world;
-    HostPlan         *plan = &out->plan;
-    Landscape        *landscape = &out->landscape;
-    WoodsChoice      *woods = &out->woods;
-    Choices          *choices = &out->choices;
-    const ChoiceBasis basis = {&run->survey, &o->config, run->catalog, plan};
-    LocalFrame        frame;
-    Status            status = choose_who(plan, choices, run, host);
-    if (status == STATUS_OK) status = choice_frame(&frame, &run->survey, plan);
+    const Options *o = &run->options;
+    MadeWorld     *made = run->made;
+    HostPlan      *plan = &out->plan;
+    Choices       *choices = &out->choices;
+    LocalFrame     frame;
+    Status         status = choose_who(plan, choices, run, host);
+    if (status == STATUS_OK) status = choice_frame(&frame, &made->survey, plan);
     if (status == STATUS_OK && *o->config.terrain.store) {
         const LocalFrame aim = frame;
         status = choice_store_frame(&frame, choices, &o->config, &aim);
     }
-    if (status == STATUS_OK) status = choice_time(&out->unix_s, choices, &run->survey, &o->config, &frame);
-    if (status == STATUS_OK) status = choice_ground(landscape, &out->contact, choices, &basis, &frame);
-    if (status == STATUS_OK) status = choice_woods(woods, choices, &basis, landscape, run->pool);
-    if (status == STATUS_OK) choice_shapes(choices, &run->survey, run->catalog);
-    if (status == STATUS_OK) status = frame_world(world, &o->config, run->catalog, landscape, &frame, o->isa);
+    if (status == STATUS_OK) status = choice_time(&out->unix_s, choices, &made->survey, &o->config, &frame);
     if (status == STATUS_OK)
-        status = frame_world_plant(world, woods->on ? &woods->woods : NULL, &o->config, o->isa, run->pool);
-    if (status == STATUS_OK) status = frame_world_warm(world, &o->config, out->unix_s, run->pool);
+        status = made_world(made, choices, &(MadeOf){&o->config, &run->tables, plan, &frame, out->unix_s, o->isa});
     if (status != STATUS_OK) return status;
-    report_visibility(choices, &o->config, world->atmosphere);
-    report_air_temp(choices, &o->config, world->atmosphere, elevation_height(&landscape->elevation, 0, 0, NULL));
+    report_visibility(choices, &o->config, made->world.atmosphere);
+    report_air_temp(choices, &o->config, made->world.atmosphere,
+                    elevation_height(&made->landscape.elevation, 0, 0, NULL));
     choice_rate(plan, choices, &o->config);
     choice_report_night(choices, run->bands, out->unix_s, plan, &frame);
     for (int i = 0; i < choices->count; i++) log_print("%s\n", choices->line[i]);
@@ -228,6 +225,7 @@ static Status choose(HostChoice *out, Run *run, const DisEntityId *host)
 Status run_host(Run *run, const DisEntityId *host)
 {
     const Options *o = &run->options;
+    MadeWorld     *made = run->made;
     HostChoice     chosen = {.choices = run->choices};
     SessionResult  result = {0};
     Player        *player = NULL;
@@ -251,17 +249,17 @@ Status run_host(Run *run, const DisEntityId *host)
                                .send = run->send,
                                .user = run->user};
     const SessionShared shared = {.config = &o->config,
-                                  .survey = &run->survey,
-                                  .catalog = run->catalog,
-                                  .world = &run->world,
-                                  .pool = run->pool,
+                                  .survey = &made->survey,
+                                  .catalog = made->catalog,
+                                  .world = &made->world,
+                                  .pool = made->pool,
                                   .unix_s = chosen.unix_s,
                                   .bands = run->bands,
                                   .no_skip = o->no_skip,
                                   .live = o->command == COMMAND_RUN,
                                   .sensors = &run->sensors,
                                   .instruments = instrument_kinds,
-                                  .contact = chosen.contact,
+                                  .contact = made->contact,
                                   .config_sha256 = run->config_sha256,
                                   .publish = run->publish,
                                   .user = run->user,
@@ -274,7 +272,7 @@ Status run_host(Run *run, const DisEntityId *host)
                                   .save = o->save,
                                   .several = o->host_count > 1,
                                   .isa = o->isa,
-                                  .woods = chosen.woods.on ? &chosen.woods.config : NULL};
+                                  .woods = made->woods.on ? &made->woods.config : NULL};
     const FrameGrid     grid = grid_of(&chosen.plan);
     status = session_open(&session, &shared, &chosen.plan, player, out);
     if (status != STATUS_OK) goto done;
@@ -295,8 +293,8 @@ Status run_host(Run *run, const DisEntityId *host)
                                                          : "complete",
                             .choices = &chosen.choices,
                             .result = &result,
-                            .woods = &chosen.woods,
-                            .heard = o->config.exercise.causal ? player_counters(player) : &run->survey.counters};
+                            .woods = &made->woods,
+                            .heard = o->config.exercise.causal ? player_counters(player) : &made->survey.counters};
         const Status written = run_conclude(run, &end);
         if (status == STATUS_OK) status = written;
     }
@@ -304,9 +302,6 @@ Status run_host(Run *run, const DisEntityId *host)
 done:
     session_result_free(&result);
     player_destroy(player);
-    world_close(&run->world);
-    choice_woods_free(&chosen.woods);
-    landscape_destroy(&chosen.landscape);
     return status;
 }
 

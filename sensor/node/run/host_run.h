@@ -5,6 +5,7 @@
 
 #include "dis/network/udp.h"
 #include "sensor/node/clock/frame_clock.h"
+#include "sensor/node/run/made_world.h"
 #include "sensor/node/session/session.h"
 #include "sensor/settings/options.h"
 #include "sensor/settings/tables_used.h"
@@ -23,11 +24,9 @@ struct Run {
     unsigned              bands;
     int                   exercise; /* -1: all */
     DisHeader             first;    /* of the first usable Entity State: version and exercise of what is sent */
-    Survey                survey;
-    Catalog              *catalog;
-    World                 world;
-    Pool                 *pool;
-    Choices               choices; /* shared by all hosts */
+    MadeWorld            *made;     /* log, survey, catalog, world, threads; the caller's, or by run_made */
+    bool                  owns;     /* made */
+    Choices               choices;  /* shared by all hosts */
     Sensors               sensors;
     TablesUsed            tables; /* in run.json */
     /* Whether there are frames to be rendered, before the world is set up; may be NULL. */
@@ -44,6 +43,8 @@ struct Run {
 
 /* Bands, sensors, hash of the configuration: before anything is received. */
 Status run_prepare(Run *run);
+/* Makes run->made, where the caller gave none. */
+Status run_made(Run *run);
 /* Finds exercise and survey from the received datagrams, and opens catalog and pool. */
 Status run_survey(Run *run, const DisLog *heard);
 /* Host, aim and span of a host as run_host has them: what is wrong with them is logged, in a second. */

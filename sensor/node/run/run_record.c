@@ -167,9 +167,10 @@ static json_t *list_mb(FieldAt *at)
 
 static json_t *materials(FieldAt *at)
 {
-    const Materials *m = &((const Run *)run_of_record(at->of))->world.materials;
-    json_t          *array = m->count > 1 ? json_array() : NULL;
-    for (int i = 1; i < m->count; i++) append(array, m->material[i].name);
+    const MadeWorld *made = ((const Run *)run_of_record(at->of))->made; /* NULL: nothing was heard */
+    const Materials *m = made ? &made->world.materials : NULL;
+    json_t          *array = m && m->count > 1 ? json_array() : NULL;
+    for (int i = 1; array && i < m->count; i++) append(array, m->material[i].name);
     return array;
 }
 

@@ -1,0 +1,69 @@
+/* sensor/node/run/made_world.h: what a run makes before its first frame, in layers that a later run of the same process
+ * takes over: hosts of one replay, variants of a sweep.
+ *
+ * A layer has a key: a hash of all that it follows from. The settings that it may depend on are named in one line
+ * (config_part), and those that make it see no others; survey, evidence, frame and tables are in the key by their
+ * content. It is made again when its key differs, and with it all layers above. The lines of its choices are kept with
+ * it, so that every run prints them. Bits do not depend on what was taken over (tests/system/test_sweep_share.sh).
+ * Changed files of models and terrain are not detected; changed tables are. */
+#ifndef SENSOR_NODE_RUN_MADE_WORLD_H
+#define SENSOR_NODE_RUN_MADE_WORLD_H
+
+#include "render/frame/world.h"
+#include "sensor/node/choices/choices.h"
+#include "sensor/settings/tables_used.h"
+
+typedef enum MadeLayer {
+    MADE_LOG,     /* its datagrams: by file, port, own ids */
+    MADE_SURVEY,  /* by log and exercise */
+    MADE_CATALOG, /* by models.* and the tables */
+    MADE_GROUND,  /* by terrain.*, seed, origin, evidence */
+    MADE_WOODS,   /* where plants stand: by the ground and their square */
+    MADE_MODELS,  /* what rays meet: models, plants, materials */
+    MADE_AIR,     /* atmosphere */
+    MADE_WARM,    /* ground warmed up to exercise time 0 */
+    MADE_LAYERS
+} MadeLayer;
+
+typedef struct MadeWorld {
+    Pool         *pool;
+    int           threads; /* of pool */
+    DisLog        log;
+    char          log_sha256[sha256_text_size];
+    uint64_t      own; /* datagrams of this node, which are not in the log */
+    Survey        survey;
+    Catalog      *catalog;
+    Landscape     landscape;
+    GroundContact contact;
+    WoodsChoice   woods;
+    World         world;
+    Config        part[MADE_LAYERS];                  /* the settings that a layer was made by */
+    Choices       said[MADE_LAYERS];                  /* its lines */
+    char          key[MADE_LAYERS][sha256_text_size]; /* empty: not made */
+    int           made[MADE_LAYERS];                  /* how often, since it was created */
+} MadeWorld;
+
+Status made_world_create(MadeWorld **out);
+void   made_world_destroy(MadeWorld *made); /* accepts NULL */
+
+/* Opens and hashes the log, without this node's own datagrams. Again only where the file, by its inode, size and times,
+ * or what is taken of it differs; a pipe always. *own: how many were left out. */
+Status made_log(MadeWorld *made, const char *path, const Config *config);
+/* heard: what the choices are made by. Kept where it is all of made->log, of the same exercise. */
+Status made_survey(MadeWorld *made, const DisLog *heard, int exercise);
+Status made_catalog(MadeWorld *made, const Config *config, const TablesUsed *tables);
+Status made_pool(MadeWorld *made, int threads);
+
+/* What the world follows from, beside survey and catalog. */
+typedef struct MadeOf {
+    const Config     *config;
+    const TablesUsed *tables;
+    const HostPlan   *plan;
+    const LocalFrame *frame;
+    double            unix_s; /* of exercise time 0 */
+    const char       *isa;
+} MadeOf;
+/* Makes or takes over ground, woods, models, air and warmth; adds the lines of their choices. */
+Status made_world(MadeWorld *made, Choices *choices, const MadeOf *of);
+
+#endif
