@@ -107,6 +107,7 @@ static const double tr_gamma = 0.58578643762690495; /* 2 - sqrt 2 */
 void column_factors(ColumnFactors *out, const Column *column, double dt_s)
 {
     out->dt_s = dt_s;
+    out->half = NULL;
     eliminate(out, column, 0.5 * tr_gamma * dt_s);
 }
 
@@ -231,8 +232,9 @@ static void advance(ColumnState *s, const Step *step, const ColumnFactors *given
     if (!(step->boundary->tolerance_k > 0) || error_k <= step->boundary->tolerance_k) return;
     *s = before;
     s->halved++;
-    advance(s, step, NULL, from, 0.5 * width, depth + 1);
-    advance(s, step, NULL, from + 0.5 * width, 0.5 * width, depth + 1);
+    const ColumnFactors *half = given ? given->half : NULL;
+    advance(s, step, half, from, 0.5 * width, depth + 1);
+    advance(s, step, half, from + 0.5 * width, 0.5 * width, depth + 1);
 }
 
 void column_step(ColumnState *state, const Column *column, const ColumnFactors *factors, const ColumnBoundary *boundary,

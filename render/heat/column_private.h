@@ -31,7 +31,8 @@ typedef struct Column {
 
 /* What steps of one length share: the elimination, from the bottom up. */
 typedef struct ColumnFactors {
-    double dt_s;                                                      /* of a step; 0: none yet */
+    double                      dt_s; /* of a step; 0: none yet */
+    const struct ColumnFactors *half; /* of steps half as long, which outlive it; NULL: found where they are taken */
     double share[column_most_nodes], over[column_most_nodes], steep0; /* g / pivot of the node below; 1 / pivot */
 } ColumnFactors;
 

@@ -3,6 +3,7 @@
 
 #include "pitviper_simd.h"
 
+#include <assert.h>
 #include <stdlib.h>
 
 HeatConfig heat_default_config(void)
@@ -74,7 +75,7 @@ static void step_kind(void *user, int worker, int task)
     for (int c = 0; c < h->columns; c++) {
         const bool           night = without_sun(h, c), hidden = c == h->columns - 1;
         const GroundExposure e = exposure_of(h, c, hidden ? job->before->air.temp_k : level_k);
-        s->column[c].factors = &h->factors[job->dt_s > h->config.step_s][task];
+        s->column[c].factors = h->factors[job->dt_s > h->config.step_s][task];
         ground_column_step(&s->column[c], h->config.grid.tolerance_k, night ? &dark[0] : job->before,
                            night ? &dark[1] : job->after, &e, job->dt_s);
     }
@@ -233,27 +234,26 @@ static void find_slots(Heat *h)
 /* A day of level ground from the mean of the air: the mean of its surface is what the ground below has. */
 static void start_columns(Heat *h)
 {
+    enum { most = 2 * heat_day_slots };
     const int64_t day = (int64_t)round(day_s / h->config.step_s), stride = half_hour(h);
+    const int     count = (int)((day + stride - 1) / stride);
     double        air_k = 0;
-    int           count = 0;
-    GroundWeather w[2];
-    for (int64_t i = 0; i < day; i += stride, count++) {
-        h->config.weather(&w[0], (double)(h->first + i) * h->config.step_s, h->config.user);
-        air_k += w[0].air.temp_k;
-    }
+    GroundWeather w[most + 1]; /* of every stride: the sun is dear, and the same for all kinds */
+    assert(count <= most);
+    for (int i = 0; i <= count; i++)
+        h->config.weather(&w[i], (double)(h->first + i * stride) * h->config.step_s, h->config.user);
+    for (int i = 0; i < count; i++) air_k += w[i].air.temp_k;
     air_k /= count;
     const GroundExposure level = {{0, 0, 1}, 1, 1, 0};
     for (int k = 1; k < ground_kinds; k++) {
         GroundColumn column;
         double       sum = 0;
         ground_column_start(&column, &h->kinds.kind[k], &h->layers[k], air_k);
-        h->config.weather(&w[0], (double)h->first * h->config.step_s, h->config.user);
-        for (int64_t i = 0; i < day; i += stride) {
-            h->config.weather(&w[1], (double)(h->first + i + stride) * h->config.step_s, h->config.user);
-            ground_column_step(&column, h->config.grid.tolerance_k, &w[0], &w[1], &level,
+        column.factors = h->factors[1][k];
+        for (int i = 0; i < count; i++) {
+            ground_column_step(&column, h->config.grid.tolerance_k, &w[i], &w[i + 1], &level,
                                (double)stride * h->config.step_s);
             sum += column.state.temp_k[0];
-            w[0] = w[1];
         }
         for (int c = 0; c < h->columns; c++)
             ground_column_start(&h->state[k].column[c], &h->kinds.kind[k], &h->layers[k], sum / count);
@@ -292,6 +292,15 @@ static void back_to_begun(Heat *h)
     next_table(h);
 }
 
+/* Of steps of dt_s, and of those that it is halved into. */
+static void factors_of(ColumnFactors out[heat_halvings], const Column *layers, double dt_s)
+{
+    for (int k = 0; k < heat_halvings; k++) {
+        column_factors(&out[k], layers, ldexp(dt_s, -k));
+        out[k].half = k + 1 < heat_halvings ? &out[k + 1] : NULL;
+    }
+}
+
 Status heat_create(Heat **out, const GroundKinds *kinds, const HeatConfig *config, const BranchKind *branch,
                    int branches)
 {
@@ -319,8 +328,8 @@ Status heat_create(Heat **out, const GroundKinds *kinds, const HeatConfig *confi
         return status;
     }
     for (int k = 0; k < ground_kinds; k++) {
-        column_factors(&h->factors[0][k], &h->layers[k], config->step_s);
-        column_factors(&h->factors[1][k], &h->layers[k], (double)half_hour(h) * config->step_s);
+        factors_of(h->factors[0][k], &h->layers[k], config->step_s);
+        factors_of(h->factors[1][k], &h->layers[k], (double)half_hour(h) * config->step_s);
     }
     for (int s = 0; s < SURFACE_COUNT; s++) h->kind_of[s] = s == SURFACE_NONE ? SURFACE_BARE_SOIL : s;
     if (branches > 0) h->kind_of[SURFACE_FOREST_BROADLEAF] = h->kind_of[SURFACE_FOREST_CONIFER] = ground_forest_floor;

@@ -4,6 +4,7 @@
 
 #include "render/heat/heat.h"
 
+enum { heat_halvings = 6 };  /* lengths of steps whose elimination is kept: the usual one, and its halves */
 enum { history = 2048 }; /* steps whose surface is remembered: 34 h of 60 s */
 
 /* One kind: its columns, facet by facet, then by n_up in the shade, without sun, and one that sees no sky. */
@@ -32,8 +33,8 @@ struct Heat {
     GroundKinds      kinds;
     HeatConfig       config;
     Column           layers[ground_kinds];
-    ColumnFactors    factors[2][ground_kinds]; /* of step_s, and of half hours */
-    int              columns;                  /* a kind */
+    ColumnFactors    factors[2][ground_kinds][heat_halvings]; /* of step_s and of half hours, and of their halves */
+    int              columns;                                 /* a kind */
     KindState        state[ground_kinds];
     GroundColumn     level[2][ground_kinds]; /* level ground at the times of the tables */
     Ahead           *ahead;
