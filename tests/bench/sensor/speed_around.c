@@ -170,7 +170,7 @@ static Status time_sweep(Speed *s)
     const double fresh_s = ok ? sweep_s(folder, 1) : -1, all_s = fresh_s < 0 ? -1 : sweep_s(folder, 1 + variants);
     remove_tree(folder);
     if (all_s < 0) return STATUS_IO;
-    BenchRow row = bench_row("sweep: the first variant of the demonstration, one frame of 96 x 64, all threads");
+    BenchRow row = bench_row("sweep: a variant of the demonstration, one frame of 96 x 64, all threads");
     row.median = row.best = fresh_s;
     row.unit = "s";
     row.rate = 1 / fresh_s, row.rate_unit = "variants/s";
