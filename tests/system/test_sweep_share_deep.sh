@@ -29,7 +29,7 @@ compare "$tmp/s" 10
 printf 'mode: random\ncount: 110\naxes: {observer.range_m: {from: 200, to: 900}, exercise.host: observer, seed: [1, 2, 3], weather.visibility_m: [5000, 23000]}\n' >"$tmp/many.yaml"
 "$pitviper" replay "${bare[@]}" "$tmp/demo.pcap" "${few[@]}" --no-files --sweep "$tmp/many.yaml" --out "$tmp/m" >"$tmp/stdout" 2>"$tmp/stderr" &
 sweep=$!
-made() { [ "$(grep -cs '"status":"made"' "$tmp/m/manifest.jsonl")" -ge "$1" ]; }
+made() { [ "0$(grep -cs '"status":"made"' "$tmp/m/manifest.jsonl")" -ge "$1" ]; }
 kib() { grep VmRSS "/proc/$(pgrep -P $sweep)/status" | tr -dc 0-9; }
 until_true made 40; before=$(kib)
 until_true made 100; after=$(kib)
