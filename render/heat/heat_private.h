@@ -4,8 +4,8 @@
 
 #include "render/heat/heat.h"
 
-enum { heat_halvings = 6 };  /* lengths of steps whose elimination is kept: the usual one, and its halves */
-enum { history = 2048 }; /* steps whose surface is remembered: 34 h of 60 s */
+enum { heat_halvings = 6 }; /* lengths of steps whose elimination is kept: the usual one, and its halves */
+enum { history = 2048 };    /* steps whose surface is remembered: 34 h of 60 s */
 
 /* One kind: its columns, facet by facet, then by n_up in the shade, without sun, and one that sees no sky. */
 typedef struct KindState {

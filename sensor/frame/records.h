@@ -58,7 +58,7 @@ typedef struct LiveCounters {
     uint64_t frames_at[live_steps]; /* made, by step of sampling (RenderRequest.sampling) */
     uint64_t frames_lacking;        /* made, but without a band that was asked for */
     double   rate_hz;               /* asked for; 0: it ended before that was known */
-    double   ready_s; /* ready for its entities, after the first was heard; 0: never */
+    double   ready_s;               /* ready for its entities, after the first was heard; 0: never */
 } LiveCounters;
 /* Share of the due frames that were made and lack no band; 1 where none was due. */
 static inline double record_live_kept_share(const LiveCounters *counters, uint64_t frames)
