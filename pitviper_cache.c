@@ -166,7 +166,8 @@ static bool read_file(char **out, size_t *octets, bool *there, const Cache *c, c
     struct stat about;
     *out = NULL;
     *there = lstat(path, &about) == 0;
-    if (!*there || !S_ISREG(about.st_mode) || about.st_size < 0 || (uint64_t)about.st_size > c->most_octets) return false;
+    if (!*there || !S_ISREG(about.st_mode) || about.st_size < 0 || (uint64_t)about.st_size > c->most_octets)
+        return false;
     char      why[file_why_size];
     const int file = file_open(why, NULL, path, FILE_FROM_DISK);
     if (file < 0) return false;

@@ -4,7 +4,8 @@
  * id), the C library, and what of the processor chooses among its functions. So an entry is never wrong for being old;
  * what does not fit has another name. FOLDER/NAME.kept, little-endian, as all that this program runs on:
  *
- *     octets 0  "PVKEPT1\n"   8  NAME, 64 hexadecimal digits   72  count, 64 bits   80  count octets   end  SHA-256 of all
+ *     octets 0  "PVKEPT1\n"   8  NAME, 64 hexadecimal digits   72  count, 64 bits   80  count octets   end  SHA-256 of
+ * all
  *
  * Entries are written beside their name and renamed, so that several processes may share a folder; the least recently
  * used are removed beyond its size. A cache that cannot be used costs time alone: that is said once. */

@@ -17,8 +17,9 @@ size_t woods_to_octets(void *out, const Woods *w)
 {
     const size_t first = (squares_of(w) + 1) * sizeof *w->first, plant = (size_t)w->count * sizeof *w->plant,
                  bare = w->bare ? squares_of(w) : 0;
-    const WoodsHead head = {w->reach_m,     w->nx,          w->ny,           w->count,       w->left_out,
-                            w->from_crowns, w->from_canopy, w->from_classes, w->from_hedges, w->bare != NULL, 0};
+    const WoodsHead head = {
+        w->reach_m,      w->nx,          w->ny,           w->count, w->left_out, w->from_crowns, w->from_canopy,
+        w->from_classes, w->from_hedges, w->bare != NULL, 0};
     char *at = out;
     if (at) {
         memcpy(at, &head, sizeof head);
@@ -40,7 +41,8 @@ static bool are_listed(const Woods *w)
 
 static bool is_plant(const Plant *p)
 {
-    return p->kind < PLANT_STANDING && p->height > 0 && isfinite(p->p_m[0]) && isfinite(p->p_m[1]) && isfinite(p->p_m[2]);
+    return p->kind < PLANT_STANDING && p->height > 0 && isfinite(p->p_m[0]) && isfinite(p->p_m[1]) &&
+           isfinite(p->p_m[2]);
 }
 
 /* What out->nx and ny say is what its source has: the room is bounded by that. */

@@ -50,7 +50,8 @@ static bool is_kind(const Plants *p, int kind)
 {
     for (int k = 0; k < plant_outlines; k++) {
         const LeafOutline *o = &p->outline[kind][k];
-        if (o->corners < 0 || o->corners > plant_outline_corners_most || !isfinite(p->outline_area[kind][k])) return false;
+        if (o->corners < 0 || o->corners > plant_outline_corners_most || !isfinite(p->outline_area[kind][k]))
+            return false;
         if (!all_finite(o->uv[0], 2 * o->corners)) return false;
     }
     for (int level = 0; level < plant_levels; level++)
