@@ -3,6 +3,7 @@
 #include "render/frame/world.h"
 #include "render/light/sky_visibility.h"
 #include "render/trace/parts/parts.h"
+#include "render/trace/plants/plants_kept.h"
 #include "render/light/canopy.h"
 
 #include <stdlib.h>
@@ -54,19 +55,53 @@ Status world_need_patches(const World *world, const Snapshot *snapshot)
     return status;
 }
 
+/* The prototypes, with what even light reaches each quad where they come from the cache: *whole. */
+static Status need_plants(bool *whole, World *world, CacheKey *key, const char *isa, Pool *pool)
+{
+    static const uint64_t seed = 1995; /* the prototypes are the same in every world */
+    const int64_t         embree = tracer_embree(world->tracer);
+    void                 *octets;
+    size_t                count;
+    *key = cache_key("plants");
+    cache_key_add(key, &seed, sizeof seed);
+    cache_key_add(key, &embree, sizeof embree);
+    if (isa) cache_key_add(key, isa, strlen(isa));
+    *whole = false;
+    if (cache_fetch(&octets, &count, world->cache, key)) {
+        const Status status = plants_from_octets(&world->plants, octets, count);
+        free(octets);
+        *whole = status == STATUS_OK;
+        if (status != STATUS_BAD_VALUE) return status;
+    }
+    return plants_create(&world->plants, seed, pool);
+}
+
+/* Finds what even light reaches the quads, and keeps the prototypes with it. */
+static void finish_plants(World *world, const CacheKey *key, Pool *pool)
+{
+    forest_openness(world->plants, world->forest, pool);
+    const size_t count = world->cache ? plants_to_octets(NULL, world->plants) : 0;
+    void        *octets = count > 0 ? malloc(count) : NULL;
+    if (!octets) return;
+    plants_to_octets(octets, world->plants);
+    cache_keep(world->cache, key, octets, count);
+    free(octets);
+}
+
 Status world_plant(World *world, const Woods *woods, const ForestConfig *config, const char *isa, Pool *pool)
 {
-    static const uint64_t plants_seed = 1995; /* the prototypes are the same in every world */
-    char                  optics[512], ground[512];
+    char     optics[512], ground[512];
+    CacheKey key = {.digest = NULL};
+    bool     whole = false;
     if (!etc_path(optics, sizeof optics, "plant_optics.csv") || !etc_path(ground, sizeof ground, "woods.csv")) {
         log_error("render: path of the tables is too long; set PITVIPER_ETC to a shorter one");
         return STATUS_BAD_VALUE;
     }
     Status status = materials_add_plants(&world->materials, optics, ground);
-    if (status == STATUS_OK) status = plants_create(&world->plants, plants_seed, pool);
+    if (status == STATUS_OK) status = need_plants(&whole, world, &key, isa, pool);
     if (status == STATUS_OK) status = forest_create(&world->forest, woods, world->plants, config, isa);
     if (status != STATUS_OK) return status;
-    forest_openness(world->plants, world->forest, pool);
+    if (!whole) finish_plants(world, &key, pool);
     status = canopy_create(&world->canopy, woods, world->plants, &world->materials, config->leaves);
     if (status != STATUS_OK) return status;
     return far_woods_create(&world->far_woods, woods, world->forest, &world->materials, config->leaves, pool);
@@ -148,8 +183,14 @@ static Status cast_shadows(World *world, double shadow_m, Pool *pool)
     float     d_enu[3][heat_day_slots];
     const int slots = heat_slots(d_enu, world->heat);
     _Static_assert((int)shadow_most_slots >= (int)heat_day_slots, "room for a day");
-    return heat_shadow_create(&world->shadow, &world->landscape->elevation, shadow_m, slots, d_enu,
-                              world->canopy ? stand_there : NULL, world->canopy, pool);
+    const ShadowOf of = {.elevation = &world->landscape->elevation,
+                         .cell_m = shadow_m,
+                         .slots = slots,
+                         .d_enu = d_enu,
+                         .plants = world->canopy ? stand_there : NULL,
+                         .user = world->canopy,
+                         .cache = world->cache};
+    return heat_shadow_create(&world->shadow, &of, pool);
 }
 
 /* The wood of the plants that stand, each material once. */

@@ -34,6 +34,7 @@ typedef struct World {
     struct HeatDrive *drive;   /* of heat */
     PartTable         parts;   /* what is behind the skin of parts */
     PatchSet         *patches; /* of the models that have been seen with temperatures */
+    Cache            *cache;   /* NULL after world_open; set before world_plant: where it keeps what it makes */
     struct SkyKept   *sky;     /* what frames leave for the next (render/light/sky_visibility.h) */
 } World;
 

@@ -4,6 +4,7 @@
 #define RENDER_HEAT_HEAT_H
 
 #include "render/heat/ground_column_private.h"
+#include "pitviper_cache.h"
 #include "terrain/elevation/elevation.h"
 #include "entities/table/snapshot.h"
 #include "terrain/earth/geodesy.h"
@@ -183,8 +184,16 @@ enum { shadow_most_slots = 48, shadow_most_cells = 4000000 };
 
 /* cell_m: made larger where the grid would have more than shadow_most_cells. d_enu: towards the sun, d_enu[2] > 0.
  * plants: NULL: none. pool: NULL: one thread; the same bits either way. */
-Status heat_shadow_create(ShadowMap **out, const Elevation *elevation, double cell_m, int slots,
-                          float d_enu[3][shadow_most_slots], ShadowPlants *plants, const void *user, Pool *pool);
+typedef struct ShadowOf {
+    const Elevation *elevation;
+    double           cell_m;
+    int              slots;
+    float (*d_enu)[shadow_most_slots]; /* [3] */
+    ShadowPlants *plants;
+    const void   *user;
+    Cache        *cache; /* where the map is kept; NULL: nowhere */
+} ShadowOf;
+Status heat_shadow_create(ShadowMap **out, const ShadowOf *of, Pool *pool);
 void   heat_shadow_destroy(ShadowMap *map); /* accepts NULL */
 /* Shares in the shade at a place, of 255, shadow[slots, padded to a multiple of 8 with 0]; and the share of its sky
  * that is open past plants. Beyond the grid: open. */

@@ -143,9 +143,54 @@ static void run(Pool *pool, int count, PoolTask *task, void *user)
         for (int i = 0; i < count; i++) task(user, 0, i);
 }
 
-Status heat_shadow_create(ShadowMap **out, const Elevation *elevation, double cell_m, int slots,
-                          float d_enu[3][shadow_most_slots], ShadowPlants *plants, const void *user, Pool *pool)
+/* Everything that the shadows follow from. */
+static CacheKey key_of(const ShadowMap *m, const ShadowOf *of)
 {
+    const size_t  cells = (size_t)m->nx * (size_t)m->ny;
+    const int32_t whole[] = {m->nx, m->ny, m->slots, m->stand != NULL};
+    CacheKey      key = cache_key("shadow map");
+    cache_key_add(&key, whole, sizeof whole);
+    cache_key_add(&key, &m->cell_m, sizeof m->cell_m);
+    for (int k = 0; k < 3; k++) cache_key_add(&key, of->d_enu[k], (size_t)m->slots * sizeof **of->d_enu);
+    cache_key_add(&key, m->z_m, cells * sizeof *m->z_m);
+    _Static_assert(sizeof *m->stand == 4 * sizeof(float), "no padding");
+    if (m->stand) cache_key_add(&key, m->stand, cells * sizeof *m->stand);
+    return key;
+}
+
+/* Takes the shadows from the cache; any octets are shadows. */
+static bool fetch(ShadowMap *m, Cache *cache, CacheKey *key, size_t octets)
+{
+    void  *kept;
+    size_t count;
+    if (!cache_fetch(&kept, &count, cache, key)) return false;
+    const bool fits = count == octets;
+    if (fits) memcpy(m->shadow, kept, octets);
+    free(kept);
+    return fits;
+}
+
+static Status cast(ShadowMap *m, Job *job, const ShadowOf *of, Pool *pool)
+{
+    const size_t cells = (size_t)m->nx * (size_t)m->ny, octets = cells * (size_t)m->stride;
+    CacheKey     key = {.digest = NULL};
+    run(pool, m->ny, fill_row, job);
+    if (of->cache) key = key_of(m, of);
+    if (of->cache && fetch(m, of->cache, &key, octets)) return STATUS_OK;
+    for (size_t k = 0; of->plants && k < cells; k++)
+        m->most_m = fmaxf(m->most_m, m->stand[k].leaf_area > 0 ? m->stand[k].top_m : 0);
+    run(pool, m->slots, fill_slot, job);
+    for (int s = 0; s < m->slots; s++)
+        if (job->failed[s]) return STATUS_NO_MEMORY;
+    cache_keep(of->cache, &key, m->shadow, octets);
+    return STATUS_OK;
+}
+
+Status heat_shadow_create(ShadowMap **out, const ShadowOf *of, Pool *pool)
+{
+    const Elevation *elevation = of->elevation;
+    double           cell_m = of->cell_m;
+    const int        slots = of->slots;
     if (elevation->level_count < 1 || !(cell_m > 0) || slots < 0 || slots > shadow_most_slots) return STATUS_BAD_VALUE;
     const ElevationLevel *level = &elevation->level[0];
     const double          wide_m = (level->nx - 1) * level->spacing_m, high_m = (level->ny - 1) * level->spacing_m;
@@ -158,19 +203,12 @@ Status heat_shadow_create(ShadowMap **out, const Elevation *elevation, double ce
     m->slots = slots, m->stride = (slots + 7) / 8 * 8;
     const size_t cells = (size_t)m->nx * (size_t)m->ny;
     m->z_m = malloc(cells * sizeof *m->z_m);
-    m->stand = plants ? malloc(cells * sizeof *m->stand) : NULL;
+    m->stand = of->plants ? malloc(cells * sizeof *m->stand) : NULL;
     m->open = malloc(cells);
     m->shadow = calloc(cells, (size_t)(m->stride > 0 ? m->stride : 1));
-    Job    job = {m, plants, user, d_enu, elevation, {false}};
-    Status status = m->z_m && (m->stand || !plants) && m->open && m->shadow ? STATUS_OK : STATUS_NO_MEMORY;
-    if (status == STATUS_OK) {
-        run(pool, m->ny, fill_row, &job);
-        for (size_t k = 0; plants && k < cells; k++)
-            m->most_m = fmaxf(m->most_m, m->stand[k].leaf_area > 0 ? m->stand[k].top_m : 0);
-        run(pool, slots, fill_slot, &job);
-        for (int s = 0; s < slots; s++)
-            if (job.failed[s]) status = STATUS_NO_MEMORY;
-    }
+    Job    job = {m, of->plants, of->user, of->d_enu, elevation, {false}};
+    Status status = m->z_m && (m->stand || !of->plants) && m->open && m->shadow ? STATUS_OK : STATUS_NO_MEMORY;
+    if (status == STATUS_OK) status = cast(m, &job, of, pool);
     free(m->z_m);
     free(m->stand);
     m->z_m = NULL, m->stand = NULL;

@@ -4,7 +4,7 @@
 
 #include "pitviper.h"
 #include "render/frame/plane_type.h"
-#include "sensor/settings/sha256.h"
+#include "pitviper_sha256.h"
 
 /* A plane borrows its values: float, uint32_t, double, float complex or uint8_t [height][width], rows top down. */
 typedef struct Plane {

@@ -15,7 +15,7 @@
 #define SENSOR_RADAR_SIGNATURE_LIBRARY_H
 
 #include "render/scattering/signatures/signatures.h"
-#include "sensor/settings/sha256.h"
+#include "pitviper_sha256.h"
 
 typedef struct SignatureLibrary SignatureLibrary;
 

@@ -153,6 +153,7 @@ void config_text(char *out, size_t out_size, const Config *config)
     hashed.network = plain.network;
     hashed.publish = plain.publish;
     hashed.record = plain.record;
+    hashed.cache = plain.cache;
     hashed.exercise.port = plain.exercise.port;
     memcpy(hashed.exercise.from_s, plain.exercise.from_s, sizeof hashed.exercise.from_s);
     memcpy(hashed.exercise.to_s, plain.exercise.to_s, sizeof hashed.exercise.to_s);

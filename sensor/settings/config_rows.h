@@ -11,7 +11,7 @@ enum { config_paths_size = 4096 };
 #define CONFIG_ROWS(ROW) \
     CONFIG_SENSOR(ROW) CONFIG_DETECTOR(ROW) CONFIG_RADAR(ROW) CONFIG_EXERCISE(ROW) CONFIG_NETWORK(ROW) \
     CONFIG_NODE(ROW) CONFIG_PUBLISH(ROW) CONFIG_RECORD(ROW) CONFIG_WEATHER(ROW) CONFIG_HEAT(ROW) CONFIG_TERRAIN(ROW) \
-    CONFIG_OBSERVER(ROW) CONFIG_MODELS(ROW) CONFIG_ENTITIES(ROW) CONFIG_QUALITY(ROW) CONFIG_TOP(ROW)
+    CONFIG_OBSERVER(ROW) CONFIG_MODELS(ROW) CONFIG_ENTITIES(ROW) CONFIG_QUALITY(ROW) CONFIG_CACHE(ROW) CONFIG_TOP(ROW)
 
 #define CONFIG_SENSOR(ROW) \
     ROW(INT, sensor., width_px, 720, 8, 8192, "px", "columns of the image") \
@@ -363,6 +363,12 @@ enum { config_paths_size = 4096 };
     ROW(PATH, quality., table, "", 1024, \
         "sampling settings with their errors and times, from `pitviper bench quality --table FILE`; empty: " \
         "etc/quality.csv")
+
+#define CONFIG_CACHE(ROW) \
+    ROW(SWITCH, cache., on, true, "off|on", \
+        "what runs make before their first frame and content decides is kept on disk for the next; changes no product") \
+    ROW(PATH, cache., folder, "", 1024, "where; empty: $XDG_CACHE_HOME/pitviper, else ~/.cache/pitviper") \
+    ROW(INT, cache., most_mb, 2048, 1, 1048576, "MB", "most that it takes; the least recently used is removed")
 
 #define CONFIG_TOP(ROW) \
     ROW(LONG, , seed, 1, 0, 2147483647, "", "seed of all random numbers")

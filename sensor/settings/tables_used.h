@@ -4,7 +4,7 @@
 #define SENSOR_SETTINGS_TABLES_USED_H
 
 #include "sensor/settings/config.h"
-#include "sensor/settings/sha256.h"
+#include "pitviper_sha256.h"
 
 enum { tables_used_max = 256, table_used_name_size = 160 };
 

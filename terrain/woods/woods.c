@@ -319,6 +319,64 @@ static bool config_is_good(const WoodsConfig *c)
     return good;
 }
 
+static CacheKey key_of(const WoodsConfig *c)
+{
+    CacheKey       key = cache_key("woods");
+    const double   number[] = {c->centre_m[0], c->centre_m[1], c->half_width_m};
+    const uint64_t whole[] = {c->seed, (uint64_t)c->most_trees, (uint64_t)c->path_count};
+    cache_key_add(&key, number, sizeof number);
+    cache_key_add(&key, whole, sizeof whole);
+    _Static_assert(sizeof *c->path == 6 * sizeof(double), "no padding");
+    cache_key_add(&key, c->path, (size_t)c->path_count * sizeof *c->path);
+    cache_key_add(&key, c->follows, strlen(c->follows));
+    return key;
+}
+
+/* Places the plants of all squares. */
+static Status place(Woods *out, WoodsSource *source, const WoodsConfig *config, Pool *pool)
+{
+    const size_t squares = (size_t)source->nx * (size_t)source->ny;
+    Filling      filling = {source, calloc(squares, sizeof *filling.square)};
+    Status       status = STATUS_OK;
+    if (!filling.square) return STATUS_NO_MEMORY;
+    if (pool) pool_run(pool, source->ny, fill_row, &filling);
+    else
+        for (int j = 0; j < source->ny; j++) fill_row(&filling, 0, j);
+    for (size_t n = 0; n < squares; n++)
+        if (filling.square[n].lost) status = STATUS_NO_MEMORY;
+    if (status == STATUS_OK) status = keep_nearest(out, source, filling.square, config->most_trees);
+    if (status == STATUS_OK) status = gather(out, source, filling.square);
+    for (size_t n = 0; n < squares; n++) free(filling.square[n].plant);
+    free(filling.square);
+    return status;
+}
+
+/* Takes the plants from the cache; else places and keeps them. */
+static Status need(Woods *out, WoodsSource *source, const WoodsConfig *config, Pool *pool)
+{
+    if (!config->cache || !config->follows) return place(out, source, config, pool);
+    CacheKey    key = key_of(config);
+    void       *octets;
+    size_t      count;
+    const Woods empty = *out;
+    if (cache_fetch(&octets, &count, config->cache, &key)) {
+        const Status status = woods_from_octets(out, octets, count);
+        free(octets);
+        if (status != STATUS_BAD_VALUE) return status;
+        free(out->first), free(out->plant), free(out->bare);
+        *out = empty;
+    }
+    const Status status = place(out, source, config, pool);
+    count = status == STATUS_OK ? woods_to_octets(NULL, out) : 0;
+    octets = count > 0 ? malloc(count) : NULL;
+    if (octets) {
+        woods_to_octets(octets, out);
+        cache_keep(config->cache, &key, octets, count);
+    }
+    free(octets);
+    return status;
+}
+
 Status woods_create(Woods *out, const Landscape *landscape, const WoodsConfig *config, Pool *pool)
 {
     WoodsSource *source = NULL;
@@ -326,23 +384,9 @@ Status woods_create(Woods *out, const Landscape *landscape, const WoodsConfig *c
     if (!config_is_good(config)) return STATUS_BAD_VALUE;
     Status status = open_source(&source, landscape, config);
     if (status != STATUS_OK) return status;
-    const size_t squares = (size_t)source->nx * (size_t)source->ny;
-    Filling      filling = {source, calloc(squares, sizeof *filling.square)};
-    if (!filling.square) {
-        status = STATUS_NO_MEMORY;
-    } else {
-        if (pool) pool_run(pool, source->ny, fill_row, &filling);
-        else
-            for (int j = 0; j < source->ny; j++) fill_row(&filling, 0, j);
-        for (size_t n = 0; n < squares; n++)
-            if (filling.square[n].lost) status = STATUS_NO_MEMORY;
-        if (status == STATUS_OK) status = keep_nearest(&woods, source, filling.square, config->most_trees);
-        if (status == STATUS_OK) status = gather(&woods, source, filling.square);
-        for (size_t n = 0; n < squares; n++) free(filling.square[n].plant);
-    }
-    free(filling.square);
     memcpy(woods.origin_enu, source->origin_enu, sizeof woods.origin_enu);
     woods.nx = source->nx, woods.ny = source->ny;
+    status = need(&woods, source, config, pool);
     woods.low = source;
     if (status != STATUS_OK) {
         woods_destroy(&woods);

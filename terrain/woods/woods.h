@@ -6,6 +6,7 @@
 #ifndef TERRAIN_WOODS_WOODS_H
 #define TERRAIN_WOODS_WOODS_H
 
+#include "pitviper_cache.h"
 #include "terrain/ground/landscape.h"
 #include "terrain/surface.h"
 #include "terrain/woods/plant.h"
@@ -24,7 +25,9 @@ typedef struct WoodsConfig {
     int    most_trees;   /* 0 .. woods_most_trees */
     const char *store;   /* path of the terrain store of the landscape, for its canopy layers and crowns; NULL: none */
     int         path_count;
-    const WoodsPath *path; /* paths that are cleared of plants */
+    const WoodsPath *path;    /* paths that are cleared of plants */
+    Cache           *cache;   /* where the standing plants are kept; NULL: nowhere */
+    const char      *follows; /* what the landscape and the tables follow from, as a text; NULL: not known: not kept */
 } WoodsConfig;
 
 enum { woods_most_trees = 4000000 };

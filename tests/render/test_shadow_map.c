@@ -39,7 +39,7 @@ static void length_of_a_shadow(void **state)
     ridge(40);
     for (int s = 0; s < 6; s++) slot(d, s, azimuth[s], high[s]);
     CHECK(pool_create(&pool, 2) == STATUS_OK);
-    CHECK(heat_shadow_create(&map, &ground, 8, 6, d, NULL, NULL, pool) == STATUS_OK);
+    CHECK(heat_shadow_create(&map, &(ShadowOf){&ground, 8, 6, d, NULL, NULL, NULL}, pool) == STATUS_OK);
     for (int s = 0; s < 6; s++) {
         /* across the ridge */
         const double reach_m = 40 / tan(high[s] * rad_per_deg) * fabs(sin(azimuth[s] * rad_per_deg));
@@ -82,7 +82,7 @@ static void light_below_a_stand(void **state)
     slot(d, 0, 90, 50);
     slot(d, 1, 270, 30);
     slot(d, 2, 180, 90);
-    CHECK(heat_shadow_create(&map, &ground, 8, 3, d, even_stand, NULL, NULL) == STATUS_OK);
+    CHECK(heat_shadow_create(&map, &(ShadowOf){&ground, 8, 3, d, even_stand, NULL, NULL}, NULL) == STATUS_OK);
     uint8_t shadow[shadow_most_slots];
     double  open;
     heat_shadow_at(shadow, &open, map, -300, 40);
@@ -105,11 +105,11 @@ static void large_terrain_has_larger_cells(void **state)
     ShadowMap *map;
     ridge(5);
     slot(d, 0, 90, 50);
-    CHECK(heat_shadow_create(&map, &ground, 0.5, 1, d, NULL, NULL, NULL) == STATUS_OK);
+    CHECK(heat_shadow_create(&map, &(ShadowOf){&ground, 0.5, 1, d, NULL, NULL, NULL}, NULL) == STATUS_OK);
     CHECK(heat_shadow_cell_m(map) == 1 && heat_shadow_bytes(map) < 9 * (size_t)shadow_most_cells);
     heat_shadow_destroy(map);
-    CHECK(heat_shadow_create(&map, &ground, 0, 1, d, NULL, NULL, NULL) == STATUS_BAD_VALUE);
-    CHECK(heat_shadow_create(&map, &(Elevation){0}, 8, 1, d, NULL, NULL, NULL) == STATUS_BAD_VALUE);
+    CHECK(heat_shadow_create(&map, &(ShadowOf){&ground, 0, 1, d, NULL, NULL, NULL}, NULL) == STATUS_BAD_VALUE);
+    CHECK(heat_shadow_create(&map, &(ShadowOf){&(Elevation){0}, 8, 1, d, NULL, NULL, NULL}, NULL) == STATUS_BAD_VALUE);
     elevation_destroy(&ground);
 }
 

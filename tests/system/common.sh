@@ -11,6 +11,7 @@ build=${1:?usage: bash $0 BUILD_FOLDER}
 pitviper=$build/pitviper
 [ -x "$pitviper" ] || { echo "skipped: no $pitviper"; exit 77; }
 tmp=$(mktemp -d) || exit 1
+export XDG_CACHE_HOME=$tmp/cache # nothing of the user's, and empty
 # also what it has in the background ends with a script
 clean_up() { kill -KILL $(jobs -p) 2>/dev/null; chmod -R u+w "$tmp" 2>/dev/null; rm -rf "$tmp"; }
 trap clean_up EXIT

@@ -291,6 +291,11 @@ fail:
     return status;
 }
 
+int64_t tracer_embree(const Tracer *tracer)
+{
+    return (int64_t)rtcGetDeviceProperty(tracer->device, RTC_DEVICE_PROPERTY_VERSION);
+}
+
 Status tracer_create(Tracer **out, const Catalog *catalog, const char *isa)
 {
     const int     count = catalog_model_count(catalog);

@@ -21,6 +21,8 @@ void   tracer_destroy(Tracer *tracer);
 /* As tracer_create, with the models given directly; they must outlive the tracer. NULL among them: not drawable. */
 Status tracer_create_models(Tracer **out, const Model *const *models, int count, const char *isa);
 int    tracer_model_count(const Tracer *tracer);
+/* Version of the Embree that is loaded: 31305 is 3.13.5. */
+int64_t tracer_embree(const Tracer *tracer);
 /* Builds the geometry of a model of the catalog that was not built when the tracer was made. One thread, before
  * parts_pose. */
 Status       tracer_need(Tracer *tracer, int model);

@@ -7,7 +7,7 @@
 #include "entities/catalog/catalog.h"
 #include "entities/survey/survey.h"
 #include "sensor/settings/config.h"
-#include "sensor/settings/sha256.h"
+#include "pitviper_sha256.h"
 #include "terrain/ground/landscape.h"
 #include "terrain/woods/woods.h"
 
@@ -76,6 +76,8 @@ typedef struct ChoiceBasis {
     const Config         *config;
     const Catalog        *catalog;
     const GroundEvidence *evidence;
+    Cache                *cache;   /* where plants that stand on invented ground are kept; NULL: nowhere */
+    const char           *follows; /* WoodsConfig.follows */
 } ChoiceBasis;
 
 /* Entities that are clamped to the ground: none, those inconsistent with synthetic terrain, or all on the ground. */

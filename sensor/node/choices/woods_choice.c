@@ -246,7 +246,9 @@ Status choice_woods(WoodsChoice *out, Choices *choices, const ChoiceBasis *basis
                                 .centre_m = {square->centre_m[0], square->centre_m[1]},
                                 .half_width_m = square->half_width_m,
                                 .most_trees = config->terrain.woods_trees,
-                                .store = stored ? config->terrain.store : NULL};
+                                .store = stored ? config->terrain.store : NULL,
+                                .cache = real ? NULL : basis->cache, /* files may change and keep their names */
+                                .follows = basis->follows};
     Paths paths = {.square = &out->config, .landscape = landscape};
     if (!real) add_known(&paths, &impacts, survey, catalog, e);
     out->path = paths.path;

@@ -96,6 +96,7 @@ Status run_survey(Run *run, const DisLog *heard)
     if (status == STATUS_OK) status = made_catalog(run->made, &o->config, &run->tables);
     if (status == STATUS_OK) status = tables_given(&run->tables, &o->config);
     if (status == STATUS_OK) status = load_libraries(&o->config);
+    made_cache(run->made, &o->config);
     return status == STATUS_OK ? made_pool(run->made, o->threads) : status;
 }
 

@@ -76,6 +76,7 @@ void made_world_destroy(MadeWorld *m)
     if (!m) return;
     take_down_from(m, MADE_LOG);
     pool_destroy(m->pool);
+    cache_close(m->cache);
     free(m);
 }
 
@@ -257,6 +258,11 @@ Status made_pool(MadeWorld *m, int threads)
     return pool_create(&m->pool, threads);
 }
 
+void made_cache(MadeWorld *m, const Config *config)
+{
+    if (!m->cache && config->cache.on) m->cache = cache_open(config->cache.folder, (size_t)config->cache.most_mb << 20);
+}
+
 /* ---- the world -------------------------------------------------------------------------------------- */
 
 static void add_frame(Key *key, const LocalFrame *frame)
@@ -275,7 +281,7 @@ static Status need_ground(MadeWorld *m, const MadeOf *of, const GroundEvidence *
     add_frame(&key, of->frame);
     key.good = key.good && *m->key[MADE_CATALOG] && choice_evidence_hash(key.digest, evidence);
     if (is_there(key_text, m, MADE_GROUND, &key)) return STATUS_OK;
-    const ChoiceBasis basis = {&m->survey, part, m->catalog, evidence};
+    const ChoiceBasis basis = {&m->survey, part, m->catalog, evidence, NULL, NULL};
     return done(m, MADE_GROUND, key_text,
                 choice_ground(&m->landscape, &m->contact, &m->said[MADE_GROUND], &basis, of->frame));
 }
@@ -292,7 +298,11 @@ static Status need_woods(MadeWorld *m, const MadeOf *of, const GroundEvidence *e
     add(&key, &square.half_width_m, sizeof square.half_width_m);
     key.good = key.good && *m->key[MADE_GROUND] && choice_evidence_hash(key.digest, evidence);
     if (is_there(key_text, m, MADE_WOODS, &key)) return STATUS_OK;
-    const ChoiceBasis basis = {&m->survey, part, m->catalog, evidence};
+    char follows[3 * sha256_text_size]; /* settings, tables, frame and evidence by content; paths of vehicles are in
+                                           WoodsConfig */
+    snprintf(follows, sizeof follows, "%s%s%s", m->key[MADE_CATALOG], m->key[MADE_GROUND], key_text);
+    const bool        known = *m->key[MADE_CATALOG] && *m->key[MADE_GROUND] && *key_text;
+    const ChoiceBasis basis = {&m->survey, part, m->catalog, evidence, m->cache, known ? follows : NULL};
     return done(m, MADE_WOODS, key_text,
                 choice_woods(&m->woods, &m->said[MADE_WOODS], &basis, &square, &m->landscape, m->pool));
 }
@@ -306,6 +316,7 @@ static Status need_models(MadeWorld *m, const MadeOf *of)
     add_text(&key, of->isa);
     if (is_there(key_text, m, MADE_MODELS, &key)) return STATUS_OK;
     Status status = frame_world_open(&m->world, part, m->catalog, &m->landscape, of->frame, of->isa);
+    if (status == STATUS_OK) m->world.cache = m->cache;
     if (status == STATUS_OK)
         status = frame_world_plant(&m->world, m->woods.on ? &m->woods.woods : NULL, part, of->isa, m->pool);
     return done(m, MADE_MODELS, key_text, status);

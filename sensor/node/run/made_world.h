@@ -26,6 +26,7 @@ typedef enum MadeLayer {
 } MadeLayer;
 
 typedef struct MadeWorld {
+    Cache        *cache; /* of the disk; NULL: none */
     Pool         *pool;
     int           threads; /* of pool */
     DisLog        log;
@@ -53,6 +54,8 @@ Status made_log(MadeWorld *made, const char *path, const Config *config);
 Status made_survey(MadeWorld *made, const DisLog *heard, int exercise);
 Status made_catalog(MadeWorld *made, const Config *config, const TablesUsed *tables);
 Status made_pool(MadeWorld *made, int threads);
+/* Opens the cache of the disk, unless it is open or cache.on is off. A failure is logged, and costs time alone. */
+void made_cache(MadeWorld *made, const Config *config);
 
 /* What the world follows from, beside survey and catalog. */
 typedef struct MadeOf {

@@ -1,6 +1,6 @@
-/* sensor/settings/sha256.h: SHA-256 as 64 hexadecimal digits. */
-#ifndef SENSOR_SETTINGS_SHA256_H
-#define SENSOR_SETTINGS_SHA256_H
+/* pitviper_sha256.h: SHA-256 as 64 hexadecimal digits. */
+#ifndef PITVIPER_SHA256_H
+#define PITVIPER_SHA256_H
 
 #include "pitviper.h"
 

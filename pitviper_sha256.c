@@ -1,5 +1,5 @@
-/* sensor/settings/sha256.c: SHA-256 as text, by OpenSSL. */
-#include "sensor/settings/sha256.h"
+/* pitviper_sha256.c: SHA-256 as text, by OpenSSL. */
+#include "pitviper_sha256.h"
 
 #include "pitviper_file.h"
 
