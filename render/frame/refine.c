@@ -215,7 +215,8 @@ void refine_tile(void *user, int worker, int task)
         for (int x = tile.x0; x < tile.x1; x++) {
             const size_t px = pixel_index(job, x, y);
             unsigned     flags = flags_of[(y - tile.y0) * (tile.x1 - tile.x0) + x - tile.x0];
-            if (bare) flags &= job->refine[px] | refine_all | refine_plants;
+            /* a shadow's edge on a target stays */
+            if (bare && !job->picture->entity[px]) flags &= job->refine[px] | refine_all | refine_plants;
             if (job->whole && !job->whole[px]) flags = 0;
             job->refine[px] = (uint8_t)flags;
             any |= flags;
