@@ -82,7 +82,8 @@ static inline Status stood_ground(Landscape *out, GroundContact *contact, Choice
     GroundEvidence *evidence = NULL;
     Status          status = choice_evidence(&evidence, &e->survey, catalog, plan, &frame);
     if (status == STATUS_OK)
-        status = choice_ground(out, contact, choices, &(ChoiceBasis){&e->survey, config, catalog, evidence}, &frame);
+        status = choice_ground(out, contact, choices, &(ChoiceBasis){&e->survey, config, catalog, evidence, NULL, NULL},
+                               &frame);
     if (status == STATUS_OK) choice_report_submerged(choices, &e->survey, evidence, plan);
     choice_evidence_free(evidence);
     return status;
@@ -96,7 +97,8 @@ static inline Status stood_woods(WoodsChoice *out, Choices *choices, const Exerc
     Status          status = choice_evidence(&evidence, &e->survey, catalog, plan, &land->frame);
     if (status == STATUS_OK) status = choice_square(&square, &e->survey, config, &land->frame, plan);
     if (status == STATUS_OK)
-        status = choice_woods(out, choices, &(ChoiceBasis){&e->survey, config, catalog, evidence}, &square, land, NULL);
+        status = choice_woods(out, choices, &(ChoiceBasis){&e->survey, config, catalog, evidence, NULL, NULL}, &square,
+                              land, NULL);
     choice_evidence_free(evidence);
     return status;
 }
