@@ -170,6 +170,7 @@ static bool read_file(char **out, size_t *octets, bool *there, const Cache *c, c
         return false;
     char      why[file_why_size];
     const int file = file_open(why, NULL, path, FILE_FROM_DISK);
+    *there = file >= 0 || lstat(path, &about) == 0; /* another process may remove it */
     if (file < 0) return false;
     *octets = (size_t)about.st_size;
     *out = malloc(*octets + 1);
