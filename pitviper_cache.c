@@ -89,13 +89,18 @@ static bool default_folder(char out[path_size])
     return n > 0 && n < path_size;
 }
 
+static void make_room(const Cache *c);
+
 Cache *cache_open(const char *folder, size_t most_octets)
 {
     Cache *c = calloc(1, sizeof *c);
     if (!c) return NULL;
     const bool named = *folder ? snprintf(c->folder, path_size, "%s", folder) < path_size : default_folder(c->folder);
     c->most_octets = most_octets;
-    if (named && output_folder(c->folder) == 0 && pthread_mutex_init(&c->mutex, NULL) == 0) return c;
+    if (named && output_folder(c->folder) == 0 && pthread_mutex_init(&c->mutex, NULL) == 0) {
+        make_room(c); /* most_octets may be less than it was */
+        return c;
+    }
     if (named)
         log_warn("cache: %s cannot be made: %s; everything is made anew in every run (cache.folder names another, "
                  "cache.on: off is silent)",

@@ -167,6 +167,11 @@ static void least_recently_used_go(void **state)
     keep(c, 31, 10);
     CHECK(access(path, F_OK) != 0);
     cache_close(c);
+    /* with less room than before: the older ones go, and none is called damaged */
+    CHECK(octets_in_folder(&files) > 3 * large && (c = cache_open(folder, large / 2)));
+    CHECK(octets_in_folder(&files) <= large / 2);
+    CHECK(!fetch(&key, c, 20, large) && fetch(&key, c, 31, 10) && cache_counters(c).damaged == 0);
+    cache_close(c);
 }
 
 static void write_for_ever(int which)

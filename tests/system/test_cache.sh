@@ -28,15 +28,22 @@ replay "$tmp/demo.pcap" "$tmp/seed_none" "${few[@]}" --seed 2 --set cache.on=off
 check "and has its own bits" same_hashes "$tmp/seed" "$tmp/seed_none"
 check "which are others" not same_hashes "$tmp/seed" "$tmp/none"
 
+# bare trees are other prototypes, which let more light through: each way beside entries of the other
+replay "$tmp/demo.pcap" "$tmp/bare" "${few[@]}" -v --set terrain.woods_leaves=off
+check "bare trees: no prototypes of trees in leaf" [ "$(counts)" = "0 3 0" ]
+replay "$tmp/demo.pcap" "$tmp/bare_none" "${few[@]}" --set terrain.woods_leaves=off --set cache.on=off
+check "and their own bits" same_hashes "$tmp/bare" "$tmp/bare_none"
+check "which are others" not same_hashes "$tmp/bare" "$tmp/none"
+
 # a bit of every entry; then two runs at once, which mend them
 for entry in "$XDG_CACHE_HOME"/pitviper/*.kept; do printf x | dd of="$entry" bs=1 seek=9000 conv=notrunc status=none; done
-"$pitviper" replay "${bare[@]}" "$tmp/demo.pcap" --out "$tmp/at_once" "${few[@]}" >/dev/null 2>&1 &
+"$pitviper" replay "${bare[@]}" "$tmp/demo.pcap" --out "$tmp/at_once" "${few[@]}" >/dev/null 2>"$tmp/other_said" &
 other=$!
 replay "$tmp/demo.pcap" "$tmp/damaged" "${few[@]}"
 wait "$other"
 check "damaged: same bits" same_hashes "$tmp/none" "$tmp/damaged"
 check "beside another run: same bits" same_hashes "$tmp/none" "$tmp/at_once"
-check "and said" grep -q "is damaged: what it held is made anew" "$tmp/stderr"
+check "and said, by the one that found it" grep -q "is damaged: what it held is made anew" "$tmp/stderr" "$tmp/other_said"
 replay "$tmp/demo.pcap" "$tmp/mended" "${few[@]}" -v
 check "mended" [ "$(counts)" = "3 0 0" ]
 check "same bits" same_hashes "$tmp/none" "$tmp/mended"

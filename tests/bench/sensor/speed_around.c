@@ -167,8 +167,8 @@ static Status time_sweep(Speed *s)
     snprintf(out, sizeof out, "%s/out", folder);
     snprintf(said, sizeof said, "%s/said.txt", folder);
     const char *const exercise[] = {"pitviper", "exercise", "demo", "-o", log, NULL};
-    const char *const replay[] = {"pitviper",   "replay",  log,   "--size", "96x64", "--only", "30",
-                                  "--no-files", "--sweep", sweep, "--out",  out,     NULL};
+    const char *const replay[] = {"pitviper", "replay", log,     "--size", "96x64", "--only",       "30", "--no-files",
+                                  "--sweep",  sweep,    "--out", out,      "--set", "cache.on=off", NULL};
     FILE             *file = output_file(sweep, 0);
     bool              ok = file && fprintf(file, "axes:\n  detector.gain: [1") > 0;
     for (int i = 1; i < variants; i++) ok = ok && fprintf(file, ", %g", 1 + 0.1 * i) > 0;
