@@ -169,16 +169,7 @@ static void add_own(Key *key, const Config *config)
 
 /* ---- log, survey, catalog --------------------------------------------------------------------------- */
 
-typedef struct Hash {
-    Sha256 *digest;
-    bool    good;
-} Hash;
-
-static void hash_octets(void *user, const void *octets, size_t count)
-{
-    Hash *hash = user;
-    hash->good = hash->good && sha256_add(hash->digest, octets, count);
-}
+static void hash_octets(void *user, const void *octets, size_t count) { add(user, octets, count); }
 
 /* Takes arrival times as a live node received them, independent of the time stamps. */
 static void take_packet_times(DisLog *log)
@@ -191,7 +182,7 @@ static void take_packet_times(DisLog *log)
 
 static Status open_log(MadeWorld *m, const char *path, const Config *config)
 {
-    Hash   hash = {sha256_begin(), true}; /* of the octets as they are read: once */
+    Key    hash = {sha256_begin(), true}; /* of the octets as they are read: once */
     Status status =
         hash.digest ? dis_log_open_read(&m->log, path, config->exercise.port, hash_octets, &hash) : STATUS_NO_MEMORY;
     if (hash.digest) {
