@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # labels: two
-# What is kept between runs (cache.*) changes time alone: the same bits from an empty cache, a full one, none, a damaged one, one
-# that cannot be used, and two runs at once. tests/base/test_cache.c: every octet of an entry.
+# What is kept between runs (cache.*) changes time alone: the same bits without a cache, from an empty one, a full one and a
+# damaged one. test_cache_deep.sh: other plants, two runs at once, folders that cannot be used. tests/base/test_cache.c: every octet
+# of an entry.
 . "$(dirname "$0")/common.sh"
 
 exercise demo "$tmp/demo.pcap"
@@ -21,34 +22,9 @@ replay "$tmp/demo.pcap" "$tmp/warm" "${few[@]}" -v --threads 1
 check "a second run, one thread: same bits" same_hashes "$tmp/none" "$tmp/warm"
 check "all is fetched" [ "$(counts)" = "3 0 0" ]
 
-# another seed grows other woods: the prototypes alone are the same
-replay "$tmp/demo.pcap" "$tmp/seed" "${few[@]}" -v --seed 2
-check "another seed: plants alone are fetched" [ "$(counts)" = "1 2 0" ]
-replay "$tmp/demo.pcap" "$tmp/seed_none" "${few[@]}" --seed 2 --set cache.on=off
-check "and has its own bits" same_hashes "$tmp/seed" "$tmp/seed_none"
-check "which are others" not same_hashes "$tmp/seed" "$tmp/none"
-
-# bare trees are other prototypes, which let more light through: each way beside entries of the other
-replay "$tmp/demo.pcap" "$tmp/bare" "${few[@]}" -v --set terrain.woods_leaves=off
-check "bare trees: no prototypes of trees in leaf" [ "$(counts)" = "0 3 0" ]
-replay "$tmp/demo.pcap" "$tmp/bare_none" "${few[@]}" --set terrain.woods_leaves=off --set cache.on=off
-check "and their own bits" same_hashes "$tmp/bare" "$tmp/bare_none"
-check "which are others" not same_hashes "$tmp/bare" "$tmp/none"
-
-# a bit of every entry; then two runs at once, which mend them
 for entry in "$XDG_CACHE_HOME"/pitviper/*.kept; do printf x | dd of="$entry" bs=1 seek=9000 conv=notrunc status=none; done
-"$pitviper" replay "${bare[@]}" "$tmp/demo.pcap" --out "$tmp/at_once" "${few[@]}" >/dev/null 2>"$tmp/other_said" &
-other=$!
-replay "$tmp/demo.pcap" "$tmp/damaged" "${few[@]}"
-wait "$other"
+replay "$tmp/demo.pcap" "$tmp/damaged" "${few[@]}" -v
 check "damaged: same bits" same_hashes "$tmp/none" "$tmp/damaged"
-check "beside another run: same bits" same_hashes "$tmp/none" "$tmp/at_once"
-check "and said, by the one that found it" grep -q "is damaged: what it held is made anew" "$tmp/stderr" "$tmp/other_said"
-replay "$tmp/demo.pcap" "$tmp/mended" "${few[@]}" -v
-check "mended" [ "$(counts)" = "3 0 0" ]
-check "same bits" same_hashes "$tmp/none" "$tmp/mended"
-
-replay "$tmp/demo.pcap" "$tmp/unusable" "${few[@]}" --set cache.folder="$tmp/demo.pcap/below"
-check "a folder that cannot be made: same bits" same_hashes "$tmp/none" "$tmp/unusable"
-check "said once, with what to do" [ "$(grep -c 'cannot be made.*cache.folder' "$tmp/stderr")" = 1 ]
+check "said of each" [ "$(counts)" = "0 3 3" ]
+check "with what is done" grep -q "is damaged: what it held is made anew" "$tmp/stderr"
 finish
