@@ -1,155 +1,10 @@
-/* render/smoke/smoke_volume.c: spheroids along a ray. Scaling space along its axis maps a spheroid to a unit ball;
- * along a ray the squared distance from the centre is then a parabola, and the density (1 - q^2)^2 a quartic. */
-#include "render/smoke/smoke.h"
+/* render/smoke/smoke_volume.c: what the smoke along a ray takes of its light and adds to it; the volumes that rays may
+ * meet. */
+#include "render/smoke/smoke_private.h"
 
 #include <stdlib.h>
 
-/* ---- one volume along one ray ------------------------------------------------------------- */
-
-typedef struct Chord {
-    double middle_m, half_m; /* parameter of closest approach to the centre, half the chord inside */
-    double rate2;            /* |d|^2 in the ball's units: density is (rate2 (half^2 - u^2))^2 */
-    double q2;               /* squared distance of nearest approach, 0 .. 1 */
-} Chord;
-
-static void to_ball(double out[3], const SmokeVolume *v, const double a_enu[3])
-{
-    const double across = 1 / v->across_m, more = v3_dot(a_enu, v->axis_enu) * (1 / v->along_m - across);
-    for (int i = 0; i < 3; i++) out[i] = a_enu[i] * across + more * v->axis_enu[i];
-}
-
-/* o and d in the ball's units. */
-static bool chord_of(Chord *chord, const double o[3], const double d[3])
-{
-    const double rate2 = v3_dot(d, d), middle_m = -v3_dot(o, d) / rate2;
-    double       nearest[3];
-    /* the point itself, not the difference of two large squares */
-    v3_add_scaled(nearest, o, middle_m, d);
-    const double q2 = v3_dot(nearest, nearest);
-    if (!(q2 < 1)) return false;
-    *chord = (Chord){middle_m, sqrt((1 - q2) / rate2), rate2, q2};
-    return true;
-}
-
-/* Integral of the density from the middle to u metres beyond it, |u| <= half. */
-static inline double column_to(const Chord *c, bool even, double u)
-{
-    if (even) return u;
-    const double h2 = c->half_m * c->half_m, u2 = u * u;
-    return c->rate2 * c->rate2 * u * (h2 * h2 - u2 * (2.0 / 3 * h2 - 0.2 * u2));
-}
-
-static double chord_column(const Chord *c, bool even, double from_m, double to_m)
-{
-    const double a = clamp(from_m - c->middle_m, -c->half_m, c->half_m);
-    const double b = clamp(to_m - c->middle_m, -c->half_m, c->half_m);
-    return b > a ? column_to(c, even, b) - column_to(c, even, a) : 0;
-}
-
-double smoke_column_m(const SmokeVolume *volume, const double o_enu[3], const double d_enu[3], double from_m,
-                      double to_m)
-{
-    double off[3], o[3], d[3];
-    Chord  chord;
-    v3_sub(off, o_enu, volume->p_enu);
-    to_ball(o, volume, off);
-    to_ball(d, volume, d_enu);
-    return chord_of(&chord, o, d) ? chord_column(&chord, volume->even, from_m, to_m) : 0;
-}
-
-/* ---- noise pattern ------------------------------------------------------------------------ */
-
-static inline float lattice(int32_t x, int32_t y, int32_t z)
-{
-    uint32_t h = (uint32_t)x * 0x8da6b343u ^ (uint32_t)y * 0xd8163841u ^ (uint32_t)z * 0xcb1ab31fu;
-    h ^= h >> 15, h *= 0x2c1b3c6du, h ^= h >> 12, h *= 0x297a2d39u, h ^= h >> 15;
-    return (float)(int32_t)h * (1 / 2147483648.0f);
-}
-
-static float lattice_noise(const double p[3])
-{
-    int32_t i[3];
-    float   f[3];
-    for (int k = 0; k < 3; k++) {
-        const double low = floor(p[k]);
-        i[k] = (int32_t)low;
-        const float t = (float)(p[k] - low);
-        f[k] = t * t * (3 - 2 * t);
-    }
-    float plane[2];
-    for (int z = 0; z < 2; z++) {
-        const float a = lattice(i[0], i[1], i[2] + z), b = lattice(i[0] + 1, i[1], i[2] + z);
-        const float c = lattice(i[0], i[1] + 1, i[2] + z), d = lattice(i[0] + 1, i[1] + 1, i[2] + z);
-        const float low = a + f[0] * (b - a), high = c + f[0] * (d - c);
-        plane[z] = low + f[1] * (high - low);
-    }
-    return plane[0] + f[2] * (plane[1] - plane[0]);
-}
-
-/* Billows: three octaves of noise, the finer ones folded so that they bulge outwards. About -1 .. 1, mean near 0.
- * Each octave has axes of its own: aligned lattices show as squares. */
-static double billows(const double p[3])
-{
-    static const double turn[9] = {0.00, 0.80, 0.60, -0.80, 0.36, -0.48, -0.60, -0.48, 0.64};
-    double              at[3], turned[3];
-    m3_mul_v3(turned, turn, p);
-    v3_scale(at, 1.7, turned);
-    double sum = lattice_noise(at);
-    for (int octave = 0; octave < 2; octave++) {
-        m3_mul_v3(turned, turn, at);
-        for (int k = 0; k < 3; k++) at[k] = 2.17 * turned[k] + 11.3;
-        sum += (octave ? 0.4 : 0.7) * (0.62 - 1.9 * fabs((double)lattice_noise(at)));
-    }
-    return sum;
-}
-
-/* At the ray's closest approach to the centre the pattern gives the bulge of the ball there (space is scaled by it,
- * 1 .. 1.6) and the density: the factor on the ray's whole column. The constant compensates the scaling: the mean
- * mass is kept (tests/render/test_smoke_volume.c). */
-static double pattern_stretch(double *factor, const SmokeVolume *v, const double nearest[3], double q2)
-{
-    double p[3];
-    v3_add(p, nearest, v->pattern);
-    const double n = billows(p), f = 1 + v->billow * n * (0.7 + 1.2 * q2);
-    *factor = (1 + 0.42 * v->billow) * fmax(f, 0);
-    return 1 + 0.38 * v->billow * clamp(0.6 - n, 0, 1.6);
-}
-
 /* ---- a ray -------------------------------------------------------------------------------- */
-
-typedef struct Crossing {
-    const SmokeVolume *volume;
-    Chord              chord;
-    double             from_m, to_m, factor;
-    double             source[smoke_bands];
-} Crossing;
-
-/* Source radiance of the volume on this ray, with the sunlight that reaches one point of its chord, in front of the
- * middle. */
-static void light_crossing(Crossing *c, const double o[3], const double d[3], unsigned bands)
-{
-    const SmokeVolume *v = c->volume;
-    const double       at_m = fmax(c->from_m, c->chord.middle_m - 0.55 * c->chord.half_m);
-    double             at[3], d_sun[3], up[3];
-    Chord              sunward;
-
-    v3_add_scaled(at, o, at_m, d);
-    to_ball(d_sun, v, v->d_sun_enu);
-    double column_m = 0;
-    if (chord_of(&sunward, at, d_sun)) column_m = c->factor * chord_column(&sunward, v->even, 0, INFINITY);
-    static const double zenith_enu[3] = {0, 0, 1};
-    to_ball(up, v, zenith_enu);
-    const double top = clamp(v3_dot(at, up) / v3_length(up), -1, 1);
-    for (int b = 0; b < smoke_bands; b++) {
-        if (!(bands >> b & 1)) continue;
-        double lit = v->source[b] + top * v->from_top[b];
-        if (v->sun[b][0] > 0) {
-            const double e4 = exp(-0.25 * (v->extinction_per_m[b] * column_m + v->sun_depth[b])), e2 = e4 * e4;
-            lit += v->sun[b][0] * e2 * e2 + v->sun[b][1] * e2 + v->sun[b][2] * e4;
-        }
-        c->source[b] = lit;
-    }
-}
 
 /* By insertion: volumes come in order of range, so few lie far from their place. */
 static void sort_m(double *at_m, int count)
@@ -265,8 +120,9 @@ static void compose(Passed *passed, const Crossing *crossing, int count, unsigne
         for (int i = 0; i < count; i++) {
             const Crossing *c = &crossing[i];
             if (!(c->from_m < cut_m[k + 1] && c->to_m > cut_m[k])) continue;
-            const double column_m = c->factor * chord_column(&c->chord, c->volume->even, fmax(cut_m[k], c->from_m),
-                                                             fmin(cut_m[k + 1], c->to_m));
+            const double column_m =
+                c->factor *
+                smoke_chord_column(&c->chord, c->volume->even, fmax(cut_m[k], c->from_m), fmin(cut_m[k + 1], c->to_m));
             any = true;
             for (int b = 0; b < smoke_bands; b++) {
                 if (!(bands >> b & 1)) continue;
@@ -308,12 +164,12 @@ static void compose(Passed *passed, const Crossing *crossing, int count, unsigne
 /* A ball about the volume. */
 static inline double reach_m(const SmokeVolume *v) { return v->along_m > v->across_m ? v->along_m : v->across_m; }
 
-enum { cone_rays = 16, cone_most = 512 };
+enum { cone_rays = 16 };
 
 /* The volumes that rays first .. first + many may meet, if those begin in one point: of others the balls lie off a cone
  * about the rays. -1: not so, or too many. */
-static int list_of_cone(int near[cone_most], const SmokeVolume *volume, const int *list, int count, const Rays *rays,
-                        int first, int many)
+static int list_of_cone(int near[smoke_set_most], const SmokeVolume *volume, const int *list, int count,
+                        const Rays *rays, int first, int many)
 {
     const double o[3] = {rays->o_enu[0][first], rays->o_enu[1][first], rays->o_enu[2][first]};
     double       axis[3] = {0, 0, 0}, cosine = 1;
@@ -339,74 +195,66 @@ static int list_of_cone(int near[cone_most], const SmokeVolume *volume, const in
         const double along = v3_dot(off, axis), square = v3_dot(off, off) - along * along;
         const double widest = (reach + along * sine) / cosine;
         if (!(along > -reach) || !(square <= widest * widest * (1 + 1e-9) + 1e-9 * (1 + along * along))) continue;
-        if (listed == cone_most) return -1;
+        if (listed == smoke_set_most) return -1;
         near[listed++] = list[n];
     }
     return listed;
 }
 
-/* One ray: what it passes, front to back; the number of volumes crossed. */
-static int trace_ray(Passed *passed, Crossing crossing[veil_together], const SmokeVolume *volume, const int *list,
-                     int count, const double o_enu[3], const double d_enu[3], double far_m, unsigned bands)
+typedef struct Candidates {
+    const SmokeVolume *volume;
+    const int         *list;
+    int                count;
+} Candidates;
+
+/* One ray: what it passes, front to back; the number of volumes crossed. Those of the set, or where all are given,
+ * which are too many for a set, these piece by piece. */
+static int trace_ray(Passed *passed, SmokeSet *set, const Candidates *all, const SmokeRay *ray)
 {
-    int crossed = 0, composed = 0;
+    Crossing crossing[veil_together + 4];
+    int      near[smoke_set_most], crossed = 0, composed = 0, from = 0;
     for (int b = 0; b < smoke_bands; b++) passed->through[b] = 1, passed->added[b] = 0;
     passed->goes_on = true, passed->in_gas = false;
-    for (int n = 0; n < count && passed->goes_on; n++) {
-        const SmokeVolume *v = &volume[list[n]];
-        Crossing          *c = &crossing[crossed];
-        double             off[3], o[3], d[3];
-        v3_sub(off, o_enu, v->p_enu);
-        /* bounding ball first: most volumes of a block miss most rays */
-        const double along = v3_dot(off, d_enu), reach = reach_m(v);
-        if (v3_dot(off, off) - along * along > reach * reach * 1.001) continue;
-        to_ball(o, v, off);
-        to_ball(d, v, d_enu);
-        if (!chord_of(&c->chord, o, d)) continue;
-        c->volume = v;
-        c->from_m = fmax(c->chord.middle_m - c->chord.half_m, 0);
-        c->to_m = fmin(c->chord.middle_m + c->chord.half_m, far_m);
-        if (!(c->to_m > c->from_m)) continue;
-        c->factor = 1;
-        if (v->billow > 0) {
-            double nearest[3];
-            v3_add_scaled(nearest, o, c->chord.middle_m, d);
-            const double stretch = pattern_stretch(&c->factor, v, nearest, c->chord.q2);
-            v3_scale(o, stretch, o);
-            v3_scale(d, stretch, d);
-            if (!(c->factor > 0) || !chord_of(&c->chord, o, d)) continue;
-            c->from_m = fmax(c->chord.middle_m - c->chord.half_m, 0);
-            c->to_m = fmin(c->chord.middle_m + c->chord.half_m, far_m);
-            if (!(c->to_m > c->from_m)) continue;
+    do {
+        const int piece = all && all->count - from > smoke_set_most ? smoke_set_most : all ? all->count - from : 0;
+        if (all) smoke_set_fill(set, all->volume, all->list + from, piece);
+        const int nears = smoke_set_near(near, set, ray->o_enu, ray->d_enu);
+        for (int n = 0; n < nears && passed->goes_on; n += 4) {
+            crossed += smoke_cross(&crossing[crossed], set, &near[n], nears - n < 4 ? nears - n : 4, ray);
+            if (crossed < veil_together) continue;
+            compose(passed, crossing, veil_together, ray->bands);
+            composed += veil_together, crossed -= veil_together;
+            memmove(crossing, crossing + veil_together, (size_t)crossed * sizeof *crossing);
+            if (!passed->goes_on) crossed = 0;
         }
-        light_crossing(c, o, d, bands);
-        if (++crossed < veil_together) continue;
-        compose(passed, crossing, crossed, bands);
-        composed += crossed, crossed = 0;
-    }
-    if (crossed > 0) compose(passed, crossing, crossed, bands);
+        from += piece;
+    } while (all && from < all->count && passed->goes_on);
+    if (crossed > 0) compose(passed, crossing, crossed, ray->bands);
     return composed + crossed;
 }
 
 void smoke_trace_rays(SmokeRays *out, const SmokeVolume *volume, const int *list, int count, const Rays *rays,
                       const double *far_m, unsigned bands)
 {
-    Crossing crossing[veil_together];
-    int      near[cone_most], nears = -1;
+    const Candidates all = {volume, list, count};
+    SmokeSet         set;
+    bool             in_set = false;
 
     out->any = false;
     for (int r = 0; count > 0 && r < rays->count; r++) {
         if (r % cone_rays == 0) {
             const int left = rays->count - r;
-            nears = list_of_cone(near, volume, list, count, rays, r, left < cone_rays ? left : cone_rays);
+            int       near[smoke_set_most];
+            const int nears = list_of_cone(near, volume, list, count, rays, r, left < cone_rays ? left : cone_rays);
+            in_set = nears >= 0;
+            if (in_set) smoke_set_fill(&set, volume, near, nears);
         }
-        const double o_enu[3] = {rays->o_enu[0][r], rays->o_enu[1][r], rays->o_enu[2][r]};
-        const double d_enu[3] = {rays->d_enu[0][r], rays->d_enu[1][r], rays->d_enu[2][r]};
-        Passed       passed;
-        if (nears == 0) continue;
-        if (trace_ray(&passed, crossing, volume, nears < 0 ? list : near, nears < 0 ? count : nears, o_enu, d_enu,
-                      far_m[r], bands) == 0)
-            continue;
+        const double   o_enu[3] = {rays->o_enu[0][r], rays->o_enu[1][r], rays->o_enu[2][r]};
+        const double   d_enu[3] = {rays->d_enu[0][r], rays->d_enu[1][r], rays->d_enu[2][r]};
+        const SmokeRay ray = {o_enu, d_enu, far_m[r], bands};
+        Passed         passed;
+        if (in_set && set.count == 0) continue;
+        if (trace_ray(&passed, &set, in_set ? NULL : &all, &ray) == 0) continue;
         if (!out->any)
             for (int b = 0; b < smoke_bands; b++)
                 for (int i = 0; i < rays->count; i++) out->transmittance[b][i] = 1, out->added[b][i] = 0;
