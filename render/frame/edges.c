@@ -259,8 +259,9 @@ void refine_flags(uint8_t flags[hits_capacity], const Job *job, int x0, int y0, 
     uint32_t across[side + 1] = {0}, above[side] = {0}, below[side] = {0}; /* across[k]: pixels x0 + k - 1 and x0 + k */
     uint32_t alike[side];
     uint16_t corner[corner_capacity];
-    const bool grounds =
-        job->scene.world->landscape && job->request->samples == 1 && job->request->bands & ~(1u << BAND_RADAR);
+    /* the steps that give up rays refine no borders of ground */
+    const bool grounds = job->scene.world->landscape && job->request->samples == 1 &&
+                         job->request->bands & ~(1u << BAND_RADAR) && job->request->sampling == SAMPLING_ALL;
     const int left = x0 > 0 ? x0 - 1 : 0, right = x1 < view->width ? x1 : view->width - 1;
     if (grounds) corner_materials(corner, job, x0, y0, x1, y1);
     if (y0 > 0) find_plain(above, job, pixel_index(job, x0, y0 - 1), pixel_index(job, x0, y0), width);

@@ -1,6 +1,6 @@
-/* render/smoke/smoke_crossings.c: spheroids that a ray crosses, four at a time. Scaling space along its axis maps a spheroid
- * to a unit ball; along a ray the squared distance from the centre is then a parabola, and the density (1 - q^2)^2 a
- * quartic. */
+/* render/smoke/smoke_crossings.c: spheroids that a ray crosses, four at a time. Scaling space along its axis maps a
+ * spheroid to a unit ball; along a ray the squared distance from the centre is then a parabola, and the density (1 -
+ * q^2)^2 a quartic. */
 #include "render/smoke/smoke_private.h"
 
 #include "pitviper_simd.h"
@@ -196,7 +196,7 @@ static inline F64x4 column4_ahead(const Chord4 *c, F64x4 even)
 }
 
 /* Fields of four volumes. */
-#define OF4(field) _mm256_setr_pd(v[0]->field, v[1]->field, v[2]->field, v[3]->field)
+#define OF4(field)      _mm256_setr_pd(v[0]->field, v[1]->field, v[2]->field, v[3]->field)
 #define OF4_BALL(field) _mm256_setr_pd(ball[0]->field, ball[1]->field, ball[2]->field, ball[3]->field)
 
 typedef struct Four {
@@ -243,10 +243,10 @@ static void light4(double column_m[4], double top[4], const Four *f)
 {
     const SmokeBall *const   *ball = f->ball;
     const SmokeVolume *const *v = f->volume;
-    const F64x4 at_m = f64x4_max(f->from_m, f->chord.middle_m - f64x4_set(0.55) * f->chord.half_m);
-    const F64x4 even = f64x4_less(f64x4_set(0), OF4(even));
-    F64x4       at[3], sun[3], up[3];
-    Chord4      sunward;
+    const F64x4               at_m = f64x4_max(f->from_m, f->chord.middle_m - f64x4_set(0.55) * f->chord.half_m);
+    const F64x4               even = f64x4_less(f64x4_set(0), OF4(even));
+    F64x4                     at[3], sun[3], up[3];
+    Chord4                    sunward;
     for (int k = 0; k < 3; k++) {
         at[k] = f->o[k] + at_m * f->d[k];
         sun[k] = OF4_BALL(sun[k]);

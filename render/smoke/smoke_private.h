@@ -33,15 +33,15 @@ typedef struct SmokeSet {
     int                count;
     const SmokeVolume *volume[smoke_set_most];
     SmokeBall          ball[smoke_set_most];
-    double             p_enu[3][smoke_set_most], reach2_m2[smoke_set_most]; /* of a ball about it, squared, and a margin */
+    double p_enu[3][smoke_set_most], reach2_m2[smoke_set_most]; /* of a ball about it, squared, and a margin */
 } SmokeSet;
 
 void smoke_set_fill(SmokeSet *set, const SmokeVolume *volume, const int *list, int count);
 /* Places in the set of the volumes whose balls a ray meets, in order. */
 int smoke_set_near(int near[smoke_set_most], const SmokeSet *set, const double o_enu[3], const double d_enu[3]);
 
-/* A ray through up to four volumes: near[0 .. count - 1] of the set. Adds those that it crosses before far_m, in order, with
- * their sources; returns how many. */
+/* A ray through up to four volumes: near[0 .. count - 1] of the set. Adds those that it crosses before far_m, in order,
+ * with their sources; returns how many. */
 typedef struct SmokeRay {
     const double *o_enu, *d_enu;
     double        far_m;

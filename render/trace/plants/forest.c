@@ -120,12 +120,16 @@ Status forest_create(Forest **out, const Woods *woods, const Plants *plants, con
     char    settings[64] = "";
     Forest *forest = calloc(1, sizeof *forest);
     Status  status = STATUS_OK;
-    if (!forest) return STATUS_NO_MEMORY;
+    if (!forest || !(forest->squares = low_squares_create())) {
+        free(forest);
+        return STATUS_NO_MEMORY;
+    }
     forest->woods = woods, forest->plants = plants, forest->config = *config;
     if (isa && *isa) snprintf(settings, sizeof settings, "isa=%s", isa);
     forest->device = rtcNewDevice(settings);
     if (!forest->device) {
         log_error("forest: Embree does not start: isa=%s", isa && *isa ? isa : "auto");
+        low_squares_destroy(forest->squares);
         free(forest);
         return STATUS_UNSUPPORTED;
     }
@@ -153,7 +157,8 @@ Status forest_create_beside(Forest **out, const Forest *of, const Woods *woods)
     forest->borrows = true, forest->woods = woods, forest->error = RTC_ERROR_NONE;
     forest->standing = (PlantList){.forest = forest, .plant = woods->plant, .count = woods->count};
     memcpy(forest->standing.origin_enu, woods->origin_enu, sizeof woods->origin_enu);
-    Status status = plant_list_commit(&forest->standing, forest, true);
+    forest->squares = low_squares_create();
+    Status status = forest->squares ? plant_list_commit(&forest->standing, forest, true) : STATUS_NO_MEMORY;
     if (status == STATUS_OK) status = forest_status(of);
     if (status == STATUS_OK) *out = forest;
     else forest_destroy(forest);
@@ -168,6 +173,7 @@ void forest_destroy(Forest *forest)
         for (int level = 0; level < plant_levels; level++)
             if (forest->shape[kind][level].scene) rtcReleaseScene(forest->shape[kind][level].scene);
     rtcReleaseDevice(forest->device);
+    low_squares_destroy(forest->squares);
     free(forest);
 }
 

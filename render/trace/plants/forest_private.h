@@ -29,6 +29,8 @@ typedef struct PlantList {
     RTCScene             scene; /* NULL: none */
 } PlantList;
 
+typedef struct LowSquares LowSquares; /* low_plants.c */
+
 struct Forest {
     RTCDevice     device;
     int           error; /* the first that Embree reported */
@@ -38,6 +40,7 @@ struct Forest {
     ShapeScene    shape[PLANT_KINDS][plant_levels];
     bool          borrows; /* their scenes */
     PlantList     standing;
+    LowSquares   *squares;
 };
 
 /* A tree of boxes over a list. STATUS_NO_MEMORY. */
@@ -60,6 +63,8 @@ void quad_occlude(const struct RTCFilterFunctionNArguments *a);
 bool shape_occluded(const ShapeScene *shape, const double o[3], const double d[3]);
 
 /* low_plants.c */
+LowSquares      *low_squares_create(void); /* NULL: no memory */
+void             low_squares_destroy(LowSquares *squares);
 Status           low_plants_open(ForestFrame *frame, double reach_m, Pool *pool, Arena *arena);
 void             low_plants_close(ForestFrame *frame);
 const PlantList *low_plants_list(const ForestFrame *frame);

@@ -1,8 +1,68 @@
 /* render/trace/plants/low_plants.c: the low plants of a frame: squares about the eye, thinned out towards their reach.
- */
+ * What grows on a square is the same in every frame, so that the last squares are kept. */
 #include "render/trace/plants/forest_private.h"
 
+#include <pthread.h>
 #include <stdlib.h>
+
+/* ---- squares that are kept -------------------------------------------------------------------- */
+
+enum { low_slots_side = 32 }; /* 256 m: of a frame that reaches 120 m each square has a slot of its own */
+
+typedef struct LowSquare {
+    pthread_mutex_t lock;
+    bool            known;
+    int64_t         i, j;
+    int             count;
+    Plant          *plant; /* malloc'd */
+} LowSquare;
+
+struct LowSquares {
+    LowSquare slot[low_slots_side * low_slots_side];
+};
+
+LowSquares *low_squares_create(void)
+{
+    LowSquares *squares = calloc(1, sizeof *squares);
+    for (int k = 0; squares && k < low_slots_side * low_slots_side; k++)
+        pthread_mutex_init(&squares->slot[k].lock, NULL);
+    return squares;
+}
+
+void low_squares_destroy(LowSquares *squares)
+{
+    for (int k = 0; squares && k < low_slots_side * low_slots_side; k++) {
+        pthread_mutex_destroy(&squares->slot[k].lock);
+        free(squares->slot[k].plant);
+    }
+    free(squares);
+}
+
+/* What woods_low_plants gives. Without memory a square is not kept. */
+static int plants_of(Plant plant[woods_low_most], const Forest *forest, int64_t i, int64_t j)
+{
+    LowSquare *slot = &forest->squares->slot[(j & (low_slots_side - 1)) * low_slots_side + (i & (low_slots_side - 1))];
+    int        count = -1;
+    pthread_mutex_lock(&slot->lock);
+    if (slot->known && slot->i == i && slot->j == j) {
+        count = slot->count;
+        if (count > 0) memcpy(plant, slot->plant, (size_t)count * sizeof *plant);
+    }
+    pthread_mutex_unlock(&slot->lock);
+    if (count >= 0) return count;
+
+    count = woods_low_plants(plant, forest->woods, i, j);
+    Plant *copy = count > 0 ? malloc((size_t)count * sizeof *copy) : NULL;
+    if (count > 0 && !copy) return count;
+    if (copy) memcpy(copy, plant, (size_t)count * sizeof *copy);
+    pthread_mutex_lock(&slot->lock);
+    free(slot->plant);
+    slot->known = true, slot->i = i, slot->j = j, slot->count = count, slot->plant = copy;
+    pthread_mutex_unlock(&slot->lock);
+    return count;
+}
+
+/* ---- a frame ---------------------------------------------------------------------------------- */
 
 typedef struct LowPlants {
     PlantList          list;
@@ -71,7 +131,7 @@ static void fill_square(void *user, int worker, int square)
     low->kept[square] = plant, low->number[square] = number;
     low->lost[square] = !plant || !number;
     if (low->lost[square]) return;
-    const int found = woods_low_plants(plant, woods, i, j);
+    const int found = plants_of(plant, frame->forest, i, j);
     int       kept = 0;
     for (int k = 0; k < found; k++) {
         Plant  p = plant[k];
