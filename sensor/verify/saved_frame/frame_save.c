@@ -160,7 +160,7 @@ static Status prove(bool *same, const ByteSink *bytes, const FrameSave *save, Se
     if (status == STATUS_OK) status = saved_ground_open(&landscape, &file.ground);
     if (status == STATUS_OK)
         status = frame_world(&world, save->config, f->world->catalog, &landscape, &file.ground.frame, "avx2");
-    if (status == STATUS_OK) status = saved_ground_plant(&world, &woods, &file, save->config, "avx2", save->pool);
+    if (status == STATUS_OK) status = saved_ground_plant(&world, &woods, &file, save->config, NULL, "avx2", save->pool);
     if (status == STATUS_OK) status = frame_world_warm(&world, save->config, file.unix_s, save->pool);
     if (status == STATUS_OK) {
         file.snapshot.effect_table = f->seen.snapshot.effect_table;
