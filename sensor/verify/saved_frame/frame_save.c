@@ -189,7 +189,8 @@ static Status pack_proved(ByteSink *bytes, double *reach_m, const SavedFrame *fi
     SeekerRadar        *radar = NULL;
     bool                same = false;
     Status              status = arena ? STATUS_OK : STATUS_NO_MEMORY;
-    if (status == STATUS_OK && file->measured) status = radar_open(&radar, save->config, "avx2", false);
+    if (status == STATUS_OK && file->measured)
+        status = radar_open(&radar, save->config, "avx2", false, save->frame->world->cache);
     /* where plants stand follows from all of the ground */
     const bool cut = !file->ground.invented && !(file->ground.store && *file->ground.store) && !file->planted;
     if (status == STATUS_OK && cut) status = gather_places(&kept, save->frame, gathered);
