@@ -15,54 +15,111 @@
 #include <unistd.h>
 
 enum { path_size = 4096, head_octets = 80, sum_octets = 64 };
-static const char   magic[8] = {'P', 'V', 'K', 'E', 'P', 'T', '1', '\n'};
-static const time_t stale_s = 3600; /* what a killed writer left is older */
+static const char magic[8] = {'P', 'V', 'K', 'E', 'P', 'T', '1', '\n'};
 
 struct Cache {
     char            folder[path_size];
     size_t          most_octets;
+    bool            read_only;
     pthread_mutex_t mutex; /* of the rest */
     CacheCounters   counters;
-    bool            said; /* that it failed */
+    bool            said_unwritten, said_unread;
     unsigned        written;
 };
 
 /* ---- names ------------------------------------------------------------------------------------------ */
 
-/* Adds the build id of the executable, which is loaded first. Without one nothing is kept. */
+/* The program, and the libraries among those it is linked with whose code computes what is kept. Libraries that are
+ * loaded later are not among them: a key is the same whenever it is made. */
+static bool computes(const char *path)
+{
+    static const char *const library[] = {"libm.so", "libembree3.so", "libGeographicLib.so", "liberfa.so"};
+    const char              *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
+    for (size_t k = 0; k < sizeof library / sizeof *library; k++)
+        if (strncmp(name, library[k], strlen(library[k])) == 0) return true;
+    return false;
+}
+
+typedef struct BuildIds {
+    Sha256 *digest;
+    int     objects; /* looked at; the executable is the first */
+    bool    good;
+} BuildIds;
+
+/* Adds the build id of a loaded object that computes. An executable without one keeps nothing. */
 static int add_build_id(struct dl_phdr_info *about, size_t size, void *user)
 {
-    CacheKey *key = user;
+    BuildIds  *ids = user;
+    const bool program = ids->objects++ == 0;
+    bool       found = false;
     (void)size;
-    for (int i = 0; i < about->dlpi_phnum; i++) {
+    if (!program && !computes(about->dlpi_name)) return 0;
+    for (int i = 0; i < about->dlpi_phnum && !found; i++) {
         const ElfW(Phdr) *part = &about->dlpi_phdr[i];
         if (part->p_type != PT_NOTE) continue;
         const char *at = (const char *)(about->dlpi_addr + part->p_vaddr), *end = at + part->p_memsz;
-        while (end - at >= (ptrdiff_t)sizeof(ElfW(Nhdr))) {
+        while (end - at >= (ptrdiff_t)sizeof(ElfW(Nhdr)) && !found) {
             ElfW(Nhdr) note;
             memcpy(&note, at, sizeof note);
             const char *name = at + sizeof note, *value = name + (note.n_namesz + 3) / 4 * 4;
-            if (note.n_type == NT_GNU_BUILD_ID && note.n_namesz == 4 && memcmp(name, "GNU", 4) == 0) {
-                key->good = key->good && sha256_add(key->digest, value, note.n_descsz);
-                return 1;
-            }
+            found = note.n_type == NT_GNU_BUILD_ID && note.n_namesz == 4 && memcmp(name, "GNU", 4) == 0;
+            if (found) ids->good = ids->good && sha256_add(ids->digest, value, note.n_descsz);
             at = value + (note.n_descsz + 3) / 4 * 4;
         }
     }
-    return -1; /* the first has none */
+    ids->good = ids->good && (found || !program);
+    return 0;
+}
+
+/* Values of the mathematical functions. The C library chooses among versions of them, which differ in last bits, by the
+ * processor and by the environment (GLIBC_TUNABLES=glibc.cpu.hwcaps=-FMA), and does not say which it chose: sixteen of
+ * these functions differ, each for a few arguments in a hundred. */
+static bool add_functions(Sha256 *digest)
+{
+    static double (*const function[])(double) = {sin,  cos,  tan,  asin, acos,  atan,  exp,  exp2, log,  log2,
+                                                 sinh, cosh, tanh, cbrt, expm1, log1p, sqrt, erf,  erfc, log10};
+    static float (*const single[])(float) = {sinf, cosf, tanf, expf, exp2f, logf, log2f, atanf};
+    enum { doubles = sizeof function / sizeof *function, singles = sizeof single / sizeof *single, places = 256 };
+    double value[doubles + 3];
+    float  narrow[singles + 1];
+    bool   good = true;
+    for (int k = 0; k < places && good; k++) {
+        volatile double       x = (k + 0.5) / places + 1e-4 * (k % 7);
+        const volatile double y = 1 + 30 * x;
+        for (int f = 0; f < doubles; f++)
+            value[f] = function[f](function[f] == asin || function[f] == acos ? 0.9 * x : y);
+        value[doubles] = pow(y, x), value[doubles + 1] = atan2(x, y), value[doubles + 2] = hypot(x, y);
+        for (int f = 0; f < singles; f++) narrow[f] = single[f]((float)y);
+        narrow[singles] = powf((float)y, (float)x);
+        good = sha256_add(digest, value, sizeof value) && sha256_add(digest, narrow, sizeof narrow);
+    }
+    return good;
+}
+
+static char           machine[sha256_text_size]; /* what computes, the same for the whole process; empty: not known */
+static pthread_once_t machine_found = PTHREAD_ONCE_INIT;
+
+static void find_machine(void)
+{
+    BuildIds      ids = {.digest = sha256_begin()};
+    const char   *libc = gnu_get_libc_version();
+    const uint8_t processor[] = {__builtin_cpu_supports("avx2") != 0, __builtin_cpu_supports("fma") != 0,
+                                 __builtin_cpu_supports("avx512f") != 0};
+    if (!ids.digest) return;
+    ids.good = true;
+    dl_iterate_phdr(add_build_id, &ids);
+    const bool good = ids.good && sha256_add(ids.digest, libc, strlen(libc) + 1) &&
+                      sha256_add(ids.digest, processor, sizeof processor) && add_functions(ids.digest);
+    if (sha256_end(machine, ids.digest, good) != STATUS_OK) *machine = 0;
 }
 
 CacheKey cache_key(const char *what)
 {
+    pthread_once(&machine_found, find_machine);
     CacheKey key = {.digest = sha256_begin()};
-    key.good = key.digest;
-    const char   *libc = gnu_get_libc_version();
-    const uint8_t processor[] = {__builtin_cpu_supports("avx2") != 0, __builtin_cpu_supports("fma") != 0,
-                                 __builtin_cpu_supports("avx512f") != 0};
+    key.good = key.digest && *machine;
     cache_key_add(&key, what, strlen(what) + 1);
-    cache_key_add(&key, libc, strlen(libc) + 1);
-    cache_key_add(&key, processor, sizeof processor);
-    if (key.good && dl_iterate_phdr(add_build_id, &key) != 1) key.good = false;
+    cache_key_add(&key, machine, sizeof machine);
     return key;
 }
 
@@ -91,20 +148,33 @@ static bool default_folder(char out[path_size])
 
 static void make_room(const Cache *c);
 
+static bool is_folder(const char *path)
+{
+    struct stat about;
+    return stat(path, &about) == 0 && S_ISDIR(about.st_mode);
+}
+
 Cache *cache_open(const char *folder, size_t most_octets)
 {
     Cache *c = calloc(1, sizeof *c);
     if (!c) return NULL;
     const bool named = *folder ? snprintf(c->folder, path_size, "%s", folder) < path_size : default_folder(c->folder);
+    const bool writable = named && output_folder(c->folder) == 0;
+    const int  error = errno;
     c->most_octets = most_octets;
-    if (named && output_folder(c->folder) == 0 && pthread_mutex_init(&c->mutex, NULL) == 0) {
-        make_room(c); /* most_octets may be less than it was */
+    c->read_only = named && !writable && is_folder(c->folder);
+    if ((writable || c->read_only) && pthread_mutex_init(&c->mutex, NULL) == 0) {
+        if (writable) make_room(c); /* most_octets may be less than it was */
+        else
+            log_warn("cache: %s cannot be written: %s; what is in it is used, and nothing new is kept (cache.folder "
+                     "names another, cache.on: off is silent)",
+                     c->folder, output_reason(error));
         return c;
     }
     if (named)
         log_warn("cache: %s cannot be made: %s; everything is made anew in every run (cache.folder names another, "
                  "cache.on: off is silent)",
-                 c->folder, output_reason(errno));
+                 c->folder, output_reason(error));
     else log_detail("cache: there is no home to keep it in: everything is made anew (cache.folder)");
     free(c);
     return NULL;
@@ -135,12 +205,12 @@ static void count(Cache *c, uint64_t *counter)
     pthread_mutex_unlock(&c->mutex);
 }
 
-/* Whether this failure is the first. */
-static bool first(Cache *c)
+/* Whether this failure is the first; said: of the cache's. */
+static bool first(Cache *c, bool *said)
 {
     pthread_mutex_lock(&c->mutex);
-    const bool is_first = !c->said;
-    c->said = true;
+    const bool is_first = !*said;
+    *said = true;
     pthread_mutex_unlock(&c->mutex);
     return is_first;
 }
@@ -165,42 +235,55 @@ bool cache_entry_read(size_t *at, size_t *count, const char name[sha256_text_siz
     return true;
 }
 
-/* *out, *octets: of the whole file; NULL: it cannot be read. there: something is. */
-static bool read_file(char **out, size_t *octets, bool *there, const Cache *c, const char *path)
+typedef enum Found { FOUND_NONE, FOUND_FILE, FOUND_UNREAD } Found;
+
+/* FOUND_FILE: *out, *octets; the caller frees it. FOUND_UNREAD: something is there, why says what keeps it from being
+ * read. What is no regular file is not opened, and a link not followed. A file that went meanwhile is none, and so is
+ * one that is larger than the cache or than the memory. */
+static Found read_file(char **out, size_t *octets, char why[file_why_size], const Cache *c, const char *path)
 {
-    struct stat about;
-    *out = NULL;
-    *there = lstat(path, &about) == 0;
-    if (!*there || !S_ISREG(about.st_mode) || about.st_size < 0 || (uint64_t)about.st_size > c->most_octets)
-        return false;
-    char      why[file_why_size];
+    struct stat about, opened;
+    if (lstat(path, &about) != 0) {
+        snprintf(why, file_why_size, "%s", strerror(errno));
+        return errno == ENOENT ? FOUND_NONE : FOUND_UNREAD;
+    }
+    if (S_ISLNK(about.st_mode)) {
+        snprintf(why, file_why_size, "it is a symbolic link, and none is followed here");
+        return FOUND_UNREAD;
+    }
     const int file = file_open(why, NULL, path, FILE_FROM_DISK);
-    *there = file >= 0 || lstat(path, &about) == 0; /* another process may remove it */
-    if (file < 0) return false;
-    *octets = (size_t)about.st_size;
-    *out = malloc(*octets + 1);
-    const bool whole = *out && file_read(file, *out, *octets + 1) == (long)*octets;
-    if (whole) futimens(file, NULL); /* used now */
+    if (file < 0) return lstat(path, &about) == 0 ? FOUND_UNREAD : FOUND_NONE;
+    const bool same = fstat(file, &opened) == 0 && opened.st_ino == about.st_ino && opened.st_dev == about.st_dev;
+    Found      found = FOUND_NONE;
+    if (same && (uint64_t)opened.st_size <= c->most_octets && (*out = malloc((size_t)opened.st_size + 1))) {
+        const long got = file_read(file, *out, (size_t)opened.st_size + 1);
+        *octets = got > 0 ? (size_t)got : 0;
+        found = got < 0 ? FOUND_UNREAD : FOUND_FILE;
+        if (got < 0) snprintf(why, file_why_size, "%s", strerror(errno)), free(*out);
+        else futimens(file, NULL); /* used now */
+    }
     close(file);
-    return whole;
+    return found;
 }
 
 bool cache_fetch(void **octets, size_t *count_of, Cache *c, CacheKey *key)
 {
-    char   path[path_size + 80], *file;
+    char   path[path_size + 80], why[file_why_size], *file;
     size_t size, at;
-    bool   there;
     end_key(key);
     if (!c || !*key->name) return false;
     snprintf(path, sizeof path, "%s/%s.kept", c->folder, key->name);
-    if (read_file(&file, &size, &there, c, path) && cache_entry_read(&at, count_of, key->name, file, size)) {
+    const Found found = read_file(&file, &size, why, c, path);
+    if (found == FOUND_UNREAD && first(c, &c->said_unread))
+        log_warn("cache: %s cannot be read: %s; what it would hold is made anew", path, why);
+    if (found != FOUND_FILE) return false;
+    if (cache_entry_read(&at, count_of, key->name, file, size)) {
         memmove(file, file + at, *count_of);
         *octets = file;
         count(c, &c->counters.fetched);
         return true;
     }
     free(file);
-    if (!there) return false;
     log_warn("cache: %s is damaged: what it held is made anew", path);
     count(c, &c->counters.damaged);
     output_remove(path);
@@ -222,11 +305,12 @@ static int by_use(const void *a, const void *b)
                                   : (p->tv_nsec > q->tv_nsec) - (p->tv_nsec < q->tv_nsec);
 }
 
-static void remove_from(const Cache *c, const char *name)
+/* Whether it is gone. left: only a file that no process is writing. */
+static bool remove_from(const Cache *c, const char *name, bool left)
 {
     char path[path_size + sizeof((Kept *)0)->name + 2];
     snprintf(path, sizeof path, "%s/%s", c->folder, name);
-    output_remove(path);
+    return left ? output_remove_left(path) : output_remove(path) == 0 || errno == ENOENT;
 }
 
 static bool ends_with(const char *name, const char *end)
@@ -247,9 +331,9 @@ static void make_room(const Cache *c)
         struct stat about;
         const bool  aside = ends_with(entry->d_name, ".aside");
         if ((!aside && !ends_with(entry->d_name, ".kept")) || strlen(entry->d_name) >= sizeof kept->name ||
-            fstatat(dirfd(folder), entry->d_name, &about, AT_SYMLINK_NOFOLLOW) != 0)
+            fstatat(dirfd(folder), entry->d_name, &about, AT_SYMLINK_NOFOLLOW) != 0 || !S_ISREG(about.st_mode))
             continue;
-        if (aside && time(NULL) - about.st_mtime > stale_s) remove_from(c, entry->d_name);
+        if (aside) remove_from(c, entry->d_name, true);
         if (aside) continue;
         if (entries == room) {
             const int larger = room ? 2 * room : 64;
@@ -264,10 +348,8 @@ static void make_room(const Cache *c)
     }
     if (folder) closedir(folder);
     if (entries > 1) qsort(kept, (size_t)entries, sizeof *kept, by_use);
-    for (int i = 0; i < entries && total > c->most_octets; i++) {
-        remove_from(c, kept[i].name);
-        total -= (uint64_t)kept[i].octets;
-    }
+    for (int i = 0; i < entries && total > c->most_octets; i++)
+        if (remove_from(c, kept[i].name, false)) total -= (uint64_t)kept[i].octets;
     free(kept);
 }
 
@@ -286,30 +368,43 @@ static bool write_entry(FILE *file, const char *name, const void *octets, size_t
     return good && fwrite(sum, 1, sum_octets, file) == sum_octets;
 }
 
+/* Writes the entry beside its name, and renames it. The file stays locked until then, by which a sweep knows that its
+ * writer lives. Returns 0, or the error. */
+static int write_aside(const char *aside, const char *path, const CacheKey *key, const void *octets, size_t size)
+{
+    errno = 0;
+    FILE *file = output_file(aside, 0);
+    if (!file) return errno;
+    const int locked = dup(fileno(file));
+    bool      good = locked >= 0 && write_entry(file, key->name, octets, size);
+    int       error = errno;
+    if (fclose(file) != 0 && good) good = false, error = errno;
+    if (good && output_rename(aside, path) != 0) good = false, error = errno;
+    if (!good) output_remove(aside);
+    if (locked >= 0) close(locked);
+    return good ? 0 : error ? error : EIO;
+}
+
 void cache_keep(Cache *c, const CacheKey *key, const void *octets, size_t size)
 {
-    char path[path_size + 80], aside[path_size + 160];
+    char            path[path_size + 80], aside[path_size + 160];
+    struct timespec now = {0};
     if (!c || !*key->name) return;
     count(c, &c->counters.made);
-    if (size > c->most_octets / 2) return;
+    if (c->read_only || size > c->most_octets / 2) return;
     pthread_mutex_lock(&c->mutex);
     const unsigned number = c->written++;
     pthread_mutex_unlock(&c->mutex);
+    clock_gettime(CLOCK_REALTIME, &now); /* process numbers repeat among containers that share a folder */
     snprintf(path, sizeof path, "%s/%s.kept", c->folder, key->name);
-    snprintf(aside, sizeof aside, "%s/%s.%ld.%u.aside", c->folder, key->name, (long)getpid(), number);
-    errno = 0;
-    FILE *file = output_file(aside, 0);
-    bool  good = file && write_entry(file, key->name, octets, size);
-    int   error = errno;
-    if (file && fclose(file) != 0 && good) good = false, error = errno;
-    if (good && output_rename(aside, path) != 0) good = false, error = errno;
-    if (good) {
+    snprintf(aside, sizeof aside, "%s/%s.%ld.%u.%ld.aside", c->folder, key->name, (long)getpid(), number, now.tv_nsec);
+    const int error = write_aside(aside, path, key, octets, size);
+    if (error == 0) {
         make_room(c);
         return;
     }
-    if (file) output_remove(aside);
     count(c, &c->counters.failed);
-    if (first(c))
+    if (first(c, &c->said_unwritten))
         log_warn("cache: %s cannot be written: %s; what it would keep is made anew in every run (cache.folder names "
                  "another, cache.on: off is silent)",
                  c->folder, output_reason(error));

@@ -1,14 +1,16 @@
 /* pitviper_cache.h: results that their inputs decide, kept on disk between runs.
  *
- * An entry's name is the SHA-256 of all that its octets follow from: what it is, its inputs, the executable (its build
- * id), the C library, and what of the processor chooses among its functions. So an entry is never wrong for being old;
- * what does not fit has another name. FOLDER/NAME.kept, little-endian, as all that this program runs on:
+ * An entry's name is the SHA-256 of all that its octets follow from: what it is, its inputs, the executable and the
+ * libraries that compute (their build ids), and values of the C library's functions, of which the processor and the
+ * environment choose the version. So an entry is never wrong for being old; what does not fit has another name.
+ * FOLDER/NAME.kept, little-endian, as all that this program runs on:
  *
  *     octets 0  "PVKEPT1\n"   8  NAME, 64 hexadecimal digits   72  count, 64 bits   80  count octets   end  SHA-256 of
  * all
  *
  * Entries are written beside their name and renamed, so that several processes may share a folder; the least recently
- * used are removed beyond its size. A cache that cannot be used costs time alone: that is said once. */
+ * used are removed beyond its size, and so is what killed writers left. Of a folder that cannot be written, what is in
+ * it is used. A cache that cannot be used costs time alone: that is said once. */
 #ifndef PITVIPER_CACHE_H
 #define PITVIPER_CACHE_H
 
@@ -30,7 +32,8 @@ typedef struct CacheKey {
 CacheKey cache_key(const char *what);
 void     cache_key_add(CacheKey *key, const void *octets, size_t count); /* without padding and pointers */
 
-/* Ends the key, and reads the entry of its name. *octets: the caller frees them. False: there is none. cache NULL:
+/* Ends the key, and reads the entry of its name. *octets: the caller frees them. False: there is none, or none that can
+ * be read, which is said. cache NULL:
  * false. Thread-safe, as cache_keep. */
 bool cache_fetch(void **octets, size_t *count, Cache *cache, CacheKey *key);
 /* Writes the entry. cache NULL, or a key without a name: nothing. */

@@ -413,6 +413,22 @@ int output_remove(const char *path)
     return result;
 }
 
+bool output_remove_left(const char *path)
+{
+    static const time_t no_locks_s = 3600; /* on a file system that has none, no writer takes so long */
+    Place               at;
+    struct stat         about;
+    if (!place_of(&at, path, false, false)) return false;
+    bool      gone = fstatat(at.folder, at.name, &about, AT_SYMLINK_NOFOLLOW) == 0 && S_ISREG(about.st_mode);
+    const int file = gone ? openat(at.folder, at.name, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_NOCTTY | O_CLOEXEC) : -1;
+    bool      left = file >= 0 && flock(file, LOCK_EX | LOCK_NB) == 0;
+    if (file >= 0 && !left && errno != EWOULDBLOCK) left = time(NULL) - about.st_mtime > no_locks_s;
+    gone = left && unlinkat(at.folder, at.name, 0) == 0;
+    if (file >= 0) close(file);
+    leave(&at);
+    return gone;
+}
+
 DIR *output_list(const char *path)
 {
     Place at;

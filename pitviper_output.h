@@ -47,6 +47,9 @@ int  output_folder(const char *path);
 int  output_rename(const char *from, const char *to);
 int  output_remove(const char *path);
 DIR *output_list(const char *path);
+/* Removes a regular file that output_open made and no process has open since: what a killed writer left. False: it is
+ * being written, it is none, or it cannot be removed. */
+bool output_remove_left(const char *path);
 
 /* strerror, in words that fit a file that is written. */
 const char *output_reason(int error);

@@ -258,7 +258,7 @@ static Status measure(const RadarFrame **out, int *differ, const SavedFrame *fil
 {
     bool         same;
     SeekerRadar *radar;
-    Status       status = radar_open(&radar, &s->config, "avx2", false);
+    Status       status = radar_open(&radar, &s->config, "avx2", false, s->cache);
     if (status != STATUS_OK) return status;
     status =
         saved_radar_again(out, radar, &(SavedStage){file, &s->snapshot, &s->world, &s->config, pool, arena}, picture);

@@ -34,6 +34,11 @@ Status frame_world(World *out, const Config *config, const Catalog *catalog, con
     return status;
 }
 
+Cache *frame_world_cache(const Config *config)
+{
+    return config->cache.on ? cache_open(config->cache.folder, (size_t)config->cache.most_mb << 20) : NULL;
+}
+
 Status frame_world_plant(World *world, const Woods *woods, const Config *config, const char *isa, Pool *pool)
 {
     const ForestConfig forest = {.leaves = config->terrain.woods_leaves,

@@ -14,6 +14,9 @@ Status frame_world_open(World *out, const Config *config, const Catalog *catalog
                         const LocalFrame *frame, const char *isa);
 Status frame_world_air(World *world, const Config *config);
 void   frame_world_radar(World *world, const Config *config);
+/* The cache that cache.* name, for World.cache; NULL: there is none, which is logged where that is no choice. The
+ * caller closes it after the world. */
+Cache *frame_world_cache(const Config *config);
 /* Its plants, as terrain.woods_* say. woods must outlive the world; NULL: there are none. */
 Status frame_world_plant(World *world, const Woods *woods, const Config *config, const char *isa, Pool *pool);
 /* The weather at unix_s. */

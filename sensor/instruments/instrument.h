@@ -14,8 +14,9 @@
 typedef struct InstrumentsOf {
     const Config  *config;
     const Sensors *sensors;
-    const char    *isa;  /* as tracer_create */
-    bool           live; /* what is not ready is left out, not waited for */
+    const char    *isa;   /* as tracer_create */
+    bool           live;  /* what is not ready is left out, not waited for */
+    Cache         *cache; /* of the disk, for what it makes; NULL: none */
 } InstrumentsOf;
 
 /* Poses at other times than the frame's, at most a tick (0.01 s) before it: of pulses, of a scanner's lines. Frames and

@@ -12,7 +12,7 @@ typedef struct RadarInstrument {
     SeekerRadar  *radar;
 } RadarInstrument;
 
-Status radar_open(SeekerRadar **out, const Config *config, const char *isa, bool live)
+Status radar_open(SeekerRadar **out, const Config *config, const char *isa, bool live, Cache *cache)
 {
     char catalog[4096];
     if (!etc_path(catalog, sizeof catalog, "catalog.csv")) return STATUS_BAD_VALUE;
@@ -30,6 +30,7 @@ Status radar_open(SeekerRadar **out, const Config *config, const char *isa, bool
                                                          .scan_step = config->radar.scan_step,
                                                          .seed = (uint64_t)config->seed,
                                                          .library = config->radar.library,
+                                                         .cache = cache,
                                                          .background = live});
 }
 
@@ -40,7 +41,7 @@ static Status open_radar(Instruments *list, const InstrumentsOf *of)
     if (!r) return STATUS_NO_MEMORY;
     r->instrument = (Instrument){&radar_kind, radar_kind.name};
     r->config = of->config;
-    const Status status = radar_open(&r->radar, of->config, of->isa, of->live);
+    const Status status = radar_open(&r->radar, of->config, of->isa, of->live, of->cache);
     const Status added = instruments_add(list, &r->instrument);
     return status == STATUS_OK ? added : status;
 }

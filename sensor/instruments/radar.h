@@ -11,7 +11,8 @@ extern const InstrumentKind radar_kind;
 /* What the frame's first radar measured; NULL: there is none, or it was left out. */
 const RadarFrame *radar_of(const Frame *frame);
 
-/* The radar of radar.preset, which is not none. live: signatures that are missing are made in the background. */
-Status radar_open(SeekerRadar **out, const Config *config, const char *isa, bool live);
+/* The radar of radar.preset, which is not none. live: signatures that are missing are made in the background. cache:
+ * where they are kept without radar.library; NULL: nowhere. */
+Status radar_open(SeekerRadar **out, const Config *config, const char *isa, bool live, Cache *cache);
 
 #endif

@@ -90,6 +90,8 @@ Status seeker_radar_create(SeekerRadar **out, const SeekerRadarConfig *config)
     SignaturesConfig signatures = seeker_radar_signatures(&r->preset, config->warp_m, config->isa);
     if (status == STATUS_OK && config->library && *config->library)
         status = signature_library_open(&r->library, config->library, &signatures, &r->materials);
+    else if (status == STATUS_OK && config->cache)
+        status = signature_library_of_cache(&r->library, config->cache, &signatures, &r->materials);
     if (r->library) signatures.store = signature_library_store(r->library);
     signatures.background = config->background;
     signatures.nice = fine_nice;

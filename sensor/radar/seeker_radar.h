@@ -44,6 +44,7 @@ typedef struct SeekerRadarConfig {
     double      chaff_dipoles; /* resonant ones in a cloud of chaff; 0: chaff is not seen */
     uint64_t    seed;
     const char *library;    /* folder of signatures, read and added to; NULL or empty: none */
+    Cache      *cache;      /* where they are without a library; NULL: nowhere */
     bool        background; /* signatures that are missing are made in threads of their own; meanwhile an update is of
                              * coarse ones (coarse.h), all its targets alike, or is left out where these are missing too */
 } SeekerRadarConfig;

@@ -17,6 +17,7 @@ enum { head_octets = 96, hash_octets = sha256_text_size - 1, most_centres = 1 <<
 static const char magic[] = "PVSIGN1\n";
 
 struct SignatureLibrary {
+    Cache                   *cache; /* NULL: in the folder */
     char                     folder[3900];
     SignaturesConfig         config;
     char                     settings[sha256_text_size]; /* of config and materials */
@@ -213,13 +214,27 @@ static bool path_of(char path[4096], const SignatureLibrary *l, const char name[
     return snprintf(path, 4096, "%s/%s.sig", l->folder, name) < 4096;
 }
 
+static CacheKey cache_key_of(const char name[sha256_text_size])
+{
+    CacheKey key = cache_key("signature");
+    cache_key_add(&key, name, hash_octets);
+    return key;
+}
+
+static uint8_t *read_entry(size_t *count, Cache *cache, const char name[sha256_text_size])
+{
+    CacheKey key = cache_key_of(name);
+    void    *octets;
+    return cache_fetch(&octets, count, cache, &key) ? octets : NULL;
+}
+
 /* *out: count, centres and tubes' fields of the file. False: it is not there, or, as is said, damaged. */
 static bool read_file(Signature *out, SignatureLibrary *l, const SignatureKey *key)
 {
-    char   name[sha256_text_size], path[4096];
+    char   name[sha256_text_size], path[4096] = "an entry of the cache";
     size_t count = 0;
-    if (name_of(name, l, key) != STATUS_OK || !path_of(path, l, name)) return false;
-    uint8_t *octets = read_whole(&count, path);
+    if (name_of(name, l, key) != STATUS_OK || (!l->cache && !path_of(path, l, name))) return false;
+    uint8_t *octets = l->cache ? read_entry(&count, l->cache, name) : read_whole(&count, path);
     if (!octets) return false;
     const Status status = signature_from_octets(out, octets, count, name, key->model->part_count);
     free(octets);
@@ -254,16 +269,31 @@ static bool write_whole(const char *path, const uint8_t *octets, size_t count)
     return false;
 }
 
+/* The cache says itself what it cannot write. */
+static void write_entry(Cache *cache, const char name[sha256_text_size], const uint8_t *octets, size_t count)
+{
+    CacheKey key = cache_key_of(name);
+    void    *there;
+    size_t   size;
+    if (cache_fetch(&there, &size, NULL, &key)) free(there); /* ends the key: a NULL cache has nothing */
+    cache_keep(cache, &key, octets, count);
+}
+
 static void keep(void *user, const Signature *signature, const SignatureKey *key)
 {
     SignatureLibrary *l = user;
     char              name[sha256_text_size], path[4096];
-    if (name_of(name, l, key) != STATUS_OK || !path_of(path, l, name)) return;
+    if (name_of(name, l, key) != STATUS_OK || (!l->cache && !path_of(path, l, name))) return;
     const size_t count = signature_to_octets(NULL, signature, name);
     uint8_t     *octets = malloc(count);
     const bool   made = octets && signature_to_octets(octets, signature, name) == count;
-    const bool   written = made && write_whole(path, octets, count);
-    const int    why = errno;
+    if (l->cache) {
+        if (made) write_entry(l->cache, name, octets, count);
+        free(octets);
+        return;
+    }
+    const bool written = made && write_whole(path, octets, count);
+    const int  why = errno;
     free(octets);
     pthread_mutex_lock(&l->lock);
     const bool first = l->counters.failed == 0;
@@ -285,6 +315,20 @@ bool signature_library_has(SignatureLibrary *l, const SignatureKey *key)
 }
 
 /* ---- the interface ---------------------------------------------------------------------------------- */
+
+Status signature_library_of_cache(SignatureLibrary **out, Cache *cache, const SignaturesConfig *config,
+                                  const RadarMaterials *materials)
+{
+    SignatureLibrary *l = calloc(1, sizeof *l);
+    if (!l) return STATUS_NO_MEMORY;
+    l->cache = cache;
+    l->config = *config;
+    pthread_mutex_init(&l->lock, NULL);
+    const Status status = hash_settings(l->settings, config, materials);
+    if (status == STATUS_OK) *out = l;
+    else signature_library_close(l);
+    return status;
+}
 
 Status signature_library_open(SignatureLibrary **out, const char *folder, const SignaturesConfig *config,
                               const RadarMaterials *materials)

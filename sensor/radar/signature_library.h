@@ -10,11 +10,14 @@
  *             80  centres (SignatureCentre), 84 octets each
  *            end  SHA-256 of all of the above, 64 hexadecimal digits
  *
- * A file that is damaged, of another name's content, or out of range is reported once, counted, and made anew. */
+ * A file that is damaged, of another name's content, or out of range is reported once, counted, and made anew.
+ *
+ * Without a folder, what would be a file of it is an entry of the cache between runs. */
 #ifndef SENSOR_RADAR_SIGNATURE_LIBRARY_H
 #define SENSOR_RADAR_SIGNATURE_LIBRARY_H
 
 #include "render/scattering/signatures/signatures.h"
+#include "pitviper_cache.h"
 #include "pitviper_sha256.h"
 
 typedef struct SignatureLibrary SignatureLibrary;
@@ -23,6 +26,9 @@ typedef struct SignatureLibrary SignatureLibrary;
  * those in use. Failures are logged. */
 Status signature_library_open(SignatureLibrary **out, const char *folder, const SignaturesConfig *config,
                               const RadarMaterials *materials);
+/* The same in a cache, which must outlive it. */
+Status signature_library_of_cache(SignatureLibrary **out, Cache *cache, const SignaturesConfig *config,
+                                  const RadarMaterials *materials);
 void   signature_library_close(SignatureLibrary *library); /* accepts NULL */
 /* For signatures_create; valid until the library is closed. */
 SignatureStore signature_library_store(SignatureLibrary *library);

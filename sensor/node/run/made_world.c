@@ -251,7 +251,7 @@ Status made_pool(MadeWorld *m, int threads)
 
 void made_cache(MadeWorld *m, const Config *config)
 {
-    if (!m->cache && config->cache.on) m->cache = cache_open(config->cache.folder, (size_t)config->cache.most_mb << 20);
+    if (!m->cache) m->cache = frame_world_cache(config);
 }
 
 /* ---- the world -------------------------------------------------------------------------------------- */

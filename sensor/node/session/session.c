@@ -42,8 +42,9 @@ static Status open_session(Session *s)
     if (status == STATUS_OK) status = session_ready_open(s);
     if (status == STATUS_OK) status = frame_verdicts_read(&s->verdicts, shared->notes);
     if (status == STATUS_OK)
-        status = instruments_open(&s->instruments, shared->instruments,
-                                  &(InstrumentsOf){shared->config, shared->sensors, shared->isa, shared->live});
+        status = instruments_open(
+            &s->instruments, shared->instruments,
+            &(InstrumentsOf){shared->config, shared->sensors, shared->isa, shared->live, shared->world->cache});
     if (status == STATUS_OK) session_keep(s);
     return status == STATUS_OK ? session_consumers(s, session_list_frame) : status;
 }

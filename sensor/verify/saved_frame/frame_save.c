@@ -160,7 +160,7 @@ static Status prove(bool *same, const ByteSink *bytes, const FrameSave *save, Se
     if (status == STATUS_OK) status = saved_ground_open(&landscape, &file.ground);
     if (status == STATUS_OK)
         status = frame_world(&world, save->config, f->world->catalog, &landscape, &file.ground.frame, "avx2");
-    if (status == STATUS_OK) status = saved_ground_plant(&world, &woods, &file, save->config, "avx2", save->pool);
+    if (status == STATUS_OK) status = saved_ground_plant(&world, &woods, &file, save->config, NULL, "avx2", save->pool);
     if (status == STATUS_OK) status = frame_world_warm(&world, save->config, file.unix_s, save->pool);
     if (status == STATUS_OK) {
         file.snapshot.effect_table = f->seen.snapshot.effect_table;
@@ -189,7 +189,8 @@ static Status pack_proved(ByteSink *bytes, double *reach_m, const SavedFrame *fi
     SeekerRadar        *radar = NULL;
     bool                same = false;
     Status              status = arena ? STATUS_OK : STATUS_NO_MEMORY;
-    if (status == STATUS_OK && file->measured) status = radar_open(&radar, save->config, "avx2", false);
+    if (status == STATUS_OK && file->measured)
+        status = radar_open(&radar, save->config, "avx2", false, save->frame->world->cache);
     /* where plants stand follows from all of the ground */
     const bool cut = !file->ground.invented && !(file->ground.store && *file->ground.store) && !file->planted;
     if (status == STATUS_OK && cut) status = gather_places(&kept, save->frame, gathered);

@@ -90,6 +90,8 @@ static Status parse(SavedFrame *out, ChunkSource *source, unsigned *met, const c
         Fields f = {.from = &content, .arena = source->arena, .version = source->version};
         if (*met >> c & 1) source->fault = "a chunk is there twice";
         else if (chunks[c].fields) chunks[c].fields(&f, out);
+        else if (sha256_bytes(out->ground_sha256, content.at, (size_t)(content.end - content.at)) != STATUS_OK)
+            return STATUS_NO_MEMORY;
         else saved_fields_ground(&f, out, NULL);
         *met |= 1u << c;
         *field = f.fault;

@@ -60,9 +60,10 @@ typedef struct SavedFrame {
     double         rate_px_s[2]; /* image motion of the scene, for detectors */
     bool           at_limit, all_on_ground;
     LandscapeParts ground;
-    bool           planted;  /* the ground has plants, grown again from: */
-    WoodsConfig    woods;    /* its store is the ground's */
-    bool           measured; /* a radar did: */
+    char           ground_sha256[sha256_text_size]; /* of the octets that were read as the ground */
+    bool           planted;                         /* the ground has plants, grown again from: */
+    WoodsConfig    woods;                           /* its store is the ground's */
+    bool           measured;                        /* a radar did: */
     SavedRadar     radar;
     char           frame_sha256[sha256_text_size];
     int            plane_count;

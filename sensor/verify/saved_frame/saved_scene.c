@@ -59,12 +59,28 @@ Status saved_ground_open(Landscape *out, const LandscapeParts *parts)
     return status;
 }
 
-Status saved_ground_plant(World *world, Woods *woods, const SavedFrame *file, const Config *config, const char *isa,
-                          Pool *pool)
+enum { follows_size = 2 * sha256_text_size };
+
+/* What its landscape and tables follow from, for the key of its plants. */
+static bool say_follows(char out[follows_size], const SavedFrame *file, const TablesUsed *tables)
+{
+    Sha256 *digest = sha256_begin();
+    bool    good = digest != NULL;
+    for (int i = 0; i < tables->count && good; i++) {
+        const TableUsed *t = &tables->table[i];
+        good = sha256_add(digest, t->name, strlen(t->name) + 1) && sha256_add(digest, t->sha256, sizeof t->sha256 - 1);
+    }
+    snprintf(out, sha256_text_size + 1, "%.64s ", file->ground_sha256);
+    return digest && sha256_end(out + strlen(out), digest, good) == STATUS_OK;
+}
+
+Status saved_ground_plant(World *world, Woods *woods, const SavedFrame *file, const Config *config, const char *follows,
+                          const char *isa, Pool *pool)
 {
     WoodsConfig how = file->woods;
     if (!file->planted) return STATUS_OK;
     how.store = file->ground.store && *file->ground.store ? file->ground.store : NULL;
+    how.cache = how.store ? NULL : world->cache, how.follows = follows;
     const Status status = woods_create(woods, world->landscape, &how, pool);
     if (status == STATUS_OK) return frame_world_plant(world, woods, config, isa, pool);
     log_error("frame: its plants cannot be grown again: %s", status_name(status));
@@ -79,14 +95,18 @@ enum { path_size = 4096 };
 
 static Status read_settings(Config *config, const SavedFrame *file)
 {
-    char path[temp_path_size];
-    *config = config_default();
+    char         path[temp_path_size];
+    const Config plain = config_default();
+    *config = plain;
     if (!temp_file(path, ".yaml")) return STATUS_IO;
     FILE      *to = output_file(path, 0);
     const bool put = to && fputs(file->settings, to) >= 0, closed = to && fclose(to) == 0;
     if (!put || !closed) log_error("frame: cannot write %s", path);
     const Status status = put && closed ? config_read(config, path) : STATUS_IO;
     unlink(path);
+    const bool cached = config->cache.on;
+    config->cache = plain.cache; /* no file from elsewhere says where this machine keeps things */
+    config->cache.on = cached;
     return status;
 }
 
@@ -180,7 +200,7 @@ static Status take_models(SavedScene *s, const SavedFrame *file, bool forced)
 
 Status saved_scene_open(SavedScene *s, const SavedFrame *file, bool forced, const char *isa, Pool *pool)
 {
-    char       catalog[path_size], effects[path_size];
+    char       catalog[path_size], effects[path_size], follows[follows_size];
     TablesUsed here;
     *s = (SavedScene){0};
     Status status = read_settings(&s->config, file);
@@ -197,7 +217,10 @@ Status saved_scene_open(SavedScene *s, const SavedFrame *file, bool forced, cons
     if (status == STATUS_OK) status = saved_ground_open(&s->landscape, &file->ground);
     if (status == STATUS_OK)
         status = frame_world(&s->world, &s->config, s->catalog, &s->landscape, &file->ground.frame, isa);
-    if (status == STATUS_OK) status = saved_ground_plant(&s->world, &s->woods, file, &s->config, isa, pool);
+    if (status == STATUS_OK) s->world.cache = s->cache = frame_world_cache(&s->config);
+    if (status == STATUS_OK)
+        status = saved_ground_plant(&s->world, &s->woods, file, &s->config,
+                                    say_follows(follows, file, &here) ? follows : NULL, isa, pool);
     if (status == STATUS_OK) status = frame_world_warm(&s->world, &s->config, file->unix_s, pool);
     s->snapshot.effect_table = &s->effects;
     return status;
@@ -209,5 +232,6 @@ void saved_scene_close(SavedScene *s)
     woods_destroy(&s->woods);
     landscape_destroy(&s->landscape);
     catalog_close(s->catalog);
+    cache_close(s->cache);
     *s = (SavedScene){0};
 }

@@ -10,6 +10,7 @@
 
 typedef struct SavedScene {
     Config      config;
+    Cache      *cache; /* of the disk; NULL: none */
     Sensors     sensors;
     Catalog    *catalog;
     Landscape   landscape;
@@ -29,10 +30,11 @@ void   saved_scene_close(SavedScene *scene);
 
 /* Parts may be of a hostile file. Failures are logged. */
 Status saved_ground_open(Landscape *out, const LandscapeParts *parts);
-/* The plants on it, into a world over that ground; nothing for a file without. woods must outlive the world, and is
- * destroyed by the caller, also on failure. */
-Status saved_ground_plant(World *world, Woods *woods, const SavedFrame *file, const Config *config, const char *isa,
-                          Pool *pool);
+/* The plants on it, into a world over that ground; nothing for a file without. They are taken from the world's cache
+ * where that has them; follows: what the landscape and the tables follow from, NULL: not known. woods must outlive the
+ * world, and is destroyed by the caller, also on failure. */
+Status saved_ground_plant(World *world, Woods *woods, const SavedFrame *file, const Config *config, const char *follows,
+                          const char *isa, Pool *pool);
 
 /* ---- tables -------------------------------------------------------------------------------------- */
 
