@@ -1,8 +1,8 @@
 /* render/heat/heat_kept.c: the ground as it is at the beginning of an exercise, from the cache and into it. */
 #include "render/heat/heat_private.h"
 
-/* What it follows from: the grid, what the ground is made of, and the weather at every time that warms it. Weather after
- * the exercise's beginning is in it up to the next time of the grid. */
+/* What it follows from: the grid, what the ground is made of, and the weather at every time that warms it. Weather
+ * after the exercise's beginning is in it up to the next time of the grid. */
 CacheKey heat_kept_key(const Heat *h)
 {
     const HeatConfig *c = &h->config;
@@ -15,7 +15,7 @@ CacheKey heat_kept_key(const Heat *h)
     for (int k = 0; k < ground_kinds; k++) {
         const GroundKind *g = &h->kinds.kind[k];
         const int32_t     kind[] = {g->layers, (int32_t)g->vapour};
-        const double      soil[] = {g->porosity,     g->quartz,         g->saturation,  g->rock_w_mk,  g->rock_j_m3k,
+        const double      soil[] = {g->porosity,    g->quartz,         g->saturation,  g->rock_w_mk,  g->rock_j_m3k,
                                     g->roughness_m, g->resistance_s_m, g->absorptance, g->emissivity, g->melts_k};
         cache_key_add(&key, kind, sizeof kind);
         cache_key_add(&key, soil, sizeof soil);
@@ -26,7 +26,8 @@ CacheKey heat_kept_key(const Heat *h)
         const double      wood[] = {b->conductivity_w_mk, b->capacity_j_m3k, b->absorptance, b->emissivity};
         cache_key_add(&key, wood, sizeof wood);
     }
-    _Static_assert(sizeof(ColumnLayer) == 3 * sizeof(double) && sizeof(GroundWeather) == 13 * sizeof(double), "no padding");
+    _Static_assert(sizeof(ColumnLayer) == 3 * sizeof(double) && sizeof(GroundWeather) == 13 * sizeof(double),
+                   "no padding");
     cache_key_add(&key, h->course.at, (size_t)(h->course.coarse + h->course.fine) * sizeof *h->course.at);
     return key;
 }
