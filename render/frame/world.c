@@ -104,9 +104,10 @@ Status world_plant(World *world, const Woods *woods, const ForestConfig *config,
     if (status == STATUS_OK) status = forest_create(&world->forest, woods, world->plants, config, isa);
     if (status != STATUS_OK) return status;
     if (!whole) finish_plants(world, &key, pool);
-    status = canopy_create(&world->canopy, woods, world->plants, &world->materials, config->leaves);
+    const PlantsKept kept = {*key.name ? world->cache : NULL, key.name};
+    status = canopy_create_kept(&world->canopy, woods, world->plants, &world->materials, config->leaves, &kept);
     if (status != STATUS_OK) return status;
-    return far_woods_create(&world->far_woods, woods, world->forest, &world->materials, config->leaves, pool);
+    return far_woods_create(&world->far_woods, woods, world->forest, &world->materials, config->leaves, &kept, pool);
 }
 
 void world_cool(World *world)
@@ -223,7 +224,7 @@ Status world_warm(World *world, WeatherCourse *course, const HeatConfig *config,
     if (!world->drive) return STATUS_NO_MEMORY;
     *world->drive = (HeatDrive){
         course, {world->atmosphere, world->planck_mwir, world->planck_lwir, 0}, world->frame.origin, config->unix_s};
-    c.weather = world_heat_weather, c.user = world->drive, c.pool = pool;
+    c.weather = world_heat_weather, c.user = world->drive, c.pool = pool, c.cache = world->cache;
     if (!etc_path(path, sizeof path, "ground_heat.csv")) return STATUS_BAD_VALUE;
     Status     status = ground_kinds_open(&kinds, path, &world->materials);
     BranchKind branch[branch_most_kinds];

@@ -3,15 +3,12 @@
 
 #include "pitviper_simd.h"
 
-#include <assert.h>
 #include <stdlib.h>
 
 HeatConfig heat_default_config(void)
 {
     return (HeatConfig){.grid = ground_grid_default, .step_s = 600, .spin_up_s = 2 * 86400, .facets = 7};
 }
-
-static const double day_s = 86400, slot_s = 1800;
 
 /* ---- columns ----------------------------------------------------------------------------------- */
 
@@ -53,9 +50,6 @@ static GroundWeather no_sun(const GroundWeather *w)
     return out;
 }
 
-/* Number of steps in half an hour. */
-static int64_t half_hour(const Heat *h) { return (int64_t)fmax(1, round(slot_s / h->config.step_s)); }
-
 typedef struct StepJob {
     Heat                *heat;
     double               dt_s;
@@ -91,13 +85,6 @@ static void step_branches(Heat *h, const GroundWeather *after, double dt_s)
                 heat_branch_step(&h->branch[k][r][shade], after, shade ? 0 : 1, grass_k, dt_s);
 }
 
-static void run(const Heat *h, PoolTask *task, void *user)
-{
-    if (h->config.pool) pool_run(h->config.pool, ground_kinds, task, user);
-    else
-        for (int k = 0; k < ground_kinds; k++) task(user, 0, k);
-}
-
 /* The sky of a time, and how each level column there gives heat away; of the times since the last one too. */
 static void remember(Heat *h, int steps)
 {
@@ -120,10 +107,9 @@ static void remember(Heat *h, int steps)
 
 static void advance(Heat *h, int steps)
 {
-    GroundWeather after;
+    const GroundWeather after = *heat_weather_of(h, h->index + steps);
     h->weather[0] = h->weather[1];
-    h->config.weather(&after, (double)(h->index + steps) * h->config.step_s, h->config.user);
-    run(h, step_kind, &(StepJob){h, steps * h->config.step_s, &h->weather[0], &after});
+    heat_run(h, ground_kinds, step_kind, &(StepJob){h, steps * h->config.step_s, &h->weather[0], &after});
     step_branches(h, &after, steps * h->config.step_s);
     h->index += steps;
     h->weather[1] = after;
@@ -134,7 +120,7 @@ static void fill_past(Heat *h, HeatPast *out)
 {
     Interval  interval[heat_past];
     const int count = heat_past_begin(h, out, interval);
-    run(h, heat_past_respond, &(PastJob){h, interval, count, out});
+    heat_run(h, ground_kinds, heat_past_respond, &(PastJob){h, interval, count, out});
 }
 
 /* ---- tables ------------------------------------------------------------------------------------ */
@@ -231,17 +217,21 @@ static void find_slots(Heat *h)
     }
 }
 
+static void start_branches(Heat *h, double temp_k)
+{
+    for (int k = 0; k < h->branches; k++)
+        for (int r = 0; r < branch_radii; r++)
+            for (int shade = 0; shade < 2; shade++)
+                heat_branch_start(&h->branch[k][r][shade], &h->branch_kind[k], branch_radius_m[r], temp_k);
+}
+
 /* A day of level ground from the mean of the air: the mean of its surface is what the ground below has. */
 static void start_columns(Heat *h)
 {
-    enum { most = 2 * heat_day_slots };
-    const int64_t day = (int64_t)round(day_s / h->config.step_s), stride = half_hour(h);
-    const int     count = (int)((day + stride - 1) / stride);
-    double        air_k = 0;
-    GroundWeather w[most + 1]; /* of every stride: the sun is dear, and the same for all kinds */
-    assert(count <= most);
-    for (int i = 0; i <= count; i++)
-        h->config.weather(&w[i], (double)(h->first + i * stride) * h->config.step_s, h->config.user);
+    const int64_t        stride = h->course.wide;
+    const int            count = heat_day_strides(h);
+    const GroundWeather *w = h->course.at;
+    double               air_k = 0;
     for (int i = 0; i < count; i++) air_k += w[i].air.temp_k;
     air_k /= count;
     const GroundExposure level = {{0, 0, 1}, 1, 1, 0};
@@ -258,10 +248,7 @@ static void start_columns(Heat *h)
         for (int c = 0; c < h->columns; c++)
             ground_column_start(&h->state[k].column[c], &h->kinds.kind[k], &h->layers[k], sum / count);
     }
-    for (int k = 0; k < h->branches; k++)
-        for (int r = 0; r < branch_radii; r++)
-            for (int shade = 0; shade < 2; shade++)
-                heat_branch_start(&h->branch[k][r][shade], &h->branch_kind[k], branch_radius_m[r], air_k);
+    start_branches(h, air_k);
 }
 
 static void keep_begun(Heat *h)
@@ -272,7 +259,6 @@ static void keep_begun(Heat *h)
     }
     memcpy(h->begun_branch, h->branch, sizeof h->branch);
     memcpy(h->begun_sky, h->sky, sizeof h->sky);
-    h->begun_index = h->index;
 }
 
 static void back_to_begun(Heat *h)
@@ -299,6 +285,46 @@ static void factors_of(ColumnFactors out[heat_halvings], const Column *layers, d
         column_factors(&out[k], layers, ldexp(dt_s, -k));
         out[k].half = k + 1 < heat_halvings ? &out[k + 1] : NULL;
     }
+}
+
+/* From the spin-up's first time to the beginning of the exercise. */
+static void warm(Heat *h)
+{
+    h->index = h->first;
+    start_columns(h);
+    h->weather[1] = *heat_weather_of(h, h->index);
+    remember(h, 1);
+    while (h->index < h->course.fine_from) advance(h, (int)h->course.wide);
+    while (h->index < h->begun_index) advance(h, 1);
+    keep_begun(h);
+    back_to_begun(h);
+}
+
+/* The same from the cache: a step beyond the beginning, as back_to_begun leaves it. */
+static bool fetch(Heat *h, CacheKey *key)
+{
+    const int level = h->config.facets * h->config.facets / 2;
+    if (!h->config.cache) return false;
+    for (int k = 1; k < ground_kinds; k++)
+        for (int c = 0; c < h->columns; c++) {
+            GroundColumn *column = &h->state[k].column[c];
+            ground_column_start(column, &h->kinds.kind[k], &h->layers[k], 0);
+            column->factors = h->factors[0][k];
+            h->begun[(size_t)k * (size_t)h->columns + (size_t)c] = *column;
+        }
+    start_branches(h, 0);
+    memcpy(h->begun_branch, h->branch, sizeof h->branch);
+    if (!kept_fetch(heat_kept_values, h, h->config.cache, key)) return false;
+    for (int k = 0; k < 2; k++) {
+        h->table[k].facets = h->config.facets;
+        h->weather[k] = *heat_weather_of(h, h->begun_index + k);
+    }
+    for (int k = 0; k < ground_kinds; k++) {
+        h->level[0][k] = h->begun[(size_t)k * (size_t)h->columns + (size_t)level];
+        h->level[1][k] = h->state[k].column[level];
+    }
+    h->index = h->shown = h->begun_index + 1;
+    return true;
 }
 
 Status heat_create(Heat **out, const GroundKinds *kinds, const HeatConfig *config, const BranchKind *branch,
@@ -329,24 +355,28 @@ Status heat_create(Heat **out, const GroundKinds *kinds, const HeatConfig *confi
     }
     for (int k = 0; k < ground_kinds; k++) {
         factors_of(h->factors[0][k], &h->layers[k], config->step_s);
-        factors_of(h->factors[1][k], &h->layers[k], (double)half_hour(h) * config->step_s);
+        factors_of(h->factors[1][k], &h->layers[k], (double)heat_half_hour(h) * config->step_s);
     }
     for (int s = 0; s < SURFACE_COUNT; s++) h->kind_of[s] = s == SURFACE_NONE ? SURFACE_BARE_SOIL : s;
     if (branches > 0) h->kind_of[SURFACE_FOREST_BROADLEAF] = h->kind_of[SURFACE_FOREST_CONIFER] = ground_forest_floor;
     h->branches = branches;
     for (int k = 0; k < branches; k++) h->branch_kind[k] = branch[k];
     find_slots(h);
-    const int64_t begun = (int64_t)floor(config->unix_s / config->step_s), spin = (int64_t)round(steps);
-    const int64_t wide = half_hour(h), fine = (int64_t)ceil(8 * 3600 / config->step_s);
-    h->first = h->index = begun - spin;
-    start_columns(h);
-    config->weather(&h->weather[1], (double)h->index * config->step_s, config->user);
-    remember(h, 1);
-    while (begun - h->index > fine && begun - h->index > wide)
-        advance(h, (int)wide); /* by half hours, till the morning before */
-    while (h->index < begun) advance(h, 1);
-    keep_begun(h);
-    back_to_begun(h);
+    h->begun_index = (int64_t)floor(config->unix_s / config->step_s);
+    h->first = h->begun_index - (int64_t)round(steps);
+    status = heat_find_course(h);
+    if (status != STATUS_OK) {
+        heat_destroy(h);
+        return status;
+    }
+    CacheKey key = {.digest = NULL};
+    if (config->cache) key = heat_kept_key(h);
+    if (!fetch(h, &key)) {
+        warm(h);
+        kept_keep(heat_kept_values, h, config->cache, &key);
+    }
+    free(h->course.at);
+    h->course.at = NULL;
     h->spent_s = 0, h->steps = 0;
     *out = h;
     return STATUS_OK;
@@ -356,6 +386,7 @@ void heat_destroy(Heat *h)
 {
     if (!h) return;
     for (int k = 0; k < ground_kinds; k++) free(h->state[k].column);
+    free(h->course.at);
     free(h->begun);
     free(h->past);
     free(h->ahead);

@@ -75,7 +75,7 @@ double heat_branch_film_w_m2k(double radius_m, double wind_mps);
  * equal steps of n_up for what the sun's side does not change. */
 enum { heat_most_facets = 17, heat_ups = 4, heat_day_slots = 48, heat_past = 96 };
 
-/* Weather at a time; a pure function. */
+/* Weather at a time; a pure function, called on several threads at once. */
 typedef void HeatWeather(GroundWeather *out, double unix_s, const void *user);
 
 typedef struct HeatConfig {
@@ -85,7 +85,8 @@ typedef struct HeatConfig {
     double       unix_s;            /* of the exercise's beginning */
     HeatWeather *weather;
     const void  *user;
-    Pool        *pool; /* NULL: one thread */
+    Pool        *pool;  /* NULL: one thread */
+    Cache       *cache; /* where the warm ground is kept; NULL: nowhere */
 } HeatConfig;
 HeatConfig heat_default_config(void); /* without weather */
 

@@ -1,8 +1,11 @@
-/* render/heat/heat_private.h: the ground's heat over an exercise, shared by heat.c and heat_past.c. */
+/* render/heat/heat_private.h: the ground's heat over an exercise, shared by heat.c, heat_past.c, heat_course.c and
+ * heat_kept.c. */
 #ifndef RENDER_HEAT_HEAT_PRIVATE_H
 #define RENDER_HEAT_HEAT_PRIVATE_H
 
 #include "render/heat/heat.h"
+
+#include "pitviper_kept.h"
 
 enum { heat_halvings = 6 }; /* lengths of steps whose elimination is kept: the usual one, and its halves */
 enum { history = 2048 };    /* steps whose surface is remembered: 34 h of 60 s */
@@ -29,6 +32,14 @@ typedef struct Ahead {
     HeatPast      past;
 } Ahead;
 
+/* The weather that warms the ground up to an exercise: at coarse times, `wide` steps apart, from the spin-up's first
+ * on, then at fine ones, a step apart, up to one beyond the beginning. */
+typedef struct Course {
+    int64_t        wide, fine_from; /* steps; time of the grid */
+    int            coarse, fine;
+    GroundWeather *at; /* [coarse + fine] */
+} Course;
+
 struct Heat {
     GroundKinds      kinds;
     HeatConfig       config;
@@ -53,6 +64,7 @@ struct Heat {
     int              branches;
     BranchKind       branch_kind[branch_most_kinds];
     Branch           branch[branch_most_kinds][branch_radii][2], begun_branch[branch_most_kinds][branch_radii][2];
+    Course           course; /* while it is warmed up */
     double           spent_s;
     int              steps;
 };
@@ -73,5 +85,34 @@ typedef struct PastJob {
 int heat_past_begin(Heat *h, HeatPast *out, Interval interval[heat_past]);
 /* The responses of a kind of ground, a PoolTask: K now for 1 W/m2 over each interval. user: PastJob. */
 void heat_past_respond(void *user, int worker, int kind);
+
+/* ---- the weather that warms it: heat_course.c -------------------------------------------------- */
+
+static const double day_s = 86400, slot_s = 1800;
+
+/* On the pool. */
+void heat_run(const Heat *h, int count, PoolTask *task, void *user);
+/* Number of steps in half an hour, and of such strides in a day. */
+static inline int64_t heat_half_hour(const Heat *h) { return (int64_t)fmax(1, round(slot_s / h->config.step_s)); }
+static inline int     heat_day_strides(const Heat *h)
+{
+    const int64_t day = (int64_t)round(day_s / h->config.step_s), stride = heat_half_hour(h);
+    return (int)((day + stride - 1) / stride);
+}
+/* From first to begun_index: by half hours till the morning before, then by steps. */
+Status heat_find_course(Heat *h);
+/* At a time of the course. */
+static inline const GroundWeather *heat_weather_of(const Heat *h, int64_t index)
+{
+    const Course *c = &h->course;
+    return &c->at[index >= c->fine_from ? c->coarse + (index - c->fine_from) : (index - h->first) / c->wide];
+}
+
+/* ---- between runs: heat_kept.c ----------------------------------------------------------------- */
+
+/* h: with its course, its layers and kinds. */
+CacheKey heat_kept_key(const Heat *h);
+/* KeptValues of a Heat whose columns are started: its state at the beginning, and a step on. */
+KeptValues heat_kept_values;
 
 #endif

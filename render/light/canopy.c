@@ -133,21 +133,68 @@ static void average(Canopy *c, const Woods *woods, const Plants *plants, const M
     for (int k = 0; k < optical_channel_count; k++) c->scattered[k] = fmin(c->scattered[k] / seen, 1);
 }
 
-Status canopy_create(Canopy **out, const Woods *woods, const Plants *plants, const Materials *materials, bool leaves)
+/* ---- between runs ----------------------------------------------------------------------------- */
+
+_Static_assert(sizeof(CanopyCell) == 4 && sizeof(Plant) == 20, "no padding: the octets are the numbers");
+
+static size_t cells_of(const Canopy *c) { return (size_t)c->nx * (size_t)c->ny; }
+
+void canopy_kept_values(Kept *kept, void *canopy)
+{
+    Canopy *c = canopy;
+    kept_pass(kept, c->cell, cells_of(c) * sizeof *c->cell);
+    kept_floats(kept, c->gap, gap_steps + 2);
+    kept_doubles(kept, &c->open_up, 1);
+    kept_doubles(kept, &c->open_down, 1);
+    kept_doubles(kept, c->scattered, optical_channel_count);
+}
+
+void canopy_key_add_plants(CacheKey *key, const Materials *materials)
+{
+    cache_key_add(key, materials->plant, sizeof materials->plant);
+    for (int kind = 0; kind < PLANT_KINDS; kind++)
+        for (int organ = 0; organ < PLANT_ORGANS; organ++)
+            cache_key_add(key, &materials->material[materials->plant[kind][organ]], sizeof(Material));
+}
+
+/* Everything that the canopy follows from. */
+static CacheKey key_of(const Canopy *c, const Woods *woods, const Materials *materials, bool leaves,
+                       const PlantsKept *kept)
+{
+    const int32_t whole[] = {c->nx, c->ny, woods->count, leaves};
+    CacheKey      key = cache_key("canopy");
+    cache_key_add(&key, kept->name, strlen(kept->name));
+    cache_key_add(&key, whole, sizeof whole);
+    cache_key_add(&key, woods->origin_enu, sizeof woods->origin_enu);
+    cache_key_add(&key, woods->by_kind, sizeof woods->by_kind);
+    cache_key_add(&key, woods->plant, (size_t)woods->count * sizeof *woods->plant);
+    canopy_key_add_plants(&key, materials);
+    return key;
+}
+
+/* ---- all of it -------------------------------------------------------------------------------- */
+
+Status canopy_create_bare(Canopy **out, const Woods *woods)
 {
     Canopy *c = calloc(1, sizeof *c);
     if (!c) return STATUS_NO_MEMORY;
     const int per_square = (int)(woods_square_m / cell_m);
     c->nx = woods->nx * per_square, c->ny = woods->ny * per_square;
     c->x0_m = woods->origin_enu[0], c->y0_m = woods->origin_enu[1];
-    const size_t cells = (size_t)c->nx * (size_t)c->ny;
-    Sum         *sum = calloc(cells + 1, sizeof *sum);
-    c->cell = calloc(cells + 1, sizeof *c->cell);
-    if (!sum || !c->cell) {
-        free(sum);
-        canopy_destroy(c);
+    c->cell = calloc(cells_of(c) + 1, sizeof *c->cell);
+    if (!c->cell) {
+        free(c);
         return STATUS_NO_MEMORY;
     }
+    *out = c;
+    return STATUS_OK;
+}
+
+static Status fill(Canopy *c, const Woods *woods, const Plants *plants, const Materials *materials, bool leaves)
+{
+    const size_t cells = cells_of(c);
+    Sum         *sum = calloc(cells + 1, sizeof *sum);
+    if (!sum) return STATUS_NO_MEMORY;
     for (int k = 0; k < gap_steps + 2; k++) c->gap[k] = (float)canopy_gap(gap_most * k / gap_steps);
     for (int k = 0; k < woods->count && cells > 0; k++) add_plant(sum, c, woods, plants, &woods->plant[k], leaves);
     average(c, woods, plants, materials, leaves);
@@ -158,8 +205,32 @@ Status canopy_create(Canopy **out, const Woods *woods, const Plants *plants, con
         c->cell[n].base = (uint8_t)fmin(rint((double)(sum[n].base / sum[n].area) / top_step_m), 255);
     }
     free(sum);
-    *out = c;
     return STATUS_OK;
+}
+
+Status canopy_create(Canopy **out, const Woods *woods, const Plants *plants, const Materials *materials, bool leaves)
+{
+    return canopy_create_kept(out, woods, plants, materials, leaves, &(PlantsKept){NULL, ""});
+}
+
+Status canopy_create_kept(Canopy **out, const Woods *woods, const Plants *plants, const Materials *materials,
+                          bool leaves, const PlantsKept *kept)
+{
+    Canopy  *c = NULL;
+    CacheKey key = {.digest = NULL};
+    Status   status = canopy_create_bare(&c, woods);
+    if (status != STATUS_OK) return status;
+    if (kept->cache) key = key_of(c, woods, materials, leaves, kept);
+    if (!kept->cache || !kept_fetch(canopy_kept_values, c, kept->cache, &key)) {
+        memset(c->cell, 0, cells_of(c) * sizeof *c->cell);
+        c->open_up = c->open_down = 0;
+        memset(c->scattered, 0, sizeof c->scattered);
+        status = fill(c, woods, plants, materials, leaves);
+        if (status == STATUS_OK) kept_keep(canopy_kept_values, c, kept->cache, &key);
+    }
+    if (status == STATUS_OK) *out = c;
+    else canopy_destroy(c);
+    return status;
 }
 
 void canopy_destroy(Canopy *canopy)

@@ -23,7 +23,7 @@
 
 #include "render/air/air.h"
 #include "render/materials/materials.h"
-#include "render/trace/plants/plants.h"
+#include "render/trace/plants/plants_kept.h"
 #include "render/scene/hits.h"
 #include "terrain/woods/woods.h"
 
@@ -33,6 +33,14 @@ typedef struct Canopy Canopy;
  * their rows of plants, and their openness; not kept. */
 Status canopy_create(Canopy **out, const Woods *woods, const Plants *plants, const Materials *materials, bool leaves);
 void   canopy_destroy(Canopy *canopy);
+/* The same from the cache, or into it. */
+Status canopy_create_kept(Canopy **out, const Woods *woods, const Plants *plants, const Materials *materials,
+                          bool leaves, const PlantsKept *kept);
+/* A canopy of woods of this size and place without plants, for canopy_kept_values, KeptValues of it. */
+Status     canopy_create_bare(Canopy **out, const Woods *woods);
+KeptValues canopy_kept_values;
+/* Adds the optics of plants, and where their rows are, to a key. */
+void canopy_key_add_plants(CacheKey *key, const Materials *materials);
 
 /* Leaf area index above a place, height_m above its ground. */
 double canopy_leaf_area_above(const Canopy *canopy, double x_m, double y_m, double height_m);

@@ -38,16 +38,66 @@ static Status add_rows(FarWoods *far, Materials *materials)
     return STATUS_OK;
 }
 
+/* Everything that the stands follow from, beside their classes and densities, which are the program's. */
+static CacheKey key_of(const Forest *forest, const Materials *materials, bool leaves, const PlantsKept *kept)
+{
+    const ForestConfig config = forest_config(forest);
+    const double       number[] = {leaves, config.leaves, config.level1_px, config.sway};
+    char               path[512], sha256[sha256_text_size] = "";
+    CacheKey           key = cache_key("stands of far woods");
+    if (!etc_path(path, sizeof path, "woods.csv") || sha256_file(sha256, path) != STATUS_OK) key.good = false;
+    cache_key_add(&key, kept->name, strlen(kept->name));
+    cache_key_add(&key, sha256, sizeof sha256);
+    cache_key_add(&key, number, sizeof number);
+    canopy_key_add_plants(&key, materials);
+    return key;
+}
+
+typedef struct StandsKept {
+    FarWoods *far;
+    int       rows;
+} StandsKept;
+
+static void values(Kept *kept, void *user)
+{
+    const StandsKept *s = user;
+    for (int k = 0; k < far_stands * far_densities; k++)
+        far_stand_kept_values(kept, &(StandKept){s->far->stand[k / far_densities][k % far_densities], s->rows});
+}
+
+static void free_stands(FarWoods *far)
+{
+    for (int k = 0; k < far_stands * far_densities; k++) {
+        far_stand_destroy(far->stand[k / far_densities][k % far_densities]);
+        far->stand[k / far_densities][k % far_densities] = NULL;
+    }
+}
+
+static bool fetch(FarWoods *far, int rows, Cache *cache, CacheKey *key)
+{
+    for (int k = 0; k < far_stands * far_densities; k++)
+        if (far_stand_create_bare(&far->stand[k / far_densities][k % far_densities]) != STATUS_OK) return false;
+    return kept_fetch(values, &(StandsKept){far, rows}, cache, key);
+}
+
 Status far_woods_create(FarWoods **out, const Woods *woods, const Forest *forest, Materials *materials, bool leaves,
-                        Pool *pool)
+                        const PlantsKept *kept, Pool *pool)
 {
     *out = NULL;
     if (!woods->low) return STATUS_OK;
+    CacheKey  key = {.digest = NULL};
     FarWoods *far = calloc(1, sizeof *far);
     Status    status = far ? STATUS_OK : STATUS_NO_MEMORY;
-    for (int k = 0; k < far_stands * far_densities && status == STATUS_OK; k++)
+    bool      there = false;
+    if (far && kept->cache) {
+        key = key_of(forest, materials, leaves, kept);
+        there = fetch(far, materials->count, kept->cache, &key);
+        if (!there) free_stands(far);
+    }
+    for (int k = 0; k < far_stands * far_densities && status == STATUS_OK && !there; k++)
         status = far_stand_create(&far->stand[k / far_densities][k % far_densities], class_of[k / far_densities],
                                   density_of[k % far_densities], forest, materials, leaves, pool);
+    if (status == STATUS_OK && !there) kept_keep(values, &(StandsKept){far, materials->count}, kept->cache, &key);
     if (status == STATUS_OK) status = add_rows(far, materials);
     if (status == STATUS_OK) far->woods = woods, *out = far;
     else far_woods_destroy(far);
@@ -57,8 +107,7 @@ Status far_woods_create(FarWoods **out, const Woods *woods, const Forest *forest
 void far_woods_destroy(FarWoods *far)
 {
     if (!far) return;
-    for (int k = 0; k < far_stands * far_densities; k++)
-        far_stand_destroy(far->stand[k / far_densities][k % far_densities]);
+    free_stands(far);
     free(far);
 }
 

@@ -57,6 +57,13 @@ typedef struct WoodStand {
 Status far_stand_create(WoodStand **out, SurfaceClass surface, double density, const Forest *forest,
                         const Materials *materials, bool leaves, Pool *pool);
 void   far_stand_destroy(WoodStand *stand); /* accepts NULL */
+/* An empty stand for far_stand_kept_values, KeptValues of it. rows: of materials. */
+Status far_stand_create_bare(WoodStand **out);
+typedef struct StandKept {
+    WoodStand *stand;
+    int        rows;
+} StandKept;
+KeptValues far_stand_kept_values;
 
 /* Nodes: elevation of eye or sun over the ground, and azimuth of the sun from that of the eye, rad. */
 double far_stand_azimuth(int node);
@@ -96,9 +103,9 @@ typedef struct FarWoods {
 } FarWoods;
 
 /* Adds its rows to the materials, behind those that are counted (Materials.more). woods: of the world, kept. *out NULL:
- * woods without a place outside (made by hand). pool: may be NULL. */
+ * woods without a place outside (made by hand). kept: where its stands are kept. pool: may be NULL. */
 Status far_woods_create(FarWoods **out, const Woods *woods, const Forest *forest, Materials *materials, bool leaves,
-                        Pool *pool);
+                        const PlantsKept *kept, Pool *pool);
 void   far_woods_destroy(FarWoods *far); /* accepts NULL */
 
 /* Of one direction of the eye: [0] where hills hide the sun, [1] where they do not. */

@@ -6,6 +6,7 @@
 
 enum { squares = 8, ray_block = 64, most_suns = stand_suns * stand_azimuths };
 static const double stand_seed = 1995;
+static const double stand_corner_m = -squares / 2 * woods_square_m; /* of woods_of_class */
 static const double view_deg[stand_views] = {4, 10, 20, 36, 60, 90}, sun_deg[stand_suns] = {4, 10, 20, 36, 60, 90};
 static const double azimuth_deg[stand_azimuths] = {0, 25, 65, 115, 180};
 
@@ -308,6 +309,42 @@ Status far_stand_create(WoodStand **out, SurfaceClass surface, double density, c
     if (status == STATUS_OK) *out = stand;
     else far_stand_destroy(stand);
     return status;
+}
+
+Status far_stand_create_bare(WoodStand **out)
+{
+    WoodStand  *stand = calloc(1, sizeof *stand);
+    const Woods woods = {.nx = squares, .ny = squares, .origin_enu = {stand_corner_m, stand_corner_m, 0}};
+    if (!stand) return STATUS_NO_MEMORY;
+    const Status status = canopy_create_bare(&stand->canopy, &woods);
+    if (status == STATUS_OK) *out = stand;
+    else far_stand_destroy(stand);
+    return status;
+}
+
+/* A mean's row has no name. */
+static void pass_material(Kept *kept, Material *m)
+{
+    kept_floats(kept, m->rho, (sizeof *m - offsetof(Material, rho)) / sizeof(float));
+}
+
+void far_stand_kept_values(Kept *kept, void *user)
+{
+    const StandKept *of = user;
+    WoodStand       *stand = of->stand;
+    int32_t          row = stand->bark_row;
+    _Static_assert(sizeof(StandOrgan) == 10 * sizeof(double) && sizeof(StandLit) == 5 * sizeof(double) &&
+                       sizeof(StandView) % sizeof(double) == 0,
+                   "doubles alone");
+    canopy_kept_values(kept, stand->canopy);
+    pass_material(kept, &stand->leaf);
+    pass_material(kept, &stand->bark);
+    kept_pass(kept, &row, sizeof row);
+    kept_check(kept, row >= 0 && row < of->rows);
+    stand->bark_row = row;
+    kept_doubles(kept, &stand->top_m, 1);
+    kept_doubles(kept, &stand->view[0].leaf.share, sizeof stand->view / (sizeof(double)));
+    kept_doubles(kept, &stand->lit[0][0][0].leaf, sizeof stand->lit / (sizeof(double)));
 }
 
 void far_stand_destroy(WoodStand *stand)

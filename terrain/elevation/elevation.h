@@ -32,7 +32,7 @@
 #ifndef TERRAIN_ELEVATION_ELEVATION_H
 #define TERRAIN_ELEVATION_ELEVATION_H
 
-#include "pitviper.h"
+#include "pitviper_kept.h"
 
 enum {
     elevation_max_levels = 4,
@@ -107,6 +107,9 @@ void elevation_build_pyramid_tiles(ElevationLevel *level, int tile_j);
 void elevation_finish_pyramid(ElevationLevel *level);
 
 void elevation_destroy(Elevation *elevation); /* accepts a half-built one */
+
+/* KeptValues of an Elevation, of zeroes while it is read; after what is wrong it is half built. */
+KeptValues elevation_kept_values;
 
 /* ---- writing: first the tiles' bases and shifts, then the posts ------------------------------------ */
 

@@ -47,13 +47,19 @@ Status landscape_create(Landscape *out, const LandscapeConfig *config, const Loc
 Status landscape_create_from(Landscape *out, const LandscapeConfig *config, const LocalFrame *frame,
                              const LandscapeEvidence *evidence)
 {
+    return landscape_create_kept(out, config, frame, evidence, NULL);
+}
+
+Status landscape_create_kept(Landscape *out, const LandscapeConfig *config, const LocalFrame *frame,
+                             const LandscapeEvidence *evidence, Cache *cache)
+{
     InventedTerrain terrain;
     Landscape       landscape = {.frame = *frame, .config = *config};
     /* dyadic, so that every post's position is exact */
     landscape.config.spacing_m = rint(config->spacing_m * 64) / 64;
     Cover *cover = calloc(1, sizeof *cover);
     if (!cover) return STATUS_NO_MEMORY;
-    Status status = invented_create(&terrain, &landscape.config, frame, evidence);
+    Status status = invented_create_kept(&terrain, &landscape.config, frame, evidence, cache);
     if (status != STATUS_OK) {
         free(cover);
         return status;

@@ -45,6 +45,9 @@ Status landscape_create(Landscape *out, const LandscapeConfig *config, const Loc
  * water are dropped, and lines do not lower it. */
 Status landscape_create_from(Landscape *out, const LandscapeConfig *config, const LocalFrame *frame,
                              const LandscapeEvidence *evidence);
+/* The same from the cache, or into it. cache may be NULL. */
+Status landscape_create_kept(Landscape *out, const LandscapeConfig *config, const LocalFrame *frame,
+                             const LandscapeEvidence *evidence, Cache *cache);
 void   landscape_destroy(Landscape *landscape);
 
 /* Whether the terrain is synthetic, not from files. */

@@ -10,6 +10,8 @@
 #include "terrain/elevation/elevation.h"
 #include "terrain/surface.h"
 
+#include "pitviper_kept.h"
+
 /* ---- random numbers of places ---------------------------------------------------------------- */
 
 /* Well mixed 64 bits of (seed, a, b). The finaliser is Stafford's thirteenth variant ("Better bit mixing",
@@ -115,7 +117,13 @@ typedef struct InventedTerrain {
 /* STATUS_BAD_VALUE: a figure of the configuration is out of its range. */
 Status invented_create(InventedTerrain *out, const LandscapeConfig *config, const LocalFrame *frame,
                        const LandscapeEvidence *evidence);
-void   invented_ground_free(InventedGround *ground); /* accepts zeroes */
+/* The same from the cache, or into it. cache may be NULL. */
+Status invented_create_kept(InventedTerrain *out, const LandscapeConfig *config, const LocalFrame *frame,
+                            const LandscapeEvidence *evidence, Cache *cache);
+/* KeptValues of InventedTerrain: of zeroes while they are read. After what is wrong invented_free. */
+KeptValues invented_kept_values;
+void       invented_free(InventedTerrain *terrain);
+void       invented_ground_free(InventedGround *ground); /* accepts zeroes */
 
 struct WorkLevel; /* terrain/elevation/levels.h */
 /* Leads levels of real ground, heights above the ellipsoid, through fixes: a smooth field through their differences,

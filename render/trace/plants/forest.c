@@ -27,17 +27,20 @@ static Status forest_status(const Forest *forest)
 /* How far a shape reaches towards equally spaced azimuths. */
 static void find_reach(ShapeScene *out, int quads)
 {
+    double cosine[shape_azimuths], sine[shape_azimuths], *most = out->reach;
     for (int a = 0; a < shape_azimuths; a++) {
-        const double cosine = cos(2 * pi_rad * a / shape_azimuths), sine = sin(2 * pi_rad * a / shape_azimuths);
-        double       most = -INFINITY;
-        for (int q = 0; q < quads; q++)
-            for (int k = 0; k < 4; k++) {
-                const float *p = out->shape->quad[q].corner[k];
-                most = fmax(most, cosine * (double)p[0] + sine * (double)p[1]);
-            }
-        out->reach[a] = most;
+        cosine[a] = cos(2 * pi_rad * a / shape_azimuths), sine[a] = sin(2 * pi_rad * a / shape_azimuths);
+        most[a] = -INFINITY;
     }
-    out->reach[shape_azimuths] = out->reach[0];
+    for (int q = 0; q < quads; q++)
+        for (int k = 0; k < 4; k++) {
+            const double x = (double)out->shape->quad[q].corner[k][0], y = (double)out->shape->quad[q].corner[k][1];
+            for (int a = 0; a < shape_azimuths; a++) {
+                const double reach = cosine[a] * x + sine[a] * y;
+                most[a] = reach > most[a] ? reach : most[a];
+            }
+        }
+    most[shape_azimuths] = most[0];
 }
 
 static Status build_shape(ShapeScene *out, const Forest *forest, int kind, int level)
@@ -179,6 +182,7 @@ void forest_destroy(Forest *forest)
 
 const Woods  *forest_woods(const Forest *forest) { return forest->woods; }
 const Plants *forest_plants(const Forest *forest) { return forest->plants; }
+ForestConfig  forest_config(const Forest *forest) { return forest->config; }
 bool          forest_simplifies(const Forest *forest) { return forest->config.level1_px > 0; }
 
 /* ---- a frame ---------------------------------------------------------------------------------- */

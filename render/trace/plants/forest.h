@@ -31,6 +31,7 @@ void   forest_destroy(Forest *forest);
 void          forest_openness(Plants *plants, const Forest *forest, Pool *pool);
 const Woods  *forest_woods(const Forest *forest);
 const Plants *forest_plants(const Forest *forest);
+ForestConfig  forest_config(const Forest *forest);
 bool          forest_simplifies(const Forest *forest); /* level1_px > 0 */
 
 /* A forest as one frame sees it; a pure function of these. */

@@ -6,9 +6,17 @@
 
 #include "render/trace/plants/plants.h"
 
+#include "pitviper_kept.h"
+
 /* Their length, and the octets where out is not NULL. */
 size_t plants_to_octets(void *out, const Plants *plants);
 /* STATUS_BAD_VALUE: they are not such octets: a number is out of range, or not finite. */
 Status plants_from_octets(Plants **out, const void *octets, size_t count);
+
+/* Where what follows from prototypes is kept: beside them, by their name. */
+typedef struct PlantsKept {
+    Cache      *cache; /* NULL: nowhere */
+    const char *name;  /* CacheKey.name of the prototypes */
+} PlantsKept;
 
 #endif

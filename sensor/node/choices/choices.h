@@ -76,7 +76,7 @@ typedef struct ChoiceBasis {
     const Config         *config;
     const Catalog        *catalog;
     const GroundEvidence *evidence;
-    Cache                *cache;   /* where plants that stand on invented ground are kept; NULL: nowhere */
+    Cache                *cache;   /* where invented ground and plants that stand on it are kept; NULL: nowhere */
     const char           *follows; /* WoodsConfig.follows */
 } ChoiceBasis;
 

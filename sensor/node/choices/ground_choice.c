@@ -175,13 +175,15 @@ static void report_synthetic(Choices *choices, const Landscape *landscape, const
                    landscape->fixes_dropped, e->said.fix_count);
 }
 
-static Status invent(Landscape *out, const Config *config, const LocalFrame *frame, const GroundEvidence *e)
+static Status invent(Landscape *out, const ChoiceBasis *basis, const LocalFrame *frame)
 {
-    LandscapeConfig land = landscape_default_config();
+    const Config         *config = basis->config;
+    const GroundEvidence *e = basis->evidence;
+    LandscapeConfig       land = landscape_default_config();
     land.seed = (uint64_t)config->seed;
     land.relief_m = config->terrain.relief_m;
     if (config->terrain.spacing_m > 0) land.spacing_m = config->terrain.spacing_m;
-    const Status status = landscape_create_from(out, &land, frame, &e->said);
+    const Status status = landscape_create_kept(out, &land, frame, &e->said, basis->cache);
     if (status != STATUS_OK) log_error("replay: no landscape could be made: %s", status_name(status));
     return status;
 }
@@ -405,7 +407,7 @@ Status choice_ground(Landscape *out, GroundContact *contact, Choices *choices, c
                                                                                     : fitted;
     Status                status = stored ? open_store(out, choices, config)
                                    : real ? import(out, choices, config, frame, e, said == TERRAIN_GROUND_FIT)
-                                          : invent(out, config, frame, e);
+                                          : invent(out, basis, frame);
     if (status == STATUS_OK && !real) status = report_fit(choices, set, out, survey, e);
     if (status == STATUS_OK && (real || set == GROUND_CONTACT_ALL))
         status = report_contact(choices, set == GROUND_CONTACT_ALL, out, survey, e);

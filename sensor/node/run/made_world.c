@@ -272,7 +272,7 @@ static Status need_ground(MadeWorld *m, const MadeOf *of, const GroundEvidence *
     add_frame(&key, of->frame);
     key.good = key.good && *m->key[MADE_CATALOG] && choice_evidence_hash(key.digest, evidence);
     if (is_there(key_text, m, MADE_GROUND, &key)) return STATUS_OK;
-    const ChoiceBasis basis = {&m->survey, part, m->catalog, evidence, NULL, NULL};
+    const ChoiceBasis basis = {&m->survey, part, m->catalog, evidence, m->cache, NULL};
     return done(m, MADE_GROUND, key_text,
                 choice_ground(&m->landscape, &m->contact, &m->said[MADE_GROUND], &basis, of->frame));
 }
