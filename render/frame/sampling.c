@@ -44,14 +44,18 @@ void sampling_mark(Job *job)
     for (size_t k = 0; job->refine && k < px; k++) job->whole[k] |= job->refine[k] != 0; /* shadows of small targets */
 }
 
-/* Whether the ray of a pixel's centre meets some of the listed volumes. */
+/* Whether a ray of a pixel meets some of the listed volumes. */
 static bool meets_smoke(const Job *job, const int *list, int count, int x, int y)
 {
     const View *view = &job->request->view;
-    double      d_enu[3];
-    view_ray(d_enu, view, x + 0.5, y + 0.5);
-    for (int k = 0; k < count; k++)
-        if (smoke_column_m(&job->scene.effects.volume[list[k]], view->p_enu, d_enu, 0, INFINITY) > 0) return true;
+    const int   n = job->request->samples;
+    for (int s = 0; s < n * n; s++) {
+        double place[2], d_enu[3];
+        sample_place(place, n, s);
+        view_ray(d_enu, view, x + place[0], y + place[1]);
+        for (int k = 0; k < count; k++)
+            if (smoke_column_m(&job->scene.effects.volume[list[k]], view->p_enu, d_enu, 0, INFINITY) > 0) return true;
+    }
     return false;
 }
 
