@@ -258,14 +258,13 @@ static void take_rays(ProbeTask *t, const Job *job, int n, const float *value, i
     for (int p = 0; p < t->count; p++) {
         const Candidate *c = candidate_of(t, p);
         if (!(c->planes >> plane & 1)) continue;
-        double square, sum = 0;
-        if (law) {
-            square = render_error_variance(value + p * samples, n);
-        } else {
-            for (int k = 0; k < samples; k++) sum += (double)value[p * samples + k];
-            square = sum / samples - (double)c->value[plane];
-            square *= square;
-        }
+        double       square, sum = 0;
+        const double variance = law ? render_error_variance(value + p * samples, n) : 0;
+        for (int k = 0; k < samples; k++) sum += (double)value[p * samples + k];
+        square = sum / samples - (double)c->value[plane];
+        square *= square;
+        /* a pixel that is filled from others is off by more than as many rays of its own would be */
+        if (law) square = sampling_fills(job, c->x, c->y) ? fmax(square - variance, variance) : variance;
         t->sampling[plane] += t->probe[p].stands_for * square;
         take_square(t, p, plane, square);
     }

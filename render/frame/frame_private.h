@@ -238,6 +238,9 @@ void block_write(Worker *w, const Job *job, double share);
 /* Array of a plane's values at the block's samples; NULL: not requested. */
 float *block_values(const Worker *w, const Job *job, int plane);
 
+/* The worker's block of a tile's pixels, with the sample count that all have: planes and truth. They count in no sum.
+ */
+void base_others(Worker *w, const Job *job, const Tile *tile);
 /* The base pass, with the sample count that all pixels have: a pool task: planes, truth and sums of a tile. */
 void base_tile(void *job, int worker, int task);
 
@@ -245,9 +248,13 @@ void base_tile(void *job, int worker, int task);
 
 /* Marks what is whole. After mark_boxes. */
 void sampling_mark(Job *job);
-/* Whether a pixel has rays of its own. */
+/* Marks the pixels of a tile that look through smoke, flames or hot gas. In the base pass. */
+void sampling_mark_smoke(Worker *w, Job *job, const Tile *tile);
+/* Whether a pixel has rays of its own in the base pass. */
 bool sampling_traces(const Job *job, int x, int y);
-/* A pool task, after the base pass: fills a tile's other pixels from those beside them. */
+/* After the base pass: whether it shows the mean of those beside it, and no ray of its own. */
+bool sampling_fills(const Job *job, int x, int y);
+/* A pool task, after the base pass: fills a tile's other pixels from those beside them, or traces them. */
 void sampling_fill_tile(void *job, int worker, int task);
 
 /* ---- pixels that one sample does not represent: edges.c -------------------------------------- */

@@ -262,7 +262,7 @@ static void write_truth(const Worker *w, const Job *job)
     }
 }
 
-/* Shades the block's pixels. share: of the picture that each stands for in sums over it. */
+/* Shades the block's pixels. share: how many of the picture each stands for in sums over it. */
 static void base_block(Worker *w, const Job *job, int listed, double share)
 {
     if (w->block.pixels == 0) return;
@@ -270,8 +270,8 @@ static void base_block(Worker *w, const Job *job, int listed, double share)
     shade_samples_sun(&w->shader, &job->scene, &w->samples);
     block_light(w, job);
     block_write(w, job, 1);
-    block_add(w, job, share);
-    if (job->picture->target) block_add_areas(w, job, share, w->list, listed);
+    if (share > 0) block_add(w, job, share);
+    if (share > 0 && job->picture->target) block_add_areas(w, job, share, w->list, listed);
     if (job->picture->entity) write_truth(w, job);
 }
 
@@ -290,14 +290,23 @@ static int collect(Worker *w, const Job *job, const Tile *tile, bool whole)
     return count;
 }
 
+void base_others(Worker *w, const Job *job, const Tile *tile)
+{
+    const double box_px[4] = {tile->x0, tile->y0, tile->x1, tile->y1};
+    if (w->block.pixels == 0) return;
+    w->block.n = job->request->samples;
+    base_block(w, job, list_entities(w, job, box_px, false), 0);
+}
+
 void base_tile(void *user, int worker, int task)
 {
-    const Job   *job = user;
+    Job         *job = user;
     Worker      *w = job->worker[worker];
     const Tile   tile = tile_of(job, task);
     const double box_px[4] = {tile.x0, tile.y0, tile.x1, tile.y1};
-    const int    listed = list_entities(w, job, box_px, false);
-    const int    pixels = (tile.x1 - tile.x0) * (tile.y1 - tile.y0), whole = collect(w, job, &tile, true);
+    if (job->whole) sampling_mark_smoke(w, job, &tile);
+    const int listed = list_entities(w, job, box_px, false);
+    const int pixels = (tile.x1 - tile.x0) * (tile.y1 - tile.y0), whole = collect(w, job, &tile, true);
 
     w->block.n = job->request->samples;
     if (w->block.n == 1 && whole == pixels) w->block.columns = tile.x1 - tile.x0;

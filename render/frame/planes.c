@@ -143,8 +143,9 @@ Status planes_create(Picture *picture, const RenderRequest *request, int entitie
         [PLANE_F32] = sizeof(float), [PLANE_U32] = sizeof(uint32_t), [PLANE_F64] = sizeof(double), [PLANE_U8] = 1};
     const size_t px = (size_t)request->view.width * (size_t)request->view.height;
     const size_t bins = request->profile_bins > 0 ? (size_t)request->profile_bins : 0;
-    const bool   truth = request->truth || looks_for_edges(request); /* edges are where truth changes */
-    bool         ok = true;
+    /* edges are where truth changes; pixels without rays are filled by what those beside them show */
+    const bool truth = request->truth || looks_for_edges(request) || request->sampling > SAMPLING_TARGETS;
+    bool       ok = true;
     *picture = (Picture){.width = request->view.width, .height = request->view.height};
     for (int k = 0; k < plane_row_count; k++) {
         const PlaneRow *row = &plane_rows[k];

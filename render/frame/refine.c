@@ -189,6 +189,14 @@ static int list_block(Worker *w, const Job *job, int listed)
     return list_entities(w, job, box_px, false);
 }
 
+/* Whether pixels of a tile may be refined: at cheaper steps of sampling those that are whole, which all marks are. */
+static bool may_refine(const Job *job, const Tile *tile)
+{
+    for (int y = tile->y0; job->whole && y < tile->y1; y++)
+        if (memchr(&job->whole[pixel_index(job, tile->x0, y)], 1, (size_t)(tile->x1 - tile->x0))) return true;
+    return !job->whole;
+}
+
 void refine_tile(void *user, int worker, int task)
 {
     const Job     *job = user;
@@ -210,6 +218,7 @@ void refine_tile(void *user, int worker, int task)
         {refine_ground | refine_sun, refine_all | refine_step | refine_plants, lwir, 1},
     };
     uint8_t flags_of[hits_capacity];
+    if (!may_refine(job, &tile)) return;
     refine_flags(flags_of, job, tile.x0, tile.y0, tile.x1, tile.y1);
     for (int y = tile.y0; y < tile.y1; y++)
         for (int x = tile.x0; x < tile.x1; x++) {

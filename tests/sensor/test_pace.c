@@ -19,7 +19,7 @@ static void listen(void *user, LogLevel level, const char *line)
  * table's share of it. From begun_s on; returns the end. */
 static double go(Pace *p, const char *host, double load, int frames, double begun_s)
 {
-    static const double share[deadline_steps] = {1, 0.6, 0.4, 0.3};
+    static const double share[deadline_steps] = {1, 0.74, 0.6, 0.5};
     for (int k = 0; k < frames; k++) {
         const double due_s = begun_s + 0.2 * k;
         pace_choose(p, host, 0.005, due_s + 0.005);
@@ -38,19 +38,19 @@ static void each_change_is_said_once(void **state)
     log_set_sink(listen, NULL);
     double t_s = go(&p, "1:1:1", 0.5, 50, 1000);
     CHECK(said == 0 && p.step == 0); /* the start alone is no news */
-    t_s = go(&p, "1:1:1", 2, 3, t_s);
+    t_s = go(&p, "1:1:1", 1.4, 3, t_s);
     t_s = go(&p, "1:1:1", 0.5, 50, t_s);
     CHECK(said == 0); /* nor is a moment */
-    t_s = go(&p, "1:1:1", 2, 100, t_s);
+    t_s = go(&p, "1:1:1", 1.4, 100, t_s);
     CHECK(said == 1 && strstr(lines[0], "give up sampling to keep 5 a second: checkerboard") && p.step == 2);
     t_s = go(&p, "1:1:1", 0.5, 20, t_s);
     CHECK(said == 1 && p.step == 0);
     t_s = go(&p, "1:1:1", 0.5, 20, t_s);
     CHECK(said == 2 && strstr(lines[1], "5 frames a second are kept in full again"));
     /* again, within a minute of the first time: not said; later it is */
-    t_s = go(&p, "1:1:1", 2, 50, t_s);
+    t_s = go(&p, "1:1:1", 1.4, 50, t_s);
     CHECK(said == 2);
-    go(&p, "1:1:1", 2, 300, t_s);
+    go(&p, "1:1:1", 1.4, 300, t_s);
     CHECK(said == 3);
     log_set_sink(NULL, NULL);
 }

@@ -96,10 +96,12 @@ static void each_step(void **state)
                 others[step]++;
                 if (has_rays(step, x, y)) {
                     CHECK(shot[step].range_m[k] == shot[0].range_m[k]);
-                } else {
-                    CHECK(shot[step].lwir[k] == mean_about(step, x, y));
-                    apart[step] += shot[step].lwir[k] != shot[0].lwir[k];
+                    continue;
                 }
+                apart[step] += shot[step].lwir[k] != shot[0].lwir[k];
+                const bool inside = x >= 2 && y >= 2 && x < width - 2 && y < height - 2;
+                /* within a checkerboard the mean is weighted: tests/sensor/test_sampling_steps.c */
+                if (step != SAMPLING_CHECKERBOARD || !inside) CHECK(shot[step].lwir[k] == mean_about(step, x, y));
             }
     }
     CHECK(seen > 0 && about > px && others[SAMPLING_QUARTER] >= px / 4);

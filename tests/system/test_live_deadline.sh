@@ -6,8 +6,9 @@
 . "$(dirname "$0")/live.sh"
 judges python3
 
-few=(--size 64x48 --rate 10 --bands optical,lwir --host observer --set exercise.listen_s=0.3 --set sensor.preset=staring_lwir
-    --set sensor.hfov_deg=12)
+# a sensor whose columns are swept, a lens that distorts, an odd size
+few=(--size 63x47 --rate 10 --bands optical,lwir --host observer --set exercise.listen_s=0.3 --set sensor.preset=scanning_flir2
+    --set sensor.hfov_deg=12 --set sensor.lens_k1=-2)
 free_port
 node held --address 127.0.0.1 --port $port "${few[@]}" --record "$tmp/held.pcapng"
 check "it listens" heard_by held 'listening on'

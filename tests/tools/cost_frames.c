@@ -40,19 +40,21 @@ typedef struct CostFrame {
     unsigned    bands;
     bool        truth;
     bool        whole; /* counted with snapshot, air and truth of targets, not `render` alone */
+    Sampling    sampling;
 } CostFrame;
 
 static const CostFrame frames[] = {
-    {"ground", BARE, 60, 30, 20, all_bands, true, false},
-    {"borders", BARE, 900, 300, 40, all_bands, true, false},
-    {"woods-near", WOODS, 80, 12, 30, all_bands, true, false},
-    {"woods-far", WOODS, 1000, 200, 30, all_bands, true, false},
-    {"vehicles", VEHICLES, 150, 40, 40, 1u << BAND_LWIR, false, false},
-    {"small-targets", FEW, 1000, 150, 12, all_bands, true, false},
-    {"crowd", CROWD, 150, 40, 34, 1u << BAND_LWIR, true, false},
-    {"smoke", SMOKE, 150, 20, 40, all_bands, true, false},
-    {"radar", FEW, 600, 100, 16, 1u << BAND_RADAR, true, false},
-    {"whole", BARE, 900, 300, 40, all_bands, true, true},
+    {"ground", BARE, 60, 30, 20, all_bands, true, false, SAMPLING_ALL},
+    {"borders", BARE, 900, 300, 40, all_bands, true, false, SAMPLING_ALL},
+    {"woods-near", WOODS, 80, 12, 30, all_bands, true, false, SAMPLING_ALL},
+    {"woods-far", WOODS, 1000, 200, 30, all_bands, true, false, SAMPLING_ALL},
+    {"vehicles", VEHICLES, 150, 40, 40, 1u << BAND_LWIR, false, false, SAMPLING_ALL},
+    {"small-targets", FEW, 1000, 150, 12, all_bands, true, false, SAMPLING_ALL},
+    {"crowd", CROWD, 150, 40, 34, 1u << BAND_LWIR, true, false, SAMPLING_ALL},
+    {"smoke", SMOKE, 150, 20, 40, all_bands, true, false, SAMPLING_ALL},
+    {"radar", FEW, 600, 100, 16, 1u << BAND_RADAR, true, false, SAMPLING_ALL},
+    {"whole", BARE, 900, 300, 40, all_bands, true, true, SAMPLING_ALL},
+    {"quarter", WOODS, 1000, 200, 30, all_bands, true, false, SAMPLING_QUARTER},
 };
 enum { frame_count = sizeof frames / sizeof *frames };
 
@@ -182,6 +184,7 @@ static RenderRequest request_of(const CostFrame *f)
     RenderRequest     request = trial_default_request(scene, &view, f->back_m);
     request.bands = f->bands;
     request.truth = f->truth;
+    request.sampling = f->sampling;
     if (!(f->bands >> BAND_RADAR & 1)) request.profile_bins = 0;
     return request;
 }

@@ -198,7 +198,7 @@ Status explain_pixel(Explained *e, SavedFrame *file, SavedScene *scene, int x, i
         const bool quarter = file->request.sampling == SAMPLING_QUARTER;
         log_error(
             "explain: column %d, row %d has no ray of its own in this frame, which gave up sampling to be in time: it is "
-            "the mean of the pixels beside it that have some; explain column %d, row %d",
+            "the mean of pixels beside it that have some; explain column %d, row %d",
             x, y,
             quarter ? x & ~1
             : x > 0 ? x - 1

@@ -41,5 +41,6 @@ Status precision_small_target(Bench *bench);
 Status precision_plants(Bench *bench);
 Status precision_radar_seeker(Bench *bench);
 Status precision_coarse(Bench *bench);
+Status precision_sampling(Bench *bench);
 
 #endif

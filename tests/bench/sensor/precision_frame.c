@@ -319,6 +319,7 @@ Status bench_precision(Bench *bench)
     if (status == STATUS_OK) status = precision_models(&p);
     precision_close(&p);
     if (status == STATUS_OK) status = precision_plants(bench);
+    if (status == STATUS_OK) status = precision_sampling(bench);
     if (status == STATUS_OK) status = precision_detectors(bench);
     if (status == STATUS_OK) status = precision_radar_seeker(bench);
     if (status == STATUS_OK) status = precision_coarse(bench);

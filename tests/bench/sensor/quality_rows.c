@@ -4,18 +4,12 @@
 #include "tests/bench/suites.h"
 
 #include "pitviper_output.h"
-#include "tests/scenes/woods_stand.h"
-#include "sensor/quality/quality_measure.h"
+#include "tests/bench/sensor/quality_woods.h"
 #include "sensor/quality/quality.h"
 
 #include <errno.h>
 
 enum { rounds_most = 2 };
-
-/* A third of the density of `bench woods`: half to two thirds of the pixels are plants, in the demonstration 21 to 46
- * %. */
-static const double trees_per_m2 = 0.005;
-static const double cleared_m = 6; /* about a vehicle */
 
 static const QualitySettings reference = {16, 0, 0};
 
@@ -48,30 +42,6 @@ static void errors_of(double percent[quality_bands], double kelvin[quality_bands
         kelvin[band] = band == BAND_OPTICAL ? NAN : sqrt(square_k / (double)count);
     }
     for (int b = 0; b < quality_bands; b++) percent[b] = 100 * sqrt(shares[b]);
-}
-
-/* Plants trees over all of the trial's ground but the vehicles' places. */
-static Status plant_lab(Woods *woods, QualityMeasure *lab)
-{
-    const Config       config = config_default();
-    const ForestConfig forest = {
-        .leaves = true, .level1_px = config.terrain.woods_level1_px, .sway = config.terrain.woods_sway};
-    const HeatConfig heat = heat_default_config();
-    WoodsStand       stand = {.landscape = &lab->ground,
-                              .east_m = quality_measure_east_m,
-                              .north_m = quality_measure_north_m,
-                              .trees = (int)(trees_per_m2 * quality_measure_east_m * quality_measure_north_m)};
-    Snapshot         snapshot;
-    arena_reset(lab->arena);
-    Status status = entity_table_snapshot(&snapshot, lab->scene.table, lab->scene.sun_now_s + 0.5, lab->arena);
-    for (int k = 0; status == STATUS_OK && k < snapshot.count && k < woods_stand_clear; k++) {
-        double p_enu[3];
-        enu_from_ecef(p_enu, &lab->ground.frame, snapshot.entity[k].p_ecef);
-        stand.clear[stand.clears++] = (WoodsPath){{p_enu[0], p_enu[1]}, {p_enu[0], p_enu[1]}, cleared_m, cleared_m};
-    }
-    if (status == STATUS_OK) status = woods_stand_create(woods, &stand, lab->many);
-    if (status == STATUS_OK) status = world_plant(&lab->scene.world, woods, &forest, NULL, lab->many);
-    return status == STATUS_OK ? trial_scene_warm(&lab->scene, &heat) : status;
 }
 
 /* Measures the errors of rows of this scene, in the order of the grid. Among plants every second view is taken. */
@@ -171,7 +141,7 @@ static Status measure(QualityTable *table, BenchTime *time, Woods *woods, Qualit
         Status status = STATUS_OK;
         if (scene == QUALITY_WOODS) {
             bench_progress(bench, "woods");
-            status = plant_lab(woods, lab);
+            status = quality_woods_plant(woods, lab);
         }
         if (status == STATUS_OK) status = measure_errors(rows, lab, bench);
         if (status == STATUS_OK) status = measure_times(rows, time + scene * grid_count, lab, bench);
