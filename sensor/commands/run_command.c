@@ -5,6 +5,7 @@
 
 #include "sensor/node/clock/live_clock.h"
 #include "sensor/node/live/health.h"
+#include "sensor/publish/consumers/consumer.h"
 #include "sensor/publish/files/frame_files.h"
 #include "sensor/node/run/host_run.h"
 #include "sensor/node/live/live_recording.h"
@@ -498,6 +499,10 @@ int run_command(int argc, char **argv)
     stop_by_signals();
     thread_flush_denormals();
     const Status status = run_node(l);
+    if (publish_hangs()) { /* a thread of it never returns, and uses what would be freed */
+        fflush(stdout);
+        _exit(1);
+    }
     live_recording_close(l->recording);
     dis_udp_close(l->udp);
     run_close(&l->run);

@@ -136,8 +136,8 @@ static void a_queue_hands_on_in_order(void **state)
     noting(&last, WANT_SHA256, -1, true);
     consumers_add(&list, &first.consumer);
     consumers_add(&list, &last.consumer);
-    assert_int_equal(frame_pool_create(&pool, queue_frames), STATUS_OK);
-    assert_int_equal(consumer_queue_open(&queue, &list, QUEUE_WAIT, NULL), STATUS_OK);
+    assert_int_equal(frame_pool_create(&pool, 3), STATUS_OK);
+    assert_int_equal(consumer_queue_open(&queue, &list, &(QueueOf){.rule = QUEUE_WAIT, .waiting = 1}), STATUS_OK);
     CHECK(queue->wants == (WANT_PLANES | WANT_SHA256));
     for (int i = 0; i < notes_max; i++) assert_int_equal(put_number(queue, pool, i), STATUS_OK);
     assert_int_equal(queue->close(queue), STATUS_OK);
@@ -162,8 +162,10 @@ static void a_queue_stops_at_the_first_failure(void **state)
     noting(&behind, 0, -1, true);
     consumers_add(&list, &failing.consumer);
     consumers_add(&list, &behind.consumer);
-    assert_int_equal(frame_pool_create(&pool, queue_frames), STATUS_OK);
-    assert_int_equal(consumer_queue_open(&queue, &list, QUEUE_WAIT, &counts), STATUS_OK);
+    assert_int_equal(frame_pool_create(&pool, 3), STATUS_OK);
+    assert_int_equal(
+        consumer_queue_open(&queue, &list, &(QueueOf){.rule = QUEUE_WAIT, .waiting = 1, .counters = &counts}),
+        STATUS_OK);
     while (status == STATUS_OK && puts < notes_max) status = put_number(queue, pool, puts++);
     assert_int_equal(status, STATUS_IO);
     assert_int_equal(queue->close(queue), STATUS_IO);
@@ -183,8 +185,10 @@ static void a_late_queue_leaves_out(void **state)
     QueueCounters counts = {0};
     noting(&slow, 0, 0, false);
     consumers_add(&list, &slow.consumer);
-    assert_int_equal(frame_pool_create(&pool, queue_frames), STATUS_OK);
-    assert_int_equal(consumer_queue_open(&queue, &list, QUEUE_LEAVE_OUT, &counts), STATUS_OK);
+    assert_int_equal(frame_pool_create(&pool, 3), STATUS_OK);
+    assert_int_equal(
+        consumer_queue_open(&queue, &list, &(QueueOf){.rule = QUEUE_LEAVE_OUT, .waiting = 1, .counters = &counts}),
+        STATUS_OK);
     assert_int_equal(put_number(queue, pool, 0), STATUS_OK);
     wait_entered(&slow);
     for (int i = 1; i < 20; i++) assert_int_equal(put_number(queue, pool, i), STATUS_OK); /* never waits */

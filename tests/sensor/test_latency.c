@@ -181,14 +181,15 @@ static void lines_open(Lines *l)
     gate_make(&l->fast, "fast", true);
     gate_make(&l->slow, "slow", false);
     assert_int_equal(latency_create(&l->latency), STATUS_OK);
-    assert_int_equal(frame_pool_create(&l->pool, queue_frames), STATUS_OK);
+    assert_int_equal(frame_pool_create(&l->pool, 3), STATUS_OK);
     assert_int_equal(consume_truth_lines(&lines, l->folder, false, NULL), STATUS_OK);
     assert_int_equal(lines->begin(lines), STATUS_OK);
     consumers_add(&l->list, lines);
     consumers_add(&l->list, &l->fast.consumer);
     consumers_add(&behind, &l->slow.consumer);
     consumers_expect(&behind, l->latency);
-    assert_int_equal(consumer_queue_open(&queue, &behind, QUEUE_LEAVE_OUT, NULL), STATUS_OK);
+    assert_int_equal(consumer_queue_open(&queue, &behind, &(QueueOf){.rule = QUEUE_LEAVE_OUT, .waiting = 1}),
+                     STATUS_OK);
     consumers_add(&l->list, queue);
     consumers_expect(&l->list, l->latency);
 }

@@ -114,27 +114,40 @@ int                  session_entities(const Session *s) { return entity_table_co
 uint64_t             session_over_rate(const Session *s) { return entity_table_counters(s->table)->over_rate; }
 const char          *session_host(const Session *s) { return s->host_text; }
 
+/* Frames that lack files: of the kind that lacks most, since a frame that lacks several counts once. */
+static void count_lost_files(Session *s)
+{
+    SessionResult *r = &s->result;
+    for (size_t k = 0; k < sizeof s->written / sizeof *s->written; k++) {
+        if (s->written[k].failed > r->files_failed) r->files_failed = s->written[k].failed;
+        if (s->written[k].left_out > r->files_left_out) r->files_left_out = s->written[k].left_out;
+    }
+    r->files_failed += s->lines_failed;
+}
+
 Status session_close(Session *s, SessionResult *result)
 {
     session_heat_report(s);
     Status status = consumers_close(&s->consumers); /* the last frames are published before */
-    detections_close(s->detections, &s->result.answers);
-    geoid_close(&s->geoid);
+    if (!publish_hangs()) {
+        detections_close(s->detections, &s->result.answers);
+        geoid_close(&s->geoid);
+    }
     if (status == STATUS_OK) status = s->listed;
     /* of a session that could not be opened nothing is written over what it could not read */
     if (s->opened && *s->shared->config->heat.marks && status == STATUS_OK)
         status = entity_table_marks_save(s->table, s->shared->unix_s, s->shared->config->heat.marks);
     if (s->opened && status == STATUS_OK) status = session_heat_keep(s);
     s->result.frames = s->published;
-    s->result.files_failed = s->written.failed + s->lines_failed;
-    s->result.files_left_out = s->written.left_out;
+    count_lost_files(s);
     player_forgotten(&s->result.shots_forgotten, &s->result.munitions_forgotten, s->player);
     if (s->table) s->result.entities = *entity_table_counters(s->table);
     if (s->table) s->result.effects = *entity_table_effect_counters(s->table);
     if (s->latency) latency_summary(&s->result.latency, s->latency);
-    latency_destroy(s->latency);
+    if (!publish_hangs()) latency_destroy(s->latency);
     if (result) *result = s->result;
     else session_result_free(&s->result);
+    if (publish_hangs()) return STATUS_IO; /* its threads have what is left of it */
     instruments_close(&s->instruments);
     frame_verdicts_free(s->verdicts);
     session_heat_close(s);

@@ -64,6 +64,8 @@ static Status add_video(Consumers *list, Session *s, unsigned to, bool patient)
                         .geoid = geoid_of(s),
                         .detections = s->detections,
                         .sent = &s->result.sent.stream,
+                        .apart = shared->live,
+                        .latency = s->latency,
                         .host_folder = !shared->several ? NULL
                                        : slash          ? slash + 1
                                                         : s->out};
@@ -176,14 +178,15 @@ static Status add_dis(Consumers *list, const Session *s)
     return status == STATUS_OK ? consumers_add(list, consumer) : status;
 }
 
-static Status add_queue(Session *s, Consumers *behind, QueueRule rule, QueueCounters *counters)
+/* Puts consumers behind a queue, into a list. */
+static Status add_queue(Consumers *list, Session *s, Consumers *behind, const QueueOf *of)
 {
     Consumer *consumer = NULL;
     if (behind->count == 0) return STATUS_OK;
     consumers_expect(behind, s->latency);
-    const Status status = consumer_queue_open(&consumer, behind, rule, counters);
-    if (status == STATUS_OK) s->queues++;
-    return status == STATUS_OK ? consumers_add(&s->consumers, consumer) : status;
+    const Status status = consumer_queue_open(&consumer, behind, of);
+    if (status == STATUS_OK) s->queued += of->waiting + 1;
+    return status == STATUS_OK ? consumers_add(list, consumer) : status;
 }
 
 /* Takes over all consumers of the other list, which is empty then. */
@@ -237,36 +240,91 @@ static Status for_replay(Session *s, FrameDone *done, unsigned raw)
     if (status == STATUS_OK) status = add_displays(&all, s, pool, consumers_wants(&first) | consumers_wants(&files));
     if (status == STATUS_OK) status = add_all(&all, &first);
     if (status == STATUS_OK) status = add_all(&all, &files);
-    if (status == STATUS_OK) status = behind ? add_queue(s, &all, QUEUE_WAIT, NULL) : add_all(&s->consumers, &all);
+    if (status == STATUS_OK)
+        status = behind ? add_queue(&s->consumers, s, &all, &(QueueOf){.rule = QUEUE_WAIT, .waiting = 1})
+                        : add_all(&s->consumers, &all);
     if (status != STATUS_OK) consumers_close(&first);
     if (status != STATUS_OK) consumers_close(&files);
     if (status != STATUS_OK) consumers_close(&all);
     return status;
 }
 
-/* Adds the consumers that work by the clock: what is sent is sent at once or left out, and never delays rendering. A
- * live node's files are left out too when the disk is late; those of a replay delay it. */
+/* A live node's files: each consumer has a thread of its own, so that one whose disk is late loses its own frames and
+ * no other's. */
+typedef struct LiveFile {
+    Status (*add)(Consumers *list, Session *s);
+    bool        wanted;
+    int         waiting; /* frames */
+    const char *what;
+} LiveFile;
+
+static Status add_live_pictures(Consumers *list, Session *s) { return add_pictures(list, s, s->publish_pool); }
+static Status add_live_radar(Consumers *list, Session *s) { return add_radar(list, s, s->publish_pool); }
+
+/* Adds them to a list. further_wants: what they want is added to it. */
+static Status live_files(Consumers *list, Session *s, unsigned *further)
+{
+    enum { kinds = 5 };
+    const Config  *config = s->shared->config;
+    const LiveFile kind[kinds] = {{add_truth_lines, config->publish.truth, queue_waiting_most, "truth.jsonl"},
+                                  {add_live_pictures, config->publish.files, 1, "image files"},
+                                  {add_live_radar, config->publish.files, 1, "files of the radar"},
+                                  {add_latest, config->publish.latest, 1, "latest pictures"},
+                                  {add_klv, config->publish.klv_files, 1, "files of metadata"}};
+    Status         status = STATUS_OK;
+    _Static_assert(kinds == sizeof s->written / sizeof *s->written, "counters of each");
+    for (int k = 0; k < kinds && status == STATUS_OK; k++) {
+        Consumers one = {0};
+        if (kind[k].wanted) status = kind[k].add(&one, s);
+        *further |= consumers_wants(&one);
+        const QueueOf of = {
+            .rule = QUEUE_LEAVE_OUT, .waiting = kind[k].waiting, .what = kind[k].what, .counters = &s->written[k]};
+        if (status == STATUS_OK) status = add_queue(list, s, &one, &of);
+        if (status != STATUS_OK) consumers_close(&one);
+    }
+    return status;
+}
+
+/* A live node: what is shown and sent is sent at once or left out, before all else; hashes are taken in a thread of
+ * their own, and files are written in those of live_files, which get the frame from that one. */
+static Status for_live(Session *s, FrameDone *done)
+{
+    Consumers first = {0}, sent = {0}, behind = {0};
+    unsigned  wants = 0;
+    Status    status = pool_create(&s->publish_pool, 1);
+    if (status == STATUS_OK) status = add_memory(&first, s, true);
+    if (status == STATUS_OK) status = add_hashes(&behind, s, done);
+    if (status == STATUS_OK) status = live_files(&behind, s, &wants);
+    if (status == STATUS_OK) status = add_video(&sent, s, VIDEO_TO_FILE | VIDEO_TO_STREAM, true);
+    wants |= consumers_wants(&first) | consumers_wants(&sent);
+    if (status == STATUS_OK) status = add_displays(&s->consumers, s, s->shared->pool, wants);
+    const QueueOf video = {.rule = QUEUE_LEAVE_OUT, .waiting = 1, .urgent = true, .what = "video"};
+    const QueueOf all = {.rule = QUEUE_WAIT, .waiting = 1};
+    if (status == STATUS_OK) status = add_queue(&s->consumers, s, &sent, &video); /* before the hashes */
+    if (status == STATUS_OK) status = add_all(&s->consumers, &first);
+    if (status == STATUS_OK && s->shared->dis) status = add_dis(&s->consumers, s);
+    if (status == STATUS_OK) status = add_queue(&s->consumers, s, &behind, &all);
+    if (status != STATUS_OK) consumers_close(&behind);
+    if (status != STATUS_OK) consumers_close(&sent);
+    if (status != STATUS_OK) consumers_close(&first);
+    return status;
+}
+
+/* A replay by the clock: what is sent is sent at once or left out, and never delays rendering; its files delay it. */
 static Status by_the_clock(Session *s, FrameDone *done, unsigned raw)
 {
-    const Config *config = s->shared->config;
-    const bool    live = s->shared->live;
-    Consumers     first = {0}, files = {0}, sent = {0};
-    Status        status = pool_create(&s->publish_pool, live ? 1 : pool_threads(s->shared->pool));
+    Consumers first = {0}, files = {0}, sent = {0};
+    Status    status = pool_create(&s->publish_pool, pool_threads(s->shared->pool));
     if (status == STATUS_OK) status = add_memory(&first, s, true);
-    if (status == STATUS_OK && live) status = add_truth_lines(&first, s);
-    if (status == STATUS_OK && live) status = add_hashes(&first, s, done);
-    if (status == STATUS_OK && live && config->publish.files) status = add_pictures(&files, s, s->publish_pool);
-    if (status == STATUS_OK && live && config->publish.files) status = add_radar(&files, s, s->publish_pool);
-    if (status == STATUS_OK && live && config->publish.latest) status = add_latest(&files, s);
-    if (status == STATUS_OK && live && config->publish.klv_files) status = add_klv(&files, s);
-    if (status == STATUS_OK && !live) status = replay_files(&files, s, done, s->publish_pool, raw);
-    if (status == STATUS_OK)
-        status = add_video(&sent, s, live ? VIDEO_TO_FILE | VIDEO_TO_STREAM : VIDEO_TO_STREAM, true);
+    if (status == STATUS_OK) status = replay_files(&files, s, done, s->publish_pool, raw);
+    if (status == STATUS_OK) status = add_video(&sent, s, VIDEO_TO_STREAM, true);
     const unsigned wants = consumers_wants(&first) | consumers_wants(&sent) | consumers_wants(&files);
     if (status == STATUS_OK) status = add_displays(&s->consumers, s, s->shared->pool, wants);
-    if (status == STATUS_OK) status = add_queue(s, &sent, QUEUE_LEAVE_OUT, &s->streamed); /* before the hashes */
+    const QueueOf video = {.rule = QUEUE_LEAVE_OUT, .waiting = 1, .urgent = true, .what = "video"};
+    const QueueOf all = {.rule = QUEUE_WAIT, .waiting = 1};
+    if (status == STATUS_OK) status = add_queue(&s->consumers, s, &sent, &video);
     if (status == STATUS_OK) status = add_all(&s->consumers, &first);
-    if (status == STATUS_OK) status = add_queue(s, &files, live ? QUEUE_LEAVE_OUT : QUEUE_WAIT, &s->written);
+    if (status == STATUS_OK) status = add_queue(&s->consumers, s, &files, &all);
     if (status != STATUS_OK) consumers_close(&files);
     if (status != STATUS_OK) consumers_close(&sent);
     if (status != STATUS_OK) consumers_close(&first);
@@ -308,11 +366,12 @@ Status session_consumers(Session *s, FrameDone *done)
     if (status == STATUS_OK) status = add_detections(&s->consumers, s); /* before a frame can be answered */
     if (status == STATUS_OK) status = add_memory(&s->consumers, s, false);
     if (status == STATUS_OK && shared->publish) status = add_call(&s->consumers, shared);
-    if (status == STATUS_OK && shared->dis) status = add_dis(&s->consumers, s); /* before the disk */
-    if (status == STATUS_OK)
-        status = shared->live || clock_on_wall(shared->clock) ? by_the_clock(s, done, raw) : for_replay(s, done, raw);
+    if (status == STATUS_OK && shared->dis && !shared->live) status = add_dis(&s->consumers, s); /* before the disk */
+    if (status == STATUS_OK && shared->live) status = for_live(s, done);
+    else if (status == STATUS_OK)
+        status = clock_on_wall(shared->clock) ? by_the_clock(s, done, raw) : for_replay(s, done, raw);
     consumers_expect(&s->consumers, s->latency);
     s->wants = consumers_wants(&s->consumers) | further_wants(s);
-    /* the frame being rendered, and of each queue the frame that waits and the one being published */
-    return status == STATUS_OK ? frame_pool_create(&s->frames, 1 + 2 * s->queues) : status;
+    /* the frame being rendered, and of each queue the frames that wait and the one being published */
+    return status == STATUS_OK ? frame_pool_create(&s->frames, 1 + s->queued) : status;
 }

@@ -63,14 +63,14 @@ struct Session {
     Geoid                geoid;      /* for metadata; n_m NULL: none */
     unsigned             wants;      /* of all consumers */
     FramePool           *frames;
-    Latency             *latency;           /* NULL: none is kept */
-    double               fed_s;             /* of the last frame in it: player_fed_s */
-    Pool                *publish_pool;      /* of the publishing thread; NULL: publishing is done in this one */
-    int                  queues;            /* consumers in threads of their own */
-    QueueCounters        written, streamed; /* by the clock: files, streams; when closed */
-    int                  lines_failed;      /* live: lines of truth.jsonl; when closed */
-    int                  published;         /* frames that all consumers have received: used by the publishing thread */
-    Status               listed;            /* of the result's lists: used by the publishing thread */
+    Latency             *latency;      /* NULL: none is kept */
+    double               fed_s;        /* of the last frame in it: player_fed_s */
+    Pool                *publish_pool; /* of the publishing thread; NULL: publishing is done in this one */
+    int                  queued;       /* frames that queues hold, at most */
+    QueueCounters        written[5];   /* live: each kind of files; when closed */
+    int                  lines_failed; /* live: lines of truth.jsonl; when closed */
+    int                  published;    /* frames that all consumers have received: used by the publishing thread */
+    Status               listed;       /* of the result's lists: used by the publishing thread */
     SessionResult        result;
     int                  capacity; /* of the result's lists */
 };

@@ -2,8 +2,6 @@
  * thread of its own. */
 #include "sensor/publish/consumers/consumer.h"
 
-#include <pthread.h>
-#include <signal.h>
 #include <stdlib.h>
 
 /* ---- the list ------------------------------------------------------------------------------------ */
@@ -83,36 +81,47 @@ void consumers_request(RenderRequest *request, unsigned wants)
     request->budget &= (wants & WANT_ERROR) != 0;
 }
 
-/* ---- the queue: a thread, and the one frame that waits for it ------------------------------------ */
+/* ---- the queue: a thread, and the frames that wait for it ---------------------------------------- */
 
 typedef struct FrameQueue {
-    Consumer        consumer;
-    Consumers       list;
-    QueueRule       rule;
-    QueueCounters   counters, *result;
-    Frame          *waits;
-    Status          status; /* QUEUE_WAIT: the first failure */
-    bool            stop, running;
-    pthread_mutex_t lock; /* of waits, status, stop */
-    pthread_cond_t  work, room;
-    pthread_t       thread;
+    Consumer         consumer;
+    Consumers        list;
+    QueueOf          of;
+    QueueCounters    counters;
+    int              count;                     /* of frames that wait */
+    Frame           *waits[queue_waiting_most]; /* [count], the oldest first */
+    Status           status;                    /* QUEUE_WAIT: the first failure */
+    Status           closed;                    /* of.disk: of its consumers, in its thread */
+    bool             stop, running;
+    _Atomic uint64_t steps; /* frames done with */
+    pthread_mutex_t  lock;  /* of waits, status, stop */
+    pthread_cond_t   work, room;
+    pthread_t        thread;
 } FrameQueue;
+
+static Frame *take_oldest(FrameQueue *q)
+{
+    Frame *frame = q->waits[0];
+    memmove(q->waits, q->waits + 1, (size_t)--q->count * sizeof(Frame *));
+    return frame;
+}
 
 static void *work(void *user)
 {
     FrameQueue *q = user;
     thread_flush_denormals();
+    if (q->of.urgent) publish_urgent();
     pthread_mutex_lock(&q->lock);
     for (;;) {
-        while (!q->waits && !q->stop) pthread_cond_wait(&q->work, &q->lock);
-        Frame *frame = q->waits;
-        if (!frame) break;
-        q->waits = NULL;
-        const bool ended = q->rule == QUEUE_WAIT && q->status != STATUS_OK;
+        while (q->count == 0 && !q->stop) pthread_cond_wait(&q->work, &q->lock);
+        if (q->count == 0) break;
+        Frame     *frame = take_oldest(q);
+        const bool ended = q->of.rule == QUEUE_WAIT && q->status != STATUS_OK;
         pthread_cond_signal(&q->room);
         pthread_mutex_unlock(&q->lock);
         const Status status = ended ? STATUS_OK : consumers_put(&q->list, frame);
         frame_release(frame);
+        atomic_fetch_add(&q->steps, 1);
         pthread_mutex_lock(&q->lock);
         if (ended) continue;
         if (status == STATUS_OK) q->counters.handed++;
@@ -120,21 +129,20 @@ static void *work(void *user)
         if (q->status == STATUS_OK) q->status = status;
     }
     pthread_mutex_unlock(&q->lock);
+    if (q->of.disk) q->closed = consumers_close(&q->list); /* here: a close may hang too */
     return NULL;
 }
 
 static Status put(Consumer *consumer, Frame *frame)
 {
     FrameQueue *q = (FrameQueue *)consumer;
+    const bool  waits = q->of.rule == QUEUE_WAIT;
     Frame      *older = NULL;
     Status      status;
     pthread_mutex_lock(&q->lock);
-    while (q->rule == QUEUE_WAIT && q->waits && q->status == STATUS_OK) pthread_cond_wait(&q->room, &q->lock);
-    status = q->rule == QUEUE_WAIT ? q->status : STATUS_OK;
-    if (status == STATUS_OK) { /* another may wait only under QUEUE_LEAVE_OUT */
-        older = q->waits;
-        q->waits = NULL;
-    }
+    while (waits && q->count == q->of.waiting && q->status == STATUS_OK) pthread_cond_wait(&q->room, &q->lock);
+    status = waits ? q->status : STATUS_OK;
+    if (status == STATUS_OK && q->count == q->of.waiting) older = take_oldest(q); /* under QUEUE_LEAVE_OUT alone */
     pthread_mutex_unlock(&q->lock);
     if (status != STATUS_OK) return status;
     if (older) {
@@ -144,7 +152,7 @@ static Status put(Consumer *consumer, Frame *frame)
     }
     frame_hold(frame);
     pthread_mutex_lock(&q->lock);
-    q->waits = frame;
+    q->waits[q->count++] = frame; /* there is room: only this thread puts */
     pthread_cond_signal(&q->work);
     pthread_mutex_unlock(&q->lock);
     return STATUS_OK;
@@ -160,12 +168,17 @@ static Status close_queue(Consumer *consumer)
         pthread_mutex_lock(&q->lock);
         q->stop = true;
         pthread_cond_signal(&q->work);
-        pthread_mutex_unlock(&q->lock);
-        pthread_join(q->thread, NULL); /* a waiting frame is passed on before */
+        pthread_mutex_unlock(&q->lock); /* waiting frames are passed on before it ends */
+        if (!q->of.disk) pthread_join(q->thread, NULL);
+        else if (!publish_ended(q->thread, &q->steps, q->of.what)) {
+            if (q->of.counters) *q->of.counters = q->counters;
+            return STATUS_IO; /* q stays as it is */
+        }
     }
-    const Status closed = consumers_close(&q->list);
-    const Status status = q->rule == QUEUE_WAIT && q->status != STATUS_OK ? q->status : closed;
-    if (q->result) *q->result = q->counters;
+    Status       status = q->of.rule == QUEUE_WAIT ? q->status : q->closed;
+    const Status closed = consumers_close(&q->list); /* of those that its thread has not closed */
+    if (status == STATUS_OK) status = closed;
+    if (q->of.counters) *q->of.counters = q->counters;
     pthread_cond_destroy(&q->room);
     pthread_cond_destroy(&q->work);
     pthread_mutex_destroy(&q->lock);
@@ -173,7 +186,7 @@ static Status close_queue(Consumer *consumer)
     return status;
 }
 
-Status consumer_queue_open(Consumer **out, Consumers *list, QueueRule rule, QueueCounters *counters)
+Status consumer_queue_open(Consumer **out, Consumers *list, const QueueOf *of)
 {
     FrameQueue *q = calloc(1, sizeof *q);
     if (!q) {
@@ -181,18 +194,13 @@ Status consumer_queue_open(Consumer **out, Consumers *list, QueueRule rule, Queu
         return STATUS_NO_MEMORY;
     }
     q->list = *list;
-    q->rule = rule;
-    q->result = counters;
+    q->of = *of;
     q->consumer = (Consumer){consumers_wants(list), put, NULL, close_queue, NULL, begin};
     list->count = 0;
     pthread_mutex_init(&q->lock, NULL);
     pthread_cond_init(&q->work, NULL);
     pthread_cond_init(&q->room, NULL);
-    sigset_t all, before; /* signals are for the main thread */
-    sigfillset(&all);
-    pthread_sigmask(SIG_SETMASK, &all, &before);
-    q->running = pthread_create(&q->thread, NULL, work, q) == 0;
-    pthread_sigmask(SIG_SETMASK, &before, NULL);
+    q->running = publish_thread(&q->thread, work, q);
     if (q->running) {
         *out = &q->consumer;
         return STATUS_OK;

@@ -9,6 +9,9 @@
 
 #include "sensor/frame/frame.h"
 
+#include <pthread.h>
+#include <stdatomic.h>
+
 typedef struct Consumer Consumer;
 struct Consumer {
     unsigned wants;
@@ -48,24 +51,47 @@ void consumers_request(RenderRequest *request, unsigned wants);
 /* ---- a queue ------------------------------------------------------------------------------------- */
 
 /* A consumer whose consumers run in a thread of their own, so that the next frame is rendered
- * meanwhile. It receives frames in order and passes them on in order; at most one waits.
+ * meanwhile. It receives frames in order and passes them on in order.
  *
- *     QUEUE_WAIT       every frame is passed on; putting waits while another frame waits. The first failure is the
+ *     QUEUE_WAIT       every frame is passed on; putting waits while there is no room. The first failure is the
  *                      result of the next put and of the close; no frame after it is passed on
- *     QUEUE_LEAVE_OUT  putting never waits: the waiting frame is dropped for the newer one; that is counted, its
- *                      consumers are notified; a failure is counted and ends nothing
+ *     QUEUE_LEAVE_OUT  putting never waits: the oldest waiting frame is dropped for the newer one; that is counted, its
+ *                      consumers are notified; a failure is counted and ends nothing. A disk that
+ *                      hangs costs its own frames alone, and at the end it is given up
  *
- * With the frame being rendered, the one waiting and the one being published it takes three frames of a pool. */
+ * With the frame being rendered, the ones waiting and the one being published it takes waiting + 2 frames of a pool. */
 
-enum { queue_frames = 3 };
+enum { queue_waiting_most = 8 };
 typedef enum QueueRule { QUEUE_WAIT, QUEUE_LEAVE_OUT } QueueRule;
 
 typedef struct QueueCounters {
     int handed, left_out, failed;
 } QueueCounters;
 
-/* Takes the list's consumers over, also on failure. counters: filled in by close; may be NULL. */
-Status consumer_queue_open(Consumer **out, Consumers *list, QueueRule rule, QueueCounters *counters);
+typedef struct QueueOf {
+    QueueRule      rule;
+    int            waiting;  /* frames that may wait, 1 .. queue_waiting_most */
+    bool           disk;     /* with QUEUE_LEAVE_OUT: its consumers write to disks, which may hang */
+    bool           urgent;   /* its thread comes before those that render the next frame (publish_urgent) */
+    const char    *what;     /* its products, as messages name them */
+    QueueCounters *counters; /* filled in by close; NULL: nowhere */
+} QueueOf;
+
+/* Takes the list's consumers over, also on failure. */
+Status consumer_queue_open(Consumer **out, Consumers *list, const QueueOf *of);
+
+/* ---- threads that publish ------------------------------------------------------------------------ */
+
+/* Gives the calling thread precedence over threads that compute for long, as far as this process has the right to. */
+void publish_urgent(void);
+/* Starts a thread in which signals are blocked: they are for the main thread. False: the system has none left. */
+bool publish_thread(pthread_t *out, void *(*work)(void *user), void *user);
+
+/* Waits for a publishing thread that was told to end, as long as its count of steps grows; false, logged, when it did
+ * not for some seconds: a disk hangs. Whatever that thread uses must then stay as it is until the process ends. */
+bool publish_ended(pthread_t thread, const _Atomic uint64_t *steps, const char *what);
+/* Whether there is such a thread. */
+bool publish_hangs(void);
 
 /* ---- retries ------------------------------------------------------------------------------------- */
 

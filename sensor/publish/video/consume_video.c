@@ -15,6 +15,7 @@ static const int64_t key_interval_90k = 90000;
 typedef struct Channel {
     unsigned     bands;
     VideoOutput *output[3];
+    VideoWriter *writer[3]; /* of each output; NULL: it is written at once */
     int          outputs;
     bool         klv;               /* of its one band, for some output */
     Encoder     *encoder;           /* NULL: not yet, or not at present */
@@ -121,7 +122,8 @@ static int64_t time_of(const Channel *c, double unix_s)
 static bool key_is_due(const Channel *c, int64_t pts_90k)
 {
     bool due = c->key_90k == INT64_MIN || pts_90k - c->key_90k >= key_interval_90k;
-    for (int i = 0; i < c->outputs; i++) due = due || video_output_needs_key(c->output[i]);
+    for (int i = 0; i < c->outputs && !due; i++)
+        due = c->writer[i] ? video_writer_needs_key(c->writer[i]) : video_output_needs_key(c->output[i]);
     return due;
 }
 
@@ -145,21 +147,25 @@ static Status encode(VideoPacket *packet, Video *v, Channel *c, const EncoderCon
 static Status put_channel(Video *v, Channel *c, const Frame *frame)
 {
     EncoderConfig form;
-    VideoPacket   packet;
     uint8_t       klv[klv_most_octets];
-    const int64_t pts_90k = time_of(c, frame->unix_s);
+    VideoUnit     unit = {.pts_90k = time_of(c, frame->unix_s), .klv = klv};
     const bool    due = !v->of.patient || retry_due(&c->retry);
     Status        status = due ? compose(&form, v, c, frame) : STATUS_IO;
-    if (status == STATUS_OK) status = encode(&packet, v, c, &form, pts_90k, (int64_t)floor(frame->unix_s * 1e6 + 0.5));
+    if (status == STATUS_OK)
+        status = encode(&unit.packet, v, c, &form, unit.pts_90k, (int64_t)floor(frame->unix_s * 1e6 + 0.5));
     if (v->of.patient) retry_done(&c->retry, due, status);
     if (status != STATUS_OK) return v->of.patient ? STATUS_OK : status;
-    const size_t klv_count = c->klv ? klv_of_band(klv, &v->found, v->of.config->publish.vmti, frame,
-                                                  (Band)__builtin_ctz(c->bands), v->of.geoid)
-                                    : 0;
-    c->last_90k = pts_90k;
-    if (packet.key) c->key_90k = pts_90k;
+    if (c->klv)
+        unit.klv_count =
+            klv_of_band(klv, &v->found, v->of.config->publish.vmti, frame, (Band)__builtin_ctz(c->bands), v->of.geoid);
+    c->last_90k = unit.pts_90k;
+    if (unit.packet.key) c->key_90k = unit.pts_90k;
     for (int i = 0; i < c->outputs; i++) {
-        const Status one = video_output_put(c->output[i], c->encoder, &packet, pts_90k, klv, klv_count);
+        if (c->writer[i]) {
+            video_writer_put(c->writer[i], c->encoder, &unit, frame);
+            continue;
+        }
+        const Status one = video_output_put(c->output[i], c->encoder, &unit);
         if (status == STATUS_OK) status = one;
     }
     return status;
@@ -182,9 +188,9 @@ static Status close_video(Consumer *consumer)
     for (int i = 0; i < v->channels; i++) {
         Channel *c = &v->channel[i];
         for (int k = 0; k < c->outputs; k++) {
-            const Status one = video_output_close(c->output[k]);
+            const Status one = c->writer[k] ? video_writer_close(c->writer[k]) : video_output_close(c->output[k]);
             if (status == STATUS_OK) status = one;
-            free(c->output[k]);
+            if (!c->writer[k]) free(c->output[k]);
         }
         video_encoder_close(c->encoder);
         retry_end(&c->retry);
@@ -241,7 +247,10 @@ static Status add_file(Video *v, Channel *c, VideoKind kind)
     const Status status = add_output(&o, v, c, kind);
     if (status != STATUS_OK) return status;
     const Band band = (Band)__builtin_ctz(c->bands);
-    return video_path(o->path, v->of.config, v->of.host_folder, band, kind) ? STATUS_OK : STATUS_BAD_VALUE;
+    if (!video_path(o->path, v->of.config, v->of.host_folder, band, kind)) return STATUS_BAD_VALUE;
+    if (!v->of.apart) return STATUS_OK;
+    latency_expect(v->of.latency, video_file_name);
+    return video_writer_open(&c->writer[c->outputs - 1], o);
 }
 
 static Status add_channels(Video *v)

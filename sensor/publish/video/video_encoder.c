@@ -4,6 +4,7 @@
 
 #include <libavcodec/avcodec.h>
 #include <libavutil/opt.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 
 /* ---- the functions of FFmpeg's libraries that video_encoder.c and video_transport.c call --------- */
@@ -15,6 +16,7 @@
     X(av_log_set_callback) X(av_malloc) X(av_packet_alloc) X(av_packet_free) X(av_packet_new_side_data)              \
     X(av_packet_rescale_ts) X(av_packet_unref) X(av_rescale) X(av_strerror) X(av_write_frame) X(av_write_trailer)    \
     X(avcodec_alloc_context3) X(avcodec_find_encoder_by_name) X(avcodec_free_context) X(avcodec_open2)               \
+    X(avcodec_parameters_alloc) X(avcodec_parameters_copy) X(avcodec_parameters_free)                                \
     X(avcodec_parameters_from_context) X(avcodec_receive_packet) X(avcodec_send_frame)                               \
     X(avformat_alloc_output_context2) X(avformat_free_context) X(avformat_new_stream) X(avformat_write_header)       \
     X(avio_alloc_context) X(avio_context_free) X(avio_flush)
@@ -136,12 +138,14 @@ void video_pixels(const VideoPlanes *out, const void *image, bool colour)
 /* ---- packets ------------------------------------------------------------------------------------- */
 
 struct Encoder {
-    EncoderConfig   config;
-    PixelLayout     layout;
-    AVCodecContext *context;
-    AVFrame        *frame;
-    AVPacket       *packet;
-    int64_t         count; /* images so far */
+    EncoderConfig      config;
+    PixelLayout        layout;
+    AVCodecContext    *context;
+    AVCodecParameters *parameters;
+    AVFrame           *frame;
+    AVPacket          *packet;
+    int64_t            count; /* images so far */
+    atomic_int         holds;
 };
 
 /* Per codec: bits, its encoder, and the library's formats by layout. Quality (CRF; lower is better): such that an image
@@ -238,7 +242,9 @@ static Status open_context(Encoder *e)
                   codec->name, c->width, c->height, av_err2str(opened));
         return STATUS_UNSUPPORTED;
     }
-    return STATUS_OK;
+    e->parameters = avcodec_parameters_alloc();
+    return e->parameters && avcodec_parameters_from_context(e->parameters, e->context) >= 0 ? STATUS_OK
+                                                                                            : STATUS_NO_MEMORY;
 }
 
 static Status open_frame(Encoder *e)
@@ -260,6 +266,7 @@ Status video_encoder_open(Encoder **out, const EncoderConfig *config)
     Encoder *e = calloc(1, sizeof *e);
     if (!e) return STATUS_NO_MEMORY;
     video_quiet_libraries();
+    atomic_init(&e->holds, 1);
     e->config = *config;
     e->layout = layout_of(config);
     status = open_context(e);
@@ -269,9 +276,12 @@ Status video_encoder_open(Encoder **out, const EncoderConfig *config)
     return status;
 }
 
+void video_encoder_hold(Encoder *e) { atomic_fetch_add(&e->holds, 1); }
+
 void video_encoder_close(Encoder *e)
 {
-    if (!e) return;
+    if (!e || atomic_fetch_sub(&e->holds, 1) > 1) return;
+    avcodec_parameters_free(&e->parameters);
     avcodec_free_context(&e->context);
     av_frame_free(&e->frame);
     av_packet_free(&e->packet);
@@ -350,5 +360,5 @@ Status video_encoder_encode(VideoPacket *out, Encoder *e, const void *image, boo
 
 Status video_encoder_parameters(struct AVCodecParameters *out, const Encoder *e)
 {
-    return avcodec_parameters_from_context(out, e->context) >= 0 ? STATUS_OK : STATUS_NO_MEMORY;
+    return avcodec_parameters_copy(out, e->parameters) >= 0 ? STATUS_OK : STATUS_NO_MEMORY;
 }

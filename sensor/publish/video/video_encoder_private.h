@@ -33,8 +33,11 @@ typedef struct Encoder Encoder;
 /* STATUS_UNSUPPORTED: the libraries lack the encoder, or it refuses the size; STATUS_IO: they cannot be loaded. Logged.
  */
 Status video_encoder_open(Encoder **out, const EncoderConfig *config);
-void   video_encoder_close(Encoder *encoder);     /* NULL is valid */
-int    video_encoder_bits(enum VideoCodec codec); /* of an image's values: 8, 10, 12, 16 */
+/* Counted: whoever writes its packets in another thread holds it, and closes it when they are written. That thread may
+ * ask for its configuration and parameters, which do not change. */
+void video_encoder_hold(Encoder *encoder);
+void video_encoder_close(Encoder *encoder);     /* NULL is valid */
+int  video_encoder_bits(enum VideoCodec codec); /* of an image's values: 8, 10, 12, 16 */
 /* image: grey, or R G B interleaved; uint8_t for 8 bits, else uint16_t. key: decodable by itself; the first is anyway.
  * unix_us: microseconds of its time since 1970, which H.264 and H.265 carry before the image as MISB ST 0604 says, the
  * same as ST 0601's tag 2; negative: none. STATUS_IO: the encoder failed, logged; open another one. */

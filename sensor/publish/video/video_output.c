@@ -283,13 +283,18 @@ static Status open_output(VideoOutput *o, const Encoder *encoder)
     return status;
 }
 
-static Status put(VideoOutput *o, const Encoder *encoder, const VideoPacket *packet, int64_t pts_90k,
-                  const uint8_t *klv, size_t klv_count)
+/* Nothing can be decoded before a key frame. */
+static bool begins(const VideoOutput *o, const VideoUnit *unit)
 {
-    if (!packet->key && (o->needs_key || !o->transport)) return STATUS_IO;
+    return unit->packet.key || (!o->needs_key && o->transport);
+}
+
+static Status put(VideoOutput *o, const Encoder *encoder, const VideoUnit *unit)
+{
+    if (!begins(o, unit)) return STATUS_IO;
     Status status = o->transport ? STATUS_OK : open_output(o, encoder);
     if (status != STATUS_OK) return status;
-    status = video_transport_put(o->transport, packet, pts_90k, klv, klv_count);
+    status = video_transport_put(o->transport, &unit->packet, unit->pts_90k, unit->klv, unit->klv_count);
     /* after a failure: whether the disk takes it is known at once */
     if (status == STATUS_OK && o->file && o->needs_key) status = video_transport_flush(o->transport);
     if (o->file && !video_file_mark(o->file)) status = STATUS_IO;
@@ -301,16 +306,15 @@ static Status put(VideoOutput *o, const Encoder *encoder, const VideoPacket *pac
     return status;
 }
 
-Status video_output_put(VideoOutput *o, const Encoder *encoder, const VideoPacket *packet, int64_t pts_90k,
-                        const uint8_t *klv, size_t klv_count)
+Status video_output_put(VideoOutput *o, const Encoder *encoder, const VideoUnit *unit)
 {
     if (o->udp) {
-        put(o, encoder, packet, pts_90k, klv, klv_count);
+        put(o, encoder, unit);
         return STATUS_OK;
     }
-    if (!o->patient) return put(o, encoder, packet, pts_90k, klv, klv_count);
-    const bool   due = retry_due(&o->retry);
-    const Status status = due ? put(o, encoder, packet, pts_90k, klv, klv_count) : STATUS_IO;
+    if (!o->patient) return put(o, encoder, unit);
+    const bool   due = begins(o, unit) && retry_due(&o->retry);
+    const Status status = due ? put(o, encoder, unit) : STATUS_IO;
     if (!due) o->needs_key = true; /* it lacks a frame */
     retry_done(&o->retry, due, status);
     return STATUS_OK;

@@ -88,10 +88,31 @@ typedef struct VideoOutput {
 } VideoOutput;
 
 /* Whether the next frame must be a key frame for this output. */
-bool   video_output_needs_key(const VideoOutput *output);
-Status video_output_put(VideoOutput *output, const Encoder *encoder, const VideoPacket *packet, int64_t pts_90k,
-                        const uint8_t *klv, size_t klv_count);
+bool video_output_needs_key(const VideoOutput *output);
+
+/* An encoded frame and its metadata; klv_count 0: none. */
+typedef struct VideoUnit {
+    VideoPacket    packet;
+    int64_t        pts_90k;
+    const uint8_t *klv;
+    size_t         klv_count;
+} VideoUnit;
+Status video_output_put(VideoOutput *output, const Encoder *encoder, const VideoUnit *unit);
 /* Ends the file, or the stream. */
 Status video_output_close(VideoOutput *output);
+
+/* ---- an output in a thread of its own (video_writer.c) ----------------------------------------- */
+
+/* Writes a file in a thread of its own; what that one is too late for is left out and counted, also in the ledger. */
+typedef struct VideoWriter VideoWriter;
+#define video_file_name "video_file" /* in the latency ledger */
+
+/* The output is the writer's from then on, and freed with it. */
+Status video_writer_open(VideoWriter **out, VideoOutput *output);
+bool   video_writer_needs_key(VideoWriter *writer);
+/* Copies all. */
+void video_writer_put(VideoWriter *writer, Encoder *encoder, const VideoUnit *unit, const Frame *frame);
+/* Writes what waits and ends the file. STATUS_IO: the disk hangs; writer and output stay as they are. */
+Status video_writer_close(VideoWriter *writer);
 
 #endif
