@@ -4,6 +4,7 @@
 #include "pitviper_file.h"
 #include "pitviper_output.h"
 
+#include <dlfcn.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <gnu/libc-version.h>
@@ -71,18 +72,27 @@ static int add_build_id(struct dl_phdr_info *about, size_t size, void *user)
     return 0;
 }
 
-/* Values of the mathematical functions. The C library chooses among versions of them, which differ in last bits, by the
- * processor and by the environment (GLIBC_TUNABLES=glibc.cpu.hwcaps=-FMA), and does not say which it chose: sixteen of
- * these functions differ, each for a few arguments in a hundred. */
+/* Which of its versions of the mathematical functions the C library chose, by the processor and the environment
+ * (GLIBC_TUNABLES=glibc.cpu.hwcaps=-FMA): sixteen of these differ in last bits, each for one argument in a thousand to
+ * ten thousand. Where in their library they are says it of those that are chosen when they are linked; their values say
+ * it of the others, and of a library that was put before. */
 static bool add_functions(Sha256 *digest)
 {
     static double (*const function[])(double) = {sin,  cos,  tan,  asin, acos,  atan,  exp,  exp2, log,  log2,
                                                  sinh, cosh, tanh, cbrt, expm1, log1p, sqrt, erf,  erfc, log10};
     static float (*const single[])(float) = {sinf, cosf, tanf, expf, exp2f, logf, log2f, atanf};
-    enum { doubles = sizeof function / sizeof *function, singles = sizeof single / sizeof *single, places = 256 };
+    enum { doubles = sizeof function / sizeof *function, singles = sizeof single / sizeof *single, places = 1024 };
     double value[doubles + 3];
     float  narrow[singles + 1];
     bool   good = true;
+    for (int f = 0; f < doubles + singles && good; f++) {
+        void    *address;
+        Dl_info  where;
+        uint64_t offset = 0;
+        memcpy(&address, f < doubles ? (const void *)&function[f] : (const void *)&single[f - doubles], sizeof address);
+        if (dladdr(address, &where)) offset = (uint64_t)((const char *)address - (const char *)where.dli_fbase);
+        good = sha256_add(digest, &offset, sizeof offset);
+    }
     for (int k = 0; k < places && good; k++) {
         volatile double       x = (k + 0.5) / places + 1e-4 * (k % 7);
         const volatile double y = 1 + 30 * x;

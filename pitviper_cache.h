@@ -1,8 +1,8 @@
 /* pitviper_cache.h: results that their inputs decide, kept on disk between runs.
  *
  * An entry's name is the SHA-256 of all that its octets follow from: what it is, its inputs, the executable and the
- * libraries that compute (their build ids), and values of the C library's functions, of which the processor and the
- * environment choose the version. So an entry is never wrong for being old; what does not fit has another name.
+ * libraries that compute (their build ids), and the versions of the C library's functions, which the processor and the
+ * environment choose. So an entry is never wrong for being old; what does not fit has another name.
  * FOLDER/NAME.kept, little-endian, as all that this program runs on:
  *
  *     octets 0  "PVKEPT1\n"   8  NAME, 64 hexadecimal digits   72  count, 64 bits   80  count octets   end  SHA-256 of

@@ -385,14 +385,14 @@ static const char printing[] = "PITVIPER_TEST_CACHE_KEY";
 /* Prints the name of a key and what the C library's functions compute. */
 static int print_key(void)
 {
-    CacheKey key = cache_key("one");
-    void    *octets;
-    size_t   count;
-    double   value[1000][5];
-    char     sum[sha256_text_size];
+    CacheKey      key = cache_key("one");
+    void         *octets;
+    size_t        count;
+    static double value[20000][5];
+    char          sum[sha256_text_size];
     cache_fetch(&octets, &count, NULL, &key);
-    for (int i = 0; i < 1000; i++) {
-        volatile double x = 0.37 * (i + 1);
+    for (int i = 0; i < 20000; i++) {
+        volatile double x = 0.0037 * (i + 1);
         value[i][0] = sin(x), value[i][1] = exp(x), value[i][2] = pow(x, 0.3), value[i][3] = atan(x),
         value[i][4] = log(x);
     }

@@ -5,6 +5,7 @@
 #include "sensor/radar/signature_library.h"
 
 #include <dirent.h>
+#include <stdlib.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -12,6 +13,7 @@ static char           folder[64];
 static Catalog       *catalog;
 static RadarMaterials materials;
 static int            model;
+static Cache         *cache; /* not NULL: in place of the folder */
 
 static SignaturesConfig config_of(double warp_m)
 {
@@ -81,7 +83,8 @@ static void look(Got *out, double az_deg, const double *joint, double warp_m, bo
     radar_look(&a, az_deg * rad_per_deg, 12 * rad_per_deg, 2000);
     const SignatureLook of = signature_look(&a);
     if (with_library) {
-        CHECK(signature_library_open(&library, folder, &config, &materials) == STATUS_OK);
+        CHECK((cache ? signature_library_of_cache(&library, cache, &config, &materials)
+                     : signature_library_open(&library, folder, &config, &materials)) == STATUS_OK);
         config.store = signature_library_store(library);
     }
     CHECK(signatures_create(&s, &config, catalog, &materials) == STATUS_OK);
@@ -120,6 +123,23 @@ static void a_file_has_the_bits_of_its_making(void **state)
     CHECK(again.counters.made == 0 && again.counters.fetched == 1 && again.files.written == 0);
     CHECK(same(&plain, &first) && same(&plain, &again));
     printf("a truck at 5 GHz: %d centres, %.0f kB\n", plain.count, 1e-3 * (double)first.files.octets);
+}
+
+static void an_entry_of_the_cache_has_them_too(void **state)
+{
+    char room[temp_path_size], command[temp_path_size + 16];
+    (void)state;
+    CHECK(temp_folder(room) && (cache = cache_open(room, 64 << 20)));
+    look(&first, 30, NULL, 1e-3, true);
+    look(&again, 30, NULL, 1e-3, true);
+    look(&other, 31, NULL, 1e-3, true);
+    CHECK(first.counters.made == 1 && again.counters.made == 0 && again.counters.fetched == 1);
+    CHECK(other.counters.made == 1 && same(&plain, &first) && same(&plain, &again));
+    CHECK(cache_counters(cache).made == 2 && cache_counters(cache).fetched == 1 && empty_folder(false) == 1);
+    cache_close(cache);
+    cache = NULL;
+    snprintf(command, sizeof command, "rm -r '%s'", room);
+    CHECK(system(command) == 0);
 }
 
 static void names_follow_from_all_that_counts(void **state)
@@ -248,6 +268,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_file_has_the_bits_of_its_making),
+        cmocka_unit_test(an_entry_of_the_cache_has_them_too),
         cmocka_unit_test(names_follow_from_all_that_counts),
         cmocka_unit_test(damaged_files_are_made_anew),
         cmocka_unit_test(numbers_are_checked),
