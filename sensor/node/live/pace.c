@@ -16,12 +16,11 @@ static const struct {
     const char *error;
 } ladder[deadline_steps] = {
     [SAMPLING_ALL] = {NULL, 1, ""},
-    [SAMPLING_TARGETS] = {"targets", 0.74, "borders of ground 21 % (in full 7 to 9), horizon 15 % (4.5)"},
+    [SAMPLING_TARGETS] = {"targets", 0.74, "borders of ground 21 % (in full 7 to 9), horizon 2 to 15 % (1 to 5)"},
     [SAMPLING_CHECKERBOARD] = {"checkerboard", 0.6,
-                               "borders of ground 20 % (in full 7 to 9), woods 26 to 30 % (22 to 26)"},
-    [SAMPLING_QUARTER] =
-        {"quarter", 0.5,
-         "borders of ground 20 to 30 % (in full 7 to 9), woods 32 to 34 % (22 to 26), ground 7 % (4.6)"},
+                               "woods 10 to 30 % (in full 8 to 26), borders of ground 20 % (7 to 9)"},
+    [SAMPLING_QUARTER] = {"quarter", 0.5,
+                          "woods 12 to 34 % (in full 8 to 26), ground 7 % (5), borders of ground 20 to 30 % (7 to 9)"},
 };
 
 const char *pace_step_name(int step) { return ladder[step].name; }
