@@ -189,12 +189,22 @@ static int list_block(Worker *w, const Job *job, int listed)
     return list_entities(w, job, box_px, false);
 }
 
-/* Whether pixels of a tile may be refined: at cheaper steps of sampling those that are whole, which all marks are. */
+/* Whether pixels of a tile may be refined: at cheaper steps of sampling those that are whole, marked, or on or beside
+ * an entity. */
 static bool may_refine(const Job *job, const Tile *tile)
 {
-    for (int y = tile->y0; job->whole && y < tile->y1; y++)
-        if (memchr(&job->whole[pixel_index(job, tile->x0, y)], 1, (size_t)(tile->x1 - tile->x0))) return true;
-    return !job->whole;
+    const Picture *p = job->picture;
+    if (job->request->sampling == SAMPLING_ALL) return true;
+    for (int y = tile->y0; y < tile->y1; y++) {
+        const size_t row = pixel_index(job, tile->x0, y), count = (size_t)(tile->x1 - tile->x0);
+        if (job->whole && memchr(job->whole + row, 1, count)) return true;
+        for (size_t px = row; !job->whole && px < row + count; px++)
+            if (job->refine[px]) return true;
+    }
+    for (int y = tile->y0 - 1; !job->whole && y <= tile->y1; y++)
+        for (int x = tile->x0 - 1; x <= tile->x1; x++)
+            if (x >= 0 && y >= 0 && x < p->width && y < p->height && p->entity[pixel_index(job, x, y)]) return true;
+    return false;
 }
 
 void refine_tile(void *user, int worker, int task)

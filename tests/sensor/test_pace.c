@@ -19,7 +19,7 @@ static void listen(void *user, LogLevel level, const char *line)
  * table's share of it. From begun_s on; returns the end. */
 static double go(Pace *p, const char *host, double load, int frames, double begun_s)
 {
-    static const double share[deadline_steps] = {1, 0.74, 0.6, 0.5};
+    static const double share[deadline_steps] = {1, 0.73, 0.6, 0.5};
     for (int k = 0; k < frames; k++) {
         const double due_s = begun_s + 0.2 * k;
         pace_choose(p, host, 0.005, due_s + 0.005);

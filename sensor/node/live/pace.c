@@ -7,7 +7,7 @@
  *
  * Source: `pitviper bench precision`, "steps of sampling" (bare ground, vehicles in 8-12 um, woods, a flight), and two
  * frames of the demonstration at 360 x 243; etc/reference/speed.md has all. The ratios are the medians. They spread
- * from 0.59 to 0.89, from 0.48 to 0.70 and from 0.37 to 0.66, by how much of a frame is its targets, which are whole at
+ * from 0.51 to 0.88, from 0.40 to 0.68 and from 0.30 to 0.63, by how much of a frame is its targets, which are whole at
  * every step, and not by bare ground or woods: there is no row for each. A ratio that is too large is put right with
  * the first step up (deadline.c), one that is too small keeps frames at a step below until one above is tried. */
 static const struct {
@@ -16,12 +16,11 @@ static const struct {
     const char *error;
 } ladder[deadline_steps] = {
     [SAMPLING_ALL] = {NULL, 1, ""},
-    [SAMPLING_TARGETS] = {"targets", 0.74, "borders of ground 21 % (in full 7 to 9), horizon 15 % (4.5)"},
+    [SAMPLING_TARGETS] = {"targets", 0.73, "borders of ground 21 % (in full 7 to 9), horizon 2 to 15 % (1 to 5)"},
     [SAMPLING_CHECKERBOARD] = {"checkerboard", 0.6,
-                               "borders of ground 20 % (in full 7 to 9), woods 26 to 30 % (22 to 26)"},
-    [SAMPLING_QUARTER] =
-        {"quarter", 0.5,
-         "borders of ground 20 to 30 % (in full 7 to 9), woods 32 to 34 % (22 to 26), ground 7 % (4.6)"},
+                               "woods 10 to 30 % (in full 8 to 26), borders of ground 20 % (7 to 9)"},
+    [SAMPLING_QUARTER] = {"quarter", 0.5,
+                          "woods 12 to 34 % (in full 8 to 26), ground 7 % (5), borders of ground 20 to 30 % (7 to 9)"},
 };
 
 const char *pace_step_name(int step) { return ladder[step].name; }

@@ -352,11 +352,18 @@ static double optical_percent(const StepErrors *e, int kind)
 
 static double kelvin(const StepErrors *e, int kind, int plane) { return sqrt(e->square[kind][plane] / e->count[kind]); }
 
+/* what: NULL, the row of the time. */
+static void name_row(char name[128], const Ladder *l, int step, const char *what)
+{
+    snprintf(name, 128, "steps of sampling: %s, %s%s%s", l->scene->name, step_of[step].name, what ? ": " : "",
+             what ? what : "");
+}
+
 static void error_row(const Ladder *l, int step, const char *what, double percent, const double also[2],
                       const char *unit)
 {
     char name[128], against[128];
-    snprintf(name, sizeof name, "%s, %s: %s", l->scene->name, step_of[step].name, what);
+    name_row(name, l, step, what);
     BenchRow row = bench_row(name);
     if (l->scene->bands == three) {
         row.error = percent, row.error_unit = "%";
@@ -372,8 +379,8 @@ static void error_row(const Ladder *l, int step, const char *what, double percen
 static void list_step(const Ladder *l, int step)
 {
     const StepErrors *e = &l->step[step];
-    char              name[96];
-    snprintf(name, sizeof name, "%s, %s", l->scene->name, step_of[step].name);
+    char              name[128];
+    name_row(name, l, step, NULL);
     BenchRow row = bench_row_of(name, &e->time, NULL, 1);
     row.rate = NAN;
     row.ratio = bench_ratio(&e->time, &l->step[step_default].time);
@@ -391,26 +398,26 @@ static void list_step(const Ladder *l, int step)
                   (const double[2]){box[picture_mwir], box[picture_lwir]}, "%");
     }
     if (e->centroids > 0) {
-        snprintf(name, sizeof name, "%s, %s: centroid of a target", l->scene->name, step_of[step].name);
+        name_row(name, l, step, "centroid of a target");
         row = bench_row(name);
         row.error = sqrt(e->centroid_px / e->centroids), row.error_unit = "px", row.against = "8-12 um";
         bench_add(l->bench, &row);
     }
     if (step_of[step].sampling != SAMPLING_ALL && e->boxes > 0) {
-        snprintf(name, sizeof name, "%s, %s: targets whole", l->scene->name, step_of[step].name);
+        name_row(name, l, step, "targets whole");
         row = bench_row(name);
         row.error = e->apart, row.error_limit = 0, row.error_unit = "of it",
         row.against = "published intensity, default";
         bench_add(l->bench, &row);
     }
+    static const char *const stated_of[] = {"stated error, optical", "stated error, 3-5 um", "stated error, 8-12 um"};
     for (int b = 0; b <= BAND_LWIR; b++) {
         if (!(e->found[b] > 0)) continue;
-        snprintf(name, sizeof name, "%s, %s: stated error, %s", l->scene->name, step_of[step].name,
-                 b == BAND_OPTICAL ? "optical"
-                 : b == BAND_MWIR  ? "3-5 um"
-                                   : "8-12 um");
+        const double ratio = sqrt(e->stated[b] / e->found[b]);
+        name_row(name, l, step, stated_of[b]);
         row = bench_row(name);
-        row.error = sqrt(e->stated[b] / e->found[b]), row.error_unit = "x", row.against = "measured one";
+        row.error = fmax(ratio, 1 / ratio), row.error_unit = "x", row.against = ratio < 1 ? "too small" : "too large";
+        if (step_of[step].sampling != SAMPLING_ALL && !l->quick) row.error_limit = 1.5; /* small pictures: few probes */
         bench_add(l->bench, &row);
     }
 }
