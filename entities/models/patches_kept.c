@@ -12,8 +12,8 @@ static CacheKey key_of(const Model *m)
     for (int n = 0; n < m->node_count; n++) {
         const ModelNode *node = &m->node[n];
         const int64_t    whole[] = {node->parent, (int64_t)node->joint, node->dis_class, node->dis_metric};
-        const double number[] = {node->low, node->high, node->spin_rps_moving, node->roll_radius_m, node->dis_scale,
-                                 node->value_slow};
+        const double     number[] = {node->low,           node->high,      node->spin_rps_moving,
+                                     node->roll_radius_m, node->dis_scale, node->value_slow};
         cache_key_add(&key, whole, sizeof whole);
         cache_key_add(&key, number, sizeof number);
         cache_key_add(&key, node->p_parent, sizeof node->p_parent);
@@ -103,7 +103,8 @@ void patches_kept_values(Kept *kept, void *user)
     for (int i = 0; i < p->links; i++) pass_link(kept, &p->link[i], p->count);
     for (int i = 0; i < p->parts; i++) pass_int(kept, &p->body_of_part[i], 0, p->bodies - 1);
     for (int i = 0; i <= p->bodies; i++)
-        pass_int(kept, &p->first_of_body[i], i > 0 ? p->first_of_body[i - 1] : 0, i == p->bodies ? p->count : p->count - 1);
+        pass_int(kept, &p->first_of_body[i], i > 0 ? p->first_of_body[i - 1] : 0,
+                 i == p->bodies ? p->count : p->count - 1);
     kept_check(kept, p->first_of_body[0] == 0 && p->first_of_body[p->bodies] == p->count);
     for (int i = 0; moved && i < p->parts; i++) {
         kept_doubles(kept, p->body_of_node[i].p_body, 3);

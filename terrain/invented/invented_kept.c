@@ -119,6 +119,7 @@ void invented_kept_values(Kept *kept, void *user)
     pass_count(kept, &t->fixes_dropped, INT_MAX);
     kept_pass(kept, &t->ground.seed, sizeof t->ground.seed);
     kept_pass(kept, &ways, sizeof ways);
+    kept_check(kept, ways <= 1);
     elevation_kept_values(kept, &t->elevation);
     if (!kept->good) return;
     pass_coast(kept, &t->ground.coast);
