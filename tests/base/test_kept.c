@@ -1,4 +1,5 @@
-/* Values of the cache's entries: the same after they were kept, refused where anything is too short, too long or not finite. */
+/* Values of the cache's entries: the same after they were kept, refused where anything is too short, too long or not
+ * finite. */
 #include "tests/check.h"
 
 #include "pitviper_kept.h"

@@ -1,5 +1,5 @@
-/* tests/fuzz/fuzz_kept.c: any octets as what the cache keeps of canopies, stands of far woods, invented ground and patches,
- * past its checksum. What is taken has the same octets again. */
+/* tests/fuzz/fuzz_kept.c: any octets as what the cache keeps of canopies, stands of far woods, invented ground and
+ * patches, past its checksum. What is taken has the same octets again. */
 #include "tests/fuzz/fuzz_seed.h"
 
 #include "entities/models/patches.h"
@@ -45,10 +45,10 @@ static void values(Kept *kept, void *user, int kind)
     if (kind == 2) invented_kept_values(kept, &a->ground);
     if (kind == 3) patches_kept_values(kept, &(PatchesKept){&a->patches, &model});
 }
-static void canopy(Kept *kept, void *user) { values(kept, user, 0); }
-static void stand(Kept *kept, void *user) { values(kept, user, 1); }
-static void ground(Kept *kept, void *user) { values(kept, user, 2); }
-static void patches(Kept *kept, void *user) { values(kept, user, 3); }
+static void              canopy(Kept *kept, void *user) { values(kept, user, 0); }
+static void              stand(Kept *kept, void *user) { values(kept, user, 1); }
+static void              ground(Kept *kept, void *user) { values(kept, user, 2); }
+static void              patches(Kept *kept, void *user) { values(kept, user, 3); }
 static KeptValues *const of[kinds] = {canopy, stand, ground, patches};
 
 /* A level of four posts, a sea with a grid, a way and one of each that it has. */
