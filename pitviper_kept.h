@@ -22,7 +22,7 @@ static inline void kept_check(Kept *kept, bool is) { kept->good = kept->good && 
 /* Whether there is so much left to read: before room is made for it. True while an entry is written. */
 static inline bool kept_has(Kept *kept, size_t octets)
 {
-    kept_check(kept, octets <= kept->most - kept->count);
+    kept_check(kept, octets <= kept->most - kept->count); /* where it is read */
     return kept->good;
 }
 /* Values without padding and pointers. Where there are too few octets, or a check has failed, they stay as they are. */

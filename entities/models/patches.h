@@ -24,6 +24,8 @@
 
 #include "entities/models/model.h"
 
+#include "pitviper_kept.h"
+
 enum { patches_most = 160, patches_wanted = 110, patch_points = 4 };
 
 typedef struct Patch {
@@ -71,6 +73,14 @@ Status patches_create(Patches *out, const Model *model);
 /* As patches_create, with another number of patches wanted; there may be up to patches_most. */
 Status patches_create_of(Patches *out, const Model *model, int wanted);
 void   patches_destroy(Patches *patches); /* frees and zeroes; accepts zeroes */
+/* As patches_create, from the cache, or into it. cache may be NULL. */
+Status patches_create_kept(Patches *out, const Model *model, Cache *cache);
+/* KeptValues of the patches of a model: of zeroes while they are read. After what is wrong patches_destroy. */
+typedef struct PatchesKept {
+    Patches     *patches;
+    const Model *model;
+} PatchesKept;
+KeptValues patches_kept_values;
 
 /* Temperature (or any value) at a point of a part's surface and its unit normal there, in the axes of the part's node,
  * from value[count]: those of its body's patches, blended by distance and by how much they face the same way. Never

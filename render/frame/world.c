@@ -42,6 +42,8 @@ Status world_open(World *out, const Catalog *catalog, const Landscape *landscape
     return STATUS_OK;
 }
 
+void world_keep(World *world, Cache *cache) { world->cache = world->patches->cache = cache; }
+
 Status world_need_patches(const World *world, const Snapshot *snapshot)
 {
     Status status = STATUS_OK;

@@ -34,13 +34,15 @@ typedef struct World {
     struct HeatDrive *drive;   /* of heat */
     PartTable         parts;   /* what is behind the skin of parts */
     PatchSet         *patches; /* of the models that have been seen with temperatures */
-    Cache            *cache;   /* NULL after world_open; set before world_plant: where it keeps what it makes */
+    Cache            *cache;   /* world_keep; NULL: nowhere */
     struct SkyKept   *sky;     /* what frames leave for the next (render/light/sky_visibility.h) */
 } World;
 
 /* frame: the landscape's, or any where there is none. */
 Status world_open(World *out, const Catalog *catalog, const Landscape *landscape, const LocalFrame *frame,
                   const char *isa);
+/* Where the world keeps what it makes, from here on; cache may be NULL. Before world_plant, to be of use. */
+void world_keep(World *world, Cache *cache);
 /* Grows the prototypes and opens the forest over woods, which must outlive the world. Once, before the first frame; on
  * failure only world_close may follow. */
 Status world_plant(World *world, const Woods *woods, const ForestConfig *config, const char *isa, Pool *pool);

@@ -10,6 +10,7 @@
 typedef struct PatchCut {
     pthread_t    thread;
     const Model *model;
+    Cache       *cache;
     Patches      patches;
     Status       status;
 } PatchCut;
@@ -17,7 +18,7 @@ typedef struct PatchCut {
 Status heat_patches_create(PatchSet *out, int models)
 {
     PatchSet set = {models, calloc((size_t)models + 1, sizeof *set.of), calloc((size_t)models + 1, sizeof *set.cut),
-                    calloc((size_t)models + 1, sizeof *set.ahead)};
+                    calloc((size_t)models + 1, sizeof *set.ahead), NULL};
     if (!set.of || !set.cut || !set.ahead) {
         heat_patches_destroy(&set);
         return STATUS_NO_MEMORY;
@@ -30,7 +31,7 @@ static void *cut(void *user)
 {
     PatchCut *c = user;
     thread_flush_denormals();
-    c->status = patches_create(&c->patches, c->model);
+    c->status = patches_create_kept(&c->patches, c->model, c->cache);
     return NULL;
 }
 
@@ -39,7 +40,7 @@ void heat_patches_begin(PatchSet *set, int index, const Model *model)
     if (index < 0 || index >= set->models || set->cut[index] || set->ahead[index]) return;
     PatchCut *c = calloc(1, sizeof *c);
     if (!c) return;
-    c->model = model;
+    c->model = model, c->cache = set->cache;
     if (pthread_create(&c->thread, NULL, cut, c) == 0) set->ahead[index] = c;
     else free(c);
 }
@@ -70,7 +71,8 @@ void heat_patches_destroy(PatchSet *set)
 Status heat_patches_need(PatchSet *set, int index, const Model *model)
 {
     if (index < 0 || index >= set->models || set->cut[index]) return STATUS_OK;
-    const Status status = set->ahead[index] ? take(set, index) : patches_create(&set->of[index], model);
+    const Status status =
+        set->ahead[index] ? take(set, index) : patches_create_kept(&set->of[index], model, set->cache);
     set->cut[index] = status == STATUS_OK;
     return status;
 }

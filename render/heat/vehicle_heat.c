@@ -51,13 +51,34 @@ static Status need_shape(VehicleHeat *h, int m)
     return status;
 }
 
+/* Whether entities are worked out where they are met, without waiting. */
+static bool at_once(const VehicleHeat *h) { return !h->window.metered || !isfinite(h->config.window_us); }
+
+/* Some models whose patches are needed by entities from *next on are cut by other threads meanwhile. */
+static Status cut_ahead(VehicleHeat *h, const Snapshot *snapshot, int *next)
+{
+    int ahead = 0;
+    for (int m = 0; m < h->models; m++) ahead += h->world.patches->ahead[m] != NULL;
+    for (; *next < snapshot->count && ahead < thread_processors(); ++*next) {
+        const int m = snapshot->entity[*next].model;
+        if (m < 0 || m >= h->models || h->shaped[m] || !catalog_has_shape(h->world.catalog, m) ||
+            h->world.patches->cut[m] || h->world.patches->ahead[m])
+            continue;
+        const Status status = tracer_need(h->world.tracer, m);
+        if (status != STATUS_OK) return status;
+        heat_patches_begin(h->world.patches, m, tracer_model(h->world.tracer, m));
+        ahead++;
+    }
+    return STATUS_OK;
+}
+
 /* The network of a model that is met at t_s. After the first tick its patches are cut by another thread while
  * entities wait, for a time that follows from its size: some 10 us a triangle (entities/models/patches.h), and half
  * as much again. */
 static Status shape_at(bool *ready, VehicleHeat *h, int m, double t_s)
 {
     *ready = true;
-    if (!h->shaped[m] && h->window.metered && isfinite(h->config.window_us)) {
+    if (!h->shaped[m] && !at_once(h)) {
         if (isnan(h->met_s[m])) {
             const Status status = tracer_need(h->world.tracer, m);
             if (status != STATUS_OK) return status;
@@ -168,7 +189,7 @@ static Status meet(VehicleHeat *h, const Snapshot *snapshot)
     VehicleState **was = h->was;
     const int      before = h->count;
     Status         status = STATUS_OK;
-    int            at = 0;
+    int            at = 0, next = 0;
     h->waiting = 0;
     if (before > 0) memcpy(was, h->state, (size_t)before * sizeof *was);
     h->count = 0;
@@ -187,6 +208,7 @@ static Status meet(VehicleHeat *h, const Snapshot *snapshot)
             continue;
         }
         bool ready = true;
+        if (!s && status == STATUS_OK && !h->shaped[e->model] && at_once(h)) status = cut_ahead(h, snapshot, &next);
         if (!s && status == STATUS_OK) status = shape_at(&ready, h, e->model, snapshot->t_s);
         h->waiting += !ready;
         if (!s && ready && status == STATUS_OK && h->shape[e->model].patches->count > 0)

@@ -19,6 +19,7 @@ typedef struct PatchSet {
     Patches          *of;    /* [models] */
     bool             *cut;   /* [models] */
     struct PatchCut **ahead; /* [models]: being cut; NULL: not */
+    Cache            *cache; /* where they are kept; NULL after heat_patches_create: nowhere */
 } PatchSet;
 
 Status heat_patches_create(PatchSet *out, int models);

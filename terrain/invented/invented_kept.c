@@ -75,8 +75,8 @@ static void pass_index(Kept *kept, Ways *w)
     if (!make_room(kept, &w->item, items, sizeof *w->item, sizeof *w->item)) return;
     kept_pass(kept, w->item, (size_t)items * sizeof *w->item);
     for (int n = 0; kept_is_read(kept) && kept->good && n < items; n++)
-        kept_check(kept, w->item[n] >> 28 <= WAY_ITEM_CLEAR &&
-                             (int)(w->item[n] & 0x0fffffff) < rows[w->item[n] >> 28 & 3]);
+        kept_check(kept,
+                   w->item[n] >> 28 <= WAY_ITEM_CLEAR && (int)(w->item[n] & 0x0fffffff) < rows[w->item[n] >> 28 & 3]);
 }
 
 static void pass_ways(Kept *kept, Ways *w)
@@ -90,7 +90,7 @@ static void pass_ways(Kept *kept, Ways *w)
     kept_check(kept, number[2] > 0 && number[3] > 0 && number[4] > 0 && number[5] > 0);
     w->x0_m = number[0], w->y0_m = number[1], w->side_m[0] = number[2], w->side_m[1] = number[3];
     w->index_m = number[4], w->coarse_m = number[5];
-    int *const count[] = {&w->nx,    &w->ny,     &w->cx,   &w->cy,      &w->segments,
+    int *const count[] = {&w->nx,    &w->ny,    &w->cx,     &w->cy,   &w->segments,
                           &w->ponds, &w->plots, &w->clears, &w->ways, &w->villages};
     for (int k = 0; k < 10; k++) pass_count(kept, count[k], k < 4 ? most_side : 0x0fffffff);
     kept_check(kept, w->nx >= 1 && w->ny >= 1 && w->cx >= 2 && w->cy >= 2 && w->villages <= ways_most_villages);
@@ -119,6 +119,7 @@ void invented_kept_values(Kept *kept, void *user)
     pass_count(kept, &t->fixes_dropped, INT_MAX);
     kept_pass(kept, &t->ground.seed, sizeof t->ground.seed);
     kept_pass(kept, &ways, sizeof ways);
+    kept_check(kept, ways <= 1);
     elevation_kept_values(kept, &t->elevation);
     if (!kept->good) return;
     pass_coast(kept, &t->ground.coast);

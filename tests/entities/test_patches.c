@@ -480,6 +480,36 @@ static void the_outside_of_models(void **state)
     }
 }
 
+/* Patches from the cache are those that were cut; another model's are not taken for them. */
+static void kept_patches_are_the_same(void **state)
+{
+    (void)state;
+    char   folder[temp_path_size], command[temp_path_size + 16];
+    Model  tank = build("tank", 0.1), moved = build("tank", 0.1);
+    size_t count[2] = {0};
+    CHECK(temp_folder(folder));
+    Cache *cache = cache_open(folder, 64 << 20);
+    CHECK(cache);
+    Patches fresh = cut(&tank), kept[3] = {{0}};
+    for (int k = 0; k < 2; k++) CHECK(patches_create_kept(&kept[k], &tank, cache) == STATUS_OK);
+    CHECK(cache_counters(cache).made == 1 && cache_counters(cache).fetched == 1);
+    void *a = kept_write(&count[0], patches_kept_values, &(PatchesKept){&fresh, &tank});
+    for (int k = 0; k < 2; k++) {
+        void *b = kept_write(&count[1], patches_kept_values, &(PatchesKept){&kept[k], &tank});
+        CHECK(a && b && fresh.count > 50 && count[0] == count[1] && memcmp(a, b, count[0]) == 0);
+        free(b);
+    }
+    moved.vertex[0][0] += 1e-3;
+    CHECK(patches_create_kept(&kept[2], &moved, cache) == STATUS_OK && cache_counters(cache).made == 2);
+    for (int k = 0; k < 3; k++) patches_destroy(&kept[k]);
+    free(a);
+    patches_destroy(&fresh);
+    model_destroy(&tank), model_destroy(&moved);
+    cache_close(cache);
+    snprintf(command, sizeof command, "rm -r %s", folder);
+    CHECK(system(command) == 0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -492,6 +522,7 @@ int main(void)
         cmocka_unit_test(a_block_covers_what_it_stands_on),
         cmocka_unit_test(open_shells_hide_nothing),
         cmocka_unit_test(the_outside_of_models),
+        cmocka_unit_test(kept_patches_are_the_same),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -101,6 +101,8 @@ static CanopyLight among;
 static Hits        hits;
 static const float dark_ground[optical_channel_count] = {0};
 
+static Cache *kept_in; /* by one test */
+
 /* The orchard's canopy, of leaves and bark that are the same in all bands; a crown is one leaf of 0.4 m2 and a branch
  * of 0.4 m2, as open as this. */
 static Canopy *canopy_of(double rho, double tau, double bark, double up, double down)
@@ -123,7 +125,38 @@ static Canopy *canopy_of(double rho, double tau, double bark, double up, double 
         for (int o = 0; o < plant_outlines; o++) prototypes->outline_area[kind][o] = 1;
     }
     assert_int_equal(canopy_create(&c, &woods, prototypes, &materials, true), STATUS_OK);
+    if (!kept_in) return c;
+    /* the same from the cache, whose octets are compared */
+    for (int k = 0; k < 2; k++) {
+        Canopy *kept = NULL;
+        size_t  count[2];
+        assert_int_equal(canopy_create_kept(&kept, &woods, prototypes, &materials, true,
+                                            &(PlantsKept){kept_in, "prototypes of this test"}),
+                         STATUS_OK);
+        void *a = kept_write(&count[0], canopy_kept_values, c), *b = kept_write(&count[1], canopy_kept_values, kept);
+        CHECK(a && b && count[0] == count[1] && memcmp(a, b, count[0]) == 0);
+        free(a), free(b);
+        canopy_destroy(kept);
+    }
     return c;
+}
+
+/* Light is by openness and materials, so a canopy of others is not taken for it. */
+static void kept_canopies_are_the_same(void **state)
+{
+    (void)state;
+    char folder[temp_path_size], command[temp_path_size + 16];
+    CHECK(temp_folder(folder));
+    kept_in = cache_open(folder, 64 << 20);
+    CHECK(kept_in);
+    canopy_destroy(canopy_of(0.4, 0.4, 0.2, 0.3, 0.4));
+    CHECK(cache_counters(kept_in).made == 1 && cache_counters(kept_in).fetched == 1);
+    canopy_destroy(canopy_of(0.4, 0.41, 0.2, 0.3, 0.4));
+    CHECK(cache_counters(kept_in).made == 2 && cache_counters(kept_in).fetched == 2);
+    cache_close(kept_in);
+    kept_in = NULL;
+    snprintf(command, sizeof command, "rm -r %s", folder);
+    CHECK(system(command) == 0);
 }
 
 /* Ground beneath the orchard, beside it, a leaf in it, the sky: all at height 0, since there is no landscape. */
@@ -224,8 +257,11 @@ static void orders_add_up(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(gap_is_the_integral), cmocka_unit_test(leaves_are_where_they_were_put),
-        cmocka_unit_test(black_leaves_hide),   cmocka_unit_test(white_leaves_vanish),
+        cmocka_unit_test(kept_canopies_are_the_same),
+        cmocka_unit_test(gap_is_the_integral),
+        cmocka_unit_test(leaves_are_where_they_were_put),
+        cmocka_unit_test(black_leaves_hide),
+        cmocka_unit_test(white_leaves_vanish),
         cmocka_unit_test(orders_add_up),
     };
     return cmocka_run_group_tests(tests, open_orchard, close_orchard);

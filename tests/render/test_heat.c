@@ -310,6 +310,54 @@ static void a_day_is_remembered(void **state)
     arena_reset(arena);
 }
 
+static void same_now(Heat *a, Heat *b, double hour)
+{
+    const HeatNow *p = at(a, hour), *q = at(b, hour);
+    for (int k = 1; k < ground_kinds; k++) {
+        CHECK(memcmp(p->table.sun_k[k], q->table.sun_k[k], sizeof p->table.sun_k[k]) == 0);
+        CHECK(p->table.hidden_k[k] == q->table.hidden_k[k] && p->table.slot_k[k][9] == q->table.slot_k[k][9]);
+        for (int i = 0; i < 2; i++)
+            CHECK(memcmp(p->past[i].watt_k[k], q->past[i].watt_k[k], sizeof p->past[i].watt_k[k]) == 0);
+    }
+    CHECK(memcmp(p->table.branch[0], q->table.branch[0], sizeof p->table.branch[0]) == 0);
+    CHECK(p->table.air_k == q->table.air_k && p->past[1].count == q->past[1].count && p->share == q->share);
+    GroundColumn m, n;
+    heat_level(&m, a, SURFACE_GRASS, p->share), heat_level(&n, b, SURFACE_GRASS, q->share);
+    CHECK(memcmp(m.state.temp_k, n.state.temp_k, (size_t)m.column->nodes * sizeof *m.state.temp_k) == 0);
+    CHECK(m.saturation == n.saturation && m.column->nodes == n.column->nodes);
+}
+
+/* Ground from the cache is as ground that was warmed, at the beginning, later, and back again; another day's is not
+ * taken for it. */
+static void kept_ground_is_the_same(void **state)
+{
+    (void)state;
+    static const double hours[] = {12, 12.05, 14.3, 11, 12.4};
+    const BranchKind    wood = {1, 0.2, 1e6, 0.8, 0.95};
+    char                folder[temp_path_size], command[temp_path_size + 16];
+    HeatConfig          c = heat_default_config();
+    PaperDay            other = paper_summer;
+    Heat               *h[4];
+    CHECK(temp_folder(folder));
+    Cache *cache = cache_open(folder, 64 << 20);
+    CHECK(cache);
+    c.weather = paper_weather, c.user = &paper_summer, c.unix_s = paper_unix_s + 43200, c.facets = 3;
+    CHECK(heat_create(&h[0], &kinds, &c, &wood, 1) == STATUS_OK);
+    c.cache = cache;
+    CHECK(heat_create(&h[1], &kinds, &c, &wood, 1) == STATUS_OK && cache_counters(cache).made == 1);
+    CHECK(heat_create(&h[2], &kinds, &c, &wood, 1) == STATUS_OK && cache_counters(cache).fetched == 1);
+    for (int k = 0; k < 5; k++) same_now(h[0], h[1], hours[k]), same_now(h[0], h[2], hours[k]);
+    other.air_k += 0.01;
+    c.user = &other;
+    CHECK(heat_create(&h[3], &kinds, &c, &wood, 1) == STATUS_OK && cache_counters(cache).made == 2);
+    CHECK(at(h[3], 12)->table.sun_k[SURFACE_GRASS][4] != at(h[0], 12)->table.sun_k[SURFACE_GRASS][4]);
+    for (int k = 0; k < 4; k++) heat_destroy(h[k]);
+    cache_close(cache);
+    arena_reset(arena);
+    snprintf(command, sizeof command, "rm -r %s", folder);
+    CHECK(system(command) == 0);
+}
+
 static void settings_out_of_range(void **state)
 {
     (void)state;
@@ -332,7 +380,7 @@ int main(void)
         cmocka_unit_test(facets_are_close),          cmocka_unit_test(places_side_by_side),
         cmocka_unit_test(shade_of_the_hours_before), cmocka_unit_test(what_everyone_knows),
         cmocka_unit_test(a_function_of_time_alone),  cmocka_unit_test(a_day_is_remembered),
-        cmocka_unit_test(settings_out_of_range),
+        cmocka_unit_test(settings_out_of_range),     cmocka_unit_test(kept_ground_is_the_same),
     };
     return cmocka_run_group_tests(tests, open_kinds, close_kinds);
 }

@@ -7,7 +7,7 @@
 
 exercise demo "$tmp/demo.pcap"
 few=(--only 0 --size 64x48 --no-files --set terrain.woods=on)
-all=7 # invented ground, woods, prototypes, canopy, stands of far woods, warm ground, shadows
+all=11 # invented ground, woods, prototypes, canopy, stands of far woods, warm ground, shadows, patches of 4 models
 kept() { find "$XDG_CACHE_HOME/pitviper" -name '*.kept' 2>/dev/null | wc -l; }
 # what the last run fetched, made, and found damaged
 counts() { cat "$tmp/stdout" "$tmp/stderr" | sed -n 's/.*cache: .*: \([0-9]*\) fetched, \([0-9]*\) made, \([0-9]*\) damaged.*/\1 \2 \3/p'; }

@@ -567,6 +567,56 @@ static void bad_input_is_survived(void **state)
     landscape_destroy(&land);
 }
 
+/* Ground from the cache is the ground that was invented: heights, and what covers it by ways, coast and seed. */
+static void kept_ground_is_the_same(void **state)
+{
+    (void)state;
+    const LandscapeConfig config = small_config(5);
+    const LocalFrame      frame = frame_at(48, 11, 0);
+    const CoastPlace      place[] = {{900, 900, true}, {-300, -200, false}, {-800, 700, false}};
+    GroundFix             fix[400] = {{{0}, 0}};
+    LandscapeEvidence     said = {.fix = fix, .place = place, .place_count = 3, .sea_h_m = 200};
+    Landscape             land[3];
+    char                  folder[temp_path_size], command[temp_path_size + 16];
+    said.fix_count = drive(fix, 400, &frame, 7, 3);
+    CHECK(temp_folder(folder));
+    Cache *cache = cache_open(folder, 64 << 20);
+    CHECK(cache && landscape_create_from(&land[0], &config, &frame, &said) == STATUS_OK);
+    CHECK(landscape_create_kept(&land[1], &config, &frame, &said, cache) == STATUS_OK);
+    CHECK(landscape_create_kept(&land[2], &config, &frame, &said, cache) == STATUS_OK);
+    CHECK(cache_counters(cache).made == 1 && cache_counters(cache).fetched == 1);
+    int seen[SURFACE_COUNT] = {0};
+    for (int k = 1; k < 3; k++) {
+        CHECK(land[k].fit_worst_m == land[0].fit_worst_m && land[k].fixes_dropped == land[0].fixes_dropped);
+        for (int n = 0; n < 40000; n++) {
+            const double x_m = 2900 * (random_uniform(3, 0, 0, (uint64_t)n) - 0.5),
+                         y_m = 2900 * (random_uniform(3, 1, 0, (uint64_t)n) - 0.5);
+            double up[2][3];
+            CHECK(elevation_height(&land[k].elevation, x_m, y_m, up[0]) ==
+                  elevation_height(&land[0].elevation, x_m, y_m, up[1]));
+            CHECK(memcmp(up[0], up[1], sizeof up[0]) == 0);
+            const SurfaceClass surface = landscape_surface(&land[k], x_m, y_m);
+            CHECK(surface == landscape_surface(&land[0], x_m, y_m));
+            seen[surface]++;
+        }
+        for (int level = 0; level < land[0].elevation.level_count; level++) {
+            const ElevationLevel *a = &land[0].elevation.level[level], *b = &land[k].elevation.level[level];
+            CHECK(a->pyramid_count == b->pyramid_count && a->pyramid_base == b->pyramid_base);
+            CHECK(a->pyramid_shift == b->pyramid_shift && a->rise_shift == b->rise_shift && a->plain == b->plain);
+            for (int p = elevation_pyramid_first; p < a->pyramid_count; p++) {
+                const size_t nodes = (size_t)a->pyramid_nx[p] * (size_t)a->pyramid_ny[p];
+                CHECK(memcmp(a->pyramid[p], b->pyramid[p], nodes * sizeof **a->pyramid) == 0);
+                if (p >= elevation_rise_level) CHECK(memcmp(a->rise[p], b->rise[p], nodes * sizeof **a->rise) == 0);
+            }
+        }
+    }
+    CHECK(seen[SURFACE_WATER] > 0 && seen[SURFACE_GRASS] > 0);
+    for (int k = 0; k < 3; k++) landscape_destroy(&land[k]);
+    cache_close(cache);
+    snprintf(command, sizeof command, "rm -r %s", folder);
+    CHECK(system(command) == 0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -582,6 +632,7 @@ int main(void)
         cmocka_unit_test(reaches_the_horizon_and_no_further),
         cmocka_unit_test(many_classes_near_any_place),
         cmocka_unit_test(bad_input_is_survived),
+        cmocka_unit_test(kept_ground_is_the_same),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -29,7 +29,7 @@ static void find_reach(ShapeScene *out, int quads)
 {
     double cosine[shape_azimuths], sine[shape_azimuths], *most = out->reach;
     for (int a = 0; a < shape_azimuths; a++) {
-        cosine[a] = cos(2 * pi_rad * a / shape_azimuths), sine[a] = sin(2 * pi_rad * a / shape_azimuths);
+        cosine[a] = out->azimuth[a][0], sine[a] = out->azimuth[a][1];
         most[a] = -INFINITY;
     }
     for (int q = 0; q < quads; q++)
@@ -50,6 +50,7 @@ static Status build_shape(ShapeScene *out, const Forest *forest, int kind, int l
     const int         quads = bare ? shape->bark_quads : shape->quads;
     out->shape = shape;
     out->outline = forest->plants->outline[kind];
+    out->azimuth = forest->azimuth;
     for (int c = 0; c < 3; c++) {
         out->centre[c] = 0.5 * ((double)shape->low[c] + (double)shape->high[c]);
         out->half[c] = 0.5 * ((double)shape->high[c] - (double)shape->low[c]) + 1e-4;
@@ -137,6 +138,10 @@ Status forest_create(Forest **out, const Woods *woods, const Plants *plants, con
         return STATUS_UNSUPPORTED;
     }
     rtcSetDeviceErrorFunction(forest->device, latch_error, forest);
+    for (int a = 0; a <= shape_azimuths; a++) {
+        forest->azimuth[a][0] = cos(2 * pi_rad * (a % shape_azimuths) / shape_azimuths);
+        forest->azimuth[a][1] = sin(2 * pi_rad * (a % shape_azimuths) / shape_azimuths);
+    }
     for (int kind = 0; kind < PLANT_KINDS && status == STATUS_OK; kind++)
         for (int level = 0; level < plant_levels && status == STATUS_OK; level++)
             status = build_shape(&forest->shape[kind][level], forest, kind, level);

@@ -14,6 +14,7 @@ typedef struct ShapeScene {
     const PlantShape  *shape;
     const LeafOutline *outline;            /* [plant_outlines] */
     double             centre[4], half[4]; /* box, of a plant 1 m high; the fourth are 0 */
+    const double (*azimuth)[2];            /* unit vectors of azimuths, [shape_azimuths + 1] of the forest */
     double reach[shape_azimuths + 1];      /* how far it reaches towards azimuths from x to y, from its axis; the last
                                             * is the first */
 } ShapeScene;
@@ -38,6 +39,7 @@ struct Forest {
     const Plants *plants;
     ForestConfig  config;
     ShapeScene    shape[PLANT_KINDS][plant_levels];
+    double        azimuth[shape_azimuths + 1][2];
     bool          borrows; /* their scenes */
     PlantList     standing;
     LowSquares   *squares;

@@ -307,7 +307,7 @@ static Status need_models(MadeWorld *m, const MadeOf *of)
     add_text(&key, of->isa);
     if (is_there(key_text, m, MADE_MODELS, &key)) return STATUS_OK;
     Status status = frame_world_open(&m->world, part, m->catalog, &m->landscape, of->frame, of->isa);
-    if (status == STATUS_OK) m->world.cache = m->cache;
+    if (status == STATUS_OK) world_keep(&m->world, m->cache);
     if (status == STATUS_OK)
         status = frame_world_plant(&m->world, m->woods.on ? &m->woods.woods : NULL, part, of->isa, m->pool);
     return done(m, MADE_MODELS, key_text, status);
