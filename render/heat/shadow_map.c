@@ -9,8 +9,9 @@ struct ShadowMap {
     float       *z_m; /* while it is made, as all of these */
     ShadowStand *stand;
     float        most_m; /* highest plant */
-    uint8_t     *shadow; /* [ny][nx][stride] */
-    uint8_t     *open;   /* [ny][nx] of 255 */
+    float   *line_m[2];  /* z_m column by column; tops of plants over the ground, row by row, then column by column */
+    uint8_t *shadow;     /* [ny][nx][stride] */
+    uint8_t *open;       /* [ny][nx] of 255 */
 };
 
 /* Unit direction from cell to cell, along the axis on which the sun stands nearer. */
@@ -41,6 +42,8 @@ static size_t cell_at(const ShadowMap *m, const Sweep *s, int row, int k)
     return s->along_x ? (size_t)k * (size_t)m->nx + (size_t)row : (size_t)row * (size_t)m->nx + (size_t)k;
 }
 
+static const float no_plant_m = -1e6f;
+
 typedef struct Job {
     ShadowMap    *map;
     ShadowPlants *plants;
@@ -49,6 +52,23 @@ typedef struct Job {
     const Elevation *elevation;
     bool             failed[shadow_most_slots];
 } Job;
+
+static double larger(double a, double b) { return a > b ? a : b; } /* not fmax, which compiles to a call */
+
+/* Heights in the order in which sweeps along x meet them too: a column's cells lie far apart. */
+static void turn_column(void *user, int worker, int i)
+{
+    const ShadowMap *m = ((const Job *)user)->map;
+    const size_t     cells = (size_t)m->nx * (size_t)m->ny;
+    (void)worker;
+    for (int j = 0; j < m->ny; j++) {
+        const size_t cell = (size_t)j * (size_t)m->nx + (size_t)i, turned = (size_t)i * (size_t)m->ny + (size_t)j;
+        m->line_m[0][turned] = m->z_m[cell];
+        if (!m->stand) continue;
+        const float top_m = m->stand[cell].leaf_area > 0 ? m->stand[cell].top_m : no_plant_m;
+        m->line_m[1][cell] = m->line_m[1][cells + turned] = top_m;
+    }
+}
 
 static double area_above(const ShadowStand *s, double height_m)
 {
@@ -99,20 +119,20 @@ static void fill_slot(void *user, int worker, int slot)
     double *ground[2] = {edge, edge + wide}, *plants[2] = {edge + 2 * wide, edge + 3 * wide};
     for (int k = 0; k < 4 * wide; k++) edge[k] = -1e9;
     for (int row = s.from; row != s.to; row += s.step) {
+        const size_t first = (size_t)row * (size_t)wide, cells = (size_t)m->nx * (size_t)m->ny;
+        const float *z = (s.along_x ? m->line_m[0] : m->z_m) + first;
+        const float *top = m->stand ? m->line_m[1] + (s.along_x ? cells : 0) + first : NULL;
         for (int k = 0; k < wide; k++) {
-            const size_t cell = cell_at(m, &s, row, k);
-            const double z_m = (double)m->z_m[cell], shade_m = edge_at(ground[0], &s, k, wide);
+            const double z_m = (double)z[k], shade_m = edge_at(ground[0], &s, k, wide);
             double       lit = clamp(0.5 - (shade_m - z_m) / s.soft_m, 0, 1);
-            ground[1][k] = fmax(z_m, shade_m);
+            ground[1][k] = larger(z_m, shade_m);
             if (m->most_m > 0) {
-                const ShadowStand *stand = &m->stand[cell];
-                const double       crowns_m =
-                    fmax(edge_at(plants[0], &s, k, wide), z_m + (stand->leaf_area > 0 ? (double)stand->top_m : -1e6));
+                const double crowns_m = larger(edge_at(plants[0], &s, k, wide), z_m + (double)top[k]);
                 if (lit > 0 && crowns_m > z_m - s.drop_m)
                     lit *= light_through(m, s.along_x ? row : k, s.along_x ? k : row, x, y, up);
                 plants[1][k] = crowns_m;
             }
-            m->shadow[cell * (size_t)m->stride + (size_t)slot] = (uint8_t)lround(255 * (1 - lit));
+            m->shadow[cell_at(m, &s, row, k) * (size_t)m->stride + (size_t)slot] = (uint8_t)lround(255 * (1 - lit));
         }
         double *swap = ground[0];
         ground[0] = ground[1], ground[1] = swap;
@@ -179,11 +199,23 @@ static Status cast(ShadowMap *m, Job *job, const ShadowOf *of, Pool *pool)
     if (of->cache && fetch(m, of->cache, &key, octets)) return STATUS_OK;
     for (size_t k = 0; of->plants && k < cells; k++)
         m->most_m = fmaxf(m->most_m, m->stand[k].leaf_area > 0 ? m->stand[k].top_m : 0);
+    m->line_m[0] = malloc(cells * sizeof **m->line_m);
+    m->line_m[1] = m->stand ? malloc(2 * cells * sizeof **m->line_m) : NULL;
+    if (!m->line_m[0] || (m->stand && !m->line_m[1])) return STATUS_NO_MEMORY;
+    run(pool, m->nx, turn_column, job);
     run(pool, m->slots, fill_slot, job);
     for (int s = 0; s < m->slots; s++)
         if (job->failed[s]) return STATUS_NO_MEMORY;
     cache_keep(of->cache, &key, m->shadow, octets);
     return STATUS_OK;
+}
+
+static void free_heights(ShadowMap *m)
+{
+    free(m->z_m);
+    free(m->stand);
+    for (int k = 0; k < 2; k++) free(m->line_m[k]);
+    m->z_m = m->line_m[0] = m->line_m[1] = NULL, m->stand = NULL;
 }
 
 Status heat_shadow_create(ShadowMap **out, const ShadowOf *of, Pool *pool)
@@ -209,9 +241,7 @@ Status heat_shadow_create(ShadowMap **out, const ShadowOf *of, Pool *pool)
     Job    job = {m, of->plants, of->user, of->d_enu, elevation, {false}};
     Status status = m->z_m && (m->stand || !of->plants) && m->open && m->shadow ? STATUS_OK : STATUS_NO_MEMORY;
     if (status == STATUS_OK) status = cast(m, &job, of, pool);
-    free(m->z_m);
-    free(m->stand);
-    m->z_m = NULL, m->stand = NULL;
+    free_heights(m);
     if (status == STATUS_OK) *out = m;
     else heat_shadow_destroy(m);
     return status;
@@ -220,8 +250,7 @@ Status heat_shadow_create(ShadowMap **out, const ShadowOf *of, Pool *pool)
 void heat_shadow_destroy(ShadowMap *m)
 {
     if (!m) return;
-    free(m->z_m);
-    free(m->stand);
+    free_heights(m);
     free(m->open);
     free(m->shadow);
     free(m);
