@@ -4,6 +4,8 @@
 stalled() {
     local name=$1 ending=$2; shift 2
     : >"$tmp/disk_hangs"
+    : >"$tmp/$name.out"
+    rm -f "$tmp/stream.ts" "$tmp/receiver" "$tmp/stopped_reader"
     free_port
     stream_port=$((port + 1000))
     python3 -c 'import socket, sys
@@ -30,10 +32,11 @@ with open(sys.argv[2], "wb", 0) as out:
     kill -STOP $stopped
     ended $name
     end_sender
-    kill -CONT $receiver $stopped
+    kill -CONT $receiver
+    kill -KILL $stopped
     until_true quiet_stream
-    kill $receiver
-    wait $stopped 2>/dev/null
+    kill -KILL $receiver
+    wait $receiver $stopped 2>/dev/null
     rm -f "$tmp/disk_hangs"
 }
 # quiet_stream: nothing has come for a while
