@@ -37,6 +37,7 @@ typedef struct Live {
     LiveCounters   counters;
     Health         health;
     Ready          ready;
+    HealthLosses   losses;
     double         health_s;                /* when it was last checked */
     char           host[dis_id_text_size];  /* at the end */
     char           to[run_network_to_size]; /* destination, for messages */
@@ -123,7 +124,7 @@ static HealthNames names_of(const Live *l, const Session *session)
  * second. */
 static void check_health(Live *l, const Session *session)
 {
-    char         line[health_line_size];
+    char         line[health_line_size], left_out[latency_lost_size] = "";
     const double now_s = wall_clock_s();
     if (now_s - l->health_s < 1e-9 * (double)check_ns) return;
     l->health_s = now_s;
@@ -135,6 +136,7 @@ static void check_health(Live *l, const Session *session)
         ready_check(&l->ready, &ready, now_s);
         l->counters.ready_s = l->ready.first_s;
         l->health.sample.preparing = ready.waiting;
+        health_losses(&l->losses, session_lost(left_out, session), left_out, now_s, false);
     }
     const HealthNames names = names_of(l, session);
     health_check(&l->health, &l->counters, &names, now_s);
@@ -143,7 +145,8 @@ static void check_health(Live *l, const Session *session)
     const HealthPace pace = {.kept_hz = (double)(kept - l->shown_frames) / (now_s - l->shown_s),
                              .rate_hz = l->counters.rate_hz,
                              .step = pace_step_name(l->pace.step),
-                             .latency_s = l->latency_s};
+                             .latency_s = l->latency_s,
+                             .left_out = left_out};
     health_line(line, &l->health, &pace);
     log_status(line);
     l->shown_frames = kept;
@@ -344,7 +347,9 @@ static Status live_frames(Run *run, Session *session, Player *player, const Host
     const Status status = frame_loop(NULL, &(FrameLoop){&l->clock.clock, enough, receive, make_frame, l});
     /* and those that were due while the last one was made */
     if (status == STATUS_OK && over(l) && l->host_there) l->counters.frames_late += live_clock_behind(&l->clock);
+    char left_out[latency_lost_size];
     log_status(NULL);
+    health_losses(&l->losses, session_lost(left_out, session), left_out, wall_clock_s(), true);
     snprintf(l->host, sizeof l->host, "%s", session_host(session));
     l->health.sample.entities = session_entities(session);
     conclude(l);

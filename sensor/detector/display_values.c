@@ -65,7 +65,19 @@ void detector_display(void *out, const float *in, size_t count, const DetectorCo
 {
     Display d;
     display_prepare(&d, config, level);
-    for (size_t i = 0; i < count; i++) display_write(out, i, &d, in[i] * d.scale + d.shift);
+    if (d.gamma || d.full > 255) {
+        for (size_t i = 0; i < count; i++) display_write(out, i, &d, in[i] * d.scale + d.shift);
+        return;
+    }
+    /* a loop without a table or a choice uses vectors; a code is below 256, so it may be taken as an int */
+    uint8_t     *grey = out;
+    const double scale = d.scale, shift = d.shift;
+    for (size_t i = 0; i < count; i++) {
+        double x = in[i] * scale + shift;
+        x = x > 0 ? x : 0;
+        x = x < 1 ? x : 1;
+        grey[i] = (uint8_t)(int)(x * 255 + 0.5);
+    }
 }
 
 void detector_display_rgb(void *out, const float *const in[3], size_t count, const DetectorConfig *config,

@@ -52,8 +52,8 @@ static uint32_t float_bits(float x)
 }
 
 /* Unsigned numbers in the order of the floats they come from: the usual trick of flipping the sign bit, or
- * every bit of a negative. */
-static inline uint32_t ordered(uint32_t bits) { return bits & 0x80000000u ? ~bits : bits | 0x80000000u; }
+ * every bit of a negative. Without a branch, so that loops over pixels use vectors. */
+static inline uint32_t ordered(uint32_t bits) { return bits ^ ((uint32_t)((int32_t)bits >> 31) | 0x80000000u); }
 
 static float from_ordered(uint32_t key)
 {
@@ -63,98 +63,128 @@ static float from_ordered(uint32_t key)
     return x;
 }
 
-enum { digit_bits = 11, digits = 1 << digit_bits };
+/* All values of some planes, sought for order statistics. */
+typedef struct Values {
+    const float *const *plane;
+    int                 planes;
+    size_t              count; /* of each plane */
+} Values;
 
-/* A range of finite values below a limit, in the order of ordered(). */
-typedef struct Range {
-    uint32_t above, below;
-} Range;
+/* The finite values below a limit, as keys in the order of ordered(): least, most and number. */
+typedef struct Extent {
+    uint32_t least, most;
+    uint64_t count;
+} Extent;
 
-static Range range_below(double limit)
+static inline uint32_t key_of(const float *plane, size_t i) { return ordered(float_bits(plane[i])); }
+
+static Extent extent_below(const Values *v, double limit)
 {
-    return (Range){ordered(float_bits(-INFINITY)), ordered(float_bits(limit < INFINITY ? (float)limit : INFINITY))};
+    const uint32_t above = ordered(float_bits(-INFINITY));
+    const uint32_t below = ordered(float_bits(limit < INFINITY ? (float)limit : INFINITY));
+    Extent         e = {UINT32_MAX, 0, 0};
+    for (int p = 0; p < v->planes; p++) {
+        uint32_t least = UINT32_MAX, most = 0, here = 0;
+        for (size_t i = 0; i < v->count; i++) {
+            const uint32_t key = key_of(v->plane[p], i), in = key > above && key < below ? UINT32_MAX : 0;
+            const uint32_t low = key | ~in, high = key & in; /* NaN is beyond both ends */
+            least = low < least ? low : least;
+            most = high > most ? high : most;
+            here -= in;
+        }
+        e.least = least < e.least ? least : e.least;
+        e.most = most > e.most ? most : e.most;
+        e.count += here;
+    }
+    return e;
 }
 
-static inline bool in_of(uint32_t key, Range r) { return key > r.above && key < r.below; }
+enum { digit_bits = 12, digits = 1 << digit_bits, sought_most = 4 };
 
-/* Values that begin with the same digits. */
-typedef struct Prefix {
-    uint32_t value, mask;
-    uint64_t rank;              /* sought among them */
-    uint32_t histogram[digits]; /* of their next digit */
-} Prefix;
+/* One value that is sought: it is among the 1 << bits keys from `from` on, at this rank among those that occur. */
+typedef struct Sought {
+    uint32_t from;
+    uint64_t rank;
+} Sought;
 
-/* Counts, among the values with either prefix, those with each digit (key >> shift) & (digits - 1). */
-static void count_digits(Prefix prefix[2], const float *const *plane, int plane_count, size_t count, Range of,
-                         int shift)
+/* Takes the histogram of the next digit, of keys from sought->from in steps of 1 << shift. */
+static void take_digit(Sought *s, const uint32_t histogram[digits], int shift)
 {
-    for (int k = 0; k < 2; k++) memset(prefix[k].histogram, 0, sizeof prefix[k].histogram);
-    for (int p = 0; p < plane_count; p++)
-        for (size_t i = 0; i < count; i++) {
-            const uint32_t key = ordered(float_bits(plane[p][i])), digit = key >> shift & (digits - 1);
-            if (!in_of(key, of)) continue;
-            if ((key & prefix[0].mask) == prefix[0].value) prefix[0].histogram[digit]++;
-            if ((key & prefix[1].mask) == prefix[1].value) prefix[1].histogram[digit]++;
+    uint32_t digit = 0;
+    while (s->rank >= histogram[digit]) s->rank -= histogram[digit++];
+    s->from += digit << shift;
+}
+
+/* The first digit of all values of an extent. Neighbours are often alike, so they are counted apart. */
+static void count_first_digits(uint32_t histogram[digits], const Values *v, const Extent *of, int shift)
+{
+    uint32_t       apart[4][digits] = {{0}};
+    const uint32_t span = of->most - of->least;
+    for (int p = 0; p < v->planes; p++)
+        for (size_t i = 0; i < v->count; i++) {
+            const uint32_t at = key_of(v->plane[p], i) - of->least;
+            if (at <= span) apart[i % 4][at >> shift]++;
+        }
+    for (int d = 0; d < digits; d++) histogram[d] = apart[0][d] + apart[1][d] + apart[2][d] + apart[3][d];
+}
+
+/* A further digit, among the keys that begin as each of those sought does. Few pixels of a picture do, so eight are
+ * looked at together. */
+static void count_digits(uint32_t histogram[sought_most][digits], const Values *v, const Sought *sought, int count,
+                         int bits, int shift)
+{
+    enum { together = 8 };
+    const uint32_t span = (uint32_t)(((uint64_t)1 << bits) - 1);
+    memset(histogram, 0, sizeof(uint32_t[digits]) * (size_t)count);
+    for (int p = 0; p < v->planes; p++)
+        for (size_t first = 0; first < v->count; first += together) {
+            const size_t here = v->count - first < together ? v->count - first : together;
+            uint32_t     key[together] = {0}, any = 0;
+            for (size_t i = 0; i < here; i++) key[i] = key_of(v->plane[p], first + i);
+            for (int k = 0; k < count; k++)
+                for (int i = 0; i < together; i++) any |= key[i] - sought[k].from <= span;
+            for (size_t i = 0; any && i < here; i++)
+                for (int k = 0; k < count; k++) {
+                    const uint32_t at = key[i] - sought[k].from;
+                    if (at <= span) histogram[k][at >> shift]++;
+                }
         }
 }
 
-/* The first digit of all these values; returns their number. Neighbours are often alike, so they are counted apart. */
-static uint64_t count_first_digits(uint32_t histogram[digits], const float *const *plane, int plane_count, size_t count,
-                                   Range of)
+/* Finds the values at some shares of those of an extent in order (share 0: the least), digit by digit from the top of
+ * what tells them apart: 12 bits at a time. This is exact, takes one to three passes and no copy of the plane, and NaN
+ * cannot upset it as it would a sort. */
+static void order_statistics(double out[], const Values *v, const Extent *of, const double share[], int count)
 {
-    uint32_t apart[4][digits] = {{0}};
-    uint64_t all = 0;
-    for (int p = 0; p < plane_count; p++)
-        for (size_t i = 0; i < count; i++) {
-            const uint32_t key = ordered(float_bits(plane[p][i]));
-            apart[i % 4][key >> 21] += in_of(key, of);
-        }
-    for (int d = 0; d < digits; d++) all += histogram[d] = apart[0][d] + apart[1][d] + apart[2][d] + apart[3][d];
-    return all;
-}
-
-static void take_digit(Prefix *p, int shift)
-{
-    /* the last digit has 10 bits, and its eleventh belongs to the prefix already */
-    uint32_t digit = shift == 0 ? p->value & (digits - 1) : 0;
-    while (p->rank >= p->histogram[digit]) p->rank -= p->histogram[digit++];
-    p->value |= digit << shift;
-    p->mask |= (uint32_t)(digits - 1) << shift;
-}
-
-/* Finds the values at two shares of those of a range in order (share 0: the least), digit by digit from the top: 11 +
- * 11 + 10 bits. This is exact, takes three passes and no copy of the plane, and NaN cannot upset it as it would a sort.
- * Returns how many values there are; out is unset where there are less than `least`, or none. */
-static uint64_t order_statistics(double out[2], const float *const *plane, int plane_count, size_t count, Range of,
-                                 uint64_t least, const double share[2])
-{
-    static const int shifts[3] = {21, 10, 0};
-    Prefix           prefix[2];
-    const uint64_t   n = count_first_digits(prefix[0].histogram, plane, plane_count, count, of);
-    if (n == 0 || n < least) return n;
-    memcpy(prefix[1].histogram, prefix[0].histogram, sizeof prefix[0].histogram);
-    for (int k = 0; k < 2; k++) {
-        prefix[k].value = prefix[k].mask = 0;
-        prefix[k].rank = (uint64_t)(share[k] * (double)(n - 1) + 0.5);
+    static const int bits_all = 32;
+    uint32_t         histogram[sought_most][digits];
+    Sought           sought[sought_most];
+    const uint32_t   span = of->most - of->least;
+    int bits = span ? bits_all - __builtin_clz(span) : 0, shift = bits > digit_bits ? bits - digit_bits : 0;
+    count_first_digits(histogram[0], v, of, shift);
+    for (int k = 0; k < count; k++) {
+        sought[k] = (Sought){of->least, (uint64_t)(share[k] * (double)(of->count - 1) + 0.5)};
+        take_digit(&sought[k], histogram[0], shift);
     }
-    for (int pass = 0; pass < 3; pass++) {
-        if (pass > 0) count_digits(prefix, plane, plane_count, count, of, shifts[pass]);
-        for (int k = 0; k < 2; k++) take_digit(&prefix[k], shifts[pass]);
+    while (shift > 0) {
+        bits = shift;
+        shift = bits > digit_bits ? bits - digit_bits : 0;
+        count_digits(histogram, v, sought, count, bits, shift);
+        for (int k = 0; k < count; k++) take_digit(&sought[k], histogram[k], shift);
     }
-    for (int k = 0; k < 2; k++) out[k] = from_ordered(prefix[k].value);
-    return n;
+    for (int k = 0; k < count; k++) out[k] = from_ordered(sought[k].from);
 }
 
-/* White where fires and plumes take no grey levels from the rest. all: finite values. */
-static double highlight_white(const DetectorConfig *c, const float *const *plane, int plane_count, size_t count,
-                              uint64_t all)
+/* White where fires and plumes take no grey levels from the rest. all: finite values; body: those at body_share of
+ * them. */
+static const double body_share[2] = {0.1, 0.9};
+
+static double highlight_white(const DetectorConfig *c, const Values *v, const Extent *all, const double body_of_all[2])
 {
-    static const double body[2] = {0.1, 0.9};
-    const uint64_t      least = all / 2 + 1;
-    double              value[2];
-    if (order_statistics(value, plane, plane_count, count, range_below(c->fire_from), least, body) < least)
-        order_statistics(value, plane, plane_count, count, range_below(INFINITY), 0, body);
-    return value[1] + c->highlight * (value[1] - value[0]);
+    double       body[2] = {body_of_all[0], body_of_all[1]};
+    const Extent cool = c->fire_from < INFINITY ? extent_below(v, c->fire_from) : *all;
+    if (cool.count < all->count && cool.count >= all->count / 2 + 1) order_statistics(body, v, &cool, body_share, 2);
+    return body[1] + c->highlight * (body[1] - body[0]);
 }
 
 DetectorLevel detector_level(const DetectorConfig *config, const float *const *plane, int plane_count, size_t count)
@@ -164,13 +194,15 @@ DetectorLevel detector_level(const DetectorConfig *config, const float *const *p
 
     DetectorLevel level = {config->level_low, config->level_high};
     if (config->auto_level) {
-        const double   share[2] = {config->percentile_low, config->percentile_high};
-        double         value[2];
-        const uint64_t all = order_statistics(value, plane, plane_count, count, range_below(INFINITY), 0, share);
-        if (all == 0) return (DetectorLevel){0, 1};
+        const double share[4] = {config->percentile_low, config->percentile_high, body_share[0], body_share[1]};
+        const Values values = {plane, plane_count, count};
+        const Extent all = extent_below(&values, INFINITY);
+        double       value[4];
+        if (all.count == 0) return (DetectorLevel){0, 1};
+        order_statistics(value, &values, &all, share, config->highlight > 0 ? 4 : 2);
         level = (DetectorLevel){value[0], value[1]};
         if (config->highlight > 0 && level.high > level.low)
-            level.high = fmax(level.low, fmin(level.high, highlight_white(config, plane, plane_count, count, all)));
+            level.high = fmax(level.low, fmin(level.high, highlight_white(config, &values, &all, value + 2)));
 
         const double middle = 0.5 * (level.low + level.high);
         double       span = (level.high - level.low) * (1 + 2 * config->margin);

@@ -2,6 +2,7 @@
 #include "sensor/frame/latency_private.h"
 
 #include <pthread.h>
+#include <stdio.h>
 #include <stdlib.h>
 
 /* Fine bins: 100 a decade, 1 us .. 1000 s, and one on each side. 20 of them are one of the published histogram. */
@@ -122,6 +123,23 @@ void latency_summary(LatencySummary *out, Latency *l)
     memcpy(out->name, l->name, sizeof out->name);
     for (int i = 0; i < l->consumers; i++) summarise(&out->consumer[i], &l->consumer[i]);
     pthread_mutex_unlock(&l->lock);
+}
+
+uint64_t latency_lost(char out[latency_lost_size], Latency *l)
+{
+    uint64_t sum = 0;
+    size_t   n = 0;
+    *out = 0;
+    pthread_mutex_lock(&l->lock);
+    for (int i = 0; i < l->consumers; i++) {
+        const uint64_t lost = l->consumer[i].left_out;
+        sum += lost;
+        if (lost && n < latency_lost_size)
+            n += (size_t)snprintf(out + n, latency_lost_size - n, "%s%s %llu", n ? ", " : "", l->name[i],
+                                  (unsigned long long)lost);
+    }
+    pthread_mutex_unlock(&l->lock);
+    return sum;
 }
 
 /* ---- a frame ----------------------------------------------------------------------------------------- */

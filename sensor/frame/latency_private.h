@@ -76,5 +76,8 @@ bool latency_complete(Latency *latency, uint64_t key);
 /* The frame so far. */
 void latency_line(LatencyLine *out, Latency *latency, uint64_t key);
 void latency_summary(LatencySummary *out, Latency *latency);
+/* How many frames consumers were not given so far, in all, and of each: `video_file 12, latest 3`. */
+enum { latency_lost_size = 160 };
+uint64_t latency_lost(char out[latency_lost_size], Latency *latency);
 
 #endif

@@ -203,10 +203,10 @@ static void the_line_counts_what_is_over_the_rate(void **state)
     Health h;
     char   line[health_line_size];
     health_begin(&h, 0);
-    health_line(line, &h, &(HealthPace){5, 5, NULL, NAN});
+    health_line(line, &h, &(HealthPace){5, 5, NULL, NAN, ""});
     CHECK(strstr(line, "over rate") == NULL);
     h.sample.over_rate = 1234;
-    health_line(line, &h, &(HealthPace){5, 5, NULL, NAN});
+    health_line(line, &h, &(HealthPace){5, 5, NULL, NAN, ""});
     CHECK(strstr(line, "  1234 over rate") != NULL);
 }
 
@@ -217,11 +217,11 @@ static void the_line_says_what_is_kept_and_given_up(void **state)
     char   line[health_line_size];
     health_begin(&h, 0);
     h.sample.entities = 12;
-    health_line(line, &h, &(HealthPace){4.9, 5, "checkerboard", 0.034});
+    health_line(line, &h, &(HealthPace){4.9, 5, "checkerboard", 0.034, ""});
     assert_string_equal(line, "12 entities  kept 4.9 of 5 frames/s  checkerboard  0 late  34 ms  0 lost");
-    health_line(line, &h, &(HealthPace){4.9, 5, NULL, 0.034});
+    health_line(line, &h, &(HealthPace){4.9, 5, NULL, 0.034, ""});
     assert_string_equal(line, "12 entities  kept 4.9 of 5 frames/s  0 late  34 ms  0 lost");
-    health_line(line, &h, &(HealthPace){0, 0, NULL, NAN}); /* it listens: no rate yet */
+    health_line(line, &h, &(HealthPace){0, 0, NULL, NAN, ""}); /* it listens: no rate yet */
     assert_string_equal(line, "12 entities  0 late  0 lost");
 }
 

@@ -427,9 +427,21 @@ void health_line(char out[health_line_size], const Health *h, const HealthPace *
         n += (size_t)snprintf(out + n, health_line_size - n, "  %llu over rate", (unsigned long long)s->over_rate);
     if (s->preparing > 0 && n < health_line_size)
         n += (size_t)snprintf(out + n, health_line_size - n, "  preparing %d", s->preparing);
+    if (*pace->left_out && n < health_line_size)
+        n += (size_t)snprintf(out + n, health_line_size - n, "  left out: %s", pace->left_out);
     for (int t = 0; t < HEALTH_LOSS && n < health_line_size; t++)
         if (h->now[t] != HEALTH_FINE)
             n += (size_t)snprintf(out + n, health_line_size - n, "  %s", health_name(h->now[t]));
+}
+
+void health_losses(HealthLosses *l, uint64_t lost, const char *left_out, double now_s, bool last)
+{
+    if (lost == l->said || (!last && l->said_s > 0 && now_s - l->said_s < remind_s)) return;
+    log_warn(
+        "run: do not keep up with the frames: %s left out; the others get theirs (latency_ms in run.json counts them)",
+        left_out);
+    l->said = lost;
+    l->said_s = now_s;
 }
 
 /* ---- at the end: what a run heard, made, kept and could not write ----------------------------------- */

@@ -113,14 +113,23 @@ void health_frame(Health *health, const FrameRecord *frame, double now_s);
 /* Evaluates the counters and reports changes; no message twice within a minute. */
 void health_check(Health *health, const LiveCounters *counters, const HealthNames *names, double now_s);
 /* `12 entities  kept 4.9 of 5 frames/s  checkerboard  0 late  34 ms  0 lost  nothing heard`, with what the last frame
- * gave up; `preparing 12` while that many things are still to be made. */
+ * gave up; `preparing 12` while that many things are still to be made, `left out: video_file 12`
+ * when consumers do not keep up. */
 typedef struct HealthPace {
     double      kept_hz, rate_hz; /* frames with all bands; those asked for, 0: not known yet */
     const char *step;             /* NULL: it gave up nothing */
     double      latency_s;        /* NAN: none */
+    const char *left_out;         /* frames that consumers were not given, `video_file 12`; empty: none */
 } HealthPace;
-enum { health_line_size = 192 };
+enum { health_line_size = 384 };
 void health_line(char out[health_line_size], const Health *health, const HealthPace *pace);
+
+/* Says which consumers do not keep up: at once, then once a minute while they lose more. last: what is not said yet. */
+typedef struct HealthLosses {
+    uint64_t said;
+    double   said_s; /* 0: never */
+} HealthLosses;
+void health_losses(HealthLosses *losses, uint64_t lost, const char *left_out, double now_s, bool last);
 
 /* The last lines of `pitviper run`. own: datagrams heard that the node itself had sent. */
 void health_summary(const LiveCounters *counters, const HealthSample *sample, uint64_t own);

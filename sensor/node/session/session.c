@@ -112,7 +112,12 @@ Status session_frame(bool *shown, Session *s, const FrameTime *at)
 const SessionResult *session_result(const Session *s) { return &s->result; }
 int                  session_entities(const Session *s) { return entity_table_count(s->table); }
 uint64_t             session_over_rate(const Session *s) { return entity_table_counters(s->table)->over_rate; }
-const char          *session_host(const Session *s) { return s->host_text; }
+uint64_t             session_lost(char out[latency_lost_size], const Session *s)
+{
+    *out = 0;
+    return s->latency ? latency_lost(out, s->latency) : 0;
+}
+const char *session_host(const Session *s) { return s->host_text; }
 
 /* Frames that lack files: of the kind that lacks most, since a frame that lacks several counts once. */
 static void count_lost_files(Session *s)

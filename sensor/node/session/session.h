@@ -92,7 +92,9 @@ typedef struct SessionReady {
     int entities, models, signatures, waiting;
 } SessionReady;
 SessionReady session_ready(const Session *session);
-const char  *session_host(const Session *session); /* id as text, `observer`, or `munition` while there is none */
+/* Frames that consumers were not given so far, as latency_lost. */
+uint64_t    session_lost(char out[latency_lost_size], const Session *session);
+const char *session_host(const Session *session); /* id as text, `observer`, or `munition` while there is none */
 /* The caller frees the session's result with session_result_free; NULL: it is freed too. */
 Status session_close(Session *session, SessionResult *result);
 void   session_result_free(SessionResult *result);

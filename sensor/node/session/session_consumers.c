@@ -277,8 +277,11 @@ static Status live_files(Consumers *list, Session *s, unsigned *further)
         Consumers one = {0};
         if (kind[k].wanted) status = kind[k].add(&one, s);
         *further |= consumers_wants(&one);
-        const QueueOf of = {
-            .rule = QUEUE_LEAVE_OUT, .waiting = kind[k].waiting, .what = kind[k].what, .counters = &s->written[k]};
+        const QueueOf of = {.rule = QUEUE_LEAVE_OUT,
+                            .disk = true,
+                            .waiting = kind[k].waiting,
+                            .what = kind[k].what,
+                            .counters = &s->written[k]};
         if (status == STATUS_OK) status = add_queue(list, s, &one, &of);
         if (status != STATUS_OK) consumers_close(&one);
     }

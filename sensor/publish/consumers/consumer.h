@@ -17,7 +17,7 @@ struct Consumer {
     unsigned wants;
     /* Takes one frame, in order of time. Any result but STATUS_OK, which is logged, ends the run. */
     Status (*put)(Consumer *consumer, Frame *frame);
-    /* The frame was rendered and is not put, for lack of time; called in the rendering thread. NULL: not needed. */
+    /* The frame was rendered and is not put, for lack of time; called in the thread that puts. NULL: not needed. */
     void (*left_out)(Consumer *consumer, const Frame *frame);
     /* Finishes its products and frees the consumer. */
     Status (*close)(Consumer *consumer);

@@ -18,8 +18,8 @@ typedef struct SchedAttributes {
     uint64_t runtime_ns, deadline_ns, period_ns;
 } SchedAttributes;
 
-/* Without rights (RLIMIT_NICE, CAP_SYS_NICE) the niceness stays as it is; the slice needs none. Kernels from 6.12 on let
- * a thread of a shorter slice run as soon as it wakes up, others ignore it. */
+/* Without rights (RLIMIT_NICE, CAP_SYS_NICE) the niceness stays as it is; the slice needs none. Kernels from 6.12 on
+ * let a thread of a shorter slice run as soon as it wakes up, others ignore it. */
 void publish_urgent(void)
 {
     enum { nicer = 10, least_nice = -20 };

@@ -10,8 +10,8 @@ enum { items = 32, octets_most = 32 << 20 }; /* waiting, whichever is reached fi
 
 typedef struct Item {
     Encoder    *encoder;
-    VideoPacket packet;  /* bytes: of this item */
-    uint8_t    *bytes;   /* [room]: those of the packet, then those of the metadata */
+    VideoPacket packet; /* bytes: of this item */
+    uint8_t    *bytes;  /* [room]: those of the packet, then those of the metadata */
     size_t      room, klv_count;
     int64_t     pts_90k;
     Latency    *latency; /* NULL: none is kept */
@@ -27,7 +27,7 @@ struct VideoWriter {
     bool             stop;
     bool             needs_key; /* nothing can be written before one */
     bool             gap;       /* a frame was left out since the last key frame */
-    double           off_s; /* wall clock: no key frame before, since the file is not tried before */
+    double           off_s;     /* wall clock: no key frame before, since the file is not tried before */
     int              left_out;
     Status           closed;
     _Atomic uint64_t steps;
@@ -159,7 +159,8 @@ Status video_writer_close(VideoWriter *w)
     pthread_cond_signal(&w->work);
     pthread_mutex_unlock(&w->lock);
     if (left_out)
-        log_warn("video: %s lacks %d frames: it was written too slowly; the others are whole", w->output->path, left_out);
+        log_warn("video: %s lacks %d frames: it was written too slowly; the others are whole", w->output->path,
+                 left_out);
     if (!publish_ended(w->thread, &w->steps, w->output->path)) return STATUS_IO;
     const Status closed = w->closed;
     free(w->output);
