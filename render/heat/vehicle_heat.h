@@ -7,6 +7,7 @@
 #include "dis/pdu/pdu.h"
 #include "render/heat/given_heat.h"
 #include "render/heat/vehicle_load_private.h"
+#include "render/heat/view_memory.h"
 #include "render/trace/parts/parts.h"
 
 /* ---- patches --------------------------------------------------------------------------------- */
@@ -19,6 +20,7 @@ typedef struct PatchSet {
     Patches          *of;    /* [models] */
     bool             *cut;   /* [models] */
     struct PatchCut **ahead; /* [models]: being cut; NULL: not */
+    ViewMemory       *seen;  /* by poses of these models; NULL: nothing is remembered */
 } PatchSet;
 
 Status heat_patches_create(PatchSet *out, int models);
