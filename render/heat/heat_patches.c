@@ -18,8 +18,8 @@ typedef struct PatchCut {
 Status heat_patches_create(PatchSet *out, int models)
 {
     PatchSet set = {models, calloc((size_t)models + 1, sizeof *set.of), calloc((size_t)models + 1, sizeof *set.cut),
-                    calloc((size_t)models + 1, sizeof *set.ahead), NULL};
-    if (!set.of || !set.cut || !set.ahead) {
+                    calloc((size_t)models + 1, sizeof *set.ahead), NULL, view_memory_create()};
+    if (!set.of || !set.cut || !set.ahead || !set.seen) {
         heat_patches_destroy(&set);
         return STATUS_NO_MEMORY;
     }
@@ -65,6 +65,7 @@ void heat_patches_destroy(PatchSet *set)
     free(set->of);
     free(set->cut);
     free(set->ahead);
+    view_memory_destroy(set->seen);
     *set = (PatchSet){0};
 }
 

@@ -7,6 +7,7 @@
 #include "dis/pdu/pdu.h"
 #include "render/heat/given_heat.h"
 #include "render/heat/vehicle_load_private.h"
+#include "render/heat/view_memory.h"
 #include "render/trace/parts/parts.h"
 
 /* ---- patches --------------------------------------------------------------------------------- */
@@ -20,6 +21,7 @@ typedef struct PatchSet {
     bool             *cut;   /* [models] */
     struct PatchCut **ahead; /* [models]: being cut; NULL: not */
     Cache            *cache; /* where they are kept; NULL after heat_patches_create: nowhere */
+    ViewMemory       *seen;  /* by poses of these models; NULL: nothing is remembered */
 } PatchSet;
 
 Status heat_patches_create(PatchSet *out, int models);

@@ -149,11 +149,18 @@ Status vehicle_near_pose(const PatchPose *pose[near_seen_most], const NearScene 
     return status;
 }
 
-void vehicle_near_look(VehicleState *s, const VehicleMoment *m, const PatchPose *const *pose)
+void vehicle_near_look(VehicleState *s, const VehicleMoment *m, const PatchPose *const *pose, const KnownViews *seen)
 {
     VehicleNear *near = s->near;
     const int    patches = m->shape->patches->count;
-    vehicle_view_near(&near->next[near->looked], &m->pose, near->looked, pose, near->next_seen);
+    NearView    *view = &near->next[near->looked];
+    char        *record = seen->known ? seen->record + (size_t)near->looked * sizeof *view : NULL;
+    if (record && seen->known[near->looked]) {
+        memcpy(view, record, sizeof *view);
+    } else {
+        vehicle_view_near(view, &m->pose, near->looked, pose, near->next_seen);
+        if (record) seen->known[near->looked] = true, memcpy(record, view, sizeof *view);
+    }
     if (++near->looked < patches) return;
     memcpy(near->view, near->next, (size_t)patches * sizeof *near->view);
     memcpy(near->id, near->next_id, sizeof near->id);

@@ -8,6 +8,7 @@
 
 #include "render/heat/given_heat.h"
 #include "render/heat/vehicle_load_private.h"
+#include "render/heat/view_memory.h"
 
 /* A neighbour as it was posed when its entity last looked: in that one's axes. */
 typedef struct NearKey {
@@ -116,8 +117,9 @@ static inline bool vehicle_near_waits(const VehicleState *s, const VehicleShape 
 /* Those it looks at, as they are posed now, in the arena; pose[k] NULL: gone. */
 Status vehicle_near_pose(const PatchPose *pose[near_seen_most], const NearScene *scene, const VehicleState *state,
                          const VehicleMoment *moment, Arena *arena);
-/* The next patch. */
-void vehicle_near_look(VehicleState *state, const VehicleMoment *moment, const PatchPose *const *pose);
+/* The next patch. seen: what is known of these poses. */
+void vehicle_near_look(VehicleState *state, const VehicleMoment *moment, const PatchPose *const *pose,
+                       const KnownViews *seen);
 
 /* What its neighbours do to it, into a moment whose place is known. past: before its first report; lately: and
  * engines run as now. Returns how many it posed, and how many jets it followed, in the arena. */

@@ -92,7 +92,15 @@ static Status find_place(VehicleMoment *m, VehicleHeat *h, const VehicleState *s
         status = vehicle_near_moment(&work, m, &h->near, vehicle_state_find(h->state, h->count, s->id), t_s, !present,
                                      lately, h->arena);
     if (status != STATUS_OK) return status;
-    vehicle_view_sun(m->lit, &m->pose, m->place.sun_d_enu, m->shade, m->shades);
+    const size_t     octets = (size_t)m->shape->patches->count * sizeof *m->lit;
+    const KnownViews seen =
+        view_memory_of(h->world.patches->seen, &m->pose, m->shade, m->shades, m->place.sun_d_enu, sizeof *m->lit);
+    if (seen.known && *seen.known) {
+        memcpy(m->lit, seen.record, octets);
+    } else {
+        vehicle_view_sun(m->lit, &m->pose, m->place.sun_d_enu, m->shade, m->shades);
+        if (seen.known) *seen.known = true, memcpy(seen.record, m->lit, octets);
+    }
     work_window_spend(&h->window, pose_us * work.poses + jet_us * work.jets);
     return STATUS_OK;
 }
@@ -290,6 +298,26 @@ static Status advance(VehicleHeat *h, VehicleState *s, VehicleMoment *m, double 
     return predict(h, s, m);
 }
 
+/* Finds what an entity's patches see, or remembers it. False: the work budget has no room for all of it. */
+static bool look(VehicleHeat *h, VehicleState *s, const VehicleMoment *m)
+{
+    const int  patches = m->shape->patches->count;
+    KnownViews seen = {NULL, NULL};
+    if (s->looked < patches) seen = view_memory_of(h->world.patches->seen, &m->pose, NULL, 0, NULL, sizeof *s->view);
+    for (; s->looked < patches; s->looked++) {
+        const int i = s->looked;
+        char     *record = seen.known ? seen.record + (size_t)i * sizeof *s->view : NULL;
+        if (!take(h, look_us)) return false;
+        if (record && seen.known[i]) {
+            memcpy(&s->view[i], record, sizeof *s->view);
+            continue;
+        }
+        vehicle_view_look(&s->view[i], &m->pose, i);
+        if (record) seen.known[i] = true, memcpy(record, &s->view[i], sizeof *s->view);
+    }
+    return true;
+}
+
 /* Finds what the neighbours hide of an entity's views. False: the work budget has no room for all of it. */
 static bool look_about(Status *status, VehicleHeat *h, VehicleState *s, const VehicleMoment *m)
 {
@@ -297,9 +325,14 @@ static bool look_about(Status *status, VehicleHeat *h, VehicleState *s, const Ve
     if (*status != STATUS_OK || !vehicle_near_waits(s, m->shape)) return true;
     if (!take(h, pose_us * s->near->next_seen)) return false;
     *status = vehicle_near_pose(pose, &h->near, s, m, h->arena);
+    const PosedEntity *posed[near_seen_most];
+    for (int k = 0; k < s->near->next_seen && *status == STATUS_OK; k++) posed[k] = pose[k] ? pose[k]->posed : NULL;
+    KnownViews seen = {NULL, NULL};
+    if (*status == STATUS_OK)
+        seen = view_memory_of(h->world.patches->seen, &m->pose, posed, s->near->next_seen, NULL, sizeof(NearView));
     while (*status == STATUS_OK && vehicle_near_waits(s, m->shape)) {
         if (!take(h, near_us + near_fill_us * s->near->fill)) return false;
-        vehicle_near_look(s, m, pose);
+        vehicle_near_look(s, m, pose, &seen);
     }
     return true;
 }
@@ -309,7 +342,6 @@ Status vehicle_work_on(VehicleHeat *h, VehicleState *s)
 {
     const double        t_s = h->near.snapshot->t_s;
     const VehicleShape *shape = &h->shape[s->model];
-    const int           patches = shape->patches->count;
     VehicleMoment       m;
     arena_reset(h->arena);
     Status status = catch_moment(&m, h, s);
@@ -322,10 +354,7 @@ Status vehicle_work_on(VehicleHeat *h, VehicleState *s)
         status = find_ground(&m, h, h->config.unix_s + t_s, true);
         if (status == STATUS_OK && s->looked < 0) start_looking(s, &m, h);
     }
-    for (; status == STATUS_OK && s->looked < patches; s->looked++) {
-        if (!take(h, look_us)) return STATUS_OK;
-        vehicle_view_look(&s->view[s->looked], &m.pose, s->looked);
-    }
+    if (status == STATUS_OK && !look(h, s, &m)) return STATUS_OK;
     if (!look_about(&status, h, s, &m)) return STATUS_OK;
     const int lives = snapshot_is_short_lived(m.entity) ? 0 : past_steps;
     while (status == STATUS_OK && !s->shown && s->lived < lives) {

@@ -307,10 +307,10 @@ enum { config_paths_size = 4096 };
         "trees, bushes, hedges and low plants, by canopy layers, marked trunks or surface classes; off: bare " \
         "ground") \
     ROW(INT, terrain., woods_trees, 300000, 0, woods_most_trees, "", \
-        "most trees, bushes and hedges; beyond, those farthest from the aim are left out") \
+        "most trees, bushes and hedges; beyond, those farthest from what is on the ground are left out") \
     ROW(DOUBLE, terrain., woods_half_m, 0, 0, 50000, "m", \
-        "half width of the square about the aim in which plants stand; below 50: the extent of the entities and " \
-        "4 km about it") \
+        "half width of a square about the aim in which plants stand; below 50: the extent of entities and " \
+        "host about the middle of the exercise, in steps, and 4 km beyond") \
     ROW(SWITCH, terrain., woods_leaves, true, "on|off", "leaves of deciduous trees; off: bare, as in winter") \
     ROW(DOUBLE, terrain., woods_sway, 0, 0, 5, "", \
         "amplitude of the sway of plants in the wind of weather.wind_mps: 1 realistic, 0 none") \

@@ -57,7 +57,7 @@ int woods_low_plants(Plant plant[woods_low_most], const Woods *woods, int64_t i,
 
 /* ---- where woods are that nothing stands of ------------------------------------------------------ */
 
-static bool is_planted(const Woods *w, double x_m, double y_m)
+bool woods_is_planted(const Woods *w, double x_m, double y_m)
 {
     const double i = floor((x_m - w->origin_enu[0]) / woods_square_m),
                  j = floor((y_m - w->origin_enu[1]) / woods_square_m);
@@ -86,7 +86,7 @@ void woods_not_standing(uint8_t *stand, float *cover, float *density, const Wood
         if (!can_bear(surface[k]) ||
             (!is_forest((SurfaceClass)surface[k]) && surface[k] != SURFACE_SCRUB && !s->has_store))
             continue;
-        if (is_planted(woods, x_m[k], y_m[k])) continue;
+        if (woods_is_planted(woods, x_m[k], y_m[k])) continue;
         if (woods_canopy_at(&layer, &height_m, s, x_m[k], y_m[k])) {
             if (!(layer > 0 && height_m >= 1)) continue;
             stand[k] = surface[k] == SURFACE_FOREST_CONIFER ? SURFACE_FOREST_CONIFER : SURFACE_FOREST_BROADLEAF;
@@ -234,54 +234,6 @@ static void fill_row(void *user, int worker, int j)
         woods_fill_square(&f->square[(size_t)j * (size_t)f->source->nx + (size_t)i], f->source, i, j);
 }
 
-typedef struct SquareAway {
-    double   away_m;
-    uint32_t square;
-} SquareAway;
-
-static int compare_away(const void *a, const void *b)
-{
-    const SquareAway *p = a, *q = b;
-    if (p->away_m != q->away_m) return p->away_m < q->away_m ? -1 : 1;
-    return (p->square > q->square) - (p->square < q->square);
-}
-
-/* Empties the squares farthest from the centre until at most `most` plants are left. */
-static Status keep_nearest(Woods *out, const WoodsSource *s, SquarePlants *square, int most)
-{
-    const size_t squares = (size_t)s->nx * (size_t)s->ny;
-    SquareAway  *away = malloc(squares * sizeof *away);
-    int64_t      kept = 0;
-    out->bare = calloc(squares, 1);
-    if (!away || !out->bare) {
-        free(away);
-        return STATUS_NO_MEMORY;
-    }
-    for (size_t n = 0; n < squares; n++) {
-        const double x_m = s->origin_enu[0] + ((double)(n % (size_t)s->nx) + 0.5) * woods_square_m;
-        const double y_m = s->origin_enu[1] + ((double)(n / (size_t)s->nx) + 0.5) * woods_square_m;
-        away[n] = (SquareAway){hypot(x_m - s->centre_m[0], y_m - s->centre_m[1]), (uint32_t)n};
-    }
-    qsort(away, squares, sizeof *away, compare_away);
-    out->reach_m = away[squares - 1].away_m;
-    bool full = false;
-    for (size_t k = 0; k < squares; k++) {
-        SquarePlants *one = &square[away[k].square];
-        if (!full && kept + one->count > most) {
-            full = true;
-            out->reach_m = fmax(away[k].away_m - 0.7072 * woods_square_m, 0);
-        }
-        if (full) {
-            out->left_out += one->count;
-            one->count = 0;
-            out->bare[away[k].square] = 1;
-        }
-        kept += one->count;
-    }
-    free(away);
-    return STATUS_OK;
-}
-
 static Status gather(Woods *out, const WoodsSource *s, const SquarePlants *square)
 {
     const size_t squares = (size_t)s->nx * (size_t)s->ny;
@@ -309,13 +261,15 @@ static Status gather(Woods *out, const WoodsSource *s, const SquarePlants *squar
 static bool config_is_good(const WoodsConfig *c)
 {
     bool good = c->half_width_m >= 50 && c->half_width_m <= 50000 && c->most_trees >= 0 &&
-                c->most_trees <= woods_most_trees && c->path_count >= 0;
+                c->most_trees <= woods_most_trees && c->path_count >= 0 && c->place_count >= 0;
     for (int k = 0; k < 2; k++) good = good && fabs(c->centre_m[k]) < 1e6;
+    for (int n = 0; good && n < c->place_count; n++)
+        good = fabs(c->place[n].p_m[0]) < 1e7 && fabs(c->place[n].p_m[1]) < 1e7;
     for (int n = 0; good && n < c->path_count; n++)
         for (int k = 0; k < 2; k++)
             good = good && fabs(c->path[n].a_m[k]) < 1e7 && fabs(c->path[n].b_m[k]) < 1e7 && c->path[n].half_m >= 0 &&
                    c->path[n].half_m < 1e4 && c->path[n].low_half_m >= 0 && c->path[n].low_half_m <= c->path[n].half_m;
-    if (!good) log_error("woods: centre, half width, number of trees or a path is out of range");
+    if (!good) log_error("woods: centre, half width, number of trees, a place or a path is out of range");
     return good;
 }
 
@@ -323,11 +277,12 @@ static CacheKey key_of(const WoodsConfig *c)
 {
     CacheKey       key = cache_key("woods");
     const double   number[] = {c->centre_m[0], c->centre_m[1], c->half_width_m};
-    const uint64_t whole[] = {c->seed, (uint64_t)c->most_trees, (uint64_t)c->path_count};
+    const uint64_t whole[] = {c->seed, (uint64_t)c->most_trees, (uint64_t)c->path_count, (uint64_t)c->place_count};
     cache_key_add(&key, number, sizeof number);
     cache_key_add(&key, whole, sizeof whole);
-    _Static_assert(sizeof *c->path == 6 * sizeof(double), "no padding");
+    _Static_assert(sizeof *c->path == 6 * sizeof(double) && sizeof *c->place == 2 * sizeof(double), "no padding");
     cache_key_add(&key, c->path, (size_t)c->path_count * sizeof *c->path);
+    cache_key_add(&key, c->place, (size_t)c->place_count * sizeof *c->place);
     cache_key_add(&key, c->follows, strlen(c->follows));
     return key;
 }
@@ -344,7 +299,7 @@ static Status place(Woods *out, WoodsSource *source, const WoodsConfig *config, 
         for (int j = 0; j < source->ny; j++) fill_row(&filling, 0, j);
     for (size_t n = 0; n < squares; n++)
         if (filling.square[n].lost) status = STATUS_NO_MEMORY;
-    if (status == STATUS_OK) status = keep_nearest(out, source, filling.square, config->most_trees);
+    if (status == STATUS_OK) status = woods_keep_nearest(out, source, filling.square, config);
     if (status == STATUS_OK) status = gather(out, source, filling.square);
     for (size_t n = 0; n < squares; n++) free(filling.square[n].plant);
     free(filling.square);

@@ -18,12 +18,19 @@ typedef struct WoodsPath {
     double low_half_m;     /* half the width that is cleared of low plants; 0: they stay, as below a flight */
 } WoodsPath;
 
+/* A place about which trees are to stand. */
+typedef struct WoodsPlace {
+    double p_m[2]; /* ENU */
+} WoodsPlace;
+
 typedef struct WoodsConfig {
     uint64_t seed;
-    double centre_m[2]; /* ENU: trees beyond most_trees are left out, farthest from here first, whole cells at a time */
-    double half_width_m; /* half width of the square about the centre in which plants stand; 50 .. 50000 */
-    int    most_trees;   /* 0 .. woods_most_trees */
-    const char *store;   /* path of the terrain store of the landscape, for its canopy layers and crowns; NULL: none */
+    double   centre_m[2];  /* ENU */
+    double   half_width_m; /* half width of the square about the centre in which plants stand; 50 .. 50000 */
+    int      most_trees; /* 0 .. woods_most_trees: the farthest from all places are left out, whole squares at a time */
+    int      place_count;
+    const WoodsPlace *place; /* none in the square: its centre */
+    const char *store; /* path of the terrain store of the landscape, for its canopy layers and crowns; NULL: none */
     int         path_count;
     const WoodsPath *path;    /* paths that are cleared of plants */
     Cache           *cache;   /* where the standing plants are kept; NULL: nowhere */
@@ -45,7 +52,7 @@ typedef struct Woods {
     int              by_kind[PLANT_KINDS];
     int              left_out; /* trees left out beyond most_trees */
     uint8_t         *bare;     /* [nx * ny] 1: the square's trees were left out; NULL: no square's were */
-    double           reach_m;  /* distance from centre_m within which no tree was left out */
+    double           reach_m;  /* distance from the places, else from centre_m, within which no tree was left out */
     int              from_crowns, from_canopy, from_classes, from_hedges; /* how many plants came from each source */
     const Landscape *landscape;                                           /* borrowed */
     void            *low;                                                 /* private: what woods_low_plants needs */
@@ -62,6 +69,8 @@ static const double woods_low_m = 8;
 enum { woods_low_most = 4096 };
 int woods_low_plants(Plant plant[woods_low_most], const Woods *woods, int64_t i, int64_t j);
 
+/* Whether it is in a square whose trees stand. */
+bool woods_is_planted(const Woods *woods, double x_m, double y_m);
 /* Woods of which nothing stands: of squares that were left out, and beyond them all. stand[count]: the class of forest
  * whose canopy covers the ground there, SURFACE_NONE: none; cover[count]: the share of it by a store's canopy layer,
  * -1: that of the class; density[count]: plants there over the class's mean. surface: of the places. */

@@ -82,6 +82,9 @@ SurfaceClass woods_class_at(const WoodsSource *s, uint8_t surface, double x_m, d
 /* The values of the store's canopy layers at a place; returns false when they have none there. */
 bool woods_canopy_at(double *cover, double *height_m, const WoodsSource *s, double x_m, double y_m);
 
+/* Empties the squares farthest from the places until at most config->most_trees are left. */
+Status woods_keep_nearest(Woods *out, const WoodsSource *s, SquarePlants *square, const WoodsConfig *config);
+
 /* woods_kept.c: their length, and the octets where out is not NULL. */
 size_t woods_to_octets(void *out, const Woods *woods);
 /* Into woods that are empty but for nx and ny. STATUS_BAD_VALUE: not such octets; woods_destroy follows, as after

@@ -80,7 +80,7 @@ static inline Status stood_ground(Landscape *out, GroundContact *contact, Choice
                                   const Config *config, const HostPlan *plan)
 {
     GroundEvidence *evidence = NULL;
-    Status          status = choice_evidence(&evidence, &e->survey, catalog, plan, &frame);
+    Status          status = choice_evidence(&evidence, &e->survey, catalog, &frame);
     if (status == STATUS_OK)
         status = choice_ground(out, contact, choices, &(ChoiceBasis){&e->survey, config, catalog, evidence, NULL, NULL},
                                &frame);
@@ -94,7 +94,7 @@ static inline Status stood_woods(WoodsChoice *out, Choices *choices, const Exerc
 {
     GroundEvidence *evidence = NULL;
     WoodsSquare     square;
-    Status          status = choice_evidence(&evidence, &e->survey, catalog, plan, &land->frame);
+    Status          status = choice_evidence(&evidence, &e->survey, catalog, &land->frame);
     if (status == STATUS_OK) status = choice_square(&square, &e->survey, config, &land->frame, plan);
     if (status == STATUS_OK)
         status = choice_woods(out, choices, &(ChoiceBasis){&e->survey, config, catalog, evidence, NULL, NULL}, &square,

@@ -9,8 +9,7 @@
 
 static void gather(GroundEvidence *out, const Exercise *e)
 {
-    assert_int_equal(ground_evidence_collect(out, &e->survey, &frame, catalog, (DisEntityId){0}, (DisEntityId){0}),
-                     STATUS_OK);
+    assert_int_equal(ground_evidence_collect(out, &e->survey, &frame, catalog), STATUS_OK);
 }
 
 /* The ground as replay chooses it, with what it says. */

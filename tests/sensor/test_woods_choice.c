@@ -186,7 +186,7 @@ static void off_is_off_and_few_are_few(void **state)
     landscape_destroy(&land);
 }
 
-/* About the aim, as far as the vehicles and 4 km more. */
+/* About a vehicle in the middle of them, as far as they go, in a step of 2^0.5 from 1 km, and 4 km more. */
 static void the_square_holds_the_exercise(void **state)
 {
     (void)state;
@@ -200,6 +200,7 @@ static void the_square_holds_the_exercise(void **state)
     config.terrain.woods_half_m = 0;
     config.terrain.woods_trees = 0; /* none: only where they would stand */
     stand(e, tank, 0, 0, 500, 0, 3);
+    stand(e, tank, 1100, 300, 500, 0, 3);
     stand(e, tank, 2500, 300, 500, 0, 3);
     stand(e, tank, 40000, 0, 500, 0, 3); /* of another fight */
     plan.aim = e->track[0].id;
@@ -208,12 +209,90 @@ static void the_square_holds_the_exercise(void **state)
     choices.count = 0;
     assert_int_equal(stood_ground(&land, &contact, &choices, e, &config, &plan), STATUS_OK);
     assert_int_equal(stood_woods(&woods, &choices, e, &config, &plan, &land), STATUS_OK);
-    enu(p, &land, e->track[0].point[0].p_ecef);
+    enu(p, &land, e->track[1].point[0].p_ecef);
     CHECK_NEAR(woods.config.centre_m[0], p[0], 0.1);
     CHECK_NEAR(woods.config.centre_m[1], p[1], 0.1);
-    CHECK_NEAR(woods.config.half_width_m, 6500, 1);
+    CHECK_NEAR(woods.config.half_width_m, 4000 + 1000 * sqrt(2), 1);
+    assert_int_equal(woods.config.place_count, 3); /* what trees are kept about */
+    for (int t = 0; t < 3; t++) {
+        double away_m = INFINITY;
+        enu(p, &land, e->track[t].point[0].p_ecef);
+        for (int n = 0; n < 3; n++)
+            away_m = fmin(away_m, hypot(woods.config.place[n].p_m[0] - p[0], woods.config.place[n].p_m[1] - p[1]));
+        CHECK(away_m < 0.7072 * woods_square_m);
+    }
     choice_woods_free(&woods);
     landscape_destroy(&land);
+}
+
+/* A world as a plan has it. */
+typedef struct Chosen {
+    LocalFrame  world;
+    WoodsSquare square;
+} Chosen;
+
+static Chosen chosen(const Exercise *e, int aim, int host, double range_m, double half_m)
+{
+    Chosen   c;
+    Config   config = woods_on();
+    HostPlan plan = {.end_s = 104};
+    config.terrain.woods_half_m = half_m;
+    config.observer.range_m = range_m;
+    if (aim >= 0) plan.aim = e->track[aim].id;
+    if (host >= 0) plan.host = e->track[host].id;
+    assert_int_equal(choice_frame(&c.world, &e->survey, &plan), STATUS_OK);
+    assert_int_equal(choice_square(&c.square, &e->survey, &config, &c.world, &plan), STATUS_OK);
+    return c;
+}
+
+static bool is_same(const Chosen *a, const Chosen *b)
+{
+    return memcmp(a->world.origin_ecef, b->world.origin_ecef, sizeof a->world.origin_ecef) == 0 &&
+           memcmp(a->square.centre_m, b->square.centre_m, sizeof a->square.centre_m) == 0 &&
+           a->square.half_width_m == b->square.half_width_m;
+}
+
+/* Aims of one cell, at ranges within what the vehicles need, have one world, wherever on the Earth; any aim is within a
+ * cell of its world's origin. */
+static void aims_of_a_cell_share_a_world(void **state)
+{
+    (void)state;
+    static const double place_deg[][2] = {{36, -5}, {0, 180}, {90, 0}, {-89.999, 77}, {64.5, -179.9999}};
+    const LocalFrame    kept = frame;
+    for (int k = 0; k < 5; k++) {
+        const Geodetic at = {place_deg[k][0] * rad_per_deg, place_deg[k][1] * rad_per_deg, 0};
+        assert_int_equal(local_frame_at(&frame, &at), STATUS_OK);
+        Exercise *e = fresh();
+        stand(e, tank, -1200, 900, 300, 3, 3);
+        stand(e, tank, 0, 0, 300, 0, 3);
+        stand(e, man, 300, -400, 300, 1, 3);
+        stand(e, tank, 1900, 800, 300, 0, 3);
+        stand(e, missile, 3000, 0, 600, -100, 3);
+        stand(e, jet, 9000, 60000, 3000, 100, 3);
+        stand(e, tank, 100000, 0, 300, 0, 3);
+        const Chosen first = chosen(e, 0, -1, 600, 0);
+        for (int aim = 1; aim < 4; aim++) {
+            const Chosen other = chosen(e, aim, -1, 100 * aim, 0);
+            CHECK(is_same(&first, &other));
+        }
+        const Chosen far = chosen(e, 6, -1, 600, 0), wide = chosen(e, 0, -1, 5000, 0), own = chosen(e, 3, -1, 600, 400);
+        CHECK(memcmp(far.world.origin_ecef, first.world.origin_ecef, sizeof far.world.origin_ecef) != 0);
+        CHECK(wide.square.half_width_m >= 9000 && wide.square.half_width_m < 4000 + 5000 * sqrt(2));
+        CHECK(memcmp(wide.world.origin_ecef, first.world.origin_ecef, sizeof wide.world.origin_ecef) == 0);
+        for (int aim = 0; aim < 7; aim++) {
+            const Chosen c = chosen(e, aim, aim == 3 ? 4 : -1, 600, 0);
+            double       p_enu[3];
+            enu_from_ecef(p_enu, &c.world, e->track[aim].point[2].p_ecef);
+            CHECK(hypot(p_enu[0], p_enu[1]) < sqrt(3) * choice_cell_m);
+            CHECK(c.square.half_width_m > hypot(p_enu[0], p_enu[1]));
+        }
+        double p_enu[3]; /* a square of the user's own is about the aim itself */
+        enu_from_ecef(p_enu, &own.world, e->track[3].point[2].p_ecef);
+        CHECK_NEAR(own.square.centre_m[0], p_enu[0], 0.2);
+        CHECK_NEAR(own.square.centre_m[1], p_enu[1], 0.2);
+        assert_int_equal((int)own.square.half_width_m, 400);
+    }
+    frame = kept;
 }
 
 int main(void)
@@ -223,6 +302,7 @@ int main(void)
         cmocka_unit_test(entities_in_trunks_are_counted_where_trees_stay),
         cmocka_unit_test(off_is_off_and_few_are_few),
         cmocka_unit_test(the_square_holds_the_exercise),
+        cmocka_unit_test(aims_of_a_cell_share_a_world),
     };
     return cmocka_run_group_tests(tests, open_place, close_place);
 }

@@ -10,6 +10,7 @@ cat >"$tmp/share.yaml" <<'Y'
 mode: zip
 axes:
   exercise.aim:           ["1:3001:11", "1:3001:21", "1:3001:11", "1:3001:11"]
+  observer.range_m:       [300, 300, 700, 300]
   detector.netd_lwir_k:   [0.05, 0.05, 0.3, 0.05]
   exercise.local_solar:   [2026-06-21T10:00:00, 2026-06-21T10:00:00, 2026-06-21T10:00:00, 2026-06-21T04:30:00]
   exercise.host:          observer
@@ -17,6 +18,12 @@ Y
 sweep "$tmp/share.yaml" "$tmp/s" --from 1364 --to 1364
 check "all are made" [ "$code $(statuses "$tmp/s")" = '0  4 "status":"made" ' ]
 compare "$tmp/s" 4
+
+# aim, range and detector change no layer of the world: it is the exercise's
+printf 'mode: zip\naxes: {exercise.host: observer, exercise.aim: ["1:3001:11", "1:3001:22", "1:3001:13"], observer.range_m: [300, 900, 600], detector.netd_lwir_k: [0.05, 0.1, 0.3]}\n' >"$tmp/aims.yaml"
+sweep "$tmp/aims.yaml" "$tmp/a" --from 1364 --to 1364 --verbose
+layers() { for folder in $(grep -oE 'v[0-9a-f]{10}' "$1/manifest.jsonl" | uniq); do grep -cE 'world: [a-z]+ made$' "$1/$folder/log.txt"; done | tr '\n' ' '; }
+check "aim, range, detector: layers of the world that each variant makes" [ "$(layers "$tmp/a")" = '8 0 0 ' ]
 
 # killed in the middle: it fails alone
 printf 'axes: {detector.netd_lwir_k: [0.1, 0.2, 0.3]}\n' >"$tmp/three.yaml"

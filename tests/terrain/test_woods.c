@@ -141,6 +141,31 @@ static void at_most_so_many(void **state)
         kept += hypot(p[0], p[1]) < some.reach_m;
     }
     assert_int_equal(kept, within); /* complete within the reach */
+    woods_destroy(&some);
+
+    /* about places: complete within the reach of each, and no tree stands that is farther from all than one left out */
+    static const WoodsPlace place[] = {{{-700, 100}}, {{600, -450}}, {{640, -450}}, {{1e6, 0}}};
+    config.place = place, config.place_count = 4;
+    assert_int_equal(woods_create(&some, &landscape, &config, NULL), STATUS_OK);
+    CHECK(some.count <= config.most_trees && some.count > config.most_trees / 2 && some.reach_m > 100);
+    assert_int_equal(some.count + some.left_out, all.count);
+    within = kept = 0;
+    double farthest_m = 0;
+    for (int k = 0; k < all.count; k++) {
+        double p[3], away_m = INFINITY;
+        place_of(p, &all, k);
+        for (int n = 0; n < 4; n++) away_m = fmin(away_m, hypot(p[0] - place[n].p_m[0], p[1] - place[n].p_m[1]));
+        within += away_m < some.reach_m;
+    }
+    for (int k = 0; k < some.count; k++) {
+        double p[3], away_m = INFINITY;
+        place_of(p, &some, k);
+        for (int n = 0; n < 4; n++) away_m = fmin(away_m, hypot(p[0] - place[n].p_m[0], p[1] - place[n].p_m[1]));
+        kept += away_m < some.reach_m;
+        farthest_m = fmax(farthest_m, away_m);
+    }
+    assert_int_equal(kept, within);
+    CHECK(farthest_m < some.reach_m + 2 * 1.4143 * woods_square_m);
     woods_destroy(&all), woods_destroy(&some);
     config.most_trees = 0;
     assert_int_equal(woods_create(&some, &landscape, &config, NULL), STATUS_OK);

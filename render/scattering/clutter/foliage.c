@@ -7,7 +7,7 @@ enum { squares_most = 4000000 };
 
 struct Foliage {
     const Woods  *woods;
-    double        origin_enu[3], centre_enu[2], reach_m, wide_m[2];
+    double        origin_enu[3], wide_m[2];
     int           count;
     FoliageCrown *crown; /* [count] */
     double        side_m;
@@ -94,10 +94,8 @@ Status foliage_create(Foliage **out, const Woods *woods, const Plants *plants, c
     if (!f) return STATUS_NO_MEMORY;
     memcpy(f->origin_enu, woods->origin_enu, sizeof f->origin_enu);
     f->woods = woods;
-    f->reach_m = woods->reach_m;
     f->count = woods->count;
     f->wide_m[0] = woods->nx * woods_square_m, f->wide_m[1] = woods->ny * woods_square_m;
-    for (int k = 0; k < 2; k++) f->centre_enu[k] = f->origin_enu[k] + 0.5 * f->wide_m[k];
     for (int s = 0; s < SURFACE_COUNT; s++) f->db_m[s] = table->row[s][band].foliage_db_m;
     for (f->side_m = 16; ceil(f->wide_m[0] / f->side_m) * ceil(f->wide_m[1] / f->side_m) > squares_most;)
         f->side_m *= 2;
@@ -130,8 +128,7 @@ const double       *foliage_origin(const Foliage *f) { return f->origin_enu; }
 bool foliage_reaches(const Foliage *f, double x_m, double y_m)
 {
     const double x = x_m - f->origin_enu[0], y = y_m - f->origin_enu[1];
-    return x >= 0 && y >= 0 && x < f->wide_m[0] && y < f->wide_m[1] &&
-           hypot(x_m - f->centre_enu[0], y_m - f->centre_enu[1]) <= f->reach_m;
+    return x >= 0 && y >= 0 && x < f->wide_m[0] && y < f->wide_m[1] && woods_is_planted(f->woods, x_m, y_m);
 }
 
 int foliage_in(int *index, int most, const Foliage *f, const double low_m[2], const double high_m[2])

@@ -43,7 +43,7 @@ int foliage_in(int *index, int most, const Foliage *foliage, const double low_m[
 double foliage_loss_db(double *depth_m, const Foliage *foliage, const double o_enu[3], const double d_enu[3],
                        double range_m);
 
-/* Whether a place is where plants stand or could: within the squares of the woods, and not beyond what they hold. */
+/* Whether a place is where plants stand or could: within the squares whose plants stand. */
 bool foliage_reaches(const Foliage *foliage, double x_m, double y_m);
 
 #endif

@@ -102,8 +102,8 @@ int sweep_worker(SweepVariant *make)
 /* said: the file of its messages until the first variant. */
 static bool start(SweepWorker *w, const char *said)
 {
-    const char *const          argv[] = {"pitviper", "replay", sweep_worker_option, NULL};
-    int                        end[2];
+    const char *const argv[] = {"pitviper", "replay", sweep_worker_option, log_is_verbose() ? "--verbose" : NULL, NULL};
+    int               end[2];
     posix_spawn_file_actions_t files;
     const int                  log = output_open(said, 0);
     if (log < 0) log_error("sweep: cannot write %s: %s", said, output_reason(errno));

@@ -3,12 +3,11 @@
 
 #include <stdlib.h>
 
-Status choice_evidence(GroundEvidence **out, const Survey *survey, const Catalog *catalog, const HostPlan *plan,
-                       const LocalFrame *frame)
+Status choice_evidence(GroundEvidence **out, const Survey *survey, const Catalog *catalog, const LocalFrame *frame)
 {
     GroundEvidence *e = calloc(1, sizeof *e);
     if (!e) return STATUS_NO_MEMORY;
-    const Status status = ground_evidence_collect(e, survey, frame, catalog, plan->host, plan->aim);
+    const Status status = ground_evidence_collect(e, survey, frame, catalog);
     if (status == STATUS_OK) *out = e;
     else choice_evidence_free(e);
     return status;

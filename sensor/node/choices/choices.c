@@ -1,5 +1,4 @@
-/* sensor/node/choices/choices.c: exercise, time of day, local frame and shapes, where the configuration leaves them
- * open. */
+/* sensor/node/choices/choices.c: exercise, time of day and shapes, where the configuration leaves them open. */
 #include "sensor/node/choices/choices.h"
 
 #include "dis/pdu/decode.h"
@@ -137,25 +136,6 @@ void choice_report_night(Choices *choices, unsigned bands, double unix_s, const 
                    "optical: black or nearly so, the sun is %.0f degrees below the horizon and neither moon nor "
                    "lamps are modelled; lwir and mwir see (exercise.utc, sensor.bands)",
                    -lowest_deg);
-}
-
-/* ---- the local frame -------------------------------------------------------------------------------- */
-
-Status choice_frame(LocalFrame *out, const Survey *survey, const HostPlan *plan)
-{
-    const Track *track = survey_track(survey, plan->aim);
-    if (!track) track = survey_track(survey, plan->host);
-    for (int i = 0; !track && i < survey->track_count; i++) /* entities that appear later use these */
-        if (choice_is_land(&survey->track[i])) track = &survey->track[i];
-    if (!track && survey->track_count > 0) track = &survey->track[0];
-    if (!track) return STATUS_BAD_VALUE;
-    TrackPose pose;
-    survey_track_at(&pose, track, plan->end_s);
-    Geodetic place;
-    Status   status = geodetic_from_ecef(&place, pose.p_ecef);
-    if (status != STATUS_OK) return status;
-    place.h_m = 0;
-    return local_frame_at(out, &place);
 }
 
 /* ---- shapes ----------------------------------------------------------------------------------------- */

@@ -38,6 +38,9 @@ Status choice_host(HostPlan *out, Choices *choices, const Survey *survey, const 
 Status choice_named_host(HostPlan *out, Choices *choices, const Survey *survey, const Config *config, DisEntityId host);
 /* Puts the frames per second of exercise time into the plan. */
 void choice_rate(HostPlan *plan, Choices *choices, const Config *config);
+/* The entity nearest to a position at an instant, within 200 m, other than `not`; munitions do not count. 0:0:0: none.
+ */
+DisEntityId choice_nearest_entity(const Survey *survey, const double p_ecef[3], double t_s, DisEntityId not );
 /* Whether it is a platform of domain land. */
 bool choice_is_land(const Track *track);
 
@@ -53,24 +56,28 @@ Status choice_time(double *unix_s, Choices *choices, const Survey *survey, const
  * 6 degrees below the horizon (the end of civil twilight). */
 void choice_report_night(Choices *choices, unsigned bands, double unix_s, const HostPlan *plan,
                          const LocalFrame *frame);
-/* Gives the local frame, whose origin is amid the entities. */
-Status choice_frame(LocalFrame *out, const Survey *survey, const HostPlan *plan);
+/* The world's local frame. It is the exercise's: a grid of cells of choice_cell_m lies about the middle of what is on
+ * land, else of all entities; the origin is the place of the aim's cell where an entity was, nearest the cell's centre.
+ * Aims of one cell, and all hosts with them, have one world, which reaches some km beyond. */
+static const double choice_cell_m = 4000;
+Status              choice_frame(LocalFrame *out, const Survey *survey, const HostPlan *plan);
+/* Where the aim, else the host is at the end of the plan, on the ellipsoid. False: neither was heard. */
+bool choice_aim_place(double p_ecef[3], const Survey *survey, const HostPlan *plan);
 /* Builds the models of all types in the survey, so that no frame waits for one, and reports each type once when it
  * is not rendered (`none` in the catalog), or when no row matches (rendered as a wedge). At most four types by name. */
 void choice_shapes(Choices *choices, const Survey *survey, const Catalog *catalog);
 
 /* ---- ground and plants -------------------------------------------------------------------------------- */
 
-/* What the reports of an exercise imply about its ground, in one frame (ground_evidence_private.h). Of the plan, host
- * and aim: a hit that names no entity is the aim's. choice_evidence_free accepts NULL. */
+/* What the reports of an exercise imply about its ground, in one frame (ground_evidence_private.h), whoever is host and
+ * aim. choice_evidence_free accepts NULL. */
 typedef struct GroundEvidence GroundEvidence;
-Status choice_evidence(GroundEvidence **out, const Survey *survey, const Catalog *catalog, const HostPlan *plan,
-                       const LocalFrame *frame);
+Status choice_evidence(GroundEvidence **out, const Survey *survey, const Catalog *catalog, const LocalFrame *frame);
 void   choice_evidence_free(GroundEvidence *evidence);
 /* Adds all of it to a hash. False: out of memory. */
 bool choice_evidence_hash(Sha256 *digest, const GroundEvidence *evidence);
 
-/* What ground and plants follow from: no host and no aim but by the evidence. */
+/* What ground and plants follow from: no host and no aim. */
 typedef struct ChoiceBasis {
     const Survey         *survey;
     const Config         *config;
@@ -91,11 +98,11 @@ Status choice_ground(Landscape *out, GroundContact *contact, Choices *choices, c
 void choice_report_submerged(Choices *choices, const Survey *survey, const GroundEvidence *evidence,
                              const HostPlan *plan);
 /* With terrain.store everything uses the store's own local frame. Changed sources of the store are imported again
- * first. aim: the frame that the exercise would have without it. STATUS_BAD_VALUE, logged: that frame's origin is not
+ * first. p_ecef: the aim, or the origin that the exercise would have without it. STATUS_BAD_VALUE, logged: that is not
  * on the store's ground. */
-Status choice_store_frame(LocalFrame *out, Choices *choices, const Config *config, const LocalFrame *aim);
+Status choice_store_frame(LocalFrame *out, Choices *choices, const Config *config, const double p_ecef[3]);
 
-/* Where plants stand in a run: about the aim, clear of what the exercise says.
+/* Where plants stand in a run: about what is on the ground, clear of what the exercise says.
  *
  * On invented ground no plant stands on the path of anything on the ground, where a burst hit it, or where a flight or
  * the line of sight of a shot that hit passes low, as far as these are known when the world is made. Real trees stay;
@@ -103,14 +110,17 @@ Status choice_store_frame(LocalFrame *out, Choices *choices, const Config *confi
 typedef struct WoodsChoice {
     bool        on; /* terrain.woods */
     WoodsConfig config;
-    WoodsPath  *path; /* config.path */
+    WoodsPath  *path;  /* config.path */
+    WoodsPlace *place; /* config.place */
     Woods       woods;
     int         entities, in_trunks; /* on the ground at their first report; of these within a trunk */
 } WoodsChoice;
 
-/* The square in which they stand. */
+/* The square in which they stand: of the world, with room for host and entities in steps, so that neighbouring ranges
+ * have one; with terrain.woods_half_m, the aim's own. */
 typedef struct WoodsSquare {
     double centre_m[2], half_width_m; /* ENU */
+    bool   own;
 } WoodsSquare;
 Status choice_square(WoodsSquare *out, const Survey *survey, const Config *config, const LocalFrame *frame,
                      const HostPlan *plan);

@@ -82,28 +82,30 @@ static Status open_fresh(TerrainStore *store, Choices *choices, const char *path
 
 /* ---- a terrain store: whether it is of this place --------------------------------------------------- */
 
-static Status on_its_ground(const TerrainStore *store, const LocalFrame *aim, const char *path)
+static Status on_its_ground(const TerrainStore *store, const double p_ecef[3], const char *path)
 {
     const ElevationLevel *wide = &store->elevation.level[store->elevation.level_count - 1];
     double                p_enu[3];
-    enu_from_ecef(p_enu, &store->frame, aim->origin_ecef);
+    Geodetic              aim = {0};
+    enu_from_ecef(p_enu, &store->frame, p_ecef);
     const double x = (p_enu[0] - wide->x0_m) / wide->spacing_m, y = (p_enu[1] - wide->y0_m) / wide->spacing_m;
     /* a place on the Earth's other side has small x and y, and a z far below */
     if (x >= 0 && y >= 0 && x <= wide->nx - 1 && y <= wide->ny - 1 && fabs(p_enu[2]) < 1e6) return STATUS_OK;
+    geodetic_from_ecef(&aim, p_ecef);
     log_error("terrain.store: %s has the ground about %.4f N, %.4f E; the exercise is at %.4f N, %.4f E, %.0f km away: "
               "name the store of that place, or leave it out for synthetic terrain",
               path, store->frame.origin.lat_rad / rad_per_deg, store->frame.origin.lon_rad / rad_per_deg,
-              aim->origin.lat_rad / rad_per_deg, aim->origin.lon_rad / rad_per_deg, 1e-3 * v3_length(p_enu));
+              aim.lat_rad / rad_per_deg, aim.lon_rad / rad_per_deg, 1e-3 * v3_length(p_enu));
     return STATUS_BAD_VALUE;
 }
 
-Status choice_store_frame(LocalFrame *out, Choices *choices, const Config *config, const LocalFrame *aim)
+Status choice_store_frame(LocalFrame *out, Choices *choices, const Config *config, const double p_ecef[3])
 {
     TerrainStore store;
     const char  *path = config->terrain.store;
     Status       status = open_fresh(&store, choices, path);
     if (status != STATUS_OK) return status;
-    status = on_its_ground(&store, aim, path);
+    status = on_its_ground(&store, p_ecef, path);
     *out = store.frame;
     store_close(&store);
     return status;

@@ -12,8 +12,8 @@ typedef struct Gathering {
     const Survey     *survey;
     const LocalFrame *frame;
     const Catalog    *catalog;
-    DisEntityId       host, aim;
     int               voters, step; /* step: one report in so many is kept */
+    int               unnamed;      /* hits whose entity was looked for */
 } Gathering;
 
 /* Reports that are kept as evidence; of a longer log every second, third ... one. */
@@ -234,16 +234,27 @@ static void add_voter(Gathering *g, int t, bool landed)
     g->voters += any;
 }
 
+/* What a shot hit; NULL: nothing is known of it. Only some hits are looked up by place, each of which takes a walk over
+ * all entities. */
+static const Track *hit_of(Gathering *g, const Shot *shot)
+{
+    enum { most_looked_up = 256 };
+    const Track *hit = survey_track(g->survey, shot->hit);
+    if (hit || shot->result != dis_result_entity_impact) return hit;
+    hit = survey_track(g->survey, shot->target);
+    if (hit || !isfinite(shot->detonation_s) || g->unnamed == most_looked_up) return hit;
+    g->unnamed++;
+    return survey_track(g->survey,
+                        choice_nearest_entity(g->survey, shot->p_burst_ecef, shot->detonation_s, shot->munition));
+}
+
 static void add_flight(Gathering *g, int t)
 {
     const Survey *survey = g->survey;
     const Track  *track = &survey->track[t];
     const Shot   *shot = track->type.kind == dis_kind_munition ? survey_shot(survey, track->id) : NULL;
-    const Track  *target = shot ? survey_track(survey, shot->hit) : NULL;
+    const Track  *target = shot ? hit_of(g, shot) : NULL;
     const bool   *fixed = g->e->fixed + g->e->first[t];
-    /* a hit that names no entity is taken to be the hit found for the host's own munition */
-    if (shot && !target && shot->result == dis_result_entity_impact && dis_entity_id_compare(track->id, g->host) == 0)
-        target = survey_track(survey, g->aim);
     for (int i = 0, next; i + 1 < track->count; i = next) {
         next = i + g->step < track->count ? i + g->step : track->count - 1;
         if (!(fixed[i] && fixed[next])) add_line(g, track->point[i].p_ecef, track->point[next].p_ecef);
@@ -448,10 +459,10 @@ static Status gather(Gathering *g)
 }
 
 Status ground_evidence_collect(GroundEvidence *out, const Survey *survey, const LocalFrame *frame,
-                               const Catalog *catalog, DisEntityId host, DisEntityId aim)
+                               const Catalog *catalog)
 {
     GroundEvidence e = {0};
-    Gathering      g = {.e = &e, .survey = survey, .frame = frame, .catalog = catalog, .host = host, .aim = aim};
+    Gathering      g = {.e = &e, .survey = survey, .frame = frame, .catalog = catalog};
     const Status   status = gather(&g);
     if (status != STATUS_OK) {
         ground_evidence_free(&e);

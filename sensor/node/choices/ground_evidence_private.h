@@ -40,10 +40,9 @@ struct GroundEvidence {
     int               impacts;
 };
 
-/* p_aim: the hit found for the host's own munition, which is used for a Detonation that names no entity. An id of 0:0:0
- * means none. */
+/* A hit that names no entity is of the target of its Fire, else of the entity nearest to the burst. */
 Status ground_evidence_collect(GroundEvidence *out, const Survey *survey, const LocalFrame *frame,
-                               const Catalog *catalog, DisEntityId host, DisEntityId aim);
+                               const Catalog *catalog);
 void   ground_evidence_free(GroundEvidence *evidence);
 /* A report's base. */
 void ground_evidence_base(double base_ecef[3], const TrackPoint *point, double below_m);

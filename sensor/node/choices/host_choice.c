@@ -50,8 +50,7 @@ static const char *who(char out[who_size], const Survey *survey, DisEntityId id)
 
 /* ---- host and aim --------------------------------------------------------------------------- */
 
-/* The entity nearest to a position at an instant, other than `not`; munitions do not count. */
-static DisEntityId nearest_entity(const Survey *survey, const double p_ecef[3], double t_s, DisEntityId not )
+DisEntityId choice_nearest_entity(const Survey *survey, const double p_ecef[3], double t_s, DisEntityId not )
 {
     DisEntityId nearest = {0};
     double      least_m = 200; /* farther than that, it was not the target */
@@ -90,7 +89,7 @@ static void choose_aim(HostPlan *plan, Choices *choices, const Survey *survey, c
         return;
     }
     if (shot && isfinite(shot->detonation_s)) {
-        plan->aim = nearest_entity(survey, shot->p_burst_ecef, shot->detonation_s, plan->host);
+        plan->aim = choice_nearest_entity(survey, shot->p_burst_ecef, shot->detonation_s, plan->host);
         if (!dis_entity_id_is_none(plan->aim)) {
             choice_add(choices, "aim: %s, nearest the burst (exercise.aim)", who(name, survey, plan->aim));
             return;

@@ -28,26 +28,66 @@ static double reach_of(const Track *track, const LocalFrame *frame, const double
     return reach_m;
 }
 
-/* The square is about the aim and reaches as far as the host and what is on the ground go, and sight_m more. */
+/* The square is about the origin of the world and reaches as far as the host and what is on the ground go, in steps of
+ * a factor of 2^0.5, and sight_m more. */
 Status choice_square(WoodsSquare *out, const Survey *survey, const Config *config, const LocalFrame *frame,
                      const HostPlan *plan)
 {
-    static const double sight_m = 4000, far_m = 12000, least_m = 50, most_m = 50000;
-    LocalFrame          aim;
-    double              p_enu[3], reach_m = 0;
-    const Status        status = choice_frame(&aim, survey, plan);
+    static const double sight_m = 4000, far_m = 12000, least_m = 50, most_m = 50000, first_m = 1000;
+    LocalFrame          world;
+    double              p_ecef[3], p_enu[3], reach_m = 0, step_m = first_m;
+    const Status        status = choice_frame(&world, survey, plan);
     if (status != STATUS_OK) return status;
-    enu_from_ecef(p_enu, frame, aim.origin_ecef);
+    const bool own = config->terrain.woods_half_m >= least_m && choice_aim_place(p_ecef, survey, plan);
+    enu_from_ecef(p_enu, frame, own ? p_ecef : world.origin_ecef);
     memcpy(out->centre_m, p_enu, sizeof out->centre_m);
+    out->own = config->terrain.woods_half_m >= least_m;
+    out->half_width_m = config->terrain.woods_half_m;
+    if (out->own) return STATUS_OK;
     for (int t = 0; t < survey->track_count; t++) {
         const Track *track = &survey->track[t];
         if (choice_is_land(track) || dis_entity_id_compare(track->id, plan->host) == 0)
             reach_m = fmax(reach_m, reach_of(track, frame, out->centre_m, far_m));
     }
     reach_m = fmax(reach_m, dis_entity_id_is_none(plan->host) ? config->observer.range_m : 0);
-    out->half_width_m = config->terrain.woods_half_m >= least_m ? config->terrain.woods_half_m
-                                                                : clamp(reach_m + sight_m, least_m, most_m);
+    while (step_m < reach_m && step_m < most_m) step_m *= sqrt(2);
+    out->half_width_m = fmin(step_m + sight_m, most_m);
     return STATUS_OK;
+}
+
+/* ---- what trees stand about ------------------------------------------------------------------------ */
+
+/* Where anything was on the ground, of the aims that have this square; a place in each square of woods_square_m. */
+static Status find_places(WoodsChoice *out, const Survey *survey, const GroundEvidence *e, const Landscape *landscape)
+{
+    enum { side = 128 };
+    const double half = 0.5 * side * woods_square_m;
+    bool(*here)[side] = calloc(side, sizeof *here);
+    int places = 0;
+    if (!here) return STATUS_NO_MEMORY;
+    for (int t = 0; t < survey->track_count; t++) {
+        const Track *track = &survey->track[t];
+        for (int n = 0; n < track->count; n++) {
+            double p_enu[3];
+            if (!e->fixed[e->first[t] + (size_t)n]) continue;
+            enu_of(p_enu, landscape, track->point[n].p_ecef);
+            const double i = floor((p_enu[0] - out->config.centre_m[0] + half) / woods_square_m);
+            const double j = floor((p_enu[1] - out->config.centre_m[1] + half) / woods_square_m);
+            if (!(i >= 0 && j >= 0 && i < side && j < side) || here[(int)j][(int)i]) continue;
+            here[(int)j][(int)i] = true;
+            places++;
+        }
+    }
+    out->place = malloc(((size_t)places + 1) * sizeof *out->place);
+    for (int n = 0; out->place && n < side * side; n++) {
+        if (!here[n / side][n % side]) continue;
+        WoodsPlace *place = &out->place[out->config.place_count++];
+        for (int k = 0; k < 2; k++)
+            place->p_m[k] = out->config.centre_m[k] - half + ((k ? n / side : n % side) + 0.5) * woods_square_m;
+    }
+    free(here);
+    out->config.place = out->place;
+    return out->place ? STATUS_OK : STATUS_NO_MEMORY;
 }
 
 /* ---- paths ----------------------------------------------------------------------------------------- */
@@ -208,13 +248,15 @@ static void report(Choices *choices, const WoodsChoice *w, const Config *config,
     const int    trees = trees_of(woods);
     char         kinds[100];
     kinds_text(kinds, sizeof kinds, woods);
-    choice_add(choices, "woods: %d trees%s%s%s, %d bushes and hedges, %.1f km about the aim (terrain.woods)", trees,
-               *kinds ? " (" : "", kinds, *kinds ? ")" : "", woods->count - trees, 1e-3 * w->config.half_width_m);
+    choice_add(choices, "woods: %d trees%s%s%s, %d bushes and hedges, %.1f km about the %s (terrain.woods)", trees,
+               *kinds ? " (" : "", kinds, *kinds ? ")" : "", woods->count - trees, 1e-3 * w->config.half_width_m,
+               config->terrain.woods_half_m >= 50 ? "aim" : "exercise");
     if (woods->left_out > 0)
         choice_add(
             choices,
-            "woods: %d more are left out, those beyond %.0f m of the aim: the ground there shows their canopy (terrain.woods_trees)",
-            woods->left_out, woods->reach_m);
+            "woods: %d more are left out, those beyond %.0f m of %s: the ground there shows their canopy (terrain.woods_trees)",
+            woods->left_out, woods->reach_m,
+            w->config.place_count ? "what is on the ground" : "the middle of the square");
     if (!real)
         choice_add(choices,
                    "woods: cleared along the paths of %d entit%s on the ground, where %d shot%s hit it, and "
@@ -255,7 +297,9 @@ Status choice_woods(WoodsChoice *out, Choices *choices, const ChoiceBasis *basis
     out->config.path = paths.path;
     out->config.path_count = paths.count;
     const double begun_s = wall_clock_s();
-    const Status status = paths.no_memory ? STATUS_NO_MEMORY : woods_create(&out->woods, landscape, &out->config, pool);
+    Status       status = paths.no_memory ? STATUS_NO_MEMORY : STATUS_OK;
+    if (status == STATUS_OK && !square->own) status = find_places(out, survey, e, landscape);
+    if (status == STATUS_OK) status = woods_create(&out->woods, landscape, &out->config, pool);
     log_detail("woods: placed in %.0f ms, %d pieces of paths", 1e3 * (wall_clock_s() - begun_s), paths.count);
     if (status == STATUS_OK) {
         count_in_trunks(out, survey, landscape, catalog, e);
@@ -272,5 +316,6 @@ void choice_woods_free(WoodsChoice *woods)
 {
     woods_destroy(&woods->woods);
     free(woods->path);
+    free(woods->place);
     *woods = (WoodsChoice){0};
 }

@@ -206,8 +206,9 @@ static Status choose(HostChoice *out, Run *run, const DisEntityId *host)
     Status         status = choose_who(plan, choices, run, host);
     if (status == STATUS_OK) status = choice_frame(&frame, &made->survey, plan);
     if (status == STATUS_OK && *o->config.terrain.store) {
-        const LocalFrame aim = frame;
-        status = choice_store_frame(&frame, choices, &o->config, &aim);
+        double p_ecef[3];
+        if (!choice_aim_place(p_ecef, &made->survey, plan)) memcpy(p_ecef, frame.origin_ecef, sizeof p_ecef);
+        status = choice_store_frame(&frame, choices, &o->config, p_ecef);
     }
     if (status == STATUS_OK) status = choice_time(&out->unix_s, choices, &made->survey, &o->config, &frame);
     if (status == STATUS_OK)

@@ -287,6 +287,7 @@ static Status need_woods(MadeWorld *m, const MadeOf *of, const GroundEvidence *e
     Key key = key_of(part, MADE_WOODS, of->config);
     add(&key, square.centre_m, sizeof square.centre_m);
     add(&key, &square.half_width_m, sizeof square.half_width_m);
+    add(&key, &square.own, sizeof square.own);
     key.good = key.good && *m->key[MADE_GROUND] && choice_evidence_hash(key.digest, evidence);
     if (is_there(key_text, m, MADE_WOODS, &key)) return STATUS_OK;
     char follows[3 * sha256_text_size]; /* settings, tables, frame and evidence by content; paths of vehicles are in
@@ -339,7 +340,7 @@ static Status need_warmth(MadeWorld *m, const MadeOf *of)
 Status made_world(MadeWorld *m, Choices *choices, const MadeOf *of)
 {
     GroundEvidence *evidence = NULL;
-    Status          status = choice_evidence(&evidence, &m->survey, m->catalog, of->plan, of->frame);
+    Status          status = choice_evidence(&evidence, &m->survey, m->catalog, of->frame);
     if (status == STATUS_OK) status = need_ground(m, of, evidence);
     if (status == STATUS_OK) {
         say(choices, &m->said[MADE_GROUND]);

@@ -211,7 +211,7 @@ static const Field woods_rows[] = {
     {"kinds", "", "", "", "of these, by kind", FIELD_OBJECT(kind_rows)},
     {"from", "", "", "", "by what says where they stand", FIELD_OBJECT(origin_rows)},
     {"left_out", "", "", "", "plants beyond terrain.woods_trees", OF_WOODS(woods.left_out)},
-    {"reach_m", "m", "from the aim, when the world was made", "", "within it none is left out",
+    {"reach_m", "m", "from what is on the ground in the middle of the world", "", "within it none is left out",
      OF_WOODS(woods.reach_m)},
     {"paths", "", "", "", "straight pieces of paths cleared of plants; on real ground none",
      OF_WOODS(config.path_count)},

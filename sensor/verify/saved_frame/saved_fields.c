@@ -280,9 +280,15 @@ static void path_fields(Fields *f, void *record)
     field_real(f, "path", &path->low_half_m, 0, path->half_m);
 }
 
+static void place_fields(Fields *f, void *record)
+{
+    WoodsPlace *place = record;
+    field_reals(f, "place of plants", place->p_m, 2, local_m);
+}
+
 void saved_fields_woods(Fields *f, SavedFrame *file)
 {
-    enum { most_paths = 1 << 22 };
+    enum { most_paths = 1 << 22, most_places = 1 << 16 };
     WoodsConfig *w = &file->woods;
     file->planted = true;
     field_real(f, "time of plants", &file->request.t_s, -long_s, long_s);
@@ -292,6 +298,8 @@ void saved_fields_woods(Fields *f, SavedFrame *file)
     field_real(f, "width of plants", &w->half_width_m, 50, 50000);
     field_int(f, "trees", &w->most_trees, 0, woods_most_trees);
     field_list(f, &w->path_count, (void **)&w->path, sizeof *w->path, most_paths, path_fields);
+    if (f->version >= 6)
+        field_list(f, &w->place_count, (void **)&w->place, sizeof *w->place, most_places, place_fields);
 }
 
 /* ---- radar --------------------------------------------------------------------------------------- */
