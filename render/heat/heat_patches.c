@@ -17,8 +17,12 @@ typedef struct PatchCut {
 
 Status heat_patches_create(PatchSet *out, int models)
 {
-    PatchSet set = {models, calloc((size_t)models + 1, sizeof *set.of), calloc((size_t)models + 1, sizeof *set.cut),
-                    calloc((size_t)models + 1, sizeof *set.ahead), NULL, view_memory_create()};
+    PatchSet set = {models,
+                    calloc((size_t)models + 1, sizeof *set.of),
+                    calloc((size_t)models + 1, sizeof *set.cut),
+                    calloc((size_t)models + 1, sizeof *set.ahead),
+                    NULL,
+                    view_memory_create()};
     if (!set.of || !set.cut || !set.ahead || !set.seen) {
         heat_patches_destroy(&set);
         return STATUS_NO_MEMORY;

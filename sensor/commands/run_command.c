@@ -14,8 +14,6 @@
 #include "sensor/node/player/player.h"
 #include "sensor/commands/overwrite.h"
 #include "sensor/publish/video/video_names.h"
-#include "sensor/quality/quality_measure.h"
-#include "sensor/quality/quality.h"
 #include "sensor/settings/config.h"
 #include "sensor/node/run/stop.h"
 
@@ -394,24 +392,6 @@ static Status open_files(Live *l)
     return live_recording_open(&l->recording, config->record.path, comment, l->udp, run_network(config).port);
 }
 
-/* Measures the time of a frame on this machine, once: the only clock that a choice of quality depends on. It is
- * reported, so that a replay with the same quality.machine_factor gives the same images. */
-static Status measure_machine(Live *l)
-{
-    Config *config = &l->run.options.config;
-    char    path[1024], text[32];
-    double  factor;
-    if (!quality_wants_factor(config)) return STATUS_OK;
-    if (*config->quality.table) snprintf(path, sizeof path, "%s", config->quality.table);
-    else if (!etc_path(path, sizeof path, "quality.csv")) return STATUS_BAD_VALUE;
-    Status status = quality_machine_factor(&factor, path, l->run.options.threads);
-    if (status != STATUS_OK) return status;
-    snprintf(text, sizeof text, "%g", factor);
-    choice_add(&l->run.choices,
-               "machine: %s times the time in the table of settings, measured (quality.machine_factor)", text);
-    return config_set(config, "quality.machine_factor", text, "run");
-}
-
 /* Whether there was nothing to render so far, and nothing is wrong. */
 static bool idle(HealthReason reason)
 {
@@ -455,7 +435,7 @@ static Status run_node(Live *l)
 {
     bool           heard;
     const Options *o = &l->run.options;
-    Status         status = measure_machine(l);
+    Status         status = run_measure_machine(&l->run);
     if (status == STATUS_OK) status = run_prepare(&l->run);
     if (status == STATUS_OK) status = open_network(l);
     /* now, not hours later when the first entity is received; the socket first: an older recording must not be lost for

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # A consumer that stalls costs its own frames alone: the disk of a live node's video hangs, later that of its truth.jsonl; a receiver
 # of its stream is stopped, and a reader of its shared memory. The others get every frame, and the node ends by itself.
-# Longer, with recovery and memory: test_stall_deep.sh. labels: two small
+# labels: two small
 . "$(dirname "$0")/common.sh"
 . "$(dirname "$0")/live.sh"
 . "$(dirname "$0")/publish_failures.sh"

@@ -8,9 +8,11 @@
 #include "sensor/publish/memory/consume_memory.h"
 #include "sensor/publish/video/consume_video.h"
 #include "sensor/quality/quality.h"
+#include "sensor/quality/quality_measure.h"
 #include "sensor/settings/publish_choice.h"
 #include "sensor/frame/frame_world.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 
 enum { path_size = 4096 };
@@ -27,6 +29,22 @@ static Status hash_config(char out[sha256_text_size], const Options *o)
     for (int i = 0; i < o->host_count; i++)
         n += (size_t)snprintf(text + n, sizeof text - n, "host=%.32s\n", o->host[i]);
     return sha256_bytes(out, text, n);
+}
+
+Status run_measure_machine(Run *run)
+{
+    Config *config = &run->options.config;
+    char    path[1024], text[32];
+    double  factor;
+    if (!quality_wants_factor(config)) return STATUS_OK;
+    if (*config->quality.table) snprintf(path, sizeof path, "%s", config->quality.table);
+    else if (!etc_path(path, sizeof path, "quality.csv")) return STATUS_BAD_VALUE;
+    Status status = quality_machine_factor(&factor, path, run->options.threads);
+    if (status != STATUS_OK) return status;
+    snprintf(text, sizeof text, "%g", factor);
+    choice_add(&run->choices, "machine: %s times the time in the table of settings, measured (quality.machine_factor)",
+               text);
+    return config_set(config, "quality.machine_factor", text, "run");
 }
 
 Status run_prepare(Run *run)

@@ -41,6 +41,9 @@ struct Run {
     FrameClock *clock; /* the command's, of `frames`; NULL where none are made */
 };
 
+/* Where settings are chosen for a frame time: how fast this machine is, into quality.machine_factor, and among the
+ * choices. Some tenths of a second. */
+Status run_measure_machine(Run *run);
 /* Bands, sensors, hash of the configuration: before anything is received. */
 Status run_prepare(Run *run);
 /* Makes run->made, where the caller gave none. */
