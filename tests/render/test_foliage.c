@@ -21,7 +21,8 @@ static int set_up(void **state)
     for (int i = 0; i < plants; i++)
         for (int k = 0; k < 2; k++) plant[i].p_m[k] += (float)(0.5 * side * woods_square_m);
     woods.nx = woods.ny = side;
-    woods.reach_m = 200;
+    static uint8_t bare[side * side] = {1}; /* one corner's trees were left out */
+    woods.bare = bare;
     return etc_path(path, sizeof path, "radar/clutter.csv") && clutter_table_open(&table, path) == STATUS_OK &&
                    foliage_create(&foliage, &woods, &hand_plants, &table, CLUTTER_KA) == STATUS_OK
                ? 0

@@ -24,7 +24,8 @@ printf 'ox_m,oy_m,oz_m,dx,dy,dz\n-9,0,-1,1,0,0\n' >"$tmp/rays.csv"
 printf 'model,visibility_km,band,observer_m,target_m,range_km,temp_k\nus1976,23,lwir,10,10,1,290\n' >"$tmp/air.csv"
 printf 'lat_deg,lon_deg\n10,20\n' >"$tmp/geoid.csv"
 
-pv() { LD_PRELOAD=$preload "$pitviper" "$@"; }
+# each with a cache of its own, which is empty: what was kept is not made again, and its places not met
+pv() { XDG_CACHE_HOME=$PWD/cache LD_PRELOAD=$preload "$pitviper" "$@"; }
 # command_of NAME: what is run, in a folder of its own
 command_of() {
     case $1 in

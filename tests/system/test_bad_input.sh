@@ -53,7 +53,7 @@ nothing_shown "an atmosphere that is not there" 'no model tropical; there are: m
 # ---- part of it to show
 exercise no-missile "$tmp/high.pcap" place.height_m=3000
 replay "$tmp/high.pcap" "$tmp/high" --only 0 --bands lwir
-check "air of low ground on high ground is said" said '15 C at the ground.* -4 C at the 3000 m'
+check "air of low ground on high ground is said" said '15 C at the ground.* -4 C at the 300[01] m'
 size=$(wc -c <"$tmp/demo.pcap")
 head -c $((size * 7 / 10)) "$tmp/demo.pcap" >"$tmp/cut.pcap"
 replay "$tmp/cut.pcap" "$tmp/cut"

@@ -6,7 +6,7 @@
 # the helicopters and people of that scenario
 sed "/^  - name: Jet/,/^    turret: swing/d" etc/scenarios/aircraft.yaml >"$tmp/air.yaml"
 exercise "$tmp/air.yaml" "$tmp/air.pcap"
-span=(--rate 5 --from 1373.4 --to 1376 --bands lwir --pairs target --size 96x64 --set terrain.detail=off)
+span=(--rate 5 --from 1373.6 --to 1376.2 --bands lwir --pairs target --size 96x64 --set terrain.detail=off)
 
 # levels OUT: a line a frame: number, time, black, white of its display
 levels() {

@@ -101,11 +101,13 @@ check "outside the target's box nothing differs" python3 "$tmp/compare.py" "$tmp
 replay "$tmp/air.pcap" "$tmp/all" "${air[@]}" "${night[@]}" "${manual[@]}" --pairs all
 check "outside of all boxes nothing differs" python3 "$tmp/compare.py" "$tmp/all" all
 
-# traces: by day, a tank that drives, a truck that stands and smokes; and the same without them
+# traces: by day, a tank that drives, a truck that stands and smokes; and the same without them. The post in the middle of them all
+# gives both the same origin.
 cat >"$tmp/bare.yaml" <<'YAML'
 duration_s: 75
 vehicles:
   - {name: H, id: 11, type: helicopter, engine: false, height_m: 40, route_m: [0, 0]}
+  - {name: Post, id: 41, type: truck, engine: false, route_m: [-200, 12]}
 YAML
 cp "$tmp/bare.yaml" "$tmp/traces.yaml"
 cat >>"$tmp/traces.yaml" <<'YAML'
