@@ -295,6 +295,11 @@ static void killed_and_side_by_side(void **state)
         pid_t writer[2];
         for (int k = 0; k < 2; k++)
             if ((writer[k] = fork()) == 0) write_for_ever(40);
+        for (int k = 0; whole == 0 && k < 20000; k++) { /* the first entry, however late its writer begins */
+            const struct timespec ms = {0, 1000000};
+            nanosleep(&ms, NULL);
+            whole += fetch(&key, c, 40, large);
+        }
         for (int k = 0; k < 20; k++) whole += fetch(&key, c, 40, large); /* CHECKs that it is whole */
         for (int k = 0; k < 2; k++)
             CHECK(writer[k] > 0 && kill(writer[k], SIGKILL) == 0 && waitpid(writer[k], NULL, 0) > 0);
