@@ -186,7 +186,7 @@ static void what_is_no_file(void **state)
     unlink(other);
 }
 
-/* As another user than root, to whom alone permissions do not apply. */
+/* Becomes a user without rights: permissions do not bind root. */
 static bool become_nobody(void)
 {
     return geteuid() != 0 ||

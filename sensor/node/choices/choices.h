@@ -69,7 +69,7 @@ void choice_shapes(Choices *choices, const Survey *survey, const Catalog *catalo
 
 /* ---- ground and plants -------------------------------------------------------------------------------- */
 
-/* What the reports of an exercise imply about its ground, in one frame (ground_evidence_private.h), whoever is host and
+/* What the reports of an exercise imply about its ground, in one frame (ground_evidence_private.h), for every host and
  * aim. choice_evidence_free accepts NULL. */
 typedef struct GroundEvidence GroundEvidence;
 Status choice_evidence(GroundEvidence **out, const Survey *survey, const Catalog *catalog, const LocalFrame *frame);

@@ -33,7 +33,7 @@ typedef struct Encoder Encoder;
 /* STATUS_UNSUPPORTED: the libraries lack the encoder, or it refuses the size; STATUS_IO: they cannot be loaded. Logged.
  */
 Status video_encoder_open(Encoder **out, const EncoderConfig *config);
-/* Counted: whoever writes its packets in another thread holds it, and closes it when they are written. That thread may
+/* Counted: what writes its packets in another thread holds it, and closes it when they are written. That thread may
  * ask for its configuration and parameters, which do not change. */
 void video_encoder_hold(Encoder *encoder);
 void video_encoder_close(Encoder *encoder);     /* NULL is valid */
