@@ -1,6 +1,6 @@
 /* Values of the cache's entries: the same after they were kept, refused where anything is too short, too long or not
  * finite. */
-#include "tests/check.h"
+#include "tests/adding_snippet.h"
 
 #include "pitviper_kept.h"
 
@@ -99,13 +99,18 @@ static void through_a_folder(void **state)
     CHECK(system(command) == 0);
 }
 
+/* The function of etc/ADDING.md is the one above. */
+static void as_adding_shows_it(void **state)
+{
+    (void)state;
+    check_adding_snippet("kept", "tests/base/test_kept.c");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_same_again),
-        cmocka_unit_test(what_is_wrong_is_refused),
-        cmocka_unit_test(room),
-        cmocka_unit_test(through_a_folder),
+        cmocka_unit_test(the_same_again),   cmocka_unit_test(what_is_wrong_is_refused), cmocka_unit_test(room),
+        cmocka_unit_test(through_a_folder), cmocka_unit_test(as_adding_shows_it),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,6 +2,8 @@
  * those hours, and what everyone knows of slopes, snow, water and nights. labels: physics */
 #include "tests/scenes/paper_day.h"
 
+#include "render/heat/heat_private.h"
+
 static GroundKinds kinds;
 static Arena      *arena;
 
@@ -327,6 +329,39 @@ static void same_now(Heat *a, Heat *b, double hour)
     CHECK(m.saturation == n.saturation && m.column->nodes == n.column->nodes);
 }
 
+/* What is kept of warm ground past an entry's checksum: octets of another length, with a number that is not finite, or
+ * with more of the past than there is room for, are not taken. */
+static void octets_that_are_no_ground(void **state)
+{
+    (void)state;
+    HeatConfig c = heat_default_config();
+    Heat      *h;
+    size_t     count = 0;
+    c.weather = paper_weather, c.user = &paper_summer, c.unix_s = paper_unix_s + 43200, c.facets = 3,
+    c.spin_up_s = 3600;
+    CHECK(heat_create(&h, &kinds, &c, NULL, 0) == STATUS_OK);
+    char        *octets = kept_write(&count, heat_kept_values, h);
+    const double nan_k = NAN;
+    const size_t past = sizeof(int32_t) + 2 * sizeof(double) * heat_past + 3 * sizeof(double) * heat_past +
+                        3 * sizeof(float) * ground_kinds * heat_past +
+                        sizeof(float) * ground_kinds; /* the last of it */
+    CHECK(octets && count > past && kept_read(heat_kept_values, h, octets, count));
+    CHECK(!kept_read(heat_kept_values, h, octets, count - 1) && !kept_read(heat_kept_values, h, octets, 0));
+    for (int32_t wrong = -1; wrong <= heat_past + 1; wrong += heat_past + 2) {
+        int32_t right;
+        memcpy(&right, octets + count - past, sizeof right);
+        CHECK(right > 0 && right <= heat_past);
+        memcpy(octets + count - past, &wrong, sizeof wrong);
+        CHECK(!kept_read(heat_kept_values, h, octets, count));
+        memcpy(octets + count - past, &right, sizeof right);
+    }
+    CHECK(kept_read(heat_kept_values, h, octets, count));
+    memcpy(octets, &nan_k, sizeof nan_k);
+    CHECK(!kept_read(heat_kept_values, h, octets, count));
+    free(octets);
+    heat_destroy(h);
+}
+
 /* Ground from the cache is as ground that was warmed, at the beginning, later, and back again; another day's is not
  * taken for it. */
 static void kept_ground_is_the_same(void **state)
@@ -380,7 +415,8 @@ int main(void)
         cmocka_unit_test(facets_are_close),          cmocka_unit_test(places_side_by_side),
         cmocka_unit_test(shade_of_the_hours_before), cmocka_unit_test(what_everyone_knows),
         cmocka_unit_test(a_function_of_time_alone),  cmocka_unit_test(a_day_is_remembered),
-        cmocka_unit_test(settings_out_of_range),     cmocka_unit_test(kept_ground_is_the_same),
+        cmocka_unit_test(settings_out_of_range),     cmocka_unit_test(octets_that_are_no_ground),
+        cmocka_unit_test(kept_ground_is_the_same),
     };
     return cmocka_run_group_tests(tests, open_kinds, close_kinds);
 }
