@@ -36,7 +36,7 @@ node long --address 127.0.0.1 --port $port "${few[@]}" --record "$tmp/long.pcapn
 check "it listens" heard_by long 'listening on'
 sender "$tmp/scene.yaml" --send 127.0.0.1:$port
 check "it makes frames" makes long 1
-resident() { awk '/^VmRSS/ { print $2 }' "/proc/${node[long]}/status"; } # KiB
+resident() { awk '/^RssAnon/ { print $2 }' "/proc/${node[long]}/status"; } # KiB; pages of files come and go as the machine likes
 most=(0 0) # of each half, KiB
 curve=()
 for ((tick = 0; tick < 60; tick++)); do
