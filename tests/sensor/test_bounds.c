@@ -4,8 +4,11 @@
 #include "tests/check.h"
 
 #include "entities/exercise/scenario.h"
+#include "entities/import/sidecar.h"
 #include "pitviper_table.h"
+#include "sensor/commands/commands.h"
 #include "sensor/settings/config_private.h"
+#include "sensor/settings/options.h"
 #include "sensor/verify/regress/case_private.h"
 
 #define OF_SCENARIO(...) SETTING_ROW(Scenario, __VA_ARGS__)
@@ -242,8 +245,160 @@ static void every_setting_is_as_the_list_has_it(void **state)
     assert_int_equal(faults, 0);
 }
 
+/* ---- sidecars ---------------------------------------------------------------------------------------------- */
+
+static void numbers_of_sidecars(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *text, *name, *range, *taken[2], *refused[2]; /* text: with %s where the number goes */
+    } fields[] = {
+        /* a unit of a millionth of a metre to a thousand kilometres */
+        {"scale: %s\n", "scale", "in 1e-06 .. 1000000 metres", {"1e-6", "1e6"}, {"9.99999e-7", "1000000.1"}},
+        {"crease_deg: %s\n", "crease_deg", "in 0 .. 180 deg", {"0", "180"}, {"-1e-9", "180.00001"}},
+        {"origin: [0, 0, %s]\n", "origin", "in -1e9 .. 1e9", {"-1e9", "1e9"}, {"-1000000001", "1000000001"}},
+        {"thickness_mm: {a: %s}\n", "thickness_mm", "0.1 .. 1000 mm", {"0.1", "1000"}, {"0.09999", "1000.01"}},
+        {"joints:\n- {nodes: a, rest_deg: %s}\n",
+         "joints.rest_deg",
+         "in -360 .. 360 deg",
+         {"-360", "360"},
+         {"-360.01", "360.01"}},
+        {"joints:\n- {nodes: a, spin_rpm: %s}\n",
+         "joints.spin_rpm",
+         "in -100000 .. 100000 turns",
+         {"-1e5", "1e5"},
+         {"-100001", "100001"}},
+        {"joints:\n- {nodes: a, limits_deg: [-3600, %s]}\n",
+         "joints.limits_deg",
+         "in -3600 .. 3600 deg",
+         {"-3600", "3600"},
+         {"3600.1", "nan"}},
+        {"joints:\n- {nodes: a, limits_m: [%s, 1000]}\n",
+         "joints.limits_m",
+         "in -1000 .. 1000 m",
+         {"-1000", "1000"},
+         {"-1000.1", "1000.1"}},
+        {"joints:\n- {nodes: a, roll_radius: %s}\n",
+         "joints.roll_radius",
+         "in 0.01 .. 10 m",
+         {"0.01", "10"},
+         {"0.00999", "10.01"}},
+        {"joints:\n- {nodes: a, pivot: [%s, 0, 0]}\n",
+         "joints.pivot",
+         "in -1e9 .. 1e9",
+         {"-1e9", "1e9"},
+         {"-1000000001", "1000000001"}},
+    };
+    char text[256], format[96];
+    log_set_sink(check_listen, NULL);
+    for (size_t i = 0; i < sizeof fields / sizeof *fields; i++)
+        for (int k = 0; k < 4; k++) {
+            Sidecar     s = sidecar_default();
+            const char *at = strchr(fields[i].text, '%'),
+                       *value = k < 2 ? fields[i].taken[k] : fields[i].refused[k - 2];
+            snprintf(format, sizeof format, "%.*s", (int)(at - fields[i].text), fields[i].text);
+            snprintf(text, sizeof text, "%s%s%s", format, value, at + 2);
+            check_said[0] = 0;
+            const Status status = sidecar_parse(&s, "test.yaml", text, strlen(text));
+            const bool   refused =
+                status != STATUS_OK && strstr(check_said, fields[i].name) && strstr(check_said, fields[i].range);
+            if (refused != (k >= 2))
+                fail_msg("%s: %s is %s; said: %s", fields[i].name, value, k < 2 ? "refused" : "taken", check_said);
+            if (status == STATUS_OK) sidecar_close(&s);
+        }
+    log_set_sink(NULL, NULL);
+}
+
+/* ---- command lines ----------------------------------------------------------------------------------------- */
+
+static int parse_replay(int argc, char **argv)
+{
+    static Options o;
+    return options_parse(&o, COMMAND_REPLAY, argc, argv);
+}
+static int parse_run(int argc, char **argv)
+{
+    static Options o;
+    return options_parse(&o, COMMAND_RUN, argc, argv);
+}
+
+/* Each is given with an option that no command has behind it, so that a command that takes the number stops there. */
+static void numbers_on_command_lines(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *name;
+        int (*command)(int argc, char **argv);
+        const char *flag, *taken[2], *refused[2], *range;
+    } flags[] = {
+        {"pitviper replay", parse_replay, "--threads", {"1", "256"}, {"0", "257"}, "1 .. 256"},
+        {"pitviper run", parse_run, "--threads", {"1", "256"}, {"1.5", "-1"}, "1 .. 256"},
+        {"pitviper replay", parse_replay, "--speed", {"0.001", "1e6"}, {"0.000999", "1000001"}, "0.001 .. 1000000"},
+        {"pitviper replay", parse_replay, "--speed", {"max", "1"}, {"nan", "-1"}, "0.001 .. 1000000"},
+        {"pitviper replay", parse_replay, "--only", {"0", "999999"}, {"-1", "1000000"}, "0 .. 999999"},
+        {"pitviper replay", parse_replay, "--save-frame", {"0", "999999"}, {"-1", "1000000"}, "0 .. 999999"},
+        {"pitviper run", parse_run, "--for", {"1e-9", "1e8"}, {"0", "100000001"}, "above 0, up to 1e8"},
+        {"pitviper run", parse_run, "--frames", {"1", "1000000000"}, {"0", "1000000001"}, "1 .. 1000000000"},
+        {"pitviper replay", parse_replay, "--size", {"8x8", "8192x8192"}, {"7x8", "8x8193"}, "8 .. 8192 px"},
+        {"pitviper frame", frame_command, "--threads", {"1", "256"}, {"0", "257"}, "1 .. 256"},
+        {"pitviper explain", explain_command, "--threads", {"1", "256"}, {"0", "257"}, "1 .. 256"},
+        {"pitviper terrain", terrain_command, "--threads", {"1", "256"}, {"0", "257"}, "1 .. 256"},
+        {"pitviper inspect", inspect_command, "--port", {"0", "65535"}, {"-1", "65536"}, "0 .. 65535"},
+        {"pitviper inspect", inspect_command, "--exercise", {"0", "255"}, {"-1", "256"}, "0 .. 255"},
+        {"pitviper exercise", exercise_command, "--ttl", {"0", "255"}, {"-1", "256"}, "0 .. 255"},
+        {"pitviper exercise", exercise_command, "--speed", {"0.01", "1000"}, {"0.00999", "1000.1"}, "0.01 .. 1000"},
+        {"pitviper record", record_command, "--port", {"1", "65535"}, {"0", "65536"}, "1 .. 65535"},
+        {"pitviper record", record_command, "--for", {"1e-9", "1e9"}, {"0", "1000000001"}, "above 0, up to 1e9"},
+        {"pitviper record", record_command, "--count", {"1", "1000000000000"}, {"0", "1.5"}, "from 1 on"},
+        {"pitviper model", model_command, "--sag", {"1e-5", "0.1"}, {"9.99e-6", "0.1001"}, "1e-05 .. 0.1 m"},
+        {"pitviper model", model_command, "--length", {"0.001", "2000"}, {"0.000999", "2000.1"}, "0.001 .. 2000 m"},
+        {"pitviper model", model_command, "--height", {"0.001", "2000"}, {"nan", "-1"}, "0.001 .. 2000 m"},
+        {"pitviper heat", heat_command, "--heading", {"-360", "360"}, {"-360.1", "360.1"}, "-360 .. 360 deg"},
+        {"pitviper heat", heat_command, "--step", {"1", "600"}, {"0.5", "1200"}, "divisor of 600 s"},
+        {"pitviper heat", heat_command, "--step", {"60", "300"}, {"7", "nan"}, "divisor of 600 s"},
+        {"pitviper heat",
+         heat_command,
+         "--drive",
+         {"00:00-24:00", "06:00-07:30"},
+         {"06:00-24:01", "07:00-06:00"},
+         "hours of the day"},
+        {"pitviper rcs", rcs_command, "--frequency", {"0.1", "300"}, {"0.0999", "300.1"}, "0.1 .. 300 GHz"},
+        {"pitviper rcs", rcs_command, "--elevation", {"-90", "90"}, {"-90.1", "90.1"}, "-90 .. 90 deg"},
+        {"pitviper rcs", rcs_command, "--range", {"0.001", "1e9"}, {"0.000999", "1000000001"}, "0.001 .. 1e9 m"},
+        {"pitviper rcs", rcs_command, "--rays", {"0.25", "16"}, {"0.2499", "16.1"}, "0.25 .. 16"},
+        {"pitviper rcs", rcs_command, "--splits", {"0", "5"}, {"-1", "6"}, "0 .. 5"},
+        {"pitviper rcs", rcs_command, "--warp", {"0", "20"}, {"-0.1", "20.1"}, "0 .. 20 mm"},
+        {"pitviper rcs", rcs_command, "--cell", {"0.01", "10"}, {"0.00999", "10.1"}, "0.01 .. 10 m"},
+        {"pitviper rcs", rcs_command, "--image", {"-720", "720"}, {"-720.1", "720.1"}, "within 720 deg"},
+        {"pitviper rcs", rcs_command, "--azimuth", {"-720:720:0.04", "0:0:1"}, {"-721:0:1", "0:360:0"}, "FROM:TO:STEP"},
+        {"pitviper rcs", rcs_command, "--joint", {"a=-3600", "a=3600"}, {"a=-3600.1", "a=3600.1"}, "-3600 .. 3600 deg"},
+    };
+    log_set_sink(check_listen, NULL);
+    for (size_t i = 0; i < sizeof flags / sizeof *flags; i++)
+        for (int k = 0; k < 4; k++) {
+            char  name[64], flag[64], value[64], none[] = "--no-such-option", first[8];
+            char *argv[] = {name, flag, value, none, NULL, NULL};
+            snprintf(name, sizeof name, "%s", flags[i].name);
+            snprintf(flag, sizeof flag, "%s", flags[i].flag);
+            snprintf(value, sizeof value, "%s", k < 2 ? flags[i].taken[k] : flags[i].refused[k - 2]);
+            check_said[0] = 0;
+            /* two have a word before their options */
+            const bool action = flags[i].command == terrain_command || flags[i].command == model_command;
+            snprintf(first, sizeof first, "%s", flags[i].command == model_command ? "info" : "import");
+            if (action) memmove(argv + 2, argv + 1, 3 * sizeof *argv), argv[1] = first;
+            const int  code = flags[i].command(4 + action, argv);
+            const bool taken = strstr(check_said, none) != NULL;
+            if (code == 0 || taken != (k < 2) ||
+                (!taken && !(strstr(check_said, flag) && strstr(check_said, flags[i].range))))
+                fail_msg("%s %s %s: code %d; said: %s", name, flag, value, code, check_said);
+        }
+    log_set_sink(NULL, NULL);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(every_setting_is_as_the_list_has_it)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(every_setting_is_as_the_list_has_it),
+                                       cmocka_unit_test(numbers_of_sidecars),
+                                       cmocka_unit_test(numbers_on_command_lines)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

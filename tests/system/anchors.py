@@ -1,5 +1,5 @@
-"""anchors.py ETC ANCHORS: the values of tables of the folder ETC that a list of published ones (tests/data/anchors.csv) names, and
-orderings that hold in nature. Each anchor's row is found by its first cells."""
+"""anchors.py ETC ANCHORS: the values of tables of the folder ETC that a list of published ones names (tests/data/anchors.csv),
+and orderings that hold in nature. Each anchor's row is found by its first cells."""
 import csv
 import glob
 import math
@@ -76,13 +76,15 @@ def falling(name, what, values, strictly=True):
         expect(x > y if strictly else x >= y, f"{name}: {what} of {a} ({x}) is not above that of {b} ({y})")
 
 
-# materials: snow, soil, water in the visible; green plants jump at 0.7 um; bare metal mirrors in LWIR; a mean lies within its parts
+# materials: snow, soil, water in the visible; green plants jump at 0.7 um; bare metal mirrors in LWIR; a mean lies within its
+# parts; bark and stone of plant_optics.csv are those of materials.csv
 optics = columns("materials.csv", "name", "rho_b", "rho_g", "rho_r", "rho_pan", "rho_nir", "rho_lwir", "solar_absorptance")
 falling("materials.csv", "rho_g", [(m, optics[m,][1]) for m in ("snow_fine", "snow_coarse", "concrete", "soil_loam_brown",
         "grass_green", "soil_plowed_dark", "water_tap")])
 falling("materials.csv", "rho_g", [(m, optics[m,][1]) for m in ("paint_white_missile", "paint_sand", "paint_ship_grey",
         "paint_air_grey", "paint_olive", "paint_deck_grey", "metal_dark", "motor_nozzle")])
-falling("materials.csv", "rho_lwir", [(m, optics[m,][5]) for m in ("metal_aluminium_bare", "steel_worn", "paint_olive", "water_tap")])
+falling("materials.csv", "rho_lwir", [(m, optics[m,][5]) for m in ("metal_aluminium_bare", "steel_worn", "paint_olive",
+        "water_tap")])
 for m, (b, g, r, pan, nir, lwir, sun) in optics.items():
     expect(min(b, g, r) <= pan <= max(b, g, r), f"materials.csv: rho_pan of {m[0]} is not between its parts")
     expect(0.2 < sun + max(b, g, r, nir) and sun + min(b, g, r, nir) < 1.11,
@@ -94,12 +96,19 @@ for (m,), (g, r, nir, through, sun) in leaves.items():
     expect(nir + through < 1 and 0 < sun < 1, f"plant_optics.csv: {m} sends on more than it gets")
     if m.startswith("leaf_") and m != "leaf_dry_tuft":
         expect(g > r and nir > 3 * r, f"plant_optics.csv: {m} is no green leaf: rho_g, rho_r, rho_nir")
+shared = [c for c in table("materials.csv")[0] if c.startswith("rho_")] + [
+    "solar_absorptance", "gloss", "roughness_rad", "radar_gamma", "conductivity_w_mk", "density_kg_m3", "heat_capacity_j_kgk"]
+theirs, own = columns("materials.csv", "name", *shared), columns("plant_optics.csv", "name", *shared)
+for m, of in (("bark_pine", "bark_pine"), ("bark_english_oak", "bark_oak"), ("bark_sessile_oak", "bark_oak"),
+              ("bark_red_oak", "bark_oak"), ("bark_white_oak", "bark_oak"), ("stone_boulder", "stone_granite")):
+    expect(own[m,] == theirs[of,], f"plant_optics.csv: {m} is not {of} of materials.csv")
 
 # effects: no smoke, gas or dust takes more of a longer wave among visible, MWIR and LWIR (exhaust's soot is left out in the
 # visible); swir lies between its neighbours
 for (m,), (blue, nir, swir, mwir, lwir) in columns("effects.csv", "name", "ext_b", "ext_nir", "ext_swir", "ext_mwir",
                                                    "ext_lwir").items():
-    falling("effects.csv", "extinction", [(m + " b", blue)] * (m != "exhaust") + [(m + " mwir", mwir), (m + " lwir", lwir)], False)
+    falling("effects.csv", "extinction", [(m + " b", blue)] * (m != "exhaust") + [
+        (m + " mwir", mwir), (m + " lwir", lwir)], False)
     expect(min(nir, mwir) <= swir <= max(nir, mwir), f"effects.csv: ext_swir of {m} is not between nir and mwir")
 
 # clutter: rougher to shorter waves, and rougher classes above smoother ones in every band; crossed below VV
@@ -110,18 +119,32 @@ for band in ("Ku", "Ka", "W"):
 for (surface, band), (gamma, crossed, rms) in clutter.items():
     expect(crossed < 0, f"radar/clutter.csv: {surface} {band}: hv_vv_db is not below 0")
     if band != "W" and surface != "water":
-        expect(clutter[surface, "Ka" if band == "Ku" else "W"][0] > gamma, f"radar/clutter.csv: {surface}: gamma falls from {band}")
+        above = clutter[surface, "Ka" if band == "Ku" else "W"]
+        expect(above[0] > gamma and above[1] > crossed, f"radar/clutter.csv: {surface}: gamma or hv_vv_db falls from {band}")
 
 # radar's ground: wetter soil mirrors more, and all soils less at higher frequencies
 ground = columns("radar/ground.csv", "surface f_ghz", "eps_re", "eps_im", "rms_mm")
 for f in ("10", "35", "94"):
-    falling("radar/ground.csv", f"eps_re, {f} GHz", [(s, ground[s, f][0]) for s in ("wetland", "grass", "bare_soil", "dry_grass", "track")])
+    falling("radar/ground.csv", f"eps_re, {f} GHz", [(s, ground[s, f][0]) for s in (
+        "wetland", "grass", "bare_soil", "dry_grass", "track")])
 for (surface, f), (re, im, rms) in ground.items():
     if f == "94" and surface != "built":
         falling("radar/ground.csv", "eps_re", [(surface + " " + g, ground[surface, g][0]) for g in ("10", "35", "94")])
     expect(rms == clutter[surface, "Ku"][2], f"radar/ground.csv: {surface}: rms_mm is not roughness_mm of clutter.csv")
 
-# heat of the ground: wind's roughness; what woods and people are made of
+# heat of the ground: wind's roughness; layers conduct between down and granite and hold between down and water; mixed water
+# conducts more; the air of an engine's gas is hotter than its block; shares of woods make 1
+for (surface,), values in columns("ground_heat.csv", "surface", "top_m", "top_w_mk", "top_j_m3k", "under_m", "under_w_mk",
+                                  "under_j_m3k", "porosity", "rock_w_mk", "rock_j_m3k").items():
+    for thick, w_mk, j_m3k in (values[:3], values[3:6]):
+        expect((thick, w_mk, j_m3k) == (0, 0, 0) or (0.001 < thick < 4 and 1e4 < j_m3k < 4.3e6 and
+               (0.03 < w_mk < 4 or surface == "water")), f"ground_heat.csv: {surface}: no layer has {thick} m, {w_mk}, {j_m3k}")
+    expect((values[6] == 0) == (values[7] > 0) == (values[8] > 0), f"ground_heat.csv: {surface} is soil and rock")
+for (model,), (kw, kj, block, gas, cabin) in columns("heat_machines.csv", "model", "engine_kw", "engine_kj_k", "engine_k",
+                                                     "exhaust_k", "cabin_kj_k").items():
+    expect(290 < block < 380 and (kw == 0) == (gas == 300) and (kw == 0 or gas > block + 200),
+           f"heat_machines.csv: {model}: engine_k {block}, exhaust_k {gas}")
+    expect(kw == 0 or (1.5 * kw < kj < 6 * kw and cabin < kj), f"heat_machines.csv: {model}: {kw} kW of engine hold {kj} kJ/K")
 rough = columns("ground_heat.csv", "surface", "roughness_m", "porosity", "saturation")
 falling("ground_heat.csv", "roughness_m", [(s, rough[s,][0]) for s in ("forest_conifer", "scrub", "grass", "road", "water")])
 for row in table("woods.csv")[1:]:
@@ -140,6 +163,11 @@ for scene in ("bare", "woods"):
         least = min(t for s, m, e, t in rows if m == n)
         expect(min(t for s, m, e, t in rows if m > n) > least, f"quality.csv: {scene}: more than {n} rays take less time")
     expect(max(rows, key=lambda q: q[3]) == rows[-1], f"quality.csv: {scene}: the last row is not the dearest")
+# dL/dT over L of a black body of 300 K is 1.64 % a kelvin in 8-12 um and 3.71 in 3.4-4.8 um; hot parts weigh more in the radiance
+for r in table("quality.csv")[1:]:
+    optical, mwir, lwir, mwir_k, lwir_k = map(float, r[4:9])
+    expect(mwir > 2 * lwir and mwir / mwir_k > 3.7, f"quality.csv: {r[:4]}: MWIR of {mwir} % and {mwir_k} K")
+    expect(1.5 < lwir / lwir_k < 2.9, f"quality.csv: {r[:4]}: LWIR of {lwir} % and {lwir_k} K")
 
 # light: haze scatters forwards most, and its phase function has the mean 1 over the sphere (trapezoids over the cosine to 10 %)
 for model in ("us1976", "midlat_summer"):
@@ -148,7 +176,7 @@ for model in ("us1976", "midlat_summer"):
         mean = sum((math.cos(math.radians(a[1])) - math.cos(math.radians(b[1]))) * (a[band] + b[band]) / 4
                    for a, b in zip(phase, phase[1:]))
         expect(abs(mean - 1) < 0.1, f"atmosphere/{model}/phase.csv: column {band}: mean {mean:.3f} over the sphere")
-        expect(phase[0][band] == max(p[band] for p in phase), f"atmosphere/{model}/phase.csv: column {band} is not greatest ahead")
+        expect(phase[0][band] == max(p[band] for p in phase), f"atmosphere/{model}/phase.csv: column {band} is greater aside")
 
 print(f"{checks} checks, {failed} failed")
 sys.exit(failed > 0 or checks < 500)
