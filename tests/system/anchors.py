@@ -47,6 +47,8 @@ for name, key, columns, values, within, source in read(sys.argv[2])[1:]:
         try:
             # half of the last digit of a float is no difference
             good = abs(float(got) - float(value)) <= float(within) + 1e-9 * abs(float(value))
+            expect(float(value) == 0 or float(within) < 0.9 * abs(float(value)),
+                   f"{sys.argv[2]}: {name} {key}: {column}: {value} within {within} says nothing")
         except ValueError:
             good = got == value
         expect(good, f"{name} {key}: {column} is {got}, not {value} within {within} ({source})")
