@@ -122,6 +122,13 @@ static Status read_given_heat(const char *path)
     given_heat_close(g);
     return status;
 }
+static Status read_kept_heat(const char *path)
+{
+    KeptHeat    *k = NULL;
+    const Status status = heat_kept_open(&k, path);
+    heat_kept_close(k);
+    return status;
+}
 static Status read_signature(const char *path)
 {
     GivenSignature *g = NULL;
@@ -164,6 +171,9 @@ static const struct Reader {
     {"weather_air", read_weather, "@,unix_s\n@,0\n"},
     {"given_heat", read_given_heat, "@,entity,part,t_s,temp_k\n@,*,*,0,300\n"},
     {"signature", read_signature, "@,x_m,y_m,z_m,hh_dbsm,vv_dbsm\n@,0,0,0,0,0\n"},
+    {"signature_look", read_signature, "@,az_deg,el_deg,f_ghz,hh_dbsm,vv_dbsm\n@,0,0,10,0,0\n"},
+    {"signature_field", read_signature, "@,az_deg,el_deg,f_ghz,hh_re_m,hh_im_m,vv_re_m,vv_im_m\n@,0,0,10,1,0,1,0\n"},
+    {"kept_heat", read_kept_heat, "@,entity,model,unix_s,node_k\n@,1:2:3,tank,0,300\n"},
 };
 enum { reader_count = sizeof readers / sizeof *readers };
 
