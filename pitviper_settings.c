@@ -186,7 +186,7 @@ static bool place_paths(char *out, size_t out_size, SettingType type, const char
         const size_t length = type == SETTING_PATHS ? strcspn(at, ",") : strlen(at);
         const bool   name = type == SETTING_NAME_OR_PATH && !strpbrk(value, "/.");
         const size_t before = blanks < length && at[blanks] != '/' && !name ? folder : 0;
-        fits = n + before + length + 1 < out_size;
+        fits = n + before + length + (at[length] != 0) < out_size;
         if (!fits) break;
         if (before) memcpy(made + n, file, before);
         memcpy(made + n + before, at + (blanks < length ? blanks : length), blanks < length ? length - blanks : 0);

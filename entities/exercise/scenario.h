@@ -98,7 +98,7 @@ enum {
 #define SCENARIO_PLACE(ROW) \
     ROW(DOUBLE, place., lat_deg, 36, -90, 90, "deg", "where x and y are 0") \
     ROW(DOUBLE, place., lon_deg, -123, -180, 180, "deg", "") \
-    ROW(DOUBLE, place., height_m, 120, -400, 8000, "m", "height of synthetic ground above the ellipsoid") \
+    ROW(DOUBLE, place., height_m, 120, -500, 9000, "m", "height of synthetic ground above the ellipsoid") \
     ROW(DOUBLE, place., turn_deg, 0, -360, 360, "deg", "rotation of all routes and places, clockwise")
 
 #define SCENARIO_GROUND(ROW) \

@@ -35,7 +35,7 @@ typedef struct ExplainOptions {
     bool        json, forced;
 } ExplainOptions;
 
-/* A whole number from 0; false, logged: it is none. */
+/* A whole number in 0 .. 999999999; false, logged: it is none. */
 static bool take(int *out, const char *what, const char *text)
 {
     long long number;
@@ -43,7 +43,7 @@ static bool take(int *out, const char *what, const char *text)
         *out = (int)number;
         return true;
     }
-    command_line_wrong("explain", "%s: '%s' is not a whole number from 0", what, text);
+    command_line_wrong("explain", "%s: '%s' is not a whole number in 0 .. 999999999", what, text);
     return false;
 }
 

@@ -267,7 +267,7 @@ static bool take(Options *o, const struct Row *row, const char *text)
         return ok;
     case FOR:
         ok = text_to_double(&o->for_s, text) && o->for_s > 0 && o->for_s <= 1e8;
-        if (!ok) log_error("options: --for: '%s' is not a number of seconds above 0", text);
+        if (!ok) log_error("options: --for: '%s' is not a number of seconds above 0, up to 1e8", text);
         return ok;
     case NO_SKIP:
         o->no_skip = true;
