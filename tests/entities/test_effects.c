@@ -183,6 +183,35 @@ static void results_burst_in_their_way(void **state)
     effect_history_destroy(h);
 }
 
+/* Every value of the Detonation Result enumeration (SISO-REF-010, UID 62), by its name: 3 ground impact, 4 ground
+ * proximate, 11 .. 13 dirt blast small, medium, large: on the ground; 1 entity impact, 7 .. 9 HE hit small, medium,
+ * large, 10 armour-piercing hit, 18 .. 20 building hit: on a thing; 14 .. 16 water blast, 24 water impact: in water; 6
+ * none, 31 .. 33 misses: nothing. The others, and numbers that have no name, in the air: 0 other, 2 entity proximate, 5
+ * detonation, 17 air hit, 21 line charge, 22 and 23 environment object, 25 air burst, 26 .. 30 kills with fragments.
+ * What each makes is in the order of fireballs, clouds of smoke, clouds of dust at 0.1 s; all of it is of the ground,
+ * or none. */
+static void every_result_bursts_by_its_name(void **state)
+{
+    (void)state;
+    static const char named[] = "aeagganeeeegggwwwaeeeaaawaaaaaannn"; /* 0 .. 33 */
+    for (int result = 0; result < 256; result++) {
+        const char          how = result < 34 ? named[result] : 'a';
+        EffectHistory      *h = open_history();
+        const DisDetonation pdu = burst_here(7, (uint8_t)result);
+        effect_history_detonation(h, &pdu, 100);
+        int n = puffs_at(h, 100.001);
+        assert_int_equal(of_kind(n, EFFECT_BURST_FLASH), how != 'n');
+        n = puffs_at(h, 100.3); /* the last cloud is born at 0.15 s times the cube root of 4 kg, 0.24 s */
+        assert_int_equal(of_kind(n, EFFECT_FIREBALL), how == 'g' ? 4 : how == 'e' || how == 'a' ? 7 : 0);
+        assert_int_equal(of_kind(n, EFFECT_BURST_SMOKE), how == 'g' ? 5 : how == 'e' || how == 'a' ? 8 : 0);
+        assert_int_equal(of_kind(n, EFFECT_BURST_DUST), how == 'g' ? 16 : how == 'e' ? 5 : 0);
+        for (int i = 0; i < n; i++) CHECK(puffs[i].grounded == (how == 'g'));
+        CHECK(effect_result_is_ground(result) == (how == 'g') && effect_result_is_water(result) == (how == 'w') &&
+              effect_result_is_none(result) == (how == 'n'));
+        effect_history_destroy(h);
+    }
+}
+
 static void shots_flash_by_kind_and_size(void **state)
 {
     (void)state;
@@ -485,6 +514,33 @@ static void stop_holds_the_place(void **state)
     fixture_close(&f);
 }
 
+/* Nor does smoke end while its entity is stopped, however long, nor move: a frozen one and a stopped one smoke on at
+ * their place, half a minute after every timeout. */
+static void smoke_goes_on_through_a_stop(void **state)
+{
+    (void)state;
+    for (int frozen = 0; frozen < 2; frozen++) {
+        Fixture        f = fixture_open(NULL);
+        DisEntityState tank = report(1, tank_type);
+        tank.appearance = plume_bit | (frozen ? frozen_bit : 0);
+        tank.velocity_mps[2] = 10;
+        hear(&f, &tank, 0);
+        if (!frozen) entity_table_stop(f.table, &(DisStopFreeze){.receiving = {0xFFFF, 0xFFFF, 0xFFFF}}, 2);
+        for (double t_s = 5; t_s <= (frozen ? 11 : 42); t_s += 1) {
+            int young = 0;
+            seen_at(&f, 1, t_s);
+            for (int i = 0; i < f.snapshot.puff_count; i++) {
+                const EffectPuff *p = &f.snapshot.puff[i];
+                if (p->kind != EFFECT_SMOKE || p->age_s > 2) continue;
+                CHECK_NEAR(p->p_ecef[2], frozen ? 0 : 20, 2.5); /* spread over the hull's top */
+                young++;
+            }
+            CHECK(young >= 7); /* four a second */
+        }
+        fixture_close(&f);
+    }
+}
+
 /* ---- wrecks ------------------------------------------------------------------------------- */
 
 static void wrecks_burn_and_go_out(void **state)
@@ -635,6 +691,7 @@ int main(void)
         cmocka_unit_test(extinction_holds_its_mass),
         cmocka_unit_test(flash_has_its_time_course),
         cmocka_unit_test(results_burst_in_their_way),
+        cmocka_unit_test(every_result_bursts_by_its_name),
         cmocka_unit_test(shots_flash_by_kind_and_size),
         cmocka_unit_test(absurd_events_are_refused_and_counted),
         cmocka_unit_test(flood_is_bounded),
@@ -645,6 +702,7 @@ int main(void)
         cmocka_unit_test(nobody_flies_in_his_own_trail),
         cmocka_unit_test(trails_outlive_their_missile),
         cmocka_unit_test(stop_holds_the_place),
+        cmocka_unit_test(smoke_goes_on_through_a_stop),
         cmocka_unit_test(wrecks_burn_and_go_out),
         cmocka_unit_test(wrecked_guns_droop),
         cmocka_unit_test(engines_give_off_gas),
