@@ -285,6 +285,29 @@ static void ranks_follow_the_host(void **state)
     }
 }
 
+/* What counts is a move of more than 500 m. One 500 m south of the host and one 700 m north of it are of different
+ * classes (625 m); once the host is 600 m farther north it is the other way round, and a newcomer takes the place of
+ * the southern one. After 400 m ranks are as before. */
+static void a_small_move_changes_no_rank(void **state)
+{
+    (void)state;
+    for (int far = 0; far < 2; far++) {
+        EntityTableConfig config = entity_table_default_config();
+        config.capacity = 3;
+        Fixture              f = fixture_open(&config);
+        DisEntityState       host = state_of(host_id, 0, missile_type);
+        const DisEntityState south = state_of(entity_id(1), -500, tank_type),
+                             north = state_of(entity_id(2), 700, tank_type);
+        const DisEntityState more = state_of(entity_id(3), 500, tank_type);
+        entity_table_focus(f.table, host_id, none_id);
+        hear(&f, &host, 0), hear(&f, &south, 0.1), hear(&f, &north, 0.2);
+        host.p_ecef[2] = far ? 600 : 400;
+        hear(&f, &host, 2), hear(&f, &more, 2.1);
+        CHECK(is_there(&f, entity_id(1)) == !far && is_there(&f, entity_id(2)) == far && is_there(&f, entity_id(3)));
+        fixture_close(&f);
+    }
+}
+
 /* The second entity of the focus, the aim, is never evicted either, and is one of many once it is the aim no more. */
 static void the_aim_is_kept(void **state)
 {
@@ -397,6 +420,7 @@ int main(void)
         cmocka_unit_test(a_flood_of_its_own_sender),
         cmocka_unit_test(the_farthest_goes_first),
         cmocka_unit_test(ranks_follow_the_host),
+        cmocka_unit_test(a_small_move_changes_no_rank),
         cmocka_unit_test(the_aim_is_kept),
         cmocka_unit_test(a_second_makes_it_known),
         cmocka_unit_test(it_does_not_depend_on_snapshots),
