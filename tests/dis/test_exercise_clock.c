@@ -287,6 +287,72 @@ static void five_seconds_are_the_limit(void **state)
     }
 }
 
+/* The first PDU of a sender that sets the epoch was 0.3 s on its way: all others were not, so exercise time is 0.3 s
+ * ahead of what its arrival said. A second sender, tied by its arrival, is on that time as well. Where the first one
+ * turns out to be no clock, its delays say nothing of the others. */
+static void the_founders_delay_is_no_elses(void **state)
+{
+    (void)state;
+    for (int wrong = 0; wrong < 2; wrong++) {
+        ExerciseClock *clock = new_clock();
+        double         first_s = 0;
+        for (int i = 0; i < 20; i++) {
+            const double t_s = 100 + i, own_s = wrong ? 100 + 1.05 * i : t_s, late_s = i == 0 && !wrong ? 0.3 : 0;
+            const double got_s = exercise_clock_time(clock, 1, 1, stamp_of(own_s, false), 1e9 + t_s + late_s);
+            if (!wrong && i != 1) CHECK_NEAR(got_s, t_s, tick_s); /* a second PDU far from its stamp is undecided */
+            first_s = i == 0 ? got_s : first_s;
+            if (i < 10) continue;
+            const double other_s = exercise_clock_time(clock, 1, 2, stamp_of(2000 + i, false), 1e9 + t_s + 0.01);
+            CHECK_NEAR(other_s, first_s + i + 0.01, 4e-6);
+        }
+        CHECK(exercise_clock_anomalies(clock)->count == wrong);
+        exercise_clock_destroy(clock);
+    }
+}
+
+/* A sender whose first PDU was 0.5 ms late is shifted by that once the next are not; by 0.05 ms, below the 0.1 ms that
+ * count, it keeps the offset of its first to the bit. */
+static void small_delays_are_not_applied(void **state)
+{
+    (void)state;
+    static const double late_s[] = {0.5e-3, 0.12e-3, 0.08e-3, 0.05e-3};
+    for (int k = 0; k < 4; k++) {
+        ExerciseClock *clock = new_clock();
+        exercise_clock_time(clock, 1, 1, stamp_of(100, false), 1000);
+        for (int i = 0; i < 5; i++) {
+            const double got_s =
+                exercise_clock_time(clock, 1, 2, stamp_of(2000 + i, false), 1001 + i + (i == 0 ? late_s[k] : 0));
+            CHECK_NEAR(got_s, 101 + i + (i == 0 || k >= 2 ? late_s[k] : 0), 4e-6);
+        }
+        exercise_clock_destroy(clock);
+    }
+}
+
+/* A sender is proven by two checks, 2 s apart at first: a jump before the second one rejects it, after it is one odd
+ * PDU. Each rejection doubles the time until it is proven anew, to 16 times at most: 64 s in all. */
+static void proof_takes_its_time(void **state)
+{
+    (void)state;
+    for (int at = 3; at <= 5; at += 2) {
+        ExerciseClock *clock = new_clock();
+        for (int i = 0; i < 20; i++)
+            exercise_clock_time(clock, 1, 1, stamp_of(100 + i + (i == at ? 700 : 0), false), 1000 + i);
+        CHECK(exercise_clock_anomalies(clock)->count == (at == 3));
+        exercise_clock_destroy(clock);
+    }
+    ExerciseClock *clock = new_clock();
+    double         ahead_s = 0;
+    for (int i = 0; i < 12 * 100; i++) {
+        if (i % 100 == 0 && i) ahead_s += 500;
+        const ExerciseInstant now =
+            exercise_clock_instant(clock, 1, 1, 1, stamp_of(100 + i + ahead_s, false), 1000 + i);
+        const int restarts = i / 100, since_s = i % 100;
+        const int proof_s = 4 << (restarts > 5 ? 4 : restarts - 1); /* two spans of 2 s, doubled */
+        if (restarts > 0 && since_s > 2) CHECK(now.by_stamp == (since_s >= proof_s + 1));
+    }
+    exercise_clock_destroy(clock);
+}
+
 /* All PDUs of a frame carry the frame's time and leave over the next second: each entity's stamps are a clock. */
 static void a_sender_that_spreads_a_frame_is_proven(void **state)
 {
@@ -455,6 +521,9 @@ int main(void)
         cmocka_unit_test(slight_rates_are_found_in_time),
         cmocka_unit_test(a_proven_clock_that_goes_wrong_is_tied_again),
         cmocka_unit_test(five_seconds_are_the_limit),
+        cmocka_unit_test(the_founders_delay_is_no_elses),
+        cmocka_unit_test(small_delays_are_not_applied),
+        cmocka_unit_test(proof_takes_its_time),
         cmocka_unit_test(a_sender_that_spreads_a_frame_is_proven),
         cmocka_unit_test(a_stamp_of_zero_is_on_the_hour),
         cmocka_unit_test(two_senders_of_one_id_are_named),
