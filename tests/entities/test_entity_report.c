@@ -259,6 +259,53 @@ static void nobody_leaves_the_earth(void **state)
     fixture_close(&f);
 }
 
+/* A report is extrapolated by its 12 s to both sides. */
+static void reports_reach_both_ways(void **state)
+{
+    (void)state;
+    static const double t_s[] = {80, 88, 97, 100, 103, 112}, want_m[] = {-120, -120, -30, 0, 30, 120};
+    Fixture             f = fixture_open(NULL);
+    DisEntityState      pdu = report(1, tank_type);
+    pdu.velocity_mps[1] = 10;
+    hear(&f, &pdu, 100);
+    for (int i = 0; i < 6; i++) CHECK_NEAR(seen_at(&f, 1, t_s[i])->p_ecef[1], want_m[i], 1e-12);
+    fixture_close(&f);
+}
+
+/* The clock of a sender is found to be 1 s off between two reports that its stamps say are 7.03125 s apart: the pose
+ * goes on from where it was shown, 1 s ahead (or behind), and comes round by half a second per second to 0.25 s,
+ * after 1.5 s; by a factor e every half second to 0.01 s, after 0.5 ln 25 s more; and by 20 ms a second, after half a
+ * second more. Beyond 5 s the sender has begun anew and below 0.1 ms nothing is known: the pose is that of the report
+ * at once. */
+static void a_clock_that_is_set_moves_nothing_at_once(void **state)
+{
+    (void)state;
+    const double apart_s = 3600.0 / 512, round_s = 1.5 + 0.5 * log(25);
+    const double after_s[] = {0, 1, 1.5, 2, round_s, round_s + 0.25, round_s + 0.5, 9};
+    const double left[] = {1, 0.5, 0.25, 0.25 * exp(-1), 0.01, 0.005, 0, 0}; /* of a second */
+    const double moved_s[] = {1, -1, 4.9, -4.9, 5.1, -5.1, 1.1e-4, 0.9e-4};
+    Fixture      f = fixture_open(NULL);
+    for (int k = 0; k < 8; k++) {
+        DisEntityState pdu = report(1 + k, tank_type);
+        const double   t_s = 1000 + apart_s + moved_s[k];
+        pdu.dead_reckoning = 2;
+        pdu.velocity_mps[1] = 10;
+        pdu.header.timestamp = UINT32_C(1) << 31;
+        entity_table_arrival(f.table, 1000, true);
+        hear(&f, &pdu, 1000);
+        pdu.p_ecef[1] = 10 * apart_s;
+        pdu.header.timestamp += UINT32_C(1) << 23; /* 2^22 of 2^31 steps of an hour */
+        entity_table_arrival(f.table, t_s, true);
+        hear(&f, &pdu, t_s);
+        const bool taken = k < 4 || k == 6;
+        CHECK_NEAR(seen_at(&f, 1 + k, t_s)->p_ecef[1], 10 * (apart_s + (taken ? moved_s[k] : 0)), 1e-6);
+        for (int i = 0; k < 2 && i < 8; i++)
+            CHECK_NEAR(seen_at(&f, 1 + k, t_s + after_s[i])->p_ecef[1],
+                       10 * (apart_s + after_s[i] + moved_s[k] * left[i]), 1e-6);
+    }
+    fixture_close(&f);
+}
+
 /* Rounds of one Fire PDU: as many as it says, one where it says none, 1000 at most; 8 kg of propellant of a gun each
  * (effect_history.c). A guided munition that the PDU names begins to burn for two seconds. */
 static void shots_are_counted(void **state)
@@ -284,24 +331,24 @@ static void shots_are_counted(void **state)
     fixture_close(&f);
 }
 
-/* Which of four entities a Stop/Freeze and a Remove Entity name: 0xFFFF is any, entity 0 is a whole application for a
- * Stop and none for a Remove, and 0:0:0 is nobody. Bits: entities 1:1:1, 1:1:2, 1:2:1, 2:1:1. */
+/* Which of five entities a Stop/Freeze and a Remove Entity name: 0xFFFF is any, entity 0 is a whole application for a
+ * Stop and none for a Remove, and 0:0:0 is nobody. Bits: entities 1:1:1, 1:1:2, 1:2:1, 2:1:1, 0:0:3. */
 static void names_of_many(void **state)
 {
     (void)state;
-    static const DisEntityId id[4] = {{1, 1, 1}, {1, 1, 2}, {1, 2, 1}, {2, 1, 1}};
+    static const DisEntityId id[5] = {{1, 1, 1}, {1, 1, 2}, {1, 2, 1}, {2, 1, 1}, {0, 0, 3}};
     static const struct {
         DisEntityId asked;
         int         stops, removes;
     } c[] = {{{1, 1, 1}, 1, 1},      {{1, 1, 2}, 2, 2},           {{2, 1, 1}, 8, 8},
              {{1, 1, 0xFFFF}, 3, 3}, {{1, 0xFFFF, 1}, 5, 5},      {{0xFFFF, 1, 1}, 9, 9},
              {{1, 1, 0}, 3, 0},      {{1, 0xFFFF, 0xFFFF}, 7, 7}, {{0xFFFF, 2, 0xFFFF}, 4, 4},
-             {{0, 0, 0}, 0, 0},      {{2, 2, 0xFFFF}, 0, 0},      {{0xFFFF, 0xFFFF, 0xFFFF}, 15, 15}};
+             {{0, 0, 0}, 0, 0},      {{2, 2, 0xFFFF}, 0, 0},      {{0xFFFF, 0xFFFF, 0xFFFF}, 31, 31}};
     Fixture f = fixture_open(NULL);
     for (size_t i = 0; i < sizeof c / sizeof *c; i++) {
         const double from_s = 100.0 * (double)i; /* all of the case before are gone */
         int          stopped = 0, removed = 0;
-        for (int k = 0; k < 4; k++) {
+        for (int k = 0; k < 5; k++) {
             DisEntityState pdu = report(1, tank_type);
             pdu.id = id[k];
             pdu.velocity_mps[1] = 1;
@@ -309,13 +356,13 @@ static void names_of_many(void **state)
         }
         entity_table_stop(f.table, &(DisStopFreeze){.receiving = c[i].asked}, from_s + 1);
         CHECK(!seen_at(&f, 1, from_s + 3));
-        for (int k = 0; k < 4; k++) {
+        for (int k = 0; k < 5; k++) {
             const int at = snapshot_find(&f.snapshot, id[k]);
             CHECK(at >= 0);
             stopped |= (v3_length(f.snapshot.entity[at].v_ecef_mps) == 0) << k;
         }
         entity_table_remove(f.table, &(DisRemoveEntity){.receiving = c[i].asked}, from_s + 4);
-        for (int k = 0; k < 4; k++) removed |= !entity_table_alive(f.table, entity_table_find(f.table, id[k])) << k;
+        for (int k = 0; k < 5; k++) removed |= !entity_table_alive(f.table, entity_table_find(f.table, id[k])) << k;
         assert_int_equal(stopped, c[i].stops);
         assert_int_equal(removed, c[i].removes);
         entity_table_remove(f.table, &(DisRemoveEntity){.receiving = {0xFFFF, 0xFFFF, 0xFFFF}}, from_s + 5);
@@ -335,6 +382,8 @@ int main(void)
         cmocka_unit_test(wheels_roll_by_what_was_shown),
         cmocka_unit_test(another_type_has_its_own_joints),
         cmocka_unit_test(nobody_leaves_the_earth),
+        cmocka_unit_test(reports_reach_both_ways),
+        cmocka_unit_test(a_clock_that_is_set_moves_nothing_at_once),
         cmocka_unit_test(shots_are_counted),
         cmocka_unit_test(names_of_many),
     };
