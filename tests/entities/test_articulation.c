@@ -178,12 +178,92 @@ static void wheels_do_not_slip(void **state)
     fixture_close(&f);
 }
 
+/* Classes are 1024 .. 8191 in steps of 32, metrics 1 .. 16, rates up to 100 a second; what is beyond any of them counts
+ * for nothing. A rate is followed for 12 s to both sides of its report. */
+static void both_ends_of_what_is_taken(void **state)
+{
+    (void)state;
+    static const struct {
+        uint32_t parameter;
+        bool     taken;
+    } c[] = {{992 + 11, false},  {1024 + 11, true}, {8160 + 11, true},   {8192 + 11, false},
+             {turret + 1, true}, {turret, false},   {turret + 16, true}, {turret + 17, false}};
+    for (size_t i = 0; i < sizeof c / sizeof *c; i++) {
+        Articulation               a = {0};
+        const DisVariableParameter record = articulated(c[i].parameter, 0.5f);
+        assert_int_equal(articulation_report(&a, &record, 1, 0, hold_s), !c[i].taken);
+        assert_int_equal(a.count, c[i].taken);
+    }
+    for (int over = 0; over < 2; over++) {
+        const float                rate = over ? 100.01f : 99.99f;
+        const DisVariableParameter record[] = {articulated(2048 + 1, 3),
+                                               articulated(2048 + 2, over == 0 ? rate : -rate)};
+        Articulation               a = {0};
+        articulation_report(&a, record, 2, 100, hold_s);
+        CHECK_NEAR(value_of(&a, 2048, 1, 101), over ? 3 : 3 + (double)rate, 1e-12);
+        CHECK_NEAR(value_of(&a, 2048, 1, 113), over ? 3 : 3 + 12 * (double)rate, 1e-12);
+        CHECK_NEAR(value_of(&a, 2048, 1, 90), over ? 3 : 3 - 10 * (double)rate, 1e-12);
+        CHECK_NEAR(value_of(&a, 2048, 1, 80), over ? 3 : 3 - 12 * (double)rate, 1e-12);
+    }
+    /* parts that the last report attached, and none of the one before */
+    Articulation               a = {0};
+    const DisVariableParameter both[] = {{.record_type = dis_variable_attached},
+                                         {.record_type = dis_variable_attached}};
+    articulation_report(&a, both, 2, 0, hold_s);
+    CHECK(a.attached_count == 2);
+    articulation_report(&a, both, 1, 1, hold_s);
+    CHECK(a.attached_count == 1);
+}
+
+/* What a value makes of a joint: a door that DIS counts 0 .. 1 opens by 2 m, gear without a report is down below 100
+ * m/s; and an angle that is outside the limits is taken a turn further where it is inside then, on either side, and
+ * left as it is where it is not. */
+static void values_reach_their_joints(void **state)
+{
+    (void)state;
+    static const struct {
+        double low, high, said, want;
+    } c[] = {{2.5, 4.5, -2.2, -2.2 + 2 * pi_rad},
+             {-4.5, -2.5, 2.2, 2.2 - 2 * pi_rad},
+             {-0.2, 0.4, 1, 1},
+             {-0.2, 0.4, -1, -1},
+             {1, -1, -2.2, -2.2},
+             {-4, 4, 3, 3}};
+    double    value;
+    ModelNode node = {
+        .dis_class = 2048, .dis_metric = 1, .joint = JOINT_TRANSLATION, .dis_scale = 2, .low = 1, .high = -1};
+    Model m = {.node_count = 1, .node = &node};
+    for (int k = 0; k < 3; k++) {
+        Articulation               a = {0};
+        const DisVariableParameter record = articulated(2048 + 1, 0.5f * (float)k);
+        articulation_report(&a, &record, 1, 0, hold_s);
+        articulation_joint_values(&value, &m, &a, &(JointDrive){0}, 0, hold_s);
+        CHECK_NEAR(value, k, 1e-12);
+    }
+    node.value_slow = 1.5;
+    for (int k = 0; k < 2; k++) {
+        articulation_joint_values(&value, &m, &(Articulation){0}, &(JointDrive){.speed_mps = k ? 100.1 : 99.9}, 0,
+                                  hold_s);
+        CHECK_NEAR(value, k ? 0 : 1.5, 0);
+    }
+    for (size_t i = 0; i < sizeof c / sizeof *c; i++) {
+        Articulation               a = {0};
+        const DisVariableParameter record = articulated(turret + azimuth, (float)c[i].said);
+        node = (ModelNode){
+            .dis_class = turret, .dis_metric = azimuth, .joint = JOINT_ROTATION, .low = c[i].low, .high = c[i].high};
+        articulation_report(&a, &record, 1, 0, hold_s);
+        articulation_joint_values(&value, &m, &a, &(JointDrive){0}, 0, hold_s);
+        CHECK_NEAR(value, c[i].want, 1e-6);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(order_does_not_matter),      cmocka_unit_test(foreign_records_are_ignored_and_counted),
         cmocka_unit_test(rates_are_bounded),          cmocka_unit_test(angles_wrap_and_lengths_do_not),
         cmocka_unit_test(no_float_leaves_the_circle), cmocka_unit_test(too_many_joints),
+        cmocka_unit_test(both_ends_of_what_is_taken), cmocka_unit_test(values_reach_their_joints),
         cmocka_unit_test(signs_on_the_tank),          cmocka_unit_test(wheels_do_not_slip),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -177,6 +177,21 @@ static void misfits_alone_are_set_onto_an_invented_ground(void **state)
         {tank_type, 300, -2, 0, 0, 0}, /* on a deck; under water */
         {submarine, 300, -40, 0, 4, -40},
         {helicopter_type, -300, 40, 0, 0, 40},
+        /* half way between what is left and what is set, 0.1 and 0.5 m (ships 1.5 and 3 m), half of it is left */
+        {tank_type, -300, 0.3, 0, 10, 0.15},
+        {tank_type, -300, -0.3, 0, 10, -0.15},
+        {ship, 300, 2.25, 0, 8, 1.125},
+        {ship, 300, -2.25, 0, 8, -1.125},
+        /* carried or falling: beyond 60 m/s, people 12 m/s; downwards by more than 2 m/s, and than half of the way
+           along */
+        {tank_type, -300, 20, 0, 59.9, 0},
+        {tank_type, -300, 20, 0, 60.1, 20},
+        {man, -300, 20, 0, 11.9, 0},
+        {man, -300, 20, 0, 12.1, 20},
+        {tank_type, -300, 20, -1.95, 0, 0},
+        {tank_type, -300, 20, -2.05, 0, 20},
+        {tank_type, -300, 20, -4.95, 10, 0},
+        {tank_type, -300, 20, -5.05, 10, 20},
     };
     for (size_t n = 0; n < sizeof row / sizeof row[0]; n++) {
         const double   z_m = elevation_height(&land.elevation, row[n].x_m, 0, NULL) + row[n].above_m;
@@ -220,7 +235,8 @@ static void aircraft_are_lifted_out_of_the_ground(void **state)
     const ContactGround all = {.frame = &frame, .elevation = &ground};
     static const struct {
         double above_m, speed_mps, want_m;
-    } cases[] = {{50, 60, 50}, {0.5, 60, 0.5}, {-3, 60, 3}, {-19, 60, 19}, {-300, 60, 20}, {-4, 0, 0}, {2, 0, 2}};
+    } cases[] = {{50, 60, 50}, {0.5, 60, 0.5}, {-3, 60, 3},    {-19, 60, 19},  {-300, 60, 20},
+                 {-4, 0, 0},   {2, 0, 2},      {-10, 0.29, 0}, {-10, 0.31, 10}};
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         SnapshotEntity e = entity_at(&frame, helicopter_type, 40, 10, 7 + 0.125 * 40 + cases[k].above_m, 1);
         for (int i = 0; i < 3; i++) e.v_ecef_mps[i] *= cases[k].speed_mps / 10;

@@ -138,6 +138,30 @@ static void shots_add_up(void **state)
     CHECK(isfinite(at(&s, 1).fired_kg[1]) && at(&s, 1).fired_kg[1] > 0);
 }
 
+/* What is above 0.3 m/s moves; half of 10 m/s is half the load between idling at 0.6 and full power; shots of 1 kg and
+ * more are of large guns; all shots of an exercise are at most 1e9 kg; an expendable's grain burns, a munition's motor,
+ * neither the other's, and a platform has none. */
+static void limits_are_where_they_are_said(void **state)
+{
+    (void)state;
+    DriveState s;
+    for (int over = 0; over < 2; over++) {
+        drives_begin(&s, &(DriveEvidence){.type = truck_type, .speed_mps = over ? 0.301 : 0.299}, 0);
+        CHECK_NEAR((double)at(&s, 1).engine, over ? 0.6 + 0.4 * 0.0301 : 0, 1e-6);
+        drives_begin(&s, &(DriveEvidence){.type = tank_type, .speed_mps = over ? 9.9 : 5}, 0);
+        CHECK_NEAR((double)at(&s, 1).engine, over ? 0.996 : 0.8, 1e-6);
+        drives_fire(&s, over ? 1 : 0.999, 1);
+        CHECK(s.fired_kg[over] > 0 && s.fired_kg[!over] == 0);
+    }
+    drives_fire(&s, 9e8, 1), drives_fire(&s, 9e8, 1);
+    CHECK(s.fired_kg[1] == 1e9);
+    static const DisEntityType types[3] = {{1, 1, 222, 1, 1, 1, 0}, {2, 2, 225, 1, 1, 3, 0}, {8, 2, 225, 2, 0, 0, 0}};
+    for (int k = 0; k < 3; k++) {
+        drives_begin(&s, &(DriveEvidence){.type = types[k]}, 0);
+        CHECK(at(&s, 1).motor == (k == 1) && at(&s, 1).flare == (k == 2));
+    }
+}
+
 /* A motor burns two seconds from the first report and from its launch, a flare four. */
 static void short_lives(void **state)
 {
@@ -177,6 +201,7 @@ int main(void)
         cmocka_unit_test(wrecks_burn_out),
         cmocka_unit_test(smoke_is_evidence),
         cmocka_unit_test(shots_add_up),
+        cmocka_unit_test(limits_are_where_they_are_said),
         cmocka_unit_test(short_lives),
         cmocka_unit_test(what_lives),
     };

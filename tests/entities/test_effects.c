@@ -1,5 +1,6 @@
 /* What bursts, burns and trails: closed forms against their own formulae, histories against counts on paper. */
 #include "tests/entities/entity_fixture.h"
+#include "entities/table/entity_index.h"
 #include "entities/traces/effect_history.h"
 
 static const uint32_t flaming_bit = UINT32_C(1) << 15, plume_bit = UINT32_C(1) << 5, dust_bits = UINT32_C(2) << 7;
@@ -181,6 +182,35 @@ static void results_burst_in_their_way(void **state)
     const int n = puffs_at(h, 0.05);
     CHECK(of_kind(n, EFFECT_SPARKS) > 0 && of_kind(n, EFFECT_FIREBALL) == 0); /* a penetrator does not explode */
     effect_history_destroy(h);
+}
+
+/* Every value of the Detonation Result enumeration (SISO-REF-010, UID 62), by its name: 3 ground impact, 4 ground
+ * proximate, 11 .. 13 dirt blast small, medium, large: on the ground; 1 entity impact, 7 .. 9 HE hit small, medium,
+ * large, 10 armour-piercing hit, 18 .. 20 building hit: on a thing; 14 .. 16 water blast, 24 water impact: in water; 6
+ * none, 31 .. 33 misses: nothing. The others, and numbers that have no name, in the air: 0 other, 2 entity proximate, 5
+ * detonation, 17 air hit, 21 line charge, 22 and 23 environment object, 25 air burst, 26 .. 30 kills with fragments.
+ * What each makes is in the order of fireballs, clouds of smoke, clouds of dust at 0.1 s; all of it is of the ground,
+ * or none. */
+static void every_result_bursts_by_its_name(void **state)
+{
+    (void)state;
+    static const char named[] = "aeagganeeeegggwwwaeeeaaawaaaaaannn"; /* 0 .. 33 */
+    for (int result = 0; result < 256; result++) {
+        const char          how = result < 34 ? named[result] : 'a';
+        EffectHistory      *h = open_history();
+        const DisDetonation pdu = burst_here(7, (uint8_t)result);
+        effect_history_detonation(h, &pdu, 100);
+        int n = puffs_at(h, 100.001);
+        assert_int_equal(of_kind(n, EFFECT_BURST_FLASH), how != 'n');
+        n = puffs_at(h, 100.3); /* the last cloud is born at 0.15 s times the cube root of 4 kg, 0.24 s */
+        assert_int_equal(of_kind(n, EFFECT_FIREBALL), how == 'g' ? 4 : how == 'e' || how == 'a' ? 7 : 0);
+        assert_int_equal(of_kind(n, EFFECT_BURST_SMOKE), how == 'g' ? 5 : how == 'e' || how == 'a' ? 8 : 0);
+        assert_int_equal(of_kind(n, EFFECT_BURST_DUST), how == 'g' ? 16 : how == 'e' ? 5 : 0);
+        for (int i = 0; i < n; i++) CHECK(puffs[i].grounded == (how == 'g'));
+        CHECK(effect_result_is_ground(result) == (how == 'g') && effect_result_is_water(result) == (how == 'w') &&
+              effect_result_is_none(result) == (how == 'n'));
+        effect_history_destroy(h);
+    }
 }
 
 static void shots_flash_by_kind_and_size(void **state)
@@ -485,6 +515,33 @@ static void stop_holds_the_place(void **state)
     fixture_close(&f);
 }
 
+/* Nor does smoke end while its entity is stopped, however long, nor move: a frozen one and a stopped one smoke on at
+ * their place, half a minute after every timeout. */
+static void smoke_goes_on_through_a_stop(void **state)
+{
+    (void)state;
+    for (int frozen = 0; frozen < 2; frozen++) {
+        Fixture        f = fixture_open(NULL);
+        DisEntityState tank = report(1, tank_type);
+        tank.appearance = plume_bit | (frozen ? frozen_bit : 0);
+        tank.velocity_mps[2] = 10;
+        hear(&f, &tank, 0);
+        if (!frozen) entity_table_stop(f.table, &(DisStopFreeze){.receiving = {0xFFFF, 0xFFFF, 0xFFFF}}, 2);
+        for (double t_s = 5; t_s <= (frozen ? 11 : 42); t_s += 1) {
+            int young = 0;
+            seen_at(&f, 1, t_s);
+            for (int i = 0; i < f.snapshot.puff_count; i++) {
+                const EffectPuff *p = &f.snapshot.puff[i];
+                if (p->kind != EFFECT_SMOKE || p->age_s > 2) continue;
+                CHECK_NEAR(p->p_ecef[2], frozen ? 0 : 20, 2.5); /* spread over the hull's top */
+                young++;
+            }
+            CHECK(young >= 7); /* four a second */
+        }
+        fixture_close(&f);
+    }
+}
+
 /* ---- wrecks ------------------------------------------------------------------------------- */
 
 static void wrecks_burn_and_go_out(void **state)
@@ -628,6 +685,94 @@ static void engines_give_off_gas(void **state)
     fixture_close(&f);
 }
 
+static int of_kind_in(const Snapshot *s, EffectKind kind)
+{
+    int n = 0;
+    for (int i = 0; i < s->puff_count; i++) n += s->puff[i].kind == kind;
+    return n;
+}
+
+/* The mass of exhaust is that of its row by the engine's share of full power and the size of the vehicle: 0.6 at idle,
+ * 0.8 at 5 m/s, 1 at 10 m/s and beyond. Over a whole interval of emission (the first puff grows in) it is the row's
+ * kg/s by the five and a half intervals of its life, of which the first is present in proportion. */
+static void exhaust_is_as_much_as_the_engine_drives(void **state)
+{
+    (void)state;
+    static const float  speed_mps[] = {0, 5, 10, 20};
+    static const double share[] = {0.6, 0.8, 1, 1};
+    Fixture             f = fixture_open(NULL);
+    for (int k = 0; k < 4; k++) {
+        DisEntityState tank = report(1 + k, tank_type);
+        tank.appearance = power_plant_bit;
+        tank.velocity_mps[2] = speed_mps[k];
+        hear(&f, &tank, 0);
+    }
+    const SnapshotEntity *e = seen_at(&f, 1, 1);
+    const Model          *model = catalog_model(f.catalog, e->model);
+    const double          size = cbrt(model->length_m * model->width_m * model->height_m / 40); /* 1 for 40 m3 */
+    const EffectModel    *law = &f.snapshot.effect_table->law[EFFECT_EXHAUST];
+    const double          interval_s = law->life_s / 5.5, phase = 1 / interval_s - floor(1 / interval_s);
+    for (int k = 0; k < 4; k++) {
+        double kg = 0;
+        for (int i = 0; i < f.snapshot.puff_count; i++)
+            if (f.snapshot.puff[i].owner == entity_key(entity_id(1 + k)) + 1) kg += f.snapshot.puff[i].mass_kg;
+        const double want_kg = law->mass_kg * share[k] * size * size * interval_s * (4 + phase);
+        CHECK_NEAR(kg, want_kg, 1e-6 * want_kg);
+    }
+    fixture_close(&f);
+}
+
+/* What each bit of the appearance gives off: smoke bits 1 a plume, 2 engine smoke, 3 both; a trail is dust of what
+ * drives, a contrail of what flies, smoke of a munition's motor, nothing of a person, and the after burner is of what
+ * flies alone. Trails of the sizes small, medium and large have 0.35, 1 and 2.5 times the mass. */
+static void each_bit_has_its_effect(void **state)
+{
+    (void)state;
+    static const uint32_t afterburner = UINT32_C(1) << dis_appearance_afterburner_bit;
+    static const struct {
+        DisEntityType type;
+        uint32_t      bits;
+        EffectKind    is;
+    } c[] = {{{1, 1, 222, 1, 1, 1, 0}, 1 << 5, EFFECT_SMOKE},
+             {{1, 1, 222, 1, 1, 1, 0}, 2 << 5, EFFECT_ENGINE_SMOKE},
+             {{1, 1, 222, 1, 1, 1, 0}, 2 << 7, EFFECT_DUST},
+             {{1, 2, 225, 1, 1, 0, 0}, 2 << 7, EFFECT_CONTRAIL},
+             {{2, 2, 225, 1, 1, 3, 0}, 2 << 7, EFFECT_MOTOR_SMOKE},
+             {{1, 2, 225, 1, 1, 0, 0}, afterburner, EFFECT_AFTERBURNER},
+             {{1, 1, 222, 1, 1, 1, 0}, afterburner, EFFECT_EXHAUST},
+             {{3, 1, 225, 1, 0, 0, 0}, 2 << 7, EFFECT_KIND_COUNT}};
+    static const EffectKind kinds[] = {EFFECT_SMOKE, EFFECT_ENGINE_SMOKE, EFFECT_DUST, EFFECT_CONTRAIL,
+                                       EFFECT_AFTERBURNER};
+    static const double     trail[] = {0, 0.35, 1, 2.5};
+    for (size_t i = 0; i < sizeof c / sizeof *c; i++) {
+        Fixture        f = fixture_open(NULL);
+        DisEntityState pdu = report(1, c[i].type);
+        pdu.appearance = c[i].bits;
+        pdu.velocity_mps[2] = 50;
+        hear(&f, &pdu, 0);
+        seen_at(&f, 1, 4);
+        for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++)
+            CHECK((of_kind_in(&f.snapshot, kinds[k]) > 0) == (kinds[k] == c[i].is));
+        if (c[i].is != EFFECT_KIND_COUNT) CHECK(of_kind_in(&f.snapshot, c[i].is) > 0);
+        fixture_close(&f);
+    }
+    Fixture f = fixture_open(NULL);
+    double  kg[4] = {0};
+    for (int size = 0; size < 4; size++) {
+        DisEntityState pdu = report(1, tank_type);
+        pdu.appearance = (uint32_t)size << 7;
+        pdu.velocity_mps[2] = 8;
+        hear(&f, &pdu, 100 * size); /* later than any timeout */
+        seen_at(&f, 1, 100 * size + 4);
+        for (int i = 0; i < f.snapshot.puff_count; i++)
+            if (f.snapshot.puff[i].kind == EFFECT_DUST && f.snapshot.puff[i].age_s <= 4)
+                kg[size] += f.snapshot.puff[i].mass_kg;
+        CHECK_NEAR(kg[size], size == 0 ? 0 : kg[1] / 0.35 * trail[size], 1e-9);
+        CHECK(size == 0 || kg[size] > 0);
+    }
+    fixture_close(&f);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -635,6 +780,7 @@ int main(void)
         cmocka_unit_test(extinction_holds_its_mass),
         cmocka_unit_test(flash_has_its_time_course),
         cmocka_unit_test(results_burst_in_their_way),
+        cmocka_unit_test(every_result_bursts_by_its_name),
         cmocka_unit_test(shots_flash_by_kind_and_size),
         cmocka_unit_test(absurd_events_are_refused_and_counted),
         cmocka_unit_test(flood_is_bounded),
@@ -645,9 +791,12 @@ int main(void)
         cmocka_unit_test(nobody_flies_in_his_own_trail),
         cmocka_unit_test(trails_outlive_their_missile),
         cmocka_unit_test(stop_holds_the_place),
+        cmocka_unit_test(smoke_goes_on_through_a_stop),
         cmocka_unit_test(wrecks_burn_and_go_out),
         cmocka_unit_test(wrecked_guns_droop),
         cmocka_unit_test(engines_give_off_gas),
+        cmocka_unit_test(exhaust_is_as_much_as_the_engine_drives),
+        cmocka_unit_test(each_bit_has_its_effect),
         cmocka_unit_test(bad_tables_are_named),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -238,6 +238,117 @@ static void the_farthest_goes_first(void **state)
     fixture_close(&f);
 }
 
+/* Ranks follow the host that they are measured from, without a report of the others. Two entities of one sender, 2 km
+ * and 100 km north of it; a third comes, and one has to go: the far one. Where the host has moved on by 100 km since,
+ * that is the other. A focus that is moved to another host measures from there at once, and the old host is one of many
+ * again. */
+static void ranks_follow_the_host(void **state)
+{
+    (void)state;
+    enum { at_home, moved, moved_a_second_time, moved_in_steps, another_host, cases };
+    for (int c = 0; c < cases; c++) {
+        EntityTableConfig config = entity_table_default_config();
+        config.capacity = c == another_host ? 4 : 3;
+        Fixture              f = fixture_open(&config);
+        DisEntityState       host = state_of(host_id, 0, missile_type);
+        const DisEntityId    other_id = {1, 3001, 42};
+        const DisEntityState near = state_of(entity_id(1), 2000, tank_type),
+                             far = state_of(entity_id(2), 1e5, tank_type);
+        const DisEntityState more = state_of(entity_id(3), c == at_home ? 500 : 1.005e5, tank_type);
+        const DisEntityState other = state_of(other_id, 1.01e5, missile_type);
+        entity_table_focus(f.table, host_id, none_id);
+        hear(&f, &host, 0);
+        hear(&f, &near, 0.1);
+        hear(&f, &far, 0.1);
+        if (c == another_host) hear(&f, &other, 0.1);
+        for (int step = 1; c == moved_in_steps && step <= 250; step++) { /* 400 m a step, below the 500 m that count */
+            host.p_ecef[2] = 400 * step;
+            hear(&f, &host, 0.2 + 2 * step);
+        }
+        if (c == moved || c == moved_a_second_time) {
+            host.p_ecef[2] = c == moved ? 1e5 : -3e5;
+            hear(&f, &host, 2);
+        }
+        if (c == moved_a_second_time) {
+            host.p_ecef[2] = 1e5;
+            hear(&f, &host, 4);
+        }
+        if (c == another_host) entity_table_focus(f.table, other_id, none_id);
+        hear(&f, &more, 600);
+        CHECK(is_there(&f, entity_id(1)) == (c == at_home) && is_there(&f, entity_id(2)) == (c != at_home));
+        CHECK(is_there(&f, entity_id(3)) && is_there(&f, host_id) && (c != another_host || is_there(&f, other_id)));
+        if (c == another_host) { /* the first one comes back: of the two far ones it has reported last */
+            hear(&f, &near, 601);
+            CHECK(!is_there(&f, host_id) && is_there(&f, entity_id(1)) && is_there(&f, entity_id(2)));
+        }
+        fixture_close(&f);
+    }
+}
+
+/* What counts is a move of more than 500 m. One 500 m south of the host and one 700 m north of it are of different
+ * classes (625 m); once the host is 600 m farther north it is the other way round, and a newcomer takes the place of
+ * the southern one. After 400 m ranks are as before. */
+static void a_small_move_changes_no_rank(void **state)
+{
+    (void)state;
+    for (int far = 0; far < 2; far++) {
+        EntityTableConfig config = entity_table_default_config();
+        config.capacity = 3;
+        Fixture              f = fixture_open(&config);
+        DisEntityState       host = state_of(host_id, 0, missile_type);
+        const DisEntityState south = state_of(entity_id(1), -500, tank_type),
+                             north = state_of(entity_id(2), 700, tank_type);
+        const DisEntityState more = state_of(entity_id(3), 500, tank_type);
+        entity_table_focus(f.table, host_id, none_id);
+        hear(&f, &host, 0), hear(&f, &south, 0.1), hear(&f, &north, 0.2);
+        host.p_ecef[2] = far ? 600 : 400;
+        hear(&f, &host, 2), hear(&f, &more, 2.1);
+        CHECK(is_there(&f, entity_id(1)) == !far && is_there(&f, entity_id(2)) == far && is_there(&f, entity_id(3)));
+        fixture_close(&f);
+    }
+}
+
+/* The second entity of the focus, the aim, is never evicted either, and is one of many once it is the aim no more. */
+static void the_aim_is_kept(void **state)
+{
+    (void)state;
+    for (int aimed = 0; aimed < 2; aimed++) {
+        EntityTableConfig config = entity_table_default_config();
+        config.capacity = 3;
+        Fixture              f = fixture_open(&config);
+        const DisEntityState host = state_of(host_id, 0, missile_type), aim = state_of(entity_id(2), 1e5, tank_type);
+        const DisEntityState near = state_of(entity_id(1), 2000, tank_type),
+                             more = state_of(entity_id(3), 500, tank_type);
+        entity_table_focus(f.table, host_id, entity_id(2));
+        hear(&f, &host, 0), hear(&f, &aim, 0.1), hear(&f, &near, 0.1);
+        if (!aimed) entity_table_focus(f.table, host_id, none_id);
+        hear(&f, &more, 1);
+        CHECK(is_there(&f, entity_id(2)) == aimed && is_there(&f, entity_id(1)) == !aimed &&
+              is_there(&f, entity_id(3)));
+        fixture_close(&f);
+    }
+}
+
+/* An entity is known a second after its first report, and a known one outlives a new one that is nearer. */
+static void a_second_makes_it_known(void **state)
+{
+    (void)state;
+    for (int known = 0; known < 2; known++) {
+        EntityTableConfig config = entity_table_default_config();
+        config.capacity = 3;
+        Fixture              f = fixture_open(&config);
+        const DisEntityState host = state_of(host_id, 0, missile_type), far = state_of(entity_id(2), 9000, tank_type);
+        const DisEntityState near = state_of(entity_id(1), 2000, tank_type),
+                             more = state_of(entity_id(3), 500, tank_type);
+        entity_table_focus(f.table, host_id, none_id);
+        hear(&f, &host, 0), hear(&f, &far, 0), hear(&f, &far, known ? 1 : 0.99);
+        hear(&f, &near, 1), hear(&f, &more, 1);
+        CHECK(is_there(&f, entity_id(2)) == known && is_there(&f, entity_id(1)) == !known &&
+              is_there(&f, entity_id(3)));
+        fixture_close(&f);
+    }
+}
+
 /* What snapshots are taken in between, and how long each waits to be removed, changes nothing. */
 static void it_does_not_depend_on_snapshots(void **state)
 {
@@ -308,6 +419,10 @@ int main(void)
         cmocka_unit_test(a_missile_after_a_flood_is_taken_in),
         cmocka_unit_test(a_flood_of_its_own_sender),
         cmocka_unit_test(the_farthest_goes_first),
+        cmocka_unit_test(ranks_follow_the_host),
+        cmocka_unit_test(a_small_move_changes_no_rank),
+        cmocka_unit_test(the_aim_is_kept),
+        cmocka_unit_test(a_second_makes_it_known),
         cmocka_unit_test(it_does_not_depend_on_snapshots),
         cmocka_unit_test(a_snapshot_takes_the_nearest),
     };

@@ -332,6 +332,23 @@ static void the_ground_decides(void **state)
     CHECK_NEAR(m->burn[0].crater_m, 0.4 * cbrt(4), 1e-6);
     CHECK(m->burn[0].t_s == 10 && m->burn[0].heat_j_m2 == 1e5f);
     CHECK(marks_at(&f, 11.5)->burns == 1); /* those of later are not there yet */
+
+    /* every result, at the ground and 400 m above it: those that name the ground burn it at any height, those that name
+     * water and those that are no burst at none, all others where the ground is near */
+    for (int result = 0; result < 256; result++)
+        for (int high = 0; high < 2; high++) {
+            const bool dirt = result == 3 || result == 4 || (result >= 11 && result <= 13);
+            const bool none =
+                result == 6 || (result >= 14 && result <= 16) || result == 24 || (result >= 31 && result <= 33);
+            const DisDetonation pdu = {.munition = entity_id(50),
+                                       .event = {1, 3002, (uint16_t)(2 * result + high)},
+                                       .result = (uint8_t)result,
+                                       .p_ecef = {earth_radius_m + (high ? 430 : 30), 50 + result, 0},
+                                       .descriptor = {{2, 2, 225, 1, 1, 3, 0}, 1000, 1000, 1, 0}};
+            entity_table_detonation(f.table, &pdu, 40 + result);
+            burns += dirt || (!none && !high);
+            assert_int_equal(marks_at(&f, 300)->burns, burns);
+        }
     fixture_close(&f);
     elevation_destroy(&ground);
 }

@@ -346,13 +346,77 @@ static void roles_have_distinct_names(void **state)
     assert_string_equal(heat_role_name(HEAT_ENGINE_DECK), "engine_deck");
 }
 
+/* ---- another size ---------------------------------------------------------------------------------- */
+
+/* From 8 x 1 x 3 m to 16 x 3 x 1.5 m: factors 2, 3 and 0.5 along the axes. Pivots and vertices scale by their axis, the
+ * way of a slide by that of its own, angles and unit axes not at all. */
+static void joints_scale_with_a_model(void **state)
+{
+    (void)state;
+    Model m = make_model();
+    m.node[slide].dis_scale = 0.4;
+    m.node[slide].value_slow = 0.1;
+    m.node[arm].dis_scale = 0.7;
+    m.node[arm].value_slow = 0.2;
+    CHECK(model_resize(&m, &(ModelSize){16, 3, 1.5}) == STATUS_OK);
+    CHECK_NEAR(m.length_m, 16, 1e-12);
+    CHECK_NEAR(m.width_m, 3, 1e-12);
+    CHECK_NEAR(m.height_m, 1.5, 1e-12);
+    CHECK_NEAR(m.node[table].p_parent[2], -1, 1e-12);
+    CHECK_NEAR(m.node[arm].p_parent[0], 6, 1e-12);
+    CHECK_NEAR(m.node[slide].p_parent[0], 8, 1e-12);
+    CHECK_NEAR(m.node[slide].low, 0, 0);
+    CHECK_NEAR(m.node[slide].high, 1, 1e-12);
+    CHECK_NEAR(m.node[slide].dis_scale, 0.8, 1e-12);
+    CHECK_NEAR(m.node[slide].value_slow, 0.2, 1e-12);
+    CHECK_NEAR(m.node[arm].low, -10 * rad_per_deg, 1e-12);
+    CHECK_NEAR(m.node[arm].high, 30 * rad_per_deg, 1e-12);
+    CHECK(m.node[arm].dis_scale == 0.7 && m.node[arm].value_slow == 0.2 && m.node[arm].axis[1] == 1);
+    for (int v = 0; v < m.vertex_count; v++) {
+        CHECK_NEAR(fabs(m.vertex[v][0]), 1, 1e-12);
+        CHECK_NEAR(fabs(m.vertex[v][1]), 1.5, 1e-12);
+        CHECK_NEAR(fabs(m.vertex[v][2]), 0.25, 1e-12);
+    }
+    model_destroy(&m);
+
+    /* what rolls and what spins: twice the size has twice the radius, and the same rate. One figure scales all axes. */
+    for (int open = 0; open < 2; open++) {
+        m = make_model();
+        m.node[arm].roll_radius_m = 0.4;
+        m.node[table].spin_rps_moving = 30;
+        CHECK(model_resize(&m, &(ModelSize){open ? 0 : 16, open ? 2 : 2, open ? 0 : 6}) == STATUS_OK);
+        CHECK_NEAR(m.node[arm].roll_radius_m, 0.8, 1e-12);
+        CHECK_NEAR(m.node[arm].p_parent[0], 6, 1e-12);
+        CHECK(m.node[table].spin_rps_moving == 30);
+        for (int v = 0; v < m.vertex_count; v++)
+            for (int k = 0; k < 3; k++) CHECK_NEAR(fabs(m.vertex[v][k]), 1, 1e-12);
+        model_destroy(&m);
+    }
+    /* factors of 0.02 .. 50 */
+    static const struct {
+        double length_m;
+        Status status;
+    } c[] = {
+        {8 * 49.9, STATUS_OK}, {8 * 50.1, STATUS_BAD_VALUE}, {8 * 0.0201, STATUS_OK}, {8 * 0.0199, STATUS_BAD_VALUE}};
+    for (int i = 0; i < 4; i++) {
+        m = make_model();
+        CHECK(model_resize(&m, &(ModelSize){c[i].length_m, 0, 0}) == c[i].status);
+        model_destroy(&m);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(poses_follow_the_chain),   cmocka_unit_test(rest_attitude_comes_before_the_joint),
-        cmocka_unit_test(poses_stay_orthonormal),   cmocka_unit_test(measures_hold_every_pose),
-        cmocka_unit_test(radius_holds_free_joints), cmocka_unit_test(validator_refuses_each_damage),
-        cmocka_unit_test(destroy_zeroes),           cmocka_unit_test(roles_have_distinct_names),
+        cmocka_unit_test(poses_follow_the_chain),
+        cmocka_unit_test(rest_attitude_comes_before_the_joint),
+        cmocka_unit_test(poses_stay_orthonormal),
+        cmocka_unit_test(measures_hold_every_pose),
+        cmocka_unit_test(radius_holds_free_joints),
+        cmocka_unit_test(validator_refuses_each_damage),
+        cmocka_unit_test(destroy_zeroes),
+        cmocka_unit_test(roles_have_distinct_names),
+        cmocka_unit_test(joints_scale_with_a_model),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

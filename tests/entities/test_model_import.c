@@ -313,6 +313,47 @@ static void turned_octets_never_crash(void **state)
     CHECK(read > 20 && failed > 20);
 }
 
+/* Of a block 2 x 4 x 6 with x forward and z up, turning about its middle to the left, the corners are sqrt(1 + 9) units
+ * from the axis: `roll_radius: auto` is that times the scale, of whatever scale the sidecar gives or leaves to the file
+ * (a unit is a metre). A radius that is given is in metres whatever the scale, and a limit of what slides too; a pivot
+ * is in the file's units. */
+static void what_scales_with_a_model(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *scale;
+        double      scale_m;
+    } c[] = {{"scale: 0.5\n", 0.5}, {"scale: 3\n", 3}, {"", 1}};
+    char path[128], yaml[128], text[512];
+    write_text(path, "wheel.obj", BLOCK);
+    for (size_t i = 0; i < sizeof c / sizeof *c; i++)
+        for (int kind = 0; kind < 3; kind++) {
+            static const char *const joint[] = {
+                "pivot: centre, roll_radius: auto", "pivot: 1 1 3, roll_radius: 0.25",
+                "pivot: 1 1 3, axis: up, class: 2048, metric: extension, limits_m: -1 2"};
+            Model       m;
+            ModelImport r;
+            snprintf(text, sizeof text, "%saxes: +x +z\norigin: 0 0 0\njoints:\n  - {name: w, nodes: block, %s}\n",
+                     c[i].scale, joint[kind]);
+            write_text(yaml, "wheel.yaml", text);
+            assert_int_equal(import_quietly(&m, &r, path), STATUS_OK);
+            const ModelNode *w = &m.node[node_called(&m, "w")];
+            const double     s = c[i].scale_m;
+            CHECK_NEAR(w->roll_radius_m, kind == 0 ? s * sqrt(10) : kind == 1 ? 0.25 : 0, 1e-12);
+            if (kind == 2) CHECK(w->joint == JOINT_TRANSLATION && w->low == -1 && w->high == 2);
+            /* y of the file is left, z up */
+            CHECK_NEAR(w->p_parent[0], s * 1, 1e-12);
+            CHECK_NEAR(w->p_parent[1], s * (kind == 0 ? -2 : -1), 1e-12);
+            CHECK_NEAR(w->p_parent[2], s * -3, 1e-12);
+            CHECK_NEAR(m.box_high[0], s * 2, 1e-12);
+            CHECK_NEAR(m.box_low[1], s * -4, 1e-12);
+            CHECK_NEAR(m.box_low[2], s * -6, 1e-12);
+            CHECK_NEAR(m.length_m, s * 2, 1e-12);
+            model_destroy(&m);
+        }
+    remove(yaml);
+}
+
 /* ---- models of other people --------------------------------------------------------------------------------- */
 
 static bool ktank(char yaml[128], const char *name)
@@ -719,6 +760,7 @@ int main(void)
         cmocka_unit_test(what_is_odd_is_counted_and_what_is_broken_refused),
         cmocka_unit_test(nodes_compose_and_mirrors_turn_nothing_inside_out),
         cmocka_unit_test(turned_octets_never_crash),
+        cmocka_unit_test(what_scales_with_a_model),
         cmocka_unit_test(ktanks_joints_are_where_its_solids_say),
         cmocka_unit_test(a_gltf_hierarchy_gives_its_own_pivots),
         cmocka_unit_test(a_catalog_names_files),

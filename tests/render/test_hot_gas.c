@@ -139,6 +139,26 @@ static void air_takes_the_cold_band(void **state)
     CHECK_NEAR(smoke_gas_passed(0.02, 700, 0), 1, 0);
     CHECK_NEAR(smoke_gas_passed(0.02, 700, 1000), 0.080, 1e-9); /* the two-layer narrow-band model */
     CHECK_NEAR(smoke_gas_passed(0.02, 1500, 1000), 0.342, 1e-9);
+    /* Nearer than 10 m absorption grows with the square root of the path, as that of strong lines does: a quarter of
+     * the way takes half of what 10 m take (0.520 at 0.02 atm m of 700 K, 0.866 at 0.002 of 300 K, 0.222 at 0.2 of 2300
+     * K) */
+    static const double taken[][3] = {{0.02, 700, 0.520}, {0.002, 300, 0.866}, {0.2, 2300, 0.222}};
+    for (int i = 0; i < 3; i++)
+        for (double root = 0.05; root <= 1; root += 0.05)
+            CHECK_NEAR(smoke_gas_passed(taken[i][0], taken[i][1], 10 * root * root), 1 - taken[i][2] * root, 1e-9);
+    /* between the model's points: by the logarithm of the column and of the path, linear in temperature */
+    CHECK_NEAR(smoke_gas_passed(sqrt(0.002 * 0.02), 700, 1000), (0.023 + 0.080) / 2, 1e-9);
+    CHECK_NEAR(smoke_gas_passed(sqrt(0.02 * 0.2), 700, 1000), (0.080 + 0.250) / 2, 1e-9);
+    CHECK_NEAR(smoke_gas_passed(0.02, 900, 1000), (0.080 + 0.220) / 2, 1e-9);
+    CHECK_NEAR(smoke_gas_passed(0.02, 1900, 1000), (0.342 + 0.480) / 2, 1e-9);
+    CHECK_NEAR(smoke_gas_passed(0.02, 700, sqrt(300 * 1000.0)), (0.139 + 0.080) / 2, 1e-9);
+    CHECK_NEAR(smoke_gas_passed(0.02, 700, sqrt(10000 * 30000.0)), (0.034 + 0.020) / 2, 1e-9);
+    /* beyond them as at the last one, at every end */
+    CHECK_NEAR(smoke_gas_passed(0.02, 700, 1e6), 0.020, 1e-9);
+    CHECK_NEAR(smoke_gas_passed(1e-5, 700, 1000), 0.023, 1e-9);
+    CHECK_NEAR(smoke_gas_passed(5, 700, 1000), 0.250, 1e-9);
+    CHECK_NEAR(smoke_gas_passed(0.02, 200, 1000), 0.009, 1e-9);
+    CHECK_NEAR(smoke_gas_passed(0.02, 3000, 1000), 0.480, 1e-9);
     for (double temp_k = 300; temp_k <= 2300; temp_k += 100) {
         double before = 1;
         for (double range_m = 0.1; range_m < 1e5; range_m *= 1.7) {

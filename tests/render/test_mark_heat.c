@@ -164,10 +164,25 @@ static void a_box_that_left(void **state)
     heat_destroy(h);
 }
 
-/* Ground below a box stays warm at night, in that shape, and forgets it. */
+/* Ground below a box stays warm at night, in that shape, and forgets it: against volumes that see no sky for as long.
+ * What the sky takes is linear about the state of open ground here, though warmer ground gives the air more: 18 .. 22 %
+ * too much. */
 static void a_box_at_night(void **state)
 {
     (void)state;
+    enum { kind = SURFACE_SAND };
+    static Field open, below_it;
+    double       all_hidden[places];
+    Column       layers;
+    CHECK(ground_layers(&layers, &kinds.kind[kind], &ground_grid_default) == STATUS_OK);
+    for (int p = 0; p < places; p++) all_hidden[p] = 1;
+    open.surface_k[0] = 290;
+    for (int z = 0; z < cells; z++) open.t_k[0][z] = 293;
+    double t_h = -72;
+    for (; t_h < 20; t_h += fv_step_s / 3600)
+        fv_step(&open, &kinds.kind[kind], &layers, paper_unix_s + 3600 * t_h, 1, false, all_hidden);
+    for (int p = 0; p < places; p++)
+        memcpy(below_it.t_k[p], open.t_k[0], sizeof open.t_k[0]), below_it.surface_k[p] = open.surface_k[0];
     Heat               *h = paper_heat(&kinds, &paper_summer, 20, NULL);
     GroundStand         box = box_at(20, 26, 7, 3.4, 2.4);
     const GroundMarks   marks = {.stands = 1, .stand = &box};
@@ -178,11 +193,16 @@ static void a_box_at_night(void **state)
         MarkedGround below, aside;
         CHECK(heat_marks_create(&heat, &marks, &frame, paper_unix_s, paper_unix_s + 3600 * hours[t], at(h, hours[t]),
                                 arena) == STATUS_OK);
-        CHECK(
-            heat_marks_at(&below, heat, SURFACE_BARE_SOIL, (const double[3]){0, 0, 0}, (const double[3]){0, 0, 1}, 1));
-        CHECK(
-            heat_marks_at(&aside, heat, SURFACE_BARE_SOIL, (const double[3]){10, 0, 0}, (const double[3]){0, 0, 1}, 1));
+        CHECK(heat_marks_at(&below, heat, kind, (const double[3]){0, 0, 0}, (const double[3]){0, 0, 1}, 1));
+        CHECK(heat_marks_at(&aside, heat, kind, (const double[3]){10, 0, 0}, (const double[3]){0, 0, 1}, 1));
         k[t] = below.add_k;
+        for (; t_h < hours[t]; t_h += fv_step_s / 3600) {
+            fv_step(&open, &kinds.kind[kind], &layers, paper_unix_s + 3600 * t_h, 1, false, all_hidden);
+            fv_step(&below_it, &kinds.kind[kind], &layers, paper_unix_s + 3600 * t_h, places, t_h < 26, all_hidden);
+        }
+        const double want_k = below_it.surface_k[places / 2] - open.surface_k[0];
+        print_message("%.1f h: below the box %+.2f K, volumes %+.2f K\n", hours[t], k[t], want_k);
+        CHECK_NEAR(k[t], want_k, 0.25 * want_k);
         CHECK(fabs(aside.add_k) < 0.1 * fabs(below.add_k));
     }
     print_message("below a box at night: %+.2f K; an hour after it left %+.2f K, three hours %+.2f K\n", k[0], k[1],

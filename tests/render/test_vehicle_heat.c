@@ -120,7 +120,10 @@ static void the_side_of_the_sun_is_warm(void **state)
     print_message("sheet east %.1f, west %.1f K; turret east over west %.1f K\n", east_k, west_k, turret_k);
     /* 0.6 .. 0.94 x 606 W/m2 over 15 W/(m2 K) of film and emission, less what conduction takes round the corners */
     CHECK(east_k - west_k > 10 && east_k - west_k < 32);
-    CHECK(turret_k > 1 && turret_k < 20);
+    /* Armour of 60 mm (235 kJ/(m2 K)) that takes 0.595 x 700 x 0.8 = 333 W/m2 for three hours against 19 W/(m2 K) of
+     * both sides' films would be 10 K warmer; conduction to the roof, 2.7 W/K by a metre's length and as much as half
+     * of the films', takes up to two thirds of that. */
+    CHECK(turret_k > 3.3 && turret_k < 8);
     vehicle_heat_destroy(heat);
 }
 
@@ -139,9 +142,16 @@ static void engines_warm_and_stay_warm(void **state)
                  track_k = mean_k(heat, &s, HEAT_TRACK, NULL), hull_k = mean_k(heat, &s, HEAT_HULL, NULL);
     print_message("driving: deck %.1f, exhaust %.1f, tracks %.1f, hull %.1f K over the air\n", deck_k - 288,
                   gas_k - 288, track_k - 288, hull_k - 288);
-    CHECK(deck_k > 288 + 15 && deck_k < 363); /* the engine has 363 K */
-    CHECK(gas_k > 400 && gas_k < 750);        /* between the air and the gas */
-    CHECK(track_k > 295 && track_k < 340 && hull_k > 288.2 && hull_k < 300);
+    /* The engine has 363 K, 75 K over the air. Its deck, between 15 W/(m2 K) of cooling air and 14.6 of film at 2 m/s
+     * and of radiation, would be 38 K over it with nothing lost to its edges: half of that and more. */
+    CHECK(deck_k > 288 + 19 && deck_k < 288 + 38);
+    CHECK(gas_k > 288 + 230 && gas_k < 288 + 462); /* at least half way from the air to the gas, 462 K over it */
+    /* 1500 N at 10 m/s are 15 kW into both tracks, over some 25 m2 and 15 .. 25 W/(m2 K) of air and ground: 24 .. 40 K
+     */
+    CHECK(track_k > 288 + 20 && track_k < 288 + 40);
+    /* 1.5 kW of the cabin and what bulkheads pass from the engine, into 80 m2 by 4 and to the air by 15 W/(m2 K), are
+     * some 1.5 K; engine and exhaust warm what adjoins: twice that */
+    CHECK(hull_k > 288 + 1.3 && hull_k < 288 + 4);
 
     s.entity.drives.engine = 0, s.entity.drives.speed_mps = 0;
     run(heat, &s, 61, 61 + 2400);
@@ -161,9 +171,59 @@ static void engines_warm_and_stay_warm(void **state)
     CHECK_NEAR(rise_j, after.heat_in_j - in_j, 1e-6 * (24 * 180e3)); /* what came from outside is in its nodes */
     run(heat, &s, 2463, 2462 + 300);
     const double shot_k = mean_k(heat, &s, HEAT_GUN, NULL) - bore_k;
-    print_message("three rounds, five minutes later: gun %.1f K warmer\n", shot_k);
-    CHECK(shot_k > 1.5 && shot_k < 15); /* 4.3 MJ into a tonne or two of steel */
+    /* 24 kg give 180 kJ/kg to a wall of 40 mm of steel, 7824 kg/m3 of 500 J/(kg K): 6.9 K of the 4.0 m2 that the model
+     * has. In five minutes a film of 15 W/(m2 K) takes 3 % of it, and what carries the gun some more. */
+    const Patches *cut = &stage.patches.of[s.entity.model];
+    double         gun_m2 = 0;
+    for (int i = 0; i < cut->count; i++)
+        if (cut->patch[i].role == HEAT_GUN) gun_m2 += patch_open_m2(&cut->patch[i]);
+    const double want_k = 24 * 180e3 / (gun_m2 * 0.04 * 7824 * 500);
+    print_message("three rounds, five minutes later: gun %.2f K warmer, of %.2f K\n", shot_k, want_k);
+    CHECK(shot_k > 0.92 * want_k && shot_k < want_k);
     vehicle_heat_destroy(heat);
+}
+
+/* Kelvins over air of 288 K of a plate between gas that is excess_k warmer, by a film of inside W/(m2 K), and air at
+ * rest, whose film is 4 W/(m2 K), with surroundings as warm as it: the root of its balance, by halving. */
+static double plate_over_k(double inside_w_m2k, double excess_k, double emissivity)
+{
+    double low_k = 0, high_k = excess_k;
+    for (int n = 0; n < 60; n++) {
+        const double k = 0.5 * (low_k + high_k),
+                     lost = 4 * k + emissivity * stefan_w_m2k4 * (pow(288 + k, 4) - pow(288, 4));
+        *(inside_w_m2k * (excess_k - k) > lost ? &low_k : &high_k) = k;
+    }
+    return low_k;
+}
+
+/* A vehicle that stands at full power, at half of its load and at idle (shares of full power e of 1, 0.8 and 0.6): gas
+ * is half as hot over the air at idle as at full power, 462 K (750 K of a tank, etc/heat_machines.csv), and in between
+ * by the load; its film is 2 + (60 - 2) e (etc/heat.csv). The outlet's louvres see each other, so what share of their
+ * radiation leaves is found from the temperature at full power; the other two follow from the balance, within 1 %. Gas
+ * as hot at idle as at full power would be 1.7 times as warm an outlet. */
+static void an_outlet_is_as_hot_as_its_engine_works(void **state)
+{
+    (void)state;
+    static const double engine[] = {1, 0.8, 0.6}, excess_k[] = {462, 0.75 * 462, 0.5 * 462};
+    double              over_k[3];
+    enclose(288);
+    for (int c = 0; c < 3; c++) {
+        Scene        s;
+        VehicleHeat *heat = start(30);
+        place(&s, tank, (EntityDrives){.engine = (float)engine[c]});
+        run(heat, &s, 0, 1800);
+        over_k[c] = mean_k(heat, &s, HEAT_EXHAUST, NULL) - 288;
+        vehicle_heat_destroy(heat);
+    }
+    const double black_w_m2 = stefan_w_m2k4 * (pow(288 + over_k[0], 4) - pow(288, 4));
+    const double emissivity = (60 * (excess_k[0] - over_k[0]) - 4 * over_k[0]) / black_w_m2;
+    print_message("outlet %.2f, %.2f and %.2f K over the air, emissivity %.3f\n", over_k[0], over_k[1], over_k[2],
+                  emissivity);
+    CHECK(emissivity > 0.45 && emissivity < 0.98); /* paint of 0.95 that sees half and more of what is around it */
+    for (int c = 1; c < 3; c++) {
+        const double want_k = plate_over_k(2 + 58 * engine[c], excess_k[c], emissivity);
+        CHECK_NEAR(over_k[c], want_k, 0.01 * want_k);
+    }
 }
 
 /* A jet as wide as the points of a patch lie apart, on the hull's rear, warms it, and the turret's front hardly;
@@ -293,7 +353,9 @@ static void speed_warms(void **state)
                   nose_k, motor_k);
     CHECK(skin_k > 22 && skin_k < 30); /* parts of it are behind the engines */
     CHECK_NEAR(nose_k, 38.06, 2);
-    CHECK(motor_k > 300 && motor_k < 900);
+    /* Three ticks of a second: gas of 2500 K by 250 W/(m2 K) into 3 mm of steel, 11.7 kJ/(m2 K): 139 K; the air's
+     * friction adds up to the 38 K that it gives to all of the missile. */
+    CHECK(motor_k > 250 + 139 && motor_k < 250 + 139 + 38);
     vehicle_heat_destroy(heat);
 }
 
@@ -498,6 +560,7 @@ int main(void)
         cmocka_unit_test(an_enclosure_stays_as_it_is),
         cmocka_unit_test(the_side_of_the_sun_is_warm),
         cmocka_unit_test(engines_warm_and_stay_warm),
+        cmocka_unit_test(an_outlet_is_as_hot_as_its_engine_works),
         cmocka_unit_test(exhaust_warms_what_it_blows_on),
         cmocka_unit_test(a_restart_goes_on),
         cmocka_unit_test(heat_is_kept),

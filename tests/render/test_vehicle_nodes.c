@@ -188,7 +188,9 @@ static void fuel_follows_its_engine(void **state)
     print_message("fuel half an hour after the start %.1f K, an hour %.1f K, engine %.1f K over the air\n",
                   half_hour_k - 288, fuel_k - 288, engine_k - 288);
     CHECK_NEAR(1.1e6 * (fuel_k - before_k) / gone_j, 1, 0.02); /* own times are up to 30 s apart */
-    CHECK(half_hour_k > 289 && fuel_k > half_hour_k && fuel_k < engine_k);
+    /* In half an hour 84 W/K from an engine of 75 K over the air would give it 10.3 K; the engine is warm after some
+     * minutes, and the hull takes a third. */
+    CHECK(half_hour_k > 288 + 5 && half_hour_k < 288 + 10.3 && fuel_k > half_hour_k && fuel_k < engine_k);
     vehicle_heat_destroy(heat);
     heat = start();
     place(&s, truck, (EntityDrives){.engine = 1});
@@ -232,8 +234,10 @@ static void ground_touches_tracks_and_wheels(void **state)
             "%s: print %.2f m2; an hour on ground 30 K warmer %.2f K, 0.8 m over it %.2f K; driving on it %.1f K, over it %.1f K\n",
             t ? "truck" : "tank", print_m2, high_k[1] - 288, high_k[2] - 288, rolls_k[0] - 288, rolls_k[1] - 288);
         CHECK_NEAR(high_k[0], 288, 1e-3);
-        CHECK(high_k[1] > high_k[2] + 0.3 && high_k[1] < 318);
-        CHECK(rolls_k[0] < rolls_k[1] - 1 && rolls_k[0] > 289);
+        /* No paper value: how well soil touches tracks and tyres is an estimate within a factor of two. So are these
+         * bounds: contact gives what stands 2.2 .. 8 K of 30 K, and takes 3.5 .. 14 K from what rolls. */
+        CHECK(high_k[1] > high_k[2] + 2.2 && high_k[1] < high_k[2] + 8);
+        CHECK(rolls_k[0] < rolls_k[1] - 3.5 && rolls_k[0] > rolls_k[1] - 14);
         /* prints of the kinds: a tank of 40 t has some 0.8 bar under its tracks (5 m2, of which pads are a third to
          * all), a truck of 10 t some 3 to 6 bar in its tyres */
         CHECK(t ? print_m2 > 0.15 && print_m2 < 0.8 : print_m2 > 1.5 && print_m2 < 6);

@@ -81,12 +81,156 @@ static void a_missing_or_spoilt_grid_says_what_to_do(void **state)
     log_set_sink(NULL, NULL);
 }
 
+/* ---- grids with a known surface ------------------------------------------------------------------- */
+
+/* A grid's header as .gtx has it, and its posts, row by row from the south. */
+typedef struct Grid {
+    double south_deg, west_deg, step_lat_deg, step_lon_deg;
+    int    rows, columns;
+} Grid;
+
+static void put_big(FILE *file, const void *value, size_t octets)
+{
+    for (size_t k = octets; k-- > 0;)
+        CHECK(fputc(((const uint8_t *)value)[k], file) != EOF); /* this machine is little */
+}
+
+/* The product of a place's direction with (55, -30, 40) m: on the sphere a linear function, so smooth over both poles
+ * and over the seam, and different half way round. */
+static double plane_m(double lat_rad, double lon_rad)
+{
+    return cos(lat_rad) * (55 * cos(lon_rad) - 30 * sin(lon_rad)) + 40 * sin(lat_rad);
+}
+
+/* odd_row, odd_column: a post that has the value odd_m. */
+static void write_grid(char path[text_file_size], const Grid *g, int odd_row, int odd_column, float odd_m)
+{
+    text_file(path, "");
+    FILE *file = fopen(path, "wb");
+    CHECK(file != NULL);
+    put_big(file, &g->south_deg, 8), put_big(file, &g->west_deg, 8);
+    put_big(file, &g->step_lat_deg, 8), put_big(file, &g->step_lon_deg, 8);
+    put_big(file, &g->rows, 4), put_big(file, &g->columns, 4);
+    for (int row = 0; row < g->rows; row++)
+        for (int column = 0; column < g->columns; column++) {
+            const float n_m = row == odd_row && column == odd_column
+                                  ? odd_m
+                                  : (float)plane_m((g->south_deg + row * g->step_lat_deg) * rad_per_deg,
+                                                   (g->west_deg + column * g->step_lon_deg) * rad_per_deg);
+            put_big(file, &n_m, 4);
+        }
+    CHECK(fclose(file) == 0);
+}
+
+static double look(const Geoid *geoid, double lat_deg, double lon_deg)
+{
+    return geoid_height_m(geoid, lat_deg * rad_per_deg, lon_deg * rad_per_deg);
+}
+
+/* Cubic interpolation of a sine of amplitude A by steps of h misses at most 0.0234 h^4 A (9/16 of h^4 / 4!): of 75 m by
+ * 6 and 7.5 degrees 0.2 and 0.5 mm, the second at most 1.25 times over the other axis; 1 mm, and no post is rounded by
+ * more than 4 um. A row over a pole that is not turned half round misses by 0.4 m and more, a column off the seam by
+ * as much. Steps of both axes differ, so they cannot be exchanged, and the seam is at four places. */
+static void a_known_surface_is_met_over_poles_and_seam(void **state)
+{
+    (void)state;
+    static const double west_deg[] = {-180, 0, -7.5, 180};
+    for (int k = 0; k < 4; k++) {
+        const Grid grid = {-90, west_deg[k], 6, 7.5, 31, 48};
+        char       path[text_file_size];
+        Geoid      geoid;
+        write_grid(path, &grid, -1, -1, 0);
+        assert_int_equal(geoid_open(&geoid, path), STATUS_OK);
+        for (double lat_deg = -90; lat_deg <= 90; lat_deg += 1.25)
+            for (double lon_deg = -361; lon_deg < 362; lon_deg += 2.3)
+                CHECK_NEAR(look(&geoid, lat_deg, lon_deg), plane_m(lat_deg * rad_per_deg, lon_deg * rad_per_deg), 1e-3);
+        for (int side = -1; side <= 1; side += 2) /* within a cell of the seam and of both poles */
+            for (double off_deg = 1e-9; off_deg < 7; off_deg *= 3)
+                for (double lon_deg = -180; lon_deg <= 180; lon_deg += 90) {
+                    const double lat_deg = side * (90 - off_deg), seam_deg = lon_deg + side * off_deg;
+                    CHECK_NEAR(look(&geoid, lat_deg, seam_deg), plane_m(lat_deg * rad_per_deg, seam_deg * rad_per_deg),
+                               1e-3);
+                    CHECK_NEAR(look(&geoid, 33, seam_deg), plane_m(33 * rad_per_deg, seam_deg * rad_per_deg), 1e-3);
+                }
+        CHECK(isnan(look(&geoid, 90.001, 0)) && isnan(look(&geoid, -90.001, 0)));
+        geoid_close(&geoid);
+        remove(path);
+    }
+}
+
+/* A grid of a region: its outermost cells lack a neighbour and have no height; the others have, at all four sides. The
+ * grid is 40 .. 52 N by 1.5 degrees, 10 .. 26 E by 2 degrees. Nor have cells that touch a gap's cubic: three to each
+ * side of it in its row and column, and no more. Outside there is none. */
+static void a_region_ends_where_its_posts_end(void **state)
+{
+    (void)state;
+    static const Grid grid = {40, 10, 1.5, 2, 9, 9};
+    char              path[text_file_size];
+    Geoid             geoid;
+    write_grid(path, &grid, -1, -1, 0);
+    assert_int_equal(geoid_open(&geoid, path), STATUS_OK);
+    for (int row = -2; row < 10; row++)
+        for (int column = -2; column < 10; column++) {
+            const double lat_deg = 40 + 1.5 * (row + 0.5), lon_deg = 10 + 2 * (column + 0.5);
+            const bool   inside = row >= 1 && row <= 6 && column >= 1 && column <= 6;
+            const double n_m = look(&geoid, lat_deg, lon_deg);
+            CHECK(isnan(n_m) == !inside);
+            if (inside) CHECK_NEAR(n_m, plane_m(lat_deg * rad_per_deg, lon_deg * rad_per_deg), 1e-4);
+        }
+    geoid_close(&geoid);
+    remove(path);
+    write_grid(path, &grid, 4, 5, -88.8888f);
+    assert_int_equal(geoid_open(&geoid, path), STATUS_OK);
+    for (int row = 1; row < 7; row++)
+        for (int column = 1; column < 7; column++) {
+            const bool touches = row - 1 <= 4 && row + 2 >= 4 && column - 1 <= 5 && column + 2 >= 5;
+            CHECK(isnan(look(&geoid, 40 + 1.5 * (row + 0.5), 10 + 2 * (column + 0.5))) == touches);
+        }
+    geoid_close(&geoid);
+    remove(path);
+}
+
+/* 200 m on either side hold every geoid of the Earth (EGM96: -107 .. 85 m); a post beyond is a spoilt grid, and so is a
+ * header whose rows pass a pole, whose columns pass a whole circle, or that has fewer than four of either. */
+static void impossible_grids_are_refused(void **state)
+{
+    (void)state;
+    static const struct {
+        Grid   grid;
+        float  odd_m;
+        Status status;
+    } c[] = {
+        {{-90, 0, 10, 10, 19, 36}, 200, STATUS_OK},        {{-90, 0, 10, 10, 19, 36}, -200, STATUS_OK},
+        {{-90, 0, 10, 10, 19, 36}, 201, STATUS_BAD_VALUE}, {{-90, 0, 10, 10, 19, 36}, -201, STATUS_BAD_VALUE},
+        {{-90, 0, 10, 10, 19, 36}, NAN, STATUS_BAD_VALUE}, {{-90, 0, 10, 10, 20, 36}, 0, STATUS_BAD_VALUE},
+        {{-90.1, 0, 10, 10, 19, 36}, 0, STATUS_BAD_VALUE}, {{-90, 0, 10, 10, 19, 37}, 0, STATUS_OK},
+        {{-90, 0, 10, 10, 19, 38}, 0, STATUS_BAD_VALUE},   {{0, 0, 10, 10, 4, 4}, 0, STATUS_OK},
+        {{0, 0, 10, 10, 3, 4}, 0, STATUS_BAD_VALUE},       {{0, 0, 10, 10, 4, 3}, 0, STATUS_BAD_VALUE},
+        {{0, 361, 10, 10, 4, 4}, 0, STATUS_BAD_VALUE},     {{0, -361, 10, 10, 4, 4}, 0, STATUS_BAD_VALUE},
+        {{0, 0, -10, 10, 4, 4}, 0, STATUS_BAD_VALUE},      {{0, 0, 10, -10, 4, 4}, 0, STATUS_BAD_VALUE},
+    };
+    log_set_sink(check_listen, NULL);
+    for (size_t i = 0; i < sizeof c / sizeof *c; i++) {
+        char  path[text_file_size];
+        Geoid geoid = {0};
+        write_grid(path, &c[i].grid, 2, 3, c[i].odd_m);
+        assert_int_equal(geoid_open(&geoid, path), c[i].status);
+        if (c[i].status == STATUS_BAD_VALUE && c[i].odd_m != 0) CHECK(strstr(check_said, "row 2, column 3"));
+        geoid_close(&geoid);
+        remove(path);
+    }
+    log_set_sink(NULL, NULL);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(nga_values_are_met),
         cmocka_unit_test(it_is_one_surface_over_seam_and_poles),
         cmocka_unit_test(a_missing_or_spoilt_grid_says_what_to_do),
+        cmocka_unit_test(a_known_surface_is_met_over_poles_and_seam),
+        cmocka_unit_test(a_region_ends_where_its_posts_end),
+        cmocka_unit_test(impossible_grids_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

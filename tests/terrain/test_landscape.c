@@ -496,8 +496,10 @@ static void reaches_the_horizon_and_no_further(void **state)
         square += h * h / 20000;
     }
     printf("slope %.2f degree rms, height %.1f m rms\n", atan(sqrt(slope)) / rad_per_deg, sqrt(square - sum * sum));
-    CHECK(sqrt(slope) < tan(10 * rad_per_deg) && sqrt(slope) > tan(1 * rad_per_deg));
-    CHECK(sqrt(square - sum * sum) > 0.4 * config.relief_m && sqrt(square - sum * sum) < 1.6 * config.relief_m);
+    /* 11 km hold a few of the longest waves only, so the relief of one draw is known to a third. There is no
+     * paper value of its slopes: country of 15 m of relief has some 2 to 5 degrees. */
+    CHECK_NEAR(atan(sqrt(slope)) / rad_per_deg, 3.3, 1.2);
+    CHECK_NEAR(sqrt(square - sum * sum) / config.relief_m, 1, 0.35);
     landscape_destroy(&land);
 }
 
