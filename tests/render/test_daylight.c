@@ -111,12 +111,13 @@ static void light_fades_smoothly(void **state)
 }
 
 /* Twilight as daylight_sums.c states it, over the sky with the sun 5 degrees up: 0.17 at the horizon (10^-0.77), 8e-4
- * (10^-3.1) at the end of civil, 10^-5.7 of nautical and 10^-6.5 of astronomical twilight, straight lines between, and no
- * less by night. The sun's own light comes with the share of its disc, 0.533 degrees wide, that is above the horizon. */
+ * (10^-3.1) at the end of civil, 10^-5.7 of nautical and 10^-6.5 of astronomical twilight, straight lines between, and
+ * no less by night. The sun's own light comes with the share of its disc, 0.533 degrees wide, that is above the
+ * horizon. */
 static void light_fades_by_its_twilight(void **state)
 {
     (void)state;
-    static const double of[][2] = {{5, 0},       {2.5, -0.385}, {0, -0.77},  {-3, -1.935}, {-6, -3.1}, {-9, -4.4},
+    static const double of[][2] = {{5, 0},      {2.5, -0.385}, {0, -0.77},  {-3, -1.935},  {-6, -3.1}, {-9, -4.4},
                                    {-12, -5.7}, {-15, -6.1},   {-18, -6.5}, {-18.5, -6.5}, {-40, -6.5}};
     const Weather       weather = weather_default();
     const double        five = air_of(&weather, 5, 2, 1 << AIR_PAN, NULL).light.sky_w_m2[AIR_PAN];
