@@ -2,6 +2,8 @@
  * those hours, and what everyone knows of slopes, snow, water and nights. labels: physics */
 #include "tests/scenes/paper_day.h"
 
+#include "render/heat/heat_private.h"
+
 static GroundKinds kinds;
 static Arena      *arena;
 
@@ -358,6 +360,70 @@ static void kept_ground_is_the_same(void **state)
     CHECK(system(command) == 0);
 }
 
+/* Name of what is kept of a heat. */
+static void name_of(char name[sha256_text_size], const Heat *h)
+{
+    CacheKey key = heat_kept_key(h);
+    void    *octets;
+    size_t   count;
+    CHECK(key.good && !cache_fetch(&octets, &count, NULL, &key));
+    memcpy(name, key.name, sha256_text_size);
+}
+
+/* Changes the lowest bit of an input: the name must be another. */
+static void check_named(const Heat *h, void *input, const char *what)
+{
+    char           plain[sha256_text_size], other[sha256_text_size];
+    unsigned char *octet = input;
+    name_of(plain, h);
+    *octet ^= 1;
+    name_of(other, h);
+    *octet ^= 1;
+    if (strcmp(plain, other) == 0) fail_msg("%s is not in the name of warm ground", what);
+}
+
+/* All that warm ground follows from, each changed alone: grid, times, facets, each kind's figures and layers, wood, and
+ * the weather of every time, first and last. */
+static void each_input_is_in_the_name_of_warm_ground(void **state)
+{
+    (void)state;
+    enum { times = 5 };
+    static GroundWeather weather[times];
+    Heat                *h = calloc(1, sizeof *h);
+    CHECK(h != NULL);
+    h->kinds = kinds;
+    h->config = heat_default_config();
+    h->branches = 2;
+    h->course = (Course){.wide = 30, .coarse = 2, .fine = 3, .at = weather};
+    HeatConfig   *c = &h->config;
+    double *const number[] = {&c->grid.first_m, &c->grid.growth, &c->grid.depth_m, &c->grid.tolerance_k,
+                              &c->step_s,       &c->spin_up_s,   &c->unix_s};
+    for (size_t k = 0; k < sizeof number / sizeof *number; k++) check_named(h, number[k], "a figure of the settings");
+    check_named(h, &c->facets, "facets");
+    check_named(h, &h->course.wide, "wide");
+    for (int k = 0; k < ground_kinds; k++) {
+        GroundKind   *g = &h->kinds.kind[k];
+        double *const of[] = {&g->porosity,    &g->quartz,         &g->saturation,  &g->rock_w_mk,  &g->rock_j_m3k,
+                              &g->roughness_m, &g->resistance_s_m, &g->absorptance, &g->emissivity, &g->melts_k};
+        for (size_t i = 0; i < sizeof of / sizeof *of; i++) check_named(h, of[i], g->name);
+        check_named(h, &g->vapour, "vapour");
+        for (int l = 0; l < g->layers; l++) {
+            check_named(h, &g->layer[l].thickness_m, "a layer's thickness");
+            check_named(h, &g->layer[l].conductivity_w_mk, "a layer's conductivity");
+            check_named(h, &g->layer[l].capacity_j_m3k, "a layer's capacity");
+        }
+    }
+    for (int k = 0; k < 2; k++) {
+        BranchKind   *b = &h->branch_kind[k];
+        double *const of[] = {&b->conductivity_w_mk, &b->capacity_j_m3k, &b->absorptance, &b->emissivity};
+        for (int i = 0; i < 4; i++) check_named(h, of[i], "a figure of wood");
+    }
+    for (int t = 0; t < times; t++)
+        for (size_t i = 0; i < sizeof *weather / sizeof(double); i++)
+            check_named(h, (double *)&weather[t] + i, "the weather of a time");
+    free(h);
+}
+
 static void settings_out_of_range(void **state)
 {
     (void)state;
@@ -376,11 +442,17 @@ static void settings_out_of_range(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(tables_are_columns),        cmocka_unit_test(slopes_face_the_sun),
-        cmocka_unit_test(facets_are_close),          cmocka_unit_test(places_side_by_side),
-        cmocka_unit_test(shade_of_the_hours_before), cmocka_unit_test(what_everyone_knows),
-        cmocka_unit_test(a_function_of_time_alone),  cmocka_unit_test(a_day_is_remembered),
-        cmocka_unit_test(settings_out_of_range),     cmocka_unit_test(kept_ground_is_the_same),
+        cmocka_unit_test(tables_are_columns),
+        cmocka_unit_test(slopes_face_the_sun),
+        cmocka_unit_test(facets_are_close),
+        cmocka_unit_test(places_side_by_side),
+        cmocka_unit_test(shade_of_the_hours_before),
+        cmocka_unit_test(what_everyone_knows),
+        cmocka_unit_test(a_function_of_time_alone),
+        cmocka_unit_test(a_day_is_remembered),
+        cmocka_unit_test(settings_out_of_range),
+        cmocka_unit_test(kept_ground_is_the_same),
+        cmocka_unit_test(each_input_is_in_the_name_of_warm_ground),
     };
     return cmocka_run_group_tests(tests, open_kinds, close_kinds);
 }

@@ -54,9 +54,9 @@ static void a_body_turns_about_each_axis(void **state)
     velocity(v, 0, yaw, 8, -1, p), check(v, 2, 8 - 1.5, 0); /* on no node */
 }
 
-/* A wheel at 8 m/s: 16 rad/s; its road contact stands still, its top has twice the speed, its front goes down. Backwards
- * it turns the other way. The rotor, 30 rad/s about the body's right: 0.4 m above its hub to the rear or the front by w x
- * r = (0, 30, 0) x (0, 0, -0.4) = (-12, 0, 0); it stands without its engine. */
+/* A wheel at 8 m/s: 16 rad/s; its road contact stands still, its top has twice the speed, its front goes down.
+ * Backwards it turns the other way. The rotor, 30 rad/s about the body's right: 0.4 m above its hub to the rear or the
+ * front by w x r = (0, 30, 0) x (0, 0, -0.4) = (-12, 0, 0); it stands without its engine. */
 static void what_rolls_and_spins_adds_its_own(void **state)
 {
     (void)state;
