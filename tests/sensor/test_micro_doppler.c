@@ -3,8 +3,9 @@
  * 45 degrees returns the other polarisation. labels: physics slow */
 #include "tests/sensor/radar_scene.h"
 
-enum { BLADE, WHEEL, DIHEDRAL };
-static const double blade_m = 2, spin_rps = 6, wheel_m = 0.5, speed_mps = 8, plate_a_m = 0.3, plate_b_m = 0.4;
+enum { BLADE, WHEEL, DIHEDRAL, PLATES };
+static const double blade_m = 2, spin_rps = 6, wheel_m = 0.5, speed_mps = 8, plate_a_m = 0.3, plate_b_m = 0.4,
+                    screen_m = 0.4, wall_m = 0.2;
 
 static void quad(FILE *file, int first, double p[4][3])
 {
@@ -15,7 +16,7 @@ static void quad(FILE *file, int first, double p[4][3])
 static int open_stage(void **state)
 {
     (void)state;
-    static const char *const model[] = {"blade", "wheel", "dihedral"};
+    static const char *const model[] = {"blade", "wheel", "dihedral", "plates"};
     char                     sidecar[256];
     scene_folder();
     /* across the line of sight when at rest, 2 m to either side of its axis, which is upright; a body too small to
@@ -46,7 +47,16 @@ static int open_stage(void **state)
         quad(file, 1 + 4 * side, p);
     }
     CHECK(fclose(file) == 0);
-    scene_open(model, 3);
+    /* two square plates, one behind the other; the first is gone from the destroyed one */
+    file = scene_obj("plates", "damage:\n  destroyed: {hide: [screen]}\n");
+    for (int behind = 0; behind < 2; behind++) {
+        const double half = 0.5 * (behind ? wall_m : screen_m), x = behind ? -1 : 1;
+        double       p[4][3] = {{x, -half, -half}, {x, half, -half}, {x, half, half}, {x, -half, half}};
+        fputs(behind ? "o wall\n" : "o screen\n", file);
+        quad(file, 1 + 4 * behind, p);
+    }
+    CHECK(fclose(file) == 0);
+    scene_open(model, 4);
     return 0;
 }
 
@@ -184,12 +194,35 @@ static void a_rolled_dihedral_turns_the_polarisation(void **state)
     seeker_radar_destroy(radar);
 }
 
+/* 4 pi A^2 / lambda^2 of the plate in front; of a wreck, whose front plate is gone, that of the one behind: a quarter
+ * of the area, 12 dB less. Slight and moderate damage hide nothing. What was made for one is not taken for another. */
+static void a_wreck_lacks_what_its_damage_hides(void **state)
+{
+    (void)state;
+    static const int damage[] = {0, 3, 1, 0, 2, 3};
+    SeekerRadar     *radar = scene_radar("search_ku", NULL);
+    for (int k = 0; k < 6; k++) {
+        stage.snapshot.count = 0;
+        SnapshotEntity *e = scene_add(PLATES, 0, 0, 0);
+        e->appearance = (uint32_t)damage[k] << 3;
+        arena_reset(stage.arena);
+        const RadarFrame *f = scene_measure(radar);
+        const double      side_m = damage[k] == 3 ? wall_m : screen_m, wave = f->preset->antenna.wavelength_m,
+                     want = 10 * log10(4 * pi_rad * pow(side_m * side_m / wave, 2));
+        print_message("damage %d: %.2f dBsm, on paper %.2f\n", damage[k], 10 * log10(f->target[0].rcs_m2[0]), want);
+        CHECK_NEAR(10 * log10(f->target[0].rcs_m2[0]), want, 0.3);
+        CHECK_NEAR(10 * log10(f->target[0].rcs_m2[1]), want, 0.3);
+    }
+    seeker_radar_destroy(radar);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_blade_flashes_up_to_its_tip),
         cmocka_unit_test(a_wheel_is_still_where_it_stands),
         cmocka_unit_test(a_rolled_dihedral_turns_the_polarisation),
+        cmocka_unit_test(a_wreck_lacks_what_its_damage_hides),
     };
     return cmocka_run_group_tests(tests, open_stage, close_stage);
 }
