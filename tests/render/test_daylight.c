@@ -215,12 +215,30 @@ static void sunlight_goes_by_the_square_of_the_distance(void **state)
     }
 }
 
+/* Air of another temperature than the model's sends down as its fourth power: LOWTRAN's 283.3 W/m2 of the US standard,
+ * 23 km, at 288.15 K (tests/render/test_atmosphere.c) makes 332.86 at 300 K, where a black plane sends up 459.30. Light
+ * for temperatures is what is visible over 0.44, the photosynthetic share (McCree 1972: 0.43 .. 0.46). */
+static void heat_of_a_clear_sky_is_as_on_paper(void **state)
+{
+    (void)state;
+    Weather weather = weather_default();
+    weather.air_temp_k = 300;
+    const Air air = air_of(&weather, 50, 2, 1 << AIR_PAN, NULL);
+    CHECK_NEAR(air.light.longwave_loss_w_m2, 459.30 - 332.86, 0.4); /* the model's ground is 288.1 or 288.2 K */
+    CHECK_NEAR(air.light.sun_w_m2[AIR_PAN] / air.light.solar_direct_w_m2, 0.44, 1e-9);
+    CHECK_NEAR(air.light.sky_w_m2[AIR_PAN] / air.light.solar_diffuse_w_m2, 0.44, 1e-4);
+    /* the air cools with height as the model's, -6.5 K/km: what it is warmer by at each node of height */
+    for (int i = 0; i < air_warmer_nodes && i * air_warmer_step_m < 10000; i++)
+        CHECK_NEAR((double)air.light.warmer_k[i], -6.5e-3 * i * air_warmer_step_m, 0.25);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(sun_disc_adds_up),
         cmocka_unit_test(light_fades_smoothly),
         cmocka_unit_test(light_fades_by_its_twilight),
+        cmocka_unit_test(heat_of_a_clear_sky_is_as_on_paper),
         cmocka_unit_test(clouds_dim_the_sun_and_warm_the_sky),
         cmocka_unit_test(sunlight_goes_by_the_square_of_the_distance),
     };
