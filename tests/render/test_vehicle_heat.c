@@ -120,7 +120,8 @@ static void the_side_of_the_sun_is_warm(void **state)
     print_message("sheet east %.1f, west %.1f K; turret east over west %.1f K\n", east_k, west_k, turret_k);
     /* 0.6 .. 0.94 x 606 W/m2 over 15 W/(m2 K) of film and emission, less what conduction takes round the corners */
     CHECK(east_k - west_k > 10 && east_k - west_k < 32);
-    CHECK(turret_k > 1 && turret_k < 20);
+    /* armour of 226 kJ/(m2 K) by itself: 16 K in the end, 11 K in three hours; its roof takes more than half round */
+    CHECK(turret_k > 2.5 && turret_k < 9);
     vehicle_heat_destroy(heat);
 }
 
@@ -139,16 +140,23 @@ static void engines_warm_and_stay_warm(void **state)
                  track_k = mean_k(heat, &s, HEAT_TRACK, NULL), hull_k = mean_k(heat, &s, HEAT_HULL, NULL);
     print_message("driving: deck %.1f, exhaust %.1f, tracks %.1f, hull %.1f K over the air\n", deck_k - 288,
                   gas_k - 288, track_k - 288, hull_k - 288);
-    CHECK(deck_k > 288 + 15 && deck_k < 363); /* the engine has 363 K */
-    CHECK(gas_k > 400 && gas_k < 750);        /* between the air and the gas */
-    CHECK(track_k > 295 && track_k < 340 && hull_k > 288.2 && hull_k < 300);
+    /* the engine has 363 K behind 15 W/(m2 K); outside there are 14.6 of the wind of 2 m/s and 5.4 of radiation */
+    CHECK_NEAR(deck_k - 288, 75 * 15 / (15 + 14.6 + 5.4), 3);
+    /* gas of 750 K behind 60 W/(m2 K): 372 K over the air without radiation, 291 K as a black body */
+    CHECK(gas_k > 288 + 280 && gas_k < 288 + 372);
+    /* 1500 W/m2 into 40 mm of steel, 151 kJ/(m2 K), over 14.6 and 5.3 W/(m2 K): 75 K in the end, 28.5 K in an hour,
+     * less what the ground takes */
+    CHECK(track_k > 288 + 20 && track_k < 288 + 29);
+    CHECK(hull_k > 289.2 && hull_k < 293); /* a cabin of 1.5 kW, and what comes along from the deck: by 2 either way */
 
     s.entity.drives.engine = 0, s.entity.drives.speed_mps = 0;
     run(heat, &s, 61, 61 + 2400);
     const double after_k = mean_k(heat, &s, HEAT_ENGINE_DECK, up), cold_k = mean_k(heat, &s, HEAT_EXHAUST, NULL);
     print_message("forty minutes after the halt: deck %.1f, exhaust %.1f, tracks %.1f K\n", after_k - 288, cold_k - 288,
                   mean_k(heat, &s, HEAT_TRACK, NULL) - 288);
-    CHECK(after_k > 288 + 4 && after_k < deck_k + 5 && cold_k < 310);
+    /* its engine still has 68 K (leaks of 25000 s) behind a film of 6 instead of 15: 75 % of what the deck had, in the
+     * end half; pipes are cold within 20 minutes but for what the deck gives them */
+    CHECK(after_k > 288 + 16 && after_k < deck_k - 4 && cold_k < 306);
 
     const double bore_k = mean_k(heat, &s, HEAT_GUN, NULL);
     VehicleNodes before, after;
@@ -162,7 +170,15 @@ static void engines_warm_and_stay_warm(void **state)
     run(heat, &s, 2463, 2462 + 300);
     const double shot_k = mean_k(heat, &s, HEAT_GUN, NULL) - bore_k;
     print_message("three rounds, five minutes later: gun %.1f K warmer\n", shot_k);
-    CHECK(shot_k > 1.5 && shot_k < 15); /* 4.3 MJ into a tonne or two of steel */
+    /* 24 kg of 180 kJ into the barrel's own heat capacity, less what five minutes take: 20 W/(m2 K) of 150 kJ/(m2 K), a
+     * twentieth, and what flows into its mount */
+    double barrel_j_k = 0;
+    for (int i = after.shape->patches->first_of_body[after.shape->gun_body[1]];
+         i < after.shape->patches->first_of_body[after.shape->gun_body[1] + 1]; i++)
+        for (int n = after.shape->skin[i].surface; n <= after.shape->skin[i].inner; n++)
+            barrel_j_k += after.shape->capacity_j_k[n];
+    print_message("on paper up to %.1f K\n", 24 * 180e3 / barrel_j_k);
+    CHECK(shot_k > 0.75 * 24 * 180e3 / barrel_j_k && shot_k < 24 * 180e3 / barrel_j_k);
     vehicle_heat_destroy(heat);
 }
 
@@ -293,7 +309,9 @@ static void speed_warms(void **state)
                   nose_k, motor_k);
     CHECK(skin_k > 22 && skin_k < 30); /* parts of it are behind the engines */
     CHECK_NEAR(nose_k, 38.06, 2);
-    CHECK(motor_k > 300 && motor_k < 900);
+    /* from the recovery temperature of 288 K, two to three seconds of 2500 K behind 250 W/(m2 K) into 3 mm of
+     * steel, 11.3 kJ/(m2 K): 96 .. 143 K; lighter alloys warm by half as much again */
+    CHECK(motor_k > 288 + 90 && motor_k < 288 + 180);
     vehicle_heat_destroy(heat);
 }
 

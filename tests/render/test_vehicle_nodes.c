@@ -232,11 +232,14 @@ static void ground_touches_tracks_and_wheels(void **state)
             "%s: print %.2f m2; an hour on ground 30 K warmer %.2f K, 0.8 m over it %.2f K; driving on it %.1f K, over it %.1f K\n",
             t ? "truck" : "tank", print_m2, high_k[1] - 288, high_k[2] - 288, rolls_k[0] - 288, rolls_k[1] - 288);
         CHECK_NEAR(high_k[0], 288, 1e-3);
-        CHECK(high_k[1] > high_k[2] + 0.3 && high_k[1] < 318);
-        CHECK(rolls_k[0] < rolls_k[1] - 1 && rolls_k[0] > 289);
+        /* contact gives 16 W/(m2 K) in an hour (17.5 of two bodies, in series with gaps of 200), radiation of warm
+         * ground 6, where the air takes 9: beneath, tracks come up by a seventh to a half of the ground's 30 K */
+        CHECK(high_k[1] > high_k[2] + 2 && high_k[1] > 288 + 30.0 / 7 && high_k[1] < 288 + 15);
+        CHECK(rolls_k[0] < rolls_k[1] - 3 && rolls_k[0] > 288 + 20);
         /* prints of the kinds: a tank of 40 t has some 0.8 bar under its tracks (5 m2, of which pads are a third to
          * all), a truck of 10 t some 3 to 6 bar in its tyres */
-        CHECK(t ? print_m2 > 0.15 && print_m2 < 0.8 : print_m2 > 1.5 && print_m2 < 6);
+        CHECK(t ? print_m2 > 0.35 && print_m2 < 0.8
+                : print_m2 > 1.5 && print_m2 < 3); /* the model's: pads, six tyres */
     }
 }
 
@@ -255,10 +258,10 @@ static void water_cools_hulls(void **state)
     run(heat, &s, 0, 3600);
     range_k(&low_k, &high_k, heat, &s, HEAT_ROLE_COUNT, -20, -1);
     print_message("ship: below the water %.2f .. %.2f K", low_k, high_k);
-    CHECK(low_k > 279.9 && high_k < 281);
+    CHECK(low_k > 279.9 && high_k < 280.5); /* a film of 200 W/(m2 K) against 4 from inside */
     range_k(&low_k, &high_k, heat, &s, HEAT_ROLE_COUNT, 8, 60);
     print_message(", its upper works %.2f .. %.2f K\n", low_k, high_k);
-    CHECK(low_k > 297 && high_k < 300.01);
+    CHECK(low_k > 299.5 && high_k < 300.01); /* well above the waterline no heat comes up through the plates */
     CHECK(vehicle_heat_nodes(&n, heat, s.entity.id));
     double sum = 0, m2 = 0, all_m2 = 0;
     for (int i = 0; i < n.shape->patches->count; i++) {
