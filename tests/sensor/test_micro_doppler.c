@@ -3,6 +3,8 @@
  * 45 degrees returns the other polarisation. labels: physics slow */
 #include "tests/sensor/radar_scene.h"
 
+#include "render/scattering/field/radar_target_private.h"
+
 enum { BLADE, WHEEL, DIHEDRAL, PLATES };
 static const double blade_m = 2, spin_rps = 6, wheel_m = 0.5, speed_mps = 8, plate_a_m = 0.3, plate_b_m = 0.4,
                     screen_m = 0.4, wall_m = 0.2;
@@ -216,6 +218,22 @@ static void a_wreck_lacks_what_its_damage_hides(void **state)
     seeker_radar_destroy(radar);
 }
 
+/* Nor are there its edges: four of each plate, of which eight or four are left. */
+static void a_wreck_lacks_its_hidden_edges(void **state)
+{
+    (void)state;
+    static const int want[] = {8, 8, 8, 4};
+    RadarTarget     *target;
+    stage.snapshot.count = 0;
+    const int model = scene_add(PLATES, 0, 0, 0)->model;
+    CHECK(radar_target_create(&target, catalog_model(stage.catalog, model), NULL, "avx2") == STATUS_OK);
+    for (int damage = 0; damage < 4; damage++) {
+        radar_target_pose(target, NULL, damage);
+        assert_int_equal(target->wedge_count, want[damage]);
+    }
+    radar_target_destroy(target);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -223,6 +241,7 @@ int main(void)
         cmocka_unit_test(a_wheel_is_still_where_it_stands),
         cmocka_unit_test(a_rolled_dihedral_turns_the_polarisation),
         cmocka_unit_test(a_wreck_lacks_what_its_damage_hides),
+        cmocka_unit_test(a_wreck_lacks_its_hidden_edges),
     };
     return cmocka_run_group_tests(tests, open_stage, close_stage);
 }

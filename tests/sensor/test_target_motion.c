@@ -5,18 +5,21 @@
 #include "sensor/radar/seeker_radar_private.h"
 
 /* A hull, a wheel on it whose axle is to the right, a turret turned by 90 degrees about the vertical, and a rotor on
- * the turret that spins about the turret's forward axis. Body axes: x forward, y right, z down. */
-enum { HULL, WHEEL, TURRET, ROTOR, nodes };
+ * the turret that spins about the turret's forward axis, with a blade that is a node of its own. Body axes: x forward,
+ * y right, z down. */
+enum { HULL, WHEEL, TURRET, ROTOR, BLADE, nodes };
 
 static ModelNode node[nodes] = {[HULL] = {.parent = -1},
                                 [WHEEL] = {.parent = HULL, .axis = {0, -1, 0}, .roll_radius_m = 0.5},
                                 [TURRET] = {.parent = HULL, .axis = {0, 0, 1}},
-                                [ROTOR] = {.parent = TURRET, .axis = {1, 0, 0}, .spin_rps_moving = 30}};
+                                [ROTOR] = {.parent = TURRET, .axis = {1, 0, 0}, .spin_rps_moving = 30},
+                                [BLADE] = {.parent = ROTOR, .axis = {0, 0, 1}}};
 static NodePose  pose[nodes] = {
      [HULL] = {{0, 0, 0}, {1, 0, 0, 0, 1, 0, 0, 0, 1}},
      [WHEEL] = {{2, 1, -0.5}, {1, 0, 0, 0, 1, 0, 0, 0, 1}},
      [TURRET] = {{0, 0, -2}, {0, -1, 0, 1, 0, 0, 0, 0, 1}}, /* its x is the body's y, its y the body's -x */
-     [ROTOR] = {{0, 3, -2}, {0, -1, 0, 1, 0, 0, 0, 0, 1}}};
+     [ROTOR] = {{0, 3, -2}, {0, -1, 0, 1, 0, 0, 0, 0, 1}},
+     [BLADE] = {{0, 3, -2.2}, {0, -1, 0, 1, 0, 0, 0, 0, 1}}};
 static const Model model = {.name = "mill", .node_count = nodes, .node = node};
 
 /* Heads north, upright: forward is north, right is east, down is down. */
@@ -69,6 +72,7 @@ static void what_rolls_and_spins_adds_its_own(void **state)
     velocity(v, 0, still, -8, WHEEL, top), check(v, 0, -16, 0);
     velocity(v, 0, still, 8, HULL, top), check(v, 0, 8, 0);
     velocity(v, 1, still, 0, ROTOR, blade), check(v, 0, -12, 0);
+    velocity(v, 1, still, 0, BLADE, blade), check(v, 0, -12, 0); /* as what it is on, about that one's hub */
     velocity(v, 0, still, 0, ROTOR, blade), check(v, 0, 0, 0);
     velocity(v, 1, still, 0, TURRET, blade), check(v, 0, 0, 0);
     velocity(v, 1, yaw, 8, ROTOR, blade), check(v, 0, 8 - 1.5 - 12, 0); /* all three */
