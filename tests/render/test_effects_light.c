@@ -1,5 +1,5 @@
-/* What lights a puff of smoke, by hand: sun, sky and ground scattered, its own emission, the shade of its cloud, and the
- * air before hot gas. labels: physics */
+/* What lights a puff of smoke, by hand: sun, sky and ground scattered, its own emission, the shade of its cloud, and
+ * the air before hot gas. labels: physics */
 #include "tests/check.h"
 
 #include "render/smoke/smoke.h"
@@ -73,10 +73,10 @@ static void even(Air *air, double sky_w_m2_sr)
     air_even(air, (const double[3]){0, -0.8, 0.6}, 1000, sky, 0, mwir, lwir);
 }
 
-/* Burst dust in red: albedo 0.86, asymmetry 0.6. Sky of 20 W/(m2 sr); ground of 0.25 below it: 0.25 (1000 0.6 / pi + 20)
- * = 52.746. Half of each over the albedo: 0.43 (20 + 52.746) = 31.281, and 0.43 (20 - 52.746) = -14.081 from top to
- * bottom. Henyey and Greenstein at a cosine of -0.8, (1 - g^2) / (4 pi (1 + g^2 - 2 g c)^1.5): 0.014413 at 0.6, 0.036812
- * at 0.3, 0.054837 at 0.15; times 860, 430, 215 W/m2. */
+/* Burst dust in red: albedo 0.86, asymmetry 0.6. Sky of 20 W/(m2 sr); ground of 0.25 below it: 0.25 (1000 0.6 / pi +
+ * 20) = 52.746. Half of each over the albedo: 0.43 (20 + 52.746) = 31.281, and 0.43 (20 - 52.746) = -14.081 from top to
+ * bottom. Henyey and Greenstein at a cosine of -0.8, (1 - g^2) / (4 pi (1 + g^2 - 2 g c)^1.5): 0.014413 at 0.6,
+ * 0.036812 at 0.3, 0.054837 at 0.15; times 860, 430, 215 W/m2. */
 static void sun_sky_and_ground_are_scattered(void **state)
 {
     (void)state;
@@ -99,8 +99,7 @@ static void sun_sky_and_ground_are_scattered(void **state)
     static const int    band[5] = {effect_band_b, effect_band_g, effect_band_r, effect_band_pan, effect_band_nir};
     even(&air, 20);
     const EffectScene again = scene_of(&puff, 1, &air, 0);
-    for (int b = 0; b < 5; b++)
-        CHECK_NEAR(again.volume[0].sun[band[b]][0] / 12.395, albedo[b] / 0.86, 2e-4);
+    for (int b = 0; b < 5; b++) CHECK_NEAR(again.volume[0].sun[band[b]][0] / 12.395, albedo[b] / 0.86, 2e-4);
 }
 
 /* In 8 .. 12 um: albedo 0.35, 15 K over the air's 288.15 K; sky of 25, ground of 30 W/(m2 sr): 0.175 55 and 0.65 of
@@ -123,8 +122,8 @@ static void it_emits_and_scatters_what_is_about_it(void **state)
     CHECK_NEAR(v->sun[effect_band_lwir][1], 0.5 * 350 / (4 * pi_rad), 1e-3);
 }
 
-/* Of two puffs of one cloud, 1 m of radius and 3 m apart towards the sun, the far one is in the shade of the other, by 16
- * / 15 m of its density at the centre, whichever comes first; the near one is not; nor are those of two clouds. */
+/* Of two puffs of one cloud, 1 m of radius and 3 m apart towards the sun, the far one is in the shade of the other, by
+ * 16 / 15 m of its density at the centre, whichever comes first; the near one is not; nor are those of two clouds. */
 static void puffs_of_a_cloud_shade_each_other(void **state)
 {
     (void)state;
@@ -152,7 +151,7 @@ static void thin_air_takes_less_of_hot_gas(void **state)
     (void)state;
     static const double north_m[2] = {500, 3000}, up_m[2] = {4000, 1000}, eye_m[2] = {4000, 0},
                         counts_m[2] = {303.2653, 2970.6849};
-    static Air          air;
+    static Air air;
     even(&air, 20);
     for (int k = 0; k < 2; k++) {
         double            want[hot_gas_passed_nodes];

@@ -4,6 +4,7 @@
 #include "tests/sensor/radar_scene.h"
 
 #include "render/scattering/field/radar_target_private.h"
+#include "sensor/radar/window_private.h"
 
 enum { BLADE, WHEEL, DIHEDRAL, PLATES };
 static const double blade_m = 2, spin_rps = 6, wheel_m = 0.5, speed_mps = 8, plate_a_m = 0.3, plate_b_m = 0.4,
@@ -234,6 +235,53 @@ static void a_wreck_lacks_its_hidden_edges(void **state)
     radar_target_destroy(target);
 }
 
+/* Signal to noise of a plate's truth and of what is detected of it, by Skolnik's equation and the preset's own figures:
+ * P G^2 lambda^2 sigma / ((4 pi)^3 R^4 L), times the energy of all pulses over k 290 K F, less what the two windows
+ * lose; its cross section, range and closing speed. */
+static void truth_and_detection_are_the_radar_equations(void **state)
+{
+    (void)state;
+    SeekerRadar *radar = scene_radar("search_ku", NULL);
+    const double v_enu_mps[3] = {speed_mps, 0, 0};
+    stage.snapshot.count = 0;
+    SnapshotEntity *e = scene_add(PLATES, 0, 0, 0);
+    m3_mul_v3(e->v_ecef_mps, stage.world.frame.r_ecef_from_enu, v_enu_mps);
+    arena_reset(stage.arena);
+    const RadarFrame  *f = scene_measure(radar);
+    const RadarPreset *p = f->preset;
+    const RadarTruth  *t = &f->target[0];
+    const double       wave = p->antenna.wavelength_m, n = p->antenna.taper;
+    const double       gain = (2 * n + 1) / ((n + 1) * (n + 1)) * pow(pi_rad * p->antenna.diameter_m / wave, 2);
+    WindowFigures      figures[2];
+    double             weight[2][4096], bins = 1;
+    for (int axis = 0; axis < 2; axis++) {
+        const int count = axis ? p->wave.pulses : p->wave.samples;
+        CHECK(count <= 4096 &&
+              window_weights(weight[axis], count, axis ? &p->doppler_window : &p->range_window) == STATUS_OK);
+        CHECK(window_figures(&figures[axis], weight[axis], count) == STATUS_OK);
+        bins *= figures[axis].noise_bins;
+    }
+    const double rcs_m2 = t->rcs_m2[p->transmits_h ? 0 : 1];
+    const double received_w =
+        p->power_w * gain * gain * wave * wave * rcs_m2 / (pow(4 * pi_rad, 3) * pow(scene_range_m, 4) * p->loss);
+    const double noise_j = 1.380649e-23 * 290 * p->receiver.noise_figure;
+    const double want_db = 10 * log10(received_w * p->wave.pulse_s * p->wave.pulses / noise_j / bins);
+    print_message(
+        "a plate of %.2f dBsm at 1 km: signal to noise %.2f dB, on paper %.2f; detected: %.2f dB, %.2f dBsm\n",
+        10 * log10(rcs_m2), 10 * log10(t->snr), want_db, 10 * log10(f->detection[0].snr),
+        10 * log10(f->detection[0].rcs_m2));
+    CHECK_NEAR(10 * log10(t->snr), want_db, 1e-3);
+    CHECK_NEAR(10 * log10(f->detection[0].rcs_m2), 10 * log10(rcs_m2), 0.2);
+    CHECK_NEAR(t->range_m, scene_range_m, 1e-6);
+    CHECK_NEAR(t->range_rate_mps, -speed_mps, 1e-6); /* it comes nearer */
+    CHECK_NEAR(f->detection[0].range_rate_mps, -speed_mps, 0.2 * f->map.mps_per_row);
+    /* its plate is 1 m before its origin; and it appears nearer or farther by the waveform's coupling */
+    CHECK_NEAR(f->detection[0].range_m, t->appears_m - 1, 0.2 * f->map.metre_per_column);
+    CHECK_NEAR(t->appears_m - t->range_m, -speed_mps * p->wave.centre_hz * p->wave.pulse_s / p->wave.bandwidth_hz,
+               1e-6);
+    seeker_radar_destroy(radar);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -242,6 +290,7 @@ int main(void)
         cmocka_unit_test(a_rolled_dihedral_turns_the_polarisation),
         cmocka_unit_test(a_wreck_lacks_what_its_damage_hides),
         cmocka_unit_test(a_wreck_lacks_its_hidden_edges),
+        cmocka_unit_test(truth_and_detection_are_the_radar_equations),
     };
     return cmocka_run_group_tests(tests, open_stage, close_stage);
 }
