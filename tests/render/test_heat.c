@@ -96,9 +96,10 @@ static void slopes_face_the_sun(void **state)
     print_message(
         "slopes of 30 degrees, east less west: %+.1f K in the morning, %+.1f K in the afternoon; walls %+.1f K\n",
         east_am - west_am, east_pm - west_pm, wall_e - wall_w);
-    CHECK(east_am - west_am > 6 && east_am - west_am < 25);
-    CHECK(west_pm - east_pm > 6 && west_pm - east_pm < 25);
-    CHECK(wall_e - wall_w > 6);
+    /* some 300 W/m2 between their cosines, over 30 W/(m2 K) of film, emission, moisture and soil */
+    CHECK_NEAR(east_am - west_am, 10, 3);
+    CHECK_NEAR(west_pm - east_pm, 10, 3);
+    CHECK(wall_e - wall_w > 6 && wall_e - wall_w < 14);
     CHECK(fabs(ground_k(night, SURFACE_GRASS, low, 0, high) - ground_k(night, SURFACE_GRASS, -low, 0, high)) < 1.5);
     heat_destroy(h);
     arena_reset(arena);
@@ -118,10 +119,10 @@ static void facets_are_close(void **state)
         const double found = heat_ground_k(at(h, 9), SURFACE_DRY_GRASS, unit, 0, 1, 1),
                      want = column_k(SURFACE_DRY_GRASS, &paper_summer, unit, 9, 0, 0);
         print_message("normal %+.1f %+.1f: %+.2f K\n", unit[0], unit[1], found - want);
-        CHECK_NEAR(found, want, 2.5);
+        CHECK_NEAR(found, want, 1); /* straight between facets 15 degrees apart, of 10 to 20 K from side to side */
         sum += (found - want) * (found - want) / 5;
     }
-    CHECK(sqrt(sum) < 1.3);
+    CHECK(sqrt(sum) < 0.5);
     heat_destroy(h);
     arena_reset(arena);
 }
