@@ -282,6 +282,26 @@ static void truth_and_detection_are_the_radar_equations(void **state)
     seeker_radar_destroy(radar);
 }
 
+/* What moves across the axis spreads the ground's range rate over the beam: 5 m/s across (3 to the right, 4 down),
+ * whatever goes along, times the beam's width at half power, and two cells of Doppler. Looking west, right is north. */
+static void the_notch_is_as_wide_as_the_beam(void **state)
+{
+    (void)state;
+    SeekerRadar *radar = scene_radar("search_ku", NULL);
+    const double v[3] = {-20, 3, -4};
+    stage.snapshot.count = 0;
+    memcpy(stage.scene.v_enu_mps, v, sizeof v);
+    arena_reset(stage.arena);
+    const RadarFrame  *f = scene_measure(radar);
+    const RadarPreset *p = f->preset;
+    memset(stage.scene.v_enu_mps, 0, sizeof v);
+    const double cell_mps = 0.5 * p->antenna.wavelength_m * p->wave.repeat_hz / p->wave.pulses;
+    CHECK_NEAR(f->map.mps_per_row, cell_mps, 1e-9);
+    CHECK_NEAR(f->notch_mps, 5 * antenna_width_rad(&p->antenna) + 2 * cell_mps, 1e-9);
+    CHECK_NEAR(f->ground_rate_mps, -20, 1e-9); /* it comes nearer */
+    seeker_radar_destroy(radar);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -291,6 +311,7 @@ int main(void)
         cmocka_unit_test(a_wreck_lacks_what_its_damage_hides),
         cmocka_unit_test(a_wreck_lacks_its_hidden_edges),
         cmocka_unit_test(truth_and_detection_are_the_radar_equations),
+        cmocka_unit_test(the_notch_is_as_wide_as_the_beam),
     };
     return cmocka_run_group_tests(tests, open_stage, close_stage);
 }

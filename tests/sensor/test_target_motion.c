@@ -90,12 +90,27 @@ static void range_rate_is_along_the_line_of_sight(void **state)
     CHECK_NEAR(shot_range_rate(&shot, &sight, v), -3.08, 1e-12);
 }
 
+/* The main lobe of a dish ends where u = pi D / lambda sine is the first zero of J_1, J_2, J_3 (Abramowitz & Stegun,
+ * table 9.5), by its taper; a small dish has no null ahead. */
+static void the_main_lobe_ends_at_its_null(void **state)
+{
+    (void)state;
+    static const double zero[] = {3.83171, 5.13562, 6.38016};
+    RadarPreset         preset = {.antenna = {.diameter_m = 0.2, .wavelength_m = 0.0086}};
+    const RadarShot     shot = {.preset = &preset};
+    for (preset.antenna.taper = 0; preset.antenna.taper < 3; preset.antenna.taper++)
+        CHECK_NEAR(shot_null(&shot) * pi_rad * 0.2 / 0.0086, zero[preset.antenna.taper], 1e-4);
+    preset.antenna.taper = 2, preset.antenna.diameter_m = 0.01;
+    CHECK(shot_null(&shot) == 1);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_body_turns_about_each_axis),
         cmocka_unit_test(what_rolls_and_spins_adds_its_own),
         cmocka_unit_test(range_rate_is_along_the_line_of_sight),
+        cmocka_unit_test(the_main_lobe_ends_at_its_null),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
