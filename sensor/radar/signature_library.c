@@ -118,7 +118,8 @@ static Status hash_settings(char out[sha256_text_size], const SignaturesConfig *
 static bool add_node(Sha256 *d, const ModelNode *n)
 {
     bool ok = add_int(d, n->parent) && add_int(d, (int)n->joint) && add_double(d, n->low) && add_double(d, n->high) &&
-              add_double(d, n->roll_radius_m) && sha256_add(d, n->p_parent, sizeof n->p_parent) &&
+              add_double(d, n->spin_rps_moving) && add_double(d, n->roll_radius_m) &&
+              sha256_add(d, n->p_parent, sizeof n->p_parent) &&
               sha256_add(d, n->r_parent_from_node, sizeof n->r_parent_from_node);
     return ok && sha256_add(d, n->axis, sizeof n->axis);
 }

@@ -203,12 +203,80 @@ static void foliage_takes_and_returns(void **state)
     CHECK_NEAR(sigma0 / clutter_sigma0(trees, 0.4, 0.0086), 1, 1e-5);
 }
 
+/* Every column, each of another value, in its own member: decibels of power as ratios, millimetres as metres. */
+static void columns_are_taken_by_their_names(void **state)
+{
+    (void)state;
+    ClutterTable out;
+    CHECK(open_with(&out, "crop,Ka,git,-10,0.11,1.5,0.012,2.2,21,4,1.6,3,-7,0.61,0.71,3.3,5.5,1.2,test", header) ==
+          STATUS_OK);
+    const ClutterRow   *row = &out.row[SURFACE_CROP][CLUTTER_KA];
+    const double        got[15] = {row->gamma,       row->a,      row->b,         row->c,        row->d,
+                                   row->roughness_m, row->nu,     row->texture_m, row->hh,       row->hv,
+                                   row->rho,         row->motion, row->still,     row->extent_m, row->foliage_db_m};
+    static const double want[15] = {
+        0.1,  0.11, 1.5, 0.012,  2.2, 0.021, 4, 1.6, 1.9952623149688795, 0.19952623149688797,
+        0.61, 0.71, 3.3, 0.0055, 1.2};
+    CHECK(row->model == CLUTTER_GIT);
+    for (int k = 0; k < 15; k++) CHECK_NEAR(got[k] / want[k], 1, 1e-12);
+}
+
+/* A table whose gamma is -(10 surface + band) dB, its rows from the last to the first: each class has its own, in each
+ * band; and the bundled one is read the same way (grass, soil, rock and water of etc/radar/clutter.csv, Ku and W). */
+static void rows_are_taken_by_their_names(void **state)
+{
+    (void)state;
+    char         path[text_file_size], *text = NULL;
+    size_t       size;
+    FILE        *to = open_memstream(&text, &size);
+    ClutterTable out;
+    CHECK(to);
+    fputs(header, to);
+    for (int s = SURFACE_COUNT - 1; s > 0; s--)
+        for (int b = CLUTTER_BAND_COUNT - 1; b >= 0; b--)
+            fprintf(to, "%s,%s,gamma,%g,,,,,20,4,1,0,-8,0.6,0.7,3,5,1.2,test\n", surface_name((SurfaceClass)s),
+                    clutter_band_name((ClutterBand)b), -s - 0.1 * b);
+    fclose(to);
+    text_file(path, text);
+    CHECK(clutter_table_open(&out, path) == STATUS_OK);
+    remove(path);
+    free(text);
+    for (int s = 1; s < SURFACE_COUNT; s++)
+        for (int b = 0; b < CLUTTER_BAND_COUNT; b++) CHECK_NEAR(-10 * log10(out.row[s][b].gamma), s + 0.1 * b, 1e-9);
+    CHECK_NEAR(-10 * log10(out.row[SURFACE_NONE][CLUTTER_W].gamma), SURFACE_BARE_SOIL + 0.2, 1e-9);
+    static const struct {
+        SurfaceClass surface;
+        double       db[2];
+    } of[] = {{SURFACE_GRASS, {-14.0, -10.1}},
+              {SURFACE_BARE_SOIL, {-19.0, -14.1}},
+              {SURFACE_ROCK, {-11.0, -7.1}},
+              {SURFACE_WATER, {-40, -40}},
+              {SURFACE_WETLAND, {-14.0, -10.1}}};
+    for (size_t k = 0; k < sizeof of / sizeof *of; k++) {
+        CHECK_NEAR(10 * log10(table.row[of[k].surface][CLUTTER_KU].gamma), of[k].db[0], 1e-9);
+        CHECK_NEAR(10 * log10(table.row[of[k].surface][CLUTTER_W].gamma), of[k].db[1], 1e-9);
+    }
+    /* the bands of IEEE 521 that have rows, both ends of each */
+    static const struct {
+        double      ghz;
+        ClutterBand band;
+    } end[] = {{12, CLUTTER_KU}, {18, CLUTTER_KU}, {27, CLUTTER_KA},
+               {40, CLUTTER_KA}, {75, CLUTTER_W},  {110, CLUTTER_W}};
+    static const double outside_ghz[] = {11.999, 18.001, 26.999, 40.001, 74.999, 110.001};
+    ClutterBand         band;
+    for (int k = 0; k < 6; k++) {
+        CHECK(clutter_band_of(&band, 1e9 * end[k].ghz) && band == end[k].band);
+        CHECK(!clutter_band_of(&band, 1e9 * outside_ghz[k]));
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_class_has_its_rows), cmocka_unit_test(what_is_wrong_is_refused),
-        cmocka_unit_test(backscatter_has_its_form), cmocka_unit_test(texture_is_gamma_distributed),
-        cmocka_unit_test(motion_is_billingsleys),   cmocka_unit_test(foliage_takes_and_returns),
+        cmocka_unit_test(every_class_has_its_rows),      cmocka_unit_test(columns_are_taken_by_their_names),
+        cmocka_unit_test(rows_are_taken_by_their_names), cmocka_unit_test(what_is_wrong_is_refused),
+        cmocka_unit_test(backscatter_has_its_form),      cmocka_unit_test(texture_is_gamma_distributed),
+        cmocka_unit_test(motion_is_billingsleys),        cmocka_unit_test(foliage_takes_and_returns),
     };
     return cmocka_run_group_tests(tests, open_table, NULL);
 }

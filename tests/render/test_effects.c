@@ -378,6 +378,31 @@ static void a_host_does_not_see_its_own(void **state)
     }
 }
 
+/* Depths of one puff in all bands go by its row's extinctions: engine smoke 5200, 4600, 4000 m2/kg in blue, green and
+ * red (panchromatic: their mean, 4600), 2800 in the near infrared, 600 in 3.4-4.8 and 250 in 8-12 um; burst dust and
+ * burning oil likewise (etc/effects.csv). */
+static void each_band_has_its_own_extinction(void **state)
+{
+    (void)state;
+    static const struct {
+        EffectKind kind;
+        double     kg, of[7]; /* m2/kg: b, g, r, pan, nir, mwir, lwir */
+    } row[] = {{EFFECT_ENGINE_SMOKE, 5e-5, {5200, 4600, 4000, 4600, 2800, 600, 250}},
+               {EFFECT_BURST_DUST, 3e-3, {330, 325, 320, 325, 300, 270, 260}},
+               {EFFECT_SMOKE, 5e-4, {6800, 6100, 5500, 18400.0 / 3, 4000, 1400, 700}}};
+    static const int band[7] = {effect_band_b,   effect_band_g,    effect_band_r,   effect_band_pan,
+                                effect_band_nir, effect_band_mwir, effect_band_lwir};
+    const Air        air = air_when(40);
+    for (int k = 0; k < 3; k++) {
+        double     tau[effect_band_count], added[effect_band_count];
+        EffectPuff puff = puff_at(row[k].kind, 500, 0, row[k].kg);
+        boresight(tau, added, &puff, &air);
+        CHECK(tau[effect_band_b] > 0.02 && tau[effect_band_b] < 0.9);
+        for (int b = 0; b < 7; b++)
+            CHECK_NEAR(log(tau[band[b]]) / log(tau[effect_band_b]), row[k].of[b] / row[k].of[0], 2e-4); /* floats */
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -387,6 +412,7 @@ int main(void)
         cmocka_unit_test(near_infrared_sees_it_longer),
         cmocka_unit_test(cavity_hides_it),
         cmocka_unit_test(bands_differ_as_the_stuff_does),
+        cmocka_unit_test(each_band_has_its_own_extinction),
         cmocka_unit_test(a_host_does_not_see_its_own),
         cmocka_unit_test(without_smoke_no_bit_changes),
     };

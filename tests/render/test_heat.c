@@ -96,9 +96,10 @@ static void slopes_face_the_sun(void **state)
     print_message(
         "slopes of 30 degrees, east less west: %+.1f K in the morning, %+.1f K in the afternoon; walls %+.1f K\n",
         east_am - west_am, east_pm - west_pm, wall_e - wall_w);
-    CHECK(east_am - west_am > 6 && east_am - west_am < 25);
-    CHECK(west_pm - east_pm > 6 && west_pm - east_pm < 25);
-    CHECK(wall_e - wall_w > 6);
+    /* some 300 W/m2 between their cosines, over 30 W/(m2 K) of film, emission, moisture and soil */
+    CHECK_NEAR(east_am - west_am, 10, 3);
+    CHECK_NEAR(west_pm - east_pm, 10, 3);
+    CHECK(wall_e - wall_w > 6 && wall_e - wall_w < 14);
     CHECK(fabs(ground_k(night, SURFACE_GRASS, low, 0, high) - ground_k(night, SURFACE_GRASS, -low, 0, high)) < 1.5);
     heat_destroy(h);
     arena_reset(arena);
@@ -118,10 +119,10 @@ static void facets_are_close(void **state)
         const double found = heat_ground_k(at(h, 9), SURFACE_DRY_GRASS, unit, 0, 1, 1),
                      want = column_k(SURFACE_DRY_GRASS, &paper_summer, unit, 9, 0, 0);
         print_message("normal %+.1f %+.1f: %+.2f K\n", unit[0], unit[1], found - want);
-        CHECK_NEAR(found, want, 2.5);
+        CHECK_NEAR(found, want, 1); /* straight between facets 15 degrees apart, of 10 to 20 K from side to side */
         sum += (found - want) * (found - want) / 5;
     }
-    CHECK(sqrt(sum) < 1.3);
+    CHECK(sqrt(sum) < 0.5);
     heat_destroy(h);
     arena_reset(arena);
 }
@@ -393,6 +394,70 @@ static void kept_ground_is_the_same(void **state)
     CHECK(system(command) == 0);
 }
 
+/* Name of what is kept of a heat. */
+static void name_of(char name[sha256_text_size], const Heat *h)
+{
+    CacheKey key = heat_kept_key(h);
+    void    *octets;
+    size_t   count;
+    CHECK(key.good && !cache_fetch(&octets, &count, NULL, &key));
+    memcpy(name, key.name, sha256_text_size);
+}
+
+/* Changes the lowest bit of an input: the name must be another. */
+static void check_named(const Heat *h, void *input, const char *what)
+{
+    char           plain[sha256_text_size], other[sha256_text_size];
+    unsigned char *octet = input;
+    name_of(plain, h);
+    *octet ^= 1;
+    name_of(other, h);
+    *octet ^= 1;
+    if (strcmp(plain, other) == 0) fail_msg("%s is not in the name of warm ground", what);
+}
+
+/* All that warm ground follows from, each changed alone: grid, times, facets, each kind's figures and layers, wood, and
+ * the weather of every time, first and last. */
+static void each_input_is_in_the_name_of_warm_ground(void **state)
+{
+    (void)state;
+    enum { times = 5 };
+    static GroundWeather weather[times];
+    Heat                *h = calloc(1, sizeof *h);
+    CHECK(h != NULL);
+    h->kinds = kinds;
+    h->config = heat_default_config();
+    h->branches = 2;
+    h->course = (Course){.wide = 30, .coarse = 2, .fine = 3, .at = weather};
+    HeatConfig   *c = &h->config;
+    double *const number[] = {&c->grid.first_m, &c->grid.growth, &c->grid.depth_m, &c->grid.tolerance_k,
+                              &c->step_s,       &c->spin_up_s,   &c->unix_s};
+    for (size_t k = 0; k < sizeof number / sizeof *number; k++) check_named(h, number[k], "a figure of the settings");
+    check_named(h, &c->facets, "facets");
+    check_named(h, &h->course.wide, "wide");
+    for (int k = 0; k < ground_kinds; k++) {
+        GroundKind   *g = &h->kinds.kind[k];
+        double *const of[] = {&g->porosity,    &g->quartz,         &g->saturation,  &g->rock_w_mk,  &g->rock_j_m3k,
+                              &g->roughness_m, &g->resistance_s_m, &g->absorptance, &g->emissivity, &g->melts_k};
+        for (size_t i = 0; i < sizeof of / sizeof *of; i++) check_named(h, of[i], g->name);
+        check_named(h, &g->vapour, "vapour");
+        for (int l = 0; l < g->layers; l++) {
+            check_named(h, &g->layer[l].thickness_m, "a layer's thickness");
+            check_named(h, &g->layer[l].conductivity_w_mk, "a layer's conductivity");
+            check_named(h, &g->layer[l].capacity_j_m3k, "a layer's capacity");
+        }
+    }
+    for (int k = 0; k < 2; k++) {
+        BranchKind   *b = &h->branch_kind[k];
+        double *const of[] = {&b->conductivity_w_mk, &b->capacity_j_m3k, &b->absorptance, &b->emissivity};
+        for (int i = 0; i < 4; i++) check_named(h, of[i], "a figure of wood");
+    }
+    for (int t = 0; t < times; t++)
+        for (size_t i = 0; i < sizeof *weather / sizeof(double); i++)
+            check_named(h, (double *)&weather[t] + i, "the weather of a time");
+    free(h);
+}
+
 static void settings_out_of_range(void **state)
 {
     (void)state;
@@ -411,12 +476,18 @@ static void settings_out_of_range(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(tables_are_columns),        cmocka_unit_test(slopes_face_the_sun),
-        cmocka_unit_test(facets_are_close),          cmocka_unit_test(places_side_by_side),
-        cmocka_unit_test(shade_of_the_hours_before), cmocka_unit_test(what_everyone_knows),
-        cmocka_unit_test(a_function_of_time_alone),  cmocka_unit_test(a_day_is_remembered),
-        cmocka_unit_test(settings_out_of_range),     cmocka_unit_test(octets_that_are_no_ground),
+        cmocka_unit_test(tables_are_columns),
+        cmocka_unit_test(slopes_face_the_sun),
+        cmocka_unit_test(facets_are_close),
+        cmocka_unit_test(places_side_by_side),
+        cmocka_unit_test(shade_of_the_hours_before),
+        cmocka_unit_test(what_everyone_knows),
+        cmocka_unit_test(a_function_of_time_alone),
+        cmocka_unit_test(a_day_is_remembered),
+        cmocka_unit_test(settings_out_of_range),
+        cmocka_unit_test(octets_that_are_no_ground),
         cmocka_unit_test(kept_ground_is_the_same),
+        cmocka_unit_test(each_input_is_in_the_name_of_warm_ground),
     };
     return cmocka_run_group_tests(tests, open_kinds, close_kinds);
 }

@@ -170,12 +170,72 @@ static void air_takes_the_cold_band(void **state)
     }
 }
 
+/* The two-layer model's ratios (hot_gas.c) between nodes and beyond them: nearer than 10 m what is absorbed goes
+ * by the square root of the path, as strong lines absorb (Goody & Yung 1989, ch. 4), from the first node's 1 - 0.480 at
+ * 700 K and 1 - 0.134 at 300 K; temperatures go linearly, paths and columns by their logarithms; beyond the ends
+ * nothing changes. */
+static void what_passes_is_read_between_its_nodes(void **state)
+{
+    (void)state;
+    static const struct {
+        double co2_atm_m, temp_k, range_m, want;
+    } at[] = {
+        {0.02, 700, 10, 0.480},
+        {0.02, 700, 2.5, 1 - 0.520 * 0.5},
+        {0.02, 700, 0.4, 1 - 0.520 * 0.2},
+        {0.002, 300, 0.1, 1 - 0.866 * 0.1},
+        {0.002, 300, 10, 0.134},
+        {0.2, 2300, 30000, 0.448},
+        {0.5, 3000, 1e6, 0.448},
+        {1e-4, 200, 10, 0.134},
+        {0.002, 2300, 30000, 0.359},
+        {0.2, 300, 30000, 0.006},
+        {0.2, 300, 10, 0.533},
+        {0.2, 1500, 10000, 0.451},
+        {0.02, 600, 10, (0.408 + 0.480) / 2},
+        {0.02, 2000, 10, 0.652 + 5.0 / 8 * (0.734 - 0.652)},
+        {0.02, 700, 17.320508, (0.480 + 0.348) / 2},
+        {0.02, 700, 17320.508, (0.034 + 0.020) / 2},
+        {0.0063245553, 700, 10, (0.275 + 0.480) / 2},
+        {0.063245553, 700, 10, (0.480 + 0.628) / 2},
+    };
+    for (size_t i = 0; i < sizeof at / sizeof *at; i++)
+        CHECK_NEAR(smoke_gas_passed(at[i].co2_atm_m, at[i].temp_k, at[i].range_m), at[i].want, 1e-7);
+}
+
+/* Weights between temperatures are linear, and the ends' beyond them: 900 K is between 700 and 1100. */
+static void weights_are_read_between_their_nodes(void **state)
+{
+    (void)state;
+    double low[2][hot_gas_terms], high[2][hot_gas_terms], got[2][hot_gas_terms];
+    for (int band = 0; band < 2; band++) {
+        static const double of[][4] = {/* from, to, at, share of the second */
+                                       {700, 1100, 900, 0.5},
+                                       {300, 500, 350, 0.25},
+                                       {1500, 2300, 2100, 0.75},
+                                       {300, 300, 200, 0},
+                                       {2300, 2300, 3000, 1}};
+        for (int k = 0; k < 5; k++) {
+            smoke_gas_weights(low, (HotGasBand)band, of[k][0]);
+            smoke_gas_weights(high, (HotGasBand)band, of[k][1]);
+            smoke_gas_weights(got, (HotGasBand)band, of[k][2]);
+            for (int g = 0; g < 2; g++)
+                for (int j = 0; j < hot_gas_terms; j++)
+                    CHECK_NEAR(got[g][j], low[g][j] + of[k][3] * (high[g][j] - low[g][j]), 1e-12);
+        }
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(slabs_match_line_by_line_bands),   cmocka_unit_test(wide_bands_agree),
-        cmocka_unit_test(thin_gas_has_the_bands_intensity), cmocka_unit_test(limits_hold),
+        cmocka_unit_test(slabs_match_line_by_line_bands),
+        cmocka_unit_test(wide_bands_agree),
+        cmocka_unit_test(thin_gas_has_the_bands_intensity),
+        cmocka_unit_test(limits_hold),
         cmocka_unit_test(air_takes_the_cold_band),
+        cmocka_unit_test(what_passes_is_read_between_its_nodes),
+        cmocka_unit_test(weights_are_read_between_their_nodes),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

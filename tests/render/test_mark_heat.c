@@ -114,16 +114,18 @@ static void fv_step(Field *f, const GroundKind *kind, const Column *layers, doub
     }
 }
 
-static void a_box_that_left(void **state)
+/* A box of 3.4 x 3.4 x 2.4 m that stands on sand from one hour to another: against finite volumes, in root mean square.
+ * until_h[times]. share: of the contrast, that the misses may be;
+ * low, high: the contrast below its middle over that of the volumes. */
+static void box_against_volumes(double from_h, double to_h, const double *until_h, int times, double share, double low,
+                                double high)
 {
-    (void)state;
-    enum { kind = SURFACE_SAND, times = 5 };
-    static const double from_h = 9, to_h = 13, until_h[times] = {12.99, 13.5, 14, 15, 17};
-    static Field        f;
-    Column              layers;
-    double              hidden[places];
-    Heat               *h = paper_heat(&kinds, &paper_summer, 6, NULL);
-    GroundStand         box = box_at(from_h, to_h, 3.4, 3.4, 2.4);
+    enum { kind = SURFACE_SAND };
+    static Field f;
+    Column       layers;
+    double       hidden[places];
+    Heat        *h = paper_heat(&kinds, &paper_summer, (int)from_h - 3, NULL);
+    GroundStand  box = box_at(from_h, to_h, 3.4, 3.4, 2.4);
     CHECK(ground_layers(&layers, &kinds.kind[kind], &ground_grid_default) == STATUS_OK);
     for (int p = 0; p < places; p++) {
         hidden[p] = behind((p - places / 2) * place_m, 1.7, 1.7, 2.4);
@@ -149,7 +151,8 @@ static void a_box_that_left(void **state)
             MarkedGround mark;
             CHECK(heat_marks_at(&mark, heat, kind, p_enu, (const double[3]){0, 0, 1}, 1));
             const double want_k = f.surface_k[p] - f.surface_k[0]; /* against ground 3.6 m away, to the sun's side */
-            if (fabs(fabs(y) - 1.7) < 0.4) continue;               /* the very edge, where heat flows sideways */
+            if (p == places / 2) CHECK(mark.add_k / want_k > low && mark.add_k / want_k < high);
+            if (fabs(fabs(y) - 1.7) < 0.4) continue; /* the very edge, where heat flows sideways */
             miss2 += (mark.add_k - want_k) * (mark.add_k - want_k), count++;
             most = fmax(most, fabs(want_k)), worst = fmax(worst, fabs(mark.add_k - want_k));
             if (getenv("SHOW"))
@@ -158,10 +161,26 @@ static void a_box_that_left(void **state)
         }
         print_message("%.2f h: contrast %.2f K, root mean square of the misses %.2f K, worst %.2f K\n", until_h[t],
                       most, sqrt(miss2 / count), worst);
-        CHECK(sqrt(miss2 / count) < 0.1 * most + 0.02);
+        CHECK(sqrt(miss2 / count) < share * most + 0.04);
         arena_reset(arena);
     }
     heat_destroy(h);
+}
+
+static void a_box_that_left(void **state)
+{
+    (void)state;
+    static const double until_h[] = {12.99, 13.5, 14, 15, 17};
+    box_against_volumes(9, 13, until_h, 5, 0.03, 0.85, 1.15);
+}
+
+/* At night the response, which is that of open ground in stable air, is too large: what a box keeps warm stands in air
+ * that takes more of its heat. The contrast below it is 1.4 to 1.5 of the volumes'. */
+static void a_box_that_stood_at_night(void **state)
+{
+    (void)state;
+    static const double until_h[] = {25.9, 26.5, 27, 29};
+    box_against_volumes(20, 26, until_h, 4, 0.4, 1.3, 1.6);
 }
 
 /* Ground below a box stays warm at night, in that shape, and forgets it: against volumes that see no sky for as long.
@@ -207,7 +226,7 @@ static void a_box_at_night(void **state)
     }
     print_message("below a box at night: %+.2f K; an hour after it left %+.2f K, three hours %+.2f K\n", k[0], k[1],
                   k[2]);
-    CHECK(k[0] > 1 && k[1] < 0.8 * k[0] && k[2] < k[1] && k[2] > 0);
+    CHECK(k[0] > 1 && k[1] < 0.8 * k[0] && k[2] < k[1] && k[2] > 0); /* how much: a_box_that_stood_at_night */
     heat_destroy(h);
     arena_reset(arena);
 }
@@ -238,7 +257,7 @@ static void exhaust_warms_the_ground(void **state)
     jet_path(&path, &jet, outlet, north, wind, (double)at(h, from_h)->table.air_k);
     CHECK(jet_path_at(&blow_excess_k, &speed_mps, NULL, &path, p_enu, true));
     print_message("%.1f K\n", blow_excess_k);
-    CHECK(blow_excess_k > 5 && blow_excess_k < 150);
+    CHECK(blow_excess_k > 5 && blow_excess_k < 150); /* of jet_path, which has a test of its own: both sides take it */
     blow_w_m2k = plate_film_w_m2k(speed_mps) - plate_film_w_m2k(0);
     still.surface_k[0] = 290;
     for (int z = 0; z < cells; z++) still.t_k[0][z] = 293;
@@ -368,8 +387,9 @@ static void bounds(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_box_that_left), cmocka_unit_test(a_box_at_night), cmocka_unit_test(exhaust_warms_the_ground),
-        cmocka_unit_test(a_trail_cools),   cmocka_unit_test(a_burst),        cmocka_unit_test(bounds)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(a_box_that_left), cmocka_unit_test(a_box_that_stood_at_night),
+                                       cmocka_unit_test(a_box_at_night),  cmocka_unit_test(exhaust_warms_the_ground),
+                                       cmocka_unit_test(a_trail_cools),   cmocka_unit_test(a_burst),
+                                       cmocka_unit_test(bounds)};
     return cmocka_run_group_tests(tests, open_kinds, close_kinds);
 }

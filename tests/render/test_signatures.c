@@ -241,12 +241,94 @@ static void a_list_serves_its_bin(void **state)
     catalog_close(catalog);
 }
 
+/* A store that has everything: a signature without centres. It remembers what it was asked for. */
+typedef struct Asked {
+    int         count, damage;
+    const char *model;
+    double      joint, range_m[2];
+} Asked;
+
+static bool fetch_anything(void *user, Signature *out, const SignatureKey *key)
+{
+    Asked *asked = user;
+    *asked = (Asked){asked->count + 1,
+                     key->damage,
+                     key->model->name,
+                     key->joint[key->model->node_count - 1],
+                     {key->look.tx.range_m, key->look.rx.range_m}};
+    *out = (Signature){.tx = key->look.tx, .rx = key->look.rx, .centre = calloc(1, sizeof *out->centre)};
+    return true;
+}
+
+/* What is asked for again is at hand; each input that alone is another is asked of the store, and by its own key:
+ * model, damage, the last joint, either antenna's direction and range. */
+static void each_input_has_a_signature_of_its_own(void **state)
+{
+    (void)state;
+    static const DisEntityType tank = {1, 1, 222, 1, 1, 1, 0};
+    Catalog                   *catalog;
+    RadarMaterials             materials;
+    int                        model;
+    Origin                     origin;
+    Asked                      asked = {0};
+    Signatures                *s = open(&catalog, &model, &materials, 1 << 30), *stored;
+    const SignaturesConfig     config = {.frequency_hz = frequency_hz,
+                                         .bandwidth_hz = 5e8,
+                                         .aspect_rad = aspect_rad,
+                                         .most_octets = 1 << 30,
+                                         .store = {.user = &asked, .fetch = fetch_anything},
+                                         .isa = "avx2"};
+    signatures_destroy(s);
+    CHECK(signatures_create(&stored, &config, catalog, &materials) == STATUS_OK);
+    const int other = catalog_find(catalog, tank, &origin, NULL);
+    CHECK(other != model);
+    static double joint[2][512];
+    for (int m = 0; m < 2; m++) {
+        const Model *of = catalog_model(catalog, m ? other : model);
+        int          last = of->node_count - 1;
+        while (last > 0 && of->node[last].roll_radius_m > 0) last--;
+        CHECK(of->node_count <= 512);
+        if (m == 1) CHECK(last > 0);
+        joint[m][last] = 0.25;
+    }
+    const ScatterAntenna near = at(20, 15, 2000), far = at(20, 15, 3000), beside = at(21, 15, 2000),
+                         above = at(20, 16, 2000);
+    const struct {
+        int                   model, damage;
+        const double         *joint;
+        const ScatterAntenna *tx, *rx;
+    } ask[] = {{model, 0, NULL, &near, &near},    {model, 1, NULL, &near, &near},    {model, 3, NULL, &near, &near},
+               {other, 0, NULL, &near, &near},    {other, 3, NULL, &near, &near},    {other, 3, joint[1], &near, &near},
+               {other, 3, joint[1], &far, &near}, {other, 3, joint[1], &near, &far}, {model, 0, NULL, &beside, &near},
+               {model, 0, NULL, &near, &beside},  {model, 0, NULL, &above, &near},   {model, 0, NULL, &near, &above}};
+    enum { asks = sizeof ask / sizeof *ask };
+    for (int round = 0; round < 2; round++)
+        for (int i = 0; i < asks; i++) {
+            const Signature    *got;
+            const SignatureLook of = {.tx = *ask[i].tx, .rx = *ask[i].rx};
+            CHECK(signatures_find(&got, stored, ask[i].model, ask[i].joint, ask[i].damage, &of, NULL) == STATUS_OK);
+            CHECK(asked.count == (round == 0 ? i + 1 : asks));
+            CHECK(fabs(log2(got->tx.range_m / ask[i].tx->range_m)) < 0.13 &&
+                  fabs(log2(got->rx.range_m / ask[i].rx->range_m)) < 0.13);
+            CHECK_NEAR(v3_dot(got->tx.u, ask[i].tx->u), 1, 2e-5); /* within half a bin's diagonal: 0.0037 rad */
+            CHECK_NEAR(v3_dot(got->rx.u, ask[i].rx->u), 1, 2e-5);
+            if (round > 0) continue;
+            CHECK(asked.damage == ask[i].damage);
+            assert_string_equal(asked.model, catalog_model(catalog, ask[i].model)->name);
+        }
+    CHECK(signatures_counters(stored).fetched == asks && signatures_counters(stored).reused == asks);
+    CHECK(signatures_counters(stored).made == 0);
+    signatures_destroy(stored);
+    radar_materials_close(&materials);
+    catalog_close(catalog);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(bins_are_about_their_middles), cmocka_unit_test(lists_are_reused_and_change_no_bit),
         cmocka_unit_test(looks_are_told_apart),         cmocka_unit_test(background_makes_the_same),
-        cmocka_unit_test(a_list_serves_its_bin),
+        cmocka_unit_test(a_list_serves_its_bin),        cmocka_unit_test(each_input_has_a_signature_of_its_own),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -142,23 +142,23 @@ static void engines_warm_and_stay_warm(void **state)
                  track_k = mean_k(heat, &s, HEAT_TRACK, NULL), hull_k = mean_k(heat, &s, HEAT_HULL, NULL);
     print_message("driving: deck %.1f, exhaust %.1f, tracks %.1f, hull %.1f K over the air\n", deck_k - 288,
                   gas_k - 288, track_k - 288, hull_k - 288);
-    /* The engine has 363 K, 75 K over the air. Its deck, between 15 W/(m2 K) of cooling air and 14.6 of film at 2 m/s
-     * and of radiation, would be 38 K over it with nothing lost to its edges: half of that and more. */
-    CHECK(deck_k > 288 + 19 && deck_k < 288 + 38);
-    CHECK(gas_k > 288 + 230 && gas_k < 288 + 462); /* at least half way from the air to the gas, 462 K over it */
-    /* 1500 N at 10 m/s are 15 kW into both tracks, over some 25 m2 and 15 .. 25 W/(m2 K) of air and ground: 24 .. 40 K
-     */
-    CHECK(track_k > 288 + 20 && track_k < 288 + 40);
-    /* 1.5 kW of the cabin and what bulkheads pass from the engine, into 80 m2 by 4 and to the air by 15 W/(m2 K), are
-     * some 1.5 K; engine and exhaust warm what adjoins: twice that */
-    CHECK(hull_k > 288 + 1.3 && hull_k < 288 + 4);
+    /* the engine has 363 K behind 15 W/(m2 K); outside there are 14.6 of the wind of 2 m/s and 5.4 of radiation */
+    CHECK_NEAR(deck_k - 288, 75 * 15 / (15 + 14.6 + 5.4), 3);
+    /* gas of 750 K behind 60 W/(m2 K): 372 K over the air without radiation, 291 K as a black body */
+    CHECK(gas_k > 288 + 280 && gas_k < 288 + 372);
+    /* 1500 W/m2 into 40 mm of steel, 151 kJ/(m2 K), over 14.6 and 5.3 W/(m2 K): 75 K in the end, 28.5 K in an hour,
+     * less what the ground takes */
+    CHECK(track_k > 288 + 20 && track_k < 288 + 29);
+    CHECK(hull_k > 289.2 && hull_k < 293); /* a cabin of 1.5 kW, and what comes along from the deck: by 2 either way */
 
     s.entity.drives.engine = 0, s.entity.drives.speed_mps = 0;
     run(heat, &s, 61, 61 + 2400);
     const double after_k = mean_k(heat, &s, HEAT_ENGINE_DECK, up), cold_k = mean_k(heat, &s, HEAT_EXHAUST, NULL);
     print_message("forty minutes after the halt: deck %.1f, exhaust %.1f, tracks %.1f K\n", after_k - 288, cold_k - 288,
                   mean_k(heat, &s, HEAT_TRACK, NULL) - 288);
-    CHECK(after_k > 288 + 4 && after_k < deck_k + 5 && cold_k < 310);
+    /* its engine still has 68 K (leaks of 25000 s) behind a film of 6 instead of 15: 75 % of what the deck had, in the
+     * end half; pipes are cold within 20 minutes but for what the deck gives them */
+    CHECK(after_k > 288 + 16 && after_k < deck_k - 4 && cold_k < 306);
 
     const double bore_k = mean_k(heat, &s, HEAT_GUN, NULL);
     VehicleNodes before, after;

@@ -134,16 +134,56 @@ static void each_input_is_in_the_key(void **state)
     CHECK(!is_known(memory, &p, there, 2, NULL, 4) && is_known(memory, &p, there, 2, NULL, 4));
     other.node[0].p_enu[1] += 1e-12;
     CHECK(!is_known(memory, &p, there, 2, NULL, 4));
+    /* every number of the pose, first and last, and of the last node; those of others by the same function */
+    PosedNode    *last = &p.node[p.entity.node_count - 1];
+    NodePose     *end = &p.at[p.pose.model->node_count - 1];
     double *const moved[] = {&p.pose.above_m,
-                             &p.pose.r_enu_from_body[3],
-                             &p.at[1].p_body[0],
-                             &p.node[1].p_enu[2],
-                             &p.node[1].r_enu_from_node[8],
+                             &p.pose.r_enu_from_body[0],
+                             &p.pose.r_enu_from_body[8],
+                             &p.at[0].p_body[0],
+                             &end->p_body[2],
+                             &end->r_body_from_node[8],
+                             &p.node[0].p_enu[0],
+                             &last->p_enu[2],
+                             &p.node[0].r_enu_from_node[0],
+                             &last->r_enu_from_node[8],
+                             &p.node[0].centre_enu[0],
+                             &last->centre_enu[2],
+                             &p.entity.centre_enu[0],
+                             &p.entity.centre_enu[2],
+                             &p.entity.radius_m,
+                             &p.entity.p_enu[0],
+                             &p.entity.p_enu[2],
+                             &p.entity.r_enu_from_body[0],
+                             &p.entity.r_enu_from_body[8],
                              &p.entity.box_low[0],
-                             &p.entity.r_enu_from_body[1]};
+                             &p.entity.box_low[2],
+                             &p.entity.box_high[0],
+                             &p.entity.box_high[2]};
     for (size_t k = 0; k < sizeof moved / sizeof *moved; k++) {
         *moved[k] += 1e-9;
         CHECK(!is_known(memory, &p, NULL, 0, NULL, 4) && is_known(memory, &p, NULL, 0, NULL, 4));
+    }
+    p.entity.damage = 3; /* a wreck sees, and is seen, past what its damage hides */
+    CHECK(!is_known(memory, &p, NULL, 0, NULL, 4) && is_known(memory, &p, NULL, 0, NULL, 4));
+    p.entity.model++;
+    CHECK(!is_known(memory, &p, NULL, 0, NULL, 4) && is_known(memory, &p, NULL, 0, NULL, 4));
+    last->mesh = p.node[0].mesh;
+    CHECK(p.entity.node_count < 2 || !is_known(memory, &p, NULL, 0, NULL, 4));
+    p.entity.node_count--;
+    CHECK(!is_known(memory, &p, NULL, 0, NULL, 4));
+    /* of others: each of them, its damage, and which of the places it has */
+    there[0] = &other.entity, there[1] = NULL;
+    CHECK(!is_known(memory, &p, there, 2, NULL, 4));
+    there[1] = &other.entity;
+    CHECK(!is_known(memory, &p, there, 2, NULL, 4));
+    other.entity.damage = 3;
+    CHECK(!is_known(memory, &p, there, 2, NULL, 4) && is_known(memory, &p, there, 2, NULL, 4));
+    double each[3] = {0.1, 0.2, 0.9};
+    for (int x = 0; x < 3; x++) {
+        CHECK(is_known(memory, &p, NULL, 0, each, 4) == (x > 0));
+        each[x] += 1e-9;
+        CHECK(!is_known(memory, &p, NULL, 0, each, 4));
     }
     int kept = 0; /* it ends, and says so */
     for (; kept < 100000; kept++) {

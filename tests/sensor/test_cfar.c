@@ -94,6 +94,116 @@ static void targets_are_found_where_they_are(void **state)
     CHECK(detect_cfar(hit, 8, &bad, power, rows, columns) == -1); /* wider than the plane goes round */
 }
 
+/* A map of 15 x 17 cells of power 1, one of them 2 and one the peak, with windows that differ in rows and columns: the
+ * mean of N training cells is 1 + 1 / N where the 2 is one of them, and 1 where it is not. By hand: guard 1 row and 2
+ * columns, training 2 rows and 3 columns beyond: of (2 3 + 1) (2 5 + 1) = 77 cells in the plane 3 5 = 15 are guarded,
+ * N = 62; at the edges what lies in the plane counts, and with rows that go round the far rows do. */
+enum { small_rows = 15, small_columns = 17 };
+
+static void each_training_cell_counts_once(const int peak[2], bool wrap, int training)
+{
+    static double power[small_rows * small_columns];
+    /* a false-alarm rate that any peak passes */
+    const CfarConfig config = {.pfa = 0.5, .guard = {1, 2}, .training = {2, 3}, .wrap_rows = wrap};
+    int              counted = 0;
+    for (int r = 0; r < small_rows; r++)
+        for (int c = 0; c < small_columns; c++) {
+            CfarHit hit[8];
+            if (r == peak[0] && c == peak[1]) continue;
+            int       away = abs(r - peak[0]);
+            const int across = abs(c - peak[1]);
+            if (wrap && away > small_rows / 2) away = small_rows - away;
+            const bool trains = away <= 3 && across <= 5 && !(away <= 1 && across <= 2);
+            for (int i = 0; i < small_rows * small_columns; i++) power[i] = 1;
+            power[r * small_columns + c] = 2;
+            power[peak[0] * small_columns + peak[1]] = 1000;
+            const int found = detect_cfar(hit, 8, &config, power, small_rows, small_columns);
+            int       of = 0;
+            while (of < found && of < 7 && hit[of].power < 1000) of++;
+            CHECK(hit[of].row == peak[0] && hit[of].column == peak[1] && hit[of].power == 1000);
+            CHECK_NEAR(hit[of].floor, trains ? 1 + 1.0 / training : 1, 1e-12);
+            counted += trains;
+        }
+    CHECK(counted == training);
+}
+
+static void training_cells_are_those_between_guard_and_reach(void **state)
+{
+    (void)state;
+    each_training_cell_counts_once((const int[2]){7, 8}, false, 62);
+    each_training_cell_counts_once((const int[2]){7, 0}, false, 7 * 6 - 3 * 3);
+    each_training_cell_counts_once((const int[2]){7, 16}, false, 7 * 6 - 3 * 3);
+    each_training_cell_counts_once((const int[2]){7, 14}, false, 7 * 8 - 3 * 5);
+    each_training_cell_counts_once((const int[2]){0, 8}, false, 4 * 11 - 2 * 5);
+    each_training_cell_counts_once((const int[2]){14, 8}, false, 4 * 11 - 2 * 5);
+    each_training_cell_counts_once((const int[2]){0, 0}, false, 4 * 6 - 2 * 3);
+    each_training_cell_counts_once((const int[2]){14, 16}, false, 4 * 6 - 2 * 3);
+    each_training_cell_counts_once((const int[2]){0, 8}, true, 62);
+    each_training_cell_counts_once((const int[2]){14, 8}, true, 62);
+    each_training_cell_counts_once((const int[2]){13, 16}, true, 7 * 6 - 3 * 3);
+}
+
+/* Whether the middle of seven cells a, b, 0, peak, 0, c, d passes: one row, one guard cell and two training cells a
+ * side. */
+static int passes(double *floor, const CfarConfig *config, double peak)
+{
+    CfarHit      hit[4];
+    const double power[7] = {3, 1, 0, peak, 0, 4, 2};
+    const int    found = detect_cfar(hit, 4, config, power, 1, 7);
+    for (int i = 0; i < found; i++)
+        if (hit[i].column == 3) {
+            *floor = hit[i].floor;
+            return 1;
+        }
+    return 0;
+}
+
+/* Of training cells 1, 2, 3, 4, N = 4. Cell averaging: mean 2.5; (1 + a / 4)^-4 = 1 / 81 where a = 8: the threshold is
+ * 20. Ordered, the third: 4 / (4 + a) 3 / (3 + a) 2 / (2 + a) = 1 / 30 where a = 6: 6 times 3 is 18, and the third of
+ * four of mean m is expected at m (1/4 + 1/3 + 1/2). The first of them, 4 / (4 + a) = 1 / 9 where a = 32: 32 times 1.
+ */
+static void thresholds_are_those_on_paper(void **state)
+{
+    (void)state;
+    CfarConfig config = {.pfa = 1.0 / 81, .guard = {0, 1}, .training = {0, 2}};
+    double     floor = 0;
+    CHECK(passes(&floor, &config, 20 * (1 + 1e-9)) == 1 && passes(&floor, &config, 20 * (1 - 1e-9)) == 0);
+    CHECK(passes(&floor, &config, 21) == 1);
+    CHECK_NEAR(floor, 2.5, 1e-12);
+    config.pfa = 1.0 / 30, config.ordered = 0.75;
+    CHECK(passes(&floor, &config, 18 * (1 + 1e-9)) == 1 && passes(&floor, &config, 18 * (1 - 1e-9)) == 0);
+    CHECK(passes(&floor, &config, 19) == 1);
+    CHECK_NEAR(floor, 3 / (13.0 / 12), 1e-12);
+    config.pfa = 1.0 / 9, config.ordered = 0.1; /* below one cell: the first */
+    CHECK(passes(&floor, &config, 32 * (1 + 1e-9)) == 1 && passes(&floor, &config, 32 * (1 - 1e-9)) == 0);
+    /* three training cells are too few: four rows of one column, the last of them the peak */
+    const double     power[6] = {1, 1, 1, 1, 0, 1e6};
+    const CfarConfig down = {.pfa = 0.1, .guard = {1, 0}, .training = {3, 0}};
+    CfarHit          hit[4];
+    CHECK(detect_cfar(hit, 4, &down, power + 1, 5, 1) == 0 && detect_cfar(hit, 4, &down, power, 6, 1) == 0);
+    const CfarConfig longer = {.pfa = 0.1, .guard = {1, 0}, .training = {4, 0}};
+    CHECK(detect_cfar(hit, 4, &longer, power, 6, 1) == 1 && hit[0].row == 5);
+}
+
+/* Of equal neighbours the first is the hit: in a row, in a column, askew, and from the last row to the first where rows
+ * go round. */
+static void equal_neighbours_are_one_hit(void **state)
+{
+    (void)state;
+    static const int at[5][2][2] = {
+        {{5, 6}, {5, 7}}, {{5, 6}, {6, 6}}, {{5, 6}, {6, 7}}, {{5, 7}, {6, 6}}, {{0, 6}, {14, 6}}};
+    static double power[small_rows * small_columns];
+    for (int k = 0; k < 6; k++) {
+        const int(*twin)[2] = at[k < 5 ? k : 4];
+        const CfarConfig config = {.pfa = 1e-3, .guard = {1, 2}, .training = {2, 3}, .wrap_rows = k < 5};
+        CfarHit          hit[8];
+        for (int i = 0; i < small_rows * small_columns; i++) power[i] = 1;
+        for (int i = 0; i < 2; i++) power[twin[i][0] * small_columns + twin[i][1]] = 1000;
+        CHECK(detect_cfar(hit, 8, &config, power, small_rows, small_columns) == (k < 5 ? 1 : 2));
+        CHECK(hit[0].row == twin[0][0] && hit[0].column == twin[0][1]);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -101,6 +211,9 @@ int main(void)
         cmocka_unit_test(ordered_multipliers_solve_their_product),
         cmocka_unit_test(noise_has_the_rate_asked),
         cmocka_unit_test(targets_are_found_where_they_are),
+        cmocka_unit_test(training_cells_are_those_between_guard_and_reach),
+        cmocka_unit_test(thresholds_are_those_on_paper),
+        cmocka_unit_test(equal_neighbours_are_one_hit),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -3,8 +3,12 @@
  * 45 degrees returns the other polarisation. labels: physics slow */
 #include "tests/sensor/radar_scene.h"
 
-enum { BLADE, WHEEL, DIHEDRAL };
-static const double blade_m = 2, spin_rps = 6, wheel_m = 0.5, speed_mps = 8, plate_a_m = 0.3, plate_b_m = 0.4;
+#include "render/scattering/field/radar_target_private.h"
+#include "sensor/radar/window_private.h"
+
+enum { BLADE, WHEEL, DIHEDRAL, PLATES };
+static const double blade_m = 2, spin_rps = 6, wheel_m = 0.5, speed_mps = 8, plate_a_m = 0.3, plate_b_m = 0.4,
+                    screen_m = 0.4, wall_m = 0.2;
 
 static void quad(FILE *file, int first, double p[4][3])
 {
@@ -15,7 +19,7 @@ static void quad(FILE *file, int first, double p[4][3])
 static int open_stage(void **state)
 {
     (void)state;
-    static const char *const model[] = {"blade", "wheel", "dihedral"};
+    static const char *const model[] = {"blade", "wheel", "dihedral", "plates"};
     char                     sidecar[256];
     scene_folder();
     /* across the line of sight when at rest, 2 m to either side of its axis, which is upright; a body too small to
@@ -46,7 +50,16 @@ static int open_stage(void **state)
         quad(file, 1 + 4 * side, p);
     }
     CHECK(fclose(file) == 0);
-    scene_open(model, 3);
+    /* two square plates, one behind the other; the first is gone from the destroyed one */
+    file = scene_obj("plates", "damage:\n  destroyed: {hide: [screen]}\n");
+    for (int behind = 0; behind < 2; behind++) {
+        const double half = 0.5 * (behind ? wall_m : screen_m), x = behind ? -1 : 1;
+        double       p[4][3] = {{x, -half, -half}, {x, half, -half}, {x, half, half}, {x, -half, half}};
+        fputs(behind ? "o wall\n" : "o screen\n", file);
+        quad(file, 1 + 4 * behind, p);
+    }
+    CHECK(fclose(file) == 0);
+    scene_open(model, 4);
     return 0;
 }
 
@@ -184,12 +197,121 @@ static void a_rolled_dihedral_turns_the_polarisation(void **state)
     seeker_radar_destroy(radar);
 }
 
+/* 4 pi A^2 / lambda^2 of the plate in front; of a wreck, whose front plate is gone, that of the one behind: a quarter
+ * of the area, 12 dB less. Slight and moderate damage hide nothing. What was made for one is not taken for another. */
+static void a_wreck_lacks_what_its_damage_hides(void **state)
+{
+    (void)state;
+    static const int damage[] = {0, 3, 1, 0, 2, 3};
+    SeekerRadar     *radar = scene_radar("search_ku", NULL);
+    for (int k = 0; k < 6; k++) {
+        stage.snapshot.count = 0;
+        SnapshotEntity *e = scene_add(PLATES, 0, 0, 0);
+        e->appearance = (uint32_t)damage[k] << 3;
+        arena_reset(stage.arena);
+        const RadarFrame *f = scene_measure(radar);
+        const double      side_m = damage[k] == 3 ? wall_m : screen_m, wave = f->preset->antenna.wavelength_m,
+                     want = 10 * log10(4 * pi_rad * pow(side_m * side_m / wave, 2));
+        print_message("damage %d: %.2f dBsm, on paper %.2f\n", damage[k], 10 * log10(f->target[0].rcs_m2[0]), want);
+        CHECK_NEAR(10 * log10(f->target[0].rcs_m2[0]), want, 0.3);
+        CHECK_NEAR(10 * log10(f->target[0].rcs_m2[1]), want, 0.3);
+    }
+    seeker_radar_destroy(radar);
+}
+
+/* Nor are there its edges: four of each plate, of which eight or four are left. */
+static void a_wreck_lacks_its_hidden_edges(void **state)
+{
+    (void)state;
+    static const int want[] = {8, 8, 8, 4};
+    RadarTarget     *target;
+    stage.snapshot.count = 0;
+    const int model = scene_add(PLATES, 0, 0, 0)->model;
+    CHECK(radar_target_create(&target, catalog_model(stage.catalog, model), NULL, "avx2") == STATUS_OK);
+    for (int damage = 0; damage < 4; damage++) {
+        radar_target_pose(target, NULL, damage);
+        assert_int_equal(target->wedge_count, want[damage]);
+    }
+    radar_target_destroy(target);
+}
+
+/* Signal to noise of a plate's truth and of what is detected of it, by Skolnik's equation and the preset's own figures:
+ * P G^2 lambda^2 sigma / ((4 pi)^3 R^4 L), times the energy of all pulses over k 290 K F, less what the two windows
+ * lose; its cross section, range and closing speed. */
+static void truth_and_detection_are_the_radar_equations(void **state)
+{
+    (void)state;
+    SeekerRadar *radar = scene_radar("search_ku", NULL);
+    const double v_enu_mps[3] = {speed_mps, 0, 0};
+    stage.snapshot.count = 0;
+    SnapshotEntity *e = scene_add(PLATES, 0, 0, 0);
+    m3_mul_v3(e->v_ecef_mps, stage.world.frame.r_ecef_from_enu, v_enu_mps);
+    arena_reset(stage.arena);
+    const RadarFrame  *f = scene_measure(radar);
+    const RadarPreset *p = f->preset;
+    const RadarTruth  *t = &f->target[0];
+    const double       wave = p->antenna.wavelength_m, n = p->antenna.taper;
+    const double       gain = (2 * n + 1) / ((n + 1) * (n + 1)) * pow(pi_rad * p->antenna.diameter_m / wave, 2);
+    WindowFigures      figures[2];
+    double             weight[2][4096], bins = 1;
+    for (int axis = 0; axis < 2; axis++) {
+        const int count = axis ? p->wave.pulses : p->wave.samples;
+        CHECK(count <= 4096 &&
+              window_weights(weight[axis], count, axis ? &p->doppler_window : &p->range_window) == STATUS_OK);
+        CHECK(window_figures(&figures[axis], weight[axis], count) == STATUS_OK);
+        bins *= figures[axis].noise_bins;
+    }
+    const double rcs_m2 = t->rcs_m2[p->transmits_h ? 0 : 1];
+    const double received_w =
+        p->power_w * gain * gain * wave * wave * rcs_m2 / (pow(4 * pi_rad, 3) * pow(scene_range_m, 4) * p->loss);
+    const double noise_j = 1.380649e-23 * 290 * p->receiver.noise_figure;
+    const double want_db = 10 * log10(received_w * p->wave.pulse_s * p->wave.pulses / noise_j / bins);
+    print_message(
+        "a plate of %.2f dBsm at 1 km: signal to noise %.2f dB, on paper %.2f; detected: %.2f dB, %.2f dBsm\n",
+        10 * log10(rcs_m2), 10 * log10(t->snr), want_db, 10 * log10(f->detection[0].snr),
+        10 * log10(f->detection[0].rcs_m2));
+    CHECK_NEAR(10 * log10(t->snr), want_db, 1e-3);
+    CHECK_NEAR(10 * log10(f->detection[0].rcs_m2), 10 * log10(rcs_m2), 0.2);
+    CHECK_NEAR(t->range_m, scene_range_m, 1e-6);
+    CHECK_NEAR(t->range_rate_mps, -speed_mps, 1e-6); /* it comes nearer */
+    CHECK_NEAR(f->detection[0].range_rate_mps, -speed_mps, 0.2 * f->map.mps_per_row);
+    /* its plate is 1 m before its origin; and it appears nearer or farther by the waveform's coupling */
+    CHECK_NEAR(f->detection[0].range_m, t->appears_m - 1, 0.2 * f->map.metre_per_column);
+    CHECK_NEAR(t->appears_m - t->range_m, -speed_mps * p->wave.centre_hz * p->wave.pulse_s / p->wave.bandwidth_hz,
+               1e-6);
+    seeker_radar_destroy(radar);
+}
+
+/* What moves across the axis spreads the ground's range rate over the beam: 5 m/s across (3 to the right, 4 down),
+ * whatever goes along, times the beam's width at half power, and two cells of Doppler. Looking west, right is north. */
+static void the_notch_is_as_wide_as_the_beam(void **state)
+{
+    (void)state;
+    SeekerRadar *radar = scene_radar("search_ku", NULL);
+    const double v[3] = {-20, 3, -4};
+    stage.snapshot.count = 0;
+    memcpy(stage.scene.v_enu_mps, v, sizeof v);
+    arena_reset(stage.arena);
+    const RadarFrame  *f = scene_measure(radar);
+    const RadarPreset *p = f->preset;
+    memset(stage.scene.v_enu_mps, 0, sizeof v);
+    const double cell_mps = 0.5 * p->antenna.wavelength_m * p->wave.repeat_hz / p->wave.pulses;
+    CHECK_NEAR(f->map.mps_per_row, cell_mps, 1e-9);
+    CHECK_NEAR(f->notch_mps, 5 * antenna_width_rad(&p->antenna) + 2 * cell_mps, 1e-9);
+    CHECK_NEAR(f->ground_rate_mps, -20, 1e-9); /* it comes nearer */
+    seeker_radar_destroy(radar);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_blade_flashes_up_to_its_tip),
         cmocka_unit_test(a_wheel_is_still_where_it_stands),
         cmocka_unit_test(a_rolled_dihedral_turns_the_polarisation),
+        cmocka_unit_test(a_wreck_lacks_what_its_damage_hides),
+        cmocka_unit_test(a_wreck_lacks_its_hidden_edges),
+        cmocka_unit_test(truth_and_detection_are_the_radar_equations),
+        cmocka_unit_test(the_notch_is_as_wide_as_the_beam),
     };
     return cmocka_run_group_tests(tests, open_stage, close_stage);
 }

@@ -86,23 +86,30 @@ static void signal_to_noise_is_the_radar_equations(void **state)
     CHECK_NEAR(tapered.noise_share / map.noise_share, 1.30051567933 * 64 * 23.625 / (31.5 * 31.5), 1e-6);
 }
 
+/* 0.43 dB/km: 1.3 dB each way, where a cross section of 30 m2 is right to 0.1 dB. */
 static void points_are_measured(void **state)
 {
     (void)state;
-    static const Point point[] = {
-        {3.14, 4.1, 0.002, -0.001, 10, 0.3},
-        {-20.3, -7.77, -0.006, 0.004, 3, 2},
-        {30.05, 0, 0, 0.007, 30, 4},
-        {0.1, 11.2, 0.0035, 0.003, 1, 5},
+    static const double air_np_m = 1e-4;
+    static const Point  point[] = {
+         {3.14, 4.1, 0.002, -0.001, 10, 0.3},
+         {-20.3, -7.77, -0.006, 0.004, 3, 2},
+         {30.05, 0, 0, 0.007, 30, 4},
+         {0.1, 11.2, 0.0035, 0.003, 1, 5},
     };
     const CfarConfig  cfar = {.pfa = 1e-8, .guard = {3, 3}, .training = {3, 8}, .wrap_rows = true};
     const double      unit_w = power_w / loss * dish.wavelength_m * dish.wavelength_m / pow(4 * pi_rad, 3);
-    const DetectScale scale = {.range_m = reference_m, .range_rate_mps = -220, .unit_w = unit_w};
+    const DetectScale scale = {.range_m = reference_m, .range_rate_mps = -220, .unit_w = unit_w, .air_np_m = air_np_m};
     const Receiver    receiver = {.noise_figure = 6};
     Interval          interval = {.wave = wave, .sample = sample};
     ReceiverReport    report;
     Detection         got[16];
-    add_points(&interval, point, 4);
+    Point             weaker[4]; /* by the air of the way there and of the way back */
+    for (int i = 0; i < 4; i++) {
+        weaker[i] = point[i];
+        weaker[i].rcs_m2 *= exp(-2 * air_np_m * (reference_m + point[i].range_m));
+    }
+    add_points(&interval, weaker, 4);
     interval_receive(&report, &interval, &receiver, 5, 0, 0);
     const RangeDoppler map = process(&interval, "hann", "hann");
     CHECK(detect(got, 16, &map, plan, &cfar, &dish, &scale) == 4);
@@ -178,11 +185,50 @@ static void converter_and_oscillator_add_their_noise(void **state)
     CHECK_NEAR(mean, kept + (1 - kept) / pulses, 0.01);
 }
 
+/* A map by hand: amplitude 1 everywhere and 6 in one cell, whose neighbours in range and in Doppler are alike, so that
+ * the point is in the middle of the cell: power 36 over noise 1 is a signal of 35. Range: columns of c / (2 B) from the
+ * middle one; range rate: rows of lambda f / (2 N) likewise; on both axes at both edges. The cross section is the
+ * power times R^4 exp(2 a R) over the unit and G^4, here along the axis: the antenna's own gain, and 1 W of 1 m2 at
+ * 1 m. */
+static void a_map_by_hand_is_measured(void **state)
+{
+    (void)state;
+    static double complex map_cell[interval_channels * cells];
+    static const int      at[6][2] = {{32, 128}, {0, 40}, {63, 41}, {9, 0}, {10, 255}, {50, 200}};
+    const CfarConfig      cfar = {.pfa = 1e-3, .guard = {2, 3}, .training = {3, 4}, .wrap_rows = true};
+    const DetectScale     scale = {.range_m = 3000, .range_rate_mps = -220, .unit_w = 2, .air_np_m = 3e-4};
+    const double          per_column_m = 299792458.0 / (2 * 500e6), per_row_mps = 299792458.0 / 94e9 * 20e3 / 2 / 64;
+    const RangeDoppler    map = {pulses, samples, per_column_m, per_row_mps, 1, map_cell};
+    Window                hann;
+    Detection             got[8];
+    CHECK(!window_parse(&hann, "hann"));
+    interval_plan_destroy(plan);
+    CHECK(interval_plan_create(&plan, &wave, &hann, &hann) == STATUS_OK);
+    const double gain = antenna_gain(&dish, 0, 0).sum;
+    for (int k = 0; k < 6; k++) {
+        const int row = at[k][0], column = at[k][1];
+        for (int i = 0; i < interval_channels * cells; i++) map_cell[i] = i < cells ? 1 : 0;
+        map_cell[row * samples + column] = 6 * I;
+        /* beside the peak in Doppler, round the map's edge: 3 on both sides */
+        map_cell[(row + 63) % 64 * samples + column] = map_cell[(row + 1) % 64 * samples + column] = 3;
+        CHECK(detect(got, 8, &map, plan, &cfar, &dish, &scale) == 1);
+        CHECK(got->row == row && got->column == column);
+        CHECK_NEAR(got->snr, 35, 1e-6); /* where a point lies is found to 2^-31 of a cell */
+        CHECK_NEAR(got->range_m, 3000 + (column - 128) * per_column_m, 1e-6);
+        CHECK_NEAR(got->range_rate_mps, -220 + (row - 32) * per_row_mps, 1e-6);
+        CHECK_NEAR(got->cos_right, 0, 1e-9);
+        CHECK_NEAR(got->cos_down, 0, 1e-9);
+        const double want_m2 = 36 * pow(got->range_m, 4) * exp(2 * 3e-4 * got->range_m) / (2 * pow(gain, 4));
+        CHECK_NEAR(got->rcs_m2 / want_m2, 1, 1e-6);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(signal_to_noise_is_the_radar_equations),
         cmocka_unit_test(points_are_measured),
+        cmocka_unit_test(a_map_by_hand_is_measured),
         cmocka_unit_test(iq_errors_make_an_image),
         cmocka_unit_test(converter_and_oscillator_add_their_noise),
     };

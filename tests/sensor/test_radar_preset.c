@@ -89,10 +89,43 @@ static void a_table_older_than_its_columns_is_read(void **state)
     remove(path);
 }
 
+/* Every column, each of another value, in its own member and unit. */
+static void columns_are_taken_by_their_names(void **state)
+{
+    (void)state;
+    RadarPreset p;
+    char        path[text_file_size], text[1024];
+    snprintf(text, sizeof text, "%s%s", header,
+             "x,lfm,94,500,512,64,21,19,11,5,0.25,2,h,8,2,0.5,3,12,taylor:5:40,hann,1e-6,0,7,3,s\n");
+    text_file(path, text);
+    CHECK(radar_preset_read(&p, path, "x") == STATUS_OK);
+    remove(path);
+    const Waveform *w = &p.wave;
+    CHECK(w->kind == WAVEFORM_LFM && w->samples == 512 && w->pulses == 64 && w->uncompensated);
+    CHECK_NEAR(w->centre_hz, 94e9, 1);
+    CHECK_NEAR(w->bandwidth_hz, 500e6, 1e-3);
+    CHECK_NEAR(w->repeat_hz, 21e3, 1e-9);
+    CHECK_NEAR(w->pulse_s, 19e-6, 1e-18);
+    CHECK_NEAR(p.power_w, 11, 1e-12);
+    CHECK_NEAR(p.loss, 3.1622776601683795, 1e-12);
+    CHECK_NEAR(p.antenna.diameter_m, 0.25, 1e-15);
+    CHECK_NEAR(p.antenna.wavelength_m, 299792458.0 / 94e9, 1e-15);
+    CHECK(p.antenna.taper == 2 && p.transmits_h && p.mti_rows == 3 && p.receiver.bits == 12);
+    CHECK_NEAR(p.receiver.noise_figure, 6.309573444801933, 1e-12); /* 8 dB of power */
+    CHECK_NEAR(p.receiver.phase_noise_rad, 0.03490658503988659, 1e-15);
+    CHECK_NEAR(p.receiver.iq_gain, 0.05925372517728890, 1e-12); /* 0.5 dB of amplitude, beyond 1 */
+    CHECK_NEAR(p.receiver.iq_phase_rad, 0.05235987755982988, 1e-15);
+    CHECK(p.range_window.kind == WINDOW_TAYLOR && p.doppler_window.kind == WINDOW_HANN);
+    CHECK_NEAR(p.pfa, 1e-6, 1e-18);
+    CHECK_NEAR(p.far_m, 7000, 1e-9);
+    CHECK(p.receiver.noise_counts == 1);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(bundled_rows_are_read),
+        cmocka_unit_test(columns_are_taken_by_their_names),
         cmocka_unit_test(bad_rows_are_refused),
         cmocka_unit_test(a_table_older_than_its_columns_is_read),
     };

@@ -330,6 +330,11 @@ static void rain_and_fog_take_what_itu_says(void **state)
     CHECK_NEAR(fog_db /
                    (0.9 * fog_liquid_g_m3(200) * cloud_attenuation(35, atmosphere_temp_k(stage.world.atmosphere, 100))),
                1, 0.01);
+    scene = look(0, 290, 1, &weather); /* near its top, 300 m over the ground */
+    const double high_db = measure(radar, &scene)->air_db;
+    weather.visibility_m = weather_default().visibility_m;
+    CHECK_NEAR((high_db - measure(radar, &scene)->air_db) / fog_db, 1, 0.03); /* droplets are 1 K colder */
+    weather.visibility_m = 200;
     scene = look(0, 320, 1, &weather); /* above the fog */
     CHECK(fabs(measure(radar, &scene)->air_db - clear_db) < 0.01);
     seeker_radar_destroy(radar);
@@ -560,6 +565,30 @@ static void chaff_at_rest_is_left_to_the_wind(void **state)
     seeker_radar_destroy(radar);
 }
 
+/* Still air, seen from below at 80 degrees: ten seconds ago it was 3 m higher, and falls at 0.3 m/s. */
+static void chaff_falls(void **state)
+{
+    (void)state;
+    Weather       weather = weather_default();
+    SnapshotChaff chaff;
+    Moments       got = {0};
+    Snapshot      snapshot = {.chaff_count = 1, .chaff = &chaff};
+    SeekerRadar  *radar = open_radar(1, false);
+    weather.wind_mps = 0;
+    for (uint32_t number = 1; number <= 8; number++) {
+        RadarScene scene = look(80 * rad_per_deg, 400, number, &weather);
+        scene.snapshot = &snapshot;
+        put_chaff(&chaff, reference_m + 3, 10, (const double[3]){0, 0, 0});
+        arena_reset(stage.arena);
+        add_moments(&got, measure(radar, &scene));
+    }
+    printf("chaff that falls: %.2f m/s, %.1f m from where it should be\n", got.rate_mps / got.power,
+           got.range_m / got.power);
+    CHECK_NEAR(got.rate_mps / got.power, -0.3 * sin(80 * rad_per_deg), 0.2);
+    CHECK_NEAR(got.range_m / got.power, 0, 1.5);
+    seeker_radar_destroy(radar);
+}
+
 /* ---- a corner reflector ----------------------------------------------------------------------------- */
 
 typedef struct Corner {
@@ -658,15 +687,11 @@ static void the_same_bits(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(rain_has_the_power_of_its_integral),
-        cmocka_unit_test(rain_folds_over),
-        cmocka_unit_test(rain_and_fog_take_what_itu_says),
-        cmocka_unit_test(rain_behind_the_ground_is_hidden),
-        cmocka_unit_test(woods_have_the_power_of_their_integral),
-        cmocka_unit_test(chaff_has_its_cross_section),
-        cmocka_unit_test(chaff_at_rest_is_left_to_the_wind),
-        cmocka_unit_test(corners_return_what_the_handbook_says),
-        cmocka_unit_test(the_same_bits),
+        cmocka_unit_test(rain_has_the_power_of_its_integral),     cmocka_unit_test(rain_folds_over),
+        cmocka_unit_test(rain_and_fog_take_what_itu_says),        cmocka_unit_test(rain_behind_the_ground_is_hidden),
+        cmocka_unit_test(woods_have_the_power_of_their_integral), cmocka_unit_test(chaff_has_its_cross_section),
+        cmocka_unit_test(chaff_at_rest_is_left_to_the_wind),      cmocka_unit_test(chaff_falls),
+        cmocka_unit_test(corners_return_what_the_handbook_says),  cmocka_unit_test(the_same_bits),
     };
     return cmocka_run_group_tests(tests, open_stage, close_stage);
 }

@@ -264,6 +264,148 @@ static void numbers_are_checked(void **state)
     }
 }
 
+/* A model of two nodes, two parts and one triangle, for its hash alone. */
+typedef struct SmallModel {
+    Model     model;
+    ModelNode node[2];
+    ModelPart part[2];
+    double    vertex[3][3];
+    float     normal[3][3];
+    uint32_t  triangle[1][3];
+    uint16_t  triangle_part[1];
+} SmallModel;
+
+static void small_model(SmallModel *m)
+{
+    *m = (SmallModel){
+        .model = {.name = "small", .node_count = 2, .part_count = 2, .vertex_count = 3, .triangle_count = 1},
+        .node = {{.parent = -1, .axis = {0, 0, 1}, .r_parent_from_node = {1, 0, 0, 0, 1, 0, 0, 0, 1}},
+                 {.joint = JOINT_ROTATION, .axis = {0, 0, 1}, .r_parent_from_node = {1, 0, 0, 0, 1, 0, 0, 0, 1}}},
+        .part = {{.material = "paint", .triangle_count = 1}, {.node = 1, .material = "paint"}},
+        .vertex = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}},
+        .normal = {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}},
+        .triangle = {{0, 1, 2}}};
+    m->model.node = m->node, m->model.part = m->part, m->model.vertex = m->vertex, m->model.normal = m->normal;
+    m->model.triangle = m->triangle, m->model.triangle_part = m->triangle_part;
+}
+
+/* Whether a library of these settings, opened anew, has the signature. */
+static bool has(const SignaturesConfig *config, const RadarMaterials *of, const SignatureKey *key)
+{
+    SignatureLibrary *library;
+    CHECK(signature_library_open(&library, folder, config, of) == STATUS_OK);
+    const bool there = signature_library_has(library, key);
+    signature_library_close(library);
+    return there;
+}
+
+/* Changes the lowest bit of a member: of what follows from that the library has nothing. */
+#define CHECK_NAMED(member)                                                                                            \
+    do {                                                                                                               \
+        unsigned char *octet = (unsigned char *)&(member);                                                             \
+        CHECK(has(&config, &two, &key));                                                                               \
+        *octet ^= 1;                                                                                                   \
+        if (has(&config, &two, &key)) fail_msg("%s:%d: %s is not in the name", __FILE__, __LINE__, #member);           \
+        *octet ^= 1;                                                                                                   \
+    } while (0)
+
+/* Every member that a signature follows from, changed alone by its lowest bit: the look, the pose, the damage, the
+ * settings, the materials, the model. */
+static void each_member_is_in_the_name(void **state)
+{
+    (void)state;
+    SmallModel       m;
+    SignaturesConfig config = config_of(1e-3);
+    RadarMaterial    material[3] = {{.name = "paint",
+                                     .kind = RADAR_COATED,
+                                     .thick_m = 1e-3,
+                                     .rough_m = 1e-4,
+                                     .points = 2,
+                                     .frequency_hz = {1e9, 9e9},
+                                     .e1 = {3, 4},
+                                     .e2 = {0.1, 0.2}},
+                                    {.name = "steel"}};
+    RadarMaterials   two = {2, material};
+    double           joint[2] = {0, 0.25};
+    SignatureKey     key = {
+            .model = &m.model,
+            .joint = joint,
+            .damage = 2,
+            .look = {
+                .tx = {{0, 0, -1}, 2000}, .rx = {{0, 0, -1}, 2000}, .image = {false, true}, .plane = {{0, 0, -1}, 0.5}}};
+    SignatureCentre   centre = {.path = 3, .scale = 1, .weight = 2, .strongest = 1};
+    const Signature   one = {.count = 1, .centre = &centre};
+    SignatureLibrary *library;
+    small_model(&m);
+    config.interval_s = 0.01, config.splits = 1;
+    CHECK(signature_library_open(&library, folder, &config, &two) == STATUS_OK);
+    const SignatureStore store = signature_library_store(library);
+    store.keep(store.user, &one, &key);
+    signature_library_close(library);
+
+    CHECK_NAMED(key.damage);
+    for (int i = 0; i < 2; i++) {
+        CHECK_NAMED(key.look.image[i]);
+        CHECK_NAMED(joint[i]);
+    }
+    for (int x = 0; x < 3; x++) {
+        CHECK_NAMED(key.look.tx.u[x]);
+        CHECK_NAMED(key.look.rx.u[x]);
+        CHECK_NAMED(key.look.plane.n[x]);
+    }
+    CHECK_NAMED(key.look.tx.range_m);
+    CHECK_NAMED(key.look.rx.range_m);
+    CHECK_NAMED(key.look.plane.height_m);
+
+    CHECK_NAMED(config.frequency_hz);
+    CHECK_NAMED(config.bandwidth_hz);
+    CHECK_NAMED(config.aspect_rad);
+    CHECK_NAMED(config.interval_s);
+    CHECK_NAMED(config.rays_per_wavelength);
+    CHECK_NAMED(config.splits);
+    CHECK_NAMED(config.warp_m);
+
+    CHECK_NAMED(two.count);
+    for (int i = 0; i < 2; i++) {
+        CHECK_NAMED(material[i].name[0]);
+        CHECK_NAMED(material[i].kind);
+        CHECK_NAMED(material[i].thick_m);
+        CHECK_NAMED(material[i].rough_m);
+        CHECK_NAMED(material[i].points);
+        CHECK_NAMED(material[0].frequency_hz[i]);
+        CHECK_NAMED(material[0].e1[i]);
+        CHECK_NAMED(material[0].e2[i]);
+    }
+
+    CHECK_NAMED(m.model.name[0]);
+    for (int n = 0; n < 2; n++) {
+        CHECK_NAMED(m.node[n].parent);
+        CHECK_NAMED(m.node[n].joint);
+        CHECK_NAMED(m.node[n].low);
+        CHECK_NAMED(m.node[n].high);
+        CHECK_NAMED(m.node[n].roll_radius_m);
+        CHECK_NAMED(m.node[n].spin_rps_moving); /* cells of what spins are as long as its range rates allow */
+        for (int x = 0; x < 3; x++) CHECK_NAMED(m.node[n].p_parent[x]);
+        for (int x = 0; x < 3; x++) CHECK_NAMED(m.node[n].axis[x]);
+        for (int x = 0; x < 9; x++) CHECK_NAMED(m.node[n].r_parent_from_node[x]);
+        CHECK_NAMED(m.part[n].node);
+        CHECK_NAMED(m.part[n].material[0]);
+        CHECK_NAMED(m.part[n].first_triangle);
+        CHECK_NAMED(m.part[n].triangle_count);
+        CHECK_NAMED(m.part[n].damage_hidden);
+        for (int d = 0; d < model_damage_states; d++) CHECK_NAMED(m.part[n].damage_material[d][0]);
+    }
+    for (int i = 0; i < 3; i++) {
+        for (int x = 0; x < 3; x++) {
+            CHECK_NAMED(m.vertex[i][x]);
+            CHECK_NAMED(m.normal[i][x]);
+        }
+        CHECK_NAMED(m.triangle[0][i]);
+    }
+    CHECK_NAMED(m.triangle_part[0]);
+    empty_folder(true);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -272,6 +414,7 @@ int main(void)
         cmocka_unit_test(names_follow_from_all_that_counts),
         cmocka_unit_test(damaged_files_are_made_anew),
         cmocka_unit_test(numbers_are_checked),
+        cmocka_unit_test(each_member_is_in_the_name),
     };
     return cmocka_run_group_tests(tests, open_all, close_all);
 }

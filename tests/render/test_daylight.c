@@ -1,0 +1,246 @@
+/* Sun and sky over the day and the year: the disc, twilight, clouds, the distance. labels: physics */
+#include "tests/check.h"
+#include "render/air/air.h"
+
+static PlanckTable *mwir, *lwir;
+static Atmosphere  *atmosphere;
+static Arena       *arena;
+static Hits         hits;
+static Rays         rays;
+static AirPaths     veils;
+
+enum { all_bands = (1 << AIR_BAND_COUNT) - 1 };
+
+static int open_tables(void **state)
+{
+    (void)state;
+    return planck_table_create(&mwir, 3.4e-6, 4.8e-6) != STATUS_OK ||
+           planck_table_create(&lwir, 8e-6, 12e-6) != STATUS_OK ||
+           atmosphere_open(&atmosphere, "us1976") != STATUS_OK || !(arena = arena_create());
+}
+
+static int close_tables(void **state)
+{
+    (void)state;
+    planck_table_destroy(mwir);
+    planck_table_destroy(lwir);
+    atmosphere_close(atmosphere);
+    arena_destroy(arena);
+    return 0;
+}
+
+static const double sun_azimuth = 2.1;
+
+static Sun sun_at_elevation(double elevation_deg)
+{
+    const double e = elevation_deg * rad_per_deg;
+    return (Sun){.azimuth_rad = sun_azimuth,
+                 .elevation_rad = e,
+                 .distance_au = 1,
+                 .d_enu = {cos(e) * sin(sun_azimuth), cos(e) * cos(sun_azimuth), sin(e)}};
+}
+
+static Air air_of(const Weather *weather, double elevation_deg, double eye_m, unsigned bands, const View *view)
+{
+    const Sun       sun = sun_at_elevation(elevation_deg);
+    const AirSource source = {atmosphere, mwir, lwir, 0};
+    const AirEye    eye = {eye_m, bands, view};
+    Air             air;
+    arena_reset(arena);
+    CHECK(air_at(&air, &source, weather, &sun, &eye, NULL, arena) == STATUS_OK);
+    return air;
+}
+
+static void clear(void) { hits.count = rays.count = 0; }
+
+static int add(double azimuth_rad, double elevation_rad, double range_m)
+{
+    const int i = hits.count++;
+    rays.count = hits.count;
+    rays.d_enu[0][i] = cos(elevation_rad) * sin(azimuth_rad);
+    rays.d_enu[1][i] = cos(elevation_rad) * cos(azimuth_rad);
+    rays.d_enu[2][i] = sin(elevation_rad);
+    for (int k = 0; k < 3; k++) rays.o_enu[k][i] = 0;
+    hits.range_m[i] = range_m;
+    return i;
+}
+
+static void sun_disc_adds_up(void **state)
+{
+    (void)state;
+    static const double sky[AIR_BAND_COUNT] = {0};
+    Air                 air;
+    air_even(&air, sun_at_elevation(30).d_enu, 1, sky, 0, mwir, lwir);
+    /* rings about the sun */
+    double u[3] = {0, 0, 1}, w[3], sum = 0;
+    v3_cross(w, u, air.light.sun_d_enu);
+    CHECK(v3_normalize(w, w));
+    v3_cross(u, air.light.sun_d_enu, w);
+    const int    n = 2000;
+    const double reach_rad = 0.01;
+    for (int i = 0; i < n; i++) {
+        const double angle = (i + 0.5) / n * reach_rad;
+        double       d_enu[3];
+        v3_scale(d_enu, cos(angle), air.light.sun_d_enu);
+        v3_add_scaled(d_enu, d_enu, sin(angle), u);
+        sum += daylight_sun_disc(&air.light, d_enu) * 2 * pi_rad * sin(angle) * reach_rad / n;
+    }
+    CHECK_NEAR(sum, 1, 2e-3); /* the rim falls within one ring of 930 */
+}
+
+static void light_fades_smoothly(void **state)
+{
+    (void)state;
+    const Weather weather = weather_default();
+    double        last[AIR_BAND_COUNT] = {0};
+    for (double e = -30; e <= 90; e += 0.5) {
+        const Air    air = air_of(&weather, e, 2, 1 << AIR_PAN, NULL);
+        const double sun = air.light.sun_w_m2[AIR_PAN], sky = air.light.sky_w_m2[AIR_PAN];
+        const double level = fmax(sun * sin(e * rad_per_deg), 0) + sky;
+        CHECK(isfinite(sun) && sun >= 0 && sky > 0 && sky < 250);
+        if (e < -0.27) CHECK(sun == 0);
+        /* half a degree: no jump, and more light for a higher sun; 10^(2.6 / 12) = 1.65 is nautical twilight's, the
+         * steepest, and as the disc rises it adds to civil twilight's 1.56 */
+        if (e > -30) CHECK(level >= 0.999 * last[0] && level <= last[0] * 1.8 + 1e-9);
+        last[0] = level;
+    }
+    const Air night = air_of(&weather, -40, 500, all_bands, NULL);
+    CHECK(night.light.sky_w_m2[AIR_PAN] > 1e-7 && night.light.sky_w_m2[AIR_PAN] < 1e-4 &&
+          night.light.sun_w_m2[AIR_MWIR] == 0);
+    CHECK(daylight_sky(&night.light, AIR_MWIR, (double[3]){0, 0, 1}) > 0.01);
+}
+
+/* Twilight as daylight_sums.c states it, over the sky with the sun 5 degrees up: 0.17 at the horizon (10^-0.77), 8e-4
+ * (10^-3.1) at the end of civil, 10^-5.7 of nautical and 10^-6.5 of astronomical twilight, straight lines between, and
+ * no less by night. The sun's own light comes with the share of its disc, 0.533 degrees wide, that is above the
+ * horizon. */
+static void light_fades_by_its_twilight(void **state)
+{
+    (void)state;
+    static const double of[][2] = {{5, 0},      {2.5, -0.385}, {0, -0.77},  {-3, -1.935},  {-6, -3.1}, {-9, -4.4},
+                                   {-12, -5.7}, {-15, -6.1},   {-18, -6.5}, {-18.5, -6.5}, {-40, -6.5}};
+    const Weather       weather = weather_default();
+    const double        five = air_of(&weather, 5, 2, 1 << AIR_PAN, NULL).light.sky_w_m2[AIR_PAN];
+    for (size_t i = 0; i < sizeof of / sizeof *of; i++) {
+        const double sky = air_of(&weather, of[i][0], 2, 1 << AIR_PAN, NULL).light.sky_w_m2[AIR_PAN];
+        CHECK_NEAR(log10(sky / five), of[i][1], 1e-5);
+    }
+    SunAir level;
+    atmosphere_sun(&level, atmosphere, weather.visibility_m, AIR_PAN, 0, 0.5 * pi_rad);
+    static const double disc[][2] = {{0, 0.5}, {-0.13325, 0.25}, {-0.26649, 0.5 * (1 - 0.26649 / 0.2665)}, {-0.267, 0}};
+    for (int i = 0; i < 4; i++) {
+        const double sun = air_of(&weather, disc[i][0], 2, 1 << AIR_PAN, NULL).light.sun_w_m2[AIR_PAN];
+        CHECK_NEAR(sun, disc[i][1] * level.direct_normal_w_m2, 1e-6 * level.direct_normal_w_m2);
+    }
+    atmosphere_sun(&level, atmosphere, weather.visibility_m, AIR_PAN, 0, 89.73 * rad_per_deg);
+    const double risen = air_of(&weather, 0.27, 2, 1 << AIR_PAN, NULL).light.sun_w_m2[AIR_PAN];
+    CHECK_NEAR(risen / level.direct_normal_w_m2, 1, 1e-9);
+}
+
+/* Half and all of the sky in clouds, by the papers' formulas; measured radiation as it is; the thermal sky of an
+ * overcast is as warm as the air. */
+static void clouds_dim_the_sun_and_warm_the_sky(void **state)
+{
+    (void)state;
+    Weather             weather = weather_default();
+    const unsigned      bands = 1 << AIR_PAN | 1 << AIR_LWIR;
+    const Air           clear_air = air_of(&weather, 45, 2, bands, NULL);
+    const Daylight      clear = clear_air.light;
+    const double        high = clear.sun_d_enu[2], global = clear.solar_direct_w_m2 * high + clear.solar_diffuse_w_m2;
+    static const double cloud[] = {0.5, 1};
+    for (int k = 0; k < 2; k++) {
+        weather.cloud = cloud[k];
+        const Air       air = air_of(&weather, 45, 2, bands, NULL);
+        const Daylight *l = &air.light;
+        CHECK_NEAR(l->solar_direct_w_m2, clear.solar_direct_w_m2 * (1 - cloud[k]), 1e-9);
+        CHECK_NEAR(l->solar_direct_w_m2 * high + l->solar_diffuse_w_m2, global * (1 - 0.75 * pow(cloud[k], 3.4)), 1e-6);
+        CHECK_NEAR(l->longwave_loss_w_m2, clear.longwave_loss_w_m2 * (1 - 0.84 * cloud[k]), 1e-9);
+        CHECK_NEAR(l->sun_w_m2[AIR_PAN], clear.sun_w_m2[AIR_PAN] * (1 - cloud[k]), 1e-9);
+        CHECK_NEAR(daylight_on_plane(l, AIR_PAN, (const double[3]){0, 0, 1}) /
+                       daylight_on_plane(&clear, AIR_PAN, (const double[3]){0, 0, 1}),
+                   l->solar_diffuse_w_m2 / clear.solar_diffuse_w_m2, 1e-4);
+        const double zenith[3] = {0, 0, 1}, black = planck_table_radiance(lwir, weather.air_temp_k);
+        const double was = daylight_sky(&clear, AIR_LWIR, zenith), is_now = daylight_sky(l, AIR_LWIR, zenith);
+        CHECK(was < 0.7 * black);
+        CHECK_NEAR(is_now, was + cloud[k] * (black - was), 2e-3 * black);
+    }
+    weather = weather_default();
+    weather.direct_w_m2 = 123, weather.diffuse_w_m2 = 234, weather.longwave_w_m2 = 345;
+    const Air measured = air_of(&weather, 45, 2, bands, NULL);
+    CHECK(measured.light.solar_direct_w_m2 == 123 && measured.light.solar_diffuse_w_m2 == 234);
+    CHECK_NEAR(measured.light.longwave_loss_w_m2, 5.670374419184429e-8 * pow(weather.air_temp_k, 4) - 345, 1e-9);
+    CHECK_NEAR(measured.light.sun_w_m2[AIR_PAN] / clear.sun_w_m2[AIR_PAN], 123 / clear.solar_direct_w_m2, 1e-9);
+}
+
+/* Sunlight goes by the inverse square of the distance: at 0.98329 au (perihelion, 3 January 2026) 1.0342767 and at
+ * 1.01671 au (aphelion, 6 July) 0.9673994 of that at 1 au; pvlib's get_extra_radiation(method='nrel') has 1.03425 and
+ * 0.96752 on these days. So do the sun, the sky's scattered light, the air's on a path, and the heat of both; what is
+ * thermal does not. */
+static void sunlight_goes_by_the_square_of_the_distance(void **state)
+{
+    (void)state;
+    static const double at_au[2] = {0.98329, 1.01671}, factor[2] = {1.0342767, 0.9673994};
+    const AirSource     source = {atmosphere, mwir, lwir, 0};
+    const AirEye        eye = {300, all_bands, NULL};
+    const Weather       weather = weather_default();
+    const double        away[3] = {0.8, 0, 0.6}, slope[3] = {0.6, 0, 0.8};
+    static Air          unit, air;
+    static AirPaths     near;
+    Sun                 sun = sun_at_elevation(35);
+    arena_reset(arena);
+    CHECK(air_at(&unit, &source, &weather, &sun, &eye, NULL, arena) == STATUS_OK);
+    clear();
+    add(1, -0.05, 4000);
+    for (int k = 0; k < 2; k++) {
+        sun.distance_au = at_au[k];
+        CHECK(air_at(&air, &source, &weather, &sun, &eye, NULL, arena) == STATUS_OK);
+        CHECK_NEAR(air.light.solar_direct_w_m2 / unit.light.solar_direct_w_m2, factor[k], 1e-6);
+        CHECK_NEAR(air.light.solar_diffuse_w_m2 / unit.light.solar_diffuse_w_m2, factor[k], 1e-6);
+        CHECK(air.light.longwave_loss_w_m2 == unit.light.longwave_loss_w_m2);
+        for (int b = 0; b < AIR_LWIR; b++) {
+            CHECK_NEAR(air.light.sun_w_m2[b] / unit.light.sun_w_m2[b], factor[k], 1e-6);
+            if (b == AIR_MWIR) continue; /* whose sky is thermal for the most part */
+            CHECK_NEAR(air.light.sky_w_m2[b] / unit.light.sky_w_m2[b], factor[k], 1e-5); /* sums of floats */
+            CHECK_NEAR(daylight_sky(&air.light, (AirBand)b, away) / daylight_sky(&unit.light, (AirBand)b, away),
+                       factor[k], 1e-5);
+            CHECK_NEAR(daylight_on_plane(&air.light, (AirBand)b, slope) /
+                           daylight_on_plane(&unit.light, (AirBand)b, slope),
+                       factor[k], 1e-5);
+            air_path(&veils, &air, (AirBand)b, &hits, &rays, NULL);
+            air_path(&near, &unit, (AirBand)b, &hits, &rays, NULL);
+            CHECK_NEAR(veils.added_w_m2_sr[0] / near.added_w_m2_sr[0], factor[k], 1e-4);
+            CHECK(veils.transmittance[0] == near.transmittance[0]);
+        }
+        CHECK(daylight_sky(&air.light, AIR_LWIR, away) == daylight_sky(&unit.light, AIR_LWIR, away));
+    }
+}
+
+/* Air of another temperature than the model's sends down as its fourth power: LOWTRAN's 283.3 W/m2 of the US standard,
+ * 23 km, at 288.15 K (tests/render/test_atmosphere.c) makes 332.86 at 300 K, where a black plane sends up 459.30. Light
+ * for temperatures is what is visible over 0.44, the photosynthetic share (McCree 1972: 0.43 .. 0.46). */
+static void heat_of_a_clear_sky_is_as_on_paper(void **state)
+{
+    (void)state;
+    Weather weather = weather_default();
+    weather.air_temp_k = 300;
+    const Air air = air_of(&weather, 50, 2, 1 << AIR_PAN, NULL);
+    CHECK_NEAR(air.light.longwave_loss_w_m2, 459.30 - 332.86, 0.4); /* the model's ground is 288.1 or 288.2 K */
+    CHECK_NEAR(air.light.sun_w_m2[AIR_PAN] / air.light.solar_direct_w_m2, 0.44, 1e-9);
+    CHECK_NEAR(air.light.sky_w_m2[AIR_PAN] / air.light.solar_diffuse_w_m2, 0.44, 1e-4);
+    /* the air cools with height as the model's, -6.5 K/km: what it is warmer by at each node of height */
+    for (int i = 0; i < air_warmer_nodes && i * air_warmer_step_m < 10000; i++)
+        CHECK_NEAR((double)air.light.warmer_k[i], -6.5e-3 * i * air_warmer_step_m, 0.25);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(sun_disc_adds_up),
+        cmocka_unit_test(light_fades_smoothly),
+        cmocka_unit_test(light_fades_by_its_twilight),
+        cmocka_unit_test(heat_of_a_clear_sky_is_as_on_paper),
+        cmocka_unit_test(clouds_dim_the_sun_and_warm_the_sky),
+        cmocka_unit_test(sunlight_goes_by_the_square_of_the_distance),
+    };
+    return cmocka_run_group_tests(tests, open_tables, close_tables);
+}
