@@ -1,5 +1,6 @@
 /* What a scan along lines does to a plane: AC coupling by its response at the cut-off and its droop, noise along the
- * lines by its autocorrelation, and the time of each pixel; all by closed forms. Resampling: test_tdi.c. labels: physics
+ * lines by its autocorrelation, and the time of each pixel; all by closed forms. Resampling: test_tdi.c. labels:
+ * physics
  */
 #include "tests/check.h"
 
@@ -110,7 +111,8 @@ static void noise_is_correlated_along_the_lines(void **state)
 static void each_pixel_has_its_time(void **state)
 {
     (void)state;
-    const LineScan lines = {.line_s = 1e-3, .active = 0.8}, both = {.line_s = 1e-3, .active = 0.8, .bidirectional = true},
+    const LineScan lines = {.line_s = 1e-3, .active = 0.8},
+                   both = {.line_s = 1e-3, .active = 0.8, .bidirectional = true},
                    columns = {.line_s = 1e-3, .active = 0.8, .by_columns = true};
     CHECK_NEAR(line_scan_time_s(&lines, 100, 50, 0.5, 0), -24.896e-3, 1e-15);
     CHECK_NEAR(line_scan_time_s(&lines, 100, 50, 99.5, 0), -24.104e-3, 1e-15);
