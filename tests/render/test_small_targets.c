@@ -415,8 +415,45 @@ static void a_pixel_is_whose_most_of_it_is(void **state)
             if (covered > 0.5) CHECK_NEAR(picture.range_m[px], range_m, 0.01);
             else CHECK(isinf(picture.range_m[px]));
         }
+    static const int box[4] = {side_px / 2, side_px / 2, side_px / 2 + 2, side_px / 2 + 3};
+    for (int k = 0; k < 4; k++) assert_int_equal(picture.target[0].box[k], box[k]);
     CHECK_NEAR(picture.target[0].visible, 2.25, 1e-3);
     CHECK_NEAR(picture.target[0].peak_area, 0.9, 1e-3);
+}
+
+/* A plate of 20.4 px, which is no small target: it fills 0.7 of the pixels along its edges and with that their centres,
+ * so the box ends with them, on all four sides: columns 40 .. 60, rows 44 .. 64 of 96, the last two exclusive 61, 65.
+ * Beyond the picture's edges it ends with the picture: four plates, each over one corner. */
+static void the_box_holds_just_what_shows(void **state)
+{
+    (void)state;
+    const double        side = 20.4;
+    const View          view = east();
+    const RenderRequest request = hand_request(&view);
+    const double        range_m = 2 * view.focal_px / side, half = 0.5 * side_px;
+    double              r[9], p_enu[3];
+    hand_air_off(sun_enu);
+    hand_attitude(r, pi_rad, 0);
+    for (int k = 0; k < 5; k++) {
+        const int right = k < 2 ? -1 : 1, down = k % 2 ? 1 : -1;
+        double    at[2] = {-7.7 + 0.5 * side, -3.7 + 0.5 * side};
+        int       want[4] = {40, 44, 61, 65};
+        if (k < 4) { /* 10.2 - 2.5 = 7.7 px within the picture either way */
+            at[0] = right * (half + 2.5), at[1] = down * (half + 2.5);
+            want[0] = right < 0 ? 0 : side_px - 8, want[2] = right < 0 ? 8 : side_px;
+            want[1] = down < 0 ? 0 : side_px - 8, want[3] = down < 0 ? 8 : side_px;
+        }
+        hand_clear();
+        place_at(p_enu, &view, range_m, at[0], at[1]);
+        p_enu[2] -= 1; /* its origin is its foot */
+        hand_add(hand_plate_model, p_enu, r);
+        arena_reset(hand.arena);
+        const Picture picture = hand_render(&request, hand.pool);
+        CHECK(!picture.target[0].small);
+        for (int c = 0; c < 4; c++)
+            if (picture.target[0].box[c] != want[c])
+                fail_msg("plate %d, side %d: %d, want %d", k, c, picture.target[0].box[c], want[c]);
+    }
 }
 
 /* The radar's profile is the picture's sum still, behind and on small targets. */
@@ -465,6 +502,7 @@ int main(void)
         cmocka_unit_test(a_crowd_keeps_the_footprints_near_the_boresight),
         cmocka_unit_test(finer_grids_than_fit_become_coarser),
         cmocka_unit_test(a_pixel_is_whose_most_of_it_is),
+        cmocka_unit_test(the_box_holds_just_what_shows),
         cmocka_unit_test(the_profile_holds_the_picture),
     };
     thread_flush_denormals();

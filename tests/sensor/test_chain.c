@@ -155,18 +155,119 @@ static void frames_need_no_other(void **state)
     }
 }
 
-/* Lines of the scanning sensor: the noise frame of the pool comes back after ten, not before; its rows are
- * correlated. */
+/* What truth is told, part by part: the squares of temporal noise, of each pattern as a share of it, of gain, and of
+ * the converter's step. Each part is some 0.3 of the sum, so that none can be missing. 0.2 %: chain_sigma's slope. */
+static void sigma_is_the_sum_of_its_parts(void **state)
+{
+    (void)state;
+    SensorPreset p = preset_of("scanning_flir");
+    double       slope;
+    p.ratio = (Noise3d){.sigma = {[NOISE_TVH] = 1, [NOISE_TV] = 0.6, [NOISE_H] = 0.8}};
+    p.line_noise = 0.9;
+    const double n = photon_electrons(&p.photons, 300, &slope);
+    const double temporal = n + p.photons.dark_e + p.photons.read_e * p.photons.read_e;
+    p.prnu = sqrt(temporal) / n;
+    Chain       *chain = chain_of(&p);
+    const double step = chain_step_e(chain);
+    const double all = temporal * (1 + 0.36 + 0.64 + 0.81 + 1) + step * step / 12;
+    CHECK_NEAR(chain_netd_k(chain, 300) / (sqrt(all) / slope), 1, 2e-3);
+    chain_destroy(chain);
+}
+
+/* A shutter that closes shortens light and dark current alike, and not the noise of reading: with 0.35 of the well
+ * in both, half each. */
+static void sigma_follows_the_shutter(void **state)
+{
+    (void)state;
+    SensorPreset p = preset_of("tv");
+    const double radiance = 100;
+    p.ratio = (Noise3d){.sigma = {[NOISE_TVH] = 1}};
+    p.prnu = p.line_noise = p.dark_e_s = 0;
+    preset_refresh(&p);
+    Chain       *chain = chain_of(&p);
+    const double light_e = chain_counts_at(chain, 0, radiance) * chain_step_e(chain);
+    chain_destroy(chain);
+    p.dark_e_s = light_e / p.photons.integration_s;
+    preset_refresh(&p);
+    chain = chain_of(&p);
+    for (int i = 0; i < pixels; i++) plane[i] = (float)radiance;
+    const float *in[1] = {plane};
+    chain_expose(chain, in);
+    const double open = 0.35 * p.photons.well_e / (2 * light_e), step = chain_step_e(chain);
+    CHECK(open < 0.5);
+    const double all = 2 * open * light_e + p.photons.read_e * p.photons.read_e + step * step / 12;
+    CHECK_NEAR(chain_sigma(chain, 0, radiance) / (sqrt(all) * radiance / (open * light_e)), 1, 2e-3);
+    chain_destroy(chain);
+}
+
+/* Of the faulty pixels those that the table patches are patched: all of them, or none, which show as 0 or full scale:
+ * three in four and half of the blinking ones, of 2 % of 19200. Five deviations, in clumps of one. */
+static void what_is_not_patched_shows(void **state)
+{
+    (void)state;
+    SensorPreset p = preset_of("staring_lwir");
+    p.noise_scale = p.ac_per_line = p.bad_clustered = 0;
+    p.bad_share = 0.02;
+    fill(BAND_LWIR, 300);
+    for (int patched = 0; patched < 2; patched++) {
+        int seen = 0;
+        p.bad_patched = patched;
+        Chain *chain = chain_of(&p);
+        mean_counts(chain, 0);
+        for (int i = 0; i < pixels; i++)
+            seen += chain_counts(chain, 0)[i] == 0 || chain_counts(chain, 0)[i] == (1 << (int)p.bits) - 1;
+        const double want = patched ? 0 : 0.02 * 0.875 * pixels;
+        CHECK_NEAR(seen, want, 5 * sqrt(want));
+        chain_destroy(chain);
+    }
+}
+
+/* The cut-off of etc/sensors.csv is per line: of the time of a whole line, of which the columns take the active share;
+ * swept by columns it is per column. What is left of a step after n pixels is exp(-2 pi ac active n / width), and
+ * exp(-2 pi ac n). The tails of diffraction, 0.1 % of the step 20 pixels after it, are 1 % of what is left; a cut-off
+ * 10 % off is 19 %. */
+static void the_cut_off_is_of_a_line(void **state)
+{
+    (void)state;
+    static const double cut_off[2] = {1, 0.005};
+    for (int columns = 0; columns < 2; columns++) {
+        SensorPreset p = preset_of(columns ? "scanning_flir2" : "scanning_flir");
+        p.noise_scale = p.bad_share = p.ac_per_line = 0;
+        p.bits = 16;
+        p.scan.active = columns ? 0 : 0.8;
+        double left[2] = {0, 0}, mean = 0;
+        fill(BAND_LWIR, 290);
+        for (int i = 0; i < pixels; i++)
+            if (i % width >= 20) plane[i] *= 1.5f;
+        for (int on = 0; on < 2; on++) {
+            p.ac_per_line = on ? cut_off[columns] : 0;
+            Chain       *chain = chain_of(&p);
+            const double all = mean_counts(chain, 0);
+            if (!on) mean = all;
+            for (int r = 0; on && r < height; r += 2) /* odd rows of scanning_flir return */
+                for (int k = 0; k < 2; k++) left[k] += (chain_counts(chain, 0)[r * width + 40 + 60 * k] - mean) / 60;
+            chain_destroy(chain);
+        }
+        const double per_px = 2 * pi_rad * cut_off[columns] * (columns ? 1 : 0.8 / width);
+        CHECK(left[0] > 500);
+        CHECK_NEAR(left[1] / left[0], exp(-60 * per_px), 0.03 * exp(-60 * per_px));
+    }
+}
+
+/* Lines of the scanning sensor: the noise frame of the pool comes back after ten, not before; its rows are correlated
+ * over the length of the table, and not from row to row. */
 static void the_pool_of_ten_rolls(void **state)
 {
     (void)state;
     SensorPreset p = preset_of("scanning_flir");
     for (int a = NOISE_TV; a < noise_axes; a++) p.ratio.sigma[a] = 0;
     p.photons.read_e = 100, p.line_noise = 5, p.ac_per_line = 0;
+    const int    length = (int)p.line_noise_px;
     static float first[pixels], other[pixels];
     Chain       *chain = chain_of(&p);
     fill(BAND_LWIR, 300);
     const double mean = mean_counts(chain, 3);
+    double       along = 0, down = 0, square = 0;
     memcpy(first, chain_values(chain, 0), sizeof first);
     for (int f = 4; f <= 13; f++) {
         double together = 0, a = 0, b = 0;
@@ -176,13 +277,20 @@ static void the_pool_of_ten_rolls(void **state)
             together += (first[i] - mean) * (other[i] - mean);
             a += (first[i] - mean) * (first[i] - mean);
             b += (other[i] - mean) * (other[i] - mean);
+            if (i % width + length < width) along += (other[i] - mean) * (other[i + length] - mean);
+            if (i / width + 2 < height) down += (other[i] - mean) * (other[i + 2 * width] - mean);
         }
+        square += b;
         /* line noise is 25 of 26 parts of the variance, and the converter's step is in it; of 19200 pixels in runs of
          * 2 x 30, 320 are independent */
         const double step = chain_step_e(chain), n = photon_electrons(&p.photons, 300, NULL) + 100 * 100;
         const double want = 25 / (26 + step * step / (12 * n));
         CHECK_NEAR(together / sqrt(a * b), f == 13 ? want : 0, f == 13 ? 0.01 : 5 / sqrt(320));
     }
+    /* ten frames: 3200 independent, 1.8 % each; half the length would give 0.13 for 0.35 */
+    CHECK(length == 30);
+    CHECK_NEAR(along / square * width / (width - length), 25.0 / 26 * exp(-1), 4 / sqrt(3200));
+    CHECK_NEAR(down / square, 0, 4 / sqrt(3200));
     chain_destroy(chain);
 }
 
@@ -308,6 +416,10 @@ int main(void)
         cmocka_unit_test(netd_is_what_electrons_make_it),
         cmocka_unit_test(three_dimensional_noise_is_as_the_table_says),
         cmocka_unit_test(frames_need_no_other),
+        cmocka_unit_test(sigma_is_the_sum_of_its_parts),
+        cmocka_unit_test(sigma_follows_the_shutter),
+        cmocka_unit_test(what_is_not_patched_shows),
+        cmocka_unit_test(the_cut_off_is_of_a_line),
         cmocka_unit_test(the_pool_of_ten_rolls),
         cmocka_unit_test(the_shutter_follows_the_light),
         cmocka_unit_test(light_counts_by_its_own_wavelength),

@@ -3,6 +3,7 @@
 #include "tests/check.h"
 
 #include "sensor/frame/json_object.h"
+#include "sensor/frame/record_fields.h"
 #include "sensor/reference/reference.h"
 #include "sensor/verify/regress/verdict_private.h"
 
@@ -195,13 +196,65 @@ static void paths_without_a_row(void **state)
     }
 }
 
+/* How far two runs may differ, a second time, so that no bound of truth.jsonl is widened unnoticed. Reasons: positions
+ * and ranges are good to 1 mm, angles to 1e-4 deg (0.2 m at 100 km; a pixel of a narrow view is ten times that), areas
+ * to a few samples, temperatures to 0.05 K, and what is divided by noise or clutter to 2 %. */
+static void bounds_are_as_listed(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *path;
+        double      absolute, relative;
+    } want[] = {
+        {"time_s", 1e-6, 0},
+        {"targets[1:2:3].range_m", 1e-3, 1e-6},
+        {"targets[1:2:3].closing_mps", 1e-3, 1e-6},
+        {"targets[1:2:3].aspect_deg", 1e-3, 0},
+        {"targets[1:2:3].depression_deg", 1e-4, 0},
+        {"targets[1:2:3].los_az_deg", 1e-4, 0},
+        {"targets[1:2:3].los_el_deg", 1e-4, 0},
+        {"targets[1:2:3].los_rate_dps", 1e-3, 1e-5},
+        {"targets[1:2:3].boresight_error_deg", 1e-4, 0},
+        {"targets[1:2:3].pixels", 0.02, 0.005},
+        {"targets[1:2:3].visible_fraction", 0.005, 0},
+        {"targets[1:2:3].foliage_fraction", 0.005, 0},
+        {"targets[1:2:3].box_px", 0, 0},
+        {"targets[1:2:3].amodal_box_px", 0.02, 0},
+        {"targets[1:2:3].dt_k", 0.05, 0},
+        {"targets[1:2:3].patch_temp_k", 0.05, 0},
+        {"targets[1:2:3].age_s", 1e-5, 0},
+        {"targets[1:2:3].position_error_m", 1e-3, 1e-3},
+        {"targets[1:2:3].error_px", 0.01, 0.05},
+        {"targets[1:2:3].bands.lwir.contrast_k", 0.05, 0.01},
+        {"targets[1:2:3].bands.lwir.dt_rss_k", 0.05, 0.01},
+        {"targets[1:2:3].bands.lwir.contrast", 0.01, 0.01},
+        {"targets[1:2:3].bands.lwir.snr", 0.05, 0.02},
+        {"targets[1:2:3].bands.lwir.veil_transmittance", 0.002, 0},
+        {"targets[1:2:3].bands.lwir.intensity_w_sr", 1e-4, 0.01},
+        {"targets[1:2:3].bands.lwir.intensity_error_w_sr", 1e-4, 0.05},
+        {"targets[1:2:3].bands.lwir.error_rms_k", 0.05, 0.05},
+        {"targets[1:2:3].bands.lwir.error_median_k", 0.05, 0.05},
+    };
+    for (size_t i = 0; i < sizeof want / sizeof *want; i++) {
+        FieldChannel channel = FIELD_POSE;
+        const Field *row = field_find(&channel, &record_frame_fields, want[i].path);
+        if (!row || !row->held || row->absolute != want[i].absolute || row->relative != want[i].relative)
+            fail_msg("%s: %g, %g", want[i].path, row ? row->absolute : NAN, row ? row->relative : NAN);
+    }
+    /* none of a target's and a band's is left out of the list but those that are words or exact */
+    int held = 0, bounded = 0;
+    for (int k = 0; k < target_fields.count; k++) bounded += target_fields.row[k].absolute > 0;
+    for (size_t i = 0; i < sizeof want / sizeof *want; i++)
+        held += strstr(want[i].path, "targets") && !strstr(want[i].path, "bands") && want[i].absolute > 0;
+    assert_int_equal(held, bounded);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(rows_are_written_in_order),
-        cmocka_unit_test(rows_are_listed),
-        cmocka_unit_test(rows_are_compared),
-        cmocka_unit_test(paths_without_a_row),
+        cmocka_unit_test(rows_are_written_in_order), cmocka_unit_test(rows_are_listed),
+        cmocka_unit_test(rows_are_compared),         cmocka_unit_test(paths_without_a_row),
+        cmocka_unit_test(bounds_are_as_listed),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -283,6 +283,36 @@ static void pose_of_platform_and_sensor(void **state)
     CHECK(lab.used < 600);
 }
 
+/* Every place of the footprint in its own tags: four corners clockwise from the upper left (ST 0601, 82 .. 89), each
+ * with a latitude and a longitude that no other has. */
+static void each_corner_has_its_own_tags(void **state)
+{
+    (void)state;
+    static const double at_deg[FOOTPRINT_COUNT][2] = {
+        {10.5, 20.5}, {-11.25, 121.25}, {12.75, -122.75}, {-33.5, -43.5}, {54.125, 164.125}};
+    static const int corner[4] = {FOOTPRINT_UPPER_LEFT, FOOTPRINT_UPPER_RIGHT, FOOTPRINT_LOWER_RIGHT,
+                                  FOOTPRINT_LOWER_LEFT};
+    scene(&somewhere, (double[3]){0, 0, 0}, (double[3]){0, 0, 0});
+    for (int k = 0; k < FOOTPRINT_COUNT; k++)
+        lab.footprint[k] =
+            (GroundPoint){true, at_deg[k][0] * rad_per_deg, at_deg[k][1] * rad_per_deg, 100 + 10 * k, 1000 + 100 * k};
+    encode(NULL);
+    for (unsigned k = 0; k < 4; k++) {
+        CHECK_NEAR(signed_of(82 + 2 * k, 90), at_deg[corner[k]][0], 3e-8);
+        CHECK_NEAR(signed_of(83 + 2 * k, 180), at_deg[corner[k]][1], 5e-8);
+    }
+    CHECK_NEAR(signed_of(23, 90), at_deg[FOOTPRINT_CENTRE][0], 3e-8);
+    CHECK_NEAR(signed_of(24, 180), at_deg[FOOTPRINT_CENTRE][1], 5e-8);
+    CHECK_NEAR(unsigned_of(78, -900, 19000), 100 + 10 * FOOTPRINT_CENTRE, 0.16);
+    CHECK_NEAR(unsigned_of(21, 0, 5e6), 1000 + 100 * FOOTPRINT_CENTRE, 0.0007);
+    /* a sensor that looks the other way about: the place stays, the signs of its own place too */
+    const Geodetic south = {-33.5 * rad_per_deg, 151.25 * rad_per_deg, 120};
+    scene(&south, (double[3]){0, 0, 0}, (double[3]){0, 0, 0});
+    encode(NULL);
+    CHECK_NEAR(signed_of(13, 90), -33.5, 3e-8);
+    CHECK_NEAR(signed_of(14, 180), 151.25, 5e-8);
+}
+
 static void what_is_beyond_a_range_is_absent(void **state)
 {
     (void)state;
@@ -340,7 +370,11 @@ static void a_target(void **state)
     CHECK(number(find(set, 5), false) == 7 && number(find(set, 6), false) == 1);
     CHECK(number(find(set, 7), false) == 300);
     CHECK(number(find(set, 8), false) == 640 && number(find(set, 9), false) == 480);
+    CHECK(is_text(find(set, 10), "IR LWIR"));
     CHECK(number(find(set, 11), false) == 6 * 128); /* IMAPB(0, 180, 2): 2^(15 - 8) a degree */
+    /* 480 of 640 square pixels: 2 atan(0.75 tan 3 deg) = 4.502312 degrees; x 128 = 576.3, of which IMAPB keeps the
+     * whole */
+    CHECK(number(find(set, 12), false) == 576 && find(set, 12).count == 2);
     static const uint8_t want[] = {
         0x81, 0x48,                                                  /* id 200 */
         1,    2,    0x37, 0x15,                                      /* column 20, row 22, from 0: 22 * 640 + 20 + 1 */
@@ -357,6 +391,15 @@ static void a_target(void **state)
     assert_int_equal(algorithms.count, sizeof algorithm);
     assert_memory_equal(algorithms.at, algorithm, sizeof algorithm);
     CHECK(memmem(set.at, set.count, "urn:pitviper:detected:tank", 26) && !memmem(set.at, set.count, "truth", 5));
+    /* ST 0903 ontology set: id, its family, the class within it, the label; one element, after its length of 60 */
+    static const char ontology[] = "\x3C"
+                                   "\x01\x01\x01"
+                                   "\x03\x15urn:pitviper:detected"
+                                   "\x04\x1Aurn:pitviper:detected:tank"
+                                   "\x06\x04tank";
+    const Value       ontologies = find(set, 103);
+    assert_int_equal(ontologies.count, sizeof ontology - 1);
+    assert_memory_equal(ontologies.at, ontology, sizeof ontology - 1);
 }
 
 static void many_targets_and_truth(void **state)
@@ -457,6 +500,7 @@ int main(void)
         cmocka_unit_test(maps),
         cmocka_unit_test(never_beyond_the_buffer),
         cmocka_unit_test(pose_of_platform_and_sensor),
+        cmocka_unit_test(each_corner_has_its_own_tags),
         cmocka_unit_test(what_is_beyond_a_range_is_absent),
         cmocka_unit_test(a_target),
         cmocka_unit_test(many_targets_and_truth),

@@ -31,6 +31,60 @@ static void it_starts_locked_and_follows_with_its_lag(void **state)
     CHECK_NEAR(s.azimuth_rad / rad_per_deg, 20 - 10 * exp(-1), 1e-9);
 }
 
+/* Either axis, either way: after n ticks of 1/100 s a share exp(-n / (100 lag)) of a step is left. Steps of different
+ * sizes tell the axes apart. */
+static void both_axes_follow_with_the_lag(void **state)
+{
+    (void)state;
+    for (int way = -1; way <= 1; way += 2) {
+        Seeker s = head(170, 1e4, 0.25);
+        double d[3];
+        look(d, 0, 0);
+        seeker_step(&s, d);
+        look(d, way * 12, way * -8);
+        for (int i = 0; i < 10; i++) seeker_step(&s, d);
+        CHECK_NEAR(s.azimuth_rad / rad_per_deg, way * 12 * (1 - exp(-0.4)), 1e-9);
+        CHECK_NEAR(s.elevation_rad / rad_per_deg, way * -8 * (1 - exp(-0.4)), 1e-9);
+    }
+}
+
+/* Either axis alone and both together, either way: 0.1 s at 30 deg/s are 3 degrees on each. The lag does not add to a
+ * turn that the rate bounds: what is left of 20 degrees in a tick of lag 0.03 s would be 5.7. */
+static void both_axes_keep_to_the_rate(void **state)
+{
+    (void)state;
+    static const double lag_s[2] = {0, 0.03}, step[3][2] = {{20, 0}, {0, 20}, {20, -20}};
+    for (int k = 0; k < 12; k++) {
+        const int    way = k % 2 ? 1 : -1;
+        const double azimuth = way * step[k / 2 % 3][0], elevation = way * step[k / 2 % 3][1];
+        Seeker       s = head(170, 30, lag_s[k / 6]);
+        double       d[3];
+        look(d, 0, 0);
+        seeker_step(&s, d);
+        look(d, azimuth, elevation);
+        for (int i = 0; i < 10; i++) seeker_step(&s, d);
+        CHECK_NEAR(s.azimuth_rad / rad_per_deg, azimuth == 0 ? 0 : copysign(3, azimuth), 1e-9);
+        CHECK_NEAR(s.elevation_rad / rad_per_deg, elevation == 0 ? 0 : copysign(3, elevation), 1e-9);
+    }
+}
+
+/* An aim that passes behind is followed the short way, through 180 degrees. */
+static void it_follows_through_behind(void **state)
+{
+    (void)state;
+    for (int way = -1; way <= 1; way += 2) {
+        Seeker s = head(180, 100, 0);
+        double d[3];
+        look(d, way * 175, 0);
+        seeker_step(&s, d);
+        look(d, way * -175, 0);
+        for (int i = 0; i < 3; i++) seeker_step(&s, d);
+        CHECK_NEAR(s.azimuth_rad / rad_per_deg, way * 178, 1e-9);
+        for (int i = 0; i < 5; i++) seeker_step(&s, d);
+        CHECK_NEAR(s.azimuth_rad / rad_per_deg, way * -177, 1e-9);
+    }
+}
+
 static void it_turns_no_faster_than_its_rate(void **state)
 {
     (void)state;
@@ -267,6 +321,9 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(it_starts_locked_and_follows_with_its_lag),
+        cmocka_unit_test(both_axes_follow_with_the_lag),
+        cmocka_unit_test(both_axes_keep_to_the_rate),
+        cmocka_unit_test(it_follows_through_behind),
         cmocka_unit_test(it_turns_no_faster_than_its_rate),
         cmocka_unit_test(it_stops_at_its_limit_in_the_plane_of_the_aim),
         cmocka_unit_test(the_picture_is_upright_whatever_the_body_does),

@@ -28,13 +28,17 @@ static int open_fixture(void **state)
     const Status status = catalog_open(&f.catalog, path, 0.01);
     remove(path);
     f.world.catalog = f.catalog;
-    return status == STATUS_OK && planck_table_create(&f.world.planck_lwir, 8e-6, 12e-6) == STATUS_OK ? 0 : -1;
+    return status == STATUS_OK && planck_table_create(&f.world.planck_lwir, 8e-6, 12e-6) == STATUS_OK &&
+                   planck_table_create(&f.world.planck_mwir, 3.4e-6, 4.8e-6) == STATUS_OK
+               ? 0
+               : -1;
 }
 
 static int close_fixture(void **state)
 {
     (void)state;
     planck_table_destroy(f.world.planck_lwir);
+    planck_table_destroy(f.world.planck_mwir);
     catalog_close(f.catalog);
     return 0;
 }
@@ -187,6 +191,50 @@ static void contrast_is_the_temperature_difference_that_was_painted(void **state
     /* 60 pixels of 1/500 rad at the range */
     CHECK_NEAR(b->intensity_w_sr / (60 * mean * t[0].range_m * t[0].range_m / 250000), 1, 1e-12);
     CHECK(isnan(t[0].band[BAND_MWIR].contrast_k) && isnan(t[0].band[BAND_OPTICAL].snr)); /* not computed: absent */
+}
+
+/* Each band over its own noise, on even ground, so that the noise is all that the signal is compared with: 3 K over
+ * 0.03 K, 4 K over 0.05 K; a radiance 0.5 above 0.5 over 0.01 in one channel, and over 0.01 / sqrt(3) as the mean of
+ * three channels, whose noise is independent. */
+static void each_band_has_its_own_noise(void **state)
+{
+    (void)state;
+    static float       mwir[width * height], rgb[3][width * height];
+    static const float ground[3] = {0.4f, 0.5f, 0.6f}, painted[3] = {0.8f, 0.9f, 1.3f};
+    for (int channels = 1; channels <= 3; channels += 2) {
+        Target t[2];
+        scene();
+        f.picture.mwir = mwir;
+        for (int c = 0; c < channels; c++) f.picture.optical[c] = rgb[c];
+        for (int i = 0; i < width * height; i++) {
+            const int  x = i % width, y = i / width;
+            const bool on = x >= 20 && x < 30 && y >= 10 && y < 16;
+            f.id[i] = on ? 2 : 0;
+            mwir[i] = (float)planck_band(3.4e-6, 4.8e-6, on ? 303 : 300, NULL);
+            f.lwir[i] = (float)planck_band(8e-6, 12e-6, on ? 304 : 300, NULL);
+            for (int c = 0; c < 3; c++) rgb[c][i] = channels == 1 ? (on ? 1 : 0.5f) : on ? painted[c] : ground[c];
+        }
+        f.pixels[1] = (TargetPixels){
+            .visible = 60, .amodal = 60, .box = {20, 10, 30, 16}, .amodal_box = {20, 10, 30, 16}, .occluder = -1};
+        for (int p = 0; p < 3; p++) f.pixels[1].radiance[picture_optical + p] = 7 + 4 * p;
+        f.pixels[1].radiance[picture_mwir] = 31;
+        f.pixels[1].radiance[picture_lwir] = 53;
+        f.request.bands = 1 << BAND_OPTICAL | 1 << BAND_MWIR | 1 << BAND_LWIR;
+        assert_int_equal(truth_targets(t, &f.picture, &f.world, &f.snapshot, &f.request, &f.eye, &noise), 1);
+        const TargetBand *b = t[0].band;
+        CHECK_NEAR(b[BAND_MWIR].contrast_k, 3, 2e-3);
+        CHECK_NEAR(b[BAND_LWIR].contrast_k, 4, 2e-3);
+        CHECK_NEAR(b[BAND_MWIR].snr, 3 / 0.03, 0.1);
+        CHECK_NEAR(b[BAND_LWIR].snr, 4 / 0.05, 0.1);
+        CHECK_NEAR(b[BAND_OPTICAL].snr, 0.5 / 0.01 * sqrt(channels), 1e-3);
+        CHECK_NEAR(b[BAND_OPTICAL].contrast, 1, 1e-6);
+        /* intensities: each band's own sum, and of all channels together, over the square of focal length and range */
+        const double per = t[0].range_m * t[0].range_m / 250000;
+        CHECK_NEAR(b[BAND_OPTICAL].intensity_w_sr / per, channels == 1 ? 7 : 7 + 11 + 15, 1e-9);
+        CHECK_NEAR(b[BAND_MWIR].intensity_w_sr / per, 31, 1e-9);
+        CHECK_NEAR(b[BAND_LWIR].intensity_w_sr / per, 53, 1e-9);
+        for (int k = 0; k < 4; k++) CHECK(t[0].box[k] == f.pixels[1].box[k]);
+    }
 }
 
 /* A tenth of a pixel at 320 K, beside another's pixel: mean and variance are its own, the ratio is that of its pixel.
@@ -348,6 +396,7 @@ int main(void)
         cmocka_unit_test(line_of_sight_and_its_rate_agree_with_differences),
         cmocka_unit_test(azimuth_elevation_and_aspect_have_the_stated_senses),
         cmocka_unit_test(contrast_is_the_temperature_difference_that_was_painted),
+        cmocka_unit_test(each_band_has_its_own_noise),
         cmocka_unit_test(a_small_target_is_judged_by_its_samples),
         cmocka_unit_test(a_signal_is_known_without_surroundings_and_without_noise),
         cmocka_unit_test(hidden_targets_are_listed_and_the_host_never),

@@ -148,7 +148,9 @@ def vmti(got, k, line):
     check("VMTI: frame number", fields["7"] == line["frame"])
     check("VMTI: counts", fields["5"] == len(seen) and fields["6"] == len(got["targets"]) == min(len(seen), 64))
     check("VMTI: frame size", [fields["8"], fields["9"]] == [width, height])
-    near("VMTI: field of view", fields["11"], sensor["hfov_deg"], 0.006)
+    near("VMTI: horizontal field of view", fields["11"], sensor["hfov_deg"], 0.006)
+    near("VMTI: vertical field of view", fields["12"], sensor["vfov_deg"], 0.006)
+    check("VMTI: sensor", fields["10"] == k["11"])
     ids = {(int(s) << 32) + (int(a) << 16) + int(e): t for t in seen for s, a, e in [t["entity"].split(":")]}
     sizes = []
     for t in got["targets"]:

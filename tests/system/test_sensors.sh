@@ -128,11 +128,12 @@ slip "a sheet's slip" "bad.sheet:[0-9]*: f_number: '0' is not a number in 0.5 ..
 slip "a sheet beside a preset of its band" "example_flir2 and staring_lwir are both for lwir" --set sensor.table=etc/sensors/example_flir2.sheet --set sensor.preset=staring_lwir
 
 # a lens: truth says which, boxes follow it, any number of threads gives the same; and a sheet is a sensor
-lens=(--set sensor.lens_k1=-6 --set sensor.lens_k2=60 --set sensor.lateral_r=0.01 --set sensor.lateral_b=-0.01 --set sensor.hfov_deg=20)
+# five different coefficients, in the order of OpenCV's distCoeffs: k1, k2, p1, p2, k3
+lens=(--set sensor.lens_k1=-6 --set sensor.lens_k2=60 --set sensor.lens_k3=5 --set sensor.lens_p1=0.001 --set sensor.lens_p2=-0.002 --set sensor.lateral_r=0.01 --set sensor.lateral_b=-0.01 --set sensor.hfov_deg=20)
 run replay "$tmp/demo.pcap" --out "$tmp/lens" "${small[@]}" --threads 2 "${lens[@]}"
 check "a lens: replay ends well" [ $code -eq 0 ]
 check "the lens is said" said 'lens: k1=-6 k2=60 .*sensor.lens_k1'
-check "and in truth" grep -q '"distortion":\[-6.0,60.0,0.0,0.0,0.0\]' "$tmp/lens/truth.jsonl"
+check "and in truth" grep -q '"distortion":\[-6.0,60.0,0.001,-0.002,5.0\]' "$tmp/lens/truth.jsonl"
 run replay "$tmp/demo.pcap" --out "$tmp/lens1" "${small[@]}" --threads 1 "${lens[@]}" --no-skip
 check "a lens: one thread and nothing skipped, or two and skips" same_hashes "$tmp/lens" "$tmp/lens1"
 run replay "$tmp/demo.pcap" --out "$tmp/plain" "${small[@]}" --threads 1 --set sensor.hfov_deg=20 --only 3 --no-files
