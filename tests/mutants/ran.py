@@ -1,0 +1,135 @@
+"""Which tests run which functions and lines, measured once: objects of the drawn rooms are compiled with gcc's --coverage, the
+tests are linked with them and run one by one. What was measured stays in build/mutate/ran, a file a test."""
+import hashlib
+import json
+import os
+import shutil
+import subprocess
+
+from programs import Failure, Stand
+
+
+def flat(source):
+    return source.replace('/', '_')
+
+
+def sha_of(path):
+    with open(path, 'rb') as stream:
+        return hashlib.sha256(stream.read()).hexdigest()[:16]
+
+
+class Ran:
+    def __init__(self, programs, files, work, say):
+        self.programs, self.files, self.say = programs, files, say
+        self.folder, self.objects = os.path.join(work, 'ran'), os.path.join(work, 'coverage')
+        self.work, self.tests, self.shas = work, {}, {f: sha_of(os.path.join(programs.root, f)) for f in files}
+        self.libraries = {}
+        for folder in (self.folder, self.objects):
+            os.makedirs(folder, exist_ok=True)
+
+    def source_of(self, test):
+        """What a test is made of, so that a changed one is measured again."""
+        words = [w for w in test.command if w.endswith('.sh')]
+        path = words[0] if words else os.path.join('tests', test.name + '.c')
+        path = os.path.join(self.programs.root, path)
+        return sha_of(path) if os.path.exists(path) else ''
+
+    def read(self, tests):
+        """What is known of these tests; the tests of which nothing is known, or which have changed."""
+        missing = []
+        for test in tests:
+            try:
+                with open(os.path.join(self.folder, flat(test.name) + '.json'), encoding='utf-8') as stream:
+                    known = json.load(stream)
+            except (OSError, ValueError):
+                known = None
+            if known and known['sha'] == self.source_of(test):
+                self.tests[test.name] = known
+            else:
+                missing.append(test)
+        return missing
+
+    def prepare(self):
+        """Objects that count, and libraries with them in place of the usual ones."""
+        for n, file in enumerate(self.files):
+            out = os.path.join(self.objects, flat(file) + '.o')
+            stamp = out + '.' + self.shas[file]
+            if not os.path.exists(stamp):
+                with open(os.path.join(self.programs.root, file), encoding='utf-8') as stream:
+                    text = stream.read()
+                if not self.programs.compile(file, text, out, self.objects, ['-O2', '--coverage']):
+                    raise Failure(f'{file} does not compile; next: cmake --build {self.programs.build}')
+                open(stamp, 'w', encoding='utf-8').close()
+            if n % 20 == 19:
+                self.say(f'compiled to count lines: {n + 1} of {len(self.files)}')
+        replaced = {self.programs.compiles[f][1]: os.path.join(self.objects, flat(f) + '.o') for f in self.files}
+        for library in {self.programs.compiles[f][0] for f in self.files}:
+            path = os.path.join(self.objects, f'lib{library}.a')
+            if os.path.exists(path):
+                os.remove(path)
+            members = [replaced.get(m, os.path.join(self.programs.build, m)) for m in self.programs.members[library]]
+            subprocess.run(['ar', 'qcsT', path, *members], check=True)
+            self.libraries[library] = path
+
+    def measure(self, tests, longest_s):
+        """Runs tests and keeps what each executed."""
+        if not self.libraries:
+            self.prepare()
+        stand = Stand(self.programs, os.path.join(self.work, 'count'))
+        counts = os.path.join(stand.folder, 'counts')
+        os.makedirs(counts)
+        for file in self.files:
+            name = flat(file) + '.gcno'
+            os.symlink(os.path.join(self.objects, name), os.path.join(counts, name))
+        for n, test in enumerate(tests):
+            shutil.rmtree(os.path.join(stand.folder, 'cache'), ignore_errors=True)  # what is kept is not executed
+            stand.link(test.program, libraries=self.libraries, extra='--coverage')
+            code, seconds = stand.run(test, longest_s, {'GCOV_PREFIX': counts, 'GCOV_PREFIX_STRIP': '99'})
+            files = {} if code == test.skip else self.counted(counts)
+            self.tests[test.name] = {'sha': self.source_of(test), 'code': code, 'seconds': round(seconds, 3), 'files': files}
+            with open(os.path.join(self.folder, flat(test.name) + '.json'), 'w', encoding='utf-8') as stream:
+                json.dump(self.tests[test.name], stream)
+            self.say(f'measured {n + 1} of {len(tests)}: {test.name} {seconds:.1f} s, {len(files)} sources' +
+                     ('' if code == 0 else f', ended with {code}'))
+
+    def counted(self, counts):
+        """Functions and lines that the last test ran, by source; the counts are taken away."""
+        data = [n for n in os.listdir(counts) if n.endswith('.gcda')]
+        found = {}
+        if data:
+            said = subprocess.run(['gcov', '--json-format', '--stdout', *data], cwd=counts, capture_output=True, text=True,
+                                  check=False)
+            for line in said.stdout.split('\n'):
+                for of in json.loads(line)['files'] if line else ():
+                    file = os.path.relpath(os.path.join(self.programs.root, of['file']), self.programs.root)
+                    if file in self.shas:
+                        lines = {}
+                        for entry in of['lines']:
+                            lines[entry['line_number']] = lines.get(entry['line_number'], 0) + entry['count']
+                        functions = sorted({f['name'] for f in of['functions'] if f['execution_count']})
+                        if functions:
+                            found[file] = {'sha': self.shas[file], 'functions': functions,
+                                           'lines': sorted(n for n, count in lines.items() if count),
+                                           'still': sorted(n for n, count in lines.items() if not count)}
+        for name in data:
+            os.remove(os.path.join(counts, name))
+        return found
+
+    def of(self, mutant, tests):
+        """Tests that run the mutated statement, the cheapest first; where it is no code (a table), those that run its
+        function, or its file. A file that has changed since is asked by function."""
+        span = range(mutant.first, mutant.last + 1)
+        known = [self.tests[t.name]['files'].get(mutant.file) for t in tests if t.name in self.tests]
+        known = [k for k in known if k]
+        code = any(not set(span).isdisjoint(k['lines']) or not set(span).isdisjoint(k['still']) for k in known)
+        chosen = []
+        for test in tests:
+            ran = self.tests.get(test.name, {'files': {}})['files'].get(mutant.file)
+            if not ran:
+                continue
+            if mutant.function and code and ran['sha'] == self.shas[mutant.file]:
+                if not set(span).isdisjoint(ran['lines']):
+                    chosen.append(test)
+            elif not mutant.function or mutant.function in ran['functions'] or mutant.file.endswith('.cpp'):
+                chosen.append(test)
+        return sorted(chosen, key=lambda t: (self.tests[t.name]['seconds'], t.name))
