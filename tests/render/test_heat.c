@@ -476,18 +476,12 @@ static void settings_out_of_range(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(tables_are_columns),
-        cmocka_unit_test(slopes_face_the_sun),
-        cmocka_unit_test(facets_are_close),
-        cmocka_unit_test(places_side_by_side),
-        cmocka_unit_test(shade_of_the_hours_before),
-        cmocka_unit_test(what_everyone_knows),
-        cmocka_unit_test(a_function_of_time_alone),
-        cmocka_unit_test(a_day_is_remembered),
-        cmocka_unit_test(settings_out_of_range),
-        cmocka_unit_test(octets_that_are_no_ground),
-        cmocka_unit_test(kept_ground_is_the_same),
-        cmocka_unit_test(each_input_is_in_the_name_of_warm_ground),
+        cmocka_unit_test(tables_are_columns),        cmocka_unit_test(slopes_face_the_sun),
+        cmocka_unit_test(facets_are_close),          cmocka_unit_test(places_side_by_side),
+        cmocka_unit_test(shade_of_the_hours_before), cmocka_unit_test(what_everyone_knows),
+        cmocka_unit_test(a_function_of_time_alone),  cmocka_unit_test(a_day_is_remembered),
+        cmocka_unit_test(settings_out_of_range),     cmocka_unit_test(octets_that_are_no_ground),
+        cmocka_unit_test(kept_ground_is_the_same),   cmocka_unit_test(each_input_is_in_the_name_of_warm_ground),
     };
     return cmocka_run_group_tests(tests, open_kinds, close_kinds);
 }
