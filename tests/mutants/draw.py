@@ -208,6 +208,7 @@ def places(room, file, text):
             constant = fixed and ('double' in head or 'float' in head) and not in_brackets
             if floating or constant and '=' in head and not inside(tokens, i, '(', ')'):
                 if any(tolerance.match(word) for word in head) or \
+                        re.match(r'[\d.]+e\+?[3-9]\d', token.text.lower()) or \
                         re.match(r'1e-(0?[6-9]|\d\d)', token.text) and tokens[i - 1].text in ('<', '<=', '>', '>=', ','):
                     continue
                 new = changed_number(token.text, lines[token.line - 1])
