@@ -317,6 +317,23 @@ static void set_onto_ground(EffectPuff *puff, const ContactGround *ground)
     if (isfinite(way_m)) v3_add_scaled(puff->p_ecef, puff->p_ecef, way_m, puff->up_ecef);
 }
 
+/* Puffs in chunks, which are independent and distributed over the threads. */
+typedef struct PuffChunks {
+    EffectPuff          *puff;
+    int                  count;
+    const ContactGround *ground;
+} PuffChunks;
+
+enum { chunk_puffs = 64 };
+
+static void ground_chunk(void *user, int worker, int chunk)
+{
+    const PuffChunks *all = user;
+    const int         first = chunk * chunk_puffs;
+    (void)worker;
+    for (int i = first; i < first + chunk_puffs && i < all->count; i++) set_onto_ground(&all->puff[i], all->ground);
+}
+
 Status entity_effects_snapshot(Snapshot *snapshot, const EntityTable *table, const EffectPuff *carried,
                                int carried_count, Arena *arena)
 {
@@ -324,12 +341,16 @@ Status entity_effects_snapshot(Snapshot *snapshot, const EntityTable *table, con
     const size_t count = all < effect_puff_capacity ? all : effect_puff_capacity;
     snapshot->effect_table = effect_history_table(table->effects);
     if (all == 0) return STATUS_OK;
-    EffectPuff *puff = arena_alloc(arena, count, sizeof *puff);
+    EffectPuff *puff = arena_alloc_raw(arena, count, sizeof *puff);
     if (!puff) return STATUS_NO_MEMORY;
     const size_t first = (size_t)carried_count < count ? (size_t)carried_count : count;
     if (first > 0) memcpy(puff, carried, first * sizeof *puff);
     if (count > first) effect_history_puffs(puff + first, count - first, table->effects, snapshot->t_s);
-    for (size_t i = 0; i < count; i++) set_onto_ground(&puff[i], &table->config.ground);
+    PuffChunks chunks = {puff, (int)count, &table->config.ground};
+    const int  tasks = ((int)count + chunk_puffs - 1) / chunk_puffs;
+    if (table->config.pool) pool_run(table->config.pool, tasks, ground_chunk, &chunks);
+    else
+        for (int k = 0; k < tasks; k++) ground_chunk(&chunks, 0, k);
     snapshot->puff = puff;
     snapshot->puff_count = (int)count;
     snapshot->puffs_left_out = (int64_t)(all - count);

@@ -153,7 +153,9 @@ Status planes_create(Picture *picture, const RenderRequest *request, int entitie
         if (row->make || !plane_of_bands(row, request->bands, request->optical) ||
             (row->kind == PLANE_TRUTH && !truth) || (row->plants == PLANTS_MAKE && !plants) || count == 0)
             continue;
-        void *values = arena_alloc(arena, count, octets[row->type]);
+        /* a profile is summed into; every pixel of the other planes is written before it is read */
+        void *values = row->kind == PLANE_PROFILE ? arena_alloc(arena, count, octets[row->type])
+                                                  : arena_alloc_raw(arena, count, octets[row->type]);
         put_values(picture, row, values);
         ok &= values != NULL;
     }

@@ -44,6 +44,16 @@ void sampling_mark(Job *job)
     for (size_t k = 0; job->refine && k < px; k++) job->whole[k] |= job->refine[k] != 0; /* shadows of small targets */
 }
 
+/* Whether a ray passes by a ball about a volume, with a margin for roundings: a test that saves most exact ones. */
+static bool passes_ball(const SmokeVolume *v, const double o_enu[3], const double d_enu[3])
+{
+    const double reach_m = v->along_m > v->across_m ? v->along_m : v->across_m;
+    double       off[3];
+    v3_sub(off, v->p_enu, o_enu);
+    const double along = v3_dot(off, d_enu), square = v3_dot(off, off);
+    return square - along * along > reach_m * reach_m * 1.001 + 1e-9 * square;
+}
+
 /* Whether a ray of a pixel meets some of the listed volumes. */
 static bool meets_smoke(const Job *job, const int *list, int count, int x, int y)
 {
@@ -53,8 +63,11 @@ static bool meets_smoke(const Job *job, const int *list, int count, int x, int y
         double place[2], d_enu[3];
         sample_place(place, n, s);
         view_ray(d_enu, view, x + place[0], y + place[1]);
-        for (int k = 0; k < count; k++)
-            if (smoke_column_m(&job->scene.effects.volume[list[k]], view->p_enu, d_enu, 0, INFINITY) > 0) return true;
+        for (int k = 0; k < count; k++) {
+            const SmokeVolume *v = &job->scene.effects.volume[list[k]];
+            if (passes_ball(v, view->p_enu, d_enu)) continue;
+            if (smoke_column_m(v, view->p_enu, d_enu, 0, INFINITY) > 0) return true;
+        }
     }
     return false;
 }

@@ -185,7 +185,7 @@ Status smoke_effects_scene(EffectScene *out, const Snapshot *snapshot, const Eff
     const unsigned bands = seen->bands;
     *out = (EffectScene){0};
     if (snapshot->puff_count == 0 || !snapshot->effect_table || bands == 0) return STATUS_OK;
-    Placed *placed = arena_alloc(arena, (size_t)snapshot->puff_count, sizeof *placed);
+    Placed *placed = arena_alloc_raw(arena, (size_t)snapshot->puff_count, sizeof *placed);
     if (!placed) return STATUS_NO_MEMORY;
 
     int count = 0;

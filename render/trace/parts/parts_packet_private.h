@@ -99,9 +99,9 @@ static inline void packet_add(Packet *p, const NodeRays *r, int i, double best_m
     p->ray[l] = i;
 }
 
-/* Traces the packet in its node and empties it. range_m, hit: of the block's rays that meet something nearer. alone:
- * the packet is one ray. */
-void packet_first_hits(double *range_m, PartHit *hit, Packet *p, Chunk *chunk, int node, bool alone);
+/* Traces the packet in its node and empties it. range_m, hit: of the block's rays that meet something nearer.
+ * one_by_one: its rays are traced singly, to the same result. */
+void packet_first_hits(double *range_m, PartHit *hit, Packet *p, Chunk *chunk, int node, bool one_by_one);
 /* met becomes 1 for the block's rays that meet anything. */
 void packet_any_hits(uint8_t *met, Packet *p, const Chunk *chunk, bool alone);
 

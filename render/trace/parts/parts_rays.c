@@ -181,19 +181,21 @@ static uint64_t first_hits(double *range_m, PartHit *hit, const PosedEntity *ent
         take_chunk(&chunk, entity, o, d, far_m, list + first, count - first < chunk_rays ? count - first : chunk_rays,
                    ask_all);
         if (chunk.count == 0) continue;
-        const Bundle bundle = ask_all || entity->node_count == 1 ? (Bundle){.cosine = 0} : bundle_of(&chunk);
+        const Bundle bundle = ask_all ? (Bundle){.cosine = 0} : bundle_of(&chunk);
+        /* rays with nothing in common take separate ways through a node's tree: one by one they cost less */
+        const bool one_by_one = alone || (!ask_all && !(bundle.cosine > 0));
         for (int k = 0; k < entity->node_count; k++) {
             const PosedNode *node = &entity->node[k];
-            if (!bundle_may_meet(&bundle, node)) continue;
+            if (entity->node_count > 1 && !bundle_may_meet(&bundle, node)) continue;
             to_node(&rays, &chunk, node, ask_all);
             packet_open(&packet, node->mesh);
             for (int i = 0; i < chunk.count; i++) {
                 if (!(rays.meets[i / 4] >> i % 4 & 1)) continue;
                 packet_add(&packet, &rays, i, chunk.best_m[i]);
                 asked++;
-                if (packet.count == lanes) packet_first_hits(range_m, hit, &packet, &chunk, k, alone);
+                if (packet.count == lanes) packet_first_hits(range_m, hit, &packet, &chunk, k, one_by_one);
             }
-            packet_first_hits(range_m, hit, &packet, &chunk, k, alone);
+            packet_first_hits(range_m, hit, &packet, &chunk, k, one_by_one);
         }
     }
     return asked;

@@ -189,14 +189,14 @@ static double settle(uint32_t *triangle, Packet *p, const struct RTCRay16 *rays,
     return p->lowest_m[l];
 }
 
-void packet_first_hits(double *range_m, PartHit *hit, Packet *p, Chunk *chunk, int node, bool alone)
+void packet_first_hits(double *range_m, PartHit *hit, Packet *p, Chunk *chunk, int node, bool one_by_one)
 {
     struct RTCRayHit16 rays;
     int                valid[lanes] __attribute__((aligned(64)));
     if (p->count == 0) return;
     packet_narrow(&rays.ray, valid, p);
     for (int l = 0; l < lanes; l++) rays.hit.geomID[l] = rays.hit.instID[0][l] = RTC_INVALID_GEOMETRY_ID;
-    if (alone) {
+    if (one_by_one) {
         for (int l = 0; l < p->count; l++) {
             struct RTCRayHit one = single(&rays.ray, l);
             rtcIntersect1(p->mesh->scene, &p->base, &one);
