@@ -11,11 +11,11 @@ static void a_spread_has_its_median_and_its_share(void **state)
           isnan(error_spread_beyond(&spread)));
     /* a thousand pixels of 0.1 K .. 0.3 K, evenly spread, and ten of 200 K */
     for (int i = 0; i < 1000; i++) error_spread_add(&spread, pow(0.1 + 0.2e-3 * i, 2), 1);
-    CHECK_NEAR(error_spread_median_k(&spread) / 0.2, 1, 0.04);
+    CHECK_NEAR(error_spread_median_k(&spread) / 0.2, 1, 0.003);
     CHECK_NEAR(error_spread_rms_k(&spread), sqrt((0.027 - 0.001) / 3 / 0.2), 1e-3); /* of a uniform distribution */
     for (int i = 0; i < 10; i++) error_spread_add(&more, 4e4, 1);
     error_spread_join(&spread, &more);
-    CHECK_NEAR(error_spread_median_k(&spread) / 0.201, 1, 0.04);
+    CHECK_NEAR(error_spread_median_k(&spread) / 0.201, 1, 0.003);
     /* the ten, and of those of 0.3 K one in a thousand: tables of the normal distribution */
     CHECK(error_spread_beyond(&spread) > 9.9 / 1010 && error_spread_beyond(&spread) < 10.3 / 1010);
     static const double sigma_k[3] = {0.5, 1, 2}, beyond[3] = {0.045500, 0.317311, 0.617075};
