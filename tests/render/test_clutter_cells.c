@@ -119,13 +119,167 @@ static void slopes_count(void **state)
     stage_free(s);
 }
 
+/* ---- one scatterer ---------------------------------------------------------------------------------------- */
+
+/* Moments of the terms of a drawn scatterer: the power at VV is 1 over the still ones, and 1 over the moving ones; HH
+ * and HV by the row, HH correlated with VV; offsets normal, of the row's extent; velocities two-sided exponential of
+ * spread 1: mean square 2, mean size 1. Bounds: 5 standard errors of 30,000 draws. */
+static void terms_have_their_moments(void **state)
+{
+    (void)state;
+    enum { draws = 30000 };
+    const ClutterRow *row = &table.row[SURFACE_FOREST_BROADLEAF][CLUTTER_KA];
+    const double      one = 5 / sqrt(draws);
+    double            vv[clutter_terms] = {0}, hh[clutter_terms] = {0}, hv[clutter_terms] = {0};
+    double            offset[clutter_terms][3] = {{0}}, square[clutter_terms] = {0}, size[clutter_terms] = {0};
+    double complex    both[clutter_terms] = {0}, cross[clutter_terms] = {0};
+    for (uint32_t i = 0; i < draws; i++) {
+        ClutterScatterer s;
+        clutter_draw_leaf(&s, row, 5, i / 100, i % 100);
+        for (int m = 0; m < clutter_terms; m++) {
+            const double complex v = CMPLX((double)s.vv[m][0], (double)s.vv[m][1]);
+            const double complex h = CMPLX((double)s.hh[m][0], (double)s.hh[m][1]);
+            const double complex x = CMPLX((double)s.hv[m][0], (double)s.hv[m][1]);
+            vv[m] += power(v) / draws, hh[m] += power(h) / draws, hv[m] += power(x) / draws;
+            both[m] += h * conj(v) / draws, cross[m] += x * conj(v) / draws;
+            for (int a = 0; a < 3; a++) offset[m][a] += pow((double)s.offset_m[m][a], 2) / draws;
+            const double moves = m < clutter_still_terms ? 0 : (double)s.velocity[m - clutter_still_terms];
+            square[m] += moves * moves / draws, size[m] += fabs(moves) / draws;
+        }
+    }
+    for (int m = 0; m < clutter_terms; m++) {
+        const double want = 1.0 / (m < clutter_still_terms ? clutter_still_terms : clutter_terms - clutter_still_terms);
+        CHECK_NEAR(vv[m] / want, 1, one);
+        CHECK_NEAR(hh[m] / (want * row->hh), 1, one);
+        CHECK_NEAR(hv[m] / (want * row->hv), 1, one);
+        CHECK_NEAR(creal(both[m]) / (want * sqrt(row->hh)), row->rho, one);
+        CHECK_NEAR(cimag(both[m]) / (want * sqrt(row->hh)), 0, one);
+        CHECK(cabs(cross[m]) / (want * sqrt(row->hv)) < 1.5 * one);
+        for (int a = 0; a < 3; a++) CHECK_NEAR(offset[m][a] / pow(row->extent_m, 2), 1, sqrt(2) * one);
+        if (m < clutter_still_terms) continue;
+        CHECK_NEAR(square[m], 2, sqrt(20) * one);
+        CHECK_NEAR(size[m], 1, one);
+    }
+}
+
+/* The terms' sum by hand: amplitude exp(j 2 k (u . offset + velocity spread t)), still terms with the share of the
+ * power that is still, the others with the rest; sigma0 side^2 / (4 pi n_z) for a cell on a slope, sigma / (4 pi) for a
+ * leaf. */
+static void terms_add_up(void **state)
+{
+    (void)state;
+    enum { cells = 40 };
+    Stage              *s = stage(cells, SURFACE_FOREST_CONIFER, 0.5, 3);
+    const ClutterRow   *row = &table.row[SURFACE_FOREST_CONIFER][CLUTTER_KA];
+    const ClutterLook   look = {{300, -200, 120}, ka_hz, 0.04, 7};
+    const ClutterMotion motion = clutter_motion(row, ka_hz, look.wind_mps);
+    CHECK(motion.still > 0.01 && motion.still < 0.99 && motion.spread_mps > 0);
+    for (int i = 0; i < cells; i++) {
+        double n[3] = {0.02 * (i % 5), 0.03 * (i % 7) - 0.1, 1};
+        s->cell[i] = (ClutterCell){3 * i, -2 * i, i % 3};
+        v3_normalize(n, n);
+        for (int a = 0; a < 3; a++) s->n[a][i] = (float)n[a];
+    }
+    stage_place(s);
+    stage_draw(s, CLUTTER_KA);
+    see(s, &look);
+    for (int i = 0; i <= cells; i++) {
+        const ClutterScatterer *of = &s->scatterer[i % cells];
+        double                  p[3], u[3], size;
+        double complex          vv = 0, hh = 0, hv = 0;
+        ScatterMatrix           got = s->seen[i % cells];
+        for (int a = 0; a < 3; a++) p[a] = s->p[a][i % cells];
+        v3_sub(u, look.antenna_enu, p);
+        v3_normalize(u, u);
+        if (i == cells) { /* the same scatterer as a leaf */
+            size = sqrt(0.3 / (4 * pi_rad));
+            clutter_see_leaf(&got, of, &motion, 0.3, p, &look);
+        } else {
+            const double n[3] = {(double)s->n[0][i], (double)s->n[1][i], (double)s->n[2][i]};
+            const double side_m = 0.5 * (1 << i % 3), sine = v3_dot(n, u);
+            size = sqrt(row->gamma * sine * side_m * side_m / (4 * pi_rad * n[2]));
+        }
+        for (int m = 0; m < clutter_terms; m++) {
+            double       far_m = 0;
+            const bool   still = m < clutter_still_terms;
+            const double share = still ? motion.still : 1 - motion.still;
+            for (int a = 0; a < 3; a++) far_m += u[a] * (double)of->offset_m[m][a];
+            if (!still) far_m += (double)of->velocity[m - clutter_still_terms] * motion.spread_mps * look.t_s;
+            const double complex turn = size * sqrt(share) * cexp(I * 4 * pi_rad * ka_hz / c_mps * far_m);
+            vv += turn * CMPLX((double)of->vv[m][0], (double)of->vv[m][1]);
+            hh += turn * CMPLX((double)of->hh[m][0], (double)of->hh[m][1]);
+            hv += turn * CMPLX((double)of->hv[m][0], (double)of->hv[m][1]);
+        }
+        CHECK(cabs(got.vv - vv) < 1e-9 * size && cabs(got.hh - hh) < 1e-9 * size);
+        CHECK(cabs(got.hv - hv) < 1e-9 * size && got.vh == got.hv);
+    }
+    stage_free(s);
+}
+
+/* Deviations of the texture at levels, over those of its finest: by the share of the variance that means over cells
+ * keep, V = 2 times the integral of (1 - t) exp(-a^2 t^2) over 0 .. 1 for sides of a lengths, by Simpson's rule: the
+ * scale is sqrt(f / (f + 1 - V^2)), f = pi / a^2. */
+static double scale_of(double a)
+{
+    enum { steps = 2000 };
+    double v = 0;
+    for (int i = 0; i <= steps; i++) {
+        const double t = (double)i / steps;
+        v += (i == 0 || i == steps ? 1 : i % 2 ? 4 : 2) * 2 * (1 - t) * exp(-a * a * t * t) / (3 * steps);
+    }
+    return sqrt(pi_rad / (a * a) / (pi_rad / (a * a) + 1 - v * v));
+}
+
+static void levels_scale_the_texture(void **state)
+{
+    (void)state;
+    const ClutterRow *row = &table.row[SURFACE_ROCK][CLUTTER_KA];
+    const ClutterGrid grid = {row->texture_m / 512, 9};
+    CHECK_NEAR(scale_of(1), 0.96, 0.005); /* as clutter.c states them */
+    CHECK_NEAR(scale_of(2), 0.75, 0.005);
+    CHECK_NEAR(scale_of(4), 0.43, 0.005);
+    for (int i = 0; i < 20; i++) {
+        const double p[2] = {7.3 * i, -3.1 * i}, finest = clutter_texture_at(&grid, row, 0, p) - 1;
+        CHECK(fabs(finest) > 1e-3);
+        for (int level = 1; level <= 12; level++)
+            CHECK_NEAR((clutter_texture_at(&grid, row, level, p) - 1) / finest,
+                       scale_of((double)(1 << level) / 512) / scale_of(1.0 / 512), 1e-8);
+    }
+}
+
+/* What a cache holds, and what it gave up for other cells, levels and surfaces, are the scatterers as they are drawn.
+ */
+static void a_cache_changes_no_bit(void **state)
+{
+    (void)state;
+    enum { cells = 4000 };
+    Stage                  *s = stage(cells, SURFACE_GRASS, 0.5, 3);
+    const ClutterKind       kind = {&s->grid, &table, CLUTTER_W};
+    ClutterCache           *cache;
+    static ClutterScatterer got[cells];
+    CHECK(clutter_cache_create(&cache) == STATUS_OK);
+    for (int i = 0; i < cells; i++) { /* of x, 8 and more share a set in turn */
+        s->cell[i] = (ClutterCell){i % 40 * 256 - 700, i / 40 * 128 - 900, i % 3};
+        s->surface[i] = i % 2 ? SURFACE_GRASS : SURFACE_SAND;
+    }
+    for (int again = 0; again < 3; again++) {
+        if (again == 2)
+            for (int i = 0; i < cells; i++) s->surface[i] = SURFACE_ROCK;
+        stage_draw(s, CLUTTER_W);
+        clutter_cache_draw(got, cache, &kind, cells, s->cell, s->surface);
+        CHECK(memcmp(got, s->scatterer, sizeof got) == 0);
+    }
+    clutter_cache_destroy(cache);
+    stage_free(s);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(order_changes_no_bit),
-        cmocka_unit_test(cells_tile_the_ground),
-        cmocka_unit_test(levels_keep_the_mean),
-        cmocka_unit_test(slopes_count),
+        cmocka_unit_test(terms_have_their_moments), cmocka_unit_test(terms_add_up),
+        cmocka_unit_test(levels_scale_the_texture), cmocka_unit_test(a_cache_changes_no_bit),
+        cmocka_unit_test(order_changes_no_bit),     cmocka_unit_test(cells_tile_the_ground),
+        cmocka_unit_test(levels_keep_the_mean),     cmocka_unit_test(slopes_count),
     };
     return cmocka_run_group_tests(tests, open_table, NULL);
 }

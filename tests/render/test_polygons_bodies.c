@@ -1,5 +1,5 @@
-/* Flat faces of bodies: which are summed in closed form, and which are left to ray tubes as something hides them. labels:
- * physics */
+/* Flat faces of bodies: which are summed in closed form, and which are left to ray tubes as something hides them.
+ * labels: physics */
 #include "tests/render/polygon_stage.h"
 
 /* A box about the origin; sides: 6, or 5 for one that is open at the top. */

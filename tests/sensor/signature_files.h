@@ -11,15 +11,15 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-static char           folder[64];
+static char folder[64];
 
-static Catalog       *catalog;
+static Catalog *catalog;
 
 static RadarMaterials materials;
 
-static int            model;
+static int model;
 
-static Cache         *cache; /* not NULL: in place of the folder */
+static Cache *cache; /* not NULL: in place of the folder */
 
 static inline SignaturesConfig config_of(double warp_m)
 {
