@@ -1,5 +1,5 @@
-/* Shapes of radar targets: areas, volumes, normals and sizes of their facets against geometry's formulas; which of their
- * faces are flat, and bodies convex; what names and sizes are refused. labels: physics */
+/* Shapes of radar targets: areas, volumes, normals and sizes of their facets against geometry's formulas; which of
+ * their faces are flat, and bodies convex; what names and sizes are refused. labels: physics */
 #include "tests/render/hand_models.h"
 #include "tests/render/radar_stage.h"
 
@@ -13,7 +13,8 @@ static double facet(double area_normal[3], const Model *m, int t)
     return v3_length(area_normal);
 }
 
-/* Area; volume by Gauss's theorem, positive where facets look outwards; facets whose given normals are their planes'. */
+/* Area; volume by Gauss's theorem, positive where facets look outwards; facets whose given normals are their planes'.
+ */
 static void measure(double *area_m2, double *volume_m3, int *plane, const Model *m)
 {
     *area_m2 = *volume_m3 = *plane = 0;
@@ -24,8 +25,7 @@ static void measure(double *area_m2, double *volume_m3, int *plane, const Model 
         *area_m2 += area;
         *volume_m3 += v3_dot(n, m->vertex[m->triangle[t][0]]) / 3;
         for (int c = 0; c < 3; c++)
-            for (int x = 0; x < 3; x++)
-                is = is && fabs((double)m->normal[m->triangle[t][c]][x] - n[x] / area) < 1e-6;
+            for (int x = 0; x < 3; x++) is = is && fabs((double)m->normal[m->triangle[t][c]][x] - n[x] / area) < 1e-6;
         *plane += is;
     }
 }
@@ -175,7 +175,8 @@ static void names_are_checked(void **state)
 
 /* ---- flat faces ---------------------------------------------------------------------------------------------- */
 
-/* Faces, their triangles in all, and whether the body is convex or one face, which needs no search for what hides it. */
+/* Faces, their triangles in all, and whether the body is convex or one face, which needs no search for what hides it.
+ */
 static void faces_are_counted(void **state)
 {
     (void)state;
@@ -183,8 +184,8 @@ static void faces_are_counted(void **state)
         const char *name;
         int         faces, triangles;
         bool        convex;
-    } of[] = {{"plate:1x2", 1, 2, true},   {"disc:1", 1, 0, true},       {"dihedral:1x1", 2, 4, false},
-              {"corner:1", 3, 6, false},   {"trihedral:1", 3, 3, false}, {"sphere:1", 0, 0, false},
+    } of[] = {{"plate:1x2", 1, 2, true},    {"disc:1", 1, 0, true},       {"dihedral:1x1", 2, 4, false},
+              {"corner:1", 3, 6, false},    {"trihedral:1", 3, 3, false}, {"sphere:1", 0, 0, false},
               {"cylinder:1x1", 2, 0, false}};
     for (size_t i = 0; i < sizeof of / sizeof *of; i++) {
         Model     m;
