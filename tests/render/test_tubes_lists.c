@@ -216,9 +216,81 @@ static void edges_are_added_to_the_rays(void **state)
     stage_close(&s);
 }
 
+static void bad_looks_are_refused(void **state)
+{
+    (void)state;
+    RadarStage s;
+    stage_open(&s, "plate:1x1", x_hz);
+    log_set_sink(check_listen, NULL);
+    ScatterAntenna a = antenna_at(10, 5, 0.1);
+    CHECK(tubes_trace(&s.hits, s.target, &a, &a, &s.config, s.pool) == STATUS_BAD_VALUE);
+    CHECK(strstr(check_said, "within the target"));
+    a = antenna_at(0, 0, 100);
+    a.u[0] = NAN;
+    CHECK(tubes_trace(&s.hits, s.target, &a, &a, &s.config, s.pool) == STATUS_BAD_VALUE);
+    a = antenna_at(0, 0, INFINITY);
+    s.config.frequency_hz = 1e15;
+    CHECK(tubes_trace(&s.hits, s.target, &a, &a, &s.config, s.pool) == STATUS_UNSUPPORTED);
+    CHECK(radar_shape_build(&s.model, "sphere:1e9", 0.01) == STATUS_BAD_VALUE);
+    CHECK(radar_shape_build(&s.model, "plate:1", 0.01) == STATUS_BAD_VALUE);
+    CHECK(radar_shape_build(&s.model, "cube:1", 0.01) == STATUS_BAD_VALUE);
+    log_set_sink(NULL, NULL);
+    stage_close(&s);
+}
+
+static Status with(RadarStage *s, const TubeConfig *config)
+{
+    const ScatterAntenna a = antenna_at(0, 0, INFINITY);
+    return tubes_trace(&s->hits, s->target, &a, &a, config, s->pool);
+}
+
+/* Each number of the configuration beyond what tubes.h says of it, alone; and at the ends that it may have. */
+static void numbers_are_checked(void **state)
+{
+    (void)state;
+    RadarStage s;
+    stage_open(&s, "plate:0.1x0.1", x_hz);
+    const TubeConfig good = s.config;
+    log_set_sink(check_listen, NULL);
+#define TRY(member, value, want)                                                                                       \
+    do {                                                                                                               \
+        TubeConfig c = good;                                                                                           \
+        c.member = value;                                                                                              \
+        if (with(&s, &c) != want) fail_msg("%s = %g", #member, (double)(value));                                       \
+    } while (0)
+    const Status bad = STATUS_BAD_VALUE, ok = STATUS_OK;
+    TRY(frequency_hz, 0, bad);
+    TRY(frequency_hz, -1, bad);
+    TRY(frequency_hz, INFINITY, bad);
+    TRY(frequency_hz, NAN, bad);
+    TRY(rays_per_wavelength, 0, bad);
+    TRY(rays_per_wavelength, NAN, bad);
+    TRY(rays_per_radius, -1, bad);
+    TRY(rays_per_radius, 0, ok);
+    TRY(warp_m, -1e-3, bad);
+    TRY(warp_length_m, 0, bad);
+    TRY(bounces, 0, bad);
+    TRY(bounces, 1, ok);
+    TRY(bounces, 255, ok);
+    TRY(bounces, 256, bad);
+    TRY(splits, -1, bad);
+    TRY(splits, 0, ok);
+    TRY(splits, tubes_splits_most, ok);
+    TRY(splits, tubes_splits_most + 1, bad);
+    TRY(cuts_per_radius, 0, bad);
+    TRY(cuts_per_radius, NAN, bad);
+    TRY(split_rad, 0, bad);
+    TRY(split_rad, NAN, bad);
+#undef TRY
+    log_set_sink(NULL, NULL);
+    stage_close(&s);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(bad_looks_are_refused),
+        cmocka_unit_test(numbers_are_checked),
         cmocka_unit_test(threads_change_no_bit),
         cmocka_unit_test(a_sweep_equals_its_frequencies),
         cmocka_unit_test(a_curved_mirror_spreads_the_field),

@@ -42,8 +42,8 @@ static void place(double p[3], const RadarShot *shot, double range_m, double az_
 {
     const double az = az_deg * rad_per_deg, el = el_deg * rad_per_deg;
     for (int k = 0; k < 3; k++)
-        p[k] = shot->p_enu[k] + range_m * (cos(el) * (cos(az) * shot->ahead[k] + sin(az) * shot->right[k]) +
-                                           sin(el) * shot->down[k]);
+        p[k] = shot->p_enu[k] +
+               range_m * (cos(el) * (cos(az) * shot->ahead[k] + sin(az) * shot->right[k]) + sin(el) * shot->down[k]);
 }
 
 static Sight sight_of(const RadarShot *shot, double range_m, double az_deg, double el_deg, double more_m)
@@ -68,13 +68,24 @@ static void directions_and_windows(void **state)
     static const struct {
         double range_m, more_m, sweep_m, far_m, az_deg;
         bool   within;
-    } of[] = {{3089.9, 0, 0, 0, 0, true},     {3090.1, 0, 0, 0, 0, false},        {2910.1, 0, 0, 0, 0, true},
-              {2909.9, 0, 0, 0, 0, false},    {3099.9, 10, 0, 0, 0, true},        {3100.1, 10, 0, 0, 0, false},
-              {3104.9, 10, 5, 0, 0, true},    {3105.1, 10, 5, 0, 0, false},       {3000, 0, 0, 0, 89.9, true},
-              {3000, 0, 0, 0, 90.1, false},   {3000 + 7494.8, 0, 0, 0, 0, false}, {3000 + 7494.8, 0, 0, 2e4, 0, true},
-              {3000 + 7584, 0, 0, 2e4, 0, true},   {3000 + 7586, 0, 0, 2e4, 0, false},
-              {3000 + 7405.6, 0, 0, 2e4, 0, true}, {3000 + 7403, 0, 0, 2e4, 0, false},
-              {3000 + 7494.8, 0, 0, 10490, 0, false}, {3000 + 7494.8, 10, 0, 10490, 0, true},
+    } of[] = {{3089.9, 0, 0, 0, 0, true},
+              {3090.1, 0, 0, 0, 0, false},
+              {2910.1, 0, 0, 0, 0, true},
+              {2909.9, 0, 0, 0, 0, false},
+              {3099.9, 10, 0, 0, 0, true},
+              {3100.1, 10, 0, 0, 0, false},
+              {3104.9, 10, 5, 0, 0, true},
+              {3105.1, 10, 5, 0, 0, false},
+              {3000, 0, 0, 0, 89.9, true},
+              {3000, 0, 0, 0, 90.1, false},
+              {3000 + 7494.8, 0, 0, 0, 0, false},
+              {3000 + 7494.8, 0, 0, 2e4, 0, true},
+              {3000 + 7584, 0, 0, 2e4, 0, true},
+              {3000 + 7586, 0, 0, 2e4, 0, false},
+              {3000 + 7405.6, 0, 0, 2e4, 0, true},
+              {3000 + 7403, 0, 0, 2e4, 0, false},
+              {3000 + 7494.8, 0, 0, 10490, 0, false},
+              {3000 + 7494.8, 10, 0, 10490, 0, true},
               {3000 + 2 * 7494.8, 0, 0, 2e4, 0, true}};
     for (size_t i = 0; i < sizeof of / sizeof *of; i++) {
         shot.sweep_m = of[i].sweep_m, preset.far_m = of[i].far_m;
@@ -135,8 +146,8 @@ static void echoes_obey_the_radar_equation(void **state)
         preset.transmits_h = h;
         shot_amplitudes(a, &shot, &s, &m);
         const double sigma = 4 * pi_rad * (creal(own) * creal(own) + cimag(own) * cimag(own));
-        const double want_w = 40 * pow(g.sum, 4) * l * l * sigma / (pow(4 * pi_rad, 3) * pow(r, 4) * 2) *
-                              exp(-2 * 4e-5 * r);
+        const double want_w =
+            40 * pow(g.sum, 4) * l * l * sigma / (pow(4 * pi_rad, 3) * pow(r, 4) * 2) * exp(-2 * 4e-5 * r);
         CHECK_NEAR(pow(cabs(a[CHANNEL_SUM]), 2) / want_w, 1, 1e-12);
         CHECK_NEAR(carg(a[CHANNEL_SUM] / own), 0, 1e-12);
         CHECK(cabs(a[CHANNEL_RIGHT] / a[CHANNEL_SUM] - g.right / g.sum) < 1e-12);
@@ -146,8 +157,8 @@ static void echoes_obey_the_radar_equation(void **state)
     preset.transmits_h = false;
 }
 
-/* The first zero of J_(taper + 1)(pi d / lambda sine), to the five figures that it is known to; 1 for an antenna that has
- * none. */
+/* The first zero of J_(taper + 1)(pi d / lambda sine), to the five figures that it is known to; 1 for an antenna that
+ * has none. */
 static void nulls_are_zeros_of_bessel_functions(void **state)
 {
     (void)state;
@@ -210,7 +221,8 @@ static void the_lit_ground_is_in_its_rectangle(void **state)
         shot_lit_rectangle(low, high, &shot);
         for (int k = 0; k < 60; k++) {
             const double out = asin(shot_null(&shot)) / rad_per_deg;
-            const double az = shot.sector_half_rad / rad_per_deg * (2 * random_uniform(2, (uint32_t)i, 0, (uint64_t)k) - 1);
+            const double az =
+                shot.sector_half_rad / rad_per_deg * (2 * random_uniform(2, (uint32_t)i, 0, (uint64_t)k) - 1);
             const double about = 2 * pi_rad * k / 60;
             RadarShot    beam;
             double       p[3], d[3];
