@@ -191,9 +191,74 @@ static void edges_are_centres_too(void **state)
     signature_free(&signature);
 }
 
+/* Each number of a list from a file just within and just beyond what is believed of it. */
+static void numbers_of_a_list_are_checked(void **state)
+{
+    (void)state;
+    const SignatureCentre fine = {
+        .path_share = 0.5f, .scale = 1, .moment_scale = 1, .weight = 2, .strongest = 1, .part = 2};
+    SignatureCentre c = fine;
+    Signature       s = {.count = 1, .centre = &c};
+    CHECK(signature_is_sound(&s, 3));
+#define TRY(member, value, sound)                                                                                      \
+    do {                                                                                                               \
+        const Signature kept = s;                                                                                      \
+        c = fine;                                                                                                      \
+        member = value;                                                                                                \
+        if (signature_is_sound(&s, 3) != (sound)) fail_msg("%s = %.9g", #member, (double)(value));                     \
+        s = kept, c = fine;                                                                                            \
+    } while (0)
+    TRY(s.tubes_same_m2, 0.999e18, true);
+    TRY(s.tubes_same_m2, 1e18, false);
+    TRY(s.tubes_same_m2, -1e-9, false);
+    TRY(s.tubes_cross_m2, 0.999e18, true);
+    TRY(s.tubes_cross_m2, 1e18, false);
+    TRY(s.tubes_cross_m2, -1e-9, false);
+    TRY(s.tubes_same_m2, NAN, false);
+    TRY(s.tubes_cross_m2, NAN, false);
+    TRY(c.path, 999999999, true);
+    TRY(c.path, 1000000000, false);
+    TRY(c.path, -999999999, true);
+    TRY(c.path, -1000000000, false);
+    TRY(c.part, 3, false);
+    TRY(c.zero, 1, false);
+    for (int x = 0; x < 3; x++) {
+        TRY(c.p[x], 0.999e5f, true);
+        TRY(c.p[x], 1e5f, false);
+        TRY(c.p[x], -1e5f, false);
+        TRY(c.p[x], NAN, false);
+        TRY(c.half[x], 0.999e5f, true);
+        TRY(c.half[x], 1e5f, false);
+        TRY(c.half[x], -1e5f, false);
+        TRY(c.half[x], NAN, false);
+    }
+    TRY(c.path_share, 0, true);
+    TRY(c.path_share, 1, true);
+    TRY(c.path_share, 1.001f, false);
+    TRY(c.path_share, -0.001f, false);
+    TRY(c.path_share, NAN, false);
+    TRY(c.scale, 0, true);
+    TRY(c.scale, 0.999e9f, true);
+    TRY(c.scale, 1e9f, false);
+    TRY(c.scale, -1, false);
+    TRY(c.moment_scale, 0, true);
+    TRY(c.moment_scale, 0.999e9f, true);
+    TRY(c.moment_scale, 1e9f, false);
+    TRY(c.moment_scale, -1, false);
+    TRY(c.weight, 0.999e9f, true);
+    TRY(c.weight, 1e9f, false);
+    TRY(c.weight, 0, false);
+    TRY(c.strongest, 0, false);
+    TRY(c.strongest, 2, true);
+    TRY(c.strongest, 2.001f, true);
+    TRY(c.strongest, 2.01f, false);
+#undef TRY
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(numbers_of_a_list_are_checked),
         cmocka_unit_test(centres_have_the_field_of_their_hits),
         cmocka_unit_test(middle_is_exact),
         cmocka_unit_test(edges_are_centres_too),

@@ -1,8 +1,6 @@
-/* Coarse signatures: the mean of a cross section over their wide bin against laws of optics, and what is prepared of
- * them. labels: physics */
+/* Coarse signatures: the mean of a cross section over their wide bin against laws of optics, and how
+ * they are made. labels: physics */
 #include "tests/render/radar_stage.h"
-
-#include <time.h>
 
 #include "render/scattering/signatures/coarse.h"
 #include "render/scattering/signatures/signatures.h"
@@ -98,56 +96,71 @@ static void bins_cover(void **state)
     }
 }
 
-/* What is prepared is there when it is asked for, whatever the range and the joints, and is made once. */
-static void prepared_is_there(void **state)
+/* What coarse.h says that they are made with: by one mirror the centres keep their strength, by more it grows as the
+ * frequency to the power 0.3, and sums alone are left. */
+static void they_are_made_as_stated(void **state)
 {
     (void)state;
-    static const DisEntityType truck = {1, 1, 225, 7, 1, 0, 0};
-    const SignaturesConfig     fine = {.frequency_hz = 3e9,
-                                       .bandwidth_hz = 2e7,
-                                       .aspect_rad = 0.3 * rad_per_deg,
-                                       .rays_per_wavelength = 0.5,
-                                       .most_octets = 1 << 30,
-                                       .isa = "avx2",
-                                       .background = true};
-    SignaturesConfig           config = signatures_coarse(&fine);
-    Catalog                   *catalog;
-    RadarMaterials             materials;
-    Signatures                *s;
-    Origin                     origin;
-    char                       path[4096];
-    static ScatterAntenna      bin[coarse_most_bins];
-    const int                  bins = coarse_bins(bin);
-    CHECK(etc_path(path, sizeof path, "catalog.csv") && catalog_open(&catalog, path, coarse_sag_m()) == STATUS_OK);
-    const int model = catalog_find(catalog, truck, &origin, NULL);
-    CHECK(radar_materials_load(&materials) == STATUS_OK);
-    CHECK(signatures_create(&s, &config, catalog, &materials) == STATUS_OK);
-    CHECK(signatures_prepare(s, model, 0) == STATUS_OK);
-    CHECK(signatures_waiting(s) > 0);
-    for (int tries = 0; tries < 3000 && signatures_waiting(s) > 0; tries++) {
-        CHECK(signatures_prepare(s, model, 0) == STATUS_OK); /* takes in what was made, and plans nothing twice */
-        nanosleep(&(struct timespec){.tv_nsec = 20000000}, NULL);
+    SignatureCentre centre[3] = {{.bounce = 1, .scale = 2}, {.bounce = 2, .scale = 3}, {.bounce = 5, .scale = 1}};
+    Signature       signature = {.count = 3, .centre = centre};
+    SignatureCells  cells = {.turn_rad = 0.1};
+    TubeConfig      tubes = {.rays_per_radius = 1};
+    for (int i = 0; i < 3; i++) centre[i].moment_scale = 1, memset(centre[i].moment, 7, sizeof centre[i].moment);
+    coarse_widen(&signature, 8e9, 94e9);
+    const double grown = exp(0.3 * log(11.75));
+    CHECK_NEAR((double)centre[0].scale, 2, 0);
+    CHECK_NEAR((double)centre[1].scale, 3 * grown, 1e-6);
+    CHECK_NEAR((double)centre[2].scale, grown, 1e-6);
+    for (int i = 0; i < 3; i++) {
+        CHECK(centre[i].moment_scale == 0);
+        for (size_t k = 0; k < sizeof centre[i].moment; k++) CHECK(((const uint8_t *)centre[i].moment)[k] == 0);
     }
-    CHECK(signatures_waiting(s) == 0 && signatures_counters(s).made == (uint64_t)bins);
-    double joint[256] = {0};
-    for (int n = 0; n < catalog_model(catalog, model)->node_count; n++) joint[n] = 0.1;
-    for (int i = 0; i < 100; i++) {
-        const ScatterAntenna a = antenna_at(360 * random_uniform(3, 0, 0, (uint64_t)i),
-                                            44 * random_uniform(3, 1, 0, (uint64_t)i), 100 + 90 * i);
-        const SignatureLook  look = signature_look(&a);
-        const Signature     *got;
-        CHECK(signatures_find(&got, s, model, joint, 0, &look, NULL) == STATUS_OK);
-        CHECK(got && got->count > 20 && isinf(got->tx.range_m));
+    coarse_tubes(&tubes, &cells);
+    CHECK(tubes.rays_per_radius == 48 && cells.turn_rad == 0);
+    CHECK(tubes.curve_m >= 100); /* lambda curve / 16 is wider than any tube over the radius: curvature sets none */
+    CHECK(coarse_hz() == 8e9 && coarse_sag_m() == 0.01 && coarse_error_db() == 8);
+}
+
+/* Rows of bins are 15 degrees high; a row at elevation e has the multiple of 4 nearest to 24 cos e, so that sides shine
+ * in the middle of one: 24, 24, 20, 16, 12, 8 and at the poles 1. */
+static void bins_are_of_15_degrees(void **state)
+{
+    (void)state;
+    static const int of_row[] = {24, 24, 20, 16, 12, 8, 1};
+    for (int row = -6; row <= 6; row++) {
+        const int    bins = of_row[abs(row)];
+        const double width_deg = 360.0 / bins;
+        for (int i = 0; i < bins; i++)
+            for (int k = 0; k < 9; k++) { /* anywhere in it, and its middle */
+                const double   el_deg = 15 * row + 7.4 * (k / 3 - 1), az_deg = width_deg * (i + 0.49 * (k % 3 - 1));
+                const double   el = el_deg * rad_per_deg, az = az_deg * rad_per_deg, middle_el = 15 * row * rad_per_deg;
+                const double   middle_az = bins == 1 ? 0 : width_deg * i * rad_per_deg;
+                ScatterAntenna middle, a = {{cos(el) * cos(az), cos(el) * sin(az), sin(el)}, 500};
+                if (fabs(el_deg) > 90) continue;
+                coarse_bin(&middle, &a);
+                CHECK(isinf(middle.range_m));
+                CHECK_NEAR(middle.u[0], cos(middle_el) * cos(middle_az), 1e-12);
+                CHECK_NEAR(middle.u[1], cos(middle_el) * sin(middle_az), 1e-12);
+                CHECK_NEAR(middle.u[2], sin(middle_el), 1e-12);
+            }
     }
-    CHECK(signatures_counters(s).missing == 0 && signatures_counters(s).made == (uint64_t)bins);
-    signatures_destroy(s);
-    radar_materials_close(&materials);
-    catalog_close(catalog);
+    static ScatterAntenna bin[coarse_most_bins];
+    static const double   row_deg[] = {0, -15, -30, 15, -45}; /* z down: the level first, then from above */
+    int                   at = 0;
+    CHECK(coarse_bins(bin) == 24 + 24 + 20 + 24 + 16);
+    for (int row = 0; row < 5; row++)
+        for (int i = 0; i < (const int[]){24, 24, 20, 24, 16}[row]; i++)
+            CHECK_NEAR(bin[at++].u[2], sin(row_deg[row] * rad_per_deg), 1e-12);
 }
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(a_sphere), cmocka_unit_test(a_plate),
-                                       cmocka_unit_test(bins_cover), cmocka_unit_test(prepared_is_there)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(they_are_made_as_stated),
+        cmocka_unit_test(bins_are_of_15_degrees),
+        cmocka_unit_test(a_sphere),
+        cmocka_unit_test(a_plate),
+        cmocka_unit_test(bins_cover),
+    };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,20 +1,6 @@
 /* Kept fields of targets: bins hold what they should, a field serves its bin to the error stated, and neither order
  * nor lack of room changes a bit. labels: physics */
-#include "tests/check.h"
-
-#include <time.h>
-
-#include "render/scattering/field/total_field.h"
-#include "render/scattering/signatures/signatures.h"
-
-static const double frequency_hz = 5e9, aspect_rad = 0.3 * rad_per_deg;
-
-static ScatterAntenna at(double az_deg, double el_deg, double range_m)
-{
-    const double   az = az_deg * rad_per_deg, el = el_deg * rad_per_deg;
-    ScatterAntenna a = {{cos(el) * cos(az), cos(el) * sin(az), sin(el)}, range_m};
-    return a;
-}
+#include "tests/render/signatures_stage.h"
 
 /* Any direction is within half of a bin's diagonal of its middle, the middle is in its own bin, and ranges are
  * within an eighth of an octave. */
@@ -38,39 +24,6 @@ static void bins_are_about_their_middles(void **state)
         CHECK_NEAR(v3_length(middle.u), 1, 1e-14);
     }
     CHECK(farthest < 0.71 * aspect_rad && farthest > 0.65 * aspect_rad);
-}
-
-static Signatures *open(Catalog **catalog, int *model, RadarMaterials *materials, size_t most_octets)
-{
-    static const DisEntityType truck = {1, 1, 225, 7, 1, 0, 0};
-    const SignaturesConfig     config = {.frequency_hz = frequency_hz,
-                                         .bandwidth_hz = 5e8,
-                                         .aspect_rad = aspect_rad,
-                                         .rays_per_wavelength = 1,
-                                         .most_octets = most_octets,
-                                         .isa = "avx2"};
-    Signatures                *s;
-    Origin                     origin;
-    char                       path[4096];
-    CHECK(etc_path(path, sizeof path, "catalog.csv") &&
-          catalog_open(catalog, path, radar_sag_m(frequency_hz)) == STATUS_OK);
-    *model = catalog_find(*catalog, truck, &origin, NULL);
-    CHECK(radar_materials_load(materials) == STATUS_OK);
-    CHECK(signatures_create(&s, &config, *catalog, materials) == STATUS_OK);
-    return s;
-}
-
-static ScatterMatrix look(Signatures *s, int model, const double *joint, const ScatterAntenna *a)
-{
-    const Signature    *signature;
-    const SignatureLook of = signature_look(a);
-    Centres             centres = {0};
-    ScatterMatrix       m;
-    CHECK(signatures_find(&signature, s, model, joint, 0, &of, NULL) == STATUS_OK);
-    CHECK(centres_make(&centres, signature, a, a, NULL) == STATUS_OK);
-    centres_field(&m, &centres, frequency_hz);
-    centres_free(&centres);
-    return m;
 }
 
 static void lists_are_reused_and_change_no_bit(void **state)
@@ -153,89 +106,6 @@ static void looks_are_told_apart(void **state)
         CHECK(signatures_find(&signature, s, model, NULL, 0, &look_of[i], NULL) == STATUS_OK);
         CHECK(signatures_counters(s).made == made[i]);
     }
-    signatures_destroy(s);
-    radar_materials_close(&materials);
-    catalog_close(catalog);
-}
-
-/* In the background there is none at first, and then the one that is made on the spot, to the bit. What is asked for
- * last is made first; the same is not asked for twice. */
-static void background_makes_the_same(void **state)
-{
-    (void)state;
-    Catalog         *catalog;
-    RadarMaterials   materials;
-    int              model;
-    Signatures      *s = open(&catalog, &model, &materials, 1 << 30), *later;
-    SignaturesConfig config = {.frequency_hz = frequency_hz,
-                               .bandwidth_hz = 5e8,
-                               .aspect_rad = aspect_rad,
-                               .rays_per_wavelength = 1,
-                               .most_octets = 1 << 30,
-                               .isa = "avx2",
-                               .background = true};
-    const Signature *want[3], *got = NULL;
-    CHECK(signatures_create(&later, &config, catalog, &materials) == STATUS_OK);
-    for (int round = 0; round < 2; round++)
-        for (int i = 0; i < 3; i++) {
-            const ScatterAntenna a = at(20 + i, 15, 2000);
-            const SignatureLook  look_of = signature_look(&a);
-            CHECK(signatures_find(&got, later, model, NULL, 0, &look_of, NULL) == STATUS_OK);
-            CHECK(got == NULL || round == 1 || i > 0);
-        }
-    CHECK(signatures_waiting(later) <= 3 && signatures_counters(later).missing >= 3);
-    for (int tries = 0; tries < 3000 && signatures_waiting(later) > 0; tries++)
-        nanosleep(&(struct timespec){.tv_nsec = 100000000}, NULL);
-    for (int i = 0; i < 3; i++) {
-        const ScatterAntenna a = at(20 + i, 15, 2000);
-        const SignatureLook  look_of = signature_look(&a);
-        CHECK(signatures_find(&want[i], s, model, NULL, 0, &look_of, NULL) == STATUS_OK);
-        CHECK(signatures_find(&got, later, model, NULL, 0, &look_of, NULL) == STATUS_OK);
-        CHECK(got && got->count > 100 && got->count == want[i]->count);
-        CHECK(memcmp(got->centre, want[i]->centre, (size_t)got->count * sizeof *got->centre) == 0);
-    }
-    CHECK(signatures_counters(later).made == 3);
-    signatures_destroy(s);
-    signatures_destroy(later);
-    radar_materials_close(&materials);
-    catalog_close(catalog);
-}
-
-/* Against lists made for each look itself, beside what another turn of their own grid of tubes changes: rms over looks,
- * over the rms field. Reuse adds nothing that is seen beside the grid's own error. */
-static void a_list_serves_its_bin(void **state)
-{
-    (void)state;
-    Catalog       *catalog;
-    RadarMaterials materials;
-    int            model;
-    Signatures    *s = open(&catalog, &model, &materials, 1 << 30);
-    double         error = 0, grid = 0, power = 0;
-    TotalField     own = {0};
-    RadarTarget   *target;
-    CHECK(radar_target_create(&target, catalog_model(catalog, model), &materials, "avx2") == STATUS_OK);
-    for (int i = 0; i < 6; i++) {
-        const ScatterAntenna a = at(60 * i + 0.28 * random_uniform(2, 0, 0, (uint64_t)i),
-                                    12.05 + 0.2 * random_uniform(2, 1, 0, (uint64_t)i), 2000);
-        const ScatterMatrix  got = look(s, model, NULL, &a);
-        ScatterMatrix        want[2];
-        for (int turned = 0; turned < 2; turned++) {
-            TubeConfig tubes = tubes_default_config(frequency_hz);
-            tubes.splits = 0;
-            tubes.seed = (uint64_t)turned;
-            CHECK(total_field_trace(&own, target, &a, &a, &tubes, true, NULL) == STATUS_OK);
-            CHECK(total_field_sweep(&want[turned], &(FrequencySweep){.count = 1, .first_hz = frequency_hz}, &own,
-                                    NULL) == STATUS_OK);
-        }
-        error += pow(cabs(got.vv - want[0].vv), 2) + pow(cabs(got.hh - want[0].hh), 2);
-        grid += pow(cabs(want[1].vv - want[0].vv), 2) + pow(cabs(want[1].hh - want[0].hh), 2);
-        power += pow(cabs(want[0].vv), 2) + pow(cabs(want[0].hh), 2);
-    }
-    printf("a truck at 5 GHz, from lists of bins of 0.3 degrees: %.1f dB; another turn of the grid: %.1f dB\n",
-           10 * log10(error / power), 10 * log10(grid / power));
-    CHECK(error < 1.5 * grid);
-    total_field_free(&own);
-    radar_target_destroy(target);
     signatures_destroy(s);
     radar_materials_close(&materials);
     catalog_close(catalog);
@@ -326,9 +196,10 @@ static void each_input_has_a_signature_of_its_own(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(bins_are_about_their_middles), cmocka_unit_test(lists_are_reused_and_change_no_bit),
-        cmocka_unit_test(looks_are_told_apart),         cmocka_unit_test(background_makes_the_same),
-        cmocka_unit_test(a_list_serves_its_bin),        cmocka_unit_test(each_input_has_a_signature_of_its_own),
+        cmocka_unit_test(bins_are_about_their_middles),
+        cmocka_unit_test(lists_are_reused_and_change_no_bit),
+        cmocka_unit_test(looks_are_told_apart),
+        cmocka_unit_test(each_input_has_a_signature_of_its_own),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

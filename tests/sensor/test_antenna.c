@@ -58,6 +58,39 @@ static void patterns_are_sums_over_the_aperture(void **state)
     }
 }
 
+/* The patterns against the C library's Bessel functions, over the main lobe and the first side lobes, where series and
+ * recurrence meet at u = 5: 2^m m! J_m(u) / u^m is known to some 1e-15 from u = 1 on. */
+static void patterns_are_bessel_functions(void **state)
+{
+    (void)state;
+    for (int n = 0; n < 3; n++) {
+        const Antenna a = {.diameter_m = 1, .taper = n, .wavelength_m = 0.01};
+        const double  reach = pi_rad * 100, peak = reach * sqrt((2 * n + 1) / ((n + 1.0) * (n + 1)));
+        for (double u = 1; u < 12; u += 0.09) {
+            const AntennaGain g = antenna_gain(&a, 0.6 * u / reach, 0.8 * u / reach);
+            const double      sum = tgamma(n + 2) * pow(2 / u, n + 1) * jn(n + 1, u);
+            const double      slope = sqrt(n + 1) / (n + 2) * tgamma(n + 3) * pow(2 / u, n + 2) * jn(n + 2, u);
+            CHECK_NEAR(g.sum / peak, sum, 3e-15);
+            CHECK_NEAR(g.right / peak, slope * 0.6 * u, 3e-15 * u);
+            CHECK_NEAR(g.down / peak, slope * 0.8 * u, 3e-15 * u);
+        }
+    }
+}
+
+/* Both ways' half-power width is one way's width at 3 dB / 2: Bessel's functions at the directions that come back. */
+static void widths_are_where_the_power_is_half(void **state)
+{
+    (void)state;
+    for (int n = 0; n < 3; n++) {
+        const Antenna a = {.diameter_m = 0.7, .taper = n, .wavelength_m = 0.02};
+        for (int ways = 1; ways <= 2; ways++) {
+            const double width = ways == 1 ? antenna_width_rad(&a) : antenna_two_way_width_rad(&a);
+            const double u = pi_rad * 35 * sin(0.5 * width);
+            CHECK_NEAR(pow(tgamma(n + 2) * pow(2 / u, n + 1) * jn(n + 1, u), 2 * ways), 0.5, 1e-12);
+        }
+    }
+}
+
 static void angles_come_back(void **state)
 {
     (void)state;
@@ -84,6 +117,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(widths_and_lobes_are_published_ones),
         cmocka_unit_test(patterns_are_sums_over_the_aperture),
+        cmocka_unit_test(patterns_are_bessel_functions),
+        cmocka_unit_test(widths_are_where_the_power_is_half),
         cmocka_unit_test(angles_come_back),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -209,19 +209,25 @@ static void slow_and_fast_echoes_are_alike(void **state)
     pool_destroy(pool);
 }
 
-/* An LFM echo that crosses the fold within the interval: samples are alike whole repetitions of path apart, but for the
- * phase of the carrier, row by row. */
+/* An LFM echo that crosses the fold within the interval, early or late in it, or comes from beyond: samples are alike
+ * whole repetitions of path apart, but for the phase of the carrier, row by row. A repetition is no whole number of
+ * turns a sample, so that folds to the wrong side show. */
 static void an_echo_folds_over_within_the_interval(void **state)
 {
     (void)state;
     Waveform     w = wave;
     EchoGrid    *grid;
-    const double repeat_m = light_mps / wave.repeat_hz, growth_m = 1e-4, step_hz = wave.bandwidth_hz / samples;
-    w.pulses = 32;
+    const double repeat_hz = 1.9e4, repeat_m = light_mps / repeat_hz, growth_m = 1e-4;
+    const double step_hz = wave.bandwidth_hz / samples;
+    w.pulses = 32, w.repeat_hz = repeat_hz;
     CHECK(echo_grid_create(&grid, &w) == STATUS_OK && echo_terms(grid, growth_m) > 0);
     const double coupled_m = w.centre_hz / w.bandwidth_hz * w.pulse_s * w.repeat_hz * growth_m;
-    for (int side = 0; side < 2; side++) {
-        const double at_m = (side ? 0.5 : 0.25) * repeat_m - coupled_m; /* across the fold; and well within */
+    /* repetitions, rows: well within; across the fold in the middle, early and late (between
+     * the blocks of 8 rows that share a delay); beyond it on either side */
+    static const double at[][2] = {{0.25, 0}, {0.5, 0},   {0.5, 8}, {0.5, -8},
+                                   {-0.5, 8}, {-0.5, -8}, {1.3, 0}, {-0.8, 0}};
+    for (size_t i = 0; i < sizeof at / sizeof *at; i++) {
+        const double at_m = at[i][0] * repeat_m - coupled_m + at[i][1] * growth_m;
         const Echo   echo = {at_m, growth_m, {1, 0, 0, 0}};
         echo_add(grid, &echo, 1, NULL);
         echo_sum(got, grid);
@@ -236,7 +242,7 @@ static void an_echo_folds_over_within_the_interval(void **state)
                 const double turns = (w.centre_hz * all_m + off * step_hz * (all_m - back_m)) / light_mps;
                 most = fmax(most, cabs(got[p * samples + m] - cexp(-I * 2 * pi_rad * turns)));
             }
-        printf("%s: %.1e\n", side ? "across the fold" : "within", most);
+        printf("%g repetitions and %g rows: %.1e\n", at[i][0], at[i][1], most);
         CHECK(most < 3e-3);
     }
     echo_grid_destroy(grid);

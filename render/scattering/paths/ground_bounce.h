@@ -133,7 +133,7 @@ typedef struct GroundFields {
 void ground_sum(ScatterMatrix *out, const GroundFields *s, const GroundLeg *direct, const GroundLeg *image, double k);
 
 /* Below this coherence c the ground's paths are left out: what is missed is at most 2 c |S(i, a)| + c^2 |S(i, i)|, as
- * a perfect mirror would have them; test_ground_bounce.c. */
+ * a perfect mirror would have them; test_ground_bounce_fields.c. */
 extern const double ground_least_coherence;
 
 /* Where on the ground the leg to a target is reflected: towards the antenna from the target's foot on the plane. */
