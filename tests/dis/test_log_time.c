@@ -64,6 +64,9 @@ static void an_honest_capture_is_left_alone(void **state)
     CHECK(!retimed(1, 0));
     CHECK(!retimed(1, 0.5));
     CHECK(!retimed(1.1, 0));
+    /* a quarter is the network's and the sender's to lose: 0.8 .. 1.25 packet seconds a stamp second */
+    CHECK(!retimed(0.81, 0) && !retimed(1.24, 0));
+    CHECK(retimed(0.78, 0) && retimed(1.28, 0));
 }
 
 /* Stamps at half and at twice the rate of packets: what moves says which of the two is the clock. */
