@@ -3,8 +3,8 @@
 
 #include "dis/pdu/decode.h"
 
-/* IEEE 1278.1-2012, PDU types (SISO-REF-010, UID 4), in their order. PyPI's opendis 1.0 has the same classes at the numbers
- * it decodes, but for 6, 41 and 63, which it confuses with 66, 43 and 65. */
+/* IEEE 1278.1-2012, PDU types (SISO-REF-010, UID 4), in their order. PyPI's opendis 1.0 has the same classes at the
+ * numbers it decodes, but for 6, 41 and 63, which it confuses with 66, 43 and 65. */
 static const char *const standard_name[] = {
     "Other",
     "Entity State",
@@ -102,7 +102,8 @@ static unsigned standard_octets(int type)
         return 12 + 6 + 1 + 1 + 2 * 8 + 12 + 24 + 12 + 4 + 40 + 12 + 4;
     case 2: /* firing, target, munition, event, mission, location, descriptor, velocity, range */
         return 12 + 3 * 6 + 6 + 4 + 24 + 16 + 12 + 4;
-    case 3: /* firing, target, exploding, event, velocity, location, descriptor, location in the target, result, count, 2 */
+    case 3: /* firing, target, exploding, event, velocity, location, descriptor, location in the target, result, count,
+               2 */
         return 12 + 3 * 6 + 6 + 12 + 24 + 16 + 12 + 1 + 1 + 2;
     case 12: /* originating, receiving, request */
         return 12 + 2 * 6 + 4;

@@ -222,6 +222,34 @@ static void impossible_grids_are_refused(void **state)
     log_set_sink(NULL, NULL);
 }
 
+/* The header alone decides what is refused: 4 .. 65535 rows and columns, 40 Mi posts (160 MiB) at most. With a header
+ * that is taken, the posts that are not there are found missing. */
+static void sizes_are_limited_before_memory_is_taken(void **state)
+{
+    (void)state;
+    static const struct {
+        int    rows, columns;
+        Status status;
+    } c[] = {{4, 4, STATUS_TRUNCATED},         {65535, 4, STATUS_TRUNCATED},     {65536, 4, STATUS_BAD_VALUE},
+             {4, 65535, STATUS_TRUNCATED},     {4, 65536, STATUS_BAD_VALUE},     {640, 65535, STATUS_TRUNCATED},
+             {641, 65535, STATUS_BAD_VALUE},   {65535, 65535, STATUS_BAD_VALUE}, {-1, 4, STATUS_BAD_VALUE},
+             {4, INT32_MIN, STATUS_BAD_VALUE}, {0, 0, STATUS_BAD_VALUE}};
+    log_set_sink(check_listen, NULL);
+    for (size_t i = 0; i < sizeof c / sizeof *c; i++) {
+        char  path[text_file_size];
+        Geoid geoid = {0};
+        write_grid(path, &(Grid){0, 0, 1e-3, 1e-3, 0, 0}, -1, -1, 0);
+        FILE *file = fopen(path, "r+b");
+        CHECK(file && fseek(file, 32, SEEK_SET) == 0);
+        put_big(file, &c[i].rows, 4), put_big(file, &c[i].columns, 4);
+        CHECK(fclose(file) == 0);
+        assert_int_equal(geoid_open(&geoid, path), c[i].status);
+        geoid_close(&geoid);
+        remove(path);
+    }
+    log_set_sink(NULL, NULL);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -231,6 +259,7 @@ int main(void)
         cmocka_unit_test(a_known_surface_is_met_over_poles_and_seam),
         cmocka_unit_test(a_region_ends_where_its_posts_end),
         cmocka_unit_test(impossible_grids_are_refused),
+        cmocka_unit_test(sizes_are_limited_before_memory_is_taken),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
