@@ -192,6 +192,21 @@ static void simple_packets_are_as_long_as_their_block(void **state)
     }
 }
 
+/* The header of IPv4 alone, 20 octets, is whole: its protocol is looked at. With 19 it is cut short. */
+static void an_ipv4_header_has_20_octets(void **state)
+{
+    (void)state;
+    for (size_t octets = 19; octets <= 20; octets++) {
+        packet.count = 0;
+        put_ipv4(&packet, 6, 20, 1, 0, 0);
+        CHECK(packet.count == 20);
+        packet.count = octets;
+        pcap_begin(&file, link_raw, true, false);
+        pcap_packet(&file, 1000, 0, &packet, packet.count, false);
+        expect_none(3000, (DisLogCounters){.cut_short = octets < 20, .other_protocol = octets == 20});
+    }
+}
+
 static void a_truncated_file_gives_what_it_has(void **state)
 {
     (void)state;
@@ -575,6 +590,7 @@ int main(void)
         cmocka_unit_test(foreign_link_layers_are_named),
         cmocka_unit_test(every_file_format_keeps_the_time),
         cmocka_unit_test(simple_packets_are_as_long_as_their_block),
+        cmocka_unit_test(an_ipv4_header_has_20_octets),
         cmocka_unit_test(a_truncated_file_gives_what_it_has),
         cmocka_unit_test(what_is_no_capture_says_so),
         cmocka_unit_test(ipv4_options_and_padding),
