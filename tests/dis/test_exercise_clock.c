@@ -415,6 +415,23 @@ static void limits_of_stamps_that_stand_still(void **state)
     }
 }
 
+/* The PDUs from a jump of the stamps on are one segment, also the first ones, which might have been single odd stamps;
+ * a single one has a segment to itself. */
+static void a_jump_begins_one_segment(void **state)
+{
+    (void)state;
+    ExerciseClock *clock = new_clock();
+    uint32_t       segment[40];
+    for (int i = 0; i < 40; i++) {
+        const double ahead_s = i == 20 ? 300 : i >= 30 ? 700 : 0;
+        segment[i] = exercise_clock_instant(clock, 1, 1, 1, stamp_of(100 + i + ahead_s, false), 1000 + i).segment;
+    }
+    for (int i = 1; i < 30; i++) CHECK((segment[i] == segment[0]) == (i != 20));
+    for (int i = 31; i < 40; i++) CHECK(segment[i] == segment[30]);
+    CHECK(segment[30] != segment[0] && segment[30] != segment[20]);
+    exercise_clock_destroy(clock);
+}
+
 /* All PDUs of a frame carry the frame's time and leave over the next second: each entity's stamps are a clock. */
 static void a_sender_that_spreads_a_frame_is_proven(void **state)
 {
@@ -589,6 +606,7 @@ int main(void)
         cmocka_unit_test(a_second_pdu_is_overtaken_or_undecided),
         cmocka_unit_test(a_check_begins_again_where_the_capture_steps_back),
         cmocka_unit_test(limits_of_stamps_that_stand_still),
+        cmocka_unit_test(a_jump_begins_one_segment),
         cmocka_unit_test(a_sender_that_spreads_a_frame_is_proven),
         cmocka_unit_test(a_stamp_of_zero_is_on_the_hour),
         cmocka_unit_test(two_senders_of_one_id_are_named),

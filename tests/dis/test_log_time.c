@@ -10,6 +10,7 @@ static uint8_t     bytes[pdus][160];
 static DisDatagram datagram[pdus];
 
 static double speed_mps, motion_rate; /* what the reports say, and seconds of motion a second of stamp */
+static double leap_m;                 /* a leap of the place amid the motion */
 
 /* PDU k stamped at stamp_s(k), captured at capture_s(k); every fifth from another sender, unstamped. */
 static DisLog make(double stamp_s[pdus], double capture_s[pdus])
@@ -22,7 +23,7 @@ static DisLog make(double stamp_s[pdus], double capture_s[pdus])
                                          .family = 1,
                                          .timestamp = k % 5 == 4 ? 0 : (uint32_t)(past_s / 3600 * 2147483648.0) << 1},
                               .id = {1, (uint16_t)(k % 5 == 4 ? 2 : 1), 7},
-                              .p_ecef = {6.4e6, 0, speed_mps * motion_rate * stamp_s[k]},
+                              .p_ecef = {6.4e6, 0, speed_mps * motion_rate * stamp_s[k] + (k < 100 ? 0 : leap_m)},
                               .velocity_mps = {0, (float)(0.6 * speed_mps), (float)(0.8 * speed_mps)}};
         const size_t   octets = dis_encode_entity_state(bytes[k], sizeof bytes[k], &pdu);
         CHECK(octets > 0);
@@ -155,6 +156,16 @@ static void limits_of_motion(void **state)
     speed_mps = 1.02;
     CHECK(!retimed(2, 0));
     speed_mps = 0.98;
+    CHECK(retimed(2, 0));
+    speed_mps = 250; /* 30 km of way: a leap below 100 km counts as way, and spoils it; a longer one is left out */
+    leap_m = 0.95e5;
+    CHECK(retimed(2, 0));
+    leap_m = 1.05e5;
+    CHECK(!retimed(2, 0));
+    leap_m = 0;
+    speed_mps = 1.98e4; /* faster than 20 km/s is no entity's speed */
+    CHECK(!retimed(2, 0));
+    speed_mps = 2.02e4;
     CHECK(retimed(2, 0));
     speed_mps = motion_rate = 0;
 }
