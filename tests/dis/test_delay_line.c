@@ -1,5 +1,5 @@
-/* The lower hull of delays against a hull made of all points at once, drift on lines made by hand, and the trend against the
- * textbook's sums. */
+/* The lower hull of delays against a hull made of all points at once, drift on lines made by hand, and the trend
+ * against the textbook's sums. */
 #include "tests/check.h"
 
 #include "dis/clock/exercise_clock_private.h"
@@ -59,8 +59,8 @@ static void the_hull_is_that_of_all_points(void **state)
     CHECK(most >= 8);
 }
 
-/* Sixteen vertices are kept. Of seventeen on a parabola, whose triangles all have the area 1, that one goes whose triangle
- * is made flatter. */
+/* Sixteen vertices are kept. Of seventeen on a parabola, whose triangles all have the area 1, that one goes whose
+ * triangle is made flatter. */
 static void the_flattest_vertex_goes(void **state)
 {
     (void)state;
@@ -76,7 +76,8 @@ static void the_flattest_vertex_goes(void **state)
     }
 }
 
-/* Points a second apart on a rising edge, every other one late; returns the slope that is applied after the last one. */
+/* Points a second apart on a rising edge, every other one late; returns the slope that is applied after the last one.
+ */
 static double applied_slope(double slope, double late_s, int points)
 {
     DelayLine line;
@@ -85,9 +86,9 @@ static double applied_slope(double slope, double late_s, int points)
     return line.slope;
 }
 
-/* A slope is a drift after 64 points, up to 2e-4 s a second, where it amounts to 1 ms, and to more than 30 J / N: with J twice the
- * mean's height above the edge, here late_s 64 / 65, a slope of 1.5e-4 over 64 s may have late_s up to 9.6 ms 65 / 30 65 / 64 =
- * 21.1 ms; at the point before it is 9.45 ms 64 / 30 = 20.2 ms. */
+/* A slope is a drift after 64 points, up to 2e-4 s a second, where it amounts to 1 ms, and to more than 30 J / N: with
+ * J twice the mean's height above the edge, here late_s 64 / 65, a slope of 1.5e-4 over 64 s may have late_s up to 9.6
+ * ms 65 / 30 65 / 64 = 21.1 ms; at the point before it is 9.45 ms 64 / 30 = 20.2 ms. */
 static void what_is_a_drift(void **state)
 {
     (void)state;
@@ -116,7 +117,8 @@ static void small_changes_are_not_applied(void **state)
     }
 }
 
-/* Least squares: slope Sxy / Sxx, variance of the residuals (Syy - Sxy^2 / Sxx) / (n - 2), of the slope that over Sxx. */
+/* Least squares: slope Sxy / Sxx, variance of the residuals (Syy - Sxy^2 / Sxx) / (n - 2), of the slope that over Sxx.
+ */
 static void the_trend_is_least_squares(void **state)
 {
     (void)state;
@@ -167,8 +169,8 @@ static void a_trend_is_no_better_than_its_clocks(void **state)
     CHECK_NEAR(delay_trend_scatter(&t), sqrt(0.625 / 3), 1e-12); /* Syy of 0 .. 1 in quarters is 0.625 */
 }
 
-/* Student's t, two-sided, 0.01 %: quantile 0.99995 by scipy.stats.t.ppf for 1 .. 9 degrees of freedom. The last one is kept for
- * more of them, whose quantiles are smaller. */
+/* Student's t, two-sided, 0.01 %: quantile 0.99995 by scipy.stats.t.ppf for 1 .. 9 degrees of freedom. The last one is
+ * kept for more of them, whose quantiles are smaller. */
 static void critical_ratios_are_students(void **state)
 {
     (void)state;
