@@ -141,6 +141,26 @@ static void each_type_has_its_least_length(void **state)
     }
 }
 
+/* Lengths of 0 are made up where they, and those of up to 63 PDUs behind, end with the datagram: of 65 the first is
+ * refused. */
+static void lengths_of_zero_are_made_for_64_pdus(void **state)
+{
+    (void)state;
+    enum { octets = 40 };
+    static uint8_t wire[65 * octets];
+    for (int count = 63; count <= 65; count++) {
+        memset(wire, 0, sizeof wire);
+        for (int i = 0; i < count; i++) wire[octets * i] = 7, wire[octets * i + 2] = 14, wire[octets * i + 3] = 5;
+        DisCounters    counters = {0};
+        DisHeader      header;
+        const uint8_t *pdu, *at = wire;
+        unsigned       made = 0;
+        while (dis_next_pdu(&header, &pdu, &at, wire + octets * count, &counters)) made += header.length == octets;
+        CHECK(made == (count <= 64 ? (unsigned)count : 0) && counters.lengths_made == made);
+        CHECK(counters.dropped[DIS_DROP_LENGTH_ZERO] == (count > 64));
+    }
+}
+
 /* Types 1 .. 72 begin with an id of site, application and one number more, at octets 12, 14 and 16. */
 static void senders_are_at_octet_12(void **state)
 {
@@ -163,6 +183,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(names_are_the_standards),
         cmocka_unit_test(each_type_has_its_least_length),
+        cmocka_unit_test(lengths_of_zero_are_made_for_64_pdus),
         cmocka_unit_test(senders_are_at_octet_12),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
