@@ -257,6 +257,35 @@ static void put_enhanced(uint32_t interface, uint64_t ticks, bool big)
     put_file32(&file, length, big);
 }
 
+/* if_tsoffset moves the stamps, and times end at 0 and at 9e9 s (the year 2255); the fraction of the second stays. */
+static void offsets_end_at_the_limits_of_time(void **state)
+{
+    (void)state;
+    static const struct {
+        int64_t offset_s;
+        double  want_s; /* of a stamp of 1000.25 s */
+    } c[] = {{-990, 10.25},
+             {-1000, 0.25},
+             {-1001, 0.25},
+             {-2000, 0.25},
+             {8999998500, 8999999500.25},
+             {8999999000, 9000000000.25},
+             {8999999500, 9000000000.25},
+             {INT64_MAX, 9000000000.25},
+             {INT64_MIN + 1, 0.25}};
+    for (size_t k = 0; k < sizeof c / sizeof c[0]; k++) {
+        file.count = 0;
+        put_section(false);
+        put_interface(link_raw, -1, c[k].offset_s, false);
+        make_packet(link_raw, 5);
+        put_enhanced(0, 1000250000, false);
+        DisLog log;
+        CHECK(open_bytes(&log, &file) == STATUS_OK && log.count == 1);
+        CHECK_NEAR(log.datagram[0].capture_s, c[k].want_s, 2e-6);
+        dis_log_close(&log);
+    }
+}
+
 /* An option counts by its code and its length: if_tsresol (9) has 1 octet, if_tsoffset (14) has 8; if_speed (8) has 8
  * too. */
 static void options_of_another_length_are_passed_over(void **state)
@@ -445,6 +474,7 @@ int main(void)
         cmocka_unit_test(a_damaged_stream_is_said),
         cmocka_unit_test(bombs_are_refused),
         cmocka_unit_test(windows_are_bounded),
+        cmocka_unit_test(offsets_end_at_the_limits_of_time),
         cmocka_unit_test(options_of_another_length_are_passed_over),
         cmocka_unit_test(every_interface_has_its_own_link_and_clock),
         cmocka_unit_test(nothing_readable_is_refused_by_name),
