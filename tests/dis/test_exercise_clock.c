@@ -528,6 +528,19 @@ static void unstamped_senders_use_capture_time(void **state)
     exercise_clock_destroy(clock);
 }
 
+/* Capture times count to 1e11 s (the year 5138), where a double still steps by 15 us; beyond, the last one is kept. */
+static void capture_times_count_to_1e11_s(void **state)
+{
+    (void)state;
+    for (int beyond = 0; beyond < 2; beyond++) {
+        ExerciseClock *clock = new_clock();
+        CHECK_NEAR(exercise_clock_time(clock, 1, 1, 0, 1000), 0, 0);
+        const double late_s = beyond ? 1.02e11 : 0.98e11;
+        CHECK_NEAR(exercise_clock_time(clock, 1, 1, 0, late_s), beyond ? 0 : late_s - 1000, 1e-4);
+        exercise_clock_destroy(clock);
+    }
+}
+
 static void foolish_capture_times_do_no_harm(void **state)
 {
     (void)state;
@@ -613,6 +626,7 @@ int main(void)
         cmocka_unit_test(drift_is_followed),
         cmocka_unit_test(bundles_that_come_twice_are_no_fault),
         cmocka_unit_test(unstamped_senders_use_capture_time),
+        cmocka_unit_test(capture_times_count_to_1e11_s),
         cmocka_unit_test(foolish_capture_times_do_no_harm),
         cmocka_unit_test(senders_are_bounded),
         cmocka_unit_test(noise_is_deterministic),
