@@ -13,18 +13,18 @@ static const double day_s = 86400, unix_epoch_jd = 2440587.5;
 static const double unix_1900_s = -2208988800, unix_2101_s = 4133980800; /* 1900-01-01, 2101-01-01 */
 static const double au_m = 149597870700.0, light_day_per_au = 499.004783836 / 86400;
 
-/* TT - UT1 where it does not follow from leap seconds. 1900 .. 2020: observed, every five years (Astronomical Almanac,
- * section K), linear between, within 0.9 s. After 2020 an estimate, with an error of up to tens of seconds in 2100;
- * the sun moves 0.04 arcsecond a second, so even that is a thousandth of a degree. */
+/* TT - UT1 where it does not follow from UTC, which ERFA knows from 1960 until five years after its release. 1900 ..
+ * 1960: observed, every five years (Astronomical Almanac, section K), linear between, within 0.9 s. After 2020 an
+ * estimate, with an error of up to tens of seconds in 2100; the sun moves 0.04 arcsecond a second, so even that is a
+ * thousandth of a degree. */
 static double estimate_delta_t_s(double year)
 {
     static const struct {
         double year, delta_t_s;
     } table[] = {
-        {1900, -2.72}, {1905, 3.86},  {1910, 10.46}, {1915, 17.20}, {1920, 21.16}, {1925, 23.62}, {1930, 24.02},
-        {1935, 23.93}, {1940, 24.33}, {1945, 26.77}, {1950, 29.15}, {1955, 31.07}, {1960, 33.15}, {1965, 35.73},
-        {1970, 40.18}, {1975, 45.48}, {1980, 50.54}, {1985, 54.34}, {1990, 56.86}, {1995, 60.79}, {2000, 63.83},
-        {2005, 64.69}, {2010, 66.07}, {2015, 67.64}, {2020, 69.36}, {2050, 75},    {2101, 95},
+        {1900, -2.72}, {1905, 3.86},  {1910, 10.46}, {1915, 17.20}, {1920, 21.16}, {1925, 23.62},
+        {1930, 24.02}, {1935, 23.93}, {1940, 24.33}, {1945, 26.77}, {1950, 29.15}, {1955, 31.07},
+        {1960, 33.15}, {2020, 69.36}, {2050, 75},    {2101, 95},
     };
     const int count = sizeof table / sizeof table[0];
     int       k = 1;
@@ -38,7 +38,8 @@ static double default_delta_t_s(double day_jd, double day_fraction)
 {
     int    year, month, day;
     double fraction, tai_utc_s;
-    if (eraJd2cal(day_jd, 0, &year, &month, &day, &fraction) != 0) return estimate_delta_t_s(2000);
+    (void)eraJd2cal(day_jd, 0, &year, &month, &day,
+                    &fraction); /* fails only before -4799: sun_at's range begins in 1900 */
     const int status = eraDat(year, month, day, day_fraction, &tai_utc_s);
     /* 0: known. 1: before UTC, or so long after the library's last leap second that there may be more;
      * negative: unacceptable. Both fall back on the Earth's rotation itself. */

@@ -2,7 +2,7 @@
 #include "tests/check.h"
 #include "tests/dis/random_pdu.h"
 
-#include "dis/clock/exercise_clock.h"
+#include "dis/clock/exercise_clock_private.h"
 
 static const double tick_s = 3600.0 / 2147483648.0; /* 1.7 us */
 
@@ -353,6 +353,85 @@ static void proof_takes_its_time(void **state)
     exercise_clock_destroy(clock);
 }
 
+/* A new sender's second PDU that is 0.1 s and more behind the first one in its stamp was overtaken on the network, and
+ * keeps its stamp's time. Less behind, and 0.15 s off by arrival, it leaves open how fast the stamps run: it counts
+ * from its arrival. */
+static void a_second_pdu_is_overtaken_or_undecided(void **state)
+{
+    (void)state;
+    static const struct {
+        double behind_s, later_s;
+        bool   by_stamp;
+    } c[] = {{0.104, 0.06, true}, {0.096, 0.07, false}, {0.096, 0.04, true}, {1, 0.01, true}, {4.9, 0.01, true}};
+    for (int k = 0; k < 5; k++) {
+        ExerciseClock *clock = new_clock();
+        exercise_clock_instant(clock, 1, 1, 1, stamp_of(100, false), 1000);
+        const ExerciseInstant second =
+            exercise_clock_instant(clock, 1, 1, 2, stamp_of(100 - c[k].behind_s, false), 1000 + c[k].later_s);
+        CHECK(second.by_stamp == c[k].by_stamp);
+        CHECK_NEAR(second.t_s, 100 + (c[k].by_stamp ? -c[k].behind_s : c[k].later_s), 2 * tick_s);
+        exercise_clock_destroy(clock);
+    }
+}
+
+/* The capture clock is set back by an hour amid a sender's first PDUs, before the check: it begins again there, and
+ * passes 2 and 4 s later. A jump of the stamps before that rejects the sender; after it is one odd PDU. */
+static void a_check_begins_again_where_the_capture_steps_back(void **state)
+{
+    (void)state;
+    for (int at = 5; at <= 8; at += 3) {
+        ExerciseClock *clock = new_clock();
+        for (int i = 0; i < 20; i++)
+            exercise_clock_time(clock, 1, 1, stamp_of(100 + i + (i == at ? 700 : 0), false),
+                                10000 + i - (i >= 2 ? 3600 : 0));
+        CHECK(exercise_clock_anomalies(clock)->count == (at == 5));
+        exercise_clock_destroy(clock);
+    }
+}
+
+/* Two reports of an entity 0.1 .. 1800 s apart whose stamps differ by less than a twentieth of that, and, up to 5 s
+ * apart, by 5 ms at most, repeat a stamp. A report that came sooner is not remembered. */
+static void limits_of_stamps_that_stand_still(void **state)
+{
+    (void)state;
+    static const struct {
+        double passed_s, step_s;
+        bool   repeats;
+    } c[] = {{0.1, 0, true},       {0.104, 0.005, true}, {0.104, 0.0053, false}, {0.096, 0, false},
+             {0.11, 0.0048, true}, {0.2, 0.0048, true},  {0.2, 0.0053, false},   {4.9, 0.0053, false},
+             {5.1, 0.0053, true},  {5.1, 0.25, true},    {5.1, 0.26, false},     {100, 4.96, true},
+             {100, 5.04, false},   {1790, 0, true},      {1810, 0, false},       {100, -4.96, true},
+             {100, -5.04, false},  {-1, 0, false},       {0, 0, false}};
+    for (size_t k = 0; k < sizeof c / sizeof *c; k++) {
+        ExerciseClock *clock = new_clock();
+        CHECK(exercise_clock_stands_still(clock, 7, (Moment){stamp_of(1000, false), 0}) == 0);
+        const Moment then = {stamp_of(1000 + c[k].step_s, false), c[k].passed_s};
+        CHECK(exercise_clock_stands_still(clock, 8, then) == 0);
+        CHECK(exercise_clock_stands_still(clock, 7, then) == c[k].repeats);
+        const Moment last = {then.stamp, c[k].passed_s + 0.15};
+        const bool   kept = c[k].passed_s < 0 || c[k].passed_s >= 0.1; /* then it is the one compared with */
+        CHECK(exercise_clock_stands_still(clock, 7, last) == (kept ? 1 + c[k].repeats : c[k].step_s == 0));
+        exercise_clock_destroy(clock);
+    }
+}
+
+/* The PDUs from a jump of the stamps on are one segment, also the first ones, which might have been single odd stamps;
+ * a single one has a segment to itself. */
+static void a_jump_begins_one_segment(void **state)
+{
+    (void)state;
+    ExerciseClock *clock = new_clock();
+    uint32_t       segment[40];
+    for (int i = 0; i < 40; i++) {
+        const double ahead_s = i == 20 ? 300 : i >= 30 ? 700 : 0;
+        segment[i] = exercise_clock_instant(clock, 1, 1, 1, stamp_of(100 + i + ahead_s, false), 1000 + i).segment;
+    }
+    for (int i = 1; i < 30; i++) CHECK((segment[i] == segment[0]) == (i != 20));
+    for (int i = 31; i < 40; i++) CHECK(segment[i] == segment[30]);
+    CHECK(segment[30] != segment[0] && segment[30] != segment[20]);
+    exercise_clock_destroy(clock);
+}
+
 /* All PDUs of a frame carry the frame's time and leave over the next second: each entity's stamps are a clock. */
 static void a_sender_that_spreads_a_frame_is_proven(void **state)
 {
@@ -449,6 +528,19 @@ static void unstamped_senders_use_capture_time(void **state)
     exercise_clock_destroy(clock);
 }
 
+/* Capture times count to 1e11 s (the year 5138), where a double still steps by 15 us; beyond, the last one is kept. */
+static void capture_times_count_to_1e11_s(void **state)
+{
+    (void)state;
+    for (int beyond = 0; beyond < 2; beyond++) {
+        ExerciseClock *clock = new_clock();
+        CHECK_NEAR(exercise_clock_time(clock, 1, 1, 0, 1000), 0, 0);
+        const double late_s = beyond ? 1.02e11 : 0.98e11;
+        CHECK_NEAR(exercise_clock_time(clock, 1, 1, 0, late_s), beyond ? 0 : late_s - 1000, 1e-4);
+        exercise_clock_destroy(clock);
+    }
+}
+
 static void foolish_capture_times_do_no_harm(void **state)
 {
     (void)state;
@@ -524,12 +616,17 @@ int main(void)
         cmocka_unit_test(the_founders_delay_is_no_elses),
         cmocka_unit_test(small_delays_are_not_applied),
         cmocka_unit_test(proof_takes_its_time),
+        cmocka_unit_test(a_second_pdu_is_overtaken_or_undecided),
+        cmocka_unit_test(a_check_begins_again_where_the_capture_steps_back),
+        cmocka_unit_test(limits_of_stamps_that_stand_still),
+        cmocka_unit_test(a_jump_begins_one_segment),
         cmocka_unit_test(a_sender_that_spreads_a_frame_is_proven),
         cmocka_unit_test(a_stamp_of_zero_is_on_the_hour),
         cmocka_unit_test(two_senders_of_one_id_are_named),
         cmocka_unit_test(drift_is_followed),
         cmocka_unit_test(bundles_that_come_twice_are_no_fault),
         cmocka_unit_test(unstamped_senders_use_capture_time),
+        cmocka_unit_test(capture_times_count_to_1e11_s),
         cmocka_unit_test(foolish_capture_times_do_no_harm),
         cmocka_unit_test(senders_are_bounded),
         cmocka_unit_test(noise_is_deterministic),

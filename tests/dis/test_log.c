@@ -165,6 +165,48 @@ static void every_file_format_keeps_the_time(void **state)
     }
 }
 
+/* A simple packet block has the packet's original length alone: the capture kept what the block has room for, or the
+ * interface's snap length where that is less. It has no time of its own. */
+static void simple_packets_are_as_long_as_their_block(void **state)
+{
+    (void)state;
+    make_payload(64);
+    packet.count = 0;
+    put_ipv4(&packet, 17, 72, 1, 0, 0);
+    put_udp(&packet, 3000, payload, 64);
+    CHECK(packet.count % 4 == 0);
+    for (uint32_t cut = 0; cut <= 12; cut++) {
+        pcapng_begin(&file, link_raw);
+        pcapng_packet(&file, 1700000000250000000u, &packet);
+        const uint32_t length = 16 + (uint32_t)packet.count;
+        put_file32(&file, 3, false);
+        put_file32(&file, length, false);
+        put_file32(&file, (uint32_t)packet.count + cut, false);
+        put(&file, packet.at, packet.count);
+        put_file32(&file, length, false);
+        DisLog log;
+        CHECK(open_bytes(&log, 3000) == STATUS_OK);
+        CHECK(log.count == 2 && !log.truncated && log.datagram[1].octets == 64);
+        CHECK_NEAR(log.datagram[1].capture_s, 1700000000.25, 0);
+        dis_log_close(&log);
+    }
+}
+
+/* The header of IPv4 alone, 20 octets, is whole: its protocol is looked at. With 19 it is cut short. */
+static void an_ipv4_header_has_20_octets(void **state)
+{
+    (void)state;
+    for (size_t octets = 19; octets <= 20; octets++) {
+        packet.count = 0;
+        put_ipv4(&packet, 6, 20, 1, 0, 0);
+        CHECK(packet.count == 20);
+        packet.count = octets;
+        pcap_begin(&file, link_raw, true, false);
+        pcap_packet(&file, 1000, 0, &packet, packet.count, false);
+        expect_none(3000, (DisLogCounters){.cut_short = octets < 20, .other_protocol = octets == 20});
+    }
+}
+
 static void a_truncated_file_gives_what_it_has(void **state)
 {
     (void)state;
@@ -547,6 +589,8 @@ int main(void)
         cmocka_unit_test(every_link_layer_gives_the_datagram),
         cmocka_unit_test(foreign_link_layers_are_named),
         cmocka_unit_test(every_file_format_keeps_the_time),
+        cmocka_unit_test(simple_packets_are_as_long_as_their_block),
+        cmocka_unit_test(an_ipv4_header_has_20_octets),
         cmocka_unit_test(a_truncated_file_gives_what_it_has),
         cmocka_unit_test(what_is_no_capture_says_so),
         cmocka_unit_test(ipv4_options_and_padding),

@@ -257,6 +257,71 @@ static void put_enhanced(uint32_t interface, uint64_t ticks, bool big)
     put_file32(&file, length, big);
 }
 
+/* if_tsoffset moves the stamps, and times end at 0 and at 9e9 s (the year 2255); the fraction of the second stays. */
+static void offsets_end_at_the_limits_of_time(void **state)
+{
+    (void)state;
+    static const struct {
+        int64_t offset_s;
+        double  want_s; /* of a stamp of 1000.25 s */
+    } c[] = {{-990, 10.25},
+             {-1000, 0.25},
+             {-1001, 0.25},
+             {-2000, 0.25},
+             {8999998500, 8999999500.25},
+             {8999999000, 9000000000.25},
+             {8999999500, 9000000000.25},
+             {INT64_MAX, 9000000000.25},
+             {INT64_MIN + 1, 0.25}};
+    for (size_t k = 0; k < sizeof c / sizeof c[0]; k++) {
+        file.count = 0;
+        put_section(false);
+        put_interface(link_raw, -1, c[k].offset_s, false);
+        make_packet(link_raw, 5);
+        put_enhanced(0, 1000250000, false);
+        DisLog log;
+        CHECK(open_bytes(&log, &file) == STATUS_OK && log.count == 1);
+        CHECK_NEAR(log.datagram[0].capture_s, c[k].want_s, 2e-6);
+        dis_log_close(&log);
+    }
+}
+
+/* An option counts by its code and its length: if_tsresol (9) has 1 octet, if_tsoffset (14) has 8; if_speed (8) has 8
+ * too. */
+static void options_of_another_length_are_passed_over(void **state)
+{
+    (void)state;
+    static const struct {
+        unsigned code, length;
+    } odd[] = {{8, 8}, {14, 4}, {14, 12}, {9, 2}, {9, 4}, {2, 1}};
+    for (int order = 0; order < 2; order++) {
+        const bool big = order;
+        file.count = 0;
+        put_section(big);
+        uint32_t length = 24;
+        for (size_t k = 0; k < sizeof odd / sizeof odd[0]; k++) length += 4 + (odd[k].length + 3) / 4 * 4;
+        put_file32(&file, 1, big);
+        put_file32(&file, length, big);
+        put_file16(&file, link_raw, big);
+        put_file16(&file, 0, big);
+        put_file32(&file, 0, big);
+        for (size_t k = 0; k < sizeof odd / sizeof odd[0]; k++) {
+            put_file16(&file, odd[k].code, big);
+            put_file16(&file, odd[k].length, big);
+            for (unsigned i = 0; i < (odd[k].length + 3) / 4 * 4; i++) put_u8(&file, 3);
+        }
+        put_file32(&file, 0, big);
+        put_file32(&file, length, big);
+        make_packet(link_raw, 5);
+        put_enhanced(0, 1000250000, big);
+        DisLog log;
+        CHECK(open_bytes(&log, &file) == STATUS_OK);
+        CHECK(log.count == 1 && !log.truncated);
+        CHECK_NEAR(log.datagram[0].capture_s, 1000.25, 1e-9);
+        dis_log_close(&log);
+    }
+}
+
 static void every_interface_has_its_own_link_and_clock(void **state)
 {
     (void)state;
@@ -409,6 +474,8 @@ int main(void)
         cmocka_unit_test(a_damaged_stream_is_said),
         cmocka_unit_test(bombs_are_refused),
         cmocka_unit_test(windows_are_bounded),
+        cmocka_unit_test(offsets_end_at_the_limits_of_time),
+        cmocka_unit_test(options_of_another_length_are_passed_over),
         cmocka_unit_test(every_interface_has_its_own_link_and_clock),
         cmocka_unit_test(nothing_readable_is_refused_by_name),
         cmocka_unit_test(broken_blocks_end_the_file),

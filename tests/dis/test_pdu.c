@@ -497,13 +497,14 @@ static void usable_entities(void **state)
             CHECK(!dis_entity_is_usable(&why, id, p, v, bad_euler) && why == DIS_DROP_NOT_FINITE);
         }
     }
-    const double nowhere[][3] = {{0, 0, 0}, {9.9e4, 0, 0}, {0, 1.1e8, 0}, {1e300, 1e300, 0}};
+    const double nowhere[][3] = {{0, 0, 0}, {9.9e4, 0, 0}, {0, 1.01e8, 0}, {1e300, 1e300, 0}};
     for (int i = 0; i < 4; i++) {
         CHECK(!dis_entity_is_usable(&why, id, nowhere[i], v, euler));
         CHECK(why == DIS_DROP_BAD_POSITION);
     }
-    const double orbit[3] = {0, 0, 4.2e7};
-    CHECK(dis_entity_is_usable(&why, id, orbit, v, euler));
+    const double somewhere[][3] = {
+        {0, 0, 4.2e7}, {0, -1.02e5, 0}, {0, 0, 9.9e7}}; /* an orbit; just within 1e5 .. 1e8 m */
+    for (int i = 0; i < 3; i++) CHECK(dis_entity_is_usable(&why, id, somewhere[i], v, euler));
 }
 
 int main(void)

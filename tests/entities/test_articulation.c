@@ -91,7 +91,48 @@ static void angles_wrap_and_lengths_do_not(void **state)
     CHECK_NEAR(value_of(&a, 2048, 1, 0), 6, 0);
 }
 
-/* 255 different joints: 32 are kept, the rest counted, and those kept are right. */
+/* Up to 1e8 rad turns are subtracted; 2 pi is known to 2.4e-16, so that is 4e-9 rad off at 1e8. Above, the remainder is
+ * exact in the double's 2 pi. */
+static void large_angles_are_exact(void **state)
+{
+    (void)state;
+    static const float value[] = {1.04e8f, -1.07e8f, 1.09e8f, 2e8f};
+    for (size_t v = 0; v < sizeof value / sizeof *value; v++) {
+        Articulation               a = {0};
+        const DisVariableParameter record = articulated(turret + azimuth, value[v]);
+        articulation_report(&a, &record, 1, 0, hold_s);
+        CHECK_NEAR(value_of(&a, turret, azimuth, 0), remainder((double)value[v], 2 * pi_rad), 0);
+    }
+}
+
+/* What a larger report left behind the counted joints is no joint. */
+static void joints_beyond_the_count_are_none(void **state)
+{
+    (void)state;
+    Articulation               a = {.joint[0] = {.parameter = turret + azimuth, .value = 5}};
+    const DisVariableParameter rate = articulated(turret + azimuth_rate, 0.5f);
+    CHECK(articulation_report(&a, &rate, 1, 0, hold_s) == 0 && a.count == 1);
+    CHECK_NEAR(value_of(&a, turret, azimuth, 2), 1, 0);
+}
+
+/* Classes are 1024 .. 8191, metrics 1 .. 16; a rate of 100 is followed, and 101 is not. */
+static void limits_of_records(void **state)
+{
+    (void)state;
+    const DisVariableParameter inside[] = {articulated(1024 + 1, 1), articulated(8160 + 15, 2),
+                                           articulated(turret + 15, 0), articulated(turret + 16, 100)};
+    const DisVariableParameter outside[] = {articulated(992 + 1, 1), articulated(8192 + 1, 1),
+                                            articulated(4096 + 17, 1), articulated(gun + 15, 0),
+                                            articulated(gun + 16, 101)};
+    Articulation               a = {0};
+    CHECK(articulation_report(&a, inside, 4, 0, 1) == 0 && a.count == 3);
+    CHECK_NEAR(value_of(&a, 1024, 1, 0), 1, 0);
+    CHECK_NEAR(value_of(&a, 8160, 15, 0), 2, 0);
+    CHECK_NEAR(value_of(&a, turret, 15, 0.015625), 1.5625, 0);
+    CHECK(articulation_report(&a, outside, 5, 0, 1) == 3 && a.count == 4);
+    CHECK_NEAR(value_of(&a, gun, 15, 0.25), 0, 0);
+}
+
 /* A double of 3.4e38 steps by 3.8e22: nothing is left of the angle, but it is still one. */
 static void no_float_leaves_the_circle(void **state)
 {
@@ -107,6 +148,7 @@ static void no_float_leaves_the_circle(void **state)
     }
 }
 
+/* 255 different joints: 32 are kept, the rest counted, and those kept are right. */
 static void too_many_joints(void **state)
 {
     (void)state;
@@ -260,11 +302,19 @@ static void values_reach_their_joints(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(order_does_not_matter),      cmocka_unit_test(foreign_records_are_ignored_and_counted),
-        cmocka_unit_test(rates_are_bounded),          cmocka_unit_test(angles_wrap_and_lengths_do_not),
-        cmocka_unit_test(no_float_leaves_the_circle), cmocka_unit_test(too_many_joints),
-        cmocka_unit_test(both_ends_of_what_is_taken), cmocka_unit_test(values_reach_their_joints),
-        cmocka_unit_test(signs_on_the_tank),          cmocka_unit_test(wheels_do_not_slip),
+        cmocka_unit_test(order_does_not_matter),
+        cmocka_unit_test(foreign_records_are_ignored_and_counted),
+        cmocka_unit_test(rates_are_bounded),
+        cmocka_unit_test(angles_wrap_and_lengths_do_not),
+        cmocka_unit_test(no_float_leaves_the_circle),
+        cmocka_unit_test(large_angles_are_exact),
+        cmocka_unit_test(joints_beyond_the_count_are_none),
+        cmocka_unit_test(limits_of_records),
+        cmocka_unit_test(too_many_joints),
+        cmocka_unit_test(both_ends_of_what_is_taken),
+        cmocka_unit_test(values_reach_their_joints),
+        cmocka_unit_test(signs_on_the_tank),
+        cmocka_unit_test(wheels_do_not_slip),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

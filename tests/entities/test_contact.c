@@ -79,6 +79,33 @@ static void it_lies_on_a_slope_as_paper_says(void **state)
     elevation_destroy(&ground);
 }
 
+/* A slope of up to 45 degrees is a road, and it is followed; of what is steeper, such as a wall in a surface model, 45
+ * degrees. */
+static void it_leans_by_45_degrees_at_most(void **state)
+{
+    (void)state;
+    static const double slope[] = {0.9375, 1.0625, 1.5, 4};
+    const LocalFrame    frame = frame_at(44, -123);
+    for (int k = 0; k < 4; k++)
+        for (int sign = -1; sign <= 1; sign += 2) {
+            Elevation           ground = plane(60, 2, 30, sign * slope[k], 0);
+            const ContactGround contact = {.frame = &frame, .elevation = &ground};
+            const double        want_rad = sign * atan(fmin(slope[k], 1));
+            double              r_enu_from_body[9];
+            SnapshotEntity e = entity_at(&frame, tank_type, 0, 0, 37, pi_rad / 2); /* to the east: uphill, or down */
+            contact_set(&e, &contact, &box);
+            m3_tmul(r_enu_from_body, frame.r_ecef_from_enu, e.r_ecef_from_body);
+            CHECK_NEAR(asin(r_enu_from_body[6]), want_rad, 1e-5);
+            CHECK_NEAR(r_enu_from_body[7], 0, 1e-5);
+            e = entity_at(&frame, tank_type, 0, 0, 37, 0); /* to the north: it rolls; the right side is in the east */
+            contact_set(&e, &contact, &box);
+            m3_tmul(r_enu_from_body, frame.r_ecef_from_enu, e.r_ecef_from_body);
+            CHECK_NEAR(r_enu_from_body[6], 0, 1e-5);
+            CHECK_NEAR(asin(r_enu_from_body[7]), want_rad, 1e-5);
+            elevation_destroy(&ground);
+        }
+}
+
 /* 8 km out the vertical leans 1.25 mrad against ENU: a drop of 400 m is 0.5 m sideways. */
 static void it_moves_along_the_local_vertical(void **state)
 {
@@ -222,6 +249,23 @@ static void misfits_alone_are_set_onto_an_invented_ground(void **state)
         CHECK_NEAR(left_m, last_m, 0.003);
         last_m = left_m;
     }
+    /* 0.3 m above, half of the way: half of the tilt is left, as a slope along, or across */
+    for (int across = 0; across <= 1; across++) {
+        SnapshotEntity e =
+            entity_at(&frame, tank_type, -300, 0, elevation_height(&land.elevation, -300, 0, NULL) + 0.3, 0);
+        const double along = across ? 0 : 0.25, aside = across ? -0.25 : 0, length = sqrt(1 + 0.25 * 0.25);
+        const double x[3] = {0, across ? 1 : 1 / length, along / length},
+                     y[3] = {across ? 1 / length : 1, 0, aside / length};
+        double z[3], r_enu_from_body[9];
+        v3_cross(z, x, y);
+        for (int k = 0; k < 3; k++)
+            r_enu_from_body[3 * k] = x[k], r_enu_from_body[3 * k + 1] = y[k], r_enu_from_body[3 * k + 2] = z[k];
+        m3_mul(e.r_ecef_from_body, frame.r_ecef_from_enu, r_enu_from_body);
+        contact_set(&e, &contact, &box);
+        m3_tmul(r_enu_from_body, frame.r_ecef_from_enu, e.r_ecef_from_body);
+        CHECK_NEAR(r_enu_from_body[6] / r_enu_from_body[3], 0.5 * along, 1e-3);
+        CHECK_NEAR(r_enu_from_body[7] / r_enu_from_body[1], 0.5 * aside, 1e-3);
+    }
     landscape_destroy(&land);
 }
 
@@ -321,6 +365,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(it_lies_on_a_slope_as_paper_says),
+        cmocka_unit_test(it_leans_by_45_degrees_at_most),
         cmocka_unit_test(it_moves_along_the_local_vertical),
         cmocka_unit_test(who_does_not_stand_stays),
         cmocka_unit_test(misfits_alone_are_set_onto_an_invented_ground),

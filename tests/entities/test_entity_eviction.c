@@ -308,6 +308,35 @@ static void a_small_move_changes_no_rank(void **state)
     }
 }
 
+/* Ranks are computed again once a second at most. The same two entities; the host has moved by 600 m 0.95 s, or 1.05 s,
+ * after the last time, which was its first report, or, for the later rows, a move of 2 km and back that took 4 s. */
+static void ranks_are_computed_once_a_second(void **state)
+{
+    (void)state;
+    for (int c = 0; c < 4; c++) {
+        const bool        later = c >= 2, known = c % 2;
+        EntityTableConfig config = entity_table_default_config();
+        config.capacity = 3;
+        Fixture              f = fixture_open(&config);
+        DisEntityState       host = state_of(host_id, 0, missile_type);
+        const DisEntityState south = state_of(entity_id(1), -500, tank_type),
+                             north = state_of(entity_id(2), 700, tank_type);
+        const DisEntityState more = state_of(entity_id(3), 500, tank_type);
+        entity_table_focus(f.table, host_id, none_id);
+        hear(&f, &host, 0), hear(&f, &south, 0.1), hear(&f, &north, 0.2);
+        for (int leg = 1; later && leg <= 2; leg++) {
+            host.p_ecef[2] = leg == 1 ? 2000 : 0;
+            hear(&f, &host, 2 * leg);
+        }
+        host.p_ecef[2] = 600;
+        const double now_s = (later ? 4 : 0) + (known ? 1.05 : 0.95);
+        hear(&f, &host, now_s), hear(&f, &more, now_s + 0.01);
+        CHECK(is_there(&f, entity_id(1)) == !known && is_there(&f, entity_id(2)) == known &&
+              is_there(&f, entity_id(3)));
+        fixture_close(&f);
+    }
+}
+
 /* The second entity of the focus, the aim, is never evicted either, and is one of many once it is the aim no more. */
 static void the_aim_is_kept(void **state)
 {
@@ -421,6 +450,7 @@ int main(void)
         cmocka_unit_test(the_farthest_goes_first),
         cmocka_unit_test(ranks_follow_the_host),
         cmocka_unit_test(a_small_move_changes_no_rank),
+        cmocka_unit_test(ranks_are_computed_once_a_second),
         cmocka_unit_test(the_aim_is_kept),
         cmocka_unit_test(a_second_makes_it_known),
         cmocka_unit_test(it_does_not_depend_on_snapshots),

@@ -55,17 +55,19 @@ static void same_marks(const GroundMarks *a, const GroundMarks *b)
 static const double arrives_s = 20, leaves_s = 20 + 4 * 3600, ends_s = 20 + 4 * 3600 + 10;
 
 /* 200 m north at 10 m/s, four hours there, on for 100 m. looks: snapshots on the way. */
-static void drive(Fixture *f, int looks)
+static void drive_one(Fixture *f, DisEntityType type, int looks)
 {
     for (int t_s = 0; t_s <= (int)ends_s; t_s += heartbeat_s) {
         const bool     first = t_s < (int)arrives_s, last = t_s >= (int)leaves_s;
         const double   north_m = first ? 10 * t_s : last ? 200 + 10 * (t_s - leaves_s) : 200;
-        DisEntityState pdu = driving(1, tank_type, north_m, first || last ? 10 : 0);
+        DisEntityState pdu = driving(1, type, north_m, first || last ? 10 : 0);
         hear(f, &pdu, t_s);
         for (int k = looks; k > 0; k--) (void)marks_at(f, t_s + 0.93 * heartbeat_s * k / looks);
         if (looks) entity_table_expire(f->table, t_s + 0.37 * heartbeat_s);
     }
 }
+
+static void drive(Fixture *f, int looks) { drive_one(f, tank_type, looks); }
 
 static void a_tank_leaves_tracks_and_a_stand(void **state)
 {
@@ -116,6 +118,26 @@ static void a_tank_leaves_tracks_and_a_stand(void **state)
         CHECK(t->heat_j_m2 > 3e3 && t->heat_j_m2 < 5e4);
     }
     CHECK_NEAR(sum_m, 300, 1e-6);
+    fixture_close(&f);
+}
+
+/* Rolling resistance of tyres is 3 % of the weight, of which half heats the ground under two tyres, each a tenth of the
+ * lorry wide; a lorry of 55 m3 weighs 19 t: 0.35 t/m3 of its box. */
+static void a_lorry_leaves_the_tracks_of_tyres(void **state)
+{
+    (void)state;
+    Fixture f = fixture_open(NULL);
+    drive_one(&f, truck_type, 0);
+    const GroundMarks *m = marks_at(&f, ends_s);
+    const Model       *model = catalog_model(f.catalog, catalog_find(f.catalog, truck_type, NULL, NULL));
+    const double       weight_n = 350 * model->length_m * model->width_m * model->height_m * 9.80665;
+    CHECK(m->tracks > 0 && weight_n > 5e4 && weight_n < 4e5);
+    for (int i = 0; i < m->tracks; i++) {
+        CHECK(!m->track[i].tracked);
+        CHECK_NEAR(m->track[i].width_m, 0.1 * model->width_m, 1e-6);
+        CHECK_NEAR(m->track[i].apart_m, 0.9 * model->width_m, 1e-6);
+        CHECK_NEAR(m->track[i].heat_j_m2, 0.5 * 0.03 * weight_n / (2 * 0.1 * model->width_m), 0.01);
+    }
     fixture_close(&f);
 }
 
@@ -660,6 +682,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_tank_leaves_tracks_and_a_stand),
+        cmocka_unit_test(a_lorry_leaves_the_tracks_of_tyres),
         cmocka_unit_test(an_engine_that_starts_again_is_another_stand),
         cmocka_unit_test(marks_depend_on_pdus_alone),
         cmocka_unit_test(timeouts_found_late_change_nothing),

@@ -222,6 +222,81 @@ static void impossible_grids_are_refused(void **state)
     log_set_sink(NULL, NULL);
 }
 
+/* The header alone decides what is refused: 4 .. 65535 rows and columns, 40 Mi posts (160 MiB) at most. With a header
+ * that is taken, the posts that are not there are found missing. */
+static void sizes_are_limited_before_memory_is_taken(void **state)
+{
+    (void)state;
+    static const struct {
+        int    rows, columns;
+        Status status;
+    } c[] = {{4, 4, STATUS_TRUNCATED},         {65535, 4, STATUS_TRUNCATED},     {65536, 4, STATUS_BAD_VALUE},
+             {4, 65535, STATUS_TRUNCATED},     {4, 65536, STATUS_BAD_VALUE},     {640, 65535, STATUS_TRUNCATED},
+             {641, 65535, STATUS_BAD_VALUE},   {65535, 65535, STATUS_BAD_VALUE}, {-1, 4, STATUS_BAD_VALUE},
+             {4, INT32_MIN, STATUS_BAD_VALUE}, {0, 0, STATUS_BAD_VALUE}};
+    log_set_sink(check_listen, NULL);
+    for (size_t i = 0; i < sizeof c / sizeof *c; i++) {
+        char  path[text_file_size];
+        Geoid geoid = {0};
+        write_grid(path, &(Grid){0, 0, 1e-3, 1e-3, 0, 0}, -1, -1, 0);
+        FILE *file = fopen(path, "r+b");
+        CHECK(file && fseek(file, 32, SEEK_SET) == 0);
+        put_big(file, &c[i].rows, 4), put_big(file, &c[i].columns, 4);
+        CHECK(fclose(file) == 0);
+        assert_int_equal(geoid_open(&geoid, path), c[i].status);
+        geoid_close(&geoid);
+        remove(path);
+    }
+    log_set_sink(NULL, NULL);
+}
+
+/* A grid's steps and edges are compared to within 1e-6 degree (0.1 m), and so are the ends of a region in steps; a
+ * place may be 1e-9 degree beyond a pole; a post within 1 mm of the mark -88.8888 is a gap. Each on both sides of its
+ * limit. */
+static void rounding_is_allowed_for_and_no_more(void **state)
+{
+    (void)state;
+    log_set_sink(check_listen, NULL);
+    for (int beyond = 0; beyond < 2; beyond++) {
+        const double off_deg = beyond ? 1.05e-6 : 0.95e-6;
+        const Grid   grid[] = {{0, 0, (90 + off_deg) / 9, 10, 10, 36},     /* its last row is beyond the pole */
+                               {-90, 0, 10, (360 + off_deg) / 36, 19, 37}, /* its columns beyond the circle */
+                               {-90, 0, 10, (360 + off_deg) / 36, 19, 36}, /* round the circle, or not */
+                               {-90 + off_deg, 0, 10, 10, 10, 36},         /* from the pole, or not */
+                               {-off_deg, 0, 10, 10, 10, 36},              /* to the pole, or not */
+                               {0, 0, 10, 10, 5, 5}};
+        for (int k = 0; k < 6; k++) {
+            char  path[text_file_size];
+            Geoid geoid = {0};
+            write_grid(path, &grid[k], -1, -1, 0);
+            assert_int_equal(geoid_open(&geoid, path), k < 2 && beyond ? STATUS_BAD_VALUE : STATUS_OK);
+            if (k == 2) CHECK(isnan(look(&geoid, 5, 355)) == beyond);
+            if (k == 3) CHECK(isnan(look(&geoid, -85, 20)) == beyond);
+            if (k == 4) CHECK(isnan(look(&geoid, 85, 20)) == beyond);
+            if (k == 5) { /* posts are missing beyond the inner cells; there the ends in rows are those of the file */
+                CHECK(isfinite(look(&geoid, 15, 15)));
+                CHECK(isnan(look(&geoid, -10 * off_deg, 15)));
+            }
+            geoid_close(&geoid);
+            remove(path);
+        }
+        const Grid whole = {-90, 0, 10, 10, 19, 36};
+        for (int side = -1; side <= 1; side += 2) {
+            char        path[text_file_size];
+            Geoid       geoid;
+            const float odd_m = -88.8888f + (float)(side * (beyond ? 1.05e-3 : 0.95e-3));
+            write_grid(path, &whole, 9, 3, odd_m);
+            assert_int_equal(geoid_open(&geoid, path), STATUS_OK);
+            CHECK(isnan(look(&geoid, 0, 30)) == !beyond);
+            if (beyond) CHECK_NEAR(look(&geoid, 0, 30), odd_m, 1e-4);
+            CHECK(isnan(look(&geoid, side * (90 + 1e-3 * off_deg), 77)) == beyond);
+            geoid_close(&geoid);
+            remove(path);
+        }
+    }
+    log_set_sink(NULL, NULL);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -231,6 +306,8 @@ int main(void)
         cmocka_unit_test(a_known_surface_is_met_over_poles_and_seam),
         cmocka_unit_test(a_region_ends_where_its_posts_end),
         cmocka_unit_test(impossible_grids_are_refused),
+        cmocka_unit_test(rounding_is_allowed_for_and_no_more),
+        cmocka_unit_test(sizes_are_limited_before_memory_is_taken),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

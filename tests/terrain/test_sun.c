@@ -114,6 +114,127 @@ static void no_jump_at_the_ends_of_the_table(void **state)
     }
 }
 
+/* The TT - UT1 that sun_at uses by itself, s: the secant through a second less and a second more than `near_s`. */
+static double own_delta_t_s(double unix_s, double near_s)
+{
+    const Geodetic place = {0.3, 0.7, 0};
+    Sun            own, less, more;
+    double         step[3], off[3];
+    CHECK(sun_at(&own, unix_s, &place, 0, 15, NAN) == STATUS_OK);
+    CHECK(sun_at(&less, unix_s, &place, 0, 15, near_s - 1) == STATUS_OK);
+    CHECK(sun_at(&more, unix_s, &place, 0, 15, near_s + 1) == STATUS_OK);
+    v3_sub(step, more.d_enu, less.d_enu);
+    v3_sub(off, own.d_enu, less.d_enu);
+    return near_s - 1 + 2 * v3_dot(off, step) / v3_dot(step, step);
+}
+
+/* Unix time of the 15th of a month at noon, s: days since 0000-03-01 of the Gregorian calendar. */
+static double mid_month_s(int year, int month)
+{
+    const int y = year - (month <= 2), m = (month + 9) % 12;
+    const int days = 365 * y + y / 4 - y / 100 + y / 400 + (153 * m + 2) / 5 + 14 - 719468;
+    return days * 86400.0 + 43200;
+}
+
+/* Astronomical Almanac, pages K8 and K9, "Reduction of time scales", Delta T on 0 January of each fifth year, s. A
+ * month counts by its middle, year + (month - 0.5) / 12 (Espenak and Meeus, Five Millennium Canon of Solar Eclipses).
+ */
+static void delta_t_before_utc_is_the_almanacs(void **state)
+{
+    (void)state;
+    static const double almanac_s[] = {-2.72, 3.86,  10.46, 17.20, 21.16, 23.62, 24.02,
+                                       23.93, 24.33, 26.77, 29.15, 31.07, 33.15};
+    for (int year = 1900; year < 1960; year++)
+        for (int month = 1; month <= 12; month += year % 5 == 0 ? 1 : 11) {
+            const double *row = almanac_s + (year - 1900) / 5;
+            const double  want_s = row[0] + (row[1] - row[0]) * ((year - 1900) % 5 + (month - 0.5) / 12) / 5;
+            CHECK_NEAR(own_delta_t_s(mid_month_s(year, month), want_s), want_s, 1e-3);
+        }
+}
+
+/* 32.184 s + TAI - UTC. IERS Bulletin C: 10 s in 1972, 20 s in 1981.5, 32 s in 1999, 37 s since 2017; before 1972 UTC
+ * ran at a rate: 4.313170 s + (MJD - 39126) 0.002592 s from 1966 (USNO, tai-utc.dat). 1960 is the first year that ERFA
+ * knows: 1.417818 s + (MJD - 37300) 0.001296 s. */
+static void delta_t_of_utc_follows_leap_seconds(void **state)
+{
+    (void)state;
+    static const struct {
+        int    year, month;
+        double tai_utc_s;
+    } row[] = {{1972, 3, 10}, {1981, 8, 20}, {1999, 1, 32}, {2017, 1, 37}, {2024, 6, 37}};
+    for (size_t i = 0; i < sizeof row / sizeof row[0]; i++) {
+        const double want_s = 32.184 + row[i].tai_utc_s;
+        CHECK_NEAR(own_delta_t_s(mid_month_s(row[i].year, row[i].month), want_s), want_s, 1e-3);
+    }
+    for (int year = 1966; year < 1968; year++) {
+        const double unix_s = mid_month_s(year, 5), mjd = unix_s / 86400 + 40587;
+        const double want_s = 32.184 + 4.313170 + (mjd - 39126) * 0.002592;
+        CHECK_NEAR(own_delta_t_s(unix_s, want_s), want_s, 1e-3);
+    }
+    const double first_s = mid_month_s(1960, 2), mjd = first_s / 86400 + 40587;
+    CHECK_NEAR(own_delta_t_s(first_s, 33), 32.184 + 1.417818 + (mjd - 37300) * 0.001296, 1e-3);
+}
+
+/* After the leap seconds the estimate: straight from 69.36 s (observed, 2020.0) to 75 s in 2050 and 95 s in 2101.
+ * Espenak and Meeus give 93 s in 2050, which the Earth's rotation since 2005 has shown to be 10 s and more too much;
+ * the estimate is below it, and above what was observed last. */
+static void delta_t_after_the_leap_seconds(void **state)
+{
+    (void)state;
+    for (int year = 2040; year < 2101; year++) {
+        const double y = year + 6.5 / 12;
+        const double want_s = year < 2050 ? 69.36 + (y - 2020) / 30 * (75 - 69.36) : 75 + (y - 2050) / 51 * (95 - 75);
+        const double t = y - 2000, canon_s = 62.92 + 0.32217 * t + 0.005589 * t * t;
+        CHECK_NEAR(own_delta_t_s(mid_month_s(year, 7), want_s), want_s, 1e-3);
+        CHECK(want_s < canon_s && want_s > 69.36);
+    }
+}
+
+/* NREL SPA, equation 42, and its step 3.11: refraction is added until the upper limb, refracted by 0.5667 degree, is
+ * below the horizon: 0.8334 degree. */
+static void refraction_ends_with_the_disc(void **state)
+{
+    (void)state;
+    const double day_s = 1711000800; /* 2024-03-21T06:00Z */
+    int          bent = 0, straight = 0;
+    for (int k = 0; k < 400; k++) { /* over the terminator, which is at 1.8 degrees then, and far from it */
+        const double   lon_deg = k < 300 ? 0.5 + 0.005 * k : k - 350;
+        const Geodetic place = {0.1, lon_deg * rad_per_deg, 0};
+        Sun            in_vacuum, in_air;
+        CHECK(sun_at(&in_vacuum, day_s, &place, 0, 10, NAN) == STATUS_OK);
+        CHECK(sun_at(&in_air, day_s, &place, 900, 25, NAN) == STATUS_OK);
+        const double e = in_vacuum.elevation_rad / rad_per_deg;
+        const double want_deg =
+            e >= -0.83337 ? 900.0 / 1010 * 283 / 298 * 1.02 / (60 * tan((e + 10.3 / (e + 5.11)) * rad_per_deg)) : 0;
+        CHECK_NEAR((in_air.elevation_rad - in_vacuum.elevation_rad) / rad_per_deg, want_deg, 1e-12);
+        bent += e >= -0.83337 && e < -0.76, straight += e < -0.83337 && e > -0.9;
+    }
+    CHECK(bent > 0 && straight > 0);
+}
+
+/* The first second is 1900-01-01T00:00Z (NTP's epoch: 2208988800 s before Unix's), the last one 2100-12-31T23:59:59Z.
+ */
+static void limits_are_inclusive_where_they_say(void **state)
+{
+    (void)state;
+    const Geodetic place = {0.6, 0, 0};
+    Sun            sun;
+    CHECK(sun_at(&sun, -2208988800.0, &place, 1013, 15, NAN) == STATUS_OK);
+    CHECK(sun_at(&sun, -2208988801.0, &place, 1013, 15, NAN) == STATUS_BAD_VALUE);
+    CHECK(sun_at(&sun, 4133980799.0, &place, 1013, 15, NAN) == STATUS_OK);
+    CHECK(sun_at(&sun, 4133980800.0, &place, 1013, 15, NAN) == STATUS_BAD_VALUE);
+    CHECK(sun_at(&sun, 0, &place, 1200, 15, NAN) == STATUS_OK && sun_at(&sun, 0, &place, 0, 15, NAN) == STATUS_OK);
+    CHECK(sun_at(&sun, 0, &place, 1200.5, 15, NAN) == STATUS_BAD_VALUE);
+    CHECK(sun_at(&sun, 0, &place, -0.5, 15, NAN) == STATUS_BAD_VALUE);
+    CHECK(sun_at(&sun, 0, &place, 1013, -149.5, NAN) == STATUS_OK &&
+          sun_at(&sun, 0, &place, 1013, 99.5, NAN) == STATUS_OK);
+    CHECK(sun_at(&sun, 0, &place, 1013, -150, NAN) == STATUS_BAD_VALUE);
+    CHECK(sun_at(&sun, 0, &place, 1013, 100, NAN) == STATUS_BAD_VALUE);
+    CHECK(sun_at(&sun, 0, &place, 1013, 15, 1000) == STATUS_OK &&
+          sun_at(&sun, 0, &place, 1013, 15, -1000) == STATUS_OK);
+    CHECK(sun_at(&sun, 0, &place, 1013, 15, 1000.5) == STATUS_BAD_VALUE);
+}
+
 static void bad_input(void **state)
 {
     (void)state;
@@ -137,6 +258,11 @@ int main(void)
         cmocka_unit_test(agrees_with_the_almanac),
         cmocka_unit_test(known_places_and_days),
         cmocka_unit_test(no_jump_at_the_ends_of_the_table),
+        cmocka_unit_test(delta_t_before_utc_is_the_almanacs),
+        cmocka_unit_test(delta_t_of_utc_follows_leap_seconds),
+        cmocka_unit_test(delta_t_after_the_leap_seconds),
+        cmocka_unit_test(refraction_ends_with_the_disc),
+        cmocka_unit_test(limits_are_inclusive_where_they_say),
         cmocka_unit_test(bad_input),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
