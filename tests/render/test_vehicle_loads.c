@@ -1,5 +1,5 @@
-/* tests/render/test_vehicle_loads.c: what heats and cools the nodes of a vehicle at a moment: from behind its skins, from
- * the ground under its tracks and wheels, by their friction. labels: physics */
+/* tests/render/test_vehicle_loads.c: what heats and cools the nodes of a vehicle at a moment: from behind its skins,
+ * from the ground under its tracks and wheels, by their friction. labels: physics */
 #include "tests/render/vehicle_stage.h"
 
 static const DisEntityType tank = {1, 1, 222, 1, 1, 1, 0}, truck = {1, 1, 222, 7, 1, 0, 0};
