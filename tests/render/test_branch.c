@@ -128,6 +128,15 @@ static void film_of_a_cylinder(void **state)
                                          : 0.076 * pow(re, 0.7) * pow(0.71, 0.37);
             CHECK_NEAR(heat_branch_film_w_m2k(radius_m[r], wind_mps[w]) / (nu * 0.025 / (2 * radius_m[r])), 1, 0.25);
         }
+    /* Churchill & Bernstein, J. Heat Transfer 99, 1977 (Incropera & DeWitt eq. 7.54), worked out in Python for air of
+     * Pr 0.71, 1.5e-5 m2/s, 0.025 W/(m K): Nu = 0.3 + 0.62 Re^(1/2) Pr^(1/3) / (1 + (0.4 / Pr)^(2/3))^(1/4)
+     * (1 + (Re / 282000)^(5/8))^(4/5), Re = 533, 4800, 128000, 320000; calm air as that of 0.3 m/s, Re = 12000. */
+    static const double film[][3] = {{0.004, 1, 36.5438825354537},
+                                     {0.012, 3, 37.54503606642444},
+                                     {0.12, 8, 26.52983649744248},
+                                     {0.3, 8, 20.596519370516678},
+                                     {0.3, 0, 2.472590970226595}};
+    for (int i = 0; i < 5; i++) CHECK_NEAR(heat_branch_film_w_m2k(film[i][0], film[i][1]), film[i][2], 1e-9);
 }
 
 int main(void)

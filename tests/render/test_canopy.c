@@ -251,6 +251,13 @@ static void orders_add_up(void **state)
     }
     CHECK_NEAR(among.leaves_w_m2[AIR_NIR][0], leaves, 1e-3 * leaves);
     CHECK_NEAR(among.ground[AIR_NIR][0], (below + hidden * leaves) / (400 * sin_sun + 100), 1e-3);
+    /* and asked for one place and channel */
+    CanopyPlace place;
+    double      on_ground_w_m2;
+    CHECK(canopy_place(&place, c, 3, 5, 0, sin_sun));
+    CHECK_NEAR(canopy_exitance(&on_ground_w_m2, c, &place, optical_channel_nir, 400, 100, sin_sun, ground), leaves,
+               1e-3 * leaves);
+    CHECK_NEAR(on_ground_w_m2, below + hidden * leaves, 0.5);
     canopy_destroy(c);
 }
 

@@ -156,6 +156,37 @@ static void gas_shines_by_its_bands(void **state)
     for (int b = 0; b < effect_band_mwir; b++) CHECK(tau[b] == 1 && added[b] == 0);
 }
 
+/* Exhaust of hydrogen: a gas without CO2 is in the scene with its water's pressure, and each by itself. By the gas law
+ * 1 kg/m3 of a molar mass M at T is 8.314462618 T / (101325 M) atm. */
+static void gas_needs_no_second_gas(void **state)
+{
+    (void)state;
+    static const double share[3][2] = {{0, 0.2}, {0.1, 0.2}, {0.2, 0}}; /* of CO2, of water */
+    const Air           air = air_when(-30);
+    EffectPuff          puff = puff_at(EFFECT_JET_EXHAUST, 500, 0, 0.3);
+    const float         ground_rho[optical_channel_count] = {0};
+    const View          view = view_north(64);
+    for (int k = 0; k < 3; k++) {
+        EffectTable table = effects;
+        table.law[EFFECT_JET_EXHAUST].co2_share = share[k][0], table.law[EFFECT_JET_EXHAUST].h2o_share = share[k][1];
+        const Snapshot   snapshot = {.puff_count = 1, .puff = &puff, .effect_table = &table};
+        const EffectView seen = {
+            .frame = &world.frame, .view = &view, .ground_rho = ground_rho, .bands = all_bands, .hidden = -1};
+        EffectScene  scene;
+        EffectVolume v;
+        arena_reset(arena);
+        CHECK(smoke_effects_scene(&scene, &snapshot, &seen, &air, arena) == STATUS_OK);
+        CHECK(scene.count == 1 && scene.volume[0].gas);
+        CHECK(effect_volume(&v, &table, &puff, &air.light.weather, &world.frame));
+        const double mass_kg_m3 = (v.co2_kg_m3 + v.h2o_kg_m3) / (share[k][0] + share[k][1]);
+        const double atm_mol = 8.314462618 * (air_k_at(&puff, &air) + v.temp_k - 288.15) / 101325 * mass_kg_m3;
+        const double co2_atm = share[k][0] * atm_mol / 0.04401, h2o_atm = share[k][1] * atm_mol / 0.018015;
+        CHECK(mass_kg_m3 > 0);
+        CHECK_NEAR(scene.volume[0].gas->co2_atm, co2_atm, 1e-4 * co2_atm);
+        CHECK_NEAR(scene.volume[0].gas->h2o_atm, h2o_atm, 1e-4 * h2o_atm);
+    }
+}
+
 /* A muzzle flash at night: (1 - exp(-depth)) (1 - albedo) Planck(T(age)), through the air of the way; the peak comes
  * first and the red outlasts the blue. */
 static void flash_follows_its_closed_form(void **state)
@@ -406,15 +437,11 @@ static void each_band_has_its_own_extinction(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(gas_shines_by_its_bands),
-        cmocka_unit_test(flash_follows_its_closed_form),
-        cmocka_unit_test(thick_smoke_reads_its_temperature),
-        cmocka_unit_test(near_infrared_sees_it_longer),
-        cmocka_unit_test(cavity_hides_it),
-        cmocka_unit_test(bands_differ_as_the_stuff_does),
-        cmocka_unit_test(each_band_has_its_own_extinction),
-        cmocka_unit_test(a_host_does_not_see_its_own),
-        cmocka_unit_test(without_smoke_no_bit_changes),
+        cmocka_unit_test(gas_shines_by_its_bands),        cmocka_unit_test(gas_needs_no_second_gas),
+        cmocka_unit_test(flash_follows_its_closed_form),  cmocka_unit_test(thick_smoke_reads_its_temperature),
+        cmocka_unit_test(near_infrared_sees_it_longer),   cmocka_unit_test(cavity_hides_it),
+        cmocka_unit_test(bands_differ_as_the_stuff_does), cmocka_unit_test(each_band_has_its_own_extinction),
+        cmocka_unit_test(a_host_does_not_see_its_own),    cmocka_unit_test(without_smoke_no_bit_changes),
     };
     return cmocka_run_group_tests(tests, open_world, close_world);
 }

@@ -226,6 +226,49 @@ static void weights_are_read_between_their_nodes(void **state)
     }
 }
 
+/* Beer's law: a slab is the same in parts, exp(-a) exp(-b) = exp(-(a + b)), to the 1e-12 of its term that absorbs by
+ * 1 - exp, by whichever formula each part's depth has. A thin slab's terms are depths a part of which is 1e-3 and less.
+ */
+static void a_slab_is_the_same_in_parts(void **state)
+{
+    (void)state;
+    static const double share[3] = {0.5, 0.3, 0.2};
+    for (int band = 0; band < 2; band++)
+        for (int gas = 0; gas < 2; gas++)
+            for (double u = 1e-8; u < 10; u *= 1.5) {
+                HotGasRay          whole, parts;
+                double             w[2][hot_gas_terms], got = 0;
+                const HotGasColumn column = {gas ? 0 : u, gas ? u : 0};
+                smoke_gas_weights(w, (HotGasBand)band, 500);
+                smoke_gas_start(&whole), smoke_gas_start(&parts);
+                const double want =
+                    smoke_gas_through(&whole, (HotGasBand)band, column, (const double(*)[hot_gas_terms])w);
+                for (int k = 0; k < 3; k++) {
+                    const HotGasColumn part = {share[k] * column.co2_atm_m, share[k] * column.h2o_atm_m};
+                    got = smoke_gas_through(&parts, (HotGasBand)band, part, (const double(*)[hot_gas_terms])w);
+                }
+                CHECK_NEAR(got / want, 1, 1e-11);
+            }
+}
+
+/* What hot gas keeps of its band behind cold air, at all points of the two-layer model: more air takes more; gas that
+ * is hotter has more lines that air has not; a longer hot column of gas up to 1500 K, whose wings count for more, keeps
+ * more. Read at the points themselves. */
+static void every_point_keeps_its_order(void **state)
+{
+    (void)state;
+    static const double column_atm_m[] = {0.002, 0.02, 0.2}, temp_k[] = {300, 500, 700, 1100, 1500, 2300};
+    static const double path_m[] = {10, 30, 100, 300, 1000, 3000, 10000, 30000};
+    for (int c = 0; c < 3; c++)
+        for (int t = 0; t < 6; t++)
+            for (int p = 0; p < 8; p++) {
+                const double at = smoke_gas_passed(column_atm_m[c], temp_k[t], path_m[p]);
+                if (p > 0) CHECK(at <= smoke_gas_passed(column_atm_m[c], temp_k[t], path_m[p - 1]) + 1e-9);
+                if (t > 0) CHECK(at >= smoke_gas_passed(column_atm_m[c], temp_k[t - 1], path_m[p]) - 1e-9);
+                if (c > 0 && t < 5) CHECK(at >= smoke_gas_passed(column_atm_m[c - 1], temp_k[t], path_m[p]) - 1e-9);
+            }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -236,6 +279,8 @@ int main(void)
         cmocka_unit_test(air_takes_the_cold_band),
         cmocka_unit_test(what_passes_is_read_between_its_nodes),
         cmocka_unit_test(weights_are_read_between_their_nodes),
+        cmocka_unit_test(a_slab_is_the_same_in_parts),
+        cmocka_unit_test(every_point_keeps_its_order),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

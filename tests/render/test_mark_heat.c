@@ -329,6 +329,81 @@ static void a_trail_cools(void **state)
     arena_reset(arena);
 }
 
+/* By the past's own intervals (heat.h): to the middle of the newest a body without end; there, and at the middles of
+ * older ones, what one W/m2 of the interval left, over its length; straight between them. A quarter of the way past the
+ * first middle has three quarters of it. And a track belongs to ground within 1.5 m and half its length of its height:
+ * 51.5 m for one of 100 m. */
+static void a_pulse_is_read_from_the_past(void **state)
+{
+    (void)state;
+    Heat           *h = paper_heat(&kinds, &paper_summer, 9, NULL);
+    const double    hour = 12;
+    const HeatNow  *now = at(h, hour);
+    const HeatPast *past = &now->past[1];
+    const double    half_s = 0.5 * past->span_s[0], newest_s = past->unix_s[0] + half_s;
+    const double    next_s = newest_s - past->unix_s[1];
+    const double    first = (double)past->watt_k[SURFACE_SAND][0] / past->span_s[0],
+                 second = (double)past->watt_k[SURFACE_SAND][1] / past->span_s[1];
+    const double e = (double)past->effusivity[SURFACE_SAND];
+    const struct {
+        double age_s, want; /* K m2/J */
+    } c[] = {{0.5 * half_s, 1 / (e * sqrt(pi_rad * 0.5 * half_s))},
+             {0.99 * half_s, 1 / (e * sqrt(pi_rad * 0.99 * half_s))},
+             {1.0001 * half_s, first},
+             {half_s + 0.25 * (next_s - half_s), 0.75 * first + 0.25 * second},
+             {half_s + 0.03 * (next_s - half_s), 0.97 * first + 0.03 * second},
+             {0.5 * (half_s + next_s), 0.5 * (first + second)}};
+    CHECK(past->count > 2 && first > second);
+    for (size_t k = 0; k < sizeof c / sizeof *c; k++) {
+        const double to_s = 3600 * hour - c[k].age_s;
+        GroundTrack  track = {
+             .a_s = to_s - 5, .b_s = to_s + 5, .width_m = 0.6f, .apart_m = 2.6f, .heat_j_m2 = 20e3f, .tracked = true};
+        ecef_from_enu(track.a_ecef, &frame, (const double[3]){-50, 0, 0});
+        ecef_from_enu(track.b_ecef, &frame, (const double[3]){50, 0, 0});
+        const GroundMarks marks = {.tracks = 1, .track = &track};
+        const double      up[3] = {0, 0, 1};
+        MarkHeat         *heat;
+        MarkedGround      in, high, higher;
+        CHECK(heat_marks_create(&heat, &marks, &frame, paper_unix_s, paper_unix_s + 3600 * hour, now, arena) ==
+              STATUS_OK);
+        CHECK(heat_marks_at(&in, heat, SURFACE_SAND, (const double[3]){0, 1.3, 0}, up, 1));
+        heat_marks_at(&high, heat, SURFACE_SAND, (const double[3]){0, 1.3, 51.4}, up, 1);
+        heat_marks_at(&higher, heat, SURFACE_SAND, (const double[3]){0, 1.3, 51.6}, up, 1);
+        CHECK_NEAR(in.add_k / (20e3 * c[k].want), 1, 2e-4);
+        CHECK(high.add_k == in.add_k && higher.add_k == 0);
+    }
+    heat_destroy(h);
+    arena_reset(arena);
+}
+
+/* Soil of absorptance 0.7 when dry whose pores are four tenths full reflects 1 - 0.4 / 2 = 0.8 of its dry 0.3 (Idso et
+ * al. 1975): it absorbs 0.76. The sun at 30 degrees of elevation, 800 W/m2 facing it: 400 on level ground, 100 of
+ * diffuse light; longwave 300 at an emissivity of 0.95: 0.76 * 500 + 285 = 665 W/m2. Half of the sky hidden by what has
+ * 300 K, and the sun: 0.76 * 50 + 0.95 * (150 + sigma 300^4 / 2). Rock of the same takes 0.7 * 500 + 285 = 635. */
+static void wet_soil_is_darker(void **state)
+{
+    (void)state;
+    GroundKind kind = {
+        .porosity = 0.4, .vapour = GROUND_SOIL, .absorptance = 0.7, .emissivity = 0.95, .roughness_m = 0.01};
+    const GroundColumn   c = {.kind = &kind, .saturation = 0.4};
+    const GroundWeather  w = {.air = {290, 1000, 101325, 3, 2, 10},
+                              .direct_w_m2 = 800,
+                              .diffuse_w_m2 = 100,
+                              .longwave_w_m2 = 300,
+                              .sun_d_enu = {sqrt(0.75), 0, 0.5}};
+    const GroundExposure open = {{0, 0, 1}, 1, 1, 300}, hidden = {{0, 0, 1}, 0, 0.5, 300};
+    SurfaceFlux          flux;
+    ground_flux(&flux, &c, &w, &open);
+    CHECK_NEAR(flux.absorbed_w_m2, 665, 1e-9);
+    /* exp(8.206 - 4.255 * 0.4) = exp(6.504) (Sellers et al. 1992) */
+    CHECK_NEAR(flux.resistance_s_m, 667.8076, 1e-3);
+    ground_flux(&flux, &c, &w, &hidden);
+    CHECK_NEAR(flux.absorbed_w_m2, 0.76 * 50 + 0.95 * (150 + 0.5 * 5.670374419184429e-8 * 8.1e9), 1e-9);
+    kind.vapour = GROUND_DRY;
+    ground_flux(&flux, &c, &w, &open);
+    CHECK_NEAR(flux.absorbed_w_m2, 635, 1e-9);
+}
+
 /* A crater of loose soil in burnt ground, hot at first. */
 static void a_burst(void **state)
 {
@@ -387,9 +462,14 @@ static void bounds(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(a_box_that_left), cmocka_unit_test(a_box_that_stood_at_night),
-                                       cmocka_unit_test(a_box_at_night),  cmocka_unit_test(exhaust_warms_the_ground),
-                                       cmocka_unit_test(a_trail_cools),   cmocka_unit_test(a_burst),
+    const struct CMUnitTest tests[] = {cmocka_unit_test(a_box_that_left),
+                                       cmocka_unit_test(a_box_that_stood_at_night),
+                                       cmocka_unit_test(a_box_at_night),
+                                       cmocka_unit_test(exhaust_warms_the_ground),
+                                       cmocka_unit_test(a_trail_cools),
+                                       cmocka_unit_test(a_pulse_is_read_from_the_past),
+                                       cmocka_unit_test(wet_soil_is_darker),
+                                       cmocka_unit_test(a_burst),
                                        cmocka_unit_test(bounds)};
     return cmocka_run_group_tests(tests, open_kinds, close_kinds);
 }
