@@ -273,13 +273,36 @@ static void a_cache_changes_no_bit(void **state)
     stage_free(s);
 }
 
+/* Places are within their cells, in both directions, and nothing else is written. */
+static void places_are_in_their_cells(void **state)
+{
+    (void)state;
+    const ClutterGrid grid = {0.3, 4};
+    for (int i = 0; i < 500; i++) {
+        const ClutterCell cell = {7 * i - 900, 400 - 3 * i, i % 5};
+        const double      side_m = 0.3 * (1 << i % 5);
+        double            p[3] = {0, 0, 7}, centre[3] = {0, 0, 7};
+        clutter_place(p, &grid, &cell);
+        clutter_centre(centre, &grid, &cell);
+        CHECK(p[2] == 7 && centre[2] == 7);
+        for (int a = 0; a < 2; a++) CHECK(fabs(p[a] - centre[a]) <= 0.5 * side_m * (1 + 1e-12));
+        CHECK_NEAR(centre[0], (cell.x + 0.5) * side_m, 1e-9);
+        CHECK_NEAR(centre[1], (cell.y + 0.5) * side_m, 1e-9);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(terms_have_their_moments), cmocka_unit_test(terms_add_up),
-        cmocka_unit_test(levels_scale_the_texture), cmocka_unit_test(a_cache_changes_no_bit),
-        cmocka_unit_test(order_changes_no_bit),     cmocka_unit_test(cells_tile_the_ground),
-        cmocka_unit_test(levels_keep_the_mean),     cmocka_unit_test(slopes_count),
+        cmocka_unit_test(places_are_in_their_cells),
+        cmocka_unit_test(terms_have_their_moments),
+        cmocka_unit_test(terms_add_up),
+        cmocka_unit_test(levels_scale_the_texture),
+        cmocka_unit_test(a_cache_changes_no_bit),
+        cmocka_unit_test(order_changes_no_bit),
+        cmocka_unit_test(cells_tile_the_ground),
+        cmocka_unit_test(levels_keep_the_mean),
+        cmocka_unit_test(slopes_count),
     };
     return cmocka_run_group_tests(tests, open_table, NULL);
 }

@@ -223,10 +223,28 @@ static void a_map_by_hand_is_measured(void **state)
     }
 }
 
+/* The lobe of n equal weights is sin(pi x) / (n sin(pi x / n)) at x cells, 1 at 0, over range and over Doppler. */
+static void lobes_of_equal_weights_are_dirichlets(void **state)
+{
+    (void)state;
+    const Interval interval = {.wave = wave, .sample = sample};
+    memset(sample, 0, sizeof sample);
+    process(&interval, "rect", "rect");
+    CHECK_NEAR(interval_lobe(plan, false, 0), 1, 1e-12);
+    for (int doppler = 0; doppler < 2; doppler++)
+        for (double x = 0.013; x < 1.5; x += 0.037) {
+            const int    n = doppler ? pulses : samples;
+            const double want = sin(pi_rad * x) / (n * sin(pi_rad * x / n));
+            CHECK_NEAR(interval_lobe(plan, doppler, x), want, 2e-7);
+            CHECK_NEAR(interval_lobe(plan, doppler, -x), want, 2e-7);
+        }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(signal_to_noise_is_the_radar_equations),
+        cmocka_unit_test(lobes_of_equal_weights_are_dirichlets),
         cmocka_unit_test(points_are_measured),
         cmocka_unit_test(a_map_by_hand_is_measured),
         cmocka_unit_test(iq_errors_make_an_image),
