@@ -14,8 +14,8 @@ static double         profile_w[columns], mti_w[columns], power_w[positions * co
 static float          resolution_m[azimuths * columns], view_w[2] = {1e-9f, NAN}, view_sharp_w[2] = {NAN, 1e-10f};
 static uint8_t        sharpened[azimuths * columns];
 
-/* Noise of 1e-12 W in a cell, 4e-12 W in a pulse; echoes 30, 60 and 10 dB above that of a cell, and a profile whose peak
- * stands 20 dB above that of a pulse. */
+/* Noise of 1e-12 W in a cell, 4e-12 W in a pulse; echoes 30, 60 and 10 dB above that of a cell, and a profile whose
+ * peak stands 20 dB above that of a pulse. */
 static void fill(RadarFrame *r, RadarSector *s, RadarPreset *preset)
 {
     *preset = (RadarPreset){.name = "by_hand", .transmits_h = true, .mti_rows = 3};
@@ -167,7 +167,8 @@ static void the_scan_as_an_image(void **state)
     double number;
     CHECK(image_read_f32(value, file("_scan.exr"), "Y") == STATUS_OK);
     CHECK(value[0] == (float)(columns * 1e-12) && value[1] == (float)(2 * columns * 1e-12));
-    CHECK(value[(columns - 1) * positions] == 1e-12f && value[(columns - 1) * positions + 1] == (float)((columns + 1) * 1e-12));
+    CHECK(value[(columns - 1) * positions] == 1e-12f &&
+          value[(columns - 1) * positions + 1] == (float)((columns + 1) * 1e-12));
     CHECK(image_read_number(&number, file("_scan.exr"), "first_azimuth_deg"));
     CHECK_NEAR(number, -2, 1e-9); /* the second of two positions is ahead */
     CHECK(image_read_number(&number, file("_scan.exr"), "azimuth_step_deg"));
