@@ -249,22 +249,25 @@ static void misfits_alone_are_set_onto_an_invented_ground(void **state)
         CHECK_NEAR(left_m, last_m, 0.003);
         last_m = left_m;
     }
-    /* 0.3 m above, half of the way: half of the tilt is left, as a slope along, or across */
-    for (int across = 0; across <= 1; across++) {
+    /* 0.3 m above level ground, half of the way: half of the tilt is left, as slopes along and across of the plane that
+     * the body stands on, whose normal (-across, -along, 1) is its axis up */
+    static const double slope[3][2] = {{0.25, 0}, {0, -0.25}, {0.2, -0.1}};
+    for (int k = 0; k < 3; k++) {
         SnapshotEntity e =
             entity_at(&frame, tank_type, -300, 0, elevation_height(&land.elevation, -300, 0, NULL) + 0.3, 0);
-        const double along = across ? 0 : 0.25, aside = across ? -0.25 : 0, length = sqrt(1 + 0.25 * 0.25);
-        const double x[3] = {0, across ? 1 : 1 / length, along / length},
-                     y[3] = {across ? 1 / length : 1, 0, aside / length};
-        double z[3], r_enu_from_body[9];
-        v3_cross(z, x, y);
-        for (int k = 0; k < 3; k++)
-            r_enu_from_body[3 * k] = x[k], r_enu_from_body[3 * k + 1] = y[k], r_enu_from_body[3 * k + 2] = z[k];
+        const double along = slope[k][0], across = slope[k][1], length = sqrt(1 + along * along);
+        const double x[3] = {0, 1 / length, along / length}, aside[3] = {1, 0, across};
+        double       y[3], z[3], r_enu_from_body[9];
+        v3_cross(z, x, aside);
+        CHECK(v3_normalize(z, z));
+        v3_cross(y, z, x);
+        for (int i = 0; i < 3; i++)
+            r_enu_from_body[3 * i] = x[i], r_enu_from_body[3 * i + 1] = y[i], r_enu_from_body[3 * i + 2] = z[i];
         m3_mul(e.r_ecef_from_body, frame.r_ecef_from_enu, r_enu_from_body);
         contact_set(&e, &contact, &box);
         m3_tmul(r_enu_from_body, frame.r_ecef_from_enu, e.r_ecef_from_body);
-        CHECK_NEAR(r_enu_from_body[6] / r_enu_from_body[3], 0.5 * along, 1e-3);
-        CHECK_NEAR(r_enu_from_body[7] / r_enu_from_body[1], 0.5 * aside, 1e-3);
+        CHECK_NEAR(-r_enu_from_body[5] / r_enu_from_body[8], 0.5 * along, 1e-3);
+        CHECK_NEAR(-r_enu_from_body[2] / r_enu_from_body[8], 0.5 * across, 1e-3);
     }
     landscape_destroy(&land);
 }
