@@ -183,7 +183,8 @@ void contact_set(SnapshotEntity *e, const ContactGround *ground, const Model *mo
     if (share < 1) { /* it is turned a share of the way from its own tilt to the ground's */
         const double own[3] = {r_enu_from_body[1], r_enu_from_body[4], r_enu_from_body[7]};
         const double right_m = fmax(v3_dot(own, right), 0.1);
-        /* of the plane through both its axes: the right one points forward or back, too, where the nose is up or down */
+        /* of the plane through both its axes: the right one points forward or back, too, where the nose is up or down
+         */
         const double own_forward = v3_dot(nose, up) / v3_dot(nose, forward);
         const double own_right = (v3_dot(own, up) - own_forward * v3_dot(own, forward)) / right_m;
         slope_forward = own_forward + share * (slope_forward - own_forward);

@@ -144,7 +144,7 @@ typedef struct Job {
 
 enum { block_pulses = 8 }; /* of a task, which has them to itself */
 
-/* Rows in a block, 1, 2, 4 or 8, that share one delay. */
+/* Rows in a block, 1, 2, 4 or 8, that share one delay unless it folds over among them. */
 static int sharing(const RowGrid *g, double path_per_pulse_m)
 {
     int rows = block_pulses;
@@ -157,6 +157,12 @@ static double *row_of(RowGrid *g, int rank, int channel, int pulse)
     return g->grid[rank] + 2 * ((size_t)channel * (size_t)g->pulses + (size_t)pulse) * (size_t)g->points;
 }
 
+/* Whether rows whose paths lie so far about the middle one fold over by different multiples: they share no delay. */
+static bool crosses_fold(const RowGrid *g, double path_m, double about_m)
+{
+    return nearbyint((path_m - about_m) / g->fold_m) != nearbyint((path_m + about_m) / g->fold_m);
+}
+
 static void add_echo(RowGrid *g, const Echo *e, int first_pulse, int end)
 {
     double               weight[width];
@@ -166,11 +172,14 @@ static void add_echo(RowGrid *g, const Echo *e, int first_pulse, int end)
     const int            ranks = asked < g->ranks ? asked : g->ranks;
     const double complex turn = cexp(-I * g->wave_rad_m * growth);
     double complex       phase = cexp(-I * g->wave_rad_m * (e->path_m + (first_pulse - middle) * growth));
-    for (int base = first_pulse; base < end; base += rows) {
+    for (int base = first_pulse, step; base < end; base += step) {
         double path_m = e->path_m + (base + 0.5 * (rows - 1) - middle + g->coupled) * growth;
+        step = rows;
+        if (isfinite(g->fold_m) && rows > 1 && crosses_fold(g, path_m, 0.5 * (rows - 1) * growth))
+            step = 1, path_m = e->path_m + (base - middle + g->coupled) * growth;
         if (isfinite(g->fold_m)) path_m -= g->fold_m * nearbyint(path_m / g->fold_m);
         const int first = gridding_spread(weight, path_m * g->turns_m, g->points);
-        for (int p = base; p < base + rows && p < end; p++) {
+        for (int p = base; p < base + step && p < end; p++) {
             for (int r = 0; r < ranks; r++) {
                 const double complex here = factor[r] * phase;
                 for (int c = 0; c < interval_channels; c++)

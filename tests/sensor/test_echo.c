@@ -222,10 +222,10 @@ static void an_echo_folds_over_within_the_interval(void **state)
     w.pulses = 32, w.repeat_hz = repeat_hz;
     CHECK(echo_grid_create(&grid, &w) == STATUS_OK && echo_terms(grid, growth_m) > 0);
     const double coupled_m = w.centre_hz / w.bandwidth_hz * w.pulse_s * w.repeat_hz * growth_m;
-    /* repetitions, rows: well within; across the fold in the middle, early and late (between
-     * the blocks of 8 rows that share a delay); beyond it on either side */
-    static const double at[][2] = {{0.25, 0}, {0.5, 0},   {0.5, 8}, {0.5, -8},
-                                   {-0.5, 8}, {-0.5, -8}, {1.3, 0}, {-0.8, 0}};
+    /* repetitions, rows: well within; across the fold in the middle, early and late, between the blocks of 8 rows that
+     * share a delay and within one; beyond it on either side */
+    static const double at[][2] = {{0.25, 0}, {0.5, 0},  {0.5, 8},   {0.5, -8},   {-0.5, 8}, {-0.5, -8},
+                                   {0.5, 15}, {0.5, -3}, {-0.5, -1}, {-0.5, 4.5}, {1.3, 0},  {-0.8, 0}};
     for (size_t i = 0; i < sizeof at / sizeof *at; i++) {
         const double at_m = at[i][0] * repeat_m - coupled_m + at[i][1] * growth_m;
         const Echo   echo = {at_m, growth_m, {1, 0, 0, 0}};
