@@ -313,6 +313,38 @@ static void the_shutter_follows_the_light(void **state)
     chain_destroy(chain);
 }
 
+/* A picture that moves by n pixels while the shutter is open turns an edge into a ramp of n pixels, along and down
+ * alike. The shutter is open for the share of the integration time that fills 0.35 of the well: it counts in both. In
+ * the middle of a ramp of 8 pixels optics and footprint leave its slope as it is. */
+static void what_moves_is_smeared_for_as_long_as_the_shutter_is_open(void **state)
+{
+    (void)state;
+    enum { side = 96, edge = side / 2, moved_px = 8 };
+    SensorPreset p = preset_of("tv");
+    p.noise_scale = p.bad_share = p.prnu = 0;
+    p.smear = true, p.scan.line_s = 0;
+    preset_refresh(&p);
+    Chain *chain;
+    assert_int_equal(chain_create(&chain, &p, side, side, 1, 7), STATUS_OK);
+    const double open = 0.35 * p.photons.well_e / (chain_counts_at(chain, 0, 100) * chain_step_e(chain));
+    CHECK(open < 0.5);
+    for (int down = 0; down < 2; down++) {
+        for (int i = 0; i < side * side; i++) plane[i] = (down ? i / side : i % side) < edge ? 50 : 150;
+        const float *in[1] = {plane};
+        const double rate = moved_px / (open * p.photons.integration_s),
+                     rate_px_s[2] = {down ? 0 : rate, down ? rate : 0};
+        chain_expose(chain, in);
+        chain_run(chain, in, NULL, 0, rate_px_s);
+        const int       to = down ? side : 1, at = edge * side + edge;
+        const uint16_t *count = chain_counts(chain, 0);
+        const double    dark = count[edge * (down ? 1 : side) + 5 * to],
+                     light = count[edge * (down ? 1 : side) + (side - 6) * to];
+        CHECK(light > 2.9 * dark && light < 3.1 * dark);
+        CHECK_NEAR((count[at + 2 * to] - count[at - 2 * to]) / 4.0 * moved_px / (light - dark), 1, 0.02);
+    }
+    chain_destroy(chain);
+}
+
 /* A watt of near infrared is more photons than one of visible light: by the wavelengths at the middle of the bands. In
  * three channels each has its own. */
 static void light_counts_by_its_own_wavelength(void **state)
@@ -422,6 +454,7 @@ int main(void)
         cmocka_unit_test(the_cut_off_is_of_a_line),
         cmocka_unit_test(the_pool_of_ten_rolls),
         cmocka_unit_test(the_shutter_follows_the_light),
+        cmocka_unit_test(what_moves_is_smeared_for_as_long_as_the_shutter_is_open),
         cmocka_unit_test(light_counts_by_its_own_wavelength),
         cmocka_unit_test(levels_follow_with_their_time_constant),
         cmocka_unit_test(bad_rows_are_named),

@@ -173,6 +173,16 @@ static void a_level_settles_in_a_second_at_any_rate(void **state)
     CHECK_NEAR(level.low, 280.5 - 0.5 * exp(-0.02), 1e-12);
     detector_level_follow(&level, &quick, (DetectorLevel){10, 20}, 0.04, 0);
     CHECK(level.low == 10 && level.high == 20);
+    /* Five spans off, with a time constant of 2 s: all beyond two spans is lost at once, the rest is left with a tenth
+     * of the time constant until it is 0.03 spans, then with the whole. Within 0.1 s: 2 exp(-0.1 / 0.2) spans; within 2
+     * s: ln(2 / 0.03) x 0.2 s = 0.83994 s of the quick way, and 0.03 exp(-1.16006 / 2) spans. */
+    static const double step_s[3] = {0.1, 2, 0}, left[3] = {1.2130613194, 0.0167964, 5};
+    for (int k = 0; k < 3; k++) {
+        quick = false, level = (DetectorLevel){0, 10};
+        detector_level_follow(&level, &quick, (DetectorLevel){50, 60}, step_s[k], 2);
+        CHECK_NEAR((50 - level.low) / 10, left[k], 1e-6);
+        CHECK_NEAR((60 - level.high) / 10, left[k], 1e-6);
+    }
 }
 
 static void a_constant_plane_is_steady_mid_grey(void **state)
