@@ -345,6 +345,17 @@ static void what_moves_is_smeared_for_as_long_as_the_shutter_is_open(void **stat
     chain_destroy(chain);
 }
 
+/* Diffraction is that of the band's photons, of the sun (5772 K) in light and of 300 K in heat: mean wavelengths as
+ * another program sums them (tests/sensor/test_photons.c). */
+static void diffraction_is_of_the_bands_photons(void **state)
+{
+    (void)state;
+    const SensorPreset tv = preset_of("tv"), mwir = preset_of("staring_mwir"), lwir = preset_of("staring_lwir");
+    CHECK_NEAR(1e6 * chain_wavelength_m(&tv, -1) / 0.559410531402, 1, 1e-9);
+    CHECK_NEAR(1e6 * chain_wavelength_m(&mwir, -1) / 4.364478931296, 1, 1e-9);
+    CHECK_NEAR(1e6 * chain_wavelength_m(&lwir, -1) / 10.118813834165, 1, 1e-9);
+}
+
 /* A watt of near infrared is more photons than one of visible light: by the wavelengths at the middle of the bands. In
  * three channels each has its own. */
 static void light_counts_by_its_own_wavelength(void **state)
@@ -455,6 +466,7 @@ int main(void)
         cmocka_unit_test(the_pool_of_ten_rolls),
         cmocka_unit_test(the_shutter_follows_the_light),
         cmocka_unit_test(what_moves_is_smeared_for_as_long_as_the_shutter_is_open),
+        cmocka_unit_test(diffraction_is_of_the_bands_photons),
         cmocka_unit_test(light_counts_by_its_own_wavelength),
         cmocka_unit_test(levels_follow_with_their_time_constant),
         cmocka_unit_test(bad_rows_are_named),
