@@ -1,5 +1,5 @@
-/* A frame's record and its targets in shared memory, each value of its own, read by the public header: no field has that of
- * another. */
+/* A frame's record and its targets in shared memory, each value of its own, read by the public header: no field has
+ * that of another. */
 #include "tests/check.h"
 
 #include "sensor/publish/memory/consume_memory.h"
@@ -56,8 +56,8 @@ static TargetRecord target_of(int n)
 static void fill(Frame *f, TargetRecord target[2], FrameArray *radiance)
 {
     target[0] = target_of(0), target[1] = target_of(1);
-    *radiance = (FrameArray){
-        .kind = PLANE_RADIANCE, .type = PLANE_F32, .size = {height, width}, .axes = 2, .values = plane};
+    *radiance =
+        (FrameArray){.kind = PLANE_RADIANCE, .type = PLANE_F32, .size = {height, width}, .axes = 2, .values = plane};
     f->number = 7, f->time_s = 8.5, f->unix_s = 1e9 + 0.25;
     snprintf(f->host, sizeof f->host, "1:2:3");
     f->seen.plane[0] = *radiance, f->seen.plane_count = 1;
@@ -116,7 +116,8 @@ static void every_value_in_its_place(void **state)
 
     PitviperMemoryTarget t;
     CHECK(pitviper_memory_target(&t, &m, 1) && t.entity == 13 && pitviper_memory_target(&t, &m, 0));
-    CHECK(t.site == 10 && t.application == 11 && t.entity == 12 && t.class_number == target_class((DisEntityType){1, 1, 222, 1, 2, 3, 4}));
+    CHECK(t.site == 10 && t.application == 11 && t.entity == 12 &&
+          t.class_number == target_class((DisEntityType){1, 1, 222, 1, 2, 3, 4}));
     CHECK(strcmp(t.class_name, "tank") == 0 && t.plane_value == 14 && t.flags == OCCLUDER_ENTITY);
     CHECK(strcmp(t.marking, "Ares") == 0 && strcmp(t.type, "1.1.222.1.2.3.4") == 0);
     for (int k = 0; k < 4; k++) CHECK(t.box[k] == 21 + k);
@@ -127,7 +128,8 @@ static void every_value_in_its_place(void **state)
     CHECK(t.age_s == 40 && t.position_error_m == 41);
     for (int b = 0; b < BAND_COUNT; b++) {
         const PitviperMemoryTargetBand *v = &t.band[b];
-        const double got[6] = {v->contrast_k, v->dt_rss_k, v->contrast, v->snr, v->intensity_w_sr, v->smoke_transmittance};
+        const double                    got[6] = {v->contrast_k, v->dt_rss_k,       v->contrast,
+                                                  v->snr,        v->intensity_w_sr, v->smoke_transmittance};
         check_values(got, 6, 100 + 10 * b);
     }
     pitviper_memory_close(&m);
