@@ -347,8 +347,9 @@ static void proof_takes_its_time(void **state)
         const ExerciseInstant now =
             exercise_clock_instant(clock, 1, 1, 1, stamp_of(100 + i + ahead_s, false), 1000 + i);
         const int restarts = i / 100, since_s = i % 100;
+        if (restarts == 0 || since_s <= 2) continue;
         const int proof_s = 4 << (restarts > 5 ? 4 : restarts - 1); /* two spans of 2 s, doubled */
-        if (restarts > 0 && since_s > 2) CHECK(now.by_stamp == (since_s >= proof_s + 1));
+        CHECK(now.by_stamp == (since_s >= proof_s + 1));
     }
     exercise_clock_destroy(clock);
 }
