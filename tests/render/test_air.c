@@ -1,72 +1,14 @@
 /* The air of a frame against the tables it was made of, and against what must hold anywhere. labels: physics */
-#include "tests/check.h"
-#include "render/air/air.h"
+#include "tests/render/air_stage.h"
 
 #include <stdlib.h>
 
-static PlanckTable *mwir, *lwir;
-static Atmosphere  *atmosphere;
-static Arena       *arena;
-static Hits         hits;
-static Rays         rays;
-static AirPaths     veils;
-static float        temp_k[hits_capacity];
+static float temp_k[hits_capacity];
 
-enum { all_bands = (1 << AIR_BAND_COUNT) - 1 };
-
-static int open_tables(void **state)
+static int open_all(void **state)
 {
-    (void)state;
     for (int i = 0; i < hits_capacity; i++) temp_k[i] = 300;
-    return planck_table_create(&mwir, 3.4e-6, 4.8e-6) != STATUS_OK ||
-           planck_table_create(&lwir, 8e-6, 12e-6) != STATUS_OK ||
-           atmosphere_open(&atmosphere, "us1976") != STATUS_OK || !(arena = arena_create());
-}
-
-static int close_tables(void **state)
-{
-    (void)state;
-    planck_table_destroy(mwir);
-    planck_table_destroy(lwir);
-    atmosphere_close(atmosphere);
-    arena_destroy(arena);
-    return 0;
-}
-
-static const double sun_azimuth = 2.1;
-
-static Sun sun_at_elevation(double elevation_deg)
-{
-    const double e = elevation_deg * rad_per_deg;
-    return (Sun){.azimuth_rad = sun_azimuth,
-                 .elevation_rad = e,
-                 .distance_au = 1,
-                 .d_enu = {cos(e) * sin(sun_azimuth), cos(e) * cos(sun_azimuth), sin(e)}};
-}
-
-static Air air_of(const Weather *weather, double elevation_deg, double eye_m, unsigned bands, const View *view)
-{
-    const Sun       sun = sun_at_elevation(elevation_deg);
-    const AirSource source = {atmosphere, mwir, lwir, 0};
-    const AirEye    eye = {eye_m, bands, view};
-    Air             air;
-    arena_reset(arena);
-    CHECK(air_at(&air, &source, weather, &sun, &eye, NULL, arena) == STATUS_OK);
-    return air;
-}
-
-static void clear(void) { hits.count = rays.count = 0; }
-
-static int add(double azimuth_rad, double elevation_rad, double range_m)
-{
-    const int i = hits.count++;
-    rays.count = hits.count;
-    rays.d_enu[0][i] = cos(elevation_rad) * sin(azimuth_rad);
-    rays.d_enu[1][i] = cos(elevation_rad) * cos(azimuth_rad);
-    rays.d_enu[2][i] = sin(elevation_rad);
-    for (int k = 0; k < 3; k++) rays.o_enu[k][i] = 0;
-    hits.range_m[i] = range_m;
-    return i;
+    return open_tables(state);
 }
 
 static const PlanckTable *planck_of(AirBand band) { return band == AIR_MWIR ? mwir : lwir; }
@@ -396,5 +338,5 @@ int main(void)
         cmocka_unit_test(warm_air_glows_by_planck),
         cmocka_unit_test(a_view_sees_what_all_round_sees),
     };
-    return cmocka_run_group_tests(tests, open_tables, close_tables);
+    return cmocka_run_group_tests(tests, open_all, close_tables);
 }
