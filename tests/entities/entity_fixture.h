@@ -17,6 +17,7 @@ typedef struct Fixture {
 static const DisEntityType tank_type = {1, 1, 222, 1, 1, 1, 0}, truck_type = {1, 1, 222, 7, 1, 0, 0};
 static const DisEntityType helicopter_type = {1, 2, 225, 20, 1, 0, 0}, missile_type = {2, 2, 225, 1, 1, 3, 0};
 static const uint32_t      frozen_bit = UINT32_C(1) << 21, power_plant_bit = UINT32_C(1) << 22;
+static const uint32_t      destroyed_bits = UINT32_C(3) << 3;
 static const uint32_t      deactivated_bit = UINT32_C(1) << 23;
 
 /* On the equator at Greenwich, level, heading north: x forward = +Z, y right = +Y (east), z down = -X. */
@@ -85,6 +86,15 @@ static inline void hear(Fixture *f, const DisEntityState *pdu, double t_s)
 static inline DisVariableParameter articulated(uint32_t parameter, float value)
 {
     return (DisVariableParameter){.record_type = dis_variable_articulated, .parameter = parameter, .value = value};
+}
+
+/* The frame of the equator at Greenwich: east is ECEF y, north z, up x. */
+static inline LocalFrame frame_here(void)
+{
+    LocalFrame     frame;
+    const Geodetic origin = {0, 0, 0};
+    CHECK(local_frame_at(&frame, &origin) == STATUS_OK);
+    return frame;
 }
 
 #endif

@@ -332,7 +332,7 @@ static void shots_are_counted(void **state)
 }
 
 /* Which of five entities a Stop/Freeze and a Remove Entity name: 0xFFFF is any, entity 0 is a whole application for a
- * Stop and none for a Remove, and 0:0:0 is nobody. Bits: entities 1:1:1, 1:1:2, 1:2:1, 2:1:1, 0:0:3. */
+ * Stop and none for a Remove, and 0:0:0 is no entity. Bits: entities 1:1:1, 1:1:2, 1:2:1, 2:1:1, 0:0:3. */
 static void names_of_many(void **state)
 {
     (void)state;
