@@ -45,6 +45,7 @@ said = re.compile(r'(log_\w+|f?printf|v?sn?printf|f?puts|perror|assert|static_as
 # a limit of an iteration, or what keeps a division from 0, is no property of the world
 tolerance = re.compile(r'\w*(tolerance|epsilon|tiny|slack)', re.I)
 keywords_before_value = {'return', 'case', 'else', 'do', 'sizeof'}
+guard = re.compile(r'1e-0?(?:[3-9]|[1-9]\d)')
 uncertainty = re.compile(r'(?:\+-|\buncertainty)\s*(?:of\s+)?(\d+\.?\d*(?:[eE][+-]?\d+)?)\s*(%|per cent)?')
 
 
@@ -160,13 +161,15 @@ def declares(head):
     return len(words) > 1 and bool(re.match(r'[A-Za-z_]', words[0]) and re.match(r'[A-Za-z_*]', words[1]))
 
 
-def changed_number(word, line_text):
-    """A number of floating type, 10 % larger or twice its stated uncertainty, whichever is more; None for 0."""
+def changed_number(word, line_text, alone):
+    """A number of floating type, 10 % larger or twice its stated uncertainty, whichever is more; None for 0. Of a power of ten
+    from 1e-3 down that stands alone (no factor, no value of a list) the order of magnitude is what is meant: a guard, an offset
+    that must be small. It becomes a thousand times as large."""
     digits = word.rstrip('fFlL') if not word.lower().startswith('0x') else None
     if digits is None or not re.fullmatch(r'[\d.]+(?:[eE][+-]?\d+)?', digits) or float(digits) == 0:
         return None
     value = float(digits)
-    step = 0.1 * value
+    step = 999 * value if alone and guard.fullmatch(digits) else 0.1 * value
     comments = ' '.join(re.findall(r'/\*.*?(?:\*/|$)|//.*', line_text))
     for amount, percent in uncertainty.findall(comments):
         step = max(step, 2 * float(amount) * (value / 100 if percent else 1))
@@ -211,7 +214,8 @@ def places(room, file, text):
                         re.match(r'[\d.]+e\+?[3-9]\d', token.text.lower()) or \
                         re.match(r'1e-(0?[6-9]|\d\d)', token.text) and tokens[i - 1].text in ('<', '<=', '>', '>=', ','):
                     continue
-                new = changed_number(token.text, lines[token.line - 1])
+                new = changed_number(token.text, lines[token.line - 1], place != 'list' and
+                                     not {tokens[i - 1].text, tokens[i + 1].text} & {'*', '/'})
                 if new:
                     yield mutant(i, 'number', token.at, token.text, new)
             elif file.startswith(formats) and (function or place in ('enum', 'list')) and \
