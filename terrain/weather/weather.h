@@ -38,6 +38,13 @@ static inline double weather_saturation_pa(double temp_k)
     return 611 * exp(17.502 * c / (240.97 + c));
 }
 
+/* Water vapour at the ground, kg/m3: that humidity at that temperature, a number, by the gas law (Rv 461.52 J/(kg K)).
+ */
+static inline double weather_vapour_kg_m3(const Weather *weather)
+{
+    return weather->humidity * weather_saturation_pa(weather->air_temp_k) / (461.52 * weather->air_temp_k);
+}
+
 /* ---- weather as a function of time: constant, a clear day, or a file of it ----------------------- */
 
 /* Clear day: the air temperature follows Parton & Logan, A model for diurnal variation in soil and air temperature,

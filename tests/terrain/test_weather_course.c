@@ -593,9 +593,24 @@ static void far_station_is_said(void **state)
     weather_course_close(course);
 }
 
+/* Saturated air holds 12.83 g/m3 at 15 degrees and 30.4 at 30 (Smithsonian Meteorological Tables, 6th edition, table
+ * 108). */
+static void vapour_density(void **state)
+{
+    (void)state;
+    Weather w = weather_default();
+    w.humidity = 1, w.air_temp_k = 288.15;
+    CHECK_NEAR(weather_vapour_kg_m3(&w), 12.83e-3, 0.02e-3);
+    w.air_temp_k = 303.15;
+    CHECK_NEAR(weather_vapour_kg_m3(&w), 30.38e-3, 0.06e-3);
+    w.humidity = 0.5;
+    CHECK_NEAR(weather_vapour_kg_m3(&w), 15.19e-3, 0.03e-3);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(vapour_density),
         cmocka_unit_test(constant_is_base),
         cmocka_unit_test(config_is_checked),
         cmocka_unit_test(clear_day),
