@@ -1,6 +1,6 @@
 /* What a target that may be elsewhere adds to a frame's error: how far it is displaced on the image, by its position,
  * its attitude, its facets and the ground below it, and how a plane changes when it is. Pixel by pixel:
- * test_pixel_error.c. labels: physics */
+ * test_pixel_error.c. */
 #include "tests/sensor/budget_stage.h"
 
 /* ---- how a plane changes ------------------------------------------------------------------------ */

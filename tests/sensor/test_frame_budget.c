@@ -1,6 +1,6 @@
 /* The error budget of a frame, source by source, on pictures made by hand: what each source is as a share of the mean
  * and in kelvin, and how the errors of pixels are spread. Displaced targets: test_displaced_target.c. Against rendered
- * frames: test_error_budget.c, test_frame_error.c. labels: physics */
+ * frames: test_error_budget.c, test_frame_error.c. */
 #include "tests/sensor/budget_stage.h"
 
 /* ---- sources ------------------------------------------------------------------------------------ */
