@@ -158,6 +158,19 @@ static void shares_of_a_map_by_hand(void **state)
     CHECK_NEAR(error.db[ERROR_TOTAL], 10 * log10(1 + sqrt(2 * (tubes + centres + grid))), 1e-12);
     CHECK(isnan(error.db[ERROR_DEAD_RECKONING]) && isnan(error.share[ERROR_HEAT]) && isnan(error.db[ERROR_HEAT]));
 
+    /* with a window the response is the transform of its squared weights, sin^4 of Hann's, over their sum */
+    double complex turned = 0;
+    double         still = 0;
+    for (int i = 0; i < 256; i++) {
+        const double weight = pow(sin(pi_rad * i / 255), 4);
+        turned += weight * cexp(CMPLX(0, 2 * pi_rad * x * i / 256));
+        still += weight;
+    }
+    preset.range_window.kind = WINDOW_HANN;
+    radar_error(&error, &radar, &snapshot);
+    CHECK_NEAR(error.share[ERROR_DEAD_RECKONING], sqrt(20 * 2 * (1 - cabs(turned) / still) / 64), 1e-9);
+    preset.range_window.kind = WINDOW_RECT;
+
     preset.transmits_h = false; /* then of VV */
     radar_error(&error, &radar, &snapshot);
     CHECK_NEAR(error.db[ERROR_SAMPLING], 2, 1e-12);
