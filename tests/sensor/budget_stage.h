@@ -80,10 +80,14 @@ static inline void fresh(void)
 
 static inline FrameError judged(int targets)
 {
-    FrameError         error;
+    struct {
+        FrameError error;
+        double     behind[BAND_COUNT]; /* not the frame's */
+    } out = {.behind = {1, 2, 3, 4}};
     const FrameErrorOf of = {&lab.picture, &lab.world, &lab.snapshot, &lab.request, lab.sag_m, lab.clamped, lab.air_k};
-    CHECK(frame_error(&error, &of, lab.target, targets));
-    return error;
+    CHECK(frame_error(&out.error, &of, lab.target, targets));
+    for (int b = 0; b < BAND_COUNT; b++) CHECK(out.behind[b] == b + 1);
+    return out.error;
 }
 
 /* W/(m2 sr) of a kelvin about a temperature, in LWIR. */

@@ -96,8 +96,16 @@ static void a_block_is_displaced(void **state)
     lab.px[0].visible = 0;
     lab.entity[0].drift_m = 1;
     CHECK(judged(1).share[BAND_OPTICAL][ERROR_DEAD_RECKONING] == 0 && isnan(lab.target[0].error_px));
-    lab.px[0].visible = 12, lab.target[0].range_m = NAN;
-    CHECK(judged(1).share[BAND_OPTICAL][ERROR_DEAD_RECKONING] == 0 && isnan(lab.target[0].error_px));
+    static const double unknown_m[3] = {NAN, 0, -1};
+    for (int k = 0; k < 3; k++) {
+        lab.px[0].visible = 12, lab.target[0].range_m = unknown_m[k];
+        CHECK(judged(1).share[BAND_OPTICAL][ERROR_DEAD_RECKONING] == 0 && isnan(lab.target[0].error_px));
+    }
+    /* nor one beyond those that are asked for */
+    lab.target[0].range_m = range_m;
+    lab.px[1] = lab.px[0], lab.entity[1].drift_m = 1;
+    judged(1);
+    CHECK(lab.target[0].error_px > 0 && isnan(lab.target[1].error_px));
 }
 
 /* Half a pixel of a small target on textured ground: 1.5 above it. Its steps are those to four neighbours; of these and
@@ -143,6 +151,14 @@ static void rows_of_a_large_target_stand_for_others(void **state)
     const double scale = (double)all / pixels;
     CHECK_NEAR(displaced_by(1e-5) * scale / (0.5e-10 * 3 * 9 * (100 + 66)), 1, 1e-4);
     CHECK_NEAR(displaced_by(1e8) * scale / (2.0 * 3 * 9 * 3300), 1, 1e-4);
+    /* all rows of a small one, wherever it is: 20 x 20 in the far corner, with two sides of 20 */
+    for (int i = 0; i < all; i++) {
+        id[i] = i % wide >= 100 && i / wide >= 100;
+        grey[i] = id[i] ? 5 : 2;
+    }
+    lab.px[0] = (TargetPixels){.visible = 400, .box = {100, 100, wide, wide}};
+    CHECK_NEAR(displaced_by(1e-5) * scale / (0.5e-10 * 9 * 40), 1, 1e-4);
+    CHECK_NEAR(displaced_by(1e8) * scale / (2.0 * 9 * 400), 1, 1e-4);
 }
 
 /* Position, attitude and facets of a target each displace it on the image; facets are the level of detail's. */

@@ -198,6 +198,18 @@ static void a_target_and_the_rest(void **state)
     const double touched = 128 * 0.841481 + 16 * 0.887537, rest = (pixels - 180) * 0.317311;
     CHECK_NEAR(error.beyond_1k[BAND_LWIR], (touched + rest) / pixels, 1e-3);
     CHECK_NEAR(error.median_k[BAND_LWIR], 1, 0.04);
+    /* probes that stand for twice as many pixels are scaled to them */
+    static const double twice_px[1] = {2 * pixels};
+    lab.budget.probe_px = twice_px;
+    error = judged(1);
+    CHECK_NEAR(error.beyond_1k[BAND_LWIR], (touched + rest) / pixels, 1e-3);
+    /* the ground's heat, and that of what has none, in the mean of all pixels, is in each of the others: 300 K is 100 K
+     * from the air, 0.53 K */
+    lab.picture.temp_k = lab.temp_k, lab.air_k = 200;
+    const double heat_k2 = 0.53 * 0.53 * (pixels - 100) / pixels;
+    square_w[0] = (float)((1 - heat_k2) * slope * slope);
+    error = judged(1);
+    CHECK_NEAR(error.beyond_1k[BAND_LWIR], (touched + rest) / pixels, 1e-3);
     /* tables and its own heat besides: 2 K, and 0.038 + 0.0045 (40 - 15) = 0.1505 K */
     lab.budget.tables[picture_lwir] = 2 * slope;
     lab.picture.temp_k = lab.temp_k, lab.air_k = 270;

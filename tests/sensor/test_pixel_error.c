@@ -63,6 +63,11 @@ static void bins_of_errors(void **state)
         error_spread_add(&two, pow(bin_k(100.5), 2), lower_px[k]);
         error_spread_add(&two, pow(bin_k(300.5), 2), 8 - lower_px[k]);
         CHECK_NEAR(error_spread_median_k(&two) / bin_k(median[k]), 1, 1e-9);
+        ErrorSpread joined = {0}, upper = {0};
+        error_spread_add(&upper, pow(bin_k(300.5), 2), 8 - lower_px[k]);
+        error_spread_add(&joined, pow(bin_k(100.5), 2), lower_px[k]);
+        error_spread_join(&joined, &upper);
+        assert_memory_equal(&joined, &two, sizeof two);
     }
 }
 
@@ -205,7 +210,8 @@ static void a_small_target_counts_by_its_share(void **state)
 }
 
 /* A large one by every third pixel each way: with the way 84 x 64 pixels, 2.3 as many a side as 1024. Columns and rows
- * from the second on: 1 before the bar, 2, 5 .. 77 in it, 1 behind; rows 1 before, 2, 5 .. 59 in it. */
+ * from the second on: 1 before the bar, 2, 5 .. 77 in it, 1 behind; rows 1 before, 2, 5 .. 59 in it, 1 behind: it
+ * has 61. Of a small one every pixel, wherever it is. */
 static void of_a_large_target_some_pixels_stand_for_others(void **state)
 {
     (void)state;
@@ -215,19 +221,24 @@ static void of_a_large_target_some_pixels_stand_for_others(void **state)
     Bar            *b = bar();
     for (int i = 0; i < wide * high; i++) {
         const int x = i % wide, y = i / wide;
-        id[i] = x >= 20 && x < 100 && y >= 15 && y < 75;
+        id[i] = x >= 20 && x < 100 && y >= 15 && y < 76;
         lwir[i] = (float)planck_table_radiance(b->planck, id[i] ? 310 : 300);
     }
     b->picture = (Picture){.width = wide, .height = high, .entity = id, .lwir = lwir};
-    b->px = (TargetPixels){.visible = 4800, .box = {20, 15, 100, 75}};
+    b->px = (TargetPixels){.visible = 4880, .box = {20, 15, 100, 76}};
     ErrorSpread     touched = {0}, own = {0};
     DisplacedTarget t = displaced(b, 2, 0);
     t.value = lwir;
     error_spread_of_displaced(&touched, &own, &t);
-    CHECK(own.all_px == 26 * 20 * 9 && touched.all_px == (26 * 20 + 2 * 20 + 26) * 9);
+    CHECK(own.all_px == 26 * 20 * 9 && touched.all_px == (26 * 20 + 2 * 20 + 2 * 26) * 9);
     /* of its own the last row differs from what is two below it */
     CHECK_NEAR(own.squares_px_k2, 26 * 9 * 25, 2);
-    CHECK_NEAR(touched.squares_px_k2, (26 + 2 * 20 + 26) * 9 * 25, 6);
+    CHECK_NEAR(touched.squares_px_k2, (26 + 2 * 20 + 2 * 26) * 9 * 25, 6);
+    for (int i = 0; i < wide * high; i++) id[i] = i % wide >= 100 && i / wide >= 70;
+    b->px.box[0] = 100, b->px.box[1] = 70, b->px.box[2] = wide, b->px.box[3] = high;
+    touched = own = (ErrorSpread){0};
+    error_spread_of_displaced(&touched, &own, &t);
+    CHECK(own.all_px == 400 && touched.all_px == 400 + 2 * 2 * 20);
 }
 
 /* At the image's edge, and with a way longer than the image. */

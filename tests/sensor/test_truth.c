@@ -65,8 +65,21 @@ static void azimuth_elevation_and_aspect_have_the_stated_senses(void **state)
         truth_targets(t, &f.picture, &f.world, &f.snapshot, &f.request, &f.eye, &noise);
         CHECK_NEAR(remainder(t[0].los_az_rad / rad_per_deg - where[i].az_deg, 360), 0, 0.01);
         CHECK_NEAR(remainder(t[0].aspect_rad / rad_per_deg - where[i].aspect_deg, 360), 0, 0.02);
+        CHECK(t[0].los_az_rad >= 0 && t[0].los_az_rad < 2 * pi_rad && t[0].aspect_rad >= 0 &&
+              t[0].aspect_rad < 2 * pi_rad);
         CHECK(t[0].los_el_rad < -0.3 && t[0].los_el_rad > -0.6);
         CHECK_NEAR(t[0].depression_rad, -t[0].los_el_rad, 0);
+    }
+    /* On the meridian of 0 nothing is east or west of it, exactly: north is 0, not a whole turn, and so is nose on. */
+    for (int north = 0; north < 2; north++) {
+        Target t[2];
+        scene();
+        pose(&f.entity[0], 0, 0, 500);
+        pose(&f.entity[1], north ? 0.01 : -0.01, 0, 20);
+        memcpy(f.eye.p_ecef, f.entity[0].p_ecef, sizeof f.eye.p_ecef);
+        f.pixels[1].projected = true;
+        truth_targets(t, &f.picture, &f.world, &f.snapshot, &f.request, &f.eye, &noise);
+        CHECK(north ? t[0].los_az_rad == 0 : t[0].aspect_rad == 0);
     }
 }
 

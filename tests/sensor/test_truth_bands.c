@@ -198,7 +198,7 @@ static void a_small_target_in_every_band(void **state)
 static void the_ring_grows_until_it_is_as_large(void **state)
 {
     (void)state;
-    enum { wide = 600, high = 8 };
+    enum { wide = 600, high = 40 };
     static float    optical[wide * high];
     static uint32_t id[wide * high];
     Target          t[2];
@@ -213,11 +213,13 @@ static void the_ring_grows_until_it_is_as_large(void **state)
         /* 1 x 1 in a corner, grown by one: 2 x 2 */
         {{0, 0, 1, 1}, 1},
         {{wide - 1, high - 1, wide, high}, 4},
-        /* 8 rows of 290 at the left: grown by ten to column 300, all of 1 but no more than 80 pixels, and so on to 580:
-         * 280 columns are the rest of 300, all else is 4 */
-        {{0, 0, 290, 8}, (10 * 1 + 280 * 4) / 290.0},
+        /* 20 x 10, grown by three to 26 x 16: 416 pixels are twice its 200; 3 x 16 of the others to the left */
+        {{300, 20, 320, 30}, (48 * 1 + 168 * 4) / 216.0},
+        /* 40 rows of 290 at the left: grown by ten to column 300, all of 1 but no more than 400 pixels, and so on to
+         * 580: 280 columns are the rest of 300, all else is 4 */
+        {{0, 0, 290, high}, (10 * 1 + 280 * 4) / 290.0},
         /* all but a column: the whole picture, which holds fewer pixels than the target has */
-        {{1, 0, wide, 8}, 1},
+        {{1, 0, wide, high}, 1},
     };
     for (size_t k = 0; k < sizeof of / sizeof *of; k++) {
         const int *box = of[k].box;
