@@ -1,6 +1,9 @@
 /* The consumer that writes packets of metadata into files, and which targets they have. */
 #include "tests/sensor/klv_lab.h"
 
+#include <netinet/in.h>
+#include <sys/socket.h>
+
 static size_t read_file(uint8_t *octets, size_t most, const char *folder, const char *name)
 {
     char path[160];
@@ -83,8 +86,97 @@ static void packets_of_frames_in_files(void **state)
     CHECK(rmdir(folder) == 0);
 }
 
+/* Answers of a recogniser to frame 6 of LWIR, whose time is 1000.5 s: in packets of that band until a second later, of
+ * earlier ones likewise; in none of another band, and in none that asks for no targets, or for truth. */
+static void answers_last_for_a_second(void **state)
+{
+    (void)state;
+    Detections        *from = NULL;
+    AnswerCounters     count = {.lines = 0};
+    int                port = 20000 + (int)getpid() % 20000;
+    PitviperDetections answer = {.byte_order = PITVIPER_MEMORY_BYTE_ORDER,
+                                 .version = PITVIPER_DETECTIONS_VERSION,
+                                 .detection_size = sizeof(PitviperDetection),
+                                 .frame = 6,
+                                 .band = BAND_LWIR,
+                                 .count = 1};
+    memcpy(answer.magic, PITVIPER_DETECTIONS_MAGIC, sizeof answer.magic);
+    answer.detection[0] = (PitviperDetection){1, 2, 11, 12, 0.5f, 9, "tank", {0}};
+    log_set_sink(check_listen, NULL);
+    for (int i = 0; i < 50 && !from; i++)
+        detections_open(&from, &(DetectionsOf){.port = ++port, .bands = 1 << BAND_LWIR, .width = 640, .height = 480});
+    CHECK(from);
+    detections_frame(from, 6, 3, 1000.5, 0);
+    KlvDetections found = {.from = from};
+    for (int answered = 0; answered < 2; answered++) {
+        static const struct {
+            double          unix_s;
+            Band            band;
+            enum VmtiSource vmti;
+            bool            has;
+        } of[] = {{1000.5, BAND_LWIR, VMTI_ATR, true},    {1001.5, BAND_LWIR, VMTI_ATR, true},
+                  {1001.625, BAND_LWIR, VMTI_ATR, false}, {999.5, BAND_LWIR, VMTI_ATR, true},
+                  {999.375, BAND_LWIR, VMTI_ATR, false},  {1000.5, BAND_MWIR, VMTI_ATR, false},
+                  {1000.5, BAND_LWIR, VMTI_OFF, false}};
+        for (size_t k = 0; k < sizeof of / sizeof *of; k++) {
+            scene(&somewhere, (double[3]){0, 0, 0}, (double[3]){0, 0, 0});
+            Frame frame = {.unix_s = of[k].unix_s, .record = lab.record};
+            lab.used = klv_of_band(lab.octets, &found, of[k].vmti, &frame, of[k].band, NULL);
+            CHECK(lab.used > 0 && has(74) == (answered && of[k].has));
+            if (has(74))
+                CHECK(number(find(tag_of(74), 7), false) == 6 && number(find(tag_of(74), 2), false) == 1000500000);
+        }
+        scene(&somewhere, (double[3]){0, 0, 0}, (double[3]){0, 0, 0});
+        Frame frame = {.unix_s = 1000.5, .record = lab.record};
+        lab.used = klv_of_band(lab.octets, &found, VMTI_TRUTH, &frame, BAND_LWIR, NULL);
+        CHECK(number(find(tag_of(74), 5), false) == 0); /* the truth's: there is none */
+        if (answered) break;
+        const int                s = socket(AF_INET, SOCK_DGRAM, 0);
+        const struct sockaddr_in node = {
+            .sin_family = AF_INET, .sin_port = htons((uint16_t)port), .sin_addr.s_addr = htonl(INADDR_LOOPBACK)};
+        CHECK(sendto(s, &answer, PITVIPER_DETECTIONS_SIZE(1), 0, (const struct sockaddr *)&node, sizeof node) > 0);
+        for (int i = 0; i < 1000000 && count.datagrams[DETECTIONS_GOOD] == 0; i++) {
+            usleep(100);
+            detections_counters(from, &count);
+        }
+        CHECK(count.datagrams[DETECTIONS_GOOD] == 1);
+        close(s);
+    }
+    detections_close(from, NULL);
+    log_set_sink(NULL, NULL);
+}
+
+/* Without a grid of the geoid metadata goes on, and that is said; with one it is the configured one. */
+static void the_geoid_is_optional(void **state)
+{
+    (void)state;
+    Geoid  geoid;
+    Config config = config_default();
+    strcpy(config.terrain.geoid, "/nowhere/at/all.gtx");
+    CHECK(!klv_geoid_open(&geoid, &config));
+    /* PROJ's .gtx: south, west and steps as big-endian double, rows and columns, then heights as float; 12.5 m
+     * everywhere */
+    static const uint8_t head[40] = {0x40, 0x44, 0,    0,    0, 0, 0, 0, 0x40, 0x14, 0,    0,    0, 0,
+                                     0,    0,    0x3F, 0xF0, 0, 0, 0, 0, 0,    0,    0x3F, 0xF0, 0, 0,
+                                     0,    0,    0,    0,    0, 0, 0, 8, 0,    0,    0,    8};
+    static const uint8_t metres[4] = {0x41, 0x48, 0, 0};
+    char                 path[text_file_size];
+    text_file(path, "");
+    FILE *file = fopen(path, "wb");
+    CHECK(file && fwrite(head, 1, sizeof head, file) == sizeof head);
+    for (int i = 0; i < 64; i++) CHECK(fwrite(metres, 1, 4, file) == 4);
+    CHECK(fclose(file) == 0);
+    strcpy(config.terrain.geoid, path);
+    CHECK(klv_geoid_open(&geoid, &config));
+    CHECK_NEAR(geoid_height_m(&geoid, 43.5 * rad_per_deg, 8.5 * rad_per_deg), 12.5, 1e-6);
+    geoid_close(&geoid);
+    remove(path);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(packets_of_frames_in_files)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(packets_of_frames_in_files),
+                                       cmocka_unit_test(answers_last_for_a_second),
+                                       cmocka_unit_test(the_geoid_is_optional)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
