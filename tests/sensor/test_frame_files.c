@@ -2,10 +2,12 @@
  * made by hand, read back. labels: threads */
 #include "tests/check.h"
 
+#include "sensor/publish/consumers/consume_pairs.h"
 #include "sensor/publish/files/frame_files.h"
 #include "sensor/publish/images/image_file.h"
 
 #include <float.h>
+#include <jansson.h>
 
 enum { width = 4, height = 2, pixels = width * height, bins = 3 };
 
@@ -273,6 +275,158 @@ static void what_cannot_be_written_is_said(void **state)
     log_set_sink(NULL, NULL);
 }
 
+/* ---- consumers that write such files ------------------------------------------------------------- */
+
+/* A frame with the picture, and without its second entity, which was at all pixels of value 2. */
+static Frame *frame_of(Arena *arena)
+{
+    static Frame       frame;
+    static FrameView   without;
+    static DisEntityId taken[1];
+    frame = (Frame){.number = 42,
+                    .time_s = 1.25,
+                    .unix_s = 1e9 + 0.5,
+                    .without = &without,
+                    .taken = taken,
+                    .taken_count = 1,
+                    .request = lab.request,
+                    .world = &lab.world,
+                    .arena = arena};
+    strcpy(frame.host, "1:2:3");
+    taken[0] = lab.entity[1].id;
+    frame.seen = (FrameView){.picture = lab.picture, .snapshot = lab.snapshot};
+    frame.seen.plane_count = frame_planes(frame.seen.plane, &frame.seen.picture, &frame.request);
+    without = frame.seen;
+    memcpy(frame.display, lab.display, sizeof frame.display);
+    return &frame;
+}
+
+static const char *text_at(const json_t *of, const char *key) { return json_string_value(json_object_get(of, key)); }
+
+static void a_pair_in_four_folders(void **state)
+{
+    (void)state;
+    static const Sensors            none = {0};
+    static const char *const        there[] = {"pairs/clean/frames/lwir/000042.png",
+                                               "pairs/background/frames/lwir/000042.png",
+                                               "pairs/background/frames/lwir/000042.exr",
+                                               "pairs/background/frames/radar/000042.exr",
+                                               "pairs/background/frames/radar/000042.png",
+                                               "pairs/background/frames/truth/000042.exr",
+                                               "pairs/background/profiles/radar/000042.csv",
+                                               "pairs/background_clean/frames/lwir/000042.png"},
+                             *const not_there[] = {"pairs/clean/frames/lwir/000042.exr",
+                                                   "pairs/clean/frames/radar",
+                                                   "pairs/clean/frames/truth",
+                                                   "pairs/background_clean/frames/lwir/000042.exr",
+                                                   "pairs/clean/frames/mwir",
+                                                   "pairs/background/raw"};
+    /* target, noise; folder of radiance and of displays */
+    static const struct {
+        bool        target, noise;
+        const char *radiance, *shown;
+    } member[4] = {{true, true, "", ""},
+                   {true, false, "", "pairs/clean/"},
+                   {false, true, "pairs/background/", "pairs/background/"},
+                   {false, false, "pairs/background/", "pairs/background_clean/"}};
+    for (int png = 0; png < 2; png++) {
+        Consumer *pairs;
+        Arena    *arena = arena_create();
+        picture();
+        lab.config.publish.pairs = PUBLISH_PAIRS_TARGET;
+        lab.config.publish.png = png;
+        const PairsOf of = {.out = lab.out,
+                            .config = &lab.config,
+                            .config_sha256 = "abc",
+                            .pool = lab.pool,
+                            .bands = lab.request.bands,
+                            .sensors = &none};
+        CHECK(arena && frame_files_prepare(lab.out, 0, 0) == STATUS_OK);
+        CHECK(consume_pairs(&pairs, &of) == STATUS_OK && pairs->begin(pairs) == STATUS_OK);
+        CHECK((pairs->wants & (WANT_WITHOUT | WANT_PLANES | WANT_SHA256 | WANT_DISPLAY)) ==
+              (WANT_WITHOUT | WANT_PLANES | WANT_SHA256 | WANT_DISPLAY));
+        CHECK(pairs->put(pairs, frame_of(arena)) == STATUS_OK && pairs->close(pairs) == STATUS_OK);
+        for (size_t k = 0; k < sizeof there / sizeof *there; k++)
+            if (is_there(there[k]) != (png || !strstr(there[k], ".png"))) fail_msg("%s", there[k]);
+        for (size_t k = 0; k < sizeof not_there / sizeof *not_there; k++)
+            if (is_there(not_there[k])) fail_msg("%s is there", not_there[k]);
+        json_t *line = json_load_file(file("pairs.jsonl"), 0, NULL), *members = json_object_get(line, "members");
+        CHECK(line && json_integer_value(json_object_get(line, "frame")) == 42 && json_array_size(members) == 4);
+        CHECK(json_array_size(json_object_get(line, "removed")) == 1);
+        assert_string_equal(json_string_value(json_array_get(json_object_get(line, "removed"), 0)), "1:2:44");
+        CHECK(strlen(text_at(line, "frame_sha256")) == 64 &&
+              strcmp(text_at(line, "frame_sha256"), text_at(line, "background_sha256")) == 0);
+        for (size_t k = 0; k < 4; k++) {
+            const json_t *m = json_array_get(members, k), *bands = json_object_get(m, "bands");
+            char          want[96];
+            CHECK(json_is_true(json_object_get(m, "target")) == member[k].target &&
+                  json_is_true(json_object_get(m, "noise")) == member[k].noise);
+            snprintf(want, sizeof want, "%sframes/truth/000042.exr", member[k].radiance);
+            assert_string_equal(text_at(m, "truth"), want);
+            CHECK(json_object_size(bands) == 2);
+            for (int b = 0; b < 2; b++) {
+                const char   *name = b ? "radar" : "lwir";
+                const json_t *band = json_object_get(bands, name);
+                snprintf(want, sizeof want, "%sframes/%s/000042.exr", member[k].radiance, name);
+                assert_string_equal(text_at(band, "radiance"), want);
+                snprintf(want, sizeof want, "%sframes/%s/000042.png", b ? member[k].radiance : member[k].shown, name);
+                if (png) assert_string_equal(text_at(band, "display"), want);
+                else CHECK(!text_at(band, "display"));
+                CHECK(!text_at(band, "raw") && !!json_object_get(band, "level") == (png && !b));
+            }
+        }
+        json_decref(line);
+        arena_destroy(arena);
+    }
+    frame_files_prepare(lab.out, 0, 0);
+    Consumer *pairs;
+    log_set_sink(check_listen, NULL);
+    const PairsOf of = {.out = "/dev/null/out",
+                        .config = &lab.config,
+                        .config_sha256 = "",
+                        .pool = lab.pool,
+                        .bands = 1,
+                        .sensors = &none};
+    CHECK(consume_pairs(&pairs, &of) == STATUS_OK && pairs->begin(pairs) == STATUS_IO &&
+          pairs->close(pairs) == STATUS_OK);
+    log_set_sink(NULL, NULL);
+}
+
+/* The newest display of each band that has one, as 8 bits of its own values. */
+static void the_latest_display(void **state)
+{
+    (void)state;
+    uint8_t   got[3 * pixels], want[3 * pixels];
+    ImageInfo info;
+    Consumer *latest;
+    picture();
+    CHECK(consume_latest(&latest, lab.out, false) == STATUS_OK && latest->wants == WANT_DISPLAY);
+    CHECK(latest->begin(latest) == STATUS_OK);
+    Frame *frame = frame_of(NULL);
+    for (int n = 0; n < 2; n++) { /* then in colour */
+        for (int i = 0; i < pixels; i++) lab.shown[i] = (float)(i + n) / 16;
+        if (n)
+            frame->display[BAND_LWIR].planes = 3,
+            frame->display[BAND_LWIR].plane[1] = frame->display[BAND_LWIR].plane[2] = lab.shown;
+        frame->display[BAND_MWIR].planes = 0;
+        CHECK(latest->put(latest, frame) == STATUS_OK);
+        CHECK(image_info(&info, file("latest/lwir.png")) == STATUS_OK && info.channels == (n ? 3 : 1) &&
+              info.bits == 8);
+        CHECK(image_read_png(got, file("latest/lwir.png")) == STATUS_OK);
+        frame_display_quantise(want, &frame->display[BAND_LWIR], pixels, 8);
+        assert_memory_equal(got, want, (size_t)(n ? 3 : 1) * pixels);
+    }
+    CHECK(is_there("latest/optical.png") && is_there("latest/radar.png") && !is_there("latest/mwir.png"));
+    CHECK(latest->close(latest) == STATUS_OK);
+    log_set_sink(check_listen, NULL);
+    for (int patient = 0; patient < 2; patient++) {
+        CHECK(consume_latest(&latest, "/dev/null/out", patient) == STATUS_OK && latest->begin(latest) == STATUS_IO);
+        CHECK(latest->put(latest, frame) == STATUS_IO && latest->put(latest, frame) == STATUS_IO);
+        CHECK(latest->close(latest) == STATUS_OK);
+    }
+    log_set_sink(NULL, NULL);
+}
+
 static int open_lab(void **state)
 {
     (void)state;
@@ -309,9 +463,13 @@ static int close_lab(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(truth_has_planes_and_names),     cmocka_unit_test(planes_are_chosen),
-        cmocka_unit_test(a_profile_by_its_bins),          cmocka_unit_test(floats_are_rounded),
+        cmocka_unit_test(truth_has_planes_and_names),
+        cmocka_unit_test(planes_are_chosen),
+        cmocka_unit_test(a_profile_by_its_bins),
+        cmocka_unit_test(floats_are_rounded),
         cmocka_unit_test(what_cannot_be_written_is_said),
+        cmocka_unit_test(a_pair_in_four_folders),
+        cmocka_unit_test(the_latest_display),
     };
     return cmocka_run_group_tests(tests, open_lab, close_lab);
 }
