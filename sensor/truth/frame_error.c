@@ -34,7 +34,8 @@ double error_spread_median_k(const ErrorSpread *s)
     int    bin = 0;
     if (!(s->all_px > 0)) return NAN;
     while (bin < error_bins - 1 && below + s->px[bin] < 0.5 * s->all_px) below += s->px[bin++];
-    const double within = s->px[bin] > 0 ? clamp((0.5 * s->all_px - below) / s->px[bin], 0, 1) : 0.5;
+    /* less than half is below it, so it holds some */
+    const double within = clamp((0.5 * s->all_px - below) / s->px[bin], 0, 1);
     return bin == 0 ? 0 : least_k * pow(10, (bin + within) / error_bins_a_decade);
 }
 

@@ -6,6 +6,7 @@ import os
 import shutil
 import subprocess
 
+import draw
 from programs import Failure, Stand
 
 
@@ -23,7 +24,7 @@ class Ran:
         self.programs, self.files, self.say = programs, files, say
         self.folder, self.objects = os.path.join(work, 'ran'), os.path.join(work, 'coverage')
         self.work, self.tests, self.shas = work, {}, {f: sha_of(os.path.join(programs.root, f)) for f in files}
-        self.libraries = {}
+        self.libraries, self.spans = {}, {}
         for folder in (self.folder, self.objects):
             os.makedirs(folder, exist_ok=True)
 
@@ -115,6 +116,22 @@ class Ran:
             os.remove(os.path.join(counts, name))
         return found
 
+    def runs_function(self, mutant, ran):
+        """Whether what a test ran of a file has the mutant's function, also where it was inlined: then gcov has its lines alone."""
+        if mutant.function in ran['functions']:
+            return True
+        if ran['sha'] != self.shas[mutant.file]:
+            return False
+        if mutant.file not in self.spans:
+            with open(os.path.join(self.programs.root, mutant.file), encoding='utf-8') as stream:
+                tokens = draw.tokens_of(stream.read())
+            spans = self.spans[mutant.file] = {}
+            for token, (name, _) in zip(tokens, draw.functions_of(tokens)):
+                first, last = spans.get(name, (token.line, token.line))
+                spans[name] = min(first, token.line), max(last, token.line)
+        first, last = self.spans[mutant.file].get(mutant.function, (1, 0))
+        return not set(range(first, last + 1)).isdisjoint(ran['lines'])
+
     def of(self, mutant, tests):
         """Tests that run the mutated statement, the cheapest first; where it is no code (a table), those that run its
         function, or its file. A file that has changed since is asked by function."""
@@ -130,6 +147,6 @@ class Ran:
             if mutant.function and code and ran['sha'] == self.shas[mutant.file]:
                 if not set(span).isdisjoint(ran['lines']):
                     chosen.append(test)
-            elif not mutant.function or mutant.function in ran['functions'] or mutant.file.endswith('.cpp'):
+            elif not mutant.function or self.runs_function(mutant, ran) or mutant.file.endswith('.cpp'):
                 chosen.append(test)
         return sorted(chosen, key=lambda t: (self.tests[t.name]['seconds'], t.name))

@@ -325,6 +325,104 @@ static void arrays_of_any_axes(void **state)
     CHECK(strcmp(hash[0], hash[1]) != 0 && strcmp(hash[0], hash[2]) != 0);
 }
 
+/* ---- a list ------------------------------------------------------------------------------------------ */
+
+/* One that notes when it is begun, put and closed, among all. */
+typedef struct Numbered {
+    Consumer consumer;
+    int      begun, put, closed;
+    Status   begins, puts, closes;
+} Numbered;
+
+static int turn;
+
+static Status numbered_begin(Consumer *consumer)
+{
+    Numbered *n = (Numbered *)consumer;
+    n->begun = ++turn;
+    return n->begins;
+}
+
+static Status numbered_put(Consumer *consumer, Frame *frame)
+{
+    Numbered *n = (Numbered *)consumer;
+    CHECK(frame->publish_begun_s > 0);
+    n->put = ++turn;
+    return n->puts;
+}
+
+static Status numbered_close(Consumer *consumer)
+{
+    Numbered *n = (Numbered *)consumer;
+    n->closed = ++turn;
+    return n->closes;
+}
+
+static void numbered(Consumers *list, Numbered *n, int count)
+{
+    *list = (Consumers){.count = 0};
+    turn = 0;
+    for (int i = 0; i < count; i++) {
+        n[i] = (Numbered){.consumer = {1u << i % 4, numbered_put, NULL, numbered_close, NULL, numbered_begin}};
+        CHECK(consumers_add(list, &n[i].consumer) == STATUS_OK);
+    }
+}
+
+/* In order, up to the first failure; closed are all, those that wait for the others last; the first failure is told. */
+static void a_list_is_used_as_one(void **state)
+{
+    (void)state;
+    static Frame frame;
+    Consumers    list;
+    Numbered     n[consumers_max + 1] = {0};
+    numbered(&list, n, consumers_max);
+    CHECK(consumers_add(&list, NULL) == STATUS_OK && list.count == consumers_max);
+    n[consumers_max] = (Numbered){.consumer = {0, numbered_put, NULL, numbered_close, NULL, NULL}};
+    CHECK(consumers_add(&list, &n[consumers_max].consumer) == STATUS_BAD_VALUE && n[consumers_max].closed == 1);
+    CHECK(consumers_wants(&list) == 0xF && consumers_close(&list) == STATUS_OK && list.count == 0);
+
+    numbered(&list, n, 5);
+    n[1].consumer.begin = NULL;
+    n[1].consumer.wants = n[3].consumer.wants = WANT_LATENCY;
+    CHECK(consumers_begin(&list) == STATUS_OK && n[0].begun == 1 && n[1].begun == 0 && n[2].begun == 2 &&
+          n[4].begun == 4);
+    n[2].begins = STATUS_IO;
+    turn = 0;
+    CHECK(consumers_begin(&list) == STATUS_IO && turn == 2);
+    turn = 0;
+    frame.publish_begun_s = 0;
+    const double before_s = wall_clock_s();
+    CHECK(consumers_put(&list, &frame) == STATUS_OK && turn == 5 && n[0].put == 1 && n[4].put == 5);
+    CHECK(frame.publish_begun_s >= before_s && frame.publish_begun_s <= wall_clock_s());
+    frame.publish_begun_s = 5; /* by another list before */
+    n[2].puts = STATUS_BAD_VALUE, n[3].puts = STATUS_IO;
+    turn = 0;
+    CHECK(consumers_put(&list, &frame) == STATUS_BAD_VALUE && turn == 3 && frame.publish_begun_s == 5);
+    n[3].closes = STATUS_IO, n[4].closes = STATUS_BAD_VALUE; /* the third is closed after the fourth */
+    turn = 0;
+    CHECK(consumers_close(&list) == STATUS_BAD_VALUE && turn == 5);
+    CHECK(n[0].closed == 1 && n[2].closed == 2 && n[4].closed == 3 && n[1].closed == 4 && n[3].closed == 5);
+}
+
+/* What a request must have of what consumers want; what the caller does not ask for is not added. */
+static void what_consumers_want_of_a_request(void **state)
+{
+    (void)state;
+    static const struct {
+        unsigned wants;
+        bool     truth, cells, budget;
+    } of[] = {{0, false, false, false},           {WANT_PLANES, true, false, false}, {WANT_TARGETS, true, false, false},
+              {WANT_SHA256, true, false, false},  {WANT_ERROR, true, false, true},   {WANT_CELLS, false, true, false},
+              {WANT_DISPLAY, false, false, false}};
+    for (size_t k = 0; k < sizeof of / sizeof *of; k++)
+        for (int asked = 0; asked < 2; asked++) {
+            RenderRequest request = {.hand_over_cells = asked, .budget = asked};
+            consumers_request(&request, of[k].wants);
+            CHECK(request.truth == of[k].truth && request.hand_over_cells == (asked && of[k].cells) &&
+                  request.budget == (asked && of[k].budget));
+        }
+}
+
 /* ---- paths ------------------------------------------------------------------------------------------ */
 
 static int  errors;
@@ -377,6 +475,8 @@ int main(void)
         cmocka_unit_test(frames_left_out_move_the_level),
         cmocka_unit_test(a_display_of_any_depth),
         cmocka_unit_test(arrays_of_any_axes),
+        cmocka_unit_test(a_list_is_used_as_one),
+        cmocka_unit_test(what_consumers_want_of_a_request),
         cmocka_unit_test(a_long_path_is_refused),
     };
     return cmocka_run_group_tests(tests, open_all, hand_close);

@@ -1,9 +1,6 @@
 /* Metadata packets octet by octet, against hand values and the worked example of ST 0601.
  * tests/system/test_klv.sh has readers that are not ours decode them. */
-#include "tests/check.h"
-
-#include "sensor/publish/klv/consume_klv.h"
-#include "sensor/publish/klv/klv_writer_private.h"
+#include "tests/sensor/klv_lab.h"
 
 static KlvWriter writer_on(uint8_t *octets, size_t room)
 {
@@ -119,126 +116,70 @@ static void never_beyond_the_buffer(void **state)
     }
 }
 
+static void the_writer_at_its_limits(void **state)
+{
+    (void)state;
+    uint8_t   octets[200];
+    KlvWriter w = {.octet = octets, .room = sizeof octets};
+    /* to the nearest step */
+    static const double unsigned_steps[][2] = {{0, 0}, {7.47, 7}, {7.53, 8}, {65535, 65535}};
+    for (size_t k = 0; k < 4; k++) {
+        w.used = 0;
+        klv_item_unsigned(&w, 5, 2, 0, 65535, unsigned_steps[k][0]);
+        CHECK(w.used == 4 && octets[2] * 256 + octets[3] == unsigned_steps[k][1]);
+    }
+    w.used = 0;
+    klv_item_signed(&w, 5, 2, 32767, 9.47);
+    CHECK(octets[3] == 9);
+    w.used = 0;
+    klv_item_signed(&w, 5, 2, 32767, 9.53);
+    CHECK(octets[3] == 10);
+    /* ST 1201: 0 stands on a step where the range has both signs, and only there. -77/256 .. 0.5 in one octet: 2^7 a
+     * unit, 0 at 38.5, half a step higher */
+    const double low = -77 / 256.0;
+    w.used = 0;
+    klv_put_imapb(&w, 1, low, 0.5, 0);
+    klv_put_imapb(&w, 1, low, 0.5, 0.05);              /* 6.4 steps on */
+    klv_put_imapb(&w, 1, -low, 1.1, 1);                /* 89.5 steps */
+    klv_put_imapb(&w, 1, -77.5 / 512, 0, -50.8 / 512); /* 26.7 steps */
+    CHECK(w.used == 4 && octets[0] == 39 && octets[1] == 45 && octets[2] == 89 && octets[3] == 26);
+    /* the ends of the range are in it */
+    w.used = 0;
+    klv_item_imapb(&w, 11, 2, 0, 180, 0);
+    klv_item_imapb(&w, 11, 2, 0, 180, 180);
+    CHECK(w.used == 8 && octets[1] == 2 && octets[2] == 0 && octets[6] == 0x5A);
+    klv_item_imapb(&w, 11, 2, 0, 180, 180.01);
+    klv_item_imapb(&w, 11, 2, 0, 180, -0.01);
+    CHECK(w.used == 8);
+    /* eight octets, whichever */
+    w.used = 0;
+    klv_item_short(&w, 6, UINT64_MAX);
+    CHECK(w.used == 10 && octets[1] == 8 && octets[2] == 0xFF && octets[9] == 0xFF);
+    w.used = 0;
+    klv_item_number(&w, 6, 0x0102030405060708, 8);
+    for (int k = 0; k < 8; k++) CHECK(octets[2 + k] == k + 1);
+    /* texts: the first and the last printable octet, and what is beside them */
+    w.used = 0;
+    klv_item_text(&w, 3, "\x1F\x20!\x20~\x7F\x20", 63);
+    CHECK(w.used == 5 && memcmp(octets + 2, "! ~", 3) == 0);
+    char text[200];
+    memset(text, 'x', sizeof text - 1);
+    text[sizeof text - 1] = 0;
+    w.used = 0;
+    klv_item_text(&w, 3, text, 199);
+    CHECK(w.used == 2 + 1 + 128 && octets[1] == 0x81 && octets[2] == 128); /* the most that is kept of one */
+    /* to the last octet, and nothing after what did not fit */
+    w = (KlvWriter){.octet = octets, .room = 3};
+    klv_put(&w, "abc", 3);
+    CHECK(!w.full && w.used == 3);
+    w.used = 1;
+    klv_put(&w, "defg", 3);
+    CHECK(w.full && w.used == 1);
+    klv_put(&w, "h", 1);
+    CHECK(w.used == 1);
+}
+
 /* ---- packets ------------------------------------------------------------------------------------ */
-
-static struct {
-    uint8_t        octets[klv_most_octets];
-    size_t         used;
-    RenderRequest  request;
-    SnapshotEntity host;
-    GroundPoint    footprint[FOOTPRINT_COUNT];
-    FrameRecord    record;
-} lab;
-
-static const KlvSource lwir = {.band = BAND_LWIR, .mission = "Exercise 1"};
-
-typedef struct Value {
-    const uint8_t *at; /* NULL: absent */
-    size_t         count;
-} Value;
-
-/* Of a tag of a local set. */
-static Value find(Value set, unsigned tag)
-{
-    const uint8_t *at = set.at, *end = set.at + set.count;
-    while (at < end) {
-        const unsigned found = *at++;
-        size_t         length = *at++;
-        if (length & 0x80) {
-            int octets = (int)(length & 0x7F);
-            for (length = 0; octets > 0; octets--) length = length << 8 | *at++;
-        }
-        if (found == tag) return (Value){at, length};
-        at += length;
-    }
-    return (Value){0};
-}
-
-static Value tag_of(unsigned tag)
-{
-    const size_t head = lab.octets[16] < 128 ? 17 : 17 + (lab.octets[16] & 0x7Fu);
-    return find((Value){lab.octets + head, lab.used - head}, tag);
-}
-
-static bool has(unsigned tag) { return tag_of(tag).at != NULL; }
-
-static bool is_text(Value value, const char *text)
-{
-    return value.at && value.count == strlen(text) && memcmp(value.at, text, value.count) == 0;
-}
-
-static double number(Value v, bool is_signed)
-{
-    if (!v.at) fail_msg("an absent tag");
-    uint64_t value = is_signed && v.at[0] & 0x80 ? UINT64_MAX : 0;
-    for (size_t i = 0; i < v.count; i++) value = value << 8 | v.at[i];
-    return is_signed ? (double)(int64_t)value : (double)value;
-}
-
-static double unsigned_of(unsigned tag, double low, double high)
-{
-    const Value value = tag_of(tag);
-    if (!value.at) fail_msg("no tag %u", tag);
-    return low + (high - low) * number(value, false) / (ldexp(1, 8 * (int)value.count) - 1);
-}
-
-static double signed_of(unsigned tag, double high)
-{
-    const Value value = tag_of(tag);
-    if (!value.at) fail_msg("no tag %u", tag);
-    return high * number(value, true) / (ldexp(1, 8 * (int)value.count - 1) - 1);
-}
-
-/* Axes forward, right, down as columns. */
-static void turn(double r[9], double yaw_deg, double pitch_deg, double roll_deg)
-{
-    const double y = yaw_deg * rad_per_deg, p = pitch_deg * rad_per_deg, x = roll_deg * rad_per_deg;
-    const double rz[9] = {cos(y), -sin(y), 0, sin(y), cos(y), 0, 0, 0, 1};
-    const double ry[9] = {cos(p), 0, sin(p), 0, 1, 0, -sin(p), 0, cos(p)};
-    const double rx[9] = {1, 0, 0, 0, cos(x), -sin(x), 0, sin(x), cos(x)};
-    double       rzy[9];
-    m3_mul(rzy, rz, ry);
-    m3_mul(r, rzy, rx);
-}
-
-/* A sensor at a place on a platform that flies east; the camera is turned on it. */
-static void scene(const Geodetic *place, const double platform_deg[3], const double sensor_deg[3])
-{
-    double r_ecef_from_enu[9], r_ecef_from_ned[9], r_ned_from_body[9], r_body_from_sensor[9], r_ecef_from_sensor[9];
-    memset(&lab, 0, sizeof lab);
-    lab.request.view = (View){.width = 640, .height = 480, .focal_px = view_focal_px(640, 6 * rad_per_deg)};
-    memcpy(lab.host.marking, "MSL 1", 6);
-    lab.record = (FrameRecord){.frame = 300,
-                               .host = &lab.host,
-                               .request = &lab.request,
-                               .hfov_rad = 6 * rad_per_deg,
-                               .footprint = lab.footprint};
-    assert_int_equal(ecef_from_geodetic(lab.record.p_eye_ecef, r_ecef_from_enu, place), STATUS_OK);
-    const double v_enu_mps[3] = {200, -30, 5};
-    m3_mul_v3(lab.record.v_eye_mps, r_ecef_from_enu, v_enu_mps);
-    for (int k = 0; k < 3; k++) {
-        r_ecef_from_ned[3 * k] = r_ecef_from_enu[3 * k + 1];
-        r_ecef_from_ned[3 * k + 1] = r_ecef_from_enu[3 * k];
-        r_ecef_from_ned[3 * k + 2] = -r_ecef_from_enu[3 * k + 2];
-    }
-    turn(r_ned_from_body, platform_deg[0], platform_deg[1], platform_deg[2]);
-    turn(r_body_from_sensor, sensor_deg[0], sensor_deg[1], sensor_deg[2]);
-    m3_mul(lab.record.r_ecef_from_body, r_ecef_from_ned, r_ned_from_body);
-    m3_mul(r_ecef_from_sensor, lab.record.r_ecef_from_body, r_body_from_sensor);
-    for (int k = 0; k < 3; k++) { /* right, down, forward */
-        lab.record.r_ecef_from_cam[3 * k] = r_ecef_from_sensor[3 * k + 1];
-        lab.record.r_ecef_from_cam[3 * k + 1] = r_ecef_from_sensor[3 * k + 2];
-        lab.record.r_ecef_from_cam[3 * k + 2] = r_ecef_from_sensor[3 * k];
-    }
-}
-
-static void encode(const KlvTargets *targets)
-{
-    lab.used = klv_frame(lab.octets, &lab.record, 1750000000.25, &lwir, targets);
-    CHECK(lab.used > 0);
-}
-
-static const Geodetic somewhere = {48.25 * rad_per_deg, -11.5 * rad_per_deg, 2345};
 
 static void pose_of_platform_and_sensor(void **state)
 {
@@ -499,6 +440,7 @@ int main(void)
         cmocka_unit_test(lengths_and_tags),
         cmocka_unit_test(maps),
         cmocka_unit_test(never_beyond_the_buffer),
+        cmocka_unit_test(the_writer_at_its_limits),
         cmocka_unit_test(pose_of_platform_and_sensor),
         cmocka_unit_test(each_corner_has_its_own_tags),
         cmocka_unit_test(what_is_beyond_a_range_is_absent),

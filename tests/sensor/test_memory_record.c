@@ -137,8 +137,103 @@ static void every_value_in_its_place(void **state)
     free(frame);
 }
 
+/* There is room for 256 targets: those that are seen first, then of the hidden ones the first; all in their order. */
+static void targets_that_have_no_room(void **state)
+{
+    (void)state;
+    static TargetRecord target[300];
+    for (int seen = 0; seen <= 300; seen += 100) {
+        Frame         *frame = calloc(1, sizeof *frame);
+        Config         config = config_default();
+        FrameArray     radiance;
+        Consumer      *consumer;
+        PitviperMemory m;
+        CHECK(frame);
+        fill(frame, target, &radiance);
+        for (int i = 0; i < 300; i++) {
+            target[i] = target_of(1 + i);
+            target[i].pixels = i % 3 < seen / 100 ? 5 : 0;
+        }
+        frame->record.target_count = 300;
+        snprintf(config.publish.memory, sizeof config.publish.memory, "pitviper_room_%d", (int)getpid());
+        config.publish.memory_record = MEMORY_RECORD_TRUTH;
+        config.sensor.width_px = width, config.sensor.height_px = height;
+        const MemoryOf of = {.config = &config, .config_sha256 = "ab12", .bands = 1u << BAND_LWIR};
+        CHECK(consume_memory(&consumer, &of) == STATUS_OK);
+        CHECK(pitviper_memory_open(&m, config.publish.memory) == 0);
+        CHECK(consumer->put(consumer, frame) == STATUS_OK && pitviper_memory_take_next(&m) == 1);
+        CHECK(m.record.target_count == 256 && m.record.targets_left_out == 44);
+        int next = 0, hidden = 0;
+        for (uint32_t k = 0; k < 256; k++) {
+            PitviperMemoryTarget t;
+            while (target[next].pixels == 0 && hidden == 256 - seen) next++; /* no room for more of these */
+            CHECK(pitviper_memory_target(&t, &m, k) && next < 300 && t.entity == 13 + next);
+            hidden += target[next++].pixels == 0;
+        }
+        pitviper_memory_close(&m);
+        CHECK(consumer->close(consumer) == STATUS_OK);
+        free(frame);
+    }
+}
+
+/* Raw counts of the bands with a sensor: three planes of colour and one of LWIR, each with its own values; a frame that
+ * lacks one is refused. */
+static void counts_of_each_plane(void **state)
+{
+    (void)state;
+    static uint16_t counts[4][height * width];
+    static float    none[height * width];
+    Frame          *frame = calloc(1, sizeof *frame);
+    Config          config = config_default();
+    TargetRecord    target[2];
+    FrameArray      radiance;
+    Consumer       *consumer;
+    PitviperMemory  m;
+    CHECK(frame);
+    fill(frame, target, &radiance);
+    for (int c = 0; c < 4; c++)
+        for (int i = 0; i < width * height; i++) counts[c][i] = (uint16_t)(1000 * (c + 1) + i);
+    for (int c = 0; c < 3; c++) frame->display[BAND_OPTICAL].counts[c] = counts[c];
+    frame->display[BAND_OPTICAL].planes = 3;
+    frame->display[BAND_OPTICAL].plane[0] = frame->display[BAND_LWIR].plane[0] = none;
+    frame->display[BAND_LWIR].planes = 1, frame->display[BAND_LWIR].counts[0] = counts[3];
+    snprintf(config.publish.memory, sizeof config.publish.memory, "pitviper_counts_%d", (int)getpid());
+    config.publish.memory_planes = MEMORY_PLANES_COUNTS;
+    config.publish.memory_record = MEMORY_RECORD_SENSOR;
+    config.sensor.width_px = width, config.sensor.height_px = height;
+    const MemoryOf of = {.config = &config,
+                         .config_sha256 = "ab12",
+                         .bands = 1u << BAND_OPTICAL | 1u << BAND_MWIR | 1u << BAND_LWIR,
+                         .count_bits = {[BAND_OPTICAL] = 12, [BAND_LWIR] = 14}};
+    CHECK(consume_memory(&consumer, &of) == STATUS_OK && consumer->wants == WANT_COUNTS);
+    CHECK(pitviper_memory_open(&m, config.publish.memory) == 0 && m.header.plane_count == 4);
+    CHECK(consumer->put(consumer, frame) == STATUS_OK && pitviper_memory_take_next(&m) == 1);
+    for (uint32_t c = 0; c < 4; c++) {
+        const uint16_t *got = pitviper_memory_plane(&m, c);
+        const uint16_t  first = got[0];
+        bool            whole = first % 1000 == 0 && first / 1000 >= 1 && first / 1000 <= 4;
+        for (int i = 0; i < width * height; i++) whole &= got[i] == first + i;
+        CHECK(whole && m.plane[c].bits == (c == 3 ? 14 : 12) && m.plane[c].type == PITVIPER_PLANE_UINT16);
+        CHECK(first == 1000 * (c + 1));
+    }
+    CHECK(m.record.target_count == 0);
+    log_set_sink(check_listen, NULL);
+    frame->display[BAND_OPTICAL].planes = 2;
+    CHECK(consumer->put(consumer, frame) == STATUS_BAD_VALUE && strstr(check_said, "frame 7"));
+    frame->display[BAND_OPTICAL].planes = 3, frame->display[BAND_LWIR].counts[0] = NULL;
+    CHECK(consumer->put(consumer, frame) == STATUS_BAD_VALUE);
+    pitviper_memory_close(&m);
+    CHECK(consumer->close(consumer) == STATUS_OK);
+    CHECK(consume_memory(&consumer, &(MemoryOf){.config = &config, .config_sha256 = "", .bands = 1u << BAND_LWIR}) ==
+          STATUS_BAD_VALUE);
+    log_set_sink(NULL, NULL);
+    free(frame);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(every_value_in_its_place)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(every_value_in_its_place),
+                                       cmocka_unit_test(targets_that_have_no_room),
+                                       cmocka_unit_test(counts_of_each_plane)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -646,6 +646,44 @@ static void a_flood_is_counted_and_bounded(void **state)
     close(from);
 }
 
+/* A line's numbers: boxes to 1e-4 px and scores to 1e-6, as they were sent and not as a float has them; milliseconds
+ * from the end of the rendering until the answer came, absent where that is not known. */
+static void an_answer_in_its_line(void **state)
+{
+    (void)state;
+    char   folder[] = "/tmp/pitviper-answers-XXXXXX", path[64], line[2][512];
+    int    port;
+    double latency_ms;
+    CHECK(mkdtemp(folder));
+    snprintf(path, sizeof path, "%s/answers.jsonl", folder);
+    log_set_sink(check_listen, NULL);
+    Detections        *to = open_detections(&port, folder);
+    const int          from = socket(AF_INET, SOCK_DGRAM, 0);
+    const double       rendered_s = wall_clock_s() - 10;
+    PitviperDetections answer = detections_of(0, BAND_LWIR, 1);
+    answer.detection[0].left = 10.1234f, answer.detection[0].right = 20.05f, answer.detection[0].score = 0.123457f;
+    detections_frame(to, 0, 1, 0, rendered_s);
+    detections_frame(to, 1, 2, 0, 0);
+    const double before_ms = 1e3 * (wall_clock_s() - rendered_s);
+    deliver(to, from, port, &answer, PITVIPER_DETECTIONS_SIZE(1));
+    const double after_ms = 1e3 * (wall_clock_s() - rendered_s);
+    answer.frame = 1;
+    deliver(to, from, port, &answer, PITVIPER_DETECTIONS_SIZE(1));
+    detections_close(to, NULL);
+    FILE *file = fopen(path, "r");
+    CHECK(file && fgets(line[0], sizeof line[0], file) && fgets(line[1], sizeof line[1], file));
+    for (int k = 0; k < 2; k++) CHECK(strstr(line[k], "\"box_px\":[10.1234,0.0,20.05,48.0],\"score\":0.123457,"));
+    const char *at = strstr(line[0], "\"latency_ms\":");
+    CHECK(at && sscanf(at, "\"latency_ms\":%lf", &latency_ms) == 1);
+    CHECK(latency_ms >= before_ms - 0.01 && latency_ms <= after_ms + 0.01);
+    CHECK(!strstr(line[1], "latency_ms"));
+    fclose(file);
+    unlink(path);
+    rmdir(folder);
+    log_set_sink(NULL, NULL);
+    close(from);
+}
+
 int main(void)
 {
     snprintf(ring_name, sizeof ring_name, "pitviper-test-%d", (int)getpid());
@@ -663,6 +701,7 @@ int main(void)
         cmocka_unit_test(classes_are_as_long_as_our_own),
         cmocka_unit_test(the_newest_detections_are_kept),
         cmocka_unit_test(a_flood_is_counted_and_bounded),
+        cmocka_unit_test(an_answer_in_its_line),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

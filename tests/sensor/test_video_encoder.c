@@ -204,6 +204,38 @@ static void colour_conversion_is_bt709(void **state)
                 CHECK_NEAR(bits == 8 ? *(uint8_t *)plane[p] : plane[p][0], want[p], 0.51 + top * 1e-5);
         }
 }
+
+/* Planes amid rows and columns that are not theirs: every sample of each is written, and nothing else. */
+static void nothing_is_written_beside_the_planes(void **state)
+{
+    (void)state;
+    enum { wide = 8, high = 6, guard = 4, stride = 32, rows = high + 2 * guard, untouched = 0xA5 };
+    static const PixelLayout layout[] = {PIXELS_GREY, PIXELS_420, PIXELS_444, PIXELS_RGB};
+    for (int k = 0; k < 8; k++) {
+        const int            bits = k % 2 ? 16 : 8, octets = bits / 8;
+        const bool           colour = layout[k / 2] != PIXELS_GREY;
+        _Alignas(16) uint8_t plane[3][rows * 2 * stride];
+        uint8_t              narrow[3 * wide * high];
+        uint16_t             image[3 * wide * high];
+        for (int i = 0; i < 3 * wide * high; i++) image[i] = (uint16_t)(i % 100);
+        memset(plane, untouched, sizeof plane);
+        VideoPlanes planes = {.layout = layout[k / 2], .width = wide, .height = high, .bits = bits == 8 ? 8 : 12};
+        if (layout[k / 2] == PIXELS_RGB) planes.bits = bits;
+        for (int p = 0; p < 3; p++) planes.at[p] = plane[p] + guard * 2 * stride + guard, planes.stride[p] = 2 * stride;
+        video_pixels(&planes, image_of(narrow, image, 3 * wide * high, bits), colour);
+        for (int p = 0; p < 3; p++) {
+            const bool half = p > 0 && layout[k / 2] == PIXELS_420;
+            const bool none = p > 0 && (layout[k / 2] == PIXELS_GREY || layout[k / 2] == PIXELS_RGB);
+            const int  row = none ? 0 : (half ? wide / 2 : wide) * octets * (layout[k / 2] == PIXELS_RGB ? 3 : 1);
+            const int  count = none ? 0 : half ? high / 2 : high;
+            for (int y = 0; y < rows; y++)
+                for (int x = 0; x < 2 * stride; x++) {
+                    const bool within = y >= guard && y < guard + count && x >= guard && x < guard + row;
+                    CHECK(within == (plane[p][y * 2 * stride + x] != untouched));
+                }
+        }
+    }
+}
 #endif
 
 static void addresses_are_parsed_strictly(void **state)
@@ -299,6 +331,7 @@ int main(void)
         cmocka_unit_test(grey_levels_come_back),
         cmocka_unit_test(colours_and_odd_sizes_come_back),
         cmocka_unit_test(colour_conversion_is_bt709),
+        cmocka_unit_test(nothing_is_written_beside_the_planes),
 #endif
         cmocka_unit_test(addresses_are_parsed_strictly),
         cmocka_unit_test(contradictions_are_refused),

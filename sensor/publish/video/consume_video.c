@@ -249,7 +249,7 @@ static Status add_file(Video *v, Channel *c, VideoKind kind)
     const Band band = (Band)__builtin_ctz(c->bands);
     if (!video_path(o->path, v->of.config, v->of.host_folder, band, kind)) return STATUS_BAD_VALUE;
     if (!v->of.apart) return STATUS_OK;
-    latency_expect(v->of.latency, video_file_name);
+    if (v->of.latency) latency_expect(v->of.latency, video_file_name);
     return video_writer_open(&c->writer[c->outputs - 1], o);
 }
 
