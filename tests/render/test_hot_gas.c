@@ -251,6 +251,23 @@ static void a_slab_is_the_same_in_parts(void **state)
             }
 }
 
+/* One term of the sum alone takes 1 - exp(-depth), to 1e-12 of itself, on both sides of 1e-3, where the formula
+ * changes. */
+static void a_term_takes_what_its_depth_says(void **state)
+{
+    (void)state;
+    for (double depth = 1e-5; depth < 30; depth *= 1.03) {
+        double    one[2][hot_gas_terms] = {{0}};
+        HotGasRay ray;
+        one[1][3] = 1; /* rate 1 per atm m */
+        smoke_gas_start(&ray);
+        const double got =
+            smoke_gas_through(&ray, HOT_GAS_LWIR, (HotGasColumn){0, depth}, (const double(*)[hot_gas_terms])one);
+        CHECK_NEAR(got / -expm1(-depth), 1, 1e-12);
+        CHECK_NEAR(ray.left[1][3] / exp(-depth), 1, 1e-12 * fmax(1, exp(depth) * 1e-3));
+    }
+}
+
 /* What hot gas keeps of its band behind cold air, at all points of the two-layer model: more air takes more; gas that
  * is hotter has more lines that air has not; a longer hot column of gas up to 1500 K, whose wings count for more, keeps
  * more. Read at the points themselves. */
@@ -420,6 +437,7 @@ int main(void)
         cmocka_unit_test(what_passes_is_read_between_its_nodes),
         cmocka_unit_test(weights_are_read_between_their_nodes),
         cmocka_unit_test(a_slab_is_the_same_in_parts),
+        cmocka_unit_test(a_term_takes_what_its_depth_says),
         cmocka_unit_test(every_point_keeps_its_order),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -224,8 +224,28 @@ static void fast_is_as_plain(void **state)
     CHECK(compared > 600 && patterned > 400 && inside > 200 && cut > 100 && empty > 500);
 }
 
+/* A thin volume takes 1 - exp(-depth) of what is behind it and adds as much of its source: 1e-7 of itself, a float. */
+static void thin_is_taken_exactly(void **state)
+{
+    (void)state;
+    const int list[1] = {0};
+    for (double depth = 1e-7; depth < 0.01; depth *= 1.07) {
+        SmokeVolume v = {
+            .p_enu = {0, 0, 50}, .axis_enu = {1, 0, 0}, .along_m = 2, .across_m = 2, .range_m = 50, .even = true};
+        v.d_sun_enu[2] = 1;
+        for (int b = 0; b < smoke_bands; b++) v.extinction_per_m[b] = depth / 4, v.source[b] = 3;
+        rays.count = 1, far_m[0] = INFINITY;
+        for (int k = 0; k < 3; k++) rays.o_enu[k][0] = 0, rays.d_enu[k][0] = k == 2;
+        smoke_trace_rays(&out, &v, list, 1, &rays, far_m, (1u << smoke_bands) - 1);
+        for (int b = 0; b < smoke_bands; b++) CHECK_NEAR(out.added[b][0] / (-3 * expm1(-depth)), 1, 1e-7);
+    }
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(fast_is_as_plain)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(fast_is_as_plain),
+        cmocka_unit_test(thin_is_taken_exactly),
+    };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
