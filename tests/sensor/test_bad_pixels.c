@@ -77,12 +77,35 @@ static void patches_come_from_the_nearest_good(void **state)
     CHECK(count[55] == 550);
 }
 
+/* A clump takes each of the eight pixels about it by a half, of those on the plane: a pixel with n neighbours is good
+ * by (1 - b) (1 - b/2)^n, where clumps begin by b. b = 0.05: of those within 22.4 % are bad, along an edge, n = 5, 16.3
+ * %, along the next row in 22.4 again. 800 planes of 30 pixels a side; neighbours are bad together, in clumps of 5:
+ * five deviations of as many fewer. */
+static void clumps_reach_the_edges(void **state)
+{
+    (void)state;
+    enum { side = 32, lots = 800 };
+    static uint8_t at[side * side];
+    const double   b = 0.05, edge = 1 - (1 - b) * pow(1 - b / 2, 5), within = 1 - (1 - b) * pow(1 - b / 2, 8);
+    double         bad[8] = {0}; /* rows 0, 1, last but one, last; columns */
+    for (int lot = 0; lot < lots; lot++) {
+        bad_pixels_make(at, side, side, 5 * b, 1, 11, (uint32_t)lot);
+        for (int i = 1; i < side - 1; i++) {
+            static const int of[4] = {0, 1, side - 2, side - 1};
+            for (int k = 0; k < 4; k++) bad[k] += at[of[k] * side + i] > 0, bad[4 + k] += at[i * side + of[k]] > 0;
+        }
+    }
+    const double n = lots * (side - 2), deviation = 5 * sqrt(5 * 0.2 * 0.8 / n);
+    for (int k = 0; k < 8; k++) CHECK_NEAR(bad[k] / n, k % 4 == 0 || k % 4 == 3 ? edge : within, deviation);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(share_and_kinds_are_as_asked),
         cmocka_unit_test(kinds_show_as_they_are),
         cmocka_unit_test(patches_come_from_the_nearest_good),
+        cmocka_unit_test(clumps_reach_the_edges),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

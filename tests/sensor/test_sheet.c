@@ -280,6 +280,12 @@ static void what_must_fit_has_its_limits(void **state)
         const Status status = read_changed(&p, limit[i].text, limit[i].from, limit[i].to);
         if ((status == STATUS_OK) != limit[i].fits) fail_msg("case %zu: '%s': %s", i, limit[i].to, check_said);
     }
+    for (int over = 0; over < 2; over++) { /* a column's time, to a part in a billion */
+        SensorPreset p;
+        char         to[100];
+        snprintf(to, sizeof to, "integration_time %.17g", 1e6 * 0.7 / 30 / 787 * (over ? 1 + 1e-7 : 1));
+        CHECK((read_changed(&p, parallel, "integration_time 15", to) == STATUS_OK) == !over);
+    }
     /* the well: 1.2 times what photons and dark current of 300 K give; left out, 2.5 times that */
     static const char *const with[2] = {"netd 0.03", "dark_current 2e8\nnetd 0.1"};
     for (int dark = 0; dark < 2; dark++) {
