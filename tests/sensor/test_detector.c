@@ -372,68 +372,6 @@ static void radar_decibels_by_hand(void **state)
     CHECK(wide[0] == 65535 && abs(wide[2] - 32768) <= 1);
 }
 
-/* Every display and the converter round to the nearest code: what lies 0.47 above a code is that code, 0.53 above it
- * the next. By radar's decibels, 60 over the scale; by sRGB's curve from code 100 on, where the table's error is below
- * 0.01 of a code. */
-static void codes_are_the_nearest(void **state)
-{
-    (void)state;
-    enum { most = 65535 };
-    static float    in[most + 1], db[most + 1], linear[most + 1];
-    static uint16_t wide[3 * most + 1];
-    static uint8_t  code[3 * most + 1];
-    DetectorCurve   curve;
-    for (int k = 0; k <= curve_steps; k++) curve.value[k] = (double)k / curve_steps;
-    for (int bits = 8; bits <= 16; bits += 8)
-        for (int above = 0; above < 2; above++) {
-            const int      full = bits == 8 ? 255 : most;
-            DetectorConfig config = detector_default_config();
-            config.bits = bits;
-            for (int k = 0; k < full; k++) {
-                const double at = k + (above ? 0.53 : 0.47), x = at / full;
-                in[k] = (float)x;
-                db[k] = (float)pow(10, -0.1 * 60 * (1 - x));
-                linear[k] = (float)(x <= 0.04045 ? x / 12.92 : pow((x + 0.055) / 1.055, 2.4));
-            }
-            const float *const rgb[3] = {in, in, in};
-#define CODE(k) (bits == 8 ? code[k] : wide[k])
-            void *out = bits == 8 ? (void *)code : (void *)wide;
-            detector_display(out, in, (size_t)full, &config, (DetectorLevel){0, 1});
-            for (int k = 0; k < full; k++) CHECK(CODE(k) == k + above);
-            detector_display_rgb(out, rgb, (size_t)full, &config, (DetectorLevel){0, 1});
-            for (int k = 0; k < 3 * full; k++) CHECK(CODE(k) == k / 3 + above);
-            detector_display_curve(out, in, (size_t)full, &config, &curve);
-            for (int k = 0; k < full; k++) CHECK(CODE(k) == k + above);
-            db[full] = 1; /* the brightest */
-            detector_display_db(out, db, (size_t)full + 1, 60, bits);
-            for (int k = 0; k < full; k++) CHECK(CODE(k) == k + above);
-            CHECK(CODE(full) == full);
-            config.display_gamma = true;
-            detector_display(out, linear, (size_t)full, &config, (DetectorLevel){0, 1});
-            for (int k = 100; k < full && bits == 8; k++) CHECK(CODE(k) == k + above);
-            for (int k = 0; k < full; k++) in[k] = (float)(2.5 * (k + (above ? 0.53 : 0.47)));
-            detector_counts(wide, in, (size_t)full, 2.5, (uint16_t)full);
-            for (int k = 0; k < full; k++) CHECK(wide[k] == k + above);
-#undef CODE
-        }
-}
-
-/* The value at a share is that of the nearest rank: of ten values 0 .. 9 share s is the one at 9 s, rounded. */
-static void shares_are_of_the_nearest_rank(void **state)
-{
-    (void)state;
-    static const float ten[10] = {3, 9, 0, 7, 5, 1, 8, 2, 6, 4};
-    const float *const planes[1] = {ten};
-    DetectorConfig     config = detector_default_config();
-    config.margin = 0;
-    for (int k = 0; k < 8; k++)
-        for (int above = 0; above < 2; above++) {
-            config.percentile_low = (k + (above ? 0.53 : 0.47)) / 9;
-            config.percentile_high = 1;
-            CHECK_NEAR(detector_level(&config, planes, 1, 10).low, k + above, 1e-12);
-        }
-}
-
 static int  lines;
 static void count_lines(void *user, LogLevel level, const char *line)
 {
@@ -509,8 +447,6 @@ int main(void)
         cmocka_unit_test(rgb_has_one_gain),
         cmocka_unit_test(colours_of_a_flat_picture_stay),
         cmocka_unit_test(radar_decibels_by_hand),
-        cmocka_unit_test(codes_are_the_nearest),
-        cmocka_unit_test(shares_are_of_the_nearest_rank),
         cmocka_unit_test(a_fire_takes_no_grey_levels_from_the_rest),
         cmocka_unit_test(a_level_settles_in_a_second_at_any_rate),
         cmocka_unit_test(bad_configurations_are_named),
