@@ -241,11 +241,39 @@ static void thin_is_taken_exactly(void **state)
     }
 }
 
+/* A ball of 1 m is found from 100 m to 300 km away, by a ray 0.9 m beside its centre, alone and among others in one
+ * point: 2 sqrt(1 - 0.81) m of it. At 300 km rounding of squares is 1e-5 m2. */
+static void the_farthest_is_found(void **state)
+{
+    (void)state;
+    const int list[1] = {0};
+    for (double far = 100; far < 3e5; far *= 1.3)
+        for (int many = 1; many <= 3; many += 2) {
+            SmokeVolume v = {.p_enu = {0.9, 0, far},
+                             .axis_enu = {1, 0, 0},
+                             .along_m = 1,
+                             .across_m = 1,
+                             .range_m = far,
+                             .even = true};
+            v.d_sun_enu[2] = 1;
+            for (int b = 0; b < smoke_bands; b++) v.extinction_per_m[b] = 1;
+            rays.count = many;
+            for (int n = 0; n < many; n++) {
+                far_m[n] = INFINITY;
+                for (int k = 0; k < 3; k++) rays.o_enu[k][n] = 0, rays.d_enu[k][n] = k == 2;
+            }
+            smoke_trace_rays(&out, &v, list, 1, &rays, far_m, 1);
+            CHECK(out.any);
+            for (int n = 0; n < many; n++) CHECK_NEAR(out.transmittance[0][n], exp(-2 * sqrt(1 - 0.81)), 1e-3);
+        }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(fast_is_as_plain),
         cmocka_unit_test(thin_is_taken_exactly),
+        cmocka_unit_test(the_farthest_is_found),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
