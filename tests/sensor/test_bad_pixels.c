@@ -51,6 +51,13 @@ static void kinds_show_as_they_are(void **state)
         was = count[7];
     }
     CHECK_NEAR(on, 4000, 5 * 8 * sqrt(250)); /* 1000 lots of one half */
+    const int many = width * height;
+    memset(map, PIXEL_BLINKING, sizeof map);
+    memset(count, 0, sizeof count);
+    bad_pixels_insert(count, map, width, height, 16383, &(NoiseDraw){1, 0, 0});
+    on = 0;
+    for (int i = 0; i < many; i++) on += count[i] == 16383;
+    CHECK_NEAR(on, 0.5 * many, 5 * sqrt(0.25 * many));
     CHECK_NEAR(changes, 500, 5 * sqrt(250));
 }
 

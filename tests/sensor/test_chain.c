@@ -441,9 +441,11 @@ static void bad_rows_are_named(void **state)
         log_set_sink(check_listen, NULL);
         assert_int_equal(preset_read(&p, path, "tv"), STATUS_BAD_VALUE);
         log_set_sink(NULL, NULL);
+        assert_int_equal(preset_check(path), strstr(bad[i].to, "television") ? STATUS_OK : STATUS_BAD_VALUE);
         if (!strstr(check_said, bad[i].said)) fail_msg("said '%s' where '%s' was wanted", check_said, bad[i].said);
         remove(path);
     }
+    assert_int_equal(preset_check(source), STATUS_OK);
 }
 
 /* A table of a user's from before detectors were summed and lenses bent: the columns are dropped, the rest is read. */
