@@ -73,6 +73,11 @@ static void patches_come_from_the_nearest_good(void **state)
     map[0] = PIXEL_HOT, count[0] = 16383;
     bad_pixels_replace(count, map, 10, 10);
     CHECK(count[0] == 73);
+    /* each side of the ring counts: 80 above, 16 below, 8 and 24 beside: (3 x 80 + 3 x 16 + 8 + 24) / 8 = 40 */
+    uint16_t own[25] = {0, 0, 0, 0, 0, 0, 80, 80, 80, 0, 0, 8, 9999, 24, 0, 0, 16, 16, 16, 0};
+    uint8_t  one[25] = {[12] = PIXEL_HOT};
+    bad_pixels_replace(own, one, 5, 5);
+    CHECK(own[12] == 40);
     /* the middle of a 3 x 3 clump: the ring two away, symmetric: itself again; never from a fault */
     for (int y = 4; y < 7; y++)
         for (int x = 4; x < 7; x++) map[y * 10 + x] = PIXEL_HOT, count[y * 10 + x] = 16383;

@@ -236,6 +236,10 @@ static void a_constant_has_the_span_of_its_rounding(void **state)
     const DetectorLevel level = detector_level(&config, planes, 1, 4);
     CHECK_NEAR(level.high - level.low, 0.003, 1e-9);
     CHECK_NEAR(level.high + level.low, 600, 1e-9);
+    const float         nothing[4] = {0, 0, 0, 0};
+    const float *const  dark[1] = {nothing};
+    const DetectorLevel least = detector_level(&config, dark, 1, 4);
+    CHECK_NEAR(least.high - least.low, 1e-30, 1e-36); /* of nothing: still a span to divide by */
     config.plateau = 1;
     detector_plateau(&curve, &config, same, 4);
     for (int k = 0; k <= curve_steps; k++)
