@@ -129,17 +129,17 @@ static void puffs_of_a_cloud_shade_each_other(void **state)
     (void)state;
     static Air air;
     even(&air, 20);
-    for (int k = 0; k < 3; k++) {
+    for (int k = 0; k < 4; k++) {
         const int  far = k == 1;
         EffectPuff puff[2] = {puff_at(EFFECT_BURST_DUST, 0, far ? 500 - 2.4 : 500, far ? 1.8 : 0, 0.01),
                               puff_at(EFFECT_BURST_DUST, 0, far ? 500 : 500 - 2.4, far ? 0 : 1.8, 0.01)};
-        puff[0].group = 7, puff[1].group = k == 2 ? 8 : 7;
+        puff[0].group = k == 3 ? 8 : 7, puff[1].group = k == 2 ? 8 : 7;
         const EffectScene scene = scene_of(puff, 2, &air, 0);
         CHECK(scene.volume[0].range_m < scene.volume[1].range_m); /* nearest first: that towards the sun */
         for (int b = 0; b < effect_band_count; b++) {
             const double depth = scene.volume[0].extinction_per_m[b] * 16.0 / 15;
             CHECK(scene.volume[0].sun_depth[b] == 0 && depth > 0);
-            CHECK_NEAR(scene.volume[1].sun_depth[b] / depth, k == 2 ? 0 : 1, 1e-6);
+            CHECK_NEAR(scene.volume[1].sun_depth[b] / depth, k >= 2 ? 0 : 1, 1e-6);
         }
     }
 }
@@ -163,6 +163,32 @@ static void thin_air_takes_less_of_hot_gas(void **state)
     }
 }
 
+/* The pattern of a puff begins anywhere in 256 radii a side, as its seed draws, and rises through its outline by a
+ * quarter of a radius a second: its origin goes down. */
+static void its_pattern_rises(void **state)
+{
+    (void)state;
+    static Air air;
+    double     least[3] = {1e9, 1e9, 1e9}, most[3] = {0, 0, 0}, before[3] = {-1, -1, -1};
+    even(&air, 20);
+    for (uint32_t seed = 1; seed <= 200; seed++) {
+        EffectPuff puff = puff_at(EFFECT_BURST_DUST, 0, 500, 0, 0.01);
+        double     young[3];
+        puff.seed = seed;
+        memcpy(young, scene_of(&puff, 1, &air, 0).volume[0].pattern, sizeof young);
+        for (int k = 0; k < 3; k++) {
+            least[k] = fmin(least[k], young[k]), most[k] = fmax(most[k], young[k]);
+            CHECK(young[k] != before[k] && young[k] != young[(k + 1) % 3]);
+            before[k] = young[k];
+        }
+        puff.age_s = 3;
+        const EffectScene old = scene_of(&puff, 1, &air, 0);
+        CHECK(old.volume[0].pattern[0] == young[0] && old.volume[0].pattern[1] == young[1]);
+        CHECK_NEAR(old.volume[0].pattern[2] - young[2], -0.75, 1e-12);
+    }
+    for (int k = 0; k < 3; k++) CHECK(least[k] >= 0 && least[k] < 10 && most[k] > 246 && most[k] < 256);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -170,6 +196,7 @@ int main(void)
         cmocka_unit_test(it_emits_and_scatters_what_is_about_it),
         cmocka_unit_test(puffs_of_a_cloud_shade_each_other),
         cmocka_unit_test(thin_air_takes_less_of_hot_gas),
+        cmocka_unit_test(its_pattern_rises),
     };
     return cmocka_run_group_tests(tests, open_all, close_all);
 }

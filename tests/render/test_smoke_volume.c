@@ -297,6 +297,183 @@ static void lists_miss_nothing(void **state)
     CHECK(listed < blocks * count / 10);
 }
 
+/* The list of a block holds the volumes whose balls, of their longer half axis and a thousandth, meet the cone about
+ * its corners, and no others: of a centre at distance d and angle a off the cone's axis, d sin(a - half angle) is its
+ * distance from the cone's side. Those whose ball lies behind the eye are not in it. Through a lens the corners are
+ * those of the straight box about its curved sides. */
+static void lists_hold_what_meets_the_cone(void **state)
+{
+    (void)state;
+    enum { count = 300, side = 40 };
+    static SmokeVolume v[count];
+    const double       r[9] = {1, 0, 0, 0, 0, 1, 0, -1, 0}; /* columns x right, y down, z north */
+    for (int i = 0; i < count; i++) {
+        v[i] = ball(0, 0.5 + 4 * random_uniform(5, 1, 0, (uint64_t)i), false, 0.01, 1);
+        *(i % 2 ? &v[i].along_m : &v[i].across_m) *= 1 + 3 * random_uniform(5, 5, 0, (uint64_t)i);
+        for (int k = 0; k < 3; k++)
+            v[i].p_enu[k] = (i % 3 ? 100 : 30) * (random_uniform(5, 2, (uint32_t)k, (uint64_t)i) - 0.5);
+    }
+    for (int lens = 0; lens < 2; lens++) {
+        View view = {.p_enu = {3, -4, 2}, .width = 320, .height = 240, .focal_px = 200};
+        memcpy(view.r_enu_from_cam, r, sizeof r);
+        if (lens) {
+            const double k[3] = {-0.15, 0.02, 0}, p[2] = {0.002, -0.003}, half[2] = {0.8, 0.6};
+            CHECK(view_lens_make(&view.lens, k, p, half) == STATUS_OK);
+        }
+        int within = 0, behind = 0;
+        for (int y = 0; y < view.height; y += side)
+            for (int x = 0; x < view.width; x += side) {
+                int list[count], n = smoke_cull_block(list, v, count, &view, x, y, x + side, y + side), next = 0;
+                const double edge_px[4] = {x, y, x + side, y + side};
+                double       middle[3], box[4], half_rad = 0;
+                view_ray(middle, &view, x + 0.5 * side, y + 0.5 * side);
+                view_box_tangents(box, &view, edge_px);
+                for (int c = 0; c < 4; c++) {
+                    double       d[3];
+                    const double d_cam[3] = {box[c % 2 ? 2 : 0], box[c > 1 ? 3 : 1], 1};
+                    m3_mul_v3(d, view.r_enu_from_cam, d_cam);
+                    half_rad = fmax(half_rad, acos(v3_dot(d, middle) / v3_length(d)));
+                }
+                for (int i = 0; i < count; i++) {
+                    double       off[3];
+                    const double reach = 1.001 * fmax(v[i].along_m, v[i].across_m);
+                    v3_sub(off, v[i].p_enu, view.p_enu);
+                    const double far = v3_length(off), off_rad = acos(v3_dot(off, middle) / far);
+                    const double beside = far * sin(off_rad - half_rad) - reach, along = far * cos(off_rad) + reach;
+                    const bool   in = next < n && list[next] == i;
+                    next += in;
+                    if (fabs(beside) < 1e-4 || fabs(along) < 1e-4) continue; /* half_rad from an arc cosine: 1e-8 rad */
+                    CHECK(in == (beside < 0 && along > 0));
+                    within += in, behind += beside < 0 && along < 0;
+                }
+                CHECK(next == n);
+            }
+        CHECK(within > 1000 && behind > 50);
+    }
+}
+
+/* Volumes are looked up for sixteen rays from one point together, by a cone about them. To the bit they meet what each
+ * meets beside a ray from elsewhere, for which no cone is made; those that only the outermost ray grazes, by 1e-4 of
+ * the radius, and those about the eye among them. */
+static void rays_together_are_rays_alone(void **state)
+{
+    (void)state;
+    enum { count = 60, most = 40 };
+    static SmokeRays alone;
+    int              list[count], grazed = 0, inside = 0;
+    for (int i = 0; i < count; i++) list[i] = i;
+    for (uint32_t trial = 0; trial < 150; trial++) {
+        static SmokeVolume v[count];
+        static Rays        two;
+        const int          many = trial % 5 == 0 ? 2 : 3 + (int)(random_uniform(6, 1, trial, 0) * (most - 3));
+        const double  width = trial % 7 == 0 ? 1e-3 : 0.05 + 1.3 * random_uniform(6, 2, trial, 0), o[3] = {3, -2, 5};
+        static double d[most][3];
+        rays.count = many, two.count = 2;
+        for (int n = 0; n < many; n++) { /* in one plane, so that the outermost are those of the cone */
+            const double at = width * ((double)n / (many - 1) - 0.5);
+            d[n][0] = sin(at), d[n][1] = 0, d[n][2] = cos(at);
+            for (int k = 0; k < 3; k++) rays.o_enu[k][n] = o[k], rays.d_enu[k][n] = d[n][k];
+            far_m[n] = INFINITY;
+        }
+        for (int i = 0; i < count; i++) {
+            double u[6];
+            for (int k = 0; k < 6; k++) u[k] = random_uniform(6, 3, trial, (uint64_t)(6 * i + k));
+            v[i] = ball(0, 1 + 4 * u[3], true, 0.02, i);
+            v[i].axis_enu[0] = 0, v[i].axis_enu[1] = 1;
+            for (int k = 0; k < 3; k++) v[i].p_enu[k] = o[k] + 80 * (u[k] - 0.5);
+            if (i % 3 ==
+                0) { /* beside one of the outermost rays of this sixteen or that, its longer half axis towards it */
+                const int    of = 16 * (int)(u[4] * (many - 1) / 16) + (u[5] < 0.5 ? 0 : 15);
+                const double at = width * ((double)(of < many ? of : many - 1) / (many - 1) - 0.5);
+                const double far = 1 + 60 * u[0], by = (u[5] < 0.5 ? -1 : 1) * (1 - 1e-4) * v[i].across_m;
+                v[i].p_enu[0] = o[0] + far * sin(at) + by * cos(at), v[i].p_enu[1] = o[1];
+                v[i].p_enu[2] = o[2] + far * cos(at) - by * sin(at);
+                v[i].along_m *= u[1]; /* across is the longer */
+            } else if (i % 7 == 1) {
+                for (int k = 0; k < 3; k++) v[i].p_enu[k] = o[k] + (u[k] - 0.5) * v[i].across_m;
+            }
+            v[i].range_m = hypot(hypot(v[i].p_enu[0] - o[0], v[i].p_enu[1] - o[1]), v[i].p_enu[2] - o[2]);
+        }
+        smoke_trace_rays(&out, v, list, count, &rays, far_m, all_bands);
+        for (int n = 0; n < many; n++) {
+            for (int k = 0; k < 3; k++) {
+                two.o_enu[k][0] = o[k], two.d_enu[k][0] = d[n][k];
+                two.o_enu[k][1] = 1e5, two.d_enu[k][1] = k == 2;
+            }
+            smoke_trace_rays(&alone, v, list, count, &two, far_m, all_bands);
+            for (int b = 0; b < smoke_bands && alone.any; b++) {
+                CHECK(out.transmittance[b][n] == alone.transmittance[b][0]);
+                CHECK(out.added[b][n] == alone.added[b][0]);
+            }
+            if (!alone.any) CHECK(!out.any || out.transmittance[0][n] == 1);
+            for (int i = 0; i < count; i++) {
+                const double column_m = smoke_column_m(&v[i], o, d[n], 0, INFINITY);
+                grazed += column_m > 0 && column_m < 0.1, inside += v[i].range_m < v[i].across_m && column_m > 0;
+            }
+        }
+    }
+    CHECK(grazed > 500 && inside > 500);
+}
+
+/* More volumes than are prepared together, 512, from one point and from two: every one of them counts, and so does each
+ * about that number. Every eleventh is a stretched one beside the rays, which meet its ball alone. */
+static void hundreds_are_all_crossed(void **state)
+{
+    (void)state;
+    enum { most = 1100 };
+    static SmokeVolume row[most];
+    static int         list[most];
+    for (int i = 0; i < most; i++) {
+        row[i] = ball(100 + 5.0 * i, 2, true, 0.0005, 30), list[i] = i;
+        if (i % 11 == 0) row[i].p_enu[1] = 3, row[i].along_m = 4, row[i].across_m = 0.5;
+    }
+    for (int apart = 0; apart < 2; apart++)
+        for (int k = 0; k < 7; k++) {
+            const int count = (const int[]){511, 512, 513, 1023, 1024, 1025, most}[k];
+            one_ray(0, 0, INFINITY);
+            rays.count = 2, far_m[1] = INFINITY;
+            for (int c = 0; c < 3; c++) rays.o_enu[c][1] = c == 0 ? 0.1 * apart : 0, rays.d_enu[c][1] = c == 2;
+            smoke_trace_rays(&out, row, list, count, &rays, far_m, all_bands);
+            for (int n = 0; n < 2; n++) {
+                const double tau = exp(-(count - (count + 10) / 11) * 0.0005 * (n && apart ? 2 * sqrt(4 - 0.01) : 4));
+                CHECK_NEAR(out.transmittance[0][n], tau, 1e-6);
+                CHECK_NEAR(out.added[smoke_bands - 1][n], 30 * (1 - tau), 30 * 1e-6);
+            }
+        }
+}
+
+/* Rays beside the smoke keep their light in every band, those that cross it have it in the bands that were asked for,
+ * and a source seen through 14 optical depths is still there: 1e6 exp(-14) = 0.8315 of it. */
+static void only_what_crosses_changes(void **state)
+{
+    (void)state;
+    const SmokeVolume v[2] = {ball(100, 2, true, 3.5, 1), ball(110, 2, true, 10, 1e6)};
+    const int         list[2] = {0, 1};
+    for (int b = -1; b < smoke_bands; b++) {
+        one_ray(9, 0, INFINITY);
+        rays.count = 3;
+        for (int n = 1; n < 3; n++) {
+            for (int k = 0; k < 3; k++) rays.o_enu[k][n] = rays.o_enu[k][0], rays.d_enu[k][n] = rays.d_enu[k][0];
+            far_m[n] = INFINITY;
+        }
+        rays.o_enu[0][1] = 0;
+        for (int k = 0; k < smoke_bands; k++)
+            for (int n = 0; n < 3; n++) out.transmittance[k][n] = out.added[k][n] = 0.25f;
+        smoke_trace_rays(&out, v, list, 2, &rays, far_m, b < 0 ? all_bands : 1u << b);
+        CHECK(out.any);
+        for (int k = 0; k < smoke_bands; k++) {
+            for (int n = 0; n < 3; n += 2) CHECK(out.transmittance[k][n] == 1 && out.added[k][n] == 0);
+            const bool asked = b < 0 || k == b;
+            CHECK_NEAR(out.transmittance[k][1], asked ? exp(-54) : 1, 1e-12);
+            CHECK_NEAR(out.added[k][1], asked ? 1 - exp(-14) + 1e6 * exp(-14) : 0, 1e-5);
+            float light[3] = {8, 8, 8};
+            smoke_apply(light, &out, k, 3);
+            CHECK(light[0] == 8 && light[2] == 8);
+            CHECK_NEAR(light[1], asked ? 1 - exp(-14) + 1e6 * exp(-14) : 8, 1e-5);
+        }
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -310,6 +487,10 @@ int main(void)
         cmocka_unit_test(pattern_keeps_the_mass),
         cmocka_unit_test(lit_from_the_sun),
         cmocka_unit_test(lists_miss_nothing),
+        cmocka_unit_test(lists_hold_what_meets_the_cone),
+        cmocka_unit_test(rays_together_are_rays_alone),
+        cmocka_unit_test(hundreds_are_all_crossed),
+        cmocka_unit_test(only_what_crosses_changes),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -51,6 +51,13 @@ static void kinds_show_as_they_are(void **state)
         was = count[7];
     }
     CHECK_NEAR(on, 4000, 5 * 8 * sqrt(250)); /* 1000 lots of one half */
+    const int many = width * height;
+    memset(map, PIXEL_BLINKING, sizeof map);
+    memset(count, 0, sizeof count);
+    bad_pixels_insert(count, map, width, height, 16383, &(NoiseDraw){1, 0, 0});
+    on = 0;
+    for (int i = 0; i < many; i++) on += count[i] == 16383;
+    CHECK_NEAR(on, 0.5 * many, 5 * sqrt(0.25 * many));
     CHECK_NEAR(changes, 500, 5 * sqrt(250));
 }
 
@@ -66,6 +73,11 @@ static void patches_come_from_the_nearest_good(void **state)
     map[0] = PIXEL_HOT, count[0] = 16383;
     bad_pixels_replace(count, map, 10, 10);
     CHECK(count[0] == 73);
+    /* each side of the ring counts: 80 above, 16 below, 8 and 24 beside: (3 x 80 + 3 x 16 + 8 + 24) / 8 = 40 */
+    uint16_t own[25] = {0, 0, 0, 0, 0, 0, 80, 80, 80, 0, 0, 8, 9999, 24, 0, 0, 16, 16, 16, 0};
+    uint8_t  one[25] = {[12] = PIXEL_HOT};
+    bad_pixels_replace(own, one, 5, 5);
+    CHECK(own[12] == 40);
     /* the middle of a 3 x 3 clump: the ring two away, symmetric: itself again; never from a fault */
     for (int y = 4; y < 7; y++)
         for (int x = 4; x < 7; x++) map[y * 10 + x] = PIXEL_HOT, count[y * 10 + x] = 16383;
@@ -77,12 +89,35 @@ static void patches_come_from_the_nearest_good(void **state)
     CHECK(count[55] == 550);
 }
 
+/* A clump takes each of the eight pixels about it by a half, of those on the plane: a pixel with n neighbours is good
+ * by (1 - b) (1 - b/2)^n, where clumps begin by b. b = 0.05: of those within 22.4 % are bad, along an edge, n = 5, 16.3
+ * %, along the next row in 22.4 again. 800 planes of 30 pixels a side; neighbours are bad together, in clumps of 5:
+ * five deviations of as many fewer. */
+static void clumps_reach_the_edges(void **state)
+{
+    (void)state;
+    enum { side = 32, lots = 800 };
+    static uint8_t at[side * side];
+    const double   b = 0.05, edge = 1 - (1 - b) * pow(1 - b / 2, 5), within = 1 - (1 - b) * pow(1 - b / 2, 8);
+    double         bad[8] = {0}; /* rows 0, 1, last but one, last; columns */
+    for (int lot = 0; lot < lots; lot++) {
+        bad_pixels_make(at, side, side, 5 * b, 1, 11, (uint32_t)lot);
+        for (int i = 1; i < side - 1; i++) {
+            static const int of[4] = {0, 1, side - 2, side - 1};
+            for (int k = 0; k < 4; k++) bad[k] += at[of[k] * side + i] > 0, bad[4 + k] += at[i * side + of[k]] > 0;
+        }
+    }
+    const double n = lots * (side - 2), deviation = 5 * sqrt(5 * 0.2 * 0.8 / n);
+    for (int k = 0; k < 8; k++) CHECK_NEAR(bad[k] / n, k % 4 == 0 || k % 4 == 3 ? edge : within, deviation);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(share_and_kinds_are_as_asked),
         cmocka_unit_test(kinds_show_as_they_are),
         cmocka_unit_test(patches_come_from_the_nearest_good),
+        cmocka_unit_test(clumps_reach_the_edges),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

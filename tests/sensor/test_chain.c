@@ -174,6 +174,26 @@ static void sigma_is_the_sum_of_its_parts(void **state)
     chain_destroy(chain);
 }
 
+/* Without light the noise is that of the dark, 30 electrons of reading and the root of 200 of dark current, over the
+ * electrons that a small radiance gives. 0.2 %: its slope is taken at 1e-6 W/(m2 sr), an electron. */
+static void the_dark_has_its_noise(void **state)
+{
+    (void)state;
+    SensorPreset p = preset_of("staring_lwir");
+    p.ratio = (Noise3d){.sigma = {[NOISE_TVH] = 1}};
+    p.prnu = p.line_noise = 0;
+    p.bits = 16, p.photons.well_e = 1e5, p.photons.read_e = 30;
+    p.dark_e_s = 200 / p.photons.integration_s;
+    preset_refresh(&p);
+    Chain       *chain = chain_of(&p);
+    const double step = chain_step_e(chain);
+    const double per_w = 1e6 * (chain_counts_at(chain, 0, 1e-6) - chain_counts_at(chain, 0, 0)) * step;
+    CHECK_NEAR(chain_counts_at(chain, 0, 0) * step, 200, 1e-9);
+    for (int k = 0; k < 2; k++)
+        CHECK_NEAR(chain_sigma(chain, 0, k ? -5 : 0) * per_w / sqrt(900 + 200 + step * step / 12), 1, 2e-3);
+    chain_destroy(chain);
+}
+
 /* A shutter that closes shortens light and dark current alike, and not the noise of reading: with 0.35 of the well
  * in both, half each. */
 static void sigma_follows_the_shutter(void **state)
@@ -421,9 +441,11 @@ static void bad_rows_are_named(void **state)
         log_set_sink(check_listen, NULL);
         assert_int_equal(preset_read(&p, path, "tv"), STATUS_BAD_VALUE);
         log_set_sink(NULL, NULL);
+        assert_int_equal(preset_check(path), strstr(bad[i].to, "television") ? STATUS_OK : STATUS_BAD_VALUE);
         if (!strstr(check_said, bad[i].said)) fail_msg("said '%s' where '%s' was wanted", check_said, bad[i].said);
         remove(path);
     }
+    assert_int_equal(preset_check(source), STATUS_OK);
 }
 
 /* A table of a user's from before detectors were summed and lenses bent: the columns are dropped, the rest is read. */
@@ -461,6 +483,7 @@ int main(void)
         cmocka_unit_test(frames_need_no_other),
         cmocka_unit_test(sigma_is_the_sum_of_its_parts),
         cmocka_unit_test(sigma_follows_the_shutter),
+        cmocka_unit_test(the_dark_has_its_noise),
         cmocka_unit_test(what_is_not_patched_shows),
         cmocka_unit_test(the_cut_off_is_of_a_line),
         cmocka_unit_test(the_pool_of_ten_rolls),

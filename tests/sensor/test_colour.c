@@ -311,6 +311,48 @@ static void hue_stays_at_the_ends(void **state)
     }
 }
 
+/* A colour that no screen shows is mixed with the grey of its own luminance, 0.2126 R + 0.7152 G + 0.0722 B (ITU-R
+ * BT.709), until its least channel is 0: it keeps its luminance. What it would be without a screen's limits: the matrix
+ * is linear, and its columns are how shown colours change with each band. */
+static void colours_of_no_screen_keep_their_luminance(void **state)
+{
+    (void)state;
+    static const double lum[3] = {0.2126, 0.7152, 0.0722};
+    DisplayColour       colour;
+    double              column[3][3];
+    display_colour(&colour, (double[3]){1, 1, 1}, 0, INFINITY);
+    for (int band = 0; band < 4; band++) { /* the last: grey alone */
+        float        v[3] = {1, 1, 1};
+        float *const plane[3] = {v, v + 1, v + 2};
+        if (band < 3) v[band] = 1.25f;
+        display_colour_apply(plane, (const float *const *)plane, 1, &colour);
+        for (int c = 0; c < 3; c++) {
+            if (band < 3) column[band][c] = 4 * (v[c] - 1.0);
+            else CHECK_NEAR(v[c], 1, 1e-6);
+        }
+    }
+    int mixed = 0;
+    for (uint32_t trial = 0; trial < 200; trial++) {
+        float        v[3];
+        double       free[3] = {0, 0, 0}, luminance = 0, least = INFINITY, shown = 0;
+        float *const plane[3] = {v, v + 1, v + 2};
+        for (int band = 0; band < 3; band++) v[band] = (float)pow(random_uniform(3, 1, trial, (uint64_t)band), 3);
+        for (int c = 0; c < 3; c++) {
+            for (int band = 0; band < 3; band++) free[c] += column[band][c] * v[band];
+            luminance += lum[c] * free[c], least = fmin(least, free[c]);
+        }
+        display_colour_apply(plane, (const float *const *)plane, 1, &colour);
+        const double share = least < 0 ? luminance / (luminance - least) : 1;
+        mixed += least < 0;
+        for (int c = 0; c < 3; c++) {
+            CHECK_NEAR(v[c], luminance + share * (free[c] - luminance), 3e-6);
+            shown += lum[c] * v[c];
+        }
+        CHECK_NEAR(shown, luminance, 3e-6);
+    }
+    CHECK(mixed > 50 && mixed < 150);
+}
+
 /* ---- frames --------------------------------------------------------------------------------------- */
 
 /* render() says what white is, and the picture's file shows it so; EXR planes are not touched. */
@@ -399,6 +441,7 @@ int main(void)
         cmocka_unit_test(colours_are_those_an_eye_sees),
         cmocka_unit_test(white_is_white_at_any_height_of_the_sun),
         cmocka_unit_test(hue_stays_at_the_ends),
+        cmocka_unit_test(colours_of_no_screen_keep_their_luminance),
         cmocka_unit_test(a_frame_is_balanced_by_its_own_day),
     };
     return cmocka_run_group_tests(tests, open_all, hand_close);

@@ -401,6 +401,35 @@ static void bad_configurations_are_named(void **state)
     log_set_sink(NULL, NULL);
     const DetectorConfig good = detector_default_config();
     assert_int_equal(detector_check_config(&good), STATUS_OK);
+    /* every field at both ends: taken there, refused a ten-thousandth beyond */
+    static const struct {
+        size_t at;
+        double low, high;
+    } field[] = {
+        {offsetof(DetectorConfig, gain), 1e-6, 1e6},          {offsetof(DetectorConfig, offset), -10, 10},
+        {offsetof(DetectorConfig, noise_sigma), 0, 1e30},     {offsetof(DetectorConfig, percentile_low), 0, 0.99},
+        {offsetof(DetectorConfig, percentile_high), 0.01, 1}, {offsetof(DetectorConfig, margin), 0, 10},
+        {offsetof(DetectorConfig, min_span), 0, 1e30},        {offsetof(DetectorConfig, plateau), 0, 1},
+        {offsetof(DetectorConfig, level_low), -1e30, 1e30},
+    };
+    log_set_sink(count_lines, NULL);
+    for (size_t i = 0; i < sizeof field / sizeof *field; i++)
+        for (int end = 0; end < 2; end++)
+            for (int beyond = 0; beyond < 2; beyond++) {
+                DetectorConfig c = detector_default_config();
+                const double limit = end ? field[i].high : field[i].low, step = limit == 0 ? 1e-9 : 1e-4 * fabs(limit);
+                *(double *)((char *)&c + field[i].at) = limit + (beyond ? end ? step : -step : 0);
+                CHECK((detector_check_config(&c) == STATUS_OK) == !beyond);
+            }
+    /* levels by hand: the upper one is above the lower, to 1e30 */
+    static const double level[][3] = {{1, 1, 0},         {1, 1.001, 1}, {-1e30, 1e30, 1},
+                                      {0, 1.0001e30, 0}, {2, 1, 0},     {0, NAN, 0}};
+    for (size_t i = 0; i < sizeof level / sizeof *level; i++) {
+        DetectorConfig c = detector_default_config();
+        c.auto_level = false, c.level_low = level[i][0], c.level_high = level[i][1];
+        CHECK((detector_check_config(&c) == STATUS_OK) == (level[i][2] == 1));
+    }
+    log_set_sink(NULL, NULL);
 }
 
 int main(void)

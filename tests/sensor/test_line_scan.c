@@ -127,14 +127,31 @@ static void each_pixel_has_its_time(void **state)
     CHECK_NEAR(line_scan_time_s(&columns, 100, 50, 99.5, 49), 49.892e-3, 1e-15);
 }
 
+/* A picture that moves is read between its pixels in steps of 1/256: 3 + (p + 0.47) / 256 pixels are, to the bit, as 3
+ * + p / 256, and 0.53 as the next step; the last line of two is half a line after the frame's time. */
+static void shifts_are_of_the_nearest_step(void **state)
+{
+    (void)state;
+    enum { wide = 64, high = 2 };
+    static float   in[wide * high], line[wide + line_scan_taps], got[wide * high], want[wide * high];
+    const LineScan scan = {.line_s = 1e-3};
+    for (int i = 0; i < wide * high; i++) in[i] = (float)(10 + 5 * random_uniform(1, 2, 3, (uint64_t)i));
+    for (int p = 0; p < 256; p++)
+        for (int above = 0; above < 2; above++) {
+            const double at = 3 + (p + (above ? 0.53 : 0.47)) / 256, step = 3 + (p + above) / 256.0;
+            line_scan_resample(got, in, wide, high, &scan, (const double[2]){-at / 0.5e-3, 0}, line);
+            line_scan_resample(want, in, wide, high, &scan, (const double[2]){-step / 0.5e-3, 0}, line);
+            if (p + above < 256) assert_memory_equal(got + wide, want + wide, wide * sizeof *got);
+        }
+}
+
 int main(void)
 {
     thread_flush_denormals();
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_cut_off_passes_half_the_power),
-        cmocka_unit_test(a_step_droops_with_its_time_constant),
-        cmocka_unit_test(noise_is_correlated_along_the_lines),
-        cmocka_unit_test(each_pixel_has_its_time),
+        cmocka_unit_test(the_cut_off_passes_half_the_power),   cmocka_unit_test(a_step_droops_with_its_time_constant),
+        cmocka_unit_test(noise_is_correlated_along_the_lines), cmocka_unit_test(each_pixel_has_its_time),
+        cmocka_unit_test(shifts_are_of_the_nearest_step),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -188,6 +188,85 @@ static void grey_levels_are_those_of_the_curve(void **state)
     }
 }
 
+/* The value at a share is that of the nearest rank: of ten values 0 .. 9 share s is the one at 9 s, rounded. */
+static void shares_are_of_the_nearest_rank(void **state)
+{
+    (void)state;
+    static const float ten[10] = {3, 9, 0, 7, 5, 1, 8, 2, 6, 4};
+    const float *const planes[1] = {ten};
+    DetectorConfig     config = detector_default_config();
+    config.margin = 0;
+    for (int k = 0; k < 8; k++)
+        for (int above = 0; above < 2; above++) {
+            config.percentile_low = (k + (above ? 0.53 : 0.47)) / 9;
+            config.percentile_high = 1;
+            CHECK_NEAR(detector_level(&config, planes, 1, 10).low, k + above, 1e-12);
+        }
+}
+
+/* Of the values 0 .. 100 the body is from 10 to 90, at 10 and 90 % of them; white is 0.05 of it above, at 94. Fires
+ * from 60.5 on are no part of it: 6 to 54 of 0 .. 60, white at 56.4; from 50.5 on they are one fewer than half, 5 to 45
+ * of 0 .. 50, white at 47; from 49.5 on they are more than half, and part of it. */
+static void white_is_above_the_body(void **state)
+{
+    (void)state;
+    static const double fire_from[4] = {INFINITY, 60.5, 50.5, 49.5}, white[4] = {94, 56.4, 47, 94};
+    float               values[101];
+    const float *const  planes[1] = {values};
+    DetectorConfig      config = detector_default_config();
+    for (int i = 0; i <= 100; i++) values[i] = (float)(i * 37 % 101);
+    config.margin = config.percentile_low = 0, config.percentile_high = 1, config.highlight = 0.05;
+    for (int k = 0; k < 4; k++) {
+        config.fire_from = fire_from[k];
+        const DetectorLevel level = detector_level(&config, planes, 1, 101);
+        CHECK_NEAR(level.low, 0, 1e-12);
+        CHECK_NEAR(level.high, white[k], 1e-12);
+    }
+}
+
+/* A span of rounding alone is shown over 1e-5 of the level, 0.003 of 300, about its middle: by levels and by the curve,
+ * whose slope is at most full scale over that. */
+static void a_constant_has_the_span_of_its_rounding(void **state)
+{
+    (void)state;
+    const float         same[4] = {300, 300, 300, 300};
+    const float *const  planes[1] = {same};
+    DetectorConfig      config = detector_default_config();
+    DetectorCurve       curve;
+    const DetectorLevel level = detector_level(&config, planes, 1, 4);
+    CHECK_NEAR(level.high - level.low, 0.003, 1e-9);
+    CHECK_NEAR(level.high + level.low, 600, 1e-9);
+    const float         nothing[4] = {0, 0, 0, 0};
+    const float *const  dark[1] = {nothing};
+    const DetectorLevel least = detector_level(&config, dark, 1, 4);
+    CHECK_NEAR(least.high - least.low, 1e-30, 1e-36); /* of nothing: still a span to divide by */
+    config.plateau = 1;
+    detector_plateau(&curve, &config, same, 4);
+    for (int k = 0; k <= curve_steps; k++)
+        CHECK_NEAR(curve.value[k], 300 + 0.003 * ((double)k / curve_steps - 0.5), 1e-9);
+}
+
+/* Counts 0 .. 9, one of each: a bin of one count lies about each, and the curve is straight from -0.5 to 9.5. Nine of
+ * ten pixels at 4 and a plateau of half of them: the bin of 4 counts 5 and that of 9 counts 1; the grey levels from 0
+ * to 5/6 are those of 4, from there on of 9. */
+static void counts_have_bins_about_them(void **state)
+{
+    (void)state;
+    float          values[10];
+    DetectorConfig config = detector_default_config();
+    DetectorCurve  curve;
+    config.step = 1, config.plateau = 0.5;
+    for (int i = 0; i < 10; i++) values[i] = (float)(i * 7 % 10);
+    detector_plateau(&curve, &config, values, 10);
+    for (int k = 0; k <= curve_steps; k++) CHECK_NEAR(curve.value[k], -0.5 + 10.0 * k / curve_steps, 1e-9);
+    for (int i = 0; i < 10; i++) values[i] = i == 3 ? 9 : 4;
+    detector_plateau(&curve, &config, values, 10);
+    for (int k = 0; k <= curve_steps; k++) {
+        const double grey = (double)k / curve_steps, share = grey * 6 / 5;
+        CHECK_NEAR(curve.value[k], share <= 1 ? 3.5 + share : 8.5 + 6 * grey - 5, 1e-9);
+    }
+}
+
 int main(void)
 {
     thread_flush_denormals();
@@ -198,6 +277,10 @@ int main(void)
         cmocka_unit_test(fire_on_much_of_the_picture),
         cmocka_unit_test(a_curve_settles_in_a_second),
         cmocka_unit_test(grey_levels_are_those_of_the_curve),
+        cmocka_unit_test(shares_are_of_the_nearest_rank),
+        cmocka_unit_test(white_is_above_the_body),
+        cmocka_unit_test(a_constant_has_the_span_of_its_rounding),
+        cmocka_unit_test(counts_have_bins_about_them),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
