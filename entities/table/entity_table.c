@@ -155,7 +155,8 @@ void entity_table_fire(EntityTable *table, const DisFire *pdu, double t_s)
     if (firing)
         drives_fire(&firing->drives, effect_charge_kg(&pdu->descriptor, true),
                     rounds < most_rounds ? rounds : most_rounds);
-    if (munition && munition->type.kind == dis_kind_munition) drives_launch(&munition->drives, t_s);
+    if (munition && munition->type.kind == dis_kind_munition)
+        drives_launch(&munition->drives, entity_slot_running(munition, t_s));
     if (firing || munition) table->changes++;
 }
 
