@@ -161,28 +161,34 @@ static void an_engine_that_starts_again_is_another_stand(void **state)
     fixture_close(&f);
 }
 
-/* A tank that stopped at 100 s idles until 220 s and warms the ground behind it until then; a Freeze of 1000 s from 200
- * s on lets it do so until the Freeze's end and 20 s more, as one stand. */
+/* A tank that stopped at 100 s idles until 220 s and warms the ground behind it until then; a Freeze of 1000 s from 210
+ * s on, or as many of its reports with the frozen bit, lets it do so until the Freeze's end and 10 s more, as one
+ * stand. A report holds for 12 s. */
 static void an_engine_stands_with_its_tank(void **state)
 {
     (void)state;
-    Fixture f = fixture_open(NULL);
-    for (int t_s = 0; t_s < 200; t_s += 10) {
-        const DisEntityState pdu = driving(1, tank_type, 0, t_s < 100 ? 1 : 0);
-        hear(&f, &pdu, t_s);
+    for (int frozen = 0; frozen < 2; frozen++) {
+        Fixture        f = fixture_open(NULL);
+        DisEntityState pdu = driving(1, tank_type, 0, 1);
+        for (int t_s = 0; t_s < 210; t_s += 10) {
+            if (t_s == 100) pdu = driving(1, tank_type, 0, 0);
+            hear(&f, &pdu, t_s);
+        }
+        if (!frozen) entity_table_stop(f.table, &(DisStopFreeze){.receiving = {0xFFFF, 0xFFFF, 0xFFFF}}, 210);
+        pdu.appearance = frozen_bit;
+        for (int t_s = 210; frozen && t_s < 1210; t_s += 10) hear(&f, &pdu, t_s);
+        CHECK(marks_at(&f, 1205)->stand[0].blow.to_s == (frozen ? 1212 : INFINITY));
+        if (!frozen) entity_table_start(f.table, &(DisStartResume){.receiving = {0xFFFF, 0xFFFF, 0xFFFF}}, 1210);
+        pdu.appearance = 0;
+        for (int k = 0; k < 4; k++) {
+            const GroundMarks *m = marks_at(&f, 1210 + 10 * k);
+            CHECK(m->stands == 1 && m->stand[0].blow.from_s == 100);
+            CHECK(m->stand[0].blow.to_s == fmin(1220, 1200 + 10 * k + 12));
+            hear(&f, &pdu, 1210 + 10 * k);
+        }
+        CHECK(marks_at(&f, 1240)->stand[0].blow.to_s == 1220);
+        fixture_close(&f);
     }
-    entity_table_stop(f.table, &(DisStopFreeze){.receiving = {0xFFFF, 0xFFFF, 0xFFFF}}, 200);
-    CHECK(marks_at(&f, 1100)->stand[0].blow.to_s == INFINITY);
-    entity_table_start(f.table, &(DisStartResume){.receiving = {0xFFFF, 0xFFFF, 0xFFFF}}, 1200);
-    for (int k = 0; k < 5; k++) {
-        const DisEntityState pdu = driving(1, tank_type, 0, 0);
-        const GroundMarks   *m = marks_at(&f, 1200 + 10 * k);
-        CHECK(m->stands == 1 && m->stand[0].blow.from_s == 100);
-        CHECK(m->stand[0].blow.to_s == fmin(1220, 1190 + 10 * k + 12)); /* as long as its last report holds */
-        hear(&f, &pdu, 1200 + 10 * k);
-    }
-    CHECK(marks_at(&f, 1240)->stand[0].blow.to_s == 1220);
-    fixture_close(&f);
 }
 
 /* The same PDUs: the same bits, whatever snapshots were taken in between, and in any order afterwards. */
