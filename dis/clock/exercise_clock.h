@@ -16,7 +16,7 @@
  *   - a sender deviates by 5 s from the least of its delays, a validated one in two consecutive PDUs (restart);
  *   - the delays of a sender have a trend of more than 0.15 s that chance makes once in ten thousand times and that
  *     is twelve times their scatter about it, of a validated one
- *     their lower edge too: a clock at another rate. Jitter has none.
+ *     their lower edge too, or a rise of half a second along a straight line: a clock at another rate. Jitter has none.
  * A sender's second PDU counts from its arrival when that is 0.15 s from its stamp: nothing tells the rate yet.
  * Rate checks over 2 s, 4 s, .. 32 s: two that know the rate, to 2 %, as that of the arrivals validate a sender, new or
  * rejected; its stamps are then used again with a new offset. A validated sender's datagram that is seconds late keeps

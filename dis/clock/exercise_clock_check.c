@@ -17,6 +17,9 @@ enum {
  * a trend, over a time as long as the jitter. So a trend counts only where it exceeds the scatter about it by this
  * factor. */
 static const double trend_over_scatter = 12;
+/* Delays of a validated sender that have risen by this much along a straight line, over 30 points or more, are those of
+ * a clock that runs slow: a queue would have to fill evenly for as long. Until then the two look alike. */
+static const double filling_queue_s = 0.5;
 /* A stamp that is this far behind its sender's latest one comes from a reordered datagram, not from a counter. */
 static const double overtaken_s = 0.1;
 static const double longest_vote_s = 32.0; /* the longest span over which the rate of stamps is checked */
@@ -116,7 +119,8 @@ static void observe(ExerciseClock *clock, Sender *sender, double t_s, double rul
 }
 
 /* Whether the stamps run at another rate than their arrivals. The trend of all PDUs decides; for a validated sender the
- * lower edge of the delays must agree, which a queue that fills does not move. */
+ * lower edge of the delays since its tie must agree, or the trend be that of a clock that runs slow, which moves that
+ * edge late. */
 static bool runs_wrong(const Sender *sender)
 {
     const DelayTrend *trend = &sender->trend;
@@ -128,6 +132,7 @@ static bool runs_wrong(const Sender *sender)
         fabs(slope) * (trend->last_x_s - trend->first_x_s) <= trend_over_scatter * delay_trend_scatter(trend))
         return false;
     if (sender->standing != SENDER_PROVEN) return true;
+    if (trend->points >= points_again && slope * (trend->last_x_s - trend->first_x_s) > filling_queue_s) return true;
     const double edge = delay_line_edge(&edge_span_s, &middle_s, &sender->line);
     return fabs(edge) > 2 * drift && edge * slope > 0;
 }

@@ -153,10 +153,20 @@ typedef struct DisStopFreeze {
 
 Status dis_decode_remove_entity(DisRemoveEntity *out, const uint8_t *pdu, size_t octets);
 Status dis_decode_start_resume(DisStartResume *out, const uint8_t *pdu, size_t octets);
-Status dis_decode_stop_freeze(DisStopFreeze *out, const uint8_t *pdu, size_t octets);
-size_t dis_encode_remove_entity(uint8_t *out, size_t capacity, const DisRemoveEntity *pdu);
-size_t dis_encode_start_resume(uint8_t *out, size_t capacity, const DisStartResume *pdu);
-size_t dis_encode_stop_freeze(uint8_t *out, size_t capacity, const DisStopFreeze *pdu);
+/* Whether Start/Resume or Stop/Freeze name an entity: they name a simulation, whose entity 0 is the application itself,
+ * and so all that it simulates; 0xFFFF: any. */
+static inline bool dis_simulation_names(DisEntityId named, DisEntityId is)
+{
+    const bool all = named.entity == 0xFFFF || (named.entity == 0 && named.site != 0);
+    return (named.site == is.site || named.site == 0xFFFF) &&
+           (named.application == is.application || named.application == 0xFFFF) && (all || named.entity == is.entity);
+}
+/* Whether those stopped go on transmitting updates: bit 1 of the frozen behaviour. */
+static inline bool dis_stop_lets_report(const DisStopFreeze *pdu) { return pdu->frozen_behaviour >> 1 & 1; }
+Status             dis_decode_stop_freeze(DisStopFreeze *out, const uint8_t *pdu, size_t octets);
+size_t             dis_encode_remove_entity(uint8_t *out, size_t capacity, const DisRemoveEntity *pdu);
+size_t             dis_encode_start_resume(uint8_t *out, size_t capacity, const DisStartResume *pdu);
+size_t             dis_encode_stop_freeze(uint8_t *out, size_t capacity, const DisStopFreeze *pdu);
 
 /* ---- Data (type 20) and Set Data (19) ------------------------------------------------------- */
 

@@ -11,6 +11,7 @@
 enum {
     most_points = 20000000, /* 72 octets each: under 1.5 GB */
     most_tracks = 1 << 20,
+    most_walks = 4096, /* Stop/Freeze and Start/Resume PDUs that are heeded */
     most_warfare = 4000000,
     most_absolute = 65536, /* absolute stamps that are compared; the first ones */
 };
@@ -24,6 +25,7 @@ static const double invented_epoch_s = 1e9; /* captures converted from logs with
 typedef struct TrackBuild {
     int     capacity;
     uint8_t algorithm; /* algorithm of the last Entity State, which gives the axes of an update's velocity */
+    bool    held;      /* stopped by a Stop/Freeze that its reports do not end */
 } TrackBuild;
 
 typedef struct Building {
@@ -38,6 +40,10 @@ typedef struct Building {
     int           warfare_count, warfare_capacity;
     uint64_t      points;
     bool          date_is_credible;
+    int           walks;   /* over all tracks, at Stop/Freeze and Start/Resume */
+    DisEntityId   stopped; /* by the latest Stop/Freeze, and how many points there were then */
+    uint64_t      stopped_points;
+    bool          held;            /* a Stop/Freeze holds some tracks that go on reporting */
     double       *absolute_unix_s; /* for each absolute stamp, in the order received: Unix time of exercise time 0 */
     int           absolute_capacity;
 } Building;
@@ -97,7 +103,8 @@ static Status add_point(Building *b, int t, const double p_ecef[3], const float 
     *point = (TrackPoint){.t_s = t_s,
                           .frozen = appearance >> dis_appearance_frozen_bit & 1,
                           .deactivated = appearance >> dis_appearance_deactivated_bit & 1,
-                          .engine = appearance >> dis_appearance_power_plant_bit & 1};
+                          .engine = appearance >> dis_appearance_power_plant_bit & 1,
+                          .paused = b->build[t].held};
     memcpy(point->p_ecef, p_ecef, sizeof point->p_ecef);
     memcpy(point->euler_rad, euler_rad, sizeof point->euler_rad);
     if (!(v3_length(v) <= largest_speed_mps)) return STATUS_OK;
@@ -235,6 +242,36 @@ static Status settle_date(Building *b)
     return STATUS_OK;
 }
 
+/* Notes at the last points of all that a Stop/Freeze names that they stand from there on. Repetitions and floods of
+ * them must not cost a walk over all tracks each. */
+static void receive_stop(Building *b, const DisStopFreeze *pdu)
+{
+    const bool again = b->stopped_points == b->points && dis_entity_id_compare(b->stopped, pdu->receiving) == 0;
+    if (again || b->walks == most_walks) return;
+    b->walks++;
+    b->stopped = pdu->receiving;
+    b->stopped_points = b->points;
+    b->held |= dis_stop_lets_report(pdu);
+    for (int t = 0; t < b->survey->track_count; t++) {
+        Track *track = b->survey->track + t;
+        if (track->count == 0 || !dis_simulation_names(pdu->receiving, track->id)) continue;
+        track->point[track->count - 1].paused = true;
+        b->build[t].held = dis_stop_lets_report(pdu);
+    }
+}
+
+static void release(Building *b, const DisStartResume *pdu)
+{
+    b->stopped_points = UINT64_MAX;
+    if (!b->held || b->walks == most_walks) return;
+    b->walks++;
+    b->held = false;
+    for (int t = 0; t < b->survey->track_count; t++) {
+        if (dis_simulation_names(pdu->receiving, b->survey->track[t].id)) b->build[t].held = false;
+        b->held |= b->build[t].held;
+    }
+}
+
 /* ---- the pass ----------------------------------------------------------------------------- */
 
 static Status hear(Building *b, const DisPdu *pdu, double t_s)
@@ -255,6 +292,11 @@ static Status hear(Building *b, const DisPdu *pdu, double t_s)
     case dis_pdu_start_resume:
     case dis_pdu_start_resume_r:
         receive_start(b, &pdu->start, t_s);
+        release(b, &pdu->start);
+        return STATUS_OK;
+    case dis_pdu_stop_freeze:
+    case dis_pdu_stop_freeze_r:
+        receive_stop(b, &pdu->stop);
         return STATUS_OK;
     default:
         return STATUS_OK;

@@ -23,6 +23,7 @@ typedef struct TrackPoint {
     double p_ecef[3], v_ecef_mps[3];    /* velocity in world axes, whatever the algorithm */
     float  euler_rad[3];                /* psi, theta, phi as reported: survey_point_rotation */
     bool   frozen, deactivated, engine; /* engine: its power-plant bit */
+    bool   paused;                      /* a Stop/Freeze names it before its next report, or still holds it */
 } TrackPoint;
 
 typedef struct Track {
@@ -68,6 +69,9 @@ typedef struct TrackPose {
     double p_ecef[3], v_ecef_mps[3], r_ecef_from_body[9];
 } TrackPose;
 void survey_track_at(TrackPose *out, const Track *track, double t_s);
+/* Whether a track knows more of t_s than its reports up to then: t_s is not after the last one, and no Stop/Freeze
+ * comes between the reports on both sides of it, whose time tells when it stood. */
+bool survey_track_knows(const Track *track, double t_s);
 void survey_point_rotation(double r_ecef_from_body[9], const TrackPoint *point);
 /* Between two rotations, u 0 .. 1: the shortest turn at an even rate. */
 void survey_turn(double out[9], const double r0[9], const double r1[9], double u);

@@ -114,7 +114,7 @@ void survey_track_at(TrackPose *out, const Track *track, double t_s)
         return;
     }
     const TrackPoint *a = track->point + at, *b = a + 1;
-    if (a->frozen || a->deactivated) { /* the next report is of a new entity, or starts from here */
+    if (a->frozen || a->deactivated || a->paused) { /* the next report is of a new entity, or starts from here */
         hold(out, a, false);
         return;
     }
@@ -137,4 +137,10 @@ void survey_track_at(TrackPose *out, const Track *track, double t_s)
     survey_point_rotation(ra, a);
     survey_point_rotation(rb, b);
     survey_turn(out->r_ecef_from_body, ra, rb, u);
+}
+
+bool survey_track_knows(const Track *track, double t_s)
+{
+    const int at = point_before(track, t_s);
+    return t_s <= track->point[track->count - 1].t_s && (at < 0 || !track->point[at].paused);
 }

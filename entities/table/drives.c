@@ -85,6 +85,13 @@ void drives_fire(DriveState *state, double charge_kg, int rounds)
 
 void drives_launch(DriveState *state, double t_s) { state->motor = (DriveUntil){1, t_s + burn_s}; }
 
+void drives_pause(DriveState *state, double paused_s)
+{
+    DriveUntil *const drive[] = {&state->engine, &state->motor, &state->flare, &state->wreck};
+    for (size_t i = 0; i < sizeof drive / sizeof *drive; i++) drive[i]->until_s += paused_s;
+    state->moved_s += paused_s;
+}
+
 static float now(DriveUntil drive, double t_s) { return t_s < drive.until_s ? (float)drive.value : 0; }
 
 void drives_at(EntityDrives *out, const DriveState *state, double t_s)

@@ -14,7 +14,7 @@ static bool motor_burns(const EntitySlot *slot, double t_s)
 {
     return slot->type.kind == dis_kind_munition &&
            (slot->appearance >> dis_appearance_power_plant_bit & 1 ||
-            (slot->roles >> HEAT_MOTOR & 1 && slot->drives.motor.until_s > t_s));
+            (slot->roles >> HEAT_MOTOR & 1 && slot->drives.motor.until_s > entity_slot_running(slot, t_s)));
 }
 
 /* Distance along body z from the reported position down to the centre of the model's base. */
@@ -105,8 +105,8 @@ void entity_effects_report(EntityTable *table, EntitySlot *slot, double t_s)
         motor.scale = 1;
         motor.at_body[0] = model->box_low[0];
         motor.at_body[2] = below_m - 0.5 * model->height_m;
-        if (!trail && !(bits >> dis_appearance_power_plant_bit & 1))
-            motor.to_s = fmin(motor.to_s, slot->drives.motor.until_s);
+        if (!trail && !(bits >> dis_appearance_power_plant_bit & 1) && !stands)
+            motor.to_s = fmin(motor.to_s, slot->drives.motor.until_s + slot->paused_s);
         open_source(table, slot, 3, &motor, EFFECT_MOTOR_SMOKE, trail ? trail_rate[trail] : 1);
     }
 }
@@ -279,7 +279,7 @@ int entity_effects_carried(EffectPuff out[entity_carried_max], const EntityTable
     const Model       *model = catalog_model(table->catalog, entity->model);
     const EffectTable *effects = effect_history_table(table->effects);
     const bool         platform = slot->type.kind == dis_kind_platform, air = slot->type.domain == dis_domain_air;
-    const double       drive = platform ? drives_engine(&slot->drives, t_s) : 0;
+    const double       drive = platform ? drives_engine(&slot->drives, entity_slot_running(slot, t_s)) : 0;
     const ModelOutlet *outlet = &table->outlet[entity->model];
 
     if (!(fabs(t_s) < effect_latest_s)) return 0;
@@ -288,7 +288,8 @@ int entity_effects_carried(EffectPuff out[entity_carried_max], const EntityTable
                             &(Plume){EFFECT_MOTOR_PLUME, &effects->law[EFFECT_MOTOR_PLUME],
                                      fmax(1.25 * model->length_m, 0.5), clamp(model->width_m / 0.3, 0.5, 4)},
                             t_s);
-    if (slot->type.kind == dis_kind_expendable && slot->roles >> HEAT_FLARE & 1 && slot->drives.flare.until_s > t_s)
+    if (slot->type.kind == dis_kind_expendable && slot->roles >> HEAT_FLARE & 1 &&
+        slot->drives.flare.until_s > entity_slot_running(slot, t_s))
         return fire_about(out, entity, effects);
     if (platform && air && entity->appearance >> dis_appearance_afterburner_bit & 1)
         return plume_behind(out, entity, model, &(Plume){EFFECT_AFTERBURNER, &effects->law[EFFECT_AFTERBURNER], 4, 1},

@@ -73,7 +73,7 @@ static bool blows(EntityTable *table, const EntitySlot *slot, EntityMarks *m, bo
                           .from_s = is_first ? fmax(t_s - before_s, m->from_s) : t_s};
         for (int k = 0; k < 3; k++) b->at_m[k] = (float)jet->at_body[k], b->d[k] = (float)jet->d_body[k];
     }
-    b->to_s = engine->until_s;
+    b->to_s = entity_slot_frozen(slot) || slot->stopped ? INFINITY : engine->until_s;
     return true;
 }
 
@@ -116,17 +116,25 @@ static const ModelStand *stood_of(EntityTable *table, const EntitySlot *slot)
     return s;
 }
 
-/* Records a stand with the first report that finds it old enough, or that ends it. */
-static void record_stand(EntityTable *table, const EntitySlot *slot, EntityMarks *m, double to_s, double t_s)
+/* A recorded stand, and what its exhaust does, last until to_s. */
+static void lasts(EntityTable *table, const EntityMarks *m, double to_s)
 {
     GroundBlow blow = m->blow;
     blow.to_s = fmin(blow.to_s, to_s);
+    ground_stand_until(table->ground, m->stand, to_s);
+    if (blow.to_s > blow.from_s) ground_stand_blows(table->ground, m->stand, &blow);
+}
+
+/* Records a stand with the first report that finds it old enough, or that ends it. */
+static void record_stand(EntityTable *table, const EntitySlot *slot, EntityMarks *m, double to_s, double t_s)
+{
     if (m->stand) {
-        ground_stand_until(table->ground, m->stand, to_s);
-        if (blow.to_s > blow.from_s) ground_stand_blows(table->ground, m->stand, &blow);
+        lasts(table, m, to_s);
         return;
     }
     if (!(t_s - m->from_s >= stood_s)) return;
+    GroundBlow blow = m->blow;
+    blow.to_s = fmin(blow.to_s, to_s);
     const ModelStand *box = stood_of(table, slot);
     GroundStand       stand = {.from_s = m->from_s, .to_s = to_s, .owner = entity_key(slot->id) + 1, .blow = blow};
     set_place(&stand, table, slot, m);
@@ -297,12 +305,15 @@ void entity_marks_report(EntityTable *table, EntitySlot *slot, bool is_first, do
     table->counters.marks_forgotten = (uint64_t)ground_history_forgotten(table->ground);
 }
 
-/* stopped entities do not time out */
+/* stopped entities do not time out, and an engine that runs does so until they go on */
 void entity_marks_stop(EntityTable *table, EntitySlot *slot, double t_s)
 {
     if (!slot->marks) return;
     EntityMarks *m = marks_of(table, slot);
-    if (m->stands) ground_stand_until(table->ground, m->stand, INFINITY);
+    if (m->stands) {
+        if (m->blow.to_s > t_s) m->blow.to_s = INFINITY;
+        lasts(table, m, INFINITY);
+    }
     if (!slot->trails) return;
     TrailSink    sink = {.table = table, .slot = slot, .history = table->ground};
     const double to_s = own_end_s(slot, t_s);
@@ -314,7 +325,10 @@ void entity_marks_start(EntityTable *table, EntitySlot *slot, double t_s)
 {
     if (!slot->marks) return;
     EntityMarks *m = marks_of(table, slot);
-    if (m->stands) ground_stand_until(table->ground, m->stand, fmax(t_s, lasts_until_s(slot)));
+    if (m->stands) {
+        if (m->blow.to_s == INFINITY) m->blow.to_s = slot->drives.engine.until_s + slot->paused_s;
+        lasts(table, m, fmax(t_s, lasts_until_s(slot)));
+    }
     if (!slot->trails) return;
     m->trail.t_s = m->followed_s + slot->paused_s; /* the time of the pause is not part of its speed */
     m->trail.piece = 0;

@@ -66,6 +66,7 @@ static void close_interval(EntitySlot *slot, const double p_next_ecef[3], const 
 
     slot->spin_s = entity_slot_spin(slot, t_s);
     slot->spin_from_s = t_s;
+    drives_pause(&slot->drives, t_s - entity_slot_running(slot, t_s));
     slot->articulation.t_s += t_s - entity_slot_time(slot, t_s); /* joints have followed their rates in its own time */
     dead_reckon(&motion, &slot->reported, entity_slot_dt(slot, t_s));
     double missed_m[3], turn[9];

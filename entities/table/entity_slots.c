@@ -49,7 +49,7 @@ void entity_slot_remove(EntityTable *table, EntitySlot *slot, double t_s, uint64
 double entity_slot_spin(const EntitySlot *slot, double t_s)
 {
     if (entity_slot_frozen(slot) || slot->stopped) return slot->spin_s;
-    return slot->spin_s + fmax(0, fmin(t_s, drives_run_until(&slot->drives)) - slot->spin_from_s);
+    return slot->spin_s + fmax(0, fmin(t_s, drives_run_until(&slot->drives) + slot->paused_s) - slot->spin_from_s);
 }
 
 /* The chord between both positions along their mean heading; within 4 % of the arc for turns of up to a radian. */

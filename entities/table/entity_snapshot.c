@@ -285,7 +285,7 @@ static void finish_entity(SnapshotEntity *e, SnapshotJoints *joints, JointReport
     snapshot_drift(&e->drift_m, &e->drift_rad, moved_s, &slot->missed, e->position_error_m,
                    slot->timeout_s / timeout_per_heartbeat);
     if (stands) e->drift_m = e->drift_rad = 0;
-    drives_at(&e->drives, &slot->drives, t_s);
+    drives_at(&e->drives, &slot->drives, entity_slot_running(slot, t_s));
     e->exhaust = table->outlet[slot->model].is_there ? &table->outlet[slot->model].jet : NULL;
     e->first_patch = -1, e->patches = 0, e->dt_k = 0;
 

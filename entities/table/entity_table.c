@@ -144,8 +144,7 @@ const EffectCounters *entity_table_effect_counters(const EntityTable *table)
 
 static const uint16_t all_ids = 0xFFFF;
 
-enum { frozen_transmits = 1 << 1 }; /* frozen behaviour: stopped entities go on transmitting updates */
-enum { most_rounds = 1000 };        /* most rounds of one Fire PDU: a burst, and not an arbitrary number */
+enum { most_rounds = 1000 }; /* most rounds of one Fire PDU: a burst, and not an arbitrary number */
 
 void entity_table_fire(EntityTable *table, const DisFire *pdu, double t_s)
 {
@@ -155,7 +154,8 @@ void entity_table_fire(EntityTable *table, const DisFire *pdu, double t_s)
     if (firing)
         drives_fire(&firing->drives, effect_charge_kg(&pdu->descriptor, true),
                     rounds < most_rounds ? rounds : most_rounds);
-    if (munition && munition->type.kind == dis_kind_munition) drives_launch(&munition->drives, t_s);
+    if (munition && munition->type.kind == dis_kind_munition)
+        drives_launch(&munition->drives, entity_slot_running(munition, t_s));
     if (firing || munition) table->changes++;
 }
 
@@ -178,13 +178,6 @@ static bool id_matches(DisEntityId asked, DisEntityId is)
            part_matches(asked.entity, is.entity);
 }
 
-/* Start and Stop name a simulation: entity 0 is the application itself, and so all that it simulates. */
-static bool simulation_matches(DisEntityId asked, DisEntityId is)
-{
-    if (asked.entity == 0 && asked.site != 0) asked.entity = all_ids;
-    return id_matches(asked, is);
-}
-
 void entity_table_remove(EntityTable *table, const DisRemoveEntity *pdu, double t_s)
 {
     const DisEntityId asked = pdu->receiving;
@@ -205,14 +198,14 @@ void entity_table_stop(EntityTable *table, const DisStopFreeze *pdu, double t_s)
     if (table->stopped_count == table->count) return; /* a repeated PDU must not cost another walk over all entities */
     for (int s = 0; s < table->slot_end; s++) {
         EntitySlot *slot = table->slot + s;
-        if (!entity_slot_lives(slot) || slot->stopped || !simulation_matches(pdu->receiving, slot->id)) continue;
+        if (!entity_slot_lives(slot) || slot->stopped || !dis_simulation_names(pdu->receiving, slot->id)) continue;
         const double stop_s = fmax(t_s, slot->report_s);
         entity_marks_stop(table, slot, stop_s);
         slot->spin_s = entity_slot_spin(slot, stop_s);
         slot->spin_from_s = stop_s;
         slot->stop_s = stop_s;
         slot->stopped = true;
-        slot->reports_on = pdu->frozen_behaviour & frozen_transmits;
+        slot->reports_on = dis_stop_lets_report(pdu);
         table->stopped_count++;
         entity_effects_report(table, slot, stop_s);
     }
@@ -224,7 +217,7 @@ void entity_table_start(EntityTable *table, const DisStartResume *pdu, double t_
     if (table->stopped_count == 0) return;
     for (int s = 0; s < table->slot_end; s++) {
         EntitySlot *slot = table->slot + s;
-        if (!entity_slot_lives(slot) || !slot->stopped || !simulation_matches(pdu->receiving, slot->id)) continue;
+        if (!entity_slot_lives(slot) || !slot->stopped || !dis_simulation_names(pdu->receiving, slot->id)) continue;
         slot->paused_s += fmax(0, t_s - slot->stop_s);
         slot->spin_from_s = fmax(t_s, slot->stop_s);
         slot->stopped = false;

@@ -134,12 +134,19 @@ static inline double entity_slot_shift_left(double shift_s, double dt_s)
     return sign * fmax(left_s - slow * rest_s, 0);
 }
 
-/* An entity's own time: exercise time less the pauses since its report. It does not advance while the entity is frozen
- * or stopped. */
-static inline double entity_slot_time(const EntitySlot *slot, double t_s)
+/* Exercise time less the pauses since the entity's report. It does not advance while the entity is frozen or stopped.
+ * Its drives run by this time. */
+static inline double entity_slot_running(const EntitySlot *slot, double t_s)
 {
     if (entity_slot_frozen(slot)) return slot->report_s;
-    const double own_s = (slot->stopped ? fmin(t_s, slot->stop_s) : t_s) - slot->paused_s;
+    return (slot->stopped ? fmin(t_s, slot->stop_s) : t_s) - slot->paused_s;
+}
+
+/* An entity's own time, by which it moves: the same, shifted to where its sender's clock was. */
+static inline double entity_slot_time(const EntitySlot *slot, double t_s)
+{
+    const double own_s = entity_slot_running(slot, t_s);
+    if (entity_slot_frozen(slot)) return own_s;
     return slot->shift_s == 0 ? own_s : own_s + entity_slot_shift_left(slot->shift_s, t_s - slot->shift_from_s);
 }
 

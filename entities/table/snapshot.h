@@ -66,6 +66,8 @@ void drives_report(DriveState *state, const DriveEvidence *evidence, double t_s)
  * */
 void drives_fire(DriveState *state, double charge_kg, int rounds);
 void drives_launch(DriveState *state, double t_s);
+/* The entity stood still for this long, by a Freeze or its frozen bit: what ends at a known time ends later. */
+void drives_pause(DriveState *state, double paused_s);
 void drives_at(EntityDrives *out, const DriveState *state, double t_s);
 
 /* Until when engine and rotors turn without a further report: power-plant bit, moving or moved lately, or an air

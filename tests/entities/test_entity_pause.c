@@ -255,12 +255,151 @@ static void nothing_moves_while_frozen(void **state)
     fixture_close(&twins);
 }
 
+/* ---- what runs ------------------------------------------------------------------------------------- */
+
+/* What ends at a known time: a missile's motor 2 s after its launch, a flare 4 s, an engine that idles 120 s after the
+ * tank's last motion (at 10 s, by its report that it stands), a wreck's fire 600 s after the report of its destruction
+ * at 10 s (entities/table/drives.c). */
+typedef struct Running {
+    DisEntityType type;
+    double        stop_s, ends_s;
+    float         value;
+} Running;
+
+static const Running running[] = {{{2, 2, 225, 1, 1, 3, 0}, 0.5, 2, 1},
+                                  {{8, 2, 225, 2, 0, 0, 0}, 1, 4, 1},
+                                  {{1, 1, 222, 1, 1, 1, 0}, 20.5, 130, 0.6f},
+                                  {{1, 1, 222, 1, 1, 1, 0}, 20.5, 610, 1}};
+
+static float drive_of(Fixture *f, int k, double t_s)
+{
+    const SnapshotEntity *e = seen_at(f, 1, t_s);
+    CHECK(e != NULL);
+    return k == 0 ? e->drives.motor : k == 1 ? e->drives.flare : k == 2 ? e->drives.engine : e->drives.burning;
+}
+
+/* Whether gas is there that burns now; of the tank that idles, exhaust. */
+static bool glows(Fixture *f, int k, double t_s)
+{
+    static const EffectKind kind[] = {EFFECT_MOTOR_PLUME, EFFECT_FLARE_FIRE, EFFECT_EXHAUST};
+    bool                    is_there = false;
+    seen_at(f, 1, t_s);
+    for (int i = 0; i < f->snapshot.puff_count; i++) is_there |= f->snapshot.puff[i].kind == kind[k];
+    return is_there;
+}
+
+/* How a pause is made: by Stop and Start, by the frozen bit of ten reports, by a Stop that a report ends, by a Stop
+ * with reports within it. */
+typedef enum Pause { PAUSE_START, PAUSE_FROZEN, PAUSE_REPORT, PAUSE_REPORTS_ON, pauses } Pause;
+
+enum { pause_s = 100 };
+
+static void pause_it(Fixture *f, DisEntityState pdu, Pause how, double from_s)
+{
+    const DisStopFreeze stop = {.receiving = {0xFFFF, 0xFFFF, 0xFFFF},
+                                .frozen_behaviour = how == PAUSE_REPORTS_ON ? 2 : 0};
+    DisEntityState      frozen = pdu;
+    frozen.appearance |= frozen_bit;
+    if (how != PAUSE_FROZEN) entity_table_stop(f->table, &stop, from_s);
+    for (int i = 0; how == PAUSE_FROZEN && i < 10; i++) hear(f, &frozen, from_s + 10 * i);
+    if (how == PAUSE_REPORTS_ON) hear(f, &pdu, from_s + 30), hear(f, &pdu, from_s + 60);
+    CHECK(entity_table_count(f->table) == 1);
+}
+
+/* None of it runs on while its entity stands: after a pause of 100 s each ends 100 s later, whatever made the pause. */
+static void drives_stand_in_a_pause(void **state)
+{
+    (void)state;
+    const DisStartResume start = {.receiving = {0xFFFF, 0xFFFF, 0xFFFF}};
+    for (int k = 0; k < 4; k++)
+        for (Pause how = PAUSE_START; how < pauses; how++) {
+            const Running *r = &running[k];
+            const double   on_s = r->stop_s + pause_s, off_s = r->ends_s + pause_s;
+            Fixture        f = fixture_open(NULL);
+            DisEntityState pdu = report(1, r->type);
+            pdu.velocity_mps[2] = k == 2 ? 10 : 0;
+            hear(&f, &pdu, 0);
+            pdu.velocity_mps[2] = 0;
+            if (k == 3) pdu.appearance = destroyed_bits;
+            for (int t_s = 10; t_s < r->stop_s; t_s += 10) hear(&f, &pdu, t_s);
+            pause_it(&f, pdu, how, r->stop_s);
+            CHECK(drive_of(&f, k, r->stop_s + 99) == r->value && (k == 3 || glows(&f, k, r->stop_s + 99)));
+            if (how == PAUSE_FROZEN || how == PAUSE_REPORT) hear(&f, &pdu, on_s);
+            else entity_table_start(f.table, &start, on_s);
+            for (double t_s = on_s + 10; t_s < off_s; t_s += 10) hear(&f, &pdu, t_s);
+            CHECK(drive_of(&f, k, off_s - 1e-3) == r->value && drive_of(&f, k, off_s + 1e-3) == 0);
+            CHECK(k == 3 || (glows(&f, k, off_s - 1e-3) && !glows(&f, k, off_s + 1e-3)));
+            fixture_close(&f);
+        }
+}
+
+/* Age of the youngest smoke of motors, s. */
+static double youngest_s(Fixture *f, double t_s)
+{
+    double age_s = INFINITY;
+    seen_at(f, 1, t_s);
+    for (int i = 0; i < f->snapshot.puff_count; i++)
+        if (f->snapshot.puff[i].kind == EFFECT_MOTOR_SMOKE) age_s = fmin(age_s, f->snapshot.puff[i].age_s);
+    return age_s;
+}
+
+/* A motor that stands smokes where it is, as all that smoked does. Its smoke ends with it: at 106 s, 4 s after its end,
+ * the youngest is 4 s old, and at most the interval of two puffs (0.05 s or less) older. The Fire of a munition that
+ * stands lights its motor for 2 s of its own time. */
+static void a_motor_stands_with_its_munition(void **state)
+{
+    (void)state;
+    Fixture              f = fixture_open(NULL);
+    const DisEntityState pdu = report(1, running[0].type);
+    hear(&f, &pdu, 0);
+    pause_it(&f, pdu, PAUSE_START, 0.5);
+    CHECK_NEAR(youngest_s(&f, 50), 0.05, 0.05);
+    entity_table_start(f.table, &(DisStartResume){.receiving = {0xFFFF, 0xFFFF, 0xFFFF}}, 100.5);
+    CHECK_NEAR(youngest_s(&f, 106), 4.05, 0.05);
+
+    entity_table_stop(f.table, &(DisStopFreeze){.receiving = {0xFFFF, 0xFFFF, 0xFFFF}}, 107);
+    entity_table_fire(f.table, &(DisFire){.munition = pdu.id}, 120);
+    entity_table_start(f.table, &(DisStartResume){.receiving = {0xFFFF, 0xFFFF, 0xFFFF}}, 130);
+    CHECK(drive_of(&f, 0, 131.99) == 1 && drive_of(&f, 0, 132.01) == 0);
+    fixture_close(&f);
+}
+
+/* A ship's radar turns by its engine, which stops 120 s after the last motion: it stands in the pause, and turns on as
+ * that of a twin that was never stopped, until the engine's end and after it. */
+static void a_radar_turns_until_the_engine_ends(void **state)
+{
+    (void)state;
+    static const DisEntityType ship_type = {1, 3, 225, 6, 1, 0, 0};
+    Fixture                    f = fixture_open(NULL), twin = fixture_open(NULL);
+    DisEntityState             pdu = report(1, ship_type);
+    pdu.velocity_mps[2] = 10;
+    hear(&f, &pdu, 0), hear(&twin, &pdu, 0);
+    pdu.velocity_mps[2] = 0;
+    for (int t_s = 10; t_s <= 120; t_s += 10) hear(&f, &pdu, t_s), hear(&twin, &pdu, t_s);
+    pause_it(&f, pdu, PAUSE_START, 125);
+    entity_table_start(f.table, &(DisStartResume){.receiving = {0xFFFF, 0xFFFF, 0xFFFF}}, 225);
+    for (double t_s = 125.5; t_s < 132; t_s += 0.7) {
+        const Posed now = posed_at(&f, 1, t_s + pause_s), other = posed_at(&twin, 1, t_s);
+        CHECK_NEAR(apart(&now, &other), 0, 1e-9);
+    }
+    const Posed before = posed_at(&twin, 1, 129), end = posed_at(&twin, 1, 130), after = posed_at(&twin, 1, 131);
+    CHECK(apart(&before, &end) > 0.1 && apart(&end, &after) == 0);
+    fixture_close(&f);
+    fixture_close(&twin);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(stop_and_start),           cmocka_unit_test(a_pause_is_no_silence),
-        cmocka_unit_test(reports_within_a_pause),   cmocka_unit_test(reliable_ones_act),
-        cmocka_unit_test(nothing_moves_in_a_pause), cmocka_unit_test(nothing_moves_while_frozen),
+        cmocka_unit_test(stop_and_start),
+        cmocka_unit_test(a_pause_is_no_silence),
+        cmocka_unit_test(reports_within_a_pause),
+        cmocka_unit_test(reliable_ones_act),
+        cmocka_unit_test(nothing_moves_in_a_pause),
+        cmocka_unit_test(nothing_moves_while_frozen),
+        cmocka_unit_test(drives_stand_in_a_pause),
+        cmocka_unit_test(a_motor_stands_with_its_munition),
+        cmocka_unit_test(a_radar_turns_until_the_engine_ends),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -97,8 +97,10 @@ static void a_tank_leaves_tracks_and_a_stand(void **state)
     /* forward is north */
     CHECK_NEAR(s->r_ecef_from_body[6], 1, 1e-6);
     /* its engine idles for two minutes */
-    CHECK(s->blow.from_s == arrives_s && s->blow.to_s == arrives_s + 120 && s->blow.excess_k > 100 &&
-          s->blow.radius_m > 0.05f);
+    CHECK(s->blow.from_s == arrives_s && s->blow.to_s == arrives_s + 120);
+    /* exhaust of etc/effects.csv: 380 K, and 0.12 m at a vehicle of 40 m3 */
+    CHECK_NEAR(s->blow.excess_k, 380, 1e-3);
+    CHECK_NEAR(s->blow.radius_m, 0.12 * cbrt(model->length_m * model->width_m * model->height_m / 40), 1e-6);
 
     /* 200 m in four pieces of 50 m at most (the reports are 50 m apart), 100 m in two */
     CHECK(m->tracks == 6);
@@ -115,7 +117,8 @@ static void a_tank_leaves_tracks_and_a_stand(void **state)
         /* 0.5 x 5 % of the weight a metre, over two widths; box density 0.9 t/m3 */
         const double weight_n = 900 * model->length_m * model->width_m * model->height_m * 9.80665;
         CHECK_NEAR(t->heat_j_m2, 0.025 * weight_n / (2 * 0.16 * model->width_m), 0.01);
-        CHECK(t->heat_j_m2 > 3e3 && t->heat_j_m2 < 5e4);
+        /* a T-72 of 41 t: 0.5 x 5 % x 402 kN over two tracks of 0.58 m, 8.7 kJ/m2; stated is a factor of two */
+        CHECK(t->heat_j_m2 > 8.7e3 / 2.01 && t->heat_j_m2 < 8.7e3 * 2.01);
     }
     CHECK_NEAR(sum_m, 300, 1e-6);
     fixture_close(&f);
@@ -131,7 +134,8 @@ static void a_lorry_leaves_the_tracks_of_tyres(void **state)
     const GroundMarks *m = marks_at(&f, ends_s);
     const Model       *model = catalog_model(f.catalog, catalog_find(f.catalog, truck_type, NULL, NULL));
     const double       weight_n = 350 * model->length_m * model->width_m * model->height_m * 9.80665;
-    CHECK(m->tracks > 0 && weight_n > 5e4 && weight_n < 4e5);
+    CHECK(m->tracks > 0);
+    CHECK_NEAR(weight_n, 19e3 * 9.80665, 0.35 * 19e3 * 9.80665); /* a lorry of 19 t, of this shape's box */
     for (int i = 0; i < m->tracks; i++) {
         CHECK(!m->track[i].tracked);
         CHECK_NEAR(m->track[i].width_m, 0.1 * model->width_m, 1e-6);
@@ -161,6 +165,36 @@ static void an_engine_that_starts_again_is_another_stand(void **state)
     fixture_close(&f);
 }
 
+/* A tank that stopped at 100 s idles until 220 s and warms the ground behind it until then; a Freeze of 1000 s from 210
+ * s on, or as many of its reports with the frozen bit, lets it do so until the Freeze's end and 10 s more, as one
+ * stand. A report holds for 12 s. */
+static void an_engine_stands_with_its_tank(void **state)
+{
+    (void)state;
+    for (int frozen = 0; frozen < 2; frozen++) {
+        Fixture        f = fixture_open(NULL);
+        DisEntityState pdu = driving(1, tank_type, 0, 1);
+        for (int t_s = 0; t_s < 210; t_s += 10) {
+            if (t_s == 100) pdu = driving(1, tank_type, 0, 0);
+            hear(&f, &pdu, t_s);
+        }
+        if (!frozen) entity_table_stop(f.table, &(DisStopFreeze){.receiving = {0xFFFF, 0xFFFF, 0xFFFF}}, 210);
+        pdu.appearance = frozen_bit;
+        for (int t_s = 210; frozen && t_s < 1210; t_s += 10) hear(&f, &pdu, t_s);
+        CHECK(marks_at(&f, 1205)->stand[0].blow.to_s == (frozen ? 1212 : INFINITY));
+        if (!frozen) entity_table_start(f.table, &(DisStartResume){.receiving = {0xFFFF, 0xFFFF, 0xFFFF}}, 1210);
+        pdu.appearance = 0;
+        for (int k = 0; k < 4; k++) {
+            const GroundMarks *m = marks_at(&f, 1210 + 10 * k);
+            CHECK(m->stands == 1 && m->stand[0].blow.from_s == 100);
+            CHECK(m->stand[0].blow.to_s == fmin(1220, 1200 + 10 * k + 12));
+            hear(&f, &pdu, 1210 + 10 * k);
+        }
+        CHECK(marks_at(&f, 1240)->stand[0].blow.to_s == 1220);
+        fixture_close(&f);
+    }
+}
+
 /* The same PDUs: the same bits, whatever snapshots were taken in between, and in any order afterwards. */
 static void marks_depend_on_pdus_alone(void **state)
 {
@@ -170,6 +204,7 @@ static void marks_depend_on_pdus_alone(void **state)
     drive(&g, 3);
     for (int k = 0; k < 7; k++) {
         const double t_s = ends_s + 0.613 * (k * 4 % 7);
+        marks_at(&g, ends_s + 0.613 * (6 - k)); /* g is asked in another order than f */
         same_marks(marks_at(&f, t_s), marks_at(&g, t_s));
     }
     fixture_close(&f);
@@ -684,6 +719,7 @@ int main(void)
         cmocka_unit_test(a_tank_leaves_tracks_and_a_stand),
         cmocka_unit_test(a_lorry_leaves_the_tracks_of_tyres),
         cmocka_unit_test(an_engine_that_starts_again_is_another_stand),
+        cmocka_unit_test(an_engine_stands_with_its_tank),
         cmocka_unit_test(marks_depend_on_pdus_alone),
         cmocka_unit_test(timeouts_found_late_change_nothing),
         cmocka_unit_test(the_trail_reaches_its_vehicle),

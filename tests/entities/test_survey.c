@@ -365,6 +365,47 @@ static void no_overshoot(void **state)
     }
 }
 
+/* Between which reports a track knows where its entity was: not where a Stop/Freeze that names it came between them,
+ * and not between reports within one that lets it report (frozen behaviour, bit 1), until Start/Resume; a report ends
+ * any other. Where it does not, it stands at the report before. */
+static void a_stop_hides_what_was_between_reports(void **state)
+{
+    (void)state;
+    static const struct {
+        DisEntityId named;
+        uint8_t     behaviour;
+        bool        knows[4]; /* between the reports at 0, 1, 2, 3 and 4 s; the Stop is at 1.5 s, the Start at 2.5 s */
+    } c[] = {{{0xFFFF, 0xFFFF, 0xFFFF}, 0, {true, false, true, true}},
+             {{0xFFFF, 0xFFFF, 0xFFFF}, 2, {true, false, false, true}},
+             {{1, 2, 0}, 1, {true, false, true, true}},
+             {{1, 2, 7}, 0, {true, false, true, true}},
+             {{1, 2, 8}, 2, {true, true, true, true}},
+             {{1, 3, 0}, 2, {true, true, true, true}}};
+    for (size_t k = 0; k < sizeof c / sizeof *c; k++) {
+        MadeLog            *m = new_log(1e9);
+        Survey              survey;
+        const DisStopFreeze stop = {
+            .header = header(m, dis_pdu_stop_freeze, 1.5), .receiving = c[k].named, .frozen_behaviour = c[k].behaviour};
+        const DisStartResume start = {.header = header(m, dis_pdu_start_resume, 2.5),
+                                      .receiving = {0xFFFF, 0xFFFF, 0xFFFF}};
+        for (int t_s = 0; t_s < 5; t_s++) {
+            say_state(m, t_s, state_of(7, 10 * t_s));
+            if (t_s == 1) filled(m, dis_encode_stop_freeze(room(m, 1.5), 150, &stop));
+            if (t_s == 2) filled(m, dis_encode_start_resume(room(m, 2.5), 150, &start));
+        }
+        assert_int_equal(survey_log(&survey, &m->log, -1), STATUS_OK);
+        const Track *track = survey_track(&survey, id_of(7));
+        CHECK(track && track->count == 5 && !survey_track_knows(track, 4.01) && survey_track_knows(track, 4));
+        for (int t = 0; t < 4; t++) {
+            TrackPose pose;
+            CHECK(survey_track_knows(track, t + 0.75) == c[k].knows[t]);
+            survey_track_at(&pose, track, t + 0.5);
+            CHECK_NEAR(pose.p_ecef[0], 6.4e6 + 10 * t + (c[k].knows[t] ? 5 : 0), 2e-5); /* a stamp's tick is 1.7 us */
+        }
+        survey_destroy(&survey);
+    }
+}
+
 static void ends_and_gaps_are_held(void **state)
 {
     (void)state;
@@ -524,6 +565,7 @@ int main(void)
         cmocka_unit_test(constant_acceleration_is_exact),
         cmocka_unit_test(no_overshoot),
         cmocka_unit_test(ends_and_gaps_are_held),
+        cmocka_unit_test(a_stop_hides_what_was_between_reports),
         cmocka_unit_test(attitude_turns_evenly),
         cmocka_unit_test(the_recorded_attack),
         cmocka_unit_test(the_recorded_drives),

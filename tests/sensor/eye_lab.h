@@ -123,6 +123,30 @@ static inline void lab_say(const LabReport *r)
                                     .bytes = lab.octets[n]};
 }
 
+/* A Stop/Freeze or Start/Resume of all, at t_s. */
+static inline void lab_pause(double t_s, bool stop)
+{
+    const DisEntityId all = {0xFFFF, 0xFFFF, 0xFFFF};
+    const int         n = lab.reports++;
+    CHECK(n < lab_most_reports);
+    DisHeader header = {
+        .version = 7, .exercise = 1, .family = 5, .timestamp = (uint32_t)(t_s / 3600 * 2147483648.0) << 1};
+    size_t octets;
+    header.type = stop ? dis_pdu_stop_freeze : dis_pdu_start_resume;
+    if (stop)
+        octets = dis_encode_stop_freeze(lab.octets[n], lab_octets,
+                                        &(DisStopFreeze){.header = header, .originating = {1, 1, 0}, .receiving = all});
+    else
+        octets = dis_encode_start_resume(
+            lab.octets[n], lab_octets, &(DisStartResume){.header = header, .originating = {1, 1, 0}, .receiving = all});
+    CHECK(octets > 0);
+    lab.datagram[n] = (DisDatagram){.capture_s = 1e9 + t_s,
+                                    .packet_s = 1e9 + t_s,
+                                    .packet = (uint32_t)n + 1,
+                                    .octets = (uint32_t)octets,
+                                    .bytes = lab.octets[n]};
+}
+
 static inline void lab_forget(void) { lab.reports = 0; }
 
 static inline void lab_shoot(void *user, const Frame *frame)

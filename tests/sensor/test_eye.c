@@ -239,6 +239,42 @@ static void a_missile_holds_its_aim(void **state)
         }
 }
 
+/* A missile in straight flight at 250 m/s, stopped from 1.2 to 6.2 s between two of its reports: its eye stands where
+ * it then is, and is where it would have been 5 s earlier afterwards, of a replay that knows the next report as of one
+ * that does not. Stamps and floats of velocity: a millimetre. */
+static void a_stopped_missile_stands(void **state)
+{
+    (void)state;
+    SensorRow    rows[32];
+    const double speed_mps = 250;
+    CHECK(read_sensors(rows) > 0);
+    for (int causal = 0; causal < 2; causal++) {
+        Config config = lab_config(&rows[0]);
+        lab_forget();
+        for (int k = 0; k <= 20; k++) {
+            const double own_s = 0.2 * k + 0.1, t_s = own_s < 1.2 ? own_s : own_s + 5;
+            LabReport    r = {.t_s = 100 + t_s,
+                              .entity = 2,
+                              .type = missile,
+                              .p_enu = {300, speed_mps * (own_s - 5), 100},
+                              .v_enu_mps = {0, speed_mps, 0}};
+            test_attitude(r.r_enu_from_body, 0, 0, 0);
+            if (k == 6) lab_pause(101.2, true), lab_pause(106.2, false);
+            lab_say(&r);
+        }
+        strcpy(config.exercise.host, causal ? "munition" : "1:1:2");
+        config.exercise.causal = causal;
+        config.sensor.gimbal_limit_deg = 0;
+        config.sensor.mount_x_m = config.sensor.mount_y_m = config.sensor.mount_z_m = 0;
+        lab_run(&config, 0.5, 20, 140);
+        CHECK(lab.shots == 140);
+        for (int k = 0; k < lab.shots; k++) {
+            const double t_s = lab.shot[k].t_s - 100, own_s = t_s < 1.2 ? t_s : t_s < 6.2 ? 1.2 : t_s - 5;
+            CHECK_NEAR(lab.shot[k].p_enu[1], speed_mps * (own_s - 5), 1e-3);
+        }
+    }
+}
+
 /* The same with the seeker fixed on a body that turns about all axes: rate by rate. */
 static void a_turning_missile_smears_along_the_right_axes(void **state)
 {
@@ -314,6 +350,7 @@ int main(void)
         cmocka_unit_test(a_turning_vehicle_smears_by_its_rate),
         cmocka_unit_test(an_aircraft_sees_the_ground_go_by),
         cmocka_unit_test(a_missile_holds_its_aim),
+        cmocka_unit_test(a_stopped_missile_stands),
         cmocka_unit_test(a_turning_missile_smears_along_the_right_axes),
         cmocka_unit_test(a_sensor_far_out_moves_with_the_turn),
     };

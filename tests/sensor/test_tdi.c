@@ -152,8 +152,9 @@ static void a_row_has_one_detector(void **state)
     const PhotonDetector d = preset_photons(&p);
     const double         signal_e = photon_electrons(&d, 300, NULL), step_e = chain_step_e(chain);
     const double sigma2 = signal_e + d.dark_e, want2 = (sigma2 + 1e-4 * signal_e * signal_e) / (step_e * step_e);
-    CHECK_NEAR(spread / want2, 1, 4 * sqrt(2.0 / height));
-    CHECK_NEAR(along / (sigma2 / (step_e * step_e) / width), 1, 4 * sqrt(2.0 / height));
+    /* variances of 120 rows: three of their standard errors of 13 %, so that half and double fail */
+    CHECK_NEAR(spread / want2, 1, 3 * sqrt(2.0 / height));
+    CHECK_NEAR(along / (sigma2 / (step_e * step_e) / width), 1, 3 * sqrt(2.0 / height));
     chain_destroy(chain);
 }
 

@@ -116,9 +116,11 @@ static void bare_hills_and_terraces_stay(void **state)
         const double rms = ground_rms(&s, 10);
         size_t       objects = 0;
         for (size_t c = 0; c < 90000; c++) objects += s.parts.kind[c] != CELL_BARE;
-        if (rms > 0.3 || objects > 900) print_message("shape %d: rms %.3f m, %zu cells\n", k, rms, objects);
-        CHECK(rms < 0.3);
-        CHECK(objects < 900);
+        if (rms > 0.07 || objects > 130) print_message("shape %d: rms %.3f m, %zu cells\n", k, rms, objects);
+        /* Bounds of a heuristic have no paper value. These, and those of the ground below, are half as wide again to
+         * twice what these shapes give; of real lidar, with low plants and walls, the ground is within 0.34 m rms. */
+        CHECK(rms < 0.07);
+        CHECK(objects < 130);
         site_free(&s);
     }
 }
@@ -140,7 +142,7 @@ static void houses_and_trees_are_told_apart(void **state)
         for (int kind = CELL_BUILDING; kind <= CELL_TREE; kind++) rates(&recall[kind], &precision[kind], &s, kind);
         print_message("%.1f m: ground %.3f m rms, roofs %.3f found %.3f right, trees %.3f %.3f, crowns %d of 30\n",
                       cell_m, ground_rms(&s, 0), recall[1], precision[1], recall[2], precision[2], s.parts.crown_count);
-        CHECK(ground_rms(&s, 0) < 0.3);
+        CHECK(ground_rms(&s, 0) < 0.035);
         CHECK(recall[1] > 0.9 && precision[1] > 0.9);
         CHECK(recall[2] > 0.85 && precision[2] > 0.9);
         CHECK(s.parts.crown_count >= 28 && s.parts.crown_count <= 36);
@@ -167,7 +169,7 @@ static void a_wide_roof_is_no_ground(void **state)
     rates(&recall, &precision, &s, CELL_BUILDING);
     print_message("roof 100 m wide: %.3f found, %.3f right, ground %.3f m\n", recall, precision, ground_rms(&s, 0));
     CHECK(recall > 0.95 && precision > 0.95);
-    CHECK(ground_rms(&s, 0) < 0.6);
+    CHECK(ground_rms(&s, 0) < 0.25);
     site_free(&s);
 }
 
@@ -183,7 +185,7 @@ static void a_forested_slope_keeps_its_slope(void **state)
     for (size_t c = 0; c < 57600; c++) closed += s.kind[c] == CELL_TREE;
     print_message("forest %.1f %% closed: ground %.3f m rms, %.3f inside\n", (double)closed / 576, ground_rms(&s, 12),
                   ground_rms(&s, 80));
-    CHECK(ground_rms(&s, 12) < 1.5);
+    CHECK(ground_rms(&s, 12) < 0.17);
     site_free(&s);
 }
 
@@ -260,7 +262,7 @@ static void spikes_leave_no_mark(void **state)
     for (int j = 100; j < 140; j++)
         for (int i = 60; i < 100; i++) s.surface_m[j * 200 + i] = NAN;
     site_run(&s);
-    CHECK(ground_rms(&s, 0) < 0.05);
+    CHECK(ground_rms(&s, 0) < 0.03);
     CHECK(s.parts.crown_count == 0);
     site_free(&s);
 }

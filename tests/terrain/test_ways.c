@@ -205,7 +205,7 @@ static void tracks_have_ruts(void **state)
     }
     print_message("worst height %.1e m, ruts %.3f, middle %.3f\n", worst_m, (double)albedo[across * 7 / 10],
                   (double)albedo[across / 2]);
-    CHECK(worst_m < 1e-3);
+    CHECK(worst_m < 1e-5); /* floats of slopes, summed over 3 m; ruts are 45 mm deep */
     CHECK(albedo[across * 7 / 10] > albedo[across / 2] + 0.2f && warmth_k[across * 7 / 10] > warmth_k[across / 2]);
     /* means over 0.5 m of it */
     ask_section(&land, middle, left, 0.5);

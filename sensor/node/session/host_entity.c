@@ -23,8 +23,7 @@ typedef struct EntityHost {
 static bool tracked(const EntityHost *h, double t_s)
 {
     const Track *track = survey_track(h->s->shared->survey, h->s->plan.host);
-    return h->s->plan.munition && !h->s->shared->config->exercise.causal && track &&
-           t_s <= track->point[track->count - 1].t_s;
+    return h->s->plan.munition && !h->s->shared->config->exercise.causal && track && survey_track_knows(track, t_s);
 }
 
 /* Pose of the host at t_s, and of its nodes where the sensor is mounted on one. */
