@@ -84,6 +84,7 @@ static void fill_stand(WoodStand *s)
     }
     /* one whose leaves face no way, and one whose bark sees more than all, as numbers of a few rays may */
     s->view[1].leaf.n[0] = s->view[1].leaf.n[1] = 0;
+    s->view[3].bark.n[1] = 0.8, s->view[4].bark.n[1] = -0.7; /* and bark that leans far */
     s->view[2].bark.front_up = 1.1 * s->view[2].bark.bright;
 }
 

@@ -253,7 +253,7 @@ static double bark_by_sides(const WoodStand *s, int view, const double n_bark[3]
 {
     double l1 = 0, l2 = 0, rise = 0;
     for (int k = -1; k <= 1; k++) {
-        const double up = fmin(s->view[view].bark.n[1] + 0.6 * k, 0.95), level = sqrt(1 - up * up);
+        const double up = fmax(fmin(s->view[view].bark.n[1] + 0.6 * k, 0.95), -0.95), level = sqrt(1 - up * up);
         l1 += level, l2 += level * level, rise += level * up;
     }
     return bark_mean_k + bark_side_k * cos(atan2(n_bark[1], n_bark[0]) - bark_side_rad) * 0.774852 * l2 / l1 +

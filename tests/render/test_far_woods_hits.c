@@ -2,6 +2,35 @@
  * of stands that are made by hand. labels: physics */
 #include "tests/render/far_woods_stage.h"
 
+/* ---- nodes ------------------------------------------------------------------------------------ */
+
+typedef int PlaceAt(double *share, double rad);
+
+/* Each node is its own place, with none of the next one's share but at the end; halfway between two is half of each. */
+static void between_nodes(PlaceAt *place, const double *deg, int count)
+{
+    double share;
+    for (int k = 0; k < count; k++) {
+        const int at = place(&share, deg[k] * rad_per_deg);
+        CHECK_NEAR(at + share, k, 1e-9);
+        CHECK(at >= 0 && at <= count - 2);
+        if (k == count - 1) continue;
+        CHECK(place(&share, (0.75 * deg[k] + 0.25 * deg[k + 1]) * rad_per_deg) == k);
+        CHECK_NEAR(share, 0.25, 1e-9);
+    }
+    CHECK(place(&share, (deg[0] - 1) * rad_per_deg) == 0 && share == 0);
+    CHECK(place(&share, (deg[count - 1] + 1) * rad_per_deg) == count - 2 && share == 1);
+}
+
+static void places_among_nodes(void **state)
+{
+    (void)state;
+    between_nodes(far_stand_at_view, view_deg, stand_views);
+    between_nodes(far_stand_at_sun, sun_deg, stand_suns);
+    between_nodes(far_stand_at_azimuth, azimuth_deg, stand_azimuths);
+    for (int k = 0; k < stand_azimuths; k++) CHECK_NEAR(far_stand_azimuth(k), azimuth_deg[k] * pi_rad / 180, 1e-12);
+}
+
 /* ---- hits ------------------------------------------------------------------------------------- */
 
 enum { hits_count = 400 };
@@ -130,10 +159,48 @@ static void hits_are_between_nodes(void **state)
     arena_reset(arena);
 }
 
+/* Ground of forest where nothing was planted is that of its class; parts, plants and other ground are none. Woods of
+ * which trees stand nowhere, on level land of three classes. */
+static void only_ground_is_found(void **state)
+{
+    (void)state;
+    LandscapeConfig   config = landscape_default_config();
+    const WoodsConfig bare = {.seed = 5, .half_width_m = 200, .most_trees = 0};
+    const Geodetic    origin = {0.9, 0.2, 100};
+    LocalFrame        frame;
+    Landscape         land;
+    Woods             woods;
+    FarWoods          of_land = far;
+    static FarPlaces  found;
+    config.half_width_m = 400, config.horizon_m = 1000;
+    assert_int_equal(local_frame_at(&frame, &origin), STATUS_OK);
+    assert_int_equal(landscape_create(&land, &config, &frame, NULL, 0, NULL, 0), STATUS_OK);
+    assert_int_equal(woods_create(&woods, &land, &bare, NULL), STATUS_OK);
+    of_land.woods = &woods;
+    memset(&hits, 0, sizeof hits);
+    hits.count = 6;
+    static const uint8_t kind[6] = {hit_ground, hit_ground, hit_part, hit_plant, hit_ground, hit_ground},
+                         surface[6] = {SURFACE_FOREST_BROADLEAF, SURFACE_FOREST_CONIFER, SURFACE_FOREST_CONIFER,
+                                       SURFACE_FOREST_BROADLEAF, SURFACE_ROAD,           SURFACE_GRASS};
+    for (int i = 0; i < 6; i++) {
+        hits.kind[i] = kind[i], hits.surface[i] = surface[i], hits.range_m[i] = 10;
+        hits.p_enu[0][i] = 5000 + i, hits.p_enu[1][i] = 5000; /* beyond what is planted */
+    }
+    CHECK(far_woods_find(&found, &of_land, &hits));
+    CHECK(found.stand[0] == 1 && found.stand[1] == 2 && !found.stand[2] && !found.stand[3] && !found.stand[4] &&
+          !found.stand[5]);
+    hits.kind[0] = hits.kind[1] = hit_part;
+    CHECK(!far_woods_find(&found, &of_land, &hits) && !found.stand[0]);
+    woods_destroy(&woods);
+    landscape_destroy(&land);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(places_among_nodes),
         cmocka_unit_test(hits_are_between_nodes),
+        cmocka_unit_test(only_ground_is_found),
     };
     return cmocka_run_group_tests(tests, open_stands, close_stands);
 }

@@ -10,7 +10,7 @@
 enum { row_bark = 1, row_pine_leaf, row_leaf, rows_before, rows_most = rows_before + far_stands };
 
 static Plants   *plants;
-static PlantQuad quads[2];
+static PlantQuad quads[2], pine_quads[2];
 static Material  first_rows[rows_before];
 static Materials materials;
 static Plant     one = {.kind = PLANT_BIRCH, .height = 1000, .width = 128};
@@ -63,16 +63,17 @@ static void grow(int bark, int leaves, double leaf_area, double crown_radius)
         }
         for (int level = 0; level < plant_levels; level++) {
             PlantShape *s = &plants->shape[kind][level];
+            PlantQuad  *of = kind == PLANT_PINE && pine_quads[0].radius > 0 ? pine_quads : quads;
             *s = (PlantShape){.quads = bark + leaves,
                               .pieces = bark,
                               .leaves = leaves,
-                              .quad = quads,
+                              .quad = of,
                               .bark_quads = bark,
                               .leaf_area = (float)leaf_area,
                               .crown_radius = (float)crown_radius};
             for (int c = 0; c < 3; c++) s->low[c] = INFINITY, s->high[c] = -INFINITY;
             for (int k = 0; k < 12 * s->quads; k++) {
-                const float at = quads[k / 12].corner[k / 3 % 4][k % 3];
+                const float at = of[k / 12].corner[k / 3 % 4][k % 3];
                 s->low[k % 3] = fminf(s->low[k % 3], at), s->high[k % 3] = fmaxf(s->high[k % 3], at);
             }
         }
@@ -229,6 +230,49 @@ static void level_leaves(void **state)
     free(materials.material);
 }
 
+/* ---- plates in pairs, low plates -------------------------------------------------------------- */
+
+/* Upright plates lower than a metre: of an index L they hide the ground from the sun as from the eye, of each by itself
+ * where these look along different azimuths: exp(-L G / sin h). */
+static void low_plates_shade_the_ground(void **state)
+{
+    (void)state;
+    open_materials();
+    quads[0] =
+        plate(PLANT_LEAF, (const double[3]){0, 0, 0.018}, (const double[3]){1.5, 0, 0}, (const double[3]){0, 0, 0.036});
+    const double index = index_of(SURFACE_FOREST_BROADLEAF, 1, 1.5 * 0.036);
+    WoodStand   *stand = stand_of(SURFACE_FOREST_BROADLEAF, 1, 0, 1, 0, 0.6);
+    CHECK(stand->top_m > 0.1 && stand->top_m < 0.8);
+    for (int v = 2; v < 5; v++)
+        for (int k = 1; k < 3; k++) {
+            const double h = sun_deg[k] * rad_per_deg, through = exp(-index * 2 / pi_rad * cos(h) / sin(h));
+            for (int a = 2; a < 4; a++)
+                CHECK_NEAR(stand->lit[v][k][a].ground / stand->view[v].ground, through,
+                           0.17); /* gaps that the eye sees are wide */
+        }
+    far_stand_destroy(stand);
+    free(materials.material);
+}
+
+/* Two leaves back to back, a fiftieth of the plant's height apart: little shines on the hidden side of the one that is
+ * seen, from above between the two. */
+static void double_leaves(void **state)
+{
+    (void)state;
+    open_materials();
+    for (int k = 0; k < 2; k++)
+        quads[k] = plate(PLANT_LEAF, (const double[3]){0, k ? 0.01 : -0.01, 0.5}, (const double[3]){0.3, 0, 0},
+                         (const double[3]){0, 0, 0.8});
+    WoodStand *stand = stand_of(SURFACE_FOREST_BROADLEAF, 0.4, 0, 2, 0, 0.2);
+    for (int v = 1; v < 5; v++)
+        for (int k = 2; k < 5; k++) {
+            const StandLit *behind = &stand->lit[v][k][stand_azimuths - 1], *before = &stand->lit[v][k][0];
+            CHECK(behind->leaf_back < 0.35 * before->leaf_front && before->leaf_front > 0.05);
+        }
+    far_stand_destroy(stand);
+    free(materials.material);
+}
+
 /* ---- upright plates --------------------------------------------------------------------------- */
 
 /* Upright plates of every azimuth, of leaf on one half and bark on the other: of an index L a ray at an elevation e
@@ -236,7 +280,7 @@ static void level_leaves(void **state)
  * cosine of their azimuth from the eye, so their mean towards it is pi / 4; and a sun at an azimuth a from it and a
  * height h lights the side that is seen by cos h ((pi - a) cos a + sin a) / 4, the other one by cos h (sin a - a cos a)
  * / 4. */
-static void upright_plates(const WoodStand *s, double index)
+static void upright_plates(const WoodStand *s, double index, double bark_share)
 {
     double lit[stand_azimuths][4] = {{0}}, suns = 0;
     for (int v = 1; v < 5; v++) {
@@ -247,7 +291,7 @@ static void upright_plates(const WoodStand *s, double index)
         CHECK_NEAR(of->ground + of->leaf.share + of->bark.share, 1, 1e-12);
         for (int k = 0; k < 2; k++) {
             const StandOrgan *o = k ? &of->bark : &of->leaf;
-            CHECK_NEAR(o->share, 0.5 * (1 - of->ground), 0.07);
+            CHECK_NEAR(o->share, (k ? bark_share : 1 - bark_share) * (1 - of->ground), 0.07);
             CHECK_NEAR(o->bright / o->share, 1, k ? 1e-6 : 0.04);
             CHECK_NEAR(o->front_up / o->bright, 0.5 * open_up, 0.01);
             CHECK_NEAR(o->front_down / o->bright, 0.5 * open_down, 0.01);
@@ -276,30 +320,54 @@ static void upright_plates(const WoodStand *s, double index)
                      back = (sin(turn) - turn * cos(turn)) / 4;
         CHECK_NEAR(lit[a][1] / lit[a][0], front, 0.06);
         CHECK_NEAR(lit[a][2] / lit[a][0], back, 0.06);
-        if (a < 3) CHECK_NEAR(lit[a][3] / lit[a][1], 1, 0.25); /* there is as much bark as leaf */
+        if (a < 3) CHECK_NEAR(lit[a][3] / lit[a][1] / (bark_share / (1 - bark_share)), 1, 0.25);
     }
 }
 
 static const double plate_high = 0.8, plate_wide = 0.3;
 
+/* Of each plate bark is the west's half; pines have three tenths of bark. */
+static const double bark_of_pine = 0.3, bark_of_others = 0.5;
+
 static void stand_up(void)
 {
-    for (int k = 0; k < 2; k++)
-        quads[k] = plate(k ? PLANT_LEAF : PLANT_BARK, (const double[3]){(k ? 0.25 : -0.25) * plate_wide, 0, 0.5},
-                         (const double[3]){0.5 * plate_wide, 0, 0}, (const double[3]){0, 0, plate_high});
+    for (int pine = 0; pine < 2; pine++)
+        for (int k = 0; k < 2; k++) {
+            const double bark = pine ? bark_of_pine : bark_of_others, part = k ? 1 - bark : bark,
+                         middle = (k ? bark : bark - 1) / 2 * plate_wide;
+            (pine ? pine_quads : quads)[k] =
+                plate(k ? PLANT_LEAF : PLANT_BARK, (const double[3]){middle, 0, 0.5},
+                      (const double[3]){part * plate_wide, 0, 0}, (const double[3]){0, 0, plate_high});
+        }
     grow(1, 1, 0, 0.2);
+}
+
+/* Share of pines in all plates. */
+static double pines_of(SurfaceClass surface, double density)
+{
+    Woods  woods;
+    double sum[2] = {0};
+    assert_int_equal(woods_of_class(&woods, surface, density, 1995, 8), STATUS_OK);
+    for (int k = 0; k < woods.count; k++) {
+        const double h = plant_height_m(&woods.plant[k]);
+        sum[woods.plant[k].kind == PLANT_PINE] += h * h * woods.plant[k].width;
+    }
+    woods_destroy(&woods);
+    return sum[1] / (sum[0] + sum[1]);
 }
 
 static void rows_are_means(const FarWoods *far)
 {
-    /* leaves of pines count as often as they are seen: 0.84 of conifers' plants, next to none of the other class */
-    static const double pines[far_stands] = {0.02, 0.84}, within[far_stands] = {0.03, 0.12};
     for (int k = 0; k < far_stands; k++) {
         const Material *leaf = &far->stand[k][1]->leaf, *bark = &far->stand[k][1]->bark,
                        *row = &materials.material[far->row[k]];
         const Material *a = &first_rows[row_leaf], *b = &first_rows[row_pine_leaf], *wood = &first_rows[row_bark];
         const double    share = ((double)leaf->rho[0] - (double)a->rho[0]) / ((double)b->rho[0] - (double)a->rho[0]);
-        CHECK_NEAR(share, pines[k], within[k]);
+        /* leaves of pines count as often as they are seen */
+        const double pines = pines_of(k ? SURFACE_FOREST_CONIFER : SURFACE_FOREST_BROADLEAF, 1.2);
+        CHECK_NEAR(share,
+                   pines * (1 - bark_of_pine) / (pines * (1 - bark_of_pine) + (1 - pines) * (1 - bark_of_others)),
+                   0.03);
         for (int c = 0; c < optical_channel_count; c++) {
             CHECK_NEAR(leaf->rho[c], a->rho[c] + share * (b->rho[c] - a->rho[c]), 1e-5);
             CHECK_NEAR(leaf->tau[c], a->tau[c] + share * (b->tau[c] - a->tau[c]), 1e-5);
@@ -321,7 +389,7 @@ static void rows_are_means(const FarWoods *far)
         CHECK(row->tau_mwir == 0 && row->tau_lwir == 0 && row->gloss == 0 && row->roughness == 1);
         CHECK(far->row[k] == rows_before + k && far->stand[k][1]->bark_row == row_bark);
         CHECK(strcmp(row->name, k ? "canopy_of_conifers" : "canopy_of_broadleaves") == 0);
-        CHECK(far->stand[k][1]->top_m > 4 && far->stand[k][1]->top_m < 20);
+        for (int p = 0; p < far_densities; p++) CHECK(far->stand[k][p]->top_m > 6 && far->stand[k][p]->top_m < 20);
     }
     CHECK(materials.more == far_stands && materials.count == rows_before);
 }
@@ -348,6 +416,26 @@ static void *octets_of(size_t *count, const FarWoods *far, int k)
     return kept_write(count, far_stand_kept_values, &(StandKept){far->stand[k / 2][k % 2], rows_before});
 }
 
+/* The row of bark is one of the materials', else the entry is none. */
+static void refuses_other_rows(const void *octets, size_t count, int row)
+{
+    WoodStand *bare = NULL;
+    assert_int_equal(far_stand_create_bare(&bare), STATUS_OK);
+    CHECK(kept_read(far_stand_kept_values, &(StandKept){bare, row + 1}, octets, count) && bare->bark_row == row);
+    CHECK(!kept_read(far_stand_kept_values, &(StandKept){bare, row}, octets, count));
+    bare->bark_row = -1;
+    size_t wrong_count;
+    void  *wrong = kept_write(&wrong_count, far_stand_kept_values, &(StandKept){bare, row + 1});
+    CHECK(wrong && wrong_count == count &&
+          !kept_read(far_stand_kept_values, &(StandKept){bare, row + 1}, wrong, count));
+    bare->bark_row = 0;
+    free(wrong);
+    wrong = kept_write(&wrong_count, far_stand_kept_values, &(StandKept){bare, 1});
+    CHECK(wrong && kept_read(far_stand_kept_values, &(StandKept){bare, 1}, wrong, count));
+    free(wrong);
+    far_stand_destroy(bare);
+}
+
 /* Of both classes, sparse and dense; kept, and taken for no others. */
 static void woods_of_plates(void **state)
 {
@@ -361,13 +449,24 @@ static void woods_of_plates(void **state)
     FarWoods *far = create(forest, cache, "plates", true);
     CHECK(cache_counters(cache).made == 1 && cache_counters(cache).fetched == 0);
     for (int k = 0; k < far_stands; k++)
-        for (int p = 0; p < far_densities; p++)
-            upright_plates(far->stand[k][p], index_of(k ? SURFACE_FOREST_CONIFER : SURFACE_FOREST_BROADLEAF,
-                                                      p ? 1.2 : 0.4, plate_high * plate_wide));
+        for (int p = 0; p < far_densities; p++) {
+            const SurfaceClass class = k ? SURFACE_FOREST_CONIFER : SURFACE_FOREST_BROADLEAF;
+            const double density = p ? 1.2 : 0.4, pines = pines_of(class, density);
+            upright_plates(far->stand[k][p], index_of(class, density, plate_high * plate_wide),
+                           pines * bark_of_pine + (1 - pines) * bark_of_others);
+        }
     rows_are_means(far);
     void  *made[4];
     size_t octets[4];
-    for (int k = 0; k < 4; k++) made[k] = octets_of(&octets[k], far, k);
+    for (int k = 0; k < 4; k++) {
+        /* the canopy: 64 x 64 cells of 4 octets, 514 gaps, two opennesses, a number a channel; two rows without their
+         * names */
+        made[k] = octets_of(&octets[k], far, k);
+        CHECK(octets[k] == 64 * 64 * 4 + 514 * 4 + (2 + optical_channel_count) * 8 +
+                               2 * (sizeof(Material) - sizeof first_rows->name) + 4 + 8 +
+                               stand_views * sizeof(StandView) + sizeof far->stand[0][0]->lit);
+        refuses_other_rows(made[k], octets[k], far->stand[k / 2][k % 2]->bark_row);
+    }
     destroy(far);
     far = create(forest, cache, "plates", true);
     CHECK(cache_counters(cache).made == 1 && cache_counters(cache).fetched == 1);
@@ -379,6 +478,9 @@ static void woods_of_plates(void **state)
         free(made[k]), free(kept);
     }
     destroy(far);
+    /* not taken for those of winter */
+    destroy(create(forest, cache, "plates", false));
+    CHECK(cache_counters(cache).made == 2 && cache_counters(cache).fetched == 1);
     forest_destroy(forest);
     cache_close(cache);
     snprintf(command, sizeof command, "rm -r %s", folder);
@@ -394,6 +496,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(ground_under_an_even_layer),
+        cmocka_unit_test(low_plates_shade_the_ground),
+        cmocka_unit_test(double_leaves),
         cmocka_unit_test(level_leaves),
         cmocka_unit_test(woods_of_plates),
     };
