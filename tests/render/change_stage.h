@@ -122,8 +122,8 @@ static void put_point(Hits *hits, const double p_enu[3], const double n_enu[3], 
 }
 
 /* The change at the hits by all bodies, with keys of this series. */
-static void change_of(HemisphereChange *out, const Hits *hits, unsigned bands, int samples, double reach_m,
-                      double list_reach_m, uint64_t series, SkyNotes *notes)
+static inline void change_of(HemisphereChange *out, const Hits *hits, unsigned bands, int samples, double reach_m,
+                             double list_reach_m, uint64_t series, SkyNotes *notes)
 {
     static uint64_t    key[hits_capacity];
     int                list[most_bodies];
