@@ -204,6 +204,9 @@ static void places_among_leaves(void **state)
     CHECK_NEAR(at.sun_here / exp(-10), 1, 1e-9);
     CHECK_NEAR(at.sun_on_ground / exp(-40), 1, 1e-9);
     CHECK(canopy_place(&at, c, x, y, 12, 0.5) && at.up == 1 && at.sun_here == 1);
+    /* between two nodes of its table, a 32nd apart: straight, within (1/32)^2 / 8 of the second derivative */
+    CHECK(canopy_place(&at, c, x, y, 6.25 - 7.5 / 4 * 3 / 64, 0.5));
+    CHECK_NEAR(at.up, canopy_gap(1 + 3.0 / 128), 6e-5);
     CHECK(!canopy_place(&at, c, x + 50, y, 0, 0.5));
     CHECK(at.up == 1 && at.down == 1 && at.up_from_ground == 1 && at.sun_here == 1 && at.sun_on_ground == 1);
     canopy_destroy(c);

@@ -183,6 +183,18 @@ static void stores_are_bounded(void **state)
     frame_of(kept, &usual), frame_of(kept, &usual);
     sky_kept_size(whole, kept);
     CHECK(whole[0] == points);
+    /* a row for each direction that meets something, and one that ends them */
+    double met = points;
+    for (int i = 0; i < points; i++) met += (double)found[i].blocked * samples;
+    CHECK((double)whole[1] >= met * sizeof(SkyMet) && (double)whole[1] < 2 * met * sizeof(SkyMet) + 300 * points);
+    /* points that are kept anew take the place of what was kept of them */
+    for (int there = 0; there < 2; there++) {
+        place_m[near_sphere][2] += there ? -0.5 : 0.5;
+        pose();
+        frame_of(kept, &usual), frame_of(kept, &usual);
+        sky_kept_size(size, kept);
+        CHECK(size[0] == points && (there ? size[1] == whole[1] : size[1] < whole[1]));
+    }
     sky_kept_destroy(kept);
     /* just enough; an octet less: all but one */
     for (int less = 0; less < 2; less++) {
