@@ -130,6 +130,7 @@ static void edges_of_the_grid(void **state)
     /* crowns of a half width of 6 m: two thirds of them along x, five sixths along y, over the grid */
     stand_at(PLANT_BIRCH, 2, 3, 16, 1);
     stand_at(PLANT_BIRCH, 126, 61, 16, 1);
+    stand_at(PLANT_BIRCH, 126, 36, 16, 1); /* nor does it come back in the west */
     Canopy     *c = create(true);
     CanopyStand at;
     canopy_stand(&at, c, origin_m[0], origin_m[1]);
@@ -138,6 +139,12 @@ static void edges_of_the_grid(void **state)
     CHECK_NEAR(at.leaf_area, rint(16 * 14.4 * 8 / 12 * 8 / 12) / 16, 1e-9);
     canopy_stand(&at, c, origin_m[0] + 1, origin_m[1] + 8);
     CHECK_NEAR(at.leaf_area, rint(16 * 14.4 * 8 / 12 * 1 / 12) / 16, 1e-9);
+    canopy_stand(&at, c, origin_m[0] + 127, origin_m[1] + 36);
+    CHECK(at.leaf_area > 6);
+    for (int j = 3; j < 7; j++) {
+        canopy_stand(&at, c, origin_m[0] + 1, origin_m[1] + 8 * j);
+        CHECK(at.leaf_area == 0);
+    }
     static const double beyond[5][2] = {{-0.01, 1}, {1, -0.01}, {128, 1}, {1, 64}, {NAN, 1}};
     for (int k = 0; k < 5; k++) {
         canopy_stand(&at, c, origin_m[0] + beyond[k][0], origin_m[1] + beyond[k][1]);

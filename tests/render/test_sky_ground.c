@@ -30,7 +30,7 @@ static void pose_yard(void)
     set_air((const double[3]){0.48, 0.6, 0.64}, 300, 20, 15);
 }
 
-static void open_sky(unsigned skips_off)
+static void open_sky_of(unsigned skips_off, SkyKept *kept)
 {
     const SkyVisibilityScene scene = {.gather = stage_scene(),
                                       .landscape = &land,
@@ -38,11 +38,14 @@ static void open_sky(unsigned skips_off)
                                       .box_px = (const double(*)[4])box_px,
                                       .air_bands = bands,
                                       .skips_off = skips_off,
-                                      .hidden_entity = -1};
+                                      .hidden_entity = -1,
+                                      .kept = kept};
     assert_int_equal(sky_visibility_create(&sky, &scene, stage.arena), STATUS_OK);
     assert_int_equal(sky_worker_create(&worker, sky, stage.arena), STATUS_OK);
     CHECK(sky_visibility_tasks(sky) == 0);
 }
+
+static void open_sky(unsigned skips_off) { open_sky_of(skips_off, NULL); }
 
 static int open_all(void **state)
 {
@@ -263,11 +266,46 @@ static void company_changes_nothing(void **state)
     CHECK(!sky_visibility_open(&alone, sky, worker, &one, &counters));
 }
 
+/* What is kept of a frame is found by the third (the first does not know what stands), unless that is not to be left
+ * out; the light is the same. Hits so many that their points are asked for in several blocks. */
+static void frames_keep_what_points_met(void **state)
+{
+    (void)state;
+    static SkyOpen first;
+    SkyKept       *kept = NULL;
+    assert_int_equal(sky_kept_create(&kept, sky_kept_octets), STATUS_OK);
+    hits.count = 0;
+    hand_draw = 5;
+    for (int i = 0; i < 1000; i++) {
+        put_point(&hits, (const double[3]){hand_uniform(-26, 30), hand_uniform(-26, 26), 0}, (const double[3]){0, 0, 1},
+                  0);
+        hits.range_m[i] = 30;
+    }
+    for (int frame = 0; frame < 5; frame++) {
+        VisibilityCounters counters = {0};
+        pose_yard();
+        open_sky_of(frame == 3 ? 1u << SKIP_KEPT : 0, frame == 4 ? NULL : kept);
+        CHECK(sky_visibility_open(frame ? &open : &first, sky, worker, &hits, &counters));
+        sky_visibility_close(sky, &counters);
+        CHECK(frame == 2 ? counters.skipped[SKIP_KEPT] > 800 : counters.skipped[SKIP_KEPT] == 0);
+        for (int i = 0; i < hits.count && frame; i++)
+            CHECK(open.factor[AIR_R][i] == first.factor[AIR_R][i] &&
+                  open.factor[AIR_LWIR][i] == first.factor[AIR_LWIR][i]);
+    }
+    for (int i = 0; i < hits.count; i += 40) {
+        const OnPaper want = ground_on_paper((const double[3]){hits.p_enu[0][i], hits.p_enu[1][i], 0}, 30);
+        if (want.weight > 0) CHECK_NEAR(first.factor[AIR_R][i], want.factor[AIR_R], 2e-5);
+    }
+    sky_visibility_close(NULL, NULL);
+    sky_kept_destroy(kept);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(hits_take_their_corners),
         cmocka_unit_test(company_changes_nothing),
+        cmocka_unit_test(frames_keep_what_points_met),
     };
     return cmocka_run_group_tests(tests, open_all, close_all);
 }

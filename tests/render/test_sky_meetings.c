@@ -172,6 +172,30 @@ static void near_misses_count(void **state)
     place_m[far_sphere][0] = before;
 }
 
+/* Two points 200 m apart, with a sphere near each: the one whose sphere moves is asked for anew, the other is found. */
+static void each_place_has_its_own(void **state)
+{
+    (void)state;
+    SkyKept     *kept = NULL;
+    const double before[3] = {place_m[far_sphere][0], place_m[far_sphere][1], place_m[far_sphere][2]};
+    assert_int_equal(sky_kept_create(&kept, 1 << 20), STATUS_OK);
+    for (int axis = 0; axis < 3; axis++)
+        for (int side = -1; side <= 1; side += 2) {
+            set_points();
+            hits.count = 2;
+            for (int c = 0; c < 3; c++)
+                hits.p_enu[c][1] = c == axis ? 200 * side : 0, place_m[far_sphere][c] = c == axis ? 203 * side : 1;
+            pose();
+            frame_of(kept, &usual), frame_of(kept, &usual);
+            CHECK(frame_of(kept, &usual) == 2);
+            place_m[far_sphere][axis] += 0.25;
+            pose();
+            CHECK(frame_of(kept, &usual) == 1);
+        }
+    memcpy(place_m[far_sphere], before, sizeof before);
+    sky_kept_destroy(kept);
+}
+
 /* A full store keeps no more, forgets what the last frame did not use, and holds no more than it was given. */
 static void stores_are_bounded(void **state)
 {
@@ -202,7 +226,7 @@ static void stores_are_bounded(void **state)
         frame_of(kept, &usual), frame_of(kept, &usual);
         sky_kept_size(size, kept);
         CHECK(size[0] == (size_t)(points - less) && size[1] <= whole[1] - (size_t)less);
-        CHECK(frame_of(kept, &usual) == points - less);
+        for (int n = 0; n < 3; n++) CHECK(frame_of(kept, &usual) == points - less);
         /* other points take the place of these once they are what is asked for */
         Asked other = usual;
         other.series = 9;
@@ -241,6 +265,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(points_are_found_again),
         cmocka_unit_test(near_misses_count),
+        cmocka_unit_test(each_place_has_its_own),
         cmocka_unit_test(stores_are_bounded),
     };
     return cmocka_run_group_tests(tests, open_all, close_all);
