@@ -104,9 +104,10 @@ static const double eyes_enu[][3] = {{60, 20, 15},    {-40, 70, 30}, {10, -45, 4
 static void grids_stand_on_the_body(void **state)
 {
     (void)state;
-    for (size_t e = 0; e < sizeof eyes_enu / sizeof *eyes_enu; e++)
+    for (int e = 0; e < 6 + 8; e++)
         for (int turn = 0; turn < 3; turn++) {
-            look_from(eyes_enu[e], e == 5 ? 300 : 1000);
+            const double away[3] = {50 + 4 * e, 20 + 2 * e, 12 + e};
+            look_from(e < 6 ? eyes_enu[e] : away, e == 5 ? 300 : 1000);
             open_sky(0.9 * turn - 0.4, 0);
             const Grid       g = grid_on_paper();
             const SkyEntity *of = &sky->entity[0];
@@ -150,6 +151,23 @@ static void large_bodies_have_the_pictures_grid(void **state)
     double off[3];
     v3_sub(off, visibility_posed(stage.visibility, 0)->centre_enu, view.p_enu);
     CHECK_NEAR(of->pitch_m, v3_length(off) / 1200 * fmax(of->step[0], of->step[1]), 1e-9);
+    /* what lies on the picture alone counts: 40 x 33 px of it; and what is no larger than 132 px stands on the body */
+    static const double box[4][4] = {
+        {600, 10, 760, 43}, {-120, 300, 40, 333}, {10, 447, 50, 620}, {200, -100, 240, 33}};
+    static const int more[4][2] = {{15, 12}, {15, 12}, {15, 12}, {15, 12}};
+    for (int k = 0; k < 4; k++) {
+        SkyEntity e = {0};
+        assert_int_equal(sky_entities_grid(&e, sky, visibility_posed(stage.visibility, 0), box[k], stage.arena),
+                         STATUS_OK);
+        CHECK(!e.of_body && e.columns == more[k][0] && e.rows == more[k][1]);
+    }
+    for (int k = 0; k < 4; k++) {
+        SkyEntity    e = {0};
+        const double px = k % 2 ? 133 : 131, wide[4] = {100, 100, k < 2 ? 100 + px : 120, k < 2 ? 120 : 100 + px};
+        assert_int_equal(sky_entities_grid(&e, sky, visibility_posed(stage.visibility, 0), wide, stage.arena),
+                         STATUS_OK);
+        CHECK(e.of_body == !(k % 2));
+    }
     /* beside the picture there is no grid */
     look_from((const double[3]){60, 20, 15}, 1000);
     open_sky(0, 0);
