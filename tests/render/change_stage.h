@@ -11,7 +11,7 @@
 
 #include <string.h>
 
-enum { model_sphere, model_room, model_brick, model_count, most_bodies = 12 };
+enum { model_sphere, model_room, model_brick, model_crate, model_count, most_bodies = 12 };
 
 static const double sphere_m = 1, room_m = 10; /* radius; half a side */
 static const double brick_low[3] = {-2, -1, -0.5}, brick_high[3] = {3, 1.5, 1};
@@ -36,7 +36,7 @@ static int open_stage(void **state)
 {
     (void)state;
     const Geodetic origin = {0.6, -1.9, 700};
-    const Model   *models[model_count] = {&stage.model[0], &stage.model[1], &stage.model[2]};
+    const Model   *models[model_count] = {&stage.model[0], &stage.model[1], &stage.model[2], &stage.model[3]};
     if (planck_table_create(&stage.mwir, 3.4e-6, 4.8e-6) != STATUS_OK ||
         planck_table_create(&stage.lwir, 8e-6, 12e-6) != STATUS_OK ||
         local_frame_at(&stage.frame, &origin) != STATUS_OK)
@@ -45,6 +45,7 @@ static int open_stage(void **state)
     hand_box(&stage.model[model_room], (const double[3]){-room_m, -room_m, -room_m},
              (const double[3]){room_m, room_m, room_m});
     hand_box(&stage.model[model_brick], brick_low, brick_high);
+    hand_box(&stage.model[model_crate], (const double[3]){-1.5, -2, -1}, (const double[3]){1.5, 2, 1});
     if (tracer_create_models(&stage.tracer, models, model_count, "avx2") != STATUS_OK) return -1;
     stage.arena = arena_create();
     for (int k = 0; k < model_count; k++) stage.row_of[k] = k + 1, stage.part[k] = &stage.row_of[k];
