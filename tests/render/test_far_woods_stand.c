@@ -112,19 +112,20 @@ static Forest *open_forest(void)
     return forest;
 }
 
-/* Sum over the stand's plants of what each has for 1 m2 of a prototype of height 1, over its ground: leaf area index of
- * leaves of that area, each as wide as it is. */
-static double index_of(SurfaceClass surface, double density, double area)
+/* Leaf area index of a stand whose prototypes have leaves of this area at a height of 1 m, and the share of pines in
+ * it. */
+static double index_of(double *pines, SurfaceClass surface, double density, double area)
 {
     Woods  woods;
-    double sum = 0;
+    double sum[2] = {0};
     assert_int_equal(woods_of_class(&woods, surface, density, 1995, 8), STATUS_OK);
     for (int k = 0; k < woods.count; k++) {
         const double h = plant_height_m(&woods.plant[k]);
-        sum += area * h * h * woods.plant[k].width / 128;
+        sum[woods.plant[k].kind == PLANT_PINE] += area * h * h * woods.plant[k].width / 128;
     }
     woods_destroy(&woods);
-    return sum / (512.0 * 512.0);
+    *pines = sum[1] / (sum[0] + sum[1]);
+    return (sum[0] + sum[1]) / (512.0 * 512.0);
 }
 
 static WoodStand *stand_of(SurfaceClass surface, double density, int bark, int leaves, double leaf_area,
@@ -149,7 +150,8 @@ static void ground_under_an_even_layer(void **state)
     open_materials();
     quads[0] =
         plate(PLANT_LEAF, (const double[3]){0, 0, 0.5}, (const double[3]){1e-4, 0, 0}, (const double[3]){0, 1e-4, 0});
-    const double index = index_of(SURFACE_FOREST_BROADLEAF, 1, 0.08), gap = canopy_gap(0.5 * index);
+    double       pines;
+    const double index = index_of(&pines, SURFACE_FOREST_BROADLEAF, 1, 0.08), gap = canopy_gap(0.5 * index);
     WoodStand   *stand = stand_of(SURFACE_FOREST_BROADLEAF, 1, 0, 1, 0.08, 3.5);
     print_message("leaf area index %.3f, share of the sky %.3f\n", index, gap);
     CHECK(stand->top_m == 0 && stand->bark_row == 0 && stand->leaf.rho[0] == 0);
@@ -240,7 +242,8 @@ static void low_plates_shade_the_ground(void **state)
     open_materials();
     quads[0] =
         plate(PLANT_LEAF, (const double[3]){0, 0, 0.018}, (const double[3]){1.5, 0, 0}, (const double[3]){0, 0, 0.036});
-    const double index = index_of(SURFACE_FOREST_BROADLEAF, 1, 1.5 * 0.036);
+    double       pines;
+    const double index = index_of(&pines, SURFACE_FOREST_BROADLEAF, 1, 1.5 * 0.036);
     WoodStand   *stand = stand_of(SURFACE_FOREST_BROADLEAF, 1, 0, 1, 0, 0.6);
     CHECK(stand->top_m > 0.1 && stand->top_m < 0.8);
     for (int v = 2; v < 5; v++)
@@ -342,20 +345,6 @@ static void stand_up(void)
     grow(1, 1, 0, 0.2);
 }
 
-/* Share of pines in all plates. */
-static double pines_of(SurfaceClass surface, double density)
-{
-    Woods  woods;
-    double sum[2] = {0};
-    assert_int_equal(woods_of_class(&woods, surface, density, 1995, 8), STATUS_OK);
-    for (int k = 0; k < woods.count; k++) {
-        const double h = plant_height_m(&woods.plant[k]);
-        sum[woods.plant[k].kind == PLANT_PINE] += h * h * woods.plant[k].width;
-    }
-    woods_destroy(&woods);
-    return sum[1] / (sum[0] + sum[1]);
-}
-
 static void rows_are_means(const FarWoods *far)
 {
     for (int k = 0; k < far_stands; k++) {
@@ -364,7 +353,8 @@ static void rows_are_means(const FarWoods *far)
         const Material *a = &first_rows[row_leaf], *b = &first_rows[row_pine_leaf], *wood = &first_rows[row_bark];
         const double    share = ((double)leaf->rho[0] - (double)a->rho[0]) / ((double)b->rho[0] - (double)a->rho[0]);
         /* leaves of pines count as often as they are seen */
-        const double pines = pines_of(k ? SURFACE_FOREST_CONIFER : SURFACE_FOREST_BROADLEAF, 1.2);
+        double pines;
+        index_of(&pines, k ? SURFACE_FOREST_CONIFER : SURFACE_FOREST_BROADLEAF, 1.2, 1);
         CHECK_NEAR(share,
                    pines * (1 - bark_of_pine) / (pines * (1 - bark_of_pine) + (1 - pines) * (1 - bark_of_others)),
                    0.03);
@@ -451,9 +441,9 @@ static void woods_of_plates(void **state)
     for (int k = 0; k < far_stands; k++)
         for (int p = 0; p < far_densities; p++) {
             const SurfaceClass class = k ? SURFACE_FOREST_CONIFER : SURFACE_FOREST_BROADLEAF;
-            const double density = p ? 1.2 : 0.4, pines = pines_of(class, density);
-            upright_plates(far->stand[k][p], index_of(class, density, plate_high * plate_wide),
-                           pines * bark_of_pine + (1 - pines) * bark_of_others);
+            double       pines;
+            const double index = index_of(&pines, class, p ? 1.2 : 0.4, plate_high * plate_wide);
+            upright_plates(far->stand[k][p], index, pines * bark_of_pine + (1 - pines) * bark_of_others);
         }
     rows_are_means(far);
     void  *made[4];
