@@ -10,6 +10,8 @@ static SkyVisibility *sky;
 static SkyWorker     *worker;
 static View           view;
 static double         box_px[most_bodies][4];
+static double         sphere_enu[3] = {0, 0, 1};
+static bool           before; /* the sphere stands on the eye's side */
 
 /* A camera that looks from an eye at the origin. */
 static void look_from(const double eye_enu[3], double focal_px)
@@ -26,13 +28,14 @@ static void look_from(const double eye_enu[3], double focal_px)
         view.r_enu_from_cam[3 * c + 2] = z[c];
 }
 
-/* A turned brick about the origin, 0, and a sphere behind it, 1, that is not on the image. */
+/* A turned brick about the origin, 0, and a sphere behind or before it, 1, that is taken for not on the image. */
 static void open_sky(double turn_rad, unsigned skips_off)
 {
     const double c = cos(turn_rad), s = sin(turn_rad), r[9] = {c, -s, 0, s, c, 0, 0, 0, 1};
     clear_bodies();
     add_body(model_brick, (const double[3]){0, 0, 0}, r);
-    add_body(model_sphere, (const double[3]){view.p_enu[0] > 0 ? -6 : 6, 0, 1}, NULL);
+    sphere_enu[0] = before == (view.p_enu[0] > 0) ? 6 : -6;
+    add_body(model_sphere, sphere_enu, NULL);
     pose_bodies();
     set_rho(0.3, 0.2);
     set_air((const double[3]){0.48, 0.6, 0.64}, 300, 20, 15);
@@ -195,15 +198,24 @@ static bool enters_brick(double p[3], double n[3], const double o[3], const doub
     return near < far && near > 0;
 }
 
+/* Whether the sphere is met on a ray towards the brick from beyond it; grazed: its facets leave that open. */
+static bool hides(bool *grazed, const double o_enu[3], const double d_enu[3])
+{
+    double to[3];
+    v3_sub(to, sphere_enu, o_enu);
+    const double along = v3_dot(to, d_enu) / v3_length(d_enu), off2 = v3_dot(to, to) - along * along;
+    *grazed = before && off2 > 0.98 && off2 < 1.001;
+    return before && off2 < 1;
+}
+
 /* The middle of each cell of the grid, seen along it, is a point of the brick; of the picture's, through its middle.
  * Its light is that of hemisphere_change there. */
-static void points_lie_on_the_brick(bool of_body, unsigned skips_off)
+static void points_lie_on_the_brick(bool of_body)
 {
     const double *r = visibility_posed(stage.visibility, 0)->r_enu_from_body,
                  *centre = visibility_posed(stage.visibility, 0)->centre_enu;
     const SkyEntity *e = &sky->entity[0];
-    int              met = 0;
-    (void)skips_off;
+    int              met = 0, covered = 0;
     for (int task = 0; task < sky_visibility_tasks(sky); task++) sky_visibility_task(sky, worker, task);
     CHECK(e->of_body == of_body);
     for (int spot = 0; spot < e->columns * e->rows; spot++) {
@@ -222,7 +234,10 @@ static void points_lie_on_the_brick(bool of_body, unsigned skips_off)
             }
         }
         in_body(o, o_enu), in_body(d, d_enu);
-        const bool  hit = enters_brick(p, n, o, d);
+        bool       grazed = false;
+        const bool hit = enters_brick(p, n, o, d) && !hides(&grazed, o_enu, d_enu);
+        if (grazed) continue;
+        covered += !hit && enters_brick(p, n, o, d);
         const float normal[3] = {e->spot.value[SPOT_NORMAL_X][spot], e->spot.value[SPOT_NORMAL_Y][spot],
                                  e->spot.value[SPOT_NORMAL_Z][spot]};
         if (!hit) {
@@ -257,7 +272,7 @@ static void points_lie_on_the_brick(bool of_body, unsigned skips_off)
         CHECK_NEAR(e->spot.factor[spot][AIR_LWIR], 1 + (double)change.w_m2[AIR_LWIR] / open_w_m2[1], 0.02);
         CHECK(e->spot.factor[spot][AIR_G] == 1);
     }
-    CHECK(met > 40);
+    CHECK(met > 40 && (covered > 0) == before);
 }
 
 static void points_of_both_grids(void **state)
@@ -265,12 +280,17 @@ static void points_of_both_grids(void **state)
     (void)state;
     for (int all = 0; all < 2; all++)
         for (int k = 0; k < 3; k++) {
-            look_from(eyes_enu[k], 1000);
-            open_sky(0.5 * k, all ? skips_all_off : 0);
-            points_lie_on_the_brick(true, 0);
+            static const double level_enu[3] = {60, 3, 10};
+            for (int side = 0; side < 2; side++) {
+                before = side;
+                look_from(side ? level_enu : eyes_enu[k], 1000);
+                open_sky(0.5 * k, all ? skips_all_off : 0);
+                points_lie_on_the_brick(true);
+            }
+            before = false;
             look_from((const double[3]){12, 9 - 7 * k, 5}, 1200);
             open_sky(0.5 * k, all ? skips_all_off : 0);
-            points_lie_on_the_brick(false, 0);
+            points_lie_on_the_brick(false);
         }
 }
 
@@ -332,6 +352,9 @@ static void hits_take_similar_points(void **state)
             hits.part[i] = (uint16_t)(1 + (i % 5 == 0));
         }
         hits.range_m[3] = INFINITY, hits.entity[4] = 2;
+        /* of any light, so that each weight shows */
+        for (int task = 0; task < sky_visibility_tasks(sky); task++) sky_visibility_task(sky, worker, task);
+        for (int k = 0; k < e->columns * e->rows * 8; k++) e->spot.factor[k / 8][k % 8] = (float)hand_uniform(0, 2);
         CHECK(sky_visibility_open(&open, sky, worker, &hits, &(VisibilityCounters){0}));
         for (int i = 0; i < hits.count; i++) {
             double p_m[3], n[3], at[2], all = 0, want[2] = {1, 1};
@@ -373,13 +396,38 @@ static void hits_take_similar_points(void **state)
     CHECK(wide > 20 && whole > 20);
 }
 
+/* A point's factor is 1 + change / (E_sky + E_ground) of its tilt in the open, 0 .. 100. */
+static void answers_are_over_open_light(void **state)
+{
+    (void)state;
+    look_from(eyes_enu[0], 1000);
+    open_sky(0, 0);
+    hand_draw = 8;
+    for (int k = 0; k < 60; k++) {
+        double           n[3];
+        SkyAnswer        got;
+        HemisphereChange change = {.blocked = 0.25f, .sunlit = 0.5f, .inside = 0.75f};
+        hand_direction(n);
+        for (int b = 0; b < AIR_BAND_COUNT; b++) change.w_m2[b] = (float)hand_uniform(-80, 60);
+        if (k == 0) change.w_m2[AIR_R] = -1e4f, change.w_m2[AIR_LWIR] = 1e5f;
+        sky_answer(&got, sky, n, &change);
+        CHECK(got.blocked == 0.25f && got.sunlit == 0.5f && got.inside == 0.75f && got.factor[AIR_G] == 1 &&
+              got.factor[AIR_MWIR] == 1);
+        const double e_sky = 20 * pi_rad * 0.5 * (1 + n[2]), up = 0.5 * (1 - n[2]);
+        CHECK_NEAR(got.factor[AIR_R],
+                   fmin(fmax(1 + (double)change.w_m2[AIR_R] / (e_sky + up * 0.2 * (300 * 0.64 + 20 * pi_rad)), 0), 100),
+                   2e-5);
+        CHECK_NEAR(got.factor[AIR_LWIR],
+                   fmin(fmax(1 + (double)change.w_m2[AIR_LWIR] / (e_sky + up * pi_rad * 15), 0), 100), 2e-5);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(grids_stand_on_the_body),
-        cmocka_unit_test(large_bodies_have_the_pictures_grid),
-        cmocka_unit_test(points_of_both_grids),
-        cmocka_unit_test(hits_take_similar_points),
+        cmocka_unit_test(grids_stand_on_the_body),     cmocka_unit_test(large_bodies_have_the_pictures_grid),
+        cmocka_unit_test(points_of_both_grids),        cmocka_unit_test(hits_take_similar_points),
+        cmocka_unit_test(answers_are_over_open_light),
     };
     return cmocka_run_group_tests(tests, open_stage, close_stage);
 }
