@@ -196,9 +196,13 @@ static void put_hits(void)
     hits.count = 0;
     hand_draw = 77;
     for (int i = 0; i < hits_count; i++) {
-        put_point(&hits, (const double[3]){hand_uniform(-46, 40), hand_uniform(-44, 46), 0}, (const double[3]){0, 0, 1},
-                  0);
-        hits.range_m[i] = exp(hand_uniform(log(10), log(600)));
+        /* some about the building, some within, some about the sphere in there, beside which a point sees as much of
+         * its outside as of the building's inside */
+        const bool   beside = i % 4 == 1;
+        const double half_m = beside ? 1.6 : i % 4 ? 45 : 8, x_m = beside ? -5 : 0, y_m = beside ? 2 : 0;
+        put_point(&hits, (const double[3]){x_m + hand_uniform(-half_m, half_m), y_m + hand_uniform(-half_m, half_m), 0},
+                  (const double[3]){0, 0, 1}, 0);
+        hits.range_m[i] = exp(hand_uniform(log(10), log(beside ? 60 : 600)));
     }
 }
 
