@@ -193,21 +193,13 @@ void thermal_shade(float *out, Band band, const Air *air, const Materials *mater
     }
 }
 
-/* ---- heat losses of a surface warmer than the air in a steady balance ------------------------ */
+/* ---- leaves ---------------------------------------------------------------------------------- */
 
-/* Heat losses of a surface warmer than the air in a steady balance: the air's film
- * (McAdams, Heat Transmission, 1954: 5.7 + 3.8 v W/(m2 K), plates below 5 m/s; used above that too) and longwave
- * emission (4 e sigma T^3, 5 W/(m2 K) at 288 K). */
-
-/* wind_mps >= 0 */
-static inline double film_w_m2_k(double wind_mps) { return 5.7 + 3.8 * wind_mps; }
-
+/* Longwave emission of a kelvin more, W/(m2 K): 5 at 288 K. */
 static inline double emission_w_m2_k(double emissivity, double temp_k)
 {
     return 4 * emissivity * 5.670374419184429e-8 * temp_k * temp_k * temp_k;
 }
-
-/* ---- leaves ---------------------------------------------------------------------------------- */
 
 static const double heat_j_mol_k = 29.3, vapour_j_mol = 44000; /* of air; of water's evaporation */
 static const double pressure_pa = 101325;

@@ -134,11 +134,16 @@ class Ran:
 
     def of(self, mutant, tests):
         """Tests that run the mutated statement, the cheapest first; where it is no code (a table), those that run its
-        function, or its file. A file that has changed since is asked by function."""
+        function, or its file. A file that has changed since is asked by function. A statement of constants in a function that
+        was inlined everywhere has neither lines nor a function of its own: the nearest line of code stands for it."""
         span = range(mutant.first, mutant.last + 1)
         known = [self.tests[t.name]['files'].get(mutant.file) for t in tests if t.name in self.tests]
         known = [k for k in known if k]
         code = any(not set(span).isdisjoint(k['lines']) or not set(span).isdisjoint(k['still']) for k in known)
+        if mutant.function and not code and not any(mutant.function in k['functions'] for k in known):
+            lines = {n for k in known for n in (*k['lines'], *k['still'])}
+            nearest = min(lines, key=lambda n: (max(mutant.first - n, n - mutant.last), n), default=mutant.first)
+            span, code = [nearest], True
         chosen = []
         for test in tests:
             ran = self.tests.get(test.name, {'files': {}})['files'].get(mutant.file)

@@ -2,7 +2,7 @@
  * nothing can be brighter or darker than what surrounds it. labels: physics */
 #include "tests/render/hand_models.h"
 
-#include "render/light/hemisphere.h"
+#include "render/light/hemisphere_private.h"
 #include "render/light/optical.h"
 #include "render/trace/parts/parts.h"
 #include "render/light/thermal.h"
@@ -222,12 +222,89 @@ static void same_question_same_bits(void **state)
     }
 }
 
+/* What a path brings from its hit: of the sun a surface of reflectance r and transmittance t returns r E cos / pi of
+ * what falls on its own side and t E cos / pi of the other one's; in thermal bands it emits 1 - r - t of Planck's; at
+ * the last bounce it returns sky and ground by its tilt, of both sides. What misses shows the sky, or below the horizon
+ * the ground. */
+static void paths_bring_what_they_met(void **state)
+{
+    (void)state;
+    static Paths        p;
+    static const double sun[3] = {0.48, 0.36, 0.8}, ground = 11;
+    double              sky[AIR_BAND_COUNT];
+    for (int b = 0; b < AIR_BAND_COUNT; b++) sky[b] = 3 + b;
+    air_even(&stage.air, sun, 500, sky, 0, stage.mwir, stage.lwir);
+    Material *m = &stage.rows[1];
+    for (int c = 0; c < optical_channel_count; c++) m->rho[c] = 0.3f + 0.05f * (float)c;
+    m->rho_mwir = 0.2f, m->rho_lwir = 0.1f;
+    const HemisphereScene scene = {stage.visibility, &stage.air, &stage.materials, NULL, &stage.snapshot};
+    for (int leaf = 0; leaf < 2; leaf++) {
+        for (int c = 0; c < optical_channel_count; c++) m->tau[c] = leaf ? 0.4f - 0.03f * (float)c : 0;
+        m->tau_mwir = leaf ? 0.15f : 0, m->tau_lwir = leaf ? 0.05f : 0;
+        hand_draw = 9;
+        p.hits.count = 40;
+        for (int i = 0; i < 40; i++) {
+            double n[3], d[3];
+            hand_direction(n), hand_direction(d);
+            for (int c = 0; c < 3; c++) p.hits.n_enu[c][i] = (float)n[c], p.rays.d_enu[c][i] = d[c];
+            p.hits.range_m[i] = i % 5 ? 4 : INFINITY, p.hits.material[i] = 1;
+            p.sun[i] = i % 3 == 0 ? 0 : i % 3 == 1 ? 1 : 0.4f, p.temp_k[i] = 280 + (float)i;
+        }
+        for (int k = 0; k < 40 * AIR_BAND_COUNT * 2; k++) {
+            const int    i = k % 40, b = k / 40 % AIR_BAND_COUNT, last = k / 40 / AIR_BAND_COUNT;
+            const double n[3] = {p.hits.n_enu[0][i], p.hits.n_enu[1][i], p.hits.n_enu[2][i]}, facing = v3_dot(n, sun);
+            const double r = (double)(b == AIR_MWIR   ? m->rho_mwir
+                                      : b == AIR_LWIR ? m->rho_lwir
+                                                      : m->rho[b]),
+                         t = (double)(b == AIR_MWIR   ? m->tau_mwir
+                                      : b == AIR_LWIR ? m->tau_lwir
+                                                      : m->tau[b]);
+            double want = 0, rho;
+            if (i % 5 == 0) want = p.rays.d_enu[2][i] < 0 ? ground : sky[b];
+            else {
+                if (b != AIR_LWIR) want += (facing > 0 ? r : t) * fabs(facing) * 500 / pi_rad * (double)p.sun[i];
+                if (b >= AIR_MWIR)
+                    want += (1 - r - t) * planck_table_radiance(b == AIR_MWIR ? stage.mwir : stage.lwir, p.temp_k[i]);
+                if (last)
+                    want += r * (0.5 * (1 + n[2]) * sky[b] + 0.5 * (1 - n[2]) * ground) +
+                            t * (0.5 * (1 - n[2]) * sky[b] + 0.5 * (1 + n[2]) * ground);
+            }
+            CHECK_NEAR(hemisphere_met(&rho, &p, i, &scene, (AirBand)b, ground, last), want, 2e-5 * fmax(want, 1));
+            CHECK_NEAR(rho, i % 5 ? r : 0, 1e-7);
+        }
+    }
+    *m = (Material){0};
+}
+
+/* A leaf that returns 0.8 and lets 0.2 through, absorbing nothing, is not seen between even surroundings, although
+ * paths go on to either side of it as often, with double weight: a sphere of it that hides a quarter of the sky. */
+static void leaves_scatter_to_both_sides(void **state)
+{
+    (void)state;
+    static Hits            hits;
+    static HemisphereLight gathered;
+    VisibilityCounters     counters = {0};
+    double                 sky[AIR_BAND_COUNT], sum = 0;
+    for (int b = 0; b < AIR_BAND_COUNT; b++) sky[b] = 1;
+    air_even(&stage.air, (const double[3]){0, 0.6, -0.8}, 0, sky, 0, stage.mwir, stage.lwir);
+    set_rho(1, 0.8);
+    for (int c = 0; c < optical_channel_count; c++) stage.rows[2].tau[c] = 0.2f;
+    hits.count = 8;
+    for (int i = 0; i < hits.count; i++)
+        hits.range_m[i] = 10, hits.n_enu[2][i] = hits.n_geo[2][i] = 1, hits.material[i] = 1;
+    const HemisphereScene scene = {stage.visibility, &stage.air, &stage.materials, NULL, &stage.snapshot};
+    hemisphere_light(&gathered, &scene, &hits, 1 << AIR_R, 4096, keys(5), &counters);
+    for (int i = 0; i < hits.count; i++) sum += (double)gathered.w_m2[AIR_R][i] / pi_rad / hits.count;
+    CHECK_NEAR(sum, 1, 0.006); /* three times the noise of its choices */
+    stage.rows[2] = (Material){0};
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(sphere_over_a_plane),
-        cmocka_unit_test(even_worlds_stay_even),
-        cmocka_unit_test(same_question_same_bits),
+        cmocka_unit_test(sphere_over_a_plane),          cmocka_unit_test(even_worlds_stay_even),
+        cmocka_unit_test(same_question_same_bits),      cmocka_unit_test(paths_bring_what_they_met),
+        cmocka_unit_test(leaves_scatter_to_both_sides),
     };
     return cmocka_run_group_tests(tests, open_stage, close_stage);
 }

@@ -1,4 +1,5 @@
-/* Temperatures of leaves against the full, non-linear balance solved by bisection. labels: physics */
+/* Temperatures of leaves against the full, non-linear balance solved by bisection, and by its linear form to the digit.
+ * labels: physics */
 #include "tests/check.h"
 
 #include "render/light/thermal.h"
@@ -79,10 +80,48 @@ static void leaf_is_in_balance(void **state)
     CHECK(thermal_leaf_k(&night, &m, 285, 1, 1) < 285);
 }
 
+/* The balance about the temperature of the air (Campbell & Norman 1998, eq. 14.6, with both sides' film):
+ *     T - T_air = (a S - e loss open - l g (1 - h) p / P) / (2 c g_a + 8 e sigma T_air^3 + l g s / P)
+ * S = lit x direct / 2 + open x diffuse (a leaf of any tilt, sun up), e = 1 - rho - tau in 8-12 um, c = 29.3 J/(mol K),
+ * l = 44 kJ/mol, P = 101,325 Pa; g_a = 1.4 x 0.135 sqrt(u / (0.72 x 0.05 m)), u no less than 0.3 m/s; stomata of
+ * 0.2 (0.05 + 0.95 min(S / 250, 1)) in series with 1.09 g_a; p = 611 exp(17.502 C / (C + 240.97)) Pa (Tetens, their eq.
+ * 3.8) and s its slope. */
+static double leaf_on_paper(const Daylight *light, const Material *m, double air_k, double open, double lit)
+{
+    const double u = fmax(light->weather.wind_mps, 0.3), film = 1.4 * 0.135 * sqrt(u / (0.72 * 0.05));
+    const double sun =
+        (light->sun_d_enu[2] > 0 ? lit * light->solar_direct_w_m2 / 2 : 0) + open * light->solar_diffuse_w_m2;
+    const double stomata = 0.2 * (0.05 + 0.95 * fmin(sun / 250, 1)),
+                 wet = stomata * 1.09 * film / (stomata + 1.09 * film);
+    const double c = air_k - 273.15, p = 611 * exp(17.502 * c / (c + 240.97)),
+                 slope = p * 17.502 * 240.97 / pow(c + 240.97, 2);
+    const double e = 1 - (double)m->rho_lwir - (double)m->tau_lwir, per = 44000 * wet / 101325;
+    return air_k + ((double)m->solar_absorptance * sun - e * light->longwave_loss_w_m2 * open -
+                    per * (1 - light->weather.humidity) * p) /
+                       (2 * 29.3 * film + 8 * e * 5.670374419e-8 * pow(air_k, 3) + per * slope);
+}
+
+static void leaf_is_as_on_paper(void **state)
+{
+    (void)state;
+    static const double wind[] = {0, 0.2, 0.4, 3, 10}, air_k[] = {263, 284, 305}, open[] = {0.2, 0.9},
+                        lit[] = {0, 0.7, 1}, direct[] = {0, 150, 800};
+    Material m = leaf_row();
+    for (int k = 0; k < 5 * 3 * 2 * 3 * 3 * 2; k++) {
+        Daylight light = day(direct[k / 90 % 3], 40 + direct[k / 90 % 3] / 5, 90, wind[k % 5]);
+        light.weather.humidity = k % 2 ? 0.35 : 0.8;
+        m.tau_lwir = k % 2 ? 0.04f : 0;
+        if (k / 270 % 2) light.sun_d_enu[2] = -0.1; /* what shines is below the horizon */
+        const double air = air_k[k / 5 % 3], o = open[k / 15 % 2], l = lit[k / 30 % 3];
+        CHECK_NEAR(thermal_leaf_k(&light, &m, air, o, l), leaf_on_paper(&light, &m, air, o, l), 1e-6);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(leaf_is_in_balance),
+        cmocka_unit_test(leaf_is_as_on_paper),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -266,6 +266,78 @@ static void quick_and_plain_forms_agree(void **state)
     }
 }
 
+/* Among plants a side of normal n gets (render/light/canopy.h) up E_sky + down g E_ground + (1 - up (1 + n_z) / 2 -
+ * down (1 - n_z) / 2) M, its far side the same of -n, both by the factor of what stands near; and of the sun what
+ * arrives. Leaves return rho and let tau through, bark returns rho; a bright leaf no more than it gets. In 3-5 and 8-12
+ * um nothing of the canopy counts, and what neither returns nor lets through is emitted. */
+static void sides_among_plants_are_as_on_paper(void **state)
+{
+    (void)state;
+    static SurfaceLight light;
+    static CanopyLight  among;
+    static float        seen[AIR_BAND_COUNT][hits_capacity], near[hits_capacity];
+    static const double sun_enu[3] = {0.48, 0.36, 0.8}, sky = 20, rho = 0.4, tau = 0.3;
+    float              *out[AIR_BAND_COUNT];
+    hand_draw = 40;
+    set_leaf((float)rho, (float)tau);
+    even_air(sky, 300, sun_enu);
+    for (int c = 0; c < optical_channel_count; c++) materials.ground_rho[c] = 0.2f;
+    random_leaves();
+    for (int i = 0; i < leaf_count; i++) {
+        hits.material[i] = (uint16_t)(1 + i / 8 % 2);
+        if (i > 40) hits.material[i] = (uint16_t)(1 + i % 2);
+        sun[i] = i % 3 == 0 ? 0 : (float)hand_uniform(0, 1), texture[i] = (float)hand_uniform(0.5, 2),
+        near[i] = (float)hand_uniform(0.5, 1.5);
+        among.up[i] = (float)hand_uniform(0, 1), among.down[i] = (float)hand_uniform(0, 1);
+        for (int c = 0; c < optical_channel_count; c++)
+            among.ground[c][i] = (float)hand_uniform(0, 1), among.leaves_w_m2[c][i] = (float)hand_uniform(0, 50);
+    }
+    assert_int_equal(surface_light_prepare(&light, &hand.air, &materials, hand.air_arena), STATUS_OK);
+    air_paths_of(veils, &hand.air, (1 << AIR_BAND_COUNT) - 1, &hits, &rays, temp_k);
+    for (int there = 0; there < 3; there++) { /* in the open, among plants, and near a body as well */
+        SurfaceBlock block = {.hits = &hits,
+                              .rays = &rays,
+                              .material = hits.material,
+                              .temp_k = temp_k,
+                              .sun = sun,
+                              .veils = veils,
+                              .canopy = there ? &among : NULL};
+        for (int b = 0; b < AIR_BAND_COUNT; b++)
+            out[b] = seen[b], block.texture[b] = texture, block.open[b] = there == 2 ? near : NULL;
+        surface_light_shade(out, &light, &block);
+        for (int k = 0; k < leaf_count * AIR_BAND_COUNT; k++) {
+            const int    i = k % leaf_count, b = k / leaf_count;
+            const bool   leaf = hits.material[i] == 1, optical = b < optical_channel_count;
+            const double n[3] = {(double)hits.n_enu[0][i], (double)hits.n_enu[1][i], (double)hits.n_enu[2][i]},
+                         facing = v3_dot(n, sun_enu);
+            const double level = optical ? 0.2 * (300 * 0.8 + sky * pi_rad) : sky * pi_rad;
+            double       side[2], returns = leaf ? rho : rho + tau, through = leaf ? tau : 0;
+            for (int far = 0; far < 2; far++) {
+                const double up = far ? -n[2] : n[2], sees_sky = 0.5 * (1 + up), sees_ground = 0.5 * (1 - up);
+                side[far] = sky * pi_rad * sees_sky + level * sees_ground;
+                if (there && optical)
+                    side[far] = (double)among.up[i] * sky * pi_rad * sees_sky +
+                                (double)among.down[i] * (double)among.ground[b][i] * level * sees_ground +
+                                (1 - (double)among.up[i] * sees_sky - (double)among.down[i] * sees_ground) *
+                                    (double)among.leaves_w_m2[b][i];
+                if (there == 2) side[far] *= (double)near[i];
+            }
+            if (optical && leaf)
+                returns *= fmin((double)texture[i], 1 / (rho + tau)),
+                    through *= fmin((double)texture[i], 1 / (rho + tau));
+            if (optical && !leaf) returns = fmin(returns * (double)texture[i], 1);
+            double want = (returns * side[0] + through * side[1]) / pi_rad;
+            if (b != AIR_LWIR)
+                want += (returns * fmax(facing, 0) + through * fmax(-facing, 0)) * 300 * (double)sun[i] / pi_rad;
+            if (!optical)
+                want +=
+                    (1 - returns - through) *
+                    planck_table_radiance(b == AIR_MWIR ? hand.world.planck_mwir : hand.world.planck_lwir, temp_k[i]);
+            CHECK_NEAR(seen[b][i] / want, 1, 2e-5);
+        }
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -273,6 +345,7 @@ int main(void)
         cmocka_unit_test(white_stand_vanishes),
         cmocka_unit_test(sun_on_either_side),
         cmocka_unit_test(quick_and_plain_forms_agree),
+        cmocka_unit_test(sides_among_plants_are_as_on_paper),
     };
     return cmocka_run_group_tests(tests, open_world, hand_close);
 }

@@ -1,5 +1,6 @@
 /* Heat seen: the isothermal cavity, Kirchhoff, and temperatures that a thermometer could have read. labels: physics */
 #include "tests/check.h"
+#include "render/heat/heat.h"
 #include "render/light/thermal.h"
 
 static PlanckTable *mwir, *lwir;
@@ -264,6 +265,145 @@ static void air_is_colder_above(void **state)
     catalog_close(catalog);
 }
 
+/* ---- what is at a hit ---- */
+
+/* Air that is warmer by another amount at each node of 500 m, ground of each class at its own temperature, colder in
+ * the dark; wood of its own. */
+static HeatNow   now;
+static HeatScene heat = {.now = &now};
+static float     warmer_k[air_warmer_nodes];
+
+static Air air_of_heat(bool ground)
+{
+    const double none[AIR_BAND_COUNT] = {0};
+    Air          air;
+    air_even(&air, (const double[3]){0, 0.6, 0.8}, 700, none, 0, mwir, lwir);
+    air.light.zero_z_m = 40, air.light.solar_diffuse_w_m2 = 90, air.light.longwave_loss_w_m2 = 80;
+    for (int k = 0; k < air_warmer_nodes; k++) air.light.warmer_k[k] = warmer_k[k] = (float)(-3 * k + (k * 7 % 5));
+    memset(&now, 0, sizeof now);
+    now.table.facets = 3;
+    for (int kind = 0; kind < ground_kinds; kind++) {
+        for (int n = 0; n < heat_most_facets * heat_most_facets; n++) now.table.sun_k[kind][n] = 290 + (float)kind;
+        for (int n = 0; n < heat_ups; n++)
+            now.table.shade_k[kind][n] = 280 + (float)kind, now.table.dark_k[kind][n] = 270 + (float)kind;
+    }
+    for (int k = 0; k < SURFACE_COUNT; k++) now.kind_of[k] = k;
+    now.branches = 1, now.branch_material[0] = 5;
+    for (int r = 0; r < branch_radii; r++)
+        for (int shade = 0; shade < 2; shade++)
+            now.table.branch[0][r][shade] = (BranchSides){.mean_k = shade ? 280 : 300, .side_k = {0, 0, 4}};
+    if (ground) air.heat = &heat;
+    return air;
+}
+
+/* Straight between nodes of 500 m above the model's zero, down to 2 km below it by the first two, up to the last; the
+ * plane leaves the Earth by (x^2 + y^2) / (2 x 6371 km). */
+static double air_on_paper_k(const Air *air, const double p_enu[3])
+{
+    const double at = (p_enu[2] + (p_enu[0] * p_enu[0] + p_enu[1] * p_enu[1]) / (2 * 6371e3) - 40) / 500,
+                 within = fmin(fmax(at, -4), air_warmer_nodes - 1);
+    const int low = within < 0 ? 0 : within >= air_warmer_nodes - 2 ? air_warmer_nodes - 2 : (int)within;
+    return air->light.weather.air_temp_k + (double)warmer_k[low] +
+           (within - low) * ((double)warmer_k[low + 1] - (double)warmer_k[low]);
+}
+
+static void find_temperatures(const Air *air, const float *sun)
+{
+    thermal_temperature(scene.temp_k, air, &scene.materials, NULL, &scene.hits, scene.material, sun, scene.texture,
+                        scene.warmth_k);
+}
+
+static void air_is_between_its_nodes(void **state)
+{
+    (void)state;
+    static const double z_m[] = {-5000, -1990, -900, 39, 41, 290, 540, 1300, 8000, 15500, 15900, 16030, 17000};
+    const Air           air = air_of_heat(false);
+    clear();
+    for (int k = 0; k < 13 * 3; k++) {
+        const int i = add((double[3]){0, 0, -1}, (double[3]){0, 0, 1}, 5, 1, 0);
+        scene.hits.p_enu[0][i] = k % 3 == 1 ? 60e3 : 0, scene.hits.p_enu[1][i] = k % 3 == 2 ? -90e3 : 0,
+        scene.hits.p_enu[2][i] = z_m[k / 3];
+        scene.hits.entity[i] = k % 2;
+        scene.warmth_k[i] = k % 2 ? 5 : -2; /* of the ground alone */
+    }
+    const int sky = add((double[3]){0, 0, 1}, (double[3]){0, 0, 1}, INFINITY, 1, 0);
+    find_temperatures(&air, NULL);
+    for (int i = 0; i < sky; i++) {
+        const double p_enu[3] = {scene.hits.p_enu[0][i], scene.hits.p_enu[1][i], scene.hits.p_enu[2][i]};
+        CHECK_NEAR(scene.temp_k[i], air_on_paper_k(&air, p_enu) + (scene.hits.entity[i] ? 0 : -2), 2e-3);
+    }
+    CHECK(isnan(scene.temp_k[sky]));
+}
+
+/* Ground 290 K and its class in the sun, 270 in the dark: 270 + d (20) of an absorptance d = 1.5 - photo / 2, the
+ * photograph within 0.6 .. 1.4; the air's difference with height; the noise, of which there is 1 + lifted / 16 where
+ * the sun lifted the ground above the dark's. Snow is not above 273.15 K, water not below 271.35. */
+static void ground_is_as_dark_as_its_photograph(void **state)
+{
+    (void)state;
+    static const float photo[] = {0.3f, 0.6f, 1, 1.25f, 1.4f, 2};
+    const Air          air = air_of_heat(true);
+    clear();
+    for (int k = 0; k < 6 * 5; k++) {
+        const int i = add((double[3]){0, 0, -1}, (double[3]){0, 0, 1}, 5, 1, 0);
+        scene.hits.surface[i] = (uint8_t)(k / 6 == 0   ? SURFACE_NONE
+                                          : k / 6 == 1 ? SURFACE_SNOW
+                                          : k / 6 == 2 ? SURFACE_WATER
+                                                       : SURFACE_GRASS + k / 6);
+        scene.hits.p_enu[2][i] = k % 6 == 5 ? 1540 : 40;
+        scene.texture[i] = photo[k % 6], scene.warmth_k[i] = 0.5f * (float)(k % 4) - 1;
+        if (k == 8 || k == 14) scene.warmth_k[i] = -30; /* colder than snow melts and than the sea freezes */
+    }
+    find_temperatures(&air, NULL);
+    for (int i = 0; i < 30; i++) {
+        const int class = scene.hits.surface[i];
+        const double p_enu[3] = {0, 0, scene.hits.p_enu[2][i]}, here = air_on_paper_k(&air, p_enu),
+                     noise = (double)scene.warmth_k[i];
+        const double lifted = (1.5 - 0.5 * fmin(fmax((double)scene.texture[i], 0.6), 1.4)) * 20;
+        double       want = 270 + class + lifted + (here - air.light.weather.air_temp_k) + noise * (1 + lifted / 16);
+        if (class == SURFACE_NONE) want = here + noise;
+        if (class == SURFACE_SNOW) want = fmin(want, 273.15);
+        if (class == SURFACE_WATER) want = fmax(want, 271.35);
+        CHECK_NEAR(scene.temp_k[i], want, 1e-3);
+    }
+}
+
+/* A leaf is in balance with the sun that it gets, or, where nobody says, with that of its openness; bark has the heat
+ * of its branch, 280 K in the shade and 300 K in the sun by its openness and 4 K more on top; both as much warmer as
+ * the air there. Where no branch is known bark is as warm as the air. */
+static void plants_are_leaves_and_wood(void **state)
+{
+    (void)state;
+    Air air = air_of_heat(true);
+    clear();
+    scene.rows[3] = (Material){.rho_lwir = 0.03f, .solar_absorptance = 0.5f};
+    scene.rows[3].tau[optical_channel_nir] = 0.4f;
+    for (int i = 0; i < 4; i++) {
+        add((double[3]){0, 0, -1}, (double[3]){0.6, 0, 0.8}, 5, i < 2 ? 3 : 5, 0);
+        scene.hits.kind[i] = hit_plant, scene.hits.radius_m[i] = 0.05f, scene.hits.open_up[i] = i % 2 ? 0.25f : 0.75f;
+        scene.hits.p_enu[2][i] = 290 + 500 * i;
+        scene.sun[i] = i % 2 ? 1 : 0.5f;
+    }
+    for (int told = 0; told < 2; told++) {
+        find_temperatures(&air, told ? scene.sun : NULL);
+        for (int i = 0; i < 4; i++) {
+            const double p_enu[3] = {0, 0, scene.hits.p_enu[2][i]}, here = air_on_paper_k(&air, p_enu),
+                         open = (double)scene.hits.open_up[i];
+            const double want =
+                i < 2 ? thermal_leaf_k(&air.light, &scene.rows[3], here, open, told ? (double)scene.sun[i] : open)
+                      : 280 + open * 20 + 0.8 * 4 + here - air.light.weather.air_temp_k;
+            CHECK_NEAR(scene.temp_k[i], want, 1e-3);
+        }
+    }
+    now.branches = 0;
+    find_temperatures(&air, NULL);
+    const double p_enu[3] = {0, 0, scene.hits.p_enu[2][3]};
+    CHECK_NEAR(scene.temp_k[3], air_on_paper_k(&air, p_enu), 1e-3);
+    now.branches = 1, air.heat = NULL;
+    find_temperatures(&air, NULL);
+    CHECK_NEAR(scene.temp_k[3], air_on_paper_k(&air, p_enu), 1e-3);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -273,6 +413,9 @@ int main(void)
         cmocka_unit_test(sun_shows_in_mwir_only_and_not_in_shadow),
         cmocka_unit_test(the_veil_is_the_airs),
         cmocka_unit_test(air_is_colder_above),
+        cmocka_unit_test(air_is_between_its_nodes),
+        cmocka_unit_test(ground_is_as_dark_as_its_photograph),
+        cmocka_unit_test(plants_are_leaves_and_wood),
     };
     return cmocka_run_group_tests(tests, open_scene, close_scene);
 }
