@@ -286,6 +286,76 @@ static void numbers_are_checked(void **state)
     stage_close(&s);
 }
 
+/* ---- uneven surfaces, and how fine the grid is ------------------------------------------------------- */
+
+/* Twelve waves of rms (2 / 12)^0.5 each, so that heights have that rms: numbers even over 0.5 .. 1.5 of 2 pi / length,
+ * directions even over the sphere, phases over the circle. */
+static void unevenness_has_its_figures(void **state)
+{
+    (void)state;
+    enum { seeds = 400, waves = seeds * warp_waves };
+    double number = 0, number2 = 0, along[3] = {0}, along2[3] = {0}, turn[2] = {0}, square = 0;
+    for (uint64_t seed = 0; seed < seeds; seed++) {
+        Warp warp;
+        tubes_warp_make(&warp, 2e-3, 0.5, seed, 3);
+        CHECK_NEAR(warp.amplitude_m, 2e-3 * sqrt(1 / 6.0), 1e-15);
+        for (int w = 0; w < warp_waves; w++) {
+            const double k = v3_length(warp.k[w]), n = k * 0.5 / (2 * pi_rad);
+            CHECK(n >= 0.5 && n <= 1.5 && warp.phase_rad[w] >= 0 && warp.phase_rad[w] <= 2 * pi_rad);
+            number += n / waves, number2 += n * n / waves;
+            for (int x = 0; x < 3; x++) {
+                along[x] += warp.k[w][x] / k / waves;
+                along2[x] += pow(warp.k[w][x] / k, 2) / waves;
+            }
+            turn[0] += cos(warp.phase_rad[w]) / waves, turn[1] += sin(warp.phase_rad[w]) / waves;
+        }
+        for (uint64_t i = 0; i < 10; i++) {
+            double height, gradient[3], bend[9], p[3];
+            for (uint64_t x = 0; x < 3; x++) p[x] = 20 * random_uniform(1, 0, (uint32_t)seed, 3 * i + x);
+            tubes_warp_at(&height, gradient, bend, &warp, p);
+            square += height * height / (10 * seeds);
+        }
+    }
+    printf("unevenness: rms %.4f of 2 mm; waves a length %.3f, squared %.3f; up %.3f, up^2 %.3f; phase %.3f %.3f\n",
+           1e3 * sqrt(square), number, number2, along[2], along2[2], turn[0], turn[1]);
+    CHECK_NEAR(sqrt(square) / 2e-3, 1, 0.03);
+    CHECK_NEAR(number, 1, 0.015);
+    CHECK_NEAR(number2, 13 / 12.0, 0.03);
+    for (int x = 0; x < 3; x++) {
+        CHECK_NEAR(along[x], 0, 0.03);
+        CHECK_NEAR(along2[x], 1 / 3.0, 0.02);
+    }
+    CHECK(hypot(turn[0], turn[1]) < 0.04);
+    Warp one, other;
+    tubes_warp_make(&one, 2e-3, 0.5, 1, 0);
+    tubes_warp_make(&other, 2e-3, 0.5, 1, 1);
+    CHECK(memcmp(one.phase_rad, other.phase_rad, sizeof one.phase_rad) != 0);
+}
+
+/* The least of lambda over rays_per_wavelength, the target's radius over rays_per_radius, and (lambda curve / 16)^0.5,
+ * which is lambda / 8 at least. Rays: so many squares in the plate's outline, seen from its front, and its borders. */
+static void the_grid_is_as_fine_as_asked(void **state)
+{
+    (void)state;
+    const double l = light_mps / x_hz, radius_m = 0.5 * hypot(0.4, 0.3);
+    static const struct {
+        double per_wavelength, per_radius, curve_m;
+    } of[] = {{1.25, 0, 0}, {2, 4, 0}, {1, 0, 0.2}, {1, 0, 1e-3}, {0.5, 20, 100}};
+    const double want_m[] = {l / 1.25, l / 2, sqrt(l * 0.2 / 16), l / 8, radius_m / 20};
+    RadarStage   s;
+    stage_open(&s, "plate:0.4x0.3", x_hz);
+    s.config.splits = 0;
+    for (int i = 0; i < 5; i++) {
+        const ScatterAntenna a = antenna_at(3, 2, INFINITY);
+        s.config.rays_per_wavelength = of[i].per_wavelength, s.config.rays_per_radius = of[i].per_radius;
+        s.config.curve_m = of[i].curve_m;
+        CHECK(tubes_trace(&s.hits, s.target, &a, &a, &s.config, s.pool) == STATUS_OK);
+        CHECK_NEAR(s.hits.spacing_m / want_m[i], 1, 1e-3); /* the sphere has a margin */
+        CHECK_NEAR((double)s.hits.count * want_m[i] * want_m[i] / 0.12, 1, 6 * want_m[i]);
+    }
+    stage_close(&s);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -296,6 +366,8 @@ int main(void)
         cmocka_unit_test(a_curved_mirror_spreads_the_field),
         cmocka_unit_test(edges_are_added_to_the_rays),
         cmocka_unit_test(warp_is_smooth_and_of_its_height),
+        cmocka_unit_test(unevenness_has_its_figures),
+        cmocka_unit_test(the_grid_is_as_fine_as_asked),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

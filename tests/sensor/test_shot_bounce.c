@@ -359,11 +359,53 @@ static void what_takes_them_away(void **state)
     }
 }
 
+/* On hills the ground mirrors as a plane: that under an entity which is no more than two radii above it, else that at
+ * the reflection, where the ground slopes otherwise. */
+static void which_plane_mirrors(void **state)
+{
+    (void)state;
+    Landscape       level = land;
+    LandscapeConfig config = landscape_default_config();
+    config.half_width_m = 500;
+    config.horizon_m = 20000;
+    config.relief_m = 60;
+    CHECK(landscape_create(&land, &config, &stage.world.frame, NULL, 0, NULL, 0) == STATUS_OK);
+    int seen = 0;
+    for (int i = 0; i < 2; i++) {
+        Case       c;
+        RadarTruth truth;
+        double     n[3], p[3] = {3, away_m, 0};
+        arena_reset(stage.arena);
+        set_up(&c, true);
+        p[2] = ground_at(p[0], p[1], n);
+        const double up_m = (i ? 2.1 : 1.9) * c.target.of->radius_m / n[2]; /* so far from the plane */
+        c.target.p_enu[2] = p[2] + up_m;
+        for (int k = 0; k < 2; k++) c.target.p_enu[k] = p[k];
+        c.shot.p_enu[2] = stage.view.p_enu[2] = p[2] + 150; /* above all hills between */
+        c.shot.widest = 1;
+        radar_antenna(&c.target.antenna, c.shot.p_enu, c.target.p_enu, c.target.r_enu_from_body);
+        memcpy(c.p_ground, p, sizeof p);
+        memcpy(c.n, n, sizeof n);
+        const Paper under = paper_of(&c);
+        CHECK(bounce(&c, &truth, &under, 0) == STATUS_OK);
+        echo_forget(radar->echoes);
+        const double want = fmax(cabs(under.te), cabs(under.tm));
+        printf("%s radii up: mirrors %.5f, the plane under it %.5f\n", i ? "2.1" : "1.9", truth.bounce.coherence, want);
+        seen += truth.bounce.coherence > 0;
+        if (i == 0) CHECK_NEAR(truth.bounce.coherence, want, 1e-9);
+        else CHECK(fabs(truth.bounce.coherence - want) > 1e-5);
+    }
+    CHECK(seen == 2);
+    landscape_destroy(&land);
+    land = level;
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(echoes_are_those_of_images),
         cmocka_unit_test(what_takes_them_away),
+        cmocka_unit_test(which_plane_mirrors),
     };
     return cmocka_run_group_tests(tests, open_stage, close_stage);
 }

@@ -212,6 +212,14 @@ static void rain_fills_the_main_lobe(void **state)
         nearest_m = fmin(nearest_m, range_m), farthest_m = fmax(farthest_m, range_m);
     }
     CHECK(nearest_m > 10 && nearest_m < 10.1 && farthest_m > 829 && farthest_m < 829.2);
+    /* drops are taken as no colder than 273.15 K and no warmer than 323.15 K */
+    const double at_ground_k = radar.air.temp_k[0];
+    for (int hot = 0; hot < 2; hot++) {
+        radar.air.temp_k[0] = hot ? 325 : 270, s = shot_of(&stage.world, 7.51);
+        CHECK(shot_rain(&s) == STATUS_OK && rain_scatter(&rain, 16.5, hot ? 323.15 : 273.15, 10));
+        CHECK_NEAR(frame.rain_1_m / rain.back_1_m, 1, 1e-12);
+    }
+    radar.air.temp_k[0] = at_ground_k;
     radar.air.rain_mm_h = 0, s = shot_of(&stage.world, 7.51);
     CHECK(shot_rain(&s) == STATUS_OK && radar.points.count == 0);
 }
