@@ -425,6 +425,10 @@ static void the_grid_is_as_fine_as_asked(void **state)
     const double want_m[] = {l / 1.25, l / 2, sqrt(l * 0.2 / 16), l / 8, radius_m / 20};
     RadarStage   s;
     stage_open(&s, "plate:0.4x0.3", x_hz);
+    /* the defaults that tubes.h states */
+    CHECK(s.config.frequency_hz == x_hz && s.config.rays_per_wavelength == 1.25 && s.config.rays_per_radius == 128);
+    CHECK(s.config.splits == 2 && s.config.cuts_per_radius == 768 && s.config.split_rad == 0.5);
+    CHECK(s.config.bounces == 8 && s.config.warp_m == 0 && s.config.warp_length_m == 0.5 && s.config.curve_m == 0);
     s.config.splits = 0;
     for (int i = 0; i < 5; i++) {
         const ScatterAntenna a = antenna_at(3, 2, INFINITY);
