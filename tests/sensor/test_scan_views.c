@@ -156,17 +156,6 @@ static void between_positions_the_beam_is_nearly_a_gaussian(void **state)
     const double error_rad = (vertex_of(real, peak_of(real, columns_px)) - want) / 500 * pow(cos(azimuth), 2);
     printf("between positions: %.2f %% of the beamwidth off\n", 100 * error_rad / (2 * plan.step_rad));
     CHECK_NEAR(error_rad / (2 * plan.step_rad), 0, 0.03);
-
-    /* it is known to half a step beyond the last position on either side: the pixels 150 off the middle look 0.525 of
-     * a step beyond it, those next to them 0.41 */
-    stage.view.focal_px = 150 / tan((plan.positions / 2 + 0.525) * plan.step_rad);
-    CHECK(atan(149 / stage.view.focal_px) < (plan.positions / 2 + 0.45) * plan.step_rad);
-    s = measure(radar, &scene, stage.pool)->scan;
-    for (int side = -1; side <= 1; side += 2) {
-        const int edge = (rows_px / 2) * columns_px + columns_px / 2 + 150 * side;
-        CHECK(isnan(s->view_w[edge]) && isnan(s->view_sharp_w[edge]));
-        CHECK(!isnan(s->view_w[edge - side]) && !isnan(s->view_sharp_w[edge - side]));
-    }
     seeker_radar_destroy(radar);
 }
 
