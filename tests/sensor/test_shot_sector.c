@@ -11,6 +11,7 @@ static const double far_m = 3000, lambda_m = 0.299792458 / 16.5, point_rad = 10 
 
 static SeekerRadar radar;
 static int         pulses = most_pulses;
+static double      tilt_rad; /* of the axis, down */
 static RadarFrame  frame;
 static float       range_px[columns_px];
 
@@ -90,8 +91,8 @@ static const RadarSector *scan(double speed_mps, double azimuth_rad)
                       .frame = &frame,
                       .arena = stage.arena,
                       .right = {0, -1, 0},
-                      .down = {0, 0, -1},
-                      .ahead = {1, 0, 0},
+                      .down = {-sin(tilt_rad), 0, -cos(tilt_rad)},
+                      .ahead = {cos(tilt_rad), 0, -sin(tilt_rad)},
                       .aim_m = far_m,
                       .reference_m = far_m,
                       .reference_rate_mps = -speed_mps,
@@ -258,11 +259,75 @@ static void sharpened_by_doppler(void **state)
     close_radar();
 }
 
+/* Range rate of still ground in a direction that is turned about the antenna's down axis, as the antenna moves. */
+static double rate_of(const double to[3], double turn_rad, const double v[3])
+{
+    const double down[3] = {-sin(tilt_rad), 0, -cos(tilt_rad)}, along = v3_dot(to, down);
+    double       across[3], level[3], d[3];
+    v3_cross(across, down, to);
+    v3_add_scaled(level, to, -along, down);
+    v3_scale(d, cos(turn_rad), level);
+    v3_add_scaled(d, d, sin(turn_rad), across);
+    v3_add_scaled(d, d, along, down);
+    return -v3_dot(v, d);
+}
+
+/* An axis that looks down by 20 degrees: each cell stands for a place as high as where the axis meets 3000 m, at its
+ * azimuth about the antenna's own down axis. Its resolution follows from how the rate changes with that azimuth, found
+ * here by differences. */
+static void a_tilted_scan(void **state)
+{
+    (void)state;
+    WindowFigures figures;
+    double        weight[most_pulses];
+    open_radar(4000, most_pulses);
+    CHECK(window_weights(weight, pulses, &radar.preset.doppler_window) == STATUS_OK);
+    CHECK(window_figures(&figures, weight, pulses) == STATUS_OK);
+    tilt_rad = 20 * rad_per_deg;
+    const RadarSector *s = scan(180, point_rad);
+    const double       v[3] = {180, 0, 0}, ahead[3] = {cos(tilt_rad), 0, -sin(tilt_rad)}, right[3] = {0, -1, 0};
+    const double       down[3] = {-sin(tilt_rad), 0, -cos(tilt_rad)};
+    const double       lobe = antenna_width_rad(&radar.preset.antenna),
+                 beam = antenna_two_way_width_rad(&radar.preset.antenna);
+    int sharp = 0, real = 0;
+    for (int a = 0; a < s->azimuths; a += 3)
+        for (int x = 8; x < samples; x += 16) {
+            const double az = a * s->azimuth_step_rad - s->plan.positions / 2 * s->plan.step_rad;
+            const double r_m = far_m + (x - samples / 2) * light_mps / (2 * 20e6);
+            const size_t cell = (size_t)a * samples + (size_t)x;
+            if (isnan(s->resolution_m[cell])) continue;
+            /* turned down from the antenna's plane until it is 3000 sin 20 m lower, by halving */
+            double to[3], low = -0.5, high = 0.5;
+            for (int i = 0; i < 60; i++) {
+                const double turn = 0.5 * (low + high);
+                for (int k = 0; k < 3; k++)
+                    to[k] = cos(turn) * (cos(az) * ahead[k] + sin(az) * right[k]) + sin(turn) * down[k];
+                if (to[2] * r_m > -far_m * sin(tilt_rad)) low = turn;
+                else high = turn;
+            }
+            const double h = 1e-5, level = sqrt(1 - pow(v3_dot(to, down), 2));
+            double       slope[3];
+            for (int k = 0; k < 3; k++)
+                slope[k] = (rate_of(to, (k - 1) * lobe + h, v) - rate_of(to, (k - 1) * lobe - h, v)) / (2 * h);
+            const double width = figures.width_3db * lambda_m * 4000 / (2 * pulses * fabs(slope[1]));
+            const bool clear = slope[0] * slope[1] > 0 && slope[1] * slope[2] > 0, near = fabs(width / beam - 1) < 1e-3;
+            if (near || fabs(slope[0]) < 0.05 || fabs(slope[2]) < 0.05) continue;
+            CHECK(s->sharpened[cell] == (clear && width < beam));
+            *(s->sharpened[cell] ? &sharp : &real) += 1;
+            CHECK_NEAR((double)s->resolution_m[cell] / (r_m * level * (s->sharpened[cell] ? width : beam)), 1, 1e-4);
+        }
+    printf("tilted: %d cells sharpened, %d not\n", sharp, real);
+    CHECK(sharp > 20 && real > 3);
+    tilt_rad = 0;
+    close_radar();
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_real_beam),
         cmocka_unit_test(sharpened_by_doppler),
+        cmocka_unit_test(a_tilted_scan),
     };
     return cmocka_run_group_tests(tests, open_stage, close_stage);
 }
