@@ -263,6 +263,32 @@ static void sizes_are_checked(void **state)
     echo_grid_destroy(NULL);
 }
 
+/* A series of exp(-j x) leaves out x^n / n! behind n terms, which may be 2e-3; x: the phase that delay and Doppler
+ * leave at the ends of band and interval, pi B / c of the path there, half of (pulses - 1 + share of a row) times its
+ * growth. Up to one term for 8 pulses, and 8; beyond that it goes row by row. */
+static void terms_by_hand(void **state)
+{
+    (void)state;
+    for (int rows = 16; rows <= 96; rows += 16) {
+        Waveform  w = wave;
+        EchoGrid *grid;
+        double    factorial = 1;
+        w.pulses = rows;
+        CHECK(echo_grid_create(&grid, &w) == STATUS_OK);
+        const double rad_m = pi_rad * 512e6 / light_mps * (rows - 1 + 0.2) / 2; /* 10 us of 50 us */
+        const int    most = rows / 8 < 8 ? rows / 8 : 8;
+        for (int n = 1; n <= 8; n++) {
+            factorial *= n;
+            const double x = pow(2e-3 * factorial, 1.0 / n);
+            for (int sign = -1; sign <= 1; sign += 2) {
+                CHECK(echo_terms(grid, sign * 0.999 * x / rad_m) == (n <= most ? n : 0));
+                CHECK(echo_terms(grid, sign * 1.001 * x / rad_m) == (n + 1 <= most ? n + 1 : 0));
+            }
+        }
+        echo_grid_destroy(grid);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -271,6 +297,7 @@ int main(void)
         cmocka_unit_test(fast_echoes_have_the_same_bits),
         cmocka_unit_test(slow_and_fast_echoes_are_alike),
         cmocka_unit_test(an_echo_folds_over_within_the_interval),
+        cmocka_unit_test(terms_by_hand),
         cmocka_unit_test(sizes_are_checked),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

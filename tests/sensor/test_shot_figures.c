@@ -245,13 +245,26 @@ static void what_moves_beyond_the_notch(void **state)
     }
 }
 
+/* How signatures are made for a radar: bins of 0.3 degrees, half a ray a wavelength, up to 1 GiB; for its band and its
+ * interval. Cells of ground: half of a cell of range, c / (4 B), so that each of these has several. */
+static void what_it_is_made_with(void **state)
+{
+    (void)state;
+    SeekerRadar           *radar = radar_of("h");
+    const SignaturesConfig c = seeker_radar_signatures(&radar->preset, 2e-3, "avx2");
+    CHECK(c.frequency_hz == 16.5e9 && c.bandwidth_hz == 20e6 && c.warp_m == 2e-3 && c.rays_per_wavelength == 0.5);
+    CHECK_NEAR(c.aspect_rad, 0.3 * pi_rad / 180, 1e-15);
+    CHECK_NEAR(c.interval_s, 16 / 4000.0, 1e-15);
+    CHECK(c.most_octets == 1073741824 && c.splits == 0 && c.coarse_for_hz == 0 && !c.background);
+    CHECK_NEAR(radar->cells.side_m, light_mps / (4 * 20e6), 1e-9);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(windows_and_rates),
-        cmocka_unit_test(the_air_between),
-        cmocka_unit_test(who_is_in_sight),
-        cmocka_unit_test(what_moves_beyond_the_notch),
+        cmocka_unit_test(windows_and_rates),    cmocka_unit_test(the_air_between),
+        cmocka_unit_test(who_is_in_sight),      cmocka_unit_test(what_moves_beyond_the_notch),
+        cmocka_unit_test(what_it_is_made_with),
     };
     return cmocka_run_group_tests(tests, open_stage, close_stage);
 }

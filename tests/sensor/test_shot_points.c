@@ -376,6 +376,17 @@ static void clouds_of_chaff(void **state)
         CHECK(radar.points.count == (i ? 16384 : 512));
         radar.preset.wave.bandwidth_hz = 5e8;
     }
+    /* as many clouds as are counted, whatever lies behind them */
+    SnapshotChaff two[2];
+    put(&two[0], at, moves);
+    put(&two[1], at, moves);
+    stage.snapshot.chaff = two, stage.snapshot.chaff_count = 2;
+    for (int of = 1; of <= 2; of++) {
+        RadarShot s = shot_of(&stage.world, 90);
+        CHECK(shot_volume_open(&s) == STATUS_OK && s.chaff_count == 2);
+        s.chaff_count = of;
+        CHECK(shot_volume(&s) == STATUS_OK && frame.clouds == of);
+    }
     stage.snapshot.chaff_count = 0;
 }
 
