@@ -289,6 +289,35 @@ static void terms_by_hand(void **state)
     }
 }
 
+/* What a rate leaves of an echo whose pulse has one frequency: sinc of pi f / c rate pulse, here of 1 radian and more,
+ * at which a tenth of it is 3 %. Followed or not, on either grid. */
+static void a_rate_takes_from_a_pulse(void **state)
+{
+    (void)state;
+    static const WaveformKind kind[] = {WAVEFORM_PULSE_DOPPLER, WAVEFORM_STEPPED, WAVEFORM_LFM};
+    for (int i = 0; i < 6; i++) {
+        Waveform  w = wave;
+        EchoGrid *grid;
+        w.kind = kind[i / 2];
+        if (w.kind == WAVEFORM_STEPPED) w.repeat_hz = 500, w.pulse_s = 1e-5;
+        const double one_m = light_mps / (pi_rad * w.centre_hz * w.pulse_s * w.repeat_hz); /* of growth: 1 rad */
+        Echo         e = {.path_m = 0.3, .path_per_pulse_m = (i % 2 ? 0.4 : 1.3) * one_m};
+        const double unfollowed_m = i % 2 ? 0.9 * one_m : 0;
+        for (int c = 0; c < interval_channels; c++) e.amplitude[c] = 1.0 + c - I;
+        CHECK(echo_grid_create(&grid, &w) == STATUS_OK);
+        echo_unfollowed(grid, unfollowed_m);
+        memset(got, 0, sizeof got), memset(want, 0, sizeof want);
+        echo_add(grid, &e, 1, NULL);
+        echo_sum(got, grid);
+        add_by_hand(&w, &e, unfollowed_m);
+        const int middle = pulses / 2 * samples + samples / 2;
+        printf("kind %d: %.4f of the amplitude, %.4f on paper\n", (int)w.kind, cabs(got[middle]) / cabs(e.amplitude[0]),
+               cabs(want[middle]) / cabs(e.amplitude[0]));
+        CHECK_NEAR(cabs(got[middle]) / cabs(e.amplitude[0]), cabs(want[middle]) / cabs(e.amplitude[0]), 2e-3);
+        echo_grid_destroy(grid);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -298,6 +327,7 @@ int main(void)
         cmocka_unit_test(slow_and_fast_echoes_are_alike),
         cmocka_unit_test(an_echo_folds_over_within_the_interval),
         cmocka_unit_test(terms_by_hand),
+        cmocka_unit_test(a_rate_takes_from_a_pulse),
         cmocka_unit_test(sizes_are_checked),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -28,7 +28,7 @@ static int open_stage(void **state)
     config.relief_m = 0;
     scene_folder();
     FILE *file = scene_obj("ball", NULL);
-    scene_sphere(file, 1, ball_m, 0, 0, 0);
+    scene_sphere_of(file, 1, ball_m, 0, 0, 0, 72);
     CHECK(fclose(file) == 0);
     scene_open((const char *const[]){"ball"}, 1);
     CHECK(atmosphere_open(&stage.world.atmosphere, "us1976") == STATUS_OK);

@@ -6,7 +6,7 @@
 #include "sensor/radar/seeker_radar_private.h"
 #include "sensor/radar/window_private.h"
 
-enum { samples = 64, most_pulses = 256, columns_px = 201 };
+enum { samples = 64, most_pulses = 128, columns_px = 201 };
 static const double far_m = 3000, lambda_m = 0.299792458 / 16.5, point_rad = 10 * rad_per_deg;
 
 static SeekerRadar radar;
