@@ -288,6 +288,20 @@ static void crowns_are_filled(void **state)
     const double db = foliage_loss_db(NULL, radar.foliage, s.p_enu, sight.d_enu, sight.range_m);
     CHECK(db > 1);
     CHECK_NEAR(shot_volume_np(&s, &sight), db * log(10) / 10, 1e-12);
+    /* the least power of two, from 8, that is 8 of the widest crown's radii over a cell: 64 of 63, 128 of 65 */
+    double widest_m = 0;
+    int    of[2];
+    for (int i = 0; i < plants; i++) widest_m = fmax(widest_m, (double)foliage_crown(radar.foliage, i)->across_m);
+    for (int i = 0; i < 2; i++) {
+        radar.preset.wave.bandwidth_hz = (i ? 65 : 63) * 0.5 * light_mps / (8 * widest_m);
+        s = shot_of(&planted, 24);
+        CHECK(shot_volume(&s) == STATUS_OK);
+        of[i] = radar.points.count;
+    }
+    CHECK_NEAR((double)of[0] / some, 1, 0.01);
+    CHECK_NEAR((double)of[1] / some, 2, 0.05);
+    radar.preset.wave.bandwidth_hz = 5e8;
+    s = shot_of(&planted, 24);
     /* without ground no plants, and without woods no foliage */
     radar.ground = false, s = shot_of(&planted, 24);
     CHECK(shot_volume(&s) == STATUS_OK && radar.points.count == 0);
