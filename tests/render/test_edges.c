@@ -106,6 +106,48 @@ static void test_segments(void **state)
     wedges_destroy(&list);
 }
 
+/* An edge 2 m long, across the line of sight of an antenna R away: directions turn by 2 / R a metre, and the path
+ * departs from a line by (2 / R) length^2 / 8: by 0.02 rad of either, so in so many segments, each with the mean of the
+ * path over it, and its slope. Amplitudes fall with the square of the distance. */
+static void test_lengths(void **state)
+{
+    (void)state;
+    const double k = 2 * pi * 10e9 / c_mps;
+    static const struct {
+        double r_m, k_share;
+    } of[] = {{20, 1}, {20, 1e-3}, {300, 1}, {INFINITY, 1}};
+    for (int i = 0; i < 4; i++) {
+        const Wedge w = {.frame = {{0, 1, 0}, {1, 0, 0}, {0, 0, -1}, 2}, .p = {{0, 0, 1}, {0, 0, -1}}, .part = 5};
+        const ScatterAntenna a = {{1, 0, 0}, of[i].r_m};
+        const EdgeConfig     config = {.k_per_m = k * of[i].k_share, .sample_m = 0.05, .clear_m = 1e-4};
+        EdgeSegments         s = {0};
+        CHECK(edge_segments(&s, &w, 1, &a, &a, &config) == STATUS_OK);
+        /* the stretch is the whole edge, whose ends are the same distance away */
+        const double far_m = hypot(of[i].r_m, 1), per_m = isinf(far_m) ? 0 : 2 / far_m;
+        const int    want =
+            isinf(far_m) ? 1 : (int)ceil(2 / fmin(0.02 / per_m, sqrt(8 * 0.02 / (config.k_per_m * per_m))));
+        CHECK(s.count == want);
+        for (int n = 0; n < s.count && !isinf(far_m); n++) {
+            const EdgeSegment *e = &s.segment[n];
+            const double       length_m = 2.0 / want, z = 1 - (n + 0.5) * length_m, r_m = hypot(of[i].r_m, z);
+            double             mean_m = 0;
+            for (int x = 0; x < 100; x++)
+                mean_m += 2 * (hypot(of[i].r_m, z + length_m * ((x + 0.5) / 100 - 0.5)) - of[i].r_m) / 100;
+            CHECK_NEAR(e->length_m, length_m, 1e-12);
+            CHECK_NEAR(e->p[2], z, 1e-12);
+            CHECK_NEAR(e->path_m, mean_m, 2e-9 + 1e-4 * length_m * length_m / r_m);
+            CHECK_NEAR(e->slope, -2 * z / r_m, 1e-9); /* along the edge, which leads down */
+            CHECK(e->part == 5 && e->wedge == 0 && e->order == 0);
+            /* h is y, v up: along the edge; backscatter of a half plane from its front is the same from all of it, but
+             * for the turn of directions by up to 1 / 20 */
+            CHECK_NEAR(creal(e->amplitude[1][1]) / creal(s.segment[want / 2].amplitude[1][1]) * (r_m * r_m) /
+                           pow(hypot(of[i].r_m, s.segment[want / 2].p[2]), 2),
+                       1, 0.01);
+        }
+        edge_segments_destroy(&s);
+    }
+}
+
 typedef struct Screen {
     double above_m; /* points below are hidden */
     int    calls[2];
@@ -441,11 +483,17 @@ static void test_austin_grazing(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_integral),       cmocka_unit_test(test_segments),
-        cmocka_unit_test(test_hidden),         cmocka_unit_test(test_place),
-        cmocka_unit_test(test_austin_thin),    cmocka_unit_test(test_austin_second_order),
-        cmocka_unit_test(test_austin_pairs),   cmocka_unit_test(test_austin_thick),
-        cmocka_unit_test(test_austin_grazing), cmocka_unit_test(test_transition),
+        cmocka_unit_test(test_integral),
+        cmocka_unit_test(test_segments),
+        cmocka_unit_test(test_lengths),
+        cmocka_unit_test(test_hidden),
+        cmocka_unit_test(test_place),
+        cmocka_unit_test(test_austin_thin),
+        cmocka_unit_test(test_austin_second_order),
+        cmocka_unit_test(test_austin_pairs),
+        cmocka_unit_test(test_austin_thick),
+        cmocka_unit_test(test_austin_grazing),
+        cmocka_unit_test(test_transition),
         cmocka_unit_test(test_pairs),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

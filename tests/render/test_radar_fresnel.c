@@ -102,6 +102,23 @@ static void roughness_costs_what_it_must(void **state)
     CHECK_NEAR(cabs(te), fresnel_rough(1e-4, k, 1), 1e-15);
 }
 
+/* Below 0 and without loss, as a plasma, nothing enters: all is mirrored, with the phase of a field that dies away
+ * inwards, q = -j (1 - eps - cos^2)^0.5: te = (c - q) / (c + q), tm = (eps c - q) / (eps c + q). */
+static void a_plasma_mirrors_all(void **state)
+{
+    (void)state;
+    for (int i = 1; i < 10; i++) {
+        const double         cosine = 0.1 * i, inside = sqrt(5 + 1 - cosine * cosine);
+        const double complex q = CMPLX(0, -inside);
+        double complex       te, tm;
+        fresnel_half_space(&te, &tm, CMPLX(-5, 0.0), cosine);
+        CHECK_NEAR(cabs(te - (cosine - q) / (cosine + q)), 0, 1e-12);
+        CHECK_NEAR(cabs(tm - (-5 * cosine - q) / (-5 * cosine + q)), 0, 1e-12);
+        CHECK_NEAR(cabs(te), 1, 1e-12);
+        CHECK_NEAR(cabs(tm), 1, 1e-12);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -109,6 +126,7 @@ int main(void)
         cmocka_unit_test(limits_hold),
         cmocka_unit_test(a_coating_keeps_the_boundary_conditions),
         cmocka_unit_test(roughness_costs_what_it_must),
+        cmocka_unit_test(a_plasma_mirrors_all),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

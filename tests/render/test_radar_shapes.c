@@ -245,6 +245,46 @@ static void a_tilted_neighbour_is_another_face(void **state)
         }
 }
 
+/* Rays over the two triangles of a plate, which hides nothing: one of each first; then its middle, along each side and
+ * in rows along the longest one, all as far apart as the radius of the target's sphere over 8 (a convex body), in rows
+ * as their length is. A corner's faces are asked at a sixteenth of that. Two antennas ask twice. */
+static long long rays_by_hand(double a, double b, double apart_m)
+{
+    const double c = hypot(a, b);
+    const int    rows = (int)floor(a * b / c / apart_m);
+    int          rays = 2 + (int)(ceil(a / apart_m) + ceil(b / apart_m) + ceil(c / apart_m));
+    for (int j = 0; j < rows; j++) rays += (int)ceil((1 - (j + 0.5) / rows) * c / apart_m);
+    return 2 * rays;
+}
+
+static void faces_are_searched_by_so_many_rays(void **state)
+{
+    (void)state;
+    const ScatterAntenna front[2] = {{{0.8, 0.6, 0}, INFINITY}, {{0.8, 0, -0.6}, 100}};
+    const ScatterAntenna split[2] = {{{0.8, 0.6, 0}, INFINITY}, {{-0.8, 0.6, 0}, INFINITY}};
+    const ScatterAntenna grazing[3] = {{{9e-4, 1, 0}, INFINITY}, {{1.1e-3, 1, 0}, INFINITY}};
+    RadarStage           s;
+    uint8_t              seen[8];
+    stage_open(&s, "plate:0.8x0.6", 10e9);
+    const double apart_m = s.target->entity.radius_m / 8;
+    CHECK_NEAR(s.target->entity.radius_m, 0.5, 1e-3);
+    CHECK(radar_flat_faces_seen(seen, s.target, front, 1, NULL) == rays_by_hand(0.8, 0.6, apart_m) && seen[0] == 1);
+    CHECK(radar_flat_faces_seen(seen, s.target, front, 2, NULL) == 2 * rays_by_hand(0.8, 0.6, apart_m) && seen[0] == 1);
+    /* an antenna on either side, or one that looks along it by less than a thousandth: neither sees it */
+    CHECK(radar_flat_faces_seen(seen, s.target, split, 2, NULL) == 0 && seen[0] == 0);
+    CHECK(radar_flat_faces_seen(seen, s.target, &grazing[0], 1, NULL) == 0 && seen[0] == 0);
+    CHECK(radar_flat_faces_seen(seen, s.target, &grazing[1], 1, NULL) > 0 && seen[0] == 1);
+    stage_close(&s);
+
+    const double         third = sqrt(1 / 3.0);
+    const ScatterAntenna into[2] = {{{third, third, -third}, INFINITY}};
+    stage_open(&s, "corner:0.5", 10e9);
+    CHECK(radar_flat_faces_seen(seen, s.target, into, 1, NULL) ==
+          3 * rays_by_hand(0.5, 0.5, s.target->entity.radius_m / 128));
+    CHECK(seen[0] == 1 && seen[1] == 1 && seen[2] == 1);
+    stage_close(&s);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -254,6 +294,7 @@ int main(void)
         cmocka_unit_test(names_are_checked),
         cmocka_unit_test(faces_are_counted),
         cmocka_unit_test(a_tilted_neighbour_is_another_face),
+        cmocka_unit_test(faces_are_searched_by_so_many_rays),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -286,6 +286,161 @@ static void numbers_are_checked(void **state)
     stage_close(&s);
 }
 
+/* ---- a field by hand ----------------------------------------------------------------------------------- */
+
+/* Four hits, or as many as fill a chunk and more, and an edge of each order: their fields by the formulas of tubes.h
+ * and edge_field_private.h at each frequency, from one and from many; and after the antennas have moved. */
+static void a_field_by_hand(void **state)
+{
+    (void)state;
+    enum { most = 8193, frequencies = 9 };
+    static double        path_m[most + 1];
+    static float         slope_m[2][most + 1], amplitude[8][most + 1], first[3][most + 1], last[3][most + 1];
+    const ScatterAntenna tx = antenna_at(10, 5, 400), rx = antenna_at(-20, 9, 300);
+    const ScatterAntenna tx_moved = antenna_at(10.1, 5.2, 420), rx_moved = antenna_at(-20.2, 8.9, 290);
+    EdgeSegment          edge[3] = {0};
+    TotalField           field = {.hits = {.tx = tx, .rx = rx, .frequency_hz = x_hz, .path_m = path_m}};
+    for (int s = 0; s < 2; s++) field.hits.slope_m[s] = slope_m[s];
+    for (int c = 0; c < 8; c++) field.hits.amplitude[c] = amplitude[c];
+    for (int x = 0; x < 3; x++) field.hits.first[x] = first[x], field.hits.last[x] = last[x];
+    for (int i = 0; i < most; i++) {
+        const int which = i % 3;
+        path_m[i] = 0.3 * which - 0.41;
+        slope_m[0][i] = which == 0 ? 0 : 2e-3f, slope_m[1][i] = which == 1 ? -4e-3f : 1e-3f;
+        for (int c = 0; c < 8; c++) amplitude[c][i] = (float)(1e-3 * ((i * 7 + c * 5) % 11 - 4.0));
+        for (int x = 0; x < 3; x++) first[x][i] = 0.25f * (float)(x + which), last[x][i] = 0.5f * (float)(x - which);
+    }
+    for (int e = 0; e < 3; e++) {
+        edge[e] = (EdgeSegment){.order = e, .order_k = 150, .p = {0.3, -0.2, 0.1 * e}, .length_m = 0.05 + 0.01 * e};
+        edge[e].slope = e == 0 ? 0 : 0.7, edge[e].path_m = 0.2 - 0.15 * e;
+        for (int q = 0; q < 4; q++) edge[e].amplitude[q / 2][q % 2] = 0.02 * (q + 1.0) + 0.01 * I * (e - q);
+    }
+    for (int chunks = 0; chunks < 2; chunks++)
+        for (int edges = 0; edges < 2; edges++)
+            for (int moves = 0; moves < 3; moves++) { /* none; both antennas; the receiver alone */
+                ScatterMatrix  got[frequencies], one;
+                FrequencySweep sweep = {.count = frequencies, .first_hz = 9e9, .step_hz = 1.7e8};
+                if (moves == 1) sweep.tx = &tx_moved;
+                if (moves > 0) sweep.rx = &rx_moved;
+                field.hits.count = chunks ? most : 4; /* behind the last of an odd number is one of no amplitude */
+                field.edges = (EdgeSegments){.count = edges ? 3 : 0, .segment = edge};
+                CHECK(total_field_sweep(got, &sweep, &field, NULL) == STATUS_OK);
+                for (int f = 0; f < frequencies; f++) {
+                    const double   hz = 9e9 + 1.7e8 * f, k = 2 * pi_rad * hz / light_mps;
+                    double complex want[4] = {0};
+                    double         way[3], full = 0;
+                    for (int i = 0; i < (int)field.hits.count; i++) {
+                        double path = path_m[i], sinc = 1;
+                        for (int s = 0; s < 2; s++) {
+                            const double x = k * (double)slope_m[s][i];
+                            if (x != 0) sinc *= sin(x) / x;
+                        }
+                        const double a[3] = {(double)first[0][i], (double)first[1][i], (double)first[2][i]};
+                        const double b[3] = {(double)last[0][i], (double)last[1][i], (double)last[2][i]};
+                        if (moves == 1) path += scatter_path(way, &tx_moved, a) - scatter_path(way, &tx, a);
+                        if (moves > 0) path += scatter_path(way, &rx_moved, b) - scatter_path(way, &rx, b);
+                        const double complex wave = -I * k / (2 * pi_rad) * sinc * cexp(-I * k * path);
+                        for (int q = 0; q < 4; q++) {
+                            const double re = (double)amplitude[2 * q][i], im = (double)amplitude[2 * q + 1][i];
+                            want[q] += (re + I * im) * wave;
+                            full += hypot(re, im) * cabs(wave);
+                        }
+                    }
+                    for (int e = 0; e < field.edges.count; e++) {
+                        double       path = edge[e].path_m;
+                        const double x = 0.5 * k * edge[e].slope * edge[e].length_m, *p = edge[e].p;
+                        if (moves == 1) path += scatter_path(way, &tx_moved, p) - scatter_path(way, &tx, p);
+                        if (moves > 0) path += scatter_path(way, &rx_moved, p) - scatter_path(way, &rx, p);
+                        const double complex wave =
+                            pow(150 / k, 0.5 * e) * (x != 0 ? sin(x) / x : 1) * cexp(-I * k * path);
+                        for (int q = 0; q < 4; q++) want[q] += edge[e].amplitude[q / 2][q % 2] * wave;
+                    }
+                    const double within = 1e-9 * (full + 0.1);
+                    sweep.count = 1, sweep.first_hz = hz;
+                    CHECK(total_field_sweep(&one, &sweep, &field, NULL) == STATUS_OK);
+                    for (int which = 0; which < 2; which++) {
+                        const ScatterMatrix *s = which ? &one : &got[f];
+                        CHECK_NEAR(cabs(s->hh - want[0]) + cabs(s->hv - want[1]), 0, within);
+                        CHECK_NEAR(cabs(s->vh - want[2]) + cabs(s->vv - want[3]), 0, within);
+                    }
+                }
+            }
+}
+
+/* ---- uneven surfaces, and how fine the grid is ------------------------------------------------------- */
+
+/* Twelve waves of rms (2 / 12)^0.5 each, so that heights have that rms: numbers even over 0.5 .. 1.5 of 2 pi / length,
+ * directions even over the sphere, phases over the circle. */
+static void unevenness_has_its_figures(void **state)
+{
+    (void)state;
+    enum { seeds = 400, waves = seeds * warp_waves };
+    double number = 0, number2 = 0, along[3] = {0}, along2[3] = {0}, turn[2] = {0}, square = 0;
+    for (uint64_t seed = 0; seed < seeds; seed++) {
+        Warp warp;
+        tubes_warp_make(&warp, 2e-3, 0.5, seed, 3);
+        CHECK_NEAR(warp.amplitude_m, 2e-3 * sqrt(1 / 6.0), 1e-15);
+        for (int w = 0; w < warp_waves; w++) {
+            const double k = v3_length(warp.k[w]), n = k * 0.5 / (2 * pi_rad);
+            CHECK(n >= 0.5 && n <= 1.5 && warp.phase_rad[w] >= 0 && warp.phase_rad[w] <= 2 * pi_rad);
+            number += n / waves, number2 += n * n / waves;
+            for (int x = 0; x < 3; x++) {
+                along[x] += warp.k[w][x] / k / waves;
+                along2[x] += pow(warp.k[w][x] / k, 2) / waves;
+            }
+            turn[0] += cos(warp.phase_rad[w]) / waves, turn[1] += sin(warp.phase_rad[w]) / waves;
+        }
+        for (uint64_t i = 0; i < 10; i++) {
+            double height, gradient[3], bend[9], p[3];
+            for (uint64_t x = 0; x < 3; x++) p[x] = 20 * random_uniform(1, 0, (uint32_t)seed, 3 * i + x);
+            tubes_warp_at(&height, gradient, bend, &warp, p);
+            square += height * height / (10 * seeds);
+        }
+    }
+    printf("unevenness: rms %.4f of 2 mm; waves a length %.3f, squared %.3f; up %.3f, up^2 %.3f; phase %.3f %.3f\n",
+           1e3 * sqrt(square), number, number2, along[2], along2[2], turn[0], turn[1]);
+    CHECK_NEAR(sqrt(square) / 2e-3, 1, 0.03);
+    CHECK_NEAR(number, 1, 0.015);
+    CHECK_NEAR(number2, 13 / 12.0, 0.03);
+    for (int x = 0; x < 3; x++) {
+        CHECK_NEAR(along[x], 0, 0.03);
+        CHECK_NEAR(along2[x], 1 / 3.0, 0.02);
+    }
+    CHECK(hypot(turn[0], turn[1]) < 0.04);
+    Warp one, other;
+    tubes_warp_make(&one, 2e-3, 0.5, 1, 0);
+    tubes_warp_make(&other, 2e-3, 0.5, 1, 1);
+    CHECK(memcmp(one.phase_rad, other.phase_rad, sizeof one.phase_rad) != 0);
+}
+
+/* The least of lambda over rays_per_wavelength, the target's radius over rays_per_radius, and (lambda curve / 16)^0.5,
+ * which is lambda / 8 at least. Rays: so many squares in the plate's outline, seen from its front, and its borders. */
+static void the_grid_is_as_fine_as_asked(void **state)
+{
+    (void)state;
+    const double l = light_mps / x_hz, radius_m = 0.5 * hypot(0.4, 0.3);
+    static const struct {
+        double per_wavelength, per_radius, curve_m;
+    } of[] = {{1.25, 0, 0}, {2, 4, 0}, {1, 0, 0.2}, {1, 0, 1e-3}, {0.5, 20, 100}};
+    const double want_m[] = {l / 1.25, l / 2, sqrt(l * 0.2 / 16), l / 8, radius_m / 20};
+    RadarStage   s;
+    stage_open(&s, "plate:0.4x0.3", x_hz);
+    /* the defaults that tubes.h states */
+    CHECK(s.config.frequency_hz == x_hz && s.config.rays_per_wavelength == 1.25 && s.config.rays_per_radius == 128);
+    CHECK(s.config.splits == 2 && s.config.cuts_per_radius == 768 && s.config.split_rad == 0.5);
+    CHECK(s.config.bounces == 8 && s.config.warp_m == 0 && s.config.warp_length_m == 0.5 && s.config.curve_m == 0);
+    s.config.splits = 0;
+    for (int i = 0; i < 5; i++) {
+        const ScatterAntenna a = antenna_at(3, 2, INFINITY);
+        s.config.rays_per_wavelength = of[i].per_wavelength, s.config.rays_per_radius = of[i].per_radius;
+        s.config.curve_m = of[i].curve_m;
+        CHECK(tubes_trace(&s.hits, s.target, &a, &a, &s.config, s.pool) == STATUS_OK);
+        CHECK_NEAR(s.hits.spacing_m / want_m[i], 1, 1e-3); /* the sphere has a margin */
+        CHECK_NEAR((double)s.hits.count * want_m[i] * want_m[i] / 0.12, 1, 6 * want_m[i]);
+    }
+    stage_close(&s);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -296,6 +451,9 @@ int main(void)
         cmocka_unit_test(a_curved_mirror_spreads_the_field),
         cmocka_unit_test(edges_are_added_to_the_rays),
         cmocka_unit_test(warp_is_smooth_and_of_its_height),
+        cmocka_unit_test(a_field_by_hand),
+        cmocka_unit_test(unevenness_has_its_figures),
+        cmocka_unit_test(the_grid_is_as_fine_as_asked),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -59,11 +59,11 @@ static inline FILE *scene_obj(const char *name, const char *sidecar)
     return scene_file(file_name);
 }
 
-/* A sphere of radius a about (x, y, z), body axes but z up; facets of 1.4 degrees. first: number of the first vertex.
- */
-static inline int scene_sphere(FILE *file, int first, double a, double x, double y, double up)
+/* A sphere of radius a about (x, y, z), body axes but z up; n facets from pole to pole. first: number of the first
+ * vertex. */
+static inline int scene_sphere_of(FILE *file, int first, double a, double x, double y, double up, int n)
 {
-    enum { n = 128, m = 256 };
+    const int m = 2 * n;
     fprintf(file, "o sphere%d\n", first);
     for (int i = 0; i <= n; i++)
         for (int j = 0; j < m; j++) {
@@ -78,6 +78,12 @@ static inline int scene_sphere(FILE *file, int first, double a, double x, double
             if (i < n - 1) fprintf(file, "f %d//%d %d//%d %d//%d\n", a1, a1, a2, a2, b2, b2);
         }
     return first + (n + 1) * m;
+}
+
+/* One whose facets are of 1.4 degrees. */
+static inline int scene_sphere(FILE *file, int first, double a, double x, double y, double up)
+{
+    return scene_sphere_of(file, first, a, x, y, up, 128);
 }
 
 /* A box, body axes but z up. */

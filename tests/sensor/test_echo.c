@@ -1,7 +1,7 @@
 /* Samples of many echoes by gridding against the sum that they stand for, echo by echo, in double. labels: physics */
 #include "tests/check.h"
 
-#include "sensor/radar/echo.h"
+#include "sensor/radar/echo_private.h"
 
 static const double light_mps = 299792458.0;
 static double       uniform(int i) { return random_uniform(3, 0, 0, (uint64_t)i); }
@@ -263,6 +263,91 @@ static void sizes_are_checked(void **state)
     echo_grid_destroy(NULL);
 }
 
+/* A series of exp(-j x) leaves out x^n / n! behind n terms, which may be 2e-3; x: the phase that delay and Doppler
+ * leave at the ends of band and interval, pi B / c of the path there, half of (pulses - 1 + share of a row) times its
+ * growth. Up to one term for 8 pulses, and 8; beyond that it goes row by row. */
+static void terms_by_hand(void **state)
+{
+    (void)state;
+    for (int rows = 16; rows <= 96; rows += 16) {
+        Waveform  w = wave;
+        EchoGrid *grid;
+        double    factorial = 1;
+        w.pulses = rows;
+        CHECK(echo_grid_create(&grid, &w) == STATUS_OK);
+        const double rad_m = pi_rad * 512e6 / light_mps * (rows - 1 + 0.2) / 2; /* 10 us of 50 us */
+        const int    most = rows / 8 < 8 ? rows / 8 : 8;
+        for (int n = 1; n <= 8; n++) {
+            factorial *= n;
+            const double x = pow(2e-3 * factorial, 1.0 / n);
+            for (int sign = -1; sign <= 1; sign += 2) {
+                CHECK(echo_terms(grid, sign * 0.999 * x / rad_m) == (n <= most ? n : 0));
+                CHECK(echo_terms(grid, sign * 1.001 * x / rad_m) == (n + 1 <= most ? n + 1 : 0));
+            }
+        }
+        echo_grid_destroy(grid);
+    }
+}
+
+/* What a rate leaves of an echo whose pulse has one frequency: sinc of pi f / c rate pulse, here of 1 radian and more,
+ * at which a tenth of it is 3 %. Followed or not, on either grid. */
+static void a_rate_takes_from_a_pulse(void **state)
+{
+    (void)state;
+    static const WaveformKind kind[] = {WAVEFORM_PULSE_DOPPLER, WAVEFORM_STEPPED, WAVEFORM_LFM};
+    for (int i = 0; i < 6; i++) {
+        Waveform  w = wave;
+        EchoGrid *grid;
+        w.kind = kind[i / 2];
+        if (w.kind == WAVEFORM_STEPPED) w.repeat_hz = 500, w.pulse_s = 1e-5;
+        const double one_m = light_mps / (pi_rad * w.centre_hz * w.pulse_s * w.repeat_hz); /* of growth: 1 rad */
+        Echo         e = {.path_m = 0.3, .path_per_pulse_m = (i % 2 ? 0.4 : 1.3) * one_m};
+        const double unfollowed_m = i % 2 ? 0.9 * one_m : 0;
+        for (int c = 0; c < interval_channels; c++) e.amplitude[c] = 1.0 + c - I;
+        CHECK(echo_grid_create(&grid, &w) == STATUS_OK);
+        echo_unfollowed(grid, unfollowed_m);
+        memset(got, 0, sizeof got), memset(want, 0, sizeof want);
+        echo_add(grid, &e, 1, NULL);
+        echo_sum(got, grid);
+        add_by_hand(&w, &e, unfollowed_m);
+        const int middle = pulses / 2 * samples + samples / 2;
+        printf("kind %d: %.4f of the amplitude, %.4f on paper\n", (int)w.kind, cabs(got[middle]) / cabs(e.amplitude[0]),
+               cabs(want[middle]) / cabs(e.amplitude[0]));
+        CHECK_NEAR(cabs(got[middle]) / cabs(e.amplitude[0]), cabs(want[middle]) / cabs(e.amplitude[0]), 2e-3);
+        echo_grid_destroy(grid);
+    }
+}
+
+/* The kernel of Barnett, Magland & af Klinteberg, exp(beta ((1 - x^2)^0.5 - 1)) over x = -1 .. 1, 8 points wide,
+ * beta 2.30 times the width for twice the points; the polynomials in its place are off by 1.6e-8. Corrections: one over
+ * its transform, here by an integral of the test's own. */
+static void the_kernel_is_barnetts(void **state)
+{
+    (void)state;
+    enum { points = 64, steps = 20000 };
+    for (int i = 0; i < 200; i++) {
+        const double turns = 3 * uniform(i) - 1, at = turns * points;
+        double       weight[gridding_width];
+        const int    first = gridding_spread(weight, turns, points);
+        CHECK(first >= 0 && first < points);
+        for (int k = 0; k < gridding_width; k++) {
+            const double x = remainder(first + k - at, points) / 4;
+            CHECK_NEAR(weight[k], fabs(x) < 1 ? exp(2.30 * 8 * (sqrt(1 - x * x) - 1)) : 0, 2e-8);
+        }
+    }
+    double *correction = gridding_corrections(32, points);
+    CHECK(correction);
+    for (int i = 0; i < 32; i++) {
+        double sum = 0;
+        for (int k = 0; k < steps; k++) {
+            const double x = 2 * (k + 0.5) / steps - 1;
+            sum += exp(2.30 * 8 * (sqrt(1 - x * x) - 1)) * cos(2 * pi_rad * (i - 16) / points * 4 * x) * 8 / steps;
+        }
+        CHECK_NEAR(correction[i] * sum, 1, 1e-7);
+    }
+    free(correction);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -271,6 +356,9 @@ int main(void)
         cmocka_unit_test(fast_echoes_have_the_same_bits),
         cmocka_unit_test(slow_and_fast_echoes_are_alike),
         cmocka_unit_test(an_echo_folds_over_within_the_interval),
+        cmocka_unit_test(the_kernel_is_barnetts),
+        cmocka_unit_test(terms_by_hand),
+        cmocka_unit_test(a_rate_takes_from_a_pulse),
         cmocka_unit_test(sizes_are_checked),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -2,6 +2,8 @@
  * one echo, and where a target is resolved nothing is merged. labels: physics small */
 #include "tests/sensor/radar_scene.h"
 
+#include "sensor/radar/seeker_radar_private.h"
+
 static int open_models(void **state)
 {
     (void)state;
@@ -34,12 +36,67 @@ static int close_models(void **state)
     return 0;
 }
 
+/* Nodes of the grid that points are shared out to, and between which there are points, from what the radar keeps of all
+ * of them: over path, its growth, and the cosines to the right and down 0.4, 0.4, 0.25 and 0.25 apart, where they part
+ * by more than 0.1 in all. Phases are those at the ends of the band, pi B / c of path, and of the interval, k / 2 of
+ * its growth for each pulse; u is pi d / lambda of a cosine. */
+static void nodes_of(int *nodes, int *used, const SeekerRadar *radar)
+{
+    enum { most = 1 << 10 };
+    static const double step[4] = {0.4, 0.4, 0.25, 0.25};
+    static double       x[most][4];
+    static bool         taken[1 << 17];
+    const RadarPreset  *p = &radar->preset;
+    const double        lambda_m = light_mps / p->wave.centre_hz, u = pi_rad * p->antenna.diameter_m / lambda_m;
+    const double scale[4] = {pi_rad * p->wave.bandwidth_hz / light_mps, pi_rad / lambda_m * p->wave.pulses, u, u};
+    double       low[4], high[4];
+    int          size[4];
+    CHECK(radar->target_points <= most);
+    for (int i = 0; i < radar->target_points; i++) {
+        const RadarPoint *q = &radar->points.point[i];
+        const double     *r = stage.view.r_enu_from_cam;
+        double            d[3];
+        v3_sub(d, q->p_enu, stage.view.p_enu);
+        v3_normalize(d, d);
+        x[i][0] = q->path_m, x[i][1] = q->path_per_pulse_m;
+        for (int k = 0; k < 2; k++) x[i][2 + k] = d[0] * r[k] + d[1] * r[3 + k] + d[2] * r[6 + k];
+        for (int a = 0; a < 4; a++) {
+            low[a] = i == 0 ? x[i][a] : fmin(low[a], x[i][a]);
+            high[a] = i == 0 ? x[i][a] : fmax(high[a], x[i][a]);
+        }
+    }
+    *nodes = 1, *used = 0;
+    for (int a = 0; a < 4; a++) {
+        const double span = scale[a] * (high[a] - low[a]);
+        size[a] = span > 0.1 ? 1 + (int)ceil(span / step[a]) : 1;
+        printf("%s%.2f steps", a ? ", " : "", span / step[a]);
+        *nodes *= size[a];
+    }
+    printf("\n");
+    if (*nodes > (int)(sizeof taken / sizeof *taken)) return;
+    memset(taken, 0, sizeof taken);
+    for (int i = 0; i < radar->target_points; i++)
+        for (int corner = 0; corner < 16; corner++) {
+            int  at = 0, stride = 1;
+            bool beside = true; /* a point on a node has no share in the next */
+            for (int a = 0; a < 4; a++) {
+                const double along = size[a] > 1 ? (x[i][a] - low[a]) / (high[a] - low[a]) * (size[a] - 1) : 0;
+                const int    here = (int)floor(along) + (corner >> a & 1);
+                beside = beside && (!(corner >> a & 1) || along > floor(along));
+                at += here * stride, stride *= size[a];
+            }
+            if (beside && !taken[at]) taken[at] = true, ++*used;
+        }
+}
+
 /* Root of the power of what merging changes over the map's own, of all channels; their numbers of echoes. */
 static double changed(int *merged, int *apart, const char *preset)
 {
     SeekerRadar *radar = scene_radar(preset, NULL);
     stage.scene.apart = true;
     const RadarFrame *want = scene_measure(radar);
+    int               nodes, used;
+    nodes_of(&nodes, &used, radar);
     stage.scene.apart = false;
     const RadarFrame *got = scene_measure(radar);
     const size_t      cells = (size_t)interval_channels * (size_t)want->map.rows * (size_t)want->map.columns;
@@ -49,6 +106,8 @@ static double changed(int *merged, int *apart, const char *preset)
         power += scatter_power(want->map.cell[i]);
     }
     *merged = got->echoes, *apart = want->echoes;
+    printf("%d of %d nodes\n", used, nodes);
+    CHECK(*merged == (nodes > *apart / 2 ? *apart : used));
     seeker_radar_destroy(radar);
     return sqrt(off / power);
 }
@@ -56,12 +115,19 @@ static double changed(int *merged, int *apart, const char *preset)
 static void few_echoes_make_the_same_map(void **state)
 {
     (void)state;
-    /* still; turning, so that range rates differ; turned away from the axis, where the pattern has a slope */
-    static const double rps[3] = {0, 0.002, 0}, north_m[3] = {0, 0, 12};
+    /* still; turning, so that range rates differ; off the axis, where the pattern has a slope. So that spans are just
+     * beyond a whole number of steps, or beyond what is together: 7.02 of path; 0.26 of growth; 3.05 to the right */
+    static const double rps[3] = {0, 0.0016, 0}, north_m[3] = {0, 0, 12}, east_m[3] = {0, 0, 226};
+    static const double yaw_rad[3] = {4 * rad_per_deg, 0, 0};
     for (int i = 0; i < 3; i++) {
         int merged, apart;
         stage.snapshot.count = 0;
-        scene_add(0, 0, north_m[i], 0)->w_body_rps[2] = rps[i];
+        SnapshotEntity *e = scene_add(0, east_m[i], north_m[i], 0);
+        const double    c = cos(yaw_rad[i]), s = sin(yaw_rad[i]), turn[9] = {c, -s, 0, s, c, 0, 0, 0, 1};
+        double          turned[9];
+        m3_mul(turned, e->r_ecef_from_body, turn);
+        memcpy(e->r_ecef_from_body, turned, sizeof turned);
+        e->w_body_rps[2] = rps[i];
         const double off = changed(&merged, &apart, "search_ku");
         printf("boxes %g m off the axis, turning by %g rad/s: %d echoes of %d, %.2f %% of the map\n", north_m[i],
                rps[i], merged, apart, 100 * off);

@@ -74,6 +74,41 @@ static void bad_rows_are_refused(void **state)
     }
 }
 
+/* What columns bound together, from either side: the first row of a pair is taken, the second refused. */
+static void bounds_of_columns_together(void **state)
+{
+    (void)state;
+    static const char *const pair[][2] = {
+        {"x,lfm,94,500,512,2,20,20,10,5,0.2,1,v,8,2,0,0,12,hann,hann,1e-6,1,0,2,s\n", /* mti up to pulses */
+         "x,lfm,94,500,512,2,20,20,10,5,0.2,1,v,8,2,0,0,12,hann,hann,1e-6,1,0,3,s\n"},
+        {"x,lfm,10,5000,8,2,20,20,10,5,0.2,1,v,8,2,0,0,12,hann,hann,1e-6,1,0,2,s\n", /* half of the centre */
+         "x,lfm,10,5001,8,2,20,20,10,5,0.2,1,v,8,2,0,0,12,hann,hann,1e-6,1,0,2,s\n"},
+        {"x,lfm,94,50,512,64,20,50,10,5,0.2,1,v,8,2,0,0,12,hann,hann,1e-6,1,0,2,s\n", /* a pulse as long as its period
+                                                                                       */
+         "x,lfm,94,50,512,64,20,50.01,10,5,0.2,1,v,8,2,0,0,12,hann,hann,1e-6,1,0,2,s\n"},
+        {"x,stepped,94,50,8,64,20,50,10,5,0.2,1,v,8,2,0,0,12,hann,hann,1e-6,1,0,2,s\n",
+         "x,stepped,94,50,8,64,20,50.01,10,5,0.2,1,v,8,2,0,0,12,hann,hann,1e-6,1,0,2,s\n"},
+        {"x,lfm,94,50,65536,64,20,20,10,5,0.2,1,v,8,2,0,0,2,hann,hann,1e-6,1,0,2,s\n", /* 2^22 samples; bits from 2 */
+         "x,lfm,94,50,65536,66,20,20,10,5,0.2,1,v,8,2,0,0,2,hann,hann,1e-6,1,0,2,s\n"},
+        /* bandwidth by the profile's time up to 1e7: 512 steps at 20 kHz take 25.6 ms */
+        {"x,stepped,94,390,512,64,20,1,10,5,0.2,1,v,8,2,0,0,12,hann,hann,1e-6,1,0,2,s\n",
+         "x,stepped,94,391,512,64,20,1,10,5,0.2,1,v,8,2,0,0,12,hann,hann,1e-6,1,0,2,s\n"},
+        {"x,pulse_doppler,94,10.24,512,64,20,1,10,5,0.2,1,v,8,2,0,0,12,hann,hann,1e-6,1,9,2,s\n",
+         "x,pulse_doppler,94,10.24001,512,64,20,1,10,5,0.2,1,v,8,2,0,0,12,hann,hann,1e-6,1,9,2,s\n"},
+    };
+    char path[text_file_size], text[1024];
+    log_set_sink(check_listen, NULL);
+    for (size_t i = 0; i < sizeof pair / sizeof *pair; i++)
+        for (int beyond = 0; beyond < 2; beyond++) {
+            snprintf(text, sizeof text, "%s%s", header, pair[i][beyond]);
+            text_file(path, text);
+            const Status status = radar_preset_check(path);
+            remove(path);
+            if (status != (beyond ? STATUS_BAD_VALUE : STATUS_OK)) fail_msg("%s: %d", pair[i][beyond], (int)status);
+        }
+    log_set_sink(NULL, NULL);
+}
+
 /* The columns of etc/radars.csv before waveforms were named: LFM, compensated, nothing folded, two rows. */
 static void a_table_older_than_its_columns_is_read(void **state)
 {
@@ -127,6 +162,7 @@ int main(void)
         cmocka_unit_test(bundled_rows_are_read),
         cmocka_unit_test(columns_are_taken_by_their_names),
         cmocka_unit_test(bad_rows_are_refused),
+        cmocka_unit_test(bounds_of_columns_together),
         cmocka_unit_test(a_table_older_than_its_columns_is_read),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
