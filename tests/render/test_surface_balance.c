@@ -205,7 +205,7 @@ static void water_at_the_top(void **state)
 
 /* Weather of which one thing changes over an hour: a step of an hour (taken in halves as far as 1e-3 K asks) against
  * 360 of ten seconds, whose weather is straight between. What follows from the wind, in the step itself straight, is
- * not: within a tenth of the change. */
+ * not: within a seventh of the change. */
 static void weather_changes_within_a_step(void **state)
 {
     (void)state;
@@ -230,7 +230,8 @@ static void weather_changes_within_a_step(void **state)
         if (what == 4) to.air.pressure_pa = 70000; /* of dry ground: vapour's pressure is the beginning's */
         if (what == 5)
             from.air.temp_k = to.air.temp_k = 315, from.direct_w_m2 = to.direct_w_m2 = 0, to.air.wind_mps = 4.5;
-        if (what == 6) from.diffuse_w_m2 = from.direct_w_m2 = to.direct_w_m2 = 0, to.diffuse_w_m2 = 500;
+        if (what == 6) /* leaves open in the light, that is all */
+            from.direct_w_m2 = to.direct_w_m2 = 0, to.diffuse_w_m2 = 250, to.longwave_w_m2 -= 150 * 0.8 / 0.95;
         ground_column_start(&one, &kind, &layers, 300);
         ground_column_start(&many, &kind, &layers, 300);
         ground_column_start(&none, &kind, &layers, 300);
@@ -252,8 +253,8 @@ static void weather_changes_within_a_step(void **state)
         const double change_k = many.state.temp_k[0] - none.state.temp_k[0];
         print_message("%d: %.3f K, in small steps %.3f K; %.3f K of the change\n", what, one.state.temp_k[0],
                       many.state.temp_k[0], change_k);
-        CHECK(fabs(change_k) > 0.25);
-        CHECK_NEAR(one.state.temp_k[0], many.state.temp_k[0], 0.1 * fabs(change_k));
+        CHECK(fabs(change_k) > 0.2);
+        CHECK_NEAR(one.state.temp_k[0], many.state.temp_k[0], fabs(change_k) / 7);
     }
 }
 
