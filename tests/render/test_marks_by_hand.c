@@ -186,16 +186,15 @@ static void a_wall_hides_the_sky(void **state)
     for (int t = 0; t < 2; t++)
         for (int i = 0; i < 3; i++) now.past[t].sun_k[kind][i] = 0;
     write_scales(1, 0.8);
-    static const double away_m[] = {0.3, 0.5, 0.9, 1.5, 2.5, 4};
-    for (int c = 0; c < 6; c++) {
+    for (double away_m = 0.1; away_m < 4; away_m *= 1.04) {
         int hidden = 0;
         for (int r = 0; r < 4; r++)
             for (int a = 0; a < 8; a++) {
                 const double flat = sqrt((2 * r + 1) / 8.0), turn = (2 * a + r % 2) * pi_rad / 8, y = flat * sin(turn);
-                hidden += y < 0 && 0.02 + away_m[c] * sqrt(1 - flat * flat) / -y < 2;
+                hidden += y < 0 && 0.02 + away_m * sqrt(1 - flat * flat) / -y < 2;
             }
         CHECK(hidden > 0);
-        CHECK_NEAR(stand_add_k(&wall, 0, 0.1 + away_m[c], 0, up, 1), 0.8 * 1.75 * hidden / 32, 1e-5);
+        CHECK_NEAR(stand_add_k(&wall, 0, 0.1 + away_m, 0, up, 1), 0.8 * 1.75 * hidden / 32, 1e-5);
     }
     CHECK_NEAR(stand_add_k(&wall, 0, 0, 0, up, 1), 0.8 * 1.75, 1e-5);
 }
@@ -287,6 +286,8 @@ static void trails(void **state)
     }
     mark_at(&m, &marks, kind, 5, 6.3, 1, up, 1); /* 750 s ago: three quarters from the first middle to the second */
     CHECK_NEAR(m.add_k, 20e3 * (0.25 * 0.5 + 0.75 * 0.3) / 600, 1e-4);
+    mark_at(&m, &marks, kind, 49 - 20, 6.3, 1, up, 1); /* beyond its end */
+    CHECK(m.add_k == 0);
     mark_at(&m, &marks, grown, -10, 6.3, 1, up, 1);
     CHECK_NEAR(m.add_k, 2 * 20e3 * 0.3 / 600, 2e-4);
     for (int side = -1; side <= 1; side += 2) {
@@ -304,6 +305,9 @@ static void trails(void **state)
     mark_at(&m, &marks, kind, 0, 6.3, 1, up, 1);
     CHECK_NEAR(m.add_k, 20e3 / (1000 * sqrt(pi_rad * 200)), 1e-4);
     CHECK(m.loose == 0.6);
+    t.a_s = t.b_s = now_s - 310 - exercise_s; /* a sixtieth of the way from the first middle to the second */
+    mark_at(&m, &marks, kind, 0, 6.3, 1, up, 1);
+    CHECK_NEAR(m.add_k, 20e3 * (0.5 - 0.2 / 60) / 600, 1e-4);
     t.a_s = t.b_s = now_s + 5 - exercise_s; /* not yet */
     mark_at(&m, &marks, kind, 0, 6.3, 1, up, 1);
     CHECK(m.add_k == 0);
@@ -373,6 +377,14 @@ static void marks_are_near_or_not(void **state)
         ecef_from_enu(t.b_ecef, &frame, (const double[3]){32 - y[k], 20, 0});
         CHECK(mark_at(&m, &track, kind, -1, 16, 0, up, 1) == (k == 1));
     }
+    for (int k = 0; k < 2; k++) { /* on the south side, and on the east */
+        ecef_from_enu(t.a_ecef, &frame, (const double[3]){10, 32 - y[k], 0});
+        ecef_from_enu(t.b_ecef, &frame, (const double[3]){20, 32 - y[k], 0});
+        CHECK(mark_at(&m, &track, kind, 16, -1, 0, up, 1) == (k == 1));
+        ecef_from_enu(t.a_ecef, &frame, (const double[3]){y[k], 10, 0});
+        ecef_from_enu(t.b_ecef, &frame, (const double[3]){y[k], 20, 0});
+        CHECK(mark_at(&m, &track, kind, 33, 16, 0, up, 1) == (k == 1));
+    }
     /* a long one on the slant: all along it */
     ecef_from_enu(t.a_ecef, &frame, (const double[3]){-300, -150, 0});
     ecef_from_enu(t.b_ecef, &frame, (const double[3]){300, 150, 0});
@@ -391,6 +403,45 @@ static void marks_are_near_or_not(void **state)
         }
 }
 
+/* Two of each sort at once, each where it is. */
+static void all_sorts_at_once(void **state)
+{
+    (void)state;
+    const double south[3] = {0, -0.6, 0.8};
+    GroundStand  stand[2];
+    GroundTrack  track[2];
+    GroundBurn   burn[2];
+    MarkedGround m;
+    write_past(south);
+    for (int t = 0; t < 2; t++)
+        for (int i = 0; i < 3; i++) now.past[t].sky_k[kind][i] = 0;
+    write_scales(1, 1);
+    for (int k = 0; k < 2; k++) {
+        const double x = 500 * k;
+        stand[k] = box(3.4, 3.4, 2.4, 0, 2e5);
+        track[k] = (GroundTrack){.a_s = now_s - 900 - exercise_s,
+                                 .b_s = now_s - 900 - exercise_s,
+                                 .width_m = 0.6f,
+                                 .apart_m = 2.6f,
+                                 .heat_j_m2 = (float)(10e3 * (k + 1)),
+                                 .tracked = k};
+        burn[k] = (GroundBurn){.t_s = now_s - 900 - exercise_s, .radius_m = 5, .crater_m = 1, .heat_j_m2 = 1e5f};
+        ecef_from_enu(stand[k].p_ecef, &frame, (const double[3]){x, 0, 0});
+        ecef_from_enu(track[k].a_ecef, &frame, (const double[3]){x, 100, 0});
+        ecef_from_enu(track[k].b_ecef, &frame, (const double[3]){x + 20, 100, 0});
+        ecef_from_enu(burn[k].p_ecef, &frame, (const double[3]){x, 200, 0});
+    }
+    const GroundMarks marks = {.stands = 2, .stand = stand, .tracks = 2, .track = track, .burns = 2, .burn = burn};
+    for (int k = 0; k < 2; k++) {
+        CHECK(mark_at(&m, &marks, kind, 500 * k, 2, 0, up, 1));
+        CHECK_NEAR(m.add_k, -0.8 * 7, 1e-5);
+        CHECK(mark_at(&m, &marks, kind, 500 * k + 10, 101.3, 0, up, 1) && m.loose == (k ? 0.6 : 0.3));
+        CHECK_NEAR(m.add_k, 10e3 * (k + 1) * 0.3 / 600, 1e-4);
+        CHECK(mark_at(&m, &marks, kind, 500 * k, 200, 0, up, 1) && m.loose == 1 && m.burnt == 0);
+        CHECK(!mark_at(&m, &marks, kind, 500 * k, 300, 0, up, 1));
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -402,6 +453,7 @@ int main(void)
         cmocka_unit_test(trails),
         cmocka_unit_test(burns),
         cmocka_unit_test(marks_are_near_or_not),
+        cmocka_unit_test(all_sorts_at_once),
     };
     return cmocka_run_group_tests(tests, open_arena, close_arena);
 }
