@@ -138,6 +138,43 @@ static void light_below_a_stand(void **state)
     heat_shadow_destroy(map);
 }
 
+static void one_column(ShadowStand *out, const void *user, double x_m, double y_m)
+{
+    const bool here = *(const bool *)user ? fabs(x_m) < 4 : fabs(y_m) < 4;
+    *out = here ? (ShadowStand){3, 0, 16, 1} : (ShadowStand){0, 0, 0, 1};
+}
+
+/* One column of cells of 8 m with plants of 16 m, leaf area 3 evenly from the ground up; the sun 40 degrees up behind
+ * it, on the slant. The ray to the sun is asked at the middles of lengths of a cell's width, by the nearest cell: what
+ * lies in such a length, which rises by 8 m times the tangent, is 3 rise / 16 of leaf area, times 0.5 / sin. */
+static void light_through_one_column(void **state)
+{
+    (void)state;
+    static const double azimuth[2][2] = {{70, 250}, {20, 200}};
+    for (int c = 0; c < 4; c++) {
+        float      d[3][shadow_most_slots] = {{0}};
+        ShadowMap *map;
+        const bool in_x = c < 2;
+        int        shaded = 0;
+        ridge(0);
+        slot(d, 0, azimuth[!in_x][c % 2], 40);
+        CHECK(heat_shadow_create(&map, &(ShadowOf){&ground, 8, 1, d, one_column, &in_x, NULL}, NULL) == STATUS_OK);
+        const double up = (double)d[2][0], level = hypot((double)d[0][0], (double)d[1][0]),
+                     step = (double)d[in_x ? 0 : 1][0] / level, rise_m = 8 * up / level;
+        for (int cell = -5; cell <= 5; cell++) {
+            uint8_t shadow[shadow_most_slots];
+            double  open, depth = 0;
+            for (int k = 0; k * rise_m < 16; k++)
+                if (fabs(cell + (k + 0.5) * step) < 0.5) depth += 0.5 * 3 / 16 * fmin(rise_m, 16 - k * rise_m) / up;
+            heat_shadow_at(shadow, &open, map, in_x ? 8 * cell : 24, in_x ? 24 : 8 * cell);
+            CHECK_NEAR(shadow[0], 255 * (1 - exp(-depth)), 0.6);
+            shaded += shadow[0] > 0;
+        }
+        CHECK(shaded == 2 || shaded == 3);
+        heat_shadow_destroy(map);
+    }
+}
+
 static void large_terrain_has_larger_cells(void **state)
 {
     (void)state;
@@ -157,6 +194,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(length_of_a_shadow), cmocka_unit_test(cells_behind_a_ridge),
                                        cmocka_unit_test(light_below_a_stand),
+                                       cmocka_unit_test(light_through_one_column),
                                        cmocka_unit_test(large_terrain_has_larger_cells)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
