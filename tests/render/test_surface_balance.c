@@ -284,12 +284,26 @@ static void melting_and_depth(void **state)
     CHECK_NEAR(deep.depth_m[deep.nodes - 1], 3, 1e-12);
 }
 
+/* Every kind has a name of its own, by which it is found; two of them are of heat alone. */
+static void kinds_by_name(void **state)
+{
+    (void)state;
+    for (int k = 1; k < SURFACE_COUNT; k++) CHECK(ground_kind_find(surface_name((SurfaceClass)k)) == k);
+    CHECK(ground_kind_find("forest_floor") == ground_forest_floor && ground_kind_find("burnt") == ground_burnt);
+    CHECK(ground_kind_find("sand") == SURFACE_SAND && ground_kind_find("none at all") == -1 &&
+          ground_kind_find("") == -1);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_balance_is_its_terms),      cmocka_unit_test(soil_conducts_by_its_water),
-        cmocka_unit_test(what_a_slope_absorbs),          cmocka_unit_test(water_at_the_top),
-        cmocka_unit_test(weather_changes_within_a_step), cmocka_unit_test(melting_and_depth),
+        cmocka_unit_test(the_balance_is_its_terms),
+        cmocka_unit_test(soil_conducts_by_its_water),
+        cmocka_unit_test(what_a_slope_absorbs),
+        cmocka_unit_test(water_at_the_top),
+        cmocka_unit_test(weather_changes_within_a_step),
+        cmocka_unit_test(melting_and_depth),
+        cmocka_unit_test(kinds_by_name),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
