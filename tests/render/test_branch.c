@@ -1,5 +1,5 @@
 /* Trunks over a day: the three parts by sides against finite volumes over rings and sides, with every side's own
- * balance; and the film of a cylinder against its table. labels: physics */
+ * balance. Closed forms: test_branch_balance.c. labels: physics */
 #include "tests/scenes/paper_day.h"
 
 enum { rings = 12, sides = 24 };
@@ -115,33 +115,8 @@ static void thin_and_thick(void **state)
     CHECK(at_h[1] > at_h[0] + 0.5 && most[0] > 288);
 }
 
-/* Zukauskas (Advances in Heat Transfer 8, 1972), air: Nu = 0.51 Re^0.5 Pr^0.37 to 1000, 0.26 Re^0.6 Pr^0.37 to 2e5. */
-static void film_of_a_cylinder(void **state)
-{
-    (void)state;
-    static const double radius_m[] = {0.004, 0.012, 0.04, 0.12, 0.3}, wind_mps[] = {1, 3, 8};
-    for (int r = 0; r < 5; r++)
-        for (int w = 0; w < 3; w++) {
-            const double re = wind_mps[w] * 2 * radius_m[r] / 1.5e-5;
-            const double nu = re < 1000  ? 0.51 * sqrt(re) * pow(0.71, 0.37)
-                              : re < 2e5 ? 0.26 * pow(re, 0.6) * pow(0.71, 0.37)
-                                         : 0.076 * pow(re, 0.7) * pow(0.71, 0.37);
-            CHECK_NEAR(heat_branch_film_w_m2k(radius_m[r], wind_mps[w]) / (nu * 0.025 / (2 * radius_m[r])), 1, 0.25);
-        }
-    /* Churchill & Bernstein, J. Heat Transfer 99, 1977 (Incropera & DeWitt eq. 7.54), worked out in Python for air of
-     * Pr 0.71, 1.5e-5 m2/s, 0.025 W/(m K): Nu = 0.3 + 0.62 Re^(1/2) Pr^(1/3) / (1 + (0.4 / Pr)^(2/3))^(1/4)
-     * (1 + (Re / 282000)^(5/8))^(4/5), Re = 533, 4800, 128000, 320000; calm air as that of 0.3 m/s, Re = 12000. */
-    static const double film[][3] = {{0.004, 1, 36.5438825354537},
-                                     {0.012, 3, 37.54503606642444},
-                                     {0.12, 8, 26.52983649744248},
-                                     {0.3, 8, 20.596519370516678},
-                                     {0.3, 0, 2.472590970226595}};
-    for (int i = 0; i < 5; i++) CHECK_NEAR(heat_branch_film_w_m2k(film[i][0], film[i][1]), film[i][2], 1e-9);
-}
-
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(sides_of_a_trunk), cmocka_unit_test(thin_and_thick),
-                                       cmocka_unit_test(film_of_a_cylinder)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(sides_of_a_trunk), cmocka_unit_test(thin_and_thick)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -114,9 +114,56 @@ static void what_is_refused(void **state)
     given_heat_close(NULL);
 }
 
+static Status open_kept(KeptHeat **out, const char *rows)
+{
+    char path[text_file_size], text[1024];
+    snprintf(text, sizeof text, "entity,model,unix_s,node_k\n%s", rows);
+    text_file(path, text);
+    *out = NULL;
+    const Status status = heat_kept_open(out, path);
+    remove(path);
+    return status;
+}
+
+/* Rows in any order are found by id, model and number of nodes; of two of an id the first counts. Temperatures are 0.5
+ * .. 10000 K, times within 1e12 s of 1970, given times within 1e9 s; bounds themselves are in. */
+static void kept_rows(void **state)
+{
+    (void)state;
+    KeptHeat        *k;
+    const KeptNodes *n;
+    CHECK(open_kept(&k,
+                    "3:1:1,tank,-1e12,300\n1:1:2,tank,1e12,0.5 10000\n1:1:1,truck,5,  290 291  292 \n3:1:1,tank,7,400\n"
+                    "2:1:1,tank,9,280\n") == STATUS_OK);
+    n = heat_kept_find(k, second, "tank", 2);
+    CHECK(n && n->temp_k[0] == 0.5 && n->temp_k[1] == 10000 && n->unix_s == 1e12);
+    n = heat_kept_find(k, first, "truck", 3);
+    CHECK(n && n->temp_k[0] == 290 && n->temp_k[2] == 292 && n->unix_s == 5);
+    n = heat_kept_find(k, (DisEntityId){3, 1, 1}, "tank", 1);
+    CHECK(n && n->temp_k[0] == 300 && n->unix_s == -1e12);
+    CHECK(heat_kept_find(k, (DisEntityId){2, 1, 1}, "tank", 1)->temp_k[0] == 280);
+    CHECK(!heat_kept_find(k, first, "tank", 3) && !heat_kept_find(k, first, "truck", 2));
+    CHECK(!heat_kept_find(k, (DisEntityId){2, 2, 1}, "tank", 1) &&
+          !heat_kept_find(k, (DisEntityId){9, 1, 1}, "tank", 1));
+    heat_kept_close(k);
+    static const char *const bad[] = {"1:1:1,tank,5,0.49\n",       "1:1:1,tank,5,10001\n", "1:1:1,tank,1.05e12,300\n",
+                                      "1:1:1,tank,-1.05e12,300\n", "1:1:1,tank,5,\n",      "1:1:1,tank,5,300 x\n",
+                                      "1:1:1,tank,5,300;301\n",    "1:1,tank,5,300\n"};
+    log_set_sink(check_listen, NULL);
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) CHECK(open_kept(&k, bad[i]) != STATUS_OK && !k);
+    GivenHeat *g;
+    CHECK(open_text(&g, "entity,part,t_s,temp_k\n*,*,-1e9,1\n*,*,1e9,4000\n") == STATUS_OK);
+    CHECK_NEAR(k_of(g, first, &tank, 0, 0), 2000.5, 1e-9);
+    given_heat_close(g);
+    CHECK(open_text(&g, "entity,part,t_s,temp_k\n*,*,-1.05e9,1\n") != STATUS_OK &&
+          open_text(&g, "entity,part,t_s,temp_k\n*,*,1.05e9,1\n") != STATUS_OK);
+    log_set_sink(NULL, NULL);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(lines_between_rows), cmocka_unit_test(the_closest_name_wins),
-                                       cmocka_unit_test(names_that_are_roles), cmocka_unit_test(what_is_refused)};
+                                       cmocka_unit_test(names_that_are_roles), cmocka_unit_test(what_is_refused),
+                                       cmocka_unit_test(kept_rows)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

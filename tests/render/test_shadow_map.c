@@ -67,6 +67,46 @@ static void length_of_a_shadow(void **state)
     pool_destroy(pool);
 }
 
+/* Rows of cells away from a ridge of 40 m, n cells of 8 m from its crest: the edge of the shadow falls from cell to
+ * cell by 8 m times the way between rows over the one along their axis, times the tangent of the sun's height; a cell
+ * goes from lit to shaded over 8 m times that tangent. The ridge stands across x, then across y. */
+static void cells_behind_a_ridge(void **state)
+{
+    (void)state;
+    static const struct {
+        double azimuth, high;
+        bool   across_x;
+    } c[] = {{90, 35, true}, {270, 35, true},  {60, 25, true},  {120, 41, true},  {300, 30, true},  {240, 20, true},
+             {0, 35, false}, {180, 35, false}, {30, 25, false}, {330, 30, false}, {150, 20, false}, {210, 41, false}};
+    for (int across_x = 0; across_x < 2; across_x++) {
+        float      d[3][shadow_most_slots] = {{0}};
+        ShadowMap *map;
+        ridge(across_x ? 40 : 0);
+        if (!across_x) {
+            for (int i = 0; i < posts; i++) elevation_set_post(&ground.level[0], i, posts / 2, 64 * 140);
+            elevation_build_pyramids(&ground);
+        }
+        for (int s = 0; s < 12; s++) slot(d, s, c[s].azimuth, c[s].high);
+        CHECK(heat_shadow_create(&map, &(ShadowOf){&ground, 8, 12, d, NULL, NULL, NULL}, NULL) == STATUS_OK);
+        for (int s = 0; s < 12; s++) {
+            if (c[s].across_x != across_x) continue;
+            const double x = (double)d[0][s], y = (double)d[1][s], tangent = (double)d[2][s] / hypot(x, y);
+            const double along = across_x ? x : y, side = across_x ? y : x, away = along > 0 ? -1 : 1;
+            for (int n = 1; n < 30; n++) {
+                uint8_t      shadow[shadow_most_slots];
+                double       open, edge_m = 40 - n * 8 * hypot(1, side / along) * tangent;
+                const double lit = clamp(0.5 - edge_m / (8 * tangent), 0, 1);
+                heat_shadow_at(shadow, &open, map, across_x ? away * 8 * n : 24, across_x ? 24 : away * 8 * n);
+                CHECK_NEAR(shadow[s], 255 * (1 - lit), 0.6);
+                if (n > 1) continue;
+                heat_shadow_at(shadow, &open, map, across_x ? -away * 8 : 24, across_x ? 24 : -away * 8);
+                CHECK(shadow[s] == (c[s].high > 78 ? 1 : 0)); /* the slope that faces the sun */
+            }
+        }
+        heat_shadow_destroy(map);
+    }
+}
+
 static void even_stand(ShadowStand *out, const void *user, double x_m, double y_m)
 {
     (void)user, (void)y_m;
@@ -86,8 +126,8 @@ static void light_below_a_stand(void **state)
     uint8_t shadow[shadow_most_slots];
     double  open;
     heat_shadow_at(shadow, &open, map, -300, 40);
-    for (int s = 0; s < 3; s++) CHECK_NEAR(1 - shadow[s] / 255.0, exp(-0.5 * 3 / (double)d[2][s]), 0.02);
-    CHECK_NEAR(open, 0.2, 0.01);
+    for (int s = 0; s < 3; s++) CHECK_NEAR(1 - shadow[s] / 255.0, exp(-0.5 * 3 / (double)d[2][s]), 0.0025);
+    CHECK_NEAR(open, 0.2, 1e-6);
     heat_shadow_at(shadow, &open, map, 300, 40);
     CHECK(shadow[0] == 0 && shadow[1] == 0 && open == 1);
     /* beside it: the sun in the west shines through, and below the crowns */
@@ -96,6 +136,43 @@ static void light_below_a_stand(void **state)
     heat_shadow_at(shadow, &open, map, 20 / tan(30 * rad_per_deg) + 20, 0);
     CHECK(shadow[1] == 0);
     heat_shadow_destroy(map);
+}
+
+static void one_column(ShadowStand *out, const void *user, double x_m, double y_m)
+{
+    const bool here = *(const bool *)user ? fabs(x_m) < 4 : fabs(y_m) < 4;
+    *out = here ? (ShadowStand){3, 0, 16, 1} : (ShadowStand){0, 0, 0, 1};
+}
+
+/* One column of cells of 8 m with plants of 16 m, leaf area 3 evenly from the ground up; the sun 40 degrees up behind
+ * it, on the slant. The ray to the sun is asked at the middles of lengths of a cell's width, by the nearest cell: what
+ * lies in such a length, which rises by 8 m times the tangent, is 3 rise / 16 of leaf area, times 0.5 / sin. */
+static void light_through_one_column(void **state)
+{
+    (void)state;
+    static const double azimuth[2][2] = {{70, 250}, {20, 200}};
+    for (int c = 0; c < 4; c++) {
+        float      d[3][shadow_most_slots] = {{0}};
+        ShadowMap *map;
+        const bool in_x = c < 2;
+        int        shaded = 0;
+        ridge(0);
+        slot(d, 0, azimuth[!in_x][c % 2], 40);
+        CHECK(heat_shadow_create(&map, &(ShadowOf){&ground, 8, 1, d, one_column, &in_x, NULL}, NULL) == STATUS_OK);
+        const double up = (double)d[2][0], level = hypot((double)d[0][0], (double)d[1][0]),
+                     step = (double)d[in_x ? 0 : 1][0] / level, rise_m = 8 * up / level;
+        for (int cell = -5; cell <= 5; cell++) {
+            uint8_t shadow[shadow_most_slots];
+            double  open, depth = 0;
+            for (int k = 0; k * rise_m < 16; k++)
+                if (fabs(cell + (k + 0.5) * step) < 0.5) depth += 0.5 * 3 / 16 * fmin(rise_m, 16 - k * rise_m) / up;
+            heat_shadow_at(shadow, &open, map, in_x ? 8 * cell : 24, in_x ? 24 : 8 * cell);
+            CHECK_NEAR(shadow[0], 255 * (1 - exp(-depth)), 0.6);
+            shaded += shadow[0] > 0;
+        }
+        CHECK(shaded == 2 || shaded == 3);
+        heat_shadow_destroy(map);
+    }
 }
 
 static void large_terrain_has_larger_cells(void **state)
@@ -115,7 +192,9 @@ static void large_terrain_has_larger_cells(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(length_of_a_shadow), cmocka_unit_test(light_below_a_stand),
+    const struct CMUnitTest tests[] = {cmocka_unit_test(length_of_a_shadow), cmocka_unit_test(cells_behind_a_ridge),
+                                       cmocka_unit_test(light_below_a_stand),
+                                       cmocka_unit_test(light_through_one_column),
                                        cmocka_unit_test(large_terrain_has_larger_cells)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
