@@ -17,13 +17,20 @@ static void look_where(TableInput *input, const View *view, const double sun_d_e
             double d_enu[3];
             view_ray(d_enu, view, (double)k / along * view->width, (double)m / along * view->height);
             const double azimuth_rad = acos_quick(cos_azimuth(d_enu, sun_d_enu));
+            double       climb = d_enu[2];
+            if (eye_m > air_top_m) { /* where the ray enters the air */
+                const double entry_m = air_entry_m(eye_m, climb);
+                if (!(entry_m < INFINITY)) continue;
+                air_height_along(eye_m, climb, entry_m, &climb);
+            }
             low = fmin(low, azimuth_rad), high = fmax(high, azimuth_rad);
-            down = fmin(down, d_enu[2]), up = fmax(up, d_enu[2]);
+            down = fmin(down, climb), up = fmax(up, climb);
         }
+    if (down > up) return; /* no ray in the air */
     /* what the sample grid misses; and the drop of the round Earth below a long path: 0.02 over its 250 km */
     const double slope_margin = 0.1 * (up - down) + 1e-3;
     input->slope_low = fmax(down - slope_margin, -1), input->slope_high = fmin(up + slope_margin + 0.02, 1);
-    input->height_high_m = eye_m + fmax(air_far_m * input->slope_high, 0);
+    input->height_high_m = eye_m > air_top_m ? air_top_m : eye_m + fmax(air_far_m * input->slope_high, 0);
     if (down < -0.8 || up > 0.8) return; /* a pole may be inside, where all azimuths meet */
     const double margin_rad = fmax(0.25 * (high - low), 0.02);
     input->azimuth_low_rad = fmax(low - margin_rad, 0), input->azimuth_high_rad = fmin(high + margin_rad, pi_rad);
@@ -73,10 +80,19 @@ static void sun_at_eye(Air *air, const Atmosphere *atmosphere, const Sun *sun, u
     }
 }
 
+/* The horizontal's radiance all the way down. */
+static void level_limb(AirLimb *out, const AirSky *sky)
+{
+    for (int i = 0; i <= air_limb_steps; i++) {
+        out->thermal_w_m2_sr[i] = sky->thermal_w_m2_sr[0];
+        memcpy(out->scattered_w_m2_sr[i], sky->scattered_w_m2_sr[0], sizeof out->scattered_w_m2_sr[i]);
+    }
+}
+
 Status air_at(Air *out, const AirSource *source, const Weather *weather, const Sun *sun, const AirEye *eye, Pool *pool,
               Arena *arena)
 {
-    *out = (Air){.eye_height_m = clamp(eye->height_m, 0, air_top_m)};
+    *out = (Air){.eye_height_m = fmax(eye->height_m, 0)};
     /* ten metres of air below the eye do not change the sky above it */
     const bool          on_ground = out->eye_height_m < 10;
     const DaylightInput in = {.source = source,
@@ -84,6 +100,7 @@ Status air_at(Air *out, const AirSource *source, const Weather *weather, const S
                               .sun = sun,
                               .bands = eye->bands,
                               .other = on_ground ? NULL : out->sky_eye,
+                              .limb = on_ground ? NULL : out->limb,
                               .other_m = out->eye_height_m};
     AirJob              job;
     Status              status = daylight_begin(&job.light, &out->light, &in, arena);
@@ -99,6 +116,7 @@ Status air_at(Air *out, const AirSource *source, const Weather *weather, const S
     air_run(pool, daylight_planes(job.light), plane_task, &job);
     daylight_end(job.light);
     if (on_ground) memcpy(out->sky_eye, out->light.sky, sizeof out->sky_eye);
+    for (int b = 0; b < AIR_BAND_COUNT && on_ground; b++) level_limb(&out->limb[b], &out->sky_eye[b]);
     return STATUS_OK;
 }
 
@@ -116,6 +134,7 @@ void air_even(Air *out, const double sun_d_enu[3], double sun_w_m2, const double
         for (int i = 0; i <= air_sky_ups; i++)
             light->sky[b].thermal_w_m2_sr[i] = light->sky_light[b].thermal_w_m2_sr[i] =
                 out->sky_eye[b].thermal_w_m2_sr[i] = (float)sky_w_m2_sr[b];
+        level_limb(&out->limb[b], &out->sky_eye[b]);
         for (int i = 0; i <= air_plane_ups; i++)
             for (int a = 0; a <= air_plane_azimuths; a++) light->plane_w_m2[b][i][a] = (float)light->sky_w_m2[b];
     }
@@ -149,11 +168,12 @@ static double azimuth_from_sun_rad(const Air *air, const double d_enu[3])
     return level > 1e-12 ? acos(clamp((d_enu[0] * s[0] + d_enu[1] * s[1]) / level, -1, 1)) : 0;
 }
 
-static void sky_ray(AirPaths out[AIR_BAND_COUNT], const Air *air, unsigned bands, const double d_enu[3], int i)
+static void sky_ray(AirPaths out[AIR_BAND_COUNT], const Air *air, unsigned bands, const double o_enu[3],
+                    const double d_enu[3], int i)
 {
     double       seen[1][AIR_BAND_COUNT], thermal[2];
-    const double azimuth_rad = azimuth_from_sun_rad(air, d_enu);
-    air_day_sky(seen, thermal, air->light.day, air->eye_height_m, acos(clamp(d_enu[2], 0, 1)), &azimuth_rad, 1);
+    const double azimuth_rad = azimuth_from_sun_rad(air, d_enu), climb = clamp(air_climb(o_enu, d_enu), -1, 1);
+    air_day_sky(seen, thermal, air->light.day, air->eye_height_m, acos(climb), &azimuth_rad, 1);
     for (int b = 0; b < AIR_BAND_COUNT; b++) {
         if (!(bands >> b & 1)) continue;
         double added = b == AIR_LWIR ? 0 : seen[0][b] * air->light.scattered_scale;
@@ -167,10 +187,9 @@ static void solid_ray(AirPaths out[AIR_BAND_COUNT], const Air *air, unsigned ban
                       const double d_enu[3], double range_m, double temp_k, int i)
 {
     double        seen[1][AIR_BAND_COUNT], sun[AIR_BAND_COUNT];
-    const double  climb = d_enu[2] + (o_enu[0] * d_enu[0] + o_enu[1] * d_enu[1]) / earth_radius_m;
-    const double  level2 = d_enu[0] * d_enu[0] + d_enu[1] * d_enu[1], azimuth_rad = azimuth_from_sun_rad(air, d_enu);
-    const double  far_m = air->eye_height_m + range_m * climb + range_m * range_m * level2 / (2 * earth_radius_m);
-    const AirPath path = {.observer_m = air->eye_height_m, .target_m = clamp(far_m, 0, air_top_m), .range_m = range_m};
+    const double  far_m = air_height_along(air->eye_height_m, air_climb(o_enu, d_enu), range_m, NULL);
+    const double  azimuth_rad = azimuth_from_sun_rad(air, d_enu);
+    const AirPath path = {.observer_m = air->eye_height_m, .target_m = fmax(far_m, 0), .range_m = range_m};
     DayPath       way;
     air_day_path(&way, air->light.day, &path);
     air_day_scattered(seen, sun, air->light.day, &path, &azimuth_rad, 1);
@@ -205,6 +224,6 @@ void air_paths_directly(AirPaths out[AIR_BAND_COUNT], const Air *air, unsigned b
         for (int b = 0; b < AIR_BAND_COUNT; b++)
             if (bands >> b & 1) range_m = (double)tables[b].range_m[i];
         if (range_m < INFINITY) solid_ray(out, air, bands, o_enu, d_enu, range_m, temp_k ? (double)temp_k[i] : 0, i);
-        else sky_ray(out, air, bands, d_enu, i);
+        else sky_ray(out, air, bands, o_enu, d_enu, i);
     }
 }

@@ -41,6 +41,14 @@ typedef struct AirSky {
     float around_sun[air_sky_angles + 2]; /* one to spare at the end */
 } AirSky;
 
+/* The same from a height between the horizontal and the Earth's edge: rows by u = 1 - sqrt(h (2 R + h)), over that of
+ * the height itself, of the ray's lowest point h over the Earth's radius R: nearly linear in the angle at the edge,
+ * where the air is thick. Row 0 is the sky's lowest one. */
+enum { air_limb_steps = 48 };
+typedef struct AirLimb {
+    float thermal_w_m2_sr[air_limb_steps + 1], scattered_w_m2_sr[air_limb_steps + 1][air_sky_azimuths + 1];
+} AirLimb;
+
 /* Air temperature by height: 0 .. 16 km in steps of 500 m; as at 16 km above. */
 enum { air_warmer_nodes = 33 };
 
@@ -172,21 +180,22 @@ typedef struct AirTable AirTable; /* paths from this eye */
 
 typedef struct Air {
     Daylight light;
-    AirSky   sky_eye[AIR_BAND_COUNT];      /* from the eye */
+    AirSky   sky_eye[AIR_BAND_COUNT];      /* from the eye, down to the horizontal */
+    AirLimb  limb[AIR_BAND_COUNT];         /* below it, of an eye of ten metres and more */
     double   sun_eye_w_m2[AIR_BAND_COUNT]; /* direct irradiance at the eye: gives the radiance of the sun's visible
                                             * disc */
-    double                  eye_height_m;
-    AirTable               *table;      /* in the arena of air_at; NULL: homogeneous atmosphere, see air_even */
-    const struct HeatScene *heat;       /* of the ground (render/heat/heat.h); NULL: all of it as warm as the air */
-    double                  even_per_m; /* extinction of a homogeneous atmosphere, whose radiance is that of its
-                                         * sky */
+    double                  eye_height_m;  /* above the model's 0 km; any */
+    AirTable               *table;         /* in the arena of air_at; NULL: homogeneous atmosphere, see air_even */
+    const struct HeatScene *heat;          /* of the ground (render/heat/heat.h); NULL: all of it as warm as the air */
+    double                  even_per_m;    /* extinction of a homogeneous atmosphere, whose radiance is that of its
+                                            * sky */
 } Air;
 
 /* Parameters of an eye. */
 typedef struct AirEye {
-    double      height_m; /* clamped to the tables */
-    unsigned    bands;    /* 1 << AirBand, the requested bands; air_path gives no others */
-    const View *view;     /* view, so that only its azimuths are computed; NULL: all round */
+    double   height_m; /* from 0 (clamped) up; above the tables' top, 20 km, its paths begin where they enter the air */
+    unsigned bands;    /* 1 << AirBand, the requested bands; air_path gives no others */
+    const View *view;  /* view, so that only its azimuths are computed; NULL: all round */
 } AirEye;
 
 /* weather->air_temp_k: NaN for the model's own; the Daylight's is then filled in. pool: may be NULL. The tables are

@@ -20,12 +20,17 @@ typedef struct Places {
     F32x8 temp, near; /* near: range over the table's nearest, .. 1 */
 } Places;
 
+/* The part of each path of a block that is in the tables' air: its length, and the rate of climb where it begins. */
+typedef struct Parts {
+    _Alignas(32) float air_m[hits_capacity], climb[hits_capacity];
+} Parts;
+
 /* Constants for all eights of a block. */
 typedef struct Look {
     const AirTable *table;
     __m128i         row_shift;
     __m256i         row_mask;
-    F32x8           eye_m, down_m, row_share, height_most_m, per_fall_m, per_climb_m;
+    F32x8           eye_m, down_m, row_share, height_most_m, per_fall_m, per_climb_m, per_longest_m;
     F32x8           sun_east, sun_north, slope_low, slope_steps, turn_low, turn_steps, turn_most;
     F32x8           temp_low, per_ln_temp; /* of each step of emitter_temp_k */
 } Look;
@@ -33,7 +38,7 @@ typedef struct Look {
 static Look look_from(const Air *air)
 {
     const AirTable *table = air->table;
-    const double    level = hypot(air->light.sun_d_enu[0], air->light.sun_d_enu[1]), eye_m = air->eye_height_m;
+    const double    level = hypot(air->light.sun_d_enu[0], air->light.sun_d_enu[1]), eye_m = air_from_m(air);
     const float     top_m = air_step_up(air_low_m, table->rows, table->row_shift);
     float           temp_low[8] = {0}, per_ln_temp[8] = {0};
     for (int k = 0; k < air_temps - 1; k++) {
@@ -50,6 +55,7 @@ static Look look_from(const Air *air)
                   .eye_m = f32x8_set(eye_m),
                   .down_m = f32x8_set(-eye_m),
                   .per_fall_m = f32x8_set(1 / fmax(eye_m, air_least_fall_m)),
+                  .per_longest_m = f32x8_set(1 / air_longest_m(air)),
                   .per_climb_m = f32x8_set(1 / fmax(air_top_m - eye_m, 1e-3)),
                   .sun_east = f32x8_set(level > 1e-10 ? air->light.sun_d_enu[0] / level : 1),
                   .sun_north = f32x8_set(level > 1e-10 ? air->light.sun_d_enu[1] / level : 0),
@@ -67,17 +73,15 @@ static inline __m256i bits_above(F32x8 x, double low)
 
 static inline __m256i row_times(__m256i i, int row) { return _mm256_mullo_epi32(i, _mm256_set1_epi32(row)); }
 
-static inline void find_places(Places *p, const Look *look, const float *range_m, const Rays *rays, int i)
+static inline void find_places(Places *p, const Look *look, const Parts *parts, const Rays *rays, int i)
 {
-    const F32x8 dx = f32x8_of_doubles(rays->d_enu[0] + i), dy = f32x8_of_doubles(rays->d_enu[1] + i),
-                dz = f32x8_of_doubles(rays->d_enu[2] + i);
-    const F32x8 ox = f32x8_of_doubles(rays->o_enu[0] + i), oy = f32x8_of_doubles(rays->o_enu[1] + i),
-                per_earth = f32x8_set(1 / earth_radius_m);
+    const F32x8 dx = f32x8_of_doubles(rays->d_enu[0] + i), dy = f32x8_of_doubles(rays->d_enu[1] + i);
     const F32x8 far_m = _mm256_set1_ps(nextafterf((float)air_far_m, 0)); /* (1 << air_octaves) nearest ones */
-    const F32x8 at = within(_mm256_loadu_ps(range_m + i), f32x8_set(0), far_m), level2 = f32x8_fma(dx, dx, mul(dy, dy));
-    /* the tangent plane leaves the Earth: by the eye's distance from the origin, and along the path */
-    const F32x8 climb = f32x8_fma(f32x8_fma(ox, dx, mul(oy, dy)), per_earth, dz);
-    const F32x8 bend = mul(level2, f32x8_set(0.5 / earth_radius_m));
+    const F32x8 at = within(_mm256_load_ps(parts->air_m + i), f32x8_set(0), far_m),
+                level2 = f32x8_fma(dx, dx, mul(dy, dy));
+    const F32x8 climb = _mm256_load_ps(parts->climb + i), one = f32x8_set(1);
+    /* the tangent plane leaves the Earth along the path */
+    const F32x8 bend = mul(sub(one, mul(climb, climb)), f32x8_set(0.5 / earth_radius_m));
     const F32x8 rise_m = _mm256_max_ps(mul(at, f32x8_fma(at, bend, climb)), look->down_m);
 
     /* height and range from the bits of the floats */
@@ -99,8 +103,8 @@ static inline void find_places(Places *p, const Look *look, const float *range_m
     const __m256i si = _mm256_cvttps_epi32(s);
     /* range over the complete path, which ends at the ground or the top, and within its limits */
     const F32x8 per_m = _mm256_blendv_ps(look->per_climb_m, look->per_fall_m, rise);
-    const F32x8 gone = within(mul(f32x8_abs(rise_m), per_m), mul(at, f32x8_set(1 / air_longest_way_m)),
-                              mul(at, f32x8_set(1 / air_shortest_way_m)));
+    const F32x8 gone =
+        within(mul(f32x8_abs(rise_m), per_m), mul(at, look->per_longest_m), mul(at, f32x8_set(1 / air_shortest_way_m)));
     const F32x8 w =
         within(mul(_mm256_sqrt_ps(gone), f32x8_set(air_shares)), f32x8_set(0), f32x8_set(air_shares - 1e-3));
     const __m256i wi = _mm256_cvttps_epi32(w);
@@ -219,12 +223,12 @@ static inline void store_path(AirPaths *out, int i, F32x8 emitted, F32x8 sun, F3
 }
 
 /* Eight paths, from sample i on, in the bands whose out is not NULL. */
-static void path_lanes(AirPaths *const out[AIR_BAND_COUNT], const Look *look, const float *range_m, const Rays *rays,
+static void path_lanes(AirPaths *const out[AIR_BAND_COUNT], const Look *look, const Parts *parts, const Rays *rays,
                        const float *temp_k, int i)
 {
     const AirTable *table = look->table;
     Places          p;
-    find_places(&p, look, range_m, rays, i);
+    find_places(&p, look, parts, rays, i);
 
     F32x8 mwir_sun = f32x8_set(0), mwir_scattered = f32x8_set(0);
     for (int g = 0; g < table->lights; g++) {
@@ -268,25 +272,41 @@ static void path_lanes(AirPaths *const out[AIR_BAND_COUNT], const Look *look, co
 
 /* ---- a block -------------------------------------------------------------------------------------- */
 
-/* Distance to the round ground at height 0 along a ray that meets nothing nearer; INFINITY: it passes above. With u the
- * rate of climb, height = eye + u r + (1 - d_up^2) r^2 / (2 Earth's radius). */
-static float ground_beyond(double eye_m, double climb, double bend_per_m)
+/* Distance to the round ground at height 0 along a ray that meets nothing nearer; INFINITY: it passes above. */
+static float ground_beyond(double eye_m, double climb)
 {
-    if (!(climb < 0)) return INFINITY;
-    const double disc = climb * climb - 4 * bend_per_m * eye_m;
-    return disc >= 0 ? (float)(2 * eye_m / (-climb + sqrt(disc))) : INFINITY;
+    const double r_m = earth_radius_m + eye_m, down_m = -r_m * climb, above = eye_m * (2 * earth_radius_m + eye_m);
+    const double disc = down_m * down_m - above;
+    return climb < 0 && disc >= 0 ? (float)(above / (down_m + sqrt(disc))) : INFINITY;
 }
 
-static void find_ranges(float *range_m, const Air *air, const Hits *hits, const Rays *rays)
+/* What of a path is below the tables' top: from where it enters the air, to its end or where it leaves it. */
+static void cut_at_top(Parts *parts, int i, double eye_m, double climb, double range_m)
 {
-    for (int i = 0; i < hits->count; i++) range_m[i] = (float)hits->range_m[i];
+    const double from_m = air_entry_m(eye_m, climb), r_m = earth_radius_m + eye_m;
+    parts->air_m[i] = 0;
+    if (!(from_m < range_m)) return;
+    double there = climb;
+    if (from_m > 0) air_height_along(eye_m, climb, from_m, &there);
+    const double half2 = r_m * r_m * climb * climb - (eye_m - air_top_m) * (2 * earth_radius_m + eye_m + air_top_m);
+    const double out_m = sqrt(fmax(half2, 0)) - r_m * climb;
+    parts->air_m[i] = (float)(fmin(range_m, out_m) - from_m), parts->climb[i] = (float)there;
+}
+
+static void find_ranges(float *range_m, Parts *parts, const Air *air, const Hits *hits, const Rays *rays)
+{
+    const double eye_m = air->eye_height_m;
+    const bool   above = eye_m > air_top_m;
     for (int i = 0; i < hits->count; i++) {
-        if (range_m[i] < INFINITY) continue;
-        const double climb =
-            rays->d_enu[2][i] +
-            (rays->o_enu[0][i] * rays->d_enu[0][i] + rays->o_enu[1][i] * rays->d_enu[1][i]) / earth_radius_m;
-        range_m[i] =
-            ground_beyond(air->eye_height_m, climb, (1 - rays->d_enu[2][i] * rays->d_enu[2][i]) / (2 * earth_radius_m));
+        const double o_enu[3] = {rays->o_enu[0][i], rays->o_enu[1][i], rays->o_enu[2][i]};
+        const double d_enu[3] = {rays->d_enu[0][i], rays->d_enu[1][i], rays->d_enu[2][i]};
+        const double climb = air_climb(o_enu, d_enu);
+        range_m[i] = hits->range_m[i] < INFINITY ? (float)hits->range_m[i] : ground_beyond(eye_m, climb);
+        parts->air_m[i] = range_m[i], parts->climb[i] = (float)climb;
+        /* a path that climbs by less than this stays in the air */
+        const double at_m = (double)range_m[i];
+        if (at_m < INFINITY && (above || eye_m + at_m * (climb + at_m / (2 * earth_radius_m)) > air_top_m))
+            cut_at_top(parts, i, eye_m, climb, at_m);
     }
 }
 
@@ -307,6 +327,20 @@ static void path_homogeneous(AirPaths *out, const Air *air, AirBand band, const 
     }
 }
 
+/* Below the horizontal, above the Earth's edge. */
+static double limb_there(const Air *air, int b, const SkyPlace *p, double climb)
+{
+    const double share = fmax(1 - climb * climb / air_edge2(air->eye_height_m), 0),
+                 u = (1 - sqrt(share)) * air_limb_steps;
+    const int    i = u < air_limb_steps ? (int)u : air_limb_steps - 1;
+    const float  t = (float)(u - i), *ring = &air->sky_eye[b].around_sun[p->angle];
+    const float *low = &air->limb[b].scattered_w_m2_sr[i][p->azimuth], *high = low + air_sky_azimuths + 1;
+    const float *thermal = &air->limb[b].thermal_w_m2_sr[i];
+    const float l = low[0] + p->azimuth_share * (low[1] - low[0]), h = high[0] + p->azimuth_share * (high[1] - high[0]);
+    return (double)(thermal[0] + t * (thermal[1] - thermal[0]) +
+                    (l + t * (h - l)) * (ring[0] + p->angle_share * (ring[1] - ring[0])));
+}
+
 static void smoke_bands(AirPaths *const out[AIR_BAND_COUNT], const Air *air, const Hits *hits, const Rays *rays,
                         const float *temp_k)
 {
@@ -317,22 +351,26 @@ static void smoke_bands(AirPaths *const out[AIR_BAND_COUNT], const Air *air, con
     }
     const Look look = look_from(air);
     float      range_m[hits_capacity];
-    find_ranges(range_m, air, hits, rays);
-    for (int i = hits->count; i < hits_capacity && i % 8 != 0; i++) range_m[i] = 0;
+    Parts      parts;
+    find_ranges(range_m, &parts, air, hits, rays);
+    for (int i = hits->count; i < hits_capacity && i % 8 != 0; i++) range_m[i] = parts.air_m[i] = parts.climb[i] = 0;
     for (int i = 0; i < hits->count; i += 8)
-        if (any_ends(range_m + i)) path_lanes(out, &look, range_m, rays, temp_k, i);
+        if (any_ends(range_m + i)) path_lanes(out, &look, &parts, rays, temp_k, i);
 
     for (int b = 0; b < AIR_BAND_COUNT; b++)
         if (out[b]) memcpy(out[b]->range_m, range_m, (size_t)hits->count * sizeof *range_m);
     for (int i = 0; i < hits->count; i++) {
         if (range_m[i] < INFINITY) continue;
+        const double o_enu[3] = {rays->o_enu[0][i], rays->o_enu[1][i], rays->o_enu[2][i]};
         const double d_enu[3] = {rays->d_enu[0][i], rays->d_enu[1][i], rays->d_enu[2][i]};
+        const double climb = air_climb(o_enu, d_enu);
         SkyPlace     place;
-        daylight_sky_place(&place, &air->light, d_enu);
+        air_sky_place(&place, air->light.sun_d_enu, d_enu, climb);
         for (int b = 0; b < AIR_BAND_COUNT; b++) {
             if (!out[b]) continue;
             out[b]->transmittance[i] = out[b]->sun_transmittance[i] = out[b]->air_transmittance[i] = 0;
-            out[b]->added_w_m2_sr[i] = (float)daylight_sky_there(&air->sky_eye[b], &place);
+            out[b]->added_w_m2_sr[i] =
+                (float)(climb < 0 ? limb_there(air, b, &place, climb) : daylight_sky_there(&air->sky_eye[b], &place));
         }
     }
 }

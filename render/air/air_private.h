@@ -27,6 +27,7 @@ typedef struct DaylightInput {
     const Sun       *sun;
     unsigned         bands;   /* 1 << AirBand */
     AirSky          *other;   /* [AIR_BAND_COUNT], filled in with the sky from another height; NULL: not requested */
+    AirLimb         *limb;    /* [AIR_BAND_COUNT], with what is below its horizontal; NULL as other is */
     double           other_m; /* that height */
 } DaylightInput;
 
@@ -51,6 +52,8 @@ static inline double cubic_between(double a, double b, double c, double d, doubl
 
 /* The arc cosine, within 7e-5 rad: Abramowitz & Stegun 4.4.45. Steps of the tables are 0.26 rad. */
 double acos_quick(double c);
+/* Position in the sky of an eye, from its horizontal up, of a direction of this rate of climb. */
+void air_sky_place(SkyPlace *out, const double sun_d_enu[3], const double d_enu[3], double climb);
 /* Cosine of the angle between two directions' azimuths, by their level parts; 1 where one has none. */
 double cos_azimuth(const double a_enu[3], const double b_enu[3]);
 
@@ -64,15 +67,16 @@ double cos_azimuth(const double a_enu[3], const double b_enu[3]);
  * share of the complete path, to the ground or to the top of the tables, so that ground is at its end; and by
  * sqrt(1 - cos azimuth from the sun), which needs no arc cosine and is dense about the sun. The values of a node are
  * contiguous. */
-enum { air_octaves = 12, air_range_cuts = 8, air_range_shift = 20 /* bits of a number in one of eight cuts */ };
+enum { air_octaves = 13, air_range_cuts = 8, air_range_shift = 20 /* bits of a number in one of eight cuts */ };
 enum { air_ranges = air_octaves * air_range_cuts, air_rows_most = 48 };
 enum { air_slopes = 24, air_shares = 40, air_turns = 12, air_lights = 4 };
 enum { air_range_row = air_ranges + 1, air_nodes = (air_rows_most + 1) * air_range_row };
 enum { air_share_row = air_shares + 1, air_slope_nodes = (air_slopes + 1) * air_share_row };
 
-static const double air_top_m = 30e3, air_near_m = 100, air_far_m = 409600, air_low_m = 64;
+static const double air_top_m = 20e3, air_near_m = 100, air_far_m = 819200, air_low_m = 64;
 static const double earth_radius_m = 6371e3;
-/* The complete path ends at the ground or the tables' top, and after 100 km, beyond which little light is added.
+/* The complete path ends at the ground or the tables' top, and after 100 km, beyond which little light is added, or at
+ * the Earth's edge where that is farther.
  * From less than 200 m up it continues along the ground, as if from there: the air below is much the same. */
 static const double air_shortest_way_m = 10, air_longest_way_m = 100e3, air_least_fall_m = 200;
 
@@ -112,6 +116,43 @@ static inline float air_step_up(double low, int steps, int shift)
     float to;
     memcpy(&to, &bits, sizeof to);
     return to;
+}
+
+/* Height from which the eye's paths are: of one above the tables' top that at which they enter the air. */
+static inline double air_from_m(const Air *air) { return fmin(air->eye_height_m, air_top_m); }
+
+static inline double air_longest_m(const Air *air)
+{
+    return fmax(air_longest_way_m, sqrt(2 * earth_radius_m * air_from_m(air)));
+}
+
+/* Where a straight ray of this length ends above the round Earth, and the rate of climb there. */
+static inline double air_height_along(double eye_m, double climb, double along_m, double *climb_there)
+{
+    const double r_m = earth_radius_m + eye_m, rise = along_m * (along_m + 2 * r_m * climb);
+    const double there_m = sqrt(fmax(r_m * r_m + rise, 0));
+    if (climb_there) *climb_there = (along_m + r_m * climb) / there_m;
+    return eye_m + rise / (r_m + there_m);
+}
+
+/* Along a ray from above the tables' top, where it enters the air; INFINITY: it does not. */
+static inline double air_entry_m(double eye_m, double climb)
+{
+    const double r_m = earth_radius_m + eye_m, down_m = -r_m * climb;
+    const double above = (eye_m - air_top_m) * (2 * earth_radius_m + eye_m + air_top_m), disc = down_m * down_m - above;
+    return eye_m <= air_top_m ? 0 : climb < 0 && disc > 0 ? above / (down_m + sqrt(disc)) : INFINITY;
+}
+
+/* Rate of climb of a ray from a position near the eye, whose tangent plane is not quite the origin's. */
+static inline double air_climb(const double o_enu[3], const double d_enu[3])
+{
+    return d_enu[2] + (o_enu[0] * d_enu[0] + o_enu[1] * d_enu[1]) / earth_radius_m;
+}
+
+/* Square of the sine of the angle by which the Earth's edge is below the horizontal. */
+static inline double air_edge2(double eye_m)
+{
+    return eye_m * (2 * earth_radius_m + eye_m) / ((earth_radius_m + eye_m) * (earth_radius_m + eye_m));
 }
 
 /* Extent of air->table: these bands, between two azimuths from the sun and two slopes, up to a height. */

@@ -104,7 +104,7 @@ static void ask_height(TableJob *job, int row)
     Octaves         sun[AIR_BAND_COUNT], own[2], source[2], emitted[2][air_temps];
     Curve           curve, warm[2][air_temps + 2]; /* of emitters; own, source */
     DayPath         here;
-    AirPath         path = {.observer_m = air->eye_height_m,
+    AirPath         path = {.observer_m = air_from_m(air),
                             .target_m = fmin((double)air_step_up(air_low_m, row, table->row_shift) - air_low_m, air_top_m)};
     const double    straight_m = fabs(path.target_m - path.observer_m) * 1.0001;
     for (int r = 0; r <= air_octaves; r++) {
@@ -148,11 +148,11 @@ static void ask_height(TableJob *job, int row)
 static AirPath path_at(const TableJob *job, int slope_step, int share_step)
 {
     const AirTable *table = job->air->table;
-    const double    eye_m = job->air->eye_height_m;
+    const double    eye_m = air_from_m(job->air);
     const double    s = (double)(table->slope_low + (float)(2 * slope_step) / table->slope_steps);
     const double    slope = clamp(s * fabs(s), -1, 1);
     const double    whole_m = slope < 0 ? fmax(eye_m, air_least_fall_m) : air_top_m - eye_m;
-    const double    end_m = clamp(whole_m / fmax(fabs(slope), 1e-9), air_shortest_way_m, air_longest_way_m);
+    const double    end_m = clamp(whole_m / fmax(fabs(slope), 1e-9), air_shortest_way_m, air_longest_m(job->air));
     const double    share = fmax((double)share_step / coarse_shares, 0.01); /* not quite nothing */
     const double    range_m = share * share * end_m;
     return (AirPath){.observer_m = eye_m, .range_m = range_m, .target_m = clamp(eye_m + slope * range_m, 0, air_top_m)};

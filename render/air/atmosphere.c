@@ -1,4 +1,5 @@
 /* render/air/atmosphere.c: evaluates paths, the sky and the sun between the tables' points and visibilities. */
+#include "render/air/air_legs.h"
 #include "render/air/atmosphere_private.h"
 
 const AirBand air_tabled[air_tabled_count] = {AIR_B, AIR_G, AIR_R, AIR_NIR, AIR_MWIR, AIR_LWIR};
@@ -143,18 +144,19 @@ typedef struct Look {
 
 static void look_at(Look *out, const Atmosphere *atmosphere, const Blend *blend, AirBand band, const AirPath *path)
 {
-    const double sag_m = mean_chord_error_m(path->range_m), a_m = path->observer_m - sag_m,
-                 b_m = path->target_m - sag_m;
-    out->atmosphere = atmosphere;
-    out->blend = blend;
-    out->band = band;
+    AirPath   piece[air_pieces_max];
+    const int pieces = air_leg_pieces(piece, path);
+    *out = (Look){.atmosphere = atmosphere, .blend = blend, .band = band};
     stencil_at(&out->clear, &atmosphere->clear_path[band], path->observer_m, path->target_m, path->range_m);
-    out->clear_plain = path->range_m * column_mean(&atmosphere->clear, band, a_m, b_m);
-    if (!blend) return;
-    stencil_at(&out->low, &blend->low->path[band], path->observer_m, path->target_m, path->range_m);
-    if (blend->low != blend->high)
+    if (blend) stencil_at(&out->low, &blend->low->path[band], path->observer_m, path->target_m, path->range_m);
+    if (blend && blend->low != blend->high)
         stencil_at(&out->high, &blend->high->path[band], path->observer_m, path->target_m, path->range_m);
-    out->haze_plain = path->range_m * blend_haze_mean(blend, band, a_m, b_m);
+    for (int i = 0; i < pieces; i++) {
+        const double sag_m = mean_chord_error_m(piece[i].range_m), a_m = piece[i].observer_m - sag_m,
+                     b_m = piece[i].target_m - sag_m;
+        out->clear_plain += piece[i].range_m * column_mean(&atmosphere->clear, band, a_m, b_m);
+        if (blend) out->haze_plain += piece[i].range_m * blend_haze_mean(blend, band, a_m, b_m);
+    }
 }
 
 static double look_depth(const Look *look, double temp_k)
@@ -194,17 +196,17 @@ double path_depth(const Atmosphere *atmosphere, const Blend *blend, AirBand band
     return look_depth(&look, temp_k);
 }
 
-/* Heights clamped to the tables, a range that is possible. */
-static AirPath sane_path(const Atmosphere *atmosphere, const AirPath *path)
+/* The legs of a path, of which heights and range are made possible. */
+static AirLegs legs_of(const Atmosphere *atmosphere, const AirPath *path)
 {
     const PathTable *table = &atmosphere->clear_path[AIR_B];
     const double     top_m = fmin(table->axis[0][table->nodes[0] - 1], table->axis[1][table->nodes[1] - 1]);
     AirPath          p = *path;
-    p.observer_m = clamp(p.observer_m, 0, top_m);
-    p.target_m = clamp(p.target_m, 0, top_m);
+    p.observer_m = fmax(p.observer_m, 0);
+    p.target_m = fmax(p.target_m, 0);
     p.range_m = fmax(p.range_m, fabs(p.target_m - p.observer_m));
     p.rel_azimuth_rad = fabs(remainder(p.rel_azimuth_rad, 2 * pi_rad));
-    return p;
+    return air_legs(&p, top_m);
 }
 
 double scattered_value(const PathTable *table, const Stencil *at, double sun_x, double azimuth_deg, int tabled)
@@ -241,23 +243,75 @@ static double scattered(const Atmosphere *atmosphere, const Blend *blend, AirBan
            scatter_estimate(&parts, atmosphere, band, path_up(path), path->sun_zenith_rad, path->rel_azimuth_rad);
 }
 
-static void tabled_path(PathAir *out, const Atmosphere *atmosphere, const Blend *blend, AirBand band,
-                        const AirPath *path, double temp_k)
+/* Optical depths of a leg or path, for sunlight, the emitter and the air's own emission; and its radiance. */
+typedef struct PathDepths {
+    double sun, emitted, own, thermal_w_m2_sr, scattered_w_m2_sr;
+} PathDepths;
+
+static PathDepths single_depths(const Atmosphere *atmosphere, const Blend *blend, AirBand band, const AirPath *leg,
+                                double temp_k)
 {
-    *out = (PathAir){.transmittance = 1, .sun_transmittance = 1};
-    if (!(path->range_m > 0)) return;
-    Look look;
-    look_at(&look, atmosphere, blend, band, path);
-    const double depth = look_depth(&look, NAN);
-    out->sun_transmittance = out->transmittance = exp(-depth);
-    if (air_band_is_thermal(band)) {
-        const PathTable *table = &blend->low->path[band];
-        out->transmittance = exp(-look_depth(&look, temp_k));
-        out->thermal_w_m2_sr = exp(look_ln_opaque(&look)) *
-                               mean_black(atmosphere, band, path->observer_m, path->target_m) *
-                               -expm1(-look_depth(&look, table->weight_temp_k[path_emission_weight(table)]));
+    PathDepths out = {0};
+    Look       look;
+    look_at(&look, atmosphere, blend, band, leg);
+    out.sun = out.emitted = look_depth(&look, NAN);
+    if (!air_band_is_thermal(band)) return out;
+    const PathTable *table = &blend->low->path[band];
+    out.emitted = look_depth(&look, temp_k);
+    out.own = look_depth(&look, table->weight_temp_k[path_emission_weight(table)]);
+    out.thermal_w_m2_sr =
+        exp(look_ln_opaque(&look)) * mean_black(atmosphere, band, leg->observer_m, leg->target_m) * -expm1(-out.own);
+    return out;
+}
+
+static double mixed(double whole, double parts, double share) { return whole + share * (parts - whole); }
+
+/* Of a leg in pieces each sends as a black body of its own mean temperature what the air before it leaves of its share
+ * of the leg's depth; and scatters as if it were alone. */
+static PathDepths leg_depths(const Atmosphere *atmosphere, const Blend *blend, AirBand band, const AirPath *leg,
+                             double temp_k)
+{
+    AirPath    piece[air_pieces_max], before = *leg;
+    const int  pieces = air_leg_pieces(piece, leg);
+    PathDepths out = single_depths(atmosphere, blend, band, leg, temp_k);
+    double     near = 0, sum = 0, left = 1;
+    before.range_m = 0;
+    for (int i = 0; i < pieces; i++) {
+        const PathDepths own = single_depths(atmosphere, blend, band, &piece[i], temp_k);
+        before.range_m += piece[i].range_m, before.target_m = piece[i].target_m;
+        if (leg->sun_zenith_rad <= pi_rad / 2)
+            out.scattered_w_m2_sr += left * scattered(atmosphere, blend, band, &piece[i], own.sun);
+        left *= exp(-own.sun);
+        const double depth =
+            fmax(near, i + 1 < pieces ? single_depths(atmosphere, blend, band, &before, temp_k).own : out.own);
+        if (own.own > 0) sum += own.thermal_w_m2_sr / -expm1(-own.own) * exp(-near) * -expm1(near - depth);
+        near = depth;
     }
-    if (path->sun_zenith_rad <= pi_rad / 2) out->scattered_w_m2_sr = scattered(atmosphere, blend, band, path, depth);
+    if (pieces > 1) out.thermal_w_m2_sr = mixed(out.thermal_w_m2_sr, sum, air_pieces_share(leg));
+    return out;
+}
+
+static void tabled_path(PathAir *out, const Atmosphere *atmosphere, const Blend *blend, AirBand band,
+                        const AirLegs *legs, double temp_k)
+{
+    PathDepths way = {0};
+    if (legs->count > 0) way = leg_depths(atmosphere, blend, band, &legs->leg[0], temp_k);
+    if (legs->count > 1) {
+        const PathDepths behind = leg_depths(atmosphere, blend, band, &legs->leg[1], temp_k);
+        const double     tangent_m = legs->leg[0].target_m;
+        way.scattered_w_m2_sr += behind.scattered_w_m2_sr * exp(-way.sun);
+        way.thermal_w_m2_sr += behind.thermal_w_m2_sr * air_legs_passed(band, tangent_m, way.own, behind.own);
+        way.sun = air_legs_depth(band, tangent_m, way.sun, behind.sun);
+        way.emitted = air_legs_depth(band, tangent_m, way.emitted, behind.emitted);
+        if (legs->cut < 1) {
+            const PathDepths whole = leg_depths(atmosphere, blend, band, &legs->whole, temp_k);
+            way.scattered_w_m2_sr = mixed(whole.scattered_w_m2_sr, way.scattered_w_m2_sr, legs->cut);
+            way.thermal_w_m2_sr = mixed(whole.thermal_w_m2_sr, way.thermal_w_m2_sr, legs->cut);
+            way.sun = mixed(whole.sun, way.sun, legs->cut);
+            way.emitted = mixed(whole.emitted, way.emitted, legs->cut);
+        }
+    }
+    *out = (PathAir){exp(-way.emitted), exp(-way.sun), way.thermal_w_m2_sr, way.scattered_w_m2_sr};
 }
 
 void atmosphere_path(PathAir *out, const Atmosphere *atmosphere, double visibility_m, AirBand band, const AirPath *path,
@@ -265,16 +319,16 @@ void atmosphere_path(PathAir *out, const Atmosphere *atmosphere, double visibili
 {
     Blend blend;
     blend_at(&blend, atmosphere, visibility_m);
-    const AirPath p = sane_path(atmosphere, path);
+    const AirLegs legs = legs_of(atmosphere, path);
     if (band != AIR_PAN) {
-        tabled_path(out, atmosphere, &blend, band, &p, temp_k);
+        tabled_path(out, atmosphere, &blend, band, &legs, temp_k);
         return;
     }
     *out = (PathAir){0};
     const double *top = atmosphere->sun_top_w_m2;
     for (AirBand part = AIR_B; part <= AIR_R; part++) {
         PathAir one;
-        tabled_path(&one, atmosphere, &blend, part, &p, temp_k);
+        tabled_path(&one, atmosphere, &blend, part, &legs, temp_k);
         out->sun_transmittance += top[part] / top[AIR_PAN] * one.sun_transmittance;
         out->scattered_w_m2_sr += one.scattered_w_m2_sr;
     }
@@ -333,26 +387,44 @@ static double sky_scattered(const Atmosphere *atmosphere, const Blend *blend, Ai
            scatter_estimate(&parts, atmosphere, band, cos(angle_rad[0]), angle_rad[1], angle_rad[2]);
 }
 
+static SkyAir sky_above(const Atmosphere *atmosphere, const Blend *blend, AirBand band, double observer_m,
+                        const double angle_rad[3])
+{
+    SkyAir       out = {0};
+    const double at[4] = {observer_m, slant_x(angle_rad[0]), slant_x(angle_rad[1]), angle_rad[2] / rad_per_deg};
+    if (air_band_is_thermal(band)) {
+        double low[2], high[2];
+        grid_at(low, &blend->low->sky_thermal, at);
+        grid_at(high, &blend->high->sky_thermal, at);
+        const int i = band == AIR_LWIR;
+        out.thermal_w_m2_sr = exp(blend_of(blend, low[i], high[i])) * black_air(atmosphere, band, observer_m);
+    }
+    if (angle_rad[1] <= pi_rad / 2) out.scattered_w_m2_sr = sky_scattered(atmosphere, blend, band, at, angle_rad);
+    return out;
+}
+
 void atmosphere_sky(SkyAir *out, const Atmosphere *atmosphere, double visibility_m, AirBand band, double observer_m,
                     double zenith_rad, double sun_zenith_rad, double rel_azimuth_rad)
 {
     Blend blend;
     blend_at(&blend, atmosphere, visibility_m);
+    const double eye_m = fmax(observer_m, 0), up = cos(zenith_rad);
+    const bool   below = up < 0 && eye_m > 0;
     const double angle_rad[3] = {clamp(zenith_rad, 0, pi_rad / 2), sun_zenith_rad,
                                  fabs(remainder(rel_azimuth_rad, 2 * pi_rad))};
-    const double at[4] = {fmax(observer_m, 0), slant_x(angle_rad[0]), slant_x(angle_rad[1]),
-                          angle_rad[2] / rad_per_deg};
+    /* below the horizontal: the air to the lowest point, and the level sky behind it */
+    const double  tangent_m = below ? air_tangent_m(eye_m, up) : eye_m;
+    const AirPath path = {eye_m, tangent_m, below ? -up * (6371e3 + eye_m) : 0, sun_zenith_rad, rel_azimuth_rad};
+    const AirLegs legs = legs_of(atmosphere, &path);
     *out = (SkyAir){0};
-    if (air_band_is_thermal(band)) {
-        double low[2], high[2];
-        grid_at(low, &blend.low->sky_thermal, at);
-        grid_at(high, &blend.high->sky_thermal, at);
-        const int i = band == AIR_LWIR;
-        out->thermal_w_m2_sr = exp(blend_of(&blend, low[i], high[i])) * black_air(atmosphere, band, at[0]);
+    for (AirBand part = band == AIR_PAN ? AIR_B : band; part <= (band == AIR_PAN ? AIR_R : band); part++) {
+        const SkyAir sky = sky_above(atmosphere, &blend, part, tangent_m, angle_rad);
+        PathDepths   way = {0};
+        if (legs.count > 0) way = leg_depths(atmosphere, &blend, part, &legs.leg[0], NAN);
+        out->thermal_w_m2_sr +=
+            way.thermal_w_m2_sr + sky.thermal_w_m2_sr * air_legs_sky_passed(part, tangent_m, way.own);
+        out->scattered_w_m2_sr += way.scattered_w_m2_sr + sky.scattered_w_m2_sr * exp(-way.sun);
     }
-    if (!(sun_zenith_rad <= pi_rad / 2)) return;
-    for (AirBand part = band == AIR_PAN ? AIR_B : band; part <= (band == AIR_PAN ? AIR_R : band); part++)
-        out->scattered_w_m2_sr += sky_scattered(atmosphere, &blend, part, at, angle_rad);
 }
 
 double atmosphere_longwave_down(const Atmosphere *atmosphere, double visibility_m)

@@ -40,10 +40,10 @@ void   atmosphere_close(Atmosphere *atmosphere);
 void atmosphere_visibilities(const Atmosphere *atmosphere, double *low_m, double *high_m);
 
 /* One straight path over a round Earth. Heights above the model's ground (its 0 km), of both ends; the
- * path may go up, down or along. Any range: below the tables' shortest depth is in proportion to range, beyond the
- * longest too. */
+ * path may go up, down or along, or pass a lowest point between its ends (air_legs.h). Any range: below the tables'
+ * shortest depth is in proportion to range, beyond the longest too. */
 typedef struct AirPath {
-    double observer_m, target_m; /* 0 .. the top of the tables, 20 km; clamped */
+    double observer_m, target_m; /* from 0 (clamped) up; above the top of the tables, 20 km, there is no air */
     double range_m;              /* raised to |target_m - observer_m|; 0: empty path */
     double sun_zenith_rad;       /* for scattered sunlight; > pi / 2: none */
     double rel_azimuth_rad;      /* between the view and the sun, 0: towards the sun */
@@ -60,7 +60,8 @@ typedef struct PathAir {
 void atmosphere_path(PathAir *out, const Atmosphere *atmosphere, double visibility_m, AirBand band, const AirPath *path,
                      double temp_k);
 
-/* To space. zenith_rad 0 .. pi / 2 (clamped slightly above the horizon: the tables' last row). */
+/* To space, zenith_rad 0 .. pi. Below the horizontal the ray passes its lowest point, at the ground at most, and goes
+ * on up from there: the air to that point, and behind it the level sky from there. */
 typedef struct SkyAir {
     double thermal_w_m2_sr, scattered_w_m2_sr;
 } SkyAir;
@@ -99,6 +100,7 @@ Status air_day_at(const AirDay **out, const Atmosphere *atmosphere, double visib
 typedef struct DayPath {
     double sun[AIR_BAND_COUNT];       /* of sunlight */
     double emitted[2][day_temps_max]; /* of emitters; mwir, lwir */
+    double own[2];                    /* of the air's own emission */
     double thermal_w_m2_sr[2];        /* the air's own radiance */
 } DayPath;
 void air_day_path(DayPath *out, const AirDay *day, const AirPath *path);
@@ -107,7 +109,7 @@ void air_day_path(DayPath *out, const AirDay *day, const AirPath *path);
 void air_day_scattered(double (*w_m2_sr)[AIR_BAND_COUNT], double sun[AIR_BAND_COUNT], const AirDay *day,
                        const AirPath *path, const double *azimuth_rad, int azimuths);
 
-/* The sky at one zenith angle and several azimuths; thermal: mwir, lwir. */
+/* The sky at one zenith angle, 0 .. pi, and several azimuths; thermal: mwir, lwir. */
 void air_day_sky(double (*w_m2_sr)[AIR_BAND_COUNT], double thermal_w_m2_sr[2], const AirDay *day, double observer_m,
                  double zenith_rad, const double *azimuth_rad, int azimuths);
 

@@ -2,6 +2,7 @@
  * only what does not change in a loop is taken out of it. */
 #include "render/air/atmosphere.h"
 
+#include "render/air/air_legs.h"
 #include "render/air/atmosphere_private.h"
 
 #include <assert.h>
@@ -138,27 +139,25 @@ static void values_in(double out[row_values], const PathTable *table, const Sten
     }
 }
 
-static AirPath sane(const AirDay *day, const AirPath *path)
-{
-    AirPath p = *path;
-    p.observer_m = clamp(p.observer_m, 0, day->top_m);
-    p.target_m = clamp(p.target_m, 0, day->top_m);
-    p.range_m = fmax(p.range_m, fabs(p.target_m - p.observer_m));
-    return p;
-}
-
 typedef struct Depths {
     Stencils stencils;
-    Span     span; /* lowered by the chord error of the round Earth */
+    int      pieces;
+    double   piece_m[air_pieces_max];
+    Span     span[air_pieces_max]; /* lowered by the chord error of the round Earth */
     AirPath  path;
 } Depths;
 
 static void begin_depths(Depths *out, const AirDay *day, const AirPath *path)
 {
-    const double sag_m = mean_chord_error_m(path->range_m);
+    AirPath piece[air_pieces_max];
     out->stencils.count = 0;
     out->path = *path;
-    out->span = span_of(&day->column, path->observer_m - sag_m, path->target_m - sag_m);
+    out->pieces = air_leg_pieces(piece, path);
+    for (int i = 0; i < out->pieces; i++) {
+        const double sag_m = mean_chord_error_m(piece[i].range_m);
+        out->piece_m[i] = piece[i].range_m;
+        out->span[i] = span_of(&day->column, piece[i].observer_m - sag_m, piece[i].target_m - sag_m);
+    }
 }
 
 /* Values of the three tables of a band, and depths from the columns alone: clear, haze. */
@@ -169,8 +168,11 @@ static void depths_of(double value[3][row_values], double plain[2], Depths *d, c
         const PathTable *table = table_of(day, band, which);
         values_in(value[which], table, stencil_in(&d->stencils, table, p->observer_m, p->target_m, p->range_m));
     }
-    plain[0] = p->range_m * clear_mean(day, band, &d->span);
-    plain[1] = p->range_m * haze_mean(day, band, &d->span);
+    plain[0] = plain[1] = 0;
+    for (int i = 0; i < d->pieces; i++) {
+        plain[0] += d->piece_m[i] * clear_mean(day, band, &d->span[i]);
+        plain[1] += d->piece_m[i] * haze_mean(day, band, &d->span[i]);
+    }
 }
 
 static double depth_of(const AirDay *day, const double plain[2], double clear, double low, double high)
@@ -184,18 +186,9 @@ static double weight_of(const double value[row_values], DayTemp temp)
     return temp.share > 0 ? value[temp.low] + temp.share * (value[temp.low + 1] - value[temp.low]) : value[temp.low];
 }
 
-/* Sunlight in pan is that of its parts. */
-static void pan_of(double sun[AIR_BAND_COUNT], const AirDay *day)
+void day_leg_path(DayPath *out, const AirDay *day, const AirPath *leg)
 {
-    const double *top = day->atmosphere->sun_top_w_m2;
-    double        transmittance = 0;
-    for (AirBand part = AIR_B; part <= AIR_R; part++) transmittance += top[part] / top[AIR_PAN] * exp_here(-sun[part]);
-    sun[AIR_PAN] = -log(transmittance);
-}
-
-void air_day_path(DayPath *out, const AirDay *day, const AirPath *path)
-{
-    const AirPath p = sane(day, path);
+    const AirPath p = *leg;
     double        value[3][row_values], plain[2];
     Depths        d;
     *out = (DayPath){0};
@@ -219,10 +212,10 @@ void air_day_path(DayPath *out, const AirDay *day, const AirPath *path)
                                     day->hazes ? weight_of(value[2], at[2]) : 0);
         double       ln_opaque = value[1][low->weights];
         if (day->hazes) ln_opaque += day->blend.share * (value[2][high->weights] - ln_opaque);
+        out->own[k] = own;
         out->thermal_w_m2_sr[k] =
             exp_here(ln_opaque) * mean_black(day->atmosphere, b, p.observer_m, p.target_m) * -expm1(-own);
     }
-    if (wants(day->bands, AIR_PAN)) pan_of(out->sun, day);
 }
 
 /* ---- scattered light of a path ------------------------------------------------------------------ */
@@ -361,12 +354,6 @@ static double estimate(const ScatterParts *parts, const AirDay *day, AirBand ban
     return sum;
 }
 
-static void add_pan(double w_m2_sr[AIR_BAND_COUNT])
-{
-    w_m2_sr[AIR_PAN] = 0;
-    for (AirBand part = AIR_B; part <= AIR_R; part++) w_m2_sr[AIR_PAN] += w_m2_sr[part];
-}
-
 /* Between two azimuths of [azimuths][air_tabled_count] values. */
 static void at_azimuth(double out[air_tabled_count], const double *value, const double *azimuth_deg, int azimuths,
                        double azimuth_rad)
@@ -377,10 +364,10 @@ static void at_azimuth(double out[air_tabled_count], const double *value, const 
     for (int k = 0; k < air_tabled_count; k++) out[k] = low[k] + t * (high[k] - low[k]);
 }
 
-void air_day_scattered(double (*w_m2_sr)[AIR_BAND_COUNT], double sun[AIR_BAND_COUNT], const AirDay *day,
-                       const AirPath *path, const double *azimuth_rad, int azimuths)
+void day_leg_scattered(double (*w_m2_sr)[AIR_BAND_COUNT], double sun[AIR_BAND_COUNT], const AirDay *day,
+                       const AirPath *leg, const double *azimuth_rad, int azimuths)
 {
-    const AirPath p = sane(day, path);
+    const AirPath p = *leg;
     const double  up = path_up(&p), rise_m = p.target_m - p.observer_m;
     double        value[3][row_values], plain[2], ratio[2][azimuths_room * air_tabled_count], at[2][air_tabled_count];
     ScatterParts  parts[AIR_BAND_COUNT];
@@ -403,7 +390,6 @@ void air_day_scattered(double (*w_m2_sr)[AIR_BAND_COUNT], double sun[AIR_BAND_CO
         parts_of(&parts[b], day, b, &steps,
                  sun[b] / (clear_mean(day, b, &whole) + haze_mean(day, b, &whole)) / p.range_m);
     }
-    if (wants(day->bands, AIR_PAN)) pan_of(sun, day);
     if (!lit) return;
 
     d.stencils.count = 0;
@@ -429,7 +415,6 @@ void air_day_scattered(double (*w_m2_sr)[AIR_BAND_COUNT], double sun[AIR_BAND_CO
             const double r = day->hazes ? at[0][k] + day->blend.share * (at[1][k] - at[0][k]) : at[0][k];
             w_m2_sr[a][b] = fmax(r, 0) * estimate(&parts[b], day, b, &angle);
         }
-        if (wants(day->bands, AIR_PAN)) add_pan(w_m2_sr[a]);
     }
 }
 
@@ -453,8 +438,8 @@ static void sky_ratio(double out[azimuths_room * air_tabled_count], const AirDay
     }
 }
 
-void air_day_sky(double (*w_m2_sr)[AIR_BAND_COUNT], double thermal_w_m2_sr[2], const AirDay *day, double observer_m,
-                 double zenith_rad, const double *azimuth_rad, int azimuths)
+void day_sky_above(double (*w_m2_sr)[AIR_BAND_COUNT], double thermal_w_m2_sr[2], const AirDay *day, double observer_m,
+                   double zenith_rad, const double *azimuth_rad, int azimuths)
 {
     const AirColumn *clear = &day->atmosphere->clear;
     const double     zenith = clamp(zenith_rad, 0, pi_rad / 2), eye_m = fmax(observer_m, 0), x = slant_x(zenith),
@@ -495,6 +480,5 @@ void air_day_sky(double (*w_m2_sr)[AIR_BAND_COUNT], double thermal_w_m2_sr[2], c
             const double r = day->hazes ? here[0][k] + day->blend.share * (here[1][k] - here[0][k]) : here[0][k];
             w_m2_sr[a][b] = fmax(r, 0) * estimate(&parts[b], day, b, &angle);
         }
-        if (wants(day->bands, AIR_PAN)) add_pan(w_m2_sr[a]);
     }
 }

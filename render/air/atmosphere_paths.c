@@ -295,14 +295,20 @@ bool paths_alike(const PathTable *a, const PathTable *b)
 /* ---- looking up ------------------------------------------------------------------------------- */
 
 /* Lagrange's cubic through the four rows around x (fewer at the ends), linear below the first row. Below the
- * shortest range of all and beyond a pair's longest one: the value of the end. */
+ * shortest range of all the value of the end. Beyond a pair's longest range: of depths, whose logarithm is nearly
+ * straight in that of range, the line through its last two to four times that range, and the value there beyond; of
+ * scattered light the value of the end. */
 static int range_stencil(int *row, double *share, const PathTable *table, int pair, double x)
 {
     const int     first = table->first[pair], count = table->first[pair + 1] - first;
     const double *node = table->ln_range + first;
-    x = clamp(x, table->ln_range_low, node[count - 1]);
+    const double  beyond = table->weights > 0 ? 1.3862943611198906 : 0; /* ln 4 */
+    x = clamp(x, table->ln_range_low, node[count - 1] + beyond);
     int low, points;
-    if (count == 1) {
+    if (count > 1 && x > node[count - 1]) {
+        low = count - 2;
+        points = 2;
+    } else if (count == 1) {
         low = 0;
         points = 1;
     } else if (x < node[0]) {

@@ -250,6 +250,14 @@ struct AirDay {
     DayTemp           temp[2][3][day_temps_max]; /* of mwir, lwir; clear, low, high */
 };
 
+/* What air_day_path, air_day_scattered and air_day_sky are made of: one leg (air_legs.h), and the sky from the
+ * horizontal up. Pan is left out. */
+void day_leg_path(DayPath *out, const AirDay *day, const AirPath *leg);
+void day_leg_scattered(double (*w_m2_sr)[AIR_BAND_COUNT], double sun[AIR_BAND_COUNT], const AirDay *day,
+                       const AirPath *leg, const double *azimuth_rad, int azimuths);
+void day_sky_above(double (*w_m2_sr)[AIR_BAND_COUNT], double thermal_w_m2_sr[2], const AirDay *day, double observer_m,
+                   double zenith_rad, const double *azimuth_rad, int azimuths);
+
 static inline bool         wants(unsigned bands, int band) { return bands >> band & 1; }
 static inline const Slice *slice_of(const AirDay *day, int which) { return which ? day->blend.high : day->blend.low; }
 

@@ -25,10 +25,10 @@ static inline double split(int *at, double x, int steps)
     return clamp(x - *at, 0, 1);
 }
 
-/* blur_rad: the sky about the sun is blurred to this angle. */
-static void place_in_sky(SkyPlace *out, const double sun_d_enu[3], const double d_enu[3], double blur_rad)
+/* up: sine of the height. blur_rad: the sky about the sun is blurred to this angle. */
+static void place_at(SkyPlace *out, const double sun_d_enu[3], const double d_enu[3], double up, double blur_rad)
 {
-    out->up_share = (float)split(&out->up, air_sky_ups * sqrt(clamp(d_enu[2], 0, 1)), air_sky_ups);
+    out->up_share = (float)split(&out->up, air_sky_ups * sqrt(clamp(up, 0, 1)), air_sky_ups);
     out->azimuth_share = (float)split(
         &out->azimuth, air_sky_azimuths / pi_rad * acos_quick(cos_azimuth(d_enu, sun_d_enu)), air_sky_azimuths);
     /* by the chord, since the cosine of a small angle has lost half its digits; chord = 2 sin(angle / 2) */
@@ -37,6 +37,16 @@ static void place_in_sky(SkyPlace *out, const double sun_d_enu[3], const double 
     const double c2 = fmin(0.25 * v3_dot(chord, chord), 1), angle = c2 < 0.01 ? 2 * sqrt(c2) : acos_quick(1 - 2 * c2);
     const double blurred = fmin(fmax(angle, blur_rad), pi_rad);
     out->angle_share = (float)split(&out->angle, air_sky_angles * sqrt(blurred / pi_rad), air_sky_angles);
+}
+
+static void place_in_sky(SkyPlace *out, const double sun_d_enu[3], const double d_enu[3], double blur_rad)
+{
+    place_at(out, sun_d_enu, d_enu, d_enu[2], blur_rad);
+}
+
+void air_sky_place(SkyPlace *out, const double sun_d_enu[3], const double d_enu[3], double climb)
+{
+    place_at(out, sun_d_enu, d_enu, climb, 0);
 }
 
 void daylight_sky_place(SkyPlace *out, const Daylight *light, const double d_enu[3])
@@ -179,27 +189,39 @@ static double on_plane(const float w_m2[lamps], const Lamps *lamp, const double 
 
 /* The sky is evaluated at every second height and azimuth, over its brightness around the sun, with cubic
  * interpolation between them. */
-enum { sky_stride = 2, asked_ups = air_sky_ups / sky_stride, asked_azimuths = air_sky_azimuths / sky_stride };
+enum {
+    sky_stride = 2,
+    asked_ups = air_sky_ups / sky_stride,
+    asked_azimuths = air_sky_azimuths / sky_stride,
+    asked_limbs = air_limb_steps / sky_stride,
+    asked_rows = asked_limbs > asked_ups ? asked_limbs : asked_ups
+};
 
 typedef struct AskedSky {
-    double scattered_w_m2_sr[asked_ups + 1][asked_azimuths + 1], thermal_w_m2_sr[asked_ups + 1];
+    double scattered_w_m2_sr[asked_rows + 1][asked_azimuths + 1], thermal_w_m2_sr[asked_rows + 1];
 } AskedSky;
 
-/* Evaluations of the day for all bands at once: sky radiance by angle from the sun, and by height and azimuth. */
+/* Evaluations of the day for all bands at once: by height, or depth below the horizontal, and azimuth. */
+typedef struct SkyRows {
+    double scattered[asked_rows + 1][asked_azimuths + 1][AIR_BAND_COUNT], thermal[asked_rows + 1][2];
+} SkyRows;
+/* And by angle from the sun. */
 typedef struct SkyAnswers {
-    double around[air_sky_angles + 1][AIR_BAND_COUNT];
-    double scattered[asked_ups + 1][asked_azimuths + 1][AIR_BAND_COUNT], thermal[asked_ups + 1][2];
+    double  around[air_sky_angles + 1][AIR_BAND_COUNT];
+    SkyRows sky;
 } SkyAnswers;
 
 struct DaylightJob {
     Daylight     *light;
     AirSky       *other; /* [AIR_BAND_COUNT], the sky from other_m up; NULL: of the ground alone */
+    AirLimb      *limb;  /* and below */
     double        other_m;
     const AirDay *day;
     unsigned      bands;
     double        diffuse_w_m2[AIR_BAND_COUNT];
     double        azimuth_rad[asked_azimuths + 1];
     SkyAnswers    answer[2]; /* from the ground, from other_m */
+    SkyRows       below;     /* of limb */
     Lamps         lamp;
     float         w_m2[AIR_BAND_COUNT][lamps];
 };
@@ -223,11 +245,21 @@ static void ask_sky(DaylightJob *job, int other, int i)
 {
     const double u = (double)i / asked_ups;
     const int    azimuths = i == asked_ups ? 1 : asked_azimuths + 1; /* the zenith has none */
-    SkyAnswers  *answer = &job->answer[other];
-    air_day_sky(answer->scattered[i], answer->thermal[i], job->day, height_of(job, other), acos(u * u),
-                job->azimuth_rad, azimuths);
+    SkyRows     *sky = &job->answer[other].sky;
+    air_day_sky(sky->scattered[i], sky->thermal[i], job->day, height_of(job, other), acos(u * u), job->azimuth_rad,
+                azimuths);
     for (int a = azimuths; a <= asked_azimuths; a++)
-        memcpy(answer->scattered[i][a], answer->scattered[i][0], sizeof answer->scattered[i][a]);
+        memcpy(sky->scattered[i][a], sky->scattered[i][0], sizeof sky->scattered[i][a]);
+}
+
+/* Rate of climb of a ray of a row below the horizontal. */
+static double limb_climb(double eye_m, double u) { return -sqrt(air_edge2(eye_m) * u * (2 - u)); }
+
+static void ask_limb(DaylightJob *job, int i)
+{
+    const double climb = limb_climb(job->other_m, (double)i / asked_limbs);
+    air_day_sky(job->below.scattered[i], job->below.thermal[i], job->day, job->other_m, acos(climb), job->azimuth_rad,
+                asked_azimuths + 1);
 }
 
 static void fill_around_sun(AirSky *sky, const SkyAnswers *answer, int b)
@@ -237,41 +269,51 @@ static void fill_around_sun(AirSky *sky, const SkyAnswers *answer, int b)
     sky->around_sun[air_sky_angles + 1] = sky->around_sun[air_sky_angles];
 }
 
-/* The sky over its ring: smooth enough for interpolation between few points. */
-static void without_ring(AskedSky *asked, const DaylightJob *job, const AirSky *sky, const SkyAnswers *answer, int b)
+/* One direction over its ring: smooth enough for interpolation between few points. */
+static double without_ring(const DaylightJob *job, const AirSky *sky, double scattered_w_m2_sr, const double d[3])
 {
     const double sun[3] = {sin(job->light->day_zenith_rad), 0, cos(job->light->day_zenith_rad)};
+    SkyPlace     place;
+    place_in_sky(&place, sun, d, 0);
+    const float *ring = &sky->around_sun[place.angle];
+    const double around = (double)(ring[0] + place.angle_share * (ring[1] - ring[0]));
+    return scattered_w_m2_sr * job->light->scattered_scale * job->light->cloud_sky / around;
+}
+
+static double under_clouds(const Daylight *light, int b, double clear_w_m2_sr)
+{
+    const PlanckTable *planck = b == AIR_MWIR ? light->planck_mwir : light->planck_lwir;
+    const double       clear = clear_w_m2_sr * light->thermal_scale[b - AIR_MWIR];
+    const double cloud = light->cloud_thermal > 0 ? planck_table_radiance(planck, light->weather.air_temp_k) : clear;
+    return clear + light->cloud_thermal * (cloud - clear);
+}
+
+/* A row, of which this is the sine of its height. */
+static void ask_row(AskedSky *asked, const DaylightJob *job, const AirSky *sky, const SkyRows *rows, int b, int i,
+                    double up)
+{
+    const double flat = sqrt(1 - up * up);
+    for (int a = 0; a <= asked_azimuths; a++) {
+        const double azimuth_rad = job->azimuth_rad[up < 1 ? a : 0],
+                     d[3] = {flat * cos(azimuth_rad), flat * sin(azimuth_rad), up};
+        asked->scattered_w_m2_sr[i][a] = b == AIR_LWIR ? 0 : without_ring(job, sky, rows->scattered[i][a][b], d);
+    }
+    asked->thermal_w_m2_sr[i] = b < AIR_MWIR ? 0 : under_clouds(job->light, b, rows->thermal[i][b - AIR_MWIR]);
+}
+
+static void asked_above(AskedSky *asked, const DaylightJob *job, const AirSky *sky, const SkyRows *rows, int b)
+{
     for (int i = 0; i <= asked_ups; i++) {
-        const double u = (double)i / asked_ups, up = u * u, flat = sqrt(1 - up * up);
-        for (int a = 0; a <= asked_azimuths; a++) {
-            const int    azimuth = i == asked_ups ? 0 : a;
-            const double d[3] = {flat * cos(job->azimuth_rad[azimuth]), flat * sin(job->azimuth_rad[azimuth]), up};
-            SkyPlace     place;
-            place_in_sky(&place, sun, d, 0);
-            const float *ring = &sky->around_sun[place.angle];
-            const double around = (double)(ring[0] + place.angle_share * (ring[1] - ring[0]));
-            asked->scattered_w_m2_sr[i][a] = b == AIR_LWIR ? 0
-                                                           : answer->scattered[i][a][b] * job->light->scattered_scale *
-                                                                 job->light->cloud_sky / around;
-        }
-        if (b < AIR_MWIR) {
-            asked->thermal_w_m2_sr[i] = 0;
-            continue;
-        }
-        const Daylight    *light = job->light;
-        const PlanckTable *planck = b == AIR_MWIR ? light->planck_mwir : light->planck_lwir;
-        const double       clear = answer->thermal[i][b - AIR_MWIR] * light->thermal_scale[b - AIR_MWIR];
-        const double       cloud =
-            light->cloud_thermal > 0 ? planck_table_radiance(planck, light->weather.air_temp_k) : clear;
-        asked->thermal_w_m2_sr[i] = clear + light->cloud_thermal * (cloud - clear);
+        const double u = (double)i / asked_ups;
+        ask_row(asked, job, sky, rows, b, i, u * u);
     }
 }
 
-/* In full resolution; mirrored at both ends of azimuth, as the sky is. */
-static void draw_sky(AirSky *sky, const AskedSky *asked)
+/* In full resolution; mirrored at both ends of azimuth, as the sky is. Rows: [2 steps + 1]. */
+static void draw_rows(float *thermal, float (*scattered)[air_sky_azimuths + 1], const AskedSky *asked, int steps)
 {
-    double along[asked_ups + 1][air_sky_azimuths + 1];
-    for (int i = 0; i <= asked_ups; i++)
+    double along[asked_rows + 1][air_sky_azimuths + 1];
+    for (int i = 0; i <= steps; i++)
         for (int a = 0; a <= air_sky_azimuths; a++) {
             const double *v = asked->scattered_w_m2_sr[i];
             const int     low = a / sky_stride < asked_azimuths ? a / sky_stride : asked_azimuths - 1;
@@ -280,15 +322,33 @@ static void draw_sky(AirSky *sky, const AskedSky *asked)
                 cubic_between(v[below], v[low], v[low + 1], v[above], (double)(a - low * sky_stride) / sky_stride);
         }
     const double *v = asked->thermal_w_m2_sr;
-    for (int i = 0; i <= air_sky_ups; i++) {
-        const int    low = i / sky_stride < asked_ups ? i / sky_stride : asked_ups - 1;
-        const int    below = low > 0 ? low - 1 : 0, above = low + 2 <= asked_ups ? low + 2 : asked_ups;
+    for (int i = 0; i <= sky_stride * steps; i++) {
+        const int    low = i / sky_stride < steps ? i / sky_stride : steps - 1;
+        const int    below = low > 0 ? low - 1 : 0, above = low + 2 <= steps ? low + 2 : steps;
         const double t = (double)(i - low * sky_stride) / sky_stride;
         for (int a = 0; a <= air_sky_azimuths; a++)
-            sky->scattered_w_m2_sr[i][a] =
+            scattered[i][a] =
                 (float)fmax(cubic_between(along[below][a], along[low][a], along[low + 1][a], along[above][a], t), 0);
-        sky->thermal_w_m2_sr[i] = (float)cubic_between(v[below], v[low], v[low + 1], v[above], t);
+        thermal[i] = (float)cubic_between(v[below], v[low], v[low + 1], v[above], t);
     }
+}
+
+static void draw_sky(AirSky *sky, const AskedSky *asked)
+{
+    draw_rows(sky->thermal_w_m2_sr, sky->scattered_w_m2_sr, asked, asked_ups);
+}
+
+/* The sky from the other height: from its horizontal up, and down. */
+static void fill_other(DaylightJob *job, int band)
+{
+    AirSky  *sky = &job->other[band];
+    AskedSky asked;
+    fill_around_sun(sky, &job->answer[1], band);
+    asked_above(&asked, job, sky, &job->answer[1].sky, band);
+    draw_sky(sky, &asked);
+    for (int i = 0; i <= asked_limbs; i++)
+        ask_row(&asked, job, sky, &job->below, band, i, limb_climb(job->other_m, (double)i / asked_limbs));
+    draw_rows(job->limb[band].thermal_w_m2_sr, job->limb[band].scattered_w_m2_sr, &asked, asked_limbs);
 }
 
 /* One band: interpolated, and scaled to the total irradiance. */
@@ -300,13 +360,9 @@ static void fill_sky(DaylightJob *job, int band)
     static const double up_enu[3] = {0, 0, 1};
     AskedSky            asked;
     fill_around_sun(sky, &job->answer[0], band);
-    without_ring(&asked, job, sky, &job->answer[0], band);
+    asked_above(&asked, job, sky, &job->answer[0].sky, band);
     draw_sky(sky, &asked);
-    if (job->other) {
-        fill_around_sun(&job->other[band], &job->answer[1], band);
-        without_ring(&asked, job, &job->other[band], &job->answer[1], band);
-        draw_sky(&job->other[band], &asked);
-    }
+    if (job->other) fill_other(job, band);
     AirSky scattered = *sky;
     memset(scattered.thermal_w_m2_sr, 0, sizeof scattered.thermal_w_m2_sr);
     light_lamps(job->w_m2[band], &job->lamp, &scattered);
@@ -345,10 +401,20 @@ enum {
     lamp_tasks = lamp_ups + lamp_rings
 };
 
-int daylight_asks(const DaylightJob *job) { return job->bands ? asks_of_sky + asks_around_sun + lamp_tasks : 0; }
+static int asks_of_limb(const DaylightJob *job) { return job->other ? asked_limbs + 1 : 0; }
+
+int daylight_asks(const DaylightJob *job)
+{
+    return job->bands ? asks_of_limb(job) + asks_of_sky + asks_around_sun + lamp_tasks : 0;
+}
 
 void daylight_ask(DaylightJob *job, int task)
 {
+    if (task < asks_of_limb(job)) {
+        ask_limb(job, task);
+        return;
+    }
+    task -= asks_of_limb(job);
     if (task < asks_of_sky + asks_around_sun) {
         const int other = task % 2, k = task / 2;
         if (other && !job->other) return;
@@ -382,7 +448,8 @@ Status daylight_begin(DaylightJob **out, Daylight *light, const DaylightInput *i
     DaylightJob *job = arena_alloc(arena, 1, sizeof *job);
     if (!job) return STATUS_NO_MEMORY;
     *light = (Daylight){0};
-    job->light = light, job->bands = in->bands, job->other = in->other, job->other_m = in->other_m;
+    job->light = light, job->bands = in->bands, job->other = in->other, job->limb = in->limb,
+    job->other_m = in->other_m;
     daylight_sums(light, in->source, in->weather, in->sun, in->bands, job->diffuse_w_m2);
     for (int a = 0; a <= asked_azimuths; a++) job->azimuth_rad[a] = a * pi_rad / asked_azimuths;
     double temp_k[air_temps + 1];

@@ -10,7 +10,6 @@ static Atmosphere  *atmosphere;
 static Arena       *arena;
 static Hits         hits;
 static Rays         rays;
-static AirPaths     veils;
 
 enum { all_bands = (1 << AIR_BAND_COUNT) - 1 };
 

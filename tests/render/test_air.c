@@ -3,6 +3,8 @@
 
 #include <stdlib.h>
 
+static AirPaths veils;
+
 static float temp_k[hits_capacity];
 
 static int open_all(void **state)

@@ -1,6 +1,8 @@
 /* Sun and sky over the day and the year: the disc, twilight, clouds, the distance. labels: physics */
 #include "tests/render/air_stage.h"
 
+static AirPaths veils;
+
 static void sun_disc_adds_up(void **state)
 {
     (void)state;

@@ -1,0 +1,240 @@
+/* Rays from any height: below the horizontal to space, along a path that passes its lowest point, from above the
+ * tables' top; against LOWTRAN7's own rays, sums over shells, and each other at the seams. labels: physics */
+#include "tests/render/air_stage.h"
+
+#include "pitviper_table.h"
+#include "render/air/air_legs.h"
+
+static const double earth_m = 6371e3;
+
+static double to_tangent(double eye_m, double tangent_m) { return -acos((earth_m + tangent_m) / (earth_m + eye_m)); }
+
+static double kelvin(AirBand band, double w_m2_sr)
+{
+    double low_k = 50, high_k = 400;
+    for (int i = 0; i < 60; i++) {
+        const double k = 0.5 * (low_k + high_k);
+        if (planck_table_radiance(band == AIR_LWIR ? lwir : mwir, k) < w_m2_sr) low_k = k;
+        else high_k = k;
+    }
+    return low_k;
+}
+
+/* ---- legs -------------------------------------------------------------------------------------------- */
+
+static void lowest_points(void **state)
+{
+    (void)state;
+    /* 100 km to either side of a point the line is 100^2 / (2 * 6381) km higher */
+    CHECK_NEAR(air_tangent_m(10000, -100e3 / (earth_m + 10000)), 10000 - 783.6, 0.5);
+    CHECK_NEAR(air_tangent_m(10000, 0.3), 10000, 0);
+    CHECK_NEAR(air_tangent_m(10000, -0.3), 0, 0); /* it meets the ground */
+    const AirPath chord = {10000, 10000, 400e3, 0, 0}, level = {10000, 10000, 100e3, 0, 0},
+                  down = {10000, 9000, 20e3, 0, 0};
+    AirLegs legs = air_legs(&chord, 20000);
+    CHECK(legs.count == 2 && legs.cut == 1); /* 3.1 km below its ends */
+    CHECK_NEAR(legs.leg[0].target_m, 10000 - 200e3 * 200e3 / (2 * (earth_m + 10000)), 1);
+    CHECK_NEAR(legs.leg[0].range_m, 200e3, 1e-3);
+    CHECK_NEAR(legs.leg[1].range_m, 200e3, 1e-3);
+    CHECK(legs.leg[1].observer_m == legs.leg[0].target_m && legs.leg[1].target_m == 10000);
+    CHECK(air_legs(&level, 20000).count == 1 && air_legs(&down, 20000).count == 1); /* 196 m below; none */
+    legs = air_legs(&down, 20000);
+    CHECK(memcmp(&legs.leg[0], &down, sizeof down) == 0);
+}
+
+static void cut_at_the_top(void **state)
+{
+    (void)state;
+    /* straight down from 99 km: the last 20; up from 10 km: the first 10; between 30 and 25 km: none */
+    const AirPath down = {99e3, 0, 99e3, 0, 0}, up = {10e3, 99e3, 89e3, 0, 0}, above = {30e3, 25e3, 100e3, 0, 0};
+    AirLegs       legs = air_legs(&down, 20e3);
+    CHECK(legs.count == 1 && legs.leg[0].observer_m == 20e3 && legs.leg[0].target_m == 0);
+    CHECK_NEAR(legs.leg[0].range_m, 20e3, 1e-3);
+    legs = air_legs(&up, 20e3);
+    CHECK(legs.count == 1 && legs.leg[0].observer_m == 10e3 && legs.leg[0].target_m == 20e3);
+    CHECK_NEAR(legs.leg[0].range_m, 10e3, 1e-3);
+    CHECK(air_legs(&above, 20e3).count == 0);
+    /* through the air from 30 to 30 km, lowest at 18 km: twice the root of (R + 20)^2 - (R + 18)^2 */
+    const double  half_m = sqrt((earth_m + 30e3) * (earth_m + 30e3) - (earth_m + 18e3) * (earth_m + 18e3));
+    const AirPath through = {30e3, 30e3, 2 * half_m, 0, 0};
+    legs = air_legs(&through, 20e3);
+    CHECK(legs.count == 2);
+    CHECK_NEAR(legs.leg[0].range_m + legs.leg[1].range_m,
+               2 * sqrt((earth_m + 20e3) * (earth_m + 20e3) - (earth_m + 18e3) * (earth_m + 18e3)), 1);
+    CHECK_NEAR(legs.leg[0].target_m, 18e3, 0.1);
+    PathAir high, low;
+    for (int b = 0; b < AIR_BAND_COUNT; b++) { /* the 79 km above are empty */
+        const AirPath whole = {99e3, 0, 99e3, 0.5, 1}, part = {20e3, 0, 20e3, 0.5, 1};
+        atmosphere_path(&high, atmosphere, 23000, (AirBand)b, &whole, 300);
+        atmosphere_path(&low, atmosphere, 23000, (AirBand)b, &part, 300);
+        CHECK_NEAR(high.transmittance, low.transmittance, 1e-12);
+        CHECK_NEAR(high.thermal_w_m2_sr, low.thermal_w_m2_sr, 1e-9);
+        CHECK_NEAR(high.scattered_w_m2_sr, low.scattered_w_m2_sr, 1e-9);
+    }
+}
+
+/* Two legs' depths: as a sum in visible light; in the infrared by what LOWTRAN7 makes of 226 to 639 km between two
+ * points at one height (us1976, 23 km; transmittance for the sun in nir, for 300 K in mwir and lwir; what the air
+ * itself shows). */
+static void paths_past_their_lowest_point(void **state)
+{
+    (void)state;
+    static const struct {
+        double height_m, lowest_m, nir, mwir, mwir_w_m2_sr, lwir, lwir_w_m2_sr;
+    } row[] = {{10e3, 8e3, 0.45061, 0.19861, 0.03764, 0.65550, 2.90091},
+               {10e3, 5e3, 0.08195, 0.06309, 0.07581, 0.36818, 8.11429},
+               {15e3, 10e3, 0.57705, 0.22436, 0.01730, 0.64906, 1.98839},
+               {5e3, 4e3, 0.08479, 0.06493, 0.23114, 0.29003, 12.80615},
+               {10e3, 2e3, 6e-5, 0.00178, 0.13331, 0.00304, 18.70872}};
+    for (size_t i = 0; i < sizeof row / sizeof row[0]; i++) {
+        const double half_m =
+            sqrt((row[i].height_m - row[i].lowest_m) * (2 * earth_m + row[i].height_m + row[i].lowest_m));
+        const AirPath path = {row[i].height_m, row[i].height_m, 2 * half_m, pi_rad, 0};
+        const double  tau[] = {row[i].nir, row[i].mwir, row[i].lwir},
+                     own[] = {0, row[i].mwir_w_m2_sr, row[i].lwir_w_m2_sr};
+        for (int k = 0; k < 3; k++) {
+            PathAir       got;
+            const AirBand band = (AirBand)(AIR_NIR + k);
+            atmosphere_path(&got, atmosphere, 23000, band, &path, 300);
+            print_message("%.0f m past %.0f m, %s: tau %.4f (%.4f), own %.4f (%.4f)\n", row[i].height_m,
+                          row[i].lowest_m, air_band_name(band), k ? got.transmittance : got.sun_transmittance, tau[k],
+                          got.thermal_w_m2_sr, own[k]);
+            /* its rays that pass level have up to 8 % too much air (etc/atmosphere/README.md) */
+            CHECK_NEAR(k ? got.transmittance : got.sun_transmittance, tau[k], 0.06);
+            if (!k) continue;
+            /* of what is opaque in it: its air has one temperature a kilometre */
+            const double source = got.thermal_w_m2_sr / (1 - got.transmittance);
+            CHECK_NEAR(kelvin(band, source), kelvin(band, own[k] / (1 - tau[k])), 2.5);
+        }
+    }
+}
+
+/* ---- the sky below the horizontal ----------------------------------------------------------------------- */
+
+static double cell(const Table *table, int row, const char *column)
+{
+    double value = NAN;
+    CHECK(text_to_double(&value, table_text(table, row, table_column(table, column))));
+    return value;
+}
+
+static void against_shells(void **state)
+{
+    (void)state;
+    Table table;
+    CHECK(table_open(&table, "tests/data/limb.csv") == STATUS_OK);
+    double worst_k[2] = {0}, sum2[2] = {0};
+    for (int i = 0; i < table.rows; i++) {
+        const double eye_m = cell(&table, i, "observer_m"), tangent_m = cell(&table, i, "tangent_m");
+        for (int k = 0; k < 2; k++) {
+            SkyAir        got;
+            const double  want = cell(&table, i, k ? "lwir" : "mwir");
+            const AirBand band = (AirBand)(AIR_MWIR + k);
+            atmosphere_sky(&got, atmosphere, cell(&table, i, "visibility_m"), band, eye_m,
+                           0.5 * pi_rad - to_tangent(eye_m, tangent_m), pi_rad, 0);
+            const double error_k = kelvin(band, got.thermal_w_m2_sr) - kelvin(band, want);
+            if (fabs(error_k) > 1.0)
+                print_message("row %d %s: eye %.0f m, lowest %.0f m: %.4f, want %.4f (%+.2f K)\n", i + 1,
+                              air_band_name(band), eye_m, tangent_m, got.thermal_w_m2_sr, want, error_k);
+            sum2[k] += error_k * error_k;
+            worst_k[k] = fmax(worst_k[k], fabs(error_k));
+        }
+    }
+    print_message("against sums over shells: rms %.2f and %.2f K, worst %.2f and %.2f K\n", sqrt(sum2[0] / table.rows),
+                  sqrt(sum2[1] / table.rows), worst_k[0], worst_k[1]);
+    CHECK(table.rows == 24);
+    CHECK(sqrt(sum2[0] / table.rows) < 1.1 && sqrt(sum2[1] / table.rows) < 0.7 && worst_k[0] < 2.2 && worst_k[1] < 1.6);
+    table_close(&table);
+}
+
+/* ---- in a frame ---------------------------------------------------------------------------------------- */
+
+/* From the horizontal down to the Earth's edge and on to the ground, by a frame's tables and path by path. */
+static void frames_follow(void **state)
+{
+    (void)state;
+    static const double eyes_m[] = {50, 1000, 5000, 10000, 20000, 60000};
+    static AirPaths     table[AIR_BAND_COUNT], direct[AIR_BAND_COUNT];
+    const Weather       weather = weather_default();
+    for (int e = 0; e < 6; e++) {
+        const double eye_m = eyes_m[e], edge_rad = to_tangent(eye_m, 0);
+        const Air    air = air_of(&weather, 40, eye_m, all_bands, NULL);
+        clear();
+        for (int k = 0; k < 200; k++) add(0.9 + 0.011 * k, edge_rad * (k + 0.5) / 100, INFINITY);
+        air_paths_of(table, &air, all_bands, &hits, &rays, NULL);
+        air_paths_directly(direct, &air, all_bands, &hits, &rays, NULL, table);
+        for (int b = 0; b < AIR_BAND_COUNT; b++) {
+            double worst = 0, worst_sky = 0, most = 0;
+            for (int i = 0; i < hits.count; i++) most = fmax(most, (double)direct[b].added_w_m2_sr[i]);
+            for (int i = 0; i < hits.count; i++) {
+                const double want = (double)direct[b].added_w_m2_sr[i], got = (double)table[b].added_w_m2_sr[i];
+                const double error = fabs(got - want) / (want + 0.02 * most);
+                CHECK((table[b].range_m[i] < INFINITY) == (i >= 100)); /* the edge is where it belongs */
+                if (i < 100) worst_sky = fmax(worst_sky, error);
+                else worst = fmax(worst, error);
+            }
+            print_message("%5.0f m %-4s: sky within %.4f, ground within %.4f\n", eye_m, air_band_name((AirBand)b),
+                          worst_sky, worst);
+            CHECK(worst_sky < 0.15 &&
+                  worst < 0.12); /* the most from 60 km, whose rows are 2 km apart in the bright air */
+        }
+    }
+}
+
+/* No step at the horizontal, nor at the edge but what the ground itself sends through the air. */
+static void continuous(void **state)
+{
+    (void)state;
+    static const double eyes_m[] = {50, 1000, 5000, 10000, 20000, 60000};
+    static AirPaths     out[AIR_BAND_COUNT];
+    const Weather       weather = weather_default();
+    for (int e = 0; e < 6; e++) {
+        const double eye_m = eyes_m[e], edge_rad = to_tangent(eye_m, 0);
+        const Air    air = air_of(&weather, 40, eye_m, all_bands, NULL);
+        clear();
+        add(2.0, 1e-9, INFINITY), add(2.0, -1e-9, INFINITY);
+        add(2.0, edge_rad * (1 - 1e-7), INFINITY), add(2.0, edge_rad * (1 + 1e-7), INFINITY);
+        air_paths_of(out, &air, all_bands, &hits, &rays, NULL);
+        for (int b = 0; b < AIR_BAND_COUNT; b++) {
+            const float *seen = out[b].added_w_m2_sr;
+            CHECK(fabsf(seen[1] - seen[0]) <= 1e-3f * seen[0]); /* from 60 km it is nothing in visible light */
+            CHECK(out[b].range_m[2] == INFINITY && out[b].range_m[3] < INFINITY);
+            /* beyond the edge the ground shows through what air there is: none of it from 5 km up */
+            if (b == AIR_LWIR && eye_m >= 1000)
+                CHECK_NEAR(kelvin(AIR_LWIR, (double)seen[3]), kelvin(AIR_LWIR, (double)seen[2]), 0.4);
+            else if (eye_m >= 1000) CHECK(fabsf(seen[3] / seen[2] - 1) < 0.15f);
+        }
+    }
+}
+
+/* From 30, 50 and 99 km the ground is what it is from 20 km under the angle at which the ray enters the air there. */
+static void the_same_from_above(void **state)
+{
+    (void)state;
+    static const double eyes_m[] = {20e3, 30e3, 50e3, 99e3}, downs_rad[] = {-1.5, -0.8, -0.3, -0.12};
+    static AirPaths     out[4][AIR_BAND_COUNT];
+    const Weather       weather = weather_default();
+    for (int e = 0; e < 4; e++) {
+        const Air air = air_of(&weather, 40, eyes_m[e], all_bands, NULL);
+        clear();
+        for (int k = 0; k < 4; k++) /* the sine rule: the level part of the direction shrinks as 1 / r */
+            add(2.0, -acos(cos(downs_rad[k]) * (earth_m + 20e3) / (earth_m + eyes_m[e])), INFINITY);
+        air_paths_of(out[e], &air, all_bands, &hits, &rays, NULL);
+        for (int b = 0; b < AIR_BAND_COUNT; b++)
+            for (int k = 0; k < 4; k++) {
+                CHECK_NEAR(out[e][b].transmittance[k], out[0][b].transmittance[k], 2e-3);
+                CHECK(fabsf(out[e][b].added_w_m2_sr[k] / out[0][b].added_w_m2_sr[k] - 1) < 0.01f);
+            }
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(frames_follow),       cmocka_unit_test(continuous),
+        cmocka_unit_test(the_same_from_above), cmocka_unit_test(lowest_points),
+        cmocka_unit_test(cut_at_the_top),      cmocka_unit_test(paths_past_their_lowest_point),
+        cmocka_unit_test(against_shells),
+    };
+    return cmocka_run_group_tests(tests, open_tables, close_tables);
+}
