@@ -5,7 +5,7 @@
 #include "render/air/atmosphere_private.h"
 
 /* Heights above a sphere of this radius. */
-static const double radius_m = 6371e3, least_dip_m = 500, longest_piece_m = 80e3;
+static const double radius_m = 6371e3, least_dip_m = 500, longest_piece_m = 80e3, least_height_m = 1000;
 
 /* A ray: where it begins, by the height and the cosine of its zenith angle. */
 typedef struct Ray {
@@ -31,11 +31,17 @@ static Ray ray_between(double a_m, double b_m, double range_m)
     return (Ray){a_m, clamp(up, -1, 1)};
 }
 
+double air_pieces_share(const AirPath *leg)
+{
+    return clamp(leg->range_m / longest_piece_m - 1, 0, 1) * clamp(leg->observer_m / least_height_m - 1, 0, 1);
+}
+
 int air_leg_pieces(AirPath piece[air_pieces_max], const AirPath *leg)
 {
-    static const double longest_m = 60e3;
-    const int count = leg->range_m > longest_m ? (int)fmin(ceil(leg->range_m / longest_piece_m), air_pieces_max) : 1;
+    piece[0] = *leg;
+    if (!(air_pieces_share(leg) > 0)) return 1;
     const Ray ray = ray_between(leg->observer_m, leg->target_m, leg->range_m);
+    const int count = (int)fmin(ceil(leg->range_m / longest_piece_m), air_pieces_max);
     for (int i = 0; i < count; i++) {
         piece[i] = *leg;
         piece[i].range_m = leg->range_m / count;
@@ -45,8 +51,6 @@ int air_leg_pieces(AirPath piece[air_pieces_max], const AirPath *leg)
     }
     return count;
 }
-
-double air_pieces_share(const AirPath *leg) { return clamp(leg->range_m / longest_piece_m - 1, 0, 1); }
 
 double air_tangent_m(double height_m, double up)
 {

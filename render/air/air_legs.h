@@ -16,12 +16,13 @@ typedef struct AirLegs {
 } AirLegs;
 AirLegs air_legs(const AirPath *path, double top_m);
 
-/* A leg in pieces of 60 km and less, six at most, the nearest first: over a long one the light that reaches its air
- * changes too much for one estimate of what is scattered. Returns their number; of a short leg it is the leg itself. */
+/* A leg in pieces of 80 km and less, six at most, the nearest first: over a long one height changes too little like a
+ * straight line for one estimate of what its air lets through, sends and scatters. Returns their number; of a short
+ * leg, or one that begins below a kilometre, whose first air hides the rest, it is the leg itself. */
 enum { air_pieces_max = 6 };
 int air_leg_pieces(AirPath piece[air_pieces_max], const AirPath *leg);
-/* Share that what the pieces send has in the leg's radiance, so that it does not step where they begin: 0 .. 1, at
- * twice their length. */
+/* Share that what the pieces send and scatter has in the leg's radiance, so that it does not step where they begin:
+ * 0 .. 1, at twice their length and that height. */
 double air_pieces_share(const AirPath *leg);
 
 /* Height of the lowest point of a ray that goes down, by the cosine of its zenith angle at a height, m; not below 0. */

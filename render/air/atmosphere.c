@@ -274,20 +274,24 @@ static PathDepths leg_depths(const Atmosphere *atmosphere, const Blend *blend, A
     AirPath    piece[air_pieces_max], before = *leg;
     const int  pieces = air_leg_pieces(piece, leg);
     PathDepths out = single_depths(atmosphere, blend, band, leg, temp_k);
-    double     near = 0, sum = 0, left = 1;
+    const bool lit = leg->sun_zenith_rad <= pi_rad / 2;
+    double     near = 0, sum = 0, left = 1, scatters = 0;
     before.range_m = 0;
     for (int i = 0; i < pieces; i++) {
         const PathDepths own = single_depths(atmosphere, blend, band, &piece[i], temp_k);
         before.range_m += piece[i].range_m, before.target_m = piece[i].target_m;
-        if (leg->sun_zenith_rad <= pi_rad / 2)
-            out.scattered_w_m2_sr += left * scattered(atmosphere, blend, band, &piece[i], own.sun);
+        if (lit) scatters += left * scattered(atmosphere, blend, band, &piece[i], own.sun);
         left *= exp(-own.sun);
         const double depth =
             fmax(near, i + 1 < pieces ? single_depths(atmosphere, blend, band, &before, temp_k).own : out.own);
         if (own.own > 0) sum += own.thermal_w_m2_sr / -expm1(-own.own) * exp(-near) * -expm1(near - depth);
         near = depth;
     }
-    if (pieces > 1) out.thermal_w_m2_sr = mixed(out.thermal_w_m2_sr, sum, air_pieces_share(leg));
+    out.scattered_w_m2_sr = scatters;
+    if (pieces == 1) return out;
+    const double share = air_pieces_share(leg), whole = lit ? scattered(atmosphere, blend, band, leg, out.sun) : 0;
+    out.thermal_w_m2_sr = mixed(out.thermal_w_m2_sr, sum, share);
+    out.scattered_w_m2_sr = mixed(whole, scatters, share);
     return out;
 }
 

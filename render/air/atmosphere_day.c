@@ -186,7 +186,7 @@ static double weight_of(const double value[row_values], DayTemp temp)
     return temp.share > 0 ? value[temp.low] + temp.share * (value[temp.low + 1] - value[temp.low]) : value[temp.low];
 }
 
-void day_leg_path(DayPath *out, const AirDay *day, const AirPath *leg)
+void day_leg_path(DayPath *out, const AirDay *day, unsigned bands, const AirPath *leg)
 {
     const AirPath p = *leg;
     double        value[3][row_values], plain[2];
@@ -195,7 +195,7 @@ void day_leg_path(DayPath *out, const AirDay *day, const AirPath *leg)
     if (!(p.range_m > 0)) return;
     begin_depths(&d, day, &p);
     for (AirBand b = 0; b < AIR_BAND_COUNT; b++) {
-        if (!wants(day->parts, b)) continue;
+        if (!wants(day->parts & bands, b)) continue;
         depths_of(value, plain, &d, day, b);
         out->sun[b] = depth_of(day, plain, value[0][0], value[1][0], value[2][0]);
         if (!air_band_is_thermal(b)) continue;

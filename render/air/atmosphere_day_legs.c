@@ -42,6 +42,8 @@ static void add_leg(DayPath *to, const DayPath *behind, const AirDay *day, doubl
     }
 }
 
+static const unsigned thermal = 1 << AIR_MWIR | 1 << AIR_LWIR;
+
 static double mixed(double whole, double parts, double share) { return whole + share * (parts - whole); }
 
 /* Of a leg in pieces each sends as a black body of its own mean temperature what the air before it leaves of its share
@@ -50,15 +52,15 @@ static void leg_path(DayPath *out, const AirDay *day, const AirPath *leg)
 {
     AirPath   piece[air_pieces_max], before = *leg;
     const int pieces = air_leg_pieces(piece, leg);
-    day_leg_path(out, day, leg);
-    if (pieces == 1) return;
+    day_leg_path(out, day, ~0u, leg);
+    if (pieces == 1 || !(day->parts & thermal)) return;
     double sum[2] = {0}, near[2] = {0}; /* depths at the near end of a piece */
     before.range_m = 0;
     for (int i = 0; i < pieces; i++) {
         DayPath own, far;
         before.range_m += piece[i].range_m, before.target_m = piece[i].target_m;
-        day_leg_path(&own, day, &piece[i]);
-        if (i + 1 < pieces) day_leg_path(&far, day, &before);
+        day_leg_path(&own, day, thermal, &piece[i]);
+        if (i + 1 < pieces) day_leg_path(&far, day, thermal, &before);
         for (int k = 0; k < 2; k++) {
             const double depth = fmax(near[k], i + 1 < pieces ? far.own[k] : out->own[k]);
             if (own.own[k] > 0)
@@ -119,9 +121,11 @@ static void leg_scattered(double (*w_m2_sr)[AIR_BAND_COUNT], double sun[AIR_BAND
         memcpy(w_m2_sr, near, (size_t)azimuths * sizeof *w_m2_sr);
     }
     if (pieces == 1) return;
-    DayPath whole; /* its depth is not the sum of theirs */
-    day_leg_path(&whole, day, leg);
-    memcpy(sun, whole.sun, sizeof whole.sun);
+    double whole[path_max_suns][AIR_BAND_COUNT]; /* its depth is not the sum of theirs */
+    day_leg_scattered(whole, sun, day, leg, azimuth_rad, azimuths);
+    for (int a = 0; a < azimuths; a++)
+        for (int b = 0; b < AIR_BAND_COUNT; b++)
+            w_m2_sr[a][b] = mixed(whole[a][b], w_m2_sr[a][b], air_pieces_share(leg));
 }
 
 void air_day_scattered(double (*w_m2_sr)[AIR_BAND_COUNT], double sun[AIR_BAND_COUNT], const AirDay *day,

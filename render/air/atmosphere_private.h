@@ -252,7 +252,7 @@ struct AirDay {
 
 /* What air_day_path, air_day_scattered and air_day_sky are made of: one leg (air_legs.h), and the sky from the
  * horizontal up. Pan is left out. */
-void day_leg_path(DayPath *out, const AirDay *day, const AirPath *leg);
+void day_leg_path(DayPath *out, const AirDay *day, unsigned bands, const AirPath *leg);
 void day_leg_scattered(double (*w_m2_sr)[AIR_BAND_COUNT], double sun[AIR_BAND_COUNT], const AirDay *day,
                        const AirPath *leg, const double *azimuth_rad, int azimuths);
 void day_sky_above(double (*w_m2_sr)[AIR_BAND_COUNT], double thermal_w_m2_sr[2], const AirDay *day, double observer_m,
