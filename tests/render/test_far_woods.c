@@ -108,7 +108,7 @@ static void close_place(void)
 static void air_then(Air *air, Sun *sun, double unix_s)
 {
     const World    *w = &place.planted;
-    const AirSource source = {w->atmosphere, w->planck_mwir, w->planck_lwir, 0};
+    const AirSource source = {w->atmosphere, w->planck_mwir, w->planck_lwir, 0, 0};
     const AirEye    eye = {.height_m = 100, .bands = (1 << AIR_BAND_COUNT) - 1};
     Weather         weather;
     HeatScene      *heat;
