@@ -1,5 +1,5 @@
-/* render/air/atmosphere_solar.c: reads and interpolates etc/atmosphere/solar.csv: the sun's direct and diffuse light, all
- * wavelengths. */
+/* render/air/atmosphere_solar.c: reads and interpolates etc/atmosphere/solar.csv: the sun's direct and diffuse light,
+ * all wavelengths. */
 #include "render/air/atmosphere_private.h"
 
 /* Interpolated is the logarithm of direct light's optical depth, and of diffuse light, over the logarithms of

@@ -56,17 +56,21 @@ static void light_fades_by_its_twilight(void **state)
     static const double of[][2] = {{5, 0},      {2.5, -0.385}, {0, -0.77},  {-3, -1.935},  {-6, -3.1}, {-9, -4.4},
                                    {-12, -5.7}, {-15, -6.1},   {-18, -6.5}, {-18.5, -6.5}, {-40, -6.5}};
     const Weather       weather = weather_default();
-    const double        five = air_of(&weather, 5, 2, 1 << AIR_PAN, NULL).light.sky_w_m2[AIR_PAN];
+    const Daylight      five = air_of(&weather, 5, 2, 1 << AIR_PAN, NULL).light;
     for (size_t i = 0; i < sizeof of / sizeof *of; i++) {
-        const double sky = air_of(&weather, of[i][0], 2, 1 << AIR_PAN, NULL).light.sky_w_m2[AIR_PAN];
-        CHECK_NEAR(log10(sky / five), of[i][1], 1e-5);
+        const Daylight light = air_of(&weather, of[i][0], 2, 1 << AIR_PAN, NULL).light;
+        CHECK_NEAR(log10(light.sky_w_m2[AIR_PAN] / five.sky_w_m2[AIR_PAN]), of[i][1], 1e-5);
+        CHECK_NEAR(log10(light.solar_diffuse_w_m2 / five.solar_diffuse_w_m2), of[i][1], 1e-9);
     }
-    SunAir level;
+    const SolarAir air = {weather.visibility_m, solar_water_mm(weather_vapour_kg_m3(&weather)), 0};
+    SunAir         level, solar;
+    atmosphere_solar(&solar, atmosphere, &air, 0.5 * pi_rad);
     atmosphere_sun(&level, atmosphere, weather.visibility_m, AIR_PAN, 0, 0.5 * pi_rad);
     static const double disc[][2] = {{0, 0.5}, {-0.13325, 0.25}, {-0.26649, 0.5 * (1 - 0.26649 / 0.2665)}, {-0.267, 0}};
     for (int i = 0; i < 4; i++) {
-        const double sun = air_of(&weather, disc[i][0], 2, 1 << AIR_PAN, NULL).light.sun_w_m2[AIR_PAN];
-        CHECK_NEAR(sun, disc[i][1] * level.direct_normal_w_m2, 1e-6 * level.direct_normal_w_m2);
+        const Daylight light = air_of(&weather, disc[i][0], 2, 1 << AIR_PAN, NULL).light;
+        CHECK_NEAR(light.sun_w_m2[AIR_PAN], disc[i][1] * level.direct_normal_w_m2, 1e-6 * level.direct_normal_w_m2);
+        CHECK_NEAR(light.solar_direct_w_m2, disc[i][1] * solar.direct_normal_w_m2, 1e-6 * solar.direct_normal_w_m2);
     }
     atmosphere_sun(&level, atmosphere, weather.visibility_m, AIR_PAN, 0, 89.73 * rad_per_deg);
     const double risen = air_of(&weather, 0.27, 2, 1 << AIR_PAN, NULL).light.sun_w_m2[AIR_PAN];

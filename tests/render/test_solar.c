@@ -30,30 +30,18 @@ static void between_the_nodes_as_lowtran(void **state)
 {
     (void)state;
     static const double row[][6] = {
-        {9012, 12.523, 543, 27.42, 613.89, 346.79},
-        {12654, 29.502, 604, 20.51, 685.38, 298.59},
-        {61599, 19.277, 3059, 59.01, 877.4, 77.117},
-        {2532, 4.381, 897, 43.13, 246.35, 404.19},
-        {11883, 55.313, 3176, 10.59, 819.66, 211.02},
-        {42057, 5.138, 1016, 37.09, 926.62, 145.91},
-        {30077, 30.865, 3088, 45.74, 870.06, 116.73},
-        {2137, 7.347, 2427, 32.36, 354.98, 459.34},
-        {2855, 31.633, 115, 49.85, 166.01, 320.07},
-        {69996, 9.728, 3037, 21.12, 1040, 94.113},
-        {52561, 18.985, 2229, 7.45, 986.21, 120.27},
-        {25242, 46.296, 394, 12.22, 797.57, 215.23},
-        {72269, 23.893, 1191, 63.35, 769.76, 84.084},
-        {2773, 24.288, 2073, 74.82, 69.083, 103.08},
-        {7974, 5.864, 831, 0.64, 671.66, 388.08},
-        {3663, 54.944, 372, 13.12, 353.47, 479.19},
-        {3964, 18.99, 1454, 72.71, 114.71, 127.93},
-        {28299, 18.497, 2512, 61.58, 743.97, 110.22},
-        {12377, 7.505, 3960, 41.46, 896.28, 157.57},
-        {59846, 8.324, 2569, 51.45, 939.15, 92.25},
-        {1228, 9.097, 1958, 84.75, 0.63847, 14.295},
-        {28504, 2.491, 241, 12.41, 920.56, 215.38},
-        {8781, 54.189, 161, 19.23, 553.34, 360.04},
-        {21958, 8.402, 2601, 69.26, 635.65, 103.44},
+        {9012, 12.523, 543, 27.42, 613.89, 346.79},   {12654, 29.502, 604, 20.51, 685.38, 298.59},
+        {61599, 19.277, 3059, 59.01, 877.4, 77.117},  {2532, 4.381, 897, 43.13, 246.35, 404.19},
+        {11883, 55.313, 3176, 10.59, 819.66, 211.02}, {42057, 5.138, 1016, 37.09, 926.62, 145.91},
+        {30077, 30.865, 3088, 45.74, 870.06, 116.73}, {2137, 7.347, 2427, 32.36, 354.98, 459.34},
+        {2855, 31.633, 115, 49.85, 166.01, 320.07},   {69996, 9.728, 3037, 21.12, 1040, 94.113},
+        {52561, 18.985, 2229, 7.45, 986.21, 120.27},  {25242, 46.296, 394, 12.22, 797.57, 215.23},
+        {72269, 23.893, 1191, 63.35, 769.76, 84.084}, {2773, 24.288, 2073, 74.82, 69.083, 103.08},
+        {7974, 5.864, 831, 0.64, 671.66, 388.08},     {3663, 54.944, 372, 13.12, 353.47, 479.19},
+        {3964, 18.99, 1454, 72.71, 114.71, 127.93},   {28299, 18.497, 2512, 61.58, 743.97, 110.22},
+        {12377, 7.505, 3960, 41.46, 896.28, 157.57},  {59846, 8.324, 2569, 51.45, 939.15, 92.25},
+        {1228, 9.097, 1958, 84.75, 0.63847, 14.295},  {28504, 2.491, 241, 12.41, 920.56, 215.38},
+        {8781, 54.189, 161, 19.23, 553.34, 360.04},   {21958, 8.402, 2601, 69.26, 635.65, 103.44},
     };
     double worst[2] = {0};
     for (size_t i = 0; i < sizeof row / sizeof *row; i++) {
@@ -72,15 +60,16 @@ static void between_the_nodes_as_lowtran(void **state)
 static double outside(double value, double a, double b) { return fmax(fmin(a, b) / value, value / fmax(a, b)) - 1; }
 
 /* pvlib 0.16.1: clearsky.bird (Bird & Hulstrom 1981; asymmetry 0.85, albedo 0.2) and clearsky.simplified_solis
- * (Ineichen 2008), 1361 W/m2, with the optical depths of LOWTRAN7's haze: at 380, 500, 700 nm 0.2408, 0.1840, 0.1180 (50
- * km) and 0.4858, 0.3722, 0.2402 (23 km); above 2317 m 0.1618, 0.1235, 0.0789 and 0.3122, 0.2390, 0.1539. Ozone 0.344
- * cm, water 15 mm, above 2317 m 4 mm and a pressure of 763 hPa.
+ * (Ineichen 2008), 1361 W/m2, with the optical depths of LOWTRAN7's haze: at 380, 500, 700 nm 0.2408, 0.1840, 0.1180
+ * (50 km) and 0.4858, 0.3722, 0.2402 (23 km); above 2317 m 0.1618, 0.1235, 0.0789 and 0.3122, 0.2390, 0.1539. Ozone
+ * 0.344 cm, water 15 mm, above 2317 m 4 mm and a pressure of 763 hPa.
  *
  * Direct light is within 8 % of Bird's from 25 degrees up, and lower within 5 % of the two or between; diffuse light
- * within 10 %, all light within 5 %. Four rows are let off. Above 2317 m at 23 km direct light is 9.2 % over Bird's at 25
- * degrees, all light 5.6 % over Bird's and Solis's at 60 and 40: Bird takes haze's depth at 380 and 500 nm, where its exponent is 0.97; to 1 um it is
- * 1.3, and by SPECTRL2 that alone is 7 % of direct light 25 degrees up. 5 degrees up at 23 km diffuse light is 12.5 % less
- * than both; there Solis's three figures contradict each other (39 and 30 W/m2 on level ground). */
+ * within 10 %, all light within 5 %. Four rows are let off. Above 2317 m at 23 km direct light is 9.2 % over Bird's at
+ * 25 degrees, all light 5.6 % over Bird's and Solis's at 60 and 40: Bird takes haze's depth at 380 and 500 nm, where
+ * its exponent is 0.97; to 1 um it is 1.3, and by SPECTRL2 that alone is 7 % of direct light 25 degrees up. 5 degrees
+ * up at 23 km diffuse light is 12.5 % less than both; there Solis's three figures contradict each other (39 and 30 W/m2
+ * on level ground). */
 static void as_clear_skies_of_others(void **state)
 {
     (void)state;
@@ -125,21 +114,23 @@ static void as_clear_skies_of_others(void **state)
                      level = direct * sin(e * rad_per_deg) + diffuse;
         const double miss[4] = {e >= 25 ? fabs(direct / b[0] - 1) : 0, e < 25 ? outside(direct, b[0], s[0]) : 0,
                                 outside(diffuse, b[1], s[1]), outside(level, b[2], s[2])};
-        const double most[4] = {thick && high_up && e == 25 ? 0.095 : 0.08, 0.05, thick && !high_up && e == 5 ? 0.13 : 0.1,
+        const double most[4] = {thick && high_up && e == 25 ? 0.095 : 0.08, 0.05,
+                                thick && !high_up && e == 5 ? 0.13 : 0.1,
                                 thick && high_up && (e == 40 || e == 60) ? 0.057 : 0.05};
         for (int k = 0; k < 4; k++) {
             worst[k] = fmax(worst[k], miss[k]);
             if (!(miss[k] <= most[k]))
-                fail_msg("%.0f m, %.0f m, %.0f degrees: %d misses by %.3f", row[i].visibility_m, row[i].ground_m, e, k, miss[k]);
+                fail_msg("%.0f m, %.0f m, %.0f degrees: %d misses by %.3f", row[i].visibility_m, row[i].ground_m, e, k,
+                         miss[k]);
         }
     }
     print_message("against Bird and Solis: direct %.1f %%, low %.1f %%, diffuse %.1f %%, all %.1f %%\n", 100 * worst[0],
                   100 * worst[1], 100 * worst[2], 100 * worst[3]);
 }
 
-/* pvlib 0.16.1, spectrum.spectrl2 (Bird & Riordan 1986), 0.3-4 um, in haze of 10 km, for which a broadband depth such as
- * Bird's is 12 % low 25 degrees up: depth 0.7703 at 500 nm, exponent 1.29 (LOWTRAN7's from 500 nm to 1 um), ozone 0.344
- * cm, water 15 mm, albedo 0.2; its sum above the air is 1.4 % less than LOWTRAN7's. */
+/* pvlib 0.16.1, spectrum.spectrl2 (Bird & Riordan 1986), 0.3-4 um, in haze of 10 km, for which a broadband depth such
+ * as Bird's is 12 % low 25 degrees up: depth 0.7703 at 500 nm, exponent 1.29 (LOWTRAN7's from 500 nm to 1 um), ozone
+ * 0.344 cm, water 15 mm, albedo 0.2; its sum above the air is 1.4 % less than LOWTRAN7's. */
 static void in_thick_haze_as_a_sum_over_wavelengths(void **state)
 {
     (void)state;
@@ -157,8 +148,8 @@ static void in_thick_haze_as_a_sum_over_wavelengths(void **state)
 }
 
 /* Smooth in all four arguments: at each node the slopes to either side, by differences of a thousandth of the
- * interval, are those of one curve: with straight lines between the nodes they differ by some tenths of themselves. More
- * water and haze let less through, and less air above more. */
+ * interval, are those of one curve: with straight lines between the nodes they differ by some tenths of themselves.
+ * More water and haze let less through, and less air above more. */
 static void smooth_and_in_order(void **state)
 {
     (void)state;
