@@ -37,7 +37,9 @@ judge() {
                                  NR > 1 { $c = 288 + by * ($c - 288) } { print }' "$tmp/box/nodes.csv" >"$tmp/nodes.csv"
     python3 tests/system/sun_judge.py "$tmp/nodes.csv" 90:box_rear 270:box_front
 }
-worst() { awk 'function miss() { return $2 > $3 ? $2 - $3 : $3 - $2 } miss() > w { w = miss() } END { print NR == 6 ? w : "none" }' "$1"; }
+worst() {
+    awk '{ miss = $2 > $3 ? $2 - $3 : $3 - $2; if (miss > worst) worst = miss } END { print NR == 6 ? worst : "none" }' "$1"
+}
 judge 1 >"$tmp/judge.txt"
 cat "$tmp/judge.txt"
 check "the sun warms a side by more than 10 K" awk '$3 > 10 { found = 1 } END { exit !found }' "$tmp/judge.txt"
