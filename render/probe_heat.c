@@ -71,7 +71,7 @@ Status heat_probe_open(void **state, int argc, char **argv)
         return status;
     }
     p->drive.course = p->course;
-    p->drive.source = (AirSource){p->atmosphere, p->planck[0], p->planck[1], 0};
+    p->drive.source = (AirSource){p->atmosphere, p->planck[0], p->planck[1], 0, p->drive.place.h_m};
     *state = p;
     return STATUS_OK;
 }

@@ -87,6 +87,7 @@ typedef struct AirSource {
     const Atmosphere  *atmosphere;
     const PlanckTable *planck_mwir, *planck_lwir;
     double             ground_k; /* of level ground seen from below; 0: of the air */
+    double             ground_m; /* of the ground above the sea, for the sunlight of all wavelengths */
 } AirSource;
 
 /* Totals alone, of pan and all wavelengths, and the air's temperature: microseconds, no arena (bench speed: daylight).

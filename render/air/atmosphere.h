@@ -77,6 +77,20 @@ void atmosphere_sun(SunAir *out, const Atmosphere *atmosphere, double visibility
 
 /* Thermal irradiance of the whole sky on a level plane, all wavelengths, W/m2, at the ground. */
 double atmosphere_longwave_down(const Atmosphere *atmosphere, double visibility_m);
+/* Sunlight of all wavelengths at the ground, for temperatures, of etc/atmosphere/solar.csv whatever the model. Direct
+ * and diffuse light are columns of their own: of direct light 0.40 is visible with the sun overhead, 0.11 with it 7
+ * degrees up. Smooth in all four arguments, each of which is clamped to the table's nodes; errors between these, and of
+ * what the table says: etc/atmosphere/README.md. */
+typedef struct SolarAir {
+    double visibility_m, water_mm; /* at the ground; water vapour above it, kg/m2 */
+    double ground_m;               /* of the ground above the sea */
+} SolarAir;
+/* At 1 AU; sun_zenith_rad 0 .. pi / 2. About a microsecond. */
+void atmosphere_solar(SunAir *out, const Atmosphere *atmosphere, const SolarAir *air, double sun_zenith_rad);
+/* Water vapour above the ground, mm, of that at the ground, by a scale height of 2.25 km. The six atmospheres of
+ * LOWTRAN have 2.1 to 2.4 km (mean of five 2.27) and 3.5 km (subarctic winter, 4 mm); the US standard above 2.3 km
+ * has 1.9. 10 % of water is 0.5 to 0.7 % of direct light. */
+static inline double solar_water_mm(double vapour_kg_m3) { return 2250 * vapour_kg_m3; }
 /* Air temperature of the model at a height, K. */
 double atmosphere_temp_k(const Atmosphere *atmosphere, double height_m);
 

@@ -184,6 +184,7 @@ Status atmosphere_open_at(Atmosphere **out, const char *model, double visibility
     }
     Status status = channels_load();
     if (status == STATUS_OK) status = sun_top_open(atmosphere->sun_top_w_m2);
+    if (status == STATUS_OK) status = solar_open(&atmosphere->solar);
     for (int k = 0; k < 2 && status == STATUS_OK; k++) {
         double low_m, high_m;
         air_band_edges(&low_m, &high_m, (AirBand)(AIR_MWIR + k));
@@ -211,6 +212,7 @@ void atmosphere_close(Atmosphere *atmosphere)
         if (atmosphere->planck[i]) planck_table_destroy(atmosphere->planck[i]);
     grid_close(&atmosphere->temperature);
     grid_close(&atmosphere->phase);
+    grid_close(&atmosphere->solar);
     free(atmosphere);
 }
 

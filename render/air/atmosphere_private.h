@@ -125,6 +125,7 @@ struct Atmosphere {
     PathTable    clear_path[AIR_BAND_COUNT];
     Grid         temperature;
     PlanckTable *planck[2]; /* mwir, lwir */
+    Grid         solar;     /* visibility, water, ground, sun: ln depth and ln diffuse: atmosphere_solar.c */
     Grid         phase;     /* height_m, scattering angle in rad: ln of haze's phase function, mean 1 */
 };
 
@@ -154,6 +155,8 @@ Status slice_open(Slice *slice, const Atmosphere *atmosphere, const char *folder
 /* Data shared by all visibilities: of a model's folder; of etc/atmosphere/bands.csv. */
 Status clear_open(Atmosphere *atmosphere, const char *folder);
 Status sun_top_open(double sun_top_w_m2[AIR_BAND_COUNT]);
+/* Of etc/atmosphere/solar.csv. */
+Status solar_open(Grid *solar);
 /* FOLDER/NAME; a logged error where that is too long. */
 Status atmosphere_file(char path[1024], const char *folder, const char *name);
 /* Visibilities close enough for linear interpolation, in rising order: the tables', the ends, some between. */

@@ -40,14 +40,18 @@ double daylight_sun_disc(const Daylight *light, const double d_enu[3])
 
 static const double sigma_w_m2_k4 = 5.670374419184429e-8; /* Stefan and Boltzmann's */
 
-/* For temperatures: all wavelengths, under a clear sky. sky_w_m2 is still the tables' own: the integral over our sky
- * exists only where pan is requested. 0.44 of the daylight that reaches the ground is in 0.4-0.7 um (the photosynthetic
- * share: 0.43 .. 0.46 under clear skies); against Haurwitz's clear-sky formula that is right to 10 %. */
-static void heat_of_clear_sky(Daylight *light, const Atmosphere *atmosphere, double model_temp_k)
+/* For temperatures: all wavelengths, under a clear sky of this haze and water vapour at this height; disc and twilight
+ * as those of the bands. zenith_rad: of the sun, to the horizon. */
+static void heat_of_clear_sky(Daylight *light, const AirSource *source, double zenith_rad, double model_temp_k)
 {
-    static const double visible_share = 0.44;
-    light->solar_direct_w_m2 = light->sun_w_m2[AIR_PAN] / visible_share;
-    light->solar_diffuse_w_m2 = light->sky_w_m2[AIR_PAN] / visible_share;
+    const Atmosphere *atmosphere = source->atmosphere;
+    const SolarAir    air = {light->weather.visibility_m, solar_water_mm(weather_vapour_kg_m3(&light->weather)),
+                             source->ground_m};
+    SunAir            direct, diffuse;
+    atmosphere_solar(&direct, atmosphere, &air, zenith_rad);
+    atmosphere_solar(&diffuse, atmosphere, &air, light->day_zenith_rad);
+    light->solar_direct_w_m2 = direct.direct_normal_w_m2 * light->sun_above;
+    light->solar_diffuse_w_m2 = diffuse.diffuse_horizontal_w_m2 * light->scattered_scale;
     const double t_k = light->weather.air_temp_k, ratio = t_k / model_temp_k;
     const double down_w_m2 = atmosphere_longwave_down(atmosphere, light->weather.visibility_m) * pow(ratio, 4);
     light->longwave_loss_w_m2 = fmax(sigma_w_m2_k4 * pow(t_k, 4) - down_w_m2, 0);
@@ -117,7 +121,7 @@ void daylight_sums(Daylight *out, const AirSource *source, const Weather *weathe
         out->sun_w_m2[b] = direct.direct_normal_w_m2 * out->sun_above;
         out->sky_w_m2[b] = diffuse_w_m2[b] = diffuse.diffuse_horizontal_w_m2 * out->scattered_scale;
     }
-    heat_of_clear_sky(out, atmosphere, model_temp_k);
+    heat_of_clear_sky(out, source, low_rad, model_temp_k);
     cloud_over(out, diffuse_w_m2);
     const double ground_k = source->ground_k > 0 ? source->ground_k : out->weather.air_temp_k;
     out->ground_w_m2_sr[AIR_MWIR] = planck_table_radiance(out->planck_mwir, ground_k);

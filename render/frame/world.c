@@ -140,6 +140,13 @@ void world_close(World *world)
     memset(world, 0, sizeof *world);
 }
 
+AirSource world_air_source(const World *world, double ground_k)
+{
+    const double above_origin_m = world->landscape ? elevation_height(&world->landscape->elevation, 0, 0, NULL) : 0;
+    return (AirSource){world->atmosphere, world->planck_mwir, world->planck_lwir, ground_k,
+                       world->frame.origin.h_m + above_origin_m};
+}
+
 /* ---- what drives the ground: the weather, with the sun and sky of the atmosphere --------------- */
 
 /* Sun and all of its radiation at a place under this weather. STATUS_BAD_VALUE: sun_at's. */
@@ -224,8 +231,7 @@ Status world_warm(World *world, WeatherCourse *course, const HeatConfig *config,
     world->course = course;
     world->drive = calloc(1, sizeof *world->drive);
     if (!world->drive) return STATUS_NO_MEMORY;
-    *world->drive = (HeatDrive){
-        course, {world->atmosphere, world->planck_mwir, world->planck_lwir, 0}, world->frame.origin, config->unix_s};
+    *world->drive = (HeatDrive){course, world_air_source(world, 0), world->frame.origin, config->unix_s};
     c.weather = world_heat_weather, c.user = world->drive, c.pool = pool, c.cache = world->cache;
     if (!etc_path(path, sizeof path, "ground_heat.csv")) return STATUS_BAD_VALUE;
     Status     status = ground_kinds_open(&kinds, path, &world->materials);

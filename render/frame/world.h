@@ -62,6 +62,9 @@ Status world_need_patches(const World *world, const Snapshot *snapshot);
 double world_air_k(const World *world, double unix_s);
 void   world_close(World *world);
 
+/* Its air over its origin. ground_k: AirSource's. */
+AirSource world_air_source(const World *world, double ground_k);
+
 /* ---- what drives the ground's heat: the weather's course with the sun and sky of the atmosphere  */
 
 /* Heat keeps a pointer to it, and it to these: they outlive the heat. */

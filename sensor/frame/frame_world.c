@@ -120,7 +120,7 @@ Status frame_light(FrameLight *out, const World *world, const Config *config, co
     const double    ground_m = world->landscape ? elevation_height(&world->landscape->elevation, 0, 0, NULL) : 0;
     const double    eye_height_m = p_enu[2] - ground_m + (p_enu[0] * p_enu[0] + p_enu[1] * p_enu[1]) / (2 * 6371e3);
     const double    ground_k = heat ? heat_ground_k(heat->now, SURFACE_GRASS, (const double[3]){0, 0, 1}, 0, 1, 1) : 0;
-    const AirSource source = {world->atmosphere, world->planck_mwir, world->planck_lwir, ground_k};
+    const AirSource source = world_air_source(world, ground_k);
     const AirEye    air_eye = {eye_height_m, render_air_bands(eye->bands, config_optical(config)), eye->view};
     status = air_at(&out->air, &source, &weather, &local, &air_eye, pool, arena);
     out->air.heat = heat;

@@ -139,7 +139,7 @@ static Status light(TrialFrame *f)
     if (status == STATUS_OK) status = world_heat_at(&heat, world, NULL, scene->unix_s, f->arena);
     if (status != STATUS_OK) return status;
     const double    ground_m = elevation_height(&scene->landscape->elevation, 0, 0, NULL);
-    const AirSource source = {world->atmosphere, world->planck_mwir, world->planck_lwir, 0};
+    const AirSource source = world_air_source(world, 0);
     const AirEye    eye = {f->request.view.p_enu[2] - ground_m, render_air_bands(f->request.bands, f->request.optical),
                            &f->request.view};
     status = air_at(&f->air, &source, &weather, &f->sun, &eye, f->pool, f->arena);

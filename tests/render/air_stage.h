@@ -45,7 +45,7 @@ static Sun sun_at_elevation(double elevation_deg)
 static Air air_of(const Weather *weather, double elevation_deg, double eye_m, unsigned bands, const View *view)
 {
     const Sun       sun = sun_at_elevation(elevation_deg);
-    const AirSource source = {atmosphere, mwir, lwir, 0};
+    const AirSource source = {atmosphere, mwir, lwir, 0, 0};
     const AirEye    eye = {eye_m, bands, view};
     Air             air;
     arena_reset(arena);

@@ -143,7 +143,7 @@ static inline void hand_air_off(const double sun_enu[3])
 /* Air of the tables about an eye at this height; good until hand_close. */
 static inline void hand_air_on(const double sun_enu[3], double height_m)
 {
-    const AirSource source = {hand.world.atmosphere, hand.world.planck_mwir, hand.world.planck_lwir, 0};
+    const AirSource source = {hand.world.atmosphere, hand.world.planck_mwir, hand.world.planck_lwir, 0, 0};
     const AirEye    eye = {.height_m = height_m, .bands = (1 << AIR_BAND_COUNT) - 1};
     const Weather   weather = weather_default();
     Sun             sun = {.elevation_rad = asin(sun_enu[2]), .distance_au = 1};

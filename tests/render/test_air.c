@@ -193,7 +193,7 @@ static void daylight_needs_no_eye(void **state)
     (void)state;
     static Daylight sums, light;
     const Weather   weather = weather_default();
-    const AirSource source = {atmosphere, mwir, lwir, 0};
+    const AirSource source = {atmosphere, mwir, lwir, 0, 0};
     const unsigned  bands = 1 << AIR_PAN | 1 << AIR_MWIR | 1 << AIR_LWIR;
     for (double elevation_deg = -20; elevation_deg <= 80; elevation_deg += 25) {
         const Sun sun = sun_at_elevation(elevation_deg);

@@ -20,10 +20,12 @@ typedef struct SmallFile {
     "observer_m,target_m,range_m,depth_sun,depth_250k,depth_300k,thermal_w_m2_sr\n"                                    \
     "0,0,100,0.02,0.02,0.02,1\n0,0,1000,0.2,0.2,0.2,9\n0,9000,9000,1,1,1,20\n9000,0,9000,1,1,1,20\n"                   \
     "9000,9000,100,0.01,0.01,0.01,1\n"
-#define SIX "b,g,r,nir,mwir,lwir\n"
+#define SOLAR "visibility_m,water_mm,ground_m,sun_zenith_deg,direct_w_m2,diffuse_w_m2\n"
+#define SIX   "b,g,r,nir,mwir,lwir\n"
 
 static const SmallFile small_files[] = {
     {"bands.csv", "band,sun_top_w_m2\nb,187\ng,185\nr,159\nnir,376\nmwir,12.8\nlwir,1.1\n"},
+    {"solar.csv", SOLAR "900,3,0,0,800,200\n9000,3,0,0,900,90\n900,3,0,80,200,40\n9000,3,0,80,400,30\n"},
     {"m/visibilities.csv", "visibility_m,longwave_down_w_m2\n10000,300\n"},
     {"m/temperature.csv", "height_m,temp_k\n0,288\n11000,217\n"},
     {"m/phase.csv", "height_m,angle_deg," SIX "0,0,9,9,9,9,9,9\n0,180,0.5,0.5,0.5,0.5,0.5,0.5\n"},
@@ -127,6 +129,14 @@ static void refuses_and_says_where(void **state)
         {"bands.csv", "band,sun_top_w_m2\nb,187\nb,187\n", "bands.csv:3"},
         {"bands.csv", "band,sun_top_w_m2\nb,187\ng,185\nr,159\nnir,376\nmwir,12.8\n", "lwir"},
         {"bands.csv", "band,top\nb,187\n", "sun_top_w_m2"},
+        {"solar.csv", SOLAR "900,3,0,0,800,200\n9000,3,0,0,900,90\n900,3,0,80,200,40\n",
+         "solar.csv:4: a point is missing"},
+        {"solar.csv", SOLAR "900,3,0,0,800,200\n900,3,0,0,800,200\n", "solar.csv:3: this point is there twice"},
+        {"solar.csv", SOLAR "900,3,0,0,0,200\n", "solar.csv:2: column direct_w_m2"},
+        {"solar.csv", SOLAR "900,3,0,91,800,200\n", "sun_zenith_deg"},
+        {"solar.csv", SOLAR "900,3,0,0,800,200\n900,3,0,1e-9,800,200\n",
+         "two values of sun_zenith_deg are nearly the same"},
+        {"solar.csv", SOLAR, "no rows"},
         {"m/visibilities.csv", "visibility_m,longwave_down_w_m2\n10000,nan\n", "visibilities.csv:2"},
         {"m/visibilities.csv", "visibility_m,longwave_down_w_m2\n10000,300\n20000,290\n", "20000/haze.csv"},
         {"m/visibilities.csv", "visibility_m,longwave_down_w_m2\n", "no rows"},
@@ -314,6 +324,10 @@ static void survives_any_spoiling(void **state)
                 continue;
             }
             opened++;
+            SunAir solar;
+            atmosphere_solar(&solar, model, &(SolarAir){3000, 3, 100}, 0.5);
+            CHECK(solar.direct_normal_w_m2 >= 0 && solar.direct_normal_w_m2 <= 1361);
+            CHECK(solar.diffuse_horizontal_w_m2 >= 0 && solar.diffuse_horizontal_w_m2 <= 1361);
             for (int b = 0; b < AIR_BAND_COUNT; b++) {
                 const AirPath path = {100, 3000, 7000, 0.5, 1};
                 PathAir       air;

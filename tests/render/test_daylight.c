@@ -58,17 +58,21 @@ static void light_fades_by_its_twilight(void **state)
     static const double of[][2] = {{5, 0},      {2.5, -0.385}, {0, -0.77},  {-3, -1.935},  {-6, -3.1}, {-9, -4.4},
                                    {-12, -5.7}, {-15, -6.1},   {-18, -6.5}, {-18.5, -6.5}, {-40, -6.5}};
     const Weather       weather = weather_default();
-    const double        five = air_of(&weather, 5, 2, 1 << AIR_PAN, NULL).light.sky_w_m2[AIR_PAN];
+    const Daylight      five = air_of(&weather, 5, 2, 1 << AIR_PAN, NULL).light;
     for (size_t i = 0; i < sizeof of / sizeof *of; i++) {
-        const double sky = air_of(&weather, of[i][0], 2, 1 << AIR_PAN, NULL).light.sky_w_m2[AIR_PAN];
-        CHECK_NEAR(log10(sky / five), of[i][1], 1e-5);
+        const Daylight light = air_of(&weather, of[i][0], 2, 1 << AIR_PAN, NULL).light;
+        CHECK_NEAR(log10(light.sky_w_m2[AIR_PAN] / five.sky_w_m2[AIR_PAN]), of[i][1], 1e-5);
+        CHECK_NEAR(log10(light.solar_diffuse_w_m2 / five.solar_diffuse_w_m2), of[i][1], 1e-9);
     }
-    SunAir level;
+    const SolarAir air = {weather.visibility_m, solar_water_mm(weather_vapour_kg_m3(&weather)), 0};
+    SunAir         level, solar;
+    atmosphere_solar(&solar, atmosphere, &air, 0.5 * pi_rad);
     atmosphere_sun(&level, atmosphere, weather.visibility_m, AIR_PAN, 0, 0.5 * pi_rad);
     static const double disc[][2] = {{0, 0.5}, {-0.13325, 0.25}, {-0.26649, 0.5 * (1 - 0.26649 / 0.2665)}, {-0.267, 0}};
     for (int i = 0; i < 4; i++) {
-        const double sun = air_of(&weather, disc[i][0], 2, 1 << AIR_PAN, NULL).light.sun_w_m2[AIR_PAN];
-        CHECK_NEAR(sun, disc[i][1] * level.direct_normal_w_m2, 1e-6 * level.direct_normal_w_m2);
+        const Daylight light = air_of(&weather, disc[i][0], 2, 1 << AIR_PAN, NULL).light;
+        CHECK_NEAR(light.sun_w_m2[AIR_PAN], disc[i][1] * level.direct_normal_w_m2, 1e-6 * level.direct_normal_w_m2);
+        CHECK_NEAR(light.solar_direct_w_m2, disc[i][1] * solar.direct_normal_w_m2, 1e-6 * solar.direct_normal_w_m2);
     }
     atmosphere_sun(&level, atmosphere, weather.visibility_m, AIR_PAN, 0, 89.73 * rad_per_deg);
     const double risen = air_of(&weather, 0.27, 2, 1 << AIR_PAN, NULL).light.sun_w_m2[AIR_PAN];
@@ -118,7 +122,7 @@ static void sunlight_goes_by_the_square_of_the_distance(void **state)
 {
     (void)state;
     static const double at_au[2] = {0.98329, 1.01671}, factor[2] = {1.0342767, 0.9673994};
-    const AirSource     source = {atmosphere, mwir, lwir, 0};
+    const AirSource     source = {atmosphere, mwir, lwir, 0, 0};
     const AirEye        eye = {300, all_bands, NULL};
     const Weather       weather = weather_default();
     const double        away[3] = {0.8, 0, 0.6}, slope[3] = {0.6, 0, 0.8};
@@ -154,8 +158,7 @@ static void sunlight_goes_by_the_square_of_the_distance(void **state)
 }
 
 /* Air of another temperature than the model's sends down as its fourth power: LOWTRAN's 283.3 W/m2 of the US standard,
- * 23 km, at 288.15 K (tests/render/test_atmosphere.c) makes 332.86 at 300 K, where a black plane sends up 459.30. Light
- * for temperatures is what is visible over 0.44, the photosynthetic share (McCree 1972: 0.43 .. 0.46). */
+ * 23 km, at 288.15 K (tests/render/test_atmosphere.c) makes 332.86 at 300 K, where a black plane sends up 459.30. */
 static void heat_of_a_clear_sky_is_as_on_paper(void **state)
 {
     (void)state;
@@ -163,11 +166,35 @@ static void heat_of_a_clear_sky_is_as_on_paper(void **state)
     weather.air_temp_k = 300;
     const Air air = air_of(&weather, 50, 2, 1 << AIR_PAN, NULL);
     CHECK_NEAR(air.light.longwave_loss_w_m2, 459.30 - 332.86, 0.4); /* the model's ground is 288.1 or 288.2 K */
-    CHECK_NEAR(air.light.sun_w_m2[AIR_PAN] / air.light.solar_direct_w_m2, 0.44, 1e-9);
-    CHECK_NEAR(air.light.sky_w_m2[AIR_PAN] / air.light.solar_diffuse_w_m2, 0.44, 1e-4);
     /* the air cools with height as the model's, -6.5 K/km: what it is warmer by at each node of height */
     for (int i = 0; i < air_warmer_nodes && i * air_warmer_step_m < 10000; i++)
         CHECK_NEAR((double)air.light.warmer_k[i], -6.5e-3 * i * air_warmer_step_m, 0.25);
+}
+
+/* LOWTRAN7's own direct light, US standard 1976 (14.2 mm of water, which are 6.3 g/m3 at the ground), 23 km: 824.9 W/m2
+ * with the sun overhead, 0.3953 of it visible, and 149.1 W/m2, 0.1109 of it visible, 7 degrees up; the visible bands
+ * beside are tables of 5 1/cm. Of what falls on level ground 0.43 to 0.46 is visible (McCree 1972). On ground 3 km up,
+ * 1 g/m3 of water (2.25 mm) and 50 km, its rows between 1 and 5 mm: 1101.6 and 1058.4 W/m2. */
+static void sunlight_of_all_wavelengths(void **state)
+{
+    (void)state;
+    static const double zenith_deg[] = {0, 83}, direct[] = {824.9, 149.1}, visible[] = {0.3953, 0.1109};
+    Weather             weather = weather_default();
+    AirSource           source = {atmosphere, mwir, lwir, 0, 0};
+    Daylight            light;
+    weather.humidity = 0.014158 / 2.25 / weather_vapour_kg_m3(&(Weather){.air_temp_k = 288.15, .humidity = 1});
+    for (int i = 0; i < 2; i++) {
+        const Sun sun = sun_at_elevation(90 - zenith_deg[i]);
+        daylight_at(&light, &source, &weather, &sun);
+        CHECK_NEAR(light.solar_direct_w_m2 / direct[i], 1, 0.004);
+        CHECK_NEAR(light.sun_w_m2[AIR_PAN] / light.solar_direct_w_m2, visible[i], 0.01 * visible[i]);
+        const double high = sun.d_enu[2], global = light.solar_direct_w_m2 * high + light.solar_diffuse_w_m2;
+        if (i == 0) CHECK_NEAR((light.sun_w_m2[AIR_PAN] * high + light.sky_w_m2[AIR_PAN]) / global, 0.445, 0.016);
+    }
+    const Sun sun = sun_at_elevation(90);
+    source.ground_m = 3000, weather.visibility_m = 50000, weather.humidity *= 1 / 6.2924;
+    daylight_at(&light, &source, &weather, &sun);
+    CHECK(light.solar_direct_w_m2 > 1058.4 && light.solar_direct_w_m2 < 1101.6);
 }
 
 int main(void)
@@ -177,6 +204,7 @@ int main(void)
         cmocka_unit_test(light_fades_smoothly),
         cmocka_unit_test(light_fades_by_its_twilight),
         cmocka_unit_test(heat_of_a_clear_sky_is_as_on_paper),
+        cmocka_unit_test(sunlight_of_all_wavelengths),
         cmocka_unit_test(clouds_dim_the_sun_and_warm_the_sky),
         cmocka_unit_test(sunlight_goes_by_the_square_of_the_distance),
     };

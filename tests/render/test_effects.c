@@ -45,7 +45,7 @@ static Air air_when(double elevation_deg)
     const double    e = elevation_deg * rad_per_deg;
     const Sun       sun = {.elevation_rad = e, .distance_au = 1, .d_enu = {0, -cos(e), sin(e)}};
     const Weather   weather = weather_default();
-    const AirSource source = {world.atmosphere, world.planck_mwir, world.planck_lwir, 0};
+    const AirSource source = {world.atmosphere, world.planck_mwir, world.planck_lwir, 0, 0};
     const AirEye    eye = {.bands = (1 << AIR_BAND_COUNT) - 1};
     Air             air;
     arena_reset(air_arena);

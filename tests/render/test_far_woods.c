@@ -108,7 +108,7 @@ static void close_place(void)
 static void air_then(Air *air, Sun *sun, double unix_s)
 {
     const World    *w = &place.planted;
-    const AirSource source = {w->atmosphere, w->planck_mwir, w->planck_lwir, 0};
+    const AirSource source = {w->atmosphere, w->planck_mwir, w->planck_lwir, 0, 0};
     const AirEye    eye = {.height_m = 100, .bands = (1 << AIR_BAND_COUNT) - 1};
     Weather         weather;
     HeatScene      *heat;
@@ -261,7 +261,9 @@ static void bare_woods_look_the_same(void **state)
     (void)state;
     open_place(SURFACE_FOREST_BROADLEAF, false);
     e = compare_all(&place.left_out);
-    CHECK(looks_the_same(&e, 0.14, 0.23, 0.23, 2.1, 1.6));
+    /* bark in and out of the sun differs in proportion to direct light, of which the sun of all wavelengths has 1.12
+     * times what visible light over 0.44 had 63 degrees up */
+    CHECK(looks_the_same(&e, 0.14, 0.23, 0.23, 2.2, 1.75));
     close_place();
 }
 

@@ -86,7 +86,7 @@ static Air clear_day_at(double elevation_deg, double eye_m)
     const double  e = elevation_deg * rad_per_deg;
     const Weather weather = weather_default();
     const Sun sun = {.elevation_rad = e, .azimuth_rad = 0.5 * pi_rad, .distance_au = 1, .d_enu = {cos(e), 0, sin(e)}};
-    const AirSource source = {atmosphere, mwir, lwir, 0};
+    const AirSource source = {atmosphere, mwir, lwir, 0, 0};
     Air             air;
     const AirEye    eye = {eye_m, 0x1f, NULL};
     CHECK(air_at(&air, &source, &weather, &sun, &eye, NULL, arena) == STATUS_OK);

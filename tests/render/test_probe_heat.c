@@ -64,7 +64,7 @@ static int set_up(void **state)
         if (planck_table_create(&ground.planck[k], low_m, high_m) != STATUS_OK) return -1;
     }
     ground.drive.course = ground.course;
-    ground.drive.source = (AirSource){ground.atmosphere, ground.planck[0], ground.planck[1], 0};
+    ground.drive.source = (AirSource){ground.atmosphere, ground.planck[0], ground.planck[1], 0, 0};
     return 0;
 }
 

@@ -72,7 +72,7 @@ static Air air_when(const Weather *weather, double elevation_deg)
 {
     const double    e = elevation_deg * rad_per_deg;
     const Sun       sun = {.elevation_rad = e, .azimuth_rad = pi_rad, .distance_au = 1, .d_enu = {0, -cos(e), sin(e)}};
-    const AirSource source = {atmosphere, mwir, lwir, 0};
+    const AirSource source = {atmosphere, mwir, lwir, 0, 0};
     Air             air;
     arena_reset(arena);
     const AirEye eye = {2, 1 << AIR_MWIR | 1 << AIR_LWIR, NULL};

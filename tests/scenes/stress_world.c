@@ -93,7 +93,7 @@ void stress_no_air(StressWorld *w, const double sun_enu[3])
 
 Status stress_real_air(StressWorld *w, double e, double eye_m)
 {
-    const AirSource source = {w->world.atmosphere, w->world.planck_mwir, w->world.planck_lwir, 0};
+    const AirSource source = {w->world.atmosphere, w->world.planck_mwir, w->world.planck_lwir, 0, 0};
     const AirEye    eye = {.height_m = eye_m, .bands = (1 << AIR_BAND_COUNT) - 1};
     const Weather   weather = weather_default();
     const Sun       sun = {.elevation_rad = e, .distance_au = 1, .d_enu = {0, -cos(e), sin(e)}};

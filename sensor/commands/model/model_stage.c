@@ -86,7 +86,7 @@ Status model_stage_light(ModelStage *stage, const RenderRequest *request, double
     Status status = sun_at(&sun, unix_s, &world->frame.origin, weather.pressure_mbar, weather.air_temp_k - 273.15, NAN);
     if (status == STATUS_OK) status = world_heat_at(&heat, world, NULL, unix_s, stage->air_arena);
     if (status != STATUS_OK) return status;
-    const AirSource source = {world->atmosphere, world->planck_mwir, world->planck_lwir, 0};
+    const AirSource source = world_air_source(world, 0);
     const AirEye    eye = {request->view.p_enu[2], render_air_bands(request->bands, request->optical), &request->view};
     status = air_at(&stage->air, &source, &weather, &sun, &eye, stage->pool, stage->air_arena);
     stage->air.heat = heat;

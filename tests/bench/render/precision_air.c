@@ -48,7 +48,7 @@ static void make_air(void *user)
     AirSet         *s = user;
     const Weather   weather = weather_default();
     const AirEye    eye = {s->eye_m, all_bands, &s->view};
-    const AirSource source = {s->atmosphere, s->planck[0], s->planck[1], 0};
+    const AirSource source = {s->atmosphere, s->planck[0], s->planck[1], 0, 0};
     arena_reset(s->arena);
     s->status = air_at(&s->air, &source, &weather, &s->sun, &eye, NULL, s->arena);
 }

@@ -393,7 +393,7 @@ static Status light_with_air(Bench *bench)
         (!etc_path(path, sizeof path, "materials.csv") || !etc_path(surfaces, sizeof surfaces, "surfaces.csv")))
         status = STATUS_BAD_VALUE;
     if (status == STATUS_OK) status = materials_open(&materials, path, surfaces, NULL);
-    const AirSource source = {atmosphere, mwir, lwir, 0};
+    const AirSource source = {atmosphere, mwir, lwir, 0, 0};
     if (status == STATUS_OK) status = air_at(&air, &source, &weather, &sun, &eye, NULL, arena);
     if (status == STATUS_OK) status = tunable_shading(bench, &air, &materials, arena);
     materials_close(&materials);

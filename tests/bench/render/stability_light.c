@@ -169,7 +169,7 @@ static double veil_values(void *user, bool quick)
             const Sun       sun = {.elevation_rad = sun_rad[s],
                                    .distance_au = 1,
                                    .d_enu = {east, cos(sun_rad[s]) - east, sin(sun_rad[s])}};
-            const AirSource source = {light->atmosphere, light->mwir, light->lwir, 0};
+            const AirSource source = {light->atmosphere, light->mwir, light->lwir, 0, 0};
             const AirEye    eye = {.height_m = eye_m[e], .bands = (1 << AIR_BAND_COUNT) - 1};
             Weather         weather = weather_default();
             weather.visibility_m = e % 2 ? 100 : 300000;

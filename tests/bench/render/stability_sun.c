@@ -31,7 +31,7 @@ static void light_at(Lit *lit, double elevation_rad)
     static const double way[3][3] = {{0.8, 0, -0.6}, {0, -1, 0}, {0, 1, 0}};
     const Sun           sun = {
                   .elevation_rad = elevation_rad, .distance_au = 1, .d_enu = {0, cos(elevation_rad), sin(elevation_rad)}};
-    const AirSource source = {lit->atmosphere, lit->mwir, lit->lwir, 0};
+    const AirSource source = {lit->atmosphere, lit->mwir, lit->lwir, 0, 0};
     const AirEye    eye = {.height_m = 100, .bands = (1 << AIR_BAND_COUNT) - 1};
     const Weather   weather = weather_default();
     Material        row[2] = {{.roughness = 1}, {.roughness = 1}};
