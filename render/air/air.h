@@ -71,7 +71,8 @@ typedef struct Daylight {
      * is the irradiance. */
     double sky_scale[AIR_BAND_COUNT];
     float  plane_w_m2[AIR_BAND_COUNT][air_plane_ups + 1][air_plane_azimuths + 1]; /* tilted plane, over its share */
-    const struct AirDay *day; /* what the tables were made from; in the arena. NULL: none */
+    const struct AirDay *day;        /* what the tables were made from; in the arena. NULL: none */
+    const Atmosphere    *atmosphere; /* that of the weather, in the arena as well */
 } Daylight;
 
 /* Data that does not change between frames. */
@@ -84,6 +85,9 @@ typedef struct AirSource {
 /* Totals alone, of pan and all wavelengths, and the air's temperature: microseconds, no arena (bench speed: daylight).
  * weather->air_temp_k: NaN for the model's own; the Daylight's is then filled in. */
 void daylight_at(Daylight *out, const AirSource *source, const Weather *weather, const Sun *sun);
+/* The atmosphere under a weather, as daylight and paths have it: atmosphere_in of render/air/atmosphere.h. */
+Status daylight_air(const Atmosphere **out, const Atmosphere *model, const Weather *weather, unsigned bands,
+                    Arena *arena);
 /* And the tables by direction of these bands (1 << AirBand). pool: may be NULL. STATUS_NO_MEMORY: of the arena, in
  * which the AirDay lives. */
 Status daylight_by_direction(Daylight *out, const AirSource *source, const Weather *weather, const Sun *sun,

@@ -196,6 +196,11 @@ Status atmosphere_open_at(Atmosphere **out, const char *model, double visibility
         atmosphere_close(atmosphere);
         return status;
     }
+    if (!named) status = atmosphere_vapour_open(atmosphere, model);
+    if (status != STATUS_OK) {
+        atmosphere_close(atmosphere);
+        return status;
+    }
     number_shapes(atmosphere);
     *out = atmosphere;
     return STATUS_OK;
@@ -211,6 +216,7 @@ void atmosphere_close(Atmosphere *atmosphere)
         if (atmosphere->planck[i]) planck_table_destroy(atmosphere->planck[i]);
     grid_close(&atmosphere->temperature);
     grid_close(&atmosphere->phase);
+    atmosphere_vapour_close(atmosphere);
     free(atmosphere);
 }
 

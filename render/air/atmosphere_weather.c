@@ -1,0 +1,401 @@
+/* render/air/atmosphere_weather.c: a model's air under a weather: clear air mixed of the nodes of
+ * etc/atmosphere/vapour.bin by temperature and water vapour at the ground; the model's haze, swollen by the humidity.
+ * What the tables have in ratios to an estimate (path radiance, scattered light) keeps the model's ratios, and the
+ * estimates follow the air. */
+#include "render/air/atmosphere_private.h"
+
+#include <stdlib.h>
+#include <unistd.h>
+
+/* ---- opening ------------------------------------------------------------------------------------- */
+
+/* Rows of the file for the rows of the model's paths: the file has each pair of heights once, the lower one first.
+ * False: the model has other paths. */
+static bool match_rows(int *out, const Vapour *v, const PathTable *table)
+{
+    const int n = v->ends;
+    int       first[vapour_axis_max] = {0}, rows = 0;
+    if (table->nodes[0] != n || table->nodes[1] != n) return false;
+    for (int i = 0; i < n; i++)
+        if (table->axis[0][i] != v->end_m[i] || table->axis[1][i] != v->end_m[i]) return false;
+    for (int i = 0, pair = 0; i < n; i++) {
+        first[i] = rows; /* of the pair of this height with itself; those with higher ones follow */
+        for (int j = i; j < n; j++) rows += (int)v->ranges[pair++];
+    }
+    for (int i = 0; i < n; i++)
+        for (int j = 0; j < n; j++) {
+            const int low = i < j ? i : j, high = i < j ? j : i, to = table->first[i * n + j];
+            int       pair = low * n - low * (low - 1) / 2, from = first[low];
+            for (int k = low; k < high; k++) from += (int)v->ranges[pair++];
+            if (table->first[i * n + j + 1] - to != (int)v->ranges[pair]) return false;
+            for (int k = 0; k < (int)v->ranges[pair]; k++) {
+                if (table->ln_range[to + k] != log(v->range_m[from + k])) return false;
+                out[to + k] = from + k;
+            }
+        }
+    return true;
+}
+
+static bool same_axis(const double *a, const double *b, int count)
+{
+    return memcmp(a, b, (size_t)count * sizeof *a) == 0;
+}
+
+/* Whether the model's tables have the file's heights, paths and weights. */
+static bool fits(const Atmosphere *a, const Vapour *v, int *row)
+{
+    const AirColumn *clear = &a->clear;
+    if (a->temperature.nodes[0] != v->levels || !same_axis(a->temperature.axis[0], v->level_m, v->levels) ||
+        clear->nodes != v->heights || !same_axis(clear->height_m, v->height_m, v->heights))
+        return false;
+    for (int k = 0; k < air_tabled_count; k++) {
+        const AirBand    band = air_tabled[k];
+        const PathTable *table = &a->clear_path[band];
+        if (a->vapour_channel[band] < 0) continue;
+        const VapourChannel *channel = &v->channel[a->vapour_channel[band]];
+        if (table->weights != channel->weights || table->values != channel->weights ||
+            memcmp(table->weight_temp_k + 1, channel->temp_k, (size_t)(channel->weights - 1) * sizeof(double)) != 0 ||
+            !match_rows(row, v, table))
+            return false;
+    }
+    return true;
+}
+
+/* Radiance of the sky becomes its ratio to black air at the observer's height. */
+static void sky_to_ratios(const Atmosphere *a, Vapour *v)
+{
+    const int count = v->sky[0] * v->sky[1];
+    for (int p = 0; p < v->profiles; p++)
+        for (int k = 0; k < 2; k++)
+            for (int i = 0; i < count; i++) {
+                double t, height_m = v->sky_m[i / v->sky[1]];
+                const int   level = interval_of(&t, v->level_m, v->levels, height_m);
+                const float *temp_k = v->profile[p].level_k + level;
+                const double black = planck_table_radiance(
+                    a->planck[k], (double)temp_k[0] + (t > 0 ? t * (double)(temp_k[1] - temp_k[0]) : 0));
+                for (int n = 0; n < v->profile[p].nodes; n++) {
+                    float *value = v->node + (size_t)(v->profile[p].first + n) * v->node_floats + vapour_sky_at + k * count + i;
+                    *value = (float)((double)*value / black);
+                }
+            }
+}
+
+Status atmosphere_vapour_open(Atmosphere *atmosphere, const char *model)
+{
+    char    path[1024];
+    Vapour *v = NULL;
+    if (!etc_path(path, sizeof path, "atmosphere/vapour.bin")) return STATUS_BAD_VALUE;
+    if (access(path, F_OK) != 0) return STATUS_OK;
+    const Status status = vapour_open(&v, path);
+    if (status != STATUS_OK) return status;
+    atmosphere->vapour_profile = vapour_profile(v, model);
+    if (atmosphere->vapour_profile < 0) {
+        vapour_close(v);
+        return STATUS_OK;
+    }
+    int *row = calloc((size_t)atmosphere->clear_path[AIR_B].rows + 1, sizeof *row);
+    atmosphere->vapour = v;
+    atmosphere->vapour_row = row;
+    if (!row) return STATUS_NO_MEMORY;
+    for (AirBand b = 0; b < AIR_BAND_COUNT; b++) {
+        const SpectralChannel *c = channel_in(b);
+        atmosphere->vapour_channel[b] = b == AIR_PAN ? -1 : vapour_channel(v, c->name, c->low_m, c->high_m);
+    }
+    for (int k = 1; k < air_tabled_count; k++)
+        if (!paths_same_shape(&atmosphere->clear_path[AIR_B], &atmosphere->clear_path[air_tabled[k]])) row[0] = -1;
+    if (v->both_ways != atmosphere->clear_path[AIR_B].rows) row[0] = -1;
+    if (row[0] < 0 || !fits(atmosphere, v, row)) {
+        log_error("atmosphere: %s: its heights and paths are not those of model %s (clear/air.csv, clear/paths_*.csv, "
+                  "temperature.csv); a model of other ones needs a name that %s does not have",
+                  path, model, "vapour.bin");
+        return STATUS_BAD_VALUE;
+    }
+    for (int i = 0; i < v->sky[1]; i++) v->sky_slant[i] = slant_x(v->sky_deg[i] * rad_per_deg);
+    for (int i = 0; i < v->sun[1]; i++) v->sun_slant[i] = slant_x(v->sun_deg[i] * rad_per_deg);
+    sky_to_ratios(atmosphere, v);
+    return STATUS_OK;
+}
+
+void atmosphere_vapour_close(Atmosphere *atmosphere)
+{
+    vapour_close(atmosphere->vapour);
+    free((void *)atmosphere->vapour_row);
+}
+
+bool atmosphere_follows_weather(const Atmosphere *atmosphere) { return atmosphere->vapour != NULL; }
+
+/* ---- the sun ------------------------------------------------------------------------------------- */
+
+/* Depth of clear air to space, of the mix (now) and of the model's own air. */
+static void clear_to_space(double *now, double *own, const Atmosphere *a, AirBand band, double height_m, double slant)
+{
+    const Vapour *v = a->vapour;
+    const int     channel = a->vapour_channel[band], own_node = v->profile[a->vapour_profile].own;
+    double        s, t, ln_now = 0, ln_own = 0;
+    const int     i = interval_of(&s, v->sun_m, v->sun[0], height_m);
+    const int     j = interval_of(&t, v->sun_slant, v->sun[1], slant);
+    for (int corner = 0; corner < 4; corner++) {
+        const double share = (corner & 1 ? s : 1 - s) * (corner & 2 ? t : 1 - t);
+        if (share == 0) continue;
+        const size_t at = vapour_sun_at(v, channel) + (size_t)((i + (corner & 1)) * v->sun[1] + j + (corner >> 1));
+        ln_now += share * log(fmax(vapour_mixed(v, a->mix, at, v->channel[channel].self), 1e-12));
+        ln_own += share * log(fmax((double)vapour_node(v, own_node)[at], 1e-12));
+    }
+    *now = exp(ln_now);
+    *own = exp(ln_own);
+}
+
+/* Vertical depth that the weather adds to the haze above a height, in steps that serve daylight and its sums alike. */
+static double haze_above(const Atmosphere *a, const Slice *slice, AirBand band, double height_m)
+{
+    static const double at_m[] = {0, 1000, 2000, 3000, 5000, 8000, 12000, 30000};
+    const AirColumn    *haze = slice->from ? &slice->from->haze : &slice->haze;
+    const int           c = a->vapour_channel[band];
+    double              sum = 0, low = NAN;
+    for (size_t i = 0; i + 1 < sizeof at_m / sizeof *at_m; i++) {
+        if (at_m[i + 1] <= height_m) continue;
+        const double low_m = fmax(at_m[i], height_m), high_m = at_m[i + 1];
+        if (isnan(low)) low = vapour_haze_scale(a->vapour, a->mix, a->vapour_profile, c, 0, low_m);
+        const double high = vapour_haze_scale(a->vapour, a->mix, a->vapour_profile, c, 0, high_m);
+        sum += (high_m - low_m) * column_mean(haze, band, low_m, high_m) * (0.5 * (low + high) - 1);
+        low = high;
+    }
+    return sum;
+}
+
+void sun_node(double out[2], const Atmosphere *atmosphere, const Slice *slice, AirBand band, int height, double slant)
+{
+    const Grid   *grid = &slice->sun;
+    double        t;
+    const int     j = interval_of(&t, grid->axis[1], grid->nodes[1], slant), k = air_tabled_index(band);
+    const double *low = grid->value + (height * grid->nodes[1] + j) * grid->values + k,
+                 *high = t > 0 ? low + grid->values : low;
+    out[0] = low[0] + t * (high[0] - low[0]);
+    out[1] = low[air_tabled_count] + t * (high[air_tabled_count] - low[air_tabled_count]);
+    if (!atmosphere->mix || atmosphere->vapour_channel[band] < 0) return;
+    double now, own;
+    clear_to_space(&now, &own, atmosphere, band, grid->axis[0][height], slant);
+    const double more = exp(slant) * haze_above(atmosphere, slice, band, grid->axis[0][height]);
+    out[0] = log(clamp(exp(out[0]) + now - own + more, 1e-12, 690));
+    /* light from all sides comes through as much absorbing air as that of the sun, about */
+    out[1] = fmin(out[1] - clamp(now - own, -1, 5), 0);
+}
+
+/* ---- the mix ------------------------------------------------------------------------------------- */
+
+/* What needs no memory beyond a few hundred numbers; the rest of the air is the model's. */
+static void begin(Atmosphere *out, VapourMix *mix, double *level_k, const Atmosphere *model, const AirState *state)
+{
+    const Vapour *v = model->vapour;
+    vapour_mix(mix, v, state->temp_k, state->vapour_kg_m3);
+    for (int i = 0; i < v->levels; i++) {
+        level_k[i] = 0;
+        for (int k = 0; k < mix->profiles; k++)
+            level_k[i] += mix->profile_share[k] * (double)v->profile[mix->profile[k]].level_k[i];
+    }
+    out->slices = model->slices, out->slice = model->slice;
+    out->low_m = model->low_m, out->high_m = model->high_m;
+    memcpy(out->sun_top_w_m2, model->sun_top_w_m2, sizeof out->sun_top_w_m2);
+    memcpy(out->planck, model->planck, sizeof out->planck);
+    out->temperature = model->temperature, out->temperature.value = level_k;
+    out->phase = model->phase;
+    out->vapour = model->vapour, out->vapour_profile = model->vapour_profile, out->vapour_row = model->vapour_row;
+    memcpy(out->vapour_channel, model->vapour_channel, sizeof out->vapour_channel);
+    out->mix = mix;
+}
+
+static bool follows(const Atmosphere *model, const AirState *state)
+{
+    return model->vapour && !model->mix && isfinite(state->temp_k) && isfinite(state->vapour_kg_m3);
+}
+
+const Atmosphere *atmosphere_sums_in(AirSums *room, const Atmosphere *model, const AirState *state)
+{
+    if (!follows(model, state)) return model;
+    begin(&room->air, &room->mix, room->level_k, model, state);
+    return &room->air;
+}
+
+/* ---- clear air and its paths --------------------------------------------------------------------- */
+
+static void mix_floats(double *out, const Vapour *v, const VapourMix *mix, size_t at, int count, bool self)
+{
+    for (int i = 0; i < count; i++) out[i] = 0;
+    for (int k = 0; k < mix->nodes; k++) {
+        const float *from = vapour_node(v, mix->node[k]) + at;
+        const double share = mix->share[self][k];
+        for (int i = 0; i < count; i++) out[i] += share * (double)from[i];
+    }
+}
+
+static void fill_clear(Atmosphere *out, const Atmosphere *model, unsigned bands)
+{
+    const Vapour *v = model->vapour;
+    out->clear = model->clear;
+    AirColumn *clear = &out->clear;
+    for (int k = 0; k < air_tabled_count; k++) {
+        const AirBand b = air_tabled[k];
+        const int     c = model->vapour_channel[b];
+        if (c < 0 || !(bands >> b & 1)) continue;
+        const bool self = v->channel[c].self;
+        mix_floats(clear->per_m[b], v, out->mix, vapour_air_at(v, c), v->heights, self);
+        mix_floats(clear->scatter_per_m[b], v, out->mix, vapour_scatter_at(v, c), v->heights, self);
+        for (int i = 0; i < v->heights; i++) {
+            clear->per_m[b][i] = 1e-3 * fmax(clear->per_m[b][i], 1e-12);
+            clear->scatter_per_m[b][i] = 1e-3 * fmax(clear->scatter_per_m[b][i], 0);
+        }
+        column_sum_up(clear, clear->per_m[b], clear->sum[b]);
+    }
+    column_black(clear, out);
+}
+
+/* The depths of the file's rows, mixed, become ln of their ratio to the column's in the rows of the table. */
+static Status fill_paths(Atmosphere *out, const Atmosphere *model, AirBand band, Arena *arena)
+{
+    const Vapour        *v = model->vapour;
+    const int            c = model->vapour_channel[band];
+    const PathTable     *from = &model->clear_path[band];
+    const VapourChannel *channel = &v->channel[c];
+    const int            count = v->rows * channel->weights;
+    double *depth = arena_alloc_raw(arena, (size_t)count, sizeof *depth);
+    double *value = arena_alloc_raw(arena, (size_t)from->rows * (size_t)from->values, sizeof *value);
+    if (!depth || !value) return STATUS_NO_MEMORY;
+    mix_floats(depth, v, out->mix, vapour_path_at(v, c), count, channel->self);
+    for (int i = 0, row = 0, pair = 0; i < v->ends; i++)
+        for (int j = i; j < v->ends; j++, pair++) {
+            const double mean = column_mean(&out->clear, band, v->end_m[i], v->end_m[j]);
+            for (int k = 0; k < (int)v->ranges[pair]; k++, row++) {
+                double *at = depth + row * channel->weights;
+                for (int w = 0; w < channel->weights; w++) at[w] = log(fmax(at[w], 1e-12) / (v->range_m[row] * mean));
+            }
+        }
+    for (int row = 0; row < from->rows; row++)
+        memcpy(value + row * from->values, depth + model->vapour_row[row] * channel->weights,
+               (size_t)channel->weights * sizeof *value);
+    out->clear_path[band].value = value;
+    return STATUS_OK;
+}
+
+/* ---- haze and the sky ---------------------------------------------------------------------------- */
+
+static void scale_haze(AirColumn *haze, const Atmosphere *a, unsigned bands)
+{
+    for (int k = 0; k < air_tabled_count; k++) {
+        const AirBand b = air_tabled[k];
+        if (a->vapour_channel[b] < 0 || !(bands >> b & 1)) continue;
+        for (int n = 0; n < haze->nodes; n++)
+            for (int part = 0; part < 2; part++) {
+                double *value = part ? haze->scatter_per_m[b] : haze->per_m[b];
+                value[n] *= vapour_haze_scale(a->vapour, a->mix, a->vapour_profile, a->vapour_channel[b], part,
+                                              haze->height_m[n]);
+            }
+        column_sum_up(haze, haze->per_m[b], haze->sum[b]);
+    }
+}
+
+/* ln of the sky's ratio to black air, at the points of a visibility's table. */
+static Status fill_sky(Grid *out, const Grid *from, const Atmosphere *a, Arena *arena)
+{
+    const Vapour *v = a->vapour;
+    const int     count = v->sky[0] * v->sky[1];
+    double       *now = arena_alloc_raw(arena, 2 * (size_t)count, sizeof *now);
+    double       *value = arena_alloc_raw(arena, (size_t)(from->nodes[0] * from->nodes[1] * 2), sizeof *value);
+    if (!now || !value) return STATUS_NO_MEMORY;
+    for (int k = 0; k < 2; k++)
+        mix_floats(now + k * count, v, a->mix, vapour_sky_at + (size_t)(k * count), count, k == 1);
+    const float *own = vapour_node(v, v->profile[a->vapour_profile].own) + vapour_sky_at;
+    for (int i = 0; i < from->nodes[0]; i++)
+        for (int j = 0; j < from->nodes[1]; j++) {
+            double    s, t;
+            const int low = interval_of(&s, v->sky_m, v->sky[0], from->axis[0][i]);
+            const int left = interval_of(&t, v->sky_slant, v->sky[1], from->axis[1][j]);
+            for (int k = 0; k < 2; k++) {
+                const int at = 2 * (i * from->nodes[1] + j) + k;
+                double    ratio[2] = {0};
+                value[at] = from->value[at];
+                if (a->vapour_channel[AIR_MWIR + k] < 0) continue;
+                for (int corner = 0; corner < 4; corner++) {
+                    const double share = (corner & 1 ? s : 1 - s) * (corner & 2 ? t : 1 - t);
+                    const int    n = k * count + (low + (corner & 1)) * v->sky[1] + left + (corner >> 1);
+                    if (share == 0) continue;
+                    ratio[0] += share * (double)own[n];
+                    ratio[1] += share * now[n];
+                }
+                value[at] = log(fmax(emissivity_in(exp(value[at]), ratio[0], ratio[1]), 1e-9));
+            }
+        }
+    *out = *from;
+    out->value = value;
+    return STATUS_OK;
+}
+
+/* Depths that haze adds, and the path's radiance, change from the model's own air to the mix as they do at the file's
+ * visibility. */
+static Status fill_hazy(PathTable *out, const PathTable *from, const Atmosphere *a, int k, Arena *arena)
+{
+    const Vapour *v = a->vapour;
+    const float  *own = vapour_node(v, v->profile[a->vapour_profile].own);
+    double       *hazy = arena_alloc_raw(arena, (size_t)v->rows, sizeof *hazy);
+    double       *opaque = arena_alloc_raw(arena, (size_t)v->both_ways, sizeof *opaque);
+    double       *value = arena_alloc_raw(arena, (size_t)from->rows * (size_t)from->values, sizeof *value);
+    if (!hazy || !opaque || !value) return STATUS_NO_MEMORY;
+    mix_floats(hazy, v, a->mix, vapour_hazy_at(v, k), v->rows, k == 1);
+    mix_floats(opaque, v, a->mix, vapour_opaque_at(v, k), v->both_ways, k == 1);
+    for (int i = 0; i < v->rows; i++) hazy[i] = clamp(hazy[i] / (double)own[vapour_hazy_at(v, k) + (size_t)i], 0.1, 10);
+    for (int row = 0; row < from->rows; row++) {
+        const double *was = from->value + row * from->values, more = hazy[a->vapour_row[row]];
+        double       *now = value + row * from->values;
+        for (int w = 0; w < from->weights; w++) now[w] = was[w] * more;
+        now[from->weights] = was[from->weights] + log(fmax(opaque[row], 1e-3) /
+                                                      (double)own[vapour_opaque_at(v, k) + (size_t)row]);
+    }
+    out->value = value;
+    return STATUS_OK;
+}
+
+static Status fill_slice(Slice *out, const Slice *from, const Atmosphere *a, unsigned bands, Arena *arena)
+{
+    *out = *from;
+    out->from = from;
+    scale_haze(&out->haze, a, bands);
+    Status status = STATUS_OK;
+    for (int k = 0; k < 2 && status == STATUS_OK; k++) {
+        const PathTable *table = &from->path[AIR_MWIR + k];
+        if (a->vapour_channel[AIR_MWIR + k] < 0 || !(bands >> (AIR_MWIR + k) & 1)) continue;
+        if (table->shape == a->clear_path[AIR_B].shape && table->weights > 1)
+            status = fill_hazy(&out->path[AIR_MWIR + k], table, a, k, arena);
+    }
+    if (status == STATUS_OK && bands >> AIR_MWIR & 3)
+        status = fill_sky(&out->sky_thermal, &from->sky_thermal, a, arena);
+    return status;
+}
+
+Status atmosphere_in(const Atmosphere **out, const Atmosphere *model, const AirState *state, unsigned bands,
+                     Arena *arena)
+{
+    if (!follows(model, state)) {
+        *out = model;
+        return STATUS_OK;
+    }
+    AirSums *now = arena_alloc_raw(arena, 1, sizeof *now);
+    Slice   *slice = arena_alloc_raw(arena, 2, sizeof *slice);
+    if (!now || !slice) return STATUS_NO_MEMORY;
+    Atmosphere *a = &now->air;
+    begin(a, &now->mix, now->level_k, model, state);
+    memcpy(a->clear_path, model->clear_path, sizeof a->clear_path);
+    static const unsigned visible = 1u << AIR_B | 1u << AIR_G | 1u << AIR_R; /* daylight is asked for always */
+    fill_clear(a, model, bands | visible);
+    if (bands >> AIR_PAN & 1) bands |= visible;
+    Status status = STATUS_OK;
+    for (int k = 0; k < air_tabled_count && status == STATUS_OK; k++)
+        if (bands >> air_tabled[k] & 1 && a->vapour_channel[air_tabled[k]] >= 0)
+            status = fill_paths(a, model, air_tabled[k], arena);
+    Blend blend;
+    blend_at(&blend, model, state->visibility_m);
+    const bool two = blend.low != blend.high;
+    if (status == STATUS_OK) status = fill_slice(&slice[0], blend.low, a, bands | visible, arena);
+    if (status == STATUS_OK && two) status = fill_slice(&slice[1], blend.high, a, bands | visible, arena);
+    a->slice = slice, a->slices = 1 + two;
+    if (status == STATUS_OK) *out = a;
+    return status;
+}
