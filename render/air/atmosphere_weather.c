@@ -68,13 +68,13 @@ static void sky_to_ratios(const Atmosphere *a, Vapour *v)
     for (int p = 0; p < v->profiles; p++)
         for (int k = 0; k < 2; k++)
             for (int i = 0; i < count; i++) {
-                double t, height_m = v->sky_m[i / v->sky[1]];
-                const int   level = interval_of(&t, v->level_m, v->levels, height_m);
+                double       t;
+                const int    level = interval_of(&t, v->level_m, v->levels, v->sky_m[i / v->sky[1]]);
                 const float *temp_k = v->profile[p].level_k + level;
                 const double black = planck_table_radiance(
                     a->planck[k], (double)temp_k[0] + (t > 0 ? t * (double)(temp_k[1] - temp_k[0]) : 0));
-                for (int n = 0; n < v->profile[p].nodes; n++) {
-                    float *value = v->node + (size_t)(v->profile[p].first + n) * v->node_floats + vapour_sky_at + k * count + i;
+                for (int n = 2 * v->profile[p].first; n < 2 * (v->profile[p].first + v->profile[p].nodes); n++) {
+                    float *value = v->node + (size_t)(n / 2) * v->node_floats + vapour_sky_at(v, n % 2, k) + i;
                     *value = (float)((double)*value / black);
                 }
             }
@@ -218,6 +218,35 @@ const Atmosphere *atmosphere_sums_in(AirSums *room, const Atmosphere *model, con
 
 /* ---- clear air and its paths --------------------------------------------------------------------- */
 
+/* Natural logarithm of a normal number above 0, within 1e-14: the exponent, and 2 atanh((m - 1) / (m + 1)) of the
+ * mantissa m, sqrt(1/2) .. sqrt(2), by the series; no branch and no call, so that a loop over it vectorises. */
+static inline double log_here(double x)
+{
+    static const double ln2 = 0.69314718055994530942;
+    uint64_t            bits, mantissa_bits;
+    double              mantissa, exponent;
+    memcpy(&bits, &x, sizeof bits);
+    const uint64_t from_root = bits - 0x3fe6a09e667f3bcdull; /* sqrt(1/2) */
+    mantissa_bits = (from_root & 0x000fffffffffffffull) + 0x3fe6a09e667f3bcdull;
+    memcpy(&mantissa, &mantissa_bits, sizeof mantissa);
+    /* the exponent's bits as a number: those of 2^52 plus it, less 2^52 and the sign's 2^11 / 2 */
+    const uint64_t steps = ((from_root >> 52) ^ 0x800ull) | 0x4330000000000000ull;
+    memcpy(&exponent, &steps, sizeof exponent);
+    exponent -= 0x1p52 + 2048;
+    const double z = (mantissa - 1) / (mantissa + 1), y = z * z;
+    double       p = 1.0 / 21;
+    p = p * y + 1.0 / 19;
+    p = p * y + 1.0 / 17;
+    p = p * y + 1.0 / 15;
+    p = p * y + 1.0 / 13;
+    p = p * y + 1.0 / 11;
+    p = p * y + 1.0 / 9;
+    p = p * y + 1.0 / 7;
+    p = p * y + 1.0 / 5;
+    p = p * y + 1.0 / 3;
+    return exponent * ln2 + 2 * (z + z * y * p);
+}
+
 static void mix_floats(double *out, const Vapour *v, const VapourMix *mix, size_t at, int count, bool self)
 {
     for (int i = 0; i < count; i++) out[i] = 0;
@@ -257,18 +286,20 @@ static Status fill_paths(Atmosphere *out, const Atmosphere *model, AirBand band,
     const PathTable     *from = &model->clear_path[band];
     const VapourChannel *channel = &v->channel[c];
     const int            count = v->rows * channel->weights;
-    double *depth = arena_alloc_raw(arena, (size_t)count, sizeof *depth);
-    double *value = arena_alloc_raw(arena, (size_t)from->rows * (size_t)from->values, sizeof *value);
+    double              *depth = arena_alloc_raw(arena, (size_t)count, sizeof *depth);
+    double              *value = arena_alloc_raw(arena, (size_t)from->rows * (size_t)from->values, sizeof *value);
     if (!depth || !value) return STATUS_NO_MEMORY;
     mix_floats(depth, v, out->mix, vapour_path_at(v, c), count, channel->self);
     for (int i = 0, row = 0, pair = 0; i < v->ends; i++)
         for (int j = i; j < v->ends; j++, pair++) {
             const double mean = column_mean(&out->clear, band, v->end_m[i], v->end_m[j]);
             for (int k = 0; k < (int)v->ranges[pair]; k++, row++) {
-                double *at = depth + row * channel->weights;
-                for (int w = 0; w < channel->weights; w++) at[w] = log(fmax(at[w], 1e-12) / (v->range_m[row] * mean));
+                double      *at = depth + row * channel->weights;
+                const double plain = v->range_m[row] * mean;
+                for (int w = 0; w < channel->weights; w++) at[w] = (at[w] > 1e-12 ? at[w] : 1e-12) / plain;
             }
         }
+    for (int i = 0; i < count; i++) depth[i] = log_here(depth[i]);
     for (int row = 0; row < from->rows; row++)
         memcpy(value + row * from->values, depth + model->vapour_row[row] * channel->weights,
                (size_t)channel->weights * sizeof *value);
@@ -293,80 +324,125 @@ static void scale_haze(AirColumn *haze, const Atmosphere *a, unsigned bands)
     }
 }
 
-/* ln of the sky's ratio to black air, at the points of a visibility's table. */
-static Status fill_sky(Grid *out, const Grid *from, const Atmosphere *a, Arena *arena)
+/* What the weather adds to the sky's ratio to black air: linear in 1 / visibility between those of the file, and of
+ * denser haze as what the model's own leaves of the sky behind it. */
+typedef struct SkyChange {
+    double *own[2], *more[2]; /* by the file's visibilities: [2 bands][height][zenith angle] */
+} SkyChange;
+
+static Status fill_sky_change(SkyChange *out, const Atmosphere *a, Arena *arena)
 {
     const Vapour *v = a->vapour;
     const int     count = v->sky[0] * v->sky[1];
-    double       *now = arena_alloc_raw(arena, 2 * (size_t)count, sizeof *now);
-    double       *value = arena_alloc_raw(arena, (size_t)(from->nodes[0] * from->nodes[1] * 2), sizeof *value);
-    if (!now || !value) return STATUS_NO_MEMORY;
-    for (int k = 0; k < 2; k++)
-        mix_floats(now + k * count, v, a->mix, vapour_sky_at + (size_t)(k * count), count, k == 1);
-    const float *own = vapour_node(v, v->profile[a->vapour_profile].own) + vapour_sky_at;
-    for (int i = 0; i < from->nodes[0]; i++)
-        for (int j = 0; j < from->nodes[1]; j++) {
-            double    s, t;
-            const int low = interval_of(&s, v->sky_m, v->sky[0], from->axis[0][i]);
-            const int left = interval_of(&t, v->sky_slant, v->sky[1], from->axis[1][j]);
-            for (int k = 0; k < 2; k++) {
-                const int at = 2 * (i * from->nodes[1] + j) + k;
-                double    ratio[2] = {0};
-                value[at] = from->value[at];
-                if (a->vapour_channel[AIR_MWIR + k] < 0) continue;
-                for (int corner = 0; corner < 4; corner++) {
-                    const double share = (corner & 1 ? s : 1 - s) * (corner & 2 ? t : 1 - t);
-                    const int    n = k * count + (low + (corner & 1)) * v->sky[1] + left + (corner >> 1);
-                    if (share == 0) continue;
-                    ratio[0] += share * (double)own[n];
-                    ratio[1] += share * now[n];
-                }
-                value[at] = log(fmax(emissivity_in(exp(value[at]), ratio[0], ratio[1]), 1e-9));
+    const float  *own = vapour_node(v, v->profile[a->vapour_profile].own);
+    for (int which = 0; which < 2; which++) {
+        out->own[which] = arena_alloc_raw(arena, 2 * (size_t)count, sizeof(double));
+        out->more[which] = arena_alloc_raw(arena, 2 * (size_t)count, sizeof(double));
+        if (!out->own[which] || !out->more[which]) return STATUS_NO_MEMORY;
+        for (int k = 0; k < 2; k++) {
+            const float *from = own + vapour_sky_at(v, which, k);
+            double      *more = out->more[which] + k * count, *was = out->own[which] + k * count;
+            mix_floats(more, v, a->mix, vapour_sky_at(v, which, k), count, k == 1);
+            for (int i = 0; i < count; i++) {
+                was[i] = (double)from[i];
+                more[i] -= was[i];
             }
         }
+    }
+    return STATUS_OK;
+}
+
+/* ln of the sky's ratio to black air, at the points of a visibility's table. */
+static Status fill_sky(Grid *out, const Slice *slice, const Atmosphere *a, const SkyChange *change, Arena *arena)
+{
+    const Vapour *v = a->vapour;
+    const Grid   *from = &slice->sky_thermal;
+    const double *m = vapour_sky_visibility_m;
+    const double  u = fmax((1 / slice->visibility_m - 1 / m[0]) / (1 / m[1] - 1 / m[0]), -0.2), thick = fmin(u, 1);
+    const int     count = v->sky[0] * v->sky[1];
+    double       *value = arena_alloc_raw(arena, (size_t)(from->nodes[0] * from->nodes[1] * 2), sizeof *value);
+    int           left[grid_max_nodes];
+    double        right[grid_max_nodes];
+    if (!value) return STATUS_NO_MEMORY;
+    for (int j = 0; j < from->nodes[1]; j++)
+        left[j] = interval_of(&right[j], v->sky_slant, v->sky[1], from->axis[1][j]);
+    for (int i = 0; i < from->nodes[0]; i++) {
+        double    s;
+        const int low = interval_of(&s, v->sky_m, v->sky[0], from->axis[0][i]);
+        for (int at = 2 * i * from->nodes[1]; at < 2 * (i + 1) * from->nodes[1]; at++) {
+            const int    k = at % 2, j = at / 2 - i * from->nodes[1];
+            const double t = right[j];
+            double       more = 0, own = 0;
+            value[at] = from->value[at];
+            if (a->vapour_channel[AIR_MWIR + k] < 0) continue;
+            for (int corner = 0; corner < 4; corner++) {
+                const double share = (corner & 1 ? s : 1 - s) * (corner & 2 ? t : 1 - t);
+                const int    n = k * count + (low + (corner & 1)) * v->sky[1] + left[j] + (corner >> 1);
+                if (share == 0) continue;
+                more += share * (change->more[0][n] + thick * (change->more[1][n] - change->more[0][n]));
+                own += share * change->own[1][n];
+            }
+            const double was = exp(value[at]);
+            if (u > 1) more *= clamp((1 - was) / fmax(1 - own, 1e-3), 0, 1);
+            value[at] = log_here(fmax(was + more, 1e-9));
+        }
+    }
     *out = *from;
     out->value = value;
     return STATUS_OK;
 }
 
-/* Depths that haze adds, and the path's radiance, change from the model's own air to the mix as they do at the file's
- * visibility. */
-static Status fill_hazy(PathTable *out, const PathTable *from, const Atmosphere *a, int k, Arena *arena)
+/* Of mwir and lwir: what the depths that haze adds are multiplied by, by row of the file; what is added to the ln of
+ * the path's radiance over black air, by row of the table. NULL: nothing. */
+typedef struct Change {
+    double *hazy, *opaque;
+} Change;
+
+static Status fill_change(Change *out, const Atmosphere *a, int k, Arena *arena)
 {
     const Vapour *v = a->vapour;
     const float  *own = vapour_node(v, v->profile[a->vapour_profile].own);
+    const float  *own_hazy = own + vapour_hazy_at(v, k), *own_opaque = own + vapour_opaque_at(v, k);
     double       *hazy = arena_alloc_raw(arena, (size_t)v->rows, sizeof *hazy);
     double       *opaque = arena_alloc_raw(arena, (size_t)v->both_ways, sizeof *opaque);
-    double       *value = arena_alloc_raw(arena, (size_t)from->rows * (size_t)from->values, sizeof *value);
-    if (!hazy || !opaque || !value) return STATUS_NO_MEMORY;
+    if (!hazy || !opaque) return STATUS_NO_MEMORY;
     mix_floats(hazy, v, a->mix, vapour_hazy_at(v, k), v->rows, k == 1);
     mix_floats(opaque, v, a->mix, vapour_opaque_at(v, k), v->both_ways, k == 1);
-    for (int i = 0; i < v->rows; i++) hazy[i] = clamp(hazy[i] / (double)own[vapour_hazy_at(v, k) + (size_t)i], 0.1, 10);
+    for (int i = 0; i < v->rows; i++) hazy[i] = clamp(hazy[i] / (double)own_hazy[i], 0.1, 10);
+    for (int i = 0; i < v->both_ways; i++)
+        opaque[i] = log_here((opaque[i] > 1e-3 ? opaque[i] : 1e-3) / (double)own_opaque[i]);
+    *out = (Change){hazy, opaque};
+    return STATUS_OK;
+}
+
+static Status fill_hazy(PathTable *out, const PathTable *from, const Atmosphere *a, const Change *change, Arena *arena)
+{
+    const int values = from->values, weights = from->weights;
+    double   *value = arena_alloc_raw(arena, (size_t)from->rows * (size_t)values, sizeof *value);
+    if (!value) return STATUS_NO_MEMORY;
     for (int row = 0; row < from->rows; row++) {
-        const double *was = from->value + row * from->values, more = hazy[a->vapour_row[row]];
-        double       *now = value + row * from->values;
-        for (int w = 0; w < from->weights; w++) now[w] = was[w] * more;
-        now[from->weights] = was[from->weights] + log(fmax(opaque[row], 1e-3) /
-                                                      (double)own[vapour_opaque_at(v, k) + (size_t)row]);
+        const double *was = from->value + row * values, more = change->hazy[a->vapour_row[row]];
+        double       *now = value + row * values;
+        for (int w = 0; w < weights; w++) now[w] = was[w] * more;
+        now[weights] = was[weights] + change->opaque[row];
     }
     out->value = value;
     return STATUS_OK;
 }
 
-static Status fill_slice(Slice *out, const Slice *from, const Atmosphere *a, unsigned bands, Arena *arena)
+static Status fill_slice(Slice *out, const Slice *from, const Atmosphere *a, const Change change[2],
+                         const SkyChange *sky, unsigned bands, Arena *arena)
 {
+    Status status = STATUS_OK;
     *out = *from;
     out->from = from;
     scale_haze(&out->haze, a, bands);
-    Status status = STATUS_OK;
     for (int k = 0; k < 2 && status == STATUS_OK; k++) {
         const PathTable *table = &from->path[AIR_MWIR + k];
-        if (a->vapour_channel[AIR_MWIR + k] < 0 || !(bands >> (AIR_MWIR + k) & 1)) continue;
-        if (table->shape == a->clear_path[AIR_B].shape && table->weights > 1)
-            status = fill_hazy(&out->path[AIR_MWIR + k], table, a, k, arena);
+        if (change[k].hazy && table->shape == a->clear_path[AIR_B].shape && table->values == table->weights + 1)
+            status = fill_hazy(&out->path[AIR_MWIR + k], table, a, &change[k], arena);
     }
-    if (status == STATUS_OK && bands >> AIR_MWIR & 3)
-        status = fill_sky(&out->sky_thermal, &from->sky_thermal, a, arena);
+    if (status == STATUS_OK && sky->own[0]) status = fill_sky(&out->sky_thermal, from, a, sky, arena);
     return status;
 }
 
@@ -393,8 +469,14 @@ Status atmosphere_in(const Atmosphere **out, const Atmosphere *model, const AirS
     Blend blend;
     blend_at(&blend, model, state->visibility_m);
     const bool two = blend.low != blend.high;
-    if (status == STATUS_OK) status = fill_slice(&slice[0], blend.low, a, bands | visible, arena);
-    if (status == STATUS_OK && two) status = fill_slice(&slice[1], blend.high, a, bands | visible, arena);
+    Change     change[2] = {{0}};
+    for (int k = 0; k < 2 && status == STATUS_OK; k++)
+        if (bands >> (AIR_MWIR + k) & 1 && a->vapour_channel[AIR_MWIR + k] >= 0)
+            status = fill_change(&change[k], a, k, arena);
+    SkyChange sky = {.own = {NULL}};
+    if (status == STATUS_OK && bands >> AIR_MWIR & 3) status = fill_sky_change(&sky, a, arena);
+    if (status == STATUS_OK) status = fill_slice(&slice[0], blend.low, a, change, &sky, bands | visible, arena);
+    if (status == STATUS_OK && two) status = fill_slice(&slice[1], blend.high, a, change, &sky, bands | visible, arena);
     a->slice = slice, a->slices = 1 + two;
     if (status == STATUS_OK) *out = a;
     return status;

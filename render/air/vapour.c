@@ -88,9 +88,9 @@ static void checksum(uint64_t sum[2], const char *at, size_t octets)
 
 static void read_counts(Vapour *v, Parse *p)
 {
-    static const int most[12] = {vapour_channels_max, vapour_profiles_max, vapour_nodes_max,  vapour_levels_max,
-                                 vapour_axis_max,     vapour_axis_max,     vapour_rows_max,   vapour_axis_max,
-                                 vapour_axis_max,     vapour_axis_max,     vapour_axis_max,   vapour_axis_max};
+    static const int most[12] = {vapour_channels_max, vapour_profiles_max, vapour_nodes_max, vapour_levels_max,
+                                 vapour_axis_max,     vapour_axis_max,     vapour_rows_max,  vapour_axis_max,
+                                 vapour_axis_max,     vapour_axis_max,     vapour_axis_max,  vapour_axis_max};
     int *const       to[12] = {&v->channels, &v->profiles, &v->nodes,  &v->levels, &v->heights, &v->ends,
                                &v->rows,     &v->sky[0],   &v->sky[1], &v->sun[0], &v->sun[1],  &v->humidities};
     for (int i = 0; i < 12; i++) {
@@ -201,8 +201,7 @@ static void read_body(Vapour *v, Parse *p)
     v->sun_m = take_axis(p, v->sun[0], 0, 2e5);
     v->sun_deg = take_axis(p, v->sun[1], 0, 90);
     v->humidity = take_axis(p, v->humidities, 0, 1);
-    for (int i = 0; i < v->profiles; i++)
-        v->profile[i].level_k = take_floats(p, (size_t)v->levels, 100, 400);
+    for (int i = 0; i < v->profiles; i++) v->profile[i].level_k = take_floats(p, (size_t)v->levels, 100, 400);
     if (p->wrong) return;
     lay_out(v);
     const size_t both = 2 * (size_t)v->channels;
@@ -218,8 +217,8 @@ Status vapour_open(Vapour **out, const char *path)
 {
     size_t  octets;
     Vapour *v = calloc(1, sizeof *v);
-    Status  status = v ? file_read_whole(&v->file, &octets, "atmosphere", path, file_most, FILE_FROM_DISK)
-                       : STATUS_NO_MEMORY;
+    Status  status =
+        v ? file_read_whole(&v->file, &octets, "atmosphere", path, file_most, FILE_FROM_DISK) : STATUS_NO_MEMORY;
     if (status == STATUS_OK) {
         Parse    p = {.path = path, .at = v->file + head_octets, .end = v->file + octets};
         uint64_t said[3], sum[2];
@@ -236,8 +235,8 @@ Status vapour_open(Vapour **out, const char *path)
         }
         if (!p.wrong) read_body(v, &p);
         if (p.wrong) {
-            log_error("atmosphere: %s: %s; etc/atmosphere/make/vapour.py makes it, README.md there has its layout", path,
-                      p.wrong);
+            log_error("atmosphere: %s: %s; etc/atmosphere/make/vapour.py makes it, README.md there has its layout",
+                      path, p.wrong);
             status = STATUS_BAD_VALUE;
         }
     }

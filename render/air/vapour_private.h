@@ -33,33 +33,38 @@ typedef struct Vapour {
     int           both_ways; /* rows of paths, observer first */
     VapourChannel channel[vapour_channels_max];
     VapourProfile profile[vapour_profiles_max];
-    const double *factor;                                       /* [nodes] */
-    const double *level_m, *height_m, *end_m, *sky_m, *sky_deg; /* axes; sky_m and sky_deg: of sky[2] */
-    const double *sun_m, *sun_deg, *humidity;                   /* 0 .. 1 */
+    const double *factor;                                                 /* [nodes] */
+    const double *level_m, *height_m, *end_m, *sky_m, *sky_deg;           /* axes; sky_m and sky_deg: of sky[2] */
+    const double *sun_m, *sun_deg, *humidity;                             /* 0 .. 1 */
     double        sky_slant[vapour_axis_max], sun_slant[vapour_axis_max]; /* of the angles, by slant_x */
-    const double *ranges, *range_m;                             /* [pairs], [rows] */
-    const float  *haze;                                         /* [profile][channel][2][height] */
-    const float  *humid;                                        /* [channel][2][humidity] */
-    float        *node;                                         /* [node][node_floats] */
+    const double *ranges, *range_m;                                       /* [pairs], [rows] */
+    const float  *haze;                                                   /* [profile][channel][2][height] */
+    const float  *humid;                                                  /* [channel][2][humidity] */
+    float        *node;                                                   /* [node][node_floats] */
     size_t        node_floats;
 } Vapour;
 
-/* What a node holds of a channel, behind each other: extinction and scattering of clear air by height, 1/km; depth of
- * clear air to space by height and zenith angle; depths of paths by row and weight. */
-enum { vapour_longwave_at = 0, vapour_sky_at = 1 };
+/* What a node holds: longwave light; the sky of mwir and lwir (k 0, 1) through haze of two visibilities; of paths in
+ * haze the ratio of the depth that it adds to its column's, by row; and of the path's radiance, were it opaque, to that
+ * of the column's air, by row of both ways. Then of each channel: extinction and scattering of clear air by height,
+ * 1/km; depth of clear air to space by height and zenith angle; depths of paths by row and weight. */
+enum { vapour_longwave_at = 0 };
+static const double        vapour_sky_visibility_m[2] = {23000, 5000};
 static inline const float *vapour_node(const Vapour *v, int node) { return v->node + (size_t)node * v->node_floats; }
-/* Of mwir and lwir (0, 1): of paths in haze the ratio of the depth that it adds to its column's, by row; and of the
- * path's radiance, were it opaque, to that of the column's air, by row of both ways. */
+static inline size_t       vapour_sky_at(const Vapour *v, int which, int k)
+{
+    return 1 + (size_t)(2 * which + k) * (size_t)v->sky[0] * (size_t)v->sky[1];
+}
 static inline size_t vapour_hazy_at(const Vapour *v, int k)
 {
-    return vapour_sky_at + 2 * (size_t)v->sky[0] * (size_t)v->sky[1] + (size_t)k * (size_t)v->rows;
+    return vapour_sky_at(v, 2, 0) + (size_t)k * (size_t)v->rows;
 }
 static inline size_t vapour_opaque_at(const Vapour *v, int k)
 {
     return vapour_hazy_at(v, 2) + (size_t)k * (size_t)v->both_ways;
 }
-static inline size_t       vapour_air_at(const Vapour *v, int channel) { return v->channel[channel].at; }
-static inline size_t       vapour_scatter_at(const Vapour *v, int channel)
+static inline size_t vapour_air_at(const Vapour *v, int channel) { return v->channel[channel].at; }
+static inline size_t vapour_scatter_at(const Vapour *v, int channel)
 {
     return v->channel[channel].at + (size_t)v->heights;
 }
@@ -83,13 +88,13 @@ int vapour_channel(const Vapour *vapour, const char *name, double low_m, double 
 /* Nodes and their shares: of the two profiles about a temperature, straight, those factors of each about the one that
  * gives it the vapour, by a cubic (Lagrange's through four nodes, fewer at the ends). */
 typedef struct VapourMix {
-    double temp_k;                       /* at the ground, of the mix: the nearest that the profiles reach */
-    double humidity;                     /* relative, at the ground */
+    double temp_k;   /* at the ground, of the mix: the nearest that the profiles reach */
+    double humidity; /* relative, at the ground */
     int    profiles, profile[2];
     double profile_share[2];
     int    nodes, node[vapour_mix_max];
-    double share[2][vapour_mix_max];     /* drawn over the root of the vapour, over the vapour itself */
-    int    of[vapour_mix_max];           /* which of the two profiles */
+    double share[2][vapour_mix_max];         /* drawn over the root of the vapour, over the vapour itself */
+    int    of[vapour_mix_max];               /* which of the two profiles */
     double swell[2][vapour_channels_max][2]; /* haze of each profile, by humidity: extinction, scattering */
 } VapourMix;
 /* Continuous in both; vapour beyond the nodes of a profile: the nearest. */

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Makes etc/atmosphere/vapour.bin by LOWTRAN7: clear air by temperature and water vapour at the ground.
 
-    etc/atmosphere/make/vapour.py [OUT] [--work FOLDER]
+    etc/atmosphere/make/vapour.py [OUT] [--work FOLDER] [--between]
 
 Nodes are the six atmospheres of LOWTRAN7, each with its water vapour times some factors. Needs numpy and gfortran, and
 the network once (lowtran.py). Takes about three minutes of one processor; what a folder of --work has already is not
@@ -33,8 +33,9 @@ SPAN_OF = {"b": "optical", "g": "optical", "r": "optical", "nir": "optical", "mw
            "swir": "swir"}
 CHANNELS = list(SPAN_OF)
 lt.BANDS_UM["swir"] = (1.0, 1.7)
-HUMIDITIES = [0, 30, 50, 60, 70, 75, 80, 85, 90, 95, 99]
-HAZE_KM = 23
+HUMIDITIES = [0, 30, 50, 60, 70, 75, 80, 85, 90, 93, 95, 97, 98, 99]
+# visibilities of the sky, of which the first is also that of haze itself
+HAZE_KM, THICK_KM = 23, 5
 # where the share of haze that adds to a band's depth is taken, and of which emitter; and the path's own emission
 HAZY_KM, HAZY_K, EMIT_K = 10, 300, 260
 
@@ -162,6 +163,20 @@ class Maker:
             out["light_" + channel] = np.array([lt.integral(s[:, 0], s[:, 2], channel) * 1e4 for s in got])
         np.savez(kept, **out)
         print("hazy", model, vapour, flush=True)
+        return out
+
+    def thick_sky(self, model, vapour):
+        """The sky through haze of THICK_KM."""
+        kept = os.path.join(self.work, f"sky_{model}_{vapour:g}.npz")
+        if os.path.exists(kept):
+            return dict(np.load(kept))
+        out = {}
+        cases = [dict(kind=3, emission=1, h1=h / 1000, angle=z) for h in tables.SKY_HEIGHTS_M for z in tables.SKY_ZENITHS]
+        for channel in ("mwir", "lwir"):
+            out["sky_" + channel] = np.array([lt.integral(s[:, 0], s[:, 2], channel) * 1e4 for s in
+                                              self.spectra(model, vapour, cases, channel, THICK_KM)])
+        np.savez(kept, **out)
+        print("sky", model, vapour, flush=True)
         return out
 
     def haze_of(self, model, vapour, heights_m, visibility_km=HAZE_KM):
@@ -314,6 +329,8 @@ def pack(maker, out):
         put(v["longwave"])
         for channel in ("mwir", "lwir"):
             put(v["sky_" + channel])
+        for channel in ("mwir", "lwir"):
+            put(maker.thick_sky(model, f)["sky_" + channel])
         both = [under_haze(maker, haze, profile, level_km, model, f, channel, v) for channel in ("mwir", "lwir")]
         for ratio, _ in both:
             put(ratio)
@@ -341,12 +358,36 @@ def pack(maker, out):
     print(out, os.path.getsize(out), "octets")
 
 
+def between(maker, out):
+    """Figures between the nodes for tests/render/test_atmosphere_weather.c: transmittance of paths in haze of HAZE_KM."""
+    factors = {"subarctic_winter": [0.25, 1.4], "midlat_winter": [0.07, 0.22, 0.65, 1.5, 2.7],
+               "us1976": [0.22, 0.65, 1.4, 2.5], "tropical": [0.06, 0.18, 0.6, 1.3, 2]}
+    paths = [(0, 0, 1000), (0, 0, 5000), (0, 0, 20000), (1000, 1000, 5000), (0, 2000, 2000), (0, 2000, 8000)]
+    profile = profiles(maker.work)[1]
+    bands = [c for c in CHANNELS if c != "swir"]
+    with open(out, "w", encoding="ascii") as file:
+        file.write("# etc/atmosphere/make/vapour.py --between: LOWTRAN7, rural haze of 23 km; thermal bands for 300 K\n"
+                   "temp_k,vapour_g_m3,observer_m,target_m,range_m," + ",".join(bands) + "\n")
+        for model in factors:
+            for factor in factors[model]:
+                cases = [dict(kind=1, h1=a / 1000, range_km=r / 1000) if a == b else
+                         dict(kind=2, h1=a / 1000, h2=b / 1000, angle=0.0, stretch=r / (b - a)) for a, b, r in paths]
+                tau = {}
+                for channel in bands:
+                    got = maker.spectra(model, factor, cases, SPAN_OF[channel], HAZE_KM)
+                    tau[channel] = [np.exp(-maker.depths(s, channel, [300] if thermal(channel) else [])[-1]) for s in got]
+                for k, path in enumerate(paths):
+                    file.write(f"{profile[model][0][0]:g},{1000 * factor * profile[model][1]:.6g},{path[0]},{path[1]},"
+                               f"{path[2]}," + ",".join(f"{tau[c][k]:.6f}" for c in bands) + "\n")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
     parser.add_argument("out", nargs="?", default=os.path.join(tables.HERE, "vapour.bin"))
     parser.add_argument("--work", default=os.path.join(os.path.expanduser("~"), ".cache", "pitviper-lowtran"))
+    parser.add_argument("--between", action="store_true", help="not that file, but figures between its nodes for a test")
     a = parser.parse_args()
-    pack(Maker(a.work), a.out)
+    (between if a.between else pack)(Maker(a.work), a.out)
 
 
 if __name__ == "__main__":
