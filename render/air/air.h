@@ -20,10 +20,10 @@
  * on a tilted plane, are tables interpolated for the requested bands. tests/render/test_air.c measures their errors.
  * Heights are above the ground at the terrain's origin, which is at the model's 0 km.
  *
- * Weather. Extinction is the model's at the visibility given. Air warmer or colder than the model's own ground
- * (weather.air_temp_k) scales the thermal radiance of path and sky by the ratio of the two Planck radiances in the
- * band, and the longwave flux by that of the fourth powers; its transmittance, and so its water vapour, stay the
- * model's. With height the air's temperature changes as the model's does. Clouds are a mean: the direct sun is dimmed
+ * Weather. Haze is the model's at the visibility given; clear air follows temperature and humidity at the ground
+ * (atmosphere_in). What the air's profiles do not reach scales the thermal radiance of path and sky by the ratio of the
+ * two Planck radiances in the band, and the longwave flux by that of the fourth powers.
+ * With height the air's temperature changes as the profiles' does. Clouds are a mean: the direct sun is dimmed
  * by their share, sun and sky together by 1 - 0.75 cloud^3.4 (Kasten & Czeplak, Solar Energy 24, 1980), in every band
  * and towards every direction alike; they fill that share of the thermal sky with air temperature, and longwave follows
  * Unsworth & Monteith (Q. J. R. Meteorol. Soc. 101, 1975). Measured radiation (Weather) takes the place of both. */

@@ -41,6 +41,8 @@ typedef struct AirState {
 /* Whether the air of a model follows the temperature and the water vapour at the ground: us1976 and midlat_summer do, a
  * user's own tables are what they are. */
 bool atmosphere_follows_weather(const Atmosphere *atmosphere);
+/* Water vapour at the ground of the model's own air; NaN: its tables do not say. */
+double atmosphere_vapour_kg_m3(const Atmosphere *atmosphere);
 /* The model's air under a weather, valid for all functions here at that visibility alone; clear air by
  * etc/atmosphere/vapour.bin, haze the model's, swollen by the humidity. It lives in the arena and uses the model, which
  * is returned itself where it does not follow. bands: 1 << AirBand, those whose paths are asked for. A pure function of

@@ -126,8 +126,9 @@ struct Atmosphere {
     AirColumn    clear;
     PathTable    clear_path[AIR_BAND_COUNT];
     Grid         temperature;
-    PlanckTable *planck[2]; /* mwir, lwir */
-    Grid         phase;     /* height_m, scattering angle in rad: ln of haze's phase function, mean 1 */
+    PlanckTable *planck[2];    /* mwir, lwir */
+    Grid         phase;        /* height_m, scattering angle in rad: ln of haze's phase function, mean 1 */
+    double       ground_kg_m3; /* vapour of its own air; NaN: its tables do not say */
     /* what follows the weather; NULL: nothing, the air is its own tables' */
     Vapour          *vapour;
     int              vapour_profile, vapour_channel[AIR_BAND_COUNT]; /* the model's own; -1: none of that channel */

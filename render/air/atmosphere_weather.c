@@ -124,6 +124,12 @@ void atmosphere_vapour_close(Atmosphere *atmosphere)
 
 bool atmosphere_follows_weather(const Atmosphere *atmosphere) { return atmosphere->vapour != NULL; }
 
+double atmosphere_vapour_kg_m3(const Atmosphere *atmosphere)
+{
+    const Vapour *v = atmosphere->vapour;
+    return v ? v->profile[atmosphere->vapour_profile].vapour_kg_m3 : atmosphere->ground_kg_m3;
+}
+
 /* ---- the sun ------------------------------------------------------------------------------------- */
 
 /* Depth of clear air to space, of the mix (now) and of the model's own air. */

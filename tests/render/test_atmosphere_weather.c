@@ -123,8 +123,8 @@ static void paths_of(const char *name, bool slant)
         atmosphere_path(&got, air, visibility_m, (AirBand)band, &path, 300);
         keep_tau(band, got.sun_transmittance, cell(&table, row, "tau_sun"), line);
         if (band >= AIR_MWIR)
-            keep(&light_errors[band - AIR_MWIR],
-                 got.thermal_w_m2_sr / cell(&table, row, "Lpath_thermal_W_m2_sr") - 1, line);
+            keep(&light_errors[band - AIR_MWIR], got.thermal_w_m2_sr / cell(&table, row, "Lpath_thermal_W_m2_sr") - 1,
+                 line);
     }
     for (int b = 0; b < AIR_BAND_COUNT; b++) {
         char what[64];
@@ -201,8 +201,8 @@ static void sky_and_sun_of_six_atmospheres(void **state)
 static void longwave_follows_the_vapour(void **state)
 {
     (void)state;
-    /* Brutsaert (1975), 1.24 (e / T)^(1/7) sigma T^4 with e in hPa, and Prata (1996), 1 - (1 + w) exp(-sqrt(1.2 + 3 w)),
-     * w = 46.5 e / T: at 308 K (55.77 hPa saturated) and 15, 50, 85 %; apart from each other by 2 % */
+    /* Brutsaert (1975), 1.24 (e / T)^(1/7) sigma T^4 with e in hPa, and Prata (1996), 1 - (1 + w) exp(-sqrt(1.2 + 3
+     * w)), w = 46.5 e / T: at 308 K (55.77 hPa saturated) and 15, 50, 85 %; apart from each other by 2 % */
     static const double of[][3] = {{0.15, 378.0, 386.6}, {0.5, 449.0, 445.8}, {0.85, 484.3, 474.7}};
     const Weather       full = {.air_temp_k = 308, .humidity = 1};
     arena_reset(arena);
@@ -210,8 +210,8 @@ static void longwave_follows_the_vapour(void **state)
     for (int i = 0; i < 3; i++) {
         const Atmosphere *air = air_in(23000, 308, of[i][0] * weather_vapour_kg_m3(&full));
         const double      down_w_m2 = atmosphere_longwave_down(air, 23000) * pow(308 / atmosphere_temp_k(air, 0), 4);
-        print_message("308 K, %2.0f %%: %.1f W/m2 down; Brutsaert %.0f, Prata %.0f\n", 100 * of[i][0], down_w_m2, of[i][1],
-                      of[i][2]);
+        print_message("308 K, %2.0f %%: %.1f W/m2 down; Brutsaert %.0f, Prata %.0f\n", 100 * of[i][0], down_w_m2,
+                      of[i][1], of[i][2]);
         CHECK_NEAR(down_w_m2 / of[i][1], 1, 0.05);
         CHECK_NEAR(down_w_m2 / of[i][2], 1, i > 0 ? 0.05 : 0.06);
         CHECK(down_w_m2 > before);
@@ -231,10 +231,9 @@ static void follows_lowtran_between_the_nodes(void **state)
     clear_errors();
     for (int row = 0; row < table.rows; row++) {
         arena_reset(arena);
-        const Atmosphere *air =
-            air_in(23000, cell(&table, row, "temp_k"), 1e-3 * cell(&table, row, "vapour_g_m3"));
-        const AirPath path = {cell(&table, row, "observer_m"), cell(&table, row, "target_m"),
-                              cell(&table, row, "range_m"), pi_rad, 0};
+        const Atmosphere *air = air_in(23000, cell(&table, row, "temp_k"), 1e-3 * cell(&table, row, "vapour_g_m3"));
+        const AirPath     path = {cell(&table, row, "observer_m"), cell(&table, row, "target_m"),
+                                  cell(&table, row, "range_m"), pi_rad, 0};
         for (int b = 0; b < 6; b++) {
             PathAir got;
             atmosphere_path(&got, air, 23000, bands[b], &path, 300);
@@ -268,7 +267,8 @@ static void is_monotone_and_continuous(void **state)
                 for (int b = 0; b < 4; b++) {
                     PathAir got;
                     atmosphere_path(&got, air, 23000, bands[b], &paths[p], 300);
-                    /* LOWTRAN7's rural haze of a given visibility lets a little more infrared through when it is moist */
+                    /* LOWTRAN7's rural haze of a given visibility lets a little more infrared through when it is moist
+                     */
                     if (h > 0 && !(got.transmittance <= before[p][b] + (bands[b] == AIR_LWIR ? 2e-5 : 1e-6)))
                         fail_msg("%g K, path %d, %s: %.6f at %d %%, %.6f before", temps_k[t], p,
                                  air_band_name(bands[b]), got.transmittance, 2 * h, before[p][b]);
@@ -370,7 +370,7 @@ static void sink(void *user, LogLevel level, const char *line)
 static void a_spoilt_file_is_refused(void **state)
 {
     (void)state;
-    char   path[512], said[256] = "";
+    char    path[512], said[256] = "";
     Vapour *v = NULL;
     strcpy(spoilt, "/tmp/pitviper-test-XXXXXX");
     const int made = mkstemp(spoilt);
@@ -429,9 +429,9 @@ static void a_spoilt_file_is_refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(level_paths_of_six_atmospheres), cmocka_unit_test(slant_paths_of_six_atmospheres),
-        cmocka_unit_test(sky_and_sun_of_six_atmospheres), cmocka_unit_test(longwave_follows_the_vapour),
+        cmocka_unit_test(level_paths_of_six_atmospheres),    cmocka_unit_test(slant_paths_of_six_atmospheres),
+        cmocka_unit_test(sky_and_sun_of_six_atmospheres),    cmocka_unit_test(longwave_follows_the_vapour),
         cmocka_unit_test(follows_lowtran_between_the_nodes), cmocka_unit_test(is_monotone_and_continuous),
-        cmocka_unit_test(its_own_state_is_the_model), cmocka_unit_test(a_spoilt_file_is_refused)};
+        cmocka_unit_test(its_own_state_is_the_model),        cmocka_unit_test(a_spoilt_file_is_refused)};
     return cmocka_run_group_tests(tests, open_model, close_model);
 }
