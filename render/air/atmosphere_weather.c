@@ -93,18 +93,21 @@ Status atmosphere_vapour_open(Atmosphere *atmosphere, const char *model)
         vapour_close(v);
         return STATUS_OK;
     }
-    int *row = calloc((size_t)atmosphere->clear_path[AIR_B].rows + 1, sizeof *row);
+    const PathTable *paths = NULL; /* of the channels that follow */
+    bool             alike = true;
+    for (AirBand b = 0; b < AIR_BAND_COUNT; b++) {
+        const SpectralChannel *c = channel_in(b);
+        const int              channel = b == AIR_PAN ? -1 : vapour_channel(v, c->name, c->low_m, c->high_m);
+        atmosphere->vapour_channel[b] = channel;
+        if (channel < 0) continue;
+        if (!paths) paths = &atmosphere->clear_path[b];
+        alike = alike && paths_same_shape(paths, &atmosphere->clear_path[b]);
+    }
+    int *row = calloc(paths ? (size_t)paths->rows + 1 : 1, sizeof *row);
     atmosphere->vapour = v;
     atmosphere->vapour_row = row;
     if (!row) return STATUS_NO_MEMORY;
-    for (AirBand b = 0; b < AIR_BAND_COUNT; b++) {
-        const SpectralChannel *c = channel_in(b);
-        atmosphere->vapour_channel[b] = b == AIR_PAN ? -1 : vapour_channel(v, c->name, c->low_m, c->high_m);
-    }
-    for (int k = 1; k < air_tabled_count; k++)
-        if (!paths_same_shape(&atmosphere->clear_path[AIR_B], &atmosphere->clear_path[air_tabled[k]])) row[0] = -1;
-    if (v->both_ways != atmosphere->clear_path[AIR_B].rows) row[0] = -1;
-    if (row[0] < 0 || !fits(atmosphere, v, row)) {
+    if (!paths || !alike || v->both_ways != paths->rows || !fits(atmosphere, v, row)) {
         log_error("atmosphere: %s: its heights and paths are not those of model %s (clear/air.csv, clear/paths_*.csv, "
                   "temperature.csv); a model of other ones needs a name that %s does not have",
                   path, model, "vapour.bin");
@@ -445,7 +448,7 @@ static Status fill_slice(Slice *out, const Slice *from, const Atmosphere *a, con
     scale_haze(&out->haze, a, bands);
     for (int k = 0; k < 2 && status == STATUS_OK; k++) {
         const PathTable *table = &from->path[AIR_MWIR + k];
-        if (change[k].hazy && table->shape == a->clear_path[AIR_B].shape && table->values == table->weights + 1)
+        if (change[k].hazy && table->shape == a->clear_path[AIR_MWIR + k].shape && table->values == table->weights + 1)
             status = fill_hazy(&out->path[AIR_MWIR + k], table, a, &change[k], arena);
     }
     if (status == STATUS_OK && sky->own[0]) status = fill_sky(&out->sky_thermal, from, a, sky, arena);
