@@ -4,135 +4,6 @@
  * estimates follow the air. */
 #include "render/air/atmosphere_private.h"
 
-#include <stdlib.h>
-#include <unistd.h>
-
-/* ---- opening ------------------------------------------------------------------------------------- */
-
-/* Rows of the file for the rows of the model's paths: the file has each pair of heights once, the lower one first.
- * False: the model has other paths. */
-static bool match_rows(int *out, const Vapour *v, const PathTable *table)
-{
-    const int n = v->ends;
-    int       first[vapour_axis_max] = {0}, rows = 0;
-    if (table->nodes[0] != n || table->nodes[1] != n) return false;
-    for (int i = 0; i < n; i++)
-        if (table->axis[0][i] != v->end_m[i] || table->axis[1][i] != v->end_m[i]) return false;
-    for (int i = 0, pair = 0; i < n; i++) {
-        first[i] = rows; /* of the pair of this height with itself; those with higher ones follow */
-        for (int j = i; j < n; j++) rows += (int)v->ranges[pair++];
-    }
-    for (int i = 0; i < n; i++)
-        for (int j = 0; j < n; j++) {
-            const int low = i < j ? i : j, high = i < j ? j : i, to = table->first[i * n + j];
-            int       pair = low * n - low * (low - 1) / 2, from = first[low];
-            for (int k = low; k < high; k++) from += (int)v->ranges[pair++];
-            if (table->first[i * n + j + 1] - to != (int)v->ranges[pair]) return false;
-            for (int k = 0; k < (int)v->ranges[pair]; k++) {
-                if (table->ln_range[to + k] != log(v->range_m[from + k])) return false;
-                out[to + k] = from + k;
-            }
-        }
-    return true;
-}
-
-static bool same_axis(const double *a, const double *b, int count)
-{
-    return memcmp(a, b, (size_t)count * sizeof *a) == 0;
-}
-
-/* Whether the model's tables have the file's heights, paths and weights. */
-static bool fits(const Atmosphere *a, const Vapour *v, int *row)
-{
-    const AirColumn *clear = &a->clear;
-    if (a->temperature.nodes[0] != v->levels || !same_axis(a->temperature.axis[0], v->level_m, v->levels) ||
-        clear->nodes != v->heights || !same_axis(clear->height_m, v->height_m, v->heights))
-        return false;
-    for (int k = 0; k < air_tabled_count; k++) {
-        const AirBand    band = air_tabled[k];
-        const PathTable *table = &a->clear_path[band];
-        if (a->vapour_channel[band] < 0) continue;
-        const VapourChannel *channel = &v->channel[a->vapour_channel[band]];
-        if (table->weights != channel->weights || table->values != channel->weights ||
-            memcmp(table->weight_temp_k + 1, channel->temp_k, (size_t)(channel->weights - 1) * sizeof(double)) != 0 ||
-            !match_rows(row, v, table))
-            return false;
-    }
-    return true;
-}
-
-/* Radiance of the sky becomes its ratio to black air at the observer's height. */
-static void sky_to_ratios(const Atmosphere *a, Vapour *v)
-{
-    const int count = v->sky[0] * v->sky[1];
-    for (int p = 0; p < v->profiles; p++)
-        for (int k = 0; k < 2; k++)
-            for (int i = 0; i < count; i++) {
-                double       t;
-                const int    level = interval_of(&t, v->level_m, v->levels, v->sky_m[i / v->sky[1]]);
-                const float *temp_k = v->profile[p].level_k + level;
-                const double black = planck_table_radiance(
-                    a->planck[k], (double)temp_k[0] + (t > 0 ? t * (double)(temp_k[1] - temp_k[0]) : 0));
-                for (int n = 2 * v->profile[p].first; n < 2 * (v->profile[p].first + v->profile[p].nodes); n++) {
-                    float *value = v->node + (size_t)(n / 2) * v->node_floats + vapour_sky_at(v, n % 2, k) + i;
-                    *value = (float)((double)*value / black);
-                }
-            }
-}
-
-Status atmosphere_vapour_open(Atmosphere *atmosphere, const char *model)
-{
-    char    path[1024];
-    Vapour *v = NULL;
-    if (!etc_path(path, sizeof path, "atmosphere/vapour.bin")) return STATUS_BAD_VALUE;
-    if (access(path, F_OK) != 0) return STATUS_OK;
-    const Status status = vapour_open(&v, path);
-    if (status != STATUS_OK) return status;
-    atmosphere->vapour_profile = vapour_profile(v, model);
-    if (atmosphere->vapour_profile < 0) {
-        vapour_close(v);
-        return STATUS_OK;
-    }
-    const PathTable *paths = NULL; /* of the channels that follow */
-    bool             alike = true;
-    for (AirBand b = 0; b < AIR_BAND_COUNT; b++) {
-        const SpectralChannel *c = channel_in(b);
-        const int              channel = b == AIR_PAN ? -1 : vapour_channel(v, c->name, c->low_m, c->high_m);
-        atmosphere->vapour_channel[b] = channel;
-        if (channel < 0) continue;
-        if (!paths) paths = &atmosphere->clear_path[b];
-        alike = alike && paths_same_shape(paths, &atmosphere->clear_path[b]);
-    }
-    int *row = calloc(paths ? (size_t)paths->rows + 1 : 1, sizeof *row);
-    atmosphere->vapour = v;
-    atmosphere->vapour_row = row;
-    if (!row) return STATUS_NO_MEMORY;
-    if (!paths || !alike || v->both_ways != paths->rows || !fits(atmosphere, v, row)) {
-        log_error("atmosphere: %s: its heights and paths are not those of model %s (clear/air.csv, clear/paths_*.csv, "
-                  "temperature.csv); a model of other ones needs a name that %s does not have",
-                  path, model, "vapour.bin");
-        return STATUS_BAD_VALUE;
-    }
-    for (int i = 0; i < v->sky[1]; i++) v->sky_slant[i] = slant_x(v->sky_deg[i] * rad_per_deg);
-    for (int i = 0; i < v->sun[1]; i++) v->sun_slant[i] = slant_x(v->sun_deg[i] * rad_per_deg);
-    sky_to_ratios(atmosphere, v);
-    return STATUS_OK;
-}
-
-void atmosphere_vapour_close(Atmosphere *atmosphere)
-{
-    vapour_close(atmosphere->vapour);
-    free((void *)atmosphere->vapour_row);
-}
-
-bool atmosphere_follows_weather(const Atmosphere *atmosphere) { return atmosphere->vapour != NULL; }
-
-double atmosphere_vapour_kg_m3(const Atmosphere *atmosphere)
-{
-    const Vapour *v = atmosphere->vapour;
-    return v ? v->profile[atmosphere->vapour_profile].vapour_kg_m3 : atmosphere->ground_kg_m3;
-}
-
 /* ---- the sun ------------------------------------------------------------------------------------- */
 
 /* Depth of clear air to space, of the mix (now) and of the model's own air. */
@@ -154,18 +25,30 @@ static void clear_to_space(double *now, double *own, const Atmosphere *a, AirBan
     *own = exp(ln_own);
 }
 
+static VapourPlace place_in(const Vapour *v, double height_m)
+{
+    VapourPlace at = {.height_m = height_m};
+    at.cell = interval_of(&at.share, v->height_m, v->heights, height_m);
+    return at;
+}
+
+static double haze_scale(const Atmosphere *a, AirBand band, int part, const VapourPlace *at)
+{
+    return vapour_haze_scale(a->vapour, a->mix, a->vapour_profile, a->vapour_channel[band], part, at);
+}
+
 /* Vertical depth that the weather adds to the haze above a height, in steps that serve daylight and its sums alike. */
 static double haze_above(const Atmosphere *a, const Slice *slice, AirBand band, double height_m)
 {
     static const double at_m[] = {0, 1000, 2000, 3000, 5000, 8000, 12000, 30000};
     const AirColumn    *haze = slice->from ? &slice->from->haze : &slice->haze;
-    const int           c = a->vapour_channel[band];
     double              sum = 0, low = NAN;
     for (size_t i = 0; i + 1 < sizeof at_m / sizeof *at_m; i++) {
         if (at_m[i + 1] <= height_m) continue;
-        const double low_m = fmax(at_m[i], height_m), high_m = at_m[i + 1];
-        if (isnan(low)) low = vapour_haze_scale(a->vapour, a->mix, a->vapour_profile, c, 0, low_m);
-        const double high = vapour_haze_scale(a->vapour, a->mix, a->vapour_profile, c, 0, high_m);
+        const double      low_m = fmax(at_m[i], height_m), high_m = at_m[i + 1];
+        const VapourPlace from = place_in(a->vapour, low_m), to = place_in(a->vapour, high_m);
+        if (isnan(low)) low = haze_scale(a, band, 0, &from);
+        const double high = haze_scale(a, band, 0, &to);
         sum += (high_m - low_m) * column_mean(haze, band, low_m, high_m) * (0.5 * (low + high) - 1);
         low = high;
     }
@@ -320,15 +203,15 @@ static Status fill_paths(Atmosphere *out, const Atmosphere *model, AirBand band,
 
 static void scale_haze(AirColumn *haze, const Atmosphere *a, unsigned bands)
 {
+    VapourPlace at[column_max];
+    for (int n = 0; n < haze->nodes; n++) at[n] = place_in(a->vapour, haze->height_m[n]);
     for (int k = 0; k < air_tabled_count; k++) {
         const AirBand b = air_tabled[k];
         if (a->vapour_channel[b] < 0 || !(bands >> b & 1)) continue;
-        for (int n = 0; n < haze->nodes; n++)
-            for (int part = 0; part < 2; part++) {
-                double *value = part ? haze->scatter_per_m[b] : haze->per_m[b];
-                value[n] *= vapour_haze_scale(a->vapour, a->mix, a->vapour_profile, a->vapour_channel[b], part,
-                                              haze->height_m[n]);
-            }
+        for (int n = 0; n < haze->nodes; n++) {
+            haze->per_m[b][n] *= haze_scale(a, b, 0, &at[n]);
+            haze->scatter_per_m[b][n] *= haze_scale(a, b, 1, &at[n]);
+        }
         column_sum_up(haze, haze->per_m[b], haze->sum[b]);
     }
 }
@@ -378,23 +261,24 @@ static Status fill_sky(Grid *out, const Slice *slice, const Atmosphere *a, const
     for (int i = 0; i < from->nodes[0]; i++) {
         double    s;
         const int low = interval_of(&s, v->sky_m, v->sky[0], from->axis[0][i]);
-        for (int at = 2 * i * from->nodes[1]; at < 2 * (i + 1) * from->nodes[1]; at++) {
-            const int    k = at % 2, j = at / 2 - i * from->nodes[1];
-            const double t = right[j];
-            double       more = 0, own = 0;
-            value[at] = from->value[at];
-            if (a->vapour_channel[AIR_MWIR + k] < 0) continue;
-            for (int corner = 0; corner < 4; corner++) {
-                const double share = (corner & 1 ? s : 1 - s) * (corner & 2 ? t : 1 - t);
-                const int    n = k * count + (low + (corner & 1)) * v->sky[1] + left[j] + (corner >> 1);
-                if (share == 0) continue;
-                more += share * (change->more[0][n] + thick * (change->more[1][n] - change->more[0][n]));
-                own += share * change->own[1][n];
+        for (int k = 0; k < 2; k++)
+            for (int j = 0; j < from->nodes[1]; j++) {
+                const int    at = 2 * (i * from->nodes[1] + j) + k, n = k * count + low * v->sky[1] + left[j];
+                const double t = right[j];
+                double       more = 0, own = 0;
+                for (int corner = 0; corner < 4; corner++) { /* mostly the first alone: the tables have equal heights */
+                    const double share = (corner & 1 ? s : 1 - s) * (corner & 2 ? t : 1 - t);
+                    const int    m_at = n + (corner & 1) * v->sky[1] + (corner >> 1);
+                    if (corner > 0 && s == 0 && t == 0) break;
+                    if (share == 0) continue;
+                    more += share * (change->more[0][m_at] + thick * (change->more[1][m_at] - change->more[0][m_at]));
+                    own += share * change->own[1][m_at];
+                }
+                const double was = exp(from->value[at]);
+                if (a->vapour_channel[AIR_MWIR + k] < 0) more = 0;
+                if (u > 1) more *= clamp((1 - was) / fmax(1 - own, 1e-3), 0, 1);
+                value[at] = log_here(fmax(was + more, 1e-9));
             }
-            const double was = exp(value[at]);
-            if (u > 1) more *= clamp((1 - was) / fmax(1 - own, 1e-3), 0, 1);
-            value[at] = log_here(fmax(was + more, 1e-9));
-        }
     }
     *out = *from;
     out->value = value;

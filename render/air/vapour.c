@@ -357,15 +357,15 @@ void vapour_mix(VapourMix *out, const Vapour *vapour, double temp_k, double vapo
 /* ---- haze ---------------------------------------------------------------------------------------- */
 
 double vapour_haze_scale(const Vapour *vapour, const VapourMix *mix, int own_profile, int channel, int part,
-                         double height_m)
+                         const VapourPlace *at)
 {
     /* LOWTRAN7's rural haze swells with the relative humidity up to 2 km; up to 3 km it goes over into that of the
      * troposphere, which has the same humidity everywhere */
-    const double humid = clamp((3000 - height_m) / 1000, 0, 1);
+    const double humid = clamp((3000 - at->height_m) / 1000, 0, 1), t = at->share;
     const size_t heights = (size_t)vapour->heights, step = 2 * (size_t)vapour->channels * heights;
     const float *haze = vapour->haze + (size_t)(2 * channel + part) * heights;
-    double       t, sum = 0;
-    const int    i = cell_of(&t, vapour->height_m, vapour->heights, height_m);
+    const int    i = at->cell;
+    double       sum = 0;
     const double own = between(haze + (size_t)own_profile * step, i, t);
     if (!(own > 0)) return 1;
     for (int k = 0; k < mix->profiles; k++)

@@ -108,8 +108,13 @@ static inline double vapour_mixed(const Vapour *v, const VapourMix *mix, size_t 
     return sum;
 }
 
-/* Extinction (part 0) or scattering (1) of the mix's haze over that of a profile's own, at a height. */
+/* Extinction (part 0) or scattering (1) of the mix's haze over that of a profile's own, at a height: behind cell of the
+ * file's heights by a share of it. */
+typedef struct VapourPlace {
+    int    cell;
+    double share, height_m;
+} VapourPlace;
 double vapour_haze_scale(const Vapour *vapour, const VapourMix *mix, int own_profile, int channel, int part,
-                         double height_m);
+                         const VapourPlace *at);
 
 #endif
