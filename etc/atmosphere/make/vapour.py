@@ -4,7 +4,7 @@
     etc/atmosphere/make/vapour.py [OUT] [--work FOLDER] [--between]
 
 Nodes are the six atmospheres of LOWTRAN7, each with its water vapour times some factors. Needs numpy and gfortran, and
-the network once (lowtran.py). Takes about three minutes of one processor; what a folder of --work has already is not
+the network once (lowtran.py). Takes about five minutes of one processor; what a folder of --work has already is not
 computed again. Heights, paths and angles are those of us1976's tables, channels those of CHANNELS. README.md has the
 layout of the file.
 """
