@@ -117,19 +117,24 @@ typedef struct AtmosphereProbe {
     int         count;
     char        name[probe_models_max][64];
     Atmosphere *model[probe_models_max];
+    Arena      *arena; /* of the air under a row's weather */
 } AtmosphereProbe;
 
 static Status atmosphere_probe_open(void **state, int argc, char **argv)
 {
     (void)argc;
     (void)argv;
-    *state = calloc(1, sizeof(AtmosphereProbe));
-    return *state ? STATUS_OK : STATUS_NO_MEMORY;
+    AtmosphereProbe *probe = calloc(1, sizeof *probe);
+    if (probe) probe->arena = arena_create();
+    *state = probe;
+    return probe && probe->arena ? STATUS_OK : STATUS_NO_MEMORY;
 }
 
 static void atmosphere_probe_close(void *state)
 {
     AtmosphereProbe *probe = state;
+    if (!probe) return;
+    arena_destroy(probe->arena);
     for (int i = 0; i < probe->count; i++) atmosphere_close(probe->model[i]);
     free(probe);
 }
@@ -148,10 +153,28 @@ static const char *find_model(Atmosphere **out, AtmosphereProbe *probe, const ch
     return *out ? NULL : "no such model, or its tables are invalid (see the log)";
 }
 
+/* The model's air under the weather of a row; without one the model's own. */
+static const char *under_weather(const Atmosphere **out, AtmosphereProbe *probe, const Atmosphere *model,
+                                 const ProbeValue *air_temp_k, const ProbeValue *humidity_pct, double visibility_m)
+{
+    Weather weather = weather_default();
+    *out = model;
+    if (!isfinite(air_temp_k->number) && !isfinite(humidity_pct->number)) return NULL;
+    if (!isfinite(humidity_pct->number)) return "air_temp_k needs humidity_pct beside it";
+    weather.air_temp_k = isfinite(air_temp_k->number) ? air_temp_k->number : atmosphere_temp_k(model, 0);
+    weather.humidity = 0.01 * humidity_pct->number;
+    if (!(weather.air_temp_k >= 220 && weather.air_temp_k <= 330)) return "air_temp_k must be 220 .. 330";
+    if (!(weather.humidity >= 0 && weather.humidity <= 1)) return "humidity_pct must be 0 .. 100";
+    const AirState state = {visibility_m, weather.air_temp_k, weather_vapour_kg_m3(&weather)};
+    arena_reset(probe->arena);
+    return atmosphere_in(out, model, &state, ~0u, probe->arena) == STATUS_OK ? NULL : "out of memory";
+}
+
 static const char *atmosphere_row(void *state, const ProbeValue *in, ProbeValue *out)
 {
-    Atmosphere *model;
-    const char *why = find_model(&model, state, in[0].text);
+    Atmosphere       *model;
+    const Atmosphere *here;
+    const char       *why = find_model(&model, state, in[0].text);
     if (why) return why;
     AirBand band = AIR_B;
     while (band < AIR_BAND_COUNT && strcmp(air_band_name(band), in[2].text) != 0) band++;
@@ -166,8 +189,10 @@ static const char *atmosphere_row(void *state, const ProbeValue *in, ProbeValue 
     if (!(path.range_m > 0 && path.range_m >= 0.9999 * fabs(path.observer_m - path.target_m)))
         return "range_km must be above 0 and at least the difference of the heights";
     if (!(temp_k > 0)) return "temp_k must be above 0";
+    why = under_weather(&here, state, model, &in[9], &in[10], visibility_m);
+    if (why) return why;
     PathAir air;
-    atmosphere_path(&air, model, visibility_m, band, &path, temp_k);
+    atmosphere_path(&air, here, visibility_m, band, &path, temp_k);
     out[0].number = air.transmittance;
     out[1].number = air.thermal_w_m2_sr;
     out[2].number = air.sun_transmittance;
@@ -192,8 +217,10 @@ const Probe render_probes[] = {
      .row = rays_row,
      .close = rays_close},
     {.name = "atmosphere",
-     .help = "transmittance and path radiance from the tables of etc/atmosphere",
-     .in = "model$,visibility_km,band$,observer_m,target_m,range_km,temp_k,sun_zenith_deg?,rel_azimuth_deg?",
+     .help = "transmittance and path radiance from the tables of etc/atmosphere; temp_k: of the target; air_temp_k and "
+             "humidity_pct: of the air at the ground, without them the model's own",
+     .in = "model$,visibility_km,band$,observer_m,target_m,range_km,temp_k,sun_zenith_deg?,rel_azimuth_deg?,"
+           "air_temp_k?,humidity_pct?",
      .out = "tau,path_radiance,sun_tau,scattered",
      .open = atmosphere_probe_open,
      .row = atmosphere_row,

@@ -106,7 +106,7 @@ Status air_at(Air *out, const AirSource *source, const Weather *weather, const S
     Status              status = daylight_begin(&job.light, &out->light, &in, arena);
     if (status != STATUS_OK) return status;
     if (eye->view) out->light.zero_z_m = daylight_height(&out->light, eye->view->p_enu) - eye->height_m;
-    sun_at_eye(out, source->atmosphere, sun, eye->bands);
+    sun_at_eye(out, out->light.atmosphere, sun, eye->bands);
     TableInput input = {.bands = eye->bands};
     look_where(&input, eye->view, out->light.sun_d_enu, out->eye_height_m);
     status = air_table_begin(&job.table, out, &input, arena);

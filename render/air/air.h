@@ -20,10 +20,10 @@
  * on a tilted plane, are tables interpolated for the requested bands. tests/render/test_air.c measures their errors.
  * Heights are above the ground at the terrain's origin, which is at the model's 0 km.
  *
- * Weather. Extinction is the model's at the visibility given. Air warmer or colder than the model's own ground
- * (weather.air_temp_k) scales the thermal radiance of path and sky by the ratio of the two Planck radiances in the
- * band, and the longwave flux by that of the fourth powers; its transmittance, and so its water vapour, stay the
- * model's. With height the air's temperature changes as the model's does. Clouds are a mean: the direct sun is dimmed
+ * Weather. Haze is the model's at the visibility given; clear air follows temperature and humidity at the ground
+ * (atmosphere_in). What the air's profiles do not reach scales the thermal radiance of path and sky by the ratio of the
+ * two Planck radiances in the band, and the longwave flux by that of the fourth powers.
+ * With height the air's temperature changes as the profiles' does. Clouds are a mean: the direct sun is dimmed
  * by their share, sun and sky together by 1 - 0.75 cloud^3.4 (Kasten & Czeplak, Solar Energy 24, 1980), in every band
  * and towards every direction alike; they fill that share of the thermal sky with air temperature, and longwave follows
  * Unsworth & Monteith (Q. J. R. Meteorol. Soc. 101, 1975). Measured radiation (Weather) takes the place of both. */
@@ -79,7 +79,8 @@ typedef struct Daylight {
      * is the irradiance. */
     double sky_scale[AIR_BAND_COUNT];
     float  plane_w_m2[AIR_BAND_COUNT][air_plane_ups + 1][air_plane_azimuths + 1]; /* tilted plane, over its share */
-    const struct AirDay *day; /* what the tables were made from; in the arena. NULL: none */
+    const struct AirDay *day;        /* what the tables were made from; in the arena. NULL: none */
+    const Atmosphere    *atmosphere; /* that of the weather, in the arena as well */
 } Daylight;
 
 /* Data that does not change between frames. */
@@ -93,6 +94,9 @@ typedef struct AirSource {
 /* Totals alone, of pan and all wavelengths, and the air's temperature: microseconds, no arena (bench speed: daylight).
  * weather->air_temp_k: NaN for the model's own; the Daylight's is then filled in. */
 void daylight_at(Daylight *out, const AirSource *source, const Weather *weather, const Sun *sun);
+/* The atmosphere under a weather, as daylight and paths have it: atmosphere_in of render/air/atmosphere.h. */
+Status daylight_air(const Atmosphere **out, const Atmosphere *model, const Weather *weather, unsigned bands,
+                    Arena *arena);
 /* And the tables by direction of these bands (1 << AirBand). pool: may be NULL. STATUS_NO_MEMORY: of the arena, in
  * which the AirDay lives. */
 Status daylight_by_direction(Daylight *out, const AirSource *source, const Weather *weather, const Sun *sun,

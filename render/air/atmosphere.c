@@ -341,18 +341,34 @@ void atmosphere_path(PathAir *out, const Atmosphere *atmosphere, double visibili
 
 /* ---- sky and sun ----------------------------------------------------------------------------------- */
 
+/* ln depth and ln (diffuse / top) of a visibility. */
+static void slice_sun(double out[2], const Atmosphere *atmosphere, const Slice *slice, AirBand band, double observer_m,
+                      double slant)
+{
+    const double at[2] = {observer_m, slant};
+    if (!atmosphere->mix) {
+        grid_some(out, &slice->sun, at, air_tabled_index(band), air_tabled_count, 2);
+        return;
+    }
+    double    t, high[2];
+    const int i = interval_of(&t, slice->sun.axis[0], slice->sun.nodes[0], observer_m);
+    sun_node(out, atmosphere, slice, band, i, slant);
+    if (!(t > 0)) return;
+    sun_node(high, atmosphere, slice, band, i + 1, slant);
+    for (int k = 0; k < 2; k++) out[k] += t * (high[k] - out[k]);
+}
+
 void blend_sun(SunAir *out, const Atmosphere *atmosphere, const Blend *blend, AirBand band, double observer_m,
                double sun_zenith_rad)
 {
     *out = (SunAir){0};
     if (!(sun_zenith_rad <= pi_rad / 2)) return;
     double       low[2], high[2]; /* ln depth, ln (diffuse / top) */
-    const double at[2] = {observer_m, slant_x(sun_zenith_rad)}, top = atmosphere->sun_top_w_m2[band];
-    const int    i = air_tabled_index(band);
-    grid_some(low, &blend->low->sun, at, i, air_tabled_count, 2);
+    const double slant = slant_x(sun_zenith_rad), top = atmosphere->sun_top_w_m2[band];
+    slice_sun(low, atmosphere, blend->low, band, observer_m, slant);
     double depth = exp(low[0]), diffuse = exp(low[1]);
     if (blend->high != blend->low) {
-        grid_some(high, &blend->high->sun, at, i, air_tabled_count, 2);
+        slice_sun(high, atmosphere, blend->high, band, observer_m, slant);
         const double clearest = exp(high[0]), clearest_diffuse = exp(high[1]);
         depth = fmax(blend->haze_low * depth + blend->haze_high * clearest, 0.3 * clearest);
         diffuse = clamp(blend->haze_low * diffuse + blend->haze_high * clearest_diffuse, 0.3 * clearest_diffuse, 1);
@@ -433,9 +449,23 @@ void atmosphere_sky(SkyAir *out, const Atmosphere *atmosphere, double visibility
 
 double atmosphere_longwave_down(const Atmosphere *atmosphere, double visibility_m)
 {
-    Blend blend;
+    static const double sigma_w_m2_k4 = 5.670374419184429e-8; /* Stefan and Boltzmann's */
+    const Vapour       *v = atmosphere->vapour;
+    const VapourMix    *mix = atmosphere->mix;
+    Blend               blend;
     blend_at(&blend, atmosphere, visibility_m);
-    return blend_of(&blend, blend.low->longwave_down_w_m2, blend.high->longwave_down_w_m2);
+    const double model_w_m2 = blend_of(&blend, blend.low->longwave_down_w_m2, blend.high->longwave_down_w_m2);
+    if (!mix) return model_w_m2;
+    /* over a black sky of the ground's temperature, each of its own */
+    const VapourProfile *own = &v->profile[atmosphere->vapour_profile];
+    const double         black_w_m2 = sigma_w_m2_k4 * pow(own->temp_k, 4);
+    double               now = 0;
+    for (int k = 0; k < mix->nodes; k++)
+        now += mix->share[0][k] * (double)vapour_node(v, mix->node[k])[vapour_longwave_at] /
+               (sigma_w_m2_k4 * pow(v->profile[mix->profile[mix->of[k]]].temp_k, 4));
+    return sigma_w_m2_k4 * pow(mix->temp_k, 4) *
+           emissivity_in(model_w_m2 / black_w_m2, (double)vapour_node(v, own->own)[vapour_longwave_at] / black_w_m2,
+                         now);
 }
 
 double atmosphere_temp_k(const Atmosphere *atmosphere, double height_m)

@@ -34,6 +34,21 @@ Status atmosphere_open(Atmosphere **out, const char *model);
 /* The same for one visibility alone, m: it reads only the neighbouring tables and is valid at no other visibility. */
 Status atmosphere_open_at(Atmosphere **out, const char *model, double visibility_m);
 void   atmosphere_close(Atmosphere *atmosphere);
+/* Air at the ground: temp_k NaN: the model's own air. */
+typedef struct AirState {
+    double visibility_m, temp_k, vapour_kg_m3;
+} AirState;
+/* Whether the air of a model follows the temperature and the water vapour at the ground: us1976 and midlat_summer do, a
+ * user's own tables are what they are. */
+bool atmosphere_follows_weather(const Atmosphere *atmosphere);
+/* Water vapour at the ground of the model's own air; NaN: its tables do not say. */
+double atmosphere_vapour_kg_m3(const Atmosphere *atmosphere);
+/* The model's air under a weather, valid for all functions here at that visibility alone; clear air by
+ * etc/atmosphere/vapour.bin, haze the model's, swollen by the humidity. It lives in the arena and uses the model, which
+ * is returned itself where it does not follow. bands: 1 << AirBand, those whose paths are asked for. A pure function of
+ * the state, continuous in all of it. STATUS_NO_MEMORY. */
+Status atmosphere_in(const Atmosphere **out, const Atmosphere *model, const AirState *state, unsigned bands,
+                     Arena *arena);
 /* Valid visibilities, m; outside them the nearest is used: 0.4 of the least to 2.2 of the greatest that has a table.
  * Between tables and beyond them haze's extinction at the model's own heights (temperature.csv) is a straight line in
  * 1 / visibility, between these heights one in its logarithm (render/air/atmosphere_slices.c). */

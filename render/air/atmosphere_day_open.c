@@ -61,21 +61,18 @@ static Status fill_column(AirDay *day, Arena *arena)
 
 static void fill_sun(AirDay *day, int which)
 {
-    const Grid *grid = &slice_of(day, which)->sun;
-    DaySun     *sun = &day->sun[which];
-    double      t;
-    const int   j = interval_of(&t, grid->axis[1], grid->nodes[1], slant_x(day->sun_zenith_rad));
-    sun->nodes = grid->nodes[0];
-    sun->height_m = grid->axis[0];
-    for (int i = 0; i < grid->nodes[0]; i++) {
-        const double *low = grid->value + (i * grid->nodes[1] + j) * grid->values,
-                     *high = t > 0 ? low + grid->values : low;
+    const Slice *slice = slice_of(day, which);
+    DaySun      *sun = &day->sun[which];
+    sun->nodes = slice->sun.nodes[0];
+    sun->height_m = slice->sun.axis[0];
+    for (int i = 0; i < sun->nodes; i++)
         for (int k = 0; k < air_tabled_count; k++) {
-            sun->ln_depth[air_tabled[k]][i] = low[k] + t * (high[k] - low[k]);
-            sun->ln_diffuse[air_tabled[k]][i] =
-                low[k + air_tabled_count] + t * (high[k + air_tabled_count] - low[k + air_tabled_count]);
+            double node[2];
+            if (!wants(day->parts, air_tabled[k])) continue;
+            sun_node(node, day->atmosphere, slice, air_tabled[k], i, slant_x(day->sun_zenith_rad));
+            sun->ln_depth[air_tabled[k]][i] = node[0];
+            sun->ln_diffuse[air_tabled[k]][i] = node[1];
         }
-    }
 }
 
 /* Interpolates the sun's axis out of blocks of [suns][inner] values. */

@@ -93,6 +93,29 @@ static Status open_slices(Atmosphere *atmosphere, const char *folder, const Grid
     return status;
 }
 
+/* The one row stays where it was read. */
+static Status keep_row(void *user, const void *read, const TableRows *rows, int number)
+{
+    (void)user, (void)read;
+    return number == 0 ? STATUS_OK : table_rows_refuse(rows, number, NULL, "one row is enough");
+}
+
+/* ground.csv, which a model need not have. */
+static Status open_ground(Atmosphere *atmosphere, const char *folder)
+{
+    static const TableColumn vapour = {"vapour_g_m3", TABLE_DOUBLE, .size = sizeof(double), .low = 0, .high = 200};
+    static const TableFormat format = {"atmosphere", &vapour, 1,
+                                       .next = "etc/atmosphere/README.md explains the columns"};
+    char                     path[1024];
+    double                   g_m3 = NAN;
+    atmosphere->ground_kg_m3 = NAN;
+    if (!folder_has(folder, "ground.csv")) return STATUS_OK;
+    Status status = atmosphere_file(path, folder, "ground.csv");
+    if (status == STATUS_OK) status = table_each(&format, path, &g_m3, sizeof g_m3, keep_row, NULL);
+    atmosphere->ground_kg_m3 = 1e-3 * g_m3;
+    return status;
+}
+
 static Status open_model(Atmosphere *atmosphere, const char *folder, double visibility_m)
 {
     static const GridColumn visibility = {"visibility_m", 100, 500000}, longwave = {"longwave_down_w_m2", 1, 1000};
@@ -106,6 +129,7 @@ static Status open_model(Atmosphere *atmosphere, const char *folder, double visi
         status = STATUS_BAD_VALUE;
     }
     if (status == STATUS_OK) status = clear_open(atmosphere, folder);
+    if (status == STATUS_OK) status = open_ground(atmosphere, folder);
     if (status == STATUS_OK) status = open_slices(atmosphere, folder, &list, visibility_m);
     grid_close(&list);
     return status;
@@ -197,6 +221,11 @@ Status atmosphere_open_at(Atmosphere **out, const char *model, double visibility
         atmosphere_close(atmosphere);
         return status;
     }
+    if (!named) status = atmosphere_vapour_open(atmosphere, model);
+    if (status != STATUS_OK) {
+        atmosphere_close(atmosphere);
+        return status;
+    }
     number_shapes(atmosphere);
     *out = atmosphere;
     return STATUS_OK;
@@ -213,6 +242,7 @@ void atmosphere_close(Atmosphere *atmosphere)
     grid_close(&atmosphere->temperature);
     grid_close(&atmosphere->phase);
     grid_close(&atmosphere->solar);
+    atmosphere_vapour_close(atmosphere);
     free(atmosphere);
 }
 

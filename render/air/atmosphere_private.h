@@ -4,6 +4,7 @@
 
 #include "pitviper_table.h"
 #include "render/air/atmosphere.h"
+#include "render/air/vapour_private.h"
 #include "render/materials/planck.h"
 
 /* Bands that have tables of their own; AIR_PAN is the sum of b, g and r. */
@@ -106,14 +107,15 @@ typedef struct AirColumn {
 } AirColumn;
 
 typedef struct Slice {
-    double    visibility_m, longwave_down_w_m2;
-    bool      has_paths, has_scattered; /* files of its own for path; for scattered and sky_scattered */
-    AirColumn haze;
-    PathTable path[AIR_BAND_COUNT];
-    PathTable scattered;     /* ratio to scatter_estimate */
-    Grid      sky_thermal;   /* observer_m, slant_x of the zenith angle; ln ratio to black air, mwir lwir */
-    Grid      sky_scattered; /* observer, view, sun, azimuth: ratio to the estimate */
-    Grid      sun;           /* observer, sun: ln depth [6], then ln (diffuse / top) [6] */
+    double              visibility_m, longwave_down_w_m2;
+    bool                has_paths, has_scattered; /* files of its own for path; for scattered and sky_scattered */
+    AirColumn           haze;
+    PathTable           path[AIR_BAND_COUNT];
+    PathTable           scattered;     /* ratio to scatter_estimate */
+    Grid                sky_thermal;   /* observer_m, slant_x of the zenith angle; ln ratio to black air, mwir lwir */
+    Grid                sky_scattered; /* observer, view, sun, azimuth: ratio to the estimate */
+    Grid                sun;           /* observer, sun: ln depth [6], then ln (diffuse / top) [6] */
+    const struct Slice *from;          /* under a weather: the model's own; NULL: this is */
 } Slice;
 
 struct Atmosphere {
@@ -124,10 +126,36 @@ struct Atmosphere {
     AirColumn    clear;
     PathTable    clear_path[AIR_BAND_COUNT];
     Grid         temperature;
-    PlanckTable *planck[2]; /* mwir, lwir */
-    Grid         solar;     /* visibility, water, ground, sun: ln depth and ln diffuse: atmosphere_solar.c */
-    Grid         phase;     /* height_m, scattering angle in rad: ln of haze's phase function, mean 1 */
+    PlanckTable *planck[2];    /* mwir, lwir */
+    Grid         solar;        /* visibility, water, ground, sun: ln depth and ln diffuse: atmosphere_solar.c */
+    Grid         phase;        /* height_m, scattering angle in rad: ln of haze's phase function, mean 1 */
+    double       ground_kg_m3; /* vapour of its own air; NaN: its tables do not say */
+    /* what follows the weather; NULL: nothing, the air is its own tables' */
+    Vapour          *vapour;
+    int              vapour_profile, vapour_channel[AIR_BAND_COUNT]; /* the model's own; -1: none of that channel */
+    const int       *vapour_row;                                     /* of clear_path's rows, [rows] */
+    const VapourMix *mix;                                            /* under a weather; NULL: the model's own air */
 };
+
+/* The model under a weather, without what paths need: the sun, longwave light, temperatures. */
+typedef struct AirSums {
+    Atmosphere air;
+    VapourMix  mix;
+    double     level_k[vapour_levels_max];
+} AirSums;
+/* The model itself where it does not follow the weather. */
+const Atmosphere *atmosphere_sums_in(AirSums *room, const Atmosphere *model, const AirState *state);
+/* vapour.bin, for a model that is one of its profiles; else none. */
+Status atmosphere_vapour_open(Atmosphere *atmosphere, const char *model);
+void   atmosphere_vapour_close(Atmosphere *atmosphere);
+
+/* Of a visibility's table of the sun, at one of its heights: ln depth and ln (diffuse / top) under the weather. */
+void sun_node(double out[2], const Atmosphere *atmosphere, const Slice *slice, AirBand band, int height, double slant);
+/* Emissivity of the air, 1 - q, of which the weather's replaces the model's: q under haze follows in proportion. */
+static inline double emissivity_in(double hazy, double own, double now)
+{
+    return hazy + clamp((1 - hazy) / fmax(1 - own, 1e-3), 0, 1.2) * (now - own);
+}
 
 /* Relative length of a path to space: 1 at the zenith, 40 at the horizon. After Rozenberg (Twilight, 1966). */
 static inline double air_mass(double zenith_rad)
@@ -166,6 +194,8 @@ void   blend_at(Blend *out, const Atmosphere *atmosphere, double visibility_m);
 double column_mean(const AirColumn *column, AirBand band, double a_m, double b_m);
 double column_scatter(const AirColumn *column, AirBand band, double height_m);
 void   column_sum_up(const AirColumn *column, const double *value, double *sum);
+/* Of clear air: what black air of the atmosphere's temperatures makes of the extinction of mwir and lwir. */
+void column_black(AirColumn *clear, const Atmosphere *atmosphere);
 /* Of two visibilities' haze. */
 double blend_haze_mean(const Blend *blend, AirBand band, double a_m, double b_m);
 double blend_haze_scatter(const Blend *blend, AirBand band, double height_m);

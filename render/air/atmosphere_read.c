@@ -196,7 +196,7 @@ static Status read_column(AirColumn *out, const char *path, double low)
     return status;
 }
 
-static void add_black(AirColumn *clear, const Atmosphere *atmosphere)
+void column_black(AirColumn *clear, const Atmosphere *atmosphere)
 {
     for (int i = 0; i < 2; i++) {
         const AirBand band = i ? AIR_LWIR : AIR_MWIR;
@@ -464,7 +464,7 @@ Status clear_open(Atmosphere *atmosphere, const char *folder)
     status = atmosphere_file(clear, folder, "clear");
     if (status == STATUS_OK) status = atmosphere_file(path, clear, "air.csv");
     if (status == STATUS_OK) status = read_column(&atmosphere->clear, path, 1e-12);
-    if (status == STATUS_OK) add_black(&atmosphere->clear, atmosphere);
+    if (status == STATUS_OK) column_black(&atmosphere->clear, atmosphere);
     for (int i = 0; i < air_tabled_count && status == STATUS_OK; i++) {
         const AirBand band = air_tabled[i];
         status = open_paths(&atmosphere->clear_path[band], clear, band, false);

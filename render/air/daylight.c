@@ -1,6 +1,7 @@
 /* render/air/daylight.c: skylight by direction, from the tables of render/air/atmosphere.c, independent of any eye.
  * Totals: daylight_sums.c. */
 #include "render/air/air_private.h"
+#include "render/air/atmosphere_private.h"
 
 /* ---- the sky as a table -------------------------------------------------------------------- */
 
@@ -441,6 +442,33 @@ void daylight_end(DaylightJob *job)
         if (job->bands >> b & 1) job->light->sky_w_m2[b] = job->light->plane_w_m2[b][air_plane_ups][0];
 }
 
+/* ---- under a weather ---------------------------------------------------------------------------- */
+
+static AirState state_of(const Atmosphere *model, const Weather *weather)
+{
+    Weather w = *weather;
+    if (isnan(w.air_temp_k)) w.air_temp_k = atmosphere_temp_k(model, 0);
+    return (AirState){w.visibility_m, w.air_temp_k, weather_vapour_kg_m3(&w)};
+}
+
+Status daylight_air(const Atmosphere **out, const Atmosphere *model, const Weather *weather, unsigned bands,
+                    Arena *arena)
+{
+    const AirState state = state_of(model, weather);
+    return atmosphere_in(out, model, &state, bands, arena);
+}
+
+void daylight_at(Daylight *out, const AirSource *source, const Weather *weather, const Sun *sun)
+{
+    const AirState state = state_of(source->atmosphere, weather);
+    AirSource      here = *source;
+    AirSums        room;
+    double         diffuse_w_m2[AIR_BAND_COUNT];
+    here.atmosphere = atmosphere_sums_in(&room, source->atmosphere, &state);
+    memset(out, 0, offsetof(Daylight, sky));
+    daylight_sums(out, &here, weather, sun, 0, diffuse_w_m2);
+}
+
 /* ---- the complete tables ------------------------------------------------------------------------ */
 
 Status daylight_begin(DaylightJob **out, Daylight *light, const DaylightInput *in, Arena *arena)
@@ -448,16 +476,19 @@ Status daylight_begin(DaylightJob **out, Daylight *light, const DaylightInput *i
     DaylightJob *job = arena_alloc(arena, 1, sizeof *job);
     if (!job) return STATUS_NO_MEMORY;
     *light = (Daylight){0};
-    job->light = light, job->bands = in->bands, job->other = in->other, job->limb = in->limb,
+    job->light = light, job->bands = in->bands, job->other = in->other, job->limb = in->limb;
     job->other_m = in->other_m;
-    daylight_sums(light, in->source, in->weather, in->sun, in->bands, job->diffuse_w_m2);
+    AirSource source = *in->source;
+    Status    status = daylight_air(&source.atmosphere, in->source->atmosphere, in->weather, in->bands, arena);
+    if (status != STATUS_OK) return status;
+    daylight_sums(light, &source, in->weather, in->sun, in->bands, job->diffuse_w_m2);
     for (int a = 0; a <= asked_azimuths; a++) job->azimuth_rad[a] = a * pi_rad / asked_azimuths;
     double temp_k[air_temps + 1];
     memcpy(temp_k, emitter_temp_k, sizeof emitter_temp_k);
     temp_k[air_temps] = light->weather.air_temp_k;
-    const Status status = air_day_at(&light->day, in->source->atmosphere, in->weather->visibility_m,
-                                     light->day_zenith_rad, in->bands, temp_k, air_temps + 1, arena);
-    job->day = light->day;
+    status = air_day_at(&light->day, source.atmosphere, in->weather->visibility_m, light->day_zenith_rad, in->bands,
+                        temp_k, air_temps + 1, arena);
+    job->day = light->day, light->atmosphere = source.atmosphere;
     *out = job;
     return status;
 }

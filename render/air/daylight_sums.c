@@ -127,10 +127,3 @@ void daylight_sums(Daylight *out, const AirSource *source, const Weather *weathe
     out->ground_w_m2_sr[AIR_MWIR] = planck_table_radiance(out->planck_mwir, ground_k);
     out->ground_w_m2_sr[AIR_LWIR] = planck_table_radiance(out->planck_lwir, ground_k);
 }
-
-void daylight_at(Daylight *out, const AirSource *source, const Weather *weather, const Sun *sun)
-{
-    double diffuse_w_m2[AIR_BAND_COUNT];
-    memset(out, 0, offsetof(Daylight, sky));
-    daylight_sums(out, source, weather, sun, 0, diffuse_w_m2);
-}

@@ -236,10 +236,12 @@ enum { config_paths_size = 4096 };
 
 #define CONFIG_WEATHER(ROW) \
     ROW(NAME_OR_PATH, weather., atmosphere, "us1976", 1024, \
-        "us1976, midlat_summer, or another folder of etc/atmosphere; or the path of such a folder, ./NAME") \
+        "us1976, midlat_summer (haze; their clear air follows air_temp_k and humidity_pct), or another folder of " \
+        "etc/atmosphere, or the path of such a folder, ./NAME (whose air is that of its tables)") \
     ROW(DOUBLE, weather., visibility_m, 23000, 100, 300000, "m", "meteorological range") \
     ROW(DOUBLE, weather., air_temp_k, NAN, 220, 330, "K", \
-        "at ground level at the terrain origin, with the atmosphere's lapse above; unset: the atmosphere's own") \
+        "at ground level at the terrain origin, with the standard atmospheres' lapse above; unset: the atmosphere's " \
+        "own") \
     ROW(DOUBLE, weather., pressure_mbar, 1013.25, 300, 1100, "mbar", "air pressure, for the refraction of sunlight") \
     ROW(DOUBLE, weather., wind_mps, 3, 0, 60, "m/s", "wind speed; cools ground and vehicles, moves smoke") \
     ROW(DOUBLE, weather., wind_from_deg, 270, 0, 360, "deg", "direction the wind comes from, clockwise from north") \
@@ -249,8 +251,8 @@ enum { config_paths_size = 4096 };
     ROW(DOUBLE, weather., air_range_k, 10, 0, 60, "K", \
         "warmest less coldest air of a clear day, whose mean is weather.air_temp_k") \
     ROW(DOUBLE, weather., humidity_pct, 60, 0, 100, "%", \
-        "relative humidity at weather.air_temp_k, for what ground and leaves evaporate; the air's own bands are " \
-        "the atmosphere's") \
+        "relative humidity at weather.air_temp_k: what the air lets through and sends down in all bands, what ground " \
+        "and leaves evaporate") \
     ROW(DOUBLE, weather., cloud, 0, 0, 1, "", \
         "mean share of the sky that clouds cover, which dim the sun and warm the sky") \
     ROW(DOUBLE, weather., rain_mmh, 0, 0, 300, "mm/h", \

@@ -137,7 +137,10 @@ Status tables_used(TablesUsed *out, const Config *config, const char *catalog)
     Status status = STATUS_OK;
     out->count = 0;
     if (etc_path(folder, sizeof folder, "atmosphere")) {
+        char vapour[path_size + 16];
+        snprintf(vapour, sizeof vapour, "%s/vapour.bin", folder);
         status = add_csv_of(out, folder, "atmosphere/");
+        if (status == STATUS_OK) status = add(out, "atmosphere/vapour.bin", vapour);
         folder[strlen(folder) - strlen("/atmosphere")] = 0;
         if (status == STATUS_OK) status = add_csv_of(out, folder, "");
     }

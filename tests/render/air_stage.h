@@ -31,6 +31,15 @@ static int close_tables(void **state)
     return 0;
 }
 
+/* The state of US 1976's own ground, LOWTRAN7's: 288.2 K, 7745 ppmv of vapour at 1013 hPa. */
+static inline Weather us1976_weather(void)
+{
+    Weather weather = weather_default();
+    weather.air_temp_k = 288.2;
+    weather.humidity = 7745e-6 * 101300 / weather_saturation_pa(288.2);
+    return weather;
+}
+
 static const double sun_azimuth = 2.1;
 
 static Sun sun_at_elevation(double elevation_deg)

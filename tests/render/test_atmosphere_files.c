@@ -4,6 +4,7 @@
 #include "render/air/atmosphere.h"
 
 #include <sys/stat.h>
+#include <unistd.h>
 
 typedef struct SmallFile {
     const char *name, *text;
@@ -189,6 +190,38 @@ static void refuses_and_says_where(void **state)
     log_set_sink(check_listen, NULL);
 }
 
+/* A model of one's own has the air of its tables under any weather, and the vapour that its ground.csv says. */
+static void its_own_air_stays(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *text;
+        double      kg_m3; /* NAN: refused */
+    } of[] = {{"vapour_g_m3\n9.5\n", 9.5e-3}, {"vapour_g_m3\n0\n", 0},    {"vapour_g_m3\n9.5\n10\n", NAN},
+              {"vapour_g_m3\n201\n", NAN},    {"vapour_g_m3\n-1\n", NAN}, {"vapour\n9\n", NAN}};
+    Atmosphere       *model = NULL;
+    const Atmosphere *there = NULL;
+    Arena            *arena = arena_create();
+    const AirState    humid = {10000, 308, 0.033};
+    char              path[256];
+    CHECK(arena && atmosphere_open(&model, "m") == STATUS_OK);
+    CHECK(!atmosphere_follows_weather(model) && isnan(atmosphere_vapour_kg_m3(model)));
+    CHECK(atmosphere_in(&there, model, &humid, ~0u, arena) == STATUS_OK && there == model);
+    atmosphere_close(model);
+    snprintf(path, sizeof path, "%s/atmosphere/m/ground.csv", small_root);
+    for (int i = 0; i < 6; i++) {
+        FILE *file = fopen(path, "wb");
+        CHECK(file && fputs(of[i].text, file) >= 0 && fclose(file) == 0);
+        model = NULL;
+        const Status status = atmosphere_open(&model, "m");
+        CHECK((status == STATUS_OK) == isfinite(of[i].kg_m3));
+        if (status == STATUS_OK) CHECK_NEAR(atmosphere_vapour_kg_m3(model), of[i].kg_m3, 1e-12);
+        atmosphere_close(model);
+    }
+    unlink(path);
+    arena_destroy(arena);
+}
+
 /* A folder of its own, of haze, sun and the sky's light alone, or of all with other heights, ranges and azimuths. */
 typedef struct Beside {
     const char *name, *text;
@@ -352,6 +385,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(refuses_and_says_where, make_small, remove_small),
+        cmocka_unit_test_setup_teardown(its_own_air_stays, make_small, remove_small),
         cmocka_unit_test_setup_teardown(visibilities_of_any_shape, make_small, remove_small),
         cmocka_unit_test_setup_teardown(survives_any_spoiling, make_small, remove_small),
     };

@@ -333,7 +333,7 @@ static inline void judge_tables(Tally *tally, const ErrorCase *c)
                                                            range_m * range_m * level * level / (2 * 6371e3),
                                                        0)};
                 PathAir       want;
-                atmosphere_path(&want, c->coarse.world.atmosphere, air->light.weather.visibility_m, b, &path,
+                atmosphere_path(&want, air->light.atmosphere, air->light.weather.visibility_m, b, &path,
                                 thermal && p->temp_k[i] > 0 ? (double)p->temp_k[i] : 288);
                 const double tau = thermal ? want.transmittance : want.sun_transmittance;
                 const double added = want.thermal_w_m2_sr * warmer + (b == AIR_LWIR ? 0 : want.scattered_w_m2_sr * au2);
@@ -341,7 +341,7 @@ static inline void judge_tables(Tally *tally, const ErrorCase *c)
                     (seen - (double)veils.added_w_m2_sr[0]) / fmax((double)veils.transmittance[0], 1e-6) * tau + added;
             } else {
                 SkyAir sky;
-                atmosphere_sky(&sky, c->coarse.world.atmosphere, air->light.weather.visibility_m, b, air->eye_height_m,
+                atmosphere_sky(&sky, air->light.atmosphere, air->light.weather.visibility_m, b, air->eye_height_m,
                                acos(fmax(d[2], 0)), sun_zenith, azimuth);
                 seen = sky.thermal_w_m2_sr * warmer + (b == AIR_LWIR ? 0 : sky.scattered_w_m2_sr * au2);
             }

@@ -57,8 +57,10 @@ def patched(source):
     # a path of flat layers: card 2's wind speed, which rural haze does not use, is its length over its rise
     text = once(r"^      CALL EXABIN$", "      CALL EXABIN\n      IF(WSS.GT.0.) THEN\n      DO 901 K=1,KMAX\n"
                 "      IF(K.EQ.15) GO TO 901\n      W(K)=W(K)*WSS\n      DO 902 IK=1,68\n902   WPATH(IK,K)=WPATH(IK,K)*WSS\n901   CONTINUE\n      ENDIF", text)
-    # card 2's other wind speed is a factor on the water vapour of the gases; haze keeps the model's humidity
-    text = once(r"^      PM\(I\)=P\(I\)$", "      PM(I)=P(I)\n      IF(WHH.GT.0.) WH(I)=WH(I)*WHH", text)
+    # card 2's 24-hour wind, which rural haze does not use either. Below 0: minus a factor on the water vapour of the gases, of
+    # which haze keeps the model's humidity. Above: a factor plus 1 on all vapour, relative humidity and so haze with it
+    text = once(r"^      PM\(I\)=P\(I\)$", "      PM(I)=P(I)\n      IF(WHH.LT.0.) WH(I)=-WH(I)*WHH", text)
+    text = once(r"^      WTEMP=WH\(K\)$", "      IF(WHH.GT.0.) WH(K)=WH(K)*(WHH-1.)\n      WTEMP=WH(K)", text)
     text = once(r"^      pure SUBROUTINE BS", "      SUBROUTINE BS", text)
     text = once(r"^      IPython = IPython\+1",
                 "      WRITE(77) FLOAT(ICASE),V,TX(9),SUMV,SUMS,TSOLIV,SOLIV,TX(7),TX(10)\n"
@@ -68,7 +70,7 @@ def patched(source):
 
 def build(folder):
     """Path of the program, compiled if it is not there."""
-    program = os.path.join(folder, "lowtran")
+    program = os.path.join(folder, "lowtran-vapour")
     if os.path.exists(program):
         return program
     os.makedirs(folder, exist_ok=True)
@@ -81,18 +83,20 @@ def build(folder):
     with open(os.path.join(folder, "run.f"), "w", encoding="latin-1") as out:
         out.write(patched(source) + MAIN)
     subprocess.run(["gfortran", "-O2", "-w", "-std=legacy", "-fdefault-real-8", "-fno-automatic", "-ffixed-form",
-                    "run.f", "-o", "lowtran"], cwd=folder, check=True)
+                    "run.f", "-o", "lowtran-vapour"], cwd=folder, check=True)
     return program
 
 
 def case(model, visibility_km, kind, emission=0, scatter=False, h1=0.0, h2=0.0, angle=0.0, range_km=0.0, length=0,
-         sun_zenith=0.0, azimuth=0.0, stretch=0.0, vapour=0.0, ground_km=0.0, low=2080, high=2945, step=5):
+         sun_zenith=0.0, azimuth=0.0, stretch=0.0, vapour=1.0, gases=1.0, ground_km=0.0, low=2080, high=2945, step=5):
     """Cards of one run. kind: 1 level, 2 between heights, 3 to space; emission: LOWTRAN's IEMSCT, 0 transmittance,
     1 radiance, 2 with sunlight, 3 the sun itself. visibility_km 0: no haze. stretch: of a vertical path of flat layers
-    its range over its rise. vapour: factor on the model's water vapour (0: 1). ground_km: of the ground above the sea,
-    below 6; haze begins there, and the model's levels below 6 km lie between it and there."""
+    its range over its rise. vapour: the model's own at every height times this, or gases: the same, but haze keeps the
+    model's humidity. ground_km: of the ground above the sea, below 6; haze begins there, and the model's levels below 6 km
+    lie between it and there."""
+    wind = -gases if gases != 1 else vapour + 1 if vapour != 1 else 0
     cards = [f"{MODELS[model]:5d}{kind:5d}{emission:5d}{int(scatter):5d}" + f"{0:5d}" * 8 + f"{1:5d}{0:8.3f}{0.2:7.2f}",
-             f"{1 if visibility_km else 0:5d}" + f"{0:5d}" * 5 + f"{visibility_km:10.5f}{stretch:10.6f}{vapour:10.6f}" +
+             f"{1 if visibility_km else 0:5d}" + f"{0:5d}" * 5 + f"{visibility_km:10.5f}{stretch:10.6f}{wind:10.6f}" +
              f"{0:10.3f}{ground_km:10.3f}"]
     if emission == 3:
         cards.append(f"{h1:10.5f}{0:10.3f}{angle:10.5f}{DAY:5d}" + " " * 5 + f"{0:10.3f}{0:5d}{0:10.3f}")

@@ -41,7 +41,7 @@ def suns(work, places):
     """Direct light facing the sun and diffuse light on level ground, W/m2, for visibility, water, height, zenith."""
     out = np.zeros((len(places), 2))
     for low, high, step in SPANS:
-        more = [dict(kind=3, h1=g, ground_km=g, vapour=w / column_mm(g), low=low, high=high) for _, w, g, _ in places]
+        more = [dict(kind=3, h1=g, ground_km=g, gases=w / column_mm(g), low=low, high=high) for _, w, g, _ in places]
         direct = lt.run(work, [lt.case("us1976", v, emission=3, angle=z, step=20, **m)
                                for (v, _, _, z), m in zip(places, more)])
         # fluxes of the whole air, whatever the path; by levels downwards, the ground is the 33rd

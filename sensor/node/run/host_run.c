@@ -165,6 +165,28 @@ static void report_air_temp(Choices *choices, const Config *config, const Atmosp
                    here_k - 273.15, high_k - 273.15, ground_m);
 }
 
+/* A model of one's own has the air of its tables, whatever the weather: said where that is far from what is set. */
+static void report_fixed_air(Choices *choices, const Config *config, const World *world)
+{
+    const Atmosphere *atmosphere = world->atmosphere;
+    Weather           weather = weather_default();
+    if (atmosphere_follows_weather(atmosphere)) return;
+    const double own_k = atmosphere_temp_k(atmosphere, 0), own_kg_m3 = atmosphere_vapour_kg_m3(atmosphere);
+    weather.air_temp_k = isnan(config->weather.air_temp_k) ? own_k : config->weather.air_temp_k;
+    weather.humidity = 0.01 * config->weather.humidity_pct;
+    const double set_kg_m3 = weather_vapour_kg_m3(&weather);
+    if (fabs(weather.air_temp_k - own_k) > 5)
+        choice_add(choices,
+                   "air: %s is of %.0f C at the ground, the weather of %.0f C; transmittance stays that of its tables "
+                   "(weather.air_temp_k; weather.atmosphere: us1976 follows the weather)",
+                   config->weather.atmosphere, own_k - 273.15, weather.air_temp_k - 273.15);
+    if (fabs(set_kg_m3 - own_kg_m3) > 0.2 * own_kg_m3)
+        choice_add(choices,
+                   "air: %s has %.1f g/m3 of water vapour at the ground, the weather %.1f; transmittance stays that of "
+                   "its tables (weather.humidity_pct; weather.atmosphere: us1976 follows the weather)",
+                   config->weather.atmosphere, 1e3 * own_kg_m3, 1e3 * set_kg_m3);
+}
+
 static Status choose_who(HostPlan *plan, Choices *choices, Run *run, const DisEntityId *host)
 {
     const Config *config = &run->options.config;
@@ -233,6 +255,7 @@ static Status choose(HostChoice *out, Run *run, const DisEntityId *host)
         status = made_world(made, choices, &(MadeOf){&o->config, &run->tables, plan, &frame, out->unix_s, o->isa});
     if (status != STATUS_OK) return status;
     report_visibility(choices, &o->config, made->world.atmosphere);
+    report_fixed_air(choices, &o->config, &made->world);
     report_air_temp(choices, &o->config, made->world.atmosphere,
                     elevation_height(&made->landscape.elevation, 0, 0, NULL));
     choice_rate(plan, choices, &o->config);

@@ -89,8 +89,8 @@ static void ask_atmosphere(void *user)
                               .target_m = fmax(s->eye_m + r * up + r * r * level * level / (2 * earth_radius_m), 0),
                               .rel_azimuth_rad = acos(clamp(along, -1, 1))};
         for (int b = 0; b < AIR_BAND_COUNT; b++)
-            atmosphere_path(&s->path[b][i], s->atmosphere, s->air.light.weather.visibility_m, (AirBand)b, &path,
-                            (double)s->temp_k[i]);
+            atmosphere_path(&s->path[b][i], s->air.light.atmosphere, s->air.light.weather.visibility_m, (AirBand)b,
+                            &path, (double)s->temp_k[i]);
     }
     bench_keep(s->path);
 }
@@ -257,7 +257,7 @@ static void ask_skies(void *user)
         if (s->asked) {
             SkyAir       sky;
             const double along = (d[0] * sun[0] + d[1] * sun[1]) / (hypot(d[0], d[1]) * hypot(sun[0], sun[1]));
-            atmosphere_sky(&sky, s->from->atmosphere, s->air.light.weather.visibility_m, AIR_G, 0, acos(d[2]),
+            atmosphere_sky(&sky, s->air.light.atmosphere, s->air.light.weather.visibility_m, AIR_G, 0, acos(d[2]),
                            zenith_rad, acos(clamp(along, -1, 1)));
             s->out[i] = sky.scattered_w_m2_sr;
         } else {
