@@ -34,14 +34,15 @@ static void rays_see_sky_and_ground(void **state)
     const double golden_rad = pi_rad * (3 - sqrt(5));
     int          beneath = 0;
     for (int i = 0; i < 1000; i++) {
-        const double  z = 2 * random_uniform(5, 0, 0, (uint64_t)i) - 1, turned = 7 * random_uniform(5, 1, 0, (uint64_t)i);
-        const double  n_body[3] = {sqrt(1 - z * z) * cos(turned), sqrt(1 - z * z) * sin(turned), z};
-        const double  at_body[3] = {4 * random_uniform(5, 2, 0, (uint64_t)i) - 2, 0.5, -0.3};
-        const double  above_m = 1.6 * random_uniform(5, 3, 0, (uint64_t)i), n[3] = {n_body[0], -n_body[1], -n_body[2]};
-        PatchPose     pose = pose_at(at_body, above_m);
-        PatchView     view;
-        int           sky = 0, under = 0, ground = 0, least = 0;
-        double        u[3], v[3];
+        const double z = 2 * random_uniform(5, 0, 0, (uint64_t)i) - 1,
+                     turned = 7 * random_uniform(5, 1, 0, (uint64_t)i);
+        const double n_body[3] = {sqrt(1 - z * z) * cos(turned), sqrt(1 - z * z) * sin(turned), z};
+        const double at_body[3] = {4 * random_uniform(5, 2, 0, (uint64_t)i) - 2, 0.5, -0.3};
+        const double above_m = 1.6 * random_uniform(5, 3, 0, (uint64_t)i), n[3] = {n_body[0], -n_body[1], -n_body[2]};
+        PatchPose    pose = pose_at(at_body, above_m);
+        PatchView    view;
+        int          sky = 0, under = 0, ground = 0, least = 0;
+        double       u[3], v[3];
         for (int p = 0; p < patch_points; p++) memcpy(patch[0].point_n_node[p], n_body, sizeof n_body);
         for (int k = 1; k < 3; k++)
             if (fabs(n[k]) < fabs(n[least])) least = k;

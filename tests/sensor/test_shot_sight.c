@@ -153,6 +153,12 @@ static void echoes_obey_the_radar_equation(void **state)
         CHECK(cabs(a[CHANNEL_RIGHT] / a[CHANNEL_SUM] - g.right / g.sum) < 1e-12);
         CHECK(cabs(a[CHANNEL_DOWN] / a[CHANNEL_SUM] - g.down / g.sum) < 1e-12);
         CHECK(cabs(a[CHANNEL_CROSS] / a[CHANNEL_SUM] - other / own) < 1e-12);
+        /* FMCW: less by what of the sweep is over when the echo arrives */
+        const double whole = cabs(a[CHANNEL_SUM]);
+        preset.wave.kind = WAVEFORM_FMCW;
+        shot_amplitudes(a, &shot, &s, &m);
+        CHECK_NEAR(cabs(a[CHANNEL_SUM]) / whole, fmax(1 - 2 * r / c_mps / 20e-6, 0), 1e-12);
+        preset.wave.kind = WAVEFORM_LFM;
     }
     preset.transmits_h = false;
 }
@@ -249,8 +255,15 @@ static void sectors_are_planned(void **state)
     static const struct {
         double steps, share;
         int    positions;
-    } of[] = {{10, 0.5, 11}, {10.1, 0.5, 13}, {9.9, 0.5, 11}, {0.3, 0.8, 3}, {1000, 0.01, 1001}};
-    for (int i = 0; i < 5; i++) {
+    } of[] = {{10, 0.5, 11},
+              {10.1, 0.5, 13},
+              {9.9, 0.5, 11},
+              {0.3, 0.8, 3},
+              {1000, 0.01, 1001},
+              /* a step that rounding alone makes is none; one of a ten-millionth of the sector is */
+              {10 + 1e-10, 0.5, 11},
+              {10 + 2e-7, 0.5, 13}};
+    for (int i = 0; i < 7; i++) {
         CHECK(radar_sector_plan(&plan, &preset, of[i].steps * of[i].share * width, of[i].share) == STATUS_OK);
         CHECK(plan.positions == of[i].positions);
         CHECK_NEAR(plan.step_rad, of[i].share * width, 1e-12);
@@ -258,6 +271,14 @@ static void sectors_are_planned(void **state)
     }
     CHECK(radar_sector_plan(&plan, &preset, 1000.1 * 0.01 * width, 0.01) == STATUS_BAD_VALUE);
     CHECK(radar_sector_plan(&plan, &preset, 0, 0.5) == STATUS_OK && plan.positions == 1);
+    /* 2^27 samples in all are as many as there may be: of 1 position 2^20 pulses of 128, of 3 too many */
+    preset.wave.pulses = 1 << 27 >> 7;
+    CHECK(radar_sector_plan(&plan, &preset, 0.3 * width, 0.8) == STATUS_BAD_VALUE);
+    preset.wave.pulses = 349525; /* 3 x 349525 x 128 = 2^27 - 128 */
+    CHECK(radar_sector_plan(&plan, &preset, 0.3 * width, 0.8) == STATUS_OK && plan.positions == 3);
+    preset.wave.pulses++;
+    CHECK(radar_sector_plan(&plan, &preset, 0.3 * width, 0.8) == STATUS_BAD_VALUE);
+    preset.wave.pulses = 64;
 }
 
 int main(void)
