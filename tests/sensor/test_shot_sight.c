@@ -246,6 +246,32 @@ static void the_lit_ground_is_in_its_rectangle(void **state)
     frame.reference_m = 3000;
 }
 
+/* Looking north-east, 0.3 rad down, over a sector of 0.2 rad to either side, from 900 m above the ground, 2600 .. 3200
+ * m away: at most sqrt(3200^2 - 900^2) m on level ground and 50 m and 2 % of the reference range more, at least
+ * sqrt(2600^2 - 900^2) less that; to either side the pattern's first null over the level part of the axis less the
+ * null, and the sector's half seen from above. */
+static void the_rectangle_by_hand(void **state)
+{
+    (void)state;
+    RadarShot    shot = shot_by_hand();
+    const double tilt = 0.3, azimuth = 0.25 * pi_rad, null_rad = asin(0.9 * shot_null(&shot));
+    const double wide = null_rad / (cos(tilt) - null_rad) + atan(tan(0.2) / cos(tilt)), more_m = 50 + 0.02 * 2900;
+    const double far_m = sqrt(3200.0 * 3200 - 900 * 900) + more_m, near_m = sqrt(2600.0 * 2600 - 900 * 900) - more_m;
+    double       low[2], high[2];
+    shot.ahead[0] = shot.ahead[1] = cos(tilt) * sqrt(0.5), shot.ahead[2] = -sin(tilt);
+    shot.reach = 0.9, shot.sector_half_rad = 0.2, shot.base_m = 50 - 900, shot.near_m = 2600, shot.far_m = 3200;
+    frame.reference_m = 2900;
+    shot_lit_rectangle(low, high, &shot);
+    frame.reference_m = 3000;
+    /* the least at the sides of the near end, the most at a side of the far end; nine directions have both and more */
+    for (int k = 0; k < 2; k++) {
+        double most = 0;
+        for (int i = -4; i <= 4; i++) most = fmax(most, cos(azimuth + wide * i / 4));
+        CHECK_NEAR(low[k], view.p_enu[k] + near_m * cos(azimuth + wide), 1e-6);
+        CHECK_NEAR(high[k], view.p_enu[k] + far_m * most, 1e-6);
+    }
+}
+
 /* Positions: the middle one and as many to either side as reach the sector's end. */
 static void sectors_are_planned(void **state)
 {
@@ -291,6 +317,7 @@ int main(void)
         cmocka_unit_test(nulls_are_zeros_of_bessel_functions),
         cmocka_unit_test(positions_turn_to_the_right),
         cmocka_unit_test(the_lit_ground_is_in_its_rectangle),
+        cmocka_unit_test(the_rectangle_by_hand),
         cmocka_unit_test(sectors_are_planned),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
