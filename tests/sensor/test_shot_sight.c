@@ -270,6 +270,19 @@ static void the_rectangle_by_hand(void **state)
         CHECK_NEAR(low[k], view.p_enu[k] + near_m * cos(azimuth + wide), 1e-6);
         CHECK_NEAR(high[k], view.p_enu[k] + far_m * most, 1e-6);
     }
+    /* nearly straight down, level 0.04: as if it were 0.05, and that less the null 0.05 as well */
+    const double steep = acos(0.04), sides = asin(0.5 * shot_null(&shot)) / 0.05 + atan(tan(0.01) / 0.05);
+    shot.ahead[0] = shot.ahead[1] = 0.04 * sqrt(0.5), shot.ahead[2] = -sin(steep), shot.sector_half_rad = 0.01,
+    shot.reach = 0.5;
+    frame.reference_m = 2900;
+    shot_lit_rectangle(low, high, &shot);
+    frame.reference_m = 3000;
+    CHECK(sides < pi_rad);
+    for (int k = 0; k < 2; k++) {
+        double least = 1;
+        for (int i = -4; i <= 4; i++) least = fmin(least, cos(azimuth + sides * i / 4));
+        CHECK_NEAR(low[k], view.p_enu[k] + (least < 0 ? far_m : near_m) * least, 1e-6);
+    }
 }
 
 /* Positions: the middle one and as many to either side as reach the sector's end. */
