@@ -59,7 +59,7 @@ class Token:
 
 @dataclass(frozen=True)
 class Mutant:
-    id: str
+    id: str        # counts equal changes of equal lines
     room: str
     file: str
     line: int
@@ -68,6 +68,7 @@ class Mutant:
     at: int        # offset in the text
     old: str
     new: str
+    nth: int       # of those in the line with the same `old` and `new`; from 1
     text: str      # of the line, without the blanks around it
     first: int     # lines of the statement
     last: int
@@ -182,14 +183,16 @@ def places(room, file, text):
     tokens = tokens_of(text)
     where = functions_of(tokens)
     lines = text.split('\n')
-    seen = {}
+    seen, in_line = {}, {}
 
     def mutant(i, kind, at, old, new):
         token = tokens[i]
         key = (file, lines[token.line - 1].strip(), old, new)
         count = seen[key] = seen.get(key, 0) + 1
+        nth = in_line[token.line, old, new] = in_line.get((token.line, old, new), 0) + 1
         ident = hashlib.sha256('\0'.join((*key, str(count))).encode()).hexdigest()[:8]
-        return Mutant(ident, room, file, token.line, where[i][0], kind, at, old, new, key[1], *statement_lines(tokens, i))
+        return Mutant(ident, room, file, token.line, where[i][0], kind, at, old, new, nth, key[1],
+                      *statement_lines(tokens, i))
 
     for i, token in enumerate(tokens):
         function, place = where[i]

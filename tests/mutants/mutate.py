@@ -7,6 +7,7 @@ import argparse
 import csv
 import os
 import queue
+import re
 import sys
 import time
 from concurrent.futures import FIRST_COMPLETED, ThreadPoolExecutor, wait
@@ -30,24 +31,30 @@ NO_MUTANT, EQUIVALENT, ANSWER, BASELINE, LIVED = 'does not compile', 'equivalent
 
 
 class Equivalents:
-    """tests/mutants/equivalent.csv: mutants that compute the same, each with its reason."""
+    """tests/mutants/equivalent.csv: mutants that compute the same, each with its reason. `nth` says which of several equal changes
+    of a line is meant, from 1; an entry without it is of a line with one alone."""
 
-    def __init__(self, path):
+    def __init__(self, path, mutants):
         self.path, self.rows = path, {}
+        drawn = [m for found in mutants.values() for m in found]
+        self.there = {(m.file, m.text, m.old, m.new, n) for m in drawn for n in (0, m.nth)}
+        self.several = {(m.file, m.text, m.old, m.new) for m in drawn if m.nth > 1}
         if not os.path.exists(path):
             return
         with open(path, encoding='utf-8', newline='') as stream:
-            for n, row in enumerate(csv.DictReader(line for line in stream if not line.startswith('#'))):
-                if None in row.values() or not row['reason'].strip():
-                    raise Failure(f'{path}: entry {n + 1} is not file,line,from,to,reason; next: give it all five')
-                self.rows[row['file'], row['line'].strip(), row['from'], row['to']] = row['reason']
+            for n, row in enumerate(csv.DictReader((line for line in stream if not line.startswith('#')), restval='')):
+                if None in row or not row['reason'].strip() or not re.fullmatch(r'([1-9]\d*)?', row.get('nth', '')):
+                    raise Failure(f'{path}: entry {n + 1} is not file,line,from,to,reason[,nth]; next: give it these')
+                key = row['file'], row['line'].strip(), row['from'], row['to'], int(row.get('nth') or 0)
+                self.rows[key] = row['reason']
 
     def reason(self, mutant):
-        return self.rows.get((mutant.file, mutant.text, mutant.old, mutant.new))
+        key = mutant.file, mutant.text, mutant.old, mutant.new
+        return self.rows.get((*key, mutant.nth)) or (None if key in self.several else self.rows.get((*key, 0)))
 
-    def stale(self, mutants):
-        there = {(m.file, m.text, m.old, m.new) for found in mutants.values() for m in found}
-        return [key for key in self.rows if key not in there]
+    def stale(self):
+        """Entries of no mutant, and those that do not say which of several is meant."""
+        return [key for key in self.rows if key not in self.there or key[-1] == 0 and key[:-1] in self.several]
 
 
 class Runner:
@@ -236,10 +243,13 @@ def main(words):
         for m in order[:options.count]:
             print(f'{m.id} {m.room} {m.file}:{m.line} {m.function or "-"}: {m.old} -> {m.new or "(dropped)"}: {m.text}')
         return 0
-    equivalents = Equivalents(os.path.join(options.root, 'tests', 'mutants', 'equivalent.csv'))
-    for file, line, old, new in equivalents.stale(mutants):
-        print(f'etc/mutate: tests/mutants/equivalent.csv: {file} has no {old} -> {new or "(dropped)"} in a line `{line}` any '
-              'more; next: take the entry away, or give the line as it is now', file=sys.stderr)
+    equivalents = Equivalents(os.path.join(options.root, 'tests', 'mutants', 'equivalent.csv'), mutants)
+    for *key, nth in equivalents.stale():
+        file, line, old, new = key
+        several = tuple(key) in equivalents.several and nth == 0
+        print(f'etc/mutate: tests/mutants/equivalent.csv: {file} has ' + ('several' if several else 'no') +
+              f' {old} -> {new or "(dropped)"} in a line `{line}`' + ('; next: say in nth which of them' if several else
+              ' any more; next: take the entry away, or give the line as it is now'), file=sys.stderr)
 
     programs = Programs(options.root, options.build)
     for file in {m.file for m in order if m.file not in programs.compiles}:

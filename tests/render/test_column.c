@@ -237,6 +237,108 @@ static void extremes(void **state)
                     }
 }
 
+/* Elements of 0.02 m that double fill 0.1 m with 0.02 + 0.04 + 0.08 = 0.14: scaled by 5/7; then 0.05 m with 0.06, by
+ * 5/6. A node has half of the elements beside it. */
+static void elements_fill_their_layers(void **state)
+{
+    (void)state;
+    static const ColumnLayer layer[] = {{0.1, 1.5, 2e6}, {0.05, 0.3, 1e6}};
+    static const double      size_m[] = {0.1 / 7, 0.2 / 7, 0.4 / 7, 0.1 / 6, 0.2 / 6};
+    Column                   c;
+    ColumnState              s = {.temp_k = {300, 298, 296, 293, 291, 290}};
+    double                   depth_m = 0, heat_j_m2 = 0;
+    CHECK(column_create(&c, layer, 2, 0.02, 2) == STATUS_OK && c.nodes == 6);
+    for (int i = 0; i < 6; i++) {
+        const double above = i > 0 ? size_m[i - 1] * (i <= 3 ? 2e6 : 1e6) : 0,
+                     below = i < 5 ? size_m[i] * (i < 3 ? 2e6 : 1e6) : 0;
+        CHECK_NEAR(c.capacity_j_m2k[i], (above + below) / 2, 1e-7);
+        CHECK_NEAR(c.depth_m[i], depth_m, 1e-12);
+        if (i < 5) {
+            CHECK_NEAR(c.conductance_w_m2k[i], (i < 3 ? 1.5 : 0.3) / size_m[i], 1e-9);
+            CHECK_NEAR(column_temp_k(&s, &c, depth_m + 0.25 * size_m[i]), 0.75 * s.temp_k[i] + 0.25 * s.temp_k[i + 1],
+                       1e-9);
+            depth_m += size_m[i];
+        }
+        heat_j_m2 += (above + below) / 2 * s.temp_k[i];
+    }
+    CHECK(c.conductance_w_m2k[5] == 0 && column_temp_k(&s, &c, -1) == 300 && column_temp_k(&s, &c, 1) == 290);
+    CHECK_NEAR(column_heat_j_m2(&s, &c), heat_j_m2, 1e-4);
+    /* as many nodes as there is room for, and one more */
+    CHECK(column_create(&c, &(ColumnLayer){column_most_nodes - 1, 1, 1}, 1, 1, 1) == STATUS_OK &&
+          c.nodes == column_most_nodes);
+    CHECK(column_create(&c, &(ColumnLayer){column_most_nodes, 1, 1}, 1, 1, 1) == STATUS_BAD_VALUE);
+}
+
+typedef struct Rising {
+    double from_w_m2, more_w_m2, film_w_m2k;
+} Rising;
+
+static double linear_flux(double *falls, double temp_k, const void *user)
+{
+    const Rising *l = user;
+    *falls = l->film_w_m2k;
+    return l->from_w_m2 - l->film_w_m2k * temp_k;
+}
+
+static void rising_at(void *out, double share, const void *user)
+{
+    const Rising *l = user;
+    *(Rising *)out = (Rising){l->from_w_m2 + share * l->more_w_m2, 0, l->film_w_m2k};
+}
+
+/* The layers above over a bottom of 285 K through 4 W/(m2 K), under 12 W/(m2 K) to air of 290 K and a load that rises
+ * from 400 to 700 W/m2 within an hour: one step of TR-BDF2 with its error at the surface (Hosea & Shampine 1996,
+ * filtered by the last stage's matrix), the same in two halves, and backward Euler in 2^14 parts, where no error is
+ * small enough; by dense matrices in Python (numpy). */
+static void steps_as_published(void **state)
+{
+    (void)state;
+    static const ColumnLayer layer[] = {{0.1, 1.5, 2e6}, {0.05, 0.3, 1e6}};
+    static const double      begin_k[] = {300, 298, 296, 293, 291, 290}, error_k = 0.428173712917;
+    static const struct {
+        double tolerance_k;
+        int    halved;
+        double temp_k[6], heat_j_m2;
+    } c[] = {
+        {0,
+         0,
+         {310.744820545, 306.815584266, 300.984351374, 296.231559461, 293.629135134, 290.264670087},
+         1240268.05775},
+        {error_k * (1 + 1e-9),
+         0,
+         {310.744820545, 306.815584266, 300.984351374, 296.231559461, 293.629135134, 290.264670087},
+         1240268.05775},
+        {error_k * (1 - 1e-9),
+         1,
+         {310.612271696, 306.724339969, 301.105672162, 296.222984674, 293.521507144, 290.354443786},
+         1243107.04169},
+        {1e-30,
+         (1 << 14) - 1,
+         {310.62754986, 306.735587062, 301.111383719, 296.224724845, 293.516027864, 290.356692542},
+         1244311.31846},
+    };
+    const Rising law = {400 + 12 * 290, 300, 12};
+    for (int k = 0; k < 4; k++) {
+        Column      column;
+        ColumnState s = {.heat_j_m2 = 5};
+        CHECK(column_create(&column, layer, 2, 0.02, 2) == STATUS_OK);
+        column.conductance_w_m2k[5] = 4;
+        for (int with = 0; with < 2; with++) { /* factors given, and found */
+            ColumnFactors        f, half;
+            const ColumnBoundary b = {linear_flux, rising_at, &law, 285, c[k].tolerance_k};
+            column_factors(&f, &column, 3600);
+            column_factors(&half, &column, 1800);
+            f.half = &half;
+            memcpy(s.temp_k, begin_k, sizeof begin_k);
+            s.heat_j_m2 = 5, s.halved = 0;
+            column_step(&s, &column, with ? &f : NULL, &b, 3600);
+            for (int i = 0; i < 6; i++) CHECK_NEAR(s.temp_k[i], c[k].temp_k[i], 2e-8);
+            CHECK_NEAR(s.heat_j_m2 - 5, c[k].heat_j_m2, 1e-3);
+            CHECK(s.halved == c[k].halved);
+        }
+    }
+}
+
 static void wrong_layers_are_refused(void **state)
 {
     (void)state;
@@ -261,6 +363,8 @@ int main(void)
         cmocka_unit_test(energy_is_kept),
         cmocka_unit_test(an_isothermal_enclosure_stays),
         cmocka_unit_test(extremes),
+        cmocka_unit_test(elements_fill_their_layers),
+        cmocka_unit_test(steps_as_published),
         cmocka_unit_test(wrong_layers_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

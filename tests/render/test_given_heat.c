@@ -116,7 +116,8 @@ static void what_is_refused(void **state)
 
 static Status open_kept(KeptHeat **out, const char *rows)
 {
-    char path[text_file_size], text[1024];
+    static char text[1 << 15];
+    char        path[text_file_size];
     snprintf(text, sizeof text, "entity,model,unix_s,node_k\n%s", rows);
     text_file(path, text);
     *out = NULL;
@@ -160,10 +161,35 @@ static void kept_rows(void **state)
     log_set_sink(NULL, NULL);
 }
 
+/* A row of 4096 temperatures is read, one of 4097 refused. */
+static void as_many_nodes_as_there_is_room_for(void **state)
+{
+    (void)state;
+    enum { most = 4096 };
+    static char rows[6 * most + 100];
+    KeptHeat   *k;
+    log_set_sink(check_listen, NULL);
+    for (int more = 0; more < 2; more++) {
+        int at = sprintf(rows, "1:1:1,tank,5,");
+        for (int n = 0; n < most + more; n++) at += sprintf(rows + at, "%d ", 200 + n % 100);
+        sprintf(rows + at, "\n");
+        const Status status = open_kept(&k, rows);
+        CHECK((status == STATUS_OK) == (more == 0) && (k == NULL) == (more == 1));
+        if (!k) continue;
+        const KeptNodes *n = heat_kept_find(k, first, "tank", most);
+        CHECK(n && n->temp_k[0] == 200 && n->temp_k[most - 1] == 200 + (most - 1) % 100);
+        heat_kept_close(k);
+    }
+    log_set_sink(NULL, NULL);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(lines_between_rows), cmocka_unit_test(the_closest_name_wins),
-                                       cmocka_unit_test(names_that_are_roles), cmocka_unit_test(what_is_refused),
-                                       cmocka_unit_test(kept_rows)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(lines_between_rows),
+                                       cmocka_unit_test(the_closest_name_wins),
+                                       cmocka_unit_test(names_that_are_roles),
+                                       cmocka_unit_test(what_is_refused),
+                                       cmocka_unit_test(kept_rows),
+                                       cmocka_unit_test(as_many_nodes_as_there_is_room_for)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

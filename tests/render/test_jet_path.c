@@ -151,6 +151,37 @@ static void jets_follow_their_balances(void **state)
     }
 }
 
+/* The same balances by the midpoint rule in steps of 0.4 radii, in Python: what a path's points are, on the slant in a
+ * wind. Rows: place, radius, excess, speed. */
+static void points_by_the_midpoint_rule(void **state)
+{
+    (void)state;
+    static const struct {
+        int    point;
+        double at[6];
+    } c[] = {{1, {0.0357570571, 0.0481811474, 9.95468447e-05, 0.161580172, 200, 20}},
+             {5, {0.203084488, 0.292177672, 0.00422384712, 0.23589727, 200, 20}},
+             {10, {0.473310927, 0.867361323, 0.0471214882, 0.529527479, 93.4222283, 9.42595988}},
+             {15, {0.0908118381, 2.45614636, 0.488619485, 1.45469831, 22.3652689, 4.66336131}},
+             {20, {-2.22340002, 4.79751565, 1.74844718, 2.19306817, 9.69598176, 4.63264343}},
+             {25, {-5.89436108, 7.47311257, 3.62424106, 2.86231064, 5.55946146, 4.70956238}}};
+    const double flow_mps[3] = {-2, 1, 0.5}, d[3] = {0.6, 0.8, 0};
+    JetPath      path;
+    jet_path(&path, &(ExhaustJet){.radius_m = 0.15, .speed_mps = 20, .excess_k = 200}, origin, d, flow_mps, 288);
+    CHECK(path.count > 25);
+    for (size_t k = 0; k < sizeof c / sizeof *c; k++) {
+        const JetPoint *p = &path.point[c[k].point];
+        const double    is[6] = {p->p_enu[0], p->p_enu[1], p->p_enu[2], p->radius_m, p->excess_k, p->speed_mps};
+        for (int x = 0; x < 6; x++) CHECK_NEAR(is[x], c[k].at[x], 1e-8 * fmax(1, fabs(c[k].at[x])));
+        double way2_m2 = 0;
+        for (int x = 0; x < 3; x++) {
+            CHECK_NEAR(p->way_enu[x], p[1].p_enu[x] - p->p_enu[x], 1e-12);
+            way2_m2 += p->way_enu[x] * p->way_enu[x];
+        }
+        CHECK_NEAR(p->per_m2 * way2_m2, 1, 1e-12);
+    }
+}
+
 /* A jet ends where it is less than 1 K over the air; before a wall a Gaussian of twice its excess is 1 K at the square
  * root of ln(2 excess) / 2 radii, which its boxes hold: of a jet that does not bend, about all points of a run. */
 static void where_jets_end(void **state)
@@ -214,6 +245,7 @@ int main(void)
         cmocka_unit_test(wind_bends_and_heat_is_kept),
         cmocka_unit_test(places_off_the_axis),
         cmocka_unit_test(jets_follow_their_balances),
+        cmocka_unit_test(points_by_the_midpoint_rule),
         cmocka_unit_test(where_jets_end),
         cmocka_unit_test(hostile_jets),
     };

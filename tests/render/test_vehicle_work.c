@@ -2,11 +2,17 @@
  * has room for, and when a model's patches are there. */
 #include "tests/render/vehicle_stage.h"
 
+#include "render/heat/given_heat.h"
 #include "render/heat/vehicle_heat_private.h"
+
+enum { most_asked = 64 };
+static double asked_unix_s[most_asked]; /* at which weather of the past was asked for */
+static int    asked;
 
 static Status everywhere(PlaceHeat *out, const void *user, double unix_s, const double p_enu[3], bool present)
 {
-    (void)user, (void)unix_s, (void)p_enu, (void)present;
+    (void)user, (void)p_enu;
+    if (!present && asked < most_asked) asked_unix_s[asked++] = unix_s;
     *out = (PlaceHeat){.air_k = 288,
                        .air_density = 1,
                        .longwave_w_m2 = 300,
@@ -81,8 +87,65 @@ static void steps_in_a_window(void **state)
     }
 }
 
+/* A past is a day in steps whose loads are those of their middles: four of three hours, three of two, five of one, and
+ * of the last hour, in which the engine runs as now, 2, 8, 15, 15, 10, 5 and 5 minutes. What was kept by a run that
+ * ended up to three hours before is carried on in as many even steps; what is older counts for nothing. */
+static void steps_of_the_past(void **state)
+{
+    (void)state;
+    static const double minutes[] = {180, 180, 180, 180, 120, 120, 120, 60, 60, 60, 60, 60, 2, 8, 15, 15, 10, 5, 5};
+    static const double gap_s[] = {-10, 0, 10, 10799, 10801};
+    enum { steps = sizeof minutes / sizeof *minutes };
+    double all_min = 0;
+    for (int k = 0; k < steps; k++) all_min += minutes[k];
+    CHECK(all_min == 24 * 60);
+    for (int c = -1; c < 5; c++) {
+        Scene     s;
+        Snapshot  none = {0};
+        KeptHeat *kept = NULL;
+        int       number = 1;
+        if (c >= 0) {
+            char path[text_file_size], *text = malloc(20000);
+            CHECK(text != NULL);
+            place(&s, tank, (EntityDrives){.engine = 1});
+            const VehicleHeatConfig any = {.step_s = 30, .window_us = INFINITY, .place = everywhere};
+            VehicleHeat            *h = stage_start(&any, NULL);
+            CHECK(vehicle_heat_tick(h, &none) == STATUS_OK);
+            for (int k = 1; h->count == 0; k++) tick(h, &s, k);
+            int at = sprintf(text, "entity,model,unix_s,node_k\n1:1:1,%s,%.3f,",
+                             tracer_model(stage.tracer, s.entity.model)->name, 5000 - gap_s[c]);
+            for (int n = 0; n < h->shape[s.entity.model].nodes; n++) at += sprintf(text + at, "300 ");
+            sprintf(text + at, "\n");
+            vehicle_heat_destroy(h);
+            text_file(path, text);
+            free(text);
+            CHECK(heat_kept_open(&kept, path) == STATUS_OK);
+            remove(path);
+        }
+        VehicleHeat *h = stage_start(
+            &(VehicleHeatConfig){.step_s = 30, .window_us = INFINITY, .unix_s = 5000, .place = everywhere}, kept);
+        CHECK(vehicle_heat_tick(h, &none) == STATUS_OK);
+        place(&s, tank, (EntityDrives){.engine = 1});
+        s.snapshot.t_s = 0.01;
+        asked = 0;
+        while (tick(h, &s, number), h->count == 0 || !h->state[0]->shown) number++;
+        const double seen_s = h->state[0]->seen_s, since_s = seen_s + (c >= 0 ? gap_s[c] : 0);
+        const bool   goes_on = c >= 0 && since_s >= 0 && since_s <= 10800;
+        double       begun_s = 5000 + seen_s - (goes_on ? since_s : 86400);
+        CHECK(asked == (goes_on && since_s == 0 ? 0 : steps));
+        for (int k = 0; k < asked; k++) {
+            const double span_s = goes_on ? since_s / steps : 60 * minutes[k];
+            CHECK_NEAR(asked_unix_s[k], begun_s + 0.5 * span_s, 2e-3);
+            begun_s += span_s;
+        }
+        vehicle_heat_destroy(h);
+        if (kept) heat_kept_close(kept);
+    }
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(looks_in_a_window), cmocka_unit_test(steps_in_a_window)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(looks_in_a_window), cmocka_unit_test(steps_in_a_window),
+                                       cmocka_unit_test(steps_of_the_past)};
     return cmocka_run_group_tests(tests, open_stage, close_stage);
 }

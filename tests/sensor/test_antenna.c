@@ -109,6 +109,10 @@ static void angles_come_back(void **state)
     const Antenna a = {.diameter_m = 0.2, .taper = 1, .wavelength_m = 0.003189};
     double        far[2];
     antenna_direction(&far[0], &far[1], &a, 1e9, -1e9);
+    /* the greatest ratio is at the first zero of the sum, of J_2: pi d / lambda sine = 5.135622301840683 */
+    antenna_direction(&far[0], &far[1], &a, 1e15, 0);
+    CHECK_NEAR(far[0] * pi_rad * 0.2 / 0.003189, 5.135622301840683, 1e-10);
+    antenna_direction(&far[0], &far[1], &a, 1e9, -1e9);
     CHECK(hypot(far[0], far[1]) < 0.03 && far[0] == -far[1] && antenna_gain(&a, 0.8, 0.7).sum == 0);
 }
 

@@ -87,6 +87,12 @@ static void targets_are_found_where_they_are(void **state)
     CHECK(hit[1].power == 500);
     CHECK(detect_cfar(hit, 1, &config, power, rows, columns) == 3); /* how many there are */
 
+    /* the last cell of a row is no neighbour of the next row's first */
+    for (int i = 0; i < rows * columns; i++) power[i] = 2;
+    power[5 * columns] = 400, power[4 * columns + columns - 1] = 500;
+    power[30 * columns] = 500, power[29 * columns + columns - 1] = 400;
+    CHECK(detect_cfar(hit, 8, &config, power, rows, columns) == 4);
+
     CfarConfig bad = config;
     bad.pfa = 0;
     CHECK(detect_cfar(hit, 8, &bad, power, rows, columns) == -1);

@@ -75,6 +75,15 @@ static void noise_is_a_function_of_its_counters(void **state)
     assert_memory_equal(pieces, plane, sizeof plane);
 }
 
+/* etc/reference/sensors.md: 8 bits, levels at 1 % and 99 % of the pixels with a margin of 5 %. */
+static void defaults_are_documented(void **state)
+{
+    (void)state;
+    const DetectorConfig c = detector_default_config();
+    CHECK(c.bits == 8 && c.auto_level && c.percentile_low == 0.01 && c.percentile_high == 0.99 && c.margin == 0.05);
+    CHECK(c.gain == 1 && c.level_low == 0 && c.level_high == 1 && c.fire_from == INFINITY);
+}
+
 /* Against a sort, with both signs, wide exponents, ties, and non-finite values strewn in. */
 static void percentiles_are_exact_order_statistics(void **state)
 {
@@ -438,6 +447,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(noise_has_the_sigma_asked_for),
         cmocka_unit_test(noise_is_a_function_of_its_counters),
+        cmocka_unit_test(defaults_are_documented),
         cmocka_unit_test(percentiles_are_exact_order_statistics),
         cmocka_unit_test(a_constant_plane_is_steady_mid_grey),
         cmocka_unit_test(min_span_bounds_the_gain),

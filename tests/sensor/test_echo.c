@@ -122,6 +122,30 @@ static void moving_echoes_are_at_their_times(void **state)
     }
 }
 
+/* An echo that moves by up to 3 m a row in a stepped waveform bends by exp(-j q u^2), q = pi B growth / (2 c): factors
+ * by Bessel functions of q / 2 from 0.03 to 4, whatever their recurrence passes through. */
+static void bends_of_every_size(void **state)
+{
+    (void)state;
+    Waveform  w = wave;
+    EchoGrid *grid;
+    double    edge = 0;
+    w.kind = WAVEFORM_STEPPED, w.pulse_s = 2.5e-7, w.repeat_hz = 781.25, w.pulses = 2;
+    CHECK(echo_grid_create(&grid, &w) == STATUS_OK);
+    for (int i = 1; i <= 300; i++) {
+        const Echo echo = {.path_m = 3, .amplitude = {1}, .path_per_pulse_m = (i % 2 ? -0.01 : 0.01) * i};
+        memset(want, 0, sizeof want);
+        add_by_hand(&w, &echo, 0);
+        echo_add(grid, &echo, 1, NULL);
+        echo_sum(got, grid);
+        edge = fmax(edge, worst(2));
+    }
+    CHECK(echo_status(grid) == STATUS_OK);
+    printf("bends: %.1e\n", edge);
+    CHECK(edge < 3e-3);
+    echo_grid_destroy(grid);
+}
+
 /* One fast echo among many: the same bits for any pool and any division into calls. */
 static void fast_echoes_have_the_same_bits(void **state)
 {
@@ -353,6 +377,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(samples_are_the_sum),
         cmocka_unit_test(moving_echoes_are_at_their_times),
+        cmocka_unit_test(bends_of_every_size),
         cmocka_unit_test(fast_echoes_have_the_same_bits),
         cmocka_unit_test(slow_and_fast_echoes_are_alike),
         cmocka_unit_test(an_echo_folds_over_within_the_interval),

@@ -4,6 +4,7 @@
 
 #include "render/scattering/paths/attenuation.h"
 #include "render/scattering/paths/radar_path.h"
+#include "render/scattering/signatures/coarse.h"
 #include "sensor/radar/seeker_radar_private.h"
 
 static const double ball_m = 0.3, high_m = 120;
@@ -259,12 +260,62 @@ static void what_it_is_made_with(void **state)
     CHECK_NEAR(radar->cells.side_m, light_mps / (4 * 20e6), 1e-9);
 }
 
+/* Heights are taken as 0 .. 20 km above the ground, ranges as 1000 km at most; what is lost a metre stays so beyond. */
+static void air_of_long_paths(void **state)
+{
+    (void)state;
+    static const struct {
+        double eye_m, down_sine, range_m, a_m, b_m, of_m;
+    } c[] = {{120, 0, 1.05e6, 120, 120, 1e6}, {25000, 0, 5e4, 20000, 20000, 5e4}, {120, -0.4, 1e5, 120, 20000, 1e5},
+             {-50, 0, 2e4, 0, 0, 2e4},        {21000, 0.4, 6e4, 20000, 0, 6e4},   {19000, 0.1, 2e4, 19000, 17000, 2e4}};
+    SeekerRadar *radar = radar_of("h");
+    for (int i = 0; i < 6; i++) {
+        RadarAir  air;
+        RadarLoss loss;
+        look_west(c[i].down_sine);
+        stage.view.p_enu[2] = c[i].eye_m;
+        stage.scene.reference_m = c[i].range_m;
+        CHECK(radar_air_of(&air, stage.world.atmosphere, &stage.weather) == STATUS_OK);
+        air.liquid[0] = (RadarLiquid){0, 300, fog_liquid_g_m3(stage.weather.visibility_m)};
+        radar_path_loss(&loss, &(RadarPath){c[i].a_m, c[i].b_m, c[i].of_m, 16.5, 0}, &gases, &air);
+        CHECK_NEAR(scene_measure(radar)->air_db / radar_loss_db(&loss), 1, 1e-9);
+    }
+}
+
+/* What a node without contacts prepares: every model of the snapshot that has a shape, with its damage, in all coarse
+ * bins; nothing before it is opened. */
+static void coarse_ones_are_prepared(void **state)
+{
+    (void)state;
+    static ScatterAntenna bin[coarse_most_bins];
+    const int             bins = coarse_bins(bin);
+    SeekerRadar          *radar = radar_of("free");
+    look_west(0);
+    scene_add(0, 0, 0, 0), scene_add(0, 50, 0, 0), scene_add(0, 90, 0, 0);
+    stage.entity[2].appearance = 3 << 3; /* damage 3; beyond the snapshot's end */
+    stage.entity[0].model = -1;          /* of no model: skipped, and those after it are not */
+    stage.snapshot.count = 2;
+    CHECK(seeker_radar_prepare(radar, stage.catalog, &stage.snapshot) == STATUS_OK);
+    CHECK(seeker_radar_prepared(radar).waiting == 0 && seeker_radar_prepared(radar).made == 0 && !radar->coarse);
+    radar->fine.background = true; /* as a node has it */
+    CHECK(radar_coarse_open(radar) == STATUS_OK && radar->coarse);
+    const Signatures *opened = radar->coarse;
+    CHECK(radar_coarse_open(radar) == STATUS_OK && radar->coarse == opened);
+    CHECK(seeker_radar_prepared(radar).waiting == 0);
+    CHECK(seeker_radar_prepare(radar, stage.catalog, &stage.snapshot) == STATUS_OK);
+    const RadarPrepared p = seeker_radar_prepared(radar);
+    printf("%d bins: %d made, %d wait\n", bins, p.made, p.waiting);
+    CHECK(p.made + p.waiting <= bins && p.waiting > bins / 2); /* one may be on its way */
+    stage.snapshot.count = 0;
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(windows_and_rates),    cmocka_unit_test(the_air_between),
-        cmocka_unit_test(who_is_in_sight),      cmocka_unit_test(what_moves_beyond_the_notch),
-        cmocka_unit_test(what_it_is_made_with),
+        cmocka_unit_test(windows_and_rates),        cmocka_unit_test(the_air_between),
+        cmocka_unit_test(who_is_in_sight),          cmocka_unit_test(what_moves_beyond_the_notch),
+        cmocka_unit_test(what_it_is_made_with),     cmocka_unit_test(air_of_long_paths),
+        cmocka_unit_test(coarse_ones_are_prepared),
     };
     return cmocka_run_group_tests(tests, open_stage, close_stage);
 }

@@ -153,6 +153,12 @@ static void echoes_obey_the_radar_equation(void **state)
         CHECK(cabs(a[CHANNEL_RIGHT] / a[CHANNEL_SUM] - g.right / g.sum) < 1e-12);
         CHECK(cabs(a[CHANNEL_DOWN] / a[CHANNEL_SUM] - g.down / g.sum) < 1e-12);
         CHECK(cabs(a[CHANNEL_CROSS] / a[CHANNEL_SUM] - other / own) < 1e-12);
+        /* FMCW: less by what of the sweep is over when the echo arrives */
+        const double whole = cabs(a[CHANNEL_SUM]);
+        preset.wave.kind = WAVEFORM_FMCW;
+        shot_amplitudes(a, &shot, &s, &m);
+        CHECK_NEAR(cabs(a[CHANNEL_SUM]) / whole, fmax(1 - 2 * r / c_mps / 20e-6, 0), 1e-12);
+        preset.wave.kind = WAVEFORM_LFM;
     }
     preset.transmits_h = false;
 }
@@ -240,6 +246,45 @@ static void the_lit_ground_is_in_its_rectangle(void **state)
     frame.reference_m = 3000;
 }
 
+/* Looking north-east, 0.3 rad down, over a sector of 0.2 rad to either side, from 900 m above the ground, 2600 .. 3200
+ * m away: at most sqrt(3200^2 - 900^2) m on level ground and 50 m and 2 % of the reference range more, at least
+ * sqrt(2600^2 - 900^2) less that; to either side the pattern's first null over the level part of the axis less the
+ * null, and the sector's half seen from above. */
+static void the_rectangle_by_hand(void **state)
+{
+    (void)state;
+    RadarShot    shot = shot_by_hand();
+    const double tilt = 0.3, azimuth = 0.25 * pi_rad, null_rad = asin(0.9 * shot_null(&shot));
+    const double wide = null_rad / (cos(tilt) - null_rad) + atan(tan(0.2) / cos(tilt)), more_m = 50 + 0.02 * 2900;
+    const double far_m = sqrt(3200.0 * 3200 - 900 * 900) + more_m, near_m = sqrt(2600.0 * 2600 - 900 * 900) - more_m;
+    double       low[2], high[2];
+    shot.ahead[0] = shot.ahead[1] = cos(tilt) * sqrt(0.5), shot.ahead[2] = -sin(tilt);
+    shot.reach = 0.9, shot.sector_half_rad = 0.2, shot.base_m = 50 - 900, shot.near_m = 2600, shot.far_m = 3200;
+    frame.reference_m = 2900;
+    shot_lit_rectangle(low, high, &shot);
+    frame.reference_m = 3000;
+    /* the least at the sides of the near end, the most at a side of the far end; nine directions have both and more */
+    for (int k = 0; k < 2; k++) {
+        double most = 0;
+        for (int i = -4; i <= 4; i++) most = fmax(most, cos(azimuth + wide * i / 4));
+        CHECK_NEAR(low[k], view.p_enu[k] + near_m * cos(azimuth + wide), 1e-6);
+        CHECK_NEAR(high[k], view.p_enu[k] + far_m * most, 1e-6);
+    }
+    /* nearly straight down, level 0.04: as if it were 0.05, and that less the null 0.05 as well */
+    const double steep = acos(0.04), sides = asin(0.5 * shot_null(&shot)) / 0.05 + atan(tan(0.01) / 0.05);
+    shot.ahead[0] = shot.ahead[1] = 0.04 * sqrt(0.5), shot.ahead[2] = -sin(steep), shot.sector_half_rad = 0.01,
+    shot.reach = 0.5;
+    frame.reference_m = 2900;
+    shot_lit_rectangle(low, high, &shot);
+    frame.reference_m = 3000;
+    CHECK(sides < pi_rad);
+    for (int k = 0; k < 2; k++) {
+        double least = 1;
+        for (int i = -4; i <= 4; i++) least = fmin(least, cos(azimuth + sides * i / 4));
+        CHECK_NEAR(low[k], view.p_enu[k] + (least < 0 ? far_m : near_m) * least, 1e-6);
+    }
+}
+
 /* Positions: the middle one and as many to either side as reach the sector's end. */
 static void sectors_are_planned(void **state)
 {
@@ -249,8 +294,15 @@ static void sectors_are_planned(void **state)
     static const struct {
         double steps, share;
         int    positions;
-    } of[] = {{10, 0.5, 11}, {10.1, 0.5, 13}, {9.9, 0.5, 11}, {0.3, 0.8, 3}, {1000, 0.01, 1001}};
-    for (int i = 0; i < 5; i++) {
+    } of[] = {{10, 0.5, 11},
+              {10.1, 0.5, 13},
+              {9.9, 0.5, 11},
+              {0.3, 0.8, 3},
+              {1000, 0.01, 1001},
+              /* a step that rounding alone makes is none; one of a ten-millionth of the sector is */
+              {10 + 1e-10, 0.5, 11},
+              {10 + 2e-7, 0.5, 13}};
+    for (int i = 0; i < 7; i++) {
         CHECK(radar_sector_plan(&plan, &preset, of[i].steps * of[i].share * width, of[i].share) == STATUS_OK);
         CHECK(plan.positions == of[i].positions);
         CHECK_NEAR(plan.step_rad, of[i].share * width, 1e-12);
@@ -258,6 +310,14 @@ static void sectors_are_planned(void **state)
     }
     CHECK(radar_sector_plan(&plan, &preset, 1000.1 * 0.01 * width, 0.01) == STATUS_BAD_VALUE);
     CHECK(radar_sector_plan(&plan, &preset, 0, 0.5) == STATUS_OK && plan.positions == 1);
+    /* 2^27 samples in all are as many as there may be: of 1 position 2^20 pulses of 128, of 3 too many */
+    preset.wave.pulses = 1 << 27 >> 7;
+    CHECK(radar_sector_plan(&plan, &preset, 0.3 * width, 0.8) == STATUS_BAD_VALUE);
+    preset.wave.pulses = 349525; /* 3 x 349525 x 128 = 2^27 - 128 */
+    CHECK(radar_sector_plan(&plan, &preset, 0.3 * width, 0.8) == STATUS_OK && plan.positions == 3);
+    preset.wave.pulses++;
+    CHECK(radar_sector_plan(&plan, &preset, 0.3 * width, 0.8) == STATUS_BAD_VALUE);
+    preset.wave.pulses = 64;
 }
 
 int main(void)
@@ -270,6 +330,7 @@ int main(void)
         cmocka_unit_test(nulls_are_zeros_of_bessel_functions),
         cmocka_unit_test(positions_turn_to_the_right),
         cmocka_unit_test(the_lit_ground_is_in_its_rectangle),
+        cmocka_unit_test(the_rectangle_by_hand),
         cmocka_unit_test(sectors_are_planned),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

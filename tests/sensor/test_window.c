@@ -60,6 +60,17 @@ static void bad_words_are_refused(void **state)
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) CHECK(window_parse(&w, bad[i]) != NULL);
     CHECK(w.kind == WINDOW_KAISER && w.beta == 6);
     CHECK(window_weights(&(double){0}, 1, &w) == STATUS_BAD_VALUE);
+    /* nothing is written beyond the last weight */
+    for (int kind = WINDOW_RECT; kind <= WINDOW_KAISER; kind++) {
+        double       of[10] = {[9] = 777};
+        const Window each = {.kind = (WindowKind)kind, .beta = 6, .sidelobe_db = 40, .nbar = 4};
+        CHECK(window_weights(of, 9, &each) == STATUS_OK && of[9] == 777 && of[4] == 1);
+    }
+    static double even[4097];
+    WindowFigures f;
+    for (int i = 0; i < 4097; i++) even[i] = 1;
+    CHECK(window_figures(&f, even, 3) == STATUS_BAD_VALUE && window_figures(&f, even, 4097) == STATUS_BAD_VALUE);
+    CHECK(window_figures(&f, even, 4) == STATUS_OK && window_figures(&f, even, 4096) == STATUS_OK);
 }
 
 int main(void)
