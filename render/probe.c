@@ -170,17 +170,28 @@ static const char *under_weather(const Atmosphere **out, AtmosphereProbe *probe,
     return atmosphere_in(out, model, &state, ~0u, probe->arena) == STATUS_OK ? NULL : "out of memory";
 }
 
+/* Model, visibility_km and band, which begin a row. */
+static const char *air_of_row(Atmosphere **model, double *visibility_m, AirBand *band, AtmosphereProbe *probe,
+                              const ProbeValue *in)
+{
+    const char *why = find_model(model, probe, in[0].text);
+    if (why) return why;
+    *band = AIR_B;
+    while (*band < AIR_BAND_COUNT && strcmp(air_band_name(*band), in[2].text) != 0) ++*band;
+    if (*band == AIR_BAND_COUNT) return "band must be b, g, r, pan, nir, mwir or lwir";
+    *visibility_m = in[1].number * 1e3;
+    return *visibility_m > 0 ? NULL : "visibility_km must be above 0";
+}
+
 static const char *atmosphere_row(void *state, const ProbeValue *in, ProbeValue *out)
 {
     Atmosphere       *model;
     const Atmosphere *here;
-    const char       *why = find_model(&model, state, in[0].text);
+    AirBand           band;
+    double            visibility_m;
+    const char       *why = air_of_row(&model, &visibility_m, &band, state, in);
     if (why) return why;
-    AirBand band = AIR_B;
-    while (band < AIR_BAND_COUNT && strcmp(air_band_name(band), in[2].text) != 0) band++;
-    if (band == AIR_BAND_COUNT) return "band must be b, g, r, pan, nir, mwir or lwir";
-    const double visibility_m = in[1].number * 1e3, temp_k = in[6].number;
-    if (!(visibility_m > 0)) return "visibility_km must be above 0";
+    const double temp_k = in[6].number;
     const bool    sun = isfinite(in[7].number);
     const AirPath path = {in[3].number, in[4].number, in[5].number * 1e3, sun ? in[7].number * rad_per_deg : pi_rad,
                           isfinite(in[8].number) ? in[8].number * rad_per_deg : 0};
@@ -197,6 +208,28 @@ static const char *atmosphere_row(void *state, const ProbeValue *in, ProbeValue 
     out[1].number = air.thermal_w_m2_sr;
     out[2].number = air.sun_transmittance;
     if (sun) out[3].number = air.scattered_w_m2_sr;
+    return NULL;
+}
+
+static const char *sky_row(void *state, const ProbeValue *in, ProbeValue *out)
+{
+    Atmosphere       *model;
+    const Atmosphere *here;
+    AirBand           band;
+    double            visibility_m;
+    const char       *why = air_of_row(&model, &visibility_m, &band, state, in);
+    if (why) return why;
+    const double observer_m = in[3].number, zenith_rad = in[4].number * rad_per_deg;
+    const bool   sun = isfinite(in[5].number);
+    if (!(observer_m >= 0)) return "heights must be at or above the ground";
+    if (!(in[4].number >= 0 && in[4].number <= 180)) return "zenith_deg must be 0 .. 180";
+    why = under_weather(&here, state, model, &in[7], &in[8], visibility_m);
+    if (why) return why;
+    SkyAir sky;
+    atmosphere_sky(&sky, here, visibility_m, band, observer_m, zenith_rad, sun ? in[5].number * rad_per_deg : pi_rad,
+                   isfinite(in[6].number) ? in[6].number * rad_per_deg : 0);
+    out[0].number = sky.thermal_w_m2_sr;
+    if (sun) out[1].number = sky.scattered_w_m2_sr;
     return NULL;
 }
 
@@ -224,6 +257,14 @@ const Probe render_probes[] = {
      .out = "tau,path_radiance,sun_tau,scattered",
      .open = atmosphere_probe_open,
      .row = atmosphere_row,
+     .close = atmosphere_probe_close},
+    {.name = "sky",
+     .help = "radiance of the sky from the same tables; zenith_deg beyond 90: below the horizontal, past the ray's lowest "
+             "point (one that would meet the ground: past the ground there)",
+     .in = "model$,visibility_km,band$,observer_m,zenith_deg,sun_zenith_deg?,rel_azimuth_deg?,air_temp_k?,humidity_pct?",
+     .out = "radiance,scattered",
+     .open = atmosphere_probe_open,
+     .row = sky_row,
      .close = atmosphere_probe_close},
     {.name = "heat-ground",
      .arguments = PROBE_WEATHER_ARGUMENTS,

@@ -3,7 +3,6 @@
 #include "tests/render/atmosphere_errors.h"
 #include "render/air/atmosphere.h"
 #include "render/materials/planck.h"
-#include "render/probe.h"
 
 static Atmosphere *us1976, *midlat_summer;
 
@@ -519,53 +518,6 @@ static void goes_to_its_limits(void **state)
     CHECK_NEAR(left.scattered_w_m2_sr, right.scattered_w_m2_sr, 1e-9);
 }
 
-/* The probe: the same figures by row, bad rows with a reason and no figures. */
-static void probe_answers(void **state)
-{
-    (void)state;
-    const Probe *probe = NULL;
-    for (int i = 0; i < render_probe_count; i++)
-        if (strcmp(render_probes[i].name, "atmosphere") == 0) probe = &render_probes[i];
-    CHECK(probe != NULL);
-    /* the third: the tropical ground, 25930 ppmv of vapour at 1013 hPa, of which 34.73 hPa would saturate at 299.7 K */
-    static char rows[] = "model,visibility_km,band,observer_m,target_m,range_km,temp_k,sun_zenith_deg,rel_azimuth_deg,"
-                         "air_temp_k,humidity_pct\n"
-                         "us1976,23,lwir,0,0,5,300,,,,\n"
-                         "midlat_summer,5,nir,3000,0,5,300,45,90,,\n"
-                         "us1976,23,lwir,0,0,5,300,,,299.7,75.63\n"
-                         "us1976,23,swir,0,0,5,300,,,,\n"
-                         "us1976,23,lwir,0,9000,5,300,,,,\n"
-                         "us1976,-1,lwir,0,0,5,300,,,,\n"
-                         "mars,23,lwir,0,0,5,300,,,,\n"
-                         "us1976,23,lwir,0,0,5,300,,,299.7,101\n"
-                         "us1976,23,lwir,0,0,5,300,,,29.97,50\n"
-                         "us1976,23,lwir,0,0,5,300,,,299.7,\n";
-    char        text[4096] = "", path[text_file_size];
-    FILE       *in = fmemopen(rows, strlen(rows), "r"), *out = fmemopen(text, sizeof text, "w");
-    log_set_sink(check_listen, NULL);
-    CHECK(in && out && probe_run(probe, 0, NULL, in, out) == STATUS_OK);
-    log_set_sink(NULL, NULL);
-    fclose(in);
-    fclose(out);
-    text_file(path, text);
-    Table table;
-    CHECK(table_open(&table, path) == STATUS_OK && table.rows == 10);
-    remove(path);
-    CHECK_NEAR(cell(&table, 0, "tau"), 0.625655, 5e-5); /* infrared.md */
-    CHECK_NEAR(cell(&table, 0, "path_radiance"), 11.7559, 2e-3);
-    CHECK(isnan(cell(&table, 0, "scattered")));
-    /* shared/data/atmosphere/slant_solar.csv: 3 km, 126.888 degrees, to the ground; to a per cent */
-    CHECK_NEAR(cell(&table, 1, "scattered") / 9.24522, 1, 0.01);
-    /* shared/data/atmosphere/horizontal.csv, tropical, 5 km along the ground at 23 km */
-    CHECK_NEAR(cell(&table, 2, "tau"), 0.15798, 1e-3);
-    CHECK_NEAR(cell(&table, 2, "path_radiance") / 32.2559, 1, 0.005);
-    for (int row = 0; row < 10; row++) {
-        CHECK((row < 3) == !*word(&table, row, "error"));
-        CHECK((row < 3) == isfinite(cell(&table, row, "tau")));
-    }
-    table_close(&table);
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -578,7 +530,6 @@ int main(void)
         cmocka_unit_test(sky_and_sun_between_the_points),
         cmocka_unit_test(scattered_between_the_points),
         cmocka_unit_test(goes_to_its_limits),
-        cmocka_unit_test(probe_answers),
     };
     return cmocka_run_group_tests(tests, open_models, close_models);
 }

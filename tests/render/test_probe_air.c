@@ -1,0 +1,89 @@
+/* The probes of the air: its figures by row, bad rows with a reason and no figures. labels: physics */
+#include "tests/render/atmosphere_errors.h"
+
+#include "render/probe.h"
+
+static Table answers(const char *name, char *rows)
+{
+    const Probe *probe = NULL;
+    for (int i = 0; i < render_probe_count; i++)
+        if (strcmp(render_probes[i].name, name) == 0) probe = &render_probes[i];
+    CHECK(probe != NULL);
+    char  text[4096] = "", path[text_file_size];
+    FILE *in = fmemopen(rows, strlen(rows), "r"), *out = fmemopen(text, sizeof text, "w");
+    log_set_sink(check_listen, NULL);
+    CHECK(in && out && probe_run(probe, 0, NULL, in, out) == STATUS_OK);
+    log_set_sink(NULL, NULL);
+    fclose(in);
+    fclose(out);
+    text_file(path, text);
+    Table table;
+    CHECK(table_open(&table, path) == STATUS_OK);
+    remove(path);
+    return table;
+}
+
+static void paths(void **state)
+{
+    (void)state;
+    /* the third: the tropical ground, 25930 ppmv of vapour at 1013 hPa, of which 34.73 hPa would saturate at 299.7 K */
+    static char rows[] = "model,visibility_km,band,observer_m,target_m,range_km,temp_k,sun_zenith_deg,rel_azimuth_deg,"
+                         "air_temp_k,humidity_pct\n"
+                         "us1976,23,lwir,0,0,5,300,,,,\n"
+                         "midlat_summer,5,nir,3000,0,5,300,45,90,,\n"
+                         "us1976,23,lwir,0,0,5,300,,,299.7,75.63\n"
+                         "us1976,23,swir,0,0,5,300,,,,\n"
+                         "us1976,23,lwir,0,9000,5,300,,,,\n"
+                         "us1976,-1,lwir,0,0,5,300,,,,\n"
+                         "mars,23,lwir,0,0,5,300,,,,\n"
+                         "us1976,23,lwir,0,0,5,300,,,299.7,101\n"
+                         "us1976,23,lwir,0,0,5,300,,,29.97,50\n"
+                         "us1976,23,lwir,0,0,5,300,,,299.7,\n";
+    Table table = answers("atmosphere", rows);
+    CHECK(table.rows == 10);
+    CHECK_NEAR(cell(&table, 0, "tau"), 0.625655, 5e-5); /* infrared.md */
+    CHECK_NEAR(cell(&table, 0, "path_radiance"), 11.7559, 2e-3);
+    CHECK(isnan(cell(&table, 0, "scattered")));
+    /* shared/data/atmosphere/slant_solar.csv: 3 km, 126.888 degrees, to the ground; to a per cent */
+    CHECK_NEAR(cell(&table, 1, "scattered") / 9.24522, 1, 0.01);
+    /* shared/data/atmosphere/horizontal.csv, tropical, 5 km along the ground at 23 km */
+    CHECK_NEAR(cell(&table, 2, "tau"), 0.15798, 1e-3);
+    CHECK_NEAR(cell(&table, 2, "path_radiance") / 32.2559, 1, 0.005);
+    for (int row = 0; row < 10; row++) {
+        CHECK((row < 3) == !*word(&table, row, "error"));
+        CHECK((row < 3) == isfinite(cell(&table, row, "tau")));
+    }
+    table_close(&table);
+}
+
+/* us1976 at 23 km: LOWTRAN's level sky from 10 km (shared/data/atmosphere/sky_thermal.csv has 2.046 W/(m2 sr), the tables 2.08
+ * between their heights), and what the sum over shells has of a ray whose lowest point is 5 km up, 2.27 degrees below it
+ * (tests/data/limb.csv, within 1.2 K). */
+static void directions(void **state)
+{
+    (void)state;
+    static char rows[] = "model,visibility_km,band,observer_m,zenith_deg,sun_zenith_deg,rel_azimuth_deg,air_temp_k,humidity_pct\n"
+                         "us1976,23,lwir,10000,90,,,,\n"
+                         "us1976,23,lwir,10000,92.26975,,,,\n"
+                         "us1976,23,g,10000,92,45,90,,\n"
+                         "us1976,23,lwir,0,0,,,299.7,75.63\n"
+                         "us1976,23,lwir,-1,0,,,,\n"
+                         "us1976,23,lwir,0,181,,,,\n";
+    Table       table = answers("sky", rows);
+    CHECK(table.rows == 6);
+    CHECK_NEAR(cell(&table, 0, "radiance"), 2.046, 0.05);
+    CHECK_NEAR(cell(&table, 1, "radiance"), 8.2592, 0.3);
+    CHECK(isnan(cell(&table, 1, "scattered")) && cell(&table, 2, "scattered") > 0 && cell(&table, 2, "radiance") == 0);
+    CHECK_NEAR(cell(&table, 3, "radiance") / 16.4589, 1, 0.01); /* sky_thermal.csv, tropical, overhead */
+    for (int row = 0; row < 6; row++) CHECK((row < 4) == !*word(&table, row, "error"));
+    table_close(&table);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(paths),
+        cmocka_unit_test(directions),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
