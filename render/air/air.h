@@ -3,6 +3,7 @@
 #define RENDER_AIR_AIR_H
 
 #include "render/air/atmosphere.h"
+#include "render/air/droplets.h"
 #include "render/scene/hits.h"
 #include "render/materials/materials.h"
 #include "render/materials/planck.h"
@@ -20,7 +21,8 @@
  * on a tilted plane, are tables interpolated for the requested bands. tests/render/test_air.c measures their errors.
  * Heights are above the ground at the terrain's origin, which is at the model's 0 km.
  *
- * Weather. Extinction is the model's at the visibility given. Air warmer or colder than the model's own ground
+ * Weather. Extinction is the model's at the visibility given (weather's here is that of the haze: droplets_haze_m), and
+ * that of the drops of rain, snow and fog. Air warmer or colder than the model's own ground
  * (weather.air_temp_k) scales the thermal radiance of path and sky by the ratio of the two Planck radiances in the
  * band, and the longwave flux by that of the fourth powers; its transmittance, and so its water vapour, stay the
  * model's. With height the air's temperature changes as the model's does. Clouds are a mean: the direct sun is dimmed
@@ -65,11 +67,12 @@ typedef struct Daylight {
     double zero_z_m;                   /* ENU z of the model's 0 km; heights bend with the Earth: daylight_height */
     float  warmer_k[air_warmer_nodes]; /* of the air every 500 m up from there, against weather.air_temp_k */
     const PlanckTable *planck_mwir, *planck_lwir;
-    double             day_zenith_rad;        /* of the sun, at which the tables are evaluated */
-    double             sun_above;             /* share of its disc above the horizon, over the square of its distance */
-    double thermal_scale[2], scattered_scale; /* air of another temperature than the model's; twilight, distance */
-    double cloud_sky, cloud_thermal; /* clouds: factor on the sky's scattered light; share of the thermal sky that
-                                      * is cloud of air temperature */
+    double             day_zenith_rad; /* of the sun, at which the tables are evaluated */
+    double             sun_above;      /* share of its disc above the horizon, over the square of its distance */
+    double   thermal_scale[2], scattered_scale; /* air of another temperature than the model's; twilight, distance */
+    Droplets droplets;                          /* rain, snow, fog; the totals have them */
+    double   cloud_sky, cloud_thermal; /* clouds: factor on the sky's scattered light; share of the thermal sky that
+                                        * is cloud of air temperature */
 
     /* by direction; only of the requested bands */
     AirSky sky[AIR_BAND_COUNT];       /* from the ground: for mirror reflections in the scene */

@@ -238,6 +238,8 @@ static void ask_around_sun(DaylightJob *job, int other, int k)
     double thermal[2];
     air_day_sky(&job->answer[other].around[k], thermal, job->day, height_of(job, other), fabs(zenith_rad), &azimuth_rad,
                 1);
+    if (!other)
+        droplets_in_sky(&job->answer[0].around[k], thermal, job->light, job->bands, fabs(zenith_rad), &azimuth_rad, 1);
 }
 
 /* One height of the sky. */
@@ -248,6 +250,9 @@ static void ask_sky(DaylightJob *job, int other, int i)
     SkyRows     *sky = &job->answer[other].sky;
     air_day_sky(sky->scattered[i], sky->thermal[i], job->day, height_of(job, other), acos(u * u), job->azimuth_rad,
                 azimuths);
+    if (!other)
+        droplets_in_sky(sky->scattered[i], sky->thermal[i], job->light, job->bands, acos(u * u), job->azimuth_rad,
+                        azimuths);
     for (int a = azimuths; a <= asked_azimuths; a++)
         memcpy(sky->scattered[i][a], sky->scattered[i][0], sizeof sky->scattered[i][a]);
 }
@@ -455,9 +460,10 @@ Status daylight_begin(DaylightJob **out, Daylight *light, const DaylightInput *i
     double temp_k[air_temps + 1];
     memcpy(temp_k, emitter_temp_k, sizeof emitter_temp_k);
     temp_k[air_temps] = light->weather.air_temp_k;
-    const Status status = air_day_at(&light->day, in->source->atmosphere, in->weather->visibility_m,
+    const Status status = air_day_at(&light->day, in->source->atmosphere, light->weather.visibility_m,
                                      light->day_zenith_rad, in->bands, temp_k, air_temps + 1, arena);
     job->day = light->day;
+    if (status == STATUS_OK && light->droplets.layers > 0) droplets_beside(&light->droplets, light->day);
     *out = job;
     return status;
 }
