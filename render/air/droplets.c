@@ -134,6 +134,12 @@ static void streams_sun(double *reflected, double *passed, const Streams *s, dou
     *passed = clamp(x - share * on, 0, 1);
 }
 
+/* Of two streams' radiances: their mean, and the lean that gives these two fluxes. */
+static DropletGlow glow_of(double down_w_m2_sr, double up_w_m2_sr)
+{
+    return (DropletGlow){0.5 * (down_w_m2_sr + up_w_m2_sr), 0.75 * (down_w_m2_sr - up_w_m2_sr)};
+}
+
 static double layer_depth(const DropletLayer *layer, AirBand band)
 {
     return layer->per_m[band] * (layer->top_m - layer->bottom_m);
@@ -159,8 +165,8 @@ DropletSun droplets_sun(Droplets *droplets, AirBand band, DropletSun without)
         const double risen = onto * back + sun.diffuse_w_m2 * stream[i].reflected + down * below[i] * stream[i].passed;
         const double diffuse = fmax(down - direct * up, 0);
         layer->sun_w_m2[band][1] = sun.direct_w_m2, layer->sun_w_m2[band][0] = direct;
-        layer->diffuse_w_m2_sr[band][1] = (sun.diffuse_w_m2 + risen) / (2 * pi_rad);
-        layer->diffuse_w_m2_sr[band][0] = (diffuse + down * below[i]) / (2 * pi_rad);
+        layer->diffuse[band][1] = glow_of(sun.diffuse_w_m2 / pi_rad, risen / pi_rad);
+        layer->diffuse[band][0] = glow_of(diffuse / pi_rad, down * below[i] / pi_rad);
         sun = (DropletSun){direct, diffuse};
     }
     return sun;
@@ -172,7 +178,8 @@ void droplets_under_clouds(Droplets *droplets, double direct, double diffuse)
         for (int b = 0; b < AIR_BAND_COUNT; b++)
             for (int end = 0; end < 2; end++) {
                 droplets->layer[i].sun_w_m2[b][end] *= direct;
-                droplets->layer[i].diffuse_w_m2_sr[b][end] *= diffuse;
+                droplets->layer[i].diffuse[b][end].mean_w_m2_sr *= diffuse;
+                droplets->layer[i].diffuse[b][end].lean_w_m2_sr *= diffuse;
             }
 }
 
@@ -184,9 +191,9 @@ double droplets_thermal(Droplets *droplets, AirBand band, double sky_w_m2_sr, do
         DropletLayer *layer = &droplets->layer[i];
         const Streams s = streams_of(layer, band);
         const double  above = sky_w_m2_sr * passed;
-        double       *colder = layer->colder_w_m2_sr[band - AIR_MWIR];
-        colder[1] = 0.5 * (above * (1 + s.reflected) + ground_w_m2_sr * s.passed);
-        colder[0] = 0.5 * (above * s.passed + ground_w_m2_sr * (1 + s.reflected));
+        DropletGlow  *colder = layer->colder[band - AIR_MWIR];
+        colder[1] = glow_of(above, above * s.reflected + ground_w_m2_sr * s.passed);
+        colder[0] = glow_of(above * s.passed + ground_w_m2_sr * s.reflected, ground_w_m2_sr);
         passed *= s.passed;
     }
     return passed;

@@ -4,7 +4,7 @@
  * extinction, scattered share and its mean cosine by band, and the light at the bottom and the top of each layer by two
  * streams (delta-Eddington). A path then has the depth of its part in each layer, exactly, on top of the tables' depth,
  * since drops are nearly grey within a band; and sends what drops scatter (single scattering of the sun by Henyey and
- * Greenstein's phase function, plus diffuse light as if it came from all sides alike) and emit, at the air's
+ * Greenstein's phase function, plus diffuse light by Eddington's phase function) and emit, at the air's
  * temperature.
  *
  *   rain   1.076 R^0.67 dB/km in every band, R in mm/h (ITU-R P.1814); below 360 m above the freezing level (P.839), as
@@ -26,14 +26,19 @@
 
 enum { droplet_layers = 2, droplet_bands = AIR_BAND_COUNT };
 
-/* low and high: values at its bottom and its top. */
+/* Diffuse light at a height: what goes down at a cosine c from the vertical has the radiance mean + c lean. */
+typedef struct DropletGlow {
+    double mean_w_m2_sr, lean_w_m2_sr;
+} DropletGlow;
+
+/* Pairs: values at its bottom and its top. */
 typedef struct DropletLayer {
-    double bottom_m, top_m; /* above the model's 0 km */
-    double per_m[AIR_BAND_COUNT], albedo[AIR_BAND_COUNT], asymmetry[AIR_BAND_COUNT];
-    double fade[AIR_BAND_COUNT];               /* decades in e by which diffuse light falls off from side to side */
-    double sun_w_m2[AIR_BAND_COUNT][2];        /* direct, on a plane facing it: low, high */
-    double diffuse_w_m2_sr[AIR_BAND_COUNT][2]; /* mean radiance of the sun's scattered light */
-    double colder_w_m2_sr[2][2]; /* mwir, lwir: mean thermal radiance less a black body's of air temperature */
+    double      bottom_m, top_m; /* above the model's 0 km */
+    double      per_m[AIR_BAND_COUNT], albedo[AIR_BAND_COUNT], asymmetry[AIR_BAND_COUNT];
+    double      fade[AIR_BAND_COUNT];        /* decades in e by which diffuse light falls off from side to side */
+    double      sun_w_m2[AIR_BAND_COUNT][2]; /* direct, on a plane facing it */
+    DropletGlow diffuse[AIR_BAND_COUNT][2];  /* the sun's scattered light */
+    DropletGlow colder[2][2]; /* mwir, lwir: thermal light less that of a black body of air temperature */
 } DropletLayer;
 
 typedef struct Droplets {

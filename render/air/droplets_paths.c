@@ -73,9 +73,12 @@ static bool ray_through(DropletRay *ray, const Droplets *droplets, double range_
     return wet;
 }
 
-/* Of light that falls off from both sides of a layer; share: of the way up. */
-static double between_sides(const double side[2], double fade, double share)
+/* Diffuse light that falls off from both sides of a layer, scattered into a ray that climbs so; share: of the way up.
+ */
+static double between_sides(const DropletGlow glow[2], double fade, double share, double leans)
 {
+    const double side[2] = {glow[0].mean_w_m2_sr + leans * glow[0].lean_w_m2_sr,
+                            glow[1].mean_w_m2_sr + leans * glow[1].lean_w_m2_sr};
     if (!(fade > 1e-3)) return side[0] + share * (side[1] - side[0]);
     const double whole = -expm1(-2 * fade);
     return (side[1] * exp(-fade * (1 - share)) * -expm1(-2 * fade * share) +
@@ -89,16 +92,17 @@ static unsigned lights_of(int b) { return (b != AIR_LWIR ? ask_scattered : 0u) |
 
 /* What a layer's drops send along a ray that sees them at this height, as if they were opaque. */
 static double drops_send(const Daylight *light, const DropletLayer *layer, int b, unsigned lights, double height_m,
-                         double cosine)
+                         const DropletRay *ray)
 {
     const double share = clamp((height_m - layer->bottom_m) / (layer->top_m - layer->bottom_m), 0, 1);
-    const double albedo = layer->albedo[b], g = layer->asymmetry[b];
+    const double albedo = layer->albedo[b], g = layer->asymmetry[b], leans = g * ray->climb, cosine = ray->cosine;
     double       sent = 0;
     if (lights & ask_scattered) {
         const double to_sun = fmax(1 + g * g - 2 * g * cosine, 1e-6), phase = (1 - g * g) / (to_sun * sqrt(to_sun));
         const double above = layer->per_m[b] * (layer->top_m - layer->bottom_m) * (1 - share);
         const double sun = layer->sun_w_m2[b][1] > 0 ? layer->sun_w_m2[b][1] * exp(-above / light->droplets.sun_up) : 0;
-        sent = albedo * (phase * sun / (4 * pi_rad) + between_sides(layer->diffuse_w_m2_sr[b], layer->fade[b], share));
+        sent = albedo *
+               (phase * sun / (4 * pi_rad) + fmax(between_sides(layer->diffuse[b], layer->fade[b], share, leans), 0));
     }
     if (!(lights & ask_thermal)) return sent;
     const double step = clamp(height_m / air_warmer_step_m, 0, air_warmer_nodes - 1.001), t = step - (int)step;
@@ -106,7 +110,7 @@ static double drops_send(const Daylight *light, const DropletLayer *layer, int b
     return sent +
            planck_table_radiance(b == AIR_MWIR ? light->planck_mwir : light->planck_lwir,
                                  light->weather.air_temp_k + low_k + t * (high_k - low_k)) +
-           albedo * between_sides(layer->colder_w_m2_sr[b - AIR_MWIR], layer->fade[b], share);
+           albedo * between_sides(layer->colder[b - AIR_MWIR], layer->fade[b], share, leans);
 }
 
 /* Transmittance of the drops on a ray; added: the air's own radiance before, and with them after. */
@@ -126,7 +130,7 @@ static double ray_drops(double *added_w_m2_sr, const DropletRay *ray, const Dayl
             /* where the light that arrives begins, in the mean */
             const double at = depth > 1e-3 ? 1 / depth - exp(-depth) / lost : 0.5 - depth / 12;
             const double seen_m = air_height_along(ray->eye_m, ray->climb, p->from_m + at * p->length_m, NULL);
-            sent = (air * source + drops * drops_send(light, layer, b, lights, seen_m, ray->cosine)) / depth;
+            sent = (air * source + drops * drops_send(light, layer, b, lights, seen_m, ray)) / depth;
         }
         sum += left * lost * sent;
         left *= 1 - lost, passed *= exp(-drops);

@@ -227,6 +227,46 @@ static void thick_fog_is_black(void **state)
     CHECK(path[AIR_LWIR].transmittance[0] < 1e-4F);
 }
 
+/* Small drops scatter some of what a fog sends: half of the extinction forwards by 0.68 is, by similarity, 0.48 (1 -
+ * 0.68) / (1 - 0.48 x 0.68) = 0.23 alike to all sides, and a deep layer of that emits H(1) sqrt(1 - 0.23) = 0.94
+ * upwards (Chandrasekhar: H(1) = 1.07). So the sky's cold shows in its upper side by 0.06, of two streams 0.03 more or
+ * less. */
+static void the_sky_shows_in_fog_from_above(void **state)
+{
+    (void)state;
+    static AirPaths path[AIR_BAND_COUNT];
+    const Weather   w = weather_of(0, 100, 288.15, WEATHER_FOG_RADIATION);
+    const Air       air = air_of(&w, 35, 310, all_bands, NULL);
+    const double    black = planck_table_radiance(lwir, 288.15 - 6.5e-3 * 210); /* one depth below its top, 90 m */
+    SkyAir          sky;
+    clear();
+    add(1, -1.5, 309);
+    air_paths_of(path, &air, all_bands, &hits, &rays, NULL);
+    atmosphere_sky(&sky, atmosphere, 5000, AIR_LWIR, 0, 53 * rad_per_deg, pi_rad, 0);
+    CHECK_NEAR((black - (double)path[AIR_LWIR].added_w_m2_sr[0]) / (black - sky.thermal_w_m2_sr), 0.06, 0.03);
+}
+
+/* The sky that lights the ground, by its tables, and the same sky as an eye on the ground sees it, path by path. */
+static void two_skies_are_one(void **state)
+{
+    (void)state;
+    static AirPaths path[AIR_BAND_COUNT];
+    for (int s = 0; s < 3; s++) {
+        const Weather w = weather_of(s == 2 ? 10 : 0, s == 2 ? 23000 : s ? 800 : 150, 288.15, WEATHER_FOG_RADIATION);
+        const Air     air = air_of(&w, 35, 2, all_bands, NULL);
+        clear();
+        for (int i = 0; i < 24; i++) add(0.5 * i, 0.02 + 0.06 * i, INFINITY);
+        for (int i = 0; i < 3; i++) add(sun_azimuth, (35 + 8 * i) * rad_per_deg, INFINITY);
+        air_paths_of(path, &air, all_bands, &hits, &rays, NULL);
+        for (int b = 0; b < AIR_BAND_COUNT; b++)
+            for (int i = 0; i < hits.count; i++) {
+                const double d_enu[3] = {rays.d_enu[0][i], rays.d_enu[1][i], rays.d_enu[2][i]};
+                const double seen = (double)path[b].added_w_m2_sr[i];
+                CHECK_NEAR(daylight_sky(&air.light, (AirBand)b, d_enu), seen, 0.05 * seen);
+            }
+    }
+}
+
 /* Drops that absorb nothing, of diffuse light (Eddington): T = 1 / (1 + 0.75 (1 - g) depth), R = 1 - T, and over a
  * ground of 0.2 T / (1 - 0.2 R) arrives. Of the sun alone: T = ((2/3 + u) + (2/3 - u) exp(-d / u)) / (4/3 + (1 - g')
  * d), where d = (1 - g^2) depth and g' = g / (1 + g). */
@@ -298,6 +338,8 @@ int main(void)
         cmocka_unit_test(light_below_a_layer),
         cmocka_unit_test(no_step_at_the_horizon),
         cmocka_unit_test(height_of_rain),
+        cmocka_unit_test(the_sky_shows_in_fog_from_above),
+        cmocka_unit_test(two_skies_are_one),
     };
     return cmocka_run_group_tests(tests, open_tables, close_tables);
 }
