@@ -191,7 +191,7 @@ static const char *atmosphere_row(void *state, const ProbeValue *in, ProbeValue 
     double            visibility_m;
     const char       *why = air_of_row(&model, &visibility_m, &band, state, in);
     if (why) return why;
-    const double temp_k = in[6].number;
+    const double  temp_k = in[6].number;
     const bool    sun = isfinite(in[7].number);
     const AirPath path = {in[3].number, in[4].number, in[5].number * 1e3, sun ? in[7].number * rad_per_deg : pi_rad,
                           isfinite(in[8].number) ? in[8].number * rad_per_deg : 0};
@@ -259,9 +259,11 @@ const Probe render_probes[] = {
      .row = atmosphere_row,
      .close = atmosphere_probe_close},
     {.name = "sky",
-     .help = "radiance of the sky from the same tables; zenith_deg beyond 90: below the horizontal, past the ray's lowest "
-             "point (one that would meet the ground: past the ground there)",
-     .in = "model$,visibility_km,band$,observer_m,zenith_deg,sun_zenith_deg?,rel_azimuth_deg?,air_temp_k?,humidity_pct?",
+     .help =
+         "radiance of the sky from the same tables; zenith_deg beyond 90: below the horizontal, past the ray's lowest "
+         "point (one that would meet the ground: past the ground there)",
+     .in =
+         "model$,visibility_km,band$,observer_m,zenith_deg,sun_zenith_deg?,rel_azimuth_deg?,air_temp_k?,humidity_pct?",
      .out = "radiance,scattered",
      .open = atmosphere_probe_open,
      .row = sky_row,

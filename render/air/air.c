@@ -76,7 +76,8 @@ static void sun_at_eye(Air *air, const Atmosphere *atmosphere, const Sun *sun, u
         if (!((bands | 1 << AIR_PAN) >> b & 1)) continue;
         SunAir at_eye;
         atmosphere_sun(&at_eye, atmosphere, air->light.weather.visibility_m, (AirBand)b, air->eye_height_m, low_rad);
-        air->sun_eye_w_m2[b] = at_eye.direct_normal_w_m2 * air->light.sun_above;
+        air->sun_eye_w_m2[b] = at_eye.direct_normal_w_m2 * air->light.sun_above *
+                               droplets_sun_passed(&air->light.droplets, (AirBand)b, air->eye_height_m);
     }
 }
 
@@ -93,8 +94,8 @@ Status air_at(Air *out, const AirSource *source, const Weather *weather, const S
               Arena *arena)
 {
     *out = (Air){.eye_height_m = fmax(eye->height_m, 0)};
-    /* ten metres of air below the eye do not change the sky above it */
-    const bool          on_ground = out->eye_height_m < 10;
+    /* ten metres of air below the eye do not change the sky above it; drops are added to an eye's path by path */
+    const bool          on_ground = out->eye_height_m < 10 && !droplets_fall(weather);
     const DaylightInput in = {.source = source,
                               .weather = weather,
                               .sun = sun,
@@ -214,8 +215,9 @@ static void solid_ray(AirPaths out[AIR_BAND_COUNT], const Air *air, unsigned ban
 void air_paths_directly(AirPaths out[AIR_BAND_COUNT], const Air *air, unsigned bands, const Hits *hits,
                         const Rays *rays, const float *temp_k, const AirPaths tables[AIR_BAND_COUNT])
 {
+    AirPaths *wanted[AIR_BAND_COUNT] = {NULL};
     for (int b = 0; b < AIR_BAND_COUNT; b++)
-        if (bands >> b & 1) out[b] = tables[b];
+        if (bands >> b & 1) out[b] = tables[b], wanted[b] = &out[b];
     if (!air->light.day || !air->table) return;
     for (int i = 0; i < hits->count; i++) {
         const double o_enu[3] = {rays->o_enu[0][i], rays->o_enu[1][i], rays->o_enu[2][i]};
@@ -226,4 +228,5 @@ void air_paths_directly(AirPaths out[AIR_BAND_COUNT], const Air *air, unsigned b
         if (range_m < INFINITY) solid_ray(out, air, bands, o_enu, d_enu, range_m, temp_k ? (double)temp_k[i] : 0, i);
         else sky_ray(out, air, bands, o_enu, d_enu, i);
     }
+    droplets_on_paths(wanted, air, hits, rays);
 }

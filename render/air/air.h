@@ -3,6 +3,7 @@
 #define RENDER_AIR_AIR_H
 
 #include "render/air/atmosphere.h"
+#include "render/air/droplets.h"
 #include "render/scene/hits.h"
 #include "render/materials/materials.h"
 #include "render/materials/planck.h"
@@ -20,13 +21,14 @@
  * on a tilted plane, are tables interpolated for the requested bands. tests/render/test_air.c measures their errors.
  * Heights are above the ground at the terrain's origin, which is at the model's 0 km.
  *
- * Weather. Haze is the model's at the visibility given; clear air follows temperature and humidity at the ground
- * (atmosphere_in). What the air's profiles do not reach scales the thermal radiance of path and sky by the ratio of the
- * two Planck radiances in the band, and the longwave flux by that of the fourth powers.
- * With height the air's temperature changes as the profiles' does. Clouds are a mean: the direct sun is dimmed
- * by their share, sun and sky together by 1 - 0.75 cloud^3.4 (Kasten & Czeplak, Solar Energy 24, 1980), in every band
- * and towards every direction alike; they fill that share of the thermal sky with air temperature, and longwave follows
- * Unsworth & Monteith (Q. J. R. Meteorol. Soc. 101, 1975). Measured radiation (Weather) takes the place of both. */
+ * Weather. Haze is the model's at the visibility given (weather's here is that of the haze: droplets_haze_m), beside
+ * the drops of rain, snow and fog; clear air follows temperature and humidity at the ground (atmosphere_in). What the
+ * air's profiles do not reach scales the thermal radiance of path and sky by the ratio of the two Planck radiances in
+ * the band, and the longwave flux by that of the fourth powers. With height the air's temperature changes as the
+ * profiles' does. Clouds are a mean: the direct sun is dimmed by their share, sun and sky together by 1 - 0.75
+ * cloud^3.4 (Kasten & Czeplak, Solar Energy 24, 1980), in every band and towards every direction alike; they fill that
+ * share of the thermal sky with air temperature, and longwave follows Unsworth & Monteith (Q. J. R. Meteorol. Soc. 101,
+ * 1975). Measured radiation (Weather) takes the place of both. */
 
 /* Sky radiance, without the sun's disc: thermal[height] + around_sun[angle from the sun] *
  * scattered[height][azimuth]. d_up = (i / air_sky_ups)^2, dense at the horizon; equal steps of azimuth from the
@@ -65,11 +67,12 @@ typedef struct Daylight {
     double zero_z_m;                   /* ENU z of the model's 0 km; heights bend with the Earth: daylight_height */
     float  warmer_k[air_warmer_nodes]; /* of the air every 500 m up from there, against weather.air_temp_k */
     const PlanckTable *planck_mwir, *planck_lwir;
-    double             day_zenith_rad;        /* of the sun, at which the tables are evaluated */
-    double             sun_above;             /* share of its disc above the horizon, over the square of its distance */
-    double thermal_scale[2], scattered_scale; /* air of another temperature than the model's; twilight, distance */
-    double cloud_sky, cloud_thermal; /* clouds: factor on the sky's scattered light; share of the thermal sky that
-                                      * is cloud of air temperature */
+    double             day_zenith_rad; /* of the sun, at which the tables are evaluated */
+    double             sun_above;      /* share of its disc above the horizon, over the square of its distance */
+    double   thermal_scale[2], scattered_scale; /* air of another temperature than the model's; twilight, distance */
+    Droplets droplets;                          /* rain, snow, fog; the totals have them */
+    double   cloud_sky, cloud_thermal; /* clouds: factor on the sky's scattered light; share of the thermal sky that
+                                        * is cloud of air temperature */
 
     /* by direction; only of the requested bands */
     AirSky sky[AIR_BAND_COUNT];       /* from the ground: for mirror reflections in the scene */

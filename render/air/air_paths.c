@@ -381,6 +381,7 @@ void air_paths_of(AirPaths out[AIR_BAND_COUNT], const Air *air, unsigned bands, 
     AirPaths *wanted[AIR_BAND_COUNT];
     for (int b = 0; b < AIR_BAND_COUNT; b++) wanted[b] = bands >> b & 1 ? &out[b] : NULL;
     smoke_bands(wanted, air, hits, rays, temp_k);
+    droplets_on_paths(wanted, air, hits, rays);
 }
 
 void air_path(AirPaths *out, const Air *air, AirBand band, const Hits *hits, const Rays *rays, const float *temp_k)
@@ -388,4 +389,5 @@ void air_path(AirPaths *out, const Air *air, AirBand band, const Hits *hits, con
     AirPaths *wanted[AIR_BAND_COUNT] = {NULL};
     wanted[band] = out;
     smoke_bands(wanted, air, hits, rays, temp_k);
+    droplets_on_paths(wanted, air, hits, rays);
 }

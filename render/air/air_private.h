@@ -106,6 +106,12 @@ struct AirTable {
     AirHeat  *heat; /* NULL: no thermal band */
 };
 
+/* Adds rain, snow and fog to paths by tables or without: droplets_paths.c. */
+void droplets_on_paths(AirPaths *const out[AIR_BAND_COUNT], const Air *air, const Hits *hits, const Rays *rays);
+/* To a row of the sky over the ground, as air_day_sky gives it; thermal: mwir, lwir. */
+void droplets_in_sky(double (*w_m2_sr)[AIR_BAND_COUNT], double thermal_w_m2_sr[2], const Daylight *light,
+                     unsigned bands, double zenith_rad, const double *azimuth_rad, int azimuths);
+
 /* The float whose bits are this number of steps of 2^shift above those of low. */
 static inline float air_step_up(double low, int steps, int shift)
 {

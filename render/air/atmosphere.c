@@ -1,5 +1,4 @@
 /* render/air/atmosphere.c: evaluates paths, the sky and the sun between the tables' points and visibilities. */
-#include "render/air/air_legs.h"
 #include "render/air/atmosphere_private.h"
 
 const AirBand air_tabled[air_tabled_count] = {AIR_B, AIR_G, AIR_R, AIR_NIR, AIR_MWIR, AIR_LWIR};

@@ -55,8 +55,8 @@ Status atmosphere_in(const Atmosphere **out, const Atmosphere *model, const AirS
 void atmosphere_visibilities(const Atmosphere *atmosphere, double *low_m, double *high_m);
 
 /* One straight path over a round Earth. Heights above the model's ground (its 0 km), of both ends; the
- * path may go up, down or along, or pass a lowest point between its ends (air_legs.h). Any range: below the tables'
- * shortest depth is in proportion to range, beyond the longest too. */
+ * path may go up, down or along, or pass a lowest point between its ends (atmosphere_legs.c). Any range: below the
+ * tables' shortest depth is in proportion to range, beyond the longest too. */
 typedef struct AirPath {
     double observer_m, target_m; /* from 0 (clamped) up; above the top of the tables, 20 km, there is no air */
     double range_m;              /* raised to |target_m - observer_m|; 0: empty path */

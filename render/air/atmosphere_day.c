@@ -2,7 +2,6 @@
  * only what does not change in a loop is taken out of it. */
 #include "render/air/atmosphere.h"
 
-#include "render/air/air_legs.h"
 #include "render/air/atmosphere_private.h"
 
 #include <assert.h>

@@ -1,6 +1,5 @@
 /* render/air/atmosphere_day_legs.c: any path of a day, of its legs; any direction of the sky, also below the
  * horizontal. */
-#include "render/air/air_legs.h"
 #include "render/air/atmosphere_private.h"
 
 static AirLegs legs_of(const AirDay *day, const AirPath *path)

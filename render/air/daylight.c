@@ -239,6 +239,8 @@ static void ask_around_sun(DaylightJob *job, int other, int k)
     double thermal[2];
     air_day_sky(&job->answer[other].around[k], thermal, job->day, height_of(job, other), fabs(zenith_rad), &azimuth_rad,
                 1);
+    if (!other)
+        droplets_in_sky(&job->answer[0].around[k], thermal, job->light, job->bands, fabs(zenith_rad), &azimuth_rad, 1);
 }
 
 /* One height of the sky. */
@@ -249,6 +251,9 @@ static void ask_sky(DaylightJob *job, int other, int i)
     SkyRows     *sky = &job->answer[other].sky;
     air_day_sky(sky->scattered[i], sky->thermal[i], job->day, height_of(job, other), acos(u * u), job->azimuth_rad,
                 azimuths);
+    if (!other)
+        droplets_in_sky(sky->scattered[i], sky->thermal[i], job->light, job->bands, acos(u * u), job->azimuth_rad,
+                        azimuths);
     for (int a = azimuths; a <= asked_azimuths; a++)
         memcpy(sky->scattered[i][a], sky->scattered[i][0], sizeof sky->scattered[i][a]);
 }
@@ -330,7 +335,7 @@ static void draw_rows(float *thermal, float (*scattered)[air_sky_azimuths + 1], 
         for (int a = 0; a <= air_sky_azimuths; a++)
             scattered[i][a] =
                 (float)fmax(cubic_between(along[below][a], along[low][a], along[low + 1][a], along[above][a], t), 0);
-        thermal[i] = (float)cubic_between(v[below], v[low], v[low + 1], v[above], t);
+        thermal[i] = (float)fmax(cubic_between(v[below], v[low], v[low + 1], v[above], t), 0);
     }
 }
 
@@ -442,33 +447,6 @@ void daylight_end(DaylightJob *job)
         if (job->bands >> b & 1) job->light->sky_w_m2[b] = job->light->plane_w_m2[b][air_plane_ups][0];
 }
 
-/* ---- under a weather ---------------------------------------------------------------------------- */
-
-static AirState state_of(const Atmosphere *model, const Weather *weather)
-{
-    Weather w = *weather;
-    if (isnan(w.air_temp_k)) w.air_temp_k = atmosphere_temp_k(model, 0);
-    return (AirState){w.visibility_m, w.air_temp_k, weather_vapour_kg_m3(&w)};
-}
-
-Status daylight_air(const Atmosphere **out, const Atmosphere *model, const Weather *weather, unsigned bands,
-                    Arena *arena)
-{
-    const AirState state = state_of(model, weather);
-    return atmosphere_in(out, model, &state, bands, arena);
-}
-
-void daylight_at(Daylight *out, const AirSource *source, const Weather *weather, const Sun *sun)
-{
-    const AirState state = state_of(source->atmosphere, weather);
-    AirSource      here = *source;
-    AirSums        room;
-    double         diffuse_w_m2[AIR_BAND_COUNT];
-    here.atmosphere = atmosphere_sums_in(&room, source->atmosphere, &state);
-    memset(out, 0, offsetof(Daylight, sky));
-    daylight_sums(out, &here, weather, sun, 0, diffuse_w_m2);
-}
-
 /* ---- the complete tables ------------------------------------------------------------------------ */
 
 Status daylight_begin(DaylightJob **out, Daylight *light, const DaylightInput *in, Arena *arena)
@@ -486,48 +464,10 @@ Status daylight_begin(DaylightJob **out, Daylight *light, const DaylightInput *i
     double temp_k[air_temps + 1];
     memcpy(temp_k, emitter_temp_k, sizeof emitter_temp_k);
     temp_k[air_temps] = light->weather.air_temp_k;
-    status = air_day_at(&light->day, source.atmosphere, in->weather->visibility_m, light->day_zenith_rad, in->bands,
+    status = air_day_at(&light->day, source.atmosphere, light->weather.visibility_m, light->day_zenith_rad, in->bands,
                         temp_k, air_temps + 1, arena);
     job->day = light->day, light->atmosphere = source.atmosphere;
+    if (status == STATUS_OK && light->droplets.layers > 0) droplets_beside(&light->droplets, light->day);
     *out = job;
     return status;
-}
-
-static void ask_task(void *user, int worker, int task)
-{
-    (void)worker;
-    daylight_ask(user, task);
-}
-
-static void draw_task(void *user, int worker, int task)
-{
-    (void)worker;
-    daylight_draw(user, task);
-}
-
-static void plane_task(void *user, int worker, int task)
-{
-    (void)worker;
-    daylight_plane(user, task);
-}
-
-void air_run(Pool *pool, int count, PoolTask *task, void *user)
-{
-    if (pool) pool_run(pool, count, task, user);
-    else
-        for (int i = 0; i < count; i++) task(user, 0, i);
-}
-
-Status daylight_by_direction(Daylight *out, const AirSource *source, const Weather *weather, const Sun *sun,
-                             unsigned bands, Pool *pool, Arena *arena)
-{
-    const DaylightInput in = {.source = source, .weather = weather, .sun = sun, .bands = bands};
-    DaylightJob        *job;
-    const Status        status = daylight_begin(&job, out, &in, arena);
-    if (status != STATUS_OK) return status;
-    air_run(pool, daylight_asks(job), ask_task, job);
-    air_run(pool, daylight_draws(job), draw_task, job);
-    air_run(pool, daylight_planes(job), plane_task, job);
-    daylight_end(job);
-    return STATUS_OK;
 }

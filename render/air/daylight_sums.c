@@ -91,12 +91,46 @@ static void cloud_over(Daylight *light, double diffuse_w_m2[AIR_BAND_COUNT])
     }
 }
 
+/* Drops dim the sun, and what of it is not lost is diffuse. Over all wavelengths they are as in the visible; the
+ * longwave sky is seen through them as in 8-12 um. */
+static void dim_by_drops(Daylight *light, const Atmosphere *atmosphere, const Weather *weather, double zenith_rad,
+                         double diffuse_w_m2[AIR_BAND_COUNT])
+{
+    Weather known = *weather;
+    known.air_temp_k = light->weather.air_temp_k;
+    droplets_of(&light->droplets, atmosphere, &known, zenith_rad);
+    if (light->droplets.layers == 0) return;
+    DropletSun all =
+        droplets_sun(&light->droplets, AIR_PAN, (DropletSun){light->solar_direct_w_m2, light->solar_diffuse_w_m2});
+    light->solar_direct_w_m2 = all.direct_w_m2, light->solar_diffuse_w_m2 = all.diffuse_w_m2;
+    light->longwave_loss_w_m2 *= droplets_thermal(&light->droplets, AIR_LWIR, 0, 0);
+    for (AirBand b = 0; b < AIR_BAND_COUNT; b++) {
+        const DropletSun sun = droplets_sun(&light->droplets, b, (DropletSun){light->sun_w_m2[b], light->sky_w_m2[b]});
+        light->sun_w_m2[b] = sun.direct_w_m2, light->sky_w_m2[b] = diffuse_w_m2[b] = sun.diffuse_w_m2;
+    }
+}
+
+/* The thermal light in them, below the mean of the sky under its clouds and above the ground. */
+static void thermal_of_drops(Daylight *light, const Atmosphere *atmosphere, double air_k)
+{
+    static const double mean_zenith_rad = 53 * 0.017453292519943295769; /* of diffuse light */
+    for (AirBand b = AIR_MWIR; b <= AIR_LWIR && light->droplets.layers > 0; b++) {
+        const double black = planck_table_radiance(b == AIR_MWIR ? light->planck_mwir : light->planck_lwir, air_k);
+        SkyAir       sky;
+        atmosphere_sky(&sky, atmosphere, light->weather.visibility_m, b, 0, mean_zenith_rad, pi_rad, 0);
+        const double clear = sky.thermal_w_m2_sr * light->thermal_scale[b - AIR_MWIR];
+        droplets_thermal(&light->droplets, b, (1 - light->cloud_thermal) * (clear - black),
+                         light->ground_w_m2_sr[b] - black);
+    }
+}
+
 void daylight_sums(Daylight *out, const AirSource *source, const Weather *weather, const Sun *sun, unsigned bands,
                    double diffuse_w_m2[AIR_BAND_COUNT])
 {
     const Atmosphere *atmosphere = source->atmosphere;
     const double      model_temp_k = atmosphere_temp_k(atmosphere, 0);
     out->weather = *weather;
+    out->weather.visibility_m = droplets_haze_m(weather->visibility_m, weather->fog);
     out->planck_mwir = source->planck_mwir, out->planck_lwir = source->planck_lwir;
     memcpy(out->sun_d_enu, sun->d_enu, sizeof out->sun_d_enu);
     if (isnan(out->weather.air_temp_k)) out->weather.air_temp_k = model_temp_k;
@@ -116,14 +150,19 @@ void daylight_sums(Daylight *out, const AirSource *source, const Weather *weathe
         diffuse_w_m2[b] = 0;
         if (!((bands | 1 << AIR_PAN) >> b & 1)) continue;
         SunAir direct, diffuse;
-        atmosphere_sun(&direct, atmosphere, weather->visibility_m, (AirBand)b, 0, low_rad);
-        atmosphere_sun(&diffuse, atmosphere, weather->visibility_m, (AirBand)b, 0, out->day_zenith_rad);
+        atmosphere_sun(&direct, atmosphere, out->weather.visibility_m, (AirBand)b, 0, low_rad);
+        atmosphere_sun(&diffuse, atmosphere, out->weather.visibility_m, (AirBand)b, 0, out->day_zenith_rad);
         out->sun_w_m2[b] = direct.direct_normal_w_m2 * out->sun_above;
         out->sky_w_m2[b] = diffuse_w_m2[b] = diffuse.diffuse_horizontal_w_m2 * out->scattered_scale;
     }
     heat_of_clear_sky(out, source, low_rad, model_temp_k);
+    const double above = out->sun_above;
+    dim_by_drops(out, atmosphere, weather, zenith_rad, diffuse_w_m2);
     cloud_over(out, diffuse_w_m2);
+    if (out->droplets.layers > 0)
+        droplets_under_clouds(&out->droplets, above > 0 ? out->sun_above / above : 1, out->cloud_sky);
     const double ground_k = source->ground_k > 0 ? source->ground_k : out->weather.air_temp_k;
     out->ground_w_m2_sr[AIR_MWIR] = planck_table_radiance(out->planck_mwir, ground_k);
     out->ground_w_m2_sr[AIR_LWIR] = planck_table_radiance(out->planck_lwir, ground_k);
+    thermal_of_drops(out, atmosphere, out->weather.air_temp_k);
 }

@@ -7,6 +7,7 @@
 #include "render/scattering/signatures/given_signature.h"
 #include "render/heat/part_table.h"
 #include "sensor/detector/preset.h"
+#include "sensor/frame/frame_world.h"
 #include "sensor/node/run/host_run.h"
 #include "sensor/radar/radar_preset.h"
 #include "terrain/weather/weather.h"
@@ -147,14 +148,13 @@ static bool atmosphere_is_valid(const Check *c)
 {
     Atmosphere   *atmosphere = NULL;
     const Config *config = c->config;
-    if (strcmp(known.air, config->weather.atmosphere) == 0 && known.visibility_m == config->weather.visibility_m)
-        return true;
-    const bool there =
-        atmosphere_open_at(&atmosphere, config->weather.atmosphere, config->weather.visibility_m) == STATUS_OK;
+    const double  visibility_m = droplets_haze_m(config->weather.visibility_m, frame_world_fog(config));
+    if (strcmp(known.air, config->weather.atmosphere) == 0 && known.visibility_m == visibility_m) return true;
+    const bool there = atmosphere_open_at(&atmosphere, config->weather.atmosphere, visibility_m) == STATUS_OK;
     atmosphere_close(atmosphere);
     if (there) {
         snprintf(known.air, sizeof known.air, "%s", config->weather.atmosphere);
-        known.visibility_m = config->weather.visibility_m;
+        known.visibility_m = visibility_m;
     }
     return there || report(c, "weather.atmosphere", "us1976 is always available");
 }

@@ -12,12 +12,22 @@ Status frame_world_open(World *out, const Config *config, const Catalog *catalog
     return status;
 }
 
+WeatherFog frame_world_fog(const Config *config)
+{
+    static const WeatherFog fog[] = {[FOG_AUTO] = WEATHER_FOG_AUTO,
+                                     [FOG_NONE] = WEATHER_FOG_NONE,
+                                     [FOG_RADIATION] = WEATHER_FOG_RADIATION,
+                                     [FOG_ADVECTION] = WEATHER_FOG_ADVECTION};
+    return fog[config->weather.fog];
+}
+
 Status frame_world_air(World *world, const Config *config)
 {
     world_cool(world);
     atmosphere_close(world->atmosphere);
     world->atmosphere = NULL;
-    return atmosphere_open_at(&world->atmosphere, config->weather.atmosphere, config->weather.visibility_m);
+    return atmosphere_open_at(&world->atmosphere, config->weather.atmosphere,
+                              droplets_haze_m(config->weather.visibility_m, frame_world_fog(config)));
 }
 
 void frame_world_radar(World *world, const Config *config)
@@ -64,6 +74,7 @@ static Weather frame_weather(const Config *config, const World *world)
     base.humidity = 0.01 * config->weather.humidity_pct;
     base.cloud = config->weather.cloud;
     base.rain_mm_h = config->weather.rain_mmh;
+    base.fog = frame_world_fog(config);
     return base;
 }
 

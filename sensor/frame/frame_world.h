@@ -13,7 +13,9 @@ Status frame_world(World *out, const Config *config, const Catalog *catalog, con
 Status frame_world_open(World *out, const Config *config, const Catalog *catalog, const Landscape *landscape,
                         const LocalFrame *frame, const char *isa);
 Status frame_world_air(World *world, const Config *config);
-void   frame_world_radar(World *world, const Config *config);
+/* The setting weather.fog. */
+WeatherFog frame_world_fog(const Config *config);
+void       frame_world_radar(World *world, const Config *config);
 /* The cache that cache.* name, for World.cache; NULL: there is none, which is logged where that is no choice. The
  * caller closes it after the world. */
 Cache *frame_world_cache(const Config *config);

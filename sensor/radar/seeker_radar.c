@@ -217,7 +217,7 @@ static Status air_between(RadarShot *shot)
     if (!world->atmosphere) return STATUS_OK;
     const Status status = radar_air_of(&shot->radar->air, world->atmosphere, shot->scene->weather);
     if (status != STATUS_OK) return status;
-    if (shot->preset->wave.centre_hz <= 200e9) /* P.840's range */
+    if (shot->preset->wave.centre_hz <= 200e9 && shot->scene->weather->fog != WEATHER_FOG_NONE) /* P.840's range */
         shot->radar->air.liquid[0] = (RadarLiquid){0, fog_top_m, fog_liquid_g_m3(shot->scene->weather->visibility_m)};
     v3_add_scaled(end, p, shot->frame->reference_m, shot->ahead);
     const RadarPath path = {.a_m = clamp(p[2] - shot->base_m, 0, 20000),

@@ -256,8 +256,11 @@ enum { config_paths_size = 4096 };
     ROW(DOUBLE, weather., cloud, 0, 0, 1, "", \
         "mean share of the sky that clouds cover, which dim the sun and warm the sky") \
     ROW(DOUBLE, weather., rain_mmh, 0, 0, 300, "mm/h", \
-        "rain rate; attenuates and scatters the waves of radar.preset, and wets the ground; the other bands do " \
-        "not show it: lower weather.visibility_m for them")
+        "rain rate, below 0 C of snow as water; dims every band and radar.preset, and wets the ground") \
+    ROW(CHOICE, weather., fog, FOG_AUTO, FogChoice, \
+        (FOG_AUTO, "auto")(FOG_NONE, "none")(FOG_RADIATION, "radiation")(FOG_ADVECTION, "advection"), \
+        "what dims below 2 km of visibility: drops of fog by radiation (small) or advection (large), none: haze " \
+        "alone; auto: radiation below 3 m/s of wind, else advection")
 
 #define CONFIG_HEAT(ROW) \
     ROW(DOUBLE, heat., vehicle_step_s, 30, 1, 600, "s", "longest step of the heat of vehicles, people and buildings") \

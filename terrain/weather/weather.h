@@ -4,15 +4,20 @@
 
 #include "pitviper.h"
 
+/* What takes the light below 2 km of visibility: haze, or drops of a fog that radiation or advection made; auto: of
+ * radiation below 3 m/s of wind, else of advection. */
+typedef enum WeatherFog { WEATHER_FOG_AUTO, WEATHER_FOG_NONE, WEATHER_FOG_RADIATION, WEATHER_FOG_ADVECTION } WeatherFog;
+
 typedef struct Weather {
-    double visibility_m; /* meteorological range, 2 % contrast, 100 .. 300 000 */
-    double air_temp_k;   /* at the ground, 220 .. 330; NaN: that of the standard atmosphere in use */
-    double pressure_mbar;
-    double wind_mps;
-    double wind_from_rad; /* where it comes from, clockwise from north */
-    double humidity;      /* relative, 0 .. 1 */
-    double cloud;         /* mean share of the sky that clouds cover, 0 .. 1 */
-    double rain_mm_h;
+    double     visibility_m; /* meteorological range, 2 % contrast, 100 .. 300 000 */
+    double     air_temp_k;   /* at the ground, 220 .. 330; NaN: that of the standard atmosphere in use */
+    double     pressure_mbar;
+    double     wind_mps;
+    double     wind_from_rad; /* where it comes from, clockwise from north */
+    double     humidity;      /* relative, 0 .. 1 */
+    double     cloud;         /* mean share of the sky that clouds cover, 0 .. 1 */
+    double     rain_mm_h;     /* below 0 C snow, as water */
+    WeatherFog fog;
     /* all wavelengths, at the ground: direct sun on a plane facing it, diffuse on level ground, longwave down on level
      * ground. NaN: of the atmosphere's tables, under those clouds */
     double direct_w_m2, diffuse_w_m2, longwave_w_m2;

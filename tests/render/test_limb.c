@@ -3,7 +3,7 @@
 #include "tests/render/air_stage.h"
 
 #include "pitviper_table.h"
-#include "render/air/air_legs.h"
+#include "render/air/atmosphere_private.h"
 
 static const double earth_m = 6371e3;
 

@@ -1,7 +1,19 @@
 /* The probes of the air: its figures by row, bad rows with a reason and no figures. labels: physics */
-#include "tests/render/atmosphere_errors.h"
+#include "tests/check.h"
 
+#include "pitviper_table.h"
 #include "render/probe.h"
+
+static const char *word(const Table *table, int row, const char *column)
+{
+    return table_text(table, row, table_column(table, column));
+}
+
+static double cell(const Table *table, int row, const char *column)
+{
+    double value = NAN;
+    return text_to_double(&value, word(table, row, column)) ? value : NAN;
+}
 
 static Table answers(const char *name, char *rows)
 {
@@ -39,7 +51,7 @@ static void paths(void **state)
                          "us1976,23,lwir,0,0,5,300,,,299.7,101\n"
                          "us1976,23,lwir,0,0,5,300,,,29.97,50\n"
                          "us1976,23,lwir,0,0,5,300,,,299.7,\n";
-    Table table = answers("atmosphere", rows);
+    Table       table = answers("atmosphere", rows);
     CHECK(table.rows == 10);
     CHECK_NEAR(cell(&table, 0, "tau"), 0.625655, 5e-5); /* infrared.md */
     CHECK_NEAR(cell(&table, 0, "path_radiance"), 11.7559, 2e-3);
@@ -56,20 +68,21 @@ static void paths(void **state)
     table_close(&table);
 }
 
-/* us1976 at 23 km: LOWTRAN's level sky from 10 km (shared/data/atmosphere/sky_thermal.csv has 2.046 W/(m2 sr), the tables 2.08
- * between their heights), and what the sum over shells has of a ray whose lowest point is 5 km up, 2.27 degrees below it
- * (tests/data/limb.csv, within 1.2 K). */
+/* us1976 at 23 km: LOWTRAN's level sky from 10 km (shared/data/atmosphere/sky_thermal.csv has 2.046 W/(m2 sr), the
+ * tables 2.08 between their heights), and what the sum over shells has of a ray whose lowest point is 5 km up, 2.27
+ * degrees below it (tests/data/limb.csv, within 1.2 K). */
 static void directions(void **state)
 {
     (void)state;
-    static char rows[] = "model,visibility_km,band,observer_m,zenith_deg,sun_zenith_deg,rel_azimuth_deg,air_temp_k,humidity_pct\n"
-                         "us1976,23,lwir,10000,90,,,,\n"
-                         "us1976,23,lwir,10000,92.26975,,,,\n"
-                         "us1976,23,g,10000,92,45,90,,\n"
-                         "us1976,23,lwir,0,0,,,299.7,75.63\n"
-                         "us1976,23,lwir,-1,0,,,,\n"
-                         "us1976,23,lwir,0,181,,,,\n";
-    Table       table = answers("sky", rows);
+    static char rows[] =
+        "model,visibility_km,band,observer_m,zenith_deg,sun_zenith_deg,rel_azimuth_deg,air_temp_k,humidity_pct\n"
+        "us1976,23,lwir,10000,90,,,,\n"
+        "us1976,23,lwir,10000,92.26975,,,,\n"
+        "us1976,23,g,10000,92,45,90,,\n"
+        "us1976,23,lwir,0,0,,,299.7,75.63\n"
+        "us1976,23,lwir,-1,0,,,,\n"
+        "us1976,23,lwir,0,181,,,,\n";
+    Table table = answers("sky", rows);
     CHECK(table.rows == 6);
     CHECK_NEAR(cell(&table, 0, "radiance"), 2.046, 0.05);
     CHECK_NEAR(cell(&table, 1, "radiance"), 8.2592, 0.3);

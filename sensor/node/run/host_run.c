@@ -141,15 +141,16 @@ static void report_visibility(Choices *choices, const Config *config, const Atmo
 {
     double low_m, high_m;
     atmosphere_visibilities(atmosphere, &low_m, &high_m);
+    if (config->weather.visibility_m < low_m && frame_world_fog(config) != WEATHER_FOG_NONE) return;
     if (config->weather.visibility_m < low_m || config->weather.visibility_m > high_m)
         choice_add(choices,
                    "air: the tables reach visibilities of %.0f to %.0f m; the nearest of them is taken "
                    "(weather.visibility_m)",
                    low_m, high_m);
-    else if (config->weather.visibility_m < 1000)
+    else if (config->weather.visibility_m < 1000 && frame_world_fog(config) == WEATHER_FOG_NONE)
         choice_add(choices,
                    "air: %.0f m of visibility is haze as thick as that; a fog of droplets is denser in "
-                   "infrared (weather.visibility_m)",
+                   "infrared (weather.fog)",
                    config->weather.visibility_m);
 }
 

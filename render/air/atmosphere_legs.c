@@ -1,7 +1,5 @@
-/* render/air/air_legs.c: a path's legs, by the triangle of its ends and the Earth's centre, and how two legs of one
- * path add up. */
-#include "render/air/air_legs.h"
-
+/* render/air/atmosphere_legs.c: a path's legs, by the triangle of its ends and the Earth's centre, and how two legs of
+ * one path add up. */
 #include "render/air/atmosphere_private.h"
 
 /* Heights above a sphere of this radius. */
