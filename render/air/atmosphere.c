@@ -434,7 +434,7 @@ void atmosphere_sky(SkyAir *out, const Atmosphere *atmosphere, double visibility
     /* below the horizontal: the air to the lowest point, and the level sky behind it */
     const double  tangent_m = below ? air_tangent_m(eye_m, up) : eye_m;
     const AirPath path = {eye_m, tangent_m, below ? -up * (6371e3 + eye_m) : 0, sun_zenith_rad, rel_azimuth_rad};
-    const AirLegs legs = legs_of(atmosphere, &path);
+    const AirLegs legs = below ? legs_of(atmosphere, &path) : (AirLegs){0}; /* which asks for tables of paths */
     *out = (SkyAir){0};
     for (AirBand part = band == AIR_PAN ? AIR_B : band; part <= (band == AIR_PAN ? AIR_R : band); part++) {
         const SkyAir sky = sky_above(atmosphere, &blend, part, tangent_m, angle_rad);

@@ -1,4 +1,5 @@
-/* render/air/daylight_whole.c: daylight under a weather: its totals, and with the tables by direction in a pool's tasks. */
+/* render/air/daylight_whole.c: daylight under a weather: its totals, and with the tables by direction in a pool's
+ * tasks. */
 #include "render/air/air_private.h"
 #include "render/air/atmosphere_private.h"
 

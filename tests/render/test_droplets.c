@@ -332,9 +332,29 @@ static void height_of_rain(void **state)
     CHECK(droplets_fall_top_m(atmosphere, &cold) == 2000);
 }
 
+/* For temperatures daylight's totals are computed without tables of paths: the same as those of a frame. */
+static void totals_need_no_paths(void **state)
+{
+    (void)state;
+    static Daylight sums;
+    const Sun       sun = sun_at_elevation(40);
+    const AirSource source = {atmosphere, mwir, lwir, 0, 0};
+    Weather         weather[3] = {weather_default(), weather_default(), weather_default()};
+    weather[0].rain_mm_h = 20, weather[1].visibility_m = 400, weather[2].rain_mm_h = 2, weather[2].air_temp_k = 268;
+    for (int i = 0; i < 3; i++) {
+        const Air air = air_of(&weather[i], 40, 900, 1 << AIR_PAN | 1 << AIR_LWIR, NULL);
+        daylight_at(&sums, &source, &weather[i], &sun);
+        CHECK(sums.solar_direct_w_m2 == air.light.solar_direct_w_m2 &&
+              sums.solar_diffuse_w_m2 == air.light.solar_diffuse_w_m2);
+        CHECK(sums.longwave_loss_w_m2 == air.light.longwave_loss_w_m2);
+        CHECK(sums.solar_direct_w_m2 < 500); /* some 700 without drops */
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(totals_need_no_paths),
         cmocka_unit_test(rain_takes_eight_decibels),
         cmocka_unit_test(snow_by_wavelength),
         cmocka_unit_test(fogs_by_miepython),
