@@ -84,7 +84,8 @@ static void sun_at_eye(Air *air, const Atmosphere *atmosphere, const Sun *sun, u
 /* The horizontal's radiance all the way down. */
 static void level_limb(AirLimb *out, const AirSky *sky)
 {
-    for (int i = 0; i <= air_limb_steps; i++) {
+    out->steps = 1;
+    for (int i = 0; i <= out->steps; i++) {
         out->thermal_w_m2_sr[i] = sky->thermal_w_m2_sr[0];
         memcpy(out->scattered_w_m2_sr[i], sky->scattered_w_m2_sr[0], sizeof out->scattered_w_m2_sr[i]);
     }

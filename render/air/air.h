@@ -48,6 +48,7 @@ typedef struct AirSky {
  * where the air is thick. Row 0 is the sky's lowest one. */
 enum { air_limb_steps = 48 };
 typedef struct AirLimb {
+    int   steps; /* rows but one: more of them from higher up */
     float thermal_w_m2_sr[air_limb_steps + 1], scattered_w_m2_sr[air_limb_steps + 1][air_sky_azimuths + 1];
 } AirLimb;
 

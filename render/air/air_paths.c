@@ -330,9 +330,9 @@ static void path_homogeneous(AirPaths *out, const Air *air, AirBand band, const 
 /* Below the horizontal, above the Earth's edge. */
 static double limb_there(const Air *air, int b, const SkyPlace *p, double climb)
 {
-    const double share = fmax(1 - climb * climb / air_edge2(air->eye_height_m), 0),
-                 u = (1 - sqrt(share)) * air_limb_steps;
-    const int    i = u < air_limb_steps ? (int)u : air_limb_steps - 1;
+    const int    steps = air->limb[b].steps;
+    const double share = fmax(1 - climb * climb / air_edge2(air->eye_height_m), 0), u = (1 - sqrt(share)) * steps;
+    const int    i = u < steps ? (int)u : steps - 1;
     const float  t = (float)(u - i), *ring = &air->sky_eye[b].around_sun[p->angle];
     const float *low = &air->limb[b].scattered_w_m2_sr[i][p->azimuth], *high = low + air_sky_azimuths + 1;
     const float *thermal = &air->limb[b].thermal_w_m2_sr[i];

@@ -216,6 +216,7 @@ struct DaylightJob {
     Daylight     *light;
     AirSky       *other; /* [AIR_BAND_COUNT], the sky from other_m up; NULL: of the ground alone */
     AirLimb      *limb;  /* and below */
+    int           limbs; /* rows of it that are evaluated, less one */
     double        other_m;
     const AirDay *day;
     unsigned      bands;
@@ -263,7 +264,7 @@ static double limb_climb(double eye_m, double u) { return -sqrt(air_edge2(eye_m)
 
 static void ask_limb(DaylightJob *job, int i)
 {
-    const double climb = limb_climb(job->other_m, (double)i / asked_limbs);
+    const double climb = limb_climb(job->other_m, (double)i / job->limbs);
     air_day_sky(job->below.scattered[i], job->below.thermal[i], job->day, job->other_m, acos(climb), job->azimuth_rad,
                 asked_azimuths + 1);
 }
@@ -352,9 +353,10 @@ static void fill_other(DaylightJob *job, int band)
     fill_around_sun(sky, &job->answer[1], band);
     asked_above(&asked, job, sky, &job->answer[1].sky, band);
     draw_sky(sky, &asked);
-    for (int i = 0; i <= asked_limbs; i++)
-        ask_row(&asked, job, sky, &job->below, band, i, limb_climb(job->other_m, (double)i / asked_limbs));
-    draw_rows(job->limb[band].thermal_w_m2_sr, job->limb[band].scattered_w_m2_sr, &asked, asked_limbs);
+    for (int i = 0; i <= job->limbs; i++)
+        ask_row(&asked, job, sky, &job->below, band, i, limb_climb(job->other_m, (double)i / job->limbs));
+    job->limb[band].steps = sky_stride * job->limbs;
+    draw_rows(job->limb[band].thermal_w_m2_sr, job->limb[band].scattered_w_m2_sr, &asked, job->limbs);
 }
 
 /* One band: interpolated, and scaled to the total irradiance. */
@@ -407,7 +409,7 @@ enum {
     lamp_tasks = lamp_ups + lamp_rings
 };
 
-static int asks_of_limb(const DaylightJob *job) { return job->other ? asked_limbs + 1 : 0; }
+static int asks_of_limb(const DaylightJob *job) { return job->other ? job->limbs + 1 : 0; }
 
 int daylight_asks(const DaylightJob *job)
 {
@@ -456,6 +458,8 @@ Status daylight_begin(DaylightJob **out, Daylight *light, const DaylightInput *i
     *light = (Daylight){0};
     job->light = light, job->bands = in->bands, job->other = in->other, job->limb = in->limb;
     job->other_m = in->other_m;
+    /* from low down there is less than two degrees of it */
+    job->limbs = in->other_m < 3000 ? asked_limbs / 4 : asked_limbs;
     AirSource source = *in->source;
     Status    status = daylight_air(&source.atmosphere, in->source->atmosphere, in->weather, in->bands, arena);
     if (status != STATUS_OK) return status;
