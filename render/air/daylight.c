@@ -459,7 +459,7 @@ Status daylight_begin(DaylightJob **out, Daylight *light, const DaylightInput *i
     job->light = light, job->bands = in->bands, job->other = in->other, job->limb = in->limb;
     job->other_m = in->other_m;
     /* from low down there is less than two degrees of it */
-    job->limbs = in->other_m < 3000 ? asked_limbs / 4 : asked_limbs;
+    job->limbs = in->other_m < 3000 ? asked_limbs / 3 : asked_limbs;
     AirSource source = *in->source;
     Status    status = daylight_air(&source.atmosphere, in->source->atmosphere, in->weather, in->bands, arena);
     if (status != STATUS_OK) return status;
