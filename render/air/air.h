@@ -112,7 +112,7 @@ static const double air_warmer_step_m = 500, air_warmer_low = -4;
 /* Height of a position above the model's 0 km: the tangent plane leaves the Earth. */
 static inline double daylight_height(const Daylight *light, const double p_enu[3])
 {
-    return p_enu[2] + (p_enu[0] * p_enu[0] + p_enu[1] * p_enu[1]) / (2 * 6371e3) - light->zero_z_m;
+    return p_enu[2] + (p_enu[0] * p_enu[0] + p_enu[1] * p_enu[1]) / (2 * earth_radius_m) - light->zero_z_m;
 }
 /* Air temperature there, K. */
 static inline double daylight_temp_at(const Daylight *light, const double p_enu[3])

@@ -74,7 +74,6 @@ enum { air_range_row = air_ranges + 1, air_nodes = (air_rows_most + 1) * air_ran
 enum { air_share_row = air_shares + 1, air_slope_nodes = (air_slopes + 1) * air_share_row };
 
 static const double air_top_m = 20e3, air_near_m = 100, air_far_m = 819200, air_low_m = 64;
-static const double earth_radius_m = 6371e3;
 /* The complete path ends at the ground or the tables' top, and after 100 km, beyond which little light is added, or at
  * the Earth's edge where that is farther.
  * From less than 200 m up it continues along the ground, as if from there: the air below is much the same. */
@@ -130,15 +129,6 @@ static inline double air_from_m(const Air *air) { return fmin(air->eye_height_m,
 static inline double air_longest_m(const Air *air)
 {
     return fmax(air_longest_way_m, sqrt(2 * earth_radius_m * air_from_m(air)));
-}
-
-/* Where a straight ray of this length ends above the round Earth, and the rate of climb there. */
-static inline double air_height_along(double eye_m, double climb, double along_m, double *climb_there)
-{
-    const double r_m = earth_radius_m + eye_m, rise = along_m * (along_m + 2 * r_m * climb);
-    const double there_m = sqrt(fmax(r_m * r_m + rise, 0));
-    if (climb_there) *climb_there = (along_m + r_m * climb) / there_m;
-    return eye_m + rise / (r_m + there_m);
 }
 
 /* Along a ray from above the tables' top, where it enters the air; INFINITY: it does not. */

@@ -263,8 +263,6 @@ static PathDepths single_depths(const Atmosphere *atmosphere, const Blend *blend
     return out;
 }
 
-static double mixed(double whole, double parts, double share) { return whole + share * (parts - whole); }
-
 /* Of a leg in pieces each sends as a black body of its own mean temperature what the air before it leaves of its share
  * of the leg's depth; and scatters as if it were alone. */
 static PathDepths leg_depths(const Atmosphere *atmosphere, const Blend *blend, AirBand band, const AirPath *leg,
@@ -432,8 +430,9 @@ void atmosphere_sky(SkyAir *out, const Atmosphere *atmosphere, double visibility
     const double angle_rad[3] = {clamp(zenith_rad, 0, pi_rad / 2), sun_zenith_rad,
                                  fabs(remainder(rel_azimuth_rad, 2 * pi_rad))};
     /* below the horizontal: the air to the lowest point, and the level sky behind it */
-    const double  tangent_m = below ? air_tangent_m(eye_m, up) : eye_m;
-    const AirPath path = {eye_m, tangent_m, below ? -up * (6371e3 + eye_m) : 0, sun_zenith_rad, rel_azimuth_rad};
+    AirPath      path = air_path_down(eye_m, up);
+    const double tangent_m = path.target_m;
+    path.sun_zenith_rad = sun_zenith_rad, path.rel_azimuth_rad = rel_azimuth_rad;
     const AirLegs legs = below ? legs_of(atmosphere, &path) : (AirLegs){0}; /* which asks for tables of paths */
     *out = (SkyAir){0};
     for (AirBand part = band == AIR_PAN ? AIR_B : band; part <= (band == AIR_PAN ? AIR_R : band); part++) {

@@ -54,6 +54,17 @@ Status atmosphere_in(const Atmosphere **out, const Atmosphere *model, const AirS
  * 1 / visibility, between these heights one in its logarithm (render/air/atmosphere_slices.c). */
 void atmosphere_visibilities(const Atmosphere *atmosphere, double *low_m, double *high_m);
 
+static const double earth_radius_m = 6371e3;
+
+/* Where a straight ray of this length ends above the round Earth, and the rate of climb there. */
+static inline double air_height_along(double eye_m, double climb, double along_m, double *climb_there)
+{
+    const double r_m = earth_radius_m + eye_m, rise = along_m * (along_m + 2 * r_m * climb);
+    const double there_m = sqrt(fmax(r_m * r_m + rise, 0));
+    if (climb_there) *climb_there = (along_m + r_m * climb) / there_m;
+    return eye_m + rise / (r_m + there_m);
+}
+
 /* One straight path over a round Earth. Heights above the model's ground (its 0 km), of both ends; the
  * path may go up, down or along, or pass a lowest point between its ends (atmosphere_legs.c). Any range: below the
  * tables' shortest depth is in proportion to range, beyond the longest too. */

@@ -43,8 +43,6 @@ static void add_leg(DayPath *to, const DayPath *behind, const AirDay *day, doubl
 
 static const unsigned thermal = 1 << AIR_MWIR | 1 << AIR_LWIR;
 
-static double mixed(double whole, double parts, double share) { return whole + share * (parts - whole); }
-
 /* Of a leg in pieces each sends as a black body of its own mean temperature what the air before it leaves of its share
  * of the leg's depth. */
 static void leg_path(DayPath *out, const AirDay *day, const AirPath *leg)
@@ -157,9 +155,9 @@ void air_day_scattered(double (*w_m2_sr)[AIR_BAND_COUNT], double sun[AIR_BAND_CO
 static void sky_below(double (*w_m2_sr)[AIR_BAND_COUNT], double thermal_w_m2_sr[2], const AirDay *day,
                       double observer_m, double up, const double *azimuth_rad, int azimuths)
 {
-    const double  tangent_m = air_tangent_m(observer_m, up), range_m = -up * (6371e3 + observer_m);
-    const AirPath path = {.observer_m = observer_m, .target_m = tangent_m, .range_m = range_m};
+    const AirPath path = air_path_down(observer_m, up);
     const AirLegs legs = legs_of(day, &path);
+    const double  tangent_m = path.target_m;
     day_sky_above(w_m2_sr, thermal_w_m2_sr, day, tangent_m, 0.5 * pi_rad, azimuth_rad, azimuths);
     if (legs.count == 0) return;
     double  before[path_max_suns][AIR_BAND_COUNT], sun[AIR_BAND_COUNT];

@@ -2,8 +2,7 @@
  * one path add up. */
 #include "render/air/atmosphere_private.h"
 
-/* Heights above a sphere of this radius. */
-static const double radius_m = 6371e3, least_dip_m = 500, longest_piece_m = 80e3, least_height_m = 1000;
+static const double least_dip_m = 500, longest_piece_m = 80e3, least_height_m = 1000;
 
 /* A ray: where it begins, by the height and the cosine of its zenith angle. */
 typedef struct Ray {
@@ -13,19 +12,14 @@ typedef struct Ray {
 static double lowest_m(const Ray *ray)
 {
     const double level = sqrt(fmax(1 - ray->up * ray->up, 0));
-    return ray->height_m - (radius_m + ray->height_m) * ray->up * ray->up / (1 + level);
-}
-
-static double height_along(const Ray *ray, double along_m)
-{
-    const double r_m = radius_m + ray->height_m, rise = along_m * (along_m + 2 * r_m * ray->up);
-    return ray->height_m + rise / (r_m + sqrt(fmax(r_m * r_m + rise, 0)));
+    return ray->height_m - (earth_radius_m + ray->height_m) * ray->up * ray->up / (1 + level);
 }
 
 /* From one height to another over a distance. */
 static Ray ray_between(double a_m, double b_m, double range_m)
 {
-    const double up = ((b_m - a_m) * (2 * radius_m + a_m + b_m) / range_m - range_m) / (2 * (radius_m + a_m));
+    const double up =
+        ((b_m - a_m) * (2 * earth_radius_m + a_m + b_m) / range_m - range_m) / (2 * (earth_radius_m + a_m));
     return (Ray){a_m, clamp(up, -1, 1)};
 }
 
@@ -44,7 +38,8 @@ int air_leg_pieces(AirPath piece[air_pieces_max], const AirPath *leg)
         piece[i] = *leg;
         piece[i].range_m = leg->range_m / count;
         if (i > 0) piece[i].observer_m = piece[i - 1].target_m;
-        if (i + 1 < count) piece[i].target_m = fmax(height_along(&ray, (i + 1) * piece[i].range_m), 0);
+        if (i + 1 < count)
+            piece[i].target_m = fmax(air_height_along(ray.height_m, ray.up, (i + 1) * piece[i].range_m, NULL), 0);
         piece[i].range_m = fmax(piece[i].range_m, fabs(piece[i].target_m - piece[i].observer_m));
     }
     return count;
@@ -56,17 +51,24 @@ double air_tangent_m(double height_m, double up)
     return up < 0 ? fmax(lowest_m(&ray), 0) : height_m;
 }
 
+AirPath air_path_down(double height_m, double up)
+{
+    return (AirPath){.observer_m = height_m,
+                     .target_m = air_tangent_m(height_m, up),
+                     .range_m = up < 0 ? -up * (earth_radius_m + height_m) : 0};
+}
+
 AirLegs air_legs(const AirPath *path, double top_m)
 {
     AirLegs      legs = {0};
     const double a_m = path->observer_m, b_m = path->target_m, range_m = path->range_m;
     if (!(range_m > 0)) return legs;
-    const double r_m = radius_m + a_m;
+    const double r_m = earth_radius_m + a_m;
     const Ray    ray = ray_between(a_m, b_m, range_m);
     const double middle_m = -r_m * ray.up; /* to the lowest point */
     double       from_m = 0, to_m = range_m, low_m = a_m, high_m = b_m;
     if (fmax(a_m, b_m) > top_m) { /* to and from the top: half a chord from the lowest point */
-        const double half2 = (top_m - lowest_m(&ray)) * (2 * radius_m + top_m + lowest_m(&ray)),
+        const double half2 = (top_m - lowest_m(&ray)) * (2 * earth_radius_m + top_m + lowest_m(&ray)),
                      half_m = sqrt(fmax(half2, 0));
         if (a_m > top_m) from_m = middle_m - half_m, low_m = top_m;
         if (b_m > top_m) to_m = middle_m + half_m, high_m = top_m;

@@ -266,6 +266,10 @@ double air_pieces_share(const AirPath *leg);
 
 /* Height of the lowest point of a ray that goes down, by the cosine of its zenith angle at a height, m; not below 0. */
 double air_tangent_m(double height_m, double up);
+/* The path to it, without a sun; of a ray that does not go down one of no length. */
+AirPath air_path_down(double height_m, double up);
+
+static inline double mixed(double whole, double parts, double share) { return whole + share * (parts - whole); }
 
 /* Two legs that meet at a height in one band: optical depth of both from each one's. Where single lines absorb, what
  * the first leg left has little in them: the depth of both is less than the sum, as depth grows with a power of the

@@ -373,9 +373,9 @@ static void ground_is_as_dark_as_its_photograph(void **state)
     }
 }
 
-/* A leaf is in balance with the sun that it gets, or, where nobody says, with that of its openness; bark has the heat
- * of its branch, 280 K in the shade and 300 K in the sun by its openness and 4 K more on top; both as much warmer as
- * the air there. Where no branch is known bark is as warm as the air. */
+/* A leaf is in balance with the sun that it gets, or, where no sun is given, with that of its openness; bark has the
+ * heat of its branch, 280 K in the shade and 300 K in the sun by its openness and 4 K more on top; both as much warmer
+ * as the air there. Where no branch is known bark is as warm as the air. */
 static void plants_are_leaves_and_wood(void **state)
 {
     (void)state;

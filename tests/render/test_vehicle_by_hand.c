@@ -1,5 +1,5 @@
 /* A vehicle of patches that are written down here: nodes and links of its network, what heats and cools a skin, when
- * its views and its step are over, who is its neighbour. labels: physics */
+ * its views and its step are over, which is its neighbour. labels: physics */
 #include "tests/render/hand_models.h"
 
 #include "render/heat/surface_flux_private.h"

@@ -154,7 +154,7 @@ static void what_a_run_left_is_cleared_and_nothing_else(void **state)
     for (int k = 0; k < 3; k++) CHECK(is_there(no_video[k]));
 }
 
-/* Without a sign of an earlier run nothing is taken away: the folder is somebody's. */
+/* Without a sign of an earlier run nothing is taken away: the folder may hold other files. */
 static void another_folder_stays_as_it_is(void **state)
 {
     (void)state;

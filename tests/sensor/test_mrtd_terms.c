@@ -4,10 +4,9 @@
 
 #include "sensor/detector/mrtd.h"
 
-/* A sensor without optics, of full pixels, and white noise alone: by hand. */
-static void by_hand(void **state)
+/* A sensor without optics, of full pixels, and white noise alone. */
+static SensorPreset full_pixels(void)
 {
-    (void)state;
     SensorPreset p = {
         .band = BAND_LWIR,
         .width_px = 100,
@@ -19,7 +18,14 @@ static void by_hand(void **state)
         .photons = {.f_number = 1e-9, .transmission = 1, .qe = 1, .pitch_m = 1, .integration_s = 1e-20, .well_e = 1}};
     preset_refresh(&p);
     p.photons.read_e = 1e3;
-    double per_k;
+    return p;
+}
+
+static void by_hand(void **state)
+{
+    (void)state;
+    SensorPreset p = full_pixels();
+    double       per_k;
     photon_electrons(&p.photons, 300, &per_k);
     const MrtdObserver observer = {.snr = 2.5, .frames = 6, .temp_k = 300};
     Mrtd               got;
@@ -113,17 +119,7 @@ static void every_noise_counts_in_its_way(void **state)
 static void the_shortest_bars_and_the_longest_reach(void **state)
 {
     (void)state;
-    SensorPreset p = {
-        .band = BAND_LWIR,
-        .width_px = 100,
-        .height_px = 100,
-        .hfov_deg = 5,
-        .footprint = 1,
-        .bits = 16,
-        .noise_scale = 1,
-        .photons = {.f_number = 1e-9, .transmission = 1, .qe = 1, .pitch_m = 1, .integration_s = 1e-20, .well_e = 1}};
-    preset_refresh(&p);
-    p.photons.read_e = 1e3;
+    SensorPreset       p = full_pixels();
     double             per_k;
     const double       pixel2 = 1e6 + photon_electrons(&p.photons, 300, &per_k);
     const MrtdObserver observer = {.snr = 2.5, .frames = 0, .temp_k = 300}; /* fewer than one counts as one */

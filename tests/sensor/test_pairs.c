@@ -16,7 +16,7 @@ static struct {
     Arena         *arena;
 } lab;
 
-/* Entity k is 1:2:(10 + 3 k), of model 100 + k. Each has a puff, marks where it stood and a track; so has nobody (0),
+/* Entity k is 1:2:(10 + 3 k), of model 100 + k. Each has a puff, marks where it stood and a track; so has the id 0,
  * and one that is not there any more. */
 static void fill(void)
 {

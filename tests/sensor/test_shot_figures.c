@@ -1,5 +1,5 @@
 /* What a frame of the radar says of itself before any echo: where the window is and what is followed, the ground's rate
- * and its notch, the air, who is within beam and window, and what moves. Against figures by hand. labels: physics */
+ * and its notch, the air, what is within beam and window, and what moves. Against figures by hand. labels: physics */
 #include "tests/sensor/radar_scene.h"
 
 #include "render/scattering/paths/attenuation.h"

@@ -93,7 +93,7 @@ static void a_small_target_is_judged_by_its_samples(void **state)
     f.lwir[10 * width + 20] = (float)(0.9 * ground + 0.1 * own);
     f.lwir[10 * width + 21] = (float)own;
     covered[10 * width + 20] = 0.1f;
-    covered[10 * width + 21] = 0.7f; /* somebody else's: no ring */
+    covered[10 * width + 21] = 0.7f; /* of another entity: no ring */
     f.picture.covered = covered;
     f.pixels[1] = (TargetPixels){.visible = 0.1,
                                  .amodal = 0.2,
