@@ -215,14 +215,10 @@ Status atmosphere_open_at(Atmosphere **out, const char *model, double visibility
         status = planck_table_create(&atmosphere->planck[k], low_m, high_m);
     }
     if (status == STATUS_OK) status = open_model(atmosphere, folder, visibility_m);
+    if (status == STATUS_OK && !named) status = atmosphere_vapour_open(atmosphere, model);
     if (status != STATUS_OK) {
         if (status == STATUS_NO_MEMORY) log_error("atmosphere: out of memory for model %s", model);
         else log_error("atmosphere: cannot use model %s: etc/atmosphere/README.md is the format", model);
-        atmosphere_close(atmosphere);
-        return status;
-    }
-    if (!named) status = atmosphere_vapour_open(atmosphere, model);
-    if (status != STATUS_OK) {
         atmosphere_close(atmosphere);
         return status;
     }
