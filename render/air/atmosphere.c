@@ -141,6 +141,15 @@ typedef struct Look {
     double            clear_plain, haze_plain; /* depths from the columns alone */
 } Look;
 
+static void add_plain(Look *out, const AirPath *piece, double share)
+{
+    const double sag_m = mean_chord_error_m(piece->range_m), a_m = piece->observer_m - sag_m,
+                 b_m = piece->target_m - sag_m, length_m = share * piece->range_m;
+    if (!(share > 0)) return;
+    out->clear_plain += length_m * column_mean(&out->atmosphere->clear, out->band, a_m, b_m);
+    if (out->blend) out->haze_plain += length_m * blend_haze_mean(out->blend, out->band, a_m, b_m);
+}
+
 static void look_at(Look *out, const Atmosphere *atmosphere, const Blend *blend, AirBand band, const AirPath *path)
 {
     AirPath   piece[air_pieces_max];
@@ -150,12 +159,8 @@ static void look_at(Look *out, const Atmosphere *atmosphere, const Blend *blend,
     if (blend) stencil_at(&out->low, &blend->low->path[band], path->observer_m, path->target_m, path->range_m);
     if (blend && blend->low != blend->high)
         stencil_at(&out->high, &blend->high->path[band], path->observer_m, path->target_m, path->range_m);
-    for (int i = 0; i < pieces; i++) {
-        const double sag_m = mean_chord_error_m(piece[i].range_m), a_m = piece[i].observer_m - sag_m,
-                     b_m = piece[i].target_m - sag_m;
-        out->clear_plain += piece[i].range_m * column_mean(&atmosphere->clear, band, a_m, b_m);
-        if (blend) out->haze_plain += piece[i].range_m * blend_haze_mean(blend, band, a_m, b_m);
-    }
+    add_plain(out, path, pieces > 1 ? 1 - air_pieces_share(path) : 1);
+    for (int i = 0; i < pieces && pieces > 1; i++) add_plain(out, &piece[i], air_pieces_share(path));
 }
 
 static double look_depth(const Look *look, double temp_k)

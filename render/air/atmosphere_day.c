@@ -140,23 +140,30 @@ static void values_in(double out[row_values], const PathTable *table, const Sten
 
 typedef struct Depths {
     Stencils stencils;
-    int      pieces;
-    double   piece_m[air_pieces_max];
-    Span     span[air_pieces_max]; /* lowered by the chord error of the round Earth */
+    int      pieces; /* of the path in pieces also the whole one, by its share */
+    double   piece_m[air_pieces_max + 1];
+    Span     span[air_pieces_max + 1]; /* lowered by the chord error of the round Earth */
     AirPath  path;
 } Depths;
 
+static void add_piece(Depths *out, const AirDay *day, const AirPath *piece, double share)
+{
+    const double sag_m = mean_chord_error_m(piece->range_m);
+    if (!(share > 0)) return;
+    out->piece_m[out->pieces] = share * piece->range_m;
+    out->span[out->pieces++] = span_of(&day->column, piece->observer_m - sag_m, piece->target_m - sag_m);
+}
+
 static void begin_depths(Depths *out, const AirDay *day, const AirPath *path)
 {
-    AirPath piece[air_pieces_max];
+    AirPath      piece[air_pieces_max];
+    const int    pieces = air_leg_pieces(piece, path);
+    const double share = pieces > 1 ? air_pieces_share(path) : 0;
     out->stencils.count = 0;
     out->path = *path;
-    out->pieces = air_leg_pieces(piece, path);
-    for (int i = 0; i < out->pieces; i++) {
-        const double sag_m = mean_chord_error_m(piece[i].range_m);
-        out->piece_m[i] = piece[i].range_m;
-        out->span[i] = span_of(&day->column, piece[i].observer_m - sag_m, piece[i].target_m - sag_m);
-    }
+    out->pieces = 0;
+    add_piece(out, day, path, 1 - share);
+    for (int i = 0; i < pieces; i++) add_piece(out, day, &piece[i], share);
 }
 
 /* Values of the three tables of a band, and depths from the columns alone: clear, haze. */

@@ -5,10 +5,10 @@
 /* Runs the stress cases of render, in order; a case that fails does not stop the rest. */
 static Status bench_stability_render(Bench *bench)
 {
-    static Status (*const part[])(Bench *) = {bench_stability_parts,  bench_stability_ground,   bench_stability_light,
-                                              bench_stability_sun,    bench_stability_pictures, bench_stability_crowd,
-                                              bench_stability_plants, bench_stability_heat,     bench_stability_network,
-                                              bench_stability_radar};
+    static Status (*const part[])(Bench *) = {bench_stability_parts,   bench_stability_ground, bench_stability_light,
+                                              bench_stability_sun,     bench_stability_air,    bench_stability_pictures,
+                                              bench_stability_crowd,   bench_stability_plants, bench_stability_heat,
+                                              bench_stability_network, bench_stability_radar};
     Status failed = STATUS_OK;
     for (size_t k = 0; k < sizeof part / sizeof *part; k++) {
         const Status status = part[k](bench);
@@ -65,6 +65,10 @@ static const BenchSuite suites[] = {
      .room = "render",
      .help = "a frame's tables of the air and the sky",
      .run = bench_precision_air},
+    {.name = "precision",
+     .room = "render",
+     .help = "the air by the weather, the sun that heats",
+     .run = bench_precision_weather},
     {.name = "precision", .room = "render", .help = "rays against ground and parts", .run = bench_precision_trace},
     {.name = "precision",
      .room = "render",
@@ -78,6 +82,7 @@ static const BenchSuite suites[] = {
      .help = "the radar field of a target: tubes, mirrors, edges, reuse",
      .run = bench_precision_radar},
     {.name = "speed", .room = "render", .help = "a step of a vehicle's heat", .run = bench_speed_network},
+    {.name = "speed", .room = "render", .help = "a frame's air by the eye's height", .run = bench_speed_air},
     {.name = "crowd",
      .room = "render",
      .help = "frames in a world of 100,000 entities, and of tanks stacked in one place",

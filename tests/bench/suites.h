@@ -37,6 +37,7 @@ Status bench_stability_models(Bench *bench);
 
 Status bench_precision_light(Bench *bench);
 Status bench_precision_air(Bench *bench);
+Status bench_precision_weather(Bench *bench);
 Status bench_precision_trace(Bench *bench);
 Status bench_precision_heat(Bench *bench);
 Status bench_precision_network(Bench *bench); /* precision_vehicle.c: steps in time */
@@ -44,11 +45,13 @@ Status bench_precision_patches(Bench *bench); /* precision_vehicle.c: patches */
 Status bench_precision_gas(Bench *bench);
 Status bench_precision_radar(Bench *bench);
 Status bench_speed_network(Bench *bench); /* precision_vehicle.c: what a step costs */
+Status bench_speed_air(Bench *bench);
 Status bench_speed_crowd(Bench *bench);
 Status bench_stability_parts(Bench *bench);    /* rays against triangles */
 Status bench_stability_ground(Bench *bench);   /* rays against the height field */
 Status bench_stability_light(Bench *bench);    /* Planck, air, smoke, surfaces */
 Status bench_stability_sun(Bench *bench);      /* the sun at the horizon, overhead, behind */
+Status bench_stability_air(Bench *bench);      /* any weather, any height */
 Status bench_stability_pictures(Bench *bench); /* ranges, origins, views, sizes */
 Status bench_stability_crowd(Bench *bench);    /* numbers of entities, positions of the eye, the radar */
 Status bench_stability_plants(Bench *bench);   /* rays against plants */

@@ -43,7 +43,7 @@ speed)
         "heat of the ground: 100 m up.*no shadows" "heat of the ground: 100 m up.*with shadows" "heat of a vehicle: a step" \
         "heat of the vehicles: the longest" "heat of the vehicles: the mean" "100 m up: default quality.*,yes," \
         "set-up: ground" "set-up: catalog" "set-up: places of plants" "set-up: plants grown" "set-up: ground warmed up" \
-        "set-up: twenty tanks" "set-up: all" "sweep: a variant" "memory: posts" "memory: arena" "memory: resident"
+        "set-up: twenty tanks" "set-up: all" "sweep: a variant" "air: tables of a frame.*,yes," "air: the same from 10 km.*,yes," "memory: posts" "memory: arena" "memory: resident"
     run bench speed --quick --size 17
     check "a size that is none is refused" [ $code = 2 ]
     check "and said" complained "size: '17' is not"
@@ -76,7 +76,8 @@ precision/render)
             for then in "in it" afterwards; do rows "shade of the $when, $then, $kind: colder by.*,yes,"; done
         done
     done
-    rows "shade of past hours: ground that was never shaded" ;;
+    rows "shade of past hours: ground that was never shaded" "weather: transmittance, 3.4-4.8 um.*,yes," \
+        "weather: longwave.*,yes," "weather: rain.*,yes," "weather: direct sun.*,yes," ;;
 precision/sensor)
     tunables "plants simplified" "rays a pixel among plants" "reach of low plants" "light between leaves" "rays a pixel" \
         "rays a pixel. 8-12 um" "rays over a small target" "light from all around" "mirrors of a radar path" \
@@ -95,7 +96,7 @@ stability/entities)
         "Detonation: each float" "scenario: each key" "effects.csv" "probes: each column" "built-in models" "1e6 to 1" \
         "model files: needles" ;;
 stability/render)
-    rows "parts: a plate" "parts: needles" leaks "ground: rough" "by eights" "light: Planck" "light: smoke" "sun: " \
+    rows "parts: a plate" "parts: needles" leaks "ground: rough" "by eights" "light: Planck" "light: smoke" "sun: " "air: any weather" "air: across" \
         "picture: a block" "any place on Earth" "8192 x 1" "crowd: " "eye: in a block" "radar: " "plants: leaves edge-on" \
         "plants: skimmed tops" "plants: trees at the origin and 200 km" "plants: a million trees" "heat: 1 K to 2000 K" \
         "heat: the same: energy" "heat: polar day and night" "heat: 1950 and 2090" "heat: seven threads" \

@@ -54,6 +54,7 @@ static const CostFrame frames[] = {
     {"smoke", SMOKE, 150, 20, 40, all_bands, true, false, SAMPLING_ALL},
     {"radar", FEW, 600, 100, 16, 1u << BAND_RADAR, true, false, SAMPLING_ALL},
     {"whole", BARE, 900, 300, 40, all_bands, true, true, SAMPLING_ALL},
+    {"high", BARE, 1e5, 1e4, 20, all_bands, true, true, SAMPLING_ALL},
     {"quarter", WOODS, 1000, 200, 30, all_bands, true, false, SAMPLING_QUARTER},
 };
 enum { frame_count = sizeof frames / sizeof *frames };
