@@ -383,11 +383,13 @@ def between(maker, out):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
-    parser.add_argument("out", nargs="?", default=os.path.join(tables.HERE, "vapour.bin"))
+    parser.add_argument("out", nargs="?", help="vapour.bin in etc/atmosphere; with --between a file that must be named")
     parser.add_argument("--work", default=os.path.join(os.path.expanduser("~"), ".cache", "pitviper-lowtran"))
     parser.add_argument("--between", action="store_true", help="not that file, but figures between its nodes for a test")
     a = parser.parse_args()
-    (between if a.between else pack)(Maker(a.work), a.out)
+    if a.between and not a.out:
+        parser.error("--between: which file? vapour.py FILE --between")
+    (between if a.between else pack)(Maker(a.work), a.out or os.path.join(tables.HERE, "vapour.bin"))
 
 
 if __name__ == "__main__":
