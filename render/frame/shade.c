@@ -299,6 +299,38 @@ static const float *sun_of(const Shader *shader, const Samples *s)
     return shader->any_far ? shader->far_sun : s->sun;
 }
 
+/* hemisphere_below of each hit; NULL: 1. */
+static const float *below_of(const Shader *shader, const ShadeScene *scene, AirBand b)
+{
+    if (scene->sky_samples > 0) return shader->gathered.below[b];
+    return shader->any_open && shader->open.any_below ? shader->open.below[b] : NULL;
+}
+
+/* What mirrors show, as surface_light_shade has it; false: nothing but open sky and level ground. around_w_m2: as
+ * sampled. */
+static bool light_in_mirrors(MirrorLight *out, float sky[hits_capacity], const Shader *shader, const ShadeScene *scene,
+                             const Samples *s, AirBand b)
+{
+    const Daylight  *light = &scene->air->light;
+    const Materials *materials = &scene->world->materials;
+    const bool       sampled = scene->sky_samples > 0;
+    const double     level_w_m2 =
+        b >= AIR_MWIR ? light->ground_w_m2_sr[b] * pi_rad : optical_ground_w_m2((int)b, scene->air, materials);
+    if (!sampled && !shader->any_open) return false;
+    *out = (MirrorLight){sky, below_of(shader, scene, b)};
+    for (int i = 0; i < s->hits.count; i++) {
+        const double n_enu[3] = {s->hits.n_enu[0][i], s->hits.n_enu[1][i], s->hits.n_enu[2][i]};
+        const double sky_w_m2 = daylight_on_plane(light, b, n_enu), ground_w_m2 = level_w_m2 * 0.5 * (1 - n_enu[2]);
+        const double all_w_m2 = sampled ? (double)shader->gathered.w_m2[b][i]
+                                        : (double)shader->open.factor[b][i] * (sky_w_m2 + ground_w_m2);
+        const double from_below_w_m2 = ground_w_m2 * (out->below ? (double)out->below[i] : 1);
+        sky[i] = (float)mirror_sky_factor(all_w_m2 - from_below_w_m2, sky_w_m2, light->sky_w_m2[b]);
+        /* that of leaves is of both sides */
+        if (sampled && material_through(&materials->material[material_of(shader, s)[i]], (int)b) > 0) sky[i] = 1;
+    }
+    return true;
+}
+
 static void light_channels(Shader *shader, const ShadeScene *scene, Samples *s)
 {
     const World    *world = scene->world;
@@ -325,9 +357,15 @@ static void light_channels(Shader *shader, const ShadeScene *scene, Samples *s)
         if (b < optical_channel_count) block.texture[b] = shader->texture[b];
         if (scene->sky_samples > 0) block.around_w_m2[b] = shader->gathered.w_m2[b];
         else if (shader->any_open) block.open[b] = shader->open.factor[b];
+        block.below[b] = below_of(shader, scene, (AirBand)b);
     }
     keep_normals(shader, &s->hits);
     surface_light_shade(out, &scene->surface_light, &block);
+    for (int b = 0; b < AIR_BAND_COUNT && shader->terms; b++) {
+        MirrorLight shown;
+        if (out[b] && light_in_mirrors(&shown, shader->terms->mirror_sky[b], shader, scene, s, (AirBand)b))
+            block.mirror_sky[b] = shown.sky;
+    }
     if (shader->terms) shade_terms_light(shader->terms, scene, s, &block);
     restore_normals(shader, &s->hits);
     shade_beyond(shader, scene, s, out);
@@ -424,15 +462,17 @@ void shade_samples_light_directly(Shader *shader, const ShadeScene *scene, Sampl
     keep_normals(shader, &s->hits);
     air_paths_directly(direct, scene->air, s->channels, &s->hits, &s->rays, s->temp_k, shader->air);
     for (int b = 0; b < AIR_BAND_COUNT; b++) {
-        float room[hits_capacity], *out = s->radiance[b];
+        float       room[hits_capacity], sky[hits_capacity], *out = s->radiance[b];
+        MirrorLight shown, *mirror = NULL;
         if (!(s->channels >> b & 1)) continue;
         const float *around = light_around(room, shader, scene, s, (AirBand)b);
+        if (light_in_mirrors(&shown, sky, shader, scene, s, (AirBand)b)) mirror = &shown;
         if (b >= AIR_MWIR)
             thermal_shade(out, b == AIR_MWIR ? BAND_MWIR : BAND_LWIR, scene->air, materials, &s->hits, &s->rays,
-                          material_of(shader, s), s->temp_k, sun_of(shader, s), around, &direct[b], NULL);
+                          material_of(shader, s), s->temp_k, sun_of(shader, s), around, mirror, &direct[b], NULL);
         else
             optical_shade(out, b, scene->air, materials, &s->hits, &s->rays, material_of(shader, s), shader->texture[b],
-                          sun_of(shader, s), around, &direct[b], NULL);
+                          sun_of(shader, s), around, mirror, &direct[b], NULL);
         smoke_apply(out, &s->smoke, b, s->hits.count);
     }
     restore_normals(shader, &s->hits);

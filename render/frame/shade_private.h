@@ -79,7 +79,7 @@ typedef struct ShadeTerms {
     SurfaceLight light;
     CanopyLight  canopy;
     Hits         hits;
-    float        none[hits_capacity], one[hits_capacity];
+    float        none[hits_capacity], one[hits_capacity], mirror_sky[AIR_BAND_COUNT][hits_capacity];
 } ShadeTerms;
 
 void shade_terms_light(ShadeTerms *terms, const ShadeScene *scene, const Samples *s, const SurfaceBlock *block);

@@ -119,15 +119,28 @@ double hemisphere_met(double *rho, const Paths *p, int i, const HemisphereScene 
     return radiance;
 }
 
+double hemisphere_below(double change_w_m2, double ground_w_m2_sr, double up)
+{
+    static const double least_share = 1.0 / 16; /* of a hemisphere; half of it lies below a wall's horizontal */
+    const double        ground_w_m2 = ground_w_m2_sr * pi_rad * fmax(0.5 * (1 - up), least_share);
+    return ground_w_m2 > 0 ? clamp(1 + change_w_m2 / ground_w_m2, 0, 100) : 1;
+}
+
+/* Of all paths from a hit, and of those that left below the horizontal: the latter less level ground's radiance. */
+typedef struct Sums {
+    double all[AIR_BAND_COUNT][hits_capacity], below[AIR_BAND_COUNT][hits_capacity];
+} Sums;
+
 /* Follows one block of paths to its end and adds their radiance: each path's first, then path by path, so that block
  * boundaries change no bit. */
-static void follow(double sum[AIR_BAND_COUNT][hits_capacity], Paths *p, const HemisphereScene *scene, unsigned bands,
-                   const uint64_t *key, VisibilityCounters *counters)
+static void follow(Sums *sum, Paths *p, const HemisphereScene *scene, unsigned bands, const uint64_t *key,
+                   VisibilityCounters *counters)
 {
     double    ground[AIR_BAND_COUNT] = {0}, brought[AIR_BAND_COUNT][hits_capacity] = {{0}};
     int       of_hit[hits_capacity];
+    bool      down[hits_capacity];
     const int started = p->rays.count;
-    for (int i = 0; i < started; i++) p->of_path[i] = i, of_hit[i] = p->of_hit[i];
+    for (int i = 0; i < started; i++) p->of_path[i] = i, of_hit[i] = p->of_hit[i], down[i] = p->rays.d_enu[2][i] < 0;
     for (int b = 0; b < AIR_BAND_COUNT; b++)
         if (bands >> b & 1) ground[b] = hemisphere_ground_radiance(scene, (AirBand)b);
 
@@ -164,14 +177,17 @@ static void follow(double sum[AIR_BAND_COUNT][hits_capacity], Paths *p, const He
     }
     for (int b = 0; b < AIR_BAND_COUNT; b++)
         if (bands >> b & 1)
-            for (int i = 0; i < started; i++) sum[b][of_hit[i]] += brought[b][i];
+            for (int i = 0; i < started; i++) {
+                sum->all[b][of_hit[i]] += brought[b][i];
+                if (down[i]) sum->below[b][of_hit[i]] += brought[b][i] - ground[b];
+            }
 }
 
 void hemisphere_light(HemisphereLight *out, const HemisphereScene *scene, const Hits *hits, unsigned bands, int samples,
                       const uint64_t *key, VisibilityCounters *counters)
 {
-    Paths  paths;
-    double sum[AIR_BAND_COUNT][hits_capacity] = {{0}};
+    Paths paths;
+    Sums  sum = {0};
 
     paths.rays.count = paths.rays.columns = 0;
     for (int i = 0; i < hits->count; i++) {
@@ -186,12 +202,21 @@ void hemisphere_light(HemisphereLight *out, const HemisphereScene *scene, const 
             paths.of_hit[at] = i, paths.of_sample[at] = n;
             for (int b = 0; b < AIR_BAND_COUNT; b++) paths.share[b][at] = far ? (float)material_through(m, b) : 1;
             if (paths.rays.count < hits_capacity) continue;
-            follow(sum, &paths, scene, bands, key, counters);
+            follow(&sum, &paths, scene, bands, key, counters);
             paths.rays.count = 0;
         }
     }
-    if (paths.rays.count > 0) follow(sum, &paths, scene, bands, key, counters);
-    for (int b = 0; b < AIR_BAND_COUNT; b++)
-        if (bands >> b & 1)
-            for (int i = 0; i < hits->count; i++) out->w_m2[b][i] = (float)(sum[b][i] * pi_rad / samples);
+    if (paths.rays.count > 0) follow(&sum, &paths, scene, bands, key, counters);
+    for (int b = 0; b < AIR_BAND_COUNT; b++) {
+        if (!(bands >> b & 1)) continue;
+        const double ground = hemisphere_ground_radiance(scene, (AirBand)b);
+        for (int i = 0; i < hits->count; i++) {
+            const bool met = hits->range_m[i] < INFINITY;
+            out->w_m2[b][i] = (float)(sum.all[b][i] * pi_rad / samples);
+            out->below[b][i] = 1;
+            if (met && !material_is_leaf(&scene->materials->material[hits->material[i]]))
+                out->below[b][i] =
+                    (float)hemisphere_below(sum.below[b][i] * pi_rad / samples, ground, (double)hits->n_enu[2][i]);
+        }
+    }
 }

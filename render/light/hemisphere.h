@@ -26,8 +26,9 @@ typedef struct HemisphereScene {
 struct SkyNotes; /* render/light/sky_visibility.h */
 
 typedef struct HemisphereLight {
-    float w_m2[AIR_BAND_COUNT][hits_capacity]; /* irradiance on the hit's own shading normal; 0 for sky. Of leaves: and
-                                                * that on their far side, material_through of it */
+    float w_m2[AIR_BAND_COUNT][hits_capacity];  /* irradiance on the hit's own shading normal; 0 for sky. Of leaves: and
+                                                 * that on their far side, material_through of it */
+    float below[AIR_BAND_COUNT][hits_capacity]; /* hemisphere_below of it; of leaves and sky: 1 */
 } HemisphereLight;
 
 /* bands: 1 << AirBand, those to fill. samples: 1 .. hemisphere_samples_max directions a hit, spread evenly over the
@@ -37,11 +38,18 @@ void hemisphere_light(HemisphereLight *out, const HemisphereScene *scene, const 
 
 /* Change of the light of open sky and level, sunlit ground at a point by nearby parts and shadows. */
 typedef struct HemisphereChange {
-    float w_m2[AIR_BAND_COUNT]; /* irradiance, exact less open; of the bands requested, else 0 */
-    float blocked, sunlit;      /* shares of its directions that meet something, and that meet sunlit surfaces; the
-                                 * latter of points on the ground, or where a band needs it */
-    float inside;               /* of those that met parts, the share met from within: a point inside a body has 1 */
+    float w_m2[AIR_BAND_COUNT];       /* irradiance, exact less open; of the bands requested, else 0 */
+    float below_w_m2[AIR_BAND_COUNT]; /* of that: from directions below the horizontal */
+    float blocked, sunlit; /* shares of its directions that meet something, and that meet sunlit surfaces; the
+                            * latter of points on the ground, or where a band needs it */
+    float inside;          /* of those that met parts, the share met from within: a point inside a body has 1 */
 } HemisphereChange;
+
+/* Factor on the radiance of level, open ground for what a surface sees below the horizontal, 0 .. 100: its mean there,
+ * weighted by the cosine from the normal. change_w_m2: irradiance from below, less that of level ground; up: of the
+ * normal. A surface that hardly sees the ground has hardly a direction to judge it by: below an eighth of its
+ * hemisphere the factor tends to 1. */
+double hemisphere_below(double change_w_m2, double ground_w_m2_sr, double up);
 
 enum { hemisphere_change_bounces = 3 };
 

@@ -100,7 +100,7 @@ static void open_light(Open *out, const HemisphereScene *scene, unsigned bands)
 }
 
 typedef struct Change {
-    double w_m2[AIR_BAND_COUNT];
+    double w_m2[AIR_BAND_COUNT], below_w_m2[AIR_BAND_COUNT];
     int    blocked, sunlit, parts, inside;
 } Change;
 
@@ -186,10 +186,11 @@ static void follow_change(Change *sum, Paths *p, const ChangeJob *job, const Sky
     const unsigned         bands = job->bands;
     double                 brought[AIR_BAND_COUNT][hits_capacity];
     int                    of_hit[hits_capacity];
+    bool                   down[hits_capacity]; /* it left below the horizontal */
     const int              started = p->rays.count;
     for (int b = 0; b < AIR_BAND_COUNT; b++)
         if (bands >> b & 1) memset(brought[b], 0, (size_t)started * sizeof *brought[b]);
-    for (int i = 0; i < started; i++) p->of_path[i] = i, of_hit[i] = p->of_hit[i];
+    for (int i = 0; i < started; i++) p->of_path[i] = i, of_hit[i] = p->of_hit[i], down[i] = false;
 
     for (int bounce = 0; bounce < hemisphere_change_bounces && p->rays.count > 0; bounce++) {
         meet(p, job, bounce, known);
@@ -205,8 +206,8 @@ static void follow_change(Change *sum, Paths *p, const ChangeJob *job, const Sky
                 continue;
             }
             if (job->notes && !known) sky_notes_met(job->notes, of, p->of_sample[i], bounce, &p->hits, &p->rays, i);
-            if (bounce == 0) count_first(&sum[of], p, i, scene);
             const double d_enu[3] = {p->rays.d_enu[0][i], p->rays.d_enu[1][i], p->rays.d_enu[2][i]};
+            if (bounce == 0) count_first(&sum[of], p, i, scene), down[i] = d_enu[2] < 0;
             const double n_enu[3] = {p->hits.n_enu[0][i], p->hits.n_enu[1][i], p->hits.n_enu[2][i]};
             float        share[AIR_BAND_COUNT];
             PlanePlace   plane;
@@ -242,7 +243,10 @@ static void follow_change(Change *sum, Paths *p, const ChangeJob *job, const Sky
     }
     for (int b = 0; b < AIR_BAND_COUNT; b++)
         if (bands >> b & 1)
-            for (int i = 0; i < started; i++) sum[of_hit[i]].w_m2[b] += brought[b][i];
+            for (int i = 0; i < started; i++) {
+                sum[of_hit[i]].w_m2[b] += brought[b][i];
+                if (down[i]) sum[of_hit[i]].below_w_m2[b] += brought[b][i];
+            }
 }
 
 enum { close_most = 64 };
@@ -378,6 +382,9 @@ void hemisphere_change(HemisphereChange *out, const HemisphereScene *scene, cons
         out[i] = (HemisphereChange){.blocked = (float)s->blocked / (float)samples,
                                     .sunlit = (float)s->sunlit / (float)samples,
                                     .inside = s->parts ? (float)s->inside / (float)s->parts : 0};
-        for (int b = 0; b < AIR_BAND_COUNT; b++) out[i].w_m2[b] = (float)(s->w_m2[b] * pi_rad / samples);
+        for (int b = 0; b < AIR_BAND_COUNT; b++) {
+            out[i].w_m2[b] = (float)(s->w_m2[b] * pi_rad / samples);
+            out[i].below_w_m2[b] = (float)(s->below_w_m2[b] * pi_rad / samples);
+        }
     }
 }

@@ -3,7 +3,7 @@
  *
  * A surface reflects diffusely and, as far as it is glossy, in a lobe: the sun by its own width, the sky by the
  * mirror direction. Without hemisphere sampling, sky and ground light every surface according to its tilt alone, and
- * nearby objects do not hide them; a mirror shows sky or ground, not its neighbours. */
+ * nearby objects do not hide them; a mirror shows sky or ground, as bright as its neighbours leave them. */
 #include "render/light/optical.h"
 
 double optical_ground_w_m2(int channel, const Air *air, const Materials *materials)
@@ -29,7 +29,7 @@ float optical_beyond(int channel, const Air *air, double ground_w_m2, const doub
 
 void optical_shade(float *out, int channel, const Air *air, const Materials *materials, const Hits *hits,
                    const Rays *rays, const uint16_t *material, const float *texture, const float *sun,
-                   const float *around_w_m2, const AirPaths *veils, const Facing *facing)
+                   const float *around_w_m2, const MirrorLight *mirror, const AirPaths *veils, const Facing *facing)
 {
     const AirBand band = (AirBand)channel;
     const double *sun_d_enu = air->light.sun_d_enu, sun_w_m2 = air->light.sun_w_m2[channel];
@@ -37,6 +37,7 @@ void optical_shade(float *out, int channel, const Air *air, const Materials *mat
     AirPaths      own;
     if (!veils) air_path(&own, air, band, hits, rays, NULL);
     const AirPaths *v = veils ? veils : &own;
+    const float    *mirror_sky = mirror ? mirror->sky : NULL, *mirror_below = mirror ? mirror->below : NULL;
     Facing          found;
     if (!facing) {
         daylight_facing(&found, &air->light, materials, hits, rays, material);
@@ -79,8 +80,10 @@ void optical_shade(float *out, int channel, const Air *air, const Materials *mat
             v3_add_scaled(mirror_enu, d_enu, 2 * n_eye, n_enu);
             /* a rough lobe near the horizon includes some of both */
             const double sees_sky = clamp(0.5 + 0.5 * mirror_enu[2] / fmax(m->roughness, 0.01), 0, 1);
-            double       seen = (1 - sees_sky) * ground_w_m2 / pi_rad;
-            if (sees_sky > 0) seen += sees_sky * daylight_sky_there(&air->light.sky[band], &facing->mirror[i]);
+            double       seen = (1 - sees_sky) * ground_w_m2 / pi_rad * (mirror_below ? (double)mirror_below[i] : 1);
+            if (sees_sky > 0)
+                seen += sees_sky * daylight_sky_there(&air->light.sky[band], &facing->mirror[i]) *
+                        (mirror_sky ? (double)mirror_sky[i] : 1);
             radiance += lobe_rho * seen;
 
             if (n_sun > 0) {

@@ -82,7 +82,8 @@ Status sky_entities_grid(SkyEntity *e, const SkyVisibility *v, const PosedEntity
         e->pitch_m = fmax(v3_length(offset_enu), 1) * v->px_rad * fmax(e->step[0], e->step[1]);
     }
     const size_t spots = (size_t)(e->columns * e->rows) + 8;
-    bool         got = (e->spot.factor = arena_alloc(arena, spots, sizeof *e->spot.factor)) != NULL;
+    bool         got = (e->spot.factor = arena_alloc(arena, spots, sizeof *e->spot.factor)) != NULL &&
+               (e->spot.below = arena_alloc(arena, spots, sizeof *e->spot.below)) != NULL;
     for (int k = 0; k < spot_values; k++)
         got = (e->spot.value[k] = arena_alloc(arena, spots, sizeof *e->spot.value[k])) != NULL && got;
     return got ? STATUS_OK : STATUS_NO_MEMORY;
@@ -231,6 +232,9 @@ static void ask_points(const SkyVisibility *v, SkyWorker *w, int task)
         }
         sky_answer(&found, v, n_enu, &w->change[k]);
         memcpy(e->spot.factor[of[k]], found.factor, sizeof found.factor);
+        for (int b = 0; b < AIR_BAND_COUNT; b++)
+            e->spot.below[of[k]][b] =
+                (float)hemisphere_below((double)w->change[k].below_w_m2[b], v->level_w_m2[b] / pi_rad, n_enu[2]);
         e->spot.value[SPOT_PART][of[k]] = places->part[k];
     }
 }
@@ -269,11 +273,16 @@ void sky_entities_complete(const SkyVisibility *v, SkyWorker *w, const Hits *hit
     }
 }
 
-/* Adds grid points of columns and rows from, to (exclusive), each `step` of the rows, weighted by similarity to a
- * hit: same part, same orientation, same plane, and near. Returns the sum of weights. Eight points of a row at a
- * time. */
-static float add_spots(F32x8 *sum, const SkyEntity *e, const int span[4], int step, const float p_m[3],
-                       const float n_enu[3], uint16_t part)
+/* Weighted sums over grid points, by AirBand. */
+typedef struct SpotSums {
+    F32x8 factor, below;
+    float weight;
+} SpotSums;
+
+/* Sums of grid points of columns and rows from, to (exclusive), each `step` of the rows, weighted by similarity to a
+ * hit: same part, same orientation, same plane, and near. Eight points of a row at a time. */
+static SpotSums sum_spots(const SkyEntity *e, const int span[4], int step, const float p_m[3], const float n_enu[3],
+                          uint16_t part)
 {
     static const float  other_part = 0.05f;
     const float         pitch_m2 = (float)(e->pitch_m * e->pitch_m);
@@ -281,7 +290,7 @@ static float add_spots(F32x8 *sum, const SkyEntity *e, const int span[4], int st
     const F32x8         square_m2 = _mm256_set1_ps(pitch_m2), least_m2 = _mm256_set1_ps(0.1f * pitch_m2);
     const F32x8         zero = _mm256_setzero_ps(), of_part = _mm256_set1_ps(part);
     float               all = 0, each[8];
-    F32x8               p[3], n[3];
+    F32x8               p[3], n[3], factor = zero, below = zero;
     for (int c = 0; c < 3; c++) p[c] = _mm256_set1_ps(p_m[c]), n[c] = _mm256_set1_ps(n_enu[c]);
     for (int row = span[1]; row < span[3]; row += step)
         for (int column = span[0]; column < span[2]; column += 8) {
@@ -300,10 +309,11 @@ static float add_spots(F32x8 *sum, const SkyEntity *e, const int span[4], int st
             for (int k = 0; k < lanes; k++) {
                 if (!(each[k] > 0)) continue; /* faces away, or is empty */
                 all += each[k];
-                *sum += _mm256_set1_ps(each[k]) * f32x8_load(e->spot.factor[at + k]);
+                factor += _mm256_set1_ps(each[k]) * f32x8_load(e->spot.factor[at + k]);
+                below += _mm256_set1_ps(each[k]) * f32x8_load(e->spot.below[at + k]);
             }
         }
-    return all;
+    return (SpotSums){factor, below, all};
 }
 
 static void span_about(int span[4], const SkyEntity *e, int column, int row, int more)
@@ -336,7 +346,7 @@ void sky_entities_open(SkyOpen *out, int i, const SkyVisibility *v, const Hits *
     const double    *centre_enu = visibility_posed(v->scene.gather.visibility, index)->centre_enu;
     const float      n_enu[3] = {hits->n_geo[0][i], hits->n_geo[1][i], hits->n_geo[2][i]};
     double           at[2];
-    float            p_m[3], factor[8];
+    float            p_m[3], factor[8], below[8];
     int              span[4];
     if (e->columns == 0) return;
     const double p_enu[3] = {hits->p_enu[0][i], hits->p_enu[1][i], hits->p_enu[2][i]};
@@ -344,20 +354,21 @@ void sky_entities_open(SkyOpen *out, int i, const SkyVisibility *v, const Hits *
     place_on_grid(at, e, v, p_enu);
     const int column = (int)clamp(floor((at[0] - e->low[0]) / e->step[0]), 0, e->columns - 1);
     const int row = (int)clamp(floor((at[1] - e->low[1]) / e->step[1]), 0, e->rows - 1);
-    F32x8     sum = f32x8_set(0);
-    float     all = 0;
-    for (int more = 1; more <= 4 && !(all > enough); more += 3) {
+    SpotSums  sum = {.weight = 0};
+    for (int more = 1; more <= 4 && !(sum.weight > enough); more += 3) {
         span_about(span, e, column, row, more);
-        sum = f32x8_set(0);
-        all = add_spots(&sum, e, span, 1, p_m, n_enu, hits->part[i]);
+        sum = sum_spots(e, span, 1, p_m, n_enu, hits->part[i]);
     }
-    if (!(all > 1e-4f)) { /* no similar point was found nearby */
+    if (!(sum.weight > 1e-4f)) { /* no similar point was found nearby */
         span_about(span, e, 0, 0, grid_most);
-        sum = f32x8_set(0);
-        all = add_spots(&sum, e, span, e->rows > 16 ? 3 : 1, p_m, n_enu, hits->part[i]);
+        sum = sum_spots(e, span, e->rows > 16 ? 3 : 1, p_m, n_enu, hits->part[i]);
     }
-    if (!(all > 1e-12f)) return;
-    f32x8_store(factor, sum * f32x8_set(1 / (double)all));
+    if (!(sum.weight > 1e-12f)) return;
+    const F32x8 per = f32x8_set(1 / (double)sum.weight);
+    f32x8_store(factor, sum.factor * per), f32x8_store(below, sum.below * per);
+    for (int b = 0; b < AIR_BAND_COUNT && !out->any_below; b++)
+        for (int k = 0; k < hits->count && v->scene.air_bands >> b & 1; k++) out->below[b][k] = 1;
+    out->any_below = true;
     for (int b = 0; b < AIR_BAND_COUNT; b++)
-        if (v->scene.air_bands >> b & 1) out->factor[b][i] = factor[b];
+        if (v->scene.air_bands >> b & 1) out->factor[b][i] = factor[b], out->below[b][i] = below[b];
 }

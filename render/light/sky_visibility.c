@@ -382,6 +382,7 @@ bool sky_visibility_open(SkyOpen *out, const SkyVisibility *v, SkyWorker *w, con
         if (hits->range_m[i] < INFINITY) sky_box_grow(box, hits, i);
     int near_count = sky_list_near(w, v, box, 0, true);
     if (near_count == 0) return false;
+    out->any_below = false;
 
     for (int b = 0; b < AIR_BAND_COUNT; b++)
         if (v->scene.air_bands >> b & 1)

@@ -93,10 +93,13 @@ void sky_notes_keep(SkyNotes *notes, const Hits *hits, const uint64_t *key, int 
  * The value of a point depends on the scene and the view only, so it is the same whichever thread computes it. What its
  * paths meet is kept from frame to frame while nothing near moves (SkyKept); its light never. The
  * ground is treated only within reach of an entity: beyond, it hides less than 2 % of a level plane's sky. Sky hidden
- * by terrain is not included, and mirror reflections are unaffected.
+ * by terrain is not included. A gloss shows what is left of sky and of level ground, each by its mean: how bright the
+ * shadow before a side is, not where it ends.
  *
- * Error against hemisphere_light, means of 5 x 5 px (tests/sensor/test_sky_visibility.c): 2 to 4 % rms on shadowed
- * ground, 5 to 13 % where less than 40 % of the open light comes, 4 to 13 % on sides away from the sun. */
+ * Error against hemisphere_light, means of 5 x 5 px (tests/sensor/test_sky_visibility.c): 1 to 4 % rms on shadowed
+ * ground, 11 to 20 % where less than 40 % of the open light comes, 5 to 15 % on sides away from the sun (24 % in the
+ * hollows of a tank's running gear). Whole faces of a box: within 5 % of a path tracer
+ * (tests/system/test_faces_judge.sh). */
 
 typedef struct SkyVisibility SkyVisibility; /* of a frame; shared by its threads */
 typedef struct SkyWorker     SkyWorker;     /* of a thread */
@@ -126,6 +129,8 @@ void sky_visibility_task(const SkyVisibility *v, SkyWorker *worker, int task);
 typedef struct SkyOpen {
     float factor[AIR_BAND_COUNT][hits_capacity]; /* factor on the light that the tilt alone gives; 1 where nothing
                                                   * is near */
+    float below[AIR_BAND_COUNT][hits_capacity];  /* hemisphere_below */
+    bool  any_below;                             /* else of every hit 1, and not set */
 } SkyOpen;
 
 /* False: nothing near any of the hits, and nothing written; else the factors of the frame's bands. */

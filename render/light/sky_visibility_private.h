@@ -29,6 +29,7 @@ enum { SPOT_X, SPOT_Y, SPOT_Z, SPOT_NORMAL_X, SPOT_NORMAL_Y, SPOT_NORMAL_Z, SPOT
 typedef struct SkySpots {
     float *value[spot_values]; /* m, ENU, from the entity's centre; and which part */
     float (*factor)[8];        /* by AirBand, and one to spare */
+    float (*below)[8];         /* SkyOpen.below, likewise */
 } SkySpots;
 
 /* An entity of the frame. */

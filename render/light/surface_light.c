@@ -257,6 +257,13 @@ static inline F32x8 among_plants(const CanopyLight *c, int band, int i, F32x8 up
            sees_leaves * f32x8_load(c->leaves_w_m2[band] + i);
 }
 
+/* mirror_sky_factor of render/light/optical.h. */
+static inline F32x8 mirrored_sky(F32x8 sky_w_m2, F32x8 open_w_m2, double level_w_m2)
+{
+    const F32x8 least = f32x8_set(fmax(mirror_least_share * level_w_m2, 1e-30));
+    return f32x8_clamp(one() + (sky_w_m2 - open_w_m2) / f32x8_max(open_w_m2, least), 0, 100);
+}
+
 static void shade_eight(float *const out[AIR_BAND_COUNT], const SurfaceLight *light, const SurfaceBlock *b, int i)
 {
     const Hits *hits = b->hits;
@@ -315,10 +322,21 @@ static void shade_eight(float *const out[AIR_BAND_COUNT], const SurfaceLight *li
                 through = through * bright;
             }
         }
-        const bool among = b->canopy && band < AIR_MWIR && !b->around_w_m2[band];
-        F32x8      around = b->around_w_m2[band] ? f32x8_load(b->around_w_m2[band] + i)
-                            : among              ? among_plants(b->canopy, band, i, n.z, plane[band], level * below)
-                                                 : f32x8_fma(level, below, plane[band]);
+        const bool  among = b->canopy && band < AIR_MWIR && !b->around_w_m2[band];
+        F32x8       around = b->around_w_m2[band] ? f32x8_load(b->around_w_m2[band] + i)
+                             : among              ? among_plants(b->canopy, band, i, n.z, plane[band], level * below)
+                                                  : f32x8_fma(level, below, plane[band]);
+        const F32x8 level_w_m2 = level * below;
+        F32x8       mirror_sky = one(), mirror_level = level;
+        if (glossy && (b->below[band] || b->open[band])) {
+            const F32x8 factor = b->below[band] ? f32x8_load(b->below[band] + i) : one();
+            F32x8       open = around;
+            if (b->open[band]) open = f32x8_load(b->open[band] + i) * (plane[band] + level_w_m2);
+            mirror_sky = mirrored_sky(open - factor * level_w_m2, plane[band], air->light.sky_w_m2[band]);
+            if (far.any && !b->open[band]) mirror_sky = f32x8_select(far.leaf, one(), mirror_sky);
+            if (b->mirror_sky[band]) mirror_sky = f32x8_load(b->mirror_sky[band] + i);
+            mirror_level = factor * level;
+        }
         if (b->open[band]) around = around * f32x8_load(b->open[band] + i);
         F32x8 diffuse = all_rho, mirrored = zero(), mirrors = zero(), flash = zero();
         if (glossy) {
@@ -326,7 +344,7 @@ static void shade_eight(float *const out[AIR_BAND_COUNT], const SurfaceLight *li
             mirrors = fresnel(gloss_rho, of[gloss_smooth2], f32x8_min(n_eye, one()), water_eye);
             diffuse = f32x8_and((all_rho - gloss_rho) * (one() - mirrors) / (one() - gloss_rho),
                                 f32x8_less(gloss_rho, one()));
-            mirrored = mirrors * f32x8_lerp(level, sky[band], sees_sky);
+            mirrored = mirrors * f32x8_lerp(mirror_level, mirror_sky * sky[band], sees_sky);
             if (f32x8_bits(f32x8_greater(glint, zero())))
                 flash = fresnel(gloss_rho, of[gloss_smooth2], f32x8_min(half, one()), water_half) * glint;
         }

@@ -39,8 +39,11 @@ typedef struct SurfaceBlock {
                                                * leaves: of both sides, as HemisphereLight */
     const float *open[AIR_BAND_COUNT]; /* factor of the latter (render/light/sky_visibility.h); NULL: 1. Of leaves: of
                                         * both sides */
-    const CanopyLight *canopy;         /* of the optical bands, without around_w_m2; NULL: no plants near */
-    const AirPaths    *veils;          /* [AIR_BAND_COUNT] */
+    /* factors in a mirror on level ground's radiance (hemisphere_below; NULL: 1) and on the sky's (mirror_sky_factor;
+     * NULL: what around_w_m2 with below, or open, leaves for it). Without open and below: 1 */
+    const float       *below[AIR_BAND_COUNT], *mirror_sky[AIR_BAND_COUNT];
+    const CanopyLight *canopy; /* of the optical bands, without around_w_m2; NULL: no plants near */
+    const AirPaths    *veils;  /* [AIR_BAND_COUNT] */
 } SurfaceBlock;
 
 /* out: of the requested bands, else NULL; [hits_capacity] each, W/(m2 sr). Rows of rays that met nothing are undefined:

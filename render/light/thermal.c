@@ -125,7 +125,7 @@ float thermal_beyond(Band band, const Air *air, const double d_enu[3], const Air
 
 void thermal_shade(float *out, Band band, const Air *air, const Materials *materials, const Hits *hits,
                    const Rays *rays, const uint16_t *material, const float *temp_k, const float *sun,
-                   const float *around_w_m2, const AirPaths *veils, const Facing *facing)
+                   const float *around_w_m2, const MirrorLight *mirror, const AirPaths *veils, const Facing *facing)
 {
     const bool         mwir = band == BAND_MWIR;
     const AirBand      air_band = mwir ? AIR_MWIR : AIR_LWIR;
@@ -136,6 +136,7 @@ void thermal_shade(float *out, Band band, const Air *air, const Materials *mater
     AirPaths     own;
     if (!veils) air_path(&own, air, air_band, hits, rays, temp_k);
     const AirPaths *v = veils ? veils : &own;
+    const float    *mirror_sky = mirror ? mirror->sky : NULL, *mirror_below = mirror ? mirror->below : NULL;
     Facing          found;
     if (!facing) {
         daylight_facing(&found, &air->light, materials, hits, rays, material);
@@ -168,8 +169,10 @@ void thermal_shade(float *out, Band band, const Air *air, const Materials *mater
             double mirror_enu[3];
             v3_add_scaled(mirror_enu, d_enu, 2 * n_eye, n_enu);
             const double sees_sky = clamp(0.5 + 0.5 * mirror_enu[2] / fmax(m->roughness, 0.01), 0, 1);
-            const double sky = daylight_sky_there(&air->light.sky[air_band], &facing->mirror[i]);
-            reflected += lobe_rho * (sees_sky * sky + (1 - sees_sky) * ground_w_m2_sr);
+            const double sky = daylight_sky_there(&air->light.sky[air_band], &facing->mirror[i]) *
+                               (mirror_sky ? (double)mirror_sky[i] : 1);
+            const double ground = ground_w_m2_sr * (mirror_below ? (double)mirror_below[i] : 1);
+            reflected += lobe_rho * (sees_sky * sky + (1 - sees_sky) * ground);
         }
         double       sunlit = 0;
         const double lit = sun ? (double)sun[i] : 1;

@@ -6,6 +6,7 @@
 #include "render/trace/visibility/visibility.h"
 #include "entities/table/snapshot.h"
 #include "render/air/air.h"
+#include "render/light/optical.h"
 #include "render/scene/hits.h"
 #include "render/scene/view.h"
 #include "render/materials/materials.h"
@@ -27,11 +28,12 @@ void thermal_temperature(float *temp_k, const Air *air, const Materials *materia
 
 /* band: BAND_MWIR or BAND_LWIR. sun: share of the direct sun that arrives, 0 .. 1, in MWIR; NULL: all. around_w_m2:
  * irradiance of each hit from sky and surroundings (render/light/hemisphere.h); NULL: sky and ground by the tilt
- * alone. veils: of this band and these temperatures; facing: of these hits; either NULL: computed here. out: W/(m2
- * sr). Frames use the faster form of render/light/surface_light.h, which is tested against this one. */
+ * alone. mirror: NULL: all open. veils: of this band and these temperatures; facing: of these hits; either NULL:
+ * computed here. out: W/(m2 sr). Frames use the faster form of render/light/surface_light.h, which is tested against
+ * this one. */
 void thermal_shade(float *out, Band band, const Air *air, const Materials *materials, const Hits *hits,
                    const Rays *rays, const uint16_t *material, const float *temp_k, const float *sun,
-                   const float *around_w_m2, const AirPaths *veils, const Facing *facing);
+                   const float *around_w_m2, const MirrorLight *mirror, const AirPaths *veils, const Facing *facing);
 /* One ray that met nothing: ground beyond the terrain's edge, or sky. */
 float thermal_beyond(Band band, const Air *air, const double d_enu[3], const AirPaths *veils, int hit);
 

@@ -7,7 +7,7 @@
 #include "render/trace/parts/parts.h"
 #include "render/light/thermal.h"
 
-enum { model_plane, model_sphere, model_count };
+enum { model_plane, model_sphere, model_wall, model_count };
 
 static struct {
     PlanckTable   *mwir, *lwir;
@@ -19,11 +19,13 @@ static struct {
     NodePose       pose[model_count];
     Snapshot       snapshot;
     Visibility    *visibility;
-    Material       rows[3];
+    Material       rows[4];
     Materials      materials;
     int           *part[model_count], row_of[model_count];
     Air            air;
 } stage;
+
+static const double wall_m = 2;
 
 /* Plane rho 0.2 at z = 0, sphere rho 0.8 of radius 1 at (0, 0, 2): reference/infrared.md. */
 static int open_stage(void **state)
@@ -37,23 +39,29 @@ static int open_stage(void **state)
     /* two kilometres: 2 mrad of the lowest sky is missing beyond, 4e-6 of the light */
     hand_plate(&stage.model[model_plane], 2000, 2000);
     hand_sphere(&stage.model[model_sphere], 1, 96); /* facets lie within 0.3 mm of it */
-    const Model *models[model_count] = {&stage.model[model_plane], &stage.model[model_sphere]};
+    hand_box(&stage.model[model_wall], (const double[3]){-1, -1000, 0}, (const double[3]){0, 1000, wall_m});
+    const Model *models[model_count] = {&stage.model[model_plane], &stage.model[model_sphere],
+                                        &stage.model[model_wall]};
     if (tracer_create_models(&stage.tracer, models, model_count, "avx2") != STATUS_OK) return -1;
     stage.arena = arena_create();
     stage.snapshot =
-        (Snapshot){.count = model_count, .node_count = model_count, .entity = stage.entity, .node = stage.pose};
+        (Snapshot){.count = model_wall, .node_count = model_wall, .entity = stage.entity, .node = stage.pose};
     /* the plate's forward is up, its z from -4 to 0 km lies along east */
-    static const double turned[9] = {0, 0, 1, 0, 1, 0, 1, 0, 0}, straight[9] = {1, 0, 0, 0, -1, 0, 0, 0, -1};
-    static const double place[model_count][3] = {{2000, 0, 0}, {0, 0, 2}};
+    static const double turned[9] = {0, 0, 1, 0, 1, 0, 1, 0, 0}, straight[9] = {1, 0, 0, 0, -1, 0, 0, 0, -1},
+                        upright[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+    static const double place[model_count][3] = {{2000, 0, 0}, {0, 0, 2}, {0, 0, 0}};
     for (int k = 0; k < model_count; k++) {
         stage.entity[k] = (SnapshotEntity){.model = k, .first_node = k};
         ecef_from_enu(stage.entity[k].p_ecef, &stage.frame, place[k]);
-        m3_mul(stage.entity[k].r_ecef_from_body, stage.frame.r_ecef_from_enu, k == model_plane ? turned : straight);
+        m3_mul(stage.entity[k].r_ecef_from_body, stage.frame.r_ecef_from_enu,
+               k == model_plane  ? turned
+               : k == model_wall ? upright
+                                 : straight);
         stage.pose[k] = (NodePose){{0, 0, 0}, {1, 0, 0, 0, 1, 0, 0, 0, 1}};
         stage.row_of[k] = k + 1;
         stage.part[k] = &stage.row_of[k];
     }
-    stage.materials = (Materials){.count = 3, .material = stage.rows, .part = stage.part, .model_count = model_count};
+    stage.materials = (Materials){.count = 4, .material = stage.rows, .part = stage.part, .model_count = model_count};
     if (visibility_create(&stage.visibility, stage.tracer, NULL, &stage.frame, &stage.snapshot, false, stage.arena) !=
         STATUS_OK)
         return -1;
@@ -148,7 +156,7 @@ static void sphere_over_a_plane(void **state)
     for (int run = 0; run < 2; run++) {
         hemisphere_light(&gathered, &scene, &hits, 1 << AIR_PAN, samples[run], keys(7), &counters);
         optical_shade(out[run], optical_channel_pan, &stage.air, &stage.materials, &hits, &rays, material, texture,
-                      arrives, gathered.w_m2[AIR_PAN], NULL, NULL);
+                      arrives, gathered.w_m2[AIR_PAN], NULL, NULL, NULL);
     }
     for (int i = 0; i < points; i++)
         print_message("%-13s %8.3f with 64, %8.3f with 4096; Cycles %.3f, Radiance %.3f\n", point[i].name,
@@ -180,6 +188,52 @@ static void even_worlds_stay_even(void **state)
         /* all of it is a sum of ones, in single precision */
         CHECK_NEAR(gathered.w_m2[AIR_G][i] / pi_rad, 1, 1e-6);
         CHECK_NEAR(gathered.w_m2[AIR_NIR][i] / pi_rad, 1, 1e-6);
+    }
+}
+
+/* A black wall of height H without end, the sun e up behind it, no sky. Its shadow reaches s = H / tan e; from a height
+ * z of the wall the lit ground begins b = atan(z / s) below the horizontal. A strip of ground between two such angles
+ * sends pi L / 2 of the difference of their sines to a wall (its view factor), so pi L sin b / 2 arrive: what the wall
+ * sees below the horizontal is sin b of open ground. The change of the open ground's light by the wall's own shadow is
+ * the rest. */
+static void wall_in_its_own_shadow(void **state)
+{
+    (void)state;
+    enum { points = 3 };
+    static Hits             hits;
+    static HemisphereLight  gathered;
+    static HemisphereChange change[hits_capacity];
+    VisibilityCounters      counters = {0};
+    const double            e = 35 * rad_per_deg, sun[3] = {-cos(e), 0, sin(e)}, dark[AIR_BAND_COUNT] = {0};
+    SnapshotEntity          standing[2] = {stage.entity[model_plane], stage.entity[model_wall]};
+    Snapshot                snapshot = stage.snapshot;
+    Visibility             *visibility;
+    snapshot.entity = standing, snapshot.count = 2, snapshot.node_count = model_count;
+    assert_int_equal(visibility_create(&visibility, stage.tracer, NULL, &stage.frame, &snapshot, false, stage.arena),
+                     STATUS_OK);
+    visibility_materials(visibility, &stage.materials);
+    air_even(&stage.air, sun, 500, dark, 0, stage.mwir, stage.lwir);
+    set_rho(0.2, 0.8);
+    stage.row_of[model_wall] = 3;
+    hits = (Hits){.count = points};
+    for (int i = 0; i < points; i++) {
+        hits.p_enu[2][i] = 0.5 * (i + 1), hits.n_enu[0][i] = hits.n_geo[0][i] = 1, hits.range_m[i] = 10;
+        hits.entity[i] = 2, hits.kind[i] = hit_part, hits.material[i] = 3;
+    }
+    static const int      list[2] = {0, 1};
+    static const double   reach_m[2] = {50, 50};
+    const HemisphereScene scene = {visibility, &stage.air, &stage.materials, NULL, &snapshot};
+    const HemisphereNear  near = {1u << AIR_R, 2048, 50, 2, list, reach_m};
+    hemisphere_light(&gathered, &scene, &hits, 1u << AIR_R, 4096, keys(8), &counters);
+    hemisphere_change(change, &scene, &hits, &near, keys(8), NULL, &counters);
+    const double ground = 0.2 * 500 * sin(e) / pi_rad; /* radiance in the sun */
+    for (int i = 0; i < points; i++) {
+        const double share = sin(atan(hits.p_enu[2][i] / (wall_m / tan(e)))), open_w_m2 = 0.5 * pi_rad * ground;
+        CHECK_NEAR(gathered.w_m2[AIR_R][i] / open_w_m2, share, 0.01);
+        CHECK_NEAR(gathered.below[AIR_R][i], share, 0.01);
+        CHECK_NEAR(change[i].w_m2[AIR_R] / open_w_m2, share - 1, 0.015);
+        CHECK_NEAR(change[i].below_w_m2[AIR_R] / open_w_m2, share - 1, 0.015);
+        CHECK_NEAR(hemisphere_below((double)change[i].below_w_m2[AIR_R], ground, 0), share, 0.015);
     }
 }
 
@@ -304,7 +358,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(sphere_over_a_plane),          cmocka_unit_test(even_worlds_stay_even),
         cmocka_unit_test(same_question_same_bits),      cmocka_unit_test(paths_bring_what_they_met),
-        cmocka_unit_test(leaves_scatter_to_both_sides),
+        cmocka_unit_test(leaves_scatter_to_both_sides), cmocka_unit_test(wall_in_its_own_shadow),
     };
     return cmocka_run_group_tests(tests, open_stage, close_stage);
 }

@@ -84,6 +84,45 @@ static void sphere_overhead(void **state)
         }
 }
 
+/* A black sphere that a wall sees whole, at a distance h and an angle t from its normal, hides (R / h)^2 cos t of the
+ * wall's light. Above the horizontal that is the sky's, below it the ground's; a level plane has none from below. */
+static void sphere_above_or_below(void **state)
+{
+    (void)state;
+    const double sun[3] = {0, 0.6, 0.8}, wall_enu[3] = {1, 0, 0};
+    set_rho(0, 0.3);
+    set_air(sun, 400, 20, 0);
+    for (int k = 0; k < 3; k++) {
+        const double middle[3][3] = {{3, 0.5, 2}, {3, 0.5, -2}, {0, 0, 3}}, *m = middle[k];
+        const double h2 = v3_dot(m, m), hidden = (k == 2 ? m[2] : m[0]) / sqrt(h2) / h2;
+        const double ground = 0.3 * (400 * 0.8 + 20 * pi_rad) / pi_rad;
+        clear_bodies();
+        add_body(model_sphere, (const double[3]){m[0], m[1], m[2] + 10}, NULL);
+        pose_bodies();
+        hits.count = 0;
+        double all = 0, below = 0;
+        for (int i = 0; i < 8; i++) put_point(&hits, (const double[3]){0, 0, 10}, k == 2 ? up_enu : wall_enu, 2);
+        change_of(change, &hits, 1u << AIR_R, 4096, 50, 50, 11, NULL);
+        for (int i = 0; i < 8; i++)
+            all += (double)change[i].w_m2[AIR_R] / 8, below += (double)change[i].below_w_m2[AIR_R] / 8;
+        CHECK_NEAR(all / (-pi_rad * hidden * (k == 1 ? ground : 20)), 1, 0.015);
+        CHECK_NEAR(below / (-pi_rad * hidden * ground), k == 1, k == 1 ? 0.015 : 0);
+        CHECK(change[0].below_w_m2[AIR_G] == 0);
+    }
+}
+
+/* Radiance seen below the horizontal over level ground's: of a wall, half of whose hemisphere is ground; of a plane
+ * that looks up, as if a sixteenth were. */
+static void factor_below(void **state)
+{
+    (void)state;
+    CHECK_NEAR(hemisphere_below(-0.25 * pi_rad * 8, 8, 0), 0.5, 1e-15);
+    CHECK_NEAR(hemisphere_below(pi_rad * 8, 8, -1), 2, 1e-15);
+    CHECK_NEAR(hemisphere_below(-pi_rad / 64, 1, 1), 0.75, 1e-15);
+    CHECK_NEAR(hemisphere_below(-pi_rad / 64, 1, 0.95), 0.75, 1e-15);
+    CHECK(hemisphere_below(-9, 1, 0) == 0 && hemisphere_below(1e6, 1, 0) == 100 && hemisphere_below(5, 0, 0) == 1);
+}
+
 /* What is beyond the reach of a ray changes nothing, nor, for a point on the ground, what is beyond the list's. */
 static void reach_is_an_end(void **state)
 {
@@ -137,6 +176,10 @@ static void closed_room(void **state)
             CHECK_NEAR(change[i].w_m2[AIR_LWIR], pi_rad * (1 - r3) * (b - 5), 2e-4);
             CHECK_NEAR(change[i].w_m2[AIR_B], -pi_rad * (1 - r3) * 5, 2e-5);
             CHECK(change[i].blocked == 1 && change[i].inside == 1 && change[i].sunlit == 0);
+            /* of 64 directions those below, to within four */
+            const double down = 0.5 * (1 - (double)hits.n_enu[2][i]);
+            CHECK_NEAR(change[i].below_w_m2[AIR_LWIR], pi_rad * (1 - r3) * (b - 5) * down,
+                       4.0 / 64 * pi_rad * (1 - r3) * fabs(b - 5) + 2e-4);
         }
     }
 }
@@ -290,6 +333,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(sphere_overhead),
+        cmocka_unit_test(sphere_above_or_below),
+        cmocka_unit_test(factor_below),
         cmocka_unit_test(reach_is_an_end),
         cmocka_unit_test(closed_room),
         cmocka_unit_test(white_bodies_vanish),

@@ -69,7 +69,7 @@ static int add_sky(double x, double y, double z)
 static void shade(const Air *air, int channel)
 {
     optical_shade(scene.out, channel, air, &scene.materials, &scene.hits, &scene.rays, scene.material, scene.texture,
-                  scene.sun, NULL, NULL, NULL);
+                  scene.sun, NULL, NULL, NULL, NULL);
 }
 
 static void set_material(int row, double rho, double gloss, double roughness)

@@ -88,11 +88,11 @@ static double shade(float quick[AIR_BAND_COUNT][hits_capacity], const float *con
     for (int b = 0; b < AIR_BAND_COUNT; b++) {
         const float *gathered = around ? around[b] : NULL;
         if (b < optical_channel_count)
-            optical_shade(plain, b, &hand.air, &materials, &hits, &rays, hits.material, texture, sun, gathered,
+            optical_shade(plain, b, &hand.air, &materials, &hits, &rays, hits.material, texture, sun, gathered, NULL,
                           &veils[b], NULL);
         else
             thermal_shade(plain, b == AIR_MWIR ? BAND_MWIR : BAND_LWIR, &hand.air, &materials, &hits, &rays,
-                          hits.material, temp_k, sun, gathered, &veils[b], NULL);
+                          hits.material, temp_k, sun, gathered, NULL, &veils[b], NULL);
         for (int i = 0; i < leaf_count; i++)
             most = fmax(most, fabs((double)quick[b][i] - (double)plain[i]) / fmax((double)plain[i], 1e-9));
     }

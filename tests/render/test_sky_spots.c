@@ -354,7 +354,10 @@ static void hits_take_similar_points(void **state)
         hits.range_m[3] = INFINITY, hits.entity[4] = 2;
         /* of any light, so that each weight shows */
         for (int task = 0; task < sky_visibility_tasks(sky); task++) sky_visibility_task(sky, worker, task);
-        for (int k = 0; k < e->columns * e->rows * 8; k++) e->spot.factor[k / 8][k % 8] = (float)hand_uniform(0, 2);
+        for (int k = 0; k < e->columns * e->rows * 8; k++) {
+            e->spot.factor[k / 8][k % 8] = (float)hand_uniform(0, 2);
+            e->spot.below[k / 8][k % 8] = 3 - e->spot.factor[k / 8][k % 8]; /* of a mean of them, too */
+        }
         CHECK(sky_visibility_open(&open, sky, worker, &hits, &(VisibilityCounters){0}));
         for (int i = 0; i < hits.count; i++) {
             double p_m[3], n[3], at[2], all = 0, want[2] = {1, 1};
@@ -390,6 +393,10 @@ static void hits_take_similar_points(void **state)
             if (all > 1e-12 && all < 1e-11) continue;
             CHECK_NEAR(open.factor[AIR_R][i], want[0], 2e-4);
             CHECK_NEAR(open.factor[AIR_LWIR][i], want[1], 2e-4);
+            const bool none = !(all > 1e-12) || i == 4;
+            CHECK(open.any_below);
+            CHECK_NEAR(open.below[AIR_R][i], none ? 1 : 3 - want[0], 2e-4);
+            CHECK_NEAR(open.below[AIR_LWIR][i], none ? 1 : 3 - want[1], 2e-4);
         }
     }
     print_message("%d wider, %d of the whole grid\n", wide, whole);

@@ -12,7 +12,8 @@ static Rays     rays;
 static AirPaths veils[AIR_BAND_COUNT];
 static uint16_t material[hits_capacity];
 static float    arrives[hits_capacity];
-static float    texture[hits_capacity], warmth_k[hits_capacity], temp_k[hits_capacity], around[hits_capacity];
+static float    texture[hits_capacity], warmth_k[hits_capacity], temp_k[hits_capacity], around[hits_capacity],
+    open[hits_capacity], below[hits_capacity];
 
 static int open_world(void **state)
 {
@@ -59,6 +60,7 @@ static void random_hits(const double sun_enu[3], bool ground)
         arrives[i] = (float)fmax(0, fmin(1, hand_uniform(-0.5, 2))); /* none, some or all of the sun */
         texture[i] = (float)hand_uniform(0.6, 1.4);
         around[i] = (float)hand_uniform(1, 100);
+        open[i] = (float)hand_uniform(0, 1.5), below[i] = (float)hand_uniform(0, 2);
     }
 }
 
@@ -77,6 +79,24 @@ static double worst(AirBand band, const float *quick, const float *plain, double
     return most;
 }
 
+/* Light of a hit from all around, in the open by its factor or as gathered, and the factor on the sky in its mirror:
+ * what the ground below leaves of it, over that of the open sky; of planes that see less than a sixteenth of the sky,
+ * over that. */
+static void light_by_hand(float *all_w_m2, float *mirror_sky, AirBand b, int i, bool contact)
+{
+    const Daylight *light = &hand.air.light;
+    const double    n[3] = {hits.n_enu[0][i], hits.n_enu[1][i], hits.n_enu[2][i]};
+    const double    level_w_m2 = b >= AIR_MWIR ? pi_rad * light->ground_w_m2_sr[b]
+                                               : optical_ground_w_m2((int)b, &hand.air, &hand.world.materials);
+    const double    sky = daylight_on_plane(light, b, n), ground = 0.5 * (1 - n[2]) * level_w_m2;
+    const double    all = contact ? (double)open[i] * (sky + ground) : (double)around[i];
+    const double    least = light->sky_w_m2[b] / 16, left = all - (double)below[i] * ground;
+    *all_w_m2 = (float)all;
+    *mirror_sky = (float)(sky > least ? left / sky : 1 + (left - sky) / least);
+    if (!(*mirror_sky > 0)) *mirror_sky = 0;
+    if (*mirror_sky > 100) *mirror_sky = 100;
+}
+
 /* Float holds 6e-8. What is left are the sky's tables, whose places are found within some 1e-5 of a step; and where a
  * smooth surface flashes, the half angle: its tangent is good to 1e-7, of slopes of 0.06 (water) or 0.01 (window
  * glass), and counts squared, times up to 40 at the foot of the lobe. */
@@ -87,9 +107,10 @@ static void compare(bool ground, double least_rad, double limit)
     const double        sun[suns][3] = {{-0.48, 0.36, 0.8}, {0, 0, 1}, {0.99, 0.1, 0.1}, {0.6, 0.7, -0.4}};
     const Materials    *m = &hand.world.materials;
     hand_draw = 5;
-    for (int run = 0; run < 2 * suns; run++) {
-        double sun_enu[3] = {0};
-        CHECK(v3_normalize(sun_enu, sun[run / 2]));
+    for (int run = 0; run < 4 * suns; run++) {
+        const int mode = run % 4; /* open; gathered; gathered with what is below; contact shadows */
+        double    sun_enu[3] = {0};
+        CHECK(v3_normalize(sun_enu, sun[run / 4]));
         arena_reset(hand.air_arena);
         hand_air_on(sun_enu, 300);
         random_hits(sun_enu, ground);
@@ -102,21 +123,28 @@ static void compare(bool ground, double least_rad, double limit)
         for (int b = 0; b < AIR_BAND_COUNT; b++) {
             out[b] = quick[b];
             block.texture[b] = texture;
-            if (run % 2) block.around_w_m2[b] = around;
+            if (mode == 1 || mode == 2) block.around_w_m2[b] = around;
+            if (mode == 3) block.open[b] = open;
+            if (mode >= 2) block.below[b] = below;
         }
         surface_light_shade(out, &light, &block);
         double most = 0;
         for (int b = 0; b < AIR_BAND_COUNT; b++) {
+            float             all[hits_capacity], sky[hits_capacity];
+            const MirrorLight shown = {sky, below};
+            for (int i = 0; i < hits_count; i++) light_by_hand(&all[i], &sky[i], (AirBand)b, i, mode == 3);
+            const float       *lit_by = mode == 0 ? NULL : all;
+            const MirrorLight *mirror = mode >= 2 ? &shown : NULL;
             if (b < optical_channel_count)
-                optical_shade(plain, b, &hand.air, m, &hits, &rays, material, texture, arrives, block.around_w_m2[b],
+                optical_shade(plain, b, &hand.air, m, &hits, &rays, material, texture, arrives, lit_by, mirror,
                               &veils[b], NULL);
             else
                 thermal_shade(plain, b == AIR_MWIR ? BAND_MWIR : BAND_LWIR, &hand.air, m, &hits, &rays, material,
-                              temp_k, arrives, block.around_w_m2[b], &veils[b], NULL);
+                              temp_k, arrives, lit_by, mirror, &veils[b], NULL);
             const double here = worst((AirBand)b, quick[b], plain, least_rad, limit);
             if (!(here <= most)) most = here;
         }
-        print_message("sun %d%s: %.1e\n", run / 2, run % 2 ? ", gathered" : "", most);
+        print_message("sun %d, light %d: %.1e\n", run / 4, mode, most);
         CHECK(most < limit);
     }
 }

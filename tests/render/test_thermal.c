@@ -65,7 +65,7 @@ static int add(const double d_enu[3], const double n_enu[3], double range_m, int
 static void shade(const Air *air, Band band)
 {
     thermal_shade(scene.out, band, air, &scene.materials, &scene.hits, &scene.rays, scene.material, scene.temp_k,
-                  scene.sun, NULL, NULL, NULL);
+                  scene.sun, NULL, NULL, NULL, NULL);
 }
 
 static Air air_when(const Weather *weather, double elevation_deg)

@@ -197,7 +197,8 @@ static void ground_sends(double w[3], const float rho[3])
     texture[0] = 1;
     for (int c = 0; c < 3; c++) {
         row.rho[channel[c]] = rho[c];
-        optical_shade(out, channel[c], &hand.air, &materials, &hits, &rays, material, texture, NULL, NULL, NULL, NULL);
+        optical_shade(out, channel[c], &hand.air, &materials, &hits, &rays, material, texture, NULL, NULL, NULL, NULL,
+                      NULL);
         w[c] = out[0];
     }
 }

@@ -243,10 +243,10 @@ static void shade(void *user)
         for (int b = 0; b < AIR_BAND_COUNT; b++) {
             if (b < AIR_MWIR)
                 optical_shade(s->out[b], b, s->air, s->materials, &s->hits, &s->rays, s->material, s->texture, s->sun,
-                              NULL, &s->veils[b], &facing);
+                              NULL, NULL, &s->veils[b], &facing);
             else
                 thermal_shade(s->out[b], b == AIR_MWIR ? BAND_MWIR : BAND_LWIR, s->air, s->materials, &s->hits,
-                              &s->rays, s->material, s->temp_k, s->sun, NULL, &s->veils[b], &facing);
+                              &s->rays, s->material, s->temp_k, s->sun, NULL, NULL, &s->veils[b], &facing);
         }
     }
     bench_keep(s->out);
