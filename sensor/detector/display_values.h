@@ -33,12 +33,12 @@ void                detector_display_db(void *out, const float *power, size_t co
  * Image Process. 24, 1460, 2015). For display images only: radiance in files and raw counts are not changed.
  *
  * The coefficients are fitted to patches, leaves, soils, skies and lamps under D65 for the observer CIE 1931, 2
- * degrees: etc/colour/make/correction.py, which says how. CIEDE2000 on average and at the 95th percentile, none of
- * these in the fit (in brackets with the best matrix, and without): the 99 test surfaces of CIE 224:2017 4.7, 9.3
- * (5.0, 10.0; 6.4, 11.6); the ColorChecker 2.4, 5.5 (2.9, 6.4; 4.4, 8.8); grass, loam, paint and similar
- * spectra 1.5, 3.3 (1.5, 3.2; 2.3, 3.9). Three rectangular bands resolve no more: 3.9 and 8.7 if fitted to the 99
- * themselves, since where in a band a spectrum rises is lost; a green paint of hue 145 degrees is displayed at 132.
- * Light of 0.5-0.6 um alone is 15 off.
+ * degrees: etc/colour/make/correction.py, which says how. CIEDE2000 on average and at the 95th percentile, of what is
+ * not in the fit (in brackets by a matrix fitted to the ColorChecker, and by white balance alone): the 99 test surfaces
+ * of CIE 224:2017 4.7, 9.3 (5.0, 10.0; 6.4, 11.6); the ColorChecker 2.4, 5.5 (2.9, 6.4; 4.4, 8.8); grass, loam, paint
+ * and similar spectra 1.5, 3.3 (1.5, 3.2; 2.3, 3.9). Three rectangular bands resolve little more: 3.9 and 8.7 if fitted
+ * to the 99 themselves, since where in a band a spectrum rises is lost; a green paint of hue 145 degrees is displayed
+ * at 132. Light of 0.5-0.6 um alone is 15 off.
  *
  * An output rises with its own band where no band is more than 30 times another. The noise of a grey is 0.99, 1.16,
  * 1.17 that of a band (R, G, B); it is at most 1.4 times that where bands are within 3 of each other, 2.3 within 10 (R

@@ -4,10 +4,10 @@
     build/judges/bin/python3 etc/colour/make/correction.py                        the coefficients, and how wrong they are
     build/judges/bin/python3 etc/colour/make/correction.py 400 500 570 620 700    the same for bands with these edges, nm
 
-Needs colour-science and prosail (etc/setup --tests); half a minute. Root polynomial of degree 2 (Finlayson, Mackiewicz & Hurlbert,
-IEEE Trans. Image Process. 24, 1460, 2015): linear sRGB from R, G, B and the square roots of RG, GB, RB, each over white's. The
-coefficients of an output add up to 1, so that grey stays grey. They minimise the weighted mean of sqrt(9 + CIEDE2000^2) - 3, close
-to the mean of CIEDE2000 with less weight on small differences, over
+Needs colour-science and prosail (etc/setup --tests); half a minute. Root polynomial of degree 2 (Finlayson, Mackiewicz &
+Hurlbert, IEEE Trans. Image Process. 24, 1460, 2015): linear sRGB from R, G, B and the square roots of RG, GB, RB, each over
+white's. The coefficients of an output add up to 1, so that grey stays grey. They minimise the weighted mean of
+sqrt(9 + CIEDE2000^2) - 3, close to the mean of CIEDE2000 with less weight on small differences, over
 
     surfaces   0.42  the 190 patches of the rawtoaces training set (A.M.P.A.S.), as colour-science has them
     leaves     0.09  PROSPECT-D, chlorophyll 2 to 60 ug/cm2, brown pigments 0 to 0.9
@@ -15,10 +15,10 @@ to the mean of CIEDE2000 with less weight on small differences, over
     sky        0.25  CIE daylight of 4500 to 25000 K over D65
     lamps      0.01  black bodies of 1500 to 4000 K over D65: fires, flares
 
-under CIE D65, observer CIE 1931 (2 degrees). Roots of values that are mostly noise are too low on average, which would give the
-dark a hue: so the square of the sum of an output's coefficients of roots, times STEADY, is minimised with it. Weights and STEADY are
-such that the materials of tests/sensor/colour_spectra.h are shown as well as with the best matrix; of these the fit itself knows none,
-nor of the 99 CIE test surfaces (CIE 224:2017), nor of the ColorChecker.
+under CIE D65, observer CIE 1931 (2 degrees). Roots of values that are mostly noise are too low on average, which would give
+the dark a hue: so the square of the sum of an output's coefficients of roots, times STEADY, is minimised with it. Weights and
+STEADY are such that the materials of tests/sensor/colour_spectra.h are shown as well as by a matrix fitted to the ColorChecker; of
+these the fit itself knows none, nor of the 99 test surfaces (CIE 224:2017), nor of the ColorChecker.
 """
 import csv
 import itertools
@@ -103,7 +103,8 @@ def over_daylight(light):
 
 def sky():
     kelvins = (4500, 5500, 8000, 10000, 15000, 20000, 25000)
-    return np.array([over_daylight(of(colour.sd_CIE_illuminant_D_series(colour.temperature.CCT_to_xy_CIE_D(k)))) for k in kelvins])
+    xy = [colour.temperature.CCT_to_xy_CIE_D(k) for k in kelvins]
+    return np.array([over_daylight(of(colour.sd_CIE_illuminant_D_series(p))) for p in xy])
 
 
 def lamps():
@@ -178,7 +179,7 @@ def rounded(coefficients):
 
 
 def main():
-    edges_nm = tuple(float(x) for x in sys.argv[1:]) or EDGES_NM
+    edges_nm = tuple(int(x) for x in sys.argv[1:]) or EDGES_NM
     classes = [(0.42, patches()), (0.09, leaves()), (0.23, mixtures()), (0.25, sky()), (0.01, lamps())]
     sets = {"CIE 99": test_surfaces(), "ColorChecker": checker(), "materials": materials(), "patches": patches(),
             "leaves": leaves(), "sky": sky(), "lamps": lamps()}
@@ -193,7 +194,8 @@ def main():
         for name, reflectance in sets.items():
             shown = on_screen(terms(bands(reflectance, edges_nm), roots) @ coefficients.T)
             d = colour.delta_E(lab_of_spectra(reflectance), lab_of_rgb(shown), method="CIE 2000")
-            print(f"  {name:13s} CIEDE2000 {d.mean():5.2f} on average, 95 % below {np.percentile(d, 95):5.2f}, at most {d.max():5.2f}")
+            print(f"  {name:13s} CIEDE2000 {d.mean():5.2f} on average, 95 % below {np.percentile(d, 95):5.2f},"
+                  f" at most {d.max():5.2f}")
 
 
 if __name__ == "__main__":
