@@ -138,6 +138,31 @@ static void the_dark_and_grey_are_as_they_were(void **state)
     }
 }
 
+/* A pixel has its colour whatever stands beside it and wherever it stands, also in place: planes at once, and one by
+ * one. */
+static void a_plane_is_shown_as_its_pixels_are(void **state)
+{
+    (void)state;
+    enum { count = 777 };
+    static float  in[3][count], at_once[3][count];
+    DisplayColour colour;
+    float *const own[3] = {in[0], in[1], in[2]}, *const whole[3] = {at_once[0], at_once[1], at_once[2]};
+    display_colour(&colour, (double[3]){1, 1.5, 0.8}, 0.25, 1.2);
+    for (int c = 0; c < 3; c++)
+        for (int i = 0; i < count; i++) in[c][i] = (float)(3 * random_uniform(8, (uint32_t)c, 0, (uint64_t)i) - 0.5);
+    in[0][5] = NAN, in[1][300] = INFINITY, in[2][776] = -INFINITY;
+    display_colour_apply(whole, (const float *const *)own, count, &colour);
+    for (int i = 0; i < count; i++) {
+        float        v[3] = {in[0][i], in[1][i], in[2][i]};
+        float *const one[3] = {v, v + 1, v + 2};
+        display_colour_apply(one, (const float *const *)one, 1, &colour);
+        for (int c = 0; c < 3; c++) assert_memory_equal(&at_once[c][i], &v[c], sizeof v[c]);
+    }
+    display_colour_apply(own, (const float *const *)own, count, &colour);
+    assert_memory_equal(in, at_once, sizeof in);
+    CHECK(isnan(in[0][5]) && isinf(in[1][300]) && isinf(in[2][776]));
+}
+
 /* ---- the day -------------------------------------------------------------------------------------- */
 
 static int elevation_of(double sun_enu[3], double deg)
@@ -400,6 +425,7 @@ int main(void)
         cmocka_unit_test(colours_are_those_an_eye_sees),
         cmocka_unit_test(surfaces_are_shown_as_another_program_shows_them),
         cmocka_unit_test(the_dark_and_grey_are_as_they_were),
+        cmocka_unit_test(a_plane_is_shown_as_its_pixels_are),
         cmocka_unit_test(white_is_white_at_any_height_of_the_sun),
         cmocka_unit_test(hue_stays_at_the_ends),
         cmocka_unit_test(colours_of_no_screen_keep_their_luminance),
